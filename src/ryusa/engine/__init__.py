@@ -1,0 +1,1 @@
+"""Engines: who touches whom, and one step for all of them."""

@@ -1,0 +1,51 @@
+"""Named errors. Every one says what is wrong, where, and what to do about it."""
+
+
+class RyusaError(Exception):
+    """Base of every error a user can cause or meet; the CLI prints it in one block and exits with `exit_code`."""
+
+    exit_code = 2
+
+
+class CaseError(RyusaError):
+    """A case file that cannot be run: names the key path, the value, what is allowed and the nearest known key."""
+
+    def __init__(self, key: str, value: object, allowed: str, nearest: str | None = None) -> None:
+        self.key, self.value, self.allowed, self.nearest = key, value, allowed, nearest
+        text = f"{key} = {value!r}: {allowed}" if value is not None else f"{key}: {allowed}"
+        super().__init__(f"{text}. Did you mean '{nearest}'?" if nearest else text)
+
+
+class ResultsError(RyusaError):
+    """A run folder that cannot be read or written."""
+
+
+class RunError(RyusaError):
+    """A number that went wrong while stepping: names grain, partner, step and time, and what to try."""
+
+    exit_code = 3
+
+    def __init__(self, cause: str, *, grain: int, step: int, t: float, hint: str, partner: int | None = None) -> None:
+        self.cause, self.grain, self.step, self.t, self.hint, self.partner = cause, grain, step, t, hint, partner
+        pair = "" if partner is None else f" with partner {partner}"
+        super().__init__(f"{cause}: grain {grain}{pair}, step {step}, t = {t:.6g} s. {hint}")
+
+
+class NotANumber(RunError):
+    """A force, position or velocity is no longer finite."""
+
+
+class GrainLost(RunError):
+    """A grain left the world."""
+
+
+class OverlapTooLarge(RunError):
+    """Two partners reach into each other beyond the limit."""
+
+
+class ListUnsafe(RunError):
+    """A grain moved further in one step than the neighbour list allows for."""
+
+
+class ContactSlotsFull(RunError):
+    """A fixed buffer of contacts is full and could not grow."""

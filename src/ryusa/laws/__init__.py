@@ -1,0 +1,1 @@
+"""Physics as small pure functions of scalars; each names its equation or source."""

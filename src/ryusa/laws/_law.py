@@ -1,0 +1,15 @@
+"""The decorator every law carries: one text for the CPU engine, for CUDA kernels and for plain Python."""
+
+from collections.abc import Callable
+from typing import Any, cast
+
+import numba
+
+
+def law[F: Callable[..., Any]](function: F) -> F:
+    """Compile a scalar law when it is first called; typed as identity so that the signature survives.
+
+    `error_model="numpy"` makes a division by zero give inf or nan instead of raising: laws never raise, and the
+    engine stops on a number that is not finite.
+    """
+    return cast(F, numba.njit(error_model="numpy", cache=True)(function))

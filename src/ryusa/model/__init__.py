@@ -1,0 +1,8 @@
+"""Scene (fixed), State (moving), Contacts (memory of a pair), Tally (the energy account)."""
+
+from ryusa.model.contacts import EVENT, Contacts
+from ryusa.model.scene import ContactLaw, RollingLaw, Scene, Water
+from ryusa.model.state import State
+from ryusa.model.tally import Book, Tally
+
+__all__ = ["EVENT", "Book", "ContactLaw", "Contacts", "RollingLaw", "Scene", "State", "Tally", "Water"]

@@ -1,0 +1,60 @@
+"""Memory of touching pairs, and the record a pair leaves when it parts."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ryusa.model.scene import Floats
+
+# One row per contact that ended. Vectors are those of grain i; n points from i to j.
+EVENT = np.dtype(
+    [
+        ("i", np.int64),  # id of the free grain
+        ("j", np.int64),  # id of its partner: free grain, fixed grain or plane (Scene)
+        ("t_begin", np.float64),  # first touch, interpolated [s]
+        ("t_end", np.float64),  # the normal force ends for good, interpolated [s]
+        ("t_part", np.float64),  # the overlap ends [s]
+        ("overlap_max", np.float64),  # [m]
+        ("closing_begin", np.float64),  # closing speed at first touch [m/s], positive when approaching
+        ("closing_end", np.float64),  # closing speed at parting [m/s], negative when parting
+        ("slip_begin", np.float64, (3,)),  # slip velocity of i against j at the contact point [m/s]
+        ("slip_end", np.float64, (3,)),
+        ("impulse_n", np.float64),  # integral of f_n [N s]
+        ("impulse", np.float64, (3,)),  # integral of the contact force on grain i [N s]
+        ("t_slide", np.float64),  # time spent sliding [s]
+        ("alone", np.float64),  # 1 while neither partner touched anything else, else 0
+        ("x_begin", np.float64, (3,)),  # centre of grain i at first touch, unwrapped [m]
+        ("v_begin", np.float64, (3,)),  # velocity of grain i at first touch [m/s]
+        ("v_end", np.float64, (3,)),  # and at parting [m/s]
+        ("omega_begin", np.float64, (3,)),  # spin of grain i at first touch [rad/s]
+        ("omega_end", np.float64, (3,)),  # and at parting [rad/s]
+    ]
+)
+N_EVENT = EVENT.itemsize // 8
+
+
+@dataclass(frozen=True)
+class Contacts:
+    """Pairs in touch now. Memory belongs to the pair and dies with the contact.
+
+    All arrays have n_contact rows; i is always a free grain, j > i may be free, fixed or a plane.
+    """
+
+    i: np.ndarray  # ids, int64
+    j: np.ndarray
+    spring_s: Floats  # tangential spring force on grain i [N], shape (n_contact, 3)
+    dash_s: Floats  # tangential dashpot force on i in the last step [N], shape (n_contact, 3)
+    dash_n: Floats  # normal force less normal spring in the last step [N], shape (n_contact,)
+    spring_r: Floats  # rolling spring torque on i [N m], shape (n_contact, 3)
+    dash_r: Floats  # rolling torque on i in the last step, less its spring [N m], shape (n_contact, 3)
+    event: np.ndarray  # the open record of each contact as it stands, shape (n_contact, N_EVENT), float64
+
+    @staticmethod
+    def none() -> "Contacts":
+        """No pair in touch."""
+        ids = np.zeros(0, dtype=np.int64)
+        v3 = np.zeros((0, 3))
+        return Contacts(ids, ids, v3, v3, np.zeros(0), v3, v3, np.zeros((0, N_EVENT)))
+
+    def __len__(self) -> int:
+        return len(self.i)

@@ -1,0 +1,118 @@
+"""What holds still during a run: grains' sizes and masses, bed, planes, laws, water, step."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ryusa.model.enums import Above, Arm, Cap, Damping, Drag, EventRule, Profile, Rolling, Slip, WaterTorque
+
+type Floats = NDArray[np.float64]
+type Bools = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class ContactLaw:
+    """Springs, dashpots and slider of every contact, Eqs. (1)-(4)."""
+
+    k_n: float  # normal stiffness [N/m]
+    k_s: float  # tangential stiffness [N/m]
+    mu: float  # tan(friction angle) [-]
+    cohesion: float = 0.0  # grain-level cohesion c [N]
+    damping: Damping = Damping.RESTITUTION
+    e_n: float = float("nan")  # restitution asked for [-]; nan where dashpots are constants
+    e_s: float = float("nan")
+    zeta_n: float = 0.0  # damping ratio that gives e_n under `tension` [-]
+    zeta_s: float = 0.0
+    eta_n: float = 0.0  # dashpots [N s/m], used when damping is CONSTANTS
+    eta_s: float = 0.0
+    slip: Slip = Slip.SPRING
+    cap: Cap = Cap.SPRING
+    tension: bool = False  # may the dashpot pull before the overlap ends
+
+
+@dataclass(frozen=True)
+class RollingLaw:
+    """Rolling friction, Eq. (13) and its variants."""
+
+    model: Rolling = Rolling.NONE
+    arm: Arm = Arm.CONTACT_WIDTH
+    coefficient: float = 0.0  # f' (contact width) or mu_r (reduced radius) [-]
+    stiffness_factor: float = 2.25  # EPSD: k_r = factor * k_n * f**2, f = mu_r R* [-]
+    zeta_r: float = 0.3  # EPSD: damping ratio of the rolling spring [-]
+
+
+@dataclass(frozen=True)
+class Water:
+    """One-way water: a velocity profile, a drag law, added mass and a torque, Eqs. (9)-(11)."""
+
+    profile: Profile = Profile.NONE
+    u_star: float = 0.0  # friction velocity [m/s]
+    k_rough: float = 0.0  # equivalent roughness of Eq. (9) [m]
+    z_zero: float = 0.0  # height where the profile's z is zero [m]
+    u_uniform: float = 0.0  # speed of the uniform profile [m/s]
+    depth: float = float("inf")  # depth above z_zero [m]
+    above: Above = Above.CONTINUE
+    nu: float = 1.0e-6  # kinematic viscosity [m2/s]
+    rho_w: float = 1000.0  # density [kg/m3]
+    drag: Drag = Drag.NONE
+    c_d: float = 0.4  # constant drag coefficient [-]
+    a_2: float = float(np.pi / 4)  # area coefficient of Eq. (10) [-]
+    c_m: float = 0.5  # added-mass coefficient [-]
+    torque: WaterTorque = WaterTorque.NONE
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Everything fixed during a run (or between two changes of its timeline).
+
+    Free grains have ids 0..n_grain-1, fixed grains n_grain..n_grain+n_fixed-1, planes follow.
+    """
+
+    # free grains, each of shape (n_grain,)
+    d: Floats  # diameter [m]
+    m: Floats  # mass [kg], without added mass
+    m_added: Floats  # added mass [kg]; 0 when dry
+    m_weight: Floats  # mass that gravity sees, (rho_s - rho_w) V [kg]
+    inertia: Floats  # moment of inertia [kg m2], never with added mass
+    # bed and walls
+    x_fixed: Floats  # centres of fixed grains [m], shape (n_fixed, 3)
+    d_fixed: Floats  # their diameters [m], shape (n_fixed,)
+    fixed_active: Bools  # False once removed (a gate), shape (n_fixed,)
+    plane_normal: Floats  # unit normals pointing into the free side, shape (n_plane, 3)
+    plane_point: Floats  # a point on each plane [m], shape (n_plane, 3)
+    plane_active: Bools  # shape (n_plane,)
+    # laws and forces
+    contact: ContactLaw
+    dt: float  # [s]
+    gravity: Floats = field(default_factory=lambda: np.array([0.0, 0.0, -9.80665]))  # [m/s2], shape (3,)
+    rolling: RollingLaw = field(default_factory=RollingLaw)
+    rotation: bool = True  # False: spin locked at zero
+    water: Water = field(default_factory=Water)
+    # space
+    plane_case: bool = False  # motion in x-z only; y, v_y, omega_x, omega_z stay as they are
+    period: tuple[float, float] = (float("inf"), float("inf"))  # period in x and y [m]; inf where open
+    world_low: tuple[float, float, float] = (-float("inf"),) * 3  # a grain beyond is lost [m]
+    world_high: tuple[float, float, float] = (float("inf"),) * 3
+    slab_width: float = float("nan")  # width of a plane scene, for concentrations [m]
+    # guards and records
+    overlap_limit: float = 0.5  # overlap over smaller diameter that stops the run [-]
+    events: EventRule = EventRule.ALL
+    tracked: Bools = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))  # (n_grain,) or empty
+    # names of groups, for timeline and measures: slices of the ids above
+    groups: dict[str, tuple[int, int]] = field(default_factory=lambda: {})
+
+    @property
+    def n_grain(self) -> int:
+        """Number of free grains."""
+        return len(self.d)
+
+    @property
+    def n_fixed(self) -> int:
+        """Number of fixed grains, removed ones counted."""
+        return len(self.d_fixed)
+
+    @property
+    def n_plane(self) -> int:
+        """Number of planes, removed ones counted."""
+        return len(self.plane_normal)

@@ -1,0 +1,40 @@
+"""What moves: positions, velocities, spins, and the memory that an exact resume needs."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ryusa.model.contacts import Contacts
+from ryusa.model.scene import Floats
+from ryusa.model.tally import N_BOOK
+
+
+@dataclass(frozen=True)
+class State:
+    """One moment of a run; arrays that cross a border are read-only.
+
+    The scheme is semi-implicit: `v` and `omega` belong to half a step before `x`.
+    """
+
+    x: Floats  # grain centres [m], shape (n_grain, 3), columns (x, y, z), inside the period at the last wrap
+    v: Floats  # grain velocities [m/s], shape (n_grain, 3)
+    omega: Floats  # spin [rad/s], shape (n_grain, 3), right-handed; +y rolls downstream (the paper plots it negative)
+    step: int = 0  # steps done since the start of the run
+    t: float = 0.0  # time of x [s]
+    image: np.ndarray = field(default_factory=lambda: np.zeros((0, 2), dtype=np.int32))  # periods crossed in x, y
+    contacts: Contacts = field(default_factory=Contacts.none)
+    books: Floats = field(default_factory=lambda: np.zeros(N_BOOK))  # energy account so far [J], see tally.py
+    x_listed: Floats | None = None  # where the grains were when the neighbour list was built [m]
+    image_listed: np.ndarray | None = None
+    engine: dict[str, float] = field(default_factory=lambda: {})  # an engine's own numbers (skin, travel, extremes)
+
+    @staticmethod
+    def at_rest(x: Floats) -> "State":
+        """Grains at rest at `x` [m], shape (n_grain, 3)."""
+        x = np.ascontiguousarray(x, dtype=np.float64)
+        return State(x=x, v=np.zeros_like(x), omega=np.zeros_like(x), image=np.zeros((len(x), 2), dtype=np.int32))
+
+    @property
+    def n_grain(self) -> int:
+        """Number of free grains."""
+        return len(self.x)

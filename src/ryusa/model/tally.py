@@ -1,0 +1,65 @@
+"""The energy account: every term summed by itself, none by difference."""
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+
+class Book(IntEnum):
+    """Work booked while stepping [J]. Losses are positive when energy leaves, gifts when it comes in."""
+
+    DASH_N = 0  # lost to normal dashpots
+    DASH_S = 1  # lost to tangential dashpots
+    SLIDE = 2  # lost to sliding
+    ROLL = 3  # lost to rolling friction (slider and dashpot)
+    RELEASED_N = 4  # normal springs let go when the force ends before the overlap does
+    RELEASED_S = 5  # tangential springs let go at parting
+    RELEASED_R = 6  # rolling springs let go at parting
+    DRAG = 7  # given by drag
+    TORQUE = 8  # given by the water's torque
+    LIFT = 9  # given by lift
+    SWITCH = 10  # given by a change of the timeline (gravity, friction, rotation, a gate)
+    START = 11  # energy at the first step: kinetic + spin + potential + springs
+
+
+N_BOOK = len(Book)
+LOSSES = (Book.DASH_N, Book.DASH_S, Book.SLIDE, Book.ROLL, Book.RELEASED_N, Book.RELEASED_S, Book.RELEASED_R)
+GIFTS = (Book.DRAG, Book.TORQUE, Book.LIFT, Book.SWITCH)
+
+
+@dataclass(frozen=True)
+class Tally:
+    """Energy account [J] and extremes at the moment of the last force evaluation."""
+
+    t: float  # [s]
+    kinetic: float  # translation, added mass included
+    spin: float
+    potential: float  # weight and buoyancy, measured from z = 0 (and x = 0 on a slope)
+    spring_n: float
+    spring_s: float
+    spring_r: float
+    books: tuple[float, ...]  # indexed by Book
+    overlap_max: float  # largest overlap over the smaller diameter so far [-]
+    overlap_grain: int  # grain that had it
+    overlap_step: int
+    speed_max: float  # largest grain speed in the last step [m/s]
+    spin_max: float  # largest spin in the last step [rad/s]
+    n_contact: int  # pairs in touch now
+
+    @property
+    def held(self) -> float:
+        """Energy in motion, height and springs now [J]."""
+        return self.kinetic + self.spin + self.potential + self.spring_n + self.spring_s + self.spring_r
+
+    @property
+    def imbalance(self) -> float:
+        """What the account cannot explain [J]: held - start - gifts + losses."""
+        gifts = sum(self.books[b] for b in GIFTS)
+        losses = sum(self.books[b] for b in LOSSES)
+        return self.held - self.books[Book.START] - gifts + losses
+
+    @property
+    def residual(self) -> float:
+        """Imbalance over the largest term of the account [-]; potential counts as its change is not kept apart."""
+        terms = [self.kinetic, self.spin, self.spring_n, self.spring_s, self.spring_r, self.held - self.books[Book.START]]
+        largest = max(abs(term) for term in [*terms, *self.books[: Book.START]])
+        return abs(self.imbalance) / largest if largest > 0.0 else 0.0
