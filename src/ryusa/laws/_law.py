@@ -1,12 +1,14 @@
 """The decorator every law carries: one text for the CPU engine, for CUDA kernels and for plain Python."""
 
 from collections.abc import Callable
-from typing import Any, cast
+from typing import Any, TypeVar, cast
 
 import numba
 
+F = TypeVar("F", bound=Callable[..., Any])
 
-def law[F: Callable[..., Any]](function: F) -> F:
+
+def law(function: F) -> F:
     """Compile a scalar law when it is first called; typed as identity so that the signature survives.
 
     `error_model="numpy"` makes a division by zero give inf or nan instead of raising: laws never raise, and the

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from ryusa.model.enums import Above, Arm, Cap, Damping, Drag, EventRule, Profile, Rolling, Slip, WaterTorque
 
-type Floats = NDArray[np.float64]
-type Bools = NDArray[np.bool_]
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
