@@ -1,0 +1,167 @@
+"""Normal and tangential contact forces, Eqs. (1)-(4), and the named ways to slide."""
+
+import math
+
+from ryusa.laws._law import law
+
+
+@law
+def normal_force(overlap: float, closing: float, k_n: float, eta_n: float) -> float:
+    """Normal force of a linear spring and dashpot that may pull until the overlap ends [N].
+
+    Parameters
+    ----------
+    overlap : how far the two grains reach into each other [m]; positive in touch.
+    closing : speed at which the two surfaces approach along the normal [m/s]; positive when approaching.
+    k_n, eta_n : normal stiffness [N/m] and dashpot [N s/m], both >= 0.
+
+    Returns
+    -------
+    f_n : normal force [N]; positive pushes apart.
+
+    Notes
+    -----
+    Source: the paper, Eq. (1), read from overlap. Holds while in touch.
+
+    >>> round(normal_force(1.0e-5, 0.1, 1.0e4, 0.1), 12)
+    0.11
+    """
+    return k_n * overlap + eta_n * closing
+
+
+@law
+def normal_force_no_tension(overlap: float, closing: float, k_n: float, eta_n: float) -> float:
+    """Normal force of a linear spring and dashpot that never pulls [N].
+
+    Parameters
+    ----------
+    overlap, closing, k_n, eta_n : as in `normal_force`.
+
+    Notes
+    -----
+    Source: the paper, Eq. (1), cut at zero after Schwager & Poeschel 2007, Granular Matter 9, 465.
+
+    >>> normal_force_no_tension(1.0e-5, -10.0, 1.0e4, 0.1)
+    0.0
+    """
+    return max(k_n * overlap + eta_n * closing, 0.0)
+
+
+@law
+def shear_strength(push: float, cohesion: float, mu: float) -> float:
+    """Largest tangential force a contact bears before it slides [N]. Eq. (4), tau_c.
+
+    Parameters
+    ----------
+    push : normal force that feeds friction [N]: the spring e_n as printed, or the whole f_n.
+    cohesion : grain-level cohesion c [N].
+    mu : tan(friction angle) [-].
+
+    >>> round(shear_strength(0.1, 0.0, 0.5), 12)
+    0.05
+    """
+    return max(cohesion + mu * push, 0.0)
+
+
+@law
+def slip_spring(spring_s: float, spring_n: float, cohesion: float, mu: float) -> float:
+    """Tangential spring capped at tau_c, sign kept [N]. Eqs. (3)-(4) along one tangent.
+
+    Parameters
+    ----------
+    spring_s : tangential spring force before the cap [N].
+    spring_n : normal spring force e_n [N].
+    cohesion : grain-level cohesion c [N].
+    mu : tan(friction angle) [-].
+
+    >>> slip_spring(-3.0, 1.0, 0.0, 0.5)
+    -0.5
+    """
+    tau_c = shear_strength(spring_n, cohesion, mu)
+    return math.copysign(tau_c, spring_s) if abs(spring_s) >= tau_c else spring_s
+
+
+@law
+def slip_scale(size: float, tau_c: float) -> float:
+    """Factor that shortens a tangential vector of length `size` to tau_c; 1 while it sticks [-]. Eq. (3) in 3D.
+
+    Parameters
+    ----------
+    size : length of the tangential force before the cap [N].
+    tau_c : shear strength [N].
+
+    >>> slip_scale(2.0, 1.0), slip_scale(0.5, 1.0), slip_scale(0.0, 0.0)
+    (0.5, 1.0, 1.0)
+    """
+    return tau_c / size if size > tau_c else 1.0
+
+
+@law
+def slide_spring(size: float, tau_c: float) -> tuple[float, float, float]:
+    """Cap the spring, keep the dashpot: Eq. (3) as printed.
+
+    Parameters
+    ----------
+    size : length of the tangential spring force before the cap, abs(e) [N].
+    tau_c : shear strength [N].
+
+    Returns
+    -------
+    a, b, c : e becomes a e + b d and d becomes c d, for spring force e and dashpot force d, vectors in 3D or components
+        along the one tangent of a plane scene; a < 1 means sliding [-].
+
+    >>> slide_spring(2.0, 1.0)
+    (0.5, 0.0, 1.0)
+    """
+    return slip_scale(size, tau_c), 0.0, 1.0
+
+
+@law
+def slide_spring_drop(size: float, tau_c: float) -> tuple[float, float, float]:
+    """Cap the spring and drop the dashpot while sliding.
+
+    Parameters
+    ----------
+    size, tau_c : as in `slide_spring` [N]; returns the same three factors.
+
+    >>> slide_spring_drop(2.0, 1.0)
+    (0.5, 0.0, 0.0)
+    """
+    scale = slip_scale(size, tau_c)
+    return scale, 0.0, 0.0 if scale < 1.0 else 1.0
+
+
+@law
+def slide_total(size: float, tau_c: float) -> tuple[float, float, float]:
+    """Cap spring and dashpot together, as LAMMPS and LIGGGHTS do.
+
+    Parameters
+    ----------
+    size : length of spring plus dashpot before the cap, abs(e + d) [N].
+    tau_c : shear strength [N]; returns the same three factors as `slide_spring`.
+
+    Notes
+    -----
+    While sliding the dashpot keeps its value and the spring takes what is left, so that the sum has length tau_c.
+
+    >>> slide_total(2.0, 1.0)
+    (0.5, -0.5, 1.0)
+    """
+    scale = slip_scale(size, tau_c)
+    return scale, scale - 1.0, 1.0
+
+
+@law
+def damping(zeta: float, k: float, m_eff: float) -> float:
+    """Dashpot of a linear oscillator [N s/m]: eta = 2 zeta sqrt(k m_eff).
+
+    Parameters
+    ----------
+    zeta : damping ratio [-].
+    k : stiffness [N/m].
+    m_eff : effective mass of the pair [kg], added mass counted, a fixed grain infinite.
+
+    >>> round(damping(0.1, 1.0e4, 1.0e-5), 9)
+    0.063245553
+    """
+    return 2.0 * zeta * math.sqrt(k * m_eff)
