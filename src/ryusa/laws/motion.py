@@ -1,0 +1,94 @@
+"""One grain, one step. Eqs. (5)-(7), (10)-(11)."""
+
+from ryusa.laws._law import law
+
+
+@law
+def inertia_sphere(m: float, d: float) -> float:
+    """Moment of inertia of a sphere [kg m2], m d**2/10. Eq. (7); m [kg] without added mass, d [m].
+
+    Examples
+    --------
+    >>> round(inertia_sphere(10.0, 2.0), 12)
+    4.0
+    """
+    return 0.1 * m * d * d
+
+
+@law
+def acceleration(contact: float, drag: float, weight: float, m: float, m_added: float) -> float:
+    """One component of a grain's acceleration [m/s2].
+
+    Parameters
+    ----------
+    contact : sum of contact forces on the grain [N]; Eqs. (5)-(6).
+    drag : drag force [N], zero when dry; Eqs. (10)-(11).
+    weight : submerged weight, mass that gravity sees times the component of gravity [N].
+    m : mass [kg].
+    m_added : added mass [kg], in the inertia only.
+
+    Notes
+    -----
+    Source: the paper, Eqs. (5)-(6) when dry and (10)-(11) in water, where rho (sigma/rho + C_M) A_3 d**3 is m + m_added.
+
+    Examples
+    --------
+    >>> acceleration(3.0, 1.0, -2.0, 1.5, 0.5)
+    1.0
+    """
+    return (contact + drag + weight) / (m + m_added)
+
+
+@law
+def acceleration_spin(torque: float, inertia: float) -> float:
+    """One component of a grain's angular acceleration [rad/s2]. Eq. (7); torque [N m], inertia [kg m2].
+
+    Examples
+    --------
+    >>> acceleration_spin(3.0, 1.5)
+    2.0
+    """
+    return torque / inertia
+
+
+@law
+def semi_implicit(x: float, v: float, a: float, dt: float) -> tuple[float, float]:
+    """One step of the scheme ryusa uses: velocity first, then position with the new velocity.
+
+    Parameters
+    ----------
+    x : position [m] (or angle [rad]).
+    v : velocity [m/s], half a step before x.
+    a : acceleration at x [m/s2].
+    dt : time step [s].
+
+    Returns
+    -------
+    x, v : both a step later.
+
+    Notes
+    -----
+    Symplectic Euler, the same as leapfrog with v shifted by half a step. Stable in a linear contact for
+    omega_0 dt <= 2 (sqrt(1 + zeta**2) - zeta).
+
+    Examples
+    --------
+    >>> semi_implicit(0.0, 1.0, 2.0, 0.5)
+    (1.0, 2.0)
+    """
+    v = v + a * dt
+    return x + v * dt, v
+
+
+@law
+def forward_euler(x: float, v: float, a: float, dt: float) -> tuple[float, float]:
+    """One step of true forward Euler, kept only for the study that shows why not: it pumps energy into every contact.
+
+    Parameters and results as `semi_implicit`, but v and x belong to the same time.
+
+    Examples
+    --------
+    >>> forward_euler(0.0, 1.0, 2.0, 0.5)
+    (0.5, 2.0)
+    """
+    return x + v * dt, v + a * dt

@@ -1,0 +1,222 @@
+"""Rolling friction: Eq. (13) as printed, and the variants the field uses.
+
+All laws are scalar. An engine that works with vectors takes the size of the torque or spin, asks the law for a size or
+a scale, and multiplies the direction by it:
+
+- printed: torque = -rolling_printed(f_n, f) * m_t / |m_t|, m_t the torque that drives the grain.
+- constant: torque = -rolling_constant(cap, |w|, inertia, dt) * w / |w|, w the relative spin.
+- spring-dashpot-slider: each component of the spring goes through `epsd_spring`; then `slider_scale(|spring|, cap)`
+  multiplies all components, and a scale below 1 means sliding, where `epsd_torque` leaves the dashpot out.
+"""
+
+import math
+
+from ryusa.laws._law import law
+
+
+@law
+def rolling_arm_width(r_i: float, r_j: float, overlap: float) -> float:
+    """Contact width b of Eq. (13) [m]: diameter of the circle in which two overlapping spheres cut each other.
+
+    Parameters
+    ----------
+    r_i, r_j : radii [m]; inf for a plane.
+    overlap : [m]; no touch, no width.
+
+    Notes
+    -----
+    Source: the paper, Eq. (13), b = 2 sqrt(R**2 - (R - overlap/2)**2) for equal spheres. For others the circle of the
+    lens, (b/2)**2 = overlap (2 r_i - overlap) (2 r_j - overlap) (2 r_i + 2 r_j - overlap) / (2 D)**2 with D the
+    distance of the centres; on a plane (b/2)**2 = overlap (2 r - overlap). Bitwise the same with i and j exchanged.
+
+    Examples
+    --------
+    >>> round(rolling_arm_width(5.0, 5.0, 2.0), 6)      # 3-4-5: half distance 4, radius of the circle 3
+    6.0
+    >>> round(rolling_arm_width(5.0, math.inf, 1.0), 6)
+    6.0
+    """
+    if overlap <= 0.0:
+        return 0.0
+    small = min(r_i, r_j)
+    curvature = 1.0 / max(r_i, r_j)
+    bent = curvature * overlap
+    apart = 1.0 + curvature * small - bent
+    area = overlap * (2.0 * small - overlap) * (2.0 - bent) * (2.0 + 2.0 * curvature * small - bent)
+    return math.sqrt(max(area, 0.0)) / apart
+
+
+@law
+def reduced_radius(r_i: float, r_j: float) -> float:
+    """Reduced radius R* = r_i r_j/(r_i + r_j) [m]; R on a plane, whose radius is inf.
+
+    Examples
+    --------
+    >>> reduced_radius(2.0, 2.0), reduced_radius(2.0, math.inf)
+    (1.0, 2.0)
+    """
+    small = min(r_i, r_j)
+    return small / (1.0 + small / max(r_i, r_j))
+
+
+@law
+def rolling_printed(f_n: float, f: float) -> float:
+    """Size of the rolling friction [N m] of Eq. (13): f N, N the compressive normal force; its sign is -sign(M_t).
+
+    Parameters
+    ----------
+    f_n : normal force [N]; a pulling one counts as zero.
+    f : rolling friction arm [m], f' b or mu_r R*.
+
+    Notes
+    -----
+    As printed it cannot brake a grain whose driving torque is near zero, and shakes a resting one for ever.
+
+    Examples
+    --------
+    >>> rolling_printed(2.0, 0.25), rolling_printed(-1.0, 0.25)
+    (0.5, 0.0)
+    """
+    return f * max(f_n, 0.0)
+
+
+@law
+def rolling_constant(cap: float, spin: float, inertia: float, dt: float) -> float:
+    """Size of a constant rolling friction against the relative spin that cannot reverse it within a step [N m].
+
+    Parameters
+    ----------
+    cap : f N [N m], >= 0, from `rolling_printed`.
+    spin : size of the relative spin [rad/s].
+    inertia : effective inertia of the relative spin [kg m2], from `inertia_spin`.
+    dt : time step [s].
+
+    Notes
+    -----
+    Source: type A of Ai et al. 2011, limited to inertia spin/dt.
+
+    Examples
+    --------
+    >>> rolling_constant(0.5, 10.0, 0.25, 0.5), rolling_constant(0.5, 0.1, 0.25, 0.5)
+    (0.5, 0.05)
+    """
+    return min(cap, inertia * abs(spin) / dt)
+
+
+@law
+def inertia_spin(inertia_i: float, inertia_j: float) -> float:
+    """Effective inertia of the relative spin of two grains [kg m2]: 1/I = 1/I_i + 1/I_j; inf for a fixed one.
+
+    Examples
+    --------
+    >>> inertia_spin(2.0, 2.0), inertia_spin(2.0, math.inf)
+    (1.0, 2.0)
+    """
+    small = min(inertia_i, inertia_j)
+    return small / (1.0 + small / max(inertia_i, inertia_j))
+
+
+@law
+def inertia_rolling(
+    m_i: float, r_i: float, inertia_i: float, m_j: float, r_j: float, inertia_j: float
+) -> float:
+    """Effective inertia about the contact point [kg m2]: 1/I_r = sum of 1/(I + m R**2); inf for a fixed partner.
+
+    Parameters
+    ----------
+    m_i, m_j : masses [kg].
+    r_i, r_j : radii [m].
+    inertia_i, inertia_j : moments of inertia [kg m2].
+
+    Notes
+    -----
+    Source: Ai et al. 2011, for the rolling dashpot of type C.
+
+    Examples
+    --------
+    >>> inertia_rolling(1.0, 1.0, 0.5, math.inf, math.inf, math.inf)
+    1.5
+    """
+    return inertia_spin(inertia_i + m_i * r_i * r_i, inertia_j + m_j * r_j * r_j)
+
+
+@law
+def epsd_stiffness(k_n: float, f: float, factor: float) -> float:
+    """Rolling stiffness k_r = factor k_n f**2 [N m/rad] of the spring-dashpot-slider, f = mu_r R* [m].
+
+    Notes
+    -----
+    Source: Ai et al. 2011, type C (EPSD); factor 2.25 in 3D as LIGGGHTS has it.
+
+    Examples
+    --------
+    >>> epsd_stiffness(100.0, 0.1, 2.25)
+    2.25
+    """
+    return factor * k_n * (f * f)
+
+
+@law
+def epsd_damping(k_r: float, inertia: float, zeta: float) -> float:
+    """Rolling dashpot 2 zeta sqrt(I_r k_r) [N m s] of the spring-dashpot-slider; I_r from `inertia_rolling`.
+
+    Examples
+    --------
+    >>> epsd_damping(4.0, 1.0, 0.3)
+    1.2
+    """
+    return 2.0 * zeta * math.sqrt(inertia * k_r)
+
+
+@law
+def epsd_spring(spring: float, spin: float, k_r: float, dt: float) -> float:
+    """One component of the rolling spring's torque on grain i [N m] after a step, before the slider.
+
+    Parameters
+    ----------
+    spring : its value a step before [N m].
+    spin : the same component of the relative spin omega_i - omega_j [rad/s].
+    k_r : rolling stiffness [N m/rad].
+    dt : time step [s].
+
+    Examples
+    --------
+    >>> epsd_spring(0.0, 2.0, 3.0, 0.5)
+    -3.0
+    """
+    return spring - k_r * spin * dt
+
+
+@law
+def slider_scale(size: float, cap: float) -> float:
+    """Factor <= 1 [-] that brings a spring of this size down to the cap (both in the same unit); 1 within it.
+
+    Examples
+    --------
+    >>> slider_scale(1.0, 2.0), slider_scale(4.0, 2.0)
+    (1.0, 0.5)
+    """
+    if size <= cap:
+        return 1.0
+    return cap / size
+
+
+@law
+def epsd_torque(spring: float, spin: float, eta_r: float, scale: float) -> float:
+    """One component of the rolling torque on grain i [N m]: spring plus dashpot, the dashpot off while sliding.
+
+    Parameters
+    ----------
+    spring : the capped rolling spring [N m].
+    spin : relative spin omega_i - omega_j [rad/s].
+    eta_r : rolling dashpot [N m s].
+    scale : what `slider_scale` gave [-]; below 1 the slider moves.
+
+    Examples
+    --------
+    >>> epsd_torque(-1.0, 2.0, 0.25, 1.0), epsd_torque(-1.0, 2.0, 0.25, 0.5)
+    (-1.5, -1.0)
+    """
+    if scale < 1.0:
+        return spring
+    return spring - eta_r * spin
