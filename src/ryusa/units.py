@@ -1,0 +1,171 @@
+"""Text with a unit to SI and back: `"100 N/cm"` is 1.0e4. The only place that knows non-SI units."""
+
+import math
+import re
+import unicodedata
+from decimal import Decimal
+from functools import cache
+from typing import Any
+
+LONGEST = 64  # characters a quantity may have
+_NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3}(?![0-9]))?")
+_FACTOR = re.compile(r"([A-Za-zμΩÅ°%]+)(?:\s*(?:\^|\*\*)?\s*([+-]?[0-9]{1,2})(?![0-9]))?")
+_NAMES = {  # what an SI unit measures, for messages
+    "m": "a length",
+    "s": "a time",
+    "kg": "a mass",
+    "kg/m3": "a density",
+    "m/s": "a speed",
+    "m/s2": "an acceleration",
+    "m2/s": "a viscosity",
+    "N": "a force",
+    "N/m": "a stiffness",
+    "N s/m": "a damping constant",
+    "rad": "an angle",
+    "rad/s": "a spin",
+}
+
+
+class UnitError(ValueError):
+    """A text that is no quantity of the kind asked for; the message says what is allowed."""
+
+
+def quantity(text: object, unit: str) -> float:
+    """Read a number with its unit and give it in SI.
+
+    Parameters
+    ----------
+    text : what the user wrote, such as `"0.2 cm"`.
+    unit : the SI unit wanted, such as `"m"`; its dimension is checked (angles count as a dimension).
+
+    Returns
+    -------
+    value : the number in `unit`; finite.
+
+    Raises
+    ------
+    UnitError : no number, no unit, an unknown unit, another dimension, or a number that is not finite.
+
+    >>> quantity("100 N/cm", "N/m")
+    10000.0
+    >>> quantity("0.2cm", "m")
+    0.002
+    """
+    example = _example(unit)
+    if isinstance(text, bool) or not isinstance(text, str):
+        if isinstance(text, (int, float)) and not isinstance(text, bool):
+            raise UnitError(f"missing unit: needs {_kind(unit)}, written as text with its unit, such as {example}")
+        raise UnitError(f"needs {_kind(unit)}, written as text with its unit, such as {example}")
+    if len(text) > LONGEST:
+        raise UnitError(f"longer than {LONGEST} characters; needs {_kind(unit)} such as {example}")
+    body = text.strip()
+    found = _NUMBER.match(body)
+    if found is None:
+        raise UnitError(f"needs {_kind(unit)}: a finite number and its unit, such as {example}")
+    written = body[found.end() :].strip()
+    if not written:
+        raise UnitError(f"missing unit: needs {_kind(unit)}, such as {example}")
+    value = float(Decimal(found.group()) * Decimal(repr(_factor(written, unit))))
+    if not math.isfinite(value):
+        raise UnitError(f"too large a number; needs {_kind(unit)}, such as {example}")
+    return value
+
+
+def format_quantity(value: float, unit: str, digits: int = 4) -> str:
+    """Write an SI value in the unit asked for.
+
+    >>> format_quantity(1.0e4, "N/cm")
+    '100 N/cm'
+    >>> format_quantity(0.7, "-")
+    '0.7'
+    """
+    if unit in {"", "-"}:
+        return f"{value:.{digits}g}"
+    return f"{value / _to_si(unit)[0]:.{digits}g} {unit}"
+
+
+def _kind(unit: str) -> str:
+    return f"{_NAMES[unit]} [{unit}]" if unit in _NAMES else f"a quantity in {unit}"
+
+
+def _example(unit: str) -> str:
+    examples = {"m": "0.2 cm", "N/m": "100 N/cm", "rad": "30 deg", "s": "1 ms", "m/s": "0.6 m/s", "N s/m": "0.001 N s/cm"}
+    return f"'{examples.get(unit, f'1 {unit}')}'"
+
+
+@cache
+def _factor(written: str, unit: str) -> float:
+    """Return how many `unit` one `written` is; both must have the same dimension."""
+    try:
+        factor, dimension = _to_si(written)
+    except UnitError as error:
+        raise UnitError(f"{error}; needs {_kind(unit)}, such as {_example(unit)}") from None
+    wanted, target = _to_si(unit)
+    if dimension != target:
+        raise UnitError(f"wrong unit: '{written}' does not measure {_kind(unit)}; write it as {_example(unit)}")
+    return _tidy(factor / wanted)
+
+
+def _tidy(factor: float) -> float:
+    """Drop the last bits that chained conversions leave in a round number."""
+    rounded = float(f"{factor:.14g}")
+    return rounded if abs(rounded - factor) <= 4e-16 * abs(factor) else factor
+
+
+@cache
+def _to_si(written: str) -> tuple[float, tuple[tuple[str, int], ...]]:
+    """Factor and dimension of a unit such as `N s/cm`, `kg/m3`, `m s^-2`."""
+    text = unicodedata.normalize("NFKC", written).translate({ord("⋅"): "*", ord("·"): "*", ord("−"): "-", 0xB5: "μ"})
+    text = text.replace("/", " / ")
+    position, factor, sign, pending = 0, 1.0, 1, False
+    dimension: dict[str, int] = {}
+    while position < len(text):
+        rest = text[position:]
+        found = _FACTOR.match(rest)
+        if found is not None:
+            one, bases = _atom(found.group(1))
+            power = sign * int(found.group(2) or 1)
+            if abs(power) > 9:  # noqa: PLR2004  no unit of ours has a higher power
+                raise UnitError(f"cannot read the unit '{written}'")
+            factor *= one**power
+            for base, exponent in bases:
+                dimension[base] = dimension.get(base, 0) + exponent * power
+            position, sign, pending = position + found.end(), 1, False
+        elif rest[0] == "/" and sign == 1 and position > 0 and not pending:
+            position, sign, pending = position + 1, -1, True
+        elif rest[0] == "*" and position > 0 and not pending:
+            position, pending = position + 1, True
+        elif rest[0].isspace():
+            position += 1
+        else:
+            raise UnitError(f"cannot read the unit '{written}'")
+    if pending or not text.strip():
+        raise UnitError(f"cannot read the unit '{written}'")
+    return factor, tuple(sorted((base, power) for base, power in dimension.items() if power))
+
+
+@cache
+def _atom(name: str) -> tuple[float, tuple[tuple[str, int], ...]]:
+    """Factor to SI and root dimension of one unit name; angles keep `radian`."""
+    if name == "%":
+        return 0.01, ()
+    registry, plain = _registry(), {"°": "degree"}.get(name, name)
+    if plain in {"degC", "degF", "celsius", "fahrenheit", "°C", "°F"}:
+        raise UnitError(f"'{name}' has an offset and is no plain unit")
+    try:
+        factor, root = registry.get_root_units(registry.parse_units(plain))
+        pairs = [(str(base), float(power)) for base, power in root._units.items()]
+        factor = float(factor)
+    except Exception:  # pint raises many kinds; every one means the same to a user
+        raise UnitError(f"unknown unit '{name}'") from None
+    if any(power != int(power) for _, power in pairs) or not math.isfinite(factor) or factor <= 0.0:
+        raise UnitError(f"unknown unit '{name}'")
+    grams = sum(int(power) for base, power in pairs if base == "gram")
+    return _tidy(factor * 1000.0**-grams), tuple((base, int(power)) for base, power in pairs)
+
+
+@cache
+def _registry() -> Any:
+    import pint  # noqa: PLC0415  read only when a unit is met
+
+    return pint.UnitRegistry()

@@ -1,0 +1,118 @@
+import math
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from ryusa.units import UnitError, format_quantity, quantity
+
+GOOD = [
+    ("100 N/cm", "N/m", 1.0e4),
+    ("0.01 N/cm", "N/m", 1.0),
+    ("0.2 cm", "m", 0.002),
+    ("0.2cm", "m", 0.002),
+    ("200 µm", "m", 2e-4),
+    ("200 μm", "m", 2e-4),
+    ("200 um", "m", 2e-4),
+    ("2650 kg/m3", "kg/m3", 2650.0),
+    ("2.65 g/cm^3", "kg/m3", 2650.0),
+    ("2.65 g/cm³", "kg/m3", 2650.0),
+    ("2.65 g cm-3", "kg/m3", 2650.0),
+    ("9.8 m/s2", "m/s2", 9.8),
+    ("9.8 m/s/s", "m/s2", 9.8),
+    ("0.001 N s/cm", "N s/m", 0.1),
+    ("0.001 N·s/cm", "N s/m", 0.1),
+    ("1e-6 m2/s", "m2/s", 1e-6),
+    ("1 cSt", "m2/s", 1e-6),
+    ("30 deg", "rad", math.pi / 6),
+    ("30°", "rad", math.pi / 6),
+    ("60 rpm", "rad/s", 2 * math.pi),
+    ("-1.5 mm", "m", -0.0015),
+    ("0 N", "N", 0.0),
+    ("1 dyn", "N", 1e-5),
+]
+
+BAD = [
+    ("", "m"),
+    ("   ", "m"),
+    ("cm", "m"),
+    ("5 0 N", "N"),
+    ("5", "N"),
+    (5, "N"),
+    (0.5, "rad"),
+    (True, "m"),
+    (None, "m"),
+    (["1 m"], "m"),
+    ("nan m", "m"),
+    ("inf m", "m"),
+    ("1e999 m", "m"),
+    ("1e9999999 m", "m"),
+    ("0,2 cm", "m"),
+    ("20 degC", "K"),
+    ("20 degC", "m"),
+    ("20 °C", "m"),
+    ("1 Hz", "rad/s"),
+    ("5 %", "rad"),
+    ("5 kg", "m"),
+    ("5 parsnips", "m"),
+    ("5 m**99", "m"),
+    ("5 m//s", "m/s"),
+    ("5 m/", "m"),
+    ("5 /m", "m"),
+    ("5 (m)", "m"),
+    ("10² cm", "m"),
+    ("__import__('os') m", "m"),
+    ("1 __import__", "m"),
+    ("1 m" + " " * 100, "m"),
+    ("1 " + "m*" * 500 + "m", "m"),
+    ("0.25 d", "m"),
+]
+
+
+@pytest.mark.parametrize(("text", "unit", "value"), GOOD)
+def test_a_number_with_its_unit_becomes_si(text: str, unit: str, value: float) -> None:
+    assert quantity(text, unit) == pytest.approx(value, rel=1e-15)
+
+
+@pytest.mark.parametrize(("text", "unit"), BAD)
+def test_a_bad_quantity_gives_one_clean_error(text: object, unit: str) -> None:
+    with pytest.raises(UnitError) as caught:
+        quantity(text, unit)
+    assert "\n" not in str(caught.value)
+    assert "pint" not in str(caught.value)
+
+
+def test_a_bare_number_is_told_that_its_unit_is_missing() -> None:
+    with pytest.raises(UnitError, match="missing unit"):
+        quantity("0.2", "m")
+    with pytest.raises(UnitError, match="missing unit"):
+        quantity(0.2, "m")
+
+
+def test_decimal_text_keeps_its_decimal_value() -> None:
+    assert quantity("0.7 cm", "m") == 0.007
+    assert quantity("1 N/cm", "N/m") == 100.0
+
+
+@given(st.floats(min_value=1e-12, max_value=1e12), st.sampled_from([("m", "cm"), ("N/m", "N/cm"), ("rad", "deg"), ("s", "ms")]))
+def test_what_is_written_is_read_back(value: float, units: tuple[str, str]) -> None:
+    si, shown = units
+    assert quantity(format_quantity(value, shown, digits=17), si) == pytest.approx(value, rel=1e-14)
+
+
+@settings(max_examples=300)
+@given(st.text(max_size=80))
+def test_any_text_is_a_number_or_a_unit_error(text: str) -> None:
+    try:
+        value = quantity(text, "m")
+    except UnitError:
+        return
+    assert math.isfinite(value)
+
+
+@given(st.text(alphabet="0123456789.eE+- mskgNcd/*^°%µ²", max_size=20))
+def test_near_quantities_never_raise_anything_else(text: str) -> None:
+    try:
+        quantity(text, "N/m")
+    except UnitError:
+        pass
