@@ -1,8 +1,8 @@
 """Two grains in a linear spring and dashpot: Eq. (8), contact time, restitution and damping, largest overlap.
 
 omega_0 = sqrt(k_n/m) [rad/s] and zeta = eta_n/(2 sqrt(k_n m)) [-], m the effective mass of the pair: a fixed
-partner counts as infinite, added mass counts. *Tension*: the dashpot may pull until the overlap ends. *No tension*:
-the force ends when it would turn to pulling.
+partner counts as infinite, added mass counts. *Tension*: the dashpot may pull until the overlap ends. *No
+tension*: the force ends when it would turn to pulling.
 """
 
 import math
@@ -85,20 +85,8 @@ def omega_natural(k_n: float, m: float) -> float:
 
 
 @law
-def dashpot(zeta: float, k: float, m: float) -> float:
-    """Dashpot constant eta = 2 zeta sqrt(k m) [N s/m]; zeta [-], k [N/m], m effective mass [kg].
-
-    Examples
-    --------
-    >>> dashpot(0.5, 4.0, 1.0)
-    2.0
-    """
-    return 2.0 * zeta * math.sqrt(k * m)
-
-
-@law
 def damping_ratio(eta: float, k: float, m: float) -> float:
-    """Damping ratio zeta = eta/(2 sqrt(k m)) [-]; inverse of `dashpot`.
+    """Damping ratio zeta = eta/(2 sqrt(k m)) [-]; inverse of `contact.damping`.
 
     Examples
     --------
@@ -152,7 +140,8 @@ def contact_time_no_tension(zeta: float, omega_0: float) -> float:
     Notes
     -----
     Source: Schwager & Poeschel 2007, Eq. (21): omega_0 T = atan2(2 zeta w, 2 zeta**2 - 1)/w with
-    w = sqrt(1 - zeta**2); 2 at zeta = 1; beyond, 2 ln(zeta + s)/s with s = sqrt(zeta**2 - 1). All are twice `phase_to_largest`.
+    w = sqrt(1 - zeta**2); 2 at zeta = 1; beyond, 2 ln(zeta + s)/s with s = sqrt(zeta**2 - 1). All three are
+    twice `phase_to_largest`.
 
     Examples
     --------

@@ -131,8 +131,8 @@ def drag_factor(speed: float, c_d: float, rho_w: float, a_2: float, d: float) ->
 
     Notes
     -----
-    Source: the paper, Eqs. (10)-(11), (1/2) rho C_D A_2 d**2 abs(w). Zero at speed 0, where C_D may be infinite and
-    the force vanishes whatever the factor.
+    Source: the paper, Eqs. (10)-(11), (1/2) rho C_D A_2 d**2 abs(w). Zero at speed 0, where C_D may be
+    infinite and the force vanishes whatever the factor.
 
     Examples
     --------
@@ -168,8 +168,8 @@ def added_mass(rho_w: float, c_m: float, volume: float) -> float:
 
     Examples
     --------
-    >>> added_mass(1000.0, 0.5, 4.0e-9)
-    2e-06
+    >>> added_mass(1000.0, 0.5, 0.25)
+    125.0
     """
     return rho_w * c_m * volume
 

@@ -29,7 +29,8 @@ def acceleration(contact: float, drag: float, weight: float, m: float, m_added: 
 
     Notes
     -----
-    Source: the paper, Eqs. (5)-(6) when dry and (10)-(11) in water, where rho (sigma/rho + C_M) A_3 d**3 is m + m_added.
+    Source: the paper, Eqs. (5)-(6) when dry and (10)-(11) in water, where
+    rho (sigma/rho + C_M) A_3 d**3 is m + m_added.
 
     Examples
     --------
@@ -82,9 +83,13 @@ def semi_implicit(x: float, v: float, a: float, dt: float) -> tuple[float, float
 
 @law
 def forward_euler(x: float, v: float, a: float, dt: float) -> tuple[float, float]:
-    """One step of true forward Euler, kept only for the study that shows why not: it pumps energy into every contact.
+    """One step of true forward Euler, kept only for the study that shows why not.
 
     Parameters and results as `semi_implicit`, but v and x belong to the same time.
+
+    Notes
+    -----
+    It pumps energy into every contact: asked e = 0.7, it gives more than 1 at ten steps per contact.
 
     Examples
     --------

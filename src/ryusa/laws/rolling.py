@@ -1,12 +1,13 @@
 """Rolling friction: Eq. (13) as printed, and the variants the field uses.
 
-All laws are scalar. An engine that works with vectors takes the size of the torque or spin, asks the law for a size or
-a scale, and multiplies the direction by it:
+All laws are scalar. An engine that works with vectors takes the size of the torque or spin, asks the law for
+a size or a scale, and multiplies the direction by it:
 
 - printed: torque = -rolling_printed(f_n, f) * m_t / |m_t|, m_t the torque that drives the grain.
 - constant: torque = -rolling_constant(cap, |w|, inertia, dt) * w / |w|, w the relative spin.
-- spring-dashpot-slider: each component of the spring goes through `epsd_spring`; then `slider_scale(|spring|, cap)`
-  multiplies all components, and a scale below 1 means sliding, where `epsd_torque` leaves the dashpot out.
+- spring-dashpot-slider: each component of the spring goes through `epsd_spring`; then
+  `slider_scale(|spring|, cap)` multiplies all components, and a scale below 1 means sliding, where
+  `epsd_torque` leaves the dashpot out.
 """
 
 import math
@@ -16,7 +17,7 @@ from ryusa.laws._law import law
 
 @law
 def rolling_arm_width(r_i: float, r_j: float, overlap: float) -> float:
-    """Contact width b of Eq. (13) [m]: diameter of the circle in which two overlapping spheres cut each other.
+    """Contact width b of Eq. (13) [m]: diameter of the circle where two spheres cut each other.
 
     Parameters
     ----------
@@ -25,9 +26,10 @@ def rolling_arm_width(r_i: float, r_j: float, overlap: float) -> float:
 
     Notes
     -----
-    Source: the paper, Eq. (13), b = 2 sqrt(R**2 - (R - overlap/2)**2) for equal spheres. For others the circle of the
-    lens, (b/2)**2 = overlap (2 r_i - overlap) (2 r_j - overlap) (2 r_i + 2 r_j - overlap) / (2 D)**2 with D the
-    distance of the centres; on a plane (b/2)**2 = overlap (2 r - overlap). Bitwise the same with i and j exchanged.
+    Source: the paper, Eq. (13), b = 2 sqrt(R**2 - (R - overlap/2)**2) for equal spheres. For others the
+    circle of the lens, with D the distance of the centres,
+    (b/2)**2 = overlap (2 r_i - overlap) (2 r_j - overlap) (2 r_i + 2 r_j - overlap) / (2 D)**2;
+    on a plane (b/2)**2 = overlap (2 r - overlap). Bitwise the same with i and j exchanged.
 
     Examples
     --------
@@ -61,7 +63,7 @@ def reduced_radius(r_i: float, r_j: float) -> float:
 
 @law
 def rolling_printed(f_n: float, f: float) -> float:
-    """Size of the rolling friction [N m] of Eq. (13): f N, N the compressive normal force; its sign is -sign(M_t).
+    """Size of the rolling friction [N m] of Eq. (13), f N; its sign is -sign(M_t).
 
     Parameters
     ----------
@@ -82,7 +84,7 @@ def rolling_printed(f_n: float, f: float) -> float:
 
 @law
 def rolling_constant(cap: float, spin: float, inertia: float, dt: float) -> float:
-    """Size of a constant rolling friction against the relative spin that cannot reverse it within a step [N m].
+    """Size of a rolling friction against the relative spin that cannot reverse it in a step [N m].
 
     Parameters
     ----------
@@ -100,7 +102,7 @@ def rolling_constant(cap: float, spin: float, inertia: float, dt: float) -> floa
     >>> rolling_constant(0.5, 10.0, 0.25, 0.5), rolling_constant(0.5, 0.1, 0.25, 0.5)
     (0.5, 0.05)
     """
-    return min(cap, inertia * abs(spin) / dt)
+    return min(inertia * abs(spin) / dt, cap)
 
 
 @law
@@ -120,13 +122,13 @@ def inertia_spin(inertia_i: float, inertia_j: float) -> float:
 def inertia_rolling(
     m_i: float, r_i: float, inertia_i: float, m_j: float, r_j: float, inertia_j: float
 ) -> float:
-    """Effective inertia about the contact point [kg m2]: 1/I_r = sum of 1/(I + m R**2); inf for a fixed partner.
+    """Effective inertia about the contact point [kg m2]: 1/I_r = sum of 1/(I + m R**2).
 
     Parameters
     ----------
     m_i, m_j : masses [kg].
     r_i, r_j : radii [m].
-    inertia_i, inertia_j : moments of inertia [kg m2].
+    inertia_i, inertia_j : moments of inertia [kg m2]. All three are inf for a fixed plane.
 
     Notes
     -----
@@ -142,7 +144,7 @@ def inertia_rolling(
 
 @law
 def epsd_stiffness(k_n: float, f: float, factor: float) -> float:
-    """Rolling stiffness k_r = factor k_n f**2 [N m/rad] of the spring-dashpot-slider, f = mu_r R* [m].
+    """Stiffness k_r = factor k_n f**2 [N m/rad] of the rolling spring, f = mu_r R* [m].
 
     Notes
     -----
@@ -150,7 +152,7 @@ def epsd_stiffness(k_n: float, f: float, factor: float) -> float:
 
     Examples
     --------
-    >>> epsd_stiffness(100.0, 0.1, 2.25)
+    >>> epsd_stiffness(16.0, 0.25, 2.25)
     2.25
     """
     return factor * k_n * (f * f)
@@ -158,7 +160,7 @@ def epsd_stiffness(k_n: float, f: float, factor: float) -> float:
 
 @law
 def epsd_damping(k_r: float, inertia: float, zeta: float) -> float:
-    """Rolling dashpot 2 zeta sqrt(I_r k_r) [N m s] of the spring-dashpot-slider; I_r from `inertia_rolling`.
+    """Dashpot 2 zeta sqrt(I_r k_r) [N m s] beside the rolling spring; I_r from `inertia_rolling` [kg m2].
 
     Examples
     --------
@@ -203,7 +205,7 @@ def slider_scale(size: float, cap: float) -> float:
 
 @law
 def epsd_torque(spring: float, spin: float, eta_r: float, scale: float) -> float:
-    """One component of the rolling torque on grain i [N m]: spring plus dashpot, the dashpot off while sliding.
+    """One component of the rolling torque on grain i [N m]: spring plus dashpot, which is off while sliding.
 
     Parameters
     ----------

@@ -53,9 +53,9 @@ def torque_dennis(spin: float, d: float, nu: float, rho_w: float) -> float:
 
     Notes
     -----
-    Source: Dennis, Singh & Ingham 1980, T = (1/2) rho R**5 C_R abs(spin) spin with C_R = 12.9/sqrt(Re_r) + 128.4/Re_r
-    above Re_r = 32 and the Stokes limit 64 pi/Re_r up to there (the two meet within 0.2 %). Fitted up to
-    R**2 spin/nu = 1000: see `torque_in_range`.
+    Source: Dennis, Singh & Ingham 1980, T = (1/2) rho R**5 C_R abs(spin) spin with
+    C_R = 12.9/sqrt(Re_r) + 128.4/Re_r above Re_r = 32 and the Stokes limit 64 pi/Re_r up
+    to there (the two meet within 0.2 %). Fitted up to R**2 spin/nu = 1000: see `torque_in_range`.
 
     Examples
     --------
@@ -72,7 +72,7 @@ def torque_dennis(spin: float, d: float, nu: float, rho_w: float) -> float:
 
 @law
 def torque_in_range(spin: float, d: float, nu: float) -> bool:
-    """Whether `torque_dennis` is inside its fitted range, R**2 abs(spin)/nu <= 1000 (spin [rad/s], d [m], nu [m2/s]).
+    """Whether `torque_dennis` is in its fitted range, R**2 abs(spin)/nu <= 1000; [rad/s], [m], [m2/s].
 
     Examples
     --------

@@ -21,8 +21,8 @@ def log_law_rough(z: float, u_star: float, k_rough: float) -> float:
 
     Notes
     -----
-    Source: the paper, Eq. (9); log is base 10. The printed law turns negative below about k_rough/30; it is clipped
-    at zero there, and zero at and below z = 0.
+    Source: the paper, Eq. (9); log is base 10. The printed law turns negative below about k_rough/30; it is
+    clipped at zero there, and zero at and below z = 0.
 
     Examples
     --------
@@ -52,8 +52,8 @@ def log_law_smooth(z: float, u_star: float, nu: float) -> float:
 
     Notes
     -----
-    Source: the two-layer law of the wall, u+ = z+ up to z+ = 11.3 and u+ = ln(z+/11.3)/0.41 + 11.3 beyond (the
-    classical u+ = ln(z+)/0.41 + 5.4 written so that both meet). Zero at and below z = 0.
+    Source: the two-layer law of the wall, u+ = z+ up to z+ = 11.3 and u+ = ln(z+/11.3)/0.41 + 11.3 beyond
+    (the classical u+ = ln(z+)/0.41 + 5.4 written so that both meet). Zero at and below z = 0.
 
     Examples
     --------
