@@ -1,0 +1,154 @@
+"""Frames of one quantity over all parts of a run, read from the disk only where they are asked for."""
+
+from bisect import bisect_right
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ryusa.errors import ResultsError
+from ryusa.model import EVENT
+from ryusa.results import schema
+from ryusa.results.hdf5 import OpenFiles, opened, read_dataset
+
+
+@dataclass(frozen=True)
+class Part:
+    """One write-once file: frames first .. first + n_frame - 1."""
+
+    path: Path
+    first: int
+    t: NDArray[np.float64]
+    step: NDArray[np.int64]
+    n_contact: int
+    files: OpenFiles  # shared by all parts of a run
+
+    @property
+    def n_frame(self) -> int:
+        """Frames in this part."""
+        return len(self.t)
+
+    def rows(self, name: str, begin: int, end: int, grains: Any) -> NDArray[Any]:
+        """Frames begin .. end - 1 of this part (its own count) of a dataset, for a slice or one number of grains."""
+        try:
+            return self.files.dataset(self.path, name)[begin:end, grains]
+        except OSError as error:
+            raise ResultsError(f"{self.path}: '{name}' cannot be read ({error})") from error
+
+    def contacts(self) -> NDArray[np.void]:
+        """All contacts of this part, dtype model.EVENT."""
+        with opened(self.path) as file:
+            return read_dataset(file, "contacts", self.path).astype(EVENT, copy=False)
+
+    def tally(self) -> NDArray[np.void]:
+        """The energy account at each frame of this part."""
+        with opened(self.path) as file:
+            return read_dataset(file, "tally", self.path).astype(schema.TALLY, copy=False)
+
+
+class LazyFrames:
+    """An array of shape (n_frame, n_grain, n) that stays on the disk until indexed; what comes back is read-only.
+
+    The first index may be a number, a slice or a list of frames, the second a number or a slice of grains: only
+    those are read. `numpy.asarray` reads all.
+    """
+
+    def __init__(self, parts: list[Part], name: str, n_grain: int, lift: NDArray[np.float64] | None = None) -> None:
+        dtype, tail = schema.FRAME_DATASETS[name]
+        n_frame = parts[-1].first + parts[-1].n_frame if parts else 0
+        self.shape: tuple[int, ...] = (n_frame, n_grain, *tail)
+        self.dtype: np.dtype[Any] = dtype
+        self._parts, self._name, self._lift = parts, name, lift
+        self._starts = [part.first for part in parts]
+
+    @property
+    def ndim(self) -> int:
+        """Number of axes."""
+        return len(self.shape)
+
+    def __len__(self) -> int:
+        return self.shape[0]
+
+    def __iter__(self) -> Iterator[NDArray[Any]]:
+        return (self[k] for k in range(len(self)))
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
+        return np.asarray(self[:], dtype=dtype)
+
+    def __getitem__(self, key: Any) -> NDArray[Any]:
+        keys = key if isinstance(key, tuple) else (key,)
+        if Ellipsis in [k for k in keys if not isinstance(k, np.ndarray)]:
+            at = next(i for i, k in enumerate(keys) if k is Ellipsis)
+            keys = keys[:at] + (slice(None),) * (self.ndim - len(keys) + 1) + keys[at + 1 :]
+        frames, rest = keys[0], keys[1:]
+        grains, rest = self._grains(rest)
+        if isinstance(frames, int | np.integer):
+            found = self._read(range(len(self))[int(frames)], 1, grains)[0]
+            found = found[rest] if rest else found
+        else:
+            found = self._frames(frames, grains)
+            found = found[(slice(None), *rest)] if rest else found
+        found = np.asarray(found)
+        found.flags.writeable = False
+        return found
+
+    def _grains(self, rest: tuple[Any, ...]) -> tuple[Any, tuple[Any, ...]]:
+        """What of the grain axis to read from the disk, and what is left to do in memory."""
+        if not rest:
+            return slice(None), ()
+        grains = rest[0]
+        if isinstance(grains, int | np.integer):
+            return range(self.shape[1])[int(grains)], rest[1:]
+        if isinstance(grains, slice) and (grains.step is None or grains.step > 0):
+            return grains, (slice(None), *rest[1:])
+        return slice(None), rest
+
+    def _frames(self, frames: Any, grains: Any) -> NDArray[Any]:
+        if isinstance(frames, slice):
+            wanted = range(len(self))[frames]
+            if wanted.step == 1 or len(wanted) == 0:
+                return self._read(wanted.start, len(wanted), grains)
+            chosen = np.arange(wanted.start, wanted.stop, wanted.step)
+        else:
+            chosen = np.asarray(frames)
+            if chosen.dtype == np.bool_:
+                if chosen.shape != (len(self),):
+                    raise IndexError(f"a mask of {len(self)} frames is needed, got shape {chosen.shape}")
+                chosen = np.flatnonzero(chosen)
+            if chosen.ndim != 1 or (len(chosen) and not np.issubdtype(chosen.dtype, np.integer)):
+                raise IndexError("frames are chosen by a number, a slice, a list of numbers or a mask")
+            if len(chosen) and (chosen.min() < -len(self) or chosen.max() >= len(self)):
+                raise IndexError(f"frame out of range: there are {len(self)}")
+            chosen = np.where(chosen < 0, chosen + len(self), chosen)
+        if len(chosen) == 0:
+            return self._read(0, 0, grains)
+        low, high = int(chosen.min()), int(chosen.max()) + 1
+        if high - low <= 2 * len(chosen):  # nearly all of the span: one sweep is quicker than many small reads
+            return self._read(low, high - low, grains)[chosen - low]
+        return np.concatenate([self._read(int(k), 1, grains) for k in chosen])
+
+    def _read(self, begin: int, count: int, grains: Any) -> NDArray[Any]:
+        """Frames begin .. begin + count - 1, part by part."""
+        pieces: list[NDArray[Any]] = []
+        end = begin + count
+        at = bisect_right(self._starts, begin) - 1
+        while begin < end:
+            part = self._parts[at]
+            stop = min(end, part.first + part.n_frame)
+            if stop > begin:
+                pieces.append(self._lifted(part, begin - part.first, stop - part.first, grains))
+            begin, at = max(begin, stop), at + 1
+        if not pieces:
+            kept = np.zeros((self.shape[1],))[grains].shape
+            return np.zeros((0, *kept, *self.shape[2:]), dtype=self.dtype)
+        return pieces[0] if len(pieces) == 1 else np.concatenate(pieces)
+
+    def _lifted(self, part: Part, begin: int, end: int, grains: Any) -> NDArray[Any]:
+        rows = part.rows(self._name, begin, end, grains)
+        if self._lift is not None and self._lift.any():
+            image = part.rows("image", begin, end, grains)
+            rows[..., :2] += image * self._lift[:2]
+        return rows

@@ -1,0 +1,260 @@
+"""A run folder opened for reading: while the run writes, after its end, or after it was killed.
+
+Nothing in the folder is trusted: links are not followed, sizes are checked against the disk, no pickle is read.
+Frames come from the write-once files in parts/, so every frame that was flushed is found, whatever came after.
+"""
+
+import json
+import os
+from bisect import bisect_right
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from ryusa.errors import ResultsError
+from ryusa.model import EVENT, Scene
+from ryusa.results import schema
+from ryusa.results.hdf5 import OpenFiles, opened, plain_dataset, read_dataset
+from ryusa.results.lazy import LazyFrames, Part
+from ryusa.results.scene_file import read_scene
+
+Floats = NDArray[np.float64]
+_JSON_LIMIT = 64 << 20  # bytes
+
+
+@dataclass(frozen=True)
+class Frame:
+    """One moment of a run."""
+
+    t: float  # [s]
+    step: int
+    x: Floats  # centres, unwrapped [m], shape (n_grain, 3)
+    v: Floats  # [m/s], half a step before x
+    omega: Floats  # [rad/s]
+    x_wrapped: Floats  # centres inside the period [m]
+
+
+@dataclass(frozen=True)
+class Grains:
+    """Free grains, each array of shape (n_grain,)."""
+
+    d: Floats  # [m]
+    m: Floats  # [kg]
+    m_added: Floats  # [kg]
+    inertia: Floats  # [kg m2]
+
+
+@dataclass(frozen=True)
+class Bed:
+    """Fixed grains; ids start at n_grain."""
+
+    x: Floats  # [m], shape (n_fixed, 3)
+    d: Floats  # [m], shape (n_fixed,)
+    active: NDArray[np.bool_]  # at the start of the run
+
+
+@dataclass(frozen=True)
+class Planes:
+    """Planes; ids follow the fixed grains."""
+
+    normal: Floats  # unit, into the free side, shape (n_plane, 3)
+    point: Floats  # [m], shape (n_plane, 3)
+    active: NDArray[np.bool_]
+
+
+class Frames:
+    """All recorded frames; big arrays are read from the disk when indexed."""
+
+    def __init__(self, parts: list[Part], n_grain: int, period: tuple[float, float]) -> None:
+        self.t: Floats = _joined([part.t for part in parts], np.dtype(np.float64))  # [s], shape (n_frame,)
+        self.step: NDArray[np.int64] = _joined([part.step for part in parts], np.dtype(np.int64))
+        lift = np.array([period[0], period[1], 0.0])
+        self._lift = np.where(np.isfinite(lift), lift, 0.0)
+        self.x_wrapped = LazyFrames(parts, "x", n_grain)  # [m], shape (n_frame, n_grain, 3)
+        self.v = LazyFrames(parts, "v", n_grain)  # [m/s]
+        self.omega = LazyFrames(parts, "omega", n_grain)  # [rad/s]
+        self.image = LazyFrames(parts, "image", n_grain)  # periods crossed, shape (n_frame, n_grain, 2)
+        self.x = LazyFrames(parts, "x", n_grain, lift=self._lift)  # unwrapped [m]
+
+    def __len__(self) -> int:
+        return len(self.t)
+
+    def __getitem__(self, k: int) -> Frame:
+        k = range(len(self))[k]
+        wrapped, image = self.x_wrapped[k], self.image[k]
+        x = wrapped.copy()
+        x[:, :2] += image * self._lift[:2]
+        x.flags.writeable = False
+        return Frame(float(self.t[k]), int(self.step[k]), x, self.v[k], self.omega[k], wrapped)
+
+    def __iter__(self) -> Iterator[Frame]:
+        return (self[k] for k in range(len(self)))
+
+
+class Results:
+    """Everything a run left behind, read-only. Open it again to see what was written since."""
+
+    def __init__(self, folder: Path) -> None:
+        """Use `Results.open`."""
+        self.folder = folder
+        self.provenance = _read_json(folder / schema.PROVENANCE)
+        written = self.provenance.get("format")
+        if written != schema.FORMAT:
+            raise ResultsError(
+                f"{folder}: format {written!r}, this ryusa reads {schema.FORMAT}. Read it with the version named in "
+                f"{schema.PROVENANCE}"
+            )
+        self.case = _read_json(folder / schema.CASE_JSON, missing_ok=True)
+        self.summary = _read_json(folder / schema.SUMMARY, missing_ok=True)
+        self.scenes = _read_scenes(folder)  # (step, t [s], Scene) at the start and after every change of the timeline
+        self.scene: Scene = self.scenes[0][2]  # as the run began
+        self._parts = _read_parts(folder, self.scene.n_grain)
+        self.frames = Frames(self._parts, self.scene.n_grain, self.scene.period)
+
+    @staticmethod
+    def open(folder: str | os.PathLike[str]) -> "Results":
+        """Open a run folder.
+
+        Raises
+        ------
+        ResultsError : not a run folder, damaged, or written in another format.
+        """
+        path = Path(folder)
+        if not path.is_dir():
+            raise ResultsError(f"{path}: no such run folder")
+        if not schema.is_run_folder(path):
+            raise ResultsError(f"{path}: not a run folder of ryusa ({schema.PROVENANCE} or {schema.PARTS}/ is missing)")
+        return Results(path)
+
+    @property
+    def status(self) -> str:
+        """One of running, complete, interrupted, failed; a killed run still says running."""
+        return str(self.provenance.get("status"))
+
+    @property
+    def complete(self) -> bool:
+        """True once a stop rule of the case was met."""
+        return self.status == schema.COMPLETE
+
+    @cached_property
+    def contacts(self) -> NDArray[np.void]:
+        """Contacts that ended: structured array of dtype model.EVENT, sorted by t_part [s]."""
+        rows = [part.contacts() for part in self._parts if part.n_contact]
+        joined = np.concatenate(rows) if rows else np.zeros(0, dtype=EVENT)
+        joined = joined[np.argsort(joined["t_part"], kind="stable")]
+        joined.flags.writeable = False
+        return joined
+
+    @cached_property
+    def tally(self) -> dict[str, NDArray[Any]]:
+        """The energy account [J] and extremes at each frame, shape (n_frame,) each; keys of schema.TALLY."""
+        rows = _joined([part.tally() for part in self._parts], schema.TALLY)
+        return {name: rows[name] for name in schema.TALLY.names or ()}
+
+    @property
+    def grains(self) -> Grains:
+        """Sizes and masses of the free grains."""
+        return Grains(self.scene.d, self.scene.m, self.scene.m_added, self.scene.inertia)
+
+    @property
+    def bed(self) -> Bed:
+        """Fixed grains."""
+        return Bed(self.scene.x_fixed, self.scene.d_fixed, self.scene.fixed_active)
+
+    @property
+    def planes(self) -> Planes:
+        """Planes with the same contact law."""
+        return Planes(self.scene.plane_normal, self.scene.plane_point, self.scene.plane_active)
+
+    def scene_at(self, t: float) -> Scene:
+        """The scene that held at time `t` [s]; it changes only with the timeline."""
+        return self.scenes[max(bisect_right([begin for _, begin, _ in self.scenes], t) - 1, 0)][2]
+
+    def __repr__(self) -> str:
+        return (
+            f"Results({str(self.folder)!r}, {self.status}, {len(self.frames)} frames, {self.scene.n_grain} free and "
+            f"{self.scene.n_fixed} fixed grains)"
+        )
+
+
+def _joined(arrays: list[NDArray[Any]], dtype: np.dtype[Any]) -> NDArray[Any]:
+    joined = np.concatenate(arrays) if arrays else np.zeros(0, dtype=dtype)
+    joined.flags.writeable = False
+    return joined
+
+
+def _read_json(path: Path, *, missing_ok: bool = False) -> dict[str, Any]:
+    if missing_ok and not path.exists() and not path.is_symlink():
+        return {}
+    if path.is_symlink() or not path.is_file():
+        raise ResultsError(f"{path}: no such file in the run folder (links are not followed)")
+    try:
+        if path.stat().st_size > _JSON_LIMIT:
+            raise ResultsError(f"{path}: larger than {_JSON_LIMIT >> 20} MB, not written by ryusa")
+        found = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError) as error:
+        raise ResultsError(f"{path}: not readable as JSON ({error})") from error
+    if not isinstance(found, dict):
+        raise ResultsError(f"{path}: expected a table of keys, found {type(found).__name__}")
+    return found
+
+
+def _numbered(folder: Path, pattern: "Any") -> list[Path]:
+    parts = folder / schema.PARTS
+    if parts.is_symlink():
+        raise ResultsError(f"{parts}: is a link; links are not followed")
+    try:
+        return sorted(entry for entry in parts.iterdir() if pattern.fullmatch(entry.name))
+    except OSError as error:
+        raise ResultsError(f"{parts}: cannot be listed ({error})") from error
+
+
+def _read_scenes(folder: Path) -> list[tuple[int, float, Scene]]:
+    scenes = [read_scene(path) for path in _numbered(folder, schema.SCENE_NAME)]
+    if not scenes:
+        raise ResultsError(f"{folder}: the run was stopped before its first scene was written")
+    if len({scene.n_grain for _, _, scene in scenes}) > 1:
+        raise ResultsError(f"{folder}: its scenes differ in their number of grains")
+    return scenes
+
+
+def _read_parts(folder: Path, n_grain: int) -> list[Part]:
+    parts: list[Part] = []
+    files = OpenFiles()
+    first = 0
+    for number, path in enumerate(_numbered(folder, schema.PART_NAME)):
+        if path.name != schema.part_name(number):
+            raise ResultsError(f"{path.parent}: {schema.part_name(number)} is missing")
+        part = _read_part(path, first, n_grain, files)
+        parts.append(part)
+        first += part.n_frame
+    return parts
+
+
+def _read_part(path: Path, first: int, n_grain: int, files: OpenFiles) -> Part:
+    with opened(path) as file:
+        t, step = read_dataset(file, "t", path), read_dataset(file, "step", path)
+        k = len(t) if t.ndim == 1 else -1
+        for name, (dtype, tail) in schema.FRAME_DATASETS.items():
+            shape = (k, n_grain, *tail) if name in schema.PER_GRAIN else (k,)
+            _check(plain_dataset(file, name, path), shape, dtype, path)
+        _check(plain_dataset(file, "tally", path), (k,), schema.TALLY, path)
+        contacts = plain_dataset(file, "contacts", path)
+        _check(contacts, (contacts.shape[0] if contacts.ndim == 1 else -1,), EVENT, path)
+        return Part(path=path, first=first, t=t, step=step, n_contact=len(contacts), files=files)
+
+
+def _check(dataset: h5py.Dataset, shape: tuple[int, ...], dtype: np.dtype[Any], path: Path) -> None:
+    if dataset.shape != shape or dataset.dtype != dtype:
+        raise ResultsError(
+            f"{path}: '{dataset.name}' is {dataset.shape} of {dataset.dtype}, expected {shape} of {dtype}"
+        )
+
+
+

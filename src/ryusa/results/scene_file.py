@@ -1,0 +1,82 @@
+"""A Scene as a small HDF5 file in parts/, and back: measures need its sizes, masses, laws and water."""
+
+import json
+from dataclasses import asdict, fields
+from pathlib import Path
+from typing import Any, get_origin, get_type_hints
+
+import h5py
+import numpy as np
+
+from ryusa.errors import ResultsError
+from ryusa.model import ContactLaw, RollingLaw, Scene, Water
+from ryusa.model.enums import EventRule
+from ryusa.results.hdf5 import opened, read_dataset
+
+_LAWS: dict[str, type] = {"contact": ContactLaw, "rolling": RollingLaw, "water": Water}
+_ARRAYS = tuple(f.name for f in fields(Scene) if get_origin(f.type) is np.ndarray)
+_LIMIT = 1 << 20  # bytes of JSON read from a scene file
+
+
+def write_scene(file: h5py.File, scene: Scene, step: int, t: float) -> None:
+    """Write `scene`, valid from `step` and time `t` [s] on, into an open HDF5 file."""
+    scalars: dict[str, Any] = {}
+    for f in fields(Scene):
+        value = getattr(scene, f.name)
+        if f.name in _ARRAYS:
+            file.create_dataset(f.name, data=np.asarray(value))
+        else:
+            scalars[f.name] = asdict(value) if f.name in _LAWS else value
+    scalars["step"], scalars["t"] = step, t
+    file.create_dataset("scalars", data=np.frombuffer(json.dumps(scalars, default=_plain).encode(), dtype=np.uint8))
+
+
+def read_scene(path: Path) -> tuple[int, float, Scene]:
+    """Step and time [s] from which a scene holds, and the scene.
+
+    Raises
+    ------
+    ResultsError : the file is damaged or does not hold a scene.
+    """
+    with opened(path) as file:
+        arrays = {name: read_dataset(file, name, path) for name in _ARRAYS}
+        raw = read_dataset(file, "scalars", path)
+    try:
+        if raw.dtype != np.uint8 or raw.nbytes > _LIMIT:
+            raise ValueError("its scalars are not text")
+        scalars = json.loads(raw.tobytes())
+        step, t = int(scalars.pop("step")), float(scalars.pop("t"))
+        laws = {name: _law(kind, scalars.pop(name)) for name, kind in _LAWS.items()}
+        scalars["events"] = EventRule(scalars["events"])
+        scalars["groups"] = {str(name): (int(a), int(b)) for name, (a, b) in scalars["groups"].items()}
+        for name in ("period", "world_low", "world_high"):
+            scalars[name] = tuple(float(value) for value in scalars[name])
+        for array in arrays.values():
+            array.flags.writeable = False
+        scene = Scene(**arrays, **laws, **scalars)
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise ResultsError(f"{path}: not a scene of ryusa ({error})") from error
+    _check_shapes(scene, path)
+    return step, t, scene
+
+
+def _plain(value: np.generic) -> Any:
+    return value.item()
+
+
+def _law(kind: type, raw: dict[str, Any]) -> Any:
+    hints = get_type_hints(kind)
+    return kind(**{name: hints[name](value) for name, value in raw.items()})
+
+
+def _check_shapes(scene: Scene, path: Path) -> None:
+    n, n_fixed, n_plane = scene.n_grain, scene.n_fixed, scene.n_plane
+    wanted = {
+        "d": (n,), "m": (n,), "m_added": (n,), "m_weight": (n,), "inertia": (n,), "gravity": (3,),
+        "x_fixed": (n_fixed, 3), "d_fixed": (n_fixed,), "fixed_active": (n_fixed,),
+        "plane_normal": (n_plane, 3), "plane_point": (n_plane, 3), "plane_active": (n_plane,),
+    }  # fmt: skip
+    for name, shape in wanted.items():
+        got = getattr(scene, name).shape
+        if got != shape and not (0 in shape and 0 in got):
+            raise ResultsError(f"{path}: {name} has shape {got}, expected {shape}")

@@ -1,0 +1,69 @@
+"""Names of everything in a run folder: files, datasets, columns. The recorder writes them, `read` reads them."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+
+from ryusa.model import Book, Tally
+
+FORMAT = 1  # raised when an older reader could misread a folder
+
+CASE_TOML = "case.toml"  # the case as read, byte for byte
+CASE_JSON = "case.json"  # the same, resolved, in SI
+PROVENANCE = "provenance.json"
+SUMMARY = "summary.json"
+LOG = "log.txt"
+GRAINS = "grains.vtkhdf"  # the file to open in ParaView
+BED = "bed.vtkhdf"
+PARTS = "parts"  # folder of write-once HDF5 files
+
+PART_NAME = re.compile(r"part-(\d{6})\.h5")
+SCENE_NAME = re.compile(r"scene-(\d{6})\.h5")
+
+# status in provenance.json
+RUNNING, COMPLETE, INTERRUPTED, FAILED = "running", "complete", "interrupted", "failed"
+
+# datasets of a part: k frames of n grains
+FRAME_DATASETS = {
+    "t": (np.dtype(np.float64), ()),  # [s], shape (k,)
+    "step": (np.dtype(np.int64), ()),
+    "x": (np.dtype(np.float64), (3,)),  # [m], as the engine holds it (wrapped), shape (k, n, 3)
+    "v": (np.dtype(np.float64), (3,)),  # [m/s]
+    "omega": (np.dtype(np.float64), (3,)),  # [rad/s]
+    "image": (np.dtype(np.int32), (2,)),  # periods crossed in x and y
+}
+PER_GRAIN = ("x", "v", "omega", "image")
+
+_INTEGER = {"overlap_grain", "overlap_step", "n_contact"}
+_NOW = ("t", "kinetic", "spin", "potential", "spring_n", "spring_s", "spring_r")
+_EXTREME = ("overlap_max", "overlap_grain", "overlap_step", "speed_max", "spin_max", "n_contact")
+_CHECK = ("imbalance", "residual")
+# one row per frame: terms of Tally, then Book in lower case, then what the account cannot explain
+TALLY = np.dtype(
+    [
+        (name, np.int64 if name in _INTEGER else np.float64)
+        for name in (*_NOW, *_EXTREME, *(book.name.lower() for book in Book), *_CHECK)
+    ]
+)
+
+
+def part_name(k: int) -> str:
+    """File name of part k."""
+    return f"part-{k:06d}.h5"
+
+
+def scene_name(k: int) -> str:
+    """File name of scene k: 0 at the start, one more after each change of the timeline."""
+    return f"scene-{k:06d}.h5"
+
+
+def tally_row(tally: Tally) -> tuple[float, ...]:
+    """One row of dtype TALLY; energies in J."""
+    now = tuple(getattr(tally, name) for name in (*_NOW, *_EXTREME))
+    return (*now, *tally.books, tally.imbalance, tally.residual)
+
+
+def is_run_folder(folder: Path) -> bool:
+    """True where `folder` is recognisably a run of ryusa."""
+    return (folder / PROVENANCE).is_file() and (folder / PARTS).is_dir()

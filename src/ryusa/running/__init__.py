@@ -1,0 +1,1 @@
+"""The one loop: build, advance, record, watch, stop."""

@@ -1,0 +1,216 @@
+"""VTKHDF PolyData files: points that ParaView (5.12 or later) and the vtk wheel open as they are.
+
+`grains.vtkhdf` holds no numbers of its own: each dataset is an HDF5 virtual dataset over the write-once parts, so that
+it can be written anew in a moment and put in place by a rename; a reader sees the old index or the new one, both whole.
+"""
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+from ryusa.model import EVENT, Scene
+from ryusa.results import schema
+
+_VERSION = np.array([2, 0], dtype=np.int64)  # the first that knows steps of PolyData
+_CELLS = ("Vertices", "Lines", "Polygons", "Strips")
+_INT = np.dtype(np.int64)
+_FLOAT = np.dtype(np.float64)
+_POINTS = "points.h5"  # in parts/: what is the same in every frame
+_PLANE_REACH = 50.0  # half the side of the square drawn for a plane where nothing else bounds it, in largest d
+
+
+@dataclass(frozen=True)
+class PartSize:
+    """How much a part holds."""
+
+    name: str
+    n_frame: int
+    n_contact: int
+
+
+def write_atomic(path: Path, fill: Callable[[h5py.File], None]) -> None:
+    """Write an HDF5 file so that `path` is either as before or whole, also after a power cut."""
+    beside = path.with_name(f".{path.name}.new")
+    with h5py.File(beside, "w", locking=False) as file:
+        fill(file)
+    sync(beside)
+    os.replace(beside, path)
+    sync(path.parent)
+
+
+def sync(path: Path) -> None:
+    """Push a file or folder to the disk."""
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+def write_points(parts: Path, scene: Scene) -> None:
+    """Write what all frames share: diameter, id and one vertex cell per grain."""
+
+    def fill(file: h5py.File) -> None:
+        file["diameter"] = scene.d
+        file["id"] = np.arange(scene.n_grain, dtype=np.int64)
+        file["offsets"] = np.arange(scene.n_grain + 1, dtype=np.int64)
+
+    write_atomic(parts / _POINTS, fill)
+
+
+def write_index(folder: Path, parts: list[PartSize], n_grain: int) -> None:
+    """Write `grains.vtkhdf` over `parts`; at least one frame is needed."""
+
+    def fill(file: h5py.File) -> None:
+        _fill_index(file, parts, n_grain)
+
+    write_atomic(folder / schema.GRAINS, fill)
+
+
+def _fill_index(file: h5py.File, parts: list[PartSize], n: int) -> None:
+    n_frame = sum(part.n_frame for part in parts)
+    root = _root(file)
+    root["NumberOfPoints"] = np.array([n], dtype=np.int64)
+    _gather(root, "Points", parts, "x", (n, 3), _FLOAT)
+    data = root.create_group("PointData")
+    _gather(data, "velocity", parts, "v", (n, 3), _FLOAT)
+    _gather(data, "spin", parts, "omega", (n, 3), _FLOAT)
+    _share(data, "diameter", "diameter", n, _FLOAT)
+    _share(data, "id", "id", n, _INT)
+    for kind in _CELLS:
+        cells = root.create_group(kind)
+        count = n if kind == "Vertices" else 0
+        cells["NumberOfCells"] = cells["NumberOfConnectivityIds"] = np.array([count], dtype=np.int64)
+        if kind == "Vertices":
+            _share(cells, "Connectivity", "id", n, _INT)
+            _share(cells, "Offsets", "offsets", n + 1, _INT)
+        else:
+            cells["Connectivity"], cells["Offsets"] = np.zeros(0, np.int64), np.zeros(1, np.int64)
+    steps = root.create_group("Steps")
+    steps.attrs["NSteps"] = np.int64(n_frame)
+    _gather(steps, "Values", parts, "t", (), _FLOAT)
+    _gather(steps, "PointOffsets", parts, "point_offset", (), _INT)
+    # never written, so they take no space: every step begins at the same cells and the same shared arrays
+    zeros = steps.create_dataset("PartOffsets", (n_frame,), np.int64)
+    steps.create_dataset("NumberOfParts", (n_frame,), np.int64, fillvalue=1)
+    steps["ConnectivityIdOffsets"] = steps.create_dataset("CellOffsets", (n_frame, 4), np.int64)
+    offsets = steps.create_group("PointDataOffsets")
+    offsets["velocity"] = offsets["spin"] = steps["PointOffsets"]
+    offsets["diameter"] = offsets["id"] = zeros
+    # for h5py: what ParaView has no use for
+    more = file.create_group("ryusa")
+    _gather(more, "step", parts, "step", (), _INT)
+    _gather(more, "image", parts, "image", (n, 2), schema.FRAME_DATASETS["image"][0])
+    _gather(more, "tally", parts, "tally", (), schema.TALLY)
+    _gather(more, "contacts", parts, "contacts", (), EVENT)
+
+
+def _root(file: h5py.File) -> h5py.Group:
+    root = file.create_group("VTKHDF")
+    root.attrs["Version"] = _VERSION
+    root.attrs["Type"] = np.bytes_("PolyData")
+    return root
+
+
+def _gather(
+    group: h5py.Group, name: str, parts: list[PartSize], source: str, tail: tuple[int, ...], dtype: np.dtype[Any]
+) -> None:
+    """Put the rows of all parts behind one another; a part's (k, n, 3) becomes (k n, 3) rows."""
+    counts = [part.n_contact if source == "contacts" else part.n_frame for part in parts]
+    rows = tail[0] if tail else 1
+    if sum(counts) * rows == 0:
+        group.create_dataset(name, (0, *tail[1:]), dtype)
+        return
+    layout = h5py.VirtualLayout((sum(counts) * rows, *tail[1:]), dtype)
+    begin = 0
+    for part, count in zip(parts, counts, strict=True):
+        if count:
+            file = f"{schema.PARTS}/{part.name}"
+            layout[begin : begin + count * rows] = h5py.VirtualSource(file, source, shape=(count, *tail), dtype=dtype)
+            begin += count * rows
+    group.create_virtual_dataset(name, layout)
+
+
+def _share(group: h5py.Group, name: str, source: str, count: int, dtype: np.dtype[Any]) -> None:
+    layout = h5py.VirtualLayout((count,), dtype)
+    layout[:] = h5py.VirtualSource(f"{schema.PARTS}/{_POINTS}", source, shape=(count,), dtype=dtype)
+    group.create_virtual_dataset(name, layout)
+
+
+def write_bed(path: Path, scenes: list[tuple[float, Scene]]) -> None:
+    """Write fixed grains (points with a diameter) and planes (squares whose corners have diameter 0).
+
+    One frame, or one per (time [s], scene) where the timeline took grains or planes away.
+    """
+
+    def fill(file: h5py.File) -> None:
+        _fill_bed(file, scenes)
+
+    write_atomic(path, fill)
+
+
+def _fill_bed(file: h5py.File, scenes: list[tuple[float, Scene]]) -> None:
+    root = _root(file)
+    shown = [_bed_points(scene) for _, scene in scenes]
+    n_points = np.array([len(points) for points, _, _, _ in shown], dtype=np.int64)
+    n_verts = np.array([n_vert for _, _, _, n_vert in shown], dtype=np.int64)
+    n_squares = (n_points - n_verts) // 4
+    root["NumberOfPoints"] = n_points
+    root["Points"] = np.concatenate([points for points, _, _, _ in shown])
+    data = root.create_group("PointData")
+    data["diameter"] = np.concatenate([d for _, d, _, _ in shown])
+    data["id"] = np.concatenate([ids for _, _, ids, _ in shown])
+    counts = {"Vertices": (n_verts, 1), "Polygons": (n_squares, 4)}
+    for kind in _CELLS:
+        cells = root.create_group(kind)
+        count, width = counts.get(kind, (np.zeros_like(n_verts), 1))
+        cells["NumberOfCells"], cells["NumberOfConnectivityIds"] = count, count * width
+        first = np.zeros_like(n_verts) if kind == "Vertices" else n_verts
+        pairs = list(zip(first, count * width, strict=True))
+        cells["Connectivity"] = np.concatenate([np.arange(a, a + m, dtype=np.int64) for a, m in pairs])
+        cells["Offsets"] = np.concatenate([np.arange(m + 1, dtype=np.int64) * width for m in count])
+    steps = root.create_group("Steps")
+    n_step = len(scenes)
+    steps.attrs["NSteps"] = np.int64(n_step)
+    steps["Values"] = np.array([t for t, _ in scenes])
+    steps["PartOffsets"] = np.arange(n_step, dtype=np.int64)
+    steps["NumberOfParts"] = np.ones(n_step, dtype=np.int64)
+    steps["PointOffsets"] = _starts(n_points)
+    zero = np.zeros(n_step, dtype=np.int64)
+    steps["CellOffsets"] = np.stack([_starts(n_verts), zero, _starts(n_squares), zero], axis=1)
+    steps["ConnectivityIdOffsets"] = np.stack([_starts(n_verts), zero, _starts(4 * n_squares), zero], axis=1)
+    offsets = steps.create_group("PointDataOffsets")
+    offsets["diameter"] = offsets["id"] = steps["PointOffsets"]
+
+
+def _starts(counts: np.ndarray) -> np.ndarray:
+    return np.concatenate([[0], np.cumsum(counts)[:-1]]).astype(np.int64)
+
+
+def _bed_points(scene: Scene) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
+    """Points, diameters and ids of what is there now, and how many of them are grains."""
+    there = np.asarray(scene.fixed_active, dtype=bool)
+    x, d = np.asarray(scene.x_fixed).reshape(-1, 3)[there], np.asarray(scene.d_fixed)[there]
+    ids = scene.n_grain + np.flatnonzero(there)
+    corners = [_square(scene, k) for k in np.flatnonzero(scene.plane_active)]
+    plane_ids = scene.n_grain + scene.n_fixed + np.repeat(np.flatnonzero(scene.plane_active), 4)
+    points = np.concatenate([x, *corners]) if corners else x
+    return points, np.append(d, np.zeros(4 * len(corners))), np.append(ids, plane_ids).astype(np.int64), len(x)
+
+
+def _square(scene: Scene, k: int) -> np.ndarray:
+    """Corners of the square that stands for plane k, shape (4, 3)."""
+    normal, point = np.asarray(scene.plane_normal[k]), np.asarray(scene.plane_point[k], dtype=np.float64)
+    finite = [length for length in scene.period if np.isfinite(length)]
+    d = np.concatenate([np.asarray(scene.d), np.asarray(scene.d_fixed)])
+    half = max(finite) / 2 if finite else _PLANE_REACH * (float(d.max()) if len(d) else 1.0)
+    side = np.cross(normal, np.eye(3)[int(np.argmin(np.abs(normal)))])
+    side /= np.linalg.norm(side)
+    other = np.cross(normal, side)
+    signs = [(-1, -1), (1, -1), (1, 1), (-1, 1)]
+    return np.array([point + half * (a * side + b * other) for a, b in signs])
