@@ -1,0 +1,100 @@
+# ryusa needs only python3 (3.11 or later) and make; everything else goes into .venv.
+#   make demo     install, run the saltation case, measure it, draw it
+#   make test     the same, then every check and test
+# `make` alone lists the rest.
+
+PYTHON ?= python3
+VENV   := .venv
+BIN    := $(VENV)/bin
+RUN    := runs/demo
+JOBS   ?= 2
+
+PIP    := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
+
+# An empty file says what the environment holds; it is older than its recipe when something must be done again.
+HAS_PYTHON := $(VENV)/.has-python
+HAS_RYUSA  := $(VENV)/.has-ryusa
+HAS_TESTS  := $(VENV)/.has-tests
+
+.DEFAULT_GOAL := help
+.PHONY: help demo demo-run test check lint format types walls unit docs bench paper slow constraints clean
+
+help: ## list these targets
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 22
+
+# ------------------------------------------------------------------------------------------------------- install
+
+$(HAS_PYTHON):
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \
+	    echo "ryusa needs Python 3.11 or later; '$(PYTHON)' is $$($(PYTHON) --version 2>&1)."; \
+	    echo "Name another one: make demo PYTHON=python3.12"; exit 1; }
+	@$(PYTHON) -c 'import venv, ensurepip' 2>/dev/null || { \
+	    echo "This Python cannot create environments (its modules venv and ensurepip are missing)."; \
+	    echo "On Debian and Ubuntu: sudo apt install python3-venv"; exit 1; }
+	@echo "creating $(VENV)"
+	@$(PYTHON) -m venv $(VENV)
+	@touch $@
+
+$(HAS_RYUSA): pyproject.toml constraints.txt | $(HAS_PYTHON)
+	@echo "installing ryusa and what it needs into $(VENV)"
+	@$(PIP) --editable .
+	@touch $@
+
+$(HAS_TESTS): pyproject.toml constraints.txt | $(HAS_RYUSA)
+	@echo "installing what the tests need into $(VENV) (about 1 GB: vtk and the CUDA compiler are large)"
+	@$(PIP) --editable '.[test,bench]'
+	@touch $@
+
+# ---------------------------------------------------------------------------------------------------------- demo
+
+demo: $(HAS_RYUSA) ## install, run the saltation case, measure it, draw it
+	$(BIN)/ryusa run src/ryusa/cases/saltation.toml -o $(RUN) --overwrite
+	$(BIN)/ryusa measure $(RUN) saltation
+	$(BIN)/ryusa draw $(RUN) tracks
+	@echo "Pictures and tables: $(RUN)/"
+
+# ---------------------------------------------------------------------------------------------------------- test
+
+test: $(HAS_TESTS) ## the demo, then every check and test
+	@$(MAKE) --no-print-directory demo
+	@$(MAKE) --no-print-directory check
+
+check: lint types walls unit ## every check and test, without the demo
+
+lint: $(HAS_TESTS) ## ruff: rules and format
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+types: $(HAS_TESTS) ## pyright, strict on src
+	$(BIN)/pyright
+
+walls: $(HAS_TESTS) ## import-linter: which room may see which
+	$(BIN)/lint-imports
+
+unit: $(HAS_TESTS) ## pytest: doctests in src, tests in tests
+	$(BIN)/python -m pytest -q -n $(JOBS)
+
+paper: $(HAS_TESTS) ## the long tests that rebuild the paper's figures
+	$(BIN)/python -m pytest -q -n $(JOBS) -m paper
+
+slow: $(HAS_TESTS) ## tests that take longer than about ten seconds
+	$(BIN)/python -m pytest -q -n $(JOBS) -m slow
+
+# --------------------------------------------------------------------------------------------------------- other
+
+format: $(HAS_TESTS) ## let ruff format and repair what it can
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+docs: $(HAS_RYUSA) ## write docs/case-file.md and docs/commands.md anew from the code
+	$(BIN)/python docs/generate.py
+
+bench: $(HAS_TESTS) ## timings, with the machine they were taken on
+	$(BIN)/python -m pytest -q benchmarks --benchmark-only -p no:xdist -o testpaths=benchmarks
+
+constraints: $(HAS_TESTS) ## write constraints.txt anew from what .venv holds
+	$(BIN)/python -m pip freeze --exclude ryusa | grep -v '@\|^\#' > constraints.txt
+
+clean: ## remove the environment, caches and the demo's run
+	rm -rf $(VENV) $(RUN) build .pytest_cache .ruff_cache .hypothesis .benchmarks .import_linter_cache
+	find . -name __pycache__ -type d -not -path './.git/*' -prune -exec rm -rf {} +
