@@ -8,6 +8,7 @@ tension*: the force ends when it would turn to pulling.
 import math
 
 from ryusa.laws._law import law
+from ryusa.laws.reduced import reduced
 
 
 @law
@@ -16,7 +17,7 @@ def collision_time(m: float, k_n: float) -> float:
 
     Examples
     --------
-    >>> round(collision_time(1.11e-5, 1.0), 4)      # d = 0.2 cm quartz, k_n = 0.01 N/cm
+    >>> round(collision_time(1.11e-5, 1.0), 4)  # d = 0.2 cm quartz, k_n = 0.01 N/cm
     0.0105
     """
     return math.pi * math.sqrt(m / k_n)
@@ -35,8 +36,7 @@ def effective_mass(m_i: float, m_j: float) -> float:
     >>> effective_mass(2.0, 2.0), effective_mass(2.0, math.inf)
     (1.0, 2.0)
     """
-    small = min(m_i, m_j)
-    return small / (1.0 + small / max(m_i, m_j))
+    return reduced(m_i, m_j)
 
 
 @law
@@ -65,9 +65,9 @@ def effective_mass_tangential(
     """
     inverse = 1.0 / m_i + 1.0 / m_j
     if rotates:
-        if inertia_i < math.inf:
+        if inertia_i != math.inf:
             inverse += r_i * r_i / inertia_i
-        if inertia_j < math.inf:
+        if inertia_j != math.inf:
             inverse += r_j * r_j / inertia_j
     return 1.0 / inverse
 
@@ -110,13 +110,13 @@ def phase_to_largest(zeta: float) -> float:
     >>> round(phase_to_largest(0.0), 6), phase_to_largest(1.0)
     (1.570796, 1.0)
     """
+    if zeta == 1.0:
+        return 1.0
     if zeta < 1.0:
         s = math.sqrt((1.0 - zeta) * (1.0 + zeta))
         return math.atan2(s, zeta) / s
-    if zeta > 1.0:
-        s = math.sqrt((zeta - 1.0) * (zeta + 1.0))
-        return math.asinh(s) / s
-    return 1.0
+    s = math.sqrt((zeta - 1.0) * (zeta + 1.0))
+    return math.asinh(s) / s
 
 
 @law
@@ -145,7 +145,7 @@ def contact_time_no_tension(zeta: float, omega_0: float) -> float:
 
     Examples
     --------
-    >>> round(contact_time_no_tension(0.12221, 1.0), 4)      # e = 0.7
+    >>> round(contact_time_no_tension(0.12221, 1.0), 4)  # e = 0.7
     2.9184
     """
     return 2.0 * phase_to_largest(zeta) / omega_0

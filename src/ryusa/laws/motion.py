@@ -85,7 +85,9 @@ def semi_implicit(x: float, v: float, a: float, dt: float) -> tuple[float, float
 def forward_euler(x: float, v: float, a: float, dt: float) -> tuple[float, float]:
     """One step of true forward Euler, kept only for the study that shows why not.
 
-    Parameters and results as `semi_implicit`, but v and x belong to the same time.
+    Parameters
+    ----------
+    x, v, a, dt : as in `semi_implicit` [m, m/s, m/s2, s], but v and x belong to the same time.
 
     Notes
     -----

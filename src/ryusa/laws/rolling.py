@@ -13,6 +13,7 @@ a size or a scale, and multiplies the direction by it:
 import math
 
 from ryusa.laws._law import law
+from ryusa.laws.reduced import reduced
 
 
 @law
@@ -33,15 +34,16 @@ def rolling_arm_width(r_i: float, r_j: float, overlap: float) -> float:
 
     Examples
     --------
-    >>> round(rolling_arm_width(5.0, 5.0, 2.0), 6)      # 3-4-5: half distance 4, radius of the circle 3
+    >>> round(rolling_arm_width(5.0, 5.0, 2.0), 6)  # 3-4-5: half distance 4, radius of the circle 3
     6.0
     >>> round(rolling_arm_width(5.0, math.inf, 1.0), 6)
     6.0
     """
     if overlap <= 0.0:
         return 0.0
-    small = min(r_i, r_j)
-    curvature = 1.0 / max(r_i, r_j)
+    i_smaller = r_i < r_j
+    small = r_i if i_smaller else r_j
+    curvature = 1.0 / (r_j if i_smaller else r_i)
     bent = curvature * overlap
     apart = 1.0 + curvature * small - bent
     area = overlap * (2.0 * small - overlap) * (2.0 - bent) * (2.0 + 2.0 * curvature * small - bent)
@@ -57,8 +59,7 @@ def reduced_radius(r_i: float, r_j: float) -> float:
     >>> reduced_radius(2.0, 2.0), reduced_radius(2.0, math.inf)
     (1.0, 2.0)
     """
-    small = min(r_i, r_j)
-    return small / (1.0 + small / max(r_i, r_j))
+    return reduced(r_i, r_j)
 
 
 @law
@@ -114,8 +115,7 @@ def inertia_spin(inertia_i: float, inertia_j: float) -> float:
     >>> inertia_spin(2.0, 2.0), inertia_spin(2.0, math.inf)
     (1.0, 2.0)
     """
-    small = min(inertia_i, inertia_j)
-    return small / (1.0 + small / max(inertia_i, inertia_j))
+    return reduced(inertia_i, inertia_j)
 
 
 @law

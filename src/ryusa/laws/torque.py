@@ -11,7 +11,7 @@ def reynolds_spin(spin: float, d: float, nu: float) -> float:
 
     Examples
     --------
-    >>> round(reynolds_spin(900.0, 0.002, 1.0e-6), 6)      # the paper's fastest spin
+    >>> round(reynolds_spin(900.0, 0.002, 1.0e-6), 6)  # the paper's fastest spin
     3600.0
     """
     return d * d * abs(spin) / nu

@@ -26,9 +26,9 @@ def log_law_rough(z: float, u_star: float, k_rough: float) -> float:
 
     Examples
     --------
-    >>> round(log_law_rough(0.002, 0.1, 0.002), 3)      # at z = k_rough: 8.5 u_star
+    >>> round(log_law_rough(0.002, 0.1, 0.002), 3)  # at z = k_rough: 8.5 u_star
     0.85
-    >>> log_law_rough(0.00006, 0.1, 0.002)              # below k_rough/30
+    >>> log_law_rough(0.00006, 0.1, 0.002)  # below k_rough/30
     0.0
     """
     if z <= 0.0:
@@ -57,9 +57,9 @@ def log_law_smooth(z: float, u_star: float, nu: float) -> float:
 
     Examples
     --------
-    >>> round(log_law_smooth(1.0e-4, 0.01, 1.0e-6), 4)      # z+ = 1: u+ = 1
+    >>> round(log_law_smooth(1.0e-4, 0.01, 1.0e-6), 4)  # z+ = 1: u+ = 1
     0.01
-    >>> round(log_law_smooth(0.01, 0.1, 1.0e-6) / 0.1, 2)   # z+ = 1000
+    >>> round(log_law_smooth(0.01, 0.1, 1.0e-6) / 0.1, 2)  # z+ = 1000
     22.23
     """
     if z <= 0.0:
@@ -136,7 +136,7 @@ def u_star_from_slope(depth: float, slope: float, g: float) -> float:
     Examples
     --------
     >>> import math
-    >>> round(u_star_from_slope(0.02, math.atan(1 / 20), 9.8), 4)      # the paper's saltation
+    >>> round(u_star_from_slope(0.02, math.atan(1 / 20), 9.8), 4)  # the paper's saltation
     0.0989
     """
     return math.sqrt(g * depth * math.sin(slope))
