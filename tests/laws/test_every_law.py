@@ -1,0 +1,75 @@
+"""What holds for every law, whatever it says."""
+
+import inspect
+import math
+from pathlib import Path
+
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+import ryusa.laws
+
+# Laws that may answer with a number although an argument is not one, and why that hides nothing.
+BLIND = {
+    ("contact.slip_scale", "size"),  # a factor of the vector that is not a number itself
+    ("contact.slip_scale", "tau_c"),  # tau_c comes from the normal force, which is not a number either
+    ("contact.slip_spring", "spring_n"),
+    ("contact.slide_spring", "size"),
+    ("contact.slide_spring", "tau_c"),
+    ("contact.slide_spring_drop", "size"),
+    ("contact.slide_spring_drop", "tau_c"),
+    ("contact.slide_total", "size"),
+    ("contact.slide_total", "tau_c"),
+    ("contact.slip_spring", "cohesion"),
+    ("contact.slip_spring", "mu"),
+    ("geometry.wrap", "period"),  # checked by the case reader
+    ("rolling.epsd_torque", "spin"),  # the dashpot is off while sliding
+    ("rolling.epsd_torque", "eta_r"),
+    ("rolling.epsd_torque", "scale"),
+    ("rolling.rolling_constant", "cap"),  # comes from the normal force
+    ("torque.torque_in_range", "spin"),  # yes or no
+    ("torque.torque_in_range", "d"),
+    ("torque.torque_in_range", "nu"),
+    ("torque.torque_stokes", "spin"),  # does not depend on it
+    ("water.uniform", "z"),
+}
+
+
+def test_every_module_of_the_room_holds_laws(laws):
+    files = {path.stem for path in Path(ryusa.laws.__path__[0]).glob("[!_]*.py")}
+    assert {name.split(".")[0] for name in laws} == files
+
+
+def test_a_law_names_its_units_and_shows_an_example(law):
+    text = inspect.getdoc(law.plain)
+    assert text
+    assert ">>>" in text
+    assert "[" in text.split(">>>")[0]
+    assert set(law.kinds) <= {float, bool}
+    assert inspect.signature(law.plain).return_annotation is not inspect.Signature.empty
+
+
+@settings(max_examples=15, deadline=None)
+@given(data=st.data())
+def test_compiled_and_plain_python_agree(law, data):
+    args = data.draw(law.draw())
+    try:
+        plain = law.plain(*args)
+    except (
+        ValueError,
+        ZeroDivisionError,
+        OverflowError,
+    ):  # plain Python raises where compiled gives inf or nan
+        assume(False)
+    expected = list(plain) if isinstance(plain, tuple) else [plain]
+    assert law(*args) == pytest.approx(expected, rel=1e-12, nan_ok=True)
+
+
+def test_a_number_that_is_not_one_is_passed_on(law):
+    for k, (argument, kind) in enumerate(zip(law.arguments, law.kinds, strict=True)):
+        if kind is bool or (law.name, argument) in BLIND:
+            continue
+        args = [True if kind is bool else 0.5 for kind in law.kinds]
+        args[k] = math.nan
+        assert any(math.isnan(x) for x in law(*args)), argument
