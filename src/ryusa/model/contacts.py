@@ -37,7 +37,8 @@ N_EVENT = EVENT.itemsize // 8
 class Contacts:
     """Pairs in touch now. Memory belongs to the pair and dies with the contact.
 
-    All arrays have n_contact rows; i is always a free grain, j > i may be free, fixed or a plane.
+    All arrays have n_contact rows; i is always a free grain, j > i may be free, fixed or a plane. In a plane scene
+    column 0 of the tangential vectors holds the component along the tangent (n_z, 0, -n_x); the others are zero.
     """
 
     i: np.ndarray  # ids, int64
@@ -45,6 +46,7 @@ class Contacts:
     spring_s: Floats  # tangential spring force on grain i [N], shape (n_contact, 3)
     dash_s: Floats  # tangential dashpot force on i in the last step [N], shape (n_contact, 3)
     dash_n: Floats  # normal force less normal spring in the last step [N], shape (n_contact,)
+    f_n: Floats  # normal force in the last step [N], shape (n_contact,)
     spring_r: Floats  # rolling spring torque on i [N m], shape (n_contact, 3)
     dash_r: Floats  # rolling torque on i in the last step, less its spring [N m], shape (n_contact, 3)
     event: np.ndarray  # the open record of each contact as it stands, shape (n_contact, N_EVENT), float64
@@ -54,7 +56,7 @@ class Contacts:
         """No pair in touch."""
         ids = np.zeros(0, dtype=np.int64)
         v3 = np.zeros((0, 3))
-        return Contacts(ids, ids, v3, v3, np.zeros(0), v3, v3, np.zeros((0, N_EVENT)))
+        return Contacts(ids, ids, v3, v3, np.zeros(0), np.zeros(0), v3, v3, np.zeros((0, N_EVENT)))
 
     def __len__(self) -> int:
         return len(self.i)

@@ -23,9 +23,8 @@ class State:
     t: float = 0.0  # time of x [s]
     image: np.ndarray = field(default_factory=lambda: np.zeros((0, 2), dtype=np.int32))  # periods crossed in x, y
     contacts: Contacts = field(default_factory=Contacts.none)
-    books: Floats = field(default_factory=lambda: np.zeros(N_BOOK))  # energy account so far [J], see tally.py
+    books: Floats = field(default_factory=lambda: np.zeros((1, N_BOOK)))  # energy account so far [J], a row per block
     x_listed: Floats | None = None  # where the grains were when the neighbour list was built [m]
-    image_listed: np.ndarray | None = None
     engine: dict[str, float] = field(default_factory=lambda: {})  # an engine's own numbers (skin, travel, extremes)
 
     @staticmethod

@@ -1,0 +1,241 @@
+"""Motion of one block of grains, and the loop over steps that threads run together."""
+# ruff: noqa: F403, F405  (the columns of rows.py, all of them plain integers)
+
+import hashlib
+import math
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from numba import njit
+
+from ryusa import laws
+from ryusa.engine.kernels import FAST, forces
+from ryusa.engine.rows import *
+from ryusa.engine.sync import meet
+from ryusa.laws.drag import (
+    c_d_ferguson_church_sand,
+    c_d_ferguson_church_sphere,
+    c_d_re_2,
+    c_d_re_04,
+    c_d_schiller_naumann,
+    drag_factor,
+    reynolds,
+)
+from ryusa.laws.motion import acceleration, acceleration_spin, semi_implicit
+from ryusa.laws.torque import torque_dennis, torque_stokes
+from ryusa.laws.water import log_law_rough, log_law_smooth, uniform
+from ryusa.model.enums import Above, Drag, Profile, WaterTorque
+from ryusa.model.tally import Book
+
+ROUGH, SMOOTH, UNIFORM = int(Profile.LOG_ROUGH), int(Profile.LOG_SMOOTH), int(Profile.UNIFORM)
+HOLD, DRY = int(Above.HOLD), int(Above.DRY)
+D_CONSTANT, D_04, D_2 = int(Drag.CONSTANT), int(Drag.RE_04), int(Drag.RE_2)
+D_SN, D_FC_SPHERE = int(Drag.SCHILLER_NAUMANN), int(Drag.FERGUSON_CHURCH_SPHERE)
+STOKES = int(WaterTorque.STOKES)
+B_DRAG, B_TORQUE = int(Book.DRAG), int(Book.TORQUE)
+
+
+@njit(error_model="numpy", forceinline=True)
+def water_speed(profile: int, above: int, z: float, c: Any) -> float:
+    """Speed of the water along x at height z over the zero of the profile [m/s]."""
+    if above == HOLD:
+        z = min(z, c[C_DEPTH])
+    if profile == ROUGH:
+        return log_law_rough(z, c[C_U_STAR], c[C_K_ROUGH])
+    if profile == SMOOTH:
+        return log_law_smooth(z, c[C_U_STAR], c[C_NU])
+    if profile == UNIFORM:
+        return uniform(z, c[C_U_UNIFORM])
+    return 0.0
+
+
+@njit(error_model="numpy", forceinline=True)
+def drag_of(law: int, speed: float, d: float, c: Any) -> float:
+    """Drag over relative velocity [N s/m]."""
+    if speed == 0.0:
+        return 0.0
+    re = reynolds(speed, d, c[C_NU])
+    if law == D_CONSTANT:
+        c_d = c[C_C_D]
+    elif law == D_04:
+        c_d = c_d_re_04(re)
+    elif law == D_2:
+        c_d = c_d_re_2(re)
+    elif law == D_SN:
+        c_d = c_d_schiller_naumann(re)
+    elif law == D_FC_SPHERE:
+        c_d = c_d_ferguson_church_sphere(re)
+    else:
+        c_d = c_d_ferguson_church_sand(re)
+    return drag_factor(speed, c_d, c[C_RHO_W], c[C_A_2], d)
+
+
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
+def motion(
+    plane_case: int, rotation: int, profile: int, above: int, drag: int, torque_law: int, lo: int, hi: int,
+    first: bool, last: bool, c: Any, x: Any, v: Any, w: Any, r: Any, m: Any, m_bare: Any, m_weight: Any, inertia: Any,
+    ids: Any, image: Any, f: Any, torque: Any, touches: Any, touched: Any, react: Any, react_touch: Any,
+    incoming_start: Any, incoming: Any, book: Any, now: Any,
+) -> None:
+    """Gather what other blocks stored, add water and weight, and move grains lo..hi-1 by one step."""
+    dt, g_x, g_y, g_z = c[C_DT], c[C_G_X], c[C_G_Y], c[C_G_Z]
+    half = 0.0 if first else 0.5 * dt
+    speed_2 = spin_2 = kinetic = spin = potential = 0.0
+    book[B_DRAG] += now[N_PEND_DRAG]
+    book[B_TORQUE] += now[N_PEND_TORQUE]
+    pend_drag = pend_torque = work_drag = work_torque = 0.0
+    for i in range(lo, hi):
+        f_x, f_y, f_z = f[i, 0], f[i, 1], f[i, 2]
+        t_x, t_y, t_z = torque[i, 0], torque[i, 1], torque[i, 2]
+        hits = touches[i]
+        f[i, 0] = f[i, 1] = f[i, 2] = torque[i, 0] = torque[i, 1] = torque[i, 2] = 0.0
+        touches[i] = 0
+        for k in range(incoming_start[i], incoming_start[i + 1]):
+            q = incoming[k]
+            if react_touch[q]:
+                f_x, f_y, f_z = f_x - react[q, 0], f_y - react[q, 1], f_z - react[q, 2]
+                t_x, t_y, t_z = t_x + react[q, 3], t_y + react[q, 4], t_z + react[q, 5]
+                hits += 1
+        touched[i] = hits
+
+        v_x, v_y, v_z = v[i, 0], v[i, 1], v[i, 2]
+        d_x = d_y = d_z = 0.0
+        if profile:
+            z = x[i, 2] - c[C_Z_ZERO]
+            if drag and not (above == DRY and z > c[C_DEPTH]):
+                u_x, u_y, u_z = water_speed(profile, above, z, c) - v_x, -v_y, -v_z
+                k_d = drag_of(drag, math.sqrt(u_x * u_x + u_y * u_y + u_z * u_z), 2.0 * r[i], c)
+                d_x, d_y, d_z = k_d * u_x, k_d * u_y, k_d * u_z
+        m_i, m_b, m_w = m[i], m_bare[i], m_weight[i]
+        added = m_i - m_b
+        y_x, y_z = x[i, 0], x[i, 2]
+        x[i, 0], a_x = semi_implicit(x[i, 0], v_x, acceleration(f_x, d_x, m_w * g_x, m_b, added), dt)
+        x[i, 2], a_z = semi_implicit(x[i, 2], v_z, acceleration(f_z, d_z, m_w * g_z, m_b, added), dt)
+        a_y = v_y
+        y_y = x[i, 1]
+        if not plane_case:
+            x[i, 1], a_y = semi_implicit(x[i, 1], v_y, acceleration(f_y, d_y, m_w * g_y, m_b, added), dt)
+        v[i, 0], v[i, 1], v[i, 2] = a_x, a_y, a_z
+        square = a_x * a_x + a_y * a_y + a_z * a_z
+        if not square < math.inf and now[N_FAULT] == FAULT_NONE:
+            now[N_FAULT], now[N_FAULT_GRAIN], now[N_FAULT_PARTNER] = FAULT_NOT_A_NUMBER, ids[i], -1
+        speed_2 = max(speed_2, square)
+        if drag:
+            work_drag += half * (d_x * v_x + d_y * v_y + d_z * v_z)
+            pend_drag += 0.5 * dt * (d_x * a_x + d_y * a_y + d_z * a_z)
+
+        if rotation:
+            o_x, o_y, o_z = w[i, 0], w[i, 1], w[i, 2]
+            k_t = 0.0
+            if profile and torque_law and not (above == DRY and x[i, 2] - c[C_Z_ZERO] > c[C_DEPTH]):
+                size = math.sqrt(o_x * o_x + o_y * o_y + o_z * o_z)
+                if torque_law == STOKES:
+                    k_t = torque_stokes(size, 2.0 * r[i], c[C_NU], c[C_RHO_W])
+                else:
+                    k_t = torque_dennis(size, 2.0 * r[i], c[C_NU], c[C_RHO_W])
+            i_i = inertia[i]
+            b_y = o_y + dt * acceleration_spin(t_y - k_t * o_y, i_i)
+            b_x, b_z = o_x, o_z
+            if not plane_case:
+                b_x = o_x + dt * acceleration_spin(t_x - k_t * o_x, i_i)
+                b_z = o_z + dt * acceleration_spin(t_z - k_t * o_z, i_i)
+            w[i, 0], w[i, 1], w[i, 2] = b_x, b_y, b_z
+            whirl = b_x * b_x + b_y * b_y + b_z * b_z
+            if not whirl < math.inf and now[N_FAULT] == FAULT_NONE:
+                now[N_FAULT], now[N_FAULT_GRAIN], now[N_FAULT_PARTNER] = FAULT_NOT_A_NUMBER, ids[i], -1
+            spin_2 = max(spin_2, whirl)
+            if torque_law:
+                work_torque -= half * k_t * (o_x * o_x + o_y * o_y + o_z * o_z)
+                pend_torque -= 0.5 * dt * k_t * (o_x * b_x + o_y * b_y + o_z * b_z)
+            if last:
+                spin += 0.5 * i_i * (o_x * b_x + o_y * b_y + o_z * b_z)
+        if last:
+            kinetic += 0.5 * m_i * (v_x * a_x + v_y * a_y + v_z * a_z)
+            if image[i, 0] != 0:
+                y_x += image[i, 0] * c[C_PERIOD_X]
+            if image[i, 1] != 0:
+                y_y += image[i, 1] * c[C_PERIOD_Y]
+            potential -= m_w * (g_x * y_x + g_y * y_y + g_z * y_z)
+    now[N_PEND_DRAG], now[N_PEND_TORQUE] = pend_drag, pend_torque
+    book[B_DRAG] += work_drag
+    book[B_TORQUE] += work_torque
+    now[N_SPEED_MAX], now[N_SPIN_MAX] = math.sqrt(speed_2), math.sqrt(spin_2)
+    now[N_FAULT_SHOWN], now[N_ENDED_SHOWN] = now[N_FAULT], now[N_N_ENDED]
+    if last:
+        now[N_KINETIC], now[N_SPIN], now[N_POTENTIAL] = kinetic, spin, potential
+
+
+def _source_digest() -> int:
+    """Number that changes with the text of laws and engine, so that a stale kernel is never taken from the cache."""
+    digest = hashlib.sha256()
+    for room in (Path(laws.__file__).parent, Path(__file__).parent, Path(__file__).parent.parent / "model"):
+        for file in sorted(room.glob("*.py")):
+            digest.update(file.read_bytes())
+    return int.from_bytes(digest.digest()[:6], "big")
+
+
+@cache
+def make_run(variant: Variant) -> Any:
+    """Build the stepping function of one variant; compiled when first called, then kept on disk."""
+    (plane_case, rotation, slip, cap, tension, rolling, arms, events, planes, profile, above, drag, torque_law) = variant
+    width = variant.row_width
+    source = _source_digest()
+
+    @njit(nogil=True, cache=True, error_model="numpy", fastmath=FAST)
+    def run(
+        thread: int, n_threads: int, n_steps: int, step: int, is_end: bool, travel: float, count: Any, c: Any,
+        block_start: Any, react_start: Any, n: int, n_solid: int, x: Any, v: Any, w: Any, r: Any, m: Any, m_bare: Any,
+        m_weight: Any, inertia: Any, ids: Any, image: Any, tracked: Any, normals: Any, points: Any, start: Any,
+        partners: Any, live: Any, mem: Any, f: Any, torque: Any, touches: Any, touched: Any, react: Any,
+        react_touch: Any, incoming_start: Any, incoming: Any, ended: Any, books: Any, now: Any,
+    ) -> tuple[int, float, int, int]:
+        """March up to n_steps; all threads come back with the same (steps done, travel, stop, source)."""
+        n_block = len(block_start) - 1
+        b_0, b_1 = thread * n_block // n_threads, (thread + 1) * n_block // n_threads
+        dt, t_zero, skin, step_limit = c[C_DT], c[C_T_ZERO], c[C_SKIN], c[C_STEP_LIMIT]
+        target = done = 0
+        stop = STOP_DONE
+        while done < n_steps:
+            if 2.0 * travel > skin:
+                stop = STOP_LIST
+                break
+            last = is_end and done == n_steps - 1
+            t = t_zero + step * dt
+            hdt = 0.0 if step == 0 else 0.5 * dt
+            for b in range(b_0, b_1):
+                forces(
+                    plane_case, rotation, slip, cap, tension, rolling, arms, events, planes, width, block_start[b],
+                    block_start[b + 1], n, n_solid, step, t, hdt, last, c, x, v, w, r, m, inertia, ids, image, tracked,
+                    normals, points, start, partners, live, mem, f, torque, touches, touched, react, react_touch,
+                    react_start[b], ended[b], books[b], now[b],
+                )
+            target = meet(count, n_threads, target)
+            for b in range(b_0, b_1):
+                motion(
+                    plane_case, rotation, profile, above, drag, torque_law, block_start[b], block_start[b + 1],
+                    step == 0, last, c, x, v, w, r, m, m_bare, m_weight, inertia, ids, image, f, torque, touches,
+                    touched, react, react_touch, incoming_start, incoming, books[b], now[b],
+                )
+            target = meet(count, n_threads, target)
+            fastest = 0.0
+            full = False
+            for b in range(n_block):
+                fastest = max(fastest, now[b, N_SPEED_MAX])
+                full = full or now[b, N_ENDED_SHOWN] > 0.5 * ended.shape[1]
+                if now[b, N_FAULT_SHOWN] != FAULT_NONE:
+                    stop = STOP_FAULT
+            travel += fastest * dt
+            step += 1
+            done += 1
+            if fastest * dt > step_limit and stop == STOP_DONE:
+                stop = STOP_UNSAFE
+            if stop != STOP_DONE:
+                break
+            if full:
+                stop = STOP_EVENTS
+                break
+        meet(count, n_threads, target)
+        return done, travel, stop, source
+
+    return run

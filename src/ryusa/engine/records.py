@@ -1,0 +1,91 @@
+"""Open records of contacts: what is written at first touch, while touching, and at parting."""
+# ruff: noqa: F403, F405  (the columns of rows.py, all of them plain integers)
+
+from typing import Any
+
+from numba import njit
+
+from ryusa.engine.rows import *
+from ryusa.model.enums import EventRule
+
+ONLY_TRACKED = int(EventRule.TRACKED)
+
+
+@njit(error_model="numpy", cache=True)
+def _put(record: Any, column: int, plane_case: int, s_x: float, s_y: float, s_z: float, n_x: float, n_z: float) -> None:
+    # a plane scene hands over one component along the tangent (n_z, 0, -n_x)
+    if plane_case:
+        record[column], record[column + 1], record[column + 2] = s_x * n_z, 0.0, -s_x * n_x
+    else:
+        record[column], record[column + 1], record[column + 2] = s_x, s_y, s_z
+
+
+@njit(error_model="numpy", cache=True)
+def begin_record(
+    plane_case: int, rule: int, record: Any, t: float, dt: float, overlap: float, closing: float, s_x: float,
+    s_y: float, s_z: float, n_x: float, n_z: float, i: int, j: int, n: int, x: Any, v: Any, w: Any, ids: Any,
+    image: Any, tracked: Any, l_x: float, l_y: float,
+) -> None:
+    """Open the record of a pair in its first step of touch; the moment of touch is interpolated."""
+    if rule == ONLY_TRACKED and not (tracked[ids[i]] or (j < n and tracked[ids[j]])):
+        record[E_J] = -1.0  # nobody asked for this one
+        return
+    record[E_I] = ids[i]
+    record[E_J] = ids[j] if j < n else j
+    record[E_T_BEGIN] = t - min(overlap / closing, dt) if closing > 0.0 else t
+    record[E_T_END] = t
+    record[E_CLOSING_BEGIN] = closing
+    _put(record, E_SLIP_BEGIN, plane_case, s_x, s_y, s_z, n_x, n_z)
+    record[E_ALONE] = 1.0
+    record[E_X_BEGIN] = x[i, 0] + (image[i, 0] * l_x if image[i, 0] != 0 else 0.0)
+    record[E_X_BEGIN + 1] = x[i, 1] + (image[i, 1] * l_y if image[i, 1] != 0 else 0.0)
+    record[E_X_BEGIN + 2] = x[i, 2]
+    for k in range(3):
+        record[E_V_BEGIN + k] = v[i, k]
+        record[E_OMEGA_BEGIN + k] = w[i, k]
+
+
+@njit(error_model="numpy", cache=True)
+def keep_record(
+    record: Any, t: float, dt: float, overlap: float, f_n: float, f_raw: float, h_x: float, h_y: float, h_z: float,
+    sliding: bool, company: bool,
+) -> None:
+    """Carry an open record through one step of touch; T_PART holds f_n of the last step until the pair parts."""
+    if record[E_J] < 0.0:
+        return
+    record[E_OVERLAP_MAX] = max(record[E_OVERLAP_MAX], overlap)
+    record[E_IMPULSE_N] += f_n * dt
+    record[E_IMPULSE] += h_x * dt
+    record[E_IMPULSE + 1] += h_y * dt
+    record[E_IMPULSE + 2] += h_z * dt
+    if sliding and f_n > 0.0:
+        record[E_T_SLIDE] += dt
+    if company:
+        record[E_ALONE] = 0.0
+    if f_n != 0.0:
+        record[E_T_END] = t
+    elif record[E_T_PART] > 0.0:  # the force ended within this step
+        record[E_T_END] = t - dt * f_raw / (f_raw - record[E_T_PART])
+    record[E_T_PART] = f_n
+
+
+@njit(error_model="numpy", cache=True)
+def end_record(
+    plane_case: int, tension: int, record: Any, f_n: float, t: float, overlap: float, closing: float, s_x: float,
+    s_y: float, s_z: float, n_x: float, n_z: float, i: int, v: Any, w: Any, ended: Any, now: Any,
+) -> None:
+    """Close a record in the first step without overlap and put it with the ended ones of the block."""
+    record[E_T_PART] = t + overlap / abs(closing) if closing < 0.0 else t
+    if tension or f_n > 0.0:
+        record[E_T_END] = record[E_T_PART]
+    record[E_CLOSING_END] = closing
+    _put(record, E_SLIP_END, plane_case, s_x, s_y, s_z, n_x, n_z)
+    for k in range(3):
+        record[E_V_END + k] = v[i, k]
+        record[E_OMEGA_END + k] = w[i, k]
+    slot = int(now[N_N_ENDED])
+    if slot < len(ended):
+        ended[slot] = record
+        now[N_N_ENDED] = slot + 1
+    elif now[N_FAULT] == FAULT_NONE:
+        now[N_FAULT], now[N_FAULT_GRAIN], now[N_FAULT_PARTNER] = FAULT_EVENTS_FULL, record[E_I], record[E_J]
