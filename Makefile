@@ -9,7 +9,7 @@ BIN    := $(VENV)/bin
 RUN    := runs/demo
 JOBS   ?= 2
 
-PIP    := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
+PIP    := $(BIN)/python -m pip install -qq --disable-pip-version-check --constraint constraints.txt
 
 # An empty file says what the environment holds; it is older than its recipe when something must be done again.
 HAS_PYTHON := $(VENV)/.has-python

@@ -1,0 +1,112 @@
+"""The house itself: walls between rooms, a light front door, short files, nothing of one machine."""
+
+import ast
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+SOURCE = ROOT / "src" / "ryusa"
+LONGEST = 420  # lines; past that a file is two files
+HEAVY = {"numba", "llvmlite", "h5py", "pint", "pydantic", "matplotlib", "scipy", "vtk", "rich", "typer"}
+MACHINE = re.compile(r"file:/|/(?:home|root|Users|work|opt|mnt|tmp)/[A-Za-z0-9_.-]")
+
+
+def tracked() -> list[Path]:
+    try:
+        listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, check=True, capture_output=True, text=True)
+    except (OSError, subprocess.CalledProcessError):
+        pytest.skip("not a git checkout")
+    return [ROOT / name for name in listed.stdout.split("\0") if name and (ROOT / name).is_file()]
+
+
+def imported_by(code: str) -> set[str]:
+    """Top-level modules loaded after running `code` in a fresh interpreter."""
+    show = "import sys; print(*sorted({name.partition('.')[0] for name in sys.modules}))"
+    done = subprocess.run([sys.executable, "-c", f"{code}\n{show}"], check=True, capture_output=True, text=True)
+    return set(done.stdout.split())
+
+
+def test_importing_ryusa_loads_nothing_heavy() -> None:
+    assert not imported_by("import ryusa") & (HEAVY | {"numpy"})
+
+
+def test_every_public_name_of_ryusa_is_there_and_documented() -> None:
+    import ryusa
+
+    for name in getattr(ryusa, "__all__", []):
+        assert getattr(ryusa, name) is not None
+    assert set(getattr(ryusa, "__all__", [])) <= set(dir(ryusa))
+
+
+def test_the_walls_between_rooms_hold() -> None:
+    linter = Path(sys.executable).parent / "lint-imports"
+    if not linter.exists():
+        pytest.skip("import-linter is not installed")
+    done = subprocess.run([linter, "--no-cache"], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_no_file_of_the_source_is_too_long() -> None:
+    long = {
+        str(path.relative_to(ROOT)): count
+        for path in SOURCE.rglob("*.py")
+        if (count := len(path.read_text(encoding="utf-8").splitlines())) > LONGEST
+    }
+    assert not long
+
+
+def test_every_module_and_public_function_says_what_it_is() -> None:
+    silent: list[str] = []
+    for path in SOURCE.rglob("*.py"):
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        if tree.body and not ast.get_docstring(tree):
+            silent.append(str(path.relative_to(ROOT)))
+        for node in tree.body:
+            if isinstance(node, ast.FunctionDef | ast.ClassDef) and not node.name.startswith("_"):
+                if not ast.get_docstring(node):
+                    silent.append(f"{path.relative_to(ROOT)}: {node.name}")
+    assert not silent
+
+
+def test_no_tracked_file_names_a_path_of_one_machine() -> None:
+    found: list[str] = []
+    for path in tracked():
+        if path == Path(__file__):
+            continue
+        try:
+            text = path.read_text(encoding="utf-8")
+        except UnicodeDecodeError:
+            continue
+        found += [f"{path.relative_to(ROOT)}: {hit.group()}" for hit in MACHINE.finditer(text)]
+    assert not found
+
+
+def test_constraints_are_exact_versions_without_addresses() -> None:
+    for line in (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines():
+        assert re.fullmatch(r"[A-Za-z0-9_.-]+==[0-9][A-Za-z0-9.+]*", line), line
+
+
+def test_every_dependency_has_its_line_in_the_design_note() -> None:
+    import tomllib
+
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    note = (ROOT / "design" / "0002-dependencies.md").read_text(encoding="utf-8")
+    extras = project["optional-dependencies"]
+    for need in [*project["dependencies"], *extras["test"], *extras["bench"]]:
+        name = re.match(r"[A-Za-z0-9_-]+", need)
+        assert name is not None
+        assert re.search(rf"^\| [^|]*\b{re.escape(name.group())}\b", note, flags=re.MULTILINE), need
+
+
+def test_the_version_is_the_same_everywhere() -> None:
+    import tomllib
+
+    import ryusa
+
+    version = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
+    assert ryusa.__version__ == version
+    assert f"version: {version}" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
