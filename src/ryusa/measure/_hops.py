@@ -1,0 +1,202 @@
+"""Cut the life of one grain over a fixed bed into bounces and hops."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicHermiteSpline
+
+from ryusa.measure._run import Floats, Run, crest_of, path_of
+
+# One row per hop: from the landing that begins one bounce to the landing that begins the next.
+HOP = np.dtype(
+    [
+        ("grain", np.int64),
+        ("t_begin", np.float64),  # landing of the bounce it leaves [s]
+        ("t_takeoff", np.float64),  # last contact of that bounce parts [s]
+        ("t_end", np.float64),  # next landing [s]
+        ("period", np.float64),  # t_end - t_begin [s]
+        ("flight_time", np.float64),  # t_end - t_takeoff [s]
+        ("x_begin", np.float64),  # where it landed, unwrapped [m]
+        ("length", np.float64),  # from landing to landing [m]
+        ("flight_length", np.float64),  # from take-off to landing [m]
+        ("z_takeoff", np.float64),  # centre at take-off [m]
+        ("rise", np.float64),  # highest centre above the take-off [m]
+        ("above_crest", np.float64),  # highest centre above that of a grain standing on a crest [m]
+        ("v_x_takeoff", np.float64),  # [m/s]
+        ("v_z_takeoff", np.float64),
+        ("v_x_landing", np.float64),
+        ("v_z_landing", np.float64),
+        ("impulse_normal", np.float64),  # upward impulse of the bed in the bounce it leaves [N s]
+        ("impulse_shear", np.float64),  # impulse of the bed against x in that bounce [N s]
+    ]
+)
+# One row per bounce: bed contacts not parted by a flight that rises more than the threshold.
+BOUNCE = np.dtype(
+    [
+        ("grain", np.int64),
+        ("t_begin", np.float64),  # [s]
+        ("t_end", np.float64),  # end of the last normal force [s]
+        ("duration", np.float64),  # t_end - t_begin [s]
+        ("n_contact", np.int64),
+        ("touch", np.float64),  # summed contact times [s]
+        ("x_begin", np.float64),  # [m]
+        ("omega_before", np.float64),  # spin about y [rad/s], positive rolls downstream
+        ("omega_after", np.float64),
+        ("overlap", np.float64),  # largest [m]
+        ("impulse_normal", np.float64),  # [N s]
+        ("impulse_shear", np.float64),
+    ]
+)
+
+
+@dataclass(frozen=True)
+class Bounces:
+    """Hops and bounces of one grain, in order of time."""
+
+    hops: NDArray[Any]  # dtype HOP
+    bounces: NDArray[Any]  # dtype BOUNCE; bounces that a counted hop leaves
+    contact_time: Floats  # of every bed contact in those bounces [s]
+    contact_time_alone: Floats  # of those that touched one bed grain only [s]
+
+
+@dataclass(frozen=True)
+class _Flight:
+    """A stretch without bed contact."""
+
+    t_takeoff: float
+    x_takeoff: float
+    z_takeoff: float
+    z_top: float
+
+
+def bounces_of(run: Run, grain: int, begin: float, rise: float, most: int | None = None) -> Bounces:
+    """Hops of one grain.
+
+    Parameters
+    ----------
+    run : a run folder with contact events.
+    grain : id of a free grain.
+    begin : bounces that began before are left out [s].
+    rise : flights that rise less than this many diameters join their bounces.
+    most : keep only the first so many hops.
+    """
+    scene = run.scene
+    events = run.contacts
+    first, end = scene.n_grain, scene.n_grain + scene.n_fixed
+    events = events[(events["i"] == grain) & (events["j"] >= first) & (events["j"] < end)]
+    events = events[np.argsort(events["t_begin"], kind="stable")]
+    if len(events) == 0:
+        return Bounces(np.zeros(0, HOP), np.zeros(0, BOUNCE), np.zeros(0), np.zeros(0))
+    path = path_of(run, grain)
+    d = float(scene.d[grain])
+    groups, flights = _group(events, path, rise * d)
+    standing = crest_of(scene) + 0.5 * d
+    hops = np.zeros(len(flights), HOP)
+    bounces = np.zeros(len(flights), BOUNCE)
+    for k, flight in enumerate(flights):
+        bounces[k] = _bounce(grain, groups[k])
+        hops[k] = _hop(grain, groups[k], groups[k + 1][0], flight, standing)
+    kept = np.flatnonzero(bounces["t_begin"] >= begin)[:most]
+    inside = np.concatenate([groups[k] for k in kept]) if len(kept) else events[:0]
+    touch = inside["t_end"] - inside["t_begin"]
+    return Bounces(hops[kept], bounces[kept], touch, touch[inside["alone"] > 0.0])
+
+
+def _group(
+    events: NDArray[Any], path: tuple[Floats, Floats, Floats, Floats], rise: float
+) -> tuple[list[NDArray[Any]], list[_Flight]]:
+    """Bounces (n + 1 groups of contacts) and the n flights between them."""
+    groups: list[NDArray[Any]] = []
+    flights: list[_Flight] = []
+    first, last = 0, 0  # last: the contact of this group that parts latest
+    for k in range(1, len(events)):
+        if events["t_begin"][k] > events["t_part"][last]:
+            flight = _flight(events[last], events[k], path)
+            if flight.z_top - flight.z_takeoff >= rise and flight.z_top > flight.z_takeoff:
+                groups.append(events[first:k])
+                flights.append(flight)
+                first, last = k, k
+        if events["t_part"][k] >= events["t_part"][last]:
+            last = k
+    groups.append(events[first:])
+    return groups, flights
+
+
+def _flight(leaving: Any, landing: Any, path: tuple[Floats, Floats, Floats, Floats]) -> _Flight:
+    """Take-off point and top of a flight, from the frames in it and the two contacts at its ends.
+
+    The top is that of the cubic that keeps height and velocity at every frame (exact for a parabola), so
+    neither the frame interval nor its phase biases it.
+    """
+    t, x, v, _ = path
+    t_0, t_1 = float(leaving["t_part"]), float(landing["t_begin"])
+    inside = slice(np.searchsorted(t, t_0, side="right"), np.searchsorted(t, t_1, side="left"))
+    ends = leaving["v_end"], landing["v_begin"]
+    ts = np.concatenate([[t_0], t[inside], [t_1]])
+    vs = np.vstack([ends[0], v[inside], ends[1]])
+    xs = np.vstack([np.zeros(3), x[inside], landing["x_begin"]])
+    # back from the first known point of the flight; over one frame interval velocity is linear enough
+    xs[0] = xs[1] - 0.5 * (vs[0] + vs[1]) * (ts[1] - ts[0])
+    return _Flight(t_0, float(xs[0, 0]), float(xs[0, 2]), _top(ts, xs[:, 2], vs[:, 2]))
+
+
+def _top(t: Floats, z: Floats, w: Floats) -> float:
+    """Highest value of the piecewise cubic through heights z [m] with slopes w [m/s] at times t [s]."""
+    k = int(np.argmax(z))
+    low, high = max(k - 1, 0), min(k + 2, len(t))
+    keep = np.concatenate([[True], np.diff(t[low:high]) > 0.0])
+    if int(keep.sum()) < 2:
+        return float(z[k])
+    spline = CubicHermiteSpline(t[low:high][keep], z[low:high][keep], w[low:high][keep])
+    turns = spline.derivative().roots(extrapolate=False)
+    turns = turns[np.isfinite(turns)]
+    return max(float(z[k]), float(np.max(spline(turns), initial=-np.inf)))
+
+
+def _bounce(grain: int, group: NDArray[Any]) -> tuple[float, ...]:
+    last = group[int(np.argmax(group["t_part"]))]
+    t_begin, t_end = float(group["t_begin"][0]), float(group["t_end"].max())
+    return (
+        grain,
+        t_begin,
+        t_end,
+        t_end - t_begin,
+        len(group),
+        float((group["t_end"] - group["t_begin"]).sum()),
+        float(group["x_begin"][0, 0]),
+        float(group["omega_begin"][0, 1]),
+        float(last["omega_end"][1]),
+        float(group["overlap_max"].max()),
+        float(group["impulse"][:, 2].sum()),
+        float(-group["impulse"][:, 0].sum()),
+    )
+
+
+def _hop(
+    grain: int, group: NDArray[Any], landing: Any, flight: _Flight, standing: float
+) -> tuple[float, ...]:
+    last = group[int(np.argmax(group["t_part"]))]
+    t_begin, t_end = float(group["t_begin"][0]), float(landing["t_begin"])
+    x_begin, x_end = float(group["x_begin"][0, 0]), float(landing["x_begin"][0])
+    return (
+        grain,
+        t_begin,
+        flight.t_takeoff,
+        t_end,
+        t_end - t_begin,
+        t_end - flight.t_takeoff,
+        x_begin,
+        x_end - x_begin,
+        x_end - flight.x_takeoff,
+        flight.z_takeoff,
+        flight.z_top - flight.z_takeoff,
+        flight.z_top - standing,
+        float(last["v_end"][0]),
+        float(last["v_end"][2]),
+        float(landing["v_begin"][0]),
+        float(landing["v_begin"][2]),
+        float(group["impulse"][:, 2].sum()),
+        float(-group["impulse"][:, 0].sum()),
+    )

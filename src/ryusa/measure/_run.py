@@ -1,0 +1,60 @@
+"""What a measure asks of a run folder; `results.Results` answers it, and so may a fake in a test."""
+
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ryusa.model import Scene
+
+Floats = NDArray[np.float64]
+
+
+class Frames(Protocol):
+    """Snapshots; the big arrays may be read from the disk when they are indexed."""
+
+    t: Floats  # [s], shape (n_frame,)
+    x: Any  # unwrapped centres [m], shape (n_frame, n_grain, 3)
+    v: Any  # [m/s], the same shape
+    omega: Any  # [rad/s], the same shape
+
+
+class Run(Protocol):
+    """A run folder, read-only."""
+
+    case: dict[str, Any]
+    frames: Any  # Frames
+    scene: Scene  # at the start of the run
+
+    @property
+    def contacts(self) -> NDArray[Any]:
+        """Contacts that ended, dtype model.EVENT."""
+        ...
+
+    @property
+    def tally(self) -> dict[str, NDArray[Any]]:
+        """Energy account at each frame."""
+        ...
+
+
+def settle_time(run: Run) -> float:
+    """Time before which measures look away [s]: `record.settle` of the case, else 0."""
+    value = (run.case.get("record") or {}).get("settle")
+    return 0.0 if value is None else float(value)
+
+
+def path_of(run: Run, grain: int) -> tuple[Floats, Floats, Floats, Floats]:
+    """Times [s] (n_frame,) and centre [m], velocity [m/s], spin [rad/s] of one grain, each (n_frame, 3)."""
+    frames = run.frames
+    pick = (slice(None), grain)
+    return (
+        np.asarray(frames.t, dtype=np.float64),
+        np.asarray(frames.x[pick], dtype=np.float64),
+        np.asarray(frames.v[pick], dtype=np.float64),
+        np.asarray(frames.omega[pick], dtype=np.float64),
+    )
+
+
+def crest_of(scene: Scene) -> float:
+    """Top of the highest fixed grain [m]; 0 where there is none."""
+    return float((scene.x_fixed[:, 2] + 0.5 * scene.d_fixed).max()) if scene.n_fixed else 0.0

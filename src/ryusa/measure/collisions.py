@@ -1,0 +1,173 @@
+"""Single contacts: how long, how deep, how hard, and what restitution they really gave."""
+
+import math
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ryusa.laws.collision import (
+    collision_time,
+    contact_time_no_tension,
+    contact_time_tension,
+    damping_ratio,
+    omega_natural,
+)
+from ryusa.measure._run import Floats, Run, settle_time
+from ryusa.measure.statistics import Average, average
+from ryusa.measure.table import Averages
+from ryusa.model import Scene
+from ryusa.model.enums import Damping
+
+Partner = Literal["all", "bed", "free", "plane"]
+
+
+@dataclass(frozen=True)
+class ContactTimes:
+    """What the closed forms say about one grain against one partner.
+
+    Attributes
+    ----------
+    eq_8 : Eq. (8) with the mass of the grain alone [s] (of the pair, for a free partner).
+    added : the same with the added mass of the water [s].
+    damped : with added mass and the dashpot of the case, to the end of the normal force [s].
+    """
+
+    eq_8: float
+    added: float
+    damped: float
+
+
+@dataclass(frozen=True)
+class Collisions:
+    """Contacts that ended within the window, one entry per contact in every array.
+
+    Attributes
+    ----------
+    events : the records themselves, dtype model.EVENT.
+    duration : from first touch to the end of the normal force [s].
+    overlap : largest overlap over the smaller diameter [-].
+    speed : closing speed at first touch [m/s].
+    restitution : parting over closing speed of contacts that were alone, else nan [-].
+    restitution_s : slip velocity at parting along that at first touch, over it, with its sign; alone only
+        [-].
+    expected : duration by Eq. (8) with the pair's mass, added mass included, and its dashpot [s].
+    averages : means with their errors.
+    """
+
+    events: NDArray[Any]
+    duration: Floats
+    overlap: Floats
+    speed: Floats
+    restitution: Floats
+    restitution_s: Floats
+    expected: Floats
+    averages: Averages
+
+    def rows(self) -> list[dict[str, object]]:
+        """One dictionary per average."""
+        return self.averages.rows()
+
+
+def contact_times(scene: Scene, grain: int = 0, partner: int | None = None) -> ContactTimes:
+    """Closed forms for `grain` against a fixed partner (None) or another free grain."""
+    law = scene.contact
+    m, added = float(scene.m[grain]), float(scene.m_added[grain])
+    if partner is not None:
+        other, other_added = float(scene.m[partner]), float(scene.m_added[partner])
+        pair = 1.0 / (1.0 / m + 1.0 / other)
+        heavy = 1.0 / (1.0 / (m + added) + 1.0 / (other + other_added))
+    else:
+        pair, heavy = m, m + added
+    return ContactTimes(
+        eq_8=collision_time(pair, law.k_n),
+        added=collision_time(heavy, law.k_n),
+        damped=_damped(scene, heavy),
+    )
+
+
+def collisions(
+    run: Run,
+    partner: Partner = "all",
+    settle: float | None = None,
+    end: float = math.inf,
+    slowest: float = 0.0,
+) -> Collisions:
+    """Contacts of a run.
+
+    Parameters
+    ----------
+    run : a run folder.
+    partner : which partners count: "all", "bed" (fixed grains), "free" or "plane".
+    settle : contacts that began before are left out [s]; default the case's `record.settle`.
+    end : contacts that parted after are left out [s].
+    slowest : contacts that closed more slowly are left out [m/s].
+    """
+    scene = run.scene
+    begin = settle_time(run) if settle is None else settle
+    events = run.contacts
+    keep = (events["t_begin"] >= begin) & (events["t_part"] <= end) & (events["closing_begin"] >= slowest)
+    events = events[keep & _of_kind(events["j"], scene, partner)]
+    mass = scene.m + scene.m_added
+    i, j = events["i"], events["j"]
+    free = j < scene.n_grain
+    other = np.where(free, mass[np.where(free, j, 0)], np.inf) if scene.n_grain else np.zeros(0)
+    pair = 1.0 / (1.0 / mass[i] + 1.0 / other)
+    sizes = np.concatenate([scene.d, scene.d_fixed, np.full(scene.n_plane, np.inf)])
+    duration = events["t_end"] - events["t_begin"]
+    overlap = events["overlap_max"] / np.minimum(sizes[i], sizes[j])
+    speed = events["closing_begin"]
+    alone = (events["alone"] > 0.0) & (speed > 0.0)
+    e = np.divide(-events["closing_end"], speed, out=np.full(len(events), np.nan), where=alone)
+    slip = np.linalg.norm(events["slip_begin"], axis=1)
+    along = np.einsum("ij,ij->i", events["slip_begin"], events["slip_end"])
+    e_s = np.divide(along, slip * slip, out=np.full(len(events), np.nan), where=alone & (slip > 0.0))
+    expected = _expected(scene, pair)
+    window = (begin, float(events["t_part"].max()) if len(events) else math.nan)
+
+    def mean(name: str, unit: str, values: Floats) -> Average:
+        return average(name, unit, [values], window)
+
+    lone = np.where(events["alone"] > 0.0, duration, np.nan)
+    averages = Averages(
+        "collisions",
+        (
+            mean("duration", "s", duration),
+            mean("duration_alone", "s", lone),
+            mean("duration_over_expected_alone", "-", lone / expected),
+            mean("overlap_over_d", "-", overlap),
+            mean("closing_speed", "m/s", speed),
+            mean("restitution_alone", "-", e),
+            mean("restitution_shear_alone", "-", e_s),
+            mean("slide_share", "-", np.divide(events["t_slide"], events["t_part"] - events["t_begin"])),
+        ),
+        (
+            f"{len(events)} contacts with partner '{partner}', {int(alone.sum())} of them alone",
+            f"largest overlap/d {overlap.max():.4g}" if len(events) else "no contact in the window",
+        ),
+    )
+    return Collisions(events, duration, overlap, speed, e, e_s, expected, averages)
+
+
+def _of_kind(j: NDArray[np.int64], scene: Scene, partner: Partner) -> NDArray[np.bool_]:
+    bed, planes = scene.n_grain, scene.n_grain + scene.n_fixed
+    kinds: dict[str, NDArray[np.bool_]] = {
+        "all": np.ones(len(j), dtype=np.bool_),
+        "free": j < bed,
+        "bed": (j >= bed) & (j < planes),
+        "plane": j >= planes,
+    }
+    return kinds[partner]
+
+
+def _damped(scene: Scene, mass: float) -> float:
+    law = scene.contact
+    zeta = law.zeta_n if law.damping == Damping.RESTITUTION else damping_ratio(law.eta_n, law.k_n, mass)
+    time = contact_time_tension if law.tension else contact_time_no_tension
+    return time(zeta, omega_natural(law.k_n, mass))
+
+
+def _expected(scene: Scene, pair: Floats) -> Floats:
+    values, which = np.unique(pair, return_inverse=True)
+    return np.array([_damped(scene, float(one)) for one in values], dtype=np.float64)[which]

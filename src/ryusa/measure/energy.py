@@ -1,0 +1,65 @@
+"""The energy account of a run over time."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ryusa.measure._run import Floats, Run
+from ryusa.model import Book
+from ryusa.model.tally import GIFTS, LOSSES
+
+HELD = ("kinetic", "spin", "potential", "spring_n", "spring_s", "spring_r")
+
+
+@dataclass(frozen=True)
+class Energy:
+    """Terms of the account at each frame [J], each of shape (n_frame,).
+
+    Attributes
+    ----------
+    t : times [s].
+    held : energy in motion, height and springs, by name.
+    lost : summed losses, by name.
+    given : summed gifts (drag, torque of the water, lift, switches), by name.
+    start : energy at the first step [J].
+    imbalance : what the account cannot explain [J].
+    """
+
+    t: Floats
+    held: dict[str, Floats]
+    lost: dict[str, Floats]
+    given: dict[str, Floats]
+    start: float
+    imbalance: Floats
+
+    @property
+    def residual(self) -> float:
+        """Largest imbalance over the largest term of the account [-]."""
+        change = sum(self.held.values()) - self.start
+        terms = [one for name, one in self.held.items() if name != "potential"]
+        terms += [*self.lost.values(), *self.given.values(), np.asarray(change)]
+        largest = max((float(np.abs(one).max()) for one in terms if len(one)), default=0.0)
+        worst = float(np.abs(self.imbalance).max()) if len(self.imbalance) else 0.0
+        return worst / largest if largest > 0.0 else 0.0
+
+    def rows(self) -> list[dict[str, object]]:
+        """One dictionary per frame."""
+        columns = {"t_s": self.t}
+        columns |= {f"held_{name}_J": one for name, one in self.held.items()}
+        columns |= {f"lost_{name}_J": one for name, one in self.lost.items()}
+        columns |= {f"given_{name}_J": one for name, one in self.given.items()}
+        columns["imbalance_J"] = self.imbalance
+        return [{name: float(one[k]) for name, one in columns.items()} for k in range(len(self.t))]
+
+
+def energy(run: Run) -> Energy:
+    """Energy account of a run, from the tally the engine summed while stepping."""
+    tally = run.tally
+    held = {name: np.asarray(tally[name], dtype=np.float64) for name in HELD}
+    lost = {Book(b).name.lower(): np.asarray(tally[Book(b).name.lower()], dtype=np.float64) for b in LOSSES}
+    given = {Book(b).name.lower(): np.asarray(tally[Book(b).name.lower()], dtype=np.float64) for b in GIFTS}
+    begin = np.asarray(tally["start"], dtype=np.float64)
+    start = float(begin[-1]) if len(begin) else 0.0
+    imbalance = sum(held.values()) - start - sum(given.values()) + sum(lost.values())
+    t = np.asarray(tally["t"], dtype=np.float64)
+    return Energy(t, held, lost, given, start, np.broadcast_to(np.asarray(imbalance), t.shape))

@@ -1,0 +1,60 @@
+"""One writer of CSV for everything that is measured."""
+
+import csv
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ryusa.measure.statistics import Average
+
+
+@dataclass(frozen=True)
+class Averages:
+    """A list of averages that can be asked by name, printed and written."""
+
+    title: str
+    items: tuple[Average, ...]
+    notes: tuple[str, ...] = ()
+
+    def __getitem__(self, name: str) -> Average:
+        for one in self.items:
+            if one.name == name:
+                return one
+        raise KeyError(f"{name!r}; there are: {', '.join(one.name for one in self.items)}")
+
+    def rows(self) -> list[dict[str, object]]:
+        """One dictionary per average."""
+        return [one.row() for one in self.items]
+
+
+def rows_of(records: NDArray[Any]) -> list[dict[str, object]]:
+    """A structured array as dictionaries; a vector field gives one column per component (x, y, z)."""
+    rows: list[dict[str, object]] = []
+    names = records.dtype.names or ()
+    for record in records:
+        row: dict[str, object] = {}
+        for name in names:
+            value = record[name]
+            if np.ndim(value):
+                row.update({f"{name}_{axis}": value[k].item() for k, axis in enumerate("xyz"[: len(value)])})
+            else:
+                row[name] = value.item()
+        rows.append(row)
+    return rows
+
+
+def write_csv(path: Path | str, rows: Iterable[Mapping[str, object]]) -> Path:
+    """Write rows that share their keys; floats keep all their digits, so reading back loses nothing."""
+    path = Path(path)
+    rows = list(rows)
+    columns = list(dict.fromkeys(key for row in rows for key in row))
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, fieldnames=columns, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+    return path

@@ -1,0 +1,58 @@
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from ryusa.measure import energy, rows_of, spin, tracks, write_csv
+from ryusa.model import EVENT, Book
+from ryusa.results.schema import TALLY
+
+
+def test_spin_is_averaged_after_settling_and_set_against_distance(make):
+    t = np.linspace(0, 1, 1001)
+    x = np.zeros((1001, 2, 3))
+    x[:, :, 0] = 0.01 + 0.5 * t[:, None]
+    omega = np.zeros_like(x)
+    omega[:, 0, 1], omega[:, 1, 1] = 100.0, -300.0
+    omega[:500] = 7.0e6
+    found = spin(
+        make.run_of(t, x, x, np.zeros(0, dtype=make.event(0, 0, 0, (0, 0), (0, 0), (0, 0)).dtype), omega),
+        settle=0.5,
+    )
+    assert found.averages["spin"].value == pytest.approx(-100.0)
+    assert found.largest == pytest.approx(300.0)
+    assert found.distance[-1, 0] == pytest.approx(0.5)
+    assert found.samples()[0]["x_m"] == 0.0
+
+
+def test_tracks_show_only_the_bed_of_their_own_lane(make):
+    t, x, _, events = make.hopping([2.0e-3] * 3, grain=1, n_grain=2)
+    both = np.stack([x - [0, 0.008, 0], x], axis=1)
+    found = tracks(make.run_of(t, both, both, events), grains=[1], begin=0.01, end=0.03)
+    assert len(found.bed_x) == 20
+    assert found.t.min() >= 0.01
+    assert found.t.max() <= 0.03
+    assert len(found.rows()) == len(found.t)
+
+
+def test_the_energy_account_closes_where_its_terms_say_so():
+    tally = {name: np.zeros(3) for name in TALLY.names}
+    tally["t"] = np.arange(3.0)
+    tally["kinetic"] = np.array([1.0, 0.7, 0.9])
+    tally[Book.START.name.lower()] = np.ones(3)
+    tally["dash_n"] = np.array([0.0, 0.3, 0.3])
+    tally["drag"] = np.array([0.0, 0.0, 0.2])
+    found = energy(SimpleNamespace(tally=tally))
+    np.testing.assert_allclose(found.imbalance, 0.0, atol=1e-15)
+    tally["slide"] = np.array([0.0, 0.0, 0.05])
+    assert energy(SimpleNamespace(tally=tally)).residual == pytest.approx(0.05)
+    assert found.rows()[2]["given_drag_J"] == 0.2
+
+
+def test_csv_reads_back_without_loss(make, tmp_path):
+    rows = rows_of(np.array([make.event(0, 1, 1 / 3, (0.1, 0.2), (1, 2), (3, 4))]))
+    path = write_csv(tmp_path / "deep" / "events.csv", rows)
+    head, line = path.read_text().splitlines()
+    values = dict(zip(head.split(","), line.split(","), strict=True))
+    assert float(values["t_begin"]) == 1 / 3
+    assert float(values["v_begin_z"]) == 2
