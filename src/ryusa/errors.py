@@ -8,12 +8,48 @@ class RyusaError(Exception):
 
 
 class CaseError(RyusaError):
-    """A case file that cannot be run: names the key path, the value, what is allowed and the nearest known key."""
+    """A case file that cannot be run: names the key path, the value, what is allowed and the nearest known key.
 
-    def __init__(self, key: str, value: object, allowed: str, nearest: str | None = None) -> None:
+    A file with several faults is told at once: `others` holds the errors after the first.
+    """
+
+    def __init__(
+        self,
+        key: str,
+        value: object,
+        allowed: str,
+        nearest: str | None = None,
+        *,
+        others: "tuple[CaseError, ...]" = (),
+        source: str | None = None,
+    ) -> None:
         self.key, self.value, self.allowed, self.nearest = key, value, allowed, nearest
-        text = f"{key} = {value!r}: {allowed}" if value is not None else f"{key}: {allowed}"
-        super().__init__(f"{text}. Did you mean '{nearest}'?" if nearest else text)
+        self.others, self.source = others, source
+        lines = [self.line, *(other.line for other in others)]
+        head = f"{source}: " if source else ""
+        if others:
+            text = f"{head}{len(lines)} faults\n" + "\n".join(f"  {line}" for line in lines)
+        else:
+            text = head + lines[0]
+        super().__init__(text)
+
+    @property
+    def line(self) -> str:
+        """This fault alone, on one line."""
+        text = (
+            f"{self.key}: {self.allowed}"
+            if self.value is None
+            else f"{self.key} = {self.value!r}: {self.allowed}"
+        )
+        return f"{text}. Did you mean '{self.nearest}'?" if self.nearest else text
+
+    @classmethod
+    def together(cls, faults: "list[CaseError]", source: str | None = None) -> "CaseError":
+        """One error that tells all faults of a file; `source` names the file."""
+        first = faults[0]
+        return cls(
+            first.key, first.value, first.allowed, first.nearest, others=tuple(faults[1:]), source=source
+        )
 
 
 class ResultsError(RyusaError):
@@ -25,8 +61,17 @@ class RunError(RyusaError):
 
     exit_code = 3
 
-    def __init__(self, cause: str, *, grain: int, step: int, t: float, hint: str, partner: int | None = None) -> None:
-        self.cause, self.grain, self.step, self.t, self.hint, self.partner = cause, grain, step, t, hint, partner
+    def __init__(
+        self, cause: str, *, grain: int, step: int, t: float, hint: str, partner: int | None = None
+    ) -> None:
+        self.cause, self.grain, self.step, self.t, self.hint, self.partner = (
+            cause,
+            grain,
+            step,
+            t,
+            hint,
+            partner,
+        )
         pair = "" if partner is None else f" with partner {partner}"
         super().__init__(f"{cause}: grain {grain}{pair}, step {step}, t = {t:.6g} s. {hint}")
 

@@ -54,7 +54,9 @@ def quantity(text: object, unit: str) -> float:
     example = _example(unit)
     if isinstance(text, bool) or not isinstance(text, str):
         if isinstance(text, (int, float)) and not isinstance(text, bool):
-            raise UnitError(f"missing unit: needs {_kind(unit)}, written as text with its unit, such as {example}")
+            raise UnitError(
+                f"missing unit: needs {_kind(unit)}, written as text with its unit, such as {example}"
+            )
         raise UnitError(f"needs {_kind(unit)}, written as text with its unit, such as {example}")
     if len(text) > LONGEST:
         raise UnitError(f"longer than {LONGEST} characters; needs {_kind(unit)} such as {example}")
@@ -89,7 +91,14 @@ def _kind(unit: str) -> str:
 
 
 def _example(unit: str) -> str:
-    examples = {"m": "0.2 cm", "N/m": "100 N/cm", "rad": "30 deg", "s": "1 ms", "m/s": "0.6 m/s", "N s/m": "0.001 N s/cm"}
+    examples = {
+        "m": "0.2 cm",
+        "N/m": "100 N/cm",
+        "rad": "30 deg",
+        "s": "1 ms",
+        "m/s": "0.6 m/s",
+        "N s/m": "0.001 N s/cm",
+    }
     return f"'{examples.get(unit, f'1 {unit}')}'"
 
 
@@ -102,7 +111,9 @@ def _factor(written: str, unit: str) -> float:
         raise UnitError(f"{error}; needs {_kind(unit)}, such as {_example(unit)}") from None
     wanted, target = _to_si(unit)
     if dimension != target:
-        raise UnitError(f"wrong unit: '{written}' does not measure {_kind(unit)}; write it as {_example(unit)}")
+        raise UnitError(
+            f"wrong unit: '{written}' does not measure {_kind(unit)}; write it as {_example(unit)}"
+        )
     return _tidy(factor / wanted)
 
 
@@ -115,7 +126,9 @@ def _tidy(factor: float) -> float:
 @cache
 def _to_si(written: str) -> tuple[float, tuple[tuple[str, int], ...]]:
     """Factor and dimension of a unit such as `N s/cm`, `kg/m3`, `m s^-2`."""
-    text = unicodedata.normalize("NFKC", written).translate({ord("⋅"): "*", ord("·"): "*", ord("−"): "-", 0xB5: "μ"})
+    text = unicodedata.normalize("NFKC", written).translate(
+        {ord("⋅"): "*", ord("·"): "*", ord("−"): "-", 0xB5: "μ"}
+    )
     text = text.replace("/", " / ")
     position, factor, sign, pending = 0, 1.0, 1, False
     dimension: dict[str, int] = {}
@@ -125,7 +138,7 @@ def _to_si(written: str) -> tuple[float, tuple[tuple[str, int], ...]]:
         if found is not None:
             one, bases = _atom(found.group(1))
             power = sign * int(found.group(2) or 1)
-            if abs(power) > 9:  # noqa: PLR2004  no unit of ours has a higher power
+            if abs(power) > 9:
                 raise UnitError(f"cannot read the unit '{written}'")
             factor *= one**power
             for base, exponent in bases:
@@ -156,7 +169,7 @@ def _atom(name: str) -> tuple[float, tuple[tuple[str, int], ...]]:
         factor, root = registry.get_root_units(registry.parse_units(plain))
         pairs = [(str(base), float(power)) for base, power in root._units.items()]
         factor = float(factor)
-    except Exception:  # pint raises many kinds; every one means the same to a user
+    except Exception:
         raise UnitError(f"unknown unit '{name}'") from None
     if any(power != int(power) for _, power in pairs) or not math.isfinite(factor) or factor <= 0.0:
         raise UnitError(f"unknown unit '{name}'")
@@ -166,6 +179,6 @@ def _atom(name: str) -> tuple[float, tuple[tuple[str, int], ...]]:
 
 @cache
 def _registry() -> Any:
-    import pint  # noqa: PLC0415  read only when a unit is met
+    import pint
 
     return pint.UnitRegistry()

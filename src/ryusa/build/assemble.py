@@ -1,0 +1,107 @@
+"""Layout and laws to `Scene` and first `State`."""
+
+import math
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ryusa.build.layout import Layout, mask, unit
+from ryusa.laws import drag, motion
+from ryusa.model import ContactLaw, RollingLaw, Scene, State, Water
+from ryusa.model.enums import EventRule, Profile
+from ryusa.model.scene import Floats
+
+
+@dataclass(frozen=True)
+class Laws:
+    """Everything a scene needs beside its layout, SI."""
+
+    density: float  # of grains [kg/m3]
+    contact: ContactLaw
+    dt: float  # [s]
+    a_3: float = math.pi / 6  # volume over d cubed [-]
+    rolling: RollingLaw = field(default_factory=RollingLaw)
+    water: Water = field(default_factory=Water)
+    g: float = 9.80665  # [m/s2]
+    slope: float = 0.0  # [rad], down towards +x
+    rotation: bool = True
+    plane_case: bool = False
+    slab_width: float = math.nan  # [m]
+    overlap_limit: float = 0.5
+    events: EventRule = EventRule.ALL
+    tracked: tuple[int, ...] = ()
+    low: tuple[float, float, float] | None = None  # [m]; None takes the default box
+    high: tuple[float, float, float] | None = None
+
+
+def gravity(g: float, slope: float) -> Floats:
+    """Gravity on a bed of slope [rad], down towards +x [m/s2]."""
+    return np.array([g * math.sin(slope), 0.0, -g * math.cos(slope)])
+
+
+def masses(d: Floats, density: float, a_3: float, water: Water) -> tuple[Floats, Floats, Floats, Floats]:
+    """Mass, added mass, mass that gravity sees [kg] and moment of inertia [kg m2] of grains of diameter d [m]."""
+    volume = drag.volume(d, a_3)
+    m = density * volume
+    inertia = motion.inertia_sphere(m, d)
+    if water.profile == Profile.NONE:
+        return m, np.zeros_like(d), m.copy(), inertia
+    return (
+        m,
+        drag.added_mass(water.rho_w, water.c_m, volume),
+        drag.submerged_mass(m, water.rho_w, volume),
+        inertia,
+    )
+
+
+def assemble(layout: Layout, laws: Laws) -> tuple[Scene, State]:
+    """Put layout and laws together; every array of the result is read-only."""
+    n = len(layout.d)
+    m, m_added, m_weight, inertia = masses(layout.d, laws.density, laws.a_3, laws.water)
+    low, high = layout.box()
+    walls = layout.walls
+    scene = Scene(
+        d=_kept(layout.d),
+        m=_kept(m),
+        m_added=_kept(m_added),
+        m_weight=_kept(m_weight),
+        inertia=_kept(inertia),
+        x_fixed=_kept(layout.x_fixed.reshape(-1, 3)),
+        d_fixed=_kept(layout.d_fixed),
+        fixed_active=_kept(np.ones(len(layout.d_fixed), dtype=np.bool_)),
+        plane_normal=_kept(np.array([unit(wall) for wall in walls], dtype=np.float64).reshape(-1, 3)),
+        plane_point=_kept(np.array([wall.point for wall in walls], dtype=np.float64).reshape(-1, 3)),
+        plane_active=_kept(np.ones(len(walls), dtype=np.bool_)),
+        contact=laws.contact,
+        dt=laws.dt,
+        gravity=_kept(gravity(laws.g, laws.slope)),
+        rolling=laws.rolling,
+        rotation=laws.rotation,
+        water=laws.water,
+        plane_case=laws.plane_case,
+        period=layout.period,
+        world_low=laws.low or low,
+        world_high=laws.high or high,
+        slab_width=laws.slab_width,
+        overlap_limit=laws.overlap_limit,
+        events=laws.events,
+        tracked=_kept(mask(n, laws.tracked)),
+        groups=layout.groups(),
+    )
+    x = layout.x.astype(np.float64, copy=True)
+    image = np.zeros((n, 2), dtype=np.int32)
+    for axis in (0, 1):
+        period = layout.period[axis]
+        if math.isfinite(period):
+            turns = np.floor(x[:, axis] / period)
+            x[:, axis] -= turns * period
+            image[:, axis] = turns
+    state = State.at_rest(x)
+    state = replace(state, x=_kept(state.x), v=_kept(layout.v), omega=_kept(layout.omega), image=_kept(image))
+    return scene, state
+
+
+def _kept(array: np.ndarray) -> np.ndarray:
+    array = np.ascontiguousarray(array).copy()
+    array.flags.writeable = False
+    return array

@@ -1,0 +1,198 @@
+"""The door: a checked case to its scene, first state and the list of free choices."""
+
+import math
+from dataclasses import dataclass, replace
+
+from ryusa.build.assemble import Laws, assemble
+from ryusa.build.drop import drop
+from ryusa.build.layout import Layout, Wall
+from ryusa.build.overlaps import refuse_overlaps
+from ryusa.build.packing import packing
+from ryusa.build.saltation import saltation
+from ryusa.build.table import table
+from ryusa.casefile.schema import Case
+from ryusa.errors import CaseError
+from ryusa.model import ContactLaw, RollingLaw, Scene, State, Water
+from ryusa.model.enums import Above, Arm, Cap, Damping, Drag, EventRule, Profile, Rolling, Slip, WaterTorque
+
+BUILDERS = {"drop": drop, "saltation": saltation, "table": table, "packing": packing}
+SLIPS = {"spring": Slip.SPRING, "spring-drop": Slip.SPRING_DROP, "total": Slip.TOTAL}
+CAPS = {"spring": Cap.SPRING, "total": Cap.TOTAL}
+ROLLINGS = {
+    "none": Rolling.NONE,
+    "printed": Rolling.PRINTED,
+    "constant": Rolling.CONSTANT,
+    "spring-dashpot-slider": Rolling.EPSD,
+}
+ARMS = {"contact width": Arm.CONTACT_WIDTH, "reduced radius": Arm.REDUCED_RADIUS}
+PROFILES = {
+    "log rough": Profile.LOG_ROUGH,
+    "log smooth": Profile.LOG_SMOOTH,
+    "uniform": Profile.UNIFORM,
+    "still": Profile.STILL,
+}
+ABOVES = {"continue": Above.CONTINUE, "hold": Above.HOLD, "dry": Above.DRY}
+DRAGS = {
+    "none": Drag.NONE,
+    "constant": Drag.CONSTANT,
+    "24/Re+0.4": Drag.RE_04,
+    "24/Re+2": Drag.RE_2,
+    "Schiller-Naumann": Drag.SCHILLER_NAUMANN,
+    "Ferguson-Church sphere": Drag.FERGUSON_CHURCH_SPHERE,
+    "Ferguson-Church sand": Drag.FERGUSON_CHURCH_SAND,
+}
+TORQUES = {"none": WaterTorque.NONE, "Stokes": WaterTorque.STOKES, "Dennis": WaterTorque.DENNIS}
+EVENTS = {"all": EventRule.ALL, "tracked": EventRule.TRACKED, "none": EventRule.NONE}
+
+
+@dataclass(frozen=True)
+class Built:
+    """What a run starts from."""
+
+    scene: Scene
+    state: State
+    notes: tuple[str, ...]  # choices the case left open and the builder made
+
+
+def build(case: Case) -> Built:
+    """Place the first grains of a case.
+
+    Raises
+    ------
+    CaseError : first grains overlap, or the timeline names a group that is not there.
+    """
+    layout = BUILDERS[case.build.kind](case)
+    layout = _with_planes(layout, case)
+    refuse_overlaps(layout, "build.file" if case.build.kind == "table" else "build")
+    _refuse_unknown_groups(layout, case)
+    scene, state = assemble(layout, laws_of(case, layout.z_zero))
+    return Built(scene, state, (*layout.notes, *notes_of(case)))
+
+
+def laws_of(case: Case, z_zero: float) -> Laws:
+    """Laws of a case; `z_zero` [m] is where the water profile begins unless the case says so."""
+    found = case.derived
+    return Laws(
+        density=case.grains.density,
+        a_3=case.grains.shape_volume,
+        contact=contact_of(case),
+        dt=found.dt,
+        rolling=rolling_of(case),
+        water=water_of(case, z_zero),
+        g=found.g,
+        slope=found.slope,
+        rotation=case.motion.rotation == "free",
+        plane_case=case.motion.plane,
+        slab_width=(case.motion.slab_width or found.d) if case.motion.plane else math.nan,
+        overlap_limit=case.domain.overlap_limit,
+        events=EVENTS[case.record.events],
+        tracked=case.record.tracked,
+        low=case.domain.low,
+        high=case.domain.high,
+    )
+
+
+def contact_of(case: Case) -> ContactLaw:
+    """Contact law of a case."""
+    found, contact = case.derived, case.contact
+    constants = math.isnan(found.e_n)
+    return ContactLaw(
+        k_n=found.k_n,
+        k_s=found.k_s,
+        mu=found.mu,
+        cohesion=contact.cohesion,
+        damping=Damping.CONSTANTS if constants else Damping.RESTITUTION,
+        e_n=found.e_n,
+        e_s=found.e_s,
+        zeta_n=0.0 if constants else found.fixed.zeta_n,
+        zeta_s=0.0 if constants else found.fixed.zeta_s,
+        eta_n=found.fixed.eta_n if constants else 0.0,
+        eta_s=found.fixed.eta_s if constants else 0.0,
+        slip=SLIPS[contact.slip],
+        cap=CAPS[contact.cap or ("total" if contact.slip == "total" else "spring")],
+        tension=contact.parting == "tension",
+    )
+
+
+def rolling_of(case: Case) -> RollingLaw:
+    """Rolling friction of a case."""
+    rolling = case.rolling
+    arm = rolling.arm or ("reduced radius" if rolling.model == "spring-dashpot-slider" else "contact width")
+    return RollingLaw(
+        model=ROLLINGS[rolling.model],
+        arm=ARMS[arm],
+        coefficient=rolling.coefficient,
+        stiffness_factor=rolling.stiffness_factor,
+        zeta_r=rolling.damping_ratio,
+    )
+
+
+def water_of(case: Case, z_zero: float) -> Water:
+    """Water of a case; profile NONE when dry."""
+    water, found = case.water, case.derived
+    if water is None:
+        return Water()
+    return Water(
+        profile=PROFILES[water.profile],
+        u_star=0.0 if math.isnan(found.u_star) else found.u_star,
+        k_rough=found.k_rough,
+        z_zero=z_zero if water.zero is None else water.zero,
+        u_uniform=water.speed or 0.0,
+        depth=math.inf if water.depth is None else water.depth,
+        above=ABOVES[water.above],
+        nu=water.viscosity,
+        rho_w=water.density,
+        drag=DRAGS[water.drag],
+        c_d=water.drag_coefficient,
+        a_2=water.shape_area,
+        c_m=water.added_mass,
+        torque=TORQUES[water.torque],
+    )
+
+
+def notes_of(case: Case) -> tuple[str, ...]:
+    """Choices that the case left to defaults and that move the results."""
+    notes: list[str] = []
+    contact, water = case.contact, case.water
+    if contact.shear_ratio is None and contact.shear_stiffness is None:
+        notes.append("k_s = 2/7 k_n (contact.shear_ratio not given)")
+    if contact.restitution is not None and contact.restitution_shear is None:
+        notes.append("tangential restitution = normal restitution (contact.restitution_shear not given)")
+    for key, meaning in (("slip", "the cap holds"), ("parting", "parting with")):
+        if key not in contact.model_fields_set:
+            notes.append(f"{meaning} {getattr(contact, key)} (contact.{key} not given)")
+    if water is not None:
+        if water.roughness is None and water.profile == "log rough":
+            notes.append("roughness k_s of Eq. (9) = mean d (water.roughness not given)")
+        if water.depth is None:
+            notes.append("water without a surface (water.depth not given)")
+        notes += [
+            f"{key} {getattr(water, key)} (water.{key} not given)"
+            for key in ("drag", "viscosity", "above", "torque")
+            if key not in water.model_fields_set
+        ]
+    if case.time.step is None and case.time.steps_per_contact is None:
+        notes.append("50 steps in the shortest contact (time not given)")
+    return tuple(notes)
+
+
+def _with_planes(layout: Layout, case: Case) -> Layout:
+    walls = tuple(Wall(plane.name, plane.point, plane.normal) for plane in case.planes)
+    taken = {
+        *(wall.name for wall in layout.walls),
+        "grains",
+        "bed",
+        *(name for name, _, _ in layout.fixed_groups),
+    }
+    for number, wall in enumerate(walls):
+        if wall.name in taken:
+            raise CaseError(f"planes.{number}.name", wall.name, "is a name the builder uses itself")
+    return replace(layout, walls=(*layout.walls, *walls))
+
+
+def _refuse_unknown_groups(layout: Layout, case: Case) -> None:
+    known = [name for name, (first, _) in layout.groups().items() if first >= len(layout.d)]
+    for number, entry in enumerate(case.timeline):
+        if entry.remove is not None and entry.remove not in known:
+            allowed = f"must be a group of fixed grains or a plane: {', '.join(known) or 'there is none'}"
+            raise CaseError(f"timeline.{number}.remove", entry.remove, allowed)

@@ -1,0 +1,70 @@
+"""Layers of grains on a jittered lattice over a bed of random height; a run settles them."""
+
+import numpy as np
+
+from ryusa.build.layout import Layout, Wall, still
+from ryusa.build.sizes import draw
+from ryusa.casefile.builders import Packing
+from ryusa.casefile.derive import bed_counts
+from ryusa.casefile.schema import Case
+from ryusa.model.scene import Floats
+
+
+def packing(case: Case) -> Layout:
+    """Free lattice of columns x rows x layers above the bed, periodic in x (and y in three dimensions); group `bed`."""
+    keys = case.build
+    assert isinstance(keys, Packing)
+    rng = np.random.default_rng(case.seed)
+    found = case.derived
+    d, d_max, plane = found.d, found.d_max, case.motion.plane
+    pitch = d_max * (1.0 + keys.gap)
+    period_x, period_y = keys.columns * pitch, float("inf") if plane else keys.rows * pitch
+    x_fixed, top, walls = still(0), 0.0, (Wall("floor", (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)),)
+    if keys.bed != "plane":
+        x_fixed, walls = _bed(case, keys, rng, period_x, period_y), ()
+        top = float(x_fixed[:, 2].max()) + d / 2.0
+    cells = np.stack(
+        np.meshgrid(np.arange(keys.layers), np.arange(keys.rows), np.arange(keys.columns), indexing="ij"), -1
+    )
+    x = (cells.reshape(-1, 3)[:, ::-1] + 0.5) * pitch
+    free = 0.5 * keys.jitter * keys.gap * d_max
+    x = x + rng.uniform(-free, free, x.shape) / (np.sqrt(2.0) if plane else np.sqrt(3.0)) * np.array(
+        [1.0, 0.0 if plane else 1.0, 1.0]
+    )
+    if plane:
+        x[:, 1] = 0.0
+    x[:, 2] += top
+    n = len(x)
+    crest = float(np.mean(x_fixed[:, 2])) + d / 2.0 if len(x_fixed) else 0.0
+    notes: list[str] = []
+    if case.water is not None and case.water.zero is None:
+        notes.append(
+            "zero of the water profile d/4 below the mean crest of the fixed bed (water.zero not given)"
+        )
+    return Layout(
+        d=draw(case, n, rng),
+        x=x,
+        v=still(n),
+        omega=still(n),
+        d_fixed=np.full(len(x_fixed), d),
+        x_fixed=x_fixed,
+        walls=walls,
+        period=(period_x, period_y),
+        z_zero=crest - 0.25 * d,
+        notes=tuple(notes),
+    )
+
+
+def _bed(case: Case, keys: Packing, rng: np.random.Generator, period_x: float, period_y: float) -> Floats:
+    """Fixed grains of mean diameter, evenly spaced over the period, at random or equal height [m]."""
+    n_x, n_y = bed_counts(case)
+    d = case.derived.d
+    grid = np.stack(np.meshgrid(np.arange(n_y), np.arange(n_x), indexing="ij"), -1).reshape(-1, 2)
+    x = still(len(grid))
+    x[:, 0] = (grid[:, 1] + 0.5) * period_x / n_x
+    if not case.motion.plane:
+        x[:, 1] = (grid[:, 0] + 0.5) * period_y / n_y
+    x[:, 2] = d / 2.0
+    if keys.bed == "random":
+        x[:, 2] += rng.uniform(0.0, keys.bed_height * d, len(x))
+    return x

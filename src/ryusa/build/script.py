@@ -1,0 +1,161 @@
+"""A scene grain by grain, without a file."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ryusa.build.assemble import Laws, assemble, masses
+from ryusa.build.layout import Layout, Wall
+from ryusa.build.overlaps import refuse_overlaps
+from ryusa.errors import CaseError
+from ryusa.laws import collision
+from ryusa.model import ContactLaw, RollingLaw, Scene, State, Water
+from ryusa.model.enums import Cap, EventRule, Slip
+from ryusa.model.scene import Floats
+
+
+def scene(
+    x: ArrayLike,
+    d: ArrayLike,
+    *,
+    density: float = 2650.0,
+    v: ArrayLike | None = None,
+    omega: ArrayLike | None = None,
+    x_fixed: ArrayLike | None = None,
+    d_fixed: ArrayLike | None = None,
+    planes: Sequence[tuple[str, Sequence[float], Sequence[float]]] = (),
+    stiffness: float = 1.0e4,
+    shear_ratio: float = 2.0 / 7.0,
+    restitution: float = 0.7,
+    restitution_shear: float | None = None,
+    friction: float = math.tan(math.radians(30.0)),
+    slip: Slip = Slip.SPRING,
+    tension: bool = False,
+    contact: ContactLaw | None = None,
+    rolling: RollingLaw | None = None,
+    water: Water | None = None,
+    gravity: float = 9.80665,
+    slope: float = 0.0,
+    rotation: bool = True,
+    plane_case: bool = False,
+    period: tuple[float, float] = (math.inf, math.inf),
+    dt: float | None = None,
+    steps_per_contact: float = 50.0,
+    events: EventRule = EventRule.ALL,
+    allow_overlap: bool = False,
+) -> tuple[Scene, State]:
+    """Build a scene grain by grain; everything SI and radians.
+
+    Parameters
+    ----------
+    x, d : centres [m], shape (n, 3), and diameters [m], a number or shape (n,), of the free grains.
+    density : of the grains [kg/m3].
+    v, omega : velocities [m/s] and spins [rad/s], shape (n, 3); at rest when not given.
+    x_fixed, d_fixed : fixed grains, as x and d; d_fixed is the mean of d when not given.
+    planes : (name, point [m], normal) of each flat wall.
+    stiffness, shear_ratio, restitution, restitution_shear, friction, slip, tension : the contact law in short;
+        friction is mu = tan(phi). `contact` gives a whole law instead.
+    gravity, slope : g [m/s2] and bed slope [rad], down towards +x.
+    period : periods in x and y [m]; inf where open.
+    dt : time step [s]; by default the shortest contact over `steps_per_contact`.
+
+    Returns
+    -------
+    scene, state : what `Engine.load` takes.
+
+    Raises
+    ------
+    CaseError : shapes that do not fit, a number that is not finite, overlapping first grains.
+
+    >>> fixed, first = scene(x=[[0.0, 0.0, 0.011]], d=0.002, planes=[("floor", (0, 0, 0), (0, 0, 1))])
+    >>> fixed.n_grain, fixed.n_plane, first.n_grain
+    (1, 1, 1)
+    """
+    centres = _rows(x, "x", None)
+    n = len(centres)
+    if n == 0:
+        raise CaseError("x", None, "needs at least one grain")
+    sizes = _sizes(d, "d", n)
+    bed = _rows(x_fixed, "x_fixed", None) if x_fixed is not None else np.zeros((0, 3))
+    bed_sizes = _sizes(float(sizes.mean()) if d_fixed is None else d_fixed, "d_fixed", len(bed))
+    layout = Layout(
+        d=sizes,
+        x=centres,
+        v=_rows(v, "v", n) if v is not None else np.zeros((n, 3)),
+        omega=_rows(omega, "omega", n) if omega is not None else np.zeros((n, 3)),
+        d_fixed=bed_sizes,
+        x_fixed=bed,
+        walls=tuple(Wall(name, _point(point), _point(normal)) for name, point, normal in planes),
+        period=period,
+        allow_overlap=allow_overlap,
+    )
+    refuse_overlaps(layout, "x")
+    wet = water or Water()
+    if contact is None:
+        e_s = restitution if restitution_shear is None else restitution_shear
+        contact = ContactLaw(
+            k_n=stiffness,
+            k_s=shear_ratio * stiffness,
+            mu=friction,
+            e_n=restitution,
+            e_s=e_s,
+            zeta_n=collision.zeta_tension(restitution) if tension else collision.zeta_no_tension(restitution),
+            zeta_s=collision.zeta_tension(e_s),
+            slip=slip,
+            cap=Cap.TOTAL if slip == Slip.TOTAL else Cap.SPRING,
+            tension=tension,
+        )
+    if dt is None:
+        m, m_added, _, _ = masses(sizes, density, math.pi / 6, wet)
+        lightest = float(np.min(m + m_added)) / (2.0 if n > 1 else 1.0)
+        omega_0 = collision.omega_natural(contact.k_n, lightest)
+        t_col = min(
+            collision.contact_time_no_tension(contact.zeta_n, omega_0),
+            collision.collision_time(lightest, contact.k_n),
+        )
+        dt = t_col / steps_per_contact
+    laws = Laws(
+        density=density,
+        contact=contact,
+        dt=dt,
+        rolling=rolling or RollingLaw(),
+        water=wet,
+        g=gravity,
+        slope=slope,
+        rotation=rotation,
+        plane_case=plane_case,
+        slab_width=float(sizes.mean()) if plane_case else math.nan,
+        events=events,
+    )
+    return assemble(layout, laws)
+
+
+def _rows(values: ArrayLike, name: str, n: int | None) -> Floats:
+    rows = np.array(values, dtype=np.float64)
+    if rows.ndim == 1 and rows.size == 3:
+        rows = rows.reshape(1, 3)
+    if rows.ndim != 2 or rows.shape[1] != 3 or (n is not None and len(rows) != n):
+        raise CaseError(name, None, f"must have shape ({'n' if n is None else n}, 3), not {rows.shape}")
+    if not np.all(np.isfinite(rows)):
+        raise CaseError(
+            name, None, f"must be finite; row {int(np.argmin(np.isfinite(rows).all(axis=1)))} is not"
+        )
+    return rows
+
+
+def _sizes(values: ArrayLike, name: str, n: int) -> Floats:
+    sizes = np.array(values, dtype=np.float64)
+    if sizes.ndim == 0:
+        sizes = np.full(n, float(sizes))
+    if sizes.shape != (n,):
+        raise CaseError(name, None, f"must be one number or have shape ({n},), not {sizes.shape}")
+    if not np.all(np.isfinite(sizes) & (sizes > 0.0)):
+        raise CaseError(name, None, "must be finite and greater than 0")
+    return sizes
+
+
+def _point(values: Sequence[float]) -> tuple[float, float, float]:
+    x, y, z = (float(value) for value in values)
+    return x, y, z

@@ -1,0 +1,26 @@
+"""Random grain sizes."""
+
+import math
+
+import numpy as np
+
+from ryusa.casefile.derive import CUT
+from ryusa.casefile.schema import Case
+from ryusa.model.scene import Floats
+
+
+def draw(case: Case, n: int, rng: np.random.Generator) -> Floats:
+    """Diameters [m] of n grains as `grains.spread` has them; mean as `grains.diameter` within the scatter of n."""
+    d, spread = case.grains.diameter, case.grains.spread
+    kind, ratio = ("uniform", spread) if isinstance(spread, float) else (spread.kind, spread.ratio)
+    if ratio == 0.0:
+        return np.full(n, d)
+    if kind == "uniform":
+        return np.asarray(d * rng.uniform(1.0 - ratio, 1.0 + ratio, n))
+    deviates = rng.standard_normal(n)
+    while np.any(outside := np.abs(deviates) > CUT):
+        deviates[outside] = rng.standard_normal(int(outside.sum()))
+    if kind == "normal":
+        return np.asarray(d * np.maximum(1.0 + ratio * deviates, 0.05))
+    width = math.sqrt(math.log1p(ratio * ratio))
+    return np.asarray(d * np.exp(width * deviates - 0.5 * width * width))

@@ -1,0 +1,92 @@
+"""Keys of the [build] section, one model per builder."""
+
+from pathlib import PurePosixPath
+from typing import Annotated, Literal
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+
+from ryusa.casefile.quantities import Count, Length, Number, PositiveLength, Speed, Spin
+
+
+class _Keys(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+
+class Drop(_Keys):
+    """One grain dropped on a fixed grain, a free grain or a plane."""
+
+    kind: Literal["drop"]
+    """Name of the builder."""
+    partner: Literal["fixed", "free", "plane"] = "fixed"
+    """What is struck: a fixed grain, a free grain, or the plane z = 0."""
+    height: Annotated[Length, Field(ge=0)] | None = None
+    """Gap between the two surfaces at the start; 0.1 d when a speed is given."""
+    speed: Annotated[Speed, Field(ge=0)] = 0.0
+    """Downward speed at the start."""
+    speed_along: Speed = 0.0
+    """Speed along x at the start."""
+    spin: Spin = 0.0
+    """Spin about y at the start; positive rolls towards +x."""
+    offset: Length = 0.0
+    """Horizontal distance of the two centres; makes the impact oblique."""
+    copies: Annotated[Count, Field(ge=1, le=10_000)] = 1
+    """Drops side by side, each in its own lane."""
+    height_step: Annotated[Length, Field(ge=0)] = 0.0
+    """How much higher each further copy starts."""
+
+
+class Saltation(_Keys):
+    """A grain over a line of fixed, touching grains, several starts side by side."""
+
+    kind: Literal["saltation"]
+    """Name of the builder."""
+    n_bed: Annotated[Count, Field(ge=4, le=1_000_000)] = 20
+    """Fixed grains in one period of the bed."""
+    starts: Annotated[Count, Field(ge=1, le=100_000)] = 1
+    """Independent grains, each over its own bed."""
+    start_height: PositiveLength | None = None
+    """Gap between bed crest and grain at the start; 2 d when not given."""
+    start_speed: Speed | None = None
+    """Speed along the bed at the start; that of the water at the grain's centre when not given."""
+
+
+def _relative(path: str) -> str:
+    parts = PurePosixPath(path.replace("\\", "/"))
+    if parts.is_absolute() or ".." in parts.parts or ":" in path or "\0" in path:
+        raise ValueError("needs a path inside the folder of the case file, such as 'grains.csv'")
+    return str(parts)
+
+
+class Table(_Keys):
+    """Grains read from a CSV table."""
+
+    kind: Literal["table"]
+    """Name of the builder."""
+    file: Annotated[str, Field(min_length=1, max_length=400), AfterValidator(_relative)]
+    """CSV file inside the folder of the case; columns x, y, z, d, vx, vy, vz, wx, wy, wz, fixed, group, units in the header."""
+    allow_overlap: bool = False
+    """May first grains overlap."""
+
+
+class Packing(_Keys):
+    """Layers of grains on a jittered lattice over fixed grains of random height; settles when run."""
+
+    kind: Literal["packing"]
+    """Name of the builder."""
+    columns: Annotated[Count, Field(ge=3, le=100_000)]
+    """Free grains along x in one layer."""
+    rows: Annotated[Count, Field(ge=1, le=100_000)] = 1
+    """Free grains along y in one layer; 1 in a plane scene."""
+    layers: Annotated[Count, Field(ge=1, le=100_000)]
+    """Layers above the bed."""
+    gap: Annotated[Number, Field(ge=0, le=2)] = 0.1
+    """Free room between lattice neighbours, in largest diameters."""
+    jitter: Annotated[Number, Field(ge=0, le=1)] = 0.9
+    """Part of that room used by random displacement."""
+    bed: Literal["random", "flat", "plane"] = "random"
+    """Bed of fixed grains of random height, of equal height, or a plane."""
+    bed_height: Annotated[Number, Field(ge=0, le=2)] = 0.5
+    """Range of the random heights, in mean diameters."""
+
+
+Build = Annotated[Drop | Saltation | Table | Packing, Field(discriminator="kind")]

@@ -1,0 +1,234 @@
+"""Checks that need more than one key: two ways of one thing, what is missing, what contradicts."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from ryusa.casefile.builders import Drop, Packing, Saltation, Table
+from ryusa.casefile.schema import Case
+from ryusa.errors import CaseError
+
+RIVALS: dict[str, tuple[tuple[str, str], ...]] = {
+    "contact": (
+        ("friction_angle", "friction"),
+        ("shear_ratio", "shear_stiffness"),
+        ("restitution", "damping"),
+        ("restitution", "shear_damping"),
+        ("restitution_shear", "damping"),
+        ("restitution_shear", "shear_damping"),
+    ),
+    "motion": (("slope", "slope_angle"),),
+    "water": (("tau_star", "u_star"),),
+    "time": (("steps_per_contact", "step"),),
+}
+FEWEST_PERIODS = 3  # largest diameters that a period must hold
+COARSEST, FINEST = 5.0, 1.0e4  # steps per contact that a given step must lie between
+_CHANGES = ("remove", "slope", "slope_angle", "friction_angle", "friction", "rotation")
+
+
+def check(case: Case, data: dict[str, Any]) -> list[CaseError]:
+    """Find the faults that no single key shows; `data` is what the file held."""
+    found = [*_rivals(case), *_needed(case), *_water(case), *_motion(case), *_builder(case), *_timeline(case)]
+    if found:
+        return found
+    return [*_space(case), *_step(case, data), *_record(case)]
+
+
+def _given(section: Any, key: str) -> bool:
+    return key in section.model_fields_set and getattr(section, key) is not None
+
+
+def _rivals(case: Case) -> Iterator[CaseError]:
+    for name, pairs in RIVALS.items():
+        section = getattr(case, name)
+        for one, other in pairs if section is not None else ():
+            if _given(section, one) and _given(section, other):
+                yield CaseError(
+                    f"{name}.{one}", None, f"given together with {name}.{other}; say it one way only"
+                )
+
+
+def _needed(case: Case) -> Iterator[CaseError]:
+    contact = case.contact
+    if contact.friction is None and contact.friction_angle is None:
+        yield CaseError(
+            "contact.friction_angle",
+            None,
+            "missing; give friction_angle or friction, for it decides most things",
+        )
+    if contact.restitution is None and contact.damping is None:
+        yield CaseError("contact.restitution", None, "missing; give restitution (or damping, a constant)")
+    if contact.slip == "total" and contact.cap == "spring":
+        yield CaseError("contact.cap", "spring", "must be 'total' (or left out) when slip is 'total'")
+    if case.stop.time is None and case.stop.saltations is None and case.stop.rest is None:
+        yield CaseError("stop", None, "needs at least one of time, saltations, rest")
+
+
+def _water(case: Case) -> Iterator[CaseError]:
+    water = case.water
+    if water is None:
+        return
+    shear = water.tau_star is not None or water.u_star is not None
+    logarithmic = water.profile.startswith("log")
+    if logarithmic and not shear:
+        yield CaseError(
+            "water.tau_star", None, f"missing; profile '{water.profile}' needs tau_star or u_star"
+        )
+    if not logarithmic and shear:
+        key = "tau_star" if water.tau_star is not None else "u_star"
+        yield CaseError(f"water.{key}", getattr(water, key), f"has no meaning with profile '{water.profile}'")
+    if (water.speed is not None) != (water.profile == "uniform"):
+        if water.speed is None:
+            yield CaseError("water.speed", None, "missing; profile 'uniform' needs it")
+        else:
+            yield CaseError("water.speed", water.speed, f"has no meaning with profile '{water.profile}'")
+    if water.roughness is not None and water.profile != "log rough":
+        yield CaseError("water.roughness", water.roughness, f"has no meaning with profile '{water.profile}'")
+    if water.tau_star is not None and case.grains.density <= water.density:
+        yield CaseError(
+            "water.tau_star", water.tau_star, "needs grains denser than water; give u_star instead"
+        )
+    if _given(water, "drag_coefficient") and water.drag != "constant":
+        yield CaseError(
+            "water.drag_coefficient", water.drag_coefficient, f"has no meaning with drag '{water.drag}'"
+        )
+    if water.above != "continue" and water.depth is None:
+        yield CaseError("water.depth", None, f"missing; above = '{water.above}' needs it")
+    if water.torque != "none" and not _may_spin(case):
+        yield CaseError("water.torque", water.torque, "needs motion.rotation = 'free'")
+
+
+def _may_spin(case: Case) -> bool:
+    return case.motion.rotation == "free" or any(change.rotation == "free" for change in case.timeline)
+
+
+def _motion(case: Case) -> Iterator[CaseError]:
+    rolling = case.rolling
+    if rolling.model != "none":
+        if not _may_spin(case):
+            yield CaseError("rolling.model", rolling.model, "needs motion.rotation = 'free'")
+        if rolling.coefficient == 0.0:
+            yield CaseError("rolling.coefficient", None, f"missing or zero; model '{rolling.model}' needs it")
+    elif rolling.coefficient > 0.0:
+        yield CaseError(
+            "rolling.coefficient", rolling.coefficient, "has no meaning with rolling.model 'none'"
+        )
+    if rolling.model == "spring-dashpot-slider" and rolling.arm == "contact width":
+        yield CaseError("rolling.arm", rolling.arm, "must be 'reduced radius' for the spring-dashpot-slider")
+    if case.motion.slab_width is not None and not case.motion.plane:
+        yield CaseError(
+            "motion.slab_width", case.motion.slab_width, "has no meaning unless motion.plane = true"
+        )
+    for number, plane in enumerate(case.planes):
+        if not any(plane.normal):
+            yield CaseError(f"planes.{number}.normal", list(plane.normal), "must not be zero")
+        elif case.motion.plane and plane.normal[1] != 0.0:
+            yield CaseError(f"planes.{number}.normal", list(plane.normal), "must have y = 0 in a plane scene")
+    names = [plane.name for plane in case.planes]
+    for number, name in enumerate(names):
+        if name in names[:number]:
+            yield CaseError(f"planes.{number}.name", name, "is used twice")
+
+
+def _builder(case: Case) -> Iterator[CaseError]:
+    build = case.build
+    spread = case.grains.spread
+    ratio = spread if isinstance(spread, float) else spread.ratio
+    if isinstance(build, (Drop, Saltation)) and ratio > 0.0:
+        yield CaseError("grains.spread", ratio, f"must be 0 for builder '{build.kind}'")
+    if isinstance(build, Drop):
+        if build.height is None and build.speed == 0.0:
+            yield CaseError("build.height", None, "missing; a drop needs height or speed")
+        if build.spin != 0.0 and not _may_spin(case):
+            yield CaseError("build.spin", build.spin, "needs motion.rotation = 'free'")
+        if abs(build.offset) >= case.grains.diameter:
+            yield CaseError(
+                "build.offset", build.offset, "must be smaller than the diameter, or nothing is struck"
+            )
+        if build.offset != 0.0 and build.partner == "plane":
+            yield CaseError("build.offset", build.offset, "has no meaning with partner 'plane'")
+    if isinstance(build, (Drop, Saltation)) and not case.motion.plane:
+        lanes = build.copies if isinstance(build, Drop) else build.starts
+        if lanes > 1:
+            key = "build.copies" if isinstance(build, Drop) else "build.starts"
+            yield CaseError(key, lanes, "needs motion.plane = true; in three dimensions lanes could meet")
+    if isinstance(build, Packing) and case.motion.plane and build.rows > 1:
+        yield CaseError("build.rows", build.rows, "must be 1 in a plane scene")
+    if isinstance(build, Packing) and not case.motion.plane and build.rows < FEWEST_PERIODS:
+        yield CaseError("build.rows", build.rows, f"must be at least {FEWEST_PERIODS} in three dimensions")
+    if case.stop.saltations is not None and not isinstance(build, (Saltation, Table)):
+        yield CaseError(
+            "stop.saltations",
+            case.stop.saltations,
+            "needs a bed to saltate over: builder 'saltation' or 'table'",
+        )
+
+
+def _timeline(case: Case) -> Iterator[CaseError]:
+    before = 0.0
+    for number, change in enumerate(case.timeline):
+        key = f"timeline.{number}"
+        given = [name for name in _CHANGES if getattr(change, name) is not None]
+        if len(given) != 1:
+            yield CaseError(
+                key, None, f"needs exactly one of {', '.join(_CHANGES)} beside at; it has {len(given)}"
+            )
+        if change.at < before:
+            yield CaseError(
+                f"{key}.at", change.at, "comes before the entry above it; write the timeline in order of time"
+            )
+        if case.stop.time is not None and change.at > case.stop.time:
+            yield CaseError(f"{key}.at", change.at, "comes after stop.time")
+        before = max(before, change.at)
+
+
+def _space(case: Case) -> Iterator[CaseError]:
+    largest = case.derived.d_max
+    for key in ("period_x", "period_y"):
+        period = getattr(case.domain, key)
+        if period is not None and period < FEWEST_PERIODS * largest:
+            yield CaseError(
+                f"domain.{key}",
+                period,
+                f"must be at least {FEWEST_PERIODS} largest diameters, {3 * largest:.4g} m",
+            )
+        if period is not None and not isinstance(case.build, Table):
+            yield CaseError(
+                f"domain.{key}",
+                period,
+                f"is set by builder '{case.build.kind}' itself; only 'table' takes it",
+            )
+    low, high = case.domain.low, case.domain.high
+    if low is not None and high is not None and any(a >= b for a, b in zip(low, high, strict=True)):
+        yield CaseError("domain.low", list(low), "must lie below domain.high in every direction")
+
+
+def _step(case: Case, data: dict[str, Any]) -> Iterator[CaseError]:
+    if case.time.step is None:
+        return
+    t_col, steps = case.derived.shortest, case.derived.steps_per_contact
+    written = data.get("time", {}).get("step")
+    if steps < COARSEST:
+        yield CaseError(
+            "time.step",
+            written,
+            f"must be below {t_col / COARSEST:.3g} s, a fifth of the shortest contact {t_col:.3g} s",
+        )
+    if steps > FINEST:
+        yield CaseError(
+            "time.step",
+            written,
+            f"must be above {t_col / FINEST:.3g} s, 1e-4 of the shortest contact {t_col:.3g} s",
+        )
+
+
+def _record(case: Case) -> Iterator[CaseError]:
+    record, n_grain = case.record, case.derived.n_grain
+    for number, one in enumerate(record.tracked):
+        if one >= n_grain:
+            yield CaseError(
+                f"record.tracked.{number}", one, f"must be below {n_grain}, the number of free grains"
+            )
+    if record.events == "tracked" and not record.tracked:
+        yield CaseError("record.tracked", None, "missing; events = 'tracked' needs ids of grains")
+    if case.stop.time is not None and record.settle >= case.stop.time:
+        yield CaseError("record.settle", record.settle, "must be shorter than stop.time")

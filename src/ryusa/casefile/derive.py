@@ -1,0 +1,321 @@
+"""What follows from a case: masses, stiffness, damping, the time step, the friction velocity."""
+
+import math
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from ryusa.casefile.builders import Drop, Packing, Saltation
+from ryusa.casefile.schema import Case, StiffnessForOverlap, StiffnessForTime
+from ryusa.casefile.table import table_of
+from ryusa.laws import collision, drag, motion, water
+from ryusa.laws import contact as contact_law
+
+CUT = 2.5  # standard deviations at which normal and lognormal sizes are cut
+STEPS_PER_CONTACT = 50.0
+SHEAR_RATIO = 2.0 / 7.0
+
+
+@dataclass(frozen=True)
+class Pair:
+    """One kind of contact, seen from a grain of the given mass."""
+
+    m: float  # effective mass, added mass counted [kg]
+    m_t: float  # effective mass in the tangential direction [kg]
+    zeta_n: float  # damping ratio [-]
+    zeta_s: float
+    eta_n: float  # dashpots [N s/m]
+    eta_s: float
+    e: float  # normal restitution reached [-]
+    e_s: float  # tangential restitution of the free oscillator [-]
+    t_undamped: float  # Eq. (8) with this mass [s]
+    t_col: float  # time the normal force lasts [s]
+    t_shear: float  # half period of the tangential oscillator [s]; inf without spring
+
+
+@dataclass(frozen=True)
+class Derived:
+    """Numbers that follow from a case, SI."""
+
+    d: float  # mean diameter [m]
+    d_min: float
+    d_max: float
+    volume: float  # of the mean grain [m3]
+    m: float  # its mass [kg]
+    m_added: float  # its added mass [kg]
+    m_weight: float  # the mass that gravity sees [kg]
+    inertia: float  # [kg m2]
+    g: float  # [m/s2]
+    slope: float  # [rad]
+    k_n: float  # [N/m]
+    k_s: float
+    mu: float  # [-]
+    e_n: float  # restitution asked for [-]; nan for constants
+    e_s: float
+    fixed: Pair  # mean grain on a fixed one
+    free: Pair  # two mean grains
+    n_grain: int
+    n_fixed: int
+    meet: bool  # can two free grains meet
+    shortest: float  # shortest contact that can occur [s]
+    dt: float  # [s]
+    steps_per_contact: float
+    u_star: float  # [m/s]; nan without a log profile
+    tau_star: float
+    k_rough: float  # [m]; nan without water
+
+
+def mass(case: Case, d: float) -> tuple[float, float, float, float]:
+    """Mass, added mass, mass that gravity sees [kg] and moment of inertia [kg m2] of a grain of diameter d [m]."""
+    volume = drag.volume(d, case.grains.shape_volume)
+    m = case.grains.density * volume
+    inertia = motion.inertia_sphere(m, d)
+    if case.water is None:
+        return m, 0.0, m, inertia
+    rho_w = case.water.density
+    return (
+        m,
+        drag.added_mass(rho_w, case.water.added_mass, volume),
+        drag.submerged_mass(m, rho_w, volume),
+        inertia,
+    )
+
+
+def sizes(case: Case) -> tuple[float, float, float]:
+    """Mean, smallest and largest diameter that can occur [m]."""
+    table = table_of(case)
+    if table is not None:
+        every = table.column("d")
+        return float(every.mean()), float(every.min()), float(every.max())
+    d, spread = case.grains.diameter, case.grains.spread
+    kind, ratio = ("uniform", spread) if isinstance(spread, float) else (spread.kind, spread.ratio)
+    if kind == "uniform":
+        return d, d * (1.0 - ratio), d * (1.0 + ratio)
+    if kind == "normal":
+        return d, d * max(1.0 - CUT * ratio, 0.05), d * (1.0 + CUT * ratio)
+    width = math.sqrt(math.log1p(ratio * ratio))
+    return (
+        d,
+        d * math.exp(-0.5 * width * width - CUT * width),
+        d * math.exp(-0.5 * width * width + CUT * width),
+    )
+
+
+def counts(case: Case) -> tuple[int, int, bool]:
+    """Free grains, fixed grains, and whether two free grains can meet."""
+    build = case.build
+    table = table_of(case)
+    if table is not None:
+        n_fixed = int(table.fixed.sum())
+        return table.n - n_fixed, n_fixed, table.n - n_fixed > 1
+    if isinstance(build, Drop):
+        free = 2 if build.partner == "free" else 1
+        return build.copies * free, build.copies * (build.partner == "fixed"), build.partner == "free"
+    if isinstance(build, Saltation):
+        return build.starts, build.starts * build.n_bed, False
+    assert isinstance(build, Packing)
+    bed = bed_counts(case)
+    return build.columns * build.rows * build.layers, bed[0] * bed[1], True
+
+
+def bed_counts(case: Case) -> tuple[int, int]:
+    """Fixed grains of a packing's bed along x and y; (0, 0) over a plane."""
+    build = case.build
+    if not isinstance(build, Packing) or build.bed == "plane":
+        return 0, 0
+    d, _, d_max = sizes(case)
+    pitch = d_max * (1.0 + build.gap)
+    return max(round(build.columns * pitch / d), 3), 1 if case.motion.plane else max(
+        round(build.rows * pitch / d), 3
+    )
+
+
+def slope(case: Case) -> float:
+    """Bed slope [rad], down towards +x."""
+    if case.motion.slope_angle is not None:
+        return case.motion.slope_angle
+    return math.atan(case.motion.slope or 0.0)
+
+
+def friction(case: Case) -> float:
+    """Friction coefficient mu = tan(phi) [-]."""
+    contact = case.contact
+    if contact.friction_angle is not None:
+        return math.tan(contact.friction_angle)
+    return contact.friction if contact.friction is not None else math.nan
+
+
+def restitution(case: Case) -> tuple[float, float, float, float]:
+    """Restitution asked for, normal and tangential, and the damping ratios that give them; nan for constants.
+
+    The tangential ratio is that of a two-sided oscillator whichever way contacts part.
+    """
+    contact = case.contact
+    if contact.restitution is None:
+        return math.nan, math.nan, math.nan, math.nan
+    e_n = contact.restitution
+    e_s = contact.restitution_shear if contact.restitution_shear is not None else e_n
+    tension = contact.parting == "tension"
+    return (
+        e_n,
+        e_s,
+        collision.zeta_tension(e_n) if tension else collision.zeta_no_tension(e_n),
+        collision.zeta_tension(e_s),
+    )
+
+
+def stiffness(case: Case) -> tuple[float, float]:
+    """Give k_n and k_s [N/m], from the case or from what it asks for; the pair is a mean grain on a fixed one."""
+    rule, contact = case.contact.stiffness, case.contact
+    m, m_added, _, _ = mass(case, sizes(case)[0])
+    if isinstance(rule, StiffnessForOverlap):
+        zeta = restitution(case)[2]
+        zeta = 0.0 if math.isnan(zeta) else zeta
+        k_n = collision.stiffness_for_overlap(rule.overlap * sizes(case)[0], rule.speed, m + m_added, zeta)
+    elif isinstance(rule, StiffnessForTime):
+        k_n = collision.stiffness_for_time(rule.collision_time, m + m_added, 0.0, False)
+    else:
+        k_n = rule
+    if contact.shear_stiffness is not None:
+        return k_n, contact.shear_stiffness
+    return k_n, k_n * (SHEAR_RATIO if contact.shear_ratio is None else contact.shear_ratio)
+
+
+def pair(case: Case, d: float, free: bool) -> Pair:
+    """One grain of diameter d [m] on a fixed one, or two such grains."""
+    contact = case.contact
+    m, m_added, _, inertia = mass(case, d)
+    heavy, r, still = m + m_added, d / 2.0, math.inf
+    k_n, k_s = stiffness(case)
+    spins = case.motion.rotation == "free"
+    m_eff = collision.effective_mass(heavy, heavy if free else still)
+    m_t = collision.effective_mass_tangential(
+        heavy, r, inertia, heavy if free else still, r, inertia if free else still, spins
+    )
+    _, _, zeta_n, zeta_s = restitution(case)
+    if math.isnan(zeta_n):
+        eta_n, eta_s = contact.damping or 0.0, contact.shear_damping or 0.0
+        zeta_n = collision.damping_ratio(eta_n, k_n, m_eff)
+        zeta_s = collision.damping_ratio(eta_s, k_s, m_t) if k_s > 0.0 else math.inf * eta_s if eta_s else 0.0
+    else:
+        eta_n, eta_s = contact_law.damping(zeta_n, k_n, m_eff), contact_law.damping(zeta_s, k_s, m_t)
+    omega = collision.omega_natural(k_n, m_eff)
+    tension = contact.parting == "tension"
+    time, rest = (
+        (collision.contact_time_tension, collision.restitution_tension)
+        if tension
+        else (collision.contact_time_no_tension, collision.restitution_no_tension)
+    )
+    return Pair(
+        m=m_eff,
+        m_t=m_t,
+        zeta_n=zeta_n,
+        zeta_s=zeta_s,
+        eta_n=eta_n,
+        eta_s=eta_s,
+        e=rest(zeta_n),
+        e_s=collision.restitution_tension(zeta_s),
+        t_undamped=collision.collision_time(m_eff, k_n),
+        t_col=time(zeta_n, omega),
+        t_shear=math.inf if k_s == 0.0 else collision.collision_time(m_t, k_s),
+    )
+
+
+def water_speed(case: Case, z: float) -> float:
+    """Speed of the water [m/s] at a height z above the zero of its profile [m]; 0 when dry."""
+    wet = case.water
+    if wet is None:
+        return 0.0
+    if wet.depth is not None and z > wet.depth:
+        if wet.above == "dry":
+            return 0.0
+        z = wet.depth if wet.above == "hold" else z
+    if wet.profile == "log rough":
+        return water.log_law_rough(z, case.derived.u_star, case.derived.k_rough)
+    if wet.profile == "log smooth":
+        return water.log_law_smooth(z, case.derived.u_star, wet.viscosity)
+    return water.uniform(z, wet.speed) if wet.speed is not None else 0.0
+
+
+def derive(case: Case) -> Derived:
+    """Everything that follows from a case."""
+    d, d_min, d_max = sizes(case)
+    m, m_added, m_weight, inertia = mass(case, d)
+    k_n, k_s = stiffness(case)
+    e_n, e_s, _, _ = restitution(case)
+    n_grain, n_fixed, meet = counts(case)
+    lightest = pair(case, d_min, meet)
+    shortest = min(lightest.t_col, lightest.t_undamped)
+    if case.time.step is not None:
+        dt = case.time.step
+    else:
+        dt = shortest / (case.time.steps_per_contact or STEPS_PER_CONTACT)
+    u_star, tau_star, k_rough, g = math.nan, math.nan, math.nan, case.motion.gravity
+    if case.water is not None:
+        wet, rho_s = case.water, case.grains.density
+        k_rough = wet.roughness if wet.roughness is not None else d
+        if wet.tau_star is not None:
+            tau_star = wet.tau_star
+            u_star = water.u_star_from_tau_star(tau_star, rho_s, wet.density, g, d)
+        elif wet.u_star is not None:
+            u_star = wet.u_star
+            heavier = rho_s > wet.density and g > 0.0
+            tau_star = water.tau_star_from_u_star(u_star, rho_s, wet.density, g, d) if heavier else math.nan
+    return Derived(
+        d=d,
+        d_min=d_min,
+        d_max=d_max,
+        volume=drag.volume(d, case.grains.shape_volume),
+        m=m,
+        m_added=m_added,
+        m_weight=m_weight,
+        inertia=inertia,
+        g=g,
+        slope=slope(case),
+        k_n=k_n,
+        k_s=k_s,
+        mu=friction(case),
+        e_n=e_n,
+        e_s=e_s,
+        fixed=pair(case, d, False),
+        free=pair(case, d, True),
+        n_grain=n_grain,
+        n_fixed=n_fixed,
+        meet=meet,
+        shortest=shortest,
+        dt=dt,
+        steps_per_contact=shortest / dt,
+        u_star=u_star,
+        tau_star=tau_star,
+        k_rough=k_rough,
+    )
+
+
+def resolved(case: Case) -> dict[str, Any]:
+    """Give the case as plain data in SI with what follows filled in; numbers that do not exist are None."""
+    data: dict[str, Any] = case.model_dump(mode="json", by_alias=True)
+    found = case.derived
+    data["contact"] |= {
+        "stiffness": found.k_n,
+        "shear_stiffness": found.k_s,
+        "shear_ratio": found.k_s / found.k_n,
+    }
+    data["contact"] |= {"friction": found.mu, "friction_angle": math.atan(found.mu)}
+    if not math.isnan(found.e_n):
+        data["contact"] |= {"restitution": found.e_n, "restitution_shear": found.e_s}
+    data["motion"] |= {"slope": math.tan(found.slope), "slope_angle": found.slope}
+    data["motion"]["slab_width"] = case.motion.slab_width or found.d
+    data["time"] |= {"step": found.dt, "steps_per_contact": found.steps_per_contact}
+    if case.water is not None:
+        data["water"] |= {"u_star": found.u_star, "tau_star": found.tau_star, "roughness": found.k_rough}
+    data["derived"] = asdict(found)
+    return _plain(data)
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _plain(one) for key, one in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(one) for one in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value

@@ -1,0 +1,68 @@
+"""Field types of the case file: text with a unit comes in, SI numbers stay."""
+
+import math
+import re
+from typing import Annotated, Any
+
+from pydantic import AllowInfNan, BeforeValidator, Field, Strict, WithJsonSchema
+
+from ryusa.units import quantity
+
+_RATIO = re.compile(r"\s*([+-]?[0-9]*\.?[0-9]+(?:[eE][+-]?[0-9]+)?)\s*(?:/\s*([0-9]*\.?[0-9]+)|(%))?\s*")
+_MUST_BE_TEXT = "string"
+
+
+def _si(unit: str) -> BeforeValidator:
+    def read(text: Any) -> float:
+        return quantity(text, unit)
+
+    return BeforeValidator(read)
+
+
+def _text(what: str, *examples: str) -> WithJsonSchema:
+    return WithJsonSchema(
+        {"type": _MUST_BE_TEXT, "format": "quantity", "title": what, "examples": list(examples)}
+    )
+
+
+def read_ratio(value: Any) -> Any:
+    """Read a number, `"1/20"` or `"5 %"`; anything else goes on to the type check.
+
+    >>> read_ratio("1/20")
+    0.05
+    """
+    if not isinstance(value, str):
+        return value
+    found = _RATIO.fullmatch(value[:64])
+    if found is None:
+        raise ValueError("needs a number or a ratio such as '1/20'")
+    top, below, percent = found.groups()
+    bottom = 100.0 if percent else float(below or 1.0)
+    if bottom == 0.0 or not math.isfinite(float(top) / bottom):
+        raise ValueError("needs a finite ratio such as '1/20'")
+    return float(top) / bottom
+
+
+Number = Annotated[float, Strict(), AllowInfNan(False)]
+Count = Annotated[int, Strict()]
+Length = Annotated[float, _si("m"), _text("length", "0.2 cm", "2 mm")]
+Duration = Annotated[float, _si("s"), _text("time", "1 s", "1 ms"), Field(gt=0)]
+Moment = Annotated[float, _si("s"), _text("time", "0 s", "0.1 s"), Field(ge=0)]
+Speed = Annotated[float, _si("m/s"), _text("speed", "0.6 m/s", "60 cm/s")]
+Spin = Annotated[float, _si("rad/s"), _text("spin", "900 rad/s", "10 rpm")]
+Angle = Annotated[float, _si("rad"), _text("angle", "30 deg", "0.5 rad")]
+Density = Annotated[float, _si("kg/m3"), _text("density", "2650 kg/m3", "2.65 g/cm3")]
+Stiffness = Annotated[float, _si("N/m"), _text("stiffness", "100 N/cm", "1e4 N/m")]
+Dashpot = Annotated[float, _si("N s/m"), _text("damping constant", "0.001 N s/cm")]
+Force = Annotated[float, _si("N"), _text("force", "0 N", "1 mN")]
+Acceleration = Annotated[float, _si("m/s2"), _text("acceleration", "9.8 m/s2")]
+Viscosity = Annotated[float, _si("m2/s"), _text("kinematic viscosity", "1e-6 m2/s")]
+Ratio = Annotated[
+    float,
+    AllowInfNan(False),
+    BeforeValidator(read_ratio),
+    WithJsonSchema({"anyOf": [{"type": "number"}, {"type": "string"}], "examples": ["1/20", 0.05, "5 %"]}),
+]
+
+PositiveLength = Annotated[Length, Field(gt=0)]
+Point = tuple[Length, Length, Length]

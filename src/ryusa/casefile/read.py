@@ -1,0 +1,124 @@
+"""TOML to a checked `Case`: the only door for case files."""
+
+import copy
+import json
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from ryusa.casefile.checks import RIVALS, check
+from ryusa.casefile.faults import faults
+from ryusa.casefile.schema import Case
+from ryusa.errors import CaseError
+
+LARGEST_FILE = 4 << 20  # bytes; a case file is a page of text, grains in number belong in a CSV table
+DEEPEST_KEY = 8
+
+
+def read(path: str | Path, overrides: Mapping[str, str] | None = None) -> Case:
+    """Read and check a case file.
+
+    Parameters
+    ----------
+    path : a TOML file.
+    overrides : values set from outside, such as `{"contact.stiffness": "10 N/cm"}`; TOML values or plain strings.
+        An override displaces its rival (`motion.slope_angle` displaces `motion.slope`).
+
+    Raises
+    ------
+    CaseError : the file is missing or unreadable, or holds faults; all faults found are told at once.
+    """
+    path = Path(path)
+    try:
+        if path.is_dir():
+            raise CaseError(str(path), None, "is a folder; a case is a TOML file")
+        if path.stat().st_size > LARGEST_FILE:
+            raise CaseError(str(path), None, f"is larger than {LARGEST_FILE >> 20} MiB; this is no case file")
+        text = path.read_bytes().decode("utf-8")
+    except FileNotFoundError:
+        raise CaseError(
+            str(path), None, "file not found; 'ryusa new saltation' writes a case to start from"
+        ) from None
+    except UnicodeDecodeError as error:
+        raise CaseError(str(path), None, f"is no UTF-8 text (byte {error.start})") from None
+    except (OSError, ValueError) as error:
+        raise CaseError(str(path), None, f"cannot be read: {error}") from None
+    return read_text(text, overrides, path=path)
+
+
+def read_text(text: str, overrides: Mapping[str, str] | None = None, *, path: Path | None = None) -> Case:
+    """Read and check a case given as text; `path` names the file it came from."""
+    source = path.name if path is not None else None
+    try:
+        data: dict[str, Any] = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise CaseError(source or "case", None, f"not valid TOML: {error}") from None
+    except RecursionError:
+        raise CaseError(source or "case", None, "not valid TOML: nested too deeply") from None
+    data = with_overrides(data, overrides or {})
+    try:
+        case = Case.model_validate(data)
+    except ValidationError as error:
+        raise CaseError.together(faults(error, data), source) from None
+    case._text, case._path, case._overrides = text, path, dict(overrides or {})
+    found = check(case, data)
+    if found:
+        raise CaseError.together(found, source)
+    return case
+
+
+def with_overrides(data: dict[str, Any], overrides: Mapping[str, str]) -> dict[str, Any]:
+    """Set dotted keys in a copy of the file's data."""
+    if not overrides:
+        return data
+    data = copy.deepcopy(data)
+    for key, text in overrides.items():
+        _set(data, key, _toml_value(text))
+    return data
+
+
+def _toml_value(text: str) -> Any:
+    try:
+        found = tomllib.loads(f"value = {text}")
+    except (tomllib.TOMLDecodeError, RecursionError):
+        return text
+    return found["value"] if set(found) == {"value"} else text
+
+
+def _set(data: dict[str, Any], key: str, value: Any) -> None:
+    parts = key.split(".")
+    if not all(parts) or len(parts) > DEEPEST_KEY:
+        raise CaseError(f"--set {key}", None, "needs a dotted key such as contact.stiffness")
+    here: Any = data
+    for part in parts[:-1]:
+        if isinstance(here, dict):
+            here = here.setdefault(part, {})
+        elif isinstance(here, list) and part.isdecimal() and int(part) < len(here):
+            here = here[int(part)]
+        else:
+            raise CaseError(f"--set {key}", None, f"'{part}' is no table in this case")
+    last = parts[-1]
+    if isinstance(here, list) and last.isdecimal() and int(last) < len(here):
+        here[int(last)] = value
+    elif isinstance(here, dict):
+        for group in RIVALS.get(parts[0], ()):
+            if last in group:
+                for rival in group:
+                    here.pop(rival, None)
+        here[last] = value
+    else:
+        raise CaseError(f"--set {key}", None, f"'{parts[-2]}' is no table in this case")
+
+
+def json_schema() -> dict[str, Any]:
+    """JSON Schema of the case file, for editors."""
+    schema = Case.model_json_schema(by_alias=True)
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema, "title": "ryusa case file"}
+
+
+def json_schema_text() -> str:
+    """Write the schema as docs/case.schema.json holds it."""
+    return json.dumps(json_schema(), indent=1, sort_keys=True, ensure_ascii=False) + "\n"
