@@ -1,0 +1,21 @@
+"""One function per kind of plot. A figure takes measured records and draws them; it computes no numbers."""
+
+from ryusa.figures.contact import Band, Curve, Points, over_stiffness
+from ryusa.figures.energy import energy
+from ryusa.figures.hops import contact_times, hops
+from ryusa.figures.spin import spin
+from ryusa.figures.style import save
+from ryusa.figures.tracks import tracks
+
+__all__ = [
+    "Band",
+    "Curve",
+    "Points",
+    "contact_times",
+    "energy",
+    "hops",
+    "over_stiffness",
+    "save",
+    "spin",
+    "tracks",
+]

@@ -1,0 +1,131 @@
+"""Contact time and overlap against stiffness, with closed forms, measured points and the stable band."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from ryusa.figures import style
+
+Floats = NDArray[np.float64]
+Quantity = Literal["time", "overlap"]
+
+_AXIS = {
+    "time": "contact time  $t$  (s)",
+    "overlap": "largest overlap  $\\delta_{\\max}/d$  (–)",
+}
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A line over stiffness.
+
+    Attributes
+    ----------
+    label : written at its end, or in the legend.
+    k_n : stiffness [N/m].
+    y : contact time [s] or overlap over diameter [-].
+    """
+
+    label: str
+    k_n: Floats
+    y: Floats
+
+
+@dataclass(frozen=True)
+class Points:
+    """Measured values over stiffness with their standard errors; same units as Curve."""
+
+    label: str
+    k_n: Floats
+    y: Floats
+    error: Floats
+
+
+@dataclass(frozen=True)
+class Band:
+    """A region between two lines over stiffness.
+
+    Attributes
+    ----------
+    label : written inside.
+    k_low, y_low : the edge of small overlap.
+    k_high, y_high : the edge of large overlap.
+    """
+
+    label: str
+    k_low: Floats
+    y_low: Floats
+    k_high: Floats
+    y_high: Floats
+
+
+def over_stiffness(
+    quantity: Quantity,
+    curves: Sequence[Curve],
+    points: Sequence[Points] = (),
+    band: Band | None = None,
+    levels: tuple[float, float] | None = None,
+    note: str = "",
+) -> Figure:
+    """Draw contact time or overlap against k_n, both axes logarithmic.
+
+    Parameters
+    ----------
+    quantity : "time" or "overlap".
+    curves : closed forms; with points they go into a legend, else each is labelled at its right end.
+    points : measured values.
+    band : a shaded region, such as the stable band.
+    levels : two values of y between which the whole width is shaded.
+    note : a line of text in the lower left corner (speed, density).
+    """
+    figure, (axes,) = style.new(height=2.75)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    if levels is not None:
+        axes.axhspan(*levels, color=style.BAND, lw=0)
+    if band is not None:
+        _fill(axes, band)
+    ordered = not points and len(curves) > 1
+    for k, curve in enumerate(curves):
+        colour: Any = style.shade(k / (len(curves) - 1)) if ordered else style.FAINT
+        line = "-" if ordered else style.LINES[k % len(style.LINES)]
+        axes.plot(curve.k_n, curve.y, line, color=colour, label=None if ordered else curve.label)
+        if ordered:
+            _label_end(axes, curve, colour)
+    for k, one in enumerate(points):
+        axes.errorbar(
+            one.k_n, one.y, yerr=one.error, fmt=style.MARKERS[k], color=style.COLOURS[k], mfc="white",
+            mew=1.0, capsize=1.8, elinewidth=0.8, lw=0, label=one.label,
+        )  # fmt: skip
+    axes.set_xlabel("normal stiffness  $k_n$  (N/m)")
+    axes.set_ylabel(_AXIS[quantity])
+    if curves:
+        left, right = min(c.k_n.min() for c in curves), max(c.k_n.max() for c in curves)
+        axes.set_xlim(left, right * ((right / left) ** 0.17 if ordered else 1.0))
+    if not ordered:
+        axes.legend(loc="best")
+    if note:
+        axes.annotate(
+            note, (0, 0), (4, 4), "axes fraction", textcoords="offset points", fontsize=6.5, color="#444444"
+        )
+    return figure
+
+
+def _fill(axes: Axes, band: Band) -> None:
+    x = np.concatenate([band.k_low, band.k_high[::-1]])
+    y = np.concatenate([band.y_low, band.y_high[::-1]])
+    axes.fill(x, y, color=style.BAND, lw=0)
+    for k, edge in ((band.k_low, band.y_low), (band.k_high, band.y_high)):
+        axes.plot(k, edge, color="#7d9470", lw=0.8)
+
+
+def _label_end(axes: Axes, curve: Curve, colour: Any) -> None:
+    at = (float(curve.k_n[-1]), float(curve.y[-1]))
+    axes.annotate(
+        curve.label, at, xytext=(3, 0), textcoords="offset points", va="center", fontsize=6.5, color=colour
+    )

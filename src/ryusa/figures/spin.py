@@ -1,0 +1,49 @@
+"""Spin of saltating grains against the way they went."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ryusa.figures import style
+from ryusa.measure import Spin
+from ryusa.measure.spin import TURN
+
+
+def spin(found: Spin, grains: Sequence[int] | None = None, until: float | None = None) -> Figure:
+    """Draw spin against distance, in rad/s at the left and turns per second at the right.
+
+    Parameters
+    ----------
+    found : `measure.spin`.
+    grains : columns drawn; default all, the first one dark and the others faint.
+    until : way shown [m]; default all.
+    """
+    figure, (axes,) = style.new(height=2.5)
+    columns = range(found.omega.shape[1]) if grains is None else grains
+    for order, g in enumerate(columns):
+        x = found.distance[:, g]
+        keep = x <= until if until is not None else np.ones(len(x), dtype=np.bool_)
+        first = order == 0
+        axes.plot(
+            x[keep], found.omega[keep, g], color=style.COLOURS[0] if first else "#9fb9cc",
+            lw=0.9 if first else 0.5, zorder=3 if first else 2,
+        )  # fmt: skip
+    axes.axhline(0.0, color=style.FAINT, lw=0.5)
+    axes.set_xlabel("distance along the bed  $x$  (m)")
+    axes.set_ylabel("spin  $\\omega_y$  (rad/s)")
+    axes.margins(x=0.0)
+    axes.tick_params(right=False, which="both")
+    right = axes.secondary_yaxis("right", functions=(_turns, _spin))
+    right.set_ylabel("turns per second  (1/s)", fontsize=8.0)
+    right.tick_params(labelsize=7.0, width=0.6, size=3.0, direction="in")
+    return figure
+
+
+def _turns(omega: Any) -> Any:
+    return omega / TURN
+
+
+def _spin(turns: Any) -> Any:
+    return turns * TURN

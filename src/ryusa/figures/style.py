@@ -1,0 +1,102 @@
+"""The house style: column width, thin frame, colours that survive colour blindness and grey print."""
+
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+from cycler import cycler
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+COLUMN = 3.46  # one column of a journal page, 88 mm [inch]
+PAGE = 7.09  # two columns, 180 mm [inch]
+DPI = 300
+
+# Okabe & Ito 2008, ordered so that neighbours differ in lightness too
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
+MARKERS = ("o", "s", "^", "D", "v", "P", "X")
+LINES = ("-", "--", "-.", ":")
+BED = "#b8b2a7"
+BAND = "#dfe7d8"
+FAINT = "#8a8a8a"
+
+HOUSE: Any = {
+    "font.family": "sans-serif",
+    "font.sans-serif": ["DejaVu Sans"],
+    "mathtext.fontset": "dejavusans",
+    "font.size": 7.5,
+    "axes.labelsize": 8.0,
+    "axes.titlesize": 8.0,
+    "xtick.labelsize": 7.0,
+    "ytick.labelsize": 7.0,
+    "legend.fontsize": 7.0,
+    "axes.linewidth": 0.6,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "xtick.minor.width": 0.4,
+    "ytick.minor.width": 0.4,
+    "xtick.major.size": 3.0,
+    "ytick.major.size": 3.0,
+    "xtick.minor.size": 1.6,
+    "ytick.minor.size": 1.6,
+    "xtick.direction": "in",
+    "ytick.direction": "in",
+    "xtick.top": True,
+    "ytick.right": True,
+    "axes.axisbelow": True,
+    "axes.prop_cycle": cycler(color=COLOURS),
+    "lines.linewidth": 1.1,
+    "lines.markersize": 4.0,
+    "legend.frameon": False,
+    "legend.handlelength": 1.8,
+    "svg.fonttype": "none",
+    "svg.hashsalt": "ryusa",
+    "pdf.fonttype": 42,
+}
+
+
+def new(
+    rows: int = 1, columns: int = 1, *, width: float = COLUMN, height: float = 2.6, **how: Any
+) -> tuple[Figure, list[Axes]]:
+    """Return a figure in the house style and its axes, row by row.
+
+    Parameters
+    ----------
+    rows, columns : panels.
+    width, height : of the figure [inch].
+    how : passed to `Figure.subplots` (sharex, sharey, ...).
+    """
+    with mpl.rc_context(HOUSE):
+        figure = Figure(figsize=(width, height), layout="constrained")
+        FigureCanvasAgg(figure)
+        axes = figure.subplots(rows, columns, squeeze=False, **how)
+        return figure, list(axes.flat)
+
+
+def save(figure: Figure, path: Path | str) -> Path:
+    """Write a figure; the kind follows from the suffix (.png at 300 dpi, .svg, .pdf)."""
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    still = {"Date": None} if path.suffix in {".svg"} else None  # the same picture gives the same bytes
+    with mpl.rc_context(HOUSE):
+        figure.savefig(path, dpi=DPI, metadata=still)
+    return path
+
+
+def label_panel(axes: Axes, text: str) -> None:
+    """Put a panel's letter into its upper left corner."""
+    axes.annotate(
+        text,
+        (0, 1),
+        xytext=(3, -3),
+        xycoords="axes fraction",
+        textcoords="offset points",
+        va="top",
+        weight="bold",
+    )
+
+
+def shade(value: float) -> tuple[float, float, float, float]:
+    """A colour for an ordered quantity, value from 0 (dark) to 1 (light but still readable on white)."""
+    return mpl.colormaps["viridis"](0.85 * value)

@@ -1,0 +1,89 @@
+"""Paths of grains over the bed, drawn to scale in stacked panels."""
+
+import math
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PatchCollection
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle
+
+from ryusa.figures import style
+from ryusa.measure import Tracks
+
+
+def tracks(
+    found: Tracks, panels: int | None = None, exaggeration: float = 1.0, length: float | None = None
+) -> Figure:
+    """Draw the paths of the chosen grains' centres, with bed grains and some outlines of the moving grain.
+
+    Parameters
+    ----------
+    found : paths (`measure.tracks`).
+    panels : rows the way is cut into; default what makes a row about 40 diameters long.
+    exaggeration : vertical over horizontal scale; 1 keeps grains round. Stated in the figure when not 1.
+    length : way shown [m]; default all.
+    """
+    d = float(found.d[0]) if len(found.d) else 1.0
+    x0 = float(np.nanmin(found.x)) - d
+    total = (float(np.nanmax(found.x)) + d - x0) if length is None else length
+    rows = panels or min(max(math.ceil(total / (40.0 * d)), 1), 8)
+    span = total / rows
+    inside = found.x <= x0 + total
+    top = float(found.z[inside].max()) + 0.8 * d
+    bottom = float(found.bed_z.min()) - 0.1 * d if len(found.bed_z) else float(found.z.min()) - d
+    row = (style.PAGE - 0.6) * (top - bottom) / span * exaggeration
+    figure, axes = style.new(rows, width=style.PAGE, height=0.42 + rows * (row + 0.27))
+    mm = 1.0e3
+    for k, panel in enumerate(axes):
+        low = x0 + k * span
+        _bed(panel, found, low, low + span)
+        for c in range(found.x.shape[1]):
+            _path(panel, found, c, low, low + span)
+        panel.set_xlim(low * mm, (low + span) * mm)
+        panel.set_ylim(bottom * mm, top * mm)
+        panel.set_aspect(exaggeration)
+        panel.locator_params(axis="y", nbins=4)
+    axes[-1].set_xlabel("distance along the bed  $x$  (mm)")
+    figure.supylabel("height  $z$  (mm)", fontsize=8.0)
+    if exaggeration != 1.0:
+        axes[0].set_title(f"heights drawn {exaggeration:g} times too large", loc="right", fontsize=6.5)
+    return figure
+
+
+def _bed(axes: Axes, found: Tracks, low: float, high: float) -> None:
+    """Bed grains that fall into the panel, repeated over periods."""
+    mm = 1.0e3
+    circles: list[Circle] = []
+    for x, z, d in zip(found.bed_x, found.bed_z, found.bed_d, strict=True):
+        for at in _copies(float(x), low - d, high + d, found.period):
+            circles.append(Circle((at * mm, z * mm), 0.5 * d * mm))
+    axes.add_collection(PatchCollection(circles, facecolor=style.BED, edgecolor="#8c8578", linewidth=0.4))
+
+
+def _copies(x: float, low: float, high: float, period: float) -> list[float]:
+    if not math.isfinite(period):
+        return [x] if low <= x <= high else []
+    first = math.ceil((low - x) / period)
+    last = math.floor((high - x) / period)
+    return [x + n * period for n in range(first, last + 1)]
+
+
+def _path(axes: Axes, found: Tracks, column: int, low: float, high: float) -> None:
+    mm = 1.0e3
+    x, z, d = found.x[:, column], found.z[:, column], float(found.d[column])
+    near = (x >= low - d) & (x <= high + d)
+    if not near.any():
+        return
+    colour = style.COLOURS[column % len(style.COLOURS)]
+    # a break wherever the grain is outside the panel
+    axes.plot(np.where(near, x, np.nan) * mm, z * mm, color=colour, lw=0.9, solid_joinstyle="round")
+    # outlines of the grain every so many diameters of way, so that its size can be seen
+    if found.x.shape[1] == 1:
+        ways = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(z)))])
+        marks = np.unique(np.searchsorted(ways, np.arange(0.0, ways[-1], 2.5 * d)))
+        marks = marks[near[marks]]
+        rings = [Circle((float(x[k]) * mm, float(z[k]) * mm), 0.5 * d * mm) for k in marks]
+        axes.add_collection(
+            PatchCollection(rings, facecolor="none", edgecolor=colour, linewidth=0.35, alpha=0.55)
+        )

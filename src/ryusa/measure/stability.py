@@ -1,0 +1,184 @@
+"""What the closed forms say about a grain before a run: stiffness, contact time, overlap, step, cost."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ryusa.laws.collision import (
+    collision_time,
+    contact_time_no_tension,
+    omega_natural,
+    overlap_max,
+    stiffness_for_overlap,
+    zeta_no_tension,
+)
+from ryusa.laws.contact import damping
+from ryusa.laws.drag import added_mass, volume
+from ryusa.measure._run import Floats
+
+BAND = (0.001, 0.01)  # largest overlap over diameter: stiffer costs steps, softer trembles (Fig. 11)
+A_3 = math.pi / 6.0
+C_M = 0.5
+RHO_W = 1000.0
+SHEAR_RATIO = 2.0 / 7.0
+
+
+@dataclass(frozen=True)
+class Grain:
+    """A grain, how hard it hits, and where it is.
+
+    Attributes
+    ----------
+    d : diameter [m].
+    rho_s : density [kg/m3].
+    e : restitution wanted, without tension [-].
+    speed : impact speed [m/s].
+    water : True when it carries added mass (C_M = 0.5, 1000 kg/m3).
+    """
+
+    d: float
+    rho_s: float
+    e: float
+    speed: float
+    water: bool = False
+
+    @property
+    def m(self) -> float:
+        """Mass [kg]."""
+        return self.rho_s * volume(self.d, A_3)
+
+    @property
+    def m_moving(self) -> float:
+        """Mass that resists acceleration [kg]: with added mass in water."""
+        return self.m + (added_mass(RHO_W, C_M, volume(self.d, A_3)) if self.water else 0.0)
+
+
+@dataclass(frozen=True)
+class Choice:
+    """What follows from one stiffness; "fixed" against a fixed grain, "free" between two alike.
+
+    Attributes
+    ----------
+    k_n, k_s : stiffness [N/m].
+    overlap_fixed, overlap_free : largest overlap over diameter at the impact speed [-].
+    eq_8 : Eq. (8) with the dry grain's mass [s].
+    time_fixed, time_free : contact time with dashpot and added mass [s].
+    eta_fixed, eta_free : normal dashpot that gives e [N s/m].
+    dt : step, the undamped contact time of a free pair over the steps per contact [s].
+    travel : speed times contact time over diameter [-]; beyond about 0.3 a grain skims the crests.
+    steps : steps per simulated second.
+    cost : seconds of computing per simulated second and thousand grains at `rate`.
+    """
+
+    k_n: float
+    k_s: float
+    overlap_fixed: float
+    overlap_free: float
+    eq_8: float
+    time_fixed: float
+    time_free: float
+    eta_fixed: float
+    eta_free: float
+    dt: float
+    travel: float
+    steps: float
+    cost: float
+
+    def row(self) -> dict[str, object]:
+        """One line of a CSV table."""
+        units = {"k_n": "N_per_m", "k_s": "N_per_m", "eq_8": "s", "time_fixed": "s", "time_free": "s"}
+        units |= {"eta_fixed": "Ns_per_m", "eta_free": "Ns_per_m", "dt": "s", "steps": "per_s"}
+        units |= {"cost": "s_per_s"}
+        return {f"{n}_{units[n]}" if n in units else n: v for n, v in vars(self).items()}
+
+
+def stable_range(grain: Grain, band: tuple[float, float] = BAND) -> tuple[float, float]:
+    """Softest and stiffest k_n [N/m] whose largest overlap on a fixed grain stays in the band."""
+    zeta = zeta_no_tension(grain.e)
+    soft = stiffness_for_overlap(band[1] * grain.d, grain.speed, grain.m_moving, zeta)
+    stiff = stiffness_for_overlap(band[0] * grain.d, grain.speed, grain.m_moving, zeta)
+    return soft, stiff
+
+
+def choice(grain: Grain, k_n: float, steps_per_contact: float = 50.0, rate: float = 5.0e6) -> Choice:
+    """Everything that follows from a stiffness.
+
+    Parameters
+    ----------
+    grain : what hits.
+    k_n : normal stiffness [N/m].
+    steps_per_contact : steps in the undamped contact of two free grains [-].
+    rate : grain steps per second that the machine is assumed to do [1/s].
+    """
+    zeta = zeta_no_tension(grain.e)
+    fixed, free = grain.m_moving, 0.5 * grain.m_moving
+    time_fixed = contact_time_no_tension(zeta, omega_natural(k_n, fixed))
+    dt = collision_time(free, k_n) / steps_per_contact
+    return Choice(
+        k_n=k_n,
+        k_s=SHEAR_RATIO * k_n,
+        overlap_fixed=overlap_max(grain.speed, fixed, k_n, zeta) / grain.d,
+        overlap_free=overlap_max(grain.speed, free, k_n, zeta) / grain.d,
+        eq_8=collision_time(grain.m, k_n),
+        time_fixed=time_fixed,
+        time_free=contact_time_no_tension(zeta, omega_natural(k_n, free)),
+        eta_fixed=damping(zeta, k_n, fixed),
+        eta_free=damping(zeta, k_n, free),
+        dt=dt,
+        travel=grain.speed * time_fixed / grain.d,
+        steps=1.0 / dt,
+        cost=1.0e3 / dt / rate,
+    )
+
+
+@dataclass(frozen=True)
+class Chart:
+    """Contact time and overlap of several diameters over a range of stiffness.
+
+    Attributes
+    ----------
+    d : diameters [m], shape (n,).
+    k_n : stiffness [N/m], shape (m,).
+    time : Eq. (8) with the dry mass [s], shape (n, m).
+    overlap : largest overlap over diameter on a fixed grain [-], damped, shape (n, m).
+    band_k, band_time : stiffness [N/m] and Eq. (8) [s] at both edges of the band, shape (2, n).
+    """
+
+    d: Floats
+    k_n: Floats
+    time: Floats
+    overlap: Floats
+    band_k: Floats
+    band_time: Floats
+
+    def rows(self) -> list[dict[str, object]]:
+        """One dictionary per diameter and stiffness."""
+        return [
+            {
+                "d_m": float(d),
+                "k_n_N_per_m": float(k),
+                "time_s": float(self.time[i, j]),
+                "overlap_over_d": float(self.overlap[i, j]),
+            }
+            for i, d in enumerate(self.d)
+            for j, k in enumerate(self.k_n)
+        ]
+
+
+def chart(grain: Grain, d: Floats, k_n: Floats, band: tuple[float, float] = BAND) -> Chart:
+    """Contact time, overlap and band for diameters d [m] over stiffness k_n [N/m]; the rest as `grain`."""
+    zeta = zeta_no_tension(grain.e)
+    grains = [replace(grain, d=float(one)) for one in d]
+    time = [[collision_time(g.m, float(k)) for k in k_n] for g in grains]
+    overlap = [[overlap_max(g.speed, g.m_moving, float(k), zeta) / g.d for k in k_n] for g in grains]
+    edges = np.array([stable_range(g, band) for g in grains]).T  # softest, stiffest
+    at_edges = [[collision_time(g.m, float(k)) for g, k in zip(grains, row, strict=True)] for row in edges]
+    return Chart(
+        d=np.asarray(d, dtype=np.float64),
+        k_n=np.asarray(k_n, dtype=np.float64),
+        time=np.array(time),
+        overlap=np.array(overlap),
+        band_k=edges,
+        band_time=np.array(at_edges),
+    )
