@@ -2,13 +2,13 @@
 
 
 class RyusaError(Exception):
-    """Base of every error a user can cause or meet; the CLI prints it in one block and exits with `exit_code`."""
+    """Base of every error a user can meet; the CLI prints it in one block and exits with `exit_code`."""
 
     exit_code = 2
 
 
 class CaseError(RyusaError):
-    """A case file that cannot be run: names the key path, the value, what is allowed and the nearest known key.
+    """A case that cannot be run: names the key path, the value, what is allowed and the nearest known key.
 
     A file with several faults is told at once: `others` holds the errors after the first.
     """
@@ -35,7 +35,7 @@ class CaseError(RyusaError):
 
     @property
     def line(self) -> str:
-        """This fault alone, on one line."""
+        """The first fault alone, on one line."""
         text = (
             f"{self.key}: {self.allowed}"
             if self.value is None

@@ -40,18 +40,14 @@ def gravity(g: float, slope: float) -> Floats:
 
 
 def masses(d: Floats, density: float, a_3: float, water: Water) -> tuple[Floats, Floats, Floats, Floats]:
-    """Mass, added mass, mass that gravity sees [kg] and moment of inertia [kg m2] of grains of diameter d [m]."""
-    volume = drag.volume(d, a_3)
+    """Mass, added mass, mass that gravity sees [kg], moment of inertia [kg m2] of grains of diameter d [m]."""
+    volume = np.array([drag.volume(one, a_3) for one in d.tolist()])
     m = density * volume
-    inertia = motion.inertia_sphere(m, d)
+    inertia = np.array([motion.inertia_sphere(*one) for one in zip(m.tolist(), d.tolist(), strict=True)])
     if water.profile == Profile.NONE:
         return m, np.zeros_like(d), m.copy(), inertia
-    return (
-        m,
-        drag.added_mass(water.rho_w, water.c_m, volume),
-        drag.submerged_mass(m, water.rho_w, volume),
-        inertia,
-    )
+    m_added = np.array([drag.added_mass(water.rho_w, water.c_m, one) for one in volume.tolist()])
+    return m, m_added, m - water.rho_w * volume, inertia
 
 
 def assemble(layout: Layout, laws: Laws) -> tuple[Scene, State]:

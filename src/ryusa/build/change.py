@@ -12,7 +12,7 @@ from ryusa.model import Scene
 
 
 def change(case: Case, scene: Scene, entry: Change) -> Scene:
-    """Scene after one entry of the timeline: a group removed, gravity tilted, friction or rotation switched."""
+    """Scene after one entry of the timeline: a group gone, gravity tilted, friction or rotation switched."""
     if entry.remove is not None:
         return _without(scene, entry.remove)
     if entry.slope is not None or entry.slope_angle is not None:

@@ -1,7 +1,7 @@
 """First grains must not overlap: finds the worst pair and names both."""
 
 import numpy as np
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 from ryusa.build.layout import Layout, unit
 from ryusa.errors import CaseError
@@ -22,7 +22,7 @@ def refuse_overlaps(layout: Layout, key: str) -> None:
         if sides[axis] > 0.0:
             x[:, axis] = np.mod(x[:, axis], sides[axis])
             x[x[:, axis] >= sides[axis], axis] = 0.0
-    pairs = cKDTree(x, boxsize=sides).query_pairs(float(d.max()), output_type="ndarray")
+    pairs = KDTree(x, boxsize=sides).query_pairs(float(d.max()), output_type="ndarray")
     pairs = pairs[(pairs[:, 0] < n) | (pairs[:, 1] < n)]
     if not len(pairs):
         return
@@ -36,11 +36,12 @@ def refuse_overlaps(layout: Layout, key: str) -> None:
     if relative[worst] > TOLERANCE:
         first, second = sorted((int(i[worst]), int(j[worst])))
         count = int((relative > TOLERANCE).sum())
+        who = name(layout, first)
         more = f"; {count} pairs overlap" if count > 1 else ""
         raise CaseError(
             key,
             None,
-            f"first grains overlap: {name(layout, first)} and {name(layout, second)} by {relative[worst]:.3g} d{more}",
+            f"first grains overlap: {who} and {name(layout, second)} by {relative[worst]:.3g} d{more}",
         )
 
 

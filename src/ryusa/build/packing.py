@@ -11,7 +11,7 @@ from ryusa.model.scene import Floats
 
 
 def packing(case: Case) -> Layout:
-    """Free lattice of columns x rows x layers above the bed, periodic in x (and y in three dimensions); group `bed`."""
+    """Free lattice above the bed, periodic in x (and in y in three dimensions); group `bed`."""
     keys = case.build
     assert isinstance(keys, Packing)
     rng = np.random.default_rng(case.seed)

@@ -55,7 +55,7 @@ def scene(
     v, omega : velocities [m/s] and spins [rad/s], shape (n, 3); at rest when not given.
     x_fixed, d_fixed : fixed grains, as x and d; d_fixed is the mean of d when not given.
     planes : (name, point [m], normal) of each flat wall.
-    stiffness, shear_ratio, restitution, restitution_shear, friction, slip, tension : the contact law in short;
+    stiffness, shear_ratio, restitution, restitution_shear, friction, slip, tension : the contact law;
         friction is mu = tan(phi). `contact` gives a whole law instead.
     gravity, slope : g [m/s2] and bed slope [rad], down towards +x.
     period : periods in x and y [m]; inf where open.

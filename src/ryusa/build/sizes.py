@@ -4,15 +4,14 @@ import math
 
 import numpy as np
 
-from ryusa.casefile.derive import CUT
+from ryusa.casefile.derive import CUT, spread_of
 from ryusa.casefile.schema import Case
 from ryusa.model.scene import Floats
 
 
 def draw(case: Case, n: int, rng: np.random.Generator) -> Floats:
-    """Diameters [m] of n grains as `grains.spread` has them; mean as `grains.diameter` within the scatter of n."""
-    d, spread = case.grains.diameter, case.grains.spread
-    kind, ratio = ("uniform", spread) if isinstance(spread, float) else (spread.kind, spread.ratio)
+    """Diameters [m] of n grains as `grains.spread` has them."""
+    d, (kind, ratio) = case.grains.diameter, spread_of(case)
     if ratio == 0.0:
         return np.full(n, d)
     if kind == "uniform":

@@ -11,7 +11,7 @@ from ryusa.model.scene import Floats
 
 
 def table(case: Case) -> Layout:
-    """Grains as the table has them; rows of one group become neighbours in the order of ids, else order is kept."""
+    """Grains as the table has them; ids follow its order, but rows of one group stand together."""
     keys, grid = case.build, table_of(case)
     assert isinstance(keys, Table)
     assert grid is not None

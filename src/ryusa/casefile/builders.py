@@ -63,7 +63,8 @@ class Table(_Keys):
     kind: Literal["table"]
     """Name of the builder."""
     file: Annotated[str, Field(min_length=1, max_length=400), AfterValidator(_relative)]
-    """CSV file inside the folder of the case; columns x, y, z, d, vx, vy, vz, wx, wy, wz, fixed, group, units in the header."""
+    """CSV file inside the folder of the case; columns x, y, z, d, vx, vy, vz, wx, wy, wz with units in the
+    header, such as x [cm], then fixed (0 or 1) and group (a name)."""
     allow_overlap: bool = False
     """May first grains overlap."""
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from ryusa.casefile.builders import Drop, Packing, Saltation, Table
-from ryusa.casefile.schema import Case
+from ryusa.casefile.schema import Case, Spread
 from ryusa.errors import CaseError
 
 RIVALS: dict[str, tuple[tuple[str, str], ...]] = {
@@ -132,7 +132,7 @@ def _motion(case: Case) -> Iterator[CaseError]:
 def _builder(case: Case) -> Iterator[CaseError]:
     build = case.build
     spread = case.grains.spread
-    ratio = spread if isinstance(spread, float) else spread.ratio
+    ratio = spread.ratio if isinstance(spread, Spread) else spread
     if isinstance(build, (Drop, Saltation)) and ratio > 0.0:
         yield CaseError("grains.spread", ratio, f"must be 0 for builder '{build.kind}'")
     if isinstance(build, Drop):

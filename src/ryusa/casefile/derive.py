@@ -5,7 +5,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from ryusa.casefile.builders import Drop, Packing, Saltation
-from ryusa.casefile.schema import Case, StiffnessForOverlap, StiffnessForTime
+from ryusa.casefile.schema import Case, Spread, StiffnessForOverlap, StiffnessForTime
 from ryusa.casefile.table import table_of
 from ryusa.laws import collision, drag, motion, water
 from ryusa.laws import contact as contact_law
@@ -65,7 +65,7 @@ class Derived:
 
 
 def mass(case: Case, d: float) -> tuple[float, float, float, float]:
-    """Mass, added mass, mass that gravity sees [kg] and moment of inertia [kg m2] of a grain of diameter d [m]."""
+    """Mass, added mass, mass that gravity sees [kg], moment of inertia [kg m2] of a grain of diameter d [m]."""
     volume = drag.volume(d, case.grains.shape_volume)
     m = case.grains.density * volume
     inertia = motion.inertia_sphere(m, d)
@@ -80,14 +80,19 @@ def mass(case: Case, d: float) -> tuple[float, float, float, float]:
     )
 
 
+def spread_of(case: Case) -> tuple[str, float]:
+    """Shape and relative width of the size distribution."""
+    spread = case.grains.spread
+    return (spread.kind, spread.ratio) if isinstance(spread, Spread) else ("uniform", float(spread))
+
+
 def sizes(case: Case) -> tuple[float, float, float]:
     """Mean, smallest and largest diameter that can occur [m]."""
     table = table_of(case)
     if table is not None:
         every = table.column("d")
         return float(every.mean()), float(every.min()), float(every.max())
-    d, spread = case.grains.diameter, case.grains.spread
-    kind, ratio = ("uniform", spread) if isinstance(spread, float) else (spread.kind, spread.ratio)
+    d, (kind, ratio) = case.grains.diameter, spread_of(case)
     if kind == "uniform":
         return d, d * (1.0 - ratio), d * (1.0 + ratio)
     if kind == "normal":
@@ -164,7 +169,7 @@ def restitution(case: Case) -> tuple[float, float, float, float]:
 
 
 def stiffness(case: Case) -> tuple[float, float]:
-    """Give k_n and k_s [N/m], from the case or from what it asks for; the pair is a mean grain on a fixed one."""
+    """Give k_n and k_s [N/m], as written or as asked for by a mean grain on a fixed one."""
     rule, contact = case.contact.stiffness, case.contact
     m, m_added, _, _ = mass(case, sizes(case)[0])
     if isinstance(rule, StiffnessForOverlap):
@@ -319,3 +324,41 @@ def _plain(value: Any) -> Any:
     if isinstance(value, float) and not math.isfinite(value):
         return None
     return value
+
+
+def drag_coefficient(case: Case, re: float) -> float:
+    """C_D of a case at a grain Reynolds number [-]."""
+    assert case.water is not None
+    if case.water.drag == "constant":
+        return case.water.drag_coefficient
+    if case.water.drag == "none":
+        return 0.0
+    return _C_D[case.water.drag](re)
+
+
+_C_D = {
+    "24/Re+0.4": drag.c_d_re_04,
+    "24/Re+2": drag.c_d_re_2,
+    "Schiller-Naumann": drag.c_d_schiller_naumann,
+    "Ferguson-Church sphere": drag.c_d_ferguson_church_sphere,
+    "Ferguson-Church sand": drag.c_d_ferguson_church_sand,
+}
+
+
+def terminal_velocity(case: Case) -> float:
+    """Settling velocity of the mean grain [m/s]; inf when nothing holds it, nan when it floats."""
+    d, wet = sizes(case)[0], case.water
+    m_weight = mass(case, d)[2]
+    if wet is None or wet.drag == "none":
+        return math.inf
+    if m_weight < 0.0:
+        return math.nan
+    pull, low, high = m_weight * case.motion.gravity, 0.0, 1.0e4
+    for _ in range(200):
+        w = 0.5 * (low + high)
+        c_d = drag_coefficient(case, drag.reynolds(w, d, wet.viscosity))
+        if drag.drag_factor(w, c_d, wet.density, wet.shape_area, d) * w > pull:
+            high = w
+        else:
+            low = w
+    return 0.5 * (low + high)

@@ -1,4 +1,4 @@
-"""From the schema's complaints to errors that name key path, value, what is allowed and the nearest known key."""
+"""From the schema's complaints to errors that name key path, value, what is allowed and the nearest key."""
 
 import difflib
 import types
@@ -85,7 +85,7 @@ def nearest_word(value: object, words: Sequence[str]) -> str | None:
 
 
 def nearest_key(path: Sequence[str | int], data: dict[str, Any]) -> str | None:
-    """Find the known key nearest to an unknown one: in its own table first, then of the same name elsewhere."""
+    """Find the known key nearest to an unknown one: in its own table first, then elsewhere."""
     name = str(path[-1])
     here = keys_at(path[:-1], data)
     found = nearest_word(name, here)

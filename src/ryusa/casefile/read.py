@@ -24,7 +24,7 @@ def read(path: str | Path, overrides: Mapping[str, str] | None = None) -> Case:
     Parameters
     ----------
     path : a TOML file.
-    overrides : values set from outside, such as `{"contact.stiffness": "10 N/cm"}`; TOML values or plain strings.
+    overrides : values set from outside, such as `{"contact.stiffness": "10 N/cm"}`; TOML values or plain text.
         An override displaces its rival (`motion.slope_angle` displaces `motion.slope`).
 
     Raises

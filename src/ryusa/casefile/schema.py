@@ -121,7 +121,7 @@ class Contact(Section):
     cohesion: Annotated[Force, Field(ge=0)] = 0.0
     """Grain-level cohesion c of Eq. (4)."""
     slip: Literal["spring", "spring-drop", "total"] = "spring"
-    """What the Coulomb cap holds down: the spring (dashpot kept or dropped while sliding), or spring plus dashpot."""
+    """What the Coulomb cap holds: the spring (dashpot kept or dropped while sliding), or spring plus dashpot."""
     cap: Literal["spring", "total"] | None = None
     """Normal force that feeds the cap: spring e_n, or total f_n (the default of slip = "total")."""
     parting: Literal["no tension", "tension"] = "no tension"

@@ -16,8 +16,11 @@ from ryusa.units import UnitError, quantity
 if TYPE_CHECKING:
     from ryusa.casefile.schema import Case
 
-UNITS = {"x": "m", "y": "m", "z": "m", "d": "m", "vx": "m/s", "vy": "m/s", "vz": "m/s"}
-UNITS |= {"wx": "rad/s", "wy": "rad/s", "wz": "rad/s"}
+UNITS = {
+    **dict.fromkeys(("x", "y", "z", "d"), "m"),
+    **dict.fromkeys(("vx", "vy", "vz"), "m/s"),
+    **dict.fromkeys(("wx", "wy", "wz"), "rad/s"),
+}
 NEEDED = ("x", "z", "d")
 LARGEST_FILE = 1 << 30  # bytes
 _YES, _NO = {"1", "true", "yes", "fixed"}, {"0", "false", "no", "free", ""}

@@ -1,0 +1,379 @@
+"""A case explained back: every derived number with its unit and where it comes from."""
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+from ryusa.casefile import estimate
+from ryusa.casefile.builders import Drop, Packing
+from ryusa.casefile.derive import Derived, Pair, terminal_velocity, water_speed
+from ryusa.casefile.schema import Case, StiffnessForOverlap, StiffnessForTime
+from ryusa.laws import collision, drag
+from ryusa.units import format_quantity
+
+BAND = (1.0e-3, 1.0e-2)  # overlap over d of stable and free motion: the paper, fig11
+SKIMMING = 0.3  # u t/d beyond which contacts end by geometry, not by Eq. (8)
+FAR_APART = 1.5  # ratio of tangential to normal half period from which e_s is not defined
+FEWEST_STEPS = 10.0
+ROUND = 3600.0  # [s]
+
+
+@dataclass(frozen=True)
+class Row:
+    """One line of the explanation."""
+
+    section: str
+    name: str
+    value: float | int | str  # SI, or a word
+    unit: str  # of the value; "" for words and counts
+    shown: str  # value and unit as a person writes them
+    how: str  # where it comes from
+    flag: Literal["", "note", "warning"] = ""
+
+
+def explain(case: Case) -> list[Row]:
+    """Rows of name, value, unit and origin, in the order a reader wants them."""
+    found = case.derived
+    return [
+        *_grain(case, found),
+        *_contact(case, found),
+        *_damping(case, found),
+        *_step(case, found),
+        *_impact(case, found),
+        *_water(case, found),
+        *_cost(case),
+    ]
+
+
+def warnings(case: Case) -> list[str]:
+    """Give one sentence per doubtful number of a case; the run goes on."""
+    return [f"{row.name} = {row.shown}: {row.how}" for row in explain(case) if row.flag == "warning"]
+
+
+def _row(
+    section: str, name: str, value: float, unit: str, how: str, flag: Literal["", "note", "warning"] = ""
+) -> Row:
+    si = _SHOWN.get(unit, (unit, unit))
+    return Row(section, name, value, si[0], format_quantity(value, si[1]), how, flag)
+
+
+_SHOWN = {  # unit asked for: (SI unit of the value, unit shown)
+    "cm": ("m", "cm"),
+    "N/cm": ("N/m", "N/cm"),
+    "N s/cm": ("N s/m", "N s/cm"),
+    "deg": ("rad", "deg"),
+    "": ("", ""),
+    "-": ("", ""),
+}
+
+
+def _grain(case: Case, found: Derived) -> list[Row]:
+    wet = case.water
+    at = "mean diameter" if found.d_max > found.d_min else "diameter"
+    rows = [
+        _row(
+            "grains",
+            at,
+            found.d,
+            "cm",
+            "grains.diameter" if case.build.kind != "table" else "mean of the table",
+        )
+    ]
+    if found.d_max > found.d_min:
+        rows += [
+            _row("grains", "smallest diameter", found.d_min, "cm", "lower end of the sizes"),
+            _row("grains", "largest diameter", found.d_max, "cm", "upper end of the sizes"),
+        ]
+    rows += [
+        Row("grains", "free grains", found.n_grain, "", str(found.n_grain), f"builder '{case.build.kind}'"),
+        Row("grains", "fixed grains", found.n_fixed, "", str(found.n_fixed), f"builder '{case.build.kind}'"),
+        _row(
+            "grains", "mass m", found.m, "kg", "rho_s A_3 d^3: grains weigh as spheres, in a plane scene too"
+        ),
+    ]
+    if wet is not None:
+        rows += [
+            _row(
+                "grains",
+                "added mass",
+                found.m_added,
+                "kg",
+                f"rho_w C_M A_3 d^3, C_M = {wet.added_mass:g}; in the inertia",
+            ),
+            _row(
+                "grains",
+                "mass under water",
+                found.m_weight,
+                "kg",
+                "(rho_s - rho_w) A_3 d^3: what gravity sees",
+            ),
+        ]
+    rows.append(
+        _row("grains", "moment of inertia", found.inertia, "kg m2", "m d^2/10, never with added mass")
+    )
+    return rows
+
+
+def _contact(case: Case, found: Derived) -> list[Row]:
+    rule, contact = case.contact.stiffness, case.contact
+    if isinstance(rule, StiffnessForOverlap):
+        how = f"asked: overlap {rule.overlap:g} d at {rule.speed:g} m/s on a fixed grain"
+    elif isinstance(rule, StiffnessForTime):
+        how = f"asked: Eq. (8) gives {rule.collision_time:g} s on a fixed grain"
+    else:
+        how = "contact.stiffness"
+    shear = (
+        "contact.shear_stiffness"
+        if contact.shear_stiffness is not None
+        else f"{found.k_s / found.k_n:.4g} k_n"
+    )
+    angle = math.degrees(math.atan(found.mu))
+    return [
+        _row("contact", "k_n", found.k_n, "N/cm", how),
+        _row("contact", "k_s", found.k_s, "N/cm", shear),
+        _row("contact", "friction mu", found.mu, "-", f"tan(phi), phi = {angle:.3g} deg"),
+    ]
+
+
+def _damping(case: Case, found: Derived) -> list[Row]:
+    asked = not math.isnan(found.e_n)
+    rows: list[Row] = []
+    for name, pair in (("on fixed", found.fixed), ("between grains", found.free)):
+        eta = "2 zeta sqrt(k_n m_eff) for the restitution asked" if asked else "contact.damping, a constant"
+        e = (
+            f"asked, {case.contact.parting}"
+            if asked
+            else f"from eta_n and the pair's mass, {case.contact.parting}"
+        )
+        differ = not asked and abs(found.fixed.e - found.free.e) > 0.02
+        rows += [
+            _row("damping", f"eta_n {name}", pair.eta_n, "N s/cm", eta),
+            _row(
+                "damping",
+                f"eta_s {name}",
+                pair.eta_s,
+                "N s/cm",
+                "2 zeta_s sqrt(k_s m_t)" if asked else "a constant",
+            ),
+            _row("damping", f"restitution e {name}", pair.e, "-", e, "note" if differ else ""),
+        ]
+    rows += _shear(case, "on fixed", found.fixed)
+    if found.meet:
+        rows += _shear(case, "between grains", found.free)
+    return rows
+
+
+def _shear(case: Case, name: str, pair: Pair) -> list[Row]:
+    if math.isinf(pair.t_shear):
+        return [
+            Row(
+                "damping",
+                f"tangential half period {name}",
+                "none",
+                "",
+                "none",
+                "k_s = 0: no tangential spring",
+            )
+        ]
+    ratio = pair.t_shear / pair.t_undamped
+    locked = "locked" if case.motion.rotation == "locked" else "free"
+    how = f"{ratio:.3g} normal half periods, rotation {locked}"
+    flag: Literal["", "note"] = ""
+    if not 1.0 / FAR_APART <= ratio <= FAR_APART:
+        how += "; a tangential restitution is not defined there"
+        flag = "note"
+    return [_row("damping", f"tangential half period {name}", pair.t_shear, "s", how, flag)]
+
+
+def _step(case: Case, found: Derived) -> list[Row]:
+    rows: list[Row] = []
+    for name, pair in (("on fixed", found.fixed), ("between grains", found.free)):
+        rows += [
+            _row(
+                "time",
+                f"collision time {name}",
+                pair.t_undamped,
+                "s",
+                "Eq. (8), added mass counted, no dashpot",
+            ),
+            _row("time", f"contact time {name}", pair.t_col, "s", f"damped, {case.contact.parting}"),
+        ]
+    who = "two free grains" if found.meet else "a grain on a fixed one"
+    size = "smallest" if found.d_max > found.d_min else "such"
+    given = (
+        "time.step" if case.time.step is not None else f"shortest contact over {found.steps_per_contact:.4g}"
+    )
+    few = found.steps_per_contact < FEWEST_STEPS
+    advice = "; fewer than the ten that the paper asks for: restitution will be off" if few else ""
+    return [
+        *rows,
+        _row("time", "shortest contact", found.shortest, "s", f"{who}, {size} grains"),
+        _row("time", "dt", found.dt, "s", given),
+        _row(
+            "time",
+            "steps per contact",
+            found.steps_per_contact,
+            "-",
+            f"shortest contact over dt{advice}",
+            "warning" if few else "",
+        ),
+    ]
+
+
+def expected_speed(case: Case) -> tuple[float, str]:
+    """Impact speed to judge the overlap by [m/s], and where it comes from."""
+    rule, build, found = case.contact.stiffness, case.build, case.derived
+    if isinstance(rule, StiffnessForOverlap):
+        return rule.speed, "contact.stiffness.speed"
+    settling = terminal_velocity(case)
+    if isinstance(build, Drop):
+        height = build.height or 0.0
+        fall = math.sqrt(
+            build.speed**2 + 2.0 * found.g * height * (found.m_weight / (found.m + found.m_added))
+        )
+        if math.isfinite(settling) and settling < fall:
+            return max(settling, build.speed), "settling velocity, reached before the drop speed"
+        return fall, "speed of the drop, no drag"
+    if isinstance(build, Packing):
+        return math.sqrt(2.0 * found.g * found.d), "fall through one diameter, sqrt(2 g d)"
+    if math.isfinite(settling):
+        return settling, "settling velocity; a saltating grain mostly hits more slowly"
+    return math.sqrt(2.0 * found.g * found.d), "fall through one diameter, sqrt(2 g d)"
+
+
+def _impact(case: Case, found: Derived) -> list[Row]:
+    speed, origin = expected_speed(case)
+    rows = [_row("impact", "expected impact speed", speed, "m/s", origin)]
+    overlap = collision.overlap_max(speed, found.fixed.m, found.k_n, found.fixed.zeta_n) / found.d
+    low, high = BAND
+    flag: Literal["", "note", "warning"] = "warning" if overlap > high else "note" if overlap < low else ""
+    verdict = (
+        "above the stable band"
+        if overlap > high
+        else "below the band"
+        if overlap < low
+        else "in the stable band"
+    )
+    advice = "; stiffen k_n" if overlap > high else "; k_n could be softer" if overlap < low else ""
+    rows.append(
+        _row(
+            "impact",
+            "largest overlap/d",
+            overlap,
+            "-",
+            f"on a fixed grain: {verdict} 0.001-0.01{advice}",
+            flag,
+        )
+    )
+    if isinstance(case.build, Packing):
+        weight = case.build.layers * found.m_weight * found.g * math.cos(found.slope)
+        rest = weight / (found.k_n * found.d)
+        deep: Literal["", "warning"] = "warning" if rest > high else ""
+        rows.append(
+            _row(
+                "impact",
+                "overlap/d at rest",
+                rest,
+                "-",
+                f"{case.build.layers} layers stacked in a column",
+                deep,
+            )
+        )
+    along, where = _speed_along(case, found)
+    if along > 0.0:
+        travel = along * found.fixed.t_col / found.d
+        skims = travel > SKIMMING
+        how = f"travel within one contact at {along:.3g} m/s ({where})"
+        how += f"; beyond {SKIMMING:g} contacts end by geometry, not by Eq. (8)" if skims else ""
+        rows.append(_row("impact", "u t/d", travel, "-", how, "warning" if skims else ""))
+    return rows
+
+
+def _speed_along(case: Case, found: Derived) -> tuple[float, str]:
+    if isinstance(case.build, Drop):
+        return abs(case.build.speed_along), "build.speed_along"
+    if case.water is not None and case.water.profile != "still":
+        return abs(water_speed(case, 1.25 * found.d)), "water one diameter above the crest"
+    return math.sqrt(found.g * found.d), "sqrt(g d)"
+
+
+def _water(case: Case, found: Derived) -> list[Row]:
+    wet = case.water
+    if wet is None:
+        return []
+    rows: list[Row] = []
+    if not math.isnan(found.u_star):
+        how = "sqrt(tau_star (rho_s/rho_w - 1) g d)" if wet.tau_star is not None else "water.u_star"
+        rows.append(_row("water", "u_star", found.u_star, "m/s", how))
+        if not math.isnan(found.tau_star):
+            rows.append(_row("water", "tau_star", found.tau_star, "-", "u_star^2/((rho_s/rho_w - 1) g d)"))
+        if wet.depth is not None and found.slope > 0.0:
+            implied = math.sqrt(found.g * wet.depth * math.sin(found.slope))
+            apart = abs(implied / found.u_star - 1.0) > 0.1
+            rows.append(
+                _row(
+                    "water",
+                    "u_star of slope and depth",
+                    implied,
+                    "m/s",
+                    "sqrt(g h sin(slope)), to compare",
+                    "note" if apart else "",
+                )
+            )
+        rows.append(
+            _row(
+                "water",
+                "roughness Re",
+                found.u_star * found.k_rough / wet.viscosity,
+                "-",
+                "u_star k_rough/nu; rough above 70",
+            )
+        )
+    settling = terminal_velocity(case)
+    if math.isfinite(settling):
+        rows += [
+            _row("water", "settling velocity", settling, "m/s", f"drag {wet.drag}"),
+            _row(
+                "water",
+                "grain Re",
+                drag.reynolds(settling, found.d, wet.viscosity),
+                "-",
+                "settling velocity times d/nu",
+            ),
+        ]
+    return rows
+
+
+def _cost(case: Case) -> list[Row]:
+    simulated, origin = estimate.time_expected(case)
+    steps, frames = estimate.steps_expected(case), estimate.frames_expected(case)
+    seconds, disk = estimate.seconds_needed(case), estimate.disk_needed(case)
+    wall = f"{seconds / ROUND:.3g} h" if seconds > ROUND else f"{seconds:.3g} s"
+    return [
+        _row("cost", "simulated time", simulated, "s", origin),
+        Row("cost", "steps", steps, "", f"{steps:,}", "simulated time over dt"),
+        Row("cost", "frames", frames, "", f"{frames:,}", f"one every {case.record.frames:g} s"),
+        Row("cost", "disk for frames", disk, "B", human(disk), "contact events come on top"),
+        Row(
+            "cost",
+            "memory",
+            estimate.memory_needed(case),
+            "B",
+            human(estimate.memory_needed(case)),
+            "1 kB a grain",
+        ),
+        Row("cost", "wall time", seconds, "s", wall, "rule of thumb, one core"),
+    ]
+
+
+def human(size: float) -> str:
+    """Bytes as a person writes them.
+
+    >>> human(2_500_000)
+    '2.5 MB'
+    """
+    for unit in ("B", "kB", "MB", "GB"):
+        if size < 1000.0:
+            return f"{size:.3g} {unit}"
+        size /= 1000.0
+    return f"{size:.3g} TB"
