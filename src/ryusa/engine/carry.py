@@ -16,7 +16,9 @@ def count_live(n_pair: int, live: Any) -> int:
 
 
 @njit(cache=True)
-def take_rows(n: int, start: Any, partners: Any, live: Any, mem: Any, ids: Any, out_i: Any, out_j: Any, rows: Any) -> None:
+def take_rows(
+    n: int, start: Any, partners: Any, live: Any, mem: Any, ids: Any, out_i: Any, out_j: Any, rows: Any
+) -> None:
     """Copy ids and rows of all pairs in touch, in list order."""
     k = 0
     for i in range(n):
@@ -30,7 +32,9 @@ def take_rows(n: int, start: Any, partners: Any, live: Any, mem: Any, ids: Any, 
 
 
 @njit(cache=True)
-def put_rows(n: int, start: Any, partners: Any, live: Any, mem: Any, index: Any, i_ids: Any, j_ids: Any, rows: Any) -> int:
+def put_rows(
+    n: int, start: Any, partners: Any, live: Any, mem: Any, index: Any, i_ids: Any, j_ids: Any, rows: Any
+) -> int:
     """Lay rows into a new list; returns the first contact that has no place in it, or -1.
 
     `index` turns the id of a free grain into its place in the engine's order.

@@ -37,7 +37,9 @@ def grid_of(x: Any, n: int, size: float, period: Any) -> Any:
     while True:
         total = 1.0
         for k in range(3):
-            total *= max(1.0, math.floor((high[k] - low[k]) / cell) + (0.0 if k < 2 and period[k] < math.inf else 1.0))
+            total *= max(
+                1.0, math.floor((high[k] - low[k]) / cell) + (0.0 if k < 2 and period[k] < math.inf else 1.0)
+            )
         if total <= 4.0 * n + 64.0:
             break
         cell *= 1.26
@@ -97,8 +99,22 @@ def _neighbours(c: int, n: int, periodic: bool, out: Any) -> int:
 
 @njit(cache=True)
 def list_pairs(
-    x: Any, r: Any, ids: Any, n: int, offset: int, low: Any, width: Any, dims: Any, first: Any, order: Any,
-    period: Any, skin: float, i: int, half: bool, partners: Any, used: int,
+    x: Any,
+    r: Any,
+    ids: Any,
+    n: int,
+    offset: int,
+    low: Any,
+    width: Any,
+    dims: Any,
+    first: Any,
+    order: Any,
+    period: Any,
+    skin: float,
+    i: int,
+    half: bool,
+    partners: Any,
+    used: int,
 ) -> int:
     """Append to `partners` all grains of one grid within reach of grain i; returns the new count.
 
@@ -111,7 +127,9 @@ def list_pairs(
     near = np.empty((3, 3), np.int64)
     count = np.empty(3, np.int64)
     for k in range(3):
-        count[k] = _neighbours(_cell(x[i, k], low[k], width[k]), dims[k], k < 2 and period[k] < math.inf, near[k])
+        count[k] = _neighbours(
+            _cell(x[i, k], low[k], width[k]), dims[k], k < 2 and period[k] < math.inf, near[k]
+        )
     for a in range(count[0]):
         for b in range(count[1]):
             for c in range(count[2]):
@@ -133,8 +151,20 @@ def list_pairs(
 
 @njit(cache=True)
 def build_list(
-    x: Any, r: Any, ids: Any, n: int, n_solid: int, normals: Any, points: Any, active_planes: Any,
-    free_grid: Any, fixed_grid: Any, period: Any, skin: float, start: Any, partners: Any,
+    x: Any,
+    r: Any,
+    ids: Any,
+    n: int,
+    n_solid: int,
+    normals: Any,
+    points: Any,
+    active_planes: Any,
+    free_grid: Any,
+    fixed_grid: Any,
+    period: Any,
+    skin: float,
+    start: Any,
+    partners: Any,
 ) -> int:
     """Fill the Verlet list: partners of grain i are partners[start[i]:start[i + 1]]; returns the pairs found.
 
@@ -146,10 +176,27 @@ def build_list(
     s_low, s_width, s_dims, s_first, s_order = fixed_grid
     for i in range(n):
         start[i] = used
-        used = list_pairs(x, r, ids, n, 0, f_low, f_width, f_dims, f_first, f_order, period, skin, i, True, partners, used)
+        used = list_pairs(
+            x, r, ids, n, 0, f_low, f_width, f_dims, f_first, f_order, period, skin, i, True, partners, used
+        )
         if len(s_order) > 0:
             used = list_pairs(
-                x, r, ids, n, n, s_low, s_width, s_dims, s_first, s_order, period, skin, i, False, partners, used
+                x,
+                r,
+                ids,
+                n,
+                n,
+                s_low,
+                s_width,
+                s_dims,
+                s_first,
+                s_order,
+                period,
+                skin,
+                i,
+                False,
+                partners,
+                used,
             )
         for k in range(len(normals)):
             gap = 0.0

@@ -14,11 +14,22 @@ from typing import Any
 
 from numba import njit
 
+from ryusa.engine.arrays import Grains, Pairs, Walls
+from ryusa.engine.pair import (
+    B_DASH_N,
+    B_DASH_S,
+    B_RELEASED_N,
+    B_RELEASED_S,
+    B_SLIDE,
+    FAST,
+    begin_row,
+    part,
+    roll,
+)
+from ryusa.engine.pair import ROLL_PRINTED
 from ryusa.engine.records import begin_record, end_record, keep_record
 from ryusa.engine.rows import *
-from ryusa.laws.collision import effective_mass, effective_mass_tangential
 from ryusa.laws.contact import (
-    damping,
     normal_force,
     normal_force_no_tension,
     shear_strength,
@@ -27,135 +38,45 @@ from ryusa.laws.contact import (
     slide_total,
 )
 from ryusa.laws.geometry import arm, turn, wrap
-from ryusa.laws.rolling import (
-    epsd_damping,
-    epsd_spring,
-    epsd_stiffness,
-    epsd_torque,
-    inertia_rolling,
-    inertia_spin,
-    reduced_radius,
-    rolling_arm_width,
-    rolling_constant,
-    rolling_printed,
-    slider_scale,
-)
-from ryusa.model.enums import Arm, Cap, Rolling, Slip
-from ryusa.model.tally import Book
+from ryusa.model.enums import Cap, Slip
 
-FAST = {"contract", "nsz"}  # fused multiply-add and no care for the sign of zero; nothing that hides a NaN
 SLIP_DROP, SLIP_TOTAL, CAP_TOTAL = int(Slip.SPRING_DROP), int(Slip.TOTAL), int(Cap.TOTAL)
-ROLL_PRINTED, ROLL_CONSTANT, ROLL_EPSD = int(Rolling.PRINTED), int(Rolling.CONSTANT), int(Rolling.EPSD)
-ARM_WIDTH = int(Arm.CONTACT_WIDTH)
-B_DASH_N, B_DASH_S, B_SLIDE, B_ROLL = int(Book.DASH_N), int(Book.DASH_S), int(Book.SLIDE), int(Book.ROLL)
-B_RELEASED_N, B_RELEASED_S, B_RELEASED_R = int(Book.RELEASED_N), int(Book.RELEASED_S), int(Book.RELEASED_R)
-
-
-@njit(error_model="numpy", cache=True)
-def begin_row(row: Any, rotation: int, i: int, j: int, c: Any, m: Any, r: Any, inertia: Any, width: int) -> None:
-    """Give a pair that just touched an empty memory and its dashpots."""
-    for k in range(width):
-        row[k] = 0.0
-    m_t = effective_mass_tangential(m[i], r[i], inertia[i], m[j], r[j], inertia[j], rotation != 0)
-    row[R_ETA_N] = c[C_ETA_N] + damping(c[C_ZETA_N], c[C_K_N], effective_mass(m[i], m[j]))
-    row[R_ETA_S] = c[C_ETA_S] + damping(c[C_ZETA_S], c[C_K_S], m_t)
-
-
-@njit(error_model="numpy", cache=True, fastmath=FAST)
-def roll(
-    model: int, arms: int, row: Any, c: Any, f_n: float, overlap: float, hdt: float, r_i: float, r_j: float,
-    m_i: float, m_j: float, inertia_i: float, inertia_j: float, share_i: float, share_j: float,
-    n: tuple[float, float, float], t: tuple[float, float, float], w_i: tuple[float, float, float],
-    w_j: tuple[float, float, float], book: Any,
-) -> tuple[float, float, float, float]:
-    """Rolling friction of one contact: torque on grain i [N m] and the energy in its spring [J].
-
-    `t` is n x F, the direction in which the tangential force turns both grains; Eq. (13) as printed opposes it on each
-    of the two. The other models oppose the relative spin and give the opposite torque to j.
-    """
-    dt, k_n = c[C_DT], c[C_K_N]
-    sign = 1.0 if model == ROLL_PRINTED else -1.0
-    s_x, s_y, s_z = w_i[0] + sign * w_j[0], w_i[1] + sign * w_j[1], w_i[2] + sign * w_j[2]
-    along = s_x * n[0] + s_y * n[1] + s_z * n[2]
-    s_x, s_y, s_z = s_x - along * n[0], s_y - along * n[1], s_z - along * n[2]
-    length = reduced_radius(r_i, r_j)
-    if arms == ARM_WIDTH:
-        length = rolling_arm_width(r_i, r_j, overlap)
-    f = c[C_ROLL] * length
-    cap = rolling_printed(f_n, f)
-    e_x = e_y = e_z = 0.0  # spring
-    q_x = q_y = q_z = 0.0  # the rest
-    energy = stored = 0.0
-    p_x, p_y, p_z = row[R_SPRING_R], row[R_SPRING_R + 1], row[R_SPRING_R + 2]
-    if model == ROLL_PRINTED:
-        size = math.sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2])
-        if size > 0.0:
-            q_x, q_y, q_z = -cap * t[0] / size, -cap * t[1] / size, -cap * t[2] / size
-    elif model == ROLL_CONSTANT:
-        size = math.sqrt(s_x * s_x + s_y * s_y + s_z * s_z)
-        if size > 0.0:
-            # several contacts brake one grain at once: each may take its share of the inertia
-            most = rolling_constant(cap, size, inertia_spin(inertia_i / share_i, inertia_j / share_j), dt)
-            q_x, q_y, q_z = -most * s_x / size, -most * s_y / size, -most * s_z / size
-    elif model == ROLL_EPSD:
-        k_r = epsd_stiffness(k_n, f, c[C_ROLL_STIFFNESS])
-        eta_r = epsd_damping(k_r, inertia_rolling(m_i, r_i, inertia_i, m_j, r_j, inertia_j), c[C_ROLL_ZETA])
-        twist = 0.5 * dt * ((w_i[0] + w_j[0]) * n[0] + (w_i[1] + w_j[1]) * n[1] + (w_i[2] + w_j[2]) * n[2])
-        p_x, p_y, p_z = turn(p_x, p_y, p_z, n[0], n[1], n[2], twist)
-        e_x, e_y, e_z = epsd_spring(p_x, s_x, k_r, dt), epsd_spring(p_y, s_y, k_r, dt), epsd_spring(p_z, s_z, k_r, dt)
-        scale = slider_scale(math.sqrt(e_x * e_x + e_y * e_y + e_z * e_z), cap)
-        e_x, e_y, e_z = scale * e_x, scale * e_y, scale * e_z
-        q_x = epsd_torque(e_x, s_x, eta_r, scale) - e_x
-        q_y = epsd_torque(e_y, s_y, eta_r, scale) - e_y
-        q_z = epsd_torque(e_z, s_z, eta_r, scale) - e_z
-        if k_r > 0.0:
-            energy = 0.5 * (e_x * e_x + e_y * e_y + e_z * e_z) / k_r
-            stored = 0.5 * (p_x * p_x + p_y * p_y + p_z * p_z) / k_r
-        taken = -hdt * (s_x * (p_x + e_x) + s_y * (p_y + e_y) + s_z * (p_z + e_z))
-        if f_n <= 0.0:
-            book[B_RELEASED_R] += taken + stored - energy
-        elif scale < 1.0:
-            book[B_ROLL] += taken + stored - energy
-    book[B_ROLL] -= hdt * (
-        s_x * (row[R_DASH_R] + q_x) + s_y * (row[R_DASH_R + 1] + q_y) + s_z * (row[R_DASH_R + 2] + q_z)
-    )
-    row[R_SPRING_R], row[R_SPRING_R + 1], row[R_SPRING_R + 2] = e_x, e_y, e_z
-    row[R_DASH_R], row[R_DASH_R + 1], row[R_DASH_R + 2] = q_x, q_y, q_z
-    return e_x + q_x, e_y + q_y, e_z + q_z, energy
-
-
-@njit(error_model="numpy", cache=True, fastmath=FAST)
-def part(
-    plane_case: int, tension: int, rolling: int, row: Any, c: Any, hdt: float, closing: float, s_x: float, s_y: float,
-    s_z: float, w_x: float, w_y: float, w_z: float, book: Any,
-) -> None:
-    """Close the account of a pair that parted: the last half interval, and what its springs still held."""
-    k_s = c[C_K_S]
-    if row[R_F_N] > 0.0 or tension:
-        book[B_DASH_N] += hdt * closing * row[R_DASH_N]
-    else:
-        book[B_RELEASED_N] += hdt * closing * row[R_DASH_N]
-    e_x, e_y, e_z = row[R_SPRING_S], row[R_SPRING_S + 1], row[R_SPRING_S + 2]
-    d_x, d_y, d_z = row[R_DASH_S], row[R_DASH_S + 1], row[R_DASH_S + 2]
-    if k_s > 0.0:
-        book[B_RELEASED_S] += 0.5 * (e_x * e_x + e_y * e_y + e_z * e_z) / k_s
-    book[B_RELEASED_S] -= hdt * (s_x * e_x + s_y * e_y + s_z * e_z)
-    book[B_DASH_S] -= hdt * (s_x * d_x + s_y * d_y + s_z * d_z)
-    if rolling:
-        e_x, e_y, e_z = row[R_SPRING_R], row[R_SPRING_R + 1], row[R_SPRING_R + 2]
-        book[B_RELEASED_R] -= hdt * (w_x * e_x + w_y * e_y + w_z * e_z)
-        book[B_ROLL] -= hdt * (w_x * row[R_DASH_R] + w_y * row[R_DASH_R + 1] + w_z * row[R_DASH_R + 2])
 
 
 @njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def forces(
-    plane_case: int, rotation: int, slip: int, cap: int, tension: int, rolling: int, arms: int, events: int,
-    planes: int, width: int, lo: int, hi: int, n: int, n_solid: int, step: int, t: float, hdt: float, last: bool,
-    c: Any, x: Any, v: Any, w: Any, r: Any, m: Any, inertia: Any, ids: Any, image: Any, tracked: Any, normals: Any,
-    points: Any, start: Any, partners: Any, live: Any, mem: Any, f: Any, torque: Any, touches: Any, touched: Any,
-    react: Any, react_touch: Any, q: int, ended: Any, book: Any, now: Any,
+    kind: Variant,
+    lo: int,
+    hi: int,
+    n: int,
+    n_solid: int,
+    step: int,
+    t: float,
+    hdt: float,
+    last: bool,
+    c: Any,
+    grains: Grains,
+    walls: Walls,
+    pairs: Pairs,
+    q: int,
+    ended: Any,
+    book: Any,
+    now: Any,
 ) -> None:
-    """Forces of every pair owned by grains lo..hi-1; q is the first slot of the block in `react`."""
+    """Forces of every pair owned by grains lo..hi-1; q is the first slot of the block in `pairs.react`."""
+    plane_case, rotation, slip, tension, rolling = (
+        kind.plane_case,
+        kind.rotation,
+        kind.slip,
+        kind.tension,
+        kind.rolling,
+    )
+    events, width = kind.events, pairs.mem.shape[1]
+    x, v, w, r, m, inertia, ids = grains.x, grains.v, grains.w, grains.r, grains.m, grains.inertia, grains.ids
+    f, torque, touches, touched = grains.f, grains.torque, grains.touches, grains.touched
+    start, partners, live, mem = pairs.start, pairs.partners, pairs.live, pairs.mem
+    react, react_touch = pairs.react, pairs.react_touch
+    normals, points = walls.normals, walls.points
     dt, k_n, k_s, mu, cohesion = c[C_DT], c[C_K_N], c[C_K_S], c[C_MU], c[C_COHESION]
     l_x, l_y, limit = c[C_PERIOD_X], c[C_PERIOD_Y], c[C_OVERLAP_LIMIT]
     spring_n = spring_s = spring_r = 0.0
@@ -171,10 +92,12 @@ def forces(
         for p in range(start[i], start[i + 1]):
             j = partners[p]
             cross = j < n and (j < lo or j >= hi)
-            if planes and j >= n_solid:
+            if kind.planes and j >= n_solid:
                 k = j - n_solid
                 n_x, n_y, n_z = -normals[k, 0], -normals[k, 1], -normals[k, 2]
-                distance = (points[k, 0] - x_i) * n_x + (points[k, 1] - y_i) * n_y + (points[k, 2] - z_i) * n_z
+                distance = (
+                    (points[k, 0] - x_i) * n_x + (points[k, 1] - y_i) * n_y + (points[k, 2] - z_i) * n_z
+                )
                 overlap = r_i - distance
                 touching = overlap > 0.0
             else:
@@ -211,7 +134,11 @@ def forces(
                 closing = u_x * n_x + u_y * n_y + u_z * n_z
                 s_x, s_y, s_z = u_x - closing * n_x, u_y - closing * n_y, u_z - closing * n_z
                 if rotation:
-                    g_x, g_y, g_z = a_i * o_x + a_j * w[j, 0], a_i * o_y + a_j * w[j, 1], a_i * o_z + a_j * w[j, 2]
+                    g_x, g_y, g_z = (
+                        a_i * o_x + a_j * w[j, 0],
+                        a_i * o_y + a_j * w[j, 1],
+                        a_i * o_z + a_j * w[j, 2],
+                    )
                     s_x += g_y * n_z - g_z * n_y
                     s_y += g_z * n_x - g_x * n_z
                     s_z += g_x * n_y - g_y * n_x
@@ -219,14 +146,33 @@ def forces(
 
             if not touching:  # parted in this step
                 part(
-                    plane_case, tension, rolling, row, c, hdt, closing, s_x, s_y, s_z,
-                    o_x - w[j, 0], o_y - w[j, 1], o_z - w[j, 2], book,
+                    tension,
+                    rolling,
+                    row,
+                    c,
+                    hdt,
+                    closing,
+                    (s_x, s_y, s_z),
+                    (o_x - w[j, 0], o_y - w[j, 1], o_z - w[j, 2]),
+                    book,
                 )
                 live[p] = 0
                 if events and row[width - N_EVENT + E_J] >= 0.0:
                     end_record(
-                        plane_case, tension, row[width - N_EVENT :], row[R_F_N], t, overlap, closing, s_x, s_y, s_z,
-                        n_x, n_z, i, v, w, ended, now,
+                        plane_case,
+                        tension,
+                        row[width - N_EVENT :],
+                        row[R_F_N],
+                        t,
+                        overlap,
+                        closing,
+                        (s_x, s_y, s_z),
+                        (n_x, n_y, n_z),
+                        i,
+                        v,
+                        w,
+                        ended,
+                        now,
                     )
                 if cross:
                     react_touch[q] = 0
@@ -235,11 +181,24 @@ def forces(
 
             if not live[p]:
                 live[p] = 1
-                begin_row(row, rotation, i, j, c, m, r, inertia, width)
+                begin_row(row, rotation, i, j, c, m, r, inertia)
                 if events:
                     begin_record(
-                        plane_case, events, row[width - N_EVENT :], t, dt, overlap, closing, s_x, s_y, s_z, n_x, n_z,
-                        i, j, n, x, v, w, ids, image, tracked, l_x, l_y,
+                        plane_case,
+                        events,
+                        row[width - N_EVENT :],
+                        t,
+                        dt,
+                        overlap,
+                        closing,
+                        (s_x, s_y, s_z),
+                        (n_x, n_y, n_z),
+                        i,
+                        j,
+                        n,
+                        grains,
+                        l_x,
+                        l_y,
                     )
 
             # normal force
@@ -260,7 +219,7 @@ def forces(
                 released_n += hdt * closing * d_n
 
             # tangential force
-            tau_c = shear_strength(f_n if cap == CAP_TOTAL else e_n, cohesion, mu)
+            tau_c = shear_strength(f_n if kind.cap == CAP_TOTAL else e_n, cohesion, mu)
             eta_s = row[R_ETA_S]
             p_x, p_y, p_z = row[R_SPRING_S], row[R_SPRING_S + 1], row[R_SPRING_S + 2]
             q_x, q_y, q_z = row[R_DASH_S], row[R_DASH_S + 1], row[R_DASH_S + 2]
@@ -325,9 +284,20 @@ def forces(
             if rolling:
                 share_j = float(max(touched[j], 1)) if j < n else 1.0
                 r_x, r_y, r_z, e_r = roll(
-                    rolling, arms, row, c, f_n, overlap, hdt, r_i, r[j], m[i], m[j], inertia[i], inertia[j],
-                    float(max(touched[i], 1)), share_j, (n_x, n_y, n_z), (t_x, t_y, t_z), (o_x, o_y, o_z),
-                    (w[j, 0], w[j, 1], w[j, 2]), book,
+                    rolling,
+                    kind.arm,
+                    row,
+                    c,
+                    f_n,
+                    overlap,
+                    hdt,
+                    (r_i, m[i], inertia[i], float(max(touched[i], 1))),
+                    (r[j], m[j], inertia[j], share_j),
+                    (n_x, n_y, n_z),
+                    (t_x, t_y, t_z),
+                    (o_x, o_y, o_z),
+                    (w[j, 0], w[j, 1], w[j, 2]),
+                    book,
                 )
                 ti_x, ti_y, ti_z = ti_x + r_x, ti_y + r_y, ti_z + r_z
                 if rolling == ROLL_PRINTED:
@@ -367,7 +337,14 @@ def forces(
                     now[N_FAULT_PARTNER] = ids[j] if j < n else j
             if events:
                 keep_record(
-                    row[width - N_EVENT :], t, dt, overlap, f_n, e_n + row[R_ETA_N] * closing, h_x, h_y, h_z, a < 1.0,
+                    row[width - N_EVENT :],
+                    t,
+                    dt,
+                    overlap,
+                    f_n,
+                    e_n + row[R_ETA_N] * closing,
+                    (h_x, h_y, h_z),
+                    a < 1.0,
                     touched[i] > 1 or (j < n and touched[j] > 1),
                 )
             if last:
@@ -390,4 +367,9 @@ def forces(
     book[B_RELEASED_N] += released_n
     book[B_RELEASED_S] += released_s
     if last:
-        now[N_SPRING_N], now[N_SPRING_S], now[N_SPRING_R], now[N_N_CONTACT] = spring_n, spring_s, spring_r, count
+        now[N_SPRING_N], now[N_SPRING_S], now[N_SPRING_R], now[N_N_CONTACT] = (
+            spring_n,
+            spring_s,
+            spring_r,
+            count,
+        )

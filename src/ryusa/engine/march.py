@@ -10,7 +10,9 @@ from typing import Any
 from numba import njit
 
 from ryusa import laws
-from ryusa.engine.kernels import FAST, forces
+from ryusa.engine.arrays import Grains, Ledger, Pairs, Walls
+from ryusa.engine.kernels import forces
+from ryusa.engine.pair import FAST
 from ryusa.engine.rows import *
 from ryusa.engine.sync import meet
 from ryusa.laws.drag import (
@@ -73,12 +75,31 @@ def drag_of(law: int, speed: float, d: float, c: Any) -> float:
 
 @njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def motion(
-    plane_case: int, rotation: int, profile: int, above: int, drag: int, torque_law: int, lo: int, hi: int,
-    first: bool, last: bool, c: Any, x: Any, v: Any, w: Any, r: Any, m: Any, m_bare: Any, m_weight: Any, inertia: Any,
-    ids: Any, image: Any, f: Any, torque: Any, touches: Any, touched: Any, react: Any, react_touch: Any,
-    incoming_start: Any, incoming: Any, book: Any, now: Any,
+    kind: Variant,
+    lo: int,
+    hi: int,
+    first: bool,
+    last: bool,
+    c: Any,
+    grains: Grains,
+    pairs: Pairs,
+    book: Any,
+    now: Any,
 ) -> None:
     """Gather what other blocks stored, add water and weight, and move grains lo..hi-1 by one step."""
+    plane_case, rotation, profile, above, drag = (
+        kind.plane_case,
+        kind.rotation,
+        kind.profile,
+        kind.above,
+        kind.drag,
+    )
+    torque_law = kind.torque
+    x, v, w, r, m, inertia, ids = grains.x, grains.v, grains.w, grains.r, grains.m, grains.inertia, grains.ids
+    m_bare, m_weight, image = grains.m_bare, grains.m_weight, grains.image
+    f, torque, touches, touched = grains.f, grains.torque, grains.touches, grains.touched
+    react, react_touch, incoming = pairs.react, pairs.react_touch, pairs.incoming
+    incoming_start = pairs.incoming_start
     dt, g_x, g_y, g_z = c[C_DT], c[C_G_X], c[C_G_Y], c[C_G_Z]
     half = 0.0 if first else 0.5 * dt
     speed_2 = spin_2 = kinetic = spin = potential = 0.0
@@ -176,21 +197,29 @@ def _source_digest() -> int:
 
 
 @cache
-def make_run(variant: Variant) -> Any:
+def make_run(kind: Variant) -> Any:
     """Build the stepping function of one variant; compiled when first called, then kept on disk."""
-    (plane_case, rotation, slip, cap, tension, rolling, arms, events, planes, profile, above, drag, torque_law) = variant
-    width = variant.row_width
     source = _source_digest()
 
     @njit(nogil=True, cache=True, error_model="numpy", fastmath=FAST)
     def run(
-        thread: int, n_threads: int, n_steps: int, step: int, is_end: bool, travel: float, count: Any, c: Any,
-        block_start: Any, react_start: Any, n: int, n_solid: int, x: Any, v: Any, w: Any, r: Any, m: Any, m_bare: Any,
-        m_weight: Any, inertia: Any, ids: Any, image: Any, tracked: Any, normals: Any, points: Any, start: Any,
-        partners: Any, live: Any, mem: Any, f: Any, torque: Any, touches: Any, touched: Any, react: Any,
-        react_touch: Any, incoming_start: Any, incoming: Any, ended: Any, books: Any, now: Any,
+        thread: int,
+        n_threads: int,
+        n_steps: int,
+        step: int,
+        travel: float,
+        count: Any,
+        c: Any,
+        block_start: Any,
+        n: int,
+        n_solid: int,
+        grains: Grains,
+        walls: Walls,
+        pairs: Pairs,
+        ledger: Ledger,
     ) -> tuple[int, float, int, int]:
         """March up to n_steps; all threads come back with the same (steps done, travel, stop, source)."""
+        ended, books, now, react_start = ledger.ended, ledger.books, ledger.now, pairs.react_start
         n_block = len(block_start) - 1
         b_0, b_1 = thread * n_block // n_threads, (thread + 1) * n_block // n_threads
         dt, t_zero, skin, step_limit = c[C_DT], c[C_T_ZERO], c[C_SKIN], c[C_STEP_LIMIT]
@@ -200,23 +229,35 @@ def make_run(variant: Variant) -> Any:
             if 2.0 * travel > skin:
                 stop = STOP_LIST
                 break
-            last = is_end and done == n_steps - 1
+            last = done == n_steps - 1
             t = t_zero + step * dt
             hdt = 0.0 if step == 0 else 0.5 * dt
             for b in range(b_0, b_1):
+                lo, hi = block_start[b], block_start[b + 1]
+                q = react_start[b]
                 forces(
-                    plane_case, rotation, slip, cap, tension, rolling, arms, events, planes, width, block_start[b],
-                    block_start[b + 1], n, n_solid, step, t, hdt, last, c, x, v, w, r, m, inertia, ids, image, tracked,
-                    normals, points, start, partners, live, mem, f, torque, touches, touched, react, react_touch,
-                    react_start[b], ended[b], books[b], now[b],
+                    kind,
+                    lo,
+                    hi,
+                    n,
+                    n_solid,
+                    step,
+                    t,
+                    hdt,
+                    last,
+                    c,
+                    grains,
+                    walls,
+                    pairs,
+                    q,
+                    ended[b],
+                    books[b],
+                    now[b],
                 )
             target = meet(count, n_threads, target)
             for b in range(b_0, b_1):
-                motion(
-                    plane_case, rotation, profile, above, drag, torque_law, block_start[b], block_start[b + 1],
-                    step == 0, last, c, x, v, w, r, m, m_bare, m_weight, inertia, ids, image, f, torque, touches,
-                    touched, react, react_touch, incoming_start, incoming, books[b], now[b],
-                )
+                lo, hi = block_start[b], block_start[b + 1]
+                motion(kind, lo, hi, step == 0, last, c, grains, pairs, books[b], now[b])
             target = meet(count, n_threads, target)
             fastest = 0.0
             full = False

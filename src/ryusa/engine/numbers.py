@@ -13,10 +13,19 @@ def variant_of(scene: Scene) -> Variant:
     """The kernel this scene needs."""
     law, rolling, water = scene.contact, scene.rolling, scene.water
     return Variant(
-        plane_case=int(scene.plane_case), rotation=int(scene.rotation), slip=int(law.slip), cap=int(law.cap),
-        tension=int(law.tension), rolling=int(rolling.model), arm=int(rolling.arm), events=int(scene.events),
-        planes=int(scene.n_plane > 0), profile=int(water.profile), above=int(water.above),
-        drag=int(water.drag) if water.profile else 0, torque=int(water.torque) if water.profile else 0,
+        plane_case=int(scene.plane_case),
+        rotation=int(scene.rotation),
+        slip=int(law.slip),
+        cap=int(law.cap),
+        tension=int(law.tension),
+        rolling=int(rolling.model),
+        arm=int(rolling.arm),
+        events=int(scene.events),
+        planes=int(scene.n_plane > 0),
+        profile=int(water.profile),
+        above=int(water.above),
+        drag=int(water.drag) if water.profile else 0,
+        torque=int(water.torque) if water.profile else 0,
     )
 
 
@@ -25,15 +34,36 @@ def numbers_of(scene: Scene) -> Floats:
     law, rolling, water = scene.contact, scene.rolling, scene.water
     asked = law.damping == Damping.RESTITUTION
     table = {
-        k.C_DT: scene.dt, k.C_K_N: law.k_n, k.C_K_S: law.k_s, k.C_MU: law.mu, k.C_COHESION: law.cohesion,
-        k.C_ROLL: rolling.coefficient, k.C_ROLL_STIFFNESS: rolling.stiffness_factor, k.C_ROLL_ZETA: rolling.zeta_r,
-        k.C_OVERLAP_LIMIT: scene.overlap_limit, k.C_STEP_LIMIT: np.inf, k.C_PERIOD_X: scene.period[0],
-        k.C_PERIOD_Y: scene.period[1], k.C_G_X: scene.gravity[0], k.C_G_Y: scene.gravity[1],
-        k.C_G_Z: scene.gravity[2], k.C_U_STAR: water.u_star, k.C_K_ROUGH: water.k_rough, k.C_Z_ZERO: water.z_zero,
-        k.C_U_UNIFORM: water.u_uniform, k.C_DEPTH: water.depth, k.C_NU: water.nu, k.C_RHO_W: water.rho_w,
-        k.C_C_D: water.c_d, k.C_A_2: water.a_2, k.C_SKIN: 0.0, k.C_T_ZERO: 0.0,
-        k.C_ZETA_N: law.zeta_n if asked else 0.0, k.C_ZETA_S: law.zeta_s if asked else 0.0,
-        k.C_ETA_N: 0.0 if asked else law.eta_n, k.C_ETA_S: 0.0 if asked else law.eta_s,
+        k.C_DT: scene.dt,
+        k.C_K_N: law.k_n,
+        k.C_K_S: law.k_s,
+        k.C_MU: law.mu,
+        k.C_COHESION: law.cohesion,
+        k.C_ROLL: rolling.coefficient,
+        k.C_ROLL_STIFFNESS: rolling.stiffness_factor,
+        k.C_ROLL_ZETA: rolling.zeta_r,
+        k.C_OVERLAP_LIMIT: scene.overlap_limit,
+        k.C_STEP_LIMIT: np.inf,
+        k.C_PERIOD_X: scene.period[0],
+        k.C_PERIOD_Y: scene.period[1],
+        k.C_G_X: scene.gravity[0],
+        k.C_G_Y: scene.gravity[1],
+        k.C_G_Z: scene.gravity[2],
+        k.C_U_STAR: water.u_star,
+        k.C_K_ROUGH: water.k_rough,
+        k.C_Z_ZERO: water.z_zero,
+        k.C_U_UNIFORM: water.u_uniform,
+        k.C_DEPTH: water.depth,
+        k.C_NU: water.nu,
+        k.C_RHO_W: water.rho_w,
+        k.C_C_D: water.c_d,
+        k.C_A_2: water.a_2,
+        k.C_SKIN: 0.0,
+        k.C_T_ZERO: 0.0,
+        k.C_ZETA_N: law.zeta_n if asked else 0.0,
+        k.C_ZETA_S: law.zeta_s if asked else 0.0,
+        k.C_ETA_N: 0.0 if asked else law.eta_n,
+        k.C_ETA_S: 0.0 if asked else law.eta_s,
     }
     numbers = np.zeros(len(table))
     for place, value in table.items():

@@ -5,28 +5,43 @@ from typing import Any
 
 from numba import njit
 
+from ryusa.engine.arrays import Grains
 from ryusa.engine.rows import *
 from ryusa.model.enums import EventRule
 
+Vector = tuple[float, float, float]
 ONLY_TRACKED = int(EventRule.TRACKED)
 
 
 @njit(error_model="numpy", cache=True)
-def _put(record: Any, column: int, plane_case: int, s_x: float, s_y: float, s_z: float, n_x: float, n_z: float) -> None:
+def _put(record: Any, column: int, plane_case: int, s: Vector, n: Vector) -> None:
     # a plane scene hands over one component along the tangent (n_z, 0, -n_x)
     if plane_case:
-        record[column], record[column + 1], record[column + 2] = s_x * n_z, 0.0, -s_x * n_x
+        record[column], record[column + 1], record[column + 2] = s[0] * n[2], 0.0, -s[0] * n[0]
     else:
-        record[column], record[column + 1], record[column + 2] = s_x, s_y, s_z
+        record[column], record[column + 1], record[column + 2] = s
 
 
 @njit(error_model="numpy", cache=True)
 def begin_record(
-    plane_case: int, rule: int, record: Any, t: float, dt: float, overlap: float, closing: float, s_x: float,
-    s_y: float, s_z: float, n_x: float, n_z: float, i: int, j: int, n: int, x: Any, v: Any, w: Any, ids: Any,
-    image: Any, tracked: Any, l_x: float, l_y: float,
+    plane_case: int,
+    rule: int,
+    record: Any,
+    t: float,
+    dt: float,
+    overlap: float,
+    closing: float,
+    slip: Vector,
+    normal: Vector,
+    i: int,
+    j: int,
+    n: int,
+    grains: Grains,
+    l_x: float,
+    l_y: float,
 ) -> None:
     """Open the record of a pair in its first step of touch; the moment of touch is interpolated."""
+    x, v, w, ids, image, tracked = grains.x, grains.v, grains.w, grains.ids, grains.image, grains.tracked
     if rule == ONLY_TRACKED and not (tracked[ids[i]] or (j < n and tracked[ids[j]])):
         record[E_J] = -1.0  # nobody asked for this one
         return
@@ -35,7 +50,7 @@ def begin_record(
     record[E_T_BEGIN] = t - min(overlap / closing, dt) if closing > 0.0 else t
     record[E_T_END] = t
     record[E_CLOSING_BEGIN] = closing
-    _put(record, E_SLIP_BEGIN, plane_case, s_x, s_y, s_z, n_x, n_z)
+    _put(record, E_SLIP_BEGIN, plane_case, slip, normal)
     record[E_ALONE] = 1.0
     record[E_X_BEGIN] = x[i, 0] + (image[i, 0] * l_x if image[i, 0] != 0 else 0.0)
     record[E_X_BEGIN + 1] = x[i, 1] + (image[i, 1] * l_y if image[i, 1] != 0 else 0.0)
@@ -47,17 +62,23 @@ def begin_record(
 
 @njit(error_model="numpy", cache=True)
 def keep_record(
-    record: Any, t: float, dt: float, overlap: float, f_n: float, f_raw: float, h_x: float, h_y: float, h_z: float,
-    sliding: bool, company: bool,
+    record: Any,
+    t: float,
+    dt: float,
+    overlap: float,
+    f_n: float,
+    f_raw: float,
+    force: Vector,
+    sliding: bool,
+    company: bool,
 ) -> None:
     """Carry an open record through one step of touch; T_PART holds f_n of the last step until the pair parts."""
     if record[E_J] < 0.0:
         return
     record[E_OVERLAP_MAX] = max(record[E_OVERLAP_MAX], overlap)
     record[E_IMPULSE_N] += f_n * dt
-    record[E_IMPULSE] += h_x * dt
-    record[E_IMPULSE + 1] += h_y * dt
-    record[E_IMPULSE + 2] += h_z * dt
+    for k in range(3):
+        record[E_IMPULSE + k] += force[k] * dt
     if sliding and f_n > 0.0:
         record[E_T_SLIDE] += dt
     if company:
@@ -71,15 +92,27 @@ def keep_record(
 
 @njit(error_model="numpy", cache=True)
 def end_record(
-    plane_case: int, tension: int, record: Any, f_n: float, t: float, overlap: float, closing: float, s_x: float,
-    s_y: float, s_z: float, n_x: float, n_z: float, i: int, v: Any, w: Any, ended: Any, now: Any,
+    plane_case: int,
+    tension: int,
+    record: Any,
+    f_n: float,
+    t: float,
+    overlap: float,
+    closing: float,
+    slip: Vector,
+    normal: Vector,
+    i: int,
+    v: Any,
+    w: Any,
+    ended: Any,
+    now: Any,
 ) -> None:
     """Close a record in the first step without overlap and put it with the ended ones of the block."""
     record[E_T_PART] = t + overlap / abs(closing) if closing < 0.0 else t
     if tension or f_n > 0.0:
         record[E_T_END] = record[E_T_PART]
     record[E_CLOSING_END] = closing
-    _put(record, E_SLIP_END, plane_case, s_x, s_y, s_z, n_x, n_z)
+    _put(record, E_SLIP_END, plane_case, slip, normal)
     for k in range(3):
         record[E_V_END + k] = v[i, k]
         record[E_OMEGA_END + k] = w[i, k]

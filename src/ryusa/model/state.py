@@ -21,17 +21,25 @@ class State:
     omega: Floats  # spin [rad/s], shape (n_grain, 3), right-handed; +y rolls downstream (the paper plots it negative)
     step: int = 0  # steps done since the start of the run
     t: float = 0.0  # time of x [s]
-    image: np.ndarray = field(default_factory=lambda: np.zeros((0, 2), dtype=np.int32))  # periods crossed in x, y
+    image: np.ndarray = field(
+        default_factory=lambda: np.zeros((0, 2), dtype=np.int32)
+    )  # periods crossed in x, y
     contacts: Contacts = field(default_factory=Contacts.none)
-    books: Floats = field(default_factory=lambda: np.zeros((1, N_BOOK)))  # energy account so far [J], a row per block
+    books: Floats = field(
+        default_factory=lambda: np.zeros((1, N_BOOK))
+    )  # energy account so far [J], a row per block
     x_listed: Floats | None = None  # where the grains were when the neighbour list was built [m]
-    engine: dict[str, float] = field(default_factory=lambda: {})  # an engine's own numbers (skin, travel, extremes)
+    engine: dict[str, float] = field(
+        default_factory=lambda: {}
+    )  # an engine's own numbers (skin, travel, extremes)
 
     @staticmethod
     def at_rest(x: Floats) -> "State":
         """Grains at rest at `x` [m], shape (n_grain, 3)."""
         x = np.ascontiguousarray(x, dtype=np.float64)
-        return State(x=x, v=np.zeros_like(x), omega=np.zeros_like(x), image=np.zeros((len(x), 2), dtype=np.int32))
+        return State(
+            x=x, v=np.zeros_like(x), omega=np.zeros_like(x), image=np.zeros((len(x), 2), dtype=np.int32)
+        )
 
     @property
     def n_grain(self) -> int:

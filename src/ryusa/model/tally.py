@@ -60,6 +60,13 @@ class Tally:
     @property
     def residual(self) -> float:
         """Imbalance over the largest term of the account [-]; potential counts as its change is not kept apart."""
-        terms = [self.kinetic, self.spin, self.spring_n, self.spring_s, self.spring_r, self.held - self.books[Book.START]]
+        terms = [
+            self.kinetic,
+            self.spin,
+            self.spring_n,
+            self.spring_s,
+            self.spring_r,
+            self.held - self.books[Book.START],
+        ]
         largest = max(abs(term) for term in [*terms, *self.books[: Book.START]])
         return abs(self.imbalance) / largest if largest > 0.0 else 0.0

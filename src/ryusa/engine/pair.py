@@ -1,0 +1,158 @@
+"""What one pair keeps: its first touch, its rolling friction, and the account it closes when it parts."""
+# ruff: noqa: F403, F405  (the columns of rows.py, all of them plain integers)
+
+import math
+from typing import Any
+
+from numba import njit
+
+from ryusa.engine.rows import *
+from ryusa.laws.collision import effective_mass, effective_mass_tangential
+from ryusa.laws.contact import damping
+from ryusa.laws.geometry import turn
+from ryusa.laws.rolling import (
+    epsd_damping,
+    epsd_spring,
+    epsd_stiffness,
+    epsd_torque,
+    inertia_rolling,
+    inertia_spin,
+    reduced_radius,
+    rolling_arm_width,
+    rolling_constant,
+    rolling_printed,
+    slider_scale,
+)
+from ryusa.model.enums import Arm, Rolling
+from ryusa.model.tally import Book
+
+Vector = tuple[float, float, float]
+Body = tuple[
+    float, float, float, float
+]  # radius, mass with added mass, inertia, contacts that share the inertia
+
+FAST = {"contract", "nsz"}  # fused multiply-add and no care for the sign of zero; nothing that hides a NaN
+ROLL_PRINTED, ROLL_CONSTANT, ROLL_EPSD = int(Rolling.PRINTED), int(Rolling.CONSTANT), int(Rolling.EPSD)
+ARM_WIDTH = int(Arm.CONTACT_WIDTH)
+B_DASH_N, B_DASH_S, B_SLIDE, B_ROLL = int(Book.DASH_N), int(Book.DASH_S), int(Book.SLIDE), int(Book.ROLL)
+B_RELEASED_N, B_RELEASED_S, B_RELEASED_R = int(Book.RELEASED_N), int(Book.RELEASED_S), int(Book.RELEASED_R)
+
+
+@njit(error_model="numpy", cache=True)
+def begin_row(row: Any, rotation: int, i: int, j: int, c: Any, m: Any, r: Any, inertia: Any) -> None:
+    """Give a pair that just touched an empty memory and its dashpots."""
+    row[:] = 0.0
+    m_t = effective_mass_tangential(m[i], r[i], inertia[i], m[j], r[j], inertia[j], rotation != 0)
+    row[R_ETA_N] = c[C_ETA_N] + damping(c[C_ZETA_N], c[C_K_N], effective_mass(m[i], m[j]))
+    row[R_ETA_S] = c[C_ETA_S] + damping(c[C_ZETA_S], c[C_K_S], m_t)
+
+
+@njit(error_model="numpy", cache=True, fastmath=FAST)
+def roll(
+    model: int,
+    arms: int,
+    row: Any,
+    c: Any,
+    f_n: float,
+    overlap: float,
+    hdt: float,
+    body_i: Body,
+    body_j: Body,
+    n: Vector,
+    t: Vector,
+    w_i: Vector,
+    w_j: Vector,
+    book: Any,
+) -> tuple[float, float, float, float]:
+    """Rolling friction of one contact: torque on grain i [N m] and the energy in its spring [J].
+
+    `t` is n x F, the direction in which the tangential force turns both grains; Eq. (13) as printed opposes it on each
+    of the two. The other models oppose the relative spin and give the opposite torque to j.
+    """
+    r_i, m_i, inertia_i, share_i = body_i
+    r_j, m_j, inertia_j, share_j = body_j
+    dt, k_n = c[C_DT], c[C_K_N]
+    sign = 1.0 if model == ROLL_PRINTED else -1.0
+    s_x, s_y, s_z = w_i[0] + sign * w_j[0], w_i[1] + sign * w_j[1], w_i[2] + sign * w_j[2]
+    along = s_x * n[0] + s_y * n[1] + s_z * n[2]
+    s_x, s_y, s_z = s_x - along * n[0], s_y - along * n[1], s_z - along * n[2]
+    length = reduced_radius(r_i, r_j)
+    if arms == ARM_WIDTH:
+        length = rolling_arm_width(r_i, r_j, overlap)
+    f = c[C_ROLL] * length
+    cap = rolling_printed(f_n, f)
+    e_x = e_y = e_z = 0.0  # spring
+    q_x = q_y = q_z = 0.0  # the rest
+    energy = stored = 0.0
+    p_x, p_y, p_z = row[R_SPRING_R], row[R_SPRING_R + 1], row[R_SPRING_R + 2]
+    if model == ROLL_PRINTED:
+        size = math.sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2])
+        if size > 0.0:
+            q_x, q_y, q_z = -cap * t[0] / size, -cap * t[1] / size, -cap * t[2] / size
+    elif model == ROLL_CONSTANT:
+        size = math.sqrt(s_x * s_x + s_y * s_y + s_z * s_z)
+        if size > 0.0:
+            # several contacts brake one grain at once: each may take its share of the inertia
+            most = rolling_constant(cap, size, inertia_spin(inertia_i / share_i, inertia_j / share_j), dt)
+            q_x, q_y, q_z = -most * s_x / size, -most * s_y / size, -most * s_z / size
+    elif model == ROLL_EPSD:
+        k_r = epsd_stiffness(k_n, f, c[C_ROLL_STIFFNESS])
+        eta_r = epsd_damping(k_r, inertia_rolling(m_i, r_i, inertia_i, m_j, r_j, inertia_j), c[C_ROLL_ZETA])
+        twist = 0.5 * dt * ((w_i[0] + w_j[0]) * n[0] + (w_i[1] + w_j[1]) * n[1] + (w_i[2] + w_j[2]) * n[2])
+        p_x, p_y, p_z = turn(p_x, p_y, p_z, n[0], n[1], n[2], twist)
+        e_x, e_y, e_z = (
+            epsd_spring(p_x, s_x, k_r, dt),
+            epsd_spring(p_y, s_y, k_r, dt),
+            epsd_spring(p_z, s_z, k_r, dt),
+        )
+        scale = slider_scale(math.sqrt(e_x * e_x + e_y * e_y + e_z * e_z), cap)
+        e_x, e_y, e_z = scale * e_x, scale * e_y, scale * e_z
+        q_x = epsd_torque(e_x, s_x, eta_r, scale) - e_x
+        q_y = epsd_torque(e_y, s_y, eta_r, scale) - e_y
+        q_z = epsd_torque(e_z, s_z, eta_r, scale) - e_z
+        if k_r > 0.0:
+            energy = 0.5 * (e_x * e_x + e_y * e_y + e_z * e_z) / k_r
+            stored = 0.5 * (p_x * p_x + p_y * p_y + p_z * p_z) / k_r
+        taken = -hdt * (s_x * (p_x + e_x) + s_y * (p_y + e_y) + s_z * (p_z + e_z))
+        if f_n <= 0.0:
+            book[B_RELEASED_R] += taken + stored - energy
+        elif scale < 1.0:
+            book[B_ROLL] += taken + stored - energy
+    book[B_ROLL] -= hdt * (
+        s_x * (row[R_DASH_R] + q_x) + s_y * (row[R_DASH_R + 1] + q_y) + s_z * (row[R_DASH_R + 2] + q_z)
+    )
+    row[R_SPRING_R], row[R_SPRING_R + 1], row[R_SPRING_R + 2] = e_x, e_y, e_z
+    row[R_DASH_R], row[R_DASH_R + 1], row[R_DASH_R + 2] = q_x, q_y, q_z
+    return e_x + q_x, e_y + q_y, e_z + q_z, energy
+
+
+@njit(error_model="numpy", cache=True, fastmath=FAST)
+def part(
+    tension: int,
+    rolling: int,
+    row: Any,
+    c: Any,
+    hdt: float,
+    closing: float,
+    slip: Vector,
+    spin: Vector,
+    book: Any,
+) -> None:
+    """Close the account of a pair that parted: the last half interval, and what its springs still held."""
+    k_s = c[C_K_S]
+    s_x, s_y, s_z = slip
+    w_x, w_y, w_z = spin
+    if row[R_F_N] > 0.0 or tension:
+        book[B_DASH_N] += hdt * closing * row[R_DASH_N]
+    else:
+        book[B_RELEASED_N] += hdt * closing * row[R_DASH_N]
+    e_x, e_y, e_z = row[R_SPRING_S], row[R_SPRING_S + 1], row[R_SPRING_S + 2]
+    d_x, d_y, d_z = row[R_DASH_S], row[R_DASH_S + 1], row[R_DASH_S + 2]
+    if k_s > 0.0:
+        book[B_RELEASED_S] += 0.5 * (e_x * e_x + e_y * e_y + e_z * e_z) / k_s
+    book[B_RELEASED_S] -= hdt * (s_x * e_x + s_y * e_y + s_z * e_z)
+    book[B_DASH_S] -= hdt * (s_x * d_x + s_y * d_y + s_z * d_z)
+    if rolling:
+        e_x, e_y, e_z = row[R_SPRING_R], row[R_SPRING_R + 1], row[R_SPRING_R + 2]
+        book[B_RELEASED_R] -= hdt * (w_x * e_x + w_y * e_y + w_z * e_z)
+        book[B_ROLL] -= hdt * (w_x * row[R_DASH_R] + w_y * row[R_DASH_R + 1] + w_z * row[R_DASH_R + 2])
