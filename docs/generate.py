@@ -1,4 +1,4 @@
-"""Write the reference pages from the code: `make docs`. A test fails when a page is not as this script writes it."""
+"""Write the reference pages from the code: `make docs`. A test fails when a page is not as written here."""
 
 import json
 from collections.abc import Iterator
@@ -23,7 +23,7 @@ UNITS = {
 KNOWN_NUMBERS = {0.5235987755982988: "pi/6", 0.7853981633974483: "pi/4"}
 
 
-# ----------------------------------------------------------------------------------------------------- case file
+# ------------------------------------------------------------------------------------------------- case file
 
 
 def case_reference() -> str:
@@ -123,7 +123,9 @@ def _default(about: dict[str, Any]) -> str:
 
 
 def _plain_keys(top: dict[str, Any]) -> dict[str, Any]:
-    return {key: about for key, about in top.items() if "discriminator" not in about and not _inner_models(about)}
+    return {
+        key: about for key, about in top.items() if "discriminator" not in about and not _inner_models(about)
+    }
 
 
 def _inner_models(about: dict[str, Any]) -> list[str]:
@@ -144,7 +146,7 @@ def _escape(text: str) -> str:
     return text.replace("|", "\\|").replace("\n", " ")
 
 
-# ------------------------------------------------------------------------------------------------------ commands
+# -------------------------------------------------------------------------------------------------- commands
 
 
 def command_reference() -> str:
@@ -182,12 +184,16 @@ def _parameter(parameter: Any) -> str:
         default = "required" if parameter.required else ""
     else:
         shown = ", ".join(f"`{opt}`" for opt in (*parameter.opts, *parameter.secondary_opts))
-        plain = parameter.default is None or parameter.default in ((), [], "", False) or callable(parameter.default)
+        plain = (
+            parameter.default is None
+            or parameter.default in ((), [], "", False)
+            or callable(parameter.default)
+        )
         default = "" if plain else f"`{parameter.default}`"
     return f"| {shown} | {_escape(getattr(parameter, 'help', None) or '')} | {default} |"
 
 
-# --------------------------------------------------------------------------------------------------------- pages
+# ----------------------------------------------------------------------------------------------------- pages
 
 
 def pages() -> dict[Path, str]:

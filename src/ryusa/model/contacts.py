@@ -37,8 +37,9 @@ N_EVENT = EVENT.itemsize // 8
 class Contacts:
     """Pairs in touch now. Memory belongs to the pair and dies with the contact.
 
-    All arrays have n_contact rows; i is always a free grain, j > i may be free, fixed or a plane. In a plane scene
-    column 0 of the tangential vectors holds the component along the tangent (n_z, 0, -n_x); the others are zero.
+    All arrays have n_contact rows; i is always a free grain, j > i may be free, fixed or a plane. In a plane
+    scene column 0 of the tangential vectors holds the component along the tangent (n_z, 0, -n_x); the others
+    are zero.
     """
 
     i: np.ndarray  # ids, int64

@@ -9,6 +9,7 @@ from ryusa.model.enums import Above, Arm, Cap, Damping, Drag, EventRule, Profile
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
+_INF = float("inf")
 
 
 @dataclass(frozen=True)
@@ -92,8 +93,8 @@ class Scene:
     # space
     plane_case: bool = False  # motion in x-z only; y, v_y, omega_x, omega_z stay as they are
     period: tuple[float, float] = (float("inf"), float("inf"))  # period in x and y [m]; inf where open
-    world_low: tuple[float, float, float] = (-float("inf"),) * 3  # a grain beyond is lost [m]
-    world_high: tuple[float, float, float] = (float("inf"),) * 3
+    world_low: tuple[float, float, float] = (-_INF, -_INF, -_INF)  # a grain beyond is lost [m]
+    world_high: tuple[float, float, float] = (_INF, _INF, _INF)
     slab_width: float = float("nan")  # width of a plane scene, for concentrations [m]
     # guards and records
     overlap_limit: float = 0.5  # overlap over smaller diameter that stops the run [-]

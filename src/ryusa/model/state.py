@@ -18,7 +18,7 @@ class State:
 
     x: Floats  # grain centres [m], shape (n_grain, 3), columns (x, y, z), inside the period at the last wrap
     v: Floats  # grain velocities [m/s], shape (n_grain, 3)
-    omega: Floats  # spin [rad/s], shape (n_grain, 3), right-handed; +y rolls downstream (the paper plots it negative)
+    omega: Floats  # spin [rad/s], shape (n_grain, 3); +y rolls downstream (the paper plots it negative)
     step: int = 0  # steps done since the start of the run
     t: float = 0.0  # time of x [s]
     image: np.ndarray = field(

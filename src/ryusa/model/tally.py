@@ -59,7 +59,7 @@ class Tally:
 
     @property
     def residual(self) -> float:
-        """Imbalance over the largest term of the account [-]; potential counts as its change is not kept apart."""
+        """Imbalance over the largest term of the account [-]; held energy counts as its change."""
         terms = [
             self.kinetic,
             self.spin,
