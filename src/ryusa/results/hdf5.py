@@ -1,7 +1,7 @@
-"""Opening HDF5 files that may have been tampered with: plain datasets only, sizes checked against the disk."""
+"""HDF5 files that may have been tampered with: plain datasets only, sizes checked against the disk."""
 
 from collections import OrderedDict
-from collections.abc import Iterator
+from collections.abc import Generator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -27,7 +27,7 @@ def open_file(path: Path) -> h5py.File:
 
 
 @contextmanager
-def opened(path: Path) -> Iterator[h5py.File]:
+def opened(path: Path) -> Generator[h5py.File]:
     """As `open_file`, closed at the end of the block."""
     with open_file(path) as file:
         try:
@@ -67,7 +67,12 @@ def plain_dataset(file: h5py.File, name: str, path: Path) -> h5py.Dataset:
     if not isinstance(link, h5py.HardLink):
         raise ResultsError(f"{path}: has no dataset '{name}' of its own")
     dataset = file[name]
-    if not isinstance(dataset, h5py.Dataset) or dataset.is_virtual or dataset.external or dataset.shape is None:
+    if (
+        not isinstance(dataset, h5py.Dataset)
+        or dataset.is_virtual
+        or dataset.external
+        or dataset.shape is None
+    ):
         raise ResultsError(f"{path}: '{name}' is not a plain dataset")
     if dataset.dtype.hasobject:
         raise ResultsError(f"{path}: '{name}' holds objects, not numbers")
@@ -75,7 +80,9 @@ def plain_dataset(file: h5py.File, name: str, path: Path) -> h5py.Dataset:
     for length in dataset.shape:
         nbytes *= length
     if dataset.id.get_storage_size() != nbytes:
-        raise ResultsError(f"{path}: '{name}' claims {nbytes} bytes but {dataset.id.get_storage_size()} are stored")
+        raise ResultsError(
+            f"{path}: '{name}' claims {nbytes} bytes but {dataset.id.get_storage_size()} are stored"
+        )
     return dataset
 
 

@@ -32,7 +32,7 @@ class Part:
         return len(self.t)
 
     def rows(self, name: str, begin: int, end: int, grains: Any) -> NDArray[Any]:
-        """Frames begin .. end - 1 of this part (its own count) of a dataset, for a slice or one number of grains."""
+        """Frames begin .. end - 1 of this part, its own count, for one grain or a slice of grains."""
         try:
             return self.files.dataset(self.path, name)[begin:end, grains]
         except OSError as error:
@@ -50,13 +50,15 @@ class Part:
 
 
 class LazyFrames:
-    """An array of shape (n_frame, n_grain, n) that stays on the disk until indexed; what comes back is read-only.
+    """An array (n_frame, n_grain, n) that stays on the disk until indexed; what comes back is read-only.
 
-    The first index may be a number, a slice or a list of frames, the second a number or a slice of grains: only
-    those are read. `numpy.asarray` reads all.
+    The first index may be a number, a slice or a list of frames, the second a number or a slice of grains:
+    only those are read. `numpy.asarray` reads all.
     """
 
-    def __init__(self, parts: list[Part], name: str, n_grain: int, lift: NDArray[np.float64] | None = None) -> None:
+    def __init__(
+        self, parts: list[Part], name: str, n_grain: int, lift: NDArray[np.float64] | None = None
+    ) -> None:
         dtype, tail = schema.FRAME_DATASETS[name]
         n_frame = parts[-1].first + parts[-1].n_frame if parts else 0
         self.shape: tuple[int, ...] = (n_frame, n_grain, *tail)
@@ -126,7 +128,9 @@ class LazyFrames:
         if len(chosen) == 0:
             return self._read(0, 0, grains)
         low, high = int(chosen.min()), int(chosen.max()) + 1
-        if high - low <= 2 * len(chosen):  # nearly all of the span: one sweep is quicker than many small reads
+        if high - low <= 2 * len(
+            chosen
+        ):  # nearly all of the span: one sweep is quicker than many small reads
             return self._read(low, high - low, grains)[chosen - low]
         return np.concatenate([self._read(int(k), 1, grains) for k in chosen])
 

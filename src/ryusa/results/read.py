@@ -1,7 +1,8 @@
 """A run folder opened for reading: while the run writes, after its end, or after it was killed.
 
-Nothing in the folder is trusted: links are not followed, sizes are checked against the disk, no pickle is read.
-Frames come from the write-once files in parts/, so every frame that was flushed is found, whatever came after.
+Nothing in the folder is trusted: links are not followed, sizes are checked against the disk, no pickle is
+read. Frames come from the write-once files in parts/, so every frame that was flushed is found, whatever came
+after.
 """
 
 import json
@@ -107,12 +108,14 @@ class Results:
         written = self.provenance.get("format")
         if written != schema.FORMAT:
             raise ResultsError(
-                f"{folder}: format {written!r}, this ryusa reads {schema.FORMAT}. Read it with the version named in "
-                f"{schema.PROVENANCE}"
+                f"{folder}: format {written!r}, this ryusa reads {schema.FORMAT}. Read it with the version "
+                f"named in {schema.PROVENANCE}"
             )
         self.case = _read_json(folder / schema.CASE_JSON, missing_ok=True)
         self.summary = _read_json(folder / schema.SUMMARY, missing_ok=True)
-        self.scenes = _read_scenes(folder)  # (step, t [s], Scene) at the start and after every change of the timeline
+        self.scenes = _read_scenes(
+            folder
+        )  # (step, t [s], Scene) at the start and after every change of the timeline
         self.scene: Scene = self.scenes[0][2]  # as the run began
         self._parts = _read_parts(folder, self.scene.n_grain)
         self.frames = Frames(self._parts, self.scene.n_grain, self.scene.period)
@@ -129,7 +132,9 @@ class Results:
         if not path.is_dir():
             raise ResultsError(f"{path}: no such run folder")
         if not schema.is_run_folder(path):
-            raise ResultsError(f"{path}: not a run folder of ryusa ({schema.PROVENANCE} or {schema.PARTS}/ is missing)")
+            raise ResultsError(
+                f"{path}: not a run folder of ryusa ({schema.PROVENANCE} or {schema.PARTS}/ is missing)"
+            )
         return Results(path)
 
     @property
@@ -178,8 +183,8 @@ class Results:
 
     def __repr__(self) -> str:
         return (
-            f"Results({str(self.folder)!r}, {self.status}, {len(self.frames)} frames, {self.scene.n_grain} free and "
-            f"{self.scene.n_fixed} fixed grains)"
+            f"Results({str(self.folder)!r}, {self.status}, {len(self.frames)} frames, "
+            f"{self.scene.n_grain} free and {self.scene.n_fixed} fixed grains)"
         )
 
 
@@ -255,6 +260,3 @@ def _check(dataset: h5py.Dataset, shape: tuple[int, ...], dtype: np.dtype[Any], 
         raise ResultsError(
             f"{path}: '{dataset.name}' is {dataset.shape} of {dataset.dtype}, expected {shape} of {dtype}"
         )
-
-
-

@@ -28,7 +28,9 @@ def write_scene(file: h5py.File, scene: Scene, step: int, t: float) -> None:
         else:
             scalars[f.name] = asdict(value) if f.name in _LAWS else value
     scalars["step"], scalars["t"] = step, t
-    file.create_dataset("scalars", data=np.frombuffer(json.dumps(scalars, default=_plain).encode(), dtype=np.uint8))
+    file.create_dataset(
+        "scalars", data=np.frombuffer(json.dumps(scalars, default=_plain).encode(), dtype=np.uint8)
+    )
 
 
 def read_scene(path: Path) -> tuple[int, float, Scene]:

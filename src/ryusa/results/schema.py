@@ -1,4 +1,4 @@
-"""Names of everything in a run folder: files, datasets, columns. The recorder writes them, `read` reads them."""
+"""Names in a run folder: files, datasets, columns. The recorder writes them, `read` reads them."""
 
 import re
 from pathlib import Path

@@ -1,8 +1,8 @@
 """Writes a run folder: frames and contact events in write-once parts, and the index that ParaView opens.
 
-A part appears by a rename once it lies whole on the disk, then the index over all parts is replaced the same way.
-Whatever kills the run, and whenever, every part that was flushed stays readable; what is lost is at most what had
-gathered since: `flush_after` seconds.
+A part appears by a rename once it lies whole on the disk, then the index over all parts is replaced the same
+way. Whatever kills the run, and whenever, every part that was flushed stays readable; what is lost is at most
+what had gathered since: `flush_after` seconds.
 """
 
 import time
@@ -163,7 +163,7 @@ def _same_bed(a: Scene, b: Scene) -> bool:
     return np.array_equal(a.fixed_active, b.fixed_active) and np.array_equal(a.plane_active, b.plane_active)
 
 
-class _disk:  # noqa: N801  (reads as a word in `with`)
+class _disk:
     """Turns what the disk says into a ResultsError that names the folder."""
 
     def __init__(self, folder: Path) -> None:
@@ -177,6 +177,3 @@ class _disk:  # noqa: N801  (reads as a word in `with`)
             raise ResultsError(
                 f"{self.folder}: cannot be written ({error}). What was written before stays readable"
             ) from error
-
-
-

@@ -1,7 +1,8 @@
 """VTKHDF PolyData files: points that ParaView (5.12 or later) and the vtk wheel open as they are.
 
-`grains.vtkhdf` holds no numbers of its own: each dataset is an HDF5 virtual dataset over the write-once parts, so that
-it can be written anew in a moment and put in place by a rename; a reader sees the old index or the new one, both whole.
+`grains.vtkhdf` holds no numbers of its own: each dataset is an HDF5 virtual dataset over the write-once
+parts, so that it can be written anew in a moment and put in place by a rename; a reader sees the old index or
+the new one, both whole.
 """
 
 import os
@@ -20,8 +21,10 @@ _VERSION = np.array([2, 0], dtype=np.int64)  # the first that knows steps of Pol
 _CELLS = ("Vertices", "Lines", "Polygons", "Strips")
 _INT = np.dtype(np.int64)
 _FLOAT = np.dtype(np.float64)
-_POINTS = "points.h5"  # in parts/: what is the same in every frame
-_PLANE_REACH = 50.0  # half the side of the square drawn for a plane where nothing else bounds it, in largest d
+POINTS = "points.h5"  # in parts/: what is the same in every frame
+_PLANE_REACH = (
+    50.0  # half the side of the square drawn for a plane where nothing else bounds it, in largest d
+)
 
 
 @dataclass(frozen=True)
@@ -60,7 +63,7 @@ def write_points(parts: Path, scene: Scene) -> None:
         file["id"] = np.arange(scene.n_grain, dtype=np.int64)
         file["offsets"] = np.arange(scene.n_grain + 1, dtype=np.int64)
 
-    write_atomic(parts / _POINTS, fill)
+    write_atomic(parts / POINTS, fill)
 
 
 def write_index(folder: Path, parts: list[PartSize], n_grain: int) -> None:
@@ -118,7 +121,12 @@ def _root(file: h5py.File) -> h5py.Group:
 
 
 def _gather(
-    group: h5py.Group, name: str, parts: list[PartSize], source: str, tail: tuple[int, ...], dtype: np.dtype[Any]
+    group: h5py.Group,
+    name: str,
+    parts: list[PartSize],
+    source: str,
+    tail: tuple[int, ...],
+    dtype: np.dtype[Any],
 ) -> None:
     """Put the rows of all parts behind one another; a part's (k, n, 3) becomes (k n, 3) rows."""
     counts = [part.n_contact if source == "contacts" else part.n_frame for part in parts]
@@ -131,14 +139,16 @@ def _gather(
     for part, count in zip(parts, counts, strict=True):
         if count:
             file = f"{schema.PARTS}/{part.name}"
-            layout[begin : begin + count * rows] = h5py.VirtualSource(file, source, shape=(count, *tail), dtype=dtype)
+            layout[begin : begin + count * rows] = h5py.VirtualSource(
+                file, source, shape=(count, *tail), dtype=dtype
+            )
             begin += count * rows
     group.create_virtual_dataset(name, layout)
 
 
 def _share(group: h5py.Group, name: str, source: str, count: int, dtype: np.dtype[Any]) -> None:
     layout = h5py.VirtualLayout((count,), dtype)
-    layout[:] = h5py.VirtualSource(f"{schema.PARTS}/{_POINTS}", source, shape=(count,), dtype=dtype)
+    layout[:] = h5py.VirtualSource(f"{schema.PARTS}/{POINTS}", source, shape=(count,), dtype=dtype)
     group.create_virtual_dataset(name, layout)
 
 
@@ -197,10 +207,15 @@ def _bed_points(scene: Scene) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
     there = np.asarray(scene.fixed_active, dtype=bool)
     x, d = np.asarray(scene.x_fixed).reshape(-1, 3)[there], np.asarray(scene.d_fixed)[there]
     ids = scene.n_grain + np.flatnonzero(there)
-    corners = [_square(scene, k) for k in np.flatnonzero(scene.plane_active)]
+    corners = [_square(scene, int(k)) for k in np.flatnonzero(scene.plane_active)]
     plane_ids = scene.n_grain + scene.n_fixed + np.repeat(np.flatnonzero(scene.plane_active), 4)
     points = np.concatenate([x, *corners]) if corners else x
-    return points, np.append(d, np.zeros(4 * len(corners))), np.append(ids, plane_ids).astype(np.int64), len(x)
+    return (
+        points,
+        np.append(d, np.zeros(4 * len(corners))),
+        np.append(ids, plane_ids).astype(np.int64),
+        len(x),
+    )
 
 
 def _square(scene: Scene, k: int) -> np.ndarray:

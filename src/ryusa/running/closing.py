@@ -1,0 +1,60 @@
+"""What is said when a run ends: summary.json in a few lines."""
+
+from typing import Any
+
+_ACCOUNT = (
+    ("held", ("kinetic", "spin", "potential", "spring_n", "spring_s", "spring_r", "start")),
+    ("lost", ("dash_n", "dash_s", "slide", "roll", "released_n", "released_s", "released_r")),
+    ("given", ("drag", "torque", "lift", "switch")),
+)
+
+
+def closing_lines(summary: dict[str, Any]) -> list[str]:
+    """Largest overlap, steps per contact, restitution, energy account, warnings."""
+    lines = [
+        f"{summary['steps']} steps, {summary['frames']} frames, {summary['contacts']} contacts "
+        f"in {summary['wall']:.1f} s ({summary['particle_steps_per_second'] / 1e6:.2f} M particle-steps/s)",
+        f"largest overlap/d {summary['overlap']['largest_over_d']:.3g} (stable band {_band(summary)})",
+        _steps(summary["steps_per_contact"]),
+        f"restitution asked {_number(summary['restitution']['asked'])}, got {_got(summary['restitution'])}",
+    ]
+    shear = summary["restitution_shear"]
+    lines.append(
+        f"tangential restitution asked {_number(shear['asked'])}, got sticking: {_got(shear['sticking'])}; "
+        f"sliding: {_got(shear['sliding'])}"
+    )
+    energy = summary["energy"]
+    for what, names in _ACCOUNT:
+        lines.append(f"energy {what} [J]: " + ", ".join(f"{name} {energy[name]:.3g}" for name in names))
+    lines.append(f"energy not explained [J]: {energy['imbalance']:.2g}, residual {energy['residual']:.1e}")
+    return lines + [f"warning: {warning}" for warning in summary["warnings"]]
+
+
+def _band(summary: dict[str, Any]) -> str:
+    low, high = summary["overlap"]["band"]
+    return f"{low:g} to {high:g}"
+
+
+def _steps(steps: dict[str, Any]) -> str:
+    seen = steps["observed"]
+    text = f"steps per contact: shortest that can occur {steps['shortest']:.1f}"
+    if not seen["n"]:
+        return text
+    return (
+        f"{text}; observed least {seen['least']:.1f}, 1 % {seen['q01']:.1f}, median {seen['q50']:.1f}, "
+        f"99 % {seen['q99']:.3g}, most {seen['most']:.3g}"
+    )
+
+
+def _got(averages: dict[str, Any]) -> str:
+    said: list[str] = []
+    for partner in ("fixed", "free"):
+        one = averages[partner]
+        if one["n"]:
+            error = "" if one["standard_error"] is None else f" +- {one['standard_error']:.1g}"
+            said.append(f"{one['mean']:.4f}{error} on {partner} ({one['n']})")
+    return ", ".join(said) or "none (no isolated contact of two grains)"
+
+
+def _number(value: float | None) -> str:
+    return "nothing" if value is None else f"{value:g}"

@@ -1,0 +1,128 @@
+"""A folder for a run: refused when taken, when it cannot be written, when the frames would not fit."""
+
+import json
+import os
+import shutil
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from ryusa.errors import CaseError, ResultsError
+from ryusa.results import schema
+from ryusa.running.vtkhdf import POINTS, sync
+
+_FILES = (
+    schema.CASE_TOML, schema.CASE_JSON, schema.SUMMARY, schema.LOG, schema.GRAINS, schema.BED,
+    schema.PROVENANCE,
+)  # fmt: skip
+
+
+def prepare(folder: Path, *, overwrite: bool) -> None:
+    """Make `folder` and parts/ in it, empty of any earlier run.
+
+    Raises
+    ------
+    ResultsError : it exists (and `overwrite` is off, or it is no run of ryusa), or it cannot be written.
+    """
+    try:
+        if folder.is_symlink() or (folder.exists() and not folder.is_dir()):
+            raise ResultsError(f"{folder}: is there and is not a folder. Choose another with -o")
+        if folder.exists() and any(folder.iterdir()):
+            if not is_run(folder):
+                raise ResultsError(
+                    f"{folder}: is there, is no run of ryusa, and is left alone. Choose another with -o"
+                )
+            if not overwrite:
+                raise ResultsError(
+                    f"{folder}: holds a run already. Choose another folder with -o, or say --overwrite"
+                )
+            clear(folder)
+        (folder / schema.PARTS).mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ResultsError(
+            f"{folder}: cannot be written ({error.strerror or error}). Choose another with -o"
+        ) from error
+
+
+def is_run(folder: Path) -> bool:
+    """True for a folder that ryusa wrote."""
+    if not schema.is_run_folder(folder):
+        return False
+    try:
+        found = json.loads((folder / schema.PROVENANCE).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return False
+    return isinstance(found, dict) and "format" in found and "ryusa" in found
+
+
+def clear(folder: Path) -> None:
+    """Delete what a run wrote, provenance last; anything else in the folder stays."""
+    parts = folder / schema.PARTS
+    for entry in [] if parts.is_symlink() else list(parts.iterdir()):
+        name = entry.name.removeprefix(".").removesuffix(".new")
+        if name == POINTS or schema.PART_NAME.fullmatch(name) or schema.SCENE_NAME.fullmatch(name):
+            entry.unlink()
+    for name in _FILES:
+        (folder / f".{name}.new").unlink(missing_ok=True)
+        (folder / name).unlink(missing_ok=True)
+
+
+def write_json(path: Path, content: Mapping[str, Any]) -> None:
+    """Write JSON so that `path` is either as before or whole; numbers that are not finite become null.
+
+    Raises
+    ------
+    ResultsError : the disk is full or the folder is gone.
+    """
+    beside = path.with_name(f".{path.name}.new")
+    try:
+        beside.write_text(
+            json.dumps(_plain(content), indent=1, ensure_ascii=False, allow_nan=False) + "\n", "utf-8"
+        )
+        sync(beside)
+        os.replace(beside, path)
+    except OSError as error:
+        raise ResultsError(f"{path}: cannot be written ({error.strerror or error})") from error
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {str(key): _plain(inner) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(inner) for inner in value]
+    if hasattr(value, "tolist"):  # numpy scalars and arrays
+        return _plain(value.tolist())
+    if isinstance(value, float) and value - value != 0.0:  # inf, nan
+        return None
+    return value
+
+
+def refuse_if_too_big(folder: Path, n_frame: float, frame_bytes: int, interval: float) -> None:
+    """Compare the frames to come with the free space on the disk.
+
+    Raises
+    ------
+    CaseError : they would not fit.
+    """
+    existing = next(place for place in (folder, *folder.absolute().parents) if place.is_dir())
+    needed, free = n_frame * frame_bytes, free_bytes(existing)
+    if needed > free:
+        raise CaseError(
+            "record.frames",
+            f"{interval:g} s",
+            f"{n_frame:.3g} frames need {_size(needed)}, but only {_size(free)} are free at {existing}. "
+            "Record fewer frames, or stop earlier, or choose another disk with -o",
+        )
+
+
+def free_bytes(place: Path) -> int:
+    """Free space on the disk that holds `place` [B]."""
+    return shutil.disk_usage(place).free
+
+
+def _size(nbytes: float) -> str:
+    for unit in ("B", "kB", "MB", "GB", "TB"):
+        if nbytes < 1000 or unit == "TB":
+            return f"{nbytes:.3g} {unit}"
+        nbytes /= 1000
+    raise AssertionError

@@ -1,0 +1,229 @@
+"""Steps until a stop rule is met, a fault is found, or somebody says stop."""
+
+import math
+import signal
+import threading
+import time
+from collections.abc import Generator
+from contextlib import contextmanager, nullcontext, suppress
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from ryusa.engine.seam import Engine
+from ryusa.errors import RyusaError
+from ryusa.model import Scene, State
+from ryusa.results import schema
+from ryusa.running import provenance
+from ryusa.running.closing import closing_lines
+from ryusa.running.folder import write_json
+from ryusa.running.progress import Moment, Progress
+from ryusa.running.recorder import Recorder
+from ryusa.running.stops import Hops, Rest, Stop
+from ryusa.running.watch import Watch
+
+if TYPE_CHECKING:
+    from ryusa.running.runner import Change
+
+_CHUNK = 0.25  # s of wall time between two looks at the clock and at Ctrl-C
+_CHUNK_FIRST = (1, 16)  # steps of the first calls, before the speed is known
+_COMPILING = "compiling kernels for this machine: once, a minute or so; later runs start at once"
+_NEVER = 2**62  # steps
+
+
+@dataclass
+class Loop:
+    """The one loop. What is recorded and when it stops follow from steps alone, never from the clock."""
+
+    engine: Engine
+    scene: Scene
+    frames: float  # time between frames [s]
+    stop: Stop
+    changes: (
+        "list[tuple[int, int, Change]]"  # (step, order, change), sorted; taken off the front as they happen
+    )
+    recorder: Recorder
+    watch: Watch
+    progress: Progress
+    origin: dict[str, Any]  # provenance of a run that has begun
+    status: str = schema.RUNNING
+    message: str = ""
+    _step: int = 0
+    _t_zero: float = 0.0
+    _asked: str = ""  # who said stop
+    _resting: bool = False
+    _calls: int = 0
+    _speed: float = 0.0  # steps per second, lately
+    _warm: tuple[int, float] = (0, 0.0)  # step and wall time when kernels were ready
+    _begun: float = field(default_factory=time.monotonic)
+
+    def run(self, state: State) -> None:
+        """Run to the end, whatever it is; the run folder is whole when this returns or raises."""
+        try:
+            with self._signals():
+                self._run(state)
+                self.recorder.flush()
+        except BaseException as error:
+            self.status = schema.INTERRUPTED if isinstance(error, KeyboardInterrupt) else schema.FAILED
+            self.message = str(error) or type(error).__name__
+            self.progress.line(f"{self.status}: {self.message}")
+            with suppress(RyusaError, OSError):
+                self.recorder.flush()
+            with suppress(RyusaError, OSError):
+                self._close()
+            raise
+        self.progress.line(f"{self.status}: {self.message}")
+        for line in closing_lines(self._close()):
+            self.progress.line(line)
+
+    def _run(self, state: State) -> None:
+        self._step, self._t_zero = state.step, state.t - state.step * self.scene.dt
+        self._rest, self._hops = Rest(self.stop), Hops(self.scene, self.stop)
+        first, frame, last = state.step, 1, self._last_step()
+        look_every = self._look_every()
+        with self.progress.patience(_COMPILING):
+            self.engine.load(self.scene, state)
+        self.recorder.frame(self.engine.state(), self.engine.tally())
+        self._change_if_due()
+        self.recorder.flush()
+        while not self._done(last):
+            next_frame = first + round(frame * self.frames / self.scene.dt)
+            next_change = self.changes[0][0] if self.changes else _NEVER
+            next_look = (self._step // look_every + 1) * look_every
+            if not self._go_to(min(next_frame, next_change, next_look, last)):
+                continue
+            if self._step == next_frame:
+                self.recorder.frame(self.engine.state(), self.engine.tally())
+                frame += 1
+            if self._step == next_look and not self.changes:
+                self._resting = self._rest.reached(self._t, self.engine.tally().speed_max)
+            self._change_if_due()
+            if self.recorder.flush_if_due():
+                write_json(self.recorder.folder / schema.SUMMARY, self._summary())
+
+    def _go_to(self, target: int) -> bool:
+        """Advance to a step in calls of bounded wall time; False when somebody said stop on the way."""
+        while self._step < target and not self._asked:
+            self._advance(min(target - self._step, self._chunk()))
+            if self.progress.due():
+                self.progress.update(self._moment())
+        return self._step == target
+
+    def _advance(self, n_steps: int) -> None:
+        begun = time.monotonic()
+        with self.progress.patience(_COMPILING) if self._calls == 0 else nullcontext():
+            flags = self.engine.advance(n_steps)
+        events = self.engine.events()
+        self.recorder.contacts(events)
+        self.watch.contacts(events)
+        if self.stop.saltations is not None:
+            self._hops.contacts(events)
+        if flags:
+            self._step = self.engine.state().step
+            flags.raise_if_any()
+        self._step += n_steps
+        now = time.monotonic()
+        speed = n_steps / max(now - begun, 1e-9)
+        if self._calls <= 1:
+            self._warm, self._speed = (self._step, now), speed
+        else:
+            self._speed += 0.3 * (speed - self._speed)
+        self._calls += 1
+
+    def _chunk(self) -> int:
+        if self._calls < len(_CHUNK_FIRST):
+            return _CHUNK_FIRST[self._calls]
+        return max(1, int(self._speed * _CHUNK))
+
+    def _change_if_due(self) -> None:
+        while self.changes and self.changes[0][0] <= self._step:
+            _, _, change = self.changes.pop(0)
+            state = self.engine.state()
+            self.scene = change.apply(self.scene)
+            self.engine.load(self.scene, state)
+            self.watch.scene = self.scene
+            self.recorder.scene(self.scene, self._step, self._t)
+            self._rest = Rest(self.stop)
+            self.progress.line(f"t = {self._t:.6g} s: {change.what}")
+
+    @property
+    def _t(self) -> float:
+        return self._t_zero + self._step * self.scene.dt
+
+    def _last_step(self) -> int:
+        return (
+            _NEVER if math.isinf(self.stop.time) else round((self.stop.time - self._t_zero) / self.scene.dt)
+        )
+
+    def _look_every(self) -> int:
+        """Steps between two looks at the largest speed; four within the time that counts as rest."""
+        return (
+            _NEVER
+            if math.isinf(self.stop.rest_for)
+            else max(1, round(self.stop.rest_for / 4 / self.scene.dt))
+        )
+
+    def _done(self, last: int) -> bool:
+        if self._asked:
+            self.status, self.message = schema.INTERRUPTED, f"{self._asked} at t = {self._t:.6g} s"
+        elif self._step >= last:
+            self.status, self.message = schema.COMPLETE, f"reached {self.stop.time:g} s"
+        elif self._hops.reached():
+            self.status, self.message = schema.COMPLETE, f"every grain did {self._hops.least} saltations"
+        elif self._resting:
+            self.status = schema.COMPLETE
+            self.message = f"all grains slower than {self.stop.rest_speed:g} m/s for {self.stop.rest_for:g} s"
+        return self.status != schema.RUNNING
+
+    def _rate(self) -> float:
+        """Particle-steps per second since the kernels were ready, recording included."""
+        step, since = self._warm
+        return self.scene.n_grain * (self._step - step) / max(time.monotonic() - since, 1e-9)
+
+    def _moment(self) -> Moment:
+        tally, hops = self.engine.tally(), None
+        share = self._t / self.stop.time
+        if self.stop.saltations is not None:
+            hops = self._hops.least
+            share = max(share, hops / self.stop.saltations)
+        return Moment(min(share, 1.0), self._t, self._rate(), tally.overlap_max, tally.residual, hops)
+
+    def _summary(self) -> dict[str, Any]:
+        return {
+            "t": self._t,
+            "steps": self._step,
+            "dt": self.scene.dt,
+            "frames": self.recorder.n_frame,
+            "contacts": self.recorder.n_contact,
+            "saltations": None if self.stop.saltations is None else self._hops.count.tolist(),
+            "wall": time.monotonic() - self._begun,
+            "particle_steps_per_second": self._rate(),
+            **self.watch.numbers(self.engine.tally()),
+        }
+
+    def _close(self) -> dict[str, Any]:
+        summary = self._summary()
+        folder = self.recorder.folder
+        write_json(folder / schema.SUMMARY, summary)
+        closed = {**self.origin, "status": self.status, "message": self.message, "end": provenance.now()}
+        write_json(folder / schema.PROVENANCE, closed)
+        return summary
+
+    @contextmanager
+    def _signals(self) -> Generator[None]:
+        """Ctrl-C and SIGTERM end the run after the current call; a second Ctrl-C does so at once."""
+        if threading.current_thread() is not threading.main_thread():
+            yield
+            return
+        names = {signal.SIGINT: "Ctrl-C", signal.SIGTERM: "SIGTERM"}
+
+        def ask(number: int, _: object) -> None:
+            if self._asked:
+                raise KeyboardInterrupt(f"{self._asked}, twice")
+            self._asked = names[signal.Signals(number)]
+
+        before = {number: signal.signal(number, ask) for number in names}
+        try:
+            yield
+        finally:
+            for number, handler in before.items():
+                signal.signal(number, handler)

@@ -1,0 +1,142 @@
+"""What a run says meanwhile: a bar on a terminal, plain lines elsewhere, the same lines in log.txt."""
+
+import sys
+import threading
+import time
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, TextIO
+
+if TYPE_CHECKING:
+    from rich.progress import Progress as RichProgress
+    from rich.progress import TaskID
+
+_BAR_EVERY = 0.2  # s
+_LINE_EVERY = 5.0  # s
+_LINE_SHARE = 0.1  # of the way, at most once per such step when that takes longer than _LINE_EVERY
+_PATIENCE = 1.5  # s before a slow first step is explained
+
+
+@dataclass(frozen=True)
+class Moment:
+    """What is shown."""
+
+    share: float  # of the way, 0 to 1, by the stop rule that will come first as far as known
+    t: float  # simulated [s]
+    rate: float  # particle-steps per second
+    overlap: float  # largest overlap/d
+    residual: float  # of the energy account
+    hops: int | None = None  # of the grain that has fewest
+
+    def __str__(self) -> str:
+        hops = "" if self.hops is None else f"  hops {self.hops}"
+        return (
+            f"t {self.t:.4g} s{hops}  {self.rate / 1e6:.2f} M particle-steps/s  "
+            f"overlap/d {self.overlap:.2g}  residual {self.residual:.0e}"
+        )
+
+
+class Progress:
+    """Lines to stderr and to log.txt; a bar instead of lines where stderr is a terminal."""
+
+    def __init__(
+        self,
+        log: Path,
+        *,
+        shown: bool,
+        stream: TextIO | None = None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._shown, self._clock = shown, clock
+        self._stream = sys.stderr if stream is None else stream
+        self._log = log.open("a", encoding="utf-8", buffering=1)
+        self._begun = self._last = self._last_log = clock()
+        self._share = self._share_log = 0.0
+        self._bar: RichProgress | None = None
+        self._task: TaskID | None = None
+        if shown and self._stream.isatty():
+            self._bar, self._task = _bar(self._stream)
+
+    def line(self, text: str) -> None:
+        """Say something worth a line of its own."""
+        self._write_log(text)
+        self._show(text)
+
+    def due(self) -> bool:
+        """Is it time for new numbers? Ask before working them out."""
+        return self._clock() - self._last >= (_BAR_EVERY if self._bar is not None else _LINE_EVERY)
+
+    def update(self, moment: Moment) -> None:
+        """Show new numbers."""
+        now = self._clock()
+        self._last = now
+        if self._bar is not None and self._task is not None:
+            self._bar.update(self._task, completed=moment.share, now=str(moment))
+        slow = moment.share - self._share_log < _LINE_SHARE and self._share_log + _LINE_SHARE < 1.0
+        if now - self._last_log < _LINE_EVERY or (slow and now - self._last_log < 12 * _LINE_EVERY):
+            return
+        self._last_log, self._share_log = now, moment.share
+        text = f"{100 * moment.share:3.0f} %  {moment}{_left(now - self._begun, moment.share)}"
+        self._write_log(text)
+        if self._bar is None:
+            self._show(text)
+
+    @contextmanager
+    def patience(self, text: str) -> Generator[None]:
+        """Say `text` if the block takes long."""
+        timer = threading.Timer(_PATIENCE, self.line, [text])
+        timer.daemon = True
+        timer.start()
+        try:
+            yield
+        finally:
+            timer.cancel()
+
+    def close(self) -> None:
+        """Take the bar away and close the log."""
+        if self._bar is not None:
+            self._bar.stop()
+            self._bar = None
+        self._log.close()
+
+    def _write_log(self, text: str) -> None:
+        if self._log.closed:
+            return
+        try:
+            self._log.write(f"{time.strftime('%Y-%m-%d %H:%M:%S')}  {text}\n")
+        except OSError:  # a full disk is reported by the recorder, which matters more than a line of the log
+            return
+
+    def _show(self, text: str) -> None:
+        if not self._shown:
+            return
+        if self._bar is not None:
+            self._bar.console.print(text, highlight=False, markup=False)
+        else:
+            print(text, file=self._stream, flush=True)
+
+
+def _left(elapsed: float, share: float) -> str:
+    if share <= 0.0 or share >= 1.0:
+        return ""
+    return f"  about {elapsed * (1.0 / share - 1.0):.0f} s left"
+
+
+def _bar(stream: TextIO) -> "tuple[RichProgress, TaskID]":
+    from rich.console import Console
+    from rich.progress import BarColumn, TaskProgressColumn, TextColumn, TimeRemainingColumn
+    from rich.progress import Progress as RichProgress
+
+    bar = RichProgress(
+        BarColumn(bar_width=24),
+        TaskProgressColumn(),
+        TimeRemainingColumn(),
+        TextColumn("{task.fields[now]}"),
+        console=Console(file=stream),
+        transient=True,
+    )
+    task = bar.add_task("", total=1.0, now="")
+    bar.start()
+    return bar, task

@@ -1,0 +1,91 @@
+"""Where a run came from: versions, commit, machine, threads, seed, command line. The host name stays out."""
+
+import os
+import platform
+import subprocess
+import sys
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+from ryusa import __version__
+from ryusa.results import schema
+
+_PACKAGES = ("numpy", "numba", "llvmlite", "h5py", "pydantic", "pint", "scipy")
+_GIT_PATIENCE = 5.0  # s
+
+
+def begin(*, threads: int, seed: int | None, engine: str, overrides: dict[str, str]) -> dict[str, Any]:
+    """What is known when a run begins; `status` says running."""
+    return {
+        "format": schema.FORMAT,
+        "status": schema.RUNNING,
+        "message": "",
+        "begin": now(),
+        "end": None,
+        "ryusa": __version__,
+        "commit": commit(),
+        "packages": {name: _version(name) for name in _PACKAGES},
+        "python": platform.python_version(),
+        "system": f"{platform.system()} {platform.release()}",
+        "machine": {"processor": processor(), "cores": os.cpu_count(), "architecture": platform.machine()},
+        "threads": threads,
+        "engine": engine,
+        "seed": seed,
+        "overrides": overrides,
+        "command": _command(),
+    }
+
+
+def now() -> str:
+    """Time now, UTC, ISO 8601."""
+    return datetime.now(UTC).isoformat(timespec="seconds")
+
+
+def commit() -> str | None:
+    """Git commit of the checkout this package runs from, with "+" when files were changed; None elsewhere."""
+    here = Path(__file__).resolve().parent
+    top = _git(here, "rev-parse", "--show-toplevel")
+    if top is None or not (Path(top) / "src" / "ryusa").is_dir():
+        return None
+    found = _git(here, "rev-parse", "HEAD")
+    changed = _git(here, "status", "--porcelain", "--untracked-files=no", "--", str(here.parent))
+    return None if found is None else found + ("+" if changed else "")
+
+
+def processor() -> str:
+    """Name of the processor."""
+    try:
+        for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
+            if line.startswith("model name"):
+                return line.split(":", 1)[1].strip()
+    except OSError:
+        pass
+    return platform.processor() or platform.machine()
+
+
+def _command() -> list[str]:
+    """Command line, the program by its name alone."""
+    return [Path(sys.argv[0]).name, *sys.argv[1:]] if sys.argv else []
+
+
+def _version(package: str) -> str | None:
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return None
+
+
+def _git(folder: Path, *words: str) -> str | None:
+    try:
+        done = subprocess.run(
+            ["git", "-C", str(folder), *words],
+            capture_output=True,
+            text=True,
+            timeout=_GIT_PATIENCE,
+            check=False,
+        )
+    except (OSError, subprocess.SubprocessError):
+        return None
+    return done.stdout.strip() if done.returncode == 0 else None

@@ -1,0 +1,216 @@
+"""Live numbers of a run: overlap, steps per contact, restitution got, energy account, warnings."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ryusa.laws.collision import (
+    collision_time,
+    contact_time_no_tension,
+    contact_time_tension,
+    damping_ratio,
+    effective_mass,
+    omega_natural,
+)
+from ryusa.model import Book, Scene, State, Tally
+from ryusa.model.enums import Damping
+
+BAND = (0.001, 0.01)  # stable band of overlap/d, the paper's fig11
+TRAVEL_LIMIT = 0.3  # of d along the bed within one contact; beyond, contacts end by geometry, not by Eq. (8)
+STEPS_LEAST = 10  # per contact
+RESIDUAL_LIMIT = 1e-3  # of the energy account
+QUANTILES = (0.01, 0.1, 0.5, 0.9, 0.99)
+_CLOSING_LEAST = 2.0  # times g t_col: slower contacts are rests on the bed, not collisions
+_SLIP_LEAST = 0.1  # of the closing speed: less slip than this has no tangential restitution to speak of
+_DECADES, _BINS = (-1, 8), 100  # histogram of steps per contact: range of powers of ten, bins in each
+
+
+@dataclass
+class Average:
+    """Running mean and its standard error."""
+
+    n: int = 0
+    mean: float = 0.0
+    spread: float = 0.0  # sum of squared differences from the mean
+
+    def take(self, values: NDArray[np.float64]) -> None:
+        """Add samples."""
+        if len(values) == 0:
+            return
+        n, mean = len(values), float(values.mean())
+        shift = mean - self.mean
+        total = self.n + n
+        self.spread += float(((values - mean) ** 2).sum()) + shift * shift * self.n * n / total
+        self.mean += shift * n / total
+        self.n = total
+
+    def as_dict(self) -> dict[str, float | int | None]:
+        """Number, mean and standard error; None where there are too few samples."""
+        error = math.sqrt(self.spread / (self.n - 1) / self.n) if self.n > 1 else None
+        return {"n": self.n, "mean": self.mean if self.n else None, "standard_error": error}
+
+
+class Watch:
+    """Follows one run."""
+
+    def __init__(self, scene: Scene, state: State) -> None:
+        self.scene = scene
+        self.n_contact = 0
+        self.t_col_shortest = shortest_collision_time(scene, state)
+        self._g_t_col = _longest_collision_time(scene) * float(np.linalg.norm(scene.gravity))
+        low, high = _DECADES
+        self._edges = np.logspace(low, high, (high - low) * _BINS + 1)
+        self._histogram = np.zeros(len(self._edges) - 1, dtype=np.int64)
+        self._range = (math.inf, 0.0)  # of steps per contact
+        self._normal = {"fixed": Average(), "free": Average()}
+        self._stuck = {"fixed": Average(), "free": Average()}
+        self._slid = {"fixed": Average(), "free": Average()}
+        self._travel = Average()
+        self._travel_most = 0.0
+
+    def contacts(self, events: NDArray[np.void]) -> None:
+        """Take contacts that ended, dtype model.EVENT."""
+        if len(events) == 0:
+            return
+        self.n_contact += len(events)
+        duration = events["t_end"] - events["t_begin"]
+        self._steps(duration / self.scene.dt)
+        bed = events["j"] >= self.scene.n_grain
+        self._along_bed(events[bed], duration[bed])
+        lonely = (events["alone"] == 1.0) & (events["closing_begin"] > _CLOSING_LEAST * self._g_t_col)
+        for name, partner in (("fixed", bed), ("free", ~bed)):
+            self._restitution(events[lonely & partner], name)
+
+    def _steps(self, steps: NDArray[np.float64]) -> None:
+        self._histogram += np.histogram(np.clip(steps, self._edges[0], self._edges[-1]), self._edges)[0]
+        self._range = (min(self._range[0], float(steps.min())), max(self._range[1], float(steps.max())))
+
+    def _along_bed(self, events: NDArray[np.void], duration: NDArray[np.float64]) -> None:
+        if len(events) == 0:
+            return
+        v = events["v_begin"]
+        travel = np.hypot(v[:, 0], v[:, 1]) * duration / self.scene.d[events["i"]]
+        self._travel.take(travel)
+        self._travel_most = max(self._travel_most, float(travel.max()))
+
+    def _restitution(self, events: NDArray[np.void], name: str) -> None:
+        closing = events["closing_begin"]
+        self._normal[name].take(-events["closing_end"] / closing)
+        before, after = events["slip_begin"], events["slip_end"]
+        square = np.einsum("ij,ij->i", before, before)
+        oblique = np.sqrt(square) > _SLIP_LEAST * closing
+        got = -np.einsum("ij,ij->i", before, after)[oblique] / square[oblique]
+        slid = events["t_slide"][oblique] > 0.0
+        self._stuck[name].take(got[~slid])
+        self._slid[name].take(got[slid])
+
+    def numbers(self, tally: Tally) -> dict[str, Any]:
+        """All live numbers as plain data, for summary.json."""
+        scene = self.scene
+        return {
+            "overlap": {
+                "largest_over_d": tally.overlap_max,
+                "grain": tally.overlap_grain,
+                "step": tally.overlap_step,
+                "band": list(BAND),
+            },
+            "steps_per_contact": {"shortest": self.t_col_shortest / scene.dt, "observed": self._observed()},
+            "restitution": {
+                "asked": _or_none(scene.contact.e_n),
+                **{name: average.as_dict() for name, average in self._normal.items()},
+            },
+            "restitution_shear": {
+                "asked": _or_none(scene.contact.e_s),
+                "sticking": {name: average.as_dict() for name, average in self._stuck.items()},
+                "sliding": {name: average.as_dict() for name, average in self._slid.items()},
+            },
+            "travel_over_d": {**self._travel.as_dict(), "most": self._travel_most, "limit": TRAVEL_LIMIT},
+            "energy": energy(tally),
+            "warnings": self.warnings(tally),
+        }
+
+    def warnings(self, tally: Tally) -> list[str]:
+        """Say where the run left the stable band."""
+        said: list[str] = []
+        largest = tally.overlap_max
+        touched = self.n_contact > 0 or tally.n_contact > 0
+        if largest > BAND[1]:
+            said.append(
+                f"largest overlap/d {largest:.3g} is above {BAND[1]}: springs too soft, grains may tremble"
+            )
+        elif touched and largest < BAND[0]:
+            said.append(
+                f"largest overlap/d {largest:.3g} is below {BAND[0]}: stiffer and slower to run than needed"
+            )
+        steps = self.t_col_shortest / self.scene.dt
+        if steps < STEPS_LEAST:
+            said.append(
+                f"{steps:.1f} steps in the shortest contact, below {STEPS_LEAST}: do not trust the rebounds"
+            )
+        if self._travel_most > TRAVEL_LIMIT:
+            said.append(
+                f"a grain moved {self._travel_most:.2g} d along the bed within one contact "
+                f"(mean {self._travel.mean:.2g} d, limit {TRAVEL_LIMIT}): contacts end by geometry"
+            )
+        if tally.residual > RESIDUAL_LIMIT:
+            said.append(
+                f"the energy account leaves {tally.residual:.1e} unexplained, above {RESIDUAL_LIMIT:g}"
+            )
+        return said
+
+    def _observed(self) -> dict[str, float | int | None]:
+        """Steps per contact found: number, smallest, quantiles to 2.3 %, largest."""
+        total = int(self._histogram.sum())
+        if total == 0:
+            return {"n": 0}
+        below = np.cumsum(self._histogram)
+        middle = np.sqrt(self._edges[:-1] * self._edges[1:])
+        found: dict[str, float | int | None] = {"n": total, "least": self._range[0]}
+        for quantile in QUANTILES:
+            value = float(middle[np.searchsorted(below, quantile * total)])
+            found[f"q{round(100 * quantile):02d}"] = min(max(value, self._range[0]), self._range[1])
+        found["most"] = self._range[1]
+        return found
+
+
+def energy(tally: Tally) -> dict[str, float]:
+    """The energy account [J], each term summed by itself, and what it cannot explain."""
+    now = ("kinetic", "spin", "potential", "spring_n", "spring_s", "spring_r")
+    account = {name: float(getattr(tally, name)) for name in now}
+    account |= {book.name.lower(): float(tally.books[book]) for book in Book}
+    return {**account, "imbalance": tally.imbalance, "residual": tally.residual}
+
+
+def shortest_collision_time(scene: Scene, state: State) -> float:
+    """Contact time of the lightest pair that can meet, damped or undamped [s]; inf without grains."""
+    if scene.n_grain == 0:
+        return math.inf
+    law = scene.contact
+    m = np.sort(scene.m + scene.m_added)
+    pair = effective_mass(float(m[0]), float(m[1]) if _free_pairs(scene, state) else math.inf)
+    zeta = law.zeta_n if law.damping == Damping.RESTITUTION else damping_ratio(law.eta_n, law.k_n, pair)
+    damped = contact_time_tension if law.tension else contact_time_no_tension
+    return min(damped(zeta, omega_natural(law.k_n, pair)), collision_time(pair, law.k_n))
+
+
+def _longest_collision_time(scene: Scene) -> float:
+    heaviest = float((scene.m + scene.m_added).max()) if scene.n_grain else 0.0
+    return float(collision_time(heaviest, scene.contact.k_n))
+
+
+def _free_pairs(scene: Scene, state: State) -> bool:
+    """Can two free grains meet? Not when each has a lane of its own in a plane scene."""
+    if scene.n_grain < 2:
+        return False
+    if not scene.plane_case:
+        return True
+    order = np.argsort(state.x[:, 1])
+    y, r = state.x[order, 1], scene.d[order] / 2
+    return bool(np.any(np.diff(y) < r[1:] + r[:-1]))
+
+
+def _or_none(value: float) -> float | None:
+    return None if math.isnan(value) else value
