@@ -32,7 +32,7 @@ class Engine(Protocol):
         ...
 
     def load(self, scene: Scene, state: State) -> None:
-        """Take a scene and a fresh state or a snapshot; also used when the timeline changes the scene mid-run."""
+        """Take a scene and a fresh state or a snapshot; also when the timeline changes the scene mid-run."""
         ...
 
     def advance(self, n_steps: int) -> Flags:
@@ -48,5 +48,5 @@ class Engine(Protocol):
         ...
 
     def events(self) -> np.ndarray:
-        """Contacts ended since last asked: a structured array of dtype model.EVENT, in order of ending step."""
+        """Contacts ended since last asked: structured array of dtype model.EVENT, in order of ending step."""
         ...

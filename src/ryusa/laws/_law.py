@@ -11,7 +11,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 def law(function: F) -> F:
     """Compile a scalar law when it is first called; typed as identity so that the signature survives.
 
-    `error_model="numpy"` makes a division by zero give inf or nan instead of raising: laws never raise, and the
-    engine stops on a number that is not finite.
+    `error_model="numpy"` makes a division by zero give inf or nan instead of raising: laws never raise, and
+    the engine stops on a number that is not finite.
     """
     return cast(F, numba.njit(error_model="numpy", cache=True)(function))

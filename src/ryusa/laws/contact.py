@@ -83,7 +83,7 @@ def slip_spring(spring_s: float, spring_n: float, cohesion: float, mu: float) ->
 
 @law
 def slip_scale(size: float, tau_c: float) -> float:
-    """Factor that shortens a tangential vector of length `size` to tau_c; 1 while it sticks [-]. Eq. (3) in 3D.
+    """Factor that shortens a tangential vector of length `size` to tau_c; 1 while it sticks [-]. Eq. (3).
 
     Parameters
     ----------
@@ -107,8 +107,8 @@ def slide_spring(size: float, tau_c: float) -> tuple[float, float, float]:
 
     Returns
     -------
-    a, b, c : e becomes a e + b d and d becomes c d, for spring force e and dashpot force d, vectors in 3D or components
-        along the one tangent of a plane scene; a < 1 means sliding [-].
+    a, b, c : e becomes a e + b d and d becomes c d, for spring force e and dashpot force d, vectors in 3D or
+        components along the one tangent of a plane scene; a < 1 means sliding [-].
 
     >>> slide_spring(2.0, 1.0)
     (0.5, 0.0, 1.0)
@@ -142,7 +142,8 @@ def slide_total(size: float, tau_c: float) -> tuple[float, float, float]:
 
     Notes
     -----
-    While sliding the dashpot keeps its value and the spring takes what is left, so that the sum has length tau_c.
+    While sliding the dashpot keeps its value and the spring takes what is left, so that the sum has length
+    tau_c.
 
     >>> slide_total(2.0, 1.0)
     (0.5, -0.5, 1.0)

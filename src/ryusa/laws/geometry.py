@@ -35,8 +35,8 @@ def arm(r: float, overlap: float) -> float:
 
     Notes
     -----
-    The two arms of a pair add up to the distance of the centres, so the forces of a pair at this one point keep
-    angular momentum to round-off. The d/2 of Eq. (7) is the limit of zero overlap.
+    The two arms of a pair add up to the distance of the centres, so the forces of a pair at this one point
+    keep angular momentum to round-off. The d/2 of Eq. (7) is the limit of zero overlap.
 
     >>> arm(1.0e-3, 2.0e-5)
     0.00099
@@ -82,8 +82,9 @@ def turn(
 
     Notes
     -----
-    Second order in the angle turned within a step. Source: Luding 2008, Granular Matter 10, 235, section 2.3 (project
-    and rescale), with the turn about the normal that keeps the law objective for a pair spinning as a whole.
+    Second order in the angle turned within a step. Source: Luding 2008, Granular Matter 10, 235, section 2.3
+    (project and rescale), with the turn about the normal that keeps the law objective for a pair spinning as
+    a whole.
 
     >>> turn(1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
     (1.0, 0.0, 0.0)
