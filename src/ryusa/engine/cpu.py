@@ -10,7 +10,7 @@ from ryusa.engine.faults import fault_of, lost_of, unsafe_of
 from ryusa.engine.listing import Layout, take_memory
 from ryusa.engine.march import make_run
 from ryusa.engine.memory import contacts_of, memory_of
-from ryusa.engine.numbers import numbers_of, potential_energy, variant_of
+from ryusa.engine.numbers import choice_of, numbers_of, potential_energy, variant_of
 from ryusa.engine.rows import (
     C_DT,
     C_SKIN,
@@ -97,6 +97,7 @@ class CpuEngine:
         changed = before is not None and before is not scene and state.step > 0
         self._n, self._step, self._t = n, state.step, state.t
         self._variant = variant_of(scene)
+        self._choice = choice_of(scene)
         self._run = make_run(self._variant)
         blocks = _BLOCKS if n >= _MANY else 1
         self._layout = Layout(scene, blocks, self._variant.row_width)
@@ -204,7 +205,7 @@ class CpuEngine:
         while n_steps > 0:
             arguments = (
                 threads, n_steps, self._step, self._travel, np.zeros(1, np.int64), self._numbers, layout.block_start,
-                self._n, layout.n_solid, self._grains, layout.walls, self._pairs, self._ledger,
+                self._n, layout.n_solid, self._grains, layout.walls, self._pairs, self._ledger, self._choice,
             )  # fmt: skip
             if threads > 1 and self._pool is None:
                 self._pool = ThreadPoolExecutor(self._threads - 1, thread_name_prefix="ryusa")

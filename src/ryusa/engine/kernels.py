@@ -46,6 +46,7 @@ SLIP_DROP, SLIP_TOTAL, CAP_TOTAL = int(Slip.SPRING_DROP), int(Slip.TOTAL), int(C
 @njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def forces(
     kind: Variant,
+    choice: Choice,
     lo: int,
     hi: int,
     n: int,
@@ -64,14 +65,8 @@ def forces(
     now: Any,
 ) -> None:
     """Forces of every pair owned by grains lo..hi-1; q is the first slot of the block in `pairs.react`."""
-    plane_case, rotation, slip, tension, rolling = (
-        kind.plane_case,
-        kind.rotation,
-        kind.slip,
-        kind.tension,
-        kind.rolling,
-    )
-    events, width = kind.events, pairs.mem.shape[1]
+    plane_case, rotation, rolling, events = kind
+    slip, cap, tension, width = choice.slip, choice.cap, choice.tension, pairs.mem.shape[1]
     x, v, w, r, m, inertia, ids = grains.x, grains.v, grains.w, grains.r, grains.m, grains.inertia, grains.ids
     f, torque, touches, touched = grains.f, grains.torque, grains.touches, grains.touched
     start, partners, live, mem = pairs.start, pairs.partners, pairs.live, pairs.mem
@@ -92,7 +87,7 @@ def forces(
         for p in range(start[i], start[i + 1]):
             j = partners[p]
             cross = j < n and (j < lo or j >= hi)
-            if kind.planes and j >= n_solid:
+            if j >= n_solid:
                 k = j - n_solid
                 n_x, n_y, n_z = -normals[k, 0], -normals[k, 1], -normals[k, 2]
                 distance = (
@@ -185,7 +180,7 @@ def forces(
                 if events:
                     begin_record(
                         plane_case,
-                        events,
+                        choice.events,
                         row[width - N_EVENT :],
                         t,
                         dt,
@@ -219,7 +214,7 @@ def forces(
                 released_n += hdt * closing * d_n
 
             # tangential force
-            tau_c = shear_strength(f_n if kind.cap == CAP_TOTAL else e_n, cohesion, mu)
+            tau_c = shear_strength(f_n if cap == CAP_TOTAL else e_n, cohesion, mu)
             eta_s = row[R_ETA_S]
             p_x, p_y, p_z = row[R_SPRING_S], row[R_SPRING_S + 1], row[R_SPRING_S + 2]
             q_x, q_y, q_z = row[R_DASH_S], row[R_DASH_S + 1], row[R_DASH_S + 2]
@@ -284,8 +279,8 @@ def forces(
             if rolling:
                 share_j = float(max(touched[j], 1)) if j < n else 1.0
                 r_x, r_y, r_z, e_r = roll(
-                    rolling,
-                    kind.arm,
+                    choice.rolling,
+                    choice.arm,
                     row,
                     c,
                     f_n,
@@ -300,7 +295,7 @@ def forces(
                     book,
                 )
                 ti_x, ti_y, ti_z = ti_x + r_x, ti_y + r_y, ti_z + r_z
-                if rolling == ROLL_PRINTED:
+                if choice.rolling == ROLL_PRINTED:
                     tj_x, tj_y, tj_z = tj_x + r_x, tj_y + r_y, tj_z + r_z
                 else:
                     tj_x, tj_y, tj_z = tj_x - r_x, tj_y - r_y, tj_z - r_z

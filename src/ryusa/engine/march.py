@@ -76,6 +76,7 @@ def drag_of(law: int, speed: float, d: float, c: Any) -> float:
 @njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def motion(
     kind: Variant,
+    choice: Choice,
     lo: int,
     hi: int,
     first: bool,
@@ -87,14 +88,8 @@ def motion(
     now: Any,
 ) -> None:
     """Gather what other blocks stored, add water and weight, and move grains lo..hi-1 by one step."""
-    plane_case, rotation, profile, above, drag = (
-        kind.plane_case,
-        kind.rotation,
-        kind.profile,
-        kind.above,
-        kind.drag,
-    )
-    torque_law = kind.torque
+    plane_case, rotation = kind.plane_case, kind.rotation
+    profile, above, drag, torque_law = choice.profile, choice.above, choice.drag, choice.torque
     x, v, w, r, m, inertia, ids = grains.x, grains.v, grains.w, grains.r, grains.m, grains.inertia, grains.ids
     m_bare, m_weight, image = grains.m_bare, grains.m_weight, grains.image
     f, torque, touches, touched = grains.f, grains.torque, grains.touches, grains.touched
@@ -217,6 +212,7 @@ def make_run(kind: Variant) -> Any:
         walls: Walls,
         pairs: Pairs,
         ledger: Ledger,
+        choice: Choice,
     ) -> tuple[int, float, int, int]:
         """March up to n_steps; all threads come back with the same (steps done, travel, stop, source)."""
         ended, books, now, react_start = ledger.ended, ledger.books, ledger.now, pairs.react_start
@@ -237,6 +233,7 @@ def make_run(kind: Variant) -> Any:
                 q = react_start[b]
                 forces(
                     kind,
+                    choice,
                     lo,
                     hi,
                     n,
@@ -257,7 +254,7 @@ def make_run(kind: Variant) -> Any:
             target = meet(count, n_threads, target)
             for b in range(b_0, b_1):
                 lo, hi = block_start[b], block_start[b + 1]
-                motion(kind, lo, hi, step == 0, last, c, grains, pairs, books[b], now[b])
+                motion(kind, choice, lo, hi, step == 0, last, c, grains, pairs, books[b], now[b])
             target = meet(count, n_threads, target)
             fastest = 0.0
             full = False

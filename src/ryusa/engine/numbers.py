@@ -3,29 +3,36 @@
 import numpy as np
 
 from ryusa.engine import rows as k
-from ryusa.engine.rows import Variant
+from ryusa.engine.rows import Choice, Variant
 from ryusa.model import Scene, State
-from ryusa.model.enums import Damping
+from ryusa.model.enums import Damping, EventRule, Rolling
 from ryusa.model.scene import Floats
 
 
 def variant_of(scene: Scene) -> Variant:
     """The kernel this scene needs."""
-    law, rolling, water = scene.contact, scene.rolling, scene.water
     return Variant(
         plane_case=int(scene.plane_case),
         rotation=int(scene.rotation),
+        rolling=int(scene.rolling.model != Rolling.NONE),
+        events=int(scene.events != EventRule.NONE),
+    )
+
+
+def choice_of(scene: Scene) -> Choice:
+    """The laws this scene names."""
+    law, rolling, water = scene.contact, scene.rolling, scene.water
+    return Choice(
         slip=int(law.slip),
         cap=int(law.cap),
         tension=int(law.tension),
         rolling=int(rolling.model),
         arm=int(rolling.arm),
         events=int(scene.events),
-        planes=int(scene.n_plane > 0),
         profile=int(water.profile),
         above=int(water.above),
-        drag=int(water.drag) if water.profile else 0,
-        torque=int(water.torque) if water.profile else 0,
+        drag=int(water.drag),
+        torque=int(water.torque),
     )
 
 

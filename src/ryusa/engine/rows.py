@@ -112,21 +112,12 @@ N_BOOKS = 16
 
 
 class Variant(NamedTuple):
-    """What a kernel is built for; each combination compiles once and is cached."""
+    """What a kernel is compiled for; each of the sixteen is kept on disk once built."""
 
     plane_case: int
     rotation: int
-    slip: int
-    cap: int
-    tension: int
     rolling: int
-    arm: int
     events: int
-    planes: int
-    profile: int
-    above: int
-    drag: int
-    torque: int
 
     @property
     def row_width(self) -> int:
@@ -137,3 +128,18 @@ class Variant(NamedTuple):
     def event_column(self) -> int:
         """Where the open record starts."""
         return WITH_ROLLING if self.rolling else BASE
+
+
+class Choice(NamedTuple):
+    """Named laws a kernel picks while it runs (model.enums); always the same way, so that a branch costs nothing."""
+
+    slip: int
+    cap: int
+    tension: int
+    rolling: int
+    arm: int
+    events: int
+    profile: int
+    above: int
+    drag: int
+    torque: int
