@@ -120,7 +120,7 @@ def test_collisions_give_back_restitution_and_share_of_eq_8(make):
     assert len(found.events) == 4
     assert found.averages["restitution_alone"].value == pytest.approx(0.7)
     assert found.averages["restitution_alone"].n == 3
-    assert found.averages["restitution_shear_alone"].value == pytest.approx(-0.5)
+    assert found.averages["restitution_shear_alone"].value == pytest.approx(0.5)
     assert found.averages["overlap_over_d"].value == pytest.approx(0.005)
     np.testing.assert_allclose(found.expected, 2.9184 * np.sqrt((make.m + make.added) / 1.0e4), rtol=1e-4)
     assert len(collisions(run, partner="free").events) == 0

@@ -52,12 +52,12 @@ class Band:
 
     Attributes
     ----------
-    label : written inside.
-    k_low, y_low : the edge of small overlap.
-    k_high, y_high : the edge of large overlap.
+    labels : names of the soft and the stiff edge, written at their upper ends.
+    k_low, y_low : the soft edge (large overlap).
+    k_high, y_high : the stiff edge (small overlap).
     """
 
-    label: str
+    labels: tuple[str, str]
     k_low: Floats
     y_low: Floats
     k_high: Floats
@@ -120,8 +120,13 @@ def _fill(axes: Axes, band: Band) -> None:
     x = np.concatenate([band.k_low, band.k_high[::-1]])
     y = np.concatenate([band.y_low, band.y_high[::-1]])
     axes.fill(x, y, color=style.BAND, lw=0)
-    for k, edge in ((band.k_low, band.y_low), (band.k_high, band.y_high)):
+    edges = ((band.k_low, band.y_low, band.labels[0]), (band.k_high, band.y_high, band.labels[1]))
+    for k, edge, label in edges:
         axes.plot(k, edge, color="#7d9470", lw=0.8)
+        end = int(np.argmax(edge))
+        at = (float(k[end]), float(edge[end]))
+        how: Any = {"textcoords": "offset points", "ha": "center", "fontsize": 6.5, "color": "#4c6340"}
+        axes.annotate(label, at, (0, 3), **how)
 
 
 def _label_end(axes: Axes, curve: Curve, colour: Any) -> None:

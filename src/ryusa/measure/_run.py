@@ -26,15 +26,8 @@ class Run(Protocol):
     frames: Any  # Frames
     scene: Scene  # at the start of the run
 
-    @property
-    def contacts(self) -> NDArray[Any]:
-        """Contacts that ended, dtype model.EVENT."""
-        ...
-
-    @property
-    def tally(self) -> dict[str, NDArray[Any]]:
-        """Energy account at each frame."""
-        ...
+    contacts: Any  # contacts that ended: structured array of dtype model.EVENT
+    tally: Any  # dict of arrays (n_frame,): the energy account at each frame
 
 
 def settle_time(run: Run) -> float:

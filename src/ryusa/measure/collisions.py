@@ -50,8 +50,8 @@ class Collisions:
     overlap : largest overlap over the smaller diameter [-].
     speed : closing speed at first touch [m/s].
     restitution : parting over closing speed of contacts that were alone, else nan [-].
-    restitution_s : slip velocity at parting along that at first touch, over it, with its sign; alone only
-        [-].
+    restitution_s : minus the slip at parting along that at first touch, over it; alone only [-]. Like the
+        normal one it is positive where the motion turns round; it is negative where the slip goes on.
     expected : duration by Eq. (8) with the pair's mass, added mass included, and its dashpot [s].
     averages : means with their errors.
     """
@@ -121,7 +121,7 @@ def collisions(
     alone = (events["alone"] > 0.0) & (speed > 0.0)
     e = np.divide(-events["closing_end"], speed, out=np.full(len(events), np.nan), where=alone)
     slip = np.linalg.norm(events["slip_begin"], axis=1)
-    along = np.einsum("ij,ij->i", events["slip_begin"], events["slip_end"])
+    along = -np.einsum("ij,ij->i", events["slip_begin"], events["slip_end"])
     e_s = np.divide(along, slip * slip, out=np.full(len(events), np.nan), where=alone & (slip > 0.0))
     expected = _expected(scene, pair)
     window = (begin, float(events["t_part"].max()) if len(events) else math.nan)

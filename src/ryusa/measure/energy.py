@@ -53,8 +53,13 @@ class Energy:
 
 
 def energy(run: Run) -> Energy:
-    """Energy account of a run, from the tally the engine summed while stepping."""
+    """Energy account of a run, from the tally the engine summed while stepping.
+
+    A first frame taken before the first step, when nothing is booked yet, is left out.
+    """
     tally = run.tally
+    if len(tally["t"]) > 1 and not any(tally[name][0] for name in (*HELD, "start")):
+        tally = {name: values[1:] for name, values in tally.items()}
     held = {name: np.asarray(tally[name], dtype=np.float64) for name in HELD}
     lost = {Book(b).name.lower(): np.asarray(tally[Book(b).name.lower()], dtype=np.float64) for b in LOSSES}
     given = {Book(b).name.lower(): np.asarray(tally[Book(b).name.lower()], dtype=np.float64) for b in GIFTS}
