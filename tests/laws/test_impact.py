@@ -51,8 +51,8 @@ def test_fifty_steps_per_contact_give_the_restitution_and_the_time_asked_for(e, 
 @pytest.mark.parametrize("tension", [True, False])
 @pytest.mark.parametrize("e", HEAVY)
 def test_heavy_damping_is_short_of_restitution_by_the_half_step_the_dashpot_lags(e, tension):
-    # The dashpot sees the velocity of half a step before: the pair acts as if lighter by eta dt/2, which shortens
-    # the contact and strengthens the decay; together ln(e) grows by a factor 1 + zeta omega_0 dt/2.
+    # The dashpot sees the velocity of half a step before: the pair acts as if lighter by eta dt/2, which
+    # shortens the contact and strengthens the decay; in all ln(e) grows by a factor 1 + zeta omega_0 dt/2.
     zeta = collision.zeta_tension(e) if tension else collision.zeta_no_tension(e)
     time = collision.contact_time_tension if tension else collision.contact_time_no_tension
     got, duration = hits(e, tension, 50)
