@@ -12,7 +12,7 @@ def law(function: F) -> F:
     """Compile a scalar law when it is first called; typed as identity so that the signature survives.
 
     `error_model="numpy"` makes a division by zero give inf or nan instead of raising: laws never raise, and
-    the engine stops on a number that is not finite. `fastmath=False` is said aloud because Numba would otherwise
-    take it from whichever kernel calls the law first, and keep that in the cache for everybody.
+    the engine stops on a number that is not finite. `fastmath=False` is said aloud because Numba would
+    otherwise take it from whichever kernel calls the law first, and keep that in the cache for everybody.
     """
     return cast(F, numba.njit(error_model="numpy", fastmath=False, cache=True)(function))
