@@ -65,5 +65,6 @@ def tally_row(tally: Tally) -> tuple[float, ...]:
 
 
 def is_run_folder(folder: Path) -> bool:
-    """True where `folder` is recognisably a run of ryusa."""
-    return (folder / PROVENANCE).is_file() and (folder / PARTS).is_dir()
+    """True where `folder` is recognisably a run of ryusa; links are not followed."""
+    parts = folder / PARTS
+    return (folder / PROVENANCE).is_file() and parts.is_dir() and not parts.is_symlink()

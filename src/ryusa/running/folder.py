@@ -58,7 +58,7 @@ def is_run(folder: Path) -> bool:
 def clear(folder: Path) -> None:
     """Delete what a run wrote, provenance last; anything else in the folder stays."""
     parts = folder / schema.PARTS
-    for entry in [] if parts.is_symlink() else list(parts.iterdir()):
+    for entry in list(parts.iterdir()):
         name = entry.name.removeprefix(".").removesuffix(".new")
         if name == POINTS or schema.PART_NAME.fullmatch(name) or schema.SCENE_NAME.fullmatch(name):
             entry.unlink()

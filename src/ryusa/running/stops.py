@@ -50,7 +50,7 @@ class Hops:
     """Counts saltations from bed contacts.
 
     A hop is a flight between two bed contacts of a grain in which its centre rises more than HOP_RISE d if it
-    flies freely: one longer than 2 sqrt(2 HOP_RISE d/g'), g' the submerged gravity over the inertia with added
+    flies freely: one longer than 2 sqrt(2 HOP_RISE d/g'), g' submerged gravity over the inertia with added
     mass. It begins after the settling time. Measures look at the flight itself; this only stops the run.
     """
 

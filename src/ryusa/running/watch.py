@@ -23,7 +23,7 @@ TRAVEL_LIMIT = 0.3  # of d along the bed within one contact; beyond, contacts en
 STEPS_LEAST = 10  # per contact
 RESIDUAL_LIMIT = 1e-3  # of the energy account
 QUANTILES = (0.01, 0.1, 0.5, 0.9, 0.99)
-_CLOSING_LEAST = 2.0  # times g t_col: slower contacts are rests on the bed, not collisions
+_CLOSING_LEAST = 20.0  # times g t_col: in slower contacts the weight takes part (5 % of the speed and more)
 _SLIP_LEAST = 0.1  # of the closing speed: less slip than this has no tangential restitution to speak of
 _DECADES, _BINS = (-1, 8), 100  # histogram of steps per contact: range of powers of ten, bins in each
 
@@ -60,7 +60,7 @@ class Watch:
         self.scene = scene
         self.n_contact = 0
         self.t_col_shortest = shortest_collision_time(scene, state)
-        self._g_t_col = _longest_collision_time(scene) * float(np.linalg.norm(scene.gravity))
+        self._g_t_col = _speed_of_weight(scene)
         low, high = _DECADES
         self._edges = np.logspace(low, high, (high - low) * _BINS + 1)
         self._histogram = np.zeros(len(self._edges) - 1, dtype=np.int64)
@@ -196,9 +196,14 @@ def shortest_collision_time(scene: Scene, state: State) -> float:
     return min(damped(zeta, omega_natural(law.k_n, pair)), collision_time(pair, law.k_n))
 
 
-def _longest_collision_time(scene: Scene) -> float:
-    heaviest = float((scene.m + scene.m_added).max()) if scene.n_grain else 0.0
-    return float(collision_time(heaviest, scene.contact.k_n))
+def _speed_of_weight(scene: Scene) -> float:
+    """Speed that its weight gives the heaviest grain within one contact [m/s]."""
+    if scene.n_grain == 0:
+        return 0.0
+    k = int(np.argmax(scene.m))
+    m = float(scene.m[k] + scene.m_added[k])
+    g = float(np.linalg.norm(scene.gravity)) * abs(float(scene.m_weight[k])) / m
+    return g * collision_time(m, scene.contact.k_n)
 
 
 def _free_pairs(scene: Scene, state: State) -> bool:

@@ -1,0 +1,65 @@
+"""The command line: thin, every command is a call that a script could make too."""
+
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+from typing import Annotated, Any
+
+import typer
+from typer.core import TyperGroup
+
+from ryusa import __version__
+from ryusa.errors import RyusaError
+
+# one module per family of commands; each puts its commands on the app with `register(app)`
+_FAMILIES = ("ryusa.cli.run", "ryusa.cli.measure", "ryusa.cli.design")
+
+
+class Commands(TyperGroup):
+    """Commands that say in one block what is wrong; a bug keeps its traceback."""
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run the command asked for."""
+        try:
+            return super().invoke(ctx)
+        except RyusaError as error:
+            typer.echo(f"ryusa: {error}", err=True)
+            raise typer.Exit(error.exit_code) from None
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        """Names of the commands in the order a newcomer meets them."""
+        return list(self.commands)
+
+
+app = typer.Typer(
+    cls=Commands,
+    help="Follows every grain of sand, gravel or debris through moving water.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"ryusa {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version and leave.")
+    ] = False,
+) -> None:
+    """Follow every grain of sand, gravel or debris through moving water."""
+
+
+for _family in _FAMILIES:
+    import_module(_family).register(app)
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the command line; `arguments` default to those of the process."""
+    app(args=sys.argv[1:] if arguments is None else list(arguments), prog_name="ryusa")

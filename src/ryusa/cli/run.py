@@ -1,0 +1,162 @@
+"""`ryusa new`, `check`, `run`, `schema`: from a case file to a run folder."""
+
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from ryusa.errors import CaseError, RyusaError
+
+if TYPE_CHECKING:
+    from ryusa.casefile.schema import Case
+
+CaseFile = Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML).", show_default=False)]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="KEY=VALUE",
+        help="Change a key of the case: --set 'contact.stiffness=10 N/cm'. Repeatable.",
+    ),
+]
+Seed = Annotated[int | None, typer.Option("--seed", help="Change the seed of the case.", show_default=False)]
+
+_INTERRUPTED = 130  # exit code after Ctrl-C
+_WIDE = 160  # columns of a table that goes to a file or pipe
+
+
+def register(app: typer.Typer) -> None:
+    """Put the commands of this module on the app."""
+    for command in (new, check, run, schema):
+        app.command()(command)
+
+
+def new(
+    kind: Annotated[
+        str | None,
+        typer.Argument(metavar="KIND", help="What to start from; without it, the kinds are listed."),
+    ] = None,
+    path: Annotated[
+        Path | None, typer.Argument(metavar="PATH", help="File to write; KIND.toml when not given.")
+    ] = None,
+) -> None:
+    """Write a commented case file to start from."""
+    kinds = _kinds()
+    if kind is None:
+        for name, title in kinds.items():
+            typer.echo(f"{name:<24}{title}")
+        return
+    if kind not in kinds:
+        from ryusa.casefile.faults import nearest_word
+
+        raise CaseError("kind", kind, f"must be one of {', '.join(kinds)}", nearest_word(kind, list(kinds)))
+    if path is None:
+        path = Path(f"{kind.rpartition('/')[2]}.toml")
+    elif path.is_dir():
+        path /= f"{kind.rpartition('/')[2]}.toml"
+    source = files("ryusa.cases").joinpath(f"{kind}.toml")
+    try:
+        with path.open("xb") as file:
+            file.write(source.read_bytes())
+    except FileExistsError:
+        raise RyusaError(f"{path}: is there already and is left alone. Give another path") from None
+    except OSError as error:
+        raise RyusaError(f"{path}: cannot be written ({error.strerror or error})") from error
+    typer.echo(f"{path} written. Next: ryusa check {path}; ryusa run {path}")
+
+
+def check(case: CaseFile, settings: Settings = None, seed: Seed = None) -> None:
+    """Explain a case back, with everything that follows from it, without running it."""
+    found = _read(case, settings, seed)
+    from rich.console import Console
+    from rich.markup import escape
+    from rich.table import Table
+
+    from ryusa.build import build
+
+    built = build(found)
+    console = Console()
+    if not console.is_terminal:
+        console = Console(width=_WIDE)
+    table = Table(title=escape(found.title) or None, box=None, padding=(0, 2, 0, 0), title_justify="left")
+    for heading in ("name", "value", "where it comes from"):
+        table.add_column(heading, overflow="fold", justify="left")
+    section = None
+    for row in found.explain():
+        if row.section != section:
+            section = row.section
+            table.add_row(f"[bold]{escape(section)}[/bold]")
+        style = {"warning": "yellow", "note": "cyan"}.get(row.flag)
+        mark = "warning: " if row.flag == "warning" else ""
+        table.add_row(f"  {escape(row.name)}", escape(row.shown), escape(mark + row.how), style=style)
+    console.print(table)
+    console.print("[bold]chosen because the case leaves it open[/bold]")
+    for note in built.notes:
+        console.print(f"  {escape(note)}", highlight=False)
+
+
+def run(
+    case: CaseFile,
+    out: Annotated[
+        Path | None,
+        typer.Option("-o", "--out", metavar="FOLDER", help="Run folder; runs/CASE when not given."),
+    ] = None,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Replace an earlier run in that folder.")
+    ] = False,
+    settings: Settings = None,
+    threads: Annotated[
+        int, typer.Option("--threads", metavar="N", help="Threads; the numbers do not depend on it.")
+    ] = 1,
+    seed: Seed = None,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no closing lines.")] = False,
+) -> None:
+    """Run a case and write a run folder; Ctrl-C ends it with everything readable."""
+    found = _read(case, settings, seed)
+    from ryusa.running.runner import run as run_case
+
+    results = run_case(found, out, threads=threads, progress=not quiet, overwrite=overwrite)
+    if not quiet:
+        folder = results.folder
+        typer.echo(f"{folder}: {results.status}. Open {folder / 'grains.vtkhdf'} in ParaView")
+        typer.echo(f"next: ryusa measure {folder} WHAT, ryusa draw {folder} WHAT")
+    if not results.complete:
+        raise typer.Exit(_INTERRUPTED)
+
+
+def schema() -> None:
+    """Print the JSON Schema of case files, for editors."""
+    from ryusa.casefile import json_schema_text
+
+    typer.echo(json_schema_text(), nl=False)
+
+
+def _read(path: Path, settings: list[str] | None, seed: int | None) -> "Case":
+    from ryusa.casefile.read import read
+
+    overrides: dict[str, str] = {}
+    for setting in settings or []:
+        key, equals, value = setting.partition("=")
+        if not equals or not key.strip():
+            raise CaseError("--set", setting, "needs KEY=VALUE, such as --set 'contact.stiffness=10 N/cm'")
+        overrides[key.strip()] = value.strip()
+    if seed is not None:
+        overrides["seed"] = str(seed)
+    return read(path, overrides)
+
+
+def _kinds() -> dict[str, str]:
+    """Case files that come with ryusa: name (paper/fig7 for one of the paper's) and title."""
+    import tomllib
+
+    found: dict[str, str] = {}
+    root = files("ryusa.cases")
+    for before, folder in (("", root), ("paper/", root.joinpath("paper"))):
+        if not folder.is_dir():
+            continue
+        for entry in sorted(folder.iterdir(), key=lambda one: one.name):
+            if entry.name.endswith(".toml"):
+                title = tomllib.loads(entry.read_text(encoding="utf-8")).get("title", "")
+                found[before + entry.name.removesuffix(".toml")] = str(title)
+    return found

@@ -1,0 +1,242 @@
+import json
+import os
+import signal
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from ryusa.errors import CaseError, ResultsError, RunError
+from ryusa.model import RollingLaw
+from ryusa.model.enums import EventRule, Rolling
+from ryusa.results import Results
+from ryusa.running import folder as folder_module
+from ryusa.running.runner import Change, run_scene
+from ryusa.running.stops import Stop
+
+
+@pytest.fixture
+def go(scene: Any, state: Any, engine: Any, tmp_path: Path) -> Any:
+    def run(**changes: Any) -> Results:
+        arguments: dict[str, Any] = {
+            "scene": scene, "state": state, "folder": tmp_path / "run", "frames": 1e-3, "stop": Stop(time=0.01),
+            "engine": engine, "progress": False,
+        }  # fmt: skip
+        return run_scene(**{**arguments, **changes})
+
+    return run
+
+
+def test_frame_k_falls_on_step_round_of_k_interval_over_dt(go: Any, scene: Any) -> None:
+    results = go(frames=0.37e-3)
+    k = np.arange(len(results.frames))
+    assert results.frames.step.tolist() == [round(n * 0.37e-3 / scene.dt) for n in k]
+    assert len(k) == 28
+    assert results.frames.x[5, 1, 2] == results.frames.step[5] + 1 / 8
+
+
+def test_a_frame_at_every_step_misses_none(go: Any, scene: Any) -> None:
+    assert go(frames=scene.dt, stop=Stop(time=1e-3)).frames.step.tolist() == list(range(101))
+
+
+def test_a_finished_run_says_complete_and_how_it_ended(go: Any) -> None:
+    results = go()
+    assert results.complete
+    assert results.provenance["message"] == "reached 0.01 s"
+    assert results.summary["steps"] == 1000
+    assert results.provenance["end"] >= results.provenance["begin"]
+    assert "complete: reached 0.01 s" in (results.folder / "log.txt").read_text()
+
+
+def test_the_host_name_stays_out_of_the_run_folder(go: Any) -> None:
+    import socket
+
+    name = socket.gethostname()
+    assert all(name not in path.read_text() for path in go().folder.glob("*.json")) or len(name) < 4
+
+
+def test_a_run_stops_once_all_grains_rest_long_enough(go: Any, engine: Any) -> None:
+    engine.speed = lambda step: 0.0 if step >= 300 else 1.0
+    results = go(stop=Stop(time=1.0, rest_speed=1e-4, rest_for=1e-3))
+    assert results.complete
+    assert 400 <= results.summary["steps"] <= 425
+
+
+def test_rest_before_the_last_change_of_the_timeline_does_not_stop_a_run(go: Any, engine: Any) -> None:
+    engine.speed = lambda step: 0.0
+    results = go(
+        stop=Stop(time=1.0, rest_speed=1e-4, rest_for=1e-3), changes=[Change(0.005, lambda scene: scene)]
+    )
+    assert 600 <= results.summary["steps"] <= 625
+
+
+def test_saltations_of_the_laziest_grain_stop_a_run(go: Any, engine: Any, event: Any) -> None:
+    for k in range(20):
+        for i in range(3):
+            step = 100 * (k + 1) * (2 if i == 1 else 1) + i
+            engine.events_at[step] = event(i, 3, 0.2 * k * (i + 1), 0.2 * k * (i + 1) + 1e-4)
+    results = go(stop=Stop(time=1.0, saltations=5))
+    assert results.provenance["message"] == "every grain did 5 saltations"
+    assert min(results.summary["saltations"]) == 5
+    assert results.summary["steps"] == 1300
+
+
+def test_a_change_of_the_timeline_lands_on_its_step(go: Any, engine: Any, scene: Any) -> None:
+    from dataclasses import replace
+
+    gone = np.array([False, True])
+    results = go(changes=[Change(0.00333, lambda now: replace(now, fixed_active=gone), "remove gate")])
+    assert [step for step, _ in engine.loaded] == [0, 333]
+    assert [step for step, _, _ in results.scenes] == [0, 333]
+    assert results.scene_at(0.0).fixed_active.all()
+    assert not results.scene_at(0.005).fixed_active[0]
+    assert "remove gate" in (results.folder / "log.txt").read_text()
+    assert len(results.frames) == 11
+
+
+def test_a_fault_leaves_everything_before_it_and_names_itself(go: Any, engine: Any, tmp_path: Path) -> None:
+    engine.fault_at = 555
+    with pytest.raises(RunError, match="made to fail: grain 1"):
+        go()
+    results = Results.open(tmp_path / "run")
+    assert results.status == "failed"
+    assert "made to fail" in results.provenance["message"]
+    assert results.frames.step.tolist() == [0, 100, 200, 300, 400, 500]
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_a_run_cleanly(go: Any, engine: Any, number: signal.Signals) -> None:
+    engine.on_advance = lambda step: os.kill(os.getpid(), number) if step >= 400 else None
+    before = signal.getsignal(number)
+    results = go()
+    assert results.status == "interrupted"
+    assert results.frames.step[-1] <= 400 < 500
+    assert signal.getsignal(number) is before
+
+
+def test_an_unforeseen_error_is_not_swallowed(go: Any, engine: Any, tmp_path: Path) -> None:
+    def fail(step: int) -> None:
+        raise ZeroDivisionError("a bug")
+
+    engine.on_advance = fail
+    with pytest.raises(ZeroDivisionError):
+        go()
+    assert Results.open(tmp_path / "run").status == "failed"
+
+
+def test_an_earlier_run_is_refused_then_replaced_on_request(go: Any) -> None:
+    first = go()
+    (first.folder / "notes.md").write_text("mine")
+    with pytest.raises(ResultsError, match="--overwrite"):
+        go()
+    second = go(overwrite=True, stop=Stop(time=0.002))
+    assert len(second.frames) == 3
+    assert (first.folder / "notes.md").read_text() == "mine"
+
+
+@pytest.mark.parametrize("content", [{}, {"provenance.json": "{}"}, {"provenance.json": '{"format": 1}'}])
+def test_a_folder_that_is_no_run_is_never_deleted(go: Any, tmp_path: Path, content: dict[str, str]) -> None:
+    (tmp_path / "run" / "parts").mkdir(parents=True)
+    (tmp_path / "run" / "thesis.tex").write_text("all of it")
+    for name, text in content.items():
+        (tmp_path / "run" / name).write_text(text)
+    with pytest.raises(ResultsError, match="no run of ryusa"):
+        go(overwrite=True)
+    assert (tmp_path / "run" / "thesis.tex").read_text() == "all of it"
+
+
+def test_overwriting_follows_no_link_out_of_the_folder(go: Any, tmp_path: Path) -> None:
+    results = go()
+    outside = tmp_path / "outside"
+    (results.folder / "parts").rename(outside)
+    (results.folder / "parts").symlink_to(outside)
+    before = {path: path.stat().st_mtime_ns for path in outside.iterdir()}
+    with pytest.raises(ResultsError):
+        go(overwrite=True)
+    assert {path: path.stat().st_mtime_ns for path in outside.iterdir()} == before
+
+
+def test_a_folder_that_cannot_be_made_is_one_clear_error(go: Any, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(ResultsError, match="cannot be written"):
+        go(folder=tmp_path / "file" / "run")
+
+
+def test_frames_that_do_not_fit_on_the_disk_are_refused_before_work(
+    go: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(folder_module, "free_bytes", lambda place: 5000)
+    with pytest.raises(CaseError, match=r"record\.frames.*only 5 kB are free"):
+        go(frames=1e-5)
+    assert not (tmp_path / "run").exists()
+
+
+def test_a_disk_that_fills_up_on_the_way_ends_the_run_with_what_was_written(
+    go: Any, engine: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from ryusa.running import recorder, vtkhdf
+
+    def full(*_: Any) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(recorder, "flush_after", lambda elapsed, n_part: 0.0)
+    engine.on_advance = lambda step: monkeypatch.setattr(vtkhdf, "sync", full) if step >= 500 else None
+    with pytest.raises(ResultsError, match="No space left"):
+        go()
+    assert len(Results.open(tmp_path / "run").frames) >= 4
+
+
+@pytest.mark.parametrize(
+    ("changes", "key"),
+    [
+        ({"stop": Stop()}, "stop"),
+        ({"frames": 1e-6}, "record.frames"),
+        ({"frames": float("nan")}, "record.frames"),
+        ({"stop": Stop(time=1e60)}, "stop.time"),
+        ({"engine": None, "threads": 0}, "threads"),
+    ],
+)
+def test_a_run_that_cannot_be_is_refused_by_key(go: Any, changes: dict[str, Any], key: str) -> None:
+    with pytest.raises(CaseError) as caught:
+        go(**changes)
+    assert caught.value.key == key
+
+
+def test_what_an_engine_refuses_is_said_before_work(go: Any, scene_with: Any, tmp_path: Path) -> None:
+    with pytest.raises(CaseError, match="no rolling friction here"):
+        go(scene=scene_with(rolling=RollingLaw(model=Rolling.PRINTED)))
+    assert not (tmp_path / "run").exists()
+
+
+def test_saltations_cannot_be_counted_without_events(go: Any, scene_with: Any) -> None:
+    with pytest.raises(CaseError, match="record.events"):
+        go(scene=scene_with(events=EventRule.NONE), stop=Stop(saltations=3))
+
+
+def test_json_of_a_run_holds_no_nan(go: Any) -> None:
+    def refuse(word: str) -> None:
+        raise AssertionError(word)
+
+    for path in go().folder.glob("*.json"):
+        json.loads(path.read_text(), parse_constant=refuse)
+
+
+def test_calls_to_the_engine_are_short_at_first_and_land_on_frames(go: Any, engine: Any) -> None:
+    go()
+    assert engine.calls[:2] == [1, 16]
+    assert sum(engine.calls) == 1000
+
+
+def test_a_case_is_run_with_its_text_and_resolved_form(tmp_path: Path, engine: Any, monkeypatch: Any) -> None:
+    import ryusa
+
+    text = (Path(ryusa.__file__).parent / "cases" / "drop.toml").read_text(encoding="utf-8")
+    (tmp_path / "fall.toml").write_text(text, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    case = ryusa.load("fall.toml", {"stop.time": "5 ms"})
+    results = ryusa.run(case, engine=engine, progress=False)
+    assert results.folder == Path("runs") / "fall"
+    assert (results.folder / "case.toml").read_text(encoding="utf-8") == text
+    assert results.case["stop"]["time"] == 0.005
+    assert results.provenance["overrides"] == {"stop.time": "5 ms"}
+    assert results.provenance["seed"] == case.seed
