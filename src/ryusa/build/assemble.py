@@ -40,7 +40,7 @@ def gravity(g: float, slope: float) -> Floats:
 
 
 def masses(d: Floats, density: float, a_3: float, water: Water) -> tuple[Floats, Floats, Floats, Floats]:
-    """Mass, added mass, mass that gravity sees [kg], moment of inertia [kg m2] of grains of diameter d [m]."""
+    """Mass, added mass, mass that gravity sees [kg], moment of inertia [kg m2]; diameters d [m]."""
     volume = np.array([drag.volume(one, a_3) for one in d.tolist()])
     m = density * volume
     inertia = np.array([motion.inertia_sphere(*one) for one in zip(m.tolist(), d.tolist(), strict=True)])

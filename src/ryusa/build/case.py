@@ -170,6 +170,7 @@ def notes_of(case: Case) -> tuple[str, ...]:
             f"{key} {getattr(water, key)} (water.{key} not given)"
             for key in ("drag", "viscosity", "above", "torque")
             if key not in water.model_fields_set
+            and not (key == "torque" and case.motion.rotation == "locked")
         ]
     if case.time.step is None and case.time.steps_per_contact is None:
         notes.append("50 steps in the shortest contact (time not given)")

@@ -28,9 +28,7 @@ def packing(case: Case) -> Layout:
     )
     x = (cells.reshape(-1, 3)[:, ::-1] + 0.5) * pitch
     free = 0.5 * keys.jitter * keys.gap * d_max
-    x = x + rng.uniform(-free, free, x.shape) / (np.sqrt(2.0) if plane else np.sqrt(3.0)) * np.array(
-        [1.0, 0.0 if plane else 1.0, 1.0]
-    )
+    x = x + rng.uniform(-free, free, x.shape)  # each axis keeps neighbours d_max apart
     if plane:
         x[:, 1] = 0.0
     x[:, 2] += top

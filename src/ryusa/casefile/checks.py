@@ -1,5 +1,6 @@
 """Checks that need more than one key: two ways of one thing, what is missing, what contradicts."""
 
+import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -20,6 +21,7 @@ RIVALS: dict[str, tuple[tuple[str, str], ...]] = {
     "water": (("tau_star", "u_star"),),
     "time": (("steps_per_contact", "step"),),
 }
+MOST_GRAINS = 20_000_000
 FEWEST_PERIODS = 3  # largest diameters that a period must hold
 COARSEST, FINEST = 5.0, 1.0e4  # steps per contact that a given step must lie between
 _CHANGES = ("remove", "slope", "slope_angle", "friction_angle", "friction", "rotation")
@@ -28,6 +30,9 @@ _CHANGES = ("remove", "slope", "slope_angle", "friction_angle", "friction", "rot
 def check(case: Case, data: dict[str, Any]) -> list[CaseError]:
     """Find the faults that no single key shows; `data` is what the file held."""
     found = [*_rivals(case), *_needed(case), *_water(case), *_motion(case), *_builder(case), *_timeline(case)]
+    if found:
+        return found
+    found = [*_numbers(case)]
     if found:
         return found
     return [*_space(case), *_step(case, data), *_record(case)]
@@ -179,6 +184,17 @@ def _timeline(case: Case) -> Iterator[CaseError]:
         if case.stop.time is not None and change.at > case.stop.time:
             yield CaseError(f"{key}.at", change.at, "comes after stop.time")
         before = max(before, change.at)
+
+
+def _numbers(case: Case) -> Iterator[CaseError]:
+    derived = case.derived
+    count = derived.n_grain + derived.n_fixed
+    if count > MOST_GRAINS:
+        yield CaseError("build", None, f"asks for {count:,} grains; at most {MOST_GRAINS:,}")
+    for name in ("m", "inertia", "k_n", "shortest", "dt"):
+        value = getattr(derived, name)
+        if not (0.0 < value < math.inf):
+            yield CaseError("case", None, f"its numbers are out of range: {name} = {value:g}")
 
 
 def _space(case: Case) -> Iterator[CaseError]:

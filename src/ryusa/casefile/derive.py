@@ -65,7 +65,7 @@ class Derived:
 
 
 def mass(case: Case, d: float) -> tuple[float, float, float, float]:
-    """Mass, added mass, mass that gravity sees [kg], moment of inertia [kg m2] of a grain of diameter d [m]."""
+    """Mass, added mass, mass that gravity sees [kg], moment of inertia [kg m2]; diameter d [m]."""
     volume = drag.volume(d, case.grains.shape_volume)
     m = case.grains.density * volume
     inertia = motion.inertia_sphere(m, d)
@@ -288,7 +288,7 @@ def derive(case: Case) -> Derived:
         meet=meet,
         shortest=shortest,
         dt=dt,
-        steps_per_contact=shortest / dt,
+        steps_per_contact=shortest / dt if dt > 0.0 else math.nan,
         u_star=u_star,
         tau_star=tau_star,
         k_rough=k_rough,

@@ -85,15 +85,14 @@ def nearest_word(value: object, words: Sequence[str]) -> str | None:
 
 
 def nearest_key(path: Sequence[str | int], data: dict[str, Any]) -> str | None:
-    """Find the known key nearest to an unknown one: in its own table first, then elsewhere."""
+    """Find the known key nearest to an unknown one: in the same name elsewhere, then a like one."""
     name = str(path[-1])
-    here = keys_at(path[:-1], data)
-    found = nearest_word(name, here)
-    if found is not None:
-        return dotted((*path[:-1], found))
     everywhere = [key for key in all_keys() if key.rsplit(".", 1)[-1] == name]
     if everywhere:
         return everywhere[0]
+    found = nearest_word(name, keys_at(path[:-1], data))
+    if found is not None:
+        return dotted((*path[:-1], found))
     last = nearest_word(name, [key.rsplit(".", 1)[-1] for key in all_keys()])
     return next((key for key in all_keys() if key.rsplit(".", 1)[-1] == last), None) if last else None
 

@@ -24,7 +24,7 @@ def read(path: str | Path, overrides: Mapping[str, str] | None = None) -> Case:
     Parameters
     ----------
     path : a TOML file.
-    overrides : values set from outside, such as `{"contact.stiffness": "10 N/cm"}`; TOML values or plain text.
+    overrides : values set from outside, such as `{"contact.stiffness": "10 N/cm"}`; TOML or plain text.
         An override displaces its rival (`motion.slope_angle` displaces `motion.slope`).
 
     Raises
@@ -54,7 +54,9 @@ def read_text(text: str, overrides: Mapping[str, str] | None = None, *, path: Pa
     source = path.name if path is not None else None
     try:
         data: dict[str, Any] = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except (
+        ValueError
+    ) as error:  # TOMLDecodeError names line and column; numbers of thousands of digits end here too
         raise CaseError(source or "case", None, f"not valid TOML: {error}") from None
     except RecursionError:
         raise CaseError(source or "case", None, "not valid TOML: nested too deeply") from None
@@ -83,7 +85,7 @@ def with_overrides(data: dict[str, Any], overrides: Mapping[str, str]) -> dict[s
 def _toml_value(text: str) -> Any:
     try:
         found = tomllib.loads(f"value = {text}")
-    except (tomllib.TOMLDecodeError, RecursionError):
+    except (ValueError, RecursionError):
         return text
     return found["value"] if set(found) == {"value"} else text
 

@@ -57,9 +57,9 @@ def _spread_kind(value: Any) -> str:
 class Grains(Section):
     """The free grains."""
 
-    diameter: PositiveLength
+    diameter: Annotated[Length, Field(ge=1.0e-7, le=1.0e3)]
     """Mean diameter d."""
-    density: Annotated[Density, Field(gt=0)]
+    density: Annotated[Density, Field(ge=1.0, le=1.0e6)]
     """Density of the grain material, rho_s."""
     spread: Annotated[
         Annotated[Ratio, Field(ge=0, lt=0.9), Tag("<number>")] | Annotated[Spread, Tag("<table>")],
@@ -96,7 +96,7 @@ class Contact(Section):
     """Springs, dashpots and slider of every contact, Eqs. (1)-(4)."""
 
     stiffness: Annotated[
-        Annotated[Annotated[Stiffness, Field(gt=0)], Tag("<value>")]
+        Annotated[Annotated[Stiffness, Field(ge=1.0e-9, le=1.0e15)], Tag("<value>")]
         | Annotated[StiffnessForOverlap, Tag("<overlap>")]
         | Annotated[StiffnessForTime, Tag("<time>")],
         Discriminator(_stiffness_kind),
@@ -104,24 +104,24 @@ class Contact(Section):
     """Normal stiffness k_n, or { overlap, speed }, or { collision_time }."""
     shear_ratio: Annotated[Number, Field(ge=0, le=10)] | None = None
     """k_s over k_n; 2/7 when neither this nor shear_stiffness is given."""
-    shear_stiffness: Annotated[Stiffness, Field(ge=0)] | None = None
+    shear_stiffness: Annotated[Stiffness, Field(ge=0, le=1.0e15)] | None = None
     """Tangential stiffness k_s, instead of shear_ratio."""
     restitution: Annotated[Number, Field(gt=0, le=1)] | None = None
     """Normal restitution e, reached on fixed grains and between grains alike."""
     restitution_shear: Annotated[Number, Field(gt=0, le=1)] | None = None
     """Tangential restitution e_s; the normal one when not given."""
-    damping: Annotated[Dashpot, Field(ge=0)] | None = None
+    damping: Annotated[Dashpot, Field(ge=0, le=1.0e12)] | None = None
     """Normal dashpot eta_n as a constant, instead of restitution."""
-    shear_damping: Annotated[Dashpot, Field(ge=0)] | None = None
+    shear_damping: Annotated[Dashpot, Field(ge=0, le=1.0e12)] | None = None
     """Tangential dashpot eta_s as a constant; zero when only damping is given."""
     friction_angle: Annotated[Angle, Field(ge=0, lt=math.pi / 2)] | None = None
     """Internal friction angle phi of Eq. (4)."""
-    friction: Annotated[Number, Field(ge=0)] | None = None
+    friction: Annotated[Number, Field(ge=0, le=1.0e6)] | None = None
     """Friction coefficient mu = tan(phi), instead of friction_angle."""
     cohesion: Annotated[Force, Field(ge=0)] = 0.0
     """Grain-level cohesion c of Eq. (4)."""
     slip: Literal["spring", "spring-drop", "total"] = "spring"
-    """What the Coulomb cap holds: the spring (dashpot kept or dropped while sliding), or spring plus dashpot."""
+    """What the Coulomb cap holds: the spring (dashpot kept or dropped in sliding), or spring plus dashpot."""
     cap: Literal["spring", "total"] | None = None
     """Normal force that feeds the cap: spring e_n, or total f_n (the default of slip = "total")."""
     parting: Literal["no tension", "tension"] = "no tension"
@@ -155,7 +155,7 @@ class Motion(Section):
     """Bed slope as a tangent, down towards +x; 0 when no slope is given."""
     slope_angle: Annotated[Angle, Field(ge=-STEEPEST, le=STEEPEST)] | None = None
     """Bed slope as an angle, instead of slope."""
-    gravity: Annotated[Acceleration, Field(ge=0)] = 9.80665
+    gravity: Annotated[Acceleration, Field(ge=0, le=1.0e4)] = 9.80665
     """Acceleration of gravity g."""
     slab_width: PositiveLength | None = None
     """Width of a plane scene for concentrations; the mean diameter when not given."""
@@ -206,9 +206,9 @@ class Water(Section):
     """Water depth above the zero; unlimited when not given."""
     above: Literal["continue", "hold", "dry"] = "continue"
     """Above the depth: the profile goes on, the surface speed goes on, or no drag."""
-    density: Annotated[Density, Field(gt=0)] = 1000.0
+    density: Annotated[Density, Field(ge=1.0e-3, le=1.0e6)] = 1000.0
     """Density of water, rho_w."""
-    viscosity: Annotated[Viscosity, Field(gt=0)] = 1.0e-6
+    viscosity: Annotated[Viscosity, Field(ge=1.0e-12, le=1.0e3)] = 1.0e-6
     """Kinematic viscosity nu."""
     drag: Literal[
         "24/Re+0.4",
@@ -272,7 +272,7 @@ class Change(Section):
     """New bed slope as an angle."""
     friction_angle: Annotated[Angle, Field(ge=0, lt=math.pi / 2)] | None = None
     """New internal friction angle."""
-    friction: Annotated[Number, Field(ge=0)] | None = None
+    friction: Annotated[Number, Field(ge=0, le=1.0e6)] | None = None
     """New friction coefficient."""
     rotation: Literal["locked", "free"] | None = None
     """Spin locked or set free."""

@@ -1,0 +1,266 @@
+"""Builders place what the case says, and nothing overlaps."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from ryusa.build import build, change, scene
+from ryusa.build.layout import Layout, Wall
+from ryusa.build.overlaps import refuse_overlaps
+from ryusa.casefile import Case, Change, read_text
+from ryusa.errors import CaseError
+from ryusa.model.enums import Damping, Drag, EventRule, Profile
+
+BASE = """
+[grains]
+diameter = "0.2 cm"
+density = "2650 kg/m3"
+[contact]
+stiffness = "100 N/cm"
+restitution = 0.7
+friction_angle = "30 deg"
+[motion]
+rotation = "free"
+slope = "1/20"
+[build]
+kind = "drop"
+[stop]
+time = "1 s"
+"""
+WATER = "{ profile = 'log rough', tau_star = 0.3 }"
+
+
+def case(build: str, **keys: str) -> Case:
+    return read_text(BASE, {"build": build, **{key.replace("__", "."): value for key, value in keys.items()}})
+
+
+def test_a_drop_starts_above_a_fixed_grain() -> None:
+    built = build(
+        case(
+            "{ kind = 'drop', height = '1 cm', speed = '0.2 m/s', speed_along = '0.1 m/s', spin = '5 rad/s' }"
+        )
+    )
+    assert built.state.x.tolist() == [[0.0, 0.0, pytest.approx(0.013)]]
+    assert built.state.v.tolist() == [[0.1, 0.0, -0.2]]
+    assert built.state.omega.tolist() == [[0.0, 5.0, 0.0]]
+    assert built.scene.x_fixed.tolist() == [[0.0, 0.0, 0.001]]
+    assert built.scene.groups["struck"] == (1, 2)
+    assert built.scene.plane_case and built.scene.rotation
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.001, -0.0019])
+def test_an_oblique_drop_with_no_gap_just_touches(offset: float) -> None:
+    built = build(case(f"{{ kind = 'drop', height = '0 m', speed = '1 m/s', offset = '{offset} m' }}"))
+    assert np.linalg.norm(built.state.x[0] - built.scene.x_fixed[0]) == pytest.approx(0.002, rel=1e-12)
+
+
+def test_a_drop_on_a_free_grain_and_on_a_plane() -> None:
+    free = build(case("{ kind = 'drop', partner = 'free', height = '1 mm' }")).scene
+    assert (free.n_grain, free.n_fixed, free.n_plane) == (2, 0, 0)
+    plane = build(case("{ kind = 'drop', partner = 'plane', height = '1 mm' }"))
+    assert (plane.scene.n_grain, plane.scene.n_fixed, plane.scene.n_plane) == (1, 0, 1)
+    assert plane.scene.groups["floor"] == (1, 2)
+    assert plane.state.x[0, 2] == pytest.approx(0.002)
+
+
+def test_copies_of_a_drop_cannot_be_neighbours() -> None:
+    built = build(case("{ kind = 'drop', height = '1 mm', copies = 5, height_step = '0.1 mm' }"))
+    y = built.state.x[:, 1]
+    assert np.diff(np.sort(y)).min() >= 2 * 0.002
+    assert np.diff(built.state.x[:, 2]) == pytest.approx(1e-4)
+    assert np.array_equal(built.scene.x_fixed[:, 1], y)
+
+
+def test_a_saltation_bed_is_a_periodic_line_of_touching_grains() -> None:
+    built = build(case("{ kind = 'saltation', n_bed = 12, starts = 3 }", water=WATER))
+    s = built.scene
+    assert s.period[0] == pytest.approx(12 * 0.002)
+    assert math.isinf(s.period[1])
+    lane = s.x_fixed.reshape(3, 12, 3)[1]
+    assert np.diff(lane[:, 0]) == pytest.approx(0.002)
+    assert lane[0, 0] + s.period[0] - lane[-1, 0] == pytest.approx(0.002)
+    assert s.x_fixed[:, 2] == pytest.approx(0.001)
+    assert s.groups["bed"] == (3, 39)
+    assert np.diff(built.state.x[:, 1]).min() >= 2 * 0.002
+    assert ((built.state.x[:, 0] >= 0) & (built.state.x[:, 0] < s.period[0])).all()
+
+
+def test_saltation_states_its_free_choices() -> None:
+    built = build(case("{ kind = 'saltation' }", water=WATER))
+    water = built.scene.water
+    assert water.z_zero == pytest.approx(0.75 * 0.002)
+    assert water.k_rough == 0.002
+    for part in ("zero of the water profile", "roughness", "start", "drag", "k_s"):
+        assert any(part in note for note in built.notes), part
+    height = 3.5 * 0.002 - water.z_zero
+    expected = water.u_star * (8.5 + 5.75 * math.log10(height / 0.002))
+    assert built.state.v[:, 0] == pytest.approx(expected)
+
+
+def test_starts_are_random_by_the_seed_alone() -> None:
+    def xs(seed: int, starts: int) -> list[float]:
+        return (
+            build(case(f"{{ kind = 'saltation', starts = {starts} }}", seed=str(seed))).state.x[:, 0].tolist()
+        )
+
+    assert xs(1, 4) == xs(1, 4)
+    assert xs(1, 6)[:4] == xs(1, 4)
+    assert xs(1, 4) != xs(2, 4)
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    columns=st.integers(3, 8),
+    rows=st.integers(3, 6),
+    layers=st.integers(1, 4),
+    gap=st.floats(0, 1),
+    jitter=st.floats(0, 1),
+    bed=st.sampled_from(["random", "flat", "plane"]),
+    spread=st.sampled_from(["0.0", "0.3", "{kind='lognormal', ratio=0.3}", "{kind='normal', ratio=0.2}"]),
+    plane=st.booleans(),
+    seed=st.integers(0, 1000),
+)
+def test_a_packing_never_overlaps(
+    columns: int,
+    rows: int,
+    layers: int,
+    gap: float,
+    jitter: float,
+    bed: str,
+    spread: str,
+    plane: bool,
+    seed: int,
+) -> None:
+    rows = 1 if plane else rows
+    keys = f"columns = {columns}, rows = {rows}, layers = {layers}, gap = {gap:.6f}"
+    one = case(
+        f"{{ kind = 'packing', {keys}, jitter = {jitter:.6f}, bed = '{bed}' }}",
+        grains__spread=spread,
+        motion__plane=str(plane).lower(),
+        seed=str(seed),
+    )
+    built = build(one)  # refuses overlaps itself
+    assert built.scene.n_grain == one.derived.n_grain == columns * rows * layers
+    assert built.scene.n_fixed == one.derived.n_fixed
+    assert built.scene.d.min() >= one.derived.d_min * (1 - 1e-12)
+    assert built.scene.d.max() <= one.derived.d_max * (1 + 1e-12)
+    if plane:
+        assert not built.state.x[:, 1].any()
+    for axis in (0, 1):
+        if math.isfinite(built.scene.period[axis]):
+            assert built.state.x[:, axis].min() >= 0.0
+            assert built.state.x[:, axis].max() < built.scene.period[axis]
+
+
+def test_laws_arrive_in_the_scene_as_the_case_says_them() -> None:
+    s = build(
+        case(
+            "{ kind = 'drop', height = '1 cm' }",
+            water="{ profile = 'still', drag = 'Schiller-Naumann', added_mass = 0.0 }",
+            contact__damping="0.001 N s/cm",
+            record__events="tracked",
+            record__tracked="[0]",
+        )
+    ).scene
+    assert s.contact.damping == Damping.CONSTANTS
+    assert s.contact.eta_n == pytest.approx(0.1)
+    assert (s.water.profile, s.water.drag) == (Profile.STILL, Drag.SCHILLER_NAUMANN)
+    assert s.m_added.tolist() == [0.0]
+    assert s.m_weight[0] == pytest.approx(s.m[0] * 1650 / 2650)
+    assert s.events == EventRule.TRACKED
+    assert s.tracked.tolist() == [True]
+    angle = math.atan(0.05)
+    assert s.gravity == pytest.approx([9.80665 * math.sin(angle), 0.0, -9.80665 * math.cos(angle)])
+
+
+def test_arrays_of_a_scene_are_read_only_and_the_world_is_bounded() -> None:
+    built = build(case("{ kind = 'saltation' }", water=WATER))
+    with pytest.raises(ValueError, match="read-only"):
+        built.scene.d[0] = 1.0
+    with pytest.raises(ValueError, match="read-only"):
+        built.state.x[0] = 1.0
+    assert built.scene.world_low[2] < -0.01
+    assert 1.0 < built.scene.world_high[2] < 10.0
+
+
+def test_planes_of_the_case_become_groups_that_the_timeline_can_remove() -> None:
+    gate = "[{ name = 'gate', point = ['5 cm', '0 cm', '0 cm'], normal = [-2, 0, 0] }]"
+    one = case(
+        "{ kind = 'drop', height = '1 cm' }", planes=gate, timeline="[{ at = '0.1 s', remove = 'gate' }]"
+    )
+    built = build(one)
+    assert built.scene.plane_normal.tolist() == [[-1.0, 0.0, 0.0]]
+    after = change(one, built.scene, one.timeline[0])
+    assert after.plane_active.tolist() == [False]
+    assert built.scene.plane_active.tolist() == [True]
+    with pytest.raises(CaseError, match="must be a group of fixed grains or a plane: bed, struck, gate"):
+        build(
+            case(
+                "{ kind = 'drop', height = '1 cm' }",
+                planes=gate,
+                timeline="[{ at = '0.1 s', remove = 'gat' }]",
+            )
+        )
+
+
+def test_changes_tilt_gravity_and_switch_friction_and_rotation() -> None:
+    one = case("{ kind = 'drop', height = '1 cm' }")
+    before = build(one).scene
+    tilted = change(one, before, Change.model_validate({"at": "0 s", "slope_angle": "30 deg"}))
+    assert tilted.gravity == pytest.approx([9.80665 / 2, 0.0, -9.80665 * math.sqrt(3) / 2])
+    slippery = change(one, before, Change.model_validate({"at": "0 s", "friction": 0.0}))
+    assert slippery.contact.mu == 0.0
+    assert replace(slippery.contact, mu=before.contact.mu) == before.contact
+    assert not change(one, before, Change.model_validate({"at": "0 s", "rotation": "locked"})).rotation
+    bare = change(one, before, Change.model_validate({"at": "0 s", "remove": "bed"}))
+    assert bare.fixed_active.tolist() == [False]
+
+
+def test_first_grains_that_overlap_across_a_period_or_a_plane_are_named() -> None:
+    x = np.array([[0.0005, 0.0, 0.01], [0.0995, 0.0, 0.01]])
+    two = Layout(d=np.full(2, 0.002), x=x, v=np.zeros((2, 3)), omega=np.zeros((2, 3)), period=(0.1, math.inf))
+    with pytest.raises(CaseError, match=r"free grain 0 at .* and free grain 1 at .* by 0.5 d"):
+        refuse_overlaps(two, "build")
+    refuse_overlaps(replace(two, period=(math.inf, math.inf)), "build")
+    floor = (Wall("floor", (0.0, 0.0, 0.0095), (0.0, 0.0, 3.0)),)
+    with pytest.raises(CaseError, match=r"free grain 0 .* and plane 'floor' by 0.25 d"):
+        refuse_overlaps(replace(two, period=(math.inf, math.inf), walls=floor), "build")
+
+
+def test_a_script_builds_a_scene_grain_by_grain() -> None:
+    s, first = scene(
+        x=[[0.0, 0.0, 0.01], [0.0, 0.0, 0.013]],
+        d=[0.002, 0.003],
+        v=[[0.0, 0.0, -1.0], [0.0, 0.0, 0.0]],
+        x_fixed=[0.0, 0.0, 0.001],
+        d_fixed=0.002,
+        planes=[("floor", (0, 0, 0), (0, 0, 1))],
+        restitution=0.5,
+        steps_per_contact=20,
+    )
+    assert (s.n_grain, s.n_fixed, s.n_plane) == (2, 1, 1)
+    assert s.m[1] / s.m[0] == pytest.approx(1.5**3)
+    assert s.contact.zeta_n == pytest.approx(0.25528, abs=1e-5)
+    assert first.v[0, 2] == -1.0
+    assert 20 * s.dt < math.pi * math.sqrt(s.m[0] / 2 / s.contact.k_n)
+
+
+@pytest.mark.parametrize(
+    "keys",
+    [
+        {"x": [[0.0, 0.0]], "d": 0.002},
+        {"x": [], "d": 0.002},
+        {"x": [[0.0, 0.0, math.nan]], "d": 0.002},
+        {"x": [[0.0, 0.0, 0.0]], "d": -1.0},
+        {"x": [[0.0, 0.0, 0.0]], "d": [0.002, 0.002]},
+        {"x": [[0.0, 0.0, 0.0], [0.001, 0.0, 0.0]], "d": 0.002},
+        {"x": [[0.0, 0.0, 0.0]], "d": 0.002, "v": [[0.0, 0.0, 0.0]] * 2},
+    ],
+)
+def test_a_script_with_bad_arrays_is_told(keys: dict[str, object]) -> None:
+    with pytest.raises(CaseError):
+        scene(**keys)  # type: ignore[arg-type]

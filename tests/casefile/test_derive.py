@@ -1,0 +1,140 @@
+"""What follows from a case, against pocket-calculator numbers."""
+
+import json
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from ryusa.casefile import Case, disk_needed, frames_expected, read, steps_expected
+from ryusa.casefile.derive import terminal_velocity, water_speed
+from ryusa.laws import collision
+
+CaseOf = Callable[..., Case]
+WATER = "{ profile = 'log rough', tau_star = 0.3, depth = '2 cm' }"
+PACKING = "{ kind = 'packing', columns = 10, layers = 4 }"
+MASS = 2650.0 * math.pi / 6 * 0.002**3
+
+
+def test_a_quartz_grain_weighs_as_a_sphere(case: CaseOf) -> None:
+    found = case().derived
+    assert found.m == pytest.approx(MASS, rel=1e-14)
+    assert found.m_added == 0.0
+    assert found.m_weight == found.m
+    assert found.inertia == pytest.approx(MASS * 0.002**2 / 10, rel=1e-14)
+
+
+def test_water_adds_mass_to_the_inertia_and_takes_weight(case: CaseOf) -> None:
+    found = case(water=WATER).derived
+    assert found.m_added == pytest.approx(MASS * 500 / 2650, rel=1e-12)
+    assert found.m_weight == pytest.approx(MASS * 1650 / 2650, rel=1e-12)
+    assert found.fixed.m == pytest.approx(found.m + found.m_added, rel=1e-14)
+    assert found.u_star == pytest.approx(math.sqrt(0.3 * 1.65 * 9.80665 * 0.002), rel=1e-12)
+
+
+def test_u_star_and_tau_star_give_each_other(case: CaseOf) -> None:
+    found = case(
+        water="{ profile = 'log rough', u_star = '9.85 cm/s' }", **{"motion.gravity": "9.8 m/s2"}
+    ).derived
+    assert found.tau_star == pytest.approx(0.3, abs=2e-4)
+
+
+def test_the_contact_time_of_the_paper_comes_out(case: CaseOf) -> None:
+    assert case().derived.fixed.t_undamped == pytest.approx(1.05e-4, rel=5e-3)
+    assert case(**{"contact.stiffness": "0.01 N/cm"}).derived.fixed.t_undamped == pytest.approx(
+        1.05e-2, rel=5e-3
+    )
+
+
+@pytest.mark.parametrize("parting", ["tension", "no tension"])
+@pytest.mark.parametrize("e", ["0.1", "0.7", "1.0"])
+def test_asked_restitution_is_that_of_both_pairs(case: CaseOf, parting: str, e: str) -> None:
+    found = case(**{"contact.parting": parting, "contact.restitution": e}).derived
+    assert found.fixed.e == pytest.approx(float(e), rel=1e-9)
+    assert found.free.e == pytest.approx(float(e), rel=1e-9)
+    assert found.free.eta_n == pytest.approx(found.fixed.eta_n / math.sqrt(2), rel=1e-12)
+
+
+def test_a_constant_dashpot_gives_two_restitutions(case: CaseOf) -> None:
+    keys = {"grains.diameter": "2.18 mm", "contact.stiffness": "200 N/cm", "contact.damping": "0.001 N s/cm"}
+    found = case(**keys, **{"contact.parting": "tension"}).derived
+    assert found.fixed.e == pytest.approx(0.745, abs=1e-3)
+    assert found.free.e == pytest.approx(0.658, abs=1e-3)
+    assert found.fixed.t_col == pytest.approx(8.46e-5, rel=2e-3)
+    assert found.free.t_col == pytest.approx(6.0e-5, rel=5e-3)
+
+
+def test_stiffness_asked_for_by_overlap_gives_that_overlap(case: CaseOf) -> None:
+    found = case(**{"contact.stiffness": "{ overlap = 0.01, speed = '0.6 m/s' }"}).derived
+    deepest = collision.overlap_max(0.6, found.fixed.m, found.k_n, found.fixed.zeta_n)
+    assert deepest == pytest.approx(0.01 * 0.002, rel=1e-12)
+
+
+def test_stiffness_asked_for_by_time_gives_eq_8(case: CaseOf) -> None:
+    found = case(water=WATER, **{"contact.stiffness": "{ collision_time = '1e-4 s' }"}).derived
+    assert found.fixed.t_undamped == pytest.approx(1e-4, rel=1e-12)
+
+
+def test_k_s_is_two_sevenths_unless_said_otherwise(case: CaseOf) -> None:
+    assert case().derived.k_s == pytest.approx(1e4 * 2 / 7)
+    assert case(**{"contact.shear_ratio": "0.075"}).derived.k_s == pytest.approx(750.0)
+    assert case(**{"contact.shear_stiffness": "15 N/cm"}).derived.k_s == pytest.approx(1500.0)
+
+
+def test_the_step_follows_the_lightest_pair_that_can_meet(case: CaseOf) -> None:
+    fixed = case().derived
+    assert fixed.dt == pytest.approx(fixed.fixed.t_col / 50, rel=1e-12)
+    meeting = case(build="{ kind = 'drop', partner = 'free', height = '1 cm' }").derived
+    assert meeting.dt == pytest.approx(fixed.dt / math.sqrt(2), rel=1e-12)
+    mixed = case(build=PACKING, **{"grains.spread": "0.1"}).derived
+    assert mixed.dt == pytest.approx(meeting.dt * 0.9**1.5, rel=1e-12)
+
+
+def test_many_starts_do_not_meet_each_other(case: CaseOf) -> None:
+    found = case(build="{ kind = 'saltation', starts = 5 }", water=WATER).derived
+    assert (found.n_grain, found.n_fixed, found.meet) == (5, 100, False)
+    assert found.dt == pytest.approx(found.fixed.t_col / 50)
+
+
+def test_settling_velocity_agrees_with_ferguson_and_church(case: CaseOf) -> None:
+    wet = case(
+        water="{ profile = 'still', drag = 'Ferguson-Church sphere' }", **{"motion.gravity": "9.81 m/s2"}
+    )
+    assert terminal_velocity(wet) == pytest.approx(0.301, abs=5e-4)
+    assert terminal_velocity(case()) == math.inf
+
+
+def test_water_above_its_depth_does_what_the_case_says(case: CaseOf) -> None:
+    for above, expected in (("continue", 1.0), ("hold", 0.0), ("dry", -1.0)):
+        wet = case(water=WATER.replace("}", f", above = '{above}' }}"))
+        surface, higher = water_speed(wet, 0.02), water_speed(wet, 0.04)
+        assert surface == pytest.approx(wet.derived.u_star * (8.5 + 5.75 * 1.0))
+        assert (higher > surface) - (higher < surface) == expected
+
+
+def test_a_resolved_case_is_plain_json_in_si(case: CaseOf) -> None:
+    plain = json.loads(json.dumps(case(water=WATER).resolved(), allow_nan=False))
+    assert plain["grains"]["diameter"] == 0.002
+    assert plain["contact"]["stiffness"] == 1.0e4
+    assert plain["contact"]["friction"] == pytest.approx(math.tan(math.pi / 6))
+    assert plain["time"]["step"] == plain["derived"]["dt"]
+    assert plain["water"]["u_star"] > 0.0
+    assert plain["stop"]["time"] == 0.1
+
+
+def test_frames_and_bytes_are_counted_before_the_run(case: CaseOf) -> None:
+    one = case(**{"stop.time": "1 s", "record.frames": "1 ms"})
+    assert frames_expected(one) in (1001, 1002)
+    assert steps_expected(one) == math.ceil(1.0 / one.derived.dt)
+    assert disk_needed(case(**{"stop.time": "1000 s", "record.frames": "1 us"})) > 10e9
+
+
+def test_every_shipped_case_is_good_and_stays_in_its_limits(shipped: Path) -> None:
+    files = sorted(shipped.rglob("*.toml"))
+    assert len(files) >= 8
+    for file in files:
+        one = read(file)
+        assert one.title
+        assert one.derived.steps_per_contact >= 10.0 - 1e-9
+        assert len(one.explain()) > 20

@@ -1,0 +1,80 @@
+from collections.abc import Callable
+
+import pytest
+
+from ryusa.casefile import Case
+from ryusa.casefile.explain import Row, warnings
+
+CaseOf = Callable[..., Case]
+WATER = "{ profile = 'log rough', tau_star = 0.3, depth = '2 cm' }"
+SALTATION = {"build": "{ kind = 'saltation' }", "water": WATER, "motion.slope": "1/20"}
+
+
+def rows(case: Case) -> dict[str, Row]:
+    return {row.name: row for row in case.explain()}
+
+
+def test_every_number_the_issue_asks_for_is_explained(case: CaseOf) -> None:
+    found = rows(case(**SALTATION))
+    for name in (
+        "mass m",
+        "added mass",
+        "k_n",
+        "k_s",
+        "eta_n on fixed",
+        "eta_n between grains",
+        "restitution e on fixed",
+        "restitution e between grains",
+        "collision time on fixed",
+        "contact time between grains",
+        "dt",
+        "steps per contact",
+        "largest overlap/d",
+        "u t/d",
+        "u_star",
+        "tau_star",
+        "grain Re",
+        "tangential half period on fixed",
+        "disk for frames",
+        "memory",
+        "steps",
+        "wall time",
+    ):
+        assert name in found, name
+        assert found[name].how
+        assert found[name].shown
+
+
+def test_values_are_si_and_what_is_shown_has_the_users_unit(case: CaseOf) -> None:
+    row = rows(case())["k_n"]
+    assert (row.value, row.unit, row.shown) == (1.0e4, "N/m", "100 N/cm")
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "word", "flag"),
+    [("1 N/cm", "above", "warning"), ("100 N/cm", "in the", ""), ("1e5 N/cm", "below", "note")],
+)
+def test_the_stable_band_has_a_verdict(case: CaseOf, stiffness: str, word: str, flag: str) -> None:
+    row = rows(case(**{"contact.stiffness": stiffness}))["largest overlap/d"]
+    assert word in row.how
+    assert row.flag == flag
+
+
+def test_a_grain_that_skims_the_crests_is_warned_of(case: CaseOf) -> None:
+    assert any(
+        text.startswith("u t/d") for text in warnings(case(**SALTATION, **{"contact.stiffness": "1 N/cm"}))
+    )
+    assert not warnings(case(**SALTATION))
+
+
+def test_tangential_restitution_is_said_to_be_undefined_where_periods_differ(case: CaseOf) -> None:
+    soft = rows(case(**{"contact.shear_ratio": "0.075"}))["tangential half period on fixed"]
+    assert "not defined" in soft.how
+    matched = rows(case(**{"motion.rotation": "free"}))["tangential half period on fixed"]
+    assert "not defined" not in matched.how
+    assert "1 normal half periods" in matched.how
+
+
+def test_few_steps_in_a_contact_are_warned_of(case: CaseOf) -> None:
+    step = case().derived.shortest / 7
+    assert any("ten" in text for text in warnings(case(**{"time.step": f"{step} s"})))

@@ -1,0 +1,73 @@
+"""Reading, overrides, and the published JSON Schema."""
+
+import json
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from pydantic import ValidationError
+
+from ryusa.casefile import Case, all_keys, described, json_schema, json_schema_text, read, read_text
+
+CaseOf = Callable[..., Case]
+DOCS = Path(__file__).parents[2] / "docs"
+
+
+def test_a_case_is_frozen_and_remembers_where_it_came_from(text: str, tmp_path: Path) -> None:
+    (tmp_path / "my.toml").write_text(text, encoding="utf-8")
+    case = read(tmp_path / "my.toml", {"seed": "7"})
+    assert (case.name, case.seed, case.text, case.overrides) == ("my", 7, text, {"seed": "7"})
+    with pytest.raises(ValidationError):
+        case.seed = 8  # type: ignore[misc]
+
+
+def test_an_override_takes_toml_values_and_plain_text(case: CaseOf) -> None:
+    assert case(**{"contact.stiffness": "10 N/cm"}).contact.stiffness == 1000.0
+    assert case(**{"contact.stiffness": '"10 N/cm"'}).contact.stiffness == 1000.0
+    assert (
+        case(**{"grains.spread": "0.1"}, build="{kind='packing', columns=5, layers=2}").grains.spread == 0.1
+    )
+    assert case(**{"title": "1\nseed = 5"}).seed == 1
+
+
+def test_an_override_displaces_its_rival(case: CaseOf) -> None:
+    assert case(**{"contact.friction": "0.5"}).derived.mu == 0.5
+    assert case(**{"contact.damping": "0.001 N s/cm"}).contact.restitution is None
+    assert case(**{"motion.slope_angle": "40 deg"}).motion.slope is None
+
+
+def test_an_override_reaches_into_lists(text: str) -> None:
+    more = text + '[[timeline]]\nat = "0.01 s"\nfriction = 0.5\n'
+    assert read_text(more, {"timeline.0.at": "0.02 s"}).timeline[0].at == 0.02
+
+
+def test_ways_to_say_slope_and_sizes_agree(case: CaseOf) -> None:
+    slopes = [case(**{"motion.slope": value}).motion.slope for value in ("'1/20'", "0.05", "'5 %'")]
+    assert slopes == [0.05, 0.05, 0.05]
+
+
+def test_every_key_has_a_description() -> None:
+    assert [key for key, about in described().items() if len(about) < 4] == []
+    assert len(all_keys()) > 90
+
+
+def test_the_schema_describes_every_key_and_forbids_unknown_ones() -> None:
+    schema: dict[str, Any] = json_schema()
+    for name, one in schema["$defs"].items():
+        if one.get("type") == "object":
+            assert one["additionalProperties"] is False, name
+            for key, about in one["properties"].items():
+                assert "description" in about, f"{name}.{key}"
+
+
+def test_the_published_schema_is_current() -> None:
+    published = (DOCS / "case.schema.json").read_text(encoding="utf-8")
+    assert json.loads(published) == json.loads(json_schema_text()), "run: python docs/generate.py"
+
+
+def test_shipped_cases_use_only_known_keys_and_no_path_of_a_machine(shipped: Path) -> None:
+    for file in shipped.rglob("*.toml"):
+        content = file.read_text(encoding="utf-8")
+        assert not re.search(r"[\"'](/|[A-Z]:)", content), file.name
