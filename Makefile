@@ -7,6 +7,7 @@ PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 RUN    := runs/demo
+SHOW   := runs/demo-pictures
 JOBS   ?= 2
 
 PIP    := $(BIN)/python -m pip install -qq --disable-pip-version-check --constraint constraints.txt
@@ -49,9 +50,13 @@ $(HAS_TESTS): pyproject.toml constraints.txt | $(HAS_RYUSA)
 
 demo: $(HAS_RYUSA) ## install, run the saltation case, measure it, draw it
 	$(BIN)/ryusa run src/ryusa/cases/saltation.toml -o $(RUN) --overwrite
-	$(BIN)/ryusa measure $(RUN) saltation
-	$(BIN)/ryusa draw $(RUN) tracks
-	@echo "Pictures and tables: $(RUN)/"
+	$(BIN)/ryusa measure $(RUN) saltation --csv $(SHOW)/saltation.csv
+	$(BIN)/ryusa draw $(RUN) tracks -o $(SHOW)/tracks.png
+	$(BIN)/ryusa draw $(RUN) hops -o $(SHOW)/hops.png
+	$(BIN)/ryusa draw $(RUN) contacts -o $(SHOW)/contacts.png
+	@echo
+	@echo "Pictures, with their numbers beside them: $(SHOW)/"
+	@echo "For ParaView: $(RUN)/grains.vtkhdf and $(RUN)/bed.vtkhdf"
 
 # ---------------------------------------------------------------------------------------------------------- test
 
@@ -96,5 +101,5 @@ constraints: $(HAS_TESTS) ## write constraints.txt anew from what .venv holds
 	$(BIN)/python -m pip freeze --exclude ryusa | grep -v '@\|^\#' > constraints.txt
 
 clean: ## remove the environment, caches and the demo's run
-	rm -rf $(VENV) $(RUN) build .pytest_cache .ruff_cache .hypothesis .benchmarks .import_linter_cache
+	rm -rf $(VENV) $(RUN) $(SHOW) build .pytest_cache .ruff_cache .hypothesis .benchmarks .import_linter_cache
 	find . -name __pycache__ -type d -not -path './.git/*' -prune -exec rm -rf {} +

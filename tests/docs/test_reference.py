@@ -1,0 +1,62 @@
+"""Reference pages are as the code is."""
+
+import importlib.util
+import re
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+DOCS = Path(__file__).parents[2] / "docs"
+
+
+@pytest.fixture(scope="module")
+def generate() -> ModuleType:
+    spec = importlib.util.spec_from_file_location("generate", DOCS / "generate.py")
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_reference_pages_are_current(generate: ModuleType) -> None:
+    stale = [page.name for page, text in generate.pages().items() if page.read_text(encoding="utf-8") != text]
+    assert not stale, "run `make docs`"
+
+
+def test_every_key_of_the_case_file_is_documented() -> None:
+    from ryusa.casefile.faults import all_keys
+
+    text = (DOCS / "case-file.md").read_text(encoding="utf-8")
+    missing = [key for key in all_keys() if f"`{key}`" not in text and f"[{key}]" not in text]
+    assert not missing
+
+
+def test_every_command_is_documented_and_explains_itself(generate: ModuleType) -> None:
+    text = (DOCS / "commands.md").read_text(encoding="utf-8")
+    for name, command in generate.commands().items():
+        assert f"## ryusa {name}" in text
+        assert command.help, name
+
+
+def test_the_readme_shows_every_command(generate: ModuleType) -> None:
+    readme = (DOCS.parent / "README.md").read_text(encoding="utf-8")
+    missing = [name for name in generate.commands() if f"ryusa {name}" not in readme]
+    assert not missing
+
+
+def test_every_dataset_of_a_contact_is_documented() -> None:
+    from ryusa.model import EVENT
+
+    text = (DOCS / "run-folder.md").read_text(encoding="utf-8")
+    assert not [name for name in EVENT.names or () if f"`{name}`" not in text]
+
+
+def test_links_between_pages_lead_somewhere() -> None:
+    root = DOCS.parent
+    broken: list[str] = []
+    for page in [root / "README.md", *DOCS.glob("*.md"), *(root / "design").glob("*.md")]:
+        for target in re.findall(r"\]\(([^)#\s]+)[^)]*\)", page.read_text(encoding="utf-8")):
+            if "://" not in target and not (page.parent / target).exists():
+                broken.append(f"{page.relative_to(root)}: {target}")
+    assert not broken
