@@ -1,0 +1,48 @@
+"""Compiled laws are kept on disk, but never an old one."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import ryusa.laws
+from ryusa.laws import collision
+from ryusa.laws._law import EDITION
+
+ASK = """
+from ryusa.laws.collision import effective_mass as law
+print(law(2.0, 2.0), sum(law.stats.cache_hits.values()))
+"""
+
+
+def test_a_law_that_calls_a_changed_law_in_another_file_is_compiled_anew(tmp_path):
+    room = tmp_path / "ryusa" / "laws"
+    shutil.copytree(Path(ryusa.laws.__path__[0]), room, ignore=shutil.ignore_patterns("__pycache__"))
+    (tmp_path / "ryusa" / "__init__.py").touch()
+    surroundings = {k: v for k, v in os.environ.items() if k != "NUMBA_CACHE_DIR"} | {
+        "PYTHONPATH": str(tmp_path)
+    }
+
+    def ask():
+        done = subprocess.run(
+            [sys.executable, "-c", ASK],
+            check=True,
+            capture_output=True,
+            text=True,
+            cwd=tmp_path,
+            env=surroundings,
+        )
+        return done.stdout.split()
+
+    assert ask() == ["1.0", "0"]
+    assert ask() == ["1.0", "1"]  # from disk
+    inner = room / "reduced.py"
+    inner.write_text(inner.read_text().replace("    return small /", "    return 10.0 * small /"))
+    assert ask() == ["10.0", "0"]
+
+
+def test_the_text_of_all_laws_is_in_the_key_of_the_cache():
+    dispatcher = collision.effective_mass
+    signature = dispatcher.compile("float64(float64, float64)") and dispatcher.signatures[0]
+    assert EDITION in dispatcher._cache._index_key(signature, dispatcher.targetctx.codegen())
