@@ -1,16 +1,19 @@
 """One function per kind of plot. A figure takes measured records and draws them; it computes no numbers."""
 
+from ryusa.figures.choices import Choice, choices
 from ryusa.figures.contact import Band, Curve, Points, over_stiffness
 from ryusa.figures.energy import energy
 from ryusa.figures.hops import contact_times, hops
 from ryusa.figures.spin import spin
 from ryusa.figures.style import save
-from ryusa.figures.tracks import tracks
+from ryusa.figures.tracks import tracks, tracks_side_by_side
 
 __all__ = [
     "Band",
+    "Choice",
     "Curve",
     "Points",
+    "choices",
     "contact_times",
     "energy",
     "hops",
@@ -18,4 +21,5 @@ __all__ = [
     "save",
     "spin",
     "tracks",
+    "tracks_side_by_side",
 ]

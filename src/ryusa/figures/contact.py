@@ -52,7 +52,7 @@ class Band:
 
     Attributes
     ----------
-    labels : names of the soft and the stiff edge, written at their upper ends.
+    labels : names of the soft and the stiff edge, written at their lower ends.
     k_low, y_low : the soft edge (large overlap).
     k_high, y_high : the stiff edge (small overlap).
     """
@@ -64,6 +64,7 @@ class Band:
     y_high: Floats
 
 
+@style.house
 def over_stiffness(
     quantity: Quantity,
     curves: Sequence[Curve],
@@ -123,10 +124,10 @@ def _fill(axes: Axes, band: Band) -> None:
     edges = ((band.k_low, band.y_low, band.labels[0]), (band.k_high, band.y_high, band.labels[1]))
     for k, edge, label in edges:
         axes.plot(k, edge, color="#7d9470", lw=0.8)
-        end = int(np.argmax(edge))
+        end = int(np.argmin(edge))
         at = (float(k[end]), float(edge[end]))
-        how: Any = {"textcoords": "offset points", "ha": "center", "fontsize": 6.5, "color": "#4c6340"}
-        axes.annotate(label, at, (0, 3), **how)
+        how: Any = {"textcoords": "offset points", "ha": "right", "va": "top", "fontsize": 6.5}
+        axes.annotate(label, at, (-1, -1), color="#4c6340", **how)
 
 
 def _label_end(axes: Axes, curve: Curve, colour: Any) -> None:

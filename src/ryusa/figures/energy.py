@@ -1,5 +1,7 @@
 """The energy account of a run over time."""
 
+from typing import Any
+
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -17,9 +19,9 @@ _NAMES = {
     "dash_s": "tangential dashpots",
     "slide": "sliding",
     "roll": "rolling friction",
-    "released_n": "normal springs released",
-    "released_s": "tangential springs released",
-    "released_r": "rolling springs released",
+    "released_n": "released normal springs",
+    "released_s": "released shear springs",
+    "released_r": "released rolling springs",
     "drag": "drag",
     "torque": "torque of the water",
     "lift": "lift",
@@ -27,9 +29,10 @@ _NAMES = {
 }
 
 
+@style.house
 def energy(found: Energy) -> Figure:
     """Draw what is held (above) and what came and went (below); terms that stay zero are left out."""
-    figure, (held, flow) = style.new(2, height=4.6, sharex=True)
+    figure, (held, flow) = style.new(2, width=4.8, height=4.6, sharex=True)
     unit, name = _prefix(found)
     for k, (term, values) in enumerate(_alive(found.held)):
         base = values[0] if term == "potential" else 0.0
@@ -38,7 +41,7 @@ def energy(found: Energy) -> Figure:
             found.t, (values - base) / unit, style.LINES[k // 4], color=style.COLOURS[k % 7], label=label
         )
     order = 0
-    for sign, word, terms in ((1.0, "given by", found.given), (-1.0, "lost to", found.lost)):
+    for sign, word, terms in ((1.0, "+", found.given), (-1.0, "–", found.lost)):
         for term, values in _alive(terms):
             line = style.LINES[order // len(style.COLOURS)]
             colour = style.COLOURS[order % len(style.COLOURS)]
@@ -49,13 +52,11 @@ def energy(found: Energy) -> Figure:
         axes.axhline(0.0, color=style.FAINT, lw=0.4, zorder=0)
         axes.set_ylabel(text)
         axes.margins(x=0.0)
-    held.legend(loc="upper left", fontsize=6.3, bbox_to_anchor=(0.0, 1.28), ncols=2, borderaxespad=0.0)
-    flow.legend(loc="upper left", fontsize=6.3)
+    for axes in (held, flow):
+        axes.legend(loc="lower left", fontsize=6.3, bbox_to_anchor=(0.0, 1.0), ncols=3, borderaxespad=0.2)
     flow.set_xlabel("time  $t$  (s)")
-    flow.annotate(
-        f"residual {found.residual:.1e}", (1, 0), (-4, 4), "axes fraction", textcoords="offset points",
-        ha="right", fontsize=6.3,
-    )  # fmt: skip
+    at: Any = {"xycoords": "axes fraction", "textcoords": "offset points", "fontsize": 6.3}
+    flow.annotate(f"residual {found.residual:.1e}", (0, 0), (4, 4), **at)
     return figure
 
 

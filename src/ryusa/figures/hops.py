@@ -9,8 +9,9 @@ from ryusa.figures import style
 from ryusa.measure import Saltation
 
 
+@style.house
 def hops(runs: Mapping[str, Saltation], d: float) -> Figure:
-    """Draw the shares of jump heights and lengths, in diameters; a tick on top marks each mean.
+    """Draw the shares of jump heights and lengths, in diameters; a dashed line marks each mean.
 
     Parameters
     ----------
@@ -33,17 +34,16 @@ def hops(runs: Mapping[str, Saltation], d: float) -> Figure:
             axes.hist(values, edges, weights=share, histtype="stepfilled", color=colour, alpha=0.18, lw=0)
             axes.hist(values, edges, weights=share, histtype="step", color=colour, lw=1.0,
                       label=f"{name} ({len(values)} hops)")  # fmt: skip
-            axes.plot(
-                values.mean(), 1.0, "v", color=colour, transform=axes.get_xaxis_transform(), clip_on=False
-            )
+            axes.axvline(float(values.mean()), color=colour, lw=0.9, ls="--")
         axes.set_xlabel(text)
         axes.set_xlim(0.0, None)
         axes.set_ylim(0.0, None)
     panels[0].set_ylabel("share of hops  (–)")
-    panels[0].legend(loc="upper right")
+    panels[0].legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), borderaxespad=0.2, ncols=3)
     return figure
 
 
+@style.house
 def contact_times(found: Saltation) -> Figure:
     """Draw the distribution of bed contact times over Eq. (8), with its damped form."""
     figure, (axes,) = style.new(height=2.3)

@@ -11,6 +11,7 @@ from ryusa.measure import Spin
 from ryusa.measure.spin import TURN
 
 
+@style.house
 def spin(found: Spin, grains: Sequence[int] | None = None, until: float | None = None) -> Figure:
     """Draw spin against distance, in rad/s at the left and turns per second at the right.
 

@@ -1,6 +1,8 @@
 """Paths of grains over the bed, drawn to scale in stacked panels."""
 
 import math
+from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,7 +13,10 @@ from matplotlib.patches import Circle
 from ryusa.figures import style
 from ryusa.measure import Tracks
 
+MM = 1.0e3  # millimetres in a metre
 
+
+@style.house
 def tracks(
     found: Tracks, panels: int | None = None, exaggeration: float = 1.0, length: float | None = None
 ) -> Figure:
@@ -34,16 +39,15 @@ def tracks(
     bottom = float(found.bed_z.min()) - 0.1 * d if len(found.bed_z) else float(found.z.min()) - d
     row = (style.PAGE - 0.6) * (top - bottom) / span * exaggeration
     figure, axes = style.new(rows, width=style.PAGE, height=0.42 + rows * (row + 0.27))
-    mm = 1.0e3
     for k, panel in enumerate(axes):
         low = x0 + k * span
         _bed(panel, found, low, low + span)
         for c in range(found.x.shape[1]):
             _path(panel, found, c, low, low + span)
-        panel.set_xlim(low * mm, (low + span) * mm)
-        panel.set_ylim(bottom * mm, top * mm)
+        panel.set_xlim(low * MM, (low + span) * MM)
+        panel.set_ylim(bottom * MM, top * MM)
         panel.set_aspect(exaggeration)
-        panel.locator_params(axis="y", nbins=4)
+        panel.locator_params(axis="y", nbins=3, integer=True)
     axes[-1].set_xlabel("distance along the bed  $x$  (mm)")
     figure.supylabel("height  $z$  (mm)", fontsize=8.0)
     if exaggeration != 1.0:
@@ -51,13 +55,44 @@ def tracks(
     return figure
 
 
+@style.house
+def tracks_side_by_side(found: Mapping[str, Tracks], length: float) -> Figure:
+    """Draw paths of several runs one above the other, all to the same scale and from the same x = 0.
+
+    Parameters
+    ----------
+    found : name written into the panel -> paths.
+    length : way shown [m].
+    """
+    runs = list(found.values())
+    d = float(runs[0].d[0])
+    shown = [np.where(one.x <= one.x[0, 0] + length, one.z, -math.inf) for one in runs]
+    top = max(float(z.max()) for z in shown) + 0.8 * d
+    bottom = min((float(one.bed_z.min()) for one in runs if len(one.bed_z)), default=0.0) - 0.1 * d
+    row = (style.PAGE - 0.6) * (top - bottom) / length
+    figure, axes = style.new(len(runs), width=style.PAGE, height=0.42 + len(runs) * (row + 0.1), sharex=True)
+    for panel, (name, one) in zip(axes, found.items(), strict=True):
+        start = math.floor(float(one.x[0, 0]) / d) * d  # whole grains, so that the bed looks the same
+        moved = replace(one, x=one.x - start, bed_x=one.bed_x - start)
+        _bed(panel, moved, 0.0, length)
+        for c in range(moved.x.shape[1]):
+            _path(panel, moved, c, 0.0, length)
+        panel.set_xlim(0.0, length * MM)
+        panel.set_ylim(bottom * MM, top * MM)
+        panel.set_aspect("equal")
+        panel.locator_params(axis="y", nbins=4, integer=True)
+        style.label_panel(panel, name)
+    axes[-1].set_xlabel("distance along the bed  $x$  (mm)")
+    figure.supylabel("height  $z$  (mm)", fontsize=8.0)
+    return figure
+
+
 def _bed(axes: Axes, found: Tracks, low: float, high: float) -> None:
     """Bed grains that fall into the panel, repeated over periods."""
-    mm = 1.0e3
     circles: list[Circle] = []
     for x, z, d in zip(found.bed_x, found.bed_z, found.bed_d, strict=True):
         for at in _copies(float(x), low - d, high + d, found.period):
-            circles.append(Circle((at * mm, z * mm), 0.5 * d * mm))
+            circles.append(Circle((at * MM, z * MM), 0.5 * d * MM))
     axes.add_collection(PatchCollection(circles, facecolor=style.BED, edgecolor="#8c8578", linewidth=0.4))
 
 
@@ -70,20 +105,19 @@ def _copies(x: float, low: float, high: float, period: float) -> list[float]:
 
 
 def _path(axes: Axes, found: Tracks, column: int, low: float, high: float) -> None:
-    mm = 1.0e3
     x, z, d = found.x[:, column], found.z[:, column], float(found.d[column])
     near = (x >= low - d) & (x <= high + d)
     if not near.any():
         return
     colour = style.COLOURS[column % len(style.COLOURS)]
     # a break wherever the grain is outside the panel
-    axes.plot(np.where(near, x, np.nan) * mm, z * mm, color=colour, lw=0.9, solid_joinstyle="round")
+    axes.plot(np.where(near, x, np.nan) * MM, z * MM, color=colour, lw=0.9, solid_joinstyle="round")
     # outlines of the grain every so many diameters of way, so that its size can be seen
     if found.x.shape[1] == 1:
         ways = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(z)))])
         marks = np.unique(np.searchsorted(ways, np.arange(0.0, ways[-1], 2.5 * d)))
         marks = marks[near[marks]]
-        rings = [Circle((float(x[k]) * mm, float(z[k]) * mm), 0.5 * d * mm) for k in marks]
+        rings = [Circle((float(x[k]) * MM, float(z[k]) * MM), 0.5 * d * MM) for k in marks]
         axes.add_collection(
             PatchCollection(rings, facecolor="none", edgecolor=colour, linewidth=0.35, alpha=0.55)
         )

@@ -1,0 +1,157 @@
+"""Fig. 7: mean contact time at the bed of a saltating grain against stiffness, with Eq. (8)."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ryusa.experiments._experiment import Variant, Verdict
+from ryusa.figures import Curve, Points, over_stiffness
+from ryusa.measure import Saltation, saltation
+from ryusa.results import Results
+
+FIGURE = "fig7"
+TITLE = "Contact time of a saltating grain"
+SWEEP = (0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0)  # [N/cm]
+SKIM = 0.3  # speed times contact time over diameter from which a grain skims the crests
+REPORTED = ("jump_height", "jump_length", "speed", "contact_time_alone", "shear_ratio", "contacts_per_bounce")
+
+
+@dataclass(frozen=True)
+class Point:
+    """One stiffness, one state of rotation."""
+
+    rotation: str
+    k_n: float  # [N/m]
+    d: float  # [m]
+    found: Saltation
+    overlap: float  # largest over diameter, mean of the bounces [-]
+    highest: float  # highest jump [m]
+
+    @property
+    def travel(self) -> float:
+        """Speed times contact time over diameter [-]."""
+        return self.found["speed"].value * self.found.times.damped / self.d
+
+    def row(self) -> dict[str, object]:
+        """One line of the table."""
+        row: dict[str, object] = {
+            "rotation": self.rotation,
+            "k_n_N_per_m": self.k_n,
+            "n": len(self.found.hops),
+        }
+        row |= {"eq8_s": self.found.times.eq_8, "eq8_added_s": self.found.times.added}
+        row |= {"eq8_damped_s": self.found.times.damped}
+        time = self.found["contact_time"]
+        row |= {"contact_time_s": time.value, "contact_time_error_s": time.error, "travel": self.travel}
+        for name in REPORTED:
+            one = self.found[name]
+            row |= {f"{name}_{one.unit}": one.value, f"{name}_error": one.error}
+        return row | {"highest_jump_m": self.highest, "overlap_over_d": self.overlap}
+
+
+@dataclass(frozen=True)
+class Table:
+    """All stiffnesses, rotation locked first."""
+
+    points: tuple[Point, ...]
+
+    def rows(self) -> list[dict[str, object]]:
+        """One line per run."""
+        return [one.row() for one in self.points]
+
+    def of(self, rotation: str) -> list[Point]:
+        """Points of one state of rotation, soft to stiff."""
+        return [one for one in self.points if one.rotation == rotation]
+
+
+def cases() -> Sequence[Variant]:
+    """The sweep with rotation locked as in the paper, and with rotation free."""
+    return [
+        Variant(f"{rotation}-{k:g}", "paper/fig07.toml", _overrides(k, rotation))
+        for rotation in ("locked", "free")
+        for k in SWEEP
+    ]
+
+
+def _overrides(k: float, rotation: str) -> dict[str, str]:
+    return {"contact.stiffness": f"{k:g} N/cm", "motion.rotation": rotation}
+
+
+def measure(results: Mapping[str, Results]) -> Table:
+    """Hops of every run."""
+    points: list[Point] = []
+    for name, run in results.items():
+        found = saltation(run, hops=30)
+        d = float(run.scene.d[0])
+        overlap = float(found.bounces["overlap"].mean()) / d if len(found.bounces) else math.nan
+        highest = float(found.hops["rise"].max()) if len(found.hops) else math.nan
+        points.append(Point(name.split("-")[0], run.scene.contact.k_n, d, found, overlap, highest))
+    return Table(tuple(points))
+
+
+def expect(table: Table) -> Sequence[Verdict]:
+    """Contact time as Eq. (8); rotation does not change it; jumps do not depend on it."""
+    locked, free = table.of("locked"), table.of("free")
+    stiff = [one for one in locked if one.travel < SKIM]
+    off = [one.found["contact_time"].value / one.found.times.eq_8 - 1.0 for one in stiff]
+    lone = [one.found["contact_time_alone"].value / one.found.times.damped - 1.0 for one in stiff]
+    pairs = [(a, b) for a, b in zip(locked, free, strict=True) if a.travel < SKIM]
+    turned = [b.found["contact_time"].value / a.found["contact_time"].value - 1.0 for a, b in pairs]
+    return (
+        Verdict(
+            "fig7",
+            "mean contact time agrees with Eq. (8)",
+            f"{_range(off)} off Eq. (8) where u t/d < {SKIM:g}; lone ones {_range(lone)} off its damped form",
+            bool(off) and max(map(abs, off)) < 0.1,
+        ),
+        Verdict(
+            "spin-time",
+            "rotation does not change the contact time",
+            f"free over locked: {_range(turned)}",
+            bool(turned) and max(map(abs, turned)) < 0.05,
+        ),
+        _same("hops", "jump_height", stiff),
+        _same("hops", "jump_length", stiff),
+    )
+
+
+def _same(claim: str, name: str, points: Sequence[Point]) -> Verdict:
+    """Whether one average is the same at all stiffnesses, by chi-squared over its errors."""
+    values = np.array([one.found[name].value for one in points])
+    errors = np.array([one.found[name].error for one in points])
+    weights = 1.0 / errors**2
+    mean = float((weights * values).sum() / weights.sum())
+    chi = float((((values - mean) / errors) ** 2).sum() / max(len(values) - 1, 1))
+    spread = float((values.max() - values.min()) / mean) if len(values) else math.nan
+    found = f"{name} spreads by {100 * spread:.0f} % of its mean over stiffness, chi2 per degree {chi:.1f}"
+    return Verdict(claim, "same e, other contact time: mean jump does not change", found, chi < 3.0)
+
+
+def _range(values: Sequence[float]) -> str:
+    return f"{100 * min(values):+.1f} to {100 * max(values):+.1f} %" if values else "nothing"
+
+
+def draw(table: Table) -> Mapping[str, Figure]:
+    """Contact time over stiffness: Eq. (8), its damped form in water, and the runs."""
+    locked = table.of("locked")
+    k = np.array([one.k_n for one in locked])
+    curves = [
+        Curve("Eq. (8)", k, np.array([one.found.times.eq_8 for one in locked])),
+        Curve("Eq. (8), added mass and dashpot", k, np.array([one.found.times.damped for one in locked])),
+    ]
+    runs = [
+        _points(f"rotation {rotation}", table.of(rotation), "contact_time") for rotation in ("locked", "free")
+    ]
+    return {"fig07": over_stiffness("time", curves, runs)}
+
+
+def _points(label: str, points: Sequence[Point], name: str) -> Points:
+    return Points(
+        label,
+        np.array([one.k_n for one in points]),
+        np.array([one.found[name].value for one in points]),
+        np.array([one.found[name].error for one in points]),
+    )
