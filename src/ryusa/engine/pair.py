@@ -8,7 +8,7 @@ from numba import njit
 
 from ryusa.engine.rows import *
 from ryusa.laws.collision import effective_mass, effective_mass_tangential
-from ryusa.laws.contact import damping
+from ryusa.laws.contact import damping, damping_in_steps
 from ryusa.laws.geometry import turn
 from ryusa.laws.rolling import (
     epsd_damping,
@@ -43,8 +43,9 @@ def begin_row(row: Any, rotation: int, i: int, j: int, c: Any, m: Any, r: Any, i
     """Give a pair that just touched an empty memory and its dashpots."""
     row[:] = 0.0
     m_t = effective_mass_tangential(m[i], r[i], inertia[i], m[j], r[j], inertia[j], rotation != 0)
-    row[R_ETA_N] = c[C_ETA_N] + damping(c[C_ZETA_N], c[C_K_N], effective_mass(m[i], m[j]))
-    row[R_ETA_S] = c[C_ETA_S] + damping(c[C_ZETA_S], c[C_K_S], m_t)
+    m_n = effective_mass(m[i], m[j])
+    row[R_ETA_N] = c[C_ETA_N] + damping_in_steps(damping(c[C_ZETA_N], c[C_K_N], m_n), m_n, c[C_DT])
+    row[R_ETA_S] = c[C_ETA_S] + damping_in_steps(damping(c[C_ZETA_S], c[C_K_S], m_t), m_t, c[C_DT])
 
 
 @njit(error_model="numpy", cache=True, fastmath=FAST)

@@ -79,7 +79,7 @@ def keep_record(
     record[E_IMPULSE_N] += f_n * dt
     for k in range(3):
         record[E_IMPULSE + k] += force[k] * dt
-    if sliding and f_n > 0.0:
+    if sliding and f_n != 0.0:
         record[E_T_SLIDE] += dt
     if company:
         record[E_ALONE] = 0.0

@@ -1,0 +1,112 @@
+import math
+
+import numpy as np
+import pytest
+
+from ryusa.build import scene
+from ryusa.engine.cpu import CpuEngine
+from ryusa.model import ContactLaw, Scene, State
+from ryusa.model.enums import Cap, EventRule, Slip
+
+D = 2.0e-3  # [m]
+
+
+def run(made, n_steps, threads=1):
+    """Load, step, and hand the engine back; a fault fails the test."""
+    engine = CpuEngine(threads=threads)
+    engine.load(*made)
+    engine.advance(n_steps).raise_if_any()
+    return engine
+
+
+def bits(state: State) -> tuple[bytes, ...]:
+    contacts = state.contacts
+    return tuple(
+        np.ascontiguousarray(a).tobytes()
+        for a in (
+            state.x,
+            state.v,
+            state.omega,
+            state.image,
+            state.books,
+            contacts.i,
+            contacts.j,
+            contacts.spring_s,
+            contacts.dash_s,
+            contacts.dash_n,
+            contacts.spring_r,
+            contacts.event,
+        )
+    )
+
+
+def pile(
+    n=400, plane_case=False, seed=3, spread=0.15, friction=0.5, events=EventRule.NONE, **more
+) -> tuple[Scene, State]:
+    """A loose block of grains of mixed sizes over a rough bed, periodic downslope, about to fall and flow."""
+    rng = np.random.default_rng(seed)
+    pitch = 1.15 * D * (1.0 + spread)
+    if plane_case:
+        wide, deep, high = n // 8, 1, 8
+    else:
+        side = max(4, round((n / 6) ** 0.5))
+        wide, deep, high = side, side, 6
+    a, b, c = (
+        g.ravel() for g in np.meshgrid(np.arange(wide), np.arange(deep), np.arange(high), indexing="ij")
+    )
+    x = np.column_stack([a * pitch, b * pitch, (c + 1.3) * pitch])
+    x += rng.uniform(-0.04, 0.04, x.shape) * D
+    d = D * (1.0 + spread * rng.uniform(-1.0, 1.0, len(x)))
+    l_x, l_y = wide * pitch, deep * pitch
+    m_x, m_y = int(l_x / D), max(1, int(l_y / D))
+    p, q = (g.ravel() for g in np.meshgrid(np.arange(m_x), np.arange(m_y), indexing="ij"))
+    bed = np.column_stack([p * l_x / m_x, q * l_y / m_y, rng.uniform(-0.2, 0.2, len(p)) * D])
+    if plane_case:
+        x[:, 1] = bed[:, 1] = 0.0
+    v = rng.normal(0.0, 0.05, x.shape)
+    if plane_case:
+        v[:, 1] = 0.0
+    return scene(
+        x,
+        d,
+        v=v,
+        x_fixed=bed,
+        d_fixed=D,
+        friction=friction,
+        slope=math.radians(25.0),
+        plane_case=plane_case,
+        period=(l_x, math.inf if plane_case else l_y),
+        allow_overlap=True,
+        events=events,
+        **more,
+    )
+
+
+def contact_law(
+    k_n=1.0e4,
+    ratio=2.0 / 7.0,
+    mu=0.5,
+    zeta_n=0.1,
+    zeta_s=0.0,
+    slip=Slip.SPRING,
+    cap=None,
+    tension=False,
+    cohesion=0.0,
+):
+    cap = (Cap.TOTAL if slip == Slip.TOTAL else Cap.SPRING) if cap is None else cap
+    return ContactLaw(
+        k_n=k_n,
+        k_s=ratio * k_n,
+        mu=mu,
+        zeta_n=zeta_n,
+        zeta_s=zeta_s,
+        slip=slip,
+        cap=cap,
+        tension=tension,
+        cohesion=cohesion,
+    )
+
+
+@pytest.fixture
+def diameter() -> float:
+    return D
