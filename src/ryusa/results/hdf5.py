@@ -10,6 +10,9 @@ import numpy as np
 
 from ryusa.errors import ResultsError
 
+# what h5py makes of a file with wrong bytes in it
+DAMAGE = (OSError, KeyError, RuntimeError, ValueError, TypeError, AttributeError)
+
 
 def open_file(path: Path) -> h5py.File:
     """An HDF5 file of a run folder, open for reading.
@@ -22,7 +25,7 @@ def open_file(path: Path) -> h5py.File:
         raise ResultsError(f"{path}: no such file in the run folder (links are not followed)")
     try:
         return h5py.File(path, "r", locking=False)
-    except OSError as error:
+    except DAMAGE as error:
         raise ResultsError(f"{path}: not a readable HDF5 file ({error})") from error
 
 
@@ -32,8 +35,8 @@ def opened(path: Path) -> Generator[h5py.File]:
     with open_file(path) as file:
         try:
             yield file
-        except OSError as error:
-            raise ResultsError(f"{path}: cannot be read to its end ({error})") from error
+        except DAMAGE as error:
+            raise ResultsError(f"{path}: damaged ({error})") from error
 
 
 class OpenFiles:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ryusa.errors import ResultsError
 from ryusa.model import EVENT
 from ryusa.results import schema
-from ryusa.results.hdf5 import OpenFiles, opened, read_dataset
+from ryusa.results.hdf5 import DAMAGE, OpenFiles, opened, read_dataset
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Part:
         """Frames begin .. end - 1 of this part, its own count, for one grain or a slice of grains."""
         try:
             return self.files.dataset(self.path, name)[begin:end, grains]
-        except OSError as error:
+        except DAMAGE as error:
             raise ResultsError(f"{self.path}: '{name}' cannot be read ({error})") from error
 
     def contacts(self) -> NDArray[np.void]:

@@ -1,0 +1,83 @@
+import io
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+from ryusa.running.progress import Moment, Progress
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+@pytest.fixture
+def now() -> list[float]:
+    return [0.0]
+
+
+def make(path: Path, now: list[float], stream: io.StringIO, **more: Any) -> Progress:
+    return Progress(path / "log.txt", shown=more.get("shown", True), stream=stream, clock=lambda: now[0])
+
+
+def moment(share: float) -> Moment:
+    return Moment(share=share, t=share * 10, rate=3e6, overlap=0.004, residual=1e-5, hops=3)
+
+
+def test_lines_come_every_tenth_of_the_way_at_most_every_five_seconds(tmp_path: Path, now: list[float]) -> None:
+    stream = io.StringIO()
+    progress = make(tmp_path, now, stream)
+    for k in range(1000):
+        now[0] = 0.1 * k
+        if progress.due():
+            progress.update(moment(k / 1000))
+    progress.close()
+    lines = stream.getvalue().splitlines()
+    assert 8 <= len(lines) <= 11
+    assert "3.00 M particle-steps/s" in lines[0]
+    assert "hops 3" in lines[0]
+    assert "s left" in lines[0]
+    assert (tmp_path / "log.txt").read_text().count("particle-steps/s") == len(lines)
+
+
+def test_a_slow_run_says_a_line_a_minute(tmp_path: Path, now: list[float]) -> None:
+    stream = io.StringIO()
+    progress = make(tmp_path, now, stream)
+    for k in range(0, 600, 5):
+        now[0] = float(k)
+        progress.update(moment(1e-4 * k))
+    assert 8 <= len(stream.getvalue().splitlines()) <= 10
+
+
+def test_quiet_says_nothing_but_logs(tmp_path: Path, now: list[float]) -> None:
+    stream = io.StringIO()
+    progress = make(tmp_path, now, stream, shown=False)
+    progress.line("compiling")
+    progress.close()
+    assert stream.getvalue() == ""
+    assert "compiling" in (tmp_path / "log.txt").read_text()
+
+
+def test_a_terminal_gets_a_bar_and_lines_stay_above_it(tmp_path: Path, now: list[float]) -> None:
+    stream = Terminal()
+    progress = make(tmp_path, now, stream)
+    progress.line("a note [with brackets]")
+    now[0] = 6.0
+    progress.update(moment(0.5))
+    progress.close()
+    assert "a note [with brackets]" in stream.getvalue()
+    assert "t 5 s" not in (tmp_path / "log.txt").read_text().splitlines()[0]
+
+
+def test_patience_speaks_only_when_a_block_is_slow(
+    tmp_path: Path, now: list[float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("ryusa.running.progress._PATIENCE", 0.05)
+    stream = io.StringIO()
+    progress = make(tmp_path, now, stream)
+    with progress.patience("quick"):
+        pass
+    with progress.patience("compiling"):
+        time.sleep(0.3)
+    assert stream.getvalue() == "compiling\n"

@@ -1,0 +1,159 @@
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from ryusa.laws.collision import collision_time, contact_time_no_tension, omega_natural
+from ryusa.model import State
+from ryusa.running.closing import closing_lines
+from ryusa.running.stops import HOP_RISE, Hops, Rest, Stop
+from ryusa.running.watch import Average, Watch, shortest_collision_time
+
+
+def test_an_average_taken_in_pieces_is_that_of_all_samples() -> None:
+    samples = np.random.default_rng(3).normal(0.7, 0.1, 1000)
+    average = Average()
+    for piece in np.split(samples, [1, 1, 7, 400]):
+        average.take(piece)
+    found = average.as_dict()
+    assert found["n"] == 1000
+    assert found["mean"] == pytest.approx(samples.mean(), rel=1e-12)
+    assert found["standard_error"] == pytest.approx(samples.std(ddof=1) / math.sqrt(1000), rel=1e-12)
+
+
+def test_one_sample_has_no_standard_error_and_none_has_no_mean() -> None:
+    average = Average()
+    assert average.as_dict() == {"n": 0, "mean": None, "standard_error": None}
+    average.take(np.array([0.5]))
+    assert average.as_dict() == {"n": 1, "mean": 0.5, "standard_error": None}
+
+
+def test_the_shortest_contact_is_that_of_two_free_grains_where_they_can_meet(scene_with: Any) -> None:
+    scene = scene_with(3)
+    at = State.at_rest(np.zeros((3, 3)))
+    law, m = scene.contact, float(scene.m[0])
+    damped = contact_time_no_tension(law.zeta_n, omega_natural(law.k_n, m / 2))
+    assert shortest_collision_time(scene, at) == pytest.approx(min(damped, collision_time(m / 2, law.k_n)))
+
+
+def test_lanes_of_a_plane_scene_never_meet(scene_with: Any) -> None:
+    scene = scene_with(3, plane_case=True)
+    lanes, one = np.zeros((3, 3)), np.zeros((3, 3))
+    lanes[:, 1] = [0.0, 0.01, 0.02]
+    apart = shortest_collision_time(scene, State.at_rest(lanes))
+    assert apart == pytest.approx(math.sqrt(2) * shortest_collision_time(scene, State.at_rest(one)))
+
+
+def test_restitution_is_split_by_partner_and_only_of_lonely_pairs(
+    scene: Any, state: Any, event: Any, tally: Any
+) -> None:
+    watch = Watch(scene, state)
+    watch.contacts(
+        np.concatenate(
+            [
+                event(0, 3, 0, 1e-4, closing_end=-0.6),
+                event(0, 5, 0, 1e-4, closing_end=-0.8),  # a plane
+                event(0, 1, 0, 1e-4, closing_end=-0.5),
+                event(0, 1, 0, 1e-4, closing_end=-0.1, alone=0.0),
+                event(0, 3, 0, 1e-4, closing_begin=1e-4, closing_end=0.0),  # a rest on the bed
+            ]
+        )
+    )
+    found = watch.numbers(tally())["restitution"]
+    assert found["asked"] == 0.7
+    assert (found["fixed"]["n"], found["fixed"]["mean"]) == (2, pytest.approx(0.7))
+    assert found["fixed"]["standard_error"] == pytest.approx(0.1)
+    assert (found["free"]["n"], found["free"]["mean"]) == (1, 0.5)
+
+
+def test_tangential_restitution_keeps_its_sign(scene: Any, state: Any, event: Any, tally: Any) -> None:
+    watch = Watch(scene, state)
+    watch.contacts(event(0, 3, 0, 1e-4, slip_begin=[0.5, 0, 0], slip_end=[-0.35, 0, 0]))
+    watch.contacts(event(0, 3, 0, 1e-4, slip_begin=[0.5, 0, 0], slip_end=[0.2, 0, 0], t_slide=5e-5))
+    watch.contacts(event(0, 3, 0, 1e-4, slip_begin=[0.01, 0, 0], slip_end=[0.2, 0, 0]))  # nearly central
+    found = watch.numbers(tally())["restitution_shear"]
+    assert (found["sticking"]["fixed"]["n"], found["sticking"]["fixed"]["mean"]) == (1, pytest.approx(0.7))
+    assert (found["sliding"]["fixed"]["n"], found["sliding"]["fixed"]["mean"]) == (1, pytest.approx(-0.4))
+
+
+def test_steps_per_contact_are_observed_within_a_bin(scene: Any, state: Any, event: Any, tally: Any) -> None:
+    watch = Watch(scene, state)
+    steps = np.random.default_rng(1).uniform(40, 60, 5000)
+    watch.contacts(np.concatenate([event(0, 3, 0.0, n * scene.dt) for n in steps]))
+    found = watch.numbers(tally())["steps_per_contact"]["observed"]
+    assert found["n"] == 5000
+    assert found["least"] == pytest.approx(steps.min())
+    assert found["most"] == pytest.approx(steps.max())
+    for name, quantile in (("q01", 0.01), ("q50", 0.5), ("q99", 0.99)):
+        assert found[name] == pytest.approx(np.quantile(steps, quantile), rel=0.025)
+
+
+@pytest.mark.parametrize(
+    ("overlap", "word"), [(0.02, "too soft"), (0.0005, "stiffer"), (0.005, None), (0.001, None), (0.01, None)]
+)
+def test_the_stable_band_is_watched(
+    scene: Any, state: Any, event: Any, tally: Any, overlap: float, word: str | None
+) -> None:
+    watch = Watch(scene, state)
+    watch.contacts(event(0, 3, 0.0, 1e-4))
+    said = [one for one in watch.warnings(tally(overlap_max=overlap)) if "overlap" in one]
+    assert bool(said) == (word is not None)
+    assert word is None or word in said[0]
+
+
+def test_a_grain_that_skims_the_bed_is_warned_of(scene: Any, state: Any, event: Any, tally: Any) -> None:
+    watch = Watch(scene, state)
+    watch.contacts(event(0, 3, 0.0, 1e-3, v_begin=[0.5, 0.0, -0.2]))
+    assert not any("along the bed" in one for one in watch.warnings(tally()))
+    watch.contacts(event(0, 3, 0.0, 1e-3, v_begin=[0.7, 0.0, -0.2]))
+    assert any("0.35 d along the bed" in one for one in watch.warnings(tally()))
+
+
+def test_too_few_steps_and_an_open_account_are_warned_of(scene_with: Any, state: Any, tally: Any) -> None:
+    said = " ".join(Watch(scene_with(3, dt=1e-4), state).warnings(tally()))
+    assert "steps in the shortest contact" in said
+    assert "unexplained" in said
+
+
+def test_the_energy_account_names_every_term(scene: Any, state: Any, tally: Any) -> None:
+    from ryusa.model import Book
+
+    account = Watch(scene, state).numbers(tally())["energy"]
+    assert {book.name.lower() for book in Book} <= set(account)
+    assert account["kinetic"] == 1.0
+    assert account["imbalance"] == 21.0
+
+
+def test_closing_lines_speak_of_a_run_without_contacts_too(scene: Any, state: Any, tally: Any) -> None:
+    numbers = Watch(scene, state).numbers(tally())
+    more = {"steps": 1, "frames": 2, "contacts": 0, "wall": 1.0, "particle_steps_per_second": 5e6}
+    text = "\n".join(closing_lines({**numbers, **more}))
+    assert "5.00 M particle-steps/s" in text
+    assert "none (no isolated contact of two grains)" in text
+
+
+def test_a_flight_counts_as_a_hop_when_it_can_rise_a_tenth_of_d(scene: Any, event: Any) -> None:
+    flight = 2 * math.sqrt(2 * HOP_RISE * 2e-3 / 9.8)
+    hops = Hops(scene, Stop(saltations=1, settle=1.0))
+    hops.contacts(event(0, 3, 0.5, 0.6))
+    hops.contacts(event(0, 3, 0.9, 1.0))  # began to fly before it settled
+    hops.contacts(event(0, 3, 1.0 + 0.99 * flight, 1.02))  # too low
+    hops.contacts(event(0, 1, 1.5, 1.6))  # no bed contact
+    hops.contacts(event(0, 4, 1.02 + 1.01 * flight, 3.0))
+    hops.contacts(event(0, 3, 2.9, 2.95))  # while on another bed grain
+    assert hops.count.tolist() == [1, 0, 0]
+    assert hops.least == 0
+    assert not hops.reached()
+
+
+def test_only_tracked_grains_decide_when_saltations_are_enough(scene_with: Any, event: Any) -> None:
+    hops = Hops(scene_with(3, tracked=np.array([True, False, False])), Stop(saltations=1))
+    hops.contacts(np.concatenate([event(0, 3, 0.0, 0.1), event(0, 3, 0.5, 0.6)]))
+    assert hops.reached()
+
+
+def test_rest_begins_anew_whenever_a_grain_is_fast() -> None:
+    rest = Rest(Stop(rest_speed=0.1, rest_for=1.0))
+    assert [rest.reached(t, v) for t, v in [(0.0, 0.0), (0.9, 0.05), (0.95, 0.1), (1.5, 0.0), (2.4, 0.0), (2.5, 0.0)]] == [
+        False, False, False, False, False, True,
+    ]  # fmt: skip
