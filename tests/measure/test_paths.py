@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ryusa.measure import energy, rows_of, spin, tracks, write_csv
-from ryusa.model import EVENT, Book
+from ryusa.model import Book
 from ryusa.results.schema import TALLY
 
 

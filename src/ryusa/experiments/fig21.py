@@ -55,7 +55,7 @@ def expect(table: Table) -> Sequence[Verdict]:
         Verdict(
             "fig21",
             "reaches about 900 rad/s",
-            f"mean {mean.value:.0f} ± {mean.error:.0f} rad/s after settling, largest {table.spin.largest:.0f} rad/s",
+            f"mean {mean.value:.0f} ± {mean.error:.0f}, largest {table.spin.largest:.0f} rad/s, settled",
             675.0 < mean.value < 1125.0,
         ),
     )

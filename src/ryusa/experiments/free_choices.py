@@ -1,4 +1,4 @@
-"""What the paper does not fix in its saltation runs, changed one at a time: how much do the jumps depend on it?"""
+"""Every choice that the paper leaves open in its saltation runs, changed one at a time."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -51,8 +51,8 @@ CHOICES: dict[str, dict[str, str]] = {
 RISES = {"hops rise above 0.02 d": 0.02, "hops rise above 0.5 d": 0.5}  # read from the base run
 ONLY_FREE = {"water torque, Dennis"}  # without spin it does nothing
 REPORTED = (
-    "jump_height", "jump_height_crest", "jump_length", "speed", "contact_time_over_eq8", "spin_before", "bed_shear",
-    "impulse_shear", "shear_ratio", "contacts_per_bounce",
+    "jump_height", "jump_height_crest", "jump_length", "speed", "contact_time_over_eq8", "spin_before",
+    "bed_shear", "impulse_shear", "shear_ratio", "contacts_per_bounce",
 )  # fmt: skip
 
 

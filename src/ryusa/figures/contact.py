@@ -107,7 +107,8 @@ def over_stiffness(
     axes.set_ylabel(_AXIS[quantity])
     if curves:
         left, right = min(c.k_n.min() for c in curves), max(c.k_n.max() for c in curves)
-        axes.set_xlim(left, right * ((right / left) ** 0.17 if ordered else 1.0))
+        room = (right / left) ** 0.04 if points else 1.0
+        axes.set_xlim(left / room, right * ((right / left) ** 0.17 if ordered else room))
     if not ordered:
         axes.legend(loc="best")
     if note:
