@@ -88,3 +88,10 @@ def test_a_link_out_of_the_cases_folder_is_refused(text: str, tmp_path: Path) ->
 def test_a_missing_table_is_told(text: str, tmp_path: Path) -> None:
     with pytest.raises(CaseError, match="no such file"):
         read(write(tmp_path, text, CSV, "none.csv"))
+
+
+def test_the_step_follows_the_smallest_free_grain_of_a_table(text: str, tmp_path: Path) -> None:
+    table = "x [cm],z [cm],d [cm],fixed\n0,0.1,0.05,1\n1,1,0.1,0\n2,1,0.2,0\n"
+    found = read(write(tmp_path, text, table)).derived
+    assert (found.d, found.d_min, found.d_max) == (0.002, 0.001, 0.002)
+    assert found.dt == pytest.approx(found.free.t_col * 0.5**1.5 / 50, rel=1e-12)

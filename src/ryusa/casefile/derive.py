@@ -87,11 +87,11 @@ def spread_of(case: Case) -> tuple[str, float]:
 
 
 def sizes(case: Case) -> tuple[float, float, float]:
-    """Mean, smallest and largest diameter that can occur [m]."""
+    """Mean diameter as the case states it, smallest of free grains and largest that can occur [m]."""
     table = table_of(case)
     if table is not None:
         every = table.column("d")
-        return float(every.mean()), float(every.min()), float(every.max())
+        return case.grains.diameter, float(every[~table.fixed].min()), float(every.max())
     d, (kind, ratio) = case.grains.diameter, spread_of(case)
     if kind == "uniform":
         return d, d * (1.0 - ratio), d * (1.0 + ratio)

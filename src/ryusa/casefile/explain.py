@@ -76,7 +76,7 @@ def _grain(case: Case, found: Derived) -> list[Row]:
             at,
             found.d,
             "cm",
-            "grains.diameter" if case.build.kind != "table" else "mean of the table",
+            "grains.diameter",
         )
     ]
     if found.d_max > found.d_min:

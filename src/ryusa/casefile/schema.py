@@ -58,7 +58,7 @@ class Grains(Section):
     """The free grains."""
 
     diameter: Annotated[Length, Field(ge=1.0e-7, le=1.0e3)]
-    """Mean diameter d."""
+    """Mean diameter d; with a table of grains the one that u_star, roughness and overlap/d refer to."""
     density: Annotated[Density, Field(ge=1.0, le=1.0e6)]
     """Density of the grain material, rho_s."""
     spread: Annotated[
