@@ -38,8 +38,8 @@ def design(
 
     if not 0.0 < restitution <= 1.0:
         raise CaseError("--restitution", restitution, "must be above 0 and at most 1")
-    if not steps_per_contact >= 10.0:
-        raise CaseError("--steps-per-contact", steps_per_contact, "must be at least 10")
+    if not 10.0 <= steps_per_contact <= 1.0e4:
+        raise CaseError("--steps-per-contact", steps_per_contact, "must be at least 10 and at most 10000")
     grain = _grain(diameter, density, restitution, speed, water)
     soft, stiff = stable_range(grain)
     chosen = [choice(grain, k, steps_per_contact, RATE) for k in (soft, (soft * stiff) ** 0.5, stiff)]

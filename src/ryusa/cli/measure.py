@@ -32,8 +32,9 @@ def measure(
     ] = 0.1,
 ) -> None:
     """Print averages with standard error, window and steadiness; --csv keeps the numbers."""
+    _within("--rise", rise, 0.0, 100.0)
     found = _measured(_open(run), _known(what, MEASURES, "measure"), _seconds(settle), rise)
-    averages = found if what == "averages" else getattr(found, "averages", None)
+    averages = getattr(found, "averages", None)
     if averages is not None:
         _print(averages)
     elif what == "energy":
@@ -64,9 +65,13 @@ def draw(
     """Draw a picture of a run, and write the numbers in it as CSV beside it."""
     results = _open(run)
     _known(what, PICTURES, "draw")
+    _within("--exaggeration", exaggeration, 0.1, 100.0)
+    shown = _metres(length)
+    if shown is not None:
+        _within("--length", shown, float(results.scene.d[0]), 1.0e6)
     grains = _grains(grain, results)
     window = _seconds(begin), _seconds(end)
-    figure, rows = _picture(what, results, grains, window, _metres(length), exaggeration)
+    figure, rows = _picture(what, results, grains, window, shown, exaggeration)
     from ryusa.errors import CaseError, ResultsError
     from ryusa.figures import save
 
@@ -154,6 +159,13 @@ def _grains(grains: list[int] | None, results: "Results") -> list[int] | None:
         if not 0 <= one < results.scene.n_grain:
             raise CaseError("--grain", one, f"must be 0 to {results.scene.n_grain - 1}")
     return grains
+
+
+def _within(key: str, value: float, low: float, high: float) -> None:
+    if not low <= value <= high:
+        from ryusa.errors import CaseError
+
+        raise CaseError(key, value, f"must be {low:g} to {high:g}")
 
 
 def _seconds(text: str | None) -> float | None:

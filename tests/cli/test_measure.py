@@ -1,0 +1,77 @@
+import csv
+
+import pytest
+from typer.testing import CliRunner
+
+from ryusa.casefile.read import read
+from ryusa.cli import app
+from ryusa.experiments import case_path
+from ryusa.running.runner import run
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A short saltation of two starts."""
+    folder = tmp_path_factory.mktemp("runs") / "short"
+    overrides = {"build.starts": "2", "stop.time": "0.4 s", "record.settle": "0 s"}
+    run(read(case_path("saltation.toml"), overrides), folder, progress=False)
+    return folder
+
+
+def call(*words):
+    return CliRunner().invoke(app, [str(word) for word in words])
+
+
+def test_measured_hops_are_printed_with_error_and_window_and_kept_as_csv(folder, tmp_path):
+    table = tmp_path / "hops.csv"
+    result = call("measure", folder, "saltation", "--csv", table)
+    assert result.exit_code == 0, result.output
+    assert "jump_height" in result.output
+    assert "s.e." in result.output
+    assert "window" in result.output
+    with table.open() as file:
+        rows = {row["quantity"]: row for row in csv.DictReader(file)}
+    assert float(rows["contact_time"]["value"]) == pytest.approx(1.04e-4, rel=0.1)
+    assert float(rows["contact_time"]["standard_error"]) > 0
+
+
+@pytest.mark.parametrize("what", ["collisions", "spin", "energy", "tracks"])
+def test_every_measure_prints_something_and_writes_csv(folder, tmp_path, what):
+    result = call("measure", folder, what, "--csv", tmp_path / "out.csv")
+    assert result.exit_code == 0, result.output
+    assert len((tmp_path / "out.csv").read_text().splitlines()) > 1
+
+
+@pytest.mark.parametrize("what", ["tracks", "spin", "energy", "contacts", "hops"])
+def test_every_picture_is_drawn_with_its_numbers_beside_it(folder, tmp_path, what):
+    result = call("draw", folder, what, "-o", tmp_path / "picture.svg")
+    assert result.exit_code == 0, result.output
+    assert (tmp_path / "picture.svg").read_text().startswith("<?xml")
+    assert len((tmp_path / "picture.csv").read_text().splitlines()) > 1
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("measure", "{}", "saltacion"), "Did you mean 'saltation'"),
+        (("measure", "{}", "saltation", "--settle", "1"), "missing unit"),
+        (("measure", "{}", "saltation", "--rise", "-1"), "rise"),
+        (("draw", "{}", "trakcs"), "Did you mean 'tracks'"),
+        (("draw", "{}", "tracks", "--grain", "9"), "--grain"),
+        (("draw", "{}", "tracks", "--begin", "99 s"), "two frames"),
+        (("draw", "{}", "tracks", "--exaggeration", "0"), "exaggeration"),
+        (("draw", "{}", "tracks", "-o", "picture.bmp"), ".png"),
+        (("measure", "no-such-run", "saltation"), "no-such-run"),
+    ],
+)
+def test_a_wrong_word_gives_one_message_and_exit_code_two(folder, words, message):
+    result = call(*(word.format(folder) for word in words))
+    assert result.exit_code == 2, result.output
+    assert message in result.output
+    assert "Traceback" not in result.output
+
+
+def test_a_run_without_hops_says_so(folder):
+    result = call("measure", folder, "saltation", "--settle", "99 s")
+    assert result.exit_code == 0, result.output
+    assert "0 hops" in result.output
