@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from ryusa.build import scene as build_scene
 from ryusa.model import EVENT, State, Tally
 from ryusa.model.tally import N_BOOK
@@ -27,15 +28,20 @@ def folder(tmp_path: Path) -> Path:
     (run / "case.json").write_text('{"title": "two grains", "record": {"settle": 0.5}}')
     (run / "summary.json").write_text('{"steps": 230}')
     scene, _ = build_scene(
-        x=position(0), d=[0.002, 0.003], x_fixed=[[0.0, 0.0, 0.0]], planes=[("floor", (0, 0, -0.01), (0, 0, 1))],
+        x=position(0),
+        d=[0.002, 0.003],
+        x_fixed=[[0.0, 0.0, 0.0]],
+        planes=[("floor", (0, 0, -0.01), (0, 0, 1))],
         period=(PERIOD, math.inf),
-    )  # fmt: skip
+    )
     recorder = Recorder(run, scene)
     for k in range(N_FRAME):
         x = position(k)
         image = np.array([[k // 10, 0], [0, 0]], dtype=np.int32)
         state = State(x=x, v=x * 2, omega=-x, step=10 * k, t=0.1 * k, image=image)
-        recorder.frame(state, Tally(0.1 * k, float(k), 0, 0, 0, 0, 0, (0.0,) * N_BOOK, 0.004, 1, 7, 1.0, 2.0, 3))
+        recorder.frame(
+            state, Tally(0.1 * k, float(k), 0, 0, 0, 0, 0, (0.0,) * N_BOOK, 0.004, 1, 7, 1.0, 2.0, 3)
+        )
         if k in {0, 1, 12}:
             event = np.zeros(1, dtype=EVENT)
             event["t_part"], event["i"] = 10.0 - k, k

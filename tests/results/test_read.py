@@ -2,6 +2,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from ryusa.errors import ResultsError
 from ryusa.model import EVENT, Book
 from ryusa.results import Results
@@ -42,12 +43,33 @@ def test_unwrapped_centres_add_the_periods_crossed(folder: Path, x: np.ndarray) 
 @pytest.mark.parametrize(
     "key",
     [
-        0, -1, 13, slice(None), slice(2, 2), slice(1, 15), slice(None, None, 7), slice(None, None, -1), slice(20, 3, -4),
-        [0, 22, 5], np.array([3, 3, -1]), [0, 1, 2, 3, 5], (slice(None), 1), (slice(0, 14), -1, 2), (5, 1),
-        (slice(None), slice(0, 1)), (slice(None), slice(None, None, -1)), (..., 0), (slice(3, 6), ..., 2), (4, ..., 0),
-        (slice(None), [1, 0]), ([1, 20], 1, slice(0, 2)), (slice(4, 4), 1), [], (slice(None), np.array([True, False])),
+        0,
+        -1,
+        13,
+        slice(None),
+        slice(2, 2),
+        slice(1, 15),
+        slice(None, None, 7),
+        slice(None, None, -1),
+        slice(20, 3, -4),
+        [0, 22, 5],
+        np.array([3, 3, -1]),
+        [0, 1, 2, 3, 5],
+        (slice(None), 1),
+        (slice(0, 14), -1, 2),
+        (5, 1),
+        (slice(None), slice(0, 1)),
+        (slice(None), slice(None, None, -1)),
+        (..., 0),
+        (slice(3, 6), ..., 2),
+        (4, ..., 0),
+        (slice(None), [1, 0]),
+        ([1, 20], 1, slice(0, 2)),
+        (slice(4, 4), 1),
+        [],
+        (slice(None), np.array([True, False])),
     ],
-)  # fmt: skip
+)
 def test_indexing_reads_as_the_array_would(folder: Path, x: np.ndarray, key: object) -> None:
     lazy = Results.open(folder).frames.x_wrapped
     expected = x[np.array(key, dtype=int) if isinstance(key, list) else key]
@@ -73,9 +95,16 @@ def test_an_index_out_of_range_is_an_index_error(folder: Path, key: object) -> N
 def test_everything_handed_out_is_read_only(folder: Path) -> None:
     results = Results.open(folder)
     arrays = [
-        results.frames.t, results.frames.x[:], results.frames.x[3], results.frames[3].x, results.contacts, results.grains.d,
-        results.bed.x, results.planes.normal, results.tally["kinetic"],
-    ]  # fmt: skip
+        results.frames.t,
+        results.frames.x[:],
+        results.frames.x[3],
+        results.frames[3].x,
+        results.contacts,
+        results.grains.d,
+        results.bed.x,
+        results.planes.normal,
+        results.tally["kinetic"],
+    ]
     for array in arrays:
         with pytest.raises(ValueError, match="read-only"):
             array[...] = array

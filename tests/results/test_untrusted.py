@@ -1,4 +1,4 @@
-"""A run folder from a stranger: every trick ends in one ResultsError, none reads outside or fills the memory."""
+"""A run folder from a stranger: every trick ends in one ResultsError; none reads outside or fills memory."""
 
 from collections.abc import Callable
 from contextlib import suppress
@@ -7,6 +7,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+
 from ryusa.errors import ResultsError
 from ryusa.model import EVENT
 from ryusa.results import Results
@@ -134,7 +135,9 @@ def no_scene(folder: Path) -> None:
 def odd_scene(folder: Path) -> None:
     path = folder / "parts" / "scene-000000.h5"
     text = b'{"step": 0, "t": 0, "contact": {"k_n": 1, "__class__": 2}}'
-    replace_dataset(path, "scalars", lambda file: file.create_dataset("scalars", data=np.frombuffer(text, np.uint8)))
+    replace_dataset(
+        path, "scalars", lambda file: file.create_dataset("scalars", data=np.frombuffer(text, np.uint8))
+    )
 
 
 def odd_scene_shape(folder: Path) -> None:
@@ -168,10 +171,33 @@ def later_format(folder: Path) -> None:
 
 
 TRICKS = [
-    external_link, soft_link, virtual, external_storage, huge, compressed_bomb, objects, wrong_shape, wrong_type,
-    missing_dataset, group_for_dataset, linked_part, linked_parts, missing_part, cut_part, no_hdf5, cut_scene, no_scene,
-    odd_scene, odd_scene_shape, bad_json, deep_json, list_json, linked_json, binary_json, later_format,
-]  # fmt: skip
+    external_link,
+    soft_link,
+    virtual,
+    external_storage,
+    huge,
+    compressed_bomb,
+    objects,
+    wrong_shape,
+    wrong_type,
+    missing_dataset,
+    group_for_dataset,
+    linked_part,
+    linked_parts,
+    missing_part,
+    cut_part,
+    no_hdf5,
+    cut_scene,
+    no_scene,
+    odd_scene,
+    odd_scene_shape,
+    bad_json,
+    deep_json,
+    list_json,
+    linked_json,
+    binary_json,
+    later_format,
+]
 
 
 @pytest.mark.parametrize("trick", TRICKS, ids=lambda trick: trick.__name__)

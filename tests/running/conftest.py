@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+
 from ryusa.engine.seam import Flags
 from ryusa.errors import RunError
 from ryusa.model import EVENT, ContactLaw, Scene, State, Tally
@@ -16,12 +17,22 @@ def make_scene(n: int = 3, **changes: object) -> Scene:
     d = np.full(n, 2e-3)
     m = 2650 * math.pi / 6 * d**3
     scene = Scene(
-        d=d, m=m, m_added=np.zeros(n), m_weight=m, inertia=m * d**2 / 10,
-        x_fixed=np.array([[0.001, 0.0, 0.001], [0.003, 0.0, 0.001]]), d_fixed=np.full(2, 2e-3),
-        fixed_active=np.ones(2, bool), plane_normal=np.array([[0.0, 0.0, 1.0]]), plane_point=np.zeros((1, 3)),
-        plane_active=np.ones(1, bool), contact=ContactLaw(1e4, 2857.0, 0.5, e_n=0.7, e_s=0.7, zeta_n=0.12), dt=1e-5,
-        period=(0.04, math.inf), gravity=np.array([0.0, 0.0, -9.8]),
-    )  # fmt: skip
+        d=d,
+        m=m,
+        m_added=np.zeros(n),
+        m_weight=m,
+        inertia=m * d**2 / 10,
+        x_fixed=np.array([[0.001, 0.0, 0.001], [0.003, 0.0, 0.001]]),
+        d_fixed=np.full(2, 2e-3),
+        fixed_active=np.ones(2, bool),
+        plane_normal=np.array([[0.0, 0.0, 1.0]]),
+        plane_point=np.zeros((1, 3)),
+        plane_active=np.ones(1, bool),
+        contact=ContactLaw(1e4, 2857.0, 0.5, e_n=0.7, e_s=0.7, zeta_n=0.12),
+        dt=1e-5,
+        period=(0.04, math.inf),
+        gravity=np.array([0.0, 0.0, -9.8]),
+    )
     return replace(scene, **changes)  # type: ignore[arg-type]
 
 
@@ -39,7 +50,7 @@ def make_event(i: int, j: int, t_begin: float, t_part: float, **columns: object)
 
 
 class FallingGrains:
-    """An engine in which nothing touches: x(step) is known exactly, events and faults are put in by the test."""
+    """An engine in which nothing touches: x(step) is known; events and faults are put in by the test."""
 
     def __init__(self) -> None:
         self.fault_at: int | None = None

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+
 from ryusa.running.progress import Moment, Progress
 
 
@@ -25,7 +26,9 @@ def moment(share: float) -> Moment:
     return Moment(share=share, t=share * 10, rate=3e6, overlap=0.004, residual=1e-5, hops=3)
 
 
-def test_lines_come_every_tenth_of_the_way_at_most_every_five_seconds(tmp_path: Path, now: list[float]) -> None:
+def test_lines_come_every_tenth_of_the_way_at_most_every_five_seconds(
+    tmp_path: Path, now: list[float]
+) -> None:
     stream = io.StringIO()
     progress = make(tmp_path, now, stream)
     for k in range(1000):

@@ -8,13 +8,14 @@ from typing import Any
 import h5py
 import numpy as np
 import pytest
+
 from ryusa.errors import ResultsError
 from ryusa.model import State
 from ryusa.results import Results, schema
 from ryusa.running import recorder as recorder_module
 from ryusa.running.recorder import Recorder, buffer_limit, bytes_per_frame, flush_after
 
-WRITER = '''
+WRITER = """
 import json, os, sys
 from pathlib import Path
 sys.path.insert(0, sys.argv[2])
@@ -36,7 +37,7 @@ for k in range(100_000):
     if k % 3 == 0:
         recorder.flush()
         print(recorder.n_frame, flush=True)
-'''
+"""
 
 
 @pytest.fixture
@@ -46,7 +47,12 @@ def writer(tmp_path: Path) -> Any:
     running: list[subprocess.Popen[str]] = []
 
     def begin(name: str) -> "tuple[subprocess.Popen[str], Path]":
-        command = [sys.executable, str(tmp_path / "writer.py"), str(tmp_path / name), str(Path(__file__).parent)]
+        command = [
+            sys.executable,
+            str(tmp_path / "writer.py"),
+            str(tmp_path / name),
+            str(Path(__file__).parent),
+        ]
         process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
         running.append(process)
         assert process.stdout is not None
@@ -116,13 +122,20 @@ def vtk_frames(path: Path, steps: list[int]) -> list[dict[str, Any]]:
         reader.Update()
         out = reader.GetOutput()
         data = out.GetPointData()
-        arrays = {data.GetArrayName(k): vtk_to_numpy(data.GetArray(k)).copy() for k in range(data.GetNumberOfArrays())}
+        arrays = {
+            data.GetArrayName(k): vtk_to_numpy(data.GetArray(k)).copy()
+            for k in range(data.GetNumberOfArrays())
+        }
         found.append(
             {
-                "t": reader.GetTimeValue(), "n_step": reader.GetNumberOfSteps(), "n_vert": out.GetNumberOfVerts(),
-                "n_poly": out.GetNumberOfPolys(), "points": vtk_to_numpy(out.GetPoints().GetData()).copy(), **arrays,
+                "t": reader.GetTimeValue(),
+                "n_step": reader.GetNumberOfSteps(),
+                "n_vert": out.GetNumberOfVerts(),
+                "n_poly": out.GetNumberOfPolys(),
+                "points": vtk_to_numpy(out.GetPoints().GetData()).copy(),
+                **arrays,
             }
-        )  # fmt: skip
+        )
     return found
 
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+
 from ryusa.errors import CaseError, ResultsError, RunError
 from ryusa.model import RollingLaw
 from ryusa.model.enums import EventRule, Rolling
@@ -19,9 +20,14 @@ from ryusa.running.stops import Stop
 def go(scene: Any, state: Any, engine: Any, tmp_path: Path) -> Any:
     def run(**changes: Any) -> Results:
         arguments: dict[str, Any] = {
-            "scene": scene, "state": state, "folder": tmp_path / "run", "frames": 1e-3, "stop": Stop(time=0.01),
-            "engine": engine, "progress": False,
-        }  # fmt: skip
+            "scene": scene,
+            "state": state,
+            "folder": tmp_path / "run",
+            "frames": 1e-3,
+            "stop": Stop(time=0.01),
+            "engine": engine,
+            "progress": False,
+        }
         return run_scene(**{**arguments, **changes})
 
     return run
@@ -110,7 +116,7 @@ def test_a_signal_ends_a_run_cleanly(go: Any, engine: Any, number: signal.Signal
     before = signal.getsignal(number)
     results = go()
     assert results.status == "interrupted"
-    assert results.frames.step[-1] <= 400 < 500
+    assert results.frames.step[-1] <= 400
     assert signal.getsignal(number) is before
 
 
@@ -209,7 +215,7 @@ def test_what_an_engine_refuses_is_said_before_work(go: Any, scene_with: Any, tm
 
 
 def test_saltations_cannot_be_counted_without_events(go: Any, scene_with: Any) -> None:
-    with pytest.raises(CaseError, match="record.events"):
+    with pytest.raises(CaseError, match=r"record\.events"):
         go(scene=scene_with(events=EventRule.NONE), stop=Stop(saltations=3))
 
 

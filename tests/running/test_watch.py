@@ -3,6 +3,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+
 from ryusa.laws.collision import collision_time, contact_time_no_tension, omega_natural
 from ryusa.model import State
 from ryusa.running.closing import closing_lines
@@ -154,6 +155,14 @@ def test_only_tracked_grains_decide_when_saltations_are_enough(scene_with: Any, 
 
 def test_rest_begins_anew_whenever_a_grain_is_fast() -> None:
     rest = Rest(Stop(rest_speed=0.1, rest_for=1.0))
-    assert [rest.reached(t, v) for t, v in [(0.0, 0.0), (0.9, 0.05), (0.95, 0.1), (1.5, 0.0), (2.4, 0.0), (2.5, 0.0)]] == [
-        False, False, False, False, False, True,
-    ]  # fmt: skip
+    assert [
+        rest.reached(t, v)
+        for t, v in [(0.0, 0.0), (0.9, 0.05), (0.95, 0.1), (1.5, 0.0), (2.4, 0.0), (2.5, 0.0)]
+    ] == [
+        False,
+        False,
+        False,
+        False,
+        False,
+        True,
+    ]
