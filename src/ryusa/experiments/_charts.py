@@ -41,9 +41,10 @@ def times(found: Chart, grain: Grain, band: bool) -> Figure:
     curves = [Curve(length(d), found.k_n, t) for d, t in zip(found.d, found.time, strict=True)]
     soft, stiff = found.band_k
     t_soft, t_stiff = found.band_time
-    words = (f"overlap/d = {BAND[1]:g}", f"{BAND[0]:g}")
+    words = (f"{BAND[1]:g}", f"{BAND[0]:g}")
     region = Band(words, soft, t_soft, stiff, t_stiff) if band else None
-    return over_stiffness("time", curves, band=region, note=note(grain, band))
+    text = note(grain, band)
+    return over_stiffness("time", curves, band=region, note=f"shaded: overlap/d\n{text}" if band else text)
 
 
 def overlaps(found: Chart, grain: Grain) -> Figure:

@@ -46,12 +46,16 @@ def choices(rows: Sequence[Choice], titles: Sequence[str], scales: Sequence[floa
                 color=colour, mfc="white", mew=0.8, label=name,
             )  # fmt: skip
         panel.set_xlabel(title, fontsize=7.0)
-        panel.set_xlim(min(0.0, panel.get_xlim()[0]), None)
+        left, right = panel.get_xlim()
+        if left < 0.5 * right:
+            panel.set_xlim(min(0.0, left), right)
+        panel.margins(x=0.08)
         panel.tick_params(axis="y", length=0)
-        panel.locator_params(axis="x", nbins=4)
+        panel.locator_params(axis="x", nbins=3)
         for edge in y[::2]:
             panel.axhspan(edge - 0.5, edge + 0.5, color="#f4f4f4", lw=0, zorder=0)
     axes[0].set_yticks(y, [row.label for row in rows])
     axes[0].set_ylim(y[-1] - 0.6, y[0] + 0.6)
-    axes[0].legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2)
+    handles, labels = axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper right", ncols=len(labels))
     return figure
