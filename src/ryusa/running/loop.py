@@ -65,7 +65,8 @@ class Loop:
         except BaseException as error:
             self.status = schema.INTERRUPTED if isinstance(error, KeyboardInterrupt) else schema.FAILED
             self.message = str(error) or type(error).__name__
-            self.progress.line(f"{self.status}: {self.message}")
+            # one of our own is said by whoever catches it
+            self.progress.line(f"{self.status}: {self.message}", shown=not isinstance(error, RyusaError))
             with suppress(RyusaError, OSError):
                 self.recorder.flush()
             with suppress(RyusaError, OSError):

@@ -33,8 +33,8 @@ class Moment:
     def __str__(self) -> str:
         hops = "" if self.hops is None else f"  hops {self.hops}"
         return (
-            f"t {self.t:.4g} s{hops}  {self.rate / 1e6:.2f} M particle-steps/s  "
-            f"overlap/d {self.overlap:.2g}  residual {self.residual:.0e}"
+            f"t {self.t:.4g} s  overlap/d {self.overlap:.2g}  residual {self.residual:.0e}  "
+            f"{self.rate / 1e6:.2f} M particle-steps/s{hops}"
         )
 
 
@@ -59,10 +59,11 @@ class Progress:
         if shown and self._stream.isatty():
             self._bar, self._task = _bar(self._stream)
 
-    def line(self, text: str) -> None:
-        """Say something worth a line of its own."""
+    def line(self, text: str, *, shown: bool = True) -> None:
+        """Say something worth a line of its own; not `shown`, it goes to the log alone."""
         self._write_log(text)
-        self._show(text)
+        if shown:
+            self._show(text)
 
     def due(self) -> bool:
         """Is it time for new numbers? Ask before working them out."""
@@ -128,12 +129,13 @@ def _bar(stream: TextIO) -> "tuple[RichProgress, TaskID]":
     from rich.console import Console
     from rich.progress import BarColumn, TaskProgressColumn, TextColumn, TimeRemainingColumn
     from rich.progress import Progress as RichProgress
+    from rich.table import Column
 
     bar = RichProgress(
-        BarColumn(bar_width=24),
-        TaskProgressColumn(),
-        TimeRemainingColumn(),
-        TextColumn("{task.fields[now]}"),
+        TaskProgressColumn(table_column=Column(no_wrap=True, min_width=4)),
+        BarColumn(bar_width=10, table_column=Column(min_width=10)),
+        TimeRemainingColumn(table_column=Column(no_wrap=True, min_width=7)),
+        TextColumn("{task.fields[now]}", table_column=Column(no_wrap=True, overflow="ellipsis")),
         console=Console(file=stream),
         transient=True,
     )
