@@ -41,11 +41,11 @@ def bits(state: State) -> tuple[bytes, ...]:
 
 
 def pile(
-    n=400, plane_case=False, seed=3, spread=0.15, friction=0.5, events=EventRule.NONE, **more
+    n=400, plane_case=False, seed=3, spread=0.15, friction=0.5, events=EventRule.NONE, stir=0.4, **more
 ) -> tuple[Scene, State]:
-    """A loose block of grains of mixed sizes over a rough bed, periodic downslope, about to fall and flow."""
+    """A loose block of grains of mixed sizes over a rough bed, periodic downslope, stirred and about to fall."""
     rng = np.random.default_rng(seed)
-    pitch = 1.15 * D * (1.0 + spread)
+    pitch = 1.01 * D * (1.0 + spread)
     if plane_case:
         wide, deep, high = n // 8, 1, 8
     else:
@@ -54,8 +54,7 @@ def pile(
     a, b, c = (
         g.ravel() for g in np.meshgrid(np.arange(wide), np.arange(deep), np.arange(high), indexing="ij")
     )
-    x = np.column_stack([a * pitch, b * pitch, (c + 1.3) * pitch])
-    x += rng.uniform(-0.04, 0.04, x.shape) * D
+    x = np.column_stack([a * pitch, b * pitch, (c + 1.2) * pitch])
     d = D * (1.0 + spread * rng.uniform(-1.0, 1.0, len(x)))
     l_x, l_y = wide * pitch, deep * pitch
     m_x, m_y = int(l_x / D), max(1, int(l_y / D))
@@ -63,7 +62,7 @@ def pile(
     bed = np.column_stack([p * l_x / m_x, q * l_y / m_y, rng.uniform(-0.2, 0.2, len(p)) * D])
     if plane_case:
         x[:, 1] = bed[:, 1] = 0.0
-    v = rng.normal(0.0, 0.05, x.shape)
+    v = rng.normal(0.0, stir, x.shape)
     if plane_case:
         v[:, 1] = 0.0
     return scene(

@@ -3,10 +3,11 @@
 from typing import Any
 
 import numpy as np
-from numba import njit
+
+from ryusa.engine._kernel import kernel
 
 
-@njit(cache=True)
+@kernel()
 def count_live(n_pair: int, live: Any) -> int:
     """Pairs in touch among the first n_pair of the list."""
     count = 0
@@ -15,7 +16,7 @@ def count_live(n_pair: int, live: Any) -> int:
     return count
 
 
-@njit(cache=True)
+@kernel()
 def take_rows(
     n: int, start: Any, partners: Any, live: Any, mem: Any, ids: Any, out_i: Any, out_j: Any, rows: Any
 ) -> None:
@@ -31,7 +32,7 @@ def take_rows(
                 k += 1
 
 
-@njit(cache=True)
+@kernel()
 def put_rows(
     n: int, start: Any, partners: Any, live: Any, mem: Any, index: Any, i_ids: Any, j_ids: Any, rows: Any
 ) -> int:
@@ -54,7 +55,7 @@ def put_rows(
     return -1
 
 
-@njit(cache=True)
+@kernel()
 def cross_lists(n: int, block_start: Any, start: Any, partners: Any) -> tuple[Any, Any, Any]:
     """Number the pairs whose partner belongs to another block.
 
@@ -88,7 +89,7 @@ def cross_lists(n: int, block_start: Any, start: Any, partners: Any) -> tuple[An
     return first, incoming_start, incoming
 
 
-@njit(cache=True)
+@kernel()
 def wrap_grains(x: Any, image: Any, period: Any, low: Any, high: Any) -> int:
     """Bring grains back into the period and count the crossing; returns the first grain outside the world, or -1."""
     lost = -1

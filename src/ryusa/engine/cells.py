@@ -8,12 +8,12 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import njit
 
+from ryusa.engine._kernel import kernel
 from ryusa.laws.geometry import wrap
 
 
-@njit(cache=True)
+@kernel()
 def grid_of(x: Any, n: int, size: float, period: Any) -> Any:
     """Bounds of a grid over x[:n]; cells are at least `size` wide and no more than about four a grain.
 
@@ -53,13 +53,13 @@ def grid_of(x: Any, n: int, size: float, period: Any) -> Any:
     return low, width, dims
 
 
-@njit(cache=True)
+@kernel()
 def _cell(x: float, low: float, width: float) -> int:
     # far from the grid a plain int() would overflow; one cell outside is as good as a thousand
     return int(min(max(math.floor((x - low) / width), -2.0), 1.0e9))
 
 
-@njit(cache=True)
+@kernel()
 def sort_into(x: Any, n: int, low: Any, width: Any, dims: Any, order: Any) -> Any:
     """Counting sort of x[:n] by cell; fills `order` and returns the first slot of each cell (n_cell + 1)."""
     n_cell = dims[0] * dims[1] * dims[2]
@@ -80,7 +80,7 @@ def sort_into(x: Any, n: int, low: Any, width: Any, dims: Any, order: Any) -> An
     return first
 
 
-@njit(cache=True)
+@kernel()
 def _neighbours(c: int, n: int, periodic: bool, out: Any) -> int:
     # indices along one axis of the cells next to cell c, each once
     count = 0
@@ -97,7 +97,7 @@ def _neighbours(c: int, n: int, periodic: bool, out: Any) -> int:
     return count
 
 
-@njit(cache=True)
+@kernel()
 def list_pairs(
     x: Any,
     r: Any,
@@ -149,7 +149,7 @@ def list_pairs(
     return used
 
 
-@njit(cache=True)
+@kernel()
 def build_list(
     x: Any,
     r: Any,

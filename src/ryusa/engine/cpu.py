@@ -110,6 +110,7 @@ class CpuEngine:
             np.zeros((blocks, *records)), np.zeros((blocks, N_BOOKS)), np.zeros((blocks, N_NOW))
         )
         self._drained: list[np.ndarray] = []
+        self._relisted = 0
         self._read_own(state)
 
         contacts, dropped = _still_there(scene, state.contacts)
@@ -129,6 +130,8 @@ class CpuEngine:
         if resumed:
             self._grains.x[:n] = state.x[self._grains.ids[:n]]
         self._numbers[C_SKIN] = self._skin
+        if state.step == 0:
+            self._first_account(scene, state)
 
     def advance(self, n_steps: int) -> Flags:
         """Do n_steps steps, fewer if a fault stops the run."""
@@ -212,7 +215,7 @@ class CpuEngine:
             others = (
                 [self._pool.submit(self._run, k, *arguments) for k in range(1, threads)] if self._pool else []
             )
-            done, self._travel, stop, _ = self._run(0, *arguments)
+            done, self._travel, stop = self._run(0, *arguments)
             for other in others:
                 other.result()
             self._step += done
@@ -240,7 +243,7 @@ class CpuEngine:
             self._skin = min(1.25 * self._skin, self._smallest)
         elif cost < 0.03 * _STEP_GRAIN * self._n:
             self._skin = max(self._skin / 1.25, 0.02 * self._smallest)
-        self._since, self._travel = 0, 0.0
+        self._since, self._travel, self._relisted = 0, 0.0, self._relisted + 1
         memory = take_memory(self._n, self._grains, self._pairs)
         by_id = self._layout.unsorted(self._grains)
         self._grains, self._pairs, self._x_listed, lost = self._layout.list_pairs(
@@ -248,6 +251,16 @@ class CpuEngine:
         )
         self._numbers[C_SKIN] = self._skin
         return lost_of(self._grains, lost, self._step, self._t) if lost >= 0 else None
+
+    def _first_account(self, scene: Scene, state: State) -> None:
+        """What grains hold before the first step; springs of pairs that begin in touch are met in that step."""
+        now, spin = self._ledger.now, state.omega if scene.rotation else np.zeros_like(state.omega)
+        now[0, N_KINETIC] = 0.5 * np.sum((scene.m + scene.m_added)[:, None] * state.v**2)
+        now[0, N_SPIN] = 0.5 * np.sum(scene.inertia[:, None] * spin**2)
+        now[0, N_POTENTIAL] = potential_energy(scene, state)
+        now[0, N_SPEED_MAX] = np.sqrt(np.sum(state.v**2, axis=1).max(initial=0.0))
+        now[0, N_SPIN_MAX] = np.sqrt(np.sum(spin**2, axis=1).max(initial=0.0))
+        self._ledger.books[0, Book.START] = now[0, [N_KINETIC, N_SPIN, N_POTENTIAL]].sum()
 
     def _drain(self) -> None:
         for block, row in enumerate(self._ledger.now):

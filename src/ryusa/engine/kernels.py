@@ -12,8 +12,7 @@ u dt (f(n-1) + f(n))/2, which is exact for the scheme when kinetic energy is m v
 import math
 from typing import Any
 
-from numba import njit
-
+from ryusa.engine._kernel import FAST, kernel
 from ryusa.engine.arrays import Grains, Pairs, Walls
 from ryusa.engine.pair import (
     B_DASH_N,
@@ -21,12 +20,11 @@ from ryusa.engine.pair import (
     B_RELEASED_N,
     B_RELEASED_S,
     B_SLIDE,
-    FAST,
+    ROLL_PRINTED,
     begin_row,
     part,
     roll,
 )
-from ryusa.engine.pair import ROLL_PRINTED
 from ryusa.engine.records import begin_record, end_record, keep_record
 from ryusa.engine.rows import *
 from ryusa.laws.contact import (
@@ -43,7 +41,7 @@ from ryusa.model.enums import Cap, Slip
 SLIP_DROP, SLIP_TOTAL, CAP_TOTAL = int(Slip.SPRING_DROP), int(Slip.TOTAL), int(Cap.TOTAL)
 
 
-@njit(error_model="numpy", fastmath=FAST, forceinline=True)
+@kernel(fastmath=FAST, forceinline=True)
 def forces(
     kind: Variant,
     choice: Choice,

@@ -1,25 +1,20 @@
 """Motion of one block of grains, and the loop over steps that threads run together."""
 # ruff: noqa: F403, F405  (the columns of rows.py, all of them plain integers)
 
-import hashlib
 import math
 from functools import cache
-from pathlib import Path
 from typing import Any
 
-from numba import njit
-
-from ryusa import laws
+from ryusa.engine._kernel import FAST, kernel
 from ryusa.engine.arrays import Grains, Ledger, Pairs, Walls
 from ryusa.engine.kernels import forces
-from ryusa.engine.pair import FAST
 from ryusa.engine.rows import *
 from ryusa.engine.sync import meet
 from ryusa.laws.drag import (
     c_d_ferguson_church_sand,
     c_d_ferguson_church_sphere,
-    c_d_re_2,
     c_d_re_04,
+    c_d_re_2,
     c_d_schiller_naumann,
     drag_factor,
     reynolds,
@@ -38,7 +33,7 @@ STOKES = int(WaterTorque.STOKES)
 B_DRAG, B_TORQUE = int(Book.DRAG), int(Book.TORQUE)
 
 
-@njit(error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 def water_speed(profile: int, above: int, z: float, c: Any) -> float:
     """Speed of the water along x at height z over the zero of the profile [m/s]."""
     if above == HOLD:
@@ -52,7 +47,7 @@ def water_speed(profile: int, above: int, z: float, c: Any) -> float:
     return 0.0
 
 
-@njit(error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 def drag_of(law: int, speed: float, d: float, c: Any) -> float:
     """Drag over relative velocity [N s/m]."""
     if speed == 0.0:
@@ -73,7 +68,7 @@ def drag_of(law: int, speed: float, d: float, c: Any) -> float:
     return drag_factor(speed, c_d, c[C_RHO_W], c[C_A_2], d)
 
 
-@njit(error_model="numpy", fastmath=FAST, forceinline=True)
+@kernel(fastmath=FAST, forceinline=True)
 def motion(
     kind: Variant,
     choice: Choice,
@@ -182,21 +177,11 @@ def motion(
         now[N_KINETIC], now[N_SPIN], now[N_POTENTIAL] = kinetic, spin, potential
 
 
-def _source_digest() -> int:
-    """Number that changes with the text of laws and engine, so that a stale kernel is never taken from the cache."""
-    digest = hashlib.sha256()
-    for room in (Path(laws.__file__).parent, Path(__file__).parent, Path(__file__).parent.parent / "model"):
-        for file in sorted(room.glob("*.py")):
-            digest.update(file.read_bytes())
-    return int.from_bytes(digest.digest()[:6], "big")
-
-
 @cache
 def make_run(kind: Variant) -> Any:
     """Build the stepping function of one variant; compiled when first called, then kept on disk."""
-    source = _source_digest()
 
-    @njit(nogil=True, cache=True, error_model="numpy", fastmath=FAST)
+    @kernel(nogil=True, fastmath=FAST)
     def run(
         thread: int,
         n_threads: int,
@@ -213,8 +198,8 @@ def make_run(kind: Variant) -> Any:
         pairs: Pairs,
         ledger: Ledger,
         choice: Choice,
-    ) -> tuple[int, float, int, int]:
-        """March up to n_steps; all threads come back with the same (steps done, travel, stop, source)."""
+    ) -> tuple[int, float, int]:
+        """March up to n_steps; all threads come back with the same (steps done, travel, stop)."""
         ended, books, now, react_start = ledger.ended, ledger.books, ledger.now, pairs.react_start
         n_block = len(block_start) - 1
         b_0, b_1 = thread * n_block // n_threads, (thread + 1) * n_block // n_threads
@@ -274,6 +259,6 @@ def make_run(kind: Variant) -> Any:
                 stop = STOP_EVENTS
                 break
         meet(count, n_threads, target)
-        return done, travel, stop, source
+        return done, travel, stop
 
     return run

@@ -4,8 +4,7 @@
 import math
 from typing import Any
 
-from numba import njit
-
+from ryusa.engine._kernel import FAST, kernel
 from ryusa.engine.rows import *
 from ryusa.laws.collision import effective_mass, effective_mass_tangential
 from ryusa.laws.contact import damping, damping_in_steps
@@ -31,14 +30,13 @@ Body = tuple[
     float, float, float, float
 ]  # radius, mass with added mass, inertia, contacts that share the inertia
 
-FAST = {"contract", "nsz"}  # fused multiply-add and no care for the sign of zero; nothing that hides a NaN
 ROLL_PRINTED, ROLL_CONSTANT, ROLL_EPSD = int(Rolling.PRINTED), int(Rolling.CONSTANT), int(Rolling.EPSD)
 ARM_WIDTH = int(Arm.CONTACT_WIDTH)
 B_DASH_N, B_DASH_S, B_SLIDE, B_ROLL = int(Book.DASH_N), int(Book.DASH_S), int(Book.SLIDE), int(Book.ROLL)
 B_RELEASED_N, B_RELEASED_S, B_RELEASED_R = int(Book.RELEASED_N), int(Book.RELEASED_S), int(Book.RELEASED_R)
 
 
-@njit(error_model="numpy", cache=True)
+@kernel()
 def begin_row(row: Any, rotation: int, i: int, j: int, c: Any, m: Any, r: Any, inertia: Any) -> None:
     """Give a pair that just touched an empty memory and its dashpots."""
     row[:] = 0.0
@@ -48,7 +46,7 @@ def begin_row(row: Any, rotation: int, i: int, j: int, c: Any, m: Any, r: Any, i
     row[R_ETA_S] = c[C_ETA_S] + damping_in_steps(damping(c[C_ZETA_S], c[C_K_S], m_t), m_t, c[C_DT])
 
 
-@njit(error_model="numpy", cache=True, fastmath=FAST)
+@kernel(fastmath=FAST)
 def roll(
     model: int,
     arms: int,
@@ -127,7 +125,7 @@ def roll(
     return e_x + q_x, e_y + q_y, e_z + q_z, energy
 
 
-@njit(error_model="numpy", cache=True, fastmath=FAST)
+@kernel(fastmath=FAST)
 def part(
     tension: int,
     rolling: int,

@@ -3,8 +3,7 @@
 
 from typing import Any
 
-from numba import njit
-
+from ryusa.engine._kernel import kernel
 from ryusa.engine.arrays import Grains
 from ryusa.engine.rows import *
 from ryusa.model.enums import EventRule
@@ -13,7 +12,7 @@ Vector = tuple[float, float, float]
 ONLY_TRACKED = int(EventRule.TRACKED)
 
 
-@njit(error_model="numpy", cache=True)
+@kernel()
 def _put(record: Any, column: int, plane_case: int, s: Vector, n: Vector) -> None:
     # a plane scene hands over one component along the tangent (n_z, 0, -n_x)
     if plane_case:
@@ -22,7 +21,7 @@ def _put(record: Any, column: int, plane_case: int, s: Vector, n: Vector) -> Non
         record[column], record[column + 1], record[column + 2] = s
 
 
-@njit(error_model="numpy", cache=True)
+@kernel()
 def begin_record(
     plane_case: int,
     rule: int,
@@ -60,7 +59,7 @@ def begin_record(
         record[E_OMEGA_BEGIN + k] = w[i, k]
 
 
-@njit(error_model="numpy", cache=True)
+@kernel()
 def keep_record(
     record: Any,
     t: float,
@@ -90,7 +89,7 @@ def keep_record(
     record[E_T_PART] = f_n
 
 
-@njit(error_model="numpy", cache=True)
+@kernel()
 def end_record(
     plane_case: int,
     tension: int,

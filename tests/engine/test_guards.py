@@ -1,0 +1,110 @@
+"""Faults come out as named errors that tell grain, step and remedy; nothing is repaired in silence."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests.engine.conftest import D, contact_law
+
+from ryusa.build import scene
+from ryusa.engine.cpu import CpuEngine
+from ryusa.errors import ContactSlotsFull, GrainLost, ListUnsafe, NotANumber, OverlapTooLarge
+from ryusa.model import RollingLaw
+from ryusa.model.enums import Arm, EventRule, Rolling
+
+
+def advance(made, n_steps, threads=1):
+    engine = CpuEngine(threads=threads)
+    engine.load(*made)
+    return engine, engine.advance(n_steps)
+
+
+def test_an_overlap_beyond_the_limit_names_both_partners():
+    fixed, first = scene(
+        [[0.0, 0.0, 0.0], [0.0, 0.0, 1.1 * D]], D, v=[[0, 0, 0], [0, 0, -2.0]], stiffness=100.0, gravity=0.0
+    )
+    _, flags = advance((replace(fixed, overlap_limit=0.1), first), 20_000)
+    assert isinstance(flags.fault, OverlapTooLarge)
+    assert (flags.fault.grain, flags.fault.partner) == (0, 1)
+    assert "overlap_limit" in str(flags.fault)
+    assert flags.fault.t == pytest.approx(flags.fault.step * fixed.dt)
+
+
+def test_a_velocity_that_is_not_finite_names_its_grain():
+    fixed, first = scene([[0.0, 0.0, 0.0], [0.0, 0.0, 5 * D]], D, gravity=0.0)
+    v = first.v.copy()
+    v[1, 0] = np.nan
+    engine, flags = advance((fixed, replace(first, v=v)), 10)
+    assert isinstance(flags.fault, NotANumber)
+    assert flags.fault.grain == 1
+    assert flags.fault.step == 0
+    assert engine.state().x.shape == (2, 3)
+
+
+def test_a_grain_outside_the_world_is_lost_and_named():
+    fixed, first = scene(
+        [[0.0, 0.0, 0.0], [3 * D, 0.0, 0.0]], D, v=[[0.0, 0.0, 0.0], [0.0, 0.0, 1.0]], gravity=0.0
+    )
+    fixed = replace(fixed, world_high=(np.inf, np.inf, 5 * D))
+    _, flags = advance((fixed, first), 1_000_000)
+    assert isinstance(flags.fault, GrainLost)
+    assert flags.fault.grain == 1
+    assert flags.fault.t == pytest.approx(5 * D / 1.0, rel=0.3)
+
+
+def test_a_step_too_long_for_the_list_stops_the_run():
+    fixed, first = scene([[0.0, 0.0, 0.0]], D, v=[[0.0, 0.0, -500.0]], gravity=0.0)
+    _, flags = advance((fixed, first), 10)
+    assert isinstance(flags.fault, ListUnsafe)
+    assert flags.fault.grain == 0
+
+
+def test_a_grain_thrown_far_away_does_not_hang_the_search():
+    fixed, first = scene(
+        [[0.0, 0.0, 0.0], [1e9, 0.0, 0.0], [0.0, 0.0, -1e7]], D, v=[[1.0, 0, 0]] * 3, gravity=0.0
+    )
+    fixed = replace(fixed, world_low=(-np.inf,) * 3, world_high=(np.inf,) * 3)
+    engine, flags = advance((fixed, first), 5000)
+    assert not flags
+    assert engine.state().x[0, 0] == pytest.approx(5000 * fixed.dt, rel=1e-9)
+
+
+def test_a_full_record_of_ended_contacts_is_a_fault_and_not_a_loss(monkeypatch):
+    import ryusa.engine.cpu as cpu
+
+    monkeypatch.setattr(cpu, "_MANY", 9)
+    n = 8
+    x = [[0.0, 0.0, 1.5 * D * k] for k in range(n)]
+    angles = np.radians([-20.0, -10.0, 10.0, 20.0])
+    normals = np.column_stack([-np.cos(angles), np.sin(angles), np.zeros(4)])
+    planes = [(f"side {k}", tuple(-(0.5 * D - 1e-8) * a), tuple(a)) for k, a in enumerate(normals)]
+    fixed, first = scene(x, D, gravity=0.0, planes=planes, v=[[-0.01, 0, 0]] * n, allow_overlap=True)
+    _, flags = advance((fixed, first), 500)
+    assert isinstance(flags.fault, ContactSlotsFull)
+
+
+def test_drained_records_lose_nothing_however_small_the_buffer(monkeypatch):
+    from tests.engine.conftest import pile
+
+    import ryusa.engine.cpu as cpu
+
+    made = pile(n=300, plane_case=True, events=EventRule.ALL)
+    engine, _ = advance(made, 6000)
+    whole = engine.events()
+    monkeypatch.setattr(cpu, "_MANY", 20)
+    small, flags = advance(made, 6000)
+    assert not flags
+    assert len(whole) > 400
+    assert len(small.events()) == pytest.approx(
+        len(whole), rel=0.2
+    )  # other blocks, other sums: not the same bits
+
+
+def test_an_engine_says_what_it_cannot_carry():
+    fixed, first = scene([[0.0, 0.0, 0.0]], D, contact=contact_law(), gravity=0.0, period=(2.5 * D, np.inf))
+    assert "period in x" in CpuEngine().refuses(fixed)[0]
+    rolling = RollingLaw(Rolling.EPSD, Arm.CONTACT_WIDTH, 0.1)
+    reasons = CpuEngine().refuses(replace(fixed, period=(np.inf, np.inf), rolling=rolling, rotation=False))
+    assert len(reasons) == 2
+    with pytest.raises(ValueError, match="period in x"):
+        CpuEngine().load(fixed, first)

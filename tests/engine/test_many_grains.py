@@ -1,0 +1,247 @@
+"""Many grains: the same bits however they are stepped, memory that survives, accounts that close."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests.engine.conftest import D, bits, contact_law, pile, run
+from tests.engine.reference import accelerations
+
+from ryusa.build import scene
+from ryusa.engine.cpu import CpuEngine
+from ryusa.model import Book, RollingLaw, Water
+from ryusa.model.enums import Arm, Drag, EventRule, Profile, Rolling, Slip, WaterTorque
+
+WET = Water(
+    profile=Profile.LOG_ROUGH, u_star=0.1, k_rough=D, depth=0.05, drag=Drag.RE_04, torque=WaterTorque.DENNIS
+)
+EPSD = RollingLaw(Rolling.EPSD, Arm.REDUCED_RADIUS, 0.1)
+KINDS = {
+    "3D": {},
+    "plane, records": {"plane_case": True, "events": EventRule.ALL},
+    "3D, wet, rolling friction, records": {"water": WET, "rolling": EPSD, "events": EventRule.ALL},
+}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_any_number_of_threads_gives_the_same_bits(kind):
+    made = pile(n=600, **KINDS[kind])
+    outcome = []
+    for threads in (1, 2, 3, 4):
+        engine = run(made, 2500, threads)
+        assert engine._relisted > 4  # the list was rebuilt several times on the way
+        outcome.append((bits(engine.state()), engine.events().tobytes(), engine.tally()))
+    assert all(o == outcome[0] for o in outcome)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_split_calls_and_a_resumed_snapshot_give_the_same_bits(kind):
+    made = pile(n=400, **KINDS[kind])
+    whole = run(made, 1200)
+    split = CpuEngine()
+    split.load(*made)
+    for n in (1, 2, 97, 300, 150, 1, 49, 600):
+        split.advance(n).raise_if_any()
+    first = run(made, 777)
+    early = first.events()
+    resumed = CpuEngine(threads=2)
+    resumed.load(made[0], first.state())
+    resumed.advance(1200 - 777).raise_if_any()
+    assert bits(split.state()) == bits(whole.state())
+    assert bits(resumed.state()) == bits(whole.state())
+    assert resumed.tally() == whole.tally() == split.tally()
+    records = whole.events()
+    assert split.events().tobytes() == records.tobytes()
+    assert np.sort(np.concatenate([early, resumed.events()])).tobytes() == np.sort(records).tobytes()
+
+
+@pytest.mark.parametrize("plane_case", [False, True])
+@pytest.mark.parametrize("slip", list(Slip))
+def test_forces_at_one_frozen_state_agree_with_a_plain_reference(plane_case, slip):
+    dry, first = pile(n=300, plane_case=plane_case, slip=slip, stir=0.05, stiffness=2e3)
+    engine = run((dry, first), 12_000)
+    # the water comes when grains lie close: it would carry them apart
+    fixed = replace(dry, water=WET, m_added=0.2 * dry.m, m_weight=0.6 * dry.m)
+    engine.load(fixed, engine.state())
+    engine.advance(20).raise_if_any()
+    before = engine.state()
+    engine.advance(1).raise_if_any()
+    after = engine.state()
+    a = (after.v - before.v) / fixed.dt
+    spin_up = (after.omega - before.omega) / fixed.dt
+    expected, expected_spin = accelerations(fixed, before)
+    assert len(before.contacts) > 50
+    # one step's change of velocity is rounded at the size of v: 1e-16 v/dt beside the largest acceleration
+    assert a == pytest.approx(expected, rel=0.0, abs=1e-11 * np.abs(expected).max())
+    assert spin_up == pytest.approx(expected_spin, rel=0.0, abs=1e-11 * np.abs(expected_spin).max())
+
+
+def gas(n=216, seed=2, e=1.0):
+    rng = np.random.default_rng(seed)
+    side = round(n ** (1 / 3))
+    pitch = 2.2 * D
+    grid = np.stack(np.meshgrid(*[np.arange(side)] * 3, indexing="ij"), axis=-1).reshape(-1, 3) + 0.5
+    v = rng.normal(0.0, 0.3, (n, 3))
+    walls = [("floor", (0, 0, 0), (0, 0, 1)), ("lid", (0, 0, side * pitch), (0, 0, -1))]
+    law = contact_law(k_n=1e4, mu=0.0, ratio=0.0, zeta_n=0.0)
+    assert e == 1.0
+    return scene(
+        grid * pitch,
+        D,
+        v=v,
+        planes=walls,
+        contact=law,
+        gravity=0.0,
+        rotation=False,
+        period=(side * pitch, side * pitch),
+        events=EventRule.NONE,
+    )
+
+
+def test_an_elastic_gas_keeps_its_energy_over_1e5_steps():
+    fixed, first = gas()
+    engine = CpuEngine()
+    engine.load(fixed, first)
+    held = []
+    for _ in range(20):
+        engine.advance(5000).raise_if_any()
+        account = engine.tally()
+        held.append(account.held / account.books[Book.START] - 1.0)
+    assert engine.state().step == 100_000
+    assert np.max(np.abs(held)) < 1e-4
+    drift = np.polyfit(np.arange(20), held, 1)[0] * 20
+    assert abs(drift) < 1e-4
+
+
+def test_momentum_of_a_periodic_cloud_without_walls_is_kept_to_round_off():
+    fixed, first = gas(125)
+    fixed = replace(fixed, plane_active=np.zeros(2, np.bool_))
+    engine = run((fixed, first), 5000)
+    before = (fixed.m[:, None] * first.v).sum(axis=0)
+    after = (fixed.m[:, None] * engine.state().v).sum(axis=0)
+    assert engine.tally().books[Book.DASH_N] == 0.0
+    assert after == pytest.approx(
+        before, rel=0.0, abs=1e-12 * float(np.abs(fixed.m[:, None] * first.v).sum())
+    )
+
+
+def test_of_three_mutual_contacts_the_one_that_parts_is_forgotten_alone():
+    # three touching grains; the third is pulled away: the memory of the two that stay goes on
+    law = contact_law(mu=0.5, zeta_n=0.05, zeta_s=0.05)
+    side = D * (1.0 - 2e-3)
+    x = [[0.0, 0.0, 0.0], [side, 0.0, 0.0], [0.5 * side, 0.0, side * math.sqrt(0.75)]]
+    v = [[0.0, 0.0, 0.01], [0.0, 0.0, -0.01], [0.0, 0.0, 0.0]]
+    fixed, first = scene(x, D, v=v, contact=law, gravity=0.0, allow_overlap=True)
+    engine = run((fixed, first), 5)
+    state = engine.state()
+    pairs = list(zip(state.contacts.i, state.contacts.j, strict=True))
+    assert pairs == [(0, 1), (0, 2), (1, 2)]
+    kept = state.contacts.spring_s[0].copy()
+    assert np.linalg.norm(kept) > 0.0
+    away = state.x.copy()
+    away[2, 2] += 0.01 * D  # beyond touch of 0 and 1
+    listed = replace(state, x=away)
+    again = CpuEngine()
+    again.load(fixed, listed)
+    again.advance(1).raise_if_any()
+    last = again.state().contacts
+    assert list(zip(last.i, last.j, strict=True)) == [(0, 1)]
+    slip = (state.v[0] - state.v[1])[2]
+    assert abs(last.spring_s[0][2] - kept[2]) < 2.0 * law.k_s * abs(slip) * fixed.dt + 1e-3 * abs(kept[2])
+    records = again.events()
+    assert sorted((r["i"], r["j"]) for r in records) == [(0, 2), (1, 2)]
+    # touched anew, the pair starts without a spring
+    back = again.state()
+    away = back.x.copy()
+    away[2, 2] -= 0.01 * D
+    third = CpuEngine()
+    third.load(fixed, replace(back, x=away, x_listed=None))
+    third.advance(1).raise_if_any()
+    new = third.state().contacts
+    fresh = np.linalg.norm(new.spring_s[1:], axis=1)
+    assert np.all(fresh < 2.0 * law.k_s * 0.05 * fixed.dt)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_energy_account_closes(kind):
+    made = pile(n=300, **KINDS[kind])
+    engine = run(made, int(0.08 / made[0].dt))
+    account = engine.tally()
+    assert account.overlap_max > 0.0
+    assert account.residual < 1e-3
+    for book in (Book.DASH_N, Book.DASH_S, Book.SLIDE, Book.RELEASED_N, Book.RELEASED_S):
+        assert account.books[book] > 0.0
+    if "wet" in kind:
+        assert account.books[Book.ROLL] > 0.0
+        assert account.books[Book.TORQUE] < 0.0
+        assert account.books[Book.DRAG] != 0.0
+
+
+def test_a_bed_at_rest_comes_to_rest():
+    # a pile with friction and damping on a level bed: motion dies out and the account says where it went
+    rolling = RollingLaw(Rolling.EPSD, Arm.REDUCED_RADIUS, 0.05)
+    fixed, first = pile(n=96, seed=8, rolling=rolling, stir=0.05, stiffness=1e3)
+    fixed = replace(fixed, gravity=np.array([0.0, 0.0, -9.8]))
+    engine = run((fixed, first), int(1.0 / fixed.dt))
+    weight = float(fixed.m.sum()) * 9.8 * D
+    assert engine.tally().kinetic + engine.tally().spin < 1e-5 * weight
+    assert engine.tally().residual < 1e-3
+
+
+def test_removing_a_gate_drops_its_contacts_and_books_their_springs():
+    law = contact_law(mu=0.5, zeta_n=0.2, zeta_s=0.2)
+    walls = [
+        ("floor", (0, 0, 0), (0, 0, 1)),
+        ("gate", (0.5 * D, 0, 0), (-1, 0, 0)),
+        ("back", (-0.5 * D, 0, 0), (1, 0, 0)),
+    ]
+    squeeze = 1e-3 * D
+    walls[1] = ("gate", (0.5 * D - squeeze, 0, 0), (-1, 0, 0))
+    fixed, first = scene([[0.0, 0.0, 0.5 * D]], D, planes=walls, contact=law, gravity=9.8, allow_overlap=True)
+    engine = run((fixed, first), 4000)
+    assert engine.tally().n_contact == 3
+    opened = replace(fixed, plane_active=np.array([True, False, True]))
+    engine.load(opened, engine.state())
+    engine.advance(2000).raise_if_any()
+    account = engine.tally()
+    assert account.books[Book.SWITCH] < 0.0
+    assert engine.state().v[0, 0] > 0.0
+    assert account.residual < 1e-2
+
+
+def test_locking_rotation_on_the_way_takes_the_spin_out_of_the_account():
+    fixed, first = scene([[0.0, 0.0, 0.0]], D, omega=[[0.0, 50.0, 0.0]], gravity=0.0)
+    engine = run((fixed, first), 10)
+    engine.load(replace(fixed, rotation=False), engine.state())
+    engine.advance(10).raise_if_any()
+    account = engine.tally()
+    assert account.spin == 0.0
+    assert account.books[Book.SWITCH] == pytest.approx(-account.books[Book.START], rel=1e-12)
+
+
+def test_lanes_of_a_plane_scene_do_not_meet():
+    one = scene([[0.0, 0.0, 2.0 * D]], D, x_fixed=[[0.0, 0.0, 0.0]], d_fixed=D, plane_case=True)
+    two = scene(
+        [[0.0, 0.0, 2.0 * D], [0.0, 3.0 * D, 2.0 * D]],
+        D,
+        x_fixed=[[0.0, 0.0, 0.0], [0.0, 3.0 * D, 0.0]],
+        d_fixed=D,
+        plane_case=True,
+        dt=one[0].dt,
+    )
+    a, b = run(one, 20_000).state(), run(two, 20_000).state()
+    assert a.x[0, 2] == b.x[0, 2] == b.x[1, 2]
+    assert b.x[1, 1] == 3.0 * D
+
+
+def test_the_account_before_the_first_step_holds_motion_spin_and_height():
+    fixed, first = scene([[0.0, 0.0, 0.1]], D, v=[[0.3, 0.0, 0.4]], omega=[[0.0, 50.0, 0.0]], gravity=9.8)
+    engine = CpuEngine()
+    engine.load(fixed, first)
+    account = engine.tally()
+    assert account.kinetic == pytest.approx(0.5 * fixed.m[0] * 0.25)
+    assert account.spin == pytest.approx(0.5 * fixed.inertia[0] * 2500.0)
+    assert account.potential == pytest.approx(fixed.m[0] * 9.8 * 0.1)
+    assert account.imbalance == pytest.approx(0.0, abs=1e-15 * account.held)
+    assert account.speed_max == pytest.approx(0.5)
