@@ -1,0 +1,82 @@
+"""Rebuild the paper's saltation figures and write what was found into docs: `make figures`."""
+
+import argparse
+import platform
+from pathlib import Path
+from typing import Any
+
+from ryusa.experiments import NAMES, load, run_experiment
+from ryusa.running.provenance import commit
+
+PAGE = Path(__file__).parent / "paper-figures.md"
+BEGIN, END = "<!-- written by docs/figures.py: begin -->", "<!-- end -->"
+SHOWN = {  # column of the table of choices -> average, scale, digits
+    "height / d": ("jump_height", 500.0, 2),
+    "length / d": ("jump_length", 500.0, 1),
+    "speed [m/s]": ("speed", 1.0, 3),
+    "contact time / Eq. (8)": ("contact_time_over_eq8", 1.0, 3),
+    "spin [rad/s]": ("spin_before", 1.0, 0),
+    "bed shear / normal": ("shear_ratio", 1.0, 2),
+}
+
+
+def main() -> None:
+    """Run every experiment (finished runs of the same case are opened) and write the page."""
+    asked = argparse.ArgumentParser(description=__doc__)
+    asked.add_argument("folder", nargs="?", default="runs/paper", help="where runs, tables and pictures go")
+    folder = Path(asked.parse_args().folder)
+    verdicts: list[str] = ["| experiment | the paper says | found | |", "|---|---|---|---|"]
+    choices: Any = None
+    for name in NAMES:
+        outcome = run_experiment(name, folder / name, progress=False)
+        for one in outcome.verdicts:
+            word = one.row()["verdict"]
+            verdicts.append(f"| `{name}` ({one.claim}) | {one.says} | {one.found} | {word} |")
+        choices = outcome.table if name == "free_choices" else choices
+        print(f"{name}: {load(name).TITLE}: {folder / name}", flush=True)
+    made = f"Made by `make figures` on {_machine()}, {_versions()}, commit {commit() or 'not known'}."
+    text = PAGE.read_text(encoding="utf-8")
+    head, rest = text.split(BEGIN, 1)
+    _, tail = rest.split(END, 1)
+    parts = [made, "## What the paper says, and what was found", "\n".join(verdicts), *_choices(choices)]
+    PAGE.write_text(f"{head}{BEGIN}\n\n" + "\n\n".join(parts) + f"\n\n{END}{tail}", encoding="utf-8")
+
+
+def _choices(table: Any) -> list[str]:
+    """Write a table per state of rotation: every free choice of the paper, changed one at a time."""
+    parts: list[str] = []
+    for rotation in ("locked", "free"):
+        lines = [f"| changed | {' | '.join(SHOWN)} |", "|---" * (len(SHOWN) + 1) + "|"]
+        for (label, state), found in table.found.items():
+            if state == rotation:
+                cells = [_cell(found[name], scale, digits) for name, scale, digits in SHOWN.values()]
+                lines.append(f"| {label} | {' | '.join(cells)} |")
+        parts += [f"## Effect of every free choice, rotation {rotation}", "\n".join(lines)]
+    return parts
+
+
+def _cell(average: Any, scale: float, digits: int) -> str:
+    value, error = scale * average.value, scale * average.error
+    return f"{value:.{digits}f} ± {error:.{digits}f}" if value or error else "0"
+
+
+def _machine() -> str:
+    try:
+        info = Path("/proc/cpuinfo").read_text(encoding="utf-8")
+        names = [line.split(":", 1)[1].strip() for line in info.splitlines() if line.startswith("model name")]
+    except OSError:
+        names = []
+    return names[0] if names else platform.processor() or platform.machine()
+
+
+def _versions() -> str:
+    import numba
+    import numpy as np
+
+    import ryusa
+
+    return f"ryusa {ryusa.__version__}, numba {numba.__version__}, numpy {np.__version__}"
+
+
+if __name__ == "__main__":
+    main()
