@@ -43,7 +43,7 @@ def bits(state: State) -> tuple[bytes, ...]:
 def pile(
     n=400, plane_case=False, seed=3, spread=0.15, friction=0.5, events=EventRule.NONE, stir=0.4, **more
 ) -> tuple[Scene, State]:
-    """A loose block of grains of mixed sizes over a rough bed, periodic downslope, stirred and about to fall."""
+    """A loose block of mixed grains over a rough bed, periodic downslope, stirred and about to fall."""
     rng = np.random.default_rng(seed)
     pitch = 1.01 * D * (1.0 + spread)
     if plane_case:

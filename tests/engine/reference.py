@@ -10,7 +10,7 @@ from ryusa.model.enums import Slip
 
 
 def accelerations(fixed: Scene, state: State) -> tuple[np.ndarray, np.ndarray]:
-    """Accelerations [m/s2] and angular accelerations [rad/s2] at a snapshot, sticking to the text of the paper."""
+    """Accelerations [m/s2] and angular ones [rad/s2] at a snapshot, to the letter of the paper."""
     law, n, dt = fixed.contact, fixed.n_grain, fixed.dt
     x = np.vstack([state.x, fixed.x_fixed])
     v = np.vstack([state.v, np.zeros_like(fixed.x_fixed)])

@@ -70,7 +70,7 @@ def test_a_grain_thrown_far_away_does_not_hang_the_search():
 
 
 def test_a_full_record_of_ended_contacts_is_a_fault_and_not_a_loss(monkeypatch):
-    import ryusa.engine.cpu as cpu
+    from ryusa.engine import cpu
 
     monkeypatch.setattr(cpu, "_MANY", 9)
     n = 8
@@ -86,7 +86,7 @@ def test_a_full_record_of_ended_contacts_is_a_fault_and_not_a_loss(monkeypatch):
 def test_drained_records_lose_nothing_however_small_the_buffer(monkeypatch):
     from tests.engine.conftest import pile
 
-    import ryusa.engine.cpu as cpu
+    from ryusa.engine import cpu
 
     made = pile(n=300, plane_case=True, events=EventRule.ALL)
     engine, _ = advance(made, 6000)

@@ -85,7 +85,8 @@ def test_without_rolling_friction_a_sphere_rolls_on():
 
 
 def test_eq_13_as_printed_brakes_a_rolling_sphere_and_then_drives_it_back():
-    # M_f calls up the very shear torque that it opposes, whatever the spin: it never lets go, and makes energy
+    # M_f calls up the very shear torque that it opposes, whatever the spin: it never lets go, and
+    # makes energy
     v = 0.02
     law = contact_law(k_n=1e3, mu=0.5, zeta_n=0.3, zeta_s=0.3)
     rolling = RollingLaw(Rolling.PRINTED, Arm.REDUCED_RADIUS, MU_R)
@@ -200,7 +201,8 @@ def test_a_fast_spin_is_braked_harder_than_stokes_by_the_dennis_ratio():
 
 @pytest.mark.parametrize("rotation", [True, False])
 def test_a_grain_leaves_a_bed_pocket_at_30_degrees_or_30_plus_phi(rotation):
-    # exact for hard equal grains; stiff springs and a slow look keep it within 0.2 degrees (findings.md, trap 1)
+    # exact for hard equal grains; stiff springs and a slow look keep it within 0.2 degrees
+    # (findings.md, trap 1)
     phi = 20.0
     k_n = 2.0e4
     # a dashpot that stays while sliding would only let it creep away

@@ -16,7 +16,7 @@ SPEED = 0.5  # [m/s]
 
 
 def head_on(e, partner="fixed", tension=False, water=None, phase=0.0, per_contact=50.0, speed=SPEED):
-    """A grain flies at a fixed or free one without gravity; `phase` shifts the first touch by a fraction of a step."""
+    """A grain flies at another without gravity; `phase` shifts first touch by part of a step."""
     zeta = collision.zeta_tension(e) if tension else collision.zeta_no_tension(e)
     law = contact_law(zeta_n=zeta, tension=tension)
     probe, _ = scene([[0.0, 0.0, 0.01]], D, contact=law, water=water)
@@ -59,7 +59,8 @@ def test_restitution_asked_is_restitution_got(e, partner, tension, water):
         times.append((event["t_end"] - event["t_begin"]) / t_col)
     assert np.mean(got) == pytest.approx(e, abs=2.0e-3)
     assert np.max(np.abs(np.array(got) - e)) < 1.5e-2
-    # the dashpot sees a velocity half a step old, which stiffens the pair by zeta omega_0 dt (laws.damping_in_steps)
+    # the dashpot sees a velocity half a step old, which stiffens the pair by zeta omega_0 dt
+    # (laws.damping_in_steps)
     assert np.mean(times) == pytest.approx(1.0, abs=5.0e-3 if e >= 0.7 else 1.3e-2)
 
 
@@ -238,7 +239,8 @@ def test_angular_momentum_of_a_free_pair_is_kept_to_round_off(plane_case):
 
 @pytest.mark.parametrize(("spin", "angle"), [((900.0, 0.0, 0.0), 1.2), ((0.0, 60.0, -20.0), 0.02)])
 def test_a_touching_pair_that_turns_as_a_whole_takes_its_spring_along(spin, angle):
-    # turned about its normal the positions stay; turned about another axis straight steps slip by k_s d angle**3 only
+    # turned about its normal the positions stay; turned about another axis straight steps slip by k_s
+    # d angle**3 only
     law = contact_law(mu=1e3, zeta_n=0.0)
     axis = np.array(spin) / np.linalg.norm(spin)
     half = 0.5 * (D - 1e-3 * D) * np.array([1.0, 0.0, 0.0])

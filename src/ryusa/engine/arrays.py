@@ -1,4 +1,4 @@
-"""The arrays a kernel works on, in the engine's own order: free grains by cell, then fixed grains, then planes."""
+"""Arrays a kernel works on, in the engine's own order: free grains by cell, fixed grains, planes."""
 
 from typing import Any, NamedTuple
 

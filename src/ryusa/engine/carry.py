@@ -1,4 +1,4 @@
-"""Carry the memory of touching pairs from an old neighbour list to a new one, and tell blocks what they owe each other."""
+"""Carry contact memory from an old list to a new one, and tell blocks what they owe each other."""
 
 from typing import Any
 
@@ -59,8 +59,8 @@ def put_rows(
 def cross_lists(n: int, block_start: Any, start: Any, partners: Any) -> tuple[Any, Any, Any]:
     """Number the pairs whose partner belongs to another block.
 
-    Returns the first number of each block (n_block + 1) and, for each grain, the numbers of the pairs that others own
-    and it is partner of: incoming[incoming_start[j]:incoming_start[j + 1]], in list order.
+    Returns the first number of each block (n_block + 1) and, for each grain, the numbers of the pairs
+    that others own and it is partner of: incoming[incoming_start[j]:incoming_start[j + 1]], in list order.
     """
     n_block = len(block_start) - 1
     first = np.zeros(n_block + 1, np.int64)
@@ -91,7 +91,7 @@ def cross_lists(n: int, block_start: Any, start: Any, partners: Any) -> tuple[An
 
 @kernel()
 def wrap_grains(x: Any, image: Any, period: Any, low: Any, high: Any) -> int:
-    """Bring grains back into the period and count the crossing; returns the first grain outside the world, or -1."""
+    """Bring grains back into the period, count it, and return the first one outside the world, or -1."""
     lost = -1
     for i in range(len(x)):
         for k in range(2):

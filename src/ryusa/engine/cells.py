@@ -1,7 +1,7 @@
 """Who is near whom: a cell grid and, from it, a Verlet list of pairs.
 
-Grains are sorted by cell, and by id within a cell, so that order and list follow from positions alone: a resumed run
-builds the same list as the run it continues.
+Grains are sorted by cell, and by id within a cell, so that order and list follow from positions alone: a
+resumed run builds the same list as the run it continues.
 """
 
 import math
@@ -45,10 +45,10 @@ def grid_of(x: Any, n: int, size: float, period: Any) -> Any:
         cell *= 1.26
     for k in range(3):
         if k < 2 and period[k] < math.inf:
-            dims[k] = max(1, int(math.floor(period[k] / cell)))
+            dims[k] = max(1, math.floor(period[k] / cell))
             width[k] = period[k] / dims[k]
         else:
-            dims[k] = int(math.floor((high[k] - low[k]) / cell)) + 1
+            dims[k] = math.floor((high[k] - low[k]) / cell) + 1
             width[k] = cell
     return low, width, dims
 
@@ -168,8 +168,8 @@ def build_list(
 ) -> int:
     """Fill the Verlet list: partners of grain i are partners[start[i]:start[i + 1]]; returns the pairs found.
 
-    Free partners come first, then fixed grains, then planes, each in a fixed order. When the result is larger than
-    len(partners) the list is not usable: make room and call again.
+    Free partners come first, then fixed grains, then planes, each in a fixed order. When the result is
+    larger than len(partners) the list is not usable: make room and call again.
     """
     used = 0
     f_low, f_width, f_dims, f_first, f_order = free_grid

@@ -53,12 +53,13 @@ _SHORTEST_PERIOD = 3.0  # in diameters: below, a pair could touch through two im
 
 
 class CpuEngine:
-    """Steps a scene on the CPU; the same bits for any number of threads and however steps are split into calls.
+    """Steps a scene on the CPU; the same bits for any number of threads and any split into calls.
 
     Parameters
     ----------
-    threads : threads that share a step; more than the number of blocks (1 below 256 grains, else 8) do not help.
-    skin : first reach of the neighbour list beyond touch, over the smallest diameter [-]; adapts to counted work.
+    threads : threads that share a step; more than the number of blocks (1 below 256 grains, else 8) are idle.
+    skin : first reach of the neighbour list beyond touch, over the smallest diameter [-]; adapts to
+    counted work.
     """
 
     def __init__(self, threads: int = 1, skin: float = 0.1) -> None:
@@ -86,7 +87,7 @@ class CpuEngine:
         return tuple(reasons)
 
     def load(self, scene: Scene, state: State) -> None:
-        """Take a scene and a fresh state or a snapshot; a scene changed on the way books what the change gives."""
+        """Take a scene and a fresh state or a snapshot; a scene changed on the way is booked."""
         reasons = self.refuses(scene)
         if reasons:
             raise ValueError("; ".join(reasons))
@@ -207,8 +208,9 @@ class CpuEngine:
         layout, threads = self._layout, min(self._threads, len(self._layout.block_start) - 1)
         while n_steps > 0:
             arguments = (
-                threads, n_steps, self._step, self._travel, np.zeros(1, np.int64), self._numbers, layout.block_start,
-                self._n, layout.n_solid, self._grains, layout.walls, self._pairs, self._ledger, self._choice,
+                threads, n_steps, self._step, self._travel, np.zeros(1, np.int64), self._numbers,
+                layout.block_start, self._n, layout.n_solid, self._grains,
+                layout.walls, self._pairs, self._ledger, self._choice,
             )  # fmt: skip
             if threads > 1 and self._pool is None:
                 self._pool = ThreadPoolExecutor(self._threads - 1, thread_name_prefix="ryusa")
@@ -253,7 +255,7 @@ class CpuEngine:
         return lost_of(self._grains, lost, self._step, self._t) if lost >= 0 else None
 
     def _first_account(self, scene: Scene, state: State) -> None:
-        """What grains hold before the first step; springs of pairs that begin in touch are met in that step."""
+        """What grains hold before the first step, which adds springs of pairs that begin in touch."""
         now, spin = self._ledger.now, state.omega if scene.rotation else np.zeros_like(state.omega)
         now[0, N_KINETIC] = 0.5 * np.sum((scene.m + scene.m_added)[:, None] * state.v**2)
         now[0, N_SPIN] = 0.5 * np.sum(scene.inertia[:, None] * spin**2)
@@ -296,7 +298,7 @@ class CpuEngine:
             now[0, column] = own.get(f"sum_{column}", 0.0)
 
     def _book_switch(self, before: Scene, scene: Scene, state: State, dropped: np.ndarray) -> None:
-        """Energy that a change of the timeline gives or takes: height on a new slope, spin locked, springs let go."""
+        """Energy a change of the timeline gives: height on a new slope, spin locked, springs let go."""
         given = potential_energy(scene, state) - potential_energy(before, state)
         if before.rotation and not scene.rotation:
             given -= float(0.5 * np.sum(scene.inertia[:, None] * state.omega**2))

@@ -1,10 +1,11 @@
-"""Contact forces of one block of grains. Which pair, and in what order, is decided here; every formula is a law.
+"""Contact forces of one block of grains: which pair, and in what order; every formula is a law.
 
-Grains are cut into blocks by their number alone. A block adds both sides of its own pairs; where the partner belongs
-to another block the other side is stored and added there after the barrier, in list order. So the sums, and the bits,
-are the same for any number of threads.
+Grains are cut into blocks by their number alone. A block adds both sides of its own pairs; where the partner
+belongs to another block the other side is stored and added there after the barrier, in list order. So the
+sums, and the bits, are the same for any number of threads.
 
-Books are kept by velocity interval: at x(n) the velocity v(n-1/2) and the forces of steps n-1 and n give the work
+Books are kept by velocity interval: at x(n) the velocity v(n-1/2) and the forces of steps n-1 and n give the
+work
 u dt (f(n-1) + f(n))/2, which is exact for the scheme when kinetic energy is m v(n-1/2) v(n+1/2)/2.
 """
 # ruff: noqa: F403, F405  (the columns of rows.py, all of them plain integers)
@@ -85,6 +86,7 @@ def forces(
         for p in range(start[i], start[i + 1]):
             j = partners[p]
             cross = j < n and (j < lo or j >= hi)
+            distance = overlap = 0.0
             if j >= n_solid:
                 k = j - n_solid
                 n_x, n_y, n_z = -normals[k, 0], -normals[k, 1], -normals[k, 2]

@@ -49,7 +49,8 @@ class Layout:
         live, touch = np.zeros(0, np.uint8), np.zeros(0, np.uint8)
         return Pairs(
             np.zeros(self.n + 1, np.int64), np.zeros(0, np.int32), live, np.zeros((0, self.width)),
-            np.zeros(len(self.block_start), np.int64), np.zeros((0, 6)), touch, np.zeros(self.n + 1, np.int64), none,
+            np.zeros(len(self.block_start), np.int64), np.zeros((0, 6)), touch,
+            np.zeros(self.n + 1, np.int64), none,
         )  # fmt: skip
 
     def by_id(self, state: State) -> Grains:
@@ -102,8 +103,8 @@ class Layout:
 
         Returns
         -------
-        Grains in cell order, the new list, the positions it was built from [m] (by id), and the first grain outside
-        the world or -1.
+        Grains in cell order, the new list, the positions it was built from [m] (by id), and the first
+        grain outside the world or -1.
         """
         n, scene, period = self.n, self.scene, self.period
         x = by_id.x
@@ -161,7 +162,8 @@ class Layout:
         return (
             grains,
             Pairs(
-                start, partners, live, mem, react_start, np.zeros((crossing, 6)), np.zeros(crossing, np.uint8),
+                start, partners, live, mem, react_start, np.zeros((crossing, 6)),
+                np.zeros(crossing, np.uint8),
                 incoming_start, incoming,
             ),
             listed,

@@ -37,7 +37,7 @@ def choice_of(scene: Scene) -> Choice:
 
 
 def numbers_of(scene: Scene) -> Floats:
-    """The scalars of a scene, indexed by the C_ names of rows.py; skin and step limit are the engine's own."""
+    """The scalars of a scene, by the C_ names of rows.py; skin and step limit are the engine's own."""
     law, rolling, water = scene.contact, scene.rolling, scene.water
     asked = law.damping == Damping.RESTITUTION
     table = {
@@ -79,7 +79,7 @@ def numbers_of(scene: Scene) -> Floats:
 
 
 def potential_energy(scene: Scene, state: State) -> float:
-    """Energy of weight and buoyancy at the positions of a state [J], measured from the origin, periods crossed added."""
+    """Energy of weight and buoyancy at a state [J], from the origin, periods crossed added."""
     x = np.array(state.x)
     for a in range(2):
         if np.isfinite(scene.period[a]) and len(state.image) == len(x):

@@ -65,8 +65,9 @@ def roll(
 ) -> tuple[float, float, float, float]:
     """Rolling friction of one contact: torque on grain i [N m] and the energy in its spring [J].
 
-    `t` is n x F, the direction in which the tangential force turns both grains; Eq. (13) as printed opposes it on each
-    of the two. The other models oppose the relative spin and give the opposite torque to j.
+    `t` is n x F, the direction in which the tangential force turns both grains; Eq. (13) as printed
+    opposes it on each of the two. The other models oppose the relative spin and give the opposite torque
+    to j.
     """
     r_i, m_i, inertia_i, share_i = body_i
     r_j, m_j, inertia_j, share_j = body_j

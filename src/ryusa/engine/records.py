@@ -71,7 +71,7 @@ def keep_record(
     sliding: bool,
     company: bool,
 ) -> None:
-    """Carry an open record through one step of touch; T_PART holds f_n of the last step until the pair parts."""
+    """Carry an open record through a step of touch; until the pair parts T_PART holds the last f_n."""
     if record[E_J] < 0.0:
         return
     record[E_OVERLAP_MAX] = max(record[E_OVERLAP_MAX], overlap)

@@ -131,7 +131,7 @@ class Variant(NamedTuple):
 
 
 class Choice(NamedTuple):
-    """Named laws a kernel picks while it runs (model.enums); always the same way, so that a branch costs nothing."""
+    """Laws a kernel picks while it runs (model.enums); always the same, so that a branch is free."""
 
     slip: int
     cap: int

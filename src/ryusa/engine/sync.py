@@ -1,8 +1,10 @@
 """A spin barrier for threads inside one compiled call.
 
-A launch of numba's own parallel loops costs from 2 us (omp) to 460 us (tbb); a step of 2,000 grains takes 200 us. So
-threads are plain Python threads that run one compiled function without the GIL and meet at this barrier, which costs
-well under a microsecond when every thread has a core.
+A launch of numba's own parallel loops costs from 2 us (omp) to 460 us (tbb); a step of 2,000 grains takes 100
+us.
+So threads are plain Python threads that run one compiled function without the GIL and meet at this barrier,
+which
+costs well under a microsecond when every thread has a core.
 """
 
 import sys
@@ -53,7 +55,7 @@ def meet(count: Any, n_threads: int, target: int) -> int:
     if n_threads == 1:
         return 0
     target += n_threads
-    _add(count, 1)
+    _add(count, 1)  # pyright: ignore[reportCallIssue]  (numba fills in the typing context)
     spins = 0
     while _load(count) < target:
         spins += 1
