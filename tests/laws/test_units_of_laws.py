@@ -56,7 +56,6 @@ UNITS = {
     "contact.slide_total": "N, N -> -, -, -",
     "contact.damping_in_steps": "N s/m, kg, s -> N s/m",
     "contact.damping": "-, N/m, kg -> N s/m",
-    "contact.damping_in_steps": "N s/m, kg, s -> N s/m",
     "drag.reynolds": "m/s, m, m2/s -> -",
     "drag.c_d_re_04": "- -> -",
     "drag.c_d_re_2": "- -> -",

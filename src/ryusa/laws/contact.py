@@ -180,10 +180,10 @@ def damping_in_steps(eta: float, m_eff: float, dt: float) -> float:
 
     Notes
     -----
-    Source: derived. In the semi-implicit scheme the dashpot sees v(t - dt/2) = v + (k x + eta v) dt/(2 m), so both
-    stiffness and dashpot grow by 1 + eps/2 with eps = eta dt/m, and the damping ratio by the root of that. The factor y
-    solves y**2 (1 + eps y/2) = 1 to second order. At 50 steps per contact and e = 0.3 it takes the mean error of
-    restitution from 3e-3 to below 1e-3; it goes with the step.
+    Source: derived. In the semi-implicit scheme the dashpot sees v(t - dt/2) = v + (k x + eta v) dt/(2 m), so
+    both stiffness and dashpot grow by 1 + eps/2 with eps = eta dt/m, and the damping ratio by the root of
+    that. The factor y solves y**2 (1 + eps y/2) = 1 to second order. At 50 steps per contact and e = 0.3 it
+    takes the mean error of restitution from 3e-3 to below 1e-3; it goes with the step.
 
     >>> damping_in_steps(0.1, 1.0e-5, 0.0)
     0.1
