@@ -18,6 +18,13 @@ SHOWN = {  # column of the table of choices -> average, scale, digits
     "spin [rad/s]": ("spin_before", 1.0, 0),
     "bed shear / normal": ("shear_ratio", 1.0, 2),
 }
+RATIOS = {  # column of the table of free over locked -> average
+    "height": "jump_height",
+    "length": "jump_length",
+    "bed shear per time": "bed_shear",
+    "bed shear per bounce": "impulse_shear",
+    "bed shear / normal": "shear_ratio",
+}
 
 
 def main() -> None:
@@ -52,7 +59,20 @@ def _choices(table: Any) -> list[str]:
                 cells = [_cell(found[name], scale, digits) for name, scale, digits in SHOWN.values()]
                 lines.append(f"| {label} | {' | '.join(cells)} |")
         parts += [f"## Effect of every free choice, rotation {rotation}", "\n".join(lines)]
-    return parts
+    lines = [f"| changed | {' | '.join(RATIOS)} | highest jump / d |", "|---" * (len(RATIOS) + 2) + "|"]
+    for (label, state), free in table.found.items():
+        locked = table.found.get((label, "locked"))
+        if state == "free" and locked is not None:
+            cells = [_ratio(free[name], locked[name]) for name in RATIOS.values()]
+            tops = [f"{one.hops['rise'].max() / table.d:.1f}" for one in (locked, free)]
+            lines.append(f"| {label} | {' | '.join(cells)} | {' and '.join(tops)} |")
+    return [*parts, "## Effect of every free choice on free over locked", "\n".join(lines)]
+
+
+def _ratio(above: Any, below: Any) -> str:
+    value = above.value / below.value
+    error = abs(value) * ((above.error / above.value) ** 2 + (below.error / below.value) ** 2) ** 0.5
+    return f"{value:.2f} ± {error:.2f}"
 
 
 def _cell(average: Any, scale: float, digits: int) -> str:
