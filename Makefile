@@ -98,7 +98,7 @@ figures: $(HAS_RYUSA) ## rebuild the paper's saltation figures into runs/paper (
 	$(BIN)/python docs/figures.py runs/paper
 
 bench: $(HAS_TESTS) ## timings, with the machine they were taken on
-	$(BIN)/python -m pytest -q benchmarks --benchmark-only -p no:xdist -o testpaths=benchmarks
+	$(BIN)/python benchmarks/flows.py
 
 constraints: $(HAS_TESTS) ## write constraints.txt anew from what .venv holds
 	$(BIN)/python -m pip freeze --exclude ryusa | grep -v '@\|^\#' > constraints.txt
