@@ -38,7 +38,7 @@ from ryusa.engine.rows import (
     STOP_UNSAFE,
 )
 from ryusa.engine.seam import Flags
-from ryusa.errors import RunError
+from ryusa.errors import NotANumber, RunError
 from ryusa.model import EVENT, Book, Contacts, Scene, State, Tally
 from ryusa.model.contacts import N_EVENT
 from ryusa.model.enums import Arm, EventRule, Rolling
@@ -94,6 +94,11 @@ class CpuEngine:
         n = scene.n_grain
         if state.x.shape != (n, 3):
             raise ValueError(f"state.x has shape {state.x.shape}, the scene has {n} free grains")
+        bad = np.flatnonzero(~np.isfinite(np.hstack([state.x, state.v, state.omega])).all(axis=1))
+        if len(bad):
+            hint = "Nothing was stepped: give finite numbers."
+            where = {"grain": int(bad[0]), "step": state.step, "t": state.t}
+            raise NotANumber("position, velocity or spin is not finite", **where, hint=hint)
         before, self._scene = self._scene, scene
         changed = before is not None and before is not scene and state.step > 0
         self._n, self._step, self._t = n, state.step, state.t
