@@ -50,3 +50,11 @@ def test_fig20_runs_from_case_to_picture_and_a_second_time_opens_what_is_there(t
     assert locked["spin_after"].value == 0.0
     run_experiment("fig20", tmp_path, progress=False)
     assert (tmp_path / "runs" / "free" / "provenance.json").stat().st_mtime_ns == written
+
+
+def test_a_run_that_was_stopped_gives_no_verdict(tmp_path, monkeypatch):
+    from types import SimpleNamespace
+
+    monkeypatch.setattr("ryusa.running.runner.run", lambda *_, **__: SimpleNamespace(complete=False))
+    with pytest.raises(KeyboardInterrupt):
+        run_experiment("fig06", tmp_path)

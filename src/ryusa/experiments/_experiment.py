@@ -54,6 +54,7 @@ class Experiment(Protocol):
 
     FIGURE: str
     TITLE: str
+    SHOWN: tuple[str, ...]  # columns of the table that fit a terminal; none: the chart says it better
 
     def cases(self) -> Sequence[Variant]:
         """Runs it needs; none for a chart of closed forms."""
@@ -131,7 +132,10 @@ def run_variant(
         old = Results.open(folder)
         if old.complete and old.case == json.loads(json.dumps(case.resolved())):
             return old
-    return run(case, folder, threads=threads, progress=progress, overwrite=True)
+    done = run(case, folder, threads=threads, progress=progress, overwrite=True)
+    if not done.complete:  # a run that was stopped is no basis for a verdict
+        raise KeyboardInterrupt
+    return done
 
 
 def case_path(name: str) -> Path:

@@ -11,6 +11,7 @@ from ryusa.results import Results
 
 FIGURE = "fig4"
 TITLE = "Contact time against stiffness, Eq. (8)"
+SHOWN: tuple[str, ...] = ()
 
 
 def cases() -> Sequence[Variant]:

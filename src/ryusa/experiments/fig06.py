@@ -12,6 +12,7 @@ from ryusa.results import Results
 
 FIGURE = "fig6"
 TITLE = "Path of a saltating grain"
+SHOWN: tuple[str, ...] = ("quantity", "value", "standard_error", "unit", "n", "steady")
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,11 @@ from ryusa.results import Results
 
 FIGURE = "fig7"
 TITLE = "Contact time of a saltating grain"
+SHOWN: tuple[str, ...] = (
+    "rotation", "k_n_N_per_m", "contact_time_s", "contact_time_error_s", "eq8_s", "eq8_damped_s",
+    "jump_height_m", "jump_height_error", "jump_length_m", "jump_length_error",
+    "highest_jump_m", "overlap_over_d", "travel",
+)  # fmt: skip
 SWEEP = (0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0)  # [N/cm]
 SKIM = 0.3  # speed times contact time over diameter from which a grain skims the crests
 REPORTED = ("jump_height", "jump_length", "speed", "contact_time_alone", "shear_ratio", "contacts_per_bounce")

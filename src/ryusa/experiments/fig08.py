@@ -11,6 +11,7 @@ from ryusa.results import Results
 
 FIGURE = "fig8"
 TITLE = "Largest overlap against stiffness"
+SHOWN: tuple[str, ...] = ()
 
 
 def cases() -> Sequence[Variant]:

@@ -11,6 +11,7 @@ from ryusa.results import Results
 
 FIGURE = "fig11"
 TITLE = "The stable band over the contact times"
+SHOWN: tuple[str, ...] = ()
 
 
 def cases() -> Sequence[Variant]:

@@ -12,6 +12,7 @@ from ryusa.results import Results
 
 FIGURE = "fig12"
 TITLE = "The stable band for large grains"
+SHOWN: tuple[str, ...] = ()
 LARGE = replace(_charts.PAPER, d=0.2)
 
 

@@ -12,6 +12,7 @@ from ryusa.results import Results
 
 FIGURE = "fig20"
 TITLE = "Saltation with and without rotation"
+SHOWN: tuple[str, ...] = ("rotation", "quantity", "value", "standard_error", "unit", "n", "steady")
 WAY = 0.3  # shown of each path [m]
 SURE = 2.0  # standard errors by which two means must differ to be called different
 

@@ -13,6 +13,7 @@ from ryusa.results import Results
 
 FIGURE = "fig21"
 TITLE = "Spin of a saltating grain"
+SHOWN: tuple[str, ...] = ("quantity", "value", "standard_error", "unit", "n", "steady")
 
 
 @dataclass(frozen=True)

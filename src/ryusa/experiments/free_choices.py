@@ -12,6 +12,10 @@ from ryusa.results import Results
 
 FIGURE = "fig7, fig20"
 TITLE = "Effect of every free choice on saltation"
+SHOWN: tuple[str, ...] = (
+    "choice", "rotation", "jump_height [m]", "jump_height error", "jump_length [m]", "jump_length error",
+    "contact_time_over_eq8 [-]", "spin_before [rad/s]", "impulse_shear [N s]", "shear_ratio [-]",
+)  # fmt: skip
 BASE = "as in the case file"
 CASE = "paper/fig20.toml"
 HOPS = 30
