@@ -1,11 +1,11 @@
-"""Whole workloads, side by side on 1 and more threads: particle-steps per second, with the machine they were taken on.
+"""Whole workloads on one and more threads: particle-steps per second, with the machine they were taken on.
 
     python benchmarks/flows.py                       # all workloads, 1 and 2 threads
     python benchmarks/flows.py plane --threads 1     # one of them
     python benchmarks/flows.py --save                # and keep the table in benchmarks/results/
 
-A dense workload is a packaged case: grains settle on a level bed, the bed tilts to 26 degrees, and once they flow the
-engine is timed, the thread counts in turn on the same grains, so that a drift of the machine's speed meets both alike.
+A dense workload is a packaged case: grains settle on a level bed, the bed tilts to 26 degrees, and once they
+flow the engine is timed, thread counts in turn on the same grains, so that a drift of the machine's speed meets all.
 The engine is the one users run: energy account and guards on. Steps are timed in the engine alone (no frames).
 """
 
@@ -80,7 +80,7 @@ def measure(name: str, threads: list[int]) -> list[dict[str, Any]]:
                 "us a step": round(1e6 * statistics.median(times), 3),
                 "contacts a grain, settled": round(rest, 2),
                 "contacts a grain, timed": round(account.n_contact / scene.n_grain, 2),
-                "speed-up": round(statistics.median([a / b for a, b in zip(taken[threads[0]], times, strict=True)]), 2),
+                "speed-up": round(statistics.median(a / b for a, b in zip(taken[threads[0]], times, strict=True)), 2),
                 "account residual": float(f"{account.residual:.1e}"),
             }
         )  # fmt: skip
@@ -103,13 +103,19 @@ def peak_memory(columns: int) -> tuple[int, int]:
         "peak = next(l for l in open('/proc/self/status') if l.startswith('VmHWM')).split()[1]\n"
         "print(built.scene.n_grain, int(peak) * 1024)\n"
     )
-    out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
+    out = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    ).stdout.split()
     return int(out[0]), int(out[1])
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("workloads", nargs="*", choices=[[], *WORKLOADS, "memory"], help="all when none is named")
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument(
+        "workloads", nargs="*", choices=[[], *WORKLOADS, "memory"], help="all when none is named"
+    )
     parser.add_argument("--threads", type=int, nargs="+", default=[1, 2])
     parser.add_argument("--save", action="store_true", help="keep the table in benchmarks/results/")
     options = parser.parse_args()
@@ -125,7 +131,8 @@ def main() -> None:
         if name == "memory":
             small, large = peak_memory(10), peak_memory(91)
             table["bytes a grain"] = round((large[1] - small[1]) / (large[0] - small[0]))
-            print(f"memory: {table['bytes a grain']} B a grain ({large[0]} grains less {small[0]})", flush=True)
+            sizes = f"{large[0]} grains less {small[0]}"
+            print(f"memory: {table['bytes a grain']} B a grain ({sizes})", flush=True)
             continue
         for row in measure(name, options.threads if name in ("plane", "3d") else [1]):
             table["rows"].append(row)

@@ -1,8 +1,8 @@
 """Contact forces of one block of grains: which pair, and in what order; every formula is a law.
 
 Grains are cut into blocks by their number alone. A block adds both sides of its own pairs; where the partner
-belongs to another block the other side is stored and added there after the barrier, in list order. So sums, and
-bits, are the same for any number of threads.
+belongs to another block the other side is stored and added there after the barrier, in list order. So
+sums and bits are the same for any number of threads.
 
 Books are kept by velocity interval: at x(n) the velocity v(n-1/2) and the forces of steps n-1 and n give the
 work u dt (f(n-1) + f(n))/2, exact for the scheme when kinetic energy is m v(n-1/2) v(n+1/2)/2.

@@ -1,6 +1,6 @@
 """A spin barrier for threads inside one compiled call.
 
-A launch of numba's own parallel loops costs from 2 us (omp) to 460 us (tbb); a step of 2,000 grains takes 100.
+A launch of numba's own parallel loops costs from 2 us (omp) to 460 us (tbb); 2,000 grains step in 100.
 So threads are plain Python threads that run one compiled function without the GIL and meet at this barrier,
 which costs well under a microsecond when every thread has a core.
 """
