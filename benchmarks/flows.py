@@ -5,8 +5,9 @@
     python benchmarks/flows.py --save                # and keep the table in benchmarks/results/
 
 A dense workload is a packaged case: grains settle on a level bed, the bed tilts to 26 degrees, and once they
-flow the engine is timed, thread counts in turn on the same grains, so that a drift of the machine's speed meets all.
-The engine is the one users run: energy account and guards on. Steps are timed in the engine alone (no frames).
+flow the engine is timed, thread counts in turn on the same grains, so that a drift of the machine's speed
+meets all. The engine is the one users run: energy account and guards on. Steps are timed in the engine alone
+(no frames).
 """
 
 import argparse
@@ -72,6 +73,7 @@ def measure(name: str, threads: list[int]) -> list[dict[str, Any]]:
     for n, times in taken.items():
         account = engines[n].tally()
         rates = sorted(1e-6 * scene.n_grain / t for t in times)
+        gains = [a / b for a, b in zip(taken[threads[0]], times, strict=True)]
         rows.append(
             {
                 "workload": name, "grains": scene.n_grain, "threads": n,
@@ -80,7 +82,7 @@ def measure(name: str, threads: list[int]) -> list[dict[str, Any]]:
                 "us a step": round(1e6 * statistics.median(times), 3),
                 "contacts a grain, settled": round(rest, 2),
                 "contacts a grain, timed": round(account.n_contact / scene.n_grain, 2),
-                "speed-up": round(statistics.median(a / b for a, b in zip(taken[threads[0]], times, strict=True)), 2),
+                "speed-up": round(statistics.median(gains), 2),
                 "account residual": float(f"{account.residual:.1e}"),
             }
         )  # fmt: skip
