@@ -9,9 +9,10 @@ from matplotlib.figure import Figure
 from scipy import stats
 
 from ryusa.experiments._experiment import Variant, Verdict
-from ryusa.figures import Curve, Points, over_stiffness
-from ryusa.measure import Saltation, saltation
+from ryusa.figures import Curve, Points, over_stiffness, turning
+from ryusa.measure import Saltation, collisions, saltation, turned_time
 from ryusa.measure.stability import BAND
+from ryusa.measure.statistics import Floats
 from ryusa.results import Results
 
 FIGURE = "fig7"
@@ -36,6 +37,8 @@ class Point:
     found: Saltation
     overlap: float  # largest over diameter, mean of the bounces [-]
     highest: float  # highest jump [m]
+    turning: Floats  # u**2 t/(d v) of every lone bed contact [-]
+    shortened: Floats  # its contact time over damped Eq. (8) [-]
 
     @property
     def travel(self) -> float:
@@ -95,7 +98,11 @@ def measure(results: Mapping[str, Results]) -> Table:
         d = float(run.scene.d[0])
         overlap = float(found.bounces["overlap"].mean()) / d if len(found.bounces) else math.nan
         highest = float(found.hops["rise"].max()) if len(found.hops) else math.nan
-        points.append(Point(name.split("-")[0], run.scene.contact.k_n, d, found, overlap, highest))
+        touch = collisions(run, "bed")
+        lone = np.isfinite(touch.restitution)
+        shortened = (touch.duration / touch.expected)[lone]
+        rotation, k_n = name.split("-")[0], run.scene.contact.k_n
+        points.append(Point(rotation, k_n, d, found, overlap, highest, touch.turning[lone], shortened))
     return Table(tuple(points))
 
 
@@ -159,7 +166,18 @@ def draw(table: Table) -> Mapping[str, Figure]:
     runs = [
         _points(f"rotation {rotation}", table.of(rotation), "contact_time") for rotation in ("locked", "free")
     ]
-    return {"fig07": over_stiffness("time", curves, runs)}
+    theory = np.logspace(-3.0, 1.0, 81)
+    dots = {f"rotation {rotation}": _dots(table.of(rotation)) for rotation in ("locked", "free")}
+    return {
+        "fig07": over_stiffness("time", curves, runs),
+        "fig07-turning": turning(dots, (theory, turned_time(theory))),
+    }
+
+
+def _dots(points: Sequence[Point]) -> tuple[Floats, Floats]:
+    """Contacts of all runs whose grain does not skim the crests."""
+    kept = [one for one in points if one.travel < SKIM]
+    return np.concatenate([one.turning for one in kept]), np.concatenate([one.shortened for one in kept])
 
 
 def _points(label: str, points: Sequence[Point], name: str) -> Points:

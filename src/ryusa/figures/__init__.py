@@ -1,7 +1,7 @@
 """One function per kind of plot. A figure takes measured records and draws them; it computes no numbers."""
 
 from ryusa.figures.choices import Choice, choices
-from ryusa.figures.contact import Band, Curve, Points, over_stiffness
+from ryusa.figures.contact import Band, Curve, Points, over_stiffness, turning
 from ryusa.figures.energy import energy
 from ryusa.figures.hops import contact_times, hops
 from ryusa.figures.spin import spin
@@ -22,4 +22,5 @@ __all__ = [
     "spin",
     "tracks",
     "tracks_side_by_side",
+    "turning",
 ]

@@ -1,6 +1,6 @@
 """Contact time and overlap against stiffness, with closed forms, measured points and the stable band."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -115,6 +115,38 @@ def over_stiffness(
         axes.annotate(
             note, (0, 0), (4, 4), "axes fraction", textcoords="offset points", fontsize=6.5, color="#444444"
         )
+    return figure
+
+
+@style.house
+def turning(runs: Mapping[str, tuple[Floats, Floats]], closed: tuple[Floats, Floats]) -> Figure:
+    """Draw contact times against how much the normal turns within a contact, one dot per contact.
+
+    Parameters
+    ----------
+    runs : name in the legend -> turning u**2 t/(d v), contact time over its expected value [-].
+    closed : the same two of the closed form for a smooth grain.
+    """
+    figure, (axes,) = style.new(height=2.75)
+    for k, (name, (x, y)) in enumerate(runs.items()):
+        axes.plot(
+            x,
+            y,
+            style.MARKERS[k],
+            color=style.COLOURS[k],
+            ms=1.3,
+            mew=0,
+            alpha=0.55,
+            label=name,
+            rasterized=True,
+        )
+    axes.plot(*closed, color="black", lw=0.9, label="smooth grain, closed form")
+    axes.set_xscale("log")
+    axes.set_xlim(float(closed[0].min()), float(closed[0].max()))
+    axes.set_ylim(0.0, 1.1)
+    axes.set_xlabel("turning of the contact  $u^2 t/(d\\,v)$  (–)")
+    axes.set_ylabel("contact time over damped Eq. (8)  (–)")
+    axes.legend(loc="lower left", markerscale=4.0)
     return figure
 
 

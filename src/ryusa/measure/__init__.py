@@ -1,6 +1,6 @@
 """Numbers from a run folder: every function reads results and returns a frozen record; none steps a grain."""
 
-from ryusa.measure.collisions import Collisions, ContactTimes, collisions, contact_times
+from ryusa.measure.collisions import Collisions, ContactTimes, collisions, contact_times, turned_time
 from ryusa.measure.energy import Energy, energy
 from ryusa.measure.saltation import Saltation, grouping, saltation
 from ryusa.measure.spin import Spin, spin
@@ -28,5 +28,6 @@ __all__ = [
     "saltation",
     "spin",
     "tracks",
+    "turned_time",
     "write_csv",
 ]
