@@ -96,9 +96,13 @@ class CpuEngine:
             raise ValueError(f"state.x has shape {state.x.shape}, the scene has {n} free grains")
         bad = np.flatnonzero(~np.isfinite(np.hstack([state.x, state.v, state.omega])).all(axis=1))
         if len(bad):
-            hint = "Nothing was stepped: give finite numbers."
-            where = {"grain": int(bad[0]), "step": state.step, "t": state.t}
-            raise NotANumber("position, velocity or spin is not finite", **where, hint=hint)
+            raise NotANumber(
+                "position, velocity or spin is not finite",
+                grain=int(bad[0]),
+                step=state.step,
+                t=state.t,
+                hint="Nothing was stepped: give finite numbers.",
+            )
         before, self._scene = self._scene, scene
         changed = before is not None and before is not scene and state.step > 0
         self._n, self._step, self._t = n, state.step, state.t
