@@ -9,6 +9,9 @@ from ryusa.experiments import NAMES, load, run_experiment
 from ryusa.running.provenance import commit
 
 PAGE = Path(__file__).parent / "paper-figures.md"
+PICTURES = Path(__file__).parent / "pictures"
+SHARP = {"fig06": 140, "fig07": 220, "fig07-turning": 220, "fig20": 200, "fig20-hops": 180, "fig21": 220,
+         "free-choices": 150}  # pictures of the pages and their dots per inch  # fmt: skip
 BEGIN, END = "<!-- written by docs/figures.py: begin -->", "<!-- end -->"
 SHOWN = {  # column of the table of choices -> average, scale, digits
     "height / d": ("jump_height", 500.0, 2),
@@ -39,6 +42,10 @@ def main() -> None:
         for one in outcome.verdicts:
             word = one.row()["verdict"]
             verdicts.append(f"| `{name}` ({one.claim}) | {one.says} | {one.found} | {word} |")
+        for picture, figure in load(name).draw(outcome.table).items():
+            if picture in SHARP:
+                PICTURES.mkdir(exist_ok=True)
+                figure.savefig(PICTURES / f"{picture}.png", dpi=SHARP[picture], pil_kwargs={"optimize": True})
         choices = outcome.table if name == "free_choices" else choices
         print(f"{name}: {load(name).TITLE}: {folder / name}", flush=True)
     made = f"Made by `make figures` on {_machine()}, {_versions()}, commit {commit() or 'not known'}."

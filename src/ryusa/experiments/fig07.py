@@ -24,6 +24,8 @@ SHOWN: tuple[str, ...] = (
 )  # fmt: skip
 SWEEP = (0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0)  # [N/cm]
 SKIM = 0.3  # speed times contact time over diameter from which a grain skims the crests
+LIKELY, UNLIKELY = 0.05, 0.001  # chances from which means are called the same, and different
+LIKE = 0.1  # spread of largest jumps, over their mean, up to which they are called the same
 REPORTED = ("jump_height", "jump_length", "speed", "contact_time_alone", "shear_ratio", "contacts_per_bounce")
 
 
@@ -126,8 +128,8 @@ def expect(table: Table) -> Sequence[Verdict]:
         ),
         _turned("stiff enough for overlap/d < 0.01", [change for stable, change in turned if stable]),
         _turned(f"softer, u t/d < {SKIM:g}", [change for stable, change in turned if not stable]),
-        _same("hops", "jump_height", stiff),
-        _same("hops", "jump_length", stiff),
+        *_same("stiff enough for overlap/d < 0.01", [one for one in stiff if one.overlap < BAND[1]]),
+        *_same(f"softer too, u t/d < {SKIM:g}", stiff),
     )
 
 
@@ -137,18 +139,27 @@ def _turned(where: str, changes: Sequence[float]) -> Verdict:
     return Verdict("spin-time", says, found, max(map(abs, changes)) < 0.05 if changes else None)
 
 
-def _same(claim: str, name: str, points: Sequence[Point]) -> Verdict:
-    """Whether one average is the same at all stiffnesses, by chi-squared over its errors."""
-    values = np.array([one.found[name].value for one in points])
-    errors = np.array([one.found[name].error for one in points])
-    weights = 1.0 / errors**2
-    mean = float((weights * values).sum() / weights.sum())
-    chi = float((((values - mean) / errors) ** 2).sum())
-    spread = float((values.max() - values.min()) / mean) if len(values) else math.nan
-    p = float(stats.chi2.sf(chi, max(len(values) - 1, 1)))
-    found = f"{name} spreads by {100 * spread:.0f} % of its mean over stiffness; by chance with p = {p:.2g}"
-    holds = True if p > 0.05 else False if p < 0.001 else None
-    return Verdict(claim, "same e, other contact time: mean jump does not change", found, holds)
+def _same(where: str, points: Sequence[Point]) -> list[Verdict]:
+    """Whether mean height and length are the same at all stiffnesses, by chi-squared over their errors."""
+    verdicts: list[Verdict] = []
+    for name, words in (("jump_height", "mean jump height"), ("jump_length", "mean jump length")):
+        values = np.array([one.found[name].value for one in points])
+        errors = np.array([one.found[name].error for one in points])
+        weights = 1.0 / errors**2
+        mean = float((weights * values).sum() / weights.sum())
+        chi = float((((values - mean) / errors) ** 2).sum())
+        p = float(stats.chi2.sf(chi, max(len(values) - 1, 1)))
+        found = f"spreads by {_spread(values)} of its mean over stiffness; by chance with p = {p:.2g}"
+        holds = True if p > LIKELY else False if p < UNLIKELY else None
+        verdicts.append(Verdict("hops", f"{words} is the same ({where})", found, holds))
+    highest = np.array([one.highest for one in points])
+    found = f"largest jumps spread by {_spread(highest)} of their mean over stiffness"
+    holds = bool(np.ptp(highest) < LIKE * highest.mean()) if len(highest) else None
+    return [*verdicts, Verdict("hops", f"largest jump height is the same ({where})", found, holds)]
+
+
+def _spread(values: Floats) -> str:
+    return f"{100 * float(np.ptp(values) / values.mean()):.0f} %" if len(values) else "nothing"
 
 
 def _range(values: Sequence[float]) -> str:
