@@ -162,7 +162,7 @@ def turned_time(turning: Floats) -> Floats:
     a spring alone and a constant u the contact lasts 1 - (2/pi) atan(turning/pi) of Eq. (8).
 
     >>> turned_time(np.array([0.0, 1.0])).round(4).tolist()
-    [1.0, 0.8037]
+    [1.0, 0.8038]
     """
     return 1.0 - (2.0 / math.pi) * np.arctan(turning / math.pi)
 
