@@ -10,7 +10,7 @@ from ryusa.running.provenance import commit
 
 PAGE = Path(__file__).parent / "paper-figures.md"
 PICTURES = Path(__file__).parent / "pictures"
-SHARP = {"fig06": 140, "fig07": 220, "fig07-turning": 220, "fig20": 200, "fig20-hops": 180, "fig21": 220,
+SHARP = {"fig06": 115, "fig07": 220, "fig07-turning": 220, "fig20": 200, "fig20-hops": 180, "fig21": 220,
          "free-choices": 150}  # pictures of the pages and their dots per inch  # fmt: skip
 BEGIN, END = "<!-- written by docs/figures.py: begin -->", "<!-- end -->"
 SHOWN = {  # column of the table of choices -> average, scale, digits
