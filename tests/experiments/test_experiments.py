@@ -1,4 +1,5 @@
 import csv
+from types import SimpleNamespace
 
 import pytest
 
@@ -53,8 +54,22 @@ def test_fig20_runs_from_case_to_picture_and_a_second_time_opens_what_is_there(t
 
 
 def test_a_run_that_was_stopped_gives_no_verdict(tmp_path, monkeypatch):
-    from types import SimpleNamespace
-
     monkeypatch.setattr("ryusa.running.runner.run", lambda *_, **__: SimpleNamespace(complete=False))
     with pytest.raises(KeyboardInterrupt):
         run_experiment("fig06", tmp_path)
+
+
+def test_a_run_that_cannot_be_read_is_run_anew(tmp_path, monkeypatch):
+    asked = []
+
+    def stopped(*_, **__):
+        asked.append(1)
+        return SimpleNamespace(complete=False)
+
+    folder = tmp_path / "runs" / "1-N-per-cm"
+    folder.mkdir(parents=True)
+    (folder / "case.json").write_text("{}")
+    monkeypatch.setattr("ryusa.running.runner.run", stopped)
+    with pytest.raises(KeyboardInterrupt):
+        run_experiment("fig06", tmp_path)
+    assert asked

@@ -9,7 +9,7 @@ from typing import Any, Protocol
 
 from matplotlib.figure import Figure
 
-from ryusa.errors import CaseError
+from ryusa.errors import CaseError, ResultsError
 from ryusa.figures import save
 from ryusa.measure import write_csv
 from ryusa.results import Results
@@ -128,14 +128,23 @@ def run_variant(
     from ryusa.running.runner import run
 
     case = read(case_path(one.case), dict(one.overrides))
-    if not again and (folder / "case.json").is_file():
-        old = Results.open(folder)
-        if old.complete and old.case == json.loads(json.dumps(case.resolved())):
-            return old
+    old = None if again else _earlier(folder)
+    if old is not None and old.complete and old.case == json.loads(json.dumps(case.resolved())):
+        return old
     done = run(case, folder, threads=threads, progress=progress, overwrite=True)
     if not done.complete:  # a run that was stopped is no basis for a verdict
         raise KeyboardInterrupt
     return done
+
+
+def _earlier(folder: Path) -> Results | None:
+    """Open what lies there; a run that another version wrote or that is damaged counts as none."""
+    if not (folder / "case.json").is_file():
+        return None
+    try:
+        return Results.open(folder)
+    except ResultsError:
+        return None
 
 
 def case_path(name: str) -> Path:
