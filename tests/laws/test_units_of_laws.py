@@ -38,6 +38,7 @@ UNITS = {
     "collision.phase_to_largest": "- -> -",
     "collision.contact_time_tension": "-, rad/s -> s",
     "collision.contact_time_no_tension": "-, rad/s -> s",
+    "collision.shortest_contact": "kg, N/m, -, bool -> s",
     "collision.restitution_tension": "- -> -",
     "collision.restitution_no_tension": "- -> -",
     "collision.zeta_tension": "- -> -",

@@ -10,6 +10,7 @@ from ryusa.laws.collision import (
     contact_time_no_tension,
     omega_natural,
     overlap_max,
+    shortest_contact,
     stiffness_for_overlap,
     zeta_no_tension,
 )
@@ -65,7 +66,7 @@ class Choice:
     eq_8 : Eq. (8) with the dry grain's mass [s].
     time_fixed, time_free : contact time with dashpot and added mass [s].
     eta_fixed, eta_free : normal dashpot that gives e [N s/m].
-    dt : step, the undamped contact time of a free pair over the steps per contact [s].
+    dt : step, the shortest contact of a free pair over the steps per contact [s].
     travel : speed times contact time over diameter [-]; beyond about 0.3 a grain skims the crests.
     steps : steps per simulated second.
     cost : seconds of computing per simulated second and thousand grains at `rate`.
@@ -108,13 +109,13 @@ def choice(grain: Grain, k_n: float, steps_per_contact: float = 50.0, rate: floa
     ----------
     grain : what hits.
     k_n : normal stiffness [N/m].
-    steps_per_contact : steps in the undamped contact of two free grains [-].
+    steps_per_contact : steps in the shortest contact of two free grains [-].
     rate : grain steps per second that the machine is assumed to do [1/s].
     """
     zeta = zeta_no_tension(grain.e)
     fixed, free = grain.m_moving, 0.5 * grain.m_moving
     time_fixed = contact_time_no_tension(zeta, omega_natural(k_n, fixed))
-    dt = collision_time(free, k_n) / steps_per_contact
+    dt = shortest_contact(free, k_n, zeta, False) / steps_per_contact
     return Choice(
         k_n=k_n,
         k_s=SHEAR_RATIO * k_n,

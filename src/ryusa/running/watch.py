@@ -9,14 +9,16 @@ from numpy.typing import NDArray
 
 from ryusa.laws.collision import (
     collision_time,
-    contact_time_no_tension,
-    contact_time_tension,
     damping_ratio,
     effective_mass,
-    omega_natural,
+    effective_mass_tangential,
+    restitution_no_tension,
+    restitution_tension,
+    shortest_contact,
 )
+from ryusa.laws.torque import reynolds_spin, torque_in_range
 from ryusa.model import Book, Scene, State, Tally
-from ryusa.model.enums import Damping
+from ryusa.model.enums import Damping, WaterTorque
 
 BAND = (0.001, 0.01)  # stable band of overlap/d, the paper's fig11
 TRAVEL_LIMIT = 0.3  # of d along the bed within one contact; beyond, contacts end by geometry, not by Eq. (8)
@@ -70,12 +72,20 @@ class Watch:
         self._slid = {"fixed": Average(), "free": Average()}
         self._travel = Average()
         self._travel_most = 0.0
+        self._re_spin = 0.0  # largest rotational Reynolds number beyond the range of the water's torque
+        self._follows = _follows(scene, _free_pairs(scene, state))
 
     def contacts(self, events: NDArray[np.void]) -> None:
         """Take contacts that ended, dtype model.EVENT."""
         if len(events) == 0:
             return
         self.n_contact += len(events)
+        sizes = self.scene.d[events["i"]]
+        for name in ("omega_begin", "omega_end"):
+            self._spins(np.linalg.norm(events[name], axis=1), sizes)
+        events = events[np.isfinite(events["closing_end"])]  # the others were cut: their partner was taken away
+        if len(events) == 0:
+            return
         duration = events["t_end"] - events["t_begin"]
         self._steps(duration / self.scene.dt)
         bed = events["j"] >= self.scene.n_grain
@@ -83,6 +93,19 @@ class Watch:
         lonely = (events["alone"] == 1.0) & (events["closing_begin"] > _CLOSING_LEAST * self._g_t_col)
         for name, partner in (("fixed", bed), ("free", ~bed)):
             self._restitution(events[lonely & partner], name)
+
+    def frame(self, tally: Tally) -> None:
+        """Take the account at a recorded frame."""
+        if self.scene.n_grain:  # which grain spins fastest is not known; the largest one errs to the safe side
+            self._spins(np.array([tally.spin_max]), self.scene.d.max(keepdims=True))
+
+    def _spins(self, spin: NDArray[np.float64], d: NDArray[np.float64]) -> None:
+        water = self.scene.water
+        if water.torque != WaterTorque.DENNIS or not self.scene.rotation:
+            return
+        k = int(np.nanargmax(d * d * spin))
+        if not torque_in_range(float(spin[k]), float(d[k]), water.nu):
+            self._re_spin = max(self._re_spin, reynolds_spin(float(spin[k]), float(d[k]), water.nu))
 
     def _steps(self, steps: NDArray[np.float64]) -> None:
         self._histogram += np.histogram(np.clip(steps, self._edges[0], self._edges[-1]), self._edges)[0]
@@ -120,10 +143,12 @@ class Watch:
             "steps_per_contact": {"shortest": self.t_col_shortest / scene.dt, "observed": self._observed()},
             "restitution": {
                 "asked": _or_none(scene.contact.e_n),
+                "follows": {name: e_n for name, (e_n, _) in self._follows.items()},
                 **{name: average.as_dict() for name, average in self._normal.items()},
             },
             "restitution_shear": {
                 "asked": _or_none(scene.contact.e_s),
+                "follows": {name: e_s for name, (_, e_s) in self._follows.items()},
                 "sticking": {name: average.as_dict() for name, average in self._stuck.items()},
                 "sliding": {name: average.as_dict() for name, average in self._slid.items()},
             },
@@ -154,6 +179,11 @@ class Watch:
             said.append(
                 f"a grain moved {self._travel_most:.2g} d along the bed within one contact "
                 f"(mean {self._travel.mean:.2g} d, limit {TRAVEL_LIMIT}): contacts end by geometry"
+            )
+        if self._re_spin:
+            said.append(
+                f"a grain span at Re_r = d^2 omega/nu up to {self._re_spin:.3g}, beyond what "
+                "water.torque = 'Dennis' was fitted for: its torque is extrapolated"
             )
         if tally.residual > RESIDUAL_LIMIT:
             said.append(
@@ -192,8 +222,29 @@ def shortest_collision_time(scene: Scene, state: State) -> float:
     m = np.sort(scene.m + scene.m_added)
     pair = effective_mass(float(m[0]), float(m[1]) if _free_pairs(scene, state) else math.inf)
     zeta = law.zeta_n if law.damping == Damping.RESTITUTION else damping_ratio(law.eta_n, law.k_n, pair)
-    damped = contact_time_tension if law.tension else contact_time_no_tension
-    return min(damped(zeta, omega_natural(law.k_n, pair)), collision_time(pair, law.k_n))
+    return shortest_contact(pair, law.k_n, zeta, law.tension)
+
+
+def _follows(scene: Scene, free_pairs: bool) -> dict[str, tuple[float, float | None]]:
+    """Normal and tangential restitution of the mean grain that constant dashpots give, by partner.
+
+    Empty where restitution is asked for; no tangential one without a tangential spring.
+    """
+    law = scene.contact
+    if law.damping == Damping.RESTITUTION or scene.n_grain == 0:
+        return {}
+    m, r = float((scene.m + scene.m_added).mean()), float(scene.d.mean()) / 2
+    inertia, spins = float(scene.inertia.mean()), bool(scene.rotation)
+    others = {"fixed": (math.inf, math.inf)} if scene.n_fixed + scene.n_plane else {}
+    others |= {"free": (m, inertia)} if free_pairs else {}
+    normal = restitution_tension if law.tension else restitution_no_tension
+    found: dict[str, tuple[float, float | None]] = {}
+    for name, (m_j, inertia_j) in others.items():
+        m_t = effective_mass_tangential(m, r, inertia, m_j, r, inertia_j, spins)
+        e_n = normal(damping_ratio(law.eta_n, law.k_n, effective_mass(m, m_j)))
+        e_s = restitution_tension(damping_ratio(law.eta_s, law.k_s, m_t)) if law.k_s > 0.0 else None
+        found[name] = (e_n, e_s)
+    return found
 
 
 def _speed_of_weight(scene: Scene) -> float:
