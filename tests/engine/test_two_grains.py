@@ -160,6 +160,21 @@ def test_sticking_impact_turns_tangential_speed_as_the_springs_say(rotation):
     assert event["slip_end"][0] / event["slip_begin"][0] == pytest.approx(slip, abs=4e-3)
 
 
+@pytest.mark.parametrize("rotation", [True, False])
+@pytest.mark.parametrize("ratio", [0.1, 2.0 / 7.0, 0.6])
+def test_damped_sticking_returns_what_the_tangential_oscillator_says(rotation, ratio):
+    # x'' + 2 zeta w x' + w**2 x = 0 from x = 0: what is left of the slip when the normal force ends
+    e, zeta_s = 0.7, collision.zeta_tension(0.7)
+    law = contact_law(ratio=ratio, mu=1.0e3, zeta_n=collision.zeta_no_tension(e), zeta_s=zeta_s)
+    event, engine = oblique(math.radians(30.0), law, rotation=rotation, per_contact=2000.0, speed=0.02)
+    m = float(engine._scene.m[0])
+    t = collision.contact_time_no_tension(law.zeta_n, math.sqrt(law.k_n / m))
+    w = math.sqrt(law.k_s * (3.5 if rotation else 1.0) / m)
+    damped = w * math.sqrt(1.0 - zeta_s**2)
+    left = math.exp(-zeta_s * w * t) * (math.cos(damped * t) - zeta_s * w / damped * math.sin(damped * t))
+    assert event["slip_end"][0] / event["slip_begin"][0] == pytest.approx(left, abs=4e-3)
+
+
 def test_an_oblique_impact_in_3d_is_the_plane_one_turned():
     law = contact_law(mu=0.3, zeta_n=0.1, zeta_s=0.1)
     flat, _ = oblique(math.radians(40.0), law)

@@ -102,15 +102,11 @@ def list_pairs(
     x: Any,
     r: Any,
     ids: Any,
-    n: int,
     offset: int,
-    low: Any,
-    width: Any,
-    dims: Any,
-    first: Any,
-    order: Any,
+    grid: Any,
     period: Any,
     skin: float,
+    lanes: bool,
     i: int,
     half: bool,
     partners: Any,
@@ -120,10 +116,13 @@ def list_pairs(
 
     Parameters
     ----------
-    offset : added to the numbers in `order` to get the index into x and r (free grains 0, fixed grains n).
+    offset : added to the numbers in the grid to get the index into x and r (free grains 0, fixed grains n).
+    grid : low, width, dims, first and order of `grid_of` and `sort_into`.
+    lanes : a plane scene, where grains at another y are in another lane and never met.
     half : only partners with a higher id (each free pair once); grain i itself never.
     partners : int32 array to fill from `used`; where it is too short counting goes on and nothing is written.
     """
+    low, width, dims, first, order = grid
     near = np.empty((3, 3), np.int64)
     count = np.empty(3, np.int64)
     for k in range(3):
@@ -137,6 +136,8 @@ def list_pairs(
                 for slot in range(first[cell], first[cell + 1]):
                     j = order[slot] + offset
                     if half and ids[j] <= ids[i]:
+                        continue
+                    if lanes and x[j, 1] != x[i, 1]:
                         continue
                     reach = r[i] + r[j] + skin
                     d_x = wrap(x[j, 0] - x[i, 0], period[0])
@@ -156,13 +157,13 @@ def build_list(
     ids: Any,
     n: int,
     n_solid: int,
-    normals: Any,
-    points: Any,
+    walls: Any,
     active_planes: Any,
     free_grid: Any,
     fixed_grid: Any,
     period: Any,
     skin: float,
+    lanes: bool,
     start: Any,
     partners: Any,
 ) -> int:
@@ -172,32 +173,12 @@ def build_list(
     larger than len(partners) the list is not usable: make room and call again.
     """
     used = 0
-    f_low, f_width, f_dims, f_first, f_order = free_grid
-    s_low, s_width, s_dims, s_first, s_order = fixed_grid
+    normals, points = walls.normals, walls.points
     for i in range(n):
         start[i] = used
-        used = list_pairs(
-            x, r, ids, n, 0, f_low, f_width, f_dims, f_first, f_order, period, skin, i, True, partners, used
-        )
-        if len(s_order) > 0:
-            used = list_pairs(
-                x,
-                r,
-                ids,
-                n,
-                n,
-                s_low,
-                s_width,
-                s_dims,
-                s_first,
-                s_order,
-                period,
-                skin,
-                i,
-                False,
-                partners,
-                used,
-            )
+        used = list_pairs(x, r, ids, 0, free_grid, period, skin, lanes, i, True, partners, used)
+        if len(fixed_grid[4]) > 0:
+            used = list_pairs(x, r, ids, n, fixed_grid, period, skin, lanes, i, False, partners, used)
         for k in range(len(normals)):
             gap = 0.0
             for a in range(3):

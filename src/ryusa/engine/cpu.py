@@ -9,8 +9,8 @@ from ryusa.engine.arrays import Ledger
 from ryusa.engine.faults import fault_of, lost_of, unsafe_of
 from ryusa.engine.listing import Layout, take_memory
 from ryusa.engine.march import make_run
-from ryusa.engine.memory import contacts_of, memory_of
-from ryusa.engine.numbers import choice_of, numbers_of, potential_energy, variant_of
+from ryusa.engine.memory import closed_records, contacts_of, memory_of
+from ryusa.engine.numbers import choice_of, numbers_of, potential_energy, rolling_energy, variant_of
 from ryusa.engine.rows import (
     C_DT,
     C_SKIN,
@@ -45,6 +45,7 @@ from ryusa.model.enums import Arm, EventRule, Rolling
 from ryusa.model.tally import N_BOOK
 
 _MANY = 256  # grains from which work is cut into blocks
+_RECORDS = 256  # room for ended contacts in a block, beside one a grain
 _BLOCKS = 8
 # Measured, and fixed so that a run never depends on a clock: cost of a rebuild and of a step [ns].
 _REBUILD, _REBUILD_GRAIN, _STEP_GRAIN = 60_000.0, 300.0, 80.0
@@ -67,6 +68,7 @@ class CpuEngine:
             raise ValueError(f"threads = {threads}: at least 1")
         self._threads, self._skin_first = threads, skin
         self._pool: ThreadPoolExecutor | None = None
+        self._drained: list[np.ndarray] = []
         self._scene: Scene | None = None
 
     def refuses(self, scene: Scene) -> tuple[str, ...]:
@@ -76,14 +78,15 @@ class CpuEngine:
             reasons.append(
                 "the spring-dashpot-slider needs rolling.arm = 'reduced radius': its stiffness may not change"
             )
-        if scene.rolling.model != Rolling.NONE and not scene.rotation:
-            reasons.append("rolling friction needs motion.rotation = 'free'")
         largest = float(np.concatenate([scene.d, scene.d_fixed[scene.fixed_active]]).max(initial=0.0))
         for axis, length in zip("xy", scene.period, strict=True):
             if length < _SHORTEST_PERIOD * largest:
                 reasons.append(
                     f"the period in {axis} ({length:g} m) is shorter than 3 diameters ({largest:g} m)"
                 )
+        for k, axis in enumerate("xy"):
+            if np.isfinite(scene.period[k]) and np.any(scene.plane_normal[scene.plane_active, k] != 0.0):
+                reasons.append(f"a plane stands across the periodic direction {axis}")
         return tuple(reasons)
 
     def load(self, scene: Scene, state: State) -> None:
@@ -94,6 +97,8 @@ class CpuEngine:
         n = scene.n_grain
         if state.x.shape != (n, 3):
             raise ValueError(f"state.x has shape {state.x.shape}, the scene has {n} free grains")
+        if scene.plane_case:
+            _refuse_near_lanes(scene, state)
         bad = np.flatnonzero(~np.isfinite(np.hstack([state.x, state.v, state.omega])).all(axis=1))
         if len(bad):
             raise NotANumber(
@@ -115,17 +120,18 @@ class CpuEngine:
         self._smallest = float(np.concatenate([scene.d, scene.d_fixed]).min(initial=np.inf))
         self._numbers[C_T_ZERO] = state.t - state.step * scene.dt
         self._numbers[C_STEP_LIMIT] = 0.25 * self._smallest
-        records = (n // blocks + _MANY, N_EVENT) if scene.events != EventRule.NONE else (1, 1)
+        records = (n // blocks + _RECORDS, N_EVENT) if scene.events != EventRule.NONE else (1, 1)
         self._ledger = Ledger(
             np.zeros((blocks, *records)), np.zeros((blocks, N_BOOKS)), np.zeros((blocks, N_NOW))
         )
-        self._drained: list[np.ndarray] = []
         self._relisted = 0
         self._read_own(state)
 
         contacts, dropped = _still_there(scene, state.contacts)
+        self._drained = self._drained if changed else []
         if before is not None and changed:
             self._book_switch(before, scene, state, dropped)
+            self._drained.append(closed_records(state, dropped))
         memory = memory_of(contacts, self._variant, self._numbers, self._layout)
         by_id = self._layout.by_id(state)
         for touching in (contacts.i, contacts.j[contacts.j < n]):
@@ -311,6 +317,9 @@ class CpuEngine:
         given = potential_energy(scene, state) - potential_energy(before, state)
         if before.rotation and not scene.rotation:
             given -= float(0.5 * np.sum(scene.inertia[:, None] * state.omega**2))
+            given -= rolling_energy(before, state, np.arange(len(state.contacts)))
+        elif len(dropped):
+            given -= rolling_energy(before, state, dropped)
         if len(dropped):
             law, gone = before.contact, state.contacts
             e_n = gone.f_n[dropped] - gone.dash_n[dropped]
@@ -318,6 +327,17 @@ class CpuEngine:
             if law.k_s > 0.0:
                 given -= float(np.sum(0.5 * gone.spring_s[dropped] ** 2 / law.k_s))
         self._ledger.books[0, Book.SWITCH] += given
+
+
+def _refuse_near_lanes(scene: Scene, state: State) -> None:
+    """In a plane scene another y is another lane; lanes closer than a diameter would hide contacts."""
+    lanes = np.unique(np.concatenate([state.x[:, 1], scene.x_fixed[:, 1]]))
+    largest = float(np.concatenate([scene.d, scene.d_fixed]).max(initial=0.0))
+    apart = np.diff(lanes)
+    if len(apart) and apart.min() < largest:
+        y = lanes[int(apart.argmin())]
+        text = f"a plane scene has grains at y = {y:g} m and {apart.min():g} m beside, less than a diameter"
+        raise ValueError(f"{text} ({largest:g} m): give them the same y, or set the lanes apart")
 
 
 def _still_there(scene: Scene, contacts: Contacts) -> tuple[Contacts, np.ndarray]:

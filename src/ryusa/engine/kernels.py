@@ -20,6 +20,7 @@ from ryusa.engine.pair import (
     B_RELEASED_N,
     B_RELEASED_S,
     B_SLIDE,
+    B_STEP,
     ROLL_PRINTED,
     begin_row,
     part,
@@ -36,6 +37,8 @@ from ryusa.laws.contact import (
     slide_total,
 )
 from ryusa.laws.geometry import arm, turn, wrap
+from ryusa.laws.geometry import overlap as overlap_of
+from ryusa.laws.rolling import reduced_radius
 from ryusa.model.enums import Cap, Slip
 
 SLIP_DROP, SLIP_TOTAL, CAP_TOTAL = int(Slip.SPRING_DROP), int(Slip.TOTAL), int(Cap.TOTAL)
@@ -73,7 +76,7 @@ def forces(
     dt, k_n, k_s, mu, cohesion = c[C_DT], c[C_K_N], c[C_K_S], c[C_MU], c[C_COHESION]
     l_x, l_y, limit = c[C_PERIOD_X], c[C_PERIOD_Y], c[C_OVERLAP_LIMIT]
     spring_n = spring_s = spring_r = 0.0
-    dash_n_lost = dash_s_lost = slide_lost = released_n = released_s = 0.0
+    step_given = dash_n_lost = dash_s_lost = slide_lost = released_n = released_s = 0.0
     most = now[N_OVERLAP_MAX]
     count = 0
     for i in range(lo, hi):
@@ -104,7 +107,7 @@ def forces(
                 touching = square < reach * reach
                 if touching or live[p]:
                     distance = math.sqrt(square)
-                    overlap = reach - distance
+                    overlap = overlap_of(r_i, r[j], distance)
                     inverse = 1.0 / distance
                     n_x, n_y, n_z = n_x * inverse, n_y * inverse, n_z * inverse
             if not (touching or live[p]):
@@ -141,13 +144,15 @@ def forces(
             if not touching:  # parted in this step
                 part(
                     tension,
-                    rolling,
+                    choice.rolling if rolling else 0,
                     row,
                     c,
                     hdt,
                     closing,
                     (s_x, s_y, s_z),
-                    (o_x - w[j, 0], o_y - w[j, 1], o_z - w[j, 2]),
+                    (o_x, o_y, o_z),
+                    (w[j, 0], w[j, 1], w[j, 2]),
+                    reduced_radius(r_i, r[j]),
                     book,
                 )
                 live[p] = 0
@@ -175,6 +180,9 @@ def forces(
 
             if not live[p]:
                 live[p] = 1
+                # the spring met within the step: what the half interval takes for it is not what it holds
+                if hdt > 0.0:
+                    step_given -= 0.5 * k_n * overlap * (2.0 * hdt * closing - overlap)
                 begin_row(row, rotation, i, j, c, m, r, inertia)
                 if events:
                     begin_record(
@@ -355,6 +363,7 @@ def forces(
             torque[i, 2] += m_z
         touches[i] += hits
     now[N_OVERLAP_MAX] = most
+    book[B_STEP] += step_given
     book[B_DASH_N] += dash_n_lost
     book[B_DASH_S] += dash_s_lost
     book[B_SLIDE] += slide_lost

@@ -138,8 +138,8 @@ class Layout:
         start, partners, live, mem = pairs.start, pairs.partners, pairs.live, pairs.mem
         while True:
             used = build_list(
-                grains.x, grains.r, grains.ids, n, self.n_solid, self.walls.normals, self.walls.points,
-                scene.plane_active, free, fixed, period, skin, start, partners,
+                grains.x, grains.r, grains.ids, n, self.n_solid, self.walls, scene.plane_active,
+                free, fixed, period, skin, scene.plane_case, start, partners,
             )  # fmt: skip
             if used <= len(partners):
                 break

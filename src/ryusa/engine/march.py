@@ -112,12 +112,12 @@ def motion(
 
         v_x, v_y, v_z = v[i, 0], v[i, 1], v[i, 2]
         d_x = d_y = d_z = 0.0
-        if profile:
-            z = x[i, 2] - c[C_Z_ZERO]
-            if drag and not (above == DRY and z > c[C_DEPTH]):
-                u_x, u_y, u_z = water_speed(profile, above, z, c) - v_x, -v_y, -v_z
-                k_d = drag_of(drag, math.sqrt(u_x * u_x + u_y * u_y + u_z * u_z), 2.0 * r[i], c)
-                d_x, d_y, d_z = k_d * u_x, k_d * u_y, k_d * u_z
+        z = x[i, 2] - c[C_Z_ZERO]
+        dry = profile == 0 or (above == DRY and z > c[C_DEPTH])
+        if drag and not dry:
+            u_x, u_y, u_z = water_speed(profile, above, z, c) - v_x, -v_y, -v_z
+            k_d = drag_of(drag, math.sqrt(u_x * u_x + u_y * u_y + u_z * u_z), 2.0 * r[i], c)
+            d_x, d_y, d_z = k_d * u_x, k_d * u_y, k_d * u_z
         m_i, m_b, m_w = m[i], m_bare[i], m_weight[i]
         added = m_i - m_b
         y_x, y_z = x[i, 0], x[i, 2]
@@ -139,7 +139,7 @@ def motion(
         if rotation:
             o_x, o_y, o_z = w[i, 0], w[i, 1], w[i, 2]
             k_t = 0.0
-            if profile and torque_law and not (above == DRY and x[i, 2] - c[C_Z_ZERO] > c[C_DEPTH]):
+            if torque_law and not dry:
                 size = math.sqrt(o_x * o_x + o_y * o_y + o_z * o_z)
                 if torque_law == STOKES:
                     k_t = torque_stokes(size, 2.0 * r[i], c[C_NU], c[C_RHO_W])

@@ -4,8 +4,26 @@ import numpy as np
 
 from ryusa.engine.listing import Layout, Memory
 from ryusa.engine.pair import begin_row
-from ryusa.engine.rows import R_DASH_N, R_DASH_R, R_DASH_S, R_F_N, R_SPRING_R, R_SPRING_S, Variant
-from ryusa.model import Contacts
+from ryusa.engine.rows import (
+    E_ALONE,
+    E_CLOSING_END,
+    E_I,
+    E_J,
+    E_OMEGA_END,
+    E_OVERLAP_MAX,
+    E_SLIP_END,
+    E_T_END,
+    E_T_PART,
+    E_V_END,
+    R_DASH_N,
+    R_DASH_R,
+    R_DASH_S,
+    R_F_N,
+    R_SPRING_R,
+    R_SPRING_S,
+    Variant,
+)
+from ryusa.model import Contacts, State
 from ryusa.model.contacts import N_EVENT
 from ryusa.model.scene import Floats
 
@@ -45,3 +63,16 @@ def memory_of(contacts: Contacts, variant: Variant, numbers: Floats, layout: Lay
     if variant.events:
         rows[:, variant.event_column :] = contacts.event
     return Memory(contacts.i, contacts.j, rows)
+
+
+def closed_records(state: State, places: np.ndarray) -> np.ndarray:
+    """Open records of contacts whose partner is taken away, closed now; what parting would tell stays nan."""
+    rows = state.contacts.event[places].copy()
+    rows = rows[(rows[:, E_J] >= 0.0) & (rows[:, E_OVERLAP_MAX] > 0.0)]
+    rows[:, E_T_END] = rows[:, E_T_PART] = state.t
+    rows[:, E_CLOSING_END], rows[:, E_ALONE] = np.nan, 0.0
+    rows[:, E_SLIP_END : E_SLIP_END + 3] = np.nan
+    grains = rows[:, E_I].astype(np.int64)
+    rows[:, E_V_END : E_V_END + 3] = state.v[grains]
+    rows[:, E_OMEGA_END : E_OMEGA_END + 3] = state.omega[grains]
+    return rows

@@ -4,6 +4,7 @@ import numpy as np
 
 from ryusa.engine import rows as k
 from ryusa.engine.rows import Choice, Variant
+from ryusa.laws.rolling import epsd_stiffness, reduced_radius
 from ryusa.model import Scene, State
 from ryusa.model.enums import Damping, EventRule, Rolling
 from ryusa.model.scene import Floats
@@ -14,7 +15,7 @@ def variant_of(scene: Scene) -> Variant:
     return Variant(
         plane_case=int(scene.plane_case),
         rotation=int(scene.rotation),
-        rolling=int(scene.rolling.model != Rolling.NONE),
+        rolling=int(scene.rotation and scene.rolling.model != Rolling.NONE),
         events=int(scene.events != EventRule.NONE),
     )
 
@@ -85,3 +86,17 @@ def potential_energy(scene: Scene, state: State) -> float:
         if np.isfinite(scene.period[a]) and len(state.image) == len(x):
             x[:, a] += state.image[:, a] * scene.period[a]
     return -float(np.sum(scene.m_weight[:, None] * x * scene.gravity))
+
+
+def rolling_energy(scene: Scene, state: State, places: np.ndarray) -> float:
+    """Energy in the rolling springs of some of a state's contacts [J]."""
+    if scene.rolling.model != Rolling.EPSD:
+        return 0.0
+    r = 0.5 * np.concatenate([scene.d, scene.d_fixed, np.full(scene.n_plane, np.inf)])
+    energy = 0.0
+    for place in places:
+        radius = reduced_radius(r[state.contacts.i[place]], r[state.contacts.j[place]])
+        f = scene.rolling.coefficient * radius
+        k_r = epsd_stiffness(scene.contact.k_n, f, scene.rolling.stiffness_factor)
+        energy += 0.5 * float(np.sum(state.contacts.spring_r[place] ** 2)) / k_r if k_r > 0.0 else 0.0
+    return energy

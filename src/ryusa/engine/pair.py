@@ -33,6 +33,7 @@ Body = tuple[
 ROLL_PRINTED, ROLL_CONSTANT, ROLL_EPSD = int(Rolling.PRINTED), int(Rolling.CONSTANT), int(Rolling.EPSD)
 ARM_WIDTH = int(Arm.CONTACT_WIDTH)
 B_DASH_N, B_DASH_S, B_SLIDE, B_ROLL = int(Book.DASH_N), int(Book.DASH_S), int(Book.SLIDE), int(Book.ROLL)
+B_STEP = int(Book.STEP)
 B_RELEASED_N, B_RELEASED_S, B_RELEASED_R = int(Book.RELEASED_N), int(Book.RELEASED_S), int(Book.RELEASED_R)
 
 
@@ -135,17 +136,24 @@ def part(
     hdt: float,
     closing: float,
     slip: Vector,
-    spin: Vector,
+    w_i: Vector,
+    w_j: Vector,
+    radius: float,
     book: Any,
 ) -> None:
-    """Close the account of a pair that parted: the last half interval, and what its springs still held."""
-    k_s = c[C_K_S]
+    """Close the account of a pair that parted: the last half interval, and what its springs still held.
+
+    `rolling` is the model of the rolling friction, 0 without; `radius` the reduced radius of the pair [m].
+    """
+    k_n, k_s = c[C_K_N], c[C_K_S]
     s_x, s_y, s_z = slip
-    w_x, w_y, w_z = spin
     if row[R_F_N] > 0.0 or tension:
         book[B_DASH_N] += hdt * closing * row[R_DASH_N]
     else:
         book[B_RELEASED_N] += hdt * closing * row[R_DASH_N]
+    if k_n > 0.0:
+        e_n = row[R_F_N] - row[R_DASH_N]
+        book[B_STEP] += 0.5 * e_n * (-2.0 * hdt * closing - e_n / k_n)
     e_x, e_y, e_z = row[R_SPRING_S], row[R_SPRING_S + 1], row[R_SPRING_S + 2]
     d_x, d_y, d_z = row[R_DASH_S], row[R_DASH_S + 1], row[R_DASH_S + 2]
     if k_s > 0.0:
@@ -153,6 +161,11 @@ def part(
     book[B_RELEASED_S] -= hdt * (s_x * e_x + s_y * e_y + s_z * e_z)
     book[B_DASH_S] -= hdt * (s_x * d_x + s_y * d_y + s_z * d_z)
     if rolling:
+        sign = 1.0 if rolling == ROLL_PRINTED else -1.0
+        w_x, w_y, w_z = w_i[0] + sign * w_j[0], w_i[1] + sign * w_j[1], w_i[2] + sign * w_j[2]
         e_x, e_y, e_z = row[R_SPRING_R], row[R_SPRING_R + 1], row[R_SPRING_R + 2]
+        k_r = epsd_stiffness(k_n, c[C_ROLL] * radius, c[C_ROLL_STIFFNESS])
+        if rolling == ROLL_EPSD and k_r > 0.0:
+            book[B_RELEASED_R] += 0.5 * (e_x * e_x + e_y * e_y + e_z * e_z) / k_r
         book[B_RELEASED_R] -= hdt * (w_x * e_x + w_y * e_y + w_z * e_z)
         book[B_ROLL] -= hdt * (w_x * row[R_DASH_R] + w_y * row[R_DASH_R + 1] + w_z * row[R_DASH_R + 2])

@@ -16,7 +16,7 @@ EVENT = np.dtype(
         ("t_part", np.float64),  # the overlap ends [s]
         ("overlap_max", np.float64),  # [m]
         ("closing_begin", np.float64),  # closing speed at first touch [m/s], positive when approaching
-        ("closing_end", np.float64),  # closing speed at parting [m/s], negative when parting
+        ("closing_end", np.float64),  # at parting [m/s], negative; nan where the partner was taken away
         ("slip_begin", np.float64, (3,)),  # slip velocity of i against j at the contact point [m/s]
         ("slip_end", np.float64, (3,)),
         ("impulse_n", np.float64),  # integral of f_n [N s]

@@ -18,12 +18,15 @@ class Book(IntEnum):
     TORQUE = 8  # given by the water's torque
     LIFT = 9  # given by lift
     SWITCH = 10  # given by a change of the timeline (gravity, friction, rotation, a gate)
-    START = 11  # energy at the first step: kinetic + spin + potential + springs
+    STEP = 11  # given by the step: springs met and left within one, (1/2) k overlap (closing dt - overlap)
+    START = 12  # energy at the first step: kinetic + spin + potential + springs
 
 
 N_BOOK = len(Book)
 LOSSES = (Book.DASH_N, Book.DASH_S, Book.SLIDE, Book.ROLL, Book.RELEASED_N, Book.RELEASED_S, Book.RELEASED_R)
-GIFTS = (Book.DRAG, Book.TORQUE, Book.LIFT, Book.SWITCH)
+GIFTS = (Book.DRAG, Book.TORQUE, Book.LIFT, Book.SWITCH, Book.STEP)
+# Terms that say how large the account is. START and SWITCH are heights from an origin that is free to choose.
+SIZES = tuple(b for b in Book if b not in {Book.START, Book.SWITCH})
 
 
 @dataclass(frozen=True)
@@ -59,14 +62,19 @@ class Tally:
 
     @property
     def residual(self) -> float:
-        """Imbalance over the largest term of the account [-]; held energy counts as its change."""
+        """Imbalance over the largest term of the account [-].
+
+        Terms are energies of motion and springs, each book of `SIZES`, and the change of held energy less
+        what the timeline gave: the same wherever heights are measured from.
+        """
         terms = [
             self.kinetic,
             self.spin,
             self.spring_n,
             self.spring_s,
             self.spring_r,
-            self.held - self.books[Book.START],
+            self.held - self.books[Book.START] - self.books[Book.SWITCH],
+            *(self.books[b] for b in SIZES),
         ]
-        largest = max(abs(term) for term in [*terms, *self.books[: Book.START]])
+        largest = max(abs(term) for term in terms)
         return abs(self.imbalance) / largest if largest > 0.0 else 0.0
