@@ -12,6 +12,7 @@ from ryusa.build import build, change, scene
 from ryusa.build.layout import Layout, Wall
 from ryusa.build.overlaps import refuse_overlaps
 from ryusa.casefile import Case, Change, read_text
+from ryusa.casefile.derive import periodic
 from ryusa.errors import CaseError
 from ryusa.model.enums import Damping, Drag, EventRule, Profile
 
@@ -264,3 +265,102 @@ def test_a_script_builds_a_scene_grain_by_grain() -> None:
 def test_a_script_with_bad_arrays_is_told(keys: dict[str, object]) -> None:
     with pytest.raises(CaseError):
         scene(**keys)  # type: ignore[arg-type]
+
+
+def test_a_plane_script_has_lanes_that_are_equal_or_a_diameter_apart() -> None:
+    over = [[0.0, 0.0, 0.01], [0.0, 0.0, 0.0125]]
+    scene(x=over, d=0.002, plane_case=True)
+    for y in (1e-18, 0.0015, 0.0019):
+        over[1][1] = y
+        with pytest.raises(CaseError, match=r"two lanes .* free grain 0 at .* and free grain 1 at .* equal"):
+            scene(x=over, d=0.002, plane_case=True, allow_overlap=True)
+    scene(x=over, d=0.002)  # in three dimensions y may be anything
+    with pytest.raises(CaseError, match=r"free grain 0 at .* and fixed grain 1 at"):
+        scene(x=over[0], d=0.002, x_fixed=over[1], d_fixed=0.002, plane_case=True)
+    over[1] = [0.0, 0.002, 0.01]  # side by side at the same x and z, each in its lane
+    scene(x=over, d=0.002, plane_case=True)
+    with pytest.raises(CaseError, match="two lanes"):
+        scene(x=over, d=[0.002, 0.003], plane_case=True)
+
+
+@given(st.lists(st.tuples(*[st.floats(0.0, 0.02)] * 2, st.integers(0, 2)), min_size=2, max_size=6))
+@settings(max_examples=60, deadline=None)
+def test_first_grains_of_a_plane_scene_overlap_in_their_lane_only(places: list[tuple[float, ...]]) -> None:
+    x = np.array([(a, 0.002 * lane, b) for a, b, lane in places])
+    apart = np.hypot(*(x[:, None, k] - x[None, :, k] for k in (0, 2)))
+    same = x[:, None, 1] == x[None, :, 1]
+    deepest = ((0.002 - apart) / 0.002)[same & ~np.eye(len(x), dtype=bool)].max(initial=-1.0)
+    if deepest > 2e-9:
+        with pytest.raises(CaseError, match="overlap"):
+            scene(x=x, d=0.002, plane_case=True)
+    elif deepest < 0.0:
+        scene(x=x, d=0.002, plane_case=True)
+
+
+@pytest.mark.parametrize(
+    ("keys", "part"),
+    [
+        ({"planes": [("gate", (0.1, 0, 0), (-1, 0, 0))], "period": (0.2, math.inf)}, "x = 0"),
+        ({"planes": [("side", (0, 0.1, 0), (0, -1, 0.5))], "period": (math.inf, 0.2)}, "y = 0"),
+        ({"planes": [("side", (0, 0.1, 0), (0, -1, 0))], "plane_case": True}, "y = 0 in a plane scene"),
+        ({"planes": [("flat", (0, 0, 0), (0, 0, 0))]}, "other than zero"),
+        ({"planes": [("flat", (0, 0, 0), (0, 0, math.nan))]}, "finite"),
+        ({"period": (math.inf, 0.2), "plane_case": True}, "no meaning in y"),
+    ],
+)
+def test_walls_and_periods_that_contradict_each_other_are_refused(keys: dict[str, object], part: str) -> None:
+    with pytest.raises(CaseError, match=part):
+        scene(x=[0.0, 0.0, 0.01], d=0.002, **keys)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("plane", ["true", "false"])
+def test_an_open_packing_stands_between_its_walls(plane: str) -> None:
+    rows = 1 if plane == "true" else 2
+    pitch = 1.1 * 0.002
+    walls = [("left", 0.0, 1), ("gate", 5 * pitch, -1)]
+    planes = [
+        f"{{ name = '{n}', point = ['{at} m', '0 m', '0 m'], normal = [{s}, 0, 0] }}" for n, at, s in walls
+    ]
+    one = case(
+        f"{{ kind = 'packing', columns = 5, rows = {rows}, layers = 3, periodic = false }}",
+        motion__plane=plane,
+        planes=f"[{', '.join(planes)}]",
+        timeline="[{ at = '0.1 s', remove = 'gate' }]",
+    )
+    built = build(one)
+    assert built.scene.period == (math.inf, math.inf)
+    assert (built.scene.n_grain, built.scene.n_fixed) == (15 * rows, one.derived.n_fixed)
+    bed = built.scene.x_fixed
+    assert bed[:, 0].min() > 0.0
+    assert bed[:, 0].max() < 5 * pitch
+    assert not change(one, built.scene, one.timeline[0]).plane_active[1]
+
+
+@pytest.mark.parametrize(
+    ("keys", "plane"),
+    [
+        ("{ kind = 'drop', height = '1 cm' }", "true"),
+        ("{ kind = 'saltation' }", "true"),
+        ("{ kind = 'packing', columns = 4, layers = 2 }", "true"),
+        ("{ kind = 'packing', columns = 4, layers = 2, periodic = false }", "true"),
+        ("{ kind = 'packing', columns = 4, rows = 3, layers = 2 }", "false"),
+        ("{ kind = 'packing', columns = 4, rows = 1, layers = 2, periodic = false }", "false"),
+    ],
+)
+def test_a_case_knows_which_axes_its_builder_makes_periodic(keys: str, plane: str) -> None:
+    one = case(keys, motion__plane=plane)
+    period = build(one).scene.period
+    assert periodic(one) == tuple(math.isfinite(length) for length in period)
+
+
+def test_records_of_contacts_are_kept_for_few_grains_and_left_out_for_many() -> None:
+    for layers, kept, rule in ((10, "all", EventRule.ALL), (11, "none", EventRule.NONE)):
+        packing = f"{{ kind = 'packing', columns = 100, layers = {layers} }}"
+        built = build(case(packing))
+        assert built.scene.events == rule
+        assert f"contacts recorded: {kept} (record.events not given)" in built.notes
+        assert build(case(packing, record__events="all")).scene.events == EventRule.ALL
+    assert (
+        build(case("{ kind = 'saltation', starts = 1001 }", stop__saltations="3")).scene.events
+        == EventRule.ALL
+    )

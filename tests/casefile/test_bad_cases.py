@@ -63,6 +63,7 @@ BAD = [
     ("timeline", "[{ at = '5 s', friction = 1 }]", "after stop.time"),
     ("planes", "[{ name = 'a', point = ['0 m', '0 m', '0 m'], normal = [0, 0, 0] }]", "must not be zero"),
     ("planes", "5", "must be a list"),
+    ("domain.period_y", "'10 cm'", "no meaning in a plane scene"),
     ("grains", "5", "must be a table"),
     ("domain.period_x", "'0.1 cm'", "at least 3 largest diameters"),
     ("rolling.model", "'constant'", "needs motion.rotation"),
@@ -87,6 +88,50 @@ def test_a_bad_value_is_named_with_its_key_and_what_is_allowed(
     assert caught.value.key.startswith((key.split(".", maxsplit=1)[0], "--set"))
     assert "pydantic" not in message and "Input should" not in message
     assert caught.value.exit_code == 2
+
+
+@pytest.mark.parametrize(
+    ("build", "plane", "normal", "part"),
+    [
+        ("{ kind = 'saltation' }", "true", "[-1, 0, 0]", "must have x = 0, for x is periodic"),
+        (
+            "{ kind = 'packing', columns = 4, layers = 1 }",
+            "true",
+            "[-1, 0, 1]",
+            "build.periodic = false opens it",
+        ),
+        ("{ kind = 'packing', columns = 4, rows = 4, layers = 1 }", "false", "[0, 1, 0]", "must have y = 0"),
+    ],
+)
+def test_a_wall_across_a_period_is_refused(
+    case: Callable[..., Case], build: str, plane: str, normal: str, part: str
+) -> None:
+    gate = f"[{{ name = 'gate', point = ['5 cm', '0 cm', '0 cm'], normal = {normal} }}]"
+    with pytest.raises(CaseError, match=r"planes\.0\.normal") as caught:
+        case(build=build, planes=gate, **{"motion.plane": plane})
+    assert part in str(caught.value)
+    case(build=build, planes=gate.replace(normal, "[0, 0, 1]"), **{"motion.plane": plane})
+
+
+@pytest.mark.parametrize(
+    ("keys", "part"),
+    [
+        ({"contact.shear_ratio": "10", "time.step": "1.3e-5 s"}, "tangential motion"),
+        ({"contact.damping": "1000 N s/m", "contact.parting": "tension"}, "normal motion"),
+        ({"contact.damping": "0 N s/m", "contact.shear_damping": "1000 N s/m"}, "tangential motion"),
+        (
+            {"contact.damping": "0 N s/m", "contact.shear_damping": "1e3 N s/m", "contact.shear_ratio": "0"},
+            "tang",
+        ),
+    ],
+)
+def test_a_step_beyond_the_stable_one_is_refused(
+    case: Callable[..., Case], keys: dict[str, str], part: str
+) -> None:
+    with pytest.raises(CaseError, match="grows without end") as caught:
+        case(**{"motion.rotation": "free", **keys})
+    assert part in str(caught.value)
+    assert caught.value.key.startswith("time.")
 
 
 @pytest.mark.parametrize(

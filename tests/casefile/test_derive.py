@@ -8,8 +8,10 @@ from pathlib import Path
 import pytest
 
 from ryusa.casefile import Case, disk_needed, frames_expected, read, steps_expected
-from ryusa.casefile.derive import terminal_velocity, water_speed
+from ryusa.casefile.derive import events_of, terminal_velocity, water_speed
+from ryusa.casefile.estimate import disk_for_events, events_expected, memory_needed
 from ryusa.laws import collision
+from ryusa.model.contacts import N_EVENT
 
 CaseOf = Callable[..., Case]
 WATER = "{ profile = 'log rough', tau_star = 0.3, depth = '2 cm' }"
@@ -121,6 +123,30 @@ def test_a_resolved_case_is_plain_json_in_si(case: CaseOf) -> None:
     assert plain["time"]["step"] == plain["derived"]["dt"]
     assert plain["water"]["u_star"] > 0.0
     assert plain["stop"]["time"] == 0.1
+
+
+def test_the_largest_stable_step_is_that_of_the_stiffer_motion(case: CaseOf) -> None:
+    keys = {"contact.damping": "0 N s/m", "contact.shear_ratio": "10"}
+    locked, free = case(**keys).derived, case(**keys, **{"motion.rotation": "free"}).derived
+    later = case(**keys, timeline="[{ at = '0.05 s', rotation = 'free' }]").derived
+    omega = math.sqrt(1e4 / MASS)
+    assert locked.step_limit == pytest.approx(2.0 / omega / math.sqrt(10.0))
+    assert free.step_limit == pytest.approx(2.0 / omega / math.sqrt(35.0))  # m_t = 2/7 m
+    assert later.step_limit == free.step_limit
+    assert case(**{"contact.damping": "0 N s/m"}).derived.step_limit == pytest.approx(2.0 / omega)
+
+
+def test_contacts_to_record_are_counted_before_the_run(case: CaseOf) -> None:
+    few = case(build=PACKING)
+    many = case(build="{ kind = 'packing', columns = 101, layers = 10 }")
+    assert (events_of(few), events_of(many)) == ("all", "none")
+    assert many.record.events is None
+    assert many.resolved()["record"]["events"] == "none"
+    assert disk_for_events(many) == 0
+    dense = case(build="{ kind = 'packing', columns = 101, layers = 10 }", **{"record.events": "all"})
+    assert 1e5 < events_expected(dense) < 1e6  # 1010 grains, 0.1 s
+    assert disk_for_events(dense) == 8 * N_EVENT * events_expected(dense)
+    assert memory_needed(dense) > 3 * memory_needed(many)
 
 
 def test_frames_and_bytes_are_counted_before_the_run(case: CaseOf) -> None:

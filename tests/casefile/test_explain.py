@@ -78,3 +78,36 @@ def test_tangential_restitution_is_said_to_be_undefined_where_periods_differ(cas
 def test_few_steps_in_a_contact_are_warned_of(case: CaseOf) -> None:
     step = case().derived.shortest / 7
     assert any("ten" in text for text in warnings(case(**{"time.step": f"{step} s"})))
+
+
+def test_a_step_near_the_largest_stable_one_is_warned_of(case: CaseOf) -> None:
+    keys = {"contact.shear_ratio": "10", "motion.rotation": "free"}
+    assert not warnings(case(**keys))
+    coarse = case(**keys, **{"time.steps_per_contact": "12"})
+    row = rows(coarse)["largest stable step"]
+    assert (row.flag, row.value) == ("warning", coarse.derived.step_limit)
+    assert "tangential" in row.how
+    assert coarse.derived.dt > 0.5 * row.value
+
+
+@pytest.mark.parametrize(("torque", "spin", "flag"), [("Dennis", 900, ""), ("Dennis", 1100, "warning")])
+def test_a_first_spin_beyond_the_range_of_dennis_is_warned_of(
+    case: CaseOf, torque: str, spin: int, flag: str
+) -> None:
+    one = case(
+        water=f"{{ profile = 'still', torque = '{torque}' }}",
+        build=f"{{ kind = 'drop', height = '1 cm', spin = '{spin} rad/s' }}",
+        **{"motion.rotation": "free"},
+    )
+    row = rows(one)["rotational Re"]
+    assert row.value == pytest.approx(spin * 4.0)
+    assert row.flag == flag
+
+
+def test_the_choice_of_contacts_to_record_is_said(case: CaseOf) -> None:
+    free = rows(case())["contacts recorded"]
+    assert (free.value, free.flag) == ("all", "note")
+    assert "not given" in free.how
+    asked = rows(case(**{"record.events": "none"}))
+    assert (asked["contacts recorded"].value, asked["contacts recorded"].flag) == ("none", "")
+    assert "disk for events" not in asked

@@ -95,3 +95,32 @@ def test_the_step_follows_the_smallest_free_grain_of_a_table(text: str, tmp_path
     found = read(write(tmp_path, text, table)).derived
     assert (found.d, found.d_min, found.d_max) == (0.002, 0.001, 0.002)
     assert found.dt == pytest.approx(found.free.t_col * 0.5**1.5 / 50, rel=1e-12)
+
+
+def test_a_plane_table_keeps_to_its_lanes(text: str, tmp_path: Path) -> None:
+    table = "x [cm],y [cm],z [cm],d [cm]\n0,0,1,0.2\n0,{y},1,0.2\n"
+    with pytest.raises(CaseError, match="two lanes") as caught:
+        build(read(write(tmp_path, text, table.format(y=0.15))))
+    assert "line 2" in str(caught.value)
+    assert "line 3" in str(caught.value)
+    case = read(write(tmp_path, text, table.format(y=0.2)))
+    assert not case.derived.meet
+    assert build(case).scene.n_grain == 2
+    assert read(write(tmp_path, text, table.format(y=0))).derived.meet
+    spatial = read(write(tmp_path, text, table.format(y=0.2)), {"motion.plane": "false"})
+    assert spatial.derived.meet
+
+
+def test_a_wall_may_not_cross_the_period_of_a_table(text: str, tmp_path: Path) -> None:
+    gate = "[{ name = 'wall', point = ['5 cm', '0 cm', '0 cm'], normal = [-1, 0, 0] }]"
+    path = write(tmp_path, text, CSV)
+    assert build(read(path, {"planes": gate})).scene.n_plane == 1
+    with pytest.raises(CaseError, match="x is periodic"):
+        read(path, {"planes": gate, "domain.period_x": "10 cm"})
+
+
+def test_a_fast_spin_in_a_table_is_warned_of(text: str, tmp_path: Path) -> None:
+    table = "x [cm],z [cm],d [cm],wy [rad/s]\n0,1,0.2,-1100\n1,1,0.1,2000\n"
+    keys = {"water": "{ profile = 'still', torque = 'Dennis' }", "motion.rotation": "free"}
+    rows = {row.name: row for row in read(write(tmp_path, text, table), keys).explain()}
+    assert (rows["rotational Re"].value, rows["rotational Re"].flag) == (pytest.approx(4400.0), "warning")

@@ -134,3 +134,12 @@ def test_the_effective_mass_does_not_know_who_is_first(a, b):
 @given(zeta=st.floats(0.0, 5.0), k=st.floats(1.0, 1e6), m=st.floats(1e-9, 1.0))
 def test_damping_ratio_and_dashpot_undo_each_other(zeta, k, m):
     assert collision.damping_ratio(damping(zeta, k, m), k, m) == pytest.approx(zeta, rel=1e-12, abs=1e-300)
+
+
+@given(zeta=ratios, k=st.floats(1.0, 1e6), tension=st.booleans())
+def test_the_shortest_contact_is_the_smaller_of_damped_and_undamped(zeta, k, tension):
+    omega_0 = collision.omega_natural(k, QUARTZ)
+    damped = (collision.contact_time_tension if tension else collision.contact_time_no_tension)(zeta, omega_0)
+    found = collision.shortest_contact(QUARTZ, k, zeta, tension)
+    assert found == min(damped, collision.collision_time(QUARTZ, k))
+    assert found == pytest.approx(collision.collision_time(QUARTZ, k) if tension else damped, rel=1e-12)

@@ -10,6 +10,7 @@ from ryusa.build.overlaps import refuse_overlaps
 from ryusa.build.packing import packing
 from ryusa.build.saltation import saltation
 from ryusa.build.table import table
+from ryusa.casefile.derive import events_of
 from ryusa.casefile.schema import Case
 from ryusa.errors import CaseError
 from ryusa.model import ContactLaw, RollingLaw, Scene, State, Water
@@ -59,11 +60,11 @@ def build(case: Case) -> Built:
 
     Raises
     ------
-    CaseError : first grains overlap, or the timeline names a group that is not there.
+    CaseError : first grains overlap or stand between lanes, or the timeline names a group that is not there.
     """
     layout = BUILDERS[case.build.kind](case)
     layout = _with_planes(layout, case)
-    refuse_overlaps(layout, "build.file" if case.build.kind == "table" else "build")
+    refuse_overlaps(layout, "build.file" if case.build.kind == "table" else "build", case.motion.plane)
     _refuse_unknown_groups(layout, case)
     scene, state = assemble(layout, laws_of(case, layout.z_zero))
     return Built(scene, state, (*layout.notes, *notes_of(case)))
@@ -85,7 +86,7 @@ def laws_of(case: Case, z_zero: float) -> Laws:
         plane_case=case.motion.plane,
         slab_width=(case.motion.slab_width or found.d) if case.motion.plane else math.nan,
         overlap_limit=case.domain.overlap_limit,
-        events=EVENTS[case.record.events],
+        events=EVENTS[events_of(case)],
         tracked=case.record.tracked,
         low=case.domain.low,
         high=case.domain.high,
@@ -174,6 +175,8 @@ def notes_of(case: Case) -> tuple[str, ...]:
         ]
     if case.time.step is None and case.time.steps_per_contact is None:
         notes.append("50 steps in the shortest contact (time not given)")
+    if case.record.events is None:
+        notes.append(f"contacts recorded: {events_of(case)} (record.events not given)")
     return tuple(notes)
 
 

@@ -1,6 +1,7 @@
-"""First grains must not overlap: finds the worst pair and names both."""
+"""First grains keep to their lanes and do not overlap: finds the worst pair and names both."""
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
 from ryusa.build.layout import Layout, unit
@@ -9,14 +10,45 @@ from ryusa.errors import CaseError
 TOLERANCE = 1.0e-9  # of the smaller diameter
 
 
-def refuse_overlaps(layout: Layout, key: str) -> None:
-    """Raise a `CaseError` that names two first grains, or a grain and a plane, that overlap."""
+def lanes_of(layout: Layout, key: str) -> NDArray[np.intp]:
+    """Lane of each free, then each fixed grain of a plane scene, numbered from 0 along y.
+
+    Grains meet in their lane only: those whose y is exactly equal share one, and lanes stand at least the
+    largest diameter apart.
+
+    Raises
+    ------
+    CaseError : two grains neither share a lane nor stand that far apart.
+    """
+    y = np.concatenate([layout.x[:, 1], layout.x_fixed[:, 1]])
+    places, lanes = np.unique(y, return_inverse=True)
+    gaps = np.diff(places)
+    if np.any(near := gaps < layout.d_max * (1.0 - TOLERANCE)):
+        k = int(np.argmax(near))
+        who, other = (name(layout, int(np.argmax(lanes == lane))) for lane in (k, k + 1))
+        raise CaseError(
+            key,
+            None,
+            f"two lanes of a plane scene are {gaps[k]:.4g} m apart: {who} and {other}; y must be exactly "
+            f"equal, or differ by the largest diameter, {layout.d_max:.4g} m, or more",
+        )
+    return np.asarray(lanes, dtype=np.intp).reshape(-1)
+
+
+def refuse_overlaps(layout: Layout, key: str, plane: bool = False) -> None:
+    """Raise a `CaseError` that names two first grains, or a grain and a plane, that overlap.
+
+    In a plane scene grains overlap in x-z and only with others of their lane.
+    """
+    lanes = lanes_of(layout, key) if plane else None
     if layout.allow_overlap:
         return
     _against_walls(layout, key)
     n = len(layout.d)
     d = np.concatenate([layout.d, layout.d_fixed])
     x = np.concatenate([layout.x, layout.x_fixed])
+    if lanes is not None:
+        x[:, 1] = 2.0 * layout.d_max * lanes
     sides = np.array([*(p if np.isfinite(p) else 0.0 for p in layout.period), 0.0])
     for axis in (0, 1):
         if sides[axis] > 0.0:

@@ -11,17 +11,19 @@ from ryusa.model.scene import Floats
 
 
 def packing(case: Case) -> Layout:
-    """Free lattice above the bed, periodic in x (and in y in three dimensions); group `bed`."""
+    """Free lattice above the bed, periodic in x (and in y in three dimensions) or open; group `bed`."""
     keys = case.build
     assert isinstance(keys, Packing)
     rng = np.random.default_rng(case.seed)
     found = case.derived
     d, d_max, plane = found.d, found.d_max, case.motion.plane
     pitch = d_max * (1.0 + keys.gap)
-    period_x, period_y = keys.columns * pitch, float("inf") if plane else keys.rows * pitch
+    wide, deep = keys.columns * pitch, keys.rows * pitch
+    inf = float("inf")
+    period = (wide, inf if plane else deep) if keys.periodic else (inf, inf)
     x_fixed, top, walls = still(0), 0.0, (Wall("floor", (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)),)
     if keys.bed != "plane":
-        x_fixed, walls = _bed(case, keys, rng, period_x, period_y), ()
+        x_fixed, walls = _bed(case, keys, rng, wide, deep), ()
         top = float(x_fixed[:, 2].max()) + d / 2.0
     cells = np.stack(
         np.meshgrid(np.arange(keys.layers), np.arange(keys.rows), np.arange(keys.columns), indexing="ij"), -1
@@ -47,21 +49,21 @@ def packing(case: Case) -> Layout:
         d_fixed=np.full(len(x_fixed), d),
         x_fixed=x_fixed,
         walls=walls,
-        period=(period_x, period_y),
+        period=period,
         z_zero=crest - 0.25 * d,
         notes=tuple(notes),
     )
 
 
-def _bed(case: Case, keys: Packing, rng: np.random.Generator, period_x: float, period_y: float) -> Floats:
-    """Fixed grains of mean diameter, evenly spaced over the period, at random or equal height [m]."""
+def _bed(case: Case, keys: Packing, rng: np.random.Generator, wide: float, deep: float) -> Floats:
+    """Fixed grains of mean diameter, evenly spaced under the block, at random or equal height [m]."""
     n_x, n_y = bed_counts(case)
     d = case.derived.d
     grid = np.stack(np.meshgrid(np.arange(n_y), np.arange(n_x), indexing="ij"), -1).reshape(-1, 2)
     x = still(len(grid))
-    x[:, 0] = (grid[:, 1] + 0.5) * period_x / n_x
+    x[:, 0] = (grid[:, 1] + 0.5) * wide / n_x
     if not case.motion.plane:
-        x[:, 1] = (grid[:, 0] + 0.5) * period_y / n_y
+        x[:, 1] = (grid[:, 0] + 0.5) * deep / n_y
     x[:, 2] = d / 2.0
     if keys.bed == "random":
         x[:, 2] += rng.uniform(0.0, keys.bed_height * d, len(x))

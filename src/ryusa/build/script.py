@@ -58,7 +58,8 @@ def scene(
     stiffness, shear_ratio, restitution, restitution_shear, friction, slip, tension : the contact law;
         friction is mu = tan(phi). `contact` gives a whole law instead.
     gravity, slope : g [m/s2] and bed slope [rad], down towards +x.
-    period : periods in x and y [m]; inf where open.
+    plane_case : motion in x-z only; grains touch where their y is exactly equal, other lanes never.
+    period : periods in x and y [m]; inf where open, as y must be in a plane scene.
     dt : time step [s]; by default the shortest contact over `steps_per_contact`.
 
     Returns
@@ -67,7 +68,8 @@ def scene(
 
     Raises
     ------
-    CaseError : shapes that do not fit, a number that is not finite, overlapping first grains.
+    CaseError : shapes that do not fit, a number that is not finite, overlapping first grains, lanes of a
+        plane scene closer than the largest diameter, a wall that crosses a period.
 
     >>> fixed, first = scene(x=[[0.0, 0.0, 0.011]], d=0.002, planes=[("floor", (0, 0, 0), (0, 0, 1))])
     >>> fixed.n_grain, fixed.n_plane, first.n_grain
@@ -91,7 +93,8 @@ def scene(
         period=period,
         allow_overlap=allow_overlap,
     )
-    refuse_overlaps(layout, "x")
+    _refuse_walls(layout, plane_case)
+    refuse_overlaps(layout, "x", plane_case)
     wet = water or Water()
     if contact is None:
         e_s = restitution if restitution_shear is None else restitution_shear
@@ -110,12 +113,8 @@ def scene(
     if dt is None:
         m, m_added, _, _ = masses(sizes, density, math.pi / 6, wet)
         lightest = float(np.min(m + m_added)) / (2.0 if n > 1 else 1.0)
-        omega_0 = collision.omega_natural(contact.k_n, lightest)
-        t_col = min(
-            collision.contact_time_no_tension(contact.zeta_n, omega_0),
-            collision.collision_time(lightest, contact.k_n),
-        )
-        dt = t_col / steps_per_contact
+        dt = collision.shortest_contact(lightest, contact.k_n, contact.zeta_n, contact.tension)
+        dt /= steps_per_contact
     laws = Laws(
         density=density,
         contact=contact,
@@ -130,6 +129,19 @@ def scene(
         events=events,
     )
     return assemble(layout, laws)
+
+
+def _refuse_walls(layout: Layout, plane_case: bool) -> None:
+    if plane_case and math.isfinite(layout.period[1]):
+        raise CaseError("period", layout.period, "has no meaning in y in a plane scene; leave it inf")
+    for wall in layout.walls:
+        if not (np.all(np.isfinite([wall.point, wall.normal])) and any(wall.normal)):
+            raise CaseError("planes", wall.name, "needs a finite point and a finite normal other than zero")
+        if plane_case and wall.normal[1] != 0.0:
+            raise CaseError("planes", wall.name, "must have a normal with y = 0 in a plane scene")
+        for axis, one in enumerate("xy"):
+            if math.isfinite(layout.period[axis]) and wall.normal[axis] != 0.0:
+                raise CaseError("planes", wall.name, f"must have a normal with {one} = 0: {one} is periodic")
 
 
 def _rows(values: ArrayLike, name: str, n: int | None) -> Floats:

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from ryusa.casefile.builders import Drop, Packing, Saltation, Table
+from ryusa.casefile.derive import may_spin, periodic
 from ryusa.casefile.schema import Case, Spread
 from ryusa.errors import CaseError
 
@@ -98,18 +99,14 @@ def _water(case: Case) -> Iterator[CaseError]:
         )
     if water.above != "continue" and water.depth is None:
         yield CaseError("water.depth", None, f"missing; above = '{water.above}' needs it")
-    if water.torque != "none" and not _may_spin(case):
+    if water.torque != "none" and not may_spin(case):
         yield CaseError("water.torque", water.torque, "needs motion.rotation = 'free'")
-
-
-def _may_spin(case: Case) -> bool:
-    return case.motion.rotation == "free" or any(change.rotation == "free" for change in case.timeline)
 
 
 def _motion(case: Case) -> Iterator[CaseError]:
     rolling = case.rolling
     if rolling.model != "none":
-        if not _may_spin(case):
+        if not may_spin(case):
             yield CaseError("rolling.model", rolling.model, "needs motion.rotation = 'free'")
         if rolling.coefficient == 0.0:
             yield CaseError("rolling.coefficient", None, f"missing or zero; model '{rolling.model}' needs it")
@@ -123,11 +120,21 @@ def _motion(case: Case) -> Iterator[CaseError]:
         yield CaseError(
             "motion.slab_width", case.motion.slab_width, "has no meaning unless motion.plane = true"
         )
+    yield from _planes(case)
+
+
+def _planes(case: Case) -> Iterator[CaseError]:
+    period = dict(zip("xy", periodic(case), strict=True))
+    opened = "; build.periodic = false opens it" if isinstance(case.build, Packing) else ""
     for number, plane in enumerate(case.planes):
-        if not any(plane.normal):
-            yield CaseError(f"planes.{number}.normal", list(plane.normal), "must not be zero")
-        elif case.motion.plane and plane.normal[1] != 0.0:
-            yield CaseError(f"planes.{number}.normal", list(plane.normal), "must have y = 0 in a plane scene")
+        key, normal = f"planes.{number}.normal", list(plane.normal)
+        if not any(normal):
+            yield CaseError(key, normal, "must not be zero")
+        elif case.motion.plane and normal[1] != 0.0:
+            yield CaseError(key, normal, "must have y = 0 in a plane scene")
+        for axis, one in enumerate(period):
+            if period[one] and normal[axis] != 0.0:
+                yield CaseError(key, normal, f"must have {one} = 0, for {one} is periodic{opened}")
     names = [plane.name for plane in case.planes]
     for number, name in enumerate(names):
         if name in names[:number]:
@@ -143,7 +150,7 @@ def _builder(case: Case) -> Iterator[CaseError]:
     if isinstance(build, Drop):
         if build.height is None and build.speed == 0.0:
             yield CaseError("build.height", None, "missing; a drop needs height or speed")
-        if build.spin != 0.0 and not _may_spin(case):
+        if build.spin != 0.0 and not may_spin(case):
             yield CaseError("build.spin", build.spin, "needs motion.rotation = 'free'")
         if abs(build.offset) >= case.grains.diameter:
             yield CaseError(
@@ -158,8 +165,8 @@ def _builder(case: Case) -> Iterator[CaseError]:
             yield CaseError(key, lanes, "needs motion.plane = true; in three dimensions lanes could meet")
     if isinstance(build, Packing) and case.motion.plane and build.rows > 1:
         yield CaseError("build.rows", build.rows, "must be 1 in a plane scene")
-    if isinstance(build, Packing) and not case.motion.plane and build.rows < FEWEST_PERIODS:
-        yield CaseError("build.rows", build.rows, f"must be at least {FEWEST_PERIODS} in three dimensions")
+    if isinstance(build, Packing) and periodic(case)[1] and build.rows < FEWEST_PERIODS:
+        yield CaseError("build.rows", build.rows, f"must be at least {FEWEST_PERIODS} where y is periodic")
     if case.stop.saltations is not None and not isinstance(build, (Saltation, Table)):
         yield CaseError(
             "stop.saltations",
@@ -213,12 +220,25 @@ def _space(case: Case) -> Iterator[CaseError]:
                 period,
                 f"is set by builder '{case.build.kind}' itself; only 'table' takes it",
             )
+    if case.motion.plane and case.domain.period_y is not None:
+        yield CaseError("domain.period_y", case.domain.period_y, "has no meaning in a plane scene")
     low, high = case.domain.low, case.domain.high
     if low is not None and high is not None and any(a >= b for a, b in zip(low, high, strict=True)):
         yield CaseError("domain.low", list(low), "must lie below domain.high in every direction")
 
 
 def _step(case: Case, data: dict[str, Any]) -> Iterator[CaseError]:
+    found = case.derived
+    if found.dt > found.step_limit:
+        key = "steps_per_contact" if case.time.step is None else "step"
+        which = "tangential" if found.step_limit_shear == found.step_limit else "normal"
+        softer = "contact.shear_ratio" if which == "tangential" else "contact.stiffness"
+        yield CaseError(
+            f"time.{key}",
+            data.get("time", {}).get(key),
+            f"dt = {found.dt:.3g} s is beyond {found.step_limit:.3g} s, from where on the {which} motion "
+            f"in a contact grows without end; take a shorter step, a smaller {softer} or less damping",
+        )
     if case.time.step is None:
         return
     t_col, steps = case.derived.shortest, case.derived.steps_per_contact

@@ -2,9 +2,11 @@
 
 import math
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, Literal
 
-from ryusa.casefile.builders import Drop, Packing, Saltation
+import numpy as np
+
+from ryusa.casefile.builders import Drop, Packing, Saltation, Table
 from ryusa.casefile.schema import Case, Spread, StiffnessForOverlap, StiffnessForTime
 from ryusa.casefile.table import table_of
 from ryusa.laws import collision, drag, motion, water
@@ -12,6 +14,7 @@ from ryusa.laws import contact as contact_law
 
 CUT = 2.5  # standard deviations at which normal and lognormal sizes are cut
 STEPS_PER_CONTACT = 50.0
+MANY = 1000  # free grains beyond which contacts are recorded only when asked for
 SHEAR_RATIO = 2.0 / 7.0
 
 
@@ -58,6 +61,8 @@ class Derived:
     meet: bool  # can two free grains meet
     shortest: float  # shortest contact that can occur [s]
     dt: float  # [s]
+    step_limit: float  # largest stable step in one contact [s]
+    step_limit_shear: float  # that of its tangential motion [s]
     steps_per_contact: float
     u_star: float  # [m/s]; nan without a log profile
     tau_star: float
@@ -111,7 +116,9 @@ def counts(case: Case) -> tuple[int, int, bool]:
     table = table_of(case)
     if table is not None:
         n_fixed = int(table.fixed.sum())
-        return table.n - n_fixed, n_fixed, table.n - n_fixed > 1
+        n_free = table.n - n_fixed
+        places = len(np.unique(table.column("y")[~table.fixed])) if case.motion.plane else 1
+        return n_free, n_fixed, n_free > places
     if isinstance(build, Drop):
         free = 2 if build.partner == "free" else 1
         return build.copies * free, build.copies * (build.partner == "fixed"), build.partner == "free"
@@ -129,9 +136,31 @@ def bed_counts(case: Case) -> tuple[int, int]:
         return 0, 0
     d, _, d_max = sizes(case)
     pitch = d_max * (1.0 + build.gap)
-    return max(round(build.columns * pitch / d), 3), 1 if case.motion.plane else max(
-        round(build.rows * pitch / d), 3
-    )
+    fewest = 3 if build.periodic else 1
+    n_x, n_y = (max(round(count * pitch / d), fewest) for count in (build.columns, build.rows))
+    return n_x, 1 if case.motion.plane else n_y
+
+
+def periodic(case: Case) -> tuple[bool, bool]:
+    """Whether x and y are periodic."""
+    build = case.build
+    if isinstance(build, Packing):
+        return build.periodic, build.periodic and not case.motion.plane
+    if isinstance(build, Table):
+        return case.domain.period_x is not None, case.domain.period_y is not None
+    return isinstance(build, Saltation), False
+
+
+def may_spin(case: Case) -> bool:
+    """Whether grains spin from the start or from some time on."""
+    return case.motion.rotation == "free" or any(change.rotation == "free" for change in case.timeline)
+
+
+def events_of(case: Case) -> Literal["all", "tracked", "none"]:
+    """Which contacts are recorded."""
+    if case.record.events is not None:
+        return case.record.events
+    return "all" if counts(case)[0] <= MANY or case.stop.saltations is not None else "none"
 
 
 def slope(case: Case) -> float:
@@ -185,13 +214,22 @@ def stiffness(case: Case) -> tuple[float, float]:
     return k_n, k_n * (SHEAR_RATIO if contact.shear_ratio is None else contact.shear_ratio)
 
 
-def pair(case: Case, d: float, free: bool) -> Pair:
-    """One grain of diameter d [m] on a fixed one, or two such grains."""
+def step_limit(case: Case, d: float, free: bool) -> tuple[float, float]:
+    """Largest stable step [s] of the normal and of the tangential motion of one such pair."""
+    (k_n, k_s), one = stiffness(case), pair(case, d, free, may_spin(case))
+    normal = collision.step_limit(one.zeta_n, collision.omega_natural(k_n, one.m))
+    if k_s > 0.0:
+        return normal, collision.step_limit(one.zeta_s, collision.omega_natural(k_s, one.m_t))
+    return normal, 2.0 * one.m_t / one.eta_s if one.eta_s > 0.0 else math.inf
+
+
+def pair(case: Case, d: float, free: bool, spins: bool | None = None) -> Pair:
+    """One grain of diameter d [m] on a fixed one, or two such grains; `spins` overrules motion.rotation."""
     contact = case.contact
     m, m_added, _, inertia = mass(case, d)
     heavy, r, still = m + m_added, d / 2.0, math.inf
     k_n, k_s = stiffness(case)
-    spins = case.motion.rotation == "free"
+    spins = case.motion.rotation == "free" if spins is None else spins
     m_eff = collision.effective_mass(heavy, heavy if free else still)
     m_t = collision.effective_mass_tangential(
         heavy, r, inertia, heavy if free else still, r, inertia if free else still, spins
@@ -248,8 +286,9 @@ def derive(case: Case) -> Derived:
     k_n, k_s = stiffness(case)
     e_n, e_s, _, _ = restitution(case)
     n_grain, n_fixed, meet = counts(case)
-    lightest = pair(case, d_min, meet)
-    shortest = min(lightest.t_col, lightest.t_undamped)
+    lightest, limits = pair(case, d_min, meet), step_limit(case, d_min, meet)
+    tension = case.contact.parting == "tension"
+    shortest = collision.shortest_contact(lightest.m, k_n, lightest.zeta_n, tension)
     if case.time.step is not None:
         dt = case.time.step
     else:
@@ -288,6 +327,8 @@ def derive(case: Case) -> Derived:
         meet=meet,
         shortest=shortest,
         dt=dt,
+        step_limit=min(limits),
+        step_limit_shear=limits[1],
         steps_per_contact=shortest / dt if dt > 0.0 else math.nan,
         u_star=u_star,
         tau_star=tau_star,
@@ -309,6 +350,7 @@ def resolved(case: Case) -> dict[str, Any]:
         data["contact"] |= {"restitution": found.e_n, "restitution_shear": found.e_s}
     data["motion"] |= {"slope": math.tan(found.slope), "slope_angle": found.slope}
     data["motion"]["slab_width"] = case.motion.slab_width or found.d
+    data["record"]["events"] = events_of(case)
     data["time"] |= {"step": found.dt, "steps_per_contact": found.steps_per_contact}
     if case.water is not None:
         data["water"] |= {"u_star": found.u_star, "tau_star": found.tau_star, "roughness": found.k_rough}

@@ -2,11 +2,18 @@
 
 import math
 
+from ryusa.casefile.builders import Packing, Table
+from ryusa.casefile.derive import events_of
 from ryusa.casefile.schema import Case
+from ryusa.model.contacts import N_EVENT
 
 BYTES_PER_GRAIN = 112  # of a frame: x, v, omega and what ParaView needs beside them
 BYTES_PER_FRAME = 8192  # headers of one write-once part
-MEMORY_PER_GRAIN = 1000  # bytes while running
+MEMORY_PER_GRAIN = 450  # bytes while running without records of contacts
+MEMORY_WITH_EVENTS = 1600  # bytes a grain where contacts are recorded
+BYTES_PER_EVENT = 8 * N_EVENT
+EVENTS_ALONE = 20.0  # contacts that end per second, of a saltating or dropped grain
+EVENTS_DENSE = 20.0  # of a grain among others, per sqrt(d/g); between 3 and 50 where counted
 SECONDS_PER_STEP = 1.0e-6  # of any step, and per grain in it, on one core of an ordinary machine
 SECONDS_PER_GRAIN = 1.0e-7
 SECONDS_PER_SALTATION = 0.15  # simulated, where only a number of saltations ends the run
@@ -37,13 +44,34 @@ def frames_expected(case: Case) -> int:
 
 
 def disk_needed(case: Case) -> int:
-    """Bytes that the frames of a run will take; contact events come on top."""
+    """Bytes that the frames of a run will take; contacts recorded come on top."""
     return frames_expected(case) * (case.derived.n_grain * BYTES_PER_GRAIN + BYTES_PER_FRAME)
+
+
+def events_expected(case: Case) -> int:
+    """Contacts recorded, by a rule of thumb."""
+    kept, n = events_of(case), case.derived.n_grain
+    if kept == "tracked":
+        n = len(set(case.record.tracked))
+    rate = EVENTS_ALONE
+    if isinstance(case.build, Packing | Table) and case.derived.meet:
+        rate = max(rate, EVENTS_DENSE * math.sqrt(case.derived.g / case.derived.d))
+    return 0 if kept == "none" else math.ceil(n * rate * time_expected(case)[0])
+
+
+def disk_for_events(case: Case) -> int:
+    """Bytes that the contacts recorded will take, by a rule of thumb."""
+    return events_expected(case) * BYTES_PER_EVENT
+
+
+def memory_per_grain(case: Case) -> int:
+    """Bytes of memory a grain takes while running."""
+    return MEMORY_PER_GRAIN if events_of(case) == "none" else MEMORY_WITH_EVENTS
 
 
 def memory_needed(case: Case) -> int:
     """Bytes of memory the grains will take while running."""
-    return (case.derived.n_grain + case.derived.n_fixed) * MEMORY_PER_GRAIN
+    return (case.derived.n_grain + case.derived.n_fixed) * memory_per_grain(case)
 
 
 def seconds_needed(case: Case) -> float:

@@ -4,17 +4,21 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
+import numpy as np
+
 from ryusa.casefile import estimate
 from ryusa.casefile.builders import Drop, Packing
-from ryusa.casefile.derive import Derived, Pair, terminal_velocity, water_speed
-from ryusa.casefile.schema import Case, StiffnessForOverlap, StiffnessForTime
-from ryusa.laws import collision, drag
+from ryusa.casefile.derive import MANY, Derived, Pair, events_of, terminal_velocity, water_speed
+from ryusa.casefile.schema import Case, StiffnessForOverlap, StiffnessForTime, Water
+from ryusa.casefile.table import table_of
+from ryusa.laws import collision, drag, torque
 from ryusa.units import format_quantity
 
 BAND = (1.0e-3, 1.0e-2)  # overlap over d of stable and free motion: the paper, fig11
 SKIMMING = 0.3  # u t/d beyond which contacts end by geometry, not by Eq. (8)
 FAR_APART = 1.5  # ratio of tangential to normal half period from which e_s is not defined
 FEWEST_STEPS = 10.0
+CLOSE = 0.5  # part of the largest stable step beyond which a step is too close to it
 ROUND = 3600.0  # [s]
 
 
@@ -70,15 +74,7 @@ _SHOWN = {  # unit asked for: (SI unit of the value, unit shown)
 def _grain(case: Case, found: Derived) -> list[Row]:
     wet = case.water
     at = "mean diameter" if found.d_max > found.d_min else "diameter"
-    rows = [
-        _row(
-            "grains",
-            at,
-            found.d,
-            "cm",
-            "grains.diameter",
-        )
-    ]
+    rows = [_row("grains", at, found.d, "cm", "grains.diameter")]
     if found.d_max > found.d_min:
         rows += [
             _row("grains", "smallest diameter", found.d_min, "cm", "lower end of the sizes"),
@@ -87,31 +83,17 @@ def _grain(case: Case, found: Derived) -> list[Row]:
     rows += [
         Row("grains", "free grains", found.n_grain, "", str(found.n_grain), f"builder '{case.build.kind}'"),
         Row("grains", "fixed grains", found.n_fixed, "", str(found.n_fixed), f"builder '{case.build.kind}'"),
-        _row(
-            "grains", "mass m", found.m, "kg", "rho_s A_3 d^3: grains weigh as spheres, in a plane scene too"
-        ),
+        _row("grains", "mass m", found.m, "kg", "rho_s A_3 d^3: grains weigh as spheres, in a plane too"),
     ]
     if wet is not None:
+        added = f"rho_w C_M A_3 d^3, C_M = {wet.added_mass:g}; in the inertia"
+        weight = "(rho_s - rho_w) A_3 d^3: what gravity sees"
         rows += [
-            _row(
-                "grains",
-                "added mass",
-                found.m_added,
-                "kg",
-                f"rho_w C_M A_3 d^3, C_M = {wet.added_mass:g}; in the inertia",
-            ),
-            _row(
-                "grains",
-                "mass under water",
-                found.m_weight,
-                "kg",
-                "(rho_s - rho_w) A_3 d^3: what gravity sees",
-            ),
+            _row("grains", "added mass", found.m_added, "kg", added),
+            _row("grains", "mass under water", found.m_weight, "kg", weight),
         ]
-    rows.append(
-        _row("grains", "moment of inertia", found.inertia, "kg m2", "m d^2/10, never with added mass")
-    )
-    return rows
+    inertia = "m d^2/10, never with added mass"
+    return [*rows, _row("grains", "moment of inertia", found.inertia, "kg m2", inertia)]
 
 
 def _contact(case: Case, found: Derived) -> list[Row]:
@@ -165,16 +147,8 @@ def _damping(case: Case, found: Derived) -> list[Row]:
 
 def _shear(case: Case, name: str, pair: Pair) -> list[Row]:
     if math.isinf(pair.t_shear):
-        return [
-            Row(
-                "damping",
-                f"tangential half period {name}",
-                "none",
-                "",
-                "none",
-                "k_s = 0: no tangential spring",
-            )
-        ]
+        none = "k_s = 0: no tangential spring"
+        return [Row("damping", f"tangential half period {name}", "none", "", "none", none)]
     ratio = pair.t_shear / pair.t_undamped
     locked = "locked" if case.motion.rotation == "locked" else "free"
     how = f"{ratio:.3g} normal half periods, rotation {locked}"
@@ -189,13 +163,7 @@ def _step(case: Case, found: Derived) -> list[Row]:
     rows: list[Row] = []
     for name, pair in (("on fixed", found.fixed), ("between grains", found.free)):
         rows += [
-            _row(
-                "time",
-                f"collision time {name}",
-                pair.t_undamped,
-                "s",
-                "Eq. (8), added mass counted, no dashpot",
-            ),
+            _row("time", f"collision time {name}", pair.t_undamped, "s", "Eq. (8), added mass, no dashpot"),
             _row("time", f"contact time {name}", pair.t_col, "s", f"damped, {case.contact.parting}"),
         ]
     who = "two free grains" if found.meet else "a grain on a fixed one"
@@ -205,9 +173,14 @@ def _step(case: Case, found: Derived) -> list[Row]:
     )
     few = found.steps_per_contact < FEWEST_STEPS
     advice = "; fewer than the ten that the paper asks for: restitution will be off" if few else ""
+    which = "tangential" if found.step_limit_shear == found.step_limit else "normal"
+    close = found.dt > CLOSE * found.step_limit
+    limit = f"{which} motion in one contact; dt is {found.dt / found.step_limit:.2g} of it"
+    limit += ", and grains in several contacts need less" if close else ""
     return [
         *rows,
         _row("time", "shortest contact", found.shortest, "s", f"{who}, {size} grains"),
+        _row("time", "largest stable step", found.step_limit, "s", limit, "warning" if close else ""),
         _row("time", "dt", found.dt, "s", given),
         _row(
             "time",
@@ -255,30 +228,14 @@ def _impact(case: Case, found: Derived) -> list[Row]:
         else "in the stable band"
     )
     advice = "; stiffen k_n" if overlap > high else "; k_n could be softer" if overlap < low else ""
-    rows.append(
-        _row(
-            "impact",
-            "largest overlap/d",
-            overlap,
-            "-",
-            f"on a fixed grain: {verdict} 0.001-0.01{advice}",
-            flag,
-        )
-    )
+    how = f"on a fixed grain: {verdict} 0.001-0.01{advice}"
+    rows.append(_row("impact", "largest overlap/d", overlap, "-", how, flag))
     if isinstance(case.build, Packing):
         weight = case.build.layers * found.m_weight * found.g * math.cos(found.slope)
         rest = weight / (found.k_n * found.d)
         deep: Literal["", "warning"] = "warning" if rest > high else ""
-        rows.append(
-            _row(
-                "impact",
-                "overlap/d at rest",
-                rest,
-                "-",
-                f"{case.build.layers} layers stacked in a column",
-                deep,
-            )
-        )
+        how = f"{case.build.layers} layers stacked in a column"
+        rows.append(_row("impact", "overlap/d at rest", rest, "-", how, deep))
     along, where = _speed_along(case, found)
     if along > 0.0:
         travel = along * found.fixed.t_col / found.d
@@ -310,25 +267,10 @@ def _water(case: Case, found: Derived) -> list[Row]:
         if wet.depth is not None and found.slope > 0.0:
             implied = math.sqrt(found.g * wet.depth * math.sin(found.slope))
             apart = abs(implied / found.u_star - 1.0) > 0.1
-            rows.append(
-                _row(
-                    "water",
-                    "u_star of slope and depth",
-                    implied,
-                    "m/s",
-                    "sqrt(g h sin(slope)), to compare",
-                    "note" if apart else "",
-                )
-            )
-        rows.append(
-            _row(
-                "water",
-                "roughness Re",
-                found.u_star * found.k_rough / wet.viscosity,
-                "-",
-                "u_star k_rough/nu; rough above 70",
-            )
-        )
+            how, flag = "sqrt(g h sin(slope)), to compare", "note" if apart else ""
+            rows.append(_row("water", "u_star of slope and depth", implied, "m/s", how, flag))
+        rough = found.u_star * found.k_rough / wet.viscosity
+        rows.append(_row("water", "roughness Re", rough, "-", "u_star k_rough/nu; rough above 70"))
     settling = terminal_velocity(case)
     if math.isfinite(settling):
         rows += [
@@ -341,29 +283,54 @@ def _water(case: Case, found: Derived) -> list[Row]:
                 "settling velocity times d/nu",
             ),
         ]
-    return rows
+    return [*rows, *_spin(case, found, wet)]
+
+
+def _spin(case: Case, found: Derived, wet: Water) -> list[Row]:
+    spin, d = abs(case.build.spin) if isinstance(case.build, Drop) else 0.0, found.d
+    if (grid := table_of(case)) is not None:
+        spins, sizes = np.abs(grid.column("wy")), grid.column("d")
+        if not case.motion.plane:
+            spins = np.sqrt(spins**2 + grid.column("wx") ** 2 + grid.column("wz") ** 2)
+        fastest = int(np.argmax(np.where(grid.fixed, 0.0, spins * sizes**2)))
+        spin, d = float(spins[fastest]), float(sizes[fastest])
+    if wet.torque == "none" or spin == 0.0:
+        return []
+    beyond = wet.torque == "Dennis" and not torque.torque_in_range(spin, d, wet.viscosity)
+    how = f"d^2 spin/nu of the first spin, {spin:.4g} rad/s"
+    how += "; torque Dennis is fitted up to 4000 only" if beyond else ""
+    re_r = torque.reynolds_spin(spin, d, wet.viscosity)
+    return [_row("water", "rotational Re", re_r, "-", how, "warning" if beyond else "")]
 
 
 def _cost(case: Case) -> list[Row]:
     simulated, origin = estimate.time_expected(case)
     steps, frames = estimate.steps_expected(case), estimate.frames_expected(case)
     seconds, disk = estimate.seconds_needed(case), estimate.disk_needed(case)
+    memory, each = estimate.memory_needed(case), estimate.memory_per_grain(case)
     wall = f"{seconds / ROUND:.3g} h" if seconds > ROUND else f"{seconds:.3g} s"
     return [
         _row("cost", "simulated time", simulated, "s", origin),
         Row("cost", "steps", steps, "", f"{steps:,}", "simulated time over dt"),
         Row("cost", "frames", frames, "", f"{frames:,}", f"one every {case.record.frames:g} s"),
-        Row("cost", "disk for frames", disk, "B", human(disk), "contact events come on top"),
-        Row(
-            "cost",
-            "memory",
-            estimate.memory_needed(case),
-            "B",
-            human(estimate.memory_needed(case)),
-            "1 kB a grain",
-        ),
+        Row("cost", "disk for frames", disk, "B", human(disk), "positions, velocities and spins"),
+        *_events(case),
+        Row("cost", "memory", memory, "B", human(memory), f"{each} B a grain, events {events_of(case)}"),
         Row("cost", "wall time", seconds, "s", wall, "rule of thumb, one core"),
     ]
+
+
+def _events(case: Case) -> list[Row]:
+    kept, asked = events_of(case), case.record.events
+    origin = "record.events"
+    if asked is None:
+        origin = f"all up to {MANY} free grains, or where saltations end the run; record.events not given"
+    rows = [Row("cost", "contacts recorded", kept, "", kept, origin, "" if asked else "note")]
+    if kept != "none":
+        n_row, size = estimate.events_expected(case), estimate.disk_for_events(case)
+        how = f"about {n_row:,} contacts, rule of thumb"
+        rows.append(Row("cost", "disk for events", size, "B", human(size), how))
+    return rows
 
 
 def human(size: float) -> str:

@@ -205,7 +205,8 @@ class Water(Section):
     depth: PositiveLength | None = None
     """Water depth above the zero; unlimited when not given."""
     above: Literal["continue", "hold", "dry"] = "continue"
-    """Above the depth: the profile goes on, the surface speed goes on, or no drag."""
+    """Above the depth: the profile goes on, the surface speed goes on, or (dry) the water neither drags nor
+    turns a grain; buoyancy and added mass stay as under water."""
     density: Annotated[Density, Field(ge=1.0e-3, le=1.0e6)] = 1000.0
     """Density of water, rho_w."""
     viscosity: Annotated[Viscosity, Field(ge=1.0e-12, le=1.0e3)] = 1.0e-6
@@ -283,8 +284,9 @@ class Record(Section):
 
     frames: Duration = 1.0e-3
     """Time between frames."""
-    events: Literal["all", "tracked", "none"] = "all"
-    """Contacts recorded: all, those of tracked grains, or none."""
+    events: Literal["all", "tracked", "none"] | None = None
+    """Contacts recorded: all, those of tracked grains, or none; when not given, all up to 1000 free grains
+    or where saltations end the run, else none."""
     tracked: tuple[Annotated[Count, Field(ge=0)], ...] = ()
     """Ids of tracked grains."""
     settle: Moment = 0.0

@@ -164,8 +164,8 @@ def shortest_contact(m: float, k_n: float, zeta: float, tension: bool) -> float:
 
     Notes
     -----
-    Without tension damping shortens a contact up to zeta of about 0.6, with tension never: the smaller of
-    Eq. (8) and the damped time.
+    Source: the smaller of Eq. (8) and the damped time. Damping shortens a contact without tension and
+    lengthens one with it.
 
     Examples
     --------
