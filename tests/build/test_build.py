@@ -12,8 +12,11 @@ from ryusa.build import build, change, scene
 from ryusa.build.layout import Layout, Wall
 from ryusa.build.overlaps import refuse_overlaps
 from ryusa.casefile import Case, Change, read_text
-from ryusa.casefile.derive import periodic
+from ryusa.casefile.derive import drag_coefficient, periodic, water_speed
+from ryusa.engine import march
+from ryusa.engine.numbers import numbers_of
 from ryusa.errors import CaseError
+from ryusa.laws import drag
 from ryusa.model.enums import Damping, Drag, EventRule, Profile
 
 BASE = """
@@ -364,3 +367,38 @@ def test_records_of_contacts_are_kept_for_few_grains_and_left_out_for_many() -> 
         build(case("{ kind = 'saltation', starts = 1001 }", stop__saltations="3")).scene.events
         == EventRule.ALL
     )
+
+
+@pytest.mark.parametrize("above", ["continue", "hold", "dry"])
+@pytest.mark.parametrize("profile", ["log rough", "log smooth", "uniform", "still"])
+def test_case_and_engine_read_the_same_water(profile: str, above: str) -> None:
+    shear = (
+        "tau_star = 0.3,"
+        if profile.startswith("log")
+        else "speed = '0.3 m/s',"
+        if profile == "uniform"
+        else ""
+    )
+    one = case(
+        "{ kind = 'drop', height = '1 cm' }",
+        water=f"{{ profile = '{profile}', {shear} zero = '0 m', depth = '2 cm', above = '{above}' }}",
+    )
+    water = build(one).scene.water
+    numbers = numbers_of(build(one).scene)
+    for z in (-1e-3, 1e-5, 1e-3, 0.019, 0.03):
+        expected = march.water_speed(int(water.profile), int(water.above), z, numbers)
+        if above == "dry" and z > water.depth:
+            expected = 0.0  # the engine leaves drag out altogether
+        assert water_speed(one, z) == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    "law", ["24/Re+0.4", "24/Re+2", "constant", "Schiller-Naumann", "Ferguson-Church sand"]
+)
+def test_case_and_engine_read_the_same_drag(law: str) -> None:
+    one = case("{ kind = 'drop', height = '1 cm' }", water=f"{{ profile = 'still', drag = '{law}' }}")
+    made = build(one).scene
+    for speed in (1e-4, 0.1, 1.0):
+        c_d = drag_coefficient(one, drag.reynolds(speed, 0.002, 1e-6))
+        expected = drag.drag_factor(speed, c_d, 1000.0, math.pi / 4, 0.002)
+        assert march.drag_of(int(made.water.drag), speed, 0.002, numbers_of(made)) == pytest.approx(expected)
