@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from ryusa.measure import energy, rows_of, spin, tracks, write_csv
-from ryusa.model import Book
-from ryusa.results.schema import TALLY
+from ryusa.model import Book, Tally
+from ryusa.model.tally import HELD
+from ryusa.results.schema import TALLY, tally_row
 
 
 def test_spin_is_averaged_after_settling_and_set_against_distance(make):
@@ -47,6 +48,22 @@ def test_the_energy_account_closes_where_its_terms_say_so():
     tally["slide"] = np.array([0.0, 0.0, 0.05])
     assert energy(SimpleNamespace(tally=tally)).residual == pytest.approx(0.05)
     assert found.rows()[2]["given_drag_J"] == 0.2
+
+
+def test_the_residual_is_that_of_the_tally_wherever_heights_begin():
+    values = {"kinetic": 0.5, "potential": 0.4, "dash_n": 0.3, "switch": 0.1, "step": 0.02, "start": 1.0}
+    for height in (0.0, 1.0e3):
+        lifted = {**values, "potential": values["potential"] + height, "start": values["start"] + height}
+        one = Tally(
+            t=0.0, **{name: lifted.get(name, 0.0) for name in HELD},
+            books=tuple(lifted.get(book.name.lower(), 0.0) for book in Book),
+            overlap_max=0.0, overlap_grain=0, overlap_step=0, speed_max=0.0, spin_max=0.0, n_contact=0,
+        )  # fmt: skip
+        rows = np.array([tally_row(one)], dtype=TALLY)
+        found = energy(SimpleNamespace(tally={name: rows[name] for name in TALLY.names}))
+        assert found.residual == pytest.approx(one.residual, rel=1e-9)
+        assert one.residual == pytest.approx(0.08 / 0.5, rel=1e-9)
+        assert found.rows()[0]["given_step_J"] == 0.02
 
 
 def test_csv_reads_back_without_loss(make, tmp_path):

@@ -26,6 +26,7 @@ _NAMES = {
     "torque": "torque of the water",
     "lift": "lift",
     "switch": "timeline",
+    "step": "the step",
 }
 
 
@@ -36,7 +37,7 @@ def energy(found: Energy) -> Figure:
     unit, name = _prefix(found)
     for k, (term, values) in enumerate(_alive(found.held)):
         base = values[0] if term == "potential" else 0.0
-        label = "potential, change" if term == "potential" else _NAMES[term]
+        label = "potential, change" if term == "potential" else _NAMES.get(term, term)
         held.plot(
             found.t, (values - base) / unit, style.LINES[k // 4], color=style.COLOURS[k % 7], label=label
         )
@@ -45,7 +46,8 @@ def energy(found: Energy) -> Figure:
         for term, values in _alive(terms):
             line = style.LINES[order // len(style.COLOURS)]
             colour = style.COLOURS[order % len(style.COLOURS)]
-            flow.plot(found.t, sign * values / unit, line, color=colour, label=f"{word} {_NAMES[term]}")
+            label = f"{word} {_NAMES.get(term, term)}"
+            flow.plot(found.t, sign * values / unit, line, color=colour, label=label)
             order += 1
     flow.plot(found.t, found.imbalance / unit, color="black", lw=0.8, ls=":", label="unexplained")
     for axes, text in ((held, f"held  ({name})"), (flow, f"given (+), lost (–)  ({name})")):

@@ -6,9 +6,7 @@ import numpy as np
 
 from ryusa.measure._run import Floats, Run
 from ryusa.model import Book
-from ryusa.model.tally import GIFTS, LOSSES
-
-HELD = ("kinetic", "spin", "potential", "spring_n", "spring_s", "spring_r")
+from ryusa.model.tally import GIFTS, HELD, LOSSES, residual_of
 
 
 @dataclass(frozen=True)
@@ -20,7 +18,7 @@ class Energy:
     t : times [s].
     held : energy in motion, height and springs, by name.
     lost : summed losses, by name.
-    given : summed gifts (drag, torque of the water, lift, switches), by name.
+    given : summed gifts (drag, torque of the water, lift, switches, the step), by name.
     start : energy at the first step [J].
     imbalance : what the account cannot explain [J].
     """
@@ -34,13 +32,9 @@ class Energy:
 
     @property
     def residual(self) -> float:
-        """Largest imbalance over the largest term of the account [-]."""
-        change = sum(self.held.values()) - self.start
-        terms = [one for name, one in self.held.items() if name != "potential"]
-        terms += [*self.lost.values(), *self.given.values(), np.asarray(change)]
-        largest = max((float(np.abs(one).max()) for one in terms if len(one)), default=0.0)
-        worst = float(np.abs(self.imbalance).max()) if len(self.imbalance) else 0.0
-        return worst / largest if largest > 0.0 else 0.0
+        """Largest imbalance over the largest term of the account [-], both over all frames."""
+        books = {Book[name.upper()]: one for name, one in {**self.lost, **self.given}.items()}
+        return residual_of(self.imbalance, self.held, {**books, Book.START: self.start})
 
     def rows(self) -> list[dict[str, object]]:
         """One dictionary per frame."""
@@ -61,8 +55,8 @@ def energy(run: Run) -> Energy:
     if len(tally["t"]) > 1 and not any(tally[name][0] for name in (*HELD, "start")):
         tally = {name: values[1:] for name, values in tally.items()}
     held = {name: np.asarray(tally[name], dtype=np.float64) for name in HELD}
-    lost = {Book(b).name.lower(): np.asarray(tally[Book(b).name.lower()], dtype=np.float64) for b in LOSSES}
-    given = {Book(b).name.lower(): np.asarray(tally[Book(b).name.lower()], dtype=np.float64) for b in GIFTS}
+    lost = {book.name.lower(): np.asarray(tally[book.name.lower()], dtype=np.float64) for book in LOSSES}
+    given = {book.name.lower(): np.asarray(tally[book.name.lower()], dtype=np.float64) for book in GIFTS}
     begin = np.asarray(tally["start"], dtype=np.float64)
     start = float(begin[-1]) if len(begin) else 0.0
     imbalance = sum(held.values()) - start - sum(given.values()) + sum(lost.values())

@@ -1,7 +1,11 @@
 """The energy account: every term summed by itself, none by difference."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import Any
+
+import numpy as np
 
 
 class Book(IntEnum):
@@ -27,6 +31,26 @@ LOSSES = (Book.DASH_N, Book.DASH_S, Book.SLIDE, Book.ROLL, Book.RELEASED_N, Book
 GIFTS = (Book.DRAG, Book.TORQUE, Book.LIFT, Book.SWITCH, Book.STEP)
 # Terms that say how large the account is. START and SWITCH are heights from an origin that is free to choose.
 SIZES = tuple(b for b in Book if b not in {Book.START, Book.SWITCH})
+HELD = ("kinetic", "spin", "potential", "spring_n", "spring_s", "spring_r")
+
+
+def residual_of(imbalance: Any, held: Mapping[str, Any], books: Mapping[Book, Any]) -> float:
+    """Largest imbalance over the largest term of an account [-], at one moment or over arrays of moments.
+
+    Terms are energies of motion and springs, each book of `SIZES`, and the change of held energy less what
+    the timeline gave: the same wherever heights are measured from.
+
+    Parameters
+    ----------
+    imbalance : what the account cannot explain [J].
+    held : energies by name, those of `HELD` [J].
+    books : work by book [J]; one that is missing counts as nothing.
+    """
+    change = sum(held.values()) - books.get(Book.START, 0.0) - books.get(Book.SWITCH, 0.0)
+    terms = [change, *(one for name, one in held.items() if name != "potential")]
+    terms += [books[book] for book in SIZES if book in books]
+    largest = max(float(np.abs(one).max(initial=0.0)) for one in map(np.asarray, terms))
+    return float(np.abs(np.asarray(imbalance)).max(initial=0.0)) / largest if largest > 0.0 else 0.0
 
 
 @dataclass(frozen=True)
@@ -62,19 +86,6 @@ class Tally:
 
     @property
     def residual(self) -> float:
-        """Imbalance over the largest term of the account [-].
-
-        Terms are energies of motion and springs, each book of `SIZES`, and the change of held energy less
-        what the timeline gave: the same wherever heights are measured from.
-        """
-        terms = [
-            self.kinetic,
-            self.spin,
-            self.spring_n,
-            self.spring_s,
-            self.spring_r,
-            self.held - self.books[Book.START] - self.books[Book.SWITCH],
-            *(self.books[b] for b in SIZES),
-        ]
-        largest = max(abs(term) for term in terms)
-        return abs(self.imbalance) / largest if largest > 0.0 else 0.0
+        """Imbalance over the largest term of the account [-], see `residual_of`."""
+        held = {name: getattr(self, name) for name in HELD}
+        return residual_of(self.imbalance, held, dict(zip(Book, self.books, strict=True)))

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from ryusa.model import Book, Tally
+from ryusa.model.tally import HELD
 
 FORMAT = 1  # raised when an older reader could misread a folder
 
@@ -36,7 +37,7 @@ FRAME_DATASETS = {
 PER_GRAIN = ("x", "v", "omega", "image")
 
 _INTEGER = {"overlap_grain", "overlap_step", "n_contact"}
-_NOW = ("t", "kinetic", "spin", "potential", "spring_n", "spring_s", "spring_r")
+_NOW = ("t", *HELD)
 _EXTREME = ("overlap_max", "overlap_grain", "overlap_step", "speed_max", "spin_max", "n_contact")
 _CHECK = ("imbalance", "residual")
 # one row per frame: terms of Tally, then Book in lower case, then what the account cannot explain
