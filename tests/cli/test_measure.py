@@ -1,4 +1,5 @@
 import csv
+import json
 
 import pytest
 from typer.testing import CliRunner
@@ -58,7 +59,7 @@ def test_every_picture_is_drawn_with_its_numbers_beside_it(folder, tmp_path, wha
         (("measure", "{}", "saltation", "--rise", "-1"), "rise"),
         (("draw", "{}", "trakcs"), "Did you mean 'tracks'"),
         (("draw", "{}", "tracks", "--grain", "9"), "--grain"),
-        (("draw", "{}", "tracks", "--begin", "99 s"), "two frames"),
+        (("draw", "{}", "tracks", "--begin", "99 s"), "two frames from t = 99 s to 0.4 s"),
         (("draw", "{}", "tracks", "--exaggeration", "0"), "exaggeration"),
         (("draw", "{}", "tracks", "-o", "picture.bmp"), ".png"),
         (("measure", "no-such-run", "saltation"), "no-such-run"),
@@ -75,3 +76,34 @@ def test_a_run_without_hops_says_so(folder):
     result = call("measure", folder, "saltation", "--settle", "99 s")
     assert result.exit_code == 0, result.output
     assert "0 hops" in result.output
+
+
+@pytest.fixture(scope="module")
+def unsettled(tmp_path_factory):
+    """A run that ended while it settled, as one does that is interrupted."""
+    folder = tmp_path_factory.mktemp("runs") / "unsettled"
+    run(read(case_path("drop.toml"), {"stop.time": "3 ms", "record.settle": "0 s"}), folder, progress=False)
+    case = json.loads((folder / "case.json").read_text())
+    case["record"]["settle"] = 1.0
+    (folder / "case.json").write_text(json.dumps(case))
+    return folder
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        *(("draw", what) for what in ("tracks", "hops", "contacts")),
+        *(("measure", what) for what in ("saltation", "collisions", "spin")),
+    ],
+)
+def test_a_run_that_ended_while_settling_says_so(unsettled, words):
+    result = call(words[0], unsettled, words[1])
+    assert result.exit_code == 2, result.output
+    assert "ends at t = 0.003 s" in result.output
+    assert "record.settle = 1 s" in result.output
+
+
+def test_a_run_that_ended_while_settling_is_measured_on_request(unsettled, tmp_path):
+    assert call("measure", unsettled, "spin", "--settle", "0 s").exit_code == 0
+    picture = tmp_path / "tracks.svg"
+    assert call("draw", unsettled, "tracks", "--begin", "0 s", "-o", picture).exit_code == 0

@@ -33,7 +33,11 @@ def measure(
 ) -> None:
     """Print averages with standard error, window and steadiness; --csv keeps the numbers."""
     _within("--rise", rise, 0.0, 100.0)
-    found = _measured(_open(run), _known(what, MEASURES, "measure"), _seconds(settle), rise)
+    results, begin = _open(run), _seconds(settle)
+    _known(what, MEASURES, "measure")
+    if begin is None and what in {"saltation", "collisions", "spin"}:
+        _need_settled(results, "say --settle 0s to see what is there")
+    found = _measured(results, what, begin, rise)
     averages = getattr(found, "averages", None)
     if averages is not None:
         _print(averages)
@@ -102,7 +106,9 @@ def _picture(
         begin = settle_time(results) if window[0] is None else window[0]
         end = float("inf") if window[1] is None else window[1]
         paths = measure.tracks(results, grains if grains is not None else [0], begin, end)
-        _need(len(paths.t) > 1, results, "two frames in that window")
+        if len(paths.t) < 2 and window[0] is None:
+            _need_settled(results, "say --begin 0s to see what is there")
+        _need(len(paths.t) > 1, results, f"two frames from t = {begin:g} s to {_last(results, end):.3g} s")
         return figures.tracks(paths, exaggeration=exaggeration, length=length), paths.rows()
     if what == "spin":
         spins = measure.spin(results)
@@ -112,6 +118,7 @@ def _picture(
         account = measure.energy(results)
         _need(len(account.t) > 1, results, "two frames")
         return figures.energy(account), account.rows()
+    _need_settled(results, "hops are measured after it")
     hops = measure.saltation(results)
     _need(len(hops.hops) > 0, results, "hops over fixed grains after the settling time")
     if what == "hops":
@@ -191,6 +198,24 @@ def _need(there: bool, results: "Results", what: str) -> None:
         from ryusa.errors import ResultsError
 
         raise ResultsError(f"{results.folder}: does not hold {what}")
+
+
+def _need_settled(results: "Results", what_to_do: str) -> None:
+    from ryusa.measure._run import settle_time
+
+    settle, last = settle_time(results), _last(results)
+    if last <= settle and settle > 0.0:
+        from ryusa.errors import ResultsError
+
+        raise ResultsError(
+            f"{results.folder}: {results.status}, ends at t = {last:.3g} s, before its settling time is over "
+            f"(record.settle = {settle:g} s); {what_to_do}"
+        )
+
+
+def _last(results: "Results", end: float = float("inf")) -> float:
+    """End of a window [s]: `end`, or the last frame where that comes before."""
+    return min(end, float(results.frames.t[-1])) if len(results.frames) else 0.0
 
 
 def _csv(path: Path, rows: list[dict[str, object]]) -> Path:
