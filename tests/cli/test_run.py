@@ -3,6 +3,7 @@ import os
 import signal
 import subprocess
 import sys
+from contextlib import suppress
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -11,6 +12,7 @@ import pytest
 from typer.testing import CliRunner
 
 import ryusa
+from ryusa import build
 from ryusa.cli import app
 from ryusa.running import folder as folder_module
 from ryusa.running import runner
@@ -191,6 +193,33 @@ def test_ctrl_c_ends_with_exit_code_130_and_readable_frames(
     assert results.status == "interrupted"
     assert len(results.frames) > 5
     assert "Ctrl-C" in results.provenance["message"]
+
+
+def test_ctrl_c_before_the_first_step_ends_with_exit_code_130(
+    ryusa_: Any, drop: str, here: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def swallowed(case: Any) -> Any:
+        with suppress(KeyboardInterrupt):  # as a callback of the compiler does
+            os.kill(os.getpid(), signal.SIGINT)
+        return built(case)
+
+    built = build.build
+    monkeypatch.setattr(build, "build", swallowed)
+    done = ryusa_("run", drop)
+    assert done.code == 130
+    assert "ryusa: interrupted: Ctrl-C before the first step" in done.err
+    assert not (here / "runs").exists()
+
+
+def test_ctrl_c_in_any_command_is_one_line_and_exit_code_130(
+    ryusa_: Any, drop: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(case: Any) -> Any:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(build, "build", interrupted)
+    done = ryusa_("check", drop)
+    assert (done.code, done.err) == (130, "ryusa: interrupted\n")
 
 
 def test_a_bug_is_not_swallowed(ryusa_: Any, drop: str, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -124,3 +124,28 @@ def test_collisions_give_back_restitution_and_share_of_eq_8(make):
     assert found.averages["overlap_over_d"].value == pytest.approx(0.005)
     np.testing.assert_allclose(found.expected, 2.9184 * np.sqrt((make.m + make.added) / 1.0e4), rtol=1e-4)
     assert len(collisions(run, partner="free").events) == 0
+
+
+def test_a_contact_whose_bed_grain_was_taken_away_counts_but_has_no_length(make):
+    t, x, v, events = make.hopping([2.0e-3] * 4)
+    whole = make.run_of(t, x[:, None], v[:, None], events)
+    cut = events.copy()
+    cut["closing_end"][1], cut["alone"][1] = np.nan, 0.0
+    cut["t_end"][1] = cut["t_begin"][1] + 0.1 * make.t_col
+    cut["slip_end"][1] = np.nan
+    run = make.run_of(t, x[:, None], v[:, None], cut)
+    assert len(saltation(run).bounces) == len(saltation(whole).bounces)
+    np.testing.assert_allclose(saltation(run).contact_time, make.t_col)
+    assert len(saltation(run).contact_time) == len(saltation(whole).contact_time) - 1
+
+
+def test_restitution_leaves_out_contacts_whose_partner_was_taken_away(make):
+    t, x, v, events = make.hopping([2.0e-3] * 4)
+    cut = events.copy()
+    cut["closing_end"][1] = np.nan
+    found = collisions(make.run_of(t, x[:, None], v[:, None], cut), "bed")
+    assert len(found.events) == len(events)
+    assert np.isnan(found.restitution[1])
+    assert np.isnan(found.duration[1])
+    assert np.isfinite(np.delete(found.restitution, 1)).all()
+    assert found.averages["duration"].n == len(events) - 1

@@ -246,3 +246,120 @@ def test_a_case_is_run_with_its_text_and_resolved_form(tmp_path: Path, engine: A
     assert results.case["stop"]["time"] == 0.005
     assert results.provenance["overrides"] == {"stop.time": "5 ms"}
     assert results.provenance["seed"] == case.seed
+
+
+def test_an_entry_of_the_timeline_is_logged_as_the_case_says_it(tmp_path: Path, engine: Any) -> None:
+    import ryusa
+
+    text = (Path(ryusa.__file__).parent / "cases" / "drop.toml").read_text(encoding="utf-8")
+    text += '\n[[timeline]]\nat = "1 ms"\nslope_angle = "10 deg"\n'
+    text += '[[timeline]]\nat = "2 ms"\nslope = "1/10"\n'
+    (tmp_path / "fall.toml").write_text(text, encoding="utf-8")
+    case = ryusa.load(tmp_path / "fall.toml", {"stop.time": "3 ms", "timeline.1.slope": "1/20"})
+    ryusa.run(case, tmp_path / "run", engine=engine, progress=False)
+    log = (tmp_path / "run" / "log.txt").read_text()
+    assert " s: slope_angle 10 deg\n" in log
+    assert " s: slope 1/20\n" in log
+
+
+@pytest.mark.parametrize("left", [[], [".provenance.json.new"]])
+def test_a_folder_left_by_a_run_killed_as_it_began_is_used(go: Any, tmp_path: Path, left: list[str]) -> None:
+    (tmp_path / "run" / "parts").mkdir(parents=True)
+    for name in left:
+        (tmp_path / "run" / name).write_text("{")
+    assert go().complete
+    assert go(overwrite=True).complete
+
+
+def test_empty_parts_behind_a_link_are_not_taken_for_ones_own(go: Any, tmp_path: Path) -> None:
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "run").mkdir()
+    (tmp_path / "run" / "parts").symlink_to(tmp_path / "elsewhere")
+    with pytest.raises(ResultsError, match="no run of ryusa"):
+        go()
+    assert not any((tmp_path / "elsewhere").iterdir())
+
+
+def test_a_place_that_cannot_be_written_is_not_said_to_be_full(
+    go: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refused(**_: Any) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(folder_module, "free_bytes", lambda place: 0)
+    monkeypatch.setattr(folder_module.tempfile, "TemporaryFile", refused)
+    with pytest.raises(ResultsError, match="cannot be written \\(Permission denied\\)"):
+        go()
+    assert not (tmp_path / "run").exists()
+
+
+@pytest.mark.skipif(not Path("/proc/self").is_dir(), reason="no /proc")
+def test_a_folder_under_proc_is_one_clear_error(go: Any) -> None:
+    with pytest.raises(ResultsError, match="cannot be written"):
+        go(folder="/proc/ryusa-run")
+
+
+def test_an_interrupt_before_the_first_step_leaves_no_folder(
+    go: Any, engine: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = signal.getsignal(signal.SIGINT)
+
+    def refuses(scene: Any) -> tuple[str, ...]:
+        os.kill(os.getpid(), signal.SIGINT)
+        return ()
+
+    monkeypatch.setattr(engine, "refuses", refuses)
+    with pytest.raises(KeyboardInterrupt, match="Ctrl-C before the first step"):
+        go()
+    assert not (tmp_path / "run").exists()
+    assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_an_interrupt_while_kernels_load_waits_and_ends_the_run(
+    go: Any, engine: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    load = engine.load
+
+    def interrupted(*arguments: Any) -> None:
+        try:
+            os.kill(os.getpid(), signal.SIGINT)
+            load(*arguments)
+        except KeyboardInterrupt:  # as a callback of the compiler does
+            load(*arguments)
+
+    monkeypatch.setattr(engine, "load", interrupted)
+    results = go()
+    assert results.status == "interrupted"
+    assert results.frames.step.tolist() == [0]
+
+
+def test_a_grain_that_spins_in_place_is_not_at_rest(
+    go: Any, engine: Any, scene_with: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from dataclasses import replace
+
+    engine.speed = lambda step: 0.0
+    state = engine.state
+
+    def spinning() -> Any:
+        now, spin = state(), 0.2 if state().step < 500 else 0.05  # rad/s; d/2 = 1 mm
+        return replace(now, omega=np.tile([0.0, spin, 0.0], (3, 1)))
+
+    monkeypatch.setattr(engine, "state", spinning)
+    stop = Stop(time=0.01, rest_speed=1e-4, rest_for=1e-3)
+    assert 600 <= go(scene=scene_with(3, rotation=True), stop=stop).summary["steps"] <= 625
+    assert go(scene=scene_with(3, rotation=False), stop=stop, overwrite=True).summary["steps"] <= 125
+
+
+def test_slow_kernels_are_explained_once(
+    go: Any, engine: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    import time
+
+    monkeypatch.setattr("ryusa.running.progress._PATIENCE", 0.02)
+    load = engine.load
+    monkeypatch.setattr(engine, "load", lambda *arguments: (time.sleep(0.2), load(*arguments)))
+    engine.on_advance = lambda step: time.sleep(0.2) if step == 1 else None
+    log = (go(progress=True, stop=Stop(time=1e-3)).folder / "log.txt").read_text()
+    assert log.count("compiling kernels") == 1
+    assert capsys.readouterr().err.count("compiling kernels") == 1

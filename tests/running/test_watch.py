@@ -1,4 +1,5 @@
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -166,3 +167,75 @@ def test_rest_begins_anew_whenever_a_grain_is_fast() -> None:
         False,
         True,
     ]
+
+
+def test_a_contact_cut_by_the_timeline_counts_but_says_nothing_of_restitution(
+    scene: Any, state: Any, event: Any, tally: Any
+) -> None:
+    watch = Watch(scene, state)
+    cut = event(0, 3, 0.0, 3e-5, closing_end=math.nan, slip_begin=[0.5, 0, 0], slip_end=[math.nan] * 3)
+    watch.contacts(cut)
+    whole = event(0, 3, 0.0, 1e-4, slip_begin=[0.5, 0, 0], slip_end=[-0.3, 0, 0])
+    watch.contacts(np.concatenate([cut, whole]))
+    found = watch.numbers(tally())
+    assert watch.n_contact == 3
+    assert found["restitution"]["fixed"] == {"n": 1, "mean": 0.7, "standard_error": None}
+    assert found["restitution_shear"]["sticking"]["fixed"]["mean"] == pytest.approx(0.6)
+    assert found["steps_per_contact"]["observed"]["n"] == 1
+
+
+def _dennis(scene_with: Any, **changes: Any) -> Any:
+    from ryusa.model import Water
+    from ryusa.model.enums import Profile, WaterTorque
+
+    water = Water(profile=Profile.STILL, nu=1e-6, rho_w=1000.0, torque=WaterTorque.DENNIS)
+    return scene_with(3, **{"water": water, "rotation": True, **changes})
+
+
+def test_spin_beyond_the_range_of_the_waters_torque_is_warned_of(
+    scene_with: Any, state: Any, event: Any, tally: Any
+) -> None:
+    def said(scene: Any, spin: float, frame: bool) -> list[str]:
+        watch = Watch(scene, state)
+        if frame:
+            watch.frame(replace(tally(), spin_max=spin))
+        else:
+            watch.contacts(event(0, 3, 0.0, 1e-4, omega_end=[0.0, -spin, 0.0]))
+        return [one for one in watch.warnings(tally()) if "Re_r" in one]
+
+    for frame in (True, False):
+        assert not said(_dennis(scene_with), 999.0, frame)  # R^2 omega/nu = 1000 at 1000 rad/s
+        assert "4.04e+03" in said(_dennis(scene_with), 1010.0, frame)[0]
+        assert not said(_dennis(scene_with, rotation=False), 1010.0, frame)
+        assert not said(scene_with(3, rotation=True), 1010.0, frame)
+
+
+def test_constant_dashpots_say_what_restitution_follows(scene_with: Any, state: Any, tally: Any) -> None:
+    from ryusa.laws.collision import restitution_no_tension, restitution_tension
+    from ryusa.model import ContactLaw
+    from ryusa.model.enums import Damping
+
+    law = ContactLaw(1e4, 2857.0, 0.5, damping=Damping.CONSTANTS, eta_n=0.1, eta_s=0.05)
+    scene = scene_with(3, rotation=False, contact=law)
+    numbers = Watch(scene, state).numbers(tally())
+    m = float(scene.m[0])
+    e_fixed = restitution_no_tension(0.05 / math.sqrt(1e4 * m))
+    e_free = restitution_no_tension(0.05 / math.sqrt(1e4 * m / 2))
+    assert numbers["restitution"]["follows"] == {
+        "fixed": pytest.approx(e_fixed),
+        "free": pytest.approx(e_free),
+    }
+    e_s = restitution_tension(0.025 / math.sqrt(2857.0 * m))
+    assert numbers["restitution_shear"]["follows"]["fixed"] == pytest.approx(e_s)
+    more = {"steps": 1, "frames": 2, "contacts": 0, "wall": 1.0, "particle_steps_per_second": 5e6}
+    text = "\n".join(closing_lines({**numbers, **more}))
+    assert f"restitution of constant dashpots {e_fixed:.4f} on fixed, {e_free:.4f} on free, got" in text
+    assert "asked nothing" not in text
+
+
+def test_closing_lines_name_every_book(scene: Any, state: Any, tally: Any) -> None:
+    from ryusa.model import Book
+
+    more = {"steps": 1, "frames": 2, "contacts": 0, "wall": 1.0, "particle_steps_per_second": 5e6}
+    text = "\n".join(closing_lines({**Watch(scene, state).numbers(tally()), **more}))
+    assert all(f"{book.name.lower()} " in text for book in Book)

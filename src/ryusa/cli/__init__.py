@@ -13,6 +13,7 @@ from ryusa.errors import RyusaError
 
 # one module per family of commands; each puts its commands on the app with `register(app)`
 _FAMILIES = ("ryusa.cli.run", "ryusa.cli.measure", "ryusa.cli.design", "ryusa.cli.paper")
+INTERRUPTED = 130  # exit code after Ctrl-C
 
 
 class Commands(TyperGroup):
@@ -25,6 +26,9 @@ class Commands(TyperGroup):
         except RyusaError as error:
             typer.echo(f"ryusa: {error}", err=True)
             raise typer.Exit(error.exit_code) from None
+        except KeyboardInterrupt as error:
+            typer.echo(f"ryusa: interrupted{f': {error}' if str(error) else ''}", err=True)
+            raise typer.Exit(INTERRUPTED) from None
 
     def list_commands(self, ctx: Any) -> list[str]:
         """Names of the commands in the order a newcomer meets them."""

@@ -22,7 +22,7 @@ Settings = Annotated[
 ]
 Seed = Annotated[int | None, typer.Option("--seed", help="Change the seed of the case.", show_default=False)]
 
-_INTERRUPTED = 130  # exit code after Ctrl-C
+_INTERRUPTED = 130  # exit code after Ctrl-C, as for any command
 _WIDE = 160  # columns of a table that goes to a file or pipe
 
 
@@ -113,10 +113,14 @@ def run(
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no closing lines.")] = False,
 ) -> None:
     """Run a case and write a run folder; Ctrl-C ends it with everything readable."""
-    found = _read(case, settings, seed)
-    from ryusa.running.runner import run as run_case
+    from ryusa.running.interrupt import listening
 
-    results = run_case(found, out, threads=threads, progress=not quiet, overwrite=overwrite)
+    with listening() as heard:  # before anything heavy is loaded
+        found = _read(case, settings, seed)
+        from ryusa.running.runner import run as run_case
+
+        heard.raise_if_asked("before the first step; no run folder was made")
+        results = run_case(found, out, threads=threads, progress=not quiet, overwrite=overwrite)
     if not quiet:
         folder = results.folder
         typer.echo(f"{folder}: {results.status}. Open {folder / 'grains.vtkhdf'} in ParaView")

@@ -100,6 +100,7 @@ def bounces_of(run: Run, grain: int, begin: float, rise: float, most: int | None
         hops[k] = _hop(grain, groups[k], groups[k + 1][0], flight, standing)
     kept = np.flatnonzero(bounces["t_begin"] >= begin)[:most]
     inside = np.concatenate([groups[k] for k in kept]) if len(kept) else events[:0]
+    inside = inside[np.isfinite(inside["closing_end"])]  # of the others the bed grain was taken away
     touch = inside["t_end"] - inside["t_begin"]
     return Bounces(hops[kept], bounces[kept], touch, touch[inside["alone"] > 0.0])
 

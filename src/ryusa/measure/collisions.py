@@ -46,7 +46,7 @@ class Collisions:
     Attributes
     ----------
     events : the records themselves, dtype model.EVENT.
-    duration : from first touch to the end of the normal force [s].
+    duration : from first touch to the end of the normal force [s]; nan where the partner was taken away.
     overlap : largest overlap over the smaller diameter [-].
     speed : closing speed at first touch [m/s].
     restitution : parting over closing speed of contacts that were alone, else nan [-].
@@ -119,10 +119,11 @@ def collisions(
     other = np.where(free, mass[np.where(free, j, 0)], np.inf) if scene.n_grain else np.zeros(0)
     pair = 1.0 / (1.0 / mass[i] + 1.0 / other)
     sizes = np.concatenate([scene.d, scene.d_fixed, np.full(scene.n_plane, np.inf)])
-    duration = events["t_end"] - events["t_begin"]
+    whole = np.isfinite(events["closing_end"])  # of the others the partner was taken away
+    duration = np.where(whole, events["t_end"] - events["t_begin"], np.nan)
     overlap = events["overlap_max"] / np.minimum(sizes[i], sizes[j])
     speed = events["closing_begin"]
-    alone = (events["alone"] > 0.0) & (speed > 0.0)
+    alone = whole & (events["alone"] > 0.0) & (speed > 0.0)
     e = np.divide(-events["closing_end"], speed, out=np.full(len(events), np.nan), where=alone)
     slip = np.linalg.norm(events["slip_begin"], axis=1)
     along = -np.einsum("ij,ij->i", events["slip_begin"], events["slip_end"])

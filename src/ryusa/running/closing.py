@@ -2,10 +2,13 @@
 
 from typing import Any
 
+from ryusa.model import Book
+from ryusa.model.tally import GIFTS, HELD, LOSSES
+
 _ACCOUNT = (
-    ("held", ("kinetic", "spin", "potential", "spring_n", "spring_s", "spring_r", "start")),
-    ("lost", ("dash_n", "dash_s", "slide", "roll", "released_n", "released_s", "released_r")),
-    ("given", ("drag", "torque", "lift", "switch")),
+    ("held", (*HELD, Book.START.name.lower())),
+    ("lost", tuple(book.name.lower() for book in LOSSES)),
+    ("given", tuple(book.name.lower() for book in GIFTS)),
 )
 
 
@@ -16,11 +19,11 @@ def closing_lines(summary: dict[str, Any]) -> list[str]:
         f"in {summary['wall']:.1f} s ({summary['particle_steps_per_second'] / 1e6:.2f} M particle-steps/s)",
         f"largest overlap/d {summary['overlap']['largest_over_d']:.3g} (stable band {_band(summary)})",
         _steps(summary["steps_per_contact"]),
-        f"restitution asked {_number(summary['restitution']['asked'])}, got {_got(summary['restitution'])}",
+        f"restitution {_asked(summary['restitution'])}, got {_got(summary['restitution'])}",
     ]
     shear = summary["restitution_shear"]
     lines.append(
-        f"tangential restitution asked {_number(shear['asked'])}, got sticking: {_got(shear['sticking'])}; "
+        f"tangential restitution {_asked(shear)}, got sticking: {_got(shear['sticking'])}; "
         f"sliding: {_got(shear['sliding'])}"
     )
     energy = summary["energy"]
@@ -56,5 +59,9 @@ def _got(averages: dict[str, Any]) -> str:
     return ", ".join(said) or "none (no isolated contact of two grains)"
 
 
-def _number(value: float | None) -> str:
-    return "nothing" if value is None else f"{value:g}"
+def _asked(restitution: dict[str, Any]) -> str:
+    """What the case asks for, or what its constant dashpots give the mean grain."""
+    if restitution["asked"] is not None:
+        return f"asked {restitution['asked']:g}"
+    follows = [f"{e:.4f} on {name}" for name, e in restitution["follows"].items() if e is not None]
+    return f"of constant dashpots {', '.join(follows)}" if follows else "asked nothing"

@@ -3,6 +3,7 @@
 import json
 import os
 import shutil
+import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -23,11 +24,15 @@ def prepare(folder: Path, *, overwrite: bool) -> None:
     Raises
     ------
     ResultsError : it exists (and `overwrite` is off, or it is no run of ryusa), or it cannot be written.
+
+    Notes
+    -----
+    A folder with an empty parts/ and nothing else was left by a run killed as it began; it is used.
     """
     try:
         if folder.is_symlink() or (folder.exists() and not folder.is_dir()):
             raise ResultsError(f"{folder}: is there and is not a folder. Choose another with -o")
-        if folder.exists() and any(folder.iterdir()):
+        if folder.exists() and any(folder.iterdir()) and not _just_begun(folder):
             if not is_run(folder):
                 raise ResultsError(
                     f"{folder}: is there, is no run of ryusa, and is left alone. Choose another with -o"
@@ -53,6 +58,17 @@ def is_run(folder: Path) -> bool:
     except (OSError, ValueError):
         return False
     return isinstance(found, dict) and "format" in found and "ryusa" in found
+
+
+def _just_begun(folder: Path) -> bool:
+    """True for a folder that holds what `prepare` makes and nothing a run wrote."""
+    parts, unfinished = folder / schema.PARTS, folder / f".{schema.PROVENANCE}.new"
+    return (
+        set(folder.iterdir()) <= {parts, unfinished}
+        and parts.is_dir()
+        and not parts.is_symlink()
+        and not any(parts.iterdir())
+    )
 
 
 def clear(folder: Path) -> None:
@@ -97,6 +113,27 @@ def _plain(value: Any) -> Any:
     return value
 
 
+def refuse_if_not_writable(folder: Path) -> None:
+    """Try a nameless file where `folder` is or will be.
+
+    Raises
+    ------
+    ResultsError : nothing can be written there.
+    """
+    try:
+        with tempfile.TemporaryFile(dir=_existing(folder)):
+            pass
+    except OSError as error:
+        raise ResultsError(
+            f"{folder}: cannot be written ({error.strerror or error}). Choose another with -o"
+        ) from error
+
+
+def _existing(folder: Path) -> Path:
+    """`folder`, or the nearest folder above it that is there."""
+    return next(place for place in (folder, *folder.absolute().parents) if place.is_dir())
+
+
 def refuse_if_too_big(folder: Path, n_frame: float, frame_bytes: int, interval: float) -> None:
     """Compare the frames to come with the free space on the disk.
 
@@ -104,7 +141,7 @@ def refuse_if_too_big(folder: Path, n_frame: float, frame_bytes: int, interval: 
     ------
     CaseError : they would not fit.
     """
-    existing = next(place for place in (folder, *folder.absolute().parents) if place.is_dir())
+    existing = _existing(folder)
     needed, free = n_frame * frame_bytes, free_bytes(existing)
     if needed > free:
         raise CaseError(

@@ -1,13 +1,12 @@
 """Steps until a stop rule is met, a fault is found, or somebody says stop."""
 
 import math
-import signal
-import threading
 import time
-from collections.abc import Generator
-from contextlib import contextmanager, nullcontext, suppress
+from contextlib import nullcontext, suppress
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from ryusa.engine.seam import Engine
 from ryusa.errors import RyusaError
@@ -16,6 +15,7 @@ from ryusa.results import schema
 from ryusa.running import provenance
 from ryusa.running.closing import closing_lines
 from ryusa.running.folder import write_json
+from ryusa.running.interrupt import Heard, listening
 from ryusa.running.progress import Moment, Progress
 from ryusa.running.recorder import Recorder
 from ryusa.running.stops import Hops, Rest, Stop
@@ -49,7 +49,7 @@ class Loop:
     message: str = ""
     _step: int = 0
     _t_zero: float = 0.0
-    _asked: str = ""  # who said stop
+    _heard: Heard = field(default_factory=Heard)
     _resting: bool = False
     _calls: int = 0
     _speed: float = 0.0  # steps per second, lately
@@ -59,7 +59,7 @@ class Loop:
     def run(self, state: State) -> None:
         """Run to the end, whatever it is; the run folder is whole when this returns or raises."""
         try:
-            with self._signals():
+            with listening() as self._heard:
                 self._run(state)
                 self.recorder.flush()
         except BaseException as error:
@@ -83,7 +83,7 @@ class Loop:
         look_every = self._look_every()
         with self.progress.patience(_COMPILING):
             self.engine.load(self.scene, state)
-        self.recorder.frame(self.engine.state(), self.engine.tally())
+        self._frame()
         self._change_if_due()
         self.recorder.flush()
         while not self._done(last):
@@ -93,17 +93,17 @@ class Loop:
             if not self._go_to(min(next_frame, next_change, next_look, last)):
                 continue
             if self._step == next_frame:
-                self.recorder.frame(self.engine.state(), self.engine.tally())
+                self._frame()
                 frame += 1
             if self._step == next_look and not self.changes:
-                self._resting = self._rest.reached(self._t, self.engine.tally().speed_max)
+                self._resting = self._rest.reached(self._t, self._fastest())
             self._change_if_due()
             if self.recorder.flush_if_due():
                 write_json(self.recorder.folder / schema.SUMMARY, self._summary())
 
     def _go_to(self, target: int) -> bool:
         """Advance to a step in calls of bounded wall time; False when somebody said stop on the way."""
-        while self._step < target and not self._asked:
+        while self._step < target and not self._heard.by:
             self._advance(min(target - self._step, self._chunk()))
             if self.progress.due():
                 self.progress.update(self._moment())
@@ -146,6 +146,19 @@ class Loop:
             self._rest = Rest(self.stop)
             self.progress.line(f"t = {self._t:.6g} s: {change.what}")
 
+    def _frame(self) -> None:
+        tally = self.engine.tally()
+        self.recorder.frame(self.engine.state(), tally)
+        self.watch.frame(tally)
+
+    def _fastest(self) -> float:
+        """Fastest grain now [m/s]: its centre, or its surface where it spins in place."""
+        fastest = self.engine.tally().speed_max
+        if fastest >= self.stop.rest_speed or not self.scene.rotation:
+            return fastest
+        spin = np.linalg.norm(self.engine.state().omega, axis=1)
+        return max(fastest, float((spin * self.scene.d / 2).max(initial=0.0)))
+
     @property
     def _t(self) -> float:
         return self._t_zero + self._step * self.scene.dt
@@ -164,8 +177,8 @@ class Loop:
         )
 
     def _done(self, last: int) -> bool:
-        if self._asked:
-            self.status, self.message = schema.INTERRUPTED, f"{self._asked} at t = {self._t:.6g} s"
+        if self._heard.by:
+            self.status, self.message = schema.INTERRUPTED, f"{self._heard.by} at t = {self._t:.6g} s"
         elif self._step >= last:
             self.status, self.message = schema.COMPLETE, f"reached {self.stop.time:g} s"
         elif self._hops.reached():
@@ -208,23 +221,3 @@ class Loop:
         closed = {**self.origin, "status": self.status, "message": self.message, "end": provenance.now()}
         write_json(folder / schema.PROVENANCE, closed)
         return summary
-
-    @contextmanager
-    def _signals(self) -> Generator[None]:
-        """Ctrl-C and SIGTERM end the run after the current call; a second Ctrl-C does so at once."""
-        if threading.current_thread() is not threading.main_thread():
-            yield
-            return
-        names = {signal.SIGINT: "Ctrl-C", signal.SIGTERM: "SIGTERM"}
-
-        def ask(number: int, _: object) -> None:
-            if self._asked:
-                raise KeyboardInterrupt(f"{self._asked}, twice")
-            self._asked = names[signal.Signals(number)]
-
-        before = {number: signal.signal(number, ask) for number in names}
-        try:
-            yield
-        finally:
-            for number, handler in before.items():
-                signal.signal(number, handler)

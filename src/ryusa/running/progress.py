@@ -56,6 +56,7 @@ class Progress:
         self._share = self._share_log = 0.0
         self._bar: RichProgress | None = None
         self._task: TaskID | None = None
+        self._explained: set[str] = set()
         if shown and self._stream.isatty():
             self._bar, self._task = _bar(self._stream)
 
@@ -86,14 +87,19 @@ class Progress:
 
     @contextmanager
     def patience(self, text: str) -> Generator[None]:
-        """Say `text` if the block takes long."""
-        timer = threading.Timer(_PATIENCE, self.line, [text])
+        """Say `text` if the block takes long, once in a run."""
+        timer = threading.Timer(_PATIENCE, self._explain, [text])
         timer.daemon = True
         timer.start()
         try:
             yield
         finally:
             timer.cancel()
+
+    def _explain(self, text: str) -> None:
+        if text not in self._explained:
+            self._explained.add(text)
+            self.line(text)
 
     def close(self) -> None:
         """Take the bar away and close the log."""

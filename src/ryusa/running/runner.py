@@ -2,6 +2,7 @@
 
 import math
 import os
+import tomllib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -14,7 +15,8 @@ from ryusa.model import Scene, State
 from ryusa.model.enums import EventRule
 from ryusa.results import Results, schema
 from ryusa.running import provenance
-from ryusa.running.folder import prepare, refuse_if_too_big, write_json
+from ryusa.running.folder import prepare, refuse_if_not_writable, refuse_if_too_big, write_json
+from ryusa.running.interrupt import listening
 from ryusa.running.loop import Loop
 from ryusa.running.progress import Progress
 from ryusa.running.recorder import Recorder, bytes_per_frame
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
     from ryusa.casefile.schema import Change as Entry
 
 _MOST_STEPS = 2**62
+_BEFORE = "before the first step; no run folder was made"
 
 
 @dataclass(frozen=True)
@@ -65,35 +68,41 @@ def run(
     ------
     CaseError, ResultsError : the case cannot be run as it stands, or the folder cannot be used.
     RunError : a number went wrong while stepping; the frames before it are in the folder.
+    KeyboardInterrupt : Ctrl-C before the first step; no run folder was made. Later ones end the run in order.
     """
-    from ryusa.build import build, change
-    from ryusa.casefile.estimate import frames_expected
+    with listening() as heard:
+        from ryusa.build import build, change
+        from ryusa.casefile.estimate import frames_expected
 
-    built = build(case)
-    stop = Stop(
-        time=math.inf if case.stop.time is None else case.stop.time,
-        rest_speed=case.stop.rest.speed if case.stop.rest else 0.0,
-        rest_for=case.stop.rest.duration if case.stop.rest else math.inf,
-        saltations=case.stop.saltations,
-        settle=case.record.settle,
-    )
-    changes = [Change(one.at, partial(_changed, change, case, one), _words(one)) for one in case.timeline]
-    return run_scene(
-        built.scene,
-        built.state,
-        folder if folder is not None else Path("runs") / case.name,
-        frames=case.record.frames,
-        stop=stop,
-        changes=changes,
-        threads=threads,
-        progress=progress,
-        overwrite=overwrite,
-        engine=engine,
-        about=_About(
-            resolved=case.resolved(), text=case.text, seed=case.seed, overrides=case.overrides,
-            n_frame=frames_expected(case), notes=tuple(built.notes),
-        ),
-    )  # fmt: skip
+        built = build(case)
+        heard.raise_if_asked(_BEFORE)
+        stop = Stop(
+            time=math.inf if case.stop.time is None else case.stop.time,
+            rest_speed=case.stop.rest.speed if case.stop.rest else 0.0,
+            rest_for=case.stop.rest.duration if case.stop.rest else math.inf,
+            saltations=case.stop.saltations,
+            settle=case.record.settle,
+        )
+        changes = [
+            Change(entry.at, partial(_changed, change, case, entry), words)
+            for entry, words in zip(case.timeline, _words(case), strict=True)
+        ]
+        return run_scene(
+            built.scene,
+            built.state,
+            folder if folder is not None else Path("runs") / case.name,
+            frames=case.record.frames,
+            stop=stop,
+            changes=changes,
+            threads=threads,
+            progress=progress,
+            overwrite=overwrite,
+            engine=engine,
+            about=_About(
+                resolved=case.resolved(), text=case.text, seed=case.seed, overrides=case.overrides,
+                n_frame=frames_expected(case), notes=tuple(built.notes),
+            ),
+        )  # fmt: skip
 
 
 def _changed(
@@ -102,8 +111,14 @@ def _changed(
     return change(case, scene, entry)
 
 
-def _words(entry: "Entry") -> str:
-    return ", ".join(f"{key} {getattr(entry, key)}" for key in sorted(entry.model_fields_set - {"at"}))
+def _words(case: "Case") -> list[str]:
+    """Entries of the timeline as the case says them, with its units, overrides applied; for the log."""
+    from ryusa.casefile.read import with_overrides
+
+    said = with_overrides(tomllib.loads(case.text), case.overrides).get("timeline", [])
+    if len(said) != len(case.timeline):  # a case made in Python has no text
+        said = [{key: getattr(entry, key) for key in entry.model_fields_set} for entry in case.timeline]
+    return [", ".join(f"{key} {one[key]}" for key in sorted(set(one) - {"at"})) for one in said]
 
 
 @dataclass(frozen=True)
@@ -155,33 +170,36 @@ def run_scene(
     folder = Path(folder)
     about = about or _About({"title": "", "record": {"frames": frames, "settle": stop.settle}})
     _refuse(scene, frames, stop)
-    engine = engine if engine is not None else _cpu_engine(threads)
-    reasons = engine.refuses(scene)
-    if reasons:
-        raise CaseError("engine", type(engine).__name__, f"cannot carry this case: {'; '.join(reasons)}")
-    n_frame = about.n_frame if about.n_frame is not None else stop.time / frames + 1
-    if math.isfinite(n_frame):
-        refuse_if_too_big(folder, n_frame, bytes_per_frame(scene.n_grain), frames)
-    prepare(folder, overwrite=overwrite)
-    origin = provenance.begin(
-        threads=threads, seed=about.seed, engine=type(engine).__name__, overrides=about.overrides or {}
-    )
-    write_json(folder / schema.PROVENANCE, origin)
-    write_json(folder / schema.CASE_JSON, about.resolved)
-    if about.text is not None:
-        _write_text(folder / schema.CASE_TOML, about.text)
-    said = Progress(folder / schema.LOG, shown=progress)
-    try:
-        for note in about.notes:
-            said.line(str(note))
-        loop = Loop(
-            engine=engine, scene=scene, frames=frames, stop=stop,
-            changes=sorted((round(one.at / scene.dt), k, one) for k, one in enumerate(changes)),
-            recorder=Recorder(folder, scene), watch=Watch(scene, state), progress=said, origin=origin,
-        )  # fmt: skip
-        loop.run(state)
-    finally:
-        said.close()
+    with listening() as heard:
+        engine = engine if engine is not None else _cpu_engine(threads)
+        reasons = engine.refuses(scene)
+        if reasons:
+            raise CaseError("engine", type(engine).__name__, f"cannot carry this case: {'; '.join(reasons)}")
+        refuse_if_not_writable(folder)
+        n_frame = about.n_frame if about.n_frame is not None else stop.time / frames + 1
+        if math.isfinite(n_frame):
+            refuse_if_too_big(folder, n_frame, bytes_per_frame(scene.n_grain), frames)
+        origin = provenance.begin(
+            threads=threads, seed=about.seed, engine=type(engine).__name__, overrides=about.overrides or {}
+        )
+        heard.raise_if_asked(_BEFORE)
+        prepare(folder, overwrite=overwrite)
+        write_json(folder / schema.PROVENANCE, origin)
+        write_json(folder / schema.CASE_JSON, about.resolved)
+        if about.text is not None:
+            _write_text(folder / schema.CASE_TOML, about.text)
+        said = Progress(folder / schema.LOG, shown=progress)
+        try:
+            for note in about.notes:
+                said.line(str(note))
+            loop = Loop(
+                engine=engine, scene=scene, frames=frames, stop=stop,
+                changes=sorted((round(one.at / scene.dt), k, one) for k, one in enumerate(changes)),
+                recorder=Recorder(folder, scene), watch=Watch(scene, state), progress=said, origin=origin,
+            )  # fmt: skip
+            loop.run(state)
+        finally:
+            said.close()
     return Results.open(folder)
 
 

@@ -18,7 +18,7 @@ class Stop:
     """When a run ends: whichever comes first."""
 
     time: float = math.inf  # simulated [s]
-    rest_speed: float = 0.0  # all grains slower than this [m/s] ...
+    rest_speed: float = 0.0  # all grains slower than this [m/s], surfaces of spinning ones too ...
     rest_for: float = math.inf  # ... for this long [s]
     saltations: int | None = None  # hops that every watched grain must have done
     settle: float = 0.0  # hops before this time do not count [s]
@@ -37,7 +37,7 @@ class Rest:
         self._since: float | None = None
 
     def reached(self, t: float, speed_max: float) -> bool:
-        """Take the largest speed [m/s] at time t [s]."""
+        """Take the largest speed of a centre or a spinning surface [m/s] at time t [s]."""
         if speed_max >= self._stop.rest_speed:
             self._since = None
             return False

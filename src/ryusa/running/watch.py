@@ -19,6 +19,7 @@ from ryusa.laws.collision import (
 from ryusa.laws.torque import reynolds_spin, torque_in_range
 from ryusa.model import Book, Scene, State, Tally
 from ryusa.model.enums import Damping, WaterTorque
+from ryusa.model.tally import HELD
 
 BAND = (0.001, 0.01)  # stable band of overlap/d, the paper's fig11
 TRAVEL_LIMIT = 0.3  # of d along the bed within one contact; beyond, contacts end by geometry, not by Eq. (8)
@@ -83,7 +84,7 @@ class Watch:
         sizes = self.scene.d[events["i"]]
         for name in ("omega_begin", "omega_end"):
             self._spins(np.linalg.norm(events[name], axis=1), sizes)
-        events = events[np.isfinite(events["closing_end"])]  # the others were cut: their partner was taken away
+        events = events[np.isfinite(events["closing_end"])]  # of the others the partner was taken away
         if len(events) == 0:
             return
         duration = events["t_end"] - events["t_begin"]
@@ -96,14 +97,14 @@ class Watch:
 
     def frame(self, tally: Tally) -> None:
         """Take the account at a recorded frame."""
-        if self.scene.n_grain:  # which grain spins fastest is not known; the largest one errs to the safe side
+        if self.scene.n_grain:  # which grain it is is not known; the largest errs to the safe side
             self._spins(np.array([tally.spin_max]), self.scene.d.max(keepdims=True))
 
     def _spins(self, spin: NDArray[np.float64], d: NDArray[np.float64]) -> None:
         water = self.scene.water
         if water.torque != WaterTorque.DENNIS or not self.scene.rotation:
             return
-        k = int(np.nanargmax(d * d * spin))
+        k = int(np.argmax(d * d * spin))
         if not torque_in_range(float(spin[k]), float(d[k]), water.nu):
             self._re_spin = max(self._re_spin, reynolds_spin(float(spin[k]), float(d[k]), water.nu))
 
@@ -208,8 +209,7 @@ class Watch:
 
 def energy(tally: Tally) -> dict[str, float]:
     """The energy account [J], each term summed by itself, and what it cannot explain."""
-    now = ("kinetic", "spin", "potential", "spring_n", "spring_s", "spring_r")
-    account = {name: float(getattr(tally, name)) for name in now}
+    account = {name: float(getattr(tally, name)) for name in HELD}
     account |= {book.name.lower(): float(tally.books[book]) for book in Book}
     return {**account, "imbalance": tally.imbalance, "residual": tally.residual}
 
