@@ -334,7 +334,7 @@ def _refuse_near_lanes(scene: Scene, state: State) -> None:
     lanes = np.unique(np.concatenate([state.x[:, 1], scene.x_fixed[:, 1]]))
     largest = float(np.concatenate([scene.d, scene.d_fixed]).max(initial=0.0))
     apart = np.diff(lanes)
-    if len(apart) and apart.min() < largest:
+    if len(apart) and apart.min() < largest * (1.0 - 1e-9):
         y = lanes[int(apart.argmin())]
         text = f"a plane scene has grains at y = {y:g} m and {apart.min():g} m beside, less than a diameter"
         raise ValueError(f"{text} ({largest:g} m): give them the same y, or set the lanes apart")
