@@ -43,7 +43,7 @@ $(HAS_RYUSA): pyproject.toml constraints.txt | $(HAS_PYTHON)
 
 $(HAS_TESTS): pyproject.toml constraints.txt | $(HAS_RYUSA)
 	@echo "installing what the tests need into $(VENV) (about 1 GB: vtk and the CUDA compiler are large)"
-	@$(PIP) --editable '.[test,bench]'
+	@$(PIP) --editable '.[test]'
 	@touch $@
 
 # ---------------------------------------------------------------------------------------------------------- demo
@@ -97,12 +97,12 @@ docs: $(HAS_RYUSA) ## write docs/case-file.md and docs/commands.md anew from the
 figures: $(HAS_RYUSA) ## rebuild the paper's saltation figures into runs/paper (some minutes)
 	$(BIN)/python docs/figures.py runs/paper
 
-bench: $(HAS_TESTS) ## timings, with the machine they were taken on
-	$(BIN)/python benchmarks/flows.py
+bench: $(HAS_RYUSA) ## time whole workloads; keeps the table in benchmarks/results/
+	$(BIN)/python benchmarks/flows.py --save
 
 constraints: $(HAS_TESTS) ## write constraints.txt anew from what .venv holds
 	$(BIN)/python -m pip freeze --exclude ryusa | grep -v '@\|^\#' > constraints.txt
 
 clean: ## remove the environment, caches and the demo's run
-	rm -rf $(VENV) $(RUN) $(SHOW) build .pytest_cache .ruff_cache .hypothesis .benchmarks .import_linter_cache
+	rm -rf $(VENV) $(RUN) $(SHOW) build .pytest_cache .ruff_cache .hypothesis .import_linter_cache
 	find . -name __pycache__ -type d -not -path './.git/*' -prune -exec rm -rf {} +

@@ -27,6 +27,7 @@ from typing import Any
 from ryusa.build import build, change
 from ryusa.casefile import read
 from ryusa.engine.cpu import CpuEngine
+from ryusa.model import Scene, State
 from ryusa.running.provenance import processor
 
 REPEATS = 7
@@ -45,19 +46,24 @@ def case_of(name: str) -> Any:
 
 
 def measure(name: str, threads: list[int]) -> list[dict[str, Any]]:
-    """Rates of one workload for each number of threads."""
+    """Rates of one workload for each number of threads: at rest, where there is a rest, and in motion."""
     _, settle, flow, steps = WORKLOADS[name]
     case = case_of(name)
     scene, state = (built := build(case)).scene, built.state
     engine = CpuEngine(threads=max(threads))
     engine.load(scene, state)
-    engine.advance(settle).raise_if_any()
-    rest = engine.tally().n_contact / scene.n_grain
-    if case.timeline and settle:
+    rows = []
+    if settle:
+        engine.advance(settle).raise_if_any()
+        rows += timed(f"{name}, settled", scene, engine.state(), threads, steps)
         scene = change(case, scene, case.timeline[0])
         engine.load(scene, engine.state())
     engine.advance(flow).raise_if_any()
-    state = engine.state()
+    return [*rows, *timed(f"{name}, moving", scene, engine.state(), threads, steps)]
+
+
+def timed(name: str, scene: Scene, state: State, threads: list[int], steps: int) -> list[dict[str, Any]]:
+    """Step one state with each number of threads in turn."""
     engines = {n: CpuEngine(threads=n) for n in threads}
     for one in engines.values():
         one.load(scene, state)
@@ -80,8 +86,7 @@ def measure(name: str, threads: list[int]) -> list[dict[str, Any]]:
                 "M particle-steps/s": round(statistics.median(rates), 2),
                 "lower quartile": round(statistics.quantiles(rates, n=4)[0], 2),
                 "us a step": round(1e6 * statistics.median(times), 3),
-                "contacts a grain, settled": round(rest, 2),
-                "contacts a grain, timed": round(account.n_contact / scene.n_grain, 2),
+                "contacts a grain": round(account.n_contact / scene.n_grain, 2),
                 "speed-up": round(statistics.median(gains), 2),
                 "account residual": float(f"{account.residual:.1e}"),
             }
