@@ -95,7 +95,7 @@ def rolling_energy(scene: Scene, state: State, places: np.ndarray) -> float:
     r = 0.5 * np.concatenate([scene.d, scene.d_fixed, np.full(scene.n_plane, np.inf)])
     energy = 0.0
     for place in places:
-        radius = reduced_radius(r[state.contacts.i[place]], r[state.contacts.j[place]])
+        radius = reduced_radius(float(r[state.contacts.i[place]]), float(r[state.contacts.j[place]]))
         f = scene.rolling.coefficient * radius
         k_r = epsd_stiffness(scene.contact.k_n, f, scene.rolling.stiffness_factor)
         energy += 0.5 * float(np.sum(state.contacts.spring_r[place] ** 2)) / k_r if k_r > 0.0 else 0.0
