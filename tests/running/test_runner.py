@@ -12,7 +12,8 @@ from ryusa.model import RollingLaw
 from ryusa.model.enums import EventRule, Rolling
 from ryusa.results import Results
 from ryusa.running import folder as folder_module
-from ryusa.running.runner import Change, run_scene
+from ryusa.running.loop import Change
+from ryusa.running.runner import run_scene
 from ryusa.running.stops import Stop
 
 

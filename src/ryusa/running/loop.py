@@ -2,9 +2,10 @@
 
 import math
 import time
+from collections.abc import Callable
 from contextlib import nullcontext, suppress
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -21,13 +22,19 @@ from ryusa.running.recorder import Recorder
 from ryusa.running.stops import Hops, Rest, Stop
 from ryusa.running.watch import Watch
 
-if TYPE_CHECKING:
-    from ryusa.running.runner import Change
-
 _CHUNK = 0.25  # s of wall time between two looks at the clock and at Ctrl-C
 _CHUNK_FIRST = (1, 16)  # steps of the first calls, before the speed is known
-_COMPILING = "compiling kernels for this machine: once, a minute or so; later runs start at once"
+_COMPILING = "compiling kernels for this machine: once, some ten seconds; later runs start at once"
 _NEVER = 2**62  # steps
+
+
+@dataclass(frozen=True)
+class Change:
+    """One change of the timeline."""
+
+    at: float  # [s]; falls on the nearest step
+    apply: Callable[[Scene], Scene]
+    what: str = "scene changed"  # for the log
 
 
 @dataclass
@@ -38,9 +45,7 @@ class Loop:
     scene: Scene
     frames: float  # time between frames [s]
     stop: Stop
-    changes: (
-        "list[tuple[int, int, Change]]"  # (step, order, change), sorted; taken off the front as they happen
-    )
+    changes: list[tuple[int, int, Change]]  # (step, order, change), sorted; taken off the front
     recorder: Recorder
     watch: Watch
     progress: Progress

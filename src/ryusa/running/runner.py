@@ -17,7 +17,7 @@ from ryusa.results import Results, schema
 from ryusa.running import provenance
 from ryusa.running.folder import prepare, refuse_if_not_writable, refuse_if_too_big, write_json
 from ryusa.running.interrupt import listening
-from ryusa.running.loop import Loop
+from ryusa.running.loop import Change, Loop
 from ryusa.running.progress import Progress
 from ryusa.running.recorder import Recorder, bytes_per_frame
 from ryusa.running.stops import Stop
@@ -29,15 +29,6 @@ if TYPE_CHECKING:
 
 _MOST_STEPS = 2**62
 _BEFORE = "before the first step; no run folder was made"
-
-
-@dataclass(frozen=True)
-class Change:
-    """One change of the timeline."""
-
-    at: float  # [s]; falls on the nearest step
-    apply: Callable[[Scene], Scene]
-    what: str = "scene changed"  # for the log
 
 
 def run(
