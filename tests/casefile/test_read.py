@@ -2,6 +2,7 @@
 
 import json
 import re
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -71,3 +72,34 @@ def test_shipped_cases_use_only_known_keys_and_no_path_of_a_machine(shipped: Pat
     for file in shipped.rglob("*.toml"):
         content = file.read_text(encoding="utf-8")
         assert not re.search(r"[\"'](/|[A-Z]:)", content), file.name
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "kept"),
+    [
+        ("contact.stiffness", "{ overlap = 0.01, speed = '0.6 m/s' }", {"overlap": 0.01, "speed": 0.6}),
+        ("contact.stiffness", "{ collision_time = '1e-4 s' }", {"collision_time": 1e-4}),
+        ("contact.stiffness", "'100 N/cm'", 1e4),
+        ("grains.spread", "{ kind = 'normal', ratio = 0.1 }", {"kind": "normal", "ratio": 0.1}),
+        ("grains.spread", "0.1", 0.1),
+    ],
+)
+def test_every_way_to_say_a_thing_is_written_again_without_a_warning(
+    case: CaseOf, key: str, value: str, kept: object
+) -> None:
+    build = "{ kind = 'packing', columns = 5, layers = 2 }"
+    found = case(build=build, **{key: value})
+    section, name = key.split(".")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert found.model_dump(mode="json")[section][name] == kept
+        assert found.model_dump()[section][name] == kept
+        found.model_dump_json()
+        assert found.resolved()["contact"]["stiffness"] == found.derived.k_n
+
+
+def test_every_shipped_case_is_written_again_without_a_warning(shipped: Path) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for path in sorted(shipped.rglob("*.toml")):
+            assert read(path).resolved()["contact"]["stiffness"] > 0.0

@@ -87,6 +87,11 @@ class StiffnessForTime(Section):
 
 
 def _stiffness_kind(value: Any) -> str:
+    """Branch of what the file holds, and of what is held already, for writing it again."""
+    if isinstance(value, StiffnessForTime):
+        return "<time>"
+    if isinstance(value, StiffnessForOverlap):
+        return "<overlap>"
     if isinstance(value, dict):
         return "<time>" if "collision_time" in value else "<overlap>"
     return "<value>"
