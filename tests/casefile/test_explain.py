@@ -2,7 +2,7 @@ from collections.abc import Callable
 
 import pytest
 
-from ryusa.casefile import Case
+from ryusa.casefile import Case, estimate
 from ryusa.casefile.explain import Row, warnings
 
 CaseOf = Callable[..., Case]
@@ -111,3 +111,15 @@ def test_the_choice_of_contacts_to_record_is_said(case: CaseOf) -> None:
     asked = rows(case(**{"record.events": "none"}))
     assert (asked["contacts recorded"].value, asked["contacts recorded"].flag) == ("none", "")
     assert "disk for events" not in asked
+
+
+def test_a_run_that_does_not_fit_on_the_disk_is_warned_of(
+    case: CaseOf, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    one = case()
+    monkeypatch.setattr(estimate, "free_here", lambda: estimate.disk_in_all(one))
+    assert "disk in all" not in rows(one)
+    monkeypatch.setattr(estimate, "free_here", lambda: estimate.disk_needed(one))  # no room for events
+    found = rows(one)["disk in all"]
+    assert found.flag == "warning"
+    assert found.value == estimate.disk_needed(one) + estimate.disk_for_events(one)

@@ -7,14 +7,33 @@ from typing import Any
 import numpy as np
 import pytest
 
+from ryusa.casefile import estimate, read_text
 from ryusa.errors import CaseError, ResultsError, RunError
 from ryusa.model import RollingLaw
 from ryusa.model.enums import EventRule, Rolling
 from ryusa.results import Results
 from ryusa.running import folder as folder_module
 from ryusa.running.loop import Change
-from ryusa.running.runner import run_scene
+from ryusa.running.recorder import bytes_per_frame
+from ryusa.running.runner import run, run_scene
 from ryusa.running.stops import Stop
+
+DROP = """
+[grains]
+diameter = "0.2 cm"
+density = "2650 kg/m3"
+[contact]
+stiffness = { overlap = 0.01, speed = "0.6 m/s" }
+restitution = 0.7
+friction_angle = "30 deg"
+[motion]
+rotation = "locked"
+[build]
+kind = "drop"
+height = "1 cm"
+[stop]
+time = "0.01 s"
+"""
 
 
 @pytest.fixture
@@ -175,6 +194,20 @@ def test_frames_that_do_not_fit_on_the_disk_are_refused_before_work(
     monkeypatch.setattr(folder_module, "free_bytes", lambda place: 5000)
     with pytest.raises(CaseError, match=r"record\.frames.*only 5 kB are free"):
         go(frames=1e-5)
+    assert not (tmp_path / "run").exists()
+
+
+@pytest.mark.parametrize(("stop", "key"), [("0.1 s", "record.frames"), ("1000 s", "record.events")])
+def test_check_and_run_agree_on_what_fits_events_counted(
+    stop: str, key: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    case = read_text(DROP, {"stop.time": stop, "record.frames": stop})
+    frames, events = estimate.disk_needed(case), estimate.disk_for_events(case)
+    assert frames == estimate.frames_expected(case) * bytes_per_frame(1) + estimate.BYTES_PER_RUN
+    monkeypatch.setattr(folder_module, "free_bytes", lambda place: frames + events - 1)
+    with pytest.raises(CaseError, match="contact events about") as caught:
+        run(case, tmp_path / "run", progress=False)
+    assert caught.value.key == key
     assert not (tmp_path / "run").exists()
 
 

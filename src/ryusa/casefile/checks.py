@@ -30,13 +30,15 @@ _CHANGES = ("remove", "slope", "slope_angle", "friction_angle", "friction", "rot
 
 def check(case: Case, data: dict[str, Any]) -> list[CaseError]:
     """Find the faults that no single key shows; `data` is what the file held."""
-    found = [*_rivals(case), *_needed(case), *_water(case), *_motion(case), *_builder(case), *_timeline(case)]
+    found = [*_rivals(case), *_needed(case), *_water(case), *_motion(case), *_builder(case)]
+    found += _timeline(case, data)
     if found:
         return found
     found = [*_numbers(case)]
     if found:
         return found
-    return [*_space(case), *_step(case, data), *_record(case)]
+    step = [*_step(case, data)]
+    return [*_space(case), *step, *([] if step else _frames(case, data)), *_record(case)]
 
 
 def _given(section: Any, key: str) -> bool:
@@ -175,10 +177,10 @@ def _builder(case: Case) -> Iterator[CaseError]:
         )
 
 
-def _timeline(case: Case) -> Iterator[CaseError]:
-    before = 0.0
+def _timeline(case: Case, data: dict[str, Any]) -> Iterator[CaseError]:
+    before, said = 0.0, data.get("timeline", [])
     for number, change in enumerate(case.timeline):
-        key = f"timeline.{number}"
+        key, at = f"timeline.{number}", said[number]["at"]
         given = [name for name in _CHANGES if getattr(change, name) is not None]
         if len(given) != 1:
             yield CaseError(
@@ -186,10 +188,10 @@ def _timeline(case: Case) -> Iterator[CaseError]:
             )
         if change.at < before:
             yield CaseError(
-                f"{key}.at", change.at, "comes before the entry above it; write the timeline in order of time"
+                f"{key}.at", at, "comes before the entry above it; write the timeline in order of time"
             )
         if case.stop.time is not None and change.at > case.stop.time:
-            yield CaseError(f"{key}.at", change.at, "comes after stop.time")
+            yield CaseError(f"{key}.at", at, f"comes after stop.time, {data['stop']['time']}")
         before = max(before, change.at)
 
 
@@ -255,6 +257,13 @@ def _step(case: Case, data: dict[str, Any]) -> Iterator[CaseError]:
             written,
             f"must be above {t_col / FINEST:.3g} s, 1e-4 of the shortest contact {t_col:.3g} s",
         )
+
+
+def _frames(case: Case, data: dict[str, Any]) -> Iterator[CaseError]:
+    interval, dt = case.record.frames, case.derived.dt
+    if interval < dt:
+        written = data.get("record", {}).get("frames", f"{interval:g} s")
+        yield CaseError("record.frames", written, f"must be at least one step, {dt:.4g} s")
 
 
 def _record(case: Case) -> Iterator[CaseError]:

@@ -1,14 +1,16 @@
 """What a run will cost before it starts: steps, frames, bytes, seconds."""
 
 import math
+import shutil
 
 from ryusa.casefile.builders import Packing, Table
 from ryusa.casefile.derive import events_of
 from ryusa.casefile.schema import Case
 from ryusa.model.contacts import N_EVENT
 
-BYTES_PER_GRAIN = 112  # of a frame: x, v, omega and what ParaView needs beside them
-BYTES_PER_FRAME = 8192  # headers of one write-once part
+BYTES_PER_GRAIN = 80  # of a frame: x, v, omega, image
+BYTES_PER_FRAME = 248  # t, step, offset for ParaView and tally
+BYTES_PER_RUN = 100_000  # headers of the parts, log, summary, bed
 MEMORY_PER_GRAIN = 450  # bytes while running without records of contacts
 MEMORY_WITH_EVENTS = 1600  # bytes a grain where contacts are recorded
 BYTES_PER_EVENT = 8 * N_EVENT
@@ -45,7 +47,8 @@ def frames_expected(case: Case) -> int:
 
 def disk_needed(case: Case) -> int:
     """Bytes that the frames of a run will take; contacts recorded come on top."""
-    return frames_expected(case) * (case.derived.n_grain * BYTES_PER_GRAIN + BYTES_PER_FRAME)
+    frame = case.derived.n_grain * BYTES_PER_GRAIN + BYTES_PER_FRAME
+    return frames_expected(case) * frame + BYTES_PER_RUN
 
 
 def events_expected(case: Case) -> int:
@@ -62,6 +65,16 @@ def events_expected(case: Case) -> int:
 def disk_for_events(case: Case) -> int:
     """Bytes that the contacts recorded will take, by a rule of thumb."""
     return events_expected(case) * BYTES_PER_EVENT
+
+
+def disk_in_all(case: Case) -> int:
+    """Bytes that a run will take on the disk; `ryusa run` refuses what does not fit."""
+    return disk_needed(case) + disk_for_events(case)
+
+
+def free_here() -> int:
+    """Free space on the disk of the current folder [B]."""
+    return shutil.disk_usage(".").free
 
 
 def memory_per_grain(case: Case) -> int:

@@ -315,6 +315,7 @@ def _cost(case: Case) -> list[Row]:
         Row("cost", "frames", frames, "", f"{frames:,}", f"one every {case.record.frames:g} s"),
         Row("cost", "disk for frames", disk, "B", human(disk), "positions, velocities and spins"),
         *_events(case),
+        *_disk(case),
         Row("cost", "memory", memory, "B", human(memory), f"{each} B a grain, events {events_of(case)}"),
         Row("cost", "wall time", seconds, "s", wall, "rule of thumb, one core"),
     ]
@@ -331,6 +332,15 @@ def _events(case: Case) -> list[Row]:
         how = f"about {n_row:,} contacts, rule of thumb"
         rows.append(Row("cost", "disk for events", size, "B", human(size), how))
     return rows
+
+
+def _disk(case: Case) -> list[Row]:
+    """What the run needs against what is free, where it does not fit."""
+    needed, free = estimate.disk_in_all(case), estimate.free_here()
+    if needed <= free:
+        return []
+    how = f"frames and events, but only {human(free)} are free in this folder: run will refuse here"
+    return [Row("cost", "disk in all", needed, "B", human(needed), how, "warning")]
 
 
 def human(size: float) -> str:

@@ -134,22 +134,34 @@ def _existing(folder: Path) -> Path:
     return next(place for place in (folder, *folder.absolute().parents) if place.is_dir())
 
 
-def refuse_if_too_big(folder: Path, n_frame: float, frame_bytes: int, interval: float) -> None:
-    """Compare the frames to come with the free space on the disk.
+def refuse_if_too_big(
+    folder: Path, *, n_frame: float, interval: float, for_frames: float, for_events: float = 0.0
+) -> None:
+    """Compare the frames and contact events to come with the free space on the disk.
+
+    Parameters
+    ----------
+    folder : where the run goes.
+    n_frame, interval : frames, and the time between them [s].
+    for_frames, for_events : what they take on the disk [B].
 
     Raises
     ------
     CaseError : they would not fit.
     """
     existing = _existing(folder)
-    needed, free = n_frame * frame_bytes, free_bytes(existing)
-    if needed > free:
-        raise CaseError(
-            "record.frames",
-            f"{interval:g} s",
-            f"{n_frame:.3g} frames need {_size(needed)}, but only {_size(free)} are free at {existing}. "
-            "Record fewer frames, or stop earlier, or choose another disk with -o",
-        )
+    needed, free = for_frames + for_events, free_bytes(existing)
+    if needed <= free:
+        return
+    events = f" and the contact events about {_size(for_events)}" if for_events else ""
+    many = for_events > for_frames
+    raise CaseError(
+        "record.events" if many else "record.frames",
+        None if many else f"{interval:g} s",
+        f"{n_frame:.3g} frames need {_size(for_frames)}{events}, but only {_size(free)} are free "
+        f"at {existing}. Record fewer {'events' if many else 'frames'}, or stop earlier, "
+        "or choose another disk with -o",
+    )
 
 
 def free_bytes(place: Path) -> int:

@@ -63,7 +63,7 @@ def run(
     """
     with listening() as heard:
         from ryusa.build import build, change
-        from ryusa.casefile.estimate import frames_expected
+        from ryusa.casefile.estimate import disk_for_events, disk_needed, frames_expected
 
         built = build(case)
         heard.raise_if_asked(_BEFORE)
@@ -91,7 +91,8 @@ def run(
             engine=engine,
             about=_About(
                 resolved=case.resolved(), text=case.text, seed=case.seed, overrides=case.overrides,
-                n_frame=frames_expected(case), notes=tuple(built.notes),
+                disk=_Disk(frames_expected(case), disk_needed(case), disk_for_events(case)),
+                notes=tuple(built.notes),
             ),
         )  # fmt: skip
 
@@ -113,6 +114,15 @@ def _words(case: "Case") -> list[str]:
 
 
 @dataclass(frozen=True)
+class _Disk:
+    """What a run will write at most, or by guess; the numbers of `ryusa check`."""
+
+    n_frame: float
+    for_frames: float  # [B]
+    for_events: float = 0.0  # [B]
+
+
+@dataclass(frozen=True)
 class _About:
     """What a case adds to a bare scene."""
 
@@ -120,7 +130,7 @@ class _About:
     text: str | None = None
     seed: int | None = None
     overrides: dict[str, str] | None = None
-    n_frame: float | None = None  # expected at most
+    disk: "_Disk | None" = None
     notes: Sequence[str] = ()  # of the builder, for the log
 
 
@@ -167,9 +177,13 @@ def run_scene(
         if reasons:
             raise CaseError("engine", type(engine).__name__, f"cannot carry this case: {'; '.join(reasons)}")
         refuse_if_not_writable(folder)
-        n_frame = about.n_frame if about.n_frame is not None else stop.time / frames + 1
-        if math.isfinite(n_frame):
-            refuse_if_too_big(folder, n_frame, bytes_per_frame(scene.n_grain), frames)
+        n_frame = stop.time / frames + 1
+        disk = about.disk or _Disk(n_frame, n_frame * bytes_per_frame(scene.n_grain))
+        if math.isfinite(disk.n_frame):
+            refuse_if_too_big(
+                folder, interval=frames, n_frame=disk.n_frame,
+                for_frames=disk.for_frames, for_events=disk.for_events,
+            )  # fmt: skip
         origin = provenance.begin(
             threads=threads, seed=about.seed, engine=type(engine).__name__, overrides=about.overrides or {}
         )
