@@ -105,10 +105,22 @@ def test_the_stable_band_is_watched(
 
 def test_a_grain_that_skims_the_bed_is_warned_of(scene: Any, state: Any, event: Any, tally: Any) -> None:
     watch = Watch(scene, state)
-    watch.contacts(event(0, 3, 0.0, 1e-3, v_begin=[0.5, 0.0, -0.2]))
+    t, d = watch.t_col_shortest, float(scene.d[0])
+    watch.contacts(event(0, 3, 0.0, t, v_begin=[0.25 * d / t, 0.0, -0.2]))
     assert not any("along the bed" in one for one in watch.warnings(tally()))
-    watch.contacts(event(0, 3, 0.0, 1e-3, v_begin=[0.7, 0.0, -0.2]))
+    watch.contacts(event(0, 3, 0.0, t, v_begin=[0.35 * d / t, 0.0, -0.2]))
     assert any("0.35 d along the bed" in one for one in watch.warnings(tally()))
+
+
+def test_a_grain_that_rolls_or_rests_does_not_skim_the_bed(
+    scene: Any, state: Any, event: Any, tally: Any
+) -> None:
+    watch = Watch(scene, state)
+    t, d = watch.t_col_shortest, float(scene.d[0])
+    watch.contacts(event(0, 3, 0.0, 100.0 * t, v_begin=[0.35 * d / t, 0.0, 0.0]))  # stays on a fixed grain
+    plane = scene.n_grain + scene.n_fixed
+    watch.contacts(event(0, plane, 0.0, t, v_begin=[0.35 * d / t, 0.0, 0.0]))
+    assert not any("along the bed" in one for one in watch.warnings(tally()))
 
 
 def test_too_few_steps_and_an_open_account_are_warned_of(scene_with: Any, state: Any, tally: Any) -> None:
@@ -131,7 +143,7 @@ def test_closing_lines_speak_of_a_run_without_contacts_too(scene: Any, state: An
     more = {"steps": 1, "frames": 2, "contacts": 0, "wall": 1.0, "particle_steps_per_second": 5e6}
     text = "\n".join(closing_lines({**numbers, **more}))
     assert "5.00 M particle-steps/s" in text
-    assert "none (no isolated contact of two grains)" in text
+    assert "none (no such contact of two grains alone)" in text
 
 
 def test_a_flight_counts_as_a_hop_when_it_can_rise_a_tenth_of_d(scene: Any, event: Any) -> None:

@@ -19,7 +19,8 @@ def closing_lines(summary: dict[str, Any]) -> list[str]:
         f"in {summary['wall']:.1f} s ({summary['particle_steps_per_second'] / 1e6:.2f} M particle-steps/s)",
         f"largest overlap/d {summary['overlap']['largest_over_d']:.3g} (stable band {_band(summary)})",
         _steps(summary["steps_per_contact"]),
-        f"restitution {_asked(summary['restitution'])}, got {_got(summary['restitution'])}",
+        f"restitution {_asked(summary['restitution'])}, got {_got(summary['restitution'])}; "
+        "oblique hits turn the normal and return a few per cent more or less (design/0006)",
     ]
     shear = summary["restitution_shear"]
     lines.append(
@@ -56,7 +57,7 @@ def _got(averages: dict[str, Any]) -> str:
         if one["n"]:
             error = "" if one["standard_error"] is None else f" +- {one['standard_error']:.1g}"
             said.append(f"{one['mean']:.4f}{error} on {partner} ({one['n']})")
-    return ", ".join(said) or "none (no isolated contact of two grains)"
+    return ", ".join(said) or "none (no such contact of two grains alone)"
 
 
 def _asked(restitution: dict[str, Any]) -> str:

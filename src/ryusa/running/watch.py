@@ -27,6 +27,7 @@ STEPS_LEAST = 10  # per contact
 RESIDUAL_LIMIT = 1e-3  # of the energy account
 QUANTILES = (0.01, 0.1, 0.5, 0.9, 0.99)
 _CLOSING_LEAST = 20.0  # times g t_col: in slower contacts the weight takes part (5 % of the speed and more)
+_BOUNCE_LONGEST = 3.0  # times the shortest contact: what lasts longer rolls or rests
 _SLIP_LEAST = 0.1  # of the closing speed: less slip than this has no tangential restitution to speak of
 _DECADES, _BINS = (-1, 8), 100  # histogram of steps per contact: range of powers of ten, bins in each
 
@@ -90,7 +91,10 @@ class Watch:
         duration = events["t_end"] - events["t_begin"]
         self._steps(duration / self.scene.dt)
         bed = events["j"] >= self.scene.n_grain
-        self._along_bed(events[bed], duration[bed])
+        # bounces on fixed grains; a grain that rolls or rests may stay in touch for long
+        bounce = bed & (events["j"] < self.scene.n_grain + self.scene.n_fixed)
+        bounce &= duration < _BOUNCE_LONGEST * self.t_col_shortest
+        self._along_bed(events[bounce], duration[bounce])
         lonely = (events["alone"] == 1.0) & (events["closing_begin"] > _CLOSING_LEAST * self._g_t_col)
         for name, partner in (("fixed", bed), ("free", ~bed)):
             self._restitution(events[lonely & partner], name)
