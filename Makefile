@@ -18,7 +18,7 @@ HAS_RYUSA  := $(VENV)/.has-ryusa
 HAS_TESTS  := $(VENV)/.has-tests
 
 .DEFAULT_GOAL := help
-.PHONY: help demo demo-run test check lint format types walls unit docs bench figures paper slow constraints clean
+.PHONY: help demo demo-run test check lint format types walls unit docs bench paper slow constraints clean
 
 help: ## list these targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 22
@@ -93,9 +93,6 @@ format: $(HAS_TESTS) ## let ruff format and repair what it can
 
 docs: $(HAS_RYUSA) ## write docs/case-file.md and docs/commands.md anew from the code
 	$(BIN)/python docs/generate.py
-
-figures: $(HAS_RYUSA) ## rebuild the paper's saltation figures into runs/paper (some minutes)
-	$(BIN)/python docs/figures.py runs/paper
 
 bench: $(HAS_RYUSA) ## time whole workloads; keeps the table in benchmarks/results/
 	$(BIN)/python benchmarks/flows.py --save

@@ -1,19 +1,19 @@
-"""`ryusa paper`: rebuild figures of the paper and set its sentences against what comes out."""
+"""`ryusa paper`: re-do the whole study and say, claim by claim, what holds."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 if TYPE_CHECKING:
-    from ryusa.casefile.schema import Case
-    from ryusa.experiments import Experiment, Outcome, Verdict
+    from ryusa.experiments import Plan
+    from ryusa.report import Ledger
 
 _INTERRUPTED = 130  # exit code after Ctrl-C
 _WIDE = 160  # columns of a table that goes to a file or pipe
-_SETTINGS = ("phi", "k_s/k_n", "slip rule", "rotation")
+_MOST_SEEDS = 1000
 
 
 def register(app: typer.Typer) -> None:
@@ -24,153 +24,171 @@ def register(app: typer.Typer) -> None:
 def paper(
     names: Annotated[
         list[str] | None,
-        typer.Argument(metavar="[NAME]...", help="Experiments, such as fig07 or fig7; without any, a list."),
+        typer.Argument(
+            metavar="[NAME]...", help="Figures, claims or experiments, such as fig19; all if none."
+        ),
     ] = None,
     out: Annotated[
-        Path,
-        typer.Option("-o", "--out", metavar="FOLDER", help="Each experiment gets its own folder in here."),
+        Path, typer.Option("-o", "--out", metavar="FOLDER", help="Page, tables, pictures and runs go here.")
     ] = Path("runs/paper"),
-    threads: Annotated[
-        int, typer.Option("--threads", metavar="N", min=1, help="Threads; the numbers do not depend on it.")
-    ] = 1,
+    quick: Annotated[bool, typer.Option("--quick", help="One seed, no sweeps: indicative, minutes.")] = False,
+    full: Annotated[
+        bool, typer.Option("--full", help="Every sweep: an hour or more, may be interrupted.")
+    ] = False,
+    seeds: Annotated[
+        str | None,
+        typer.Option(
+            "--seeds", metavar="N|A,B,..", help="Number of seeds, or the seeds; default 3, quick 1."
+        ),
+    ] = None,
+    json: Annotated[
+        Path | None, typer.Option("--json", metavar="FILE", help="Write the ledger here too.")
+    ] = None,
+    jobs: Annotated[
+        int | None,
+        typer.Option("--jobs", "-j", metavar="N", min=1, help="Runs at a time; default: all cores."),
+    ] = None,
     again: Annotated[
-        bool, typer.Option("--again", help="Run anew what was finished there; else it is opened.")
+        bool, typer.Option("--again", help="Run anew what was finished; else it is opened.")
+    ] = False,
+    show: Annotated[
+        bool, typer.Option("--list", help="List experiments, claims and costs; run nothing.")
     ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress while running.")] = False,
 ) -> None:
-    """Rebuild figures of the paper; say where it agrees and where it does not."""
-    if not names:
-        _list()
+    """Re-do the paper's figures, judge every claim, and write one page that says what holds."""
+    plan = _plan(quick, full, seeds)
+    chosen = None if not names else [one for name in names for one in _known(name)]
+    if show:
+        _list(plan, chosen)
         return
-    chosen = [_known(name) for name in names]  # all of them before anything runs
     from ryusa.errors import ResultsError
-    from ryusa.experiments import load, run_experiment
+    from ryusa.experiments import Lines
+    from ryusa.report import make, write
 
-    for name in dict.fromkeys(chosen):
-        experiment = load(name)
-        typer.echo(f"{name}: {_sentence(experiment)}")
-        for setting, values in settings(experiment).items():
-            typer.echo(f"  {setting}: {values}")
-        try:
-            outcome = run_experiment(name, out / name, threads, progress=not quiet, again=again)
-        except KeyboardInterrupt:
-            typer.echo(
-                f"interrupted; {out / name} holds what was finished, and is taken up from there", err=True
-            )
-            raise typer.Exit(_INTERRUPTED) from None
-        except OSError as error:
-            raise ResultsError(f"{out / name}: cannot be written ({error.strerror or error})") from None
-        _print_table(outcome.table.rows(), experiment.SHOWN)
-        _print_verdicts(outcome.verdicts)
-        _print_files(outcome)
-
-
-def settings(experiment: "Experiment") -> Mapping[str, str]:
-    """Settings on which the verdicts hang, with all values that the runs of an experiment give them."""
-    from ryusa.casefile.read import read
-    from ryusa.experiments import case_path
-
-    cases = [read(case_path(one.case), dict(one.overrides)) for one in experiment.cases()]
-    if not cases:
-        return {}
-    rows = [_settings_of(case) for case in cases]
-    said = {name: ", ".join(dict.fromkeys(row[k] for row in rows)) for k, name in enumerate(_SETTINGS)}
-    stiffness = sorted({case.derived.k_n for case in cases})
-    said["k_n"] = ", ".join(f"{k / 100.0:g}" for k in stiffness) + " N/cm"
-    return said
+    try:
+        ledger = make(
+            chosen,
+            plan,
+            out,
+            jobs=_cores() if jobs is None else jobs,
+            again=again,
+            say=None if quiet else Lines(),
+        )
+        files = write(ledger, json)
+    except KeyboardInterrupt:
+        typer.echo(
+            f"interrupted; {out} holds what was finished, the same command goes on from there", err=True
+        )
+        raise typer.Exit(_INTERRUPTED) from None
+    except OSError as error:
+        raise ResultsError(f"{out}: cannot be written ({error.strerror or error})") from None
+    _print(ledger)
+    for path in files:
+        typer.echo(f"wrote {path}")
 
 
-def _settings_of(case: "Case") -> tuple[str, str, str, str]:
-    import math
+def _plan(quick: bool, full: bool, seeds: str | None) -> "Plan":
+    from ryusa.errors import CaseError
+    from ryusa.experiments import Level, Plan
 
-    found = case.derived
-    phi = f"{math.degrees(math.atan(found.mu)):.3g} deg"
-    ratio = found.k_s / found.k_n if found.k_n else 0.0
-    slip = case.contact.slip if case.contact.cap is None else f"{case.contact.slip} by {case.contact.cap}"
-    return phi, f"{ratio:.3g}", slip, case.motion.rotation
-
-
-def _list() -> None:
-    from rich import box
-    from rich.table import Table
-
-    from ryusa.experiments import NAMES, load
-
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for heading in ("name", "figure", "what it answers", "needs"):
-        table.add_column(heading, no_wrap=heading != "what it answers", justify="left")
-    for name in NAMES:
-        experiment = load(name)
-        runs = len(experiment.cases())
-        needs = f"{runs} run{'s' if runs > 1 else ''}" if runs else "nothing: a chart"
-        table.add_row(name, experiment.FIGURE, _sentence(experiment), needs)
-    _console().print(table)
-    typer.echo("next: ryusa paper NAME")
+    if quick and full:
+        raise CaseError("--quick", None, "goes without --full")
+    level = Level.QUICK if quick else Level.FULL if full else Level.STANDARD
+    return Plan(level, tuple(range(1, 2 if quick else 4)) if seeds is None else _seeds(seeds))
 
 
-def _sentence(experiment: "Experiment") -> str:
-    """First line of what the module says about itself, without the number of the figure."""
-    first = (experiment.__doc__ or experiment.TITLE).strip().splitlines()[0]
-    text = re.sub(r"^Fig\. \d+: ", "", first)
-    return text[0].upper() + text[1:]
+def _seeds(text: str) -> tuple[int, ...]:
+    from ryusa.errors import CaseError
+
+    words = [one.strip() for one in text.split(",")]
+    allowed = f"must be a number of seeds, 1 to {_MOST_SEEDS}, or different seeds such as 4,5,6"
+    if not all(one.isdecimal() for one in words):
+        raise CaseError("--seeds", text, allowed)
+    numbers = [int(one) for one in words]
+    if len(numbers) == 1:
+        if not 1 <= numbers[0] <= _MOST_SEEDS:
+            raise CaseError("--seeds", text, allowed)
+        return tuple(range(1, numbers[0] + 1))
+    if len(set(numbers)) < len(numbers) or max(numbers) >= 2**63:
+        raise CaseError("--seeds", text, allowed)
+    return tuple(numbers)
 
 
-def _known(word: str) -> str:
-    """Name of an experiment from the paper's way of writing it: fig6, "Fig. 6", free-choices."""
+def _cores() -> int:
+    import os
+
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _known(word: str) -> list[str]:
+    """Experiments that a word means: their name, the paper's way of writing a figure, or a claim."""
     from ryusa.casefile.faults import nearest_word
     from ryusa.errors import CaseError
-    from ryusa.experiments import NAMES
+    from ryusa.experiments import NAMES, load
 
-    plain = re.sub(r"[\s.]+", "", word.lower()).replace("-", "_")
-    figure = re.fullmatch(r"(?:figure|fig)?0*(\d+)", plain)
-    name = f"fig{int(figure[1]):02d}" if figure else plain
-    if name in NAMES:
-        return name
-    raise CaseError("experiment", word, f"must be one of {', '.join(NAMES)}", nearest_word(name, list(NAMES)))
+    plain = re.sub(r"[\s.]+", "", word.lower())
+    figure = re.fullmatch(r"(?:figure|fig)?0*(\d+)(.*)", plain)
+    claim = f"fig{figure[1]}{figure[2]}" if figure else plain
+    module = (f"fig{int(figure[1]):02d}" if figure and not figure[2] else plain).replace("-", "_")
+    if module in NAMES:
+        return [module]
+    by_claim = [name for name in NAMES if claim in load(name).CLAIMS or claim == load(name).FIGURE]
+    if by_claim:
+        return by_claim
+    words = [*NAMES, *(one for name in NAMES for one in load(name).CLAIMS)]
+    allowed = f"must be one of {', '.join(NAMES)}, or a claim of theirs; ryusa paper --list shows both"
+    raise CaseError("experiment", word, allowed, nearest_word(claim, words))
 
 
-def _print_table(rows: Sequence[Mapping[str, Any]], shown: Sequence[str]) -> None:
+def _list(plan: "Plan", chosen: Sequence[str] | None) -> None:
     from rich import box
     from rich.table import Table
 
-    if not rows or not shown:
-        return
+    from ryusa.experiments import NAMES, cost, load
+
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for key in shown:
-        # names of columns break at their underscores, numbers never
-        heading = key.replace("_", " ")
-        table.add_column(heading, justify="right" if isinstance(rows[0][key], float) else "left")
-    for row in rows:
-        table.add_row(*(_cell(row[key]) for key in shown))
+    for heading in ("name", "what it answers", "claims"):
+        table.add_column(heading, no_wrap=heading == "name")
+    for heading in ("runs", "core minutes"):
+        table.add_column(heading, justify="right")
+    every: set[Any] = set()
+    for name in chosen or NAMES:
+        experiment, runs = load(name), set(load(name).cases(plan))
+        minutes = sum(cost(one) for one in runs) / 60.0
+        table.add_row(
+            name,
+            experiment.TITLE,
+            ", ".join(experiment.CLAIMS),
+            str(len(runs)),
+            f"{minutes:.1f}" if runs else "-",
+        )
+        every |= runs
     _console().print(table)
+    total = sum(cost(one) for one in every) / 60.0
+    typer.echo(f"{plan.level}: {len(every)} different runs, about {total:.0f} core minutes by rule of thumb")
 
 
-def _cell(value: object) -> str:
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    return f"{value:.4g}" if isinstance(value, float) else str(value)
+def _print(ledger: "Ledger") -> None:
+    from rich import box
+    from rich.table import Table
 
-
-def _print_verdicts(verdicts: Sequence["Verdict"]) -> None:
-    """What was found, below the paper's own sentence."""
-    from ryusa.paper import CLAIMS
-
-    said = None
-    for one in verdicts:
-        claim = CLAIMS.get(one.claim)
-        if claim is not None and claim is not said:
-            typer.echo(f"  the paper, {claim.id}: {claim.says}")
-            if claim.caution:
-                typer.echo(f"    caution: {claim.caution}")
-            said = claim
-        typer.echo(f"    {one.row()['verdict']}: {one.says}")
-        typer.echo(f"      found: {one.found}")
-
-
-def _print_files(outcome: "Outcome") -> None:
-    for path in outcome.files:
-        if path.suffix in {".csv", ".png"}:
-            typer.echo(f"wrote {path}")
+    if ledger.plan.level == "quick":
+        typer.echo(
+            "indicative: one seed, no sweeps; `ryusa paper` without --quick gives intervals and verdicts"
+        )
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for heading in ("claim", "the paper", "ours", "verdict"):
+        table.add_column(heading, no_wrap=heading == "claim")
+    for row in ledger.rows:
+        plain = row.plain(ledger.folder)
+        verdict = f"{row.word} {plain['condition']}".strip()
+        table.add_row(row.claim.id, row.claim.says, plain["ours"] or "-", verdict)
+    _console().print(table)
+    counts: dict[str, int] = {}
+    for row in ledger.rows:
+        counts[str(row.word)] = counts.get(str(row.word), 0) + 1
+    typer.echo("; ".join(f"{n} {word}" for word, n in counts.items()))
 
 
 def _console() -> Any:

@@ -1,86 +1,134 @@
-"""What an experiment is, and the one function that carries it out."""
+"""What an experiment is: the runs it needs, what it measures in each, what follows for the paper's claims."""
 
-import json
+import hashlib
+import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import cached_property, lru_cache
 from importlib import import_module
 from pathlib import Path
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from matplotlib.figure import Figure
 
-from ryusa.errors import CaseError, ResultsError
-from ryusa.figures import save
-from ryusa.measure import write_csv
+from ryusa.errors import CaseError
+from ryusa.experiments._verdict import Finding
 from ryusa.results import Results
 
-NAMES = ("fig04", "fig06", "fig07", "fig08", "fig11", "fig12", "fig20", "fig21", "free_choices")
+if TYPE_CHECKING:
+    from ryusa.casefile.schema import Case
+
+NAMES = ("fig20",)
+
+# Free choices that several experiments share; one set of them is sought that fits most claims together.
+PHI = "friction angle"
+SLIP = "slip rule"
+RATIO = "k_s/k_n"
+ROTATION = "rotation"  # only where the paper does not say it
+
+Value = TypeVar("Value")
+
+
+class Level(StrEnum):
+    """How much is run."""
+
+    QUICK = "quick"  # the case files as they are, one seed: indicative
+    STANDARD = "standard"  # three seeds and the sweeps that decide a verdict
+    FULL = "full"  # every sweep
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a campaign is to cover."""
+
+    level: Level = Level.STANDARD
+    seeds: tuple[int, ...] = (1, 2, 3)
+
+    def pick(self, quick: Value, standard: Value, full: Value | None = None) -> Value:
+        """Give the value of this level; the full one takes the standard one where it has none."""
+        if self.level is Level.QUICK:
+            return quick
+        return full if self.level is Level.FULL and full is not None else standard
 
 
 @dataclass(frozen=True)
 class Variant:
-    """One run of an experiment: a case file of `cases/paper/` and what is changed in it."""
+    """One run: a case file of `cases/paper/` and what is changed in it. Equal variants are one run."""
 
-    name: str
-    case: str
-    overrides: Mapping[str, str] = field(default_factory=dict[str, str])
+    case: str  # "fig19" is cases/paper/fig19.toml
+    overrides: tuple[tuple[str, str], ...] = ()  # sorted; keys and values as `ryusa run --set` takes them
+
+    @cached_property
+    def folder(self) -> str:
+        """Folder of the run below that of all runs: readable, and different for different overrides."""
+        said = "-".join(re.sub(r"[^A-Za-z0-9.+]+", "", value) for _, value in self.overrides)
+        digest = hashlib.sha256(repr(self.overrides).encode()).hexdigest()[:8]
+        return f"{self.case}/{said[:60]}-{digest}" if said else f"{self.case}/as-shipped-{digest}"
+
+    @property
+    def label(self) -> str:
+        """Words for the progress line."""
+        return " ".join((self.case, *(value for _, value in self.overrides)))
+
+    def read(self) -> "Case":
+        """Give the checked case."""
+        return _read(self)
+
+    def get(self, key: str, default: str = "") -> str:
+        """Value of one override as text."""
+        return dict(self.overrides).get(key, default)
 
 
-@dataclass(frozen=True)
-class Verdict:
-    """A sentence of the paper, and whether what was found agrees with it."""
+def variant(case: str, overrides: Mapping[str, str] | None = None, seed: int = 1) -> Variant:
+    """Name one run.
 
-    claim: str  # id of the claim, as in paper.py
-    says: str
-    found: str
-    holds: bool | None  # None: not enough to tell
-
-    def row(self) -> dict[str, object]:
-        """One line of a CSV table."""
-        word = {True: "agrees", False: "disagrees", None: "undecided"}[self.holds]
-        return {"claim": self.claim, "says": self.says, "found": self.found, "verdict": word}
+    Parameters
+    ----------
+    case : "fig19" is cases/paper/fig19.toml.
+    overrides : keys of the case and values as text with units.
+    seed : the one seed of all its randomness.
+    """
+    changed = {**(overrides or {}), "seed": str(seed)}
+    return Variant(case, tuple(sorted(changed.items())))
 
 
-class Table(Protocol):
-    """What an experiment measured."""
+@lru_cache(maxsize=4096)
+def _read(one: Variant) -> "Case":
+    from ryusa.casefile.read import read
 
-    def rows(self) -> list[dict[str, object]]:
-        """Lines of a CSV table."""
-        ...
+    return read(case_path(f"paper/{one.case}.toml"), dict(one.overrides))
+
+
+Found = Mapping[Variant, Any]
 
 
 class Experiment(Protocol):
-    """A module that answers one figure of the paper."""
+    """A module that answers one figure or sentence of the paper."""
 
-    FIGURE: str
+    FIGURE: str  # how the paper calls it, such as "fig19"
     TITLE: str
-    SHOWN: tuple[str, ...]  # columns of the table that fit a terminal; none: the chart says it better
+    CLAIMS: tuple[str, ...]  # ids of `paper.CLAIMS` that it judges
 
-    def cases(self) -> Sequence[Variant]:
+    def cases(self, plan: Plan) -> Sequence[Variant]:
         """Runs it needs; none for a chart of closed forms."""
         ...
 
-    def measure(self, results: Mapping[str, Results]) -> Any:
-        """Turn the runs, by the names of their variants, into a table."""
+    def measure(self, run: Results, one: Variant) -> Any:
+        """Numbers of one run, small enough to be sent between processes."""
         ...
 
-    def expect(self, table: Any) -> Sequence[Verdict]:
-        """Set the paper's sentences against the table."""
+    def judge(self, found: Found, plan: Plan) -> Sequence[Finding]:
+        """Set the paper's sentences against what was measured; one finding per claim."""
         ...
 
-    def draw(self, table: Any) -> Mapping[str, Figure]:
-        """Pictures by name."""
+    def rows(self, found: Found, plan: Plan) -> list[dict[str, object]]:
+        """Lines of the CSV table."""
         ...
 
-
-@dataclass(frozen=True)
-class Outcome:
-    """What an experiment left behind."""
-
-    folder: Path
-    table: Any
-    verdicts: tuple[Verdict, ...]
-    files: tuple[Path, ...]
+    def draw(self, found: Found, plan: Plan) -> Mapping[str, Figure]:
+        """Pictures by name, in the paper's own form."""
+        ...
 
 
 def load(name: str) -> Experiment:
@@ -91,62 +139,6 @@ def load(name: str) -> Experiment:
     return module
 
 
-def run_experiment(
-    name: str, folder: Path | str, threads: int = 1, *, progress: bool = True, again: bool = False
-) -> Outcome:
-    """Run the cases of an experiment, measure, draw, and write everything into one folder.
-
-    Parameters
-    ----------
-    name : one of NAMES.
-    folder : runs go into `folder/runs/<variant>`, table, pictures and verdicts into `folder`.
-    threads : threads of the engine.
-    progress : show a bar while running.
-    again : run even what is there already; by default a finished run of the very same case is opened.
-    """
-    experiment = load(name)
-    folder = Path(folder)
-    results = {
-        one.name: run_variant(one, folder / "runs" / one.name, threads, progress=progress, again=again)
-        for one in experiment.cases()
-    }
-    table = experiment.measure(results)
-    verdicts = tuple(experiment.expect(table))
-    files = [write_csv(folder / f"{name}.csv", table.rows())]
-    if verdicts:
-        files.append(write_csv(folder / f"{name}-verdicts.csv", [one.row() for one in verdicts]))
-    for picture, figure in experiment.draw(table).items():
-        files += [save(figure, folder / f"{picture}.png"), save(figure, folder / f"{picture}.svg")]
-    return Outcome(folder, table, verdicts, tuple(files))
-
-
-def run_variant(
-    one: Variant, folder: Path, threads: int = 1, *, progress: bool = True, again: bool = False
-) -> Results:
-    """Run one variant, or open it where the same case was finished there before."""
-    from ryusa.casefile.read import read
-    from ryusa.running.runner import run
-
-    case = read(case_path(one.case), dict(one.overrides))
-    old = None if again else _earlier(folder)
-    if old is not None and old.complete and old.case == json.loads(json.dumps(case.resolved())):
-        return old
-    done = run(case, folder, threads=threads, progress=progress, overwrite=True)
-    if not done.complete:  # a run that was stopped is no basis for a verdict
-        raise KeyboardInterrupt
-    return done
-
-
-def _earlier(folder: Path) -> Results | None:
-    """Open what lies there; a run that another version wrote or that is damaged counts as none."""
-    if not (folder / "case.json").is_file():
-        return None
-    try:
-        return Results.open(folder)
-    except ResultsError:
-        return None
-
-
 def case_path(name: str) -> Path:
-    """Path of a case file that ships with the package, such as "paper/fig06.toml"."""
+    """Path of a case file that ships with the package, such as "paper/fig19.toml"."""
     return Path(__file__).resolve().parent.parent / "cases" / name

@@ -1,81 +1,119 @@
 """Fig. 20: saltation with rotation locked and free, k_n = 100 N/cm; jumps and the shear on the bed."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 from matplotlib.figure import Figure
 
 from ryusa import figures
-from ryusa.experiments._experiment import Variant, Verdict
-from ryusa.measure import Average, Saltation, Tracks, saltation, tracks
+from ryusa.experiments import _saltation
+from ryusa.experiments._experiment import Found, Plan, Variant
+from ryusa.experiments._verdict import Band, Finding, Trial, over_seeds, pool
 from ryusa.results import Results
 
 FIGURE = "fig20"
 TITLE = "Saltation with and without rotation"
-SHOWN: tuple[str, ...] = ("rotation", "quantity", "value", "standard_error", "unit", "n", "steady")
+CLAIMS = ("fig20", "fig20-shear")
 WAY = 0.3  # shown of each path [m]
-SURE = 2.0  # standard errors by which two means must differ to be called different
+LARGER = Band(1.0, float("inf"), "-", "free over locked above 1")
+HALF = Band(0.35, 0.65, "-", "about half: free over locked 0.35 to 0.65")
+# part of the claim -> average
+JUMPS = {
+    "mean jump height, free over locked": "jump_height",
+    "mean jump length, free over locked": "jump_length",
+}
+IMPULSE = "impulse"  # the choice that fig20-shear leaves open
+SHEARS = {"per time": "bed_shear", "per bounce": "impulse_shear", "over the normal impulse": "shear_ratio"}
 
 
-@dataclass(frozen=True)
-class Table:
-    """Hops and paths, locked and free."""
-
-    hops: Mapping[str, Saltation]
-    paths: Mapping[str, Tracks]
-
-    def rows(self) -> list[dict[str, object]]:
-        """One line per average and state of rotation."""
-        return [{"rotation": name, **row} for name, one in self.hops.items() for row in one.rows()]
+def cases(plan: Plan) -> Sequence[Variant]:
+    """Locked and free for every set of choices and seed."""
+    return [
+        _saltation.run(chosen, rotation, seed)
+        for chosen in _saltation.choices(plan)
+        for rotation in ("locked", "free")
+        for seed in plan.seeds
+    ]
 
 
-def cases() -> Sequence[Variant]:
-    """The same case, locked and free."""
-    return [Variant(name, "paper/fig20.toml", {"motion.rotation": name}) for name in ("locked", "free")]
+def measure(run: Results, one: Variant) -> _saltation.Hops:
+    """Hops of all starts."""
+    del one
+    return _saltation.hops(run)
 
 
-def measure(results: Mapping[str, Results]) -> Table:
-    """Hops of all starts; the path of the first, over a second after settling."""
-    hops = {name: saltation(run, hops=30) for name, run in results.items()}
-    paths: dict[str, Tracks] = {}
-    for name, run in results.items():
-        begin = float(hops[name].hops["t_begin"][0]) if len(hops[name].hops) else 0.0
-        paths[name] = tracks(run, [0], begin, begin + 1.0)
-    return Table(hops, paths)
+def ratios(found: Found, plan: Plan, name: str) -> list[list[float]]:
+    """Free over locked of one average, by set of choices, then seed."""
+    values: list[list[float]] = []
+    for chosen in _saltation.choices(plan):
+        runs = [
+            [found[_saltation.run(chosen, rot, seed)] for rot in ("free", "locked")] for seed in plan.seeds
+        ]
+        values.append([free.found[name].value / locked.found[name].value for free, locked in runs])
+    return values
 
 
-def expect(table: Table) -> Sequence[Verdict]:
+def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """Free: higher and longer jumps, about half the shear on the bed."""
-    locked, free = table.hops["locked"], table.hops["free"]
+    sets = _saltation.choices(plan)
+    jumps: list[Trial] = []
+    for part, name in JUMPS.items():
+        groups = ratios(found, plan, name)
+        spread = pool(groups)
+        jumps += [
+            Trial(part, chosen, over_seeds(values, "-", spread), LARGER)
+            for chosen, values in zip(sets, groups, strict=True)
+        ]
+    shears: list[Trial] = []
+    for impulse, name in SHEARS.items():
+        groups = ratios(found, plan, name)
+        spread = pool(groups)
+        shears += [
+            Trial(
+                "bed shear, free over locked",
+                {**chosen, IMPULSE: impulse},
+                over_seeds(values, "-", spread),
+                HALF,
+            )
+            for chosen, values in zip(sets, groups, strict=True)
+        ]
     return (
-        _larger("fig20", "free jumps are higher", locked["jump_height"], free["jump_height"]),
-        _larger("fig20", "free jumps are longer", locked["jump_length"], free["jump_length"]),
-        _half("bed shear per time", locked["bed_shear"], free["bed_shear"]),
-        _half("bed shear per bounce", locked["impulse_shear"], free["impulse_shear"]),
-        _half("shear over normal impulse", locked["shear_ratio"], free["shear_ratio"]),
+        Finding(
+            "fig20",
+            tuple(jumps),
+            "A locked grain rubs at every hit and leaves slowly; a free one that has spun up rolls off, keeps "
+            "its speed and meets the next crest harder. Friction angle, slip rule and k_s/k_n act on the locked "
+            "grain alone.",
+        ),
+        Finding(
+            "fig20-shear",
+            tuple(shears),
+            "The normal force on the bed is the same, so the shear force of the locked grain decides: as "
+            "printed (cap on the spring, dashpot kept) it is too strong; a weaker one, by a small friction angle or "
+            "a cap on spring and dashpot together, brings free and locked closer.",
+        ),
     )
 
 
-def _larger(claim: str, says: str, locked: Average, free: Average) -> Verdict:
-    gap = (free.value - locked.value) / (free.error**2 + locked.error**2) ** 0.5
-    found = f"{_show(locked)} locked, {_show(free)} free: {gap:+.1f} standard errors"
-    return Verdict(claim, says, found, None if abs(gap) < SURE else gap > 0.0)
+def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
+    """One line per average, run and set of choices."""
+    return [
+        {**chosen, "rotation": rotation, "seed": seed, **row}
+        for chosen in _saltation.choices(plan)
+        for rotation in ("locked", "free")
+        for seed in plan.seeds
+        for row in found[_saltation.run(chosen, rotation, seed)].found.rows()
+    ]
 
 
-def _half(what: str, locked: Average, free: Average) -> Verdict:
-    share = free.value / locked.value
-    error = share * ((free.error / free.value) ** 2 + (locked.error / locked.value) ** 2) ** 0.5
-    says = "bed shear resistance falls to about half"
-    return Verdict("fig20-shear", says, f"{what}: {share:.2f} ± {error:.2f} of locked", 0.35 < share < 0.65)
-
-
-def _show(one: Average) -> str:
-    return f"{one.value:.3g} ± {one.error:.1g} {one.unit}"
-
-
-def draw(table: Table) -> Mapping[str, Figure]:
+def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
     """Paths of both, and how their jumps are distributed."""
-    d = float(table.paths["locked"].d[0])
-    paths = {f"rotation {name}": one for name, one in table.paths.items()}
-    hops = {f"rotation {name}": one for name, one in table.hops.items()}
-    return {"fig20": figures.tracks_side_by_side(paths, WAY), "fig20-hops": figures.hops(hops, d)}
+    base = {
+        f"rotation {rot}": found[_saltation.run(_saltation.SHIPPED, rot, plan.seeds[0])]
+        for rot in ("locked", "free")
+    }
+    paths = {name: one.path for name, one in base.items()}
+    d = next(iter(base.values())).d
+    return {
+        "fig20": figures.tracks_side_by_side(paths, WAY),
+        "fig20-hops": figures.hops({name: one.found for name, one in base.items()}, d),
+    }

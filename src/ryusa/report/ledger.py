@@ -1,0 +1,193 @@
+"""One row per claim of the paper, from runs to verdicts."""
+
+import math
+import platform
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ryusa.errors import ResultsError
+from ryusa.experiments import (
+    NAMES,
+    Campaign,
+    Finding,
+    Interval,
+    Level,
+    Plan,
+    Say,
+    Trial,
+    Word,
+    carry_out,
+    load,
+)
+from ryusa.figures import save
+from ryusa.measure import write_csv
+from ryusa.paper import CITATION, CLAIMS, Claim
+from ryusa.report.common import Common, common
+from ryusa.running import provenance
+
+FORMAT = 1  # of the JSON file
+WATER = ("fig17", "fig17-time", "fig17-e", "fig17-lock", "fig17-free", "fig18", "fig22", "fig22-free")
+
+
+@dataclass(frozen=True)
+class Row:
+    """One claim and what became of it."""
+
+    claim: Claim
+    word: Word
+    finding: Finding | None  # None where nothing could be run
+    experiment: str = ""
+    pictures: tuple[Path, ...] = ()
+
+    def plain(self, folder: Path) -> dict[str, Any]:
+        """Give the row as the JSON file holds it; pictures relative to `folder`."""
+        found = self.finding
+        base = found.base if found is not None else ()
+        return {
+            "id": self.claim.id,
+            "figure": self.claim.figure,
+            "verdict": str(self.word),
+            "condition": found.condition if found is not None else "",
+            "statement": self.claim.says,
+            "setup": self.claim.setup,
+            "left_open": self.claim.free,
+            "caution": self.claim.caution,
+            "ours": "; ".join(f"{one.part}: {one.note or one.found}" for one in base),
+            "spread": [_spread(one.found) for one in base],
+            "asked": list(dict.fromkeys(one.band.says for one in base)),
+            "settings": {
+                **(found.settings if found is not None else {}),
+                **(base[0].choices if base else {}),
+            },
+            "decided_by": found.decided_by if found is not None else "",
+            "contradiction": found.contradiction if found is not None else "",
+            "also": list(found.also) if found is not None else [],
+            "sweep": [_trial(one) for one in found.trials] if found is not None else [],
+            "experiment": self.experiment,
+            "pictures": [str(one.relative_to(folder)) for one in self.pictures],
+        }
+
+
+@dataclass(frozen=True)
+class Ledger:
+    """All rows, how they were made, and where."""
+
+    rows: tuple[Row, ...]
+    plan: Plan
+    folder: Path
+    common: tuple[Common, ...]  # sets of free choices, best first
+    problems: Mapping[str, str]  # runs that could not be carried out
+    counts: Mapping[str, float]  # runs made, runs opened, wall seconds
+    tables: Mapping[str, list[dict[str, object]]]  # experiment -> lines of its CSV
+
+    def plain(self) -> dict[str, Any]:
+        """Give the ledger as the JSON file holds it."""
+        return {
+            "format": FORMAT,
+            "paper": CITATION,
+            "level": str(self.plan.level),
+            "indicative": self.plan.level is Level.QUICK,
+            "seeds": list(self.plan.seeds),
+            "claims": [one.plain(self.folder) for one in self.rows],
+            "common_choices": [one.plain() for one in self.common],
+            "problems": dict(self.problems),
+            "provenance": _origin(self.counts),
+        }
+
+
+def make(
+    names: Sequence[str] | None,
+    plan: Plan,
+    folder: Path,
+    *,
+    jobs: int = 1,
+    again: bool = False,
+    say: Say | None = None,
+) -> Ledger:
+    """Run what is needed, judge every claim, and write tables and pictures.
+
+    Parameters
+    ----------
+    names : experiments, of `NAMES`; None takes all, and adds rows for the claims that wait for water.
+    plan : level and seeds.
+    folder : runs go into `folder/runs`, each experiment's tables and pictures into `folder/<name>`.
+    jobs, again, say : as in `experiments.carry_out`.
+
+    Raises
+    ------
+    KeyboardInterrupt : Ctrl-C; finished runs stay and are opened next time.
+    """
+    chosen = NAMES if names is None else tuple(dict.fromkeys(names))
+    campaign = carry_out(chosen, plan, folder / "runs", jobs=jobs, again=again, say=say)
+    rows: dict[str, Row] = {}
+    tables: dict[str, list[dict[str, object]]] = {}
+    for name in chosen:
+        rows |= _judged(name, campaign, plan, folder, tables)
+    if names is None:
+        rows |= {one: Row(CLAIMS[one], Word.WATER, None) for one in WATER if one not in rows}
+    ordered = tuple(rows[one] for one in CLAIMS if one in rows)
+    counts = {
+        "runs_made": campaign.n_run,
+        "runs_opened": campaign.n_opened,
+        "wall_s": round(campaign.seconds, 1),
+        "jobs": jobs,
+    }
+    findings = [(one.experiment, one.finding) for one in ordered if one.finding is not None]
+    return Ledger(ordered, plan, folder, common(findings), campaign.problems, counts, tables)
+
+
+def _judged(
+    name: str, campaign: Campaign, plan: Plan, folder: Path, tables: dict[str, list[dict[str, object]]]
+) -> dict[str, Row]:
+    """Rows of one experiment; its tables and pictures are written on the way."""
+    experiment, found = load(name), campaign.found[name]
+    missing = [one.label for one in experiment.cases(plan) if one not in found]
+    if missing:
+        reason = campaign.problems.get(missing[0], "")
+        raise ResultsError(
+            f"{name}: {len(missing)} runs failed, so it cannot be judged; {missing[0]}: {reason}"
+        )
+    tables[name] = experiment.rows(found, plan)
+    home = folder / name
+    write_csv(home / f"{name}.csv", tables[name])
+    pictures = []
+    for picture, figure in experiment.draw(found, plan).items():
+        save(figure, home / f"{picture}.svg")
+        pictures.append(save(figure, home / f"{picture}.png"))
+    findings = experiment.judge(found, plan)
+    return {one.claim: Row(CLAIMS[one.claim], one.word, one, name, tuple(pictures)) for one in findings}
+
+
+def _spread(found: Interval) -> dict[str, Any]:
+    return {
+        "value": _json(found.value), "low": _json(found.low), "high": _json(found.high), "unit": found.unit,
+        "n": found.n, "how": found.how,
+    }  # fmt: skip
+
+
+def _trial(one: Trial) -> dict[str, Any]:
+    held = {True: "holds", False: "fails", None: "undecided"}[one.holds]
+    low, high = _json(one.band.low), _json(one.band.high)
+    asked = {"low": low, "high": high, "unit": one.band.unit, "says": one.band.says}
+    return {
+        "part": one.part, "choices": dict(one.choices), **_spread(one.found), "asked": asked, "outcome": held,
+        "note": one.note,
+    }  # fmt: skip
+
+
+def _json(value: float) -> float | None:
+    """JSON knows no infinity and no nan."""
+    return value if math.isfinite(value) else None
+
+
+def _origin(counts: Mapping[str, float]) -> dict[str, Any]:
+    found = provenance.begin(threads=1, seed=None, engine="CpuEngine", overrides={})
+    kept = ("ryusa", "commit", "packages", "python", "system", "machine")
+    return {
+        "made": provenance.now(),
+        **{key: found[key] for key in kept},
+        **counts,
+        "node": platform.machine(),
+    }
