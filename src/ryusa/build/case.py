@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass, replace
 
 from ryusa.build.assemble import Laws, assemble
+from ryusa.build.box import box
 from ryusa.build.drop import drop
 from ryusa.build.layout import Layout, Wall
 from ryusa.build.overlaps import refuse_overlaps
@@ -16,7 +17,7 @@ from ryusa.errors import CaseError
 from ryusa.model import ContactLaw, RollingLaw, Scene, State, Water
 from ryusa.model.enums import Above, Arm, Cap, Damping, Drag, EventRule, Profile, Rolling, Slip, WaterTorque
 
-BUILDERS = {"drop": drop, "saltation": saltation, "table": table, "packing": packing}
+BUILDERS = {"drop": drop, "saltation": saltation, "table": table, "packing": packing, "box": box}
 SLIPS = {"spring": Slip.SPRING, "spring-drop": Slip.SPRING_DROP, "total": Slip.TOTAL}
 CAPS = {"spring": Cap.SPRING, "total": Cap.TOTAL}
 ROLLINGS = {

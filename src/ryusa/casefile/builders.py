@@ -93,4 +93,37 @@ class Packing(_Keys):
     [[planes]], at x = 0 and x = columns (1 + gap) largest diameters, or grains roll off the bed."""
 
 
-Build = Annotated[Drop | Saltation | Table | Packing, Field(discriminator="kind")]
+class Box(_Keys):
+    """Grains fall into a box of floor, back wall and gate; what the timeline removes lets them out."""
+
+    kind: Literal["box"]
+    """Name of the builder."""
+    columns: Annotated[Count, Field(ge=1, le=100_000)]
+    """Free grains along x in one layer; the gate stands columns (1 + gap) largest diameters from the back
+    wall, rounded up to whole fixed grains where floor or walls are grains."""
+    rows: Annotated[Count, Field(ge=1, le=100_000)] = 1
+    """Free grains along y in one layer, periodic in y; 1 in a plane scene."""
+    layers: Annotated[Count, Field(ge=1, le=100_000)]
+    """Layers above the floor."""
+    gap: Annotated[Number, Field(ge=0, le=2)] = 0.1
+    """Free room between lattice neighbours, in largest diameters."""
+    jitter: Annotated[Number, Field(ge=0, le=1)] = 0.9
+    """Part of that room used by random displacement."""
+    height: Annotated[Length, Field(ge=0)] = 0.0
+    """Free height between the floor and the lowest layer, through which the whole lattice falls."""
+    floor: Literal["grains", "plane"] = "grains"
+    """Floor of touching fixed grains of mean diameter from the back wall to the end of the run-out, or the
+    plane z = 0, which never ends. Group `floor`."""
+    floor_height: Annotated[Number, Field(ge=0, le=1)] = 0.0
+    """Range of random heights of the floor's grains, in mean diameters."""
+    walls: Literal["grains", "planes"] = "planes"
+    """Back wall with its face at x = 0 and gate: planes, or stacks of touching fixed grains of mean
+    diameter. Groups `back` and `gate`."""
+    run_out: Annotated[Length, Field(ge=0)] = 0.0
+    """How far the floor of grains goes on beyond the gate, rounded up to whole grains; 0 ends it there."""
+    drop: Annotated[Length, Field(ge=0)] | None = None
+    """Depth below z = 0 of a plane that catches what leaves a floor of grains; none when not given.
+    Group `pit`."""
+
+
+Build = Annotated[Drop | Saltation | Table | Packing | Box, Field(discriminator="kind")]

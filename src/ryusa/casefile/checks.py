@@ -4,8 +4,9 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from ryusa.casefile.builders import Drop, Packing, Saltation, Table
-from ryusa.casefile.derive import may_spin, periodic
+from ryusa.casefile.box import hole
+from ryusa.casefile.builders import Box, Drop, Packing, Saltation, Table
+from ryusa.casefile.derive import may_spin, periodic, sizes
 from ryusa.casefile.schema import Case, Spread
 from ryusa.errors import CaseError
 
@@ -165,16 +166,51 @@ def _builder(case: Case) -> Iterator[CaseError]:
         if lanes > 1:
             key = "build.copies" if isinstance(build, Drop) else "build.starts"
             yield CaseError(key, lanes, "needs motion.plane = true; in three dimensions lanes could meet")
-    if isinstance(build, Packing) and case.motion.plane and build.rows > 1:
+    if isinstance(build, Packing | Box) and case.motion.plane and build.rows > 1:
         yield CaseError("build.rows", build.rows, "must be 1 in a plane scene")
-    if isinstance(build, Packing) and periodic(case)[1] and build.rows < FEWEST_PERIODS:
+    if isinstance(build, Packing | Box) and periodic(case)[1] and build.rows < FEWEST_PERIODS:
         yield CaseError("build.rows", build.rows, f"must be at least {FEWEST_PERIODS} where y is periodic")
+    if isinstance(build, Box):
+        yield from _box(case, build)
     if case.stop.saltations is not None and not isinstance(build, (Saltation, Table)):
         yield CaseError(
             "stop.saltations",
             case.stop.saltations,
             "needs a bed to saltate over: builder 'saltation' or 'table'",
         )
+
+
+def _box(case: Case, build: Box) -> Iterator[CaseError]:
+    if build.floor == "plane":
+        for key in ("run_out", "drop", "floor_height"):
+            value = getattr(build, key)
+            if value is not None and (key == "drop" or value > 0.0):
+                yield CaseError(
+                    f"build.{key}", value, "has no meaning with floor 'plane', which is flat and never ends"
+                )
+    d, d_min, _ = sizes(case)
+    if d_min <= (free := hole(build, case.motion.plane)) * d:
+        yield CaseError(
+            "grains.spread",
+            None,
+            f"the smallest grain, {d_min:.3g} m, slips through fixed grains of mean diameter: through up to "
+            f"{free:.2g} d; take less spread (or floor_height), or build.floor = 'plane', walls = 'planes'",
+        )
+    caught = build.drop is not None or any(plane.normal[2] > 0.0 for plane in case.planes)
+    for number, change in enumerate(case.timeline):
+        ends = build.floor == "grains" and (
+            change.remove == "back" or (change.remove == "gate" and build.run_out == 0.0)
+        )
+        if not caught and (ends or change.remove == "floor"):
+            ways = ["build.run_out makes it longer"] if change.remove == "gate" else []
+            ways += ["build.drop catches them"] if build.floor == "grains" else []
+            ways += ["build.floor = 'plane' never ends"] if ends else []
+            yield CaseError(
+                f"timeline.{number}.remove",
+                change.remove,
+                "lets grains fall out of the world, for no floor is there; "
+                + ", ".join([*ways, "a plane of [[planes]] catches them"]),
+            )
 
 
 def _timeline(case: Case, data: dict[str, Any]) -> Iterator[CaseError]:

@@ -6,7 +6,8 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ryusa.casefile.builders import Drop, Packing, Saltation, Table
+from ryusa.casefile.box import box_plan
+from ryusa.casefile.builders import Box, Drop, Packing, Saltation, Table
 from ryusa.casefile.schema import Case, Spread, StiffnessForOverlap, StiffnessForTime
 from ryusa.casefile.table import table_of
 from ryusa.laws import collision, drag, motion, water
@@ -124,6 +125,10 @@ def counts(case: Case) -> tuple[int, int, bool]:
         return build.copies * free, build.copies * (build.partner == "fixed"), build.partner == "free"
     if isinstance(build, Saltation):
         return build.starts, build.starts * build.n_bed, False
+    if isinstance(build, Box):
+        d, _, d_max = sizes(case)
+        n_fixed = box_plan(build, d, d_max, case.motion.plane).n_fixed
+        return build.columns * build.rows * build.layers, n_fixed, True
     assert isinstance(build, Packing)
     bed = bed_counts(case)
     return build.columns * build.rows * build.layers, bed[0] * bed[1], True
@@ -146,6 +151,8 @@ def periodic(case: Case) -> tuple[bool, bool]:
     build = case.build
     if isinstance(build, Packing):
         return build.periodic, build.periodic and not case.motion.plane
+    if isinstance(build, Box):
+        return False, not case.motion.plane
     if isinstance(build, Table):
         return case.domain.period_x is not None, case.domain.period_y is not None
     return isinstance(build, Saltation), False

@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 
 from ryusa.casefile import estimate
-from ryusa.casefile.builders import Drop, Packing
+from ryusa.casefile.builders import Box, Drop, Packing
 from ryusa.casefile.derive import MANY, Derived, Pair, events_of, terminal_velocity, water_speed
 from ryusa.casefile.schema import Case, StiffnessForOverlap, StiffnessForTime, Water
 from ryusa.casefile.table import table_of
@@ -207,7 +207,10 @@ def expected_speed(case: Case) -> tuple[float, str]:
         if math.isfinite(settling) and settling < fall:
             return max(settling, build.speed), "settling velocity, reached before the drop speed"
         return fall, "speed of the drop, no drag"
-    if isinstance(build, Packing):
+    if isinstance(build, Box) and (fall := build.height + build.layers * build.gap * found.d_max) > found.d:
+        fastest = math.sqrt(2.0 * found.g * fall * (found.m_weight / (found.m + found.m_added)))
+        return min(fastest, settling), "fall of the top layer through the free room below it"
+    if isinstance(build, Packing | Box):
         return math.sqrt(2.0 * found.g * found.d), "fall through one diameter, sqrt(2 g d)"
     if math.isfinite(settling):
         return settling, "settling velocity; a saltating grain mostly hits more slowly"
@@ -230,7 +233,7 @@ def _impact(case: Case, found: Derived) -> list[Row]:
     advice = "; stiffen k_n" if overlap > high else "; k_n could be softer" if overlap < low else ""
     how = f"on a fixed grain: {verdict} 0.001-0.01{advice}"
     rows.append(_row("impact", "largest overlap/d", overlap, "-", how, flag))
-    if isinstance(case.build, Packing):
+    if isinstance(case.build, Packing | Box):
         weight = case.build.layers * found.m_weight * found.g * math.cos(found.slope)
         rest = weight / (found.k_n * found.d)
         deep: Literal["", "warning"] = "warning" if rest > high else ""
