@@ -1,0 +1,104 @@
+"""Words and quantities of the command line, checked; what commands on a run folder ask of it."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ryusa.results import Results
+
+
+def open_run(folder: Path) -> "Results":
+    """A run folder, opened."""
+    from ryusa.results import Results
+
+    return Results.open(folder)
+
+
+def known(word: str, words: tuple[str, ...], key: str) -> str:
+    """`word`, or an error that names the nearest of `words`."""
+    if word in words:
+        return word
+    from difflib import get_close_matches
+
+    from ryusa.errors import CaseError
+
+    near = get_close_matches(word, words, 1)
+    raise CaseError(key, word, f"must be one of {', '.join(words)}", near[0] if near else None)
+
+
+def grains_of(grains: list[int] | None, results: "Results") -> list[int] | None:
+    """Ids of free grains asked for; None where none was named."""
+    if not grains:
+        return None
+    from ryusa.errors import CaseError
+
+    for one in grains:
+        if not 0 <= one < results.scene.n_grain:
+            raise CaseError("--grain", one, f"must be 0 to {results.scene.n_grain - 1}")
+    return grains
+
+
+def within(key: str, value: float, low: float, high: float) -> None:
+    """Refuse an option outside its range."""
+    if not low <= value <= high:
+        from ryusa.errors import CaseError
+
+        raise CaseError(key, value, f"must be {low:g} to {high:g}")
+
+
+def seconds(text: str | None) -> float | None:
+    """A time with its unit [s]."""
+    return None if text is None else _quantity(text, "s")
+
+
+def metres(text: str | None) -> float | None:
+    """A length with its unit [m]."""
+    return None if text is None else _quantity(text, "m")
+
+
+def _quantity(text: str, unit: str) -> float:
+    from ryusa.errors import CaseError
+    from ryusa.units import UnitError, quantity
+
+    try:
+        return quantity(text, unit)
+    except UnitError as error:
+        raise CaseError("option", text, str(error)) from None
+
+
+def need(there: bool, results: "Results", what: str) -> None:
+    """Refuse a run that does not hold what a measure needs."""
+    if not there:
+        from ryusa.errors import ResultsError
+
+        raise ResultsError(f"{results.folder}: does not hold {what}")
+
+
+def need_settled(results: "Results", what_to_do: str) -> None:
+    """Refuse a run that ended before its settling time."""
+    from ryusa.measure._run import settle_time
+
+    settle, last = settle_time(results), end_of(results)
+    if last <= settle and settle > 0.0:
+        from ryusa.errors import ResultsError
+
+        raise ResultsError(
+            f"{results.folder}: {results.status}, ends at t = {last:.3g} s, before its settling time is over "
+            f"(record.settle = {settle:g} s); {what_to_do}"
+        )
+
+
+def end_of(results: "Results", end: float = float("inf")) -> float:
+    """End of a window [s]: `end`, or the last frame where that comes before."""
+    return min(end, float(results.frames.t[-1])) if len(results.frames) else 0.0
+
+
+def write_rows(path: Path, rows: list[dict[str, object]]) -> Path:
+    """Write a table as CSV."""
+    from ryusa.errors import ResultsError
+    from ryusa.measure import write_csv
+
+    try:
+        return write_csv(path, rows)
+    except OSError as error:
+        raise ResultsError(f"{path}: cannot be written ({error.strerror or error})") from None
