@@ -44,3 +44,12 @@ def test_the_table_case_runs(blocks, tmp_path):
     path.write_text(head + blocks[-1][1] + REST, encoding="utf-8")
     scene = stepped(path)
     assert (scene.n_grain, scene.n_fixed) == (1, 2)
+
+
+def test_the_box_settles_without_friction_and_gets_it_back(blocks, tmp_path):
+    box, changes = [text for kind, text in blocks if kind == "toml"][1:3]
+    head = blocks[0][1].split("[rolling]")[0]
+    path = tmp_path / "box.toml"
+    path.write_text(head + box + changes + REST.replace("0.05", "0.5"), encoding="utf-8")
+    assert {"floor", "back", "gate", "pit"} <= set(stepped(path).groups)
+    assert len(read(path).timeline) == 3

@@ -43,6 +43,7 @@ def box(case: Case) -> Layout:
         walls=_walls(keys, plan),
         period=(inf, inf if plane else plan.deep),
         z_zero=crest - ZERO * d if len(floor) else 0.0,
+        endless=keys.drop is not None or keys.floor == "plane",
         notes=_notes(case, keys),
     )
 

@@ -35,6 +35,7 @@ class Layout:
     period: tuple[float, float] = (float("inf"), float("inf"))  # [m]
     z_zero: float = 0.0  # zero of the water profile when the case gives none [m]
     notes: tuple[str, ...] = ()  # choices the case left open
+    endless: bool = False  # along x: on a plane a rolling grain goes far and is not lost
     allow_overlap: bool = False
     names: tuple[str, ...] = ()  # how errors call the free, then the fixed grains; () numbers them
 
@@ -55,7 +56,7 @@ class Layout:
         return found
 
     def box(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
-        """Give the default world: generous, so that a lost grain is seen; unbounded along periods [m]."""
+        """Give the default world: generous, so that a lost grain is seen; no end along periods or endless x [m]."""
         every = np.concatenate(
             [self.x, self.x_fixed, np.array([wall.point for wall in self.walls]).reshape(-1, 3)]
         )
@@ -65,7 +66,7 @@ class Layout:
             [float(high[k] + ROOM_ASIDE * d) for k in (0, 1)],
         )
         for k in (0, 1):
-            if np.isfinite(self.period[k]):
+            if np.isfinite(self.period[k]) or (k == 0 and self.endless):
                 below[k], above[k] = -float("inf"), float("inf")
         floor, roof = float(low[2] - ROOM_BELOW * d), float(high[2] + ROOM_ABOVE * d)
         return (below[0], below[1], floor), (above[0], above[1], roof)
