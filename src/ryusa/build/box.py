@@ -113,7 +113,7 @@ def _notes(case: Case, keys: Box) -> tuple[str, ...]:
         notes.append("grains of one size, which settle into rows (grains.spread not given)")
     opened = any(entry.remove == "gate" for entry in case.timeline)
     if opened and keys.floor == "grains":
-        if keys.run_out == 0.0:
+        if "run_out" not in keys.model_fields_set:
             notes.append("the floor ends at the gate (build.run_out not given)")
         if keys.drop is None:
             notes.append("a grain that runs past the end of the floor stops the run (build.drop not given)")

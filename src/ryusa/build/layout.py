@@ -56,7 +56,7 @@ class Layout:
         return found
 
     def box(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
-        """Give the default world: generous, so that a lost grain is seen; no end along periods or endless x [m]."""
+        """Give the default world: generous, a lost grain is seen; no end along periods and endless x [m]."""
         every = np.concatenate(
             [self.x, self.x_fixed, np.array([wall.point for wall in self.walls]).reshape(-1, 3)]
         )
