@@ -12,7 +12,8 @@ if TYPE_CHECKING:
     from ryusa.report import Ledger
 
 _INTERRUPTED = 130  # exit code after Ctrl-C
-_WIDE = 160  # columns of a table that goes to a file or pipe
+_FAILED = 3  # exit code where some runs could not be carried out
+_WIDE = 100  # columns of a table that goes to a file or pipe
 _MOST_SEEDS = 1000
 
 
@@ -31,9 +32,11 @@ def paper(
     out: Annotated[
         Path, typer.Option("-o", "--out", metavar="FOLDER", help="Page, tables, pictures and runs go here.")
     ] = Path("runs/paper"),
-    quick: Annotated[bool, typer.Option("--quick", help="One seed, no sweeps: indicative, minutes.")] = False,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="One seed, no sweeps: indicative, 3 minutes.")
+    ] = False,
     full: Annotated[
-        bool, typer.Option("--full", help="Every sweep: an hour or more, may be interrupted.")
+        bool, typer.Option("--full", help="Every sweep: hours; see --list. May be interrupted.")
     ] = False,
     seeds: Annotated[
         str | None,
@@ -52,15 +55,19 @@ def paper(
         bool, typer.Option("--again", help="Run anew what was finished; else it is opened.")
     ] = False,
     show: Annotated[
-        bool, typer.Option("--list", help="List experiments, claims and costs; run nothing.")
+        bool, typer.Option("--list", help="List experiments, claims, time and disk; run nothing.")
     ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress while running.")] = False,
 ) -> None:
-    """Re-do the paper's figures, judge every claim, and write one page that says what holds."""
+    """Re-do the paper's figures, judge every claim, and write one page that says what holds.
+
+    An interrupted campaign goes on where it stopped when the same command is given again: finished
+    runs are opened. Numbers depend on the seeds alone, not on --jobs.
+    """
     plan = _plan(quick, full, seeds)
     chosen = None if not names else [one for name in names for one in _known(name)]
     if show:
-        _list(plan, chosen)
+        _list(plan, chosen, out, jobs, again)
         return
     from ryusa.errors import ResultsError
     from ryusa.experiments import Lines
@@ -71,7 +78,7 @@ def paper(
             chosen,
             plan,
             out,
-            jobs=_cores() if jobs is None else jobs,
+            jobs=jobs or _cores(),
             again=again,
             say=None if quiet else Lines(),
         )
@@ -86,6 +93,12 @@ def paper(
     _print(ledger)
     for path in files:
         typer.echo(f"wrote {path}")
+    if ledger.problems:
+        many = len(ledger.problems)
+        typer.echo(f"{many} {'run' if many == 1 else 'runs'} could not be carried out:", err=True)
+        for label, reason in ledger.problems.items():
+            typer.echo(f"  {label}: {reason}", err=True)
+        raise typer.Exit(_FAILED)
 
 
 def _plan(quick: bool, full: bool, seeds: str | None) -> "Plan":
@@ -141,49 +154,47 @@ def _known(word: str) -> list[str]:
     raise CaseError("experiment", word, allowed, nearest_word(claim, words))
 
 
-def _list(plan: "Plan", chosen: Sequence[str] | None) -> None:
+def _list(plan: "Plan", chosen: Sequence[str] | None, out: Path, jobs: int | None, again: bool) -> None:
     from rich import box
     from rich.table import Table
 
-    from ryusa.experiments import NAMES, cost, load
+    from ryusa.experiments import NAMES, cost, load, outlook
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for heading in ("name", "what it answers", "claims"):
         table.add_column(heading, no_wrap=heading == "name")
     for heading in ("runs", "core minutes"):
         table.add_column(heading, justify="right")
-    every: set[Any] = set()
+    every: list[Any] = []
     for name in chosen or NAMES:
-        experiment, runs = load(name), set(load(name).cases(plan))
+        experiment, runs = load(name), list(dict.fromkeys(load(name).cases(plan)))
         minutes = sum(cost(one) for one in runs) / 60.0
-        table.add_row(
-            name,
-            experiment.TITLE,
-            ", ".join(experiment.CLAIMS),
-            str(len(runs)),
-            f"{minutes:.1f}" if runs else "-",
-        )
-        every |= runs
+        claims = ", ".join(experiment.CLAIMS)
+        table.add_row(name, experiment.TITLE, claims, str(len(runs)), f"{minutes:.1f}" if runs else "-")
+        every += runs
     _console().print(table)
-    total = sum(cost(one) for one in every) / 60.0
-    typer.echo(f"{plan.level}: {len(every)} different runs, about {total:.0f} core minutes by rule of thumb")
+    typer.echo("A run that several experiments need is made once.")
+    typer.echo(f"{plan.level}: {outlook(every, out / 'runs', jobs=jobs or _cores(), again=again)}")
 
 
 def _print(ledger: "Ledger") -> None:
     from rich import box
+    from rich.markup import escape
     from rich.table import Table
 
     if ledger.plan.level == "quick":
         typer.echo(
             "indicative: one seed, no sweeps; `ryusa paper` without --quick gives intervals and verdicts"
         )
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for heading in ("claim", "the paper", "ours", "verdict"):
-        table.add_column(heading, no_wrap=heading == "claim")
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, leading=1)
+    table.add_column("claim", no_wrap=True)
+    for heading in ("the paper", "ours, as the case file ships", "verdict"):
+        table.add_column(heading, ratio=1, overflow="fold")
     for row in ledger.rows:
         plain = row.plain(ledger.folder)
         verdict = f"{row.word} {plain['condition']}".strip()
-        table.add_row(row.claim.id, row.claim.says, plain["ours"] or "-", verdict)
+        ours = "not judged, see below" if row.problem else plain["ours"] or "-"
+        table.add_row(row.claim.id, escape(row.claim.says), escape(ours), escape(verdict))
     _console().print(table)
     counts: dict[str, int] = {}
     for row in ledger.rows:

@@ -1,6 +1,6 @@
 """One short file per figure of the paper: runs, measure, what the paper says, and how it is drawn."""
 
-from ryusa.experiments._campaign import Campaign, Lines, Say, carry_out, cost
+from ryusa.experiments._campaign import Campaign, carry_out
 from ryusa.experiments._experiment import (
     NAMES,
     PHI,
@@ -16,6 +16,8 @@ from ryusa.experiments._experiment import (
     load,
     variant,
 )
+from ryusa.experiments._outlook import Outlook, cost, duration, outlook
+from ryusa.experiments._say import Lines, Say
 from ryusa.experiments._verdict import (
     Band,
     Finding,
@@ -42,6 +44,7 @@ __all__ = [
     "Interval",
     "Level",
     "Lines",
+    "Outlook",
     "Plan",
     "Pooled",
     "Say",
@@ -51,7 +54,9 @@ __all__ = [
     "carry_out",
     "case_path",
     "cost",
+    "duration",
     "load",
+    "outlook",
     "over_range",
     "over_seeds",
     "pool",

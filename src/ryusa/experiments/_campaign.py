@@ -1,21 +1,29 @@
 """Carry out the runs that experiments ask for: each once, several at a time, finished ones opened again."""
 
 import json
+import os
 import signal
-import sys
+import threading
 import time
-from collections.abc import Iterable, Mapping, Sequence
+from collections import Counter
+from collections.abc import Generator, Iterable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import closing, contextmanager
 from dataclasses import dataclass, field
-from multiprocessing import get_context
+from multiprocessing import get_context, parent_process
 from pathlib import Path
 from typing import Any
 
 from ryusa.errors import ResultsError, RunError, RyusaError
 from ryusa.experiments._experiment import Plan, Variant, load
+from ryusa.experiments._outlook import Outlook, outlook, refuse_if_too_big
+from ryusa.experiments._say import Say
 from ryusa.results import Results
 
 _WAIT = 0.2  # s between two looks at who has finished
+_PATIENCE = 5.0  # s that a run has to close its folder before its process is ended
+_ONE_THREAD = {name: "1" for name in ("NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")}
 
 
 @dataclass(frozen=True)
@@ -26,7 +34,8 @@ class Done:
     measured: Mapping[str, Any]  # by experiment
     opened: bool  # it was there already
     seconds: float
-    problem: str = ""  # why it could not be run to its end
+    problem: str = ""  # why it could not be run to its end, or measured
+    commit: str = ""  # of the code that made the run
 
 
 @dataclass
@@ -39,6 +48,7 @@ class Campaign:
     n_run, n_opened : runs made, and finished runs of the very same case opened again.
     seconds : wall time.
     problems : runs that could not be carried out, with the reason.
+    commits : how many runs each state of the code made.
     """
 
     found: dict[str, dict[Variant, Any]]
@@ -46,6 +56,7 @@ class Campaign:
     n_opened: int = 0
     seconds: float = 0.0
     problems: dict[str, str] = field(default_factory=dict[str, str])
+    commits: Counter[str] = field(default_factory=Counter[str])
 
 
 def carry_out(
@@ -55,7 +66,7 @@ def carry_out(
     *,
     jobs: int = 1,
     again: bool = False,
-    say: "Say | None" = None,
+    say: Say | None = None,
 ) -> Campaign:
     """Run every case that the experiments need, and measure each for every experiment that wants it.
 
@@ -70,41 +81,57 @@ def carry_out(
 
     Raises
     ------
-    KeyboardInterrupt : Ctrl-C; what was finished stays and is opened next time.
+    CaseError : a case cannot be run, or all runs together do not fit on the disk; nothing was run.
+    ResultsError : a process was ended from outside; what was finished stays.
+    KeyboardInterrupt : Ctrl-C or SIGTERM; what was finished stays and is opened next time.
     """
     begun, say = time.monotonic(), say or Say()
+    names = tuple(names)
+    wanted = _wanted(names, plan)
+    ahead = outlook(wanted, folder, jobs=jobs, again=again)  # reads, and so checks, every case first
+    refuse_if_too_big(ahead, folder)
+    found: dict[str, dict[Variant, Any]] = {name: {} for name in names}
+    campaign = Campaign(found)
+    say.begin(ahead)
+    try:
+        runs = _done(_order(ahead), wanted, folder, jobs, again, say)
+        with _stopped_by_sigterm(), closing(runs):
+            for done in runs:
+                _count(campaign, done)
+                say.done(done.one, done.seconds, done.opened, done.problem)
+    finally:
+        say.end()
+    for name, measured in found.items():  # in the order asked for, whoever finished first
+        found[name] = {one: measured[one] for one in load(name).cases(plan) if one in measured}
+    campaign.seconds = time.monotonic() - begun
+    return campaign
+
+
+def _wanted(names: Sequence[str], plan: Plan) -> dict[Variant, list[str]]:
+    """Every run, with the experiments that want it."""
     wanted: dict[Variant, list[str]] = {}
-    found: dict[str, dict[Variant, Any]] = {}
     for name in names:
-        found[name] = {}
         for one in load(name).cases(plan):
             users = wanted.setdefault(one, [])
             if name not in users:
                 users.append(name)
-    costs = {one: cost(one) for one in wanted}  # reads, and so checks, every case before anything runs
-    campaign = Campaign(found)
-    say.begin(costs)
-    order = sorted(wanted, key=lambda one: -costs[one])  # the longest first: no core idles at the end
-    for done in _done(order, wanted, folder, jobs, again, say):
-        say.done(done)
-        campaign.n_opened += done.opened
-        campaign.n_run += not done.opened
-        if done.problem:
-            campaign.problems[done.one.label] = done.problem
-        for name, numbers in done.measured.items():
-            found[name][done.one] = numbers
-    for name, measured in found.items():  # in the order asked for, whoever finished first
-        found[name] = {one: measured[one] for one in load(name).cases(plan) if one in measured}
-    campaign.seconds = time.monotonic() - begun
-    say.end()
-    return campaign
+    return wanted
 
 
-def cost(one: Variant) -> float:
-    """Core seconds of a run by rule of thumb."""
-    from ryusa.casefile.estimate import seconds_needed
+def _order(ahead: Outlook) -> list[Variant]:
+    """What is there first, then the longest first: no core idles at the end."""
+    return [*ahead.there, *sorted(ahead.costs, key=lambda one: -ahead.costs[one])]
 
-    return seconds_needed(one.read())
+
+def _count(campaign: Campaign, done: Done) -> None:
+    campaign.n_opened += done.opened
+    campaign.n_run += not done.opened
+    if done.commit:
+        campaign.commits[done.commit] += 1
+    if done.problem:
+        campaign.problems[done.one.label] = done.problem
+    for name, numbers in done.measured.items():
+        campaign.found[name][done.one] = numbers
 
 
 def _done(
@@ -113,36 +140,110 @@ def _done(
     folder: Path,
     jobs: int,
     again: bool,
-    say: "Say",
-) -> Iterable[Done]:
+    say: Say,
+) -> Generator[Done]:
     if jobs == 1 or len(order) <= 1:
         for one in order:
             say.started(one)
             yield _one(one, tuple(wanted[one]), folder, again)
         return
-    pool = ProcessPoolExecutor(jobs, mp_context=get_context("spawn"), initializer=_deaf)
+    pool = ProcessPoolExecutor(jobs, mp_context=get_context("spawn"), initializer=_settle_in)
     waiting = list(reversed(order))
-    running: set[Future[Done]] = set()
+    running: dict[Future[Done], Variant] = {}
     try:
         while waiting or running:
             while waiting and len(running) < jobs:
                 one = waiting.pop()
-                running.add(pool.submit(_one, one, tuple(wanted[one]), folder, again))
+                with _for_a_child():
+                    future = pool.submit(_one, one, tuple(wanted[one]), folder, again)
+                running[future] = one
                 say.started(one)
-            ready, running = wait(running, _WAIT, FIRST_COMPLETED)
+            ready, _ = wait(running, _WAIT, FIRST_COMPLETED)
             say.tick()
             for future in ready:
-                yield future.result()
+                done = future.result()
+                del running[future]
+                yield done
+    except BrokenProcessPool:
+        labels = ", ".join(one.label for one in running.values())
+        raise ResultsError(
+            "the process of a run was ended from outside, perhaps for want of memory; "
+            f"running were: {labels}. {folder} holds what was finished, the same command goes on from "
+            "there; -j 1 needs least memory"
+        ) from None
     finally:
-        for process in list((pool._processes or {}).values()):
-            if running and process.is_alive():
-                process.terminate()  # a run hears SIGTERM and closes its folder in order
-        pool.shutdown(wait=True, cancel_futures=True)
+        if running or waiting:
+            _end(pool)
+        else:
+            pool.shutdown(wait=True)
 
 
-def _deaf() -> None:
-    """Leave Ctrl-C to the parent, which ends the runs with SIGTERM."""
+def _end(pool: ProcessPoolExecutor) -> None:
+    """Stop what is running: on SIGTERM a run closes its folder in order; whoever does not is killed."""
+    processes = list((pool._processes or {}).values())
+    pool.shutdown(wait=False, cancel_futures=True)
+    for process in processes:
+        if process.is_alive():
+            process.terminate()
+    deadline = time.monotonic() + _PATIENCE
+    for process in processes:
+        process.join(max(0.0, deadline - time.monotonic()))
+        if process.is_alive():
+            process.kill()
+
+
+@contextmanager
+def _for_a_child() -> Generator[None]:
+    """Start processes with one thread for numerics, and with Ctrl-C held back until they ignore it."""
+    before = {name: os.environ.get(name) for name in _ONE_THREAD}
+    os.environ.update(_ONE_THREAD)
+    can_hold = hasattr(signal, "pthread_sigmask")
+    if can_hold:
+        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        if can_hold:
+            signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
+
+
+def _settle_in() -> None:
+    """Leave Ctrl-C to the parent, which ends the runs with SIGTERM, and do not outlive it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+    threading.Thread(target=_leave_with_parent, daemon=True).start()
+
+
+def _leave_with_parent() -> None:
+    parent = parent_process()
+    if parent is not None:
+        parent.join()
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(_PATIENCE)
+        os._exit(1)
+
+
+@contextmanager
+def _stopped_by_sigterm() -> Generator[None]:
+    """Within the block SIGTERM is what Ctrl-C is."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def stop(_: int, __: object) -> None:
+        raise KeyboardInterrupt("SIGTERM")
+
+    before = signal.signal(signal.SIGTERM, stop)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 def _one(one: Variant, names: Sequence[str], folder: Path, again: bool) -> Done:
@@ -150,10 +251,23 @@ def _one(one: Variant, names: Sequence[str], folder: Path, again: bool) -> Done:
     begun = time.monotonic()
     try:
         run, opened = _run(one, folder / one.folder, again)
-        measured = {name: load(name).measure(run, one) for name in names}
     except (RunError, ResultsError) as error:
         return Done(one, {}, opened=False, seconds=time.monotonic() - begun, problem=str(error))
-    return Done(one, measured, opened, time.monotonic() - begun)
+    measured: dict[str, Any] = {}
+    problems: list[str] = []
+    for name in names:
+        try:
+            measured[name] = load(name).measure(run, one)
+        except RyusaError as error:
+            problems.append(f"{name}: {error}")
+    return Done(
+        one,
+        measured,
+        opened,
+        time.monotonic() - begun,
+        "; ".join(problems),
+        str(run.provenance.get("commit") or ""),
+    )
 
 
 def _run(one: Variant, folder: Path, again: bool) -> tuple[Results, bool]:
@@ -177,94 +291,3 @@ def _earlier(folder: Path) -> Results | None:
         return Results.open(folder)
     except RyusaError:
         return None
-
-
-class Say:
-    """Told what goes on; says nothing."""
-
-    def begin(self, costs: Mapping[Variant, float]) -> None:
-        """All runs, with what each costs."""
-
-    def started(self, one: Variant) -> None:
-        """A run begins."""
-
-    def done(self, done: Done) -> None:
-        """A run is over."""
-
-    def tick(self) -> None:
-        """Time went by."""
-
-    def end(self) -> None:
-        """All runs are over."""
-
-
-class Lines(Say):
-    """A bar on a terminal, a line now and then elsewhere; on stderr."""
-
-    EVERY = 10.0  # s between two lines where stderr is no terminal
-
-    def __init__(self) -> None:
-        from rich.console import Console
-        from rich.progress import BarColumn, Progress, TextColumn
-
-        self._console = Console(stderr=True, highlight=False)
-        self._costs: dict[Variant, float] = {}
-        self._now: dict[Variant, float] = {}
-        self._run_cost = self._run_seconds = 0.0
-        self._finished = 0
-        self._begun = self._last = time.monotonic()
-        self._bar = Progress(
-            TextColumn("{task.completed:.0f}/{task.total:.0f} runs"), BarColumn(bar_width=20),
-            TextColumn("{task.fields[words]}"), console=self._console, transient=True,
-        )  # fmt: skip
-        self._task = None
-
-    def begin(self, costs: Mapping[Variant, float]) -> None:
-        """Open the bar."""
-        self._costs, self._begun = dict(costs), time.monotonic()
-        if costs and self._console.is_terminal:
-            self._task = self._bar.add_task("", total=len(costs), words="")
-            self._bar.start()
-
-    def started(self, one: Variant) -> None:
-        """Remember who is running."""
-        self._now[one] = time.monotonic()
-        self.tick()
-
-    def done(self, done: Done) -> None:
-        """Count it, and learn from it how long the rest will take."""
-        self._finished += 1
-        self._now.pop(done.one, None)
-        cost = self._costs.pop(done.one, 0.0)
-        if not done.opened:
-            self._run_cost += cost
-            self._run_seconds += done.seconds
-        if done.problem:
-            self._console.print(f"{done.one.label}: {done.problem}", markup=False)
-        self.tick()
-
-    def tick(self) -> None:
-        """Show it, if it is time."""
-        now = time.monotonic()
-        words = f"{self._left()}now: {', '.join(one.label for one in self._now)}"
-        total = self._finished + len(self._costs)
-        if self._task is not None:
-            self._bar.update(self._task, completed=self._finished, words=words[: self._console.width - 40])
-        elif now - self._last > self.EVERY and self._now:
-            self._last = now
-            print(f"{self._finished}/{total} runs, {words}", file=sys.stderr, flush=True)
-
-    def end(self) -> None:
-        """Take the bar away."""
-        if self._task is not None:
-            self._bar.stop()
-            self._task = None
-
-    def _left(self) -> str:
-        """Time left, from what the runs so far took against what was thought."""
-        if self._run_seconds < 1.0:
-            return ""
-        elapsed = time.monotonic() - self._begun
-        speed = self._run_cost / elapsed  # thought-of core seconds done per second
-        left = sum(self._costs.values()) / speed
-        return f"about {left / 60:.0f} min left, " if left > 90.0 else f"about {left:.0f} s left, "

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ryusa.errors import ResultsError
 from ryusa.experiments import (
     NAMES,
     Campaign,
@@ -26,6 +25,7 @@ from ryusa.measure import write_csv
 from ryusa.paper import CITATION, CLAIMS, Claim
 from ryusa.report.common import Common, common
 from ryusa.running import provenance
+from ryusa.running.folder import refuse_if_not_writable
 
 FORMAT = 1  # of the JSON file
 WATER = ("fig17", "fig17-time", "fig17-e", "fig17-lock", "fig17-free", "fig18", "fig22", "fig22-free")
@@ -40,6 +40,7 @@ class Row:
     finding: Finding | None  # None where nothing could be run
     experiment: str = ""
     pictures: tuple[Path, ...] = ()
+    problem: str = ""  # why it could not be judged
 
     def plain(self, folder: Path) -> dict[str, Any]:
         """Give the row as the JSON file holds it; pictures relative to `folder`."""
@@ -65,6 +66,7 @@ class Row:
             "contradiction": found.contradiction if found is not None else "",
             "also": list(found.also) if found is not None else [],
             "sweep": [_trial(one) for one in found.trials] if found is not None else [],
+            "problem": self.problem,
             "experiment": self.experiment,
             "pictures": [str(one.relative_to(folder)) for one in self.pictures],
         }
@@ -79,7 +81,7 @@ class Ledger:
     folder: Path
     common: tuple[Common, ...]  # sets of free choices, best first
     problems: Mapping[str, str]  # runs that could not be carried out
-    counts: Mapping[str, float]  # runs made, runs opened, wall seconds
+    counts: Mapping[str, Any]  # runs made, runs opened, wall seconds, processes
     tables: Mapping[str, list[dict[str, object]]]  # experiment -> lines of its CSV
 
     def plain(self) -> dict[str, Any]:
@@ -120,6 +122,7 @@ def make(
     KeyboardInterrupt : Ctrl-C; finished runs stay and are opened next time.
     """
     chosen = NAMES if names is None else tuple(dict.fromkeys(names))
+    refuse_if_not_writable(folder)
     campaign = carry_out(chosen, plan, folder / "runs", jobs=jobs, again=again, say=say)
     rows: dict[str, Row] = {}
     tables: dict[str, list[dict[str, object]]] = {}
@@ -133,6 +136,7 @@ def make(
         "runs_opened": campaign.n_opened,
         "wall_s": round(campaign.seconds, 1),
         "jobs": jobs,
+        "commits_of_runs": dict(campaign.commits),
     }
     findings = [(one.experiment, one.finding) for one in ordered if one.finding is not None]
     return Ledger(ordered, plan, folder, common(findings), campaign.problems, counts, tables)
@@ -141,23 +145,40 @@ def make(
 def _judged(
     name: str, campaign: Campaign, plan: Plan, folder: Path, tables: dict[str, list[dict[str, object]]]
 ) -> dict[str, Row]:
-    """Rows of one experiment; its tables and pictures are written on the way."""
+    """Rows of one experiment; its tables and pictures are written on the way.
+
+    Where a run of it failed nothing of it is judged: its rows say why, and the other experiments stand.
+    """
     experiment, found = load(name), campaign.found[name]
-    missing = [one.label for one in experiment.cases(plan) if one not in found]
+    wanted = list(dict.fromkeys(experiment.cases(plan)))
+    missing = [one.label for one in wanted if one not in found]
     if missing:
-        reason = campaign.problems.get(missing[0], "")
-        raise ResultsError(
-            f"{name}: {len(missing)} runs failed, so it cannot be judged; {missing[0]}: {reason}"
-        )
+        reason = campaign.problems.get(missing[0], "no reason known")
+        problem = f"{len(missing)} of {len(wanted)} runs failed, so it was not judged; {missing[0]}: {reason}"
+        return {
+            one: Row(CLAIMS[one], Word.UNDECIDED, None, name, problem=problem) for one in experiment.CLAIMS
+        }
     tables[name] = experiment.rows(found, plan)
     home = folder / name
     write_csv(home / f"{name}.csv", tables[name])
-    pictures = []
+    pictures: list[Path] = []
     for picture, figure in experiment.draw(found, plan).items():
         save(figure, home / f"{picture}.svg")
         pictures.append(save(figure, home / f"{picture}.png"))
-    findings = experiment.judge(found, plan)
-    return {one.claim: Row(CLAIMS[one.claim], one.word, one, name, tuple(pictures)) for one in findings}
+    shared = _share_out(pictures, experiment.CLAIMS)
+    return {
+        one.claim: Row(CLAIMS[one.claim], one.word, one, name, shared[one.claim])
+        for one in experiment.judge(found, plan)
+    }
+
+
+def _share_out(pictures: Sequence[Path], claims: Sequence[str]) -> dict[str, tuple[Path, ...]]:
+    """Give each picture to the claim that its name begins with, else to the first claim."""
+    shared: dict[str, list[Path]] = {one: [] for one in claims}
+    for picture in pictures:
+        fits = [one for one in claims if picture.stem == one or picture.stem.startswith(f"{one}-")]
+        shared[max(fits, key=len, default=claims[0])].append(picture)
+    return {one: tuple(found) for one, found in shared.items()}
 
 
 def _spread(found: Interval) -> dict[str, Any]:
@@ -182,7 +203,7 @@ def _json(value: float) -> float | None:
     return value if math.isfinite(value) else None
 
 
-def _origin(counts: Mapping[str, float]) -> dict[str, Any]:
+def _origin(counts: Mapping[str, Any]) -> dict[str, Any]:
     found = provenance.begin(threads=1, seed=None, engine="CpuEngine", overrides={})
     kept = ("ryusa", "commit", "packages", "python", "system", "machine")
     return {

@@ -1,23 +1,178 @@
 """Write the ledger: JSON, and one page that needs nothing but itself."""
 
-import json
+import base64
+import os
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+from ryusa.experiments import Word, load
+from ryusa.report.friction import MARKS, by_angle
 from ryusa.report.ledger import Ledger
+from ryusa.running.folder import write_json
+
+JSON, PAGE = "ledger.json", "ledger.html"
+WHOLE_TABLE = 60  # rows; of a longer table the page holds the first HEAD
+HEAD = 20
+BEST = 5  # sets of common choices shown
+OPEN_SWEEP = 12  # rows; a longer sweep is folded
+# verdict -> class of its colour, and a sign that survives grey print
+LOOKS = {
+    Word.REPRODUCED: ("yes", "●"),
+    Word.ONLY_IF: ("partly", "◐"),
+    Word.NOT: ("no", "○"),
+    Word.CONTRADICTS: ("no", "✕"),
+    Word.UNDECIDED: ("open", "?"),
+    Word.WATER: ("waits", "…"),
+    Word.LOST: ("waits", "–"),
+}
+# What the paper left open, and the claims whose runs answer it.
+QUESTIONS = (
+    (
+        "Rolling friction",
+        "rolling-friction",
+        "The paper's open question ii: Eq. (13) as a model of rolling friction, its coefficient to be found.",
+        ("eq13",),
+    ),
+    (
+        "Water torque",
+        "water-torque",
+        "The paper's open question iii: the torque of the water on a spinning grain.",
+        ("fig20", "fig21"),
+    ),
+)
 
 
 def write(ledger: Ledger, copy: Path | None = None) -> tuple[Path, ...]:
-    """Write ledger.json into the folder of the ledger, and a copy where asked.
+    """Write ledger.html and ledger.json into the folder of the ledger, and a copy of the JSON where asked.
+
+    Each file is written beside its place and moved there whole.
 
     Raises
     ------
-    OSError : a file cannot be written.
+    OSError, ResultsError : a file cannot be written.
     """
-    text = json.dumps(ledger.plain(), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
-    files = [ledger.folder / "ledger.json"]
+    plain = ledger.plain()
+    page = ledger.folder / PAGE
+    page.parent.mkdir(parents=True, exist_ok=True)
+    _write_whole(page, render(plain, ledger.tables, ledger.folder))
+    files = [page, ledger.folder / JSON]
     if copy is not None:
         copy.parent.mkdir(parents=True, exist_ok=True)
         files.append(copy)
-    for path in files:
-        path.write_text(text, encoding="utf-8")
+    for path in files[1:]:
+        write_json(path, plain)
     return tuple(files)
+
+
+def render(
+    plain: Mapping[str, Any], tables: Mapping[str, Sequence[Mapping[str, object]]], folder: Path
+) -> str:
+    """Make the page.
+
+    Parameters
+    ----------
+    plain : the ledger as the JSON file holds it.
+    tables : experiment -> lines of its table.
+    folder : what the pictures' paths start from.
+    """
+    claims: list[dict[str, Any]] = plain["claims"]
+    here = {one["id"] for one in claims}
+    first: dict[str, str] = {}  # experiment -> claim whose section holds its table
+    for one in claims:
+        if one["experiment"]:
+            first.setdefault(one["experiment"], one["id"])
+    angles, lines = by_angle(claims)
+    words = Counter(one["verdict"] for one in claims)
+    page = Environment(
+        loader=FileSystemLoader(Path(__file__).parent), autoescape=True, undefined=StrictUndefined,
+        trim_blocks=True, lstrip_blocks=True,
+    )  # fmt: skip
+    page.filters["number"] = number
+    page.filters["interval"] = interval
+    return page.get_template("page.html").render(
+        ledger=plain,
+        claims=[_section(one, first, tables, folder) for one in claims],
+        counts=[(str(word), words[str(word)], *LOOKS[word]) for word in LOOKS if words[str(word)]],
+        looks={str(word): look for word, look in LOOKS.items()},
+        common=_best(plain["common_choices"]),
+        angles=angles,
+        lines=lines,
+        marks=MARKS,
+        questions=[
+            (title, anchor, about, [one for one in claims if one["id"] in ids])
+            for title, anchor, about, ids in QUESTIONS
+            if any(one in here for one in ids)
+        ],
+        open_sweep=OPEN_SWEEP,
+    )
+
+
+def _section(
+    claim: Mapping[str, Any],
+    first: Mapping[str, str],
+    tables: Mapping[str, Sequence[Mapping[str, object]]],
+    folder: Path,
+) -> dict[str, Any]:
+    """What the section of one claim shows beside the row itself."""
+    name = claim["experiment"]
+    holder = first.get(name, claim["id"])
+    rows = tables.get(name, ()) if holder == claim["id"] else ()
+    return {
+        **claim,
+        "title": load(name).TITLE if name else "",
+        "images": [(Path(one).stem, embedded(folder / one)) for one in claim["pictures"]],
+        "hows": list(dict.fromkeys(one["how"] for one in claim["spread"])),
+        "base": [one for one in claim["sweep"] if one["choices"] == claim["sweep"][0]["choices"]],
+        "varied": list(dict.fromkeys(key for one in claim["sweep"] for key in one["choices"])),
+        "columns": list(dict.fromkeys(key for row in rows for key in row)),
+        "rows": list(rows) if len(rows) < WHOLE_TABLE else list(rows[:HEAD]),
+        "n_rows": len(rows),
+        "file": f"{name}/{name}.csv",
+        "holder": holder,
+    }
+
+
+def _best(common: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    """The first few sets; empty where no choice is shared."""
+    return [one for one in common if one["choices"]][:BEST]
+
+
+def embedded(picture: Path) -> str:
+    """Give a PNG as an address that holds the picture itself."""
+    return "data:image/png;base64," + base64.b64encode(picture.read_bytes()).decode("ascii")
+
+
+def number(value: object) -> str:
+    """Give a value of a table as text, floats to four digits.
+
+    >>> number(0.123456), number(None), number("30 deg")
+    ('0.1235', '', '30 deg')
+    """
+    if value is None:
+        return ""
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def interval(found: Mapping[str, Any]) -> str:
+    """Say a number and its interval in words.
+
+    >>> interval({"value": 2.0, "low": 1.0, "high": 3.0, "unit": "m"})
+    '2 m (1 to 3)'
+    """
+    if found["value"] is None:
+        return "no number"
+    unit = "" if found["unit"] == "-" else f" {found['unit']}"
+    if found["low"] == found["high"]:
+        return f"{found['value']:.3g}{unit}"
+    ends = (f"{end:.3g}" if end is not None else "no limit" for end in (found["low"], found["high"]))
+    return f"{found['value']:.3g}{unit} ({' to '.join(ends)})"
+
+
+def _write_whole(path: Path, text: str) -> None:
+    beside = path.with_name(f".{path.name}.new")
+    beside.write_text(text, encoding="utf-8")
+    os.replace(beside, path)

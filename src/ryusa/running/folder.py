@@ -121,7 +121,7 @@ def refuse_if_not_writable(folder: Path) -> None:
     ResultsError : nothing can be written there.
     """
     try:
-        with tempfile.TemporaryFile(dir=_existing(folder)):
+        with tempfile.TemporaryFile(dir=existing(folder)):
             pass
     except OSError as error:
         raise ResultsError(
@@ -129,7 +129,7 @@ def refuse_if_not_writable(folder: Path) -> None:
         ) from error
 
 
-def _existing(folder: Path) -> Path:
+def existing(folder: Path) -> Path:
     """`folder`, or the nearest folder above it that is there."""
     return next(place for place in (folder, *folder.absolute().parents) if place.is_dir())
 
@@ -149,17 +149,17 @@ def refuse_if_too_big(
     ------
     CaseError : they would not fit.
     """
-    existing = _existing(folder)
-    needed, free = for_frames + for_events, free_bytes(existing)
+    place = existing(folder)
+    needed, free = for_frames + for_events, free_bytes(place)
     if needed <= free:
         return
-    events = f" and the contact events about {_size(for_events)}" if for_events else ""
+    events = f" and the contact events about {size(for_events)}" if for_events else ""
     many = for_events > for_frames
     raise CaseError(
         "record.events" if many else "record.frames",
         None if many else f"{interval:g} s",
-        f"{n_frame:.3g} frames need {_size(for_frames)}{events}, but only {_size(free)} are free "
-        f"at {existing}. Record fewer {'events' if many else 'frames'}, or stop earlier, "
+        f"{n_frame:.3g} frames need {size(for_frames)}{events}, but only {size(free)} are free "
+        f"at {place}. Record fewer {'events' if many else 'frames'}, or stop earlier, "
         "or choose another disk with -o",
     )
 
@@ -169,7 +169,12 @@ def free_bytes(place: Path) -> int:
     return shutil.disk_usage(place).free
 
 
-def _size(nbytes: float) -> str:
+def size(nbytes: float) -> str:
+    """Say a number of bytes.
+
+    >>> size(2.5e9)
+    '2.5 GB'
+    """
     for unit in ("B", "kB", "MB", "GB", "TB"):
         if nbytes < 1000 or unit == "TB":
             return f"{nbytes:.3g} {unit}"
