@@ -2,11 +2,21 @@
 
 from ryusa.measure.collisions import Collisions, ContactTimes, collisions, contact_times, turned_time
 from ryusa.measure.energy import Energy, energy
+from ryusa.measure.repose import Surface, surface
 from ryusa.measure.saltation import Saltation, grouping, saltation
+from ryusa.measure.snapshot import Snapshot, snapshot
 from ryusa.measure.spin import Spin, spin
 from ryusa.measure.statistics import Average, average, block_error, ratio
 from ryusa.measure.table import Averages, rows_of, write_csv
 from ryusa.measure.tracks import Tracks, tracks
+from ryusa.measure.vibration import (
+    Trembling,
+    Vibration,
+    rest_time,
+    trembling,
+    trembling_share,
+    vibration,
+)
 
 __all__ = [
     "Average",
@@ -15,8 +25,12 @@ __all__ = [
     "ContactTimes",
     "Energy",
     "Saltation",
+    "Snapshot",
     "Spin",
+    "Surface",
     "Tracks",
+    "Trembling",
+    "Vibration",
     "average",
     "block_error",
     "collisions",
@@ -24,10 +38,16 @@ __all__ = [
     "energy",
     "grouping",
     "ratio",
+    "rest_time",
     "rows_of",
     "saltation",
+    "snapshot",
     "spin",
+    "surface",
     "tracks",
+    "trembling",
+    "trembling_share",
     "turned_time",
+    "vibration",
     "write_csv",
 ]

@@ -1,0 +1,140 @@
+"""One moment of a run: where grains, bed and planes are, in one lane of a plane scene."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ryusa.errors import ResultsError
+from ryusa.measure._run import Floats, Run
+from ryusa.model import Scene
+
+UPRIGHT = 1.0e-6  # component along y up to which a plane shows as a line in the x-z plane
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """Grains at one moment.
+
+    Attributes
+    ----------
+    t : time of the frame [s].
+    grains : ids of the free grains shown, shape (n,).
+    x : their centres inside the period [m], shape (n, 3).
+    d : their diameters [m], shape (n,).
+    speed : [m/s], shape (n,).
+    spin : about y, positive rolls towards +x [rad/s], shape (n,).
+    bed_x, bed_d : fixed grains that are there now [m], shapes (n_bed, 3) and (n_bed,).
+    plane_point, plane_normal : planes that are there now and stand upright on the x-z plane, (n_plane, 3).
+    period : along x [m]; inf where open.
+    lane, lanes : number of the lane shown, in order of y, and of all lanes; 0 and 1 where there are none.
+    """
+
+    t: float
+    grains: NDArray[np.int64]
+    x: Floats
+    d: Floats
+    speed: Floats
+    spin: Floats
+    bed_x: Floats
+    bed_d: Floats
+    plane_point: Floats
+    plane_normal: Floats
+    period: float
+    lane: int = 0
+    lanes: int = 1
+
+    def rows(self) -> list[dict[str, object]]:
+        """One dictionary per free grain."""
+        columns = {f"{name}_m": self.x[:, axis] for axis, name in enumerate("xyz")}
+        columns |= {"d_m": self.d, "speed_m_per_s": self.speed, "spin_rad_per_s": self.spin}
+        rows: list[dict[str, object]] = []
+        for k, g in enumerate(self.grains):
+            row: dict[str, object] = {"grain": int(g), "t_s": self.t}
+            rows.append(row | {name: float(values[k]) for name, values in columns.items()})
+        return rows
+
+
+def snapshot(run: Run, t: float | None = None, lane: int | None = None) -> Snapshot:
+    """Grains, bed and planes at the frame nearest to a time.
+
+    Parameters
+    ----------
+    run : a run folder.
+    t : [s]; default the last frame.
+    lane : lane of a plane scene, counted from 0 in order of y; default that of grain 0.
+
+    Raises
+    ------
+    ResultsError : no frame near that time, or no such lane.
+    """
+    k = frame_at(run, t)
+    now = float(run.frames.t[k])
+    scene = scene_at(run, now)
+    x = _inside(np.asarray(run.frames.x[k], dtype=np.float64), scene)
+    v, omega = np.asarray(run.frames.v[k]), np.asarray(run.frames.omega[k])
+    places, lanes = _lanes(x[:, 1], scene)
+    chosen = (int(places[0]) if len(places) else 0) if lane is None else lane
+    if not 0 <= chosen < lanes:
+        raise ResultsError(f"no lane {chosen}: there are {lanes}, counted from 0")
+    shown = np.flatnonzero(places == chosen)
+    bed = scene.fixed_active.copy()
+    if lanes > 1 and len(shown):
+        bed &= np.abs(scene.x_fixed[:, 1] - x[shown[0], 1]) < 0.5 * float(scene.d.max())
+    planes = scene.plane_active.copy()
+    if len(planes):
+        planes &= np.abs(scene.plane_normal[:, 1]) < UPRIGHT
+    return Snapshot(
+        t=now,
+        grains=shown,
+        x=x[shown],
+        d=scene.d[shown],
+        speed=np.linalg.norm(v[shown], axis=1),
+        spin=omega[shown, 1],
+        bed_x=scene.x_fixed[bed].reshape(-1, 3),
+        bed_d=scene.d_fixed[bed],
+        plane_point=scene.plane_point[planes].reshape(-1, 3),
+        plane_normal=scene.plane_normal[planes].reshape(-1, 3),
+        period=float(scene.period[0]),
+        lane=chosen,
+        lanes=lanes,
+    )
+
+
+def frame_at(run: Run, t: float | None = None) -> int:
+    """Number of the frame nearest to time t [s]; of the last one for None."""
+    times = np.asarray(run.frames.t, dtype=np.float64)
+    if len(times) == 0:
+        raise ResultsError("the run holds no frame")
+    if t is None:
+        return len(times) - 1
+    gap = float(np.median(np.diff(times))) if len(times) > 1 else 0.0
+    if not times[0] - gap <= t <= times[-1] + gap:
+        raise ResultsError(f"no frame at t = {t:g} s; the run holds {times[0]:g} .. {times[-1]:g} s")
+    return int(np.abs(times - t).argmin())
+
+
+def scene_at(run: Run, t: float) -> Scene:
+    """The scene that held at time t [s]; that of the start where a run knows no other."""
+    at = getattr(run, "scene_at", None)
+    return run.scene if at is None else at(t)
+
+
+def _inside(x: Floats, scene: Scene) -> Floats:
+    """Centres taken back into the periods [m]."""
+    x = x.copy()
+    for axis, period in enumerate(scene.period):
+        if math.isfinite(period):
+            inside = np.mod(x[:, axis], period)
+            x[:, axis] = np.where(inside < period, inside, 0.0)  # round-off
+    return x
+
+
+def _lanes(y: Floats, scene: Scene) -> tuple[NDArray[np.int64], int]:
+    """Lane of each grain, and how many there are: copies of a plane scene at different y."""
+    if not scene.plane_case or len(y) == 0:
+        return np.zeros(len(y), dtype=np.int64), 1
+    order = np.sort(y)
+    edges = order[1:][np.diff(order) > 0.5 * float(scene.d.max())]
+    return np.searchsorted(edges, y, side="right").astype(np.int64), len(edges) + 1
