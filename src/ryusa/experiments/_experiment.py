@@ -19,7 +19,20 @@ from ryusa.results import Results
 if TYPE_CHECKING:
     from ryusa.casefile.schema import Case
 
-NAMES = ("fig20",)
+NAMES = (
+    "fig04",
+    "fig05",
+    "pair",
+    "fig07",
+    "spin_time",
+    "fig08",
+    "steps",
+    "fig11",
+    "fig12",
+    "hops",
+    "fig20",
+    "fig21",
+)
 
 # Free choices that several experiments share; one set of them is sought that fits most claims together.
 PHI = "friction angle"

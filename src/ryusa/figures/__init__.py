@@ -2,6 +2,7 @@
 
 from ryusa.figures.choices import Choice, choices
 from ryusa.figures.contact import Band, Curve, Points, over_stiffness, turning
+from ryusa.figures.drops import Quote, Rebound, drop_chart, over_speed, rebounds
 from ryusa.figures.energy import energy
 from ryusa.figures.hops import contact_times, hops
 from ryusa.figures.spin import spin
@@ -13,11 +14,16 @@ __all__ = [
     "Choice",
     "Curve",
     "Points",
+    "Quote",
+    "Rebound",
     "choices",
     "contact_times",
+    "drop_chart",
     "energy",
     "hops",
+    "over_speed",
     "over_stiffness",
+    "rebounds",
     "save",
     "spin",
     "tracks",
