@@ -2,6 +2,7 @@
 
 from ryusa.measure.collisions import Collisions, ContactTimes, collisions, contact_times, turned_time
 from ryusa.measure.energy import Energy, energy
+from ryusa.measure.profiles import Layers, Profiles, profiles
 from ryusa.measure.repose import Surface, surface
 from ryusa.measure.saltation import Saltation, grouping, saltation
 from ryusa.measure.snapshot import Snapshot, snapshot
@@ -24,6 +25,8 @@ __all__ = [
     "Collisions",
     "ContactTimes",
     "Energy",
+    "Layers",
+    "Profiles",
     "Saltation",
     "Snapshot",
     "Spin",
@@ -37,6 +40,7 @@ __all__ = [
     "contact_times",
     "energy",
     "grouping",
+    "profiles",
     "ratio",
     "rest_time",
     "rows_of",

@@ -116,6 +116,44 @@ def block_error(series: Sequence[ArrayLike], least: int = 4) -> BlockError:
     return BlockError(worst.error, worst.block, worst.n_blocks, plateau=False)
 
 
+def block_errors(columns: ArrayLike, least: int = 4) -> Floats:
+    """Standard error of the mean of many quantities at once, each by the rule of `block_error`.
+
+    Parameters
+    ----------
+    columns : one quantity per column, in order of time, shape (n, n_column).
+    least : fewest blocks from which an error is taken.
+
+    Returns
+    -------
+    Standard errors, shape (n_column,); nan where there are fewer than two rows.
+
+    >>> block_errors([[1.0, 0.0], [1.0, 1.0]]).round(3)
+    array([0. , 0.5])
+    """
+    rows = np.asarray(columns, dtype=np.float64)
+    n, n_column = rows.shape
+    taken = np.full(n_column, math.nan)
+    if n < 2 or n_column == 0:
+        return taken
+    open_still = np.ones(n_column, dtype=np.bool_)
+    worst, first, block = np.zeros(n_column), np.zeros(n_column), 1
+    while block == 1 or n // block >= max(least, 2):
+        count = n // block
+        means = rows[n - count * block :].reshape(count, block, n_column).mean(axis=1)
+        error = means.std(axis=0, ddof=1) / math.sqrt(count)
+        if block == 1:
+            first = error
+        worst = np.maximum(worst, error)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            done = open_still & ((block**3 > 2 * n * (error / first) ** 4) | (first == 0.0))
+        taken[done] = error[done]
+        open_still &= ~done
+        block *= 2
+    taken[open_still] = worst[open_still]
+    return taken
+
+
 def average(
     name: str, unit: str, series: Sequence[ArrayLike], window: tuple[float, float] = (math.nan, math.nan)
 ) -> Average:
