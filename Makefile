@@ -1,6 +1,6 @@
 # ryusa needs only python3 (3.11 or later) and make; everything else goes into .venv.
 #   make demo     install, run the saltation case, measure it, draw it
-#   make test     the same, then every check and test
+#   make test     the same, the paper's claims in short, then every check and test
 # `make` alone lists the rest.
 
 PYTHON ?= python3
@@ -8,6 +8,7 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 RUN    := runs/demo
 SHOW   := runs/demo-pictures
+LEDGER := runs/paper-quick
 JOBS   ?= 2
 
 PIP    := $(BIN)/python -m pip install -qq --disable-pip-version-check --constraint constraints.txt
@@ -18,7 +19,7 @@ HAS_RYUSA  := $(VENV)/.has-ryusa
 HAS_TESTS  := $(VENV)/.has-tests
 
 .DEFAULT_GOAL := help
-.PHONY: help demo demo-run test check lint format types walls unit docs bench paper slow constraints clean
+.PHONY: help demo demo-run test check lint format types walls unit docs bench paper paper-quick slow constraints clean
 
 help: ## list these targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 22
@@ -60,8 +61,9 @@ demo: $(HAS_RYUSA) ## install, run the saltation case, measure it, draw it
 
 # ---------------------------------------------------------------------------------------------------------- test
 
-test: $(HAS_TESTS) ## the demo, then every check and test
+test: $(HAS_TESTS) ## the demo, the paper's claims in short, then every check and test
 	@$(MAKE) --no-print-directory demo
+	@$(MAKE) --no-print-directory paper-quick
 	@$(MAKE) --no-print-directory check
 
 check: lint types walls unit ## every check and test, without the demo
@@ -82,6 +84,10 @@ unit: $(HAS_TESTS) ## pytest: doctests in src, tests in tests
 paper: $(HAS_TESTS) ## the long tests that rebuild the paper's figures
 	$(BIN)/python -m pytest -q -n $(JOBS) -m paper
 
+paper-quick: $(HAS_TESTS) ## every claim of the paper in minutes, indicative; refuses a ledger with a gap
+	$(BIN)/ryusa paper --quick -o $(LEDGER) --jobs $(JOBS) --again
+	$(BIN)/python tests/report/check_ledger.py $(LEDGER)/ledger.json
+
 slow: $(HAS_TESTS) ## tests that take longer than about ten seconds
 	$(BIN)/python -m pytest -q -n $(JOBS) -m slow
 
@@ -100,6 +106,6 @@ bench: $(HAS_RYUSA) ## time whole workloads; keeps the table in benchmarks/resul
 constraints: $(HAS_TESTS) ## write constraints.txt anew from what .venv holds
 	$(BIN)/python -m pip freeze --exclude ryusa | grep -v '@\|^\#' > constraints.txt
 
-clean: ## remove the environment, caches and the demo's run
-	rm -rf $(VENV) $(RUN) $(SHOW) build .pytest_cache .ruff_cache .hypothesis .import_linter_cache
+clean: ## remove the environment, caches and the runs of demo and paper-quick
+	rm -rf $(VENV) $(RUN) $(SHOW) $(LEDGER) build .pytest_cache .ruff_cache .hypothesis .import_linter_cache
 	find . -name __pycache__ -type d -not -path './.git/*' -prune -exec rm -rf {} +

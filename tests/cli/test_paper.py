@@ -1,10 +1,14 @@
 import json
+import re
 
 import pytest
 from typer.testing import CliRunner
 
+from ryusa import report
 from ryusa.cli import app
-from ryusa.experiments import NAMES, load
+from ryusa.experiments import NAMES, Level, Plan, Word, load
+from ryusa.paper import CLAIMS
+from ryusa.report import Row
 
 
 def call(*words):
@@ -47,6 +51,40 @@ def test_quick_and_full_exclude_each_other():
     assert call("--quick", "--full").exit_code == 2
 
 
+def test_the_list_says_how_long_it_takes_and_how_much_disk(tmp_path):
+    result = call("--full", "--list", "-j", 2, "-o", tmp_path)
+    assert result.exit_code == 0, result.output
+    last = result.stdout.strip().splitlines()[-1]
+    assert re.match(r"full: \d+ runs to make: about .* 2 at a time \(\d+ core minutes .*B on the disk", last)
+    assert not list(tmp_path.iterdir())
+
+
+class Broken:
+    """A ledger in which one run failed."""
+
+    def __init__(self, folder):
+        self.rows = (
+            Row(CLAIMS["fig20"], Word.UNDECIDED, None, "fig20", problem="1 of 2 runs failed"),
+            Row(CLAIMS["fig17"], Word.WATER, None),
+        )
+        self.plan, self.folder, self.problems = (
+            Plan(Level.QUICK, (1,)),
+            folder,
+            {"fig20 [free]": "grain 7 lost"},
+        )
+
+
+def test_a_failed_run_is_told_at_the_end_and_by_the_exit_code(tmp_path, monkeypatch):
+    monkeypatch.setattr(report, "make", lambda *_, **__: Broken(tmp_path))
+    monkeypatch.setattr(report, "write", lambda *_: (tmp_path / "ledger.html",))
+    result = call("--quick", "-o", tmp_path)
+    assert result.exit_code == 3
+    assert "1 run could not be carried out:\n  fig20 [free]: grain 7 lost" in result.stderr
+    assert "not judged, see below" in result.stdout
+    assert "1 undecided (spread); 1 not yet run (water)" in result.stdout
+    assert all(len(line) <= 100 for line in result.stdout.splitlines() if "wrote" not in line)
+
+
 @pytest.mark.slow
 def test_a_figure_is_run_judged_and_written_and_a_second_time_opened(tmp_path):
     first = call("fig20", "--quick", "-o", tmp_path, "-q", "-j", 1)
@@ -54,6 +92,8 @@ def test_a_figure_is_run_judged_and_written_and_a_second_time_opened(tmp_path):
     ledger = json.loads((tmp_path / "ledger.json").read_text())
     assert [one["id"] for one in ledger["claims"]] == ["fig20", "fig20-shear"]
     assert ledger["provenance"]["runs_made"] == 2
+    assert (tmp_path / "ledger.html").stat().st_size > 100_000
+    assert not list(tmp_path.glob(".*.new"))
     again = call("fig20", "--quick", "-o", tmp_path, "-q", "-j", 1, "--json", tmp_path / "copy.json")
     assert again.exit_code == 0, again.output
     second = json.loads((tmp_path / "copy.json").read_text())

@@ -16,8 +16,12 @@ MEMORY_WITH_EVENTS = 1600  # bytes a grain where contacts are recorded
 BYTES_PER_EVENT = 8 * N_EVENT
 EVENTS_ALONE = 20.0  # contacts that end per second, of a saltating or dropped grain
 EVENTS_DENSE = 20.0  # of a grain among others, per sqrt(d/g); between 3 and 50 where counted
-SECONDS_PER_STEP = 1.0e-6  # of any step, and per grain in it, on one core of an ordinary machine
-SECONDS_PER_GRAIN = 1.0e-7
+# On one core of an ordinary machine; within a factor 1.5 for saltation, box, heap and dense flows:
+SECONDS_PER_RUN = 0.3  # to begin and to end
+SECONDS_PER_STEP = 4.0e-7  # of any step
+SECONDS_PER_GRAIN = 6.5e-8  # and per grain in it, in a plane scene
+SECONDS_PER_GRAIN_3D = 1.3e-7
+SECONDS_PER_GRAIN_IN_WATER = 6.0e-8  # on top
 SECONDS_PER_SALTATION = 0.15  # simulated, where only a number of saltations ends the run
 SECONDS_TO_REST = 10.0  # simulated, where only rest ends it
 
@@ -89,4 +93,7 @@ def memory_needed(case: Case) -> int:
 
 def seconds_needed(case: Case) -> float:
     """Wall time by a rule of thumb [s], one core."""
-    return steps_expected(case) * (SECONDS_PER_STEP + SECONDS_PER_GRAIN * case.derived.n_grain)
+    per_grain = SECONDS_PER_GRAIN if case.motion.plane else SECONDS_PER_GRAIN_3D
+    if case.water is not None:
+        per_grain += SECONDS_PER_GRAIN_IN_WATER
+    return SECONDS_PER_RUN + steps_expected(case) * (SECONDS_PER_STEP + per_grain * case.derived.n_grain)

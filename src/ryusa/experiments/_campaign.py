@@ -194,7 +194,7 @@ def _end(pool: ProcessPoolExecutor) -> None:
 
 @contextmanager
 def _for_a_child() -> Generator[None]:
-    """Start processes with one thread for numerics, and with Ctrl-C held back until they ignore it."""
+    """Start processes with one thread for numerics, and deaf to Ctrl-C from their first moment on."""
     before = {name: os.environ.get(name) for name in _ONE_THREAD}
     os.environ.update(_ONE_THREAD)
     can_hold = hasattr(signal, "pthread_sigmask")
@@ -216,7 +216,7 @@ def _settle_in() -> None:
     """Leave Ctrl-C to the parent, which ends the runs with SIGTERM, and do not outlive it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if hasattr(signal, "pthread_sigmask"):
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # a run would listen to it again
     threading.Thread(target=_leave_with_parent, daemon=True).start()
 
 

@@ -1,0 +1,198 @@
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from ryusa.errors import CaseError, ResultsError
+from ryusa.experiments import Lines, Outlook, Plan, Say, _campaign, _outlook, carry_out, outlook, variant
+
+SHORT = {"stop.time": "0.01 s", "record.settle": "0 s"}
+
+
+class Fake:
+    """An experiment of two short runs."""
+
+    FIGURE = TITLE = "fake"
+    CLAIMS = ("fig20", "fig20-shear")
+
+    def __init__(self, trouble=None, seeds=(1, 2)):
+        self.trouble, self.seeds = trouble, seeds
+
+    def cases(self, plan):
+        del plan
+        return [variant("saltation", SHORT, seed) for seed in self.seeds]
+
+    def measure(self, run, one):
+        if self.trouble is not None and one.get("seed") == "2":
+            raise self.trouble
+        return len(run.frames)
+
+
+@pytest.fixture
+def fakes(monkeypatch):
+    known = {}
+    monkeypatch.setattr(_campaign, "load", known.__getitem__)
+    return known
+
+
+def test_an_interrupted_campaign_goes_on_where_it_stopped(fakes, tmp_path):
+    fakes["one"] = Fake(KeyboardInterrupt())
+    with pytest.raises(KeyboardInterrupt):
+        carry_out(("one",), Plan(), tmp_path)
+    fakes["one"] = Fake()
+    second = carry_out(("one",), Plan(), tmp_path)
+    assert second.n_opened == 2  # the interrupt came while the second was measured, its run was finished
+    assert second.n_run == 0
+    assert len(second.found["one"]) == 2
+    assert carry_out(("one",), Plan(), tmp_path, again=True).n_run == 2
+
+
+def test_a_damaged_or_unfinished_run_is_made_anew(fakes, tmp_path):
+    fakes["one"] = Fake()
+    carry_out(("one",), Plan(), tmp_path)
+    first, second = (tmp_path / one.folder for one in fakes["one"].cases(Plan()))
+    about = first / "provenance.json"
+    about.write_text(about.read_text().replace('"complete"', '"running"'))
+    shutil.rmtree(second)
+    assert carry_out(("one",), Plan(), tmp_path).n_run == 2
+
+
+def test_what_fails_in_one_experiment_spares_the_others(fakes, tmp_path):
+    fakes["good"], fakes["bad"] = Fake(), Fake(ResultsError("no hop at all"))
+    found = carry_out(("good", "bad"), Plan(), tmp_path)
+    assert found.n_run == 2
+    assert len(found.found["good"]) == 2
+    assert len(found.found["bad"]) == 1
+    assert list(found.problems.values()) == ["bad: no hop at all"]
+
+
+def test_runs_that_do_not_fit_on_the_disk_are_refused_before_the_first(fakes, tmp_path, monkeypatch):
+    fakes["one"] = Fake()
+    monkeypatch.setattr(_outlook, "free_bytes", lambda _: 1000)
+    with pytest.raises(CaseError, match=r"2 runs need .* only 1 kB are free"):
+        carry_out(("one",), Plan(), tmp_path / "deep" / "er")
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_outlook_counts_what_is_there_and_never_ends_before_the_longest_run(tmp_path):
+    runs = [variant("saltation", SHORT, seed) for seed in range(1, 4)]
+    carry_out((), Plan(), tmp_path)
+    ahead = outlook([*runs, runs[0]], tmp_path, jobs=2)
+    assert len(ahead.costs) == 3
+    assert ahead.seconds == pytest.approx(ahead.core_seconds / 2)
+    assert outlook(runs, tmp_path, jobs=100).seconds == pytest.approx(max(ahead.costs.values()))
+    assert "3 runs to make: about" in str(ahead)
+    (tmp_path / runs[0].folder).mkdir(parents=True)
+    (tmp_path / runs[0].folder / "provenance.json").write_text('{"status": "complete"}')
+    later = outlook(runs, tmp_path, jobs=2)
+    assert later.there == (runs[0],)
+    assert "(1 more are there)" in str(later)
+    assert len(outlook(runs, tmp_path, jobs=2, again=True).costs) == 3
+
+
+def test_the_time_left_follows_from_how_long_the_finished_runs_took(capsys):
+    now = [0.0]
+    runs = [variant("saltation", SHORT, seed) for seed in range(1, 5)]
+    say = Lines(clock=lambda: now[0])
+    say.begin(Outlook(dict.fromkeys(runs, 10.0), (), 10**6, 2))
+    assert say.left() == pytest.approx(20.0)
+    say.started(runs[0])
+    say.started(runs[1])
+    now[0] = 20.0  # twice as slow as thought
+    say.done(runs[0], 20.0, opened=False, problem="")
+    say.done(runs[1], 20.0, opened=False, problem="grain 7 lost")
+    assert say.left() == pytest.approx(20.0)
+    say.started(runs[2])
+    now[0] = 35.0
+    assert say.left() == pytest.approx(20.0)  # the last one has not begun
+    say.tick()
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert "2/4 runs, about 20 s left, now: saltation 0 s 3 0.01 s" in said.err
+    assert "grain 7 lost" in said.err
+
+
+def test_who_says_nothing_needs_no_more(fakes, tmp_path):
+    fakes["one"] = Fake(seeds=(1,))
+    assert carry_out(("one",), Plan(), tmp_path, say=Say()).n_run == 1
+
+
+# -------------------------------------------------------------------------------------------------- signals
+
+
+def family(group):
+    """Processes of a group that are alive, with their command lines."""
+    found = {}
+    for place in Path("/proc").glob("[0-9]*"):
+        try:
+            stat = (place / "stat").read_text().rsplit(")", 1)[1].split()
+            if int(stat[2]) == group and stat[0] != "Z":
+                found[int(place.name)] = (place / "cmdline").read_text().replace("\0", " ")
+        except OSError:
+            continue
+    return found
+
+
+@pytest.fixture
+def campaign(tmp_path):
+    """A campaign of two runs at a time, while both are running."""
+    hears = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)"  # a CI job may not
+    words = ["-c", f"{hears}; from ryusa.cli import main; main()", "paper", "fig20", "--quick", "-j", "2"]
+    process = subprocess.Popen(
+        [sys.executable, *words, "-o", tmp_path], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        start_new_session=True,
+    )  # fmt: skip
+    for _ in range(600):
+        if len(list(tmp_path.glob("runs/*/*/log.txt"))) == 2:
+            break
+        assert process.poll() is None, process.communicate()
+        time.sleep(0.1)
+    yield process
+    if family(process.pid):
+        os.killpg(process.pid, signal.SIGKILL)
+    process.communicate()
+
+
+needs_proc = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="reads /proc")
+
+
+@needs_proc
+@pytest.mark.parametrize("how", ["ctrl-c", "term"])
+def test_an_interrupt_ends_every_process_and_says_how_to_go_on(campaign, how):
+    if how == "ctrl-c":
+        os.killpg(campaign.pid, signal.SIGINT)  # a terminal tells the whole group
+    else:
+        campaign.terminate()
+    _, said = campaign.communicate(timeout=30)
+    assert campaign.returncode == 130
+    assert "the same command goes on from there" in said
+    assert "Traceback" not in said
+    assert not family(campaign.pid)
+
+
+@needs_proc
+def test_a_killed_process_is_told_and_nothing_hangs(campaign):
+    workers = [one for one, words in family(campaign.pid).items() if "spawn_main" in words]
+    os.kill(workers[0], signal.SIGKILL)
+    _, said = campaign.communicate(timeout=30)
+    assert campaign.returncode == 2
+    assert "ended from outside" in said
+    assert "saltation free 1" in said
+    assert "the same command goes on from there" in said.replace("\n", " ")
+    assert not family(campaign.pid)
+
+
+@needs_proc
+def test_no_process_outlives_a_killed_campaign(campaign):
+    campaign.kill()
+    campaign.wait(timeout=30)
+    for _ in range(300):
+        if not family(campaign.pid):
+            break
+        time.sleep(0.1)
+    assert not family(campaign.pid)

@@ -1,0 +1,45 @@
+"""Say what is missing in a ledger that `ryusa paper` wrote: `python tests/report/check_ledger.py FILE`."""
+
+import json
+import sys
+from pathlib import Path
+
+from ryusa.experiments import Word
+from ryusa.paper import CLAIMS
+from ryusa.report.ledger import WATER
+
+
+def faults(ledger):
+    """Sentences, none for a ledger that is whole."""
+    rows = {one["id"]: one for one in ledger["claims"]}
+    found = [f"{claim}: has no row" for claim in CLAIMS if claim not in rows]
+    for name, row in rows.items():
+        waits = row["verdict"] == Word.WATER
+        if waits and name not in WATER:
+            found.append(f"{name}: waits for water, and need not")
+        if row["problem"]:
+            found.append(f"{name}: {row['problem']}")
+        elif not waits:
+            found += [f"{name}: {fault}" for fault in _of_row(row)]
+    return found
+
+
+def _of_row(row):
+    if row["verdict"] not in set(Word):
+        yield f"verdict {row['verdict']!r} is none of ours"
+    if not row["spread"]:
+        yield "has no number"
+    for part, one in zip(row["sweep"], row["spread"], strict=False):
+        if one["value"] is None and not part["note"]:
+            yield f"{part['part']}: no number, and no note that says why"
+    if not row["decided_by"]:
+        yield "does not say what decides it"
+
+
+if __name__ == "__main__":
+    said = faults(json.loads(Path(sys.argv[1]).read_text(encoding="utf-8")))
+    print(
+        "\n".join(said)
+        or f"{sys.argv[1]}: every claim has its row, and its numbers unless it waits for water"
+    )
+    sys.exit(1 if said else 0)

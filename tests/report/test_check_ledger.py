@@ -1,0 +1,52 @@
+import runpy
+from pathlib import Path
+
+from ryusa.experiments import Word
+from ryusa.paper import CLAIMS
+from ryusa.report.ledger import WATER
+
+faults = runpy.run_path(str(Path(__file__).with_name("check_ledger.py")))["faults"]
+
+
+def whole():
+    spread = [{"value": 1.0}]
+    sweep = [{"part": "length", "note": ""}]
+    rows = [
+        {"id": one, "verdict": str(Word.WATER), "spread": [], "sweep": [], "decided_by": "", "problem": ""}
+        if one in WATER
+        else {
+            "id": one, "verdict": str(Word.NOT), "spread": [*spread], "sweep": [dict(sweep[0])],
+            "decided_by": "physics", "problem": "",
+        }
+        for one in CLAIMS
+    ]  # fmt: skip
+    return {"claims": rows}
+
+
+def row(ledger, claim):
+    return next(one for one in ledger["claims"] if one["id"] == claim)
+
+
+def test_a_whole_ledger_has_no_fault():
+    assert faults(whole()) == []
+
+
+def test_what_is_missing_is_named():
+    ledger = whole()
+    ledger["claims"].remove(row(ledger, "fig5"))
+    row(ledger, "fig4")["spread"] = []
+    row(ledger, "fig7")["spread"] = [{"value": None}]
+    row(ledger, "fig8")["verdict"] = str(Word.WATER)
+    row(ledger, "fig11")["problem"] = "2 of 3 runs failed"
+    row(ledger, "fig12")["decided_by"] = ""
+    row(ledger, "fig14")["verdict"] = "fine"
+    assert [one.split(":")[0] for one in faults(ledger)] == [
+        "fig5", "fig4", "fig7", "fig8", "fig11", "fig12", "fig14",
+    ]  # fmt: skip
+
+
+def test_a_number_that_is_none_needs_a_note():
+    ledger = whole()
+    row(ledger, "fig7")["spread"] = [{"value": None}]
+    row(ledger, "fig7")["sweep"] = [{"part": "slope", "note": "stands as a wall"}]
+    assert faults(ledger) == []
