@@ -2,6 +2,7 @@
 
 from ryusa.measure.collisions import Collisions, ContactTimes, collisions, contact_times, turned_time
 from ryusa.measure.energy import Energy, energy
+from ryusa.measure.paths import Alternating, Paths, alternating, paths
 from ryusa.measure.profiles import Layers, Profiles, profiles
 from ryusa.measure.repose import Surface, surface
 from ryusa.measure.saltation import Saltation, grouping, saltation
@@ -20,12 +21,14 @@ from ryusa.measure.vibration import (
 )
 
 __all__ = [
+    "Alternating",
     "Average",
     "Averages",
     "Collisions",
     "ContactTimes",
     "Energy",
     "Layers",
+    "Paths",
     "Profiles",
     "Saltation",
     "Snapshot",
@@ -34,12 +37,14 @@ __all__ = [
     "Tracks",
     "Trembling",
     "Vibration",
+    "alternating",
     "average",
     "block_error",
     "collisions",
     "contact_times",
     "energy",
     "grouping",
+    "paths",
     "profiles",
     "ratio",
     "rest_time",
