@@ -148,3 +148,24 @@ def test_a_file_that_cannot_be_written_leaves_the_old_one_whole(every_word, monk
     with pytest.raises((OSError, ResultsError)):
         write(replace(every_word, rows=()))
     assert (every_word.folder / "ledger.html").read_bytes() == before
+
+
+def test_an_open_question_is_answered_by_what_was_told_of_it(every_word):
+    rows = tuple(
+        replace(row, finding=replace(row.finding, also=("torque takes half the spin", "something else")))
+        if row.claim.id == "fig20"
+        else row
+        for row in every_word.rows
+    )
+    write(replace(every_word, rows=rows))
+    _, text = read(every_word)
+    answer = text[text.index('id="water-torque"') : text.index('id="claims"')]
+    assert "torque takes half the spin" in answer
+    assert "something else" not in answer
+    assert "stands as a wall" not in answer
+
+
+def test_a_question_that_no_run_answers_says_so(every_word):
+    write(every_word)
+    _, text = read(every_word)
+    assert "holds no run that answers it" in text[text.index('id="water-torque"') :]

@@ -178,9 +178,13 @@ def _list(plan: "Plan", chosen: Sequence[str] | None, out: Path, jobs: int | Non
 
 
 def _print(ledger: "Ledger") -> None:
+    from collections import Counter
+
     from rich import box
     from rich.markup import escape
     from rich.table import Table
+
+    from ryusa.experiments import Word
 
     if ledger.plan.level == "quick":
         typer.echo(
@@ -196,10 +200,8 @@ def _print(ledger: "Ledger") -> None:
         ours = "not judged, see below" if row.problem else plain["ours"] or "-"
         table.add_row(row.claim.id, escape(row.claim.says), escape(ours), escape(verdict))
     _console().print(table)
-    counts: dict[str, int] = {}
-    for row in ledger.rows:
-        counts[str(row.word)] = counts.get(str(row.word), 0) + 1
-    typer.echo("; ".join(f"{n} {word}" for word, n in counts.items()))
+    counts = Counter(row.word for row in ledger.rows)
+    typer.echo("; ".join(f"{counts[word]} {word}" for word in Word if counts[word]))
 
 
 def _console() -> Any:

@@ -28,6 +28,7 @@ from ryusa.experiments._verdict import (
     over_range,
     over_seeds,
     pool,
+    short,
 )
 
 __all__ = [
@@ -60,5 +61,6 @@ __all__ = [
     "over_range",
     "over_seeds",
     "pool",
+    "short",
     "variant",
 ]

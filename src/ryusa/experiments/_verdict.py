@@ -39,8 +39,17 @@ class Interval:
             return "no number"
         unit = "" if self.unit == "-" else f" {self.unit}"
         if self.low == self.high:
-            return f"{self.value:.3g}{unit}"
-        return f"{self.value:.3g}{unit} ({self.low:.3g} to {self.high:.3g})"
+            return f"{short(self.value)}{unit}"
+        return f"{short(self.value)}{unit} ({short(self.low)} to {short(self.high)})"
+
+
+def short(value: float) -> str:
+    """Give three digits, and no power of ten where plain digits do.
+
+    >>> short(1042.0), short(0.01049), short(2.0e-6)
+    ('1042', '0.0105', '2e-06')
+    """
+    return f"{value:.0f}" if 1e3 <= abs(value) < 1e6 else f"{value:.3g}"
 
 
 def over_seeds(values: Sequence[float], unit: str, pooled: "Pooled | None" = None) -> Interval:

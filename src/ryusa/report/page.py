@@ -9,7 +9,7 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from ryusa.experiments import Word, load
+from ryusa.experiments import Word, load, short
 from ryusa.report.friction import MARKS, by_angle
 from ryusa.report.ledger import Ledger
 from ryusa.running.folder import write_json
@@ -29,19 +29,21 @@ LOOKS = {
     Word.WATER: ("waits", "…"),
     Word.LOST: ("waits", "–"),
 }
-# What the paper left open, and the claims whose runs answer it.
+# What the paper left open, the claims whose runs answer it, and a word in what they tell of it ("" is all).
 QUESTIONS = (
     (
         "Rolling friction",
         "rolling-friction",
         "The paper's open question ii: Eq. (13) as a model of rolling friction, its coefficient to be found.",
         ("eq13",),
+        "",
     ),
     (
         "Water torque",
         "water-torque",
         "The paper's open question iii: the torque of the water on a spinning grain.",
-        ("fig20", "fig21"),
+        ("fig21", "fig20"),
+        "torque",
     ),
 )
 
@@ -103,12 +105,18 @@ def render(
         lines=lines,
         marks=MARKS,
         questions=[
-            (title, anchor, about, [one for one in claims if one["id"] in ids])
-            for title, anchor, about, ids in QUESTIONS
+            (title, anchor, about, _answers(claims, ids, word))
+            for title, anchor, about, ids, word in QUESTIONS
             if any(one in here for one in ids)
         ],
         open_sweep=OPEN_SWEEP,
     )
+
+
+def _answers(claims: Sequence[Mapping[str, Any]], ids: Sequence[str], word: str) -> list[dict[str, Any]]:
+    """Rows of these claims, with what they tell of a question; without the rows that tell nothing of it."""
+    rows = {one["id"]: {**one, "told": [said for said in one["also"] if word in said]} for one in claims}
+    return [rows[one] for one in ids if one in rows and (not word or rows[one]["told"])]
 
 
 def _section(
@@ -167,9 +175,9 @@ def interval(found: Mapping[str, Any]) -> str:
         return "no number"
     unit = "" if found["unit"] == "-" else f" {found['unit']}"
     if found["low"] == found["high"]:
-        return f"{found['value']:.3g}{unit}"
-    ends = (f"{end:.3g}" if end is not None else "no limit" for end in (found["low"], found["high"]))
-    return f"{found['value']:.3g}{unit} ({' to '.join(ends)})"
+        return f"{short(found['value'])}{unit}"
+    ends = (short(end) if end is not None else "no limit" for end in (found["low"], found["high"]))
+    return f"{short(found['value'])}{unit} ({' to '.join(ends)})"
 
 
 def _write_whole(path: Path, text: str) -> None:
