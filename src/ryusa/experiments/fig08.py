@@ -38,7 +38,7 @@ class Hits:
 
 def stiffnesses(plan: Plan) -> tuple[float, ...]:
     """Springs of the chart [N/cm]; the softest lets no grain through its partner."""
-    return plan.pick((0.1, 10.0, 1000.0), (0.1, 1.0, 10.0, 100.0, 1000.0, 1.0e4))
+    return plan.pick((0.1, 10.0, 1.0e4), (0.1, 1.0, 10.0, 100.0, 1000.0, 1.0e4))
 
 
 def chart(plan: Plan) -> list[Setup]:
@@ -151,7 +151,12 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
     words = ("closed form, no weight", f"e = 0.7, impact at {_drops.SPEED}; shaded: 0.001 to 0.01")
     return {
         "fig08": figures.drop_chart(
-            "overlap", lines, runs, quoted=[figures.Quote(100.0 * K_N, 0.01)], levels=BAND, words=words
+            "overlap",
+            lines,
+            runs,
+            quoted=[figures.Quote(100.0 * K_N, 0.01, _drops.DIAMETER)],
+            levels=BAND,
+            words=words,
         ),
         "fig08-speed": figures.over_speed(
             by_speed, cloud, levels=BAND, wanted=0.01, note="d = 0.2 cm, 100 N/cm; shaded: 0.001 to 0.01"

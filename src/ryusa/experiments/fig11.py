@@ -53,7 +53,8 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         part = f"overlap/d of a contact of {TIME}, d = 0.2 cm"
         trials.append(Trial(part, {SPEED: speed}, drop.over_phases(drop.overlap, "-"), INSIDE))
     base, v = trials[0].found.value, quantity(_drops.SPEED, "m/s")
-    edges = [1.0e-4 * level / base for level in BAND]
+    edges = [quantity(TIME, "s") * level / base for level in BAND]
+    at_fig8 = 0.01 * np.sqrt(Setup(k_n=fig08.K_N).stiffness / Setup(time=TIME).stiffness)
     return (
         Finding(
             "fig11",
@@ -63,6 +64,10 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             f"{_drops.SPEED} these are {edges[0]:.2g} to {edges[1]:.2g} s; {TIME} lies in it for impacts at "
             f"{v * BAND[0] / base:.2g} to {v * BAND[1] / base:.2g} m/s.",
             {"restitution": "0.7", "d": _drops.DIAMETER, "parting": _drops.NO_TENSION},
+            also=(
+                f"at the speed that fig8 asks for, overlap/d 0.01 at 100 N/cm, it is {at_fig8:.4f}, "
+                f"{'inside' if BAND[0] < at_fig8 < BAND[1] else 'outside'} the band",
+            ),
         ),
     )
 
@@ -107,7 +112,7 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
     """Contact times with the band across them."""
     springs = fig08.stiffnesses(plan)
     lines, runs = times(_drops.SIZES, springs, _drops.SPEED, found)
-    quote = figures.Quote(Setup(time=TIME).stiffness, quantity(TIME, "s"))
+    quote = figures.Quote(Setup(time=TIME).stiffness, quantity(TIME, "s"), _drops.DIAMETER)
     words = ("Eq. (8)", f"e = 0.7, impact at {_drops.SPEED}; shaded: overlap/d 0.001 to 0.01")
     region = band(_drops.SIZES, springs, _drops.SPEED, found)
     return {"fig11": figures.drop_chart("time", lines, runs, quoted=[quote], band=region, words=words)}

@@ -89,8 +89,8 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             {"restitution": "0.7", "d": D, "parting": _drops.NO_TENSION},
             contradiction=(
                 "Eq. (8) and a spring make overlap/d proportional to contact time: the two times differ by "
-                f"{asked:.0f}, so do the overlaps (runs: {spread}), and a band a factor {width:g} wide "
-                "cannot hold both"
+                f"{asked:.0f}, so do the overlaps (runs, weight included: {spread}), and a band a factor "
+                f"{width:g} wide cannot hold both"
                 if min(ratios) > width
                 else ""
             ),
@@ -107,7 +107,7 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
     """Contact times of large grains with the band across them."""
     springs = stiffnesses(plan)
     lines, runs = fig11.times(_drops.LARGE, springs, SHIPPED, found)
-    quotes = tuple(figures.Quote(Setup(d=D, time=time).stiffness, quantity(time, "s")) for time in TIMES)
+    quotes = tuple(figures.Quote(Setup(d=D, time=time).stiffness, quantity(time, "s"), D) for time in TIMES)
     words = ("Eq. (8)", f"e = 0.7, impact at {SHIPPED}; shaded: overlap/d 0.001 to 0.01")
     region = fig11.band(_drops.LARGE, springs, SHIPPED, found)
     return {"fig12": figures.drop_chart("time", lines, runs, quoted=quotes, band=region, words=words)}

@@ -13,7 +13,7 @@ from ryusa.experiments._verdict import Band, Finding, Trial, over_range
 from ryusa.laws.collision import collision_time
 from ryusa.results import Results
 
-FIGURE = ""
+FIGURE = "pair"
 TITLE = "Contact time with the struck grain free to move"
 CLAIMS = ("pair",)
 SPEED, PARTING, DASHPOT = "impact speed (pair)", "parting (pair)", "dashpot (pair)"

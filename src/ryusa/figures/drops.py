@@ -26,10 +26,11 @@ _AXIS = {
 
 @dataclass(frozen=True)
 class Quote:
-    """A number that the paper gives, at its place in a chart; y as drawn, k_n [N/m]."""
+    """A number that the paper gives, at its place in a chart; y as drawn, k_n [N/m]; `of` names the grain."""
 
     k_n: float
     y: float
+    of: str
 
 
 @dataclass(frozen=True)
@@ -91,7 +92,7 @@ def drop_chart(
     for k, one in enumerate(quoted):
         axes.plot(
             one.k_n * _PER_CM, one.y, "*", color=style.COLOURS[1], ms=9.0, mec="black", mew=0.5, ls="none",
-            label=QUOTED if k == 0 else None, zorder=5,
+            label=f"{QUOTED}, {one.of}" if k == 0 else None, zorder=5,
         )  # fmt: skip
     axes.set_xlabel("normal stiffness  $k_n$  (N/cm)")
     axes.set_ylabel(_AXIS[quantity])
@@ -137,6 +138,11 @@ def over_speed(
             speed, overlap, style.MARKERS[k], ls="-", lw=0.7, color=style.COLOURS[(0, 2, 3)[k]], mfc="white",
             mew=1.0, label=label,
         )  # fmt: skip
+    ticks = (0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0)
+    axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+    axes.set_xticks([], minor=True)
+    axes.set_xlim(0.015, 2.5)
+    axes.set_ylim(2.0e-4, 0.1)
     axes.set_xlabel("impact speed  (m/s)")
     axes.set_ylabel(_AXIS["overlap"])
     axes.legend(loc="upper left", fontsize=6.3, labelspacing=0.3)
@@ -158,7 +164,7 @@ def rebounds(
     least : steps per contact that the paper asks for (dashed).
     note : above the frame.
     """
-    figure, (axes,) = style.new(height=2.9)
+    figure, (axes,) = style.new(height=3.2)
     axes.set_xscale("log")
     axes.axhspan(asked - off, asked + off, color=style.BAND, lw=0)
     axes.axhline(1.0, color=style.FAINT, lw=0.7, ls=":")
@@ -172,29 +178,30 @@ def rebounds(
     ticks = sorted({float(step) for one in schemes.values() for step in one.steps})
     axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
     axes.set_xticks([], minor=True)
-    axes.set_ylim(0.3, 2.0)
+    axes.set_ylim(0.0, 2.0)
     axes.set_xlabel("steps per contact, contact time over $\\Delta t$  (–)")
     axes.set_ylabel("restitution got  (–)")
     how: Any = {"textcoords": "offset points", "fontsize": 6.3, "color": "#444444"}
     axes.annotate(f"{QUOTED}: at least {least:g}", (least, 2.0), (3, -9), **how)
     axes.annotate("gains energy", (ticks[-1], 1.0), (0, 2), ha="right", **how)
-    axes.legend(loc="upper right", bbox_to_anchor=(1.0, 0.93), fontsize=6.3, labelspacing=0.3)
+    handles, labels = axes.get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper left", fontsize=6.3, labelspacing=0.3)
     if note:
         axes.set_title(note, loc="right", fontsize=6.5, color="#444444", pad=3.0)
     return figure
 
 
 def _fill(axes: Axes, band: Band) -> None:
-    """Shade a region and write its edges' names at their lower ends."""
+    """Shade a region and name its soft edge at its upper end, its stiff edge at its lower one."""
     k = np.concatenate([band.k_low, band.k_high[::-1]]) * _PER_CM
     axes.fill(k, np.concatenate([band.y_low, band.y_high[::-1]]), color=style.BAND, lw=0)
     edges = (
-        (band.k_low, band.y_low, band.labels[0], "right"),
-        (band.k_high, band.y_high, band.labels[1], "left"),
+        (band.k_low, band.y_low, band.labels[0], "bottom"),
+        (band.k_high, band.y_high, band.labels[1], "top"),
     )
     for x, y, label, side in edges:
         axes.plot(x * _PER_CM, y, color="#7d9470", lw=0.9, ls="--", zorder=1.4)
-        end = int(np.argmax(y))
+        end = int(np.argmax(y) if side == "bottom" else np.argmin(y))
         at = (float(x[end]) * _PER_CM, float(y[end]))
-        how: Any = {"textcoords": "offset points", "ha": side, "va": "bottom", "fontsize": 6.3}
+        how: Any = {"textcoords": "offset points", "ha": "right", "va": side, "fontsize": 6.3}
         axes.annotate(label, at, (0, 1), color="#4c6340", **how)
