@@ -25,9 +25,7 @@ def register(app: typer.Typer) -> None:
 def paper(
     names: Annotated[
         list[str] | None,
-        typer.Argument(
-            metavar="[NAME]...", help="Figures, claims or experiments, such as fig19; all if none."
-        ),
+        typer.Argument(metavar="NAME", help="Figures, claims or experiments, such as fig19; all if none."),
     ] = None,
     out: Annotated[
         Path, typer.Option("-o", "--out", metavar="FOLDER", help="Page, tables, pictures and runs go here.")
@@ -61,8 +59,8 @@ def paper(
 ) -> None:
     """Re-do the paper's figures, judge every claim, and write one page that says what holds.
 
-    An interrupted campaign goes on where it stopped when the same command is given again: finished
-    runs are opened. Numbers depend on the seeds alone, not on --jobs.
+    An interrupted campaign goes on where it stopped when the same command is
+    given again: finished runs are opened. The numbers depend on the seeds alone.
     """
     plan = _plan(quick, full, seeds)
     chosen = None if not names else [one for name in names for one in _known(name)]
