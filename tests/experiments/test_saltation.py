@@ -69,6 +69,12 @@ def test_spin_time_asks_for_the_same_time_locked_and_free(change, word):
     assert judged(spin_time, make)["spin-time"].word is word
 
 
+def test_the_scatter_of_grains_that_skim_does_not_widen_the_others():
+    hop, skim = _saltation.pooled([[1.0, 1.01], [3.0, 5.0]], [False, True])
+    assert hop.spread < 0.01
+    assert skim.spread > 1.0
+
+
 @pytest.mark.parametrize("changed", ["jump_height", "jump_length", "highest"])
 def test_hops_fails_below_a_stiffness_if_one_of_its_three_parts_does(changed):
     def make(one):

@@ -10,7 +10,7 @@ from ryusa import figures
 from ryusa.experiments import _saltation
 from ryusa.experiments._experiment import Found, Plan, Variant
 from ryusa.experiments._saltation import K_N, SHIPPED, SKIM, Hops, sweep_run
-from ryusa.experiments._verdict import Band, Finding, Interval, Trial, over_seeds, pool
+from ryusa.experiments._verdict import Band, Finding, Interval, Trial, over_seeds
 from ryusa.figures.saltation import contact_times_over_stiffness
 from ryusa.measure import Tracks, turned_time
 from ryusa.results import Results
@@ -56,10 +56,10 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """Contact time over Eq. (8), by stiffness and choices."""
     sets = _saltation.with_stiffness(plan)
     groups = [_values(found, plan, one, "contact_time_over_eq8") for one in sets]
-    spread = pool(groups)
+    skims = [found[sweep_run(one, plan.seeds[0])].hops.travel > SKIM for one in sets]
     trials = tuple(
         Trial(PART, one, over_seeds(values, "-", spread), AGREES)
-        for one, values in zip(sets, groups, strict=True)
+        for one, values, spread in zip(sets, groups, _saltation.pooled(groups, skims), strict=True)
     )
     first = found[sweep_run(sets[0], plan.seeds[0])].hops
     times, sweep = first.found.times, _sweep(found, plan)

@@ -21,7 +21,7 @@ TITLE = "Spin of a saltating grain"
 CLAIMS = ("fig21",)
 QUOTED = 900.0  # [rad/s]
 LEVEL = Band(0.75 * QUOTED, 1.25 * QUOTED, "rad/s", "about 900 rad/s: within a quarter, 675 to 1125 rad/s")
-GROWS = Band(0.9, 1.0, "-", "with every hit: at least nine hits in ten add spin")
+GROWS = Band(0.9, float("inf"), "-", "with every hit: at least nine hits in ten add spin")
 EARLY = 3  # hits of each start that count as spinning up
 WAY = 1.5  # shown [m]
 STARTS = "start"  # the choice: how the grain begins, of which the paper says nothing
@@ -177,7 +177,8 @@ def _told(found: Found, plan: Plan, name: str) -> str:
     beyond = max(one.against["beyond_dennis"] for one in wet)
     flag = f"; outside the fitted range in {100 * beyond:.1f} % of the time" if name == "Dennis" else ""
     return (
-        f"water torque, {name}: mean spin {np.mean([one.mean for one in wet]):.0f} rad/s, "
+        f"water torque, {name}: mean spin {np.mean([one.mean for one in wet]):.0f} rad/s "
+        f"({np.mean([one.hops.value('spin_before') for one in wet]):.0f} on landing), "
         f"{np.mean([one.against['rolling'] for one in wet]):.2f} of rolling at its own speed; it removes "
         f"{100 * float(np.mean(removed(found, plan, name))):.0f} % of the spin in excess of half the water's "
         f"vorticity ({turn:.0f} rad/s); over no torque: "

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from ryusa.experiments import _saltation
 from ryusa.experiments._experiment import Found, Plan, Variant
 from ryusa.experiments._saltation import K_N, SHIPPED, SKIM, Hops, sweep_run
-from ryusa.experiments._verdict import Band, Finding, Trial, over_seeds, pool
+from ryusa.experiments._verdict import Band, Finding, Trial, over_seeds
 from ryusa.figures.saltation import Line, over_stiffness_in_cm
 from ryusa.results import Results
 
@@ -21,14 +21,18 @@ SAME = Band(
 PART = "mean contact time, free over locked"
 
 
+SOFTEST = 100.0  # [N/m]; free grains on softer beds skim for whole seconds
+
+
+def settings(plan: Plan) -> list[dict[str, str]]:
+    """Sets of choices with the stiffness."""
+    sets = _saltation.with_stiffness(plan)
+    return [one for one in sets if _saltation.stiffness(one[K_N]) >= SOFTEST]
+
+
 def cases(plan: Plan) -> Sequence[Variant]:
     """Locked and free for every stiffness and set of choices."""
-    return [
-        make(one, seed)
-        for one in _saltation.with_stiffness(plan)
-        for seed in plan.seeds
-        for make in (sweep_run, _free)
-    ]
+    return [make(one, seed) for one in settings(plan) for seed in plan.seeds for make in (sweep_run, _free)]
 
 
 def _free(chosen: Mapping[str, str], seed: int) -> Variant:
@@ -51,12 +55,12 @@ def _ratios(found: Found, plan: Plan, chosen: Mapping[str, str]) -> list[float]:
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """Free over locked, by stiffness and choices."""
-    sets = _saltation.with_stiffness(plan)
+    sets = settings(plan)
     groups = [_ratios(found, plan, one) for one in sets]
-    spread = pool(groups)
+    skims = [found[_free(one, plan.seeds[0])].travel > SKIM for one in sets]
     trials = tuple(
         Trial(PART, one, over_seeds(values, "-", spread), SAME)
-        for one, values in zip(sets, groups, strict=True)
+        for one, values, spread in zip(sets, groups, _saltation.pooled(groups, skims), strict=True)
     )
     locked, free = (found[make(sets[0], plan.seeds[0])] for make in (sweep_run, _free))
     speeds = [one.value("speed") for one in (locked, free)]
@@ -79,10 +83,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
 
 def _sweep(found: Found, plan: Plan) -> dict[str, Hops]:
     """Free runs of the first seed, soft to stiff."""
-    return {
-        k: found[_free({**SHIPPED, K_N: k}, plan.seeds[0])]
-        for k in _saltation.softest(_saltation.with_stiffness(plan))
-    }
+    return {k: found[_free({**SHIPPED, K_N: k}, plan.seeds[0])] for k in _saltation.softest(settings(plan))}
 
 
 def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
@@ -93,7 +94,7 @@ def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
             "over_eq8": run.value("contact_time_over_eq8"), "speed_m_per_s": run.value("speed"),
             "travel": run.travel,
         }
-        for one in _saltation.with_stiffness(plan)
+        for one in settings(plan)
         for rotation, make in (("locked", sweep_run), ("free", _free))
         for seed in plan.seeds
         if (run := found[make(one, seed)])

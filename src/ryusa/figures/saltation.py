@@ -141,7 +141,8 @@ def _shade(axes: Axes, skim: float) -> None:
         "fontsize": 6.3,
         "color": "#555555",
     }
-    axes.annotate("skims the crests,\n$u t/d > 0.3$", (0, 0), (4, 4), **how)
+    plain = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}
+    axes.annotate("skims the crests,\n$u t/d > 0.3$", (0, 0), (4, 4), bbox=plain, **how)
 
 
 @style.house
