@@ -43,7 +43,19 @@ def test_every_measure_prints_something_and_writes_csv(folder, tmp_path, what):
     assert len((tmp_path / "out.csv").read_text().splitlines()) > 1
 
 
-@pytest.mark.parametrize("what", ["tracks", "spin", "energy", "contacts", "hops"])
+def test_a_flow_has_a_profile_and_paths_within_a_window(folder, tmp_path):
+    table = tmp_path / "profile.csv"
+    result = call("measure", folder, "profile", "--begin", "0.1 s", "--layer", "1", "--csv", table)
+    assert result.exit_code == 0, result.output
+    assert "m2/s" in result.output
+    assert table.read_text().startswith("z_m,z_over_d,phi,")
+    result = call("measure", folder, "paths", "--window", "0.1 s", "--end", "0.3 s", "--csv", table)
+    assert result.exit_code == 0, result.output
+    assert "reversals" in result.output
+    assert len(table.read_text().splitlines()) == 1 + 3 * 2  # windows, grains
+
+
+@pytest.mark.parametrize("what", ["tracks", "spin", "energy", "contacts", "hops", "profile"])
 def test_every_picture_is_drawn_with_its_numbers_beside_it(folder, tmp_path, what):
     result = call("draw", folder, what, "-o", tmp_path / "picture.svg")
     assert result.exit_code == 0, result.output
@@ -57,6 +69,8 @@ def test_every_picture_is_drawn_with_its_numbers_beside_it(folder, tmp_path, wha
         (("measure", "{}", "saltacion"), "Did you mean 'saltation'"),
         (("measure", "{}", "saltation", "--settle", "1"), "missing unit"),
         (("measure", "{}", "saltation", "--rise", "-1"), "rise"),
+        (("measure", "{}", "paths"), "no whole window of 1 s"),
+        (("measure", "{}", "profile", "--layer", "0"), "--layer"),
         (("draw", "{}", "trakcs"), "Did you mean 'tracks'"),
         (("draw", "{}", "tracks", "--grain", "9"), "--grain"),
         (("draw", "{}", "tracks", "--begin", "99 s"), "two frames from t = 99 s to 0.4 s"),
@@ -92,8 +106,8 @@ def unsettled(tmp_path_factory):
 @pytest.mark.parametrize(
     "words",
     [
-        *(("draw", what) for what in ("tracks", "hops", "contacts")),
-        *(("measure", what) for what in ("saltation", "collisions", "spin")),
+        *(("draw", what) for what in ("tracks", "hops", "contacts", "profile")),
+        *(("measure", what) for what in ("saltation", "collisions", "spin", "profile")),
     ],
 )
 def test_a_run_that_ended_while_settling_says_so(unsettled, words):

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from ryusa.results import Results
 
-PICTURES = ("tracks", "spin", "energy", "contacts", "hops")
+PICTURES = ("tracks", "spin", "energy", "contacts", "hops", "profile")
 
 
 def register(app: typer.Typer) -> None:
@@ -42,9 +42,9 @@ def draw(
         list[int] | None, typer.Option(help="tracks, spin: only this grain; may be repeated.")
     ] = None,
     begin: Annotated[
-        str | None, typer.Option(help="tracks: from this time on; default after settling.")
+        str | None, typer.Option(help="tracks, profile: from this time on; default after settling.")
     ] = None,
-    end: Annotated[str | None, typer.Option(help="tracks: up to this time.")] = None,
+    end: Annotated[str | None, typer.Option(help="tracks, profile: up to this time.")] = None,
     length: Annotated[str | None, typer.Option(help="tracks: way shown, such as 20cm.")] = None,
     exaggeration: Annotated[float, typer.Option(help="tracks: heights drawn this many times larger.")] = 1.0,
 ) -> None:
@@ -92,6 +92,13 @@ def _picture(
             need_settled(results, "say --begin 0s to see what is there")
         need(len(paths.t) > 1, results, f"two frames from t = {begin:g} s to {end_of(results, end):.3g} s")
         return figures.tracks(paths, exaggeration=exaggeration, length=length), paths.rows()
+    if what == "profile":
+        if window[0] is None:
+            need_settled(results, "say --begin 0s to see what is there")
+        layers = measure.profiles(
+            results, window[0], end_of(results) if window[1] is None else window[1], bed=True
+        )
+        return figures.profiles({results.folder.name: layers}), layers.rows()
     if what == "spin":
         spins = measure.spin(results)
         need(len(spins.t) > 1, results, "two frames")

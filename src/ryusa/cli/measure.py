@@ -1,6 +1,7 @@
 """`ryusa measure`: numbers from a run folder."""
 
 import sys
+from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,7 +13,7 @@ if TYPE_CHECKING:
     from ryusa.measure import Averages
     from ryusa.results import Results
 
-MEASURES = ("saltation", "collisions", "spin", "energy", "tracks")
+MEASURES = ("saltation", "collisions", "spin", "energy", "tracks", "profile", "paths")
 
 
 def register(app: typer.Typer) -> None:
@@ -28,14 +29,24 @@ def measure(
     rise: Annotated[
         float, typer.Option(help="saltation: flights that rise less, in diameters, join two bounces.")
     ] = 0.1,
+    begin: Annotated[
+        str | None, typer.Option(help="profile, paths: from this time on; default after settling.")
+    ] = None,
+    end: Annotated[str | None, typer.Option(help="profile, paths: up to this time.")] = None,
+    layer: Annotated[float, typer.Option(help="profile: thickness of a layer, in diameters.")] = 0.5,
+    window: Annotated[str, typer.Option(help="paths: time over which a way is looked at.")] = "1 s",
 ) -> None:
     """Print averages with standard error, window and steadiness; --csv keeps the numbers."""
     within("--rise", rise, 0.0, 100.0)
-    results, begin = open_run(run), seconds(settle)
+    within("--layer", layer, 0.01, 100.0)
+    results, after = open_run(run), seconds(settle)
     known(what, MEASURES, "measure")
-    if begin is None and what in {"saltation", "collisions", "spin"}:
+    if after is None and what in {"saltation", "collisions", "spin"}:
         need_settled(results, "say --settle 0s to see what is there")
-    found = _measured(results, what, begin, rise)
+    if what in {"profile", "paths"}:
+        found = _flow(results, what, seconds(begin) if begin else after, seconds(end), layer, seconds(window))
+    else:
+        found = _measured(results, what, after, rise)
     averages = getattr(found, "averages", None)
     if averages is not None:
         _print(averages)
@@ -59,6 +70,19 @@ def _measured(results: "Results", what: str, settle: float | None, rise: float) 
     return measure.energy(results) if what == "energy" else measure.tracks(results)
 
 
+def _flow(
+    results: "Results", what: str, begin: float | None, end: float | None, layer: float, window: float | None
+) -> Any:
+    from ryusa import measure
+
+    if begin is None:
+        need_settled(results, "say --begin 0s to see what is there")
+    last = float("inf") if end is None else end
+    if what == "profile":
+        return measure.profiles(results, begin, last, layer=layer)
+    return measure.paths(results, begin, last, window=1.0 if window is None else window)
+
+
 def _print(averages: "Averages") -> None:
     from rich import box
     from rich.console import Console
@@ -73,7 +97,7 @@ def _print(averages: "Averages") -> None:
             table.add_row(one.name, "-", "-", one.unit, "0", "-", "-")
             continue
         steady = "yes" if one.steady else f"no, drift {one.drift:.1f} s.e."
-        steady += "" if one.plateau else " (short record)"
+        steady = "-" if isnan(one.drift) else steady + ("" if one.plateau else " (short record)")
         window = f"{one.window[0]:.3g} .. {one.window[1]:.4g}"
         table.add_row(one.name, f"{one.value:.5g}", f"{one.error:.2g}", one.unit, str(one.n), window, steady)
     console = Console(width=None if sys.stdout.isatty() else 120)

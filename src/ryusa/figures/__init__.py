@@ -5,9 +5,10 @@ from ryusa.figures.contact import Band, Curve, Points, over_stiffness, turning
 from ryusa.figures.drops import Quote, Rebound, drop_chart, over_speed, rebounds
 from ryusa.figures.energy import energy
 from ryusa.figures.hops import contact_times, hops
+from ryusa.figures.profiles import profiles
 from ryusa.figures.spin import spin
 from ryusa.figures.style import save
-from ryusa.figures.tracks import tracks, tracks_side_by_side
+from ryusa.figures.tracks import tracks, tracks_from_start, tracks_side_by_side
 
 __all__ = [
     "Band",
@@ -23,10 +24,12 @@ __all__ = [
     "hops",
     "over_speed",
     "over_stiffness",
+    "profiles",
     "rebounds",
     "save",
     "spin",
     "tracks",
+    "tracks_from_start",
     "tracks_side_by_side",
     "turning",
 ]

@@ -12,6 +12,7 @@ from matplotlib.patches import Circle
 
 from ryusa.figures import style
 from ryusa.measure import Tracks
+from ryusa.model.scene import Floats
 
 MM = 1.0e3  # millimetres in a metre
 
@@ -85,6 +86,52 @@ def tracks_side_by_side(found: Mapping[str, Tracks], length: float) -> Figure:
     axes[-1].set_xlabel("distance along the bed  $x$  (mm)")
     figure.supylabel("height  $z$  (mm)", fontsize=8.0)
     return figure
+
+
+@style.house
+def tracks_from_start(found: Mapping[str, Tracks], marks: float = 0.1, length: float | None = None) -> Figure:
+    """Draw the ways of many grains one above another, each from its start: the form of the paper's fig16.
+
+    Parameters
+    ----------
+    found : name of the run -> paths (`measure.tracks`), all within windows of equal length; one panel each.
+    marks : time between the dots on a way [s]; a ring is the start.
+    length : way shown [m]; default that of the grain that went farthest in any run.
+
+    Notes
+    -----
+    To scale. Ways are moved up or down so that they do not cross: the one that got farthest lies on top.
+    """
+    runs = list(found.values())
+    d = float(np.mean(runs[0].d))
+    far = (max(float((one.x - one.x[:1]).max()) for one in runs) if length is None else length) / d
+    laid = [_apart((one.z - one.z[:1]) / d, one.x[-1] - one.x[0]) for one in runs]
+    top, bottom = max(float(z.max()) for z in laid) + 0.3, -0.3
+    row = min((style.PAGE / len(runs) - 0.35) * (top - bottom) / (1.06 * far), 6.0)
+    figure, axes = style.new(1, len(runs), width=style.PAGE, height=0.65 + row, sharex=True, sharey=True)
+    for s, (panel, (name, one), z) in enumerate(zip(axes, found.items(), laid, strict=True)):
+        x, colour = (one.x - one.x[:1]) / d, style.COLOURS[s % len(style.COLOURS)]
+        dots = np.unique(np.searchsorted(one.t, np.arange(one.t[0] + marks, one.t[-1], marks)))
+        panel.plot(x, z, color=colour, lw=0.8, solid_joinstyle="round")
+        panel.plot(x[dots], z[dots], ".", color=colour, ms=3.5, mew=0.0)
+        panel.plot(x[0], z[0], "o", color=colour, ms=3.0, mfc="white", mew=0.8)
+        panel.set_xlim(-0.03 * far, 1.03 * far)
+        panel.set_ylim(bottom, top)
+        panel.set_aspect("equal")
+        panel.set_title(name, loc="left", fontsize=7.5)
+        panel.set_xlabel("distance from the start  $(x - x_0)/d$  (-)")
+    axes[-1].set_title(f"a dot every {marks:g} s", loc="right", fontsize=6.5)
+    axes[0].set_ylabel("height, ways set apart  $z/d$  (-)")
+    return figure
+
+
+def _apart(z: Floats, advance: Floats) -> Floats:
+    """Heights (n_frame, n_grain) moved so that no two overlap, least advance lowest."""
+    z, level = z.copy(), 0.0
+    for c in np.argsort(advance):
+        z[:, c] += level - z[:, c].min()
+        level = float(z[:, c].max()) + 0.25
+    return z
 
 
 def _bed(axes: Axes, found: Tracks, low: float, high: float) -> None:

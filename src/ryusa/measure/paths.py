@@ -237,9 +237,9 @@ def _windows(t: Floats, begin: float, end: float, window: float) -> tuple[Ints, 
     count = 0 if start == len(t) else max(math.floor((last - float(t[start]) + slack) / window), 0)
     if count == 0:
         raise ResultsError(f"no whole window of {window:g} s from t = {begin:g} s to {last:.4g} s")
-    edges = float(t[start]) + window * np.arange(count + 1)
+    edges = float(t[start]) + window * np.arange(count + 1, dtype=np.float64)
     gap = float(np.median(np.diff(t[start:])))  # a frame comes with the first step after its time
-    first = np.clip(np.searchsorted(t, edges - max(0.5 * gap, slack)), 0, len(t) - 1)
+    first = np.clip(np.searchsorted(t, edges - max(0.5 * gap, slack)), 0, len(t) - 1).astype(np.int64)
     if int(np.diff(first).min()) < LEAST:
         raise ResultsError(f"{np.diff(first).min()} frames in a window of {window:g} s, {LEAST} needed")
     return first, edges
