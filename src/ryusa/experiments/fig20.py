@@ -220,7 +220,7 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
 
 
 def _few(chosen: Mapping[str, str]) -> bool:
-    """Whether one choice is changed at most, or the shear is weak for two reasons; the grid is for the table."""
+    """Whether one choice is changed at most, or shear is weak for two reasons; the table has them all."""
     changed = [name for name in SHIPPED if chosen[name] != SHIPPED[name]]
     return len(changed) <= 1 or (chosen[PHI] == "10 deg" and changed == [PHI, SLIP])
 
