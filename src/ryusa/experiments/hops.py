@@ -47,9 +47,15 @@ def cases(plan: Plan) -> Sequence[Variant]:
     return [
         _run(k, seed, rotation)
         for rotation in rotations(plan)
-        for k in (STIFF, *stiffnesses(plan))
+        for k in every(plan, rotation)
         for seed in plan.seeds
     ]
+
+
+def every(plan: Plan, rotation: str = "locked") -> list[str]:
+    """Stiffnesses run, soft to stiff; free grains skim the softest bed for whole seconds."""
+    sets = [{K_N: k} for k in (STIFF, *stiffnesses(plan))]
+    return [k for k in _saltation.softest(sets) if rotation == "locked" or k != STIFFNESSES[0]]
 
 
 def _run(k: str, seed: int, rotation: str = "locked") -> Variant:
@@ -80,15 +86,15 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             Trial(part, {AGAINST: k}, over_seeds(values, "-", spread), SAME)
             for k, values, spread in zip(stiffnesses(plan), groups, spreads, strict=True)
         ]
-    every = _saltation.softest([{K_N: k} for k in (STIFF, *stiffnesses(plan))])
-    first = {k: found[_run(k, plan.seeds[0])] for k in every}
-    soft, base = first[every[0]], first[STIFF]
+    first = {k: found[_run(k, plan.seeds[0])] for k in every(plan)}
+    softest = next(iter(first))
+    soft, base = first[softest], first[STIFF]
     return (
         Finding(
             "hops",
             tuple(trials),
             "A stiff contact is over before the grain has moved along the bed, and then only e and the shear "
-            f"law count. In a soft one it goes on {soft.travel:.2g} d within a contact (u t/d at {every[0]}; "
+            f"law count. In a soft one it goes on {soft.travel:.2g} d within a contact (u t/d at {softest}; "
             f"{base.travel:.2g} at {STIFF}), so it is turned over the crest instead of thrown back, and its "
             "mean jump sinks.",
             settings={"rotation": "locked", "starts": f"{WIDE['build.starts']} of 30 hops a seed"},
@@ -97,7 +103,10 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
                 *(
                     f"rotation free, {part}: "
                     + _saltation.listed(
-                        {k: float(np.mean(_ratios(found, plan, k, name, "free"))) for k in stiffnesses(plan)}
+                        {
+                            k: float(np.mean(_ratios(found, plan, k, name, "free")))
+                            for k in every(plan, "free")
+                        }
                     )
                     for part, name in PARTS.items()
                     if "free" in rotations(plan)
@@ -117,7 +126,7 @@ def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
             "mean_length_m": run.value("jump_length"), "mean_length_error_m": run.found["jump_length"].error,
         }
         for rotation in rotations(plan)
-        for k in _saltation.softest([{K_N: k} for k in (STIFF, *stiffnesses(plan))])
+        for k in every(plan, rotation)
         for seed in plan.seeds
         if (run := found[_run(k, seed, rotation)])
     ]  # fmt: skip
@@ -125,18 +134,17 @@ def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
 
 def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
     """Heights and lengths against stiffness, with the band that counts as no change."""
-    every = _saltation.softest([{K_N: k} for k in (STIFF, *stiffnesses(plan))])
-    k = np.array([_saltation.stiffness(one) for one in every])
     panels: dict[str, list[Line]] = {}
     for name, words in AXES.items():
         for rotation in rotations(plan):
-            means = [_mean(found, plan, one, name, rotation) for one in every]
+            k = np.array([_saltation.stiffness(one) for one in every(plan, rotation)])
+            means = [_mean(found, plan, one, name, rotation) for one in every(plan, rotation)]
             half = np.array([0.5 * (one.high - one.low) for one in means])
             values = np.array([one.value for one in means])
             panels.setdefault(words, []).append(Line(f"rotation {rotation}", k, 1e2 * values, 1e2 * half))
     base = [1e2 * _mean(found, plan, STIFF, name).value for name in AXES]
     levels = [(SAME.low * one, SAME.high * one) for one in base]
-    runs = {one: found[_run(one, plan.seeds[0])] for one in every}
+    runs = {one: found[_run(one, plan.seeds[0])] for one in every(plan)}
     skim = min((_saltation.stiffness(one) for one, run in runs.items() if run.travel < SKIM), default=0.0)
     return {"hops": over_stiffness_in_cm(panels, levels=levels, skim=skim)}
 
