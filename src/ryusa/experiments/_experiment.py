@@ -30,6 +30,9 @@ NAMES = (
     "fig11",
     "fig12",
     "hops",
+    "fig14",
+    "fig15",
+    "fig16",
     "fig20",
     "fig21",
 )

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,7 +15,7 @@ from ryusa.figures import style
 from ryusa.measure import Tracks
 from ryusa.model.scene import Floats
 
-MM = 1.0e3  # millimetres in a metre
+MM, CM = 1.0e3, 1.0e2  # millimetres and centimetres in a metre
 
 
 @style.house
@@ -57,15 +58,18 @@ def tracks(
 
 
 @style.house
-def tracks_side_by_side(found: Mapping[str, Tracks], length: float) -> Figure:
+def tracks_side_by_side(
+    found: Mapping[str, Tracks], length: float, unit: Literal["mm", "cm"] = "mm"
+) -> Figure:
     """Draw paths of several runs one above the other, all to the same scale and from the same x = 0.
 
     Parameters
     ----------
     found : name written into the panel -> paths.
     length : way shown [m].
+    unit : of both axes.
     """
-    runs = list(found.values())
+    runs, scale = list(found.values()), {"mm": MM, "cm": CM}[unit]
     d = float(runs[0].d[0])
     shown = [np.where(one.x <= one.x[0, 0] + length, one.z, -math.inf) for one in runs]
     top = max(float(z.max()) for z in shown) + 0.8 * d
@@ -75,16 +79,16 @@ def tracks_side_by_side(found: Mapping[str, Tracks], length: float) -> Figure:
     for panel, (name, one) in zip(axes, found.items(), strict=True):
         start = math.floor(float(one.x[0, 0]) / d) * d  # whole grains, so that the bed looks the same
         moved = replace(one, x=one.x - start, bed_x=one.bed_x - start)
-        _bed(panel, moved, 0.0, length)
+        _bed(panel, moved, 0.0, length, scale)
         for c in range(moved.x.shape[1]):
-            _path(panel, moved, c, 0.0, length)
-        panel.set_xlim(0.0, length * MM)
-        panel.set_ylim(bottom * MM, top * MM)
+            _path(panel, moved, c, 0.0, length, scale)
+        panel.set_xlim(0.0, length * scale)
+        panel.set_ylim(bottom * scale, top * scale)
         panel.set_aspect("equal")
         panel.locator_params(axis="y", nbins=4, integer=True)
         style.label_panel(panel, name)
-    axes[-1].set_xlabel("distance along the bed  $x$  (mm)")
-    figure.supylabel("height  $z$  (mm)", fontsize=8.0)
+    axes[-1].set_xlabel(f"distance along the bed  $x$  ({unit})")
+    figure.supylabel(f"height  $z$  ({unit})", fontsize=8.0)
     return figure
 
 
@@ -134,12 +138,12 @@ def _apart(z: Floats, advance: Floats) -> Floats:
     return z
 
 
-def _bed(axes: Axes, found: Tracks, low: float, high: float) -> None:
+def _bed(axes: Axes, found: Tracks, low: float, high: float, scale: float = MM) -> None:
     """Bed grains that fall into the panel, repeated over periods."""
     circles: list[Circle] = []
     for x, z, d in zip(found.bed_x, found.bed_z, found.bed_d, strict=True):
         for at in _copies(float(x), low - d, high + d, found.period):
-            circles.append(Circle((at * MM, z * MM), 0.5 * d * MM))
+            circles.append(Circle((at * scale, z * scale), 0.5 * d * scale))
     axes.add_collection(PatchCollection(circles, facecolor=style.BED, edgecolor="#8c8578", linewidth=0.4))
 
 
@@ -151,20 +155,20 @@ def _copies(x: float, low: float, high: float, period: float) -> list[float]:
     return [x + n * period for n in range(first, last + 1)]
 
 
-def _path(axes: Axes, found: Tracks, column: int, low: float, high: float) -> None:
+def _path(axes: Axes, found: Tracks, column: int, low: float, high: float, scale: float = MM) -> None:
     x, z, d = found.x[:, column], found.z[:, column], float(found.d[column])
     near = (x >= low - d) & (x <= high + d)
     if not near.any():
         return
     colour = style.COLOURS[column % len(style.COLOURS)]
     # a break wherever the grain is outside the panel
-    axes.plot(np.where(near, x, np.nan) * MM, z * MM, color=colour, lw=0.9, solid_joinstyle="round")
+    axes.plot(np.where(near, x, np.nan) * scale, z * scale, color=colour, lw=0.9, solid_joinstyle="round")
     # outlines of the grain every so many diameters of way, so that its size can be seen
     if found.x.shape[1] == 1:
         ways = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(z)))])
         marks = np.unique(np.searchsorted(ways, np.arange(0.0, ways[-1], 2.5 * d)))
         marks = marks[near[marks]]
-        rings = [Circle((float(x[k]) * MM, float(z[k]) * MM), 0.5 * d * MM) for k in marks]
+        rings = [Circle((float(x[k]) * scale, float(z[k]) * scale), 0.5 * d * scale) for k in marks]
         axes.add_collection(
             PatchCollection(rings, facecolor="none", edgecolor=colour, linewidth=0.35, alpha=0.55)
         )

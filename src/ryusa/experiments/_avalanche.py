@@ -1,0 +1,259 @@
+"""What the avalanche experiments (fig14, fig15, fig16) share: case, choices, windows, pairs of runs."""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+
+from ryusa.experiments._experiment import PHI, ROTATION, SLIP, Found, Plan, Variant, variant
+from ryusa.experiments._verdict import Band, Trial, over_seeds, pool
+from ryusa.measure import Profiles, Tracks, alternating, paths, profiles, tracks
+from ryusa.measure.statistics import Floats
+from ryusa.results import Results
+
+CASE = "avalanche"
+TILT = 1.0  # of the case's timeline [s]
+FRAME = 0.01  # between the case's frames [s]
+GRAVITY = 9.8  # [m/s2]
+SLOPE = math.radians(40.0)
+LAYERS, LOWEST = 10, 20  # layers of grains, and grains in the lowest one
+BELOW = 2  # neighbours that a grain rests on
+SOFT, STIFF = "0.01 s", "0.0001 s"  # collision times, Eq. (8)
+TIMES = (SOFT, STIFF)
+WINDOW = "time after tilting"
+WINDOWS = {"1 to 2 s": (1.0, 2.0), "2 to 3 s": (2.0, 3.0)}
+FIRST = "1 to 2 s"
+SHIPPED = {ROTATION: "free", PHI: "30 deg", SLIP: "spring"}
+KEYS = {ROTATION: "motion.rotation", PHI: "contact.friction_angle", SLIP: "contact.slip"}
+SETTLED = {
+    "d": "20 cm",
+    "slope": "40 deg",
+    "restitution": "0.7",
+    "layers": "10 over a flat bed of pitch 1.1 d",
+}
+FLOWS = Band(0.1, math.inf, "-", "both are avalanches: speed over sqrt(g d) above 0.1 in the slower one")
+FLOW_PART = "mean speed over sqrt(g d), the slower of the two"
+SPARSE, THIN = 0.05, 0.1  # concentrations: a layer of the flow; a layer whose mean speed is worth comparing
+
+
+@dataclass(frozen=True)
+class Window:
+    """One run in one window of time.
+
+    Attributes
+    ----------
+    profile : means over height; z from the crest of the bed.
+    n_turning : grains of the lowest layer that touch bed and movers in turn.
+    reversals : turns of the vertical motion of those per second [1/s].
+    advance : their way along the bed in the window [m].
+    jaggedness : sum of their vertical ways over that of their advances [-].
+    path : ways of two of them.
+    """
+
+    profile: Profiles
+    n_turning: int
+    reversals: float
+    advance: float
+    jaggedness: float
+    path: Tracks
+
+    @property
+    def speed(self) -> float:
+        """Speed of all grains, mean over time [m/s]."""
+        return float(self.profile.speed.mean())
+
+    @property
+    def q(self) -> float:
+        """Flux over the whole depth per unit width [m2/s]."""
+        return float(self.profile.q.mean())
+
+
+Avalanche = Mapping[str, Window]  # by name of the window
+
+
+@dataclass(frozen=True)
+class Pair:
+    """The run with the long and that with the short collision time, same seed, choices and window."""
+
+    soft: Window
+    stiff: Window
+
+    @property
+    def slower(self) -> float:
+        """Speed of the slower run over sqrt(g d) [-]."""
+        return min(self.soft.speed, self.stiff.speed) / math.sqrt(GRAVITY * self.soft.profile.d)
+
+    def layers(self, name: str) -> tuple[Floats, Floats]:
+        """One quantity of both runs on common layers; 0 where a run has no such layer."""
+        both = [self.soft.profile, self.stiff.profile]
+        numbers = [np.rint(one.z / one.thickness - 0.5).astype(np.int64) for one in both]
+        low, high = min(int(n[0]) for n in numbers), max(int(n[-1]) for n in numbers)
+        found = [np.zeros(high - low + 1) for _ in both]
+        for values, one, n in zip(found, both, numbers, strict=True):
+            values[n - low] = np.nan_to_num(getattr(one, name).value)
+        return found[0], found[1]
+
+    def unlike(self, name: str = "phi") -> float:
+        """Mean difference of concentration over mean concentration of the layers of the flow [-]."""
+        soft, stiff = self.layers(name)
+        phi = np.maximum(*self.layers("phi"))
+        there = phi > SPARSE
+        return float(np.abs(soft - stiff)[there].mean() / (0.5 * (soft + stiff)[there]).mean())
+
+    def faster(self) -> Floats:
+        """Speed of the soft run less that of the stiff one in every layer that both fill [m/s]."""
+        soft, stiff = self.layers("v_x")
+        return (soft - stiff)[np.minimum(*self.layers("phi")) > THIN]
+
+
+def settings(plan: Plan) -> list[dict[str, str]]:
+    """Sets of free choices, the shipped one first."""
+    if plan.level == "full":
+        sets = [
+            {ROTATION: rotation, PHI: phi, SLIP: slip}
+            for rotation in ("free", "locked")
+            for slip in ("spring", "spring-drop", "total")
+            for phi in ("10 deg", "20 deg", "30 deg", "40 deg")
+        ]
+    else:
+        sets = [
+            {ROTATION: rotation, PHI: phi, SLIP: slip}
+            for rotation, phi, slip in plan.pick(
+                (),
+                (
+                    ("free", "20 deg", "spring"),
+                    ("free", "30 deg", "total"),
+                    ("locked", "20 deg", "spring"),
+                    ("locked", "30 deg", "spring"),
+                    ("locked", "10 deg", "total"),
+                    ("locked", "20 deg", "total"),
+                    ("locked", "20 deg", "spring-drop"),
+                ),
+            )
+        ]
+    return [SHIPPED, *(one for one in sets if one != SHIPPED)]
+
+
+def run(chosen: Mapping[str, str], time: str, seed: int) -> Variant:
+    """One run of the case; what is as shipped is not said."""
+    changed = {KEYS[name]: value for name, value in chosen.items() if SHIPPED[name] != value}
+    if time != SOFT:
+        changed["contact.stiffness"] = f'{{ collision_time = "{time}" }}'
+    return variant(CASE, changed, seed)
+
+
+def cases(plan: Plan) -> Sequence[Variant]:
+    """Both collision times for every setting and seed."""
+    return [run(one, time, seed) for one in settings(plan) for seed in plan.seeds for time in TIMES]
+
+
+@lru_cache(maxsize=2)
+def avalanche(results: Results) -> Avalanche:
+    """Measure one run; three experiments ask for the same numbers."""
+    return {name: _window(results, TILT + begin, TILT + end) for name, (begin, end) in WINDOWS.items()}
+
+
+def _window(results: Results, begin: float, end: float) -> Window:
+    turning = alternating(results, begin, end).grains
+    middle = max(len(turning) // 2 - 1, 0)
+    shown = turning[middle : middle + 2]
+    # a frame comes with the first step after its time: a whole window fits in from one frame earlier on
+    found = paths(results, begin - FRAME, end, end - begin, grains=[int(g) for g in turning])
+    whole = len(turning) > 0 and float(found.advance.sum()) > 0.0
+    return Window(
+        profiles(results, begin, end, bed=True),
+        len(turning),
+        float(found.reversals.mean()) if len(turning) else math.nan,
+        float(found.advance.mean()) if len(turning) else math.nan,
+        float(found.way_z.sum() / found.advance.sum()) if whole else math.nan,
+        _together(tracks(results, [int(g) for g in shown], begin, end)),
+    )
+
+
+def _together(path: Tracks) -> Tracks:
+    """Shift ways by whole periods, so that all start within the first one."""
+    return replace(path, x=path.x - np.floor(path.x[:1] / path.period) * path.period)
+
+
+def pairs(found: Found, plan: Plan, chosen: Mapping[str, str], window: str) -> list[Pair]:
+    """Pairs of runs of one setting, by seed."""
+    return [Pair(*(found[run(chosen, time, seed)][window] for time in TIMES)) for seed in plan.seeds]
+
+
+def sets(plan: Plan) -> list[tuple[dict[str, str], str]]:
+    """Every setting in every window, the shipped one in the first window first."""
+    return [(one, window) for window in WINDOWS for one in settings(plan)]
+
+
+def trials(found: Found, plan: Plan, part: str, value: Callable[[Pair], float], band: Band) -> list[Trial]:
+    """One part of a claim under every setting and in every window.
+
+    The spread between seeds is pooled over the settings of the same rotation and window: free grains meet
+    by chance, locked ones hardly move or slide as a block.
+    """
+    groups = {
+        (tuple(one.values()), window): [value(pair) for pair in pairs(found, plan, one, window)]
+        for one, window in sets(plan)
+    }
+    spread = {
+        (rotation, window): pool([v for (s, w), v in groups.items() if s[0] == rotation and w == window])
+        for rotation in ("free", "locked")
+        for window in WINDOWS
+    }
+    return [
+        Trial(
+            part,
+            {**one, WINDOW: window},
+            over_seeds(groups[tuple(one.values()), window], band.unit, spread[one[ROTATION], window]),
+            band,
+        )
+        for one, window in sets(plan)
+    ]
+
+
+def flows(found: Found, plan: Plan) -> list[Trial]:
+    """Both runs must be avalanches: two heaps at rest have the same profile and prove nothing."""
+    return trials(found, plan, FLOW_PART, lambda pair: pair.slower, FLOWS)
+
+
+def mean(
+    found: Found, plan: Plan, chosen: Mapping[str, str], window: str, value: Callable[[Pair], float]
+) -> float:
+    """Mean over seeds of a number that decides nothing."""
+    return float(np.mean([value(pair) for pair in pairs(found, plan, chosen, window)]))
+
+
+def creep(chosen: Mapping[str, str], time: str) -> float:
+    """Mean speed at which dashpots alone hold layers in lasting contact [m/s].
+
+    A dashpot that friction does not cap drags like a viscous liquid: layer k of n carries the weight along
+    the slope of n + 1 - k layers on its contacts, slides at (n + 1 - k) m g sin(theta)/(2 eta_s), and the
+    mean over the layers of the sums of these is (n + 1)(2 n + 1)/6 times m g sin(theta)/(2 eta_s).
+    """
+    found = run(chosen, time, 1).read().derived
+    weight = found.m_weight * GRAVITY * math.sin(SLOPE)
+    return (LAYERS + 1) * (2 * LAYERS + 1) / 6.0 * weight / (BELOW * found.free.eta_s)
+
+
+def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
+    """One line per run and window."""
+    return [
+        {
+            **chosen, "collision time": time, "seed": seed, WINDOW: window,
+            "speed_m_per_s": one.speed, "q_m2_per_s": one.q, "top_m": one.profile.top(),
+            "alternating": one.n_turning, "reversals_per_s": one.reversals, "advance_m": one.advance,
+            "jaggedness": one.jaggedness,
+        }
+        for chosen, window in sets(plan)
+        for seed in plan.seeds
+        for time in TIMES
+        for one in [found[run(chosen, time, seed)][window]]
+    ]  # fmt: skip
+
+
+def label(chosen: Mapping[str, str]) -> str:
+    """Words for a set of choices."""
+    slip = "" if chosen[SLIP] == "spring" else f", {chosen[SLIP]}"
+    return f"{chosen[ROTATION]}, phi = {chosen[PHI]}{slip}"

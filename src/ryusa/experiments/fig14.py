@@ -1,0 +1,64 @@
+"""Fig. 14: concentration over height of a dry avalanche, collision time 0.01 s and 0.0001 s."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ryusa import figures
+from ryusa.experiments import _avalanche
+from ryusa.experiments._avalanche import FIRST, SHIPPED, SOFT, STIFF, Avalanche, Pair
+from ryusa.experiments._experiment import Found, Plan, Variant
+from ryusa.experiments._verdict import Band, Finding, short
+from ryusa.results import Results
+
+FIGURE = "fig14"
+TITLE = "Concentration of a dry avalanche"
+CLAIMS = ("fig14",)
+PART = "difference of the two profiles of concentration over their mean"
+ALIKE = Band(0.0, 0.10, "-", "alike: mean difference over all layers at most 10 % of the mean")
+
+
+def cases(plan: Plan) -> Sequence[Variant]:
+    """Both collision times under every choice."""
+    return _avalanche.cases(plan)
+
+
+def measure(run: Results, one: Variant) -> Avalanche:
+    """Profiles in every window."""
+    del one
+    return _avalanche.avalanche(run)
+
+
+def judge(found: Found, plan: Plan) -> Sequence[Finding]:
+    """Alike, where both are avalanches."""
+    alike = _avalanche.trials(found, plan, PART, Pair.unlike, ALIKE)
+    base = _avalanche.pairs(found, plan, SHIPPED, FIRST)
+    depth = [float(np.mean([(p.soft if k == 0 else p.stiff).profile.top() for p in base])) for k in range(2)]
+    volume = float(np.mean([p.soft.profile.volume.mean() for p in base]))
+    return (
+        Finding(
+            "fig14",
+            (*alike, *_avalanche.flows(found, plan)),
+            f"Equal grains on equal bed: only dilation can differ. {short(100 * volume)} cm of solid volume fill "
+            f"{short(100 * depth[0])} cm ({SOFT}) and {short(100 * depth[1])} cm ({STIFF}) as shipped. Where "
+            "one of the two does not flow it stays the packing that settled, and the profiles differ.",
+            _avalanche.SETTLED,
+            also=(
+                "area fraction in place of volume: difference over mean "
+                f"{short(float(np.mean([p.unlike('area_fraction') for p in base])))}",
+            ),
+        ),
+    )
+
+
+def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
+    """One line per run and window."""
+    return _avalanche.rows(found, plan)
+
+
+def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
+    """Concentration against height, as in the paper."""
+    (pair, *_) = _avalanche.pairs(found, plan, SHIPPED, FIRST)
+    both = {SOFT: pair.soft.profile, STIFF: pair.stiff.profile}
+    return {"fig14": figures.profiles(both, ("phi",), area=True)}

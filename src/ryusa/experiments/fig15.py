@@ -1,0 +1,177 @@
+"""Fig. 15: grain speed over height of a dry avalanche, and the flux, collision time 0.01 s and 0.0001 s."""
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+
+from matplotlib.figure import Figure
+
+from ryusa import figures
+from ryusa.experiments import _avalanche
+from ryusa.experiments._avalanche import FIRST, SHIPPED, SOFT, STIFF, WINDOWS, Avalanche, Pair
+from ryusa.experiments._experiment import PHI, ROTATION, SLIP, Found, Plan, Variant
+from ryusa.experiments._verdict import Band, Finding, short
+from ryusa.experiments.fig14 import ALIKE
+from ryusa.experiments.fig14 import PART as ALIKE_PART
+from ryusa.measure import Profiles, average
+from ryusa.results import Results
+
+FIGURE = "fig15"
+TITLE = "Grain speed and flux of a dry avalanche"
+CLAIMS = ("fig15", "fig15-flux")
+CM = 100.0  # centimetres in a metre
+FASTER = f"speed of {SOFT} less that of {STIFF}"
+ABOUT = Band(50.0, 150.0, "cm/s", "about 100 cm/s larger: 50 to 150 cm/s, one digit without a unit place")
+WHOLE = Band(0.0, float("inf"), "cm/s", "over the whole depth: larger in every layer")
+MORE = Band(
+    1.1,
+    float("inf"),
+    "-",
+    "depends on the time: flux at least 10 % larger, more than profiles may differ",
+)
+
+
+LOCKED = {ROTATION: "locked", PHI: "20 deg", SLIP: "spring"}
+CAPS = ("spring", "total")
+
+
+def cases(plan: Plan) -> Sequence[Variant]:
+    """Both collision times under every choice."""
+    return _avalanche.cases(plan)
+
+
+def measure(run: Results, one: Variant) -> Avalanche:
+    """Profiles in every window."""
+    del one
+    return _avalanche.avalanche(run)
+
+
+def depth_mean(pair: Pair) -> float:
+    """How much faster the run with long contacts is, mean over the layers [cm/s]."""
+    return CM * float(pair.faster().mean())
+
+
+def least(pair: Pair) -> float:
+    """The same in the layer where it is least [cm/s]."""
+    return CM * float(pair.faster().min())
+
+
+def flux_ratio(pair: Pair) -> float:
+    """Flux over the whole depth, long over short contacts [-]."""
+    return pair.soft.q / pair.stiff.q
+
+
+def soft_speed(pair: Pair) -> float:
+    """Speed of all grains with long contacts [m/s]."""
+    return pair.soft.speed
+
+
+def stiff_speed(pair: Pair) -> float:
+    """Speed of all grains with short contacts [m/s]."""
+    return pair.stiff.speed
+
+
+# results drawn of every choice, with their axis
+PANELS: dict[str, Callable[[Pair], float]] = {
+    "faster by (cm/s)": depth_mean,
+    "speed, slower one / sqrt(g d)": lambda pair: pair.slower,
+    "flux ratio": flux_ratio,
+    "concentrations differ by": Pair.unlike,
+}
+
+
+def judge(found: Found, plan: Plan) -> Sequence[Finding]:
+    """About 100 cm/s faster with long contacts, and with that more transport."""
+    flow = _avalanche.flows(found, plan)
+    tried = partial(_avalanche.trials, found, plan)
+    tried_sets = _avalanche.settings(plan)
+
+    def each(value: Callable[[Pair], float], chosen: Mapping[str, str]) -> str:
+        """Value in all windows."""
+        return " and ".join(short(_avalanche.mean(found, plan, chosen, one, value)) for one in WINDOWS)
+
+    slow, fast = (short(_avalanche.creep(LOCKED, time)) for time in (STIFF, SOFT))
+    why = (
+        "The dashpot that Eq. (3) leaves on a sliding contact grows like the root of k_n and is not capped: "
+        "where contacts last it drags like a liquid. Locked grains in such contacts creep at "
+        f"{slow} m/s with {STIFF}, at up to {fast} m/s with {SOFT} (closed form); free ones roll and feel "
+        "less of it. "
+    )
+    capped = [one for one in tried_sets if one[SLIP] != "spring"]
+    left = "; ".join(f"{_avalanche.label(one)}: {each(depth_mean, one)} cm/s" for one in capped)
+    windows = " and ".join(WINDOWS)
+    return (
+        Finding(
+            "fig15",
+            (
+                *tried(f"{FASTER}, mean over the depth", depth_mean, ABOUT),
+                *tried(f"{FASTER}, least of all layers", least, WHOLE),
+                *flow,
+            ),
+            f"{why}The flow never becomes steady, so the difference depends on the window: "
+            f"{each(depth_mean, SHIPPED)} cm/s at {windows} as shipped.",
+            _avalanche.SETTLED,
+            also=(
+                *(
+                    f"speed, {_avalanche.label(one)}: {each(soft_speed, one)} m/s with {SOFT}, "
+                    f"{each(stiff_speed, one)} m/s with {STIFF}, at {windows}"
+                    for one in tried_sets
+                ),
+                *((f"what is left without that drag: {left}",) if left else ()),
+            ),
+        ),
+        Finding(
+            "fig15-flux",
+            (
+                *tried(f"flux over the whole depth, {SOFT} over {STIFF}", flux_ratio, MORE),
+                *tried(ALIKE_PART, Pair.unlike, ALIKE),
+                *flow,
+            ),
+            f"Flux is concentration times speed: where the profiles of concentration are alike, it differs as "
+            f"speed does, by a factor {each(flux_ratio, SHIPPED)} at {windows} as shipped. {why}",
+            _avalanche.SETTLED,
+            also=tuple(
+                f"flux ratio, {_avalanche.label(one)}: {each(flux_ratio, one)} at {windows}"
+                for one in tried_sets
+            ),
+        ),
+    )
+
+
+def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
+    """One line per run and window."""
+    return _avalanche.rows(found, plan)
+
+
+def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
+    """Speed against height, as in the paper; slip rules of locked grains; what every choice does."""
+    pictures = {"fig15": figures.profiles(_profiles(found, plan, {"": SHIPPED}), ("v_x",))}
+    tried = _avalanche.settings(plan)
+    locked = {f"{one[SLIP]}, ": one for one in ({**LOCKED, SLIP: slip} for slip in CAPS) if one in tried}
+    if locked:
+        pictures["fig15-locked"] = figures.profiles(_profiles(found, plan, locked), ("phi", "v_x"))
+    if len(tried) > 1:
+        lines = [
+            figures.Choice(
+                _avalanche.label(one),
+                {
+                    window: [
+                        average(name, "-", [[value(p)] for p in _avalanche.pairs(found, plan, one, window)])
+                        for name, value in PANELS.items()
+                    ]
+                    for window in WINDOWS
+                },
+            )
+            for one in tried
+        ]
+        pictures["fig15-choices"] = figures.choices(lines, tuple(PANELS), (1.0,) * len(PANELS))
+    return pictures
+
+
+def _profiles(found: Found, plan: Plan, chosen: Mapping[str, Mapping[str, str]]) -> dict[str, Profiles]:
+    """Profiles of the first seed and window with both collision times, by name of the set and time."""
+    first = {name: _avalanche.pairs(found, plan, one, FIRST)[0] for name, one in chosen.items()}
+    return {
+        f"{name}{time}": one.profile
+        for name, pair in first.items()
+        for time, one in ((SOFT, pair.soft), (STIFF, pair.stiff))
+    }

@@ -1,0 +1,157 @@
+"""The avalanche claims, judged on made-up flows: some under which each holds, some under which it fails."""
+
+import math
+
+import numpy as np
+import pytest
+
+from ryusa.experiments import Level, Plan, Word, _avalanche, carry_out, fig14, fig15, fig16
+from ryusa.experiments._avalanche import SHIPPED, SOFT, WINDOWS, Pair, Window
+from ryusa.experiments._experiment import PHI, ROTATION, SLIP
+from ryusa.measure import Layers, Profiles, Tracks
+from ryusa.measure.table import Averages
+
+STANDARD = Plan(Level.STANDARD, (1, 2, 3))
+QUICK = Plan(Level.QUICK, (1,))
+EMPTY = np.zeros(0)
+PATH = Tracks((0,), EMPTY, EMPTY, EMPTY, EMPTY, EMPTY, EMPTY, EMPTY, 4.4)
+N = 20  # layers
+
+
+def layers(name, value):
+    return Layers(name, "-", value, np.zeros(len(value)))
+
+
+def flow(speed=4.0, phi=0.5, lowest=0, n=N, **ways):
+    """A flow whose speed grows with height by half, with a uniform concentration."""
+    at = np.arange(n, dtype=float)
+    v = speed * (0.75 + 0.5 * at / (n - 1))
+    full = np.full(n, phi)
+    none = np.full(n, math.nan)
+    profile = Profiles(
+        z=(lowest + at + 0.5) * 0.1, thickness=0.1, origin=0.2, d=0.2, phi=layers("phi", full),
+        area_fraction=layers("area_fraction", 1.5 * full), v_x=layers("v_x", v), v_z=layers("v_z", none),
+        spin=layers("spin", none), temperature_x=layers("temperature_x", none),
+        temperature_z=layers("temperature_z", none), flux=layers("flux", full * v), bed=none,
+        t=np.arange(2.0), q=np.full(2, 0.1 * float((full * v).sum())), speed=np.full(2, speed),
+        volume=np.full(2, 1.0), density=2650.0, area=1.0, lanes=1, averages=Averages("profile", (), ()),
+    )  # fmt: skip
+    return Window(
+        profile,
+        **{"n_turning": 9, "reversals": 10.0, "advance": 2.0, "jaggedness": 0.1, "path": PATH, **ways},
+    )
+
+
+def made(soft, stiff, plan=STANDARD):
+    """What the runs would give; soft and stiff make a flow from a factor near 1, different for every seed."""
+    return {
+        one: dict.fromkeys(WINDOWS, (stiff if "contact.stiffness" in dict(one.overrides) else soft)(
+            1.0 + 0.002 * (int(one.get("seed")) - 2)
+        ))
+        for one in _avalanche.cases(plan)
+    }  # fmt: skip
+
+
+def words(experiment, soft, stiff):
+    return {one.claim: one.word for one in experiment.judge(made(soft, stiff), STANDARD)}
+
+
+def test_the_case_ships_as_the_first_setting_and_tilts_when_the_windows_begin():
+    case = _avalanche.run(SHIPPED, SOFT, 1).read()
+    assert case.motion.rotation == "free"
+    assert case.contact.slip == SHIPPED[SLIP]
+    assert math.degrees(case.contact.friction_angle) == pytest.approx(30.0)
+    assert case.timeline[0].at == pytest.approx(_avalanche.TILT)
+    assert case.record.frames == pytest.approx(_avalanche.FRAME)
+    assert case.stop.time == pytest.approx(_avalanche.TILT + max(end for _, end in WINDOWS.values()))
+
+
+def test_the_first_setting_of_every_level_is_the_shipped_one():
+    for level in Level:
+        assert _avalanche.settings(Plan(level, (1,)))[0] == SHIPPED
+
+
+def test_equal_profiles_are_alike_and_half_as_dense_ones_are_not():
+    assert words(fig14, flow_at(4.0), flow_at(3.0))["fig14"] is Word.REPRODUCED
+    assert words(fig14, flow_at(4.0), flow_at(4.0, phi=0.25))["fig14"] is Word.NOT
+
+
+def test_a_heap_at_rest_is_no_avalanche_however_alike_it_is():
+    assert words(fig14, flow_at(4.0), flow_at(0.01))["fig14"] is Word.NOT
+
+
+def flow_at(speed, **how):
+    return lambda chance: flow(speed * chance, **how)
+
+
+def test_runs_are_compared_in_the_same_layers_wherever_their_profiles_begin():
+    pair = Pair(flow(2.0), flow(2.0, lowest=5))
+    soft, stiff = pair.layers("phi")
+    assert len(soft) == N + 5
+    assert (soft[:5] > 0).all()
+    assert (stiff[:5] == 0).all()
+    assert len(pair.faster()) == N - 5
+    assert pair.unlike() == pytest.approx(10 * 0.5 / (N * 0.5))
+
+
+def test_fig15_asks_for_about_a_metre_a_second():
+    assert words(fig15, flow_at(5.0), flow_at(4.0))["fig15"] is Word.REPRODUCED
+    assert words(fig15, flow_at(4.1), flow_at(4.0))["fig15"] is Word.NOT
+    assert words(fig15, flow_at(7.0), flow_at(4.0))["fig15"] is Word.NOT
+
+
+def test_fig15_fails_where_a_layer_is_slower():
+    def crossing(chance):
+        one = flow(5.0 * chance)
+        one.profile.v_x.value[0] = 0.1
+        return one
+
+    assert words(fig15, crossing, flow_at(4.0))["fig15"] is Word.NOT
+
+
+@pytest.mark.parametrize(
+    ("soft", "word"),
+    [(flow_at(5.0), Word.REPRODUCED), (flow_at(4.2), Word.NOT), (flow_at(5.0, phi=0.7), Word.NOT)],
+)
+def test_fig15_flux_asks_for_more_transport_at_equal_concentration(soft, word):
+    assert words(fig15, soft, flow_at(4.0))["fig15-flux"] is word
+
+
+JAGGED = {"reversals": 20.0, "advance": 1.0, "jaggedness": 0.3}
+
+
+def test_fig16_holds_where_short_contacts_rattle_and_go_less_far():
+    assert words(fig16, flow_at(4.0), flow_at(4.0, **JAGGED))["fig16"] is Word.REPRODUCED
+
+
+@pytest.mark.parametrize(("name", "value"), [("reversals", 5.0), ("advance", 3.0), ("jaggedness", 0.05)])
+def test_fig16_fails_if_one_of_its_three_parts_does(name, value):
+    assert words(fig16, flow_at(4.0), flow_at(4.0, **{**JAGGED, name: value}))["fig16"] is Word.NOT
+
+
+def test_fig16_fails_where_no_grain_alternates():
+    nothing = {"n_turning": 0, "reversals": math.nan, "advance": math.nan, "jaggedness": math.nan}
+    (found,) = fig16.judge(made(flow_at(4.0), flow_at(4.0, **nothing)), STANDARD)
+    assert found.word is Word.NOT
+    assert all(one.note for one in found.trials)
+
+
+def test_choices_are_those_that_experiments_share():
+    for experiment in (fig14, fig15, fig16):
+        for one in experiment.judge(made(flow_at(5.0), flow_at(4.0)), STANDARD):
+            assert {ROTATION, PHI, SLIP} <= set(one.trials[0].choices)
+            assert one.trials[0].choices == {**SHIPPED, _avalanche.WINDOW: _avalanche.FIRST}
+
+
+@pytest.mark.slow
+def test_the_shipped_pair_flows_and_is_drawn(tmp_path):
+    names = ("fig14", "fig15", "fig16")
+    campaign = carry_out(names, QUICK, tmp_path)
+    assert not campaign.problems
+    for name, experiment in zip(names, (fig14, fig15, fig16), strict=True):
+        found = campaign.found[name]
+        assert experiment.draw(found, QUICK)
+        assert experiment.rows(found, QUICK)
+        assert experiment.judge(found, QUICK)
+    pair = _avalanche.pairs(campaign.found["fig14"], QUICK, SHIPPED, _avalanche.FIRST)[0]
+    assert pair.slower > 1.0
