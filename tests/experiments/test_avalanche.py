@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ryusa.experiments import Level, Plan, Word, _avalanche, carry_out, fig14, fig15, fig16
-from ryusa.experiments._avalanche import SHIPPED, SOFT, WINDOWS, Pair, Window
+from ryusa.experiments._avalanche import ALL, BETWEEN, SHIPPED, SOFT, WINDOWS, Pair, Ways, Window
 from ryusa.experiments._experiment import PHI, ROTATION, SLIP
 from ryusa.measure import Layers, Profiles, Tracks
 from ryusa.measure.table import Averages
@@ -22,12 +22,12 @@ def layers(name, value):
     return Layers(name, "-", value, np.zeros(len(value)))
 
 
-def flow(speed=4.0, phi=0.5, lowest=0, n=N, **ways):
+def flow(speed=4.0, phi=0.5, lowest=0, **ways):
     """A flow whose speed grows with height by half, with a uniform concentration."""
-    at = np.arange(n, dtype=float)
-    v = speed * (0.75 + 0.5 * at / (n - 1))
-    full = np.full(n, phi)
-    none = np.full(n, math.nan)
+    at = np.arange(N, dtype=float)
+    v = speed * (0.75 + 0.5 * at / (N - 1))
+    full = np.full(N, phi)
+    none = np.full(N, math.nan)
     profile = Profiles(
         z=(lowest + at + 0.5) * 0.1, thickness=0.1, origin=0.2, d=0.2, phi=layers("phi", full),
         area_fraction=layers("area_fraction", 1.5 * full), v_x=layers("v_x", v), v_z=layers("v_z", none),
@@ -36,10 +36,8 @@ def flow(speed=4.0, phi=0.5, lowest=0, n=N, **ways):
         t=np.arange(2.0), q=np.full(2, 0.1 * float((full * v).sum())), speed=np.full(2, speed),
         volume=np.full(2, 1.0), density=2650.0, area=1.0, lanes=1, averages=Averages("profile", (), ()),
     )  # fmt: skip
-    return Window(
-        profile,
-        **{"n_turning": 9, "reversals": 10.0, "advance": 2.0, "jaggedness": 0.1, "path": PATH, **ways},
-    )
+    way = Ways(**{"n": 9, "reversals": 10.0, "fine": 20.0, "advance": 2.0, "jaggedness": 0.1, **ways})
+    return Window(profile, {BETWEEN: way, ALL: way}, PATH, 100.0, 1.0)
 
 
 def made(soft, stiff, plan=STANDARD):
@@ -94,6 +92,14 @@ def test_runs_are_compared_in_the_same_layers_wherever_their_profiles_begin():
     assert pair.unlike() == pytest.approx(10 * 0.5 / (N * 0.5))
 
 
+def test_pairs_that_creep_or_stick_to_the_bed_are_told_from_those_that_move():
+    stuck = flow(4.0)
+    stuck.profile.v_x.value[0] = 0.01
+    assert Pair(flow(4.0), flow(4.0)).kind == "moves"
+    assert Pair(flow(4.0), stuck).kind == "stuck"
+    assert Pair(flow(4.0), flow(0.05)).kind == "creeps"
+
+
 def test_fig15_asks_for_about_a_metre_a_second():
     assert words(fig15, flow_at(5.0), flow_at(4.0))["fig15"] is Word.REPRODUCED
     assert words(fig15, flow_at(4.1), flow_at(4.0))["fig15"] is Word.NOT
@@ -129,18 +135,23 @@ def test_fig16_fails_if_one_of_its_three_parts_does(name, value):
     assert words(fig16, flow_at(4.0), flow_at(4.0, **{**JAGGED, name: value}))["fig16"] is Word.NOT
 
 
+def test_fig16_fails_where_one_of_the_two_only_creeps():
+    assert words(fig16, flow_at(4.0), flow_at(0.05, **JAGGED))["fig16"] is Word.NOT
+
+
 def test_fig16_fails_where_no_grain_alternates():
-    nothing = {"n_turning": 0, "reversals": math.nan, "advance": math.nan, "jaggedness": math.nan}
+    nothing = {"n": 0, "reversals": math.nan, "advance": math.nan, "jaggedness": math.nan}
     (found,) = fig16.judge(made(flow_at(4.0), flow_at(4.0, **nothing)), STANDARD)
     assert found.word is Word.NOT
-    assert all(one.note for one in found.trials)
+    assert all(one.note for one in found.trials if "over sqrt(g d)" not in one.part)
 
 
 def test_choices_are_those_that_experiments_share():
     for experiment in (fig14, fig15, fig16):
         for one in experiment.judge(made(flow_at(5.0), flow_at(4.0)), STANDARD):
             assert {ROTATION, PHI, SLIP} <= set(one.trials[0].choices)
-            assert one.trials[0].choices == {**SHIPPED, _avalanche.WINDOW: _avalanche.FIRST}
+            first = {**SHIPPED, _avalanche.WINDOW: _avalanche.FIRST}
+            assert first.items() <= one.trials[0].choices.items()
 
 
 @pytest.mark.slow

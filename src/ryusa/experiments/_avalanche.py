@@ -31,11 +31,39 @@ SETTLED = {
     "d": "20 cm",
     "slope": "40 deg",
     "restitution": "0.7",
-    "layers": "10 over a flat bed of pitch 1.1 d",
+    "layers": "10 over a flat bed of touching grains",
+}
+BETWEEN, ALL = "between bed and movers", "all"  # grains whose ways are compared
+FINE = 0.001  # vertical excursion, in diameters, from which the finest turns count
+UNITS = {
+    "fine": "fine_reversals_per_s",
+    "reversals": "reversals_per_s",
+    "advance": "advance_m",
+    "jaggedness": "jaggedness",
 }
 FLOWS = Band(0.1, math.inf, "-", "both are avalanches: speed over sqrt(g d) above 0.1 in the slower one")
 FLOW_PART = "mean speed over sqrt(g d), the slower of the two"
+KINDS = ("creeps", "stuck", "moves")  # of pairs of runs; a setting is of the first kind that a pair of it is
 SPARSE, THIN = 0.05, 0.1  # concentrations: a layer of the flow; a layer whose mean speed is worth comparing
+
+
+@dataclass(frozen=True)
+class Ways:
+    """Ways of some grains in one window; nan where there are none or none advances.
+
+    Attributes
+    ----------
+    n : grains.
+    reversals, fine : turns of the vertical motion per second, from 0.02 d and from 0.001 d on [1/s].
+    advance : way along the bed [m].
+    jaggedness : sum of their vertical ways over that of their advances [-].
+    """
+
+    n: int
+    reversals: float
+    fine: float
+    advance: float
+    jaggedness: float
 
 
 @dataclass(frozen=True)
@@ -45,19 +73,17 @@ class Window:
     Attributes
     ----------
     profile : means over height; z from the crest of the bed.
-    n_turning : grains of the lowest layer that touch bed and movers in turn.
-    reversals : turns of the vertical motion of those per second [1/s].
-    advance : their way along the bed in the window [m].
-    jaggedness : sum of their vertical ways over that of their advances [-].
-    path : ways of two of them.
+    ways : how grains went, by GRAINS.
+    path : ways of two grains that meet bed and movers in turn.
+    rate : contacts of a grain of the lowest layer per second [1/s].
+    touching : how many partners it touches, mean over time [-].
     """
 
     profile: Profiles
-    n_turning: int
-    reversals: float
-    advance: float
-    jaggedness: float
+    ways: Mapping[str, Ways]
     path: Tracks
+    rate: float
+    touching: float
 
     @property
     def speed(self) -> float:
@@ -84,6 +110,16 @@ class Pair:
     def slower(self) -> float:
         """Speed of the slower run over sqrt(g d) [-]."""
         return min(self.soft.speed, self.stiff.speed) / math.sqrt(GRAVITY * self.soft.profile.d)
+
+    @property
+    def kind(self) -> str:
+        """How it scatters: a pair that creeps, one with a lowest layer stuck in the bed, one that moves."""
+        soft, stiff = self.soft.profile, self.stiff.profile
+        least = FLOWS.low * math.sqrt(GRAVITY * soft.d)
+        lowest = min(float(one.v_x.value[one.z > 0.0][0]) for one in (soft, stiff))
+        if min(self.soft.speed, self.stiff.speed) < least:
+            return "creeps"
+        return "stuck" if lowest < least else "moves"
 
     def layers(self, name: str) -> tuple[Floats, Floats]:
         """One quantity of both runs on common layers; 0 where a run has no such layer."""
@@ -156,19 +192,42 @@ def avalanche(results: Results) -> Avalanche:
 
 
 def _window(results: Results, begin: float, end: float) -> Window:
-    turning = alternating(results, begin, end).grains
-    middle = max(len(turning) // 2 - 1, 0)
-    shown = turning[middle : middle + 2]
-    # a frame comes with the first step after its time: a whole window fits in from one frame earlier on
-    found = paths(results, begin - FRAME, end, end - begin, grains=[int(g) for g in turning])
-    whole = len(turning) > 0 and float(found.advance.sum()) > 0.0
+    turning = [int(g) for g in alternating(results, begin, end).grains]
+    middle = max(len(turning) // 2 - 1, 0)  # neither the most nor the least restless ones are shown
     return Window(
         profiles(results, begin, end, bed=True),
-        len(turning),
-        float(found.reversals.mean()) if len(turning) else math.nan,
-        float(found.advance.mean()) if len(turning) else math.nan,
-        float(found.way_z.sum() / found.advance.sum()) if whole else math.nan,
-        _together(tracks(results, [int(g) for g in shown], begin, end)),
+        {
+            BETWEEN: _ways(results, begin, end, turning),
+            ALL: _ways(results, begin, end, range(results.scene.n_grain)),
+        },
+        _together(tracks(results, turning[middle : middle + 2], begin, end)),
+        *_contacts(results, begin, end),
+    )
+
+
+def _contacts(results: Results, begin: float, end: float) -> tuple[float, float]:
+    """Contacts per second, and partners touched at a time, of a grain of the lowest layer."""
+    found = results.contacts
+    found = found[(found["t_part"] > begin) & (found["t_begin"] < end)]
+    grains = (found["i"] < LOWEST).astype(np.int64) + (found["j"] < LOWEST)
+    time = np.minimum(found["t_part"], end) - np.maximum(found["t_begin"], begin)
+    whole = LOWEST * (end - begin)
+    return float(grains.sum()) / whole, float((grains * time).sum()) / whole
+
+
+def _ways(results: Results, begin: float, end: float, grains: Sequence[int]) -> Ways:
+    # a frame comes with the first step after its time: a whole window fits in from one frame earlier on
+    found = paths(results, begin - FRAME, end, end - begin, grains=grains)
+    advance = float(found.advance.sum())
+    if not len(grains) or advance <= 0.0:
+        return Ways(len(grains), math.nan, math.nan, math.nan, math.nan)
+    fine = paths(results, begin - FRAME, end, end - begin, grains=grains, threshold=FINE)
+    return Ways(
+        len(grains),
+        float(found.reversals.mean()),
+        float(fine.reversals.mean()),
+        float(found.advance.mean()),
+        float(found.way_z.sum()) / advance,
     )
 
 
@@ -190,26 +249,29 @@ def sets(plan: Plan) -> list[tuple[dict[str, str], str]]:
 def trials(found: Found, plan: Plan, part: str, value: Callable[[Pair], float], band: Band) -> list[Trial]:
     """One part of a claim under every setting and in every window.
 
-    The spread between seeds is pooled over the settings of the same rotation and window: free grains meet
-    by chance, locked ones hardly move or slide as a block.
+    The spread between seeds is pooled over the settings of the same rotation and window, apart for those in
+    which a run creeps (ratios of almost nothing) and those in which the lowest layer of a run stays in the
+    pockets of the bed: whether it does is chance, and shifts the speed of all layers above.
     """
-    groups = {
-        (tuple(one.values()), window): [value(pair) for pair in pairs(found, plan, one, window)]
-        for one, window in sets(plan)
+    every = {(tuple(one.values()), w): pairs(found, plan, one, w) for one, w in sets(plan)}
+    groups = {key: [value(pair) for pair in of_key] for key, of_key in every.items()}
+    kinds = {
+        key: (key[0][0], key[1], min((pair.kind for pair in of_key), key=KINDS.index))
+        for key, of_key in every.items()
     }
     spread = {
-        (rotation, window): pool([v for (s, w), v in groups.items() if s[0] == rotation and w == window])
-        for rotation in ("free", "locked")
-        for window in WINDOWS
+        kind: pool([groups[key] for key, other in kinds.items() if other == kind])
+        for kind in set(kinds.values())
     }
     return [
         Trial(
             part,
             {**one, WINDOW: window},
-            over_seeds(groups[tuple(one.values()), window], band.unit, spread[one[ROTATION], window]),
+            over_seeds(groups[key], band.unit, spread[kinds[key]]),
             band,
         )
         for one, window in sets(plan)
+        for key in [(tuple(one.values()), window)]
     ]
 
 
@@ -243,8 +305,14 @@ def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
         {
             **chosen, "collision time": time, "seed": seed, WINDOW: window,
             "speed_m_per_s": one.speed, "q_m2_per_s": one.q, "top_m": one.profile.top(),
-            "alternating": one.n_turning, "reversals_per_s": one.reversals, "advance_m": one.advance,
-            "jaggedness": one.jaggedness,
+            "contacts_per_s": one.rate,
+            "touching": one.touching,
+            "grains between bed and movers": one.ways[BETWEEN].n,
+            **{
+                f"{what}, {grains}": getattr(ways, name)
+                for grains, ways in one.ways.items()
+                for name, what in UNITS.items()
+            },
         }
         for chosen, window in sets(plan)
         for seed in plan.seeds

@@ -40,9 +40,10 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         Finding(
             "fig14",
             (*alike, *_avalanche.flows(found, plan)),
-            f"Equal grains on equal bed: only dilation can differ. {short(100 * volume)} cm of solid volume fill "
-            f"{short(100 * depth[0])} cm ({SOFT}) and {short(100 * depth[1])} cm ({STIFF}) as shipped. Where "
-            "one of the two does not flow it stays the packing that settled, and the profiles differ.",
+            f"Equal grains on equal bed: only dilation can differ. {short(100 * volume)} cm of solid "
+            f"volume fill {short(100 * depth[0])} cm ({SOFT}) and {short(100 * depth[1])} cm ({STIFF}) as "
+            "shipped. Where one of the two does not flow it stays the packing that settled, and the profiles "
+            "differ.",
             _avalanche.SETTLED,
             also=(
                 "area fraction in place of volume: difference over mean "

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
+import numpy as np
 from matplotlib.figure import Figure
 
 from ryusa import figures
@@ -73,8 +74,8 @@ def stiff_speed(pair: Pair) -> float:
 # results drawn of every choice, with their axis
 PANELS: dict[str, Callable[[Pair], float]] = {
     "faster by (cm/s)": depth_mean,
-    "speed, slower one / sqrt(g d)": lambda pair: pair.slower,
-    "flux ratio": flux_ratio,
+    f"speed, {SOFT} (m/s)": soft_speed,
+    f"speed, {STIFF} (m/s)": stiff_speed,
     "concentrations differ by": Pair.unlike,
 }
 
@@ -90,14 +91,23 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         return " and ".join(short(_avalanche.mean(found, plan, chosen, one, value)) for one in WINDOWS)
 
     slow, fast = (short(_avalanche.creep(LOCKED, time)) for time in (STIFF, SOFT))
-    why = (
-        "The dashpot that Eq. (3) leaves on a sliding contact grows like the root of k_n and is not capped: "
-        "where contacts last it drags like a liquid. Locked grains in such contacts creep at "
-        f"{slow} m/s with {STIFF}, at up to {fast} m/s with {SOFT} (closed form); free ones roll and feel "
-        "less of it. "
+    base = _avalanche.pairs(found, plan, SHIPPED, FIRST)
+    rate, touching = (
+        " against ".join(short(float(np.mean(values))) for values in zip(*both, strict=True))
+        for both in (
+            [(one.soft.rate, one.stiff.rate) for one in base],
+            [(one.soft.touching, one.stiff.touching) for one in base],
+        )
     )
-    capped = [one for one in tried_sets if one[SLIP] != "spring"]
-    left = "; ".join(f"{_avalanche.label(one)}: {each(depth_mean, one)} cm/s" for one in capped)
+    why = (
+        "Two things make the collision time matter. Under Eq. (3) a sliding contact keeps its dashpot, "
+        "which grows like the root of k_n and has no cap: where contacts last, it drags like a liquid, "
+        f"and locked grains creep at {slow} m/s with {STIFF} (closed form; {fast} m/s with {SOFT} is no "
+        f"bound). And long contacts run into one another: {rate} contacts a second, {touching} partners "
+        "touched at a time, so that one is not over when the next begins."
+    )
+    tops = [one for one in tried_sets if one[SLIP] != "spring"]
+    left = "; ".join(f"{_avalanche.label(one)}: {each(depth_mean, one)} cm/s" for one in tops)
     windows = " and ".join(WINDOWS)
     return (
         Finding(
@@ -107,7 +117,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
                 *tried(f"{FASTER}, least of all layers", least, WHOLE),
                 *flow,
             ),
-            f"{why}The flow never becomes steady, so the difference depends on the window: "
+            f"{why} The flow never becomes steady, so the difference depends on the window: "
             f"{each(depth_mean, SHIPPED)} cm/s at {windows} as shipped.",
             _avalanche.SETTLED,
             also=(
@@ -116,7 +126,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
                     f"{each(stiff_speed, one)} m/s with {STIFF}, at {windows}"
                     for one in tried_sets
                 ),
-                *((f"what is left without that drag: {left}",) if left else ()),
+                *((f"faster by, without the uncapped dashpot: {left}",) if left else ()),
             ),
         ),
         Finding(
@@ -126,8 +136,8 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
                 *tried(ALIKE_PART, Pair.unlike, ALIKE),
                 *flow,
             ),
-            f"Flux is concentration times speed: where the profiles of concentration are alike, it differs as "
-            f"speed does, by a factor {each(flux_ratio, SHIPPED)} at {windows} as shipped. {why}",
+            f"Flux is concentration times speed: where the profiles of concentration are alike, it "
+            f"differs as speed does, by a factor {each(flux_ratio, SHIPPED)} at {windows} as shipped. {why}",
             _avalanche.SETTLED,
             also=tuple(
                 f"flux ratio, {_avalanche.label(one)}: {each(flux_ratio, one)} at {windows}"
