@@ -216,12 +216,12 @@ def _contacts(results: Results, begin: float, end: float) -> tuple[float, float]
 
 
 def _ways(results: Results, begin: float, end: float, grains: Sequence[int]) -> Ways:
-    # a frame comes with the first step after its time: a whole window fits in from one frame earlier on
-    found = paths(results, begin - FRAME, end, end - begin, grains=grains)
+    early = begin - 1.5 * FRAME  # frames come with a step, not at the edges; so a whole window always fits in
+    found = paths(results, early, end, end - begin, grains=grains)
     advance = float(found.advance.sum())
     if not len(grains) or advance <= 0.0:
         return Ways(len(grains), math.nan, math.nan, math.nan, math.nan)
-    fine = paths(results, begin - FRAME, end, end - begin, grains=grains, threshold=FINE)
+    fine = paths(results, early, end, end - begin, grains=grains, threshold=FINE)
     return Ways(
         len(grains),
         float(found.reversals.mean()),

@@ -77,6 +77,11 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             f"{words['jaggedness', grains]} m up and down per metre of way"
         )
 
+    shape = "; ".join(
+        f"{_avalanche.label(one)}, {window}: {short(_avalanche.mean(found, plan, one, window, _per_metre))}"
+        for one, window in _avalanche.sets(plan)
+        if all(pair.kind != "creeps" for pair in _avalanche.pairs(found, plan, one, window))
+    )
     return (
         Finding(
             "fig16",
@@ -89,12 +94,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
                 f"grains of the lowest layer that meet bed and movers in turn, of {_avalanche.LOWEST}: "
                 f"{words['n', BETWEEN]}",
                 f"all grains: {said(ALL)}",
-                *(
-                    f"vertical turns per metre of way, all grains, {_avalanche.label(one)}, at {window}: "
-                    f"{STIFF} over {SOFT} {short(_avalanche.mean(found, plan, one, window, _per_metre))}"
-                    for one, window in _avalanche.sets(plan)
-                    if all(pair.kind != "creeps" for pair in _avalanche.pairs(found, plan, one, window))
-                ),
+                f"vertical turns per metre of way, all grains, {STIFF} over {SOFT}: {shape}",
                 f"vertical turns a second counted from {_avalanche.FINE:g} d, lowest layer: "
                 f"{words['fine', BETWEEN]}; all grains: {words['fine', ALL]}",
             ),
