@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from matplotlib.collections import PatchCollection
+from matplotlib.collections import EllipseCollection, PatchCollection
 
 from ryusa import figures
-from ryusa.measure import Energy, Spin, Tracks, average
+from ryusa.measure import Energy, Snapshot, Spin, Surface, Tracks, Vibration, average
 from ryusa.measure.table import Averages
 
 D = 0.002
@@ -92,3 +92,125 @@ def test_the_same_picture_is_written_with_the_same_bytes(tmp_path, kind):
     )
     assert first == second
     assert len(first) > 1000
+
+
+def moment(**changes):
+    x = np.array([(0.0, 0.0, 0.003), (0.019, 0.0, 0.003), (0.01, 0.0, 0.005)])
+    bed = np.stack([(np.arange(10) + 0.5) * D, np.zeros(10), np.full(10, D / 2)], axis=1)
+    what = {
+        "t": 0.5,
+        "grains": np.arange(3),
+        "x": x,
+        "d": np.full(3, D),
+        "speed": np.array([0.0, 0.1, 0.2]),
+        "spin": np.array([-5.0, 0.0, 100.0]),
+        "bed_x": bed,
+        "bed_d": np.full(10, D),
+        "plane_point": np.array([[0.0, 0.0, 0.0]]),
+        "plane_normal": np.array([[0.6, 0.0, 0.8]]),
+        "period": float("inf"),
+    }
+    return Snapshot(**(what | changes))
+
+
+def circles(figure):
+    return [one for one in figure.axes[0].collections if isinstance(one, EllipseCollection)]
+
+
+@pytest.mark.parametrize("colour", ["speed", "spin", "none"])
+def test_a_snapshot_is_true_to_scale_in_centimetres(colour):
+    figure = figures.snapshot(moment(), colour)
+    figure.canvas.draw()
+    axes = figure.axes[0]
+    assert axes.get_aspect() == 1.0
+    assert axes.get_xlabel().endswith("(cm)")
+    assert [len(one.get_offsets()) for one in circles(figure)] == [10, 3]
+    assert circles(figure)[1].get_widths() == pytest.approx([100 * D] * 3)
+    assert len(axes.patches) == 1
+    assert len(axes.child_axes) == (0 if colour == "none" else 1)
+
+
+def test_grains_that_stick_out_of_a_period_show_at_both_ends():
+    figure = figures.snapshot(moment(period=10 * D), "none")
+    assert figure.axes[0].get_xlim() == pytest.approx((0.0, 100 * 10 * D))
+    assert sum(len(one.get_offsets()) for one in circles(figure)[3:]) == 4
+
+
+def test_the_nearest_row_is_drawn_last():
+    rows = moment(x=np.array([(0.0, 0.002, 0.003), (0.0, 0.0, 0.003), (0.0, 0.001, 0.003)]))
+    figure = figures.snapshot(rows)
+    colours = circles(figure)[1].get_facecolors()
+    alone = figures.snapshot(moment(), "speed")
+    assert colours[-1] == pytest.approx(circles(alone)[1].get_facecolors()[1])
+
+
+def surface_of(**changes):
+    what = {
+        "t": 0.5,
+        "side": "right",
+        "x": np.array([0.0, 0.01, 0.019]),
+        "z": np.array([0.006, 0.005, 0.004]),
+        "fit": (0.15, 0.85),
+        "inside": np.array([False, True, True]),
+        "angle": 0.3,
+        "error": 0.01,
+        "line": np.array([[0.019, 0.004], [0.01, 0.005]]),
+        "angles": {"upper half": 0.2, "lower half": 0.4},
+        "spread": 0.2,
+        "flags": (),
+        "floor": 0.002,
+        "crest": 0.006,
+        "toe": 0.02,
+        "start": 0.01,
+        "run_out": 0.01,
+        "grains": np.array([0, 1]),
+        "away": 1,
+        "speed": 0.0,
+        "surface_speed": 0.0,
+        "still": 0.001,
+        "moving": 0.0,
+    }
+    return Surface(**(what | changes))
+
+
+def test_a_fitted_slope_is_written_with_its_error_and_its_range():
+    figure = figures.surface(moment(), surface_of())
+    figure.canvas.draw()
+    words = " ".join(one.get_text() for one in figure.axes[0].texts)
+    assert "17.2° ± 0.6°" in words
+    assert "11.5° to 22.9°" in words
+
+
+def test_a_heap_without_a_slope_says_so():
+    wall = surface_of(
+        angle=np.nan, flags=("stands like a wall: steeper than 60 deg",), line=np.full((2, 2), np.nan)
+    )
+    figure = figures.surface(moment(), wall)
+    figure.canvas.draw()
+    assert any("stands like a wall" in one.get_text() for one in figure.axes[0].texts)
+
+
+def test_trembling_is_drawn_per_window_and_as_a_share_at_each_threshold():
+    n = 20
+    end = 0.01 * np.arange(1, n + 1)
+    moved = np.outer(np.exp(-np.arange(n)), [1e-4, 2e-4])
+    found = Vibration(
+        np.array([3, 7]),
+        np.full(2, D),
+        D,
+        end - 0.01,
+        end,
+        0.01,
+        np.full(n, 11),
+        -moved,
+        moved,
+        moved,
+        0 * moved,
+    )
+    figure = figures.vibration(found, [7, 3])
+    figure.canvas.draw()
+    above, below = figure.axes
+    assert [line.get_label() for line in above.lines] == ["grain 7", "grain 3"]
+    assert above.lines[0].get_ydata() == pytest.approx(-100 * moved[:, 1])
+    assert "0.01 s" in above.get_ylabel()
+    assert "2 µm" in " ".join(text.get_text() for text in below.get_legend().get_texts())

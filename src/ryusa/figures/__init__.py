@@ -6,9 +6,12 @@ from ryusa.figures.drops import Quote, Rebound, drop_chart, over_speed, rebounds
 from ryusa.figures.energy import energy
 from ryusa.figures.hops import contact_times, hops
 from ryusa.figures.profiles import profiles
+from ryusa.figures.repose import surface
+from ryusa.figures.snapshot import snapshot
 from ryusa.figures.spin import spin
 from ryusa.figures.style import save
 from ryusa.figures.tracks import tracks, tracks_from_start, tracks_side_by_side
+from ryusa.figures.vibration import vibration
 
 __all__ = [
     "Band",
@@ -27,9 +30,12 @@ __all__ = [
     "profiles",
     "rebounds",
     "save",
+    "snapshot",
     "spin",
+    "surface",
     "tracks",
     "tracks_from_start",
     "tracks_side_by_side",
     "turning",
+    "vibration",
 ]

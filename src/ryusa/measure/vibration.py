@@ -13,7 +13,7 @@ from ryusa.measure._run import Floats, Run
 
 WINDOW = 0.01  # [s], that of fig10
 LEAST = 10  # frames in a window; with fewer a vibration could fall between them
-ROUND_OFF = 1.0e-6  # of a window, by which a frame may miss its edge
+LATE = 0.25  # of the time between frames, by which one may miss its time: it waits for a whole step
 
 By = Literal["z", "path", "net"]
 
@@ -115,15 +115,15 @@ def vibration(
     look at every frame between and do not.
     """
     scene, t = run.scene, np.asarray(run.frames.t, dtype=np.float64)
-    slack = ROUND_OFF * window
+    gap = float(np.median(np.diff(t))) if len(t) > 1 else 0.0
+    slack = LATE * gap
     first = int(np.searchsorted(t, begin - slack))
     last = min(end, float(t[-1])) if len(t) else -math.inf
     count = 0 if first == len(t) else max(math.floor((last - float(t[first]) + slack) / window), 0)
     if count == 0:
         raise ResultsError(f"no whole window of {window:g} s within the recorded {_extent(t, first, last)}")
     edges = float(t[first]) + window * np.arange(count + 1)
-    gap = float(np.median(np.diff(t[first:])))  # a frame comes with the first step after its time
-    near = np.clip(np.searchsorted(t, edges - max(0.5 * gap, slack)), 0, len(t) - 1)
+    near = np.clip(np.searchsorted(t, edges - 0.5 * gap), 0, len(t) - 1)
     frames = np.diff(near) + 1
     if frames.min() - 1 < LEAST:
         raise ResultsError(

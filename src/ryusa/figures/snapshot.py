@@ -1,0 +1,169 @@
+"""Grains at one moment in the x-z plane, true to scale: fixed ones grey, planes as edges of a solid."""
+
+import math
+from typing import Any, Literal
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import EllipseCollection
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from matplotlib.patches import Polygon
+
+from ryusa.figures import style
+from ryusa.measure import Snapshot
+from ryusa.measure.repose import STILL, G
+
+CM = 100.0  # centimetres in a metre
+PLAIN, RIM, SOLID = "#cfdce8", "#3c4a57", "#d8d4cc"
+WIDE = 2.2  # from this ratio of the sides on a picture is two columns wide
+SLIM, LOW = 0.75, 9.0  # smallest and largest width over height
+BAR = 0.065  # height of the colour bar [inch]
+AROUND, ABOVE = 0.62, 0.16  # height of what is beside the panel, and of a colour bar with its ticks [inch]
+
+Colour = Literal["speed", "spin", "none"]
+Box = tuple[float, float, float, float]  # left, right, bottom, top [m]
+
+
+@style.house
+def snapshot(seen: Snapshot, colour: Colour = "speed") -> Figure:
+    """Draw grains as circles, coloured by their speed or spin or all alike.
+
+    Parameters
+    ----------
+    seen : `measure.snapshot`. Rows in y are drawn one before the other, the nearest (smallest y) last.
+    colour : "speed", "spin" (about y, positive rolls towards +x) or "none".
+    """
+    figure, axes = panel(seen, 0.0 if colour == "none" else ABOVE)
+    if colour == "none":
+        grains(axes, seen, PLAIN)
+        return figure
+    if colour == "speed":
+        values, text, hue = seen.speed, "speed  (m/s)", "YlGnBu"
+        still = STILL * math.sqrt(G * float(seen.d.mean())) if len(seen.d) else 1.0
+        scale = Normalize(0.0, max(_most(values), still))  # or the noise of grains at rest fills the scale
+    else:
+        values, text, hue = seen.spin, "spin  $\\omega_y$  (rad/s)", "RdBu_r"
+        most = max(_most(np.abs(values)), 1.0)
+        scale = Normalize(-most, most)
+    shown = ScalarMappable(scale, mpl.colormaps[hue])
+    grains(axes, seen, shown.to_rgba(values))
+    _bar(figure, axes, shown, text)
+    return figure
+
+
+def panel(seen: Snapshot, above: float = 0.0) -> tuple[Figure, Axes]:
+    """An axes in cm with bed and planes, the time and `above` [inch] over it, as large as the grains want."""
+    box = _box(seen)
+    wide, high = box[1] - box[0], box[3] - box[2]
+    width = style.PAGE if wide / high >= WIDE else style.COLUMN
+    figure, (axes,) = style.new(width=width, height=(width - 0.55) * high / wide + AROUND + above)
+    axes.set_xlim(box[0] * CM, box[1] * CM)
+    axes.set_ylim(box[2] * CM, box[3] * CM)
+    axes.set_aspect("equal")
+    axes.set_xlabel("$x$  (cm)")
+    axes.set_ylabel("$z$  (cm)")
+    axes.tick_params(top=False, right=False)
+    text = f"$t$ = {seen.t:.4g} s" + (f", lane {seen.lane} of {seen.lanes}" if seen.lanes > 1 else "")
+    axes.annotate(text, (0, 1), (0, 4), xycoords="axes fraction", textcoords="offset points", fontsize=7.0)
+    planes(axes, seen.plane_point, seen.plane_normal, box, CM)
+    circles(axes, seen.bed_x, seen.bed_d, style.BED, "#8c8578", period=seen.period)
+    return figure, axes
+
+
+def grains(axes: Axes, seen: Snapshot, colours: Any, zorder: float = 2.0) -> None:
+    """Draw the free grains, the farthest (largest y) first; `colours` is one or one per grain."""
+    order = np.argsort(-seen.x[:, 1], kind="stable")
+    many = isinstance(colours, np.ndarray)
+    face = colours[order] if many else colours
+    circles(axes, seen.x[order], seen.d[order], face, RIM, period=seen.period, zorder=zorder)
+
+
+def circles(
+    axes: Axes, x: Any, d: Any, face: Any, rim: str, *, period: float = math.inf, zorder: float = 1.0
+) -> None:
+    """Circles true to scale at x [m], repeated where they stick out of a period."""
+    places, sizes, faces = [x], [d], [face]
+    if math.isfinite(period):
+        for shift, out in ((period, x[:, 0] < 0.5 * d), (-period, x[:, 0] > period - 0.5 * d)):
+            places.append(x[out] + np.array([shift, 0.0, 0.0]))
+            sizes.append(d[out])
+            faces.append(face[out] if isinstance(face, np.ndarray) else face)
+    for place, size, one in zip(places, sizes, faces, strict=True):
+        line = 0.3 if len(d) < 1500 else 0.1
+        axes.add_collection(
+            EllipseCollection(
+                CM * size, CM * size, np.zeros(len(size)), units="xy", offsets=CM * place[:, [0, 2]],
+                offset_transform=axes.transData, facecolor=one, edgecolor=rim, linewidth=line, zorder=zorder,
+            )
+        )  # fmt: skip
+
+
+def planes(axes: Axes, point: Any, normal: Any, box: Box, unit: float) -> None:
+    """Shade what lies behind each plane, within a box [m]; `unit` of the axes in a metre."""
+    left, right, bottom, top = box
+    corners = np.array([(left, bottom), (right, bottom), (right, top), (left, top)])
+    for p, n in zip(np.asarray(point)[:, [0, 2]], np.asarray(normal)[:, [0, 2]], strict=True):
+        outside = (corners - p) @ n
+        shape: list[Any] = []
+        edge: list[Any] = []
+        for k in range(4):  # clip the box by the plane
+            a, b = k, (k + 1) % 4
+            if outside[a] <= 0.0:
+                shape.append(corners[a])
+            if (outside[a] <= 0.0) != (outside[b] <= 0.0):
+                cut = corners[a] + outside[a] / (outside[a] - outside[b]) * (corners[b] - corners[a])
+                shape.append(cut)
+                edge.append(cut)
+        if len(shape) > 2:
+            axes.add_patch(Polygon(np.array(shape) * unit, closed=True, fc=SOLID, ec="none", zorder=0.5))
+        if len(edge) == 2:
+            ends = np.array(edge) * unit
+            axes.plot(ends[:, 0], ends[:, 1], color="#6f695f", lw=0.9, zorder=0.6)
+
+
+def _box(seen: Snapshot) -> Box:
+    """What to show [m]: the free grains, the period, and the bed beneath and beside them."""
+    x, d = np.concatenate([seen.x, seen.bed_x]), np.concatenate([seen.d, seen.bed_d])
+    own, own_d = (seen.x, seen.d) if len(seen.x) else (x, d)
+    if len(own) == 0:
+        return -0.01, 0.01, 0.0, 0.01
+    room = 1.6 * float(d.max())
+    left, right = float((own[:, 0] - 0.5 * own_d).min()) - room, float((own[:, 0] + 0.5 * own_d).max()) + room
+    if math.isfinite(seen.period):
+        left, right = 0.0, seen.period
+    bottom, top = float((own[:, 2] - 0.5 * own_d).min()), float((own[:, 2] + 0.5 * own_d).max())
+    near = (seen.bed_x[:, 0] > left) & (seen.bed_x[:, 0] < right) & (seen.bed_x[:, 2] < top + room)
+    if near.any():
+        bottom = min(bottom, float((seen.bed_x[near, 2] - 0.5 * seen.bed_d[near]).min()))
+    bottom, top = bottom - 0.3 * room, top + 0.5 * room
+    ratio = (right - left) / (top - bottom)
+    if ratio < SLIM:  # a slim column gets room at its sides
+        more = 0.5 * (SLIM * (top - bottom) - (right - left))
+        left, right = left - more, right + more
+    elif ratio > LOW:  # a long bed gets room above
+        top = bottom + (right - left) / LOW
+    return left, right, bottom, top
+
+
+def _most(values: Any) -> float:
+    """Top of a scale: what all but 1 % of the grains stay below."""
+    return float(np.quantile(values, 0.99)) if len(values) else 0.0
+
+
+def _bar(figure: Figure, axes: Axes, shown: ScalarMappable, text: str) -> None:
+    """A slim colour bar above the right half of the panel."""
+    width, height = figure.get_size_inches()
+    inner = height - AROUND - ABOVE
+    beside = axes.inset_axes((0.62, 1.0 + 0.05 / inner, 0.38, BAR / inner))
+    bar = figure.colorbar(shown, cax=beside, orientation="horizontal", extend="neither")
+    bar.ax.xaxis.set_ticks_position("top")
+    bar.ax.tick_params(labelsize=6.0, size=2.0, width=0.5, pad=1.5)
+    bar.ax.locator_params(nbins=4 if width > 5.0 else 3)
+    bar.outline.set_linewidth(0.4)  # pyright: ignore[reportCallIssue]
+    bar.ax.annotate(
+        text, (0, 0.5), (-4, 0), xycoords="axes fraction", textcoords="offset points", ha="right",
+        va="center", fontsize=7.0,
+    )  # fmt: skip
