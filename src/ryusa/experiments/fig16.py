@@ -64,7 +64,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     base = _avalanche.pairs(found, plan, SHIPPED, FIRST)
     words = {
         (name, grains): " against ".join(
-            short(float(np.mean([getattr(one.ways[grains], name) for one in runs])))
+            short(_mean([getattr(one.ways[grains], name) for one in runs]))
             for runs in ([pair.soft for pair in base], [pair.stiff for pair in base])
         )
         for name in ("n", "reversals", "fine", "advance", "jaggedness")
@@ -106,6 +106,12 @@ def _ratio(pair: Pair, name: str, grains: str) -> float:
     """Stiff over soft; nan where there is nothing to compare."""
     soft, stiff = (getattr(one.ways[grains], name) for one in (pair.soft, pair.stiff))
     return stiff / soft if soft != 0.0 else math.nan
+
+
+def _mean(values: Sequence[float]) -> float:
+    """Mean of the seeds that have a number."""
+    kept = [value for value in values if math.isfinite(value)]
+    return float(np.mean(kept)) if kept else math.nan
 
 
 def _per_metre(pair: Pair) -> float:
