@@ -26,6 +26,7 @@ NAMES = (
     "fig07",
     "spin_time",
     "fig08",
+    "fig10",
     "steps",
     "fig11",
     "fig12",
@@ -33,6 +34,7 @@ NAMES = (
     "fig14",
     "fig15",
     "fig16",
+    "bed18",
     "fig20",
     "fig21",
 )

@@ -1,0 +1,47 @@
+"""How many grains tremble, over the threshold from which on they count."""
+
+from collections.abc import Mapping
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from ryusa.figures import style
+
+Floats = NDArray[np.float64]
+
+
+@style.house
+def over_threshold(
+    moved: Mapping[str, Mapping[str, Floats]], level: tuple[float, float], words: str, note: str = ""
+) -> Figure:
+    """Draw the share of grains that moved by more than a threshold, one colour per group of curves.
+
+    Parameters
+    ----------
+    moved : name of a group -> name of a curve -> how far each grain moved in the window [mean diameters].
+    level : shares between which the paper's number lies, shaded.
+    words : what the shaded shares are.
+    note : a line of text above.
+    """
+    figure, (axes,) = style.new(height=2.9)
+    axes.axhspan(*level, color=style.BAND, lw=0)
+    for k, (group, curves) in enumerate(moved.items()):
+        for s, (name, values) in enumerate(curves.items()):
+            order = np.sort(np.maximum(values, 1.0e-12))
+            x = np.concatenate([[1.0e-12], order])
+            share = 1.0 - np.arange(len(x)) / len(values)
+            axes.step(
+                x, share, where="post", color=style.COLOURS[k % 7], ls=style.LINES[s % 4],
+                label=f"{group}, {name}",
+            )  # fmt: skip
+    axes.set_xscale("log")
+    axes.set_xlim(1.0e-7, 1.0)
+    axes.set_ylim(-0.02, 1.05)
+    axes.annotate(words, (1, level[1]), (-3, -3), axes.get_yaxis_transform(), "offset points", ha="right",
+                  va="top", fontsize=6.5, color="#4c6340")  # fmt: skip
+    axes.set_xlabel("threshold  (mean diameters in a window)")
+    axes.set_ylabel("share that moved farther  (–)")
+    figure.legend(*axes.get_legend_handles_labels(), loc="outside upper center", ncols=2, fontsize=6.0,
+                  title=note or None, title_fontsize=6.5)  # fmt: skip
+    return figure
