@@ -76,6 +76,12 @@ def test_every_picture_is_drawn_with_its_numbers_beside_it(folder, tmp_path, wha
         (("draw", "{}", "tracks", "--begin", "99 s"), "two frames from t = 99 s to 0.4 s"),
         (("draw", "{}", "tracks", "--exaggeration", "0"), "exaggeration"),
         (("draw", "{}", "tracks", "-o", "picture.bmp"), ".png"),
+        (("draw", "{}", "grains", "--at", "99 s"), "no frame at t = 99 s"),
+        (("draw", "{}", "grains", "--colour", "sped"), "Did you mean 'speed'"),
+        (("draw", "{}", "grains", "--lane", "7"), "no lane 7: there are 2"),
+        (("measure", "{}", "surface", "--side", "up"), "--side"),
+        (("measure", "{}", "vibration", "--threshold", "2"), "missing unit"),
+        (("measure", "{}", "vibration", "--window", "1 us"), "frames in a window"),
         (("measure", "no-such-run", "saltation"), "no-such-run"),
     ],
 )
@@ -88,8 +94,8 @@ def test_a_wrong_word_gives_one_message_and_exit_code_two(folder, words, message
 
 def test_a_run_without_hops_says_so(folder):
     result = call("measure", folder, "saltation", "--settle", "99 s")
-    assert result.exit_code == 0, result.output
-    assert "0 hops" in result.output
+    assert result.exit_code == 2, result.output
+    assert "hops over fixed grains after t = 99 s" in result.output
 
 
 @pytest.fixture(scope="module")
@@ -121,3 +127,55 @@ def test_a_run_that_ended_while_settling_is_measured_on_request(unsettled, tmp_p
     assert call("measure", unsettled, "spin", "--settle", "0 s").exit_code == 0
     picture = tmp_path / "tracks.svg"
     assert call("draw", unsettled, "tracks", "--begin", "0 s", "-o", picture).exit_code == 0
+
+
+@pytest.fixture(scope="module")
+def heap(tmp_path_factory):
+    """A small heap whose gate goes early."""
+    folder = tmp_path_factory.mktemp("runs") / "heap"
+    overrides = {
+        "build.columns": "10",
+        "build.layers": "8",
+        "motion.rotation": "free",
+        "stop.time": "0.5 s",
+        "record.frames": "1 ms",
+        "record.events": "all",
+        "record.settle": "0 s",
+    }
+    run(read(case_path("heap.toml"), overrides), folder, progress=False)
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("vibration",), "0.001 mean diameters, --threshold not given"),
+        (("vibration", "--threshold", "2 um", "--window", "20 ms"), "within 0.02 s"),
+        (("surface",), "right slope at t = 0.5 s"),
+        (("surface", "--at", "0.35 s"), "stands like a wall"),
+    ],
+)
+def test_a_packing_is_measured_with_its_threshold_and_doubts_stated(heap, tmp_path, words, said):
+    result = call("measure", heap, *words, "--csv", tmp_path / "out.csv")
+    assert result.exit_code == 0, result.output
+    assert said in result.output
+    assert len((tmp_path / "out.csv").read_text().splitlines()) > 1
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("grains",),
+        ("grains", "--at", "0.1 s", "--colour", "spin"),
+        ("surface", "--at", "0.2 s"),
+        ("vibration", "--grain", "3", "--grain", "7"),
+        ("vibration",),
+        ("contacts",),
+        ("tracks", "--grain", "5"),
+    ],
+)
+def test_a_packing_is_drawn(heap, tmp_path, words):
+    result = call("draw", heap, *words, "-o", tmp_path / "picture.svg")
+    assert result.exit_code == 0, result.output
+    assert (tmp_path / "picture.svg").read_text().startswith("<?xml")
+    assert len((tmp_path / "picture.csv").read_text().splitlines()) > 1

@@ -1,5 +1,7 @@
 """Pictures are looked at by people; here: that they are drawn, show what they are given and are written."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from matplotlib.collections import EllipseCollection, PatchCollection
@@ -7,6 +9,7 @@ from matplotlib.collections import EllipseCollection, PatchCollection
 from ryusa import figures
 from ryusa.measure import Energy, Snapshot, Spin, Surface, Tracks, Vibration, average
 from ryusa.measure.table import Averages
+from ryusa.model import EVENT, ContactLaw, Scene
 
 D = 0.002
 
@@ -133,7 +136,7 @@ def test_a_snapshot_is_true_to_scale_in_centimetres(colour):
 def test_grains_that_stick_out_of_a_period_show_at_both_ends():
     figure = figures.snapshot(moment(period=10 * D), "none")
     assert figure.axes[0].get_xlim() == pytest.approx((0.0, 100 * 10 * D))
-    assert sum(len(one.get_offsets()) for one in circles(figure)[3:]) == 4
+    assert len(circles(figure)[1].get_offsets()) == 4
 
 
 def test_the_nearest_row_is_drawn_last():
@@ -214,3 +217,39 @@ def test_trembling_is_drawn_per_window_and_as_a_share_at_each_threshold():
     assert above.lines[0].get_ydata() == pytest.approx(-100 * moved[:, 1])
     assert "0.01 s" in above.get_ylabel()
     assert "2 µm" in " ".join(text.get_text() for text in below.get_legend().get_texts())
+
+
+def test_a_high_path_fits_on_a_page_and_says_whose_it_is():
+    z = np.linspace(0.1, 0.0, 50)[:, None]
+    bed = np.array([0.0])
+    drop = Tracks((4,), np.linspace(0, 0.3, 50), 0 * z, z, np.array([D]), bed, bed, bed + D, float("inf"))
+    figure = figures.tracks(drop, around=moment())
+    figure.canvas.draw()
+    assert figure.get_size_inches()[1] < 6.0
+    assert figure.axes[0].get_title(loc="left") == "grain 4, $t$ = 0 to 0.3 s"
+    assert len(figure.axes[0].patches) == 1
+
+
+def test_contact_times_are_drawn_by_partner():
+    from ryusa.measure import collisions
+
+    events = np.zeros(4, EVENT)
+    events["j"] = [1, 2, 2, 3]
+    events["t_end"] = events["t_part"] = [1e-4, 1.1e-4, 3e-3, 2e-4]
+    events["closing_begin"] = 0.1
+    scene = two_grains()
+    run = SimpleNamespace(case={}, scene=scene, contacts=events)
+    figure = figures.collision_times(collisions(run), scene)
+    figure.canvas.draw()
+    labels = figure.axes[0].get_legend_handles_labels()[1]
+    assert {"free grain (1)", "fixed grain (2)", "plane (1)"} <= set(labels)
+
+
+def two_grains():
+    one = np.ones(2)
+    return Scene(
+        d=D * one, m=1e-5 * one, m_added=0 * one, m_weight=1e-5 * one, inertia=1e-12 * one,
+        x_fixed=np.zeros((1, 3)), d_fixed=np.array([D]), fixed_active=np.array([True]),
+        plane_normal=np.array([[0.0, 0.0, 1.0]]), plane_point=np.zeros((1, 3)), plane_active=np.array([True]),
+        contact=ContactLaw(k_n=1.0e4, k_s=3.0e3, mu=0.6, e_n=0.7, e_s=0.7, zeta_n=0.12221), dt=1.0e-6,
+    )  # fmt: skip

@@ -7,13 +7,24 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ryusa.cli.options import known, need_settled, open_run, seconds, within, write_rows
+from ryusa.cli.options import known, metres, need, need_settled, open_run, seconds, within, write_rows
+from ryusa.cli.packing import print_surface, print_vibration
 
 if TYPE_CHECKING:
-    from ryusa.measure import Averages
+    from ryusa.measure import Averages, Surface, Vibration
     from ryusa.results import Results
 
-MEASURES = ("saltation", "collisions", "spin", "energy", "tracks", "profile", "paths")
+MEASURES = (
+    "saltation",
+    "collisions",
+    "spin",
+    "energy",
+    "tracks",
+    "profile",
+    "paths",
+    "vibration",
+    "surface",
+)
 
 
 def register(app: typer.Typer) -> None:
@@ -32,9 +43,17 @@ def measure(
     begin: Annotated[
         str | None, typer.Option(help="profile, paths: from this time on; default after settling.")
     ] = None,
-    end: Annotated[str | None, typer.Option(help="profile, paths: up to this time.")] = None,
+    end: Annotated[str | None, typer.Option(help="profile, paths, vibration: up to this time.")] = None,
     layer: Annotated[float, typer.Option(help="profile: thickness of a layer, in diameters.")] = 0.5,
-    window: Annotated[str, typer.Option(help="paths: time over which a way is looked at.")] = "1 s",
+    window: Annotated[
+        str | None, typer.Option(help="paths, vibration: time over which a way is looked at; 1 s, 0.01 s.")
+    ] = None,
+    threshold: Annotated[
+        str | None,
+        typer.Option(help="vibration: beyond this a grain trembles; default 0.001 mean d."),
+    ] = None,
+    at: Annotated[str | None, typer.Option(help="surface: the moment; default the last frame.")] = None,
+    side: Annotated[str, typer.Option(help="surface: right or left slope of a heap.")] = "right",
 ) -> None:
     """Print averages with standard error, window and steadiness; --csv keeps the numbers."""
     within("--rise", rise, 0.0, 100.0)
@@ -43,7 +62,14 @@ def measure(
     known(what, MEASURES, "measure")
     if after is None and what in {"saltation", "collisions", "spin"}:
         need_settled(results, "say --settle 0s to see what is there")
-    if what in {"profile", "paths"}:
+    found: Any
+    if what == "vibration":
+        found = _vibration(results, seconds(begin), seconds(end), seconds(window))
+        print_vibration(found, metres(threshold))
+    elif what == "surface":
+        found = _surface(results, seconds(at), known(side, ("right", "left"), "--side"))
+        print_surface(found)
+    elif what in {"profile", "paths"}:
         found = _flow(results, what, seconds(begin) if begin else after, seconds(end), layer, seconds(window))
     else:
         found = _measured(results, what, after, rise)
@@ -52,7 +78,7 @@ def measure(
         _print(averages)
     elif what == "energy":
         _print_energy(found)
-    elif csv is None:
+    elif what == "tracks" and csv is None:
         typer.echo(f"{len(found.t)} frames of {len(found.grains)} grains; --csv FILE writes them")
     if csv is not None:
         typer.echo(f"wrote {write_rows(csv, found.rows())}")
@@ -62,12 +88,40 @@ def _measured(results: "Results", what: str, settle: float | None, rise: float) 
     from ryusa import measure
 
     if what == "saltation":
-        return measure.saltation(results, settle=settle, rise=rise)
+        hops = measure.saltation(results, settle=settle, rise=rise)
+        need(
+            len(hops.hops) > 0,
+            results,
+            f"hops over fixed grains after t = {hops.averages.items[0].window[0]:g} s",
+        )
+        return hops
     if what == "collisions":
         return measure.collisions(results, settle=settle)
     if what == "spin":
         return measure.spin(results, settle=settle)
     return measure.energy(results) if what == "energy" else measure.tracks(results)
+
+
+def _vibration(
+    results: "Results", begin: float | None, end: float | None, window: float | None
+) -> "Vibration":
+    from ryusa import measure
+    from ryusa.measure.vibration import WINDOW
+
+    if window is not None:
+        within("--window", window, 1.0e-9, 1.0e9)
+    return measure.vibration(
+        results,
+        window=WINDOW if window is None else window,
+        begin=float("-inf") if begin is None else begin,
+        end=float("inf") if end is None else end,
+    )
+
+
+def _surface(results: "Results", at: float | None, side: str) -> "Surface":
+    from ryusa import measure
+
+    return measure.surface(results, at, "right" if side == "right" else "left")
 
 
 def _flow(
@@ -92,16 +146,25 @@ def _print(averages: "Averages") -> None:
     table.add_column("quantity")
     for name in ("value", "± s.e.", "unit", "n", "window [s]", "steady?"):
         table.add_column(name, justify="left" if name in {"unit", "steady?"} else "right")
+    doubtful = False
     for one in averages.items:
         if one.n == 0:
             table.add_row(one.name, "-", "-", one.unit, "0", "-", "-")
             continue
         steady = "yes" if one.steady else f"no, drift {one.drift:.1f} s.e."
-        steady = "-" if isnan(one.drift) else steady + ("" if one.plateau else " (short record)")
+        steady = "-" if isnan(one.drift) else steady
+        doubt = "" if one.plateau or isnan(one.error) else "*"
+        doubtful = doubtful or bool(doubt)
         window = f"{one.window[0]:.3g} .. {one.window[1]:.4g}"
-        table.add_row(one.name, f"{one.value:.5g}", f"{one.error:.2g}", one.unit, str(one.n), window, steady)
+        table.add_row(
+            one.name, f"{one.value:.5g}", f"{one.error:.2g}{doubt}", one.unit, str(one.n), window, steady
+        )
     console = Console(width=None if sys.stdout.isatty() else 120)
     console.print(table)
+    if doubtful:
+        console.print(
+            "* the record is too short for this error to have settled: it may be larger", highlight=False
+        )
     for line in averages.notes:
         console.print(line, highlight=False, soft_wrap=True)
 

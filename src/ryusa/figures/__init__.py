@@ -1,6 +1,7 @@
 """One function per kind of plot. A figure takes measured records and draws them; it computes no numbers."""
 
 from ryusa.figures.choices import Choice, choices
+from ryusa.figures.collisions import collision_times
 from ryusa.figures.contact import Band, Curve, Points, over_stiffness, turning
 from ryusa.figures.drops import Quote, Rebound, drop_chart, over_speed, rebounds
 from ryusa.figures.energy import energy
@@ -21,6 +22,7 @@ __all__ = [
     "Quote",
     "Rebound",
     "choices",
+    "collision_times",
     "contact_times",
     "drop_chart",
     "energy",

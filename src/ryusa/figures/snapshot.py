@@ -50,7 +50,7 @@ def snapshot(seen: Snapshot, colour: Colour = "speed") -> Figure:
         scale = Normalize(-most, most)
     shown = ScalarMappable(scale, mpl.colormaps[hue])
     grains(axes, seen, shown.to_rgba(values))
-    _bar(figure, axes, shown, text)
+    _bar(figure, axes, shown, text, over=bool(len(values) and np.abs(values).max() > shown.get_clim()[1]))
     return figure
 
 
@@ -74,31 +74,29 @@ def panel(seen: Snapshot, above: float = 0.0) -> tuple[Figure, Axes]:
 
 
 def grains(axes: Axes, seen: Snapshot, colours: Any, zorder: float = 2.0) -> None:
-    """Draw the free grains, the farthest (largest y) first; `colours` is one or one per grain."""
-    order = np.argsort(-seen.x[:, 1], kind="stable")
-    many = isinstance(colours, np.ndarray)
-    face = colours[order] if many else colours
-    circles(axes, seen.x[order], seen.d[order], face, RIM, period=seen.period, zorder=zorder)
+    """Draw the free grains; `colours` is one or one per grain."""
+    circles(axes, seen.x, seen.d, colours, RIM, period=seen.period, zorder=zorder)
 
 
 def circles(
     axes: Axes, x: Any, d: Any, face: Any, rim: str, *, period: float = math.inf, zorder: float = 1.0
 ) -> None:
-    """Circles true to scale at x [m], repeated where they stick out of a period."""
-    places, sizes, faces = [x], [d], [face]
+    """Circles true to scale at x [m], the farthest (largest y) first, repeated where they stick out."""
+    which, shift = np.arange(len(d)), np.zeros(len(d))
     if math.isfinite(period):
-        for shift, out in ((period, x[:, 0] < 0.5 * d), (-period, x[:, 0] > period - 0.5 * d)):
-            places.append(x[out] + np.array([shift, 0.0, 0.0]))
-            sizes.append(d[out])
-            faces.append(face[out] if isinstance(face, np.ndarray) else face)
-    for place, size, one in zip(places, sizes, faces, strict=True):
-        line = 0.3 if len(d) < 1500 else 0.1
-        axes.add_collection(
-            EllipseCollection(
-                CM * size, CM * size, np.zeros(len(size)), units="xy", offsets=CM * place[:, [0, 2]],
-                offset_transform=axes.transData, facecolor=one, edgecolor=rim, linewidth=line, zorder=zorder,
-            )
-        )  # fmt: skip
+        low, high = np.flatnonzero(x[:, 0] < 0.5 * d), np.flatnonzero(x[:, 0] > period - 0.5 * d)
+        which = np.concatenate([which, low, high])
+        shift = np.concatenate([shift, np.full(len(low), period), np.full(len(high), -period)])
+    order = np.argsort(-x[which, 1], kind="stable")
+    which, shift = which[order], shift[order]
+    size, places = CM * d[which], CM * (x[which][:, [0, 2]] + np.outer(shift, [1.0, 0.0]))
+    axes.add_collection(
+        EllipseCollection(
+            size, size, np.zeros(len(size)), units="xy", offsets=places, offset_transform=axes.transData,
+            facecolor=face[which] if isinstance(face, np.ndarray) else face, edgecolor=rim,
+            linewidth=0.3 if len(d) < 1500 else 0.1, zorder=zorder,
+        )
+    )  # fmt: skip
 
 
 def planes(axes: Axes, point: Any, normal: Any, box: Box, unit: float) -> None:
@@ -153,12 +151,14 @@ def _most(values: Any) -> float:
     return float(np.quantile(values, 0.99)) if len(values) else 0.0
 
 
-def _bar(figure: Figure, axes: Axes, shown: ScalarMappable, text: str) -> None:
+def _bar(figure: Figure, axes: Axes, shown: ScalarMappable, text: str, over: bool) -> None:
     """A slim colour bar above the right half of the panel."""
     width, height = figure.get_size_inches()
     inner = height - AROUND - ABOVE
     beside = axes.inset_axes((0.62, 1.0 + 0.05 / inner, 0.38, BAR / inner))
-    bar = figure.colorbar(shown, cax=beside, orientation="horizontal", extend="neither")
+    both = shown.get_clim()[0] < 0.0
+    extend = "neither" if not over else "both" if both else "max"
+    bar = figure.colorbar(shown, cax=beside, orientation="horizontal", extend=extend)
     bar.ax.xaxis.set_ticks_position("top")
     bar.ax.tick_params(labelsize=6.0, size=2.0, width=0.5, pad=1.5)
     bar.ax.locator_params(nbins=4 if width > 5.0 else 3)

@@ -12,15 +12,21 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from ryusa.figures import style
-from ryusa.measure import Tracks
+from ryusa.figures.snapshot import planes
+from ryusa.measure import Snapshot, Tracks
 from ryusa.model.scene import Floats
 
 MM, CM = 1.0e3, 1.0e2  # millimetres and centimetres in a metre
+TALLEST = 4.5  # height of all panels together [inch]
 
 
 @style.house
 def tracks(
-    found: Tracks, panels: int | None = None, exaggeration: float = 1.0, length: float | None = None
+    found: Tracks,
+    panels: int | None = None,
+    exaggeration: float = 1.0,
+    length: float | None = None,
+    around: Snapshot | None = None,
 ) -> Figure:
     """Draw the paths of the chosen grains' centres, with bed grains and some outlines of the moving grain.
 
@@ -30,6 +36,11 @@ def tracks(
     panels : rows the way is cut into; default what makes a row about 40 diameters long.
     exaggeration : vertical over horizontal scale; 1 keeps grains round. Stated in the figure when not 1.
     length : way shown [m]; default all.
+    around : its planes are drawn.
+
+    Notes
+    -----
+    A path that is high for its way gets a wider way around it, so that the picture fits on a page.
     """
     d = float(found.d[0]) if len(found.d) else 1.0
     x0 = float(np.nanmin(found.x)) - d
@@ -39,22 +50,38 @@ def tracks(
     inside = found.x <= x0 + total
     top = float(found.z[inside].max()) + 0.8 * d
     bottom = float(found.bed_z.min()) - 0.1 * d if len(found.bed_z) else float(found.z.min()) - d
+    tall = (top - bottom) * exaggeration * rows * (style.PAGE - 0.6) / TALLEST  # least span
+    if span < tall:
+        x0, span = x0 - 0.5 * (tall - span), tall
     row = (style.PAGE - 0.6) * (top - bottom) / span * exaggeration
-    figure, axes = style.new(rows, width=style.PAGE, height=0.42 + rows * (row + 0.27))
+    figure, axes = style.new(rows, width=style.PAGE, height=0.57 + rows * (row + 0.27))
     for k, panel in enumerate(axes):
         low = x0 + k * span
+        if around is not None:
+            planes(panel, around.plane_point, around.plane_normal, (low, low + span, bottom, top), MM)
         _bed(panel, found, low, low + span)
         for c in range(found.x.shape[1]):
             _path(panel, found, c, low, low + span)
         panel.set_xlim(low * MM, (low + span) * MM)
         panel.set_ylim(bottom * MM, top * MM)
         panel.set_aspect(exaggeration)
-        panel.locator_params(axis="y", nbins=3, integer=True)
+        panel.locator_params(axis="y", nbins=3 if row < 1.5 else 8, integer=True)
     axes[-1].set_xlabel("distance along the bed  $x$  (mm)")
     figure.supylabel("height  $z$  (mm)", fontsize=8.0)
+    axes[0].set_title(_caption(found), loc="left", fontsize=6.5)
     if exaggeration != 1.0:
         axes[0].set_title(f"heights drawn {exaggeration:g} times too large", loc="right", fontsize=6.5)
     return figure
+
+
+def _caption(found: Tracks) -> str:
+    """Which grains, and when."""
+    many = len(found.grains) > 8
+    names = ", ".join(str(g) for g in found.grains[:8]) + (
+        f", ... ({len(found.grains)} in all)" if many else ""
+    )
+    when = f", $t$ = {found.t[0]:.4g} to {found.t[-1]:.4g} s" if len(found.t) else ""
+    return f"grain{'s' if len(found.grains) > 1 else ''} {names}{when}"
 
 
 @style.house

@@ -57,6 +57,11 @@ class Vibration:
         """What a threshold is held against [m], (n_window, n_grain): span_z, span or the size of net."""
         return {"z": self.span_z, "path": self.span, "net": np.abs(self.net)}[by]
 
+    def most_restless(self, count: int) -> list[int]:
+        """Ids of the grains whose z spans most in the second half of the windows, the first ones first."""
+        late = self.span_z[len(self.end) // 2 :].max(axis=0)
+        return sorted(int(g) for g in self.grains[np.argsort(-late, kind="stable")[:count]])
+
     def rows(self) -> list[dict[str, object]]:
         """One dictionary per window and grain."""
         columns = {"net_m": self.net, "span_z_m": self.span_z, "span_m": self.span, "turn_m": self.turn}

@@ -1,0 +1,48 @@
+"""How long contacts last, whoever the partner is."""
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ryusa.figures import style
+from ryusa.measure import Collisions
+from ryusa.model import Scene
+
+BINS = 60
+
+
+@style.house
+def collision_times(found: Collisions, scene: Scene) -> Figure:
+    """Draw the distribution of contact times on a logarithmic axis, by partner, with what Eq. (8) expects.
+
+    Parameters
+    ----------
+    found : `measure.collisions`.
+    scene : tells free grains, fixed grains and planes apart.
+    """
+    figure, (axes,) = style.new(height=2.3)
+    j = found.events["j"]
+    bed, planes = scene.n_grain, scene.n_grain + scene.n_fixed
+    kinds = (("free grain", j < bed), ("fixed grain", (j >= bed) & (j < planes)), ("plane", j >= planes))
+    good = np.isfinite(found.duration) & (found.duration > 0.0)
+    ends = (found.duration[good].min(), found.duration[good].max()) if good.any() else (1.0e-4, 1.0e-3)
+    edges = np.geomspace(0.9 * ends[0], 1.1 * ends[1], BINS + 1).tolist()
+    for k, (name, chosen) in enumerate(kinds):
+        times = found.duration[good & chosen]
+        if len(times) == 0:
+            continue
+        colour = style.COLOURS[k]
+        axes.hist(times, edges, histtype="stepfilled", color=colour, alpha=0.2, lw=0)
+        axes.hist(times, edges, histtype="step", color=colour, lw=1.0, label=f"{name} ({len(times)})")
+        expected = float(np.median(found.expected[good & chosen]))
+        axes.axvline(expected, color=colour, lw=0.8, ls="--", label=f"expected {expected:.3g} s")
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_xlim(edges[0], edges[-1])
+    axes.set_xlabel("contact time  (s)")
+    axes.set_ylabel("contacts")
+    axes.legend(
+        loc="lower left", bbox_to_anchor=(0.0, 1.0), borderaxespad=0.2, ncols=2, fontsize=6.3,
+        title="partner, and Eq. (8) with dashpot for a single impact (dashed)", title_fontsize=6.3,
+        alignment="left",
+    )  # fmt: skip
+    return figure
