@@ -326,7 +326,7 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
         }
         moved[k] = {name: one.span_z[-1] / one.d_mean for name, one in names.items()}
     pictures["fig10-threshold"] = over_threshold(
-        moved, (HALF.low, HALF.high), "nearly half (Osada et al. 2004)",
+        moved, (HALF.low, HALF.high), "nearly half\n(Osada et al. 2004)",
         "to and fro in z, last 0.01 s before 0.5 s; forward: 10 steps per contact",
     )  # fmt: skip
     return pictures
