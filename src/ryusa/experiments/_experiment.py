@@ -34,9 +34,11 @@ NAMES = (
     "fig14",
     "fig15",
     "fig16",
+    "fig19",
     "bed18",
     "fig20",
     "fig21",
+    "eq13",
 )
 
 # Free choices that several experiments share; one set of them is sought that fits most claims together.
@@ -122,7 +124,11 @@ Found = Mapping[Variant, Any]
 
 
 class Experiment(Protocol):
-    """A module that answers one figure or sentence of the paper."""
+    """A module that answers one figure or sentence of the paper.
+
+    A module for which a run that breaks down is an answer (a law that makes energy) has one function more:
+    `failed(message)` gives what is measured then. Without it such a run leaves the experiment undecided.
+    """
 
     FIGURE: str  # how the paper calls it, such as "fig19"
     TITLE: str

@@ -1,0 +1,98 @@
+"""What the heap experiments (fig19, eq13) share: the case, its choices, and the slope that is left."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ryusa.experiments._experiment import PHI, SLIP, Variant, variant
+from ryusa.experiments._verdict import Interval, Pooled, over_seeds
+from ryusa.measure import Snapshot, Surface, snapshot, surface
+from ryusa.results import Results
+
+CASE = "fig19"
+SHIPPED = {PHI: "30 deg", SLIP: "spring"}
+KEYS = {PHI: "timeline.0.friction_angle", SLIP: "contact.slip"}
+FITS = ("0.1 to 0.9", "0.2 to 0.8", "0.25 to 0.75")  # beside the shipped 0.15 to 0.85 of the heap's height
+MOVING = 0.01  # share of grains that may still move in a heap that is called at rest
+LOOK = 0.1  # s after the gate, for the picture on the way
+
+
+@dataclass(frozen=True)
+class Heap:
+    """The heap at the end of one run."""
+
+    seen: Snapshot
+    found: Surface
+    start: Snapshot | None  # as the gate goes; None where it was not kept
+    t_gate: float  # [s]
+    t_end: float  # [s]
+    residual: float  # of the energy account [-]
+    rolled: float  # lost to rolling friction over what the heap fell through [-]; negative: it made energy
+
+    @property
+    def slope(self) -> float:
+        """Mean of the slopes over four ranges of height [rad]; nan where it stands like a wall."""
+        if not math.isfinite(self.found.angle):
+            return math.nan
+        angles = [self.found.angle, *(self.found.angles[name] for name in FITS)]
+        return float(np.nanmean(angles))
+
+    @property
+    def wall(self) -> bool:
+        """True where there is no slope because the heap stands."""
+        return not math.isfinite(self.found.angle)
+
+
+def run(
+    chosen: Mapping[str, str], rotation: str, seed: int, more: Mapping[str, str] | None = None
+) -> Variant:
+    """One heap; the shipped one turns freely."""
+    changed = {KEYS[name]: value for name, value in chosen.items() if name in KEYS and SHIPPED[name] != value}
+    changed |= {} if rotation == "free" else {"timeline.1.rotation": rotation}
+    return variant(CASE, changed | dict(more or {}), seed)
+
+
+def heap(results: Results) -> Heap:
+    """Measure the last frame."""
+    gate = max(t for _, t, _ in results.scenes)
+    fell = float(results.tally["start"][0] - results.tally["potential"][-1])
+    return Heap(
+        seen=snapshot(results),
+        found=surface(results),
+        start=snapshot(results, gate),
+        t_gate=gate,
+        t_end=float(results.frames.t[-1]),
+        residual=float(results.summary.get("residual", math.nan)),
+        rolled=float(results.tally["roll"][-1]) / fell,
+    )
+
+
+def slopes(heaps: Sequence[Heap]) -> list[float]:
+    """Slopes in degrees, one per seed."""
+    return [math.degrees(one.slope) for one in heaps]
+
+
+def slope_interval(heaps: Sequence[Heap], spread: Pooled | None) -> tuple[Interval, bool | None, str]:
+    """Slope over seeds; a verdict and a note where heaps stand like walls.
+
+    Heaps that all stand like a wall have no slope, and fail whatever was asked. Where only some do, the mean
+    of the others is given but decides nothing.
+    """
+    standing = sum(one.wall for one in heaps)
+    found = over_seeds(slopes([one for one in heaps if not one.wall]), "deg", spread)
+    if standing == len(heaps):
+        return found, False, "stands like a wall"
+    if standing:
+        note = f"{standing} of {len(heaps)} stand like a wall, the others {found.value:.3g} deg"
+        return Interval(math.nan, math.nan, math.nan, "deg", len(heaps), found.how), None, note
+    return found, None, ""
+
+
+def moving(heaps: Sequence[Heap]) -> Interval:
+    """Largest share of grains that still move at the end, over seeds."""
+    shares = [one.found.moving for one in heaps]
+    return Interval(
+        max(shares), min(shares), max(shares), "-", len(shares), f"range over {len(shares)} seeds"
+    )

@@ -1,0 +1,171 @@
+"""Fig. 19: a heap between walls, one of which goes at once; the slope left, rotation locked or free."""
+
+import math
+from collections.abc import Mapping, Sequence
+
+from matplotlib.figure import Figure
+
+from ryusa.experiments import _heap
+from ryusa.experiments._experiment import PHI, ROTATION, SLIP, Found, Plan, Variant
+from ryusa.experiments._verdict import Band, Finding, Trial, pool
+from ryusa.figures.repose import surface as draw_surface
+from ryusa.figures.slopes import Slope, slopes
+from ryusa.results import Results
+
+FIGURE = "fig19"
+TITLE = "Slope of a heap whose wall is taken away"
+CLAIMS = ("fig19-locked", "fig19-free")
+GROUND = "heap"  # the choice of size, spread, packing and floor
+OTHERS: dict[str, dict[str, str]] = {
+    "as shipped": {},
+    "sizes within 5 %": {"grains.spread": "0.05"},
+    "half as many grains": {"build.columns": "18", "build.layers": "14"},
+    "floor ends at the gate": {"build.run_out": "0 cm", "build.drop": "4 cm"},
+    "smooth floor": {"build.floor": "plane", "build.run_out": "0 cm"},
+    "settled with friction": {"contact.friction_angle": "30 deg"},
+}
+BANDS = {
+    "locked": Band(30.0, 36.0, "deg", "about 33 deg: 30 to 36 deg, what can be told from a drawn slope"),
+    "free": Band(15.0, 21.0, "deg", "about 18 deg: 15 to 21 deg, what can be told from a drawn slope"),
+}
+STILL = Band(0.0, _heap.MOVING, "-", "the final slope: at most 1 % of the grains still move")
+PAPER = {"locked": 33.0, "free": 18.0}  # deg
+DECIDED = {
+    "locked": "A locked grain leaves a pocket only where the slope reaches 30 deg + phi, and rows of locked "
+    "grains move as towers, so the friction angle sets the slope. With the dashpot kept while sliding, as "
+    "Eqs. (2) and (3) are printed, a viscous force comes on top of the cap: the heap oozes at m g/eta_s.",
+    "free": "A grain that may turn rolls out of a pocket at 30 deg whatever phi is, so from phi of about "
+    "20 deg on friction has no more say: packing and the run-out of the collapse set the slope.",
+}
+
+
+def settings(plan: Plan, rotation: str) -> list[dict[str, str]]:
+    """Free choices tried, the shipped one first."""
+    base = {**_heap.SHIPPED, GROUND: "as shipped"}
+    phis = plan.pick((), ("10 deg", "20 deg"), ("5 deg", "10 deg", "15 deg", "20 deg", "25 deg", "40 deg"))
+    sets = [base, *({**base, PHI: phi} for phi in phis)]
+    slips = {"locked": ("10 deg", "15 deg", "20 deg", "30 deg"), "free": ("30 deg",)}[rotation]
+    sets += [{**base, SLIP: "total", PHI: phi} for phi in plan.pick((), slips, ("10 deg", *slips, "40 deg"))]
+    if rotation == "free":
+        sets += [{**base, PHI: phi} for phi in plan.pick((), ("40 deg",))]
+    else:
+        sets += [{**base, SLIP: "spring-drop", PHI: phi} for phi in plan.pick((), (), slips)]
+        sets += [{**base, PHI: phi} for phi in plan.pick((), ("5 deg",))]
+    held = {**base, SLIP: "total", PHI: "15 deg"} if rotation == "locked" else base
+    sets += [{**held, GROUND: one} for one in plan.pick((), (), tuple(OTHERS)[1:])]
+    return [dict(one) for one in dict.fromkeys(tuple(one.items()) for one in sets)]
+
+
+def run(chosen: Mapping[str, str], rotation: str, seed: int) -> Variant:
+    """One run."""
+    return _heap.run(chosen, rotation, seed, OTHERS[chosen[GROUND]])
+
+
+def cases(plan: Plan) -> Sequence[Variant]:
+    """Locked and free under every setting and seed."""
+    return [
+        run(chosen, rotation, seed)
+        for rotation in BANDS
+        for chosen in settings(plan, rotation)
+        for seed in plan.seeds
+    ]
+
+
+def measure(results: Results, one: Variant) -> _heap.Heap:
+    """Slope at the end."""
+    del one
+    return _heap.heap(results)
+
+
+def judge(found: Found, plan: Plan) -> Sequence[Finding]:
+    """Locked about 33 deg, free about 18 deg."""
+    return [_judged(found, plan, rotation) for rotation in BANDS]
+
+
+def _judged(found: Found, plan: Plan, rotation: str) -> Finding:
+    sets = settings(plan, rotation)
+    heaps = [[found[run(chosen, rotation, seed)] for seed in plan.seeds] for chosen in sets]
+    spread = pool([_heap.slopes([one for one in group if not one.wall]) for group in heaps])
+    trials: list[Trial] = []
+    for chosen, group in zip(sets, heaps, strict=True):
+        slope, decided, note = _heap.slope_interval(group, spread)
+        trials.append(Trial("final slope", chosen, slope, BANDS[rotation], decided, note))
+        trials.append(Trial("share of grains still moving", chosen, _heap.moving(group), STILL))
+    ranges = [math.degrees(one.found.spread) for group in heaps for one in group if not one.wall]
+    ends = [one.t_end - one.t_gate for group in heaps for one in group]
+    also = (
+        f"with the height range of the fit one slope moves by up to {max(ranges, default=math.nan):.0f} deg",
+        f"followed for {min(ends):.1f} to {max(ends):.1f} s after the gate goes",
+    )
+    common = {
+        ROTATION: rotation,
+        "slope": "mean of four fits between 10 and 90 % of the height, last frame",
+        "packing": "settled without friction, turning; phi and rotation set 0.01 s before the gate goes",
+    }
+    return Finding(f"fig19-{rotation}", tuple(trials), DECIDED[rotation], common, also=also)
+
+
+def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
+    """One line per run."""
+    lines: list[dict[str, object]] = []
+    for rotation in BANDS:
+        for chosen in settings(plan, rotation):
+            for seed in plan.seeds:
+                one: _heap.Heap = found[run(chosen, rotation, seed)]
+                lines.append({"rotation": rotation, **chosen, "seed": seed, **line(one)})
+    return lines
+
+
+def line(one: _heap.Heap) -> dict[str, object]:
+    """Numbers of one heap."""
+    return {
+        "slope_deg": math.degrees(one.slope),
+        "fit_error_deg": math.degrees(one.found.error),
+        "fit_spread_deg": math.degrees(one.found.spread),
+        "stands_like_a_wall": one.wall,
+        "moving_share": one.found.moving,
+        "run_out_cm": 100.0 * one.found.run_out,
+        "crest_cm": 100.0 * one.found.crest,
+        "t_end_s": one.t_end,
+        "residual": one.residual,
+        "lost_to_rolling": one.rolled,
+    }
+
+
+def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
+    """The heaps as the paper shows them, and slope against friction angle."""
+    pictures: dict[str, Figure] = {}
+    for rotation in BANDS:
+        sets = settings(plan, rotation)
+        first = [found[run(chosen, rotation, plan.seeds[0])] for chosen in sets]
+        closest = sets[min(range(len(sets)), key=lambda k: _off(first[k], rotation))]
+        shown = {f"fig19-{rotation}": sets[0], f"fig19-{rotation}-closest": closest}
+        for name, chosen in shown.items():
+            one: _heap.Heap = found[run(chosen, rotation, plan.seeds[0])]
+            words = ", ".join(f"{key} {value}" for key, value in chosen.items() if key != GROUND)
+            figure = draw_surface(one.seen, one.found)
+            figure.suptitle(f"rotation {rotation}, {words}", fontsize=7.0)
+            pictures[name] = figure
+    series = [
+        Slope(
+            f"rotation {rotation}, slip {slip}",
+            (PAPER[rotation],),
+            [
+                (
+                    float(chosen[PHI].split()[0]),
+                    _heap.slopes([found[run(chosen, rotation, s)] for s in plan.seeds]),
+                )
+                for chosen in settings(plan, rotation)
+                if chosen[SLIP] == slip and chosen[GROUND] == "as shipped"
+            ],
+        )
+        for rotation in BANDS
+        for slip in ("spring", "spring-drop", "total")
+    ]
+    pictures["fig19-slopes"] = slopes([one for one in series if one.points])
+    return pictures
+
+
+def _off(one: _heap.Heap, rotation: str) -> float:
+    slope = math.degrees(one.slope)
+    return abs(slope - PAPER[rotation]) if math.isfinite(slope) else math.inf
