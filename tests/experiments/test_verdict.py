@@ -84,3 +84,14 @@ def test_the_condition_names_the_choices_under_which_a_claim_holds():
 def test_a_decided_trial_needs_no_number():
     wall = Trial("slope", {}, over_seeds([math.nan], "deg"), BAND, decided=False, note="stands as a wall")
     assert wall.holds is False
+
+
+def test_a_condition_names_no_combination_that_fails():
+    held = {
+        ("10 deg", "total"): 1.5,
+        ("20 deg", "spring"): 1.5,
+        ("10 deg", "spring"): 3.0,
+        ("20 deg", "total"): 3.0,
+    }
+    found = finding(*(trial(value, phi=phi, slip=slip) for (phi, slip), value in held.items()))
+    assert found.condition == "as it ships or phi 20 deg, slip spring (2 of 4 settings)"

@@ -178,7 +178,6 @@ def _list(plan: "Plan", chosen: Sequence[str] | None, out: Path, jobs: int | Non
 def _print(ledger: "Ledger") -> None:
     from collections import Counter
 
-    from rich import box
     from rich.markup import escape
     from rich.table import Table
 
@@ -188,15 +187,18 @@ def _print(ledger: "Ledger") -> None:
         typer.echo(
             "indicative: one seed, no sweeps; `ryusa paper` without --quick gives intervals and verdicts"
         )
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, leading=1)
-    table.add_column("claim", no_wrap=True)
-    for heading in ("the paper", "ours, as the case file ships", "verdict"):
-        table.add_column(heading, ratio=1, overflow="fold")
+    table = Table(box=None, pad_edge=False, show_header=False)
+    table.add_column(no_wrap=True)
+    table.add_column(no_wrap=True)
+    table.add_column(ratio=1, overflow="fold")
     for row in ledger.rows:
         plain = row.plain(ledger.folder)
-        verdict = f"{row.word} {plain['condition']}".strip()
-        ours = "not judged, see below" if row.problem else plain["ours"] or "-"
-        table.add_row(row.claim.id, escape(row.claim.says), escape(ours), escape(verdict))
+        parts = plain["ours"].split("; ")
+        more = f" (and {len(parts) - 1} more on the page)" if len(parts) > 1 else ""
+        ours = "not judged, see below" if row.problem else (parts[0] + more if parts[0] else "-")
+        table.add_row(row.claim.id, "verdict", f"{row.word} {escape(plain['condition'])}".strip())
+        table.add_row("", "paper", escape(row.claim.says))
+        table.add_row("", "ours", escape(ours))
     _console().print(table)
     counts = Counter(row.word for row in ledger.rows)
     typer.echo("; ".join(f"{counts[word]} {word}" for word in Word if counts[word]))

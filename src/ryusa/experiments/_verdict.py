@@ -9,6 +9,7 @@ import numpy as np
 from scipy import stats
 
 CONFIDENCE = 0.95
+_NAMED = 3  # sets of choices named in a condition, at most
 
 
 class Word(StrEnum):
@@ -38,9 +39,8 @@ class Interval:
         if not math.isfinite(self.value):
             return "no number"
         unit = "" if self.unit == "-" else f" {self.unit}"
-        if self.low == self.high:
-            return f"{short(self.value)}{unit}"
-        return f"{short(self.value)}{unit} ({short(self.low)} to {short(self.high)})"
+        middle, low, high = short(self.value), short(self.low), short(self.high)
+        return f"{middle}{unit}" if low == high else f"{middle}{unit} ({low} to {high})"
 
 
 def short(value: float) -> str:
@@ -221,19 +221,30 @@ class Finding:
 
     @property
     def condition(self) -> str:
-        """Where it holds, in words, when it fails elsewhere."""
+        """Where it holds, in words, when it fails elsewhere.
+
+        Choices are named one by one where every combination of their values that was tried holds; else the
+        sets under which it holds are named, by what they change in the case as it ships.
+        """
         held = self.by_choice
         good = [dict(key) for key, one in held.items() if one]
         if self.word is not Word.ONLY_IF:
             return ""
-        parts: list[str] = []
-        for name in good[0]:
-            tried = list(dict.fromkeys(dict(key)[name] for key in held))
-            fits = [value for value in tried if any(one[name] == value for one in good)]
-            if len(fits) < len(tried):
-                parts.append(f"{name} {_listed(fits, tried)}")
-        where = "; ".join(parts) if parts else "some combinations"
-        return f"{where} ({len(good)} of {len(held)} settings)"
+        tried = {name: list(dict.fromkeys(dict(key)[name] for key in held)) for name in good[0]}
+        fits = {
+            name: [v for v in values if any(one[name] == v for one in good)] for name, values in tried.items()
+        }
+        inside = [one for key, one in held.items() if all(value in fits[name] for name, value in key)]
+        if False not in inside:
+            told = [
+                f"{name} {_listed(fits[name], tried[name])}" for name in tried if fits[name] != tried[name]
+            ]
+        else:
+            first = dict(next(iter(held)))
+            sets = [", ".join(f"{k} {v}" for k, v in one.items() if v != first[k]) for one in good]
+            told = [" or ".join(one or "as it ships" for one in sets[:_NAMED])]
+            told += [f"or {len(sets) - _NAMED} more"] if len(sets) > _NAMED else []
+        return f"{'; '.join(told)} ({len(good)} of {len(held)} settings)"
 
     @property
     def base(self) -> tuple[Trial, ...]:
