@@ -54,7 +54,7 @@ def test_a_bed_that_flows_from_some_slope_on_gives_that_slope():
         STANDARD, lambda slope, start: lambda t: 0.5 if slope > (22 if start == REST else 20) else 0
     )
     assert finding.word is Word.ONLY_IF
-    assert "21 deg to 28 deg" in finding.condition
+    assert finding.condition == "start (bed18) once moving (3 of 4 settings)"
     found = synthetic(STANDARD, lambda slope, start: lambda t: 0.5 if slope > 22 else 0)
     assert bed18.flattest(found, STANDARD, REST) == 23.0
     assert bed18.flattest(found, STANDARD, MOVING) == 23.0

@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from ryusa.errors import GrainLost, OverlapTooLarge
 from ryusa.experiments import Level, Plan, Word, _heap, eq13, fig19
 
 QUICK = Plan(Level.QUICK, (1,))
@@ -92,16 +93,45 @@ def test_the_form_that_gives_the_slope_of_gravel_is_named():
         return heap((36.0 if chosen[eq13.MODEL] == eq13.SPRING else 18.0) + 0.1 * seed)
 
     (finding,) = eq13.judge(rolled(STANDARD, slopes), STANDARD)
-    assert finding.word is Word.ONLY_IF
-    assert eq13.SPRING in finding.condition
-    assert eq13.PRINTED not in finding.condition
+    assert finding.word is Word.NOT  # another law that can is no help to Eq. (13)
+    assert {one.choices[eq13.MODEL] for one in finding.trials} == {eq13.PRINTED}
+    stands = {one.choices[eq13.MODEL] for one in finding.beside if one.part == "final slope" and one.holds}
+    assert stands == {eq13.SPRING}
+
+
+def test_only_a_law_that_makes_energy_is_an_answer_when_a_run_breaks_down():
+    how = {"grain": 1, "step": 2, "t": 0.1, "hint": "Use"}
+    assert "0.52" in eq13.failed(OverlapTooLarge("overlap is 0.52", **how)).message
+    assert eq13.failed(GrainLost("grain left the world", **how)) is None
+
+
+def test_the_coefficient_is_read_off_between_those_tried():
+    def slopes(chosen, seed):
+        return heap(20.0 + 10.0 * math.log10(float(chosen[eq13.COEFFICIENT]) / 0.1) + 0.0 * seed)
+
+    plan = Plan(Level.FULL, (1, 2))
+    (finding,) = eq13.judge(rolled(plan, slopes), plan)
+    (line,) = [
+        one
+        for one in finding.also
+        if one.startswith(f"{eq13.SPRING}, phi 40 deg, k_n 100 N/cm, d 0.2 cm, sizes 20 %")
+    ]
+    assert "not reached up to 1 " in line
+    (line,) = [
+        one
+        for one in finding.also
+        if one.startswith(f"{eq13.CONSTANT}, phi 40 deg, k_n 100 N/cm, d 0.2 cm, sizes 20 %")
+    ]
+    assert (
+        "2 of 2 seeds" not in line
+    )  # 37 deg at the smallest coefficient already: no crossing between those tried
 
 
 def test_a_law_that_breaks_the_run_down_fails_and_says_so():
     def slopes(chosen, seed):
         broken = chosen[eq13.MODEL] == eq13.PRINTED
         return (
-            eq13.failed("overlap is 0.52 of the smaller diameter. Use") if broken else heap(36.0 + 0.1 * seed)
+            eq13.Broken("overlap is 0.52 of the smaller diameter. Use") if broken else heap(36.0 + 0.1 * seed)
         )
 
     (finding,) = eq13.judge(rolled(STANDARD, slopes), STANDARD)

@@ -29,7 +29,8 @@ def _of_row(row):
         yield f"verdict {row['verdict']!r} is none of ours"
     if not row["spread"]:
         yield "has no number"
-    for part, one in zip(row["sweep"], row["spread"], strict=False):
+    base = [one for one in row["sweep"] if one["choices"] == row["sweep"][0]["choices"]]
+    for part, one in zip(base, row["spread"], strict=False):
         if one["value"] is None and not part["note"]:
             yield f"{part['part']}: no number, and no note that says why"
     if not row["decided_by"]:

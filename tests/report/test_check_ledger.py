@@ -10,7 +10,7 @@ faults = runpy.run_path(str(Path(__file__).with_name("check_ledger.py")))["fault
 
 def whole():
     spread = [{"value": 1.0}]
-    sweep = [{"part": "length", "note": ""}]
+    sweep = [{"part": "length", "note": "", "choices": {}}]
     rows = [
         {"id": one, "verdict": str(Word.WATER), "spread": [], "sweep": [], "decided_by": "", "problem": ""}
         if one in WATER
@@ -48,5 +48,5 @@ def test_what_is_missing_is_named():
 def test_a_number_that_is_none_needs_a_note():
     ledger = whole()
     row(ledger, "fig7")["spread"] = [{"value": None}]
-    row(ledger, "fig7")["sweep"] = [{"part": "slope", "note": "stands as a wall"}]
+    row(ledger, "fig7")["sweep"] = [{"part": "slope", "note": "stands as a wall", "choices": {}}]
     assert faults(ledger) == []

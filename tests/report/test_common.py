@@ -1,4 +1,6 @@
-from ryusa.experiments import PHI, Band, Finding, Trial, over_seeds
+from dataclasses import replace
+
+from ryusa.experiments import PHI, SLIP, Band, Finding, Trial, over_seeds
 from ryusa.report.common import common
 
 WANTED = Band(0.5, 1.5, "-", "about one")
@@ -58,7 +60,15 @@ def test_a_claim_that_its_own_equations_exclude_never_counts():
     assert sets[0].fails == ("fig12",)
 
 
-def test_several_claims_of_one_experiment_share_no_choice_with_others():
-    (only,) = common([("one", found("fig4", {("10", ""): True})), ("one", found("fig5", {("20", ""): True}))])
-    assert not only.choices
-    assert only.holds == ("fig4", "fig5")
+def test_claims_that_need_different_friction_do_not_hold_together():
+    sets = common([("one", found("fig4", {("10", ""): True})), ("one", found("fig5", {("20", ""): True}))])
+    assert [one.holds for one in sets] == [("fig4",), ("fig5",)]
+    assert [one.untried for one in sets] == [("fig5",), ("fig4",)]
+
+
+def test_what_was_run_with_one_slip_rule_says_nothing_of_another():
+    varied = found("fig4", {("10", "spring"): True, ("10", "total"): True}, SLIP)
+    fixed = replace(found("fig5", {("10", ""): True}), settings={SLIP: "spring"})
+    sets = {one.choices[SLIP]: one for one in common([("one", varied), ("two", fixed)])}
+    assert sets["spring"].holds == ("fig4", "fig5")
+    assert sets["total"].untried == ("fig5",)

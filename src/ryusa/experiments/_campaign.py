@@ -252,7 +252,8 @@ def _one(one: Variant, names: Sequence[str], folder: Path, again: bool) -> Done:
     try:
         run, opened = _run(one, folder / one.folder, again)
     except RunError as error:  # for some experiments that is an answer: a law that makes energy ends so
-        told = {name: hook(str(error)) for name in names if (hook := getattr(load(name), "failed", None))}
+        hooks = {name: getattr(load(name), "failed", None) for name in names}
+        told = {name: answer for name, hook in hooks.items() if hook and (answer := hook(error)) is not None}
         problem = str(error) if len(told) < len(names) else ""
         return Done(one, told, opened=False, seconds=time.monotonic() - begun, problem=problem)
     except ResultsError as error:

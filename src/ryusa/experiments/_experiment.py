@@ -127,7 +127,8 @@ class Experiment(Protocol):
     """A module that answers one figure or sentence of the paper.
 
     A module for which a run that breaks down is an answer (a law that makes energy) has one function more:
-    `failed(message)` gives what is measured then. Without it such a run leaves the experiment undecided.
+    `failed(error)` gives what is measured then, or None where this error is no answer. Without an answer such
+    a run leaves the experiment undecided.
     """
 
     FIGURE: str  # how the paper calls it, such as "fig19"

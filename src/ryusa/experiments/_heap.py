@@ -29,7 +29,9 @@ class Heap:
     t_gate: float  # [s]
     t_end: float  # [s]
     residual: float  # of the energy account [-]
-    rolled: float  # lost to rolling friction over what the heap fell through [-]; negative: it made energy
+    rolled: (
+        float  # lost to rolling friction since the gate went, over the height lost [-]; < 0: it made energy
+    )
 
     @property
     def slope(self) -> float:
@@ -57,7 +59,9 @@ def run(
 def heap(results: Results) -> Heap:
     """Measure the last frame."""
     gate = max(t for _, t, _ in results.scenes)
-    fell = float(results.tally["start"][0] - results.tally["potential"][-1])
+    since = int(np.searchsorted(results.tally["t"], gate))
+    fell = float(results.tally["potential"][since] - results.tally["potential"][-1])
+    rolled = float(results.tally["roll"][-1] - results.tally["roll"][since])
     return Heap(
         seen=snapshot(results),
         found=surface(results),
@@ -65,7 +69,7 @@ def heap(results: Results) -> Heap:
         t_gate=gate,
         t_end=float(results.frames.t[-1]),
         residual=float(results.summary.get("residual", math.nan)),
-        rolled=float(results.tally["roll"][-1]) / fell,
+        rolled=rolled / fell,
     )
 
 

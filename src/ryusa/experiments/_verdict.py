@@ -182,6 +182,7 @@ class Finding:
     settings : what all trials share, in words.
     contradiction : set where the paper's own equations exclude the claim; says how, with the numbers found.
     also : numbers that belong to the story and decide nothing.
+    beside : trials of something else than what the claim is about, such as other forms of a law.
     """
 
     claim: str
@@ -190,6 +191,7 @@ class Finding:
     settings: Mapping[str, str] = field(default_factory=dict[str, str])
     contradiction: str = ""
     also: tuple[str, ...] = ()
+    beside: tuple[Trial, ...] = ()
 
     @property
     def by_choice(self) -> dict[Key, bool | None]:
@@ -205,19 +207,27 @@ class Finding:
     def word(self) -> Word:
         """The verdict: one rule for every claim.
 
-        It holds under some sets of choices and fails under others: reproduced only if. It holds as the case
-        file ships and fails under none: reproduced. It holds under none: not reproduced where it fails as the
-        case ships, undecided where the interval straddles the line there. A claim that the paper's own
-        equations exclude contradicts them, whatever the runs say.
+        It holds under some sets of choices and fails under others: reproduced only if. It fails under none
+        and holds as the case file ships: reproduced. It holds under none and fails as the case ships: not
+        reproduced. Else the intervals straddle the line: undecided. A claim that the paper's own equations
+        exclude contradicts them, whatever the runs say. `counts` says how many sets are behind it.
         """
         if self.contradiction:
             return Word.CONTRADICTS
         held = list(self.by_choice.values())
         if not held:
             return Word.UNDECIDED
-        if True in held:
-            return Word.REPRODUCED if held[0] is True and False not in held else Word.ONLY_IF
-        return Word.NOT if held[0] is False else Word.UNDECIDED
+        if True in held and False in held:
+            return Word.ONLY_IF
+        if held[0] is None:
+            return Word.UNDECIDED
+        return Word.REPRODUCED if held[0] else Word.NOT
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Sets of choices under which it holds, fails, and stays open."""
+        held = list(self.by_choice.values())
+        return {"holds": held.count(True), "fails": held.count(False), "undecided": held.count(None)}
 
     @property
     def condition(self) -> str:

@@ -3,12 +3,14 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from matplotlib.figure import Figure
 
+from ryusa.errors import NotANumber, OverlapTooLarge, RunError
 from ryusa.experiments import _heap, _saltation
-from ryusa.experiments._experiment import PHI, Found, Plan, Variant
+from ryusa.experiments._experiment import PHI, RATIO, SLIP, Found, Plan, Variant
 from ryusa.experiments._verdict import Band, Finding, Interval, Trial, pool
 from ryusa.figures.repose import surface as draw_surface
 from ryusa.figures.slopes import Slope, slopes
@@ -36,6 +38,7 @@ BASE = {MODEL: PRINTED, COEFFICIENT: "1", PHI: "30 deg", K_N: "100 N/cm", SIZE: 
 KEYS = {K_N: "contact.stiffness", SIZE: "grains.diameter", SPREAD: "grains.spread"}
 GRAVEL = Band(33.0, 38.0, "deg", "between the paper's locked heap and gravel: 33 to 38 deg")
 STILL = Band(0.0, _heap.MOVING, "-", "stands: at most 1 % of the grains still move at the end")
+LEAST = 3  # coefficients from which one is read off between them
 SPINS = ("none", PRINTED, CONSTANT, SPRING)  # for the saltating grain
 SPIN_AT = {PRINTED: "1", CONSTANT: "20", SPRING: "0.5"}
 
@@ -126,9 +129,9 @@ def measure(results: Results, one: Variant) -> _heap.Heap | float:
     return _heap.heap(results) if one.case == _heap.CASE else spin(results).averages["spin_absolute"].value
 
 
-def failed(message: str) -> Broken:
-    """A law that makes energy breaks the run down, and that is an answer."""
-    return Broken(message)
+def failed(error: RunError) -> Broken | None:
+    """A law that makes energy breaks the run down, and that is an answer; a lost grain is none."""
+    return Broken(str(error)) if isinstance(error, OverlapTooLarge | NotANumber) else None
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
@@ -137,8 +140,10 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     groups = [[found[run(chosen, seed)] for seed in plan.seeds] for chosen in sets]
     whole = [[one for one in group if isinstance(one, _heap.Heap) and not one.wall] for group in groups]
     spread = pool([_heap.slopes(group) for group in whole])
-    trials: list[Trial] = []
+    printed: list[Trial] = []
+    others: list[Trial] = []
     for chosen, group in zip(sets, groups, strict=True):
+        trials = printed if chosen[MODEL] == PRINTED else others
         broken = [one for one in group if isinstance(one, Broken)]
         if broken:
             note = f"breaks down in {len(broken)} of {len(group)} runs: {broken[0].message.partition('.')[0]}"
@@ -150,16 +155,68 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         trials.append(Trial("standing", chosen, _heap.moving(group), STILL))
     decided_by = (
         "Eq. (13) sets M_f against M_t, the torque of the shear force, not against the spin. On a grain that "
-        "rolls M_f itself calls up the shear that makes the next M_t, so it brakes and drives in turn; at a "
-        "coefficient large enough to matter it makes energy. A torque against the relative spin, limited so "
-        "that it cannot turn it round within a step, stops rolling but creeps; only one with a spring of its "
-        "own (elastic up to its cap) holds a grain at rest on a slope."
+        "rolls M_f itself calls up the shear that makes the next M_t: it brakes and drives in turn, "
+        f"and can make energy. {_verdict_of(others)}"
     )
     common = {
         "wanted": "33 to 38 deg with rotation free, standing at the end",
-        "heap": "as fig19, 500 grains, slip rule spring",
+        "heap": "as fig19, 500 grains",
+        SLIP: "spring",
+        RATIO: "2/7",
     }
-    return [Finding("eq13", tuple(trials), decided_by, common, also=(*_told(found, plan), *_arms()))]
+    also = (*_identified(found, plan), *_told(found, plan), *_arms())
+    return [Finding("eq13", tuple(printed), decided_by, common, also=also, beside=tuple(others))]
+
+
+def _verdict_of(others: Sequence[Trial]) -> str:
+    """Which other forms reach the slope and stand, in words."""
+    held = Finding("eq13", tuple(others), "").by_choice
+    words: list[str] = []
+    for model in (CONSTANT, SPRING):
+        mine = [one for key, one in held.items() if dict(key)[MODEL] == model]
+        stands = [one.holds for one in others if one.choices[MODEL] == model and one.part == "standing"]
+        if mine:
+            words.append(
+                f"{model}: reaches the slope of gravel and stands in {mine.count(True)} of {len(mine)} "
+                f"settings (undecided in {mine.count(None)}), stands in {stands.count(True)}"
+            )
+    return f"Other forms. {'; '.join(words)}." if words else ""
+
+
+def _identified(found: Found, plan: Plan) -> list[str]:
+    """Coefficient at which each form first reaches the lower edge of gravel's slope, between those tried."""
+    told: list[str] = []
+    sets = settings(plan)
+    for key in dict.fromkeys(tuple((k, v) for k, v in one.items() if k != COEFFICIENT) for one in sets):
+        fixed = dict(key)
+        tried = sorted(float(one[COEFFICIENT]) for one in sets if fixed.items() <= one.items())
+        if fixed[MODEL] == PRINTED or len(tried) < LEAST:
+            continue
+        crossings: list[float] = []
+        for seed in plan.seeds:
+            heaps = [found[run({**fixed, COEFFICIENT: f"{f:g}"}, seed)] for f in tried]
+            if all(isinstance(one, _heap.Heap) for one in heaps):
+                crossings.append(_crossing(tried, _heap.slopes(heaps), GRAVEL.low))
+        reached = [one for one in crossings if math.isfinite(one)]
+        words = f"{min(reached):.2g} to {max(reached):.2g}" if reached else f"not reached up to {tried[-1]:g}"
+        told.append(
+            f"{fixed[MODEL]}, phi {fixed[PHI]}, k_n {fixed[K_N]}, d {fixed[SIZE]}, sizes {fixed[SPREAD]}: "
+            f"coefficient for {GRAVEL.low:g} deg {words} ({len(reached)} of {len(crossings)} seeds reach it)"
+        )
+    return told
+
+
+def _crossing(f: Sequence[float], slopes_: Sequence[float], wanted: float) -> float:
+    """First coefficient at which the slope passes a wanted one, between logarithms; nan if none.
+
+    >>> round(_crossing([1.0, 10.0, 100.0], [20.0, 30.0, 40.0], 35.0), 2)
+    31.62
+    """
+    for k, (a, b) in enumerate(pairwise(slopes_)):
+        if a < wanted <= b:
+            share = (wanted - a) / (b - a)
+            return math.exp(math.log(f[k]) + share * math.log(f[k + 1] / f[k]))
+    return math.nan
 
 
 def _told(found: Found, plan: Plan) -> list[str]:
@@ -194,7 +251,7 @@ def _told(found: Found, plan: Plan) -> list[str]:
         )
         told.append(
             f"half the f' on a spring a quarter as stiff, the same arm f' b, gives {soft:.3g} beside "
-            f"{stiff:.3g} deg: f' of Eq. (13) goes with the root of k_n and is no property of the grain"
+            f"{stiff:.3g} deg; were f' a property of the grain, f' = 20 would do so on both springs"
         )
     return told
 

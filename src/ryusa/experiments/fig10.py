@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ryusa.experiments import _forward
-from ryusa.experiments._experiment import PHI, ROTATION, Found, Plan, Variant, variant
+from ryusa.experiments._experiment import PHI, RATIO, ROTATION, SLIP, Found, Plan, Variant, variant
 from ryusa.experiments._verdict import Band, Finding, Interval, Trial, over_range, over_seeds, pool, short
 from ryusa.figures.snapshot import snapshot as draw_snapshot
 from ryusa.figures.trembling import over_threshold
@@ -275,7 +275,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             "Forward differences keep it up if the spring is read from the overlap and a contact has ten "
             f"steps ({short(_left(runs, 0.5, EULER))} d at 0.5 s, but the stiff box then trembles too, "
             f"{short(_left(stiffs, 0.5, EULER))} d); with the spring summed as printed they do not.",
-            {**shared, "k_n": SOFT},
+            {**shared, SLIP: "spring", RATIO: "2/7", "k_n": SOFT},
             also=tuple(also),
         ),
         Finding(
@@ -283,7 +283,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             tuple(stiff),
             "A stiff pile loses its oscillation in hundredths of a second; how long grains still shift "
             "depends on how far they fell and, with rotation free, on rolling, which little brakes.",
-            {**shared, "k_n": STIFF},
+            {**shared, SLIP: "spring", RATIO: "2/7", "k_n": STIFF},
         ),
         _rule(plan, found),
     )

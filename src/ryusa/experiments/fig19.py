@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from matplotlib.figure import Figure
 
 from ryusa.experiments import _heap
-from ryusa.experiments._experiment import PHI, ROTATION, SLIP, Found, Plan, Variant
+from ryusa.experiments._experiment import PHI, RATIO, ROTATION, SLIP, Found, Plan, Variant
 from ryusa.experiments._verdict import Band, Finding, Trial, pool
 from ryusa.figures.repose import surface as draw_surface
 from ryusa.figures.slopes import Slope, slopes
@@ -34,8 +34,8 @@ DECIDED = {
     "locked": "A locked grain leaves a pocket only where the slope reaches 30 deg + phi, and rows of locked "
     "grains move as towers, so the friction angle sets the slope. With the dashpot kept while sliding, as "
     "Eqs. (2) and (3) are printed, a viscous force comes on top of the cap: the heap oozes at m g/eta_s.",
-    "free": "A grain that may turn rolls out of a pocket at 30 deg whatever phi is, so from phi of about "
-    "20 deg on friction has no more say: packing and the run-out of the collapse set the slope.",
+    "free": "A grain that may turn rolls out of a pocket at 30 deg whatever phi is, so friction has little "
+    "say once grains roll rather than slide: packing and the run-out of the collapse set the slope.",
 }
 
 
@@ -99,6 +99,7 @@ def _judged(found: Found, plan: Plan, rotation: str) -> Finding:
     )
     common = {
         ROTATION: rotation,
+        RATIO: "2/7",
         "slope": "mean of four fits between 10 and 90 % of the height, last frame",
         "packing": "settled without friction, turning; phi and rotation set 0.01 s before the gate goes",
     }

@@ -151,8 +151,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             "fig20",
             tuple(jumps),
             "A locked grain rubs at every hit and leaves slowly; a free one that has spun up rolls off, "
-            "keeps its speed and meets the next crest harder. Friction angle, slip rule and k_s/k_n act on "
-            "the locked grain alone.",
+            "keeps its speed and meets the next crest harder.",
             settings={"k_n": "100 N/cm"},
             also=tuple(
                 f"{words}, rotation {rot}: {one.value(name) / one.d:.3g} d"
@@ -164,9 +163,9 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             "fig20-shear",
             tuple(shears),
             f"The mean normal force on the bed hardly changes (free over locked {normal:.2f}), so the shear "
-            "of the locked grain decides: as printed (cap on the spring, dashpot kept) it is too strong; a "
-            "weaker one, by a small friction angle together with a dashpot that is capped or dropped while "
-            "sliding, brings free and locked closer.",
+            "decides. As printed (cap on the spring, dashpot kept) nothing bounds the shear of a locked grain; "
+            "a small friction angle, a dashpot capped or dropped while sliding, or a softer shear spring weaken "
+            "it and bring free and locked closer. A grain that turns hardly rubs whatever is chosen.",
             settings={"k_n": "100 N/cm"},
             also=tuple(
                 f"shear over normal impulse, rotation {rot}: {one.value('shear_ratio'):.2f}"

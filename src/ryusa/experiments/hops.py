@@ -29,7 +29,7 @@ AXES = {
     "highest": "largest height  (cm)",
     "jump_length": "mean length  (cm)",
 }
-FIRST = "30 N/cm"
+FIRST = "1 N/cm"  # the paper's own second stiffness, that of fig6
 
 
 def stiffnesses(plan: Plan) -> tuple[str, ...]:

@@ -5,7 +5,10 @@ from dataclasses import dataclass
 from itertools import product
 from typing import Any
 
-from ryusa.experiments import Finding
+from ryusa.experiments import PHI, RATIO, ROTATION, SLIP, Finding
+
+SHARED = (PHI, SLIP, RATIO, ROTATION)  # choices of the model itself; others belong to one set-up
+FIXED = (PHI, SLIP, RATIO)  # said in a finding's settings, they were not varied: other values are untried
 
 
 @dataclass(frozen=True)
@@ -31,10 +34,11 @@ class Common:
 
 
 def common(findings: Sequence[tuple[str, Finding]]) -> tuple[Common, ...]:
-    """Every set of the choices that several experiments share, the one under which most claims hold first.
+    """Every set of the choices that belong to the model, the one under which most claims hold first.
 
-    A choice that one experiment alone makes (a threshold, an impact speed) is free for its claim: the claim
-    holds if it holds for one value of it. A claim that does not depend on a choice counts for every value.
+    A choice that belongs to one set-up (a threshold, an impact speed, a time window) is free for its claim:
+    the claim holds if it holds for one value of it.
+    A claim without contact friction (a head-on drop) counts for every value.
 
     Parameters
     ----------
@@ -51,12 +55,8 @@ def common(findings: Sequence[tuple[str, Finding]]) -> tuple[Common, ...]:
 
 
 def _shared(findings: Sequence[tuple[str, Finding]]) -> list[str]:
-    users: dict[str, set[str]] = {}
-    for experiment, one in findings:
-        for trial in one.trials:
-            for key in trial.choices:
-                users.setdefault(key, set()).add(experiment)
-    return [key for key, who in users.items() if len(who) > 1]
+    tried = {key for _, one in findings for trial in one.trials for key in trial.choices}
+    return [key for key in SHARED if key in tried]
 
 
 def _under(chosen: Mapping[str, str], findings: Sequence[Finding]) -> Common:
@@ -66,6 +66,7 @@ def _under(chosen: Mapping[str, str], findings: Sequence[Finding]) -> Common:
             outcome
             for key, outcome in one.by_choice.items()
             if all(chosen.get(name, value) == value for name, value in key)
+            and all(chosen.get(name, value) == value for name, value in one.settings.items() if name in FIXED)
         ]
         if one.contradiction:
             word = "fails"
