@@ -163,9 +163,9 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             "fig20-shear",
             tuple(shears),
             f"The mean normal force on the bed hardly changes (free over locked {normal:.2f}), so the shear "
-            "decides. As printed (cap on the spring, dashpot kept) nothing bounds the shear of a locked grain; "
-            "a small friction angle, a dashpot capped or dropped while sliding, or a softer shear spring weaken "
-            "it and bring free and locked closer. A grain that turns hardly rubs whatever is chosen.",
+            "decides. As printed (cap on the spring, dashpot kept) nothing bounds the shear of a locked "
+            "grain; a small friction angle, a dashpot capped or dropped while sliding, or a softer shear "
+            "spring weaken it and bring free and locked closer. A grain that turns hardly rubs.",
             settings={"k_n": "100 N/cm"},
             also=tuple(
                 f"shear over normal impulse, rotation {rot}: {one.value('shear_ratio'):.2f}"
