@@ -30,10 +30,10 @@ def heap(slope, moving=0.0, rolled=0.0):
 def of(slopes, plan=STANDARD):
     """A slope per rotation and setting, with a little scatter between seeds."""
     return {
-        fig19.run(chosen, rotation, seed): heap(slopes(rotation, chosen) + 0.2 * (seed - 2))
+        fig19.run(chosen, rotation, seed): heap(slopes(rotation, chosen) + 0.2 * (seed % 10 - 2))
         for rotation in fig19.BANDS
         for chosen in fig19.settings(plan, rotation)
-        for seed in plan.seeds
+        for seed in _heap.starts(plan)
     }
 
 
@@ -63,6 +63,11 @@ def test_a_heap_that_stands_like_a_wall_or_still_moves_is_no_final_slope():
     assert fig19.judge(creeping, STANDARD)[0].word is Word.NOT
 
 
+def test_starts_of_different_seeds_are_different_heaps():
+    assert len(set(_heap.starts(STANDARD))) == _heap.STARTS * 3
+    assert _heap.starts(QUICK) == [1]
+
+
 def test_some_heaps_that_stand_leave_it_undecided():
     slope, decided, note = _heap.slope_interval([heap(33.0), heap(math.nan), heap(33.0)], None)
     assert math.isnan(slope.value)
@@ -80,7 +85,7 @@ def rolled(plan, slopes):
     found = {
         eq13._heap.run({"friction angle": phi}, "free", s): heap(18.0)
         for phi in eq13._angles(plan)
-        for s in plan.seeds
+        for s in _heap.starts(plan)
     }
     found |= {eq13._spin(model, plan.seeds[0]): 1000.0 for model in eq13.SPINS}
     return found | {

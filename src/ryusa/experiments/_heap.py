@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ryusa.experiments._experiment import PHI, SLIP, Variant, variant
+from ryusa.experiments._experiment import PHI, SLIP, Plan, Variant, variant
 from ryusa.experiments._verdict import Interval, Pooled, over_seeds
 from ryusa.measure import Snapshot, Surface, snapshot, surface
 from ryusa.results import Results
@@ -16,7 +16,8 @@ SHIPPED = {PHI: "30 deg", SLIP: "spring"}
 KEYS = {PHI: "timeline.0.friction_angle", SLIP: "contact.slip"}
 FITS = ("0.1 to 0.9", "0.2 to 0.8", "0.25 to 0.75")  # beside the shipped 0.15 to 0.85 of the heap's height
 MOVING = 0.01  # share of grains that may still move in a heap that is called at rest
-LOOK = 0.1  # s after the gate, for the picture on the way
+STARTS = 3  # heaps per seed: slopes of single heaps scatter by several degrees
+SECOND = 100_000  # from one seed to the next start
 
 
 @dataclass(frozen=True)
@@ -54,6 +55,11 @@ def run(
     changed = {KEYS[name]: value for name, value in chosen.items() if name in KEYS and SHIPPED[name] != value}
     changed |= {} if rotation == "free" else {"timeline.1.rotation": rotation}
     return variant(CASE, changed | dict(more or {}), seed)
+
+
+def starts(plan: Plan) -> list[int]:
+    """Seeds of the heaps: several for each of the plan, the same for every setting; quick: one."""
+    return [seed + SECOND * k for seed in plan.seeds for k in range(plan.pick(1, STARTS))]
 
 
 def heap(results: Results) -> Heap:

@@ -115,7 +115,7 @@ def _spin(model: str, seed: int) -> Variant:
 
 def cases(plan: Plan) -> Sequence[Variant]:
     """Heaps under every setting and without rolling friction; saltating grains with the first seed."""
-    plain = [_heap.run({PHI: phi}, "free", seed) for phi in _angles(plan) for seed in plan.seeds]
+    plain = [_heap.run({PHI: phi}, "free", seed) for phi in _angles(plan) for seed in _heap.starts(plan)]
     heaps = [run(chosen, seed) for chosen in settings(plan) for seed in plan.seeds]
     return [*heaps, *plain, *(_spin(model, plan.seeds[0]) for model in SPINS)]
 
@@ -223,7 +223,7 @@ def _told(found: Found, plan: Plan) -> list[str]:
     """What decides nothing but belongs to the story: no rolling friction, energy made, spin, f' over k_n."""
     told: list[str] = []
     for phi in _angles(plan):
-        plain = _heap.slopes([found[_heap.run({PHI: phi}, "free", seed)] for seed in plan.seeds])
+        plain = _heap.slopes([found[_heap.run({PHI: phi}, "free", seed)] for seed in _heap.starts(plan)])
         told.append(f"without rolling friction the heap at phi {phi} has {np.nanmean(plain):.3g} deg")
     for chosen in settings(plan):
         heaps = [found[run(chosen, seed)] for seed in plan.seeds]

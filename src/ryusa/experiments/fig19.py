@@ -42,15 +42,13 @@ DECIDED = {
 def settings(plan: Plan, rotation: str) -> list[dict[str, str]]:
     """Free choices tried, the shipped one first."""
     base = {**_heap.SHIPPED, GROUND: "as shipped"}
-    phis = plan.pick((), ("10 deg", "20 deg"), ("5 deg", "10 deg", "15 deg", "20 deg", "25 deg", "40 deg"))
+    one = {"locked": ("10 deg",), "free": ("20 deg", "40 deg")}[rotation]
+    phis = plan.pick((), one, (*one, "5 deg", "10 deg", "15 deg", "20 deg", "25 deg", "40 deg"))
     sets = [base, *({**base, PHI: phi} for phi in phis)]
-    slips = {"locked": ("10 deg", "15 deg", "20 deg", "30 deg"), "free": ("30 deg",)}[rotation]
-    sets += [{**base, SLIP: "total", PHI: phi} for phi in plan.pick((), slips, ("10 deg", *slips, "40 deg"))]
-    if rotation == "free":
-        sets += [{**base, PHI: phi} for phi in plan.pick((), ("40 deg",))]
-    else:
-        sets += [{**base, SLIP: "spring-drop", PHI: phi} for phi in plan.pick((), (), slips)]
-        sets += [{**base, PHI: phi} for phi in plan.pick((), ("5 deg",))]
+    slips = {"locked": ("10 deg", "15 deg", "20 deg", "30 deg"), "free": ()}[rotation]
+    more = ("10 deg", "15 deg", "20 deg", "30 deg", "40 deg")
+    sets += [{**base, SLIP: "total", PHI: phi} for phi in plan.pick((), slips, (*slips, *more))]
+    sets += [{**base, SLIP: "spring-drop", PHI: phi} for phi in plan.pick((), (), more)]
     held = {**base, SLIP: "total", PHI: "15 deg"} if rotation == "locked" else base
     sets += [{**held, GROUND: one} for one in plan.pick((), (), tuple(OTHERS)[1:])]
     return [dict(one) for one in dict.fromkeys(tuple(one.items()) for one in sets)]
@@ -67,7 +65,7 @@ def cases(plan: Plan) -> Sequence[Variant]:
         run(chosen, rotation, seed)
         for rotation in BANDS
         for chosen in settings(plan, rotation)
-        for seed in plan.seeds
+        for seed in _heap.starts(plan)
     ]
 
 
@@ -84,7 +82,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
 
 def _judged(found: Found, plan: Plan, rotation: str) -> Finding:
     sets = settings(plan, rotation)
-    heaps = [[found[run(chosen, rotation, seed)] for seed in plan.seeds] for chosen in sets]
+    heaps = [[found[run(chosen, rotation, seed)] for seed in _heap.starts(plan)] for chosen in sets]
     spread = pool([_heap.slopes([one for one in group if not one.wall]) for group in heaps])
     trials: list[Trial] = []
     for chosen, group in zip(sets, heaps, strict=True):
@@ -111,7 +109,7 @@ def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
     lines: list[dict[str, object]] = []
     for rotation in BANDS:
         for chosen in settings(plan, rotation):
-            for seed in plan.seeds:
+            for seed in _heap.starts(plan):
                 one: _heap.Heap = found[run(chosen, rotation, seed)]
                 lines.append({"rotation": rotation, **chosen, "seed": seed, **line(one)})
     return lines
@@ -154,7 +152,7 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
             [
                 (
                     float(chosen[PHI].split()[0]),
-                    _heap.slopes([found[run(chosen, rotation, s)] for s in plan.seeds]),
+                    _heap.slopes([found[run(chosen, rotation, s)] for s in _heap.starts(plan)]),
                 )
                 for chosen in settings(plan, rotation)
                 if chosen[SLIP] == slip and chosen[GROUND] == "as shipped"
