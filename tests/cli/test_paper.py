@@ -89,10 +89,10 @@ def test_a_failed_run_is_told_at_the_end_and_by_the_exit_code(tmp_path, monkeypa
 def test_a_figure_is_run_judged_and_written_and_a_second_time_opened(tmp_path):
     first = call("fig20", "--quick", "-o", tmp_path, "-q", "-j", 1)
     assert first.exit_code == 0, first.output
-    ledger = json.loads((tmp_path / "ledger.json").read_text())
+    ledger = json.loads((tmp_path / "ledger-quick-part.json").read_text())
     assert [one["id"] for one in ledger["claims"]] == ["fig20", "fig20-shear"]
     assert ledger["provenance"]["runs_made"] == 2
-    assert (tmp_path / "ledger.html").stat().st_size > 100_000
+    assert (tmp_path / "ledger-quick-part.html").stat().st_size > 100_000
     assert not list(tmp_path.glob(".*.new"))
     again = call("fig20", "--quick", "-o", tmp_path, "-q", "-j", 1, "--json", tmp_path / "copy.json")
     assert again.exit_code == 0, again.output

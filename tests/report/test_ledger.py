@@ -63,7 +63,7 @@ def test_a_run_that_fails_costs_its_experiment_its_verdict_and_no_other(fakes, t
     assert "bad: no hop" in by_id["fig5"].problem
     assert list(made.problems.values()) == ["bad: no hop"]
     write(made)
-    assert "no hop" in (tmp_path / "ledger.html").read_text()
+    assert "no hop" in (tmp_path / "ledger-quick.html").read_text()
 
 
 def test_pictures_go_to_the_claim_they_are_named_after(fakes, tmp_path: Path):

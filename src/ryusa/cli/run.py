@@ -151,7 +151,7 @@ def _read(path: Path, settings: list[str] | None, seed: int | None) -> "Case":
 
 
 def _kinds() -> dict[str, str]:
-    """Case files that come with ryusa: name (paper/fig7 for one of the paper's) and title."""
+    """Case files that come with ryusa: name (paper/fig19 for one of the paper's) and title."""
     import tomllib
 
     found: dict[str, str] = {}

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ryusa.errors import ResultsError
 from ryusa.experiments import (
     NAMES,
     Campaign,
@@ -85,6 +86,7 @@ class Ledger:
     problems: Mapping[str, str]  # runs that could not be carried out
     counts: Mapping[str, Any]  # runs made, runs opened, wall seconds, processes
     tables: Mapping[str, list[dict[str, object]]]  # experiment -> lines of its CSV
+    stem: str = "ledger"  # of its files: another level or a part never replaces the whole
 
     def plain(self) -> dict[str, Any]:
         """Give the ledger as the JSON file holds it."""
@@ -125,6 +127,7 @@ def make(
     """
     chosen = NAMES if names is None else tuple(dict.fromkeys(names))
     refuse_if_not_writable(folder)
+    provenance.commit()  # read now: code that changes meanwhile is not what is running
     campaign = carry_out(chosen, plan, folder / "runs", jobs=jobs, again=again, say=say)
     rows: dict[str, Row] = {}
     tables: dict[str, list[dict[str, object]]] = {}
@@ -141,7 +144,9 @@ def make(
         "commits_of_runs": dict(campaign.commits),
     }
     findings = [(one.experiment, one.finding) for one in ordered if one.finding is not None]
-    return Ledger(ordered, plan, folder, common(findings), campaign.problems, counts, tables)
+    level = "" if plan.level is Level.STANDARD else f"-{plan.level}"
+    stem = f"ledger{level}{'' if names is None else '-part'}"
+    return Ledger(ordered, plan, folder, common(findings), campaign.problems, counts, tables, stem)
 
 
 def _judged(
@@ -168,9 +173,11 @@ def _judged(
         save(figure, home / f"{picture}.svg")
         pictures.append(save(figure, home / f"{picture}.png"))
     shared = _share_out(pictures, experiment.CLAIMS)
+    findings = {one.claim: one for one in experiment.judge(found, plan)}
+    if set(findings) != set(experiment.CLAIMS):
+        raise ResultsError(f"{name} judged {', '.join(findings)}, not {', '.join(experiment.CLAIMS)}")
     return {
-        one.claim: Row(CLAIMS[one.claim], one.word, one, name, shared[one.claim])
-        for one in experiment.judge(found, plan)
+        one: Row(CLAIMS[one], finding.word, finding, name, shared[one]) for one, finding in findings.items()
     }
 
 

@@ -14,7 +14,6 @@ from ryusa.report.friction import MARKS, by_angle
 from ryusa.report.ledger import Ledger
 from ryusa.running.folder import write_json
 
-JSON, PAGE = "ledger.json", "ledger.html"
 WHOLE_TABLE = 60  # rows; of a longer table the page holds the first HEAD
 HEAD = 20
 BEST = 5  # sets of common choices shown
@@ -49,7 +48,7 @@ QUESTIONS = (
 
 
 def write(ledger: Ledger, copy: Path | None = None) -> tuple[Path, ...]:
-    """Write ledger.html and ledger.json into the folder of the ledger, and a copy of the JSON where asked.
+    """Write page and JSON into the folder of the ledger, and a copy of the JSON where asked.
 
     Each file is written beside its place and moved there whole.
 
@@ -58,10 +57,10 @@ def write(ledger: Ledger, copy: Path | None = None) -> tuple[Path, ...]:
     OSError, ResultsError : a file cannot be written.
     """
     plain = ledger.plain()
-    page = ledger.folder / PAGE
+    page = ledger.folder / f"{ledger.stem}.html"
     page.parent.mkdir(parents=True, exist_ok=True)
     _write_whole(page, render(plain, ledger.tables, ledger.folder))
-    files = [page, ledger.folder / JSON]
+    files = [page, ledger.folder / f"{ledger.stem}.json"]
     if copy is not None:
         copy.parent.mkdir(parents=True, exist_ok=True)
         files.append(copy)
