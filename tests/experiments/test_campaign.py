@@ -143,12 +143,13 @@ def campaign(tmp_path):
     """A campaign of two runs at a time, while both are running."""
     hears = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)"  # a CI job may not
     words = ["-c", f"{hears}; from ryusa.cli import main; main()", "paper", "fig20", "--quick", "-j", "2"]
+    words += ["--seeds", "8"]  # enough runs that some are still under way when the first two are seen
     process = subprocess.Popen(
         [sys.executable, *words, "-o", tmp_path], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
         start_new_session=True,
     )  # fmt: skip
     for _ in range(600):
-        if len(list(tmp_path.glob("runs/*/*/log.txt"))) == 2:
+        if len(list(tmp_path.glob("runs/*/*/log.txt"))) >= 2:
             break
         assert process.poll() is None, process.communicate()
         time.sleep(0.1)
@@ -156,6 +157,15 @@ def campaign(tmp_path):
     if family(process.pid):
         os.killpg(process.pid, signal.SIGKILL)
     process.communicate()
+
+
+def gone(pid):
+    """Whether every process of the group ends, a moment for the system to clear up given."""
+    for _ in range(100):
+        if not family(pid):
+            return True
+        time.sleep(0.1)
+    return False
 
 
 needs_proc = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="reads /proc")
@@ -172,7 +182,7 @@ def test_an_interrupt_ends_every_process_and_says_how_to_go_on(campaign, how):
     assert campaign.returncode == 130
     assert "the same command goes on from there" in said
     assert "Traceback" not in said
-    assert not family(campaign.pid)
+    assert gone(campaign.pid)
 
 
 @needs_proc
@@ -182,9 +192,9 @@ def test_a_killed_process_is_told_and_nothing_hangs(campaign):
     _, said = campaign.communicate(timeout=30)
     assert campaign.returncode == 2
     assert "ended from outside" in said
-    assert "saltation free 1" in said
+    assert "saltation free" in said
     assert "the same command goes on from there" in said.replace("\n", " ")
-    assert not family(campaign.pid)
+    assert gone(campaign.pid)
 
 
 @needs_proc
