@@ -192,7 +192,7 @@ def test_a_killed_process_is_told_and_nothing_hangs(campaign):
     _, said = campaign.communicate(timeout=30)
     assert campaign.returncode == 2
     assert "ended from outside" in said
-    assert "saltation free" in said
+    assert "running were: saltation" in said
     assert "the same command goes on from there" in said.replace("\n", " ")
     assert gone(campaign.pid)
 
