@@ -106,3 +106,19 @@ def moving(heaps: Sequence[Heap]) -> Interval:
     return Interval(
         max(shares), min(shares), max(shares), "-", len(shares), f"range over {len(shares)} seeds"
     )
+
+
+def line(one: Heap) -> dict[str, object]:
+    """Numbers of one heap."""
+    return {
+        "slope_deg": math.degrees(one.slope),
+        "fit_error_deg": math.degrees(one.found.error),
+        "fit_spread_deg": math.degrees(one.found.spread),
+        "stands_like_a_wall": one.wall,
+        "moving_share": one.found.moving,
+        "run_out_cm": 100.0 * one.found.run_out,
+        "crest_cm": 100.0 * one.found.crest,
+        "t_end_s": one.t_end,
+        "residual": one.residual,
+        "lost_to_rolling": one.rolled,
+    }

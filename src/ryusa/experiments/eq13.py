@@ -271,13 +271,11 @@ def _arms() -> list[str]:
 
 def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
     """One line per heap, then the spin of the saltating grains."""
-    from ryusa.experiments.fig19 import line
-
     lines: list[dict[str, object]] = []
     for chosen in settings(plan):
         for seed in plan.seeds:
             one = found[run(chosen, seed)]
-            numbers = {"broken": one.message} if isinstance(one, Broken) else line(one)
+            numbers = {"broken": one.message} if isinstance(one, Broken) else _heap.line(one)
             lines.append({**chosen, "seed": seed, **numbers})
     for model in SPINS:
         spun = found[_spin(model, plan.seeds[0])]

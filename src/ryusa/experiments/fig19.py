@@ -111,24 +111,8 @@ def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
         for chosen in settings(plan, rotation):
             for seed in _heap.starts(plan):
                 one: _heap.Heap = found[run(chosen, rotation, seed)]
-                lines.append({"rotation": rotation, **chosen, "seed": seed, **line(one)})
+                lines.append({"rotation": rotation, **chosen, "seed": seed, **_heap.line(one)})
     return lines
-
-
-def line(one: _heap.Heap) -> dict[str, object]:
-    """Numbers of one heap."""
-    return {
-        "slope_deg": math.degrees(one.slope),
-        "fit_error_deg": math.degrees(one.found.error),
-        "fit_spread_deg": math.degrees(one.found.spread),
-        "stands_like_a_wall": one.wall,
-        "moving_share": one.found.moving,
-        "run_out_cm": 100.0 * one.found.run_out,
-        "crest_cm": 100.0 * one.found.crest,
-        "t_end_s": one.t_end,
-        "residual": one.residual,
-        "lost_to_rolling": one.rolled,
-    }
 
 
 def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
