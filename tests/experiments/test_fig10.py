@@ -3,12 +3,9 @@ import math
 import numpy as np
 import pytest
 
-from ryusa.experiments import Level, Plan, Word, _forward, carry_out, fig10
+from ryusa.experiments import Level, Plan, Word, carry_out, fig10
 from ryusa.experiments.fig10 import EULER, ONE_STEP, OURS, SOFT, STIFF, SUMMED, Fall
-from ryusa.laws.collision import zeta_no_tension
 from ryusa.measure import Vibration
-from ryusa.model import Scene
-from ryusa.model.scene import ContactLaw
 
 QUICK = Plan(Level.QUICK, (1,))
 STANDARD = Plan(Level.STANDARD, (1, 2, 3))
@@ -82,49 +79,6 @@ def test_other_diameters_fall_as_many_diameters_and_as_long_in_their_own_time():
         assert one.stop.time / math.sqrt(d / 0.002) == pytest.approx(0.5001)
     shipped = fig10._run(fig10.SHIPPED, SOFT, 1).read()
     assert shipped.build.height == pytest.approx(fig10.FALL * shipped.derived.d)
-
-
-def scene(gap, **how):
-    """One free grain above one fixed grain."""
-    law = ContactLaw(k_n=100.0, k_s=28.57, mu=0.5, e_n=0.7, e_s=0.7, zeta_n=0.11, zeta_s=0.11)
-    m = 2650.0 * math.pi / 6.0 * D**3
-    one = np.ones(1)
-    return Scene(
-        d=D * one, m=m * one, m_added=0 * one, m_weight=m * one, inertia=0.1 * m * D * D * one,
-        x_fixed=np.zeros((1, 3)), d_fixed=D * one, fixed_active=np.ones(1, dtype=bool),
-        plane_normal=np.zeros((0, 3)), plane_point=np.zeros((0, 3)), plane_active=np.zeros(0, dtype=bool),
-        contact=law, dt=1e-6, gravity=np.array([0.0, 0.0, -9.8]), rotation=False, plane_case=True, **how,
-    ), np.array([[0.0, 0.0, D + gap]])  # fmt: skip
-
-
-@pytest.mark.parametrize("summed", [True, False])
-def test_forward_differences_fall_freely_and_rebound_as_asked_with_a_fine_step(summed):
-    low, start = scene(0.001)
-    dt = _forward.step(low, 1000.0)
-    t, x = _forward.forward(low, start, dt, 0.035, 2e-5, summed=summed)
-    gap = x[:, 0, 2] - D
-    falling = t < 0.012
-    np.testing.assert_allclose(gap[falling], 0.001 - 4.9 * t[falling] ** 2, atol=2e-7)
-    after = t > t[np.argmin(gap)]
-    assert math.sqrt(gap[after].max() / 0.001) == pytest.approx(0.7, abs=0.02)
-
-
-def test_forward_differences_feed_a_resting_grain_below_the_stable_number_of_steps():
-    low, start = scene(-1e-6)
-    zeta = zeta_no_tension(0.7)
-    stable = 0.929 * math.pi / (2.0 * zeta)
-    moved = []
-    for steps in (0.8 * stable / math.sqrt(2.0), 4.0 * stable):  # the step is a part of a free pair's contact
-        dt = _forward.step(low, steps)
-        _, x = _forward.forward(low, start, dt, 0.3, 1e-4, summed=False)
-        moved.append(np.ptp(x[-200:, 0, 2]))
-    assert moved[0] > 1e-7
-    assert moved[1] < 1e-10
-
-
-def test_the_step_of_the_stiff_box_is_a_tenth_of_that_of_the_soft_one():
-    low, _ = scene(0.0)
-    assert _forward.step(low, 10.0, 1.0e4) == pytest.approx(0.1 * _forward.step(low, 10.0))
 
 
 @pytest.mark.slow

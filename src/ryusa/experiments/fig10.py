@@ -3,11 +3,13 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 from matplotlib.figure import Figure
 
-from ryusa.experiments import _forward
+from ryusa.engine.forward import march, step
 from ryusa.experiments._experiment import PHI, RATIO, ROTATION, SLIP, Found, Plan, Variant, variant
 from ryusa.experiments._verdict import Band, Finding, Interval, Trial, over_range, over_seeds, pool, short
 from ryusa.figures.snapshot import snapshot as draw_snapshot
@@ -133,10 +135,10 @@ def measure(run: Results, one: Variant) -> Fall:
     window = WINDOW * math.sqrt(d / D)
     forward: dict[str, Vibration] = {}
     if {key for key, _ in one.overrides} <= {"seed", "contact.stiffness"}:
-        own, stiff = _forward.step(run.scene, STEPS), _forward.step(run.scene, STEPS, STIFFEST)
-        forward = {name: _forward.again(run, own, summed=name == SUMMED) for name in (SUMMED, EULER)}
+        own, stiff = step(run.scene, STEPS), step(run.scene, STEPS, STIFFEST)
+        forward = {name: again(run, own, summed=name == SUMMED) for name in (SUMMED, EULER)}
         alike = math.isclose(own, stiff)
-        forward[ONE_STEP] = forward[EULER] if alike else _forward.again(run, stiff, summed=False)
+        forward[ONE_STEP] = forward[EULER] if alike else again(run, stiff, summed=False)
     return Fall(
         moved=vibration(run, window),
         overlap=float(np.max(run.tally["overlap_max"])),
@@ -144,6 +146,22 @@ def measure(run: Results, one: Variant) -> Fall:
         later=snapshot(run, AT),
         forward=forward,
     )
+
+
+def again(run: Results, dt: float, *, summed: bool) -> Vibration:
+    """Motion within windows of 0.01 s of the grains of a run by forward differences, from its first places.
+
+    Parameters
+    ----------
+    run : equal grains in a plane among fixed ones of the same size; dry, slip rule "spring", no cohesion.
+    dt : time step [s].
+    summed : the spring is the sum of k_n v dt, Eq. (1) as printed; else it is read from the overlap.
+    """
+    scene, frames = run.scene, run.frames
+    every, end = float(np.median(np.diff(frames.t))), float(frames.t[-1])
+    t, x = march(scene, np.asarray(frames.x[0]), dt, end, every, summed=summed)
+    moved = SimpleNamespace(t=t, x=x, omega=np.zeros_like(x))
+    return vibration(cast(Any, SimpleNamespace(scene=scene, frames=moved)))
 
 
 def share(moved: Vibration, threshold: str, way: str) -> float:

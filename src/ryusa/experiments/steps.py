@@ -7,6 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ryusa import figures
+from ryusa.engine.forward import restitution
 from ryusa.experiments import _drops
 from ryusa.experiments._drops import COPIES, NO_TENSION, TENSION, Drop, Setup
 from ryusa.experiments._experiment import Found, Plan, Variant
@@ -66,26 +67,13 @@ def forward(steps: float, parting: str, summed: bool) -> Floats:
 
     Notes
     -----
-    Mass, natural frequency and impact speed are 1. Position and velocity both move with the velocity and
-    force of the beginning of the step. This is the only place where this scheme lives.
+    Mass, natural frequency and impact speed are 1.
     """
     drop = Setup(parting=parting)
-    eta, tension = 2.0 * drop.zeta, parting == TENSION
     dt = drop.shortest * math.sqrt(drop.stiffness / drop.m) / steps
-    overlap, closing = -(np.arange(COPIES) + 0.5) / COPIES * dt, np.ones(COPIES)
-    spring, e, touched = np.zeros(COPIES), np.full(COPIES, np.nan), np.zeros(COPIES, dtype=np.bool_)
-    for _ in range(int(20.0 * steps) + 20):
-        if np.isfinite(e).all():
-            break
-        touch = overlap > 0.0
-        e = np.where(touched & ~touch & np.isnan(e), -closing, e)
-        touched |= touch
-        spring = np.where(touch, spring + closing * dt if summed else overlap, 0.0)
-        force = np.where(touch, spring + eta * closing, 0.0)
-        if not tension:
-            force = np.maximum(force, 0.0)
-        overlap, closing = overlap + closing * dt, closing - force * dt
-    return e
+    starts = -(np.arange(COPIES) + 0.5) / COPIES * dt
+    n_steps, tension = int(20.0 * steps) + 20, parting == TENSION
+    return np.array([restitution(x, drop.zeta, dt, n_steps, summed, tension) for x in starts])
 
 
 def rebound(found: Found, scheme: str, parting: str, steps: float) -> Floats:
