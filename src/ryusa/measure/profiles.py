@@ -10,7 +10,7 @@ from ryusa.errors import ResultsError
 from ryusa.laws._law import law
 from ryusa.laws.slices import circle_slice, sphere_slice
 from ryusa.measure._run import Floats, Run, crest_of, settle_time
-from ryusa.measure.snapshot import _lanes, scene_at
+from ryusa.measure.snapshot import lanes_of, scene_at
 from ryusa.measure.statistics import average, block_errors
 from ryusa.measure.table import Averages
 from ryusa.model import Scene
@@ -173,7 +173,7 @@ def profiles(
         raise ResultsError(f"no frame of free grains from t = {since:g} s to {end:g} s")
     t = t[first:last]
     z_0, thickness = _origin(scene, origin), layer * float(scene.d.mean())
-    _, lanes = _lanes(np.asarray(run.frames.x[first], dtype=np.float64)[:, 1], scene)
+    _, lanes = lanes_of(np.asarray(run.frames.x[first], dtype=np.float64)[:, 1], scene)
     length = float(scene.period[0]) if between is None else between[1] - between[0]
     width = _width(scene, lanes)
     if not (math.isfinite(length) and length > 0.0):

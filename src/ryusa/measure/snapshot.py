@@ -74,7 +74,7 @@ def snapshot(run: Run, t: float | None = None, lane: int | None = None) -> Snaps
     scene = scene_at(run, now)
     x = _inside(np.asarray(run.frames.x[k], dtype=np.float64), scene)
     v, omega = np.asarray(run.frames.v[k]), np.asarray(run.frames.omega[k])
-    places, lanes = _lanes(x[:, 1], scene)
+    places, lanes = lanes_of(x[:, 1], scene)
     chosen = (int(places[0]) if len(places) else 0) if lane is None else lane
     if not 0 <= chosen < lanes:
         raise ResultsError(f"no lane {chosen}: there are {lanes}, counted from 0")
@@ -121,6 +121,15 @@ def scene_at(run: Run, t: float) -> Scene:
     return run.scene if at is None else at(t)
 
 
+def lanes_of(y: Floats, scene: Scene) -> tuple[NDArray[np.int64], int]:
+    """Lane of each grain at y [m], shape (n,), and how many there are: copies of a plane scene."""
+    if not scene.plane_case or len(y) == 0:
+        return np.zeros(len(y), dtype=np.int64), 1
+    order = np.sort(y)
+    edges = order[1:][np.diff(order) > 0.5 * float(scene.d.max())]
+    return np.searchsorted(edges, y, side="right").astype(np.int64), len(edges) + 1
+
+
 def _inside(x: Floats, scene: Scene) -> Floats:
     """Centres taken back into the periods [m]."""
     x = x.copy()
@@ -129,12 +138,3 @@ def _inside(x: Floats, scene: Scene) -> Floats:
             inside = np.mod(x[:, axis], period)
             x[:, axis] = np.where(inside < period, inside, 0.0)  # round-off
     return x
-
-
-def _lanes(y: Floats, scene: Scene) -> tuple[NDArray[np.int64], int]:
-    """Lane of each grain, and how many there are: copies of a plane scene at different y."""
-    if not scene.plane_case or len(y) == 0:
-        return np.zeros(len(y), dtype=np.int64), 1
-    order = np.sort(y)
-    edges = order[1:][np.diff(order) > 0.5 * float(scene.d.max())]
-    return np.searchsorted(edges, y, side="right").astype(np.int64), len(edges) + 1
