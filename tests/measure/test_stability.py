@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ryusa.measure.stability import Grain, chart, choice, stable_range
+from ryusa.measure.stability import Grain, chart, chart_around, choice, stable_range
 
 SAND = Grain(d=0.002, rho_s=2650.0, e=0.7, speed=0.6)
 
@@ -49,3 +49,9 @@ def test_a_chart_has_one_line_per_diameter():
     assert found.band_k.shape == (2, 2)
     assert len(found.rows()) == 10
     assert found.time[1, -1] == pytest.approx(choice(SAND, 1.0e4).eq_8)
+
+
+def test_a_chart_around_grains_holds_the_whole_band_of_all_of_them():
+    found = chart_around(SAND, np.array([0.0005, 0.01]))
+    assert found.k_n[0] < 0.5 * found.band_k.min()
+    assert found.k_n[-1] > 2.0 * found.band_k.max()

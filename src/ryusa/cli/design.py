@@ -115,18 +115,18 @@ def _write(grain: "Grain", chosen: "list[Choice]", folder: Path) -> list[Path]:
     import numpy as np
 
     from ryusa.errors import ResultsError
-    from ryusa.experiments import _charts
-    from ryusa.figures import save
+    from ryusa.figures import charts, save
     from ryusa.measure import write_csv
+    from ryusa.measure.stability import chart_around
 
     near = grain.d * np.array([0.25, 0.5, 1.0, 2.0, 5.0])
     large = grain.d * np.array([25.0, 50.0, 100.0, 250.0, 500.0])
-    small, big = _charts.around(grain, near), _charts.around(grain, large)
+    small, big = chart_around(grain, near), chart_around(grain, large)
     pictures = {
-        "contact-time": _charts.times(small, grain, band=False),
-        "overlap": _charts.overlaps(small, grain),
-        "band": _charts.times(small, grain, band=True),
-        "band-large-grains": _charts.times(big, grain, band=True),
+        "contact-time": charts.times(small, grain, band=False),
+        "overlap": charts.overlaps(small, grain),
+        "band": charts.times(small, grain, band=True),
+        "band-large-grains": charts.times(big, grain, band=True),
     }
     try:
         kinds = (".png", ".svg")

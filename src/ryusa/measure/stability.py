@@ -183,3 +183,13 @@ def chart(grain: Grain, d: Floats, k_n: Floats, band: tuple[float, float] = BAND
         band_k=edges,
         band_time=np.array(at_edges),
     )
+
+
+def chart_around(grain: Grain, d: Floats) -> Chart:
+    """Chart that holds the whole band of all diameters d [m], and three times as stiff and as soft."""
+    edges = chart(grain, d, np.ones(1)).band_k
+    middle = float(np.sqrt(edges.min() * edges.max()))
+    half = max(100.0, 3.0 * float(np.sqrt(edges.max() / edges.min())))
+    return chart(
+        grain, d, np.logspace(np.floor(np.log10(middle / half)), np.ceil(np.log10(middle * half)), 81)
+    )
