@@ -33,7 +33,7 @@ def of(slopes, plan=STANDARD):
         fig19.run(chosen, rotation, seed): heap(slopes(rotation, chosen) + 0.2 * (seed % 10 - 2))
         for rotation in fig19.BANDS
         for chosen in fig19.settings(plan, rotation)
-        for seed in _heap.starts(plan)
+        for seed in fig19.starts(plan, rotation, chosen)
     }
 
 
@@ -68,6 +68,20 @@ def test_starts_of_different_seeds_are_different_heaps():
     assert _heap.starts(QUICK) == [1]
 
 
+def test_more_heaps_are_made_where_a_verdict_hangs_on_them():
+    def heaps(plan, rotation, chosen):
+        return len(fig19.starts(plan, rotation, chosen))
+
+    base = fig19.settings(FULL, "locked")[0]
+    near = {**base, "slip rule": "total", "friction angle": fig19.NEAR[0]}
+    only_full = {**base, "friction angle": "5 deg"}
+    n = len(FULL.seeds)
+    assert heaps(FULL, "locked", base) == _heap.STARTS * n
+    assert heaps(FULL, "locked", near) == fig19.NEAR_STARTS * n
+    assert heaps(FULL, "locked", only_full) == n
+    assert heaps(FULL, "free", near) == n
+
+
 def test_some_heaps_that_stand_leave_it_undecided():
     slope, decided, note = _heap.slope_interval([heap(33.0), heap(math.nan), heap(33.0)], None)
     assert math.isnan(slope.value)
@@ -87,9 +101,11 @@ def rolled(plan, slopes):
         for phi in eq13._angles(plan)
         for s in _heap.starts(plan)
     }
-    found |= {eq13._spin(model, plan.seeds[0]): 1000.0 for model in eq13.SPINS}
+    found |= {eq13._spin(model, seed): 1000.0 + seed for model in eq13.SPINS for seed in plan.seeds}
     return found | {
-        eq13.run(chosen, seed): slopes(chosen, seed) for chosen in eq13.settings(plan) for seed in plan.seeds
+        eq13.run(chosen, seed): slopes(chosen, seed)
+        for chosen in eq13.settings(plan)
+        for seed in eq13._starts(plan, chosen)
     }
 
 

@@ -4,14 +4,15 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from ryusa.errors import NotANumber, OverlapTooLarge, RunError
 from ryusa.experiments import _heap, _saltation
-from ryusa.experiments._experiment import PHI, RATIO, SLIP, Found, Plan, Variant
-from ryusa.experiments._verdict import Band, Finding, Interval, Trial, pool
+from ryusa.experiments._experiment import PHI, RATIO, SLIP, Found, Level, Plan, Variant
+from ryusa.experiments._verdict import Band, Finding, Interval, Trial, over_seeds, pool
 from ryusa.figures.repose import surface as draw_surface
 from ryusa.figures.slopes import Slope, slopes
 from ryusa.laws.rolling import rolling_arm_width
@@ -87,6 +88,16 @@ def settings(plan: Plan) -> list[dict[str, str]]:
     return [dict(pairs) for pairs in dict.fromkeys(tuple(each.items()) for each in sets)]
 
 
+def _group(found: Found, plan: Plan, chosen: Mapping[str, str]) -> list[Any]:
+    return [found[run(chosen, seed)] for seed in _starts(plan, chosen)]
+
+
+def _starts(plan: Plan, chosen: Mapping[str, str]) -> list[int]:
+    """Seeds of the heaps: one for each of the plan's; at the full level several where `_told` compares."""
+    compared = chosen in settings(Plan(Level.STANDARD, plan.seeds))
+    return _heap.starts(plan, plan.pick(1, 1, _heap.STARTS if compared else 1))
+
+
 def run(chosen: Mapping[str, str], seed: int) -> Variant:
     """One heap; stretched in time as sqrt(d) where the grains are of another size."""
     more = {"rolling.model": KINDS[chosen[MODEL]], "rolling.coefficient": chosen[COEFFICIENT]}
@@ -114,10 +125,10 @@ def _spin(model: str, seed: int) -> Variant:
 
 
 def cases(plan: Plan) -> Sequence[Variant]:
-    """Heaps under every setting and without rolling friction; saltating grains with the first seed."""
+    """Heaps under every setting and without rolling friction; saltating grains under each form."""
     plain = [_heap.run({PHI: phi}, "free", seed) for phi in _angles(plan) for seed in _heap.starts(plan)]
-    heaps = [run(chosen, seed) for chosen in settings(plan) for seed in plan.seeds]
-    return [*heaps, *plain, *(_spin(model, plan.seeds[0]) for model in SPINS)]
+    heaps = [run(chosen, seed) for chosen in settings(plan) for seed in _starts(plan, chosen)]
+    return [*heaps, *plain, *(_spin(model, seed) for model in SPINS for seed in plan.seeds)]
 
 
 def _angles(plan: Plan) -> list[str]:
@@ -137,9 +148,8 @@ def failed(error: RunError) -> Broken | None:
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """Slope of gravel, and a heap that stands still."""
     sets = settings(plan)
-    groups = [[found[run(chosen, seed)] for seed in plan.seeds] for chosen in sets]
-    whole = [[one for one in group if isinstance(one, _heap.Heap) and not one.wall] for group in groups]
-    spread = pool([_heap.slopes(group) for group in whole])
+    groups = [_group(found, plan, chosen) for chosen in sets]
+    spread = pool([_heap.slopes(_whole(group)) for group in groups])
     printed: list[Trial] = []
     others: list[Trial] = []
     for chosen, group in zip(sets, groups, strict=True):
@@ -166,6 +176,11 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     }
     also = (*_identified(found, plan), *_told(found, plan), *_arms())
     return [Finding("eq13", tuple(printed), decided_by, common, also=also, beside=tuple(others))]
+
+
+def _whole(group: Sequence[Any]) -> list[_heap.Heap]:
+    """Give the heaps of a group that have a slope."""
+    return [one for one in group if isinstance(one, _heap.Heap) and not one.wall]
 
 
 def _verdict_of(others: Sequence[Trial]) -> str:
@@ -226,7 +241,7 @@ def _told(found: Found, plan: Plan) -> list[str]:
         plain = _heap.slopes([found[_heap.run({PHI: phi}, "free", seed)] for seed in _heap.starts(plan)])
         told.append(f"without rolling friction the heap at phi {phi} has {np.nanmean(plain):.3g} deg")
     for chosen in settings(plan):
-        heaps = [found[run(chosen, seed)] for seed in plan.seeds]
+        heaps = _group(found, plan, chosen)
         lost = [one.rolled for one in heaps if isinstance(one, _heap.Heap)]
         if chosen[MODEL] == PRINTED and lost:
             word = "takes" if np.mean(lost) > 0.0 else "makes"
@@ -234,20 +249,22 @@ def _told(found: Found, plan: Plan) -> list[str]:
                 f"Eq. (13) as printed at f' = {chosen[COEFFICIENT]} {word} "
                 f"{abs(100.0 * np.mean(lost)):.2g} % of the energy the heap falls through"
             )
-    free = found[_spin("none", plan.seeds[0])]
-    for model in SPINS[1:]:
-        spun = found[_spin(model, plan.seeds[0])]
-        words = "breaks the run down" if isinstance(spun, Broken) else f"{spun:.0f} rad/s"
-        told.append(
-            f"mean spin of a saltating grain, {free:.0f} rad/s without: {words} ({model}, {SPIN_AT[model]})"
+    spins = {model: [found[_spin(model, seed)] for seed in plan.seeds] for model in SPINS}
+    spread = pool([[x for x in spun if not isinstance(x, Broken)] for spun in spins.values()])
+    for model, spun in spins.items():
+        words = (
+            "breaks the run down"
+            if any(isinstance(one, Broken) for one in spun)
+            else str(over_seeds(spun, "rad/s", spread))
         )
+        name = "without rolling friction" if model == "none" else f"{model}, {SPIN_AT[model]}"
+        told.append(f"mean spin of a saltating grain, {name}: {words}")
     pair = [
         {**BASE, MODEL: CONSTANT, COEFFICIENT: f, K_N: k} for f, k in (("20", "100 N/cm"), ("10", "25 N/cm"))
     ]
     if all(chosen in settings(plan) for chosen in pair):
         stiff, soft = (
-            float(np.nanmean(_heap.slopes([found[run(chosen, seed)] for seed in plan.seeds])))
-            for chosen in pair
+            float(np.nanmean(_heap.slopes(_whole(_group(found, plan, chosen))))) for chosen in pair
         )
         told.append(
             f"half the f' on a spring a quarter as stiff, the same arm f' b, gives {soft:.3g} beside "
@@ -273,14 +290,15 @@ def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
     """One line per heap, then the spin of the saltating grains."""
     lines: list[dict[str, object]] = []
     for chosen in settings(plan):
-        for seed in plan.seeds:
+        for seed in _starts(plan, chosen):
             one = found[run(chosen, seed)]
             numbers = {"broken": one.message} if isinstance(one, Broken) else _heap.line(one)
             lines.append({**chosen, "seed": seed, **numbers})
     for model in SPINS:
-        spun = found[_spin(model, plan.seeds[0])]
-        numbers = {"broken": spun.message} if isinstance(spun, Broken) else {"mean_spin_rad_per_s": spun}
-        lines.append({MODEL: model, COEFFICIENT: SPIN_AT.get(model, ""), **numbers})
+        for seed in plan.seeds:
+            spun = found[_spin(model, seed)]
+            numbers = {"broken": spun.message} if isinstance(spun, Broken) else {"mean_spin_rad_per_s": spun}
+            lines.append({MODEL: model, COEFFICIENT: SPIN_AT.get(model, ""), "seed": seed, **numbers})
     return lines
 
 
@@ -293,7 +311,7 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
         for phi in dict.fromkeys(chosen[PHI] for chosen in sets):
             points: list[tuple[float, list[float]]] = []
             for chosen in sets:
-                group = [found[run(chosen, seed)] for seed in plan.seeds]
+                group = _group(found, plan, chosen)
                 if chosen[MODEL] != model or chosen[PHI] != phi or any(isinstance(x, Broken) for x in group):
                     continue
                 points.append((float(chosen[COEFFICIENT]), _heap.slopes(group)))
