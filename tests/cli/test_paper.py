@@ -72,6 +72,7 @@ class Broken:
             folder,
             {"fig20 [free]": "grain 7 lost"},
         )
+        self.faults, self.traces, self.log = {}, {}, ""
 
 
 def test_a_failed_run_is_told_at_the_end_and_by_the_exit_code(tmp_path, monkeypatch):
@@ -83,6 +84,20 @@ def test_a_failed_run_is_told_at_the_end_and_by_the_exit_code(tmp_path, monkeypa
     assert "not judged, see below" in result.stdout
     assert "1 undecided (spread); 1 not yet run (water)" in result.stdout
     assert all(len(line) <= 100 for line in result.stdout.splitlines() if "wrote" not in line)
+
+
+def test_an_error_in_the_program_has_its_own_exit_code_and_no_traceback(tmp_path, monkeypatch):
+    broken = Broken(tmp_path)
+    broken.faults = {"fig20: judging": "error in the program: IndexError: no such (fig20.py, line 3)"}
+    monkeypatch.setattr(report, "make", lambda *_, **__: broken)
+    monkeypatch.setattr(report, "write", lambda *_: (tmp_path / "ledger.html",))
+    assert call("--quick", "-o", tmp_path).exit_code == 3
+    broken.traces, broken.log = {"fig20: judging": "Traceback (most recent call last):"}, "ledger-errors.log"
+    result = call("--quick", "-o", tmp_path)
+    assert result.exit_code == 1
+    assert "1 step after the runs failed:\n  fig20: judging: error in the program" in result.stderr
+    assert f"{tmp_path / 'ledger-errors.log'} holds their tracebacks" in result.stderr
+    assert "Traceback" not in result.output
 
 
 @pytest.mark.slow

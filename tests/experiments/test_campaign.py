@@ -4,12 +4,14 @@ import signal
 import subprocess
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
 
-from ryusa.errors import CaseError, ResultsError
+from ryusa.errors import CaseError, NotANumber, ResultsError
 from ryusa.experiments import Lines, Outlook, Plan, Say, _campaign, _outlook, carry_out, outlook, variant
+from ryusa.running import runner
 
 SHORT = {"stop.time": "0.01 s", "record.settle": "0 s"}
 
@@ -69,6 +71,85 @@ def test_what_fails_in_one_experiment_spares_the_others(fakes, tmp_path):
     assert len(found.found["good"]) == 2
     assert len(found.found["bad"]) == 1
     assert list(found.problems.values()) == ["bad: no hop at all"]
+
+
+def test_an_error_in_the_program_costs_its_experiment_and_no_other(fakes, tmp_path):
+    fakes["good"], fakes["bad"] = Fake(), Fake(IndexError("list index out of range"))
+    found = carry_out(("good", "bad"), Plan(), tmp_path)
+    assert len(found.found["good"]) == 2
+    assert set(found.missing) == {"bad"}
+    (fault,) = found.missing["bad"].values()
+    assert "error in the program: IndexError: list index out of range (test_campaign.py, line" in fault.words
+    assert "in measure)" in fault.words
+    assert fault.trace.startswith("Traceback")
+    assert list(found.problems.values()) == [f"bad: {fault.words}"]
+    fakes["bad"] = Fake()
+    assert carry_out(("good", "bad"), Plan(), tmp_path).n_opened == 2  # repaired: nothing is run again
+
+
+def test_a_worker_whose_answer_cannot_be_sent_spares_the_others(fakes, tmp_path, monkeypatch):
+    fakes["one"] = Fake()
+
+    def answer(one, *_):
+        if one.get("seed") == "2":
+            raise TypeError("cannot pickle a generator")
+        return _campaign.Done(one, {"one": 1}, False, 1.0)
+
+    monkeypatch.setattr(_campaign, "_one", answer)
+    monkeypatch.setattr(_campaign, "ProcessPoolExecutor", lambda jobs, **_: ThreadPoolExecutor(jobs))
+    found = carry_out(("one",), Plan(), tmp_path, jobs=2)
+    assert len(found.found["one"]) == 1
+    assert [one.get("seed") for one in found.missing["one"]] == ["2"]
+    assert "cannot pickle" in next(iter(found.problems.values()))
+
+
+def test_a_run_that_failed_is_tried_again_and_it_alone(fakes, tmp_path, monkeypatch):
+    fakes["both"], fakes["first"] = Fake(), Fake(seeds=(1,))
+    real = runner.run
+
+    def breaks(case, *words, **how):
+        if case.seed == 2:
+            raise NotANumber("force is no number", grain=3, step=7, t=0.1, hint="Take shorter steps")
+        return real(case, *words, **how)
+
+    monkeypatch.setattr(runner, "run", breaks)
+    found = carry_out(("both", "first"), Plan(), tmp_path)
+    assert len(found.found["first"]) == 1
+    assert set(found.missing) == {"both"}
+    assert "grain 3" in next(iter(found.problems.values()))
+    assert not any(one.trace for one in found.missing["both"].values())  # no error in the program
+    monkeypatch.setattr(runner, "run", real)
+    second = carry_out(("both", "first"), Plan(), tmp_path)
+    assert (second.n_run, second.n_opened) == (1, 1)
+    assert len(second.found["both"]) == 2
+    assert not second.problems
+
+
+def test_a_run_that_breaks_down_while_stepping_is_no_finished_run(fakes, tmp_path):
+    limit = {**SHORT, "domain.overlap_limit": "1e-9", "stop.time": "0.3 s"}
+    fakes["one"] = Fake(seeds=())
+    fakes["one"].cases = lambda _: [variant("saltation", SHORT), variant("saltation", limit)]
+    for opened in (0, 1):
+        found = carry_out(("one",), Plan(), tmp_path)
+        assert found.n_opened == opened
+        assert len(found.found["one"]) == 1
+        assert "overlap" in next(iter(found.problems.values()))
+
+
+def test_an_answer_to_a_breakdown_that_goes_wrong_itself_is_told(fakes, tmp_path, monkeypatch):
+    def breaks(*_, **__):
+        raise NotANumber("force is no number", grain=3, step=7, t=0.1, hint="Take shorter steps")
+
+    def wrong(_):
+        raise ValueError("no answer")
+
+    fakes["answers"], fakes["errs"] = Fake(seeds=(1,)), Fake(seeds=(1,))
+    fakes["answers"].failed, fakes["errs"].failed = str, wrong
+    monkeypatch.setattr(runner, "run", breaks)
+    found = carry_out(("answers", "errs"), Plan(), tmp_path)
+    assert "grain 3" in next(iter(found.found["answers"].values()))
+    assert set(found.missing) == {"errs"}
+    assert "ValueError: no answer" in next(iter(found.problems.values()))
 
 
 def test_runs_that_do_not_fit_on_the_disk_are_refused_before_the_first(fakes, tmp_path, monkeypatch):

@@ -13,6 +13,8 @@ def faults(ledger):
     """Sentences, none for a ledger that is whole."""
     rows = {one["id"]: one for one in ledger["claims"]}
     found = [f"{claim}: has no row" for claim in CLAIMS if claim not in rows]
+    found += [f"{what}: error in the program, see {ledger['log']}" for what in ledger["errors_in"]]
+    found += [f"{what}: {words}" for what, words in ledger["faults"].items()]
     for name, row in rows.items():
         waits = row["verdict"] == Word.WATER
         if waits and name not in WATER:

@@ -20,7 +20,7 @@ def whole():
         }
         for one in CLAIMS
     ]  # fmt: skip
-    return {"claims": rows}
+    return {"claims": rows, "errors_in": [], "faults": {}, "log": ""}
 
 
 def row(ledger, claim):
@@ -50,3 +50,9 @@ def test_a_number_that_is_none_needs_a_note():
     row(ledger, "fig7")["spread"] = [{"value": None}]
     row(ledger, "fig7")["sweep"] = [{"part": "slope", "note": "stands as a wall", "choices": {}}]
     assert faults(ledger) == []
+
+
+def test_an_error_in_the_program_is_a_fault_whatever_the_rows_say():
+    ledger = whole() | {"errors_in": ["fig5: run drop 1"], "log": "ledger-errors.log"}
+    assert faults(ledger) == ["fig5: run drop 1: error in the program, see ledger-errors.log"]
+    assert faults(whole() | {"faults": {"fig5: its table": "KeyError"}}) == ["fig5: its table: KeyError"]

@@ -1,7 +1,7 @@
 """`ryusa paper`: re-do the whole study and say, claim by claim, what holds."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,7 +12,8 @@ if TYPE_CHECKING:
     from ryusa.report import Ledger
 
 _INTERRUPTED = 130  # exit code after Ctrl-C
-_FAILED = 3  # exit code where some runs could not be carried out
+_FAILED = 3  # exit code where some runs could not be carried out, or some claims not judged
+_BROKEN = 1  # exit code where an error in the program is behind it, as Python's own
 _WIDE = 100  # columns of a table that goes to a file or pipe
 _MOST_SEEDS = 1000
 
@@ -91,12 +92,25 @@ def paper(
     _print(ledger)
     for path in files:
         typer.echo(f"wrote {path}")
-    if ledger.problems:
-        many = len(ledger.problems)
-        typer.echo(f"{many} {'run' if many == 1 else 'runs'} could not be carried out:", err=True)
-        for label, reason in ledger.problems.items():
-            typer.echo(f"  {label}: {reason}", err=True)
+    _tell(ledger.problems, "run could not be carried out", "runs could not be carried out")
+    _tell(ledger.faults, "step after the runs failed", "steps after the runs failed")
+    if ledger.traces:
+        typer.echo(
+            f"errors in the program, not in the case: {out / ledger.log} holds their tracebacks. What was "
+            "finished is kept; after a repair the same command needs to do only what failed",
+            err=True,
+        )
+        raise typer.Exit(_BROKEN)
+    if ledger.problems or ledger.faults:
         raise typer.Exit(_FAILED)
+
+
+def _tell(found: Mapping[str, str], one: str, many: str) -> None:
+    """List what went wrong, on stderr."""
+    if found:
+        typer.echo(f"{len(found)} {one if len(found) == 1 else many}:", err=True)
+    for what, reason in found.items():
+        typer.echo(f"  {what}: {reason}", err=True)
 
 
 def _plan(quick: bool, full: bool, seeds: str | None) -> "Plan":
@@ -195,7 +209,11 @@ def _print(ledger: "Ledger") -> None:
         plain = row.plain(ledger.folder)
         parts = plain["ours"].split("; ")
         more = f" (and {len(parts) - 1} more on the page)" if len(parts) > 1 else ""
-        ours = "not judged, see below" if row.problem else (parts[0] + more if parts[0] else "-")
+        ours = (
+            "not judged, see below"
+            if row.finding is None and row.problem
+            else (parts[0] + more if parts[0] else "-")
+        )
         table.add_row(row.claim.id, "verdict", f"{row.word} {escape(plain['condition'])}".strip())
         table.add_row("", "paper", escape(row.claim.says))
         table.add_row("", "ours", escape(ours))

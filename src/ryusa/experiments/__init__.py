@@ -16,6 +16,7 @@ from ryusa.experiments._experiment import (
     load,
     variant,
 )
+from ryusa.experiments._fault import Fault, spared
 from ryusa.experiments._outlook import Outlook, cost, duration, outlook
 from ryusa.experiments._say import Lines, Say
 from ryusa.experiments._verdict import (
@@ -40,6 +41,7 @@ __all__ = [
     "Band",
     "Campaign",
     "Experiment",
+    "Fault",
     "Finding",
     "Found",
     "Interval",
@@ -62,5 +64,6 @@ __all__ = [
     "over_seeds",
     "pool",
     "short",
+    "spared",
     "variant",
 ]

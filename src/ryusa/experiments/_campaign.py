@@ -17,6 +17,7 @@ from typing import Any
 
 from ryusa.errors import ResultsError, RunError, RyusaError
 from ryusa.experiments._experiment import Plan, Variant, load
+from ryusa.experiments._fault import Fault, spared, told
 from ryusa.experiments._outlook import Outlook, outlook, refuse_if_too_big
 from ryusa.experiments._say import Say
 from ryusa.results import Results
@@ -34,8 +35,16 @@ class Done:
     measured: Mapping[str, Any]  # by experiment
     opened: bool  # it was there already
     seconds: float
-    problem: str = ""  # why it could not be run to its end, or measured
+    faults: Mapping[str, Fault] = field(default_factory=dict[str, Fault])  # by experiment that has no numbers
     commit: str = ""  # of the code that made the run
+    broken: bool = False  # the run itself failed, whoever wants it
+
+    @property
+    def problem(self) -> str:
+        """Why it could not be run to its end, or measured."""
+        if self.broken:
+            return next(iter(self.faults.values())).words if self.faults else ""
+        return "; ".join(f"{name}: {one.words}" for name, one in self.faults.items())
 
 
 @dataclass
@@ -47,7 +56,8 @@ class Campaign:
     found : measured numbers by experiment, then by run.
     n_run, n_opened : runs made, and finished runs of the very same case opened again.
     seconds : wall time.
-    problems : runs that could not be carried out, with the reason.
+    problems : runs that could not be carried out or measured, with the reason.
+    missing : by experiment, its runs without numbers.
     commits : how many runs each state of the code made.
     """
 
@@ -56,6 +66,7 @@ class Campaign:
     n_opened: int = 0
     seconds: float = 0.0
     problems: dict[str, str] = field(default_factory=dict[str, str])
+    missing: dict[str, dict[Variant, Fault]] = field(default_factory=dict[str, dict[Variant, Fault]])
     commits: Counter[str] = field(default_factory=Counter[str])
 
 
@@ -132,6 +143,8 @@ def _count(campaign: Campaign, done: Done) -> None:
         campaign.problems[done.one.label] = done.problem
     for name, numbers in done.measured.items():
         campaign.found[name][done.one] = numbers
+    for name, fault in done.faults.items():
+        campaign.missing.setdefault(name, {})[done.one] = fault
 
 
 def _done(
@@ -161,7 +174,14 @@ def _done(
             ready, _ = wait(running, _WAIT, FIRST_COMPLETED)
             say.tick()
             for future in ready:
-                done = future.result()
+                one = running[future]
+                try:
+                    done = future.result()
+                except BrokenProcessPool:
+                    raise
+                except Exception as error:  # what was measured cannot be sent from process to process
+                    faults = dict.fromkeys(wanted[one], told(error))
+                    done = Done(one, {}, False, 0.0, faults, broken=True)
                 del running[future]
                 yield done
     except BrokenProcessPool:
@@ -249,30 +269,27 @@ def _stopped_by_sigterm() -> Generator[None]:
 def _one(one: Variant, names: Sequence[str], folder: Path, again: bool) -> Done:
     """Run, or open, and measure; what goes wrong in one run comes back as words and spares the others."""
     begun = time.monotonic()
+    measured: dict[str, Any] = {}
+    faults: dict[str, Fault] = {}
     try:
         run, opened = _run(one, folder / one.folder, again)
     except RunError as error:  # for some experiments that is an answer: a law that makes energy ends so
-        hooks = {name: getattr(load(name), "failed", None) for name in names}
-        told = {name: answer for name, hook in hooks.items() if hook and (answer := hook(error)) is not None}
-        problem = str(error) if len(told) < len(names) else ""
-        return Done(one, told, opened=False, seconds=time.monotonic() - begun, problem=problem)
-    except ResultsError as error:
-        return Done(one, {}, opened=False, seconds=time.monotonic() - begun, problem=str(error))
-    measured: dict[str, Any] = {}
-    problems: list[str] = []
+        for name in names:
+            faults[name] = told(error)
+            with spared(faults, name):
+                hook = getattr(load(name), "failed", None)
+                if hook is not None and (answer := hook(error)) is not None:
+                    measured[name] = answer
+                    del faults[name]
+        return Done(one, measured, False, time.monotonic() - begun, faults, broken=True)
+    except Exception as error:
+        faults = dict.fromkeys(names, told(error))
+        return Done(one, {}, False, time.monotonic() - begun, faults, broken=True)
     for name in names:
-        try:
+        with spared(faults, name):
             measured[name] = load(name).measure(run, one)
-        except RyusaError as error:
-            problems.append(f"{name}: {error}")
-    return Done(
-        one,
-        measured,
-        opened,
-        time.monotonic() - begun,
-        "; ".join(problems),
-        str(run.provenance.get("commit") or ""),
-    )
+    made_by = str(run.provenance.get("commit") or "")
+    return Done(one, measured, opened, time.monotonic() - begun, faults, made_by)
 
 
 def _run(one: Variant, folder: Path, again: bool) -> tuple[Results, bool]:
@@ -294,5 +311,5 @@ def _earlier(folder: Path) -> Results | None:
         return None
     try:
         return Results.open(folder)
-    except RyusaError:
+    except (RyusaError, OSError):
         return None

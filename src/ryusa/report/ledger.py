@@ -3,23 +3,27 @@
 import math
 import platform
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from ryusa.errors import ResultsError
+from matplotlib.figure import Figure
+
 from ryusa.experiments import (
     NAMES,
     Campaign,
+    Fault,
     Finding,
     Interval,
     Level,
     Plan,
     Say,
     Trial,
+    Variant,
     Word,
     carry_out,
     load,
+    spared,
 )
 from ryusa.figures import save
 from ryusa.measure import write_csv
@@ -29,6 +33,7 @@ from ryusa.running import provenance
 from ryusa.running.folder import refuse_if_not_writable
 
 FORMAT = 1  # of the JSON file
+_NAMED = 3  # runs that failed, named in a row
 WATER = ("fig17", "fig17-time", "fig17-e", "fig17-lock", "fig17-free", "fig18", "fig22", "fig22-free")
 
 
@@ -38,10 +43,10 @@ class Row:
 
     claim: Claim
     word: Word
-    finding: Finding | None  # None where nothing could be run
+    finding: Finding | None  # None where nothing could be run or judged
     experiment: str = ""
     pictures: tuple[Path, ...] = ()
-    problem: str = ""  # why it could not be judged
+    problem: str = ""  # why it could not be judged, or what is missing beside the verdict
 
     def plain(self, folder: Path) -> dict[str, Any]:
         """Give the row as the JSON file holds it; pictures relative to `folder`."""
@@ -83,10 +88,17 @@ class Ledger:
     plan: Plan
     folder: Path
     common: tuple[Common, ...]  # sets of free choices, best first
-    problems: Mapping[str, str]  # runs that could not be carried out
+    problems: Mapping[str, str]  # runs that could not be carried out or measured
     counts: Mapping[str, Any]  # runs made, runs opened, wall seconds, processes
     tables: Mapping[str, list[dict[str, object]]]  # experiment -> lines of its CSV
     stem: str = "ledger"  # of its files: another level or a part never replaces the whole
+    faults: Mapping[str, str] = field(default_factory=dict[str, str])  # what went wrong after the runs
+    traces: Mapping[str, str] = field(default_factory=dict[str, str])  # of errors in the program, for the log
+
+    @property
+    def log(self) -> str:
+        """Name of the file that holds the tracebacks; empty where there are none."""
+        return f"{self.stem}-errors.log" if self.traces else ""
 
     def plain(self) -> dict[str, Any]:
         """Give the ledger as the JSON file holds it."""
@@ -99,6 +111,9 @@ class Ledger:
             "claims": [one.plain(self.folder) for one in self.rows],
             "common_choices": [one.plain() for one in self.common],
             "problems": dict(self.problems),
+            "faults": dict(self.faults),
+            "errors_in": list(self.traces),
+            "log": self.log,
             "provenance": _origin(self.counts),
         }
 
@@ -131,8 +146,9 @@ def make(
     campaign = carry_out(chosen, plan, folder / "runs", jobs=jobs, again=again, say=say)
     rows: dict[str, Row] = {}
     tables: dict[str, list[dict[str, object]]] = {}
+    faults: dict[str, Fault] = {}
     for name in chosen:
-        rows |= _judged(name, campaign, plan, folder, tables)
+        rows |= _judged(name, campaign, plan, folder, tables, faults)
     if names is None:
         rows |= {one: Row(CLAIMS[one], Word.WATER, None) for one in WATER if one not in rows}
     ordered = tuple(rows[one] for one in CLAIMS if one in rows)
@@ -146,39 +162,90 @@ def make(
     findings = [(one.experiment, one.finding) for one in ordered if one.finding is not None]
     level = "" if plan.level is Level.STANDARD else f"-{plan.level}"
     stem = f"ledger{level}{'' if names is None else '-part'}"
-    return Ledger(ordered, plan, folder, common(findings), campaign.problems, counts, tables, stem)
+    traces = _traces(campaign, faults)
+    said = {what: one.words for what, one in faults.items()}
+    sets = common(findings)
+    return Ledger(ordered, plan, folder, sets, campaign.problems, counts, tables, stem, said, traces)
 
 
 def _judged(
-    name: str, campaign: Campaign, plan: Plan, folder: Path, tables: dict[str, list[dict[str, object]]]
+    name: str,
+    campaign: Campaign,
+    plan: Plan,
+    folder: Path,
+    tables: dict[str, list[dict[str, object]]],
+    faults: dict[str, Fault],
 ) -> dict[str, Row]:
     """Rows of one experiment; its tables and pictures are written on the way.
 
-    Where a run of it failed nothing of it is judged: its rows say why, and the other experiments stand.
+    Where a run of it failed, or judging it ends in an error, nothing of it is judged: its rows say why, and
+    the other experiments stand. Without its table or pictures it keeps its verdict, and its rows say so.
     """
     experiment, found = load(name), campaign.found[name]
-    wanted = list(dict.fromkeys(experiment.cases(plan)))
-    missing = [one.label for one in wanted if one not in found]
+    missing = campaign.missing.get(name, {})
     if missing:
-        reason = campaign.problems.get(missing[0], "no reason known")
-        problem = f"{len(missing)} of {len(wanted)} runs failed, so it was not judged; {missing[0]}: {reason}"
-        return {
-            one: Row(CLAIMS[one], Word.UNDECIDED, None, name, problem=problem) for one in experiment.CLAIMS
-        }
-    tables[name] = experiment.rows(found, plan)
+        problem = _missing(missing, len(found) + len(missing))
+        return _unjudged(name, problem)
+    judging, table, drawing = f"{name}: judging", f"{name}: its table", f"{name}: its pictures"
+    tables[name] = []
+    with spared(faults, table):
+        tables[name] = experiment.rows(found, plan)
     home = folder / name
-    write_csv(home / f"{name}.csv", tables[name])
+    with spared(faults, table, passing=(OSError,)):
+        write_csv(home / f"{name}.csv", tables[name])
+    figures: Mapping[str, Figure] = {}
+    with spared(faults, drawing):
+        figures = experiment.draw(found, plan)
     pictures: list[Path] = []
-    for picture, figure in experiment.draw(found, plan).items():
-        save(figure, home / f"{picture}.svg")
-        pictures.append(save(figure, home / f"{picture}.png"))
+    with spared(faults, drawing, passing=(OSError,)):
+        for picture, figure in figures.items():
+            save(figure, home / f"{picture}.svg")
+            pictures.append(save(figure, home / f"{picture}.png"))
     shared = _share_out(pictures, experiment.CLAIMS)
-    findings = {one.claim: one for one in experiment.judge(found, plan)}
-    if set(findings) != set(experiment.CLAIMS):
-        raise ResultsError(f"{name} judged {', '.join(findings)}, not {', '.join(experiment.CLAIMS)}")
+    said = [
+        f"{what.removeprefix(f'{name}: ')} could not be made: {faults[what].words}"
+        for what in (table, drawing)
+        if what in faults
+    ]
+    rows: dict[str, Row] = {}
+    with spared(faults, judging):
+        findings = {one.claim: one for one in experiment.judge(found, plan)}
+        if set(findings) != set(experiment.CLAIMS):
+            raise ValueError(f"{name} judged {', '.join(findings)}, not {', '.join(experiment.CLAIMS)}")
+        for one, finding in findings.items():
+            row = Row(CLAIMS[one], finding.word, finding, name, shared[one], "; ".join(said))
+            row.plain(folder)  # an error in a condition or a count shows here, and not while writing
+            rows[one] = row
+    if judging in faults:
+        return _unjudged(name, f"it could not be judged: {faults[judging].words}", shared)
+    return rows
+
+
+def _unjudged(
+    name: str, problem: str, pictures: Mapping[str, tuple[Path, ...]] | None = None
+) -> dict[str, Row]:
+    shown = pictures or {}
     return {
-        one: Row(CLAIMS[one], finding.word, finding, name, shared[one]) for one, finding in findings.items()
+        one: Row(CLAIMS[one], Word.UNDECIDED, None, name, shown.get(one, ()), problem)
+        for one in load(name).CLAIMS
     }
+
+
+def _missing(missing: Mapping[Variant, Fault], n: int) -> str:
+    """Which runs failed, and why; the first few of many."""
+    told = [f"{one.label}: {fault.words}" for one, fault in list(missing.items())[:_NAMED]]
+    more = f"; and {len(missing) - _NAMED} more" if len(missing) > _NAMED else ""
+    return f"{len(missing)} of {n} runs failed, so it was not judged; {'; '.join(told)}{more}"
+
+
+def _traces(campaign: Campaign, faults: Mapping[str, Fault]) -> dict[str, str]:
+    """Tracebacks of errors in the program, each once, under what they spoiled."""
+    every = [
+        (f"{name}: run {one.label}", fault)
+        for name, found in campaign.missing.items()
+        for one, fault in found.items()
+    ]
+    return {what: fault.trace for what, fault in [*every, *faults.items()] if fault.trace}
 
 
 def _share_out(pictures: Sequence[Path], claims: Sequence[str]) -> dict[str, tuple[Path, ...]]:

@@ -59,14 +59,24 @@ def write(ledger: Ledger, copy: Path | None = None) -> tuple[Path, ...]:
     plain = ledger.plain()
     page = ledger.folder / f"{ledger.stem}.html"
     page.parent.mkdir(parents=True, exist_ok=True)
-    _write_whole(page, render(plain, ledger.tables, ledger.folder))
     files = [page, ledger.folder / f"{ledger.stem}.json"]
     if copy is not None:
         copy.parent.mkdir(parents=True, exist_ok=True)
         files.append(copy)
-    for path in files[1:]:
+    for path in files[1:]:  # first: whatever becomes of the page, the numbers are kept
         write_json(path, plain)
+    _write_log(ledger)
+    _write_whole(page, render(plain, ledger.tables, ledger.folder))
     return tuple(files)
+
+
+def _write_log(ledger: Ledger) -> None:
+    """Keep the tracebacks of errors in the program, and none of an earlier ledger."""
+    log = ledger.folder / f"{ledger.stem}-errors.log"
+    if ledger.traces:
+        _write_whole(log, "\n".join(f"{what}\n{trace}" for what, trace in ledger.traces.items()))
+    else:
+        log.unlink(missing_ok=True)
 
 
 def render(
