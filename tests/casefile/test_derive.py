@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from ryusa.casefile import Case, disk_needed, frames_expected, read, steps_expected
-from ryusa.casefile.derive import events_of, terminal_velocity, water_speed
+from ryusa.casefile.derive import events_of
 from ryusa.casefile.estimate import disk_for_events, events_expected, memory_needed
 from ryusa.laws import collision
 from ryusa.model.contacts import N_EVENT
@@ -97,22 +97,6 @@ def test_many_starts_do_not_meet_each_other(case: CaseOf) -> None:
     found = case(build="{ kind = 'saltation', starts = 5 }", water=WATER).derived
     assert (found.n_grain, found.n_fixed, found.meet) == (5, 100, False)
     assert found.dt == pytest.approx(found.fixed.t_col / 50)
-
-
-def test_settling_velocity_agrees_with_ferguson_and_church(case: CaseOf) -> None:
-    wet = case(
-        water="{ profile = 'still', drag = 'Ferguson-Church sphere' }", **{"motion.gravity": "9.81 m/s2"}
-    )
-    assert terminal_velocity(wet) == pytest.approx(0.301, abs=5e-4)
-    assert terminal_velocity(case()) == math.inf
-
-
-def test_water_above_its_depth_does_what_the_case_says(case: CaseOf) -> None:
-    for above, expected in (("continue", 1.0), ("hold", 0.0), ("dry", -1.0)):
-        wet = case(water=WATER.replace("}", f", above = '{above}' }}"))
-        surface, higher = water_speed(wet, 0.02), water_speed(wet, 0.04)
-        assert surface == pytest.approx(wet.derived.u_star * (8.5 + 5.75 * 1.0))
-        assert (higher > surface) - (higher < surface) == expected
 
 
 def test_a_resolved_case_is_plain_json_in_si(case: CaseOf) -> None:

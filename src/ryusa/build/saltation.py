@@ -4,8 +4,8 @@ import numpy as np
 
 from ryusa.build.layout import LANE, Layout, still
 from ryusa.casefile.builders import Saltation
-from ryusa.casefile.derive import water_speed
 from ryusa.casefile.schema import Case
+from ryusa.casefile.water import water_speed
 
 ZERO = 0.25  # depth of the profile's zero below the crest, in diameters: the classical choice
 START = 2.0  # first gap above the crest, in diameters

@@ -270,22 +270,6 @@ def pair(case: Case, d: float, free: bool, spins: bool | None = None) -> Pair:
     )
 
 
-def water_speed(case: Case, z: float) -> float:
-    """Speed of the water [m/s] at a height z above the zero of its profile [m]; 0 when dry."""
-    wet = case.water
-    if wet is None:
-        return 0.0
-    if wet.depth is not None and z > wet.depth:
-        if wet.above == "dry":
-            return 0.0
-        z = wet.depth if wet.above == "hold" else z
-    if wet.profile == "log rough":
-        return water.log_law_rough(z, case.derived.u_star, case.derived.k_rough)
-    if wet.profile == "log smooth":
-        return water.log_law_smooth(z, case.derived.u_star, wet.viscosity)
-    return water.uniform(z, wet.speed) if wet.speed is not None else 0.0
-
-
 def derive(case: Case) -> Derived:
     """Everything that follows from a case."""
     d, d_min, d_max = sizes(case)
@@ -373,41 +357,3 @@ def _plain(value: Any) -> Any:
     if isinstance(value, float) and not math.isfinite(value):
         return None
     return value
-
-
-def drag_coefficient(case: Case, re: float) -> float:
-    """C_D of a case at a grain Reynolds number [-]."""
-    assert case.water is not None
-    if case.water.drag == "constant":
-        return case.water.drag_coefficient
-    if case.water.drag == "none":
-        return 0.0
-    return _C_D[case.water.drag](re)
-
-
-_C_D = {
-    "24/Re+0.4": drag.c_d_re_04,
-    "24/Re+2": drag.c_d_re_2,
-    "Schiller-Naumann": drag.c_d_schiller_naumann,
-    "Ferguson-Church sphere": drag.c_d_ferguson_church_sphere,
-    "Ferguson-Church sand": drag.c_d_ferguson_church_sand,
-}
-
-
-def terminal_velocity(case: Case) -> float:
-    """Settling velocity of the mean grain [m/s]; inf when nothing holds it, nan when it floats."""
-    d, wet = sizes(case)[0], case.water
-    m_weight = mass(case, d)[2]
-    if wet is None or wet.drag == "none":
-        return math.inf
-    if m_weight < 0.0:
-        return math.nan
-    pull, low, high = m_weight * case.motion.gravity, 0.0, 1.0e4
-    for _ in range(200):
-        w = 0.5 * (low + high)
-        c_d = drag_coefficient(case, drag.reynolds(w, d, wet.viscosity))
-        if drag.drag_factor(w, c_d, wet.density, wet.shape_area, d) * w > pull:
-            high = w
-        else:
-            low = w
-    return 0.5 * (low + high)

@@ -8,9 +8,10 @@ import numpy as np
 
 from ryusa.casefile import estimate
 from ryusa.casefile.builders import Box, Drop, Packing
-from ryusa.casefile.derive import MANY, Derived, Pair, events_of, terminal_velocity, water_speed
+from ryusa.casefile.derive import MANY, Derived, Pair, events_of
 from ryusa.casefile.schema import Case, StiffnessForOverlap, StiffnessForTime, Water
 from ryusa.casefile.table import table_of
+from ryusa.casefile.water import terminal_velocity, water_speed
 from ryusa.laws import collision, drag, torque
 from ryusa.units import format_quantity
 
