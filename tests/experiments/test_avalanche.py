@@ -69,6 +69,13 @@ def test_the_first_setting_of_every_level_is_the_shipped_one():
         assert _avalanche.settings(Plan(level, (1,)))[0] == SHIPPED
 
 
+def test_every_other_packing_can_be_read_and_keeps_a_lowest_layer_to_follow():
+    for one in _avalanche.OTHERS:
+        case = _avalanche.run({**SHIPPED, _avalanche.PACKING: one}, SOFT, 1).read()
+        assert case.record.tracked == tuple(range(_avalanche.LOWEST))
+        assert case.build.columns == _avalanche.LOWEST
+
+
 def test_equal_profiles_are_alike_and_half_as_dense_ones_are_not():
     assert words(fig14, flow_at(4.0), flow_at(3.0))["fig14"] is Word.REPRODUCED
     assert words(fig14, flow_at(4.0), flow_at(4.0, phi=0.25))["fig14"] is Word.NOT

@@ -25,13 +25,20 @@ TIMES = (SOFT, STIFF)
 WINDOW = "time after tilting"
 WINDOWS = {"1 to 2 s": (1.0, 2.0), "2 to 3 s": (2.0, 3.0)}
 FIRST = "1 to 2 s"
-SHIPPED = {ROTATION: "free", PHI: "30 deg", SLIP: "spring"}
+PACKING = "packing"  # the choice of sizes, bed and depth
+AS_SHIPPED = "as shipped"
+OTHERS: dict[str, dict[str, str]] = {
+    "sizes within 10 %": {"grains.spread": "0.1"},
+    "random bed": {"build.bed": "random"},
+    "twice as deep": {"build.layers": "20"},
+}
+SHIPPED = {ROTATION: "free", PHI: "30 deg", SLIP: "spring", PACKING: AS_SHIPPED}
 KEYS = {ROTATION: "motion.rotation", PHI: "contact.friction_angle", SLIP: "contact.slip"}
 SETTLED = {
     "d": "20 cm",
     "slope": "40 deg",
     "restitution": "0.7",
-    "layers": "10 over a flat bed of touching grains",
+    "packing as shipped": "equal grains, 10 layers over a flat bed of grains",
 }
 BETWEEN, ALL = "between bed and movers", "all"  # grains whose ways are compared
 FINE = 0.001  # vertical excursion, in diameters, from which the finest turns count
@@ -149,14 +156,15 @@ def settings(plan: Plan) -> list[dict[str, str]]:
     """Sets of free choices, the shipped one first."""
     if plan.level == "full":
         sets = [
-            {ROTATION: rotation, PHI: phi, SLIP: slip}
+            {**SHIPPED, ROTATION: rotation, PHI: phi, SLIP: slip}
             for rotation in ("free", "locked")
             for slip in ("spring", "spring-drop", "total")
             for phi in ("10 deg", "20 deg", "30 deg", "40 deg")
         ]
+        sets += [{**SHIPPED, PACKING: one} for one in OTHERS]
     else:
         sets = [
-            {ROTATION: rotation, PHI: phi, SLIP: slip}
+            {**SHIPPED, ROTATION: rotation, PHI: phi, SLIP: slip}
             for rotation, phi, slip in plan.pick(
                 (),
                 (
@@ -175,7 +183,8 @@ def settings(plan: Plan) -> list[dict[str, str]]:
 
 def run(chosen: Mapping[str, str], time: str, seed: int) -> Variant:
     """One run of the case; what is as shipped is not said."""
-    changed = {KEYS[name]: value for name, value in chosen.items() if SHIPPED[name] != value}
+    changed = {KEYS[name]: value for name, value in chosen.items() if name in KEYS and SHIPPED[name] != value}
+    changed |= OTHERS.get(chosen[PACKING], {})
     if time != SOFT:
         changed["contact.stiffness"] = f'{{ collision_time = "{time}" }}'
     return variant(CASE, changed, seed)
@@ -193,8 +202,9 @@ def seeds(plan: Plan, chosen: Mapping[str, str]) -> list[int]:
 
 
 @lru_cache(maxsize=2)
-def avalanche(results: Results) -> Avalanche:
-    """Measure one run; three experiments ask for the same numbers."""
+def measure(results: Results, one: Variant) -> Avalanche:
+    """Profiles and ways in every window of one run; three experiments ask for the same numbers."""
+    del one
     return {name: _window(results, TILT + begin, TILT + end) for name, (begin, end) in WINDOWS.items()}
 
 
@@ -338,4 +348,5 @@ def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
 def label(chosen: Mapping[str, str]) -> str:
     """Words for a set of choices."""
     slip = "" if chosen[SLIP] == "spring" else f", {chosen[SLIP]}"
-    return f"{chosen[ROTATION]}, phi = {chosen[PHI]}{slip}"
+    packing = "" if chosen[PACKING] == AS_SHIPPED else f", {chosen[PACKING]}"
+    return f"{chosen[ROTATION]}, phi = {chosen[PHI]}{slip}{packing}"

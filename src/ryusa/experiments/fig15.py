@@ -8,13 +8,12 @@ from matplotlib.figure import Figure
 
 from ryusa import figures
 from ryusa.experiments import _avalanche
-from ryusa.experiments._avalanche import FIRST, SHIPPED, SOFT, STIFF, WINDOWS, Avalanche, Pair
-from ryusa.experiments._experiment import PHI, ROTATION, SLIP, Found, Plan, Variant
+from ryusa.experiments._avalanche import FIRST, SHIPPED, SOFT, STIFF, WINDOWS, Pair
+from ryusa.experiments._experiment import PHI, ROTATION, SLIP, Found, Plan
 from ryusa.experiments._verdict import Band, Finding, short
 from ryusa.experiments.fig14 import ALIKE
 from ryusa.experiments.fig14 import PART as ALIKE_PART
 from ryusa.measure import Profiles, average
-from ryusa.results import Results
 
 FIGURE = "fig15"
 TITLE = "Grain speed and flux of a dry avalanche"
@@ -31,19 +30,10 @@ MORE = Band(
 )
 
 
-LOCKED = {ROTATION: "locked", PHI: "20 deg", SLIP: "spring"}
+LOCKED = {**SHIPPED, ROTATION: "locked", PHI: "20 deg"}
 CAPS = ("spring", "total")
 
-
-def cases(plan: Plan) -> Sequence[Variant]:
-    """Both collision times under every choice."""
-    return _avalanche.cases(plan)
-
-
-def measure(run: Results, one: Variant) -> Avalanche:
-    """Profiles in every window."""
-    del one
-    return _avalanche.avalanche(run)
+cases, measure = _avalanche.cases, _avalanche.measure
 
 
 def depth_mean(pair: Pair) -> float:
