@@ -84,7 +84,7 @@ def cases(plan: Plan) -> Sequence[Variant]:
 def measure(run: Results, one: Variant) -> Drop | Hits:
     """Keep overlaps and speeds."""
     if one.case == _drops.CASE:
-        return _drops.measure(run)
+        return _drops.measure(run, one)
     found = collisions(run, "bed")
     return Hits(found.speed, found.overlap)
 

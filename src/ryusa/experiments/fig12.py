@@ -11,7 +11,6 @@ from ryusa.experiments._drops import Drop, Setup
 from ryusa.experiments._experiment import Found, Plan, Variant
 from ryusa.experiments._verdict import Finding, Trial, over_range
 from ryusa.measure.stability import BAND
-from ryusa.results import Results
 from ryusa.units import quantity
 
 FIGURE = "fig12"
@@ -46,10 +45,7 @@ def cases(plan: Plan) -> Sequence[Variant]:
     return [one.variant for one in setups(plan)]
 
 
-def measure(run: Results, one: Variant) -> Drop:
-    """Keep contact times and overlaps."""
-    del one
-    return _drops.measure(run)
+measure = _drops.measure
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:

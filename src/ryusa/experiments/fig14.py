@@ -7,10 +7,9 @@ from matplotlib.figure import Figure
 
 from ryusa import figures
 from ryusa.experiments import _avalanche
-from ryusa.experiments._avalanche import FIRST, SHIPPED, SOFT, STIFF, Avalanche, Pair
-from ryusa.experiments._experiment import Found, Plan, Variant
+from ryusa.experiments._avalanche import FIRST, SHIPPED, SOFT, STIFF, Pair
+from ryusa.experiments._experiment import Found, Plan
 from ryusa.experiments._verdict import Band, Finding, short
-from ryusa.results import Results
 
 FIGURE = "fig14"
 TITLE = "Concentration of a dry avalanche"
@@ -18,16 +17,7 @@ CLAIMS = ("fig14",)
 PART = "difference of the two profiles of concentration over their mean"
 ALIKE = Band(0.0, 0.10, "-", "alike: mean difference over all layers at most 10 % of the mean")
 
-
-def cases(plan: Plan) -> Sequence[Variant]:
-    """Both collision times under every choice."""
-    return _avalanche.cases(plan)
-
-
-def measure(run: Results, one: Variant) -> Avalanche:
-    """Profiles in every window."""
-    del one
-    return _avalanche.avalanche(run)
+cases, measure = _avalanche.cases, _avalanche.measure
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:

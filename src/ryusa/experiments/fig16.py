@@ -10,10 +10,9 @@ from matplotlib.figure import Figure
 
 from ryusa import figures
 from ryusa.experiments import _avalanche
-from ryusa.experiments._avalanche import ALL, BETWEEN, FIRST, SHIPPED, SOFT, STIFF, Avalanche, Pair
-from ryusa.experiments._experiment import Found, Plan, Variant
+from ryusa.experiments._avalanche import ALL, BETWEEN, FIRST, SHIPPED, SOFT, STIFF, Pair
+from ryusa.experiments._experiment import Found, Plan
 from ryusa.experiments._verdict import Band, Finding, Trial, short
-from ryusa.results import Results
 
 FIGURE = "fig16"
 TITLE = "Ways of grains in a dry avalanche"
@@ -34,16 +33,7 @@ PARTS: dict[str, tuple[str, Band]] = {
 }  # fmt: skip
 NONE = "no grain meets bed and movers in turn, or none advances, in one of the runs"
 
-
-def cases(plan: Plan) -> Sequence[Variant]:
-    """Both collision times under every choice."""
-    return _avalanche.cases(plan)
-
-
-def measure(run: Results, one: Variant) -> Avalanche:
-    """Ways in every window."""
-    del one
-    return _avalanche.avalanche(run)
+cases, measure = _avalanche.cases, _avalanche.measure
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:

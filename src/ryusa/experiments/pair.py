@@ -7,11 +7,10 @@ from matplotlib.figure import Figure
 
 from ryusa import figures
 from ryusa.experiments import _drops, fig05
-from ryusa.experiments._drops import Drop, Setup
+from ryusa.experiments._drops import Setup
 from ryusa.experiments._experiment import Found, Plan, Variant
 from ryusa.experiments._verdict import Band, Finding, Trial, over_range
 from ryusa.laws.collision import collision_time
-from ryusa.results import Results
 
 FIGURE = "pair"
 TITLE = "Contact time with the struck grain free to move"
@@ -55,10 +54,7 @@ def cases(plan: Plan) -> Sequence[Variant]:
     return [one.variant for one in setups(plan)]
 
 
-def measure(run: Results, one: Variant) -> Drop:
-    """Keep contact times."""
-    del one
-    return _drops.measure(run)
+measure = _drops.measure
 
 
 def ratio(found: Found, chosen: Mapping[str, str], k_n: float) -> float:

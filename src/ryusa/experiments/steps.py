@@ -13,7 +13,6 @@ from ryusa.experiments._drops import COPIES, NO_TENSION, TENSION, Drop, Setup
 from ryusa.experiments._experiment import Found, Plan, Variant
 from ryusa.experiments._verdict import Band, Finding, Interval, Trial, over_range
 from ryusa.measure.statistics import Floats
-from ryusa.results import Results
 
 FIGURE = "steps"
 TITLE = "Steps per contact against abnormal rebound"
@@ -50,10 +49,7 @@ def cases(plan: Plan) -> Sequence[Variant]:
     return [one.variant for one in setups(plan)]
 
 
-def measure(run: Results, one: Variant) -> Drop:
-    """Keep restitution by phase of first touch."""
-    del one
-    return _drops.measure(run)
+measure = _drops.measure
 
 
 def forward(steps: float, parting: str, summed: bool) -> Floats:
