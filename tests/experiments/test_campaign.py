@@ -1,3 +1,4 @@
+import json
 import os
 import shutil
 import signal
@@ -10,7 +11,18 @@ from pathlib import Path
 import pytest
 
 from ryusa.errors import CaseError, NotANumber, ResultsError
-from ryusa.experiments import Lines, Outlook, Plan, Say, _campaign, _outlook, carry_out, outlook, variant
+from ryusa.experiments import (
+    Lines,
+    Outlook,
+    Plan,
+    Say,
+    _campaign,
+    _outlook,
+    carry_out,
+    cost,
+    outlook,
+    variant,
+)
 from ryusa.running import runner
 
 SHORT = {"stop.time": "0.01 s", "record.settle": "0 s"}
@@ -168,12 +180,61 @@ def test_the_outlook_counts_what_is_there_and_never_ends_before_the_longest_run(
     assert ahead.seconds == pytest.approx(ahead.core_seconds / 2)
     assert outlook(runs, tmp_path, jobs=100).seconds == pytest.approx(max(ahead.costs.values()))
     assert "3 runs to make: about" in str(ahead)
-    (tmp_path / runs[0].folder).mkdir(parents=True)
-    (tmp_path / runs[0].folder / "provenance.json").write_text('{"status": "complete"}')
+    finished(tmp_path, runs[0], "a" * 40)
     later = outlook(runs, tmp_path, jobs=2)
     assert later.there == (runs[0],)
-    assert "(1 more are there)" in str(later)
+    assert "(1 more are there and will be opened)" in str(later)
     assert len(outlook(runs, tmp_path, jobs=2, again=True).costs) == 3
+
+
+def finished(place, one, commit, seed=None):
+    """Leave what the outlook reads of a finished run; of another case where a seed is given."""
+    folder = place / one.folder
+    folder.mkdir(parents=True, exist_ok=True)
+    about = {"status": "complete", "commit": commit, "ryusa": "0.0.1"}
+    (folder / "provenance.json").write_text(json.dumps(about))
+    case = variant(one.case, SHORT, seed) if seed else one
+    (folder / "case.json").write_text(json.dumps(case.read().resolved()))
+
+
+def test_a_folder_that_holds_another_case_is_run_again(tmp_path):
+    runs = [variant("saltation", SHORT, seed) for seed in (1, 2)]
+    finished(tmp_path, runs[0], "a" * 40, seed=7)
+    finished(tmp_path, runs[1], "a" * 40)
+    assert outlook(runs, tmp_path, jobs=1).there == (runs[1],)
+
+
+def test_the_outlook_says_which_runs_another_state_of_the_code_made(tmp_path, monkeypatch):
+    monkeypatch.setattr(_outlook.provenance, "commit", lambda: "c" * 40)
+    runs = [variant("saltation", SHORT, seed) for seed in range(1, 7)]
+    for one, commit in zip(runs, ["c" * 40, "a" * 40, "a" * 40, "c" * 40 + "+", None], strict=False):
+        finished(tmp_path, one, commit)
+    ahead = outlook(runs, tmp_path, jobs=1)
+    assert len(ahead.there) == 5
+    assert ahead.others == {"a" * 40: 2, "c" * 40 + "+": 1, "ryusa 0.0.1": 1}
+    said = str(ahead)
+    assert "than the present cccccccccccc made 4 of the 5 that are there (2 by aaaaaaaaaaaa, " in said
+    assert "1 by cccccccccccc with changes" in said
+    assert "--again makes all anew" in said
+    assert "anew" not in str(outlook(runs[:1], tmp_path, jobs=1))  # nothing of other code, nothing to say
+
+
+def test_a_campaign_counts_the_runs_of_other_code(fakes, tmp_path, monkeypatch):
+    fakes["one"] = Fake()
+    carry_out(("one",), Plan(), tmp_path)
+    about = next(tmp_path.glob("*/*/provenance.json"))
+    changed = json.loads(about.read_text()) | {"commit": "a" * 40}
+    about.write_text(json.dumps(changed))
+    monkeypatch.setattr(_outlook.provenance, "commit", lambda: "c" * 40)
+    found = carry_out(("one",), Plan(), tmp_path)
+    assert found.n_opened == 2
+    assert found.others["a" * 40] == 1
+    assert found.commits["a" * 40] == 1
+
+
+def test_a_law_of_rolling_resistance_costs_time():
+    rolls = {"rolling.model": "constant", "rolling.coefficient": "0.1"}
+    assert cost(variant("fig19", rolls)) > 1.5 * cost(variant("fig19"))
 
 
 def test_the_time_left_follows_from_how_long_the_finished_runs_took(capsys):

@@ -56,7 +56,8 @@ def every_word(tmp_path: Path, picture: Path) -> Ledger:
         common([(name, one) for name, one in found.items()]), {f"fig20 {NASTY}": "grain 7 lost"},
         {
             "runs_made": 2, "runs_opened": 1, "wall_s": 61.0, "jobs": 2,
-            "commits_of_runs": {"a" * 40: 1, "b" * 40: 2},
+            "commits_of_runs": {"a" * 40: 1, "b" * 40 + "+": 2},
+            "of_other_code": {"b" * 40 + "+": 2},
         },
         {"fig20": table},
     )  # fmt: skip

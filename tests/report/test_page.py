@@ -104,7 +104,8 @@ def test_every_claim_has_a_section_its_verdict_in_words_and_its_statement(every_
     assert "a band of 10 cannot hold 100" in reader.text
     assert "1 of 2 runs failed" in reader.text
     assert "no number" in reader.text
-    assert "Not all runs were made by the state of the code that judged them" in reader.text
+    assert "2 of the 3 runs were made by other states of the code" in reader.text
+    assert "2 by bbbbbbbbbbbb with changes." in reader.text
     assert "could not be carried out" in reader.text
 
 

@@ -17,7 +17,7 @@ from ryusa.experiments._experiment import (
     variant,
 )
 from ryusa.experiments._fault import Fault, spared
-from ryusa.experiments._outlook import Outlook, cost, duration, outlook
+from ryusa.experiments._outlook import Outlook, code_in_words, cost, duration, outlook
 from ryusa.experiments._say import Lines, Say
 from ryusa.experiments._verdict import (
     Band,
@@ -56,6 +56,7 @@ __all__ = [
     "Word",
     "carry_out",
     "case_path",
+    "code_in_words",
     "cost",
     "duration",
     "load",

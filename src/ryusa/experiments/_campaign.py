@@ -1,6 +1,5 @@
 """Carry out the runs that experiments ask for: each once, several at a time, finished ones opened again."""
 
-import json
 import os
 import signal
 import threading
@@ -18,7 +17,15 @@ from typing import Any
 from ryusa.errors import ResultsError, RunError, RyusaError
 from ryusa.experiments._experiment import Plan, Variant, load
 from ryusa.experiments._fault import Fault, spared, told
-from ryusa.experiments._outlook import Outlook, outlook, refuse_if_too_big
+from ryusa.experiments._outlook import (
+    Outlook,
+    code_of,
+    is_other,
+    outlook,
+    present,
+    refuse_if_too_big,
+    same_case,
+)
 from ryusa.experiments._say import Say
 from ryusa.results import Results
 
@@ -36,7 +43,7 @@ class Done:
     opened: bool  # it was there already
     seconds: float
     faults: Mapping[str, Fault] = field(default_factory=dict[str, Fault])  # by experiment that has no numbers
-    commit: str = ""  # of the code that made the run
+    commit: str = ""  # of the code that made the run, or its version
     broken: bool = False  # the run itself failed, whoever wants it
 
     @property
@@ -59,6 +66,7 @@ class Campaign:
     problems : runs that could not be carried out or measured, with the reason.
     missing : by experiment, its runs without numbers.
     commits : how many runs each state of the code made.
+    others : the same, of those states that are not, or may not be, the one that is running.
     """
 
     found: dict[str, dict[Variant, Any]]
@@ -68,6 +76,7 @@ class Campaign:
     problems: dict[str, str] = field(default_factory=dict[str, str])
     missing: dict[str, dict[Variant, Fault]] = field(default_factory=dict[str, dict[Variant, Fault]])
     commits: Counter[str] = field(default_factory=Counter[str])
+    others: Counter[str] = field(default_factory=Counter[str])
 
 
 def carry_out(
@@ -139,6 +148,8 @@ def _count(campaign: Campaign, done: Done) -> None:
     campaign.n_run += not done.opened
     if done.commit:
         campaign.commits[done.commit] += 1
+        if is_other(done.commit, done.opened):
+            campaign.others[done.commit] += 1
     if done.problem:
         campaign.problems[done.one.label] = done.problem
     for name, numbers in done.measured.items():
@@ -281,15 +292,14 @@ def _one(one: Variant, names: Sequence[str], folder: Path, again: bool) -> Done:
                 if hook is not None and (answer := hook(error)) is not None:
                     measured[name] = answer
                     del faults[name]
-        return Done(one, measured, False, time.monotonic() - begun, faults, broken=True)
+        return Done(one, measured, False, time.monotonic() - begun, faults, present(), broken=True)
     except Exception as error:
         faults = dict.fromkeys(names, told(error))
         return Done(one, {}, False, time.monotonic() - begun, faults, broken=True)
     for name in names:
         with spared(faults, name):
             measured[name] = load(name).measure(run, one)
-    made_by = str(run.provenance.get("commit") or "")
-    return Done(one, measured, opened, time.monotonic() - begun, faults, made_by)
+    return Done(one, measured, opened, time.monotonic() - begun, faults, code_of(run.provenance))
 
 
 def _run(one: Variant, folder: Path, again: bool) -> tuple[Results, bool]:
@@ -297,7 +307,7 @@ def _run(one: Variant, folder: Path, again: bool) -> tuple[Results, bool]:
 
     case = one.read()
     old = None if again else _earlier(folder)
-    if old is not None and old.complete and old.case == json.loads(json.dumps(case.resolved())):
+    if old is not None and old.complete and same_case(old.case, one):
         return old, True
     done = run(case, folder, threads=1, progress=False, overwrite=True)
     if not done.complete:  # a run that was stopped is no basis for a verdict

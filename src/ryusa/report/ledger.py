@@ -157,7 +157,8 @@ def make(
         "runs_opened": campaign.n_opened,
         "wall_s": round(campaign.seconds, 1),
         "jobs": jobs,
-        "commits_of_runs": dict(campaign.commits),
+        "commits_of_runs": dict(campaign.commits.most_common()),
+        "of_other_code": dict(campaign.others.most_common()),
     }
     findings = [(one.experiment, one.finding) for one in ordered if one.finding is not None]
     level = "" if plan.level is Level.STANDARD else f"-{plan.level}"

@@ -9,7 +9,7 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from ryusa.experiments import Word, load, short
+from ryusa.experiments import Word, code_in_words, load, short
 from ryusa.report.friction import MARKS, by_angle
 from ryusa.report.ledger import Ledger
 from ryusa.running.folder import write_json
@@ -104,6 +104,7 @@ def render(
     )  # fmt: skip
     page.filters["number"] = number
     page.filters["interval"] = interval
+    page.filters["code"] = code_in_words
     return page.get_template("page.html").render(
         ledger=plain,
         claims=[_section(one, first, tables, folder) for one in claims],
