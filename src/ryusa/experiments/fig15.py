@@ -1,6 +1,6 @@
 """Fig. 15: grain speed over height of a dry avalanche, and the flux, collision time 0.01 s and 0.0001 s."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 
 import numpy as np
@@ -8,7 +8,19 @@ from matplotlib.figure import Figure
 
 from ryusa import figures
 from ryusa.experiments import _avalanche
-from ryusa.experiments._avalanche import FIRST, SHIPPED, SOFT, STIFF, WINDOWS, Pair
+from ryusa.experiments._avalanche import (
+    FIRST,
+    SHIPPED,
+    SOFT,
+    STIFF,
+    WINDOWS,
+    Numbers,
+    Pair,
+    each,
+    faster,
+    together,
+    unlike,
+)  # fmt: skip
 from ryusa.experiments._experiment import PHI, ROTATION, SLIP, Found, Plan
 from ryusa.experiments._verdict import Band, Finding, short
 from ryusa.experiments.fig14 import ALIKE
@@ -36,37 +48,27 @@ CAPS = ("spring", "total")
 cases, measure = _avalanche.cases, _avalanche.measure
 
 
-def depth_mean(pair: Pair) -> float:
-    """How much faster the run with long contacts is, mean over the layers [cm/s]."""
-    return CM * float(pair.faster().mean())
+def _mean(found: Sequence[Pair]) -> float:
+    return CM * float(faster(found).mean())
 
 
-def least(pair: Pair) -> float:
-    """The same in the layer where it is least [cm/s]."""
-    return CM * float(pair.faster().min())
+def _least(found: Sequence[Pair]) -> float:
+    return CM * float(faster(found).min())
 
 
-def flux_ratio(pair: Pair) -> float:
-    """Flux over the whole depth, long over short contacts [-]."""
-    return pair.soft.q / pair.stiff.q
-
-
-def soft_speed(pair: Pair) -> float:
-    """Speed of all grains with long contacts [m/s]."""
-    return pair.soft.speed
-
-
-def stiff_speed(pair: Pair) -> float:
-    """Speed of all grains with short contacts [m/s]."""
-    return pair.stiff.speed
-
+depth_mean = together(_mean)  # how much faster the runs with long contacts are, mean over the layers [cm/s]
+least = together(_least)  # in the layer where it is least [cm/s]
+alike = together(unlike)
+flux_ratio = each(lambda pair: pair.soft.q / pair.stiff.q)  # over the whole depth, long over short [-]
+soft_speed = each(lambda pair: pair.soft.speed)  # of all grains, with long contacts [m/s]
+stiff_speed = each(lambda pair: pair.stiff.speed)
 
 # results drawn of every choice, with their axis
-PANELS: dict[str, Callable[[Pair], float]] = {
+PANELS: dict[str, Numbers] = {
     "faster by (cm/s)": depth_mean,
     f"speed, {SOFT} (m/s)": soft_speed,
     f"speed, {STIFF} (m/s)": stiff_speed,
-    "concentrations differ by": Pair.unlike,
+    "concentrations differ by": alike,
 }
 
 
@@ -76,7 +78,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     tried = partial(_avalanche.trials, found, plan)
     tried_sets = _avalanche.settings(plan)
 
-    def each(value: Callable[[Pair], float], chosen: Mapping[str, str]) -> str:
+    def told(value: Numbers, chosen: Mapping[str, str]) -> str:
         """Value in all windows."""
         return " and ".join(short(_avalanche.mean(found, plan, chosen, one, value)) for one in WINDOWS)
 
@@ -97,7 +99,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         "touched at a time, so that one is not over when the next begins."
     )
     tops = [one for one in tried_sets if one[SLIP] != "spring"]
-    left = "; ".join(f"{_avalanche.label(one)}: {each(depth_mean, one)} cm/s" for one in tops)
+    left = "; ".join(f"{_avalanche.label(one)}: {told(depth_mean, one)} cm/s" for one in tops)
     windows = " and ".join(WINDOWS)
     return (
         Finding(
@@ -108,12 +110,12 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
                 *flow,
             ),
             f"{why} The flow never becomes steady, so the difference depends on the window: "
-            f"{each(depth_mean, SHIPPED)} cm/s at {windows} as shipped.",
+            f"{told(depth_mean, SHIPPED)} cm/s at {windows} as shipped.",
             _avalanche.SETTLED,
             also=(
                 *(
-                    f"speed, {_avalanche.label(one)}: {each(soft_speed, one)} m/s with {SOFT}, "
-                    f"{each(stiff_speed, one)} m/s with {STIFF}, at {windows}"
+                    f"speed, {_avalanche.label(one)}: {told(soft_speed, one)} m/s with {SOFT}, "
+                    f"{told(stiff_speed, one)} m/s with {STIFF}, at {windows}"
                     for one in tried_sets
                 ),
                 *((f"faster by, without the uncapped dashpot: {left}",) if left else ()),
@@ -123,14 +125,14 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             "fig15-flux",
             (
                 *tried(f"flux over the whole depth, {SOFT} over {STIFF}", flux_ratio, MORE),
-                *tried(ALIKE_PART, Pair.unlike, ALIKE),
+                *tried(ALIKE_PART, alike, ALIKE),
                 *flow,
             ),
             f"Flux is concentration times speed: where the profiles of concentration are alike, it "
-            f"differs as speed does, by a factor {each(flux_ratio, SHIPPED)} at {windows} as shipped. {why}",
+            f"differs as speed does, by a factor {told(flux_ratio, SHIPPED)} at {windows} as shipped. {why}",
             _avalanche.SETTLED,
             also=tuple(
-                f"flux ratio, {_avalanche.label(one)}: {each(flux_ratio, one)} at {windows}"
+                f"flux ratio, {_avalanche.label(one)}: {told(flux_ratio, one)} at {windows}"
                 for one in tried_sets
             ),
         ),
@@ -155,7 +157,7 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
                 _avalanche.label(one),
                 {
                     window: [
-                        average(name, "-", [[value(p)] for p in _avalanche.pairs(found, plan, one, window)])
+                        average(name, "-", [[x] for x in value(_avalanche.pairs(found, plan, one, window))])
                         for name, value in PANELS.items()
                     ]
                     for window in WINDOWS

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from ryusa import figures
 from ryusa.experiments import _avalanche
-from ryusa.experiments._avalanche import ALL, BETWEEN, FIRST, SHIPPED, SOFT, STIFF, Pair
+from ryusa.experiments._avalanche import ALL, BETWEEN, FIRST, SHIPPED, SOFT, STIFF, Pair, each
 from ryusa.experiments._experiment import Found, Plan
 from ryusa.experiments._verdict import Band, Finding, Trial, short
 
@@ -43,7 +43,8 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         for grains in (BETWEEN, ALL)
         for part, (name, band) in PARTS.items()
         for one in map(
-            _without, _avalanche.trials(found, plan, part, partial(_ratio, name=name, grains=grains), band)
+            _without,
+            _avalanche.trials(found, plan, part, each(partial(_ratio, name=name, grains=grains)), band),
         )
     ]
     tried += [
@@ -68,7 +69,8 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         )
 
     shape = "; ".join(
-        f"{_avalanche.label(one)}, {window}: {short(_avalanche.mean(found, plan, one, window, _per_metre))}"
+        f"{_avalanche.label(one)}, {window}: "
+        f"{short(_avalanche.mean(found, plan, one, window, each(_per_metre)))}"
         for one, window in _avalanche.sets(plan)
         if all(pair.kind != "creeps" for pair in _avalanche.pairs(found, plan, one, window))
     )
