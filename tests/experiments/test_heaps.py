@@ -89,6 +89,12 @@ def test_some_heaps_that_stand_leave_it_undecided():
     assert "1 of 3" in note
 
 
+def test_a_setting_under_which_most_heaps_stand_fails():
+    walls = [heap(math.nan)] * 8
+    assert _heap.slope_interval([*walls, heap(33.0)], None)[1] is False  # at least 0.52 of them stand
+    assert _heap.slope_interval([*walls[:7], heap(33.0), heap(33.0)], None)[1] is None  # 0.4
+
+
 def test_every_other_heap_of_the_full_level_can_be_read():
     for one in {*fig19.cases(FULL), *eq13.cases(FULL)}:
         grains = one.read().derived.n_grain
