@@ -9,6 +9,8 @@ BIN    := $(VENV)/bin
 RUN    := runs/demo
 SHOW   := runs/demo-pictures
 LEDGER := runs/paper-quick
+PAPER  := runs/paper
+DRAWN  := docs/pictures
 JOBS   ?= 2
 
 PIP    := $(BIN)/python -m pip install -qq --disable-pip-version-check --constraint constraints.txt
@@ -19,7 +21,7 @@ HAS_RYUSA  := $(VENV)/.has-ryusa
 HAS_TESTS  := $(VENV)/.has-tests
 
 .DEFAULT_GOAL := help
-.PHONY: help demo demo-run test check lint format types walls unit docs bench paper paper-quick slow constraints clean
+.PHONY: help demo demo-run test check lint format types walls unit docs pictures bench paper paper-quick slow constraints clean
 
 help: ## list these targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 22
@@ -99,6 +101,13 @@ format: $(HAS_TESTS) ## let ruff format and repair what it can
 
 docs: $(HAS_RYUSA) ## write docs/case-file.md and docs/commands.md anew from the code
 	$(BIN)/python docs/generate.py
+
+pictures: $(HAS_RYUSA) ## draw docs/pictures anew from the runs in runs/paper; makes those that are missing
+	$(BIN)/ryusa paper fig20 --full -o $(PAPER) --jobs $(JOBS)
+	cp $(PAPER)/fig20/free-choices.png $(DRAWN)
+	$(BIN)/ryusa paper fig07 spin_time hops fig20 fig21 -o $(PAPER) --jobs $(JOBS)
+	cp $(addprefix $(PAPER)/,fig07/fig06.png fig07/fig07.png fig07/fig07-turning.png spin_time/spin-time.png \
+	    hops/hops.png fig20/fig20.png fig20/fig20-hops.png fig21/fig21.png) $(DRAWN)
 
 bench: $(HAS_RYUSA) ## time whole workloads; keeps the table in benchmarks/results/
 	$(BIN)/python benchmarks/flows.py --save
