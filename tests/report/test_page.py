@@ -1,8 +1,11 @@
+import base64
+import io
 import json
 from dataclasses import replace
 from html.parser import HTMLParser
 
 import pytest
+from PIL import Image, ImageChops
 
 from ryusa.errors import ResultsError
 from ryusa.experiments import Level, Plan, Word
@@ -107,6 +110,17 @@ def test_every_claim_has_a_section_its_verdict_in_words_and_its_statement(every_
     assert "2 of the 3 runs were made by other states of the code" in reader.text
     assert "2 by bbbbbbbbbbbb with changes." in reader.text
     assert "could not be carried out" in reader.text
+
+
+def test_a_picture_keeps_its_pixels_in_fewer_bytes(every_word):
+    (picture,) = next(row for row in every_word.rows if row.pictures).pictures
+    address = page.embedded(picture)
+    held = base64.b64decode(address.removeprefix("data:image/png;base64,"))
+    assert len(held) < picture.stat().st_size / 2
+    with Image.open(io.BytesIO(held)) as small, Image.open(picture) as whole:
+        assert small.size == whole.size
+        away = ImageChops.difference(small.convert("RGB"), whole.convert("RGB"))
+        assert max(high for _, high in away.getextrema()) < 16  # of 255
 
 
 def test_a_long_table_is_shortened_and_its_file_named(every_word):

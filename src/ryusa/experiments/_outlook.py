@@ -67,9 +67,10 @@ class Outlook:
         if not self.others:
             return ""
         made = ", ".join(f"{n} by {code_in_words(code)}" for code, n in self.others.items())
+        vague = "; changes that no commit holds count as another state" if "+" in "".join(self.others) else ""
         return (
             f"\nOther states of the code than the present {code_in_words(present())} made "
-            f"{sum(self.others.values())} of the {len(self.there)} that are there ({made}); "
+            f"{sum(self.others.values())} of the {len(self.there)} that are there ({made}{vague}); "
             "--again makes all anew"
         )
 
