@@ -123,6 +123,16 @@ def test_a_picture_keeps_its_pixels_in_fewer_bytes(every_word):
         assert max(high for _, high in away.getextrema()) < 16  # of 255
 
 
+def test_a_picture_of_two_columns_is_shown_over_the_whole_page(every_word):
+    (picture,) = next(row for row in every_word.rows if row.pictures).pictures
+    write(every_word)
+    assert 'class="whole"' not in read(every_word)[1]
+    with Image.open(picture) as image:
+        image.resize((2127, 600)).save(picture)
+    write(every_word)
+    assert read(every_word)[1].count('class="whole"') == 1
+
+
 def test_a_long_table_is_shortened_and_its_file_named(every_word):
     write(every_word)
     reader, text = read(every_word)

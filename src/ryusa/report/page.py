@@ -20,6 +20,7 @@ WHOLE_TABLE = 60  # rows; of a longer table the page holds the first HEAD
 HEAD = 20
 BEST = 5  # sets of common choices shown
 COLOURS = 256  # of an embedded picture
+ONE_COLUMN = 1600  # pixels; a wider picture is shown over the whole page, or its letters would be too small
 OPEN_SWEEP = 12  # rows; a longer sweep is folded
 # verdict -> class of its colour, and a sign that survives grey print
 LOOKS = {
@@ -145,7 +146,8 @@ def _section(
     return {
         **claim,
         "title": load(name).TITLE if name else "",
-        "images": [(one, embedded(folder / one)) for one in claim["pictures"]],
+        "images": [(one, embedded(folder / one)) for one in claim["pictures"] if not is_wide(folder / one)],
+        "wide": [(one, embedded(folder / one)) for one in claim["pictures"] if is_wide(folder / one)],
         "hows": list(dict.fromkeys(one["how"] for one in claim["spread"])),
         "base": [one for one in claim["sweep"] if one["choices"] == claim["sweep"][0]["choices"]],
         "varied": list(dict.fromkeys(key for one in claim["sweep"] for key in one["choices"])),
@@ -172,6 +174,12 @@ def embedded(picture: Path) -> str:
         flat = image.convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
     flat.save(held, "PNG", optimize=True)
     return "data:image/png;base64," + base64.b64encode(held.getvalue()).decode("ascii")
+
+
+def is_wide(picture: Path) -> bool:
+    """Whether its letters need the whole width of the page: a picture of two columns."""
+    with Image.open(picture) as image:
+        return image.width > ONE_COLUMN
 
 
 def number(value: object) -> str:
