@@ -73,13 +73,14 @@ def test_more_heaps_are_made_where_a_verdict_hangs_on_them():
         return len(fig19.starts(plan, rotation, chosen))
 
     base = fig19.settings(FULL, "locked")[0]
-    near = {**base, "slip rule": "total", "friction angle": fig19.NEAR[0]}
-    only_full = {**base, "friction angle": "5 deg"}
+    near = {**base, "slip rule": "total", "friction angle": fig19.NEAR}
     n = len(FULL.seeds)
-    assert heaps(FULL, "locked", base) == _heap.STARTS * n
+    assert heaps(FULL, "locked", base) == heaps(FULL, "free", base) == _heap.STARTS * n
     assert heaps(FULL, "locked", near) == fig19.NEAR_STARTS * n
-    assert heaps(FULL, "locked", only_full) == n
+    assert heaps(FULL, "locked", {**near, "friction angle": "10 deg"}) == n
+    assert heaps(FULL, "locked", {**near, "heap": "smooth floor"}) == n
     assert heaps(FULL, "free", near) == n
+    assert heaps(QUICK, "locked", base) == 1
 
 
 def test_some_heaps_that_stand_leave_it_undecided():
@@ -105,7 +106,7 @@ def rolled(plan, slopes):
     found = {
         eq13._heap.run({"friction angle": phi}, "free", s): heap(18.0)
         for phi in eq13._angles(plan)
-        for s in _heap.starts(plan)
+        for s in plan.seeds
     }
     found |= {eq13._spin(model, seed): 1000.0 + seed for model in eq13.SPINS for seed in plan.seeds}
     return found | {

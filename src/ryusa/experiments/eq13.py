@@ -126,7 +126,7 @@ def _spin(model: str, seed: int) -> Variant:
 
 def cases(plan: Plan) -> Sequence[Variant]:
     """Heaps under every setting and without rolling friction; saltating grains under each form."""
-    plain = [_heap.run({PHI: phi}, "free", seed) for phi in _angles(plan) for seed in _heap.starts(plan)]
+    plain = [_heap.run({PHI: phi}, "free", seed) for phi in _angles(plan) for seed in plan.seeds]
     heaps = [run(chosen, seed) for chosen in settings(plan) for seed in _starts(plan, chosen)]
     return [*heaps, *plain, *(_spin(model, seed) for model in SPINS for seed in plan.seeds)]
 
@@ -238,7 +238,7 @@ def _told(found: Found, plan: Plan) -> list[str]:
     """What decides nothing but belongs to the story: no rolling friction, energy made, spin, f' over k_n."""
     told: list[str] = []
     for phi in _angles(plan):
-        plain = _heap.slopes([found[_heap.run({PHI: phi}, "free", seed)] for seed in _heap.starts(plan)])
+        plain = _heap.slopes([found[_heap.run({PHI: phi}, "free", seed)] for seed in plan.seeds])
         told.append(f"without rolling friction the heap at phi {phi} has {np.nanmean(plain):.3g} deg")
     for chosen in settings(plan):
         heaps = _group(found, plan, chosen)
