@@ -80,7 +80,7 @@ def test_a_failed_run_is_told_at_the_end_and_by_the_exit_code(tmp_path, monkeypa
     monkeypatch.setattr(report, "write", lambda *_: (tmp_path / "ledger.html",))
     result = call("--quick", "-o", tmp_path)
     assert result.exit_code == 3
-    assert "1 run could not be carried out:\n  fig20 [free]: grain 7 lost" in result.stderr
+    assert "1 run could not be carried out or measured:\n  fig20 [free]: grain 7 lost" in result.stderr
     assert "not judged, see below" in result.stdout
     assert "1 undecided (spread); 1 not yet run (water)" in result.stdout
     assert all(len(line) <= 100 for line in result.stdout.splitlines() if "wrote" not in line)

@@ -92,7 +92,11 @@ def paper(
     _print(ledger)
     for path in files:
         typer.echo(f"wrote {path}")
-    _tell(ledger.problems, "run could not be carried out", "runs could not be carried out")
+    _tell(
+        ledger.problems,
+        "run could not be carried out or measured",
+        "runs could not be carried out or measured",
+    )
     _tell(ledger.faults, "step after the runs failed", "steps after the runs failed")
     if ledger.traces:
         typer.echo(
