@@ -28,11 +28,24 @@ def test_an_interval_of_three_seeds_is_students():
     assert found.high == pytest.approx(high)
 
 
-def test_a_pooled_spread_narrows_an_interval_but_never_below_its_own_scatter():
+def test_a_pooled_spread_counts_where_the_own_is_no_larger():
     noisy, quiet = [1.0, 2.0, 3.0], [5.0, 5.1, 4.9]
     spread = pool([noisy, quiet])
-    assert over_seeds(noisy, "m", spread).high < over_seeds(noisy, "m").high
+    assert over_seeds(noisy, "m", spread) == over_seeds(noisy, "m")
     assert over_seeds(quiet, "m", spread).high > over_seeds(quiet, "m").high
+    alike = [[1.0, 2.0, 3.0], [5.0, 6.1, 7.0], [2.0, 3.0, 3.9]]
+    assert over_seeds(alike[2], "m", pool(alike)).high < over_seeds(alike[2], "m").high
+
+
+@pytest.mark.parametrize("sigma", [1.0, 3.0])
+def test_a_setting_of_a_sweep_is_covered_even_where_it_scatters_three_times_as_much(sigma):
+    rng = np.random.default_rng(5)
+    hits: list[bool] = []
+    for _ in range(2000):
+        groups = [list(rng.normal(3.0, sigma if k == 0 else 1.0, 3)) for k in range(8)]
+        one = over_seeds(groups[0], "m", pool(groups))
+        hits.append(one.low <= 3.0 <= one.high)
+    assert np.mean(hits) > 0.92
 
 
 def test_intervals_hold_the_true_mean_as_often_as_they_say():

@@ -61,9 +61,9 @@ def over_seeds(values: Sequence[float], unit: str, pooled: "Pooled | None" = Non
     ----------
     values : one number per seed.
     unit : of the numbers.
-    pooled : spread of all settings of a sweep; with it the larger of the own and the pooled standard
-        deviation counts, with the pooled degrees of freedom. Few seeds alone give an interval far too wide
-        (n = 3: 2.5 standard deviations) or, by luck, far too narrow.
+    pooled : spread of all settings of a sweep, and its degrees of freedom; counts where the own standard
+        deviation is no larger. Few seeds alone give an interval far too wide (n = 3: 2.5 standard deviations)
+        or, by luck, far too narrow. A setting that scatters more than the others keeps its own.
 
     Notes
     -----
@@ -82,8 +82,8 @@ def over_seeds(values: Sequence[float], unit: str, pooled: "Pooled | None" = Non
         return Interval(mean, mean, mean, unit, 1, "one seed, no interval")
     spread, freedom = float(numbers.std(ddof=1)), n - 1
     how = f"95 % of the mean of {n} seeds, Student's t"
-    if pooled is not None and pooled.freedom > freedom:
-        spread, freedom = max(spread, pooled.spread), pooled.freedom
+    if pooled is not None and pooled.freedom > freedom and pooled.spread >= spread:
+        spread, freedom = pooled.spread, pooled.freedom
         how += f", spread pooled over the sweep ({freedom} degrees of freedom)"
     half = float(stats.t.ppf(0.5 + CONFIDENCE / 2, freedom)) * spread / math.sqrt(n)
     return Interval(mean, mean - half, mean + half, unit, n, how)
