@@ -21,6 +21,8 @@ class Grains(NamedTuple):
     torque: Any  # contact torque so far in this step [N m], (n, 3)
     touches: Any  # contacts so far in this step, (n,)
     touched: Any  # contacts in the last step, (n,)
+    seen: Any  # water at each grain, columns of model.immersed, (n, N_SEEN); (0, 0) without a column
+    taken: Any  # impulse it took from the water [N s], (n, 3); (0, 0) without a column
 
 
 class Pairs(NamedTuple):

@@ -24,8 +24,6 @@ from ryusa.engine.rows import (
     N_OVERLAP_GRAIN,
     N_OVERLAP_MAX,
     N_OVERLAP_STEP,
-    N_PEND_DRAG,
-    N_PEND_TORQUE,
     N_POTENTIAL,
     N_SPEED_MAX,
     N_SPIN,
@@ -33,15 +31,17 @@ from ryusa.engine.rows import (
     N_SPRING_N,
     N_SPRING_R,
     N_SPRING_S,
+    PENDING,
     STOP_EVENTS,
     STOP_LIST,
     STOP_UNSAFE,
 )
 from ryusa.engine.seam import Flags
 from ryusa.errors import NotANumber, RunError
-from ryusa.model import EVENT, Book, Contacts, Scene, State, Tally
+from ryusa.model import EVENT, Book, Contacts, Immersed, Scene, State, Tally
 from ryusa.model.contacts import N_EVENT
 from ryusa.model.enums import Arm, EventRule, Rolling
+from ryusa.model.scene import Floats
 from ryusa.model.tally import N_BOOK
 
 _MANY = 256  # grains from which work is cut into blocks
@@ -164,10 +164,7 @@ class CpuEngine:
         n, grains = self._n, self._grains
         back = np.argsort(grains.ids[:n])
         books = self._ledger.books.copy()
-        books[:, N_BOOK], books[:, N_BOOK + 1] = (
-            self._ledger.now[:, N_PEND_DRAG],
-            self._ledger.now[:, N_PEND_TORQUE],
-        )
+        books[:, N_BOOK : N_BOOK + len(PENDING)] = self._ledger.now[:, PENDING]
         contacts = contacts_of(take_memory(n, grains, self._pairs), self._variant)
         state = State(
             x=grains.x[:n][back],
@@ -179,11 +176,33 @@ class CpuEngine:
             contacts=contacts,
             books=books,
             x_listed=self._x_listed.copy(),
+            immersed=Immersed(grains.seen[back], grains.taken[back]) if self._variant.column else None,
             engine=self._own(),
         )
-        for array in (state.x, state.v, state.omega, state.image, state.books, *vars(contacts).values()):
+        wet = vars(state.immersed).values() if state.immersed else ()
+        for array in (
+            state.x, state.v, state.omega, state.image, state.books, *vars(contacts).values(), *wet,
+        ):  # fmt: skip
             array.flags.writeable = False
         return state
+
+    def immerse(self, seen: Floats) -> None:
+        """Tell every grain its water for the steps to come, and begin to count its impulse anew.
+
+        Parameters
+        ----------
+        seen : by id, columns of `model.immersed`, shape (n_grain, N_SEEN).
+
+        Raises
+        ------
+        ValueError : the scene has no column of water, or the shape is another.
+        """
+        if not self._variant.column:
+            raise ValueError("the scene has no column of water: water.profile is not COLUMN")
+        if seen.shape != self._grains.seen.shape:
+            raise ValueError(f"seen has shape {seen.shape}, not {self._grains.seen.shape}")
+        self._grains.seen[:] = seen[self._grains.ids[: self._n]]
+        self._grains.taken[:] = 0.0
 
     def tally(self) -> Tally:
         """Energy account and extremes at the moment of the last force evaluation."""
@@ -303,7 +322,7 @@ class CpuEngine:
         self._since = int(own.get("since", 0))
         if state.books.shape == books.shape:
             books[:] = state.books
-            now[:, N_PEND_DRAG], now[:, N_PEND_TORQUE] = books[:, N_BOOK], books[:, N_BOOK + 1]
+            now[:, PENDING] = books[:, N_BOOK : N_BOOK + len(PENDING)]
             books[:, N_BOOK:] = 0.0
         now[:, N_OVERLAP_MAX] = own.get("overlap_max", 0.0)
         now[:, N_OVERLAP_GRAIN] = own.get("overlap_grain", -1.0)

@@ -66,7 +66,7 @@ def forces(
     now: Any,
 ) -> None:
     """Forces of every pair owned by grains lo..hi-1; q is the first slot of the block in `pairs.react`."""
-    plane_case, rotation, rolling, events = kind
+    plane_case, rotation, rolling, events, _ = kind
     slip, cap, tension, width = choice.slip, choice.cap, choice.tension, pairs.mem.shape[1]
     x, v, w, r, m, inertia, ids = grains.x, grains.v, grains.w, grains.r, grains.m, grains.inertia, grains.ids
     f, torque, touches, touched = grains.f, grains.torque, grains.touches, grains.touched

@@ -8,6 +8,8 @@ from ryusa.engine.arrays import Grains, Pairs, Walls
 from ryusa.engine.carry import count_live, cross_lists, put_rows, take_rows, wrap_grains
 from ryusa.engine.cells import build_list, grid_of, sort_into
 from ryusa.model import Scene, State
+from ryusa.model.enums import Profile
+from ryusa.model.immersed import Immersed
 from ryusa.model.scene import Floats
 
 
@@ -59,6 +61,10 @@ class Layout:
         still = np.zeros((len(self.r) - n, 3))
         image = np.array(state.image, dtype=np.int32) if len(state.image) == n else np.zeros((n, 2), np.int32)
         spin = state.omega if scene.rotation else np.zeros((n, 3))
+        none = Immersed(np.zeros((0, 0)), np.zeros((0, 0)))
+        if scene.water.profile == Profile.COLUMN:
+            none = Immersed.still(n)
+        immersed = state.immersed or none
         return Grains(
             x=np.vstack([state.x, self.x_fixed]),
             v=np.vstack([state.v, still]),
@@ -75,6 +81,8 @@ class Layout:
             torque=np.zeros((n, 3)),
             touches=np.zeros(n, np.int32),
             touched=np.zeros(n, np.int32),
+            seen=np.array(immersed.seen),
+            taken=np.array(immersed.taken),
         )
 
     def unsorted(self, grains: Grains) -> Grains:
@@ -85,8 +93,14 @@ class Layout:
         for name in ("x", "v", "w"):
             moved[name] = getattr(grains, name)
             moved[name][:n] = moved[name][:n][back]
+        wet = back[: len(grains.seen)]
         return grains._replace(
-            **moved, image=grains.image[back], touched=grains.touched[back], ids=np.arange(self.n_solid)
+            **moved,
+            image=grains.image[back],
+            touched=grains.touched[back],
+            ids=np.arange(self.n_solid),
+            seen=grains.seen[wet],
+            taken=grains.taken[wet],
         )
 
     def list_pairs(
@@ -128,6 +142,8 @@ class Layout:
             ids=place[: self.n_solid].copy(),
             image=by_id.image[order],
             touched=by_id.touched[order],
+            seen=by_id.seen[order[: len(by_id.seen)]],
+            taken=by_id.taken[order[: len(by_id.seen)]],
         )
         bed = np.ascontiguousarray(self.x_fixed[self.standing])
         bed_low, bed_wide, bed_dims = grid_of(bed, len(bed), size, period)

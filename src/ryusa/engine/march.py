@@ -10,62 +10,16 @@ from ryusa.engine.arrays import Grains, Ledger, Pairs, Walls
 from ryusa.engine.kernels import forces
 from ryusa.engine.rows import *
 from ryusa.engine.sync import meet
-from ryusa.laws.drag import (
-    c_d_ferguson_church_sand,
-    c_d_ferguson_church_sphere,
-    c_d_re_04,
-    c_d_re_2,
-    c_d_schiller_naumann,
-    drag_factor,
-    reynolds,
-)
+from ryusa.engine.wet import drag_of, water_on, water_speed
 from ryusa.laws.motion import acceleration, acceleration_spin, semi_implicit
 from ryusa.laws.torque import torque_dennis, torque_stokes
-from ryusa.laws.water import log_law_rough, log_law_smooth, uniform
-from ryusa.model.enums import Above, Drag, Profile, WaterTorque
+from ryusa.model.enums import Above, WaterTorque
+from ryusa.model.immersed import A_X, EXTRA_X, EXTRA_Z, SHARE, SHEAR
 from ryusa.model.tally import Book
 
-ROUGH, SMOOTH, UNIFORM = int(Profile.LOG_ROUGH), int(Profile.LOG_SMOOTH), int(Profile.UNIFORM)
-HOLD, DRY = int(Above.HOLD), int(Above.DRY)
-D_CONSTANT, D_04, D_2 = int(Drag.CONSTANT), int(Drag.RE_04), int(Drag.RE_2)
-D_SN, D_FC_SPHERE = int(Drag.SCHILLER_NAUMANN), int(Drag.FERGUSON_CHURCH_SPHERE)
+DRY = int(Above.DRY)
 STOKES = int(WaterTorque.STOKES)
-B_DRAG, B_TORQUE = int(Book.DRAG), int(Book.TORQUE)
-
-
-@kernel(forceinline=True)
-def water_speed(profile: int, above: int, z: float, c: Any) -> float:
-    """Speed of the water along x at height z over the zero of the profile [m/s]."""
-    if above == HOLD:
-        z = min(z, c[C_DEPTH])
-    if profile == ROUGH:
-        return log_law_rough(z, c[C_U_STAR], c[C_K_ROUGH])
-    if profile == SMOOTH:
-        return log_law_smooth(z, c[C_U_STAR], c[C_NU])
-    if profile == UNIFORM:
-        return uniform(z, c[C_U_UNIFORM])
-    return 0.0
-
-
-@kernel(forceinline=True)
-def drag_of(law: int, speed: float, d: float, c: Any) -> float:
-    """Drag over relative velocity [N s/m]."""
-    if speed == 0.0:
-        return 0.0
-    re = reynolds(speed, d, c[C_NU])
-    if law == D_CONSTANT:
-        c_d = c[C_C_D]
-    elif law == D_04:
-        c_d = c_d_re_04(re)
-    elif law == D_2:
-        c_d = c_d_re_2(re)
-    elif law == D_SN:
-        c_d = c_d_schiller_naumann(re)
-    elif law == D_FC_SPHERE:
-        c_d = c_d_ferguson_church_sphere(re)
-    else:
-        c_d = c_d_ferguson_church_sand(re)
-    return drag_factor(speed, c_d, c[C_RHO_W], c[C_A_2], d)
+B_DRAG, B_TORQUE, B_LIFT, B_FLOW = int(Book.DRAG), int(Book.TORQUE), int(Book.LIFT), int(Book.FLOW)
 
 
 @kernel(fastmath=FAST, forceinline=True)
@@ -85,6 +39,7 @@ def motion(
     """Gather what other blocks stored, add water and weight, and move grains lo..hi-1 by one step."""
     plane_case, rotation = kind.plane_case, kind.rotation
     profile, above, drag, torque_law = choice.profile, choice.above, choice.drag, choice.torque
+    column, seen, taken = kind.column, grains.seen, grains.taken
     x, v, w, r, m, inertia, ids = grains.x, grains.v, grains.w, grains.r, grains.m, grains.inertia, grains.ids
     m_bare, m_weight, image = grains.m_bare, grains.m_weight, grains.image
     f, torque, touches, touched = grains.f, grains.torque, grains.touches, grains.touched
@@ -96,6 +51,10 @@ def motion(
     book[B_DRAG] += now[N_PEND_DRAG]
     book[B_TORQUE] += now[N_PEND_TORQUE]
     pend_drag = pend_torque = work_drag = work_torque = 0.0
+    if column:
+        book[B_LIFT] += now[N_PEND_LIFT]
+        book[B_FLOW] += now[N_PEND_FLOW]
+    pend_lift = pend_flow = work_lift = work_flow = 0.0
     for i in range(lo, hi):
         f_x, f_y, f_z = f[i, 0], f[i, 1], f[i, 2]
         t_x, t_y, t_z = torque[i, 0], torque[i, 1], torque[i, 2]
@@ -111,15 +70,24 @@ def motion(
         touched[i] = hits
 
         v_x, v_y, v_z = v[i, 0], v[i, 1], v[i, 2]
-        d_x = d_y = d_z = 0.0
-        z = x[i, 2] - c[C_Z_ZERO]
-        dry = profile == 0 or (above == DRY and z > c[C_DEPTH])
-        if drag and not dry:
-            u_x, u_y, u_z = water_speed(profile, above, z, c) - v_x, -v_y, -v_z
-            k_d = drag_of(drag, math.sqrt(u_x * u_x + u_y * u_y + u_z * u_z), 2.0 * r[i], c)
-            d_x, d_y, d_z = k_d * u_x, k_d * u_y, k_d * u_z
+        d_x = d_y = d_z = l_x = l_y = l_z = e_x = e_z = turn = 0.0
         m_i, m_b, m_w = m[i], m_bare[i], m_weight[i]
         added = m_i - m_b
+        if column:
+            dry = seen[i, SHARE] == 0.0
+            if not dry:
+                d_x, d_y, d_z, l_x, l_y, l_z = water_on(choice, c, r[i], seen[i], v[i], w[i])
+                e_x, e_z = seen[i, EXTRA_X] + added * seen[i, A_X], seen[i, EXTRA_Z]
+                turn = 0.5 * seen[i, SHEAR]
+        else:
+            z = x[i, 2] - c[C_Z_ZERO]
+            dry = profile == 0 or (above == DRY and z > c[C_DEPTH])
+            if drag and not dry:
+                u_x, u_y, u_z = water_speed(profile, above, z, c) - v_x, -v_y, -v_z
+                k_d = drag_of(drag, math.sqrt(u_x * u_x + u_y * u_y + u_z * u_z), 2.0 * r[i], c)
+                d_x, d_y, d_z = k_d * u_x, k_d * u_y, k_d * u_z
+        if column:
+            f_x, f_y, f_z = f_x + l_x + e_x, f_y + l_y, f_z + l_z + e_z
         y_x, y_z = x[i, 0], x[i, 2]
         x[i, 0], a_x = semi_implicit(x[i, 0], v_x, acceleration(f_x, d_x, m_w * g_x, m_b, added), dt)
         x[i, 2], a_z = semi_implicit(x[i, 2], v_z, acceleration(f_z, d_z, m_w * g_z, m_b, added), dt)
@@ -128,6 +96,14 @@ def motion(
         if not plane_case:
             x[i, 1], a_y = semi_implicit(x[i, 1], v_y, acceleration(f_y, d_y, m_w * g_y, m_b, added), dt)
         v[i, 0], v[i, 1], v[i, 2] = a_x, a_y, a_z
+        if column and not dry:
+            taken[i, 0] += dt * (d_x + l_x + added * seen[i, A_X]) - added * (a_x - v_x)
+            taken[i, 1] += dt * (d_y + l_y) - added * (a_y - v_y)
+            taken[i, 2] += dt * (d_z + l_z) - added * (a_z - v_z)
+            work_lift += half * (l_x * v_x + l_y * v_y + l_z * v_z)
+            pend_lift += 0.5 * dt * (l_x * a_x + l_y * a_y + l_z * a_z)
+            work_flow += half * (e_x * v_x + e_z * v_z)
+            pend_flow += 0.5 * dt * (e_x * a_x + e_z * a_z)
         square = a_x * a_x + a_y * a_y + a_z * a_z
         if not square < math.inf and now[N_FAULT] == FAULT_NONE:
             now[N_FAULT], now[N_FAULT_GRAIN], now[N_FAULT_PARTNER] = FAULT_NOT_A_NUMBER, ids[i], -1
@@ -140,13 +116,14 @@ def motion(
             o_x, o_y, o_z = w[i, 0], w[i, 1], w[i, 2]
             k_t = 0.0
             if torque_law and not dry:
-                size = math.sqrt(o_x * o_x + o_y * o_y + o_z * o_z)
+                o_rel = o_y - turn
+                size = math.sqrt(o_x * o_x + o_rel * o_rel + o_z * o_z)
                 if torque_law == STOKES:
                     k_t = torque_stokes(size, 2.0 * r[i], c[C_NU], c[C_RHO_W])
                 else:
                     k_t = torque_dennis(size, 2.0 * r[i], c[C_NU], c[C_RHO_W])
             i_i = inertia[i]
-            b_y = o_y + dt * acceleration_spin(t_y - k_t * o_y, i_i)
+            b_y = o_y + dt * acceleration_spin(t_y - k_t * (o_y - turn), i_i)
             b_x, b_z = o_x, o_z
             if not plane_case:
                 b_x = o_x + dt * acceleration_spin(t_x - k_t * o_x, i_i)
@@ -157,8 +134,8 @@ def motion(
                 now[N_FAULT], now[N_FAULT_GRAIN], now[N_FAULT_PARTNER] = FAULT_NOT_A_NUMBER, ids[i], -1
             spin_2 = max(spin_2, whirl)
             if torque_law:
-                work_torque -= half * k_t * (o_x * o_x + o_y * o_y + o_z * o_z)
-                pend_torque -= 0.5 * dt * k_t * (o_x * b_x + o_y * b_y + o_z * b_z)
+                work_torque -= half * k_t * (o_x * o_x + (o_y - turn) * o_y + o_z * o_z)
+                pend_torque -= 0.5 * dt * k_t * (o_x * b_x + (o_y - turn) * b_y + o_z * b_z)
             if last:
                 spin += 0.5 * i_i * (o_x * b_x + o_y * b_y + o_z * b_z)
         if last:
@@ -171,6 +148,10 @@ def motion(
     now[N_PEND_DRAG], now[N_PEND_TORQUE] = pend_drag, pend_torque
     book[B_DRAG] += work_drag
     book[B_TORQUE] += work_torque
+    if column:
+        now[N_PEND_LIFT], now[N_PEND_FLOW] = pend_lift, pend_flow
+        book[B_LIFT] += work_lift
+        book[B_FLOW] += work_flow
     now[N_SPEED_MAX], now[N_SPIN_MAX] = math.sqrt(speed_2), math.sqrt(spin_2)
     now[N_FAULT_SHOWN], now[N_ENDED_SHOWN] = now[N_FAULT], now[N_N_ENDED]
     if last:

@@ -6,7 +6,7 @@ from ryusa.engine import rows as k
 from ryusa.engine.rows import Choice, Variant
 from ryusa.laws.rolling import epsd_stiffness, reduced_radius
 from ryusa.model import Scene, State
-from ryusa.model.enums import Damping, EventRule, Rolling
+from ryusa.model.enums import Damping, EventRule, Profile, Rolling
 from ryusa.model.scene import Floats
 
 
@@ -17,6 +17,7 @@ def variant_of(scene: Scene) -> Variant:
         rotation=int(scene.rotation),
         rolling=int(scene.rotation and scene.rolling.model != Rolling.NONE),
         events=int(scene.events != EventRule.NONE),
+        column=int(scene.water.profile == Profile.COLUMN),
     )
 
 
@@ -34,6 +35,10 @@ def choice_of(scene: Scene) -> Choice:
         above=int(water.above),
         drag=int(water.drag),
         torque=int(water.torque),
+        buoyancy=int(water.buoyancy),
+        hindrance=int(water.hindrance),
+        lift=int(water.lift),
+        magnus=int(water.magnus),
     )
 
 
@@ -72,6 +77,8 @@ def numbers_of(scene: Scene) -> Floats:
         k.C_ZETA_S: law.zeta_s if asked else 0.0,
         k.C_ETA_N: 0.0 if asked else law.eta_n,
         k.C_ETA_S: 0.0 if asked else law.eta_s,
+        k.C_HINDRANCE: water.hindrance_exponent,
+        k.C_C_L: water.c_l,
     }
     numbers = np.zeros(len(table))
     for place, value in table.items():

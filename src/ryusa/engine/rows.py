@@ -69,6 +69,8 @@ C_ZETA_N = 26
 C_ZETA_S = 27
 C_ETA_N = 28  # constants, 0 where they follow from restitution
 C_ETA_S = 29
+C_HINDRANCE = 30  # exponent
+C_C_L = 31
 
 # Per block: what holds at the last step of a call, and extremes (model.tally.Book is kept beside it).
 N_KINETIC = 0
@@ -91,6 +93,8 @@ N_FAULT_PARTNER = 16
 N_N_ENDED = 17  # records waiting in the block's event buffer
 N_FAULT_SHOWN = 18  # FAULT and N_ENDED as they stood when the block last moved: what other threads may read
 N_ENDED_SHOWN = 19
+N_PEND_LIFT = 20
+N_PEND_FLOW = 21
 
 # What a kernel cannot raise.
 FAULT_NONE = 0
@@ -108,16 +112,18 @@ STOP_UNSAFE = 4  # a grain went further in one step than the list allows
 BASE, WITH_ROLLING = 10, 16  # doubles a row takes without and with rolling friction
 # widths padded to whole cache lines, so that blocks of different threads do not share one
 N_NOW = 24
-N_BOOKS = 16
+N_BOOKS = 24
+PENDING = (N_PEND_DRAG, N_PEND_TORQUE, N_PEND_LIFT, N_PEND_FLOW)  # kept behind the books in a snapshot
 
 
 class Variant(NamedTuple):
-    """What a kernel is compiled for; each of the sixteen is kept on disk once built."""
+    """What a kernel is compiled for; each is kept on disk once built."""
 
     plane_case: int
     rotation: int
     rolling: int
     events: int
+    column: int
 
     @property
     def row_width(self) -> int:
@@ -143,3 +149,7 @@ class Choice(NamedTuple):
     above: int
     drag: int
     torque: int
+    buoyancy: int
+    hindrance: int
+    lift: int
+    magnus: int

@@ -7,6 +7,7 @@ import numpy as np
 
 from ryusa.errors import RunError
 from ryusa.model import Scene, State, Tally
+from ryusa.model.scene import Floats
 
 
 @dataclass(frozen=True)
@@ -33,6 +34,13 @@ class Engine(Protocol):
 
     def load(self, scene: Scene, state: State) -> None:
         """Take a scene and a fresh state or a snapshot; also when the timeline changes the scene mid-run."""
+        ...
+
+    def immerse(self, seen: Floats) -> None:
+        """Tell every grain its water, columns of model.immersed, held until told again.
+
+        A snapshot carries it, and the impulse that each grain took since.
+        """
         ...
 
     def advance(self, n_steps: int) -> Flags:

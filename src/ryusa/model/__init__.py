@@ -1,8 +1,11 @@
 """Scene (fixed), State (moving), Contacts (memory of a pair), Tally (the energy account)."""
 
 from ryusa.model.contacts import EVENT, Contacts
+from ryusa.model.immersed import Immersed
 from ryusa.model.scene import ContactLaw, RollingLaw, Scene, Water
 from ryusa.model.state import State
 from ryusa.model.tally import Book, Tally
 
-__all__ = ["EVENT", "Book", "ContactLaw", "Contacts", "RollingLaw", "Scene", "State", "Tally", "Water"]
+__all__ = [
+    "EVENT", "Book", "ContactLaw", "Contacts", "Immersed", "RollingLaw", "Scene", "State", "Tally", "Water",
+]  # fmt: skip

@@ -49,6 +49,7 @@ class Profile(IntEnum):
     LOG_SMOOTH = 2
     UNIFORM = 3
     STILL = 4  # water at rest
+    COLUMN = 5  # what the engine is told of every grain: water that feels the grains
 
 
 class Above(IntEnum):
@@ -77,6 +78,42 @@ class WaterTorque(IntEnum):
     NONE = 0
     STOKES = 1
     DENNIS = 2  # Stokes limit up to Re_r = 32, Dennis et al. 1980 beyond
+
+
+class Hindrance(IntEnum):
+    """How neighbours change the drag of a grain."""
+
+    NONE = 0
+    RICHARDSON_ZAKI = 1  # exact: a suspension settles with (1 - phi)**n, n of the lone grain's Re
+    POWER = 2  # (1 - phi)**-m
+    WEN_YU = 3
+    GIDASPOW = 4  # Wen & Yu, Ergun where dense
+    DI_FELICE = 5
+
+
+class Buoyancy(IntEnum):
+    """Force of the water on a grain beside drag, lift and added mass, see design/0007."""
+
+    WEIGHT = 0  # -rho V g, Eqs. (10)-(11)
+    STRESS = 1  # V (-grad p + d tau/dz)
+    PRESSURE = 2  # normal to the bed only
+
+
+class Lift(IntEnum):
+    """Lift by shear of the water."""
+
+    NONE = 0
+    WIBERG_SMITH = 1  # Bernoulli between top and bottom of the grain
+    SAFFMAN_MEI = 2
+
+
+class Magnus(IntEnum):
+    """Lift by spin."""
+
+    NONE = 0
+    RUBINOW_KELLER = 1
+    LOTH = 2  # with the correction of Loth 2008
+    OESTERLE_DINH = 3
 
 
 class EventRule(IntEnum):

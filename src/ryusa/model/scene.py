@@ -5,7 +5,22 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from ryusa.model.enums import Above, Arm, Cap, Damping, Drag, EventRule, Profile, Rolling, Slip, WaterTorque
+from ryusa.model.enums import (
+    Above,
+    Arm,
+    Buoyancy,
+    Cap,
+    Damping,
+    Drag,
+    EventRule,
+    Hindrance,
+    Lift,
+    Magnus,
+    Profile,
+    Rolling,
+    Slip,
+    WaterTorque,
+)
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -61,6 +76,13 @@ class Water:
     a_2: float = float(np.pi / 4)  # area coefficient of Eq. (10) [-]
     c_m: float = 0.5  # added-mass coefficient [-]
     torque: WaterTorque = WaterTorque.NONE
+    # only where the profile is COLUMN
+    buoyancy: Buoyancy = Buoyancy.WEIGHT
+    hindrance: Hindrance = Hindrance.NONE
+    hindrance_exponent: float = 3.1  # n of Richardson-Zaki, m of POWER [-]
+    lift: Lift = Lift.NONE
+    c_l: float = 0.2  # lift coefficient of Wiberg & Smith [-]
+    magnus: Magnus = Magnus.NONE
 
 
 @dataclass(frozen=True)

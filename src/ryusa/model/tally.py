@@ -20,15 +20,16 @@ class Book(IntEnum):
     RELEASED_R = 6  # rolling springs let go at parting
     DRAG = 7  # given by drag
     TORQUE = 8  # given by the water's torque
-    LIFT = 9  # given by lift
+    LIFT = 9  # given by lift and the Magnus force
     SWITCH = 10  # given by a change of the timeline (gravity, friction, rotation, a gate)
     STEP = 11  # given by the step: springs met and left within one, (1/2) k overlap (closing dt - overlap)
     START = 12  # energy at the first step: kinetic + spin + potential + springs
+    FLOW = 13  # given by pressure, stress and acceleration of the water, beyond what still water does
 
 
 N_BOOK = len(Book)
 LOSSES = (Book.DASH_N, Book.DASH_S, Book.SLIDE, Book.ROLL, Book.RELEASED_N, Book.RELEASED_S, Book.RELEASED_R)
-GIFTS = (Book.DRAG, Book.TORQUE, Book.LIFT, Book.SWITCH, Book.STEP)
+GIFTS = (Book.DRAG, Book.TORQUE, Book.LIFT, Book.FLOW, Book.SWITCH, Book.STEP)
 # Terms that say how large the account is. START and SWITCH are heights from an origin that is free to choose.
 SIZES = tuple(b for b in Book if b not in {Book.START, Book.SWITCH})
 HELD = ("kinetic", "spin", "potential", "spring_n", "spring_s", "spring_r")
