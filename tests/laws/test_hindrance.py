@@ -245,6 +245,13 @@ def test_more_neighbours_never_drag_less(slip, phi, stress):
         assert many >= few
 
 
+@given(slip=st.floats(1e-6, 10.0), eps=st.floats(0.1, 1.0), stress=st.booleans())
+def test_three_laws_are_linear_in_the_slip(slip, eps, stress):
+    for name in ("richardson_zaki", "wen_yu", "power"):
+        one, factor = hindered(name, 1.0, eps, 0.002, stress)
+        assert hindered(name, slip, eps, 0.002, stress) == (pytest.approx(slip * one, rel=1e-14), factor)
+
+
 def test_water_at_rest_drags_nobody_and_no_law_stumbles_over_it():
     for name in ("richardson_zaki", "wen_yu", "gidaspow", "di_felice", "power"):
         for eps in (0.4, 0.9):

@@ -18,7 +18,8 @@ F_0 ~ w**a (a = 1 after Stokes, 2 after Newton) the settling velocity follows ep
 | `di_felice` | A | slip eps | eps**-chi | eps**-(chi + 1) | 4.7, 2.35 |
 | `power` | as given | slip | eps**-m | eps**-m | A 2 + m, (3 + m)/2; B 1 + m, (2 + m)/2 |
 
-`exponent_settling` is the formula behind the last column.
+`exponent_settling` is the formula behind the last column. `richardson_zaki`, `wen_yu` and `power` are linear
+in the slip: asked with slip 1 they give two numbers that hold as long as eps does.
 """
 
 import math

@@ -134,10 +134,10 @@ def lubrication_force(
 
     Notes
     -----
-    Source: 6 pi mu r**2 closing/h for a thin film (Brenner 1961), with h = gap + roughness as YADE and Izard,
-    Bonometti & Lacaze 2014 have it, less its value at `reach`, so that it begins without a jump (as Nguyen &
-    Ladd 2002 cut it). None in touch, where the contact takes over. It also holds back grains that part; who
-    wants the approach alone hands in max(closing, 0).
+    Source: 6 pi mu r**2 closing/h for a thin film, with h = gap + roughness as YADE and Izard, Bonometti &
+    Lacaze 2014 have it, less its value at `reach`, so that it begins without a jump (after Nguyen & Ladd
+    2002, from memory). None in touch, where the contact takes over. It also holds back grains that part;
+    who wants the approach alone hands in max(closing, 0).
 
     Examples
     --------

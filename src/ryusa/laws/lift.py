@@ -42,9 +42,9 @@ def saffman_mei(re: float, beta: float) -> float:
 
     Notes
     -----
-    Source: Mei 1992, (1 - 0.3314 sqrt(beta)) exp(-Re/10) + 0.3314 sqrt(beta) up to Re = 40 and 0.0524
-    sqrt(beta Re) beyond; a fit for 0.1 <= Re <= 100 and 0.005 < beta < 0.4. At Re = 40 it steps down, by 7 %
-    of the second branch at beta = 0.4 and by 76 % at 0.005.
+    Source: Mei 1992, (1 - 0.3314 sqrt(beta)) exp(-Re/10) + 0.3314 sqrt(beta) up to Re = 40 and
+    0.0524 sqrt(beta Re) beyond, read in OpenFOAM; a fit for 0.1 <= Re <= 100 and 0.005 < beta < 0.4 (range
+    from memory). At Re = 40 it steps down, by 7 % of the second branch at beta = 0.4 and by 76 % at 0.005.
 
     Examples
     --------
