@@ -23,6 +23,11 @@ BLIND = {
     ("contact.slide_total", "tau_c"),
     ("contact.slip_spring", "cohesion"),
     ("contact.slip_spring", "mu"),
+    ("debris.equilibrium_concentration", "rho_s"),  # infinite on too steep a slope, whatever the densities
+    ("debris.equilibrium_concentration", "rho_w"),
+    ("debris.equilibrium_takahashi", "rho_s"),  # the cap, likewise
+    ("debris.equilibrium_takahashi", "rho_w"),
+    ("debris.equilibrium_takahashi", "c_star"),
     ("geometry.wrap", "period"),  # checked by the case reader
     ("rolling.epsd_torque", "spin"),  # the dashpot is off while sliding
     ("rolling.epsd_torque", "eta_r"),
@@ -32,6 +37,8 @@ BLIND = {
     ("torque.torque_in_range", "d"),
     ("torque.torque_in_range", "nu"),
     ("torque.torque_stokes", "spin"),  # does not depend on it
+    ("transport.bedload_layer", "tau_star"),  # infinite on too steep a slope, whatever the rest
+    ("transport.bedload_layer", "c_s"),
     ("water.uniform", "z"),
 }
 

@@ -12,14 +12,17 @@ from ryusa.figures.snapshot import snapshot
 from ryusa.figures.spin import spin
 from ryusa.figures.style import save
 from ryusa.figures.tracks import tracks, tracks_from_start, tracks_side_by_side
+from ryusa.figures.transport import Formula, Rates, transport
 from ryusa.figures.vibration import vibration
 
 __all__ = [
     "Band",
     "Choice",
     "Curve",
+    "Formula",
     "Points",
     "Quote",
+    "Rates",
     "Rebound",
     "choices",
     "collision_times",
@@ -38,6 +41,7 @@ __all__ = [
     "tracks",
     "tracks_from_start",
     "tracks_side_by_side",
+    "transport",
     "turning",
     "vibration",
 ]

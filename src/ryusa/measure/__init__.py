@@ -2,6 +2,7 @@
 
 from ryusa.measure.collisions import Collisions, ContactTimes, collisions, contact_times, turned_time
 from ryusa.measure.energy import Energy, energy
+from ryusa.measure.entrainment import Entrainment, entrainment
 from ryusa.measure.paths import Alternating, Paths, alternating, paths
 from ryusa.measure.profiles import Layers, Profiles, profiles
 from ryusa.measure.repose import Surface, surface
@@ -11,6 +12,7 @@ from ryusa.measure.spin import Spin, spin
 from ryusa.measure.statistics import Average, average, block_error, ratio
 from ryusa.measure.table import Averages, rows_of, write_csv
 from ryusa.measure.tracks import Tracks, tracks
+from ryusa.measure.transport import KineticStress, Transport, kinetic_stress, transport
 from ryusa.measure.vibration import (
     Trembling,
     Vibration,
@@ -27,6 +29,8 @@ __all__ = [
     "Collisions",
     "ContactTimes",
     "Energy",
+    "Entrainment",
+    "KineticStress",
     "Layers",
     "Paths",
     "Profiles",
@@ -35,6 +39,7 @@ __all__ = [
     "Spin",
     "Surface",
     "Tracks",
+    "Transport",
     "Trembling",
     "Vibration",
     "alternating",
@@ -43,7 +48,9 @@ __all__ = [
     "collisions",
     "contact_times",
     "energy",
+    "entrainment",
     "grouping",
+    "kinetic_stress",
     "paths",
     "profiles",
     "ratio",
@@ -54,6 +61,7 @@ __all__ = [
     "spin",
     "surface",
     "tracks",
+    "transport",
     "trembling",
     "trembling_share",
     "turned_time",

@@ -1,0 +1,117 @@
+"""Transport rate over bed shear stress, with formulae behind: the chart every bed-load study shows."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from ryusa.figures import style
+
+Floats = NDArray[np.float64]
+INK = "#5a5a5a"
+DASHES = (*style.LINES, (0, (7, 1.2, 1, 1.2, 1, 1.2)), (0, (9, 3)), (0, (1, 3)))
+
+
+@dataclass(frozen=True)
+class Formula:
+    """A line behind the points.
+
+    Attributes
+    ----------
+    label : author and year.
+    tau_star, q_star : dimensionless shear stress and transport rate [-], shape (n,); not drawn where q_star
+        is not above zero.
+    """
+
+    label: str
+    tau_star: Floats
+    q_star: Floats
+
+
+@dataclass(frozen=True)
+class Rates:
+    """Transport rates, measured in runs or in a flume.
+
+    Attributes
+    ----------
+    label : what they are.
+    tau_star, q_star : dimensionless shear stress and transport rate [-], shape (n,).
+    error : standard error of q_star [-], the same shape; nan where unknown.
+    tau_error : standard error of tau_star [-], the same shape; None where it is set, not measured.
+    """
+
+    label: str
+    tau_star: Floats
+    q_star: Floats
+    error: Floats
+    tau_error: Floats | None = None
+
+
+@style.house
+def transport(rates: Sequence[Rates], formulae: Sequence[Formula] = (), note: str = "") -> Figure:
+    """Draw q_star over tau_star, both axes logarithmic.
+
+    Parameters
+    ----------
+    rates : points with one standard error; one that is not above zero hangs as an arrow on the lower edge.
+    formulae : grey lines behind, told apart by their dashes.
+    note : a line of text in the lower right corner.
+    """
+    figure, (axes,) = style.new(height=3.0)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    for k, one in enumerate(formulae):
+        there = (one.q_star > 0.0) & (one.tau_star > 0.0)
+        dashes: Any = DASHES[k % len(DASHES)]
+        axes.plot(
+            one.tau_star[there], one.q_star[there], ls=dashes, color=INK, lw=0.9, label=one.label, zorder=2
+        )
+    _limits(axes, rates, formulae)
+    for k, one in enumerate(rates):
+        _points(axes, one, k)
+    axes.set_xlabel(r"shear stress  $\tau_* = \tau_b/((\sigma-\rho)\,g\,d)$  (–)")
+    axes.set_ylabel(r"transport rate  $q_* = q/\sqrt{(\sigma/\rho-1)\,g\,d^3}$  (–)")
+    if len(rates) + len(formulae) > 0:
+        axes.legend(loc="upper left", fontsize=6.5)
+    if note:
+        axes.annotate(
+            note, (1, 0), (-4, 4), "axes fraction", textcoords="offset points", ha="right", fontsize=6.5,
+            color="#444444",
+        )  # fmt: skip
+    return figure
+
+
+def _points(axes: Axes, one: Rates, k: int) -> None:
+    colour, marker = style.COLOURS[k % len(style.COLOURS)], style.MARKERS[k % len(style.MARKERS)]
+    seen = one.q_star > 0.0
+    low = np.minimum(np.nan_to_num(one.error), 0.999 * np.abs(one.q_star))  # stays above zero
+    high = np.nan_to_num(one.error)
+    across = None if one.tau_error is None else np.nan_to_num(one.tau_error)[seen]
+    axes.errorbar(
+        one.tau_star[seen], one.q_star[seen], yerr=np.stack([low, high])[:, seen], xerr=across, fmt=marker,
+        color=colour, mfc="white", mew=1.0, ms=4.2, capsize=1.8, elinewidth=0.8, lw=0, zorder=4,
+        label=one.label,
+    )  # fmt: skip
+    for tau in one.tau_star[~seen]:
+        axes.annotate(
+            "", (float(tau), 0.0), (0, 11), axes.get_xaxis_transform(), textcoords="offset points",
+            arrowprops={"arrowstyle": "->", "color": colour, "lw": 0.9},
+        )  # fmt: skip
+
+
+def _limits(axes: Axes, rates: Sequence[Rates], formulae: Sequence[Formula]) -> None:
+    """Room for all points; lines that plunge to nothing at the threshold may leave at the bottom."""
+    tau = np.concatenate([np.zeros(0), *(one.tau_star for one in (*formulae, *rates))])
+    points = np.concatenate([np.zeros(0), *(one.q_star for one in rates)])
+    lines = np.concatenate([np.zeros(0), *(one.q_star for one in formulae)])
+    tau, points, lines = tau[tau > 0.0], points[points > 0.0], lines[lines > 0.0]
+    if len(tau):
+        axes.set_xlim(tau.min() / 1.15, tau.max() * 1.15)
+    every = np.concatenate([points, lines])
+    if len(every):
+        floor = points.min() / 5.0 if len(points) else every.max() / 1.0e4
+        axes.set_ylim(min(floor, every.max() / 1.0e2), every.max() * 6.0)

@@ -1,0 +1,306 @@
+"""How much sediment a flow carries: its rate, the layer it moves in, the stress that its motion carries."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ryusa.errors import ResultsError
+from ryusa.laws.water import tau_star_from_u_star
+from ryusa.measure._run import Floats, Run, settle_time
+from ryusa.measure.profiles import (
+    CHUNK,
+    U_X,
+    Layers,
+    Origin,
+    Profiles,
+    _cut,
+    _mean,
+    _origin,
+    _quotient,
+    _sums,
+    _width,
+    profiles,
+)
+from ryusa.measure.snapshot import lanes_of, scene_at
+from ryusa.measure.statistics import Average, average, block_errors, ratio
+from ryusa.measure.table import Averages
+from ryusa.model import Scene
+
+MIDDLE = 0.9  # share of the flux between the levels of the transport layer
+
+
+@dataclass(frozen=True)
+class Transport:
+    """Sediment transport rate, and the layer that carries it.
+
+    Attributes
+    ----------
+    t, dt : middle and length of the time between two frames [s], shape (n,).
+    q : volume of grains that crosses a unit of width in a second [m2/s], shape (n,).
+    q_star : q/scale [-], shape (n,).
+    z : height of the middle of each layer above `origin` [m], shape (n_layer,).
+    thickness, origin : of a layer [m]; where z = 0 lies in the scene [m].
+    flux : volume of grains that crosses a unit of area in a second, over height [m/s].
+    scale : sqrt(R g d**3) that makes q dimensionless [m2/s].
+    excess : R, density of grains over water less 1; 1 in a dry flow, nan where grains do not sink [-].
+    tau_star : dimensionless shear stress the case asks for, or the one handed in [-]; nan where neither is.
+    d, g : mean diameter of the free grains [m] and length of the gravity vector [m/s2].
+    averages : q, q_star, layer_low, layer_high, layer_thickness, with errors and steadiness.
+    """
+
+    t: Floats
+    dt: Floats
+    q: Floats
+    q_star: Floats
+    z: Floats
+    thickness: float
+    origin: float
+    flux: Layers
+    scale: float
+    excess: float
+    tau_star: float
+    d: float
+    g: float
+    averages: Averages
+
+    def rows(self) -> list[dict[str, object]]:
+        """One dictionary per time between two frames."""
+        return [
+            {"t_s": float(t), "dt_s": float(dt), "q_m2_per_s": float(q), "q_star": float(s)}
+            for t, dt, q, s in zip(self.t, self.dt, self.q, self.q_star, strict=True)
+        ]
+
+
+@dataclass(frozen=True)
+class KineticStress:
+    """Stress that the fluctuations of grains carry, sigma phi <v'v'>, over height.
+
+    Attributes
+    ----------
+    profiles : means over the same frames and layers.
+    temperature : granular temperature, a third of <v'.v'>, in a plane scene half of it [m2/s2].
+    xx, yy, zz : normal stresses [Pa], >= 0.
+    xz : sigma phi <v_x' v_z'> [Pa]; negative where fast grains sink: the shear stress it adds is -xz.
+    """
+
+    profiles: Profiles
+    temperature: Layers
+    xx: Layers
+    yy: Layers
+    zz: Layers
+    xz: Layers
+
+    def rows(self) -> list[dict[str, object]]:
+        """One dictionary per layer."""
+        columns = [("temperature_m2_per_s2", self.temperature)]
+        columns += [(f"stress_{one.name}_Pa", one) for one in (self.xx, self.yy, self.zz, self.xz)]
+        z, d = self.profiles.z, self.profiles.d
+        return [
+            dict[str, object](
+                z_m=float(z[k]), z_over_d=float(z[k]) / d, phi=float(self.profiles.phi.value[k])
+            )
+            | {name: float(one.value[k]) for name, one in columns}
+            | {f"{name}_error": float(one.error[k]) for name, one in columns}
+            for k in range(len(z))
+        ]
+
+
+def transport(
+    run: Run,
+    begin: float | None = None,
+    end: float = math.inf,
+    layer: float = 0.25,
+    origin: float | Origin = "bed crest",
+    rho_w: float | None = None,
+    tau_star: float | None = None,
+) -> Transport:
+    """Sediment transport rate over time, its mean, and the layer that carries it.
+
+    Parameters
+    ----------
+    run : a run folder, periodic along x.
+    begin, end : window [s]; `begin` defaults to the case's `record.settle`.
+    layer, origin : layers of the flux, as in `profiles`; thickness in mean diameters.
+    rho_w : density of water in q_star [kg/m3]; default that of the case; 0 for a dry flow.
+    tau_star : what to put beside q_star [-]; default from the friction velocity of the case's water.
+
+    Raises
+    ------
+    ResultsError : fewer than two frames in the window, or an area of bed that is not bounded.
+
+    Notes
+    -----
+    Between two frames every grain moves by some dx, so that sum V dx / (A dt) is the volume that crosses a
+    line over the bed per width and time, averaged over all such lines: no grain is missed between frames.
+    q_star = q / sqrt(R g d**3) with R = rho_s/rho_w - 1 (Einstein 1950); in a dry flow R is taken as 1. The
+    transport layer lies between the levels below which 5 % and 95 % of the flux pass; layers whose mean flux
+    is backwards are left out. Errors of the levels are to first order in the flux of the frames.
+    """
+    t, first, last, scene, area = window_of(run, begin, end, least=2)
+    since, z_0, thickness = float(t[0]), _origin(scene, origin), layer * float(scene.d.mean())
+    ball = np.pi / 6.0 * scene.d**3
+    dt = np.diff(t)
+    ways = [np.diff(x[:, :, 0], axis=0) * ball for x in places_of(run, first, last)]
+    moved = np.concatenate([one.sum(axis=1) for one in ways]) / area
+    sums, edge = _sums(run, first, last, scene, z_0, thickness, None, False)
+    carried = sums[:, :, U_X] / area
+    d, g = float(scene.d.mean()), float(np.linalg.norm(scene.gravity))
+    excess = _excess(run, scene, float(scene.m.sum() / ball.sum()), rho_w)
+    scale = math.sqrt(excess * g * d**3)
+    window = (since, float(t[-1]))
+    q = ratio("q", "m2/s", [moved], [dt], window)
+    return Transport(
+        t=0.5 * (t[1:] + t[:-1]),
+        dt=dt,
+        q=moved / dt,
+        q_star=moved / dt / scale,
+        z=(edge + np.arange(sums.shape[1]) + 0.5) * thickness,
+        thickness=thickness,
+        origin=z_0,
+        flux=_mean("flux", "m/s", carried / thickness),
+        scale=scale,
+        excess=excess,
+        tau_star=_tau_star(scene, excess, d, g) if tau_star is None else tau_star,
+        d=d,
+        g=g,
+        averages=Averages(
+            "transport",
+            (
+                q,
+                replace(q, name="q_star", unit="-", value=q.value / scale, error=q.error / scale),
+                *_layer(carried, edge * thickness, thickness, window),
+            ),
+            (
+                f"q_star = q/sqrt(R g d^3), R = {excess:.4g}, g = {g:.4g} m/s2, d = {d:.4g} m",
+                f"transport layer: the middle {MIDDLE:.0%} of the flux, heights above z = {z_0:.4g} m",
+            ),
+        ),
+    )
+
+
+def kinetic_stress(
+    run: Run,
+    begin: float | None = None,
+    end: float = math.inf,
+    layer: float = 0.5,
+    origin: float | Origin = "bed crest",
+) -> KineticStress:
+    """Granular temperature and the stress sigma phi <v'v'> over height.
+
+    Parameters
+    ----------
+    run, begin, end, layer, origin : as in `profiles`.
+
+    Notes
+    -----
+    v' is the velocity of a grain less the mean of its layer over grains and time, so slow swings of the whole
+    flow count as motion, and so does the shear across a grain, of the order of (d dv_x/dz)**2/20 in xx.
+    Stresses are volume averages with sphere slices. Contacts carry the rest of the grains' stress.
+    """
+    found = profiles(run, begin, end, layer, origin)
+    t, first, last, scene, _ = window_of(run, begin, end, least=1)
+    n_layer, thickness = len(found.z), found.thickness
+    bottom, r = round(float(found.z[0]) / thickness - 0.5), 0.5 * scene.d
+    sums = np.zeros((len(t), n_layer, 9))
+    step = max(CHUNK // scene.n_grain, 1)
+    for a in range(first, last, step):
+        span = slice(a, min(a + step, last))
+        z = np.ascontiguousarray(np.asarray(run.frames.x[span], dtype=np.float64)[:, :, 2] - found.origin)
+        v = np.asarray(run.frames.v[span], dtype=np.float64)
+        carried = np.concatenate([v, v**2, v[:, :, :1] * v[:, :, 2:]], axis=2)
+        part = sums[a - first : span.stop - first]
+        _cut(z, r, np.ones(z.shape, dtype=np.bool_), carried, bottom, thickness, part)
+    volume, once = sums[:, :, 0], sums[:, :, 2:5]
+    weight = volume.sum(axis=0)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        mean = np.where(weight[:, None] > 0.0, once.sum(axis=0) / weight[:, None], 0.0)
+
+    def about(square: Floats, a: int, b: int) -> Floats:
+        """Sum of V v_a' v_b', shape (n_frame, n_layer)."""
+        cross = mean[:, a] * once[:, :, b] + mean[:, b] * once[:, :, a]
+        return square - cross + mean[:, a] * mean[:, b] * volume
+
+    terms = {
+        name: about(sums[:, :, 5 + c], a, b)
+        for c, (name, a, b) in enumerate((("xx", 0, 0), ("yy", 1, 1), ("zz", 2, 2), ("xz", 0, 2)))
+    }
+    trace = terms["xx"] + terms["yy"] + terms["zz"]
+    unit = found.density / (found.area * thickness)
+    stress = {
+        name: Layers(name, "Pa", unit * one.mean(axis=0), block_errors(unit * one))
+        for name, one in terms.items()
+    }
+    return KineticStress(
+        profiles=found,
+        temperature=_quotient("temperature", "m2/s2", trace / (2.0 if scene.plane_case else 3.0), volume),
+        **stress,
+    )
+
+
+def window_of(run: Run, begin: float | None, end: float, least: int) -> tuple[Floats, int, int, Scene, float]:
+    """Times of the frames in a window [s], the first and one beyond the last, the scene, the area [m2]."""
+    since = settle_time(run) if begin is None else begin
+    t = np.asarray(run.frames.t, dtype=np.float64)
+    first, last = int(np.searchsorted(t, since, "left")), int(np.searchsorted(t, end, "right"))
+    scene = scene_at(run, since)
+    if last - first < least or scene.n_grain == 0:
+        few = f"{max(last - first, 0)} frames" if scene.n_grain else "no free grains"
+        raise ResultsError(f"{few} from t = {since:g} s to {end:g} s; {least} frames or more are needed")
+    _, lanes = lanes_of(np.asarray(run.frames.x[first], dtype=np.float64)[:, 1], scene)
+    if not math.isfinite(scene.period[0]):
+        raise ResultsError("the scene is open along x: it has no area of bed to divide by")
+    return t[first:last], first, last, scene, float(scene.period[0]) * _width(scene, lanes)
+
+
+def places_of(run: Run, first: int, last: int) -> Iterator[Floats]:
+    """Centres in chunks (n_frame, n_grain, 3) that share their outermost frames, unwrapped [m]."""
+    step = max(CHUNK // run.scene.n_grain, 1)
+    for a in range(first, last - 1, step):
+        yield np.asarray(run.frames.x[a : min(a + step, last - 1) + 1], dtype=np.float64)
+
+
+def _layer(carried: Floats, bottom: float, thickness: float, window: tuple[float, float]) -> list[Average]:
+    """Levels of the transport layer and what lies between them, from the flux (n_frame, n_layer) [m2/s].
+
+    Where the flux of one frame differs from the mean, the level where a share p of it has passed moves by
+    -(its flux below the level - p times its whole flux) over the mean flux per height there.
+    """
+    mean = carried.mean(axis=0)
+    forward = np.where(mean > 0.0, mean, 0.0)
+    edges = bottom + np.arange(len(mean) + 1) * thickness
+    passed = np.concatenate([[0.0], np.cumsum(forward)])
+    if passed[-1] <= 0.0:
+        return [average(name, "m", [], window) for name in ("layer_low", "layer_high", "layer_thickness")]
+    frames = np.where(mean > 0.0, carried, 0.0)
+    levels: list[Floats] = []
+    for share in (0.5 * (1.0 - MIDDLE), 0.5 * (1.0 + MIDDLE)):
+        j = int(np.searchsorted(passed, share * passed[-1], "left")) - 1
+        part = (share * passed[-1] - passed[j]) / forward[j]
+        below = frames[:, :j].sum(axis=1) + part * frames[:, j]
+        moved = -(below - share * frames.sum(axis=1)) * thickness / forward[j]
+        levels.append(edges[j] + part * thickness + moved)
+    low, high = levels
+    return [
+        average("layer_low", "m", [low], window),
+        average("layer_high", "m", [high], window),
+        average("layer_thickness", "m", [high - low], window),
+    ]
+
+
+def _excess(run: Run, scene: Scene, rho_s: float, rho_w: float | None) -> float:
+    """R = rho_s/rho_w - 1 [-]; 1 in a dry flow, nan where grains do not sink."""
+    if rho_w is None:
+        rho_w = scene.water.rho_w if run.case.get("water") else 0.0
+    if rho_w == 0.0:
+        return 1.0
+    excess = rho_s / rho_w - 1.0
+    return excess if excess > 0.0 else math.nan
+
+
+def _tau_star(scene: Scene, excess: float, d: float, g: float) -> float:
+    """Of the water the case asks for [-]; nan where it names no friction velocity."""
+    u_star = scene.water.u_star
+    known = u_star > 0.0 and g > 0.0 and math.isfinite(excess)
+    return tau_star_from_u_star(u_star, 1.0 + excess, 1.0, g, d) if known else math.nan

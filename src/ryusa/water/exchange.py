@@ -1,0 +1,375 @@
+"""Slices of grains in a column of cells: what grains fill, what they give to cells, what they take from them.
+
+A grain i puts the volume V_ik of its sphere, cut by two horizontal planes, into cell k. The same V_ik carry
+everything in both directions, so that what the grains give is what the cells get, to round-off:
+
+- concentration, phi_k = sum over grains of V_ik / (A dz);
+- grains to cells, Q_k = sum over grains of Q_i V_ik / V_i;
+- cells to grains, q_i = sum over cells of q_k V_ik / V_i; so the sum of Q_i q_i over grains is that of
+  Q_k q_k over cells.
+
+A sum over cells runs upwards, a sum over grains in the order of their ids, both in one thread: the bits
+depend neither on the number of threads nor, once `ids` is given, on the order of the grains in memory.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ryusa.laws._law import law
+from ryusa.laws.slices import sphere_slice
+from ryusa.model.scene import Floats
+
+Ints = NDArray[np.int64]
+Share = Literal["whole", "wet"]
+DRY = 1.0e-15  # wet part of a grain, over its volume, up to which it counts as dry: round-off
+
+
+@dataclass(frozen=True)
+class Cells:
+    """Cells of equal height over an area of bed; cell k lies between the faces k and k + 1.
+
+    Attributes
+    ----------
+    z_low : height of the lowest face [m].
+    dz : height of a cell [m].
+    n : number of cells.
+    area : of the bed, all lanes of a plane scene together [m2].
+    """
+
+    z_low: float
+    dz: float
+    n: int
+    area: float
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.z_low) and 0.0 < self.dz < math.inf and 0.0 < self.area < math.inf):
+            raise ValueError(f"{self}: z_low finite, dz and area positive and finite")
+        if self.n < 1:
+            raise ValueError(f"{self}: at least one cell")
+
+    @property
+    def faces(self) -> Floats:
+        """Heights of the faces [m], shape (n + 1,)."""
+        return self.z_low + np.arange(self.n + 1, dtype=np.float64) * self.dz
+
+    @property
+    def middles(self) -> Floats:
+        """Heights of the middles [m], shape (n,)."""
+        return self.z_low + (np.arange(self.n, dtype=np.float64) + 0.5) * self.dz
+
+    @property
+    def volume(self) -> float:
+        """Of one cell [m3]."""
+        return self.area * self.dz
+
+
+@dataclass(frozen=True)
+class Slices:
+    """Volumes of grains in cells; a row per grain, rows as the grains were handed in.
+
+    Attributes
+    ----------
+    cells : what the grains are cut by.
+    first : lowest cell a grain reaches into, shape (n_grain,).
+    count : number of cells it reaches into, shape (n_grain,); 0 where it lies beyond all cells.
+    volume : V_ik of cell first + s in column s [m3], shape (n_grain, width); the widest grain sets the width,
+        and what lies beyond `count` means nothing.
+    whole : volume V_i of the grain [m3], shape (n_grain,).
+    wet : part of it that lies in cells, the sum of its slices [m3], shape (n_grain,).
+    below, above : parts that lie below the lowest and above the highest face [m3], shape (n_grain,); with
+        `wet` they add up to `whole`, to round-off.
+    order : rows in the order of the grains' ids, in which sums over grains run, shape (n_grain,).
+    """
+
+    cells: Cells
+    first: Ints
+    count: Ints
+    volume: Floats
+    whole: Floats
+    wet: Floats
+    below: Floats
+    above: Floats
+    order: Ints
+
+    @property
+    def n_grain(self) -> int:
+        """Number of grains."""
+        return len(self.first)
+
+    @property
+    def share(self) -> Floats:
+        """Part of each grain that lies in cells, wet over whole [-], shape (n_grain,)."""
+        return self.wet / self.whole
+
+
+@dataclass(frozen=True)
+class Given:
+    """What grains gave away, in the unit of what they had.
+
+    Attributes
+    ----------
+    cells : to each cell, shape (n,), or (n, m) for m quantities.
+    below, above : what had no cell to go to, shape () or (m,). The three add up to what the grains had.
+    """
+
+    cells: Floats
+    below: Floats
+    above: Floats
+
+
+def slices(
+    z: Floats, d: Floats, cells: Cells, ids: Ints | None = None, again: Slices | None = None
+) -> Slices:
+    """Cut grains by the faces of cells.
+
+    Parameters
+    ----------
+    z : heights of the centres [m], shape (n_grain,).
+    d : diameters [m], > 0, shape (n_grain,).
+    cells : the cells.
+    ids : id of each row, a permutation of 0 .. n_grain - 1; default the rows are in the order of ids.
+    again : slices of the same number of grains that are needed no more: their memory is written over.
+
+    Raises
+    ------
+    ValueError : shapes that differ, ids that are no permutation, a height or diameter that is no such thing.
+
+    Notes
+    -----
+    Both sides of a face see the same height of it, so the slices of a grain add up without a seam.
+
+    >>> half = slices(np.array([0.0]), np.array([2.0]), Cells(z_low=0.0, dz=0.5, n=4, area=1.0))
+    >>> half.volume[0, :2] / math.pi  # 0.5 - 0.5**3/3, and the cap above it
+    array([0.45833333, 0.20833333])
+    >>> round(float(half.share[0]), 12)
+    0.5
+    """
+    z, d = np.ascontiguousarray(z, dtype=np.float64), np.ascontiguousarray(d, dtype=np.float64)
+    if z.ndim != 1 or z.shape != d.shape:
+        raise ValueError(f"heights of shape {z.shape}, diameters of shape {d.shape}: one of each a grain")
+    bad = np.flatnonzero(~(np.isfinite(z) & (d > 0.0) & np.isfinite(d)))
+    if len(bad):
+        raise ValueError(f"grain in row {bad[0]}: z = {z[bad[0]]:g} m, d = {d[bad[0]]:g} m")
+    n = len(z)
+    width = int(min(float(d.max(initial=0.0)) / cells.dz + 2.0, float(cells.n)))
+    if again is not None and again.volume.shape == (n, width):
+        first, count, volume, parts = again.first, again.count, again.volume, again
+        whole, wet, below, above = parts.whole, parts.wet, parts.below, parts.above
+    else:
+        first, count, volume = np.empty(n, np.int64), np.empty(n, np.int64), np.empty((n, width))
+        whole, wet, below, above = (np.empty(n) for _ in range(4))
+    _cut(z, 0.5 * d, cells.z_low, cells.dz, cells.n, first, count, volume, whole, wet, below, above)
+    return Slices(cells, first, count, volume, whole, wet, below, above, _order(ids, n))
+
+
+def concentration(grains: Slices, bed: Slices | None = None) -> Floats:
+    """Concentration phi in each cell [-], shape (n,): volume of slices over volume of the cell.
+
+    Parameters
+    ----------
+    grains : slices of the free grains.
+    bed : slices of the fixed grains in the same cells, where they shall count too.
+    """
+    phi = carried(grains, np.ones(grains.n_grain))
+    if bed is None:
+        return phi
+    if bed.cells != grains.cells:
+        raise ValueError(f"bed in {bed.cells}, free grains in {grains.cells}: the same cells")
+    return phi + carried(bed, np.ones(bed.n_grain))
+
+
+def carried(grains: Slices, values: Floats) -> Floats:
+    """Concentration times the mean of a quantity in each cell, sum of V_ik q_i / (A dz).
+
+    Parameters
+    ----------
+    grains : slices.
+    values : of each grain, any unit, shape (n_grain,) or (n_grain, m).
+
+    Returns
+    -------
+    phi <q> in that unit, shape (n,) or (n, m): flux of grains where q is their velocity.
+    """
+    table, flat = _table(values, grains.n_grain, "grain")
+    sums, _ = _give(grains, table, np.ones(grains.n_grain), np.zeros(grains.n_grain))
+    sums /= grains.cells.volume
+    return sums[0] if flat else np.ascontiguousarray(sums.T)
+
+
+def to_cells(grains: Slices, amounts: Floats, share: Share = "whole") -> Given:
+    """Give what grains have to the cells they lie in.
+
+    Parameters
+    ----------
+    grains : slices.
+    amounts : of each grain (an impulse [N s], a force [N], a volume [m3]), shape (n_grain,) or (n_grain, m).
+    share : "whole", a cell gets V_ik/V_i: what the part of a grain beyond the cells has goes to no cell;
+        "wet", it gets V_ik over the wet volume: a grain that lies in any cell gives all to cells.
+    """
+    table, flat = _table(amounts, grains.n_grain, "grain")
+    sums, outside = _give(grains, table, *_factors(grains, share))
+    return (
+        Given(sums[0], outside[0, 0], outside[0, 1])
+        if flat
+        else Given(np.ascontiguousarray(sums.T), outside[:, 0].copy(), outside[:, 1].copy())
+    )
+
+
+def to_grains(grains: Slices, values: Floats, share: Share = "whole") -> Floats:
+    """Mean over a grain of what cells have.
+
+    Parameters
+    ----------
+    grains : slices.
+    values : of each cell (a speed [m/s], a force per volume [N/m3]), shape (n,) or (n, m).
+    share : "whole", sum of V_ik q_k / V_i: beyond the cells q counts as 0; "wet", the mean over the part of
+        the grain that lies in cells, and 0 where none does.
+
+    Returns
+    -------
+    In the unit of `values`, shape (n_grain,) or (n_grain, m).
+    """
+    table, flat = _table(values, grains.cells.n, "cell")
+    out = np.empty((grains.n_grain, table.shape[1]))
+    per, _ = _factors(grains, share)
+    columns = np.ascontiguousarray(table.T)
+    _take(grains.first, grains.count, grains.volume, per, columns, out)
+    return out[:, 0] if flat else out
+
+
+def slope_to_grains(grains: Slices, faces: Floats, share: Share = "whole") -> Floats:
+    """Mean over a grain of the derivative along z of what faces have.
+
+    Parameters
+    ----------
+    grains : slices.
+    faces : at each face (a stress [Pa]), shape (n + 1,) or (n + 1, m).
+    share : as in `to_grains`.
+
+    Returns
+    -------
+    Unit of `faces` over metre. Times V_i it is what the cells lose: with the stress tau, V d tau/dz.
+    """
+    table = _at_faces(grains, faces)
+    return to_grains(grains, np.diff(table, axis=0) / grains.cells.dz, share)
+
+
+def faces_to_grains(grains: Slices, faces: Floats, share: Share = "whole") -> Floats:
+    """Mean over a grain of what faces have (such as dU/dz [1/s]); a cell has the mean of its two faces.
+
+    Parameters
+    ----------
+    grains : slices.
+    faces : at each face, shape (n + 1,) or (n + 1, m).
+    share : as in `to_grains`.
+    """
+    table = _at_faces(grains, faces)
+    return to_grains(grains, 0.5 * (table[:-1] + table[1:]), share)
+
+
+def _give(grains: Slices, table: Floats, per: Floats, outer: Floats) -> tuple[Floats, Floats]:
+    """Sums in cells (m, n) and outside (m, 2)."""
+    sums, outside = np.zeros((table.shape[1], grains.cells.n)), np.zeros((table.shape[1], 2))
+    _add(
+        grains.order, grains.first, grains.count, grains.volume, grains.below, grains.above, per, outer,
+        table, sums, outside,
+    )  # fmt: skip
+    return sums, outside
+
+
+def _factors(grains: Slices, share: Share) -> tuple[Floats, Floats]:
+    """What turns the volumes of a grain into weights, in cells and outside [1/m3]."""
+    if share == "whole":
+        per = 1.0 / grains.whole
+        return per, per
+    dry = grains.wet <= DRY * grains.whole
+    return np.where(dry, 0.0, 1.0 / np.where(dry, 1.0, grains.wet)), np.where(dry, 1.0 / grains.whole, 0.0)
+
+
+def _order(ids: Ints | None, n: int) -> Ints:
+    """Rows in the order of ids."""
+    rows = np.arange(n)
+    if ids is None:
+        return rows
+    order = np.full(n, -1, dtype=np.int64)
+    if len(ids) == n and (n == 0 or (int(np.min(ids)) >= 0 and int(np.max(ids)) < n)):
+        order[ids] = rows
+    if len(ids) != n or np.any(order < 0):
+        raise ValueError(f"ids: a permutation of 0 .. {n - 1}")
+    return order
+
+
+def _table(values: Floats, n: int, what: str) -> tuple[Floats, bool]:
+    """Values as (n, m), and whether they came as one column."""
+    table = np.ascontiguousarray(values, dtype=np.float64)
+    if table.ndim not in (1, 2) or len(table) != n:
+        raise ValueError(f"values of shape {table.shape}: one row a {what}, {n} of them")
+    return (table[:, None], True) if table.ndim == 1 else (table, False)
+
+
+def _at_faces(grains: Slices, faces: Floats) -> Floats:
+    table = np.asarray(faces, dtype=np.float64)
+    if table.ndim not in (1, 2) or len(table) != grains.cells.n + 1:
+        raise ValueError(f"values of shape {table.shape}: one row a face, {grains.cells.n + 1} of them")
+    return table
+
+
+@law  # for its compiler, as the two below: a loop over arrays that calls laws
+def _cut(
+    z: Floats, r: Floats, z_low: float, dz: float, n: int,
+    first: Ints, count: Ints, volume: Floats, whole: Floats, wet: Floats, below: Floats, above: Floats,
+) -> None:  # fmt: skip
+    """Write slices of every grain."""
+    top = float(n)
+    for i in range(z.shape[0]):
+        low = math.floor(min(max((z[i] - r[i] - z_low) / dz, 0.0), top))
+        high = math.ceil(min(max((z[i] + r[i] - z_low) / dz, 0.0), top))
+        high = max(min(high, low + volume.shape[1]), low)
+        first[i], count[i] = low, high - low
+        total = 0.0
+        b = z_low + low * dz - z[i]
+        for s in range(high - low):
+            a, b = b, z_low + (low + s + 1) * dz - z[i]
+            part = max(sphere_slice(r[i], a, b), 0.0)  # at a pole round-off may make it negative
+            volume[i, s] = part
+            total += part
+        wet[i] = total
+        whole[i] = sphere_slice(r[i], -r[i], r[i])
+        below[i] = max(sphere_slice(r[i], -r[i], z_low - z[i]), 0.0)
+        above[i] = max(sphere_slice(r[i], z_low + n * dz - z[i], r[i]), 0.0)
+
+
+@law
+def _add(
+    order: Ints, first: Ints, count: Ints, volume: Floats, below: Floats, above: Floats,
+    per: Floats, outer: Floats, amounts: Floats, sums: Floats, outside: Floats,
+) -> None:  # fmt: skip
+    """Add amounts (n_grain, m) to the cells (m, n), and what has no cell to outside (m, 2)."""
+    for place in range(order.shape[0]):
+        i = order[place]
+        low, high = first[i], first[i] + count[i]
+        for c in range(amounts.shape[1]):
+            amount = amounts[i, c] * per[i]
+            row = sums[c, low:high]  # a view of its own: a third of the time of sums[c, first[i] + s]
+            for s in range(count[i]):
+                row[s] += amount * volume[i, s]
+            if below[i] > 0.0 or above[i] > 0.0:
+                outside[c, 0] += amounts[i, c] * outer[i] * below[i]
+                outside[c, 1] += amounts[i, c] * outer[i] * above[i]
+
+
+@law
+def _take(first: Ints, count: Ints, volume: Floats, per: Floats, columns: Floats, out: Floats) -> None:
+    """Means over each grain, out (n_grain, m), of what cells have, columns (m, n)."""
+    for i in range(first.shape[0]):
+        low, high = first[i], first[i] + count[i]
+        for c in range(columns.shape[0]):
+            row = columns[c, low:high]
+            total = 0.0
+            for s in range(count[i]):
+                total += volume[i, s] * row[s]
+            out[i, c] = total * per[i]
