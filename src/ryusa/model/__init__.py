@@ -1,8 +1,22 @@
-"""Scene (fixed), State (moving), Contacts (memory of a pair), Tally (the energy account)."""
+"""Scene (fixed), State (moving), Contacts (memory of a pair), Tally (the energy account), Column (water)."""
 
+from ryusa.model.column import Budget, Column, WaterState
 from ryusa.model.contacts import EVENT, Contacts
 from ryusa.model.scene import ContactLaw, RollingLaw, Scene, Water
 from ryusa.model.state import State
 from ryusa.model.tally import Book, Tally
 
-__all__ = ["EVENT", "Book", "ContactLaw", "Contacts", "RollingLaw", "Scene", "State", "Tally", "Water"]
+__all__ = [
+    "EVENT",
+    "Book",
+    "Budget",
+    "Column",
+    "ContactLaw",
+    "Contacts",
+    "RollingLaw",
+    "Scene",
+    "State",
+    "Tally",
+    "Water",
+    "WaterState",
+]
