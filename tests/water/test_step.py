@@ -184,3 +184,12 @@ def test_a_force_that_is_not_a_number_is_an_error(bedload, phi):
     force[3] = np.nan
     with pytest.raises(WaterError, match="no longer finite"):
         advance(bedload, WaterState.at_rest(bedload, phi), phi, force, 1e-3)
+
+
+@pytest.mark.parametrize("wrong", [1.0, 1.2, -0.1, np.nan])
+def test_a_concentration_that_leaves_no_water_is_an_error(bedload, phi, wrong):
+    state = WaterState.at_rest(bedload, phi)
+    now = phi.copy()
+    now[5] = wrong
+    with pytest.raises(WaterError, match="not between 0 and 1"):
+        advance(bedload, state, now, None, 1e-3)

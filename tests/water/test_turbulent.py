@@ -59,7 +59,7 @@ def test_prandtls_length_under_a_linear_stress_has_its_own_closed_form(river):
         r = np.sqrt(1.0 - c.z / c.depth)
         law = U_STAR / c.kappa * (2.0 * r + np.log((1.0 - r) / (1.0 + r)))
         found.append(np.abs((u - u[0]) - (law - law[0])).max() / u[-1])
-    assert found[1] < 1.5e-2
+    assert found[1] < 1e-3
     assert found[2] < 0.6 * found[1] < 0.36 * found[0]
 
 
@@ -90,9 +90,9 @@ def test_van_driest_gives_the_viscous_layer_and_the_log_layer():
     assert u_star == pytest.approx(0.05, rel=1e-12)
     z_plus, u_plus = c.z * u_star / c.nu, state.u / u_star
     low = z_plus < 3.0
-    assert u_plus[low] == pytest.approx(z_plus[low], rel=0.02)
+    assert u_plus[low] == pytest.approx(z_plus[low], rel=5e-3)
     log = (z_plus > 50.0) & (z_plus < 100.0)
-    assert u_plus[log] == pytest.approx(np.log(z_plus[log]) / 0.41 + 5.25, rel=0.02)
+    assert u_plus[log] == pytest.approx(np.log(z_plus[log]) / 0.41 + 5.25, rel=0.015)
 
 
 def test_van_driest_is_of_second_order():
@@ -109,8 +109,8 @@ def test_van_driest_is_of_second_order():
         c = smooth(n, Mixing.VAN_DRIEST, Bed.NO_SLIP)
         u = steady(c)[0].u
         found.append(np.abs(u - np.interp(c.z, z + 0.5 * depth / fine, speed)).max() / u[-1])
-    assert found[1] < 2e-3
-    assert found[2] < 0.35 * found[1]
+    assert found[1] < 6e-4
+    assert np.log2(found[1] / found[2]) == pytest.approx(2.0, abs=0.1)
 
 
 @pytest.mark.parametrize("n", [5, 10, 20])
@@ -119,7 +119,7 @@ def test_a_coarse_grid_over_a_smooth_wall_follows_the_two_layer_law(n):
     state, _ = steady(c)
     law = np.array([log_law_smooth(float(x), 0.05, c.nu) for x in c.z])
     assert state.tau[0] == pytest.approx(c.rho_w * 0.05**2, rel=1e-12)
-    assert state.u == pytest.approx(law, rel=0.02)
+    assert state.u == pytest.approx(law, rel=0.01)
 
 
 def test_the_stress_asked_for_is_the_stress_of_the_bed(river):

@@ -17,7 +17,7 @@ CLOSE = 1.0e-13  # relative change of the speed at which Newton's method ends
 ENOUGH = 1.0e-9  # relative change that is accepted when the next is no smaller: round-off of the solution
 MOST = 300  # iterations
 SLOW = 30  # iterations after which only half of a change is taken: the wall's two layers meet in a kink
-DONE, TOO_SHORT, NOT_A_NUMBER, NOT_CLOSE = range(4)
+DONE, TOO_SHORT, NO_ROOM, NOT_A_NUMBER, NOT_CLOSE = range(5)
 # what a step writes beside its profiles
 SURFACE, GRADIENT, TURNS = range(3)
 B_GRAVITY, B_DRIVER, B_BED, B_LID, B_SIDE, B_GRAINS, B_CARRIED, B_SURFACE, B_CHANGE = range(3, 12)
@@ -60,7 +60,8 @@ def fill(p: Numbers, phi: Floats, volume: float, content: Floats, h: Floats, z: 
 
     Returns
     -------
-    m, z_surface : highest wet cell and height of the surface [m]; m = n where the column is too short.
+    m, z_surface : highest wet cell and height of the surface [m]; m = n where the column is too short, -1
+        where a concentration leaves no room for water.
     """
     left = volume
     m = -1
@@ -68,6 +69,8 @@ def fill(p: Numbers, phi: Floats, volume: float, content: Floats, h: Floats, z: 
     for k in range(p.n):
         low = p.z_low + k * p.dz
         eps = 1.0 - phi[k]
+        if not 0.0 < eps <= 1.0:
+            return -1, z_surface
         if p.surface == VOLUME:
             wet = min(left / eps, p.dz)
             left -= eps * wet
@@ -255,22 +258,16 @@ def book(
 
 @kernel
 def march(
-    p: Numbers,
-    u_old: Floats,
-    content_old: Floats,
-    volume: float,
-    given: Sources,
-    per_dt: float,
-    guess: Floats,
-    rows: Floats,
-    faces: Floats,
-    out: Floats,
+    p: Numbers, given_rows: Floats, volume: float, per_dt: float, rows: Floats, faces: Floats, out: Floats
 ) -> int:
     """One step, backward Euler, solved to round-off; per_dt = 1/dt, 0 for the steady state.
 
-    rows : u, w, content, shear, du_dt, dtau_dz, each a row of shape (n,); faces : tau, nu_t, shape (n + 1,).
+    given_rows : u and content before, speeds to start from, then those of `Sources`, rows of shape (n,).
+    rows, faces : u, w, content, shear, du_dt, dtau_dz, shape (6, n); tau, nu_t, shape (2, n + 1); written.
     """
     n = p.n
+    u_old, content_old, guess = given_rows[0], given_rows[1], given_rows[2]
+    given = Sources(given_rows[3], given_rows[4], given_rows[5], given_rows[6], given_rows[7])
     u, content = rows[0], rows[2]
     cells, edges = np.zeros((10, n)), np.zeros((5, n + 1))
     work = Work(
@@ -278,7 +275,9 @@ def march(
         cells[5], cells[6], cells[7], cells[8], cells[9],
     )  # fmt: skip
     m, z_surface = fill(p, given.phi, volume, content, work.h, work.z)
-    if m >= n or m < 0:
+    if m < 0:
+        return NO_ROOM
+    if m >= n:
         return TOO_SHORT
     wall = work.z[0] - p.z_low
     stress, _ = bed_stress(p, guess[0], wall, 0.0)

@@ -46,7 +46,7 @@ def advance(
     Notes
     -----
     Solved to round-off, not linearised over the step: the steady state does not depend on dt. Raises
-    `WaterError` when the surface leaves the column or a number is lost.
+    `WaterError` when the surface leaves the column, grains leave no room for water, or a number is lost.
     """
     return _march(column, state, phi, force, slope, carried, phi_w, 1.0 / dt, state.u, dt)
 
@@ -64,20 +64,14 @@ def _march(
     dt: float,
 ) -> tuple[WaterState, Budget]:
     n = column.n
-    none = np.zeros(n)
+    given = np.zeros((8, n))  # one array of one kind, so that the step is compiled once
+    for row, values in enumerate((state.u, state.content, guess, phi, force, slope, carried, phi_w)):
+        if values is not None:
+            given[row] = values
     rows, faces, out = np.empty((6, n)), np.empty((2, n + 1)), np.empty(at.N_OUT)
-    given = at.Sources(
-        phi=phi,
-        force=none if force is None else force,
-        slope=none if slope is None else slope,
-        carried=none if carried is None else carried,
-        phi_w=none if phi_w is None else phi_w,
-    )
-    answer = at.march(
-        numbers(column), state.u, state.content, state.volume, given, per_dt, guess, rows, faces, out
-    )
+    answer = at.march(numbers(column), given, float(state.volume), float(per_dt), rows, faces, out)
     if answer != at.DONE:
-        raise _error(answer, column, state)
+        raise _error(answer, state)
     rows.flags.writeable = faces.flags.writeable = False
     now = WaterState(
         u=rows[0],
@@ -109,22 +103,26 @@ def _march(
     return now, budget
 
 
-def _error(answer: int, column: Column, state: WaterState) -> WaterError:
-    if answer == at.TOO_SHORT:
-        return WaterError(
-            "The water does not fit into the column",
-            step=state.step,
-            t=state.t,
-            hint=f"It ends at {column.z_high:g} m; give it more cells, or check the volume of water.",
-        )
-    cause = (
-        "A speed of the water is no longer finite"
-        if answer == at.NOT_A_NUMBER
-        else "The water found no balance"
-    )
-    return WaterError(
-        cause,
-        step=state.step,
-        t=state.t,
-        hint="Look at the forces that the grains hand over, and at concentrations close to 1.",
-    )
+FAULTS = {
+    at.TOO_SHORT: (
+        "The water does not fit into the column",
+        "Give the column more cells, or check the volume of water.",
+    ),
+    at.NO_ROOM: (
+        "A concentration of grains is not between 0 and 1",
+        "Where grains overlap far, or cells are thin and the area is small, choose thicker cells.",
+    ),
+    at.NOT_A_NUMBER: (
+        "A speed of the water is no longer finite",
+        "Look at the forces that the grains hand over, and at the driver.",
+    ),
+    at.NOT_CLOSE: (
+        "The stresses of the water found no balance",
+        "A shorter step helps, or cells that are fine enough for the wall.",
+    ),
+}
+
+
+def _error(answer: int, state: WaterState) -> WaterError:
+    cause, hint = FAULTS[answer]
+    return WaterError(cause, step=state.step, t=state.t, hint=hint)
