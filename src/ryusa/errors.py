@@ -94,3 +94,13 @@ class ListUnsafe(RunError):
 
 class ContactSlotsFull(RunError):
     """A fixed buffer of contacts is full and could not grow."""
+
+
+class WaterError(RyusaError):
+    """The column of water cannot go on: says why, at which of its steps, and what to try."""
+
+    exit_code = 3
+
+    def __init__(self, cause: str, *, step: int, t: float, hint: str) -> None:
+        self.cause, self.step, self.t, self.hint = cause, step, t, hint
+        super().__init__(f"{cause}: step {step} of the water, t = {t:.6g} s. {hint}")

@@ -22,7 +22,7 @@ class Grains(NamedTuple):
     touches: Any  # contacts so far in this step, (n,)
     touched: Any  # contacts in the last step, (n,)
     seen: Any  # water at each grain, columns of model.immersed, (n, N_SEEN); (0, 0) without a column
-    taken: Any  # impulse it took from the water [N s], (n, 3); (0, 0) without a column
+    taken: Any  # impulse it took from the water [N s], and drag over slip, (n, N_TAKEN); (0, 0) without
 
 
 class Pairs(NamedTuple):

@@ -186,6 +186,13 @@ class CpuEngine:
             array.flags.writeable = False
         return state
 
+    def drift(self) -> tuple[Floats, Floats, Floats]:
+        """Centres [m], velocities [m/s] and what was taken from the water (model.immersed), by id."""
+        n, ids = self._n, self._grains.ids[: self._n]
+        x, v, taken = np.empty((n, 3)), np.empty((n, 3)), np.empty(self._grains.taken.shape)
+        x[ids], v[ids], taken[ids[: len(taken)]] = self._grains.x[:n], self._grains.v[:n], self._grains.taken
+        return x, v, taken
+
     def immerse(self, seen: Floats) -> None:
         """Tell every grain its water for the steps to come, and begin to count its impulse anew.
 

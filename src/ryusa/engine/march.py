@@ -14,7 +14,7 @@ from ryusa.engine.wet import drag_of, water_on, water_speed
 from ryusa.laws.motion import acceleration, acceleration_spin, semi_implicit
 from ryusa.laws.torque import torque_dennis, torque_stokes
 from ryusa.model.enums import Above, WaterTorque
-from ryusa.model.immersed import A_X, EXTRA_X, EXTRA_Z, SHARE, SHEAR
+from ryusa.model.immersed import A_X, DRAG, EXTRA_X, EXTRA_Z, SHARE, SHEAR
 from ryusa.model.tally import Book
 
 DRY = int(Above.DRY)
@@ -75,10 +75,11 @@ def motion(
         added = m_i - m_b
         if column:
             dry = seen[i, SHARE] == 0.0
+            e_x, e_z = seen[i, EXTRA_X] + added * seen[i, A_X], seen[i, EXTRA_Z]
+            turn = 0.5 * seen[i, SHEAR]
             if not dry:
-                d_x, d_y, d_z, l_x, l_y, l_z = water_on(choice, c, r[i], seen[i], v[i], w[i])
-                e_x, e_z = seen[i, EXTRA_X] + added * seen[i, A_X], seen[i, EXTRA_Z]
-                turn = 0.5 * seen[i, SHEAR]
+                k_d, d_x, d_y, d_z, l_x, l_y, l_z = water_on(choice, c, r[i], seen[i], v[i], w[i])
+                taken[i, DRAG] = k_d
         else:
             z = x[i, 2] - c[C_Z_ZERO]
             dry = profile == 0 or (above == DRY and z > c[C_DEPTH])
@@ -96,10 +97,11 @@ def motion(
         if not plane_case:
             x[i, 1], a_y = semi_implicit(x[i, 1], v_y, acceleration(f_y, d_y, m_w * g_y, m_b, added), dt)
         v[i, 0], v[i, 1], v[i, 2] = a_x, a_y, a_z
-        if column and not dry:
-            taken[i, 0] += dt * (d_x + l_x + added * seen[i, A_X]) - added * (a_x - v_x)
-            taken[i, 1] += dt * (d_y + l_y) - added * (a_y - v_y)
-            taken[i, 2] += dt * (d_z + l_z) - added * (a_z - v_z)
+        if column:
+            if not dry:
+                taken[i, 0] += dt * (d_x + l_x + added * seen[i, A_X]) - added * (a_x - v_x)
+                taken[i, 1] += dt * (d_y + l_y) - added * (a_y - v_y)
+                taken[i, 2] += dt * (d_z + l_z) - added * (a_z - v_z)
             work_lift += half * (l_x * v_x + l_y * v_y + l_z * v_z)
             pend_lift += 0.5 * dt * (l_x * a_x + l_y * a_y + l_z * a_z)
             work_flow += half * (e_x * v_x + e_z * v_z)

@@ -43,6 +43,10 @@ class Engine(Protocol):
         """
         ...
 
+    def drift(self) -> tuple[Floats, Floats, Floats]:
+        """Centres [m], velocities [m/s] and what was taken from the water (model.immersed), by id; cheap."""
+        ...
+
     def advance(self, n_steps: int) -> Flags:
         """Do n_steps steps, fewer if a fault stops the run; the state before the fault stays readable."""
         ...

@@ -95,8 +95,8 @@ def hindered(choice: Choice, slip: float, d: float, phi: float, c: Any) -> float
 @kernel(forceinline=True)
 def water_on(
     choice: Choice, c: Any, r: float, seen: Any, v: Any, w: Any
-) -> tuple[float, float, float, float, float, float]:
-    """Drag, then lift and Magnus force, of a column of water on one grain [N]."""
+) -> tuple[float, float, float, float, float, float, float]:
+    """Drag over slip [N s/m] of a column of water on one grain, then drag, then lift and Magnus force [N]."""
     d, nu, rho_w, shear = 2.0 * r, c[C_NU], c[C_RHO_W], seen[SHEAR]
     u_x, u_y, u_z = seen[U] - v[0], seen[V] - v[1], seen[W] - v[2]
     slip = math.sqrt(u_x * u_x + u_y * u_y + u_z * u_z)
@@ -121,4 +121,4 @@ def water_on(
         l_x += k * (o_y * u_z - o_z * u_y)
         l_y += k * (o_z * u_x - o_x * u_z)
         l_z += k * (o_x * u_y - o_y * u_x)
-    return k_d * u_x, k_d * u_y, k_d * u_z, share * l_x, share * l_y, share * l_z
+    return k_d, k_d * u_x, k_d * u_y, k_d * u_z, share * l_x, share * l_y, share * l_z

@@ -1,5 +1,6 @@
-"""Scene (fixed), State (moving), Contacts (memory of a pair), Tally (the energy account)."""
+"""Scene (fixed), State (moving), Contacts (memory of a pair), Tally (the energy account), Column (water)."""
 
+from ryusa.model.column import Budget, Column, WaterState
 from ryusa.model.contacts import EVENT, Contacts
 from ryusa.model.immersed import Immersed
 from ryusa.model.scene import ContactLaw, RollingLaw, Scene, Water
@@ -7,5 +8,17 @@ from ryusa.model.state import State
 from ryusa.model.tally import Book, Tally
 
 __all__ = [
-    "EVENT", "Book", "ContactLaw", "Contacts", "Immersed", "RollingLaw", "Scene", "State", "Tally", "Water",
-]  # fmt: skip
+    "EVENT",
+    "Book",
+    "Budget",
+    "Column",
+    "ContactLaw",
+    "Contacts",
+    "Immersed",
+    "RollingLaw",
+    "Scene",
+    "State",
+    "Tally",
+    "Water",
+    "WaterState",
+]

@@ -14,6 +14,8 @@ A_X = 5  # acceleration of the water along x, DU/Dt [m/s2]
 EXTRA_X, EXTRA_Z = 6, 7  # force of pressure and stress beyond still water, -rho V g [N]
 SHARE = 8  # of its volume that is in the water [-]
 N_SEEN = 9
+DRAG = 3  # column of `taken`: drag over slip [N s/m]
+N_TAKEN = 4
 
 
 @dataclass(frozen=True)
@@ -24,7 +26,7 @@ class Immersed:
     ----------
     seen : by grain, columns as above, shape (n_grain, N_SEEN).
     taken : impulse of drag, lift, Magnus force and added mass on each grain since `seen` was given [N s],
-        shape (n_grain, 3): what the water owes.
+        what the water owes; then its drag over slip in the last step [N s/m]; shape (n_grain, 4).
     """
 
     seen: Floats
@@ -35,4 +37,4 @@ class Immersed:
         """Water at rest around every grain."""
         seen = np.zeros((n_grain, N_SEEN))
         seen[:, SHARE] = 1.0
-        return Immersed(seen, np.zeros((n_grain, 3)))
+        return Immersed(seen, np.zeros((n_grain, N_TAKEN)))

@@ -1,0 +1,356 @@
+"""Turbulence of a column of water: mixing lengths, eddy viscosity, stress of bed and side walls."""
+
+import math
+
+from ryusa.laws._law import law
+from ryusa.laws.debris import pore_factor
+
+
+@law
+def length_prandtl(z: float, kappa: float) -> float:
+    """Mixing length over a wall [m], kappa z; zero at and below z = 0 [m].
+
+    Notes
+    -----
+    Source: Prandtl 1925. kappa [-] is von Karman's constant, 0.40 to 0.41.
+
+    Examples
+    --------
+    >>> round(length_prandtl(0.01, 0.41), 6)
+    0.0041
+    """
+    if z <= 0.0:
+        return 0.0 * kappa
+    return kappa * z
+
+
+@law
+def length_parabolic(z: float, depth: float, kappa: float) -> float:
+    """Mixing length in an open channel [m], kappa z sqrt(1 - z/depth).
+
+    Parameters
+    ----------
+    z : height above the bed [m]; zero at and below 0 and at and above the surface.
+    depth : of the water [m], > 0.
+    kappa : von Karman's constant [-].
+
+    Notes
+    -----
+    Source: Nezu & Nakagawa 1993, Turbulence in Open-Channel Flows; also the free-surface option of YADE's
+    HydroForceEngine (Maurin et al. 2015). Under a stress that falls linearly to the surface it gives the eddy
+    viscosity kappa u_star z (1 - z/depth) and the log law over the whole depth.
+
+    Examples
+    --------
+    >>> round(length_parabolic(0.015, 0.02, 0.4), 6)  # 0.4 * 0.015 * sqrt(1/4)
+    0.003
+    """
+    if z <= 0.0:
+        return 0.0 * kappa
+    return kappa * z * math.sqrt(max(1.0 - z / depth, 0.0))
+
+
+@law
+def length_van_driest(z: float, u_star: float, nu: float, kappa: float) -> float:
+    """Mixing length over a smooth wall [m], kappa z (1 - exp(-z+/26)), z+ = z u_star/nu.
+
+    Parameters
+    ----------
+    z : height above the wall [m].
+    u_star : friction velocity [m/s].
+    nu : kinematic viscosity [m2/s], > 0.
+    kappa : von Karman's constant [-].
+
+    Notes
+    -----
+    Source: van Driest 1956, J. Aeronaut. Sci. 23, 1007; the constant 26 as in the PHOENICS encyclopaedia.
+
+    Examples
+    --------
+    >>> round(length_van_driest(26.0e-4, 0.01, 1.0e-6, 0.4) / 26.0e-4, 6)  # z+ = 26: 0.4 (1 - 1/e)
+    0.252848
+    """
+    if z <= 0.0:
+        return 0.0 * kappa
+    return -kappa * z * math.expm1(-z * u_star / (26.0 * nu))
+
+
+@law
+def length_growth_li_sawamoto(phi: float, phi_max: float, dz: float, kappa: float) -> float:
+    """What a layer of thickness dz adds to the mixing length above it [m], kappa (phi_max - phi)/phi_max dz.
+
+    Parameters
+    ----------
+    phi : concentration of grains in the layer [-]; from phi_max on nothing is added.
+    phi_max : concentration at which eddies have no room [-], > 0.
+    dz : thickness [m].
+    kappa : von Karman's constant [-].
+
+    Notes
+    -----
+    Source: Li & Sawamoto 1995, Coastal Eng. Japan 38, as used by Revil-Baudard & Chauchat 2013 and by Maurin
+    et al. 2015: the length is the sum over all layers below. In clear water it becomes kappa z.
+
+    Examples
+    --------
+    >>> round(length_growth_li_sawamoto(0.3, 0.6, 0.001, 0.4), 9)
+    0.0002
+    """
+    return kappa * max(phi_max - phi, 0.0) / phi_max * dz
+
+
+@law
+def length_pore_egashira(phi: float, d: float, k_f: float) -> float:
+    """Length of the eddies in the pores of a debris flow [m]: its square is k_f (1-c)**(5/3) c**(-2/3) d**2.
+
+    Parameters
+    ----------
+    phi : concentration of grains, c in the source [-], > 0; infinite at 0.
+    d : diameter of the grains [m].
+    k_f : coefficient [-], 0.16 in the source.
+
+    Notes
+    -----
+    Source: Egashira, Miyamoto & Itoh 1997; the stress of the water in the pores, rho f_f d**2 |dU/dz| dU/dz
+    with f_f of `debris.pore_factor`, written as a mixing length. The factor 1 - c is already in it.
+
+    Examples
+    --------
+    >>> (
+    ...     round(length_pore_egashira(0.3, 1.0, 0.16) ** 2, 3),
+    ...     round(length_pore_egashira(0.5, 1.0, 0.16) ** 2, 3),
+    ... )
+    (0.197, 0.08)
+    """
+    return d * math.sqrt(pore_factor(phi, k_f))
+
+
+@law
+def eddy_viscosity(length: float, shear: float, eps: float) -> float:
+    """Kinematic eddy viscosity [m2/s] of water that fills the share eps of the mixture, eps l**2 |dU/dz|.
+
+    Parameters
+    ----------
+    length : mixing length [m].
+    shear : velocity gradient of the water [1/s].
+    eps : share of the water, 1 - phi [-].
+
+    Notes
+    -----
+    Source: Prandtl 1925 for clear water; the factor eps as in Revil-Baudard & Chauchat 2013 and Maurin et al.
+    2015.
+
+    Examples
+    --------
+    >>> round(eddy_viscosity(0.004, -10.0, 0.5), 6)
+    8e-05
+    """
+    return eps * length * length * abs(shear)
+
+
+@law
+def height_between(z_low: float, z_high: float) -> float:
+    """Height [m] at which the log law has the slope of its chord between two heights [m], both > 0.
+
+    Notes
+    -----
+    The logarithmic mean (z_high - z_low)/ln(z_high/z_low). A mixing length taken there makes a column of
+    cells follow the log law exactly, from the wall on.
+
+    Examples
+    --------
+    >>> import math
+    >>> round(height_between(1.0, math.e), 6)  # e - 1
+    1.718282
+    """
+    if z_high == z_low:
+        return z_low
+    return (z_high - z_low) / math.log1p((z_high - z_low) / z_low)
+
+
+@law
+def u_star_smooth(u_x: float, z: float, nu: float) -> float:
+    """Friction velocity [m/s] under which a smooth wall has the water speed |u_x| at height z.
+
+    Parameters
+    ----------
+    u_x : speed along the wall [m/s]; its sign does not matter.
+    z : height above the wall [m], > 0.
+    nu : kinematic viscosity [m2/s], > 0.
+
+    Notes
+    -----
+    Inverse of `water.log_law_smooth`: closed below z+ = 11.3, Newton's method above, where the law is convex.
+
+    Examples
+    --------
+    >>> round(u_star_smooth(0.01, 1.0e-4, 1.0e-6), 12)  # z+ = 1
+    0.01
+    >>> round(u_star_smooth(2.223, 0.01, 1.0e-6), 4)  # z+ = 1000: u+ = 22.23
+    0.1
+    """
+    speed = abs(u_x)
+    guess = math.sqrt(nu * speed / z)
+    if not z * guess > 11.3 * nu:
+        return guess
+    for _ in range(40):
+        plus = math.log(z * guess / (11.3 * nu)) / 0.41 + 11.3
+        change = (speed - guess * plus) / (plus + 1.0 / 0.41)
+        guess += change
+        if abs(change) <= 1.0e-15 * guess:
+            break
+    return guess
+
+
+@law
+def wall_smooth(u_x: float, z: float, nu: float) -> tuple[float, float]:
+    """Stress of a smooth wall over density [m2/s2], with the sign of u_x, and its slope with u_x [m/s].
+
+    Parameters
+    ----------
+    u_x : water speed at height z [m/s].
+    z : height above the wall [m], > 0.
+    nu : kinematic viscosity [m2/s], > 0.
+
+    Notes
+    -----
+    Source: the two-layer law of `water.log_law_smooth`; without slip and linear as long as z+ <= 11.3.
+
+    Examples
+    --------
+    >>> stress, slope = wall_smooth(0.01, 1.0e-4, 1.0e-6)  # nu u/z and nu/z
+    >>> round(stress, 9), round(slope, 9)
+    (0.0001, 0.01)
+    """
+    u_star = u_star_smooth(u_x, z, nu)
+    if not z * u_star > 11.3 * nu:
+        return nu * u_x / z, nu / z
+    return math.copysign(u_star * u_star, u_x), 2.0 * u_star / (abs(u_x) / u_star + 1.0 / 0.41)
+
+
+@law
+def wall_rough(u_x: float, z: float, k_rough: float) -> tuple[float, float]:
+    """Stress of a rough wall over density [m2/s2], signed as u_x, and its slope with u_x [m/s]. Eq. (9).
+
+    Parameters
+    ----------
+    u_x : water speed at height z [m/s].
+    z : height above the zero of the profile [m], above k_rough/30.
+    k_rough : equivalent roughness [m], > 0.
+
+    Notes
+    -----
+    Source: the paper, Eq. (9), solved for u_star.
+
+    Examples
+    --------
+    >>> stress, slope = wall_rough(0.85, 0.002, 0.002)  # at z = k_rough u_star is u/8.5
+    >>> round(stress, 9), round(slope, 9)
+    (0.01, 0.023529412)
+    """
+    plus = 8.5 + 5.75 * math.log10(z / k_rough)
+    rate = abs(u_x) / (plus * plus)
+    return rate * u_x, 2.0 * rate
+
+
+@law
+def speed_mean_rough(depth: float, u_star: float, k_rough: float) -> float:
+    """Mean of Eq. (9) over the depth [m/s]; times the depth it is the discharge per unit width.
+
+    Parameters
+    ----------
+    depth : of the water above the zero of the profile [m].
+    u_star : friction velocity [m/s].
+    k_rough : equivalent roughness [m], > 0.
+
+    Notes
+    -----
+    Source: integral of the paper's Eq. (9) from the height where it turns positive, about k_rough/30.
+
+    Examples
+    --------
+    >>> round(speed_mean_rough(0.02, 0.1, 0.002), 3)  # about 0.1 (6.0 + 5.75)
+    1.176
+    """
+    zero = k_rough * 10.0 ** (-8.5 / 5.75)
+    if depth <= zero:
+        return 0.0 * u_star
+    return u_star * 5.75 / math.log(10.0) * (math.log(depth / zero) - 1.0 + zero / depth)
+
+
+@law
+def friction_gap_laminar(re: float) -> float:
+    """Friction factor of slow water between two walls [-], 96/Re, Re built with the hydraulic diameter.
+
+    Notes
+    -----
+    Source: plane Poiseuille flow; the hydraulic diameter of a gap of width b is 2 b.
+
+    Examples
+    --------
+    >>> friction_gap_laminar(960.0)
+    0.1
+    """
+    return 96.0 / re
+
+
+@law
+def friction_blasius(re: float) -> float:
+    """Friction factor (Darcy-Weisbach) of a smooth wall [-], 0.3164 Re**-0.25.
+
+    Notes
+    -----
+    Source: Blasius 1913, for Re = u D/nu between about 4e3 and 1e5, D the hydraulic diameter; one of the two
+    side-wall options of YADE's HydroForceEngine, which builds Re with the width instead of twice the width.
+
+    Examples
+    --------
+    >>> round(friction_blasius(1.0e4), 5)
+    0.03164
+    """
+    return 0.3164 / re**0.25
+
+
+@law
+def friction_karman_prandtl(re: float) -> float:
+    """Friction factor (Darcy-Weisbach) of a smooth wall [-], 1/sqrt(f) = 2 log10(Re sqrt(f)) - 0.8.
+
+    Notes
+    -----
+    Source: Prandtl 1935 (with von Karman), as tabulated in White, Fluid Mechanics, Eq. (6.54): 0.0399 at
+    Re = 4000, 0.0180 at 1e5. Re = u D/nu with the hydraulic diameter D. Newton's method for x = 1/sqrt(f).
+
+    Examples
+    --------
+    >>> round(friction_karman_prandtl(4000.0), 4), round(friction_karman_prandtl(1.0e5), 4)
+    (0.0399, 0.018)
+    """
+    x = re / (2.0 + re) * 6.0  # near Re/2.51 at small Re, of order 5 to 15 beyond
+    for _ in range(40):
+        change = (2.0 * math.log10(re / x) - 0.8 - x) / (1.0 + 2.0 / (math.log(10.0) * x))
+        x = max(x + change, 0.1 * x)
+        if abs(change) <= 1.0e-15 * x:
+            break
+    return 1.0 / (x * x)
+
+
+@law
+def side_wall_drag(u_x: float, friction: float, width: float) -> float:
+    """How the two side walls of a flume slow the water down [m/s2], f |u| u/(4 width); opposite to u_x.
+
+    Parameters
+    ----------
+    u_x : water speed [m/s].
+    friction : Darcy-Weisbach friction factor f [-].
+    width : between the walls [m], > 0.
+
+    Notes
+    -----
+    Source: two walls of stress f rho u**2/8 on water of the given width; the sink of Maurin et al. 2015.
+
+    Examples
+    --------
+    >>> round(side_wall_drag(0.5, 0.03, 0.0065), 6)  # 0.03 * 0.25 / 0.026
+    -0.288462
+    """
+    return -friction * abs(u_x) * u_x / (4.0 * width)

@@ -1,0 +1,328 @@
+"""The column of water over a bed: what holds still, what moves, and what a step gained."""
+
+import math
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+
+from ryusa.model.scene import Floats
+
+NAN = float("nan")
+AGREE = 0.02  # relative; numbers that say the same thing twice may differ by so much (rounded input)
+
+
+class Mixing(IntEnum):
+    """Where the mixing length comes from."""
+
+    LAMINAR = 0  # no eddies
+    PRANDTL = 1  # kappa z
+    PARABOLIC = 2  # kappa z sqrt(1 - z/depth), Nezu
+    VAN_DRIEST = 3  # kappa z (1 - exp(-z+/26))
+    LI_SAWAMOTO = 4  # kappa times the integral of (phi_max - phi)/phi_max
+
+
+class Bed(IntEnum):
+    """What the water meets at the bottom of the column."""
+
+    NO_SLIP = 0  # smooth wall, molecular stress in the lowest half cell
+    SMOOTH = 1  # smooth wall, two-layer law: the same as NO_SLIP while z+ <= 11.3
+    ROUGH = 2  # Eq. (9) at the middle of the lowest cell
+    MOVING = 3  # deep under grains, whose drag has stopped the water: no slip, and no wall for the eddies
+
+
+class Top(IntEnum):
+    """What is above the water."""
+
+    FREE = 0  # a surface without stress
+    LID = 1  # a plate that moves at u_lid, molecular stress in the highest half cell
+
+
+class Surface(IntEnum):
+    """What is kept when grains come and go."""
+
+    DEPTH = 0  # the height of the surface; water passes through it
+    VOLUME = 1  # the volume of water; the surface moves
+
+
+class Drive(IntEnum):
+    """What drives the water beside gravity along the slope."""
+
+    GRAVITY = 0  # nothing else
+    GRADIENT = 1  # a given pressure gradient
+    TAU = 2  # the pressure gradient that brings the driving stress at z_bed to the one asked for
+    DISCHARGE = 3  # the pressure gradient that keeps the discharge of water, step by step
+
+
+class SideWalls(IntEnum):
+    """Friction of the two smooth walls of a narrow flume."""
+
+    NONE = 0
+    BLASIUS = 1
+    KARMAN_PRANDTL = 2
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of n equal cells over a piece of bed, averaged over x and y; all that is fixed."""
+
+    z_low: float  # bottom [m]
+    dz: float  # thickness of a cell [m]
+    n: int  # number of cells
+    depth: float  # surface above z_bed [m]; at the start where the volume is kept
+    area: float = 1.0  # area of bed [m2]
+    z_bed: float = NAN  # zero of the log law, where tau is asked for [m]; nan: z_low
+    rho_w: float = 1000.0  # density [kg/m3]
+    nu: float = 1.0e-6  # kinematic viscosity [m2/s]
+    # boundaries
+    bed: Bed = Bed.NO_SLIP
+    k_rough: float = NAN  # equivalent roughness of Eq. (9) [m]
+    top: Top = Top.FREE
+    u_lid: float = 0.0  # speed of the lid [m/s]
+    surface: Surface = Surface.DEPTH
+    side: SideWalls = SideWalls.NONE
+    width: float = NAN  # between the side walls [m]
+    # driver
+    g_x: float = 0.0  # gravity along the bed, g sin(slope) [m/s2]
+    drive: Drive = Drive.GRAVITY
+    gradient: float = 0.0  # -dp/dx for GRADIENT [Pa/m]
+    tau: float = NAN  # for TAU: rho_w u_star**2 [Pa]
+    discharge: float = NAN  # of water per unit width, for DISCHARGE [m2/s]
+    # turbulence
+    mixing: Mixing = Mixing.LAMINAR
+    kappa: float = 0.41  # von Karman's constant [-]; ln(10)/5.75 = 0.40045 goes with Eq. (9)
+    phi_max: float = 0.61  # of LI_SAWAMOTO [-]
+    k_f: float = 0.0  # of the eddies in the pores of a debris flow [-]; 0: none, 0.16 in the source
+    d: float = NAN  # diameter of the grains, for k_f [m]
+
+    @property
+    def origin(self) -> float:
+        """Height of the bed [m]: z_bed, or z_low where none is given."""
+        return self.z_low if math.isnan(self.z_bed) else self.z_bed
+
+    @property
+    def z_high(self) -> float:
+        """Top of the highest cell [m]."""
+        return self.z_low + self.n * self.dz
+
+    @property
+    def z_surface(self) -> float:
+        """Height of the water surface at the start [m]."""
+        return self.origin + self.depth
+
+    @property
+    def z(self) -> Floats:
+        """Middles of the cells [m], shape (n,)."""
+        return self.z_low + (np.arange(self.n, dtype=np.float64) + 0.5) * self.dz
+
+    @property
+    def faces(self) -> Floats:
+        """Faces of the cells [m], shape (n + 1,)."""
+        return self.z_low + np.arange(self.n + 1, dtype=np.float64) * self.dz
+
+    def refuses(self) -> tuple[str, ...]:
+        """Why this column cannot be run, in sentences; () when it can."""
+        faults = list(refuse(depth=self.depth, dz=self.dz, n=self.n, z_low=self.z_low, z_bed=self.origin))
+        for name in ("area", "rho_w", "nu", "kappa", "phi_max"):
+            if not getattr(self, name) > 0.0:
+                faults.append(f"{name} = {getattr(self, name):g}: must be above 0")
+        if self.bed is not Bed.MOVING and abs(self.origin - self.z_low) > 1e-9 * abs(self.dz):
+            faults.append(
+                f"z_bed = {self.origin:g} m: a fixed bed is the bottom of the column, {self.z_low:g} m"
+            )
+        if self.bed is Bed.ROUGH:
+            if not self.k_rough > 0.0:
+                faults.append(f"k_rough = {self.k_rough:g} m: a rough bed needs a roughness above 0")
+            elif self.dz <= self.k_rough / 15.0:
+                faults.append(
+                    f"dz = {self.dz:g} m: Eq. (9) is zero below k_rough/30 = {self.k_rough / 30.0:.3g} m, "
+                    f"and the middle of the lowest cell must lie above; ten times as much is a good choice"
+                )
+        if self.bed is Bed.MOVING and self.mixing is Mixing.VAN_DRIEST:
+            faults.append("van Driest's length needs a wall: choose another mixing length over a moving bed")
+        if self.top is Top.LID and self.surface is Surface.VOLUME:
+            faults.append("a lid holds the surface in its place: keep the depth, not the volume")
+        if self.side is not SideWalls.NONE and not self.width > 0.0:
+            faults.append(f"width = {self.width:g} m: side walls need a width above 0")
+        if self.drive is Drive.TAU and not math.isfinite(self.tau):
+            faults.append("tau: this driver needs the stress asked for at the bed")
+        if self.drive is Drive.DISCHARGE and not math.isfinite(self.discharge):
+            faults.append("discharge: this driver needs the discharge asked for")
+        if self.k_f < 0.0 or (self.k_f > 0.0 and not self.d > 0.0):
+            faults.append(f"k_f = {self.k_f:g}, d = {self.d:g} m: eddies in pores need both above 0")
+        return tuple(faults)
+
+
+@dataclass(frozen=True)
+class WaterState:
+    """One moment of the water; cells above the surface carry the surface's speed. Arrays are read-only.
+
+    What the grains read during the next interval is kept, so that a resume is exact.
+    """
+
+    u: Floats  # speed along the bed [m/s], shape (n,)
+    w: Floats  # vertical speed of the water, eps w + phi w_p = 0 [m/s], shape (n,)
+    content: Floats  # water per area of bed in each cell [m], shape (n,)
+    shear: Floats  # dU/dz at the middles [1/s], shape (n,)
+    du_dt: Floats  # acceleration of the water, DU/Dt [m/s2], shape (n,)
+    dtau_dz: Floats  # gradient of the shear stress of the water [N/m3], shape (n,)
+    tau: Floats  # shear stress of the water at the faces [Pa], shape (n + 1,); the bed's is the first
+    nu_t: Floats  # eddy viscosity at the faces [m2/s], shape (n + 1,)
+    z_surface: float  # height of the surface [m]
+    volume: float  # water per area of bed [m], kept where Surface.VOLUME is chosen
+    gradient: float = 0.0  # -dp/dx of the driver [Pa/m]
+    t: float = 0.0  # [s]
+    step: int = 0  # steps of the water done
+
+    @staticmethod
+    def at_rest(column: Column, phi: Floats) -> "WaterState":
+        """Water at rest among grains of concentration phi [-], shape (n,), up to the depth of the column."""
+        wet = np.clip(column.z_surface - column.faces[:-1], 0.0, column.dz)
+        content = (1.0 - np.asarray(phi, dtype=np.float64)) * wet
+        content.flags.writeable = False
+        still = np.zeros(column.n)
+        face = np.zeros(column.n + 1)
+        still.flags.writeable = face.flags.writeable = False
+        return WaterState(
+            u=still,
+            w=still,
+            content=content,
+            shear=still,
+            du_dt=still,
+            dtau_dz=still,
+            tau=face,
+            nu_t=face,
+            z_surface=column.z_surface,
+            volume=float(content.sum()),
+        )
+
+
+@dataclass(frozen=True)
+class Budget:
+    """Momentum of the water along the bed over one step, per area of bed; forces on the water [Pa]."""
+
+    change: float  # momentum after less before, over the step
+    gravity: float  # weight along the slope
+    driver: float  # pressure gradient times wet height
+    bed: float  # stress of the bed; negative slows the water
+    lid: float  # stress of the lid
+    side: float  # stress of the side walls
+    grains: float  # what the grains took
+    carried: float  # the part of the stress's gradient that the grains carry, where asked for
+    surface: float  # brought by water that passed through the surface
+    iterations: int  # of Newton's method
+
+    @property
+    def residual(self) -> float:
+        """What is not accounted for [Pa]: round-off."""
+        gains = self.gravity + self.driver + self.bed + self.lid + self.side
+        return self.change - (gains + self.grains + self.carried + self.surface)
+
+
+def refuse(
+    *,
+    depth: float,
+    dz: float | None = None,
+    n: int | None = None,
+    z_low: float = 0.0,
+    z_bed: float = 0.0,
+    slope: float | None = None,
+    tau_star: float | None = None,
+    u_star: float | None = None,
+    d: float | None = None,
+    rho_s: float = 2650.0,
+    rho_w: float = 1000.0,
+    g: float = 9.80665,
+) -> tuple[str, ...]:
+    """Sentences about water that cannot be, () when it can; None stands for what is not given.
+
+    Parameters
+    ----------
+    depth : surface above z_bed [m].
+    dz, n, z_low : cells of the column [m], [-], [m].
+    z_bed : height of the bed [m].
+    slope : angle of the bed [rad]; 0 or None asks for another driver, and then nothing can contradict it.
+    tau_star, u_star : stress at the bed [-] or friction velocity [m/s].
+    d : mean diameter of the grains, which tau_star needs [m].
+    rho_s, rho_w : densities [kg/m3].
+    g : gravity [m/s2].
+
+    Notes
+    -----
+    Steady uniform water carries u_star**2 = g depth sin(slope) = tau_star (rho_s/rho_w - 1) g d to its bed.
+
+    >>> refuse(depth=0.02, slope=math.atan(1 / 20), tau_star=0.3, d=0.002)  # the paper's saltation
+    ()
+    >>> refuse(depth=-0.01)
+    ('depth = -0.01 m: the surface lies below the bed; depth counts upwards from the bed',)
+    """
+    faults: list[str] = []
+    if not depth > 0.0:
+        faults.append(
+            f"depth = {depth:g} m: the surface lies below the bed; depth counts upwards from the bed"
+        )
+    if dz is not None and not dz > 0.0:
+        faults.append(f"dz = {dz:g} m: the thickness of a cell must be above 0")
+    if n is not None and n < 2:
+        faults.append(f"n = {n}: a column needs at least 2 cells")
+    if z_low > z_bed:
+        faults.append(f"the column begins at {z_low:g} m, above the bed at {z_bed:g} m")
+    if not faults and dz is not None and n is not None:
+        high = z_low + n * dz
+        if high < z_bed:
+            faults.append(f"the column ends at {high:g} m, below the bed at {z_bed:g} m")
+        elif high < z_bed + depth - 1e-9 * dz:
+            need = math.ceil((z_bed + depth - z_low) / dz - 1e-9)
+            faults.append(
+                f"the column ends at {high:g} m, below the surface at {z_bed + depth:g} m: {need} cells of "
+                f"{dz:g} m reach it"
+            )
+    if tau_star is not None and not tau_star > 0.0:
+        faults.append(f"tau_star = {tau_star:g}: must be above 0")
+    if u_star is not None and not u_star > 0.0:
+        faults.append(f"u_star = {u_star:g} m/s: must be above 0")
+    if faults:
+        return tuple(faults)
+    return _contradictions(depth, slope, tau_star, u_star, d, rho_s, rho_w, g)
+
+
+def _contradictions(
+    depth: float,
+    slope: float | None,
+    tau_star: float | None,
+    u_star: float | None,
+    d: float | None,
+    rho_s: float,
+    rho_w: float,
+    g: float,
+) -> tuple[str, ...]:
+    """Sentences about stress, slope and depth that do not fit together."""
+    says: list[tuple[str, float]] = []  # who says it, and u_star**2 [m2/s2]
+    weight = (rho_s / rho_w - 1.0) * g * d if d is not None else NAN
+    if tau_star is not None and d is not None:
+        says.append((f"tau_star = {tau_star:g}", tau_star * weight))
+    if u_star is not None:
+        says.append((f"u_star = {u_star:g} m/s", u_star * u_star))
+    if slope is not None and slope != 0.0:
+        if slope < 0.0 and says:
+            return (f"slope = {math.tan(slope):g}: a bed that rises downstream cannot drive the water",)
+        says.append((f"slope = {math.tan(slope):.4g} and depth = {depth:g} m", g * depth * math.sin(slope)))
+    faults: list[str] = []
+    for k, (who, square) in enumerate(says):
+        for other, asked in says[:k]:
+            if abs(square - asked) > AGREE * max(square, asked):
+                text = (
+                    f"{other} and {who} contradict each other: u_star is {math.sqrt(asked):.4g} m/s by the "
+                )
+                text += f"first, {math.sqrt(square):.4g} m/s by the second"
+                if who.startswith("slope") and slope is not None:
+                    right = asked / (g * math.sin(slope))
+                    tilt = asked / (g * depth)
+                    text += f"; a depth of {right:.4g} m"
+                    if tilt < 1.0:
+                        text += f" or a slope of {math.tan(math.asin(tilt)):.4g}"
+                    if weight > 0.0:
+                        text += f" or tau_star = {square / weight:.4g}"
+                    text += " would agree, or leave one of them out"
+                faults.append(text)
+    return tuple(faults)

@@ -1,0 +1,99 @@
+"""The decorator of the column's functions, and the numbers of a column as they take them."""
+
+import hashlib
+from collections.abc import Callable
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, NamedTuple, TypeVar, cast
+
+import numba
+
+from ryusa.laws._law import EDITION
+from ryusa.model.column import Column
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+def _edition() -> str:
+    digest = hashlib.sha256(EDITION.encode())
+    for file in sorted(Path(__file__).parent.glob("*.py")):
+        digest.update(file.read_bytes())
+    digest.update((Path(__file__).parent.parent / "model" / "column.py").read_bytes())
+    return digest.hexdigest()
+
+
+_EDITION = _edition()
+
+
+def kernel(function: F) -> F:
+    """Compile when first called; the text of laws, column and this room is part of the key on disk.
+
+    Numba looks at the function's own file alone, and would go on calling an old law from another file.
+    """
+    dispatcher: Any = numba.njit(error_model="numpy", fastmath=False, cache=True)(function)
+    cache: Any = getattr(dispatcher, "_cache", None)
+    if hasattr(cache, "_index_key"):
+        key = cache._index_key
+        cache._index_key = lambda sig, codegen: (*key(sig, codegen), _EDITION)
+    return cast(F, dispatcher)
+
+
+class Numbers(NamedTuple):
+    """A column as plain numbers, for compiled functions."""
+
+    n: int
+    z_low: float
+    dz: float
+    z_bed: float
+    z_surface: float
+    rho_w: float
+    nu: float
+    bed: int
+    k_rough: float
+    top: int
+    u_lid: float
+    surface: int
+    side: int
+    width: float
+    g_x: float
+    drive: int
+    gradient: float
+    tau: float
+    discharge: float
+    mixing: int
+    kappa: float
+    phi_max: float
+    k_f: float
+    d: float
+
+
+@lru_cache(maxsize=16)
+def numbers(column: Column) -> Numbers:
+    """The numbers of a column; integers and floats as Numba wants them."""
+    c = column
+    return Numbers(
+        n=int(c.n),
+        z_low=float(c.z_low),
+        dz=float(c.dz),
+        z_bed=float(c.origin),
+        z_surface=float(c.z_surface),
+        rho_w=float(c.rho_w),
+        nu=float(c.nu),
+        bed=int(c.bed),
+        k_rough=float(c.k_rough),
+        top=int(c.top),
+        u_lid=float(c.u_lid),
+        surface=int(c.surface),
+        side=int(c.side),
+        width=float(c.width),
+        g_x=float(c.g_x),
+        drive=int(c.drive),
+        gradient=float(c.gradient),
+        tau=float(c.tau),
+        discharge=float(c.discharge),
+        mixing=int(c.mixing),
+        kappa=float(c.kappa),
+        phi_max=float(c.phi_max),
+        k_f=float(c.k_f),
+        d=float(c.d),
+    )

@@ -1,0 +1,127 @@
+"""Eddies and walls of a column: which law speaks at which face; every formula is a law."""
+
+import math
+
+from ryusa.laws.turbulence import (
+    eddy_viscosity,
+    friction_blasius,
+    friction_gap_laminar,
+    friction_karman_prandtl,
+    height_between,
+    length_growth_li_sawamoto,
+    length_parabolic,
+    length_pore_egashira,
+    length_prandtl,
+    length_van_driest,
+    side_wall_drag,
+    wall_rough,
+    wall_smooth,
+)
+from ryusa.model.column import Bed, Mixing, SideWalls
+from ryusa.model.scene import Floats
+from ryusa.water._kernel import Numbers, kernel
+
+ROUGH, SMOOTH, MOVING = int(Bed.ROUGH), int(Bed.SMOOTH), int(Bed.MOVING)
+LAMINAR, PRANDTL, PARABOLIC = int(Mixing.LAMINAR), int(Mixing.PRANDTL), int(Mixing.PARABOLIC)
+VAN_DRIEST, LI_SAWAMOTO = int(Mixing.VAN_DRIEST), int(Mixing.LI_SAWAMOTO)
+BLASIUS, KARMAN_PRANDTL = int(SideWalls.BLASIUS), int(SideWalls.KARMAN_PRANDTL)
+RE_SLOW = 1500.0  # below, the gap between side walls is laminar; both turbulent laws are smaller there
+
+
+@kernel
+def pores(p: Numbers, phi: float) -> float:
+    """Square of the length of the eddies in the pores [m2]; at most d**2, 0 where they are not asked for."""
+    if p.k_f > 0.0:
+        length = min(length_pore_egashira(phi, p.d, p.k_f), p.d) if phi > 0.0 else p.d
+        return length * length
+    return 0.0
+
+
+@kernel
+def mixing_lengths(
+    p: Numbers, m: int, phi: Floats, z: Floats, z_surface: float, u_star: float, square: Floats
+) -> None:
+    """Square of the mixing length times the share of water at the faces 0..m [m2], written to `square`.
+
+    Parameters
+    ----------
+    p : the column.
+    m : highest wet cell.
+    phi : concentration [-], shape (n,).
+    z : middles of the wet part of the cells [m], shape (n,).
+    z_surface : height of the surface [m].
+    u_star : friction velocity at the bed [m/s], for van Driest.
+    square : shape (n + 1,); zero from the surface on, and at the bed but for the eddies of the pores.
+
+    Notes
+    -----
+    Over a fixed bed the length of a face is taken at `height_between` of the middles beside it, so that the
+    cells follow the log law from the wall on. The eddies of the pores count where they are the larger ones;
+    they are at most one grain large, also where grains are few.
+    """
+    square[:] = 0.0
+    depth = z_surface - p.z_bed
+    walled = p.bed != MOVING
+    grown = 0.0
+    for f in range(1, m + 1):
+        face = p.z_low + f * p.dz - p.z_bed
+        low, high = z[f - 1] - p.z_bed, z[f] - p.z_bed
+        at = height_between(low, high) if walled and low > 0.0 else face
+        length = 0.0
+        if p.mixing == PRANDTL:
+            length = length_prandtl(at, p.kappa)
+        elif p.mixing == PARABOLIC and face > 0.0:
+            length = length_parabolic(face, depth, p.kappa) * (at / face)
+        elif p.mixing == VAN_DRIEST:
+            length = length_van_driest(at, u_star, p.nu, p.kappa)
+        elif p.mixing == LI_SAWAMOTO:
+            below = length_growth_li_sawamoto(phi[f - 1], p.phi_max, p.dz, p.kappa)
+            above = length_growth_li_sawamoto(phi[f], p.phi_max, p.dz, p.kappa)
+            low, high = grown + 0.5 * below, grown + below + 0.5 * above
+            grown += below
+            length = height_between(low, high) if walled and low > 0.0 else grown
+        share = 0.5 * (phi[f - 1] + phi[f])
+        square[f] = max((1.0 - share) * length * length, pores(p, share))
+    square[0] = pores(p, phi[0])
+
+
+@kernel
+def bed_stress(p: Numbers, u: float, z: float, square: float) -> tuple[float, float]:
+    """Stress of the bed over density [m2/s2] and its slope [m/s]; u [m/s] at the height z [m] over it.
+
+    `square` [m2] is that of `mixing_lengths` at the bed, for walls without a law of their own.
+    """
+    if p.bed == ROUGH:
+        return wall_rough(u, z, p.k_rough)
+    if p.bed == SMOOTH:
+        return wall_smooth(u, z, p.nu)
+    nu_t = eddy_viscosity(1.0, u / z, square)
+    return (p.nu + nu_t) * u / z, (p.nu + 2.0 * nu_t) / z
+
+
+@kernel
+def bed_shear(p: Numbers, u: float, z: float, stress: float) -> float:
+    """Velocity gradient [1/s] where the lowest speed is, z [m] over the wall; stress over density [m2/s2]."""
+    if p.bed == ROUGH or (p.bed == SMOOTH and z * math.sqrt(abs(stress)) > 11.3 * p.nu):
+        return math.copysign(math.sqrt(abs(stress)), stress) / (p.kappa * z)
+    return u / z
+
+
+@kernel
+def side_drag(p: Numbers, u: float) -> tuple[float, float]:
+    """How the side walls slow water of speed u [m/s] down [m/s2], and how that changes with u [1/s]."""
+    re = 2.0 * abs(u) * p.width / p.nu
+    if not re > 0.0:
+        return 0.0 * u, 0.0
+    friction = friction_gap_laminar(re)
+    power = 1.0  # the drag grows with this power of the speed
+    if re > RE_SLOW:
+        swift = 0.0
+        if p.side == BLASIUS:
+            swift = friction_blasius(re)
+        elif p.side == KARMAN_PRANDTL:
+            swift = friction_karman_prandtl(re)
+        if swift > friction:
+            friction, power = swift, 1.75
+    drag = side_wall_drag(u, friction, p.width)
+    return drag, power * drag / u

@@ -1,0 +1,333 @@
+"""The column's step, compiled: water laid into cells, Newton's method, the books."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ryusa.laws.turbulence import eddy_viscosity
+from ryusa.model.column import Drive, SideWalls, Surface, Top
+from ryusa.model.scene import Floats
+from ryusa.water._kernel import Numbers, kernel
+from ryusa.water.closures import VAN_DRIEST, bed_shear, bed_stress, mixing_lengths, side_drag
+from ryusa.water.drive import gradient_asked
+
+LID, VOLUME, DISCHARGE = int(Top.LID), int(Surface.VOLUME), int(Drive.DISCHARGE)
+NO_WALLS = int(SideWalls.NONE)
+CLOSE = 1.0e-13  # relative change of the speed at which Newton's method ends
+ENOUGH = 1.0e-9  # relative change that is accepted when the next is no smaller: round-off of the solution
+MOST = 300  # iterations
+SLOW = 30  # iterations after which only half of a change is taken: the wall's two layers meet in a kink
+DONE, TOO_SHORT, NO_ROOM, NOT_A_NUMBER, NOT_CLOSE = range(5)
+# what a step writes beside its profiles
+SURFACE, GRADIENT, TURNS = range(3)
+B_GRAVITY, B_DRIVER, B_BED, B_LID, B_SIDE, B_GRAINS, B_CARRIED, B_SURFACE, B_CHANGE = range(3, 12)
+N_OUT = 12
+
+
+class Sources(NamedTuple):
+    """What the grains do to the cells during a step, each of shape (n,); see `solve.advance`."""
+
+    phi: Floats
+    force: Floats
+    slope: Floats
+    carried: Floats
+    phi_w: Floats
+
+
+class Work(NamedTuple):
+    """Arrays of one step; cells of shape (n,), faces of shape (n + 1,)."""
+
+    h: Floats  # wet thickness of a cell [m]
+    z: Floats  # middle of its wet part [m]
+    q: Floats  # water through a face, upwards, per area [m/s]
+    below: Floats  # weight of the cell under a face in what flows through it [-]
+    square: Floats  # share of water times mixing length squared at a face [m2]
+    k_face: Floats  # tau/rho at a face is k_face (u above - u below) - r_face
+    r_face: Floats
+    k_side: Floats  # side walls and cell: r_side - k_side u [m2/s2]
+    r_side: Floats
+    a: Floats  # the tridiagonal system
+    b: Floats
+    c: Floats
+    r: Floats
+    y: Floats
+    scratch: Floats
+
+
+@kernel
+def fill(p: Numbers, phi: Floats, volume: float, content: Floats, h: Floats, z: Floats) -> tuple[int, float]:
+    """Lay the water into the cells: content, wet thickness h and its middle z [m], each of shape (n,).
+
+    Returns
+    -------
+    m, z_surface : highest wet cell and height of the surface [m]; m = n where the column is too short, -1
+        where a concentration leaves no room for water.
+    """
+    left = volume
+    m = -1
+    z_surface = p.z_surface
+    for k in range(p.n):
+        low = p.z_low + k * p.dz
+        eps = 1.0 - phi[k]
+        if not 0.0 < eps <= 1.0:
+            return -1, z_surface
+        if p.surface == VOLUME:
+            wet = min(left / eps, p.dz)
+            left -= eps * wet
+        else:
+            wet = min(z_surface - low, p.dz)
+        if wet <= 1.0e-12 * p.dz:
+            wet = 0.0
+        else:
+            m = k
+            if p.surface == VOLUME:
+                z_surface = low + wet
+        h[k] = wet
+        content[k] = eps * wet
+        z[k] = low + 0.5 * wet
+    if p.surface == VOLUME and left > 1.0e-12 * volume:
+        return p.n, z_surface
+    return m, z_surface
+
+
+@kernel
+def flow_up(
+    p: Numbers, m: int, content: Floats, content_old: Floats, u_old: Floats, per_dt: float, work: Work
+) -> int:
+    """Water through the faces from what the cells gained, and how its momentum goes along.
+
+    Returns
+    -------
+    last : highest cell that has water or had some before the step; it still hands its momentum down.
+
+    Notes
+    -----
+    The mean of both cells where friction between them is stronger than the flow (no false diffusion), else
+    the cell that the water leaves.
+    """
+    q, below = work.q, work.below
+    last = m
+    q[:] = 0.0
+    below[:] = 1.0
+    if per_dt > 0.0:
+        for k in range(p.n):
+            q[k + 1] = q[k] - (content[k] - content_old[k]) * per_dt
+            if content_old[k] > 0.0 and k > last:
+                last = k
+    for f in range(1, last + 1):
+        mixed = 0.0
+        if f <= m:
+            gap = work.z[f] - work.z[f - 1]
+            mixed = (p.nu + eddy_viscosity(1.0, (u_old[f] - u_old[f - 1]) / gap, work.square[f])) / gap
+        if 0.5 * abs(q[f]) <= mixed:
+            below[f] = 0.5
+        elif q[f] < 0.0:
+            below[f] = 0.0
+    return last
+
+
+@kernel
+def linearise(p: Numbers, m: int, u: Floats, content: Floats, work: Work) -> None:
+    """Newton's tangent of all stresses at the speeds u: bed, faces, lid and side walls."""
+    wall = work.z[0] - p.z_low
+    stress, rate = bed_stress(p, u[0], wall, work.square[0])
+    work.k_face[0], work.r_face[0] = rate, rate * u[0] - stress
+    for f in range(1, m + 1):
+        gap = work.z[f] - work.z[f - 1]
+        shear = (u[f] - u[f - 1]) / gap
+        nu_t = eddy_viscosity(1.0, shear, work.square[f])
+        work.k_face[f] = (p.nu + 2.0 * nu_t) / gap
+        work.r_face[f] = nu_t * shear
+    work.k_face[m + 1] = p.nu / (0.5 * work.h[m]) if p.top == LID else 0.0
+    if p.side != NO_WALLS:
+        for k in range(m + 1):
+            drag, grows = side_drag(p, u[k])
+            work.k_side[k] = -content[k] * grows
+            work.r_side[k] = content[k] * (drag - grows * u[k])
+
+
+@kernel
+def assemble(
+    p: Numbers,
+    m: int,
+    last: int,
+    u_old: Floats,
+    content: Floats,
+    content_old: Floats,
+    given: Sources,
+    gradient: float,
+    lost: float,
+    per_dt: float,
+    work: Work,
+) -> None:
+    """The balance of every cell, divided by the density: a u_below + b u + c u_above = r [m2/s2]."""
+    a, b, c, r, y, q, below = work.a, work.b, work.c, work.r, work.y, work.q, work.below
+    for k in range(last + 1):
+        share = 1.0 - given.carried[k] if k <= m else 1.0
+        a[k] = -share * work.k_face[k] - q[k] * below[k]
+        c[k] = -share * work.k_face[k + 1] + q[k + 1] * (1.0 - below[k + 1])
+        b[k] = content[k] * per_dt + share * (work.k_face[k] + work.k_face[k + 1])
+        b[k] += q[k + 1] * below[k + 1] - q[k] * (1.0 - below[k])
+        r[k] = content_old[k] * per_dt * u_old[k] + share * (work.r_face[k] - work.r_face[k + 1])
+        y[k] = work.h[k] / p.rho_w
+        if k <= m:
+            taken = given.force[k] - given.slope[k] * u_old[k]
+            if k == m:
+                r[k] += share * work.k_face[k + 1] * p.u_lid
+                taken += lost
+            b[k] += work.k_side[k] + given.slope[k] * p.dz / p.rho_w
+            r[k] += work.r_side[k] + p.g_x * content[k] - taken * p.dz / p.rho_w + gradient * y[k]
+
+
+@kernel
+def tridiagonal(n: int, both: bool, work: Work) -> None:
+    """Solve the system for r, and for y if `both`; the answers replace them."""
+    a, b, c, r, y, scratch = work.a, work.b, work.c, work.r, work.y, work.scratch
+    scratch[0] = c[0] / b[0]
+    r[0] /= b[0]
+    y[0] /= b[0]
+    for k in range(1, n):
+        pivot = 1.0 / (b[k] - a[k] * scratch[k - 1])
+        scratch[k] = c[k] * pivot
+        r[k] = (r[k] - a[k] * r[k - 1]) * pivot
+        if both:
+            y[k] = (y[k] - a[k] * y[k - 1]) * pivot
+    for k in range(n - 2, -1, -1):
+        r[k] -= scratch[k] * r[k + 1]
+        if both:
+            y[k] -= scratch[k] * y[k + 1]
+
+
+@kernel
+def book(
+    p: Numbers,
+    m: int,
+    last: int,
+    u_old: Floats,
+    content_old: Floats,
+    given: Sources,
+    gradient: float,
+    lost: float,
+    per_dt: float,
+    rows: Floats,
+    faces: Floats,
+    out: Floats,
+    work: Work,
+) -> None:
+    """Write stresses, what grains will read, and the budget; stresses as the last linear system had them."""
+    u, content, tau, nu_t = rows[0], rows[2], faces[0], faces[1]
+    tau[:] = 0.0
+    nu_t[:] = 0.0
+    tau[0] = p.rho_w * (work.k_face[0] * u[0] - work.r_face[0])
+    nu_t[0] = eddy_viscosity(1.0, u[0] / (work.z[0] - p.z_low), work.square[0])
+    for f in range(1, m + 1):
+        tau[f] = p.rho_w * (work.k_face[f] * (u[f] - u[f - 1]) - work.r_face[f])
+        nu_t[f] = eddy_viscosity(1.0, (u[f] - u[f - 1]) / (work.z[f] - work.z[f - 1]), work.square[f])
+    if p.top == LID:
+        tau[m + 1] = p.rho_w * work.k_face[m + 1] * (p.u_lid - u[m])
+    out[B_GRAVITY : B_CHANGE + 1] = 0.0
+    for k in range(last + 1):
+        out[B_CHANGE] += p.rho_w * (content[k] * u[k] - content_old[k] * u_old[k]) * per_dt
+        if k <= m:
+            out[B_GRAVITY] += p.rho_w * p.g_x * content[k]
+            out[B_DRIVER] += gradient * work.h[k]
+            out[B_SIDE] += p.rho_w * (work.r_side[k] - work.k_side[k] * u[k])
+            out[B_GRAINS] -= (given.force[k] + given.slope[k] * (u[k] - u_old[k])) * p.dz
+            out[B_CARRIED] -= given.carried[k] * (tau[k + 1] - tau[k])
+    out[B_GRAINS] -= lost * p.dz
+    out[B_BED], out[B_LID] = -tau[0], tau[m + 1]
+    out[B_SURFACE] = -p.rho_w * work.q[last + 1] * u[last]
+
+    u[m + 1 :] = u[m]
+    w, shear, du_dt, dtau_dz = rows[1], rows[3], rows[4], rows[5]
+    rows[1, m + 1 :] = 0.0
+    rows[3:, m + 1 :] = 0.0
+    for k in range(m + 1):
+        w[k] = -given.phi_w[k] / (1.0 - given.phi[k])
+        dtau_dz[k] = (tau[k + 1] - tau[k]) / work.h[k]
+        if k == 0:
+            shear[k] = bed_shear(p, u[0], work.z[0] - p.z_low, tau[0] / p.rho_w)
+        else:
+            shear[k] = 0.5 * (u[k] - u[k - 1]) / (work.z[k] - work.z[k - 1])
+            if k < m:
+                shear[k] += 0.5 * (u[k + 1] - u[k]) / (work.z[k + 1] - work.z[k])
+            elif p.top == LID:
+                shear[k] += (p.u_lid - u[k]) / work.h[k]
+        du_dt[k] = (u[k] - u_old[k]) * per_dt + w[k] * shear[k]
+
+
+@kernel
+def march(
+    p: Numbers, given_rows: Floats, volume: float, per_dt: float, rows: Floats, faces: Floats, out: Floats
+) -> int:
+    """One step, backward Euler, solved to round-off; per_dt = 1/dt, 0 for the steady state.
+
+    given_rows : u and content before, speeds to start from, then those of `Sources`, rows of shape (n,).
+    rows, faces : u, w, content, shear, du_dt, dtau_dz, shape (6, n); tau, nu_t, shape (2, n + 1); written.
+    """
+    n = p.n
+    u_old, content_old, guess = given_rows[0], given_rows[1], given_rows[2]
+    given = Sources(given_rows[3], given_rows[4], given_rows[5], given_rows[6], given_rows[7])
+    u, content = rows[0], rows[2]
+    cells, edges = np.zeros((10, n)), np.zeros((5, n + 1))
+    work = Work(
+        cells[0], cells[1], edges[0], edges[1], edges[2], edges[3], edges[4], cells[2], cells[3], cells[4],
+        cells[5], cells[6], cells[7], cells[8], cells[9],
+    )  # fmt: skip
+    m, z_surface = fill(p, given.phi, volume, content, work.h, work.z)
+    if m < 0:
+        return NO_ROOM
+    if m >= n:
+        return TOO_SHORT
+    wall = work.z[0] - p.z_low
+    stress, _ = bed_stress(p, guess[0], wall, 0.0)
+    u_star = np.sqrt(abs(stress))
+    mixing_lengths(p, m, given.phi, work.z, z_surface, u_star, work.square)
+    last = flow_up(p, m, content, content_old, u_old, per_dt, work)
+    lost = 0.0  # forces in cells that are dry now go to the highest wet one
+    for k in range(m + 1, n):
+        lost += given.force[k]
+    gradient = gradient_asked(p, content, z_surface)
+    seek = p.drive == DISCHARGE
+    u[:] = guess
+    answer = NOT_CLOSE
+    change_before = np.inf
+    for turn in range(MOST):
+        if p.mixing == VAN_DRIEST and turn > 0:
+            stress, _ = bed_stress(p, u[0], wall, work.square[0])
+            part = 1.0 if turn < SLOW else 0.5
+            u_star += part * (np.sqrt(abs(stress)) - u_star)
+            mixing_lengths(p, m, given.phi, work.z, z_surface, u_star, work.square)
+        linearise(p, m, u, content, work)
+        assemble(
+            p, m, last, u_old, content, content_old, given, 0.0 if seek else gradient, lost, per_dt, work
+        )
+        tridiagonal(last + 1, seek, work)
+        if seek:
+            has, gives = 0.0, 0.0
+            for k in range(m + 1):
+                has += content[k] * work.r[k]
+                gives += content[k] * work.y[k]
+            gradient = (p.discharge - has) / gives
+            for k in range(last + 1):
+                work.r[k] += gradient * work.y[k]
+        change, scale = 0.0, 0.0
+        for k in range(last + 1):
+            change = max(change, abs(work.r[k] - u[k]))
+            scale = max(scale, abs(work.r[k]))
+            if not np.isfinite(work.r[k]):
+                return NOT_A_NUMBER
+        stuck = change <= ENOUGH * scale and change >= 0.9 * change_before
+        if change <= CLOSE * scale or stuck:
+            answer = DONE
+        change_before = change
+        part = 1.0 if turn < SLOW or answer == DONE else 0.5
+        for k in range(last + 1):
+            u[k] = work.r[k] if part == 1.0 else u[k] + part * (work.r[k] - u[k])
+        out[TURNS] = turn + 1.0
+        if answer == DONE:
+            break
+    if answer == DONE:
+        out[SURFACE], out[GRADIENT] = z_surface, gradient
+        book(p, m, last, u_old, content_old, given, gradient, lost, per_dt, rows, faces, out, work)
+    return answer
