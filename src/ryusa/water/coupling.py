@@ -10,11 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ryusa.errors import WaterError
-from ryusa.laws.drag import volume
 from ryusa.model import Scene
 from ryusa.model.column import Budget, Column, WaterState
 from ryusa.model.enums import Buoyancy
-from ryusa.model.immersed import A_X, EXTRA_X, EXTRA_Z, N_SEEN, PHI, SHARE, SHEAR, U, W
+from ryusa.model.immersed import A_X, DRAG, EXTRA_X, EXTRA_Z, N_SEEN, PHI, SHARE, SHEAR, U, W
 from ryusa.model.scene import Floats
 from ryusa.water.exchange import Cells, Slices, carried, slices, to_cells, to_grains
 from ryusa.water.solve import advance
@@ -31,7 +30,8 @@ class Coupling:
     ----------
     scene : what holds still; its water has the profile COLUMN.
     column : cells, boundaries, driver, closures.
-    steps : steps of the engine in an interval.
+    longest : steps of the engine in an interval, at most.
+    steps : steps in the interval under way; 1 in the first, before any drag is known.
     state : the water now.
     phi : concentration in the cells now [-], shape (n,).
     budget : momentum of the water over the last interval; None before the first.
@@ -40,6 +40,7 @@ class Coupling:
 
     scene: Scene
     column: Column
+    longest: int
     steps: int
     state: WaterState
     phi: Floats
@@ -51,24 +52,24 @@ class Coupling:
 
     @staticmethod
     def begin(
-        scene: Scene, column: Column, steps: int, x: Floats, v: Floats, state: WaterState | None = None
+        scene: Scene, column: Column, longest: int, x: Floats, state: WaterState | None = None
     ) -> "Coupling":
-        """Cut the grains at x [m] and v [m/s], and fill the column up: at rest, or with a snapshot's water.
+        """Cut the grains at x [m], and fill the column: with water at rest, or that of a snapshot.
 
         Raises
         ------
         ValueError : the column cannot be run, or the steps of an interval are fewer than one.
         """
         faults = column.refuses()
-        if faults or steps < 1:
-            raise ValueError("; ".join(faults) or f"an interval of {steps} steps: at least 1")
+        if faults or longest < 1:
+            raise ValueError("; ".join(faults) or f"an interval of {longest} steps: at least 1")
         cells = Cells(column.z_low, column.dz, column.n, column.area)
         cut = slices(x[:, 2], scene.d, cells)
         solid = (scene.m - scene.m_weight) / scene.water.rho_w
         phi = _phi(cut, solid)
         now = WaterState.at_rest(column, phi) if state is None else state
         coupling = Coupling(
-            scene, column, steps, now, phi, None, np.zeros((scene.n_grain, N_SEEN)), cut, solid,
+            scene, column, longest, 1, now, phi, None, np.zeros((scene.n_grain, N_SEEN)), cut, solid,
             np.zeros(column.n),
         )  # fmt: skip
         coupling.seen = coupling._told()
@@ -80,7 +81,7 @@ class Coupling:
         Parameters
         ----------
         x, v : centres and velocities of the grains now [m], [m/s], shape (n_grain, 3).
-        taken : impulse of drag, lift, Magnus force and added mass on each in the interval [N s].
+        taken : what each took from the water in the interval, columns of `model.immersed`.
 
         Returns
         -------
@@ -92,6 +93,7 @@ class Coupling:
         self.phi = _phi(self._slices, self._volume)
         phi_w = carried(self._slices, v[:, 2] * self._volume / self._slices.whole)
         self.state, self.budget = advance(self.column, self.state, self.phi, force, dt, phi_w=phi_w)
+        self.steps = min(self.longest, self._resolved(taken[:, DRAG]))
         self.seen = self._told()
         return self.seen
 
@@ -105,27 +107,22 @@ class Coupling:
         self._force_z = both[:, 1]
         return both[:, 0] + rest
 
-    def interval_at_most(self, drag: Floats) -> int:
-        """Most steps an interval may have, for drag over slip of each grain [N s/m].
-
-        Raises
-        ------
-        WaterError : less than one step; the water cannot follow.
-        """
+    def _resolved(self, drag: Floats) -> int:
+        """Steps an interval may have where drag is so stiff [N s/m], shape (n_grain,)."""
         scene, cut = self.scene, self._slices
         per = to_cells(cut, drag, "wet").cells / cut.cells.volume
-        water = scene.water.rho_w * (1.0 - self.phi)
+        water = scene.water.rho_w * np.maximum(1.0 - self.phi, 1.0 - PACKED)
         fastest = max(
             float(np.max(per / water, initial=0.0)),
             float(np.max(drag / (scene.m + scene.m_added), initial=0.0)),
         )
-        if fastest == 0.0:
-            return self.steps
+        if fastest * scene.dt * self.longest <= QUARTER:
+            return self.longest
         most = math.floor(QUARTER / (fastest * scene.dt))
         if most < 1:
             raise WaterError(
-                f"drag equalises water and grains within {1.0 / fastest:.3g} s, which a step of {scene.dt:.3g} s "
-                "does not resolve",
+                f"Drag equalises water and grains within {1.0 / fastest:.3g} s, which a step of "
+                f"{scene.dt:.3g} s does not resolve",
                 step=self.state.step,
                 t=self.state.t,
                 hint="Take a shorter step (time.step), larger grains or a thinner fluid.",

@@ -1,0 +1,137 @@
+"""Water and grains together: nothing is lost between them, and a suspension settles as the laws imply."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ryusa.build import scene
+from ryusa.engine.cpu import CpuEngine
+from ryusa.laws import drag
+from ryusa.laws.hindrance import exponent_settling
+from ryusa.model import Column, Water
+from ryusa.model.column import Bed, Mixing
+from ryusa.model.enums import Buoyancy, Drag, EventRule, Hindrance, Lift, Magnus, Profile, WaterTorque
+from ryusa.water.coupling import Coupling
+
+D, G = 2.0e-3, 9.80665
+FORMS = list(Buoyancy)
+
+
+def march(made, column, intervals, longest=20, water_state=None):
+    """Step grains and water together; yields the coupling and the engine after every interval."""
+    fixed, first = made
+    engine = CpuEngine()
+    engine.load(fixed, first)
+    coupling = Coupling.begin(fixed, column, longest, first.x, water_state)
+    engine.immerse(coupling.seen)
+    for _ in range(intervals):
+        steps, before = coupling.steps, coupling.seen
+        x, v, _ = engine.drift()
+        engine.advance(steps).raise_if_any()
+        x_now, v_now, taken = engine.drift()
+        engine.immerse(coupling.exchange(x_now, v_now, taken))
+        yield coupling, engine, steps, (x, v, before, x_now, v_now, taken)
+
+
+def cloud(form, n=40, slope=0.05, density=2650.0, **more):
+    """Grains far apart in flowing water, at rest."""
+    rng = np.random.default_rng(8)
+    x = np.zeros((n, 3))
+    x[:, 0] = (np.arange(n) + 0.5) * 4.0 * D
+    x[:, 2] = rng.uniform(4.0 * D, 20.0 * D, n)
+    water = Water(profile=Profile.COLUMN, drag=Drag.SCHILLER_NAUMANN, buoyancy=form, **more)
+    period = (n * 4.0 * D, math.inf)
+    made = scene(
+        x, D, density=density, water=water, gravity=G, slope=slope, period=period, plane_case=True, dt=2e-5,
+        events=EventRule.NONE,
+    )  # fmt: skip
+    return made, n * 4.0 * D * D
+
+
+def column_of(area, **more):
+    given = {"z_low": 0.0, "dz": 0.2 * D, "n": 130, "depth": 25.0 * D, "area": area, "bed": Bed.ROUGH}
+    given |= {"k_rough": 0.4 * D, "mixing": Mixing.PARABOLIC, "g_x": G * math.sin(0.05)}
+    return Column(**(given | more))
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_grains_and_water_together_gain_what_weight_and_bed_give(form):
+    every = {"lift": Lift.WIBERG_SMITH, "magnus": Magnus.LOTH, "hindrance": Hindrance.DI_FELICE}
+    made, area = cloud(form, torque=WaterTorque.DENNIS, **every)
+    fixed, dt = made[0], made[0].dt
+    for coupling, _, steps, (_, v, _, _, v_now, _) in march(made, column_of(area), 12):
+        budget, time = coupling.budget, steps * dt
+        grains = float(fixed.m @ (v_now[:, 0] - v[:, 0])) / (area * time)
+        weight = float(fixed.m.sum()) * fixed.gravity[0] / area
+        given = weight + budget.gravity + budget.driver + budget.bed + budget.surface
+        assert grains + budget.change == pytest.approx(given, rel=1e-10, abs=1e-10 * weight)
+
+
+@pytest.mark.parametrize("form", [Buoyancy.WEIGHT, Buoyancy.STRESS])
+@pytest.mark.parametrize(
+    ("law", "exponent"), [(Hindrance.NONE, 0.0), (Hindrance.RICHARDSON_ZAKI, 3.5), (Hindrance.POWER, 2.0)]
+)
+def test_a_suspension_settles_as_its_hindrance_implies(form, law, exponent):
+    pitch, layers, wide, d = 1.25, 16, 8, 1.0e-4  # Stokes' range
+    a, b = (g.ravel() for g in np.meshgrid(np.arange(wide), np.arange(layers), indexing="ij"))
+    x = np.column_stack([(a + 0.5) * pitch * d, np.zeros(a.size), (b + 0.5) * pitch * d])
+    phi = math.pi / 6 / pitch**2
+    water = Water(
+        profile=Profile.COLUMN, drag=Drag.SCHILLER_NAUMANN, buoyancy=form, hindrance=law,
+        hindrance_exponent=exponent,
+    )  # fmt: skip
+    weight = 1650.0 * math.pi / 6 * d**3 * G
+    w_0 = drag.terminal_velocity_stokes(1.65, G, d, 1e-6)
+    for _ in range(60):  # Schiller & Naumann at this size
+        re = drag.reynolds(w_0, d, 1e-6)
+        w_0 *= weight / (drag.drag_factor(w_0, drag.c_d_schiller_naumann(re), 1e3, math.pi / 4, d) * w_0)
+    tau = 3150.0 * math.pi / 6 * d**3 * w_0 / weight
+    made = scene(
+        x, d, water=water, gravity=G, plane_case=True, period=(wide * pitch * d, math.inf), dt=tau / 100.0,
+        stiffness=1e-3, events=EventRule.NONE,
+    )  # fmt: skip
+    made = (replace(made[0], world_low=(-math.inf,) * 3), made[1])
+    column = Column(
+        z_low=0.0, dz=pitch * d, n=layers, depth=layers * pitch * d, area=wide * pitch * d * d, bed=Bed.MOVING
+    )
+    speeds = []
+    for _, engine, *_ in march(made, column, 40, longest=10):
+        speeds.append(-float(engine.drift()[1][np.flatnonzero(b == layers // 2), 2].mean()))
+    found = math.log(speeds[-1] / w_0) / math.log(1.0 - phi)
+    if law is Hindrance.RICHARDSON_ZAKI:
+        n = exponent
+    else:
+        n = exponent_settling(_steepness(0.7 * w_0, d), 0.0, exponent, form is Buoyancy.STRESS)
+    assert found == pytest.approx(n, abs=0.02)
+
+
+def _steepness(w, d):
+    """Power of the speed with which the drag of Schiller & Naumann grows at speed w."""
+    force = [
+        drag.drag_factor(u, drag.c_d_schiller_naumann(drag.reynolds(u, d, 1e-6)), 1e3, math.pi / 4, d) * u
+        for u in (0.99 * w, 1.01 * w)
+    ]
+    return math.log(force[1] / force[0]) / math.log(1.01 / 0.99)
+
+
+@pytest.mark.parametrize(
+    ("form", "stays"), [(Buoyancy.WEIGHT, True), (Buoyancy.STRESS, True), (Buoyancy.PRESSURE, False)]
+)
+def test_a_neutral_grain_at_the_speed_of_the_water_stays_with_it(form, stays):
+    from ryusa.water import steady
+
+    made, area = cloud(form, n=6, density=1000.0)
+    column = column_of(area * 1000.0)  # so wide that the grains do not slow the water
+    none = np.zeros(column.n)
+    water_state, _ = steady(column, none, None)
+    u = np.interp(made[1].x[:, 2], column.z, water_state.u)
+    v = np.column_stack([u, 0.0 * u, 0.0 * u])
+    made = (made[0], replace(made[1], v=v))
+    slips = [
+        np.abs(engine.drift()[1][:, 0] - u).max()
+        for _, engine, *_ in march(made, column, 40, 20, water_state)
+    ]
+    free = G * math.sin(0.05) * 40 * 20 * made[0].dt
+    assert bool(slips[-1] < 0.02 * free) is stays
