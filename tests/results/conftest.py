@@ -24,7 +24,7 @@ def position(k: int) -> np.ndarray:
 def folder(tmp_path: Path) -> Path:
     run = tmp_path / "run"
     run.mkdir()
-    (run / "provenance.json").write_text('{"format": 1, "ryusa": "0.1.0", "status": "complete"}')
+    (run / "provenance.json").write_text('{"format": 2, "ryusa": "0.1.0", "status": "complete"}')
     (run / "case.json").write_text('{"title": "two grains", "record": {"settle": 0.5}}')
     (run / "summary.json").write_text('{"steps": 230}')
     scene, _ = build_scene(

@@ -27,7 +27,7 @@ from ryusa.running.recorder import Recorder
 folder = Path(sys.argv[1])
 folder.mkdir()
 scene = make_scene(4)
-(folder / "provenance.json").write_text(json.dumps({"format": 1, "ryusa": "0", "status": "running"}))
+(folder / "provenance.json").write_text(json.dumps({"format": 2, "ryusa": "0", "status": "running"}))
 recorder = Recorder(folder, scene)
 for k in range(100_000):
     x = k + np.arange(12.0).reshape(4, 3) / 16
@@ -141,7 +141,7 @@ def vtk_frames(path: Path, steps: list[int]) -> list[dict[str, Any]]:
 
 @pytest.fixture
 def recorder(tmp_path: Path, scene: Any) -> Recorder:
-    (tmp_path / "provenance.json").write_text('{"format": 1, "ryusa": "0", "status": "running"}')
+    (tmp_path / "provenance.json").write_text('{"format": 2, "ryusa": "0", "status": "running"}')
     return Recorder(tmp_path, scene)
 
 
@@ -203,7 +203,7 @@ def test_a_scene_without_bed_and_planes_is_recorded_too(tmp_path: Path, scene_wi
     none = np.zeros((0, 3))
     empty = {"d_fixed": np.zeros(0), "fixed_active": np.zeros(0, bool), "plane_active": np.zeros(0, bool)}
     bare = scene_with(x_fixed=none, plane_normal=none, plane_point=none, **empty)
-    (tmp_path / "provenance.json").write_text('{"format": 1, "status": "running"}')
+    (tmp_path / "provenance.json").write_text('{"format": 2, "status": "running"}')
     recorder = Recorder(tmp_path, bare)
     recorder.frame(moment(0), tally())
     recorder.flush()

@@ -160,7 +160,7 @@ def test_an_earlier_run_is_refused_then_replaced_on_request(go: Any) -> None:
     assert (first.folder / "notes.md").read_text() == "mine"
 
 
-@pytest.mark.parametrize("content", [{}, {"provenance.json": "{}"}, {"provenance.json": '{"format": 1}'}])
+@pytest.mark.parametrize("content", [{}, {"provenance.json": "{}"}, {"provenance.json": '{"format": 2}'}])
 def test_a_folder_that_is_no_run_is_never_deleted(go: Any, tmp_path: Path, content: dict[str, str]) -> None:
     (tmp_path / "run" / "parts").mkdir(parents=True)
     (tmp_path / "run" / "thesis.tex").write_text("all of it")

@@ -8,7 +8,7 @@ import numpy as np
 from ryusa.model import Book, Tally
 from ryusa.model.tally import HELD
 
-FORMAT = 1  # raised when an older reader could misread a folder
+FORMAT = 2  # raised when an older reader could misread a folder
 
 CASE_TOML = "case.toml"  # the case as read, byte for byte
 CASE_JSON = "case.json"  # the same, resolved, in SI
