@@ -94,6 +94,8 @@ class Column:
     phi_max: float = 0.61  # of LI_SAWAMOTO [-]
     k_f: float = 0.0  # of the eddies in the pores of a debris flow [-]; 0: none, 0.16 in the source
     d: float = NAN  # diameter of the grains, for k_f [m]
+    # exchange with the grains
+    interval: int = 50  # steps between two exchanges, at most
 
     @property
     def origin(self) -> float:
