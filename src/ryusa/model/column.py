@@ -220,6 +220,13 @@ class Budget:
         gains = self.gravity + self.driver + self.bed + self.lid + self.side
         return self.change - (gains + self.grains + self.carried + self.surface)
 
+    @property
+    def relative(self) -> float:
+        """Residual over the largest term [-]; 0 where nothing moves."""
+        terms = (self.change, self.gravity, self.driver, self.bed, self.lid, self.side, self.grains)
+        largest = max(abs(one) for one in (*terms, self.carried, self.surface))
+        return abs(self.residual) / largest if largest > 0.0 else 0.0
+
 
 def refuse(
     *,

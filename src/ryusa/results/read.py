@@ -24,6 +24,7 @@ from ryusa.results import schema
 from ryusa.results.hdf5 import OpenFiles, opened, plain_dataset, read_dataset
 from ryusa.results.lazy import LazyFrames, Part
 from ryusa.results.scene_file import read_scene
+from ryusa.results.water import WaterFrames, read_water
 
 Floats = NDArray[np.float64]
 _JSON_LIMIT = 64 << 20  # bytes
@@ -161,6 +162,12 @@ class Results:
         """The energy account [J] and extremes at each frame, shape (n_frame,) each; keys of schema.TALLY."""
         rows = _joined([part.tally() for part in self._parts], schema.TALLY)
         return {name: rows[name] for name in schema.TALLY.names or ()}
+
+    @cached_property
+    def water(self) -> WaterFrames | None:
+        """Profiles of the water at every frame; None where no column of it was solved."""
+        column = self.scene.column
+        return None if column is None else read_water(self._parts, self.frames.t, column.z, column.faces)
 
     @property
     def grains(self) -> Grains:

@@ -9,11 +9,11 @@ import h5py
 import numpy as np
 
 from ryusa.errors import ResultsError
-from ryusa.model import ContactLaw, RollingLaw, Scene, Water
+from ryusa.model import Column, ContactLaw, RollingLaw, Scene, Water
 from ryusa.model.enums import EventRule
 from ryusa.results.hdf5 import opened, read_dataset
 
-_LAWS: dict[str, type] = {"contact": ContactLaw, "rolling": RollingLaw, "water": Water}
+_LAWS: dict[str, type] = {"contact": ContactLaw, "rolling": RollingLaw, "water": Water, "column": Column}
 _ARRAYS = tuple(f.name for f in fields(Scene) if get_origin(f.type) is np.ndarray)
 _LIMIT = 1 << 20  # bytes of JSON read from a scene file
 
@@ -26,7 +26,7 @@ def write_scene(file: h5py.File, scene: Scene, step: int, t: float) -> None:
         if f.name in _ARRAYS:
             file.create_dataset(f.name, data=np.asarray(value))
         else:
-            scalars[f.name] = asdict(value) if f.name in _LAWS else value
+            scalars[f.name] = asdict(value) if f.name in _LAWS and value is not None else value
     scalars["step"], scalars["t"] = step, t
     file.create_dataset(
         "scalars", data=np.frombuffer(json.dumps(scalars, default=_plain).encode(), dtype=np.uint8)
@@ -48,7 +48,9 @@ def read_scene(path: Path) -> tuple[int, float, Scene]:
             raise ValueError("its scalars are not text")
         scalars = json.loads(raw.tobytes())
         step, t = int(scalars.pop("step")), float(scalars.pop("t"))
-        laws = {name: _law(kind, scalars.pop(name)) for name, kind in _LAWS.items()}
+        laws = {
+            name: _law(kind, raw) for name, kind in _LAWS.items() if (raw := scalars.pop(name)) is not None
+        }
         scalars["events"] = EventRule(scalars["events"])
         scalars["groups"] = {str(name): (int(a), int(b)) for name, (a, b) in scalars["groups"].items()}
         for name in ("period", "world_low", "world_high"):

@@ -34,6 +34,12 @@ FRAME_DATASETS = {
     "omega": (np.dtype(np.float64), (3,)),  # [rad/s]
     "image": (np.dtype(np.int32), (2,)),  # periods crossed in x and y
 }
+# in a group of a part, where a column of water is solved: k frames of n cells, or of n + 1 faces
+WATER = "water"
+WATER_CELLS = ("u", "w", "phi", "content")  # [m/s], [m/s], [-], [m]
+WATER_FACES = ("tau", "nu_t")  # [Pa], [m2/s]
+WATER_NUMBERS = ("z_surface", "gradient")  # [m], [Pa/m]
+
 PER_GRAIN = ("x", "v", "omega", "image")
 
 _INTEGER = {"overlap_grain", "overlap_step", "n_contact"}

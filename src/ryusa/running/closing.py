@@ -31,7 +31,17 @@ def closing_lines(summary: dict[str, Any]) -> list[str]:
     for what, names in _ACCOUNT:
         lines.append(f"energy {what} [J]: " + ", ".join(f"{name} {energy[name]:.3g}" for name in names))
     lines.append(f"energy not explained [J]: {energy['imbalance']:.2g}, residual {energy['residual']:.1e}")
+    if "water" in summary:
+        lines.append(_water(summary["water"]))
     return lines + [f"warning: {warning}" for warning in summary["warnings"]]
+
+
+def _water(found: dict[str, Any]) -> str:
+    return (
+        f"water: {found['exchanges']} exchanges, the last {found['steps_between']} steps apart; "
+        f"discharge {found['discharge']:.3g} m2/s, bed stress {found['bed_stress']:.3g} Pa; "
+        f"momentum not explained {found['momentum_residual']:.1e} of the largest term"
+    )
 
 
 def _band(summary: dict[str, Any]) -> str:

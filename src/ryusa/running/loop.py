@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ryusa.engine.seam import Engine
+from ryusa.engine.seam import Engine, Flags
 from ryusa.errors import RyusaError
 from ryusa.model import Scene, State
 from ryusa.results import schema
@@ -21,6 +21,7 @@ from ryusa.running.progress import Moment, Progress
 from ryusa.running.recorder import Recorder
 from ryusa.running.stops import Hops, Rest, Stop
 from ryusa.running.watch import Watch
+from ryusa.water.coupling import Coupling
 
 _CHUNK = 0.25  # s of wall time between two looks at the clock and at Ctrl-C
 _CHUNK_FIRST = (1, 16)  # steps of the first calls, before the speed is known
@@ -57,6 +58,8 @@ class Loop:
     _heard: Heard = field(default_factory=Heard)
     _resting: bool = False
     _calls: int = 0
+    _water: Coupling | None = None
+    _exchange: int = _NEVER  # step at which water and grains exchange next
     _speed: float = 0.0  # steps per second, lately
     _warm: tuple[int, float] = (0, 0.0)  # step and wall time when kernels were ready
     _begun: float = field(default_factory=time.monotonic)
@@ -88,6 +91,7 @@ class Loop:
         look_every = self._look_every()
         with self.progress.patience(_COMPILING):
             self.engine.load(self.scene, state)
+        self._immerse()
         self._frame()
         self._change_if_due()
         self.recorder.flush()
@@ -117,7 +121,7 @@ class Loop:
     def _advance(self, n_steps: int) -> None:
         begun = time.monotonic()
         with self.progress.patience(_COMPILING) if self._calls == 0 else nullcontext():
-            flags = self.engine.advance(n_steps)
+            flags = self._steps(n_steps)
         events = self.engine.events()
         self.recorder.contacts(events)
         self.watch.contacts(events)
@@ -126,7 +130,6 @@ class Loop:
         if flags:
             self._step = self.engine.state().step
             flags.raise_if_any()
-        self._step += n_steps
         now = time.monotonic()
         speed = n_steps / max(now - begun, 1e-9)
         if self._calls <= 1:
@@ -134,6 +137,29 @@ class Loop:
         else:
             self._speed += 0.3 * (speed - self._speed)
         self._calls += 1
+
+    def _steps(self, n_steps: int) -> Flags:
+        """Step the engine; on the way, water and grains hand over what they did to each other."""
+        end = self._step + n_steps
+        while self._step < end:
+            k = min(end, self._exchange) - self._step
+            flags = self.engine.advance(k)
+            if flags:
+                return flags
+            self._step += k
+            if self._water is not None and self._step == self._exchange:
+                self.engine.immerse(self._water.exchange(*self.engine.drift()))
+                self._exchange += self._water.steps
+        return Flags()
+
+    def _immerse(self) -> None:
+        """Fill the column of water, where the scene has one, and tell the grains."""
+        if self.scene.column is None:
+            return
+        column = self.scene.column
+        self._water = Coupling.begin(self.scene, column, column.interval, self.engine.drift()[0])
+        self.engine.immerse(self._water.seen)
+        self._exchange = self._step + self._water.steps
 
     def _chunk(self) -> int:
         if self._calls < len(_CHUNK_FIRST):
@@ -146,6 +172,8 @@ class Loop:
             state = self.engine.state()
             self.scene = change.apply(self.scene)
             self.engine.load(self.scene, state)
+            if self._water is not None and self.scene.column is not None:
+                self._water.scene, self._water.column = self.scene, self.scene.column
             self.watch.scene = self.scene
             self.recorder.scene(self.scene, self._step, self._t)
             self._rest = Rest(self.stop)
@@ -153,7 +181,7 @@ class Loop:
 
     def _frame(self) -> None:
         tally = self.engine.tally()
-        self.recorder.frame(self.engine.state(), tally)
+        self.recorder.frame(self.engine.state(), tally, self._water)
         self.watch.frame(tally)
 
     def _fastest(self) -> float:
@@ -217,6 +245,7 @@ class Loop:
             "wall": time.monotonic() - self._begun,
             "particle_steps_per_second": self._rate(),
             **self.watch.numbers(self.engine.tally()),
+            **({"water": self._water.numbers()} if self._water is not None else {}),
         }
 
     def _close(self) -> dict[str, Any]:

@@ -19,6 +19,7 @@ from ryusa.model import EVENT, Scene, State, Tally
 from ryusa.results import schema
 from ryusa.results.scene_file import write_scene
 from ryusa.running.vtkhdf import PartSize, write_atomic, write_bed, write_index, write_points
+from ryusa.water.coupling import Coupling
 
 _FLUSH_SOON = 2.0  # s between parts at the start
 _FLUSH_LATE = 60.0  # and at most, while there are few
@@ -69,6 +70,7 @@ class Recorder:
         self._tally: list[tuple[float, ...]] = []
         self._contacts: list[NDArray[np.void]] = []
         self._waiting = 0  # contacts in the buffer
+        self._water: dict[str, list[NDArray[np.float64]]] = {}
         (folder / schema.PARTS).mkdir(exist_ok=True)
         with _disk(folder):
             write_points(folder / schema.PARTS, scene)
@@ -88,8 +90,12 @@ class Recorder:
             self._scenes.append((t, scene))
             write_bed(self.folder / schema.BED, self._scenes)
 
-    def frame(self, state: State, tally: Tally) -> None:
-        """Keep a frame; its arrays are copied."""
+    def frame(self, state: State, tally: Tally, water: Coupling | None = None) -> None:
+        """Keep a frame; its arrays are copied. `water` where a column of it is solved."""
+        if water is not None:
+            profiles = {**vars(water.state), "phi": water.phi}
+            for name in (*schema.WATER_CELLS, *schema.WATER_FACES, *schema.WATER_NUMBERS):
+                self._water.setdefault(name, []).append(np.array(profiles[name]))
         if self._count == len(self._buffer["t"]):
             self._grow()
         row, k = self._buffer, self._count
@@ -132,7 +138,7 @@ class Recorder:
             write_atomic(self.folder / schema.PARTS / part.name, self._fill)
             self._parts.append(part)
             self._count, self._waiting = 0, 0
-            self._tally, self._contacts = [], []
+            self._tally, self._contacts, self._water = [], [], {}
             write_index(self.folder, self._parts, self.n_grain)
         return True
 
@@ -145,6 +151,8 @@ class Recorder:
         file.create_dataset("tally", data=np.array(self._tally, dtype=schema.TALLY))
         rows = np.concatenate(self._contacts) if self._contacts else np.zeros(0, dtype=EVENT)
         file.create_dataset("contacts", data=rows)
+        for name, profiles in self._water.items():
+            file.create_dataset(f"{schema.WATER}/{name}", data=np.array(profiles))
 
     def _room(self, k: int) -> dict[str, NDArray[Any]]:
         return {

@@ -15,6 +15,7 @@ from ryusa.model.column import Budget, Column, WaterState
 from ryusa.model.enums import Buoyancy
 from ryusa.model.immersed import A_X, DRAG, EXTRA_X, EXTRA_Z, N_SEEN, PHI, SHARE, SHEAR, U, W
 from ryusa.model.scene import Floats
+from ryusa.water.drive import discharge
 from ryusa.water.exchange import Cells, Slices, carried, slices, to_cells, to_grains
 from ryusa.water.solve import advance
 
@@ -46,6 +47,8 @@ class Coupling:
     phi: Floats
     budget: Budget | None
     seen: Floats
+    exchanges: int
+    worst: float  # largest residual of the water's momentum over its largest term [-]
     _slices: Slices
     _volume: Floats  # of each grain, A_3 d**3 [m3]
     _force_z: Floats  # of the water on grains along z, by volume of cells [N/m3]
@@ -69,7 +72,7 @@ class Coupling:
         phi = _phi(cut, solid)
         now = WaterState.at_rest(column, phi) if state is None else state
         coupling = Coupling(
-            scene, column, longest, 1, now, phi, None, np.zeros((scene.n_grain, N_SEEN)), cut, solid,
+            scene, column, longest, 1, now, phi, None, np.zeros((scene.n_grain, N_SEEN)), 0, 0.0, cut, solid,
             np.zeros(column.n),
         )  # fmt: skip
         coupling.seen = coupling._told()
@@ -93,6 +96,7 @@ class Coupling:
         self.phi = _phi(self._slices, self._volume)
         phi_w = carried(self._slices, v[:, 2] * self._volume / self._slices.whole)
         self.state, self.budget = advance(self.column, self.state, self.phi, force, dt, phi_w=phi_w)
+        self.exchanges, self.worst = self.exchanges + 1, max(self.worst, self.budget.relative)
         self.steps = min(self.longest, self._resolved(taken[:, DRAG]))
         self.seen = self._told()
         return self.seen
@@ -106,6 +110,20 @@ class Coupling:
         rest = to_cells(cut, archimedes + self.seen[:, EXTRA_X], "wet").cells / cut.cells.volume
         self._force_z = both[:, 1]
         return both[:, 0] + rest
+
+    def numbers(self) -> dict[str, float | int]:
+        """Say how the water stands, for the summary of a run; SI."""
+        state, column = self.state, self.column
+        return {
+            "exchanges": self.exchanges,
+            "steps_between": self.steps,
+            "momentum_residual": self.worst,
+            "discharge": discharge(state),
+            "bed_stress": float(state.tau[0]),
+            "surface": state.z_surface,
+            "speed_max": float(np.max(np.abs(state.u))),
+            "driving_gradient": state.gradient + column.rho_w * column.g_x,
+        }
 
     def _resolved(self, drag: Floats) -> int:
         """Steps an interval may have where drag is so stiff [N s/m], shape (n_grain,)."""

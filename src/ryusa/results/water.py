@@ -1,0 +1,77 @@
+"""The column of water of a run, frame by frame."""
+
+from dataclasses import dataclass
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from ryusa.errors import ResultsError
+from ryusa.results import schema
+from ryusa.results.hdf5 import opened, plain_dataset, read_dataset
+from ryusa.results.lazy import Part
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class WaterFrames:
+    """Profiles of the water at every frame; arrays of shape (n_frame, n) in cells, (n_frame, n + 1) at faces.
+
+    Attributes
+    ----------
+    t : times of the frames [s], shape (n_frame,).
+    z, faces : heights of the middles and the faces of the cells [m], shapes (n,) and (n + 1,).
+    u, w : speed along the bed and upwards [m/s].
+    phi : concentration of free grains [-].
+    content : water in a cell per area of bed [m].
+    tau : shear stress of the water at the faces [Pa]; the bed's is the first.
+    nu_t : eddy viscosity at the faces [m2/s].
+    z_surface : height of the surface [m], shape (n_frame,).
+    gradient : driving -dp/dx beside gravity [Pa/m], shape (n_frame,).
+    """
+
+    t: Floats
+    z: Floats
+    faces: Floats
+    u: Floats
+    w: Floats
+    phi: Floats
+    content: Floats
+    tau: Floats
+    nu_t: Floats
+    z_surface: Floats
+    gradient: Floats
+
+
+def read_water(parts: list[Part], t: Floats, z: Floats, faces: Floats) -> WaterFrames:
+    """Read all profiles.
+
+    Raises
+    ------
+    ResultsError : a part has none, or of another shape.
+    """
+    names = {
+        **{name: (len(z),) for name in schema.WATER_CELLS},
+        **{name: (len(faces),) for name in schema.WATER_FACES},
+        **{name: () for name in schema.WATER_NUMBERS},
+    }
+    rows: dict[str, list[Floats]] = {name: [] for name in names}
+    for part in parts:
+        if not part.n_frame:
+            continue
+        with opened(part.path) as file:
+            for name, tail in names.items():
+                rows[name].append(_profile(file, name, (part.n_frame, *tail), part))
+    found = {name: np.concatenate(one) if one else np.zeros((0, *names[name])) for name, one in rows.items()}
+    for array in found.values():
+        array.flags.writeable = False
+    return WaterFrames(t=t, z=z, faces=faces, **found)
+
+
+def _profile(file: h5py.File, name: str, shape: tuple[int, ...], part: Part) -> Floats:
+    key = f"{schema.WATER}/{name}"
+    got = plain_dataset(file, key, part.path)
+    if got.shape != shape or got.dtype != np.float64:
+        raise ResultsError(f"{part.path}: '{key}' is {got.shape} of {got.dtype}, expected {shape} of float64")
+    return read_dataset(file, key, part.path)

@@ -1,0 +1,71 @@
+"""A run whose water is solved: exchanged at fixed steps, recorded, read back, however it was cut."""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ryusa.build import scene
+from ryusa.model import Column, Water
+from ryusa.model.column import Bed, Mixing
+from ryusa.model.enums import Drag, EventRule, Hindrance, Profile
+from ryusa.results import Results
+from ryusa.running import loop as loop_module
+from ryusa.running.runner import run_scene
+from ryusa.running.stops import Stop
+
+D, G = 2.0e-3, 9.80665
+
+
+def falling(interval=10):
+    """Grains that fall into water flowing down a slope."""
+    rng = np.random.default_rng(3)
+    n = 30
+    x = np.zeros((n, 3))
+    x[:, 0], x[:, 2] = (np.arange(n) + 0.5) * 2.0 * D, rng.uniform(3.0 * D, 9.0 * D, n)
+    water = Water(profile=Profile.COLUMN, drag=Drag.SCHILLER_NAUMANN, hindrance=Hindrance.DI_FELICE)
+    fixed, first = scene(
+        x, D, water=water, gravity=G, slope=0.05, period=(n * 2.0 * D, math.inf), plane_case=True,
+        planes=[("floor", (0.0, 0.0, 0.0), (0.0, 0.0, 1.0))], events=EventRule.NONE,
+    )  # fmt: skip
+    column = Column(
+        z_low=0.0, dz=0.25 * D, n=48, depth=10.0 * D, area=n * 2.0 * D * D, bed=Bed.ROUGH, k_rough=0.5 * D,
+        mixing=Mixing.PARABOLIC, g_x=G * math.sin(0.05), interval=interval,
+    )  # fmt: skip
+    return replace(fixed, column=column), first
+
+
+def carried_out(folder: Path) -> Results:
+    made = falling()
+    return run_scene(*made, folder, frames=50 * made[0].dt, stop=Stop(time=400 * made[0].dt), progress=False)
+
+
+def test_the_water_of_every_frame_is_read_back(tmp_path: Path) -> None:
+    results = carried_out(tmp_path / "run")
+    water, column = results.water, results.scene.column
+    assert water is not None
+    assert repr(column) == repr(falling()[0].column)  # nan is not itself
+    assert water.u.shape == (len(results.frames), column.n)
+    assert np.array_equal(water.t, results.frames.t)
+    assert (np.diff(water.u[:, -10]) > 0.0).all()  # it gains speed down the slope
+    assert water.phi.sum(axis=1) == pytest.approx(np.full(len(water.t), water.phi[0].sum()), rel=1e-9)
+    assert results.summary["water"]["momentum_residual"] < 1e-9
+    assert results.summary["energy"]["residual"] < 1e-3
+
+
+def test_water_and_grains_do_not_depend_on_how_the_run_is_cut(tmp_path: Path, monkeypatch) -> None:
+    whole = carried_out(tmp_path / "whole")
+    monkeypatch.setattr(loop_module.Loop, "_chunk", lambda self: 7)
+    cut = carried_out(tmp_path / "cut")
+    assert np.array_equal(whole.water.u, cut.water.u)
+    assert np.array_equal(whole.frames[-1].x, cut.frames[-1].x)
+
+
+def test_a_run_without_a_column_has_no_water(tmp_path: Path) -> None:
+    fixed, first = scene([[0.0, 0.0, 0.01]], D, events=EventRule.NONE)
+    results = run_scene(
+        fixed, first, tmp_path / "dry", frames=10 * fixed.dt, stop=Stop(time=20 * fixed.dt), progress=False
+    )
+    assert results.water is None
