@@ -19,6 +19,8 @@ UNITS = {
     "force": "N",
     "acceleration": "m/s2",
     "kinematic viscosity": "m2/s",
+    "pressure gradient": "Pa/m",
+    "discharge per width": "m2/s",
 }
 KNOWN_NUMBERS = {0.5235987755982988: "pi/6", 0.7853981633974483: "pi/4"}
 

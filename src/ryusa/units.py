@@ -17,10 +17,11 @@ _NAMES = {  # what an SI unit measures, for messages
     "kg/m3": "a density",
     "m/s": "a speed",
     "m/s2": "an acceleration",
-    "m2/s": "a viscosity",
+    "m2/s": "a viscosity or discharge per width",
     "N": "a force",
     "N/m": "a stiffness",
     "N s/m": "a damping constant",
+    "Pa/m": "a pressure gradient",
     "rad": "an angle",
     "rad/s": "a spin",
 }

@@ -6,6 +6,7 @@ from typing import Any
 
 from ryusa.casefile.box import hole
 from ryusa.casefile.builders import Box, Drop, Packing, Saltation, Table
+from ryusa.casefile.column_checks import check_column
 from ryusa.casefile.derive import may_spin, periodic, sizes
 from ryusa.casefile.schema import Case, Spread
 from ryusa.errors import CaseError
@@ -31,8 +32,8 @@ _CHANGES = ("remove", "slope", "slope_angle", "friction_angle", "friction", "rot
 
 def check(case: Case, data: dict[str, Any]) -> list[CaseError]:
     """Find the faults that no single key shows; `data` is what the file held."""
-    found = [*_rivals(case), *_needed(case), *_water(case), *_motion(case), *_builder(case)]
-    found += _timeline(case, data)
+    found = [*_rivals(case), *_needed(case), *_water(case), *check_column(case)]
+    found += [*_motion(case), *_builder(case), *_timeline(case, data)]
     if found:
         return found
     found = [*_numbers(case)]
@@ -82,7 +83,7 @@ def _water(case: Case) -> Iterator[CaseError]:
         yield CaseError(
             "water.tau_star", None, f"missing; profile '{water.profile}' needs tau_star or u_star"
         )
-    if not logarithmic and shear:
+    if not (logarithmic or water.profile == "column") and shear:
         key = "tau_star" if water.tau_star is not None else "u_star"
         yield CaseError(f"water.{key}", getattr(water, key), f"has no meaning with profile '{water.profile}'")
     if (water.speed is not None) != (water.profile == "uniform"):
@@ -90,7 +91,7 @@ def _water(case: Case) -> Iterator[CaseError]:
             yield CaseError("water.speed", None, "missing; profile 'uniform' needs it")
         else:
             yield CaseError("water.speed", water.speed, f"has no meaning with profile '{water.profile}'")
-    if water.roughness is not None and water.profile != "log rough":
+    if water.roughness is not None and water.profile not in {"log rough", "column"}:
         yield CaseError("water.roughness", water.roughness, f"has no meaning with profile '{water.profile}'")
     if water.tau_star is not None and case.grains.density <= water.density:
         yield CaseError(
@@ -100,7 +101,7 @@ def _water(case: Case) -> Iterator[CaseError]:
         yield CaseError(
             "water.drag_coefficient", water.drag_coefficient, f"has no meaning with drag '{water.drag}'"
         )
-    if water.above != "continue" and water.depth is None:
+    if water.above != "continue" and water.depth is None and water.profile != "column":
         yield CaseError("water.depth", None, f"missing; above = '{water.above}' needs it")
     if water.torque != "none" and not may_spin(case):
         yield CaseError("water.torque", water.torque, "needs motion.rotation = 'free'")

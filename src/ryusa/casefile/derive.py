@@ -8,6 +8,7 @@ import numpy as np
 
 from ryusa.casefile.box import box_plan
 from ryusa.casefile.builders import Box, Drop, Packing, Saltation, Table
+from ryusa.casefile.column import CELL, ONLY_IN_A_COLUMN, Column
 from ryusa.casefile.schema import Case, Spread, StiffnessForOverlap, StiffnessForTime
 from ryusa.casefile.table import table_of
 from ryusa.laws import collision, drag, motion, water
@@ -65,7 +66,7 @@ class Derived:
     step_limit: float  # largest stable step in one contact [s]
     step_limit_shear: float  # that of its tangential motion [s]
     steps_per_contact: float
-    u_star: float  # [m/s]; nan without a log profile
+    u_star: float  # [m/s]; nan without a log profile, and in a column that nothing drives
     tau_star: float
     k_rough: float  # [m]; nan without water
 
@@ -175,6 +176,29 @@ def slope(case: Case) -> float:
     if case.motion.slope_angle is not None:
         return case.motion.slope_angle
     return math.atan(case.motion.slope or 0.0)
+
+
+def slope_at_last(case: Case) -> float:
+    """Bed slope after the last change of the timeline [rad], down towards +x."""
+    for change in reversed(case.timeline):
+        if change.slope is not None or change.slope_angle is not None:
+            return change.slope_angle if change.slope_angle is not None else math.atan(change.slope or 0.0)
+    return slope(case)
+
+
+def column_u_star(case: Case, k_rough: float) -> float:
+    """Friction velocity of a column that names none [m/s]: of its driver in steady flow; nan if nothing does.
+
+    A discharge is that of Eq. (9), whose mean over the depth is the speed at depth/e.
+    """
+    wet = case.water
+    assert wet is not None
+    keys, depth = wet.column or Column(), wet.depth or math.nan
+    if keys.discharge is not None:
+        unit = water.log_law_rough(depth / math.e, 1.0, k_rough)
+        return abs(keys.discharge) / depth / unit if unit > 0.0 else math.nan
+    pull = case.motion.gravity * math.sin(slope_at_last(case)) + (keys.pressure_gradient or 0.0) / wet.density
+    return math.sqrt(abs(pull) * depth) or math.nan
 
 
 def friction(case: Case) -> float:
@@ -291,8 +315,8 @@ def derive(case: Case) -> Derived:
         if wet.tau_star is not None:
             tau_star = wet.tau_star
             u_star = water.u_star_from_tau_star(tau_star, rho_s, wet.density, g, d)
-        elif wet.u_star is not None:
-            u_star = wet.u_star
+        elif wet.u_star is not None or wet.profile == "column":
+            u_star = column_u_star(case, k_rough) if wet.u_star is None else wet.u_star
             heavier = rho_s > wet.density and g > 0.0
             tau_star = water.tau_star_from_u_star(u_star, rho_s, wet.density, g, d) if heavier else math.nan
     return Derived(
@@ -345,8 +369,22 @@ def resolved(case: Case) -> dict[str, Any]:
     data["time"] |= {"step": found.dt, "steps_per_contact": found.steps_per_contact}
     if case.water is not None:
         data["water"] |= {"u_star": found.u_star, "tau_star": found.tau_star, "roughness": found.k_rough}
+        _resolve_column(case, data["water"])
     data["derived"] = asdict(found)
     return _plain(data)
+
+
+def _resolve_column(case: Case, data: dict[str, Any]) -> None:
+    """Fill in the column of water; where there is none, its keys say nothing."""
+    wet = case.water
+    assert wet is not None
+    if wet.profile == "column":
+        keys = wet.column or Column()
+        cell = keys.cell or CELL * case.grains.diameter
+        data["column"] = keys.model_dump(mode="json") | {"cell": cell, "mixing_length": keys.mixing}
+        return
+    for key in ONLY_IN_A_COLUMN:
+        del data[key]
 
 
 def _plain(value: Any) -> Any:

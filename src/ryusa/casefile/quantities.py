@@ -57,6 +57,8 @@ Dashpot = Annotated[float, _si("N s/m"), _text("damping constant", "0.001 N s/cm
 Force = Annotated[float, _si("N"), _text("force", "0 N", "1 mN")]
 Acceleration = Annotated[float, _si("m/s2"), _text("acceleration", "9.8 m/s2")]
 Viscosity = Annotated[float, _si("m2/s"), _text("kinematic viscosity", "1e-6 m2/s")]
+PressureGradient = Annotated[float, _si("Pa/m"), _text("pressure gradient", "50 Pa/m")]
+UnitDischarge = Annotated[float, _si("m2/s"), _text("discharge per width", "0.02 m2/s", "200 cm2/s")]
 Ratio = Annotated[
     float,
     AllowInfNan(False),

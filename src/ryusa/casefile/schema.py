@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Discriminator, Field, PrivateAttr, Tag
 
 from ryusa.casefile.builders import Build
+from ryusa.casefile.column import Column
 from ryusa.casefile.quantities import (
     Acceleration,
     Angle,
@@ -193,22 +194,26 @@ class Plane(Section):
 
 
 class Water(Section):
-    """One-way water: profile, drag, added mass, torque, Eqs. (9)-(11)."""
+    """Water: profile, drag, added mass, torque, Eqs. (9)-(11); or a column of water that feels the grains."""
 
-    profile: Literal["log rough", "log smooth", "uniform", "still"]
-    """Velocity over height: Eq. (9), smooth wall, plug flow, or water at rest."""
+    profile: Literal["log rough", "log smooth", "uniform", "still", "column"]
+    """Velocity over height: Eq. (9), smooth wall, plug flow, or water at rest, all given once and for all;
+    or a column of water that grains slow down and stir, see `water.column`."""
     tau_star: Annotated[Number, Field(gt=0)] | None = None
-    """Dimensionless shear stress; gives u_star from grain density, g and mean d."""
+    """Dimensionless shear stress; gives u_star from grain density, g and mean d. In a column what
+    drive = "tau_star" asks for, and with drive = "slope" a number to hold slope and depth against."""
     u_star: Annotated[Speed, Field(gt=0)] | None = None
     """Friction velocity, instead of tau_star."""
     roughness: PositiveLength | None = None
-    """Equivalent roughness k_s of Eq. (9); the mean diameter when not given."""
+    """Equivalent roughness k_s of Eq. (9), also of a column over a rough bed; the mean diameter when not
+    given."""
     zero: Length | None = None
-    """Height z where the profile begins; the builder's choice when not given."""
+    """Height z where the profile begins, and of the bed that the depth is counted from; the builder's choice
+    when not given."""
     speed: Speed | None = None
     """Speed of the uniform profile."""
     depth: PositiveLength | None = None
-    """Water depth above the zero; unlimited when not given."""
+    """Water depth above the zero; unlimited when not given, which a column cannot be."""
     above: Literal["continue", "hold", "dry"] = "continue"
     """Above the depth: the profile goes on, the surface speed goes on, or (dry) the water neither drags nor
     turns a grain; buoyancy and added mass stay as under water."""
@@ -234,6 +239,23 @@ class Water(Section):
     """Added-mass coefficient C_M."""
     torque: Literal["none", "Stokes", "Dennis"] = "none"
     """Torque of the water on a spinning grain."""
+    buoyancy: Literal["stress", "weight", "pressure"] = "stress"
+    """Only in a column. Force of the water beside drag, lift and added mass: pressure and shear stress
+    carry a grain as they do water (design/0007), the weight of its volume of water as in Eqs. (10)-(11), or
+    the pressure normal to the bed alone."""
+    hindrance: Literal["none", "Richardson-Zaki", "power", "Wen-Yu", "Gidaspow", "Di Felice"] = "Di Felice"
+    """Only in a column. How neighbours change the drag of a grain."""
+    hindrance_exponent: Annotated[Number, Field(ge=0, le=20)] | None = None
+    """n of hindrance = "Richardson-Zaki", by Rowe from the settling velocity of a lone grain when not given;
+    m of hindrance = "power"."""
+    lift: Literal["none", "Wiberg-Smith", "Saffman-Mei"] = "none"
+    """Only in a column. Lift by the shear of the water."""
+    lift_coefficient: Annotated[Number, Field(ge=0, le=10)] = 0.2
+    """C_L of lift = "Wiberg-Smith"."""
+    magnus: Literal["none", "Rubinow-Keller", "Loth", "Oesterle-Dinh"] = "none"
+    """Only in a column. Lift by the spin of a grain against that of the water."""
+    column: Column | None = None
+    """The column of water of profile = "column"."""
 
 
 class Time(Section):

@@ -4,7 +4,7 @@ import math
 
 from ryusa.casefile.derive import mass, sizes
 from ryusa.casefile.schema import Case
-from ryusa.laws import drag, water
+from ryusa.laws import drag, hindrance, water
 
 
 def water_speed(case: Case, z: float) -> float:
@@ -12,6 +12,8 @@ def water_speed(case: Case, z: float) -> float:
     wet = case.water
     if wet is None:
         return 0.0
+    if wet.profile == "column":
+        return _steady_speed(case, z)
     if wet.depth is not None and z > wet.depth:
         if wet.above == "dry":
             return 0.0
@@ -21,6 +23,30 @@ def water_speed(case: Case, z: float) -> float:
     if wet.profile == "log smooth":
         return water.log_law_smooth(z, case.derived.u_star, wet.viscosity)
     return water.uniform(z, wet.speed) if wet.speed is not None else 0.0
+
+
+def _steady_speed(case: Case, z: float) -> float:
+    """Speed to expect of a steady column without grains [m/s] by the log law of its bed; 0 in still water."""
+    wet, u_star = case.water, case.derived.u_star
+    assert wet is not None
+    if math.isnan(u_star):
+        return 0.0
+    z = min(z, wet.depth or math.inf)
+    if wet.column is not None and wet.column.bed == "smooth":
+        return water.log_law_smooth(z, u_star, wet.viscosity)
+    return water.log_law_rough(z, u_star, case.derived.k_rough)
+
+
+def hindrance_exponent(case: Case) -> float:
+    """Exponent of a case's hindrance [-]: the one given, or Rowe's n of a lone grain's settling velocity."""
+    wet = case.water
+    assert wet is not None
+    if wet.hindrance_exponent is not None:
+        return wet.hindrance_exponent
+    settling = terminal_velocity(case)
+    if not math.isfinite(settling):
+        settling = 0.0
+    return hindrance.exponent_rowe(drag.reynolds(settling, sizes(case)[0], wet.viscosity))
 
 
 def drag_coefficient(case: Case, re: float) -> float:

@@ -1,0 +1,160 @@
+"""Checks of water that feels its grains: what a column needs, what has no meaning, what contradicts."""
+
+from collections.abc import Iterator
+
+from pydantic import BaseModel
+
+from ryusa.casefile.column import CELL, ONLY_IN_A_COLUMN, Column
+from ryusa.casefile.derive import periodic, slope_at_last
+from ryusa.casefile.schema import Case, Water
+from ryusa.errors import CaseError
+from ryusa.model.column import refuse
+
+MOST_CELLS = 20_000
+SPARE = 1.2  # height of the column over the depth
+
+
+def check_column(case: Case) -> Iterator[CaseError]:
+    """Find the faults of a case's column of water, and keys that only a column understands."""
+    water = case.water
+    if water is None:
+        return
+    if water.profile != "column":
+        for key in ONLY_IN_A_COLUMN:
+            if _given(water, key):
+                value = None if key == "column" else getattr(water, key)
+                yield CaseError(f"water.{key}", value, f"has no meaning with profile '{water.profile}'")
+        return
+    keys = water.column or Column()
+    yield from _place(case, water)
+    yield from _laws(water)
+    yield from _boundaries(water, keys)
+    driver = [*_driver(case, water, keys)]
+    yield from driver
+    if water.depth is None:
+        yield CaseError("water.depth", None, "missing; a column of water needs its depth above water.zero")
+    elif not driver:
+        yield from _contradictions(case, water, keys, water.depth)
+
+
+def _given(section: BaseModel, key: str) -> bool:
+    return key in section.model_fields_set and getattr(section, key) is not None
+
+
+def _place(case: Case, water: Water) -> Iterator[CaseError]:
+    """A column covers a piece of bed that goes on for ever."""
+    along, across = periodic(case)
+    kind = case.build.kind
+    if not along:
+        ways = {"packing": "; build.periodic = true closes it", "table": "; give domain.period_x"}
+        yield CaseError(
+            "water.profile",
+            water.profile,
+            f"needs a bed periodic in x, which builder '{kind}' does not give here{ways.get(kind, '')}",
+        )
+    elif not (across or case.motion.plane):
+        way = "domain.period_y" if kind == "table" else "motion.plane = true"
+        yield CaseError(
+            "water.profile", water.profile, f"needs a bed periodic in y too in three dimensions; give {way}"
+        )
+
+
+def _laws(water: Water) -> Iterator[CaseError]:
+    if _given(water, "above"):
+        yield CaseError(
+            "water.above", water.above, "has no meaning with profile 'column', which ends at its surface"
+        )
+    if water.hindrance == "power" and water.hindrance_exponent is None:
+        yield CaseError("water.hindrance_exponent", None, "missing; hindrance 'power' needs it")
+    if water.hindrance not in {"power", "Richardson-Zaki"} and water.hindrance_exponent is not None:
+        yield CaseError(
+            "water.hindrance_exponent",
+            water.hindrance_exponent,
+            f"has no meaning with hindrance '{water.hindrance}'",
+        )
+    if _given(water, "hindrance") and water.hindrance != "none" and water.drag == "none":
+        yield CaseError("water.hindrance", water.hindrance, "has no meaning with drag 'none'")
+    if _given(water, "lift_coefficient") and water.lift != "Wiberg-Smith":
+        yield CaseError(
+            "water.lift_coefficient", water.lift_coefficient, f"has no meaning with lift '{water.lift}'"
+        )
+
+
+def _boundaries(water: Water, keys: Column) -> Iterator[CaseError]:
+    if water.roughness is not None and keys.bed != "rough":
+        yield CaseError("water.roughness", water.roughness, f"has no meaning over a {keys.bed} bed")
+    if keys.mixing == "van Driest" and keys.bed == "moving":
+        yield CaseError(
+            "water.column.mixing_length", keys.mixing, "needs a wall: water.column.bed 'smooth' or 'rough'"
+        )
+    if _given(keys, "packed") and keys.mixing != "Li-Sawamoto":
+        yield CaseError(
+            "water.column.packed", keys.packed, f"has no meaning with mixing_length '{keys.mixing}'"
+        )
+    if _given(keys, "kappa") and keys.mixing == "none":
+        yield CaseError("water.column.kappa", keys.kappa, "has no meaning with mixing_length 'none'")
+    if _given(keys, "side_friction") and keys.side_walls is None:
+        yield CaseError("water.column.side_friction", keys.side_friction, "needs water.column.side_walls")
+    fixed = keys.bed != "moving"
+    if fixed and keys.bottom is not None and water.zero is not None and keys.bottom != water.zero:
+        yield CaseError(
+            "water.column.bottom",
+            keys.bottom,
+            f"must be water.zero, {water.zero:g} m (or left out): a fixed bed is the bottom of the column",
+        )
+
+
+def _driver(case: Case, water: Water, keys: Column) -> Iterator[CaseError]:
+    """What drives the water is given once, and nothing else is."""
+    for key, drive in (("pressure_gradient", "pressure gradient"), ("discharge", "discharge")):
+        value = getattr(keys, key)
+        if keys.drive == drive and value is None:
+            yield CaseError(f"water.column.{key}", None, f"missing; drive '{drive}' needs it")
+        if keys.drive != drive and value is not None:
+            yield CaseError(f"water.column.{key}", value, f"has no meaning with drive '{keys.drive}'")
+    key = "u_star" if water.u_star is not None else "tau_star"
+    stress = getattr(water, key)
+    if keys.drive == "tau_star" and stress is None:
+        yield CaseError("water.tau_star", None, "missing; drive 'tau_star' needs tau_star or u_star")
+    elif keys.drive in {"pressure gradient", "discharge"} and stress is not None:
+        yield CaseError(f"water.{key}", stress, f"has no meaning with drive '{keys.drive}'")
+    elif keys.drive == "slope" and stress is not None and case.motion.gravity * slope_at_last(case) == 0.0:
+        yield CaseError(
+            f"water.{key}",
+            stress,
+            "nothing drives the water; give motion.slope, or water.column.drive = 'tau_star'",
+        )
+
+
+def _contradictions(case: Case, water: Water, keys: Column, depth: float) -> Iterator[CaseError]:
+    """Water that cannot be, in the words of the model."""
+    d, cell = case.grains.diameter, keys.cell or CELL * case.grains.diameter
+    if not SPARE * depth / cell <= MOST_CELLS:
+        yield CaseError(
+            "water.column.cell", keys.cell, f"{cell:g} m asks for more than {MOST_CELLS:,} cells in the depth"
+        )
+    rough = water.roughness or d
+    if keys.bed == "rough" and cell <= rough / 15.0:
+        yield CaseError(
+            "water.column.cell",
+            keys.cell,
+            f"{cell:.3g} m must be above a 15th of the roughness, {rough / 15.0:.3g} m: Eq. (9) is zero "
+            f"below a 30th; a tenth is a good choice",
+        )
+    known = keys.bottom is not None and water.zero is not None and keys.bed == "moving"
+    falls = keys.drive == "slope" and case.motion.gravity > 0.0
+    for text in refuse(
+        depth=depth,
+        dz=cell,
+        z_low=(keys.bottom or 0.0) if known else 0.0,
+        z_bed=(water.zero or 0.0) if known else 0.0,
+        slope=slope_at_last(case) if falls else None,
+        tau_star=water.tau_star if case.grains.density > water.density else None,
+        u_star=water.u_star,
+        d=d,
+        rho_s=case.grains.density,
+        rho_w=water.density,
+        g=case.motion.gravity,
+    ):
+        key = "column.bottom" if "column begins" in text else "u_star" if water.u_star else "tau_star"
+        yield CaseError(f"water.{key}", None, text)
