@@ -7,7 +7,7 @@ import numpy as np
 
 from ryusa.build.layout import Layout, mask, unit
 from ryusa.laws import drag, motion
-from ryusa.model import ContactLaw, RollingLaw, Scene, State, Water
+from ryusa.model import Column, ContactLaw, RollingLaw, Scene, State, Water
 from ryusa.model.enums import EventRule, Profile
 from ryusa.model.scene import Floats
 
@@ -22,6 +22,7 @@ class Laws:
     a_3: float = math.pi / 6  # volume over d cubed [-]
     rolling: RollingLaw = field(default_factory=RollingLaw)
     water: Water = field(default_factory=Water)
+    column: Column | None = None  # where the profile is COLUMN
     g: float = 9.80665  # [m/s2]
     slope: float = 0.0  # [rad], down towards +x
     rotation: bool = True
@@ -74,6 +75,7 @@ def assemble(layout: Layout, laws: Laws) -> tuple[Scene, State]:
         rolling=laws.rolling,
         rotation=laws.rotation,
         water=laws.water,
+        column=laws.column,
         plane_case=laws.plane_case,
         period=layout.period,
         world_low=laws.low or low,

@@ -2,20 +2,39 @@
 
 import math
 from dataclasses import dataclass, replace
+from typing import Any
 
 from ryusa.build.assemble import Laws, assemble
 from ryusa.build.box import box
+from ryusa.build.column import column_of, zero_of
 from ryusa.build.drop import drop
 from ryusa.build.layout import Layout, Wall
 from ryusa.build.overlaps import refuse_overlaps
 from ryusa.build.packing import packing
 from ryusa.build.saltation import saltation
 from ryusa.build.table import table
+from ryusa.casefile.column import Column
 from ryusa.casefile.derive import events_of
 from ryusa.casefile.schema import Case
+from ryusa.casefile.water import hindrance_exponent
 from ryusa.errors import CaseError
 from ryusa.model import ContactLaw, RollingLaw, Scene, State, Water
-from ryusa.model.enums import Above, Arm, Cap, Damping, Drag, EventRule, Profile, Rolling, Slip, WaterTorque
+from ryusa.model.enums import (
+    Above,
+    Arm,
+    Buoyancy,
+    Cap,
+    Damping,
+    Drag,
+    EventRule,
+    Hindrance,
+    Lift,
+    Magnus,
+    Profile,
+    Rolling,
+    Slip,
+    WaterTorque,
+)
 
 BUILDERS = {"drop": drop, "saltation": saltation, "table": table, "packing": packing, "box": box}
 SLIPS = {"spring": Slip.SPRING, "spring-drop": Slip.SPRING_DROP, "total": Slip.TOTAL}
@@ -32,6 +51,7 @@ PROFILES = {
     "log smooth": Profile.LOG_SMOOTH,
     "uniform": Profile.UNIFORM,
     "still": Profile.STILL,
+    "column": Profile.COLUMN,
 }
 ABOVES = {"continue": Above.CONTINUE, "hold": Above.HOLD, "dry": Above.DRY}
 DRAGS = {
@@ -43,7 +63,24 @@ DRAGS = {
     "Ferguson-Church sphere": Drag.FERGUSON_CHURCH_SPHERE,
     "Ferguson-Church sand": Drag.FERGUSON_CHURCH_SAND,
 }
+_OF_A_COLUMN = ("buoyancy", "hindrance", "lift", "magnus")
 TORQUES = {"none": WaterTorque.NONE, "Stokes": WaterTorque.STOKES, "Dennis": WaterTorque.DENNIS}
+BUOYANCIES = {"weight": Buoyancy.WEIGHT, "stress": Buoyancy.STRESS, "pressure": Buoyancy.PRESSURE}
+HINDRANCES = {
+    "none": Hindrance.NONE,
+    "Richardson-Zaki": Hindrance.RICHARDSON_ZAKI,
+    "power": Hindrance.POWER,
+    "Wen-Yu": Hindrance.WEN_YU,
+    "Gidaspow": Hindrance.GIDASPOW,
+    "Di Felice": Hindrance.DI_FELICE,
+}
+LIFTS = {"none": Lift.NONE, "Wiberg-Smith": Lift.WIBERG_SMITH, "Saffman-Mei": Lift.SAFFMAN_MEI}
+MAGNUSES = {
+    "none": Magnus.NONE,
+    "Rubinow-Keller": Magnus.RUBINOW_KELLER,
+    "Loth": Magnus.LOTH,
+    "Oesterle-Dinh": Magnus.OESTERLE_DINH,
+}
 EVENTS = {"all": EventRule.ALL, "tracked": EventRule.TRACKED, "none": EventRule.NONE}
 
 
@@ -67,7 +104,8 @@ def build(case: Case) -> Built:
     layout = _with_planes(layout, case)
     refuse_overlaps(layout, "build.file" if case.build.kind == "table" else "build", case.motion.plane)
     _refuse_unknown_groups(layout, case)
-    scene, state = assemble(layout, laws_of(case, layout.z_zero))
+    laws = replace(laws_of(case, layout.z_zero), column=column_of(case, layout))
+    scene, state = assemble(layout, laws)
     return Built(scene, state, (*layout.notes, *notes_of(case)))
 
 
@@ -138,7 +176,7 @@ def water_of(case: Case, z_zero: float) -> Water:
         profile=PROFILES[water.profile],
         u_star=0.0 if math.isnan(found.u_star) else found.u_star,
         k_rough=found.k_rough,
-        z_zero=z_zero if water.zero is None else water.zero,
+        z_zero=zero_of(case, z_zero),
         u_uniform=water.speed or 0.0,
         depth=math.inf if water.depth is None else water.depth,
         above=ABOVES[water.above],
@@ -149,7 +187,22 @@ def water_of(case: Case, z_zero: float) -> Water:
         a_2=water.shape_area,
         c_m=water.added_mass,
         torque=TORQUES[water.torque],
+        **(column_laws_of(case) if water.profile == "column" else {}),
     )
+
+
+def column_laws_of(case: Case) -> dict[str, Any]:
+    """What only a column does to its grains, keys of `Water`."""
+    water = case.water
+    assert water is not None
+    return {
+        "buoyancy": BUOYANCIES[water.buoyancy],
+        "hindrance": HINDRANCES[water.hindrance],
+        "hindrance_exponent": hindrance_exponent(case),
+        "lift": LIFTS[water.lift],
+        "c_l": water.lift_coefficient,
+        "magnus": MAGNUSES[water.magnus],
+    }
 
 
 def notes_of(case: Case) -> tuple[str, ...]:
@@ -164,21 +217,38 @@ def notes_of(case: Case) -> tuple[str, ...]:
         if key not in contact.model_fields_set:
             notes.append(f"{meaning} {getattr(contact, key)} (contact.{key} not given)")
     if water is not None:
-        if water.roughness is None and water.profile == "log rough":
+        bed = (water.column or Column()).bed if water.profile == "column" else ""
+        if water.roughness is None and (water.profile == "log rough" or bed == "rough"):
             notes.append("roughness k_s of Eq. (9) = mean d (water.roughness not given)")
         if water.depth is None:
             notes.append("water without a surface (water.depth not given)")
         notes += [
             f"{key} {getattr(water, key)} (water.{key} not given)"
-            for key in ("drag", "viscosity", "above", "torque")
+            for key in ("drag", "viscosity", "above", "torque", *_OF_A_COLUMN)
             if key not in water.model_fields_set
             and not (key == "torque" and case.motion.rotation == "locked")
+            and not (key == "above" and bed)
+            and not (key in _OF_A_COLUMN and not bed)
         ]
+        if bed:
+            notes += _column_notes(case)
     if case.time.step is None and case.time.steps_per_contact is None:
         notes.append("50 steps in the shortest contact (time not given)")
     if case.record.events is None:
         notes.append(f"contacts recorded: {events_of(case)} (record.events not given)")
     return tuple(notes)
+
+
+def _column_notes(case: Case) -> list[str]:
+    keys = (case.water and case.water.column) or Column()
+    notes = [
+        f"{words} {getattr(keys, key)} (water.column.{key} not given)"
+        for key, words in (("bed", "bed of the water"), ("drive", "driver of the water"))
+        if key not in keys.model_fields_set
+    ]
+    if keys.mixing_length is None:
+        notes.append(f"mixing length {keys.mixing} (water.column.mixing_length not given)")
+    return notes
 
 
 def _with_planes(layout: Layout, case: Case) -> Layout:

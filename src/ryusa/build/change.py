@@ -12,14 +12,18 @@ from ryusa.model import Scene
 
 
 def change(case: Case, scene: Scene, entry: Change) -> Scene:
-    """Scene after one entry of the timeline: a group gone, gravity tilted, friction or rotation switched."""
+    """Scene after one entry of the timeline: a group gone, gravity tilted, friction or rotation switched.
+
+    A new slope drives a column of water, too.
+    """
     if entry.remove is not None:
         return _without(scene, entry.remove)
     if entry.slope is not None or entry.slope_angle is not None:
         angle = entry.slope_angle if entry.slope_angle is not None else math.atan(entry.slope or 0.0)
         tilted = gravity(case.motion.gravity, angle)
         tilted.flags.writeable = False
-        return replace(scene, gravity=tilted)
+        column = None if scene.column is None else replace(scene.column, g_x=float(tilted[0]))
+        return replace(scene, gravity=tilted, column=column)
     if entry.friction is not None or entry.friction_angle is not None:
         mu = entry.friction if entry.friction is not None else math.tan(entry.friction_angle or 0.0)
         return replace(scene, contact=replace(scene.contact, mu=mu))

@@ -1,0 +1,119 @@
+"""The column of water over the first grains: cells, boundaries, driver, turbulence."""
+
+import math
+
+import numpy as np
+
+from ryusa.build.layout import Layout
+from ryusa.casefile.column import CELL
+from ryusa.casefile.column import Column as Keys
+from ryusa.casefile.column_checks import SPARE
+from ryusa.casefile.schema import Case
+from ryusa.errors import CaseError
+from ryusa.model import Column
+from ryusa.model.column import Bed, Drive, Mixing, SideWalls, Surface
+
+BEDS = {"moving": Bed.MOVING, "rough": Bed.ROUGH, "smooth": Bed.SMOOTH}
+SURFACES = {"depth": Surface.DEPTH, "volume": Surface.VOLUME}
+DRIVES = {
+    "slope": Drive.GRAVITY,
+    "tau_star": Drive.TAU,
+    "pressure gradient": Drive.GRADIENT,
+    "discharge": Drive.DISCHARGE,
+}
+MIXINGS = {
+    "none": Mixing.LAMINAR,
+    "Prandtl": Mixing.PRANDTL,
+    "parabolic": Mixing.PARABOLIC,
+    "van Driest": Mixing.VAN_DRIEST,
+    "Li-Sawamoto": Mixing.LI_SAWAMOTO,
+}
+SIDES = {"Blasius": SideWalls.BLASIUS, "Karman-Prandtl": SideWalls.KARMAN_PRANDTL}
+MOST_CELLS = 100_000
+
+
+def zero_of(case: Case, z_zero: float) -> float:
+    """Height of the zero of the water [m]; `z_zero` is the builder's.
+
+    A fixed bed is the bottom of a column, and whichever of the two the case gives is both.
+    """
+    water = case.water
+    if water is None or water.zero is not None:
+        return z_zero if water is None or water.zero is None else water.zero
+    keys = water.column
+    if keys is not None and keys.bed != "moving" and keys.bottom is not None:
+        return keys.bottom
+    return z_zero
+
+
+def column_of(case: Case, layout: Layout) -> Column | None:
+    """Column of water of a case over its first grains; None for water that does not feel them.
+
+    Raises
+    ------
+    CaseError : the column cannot be: it begins above the bed, or asks for too many cells.
+    """
+    water, found = case.water, case.derived
+    if water is None or water.profile != "column":
+        return None
+    assert water.depth is not None
+    keys = water.column or Keys()
+    z_bed = zero_of(case, layout.z_zero)
+    dz = keys.cell or CELL * found.d
+    z_low = keys.bottom if keys.bottom is not None else bottom_of(layout)
+    if keys.bed != "moving":
+        z_low = z_bed
+    if z_low > z_bed:
+        allowed = f"the column begins at {z_low:g} m, above the bed at {z_bed:g} m (water.zero)"
+        raise CaseError("water.column.bottom", keys.bottom, allowed)
+    z_high = max(z_bed + SPARE * water.depth, float(np.max(layout.x[:, 2] + 0.5 * layout.d)))
+    n = math.ceil((z_high - z_low) / dz - 1e-9)
+    if n > MOST_CELLS:
+        raise CaseError("water.column.cell", keys.cell, f"asks for {n:,} cells; at most {MOST_CELLS:,}")
+    column = Column(
+        z_low=z_low,
+        dz=dz,
+        n=n,
+        depth=water.depth,
+        area=area_of(case, layout),
+        z_bed=z_bed,
+        rho_w=water.density,
+        nu=water.viscosity,
+        bed=BEDS[keys.bed],
+        k_rough=found.k_rough,
+        surface=SURFACES[keys.surface],
+        side=SideWalls.NONE if keys.side_walls is None else SIDES[keys.side_friction],
+        width=math.nan if keys.side_walls is None else keys.side_walls,
+        g_x=found.g * math.sin(found.slope),
+        drive=DRIVES[keys.drive],
+        gradient=keys.pressure_gradient or 0.0,
+        tau=water.density * found.u_star**2 if keys.drive == "tau_star" else math.nan,
+        discharge=math.nan if keys.discharge is None else keys.discharge,
+        mixing=MIXINGS[keys.mixing],
+        kappa=keys.kappa,
+        phi_max=keys.packed,
+        k_f=keys.pore_eddies,
+        d=found.d,
+        interval=keys.interval,
+    )
+    if faults := column.refuses():
+        raise CaseError("water.column", None, "; ".join(faults))
+    return column
+
+
+def bottom_of(layout: Layout) -> float:
+    """Lower edge of the lowest grain [m]; where no grain is fixed, the highest floor below the free ones."""
+    lowest = float(np.min(layout.x[:, 2] - 0.5 * layout.d))
+    if len(layout.x_fixed):
+        return min(lowest, float(np.min(layout.x_fixed[:, 2] - 0.5 * layout.d_fixed)))
+    floors = [wall.point[2] for wall in layout.walls if wall.normal[2] > 0.0 and not any(wall.normal[:2])]
+    below = [z for z in floors if z <= lowest + 1e-9 * layout.d_max]
+    return min(max(below), lowest) if below else lowest
+
+
+def area_of(case: Case, layout: Layout) -> float:
+    """Bed under the column [m2]: in a plane scene a slab for every lane."""
+    if case.motion.plane:
+        lanes = len(np.unique(layout.x[:, 1]))
+        return layout.period[0] * (case.motion.slab_width or case.derived.d) * lanes
+    return layout.period[0] * layout.period[1]
