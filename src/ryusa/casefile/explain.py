@@ -1,19 +1,19 @@
 """A case explained back: every derived number with its unit and where it comes from."""
 
 import math
-from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 
 from ryusa.casefile import estimate
 from ryusa.casefile.builders import Box, Drop, Packing
-from ryusa.casefile.derive import MANY, Derived, Pair, events_of
+from ryusa.casefile.column_rows import column_rows, origin_of_u_star
+from ryusa.casefile.derive import MANY, Derived, Pair, events_of, slope_at_last
+from ryusa.casefile.rows import Row, row_of
 from ryusa.casefile.schema import Case, StiffnessForOverlap, StiffnessForTime, Water
 from ryusa.casefile.table import table_of
 from ryusa.casefile.water import terminal_velocity, water_speed
-from ryusa.laws import collision, drag, torque
-from ryusa.units import format_quantity
+from ryusa.laws import collision, drag, torque, water
 
 BAND = (1.0e-3, 1.0e-2)  # overlap over d of stable and free motion: the paper, fig11
 SKIMMING = 0.3  # u t/d beyond which contacts end by geometry, not by Eq. (8)
@@ -21,19 +21,6 @@ FAR_APART = 1.5  # ratio of tangential to normal half period from which e_s is n
 FEWEST_STEPS = 10.0
 CLOSE = 0.5  # part of the largest stable step beyond which a step is too close to it
 ROUND = 3600.0  # [s]
-
-
-@dataclass(frozen=True)
-class Row:
-    """One line of the explanation."""
-
-    section: str
-    name: str
-    value: float | int | str  # SI, or a word
-    unit: str  # of the value; "" for words and counts
-    shown: str  # value and unit as a person writes them
-    how: str  # where it comes from
-    flag: Literal["", "note", "warning"] = ""
 
 
 def explain(case: Case) -> list[Row]:
@@ -55,46 +42,29 @@ def warnings(case: Case) -> list[str]:
     return [f"{row.name} = {row.shown}: {row.how}" for row in explain(case) if row.flag == "warning"]
 
 
-def _row(
-    section: str, name: str, value: float, unit: str, how: str, flag: Literal["", "note", "warning"] = ""
-) -> Row:
-    si = _SHOWN.get(unit, (unit, unit))
-    return Row(section, name, value, si[0], format_quantity(value, si[1]), how, flag)
-
-
-_SHOWN = {  # unit asked for: (SI unit of the value, unit shown)
-    "cm": ("m", "cm"),
-    "N/cm": ("N/m", "N/cm"),
-    "N s/cm": ("N s/m", "N s/cm"),
-    "deg": ("rad", "deg"),
-    "": ("", ""),
-    "-": ("", ""),
-}
-
-
 def _grain(case: Case, found: Derived) -> list[Row]:
     wet = case.water
     at = "mean diameter" if found.d_max > found.d_min else "diameter"
-    rows = [_row("grains", at, found.d, "cm", "grains.diameter")]
+    rows = [row_of("grains", at, found.d, "cm", "grains.diameter")]
     if found.d_max > found.d_min:
         rows += [
-            _row("grains", "smallest diameter", found.d_min, "cm", "lower end of the sizes"),
-            _row("grains", "largest diameter", found.d_max, "cm", "upper end of the sizes"),
+            row_of("grains", "smallest diameter", found.d_min, "cm", "lower end of the sizes"),
+            row_of("grains", "largest diameter", found.d_max, "cm", "upper end of the sizes"),
         ]
     rows += [
         Row("grains", "free grains", found.n_grain, "", str(found.n_grain), f"builder '{case.build.kind}'"),
         Row("grains", "fixed grains", found.n_fixed, "", str(found.n_fixed), f"builder '{case.build.kind}'"),
-        _row("grains", "mass m", found.m, "kg", "rho_s A_3 d^3: grains weigh as spheres, in a plane too"),
+        row_of("grains", "mass m", found.m, "kg", "rho_s A_3 d^3: grains weigh as spheres, in a plane too"),
     ]
     if wet is not None:
         added = f"rho_w C_M A_3 d^3, C_M = {wet.added_mass:g}; in the inertia"
         weight = "(rho_s - rho_w) A_3 d^3: what gravity sees"
         rows += [
-            _row("grains", "added mass", found.m_added, "kg", added),
-            _row("grains", "mass under water", found.m_weight, "kg", weight),
+            row_of("grains", "added mass", found.m_added, "kg", added),
+            row_of("grains", "mass under water", found.m_weight, "kg", weight),
         ]
     inertia = "m d^2/10, never with added mass"
-    return [*rows, _row("grains", "moment of inertia", found.inertia, "kg m2", inertia)]
+    return [*rows, row_of("grains", "moment of inertia", found.inertia, "kg m2", inertia)]
 
 
 def _contact(case: Case, found: Derived) -> list[Row]:
@@ -112,9 +82,9 @@ def _contact(case: Case, found: Derived) -> list[Row]:
     )
     angle = math.degrees(math.atan(found.mu))
     return [
-        _row("contact", "k_n", found.k_n, "N/cm", how),
-        _row("contact", "k_s", found.k_s, "N/cm", shear),
-        _row("contact", "friction mu", found.mu, "-", f"tan(phi), phi = {angle:.3g} deg"),
+        row_of("contact", "k_n", found.k_n, "N/cm", how),
+        row_of("contact", "k_s", found.k_s, "N/cm", shear),
+        row_of("contact", "friction mu", found.mu, "-", f"tan(phi), phi = {angle:.3g} deg"),
     ]
 
 
@@ -130,15 +100,15 @@ def _damping(case: Case, found: Derived) -> list[Row]:
         )
         differ = not asked and abs(found.fixed.e - found.free.e) > 0.02
         rows += [
-            _row("damping", f"eta_n {name}", pair.eta_n, "N s/cm", eta),
-            _row(
+            row_of("damping", f"eta_n {name}", pair.eta_n, "N s/cm", eta),
+            row_of(
                 "damping",
                 f"eta_s {name}",
                 pair.eta_s,
                 "N s/cm",
                 "2 zeta_s sqrt(k_s m_t)" if asked else "a constant",
             ),
-            _row("damping", f"restitution e {name}", pair.e, "-", e, "note" if differ else ""),
+            row_of("damping", f"restitution e {name}", pair.e, "-", e, "note" if differ else ""),
         ]
     rows += _shear(case, "on fixed", found.fixed)
     if found.meet:
@@ -157,15 +127,15 @@ def _shear(case: Case, name: str, pair: Pair) -> list[Row]:
     if not 1.0 / FAR_APART <= ratio <= FAR_APART:
         how += "; a tangential restitution is not defined there"
         flag = "note"
-    return [_row("damping", f"tangential half period {name}", pair.t_shear, "s", how, flag)]
+    return [row_of("damping", f"tangential half period {name}", pair.t_shear, "s", how, flag)]
 
 
 def _step(case: Case, found: Derived) -> list[Row]:
     rows: list[Row] = []
     for name, pair in (("on fixed", found.fixed), ("between grains", found.free)):
         rows += [
-            _row("time", f"collision time {name}", pair.t_undamped, "s", "Eq. (8), added mass, no dashpot"),
-            _row("time", f"contact time {name}", pair.t_col, "s", f"damped, {case.contact.parting}"),
+            row_of("time", f"collision time {name}", pair.t_undamped, "s", "Eq. (8), added mass, no dashpot"),
+            row_of("time", f"contact time {name}", pair.t_col, "s", f"damped, {case.contact.parting}"),
         ]
     who = "two free grains" if found.meet else "a grain on a fixed one"
     size = "smallest" if found.d_max > found.d_min else "such"
@@ -180,10 +150,10 @@ def _step(case: Case, found: Derived) -> list[Row]:
     limit += ", and grains in several contacts need less" if close else ""
     return [
         *rows,
-        _row("time", "shortest contact", found.shortest, "s", f"{who}, {size} grains"),
-        _row("time", "largest stable step", found.step_limit, "s", limit, "warning" if close else ""),
-        _row("time", "dt", found.dt, "s", given),
-        _row(
+        row_of("time", "shortest contact", found.shortest, "s", f"{who}, {size} grains"),
+        row_of("time", "largest stable step", found.step_limit, "s", limit, "warning" if close else ""),
+        row_of("time", "dt", found.dt, "s", given),
+        row_of(
             "time",
             "steps per contact",
             found.steps_per_contact,
@@ -220,7 +190,7 @@ def expected_speed(case: Case) -> tuple[float, str]:
 
 def _impact(case: Case, found: Derived) -> list[Row]:
     speed, origin = expected_speed(case)
-    rows = [_row("impact", "expected impact speed", speed, "m/s", origin)]
+    rows = [row_of("impact", "expected impact speed", speed, "m/s", origin)]
     overlap = collision.overlap_max(speed, found.fixed.m, found.k_n, found.fixed.zeta_n) / found.d
     low, high = BAND
     flag: Literal["", "note", "warning"] = "warning" if overlap > high else "note" if overlap < low else ""
@@ -233,20 +203,20 @@ def _impact(case: Case, found: Derived) -> list[Row]:
     )
     advice = "; stiffen k_n" if overlap > high else "; k_n could be softer" if overlap < low else ""
     how = f"on a fixed grain: {verdict} 0.001-0.01{advice}"
-    rows.append(_row("impact", "largest overlap/d", overlap, "-", how, flag))
+    rows.append(row_of("impact", "largest overlap/d", overlap, "-", how, flag))
     if isinstance(case.build, Packing | Box):
         weight = case.build.layers * found.m_weight * found.g * math.cos(found.slope)
         rest = weight / (found.k_n * found.d)
         deep: Literal["", "warning"] = "warning" if rest > high else ""
         how = f"{case.build.layers} layers stacked in a column"
-        rows.append(_row("impact", "overlap/d at rest", rest, "-", how, deep))
+        rows.append(row_of("impact", "overlap/d at rest", rest, "-", how, deep))
     along, where = _speed_along(case, found)
     if along > 0.0:
         travel = along * found.fixed.t_col / found.d
         skims = travel > SKIMMING
         how = f"travel within one contact at {along:.3g} m/s ({where})"
         how += f"; beyond {SKIMMING:g} contacts end by geometry, not by Eq. (8)" if skims else ""
-        rows.append(_row("impact", "u t/d", travel, "-", how, "warning" if skims else ""))
+        rows.append(row_of("impact", "u t/d", travel, "-", how, "warning" if skims else ""))
     return rows
 
 
@@ -263,23 +233,23 @@ def _water(case: Case, found: Derived) -> list[Row]:
     if wet is None:
         return []
     rows: list[Row] = []
-    if not math.isnan(found.u_star):
-        how = "sqrt(tau_star (rho_s/rho_w - 1) g d)" if wet.tau_star is not None else "water.u_star"
-        rows.append(_row("water", "u_star", found.u_star, "m/s", how))
+    if found.u_star > 0.0:
+        rows.append(row_of("water", "u_star", found.u_star, "m/s", origin_of_u_star(case)))
         if not math.isnan(found.tau_star):
-            rows.append(_row("water", "tau_star", found.tau_star, "-", "u_star^2/((rho_s/rho_w - 1) g d)"))
-        if wet.depth is not None and found.slope > 0.0:
-            implied = math.sqrt(found.g * wet.depth * math.sin(found.slope))
+            rows.append(row_of("water", "tau_star", found.tau_star, "-", "u_star^2/((rho_s/rho_w - 1) g d)"))
+        if wet.depth is not None and (tilt := slope_at_last(case)) > 0.0:
+            implied = water.u_star_from_slope(wet.depth, tilt, found.g)
             apart = abs(implied / found.u_star - 1.0) > 0.1
             how, flag = "sqrt(g h sin(slope)), to compare", "note" if apart else ""
-            rows.append(_row("water", "u_star of slope and depth", implied, "m/s", how, flag))
+            if implied != found.u_star:
+                rows.append(row_of("water", "u_star of slope and depth", implied, "m/s", how, flag))
         rough = found.u_star * found.k_rough / wet.viscosity
-        rows.append(_row("water", "roughness Re", rough, "-", "u_star k_rough/nu; rough above 70"))
+        rows.append(row_of("water", "roughness Re", rough, "-", "u_star k_rough/nu; rough above 70"))
     settling = terminal_velocity(case)
     if math.isfinite(settling):
         rows += [
-            _row("water", "settling velocity", settling, "m/s", f"drag {wet.drag}"),
-            _row(
+            row_of("water", "settling velocity", settling, "m/s", f"drag {wet.drag}"),
+            row_of(
                 "water",
                 "grain Re",
                 drag.reynolds(settling, found.d, wet.viscosity),
@@ -287,7 +257,7 @@ def _water(case: Case, found: Derived) -> list[Row]:
                 "settling velocity times d/nu",
             ),
         ]
-    return [*rows, *_spin(case, found, wet)]
+    return [*rows, *column_rows(case), *_spin(case, found, wet)]
 
 
 def _spin(case: Case, found: Derived, wet: Water) -> list[Row]:
@@ -304,7 +274,7 @@ def _spin(case: Case, found: Derived, wet: Water) -> list[Row]:
     how = f"d^2 spin/nu of the first spin, {spin:.4g} rad/s"
     how += "; torque Dennis is fitted up to 4000 only" if beyond else ""
     re_r = torque.reynolds_spin(spin, d, wet.viscosity)
-    return [_row("water", "rotational Re", re_r, "-", how, "warning" if beyond else "")]
+    return [row_of("water", "rotational Re", re_r, "-", how, "warning" if beyond else "")]
 
 
 def _cost(case: Case) -> list[Row]:
@@ -314,7 +284,7 @@ def _cost(case: Case) -> list[Row]:
     memory, each = estimate.memory_needed(case), estimate.memory_per_grain(case)
     wall = f"{seconds / ROUND:.3g} h" if seconds > ROUND else f"{seconds:.3g} s"
     return [
-        _row("cost", "simulated time", simulated, "s", origin),
+        row_of("cost", "simulated time", simulated, "s", origin),
         Row("cost", "steps", steps, "", f"{steps:,}", "simulated time over dt"),
         Row("cost", "frames", frames, "", f"{frames:,}", f"one every {case.record.frames:g} s"),
         Row("cost", "disk for frames", disk, "B", human(disk), "positions, velocities and spins"),
