@@ -1,16 +1,19 @@
 """A case's column of water, as the scene holds it."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from ryusa.build import build, change
-from ryusa.casefile import Case, Change, read_text
+from ryusa.casefile import Case, Change, read, read_text
+from ryusa.casefile.water import terminal_velocity
 from ryusa.errors import CaseError
 from ryusa.model import Column
 from ryusa.model.column import Bed, Drive, Mixing, SideWalls, Surface
 from ryusa.model.enums import Buoyancy, Hindrance, Lift, Magnus, Profile
+from ryusa.running.runner import run
 
 D, G = 0.002, 9.80665
 BASE = """
@@ -36,6 +39,13 @@ time = "1 s"
 """
 FLAT = "{ kind = 'packing', columns = 20, layers = 10, bed = 'flat' }"
 FLOOR = "{ kind = 'packing', columns = 20, layers = 10, bed = 'plane' }"
+
+
+@pytest.fixture
+def shipped() -> Path:
+    import ryusa.cases as _cases
+
+    return Path(next(iter(_cases.__path__)))
 
 
 def case(**keys: str) -> Case:
@@ -162,3 +172,25 @@ def test_the_notes_say_what_a_column_leaves_open() -> None:
     assert "water.above" not in notes
     one_way = " ".join(build(read_text(BASE.replace('"column"', '"still"'))).notes)
     assert "water.buoyancy" not in one_way
+
+
+@pytest.mark.parametrize("name", ["settling_column", "movable_bed"])
+def test_the_shipped_columns_hold_their_grains(name: str, shipped: Path) -> None:
+    built = build(read(shipped / f"{name}.toml"))
+    found = built.scene.column
+    assert found is not None
+    assert found.refuses() == ()
+    assert (built.state.x[:, 2] - built.scene.d / 2 >= found.z_low - 1e-3).all()
+    assert (built.state.x[:, 2] + built.scene.d / 2 <= found.z_high).all()
+
+
+def test_the_shipped_suspension_settles_as_richardson_and_zaki_say(shipped: Path, tmp_path: Path) -> None:
+    small = {"build.columns": "4", "build.rows": "4", "build.layers": "20", "water.depth": "2 cm"}
+    one = read(shipped / "settling_column.toml", {**small, "stop.time": "0.12 s", "record.frames": "20 ms"})
+    results = run(one, tmp_path / "run", progress=False)
+    scene, frames = build(one).scene, results.frames
+    amid = slice(16 * 8, 16 * 18)  # neither at the floor nor at the clear water
+    fallen = np.asarray(frames[3].x)[amid, 2] - np.asarray(frames[6].x)[amid, 2]
+    phi = 0.5236 / 1.8**3
+    expected = terminal_velocity(one) * (1.0 - phi) ** scene.water.hindrance_exponent
+    assert fallen.mean() / 0.06 == pytest.approx(expected, rel=0.02)

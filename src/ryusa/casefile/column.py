@@ -36,7 +36,8 @@ class Column(BaseModel):
     """Thickness of a cell; a tenth of the mean diameter when not given."""
     bottom: Length | None = None
     """Height of the lowest face; over a moving bed the lower edge of the lowest grain or the floor when not
-    given, over a fixed bed the zero of the water."""
+    given, over a fixed bed the zero of the water. Fixed grains are no part of the column: under a moving bed
+    their crest is the better bottom, or eddies grow among them."""
     bed: Literal["moving", "rough", "smooth"] = "moving"
     """What the water meets at the bottom: grains whose drag stops it, the rough bed of Eq. (9), or a smooth
     wall."""
