@@ -60,7 +60,7 @@ def column_of(case: Case, layout: Layout) -> Column | None:
     keys = water.column or Keys()
     z_bed = zero_of(case, layout.z_zero)
     dz = keys.cell or CELL * found.d
-    z_low = keys.bottom if keys.bottom is not None else bottom_of(layout)
+    z_low = keys.bottom if keys.bottom is not None else min(bottom_of(layout), z_bed)
     if keys.bed != "moving":
         z_low = z_bed
     if z_low > z_bed:
