@@ -88,14 +88,6 @@ def test_a_column_that_cannot_see_its_bed_is_warned_of(case: CaseOf) -> None:
     assert not any("fixed grains" in text for text in warnings(case(water=rough, **keys)))
 
 
-def test_fixed_grains_inside_the_column_are_warned_of(case: CaseOf) -> None:
-    assert flowing(case)["bed"].flag == "warning"
-    for keys in ("column = { bottom = '0.3 cm' }", "column = { mixing_length = 'none' }"):
-        assert "bed" not in flowing(case, WATER.replace(" }", f", {keys} }}"))
-    assert "bed" not in flowing(case, build=PACKING.replace(" }", ", bed = 'plane' }"))
-    assert "bed" not in flowing(case, **{"motion.slope": "0"})
-
-
 @pytest.mark.parametrize("drag", ["none", "24/Re+0.4"])
 @pytest.mark.parametrize("density", ["1000 kg/m3", "3000 kg/m3", "2650 kg/m3"])
 def test_grains_that_float_or_feel_nothing_are_explained(case: CaseOf, drag: str, density: str) -> None:

@@ -135,3 +135,14 @@ def test_a_neutral_grain_at_the_speed_of_the_water_stays_with_it(form, stays):
     ]
     free = G * math.sin(0.05) * 40 * 20 * made[0].dt
     assert bool(slips[-1] < 0.02 * free) is stays
+
+
+def test_fixed_grains_fill_the_cells_that_they_stand_in():
+    made, area = cloud(Buoyancy.STRESS, n=6)
+    count = 12
+    bed = np.column_stack([(np.arange(count) + 0.5) * 2.0 * D, np.zeros(count), np.full(count, 0.5 * D)])
+    fixed = replace(
+        made[0], x_fixed=bed, d_fixed=np.full(count, D), fixed_active=np.ones(count, dtype=np.bool_)
+    )
+    coupling = Coupling.begin(fixed, column_of(area), 20, made[1].x)
+    assert coupling.phi[:5].sum() * 0.2 * D * area == pytest.approx(count * math.pi / 6 * D**3)

@@ -89,23 +89,10 @@ def column_rows(case: Case) -> list[Row]:
     time = keys.interval * found.dt
     how = f"{keys.interval} steps between two exchanges, fewer where drag is stiff"
     rows.append(row_of("water", "coupling interval", time, "s", how))
-    if keys.bed == "moving" and not still:
-        rows += _unseen(case, keys)
+    if keys.bed == "moving" and not still and isinstance(case.build, Saltation):
+        how = "no drag of fixed grains slows the water: take water.column.bed = 'rough' over them"
+        rows.append(Row("water", "bed", keys.bed, "", keys.bed, how, "warning"))
     return rows
-
-
-def _unseen(case: Case, keys: Column) -> list[Row]:
-    """Fixed grains are no part of the column: eddies grow among them as in open water."""
-    if isinstance(case.build, Saltation):
-        how = "the column does not see fixed grains: take water.column.bed = 'rough' over them"
-    elif case.derived.n_fixed and keys.bottom is None and keys.mixing == "Li-Sawamoto":
-        how = (
-            "the column does not see fixed grains: eddies that grow among them stir the water above, and it "
-        )
-        how += "flows too slowly; let water.column.bottom be the crest of the fixed grains"
-    else:
-        return []
-    return [Row("water", "bed", keys.bed, "", keys.bed, how, "warning")]
 
 
 def _motion(case: Case, keys: Column) -> list[Row]:

@@ -23,7 +23,7 @@ class WaterFrames:
     t : times of the frames [s], shape (n_frame,).
     z, faces : heights of the middles and the faces of the cells [m], shapes (n,) and (n + 1,).
     u, w : speed along the bed and upwards [m/s].
-    phi : concentration of free grains [-].
+    phi : concentration of grains, fixed ones included [-].
     content : water in a cell per area of bed [m].
     tau : shear stress of the water at the faces [Pa]; the bed's is the first.
     nu_t : eddy viscosity at the faces [m2/s].

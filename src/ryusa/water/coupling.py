@@ -16,7 +16,7 @@ from ryusa.model.enums import Buoyancy
 from ryusa.model.immersed import A_X, DRAG, EXTRA_X, EXTRA_Z, N_SEEN, PHI, SHARE, SHEAR, U, W
 from ryusa.model.scene import Floats
 from ryusa.water.drive import discharge
-from ryusa.water.exchange import Cells, Slices, carried, slices, to_cells, to_grains
+from ryusa.water.exchange import Cells, Slices, carried, concentration, slices, to_cells, to_grains
 from ryusa.water.solve import advance
 
 PACKED = 0.99  # concentration beyond which a cell holds no water to speak of
@@ -34,7 +34,7 @@ class Coupling:
     longest : steps of the engine in an interval, at most.
     steps : steps in the interval under way; 1 in the first, before any drag is known.
     state : the water now.
-    phi : concentration in the cells now [-], shape (n,).
+    phi : concentration of grains, fixed ones included, in the cells now [-], shape (n,).
     budget : momentum of the water over the last interval; None before the first.
     seen : what the grains were told last, columns of `model.immersed`.
     """
@@ -50,6 +50,7 @@ class Coupling:
     exchanges: int
     worst: float  # largest residual of the water's momentum over its largest term [-]
     _slices: Slices
+    _bed: Floats  # concentration of fixed grains [-]
     _volume: Floats  # of each grain, A_3 d**3 [m3]
     _force_z: Floats  # of the water on grains along z, by volume of cells [N/m3]
 
@@ -69,11 +70,13 @@ class Coupling:
         cells = Cells(column.z_low, column.dz, column.n, column.area)
         cut = slices(x[:, 2], scene.d, cells)
         solid = (scene.m - scene.m_weight) / scene.water.rho_w
-        phi = _phi(cut, solid)
+        standing = scene.fixed_active
+        bed = concentration(slices(scene.x_fixed[standing, 2], scene.d_fixed[standing], cells))
+        phi = _phi(cut, solid) + bed
         now = WaterState.at_rest(column, phi) if state is None else state
         coupling = Coupling(
-            scene, column, longest, 1, now, phi, None, np.zeros((scene.n_grain, N_SEEN)), 0, 0.0, cut, solid,
-            np.zeros(column.n),
+            scene, column, longest, 1, now, phi, None, np.zeros((scene.n_grain, N_SEEN)), 0, 0.0,
+            cut, bed, solid, np.zeros(column.n),
         )  # fmt: skip
         coupling.seen = coupling._told()
         return coupling
@@ -93,7 +96,7 @@ class Coupling:
         dt = self.steps * self.scene.dt
         force = self.force(taken, dt)
         self._slices = slices(x[:, 2], self.scene.d, self._slices.cells, again=self._slices)
-        self.phi = _phi(self._slices, self._volume)
+        self.phi = _phi(self._slices, self._volume) + self._bed
         phi_w = carried(self._slices, v[:, 2] * self._volume / self._slices.whole)
         self.state, self.budget = advance(self.column, self.state, self.phi, force, dt, phi_w=phi_w)
         self.exchanges, self.worst = self.exchanges + 1, max(self.worst, self.budget.relative)
