@@ -160,6 +160,16 @@ def test_fig16_fails_if_one_of_its_three_parts_does(name, value):
     assert words(fig16, flow_at(4.0), flow_at(4.0, **{**JAGGED, name: value}))["fig16"] is Word.NOT
 
 
+def test_one_run_whose_grains_hardly_advance_does_not_outweigh_the_others():
+    def soft(advance):
+        return Pair(flow(4.0, advance=advance), flow(4.0, advance=1.0))
+
+    assert fig16._ratio([soft(0.001), soft(2.0), soft(1.999)], "advance", ALL) == pytest.approx(0.75)
+    nothing = Pair(flow(4.0, advance=math.nan), flow(4.0))
+    assert fig16._ratio([nothing, soft(2.0), soft(2.0)], "advance", ALL) == pytest.approx(0.5)
+    assert math.isnan(fig16._ratio([nothing, nothing, soft(2.0)], "advance", ALL))
+
+
 def test_fig16_fails_where_one_of_the_two_only_creeps():
     assert words(fig16, flow_at(4.0), flow_at(0.05, **JAGGED))["fig16"] is Word.NOT
 

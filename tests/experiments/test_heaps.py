@@ -83,6 +83,13 @@ def test_more_heaps_are_made_where_a_verdict_hangs_on_them():
     assert heaps(QUICK, "locked", base) == 1
 
 
+def test_the_heap_shown_is_a_typical_one():
+    slopes = [30.0, 47.0, 31.0, 35.0, math.nan]
+    assert math.degrees(fig19._typical([heap(one) for one in slopes]).slope) == pytest.approx(35.0)
+    walls = [heap(math.nan), heap(math.nan), heap(33.0)]
+    assert fig19._typical(walls) is walls[0]
+
+
 def test_some_heaps_that_stand_leave_it_undecided():
     slope, decided, note = _heap.slope_interval([heap(33.0), heap(math.nan), heap(33.0)], None)
     assert math.isnan(slope.value)

@@ -156,7 +156,9 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         trials = printed if chosen[MODEL] == PRINTED else others
         broken = [one for one in group if isinstance(one, Broken)]
         if broken:
-            note = f"breaks down in {len(broken)} of {len(group)} runs: {broken[0].message.partition('.')[0]}"
+            note = (
+                f"breaks down in {len(broken)} of {len(group)} runs: {broken[0].message.partition('. ')[0]}"
+            )
             none = Interval(math.nan, math.nan, math.nan, "deg", len(group), "no run to its end")
             trials += [Trial(part, chosen, none, GRAVEL, False, note) for part in ("final slope", "standing")]
             continue

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from ryusa import figures
 from ryusa.experiments import _avalanche
-from ryusa.experiments._avalanche import ALL, BETWEEN, FIRST, SHIPPED, SOFT, STIFF, Pair, each
+from ryusa.experiments._avalanche import ALL, BETWEEN, FIRST, SHIPPED, SOFT, STIFF, Pair, together
 from ryusa.experiments._experiment import Found, Plan
 from ryusa.experiments._verdict import Band, Finding, Trial, short
 
@@ -42,10 +42,8 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         replace(one, choices={**one.choices, GRAINS: grains})
         for grains in (BETWEEN, ALL)
         for part, (name, band) in PARTS.items()
-        for one in map(
-            _without,
-            _avalanche.trials(found, plan, part, each(partial(_ratio, name=name, grains=grains)), band),
-        )
+        for ratio in [together(partial(_ratio, name=name, grains=grains))]
+        for one in map(_without, _avalanche.trials(found, plan, part, ratio, band))
     ]
     tried += [
         replace(one, choices={**one.choices, GRAINS: grains})
@@ -70,7 +68,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
 
     shape = "; ".join(
         f"{_avalanche.label(one)}, {window}: "
-        f"{short(_avalanche.mean(found, plan, one, window, each(_per_metre)))}"
+        f"{short(_avalanche.mean(found, plan, one, window, together(_per_metre)))}"
         for one, window in _avalanche.sets(plan)
         if all(pair.kind != "creeps" for pair in _avalanche.pairs(found, plan, one, window))
     )
@@ -94,10 +92,15 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     )
 
 
-def _ratio(pair: Pair, name: str, grains: str) -> float:
-    """Stiff over soft; nan where there is nothing to compare."""
-    soft, stiff = (getattr(one.ways[grains], name) for one in (pair.soft, pair.stiff))
-    return stiff / soft if soft != 0.0 else math.nan
+def _ratio(found: Sequence[Pair], name: str, grains: str) -> float:
+    """Mean of the stiff runs over that of the soft ones; nan where most pairs have nothing to compare.
+
+    Not the mean of their ratios: one soft run whose grains hardly advance would outweigh all others.
+    """
+    both = [[getattr(one.ways[grains], name) for one in (pair.soft, pair.stiff)] for pair in found]
+    kept = [pair for pair in both if all(map(math.isfinite, pair))]
+    soft, stiff = np.mean(kept, axis=0) if 2 * len(kept) > len(both) else (math.nan, math.nan)
+    return float(stiff / soft) if soft != 0.0 else math.nan
 
 
 def _mean(values: Sequence[float]) -> float:
@@ -106,9 +109,9 @@ def _mean(values: Sequence[float]) -> float:
     return float(np.mean(kept)) if kept else math.nan
 
 
-def _per_metre(pair: Pair) -> float:
+def _per_metre(found: Sequence[Pair]) -> float:
     """Turns per way of all grains, stiff over soft [-]."""
-    return _ratio(pair, "reversals", ALL) / _ratio(pair, "advance", ALL)
+    return _ratio(found, "reversals", ALL) / _ratio(found, "advance", ALL)
 
 
 def _without(one: Trial) -> Trial:
