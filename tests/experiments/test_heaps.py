@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from ryusa.errors import GrainLost, OverlapTooLarge
+from ryusa.errors import GrainLost, ListUnsafe, OverlapTooLarge
 from ryusa.experiments import Level, Plan, Word, _heap, eq13, fig19
 
 QUICK = Plan(Level.QUICK, (1,))
@@ -137,6 +137,7 @@ def test_the_form_that_gives_the_slope_of_gravel_is_named():
 def test_only_a_law_that_makes_energy_is_an_answer_when_a_run_breaks_down():
     how = {"grain": 1, "step": 2, "t": 0.1, "hint": "Use"}
     assert "0.52" in eq13.failed(OverlapTooLarge("overlap is 0.52", **how)).message
+    assert "100 m/s" in eq13.failed(ListUnsafe("a grain moves 0.26 diameters (100 m/s)", **how)).message
     assert eq13.failed(GrainLost("grain left the world", **how)) is None
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from ryusa.errors import NotANumber, OverlapTooLarge, RunError
+from ryusa.errors import ListUnsafe, NotANumber, OverlapTooLarge, RunError
 from ryusa.experiments import _heap, _saltation
 from ryusa.experiments._experiment import PHI, RATIO, SLIP, Found, Level, Plan, Variant
 from ryusa.experiments._verdict import Band, Finding, Interval, Trial, over_seeds, pool
@@ -141,8 +141,8 @@ def measure(results: Results, one: Variant) -> _heap.Heap | float:
 
 
 def failed(error: RunError) -> Broken | None:
-    """A law that makes energy breaks the run down, and that is an answer; a lost grain is none."""
-    return Broken(str(error)) if isinstance(error, OverlapTooLarge | NotANumber) else None
+    """A law that makes energy breaks the run down or throws a grain, an answer; a lost grain is none."""
+    return Broken(str(error)) if isinstance(error, OverlapTooLarge | NotANumber | ListUnsafe) else None
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
