@@ -36,9 +36,10 @@ def length_parabolic(z: float, depth: float, kappa: float) -> float:
 
     Notes
     -----
-    Source: Nezu & Nakagawa 1993, Turbulence in Open-Channel Flows; also the free-surface option of YADE's
-    HydroForceEngine (Maurin et al. 2015). Under a stress that falls linearly to the surface it gives the eddy
-    viscosity kappa u_star z (1 - z/depth) and the log law over the whole depth.
+    Source: the free-surface option of YADE's HydroForceEngine (Maurin et al. 2015), there after Nezu &
+    Nakagawa 1993, Turbulence in Open-Channel Flows, which was not opened. Under a stress that falls linearly
+    to the surface it gives the eddy viscosity kappa u_star z (1 - z/depth) and the log law over the whole
+    depth.
 
     Examples
     --------
@@ -89,7 +90,8 @@ def length_growth_li_sawamoto(phi: float, phi_max: float, dz: float, kappa: floa
     Notes
     -----
     Source: Li & Sawamoto 1995, Coastal Eng. Japan 38, as used by Revil-Baudard & Chauchat 2013 and by Maurin
-    et al. 2015: the length is the sum over all layers below. In clear water it becomes kappa z.
+    et al. 2015; read in YADE's code, the articles were not opened. The length is the sum over all layers
+    below. In clear water it becomes kappa z.
 
     Examples
     --------
@@ -138,7 +140,7 @@ def eddy_viscosity(length: float, shear: float, eps: float) -> float:
     Notes
     -----
     Source: Prandtl 1925 for clear water; the factor eps as in Revil-Baudard & Chauchat 2013 and Maurin et al.
-    2015.
+    2015, read in YADE's code.
 
     Examples
     --------
