@@ -9,6 +9,7 @@ from PIL import Image, ImageChops
 
 from ryusa.errors import ResultsError
 from ryusa.experiments import Level, Plan, Word
+from ryusa.paper import CLAIMS
 from ryusa.report import page, write
 
 KEYS = {
@@ -154,6 +155,16 @@ def test_a_page_without_intervals_says_so_at_its_head(every_word, plan, said):
     write(ledger)
     reader, _ = read(ledger)
     assert (said or "Indicative") in reader.text if said else "Indicative" not in reader.text
+
+
+def test_a_page_of_some_claims_says_that_it_is_a_part(every_word):
+    write(every_word)
+    plain = json.loads((every_word.folder / "ledger.json").read_text(encoding="utf-8"))
+    n = len(plain["claims"])
+    assert n < len(CLAIMS)
+    assert f"A part, {n} of the {len(CLAIMS)} claims, of" in read(every_word)[0].text
+    whole = {**plain, "claims": [{**plain["claims"][0], "id": one} for one in CLAIMS]}
+    assert "Every figure and claim of" in page.render(whole, every_word.tables, every_word.folder)
 
 
 def test_an_empty_ledger_is_a_page_too(every_word):

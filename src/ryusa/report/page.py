@@ -12,6 +12,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from PIL import Image
 
 from ryusa.experiments import Word, code_in_words, load, short
+from ryusa.paper import CLAIMS
 from ryusa.report.friction import MARKS, by_angle
 from ryusa.report.ledger import Ledger
 from ryusa.running.folder import write_json
@@ -111,6 +112,7 @@ def render(
     page.filters["code"] = code_in_words
     return page.get_template("page.html").render(
         ledger=plain,
+        n_claims=len(CLAIMS),
         claims=[_section(one, first, tables, folder) for one in claims],
         counts=[(str(word), words[str(word)], *LOOKS[word]) for word in LOOKS if words[str(word)]],
         looks={str(word): look for word, look in LOOKS.items()},
