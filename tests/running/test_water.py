@@ -69,3 +69,11 @@ def test_a_run_without_a_column_has_no_water(tmp_path: Path) -> None:
         fixed, first, tmp_path / "dry", frames=10 * fixed.dt, stop=Stop(time=20 * fixed.dt), progress=False
     )
     assert results.water is None
+
+
+def test_a_run_that_records_no_contacts_does_not_say_that_there_were_none(tmp_path: Path) -> None:
+    carried_out(tmp_path / "run")
+    log = (tmp_path / "run" / "log.txt").read_text(encoding="utf-8")
+    assert "contacts not recorded" in log
+    assert "restitution" not in log
+    assert "momentum not explained" in log

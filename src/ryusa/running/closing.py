@@ -14,19 +14,16 @@ _ACCOUNT = (
 
 def closing_lines(summary: dict[str, Any]) -> list[str]:
     """Largest overlap, steps per contact, restitution, energy account, warnings."""
+    recorded = summary.get("events") != "none"
+    contacts = f"{summary['contacts']} contacts" if recorded else "contacts not recorded,"
     lines = [
-        f"{summary['steps']} steps, {summary['frames']} frames, {summary['contacts']} contacts "
-        f"in {summary['wall']:.1f} s ({summary['particle_steps_per_second'] / 1e6:.2f} M particle-steps/s)",
+        f"{summary['steps']} steps, {summary['frames']} frames, {contacts} "
+        f"in {summary['wall']:.1f} s ({summary['particle_steps_per_second'] / 1e6:.2f} M particle-steps/s "
+        "once compiled)",
         f"largest overlap/d {summary['overlap']['largest_over_d']:.3g} (stable band {_band(summary)})",
         _steps(summary["steps_per_contact"]),
-        f"restitution {_asked(summary['restitution'])}, got {_got(summary['restitution'])}; "
-        "oblique hits turn the normal and return a few per cent more or less (design/0006)",
+        *(_contacts(summary) if recorded else ()),
     ]
-    shear = summary["restitution_shear"]
-    lines.append(
-        f"tangential restitution {_asked(shear)}, got sticking: {_got(shear['sticking'])}; "
-        f"sliding: {_got(shear['sliding'])}"
-    )
     energy = summary["energy"]
     for what, names in _ACCOUNT:
         lines.append(f"energy {what} [J]: " + ", ".join(f"{name} {energy[name]:.3g}" for name in names))
@@ -34,6 +31,17 @@ def closing_lines(summary: dict[str, Any]) -> list[str]:
     if "water" in summary:
         lines.append(_water(summary["water"]))
     return lines + [f"warning: {warning}" for warning in summary["warnings"]]
+
+
+def _contacts(summary: dict[str, Any]) -> list[str]:
+    """What only recorded contacts tell."""
+    shear = summary["restitution_shear"]
+    return [
+        f"restitution {_asked(summary['restitution'])}, got {_got(summary['restitution'])}; "
+        "oblique hits turn the normal and return a few per cent more or less (design/0006)",
+        f"tangential restitution {_asked(shear)}, got sticking: {_got(shear['sticking'])}; "
+        f"sliding: {_got(shear['sliding'])}",
+    ]
 
 
 def _water(found: dict[str, Any]) -> str:

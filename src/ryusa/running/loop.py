@@ -241,6 +241,7 @@ class Loop:
             "dt": self.scene.dt,
             "frames": self.recorder.n_frame,
             "contacts": self.recorder.n_contact,
+            "events": self.scene.events.name.lower(),
             "saltations": None if self.stop.saltations is None else self._hops.count.tolist(),
             "wall": time.monotonic() - self._begun,
             "particle_steps_per_second": self._rate(),
