@@ -10,29 +10,43 @@ import numba
 F = TypeVar("F", bound=Callable[..., Any])
 
 
-def _edition() -> str:
-    """Digest of the text of all laws."""
+def edition(*texts: Path) -> str:
+    """Digest of the text of files, and of all Python files in folders."""
     digest = hashlib.sha256()
-    for file in sorted(Path(__file__).parent.glob("*.py")):
-        digest.update(file.read_bytes())
+    for text in texts:
+        for file in sorted(text.glob("*.py")) if text.is_dir() else [text]:
+            digest.update(file.read_bytes())
     return digest.hexdigest()
 
 
-EDITION = _edition()
+LAWS = Path(__file__).parent
+EDITION = edition(LAWS)
+
+
+def compiled(edition: str, **options: Any) -> Callable[[F], F]:
+    """Compile a function when it is first called, and keep it on disk as long as its edition is the same.
+
+    Typed as identity, so that the signature survives. Numba's cache looks at the function's own file alone
+    and would go on calling an old law from another file: the edition goes into its key. That is private to
+    Numba, so tests/laws/test_cache.py watches it.
+    """
+
+    def decorate(function: F) -> F:
+        dispatcher: Any = numba.njit(error_model="numpy", cache=True, **options)(function)
+        cache: Any = getattr(dispatcher, "_cache", None)
+        if hasattr(cache, "_index_key"):
+            key = cache._index_key
+            cache._index_key = lambda sig, codegen: (*key(sig, codegen), edition)
+        return cast(F, dispatcher)
+
+    return decorate
 
 
 def law(function: F) -> F:
-    """Compile a scalar law when it is first called; typed as identity so that the signature survives.
+    """Compile a scalar law when it is first called.
 
     `error_model="numpy"` makes a division by zero give inf or nan instead of raising: laws never raise, and
     the engine stops on a number that is not finite. `fastmath=False` is said aloud because Numba would
     otherwise take it from whichever kernel calls the law first, and keep that in the cache for everybody.
     """
-    dispatcher: Any = numba.njit(error_model="numpy", fastmath=False, cache=True)(function)
-    # Numba's cache looks at the file of the law alone and would keep an old law called from another file: the
-    # text of all laws goes into its key. Private to Numba, so tests/laws/test_cache.py watches it.
-    cache: Any = getattr(dispatcher, "_cache", None)
-    if hasattr(cache, "_index_key"):
-        key = cache._index_key
-        cache._index_key = lambda sig, codegen: (*key(sig, codegen), EDITION)
-    return cast(F, dispatcher)
+    return compiled(EDITION, fastmath=False)(function)

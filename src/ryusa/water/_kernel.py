@@ -1,41 +1,23 @@
 """The decorator of the column's functions, and the numbers of a column as they take them."""
 
-import hashlib
 from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, NamedTuple, TypeVar, cast
+from typing import Any, NamedTuple, TypeVar
 
-import numba
-
-from ryusa.laws._law import EDITION
+from ryusa.laws._law import LAWS, compiled, edition
 from ryusa.model.column import Column
 
 F = TypeVar("F", bound=Callable[..., Any])
 
 
-def _edition() -> str:
-    digest = hashlib.sha256(EDITION.encode())
-    for file in sorted(Path(__file__).parent.glob("*.py")):
-        digest.update(file.read_bytes())
-    digest.update((Path(__file__).parent.parent / "model" / "column.py").read_bytes())
-    return digest.hexdigest()
-
-
-_EDITION = _edition()
+_HERE = Path(__file__).parent
+_EDITION = edition(LAWS, _HERE, _HERE.parent / "model" / "column.py")
 
 
 def kernel(function: F) -> F:
-    """Compile when first called; the text of laws, column and this room is part of the key on disk.
-
-    Numba looks at the function's own file alone, and would go on calling an old law from another file.
-    """
-    dispatcher: Any = numba.njit(error_model="numpy", fastmath=False, cache=True)(function)
-    cache: Any = getattr(dispatcher, "_cache", None)
-    if hasattr(cache, "_index_key"):
-        key = cache._index_key
-        cache._index_key = lambda sig, codegen: (*key(sig, codegen), _EDITION)
-    return cast(F, dispatcher)
+    """Compile a function when first called; the text of laws, column and this room is its edition."""
+    return compiled(_EDITION, fastmath=False)(function)
 
 
 class Numbers(NamedTuple):
