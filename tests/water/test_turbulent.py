@@ -147,3 +147,21 @@ def test_drag_of_a_resting_bed_stops_the_water_in_it(bedload, phi):
     assert state.u[deep] == pytest.approx(pores[deep], rel=1e-3)
     assert state.u[deep].max() < 0.005 * state.u.max()
     assert -budget.grains > 0.99 * budget.gravity
+
+
+def test_no_eddies_breed_in_gaps_below_the_highest_packed_cell(bedload, phi):
+    packed = np.where(bedload.z < 0.02, 0.7, phi)
+    loose = packed.copy()
+    loose[[5, 17, 33]] = 0.3  # gaps between layers of the bed, whose crest stays packed
+    whole, gaps = (steady(bedload, one)[0] for one in (packed, loose))
+    under = bedload.faces < 0.0201
+    over = ~under & (bedload.faces < bedload.z_surface - 0.1 * bedload.dz)
+    assert (whole.nu_t[under] == 0.0).all()
+    assert np.array_equal(gaps.nu_t[under], whole.nu_t[under])
+    assert (gaps.nu_t[over] > 0.0).all()
+
+
+def test_a_bed_that_is_nowhere_packed_lets_eddies_grow_in_it(bedload, phi):
+    assert phi.max() < bedload.phi_max
+    wet = (bedload.faces > 0.0) & (bedload.faces < bedload.z_surface - 0.1 * bedload.dz)
+    assert (steady(bedload, phi)[0].nu_t[wet] > 0.0).all()

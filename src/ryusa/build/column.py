@@ -8,6 +8,7 @@ from ryusa.build.layout import Layout
 from ryusa.casefile.column import CELL
 from ryusa.casefile.column import Column as Keys
 from ryusa.casefile.column_checks import SPARE
+from ryusa.casefile.derive import packed
 from ryusa.casefile.schema import Case
 from ryusa.errors import CaseError
 from ryusa.model import Column
@@ -91,7 +92,7 @@ def column_of(case: Case, layout: Layout) -> Column | None:
         discharge=math.nan if keys.discharge is None else keys.discharge,
         mixing=MIXINGS[keys.mixing],
         kappa=keys.kappa,
-        phi_max=keys.packed,
+        phi_max=packed(case),
         k_f=keys.pore_eddies,
         d=found.d,
         interval=keys.interval,

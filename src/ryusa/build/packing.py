@@ -6,7 +6,7 @@ from ryusa.build.layout import Layout, Wall, still
 from ryusa.build.sizes import draw
 from ryusa.casefile.builders import Packing
 from ryusa.casefile.column import Column
-from ryusa.casefile.derive import bed_counts
+from ryusa.casefile.derive import bed_counts, packed
 from ryusa.casefile.schema import Case
 from ryusa.model.scene import Floats
 
@@ -70,8 +70,9 @@ def _zero(case: Case, sizes: Floats, crest: float | None, wide: float, deep: flo
         return crest - 0.25 * d, "d/4 below the mean crest of the fixed bed"
     across = (case.motion.slab_width or d) if case.motion.plane else deep
     solid = case.grains.shape_volume * float(np.sum(sizes**3))
-    height = solid / (wide * across * keys.packed)
-    return (crest or 0.0) + height, f"where the grains end once they lie as dense as {keys.packed:g}"
+    dense = packed(case)
+    end = (crest or 0.0) + solid / (wide * across * dense)
+    return end, f"where the grains end once they lie as dense as {dense:g}"
 
 
 def _bed(case: Case, keys: Packing, rng: np.random.Generator, wide: float, deep: float) -> Floats:

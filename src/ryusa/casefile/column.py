@@ -25,6 +25,7 @@ ONLY_IN_A_COLUMN = (
     "column",
 )
 CELL = 0.1  # thickness of a cell when the case gives none, in mean diameters
+PACKED, PACKED_PLANE = 0.61, 0.55  # of a bed at rest; in a plane, spheres in a slab one diameter wide
 
 
 class Column(BaseModel):
@@ -36,8 +37,7 @@ class Column(BaseModel):
     """Thickness of a cell; a tenth of the mean diameter when not given."""
     bottom: Length | None = None
     """Height of the lowest face; over a moving bed the lower edge of the lowest grain or the floor when not
-    given, over a fixed bed the zero of the water. Fixed grains are no part of the column: under a moving bed
-    their crest is the better bottom, or eddies grow among them."""
+    given, over a fixed bed the zero of the water."""
     bed: Literal["moving", "rough", "smooth"] = "moving"
     """What the water meets at the bottom: grains whose drag stops it, the rough bed of Eq. (9), or a smooth
     wall."""
@@ -57,9 +57,10 @@ class Column(BaseModel):
     van Driest's damping at the wall, or no eddies."""
     kappa: Annotated[Number, Field(gt=0, le=1)] = 0.41
     """Constant of von Karman."""
-    packed: Annotated[Number, Field(gt=0, lt=1)] = 0.61
-    """Concentration phi_max of Li and Sawamoto, beyond which no eddy grows; grains of one size in a plane
-    pack to about 0.55 of a slab one diameter wide."""
+    packed: Annotated[Number, Field(gt=0, lt=1)] | None = None
+    """Concentration phi_max of Li and Sawamoto: no eddy grows in the highest cell that is so dense, nor below
+    it. When not given 0.61, and in a plane 0.55 times mean diameter over width of the slab. It must be what
+    the bed at rest reaches: a run says so when no cell did."""
     pore_eddies: Annotated[Number, Field(ge=0, le=10)] = 0.0
     """k_f of the eddies in the pores of a debris flow, Egashira; 0.16 in the source, 0 for none."""
     side_walls: PositiveLength | None = None

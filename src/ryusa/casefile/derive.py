@@ -8,7 +8,7 @@ import numpy as np
 
 from ryusa.casefile.box import box_plan
 from ryusa.casefile.builders import Box, Drop, Packing, Saltation, Table
-from ryusa.casefile.column import CELL, ONLY_IN_A_COLUMN, Column
+from ryusa.casefile.column import CELL, ONLY_IN_A_COLUMN, PACKED, PACKED_PLANE, Column
 from ryusa.casefile.schema import Case, Spread, StiffnessForOverlap, StiffnessForTime
 from ryusa.casefile.table import table_of
 from ryusa.laws import collision, drag, motion, water
@@ -374,6 +374,17 @@ def resolved(case: Case) -> dict[str, Any]:
     return _plain(data)
 
 
+def packed(case: Case) -> float:
+    """Concentration of a case's bed at rest, where eddies have no room [-]."""
+    keys = (case.water and case.water.column) or Column()
+    if keys.packed is not None:
+        return keys.packed
+    if not case.motion.plane:
+        return PACKED
+    d = sizes(case)[0]
+    return PACKED_PLANE * d / (case.motion.slab_width or d)
+
+
 def _resolve_column(case: Case, data: dict[str, Any]) -> None:
     """Fill in the column of water; where there is none, its keys say nothing."""
     wet = case.water
@@ -382,6 +393,7 @@ def _resolve_column(case: Case, data: dict[str, Any]) -> None:
         keys = wet.column or Column()
         cell = keys.cell or CELL * case.grains.diameter
         data["column"] = keys.model_dump(mode="json") | {"cell": cell, "mixing_length": keys.mixing}
+        data["column"]["packed"] = packed(case)
         return
     for key in ONLY_IN_A_COLUMN:
         del data[key]

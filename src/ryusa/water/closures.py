@@ -38,6 +38,15 @@ def pores(p: Numbers, phi: float) -> float:
 
 
 @kernel
+def packed_below(p: Numbers, m: int, phi: Floats) -> int:
+    """Lowest face above all packed cells, phi >= phi_max, of the cells 0..m; 0 where none is packed."""
+    for k in range(m, -1, -1):
+        if phi[k] >= p.phi_max:
+            return k + 1
+    return 0
+
+
+@kernel
 def mixing_lengths(
     p: Numbers, m: int, phi: Floats, z: Floats, z_surface: float, u_star: float, square: Floats
 ) -> None:
@@ -57,9 +66,12 @@ def mixing_lengths(
     -----
     Over a fixed bed the length of a face is taken at `height_between` of the middles beside it, so that the
     cells follow the log law from the wall on. The eddies of the pores count where they are the larger ones;
-    they are at most one grain large, also where grains are few.
+    they are at most one grain large, also where grains are few. Under Li & Sawamoto's length all below the
+    highest packed cell counts as packed, or eddies would breed in the gaps between layers of the bed; so does
+    YADE's HydroForceEngine, whose code was read.
     """
     square[:] = 0.0
+    crest = packed_below(p, m, phi) if p.mixing == LI_SAWAMOTO else 0
     depth = z_surface - p.z_bed
     walled = p.bed != MOVING
     grown = 0.0
@@ -75,8 +87,11 @@ def mixing_lengths(
         elif p.mixing == VAN_DRIEST:
             length = length_van_driest(at, u_star, p.nu, p.kappa)
         elif p.mixing == LI_SAWAMOTO:
-            below = length_growth_li_sawamoto(phi[f - 1], p.phi_max, p.dz, p.kappa)
-            above = length_growth_li_sawamoto(phi[f], p.phi_max, p.dz, p.kappa)
+            below, above = 0.0, 0.0
+            if f > crest:
+                below = length_growth_li_sawamoto(phi[f - 1], p.phi_max, p.dz, p.kappa)
+            if f >= crest:
+                above = length_growth_li_sawamoto(phi[f], p.phi_max, p.dz, p.kappa)
             low, high = grown + 0.5 * below, grown + below + 0.5 * above
             grown += below
             length = height_between(low, high) if walled and low > 0.0 else grown
