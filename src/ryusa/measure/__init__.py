@@ -6,6 +6,7 @@ from ryusa.measure.entrainment import Entrainment, entrainment
 from ryusa.measure.paths import Alternating, Paths, alternating, paths
 from ryusa.measure.profiles import Layers, Profiles, profiles
 from ryusa.measure.repose import Surface, surface
+from ryusa.measure.rods import Rod, Rods, companions, rods
 from ryusa.measure.saltation import Saltation, grouping, saltation
 from ryusa.measure.snapshot import Snapshot, snapshot
 from ryusa.measure.spin import Spin, spin
@@ -34,6 +35,8 @@ __all__ = [
     "Layers",
     "Paths",
     "Profiles",
+    "Rod",
+    "Rods",
     "Saltation",
     "Snapshot",
     "Spin",
@@ -46,6 +49,7 @@ __all__ = [
     "average",
     "block_error",
     "collisions",
+    "companions",
     "contact_times",
     "energy",
     "entrainment",
@@ -55,6 +59,7 @@ __all__ = [
     "profiles",
     "ratio",
     "rest_time",
+    "rods",
     "rows_of",
     "saltation",
     "snapshot",

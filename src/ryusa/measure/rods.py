@@ -1,0 +1,264 @@
+"""Rods: movers that touch and keep their bearing, and so go downstream as one rigid body (fig22)."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import KDTree
+
+from ryusa.errors import ResultsError
+from ryusa.measure._run import Floats, Run
+from ryusa.measure.statistics import ratio
+from ryusa.measure.table import Averages
+from ryusa.measure.transport import window_of
+from ryusa.model import Scene
+from ryusa.model.scene import Bools
+
+LASTS = 5.0  # a window lasts so long, over sqrt(d/g)
+WAY = 1.0  # a mover goes at least so far along the bed in it, over mean d
+BEARING = math.radians(15.0)  # the direction from one grain to the other turns by less in it
+GAP = 0.05  # two grains touch up to so large a gap, over the mean of both diameters
+SHUFFLES = 10
+
+Ints = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Rod:
+    """One rod: the grains that are in it from `begin` on [s], at least for a window."""
+
+    begin: float
+    grains: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Rods:
+    """Movers that keep contact and bearing throughout a window of time.
+
+    Attributes
+    ----------
+    begin : of the windows [s], shape (n_window,); one follows the other.
+    movers : grains that went far enough in each, shape (n_window,).
+    touching : of these, grains that touch another mover as the window begins.
+    bound : of these, grains that keep contact and bearing with one to its end: they are in a rod.
+    lengths : how many rods of n grains there were in all windows, shape (longest + 1,); n is the index.
+    null : movers in a rod if every mover had gone the way of another one at its height, mean of the
+        shuffles, shape (n_window,).
+    longest : the rod of the most grains, of several the first; None where there is none.
+    window : how long a rod lasts at least [s].
+    averages : shares of the movers, and the mean number of grains in a rod.
+    """
+
+    begin: Floats
+    movers: Ints
+    touching: Ints
+    bound: Ints
+    lengths: Ints
+    null: Floats
+    longest: Rod | None
+    window: float
+    averages: Averages
+
+    @property
+    def share(self) -> float:
+        """Movers in rods over all movers [-]; nan where nothing moves."""
+        whole = int(self.movers.sum())
+        return float(self.bound.sum()) / whole if whole else math.nan
+
+    @property
+    def null_share(self) -> float:
+        """The same for shuffled ways [-]."""
+        whole = int(self.movers.sum())
+        return float(self.null.sum()) / whole if whole else math.nan
+
+    @property
+    def kept(self) -> float:
+        """Movers in rods over movers that touched another when the window began [-]."""
+        whole = int(self.touching.sum())
+        return float(self.bound.sum()) / whole if whole else math.nan
+
+    @property
+    def mean_length(self) -> float:
+        """Grains in a rod [-]; nan where there is none."""
+        whole = int(self.lengths.sum())
+        return float(self.lengths @ np.arange(len(self.lengths))) / whole if whole else math.nan
+
+    def rows(self) -> list[dict[str, object]]:
+        """One dictionary per number of grains in a rod."""
+        return [{"grains": n, "rods": int(count)} for n, count in enumerate(self.lengths.tolist()) if n > 1]
+
+
+def rods(
+    run: Run,
+    begin: float | None = None,
+    end: float = math.inf,
+    window: float | None = None,
+    way: float = WAY,
+    bearing: float = BEARING,
+    gap: float = GAP,
+    shuffles: int = SHUFFLES,
+    seed: int = 1,
+) -> Rods:
+    """Find rods in windows of time that follow one another.
+
+    Parameters
+    ----------
+    run : a run folder, periodic along x.
+    begin, end : where the windows lie [s]; `begin` defaults to the case's `record.settle`.
+    window : how long a rod must last [s]; default 5 sqrt(d/g), rounded to whole frames.
+    way : way along the bed in a window from which a grain is a mover, in mean diameters.
+    bearing : the direction from one grain to the other turns by less than this [rad].
+    gap : largest gap of two grains that touch, over the mean of their diameters.
+    shuffles, seed : of the null model.
+
+    Raises
+    ------
+    ResultsError : not one window fits in.
+
+    Notes
+    -----
+    Two movers are bound where in every frame of the window they touch and the direction from one to the
+    other is within `bearing` of that at its begin: they neither part nor roll or climb over each other. A rod
+    is a cluster of movers that are bound one to the next. A rod that outlasts a window counts again in the
+    next. A grain that climbs from one pocket of a bed of its like to the next turns by 60 degrees about the
+    one below. The null model gives every mover its own place and the way of another mover whose mean height
+    is in the same layer, one diameter thick: what is left of the rods are grains that stay together because
+    all of their layer move alike.
+    """
+    t, first, _, scene, _ = window_of(run, begin, end, least=3)
+    d = float(scene.d.mean())
+    g = float(np.linalg.norm(scene.gravity))
+    frame = float(np.median(np.diff(t)))
+    asked = LASTS * math.sqrt(d / g) if window is None else window
+    n = max(round(asked / frame), 2)
+    starts = np.arange(0, len(t) - n, n)
+    if not len(starts):
+        raise ResultsError(f"no window of {n * frame:.3g} s from t = {t[0]:g} s to {t[-1]:g} s")
+    rng = np.random.default_rng(seed)
+    movers, touching, bound = np.zeros((3, len(starts)), dtype=np.int64)
+    null = np.zeros(len(starts))
+    found: list[Rod] = []
+    for k, start in enumerate(starts.tolist()):
+        x = np.asarray(run.frames.x[first + start : first + start + n + 1], dtype=np.float64)
+        going = np.flatnonzero(x[-1, :, 0] - x[0, :, 0] >= way * d)
+        movers[k] = len(going)
+        if len(going) < 2:
+            continue
+        x = np.ascontiguousarray(x[:, going])
+        pairs = _pairs(x[0], scene.d[going], scene, gap)
+        touching[k] = len(np.unique(pairs))
+        kept = pairs[_bound(x, pairs, scene.d[going], scene, bearing, gap)]
+        bound[k] = len(np.unique(kept))
+        found += [Rod(float(t[start]), tuple(going[one].tolist())) for one in _clusters(kept, len(going))]
+        if shuffles:
+            tried = (_shuffled(x, pairs, scene, going, bearing, gap, rng) for _ in range(shuffles))
+            null[k] = sum(tried) / shuffles
+    sizes = np.array([len(one.grains) for one in found], dtype=np.int64)
+    span = (float(t[0]), float(t[-1]))
+    return Rods(
+        begin=t[starts],
+        movers=movers,
+        touching=touching,
+        bound=bound,
+        lengths=np.bincount(sizes, minlength=2).astype(np.int64),
+        null=null,
+        longest=max(found, key=lambda one: len(one.grains), default=None),
+        window=n * frame,
+        averages=Averages(
+            "rods",
+            (
+                ratio("share", "-", [bound.astype(np.float64)], [movers.astype(np.float64)], span),
+                ratio("null_share", "-", [null], [movers.astype(np.float64)], span),
+                ratio("kept", "-", [bound.astype(np.float64)], [touching.astype(np.float64)], span),
+            ),
+            (
+                f"a rod: movers that touch (gap below {gap:g} d) for {n * frame:.3g} s, in which they go "
+                f"{way:g} d or more and turn about each other by less than {math.degrees(bearing):.3g} deg; "
+                f"looked at in {n + 1} frames of each of {len(starts)} windows",
+            ),
+        ),
+    )
+
+
+def companions(run: Run, begin: float | None = None, end: float = math.inf, gap: float = GAP) -> float:
+    """Correlation of the speeds along the bed of grains that touch, over their layer's mean [-].
+
+    1 where neighbours go along together, 0 where they know nothing of each other, below 0 where they have
+    just thrown each other apart. The mean that is subtracted is that of all grains and frames whose centres
+    lie in the same layer, half a diameter thick. nan where nothing touches.
+    """
+    t, first, last, scene, _ = window_of(run, begin, end, least=2)
+    d = float(scene.d.mean())
+    x = np.asarray(run.frames.x[first:last], dtype=np.float64)
+    v = np.asarray(run.frames.v[first:last], dtype=np.float64)[:, :, 0]
+    layer = np.floor(x[:, :, 2] / (0.5 * d)).astype(np.int64)
+    layer -= layer.min()
+    count = np.bincount(layer.ravel())
+    mean = np.bincount(layer.ravel(), v.ravel()) / np.maximum(count, 1)
+    about = v - mean[layer]
+    products, squares = 0.0, 0.0
+    for f in range(len(t)):
+        i, j = _pairs(x[f], scene.d, scene, gap).T
+        products += float(about[f, i] @ about[f, j])
+        squares += 0.5 * float(about[f, i] @ about[f, i] + about[f, j] @ about[f, j])
+    return products / squares if squares > 0.0 else math.nan
+
+
+def _pairs(x: Floats, d: Floats, scene: Scene, gap: float) -> Ints:
+    """Pairs of grains at x [m] that touch, (n_pair, 2)."""
+    periods = [p if math.isfinite(p) else 0.0 for p in scene.period] + [0.0]
+    inside = x.copy()
+    for axis, period in enumerate(periods):
+        if period > 0.0:
+            inside[:, axis] = np.mod(x[:, axis], period)
+            inside[inside[:, axis] >= period, axis] = 0.0  # round-off
+    tree = KDTree(inside, boxsize=periods)
+    pairs = tree.query_pairs((1.0 + gap) * float(d.max()), output_type="ndarray").astype(np.int64)
+    apart = np.linalg.norm(_between(x, pairs, scene), axis=-1)
+    pairs = pairs[apart <= 0.5 * (1.0 + gap) * (d[pairs[:, 0]] + d[pairs[:, 1]])]
+    return pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]
+
+
+def _between(x: Floats, pairs: Ints, scene: Scene) -> Floats:
+    """Way from one centre to the nearest image of the other [m], (..., n_pair, 3)."""
+    way = x[..., pairs[:, 1], :] - x[..., pairs[:, 0], :]
+    for axis, period in enumerate(scene.period):
+        if math.isfinite(period):
+            way[..., axis] -= period * np.rint(way[..., axis] / period)
+    return way
+
+
+def _bound(x: Floats, pairs: Ints, d: Floats, scene: Scene, bearing: float, gap: float) -> Bools:
+    """Whether pairs keep contact and bearing in all frames of x (n_frame, n, 3), shape (n_pair,)."""
+    way = _between(x, pairs, scene)
+    apart = np.linalg.norm(way, axis=2)
+    touch = apart <= 0.5 * (1.0 + gap) * (d[pairs[:, 0]] + d[pairs[:, 1]])
+    along = np.einsum("fpc,pc->fp", way, way[0]) / np.maximum(apart * apart[0], 1.0e-300)
+    return np.asarray((touch & (along > math.cos(bearing))).all(axis=0))
+
+
+def _clusters(pairs: Ints, n: int) -> Iterator[Ints]:
+    """Give the grains of every cluster of bound pairs among n grains."""
+    if not len(pairs):
+        return
+    links = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
+    _, label = connected_components(links, directed=False)
+    for one in np.unique(label[pairs[:, 0]]):
+        yield np.flatnonzero(label == one)
+
+
+def _shuffled(
+    x: Floats, pairs: Ints, scene: Scene, going: Ints, bearing: float, gap: float, rng: np.random.Generator
+) -> int:
+    """Movers in rods once every mover goes the way of another one in its layer."""
+    layer = np.floor(x[:, :, 2].mean(axis=0) / float(scene.d.mean()))
+    taken = np.arange(x.shape[1])
+    for one in np.unique(layer):
+        inside = np.flatnonzero(layer == one)
+        taken[inside] = rng.permutation(inside)
+    moved = x[:1] + (x - x[:1])[:, taken]
+    return len(np.unique(pairs[_bound(moved, pairs, scene.d[going], scene, bearing, gap)]))
