@@ -403,3 +403,8 @@ def test_case_and_engine_read_the_same_drag(law: str) -> None:
         c_d = drag_coefficient(one, drag.reynolds(speed, 0.002, 1e-6))
         expected = drag.drag_factor(speed, c_d, 1000.0, math.pi / 4, 0.002)
         assert march.drag_of(int(made.water.drag), speed, 0.002, numbers_of(made)) == pytest.approx(expected)
+
+
+def test_grains_of_a_packing_begin_with_the_speed_asked_for() -> None:
+    state = build(case("{ kind = 'packing', columns = 4, layers = 2, speed = '1.5 m/s' }")).state
+    assert np.all(state.v == [1.5, 0.0, 0.0])

@@ -36,6 +36,8 @@ def packing(case: Case) -> Layout:
         x[:, 1] = 0.0
     x[:, 2] += top
     n = len(x)
+    v = still(n)
+    v[:, 0] = keys.speed
     crest = float(np.mean(x_fixed[:, 2])) + d / 2.0 if len(x_fixed) else 0.0
     sizes = draw(case, n, rng)
     z_zero, where = crest - 0.25 * d, "d/4 below the mean crest of the fixed bed"
@@ -47,7 +49,7 @@ def packing(case: Case) -> Layout:
     return Layout(
         d=sizes,
         x=x,
-        v=still(n),
+        v=v,
         omega=still(n),
         d_fixed=np.full(len(x_fixed), d),
         x_fixed=x_fixed,

@@ -88,6 +88,8 @@ class Packing(_Keys):
     """Bed of fixed grains of random height, of equal height, or a plane."""
     bed_height: Annotated[Number, Field(ge=0, le=2)] = 0.5
     """Range of the random heights, in mean diameters."""
+    speed: Speed = 0.0
+    """Speed along x at the start: grains that begin at rest may lie down and never start to move."""
     periodic: bool = True
     """Periodic along x, and along y in three dimensions; false leaves the ends open: give walls as
     [[planes]], at x = 0 and x = columns (1 + gap) largest diameters, or grains roll off the bed."""
