@@ -174,7 +174,7 @@ def _list(plan: "Plan", chosen: Sequence[str] | None, out: Path, jobs: int | Non
     from rich import box
     from rich.table import Table
 
-    from ryusa.experiments import NAMES, cost, load, outlook
+    from ryusa.experiments import NAMES, load, outlook
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for heading in ("name", "what it answers", "claims"):
@@ -184,7 +184,7 @@ def _list(plan: "Plan", chosen: Sequence[str] | None, out: Path, jobs: int | Non
     every: list[Any] = []
     for name in chosen or NAMES:
         experiment, runs = load(name), list(dict.fromkeys(load(name).cases(plan)))
-        minutes = sum(cost(one) for one in runs) / 60.0
+        minutes = sum(one.cost() for one in runs) / 60.0
         claims = ", ".join(experiment.CLAIMS)
         table.add_row(name, experiment.TITLE, claims, str(len(runs)), f"{minutes:.1f}" if runs else "-")
         every += runs

@@ -1,6 +1,21 @@
 """One short file per figure of the paper: runs, measure, what the paper says, and how it is drawn."""
 
-from ryusa.experiments._campaign import Campaign, carry_out
+from ryusa.campaign import (
+    Campaign,
+    Fault,
+    Level,
+    Lines,
+    Outlook,
+    Plan,
+    Say,
+    Variant,
+    case_path,
+    code_in_words,
+    duration,
+    outlook,
+    spared,
+)
+from ryusa.experiments._campaign import carry_out
 from ryusa.experiments._experiment import (
     NAMES,
     PHI,
@@ -9,16 +24,9 @@ from ryusa.experiments._experiment import (
     SLIP,
     Experiment,
     Found,
-    Level,
-    Plan,
-    Variant,
-    case_path,
     load,
     variant,
 )
-from ryusa.experiments._fault import Fault, spared
-from ryusa.experiments._outlook import Outlook, code_in_words, cost, duration, outlook
-from ryusa.experiments._say import Lines, Say
 from ryusa.experiments._verdict import (
     Band,
     Finding,
@@ -57,7 +65,6 @@ __all__ = [
     "carry_out",
     "case_path",
     "code_in_words",
-    "cost",
     "duration",
     "load",
     "outlook",

@@ -1,23 +1,30 @@
 """What an experiment is: the runs it needs, what it measures in each, what follows for the paper's claims."""
 
-import hashlib
-import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from enum import StrEnum
-from functools import cached_property, lru_cache
 from importlib import import_module
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from typing import Any, Protocol
 
 from matplotlib.figure import Figure
 
+from ryusa.campaign import Level, Plan, Variant
 from ryusa.errors import CaseError
 from ryusa.experiments._verdict import Finding
 from ryusa.results import Results
 
-if TYPE_CHECKING:
-    from ryusa.casefile.schema import Case
+__all__ = [
+    "NAMES",
+    "PHI",
+    "RATIO",
+    "ROTATION",
+    "SLIP",
+    "Experiment",
+    "Found",
+    "Level",
+    "Plan",
+    "Variant",
+    "load",
+    "variant",
+]
 
 NAMES = (
     "fig04",
@@ -47,58 +54,6 @@ SLIP = "slip rule"
 RATIO = "k_s/k_n"
 ROTATION = "rotation"  # only where the paper does not say it
 
-Value = TypeVar("Value")
-
-
-class Level(StrEnum):
-    """How much is run."""
-
-    QUICK = "quick"  # the case files as they are, one seed: indicative
-    STANDARD = "standard"  # three seeds and the sweeps that decide a verdict
-    FULL = "full"  # every sweep
-
-
-@dataclass(frozen=True)
-class Plan:
-    """What a campaign is to cover."""
-
-    level: Level = Level.STANDARD
-    seeds: tuple[int, ...] = (1, 2, 3)
-
-    def pick(self, quick: Value, standard: Value, full: Value | None = None) -> Value:
-        """Give the value of this level; the full one takes the standard one where it has none."""
-        if self.level is Level.QUICK:
-            return quick
-        return full if self.level is Level.FULL and full is not None else standard
-
-
-@dataclass(frozen=True)
-class Variant:
-    """One run: a case file of `cases/paper/` and what is changed in it. Equal variants are one run."""
-
-    case: str  # "fig19" is cases/paper/fig19.toml
-    overrides: tuple[tuple[str, str], ...] = ()  # sorted; keys and values as `ryusa run --set` takes them
-
-    @cached_property
-    def folder(self) -> str:
-        """Folder of the run below that of all runs: readable, and different for different overrides."""
-        said = "-".join(re.sub(r"[^A-Za-z0-9.+]+", "", value) for _, value in self.overrides)
-        digest = hashlib.sha256(repr(self.overrides).encode()).hexdigest()[:8]
-        return f"{self.case}/{said[:60]}-{digest}" if said else f"{self.case}/as-shipped-{digest}"
-
-    @property
-    def label(self) -> str:
-        """Words for the progress line."""
-        return " ".join((self.case, *(value for _, value in self.overrides)))
-
-    def read(self) -> "Case":
-        """Give the checked case."""
-        return _read(self)
-
-    def get(self, key: str, default: str = "") -> str:
-        """Value of one override as text."""
-        return dict(self.overrides).get(key, default)
-
 
 def variant(case: str, overrides: Mapping[str, str] | None = None, seed: int = 1) -> Variant:
     """Name one run.
@@ -111,13 +66,6 @@ def variant(case: str, overrides: Mapping[str, str] | None = None, seed: int = 1
     """
     changed = {**(overrides or {}), "seed": str(seed)}
     return Variant(case, tuple(sorted(changed.items())))
-
-
-@lru_cache(maxsize=4096)
-def _read(one: Variant) -> "Case":
-    from ryusa.casefile.read import read
-
-    return read(case_path(f"paper/{one.case}.toml"), dict(one.overrides))
 
 
 Found = Mapping[Variant, Any]
@@ -162,8 +110,3 @@ def load(name: str) -> Experiment:
         raise CaseError("experiment", name, f"there are {', '.join(NAMES)}")
     module: Any = import_module(f"ryusa.experiments.{name}")
     return module
-
-
-def case_path(name: str) -> Path:
-    """Path of a case file that ships with the package, such as "paper/fig19.toml"."""
-    return Path(__file__).resolve().parent.parent / "cases" / name

@@ -9,6 +9,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
+from ryusa.campaign import Work
 from ryusa.experiments import (
     NAMES,
     Campaign,
@@ -19,7 +20,6 @@ from ryusa.experiments import (
     Plan,
     Say,
     Trial,
-    Variant,
     Word,
     carry_out,
     load,
@@ -232,7 +232,7 @@ def _unjudged(
     }
 
 
-def _missing(missing: Mapping[Variant, Fault], n: int) -> str:
+def _missing(missing: Mapping[Work, Fault], n: int) -> str:
     """Which runs failed, and why; the first few of many."""
     told = [f"{one.label}: {fault.words}" for one, fault in list(missing.items())[:_NAMED]]
     more = f"; and {len(missing) - _NAMED} more" if len(missing) > _NAMED else ""

@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from ryusa.campaign import ahead as ahead_module
+from ryusa.campaign import carry
 from ryusa.errors import CaseError, NotANumber, ResultsError
 from ryusa.experiments import (
     Lines,
@@ -17,9 +19,7 @@ from ryusa.experiments import (
     Plan,
     Say,
     _campaign,
-    _outlook,
     carry_out,
-    cost,
     outlook,
     variant,
 )
@@ -102,13 +102,13 @@ def test_an_error_in_the_program_costs_its_experiment_and_no_other(fakes, tmp_pa
 def test_a_worker_whose_answer_cannot_be_sent_spares_the_others(fakes, tmp_path, monkeypatch):
     fakes["one"] = Fake()
 
-    def answer(one, *_):
+    def answer(one, *_, **__):
         if one.get("seed") == "2":
             raise TypeError("cannot pickle a generator")
-        return _campaign.Done(one, {"one": 1}, False, 1.0)
+        return carry.Done(one, {"one": 1}, False, 1.0)
 
-    monkeypatch.setattr(_campaign, "_one", answer)
-    monkeypatch.setattr(_campaign, "ProcessPoolExecutor", lambda jobs, **_: ThreadPoolExecutor(jobs))
+    monkeypatch.setattr(carry, "_one", answer)
+    monkeypatch.setattr(carry, "ProcessPoolExecutor", lambda jobs, **_: ThreadPoolExecutor(jobs))
     found = carry_out(("one",), Plan(), tmp_path, jobs=2)
     assert len(found.found["one"]) == 1
     assert [one.get("seed") for one in found.missing["one"]] == ["2"]
@@ -166,7 +166,7 @@ def test_an_answer_to_a_breakdown_that_goes_wrong_itself_is_told(fakes, tmp_path
 
 def test_runs_that_do_not_fit_on_the_disk_are_refused_before_the_first(fakes, tmp_path, monkeypatch):
     fakes["one"] = Fake()
-    monkeypatch.setattr(_outlook, "free_bytes", lambda _: 1000)
+    monkeypatch.setattr(ahead_module, "free_bytes", lambda _: 1000)
     with pytest.raises(CaseError, match=r"2 runs need .* only 1 kB are free"):
         carry_out(("one",), Plan(), tmp_path / "deep" / "er")
     assert not list(tmp_path.iterdir())
@@ -205,7 +205,7 @@ def test_a_folder_that_holds_another_case_is_run_again(tmp_path):
 
 
 def test_the_outlook_says_which_runs_another_state_of_the_code_made(tmp_path, monkeypatch):
-    monkeypatch.setattr(_outlook.provenance, "commit", lambda: "c" * 40)
+    monkeypatch.setattr(ahead_module.provenance, "commit", lambda: "c" * 40)
     runs = [variant("saltation", SHORT, seed) for seed in range(1, 7)]
     for one, commit in zip(runs, ["c" * 40, "a" * 40, "a" * 40, "c" * 40 + "+", None], strict=False):
         finished(tmp_path, one, commit)
@@ -225,7 +225,7 @@ def test_a_campaign_counts_the_runs_of_other_code(fakes, tmp_path, monkeypatch):
     about = next(tmp_path.glob("*/*/provenance.json"))
     changed = json.loads(about.read_text()) | {"commit": "a" * 40}
     about.write_text(json.dumps(changed))
-    monkeypatch.setattr(_outlook.provenance, "commit", lambda: "c" * 40)
+    monkeypatch.setattr(ahead_module.provenance, "commit", lambda: "c" * 40)
     found = carry_out(("one",), Plan(), tmp_path)
     assert found.n_opened == 2
     assert found.others["a" * 40] == 1
@@ -234,7 +234,7 @@ def test_a_campaign_counts_the_runs_of_other_code(fakes, tmp_path, monkeypatch):
 
 def test_a_law_of_rolling_resistance_costs_time():
     rolls = {"rolling.model": "constant", "rolling.coefficient": "0.1"}
-    assert cost(variant("fig19", rolls)) > 1.5 * cost(variant("fig19"))
+    assert variant("fig19", rolls).cost() > 1.5 * variant("fig19").cost()
 
 
 def test_the_time_left_follows_from_how_long_the_finished_runs_took(capsys):

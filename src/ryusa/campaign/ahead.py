@@ -1,6 +1,5 @@
 """What a campaign will cost before it starts: runs, seconds, bytes."""
 
-import json
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -8,19 +7,10 @@ from pathlib import Path
 from typing import Any
 
 from ryusa import __version__
+from ryusa.campaign.work import Work
 from ryusa.errors import CaseError
-from ryusa.experiments._experiment import Variant
-from ryusa.results import schema
 from ryusa.running import provenance
 from ryusa.running.folder import existing, free_bytes, size
-
-# What the rule of thumb for a single run cannot know. Counted in the 639 runs of the standard level, seeds 1
-# to 3, two at a time on two cores of an AMD EPYC: 43 core minutes in all, of which this rule says 46; of one
-# set-up it is right within a factor of 1.6. The shares are of steps, and so do not depend on the machine.
-_TO_REST = 0.63  # share of the longest time allowed that a run takes which may end at rest
-_TO_HOPS = 0.80  # the same where a number of hops may end it
-_ROLLING = 1.8  # a law of rolling resistance, over none in the same heap; 1.5 to 2.1
-_BEGIN = 0.14  # s to begin, to open and to measure a short run in a process that is warm
 
 
 @dataclass(frozen=True)
@@ -36,8 +26,8 @@ class Outlook:
     others : of the finished runs, how many each other state of the code made.
     """
 
-    costs: Mapping[Variant, float]
-    there: tuple[Variant, ...]
+    costs: Mapping[Work, float]
+    there: tuple[Work, ...]
     disk: int
     jobs: int
     others: Mapping[str, int] = field(default_factory=dict[str, int])
@@ -108,48 +98,20 @@ def code_in_words(code: str) -> str:
     return code.removesuffix("+")[:12] + (" with changes" if code.endswith("+") else "")
 
 
-def outlook(wanted: Iterable[Variant], folder: Path, *, jobs: int, again: bool = False) -> Outlook:
+def outlook(wanted: Iterable[Work], folder: Path, *, jobs: int, again: bool = False) -> Outlook:
     """Say what it takes to have these runs in `folder`; every case is read, and so checked.
 
     Raises
     ------
     CaseError : a case cannot be run.
     """
-    from ryusa.casefile.estimate import disk_in_all
-
     wanted = list(dict.fromkeys(wanted))
-    origins = {} if again else {one: _origin_of(one, folder / one.folder) for one in wanted}
+    origins = {} if again else {one: one.origin(folder / one.folder) for one in wanted}
     there = {one: code_of(found) for one, found in origins.items() if found is not None}
-    costs = {one: cost(one) for one in wanted if one not in there}
+    costs = {one: one.cost() for one in wanted if one not in there}
     others = Counter(code for code in there.values() if is_other(code, opened=True))
-    disk = sum(disk_in_all(one.read()) for one in costs)
+    disk = sum(one.disk() for one in costs)
     return Outlook(costs, tuple(there), disk, jobs, dict(others.most_common()))
-
-
-def cost(one: Variant) -> float:
-    """Core seconds of a run by rule of thumb."""
-    from ryusa.casefile.estimate import SECONDS_PER_RUN, seconds_needed
-
-    case = one.read()
-    share = _TO_HOPS if case.stop.saltations is not None else _TO_REST if case.stop.rest is not None else 1.0
-    law = 1.0 if case.rolling.model == "none" else _ROLLING
-    return _BEGIN + share * law * (seconds_needed(case) - SECONDS_PER_RUN)
-
-
-def same_case(case: Mapping[str, Any], one: Variant) -> bool:
-    """Whether the case that a run folder holds is the very case of this run."""
-    return case == json.loads(json.dumps(one.read().resolved()))
-
-
-def _origin_of(one: Variant, folder: Path) -> dict[str, Any] | None:
-    """Provenance of a finished run of the very same case; None where there is none."""
-    try:
-        origin = json.loads((folder / schema.PROVENANCE).read_text(encoding="utf-8"))
-        case = json.loads((folder / schema.CASE_JSON).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return None
-    finished = isinstance(origin, dict) and origin.get("status") == schema.COMPLETE
-    return origin if finished and same_case(case, one) else None
 
 
 def refuse_if_too_big(ahead: Outlook, folder: Path) -> None:

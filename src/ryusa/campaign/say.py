@@ -4,8 +4,8 @@ import sys
 import time
 from collections.abc import Callable
 
-from ryusa.experiments._experiment import Variant
-from ryusa.experiments._outlook import Outlook, duration
+from ryusa.campaign.ahead import Outlook, duration
+from ryusa.campaign.work import Work
 
 
 class Say:
@@ -14,10 +14,10 @@ class Say:
     def begin(self, ahead: Outlook) -> None:
         """All runs, with what each costs."""
 
-    def started(self, one: Variant) -> None:
+    def started(self, one: Work) -> None:
         """A run begins."""
 
-    def done(self, one: Variant, seconds: float, opened: bool, problem: str) -> None:
+    def done(self, one: Work, seconds: float, opened: bool, problem: str) -> None:
         """A run is over."""
 
     def tick(self) -> None:
@@ -39,8 +39,8 @@ class Lines(Say):
 
         self._console = Console(stderr=True, highlight=False)
         self._clock = clock
-        self._costs: dict[Variant, float] = {}
-        self._now: dict[Variant, float] = {}  # when each began
+        self._costs: dict[Work, float] = {}
+        self._now: dict[Work, float] = {}  # when each began
         self._run_cost = self._run_seconds = 0.0  # thought of, and taken, by the runs made
         self._finished = self._total = 0
         self._jobs = 1
@@ -64,12 +64,12 @@ class Lines(Say):
             self._task = self._bar.add_task("", total=self._total, words="")
             self._bar.start()
 
-    def started(self, one: Variant) -> None:
+    def started(self, one: Work) -> None:
         """Remember who is running."""
         self._now[one] = self._clock()
         self.tick()
 
-    def done(self, one: Variant, seconds: float, opened: bool, problem: str) -> None:
+    def done(self, one: Work, seconds: float, opened: bool, problem: str) -> None:
         """Count it, and learn from it how long the rest will take."""
         self._finished += 1
         self._now.pop(one, None)
