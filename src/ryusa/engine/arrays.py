@@ -19,6 +19,7 @@ class Grains(NamedTuple):
     tracked: Any  # whether its contacts are recorded, by id, (n,)
     f: Any  # contact force so far in this step [N], (n, 3)
     torque: Any  # contact torque so far in this step [N m], (n, 3)
+    film: Any  # force of films so far in this step [N], (n, 3); (0, 0) without
     touches: Any  # contacts so far in this step, (n,)
     touched: Any  # contacts in the last step, (n,)
     seen: Any  # water at each grain, columns of model.immersed, (n, N_SEEN); (0, 0) without a column
@@ -34,7 +35,7 @@ class Pairs(NamedTuple):
     mem: Any  # rows of contact memory (rows.py), (n_pair, width)
     react_start: Any  # first slot in `react` of each block, (n_block + 1,)
     react: Any  # force and torque that a block leaves for a partner in another, (n_cross, 6)
-    react_touch: Any  # whether that slot holds anything in this step, (n_cross,)
+    react_touch: Any  # 1 where that slot holds a contact in this step, 2 a film, (n_cross,)
     incoming_start: Any  # slots meant for grain j: incoming[incoming_start[j]:incoming_start[j + 1]]
     incoming: Any  # (n_cross,)
 

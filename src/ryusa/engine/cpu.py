@@ -40,7 +40,7 @@ from ryusa.engine.seam import Flags
 from ryusa.errors import NotANumber, RunError
 from ryusa.model import EVENT, Book, Contacts, Immersed, Scene, State, Tally
 from ryusa.model.contacts import N_EVENT
-from ryusa.model.enums import Arm, EventRule, Rolling
+from ryusa.model.enums import Arm, Damping, EventRule, Rebound, Rolling
 from ryusa.model.scene import Floats
 from ryusa.model.tally import N_BOOK
 
@@ -78,6 +78,8 @@ class CpuEngine:
             reasons.append(
                 "the spring-dashpot-slider needs rolling.arm = 'reduced radius': its stiffness may not change"
             )
+        if scene.water.rebound != Rebound.DRY and scene.contact.damping == Damping.CONSTANTS:
+            reasons.append("an immersed rebound needs a restitution in air: contact.damping gives constants")
         largest = float(np.concatenate([scene.d, scene.d_fixed[scene.fixed_active]]).max(initial=0.0))
         for axis, length in zip("xy", scene.period, strict=True):
             if length < _SHORTEST_PERIOD * largest:
@@ -132,7 +134,7 @@ class CpuEngine:
         if before is not None and changed:
             self._book_switch(before, scene, state, dropped)
             self._drained.append(closed_records(state, dropped))
-        memory = memory_of(contacts, self._variant, self._numbers, self._layout)
+        memory = memory_of(contacts, self._variant, self._choice, self._numbers, self._layout)
         by_id = self._layout.by_id(state)
         for touching in (contacts.i, contacts.j[contacts.j < n]):
             np.add.at(by_id.touched, touching, 1)

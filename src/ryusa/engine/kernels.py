@@ -25,6 +25,7 @@ from ryusa.engine.pair import (
     begin_row,
     part,
     roll,
+    wet_row,
 )
 from ryusa.engine.records import begin_record, end_record, keep_record
 from ryusa.engine.rows import *
@@ -38,6 +39,7 @@ from ryusa.laws.contact import (
 )
 from ryusa.laws.geometry import arm, turn, wrap
 from ryusa.laws.geometry import overlap as overlap_of
+from ryusa.laws.immersed import lubrication_force
 from ryusa.laws.rolling import reduced_radius
 from ryusa.model.enums import Cap, Slip
 
@@ -66,7 +68,7 @@ def forces(
     now: Any,
 ) -> None:
     """Forces of every pair owned by grains lo..hi-1; q is the first slot of the block in `pairs.react`."""
-    plane_case, rotation, rolling, events, _ = kind
+    plane_case, rotation, rolling, events, _, film = kind
     slip, cap, tension, width = choice.slip, choice.cap, choice.tension, pairs.mem.shape[1]
     x, v, w, r, m, inertia, ids = grains.x, grains.v, grains.w, grains.r, grains.m, grains.inertia, grains.ids
     f, torque, touches, touched = grains.f, grains.torque, grains.touches, grains.touched
@@ -75,6 +77,7 @@ def forces(
     normals, points = walls.normals, walls.points
     dt, k_n, k_s, mu, cohesion = c[C_DT], c[C_K_N], c[C_K_S], c[C_MU], c[C_COHESION]
     l_x, l_y, limit = c[C_PERIOD_X], c[C_PERIOD_Y], c[C_OVERLAP_LIMIT]
+    film_reach, near = c[C_FILM_REACH], False
     spring_n = spring_s = spring_r = 0.0
     step_given = dash_n_lost = dash_s_lost = slide_lost = released_n = released_s = 0.0
     most = now[N_OVERLAP_MAX]
@@ -97,6 +100,8 @@ def forces(
                 )
                 overlap = r_i - distance
                 touching = overlap > 0.0
+                if film:
+                    near = overlap > -film_reach
             else:
                 n_x, n_y, n_z = wrap(x[j, 0] - x_i, l_x), 0.0, x[j, 2] - z_i
                 square = n_x * n_x + n_z * n_z
@@ -105,12 +110,14 @@ def forces(
                     square += n_y * n_y
                 reach = r_i + r[j]
                 touching = square < reach * reach
-                if touching or live[p]:
+                if film:
+                    near = square < (reach + film_reach) * (reach + film_reach)
+                if touching or live[p] or near:
                     distance = math.sqrt(square)
                     overlap = overlap_of(r_i, r[j], distance)
                     inverse = 1.0 / distance
                     n_x, n_y, n_z = n_x * inverse, n_y * inverse, n_z * inverse
-            if not (touching or live[p]):
+            if not (touching or live[p] or near):
                 if cross:
                     react_touch[q] = 0
                     q += 1
@@ -141,7 +148,7 @@ def forces(
                     s_z += g_x * n_y - g_y * n_x
             row = mem[p]
 
-            if not touching:  # parted in this step
+            if live[p] and not touching:  # parted in this step
                 part(
                     tension,
                     choice.rolling if rolling else 0,
@@ -173,8 +180,24 @@ def forces(
                         ended,
                         now,
                     )
+            if not touching:
+                if film:
+                    radius = reduced_radius(r_i, r[j])
+                    f_n = lubrication_force(
+                        -overlap, closing, radius, c[C_ASPERITY], film_reach, c[C_RHO_W], c[C_NU]
+                    )
+                    h_x, h_y, h_z = -f_n * n_x, -f_n * n_y, -f_n * n_z
+                    grains.film[i, 0] += h_x
+                    grains.film[i, 1] += h_y
+                    grains.film[i, 2] += h_z
+                    if cross:
+                        react[q, 0], react[q, 1], react[q, 2] = h_x, h_y, h_z
+                    elif j < n:
+                        grains.film[j, 0] -= h_x
+                        grains.film[j, 1] -= h_y
+                        grains.film[j, 2] -= h_z
                 if cross:
-                    react_touch[q] = 0
+                    react_touch[q] = 2 * film
                     q += 1
                 continue
 
@@ -184,6 +207,8 @@ def forces(
                 if hdt > 0.0:
                     step_given -= 0.5 * k_n * overlap * (2.0 * hdt * closing - overlap)
                 begin_row(row, rotation, i, j, c, m, r, inertia)
+                if choice.rebound:
+                    wet_row(row, choice, closing, i, j, c, m, r)
                 if events:
                     begin_record(
                         plane_case,

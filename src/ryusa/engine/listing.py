@@ -79,6 +79,7 @@ class Layout:
             tracked=self.tracked,
             f=np.zeros((n, 3)),
             torque=np.zeros((n, 3)),
+            film=np.zeros((n, 3) if film_reach(scene) > 0.0 else (0, 0)),
             touches=np.zeros(n, np.int32),
             touched=np.zeros(n, np.int32),
             seen=np.array(immersed.seen),
@@ -112,7 +113,7 @@ class Layout:
         ----------
         by_id : arrays in the order of ids; positions are brought inside the period.
         pairs : the old list, whose arrays are used again where they are large enough.
-        skin : reach of the list beyond touch [m].
+        skin : reach of the list beyond touch and films [m].
         memory : pairs in touch.
 
         Returns
@@ -124,6 +125,7 @@ class Layout:
         x = by_id.x
         lost = int(wrap_grains(x[:n], by_id.image, period, self.low, self.high))
         listed = x[:n].copy()
+        skin = skin + film_reach(scene)
         size = 2.0 * float(self.r[: self.n_solid].max(initial=0.0)) + skin
         low, wide, dims = grid_of(x, n, size, period)
         order = np.empty(n, np.int64)
@@ -185,6 +187,11 @@ class Layout:
             listed,
             lost,
         )  # fmt: skip
+
+
+def film_reach(scene: Scene) -> float:
+    """Gap below which films resist [m]; 0 where there are none."""
+    return 0.0 if scene.water.profile == Profile.NONE else scene.water.film_reach
 
 
 def take_memory(n: int, grains: Grains, pairs: Pairs) -> Memory:

@@ -20,6 +20,8 @@ from ryusa.model.tally import Book
 DRY = int(Above.DRY)
 STOKES = int(WaterTorque.STOKES)
 B_DRAG, B_TORQUE, B_LIFT, B_FLOW = int(Book.DRAG), int(Book.TORQUE), int(Book.LIFT), int(Book.FLOW)
+B_FILM = int(Book.FILM)
+FILM = 2  # in Pairs.react_touch
 
 
 @kernel(fastmath=FAST, forceinline=True)
@@ -39,6 +41,7 @@ def motion(
     """Gather what other blocks stored, add water and weight, and move grains lo..hi-1 by one step."""
     plane_case, rotation = kind.plane_case, kind.rotation
     profile, above, drag, torque_law = choice.profile, choice.above, choice.drag, choice.torque
+    film = kind.film
     column, seen, taken = kind.column, grains.seen, grains.taken
     x, v, w, r, m, inertia, ids = grains.x, grains.v, grains.w, grains.r, grains.m, grains.inertia, grains.ids
     m_bare, m_weight, image = grains.m_bare, grains.m_weight, grains.image
@@ -54,16 +57,24 @@ def motion(
     if column:
         book[B_LIFT] += now[N_PEND_LIFT]
         book[B_FLOW] += now[N_PEND_FLOW]
-    pend_lift = pend_flow = work_lift = work_flow = 0.0
+    if film:
+        book[B_FILM] -= now[N_PEND_FILM]
+    pend_lift = pend_flow = work_lift = work_flow = pend_film = work_film = 0.0
     for i in range(lo, hi):
         f_x, f_y, f_z = f[i, 0], f[i, 1], f[i, 2]
         t_x, t_y, t_z = torque[i, 0], torque[i, 1], torque[i, 2]
         hits = touches[i]
         f[i, 0] = f[i, 1] = f[i, 2] = torque[i, 0] = torque[i, 1] = torque[i, 2] = 0.0
         touches[i] = 0
+        h_x = h_y = h_z = 0.0
+        if film:
+            h_x, h_y, h_z = grains.film[i, 0], grains.film[i, 1], grains.film[i, 2]
+            grains.film[i, 0] = grains.film[i, 1] = grains.film[i, 2] = 0.0
         for k in range(incoming_start[i], incoming_start[i + 1]):
             q = incoming[k]
-            if react_touch[q]:
+            if film and react_touch[q] == FILM:
+                h_x, h_y, h_z = h_x - react[q, 0], h_y - react[q, 1], h_z - react[q, 2]
+            elif react_touch[q]:
                 f_x, f_y, f_z = f_x - react[q, 0], f_y - react[q, 1], f_z - react[q, 2]
                 t_x, t_y, t_z = t_x + react[q, 3], t_y + react[q, 4], t_z + react[q, 5]
                 hits += 1
@@ -89,6 +100,8 @@ def motion(
                 d_x, d_y, d_z = k_d * u_x, k_d * u_y, k_d * u_z
         if column:
             f_x, f_y, f_z = f_x + l_x + e_x, f_y + l_y, f_z + l_z + e_z
+        if film:
+            f_x, f_y, f_z = f_x + h_x, f_y + h_y, f_z + h_z
         y_x, y_z = x[i, 0], x[i, 2]
         x[i, 0], a_x = semi_implicit(x[i, 0], v_x, acceleration(f_x, d_x, m_w * g_x, m_b, added), dt)
         x[i, 2], a_z = semi_implicit(x[i, 2], v_z, acceleration(f_z, d_z, m_w * g_z, m_b, added), dt)
@@ -106,6 +119,9 @@ def motion(
             pend_lift += 0.5 * dt * (l_x * a_x + l_y * a_y + l_z * a_z)
             work_flow += half * (e_x * v_x + e_z * v_z)
             pend_flow += 0.5 * dt * (e_x * a_x + e_z * a_z)
+        if film:
+            work_film += half * (h_x * v_x + h_y * v_y + h_z * v_z)
+            pend_film += 0.5 * dt * (h_x * a_x + h_y * a_y + h_z * a_z)
         square = a_x * a_x + a_y * a_y + a_z * a_z
         if not square < math.inf and now[N_FAULT] == FAULT_NONE:
             now[N_FAULT], now[N_FAULT_GRAIN], now[N_FAULT_PARTNER] = FAULT_NOT_A_NUMBER, ids[i], -1
@@ -154,6 +170,9 @@ def motion(
         now[N_PEND_LIFT], now[N_PEND_FLOW] = pend_lift, pend_flow
         book[B_LIFT] += work_lift
         book[B_FLOW] += work_flow
+    if film:
+        now[N_PEND_FILM] = pend_film
+        book[B_FILM] -= work_film
     now[N_SPEED_MAX], now[N_SPIN_MAX] = math.sqrt(speed_2), math.sqrt(spin_2)
     now[N_FAULT_SHOWN], now[N_ENDED_SHOWN] = now[N_FAULT], now[N_N_ENDED]
     if last:

@@ -18,9 +18,11 @@ from ryusa.engine.rows import (
     R_DASH_N,
     R_DASH_R,
     R_DASH_S,
+    R_ETA_N,
     R_F_N,
     R_SPRING_R,
     R_SPRING_S,
+    Choice,
     Variant,
 )
 from ryusa.model import Contacts, State
@@ -41,15 +43,20 @@ def contacts_of(memory: Memory, variant: Variant) -> Contacts:
         f_n=rows[:, R_F_N].copy(),
         spring_r=rows[:, R_SPRING_R : R_SPRING_R + 3].copy() if variant.rolling else none,
         dash_r=rows[:, R_DASH_R : R_DASH_R + 3].copy() if variant.rolling else none,
+        eta_n=rows[:, R_ETA_N].copy(),
         event=rows[:, variant.event_column :].copy() if variant.events else np.zeros((len(i), N_EVENT)),
     )
 
 
-def memory_of(contacts: Contacts, variant: Variant, numbers: Floats, layout: Layout) -> Memory:
-    """Rows from a snapshot; dashpots follow from masses anew."""
+def memory_of(
+    contacts: Contacts, variant: Variant, choice: Choice, numbers: Floats, layout: Layout
+) -> Memory:
+    """Rows from a snapshot; dashpots follow from masses anew, but one that a film has fixed stays."""
     rows = np.zeros((len(contacts), variant.row_width))
     for row, i, j in zip(rows, contacts.i, contacts.j, strict=True):
         begin_row(row, variant.rotation, i, j, numbers, layout.m, layout.r, layout.inertia)
+    if choice.rebound:
+        rows[:, R_ETA_N] = contacts.eta_n
     rows[:, R_SPRING_S : R_SPRING_S + 3], rows[:, R_DASH_S : R_DASH_S + 3] = (
         contacts.spring_s,
         contacts.dash_s,

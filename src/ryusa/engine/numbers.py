@@ -18,6 +18,7 @@ def variant_of(scene: Scene) -> Variant:
         rolling=int(scene.rotation and scene.rolling.model != Rolling.NONE),
         events=int(scene.events != EventRule.NONE),
         column=int(scene.water.profile == Profile.COLUMN),
+        film=int(scene.water.profile != Profile.NONE and scene.water.film_reach > 0.0),
     )
 
 
@@ -39,6 +40,7 @@ def choice_of(scene: Scene) -> Choice:
         hindrance=int(water.hindrance),
         lift=int(water.lift),
         magnus=int(water.magnus),
+        rebound=int(water.rebound) if water.profile != Profile.NONE else 0,
     )
 
 
@@ -79,6 +81,11 @@ def numbers_of(scene: Scene) -> Floats:
         k.C_ETA_S: 0.0 if asked else law.eta_s,
         k.C_HINDRANCE: water.hindrance_exponent,
         k.C_C_L: water.c_l,
+        k.C_FILM_REACH: water.film_reach,
+        k.C_ASPERITY: water.asperity,
+        k.C_ST_C: water.st_c,
+        k.C_E_DRY: law.e_n,
+        k.C_E_LEAST: water.e_least,
     }
     numbers = np.zeros(len(table))
     for place, value in table.items():

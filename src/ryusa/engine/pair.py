@@ -6,9 +6,10 @@ from typing import Any
 
 from ryusa.engine._kernel import FAST, kernel
 from ryusa.engine.rows import *
-from ryusa.laws.collision import effective_mass, effective_mass_tangential
+from ryusa.laws.collision import effective_mass, effective_mass_tangential, zeta_no_tension, zeta_tension
 from ryusa.laws.contact import damping, damping_in_steps
 from ryusa.laws.geometry import turn
+from ryusa.laws.immersed import restitution_davis, restitution_exponential, stokes_number
 from ryusa.laws.rolling import (
     epsd_damping,
     epsd_spring,
@@ -22,7 +23,7 @@ from ryusa.laws.rolling import (
     rolling_printed,
     slider_scale,
 )
-from ryusa.model.enums import Arm, Rolling
+from ryusa.model.enums import Arm, Rebound, Rolling
 from ryusa.model.tally import Book
 
 Vector = tuple[float, float, float]
@@ -32,6 +33,7 @@ Body = tuple[
 
 ROLL_PRINTED, ROLL_CONSTANT, ROLL_EPSD = int(Rolling.PRINTED), int(Rolling.CONSTANT), int(Rolling.EPSD)
 ARM_WIDTH = int(Arm.CONTACT_WIDTH)
+EXPONENTIAL = int(Rebound.EXPONENTIAL)
 B_DASH_N, B_DASH_S, B_SLIDE, B_ROLL = int(Book.DASH_N), int(Book.DASH_S), int(Book.SLIDE), int(Book.ROLL)
 B_STEP = int(Book.STEP)
 B_RELEASED_N, B_RELEASED_S, B_RELEASED_R = int(Book.RELEASED_N), int(Book.RELEASED_S), int(Book.RELEASED_R)
@@ -45,6 +47,20 @@ def begin_row(row: Any, rotation: int, i: int, j: int, c: Any, m: Any, r: Any, i
     m_n = effective_mass(m[i], m[j])
     row[R_ETA_N] = c[C_ETA_N] + damping_in_steps(damping(c[C_ZETA_N], c[C_K_N], m_n), m_n, c[C_DT])
     row[R_ETA_S] = c[C_ETA_S] + damping_in_steps(damping(c[C_ZETA_S], c[C_K_S], m_t), m_t, c[C_DT])
+
+
+@kernel()
+def wet_row(row: Any, choice: Choice, closing: float, i: int, j: int, c: Any, m: Any, r: Any) -> None:
+    """Give a pair that just touched under water the normal dashpot of its rebound at this closing speed."""
+    m_n = effective_mass(m[i], m[j])
+    st = stokes_number(closing, m_n, reduced_radius(r[i], r[j]), c[C_RHO_W], c[C_NU])
+    if choice.rebound == EXPONENTIAL:
+        e = restitution_exponential(c[C_E_DRY], st, c[C_ST_C])
+    else:
+        e = restitution_davis(c[C_E_DRY], st, c[C_ASPERITY], 2.0 * min(r[i], r[j]))
+    e = max(e, c[C_E_LEAST])
+    zeta = zeta_tension(e) if choice.tension else zeta_no_tension(e)
+    row[R_ETA_N] = damping_in_steps(damping(zeta, c[C_K_N], m_n), m_n, c[C_DT])
 
 
 @kernel(fastmath=FAST)

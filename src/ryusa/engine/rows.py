@@ -71,6 +71,11 @@ C_ETA_N = 28  # constants, 0 where they follow from restitution
 C_ETA_S = 29
 C_HINDRANCE = 30  # exponent
 C_C_L = 31
+C_FILM_REACH = 32  # gap below which a film resists before touch [m]
+C_ASPERITY = 33
+C_ST_C = 34
+C_E_DRY = 35  # restitution asked for [-]
+C_E_LEAST = 36
 
 # Per block: what holds at the last step of a call, and extremes (model.tally.Book is kept beside it).
 N_KINETIC = 0
@@ -95,6 +100,7 @@ N_FAULT_SHOWN = 18  # FAULT and N_ENDED as they stood when the block last moved:
 N_ENDED_SHOWN = 19
 N_PEND_LIFT = 20
 N_PEND_FLOW = 21
+N_PEND_FILM = 22
 
 # What a kernel cannot raise.
 FAULT_NONE = 0
@@ -113,7 +119,7 @@ BASE, WITH_ROLLING = 10, 16  # doubles a row takes without and with rolling fric
 # widths padded to whole cache lines, so that blocks of different threads do not share one
 N_NOW = 24
 N_BOOKS = 24
-PENDING = (N_PEND_DRAG, N_PEND_TORQUE, N_PEND_LIFT, N_PEND_FLOW)  # kept behind the books in a snapshot
+PENDING = (N_PEND_DRAG, N_PEND_TORQUE, N_PEND_LIFT, N_PEND_FLOW, N_PEND_FILM)  # kept behind the books in a snapshot
 
 
 class Variant(NamedTuple):
@@ -124,6 +130,7 @@ class Variant(NamedTuple):
     rolling: int
     events: int
     column: int
+    film: int  # films resist before touch
 
     @property
     def row_width(self) -> int:
@@ -153,3 +160,4 @@ class Choice(NamedTuple):
     hindrance: int
     lift: int
     magnus: int
+    rebound: int

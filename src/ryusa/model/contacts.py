@@ -50,6 +50,7 @@ class Contacts:
     f_n: Floats  # normal force in the last step [N], shape (n_contact,)
     spring_r: Floats  # rolling spring torque on i [N m], shape (n_contact, 3)
     dash_r: Floats  # rolling torque on i in the last step, less its spring [N m], shape (n_contact, 3)
+    eta_n: Floats  # normal dashpot, which a film of water fixes at first touch [N s/m], shape (n_contact,)
     event: np.ndarray  # the open record of each contact as it stands, shape (n_contact, N_EVENT), float64
 
     @staticmethod
@@ -57,7 +58,8 @@ class Contacts:
         """No pair in touch."""
         ids = np.zeros(0, dtype=np.int64)
         v3 = np.zeros((0, 3))
-        return Contacts(ids, ids, v3, v3, np.zeros(0), np.zeros(0), v3, v3, np.zeros((0, N_EVENT)))
+        none, event = np.zeros(0), np.zeros((0, N_EVENT))
+        return Contacts(ids, ids, v3, v3, none, none, v3, v3, none, event)
 
     def __len__(self) -> int:
         return len(self.i)

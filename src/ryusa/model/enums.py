@@ -116,6 +116,14 @@ class Magnus(IntEnum):
     OESTERLE_DINH = 3
 
 
+class Rebound(IntEnum):
+    """Restitution of a contact under water, fixed at first touch."""
+
+    DRY = 0  # that of the contact law
+    EXPONENTIAL = 1  # e exp(-St_c/St), Legendre et al.
+    DAVIS = 2  # what the film takes between half a diameter and the asperities
+
+
 class EventRule(IntEnum):
     """Which contacts are recorded."""
 

@@ -18,6 +18,7 @@ from ryusa.model.enums import (
     Lift,
     Magnus,
     Profile,
+    Rebound,
     Rolling,
     Slip,
     WaterTorque,
@@ -80,6 +81,12 @@ class Water:
     a_2: float = float(np.pi / 4)  # area coefficient of Eq. (10) [-]
     c_m: float = 0.5  # added-mass coefficient [-]
     torque: WaterTorque = WaterTorque.NONE
+    # the film between two grains, and between a grain and a wall
+    rebound: Rebound = Rebound.DRY
+    st_c: float = 35.0  # Stokes number of EXPONENTIAL [-]
+    e_least: float = 0.01  # least restitution that a film leaves: a dashpot for none is infinite [-]
+    asperity: float = 0.0  # thickness of the film at which grains touch [m]
+    film_reach: float = 0.0  # gap below which the film resists before touch [m]; 0: it does not
     # only where the profile is COLUMN
     buoyancy: Buoyancy = Buoyancy.WEIGHT
     hindrance: Hindrance = Hindrance.NONE

@@ -25,10 +25,14 @@ class Book(IntEnum):
     STEP = 11  # given by the step: springs met and left within one, (1/2) k overlap (closing dt - overlap)
     START = 12  # energy at the first step: kinetic + spin + potential + springs
     FLOW = 13  # given by pressure, stress and acceleration of the water, beyond what still water does
+    FILM = 14  # lost to films of water between grains that do not touch
 
 
 N_BOOK = len(Book)
-LOSSES = (Book.DASH_N, Book.DASH_S, Book.SLIDE, Book.ROLL, Book.RELEASED_N, Book.RELEASED_S, Book.RELEASED_R)
+LOSSES = (
+    Book.DASH_N, Book.DASH_S, Book.SLIDE, Book.ROLL, Book.RELEASED_N, Book.RELEASED_S, Book.RELEASED_R,
+    Book.FILM,
+)  # fmt: skip
 GIFTS = (Book.DRAG, Book.TORQUE, Book.LIFT, Book.FLOW, Book.SWITCH, Book.STEP)
 # Terms that say how large the account is. START and SWITCH are heights from an origin that is free to choose.
 SIZES = tuple(b for b in Book if b not in {Book.START, Book.SWITCH})
