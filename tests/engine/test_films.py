@@ -93,8 +93,8 @@ def test_a_film_takes_from_the_approach_what_its_closed_form_says(st, partner):
     made, speed = meet(st, partner, water, per_contact=1000.0, gap=1.2 * reach, stiffness=1.0e5, e_dry=0.99)
     engine = CpuEngine()
     engine.load(*made)
-    first = []
-    while not len(first):
+    first = np.zeros(0)
+    while first.size == 0:
         engine.advance(200).raise_if_any()
         first = engine.events()["closing_begin"]
     # m dv = -6 pi mu r**2 (1/(gap + rough) - 1/(reach + rough)) dgap

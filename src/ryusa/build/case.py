@@ -15,6 +15,7 @@ from ryusa.build.saltation import saltation
 from ryusa.build.table import table
 from ryusa.casefile.column import Column
 from ryusa.casefile.derive import events_of
+from ryusa.casefile.films import film_reach
 from ryusa.casefile.schema import Case
 from ryusa.casefile.water import hindrance_exponent
 from ryusa.errors import CaseError
@@ -31,6 +32,7 @@ from ryusa.model.enums import (
     Lift,
     Magnus,
     Profile,
+    Rebound,
     Rolling,
     Slip,
     WaterTorque,
@@ -65,6 +67,7 @@ DRAGS = {
 }
 _OF_A_COLUMN = ("buoyancy", "hindrance", "lift", "magnus")
 TORQUES = {"none": WaterTorque.NONE, "Stokes": WaterTorque.STOKES, "Dennis": WaterTorque.DENNIS}
+REBOUNDS = {"dry": Rebound.DRY, "exponential": Rebound.EXPONENTIAL, "Davis": Rebound.DAVIS}
 BUOYANCIES = {"weight": Buoyancy.WEIGHT, "stress": Buoyancy.STRESS, "pressure": Buoyancy.PRESSURE}
 HINDRANCES = {
     "none": Hindrance.NONE,
@@ -187,6 +190,11 @@ def water_of(case: Case, z_zero: float) -> Water:
         a_2=water.shape_area,
         c_m=water.added_mass,
         torque=TORQUES[water.torque],
+        rebound=REBOUNDS[water.rebound],
+        st_c=water.rebound_stokes,
+        e_least=water.rebound_least,
+        asperity=water.asperity or 0.0,
+        film_reach=film_reach(case),
         **(column_laws_of(case) if water.profile == "column" else {}),
     )
 

@@ -8,6 +8,7 @@ from ryusa.casefile.box import hole
 from ryusa.casefile.builders import Box, Drop, Packing, Saltation, Table
 from ryusa.casefile.column_checks import check_column
 from ryusa.casefile.derive import may_spin, periodic, sizes
+from ryusa.casefile.films import check_film_step, check_films
 from ryusa.casefile.schema import Case, Spread
 from ryusa.errors import CaseError
 
@@ -32,14 +33,14 @@ _CHANGES = ("remove", "slope", "slope_angle", "friction_angle", "friction", "rot
 
 def check(case: Case, data: dict[str, Any]) -> list[CaseError]:
     """Find the faults that no single key shows; `data` is what the file held."""
-    found = [*_rivals(case), *_needed(case), *_water(case), *check_column(case)]
+    found = [*_rivals(case), *_needed(case), *_water(case), *check_column(case), *check_films(case)]
     found += [*_motion(case), *_builder(case), *_timeline(case, data)]
     if found:
         return found
     found = [*_numbers(case)]
     if found:
         return found
-    step = [*_step(case, data)]
+    step = [*_step(case, data), *check_film_step(case)]
     return [*_space(case), *step, *([] if step else _frames(case, data)), *_record(case)]
 
 

@@ -9,6 +9,7 @@ from ryusa.casefile import estimate
 from ryusa.casefile.builders import Box, Drop, Packing
 from ryusa.casefile.column_rows import column_rows, origin_of_u_star
 from ryusa.casefile.derive import MANY, Derived, Pair, events_of, slope_at_last
+from ryusa.casefile.films import film_rows
 from ryusa.casefile.rows import Row, row_of
 from ryusa.casefile.schema import Case, StiffnessForOverlap, StiffnessForTime, Water
 from ryusa.casefile.table import table_of
@@ -257,7 +258,7 @@ def _water(case: Case, found: Derived) -> list[Row]:
                 "settling velocity times d/nu",
             ),
         ]
-    return [*rows, *column_rows(case), *_spin(case, found, wet)]
+    return [*rows, *film_rows(case), *column_rows(case), *_spin(case, found, wet)]
 
 
 def _spin(case: Case, found: Derived, wet: Water) -> list[Row]:

@@ -239,6 +239,19 @@ class Water(Section):
     """Added-mass coefficient C_M."""
     torque: Literal["none", "Stokes", "Dennis"] = "none"
     """Torque of the water on a spinning grain."""
+    rebound: Literal["dry", "exponential", "Davis"] = "dry"
+    """Restitution of a contact in water: that of [contact], or less by the Stokes number St of its first
+    touch, times exp(-St_c/St) (Legendre et al.) or times 1 + ln(2 asperity/d)/St (Davis et al.)."""
+    rebound_stokes: Annotated[Number, Field(gt=0, le=1.0e4)] = 35.0
+    """St_c of rebound = "exponential"."""
+    rebound_least: Annotated[Number, Field(gt=0, le=1)] = 0.01
+    """Least restitution that a rebound leaves; a dashpot for none at all would be infinite."""
+    film: Literal["none", "lubrication"] = "none"
+    """Force of the film of water between grains that do not touch; instead of a rebound, which counts it."""
+    film_reach: PositiveLength | None = None
+    """Gap below which films act; a quarter of the mean diameter when not given."""
+    asperity: PositiveLength | None = None
+    """Thickness of the film at which grains touch, for rebound = "Davis" and for films."""
     buoyancy: Literal["stress", "weight", "pressure"] = "stress"
     """Only in a column. Force of the water beside drag, lift and added mass: pressure and shear stress
     carry a grain as they do water (design/0007), the weight of its volume of water as in Eqs. (10)-(11), or

@@ -119,7 +119,13 @@ BASE, WITH_ROLLING = 10, 16  # doubles a row takes without and with rolling fric
 # widths padded to whole cache lines, so that blocks of different threads do not share one
 N_NOW = 24
 N_BOOKS = 24
-PENDING = (N_PEND_DRAG, N_PEND_TORQUE, N_PEND_LIFT, N_PEND_FLOW, N_PEND_FILM)  # kept behind the books in a snapshot
+PENDING = (
+    N_PEND_DRAG,
+    N_PEND_TORQUE,
+    N_PEND_LIFT,
+    N_PEND_FLOW,
+    N_PEND_FILM,
+)  # kept behind the books in a snapshot
 
 
 class Variant(NamedTuple):
