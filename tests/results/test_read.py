@@ -1,12 +1,13 @@
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 
 from ryusa.errors import ResultsError
 from ryusa.model import EVENT, Book
 from ryusa.results import Results
-from ryusa.results.schema import TALLY
+from ryusa.results.schema import BEFORE_FILMS, TALLY
 
 N = 23
 
@@ -123,6 +124,18 @@ def test_the_account_has_a_row_per_frame_and_every_book(folder: Path) -> None:
     assert {book.name.lower() for book in Book} <= set(tally)
     assert tally["kinetic"].tolist() == list(range(N))
     assert tally["overlap_step"].tolist() == [7] * N
+
+
+def test_a_folder_from_before_films_reads_on_and_lost_nothing_to_them(folder: Path) -> None:
+    before = Results.open(folder).tally
+    for path in (folder / "parts").glob("part-*.h5"):
+        with h5py.File(path, "r+") as file:
+            rows = file["tally"][:]
+            del file["tally"]
+            file["tally"] = rows[list(BEFORE_FILMS.names or ())].astype(BEFORE_FILMS)
+    now = Results.open(folder).tally
+    assert not now["film"].any()
+    assert all(np.array_equal(now[name], before[name]) for name in before)
 
 
 def test_grains_bed_and_scene_come_back(folder: Path) -> None:

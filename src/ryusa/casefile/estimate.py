@@ -9,7 +9,7 @@ from ryusa.casefile.schema import Case
 from ryusa.model.contacts import N_EVENT
 
 BYTES_PER_GRAIN = 80  # of a frame: x, v, omega, image
-BYTES_PER_FRAME = 256  # t, step, offset for ParaView and tally
+BYTES_PER_FRAME = 264  # t, step, offset for ParaView and tally
 BYTES_PER_RUN = 100_000  # headers of the parts, log, summary, bed
 MEMORY_PER_GRAIN = 450  # bytes while running without records of contacts
 MEMORY_WITH_EVENTS = 1600  # bytes a grain where contacts are recorded

@@ -49,17 +49,14 @@ class Energy:
 def energy(run: Run) -> Energy:
     """Energy account of a run, from the tally the engine summed while stepping.
 
-    A first frame taken before the first step, when nothing is booked yet, is left out, and so is a book that
-    the run did not have when it was made.
+    A first frame taken before the first step, when nothing is booked yet, is left out.
     """
     tally = run.tally
     if len(tally["t"]) > 1 and not any(tally[name][0] for name in (*HELD, "start")):
         tally = {name: values[1:] for name, values in tally.items()}
     held = {name: np.asarray(tally[name], dtype=np.float64) for name in HELD}
-    lost, given = (
-        {book.name.lower(): np.asarray(tally[book.name.lower()], dtype=np.float64) for book in books}
-        for books in ([book for book in side if book.name.lower() in tally] for side in (LOSSES, GIFTS))
-    )
+    lost = {book.name.lower(): np.asarray(tally[book.name.lower()], dtype=np.float64) for book in LOSSES}
+    given = {book.name.lower(): np.asarray(tally[book.name.lower()], dtype=np.float64) for book in GIFTS}
     begin = np.asarray(tally["start"], dtype=np.float64)
     start = float(begin[-1]) if len(begin) else 0.0
     imbalance = sum(held.values()) - start - sum(given.values()) + sum(lost.values())

@@ -46,7 +46,7 @@ class Part:
     def tally(self) -> NDArray[np.void]:
         """The energy account at each frame of this part."""
         with opened(self.path) as file:
-            return read_dataset(file, "tally", self.path).astype(schema.TALLY, copy=False)
+            return schema.whole(read_dataset(file, "tally", self.path))
 
 
 class LazyFrames:

@@ -256,7 +256,9 @@ def _read_part(path: Path, first: int, n_grain: int, files: OpenFiles) -> Part:
         for name, (dtype, tail) in schema.FRAME_DATASETS.items():
             shape = (k, n_grain, *tail) if name in schema.PER_GRAIN else (k,)
             _check(plain_dataset(file, name, path), shape, dtype, path)
-        _check(plain_dataset(file, "tally", path), (k,), schema.TALLY, path)
+        tally = plain_dataset(file, "tally", path)
+        earlier = tally.dtype == schema.BEFORE_FILMS
+        _check(tally, (k,), schema.BEFORE_FILMS if earlier else schema.TALLY, path)
         contacts = plain_dataset(file, "contacts", path)
         _check(contacts, (contacts.shape[0] if contacts.ndim == 1 else -1,), EVENT, path)
         return Part(path=path, first=first, t=t, step=step, n_contact=len(contacts), files=files)

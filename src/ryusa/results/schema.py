@@ -4,6 +4,7 @@ import re
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ryusa.model import Book, Tally
 from ryusa.model.tally import HELD
@@ -53,6 +54,18 @@ TALLY = np.dtype(
         for name in (*_NOW, *_EXTREME, *(book.name.lower() for book in Book), *_CHECK)
     ]
 )
+
+BEFORE_FILMS = np.dtype([(name, TALLY[name]) for name in TALLY.names or () if name != Book.FILM.name.lower()])
+
+
+def whole(tally: NDArray[np.void]) -> NDArray[np.void]:
+    """Rows of dtype TALLY; a folder from before films has no book for them, and nothing in it."""
+    if tally.dtype == TALLY:
+        return tally
+    rows = np.zeros(tally.shape, TALLY)
+    for name in tally.dtype.names or ():
+        rows[name] = tally[name]
+    return rows
 
 
 def part_name(k: int) -> str:
