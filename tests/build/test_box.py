@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from ryusa.build import build, change
 from ryusa.casefile import Case, read_text
-from ryusa.casefile.derive import periodic
+from ryusa.casefile.grains import periodic
 from ryusa.engine.cpu import CpuEngine
 from ryusa.errors import CaseError
 

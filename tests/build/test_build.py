@@ -12,7 +12,7 @@ from ryusa.build import build, change, scene
 from ryusa.build.layout import Layout, Wall
 from ryusa.build.overlaps import refuse_overlaps
 from ryusa.casefile import Case, Change, read_text
-from ryusa.casefile.derive import periodic
+from ryusa.casefile.grains import periodic
 from ryusa.casefile.water import drag_coefficient, water_speed
 from ryusa.engine import march
 from ryusa.engine.numbers import numbers_of

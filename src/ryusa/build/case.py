@@ -8,6 +8,7 @@ from ryusa.build.assemble import Laws, assemble
 from ryusa.build.box import box
 from ryusa.build.column import column_of, zero_of
 from ryusa.build.drop import drop
+from ryusa.build.flume import flume
 from ryusa.build.layout import Layout, Wall
 from ryusa.build.overlaps import refuse_overlaps
 from ryusa.build.packing import packing
@@ -38,7 +39,14 @@ from ryusa.model.enums import (
     WaterTorque,
 )
 
-BUILDERS = {"drop": drop, "saltation": saltation, "table": table, "packing": packing, "box": box}
+BUILDERS = {
+    "drop": drop,
+    "saltation": saltation,
+    "table": table,
+    "packing": packing,
+    "flume": flume,
+    "box": box,
+}
 SLIPS = {"spring": Slip.SPRING, "spring-drop": Slip.SPRING_DROP, "total": Slip.TOTAL}
 CAPS = {"spring": Cap.SPRING, "total": Cap.TOTAL}
 ROLLINGS = {

@@ -5,10 +5,11 @@ import math
 import numpy as np
 
 from ryusa.build.layout import Layout
+from ryusa.casefile.builders import Flume
 from ryusa.casefile.column import CELL
 from ryusa.casefile.column import Column as Keys
 from ryusa.casefile.column_checks import SPARE
-from ryusa.casefile.derive import packed
+from ryusa.casefile.grains import packed
 from ryusa.casefile.schema import Case
 from ryusa.errors import CaseError
 from ryusa.model import Column
@@ -117,4 +118,6 @@ def area_of(case: Case, layout: Layout) -> float:
     if case.motion.plane:
         lanes = len(np.unique(layout.x[:, 1]))
         return layout.period[0] * (case.motion.slab_width or case.derived.d) * lanes
+    if isinstance(case.build, Flume) and case.build.width is not None:
+        return layout.period[0] * case.build.width
     return layout.period[0] * layout.period[1]

@@ -2,11 +2,11 @@
 
 import numpy as np
 
+from ryusa.build.flume import bed_level
 from ryusa.build.layout import Layout, Wall, still
 from ryusa.build.sizes import draw
 from ryusa.casefile.builders import Packing
-from ryusa.casefile.column import Column
-from ryusa.casefile.derive import bed_counts, packed
+from ryusa.casefile.grains import bed_counts
 from ryusa.casefile.schema import Case
 from ryusa.model.scene import Floats
 
@@ -40,9 +40,7 @@ def packing(case: Case) -> Layout:
     v[:, 0] = keys.speed
     crest = float(np.mean(x_fixed[:, 2])) + d / 2.0 if len(x_fixed) else 0.0
     sizes = draw(case, n, rng)
-    z_zero, where = crest - 0.25 * d, "d/4 below the mean crest of the fixed bed"
-    if case.water is not None and case.water.profile == "column":
-        z_zero, where = _zero(case, sizes, crest if len(x_fixed) else None, wide, deep)
+    z_zero, where = bed_level(case, crest, crest if len(x_fixed) else None)
     notes: list[str] = []
     if case.water is not None and case.water.zero is None:
         notes.append(f"zero of the water profile {where} (water.zero not given)")
@@ -58,23 +56,6 @@ def packing(case: Case) -> Layout:
         z_zero=z_zero,
         notes=tuple(notes),
     )
-
-
-def _zero(case: Case, sizes: Floats, crest: float | None, wide: float, deep: float) -> tuple[float, str]:
-    """Height of the bed that a column of water flows over [m], and where that is; crest None: a plane."""
-    keys = (case.water and case.water.column) or Column()
-    d = case.derived.d
-    if keys.bed != "moving":
-        if keys.bottom is not None:
-            return keys.bottom, "at water.column.bottom"
-        if crest is None:
-            return 0.0, "at the floor"
-        return crest - 0.25 * d, "d/4 below the mean crest of the fixed bed"
-    across = (case.motion.slab_width or d) if case.motion.plane else deep
-    solid = case.grains.shape_volume * float(np.sum(sizes**3))
-    dense = packed(case)
-    end = (crest or 0.0) + solid / (wide * across * dense)
-    return end, f"where the grains end once they lie as dense as {dense:g}"
 
 
 def _bed(case: Case, keys: Packing, rng: np.random.Generator, wide: float, deep: float) -> Floats:

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ryusa.casefile.derive import CUT, spread_of
+from ryusa.casefile.grains import CUT, spread_of
 from ryusa.casefile.schema import Case
 from ryusa.model.scene import Floats
 

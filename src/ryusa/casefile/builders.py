@@ -95,6 +95,31 @@ class Packing(_Keys):
     [[planes]], at x = 0 and x = columns (1 + gap) largest diameters, or grains roll off the bed."""
 
 
+class Flume(_Keys):
+    """A channel, periodic along x: loose grains over a base of fixed ones, between side walls or not."""
+
+    kind: Literal["flume"]
+    """Name of the builder."""
+    length: PositiveLength
+    """Period along x."""
+    width: PositiveLength | None = None
+    """Width along y; none in a plane scene."""
+    walls: bool = True
+    """Smooth side walls at y = 0 and y = width, planes `right` and `left`; false makes y periodic."""
+    layers: Annotated[Number, Field(gt=0, le=100_000)]
+    """Free grains, in layers of as many whole mean diameters as fit the length, times those that fit the
+    width; a flume one grain wide holds layers x length/d of them."""
+    gap: Annotated[Number, Field(ge=0, le=2)] = 0.05
+    """Least free room between first neighbours, in largest diameters."""
+    jitter: Annotated[Number, Field(ge=0, le=1)] = 0.9
+    """Part of that room used by random displacement."""
+    bed: Literal["random", "flat", "plane"] = "random"
+    """Base of fixed grains of random height, of equal height, or a plane."""
+    bed_height: Annotated[Number, Field(ge=0, le=2)] = 0.9167
+    """Range of the random heights, in mean diameters; z = 0 is their mean, at the centres of the base. Frey
+    2014 has 11/12."""
+
+
 class Box(_Keys):
     """Grains fall into a box of floor, back wall and gate; what the timeline removes lets them out."""
 
@@ -128,4 +153,4 @@ class Box(_Keys):
     Group `pit`."""
 
 
-Build = Annotated[Drop | Saltation | Table | Packing | Box, Field(discriminator="kind")]
+Build = Annotated[Drop | Saltation | Table | Packing | Flume | Box, Field(discriminator="kind")]

@@ -5,10 +5,11 @@ from collections.abc import Iterator
 from typing import Any
 
 from ryusa.casefile.box import hole
-from ryusa.casefile.builders import Box, Drop, Packing, Saltation, Table
+from ryusa.casefile.builders import Box, Drop, Flume, Packing, Saltation, Table
 from ryusa.casefile.column_checks import check_column
-from ryusa.casefile.derive import may_spin, periodic, sizes
+from ryusa.casefile.derive import may_spin
 from ryusa.casefile.films import check_film_step, check_films
+from ryusa.casefile.grains import flume_count, periodic, sizes
 from ryusa.casefile.schema import Case, Spread
 from ryusa.errors import CaseError
 
@@ -172,6 +173,8 @@ def _builder(case: Case) -> Iterator[CaseError]:
         yield CaseError("build.rows", build.rows, "must be 1 in a plane scene")
     if isinstance(build, Packing | Box) and periodic(case)[1] and build.rows < FEWEST_PERIODS:
         yield CaseError("build.rows", build.rows, f"must be at least {FEWEST_PERIODS} where y is periodic")
+    if isinstance(build, Flume):
+        yield from _flume(case, build)
     if isinstance(build, Box):
         yield from _box(case, build)
     if case.stop.saltations is not None and not isinstance(build, (Saltation, Table)):
@@ -180,6 +183,22 @@ def _builder(case: Case) -> Iterator[CaseError]:
             case.stop.saltations,
             "needs a bed to saltate over: builder 'saltation' or 'table'",
         )
+
+
+def _flume(case: Case, build: Flume) -> Iterator[CaseError]:
+    plane, (_, across), (_, _, largest) = case.motion.plane, periodic(case), sizes(case)
+    if plane and build.width is not None:
+        yield CaseError("build.width", build.width, "has no meaning in a plane scene; motion.slab_width has")
+    if not plane and build.width is None:
+        yield CaseError("build.width", None, "missing; a flume in three dimensions needs its width")
+    for key, value, least in (
+        ("length", build.length, FEWEST_PERIODS * largest),
+        ("width", build.width, FEWEST_PERIODS * largest if across else largest),
+    ):
+        if value is not None and value < least:
+            yield CaseError(f"build.{key}", value, f"must be at least {least:.4g} m for grains of this size")
+    if flume_count(case) < 1:
+        yield CaseError("build.layers", build.layers, "gives no grain; more layers or a longer flume")
 
 
 def _box(case: Case, build: Box) -> Iterator[CaseError]:

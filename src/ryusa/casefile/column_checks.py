@@ -5,7 +5,8 @@ from collections.abc import Iterator
 from pydantic import BaseModel
 
 from ryusa.casefile.column import CELL, ONLY_IN_A_COLUMN, Column
-from ryusa.casefile.derive import periodic, slope_at_last
+from ryusa.casefile.derive import slope_at_last
+from ryusa.casefile.grains import periodic
 from ryusa.casefile.schema import Case, Water
 from ryusa.errors import CaseError
 from ryusa.model.column import refuse
@@ -52,7 +53,7 @@ def _place(case: Case, water: Water) -> Iterator[CaseError]:
             water.profile,
             f"needs a bed periodic in x, which builder '{kind}' does not give here{ways.get(kind, '')}",
         )
-    elif not (across or case.motion.plane):
+    elif not (across or case.motion.plane or kind == "flume"):
         way = "domain.period_y" if kind == "table" else "motion.plane = true"
         yield CaseError(
             "water.profile", water.profile, f"needs a bed periodic in y too in three dimensions; give {way}"

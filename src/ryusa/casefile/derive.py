@@ -4,17 +4,12 @@ import math
 from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
-import numpy as np
-
-from ryusa.casefile.box import box_plan
-from ryusa.casefile.builders import Box, Drop, Packing, Saltation, Table
-from ryusa.casefile.column import CELL, ONLY_IN_A_COLUMN, PACKED, PACKED_PLANE, Column
-from ryusa.casefile.schema import Case, Spread, StiffnessForOverlap, StiffnessForTime
-from ryusa.casefile.table import table_of
+from ryusa.casefile.column import CELL, ONLY_IN_A_COLUMN, Column
+from ryusa.casefile.grains import counts, packed, sizes
+from ryusa.casefile.schema import Case, StiffnessForOverlap, StiffnessForTime
 from ryusa.laws import collision, drag, motion, water
 from ryusa.laws import contact as contact_law
 
-CUT = 2.5  # standard deviations at which normal and lognormal sizes are cut
 STEPS_PER_CONTACT = 50.0
 MANY = 1000  # free grains beyond which contacts are recorded only when asked for
 SHEAR_RATIO = 2.0 / 7.0
@@ -85,78 +80,6 @@ def mass(case: Case, d: float) -> tuple[float, float, float, float]:
         drag.submerged_mass(m, rho_w, volume),
         inertia,
     )
-
-
-def spread_of(case: Case) -> tuple[str, float]:
-    """Shape and relative width of the size distribution."""
-    spread = case.grains.spread
-    return (spread.kind, spread.ratio) if isinstance(spread, Spread) else ("uniform", float(spread))
-
-
-def sizes(case: Case) -> tuple[float, float, float]:
-    """Mean diameter as the case states it, smallest of free grains and largest that can occur [m]."""
-    table = table_of(case)
-    if table is not None:
-        every = table.column("d")
-        return case.grains.diameter, float(every[~table.fixed].min()), float(every.max())
-    d, (kind, ratio) = case.grains.diameter, spread_of(case)
-    if kind == "uniform":
-        return d, d * (1.0 - ratio), d * (1.0 + ratio)
-    if kind == "normal":
-        return d, d * max(1.0 - CUT * ratio, 0.05), d * (1.0 + CUT * ratio)
-    width = math.sqrt(math.log1p(ratio * ratio))
-    return (
-        d,
-        d * math.exp(-0.5 * width * width - CUT * width),
-        d * math.exp(-0.5 * width * width + CUT * width),
-    )
-
-
-def counts(case: Case) -> tuple[int, int, bool]:
-    """Free grains, fixed grains, and whether two free grains can meet."""
-    build = case.build
-    table = table_of(case)
-    if table is not None:
-        n_fixed = int(table.fixed.sum())
-        n_free = table.n - n_fixed
-        places = len(np.unique(table.column("y")[~table.fixed])) if case.motion.plane else 1
-        return n_free, n_fixed, n_free > places
-    if isinstance(build, Drop):
-        free = 2 if build.partner == "free" else 1
-        return build.copies * free, build.copies * (build.partner == "fixed"), build.partner == "free"
-    if isinstance(build, Saltation):
-        return build.starts, build.starts * build.n_bed, False
-    if isinstance(build, Box):
-        d, _, d_max = sizes(case)
-        n_fixed = box_plan(build, d, d_max, case.motion.plane).n_fixed
-        return build.columns * build.rows * build.layers, n_fixed, True
-    assert isinstance(build, Packing)
-    bed = bed_counts(case)
-    return build.columns * build.rows * build.layers, bed[0] * bed[1], True
-
-
-def bed_counts(case: Case) -> tuple[int, int]:
-    """Fixed grains of a packing's bed along x and y; (0, 0) over a plane."""
-    build = case.build
-    if not isinstance(build, Packing) or build.bed == "plane":
-        return 0, 0
-    d, _, d_max = sizes(case)
-    pitch = d_max * (1.0 + build.gap)
-    fewest = 3 if build.periodic else 1
-    n_x, n_y = (max(round(count * pitch / d), fewest) for count in (build.columns, build.rows))
-    return n_x, 1 if case.motion.plane else n_y
-
-
-def periodic(case: Case) -> tuple[bool, bool]:
-    """Whether x and y are periodic."""
-    build = case.build
-    if isinstance(build, Packing):
-        return build.periodic, build.periodic and not case.motion.plane
-    if isinstance(build, Box):
-        return False, not case.motion.plane
-    if isinstance(build, Table):
-        return case.domain.period_x is not None, case.domain.period_y is not None
-    return isinstance(build, Saltation), False
 
 
 def may_spin(case: Case) -> bool:
@@ -372,17 +295,6 @@ def resolved(case: Case) -> dict[str, Any]:
         _resolve_column(case, data["water"])
     data["derived"] = asdict(found)
     return _plain(data)
-
-
-def packed(case: Case) -> float:
-    """Concentration of a case's bed at rest, where eddies have no room [-]."""
-    keys = (case.water and case.water.column) or Column()
-    if keys.packed is not None:
-        return keys.packed
-    if not case.motion.plane:
-        return PACKED
-    d = sizes(case)[0]
-    return PACKED_PLANE * d / (case.motion.slab_width or d)
 
 
 def _resolve_column(case: Case, data: dict[str, Any]) -> None:

@@ -3,7 +3,7 @@
 import math
 import shutil
 
-from ryusa.casefile.builders import Box, Packing, Table
+from ryusa.casefile.builders import Box, Flume, Packing, Table
 from ryusa.casefile.derive import events_of
 from ryusa.casefile.schema import Case
 from ryusa.model.contacts import N_EVENT
@@ -61,7 +61,7 @@ def events_expected(case: Case) -> int:
     if kept == "tracked":
         n = len(set(case.record.tracked))
     rate = EVENTS_ALONE
-    if isinstance(case.build, Packing | Table | Box) and case.derived.meet:
+    if isinstance(case.build, Packing | Flume | Table | Box) and case.derived.meet:
         rate = max(rate, EVENTS_DENSE * math.sqrt(case.derived.g / case.derived.d))
     return 0 if kept == "none" else math.ceil(n * rate * time_expected(case)[0])
 

@@ -6,7 +6,7 @@ from typing import Literal
 import numpy as np
 
 from ryusa.casefile import estimate
-from ryusa.casefile.builders import Box, Drop, Packing
+from ryusa.casefile.builders import Box, Drop, Flume, Packing
 from ryusa.casefile.column_rows import column_rows, origin_of_u_star
 from ryusa.casefile.derive import MANY, Derived, Pair, events_of, slope_at_last
 from ryusa.casefile.films import film_rows
@@ -182,7 +182,7 @@ def expected_speed(case: Case) -> tuple[float, str]:
     if isinstance(build, Box) and (fall := build.height + build.layers * build.gap * found.d_max) > found.d:
         fastest = math.sqrt(2.0 * found.g * fall * (found.m_weight / (found.m + found.m_added)))
         return min(fastest, settling), "fall of the top layer through the free room below it"
-    if isinstance(build, Packing | Box):
+    if isinstance(build, Packing | Flume | Box):
         return math.sqrt(2.0 * found.g * found.d), "fall through one diameter, sqrt(2 g d)"
     if math.isfinite(settling):
         return settling, "settling velocity; a saltating grain mostly hits more slowly"
@@ -205,11 +205,11 @@ def _impact(case: Case, found: Derived) -> list[Row]:
     advice = "; stiffen k_n" if overlap > high else "; k_n could be softer" if overlap < low else ""
     how = f"on a fixed grain: {verdict} 0.001-0.01{advice}"
     rows.append(row_of("impact", "largest overlap/d", overlap, "-", how, flag))
-    if isinstance(case.build, Packing | Box):
+    if isinstance(case.build, Packing | Flume | Box):
         weight = case.build.layers * found.m_weight * found.g * math.cos(found.slope)
         rest = weight / (found.k_n * found.d)
         deep: Literal["", "warning"] = "warning" if rest > high else ""
-        how = f"{case.build.layers} layers stacked in a column"
+        how = f"{case.build.layers:g} layers stacked in a column"
         rows.append(row_of("impact", "overlap/d at rest", rest, "-", how, deep))
     along, where = _speed_along(case, found)
     if along > 0.0:

@@ -2,7 +2,8 @@
 
 import math
 
-from ryusa.casefile.derive import mass, sizes
+from ryusa.casefile.derive import mass
+from ryusa.casefile.grains import sizes
 from ryusa.casefile.schema import Case
 from ryusa.laws import drag, hindrance, water
 

@@ -330,9 +330,14 @@ def _width(scene: Scene, lanes: int) -> float:
     if scene.plane_case:
         slab = scene.slab_width
         return lanes * (slab if math.isfinite(slab) else float(scene.d.mean()))
-    if not math.isfinite(scene.period[1]):
+    if math.isfinite(scene.period[1]):
+        return float(scene.period[1])
+    # side walls: planes that face each other across y
+    facing = scene.plane_normal[:, 1] * scene.plane_active
+    right, left = (scene.plane_point[facing == side, 1] for side in (1.0, -1.0))
+    if not (len(right) and len(left)):
         raise ResultsError("the scene is open along y: it has no width to divide by")
-    return float(scene.period[1])
+    return float(left.min() - right.max())
 
 
 def _mean(name: str, unit: str, series: Floats) -> Layers:

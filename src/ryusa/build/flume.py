@@ -1,0 +1,103 @@
+"""A channel with a loose bed over fixed grains of random height; a run settles it."""
+
+import math
+
+import numpy as np
+
+from ryusa.build.layout import Layout, Wall, still
+from ryusa.build.sizes import draw
+from ryusa.casefile.builders import Flume
+from ryusa.casefile.column import Column
+from ryusa.casefile.grains import bed_counts, bed_thickness, flume_count, packed
+from ryusa.casefile.schema import Case
+from ryusa.model.scene import Floats
+
+SIDES = ("right", "left")  # looking downstream: y = 0 and y = width
+
+
+def flume(case: Case) -> Layout:
+    """Free lattice over a base whose centres lie at z = 0 on average; groups `bed`, `right`, `left`."""
+    keys = case.build
+    assert isinstance(keys, Flume)
+    rng = np.random.default_rng(case.seed)
+    d, plane = case.derived.d, case.motion.plane
+    wide = d if plane or keys.width is None else keys.width
+    x_fixed = _base(case, keys, rng, wide)
+    top = float(x_fixed[:, 2].max()) + d / 2.0 if len(x_fixed) else 0.0
+    x = _lattice(case, keys, rng, wide)
+    if plane:
+        x[:, 1] = 0.0
+    x[:, 2] += top
+    walls = () if len(x_fixed) else (Wall("floor", (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)),)
+    sided = keys.walls and not plane
+    if sided:
+        walls += (
+            Wall(SIDES[0], (0.0, 0.0, 0.0), (0.0, 1.0, 0.0)),
+            Wall(SIDES[1], (0.0, wide, 0.0), (0.0, -1.0, 0.0)),
+        )
+    z_zero, where = bed_level(case, 0.0, d / 2.0 if len(x_fixed) else None)
+    notes = (f"zero of the water {where} (water.zero not given)",)
+    return Layout(
+        d=draw(case, len(x), rng),
+        x=x,
+        v=still(len(x)),
+        omega=still(len(x)),
+        d_fixed=np.full(len(x_fixed), d),
+        x_fixed=x_fixed,
+        walls=walls,
+        period=(keys.length, math.inf if plane or sided else wide),
+        z_zero=z_zero,
+        notes=notes if case.water is not None and case.water.zero is None else (),
+    )
+
+
+def bed_level(case: Case, base: float, crest: float | None) -> tuple[float, str]:
+    """Height of the bed that water flows over [m], and where that is.
+
+    Parameters
+    ----------
+    base : from where loose grains begin to fill [m].
+    crest : mean top of the fixed grains [m]; None over a plane.
+    """
+    keys = (case.water and case.water.column) or Column()
+    if case.water is None or case.water.profile != "column" or keys.bed != "moving":
+        if keys.bottom is not None:
+            return keys.bottom, "at water.column.bottom"
+        if crest is None:
+            return base, "at the floor"
+        return crest - 0.25 * case.derived.d, "d/4 below the mean crest of the fixed bed"
+    level = base + bed_thickness(case)
+    return level, f"where the grains end once they lie as dense as {packed(case):g}"
+
+
+def _base(case: Case, keys: Flume, rng: np.random.Generator, wide: float) -> Floats:
+    """Fixed grains of mean diameter, evenly spaced, at random or equal height around z = 0 [m]."""
+    n_x, n_y = bed_counts(case)
+    grid = np.stack(np.meshgrid(np.arange(n_y), np.arange(n_x), indexing="ij"), -1).reshape(-1, 2)
+    x = still(len(grid))
+    if not len(grid):
+        return x
+    x[:, 0] = (grid[:, 1] + 0.5) * keys.length / n_x
+    if not case.motion.plane:
+        x[:, 1] = (grid[:, 0] + 0.5) * wide / n_y
+    if keys.bed == "random":
+        x[:, 2] = rng.uniform(-0.5, 0.5, len(x)) * keys.bed_height * case.derived.d
+        x[:, 2] -= x[:, 2].mean()
+    return x
+
+
+def _lattice(case: Case, keys: Flume, rng: np.random.Generator, wide: float) -> Floats:
+    """Jittered centres from z = 0 upwards, neighbours and walls kept clear [m]; the highest layer in part."""
+    d_max = case.derived.d_max
+    free = d_max * (1.0 + keys.gap)
+    n_x = max(int(keys.length / free), 1)
+    n_y = 1 if case.motion.plane else max(int(wide / free), 1)
+    pitch = np.array([keys.length / n_x, wide / n_y, free])
+    n = flume_count(case)
+    layer, within = np.divmod(np.arange(math.ceil(n / (n_x * n_y)) * n_x * n_y), n_x * n_y)
+    places = np.stack([within % n_x, within // n_x, layer], -1)
+    last = int(layer[-1]) * n_x * n_y  # the highest layer is filled at random places
+    chosen = np.concatenate([np.arange(last), last + np.sort(rng.permutation(n_x * n_y)[: n - last])])
+    room = 0.5 * keys.jitter * np.maximum(pitch - d_max, 0.0)
+    x = (places[chosen] + 0.5) * pitch
+    return np.asarray(x + rng.uniform(-1.0, 1.0, x.shape) * room)

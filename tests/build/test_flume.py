@@ -1,0 +1,107 @@
+"""A flume holds as many layers as asked for, between its walls, over a base about z = 0."""
+
+import math
+
+import numpy as np
+import pytest
+
+from ryusa.build import build
+from ryusa.casefile import Case, read_text
+from ryusa.casefile.grains import bed_area, bed_thickness
+from ryusa.errors import CaseError
+
+D = 0.006
+BASE = """
+[grains]
+diameter = "6 mm"
+density = "2500 kg/m3"
+[contact]
+stiffness = "190 N/cm"
+restitution = 0.5
+friction = 0.4
+[motion]
+rotation = "free"
+plane = false
+slope_angle = "0.1 rad"
+[build]
+kind = "flume"
+length = "30 cm"
+width = "6.5 mm"
+layers = 7.08
+[stop]
+time = "1 s"
+"""
+WATER = "{ profile = 'column', depth = '1 cm' }"
+
+
+def case(build: str = "", **others: str) -> Case:
+    said = [one.split("=") for one in build.split(";") if one]
+    keys = {f"build.{key.strip()}": value.strip() for key, value in said}
+    return read_text(BASE, {**keys, **{key.replace("__", "."): value for key, value in others.items()}})
+
+
+def test_a_flume_one_grain_wide_holds_its_layers_times_length_over_d() -> None:
+    built = build(case())
+    assert built.scene.n_grain == round(7.08 * 50)
+    assert built.scene.n_fixed == 50
+    assert built.scene.period[0] == pytest.approx(0.3)
+    assert math.isinf(built.scene.period[1])
+
+
+@pytest.mark.parametrize("build_keys", ["", "width='3.1 cm'", "width='3.1 cm'; walls=false", "bed='plane'"])
+@pytest.mark.parametrize("spread", ["0.0", "0.08"])
+def test_no_first_grain_touches_another_or_a_wall(build_keys: str, spread: str) -> None:
+    # overlaps between grains are refused by the builder itself
+    built = build(case(build_keys, grains__spread=spread))
+    scene, x = built.scene, built.state.x
+    for normal, point in zip(scene.plane_normal, scene.plane_point, strict=True):
+        assert np.min((x - point) @ normal - 0.5 * scene.d) >= -1e-12
+    assert scene.n_plane == 2 * ("false" not in build_keys) + ("plane" in build_keys)
+
+
+def test_the_base_lies_at_zero_on_average_over_eleven_twelfths_of_a_grain() -> None:
+    scene = build(case("length='300 cm'")).scene
+    z = scene.x_fixed[:, 2]
+    assert abs(z.mean()) < 1e-12
+    assert np.ptp(z) == pytest.approx(11 / 12 * D, rel=0.02)
+    assert np.ptp(build(case("bed='flat'")).scene.x_fixed[:, 2]) == 0.0
+
+
+def test_the_zero_of_the_water_is_where_the_loose_bed_ends_when_packed() -> None:
+    one = case(water=WATER)
+    built = build(one)
+    height = one.derived.n_grain * math.pi / 6 * D**3 / (0.3 * 0.0065 * 0.61)
+    assert built.scene.water.z_zero == pytest.approx(height, rel=1e-12)
+    assert bed_thickness(one) == pytest.approx(height, rel=1e-12)
+    assert built.scene.column is not None
+    assert built.scene.column.area == pytest.approx(0.3 * 0.0065)
+    assert any("as dense as 0.61" in note for note in built.notes)
+
+
+def test_a_plane_flume_is_one_slab_wide() -> None:
+    one = read_text(BASE.replace('width = "6.5 mm"\n', ""), {"motion.plane": "true"})
+    built = build(one)
+    assert np.all(built.state.x[:, 1] == 0.0)
+    assert built.scene.n_plane == 0
+    assert bed_area(one) == pytest.approx(0.3 * D)
+
+
+@pytest.mark.parametrize(
+    ("keys", "others", "key", "says"),
+    [
+        ("width='5 mm'", {}, "build.width", "at least 0.006"),
+        ("walls=false; width='1 cm'", {}, "build.width", "at least 0.018"),
+        ("length='1 cm'", {}, "build.length", "at least 0.018"),
+        ("", {"motion.plane": "true"}, "build.width", "plane scene"),
+        ("layers=0.001", {}, "build.layers", "no grain"),
+    ],
+)
+def test_a_flume_that_cannot_be_is_refused(keys: str, others: dict[str, str], key: str, says: str) -> None:
+    with pytest.raises(CaseError, match=says) as caught:
+        case(keys, **others)
+    assert caught.value.key == key
+
+
+def test_a_flume_without_width_in_three_dimensions_is_refused() -> None:
+    with pytest.raises(CaseError, match="needs its width"):
+        read_text(BASE.replace('width = "6.5 mm"\n', ""))
