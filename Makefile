@@ -1,6 +1,6 @@
 # ryusa needs only python3 (3.11 or later) and make; everything else goes into .venv.
 #   make demo     install, run the saltation case, measure it, draw it
-#   make test     the same, the paper's claims in short, then every check and test
+#   make test     the same, the paper's claims and the validation in short, then every check and test
 # `make` alone lists the rest.
 
 PYTHON ?= python3
@@ -10,6 +10,7 @@ RUN    := runs/demo
 SHOW   := runs/demo-pictures
 LEDGER := runs/paper-quick
 PAPER  := runs/paper
+CHECKED := runs/validation-quick
 DRAWN  := docs/pictures
 JOBS   ?= 2
 
@@ -21,7 +22,7 @@ HAS_RYUSA  := $(VENV)/.has-ryusa
 HAS_TESTS  := $(VENV)/.has-tests
 
 .DEFAULT_GOAL := help
-.PHONY: help demo demo-run test check lint format types walls unit docs pictures bench paper paper-quick slow constraints clean
+.PHONY: help demo demo-run test check lint format types walls unit docs pictures bench paper paper-quick validate validate-quick slow constraints clean
 
 help: ## list these targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 22
@@ -63,9 +64,10 @@ demo: $(HAS_RYUSA) ## install, run the saltation case, measure it, draw it
 
 # ---------------------------------------------------------------------------------------------------------- test
 
-test: $(HAS_TESTS) ## the demo, the paper's claims in short, then every check and test
+test: $(HAS_TESTS) ## the demo, the paper's claims and the validation in short, then every check and test
 	@$(MAKE) --no-print-directory demo
 	@$(MAKE) --no-print-directory paper-quick
+	@$(MAKE) --no-print-directory validate-quick
 	@$(MAKE) --no-print-directory check
 
 check: lint types walls unit ## every check and test, without the demo
@@ -89,6 +91,12 @@ paper: $(HAS_RYUSA) ## every claim of the paper, judged over three seeds: runs/p
 paper-quick: $(HAS_TESTS) ## every claim of the paper in minutes, indicative; refuses a ledger with a gap
 	$(BIN)/ryusa paper --quick -o $(LEDGER) --jobs $(JOBS) --again
 	$(BIN)/python tests/report/check_ledger.py $(LEDGER)/ledger-quick.json
+
+validate: $(HAS_RYUSA) ## ours on every reference, with its error: runs/validation/validation.html
+	$(BIN)/ryusa validate --jobs $(JOBS)
+
+validate-quick: $(HAS_RYUSA) ## the same in short; fails where something lies outside its tolerance
+	$(BIN)/ryusa validate --quick -o $(CHECKED) --jobs $(JOBS) --again
 
 slow: $(HAS_TESTS) ## tests that take longer than about ten seconds
 	$(BIN)/python -m pytest -q -n $(JOBS) -m slow
@@ -115,6 +123,6 @@ bench: $(HAS_RYUSA) ## time whole workloads; keeps the table in benchmarks/resul
 constraints: $(HAS_TESTS) ## write constraints.txt anew from what .venv holds
 	$(BIN)/python -m pip freeze --exclude ryusa | grep -v '@\|^\#' > constraints.txt
 
-clean: ## remove the environment, caches and the runs of demo and paper-quick
-	rm -rf $(VENV) $(RUN) $(SHOW) $(LEDGER) build .pytest_cache .ruff_cache .hypothesis .import_linter_cache
+clean: ## remove the environment, caches and the runs of demo, paper-quick and validate-quick
+	rm -rf $(VENV) $(RUN) $(SHOW) $(LEDGER) $(CHECKED) build .pytest_cache .ruff_cache .hypothesis .import_linter_cache
 	find . -name __pycache__ -type d -not -path './.git/*' -prune -exec rm -rf {} +

@@ -10,7 +10,7 @@ from PIL import Image, ImageChops
 from ryusa.errors import ResultsError
 from ryusa.experiments import Level, Plan, Word
 from ryusa.paper import CLAIMS
-from ryusa.report import page, write
+from ryusa.report import html, page, write
 
 KEYS = {
     "id",
@@ -180,7 +180,7 @@ def test_a_file_that_cannot_be_written_leaves_the_old_one_whole(every_word, monk
     def fail(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(page.os, "replace", fail)
+    monkeypatch.setattr(html.os, "replace", fail)
     with pytest.raises((OSError, ResultsError)):
         write(replace(every_word, rows=()))
     assert (every_word.folder / "ledger.html").read_bytes() == before

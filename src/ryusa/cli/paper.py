@@ -1,20 +1,18 @@
 """`ryusa paper`: re-do the whole study and say, claim by claim, what holds."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ryusa.cli.campaign import console, cores, interrupted, tell_failures
+
 if TYPE_CHECKING:
     from ryusa.experiments import Plan
     from ryusa.report import Ledger
 
-_INTERRUPTED = 130  # exit code after Ctrl-C
-_FAILED = 3  # exit code where some runs could not be carried out, or some claims not judged
-_BROKEN = 1  # exit code where an error in the program is behind it, as Python's own
-_WIDE = 100  # columns of a table that goes to a file or pipe
 _MOST_SEEDS = 1000
 
 
@@ -77,44 +75,19 @@ def paper(
             chosen,
             plan,
             out,
-            jobs=jobs or _cores(),
+            jobs=jobs or cores(),
             again=again,
             say=None if quiet else Lines(),
         )
         files = write(ledger, json)
     except KeyboardInterrupt:
-        typer.echo(
-            f"interrupted; {out} holds what was finished, the same command goes on from there", err=True
-        )
-        raise typer.Exit(_INTERRUPTED) from None
+        interrupted(out)
     except OSError as error:
         raise ResultsError(f"{out}: cannot be written ({error.strerror or error})") from None
     _print(ledger)
     for path in files:
         typer.echo(f"wrote {path}")
-    _tell(
-        ledger.problems,
-        "run could not be carried out or measured",
-        "runs could not be carried out or measured",
-    )
-    _tell(ledger.faults, "step after the runs failed", "steps after the runs failed")
-    if ledger.traces:
-        typer.echo(
-            f"errors in the program, not in the case: {out / ledger.log} holds their tracebacks. What was "
-            "finished is kept; after a repair the same command needs to do only what failed",
-            err=True,
-        )
-        raise typer.Exit(_BROKEN)
-    if ledger.problems or ledger.faults:
-        raise typer.Exit(_FAILED)
-
-
-def _tell(found: Mapping[str, str], one: str, many: str) -> None:
-    """List what went wrong, on stderr."""
-    if found:
-        typer.echo(f"{len(found)} {one if len(found) == 1 else many}:", err=True)
-    for what, reason in found.items():
-        typer.echo(f"  {what}: {reason}", err=True)
+    tell_failures(ledger.problems, ledger.faults, ledger.traces, out / ledger.log)
 
 
 def _plan(quick: bool, full: bool, seeds: str | None) -> "Plan":
@@ -142,12 +115,6 @@ def _seeds(text: str) -> tuple[int, ...]:
     if len(set(numbers)) < len(numbers) or max(numbers) >= 2**63:
         raise CaseError("--seeds", text, allowed)
     return tuple(numbers)
-
-
-def _cores() -> int:
-    import os
-
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _known(word: str) -> list[str]:
@@ -188,9 +155,9 @@ def _list(plan: "Plan", chosen: Sequence[str] | None, out: Path, jobs: int | Non
         claims = ", ".join(experiment.CLAIMS)
         table.add_row(name, experiment.TITLE, claims, str(len(runs)), f"{minutes:.1f}" if runs else "-")
         every += runs
-    _console().print(table)
+    console().print(table)
     typer.echo("A run that several experiments need is made once.")
-    typer.echo(f"{plan.level}: {outlook(every, out / 'runs', jobs=jobs or _cores(), again=again)}")
+    typer.echo(f"{plan.level}: {outlook(every, out / 'runs', jobs=jobs or cores(), again=again)}")
 
 
 def _print(ledger: "Ledger") -> None:
@@ -221,13 +188,6 @@ def _print(ledger: "Ledger") -> None:
         table.add_row(row.claim.id, "verdict", f"{row.word} {escape(plain['condition'])}".strip())
         table.add_row("", "paper", escape(row.claim.says))
         table.add_row("", "ours", escape(ours))
-    _console().print(table)
+    console().print(table)
     counts = Counter(row.word for row in ledger.rows)
     typer.echo("; ".join(f"{counts[word]} {word}" for word in Word if counts[word]))
-
-
-def _console() -> Any:
-    from rich.console import Console
-
-    console = Console(highlight=False)
-    return console if console.is_terminal else Console(width=_WIDE, highlight=False)

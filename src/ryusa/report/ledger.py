@@ -1,7 +1,5 @@
 """One row per claim of the paper, from runs to verdicts."""
 
-import math
-import platform
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -9,7 +7,6 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from ryusa.campaign import Work
 from ryusa.experiments import (
     NAMES,
     Campaign,
@@ -29,11 +26,11 @@ from ryusa.figures import save
 from ryusa.measure import write_csv
 from ryusa.paper import CITATION, CLAIMS, Claim
 from ryusa.report.common import Common, common
+from ryusa.report.origin import counted, json_number, missing_runs, origin, traces_of
 from ryusa.running import provenance
 from ryusa.running.folder import refuse_if_not_writable
 
 FORMAT = 1  # of the JSON file
-_NAMED = 3  # runs that failed, named in a row
 WATER = ("fig17", "fig17-time", "fig17-e", "fig17-lock", "fig17-free", "fig18", "fig22", "fig22-free")
 
 
@@ -114,7 +111,7 @@ class Ledger:
             "faults": dict(self.faults),
             "errors_in": list(self.traces),
             "log": self.log,
-            "provenance": _origin(self.counts),
+            "provenance": origin(self.counts),
         }
 
 
@@ -152,18 +149,11 @@ def make(
     if names is None:
         rows |= {one: Row(CLAIMS[one], Word.WATER, None) for one in WATER if one not in rows}
     ordered = tuple(rows[one] for one in CLAIMS if one in rows)
-    counts = {
-        "runs_made": campaign.n_run,
-        "runs_opened": campaign.n_opened,
-        "wall_s": round(campaign.seconds, 1),
-        "jobs": jobs,
-        "commits_of_runs": dict(campaign.commits.most_common()),
-        "of_other_code": dict(campaign.others.most_common()),
-    }
+    counts = counted(campaign, jobs)
     findings = [(one.experiment, one.finding) for one in ordered if one.finding is not None]
     level = "" if plan.level is Level.STANDARD else f"-{plan.level}"
     stem = f"ledger{level}{'' if names is None else '-part'}"
-    traces = _traces(campaign, faults)
+    traces = traces_of(campaign, faults)
     said = {what: one.words for what, one in faults.items()}
     sets = common(findings)
     return Ledger(ordered, plan, folder, sets, campaign.problems, counts, tables, stem, said, traces)
@@ -185,7 +175,7 @@ def _judged(
     experiment, found = load(name), campaign.found[name]
     missing = campaign.missing.get(name, {})
     if missing:
-        problem = _missing(missing, len(found) + len(missing))
+        problem = missing_runs(missing, len(found) + len(missing))
         return _unjudged(name, problem)
     judging, table, drawing = f"{name}: judging", f"{name}: its table", f"{name}: its pictures"
     tables[name] = []
@@ -232,23 +222,6 @@ def _unjudged(
     }
 
 
-def _missing(missing: Mapping[Work, Fault], n: int) -> str:
-    """Which runs failed, and why; the first few of many."""
-    told = [f"{one.label}: {fault.words}" for one, fault in list(missing.items())[:_NAMED]]
-    more = f"; and {len(missing) - _NAMED} more" if len(missing) > _NAMED else ""
-    return f"{len(missing)} of {n} runs failed, so it was not judged; {'; '.join(told)}{more}"
-
-
-def _traces(campaign: Campaign, faults: Mapping[str, Fault]) -> dict[str, str]:
-    """Tracebacks of errors in the program, each once, under what they spoiled."""
-    every = [
-        (f"{name}: run {one.label}", fault)
-        for name, found in campaign.missing.items()
-        for one, fault in found.items()
-    ]
-    return {what: fault.trace for what, fault in [*every, *faults.items()] if fault.trace}
-
-
 def _share_out(pictures: Sequence[Path], claims: Sequence[str]) -> dict[str, tuple[Path, ...]]:
     """Give each picture to the claim that its name begins with, else to the first claim."""
     shared: dict[str, list[Path]] = {one: [] for one in claims}
@@ -260,32 +233,16 @@ def _share_out(pictures: Sequence[Path], claims: Sequence[str]) -> dict[str, tup
 
 def _spread(found: Interval) -> dict[str, Any]:
     return {
-        "value": _json(found.value), "low": _json(found.low), "high": _json(found.high), "unit": found.unit,
-        "n": found.n, "how": found.how,
+        **{name: json_number(getattr(found, name)) for name in ("value", "low", "high")},
+        "unit": found.unit, "n": found.n, "how": found.how,
     }  # fmt: skip
 
 
 def _trial(one: Trial) -> dict[str, Any]:
     held = {True: "holds", False: "fails", None: "undecided"}[one.holds]
-    low, high = _json(one.band.low), _json(one.band.high)
+    low, high = json_number(one.band.low), json_number(one.band.high)
     asked = {"low": low, "high": high, "unit": one.band.unit, "says": one.band.says}
     return {
         "part": one.part, "choices": dict(one.choices), **_spread(one.found), "asked": asked, "outcome": held,
         "note": one.note,
     }  # fmt: skip
-
-
-def _json(value: float) -> float | None:
-    """JSON knows no infinity and no nan."""
-    return value if math.isfinite(value) else None
-
-
-def _origin(counts: Mapping[str, Any]) -> dict[str, Any]:
-    found = provenance.begin(threads=1, seed=None, engine="CpuEngine", overrides={})
-    kept = ("ryusa", "commit", "packages", "python", "system", "machine")
-    return {
-        "made": provenance.now(),
-        **{key: found[key] for key in kept},
-        **counts,
-        "node": platform.machine(),
-    }

@@ -1,27 +1,20 @@
 """Write the ledger: JSON, and one page that needs nothing but itself."""
 
-import base64
-import io
-import os
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
-from PIL import Image
-
-from ryusa.experiments import Word, code_in_words, load, short
+from ryusa.experiments import Word, load, short
 from ryusa.paper import CLAIMS
 from ryusa.report.friction import MARKS, by_angle
+from ryusa.report.html import embedded, is_wide, template, write_log, write_whole
 from ryusa.report.ledger import Ledger
 from ryusa.running.folder import write_json
 
 WHOLE_TABLE = 60  # rows; of a longer table the page holds the first HEAD
 HEAD = 20
 BEST = 5  # sets of common choices shown
-COLOURS = 256  # of an embedded picture
-ONE_COLUMN = 1600  # pixels; a wider picture is shown over the whole page, or its letters would be too small
 OPEN_SWEEP = 12  # rows; a longer sweep is folded
 # verdict -> class of its colour, and a sign that survives grey print
 LOOKS = {
@@ -70,18 +63,9 @@ def write(ledger: Ledger, copy: Path | None = None) -> tuple[Path, ...]:
         files.append(copy)
     for path in files[1:]:  # first: whatever becomes of the page, the numbers are kept
         write_json(path, plain)
-    _write_log(ledger)
-    _write_whole(page, render(plain, ledger.tables, ledger.folder))
+    write_log(ledger.folder / f"{ledger.stem}-errors.log", ledger.traces)
+    write_whole(page, render(plain, ledger.tables, ledger.folder))
     return tuple(files)
-
-
-def _write_log(ledger: Ledger) -> None:
-    """Keep the tracebacks of errors in the program, and none of an earlier ledger."""
-    log = ledger.folder / f"{ledger.stem}-errors.log"
-    if ledger.traces:
-        _write_whole(log, "\n".join(f"{what}\n{trace}" for what, trace in ledger.traces.items()))
-    else:
-        log.unlink(missing_ok=True)
 
 
 def render(
@@ -103,15 +87,10 @@ def render(
             first.setdefault(one["experiment"], one["id"])
     angles, lines = by_angle(claims)
     words = Counter(one["verdict"] for one in claims)
-    page = Environment(
-        loader=FileSystemLoader(Path(__file__).parent), autoescape=True, undefined=StrictUndefined,
-        trim_blocks=True, lstrip_blocks=True,
-    )  # fmt: skip
-    page.filters["number"] = number
-    page.filters["interval"] = interval
-    page.filters["code"] = code_in_words
-    return page.get_template("page.html").render(
+    return template("page.html", interval=interval).render(
         ledger=plain,
+        command="ryusa paper",
+        who="experiments",
         n_claims=len(CLAIMS),
         claims=[_section(one, first, tables, folder) for one in claims],
         counts=[(str(word), words[str(word)], *LOOKS[word]) for word in LOOKS if words[str(word)]],
@@ -166,35 +145,6 @@ def _best(common: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
     return [one for one in common if one["choices"]][:BEST]
 
 
-def embedded(picture: Path) -> str:
-    """Give a PNG as an address that holds the picture itself, pixel by pixel, in at most COLOURS colours.
-
-    A third of the bytes of the file it is made from, which stays as it is.
-    """
-    held = io.BytesIO()
-    with Image.open(picture) as image:
-        flat = image.convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
-    flat.save(held, "PNG", optimize=True)
-    return "data:image/png;base64," + base64.b64encode(held.getvalue()).decode("ascii")
-
-
-def is_wide(picture: Path) -> bool:
-    """Whether its letters need the whole width of the page: a picture of two columns."""
-    with Image.open(picture) as image:
-        return image.width > ONE_COLUMN
-
-
-def number(value: object) -> str:
-    """Give a value of a table as text, floats to four digits.
-
-    >>> number(0.123456), number(None), number("30 deg")
-    ('0.1235', '', '30 deg')
-    """
-    if value is None:
-        return ""
-    return f"{value:.4g}" if isinstance(value, float) else str(value)
-
-
 def interval(found: Mapping[str, Any]) -> str:
     """Say a number and its interval in words.
 
@@ -207,9 +157,3 @@ def interval(found: Mapping[str, Any]) -> str:
     middle = f"{short(found['value'])}{unit}"
     low, high = (short(end) if end is not None else "no limit" for end in (found["low"], found["high"]))
     return middle if low == high else f"{middle} ({low} to {high})"
-
-
-def _write_whole(path: Path, text: str) -> None:
-    beside = path.with_name(f".{path.name}.new")
-    beside.write_text(text, encoding="utf-8")
-    os.replace(beside, path)

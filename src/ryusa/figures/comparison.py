@@ -1,0 +1,76 @@
+"""Our curves on reference curves."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ryusa.figures.style import COLOURS, FAINT, LINES, MARKERS, house, new
+from ryusa.model.scene import Floats
+
+_FEW = 25  # points of a curve that are shown one by one
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One axis of a picture."""
+
+    label: str
+    unit: str = "-"
+    log: bool = False
+
+    def __str__(self) -> str:
+        return self.label if self.unit == "-" else f"{self.label} [{self.unit}]"
+
+
+@dataclass(frozen=True)
+class Line:
+    """One curve; what is not finite is left out."""
+
+    name: str
+    x: Floats
+    y: Floats
+
+
+@house
+def compared(
+    x: Axis, y: Axis, ours: Sequence[Line], references: Sequence[Line], beside: Sequence[Line] = ()
+) -> Figure:
+    """Draw ours as coloured signs, or lines where they are many, references as black ones, others faint.
+
+    A reference of the same name as one of ours shares its colour.
+    """
+    figure, (axes,) = new(height=2.9)
+    colours = {one.name: COLOURS[k % (len(COLOURS) - 1)] for k, one in enumerate(ours)}
+    for k, one in enumerate(beside):
+        axes.plot(one.x, one.y, color=FAINT, linestyle=LINES[k % len(LINES)], lw=0.8, label=one.name)
+    for k, one in enumerate(references):
+        colour = colours.get(one.name, COLOURS[-1])
+        label = None if one.name in colours else one.name
+        if _few(one) and not _few_all(ours):
+            marker = MARKERS[k % len(MARKERS)]
+            axes.plot(one.x, one.y, marker, color=colour, mfc="none", label=label)
+        else:
+            axes.plot(one.x, one.y, color=colour, linestyle=LINES[k % len(LINES)], label=label)
+    for k, one in enumerate(ours):
+        few = _few(one)
+        axes.plot(
+            one.x, one.y, MARKERS[k % len(MARKERS)] if few else "-", color=colours[one.name],
+            ms=3.4 if few else None, label=one.name, zorder=3,
+        )  # fmt: skip
+    for set_scale, axis, values in ((axes.set_xscale, x, "x"), (axes.set_yscale, y, "y")):
+        if axis.log and all(np.all(getattr(one, values) > 0.0) for one in (*ours, *references)):
+            set_scale("log")
+    axes.set_xlabel(str(x))
+    axes.set_ylabel(str(y))
+    axes.legend(fontsize=6.0)
+    return figure
+
+
+def _few(one: Line) -> bool:
+    return len(one.x) <= _FEW
+
+
+def _few_all(lines: Sequence[Line]) -> bool:
+    return all(_few(one) for one in lines)
