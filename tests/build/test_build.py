@@ -19,6 +19,7 @@ from ryusa.engine.numbers import numbers_of
 from ryusa.errors import CaseError
 from ryusa.laws import drag
 from ryusa.model.enums import Damping, Drag, EventRule, Profile
+from ryusa.model.resistance import drag_of
 
 BASE = """
 [grains]
@@ -402,7 +403,9 @@ def test_case_and_engine_read_the_same_drag(law: str) -> None:
     for speed in (1e-4, 0.1, 1.0):
         c_d = drag_coefficient(one, drag.reynolds(speed, 0.002, 1e-6))
         expected = drag.drag_factor(speed, c_d, 1000.0, math.pi / 4, 0.002)
-        assert march.drag_of(int(made.water.drag), speed, 0.002, numbers_of(made)) == pytest.approx(expected)
+        wet = made.water
+        found = drag_of(int(wet.drag), speed, 0.002, wet.nu, wet.rho_w, wet.a_2, wet.c_d)
+        assert found == pytest.approx(expected)
 
 
 def test_grains_of_a_packing_begin_with_the_speed_asked_for() -> None:

@@ -7,7 +7,7 @@ import pytest
 
 from ryusa.casefile import Case, read
 from ryusa.casefile.column_rows import regime
-from ryusa.casefile.explain import Row, warnings
+from ryusa.casefile.explain import Row
 from ryusa.laws import transport
 
 CaseOf = Callable[..., Case]
@@ -79,13 +79,6 @@ def test_the_motion_to_expect_follows_from_stress_and_settling(
     said, because = regime(tau_star, D_STAR, rouse)
     assert said == words
     assert why in because
-
-
-def test_a_column_that_cannot_see_its_bed_is_warned_of(case: CaseOf) -> None:
-    keys = {"build": "{ kind = 'saltation' }", "motion.slope": "1/20"}
-    assert any("fixed grains" in text for text in warnings(case(water=WATER, **keys)))
-    rough = WATER.replace(" }", ", column = { bed = 'rough' } }")
-    assert not any("fixed grains" in text for text in warnings(case(water=rough, **keys)))
 
 
 @pytest.mark.parametrize("drag", ["none", "24/Re+0.4"])

@@ -1,15 +1,17 @@
 """A run whose water is solved: exchanged at fixed steps, recorded, read back, however it was cut."""
 
 import math
-from dataclasses import replace
+from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from ryusa.build import scene
-from ryusa.model import Column, Water
-from ryusa.model.column import Bed, Mixing
+from ryusa.engine.cpu import CpuEngine
+from ryusa.model import Column, Scene, State, Water
+from ryusa.model.column import Bed, Mixing, Start
 from ryusa.model.enums import Drag, EventRule, Hindrance, Profile
 from ryusa.results import Results
 from ryusa.running import loop as loop_module
@@ -37,6 +39,36 @@ def falling(interval=10):
     return replace(fixed, column=column), first
 
 
+def over_fixed_grains() -> tuple[Scene, State]:
+    """The same over a row of fixed grains, whose drag is all that stops the water."""
+    fixed, first = falling()
+    n = 30
+    row = np.column_stack([(np.arange(n) + 0.5) * 2.0 * D, np.zeros(n), np.full(n, 0.5 * D)])
+    column = replace(fixed.column, bed=Bed.MOVING, mixing=Mixing.PRANDTL, start=Start.STEADY)
+    return replace(
+        fixed, x_fixed=row, d_fixed=np.full(n, D), fixed_active=np.ones(n, dtype=np.bool_), column=column
+    ), first
+
+
+def stepping(fixed, state) -> loop_module.Loop:
+    """The loop without what it writes."""
+    nothing: Any = None
+    stop = Stop(time=1.0)
+    loop = loop_module.Loop(
+        CpuEngine(), fixed, 1.0, stop, [], nothing, nothing, nothing, {}, _step=state.step
+    )
+    loop.engine.load(fixed, state)
+    loop._immerse(state)
+    return loop
+
+
+def bits(value: Any) -> Any:
+    """All numbers of a snapshot."""
+    if is_dataclass(value):
+        return {one.name: bits(getattr(value, one.name)) for one in fields(value)}
+    return value.tobytes() if isinstance(value, np.ndarray) else repr(value)
+
+
 def carried_out(folder: Path) -> Results:
     made = falling()
     return run_scene(*made, folder, frames=50 * made[0].dt, stop=Stop(time=400 * made[0].dt), progress=False)
@@ -61,6 +93,43 @@ def test_water_and_grains_do_not_depend_on_how_the_run_is_cut(tmp_path: Path, mo
     cut = carried_out(tmp_path / "cut")
     assert np.array_equal(whole.water.u, cut.water.u)
     assert np.array_equal(whole.frames[-1].x, cut.frames[-1].x)
+
+
+@pytest.mark.parametrize("k", [0, 1, 5, 95, 101, 104, 163])
+def test_a_snapshot_at_any_step_goes_on_with_the_same_bits(k: int) -> None:
+    fixed, first = over_fixed_grains()
+    whole = stepping(fixed, first)
+    whole._steps(200)
+    before = stepping(fixed, first)
+    before._steps(k)
+    again = stepping(fixed, before.state())
+    assert bits(again.state()) == bits(before.state())
+    again._steps(200 - k)
+    assert whole._water is not None and whole._water.exchanges > 10
+    assert bits(again.state()) == bits(whole.state())
+
+
+def test_a_snapshot_of_another_column_is_refused() -> None:
+    fixed, first = falling()
+    state = stepping(fixed, first).state()
+    assert fixed.column is not None
+    with pytest.raises(ValueError, match="48 cells and 30 grains does not go on in a column of 49 cells"):
+        stepping(replace(fixed, column=replace(fixed.column, n=49)), state)
+
+
+def test_grains_that_the_timeline_takes_away_fill_the_column_no_more() -> None:
+    fixed, first = over_fixed_grains()
+    loop = stepping(fixed, first)
+    loop._steps(50)
+    water, column = loop._water, fixed.column
+    assert water is not None and column is not None
+    full = water.phi.copy()
+    gone = replace(fixed, fixed_active=np.zeros(fixed.n_fixed, dtype=np.bool_))
+    water.change(gone, column)
+    lost = (full - water.phi).sum() * column.dz * column.area
+    assert lost == pytest.approx(fixed.n_fixed * math.pi / 6.0 * D**3)
+    loop._steps(20)
+    assert water.budget is not None and water.budget.fixed == 0.0
 
 
 def test_a_run_without_a_column_has_no_water(tmp_path: Path) -> None:

@@ -10,6 +10,7 @@ from ryusa.laws.turbulence import length_van_driest, speed_mean_rough
 from ryusa.laws.water import log_law_rough, log_law_smooth
 from ryusa.model.column import Bed, Column, Drive, Mixing
 from ryusa.water import discharge, friction_velocity, steady
+from ryusa.water.closures import averaged
 
 U_STAR = 0.0985
 
@@ -165,3 +166,13 @@ def test_a_bed_that_is_nowhere_packed_lets_eddies_grow_in_it(bedload, phi):
     assert phi.max() < bedload.phi_max
     wet = (bedload.faces > 0.0) & (bedload.faces < bedload.z_surface - 0.1 * bedload.dz)
     assert (steady(bedload, phi)[0].nu_t[wet] > 0.0).all()
+
+
+def test_layers_of_a_bed_leave_no_trace_in_the_mean_over_a_grain():
+    k = np.arange(200)
+    layers = 0.5 + 0.2 * np.cos(2.0 * np.pi * k / 10.0)
+    mean = averaged(0.1, 1.0, 199, layers)
+    assert mean[5:-5] == pytest.approx(np.full(190, 0.5), abs=2e-3)
+    assert averaged(0.1, np.nan, 199, layers) == pytest.approx(layers)
+    assert averaged(2.0, 1.0, 199, layers) == pytest.approx(layers)
+    assert averaged(0.1, 1.0, 99, np.ones(200))[:100] == pytest.approx(np.ones(100))

@@ -13,7 +13,7 @@ from ryusa.casefile.grains import packed
 from ryusa.casefile.schema import Case
 from ryusa.errors import CaseError
 from ryusa.model import Column
-from ryusa.model.column import Bed, Drive, Mixing, SideWalls, Surface
+from ryusa.model.column import Bed, Drive, Mixing, SideWalls, Start, Surface
 
 BEDS = {"moving": Bed.MOVING, "rough": Bed.ROUGH, "smooth": Bed.SMOOTH}
 SURFACES = {"depth": Surface.DEPTH, "volume": Surface.VOLUME}
@@ -31,6 +31,7 @@ MIXINGS = {
     "Li-Sawamoto": Mixing.LI_SAWAMOTO,
 }
 SIDES = {"Blasius": SideWalls.BLASIUS, "Karman-Prandtl": SideWalls.KARMAN_PRANDTL}
+STARTS = {"rest": Start.REST, "steady": Start.STEADY}
 MOST_CELLS = 100_000
 
 
@@ -97,6 +98,7 @@ def column_of(case: Case, layout: Layout) -> Column | None:
         k_f=keys.pore_eddies,
         d=found.d,
         interval=keys.interval,
+        start=STARTS[keys.start or ("rest" if water.drag == "none" else "steady")],
     )
     if faults := column.refuses():
         raise CaseError("water.column", None, "; ".join(faults))

@@ -51,6 +51,10 @@ class Column(BaseModel):
     """-dp/dx of drive = "pressure gradient"; positive drives towards +x."""
     discharge: UnitDischarge | None = None
     """Discharge of water per width of drive = "discharge"."""
+    start: Literal["steady", "rest"] | None = None
+    """How the water begins: at rest, or flowing steadily, over a moving bed as if the grains lay there as
+    dense as `packed`, over a fixed one as if there were no free grains; steady when not given, and at rest
+    where there is no drag."""
     mixing_length: Mixing | None = None
     """Mixing length of the eddies: kappa times the integral of (packed - phi)/packed (over a moving bed when
     not given), kappa z, kappa z sqrt(1 - z/depth) of Nezu (over a fixed bed when not given), kappa z with
@@ -58,9 +62,9 @@ class Column(BaseModel):
     kappa: Annotated[Number, Field(gt=0, le=1)] = 0.41
     """Constant of von Karman."""
     packed: Annotated[Number, Field(gt=0, lt=1)] | None = None
-    """Concentration phi_max of Li and Sawamoto: no eddy grows in the highest cell that is so dense, nor below
-    it. When not given 0.61, and in a plane 0.55 times mean diameter over width of the slab. It must be what
-    the bed at rest reaches: a run says so when no cell did."""
+    """Concentration phi_max of Li and Sawamoto: no eddy grows where it is reached, averaged over the height
+    of a grain, nor below. When not given 0.61, and in a plane 0.55 times mean diameter over slab width. It
+    must be what the bed at rest reaches; a run tells when it never did."""
     pore_eddies: Annotated[Number, Field(ge=0, le=10)] = 0.0
     """k_f of the eddies in the pores of a debris flow, Egashira; 0.16 in the source, 0 for none."""
     side_walls: PositiveLength | None = None

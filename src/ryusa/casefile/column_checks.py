@@ -96,6 +96,10 @@ def _boundaries(water: Water, keys: Column) -> Iterator[CaseError]:
         yield CaseError("water.column.kappa", keys.kappa, "has no meaning with mixing_length 'none'")
     if _given(keys, "side_friction") and keys.side_walls is None:
         yield CaseError("water.column.side_friction", keys.side_friction, "needs water.column.side_walls")
+    if keys.start == "steady" and water.drag == "none":
+        yield CaseError(
+            "water.column.start", keys.start, "needs drag, or nothing among the grains stops the water"
+        )
     fixed = keys.bed != "moving"
     if fixed and keys.bottom is not None and water.zero is not None and keys.bottom != water.zero:
         yield CaseError(

@@ -3,7 +3,6 @@
 import math
 from typing import Literal
 
-from ryusa.casefile.builders import Saltation
 from ryusa.casefile.column import CELL, Column
 from ryusa.casefile.derive import slope_at_last
 from ryusa.casefile.rows import Row, row_of
@@ -89,9 +88,6 @@ def column_rows(case: Case) -> list[Row]:
     time = keys.interval * found.dt
     how = f"{keys.interval} steps between two exchanges, fewer where drag is stiff"
     rows.append(row_of("water", "coupling interval", time, "s", how))
-    if keys.bed == "moving" and not still and isinstance(case.build, Saltation):
-        how = "no drag of fixed grains slows the water: take water.column.bed = 'rough' over them"
-        rows.append(Row("water", "bed", keys.bed, "", keys.bed, how, "warning"))
     return rows
 
 

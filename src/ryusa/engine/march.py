@@ -10,11 +10,12 @@ from ryusa.engine.arrays import Grains, Ledger, Pairs, Walls
 from ryusa.engine.kernels import forces
 from ryusa.engine.rows import *
 from ryusa.engine.sync import meet
-from ryusa.engine.wet import drag_of, water_on, water_speed
+from ryusa.engine.wet import water_on, water_speed
 from ryusa.laws.motion import acceleration, acceleration_spin, semi_implicit
 from ryusa.laws.torque import torque_dennis, torque_stokes
 from ryusa.model.enums import Above, WaterTorque
 from ryusa.model.immersed import A_X, DRAG, EXTRA_X, EXTRA_Z, SHARE, SHEAR
+from ryusa.model.resistance import drag_of
 from ryusa.model.tally import Book
 
 DRY = int(Above.DRY)
@@ -96,7 +97,8 @@ def motion(
             dry = profile == 0 or (above == DRY and z > c[C_DEPTH])
             if drag and not dry:
                 u_x, u_y, u_z = water_speed(profile, above, z, c) - v_x, -v_y, -v_z
-                k_d = drag_of(drag, math.sqrt(u_x * u_x + u_y * u_y + u_z * u_z), 2.0 * r[i], c)
+                slip = math.sqrt(u_x * u_x + u_y * u_y + u_z * u_z)
+                k_d = drag_of(drag, slip, 2.0 * r[i], c[C_NU], c[C_RHO_W], c[C_A_2], c[C_C_D])
                 d_x, d_y, d_z = k_d * u_x, k_d * u_y, k_d * u_z
         if column:
             f_x, f_y, f_z = f_x + l_x + e_x, f_y + l_y, f_z + l_z + e_z

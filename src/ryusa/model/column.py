@@ -54,6 +54,13 @@ class Drive(IntEnum):
     DISCHARGE = 3  # the pressure gradient that keeps the discharge of water, step by step
 
 
+class Start(IntEnum):
+    """How the water begins."""
+
+    REST = 0
+    STEADY = 1  # as it flows past grains at rest
+
+
 class SideWalls(IntEnum):
     """Friction of the two smooth walls of a narrow flume."""
 
@@ -93,9 +100,10 @@ class Column:
     kappa: float = 0.41  # von Karman's constant [-]; ln(10)/5.75 = 0.40045 goes with Eq. (9)
     phi_max: float = 0.61  # of LI_SAWAMOTO [-]
     k_f: float = 0.0  # of the eddies in the pores of a debris flow [-]; 0: none, 0.16 in the source
-    d: float = NAN  # diameter of the grains, for k_f [m]
+    d: float = NAN  # diameter of the grains, for k_f and to average phi for LI_SAWAMOTO [m]
     # exchange with the grains
     interval: int = 50  # steps between two exchanges, at most
+    start: Start = Start.REST
 
     @property
     def origin(self) -> float:
@@ -213,18 +221,19 @@ class Budget:
     carried: float  # the part of the stress's gradient that the grains carry, where asked for
     surface: float  # brought by water that passed through the surface
     iterations: int  # of Newton's method
+    fixed: float = 0.0  # what fixed grains took
 
     @property
     def residual(self) -> float:
         """What is not accounted for [Pa]: round-off."""
         gains = self.gravity + self.driver + self.bed + self.lid + self.side
-        return self.change - (gains + self.grains + self.carried + self.surface)
+        return self.change - (gains + self.grains + self.fixed + self.carried + self.surface)
 
     @property
     def relative(self) -> float:
         """Residual over the largest term [-]; 0 where nothing moves."""
         terms = (self.change, self.gravity, self.driver, self.bed, self.lid, self.side, self.grains)
-        largest = max(abs(one) for one in (*terms, self.carried, self.surface))
+        largest = max(abs(one) for one in (*terms, self.fixed, self.carried, self.surface))
         return abs(self.residual) / largest if largest > 0.0 else 0.0
 
 

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ryusa.model.column import WaterState
 from ryusa.model.scene import Floats
 
 # Columns of `Immersed.seen`.
@@ -38,3 +39,27 @@ class Immersed:
         seen = np.zeros((n_grain, N_SEEN))
         seen[:, SHARE] = 1.0
         return Immersed(seen, np.zeros((n_grain, N_TAKEN)))
+
+
+@dataclass(frozen=True)
+class Coupled:
+    """The column of water between two exchanges with its grains: beside `Immersed` all that a resume needs.
+
+    Attributes
+    ----------
+    water : the water since the last exchange.
+    z : heights of the free grains at the last exchange, by which they are cut [m], shape (n_grain,).
+    force_z : of the water on grains along z, by volume of cells [N/m3], shape (n,).
+    steps : of the engine in the interval under way.
+    due : step of the next exchange.
+    exchanges : done so far.
+    worst : largest residual of the water's momentum over its largest term so far [-].
+    """
+
+    water: WaterState
+    z: Floats
+    force_z: Floats
+    steps: int
+    due: int
+    exchanges: int
+    worst: float

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ryusa.model.contacts import Contacts
-from ryusa.model.immersed import Immersed
+from ryusa.model.immersed import Coupled, Immersed
 from ryusa.model.scene import Floats
 from ryusa.model.tally import N_BOOK
 
@@ -31,6 +31,7 @@ class State:
     )  # energy account so far [J], a row per block
     x_listed: Floats | None = None  # where the grains were when the neighbour list was built [m]
     immersed: Immersed | None = None  # water at every grain, where a column of water is solved
+    water: Coupled | None = None  # the column itself, which no engine knows
     engine: dict[str, float] = field(
         default_factory=lambda: {}
     )  # an engine's own numbers (skin, travel, extremes)

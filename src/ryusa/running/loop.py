@@ -4,7 +4,7 @@ import math
 import time
 from collections.abc import Callable
 from contextlib import nullcontext, suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -59,7 +59,6 @@ class Loop:
     _resting: bool = False
     _calls: int = 0
     _water: Coupling | None = None
-    _exchange: int = _NEVER  # step at which water and grains exchange next
     _speed: float = 0.0  # steps per second, lately
     _warm: tuple[int, float] = (0, 0.0)  # step and wall time when kernels were ready
     _begun: float = field(default_factory=time.monotonic)
@@ -91,7 +90,7 @@ class Loop:
         look_every = self._look_every()
         with self.progress.patience(_COMPILING):
             self.engine.load(self.scene, state)
-        self._immerse()
+        self._immerse(state)
         self._frame()
         self._change_if_due()
         self.recorder.flush()
@@ -142,24 +141,33 @@ class Loop:
         """Step the engine; on the way, water and grains hand over what they did to each other."""
         end = self._step + n_steps
         while self._step < end:
-            k = min(end, self._exchange) - self._step
+            due = end if self._water is None else self._water.due
+            k = min(end, due) - self._step
             flags = self.engine.advance(k)
             if flags:
                 return flags
             self._step += k
-            if self._water is not None and self._step == self._exchange:
+            if self._water is not None and self._step == due:
                 self.engine.immerse(self._water.exchange(*self.engine.drift()))
-                self._exchange += self._water.steps
         return Flags()
 
-    def _immerse(self) -> None:
-        """Fill the column of water, where the scene has one, and tell the grains."""
-        if self.scene.column is None:
-            return
+    def _immerse(self, state: State) -> None:
+        """Fill the column of water, where the scene has one, and tell the grains; or go on as it stood."""
         column = self.scene.column
-        self._water = Coupling.begin(self.scene, column, column.interval, self.engine.drift()[0])
+        if column is None:
+            return
+        if state.water is not None and state.immersed is not None:
+            seen = state.immersed.seen
+            self._water = Coupling.resume(self.scene, column, column.interval, state.water, seen)
+            return
+        x, _, _ = self.engine.drift()
+        self._water = Coupling.begin(self.scene, column, column.interval, x, step=self._step)
         self.engine.immerse(self._water.seen)
-        self._exchange = self._step + self._water.steps
+
+    def state(self) -> State:
+        """Snapshot of grains and water: all that an exact resume needs."""
+        state = self.engine.state()
+        return state if self._water is None else replace(state, water=self._water.snapshot())
 
     def _chunk(self) -> int:
         if self._calls < len(_CHUNK_FIRST):
@@ -173,7 +181,7 @@ class Loop:
             self.scene = change.apply(self.scene)
             self.engine.load(self.scene, state)
             if self._water is not None and self.scene.column is not None:
-                self._water.scene, self._water.column = self.scene, self.scene.column
+                self._water.change(self.scene, self.scene.column)
             self.watch.scene = self.scene
             self.recorder.scene(self.scene, self._step, self._t)
             self._rest = Rest(self.stop)

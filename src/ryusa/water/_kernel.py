@@ -12,11 +12,12 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 _HERE = Path(__file__).parent
-_EDITION = edition(LAWS, _HERE, _HERE.parent / "model" / "column.py")
+_MODEL = _HERE.parent / "model"
+_EDITION = edition(LAWS, _HERE, *(_MODEL / name for name in ("column.py", "enums.py", "resistance.py")))
 
 
 def kernel(function: F) -> F:
-    """Compile a function when first called; the text of laws, column and this room is its edition."""
+    """Compile a function when first called; the text of laws, of this room and what it compiles of model."""
     return compiled(_EDITION, fastmath=False)(function)
 
 

@@ -38,6 +38,27 @@ def pores(p: Numbers, phi: float) -> float:
 
 
 @kernel
+def averaged(dz: float, d: float, m: int, phi: Floats) -> Floats:
+    """Concentration averaged over the height of a grain in the cells 0..m [-]; as it is where d is nan.
+
+    Layers of a bed and the few grains of a small scene leave no trace in it. At the ends the part of the
+    window counts that lies in the cells.
+    """
+    mean = phi.copy()
+    reach = 0.5 * d / dz - 0.5  # cells on either side, the last in part
+    if reach > 0.0:
+        full = math.floor(reach)
+        for k in range(m + 1):
+            total, weight = 0.0, 0.0
+            for j in range(max(k - full - 1, 0), min(k + full + 1, m) + 1):
+                part = 1.0 if abs(j - k) <= full else reach - full
+                total += part * phi[j]
+                weight += part
+            mean[k] = total / weight
+    return mean
+
+
+@kernel
 def packed_below(p: Numbers, m: int, phi: Floats) -> int:
     """Lowest face above all packed cells, phi >= phi_max, of the cells 0..m; 0 where none is packed."""
     for k in range(m, -1, -1):
@@ -66,12 +87,15 @@ def mixing_lengths(
     -----
     Over a fixed bed the length of a face is taken at `height_between` of the middles beside it, so that the
     cells follow the log law from the wall on. The eddies of the pores count where they are the larger ones;
-    they are at most one grain large, also where grains are few. Under Li & Sawamoto's length all below the
-    highest packed cell counts as packed, or eddies would breed in the gaps between layers of the bed; so does
-    YADE's HydroForceEngine, whose code was read.
+    they are at most one grain large, also where grains are few. For Li & Sawamoto's length phi is averaged
+    over a grain, and all below the highest packed cell counts as packed, or eddies would breed in loose
+    places of the bed; so does YADE's HydroForceEngine, whose code was read, with phi of the cells as it is.
     """
     square[:] = 0.0
-    crest = packed_below(p, m, phi) if p.mixing == LI_SAWAMOTO else 0
+    crest, mean = 0, phi
+    if p.mixing == LI_SAWAMOTO:
+        mean = averaged(p.dz, p.d, m, phi)
+        crest = packed_below(p, m, mean)
     depth = z_surface - p.z_bed
     walled = p.bed != MOVING
     grown = 0.0
@@ -89,9 +113,9 @@ def mixing_lengths(
         elif p.mixing == LI_SAWAMOTO:
             below, above = 0.0, 0.0
             if f > crest:
-                below = length_growth_li_sawamoto(phi[f - 1], p.phi_max, p.dz, p.kappa)
+                below = length_growth_li_sawamoto(mean[f - 1], p.phi_max, p.dz, p.kappa)
             if f >= crest:
-                above = length_growth_li_sawamoto(phi[f], p.phi_max, p.dz, p.kappa)
+                above = length_growth_li_sawamoto(mean[f], p.phi_max, p.dz, p.kappa)
             low, high = grown + 0.5 * below, grown + below + 0.5 * above
             grown += below
             length = height_between(low, high) if walled and low > 0.0 else grown

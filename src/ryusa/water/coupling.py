@@ -5,21 +5,21 @@ cells with the same slices, so that momentum closes to round-off.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ryusa.errors import WaterError
-from ryusa.model import Scene
-from ryusa.model.column import Budget, Column, WaterState
+from ryusa.model import Coupled, Scene
+from ryusa.model.column import Bed, Budget, Column, Start, WaterState
 from ryusa.model.enums import Buoyancy
 from ryusa.model.immersed import A_X, DRAG, EXTRA_X, EXTRA_Z, N_SEEN, PHI, SHARE, SHEAR, U, W
 from ryusa.model.scene import Floats
 from ryusa.water.drive import discharge
-from ryusa.water.exchange import Cells, Slices, carried, concentration, slices, to_cells, to_grains
+from ryusa.water.exchange import Cells, Slices, carried, slices, to_cells, to_grains
 from ryusa.water.solve import advance
+from ryusa.water.standing import PACKED, Held, Standing, flowing
 
-PACKED = 0.99  # concentration beyond which a cell holds no water to speak of
 QUARTER = 0.25  # of the time in which drag equalises water and grains: longest interval
 
 
@@ -37,6 +37,9 @@ class Coupling:
     phi : concentration of grains, fixed ones included, in the cells now [-], shape (n,).
     budget : momentum of the water over the last interval; None before the first.
     seen : what the grains were told last, columns of `model.immersed`.
+    due : step of the engine at which the next exchange is due.
+    exchanges : done so far.
+    worst : largest residual of the water's momentum over its largest term so far [-].
     """
 
     scene: Scene
@@ -47,22 +50,25 @@ class Coupling:
     phi: Floats
     budget: Budget | None
     seen: Floats
+    due: int
     exchanges: int
-    worst: float  # largest residual of the water's momentum over its largest term [-]
+    worst: float
     _slices: Slices
-    _bed: Floats  # concentration of fixed grains [-]
+    _bed: Standing  # fixed grains
     _volume: Floats  # of each grain, A_3 d**3 [m3]
     _force_z: Floats  # of the water on grains along z, by volume of cells [N/m3]
+    _z: Floats  # heights at which the grains are cut [m]
 
     @staticmethod
     def begin(
-        scene: Scene, column: Column, longest: int, x: Floats, state: WaterState | None = None
+        scene: Scene, column: Column, longest: int, x: Floats, state: WaterState | None = None, step: int = 0
     ) -> "Coupling":
-        """Cut the grains at x [m], and fill the column: with water at rest, or that of a snapshot.
+        """Cut the grains at x [m], and fill the column: as it says it begins, or with a state given.
 
         Raises
         ------
         ValueError : the column cannot be run, or the steps of an interval are fewer than one.
+        WaterError : no steady water was found to begin with.
         """
         faults = column.refuses()
         if faults or longest < 1:
@@ -70,16 +76,54 @@ class Coupling:
         cells = Cells(column.z_low, column.dz, column.n, column.area)
         cut = slices(x[:, 2], scene.d, cells)
         solid = (scene.m - scene.m_weight) / scene.water.rho_w
-        standing = scene.fixed_active
-        bed = concentration(slices(scene.x_fixed[standing, 2], scene.d_fixed[standing], cells))
-        phi = _phi(cut, solid) + bed
+        bed = _bed(scene, cells, column.bed)
+        free = _phi(cut, solid)
+        phi = free + bed.phi
+        if state is None and column.start is Start.STEADY:
+            every = np.concatenate([scene.d, bed.d])
+            state = flowing(column, scene.water, bed.phi, free, float((every**3).sum() / (every**2).sum()))
         now = WaterState.at_rest(column, phi) if state is None else state
         coupling = Coupling(
-            scene, column, longest, 1, now, phi, None, np.zeros((scene.n_grain, N_SEEN)), 0, 0.0,
-            cut, bed, solid, np.zeros(column.n),
+            scene, column, longest, 1, now, phi, None, np.zeros((scene.n_grain, N_SEEN)), step + 1, 0, 0.0,
+            cut, bed, solid, np.zeros(column.n), np.array(x[:, 2]),
         )  # fmt: skip
         coupling.seen = coupling._told()
         return coupling
+
+    @staticmethod
+    def resume(scene: Scene, column: Column, longest: int, found: Coupled, seen: Floats) -> "Coupling":
+        """Go on from a snapshot; `seen` is what its grains were told, columns of `model.immersed`.
+
+        Raises
+        ------
+        ValueError : as `begin`, or the snapshot is of another column or other grains.
+        """
+        if found.water.u.shape != (column.n,) or found.z.shape != (scene.n_grain,):
+            raise ValueError(
+                f"a snapshot of {len(found.water.u)} cells and {len(found.z)} grains does not go on in a "
+                f"column of {column.n} cells with {scene.n_grain} grains"
+            )
+        x = np.zeros((scene.n_grain, 3))
+        x[:, 2] = found.z
+        coupling = Coupling.begin(scene, column, longest, x, found.water)
+        coupling.steps, coupling.due = found.steps, found.due
+        coupling.exchanges, coupling.worst = found.exchanges, found.worst
+        coupling.seen, coupling._force_z = seen, found.force_z
+        return coupling
+
+    def snapshot(self) -> Coupled:
+        """All that `resume` needs, beside what the grains were told."""
+        z, force_z = self._z.copy(), self._force_z.copy()
+        z.flags.writeable = force_z.flags.writeable = False
+        return Coupled(self.state, z, force_z, self.steps, self.due, self.exchanges, self.worst)
+
+    def change(self, scene: Scene, column: Column) -> None:
+        """Go on in a scene that the timeline changed: its slope, or fixed grains taken away."""
+        if not np.array_equal(scene.fixed_active, self.scene.fixed_active):
+            self.phi = self.phi - self._bed.phi
+            self._bed = _bed(scene, self._slices.cells, column.bed)
+            self.phi += self._bed.phi
+        self.scene, self.column = scene, column
 
     def exchange(self, x: Floats, v: Floats, taken: Floats) -> Floats:
         """Give the water what the grains took in the interval, move it on, and tell the grains anew.
@@ -93,14 +137,22 @@ class Coupling:
         -------
         seen : columns of `model.immersed`, shape (n_grain, N_SEEN); for the engine.
         """
-        dt = self.steps * self.scene.dt
+        dt, before = self.steps * self.scene.dt, self.state
         force = self.force(taken, dt)
-        self._slices = slices(x[:, 2], self.scene.d, self._slices.cells, again=self._slices)
-        self.phi = _phi(self._slices, self._volume) + self._bed
+        self._z = np.ascontiguousarray(x[:, 2])
+        self._slices = slices(self._z, self.scene.d, self._slices.cells, again=self._slices)
+        self.phi = _phi(self._slices, self._volume) + self._bed.phi
         phi_w = carried(self._slices, v[:, 2] * self._volume / self._slices.whole)
-        self.state, self.budget = advance(self.column, self.state, self.phi, force, dt, phi_w=phi_w)
+        held = self._bed.hold(self.scene.water, self.column.rho_w * self.column.g_x, before, self.phi)
+        self._force_z += held.force_z
+        self.state, budget = advance(
+            self.column, before, self.phi, force + held.force, dt, slope=held.slope, carried=held.carried,
+            phi_w=phi_w,
+        )  # fmt: skip
+        self.budget = _with_fixed(budget, held, self.state, before, self.column.dz)
         self.exchanges, self.worst = self.exchanges + 1, max(self.worst, self.budget.relative)
         self.steps = min(self.longest, self._resolved(taken[:, DRAG]))
+        self.due += self.steps
         self.seen = self._told()
         return self.seen
 
@@ -179,3 +231,16 @@ class Coupling:
 def _phi(cut: Slices, solid: Floats) -> Floats:
     """Concentration of grains of volume `solid` [m3], whose spheres are cut."""
     return carried(cut, solid / cut.whole)
+
+
+def _bed(scene: Scene, cells: Cells, bed: Bed) -> Standing:
+    """The fixed grains that stand."""
+    there = scene.fixed_active
+    return Standing.at(scene.x_fixed[there, 2], scene.d_fixed[there], cells, bed)
+
+
+def _with_fixed(budget: Budget, held: Held, now: WaterState, before: WaterState, dz: float) -> Budget:
+    """The budget with what the fixed grains took apart from what the free ones did."""
+    wet = now.content > 0.0
+    taken = float(held.force.sum() + (held.slope * (now.u - before.u))[wet].sum()) * dz
+    return replace(budget, grains=budget.grains + taken, fixed=budget.carried - taken, carried=0.0)
