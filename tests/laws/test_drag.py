@@ -103,3 +103,16 @@ def test_weight_has_no_added_mass_and_inertia_is_that_of_eq_10():
     m = 2650.0 * v
     assert drag.submerged_mass(m, RHO, v) == pytest.approx(1650.0 * v)
     assert m + drag.added_mass(RHO, 0.5, v) == pytest.approx(RHO * (2.65 + 0.5) * v)
+
+
+@pytest.mark.parametrize(
+    ("d", "soulsby", "dietrich"),
+    [(1e-4, 0.0079, 0.0075), (5e-4, 0.0737, 0.0740), (1e-3, 0.1204, 0.1551), (6e-3, 0.3175, 0.5763)],
+)
+def test_settling_formulae_of_the_field_give_their_known_values(d, soulsby, dietrich):
+    assert drag.terminal_velocity_soulsby(R, G, d, NU) == pytest.approx(soulsby, abs=2e-4)
+    assert drag.terminal_velocity_dietrich(R, G, d, NU) == pytest.approx(dietrich, abs=3e-4)
+    assert drag.terminal_velocity_soulsby(R, G, 1e-6, NU) == pytest.approx(
+        drag.terminal_velocity_stokes(R, G, 1e-6, NU),
+        rel=0.14,  # 2 * 10.36/1.049 = 19.75, not 18
+    )

@@ -80,6 +80,8 @@ UNITS = {
     "drag.submerged_mass": "kg, kg/m3, m3 -> kg",
     "drag.terminal_velocity_stokes": "-, m/s2, m, m2/s -> m/s",
     "drag.terminal_velocity_ferguson_church": "-, m/s2, m, m2/s, -, - -> m/s",
+    "drag.terminal_velocity_soulsby": "-, m/s2, m, m2/s -> m/s",
+    "drag.terminal_velocity_dietrich": "-, m/s2, m, m2/s -> m/s",
     "geometry.overlap": "m, m, m -> m",
     "geometry.arm": "m, m -> m",
     "geometry.wrap": "m, m -> m",

@@ -12,7 +12,11 @@ from ryusa.errors import CaseError
 from ryusa.figures.comparison import Axis, Line
 from ryusa.results import Results
 
-NAMES = ("water_alone",)
+NAMES = (
+    "water_alone",
+    "terminal_velocity",
+    "suspension",
+)
 
 
 class Known(StrEnum):
