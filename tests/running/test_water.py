@@ -146,3 +146,17 @@ def test_a_run_that_records_no_contacts_does_not_say_that_there_were_none(tmp_pa
     assert "contacts not recorded" in log
     assert "restitution" not in log
     assert "momentum not explained" in log
+
+
+def test_a_bed_that_never_packs_is_warned_of(tmp_path: Path) -> None:
+    fixed, first = over_fixed_grains()
+    assert fixed.column is not None
+    for phi_max, said in ((0.61, True), (0.05, False)):
+        column = replace(fixed.column, mixing=Mixing.LI_SAWAMOTO, phi_max=phi_max, d=D)
+        folder = tmp_path / str(phi_max)
+        stop = Stop(time=20 * fixed.dt)
+        made = run_scene(
+            replace(fixed, column=column), first, folder, frames=10 * fixed.dt, stop=stop, progress=False
+        )
+        assert any("nowhere packed" in text for text in made.summary["warnings"]) is said
+        assert 0.05 < made.summary["water"]["densest"] < 0.61

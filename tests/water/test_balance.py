@@ -62,7 +62,7 @@ class Flow:
         return of_fixed(now.i, now.j, now.event[:, IMPULSE_X], self.fixed)
 
     def run(self, time):
-        """Impulses over a time by area of bed [Pa s]: weight, contacts, water on bed and fixed grains, gain."""
+        """Impulses by area of bed over a time [Pa s]: weight, contacts, stress and drag on the bed, gain."""
         fixed, column, coupling = self.fixed, self.column, self.coupling
         v, u = self.engine.drift()[1], coupling.state
         weight, contacts, water, spent = 0.0, -self.held(), 0.0, 0.0

@@ -243,6 +243,10 @@ class Loop:
         return Moment(min(share, 1.0), self._t, self._rate(), tally.overlap_max, tally.residual, hops)
 
     def _summary(self) -> dict[str, Any]:
+        numbers = self.watch.numbers(self.engine.tally())
+        if self._water is not None:
+            numbers["water"] = self._water.numbers()
+            numbers["warnings"] = [*numbers["warnings"], *self._water.warnings()]
         return {
             "t": self._t,
             "steps": self._step,
@@ -253,8 +257,7 @@ class Loop:
             "saltations": None if self.stop.saltations is None else self._hops.count.tolist(),
             "wall": time.monotonic() - self._begun,
             "particle_steps_per_second": self._rate(),
-            **self.watch.numbers(self.engine.tally()),
-            **({"water": self._water.numbers()} if self._water is not None else {}),
+            **numbers,
         }
 
     def _close(self) -> dict[str, Any]:

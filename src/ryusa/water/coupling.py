@@ -11,10 +11,11 @@ import numpy as np
 
 from ryusa.errors import WaterError
 from ryusa.model import Coupled, Scene
-from ryusa.model.column import Bed, Budget, Column, Start, WaterState
+from ryusa.model.column import Bed, Budget, Column, Mixing, Start, WaterState
 from ryusa.model.enums import Buoyancy
 from ryusa.model.immersed import A_X, DRAG, EXTRA_X, EXTRA_Z, N_SEEN, PHI, SHARE, SHEAR, U, W
 from ryusa.model.scene import Floats
+from ryusa.water.closures import averaged
 from ryusa.water.drive import discharge
 from ryusa.water.exchange import Cells, Slices, carried, slices, to_cells, to_grains
 from ryusa.water.solve import advance
@@ -177,8 +178,28 @@ class Coupling:
             "bed_stress": float(state.tau[0]),
             "surface": state.z_surface,
             "speed_max": float(np.max(np.abs(state.u))),
+            "densest": self.densest(),
             "driving_gradient": state.gradient + column.rho_w * column.g_x,
         }
+
+    def densest(self) -> float:
+        """Densest place of the bed now, averaged over the height of a grain [-]."""
+        column = self.column
+        return float(np.max(averaged(column.dz, column.d, column.n - 1, self.phi)))
+
+    def warnings(self) -> list[str]:
+        """What is odd about the water now, in sentences."""
+        column, densest = self.column, self.densest()
+        if (
+            column.mixing is not Mixing.LI_SAWAMOTO
+            or column.bed is not Bed.MOVING
+            or densest >= column.phi_max
+        ):
+            return []
+        return [
+            f"the bed is nowhere packed: concentration {densest:.3g} at most over the height of a grain, below "
+            f"{column.phi_max:.3g}; eddies reach into it. If it lies still, give water.column.packed its own"
+        ]
 
     def _resolved(self, drag: Floats) -> int:
         """Steps an interval may have where drag is so stiff [N s/m], shape (n_grain,)."""
