@@ -197,8 +197,9 @@ class Coupling:
         ):
             return []
         return [
-            f"the bed is nowhere packed: concentration {densest:.3g} at most over the height of a grain, below "
-            f"{column.phi_max:.3g}; eddies reach into it. If it lies still, give water.column.packed its own"
+            f"the bed is nowhere packed: concentration {densest:.3g} at most over the height of a grain, "
+            f"below {column.phi_max:.3g}; eddies reach into it. If it lies still, give water.column.packed "
+            "its concentration"
         ]
 
     def _resolved(self, drag: Floats) -> int:
