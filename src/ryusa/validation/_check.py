@@ -16,6 +16,9 @@ NAMES = (
     "water_alone",
     "terminal_velocity",
     "suspension",
+    "impact",
+    "rolling",
+    "gas",
 )
 
 
