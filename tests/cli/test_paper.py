@@ -65,7 +65,7 @@ class Broken:
     def __init__(self, folder):
         self.rows = (
             Row(CLAIMS["fig20"], Word.UNDECIDED, None, "fig20", problem="1 of 2 runs failed"),
-            Row(CLAIMS["fig17"], Word.WATER, None),
+            Row(CLAIMS["fig16"], Word.LOST, None),
         )
         self.plan, self.folder, self.problems = (
             Plan(Level.QUICK, (1,)),
@@ -82,7 +82,7 @@ def test_a_failed_run_is_told_at_the_end_and_by_the_exit_code(tmp_path, monkeypa
     assert result.exit_code == 3
     assert "1 run could not be carried out or measured:\n  fig20 [free]: grain 7 lost" in result.stderr
     assert "not judged, see below" in result.stdout
-    assert "1 undecided (spread); 1 not yet run (water)" in result.stdout
+    assert "1 undecided (spread); 1 not testable (figure lost)" in result.stdout
     assert all(len(line) <= 100 for line in result.stdout.splitlines() if "wrote" not in line)
 
 

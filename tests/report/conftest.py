@@ -48,7 +48,6 @@ def every_word(tmp_path: Path, picture: Path) -> Ledger:
     rows = {name: Row(CLAIMS[name], one.word, one, "fig20") for name, one in found.items()}
     rows["fig20"] = Row(CLAIMS["fig20"], found["fig20"].word, found["fig20"], "fig20", (picture,))
     rows["fig4"] = Row(CLAIMS["fig4"], Word.UNDECIDED, None, "fig20", problem=f"1 of 2 runs failed {NASTY}")
-    rows["fig17"] = Row(CLAIMS["fig17"], Word.WATER, None)
     rows["fig16"] = Row(CLAIMS["fig16"], Word.LOST, None)
     table = [{"seed": seed, "jump": 0.123456789, "word": NASTY, "none": None} for seed in range(70)]
     return Ledger(

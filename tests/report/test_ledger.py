@@ -7,7 +7,6 @@ from ryusa.errors import ResultsError
 from ryusa.experiments import Band, Finding, Level, Plan, Trial, Word, _campaign, over_seeds, variant
 from ryusa.figures.style import new
 from ryusa.report import ledger, make, write
-from ryusa.report.ledger import WATER
 
 SHORT = {"stop.time": "0.01 s", "record.settle": "0 s"}
 
@@ -57,7 +56,7 @@ def fakes(monkeypatch):
 def test_a_run_that_fails_costs_its_experiment_its_verdict_and_no_other(fakes, tmp_path: Path):
     made = make(None, Plan(Level.QUICK, (1,)), tmp_path)
     by_id = {row.claim.id: row for row in made.rows}
-    assert set(by_id) == {"fig4", "fig5", "fig20", "fig20-shear", *WATER}
+    assert set(by_id) == {"fig4", "fig5", "fig20", "fig20-shear"}
     assert by_id["fig20"].word is Word.REPRODUCED
     assert by_id["fig4"].word is Word.UNDECIDED
     assert "1 of 1 runs failed" in by_id["fig4"].problem

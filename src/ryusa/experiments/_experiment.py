@@ -41,10 +41,14 @@ NAMES = (
     "fig14",
     "fig15",
     "fig16",
+    "fig17",
+    "fig17_free",
+    "fig18",
     "fig19",
     "bed18",
     "fig20",
     "fig21",
+    "fig22",
     "eq13",
 )
 

@@ -22,7 +22,6 @@ class Word(StrEnum):
     NOT = "not reproduced"
     CONTRADICTS = "contradicts its own equations"
     UNDECIDED = "undecided (spread)"
-    WATER = "not yet run (water)"
     LOST = "not testable (figure lost)"
 
 

@@ -8,6 +8,7 @@ from ryusa.figures.energy import energy
 from ryusa.figures.hops import contact_times, hops
 from ryusa.figures.profiles import profiles
 from ryusa.figures.repose import surface
+from ryusa.figures.rods import rod_lengths, rods
 from ryusa.figures.snapshot import snapshot
 from ryusa.figures.spin import spin
 from ryusa.figures.style import save
@@ -34,6 +35,8 @@ __all__ = [
     "over_stiffness",
     "profiles",
     "rebounds",
+    "rod_lengths",
+    "rods",
     "save",
     "snapshot",
     "spin",

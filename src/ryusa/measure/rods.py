@@ -1,7 +1,7 @@
 """Rods: movers that touch and keep their bearing, and so go downstream as one rigid body (fig22)."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -36,6 +36,16 @@ class Rod:
 
 
 @dataclass(frozen=True)
+class _Seen:
+    """Movers of one window: centres (n_frame, n, 3) [m], pairs that touch at its begin, diameters, layers."""
+
+    x: Floats
+    pairs: Ints
+    d: Floats
+    layer: Ints
+
+
+@dataclass(frozen=True)
 class Rods:
     """Movers that keep contact and bearing throughout a window of time.
 
@@ -46,8 +56,8 @@ class Rods:
     touching : of these, grains that touch another mover as the window begins.
     bound : of these, grains that keep contact and bearing with one to its end: they are in a rod.
     lengths : how many rods of n grains there were in all windows, shape (longest + 1,); n is the index.
-    null : movers in a rod if every mover had gone the way of another one at its height, mean of the
-        shuffles, shape (n_window,).
+    null : movers in a rod if every mover had gone the way of one picked at random from its layer and any
+        window, mean of the shuffles, shape (n_window,).
     longest : the rod of the most grains, of several the first; None where there is none.
     window : how long a rod lasts at least [s].
     averages : shares of the movers, and the mean number of grains in a rod.
@@ -125,9 +135,9 @@ def rods(
     other is within `bearing` of that at its begin: they neither part nor roll or climb over each other. A rod
     is a cluster of movers that are bound one to the next. A rod that outlasts a window counts again in the
     next. A grain that climbs from one pocket of a bed of its like to the next turns by 60 degrees about the
-    one below. The null model gives every mover its own place and the way of another mover whose mean height
-    is in the same layer, one diameter thick: what is left of the rods are grains that stay together because
-    all of their layer move alike.
+    one below. The null model gives every mover its own place and the way of a mover picked at random whose
+    mean height is in the same layer, one diameter thick, from all windows: grains that move as grains of
+    their height do, and know nothing of each other.
     """
     t, first, _, scene, _ = window_of(run, begin, end, least=3)
     d = float(scene.d.mean())
@@ -142,21 +152,24 @@ def rods(
     movers, touching, bound = np.zeros((3, len(starts)), dtype=np.int64)
     null = np.zeros(len(starts))
     found: list[Rod] = []
+    seen: list[_Seen] = []
     for k, start in enumerate(starts.tolist()):
         x = np.asarray(run.frames.x[first + start : first + start + n + 1], dtype=np.float64)
         going = np.flatnonzero(x[-1, :, 0] - x[0, :, 0] >= way * d)
         movers[k] = len(going)
-        if len(going) < 2:
-            continue
         x = np.ascontiguousarray(x[:, going])
         pairs = _pairs(x[0], scene.d[going], scene, gap)
         touching[k] = len(np.unique(pairs))
         kept = pairs[_bound(x, pairs, scene.d[going], scene, bearing, gap)]
         bound[k] = len(np.unique(kept))
         found += [Rod(float(t[start]), tuple(going[one].tolist())) for one in _clusters(kept, len(going))]
-        if shuffles:
-            tried = (_shuffled(x, pairs, scene, going, bearing, gap, rng) for _ in range(shuffles))
-            null[k] = sum(tried) / shuffles
+        seen.append(_Seen(x, pairs, scene.d[going], np.floor(x[:, :, 2].mean(axis=0) / d).astype(np.int64)))
+    for _ in range(shuffles):
+        for k, x in enumerate(_shuffled(seen, rng)):
+            one = seen[k]
+            kept = one.pairs[_bound(x, one.pairs, one.d, scene, bearing, gap)]
+            null[k] += len(np.unique(kept))
+    null /= max(shuffles, 1)
     sizes = np.array([len(one.grains) for one in found], dtype=np.int64)
     span = (float(t[0]), float(t[-1]))
     return Rods(
@@ -210,6 +223,8 @@ def companions(run: Run, begin: float | None = None, end: float = math.inf, gap:
 
 def _pairs(x: Floats, d: Floats, scene: Scene, gap: float) -> Ints:
     """Pairs of grains at x [m] that touch, (n_pair, 2)."""
+    if len(x) < 2:
+        return np.zeros((0, 2), dtype=np.int64)
     periods = [p if math.isfinite(p) else 0.0 for p in scene.period] + [0.0]
     inside = x.copy()
     for axis, period in enumerate(periods):
@@ -251,14 +266,11 @@ def _clusters(pairs: Ints, n: int) -> Iterator[Ints]:
         yield np.flatnonzero(label == one)
 
 
-def _shuffled(
-    x: Floats, pairs: Ints, scene: Scene, going: Ints, bearing: float, gap: float, rng: np.random.Generator
-) -> int:
-    """Movers in rods once every mover goes the way of another one in its layer."""
-    layer = np.floor(x[:, :, 2].mean(axis=0) / float(scene.d.mean()))
-    taken = np.arange(x.shape[1])
-    for one in np.unique(layer):
-        inside = np.flatnonzero(layer == one)
-        taken[inside] = rng.permutation(inside)
-    moved = x[:1] + (x - x[:1])[:, taken]
-    return len(np.unique(pairs[_bound(moved, pairs, scene.d[going], scene, bearing, gap)]))
+def _shuffled(seen: Sequence[_Seen], rng: np.random.Generator) -> Iterator[Floats]:
+    """Centres in every window once its movers go ways picked from their layer in any window."""
+    ways = np.concatenate([one.x - one.x[:1] for one in seen], axis=1)
+    layers = np.concatenate([one.layer for one in seen])
+    pools = {int(layer): np.flatnonzero(layers == layer) for layer in np.unique(layers)}
+    for one in seen:
+        taken = np.array([rng.choice(pools[int(layer)]) for layer in one.layer], dtype=np.int64)
+        yield one.x[:1] + ways[:, taken]

@@ -31,7 +31,6 @@ from ryusa.running import provenance
 from ryusa.running.folder import refuse_if_not_writable
 
 FORMAT = 1  # of the JSON file
-WATER = ("fig17", "fig17-time", "fig17-e", "fig17-lock", "fig17-free", "fig18", "fig22", "fig22-free")
 
 
 @dataclass(frozen=True)
@@ -128,7 +127,7 @@ def make(
 
     Parameters
     ----------
-    names : experiments, of `NAMES`; None takes all, and adds rows for the claims that wait for water.
+    names : experiments, of `NAMES`; None takes all.
     plan : level and seeds.
     folder : runs go into `folder/runs`, each experiment's tables and pictures into `folder/<name>`.
     jobs, again, say : as in `experiments.carry_out`.
@@ -146,8 +145,6 @@ def make(
     faults: dict[str, Fault] = {}
     for name in chosen:
         rows |= _judged(name, campaign, plan, folder, tables, faults)
-    if names is None:
-        rows |= {one: Row(CLAIMS[one], Word.WATER, None) for one in WATER if one not in rows}
     ordered = tuple(rows[one] for one in CLAIMS if one in rows)
     counts = counted(campaign, jobs)
     findings = [(one.experiment, one.finding) for one in ordered if one.finding is not None]

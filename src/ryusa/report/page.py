@@ -23,7 +23,6 @@ LOOKS = {
     Word.NOT: ("no", "○"),
     Word.CONTRADICTS: ("no", "✕"),
     Word.UNDECIDED: ("open", "?"),
-    Word.WATER: ("waits", "…"),
     Word.LOST: ("waits", "–"),
 }
 # What the paper left open, the claims whose runs answer it, and a word in what they tell of it ("" is all).
