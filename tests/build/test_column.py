@@ -11,7 +11,7 @@ from ryusa.casefile import Case, Change, read, read_text
 from ryusa.casefile.water import terminal_velocity
 from ryusa.errors import CaseError
 from ryusa.model import Column
-from ryusa.model.column import Bed, Drive, Mixing, SideWalls, Surface
+from ryusa.model.column import Bed, Drive, Fluctuations, Mixing, SideWalls, Surface
 from ryusa.model.enums import Buoyancy, Hindrance, Lift, Magnus, Profile
 from ryusa.running.runner import run
 
@@ -72,6 +72,12 @@ def test_water_of_a_column_carries_its_laws() -> None:
     assert (water.magnus, water.c_l) == (Magnus.LOTH, 0.3)
     assert 2.3 < water.hindrance_exponent < 2.6
     assert build(case()).scene.water.buoyancy == Buoyancy.STRESS
+
+
+def test_fluctuations_walk_by_the_seed_of_the_case() -> None:
+    assert column().fluctuations is Fluctuations.NONE
+    stirred = column(water__column__fluctuations="random walk", seed="42")
+    assert (stirred.fluctuations, stirred.seed) == (Fluctuations.RANDOM_WALK, 42)
 
 
 def test_a_scene_without_a_column_of_water_has_none() -> None:

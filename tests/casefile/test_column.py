@@ -127,6 +127,13 @@ def test_richardson_and_zakis_exponent_comes_from_a_lone_grain(case: CaseOf) -> 
         ("", "mixing_length = 'van Driest'", {}, "water.column.mixing_length", "needs a wall"),
         ("", "mixing_length = 'Prandtl', packed = 0.5", {}, "water.column.packed", "with mixing_length"),
         ("", "mixing_length = 'none', kappa = 0.4", {}, "water.column.kappa", "with mixing_length"),
+        (
+            "",
+            "mixing_length = 'none', fluctuations = 'random walk'",
+            {},
+            "water.column.fluctuations",
+            "with mixing_length",
+        ),
         ("", "side_friction = 'Blasius'", {}, "water.column.side_friction", "side_walls"),
         ("", "cel = '1 mm'", {}, "water.column.cel", "Did you mean 'water.column.cell'"),
         ("", "cell = '1 nm'", {}, "water.column.cell", "more than 20,000 cells"),

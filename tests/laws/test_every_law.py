@@ -28,6 +28,7 @@ BLIND = {
     ("debris.equilibrium_takahashi", "rho_s"),  # the cap, likewise
     ("debris.equilibrium_takahashi", "rho_w"),
     ("debris.equilibrium_takahashi", "c_star"),
+    ("eddies.eddy_along", "shear"),  # its sign
     ("geometry.wrap", "period"),  # checked by the case reader
     ("rolling.epsd_torque", "spin"),  # the dashpot is off while sliding
     ("rolling.epsd_torque", "eta_r"),

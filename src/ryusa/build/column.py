@@ -13,7 +13,7 @@ from ryusa.casefile.grains import packed
 from ryusa.casefile.schema import Case
 from ryusa.errors import CaseError
 from ryusa.model import Column
-from ryusa.model.column import Bed, Drive, Mixing, SideWalls, Start, Surface
+from ryusa.model.column import Bed, Drive, Fluctuations, Mixing, SideWalls, Start, Surface
 
 BEDS = {"moving": Bed.MOVING, "rough": Bed.ROUGH, "smooth": Bed.SMOOTH}
 SURFACES = {"depth": Surface.DEPTH, "volume": Surface.VOLUME}
@@ -32,6 +32,7 @@ MIXINGS = {
 }
 SIDES = {"Blasius": SideWalls.BLASIUS, "Karman-Prandtl": SideWalls.KARMAN_PRANDTL}
 STARTS = {"rest": Start.REST, "steady": Start.STEADY}
+FLUCTUATIONS = {"none": Fluctuations.NONE, "random walk": Fluctuations.RANDOM_WALK}
 MOST_CELLS = 100_000
 
 
@@ -97,6 +98,8 @@ def column_of(case: Case, layout: Layout) -> Column | None:
         phi_max=packed(case),
         k_f=keys.pore_eddies,
         d=found.d,
+        fluctuations=FLUCTUATIONS[keys.fluctuations],
+        seed=case.seed,
         interval=keys.interval,
         start=STARTS[keys.start or ("rest" if water.drag == "none" else "steady")],
     )

@@ -71,6 +71,9 @@ class Column(BaseModel):
     """Width between two smooth side walls that slow the water; none when not given."""
     side_friction: Literal["Blasius", "Karman-Prandtl"] = "Blasius"
     """Friction of turbulent water at the side walls."""
+    fluctuations: Literal["none", "random walk"] = "none"
+    """Turbulent speeds that grains meet beside the mean: none, or those of eddies that each grain walks
+    through, as strong as the turbulent stress and as long as fluid needs to spread like momentum."""
     interval: Annotated[Count, Field(ge=1, le=100_000)] = 50
     """Steps between two exchanges of water and grains, at most; fewer where drag is stiff."""
 

@@ -94,6 +94,10 @@ def _boundaries(water: Water, keys: Column) -> Iterator[CaseError]:
         )
     if _given(keys, "kappa") and keys.mixing == "none":
         yield CaseError("water.column.kappa", keys.kappa, "has no meaning with mixing_length 'none'")
+    if keys.fluctuations != "none" and keys.mixing == "none" and keys.pore_eddies == 0.0:
+        yield CaseError(
+            "water.column.fluctuations", keys.fluctuations, "has no meaning with mixing_length 'none'"
+        )
     if _given(keys, "side_friction") and keys.side_walls is None:
         yield CaseError("water.column.side_friction", keys.side_friction, "needs water.column.side_walls")
     if keys.start == "steady" and water.drag == "none":

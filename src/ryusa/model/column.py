@@ -61,6 +61,13 @@ class Start(IntEnum):
     STEADY = 1  # as it flows past grains at rest
 
 
+class Fluctuations(IntEnum):
+    """Turbulent speeds that grains meet beside the mean."""
+
+    NONE = 0
+    RANDOM_WALK = 1  # from eddy to eddy
+
+
 class SideWalls(IntEnum):
     """Friction of the two smooth walls of a narrow flume."""
 
@@ -101,6 +108,8 @@ class Column:
     phi_max: float = 0.61  # of LI_SAWAMOTO [-]
     k_f: float = 0.0  # of the eddies in the pores of a debris flow [-]; 0: none, 0.16 in the source
     d: float = NAN  # diameter of the grains, for k_f and to average phi for LI_SAWAMOTO [m]
+    fluctuations: Fluctuations = Fluctuations.NONE
+    seed: int = 0  # of the random walk
     # exchange with the grains
     interval: int = 50  # steps between two exchanges, at most
     start: Start = Start.REST

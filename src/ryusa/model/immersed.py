@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ryusa.model.column import WaterState
+from ryusa.model.eddies import Eddies
 from ryusa.model.scene import Floats
 
 # Columns of `Immersed.seen`.
@@ -54,6 +55,7 @@ class Coupled:
     due : step of the next exchange.
     exchanges : done so far.
     worst : largest residual of the water's momentum over its largest term so far [-].
+    eddies : those the grains are in; None without fluctuations.
     """
 
     water: WaterState
@@ -63,3 +65,4 @@ class Coupled:
     due: int
     exchanges: int
     worst: float
+    eddies: Eddies | None = None

@@ -12,9 +12,11 @@ import numpy as np
 from ryusa.errors import WaterError
 from ryusa.model import Coupled, Scene
 from ryusa.model.column import Bed, Budget, Column, Mixing, Start, WaterState
+from ryusa.model.eddies import Eddies
 from ryusa.model.enums import Buoyancy
-from ryusa.model.immersed import A_X, DRAG, EXTRA_X, EXTRA_Z, N_SEEN, PHI, SHARE, SHEAR, U, W
+from ryusa.model.immersed import A_X, DRAG, EXTRA_X, EXTRA_Z, N_SEEN, PHI, SHARE, SHEAR, U, V, W
 from ryusa.model.scene import Floats
+from ryusa.water import eddies
 from ryusa.water.closures import averaged
 from ryusa.water.drive import discharge
 from ryusa.water.exchange import Cells, Slices, carried, slices, to_cells, to_grains
@@ -41,6 +43,7 @@ class Coupling:
     due : step of the engine at which the next exchange is due.
     exchanges : done so far.
     worst : largest residual of the water's momentum over its largest term so far [-].
+    eddies : those the grains are in; None without fluctuations.
     """
 
     scene: Scene
@@ -59,6 +62,7 @@ class Coupling:
     _volume: Floats  # of each grain, A_3 d**3 [m3]
     _force_z: Floats  # of the water on grains along z, by volume of cells [N/m3]
     _z: Floats  # heights at which the grains are cut [m]
+    eddies: Eddies | None = None
 
     @staticmethod
     def begin(
@@ -88,6 +92,7 @@ class Coupling:
             scene, column, longest, 1, now, phi, None, np.zeros((scene.n_grain, N_SEEN)), step + 1, 0, 0.0,
             cut, bed, solid, np.zeros(column.n), np.array(x[:, 2]),
         )  # fmt: skip
+        coupling.eddies = eddies.begin(column.seed, scene.n_grain) if column.fluctuations else None
         coupling.seen = coupling._told()
         return coupling
 
@@ -110,13 +115,14 @@ class Coupling:
         coupling.steps, coupling.due = found.steps, found.due
         coupling.exchanges, coupling.worst = found.exchanges, found.worst
         coupling.seen, coupling._force_z = seen, found.force_z
+        coupling.eddies = found.eddies
         return coupling
 
     def snapshot(self) -> Coupled:
         """All that `resume` needs, beside what the grains were told."""
         z, force_z = self._z.copy(), self._force_z.copy()
         z.flags.writeable = force_z.flags.writeable = False
-        return Coupled(self.state, z, force_z, self.steps, self.due, self.exchanges, self.worst)
+        return Coupled(self.state, z, force_z, self.steps, self.due, self.exchanges, self.worst, self.eddies)
 
     def change(self, scene: Scene, column: Column) -> None:
         """Go on in a scene that the timeline changed: its slope, or fixed grains taken away."""
@@ -154,6 +160,8 @@ class Coupling:
         self.exchanges, self.worst = self.exchanges + 1, max(self.worst, self.budget.relative)
         self.steps = min(self.longest, self._resolved(taken[:, DRAG]))
         self.due += self.steps
+        if self.eddies is not None:
+            self.eddies = eddies.renew(self.eddies, self.column.seed, dt, self.seen[:, SHEAR])
         self.seen = self._told()
         return self.seen
 
@@ -235,6 +243,9 @@ class Coupling:
         seen = np.zeros((scene.n_grain, N_SEEN))
         seen[:, U], seen[:, W], seen[:, SHEAR] = at[:, 0], at[:, 1], at[:, 2]
         seen[:, PHI], seen[:, A_X], seen[:, SHARE] = np.minimum(at[:, 3], PACKED), at[:, 4] * share, share
+        if self.eddies is not None:
+            u_tau, slope = eddies.turbulence(self.column, state, self.phi, cut)
+            seen[:, [U, V, W]] += eddies.speeds(self.eddies, scene.plane_case, u_tau, slope, at[:, 2])
         solid = self._volume * share
         g_x, g_z = scene.gravity[0], scene.gravity[2]
         # the part above the water has no buoyancy

@@ -1,0 +1,136 @@
+"""Turbulent fluctuations: every grain walks from eddy to eddy.
+
+An eddy keeps its speed over u_tau as long as it lives; its age counts in lives of where the grain is.
+Exchanges renew what is over, so that an eddy lasts one interval at least. The draw of an eddy follows from
+(seed, grain, how many eddies the grain has left) alone: threads, order and resume cannot matter. A drift keeps
+fluid mixed; that a heavy grain falls out of an eddy before it is over is not counted.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from ryusa.laws.eddies import eddy_along, eddy_drift, eddy_life
+from ryusa.model.column import Bed, Column, WaterState
+from ryusa.model.eddies import Eddies
+from ryusa.model.scene import Floats
+from ryusa.water._kernel import kernel
+from ryusa.water.exchange import Slices, faces_to_grains, slope_to_grains
+
+LEAST = 0.01  # share of water in a cell that is taken as packed
+GOLDEN, MIX_1, MIX_2 = 0x9E3779B97F4A7C15, 0xBF58476D1CE4E5B9, 0x94D049BB133111EB
+
+
+@kernel
+def _mixed(word: Any) -> Any:
+    """Scramble 64 bits: the last lines of SplitMix64 (Steele, Lea & Flood 2014)."""
+    word = (word ^ (word >> np.uint64(30))) * np.uint64(MIX_1)
+    word = (word ^ (word >> np.uint64(27))) * np.uint64(MIX_2)
+    return word ^ (word >> np.uint64(31))
+
+
+@kernel
+def draw(seed: int, grain: int, count: int, k: int) -> float:
+    """Uniform number in (0, 1) [-], number k of an eddy of a grain."""
+    word = _mixed(np.uint64(seed) + np.uint64(GOLDEN))
+    word = _mixed(word + np.uint64(GOLDEN) * np.uint64(grain + 1))
+    word = _mixed(word + np.uint64(GOLDEN) * np.uint64(count + 1))
+    word = _mixed(word + np.uint64(GOLDEN) * np.uint64(k + 1))
+    return (float(word >> np.uint64(11)) + 0.5) * (1.0 / 9007199254740992.0)
+
+
+@kernel
+def _born(seed: int, grain: int, count: int, r: Floats) -> None:
+    """Draw eddy `count` of a grain; by Box & Muller from four uniform numbers."""
+    for k, axis in ((0, 0), (2, 1)):
+        size = math.sqrt(-2.0 * math.log(draw(seed, grain, count, k)))
+        turn = 2.0 * math.pi * draw(seed, grain, count, k + 1)
+        r[grain, axis] = size * math.cos(turn)
+        if axis == 0:
+            r[grain, 2] = size * math.sin(turn)
+
+
+@kernel
+def _begin(seed: int, r: Floats, spent: Floats) -> None:
+    for i in range(len(spent)):
+        _born(seed, i, 0, r)
+        spent[i] = draw(seed, i, 0, 4)
+
+
+@kernel
+def _renew(seed: int, dt: float, shear: Floats, r: Floats, spent: Floats, count: Any) -> None:
+    for i in range(len(spent)):
+        spent[i] += dt / eddy_life(shear[i])
+        if spent[i] >= 1.0:
+            left = math.floor(spent[i])
+            spent[i] -= left
+            count[i] += int(left)
+            _born(seed, i, count[i], r)
+
+
+@kernel
+def _speeds(plane: bool, r: Floats, u_tau: Floats, slope: Floats, shear: Floats, u: Floats) -> None:
+    for i in range(len(u)):
+        u[i, 0] = eddy_along(r[i, 0], r[i, 2], u_tau[i], shear[i])
+        u[i, 1] = 0.0 if plane else r[i, 1] * u_tau[i]
+        u[i, 2] = r[i, 2] * u_tau[i] + eddy_drift(slope[i], shear[i])
+
+
+def begin(seed: int, n_grain: int) -> Eddies:
+    """Put every grain into an eddy, somewhere in its life; `seed` is that of the case."""
+    r, spent = np.zeros((n_grain, 3)), np.zeros(n_grain)
+    _begin(seed, r, spent)
+    return Eddies(r, spent, np.zeros(n_grain, np.int64))
+
+
+def renew(eddies: Eddies, seed: int, dt: float, shear: Floats) -> Eddies:
+    """Let eddies age, and renew those that are over.
+
+    Parameters
+    ----------
+    eddies : those the grains were in.
+    seed : of the case.
+    dt : time gone by [s].
+    shear : velocity gradient of the water at each grain meanwhile [1/s], shape (n_grain,).
+    """
+    r, spent, count = eddies.r.copy(), eddies.spent.copy(), eddies.count.copy()
+    _renew(seed, dt, np.ascontiguousarray(shear), r, spent, count)
+    return Eddies(r, spent, count)
+
+
+def speeds(eddies: Eddies, plane: bool, u_tau: Floats, slope: Floats, shear: Floats) -> Floats:
+    """Speed of the water beyond its mean at each grain, drift included [m/s], shape (n_grain, 3).
+
+    Parameters
+    ----------
+    eddies : those the grains are in.
+    plane : motion in x-z only; eddies have no speed across then.
+    u_tau, slope : strength of the turbulence at each grain [m/s] and gradient of its square [m/s2].
+    shear : velocity gradient of the water there [1/s]; all of shape (n_grain,).
+    """
+    u = np.empty((len(u_tau), 3))
+    _speeds(plane, eddies.r, u_tau, slope, np.ascontiguousarray(shear), u)
+    return u
+
+
+def turbulence(column: Column, state: WaterState, phi: Floats, cut: Slices) -> tuple[Floats, Floats]:
+    """Strength of the turbulence at each grain u_tau [m/s] and the gradient of its square [m/s2], (n_grain,).
+
+    Parameters
+    ----------
+    column, state : the water.
+    phi : concentration in its cells [-], shape (n,).
+    cut : slices of the grains.
+
+    Notes
+    -----
+    u_tau**2 is the turbulent part of the shear stress over density and share of water, nu_t |dU/dz|/eps. A
+    wall has no eddies but on a rough bed, where the lowest cell is as turbulent as the face above it.
+    """
+    eps = np.maximum(1.0 - phi, LEAST)
+    share = np.concatenate([eps[:1], 0.5 * (eps[1:] + eps[:-1]), eps[-1:]])
+    square = np.abs(state.tau) / column.rho_w * state.nu_t / (column.nu + state.nu_t) / share
+    if column.bed is Bed.ROUGH:
+        square[0] = square[1]
+    return np.sqrt(faces_to_grains(cut, square, "wet")), slope_to_grains(cut, square, "wet")

@@ -1,0 +1,142 @@
+"""Grains that walk from eddy to eddy: what they are told, how long, and that fluid stays mixed."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests.water.test_coupling import D, cloud, column_of, march
+
+from ryusa.model.column import Fluctuations
+from ryusa.model.enums import Buoyancy
+from ryusa.water import eddies
+
+N = 40_000
+ONE = np.ones(N)
+
+
+def walk(steps, dt, shear=1.0, seed=3, n=N):
+    """Eddies after each of some steps under a constant shear."""
+    now = eddies.begin(seed, n)
+    yield now
+    for _ in range(steps):
+        now = eddies.renew(now, seed, dt, np.full(n, shear))
+        yield now
+
+
+@pytest.mark.parametrize("shear", [2.0, -2.0])
+def test_the_reynolds_stress_and_the_variances_are_those_asked_for(shear):
+    u_tau = 0.3 * ONE
+    u = eddies.speeds(eddies.begin(11, N), False, u_tau, 0.0 * ONE, shear * ONE) / 0.3
+    error = 4.0 / math.sqrt(N)
+    assert np.abs(u.mean(axis=0)).max() < 1.5 * error
+    assert u.var(axis=0) == pytest.approx([2.0, 1.0, 1.0], abs=3.0 * error)
+    assert np.mean(u[:, 0] * u[:, 2]) == pytest.approx(-math.copysign(1.0, shear), abs=2.5 * error)
+    assert np.mean(u[:, 1] * u[:, 2]) == pytest.approx(0.0, abs=error)
+    assert np.mean(u[:, 2] ** 4) == pytest.approx(3.0, abs=12.0 * error)  # normal numbers
+    assert not eddies.speeds(eddies.begin(11, N), True, u_tau, 0.0 * ONE, shear * ONE)[:, 1].any()
+
+
+def test_eddies_live_as_long_as_the_shear_says_and_forget_one_another():
+    dt, shear = 0.02, 5.0  # life 2/5 s: 20 steps
+    states = list(walk(60, dt, shear))
+    w = np.array([one.r[:, 2] for one in states])
+    error = 4.0 / math.sqrt(N)
+    for lag in (0, 5, 10, 15, 20, 30):
+        expected = max(1.0 - lag / 20.0, 0.0)  # renewed at a random age, each after 20 steps
+        assert np.mean(w[7] * w[7 + lag]) == pytest.approx(expected, abs=2.0 * error)
+    assert states[-1].count.mean() == pytest.approx(3.0, abs=error)
+    assert np.all((states[-1].spent >= 0.0) & (states[-1].spent < 1.0))
+
+
+def test_fluid_spreads_with_the_eddy_viscosity():
+    dt, shear, u_tau = 0.02, 5.0, 0.1
+    z, steps = np.zeros(N), 400
+    for now in walk(steps, dt, shear):
+        z += now.r[:, 2] * u_tau * dt
+    spread = np.var(z) / (2.0 * (steps + 1) * dt)
+    assert spread == pytest.approx(u_tau**2 / shear, rel=0.06)  # l**2 |dU/dz| with l = u_tau/|dU/dz|
+
+
+@pytest.mark.parametrize("settling", [0.0, 0.4])
+def test_fluid_stays_mixed_and_grains_follow_rouse(settling):
+    # parabolic eddy viscosity kappa u_star z (1 - z/h); settling: the Rouse number
+    n, kappa, u_star, h = 3000, 0.41, 1.0, 1.0
+    low, high = 0.02 * h, 0.999 * h
+    z = np.random.default_rng(1).uniform(low, high, n)
+    now, dt, steps = eddies.begin(5, n), 0.1 * kappa * low / u_star, 12_000
+    count = np.zeros(12)
+    for k in range(steps):
+        shear = u_star / (kappa * z)
+        u = eddies.speeds(
+            now, True, u_star * np.sqrt(1.0 - z / h), np.full(n, -(u_star**2) / h), shear
+        )  # fmt: skip
+        z = z + (u[:, 2] - settling * kappa * u_star) * dt
+        back = (z < low) | (z > high)
+        z = np.where(z < low, 2.0 * low - z, np.where(z > high, 2.0 * high - z, z))
+        now.r[back, 2] *= -1.0
+        now = eddies.renew(now, 5, dt, shear)
+        if k > steps / 3 and k % 20 == 0:
+            count += np.histogram(z, bins=12, range=(low, high))[0]
+    edges = np.linspace(low, high, 13)
+    middle = 0.5 * (edges[1:] + edges[:-1])
+    rouse = ((h - middle) / middle) ** settling
+    ratio = (count / count.sum()) / (rouse / rouse.sum())
+    assert ratio[1:10] == pytest.approx(np.ones(9), abs=0.08)
+    assert ratio[-1] > 0.5
+
+
+def test_a_draw_depends_on_seed_grain_and_number_alone():
+    whole = list(walk(30, 0.1, 5.0, n=50))[-1]
+    first = list(walk(30, 0.1, 5.0, n=20))[-1]
+    assert np.array_equal(whole.r[:20], first.r)
+    assert not np.array_equal(whole.r, list(walk(30, 0.1, 5.0, seed=4, n=50))[-1].r)
+    numbers = [eddies.draw(s, g, c, k) for s in (0, 1) for g in (0, 1) for c in (0, 1) for k in range(5)]
+    assert len(set(numbers)) == len(numbers)
+    assert all(0.0 < one < 1.0 for one in numbers)
+
+
+def test_still_water_has_no_eddies_that_end():
+    *_, last = walk(5, 1.0, shear=0.0, n=10)
+    assert not last.count.any()
+
+
+def _stirred(area, **more):
+    return replace(column_of(area), fluctuations=Fluctuations.RANDOM_WALK, seed=7, **more)
+
+
+@pytest.mark.parametrize("form", list(Buoyancy))
+def test_with_fluctuations_grains_and_water_still_gain_what_weight_and_bed_give(form):
+    from ryusa.water import steady
+
+    made, area = cloud(form)
+    column = _stirred(area)
+    water, _ = steady(column, np.zeros(column.n), None)
+    fixed, dt = made[0], made[0].dt
+    for coupling, _, steps, (_, v, seen, _, v_now, _) in march(made, column, 12, water_state=water):
+        budget, time = coupling.budget, steps * dt
+        grains = float(fixed.m @ (v_now[:, 0] - v[:, 0])) / (area * time)
+        weight = float(fixed.m.sum()) * fixed.gravity[0] / area
+        given = weight + budget.gravity + budget.driver + budget.bed + budget.surface
+        carries = 1000.0 * float(np.abs(coupling.state.u) @ coupling.state.content) / time
+        assert grains + budget.change == pytest.approx(given, rel=1e-10, abs=4e-15 * carries)
+        assert not seen[:, 1].any()  # a plane scene
+    assert coupling.eddies.count.any()
+
+
+def test_grains_are_told_the_turbulence_of_where_they_are():
+    from ryusa.water import steady
+
+    n = 4000
+    made, area = cloud(Buoyancy.STRESS, n=n)
+    column = _stirred(1e6 * area)  # so wide that the grains do not slow the water
+    water, _ = steady(column, np.zeros(column.n), None)
+    (coupling, *_rest), *_ = march(made, column, 1, water_state=water)
+    plain, *_ = march(made, replace(column, fluctuations=Fluctuations.NONE), 1, water_state=water)
+    told = coupling.seen[:, [0, 2]] - plain[0].seen[:, [0, 2]]
+    z, surface = made[1].x[:, 2], 25.0 * D
+    u_star = math.sqrt(9.80665 * math.sin(0.05) * surface)
+    share = 1.0 - z / surface  # of u_star**2, linear over the depth
+    error = 4.0 / math.sqrt(n)
+    assert np.mean(told[:, 0] * told[:, 1] / share) == pytest.approx(-(u_star**2), rel=4.0 * error)
+    assert np.mean(told[:, 1] ** 2 / share) == pytest.approx(u_star**2, rel=4.0 * error)
