@@ -2,8 +2,8 @@
 
 An eddy keeps its speed over u_tau as long as it lives; its age counts in lives of where the grain is.
 Exchanges renew what is over, so that an eddy lasts one interval at least. The draw of an eddy follows from
-(seed, grain, how many eddies the grain has left) alone: threads, order and resume cannot matter. A drift keeps
-fluid mixed; that a heavy grain falls out of an eddy before it is over is not counted.
+(seed, grain, how many eddies the grain has left) alone: threads, order and resume cannot matter. A drift
+keeps fluid mixed; that a heavy grain falls out of an eddy before it is over is not counted.
 """
 
 import math
