@@ -11,8 +11,8 @@ import pytest
 from ryusa.build import scene
 from ryusa.engine.cpu import CpuEngine
 from ryusa.model import Column, Scene, State, Water
-from ryusa.model.column import Bed, Mixing, Start
-from ryusa.model.enums import Drag, EventRule, Hindrance, Profile
+from ryusa.model.column import Bed, Fluctuations, Mixing, Start
+from ryusa.model.enums import Drag, EventRule, Hindrance, Profile, Rebound
 from ryusa.results import Results
 from ryusa.running import loop as loop_module
 from ryusa.running.runner import run_scene
@@ -106,6 +106,24 @@ def test_a_snapshot_at_any_step_goes_on_with_the_same_bits(k: int) -> None:
     assert bits(again.state()) == bits(before.state())
     again._steps(200 - k)
     assert whole._water is not None and whole._water.exchanges > 10
+    assert bits(again.state()) == bits(whole.state())
+
+
+@pytest.mark.parametrize("k", [1, 45, 501])
+def test_a_snapshot_among_eddies_and_films_goes_on_with_the_same_bits(k: int) -> None:
+    fixed, first = over_fixed_grains()
+    column = replace(
+        fixed.column, fluctuations=Fluctuations.RANDOM_WALK, seed=112
+    )  # some eddies are about to end
+    water = replace(fixed.water, rebound=Rebound.EXPONENTIAL)
+    fixed = replace(fixed, column=column, water=water)
+    whole = stepping(fixed, first)
+    whole._steps(600)
+    before = stepping(fixed, first)
+    before._steps(k)
+    again = stepping(fixed, before.state())
+    again._steps(600 - k)
+    assert whole._water is not None and whole._water.eddies.count.any()
     assert bits(again.state()) == bits(whole.state())
 
 

@@ -6,7 +6,7 @@ from enum import IntEnum
 
 import numpy as np
 
-from ryusa.model.scene import Floats
+from ryusa.model.arrays import Floats
 
 NAN = float("nan")
 AGREE = 0.02  # relative; numbers that say the same thing twice may differ by so much (rounded input)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ryusa.model.scene import Floats
+from ryusa.model.arrays import Floats
 
 # One row per contact that ended. Vectors are those of grain i; n points from i to j.
 EVENT = np.dtype(

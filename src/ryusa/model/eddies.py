@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ryusa.model.scene import Floats
+from ryusa.model.arrays import Floats
 
 
 @dataclass(frozen=True)

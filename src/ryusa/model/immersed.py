@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ryusa.model.arrays import Floats
 from ryusa.model.column import WaterState
 from ryusa.model.eddies import Eddies
-from ryusa.model.scene import Floats
 
 # Columns of `Immersed.seen`.
 U, V, W = 0, 1, 2  # speed of the water along x, y and z, fluctuations included [m/s]

@@ -1,11 +1,11 @@
 """What holds still during a run: grains' sizes and masses, bed, planes, laws, water, step."""
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ryusa.model.arrays import Bools, Floats
+from ryusa.model.column import Column
 from ryusa.model.enums import (
     Above,
     Arm,
@@ -24,11 +24,6 @@ from ryusa.model.enums import (
     WaterTorque,
 )
 
-if TYPE_CHECKING:
-    from ryusa.model.column import Column
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 _INF = float("inf")
 
 
@@ -123,7 +118,7 @@ class Scene:
     rolling: RollingLaw = field(default_factory=RollingLaw)
     rotation: bool = True  # False: spin locked at zero
     water: Water = field(default_factory=Water)
-    column: "Column | None" = None  # where the profile is COLUMN
+    column: Column | None = None  # where the profile is COLUMN
     # space
     plane_case: bool = False  # motion in x-z only; y, v_y, omega_x, omega_z stay as they are
     period: tuple[float, float] = (float("inf"), float("inf"))  # period in x and y [m]; inf where open

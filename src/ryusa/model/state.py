@@ -4,9 +4,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ryusa.model.arrays import Floats
 from ryusa.model.contacts import Contacts
 from ryusa.model.immersed import Coupled, Immersed
-from ryusa.model.scene import Floats
 from ryusa.model.tally import N_BOOK
 
 
