@@ -146,3 +146,24 @@ def test_fixed_grains_fill_the_cells_that_they_stand_in():
     )
     coupling = Coupling.begin(fixed, column_of(area), 20, made[1].x)
     assert coupling.phi[:5].sum() * 0.2 * D * area == pytest.approx(count * math.pi / 6 * D**3)
+
+
+def test_every_slice_of_a_grain_drags_the_water_by_its_own_slip():
+    made, area = cloud(Buoyancy.PRESSURE, n=6)
+    fixed, first = made
+    column = column_of(area, bed=Bed.NO_SLIP, mixing=Mixing.LAMINAR)
+    at_rest = Coupling.begin(fixed, column, 20, first.x).state
+    sheared = replace(at_rest, u=3.0 * (column.z - column.z_low))
+    coupling = Coupling.begin(fixed, column, 20, first.x, sheared)
+    k_d, dt = 2.0e-5, 1e-3
+    taken = np.zeros((6, 4))
+    taken[:, 0], taken[:, 3] = k_d * coupling.seen[:, 0] * dt, k_d  # drag on grains at rest
+    force = coupling.force(taken, dt)
+    volume = column.dz * area
+    assert (force * volume).sum() == pytest.approx(taken[:, 0].sum() / dt, rel=1e-12)
+    # of a sphere: every cell gives k_d U_k times the part of the sphere in it
+    z, r = first.x[:, 2], 0.5 * D
+    low = np.clip(column.faces[:-1, None] - z, -r, r)
+    high = np.clip(column.faces[1:, None] - z, -r, r)
+    part = (r * r * (high - low) - (high**3 - low**3) / 3.0) / (4.0 / 3.0 * r**3)
+    assert force * volume == pytest.approx(k_d * sheared.u * part.sum(axis=1), rel=1e-9, abs=1e-18)

@@ -166,14 +166,18 @@ class Coupling:
         return self.seen
 
     def force(self, taken: Floats, dt: float) -> Floats:
-        """All forces of the water on grains along the bed over an interval, by volume of cells [N/m3]."""
-        scene, cut = self.scene, self._slices
+        """All forces of the water on grains along the bed over an interval, by volume of cells [N/m3].
+
+        Every slice of a grain drags the water by its own slip: the sum over slices is what the grain took.
+        """
+        scene, cut, u, k_d = self.scene, self._slices, self.state.u, taken[:, DRAG]
         archimedes = (scene.m_weight - scene.m) * scene.gravity[0]
         mean = taken[:, 0] / dt
         both = to_cells(cut, np.column_stack([mean, taken[:, 2] / dt]), "wet").cells / cut.cells.volume
         rest = to_cells(cut, archimedes + self.seen[:, EXTRA_X], "wet").cells / cut.cells.volume
+        slip = to_cells(cut, np.column_stack([k_d, k_d * to_grains(cut, u, "wet")]), "wet").cells
         self._force_z = both[:, 1]
-        return both[:, 0] + rest
+        return both[:, 0] + rest + (slip[:, 0] * u - slip[:, 1]) / cut.cells.volume
 
     def numbers(self) -> dict[str, float | int]:
         """Say how the water stands, for the summary of a run; SI."""
