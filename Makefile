@@ -107,7 +107,7 @@ format: $(HAS_TESTS) ## let ruff format and repair what it can
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 
-docs: $(HAS_RYUSA) ## write docs/case-file.md and docs/commands.md anew from the code
+docs: $(HAS_RYUSA) ## write docs/case-file.md, commands.md and the table of validation.md anew
 	$(BIN)/python docs/generate.py
 
 pictures: $(HAS_RYUSA) ## draw docs/pictures anew from the runs in runs/paper; makes those that are missing

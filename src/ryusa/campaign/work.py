@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -32,6 +32,7 @@ _BEGIN = 0.14  # s to begin, to open and to measure a short run in a process tha
 _NUMBERS = "numbers.npz"  # of a calculation
 
 
+@runtime_checkable
 class Work(Protocol):
     """One piece of work, small enough to be sent between processes; equal ones are done once."""
 

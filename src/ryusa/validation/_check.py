@@ -16,6 +16,7 @@ NAMES = (
     "water_alone",
     "terminal_velocity",
     "suspension",
+    "balance",
     "impact",
     "rolling",
     "gas",
