@@ -195,6 +195,16 @@ def _parameter(parameter: Any) -> str:
     return f"| {shown} | {_escape(getattr(parameter, 'help', None) or '')} | {default} |"
 
 
+# ------------------------------------------------------------------------------------------------ validation
+
+
+def validation_table() -> str:
+    """Table of every comparison, from the kept ledger of a full `ryusa validate`."""
+    from ryusa.report.validation import table
+
+    return table(json.loads((HERE / "validation-ledger.json").read_text(encoding="utf-8"))) + "\n"
+
+
 # ----------------------------------------------------------------------------------------------------- pages
 
 
@@ -205,6 +215,7 @@ def pages() -> dict[Path, str]:
     return {
         HERE / "case-file.md": _between_markers(HERE / "case-file.md", case_reference()),
         HERE / "commands.md": _between_markers(HERE / "commands.md", command_reference()),
+        HERE / "validation.md": _between_markers(HERE / "validation.md", validation_table()),
         HERE / "case.schema.json": json_schema_text(),
     }
 

@@ -252,34 +252,39 @@ def tolerance_in_words(one: Mapping[str, Any]) -> str:
 def table(plain: Mapping[str, Any]) -> str:
     """Lines of the table of docs/validation.md, from what the JSON file holds.
 
-    >>> print(
-    ...     table(
-    ...         {
-    ...             "comparisons": [
-    ...                 {
-    ...                     "id": "a/b",
-    ...                     "title": "T",
-    ...                     "source": "S",
-    ...                     "verdict": "within",
-    ...                     "problem": "",
-    ...                     "errors": [],
-    ...                 }
-    ...             ]
-    ...         }
-    ...     )
-    ... )
-    | comparison | reference | error | may be | verdict |
-    |---|---|---|---|---|
-    | a/b: T | S |  |  | within |
+    Of several errors it shows those that miss, or the one that comes nearest to its tolerance.
     """
     lines = ["| comparison | reference | error | may be | verdict |", "|---|---|---|---|---|"]
     for row in plain["comparisons"]:
-        errors = [f"{each['name']}: {error_in_words(each)}" for each in row["errors"]]
-        asked = [tolerance_in_words(each) for each in row["errors"]]
+        told = telling(row["errors"])
+        more = len(row["errors"]) - len(told)
+        errors = [f"{each['name']}: {error_in_words(each)}" for each in told]
+        errors += [f"and {more} more"] if more else []
+        asked = [tolerance_in_words(each) for each in told]
         cells = [f"{row['id']}: {row['title']}", row["source"], "<br>".join(errors), "<br>".join(asked)]
         cells.append(row["verdict"])
         lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
     return "\n".join(lines)
+
+
+def telling(errors: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    """Errors of the JSON file that miss; else the one that uses most of its tolerance, or the first.
+
+    >>> small = {"name": "a", "value": 0.1, "low": 0.0, "high": 1.0, "within": True}
+    >>> [one["name"] for one in telling([small, {**small, "name": "b", "value": 0.2}])]
+    ['b']
+    """
+    missed = [one for one in errors if one["within"] is False]
+    judged = [one for one in errors if one["within"]]
+    return missed or sorted(judged, key=_used)[-1:] or list(errors[:1])
+
+
+def _used(one: Mapping[str, Any]) -> float:
+    """Share of its tolerance that an error uses [-]; one without an upper end uses none."""
+    low, high = one["low"] or 0.0, one["high"]
+    if high is None:
+        return 0.0
+    return abs(one["value"] - 0.5 * (low + high)) / (0.5 * (high - low)) if low else one["value"] / high
 
 
 def _error(one: Error) -> dict[str, Any]:

@@ -165,8 +165,7 @@ def _compare(found: Found, where: str, form: str) -> Comparison:
         f"{where}-{form}", f"{RANGES[where].words}, buoyancy {form}",
         Source(
             "w = w_0 (1 - phi)^n, n = 1 - p + (q + A)/a of drag eps^-q F_0(eps^p w/eps), F_0 ~ w^a, A = 1 "
-            "where buoyancy is that of the mixture; Richardson & Zaki 1954, Wen & Yu 1966, Di Felice 1994, "
-            "Gidaspow 1994"
+            "where buoyancy is that of the mixture"
         ),
         Axis("concentration phi"), Axis("w/w_0", log=True), ours, references, errors,
         {"suspension": "lattice of 128 grains in a closed column"},

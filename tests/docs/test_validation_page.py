@@ -1,0 +1,32 @@
+"""The page on validation says what the kept ledger says."""
+
+import json
+import re
+from pathlib import Path
+
+from ryusa.report.validation import table
+from ryusa.validation import NAMES, Word
+
+DOCS = Path(__file__).parents[2] / "docs"
+
+
+def kept():
+    return json.loads((DOCS / "validation-ledger.json").read_text(encoding="utf-8"))
+
+
+def test_the_table_of_the_page_is_that_of_the_kept_ledger():
+    assert table(kept()) in (DOCS / "validation.md").read_text(encoding="utf-8")
+
+
+def test_the_kept_ledger_is_a_full_one_without_a_gap_and_says_where_it_came_from():
+    ledger = kept()
+    assert ledger["level"] == "full"
+    assert not ledger["problems"] and not ledger["faults"]
+    assert {one["check"] for one in ledger["comparisons"]} <= set(NAMES)
+    assert all(one["verdict"] != Word.UNDECIDED for one in ledger["comparisons"])
+    assert re.fullmatch(r"[0-9a-f]{40}", ledger["provenance"]["commit"])
+
+
+def test_what_is_missed_says_why():
+    for one in kept()["comparisons"]:
+        assert one["verdict"] != Word.MISSED or one["said"], one["id"]
