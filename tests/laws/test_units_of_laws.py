@@ -98,7 +98,7 @@ UNITS = {
     "hindrance.power": "m/s, -, - -> m/s, -",
     "eddies.eddy_along": "-, -, m/s, 1/s -> m/s",
     "eddies.eddy_life": "1/s -> s",
-    "eddies.eddy_drift": "m/s2, 1/s -> m/s",
+    "eddies.eddy_drift": "m, 1/s -> m/s",
     "immersed.stokes_number": "m/s, kg, m, kg/m3, m2/s -> -",
     "immersed.stokes_number_yade": "m/s, m, kg/m3, kg/m3, m2/s -> -",
     "immersed.restitution_exponential": "-, -, - -> -",

@@ -69,7 +69,7 @@ def test_fluid_stays_mixed_and_grains_follow_rouse(settling):
     for k in range(steps):
         shear = u_star / (kappa * z)
         u = eddies.speeds(
-            now, True, u_star * np.sqrt(1.0 - z / h), np.full(n, -(u_star**2) / h), shear
+            now, True, u_star * np.sqrt(1.0 - z / h), -0.5 * kappa * u_star * z / h, shear
         )  # fmt: skip
         z = z + (u[:, 2] - settling * kappa * u_star) * dt
         back = (z < low) | (z > high)

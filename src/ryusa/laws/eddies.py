@@ -57,25 +57,26 @@ def eddy_life(shear: float) -> float:
 
 
 @law
-def eddy_drift(slope: float, shear: float) -> float:
-    """Mean vertical speed of the fluid a grain meets [m/s], (T_L/2) d(w'**2)/dz, T_L = 1/|dU/dz|.
+def eddy_drift(length: float, slope: float) -> float:
+    """Mean vertical speed of the fluid a grain meets [m/s], l d(u_tau)/dz.
 
     Parameters
     ----------
-    slope : gradient of u_tau**2 along z [m/s2].
-    shear : velocity gradient of the water [1/s]; without any there are no eddies, and no drift.
+    length : mixing length [m].
+    slope : gradient of u_tau along z [1/s].
 
     Notes
     -----
     Source: derived. Fluid stays mixed when it drifts with the gradient of its diffusivity w'**2 T/2, T =
     2 T_L; without, a walk gathers fluid, and grains, where turbulence is weak. Of that w'**2 (dT/dz)/2 comes
     by itself where an eddy's age counts in lives of where the grain is, and half of the rest where its speed
-    goes with u_tau there; this is the other half. Walks of constant speed need twice as much (Legg & Raupach
-    1982, MacInnes & Bracco 1992, both from memory), and leave the water under the surface empty.
+    goes with u_tau there; this is the other half, (T_L/2) d(w'**2)/dz. Walks of constant speed need twice as
+    much (Legg & Raupach 1982, MacInnes & Bracco 1992, both from memory), and leave the water under the
+    surface empty.
 
     Examples
     --------
-    >>> eddy_drift(-0.02, 10.0), eddy_drift(1.0, 0.0)
-    (-0.001, 0.0)
+    >>> eddy_drift(0.002, -1.5)
+    -0.003
     """
-    return 0.5 * slope / abs(shear) if shear != 0.0 else 0.0
+    return length * slope

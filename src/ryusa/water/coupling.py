@@ -248,8 +248,8 @@ class Coupling:
         seen[:, U], seen[:, W], seen[:, SHEAR] = at[:, 0], at[:, 1], at[:, 2]
         seen[:, PHI], seen[:, A_X], seen[:, SHARE] = np.minimum(at[:, 3], PACKED), at[:, 4] * share, share
         if self.eddies is not None:
-            u_tau, slope = eddies.turbulence(self.column, state, self.phi, cut)
-            seen[:, [U, V, W]] += eddies.speeds(self.eddies, scene.plane_case, u_tau, slope, at[:, 2])
+            u_tau, drift = eddies.turbulence(self.column, state, self.phi, cut)
+            seen[:, [U, V, W]] += eddies.speeds(self.eddies, scene.plane_case, u_tau, drift, at[:, 2])
         solid = self._volume * share
         g_x, g_z = scene.gravity[0], scene.gravity[2]
         # the part above the water has no buoyancy

@@ -16,7 +16,7 @@ from ryusa.model.column import Bed, Column, WaterState
 from ryusa.model.eddies import Eddies
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import kernel
-from ryusa.water.exchange import Slices, faces_to_grains, slope_to_grains
+from ryusa.water.exchange import Slices, faces_to_grains, to_grains
 
 LEAST = 0.01  # share of water in a cell that is taken as packed
 GOLDEN, MIX_1, MIX_2 = 0x9E3779B97F4A7C15, 0xBF58476D1CE4E5B9, 0x94D049BB133111EB
@@ -70,11 +70,22 @@ def _renew(seed: int, dt: float, shear: Floats, r: Floats, spent: Floats, count:
 
 
 @kernel
-def _speeds(plane: bool, r: Floats, u_tau: Floats, slope: Floats, shear: Floats, u: Floats) -> None:
+def _speeds(plane: bool, r: Floats, u_tau: Floats, drift: Floats, shear: Floats, u: Floats) -> None:
     for i in range(len(u)):
         u[i, 0] = eddy_along(r[i, 0], r[i, 2], u_tau[i], shear[i])
         u[i, 1] = 0.0 if plane else r[i, 1] * u_tau[i]
-        u[i, 2] = r[i, 2] * u_tau[i] + eddy_drift(slope[i], shear[i])
+        u[i, 2] = r[i, 2] * u_tau[i] + drift[i]
+
+
+@kernel
+def _drift(dz: float, u_tau: Floats, viscosity: Floats, drift: Floats) -> None:
+    """Drift in cells from strength [m/s] and diffusivity l u_tau [m2/s] at their faces."""
+    for k in range(len(drift)):
+        length = 0.0
+        for f in (k, k + 1):
+            if u_tau[f] > 0.0:
+                length += 0.5 * viscosity[f] / u_tau[f]
+        drift[k] = eddy_drift(length, (u_tau[k + 1] - u_tau[k]) / dz)
 
 
 def begin(seed: int, n_grain: int) -> Eddies:
@@ -99,23 +110,23 @@ def renew(eddies: Eddies, seed: int, dt: float, shear: Floats) -> Eddies:
     return Eddies(r, spent, count)
 
 
-def speeds(eddies: Eddies, plane: bool, u_tau: Floats, slope: Floats, shear: Floats) -> Floats:
-    """Speed of the water beyond its mean at each grain, drift included [m/s], shape (n_grain, 3).
+def speeds(eddies: Eddies, plane: bool, u_tau: Floats, drift: Floats, shear: Floats) -> Floats:
+    """Speed of the water beyond its mean at each grain [m/s], shape (n_grain, 3).
 
     Parameters
     ----------
     eddies : those the grains are in.
     plane : motion in x-z only; eddies have no speed across then.
-    u_tau, slope : strength of the turbulence at each grain [m/s] and gradient of its square [m/s2].
+    u_tau, drift : strength of the turbulence at each grain and mean vertical speed of its eddies [m/s].
     shear : velocity gradient of the water there [1/s]; all of shape (n_grain,).
     """
     u = np.empty((len(u_tau), 3))
-    _speeds(plane, eddies.r, u_tau, slope, np.ascontiguousarray(shear), u)
+    _speeds(plane, eddies.r, u_tau, drift, np.ascontiguousarray(shear), u)
     return u
 
 
 def turbulence(column: Column, state: WaterState, phi: Floats, cut: Slices) -> tuple[Floats, Floats]:
-    """Strength of the turbulence at each grain u_tau [m/s] and the gradient of its square [m/s2], (n_grain,).
+    """Strength of the turbulence at each grain u_tau and mean vertical speed of its eddies [m/s], (n_grain,).
 
     Parameters
     ----------
@@ -130,7 +141,10 @@ def turbulence(column: Column, state: WaterState, phi: Floats, cut: Slices) -> t
     """
     eps = np.maximum(1.0 - phi, LEAST)
     share = np.concatenate([eps[:1], 0.5 * (eps[1:] + eps[:-1]), eps[-1:]])
-    square = np.abs(state.tau) / column.rho_w * state.nu_t / (column.nu + state.nu_t) / share
+    viscosity = state.nu_t / share
+    square = np.abs(state.tau) / column.rho_w * viscosity / (column.nu + state.nu_t)
     if column.bed is Bed.ROUGH:
         square[0] = square[1]
-    return np.sqrt(faces_to_grains(cut, square, "wet")), slope_to_grains(cut, square, "wet")
+    drift = np.empty(column.n)
+    _drift(column.dz, np.sqrt(square), viscosity, drift)
+    return np.sqrt(faces_to_grains(cut, square, "wet")), to_grains(cut, drift, "wet")
