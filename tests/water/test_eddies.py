@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from tests.water.test_coupling import D, cloud, column_of, march
 
-from ryusa.model.column import Fluctuations
+from ryusa.model.column import Bed, Fluctuations, Mixing, WaterState
 from ryusa.model.enums import Buoyancy
-from ryusa.water import eddies
+from ryusa.water import advance, eddies
+from ryusa.water.exchange import Cells, slices
 
 N = 40_000
 ONE = np.ones(N)
@@ -140,3 +141,21 @@ def test_grains_are_told_the_turbulence_of_where_they_are():
     error = 4.0 / math.sqrt(n)
     assert np.mean(told[:, 0] * told[:, 1] / share) == pytest.approx(-(u_star**2), rel=4.0 * error)
     assert np.mean(told[:, 1] ** 2 / share) == pytest.approx(u_star**2, rel=4.0 * error)
+
+
+def test_a_grain_astride_the_crest_of_a_bed_drifts_no_faster_than_its_eddies():
+    column = column_of(1.0, bed=Bed.MOVING, mixing=Mixing.LI_SAWAMOTO, d=D)
+    phi = np.where(column.z < 8.0 * D, 0.62, 0.0)
+    drag = np.where(phi > 0.0, 1e7, 0.0)  # of grains at rest [N s/m4]
+    none = np.zeros(column.n)
+    state = WaterState.at_rest(column, phi)
+    for _ in range(60):
+        state, _ = advance(column, state, phi, none, 0.05, slope=drag)
+    z = np.arange(2.0 * D, 24.0 * D, 0.13 * D)
+    cut = slices(z, np.full(len(z), D), Cells(column.z_low, column.dz, column.n, 1.0))
+    u_tau, drift = eddies.turbulence(column, state, phi, cut)
+    assert u_tau.max() > 0.05
+    assert u_tau[z < 7.0 * D].max() == 0.0
+    near = (z > 6.0 * D) & (z < 12.0 * D)
+    assert np.abs(drift[near]).max() < u_tau[near].max()
+    assert np.abs(drift).max() < 5.0 * u_tau.max()
