@@ -11,7 +11,7 @@ from ryusa.errors import ResultsError
 from ryusa.figures.comparison import Axis, Line
 from ryusa.report import validation as page
 from ryusa.report.validation import make, table, write
-from ryusa.validation import Comparison, Error, Known, Source, Tolerance, Word, at_most
+from ryusa.validation import Comparison, Error, Known, Source, Tolerance, Word, at_most, case_run
 
 CALLS = []
 
@@ -169,3 +169,45 @@ def test_a_reference_from_memory_is_shown_and_must_not_decide():
             "m", "M", Source("someone", Known.MEMORY), axis, axis, [line], [line],
             [Error("e", 1.0, "-", at_most(2.0, "why"))],
         )  # fmt: skip
+
+
+class OfRuns:
+    """A check of two runs of a case file."""
+
+    TITLE = "Runs"
+    CASES = tuple(
+        case_run("saltation", {"stop.time": "0.01 s", "record.settle": "0 s", "seed": seed}, shelf="paper")
+        for seed in ("1", "2")
+    )
+
+    def runs(self, level):
+        return self.CASES[: 1 if level is Level.QUICK else 2]
+
+    def measure(self, run, one):
+        assert one in self.CASES
+        return len(run.frames)
+
+    def compare(self, found, level):
+        count = np.array([float(n) for n in found.values()])
+        lines = [Line("ours", count, count)]
+        errors = [Error("frames", count.min(), "-", Tolerance(1.0, math.inf, "more than none"))]
+        return [Comparison("frames", "Frames", Source("a count"), Axis("a"), Axis("b"), lines, lines, errors)]
+
+
+def test_runs_of_case_files_are_kept_and_opened(checks, tmp_path):
+    checks["runs"] = OfRuns()
+    quick = make(None, Level.QUICK, tmp_path)
+    assert (quick.counts["runs_made"], quick.counts["runs_opened"]) == (1, 0)
+    full = make(None, Level.FULL, tmp_path)
+    assert (full.counts["runs_made"], full.counts["runs_opened"]) == (1, 1)
+    assert full.rows[0].word is Word.WITHIN
+    assert len(list((tmp_path / "runs" / "saltation").glob("*/grains.vtkhdf"))) == 2
+
+
+def test_a_check_without_work_at_a_level_has_no_row(checks, tmp_path):
+    checks["one"], checks["later"] = Fake(), Fake()
+    checks["later"].runs = lambda _: []
+    checks["later"].compare = lambda *_: []
+    made = make(None, Level.QUICK, tmp_path)
+    assert [one.check for one in made.rows] == ["one"]
+    write(made)
