@@ -20,6 +20,7 @@ NAMES = (
     "impact",
     "rolling",
     "gas",
+    "incline",
 )
 
 
