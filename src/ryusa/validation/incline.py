@@ -111,6 +111,6 @@ def compare(found: Found, level: Level) -> Sequence[Comparison]:
                 ),
                 Error("phi, largest relative difference, core", even, "-", at_most(0.05, "phi follows I")),
             ],
-            settings, "In layers of half a grain, which see how grains lie over the bed, it is 11 %.",
+            settings, "Layers of half a grain would see how grains lie over the bed.",
         ),
     ]  # fmt: skip
