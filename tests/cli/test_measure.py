@@ -179,3 +179,10 @@ def test_a_packing_is_drawn(heap, tmp_path, words):
     assert result.exit_code == 0, result.output
     assert (tmp_path / "picture.svg").read_text().startswith("<?xml")
     assert len((tmp_path / "picture.csv").read_text().splitlines()) > 1
+
+
+def test_rods_are_measured_over_a_time_asked_for(folder, tmp_path):
+    result = call("measure", folder, "rods", "--window", "0.05 s", "--csv", tmp_path / "rods.csv")
+    assert result.exit_code == 0, result.output
+    assert "a rod: movers that touch (gap below 0.05 d) for 0.05 s" in result.output.replace("\n", " ")
+    assert "null_share" in result.output

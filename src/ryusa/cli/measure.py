@@ -22,6 +22,7 @@ MEASURES = (
     "tracks",
     "profile",
     "paths",
+    "rods",
     "vibration",
     "surface",
 )
@@ -41,12 +42,16 @@ def measure(
         float, typer.Option(help="saltation: flights that rise less, in diameters, join two bounces.")
     ] = 0.1,
     begin: Annotated[
-        str | None, typer.Option(help="profile, paths: from this time on; default after settling.")
+        str | None, typer.Option(help="profile, paths, rods: from this time on; default after settling.")
     ] = None,
-    end: Annotated[str | None, typer.Option(help="profile, paths, vibration: up to this time.")] = None,
+    end: Annotated[str | None, typer.Option(help="profile, paths, rods, vibration: up to this time.")] = None,
     layer: Annotated[float, typer.Option(help="profile: thickness of a layer, in diameters.")] = 0.5,
     window: Annotated[
-        str | None, typer.Option(help="paths, vibration: time over which a way is looked at; 1 s, 0.01 s.")
+        str | None,
+        typer.Option(
+            help="paths, vibration: time over which a way is looked at; 1 s, 0.01 s. rods: how long one "
+            "must last; 5 sqrt(d/g)."
+        ),
     ] = None,
     threshold: Annotated[
         str | None,
@@ -69,7 +74,7 @@ def measure(
     elif what == "surface":
         found = _surface(results, seconds(at), known(side, ("right", "left"), "--side"))
         print_surface(found)
-    elif what in {"profile", "paths"}:
+    elif what in {"profile", "paths", "rods"}:
         found = _flow(results, what, seconds(begin) if begin else after, seconds(end), layer, seconds(window))
     else:
         found = _measured(results, what, after, rise)
@@ -134,6 +139,8 @@ def _flow(
     last = float("inf") if end is None else end
     if what == "profile":
         return measure.profiles(results, begin, last, layer=layer)
+    if what == "rods":
+        return measure.rods(results, begin, last, window)
     return measure.paths(results, begin, last, window=1.0 if window is None else window)
 
 

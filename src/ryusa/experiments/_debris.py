@@ -20,6 +20,7 @@ CASE = "fig17"
 LOCKED, FREE = "locked", "free"
 AMOUNT = "layers of grains put in"
 WATER = "water and bed"
+START = "grains begin"
 AS_SHIPPED = "as shipped"
 OTHERS: dict[str, dict[str, str]] = {
     "parabolic mixing length": {
@@ -37,7 +38,8 @@ OTHERS: dict[str, dict[str, str]] = {
     "bed of random height": {"build.bed": "random"},
     "sizes within 10 %": {"grains.spread": "0.1"},
 }
-SHIPPED = {PHI: "30 deg", SLIP: "spring", AMOUNT: "5", WATER: AS_SHIPPED}
+STARTS = {"on their way": "1.8 m/s", "at rest": "0 m/s"}
+SHIPPED = {PHI: "30 deg", SLIP: "spring", AMOUNT: "5", WATER: AS_SHIPPED, START: "on their way"}
 KEYS = {PHI: "contact.friction_angle", SLIP: "contact.slip", AMOUNT: "build.layers"}
 SETTLED = {
     "d": "0.218 cm",
@@ -156,12 +158,14 @@ def settings(plan: Plan) -> list[dict[str, str]]:
             (PHI, ("20 deg",)),
             (SLIP, ("total",)),
             (WATER, ("parabolic mixing length", "no wall law, drag of the fixed grains")),
+            (START, ("at rest",)),
         ),
         (
             (AMOUNT, ("2", "3", "4", "6", "7")),
             (PHI, ("10 deg", "20 deg", "40 deg")),
             (SLIP, ("total", "spring-drop")),
             (WATER, tuple(OTHERS)),
+            (START, ("at rest",)),
         ),
     )
     return [SHIPPED, *({**SHIPPED, name: value} for name, values in changes for value in values)]
@@ -170,6 +174,8 @@ def settings(plan: Plan) -> list[dict[str, str]]:
 def run(chosen: Mapping[str, str], seed: int, changed: Mapping[str, str] | None = None) -> Variant:
     """One run of the case; what is as shipped is not said."""
     keys = {KEYS[name]: value for name, value in chosen.items() if name in KEYS and SHIPPED[name] != value}
+    if chosen[START] != SHIPPED[START]:
+        keys["build.speed"] = STARTS[chosen[START]]
     return variant(CASE, {**keys, **OTHERS.get(chosen[WATER], {}), **(changed or {})}, seed)
 
 

@@ -31,17 +31,27 @@ DEPTHS = {"5 layers": "5", "8 layers": "8"}
 SHIPPED = {PHI: "30 deg", SLIP: "spring", SLOPE: "1/4 (1.5)", DEPTH: "5 layers"}
 MOVERS = 10  # of all windows, below which nothing is said about rods
 RODS = Band(0.1, math.inf, "-", "like rods: at least a tenth of the movers beyond what shuffled ways leave")
-MORE = Band(2.0, math.inf, "-", "unable to climb: at least twice as many in rods as where grains may turn")
+MORE = Band(
+    0.1,
+    math.inf,
+    "-",
+    "unable to climb: at least a tenth more of the movers in rods than where grains may turn",
+)
 SPINS = Band(
     100.0, math.inf, "rad/s", "spin fast: a twentieth of the movers beyond 100 rad/s, 16 turns a second"
 )
-CHANGED = Band(1.1, math.inf, "-", "changes speed and flux: at least 10 % more of it than locked grains")
+CHANGED = Band(
+    math.log10(1.1),
+    math.inf,
+    "-",
+    "changes speed and flux: at least 10 % more, 0.041 decades, than locked grains",
+)
 STANDS = "nothing moves"
 PART_RODS = "movers in rods less those with shuffled ways"
-PART_MORE = "movers in rods, locked over free"
+PART_MORE = "movers in rods, locked less free"
 PART_SPIN = "spin that a twentieth of the movers exceeds"
-PART_Q = "flux, free over locked"
-PART_SPEED = "speed of the movers, free over locked"
+PART_Q = "flux, free over locked, in decades"
+PART_SPEED = "speed of the movers, free over locked, in decades"
 MOMENTS = 3  # drawn of a rod
 
 
@@ -155,12 +165,13 @@ def _both(found: Found, plan: Plan, chosen: Mapping[str, str]) -> list[tuple[Bed
 
 
 def _more(locked: Bed, free: Bed) -> float:
-    """Share in rods, locked over free; a free share below one in a hundred counts as that."""
-    return 0.0 if locked.stands else locked.rods.share / max(free.rods.share, 0.01)
+    """Share in rods, locked less free; 0 where locked grains stand."""
+    return 0.0 if locked.stands else locked.rods.share - (0.0 if free.stands else free.rods.share)
 
 
-def _ratio(above: float, below: float, least: float) -> float:
-    return above / max(below, least)
+def _decades(above: float, below: float, least: float) -> float:
+    """Logarithm of a ratio: fluxes of locked beds differ by factors from seed to seed."""
+    return math.log10(max(above, least) / max(below, least))
 
 
 PARTS: dict[str, tuple[tuple[str, Callable[[Bed, Bed], float], Band], ...]] = {
@@ -170,8 +181,8 @@ PARTS: dict[str, tuple[tuple[str, Callable[[Bed, Bed], float], Band], ...]] = {
     ),
     "fig22-free": (
         (PART_SPIN, lambda locked, free: free.fast_spin, SPINS),
-        (PART_SPEED, lambda locked, free: _ratio(free.speed, locked.speed, 1.0e-3), CHANGED),
-        (PART_Q, lambda locked, free: _ratio(free.q, locked.q, 1.0e-7), CHANGED),
+        (PART_SPEED, lambda locked, free: _decades(free.speed, locked.speed, 1.0e-3), CHANGED),
+        (PART_Q, lambda locked, free: _decades(free.q, locked.q, 1.0e-7), CHANGED),
     ),
 }
 
