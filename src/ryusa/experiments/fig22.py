@@ -193,7 +193,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     for claim, parts in PARTS.items():
         for part, value, band in parts:
             groups = [[value(*pair) for pair in _both(found, plan, one)] for one in settings(plan)]
-            spread = pool(groups) if part in {PART_RODS, PART_SPIN} else None
+            spread = pool(groups) if part == PART_SPIN else None  # rods scatter as the bed gives way or not
             for one, values in zip(settings(plan), groups, strict=True):
                 trial = Trial(part, dict(one), over_seeds(values, band.unit, spread), band)
                 tried.setdefault(claim, []).append(_standing(trial, claim, _both(found, plan, one)))
