@@ -24,6 +24,7 @@ from ryusa.engine.rows import (
     N_OVERLAP_GRAIN,
     N_OVERLAP_MAX,
     N_OVERLAP_STEP,
+    N_PEND_FLOW,
     N_POTENTIAL,
     N_SPEED_MAX,
     N_SPIN,
@@ -41,6 +42,7 @@ from ryusa.errors import NotANumber, RunError
 from ryusa.model import EVENT, Book, Contacts, Immersed, Scene, State, Tally
 from ryusa.model.contacts import N_EVENT
 from ryusa.model.enums import Arm, Damping, EventRule, Rebound, Rolling
+from ryusa.model.immersed import SHARE
 from ryusa.model.scene import Floats
 from ryusa.model.tally import N_BOOK
 
@@ -210,8 +212,15 @@ class CpuEngine:
             raise ValueError("the scene has no column of water: water.profile is not COLUMN")
         if seen.shape != self._grains.seen.shape:
             raise ValueError(f"seen has shape {seen.shape}, not {self._grains.seen.shape}")
-        self._grains.seen[:] = seen[self._grains.ids[: self._n]]
-        self._grains.taken[:] = 0.0
+        grains, ids = self._grains, self._grains.ids[: self._n]
+        more = seen[ids, SHARE] - grains.seen[:, SHARE]
+        if self._step and more.any():  # energy of the water that moves along with a grain, or no longer does
+            added = grains.m[: self._n] - grains.m_bare[: self._n]
+            gain = np.zeros(self._n)
+            gain[ids] = 0.5 * added * more * np.sum(grains.v[: self._n] ** 2, axis=1)
+            self._ledger.now[0, N_PEND_FLOW] += float(gain.sum())
+        grains.seen[:] = seen[ids]
+        grains.taken[:] = 0.0
 
     def tally(self) -> Tally:
         """Energy account and extremes at the moment of the last force evaluation."""

@@ -83,10 +83,13 @@ def motion(
 
         v_x, v_y, v_z = v[i, 0], v[i, 1], v[i, 2]
         d_x = d_y = d_z = l_x = l_y = l_z = e_x = e_z = turn = 0.0
+        wet = 1.0
         m_i, m_b, m_w = m[i], m_bare[i], m_weight[i]
         added = m_i - m_b
         if column:
-            dry = seen[i, SHARE] == 0.0
+            wet = seen[i, SHARE]
+            dry = wet == 0.0
+            added *= wet  # water moves along with what of a grain is in it
             e_x, e_z = seen[i, EXTRA_X] + added * seen[i, A_X], seen[i, EXTRA_Z]
             turn = 0.5 * seen[i, SHEAR]
             if not dry:
@@ -142,6 +145,7 @@ def motion(
                     k_t = torque_stokes(size, 2.0 * r[i], c[C_NU], c[C_RHO_W])
                 else:
                     k_t = torque_dennis(size, 2.0 * r[i], c[C_NU], c[C_RHO_W])
+                k_t *= wet
             i_i = inertia[i]
             b_y = o_y + dt * acceleration_spin(t_y - k_t * (o_y - turn), i_i)
             b_x, b_z = o_x, o_z
@@ -159,7 +163,7 @@ def motion(
             if last:
                 spin += 0.5 * i_i * (o_x * b_x + o_y * b_y + o_z * b_z)
         if last:
-            kinetic += 0.5 * m_i * (v_x * a_x + v_y * a_y + v_z * a_z)
+            kinetic += 0.5 * (m_b + added if column else m_i) * (v_x * a_x + v_y * a_y + v_z * a_z)
             if image[i, 0] != 0:
                 y_x += image[i, 0] * c[C_PERIOD_X]
             if image[i, 1] != 0:

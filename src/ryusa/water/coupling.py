@@ -17,6 +17,7 @@ from ryusa.model.enums import Buoyancy
 from ryusa.model.immersed import A_X, DRAG, EXTRA_X, EXTRA_Z, N_SEEN, PHI, SHARE, SHEAR, U, V, W
 from ryusa.model.scene import Floats
 from ryusa.water import eddies
+from ryusa.water.brim import below
 from ryusa.water.closures import averaged
 from ryusa.water.drive import discharge
 from ryusa.water.exchange import Cells, Slices, carried, slices, to_cells, to_grains
@@ -57,7 +58,8 @@ class Coupling:
     due: int
     exchanges: int
     worst: float
-    _slices: Slices
+    _slices: Slices  # of whole grains: what fills the cells
+    _wet: Slices  # of what of them is below the surface: what water and grains do to each other
     _bed: Standing  # fixed grains
     _volume: Floats  # of each grain, A_3 d**3 [m3]
     _force_z: Floats  # of the water on grains along z, by volume of cells [N/m3]
@@ -90,7 +92,8 @@ class Coupling:
         now = WaterState.at_rest(column, phi) if state is None else state
         coupling = Coupling(
             scene, column, longest, 1, now, phi, None, np.zeros((scene.n_grain, N_SEEN)), step + 1, 0, 0.0,
-            cut, bed, solid, np.zeros(column.n), np.array(x[:, 2]),
+            cut, below(cut, x[:, 2], scene.d, now.z_surface), bed, solid, np.zeros(column.n),
+            np.array(x[:, 2]),
         )  # fmt: skip
         coupling.eddies = eddies.begin(column.seed, scene.n_grain) if column.fluctuations else None
         coupling.seen = coupling._told()
@@ -156,6 +159,7 @@ class Coupling:
             self.column, before, self.phi, force + held.force, dt, slope=held.slope, carried=held.carried,
             phi_w=phi_w,
         )  # fmt: skip
+        self._wet = below(self._slices, self._z, self.scene.d, self.state.z_surface)
         self.budget = _with_fixed(budget, held, self.state, before, self.column.dz)
         self.exchanges, self.worst = self.exchanges + 1, max(self.worst, self.budget.relative)
         self.steps = min(self.longest, self._resolved(taken[:, DRAG]))
@@ -170,7 +174,7 @@ class Coupling:
 
         Every slice of a grain drags the water by its own slip: the sum over slices is what the grain took.
         """
-        scene, cut, u, k_d = self.scene, self._slices, self.state.u, taken[:, DRAG]
+        scene, cut, u, k_d = self.scene, self._wet, self.state.u, taken[:, DRAG]
         archimedes = (scene.m_weight - scene.m) * scene.gravity[0]
         mean = taken[:, 0] / dt
         both = to_cells(cut, np.column_stack([mean, taken[:, 2] / dt]), "wet").cells / cut.cells.volume
@@ -216,7 +220,7 @@ class Coupling:
 
     def _resolved(self, drag: Floats) -> int:
         """Steps an interval may have where drag is so stiff [N s/m], shape (n_grain,)."""
-        scene, cut = self.scene, self._slices
+        scene, cut = self.scene, self._wet
         per = to_cells(cut, drag, "wet").cells / cut.cells.volume
         water = scene.water.rho_w * np.maximum(1.0 - self.phi, 1.0 - PACKED)
         fastest = max(
@@ -238,7 +242,7 @@ class Coupling:
 
     def _told(self) -> Floats:
         """Water at every grain."""
-        scene, state, cut = self.scene, self.state, self._slices
+        scene, state, cut = self.scene, self.state, self._wet
         eps = 1.0 - self.phi
         water = scene.water
         along = np.column_stack([state.u, state.w, state.shear, self.phi, state.du_dt, state.dtau_dz])
@@ -246,7 +250,7 @@ class Coupling:
         share = cut.share
         seen = np.zeros((scene.n_grain, N_SEEN))
         seen[:, U], seen[:, W], seen[:, SHEAR] = at[:, 0], at[:, 1], at[:, 2]
-        seen[:, PHI], seen[:, A_X], seen[:, SHARE] = np.minimum(at[:, 3], PACKED), at[:, 4] * share, share
+        seen[:, PHI], seen[:, A_X], seen[:, SHARE] = np.minimum(at[:, 3], PACKED), at[:, 4], share
         if self.eddies is not None:
             u_tau, drift = eddies.turbulence(self.column, state, self.phi, cut)
             seen[:, [U, V, W]] += eddies.speeds(self.eddies, scene.plane_case, u_tau, drift, at[:, 2])

@@ -13,6 +13,7 @@ from ryusa.model.enums import Buoyancy, Drag
 from ryusa.model.resistance import hindered
 from ryusa.model.scene import Floats, Water
 from ryusa.water._kernel import kernel
+from ryusa.water.brim import below
 from ryusa.water.exchange import Cells, Slices, concentration, slices, to_cells, to_grains
 from ryusa.water.steady import steady
 
@@ -37,12 +38,14 @@ class Standing:
     Attributes
     ----------
     cut : their slices.
+    z : heights of their centres [m], shape (n_grain,).
     d : diameters [m], shape (n_grain,).
     phi : concentration [-], shape (n,).
     walled : the law of a rough wall speaks for them: they fill cells and take nothing.
     """
 
     cut: Slices
+    z: Floats
     d: Floats
     phi: Floats
     walled: bool
@@ -51,7 +54,9 @@ class Standing:
     def at(z: Floats, d: Floats, cells: Cells, bed: Bed) -> "Standing":
         """Spheres at heights z [m], of diameters d [m], at the bottom of a column with such a bed."""
         cut = slices(z, d, cells)
-        return Standing(cut, np.ascontiguousarray(d), concentration(cut), bed is Bed.ROUGH)
+        return Standing(
+            cut, np.ascontiguousarray(z), np.ascontiguousarray(d), concentration(cut), bed is Bed.ROUGH
+        )
 
     def hold(self, water: Water, rho_g_x: float, state: WaterState, phi: Floats) -> Held:
         """Forces of the water, with the laws and the form of buoyancy that free grains feel.
@@ -72,11 +77,14 @@ class Standing:
         given = np.zeros((n, 3))
         if self.walled:
             return Held(*np.zeros((4, n)))
+        cells = self.cut.cells
         if len(self.d):
-            at = to_grains(self.cut, np.column_stack([state.u, state.w, np.minimum(phi, PACKED)]), "wet")
-            out = _drags(water, at, self.cut.share, self.d)
-            given = to_cells(self.cut, out, "wet").cells / self.cut.cells.volume
-        return _held(given, water, self.phi, state.gradient, rho_g_x)
+            cut = below(self.cut, self.z, self.d, state.z_surface)
+            at = to_grains(cut, np.column_stack([state.u, state.w, np.minimum(phi, PACKED)]), "wet")
+            out = _drags(water, at, cut.share, self.d)
+            given = to_cells(cut, out, "wet").cells / cells.volume
+        wet = np.clip((state.z_surface - cells.faces[:-1]) / cells.dz, 0.0, 1.0)
+        return _held(given, water, self.phi, wet, state.gradient, rho_g_x)
 
 
 def lying(column: Column, fixed: Floats, free: Floats, d: float) -> Floats:
@@ -119,13 +127,14 @@ def flowing(column: Column, water: Water, fixed: Floats, free: Floats, d: float)
     start = WaterState.at_rest(column, fixed + free)
     phi = lying(column, fixed, free, d) if column.bed is Bed.MOVING else fixed
     state = WaterState.at_rest(column, phi)
-    one, sizes = np.ones(column.n), np.full(column.n, d)
+    sizes = np.full(column.n, d)
+    wet = np.clip((column.z_surface - column.faces[:-1]) / column.dz, 0.0, 1.0)
     for _ in range(MOST):
         held = Held(*np.zeros((4, column.n)))
         if column.bed is not Bed.ROUGH:
-            drags = _drags(water, np.column_stack([state.u, 0.0 * one, phi]), one, sizes)
+            drags = _drags(water, np.column_stack([state.u, 0.0 * wet, phi]), wet, sizes)
             given = drags * (phi / volume(d, math.pi / 6.0))[:, None]
-            held = _held(given, water, phi, state.gradient, column.rho_w * column.g_x)
+            held = _held(given, water, phi, wet, state.gradient, column.rho_w * column.g_x)
         now, _ = steady(column, phi, held.force, slope=held.slope, carried=held.carried, guess=state.u)
         change, state = float(np.max(np.abs(now.u - state.u))), now
         if change <= CLOSE * float(np.max(np.abs(now.u))):
@@ -139,13 +148,16 @@ def flowing(column: Column, water: Water, fixed: Floats, free: Floats, d: float)
     )
 
 
-def _held(given: Floats, water: Water, phi: Floats, gradient: float, rho_g_x: float) -> Held:
-    """Drag along x, its slope and drag along z by volume of cells, and the buoyancy of grains of phi."""
+def _held(given: Floats, water: Water, phi: Floats, wet: Floats, gradient: float, rho_g_x: float) -> Held:
+    """Drag along x, its slope and drag along z by volume of cells, and the buoyancy of grains of phi.
+
+    `wet` is the part of a cell below the surface.
+    """
     force, share = given[:, 0].copy(), np.zeros(len(phi))
     if water.buoyancy == Buoyancy.STRESS:
-        force, share = force + phi * gradient, phi
+        force, share = force + phi * wet * gradient, phi
     elif water.buoyancy == Buoyancy.WEIGHT:
-        force += phi * (gradient - rho_g_x)
+        force += phi * wet * (gradient - rho_g_x)
     return Held(force, given[:, 1].copy(), share, given[:, 2].copy())
 
 
