@@ -137,7 +137,7 @@ def test_over_a_fixed_bed_the_column_begins_at_its_zero(build_: str, zero: float
 def test_a_floor_is_the_bottom_and_a_bottom_given_is_taken() -> None:
     assert column(build=FLOOR).z_low == 0.0
     assert column(water__column__bottom="-1 cm").z_low == -0.01
-    assert column(water__zero="-1 cm").z_low == -0.01  # never above the zero
+    assert column(water__zero="-1 cm", water__depth="6 cm").z_low == -0.01  # never above the zero
     with pytest.raises(CaseError, match="above the bed") as caught:
         build(case(water__column__bottom="9 cm"))
     assert caught.value.key == "water.column.bottom"

@@ -14,6 +14,11 @@ from ryusa.laws import drag, hindrance
 
 CaseOf = Callable[..., Case]
 PACKING = "{ kind = 'packing', columns = 5, layers = 3 }"
+SPACE = {"build": PACKING.replace("}", ", rows = 5 }"), "motion__plane": "false"}
+NARROW = {
+    "build": "{ kind = 'flume', length = '6 cm', width = '6.6 mm', layers = 6 }",
+    "motion__plane": "false",
+}
 D, G = 0.002, 9.80665
 U_STAR = math.sqrt(G * 0.02 * math.sin(math.atan(0.05)))
 
@@ -138,8 +143,22 @@ def test_richardson_and_zakis_exponent_comes_from_a_lone_grain(case: CaseOf) -> 
         ("", "cel = '1 mm'", {}, "water.column.cel", "Did you mean 'water.column.cell'"),
         ("", "cell = '1 nm'", {}, "water.column.cell", "more than 20,000 cells"),
         ("", "cell = '0.1 mm', bed = 'rough'", {}, "water.column.cell", "a 15th of the roughness"),
+        ("", "cell = '2 cm'", {}, "water.column.cell", "at most half of water.depth"),
+        ("", "packed = 0.8", SPACE, "water.column.packed", "at most 0.7405"),
+        ("", "side_walls = '1 mm'", {}, "water.column.side_walls", "at least 0.002 m, the largest diameter"),
+        ("", "side_walls = '2 cm'", NARROW, "water.column.side_walls", "must be build.width, 0.0066 m"),
+        ("", "drive = 'discharge', discharge = '-1 m2/s'", {}, "water.column.discharge", "above 0 m2/s"),
+        (
+            "",
+            "drive = 'pressure gradient', pressure_gradient = '0 Pa/m'",
+            {"motion__slope": "0"},
+            "water.column.pressure_gradient",
+            "nothing drives",
+        ),
+        ("zero = '-2 cm'", "", {}, "water.depth", "ends in the bed"),
+        ("zero = '0 cm', depth = '0.9 cm'", "", NARROW, "water.depth", "must be above 0.009364 m"),
         ("", "interval = 0", {}, "water.column.interval", "at least 1"),
-        ("zero = '1 cm'", "bottom = '2 cm'", {}, "water.column.bottom", "above the bed"),
+        ("zero = '1 cm'", "bottom = '2 cm'", {}, "water.column.bottom", "must be at most water.zero, 0.01 m"),
         ("zero = '1 cm'", "bottom = '0 cm', bed = 'rough'", {}, "water.column.bottom", "a fixed bed"),
         ("", "", {"build": "{ kind = 'drop', height = '1 cm' }"}, "water.profile", "periodic in x"),
         ("", "", {"build": "{ kind = 'box', columns = 3, layers = 2 }"}, "water.profile", "periodic in x"),

@@ -8,6 +8,7 @@ import pytest
 from ryusa.casefile import Case, read
 from ryusa.casefile.column_rows import regime
 from ryusa.casefile.explain import Row
+from ryusa.errors import CaseError
 from ryusa.laws import transport
 
 CaseOf = Callable[..., Case]
@@ -93,3 +94,57 @@ def test_the_shipped_columns_are_explained_without_a_warning(shipped) -> None:
     assert not [row for row in (*settling.explain(), *bed.explain()) if row.flag == "warning"]
     assert rows(settling)["hindrance exponent n"].value == pytest.approx(2.97, abs=0.01)
     assert rows(bed)["expected motion"].value == "bed load: rolling and saltation"
+
+
+FLUME = {"build": "{ kind = 'flume', length = '6 cm', width = '2 cm', layers = 6 }", "motion.plane": "false"}
+
+
+def test_the_friction_velocity_is_that_of_the_water_over_a_loose_bed(case: CaseOf) -> None:
+    # ten grains by thirty, six layers: their volume over the area, packed
+    thick = 6 * 300 * math.pi / 6 * 0.002**3 / (0.06 * 0.02 * 0.6)
+    deep = WATER.replace("2 cm", "3 cm").replace(" }", ", zero = '0 cm', column = { packed = 0.6 } }")
+    found = flowing(case, deep, **FLUME)
+    assert found["bed thickness"].value == pytest.approx(thick)
+    assert found["water over the bed"].value == pytest.approx(0.03 - thick)
+    square = 9.80665 * (0.03 - thick) * math.sin(math.atan(0.05))
+    assert found["u_star"].value == pytest.approx(math.sqrt(square))
+    assert found["tau_star"].value == pytest.approx(square / (1.65 * 9.80665 * 0.002))
+    assert "over the bed" in found["u_star"].how
+    from_top = flowing(case, WATER.replace(" }", ", column = { packed = 0.6 } }"), **FLUME)
+    assert from_top["water over the bed"].value == 0.02
+
+
+def test_a_stress_asked_for_below_the_top_of_the_bed_leaves_less_on_it(case: CaseOf) -> None:
+    thick = 6 * 300 * math.pi / 6 * 0.002**3 / (0.06 * 0.02 * 0.6)
+    column = "column = { packed = 0.6, drive = 'tau_star' } }"
+    asked = WATER.replace("2 cm", "3 cm").replace(" }", f", zero = '0 cm', tau_star = 0.5, {column}")
+    found = flowing(case, asked, **FLUME, **{"motion.slope": "0"})
+    over = (0.03 - thick) / 0.03  # a pressure gradient alone: the stress falls evenly to the surface
+    assert found["tau_star"].value == pytest.approx(0.5 * over)
+    assert "leaves" in found["u_star"].how
+
+
+def test_a_stress_within_half_a_grain_of_slope_and_depth_agrees(case: CaseOf) -> None:
+    thick = 6 * 300 * math.pi / 6 * 0.002**3 / (0.06 * 0.02 * 0.6)
+    for off, agrees in ((-0.9, True), (0.9, True), (2.0, False)):
+        tau_star = (0.03 - thick + off * 0.001) * math.sin(math.atan(0.05)) / (1.65 * 0.002)
+        more = f", zero = '0 cm', tau_star = {tau_star}, column = {{ packed = 0.6 }} }}"
+        water = WATER.replace("2 cm", "3 cm").replace(" }", more)
+        if agrees:
+            assert flowing(case, water, **FLUME)["tau_star"].value == pytest.approx(tau_star)
+        else:
+            with pytest.raises(CaseError, match="give or take half a grain"):
+                flowing(case, water, **FLUME)
+
+
+def test_eddies_have_a_row_where_they_are_asked_for(case: CaseOf) -> None:
+    walked = flowing(case, WATER.replace(" }", ", column = { fluctuations = 'random walk' } }"))
+    assert walked["eddies"].value == walked["u_star"].value
+    assert "eddies" not in flowing(case)
+
+
+def test_still_water_may_end_in_the_bed(case: CaseOf) -> None:
+    shallow = WATER.replace("2 cm", "0.9 cm").replace(" }", ", zero = '0 cm' }")
+    found = flowing(case, shallow, **FLUME, **{"motion.slope": "0"})
+    assert found["water over the bed"].flag == "note"
+    assert found["driver"].value == "none"

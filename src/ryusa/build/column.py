@@ -9,6 +9,7 @@ from ryusa.casefile.builders import Flume
 from ryusa.casefile.column import CELL
 from ryusa.casefile.column import Column as Keys
 from ryusa.casefile.column_checks import SPARE
+from ryusa.casefile.derive import u_star_asked
 from ryusa.casefile.grains import packed
 from ryusa.casefile.schema import Case
 from ryusa.errors import CaseError
@@ -68,7 +69,8 @@ def column_of(case: Case, layout: Layout) -> Column | None:
     if keys.bed != "moving":
         z_low = z_bed
     if z_low > z_bed:
-        allowed = f"the column begins at {z_low:g} m, above the bed at {z_bed:g} m (water.zero)"
+        allowed = f"the column begins at {z_low:g} m, above the bed at {z_bed:g} m (water.zero); "
+        allowed += f"must be at most {z_bed:g} m, or left out"
         raise CaseError("water.column.bottom", keys.bottom, allowed)
     z_high = max(z_bed + SPARE * water.depth, float(np.max(layout.x[:, 2] + 0.5 * layout.d)))
     n = math.ceil((z_high - z_low) / dz - 1e-9)
@@ -91,7 +93,7 @@ def column_of(case: Case, layout: Layout) -> Column | None:
         g_x=found.g * math.sin(found.slope),
         drive=DRIVES[keys.drive],
         gradient=keys.pressure_gradient or 0.0,
-        tau=water.density * found.u_star**2 if keys.drive == "tau_star" else math.nan,
+        tau=water.density * u_star_asked(case) ** 2 if keys.drive == "tau_star" else math.nan,
         discharge=math.nan if keys.discharge is None else keys.discharge,
         mixing=MIXINGS[keys.mixing],
         kappa=keys.kappa,

@@ -1,17 +1,20 @@
 """Checks of water that feels its grains: what a column needs, what has no meaning, what contradicts."""
 
+import math
 from collections.abc import Iterator
 
 from pydantic import BaseModel
 
+from ryusa.casefile.builders import Flume
 from ryusa.casefile.column import CELL, ONLY_IN_A_COLUMN, Column
-from ryusa.casefile.derive import slope_at_last
-from ryusa.casefile.grains import periodic
+from ryusa.casefile.derive import slope_at_last, u_star_asked
+from ryusa.casefile.grains import bed_top, packed, periodic, sizes, water_over
 from ryusa.casefile.schema import Case, Water
 from ryusa.errors import CaseError
-from ryusa.model.column import refuse
+from ryusa.model.column import AGREE, refuse
 
 MOST_CELLS = 20_000
+DENSEST = math.pi / math.sqrt(18.0)  # concentration of the densest packing of equal spheres
 SPARE = 1.2  # height of the column over the depth
 
 
@@ -29,13 +32,15 @@ def check_column(case: Case) -> Iterator[CaseError]:
     keys = water.column or Column()
     yield from _place(case, water)
     yield from _laws(water)
-    yield from _boundaries(water, keys)
+    yield from _boundaries(case, water, keys)
     driver = [*_driver(case, water, keys)]
     yield from driver
     if water.depth is None:
         yield CaseError("water.depth", None, "missing; a column of water needs its depth above water.zero")
     elif not driver:
-        yield from _contradictions(case, water, keys, water.depth)
+        shallow = [*_over_bed(case, water, keys)]
+        over = water_over(case)
+        yield from shallow or _contradictions(case, water, keys, over if over > 0.0 else water.depth)
 
 
 def _given(section: BaseModel, key: str) -> bool:
@@ -81,13 +86,21 @@ def _laws(water: Water) -> Iterator[CaseError]:
         )
 
 
-def _boundaries(water: Water, keys: Column) -> Iterator[CaseError]:
+def _boundaries(case: Case, water: Water, keys: Column) -> Iterator[CaseError]:
     if water.roughness is not None and keys.bed != "rough":
         yield CaseError("water.roughness", water.roughness, f"has no meaning over a {keys.bed} bed")
     if keys.mixing == "van Driest" and keys.bed == "moving":
         yield CaseError(
             "water.column.mixing_length", keys.mixing, "needs a wall: water.column.bed 'smooth' or 'rough'"
         )
+    if keys.packed is not None and keys.packed > DENSEST:
+        yield CaseError(
+            "water.column.packed",
+            keys.packed,
+            f"must be at most {DENSEST:.4g}, pi/sqrt(18): equal spheres lie no denser",
+        )
+    if keys.side_walls is not None:
+        yield from _side_walls(case, keys.side_walls)
     if _given(keys, "packed") and keys.mixing != "Li-Sawamoto":
         yield CaseError(
             "water.column.packed", keys.packed, f"has no meaning with mixing_length '{keys.mixing}'"
@@ -113,6 +126,18 @@ def _boundaries(water: Water, keys: Column) -> Iterator[CaseError]:
         )
 
 
+def _side_walls(case: Case, width: float) -> Iterator[CaseError]:
+    """Side walls have room for a grain, and stand where those of the flume do."""
+    largest, build = sizes(case)[2], case.build
+    if width < largest:
+        text = f"must be at least {largest:.4g} m, the largest diameter: no grain fits between the walls"
+        yield CaseError("water.column.side_walls", width, text)
+    elif isinstance(build, Flume) and build.walls and build.width is not None:
+        if abs(width - build.width) > AGREE * build.width:
+            text = f"must be build.width, {build.width:g} m, where build.walls = true"
+            yield CaseError("water.column.side_walls", width, text)
+
+
 def _driver(case: Case, water: Water, keys: Column) -> Iterator[CaseError]:
     """What drives the water is given once, and nothing else is."""
     for key, drive in (("pressure_gradient", "pressure gradient"), ("discharge", "discharge")):
@@ -123,16 +148,41 @@ def _driver(case: Case, water: Water, keys: Column) -> Iterator[CaseError]:
             yield CaseError(f"water.column.{key}", value, f"has no meaning with drive '{keys.drive}'")
     key = "u_star" if water.u_star is not None else "tau_star"
     stress = getattr(water, key)
+    level = case.motion.gravity * slope_at_last(case) == 0.0
+    if keys.drive == "discharge" and keys.discharge is not None and not keys.discharge > 0.0:
+        yield CaseError("water.column.discharge", keys.discharge, "must be above 0 m2/s, along +x")
+    if keys.drive == "pressure gradient" and keys.pressure_gradient == 0.0 and level:
+        yield CaseError(
+            "water.column.pressure_gradient",
+            keys.pressure_gradient,
+            "nothing drives the water; must not be 0 Pa/m on a level bed, or leave it and the drive out",
+        )
     if keys.drive == "tau_star" and stress is None:
         yield CaseError("water.tau_star", None, "missing; drive 'tau_star' needs tau_star or u_star")
     elif keys.drive in {"pressure gradient", "discharge"} and stress is not None:
         yield CaseError(f"water.{key}", stress, f"has no meaning with drive '{keys.drive}'")
-    elif keys.drive == "slope" and stress is not None and case.motion.gravity * slope_at_last(case) == 0.0:
+    elif keys.drive == "slope" and stress is not None and level:
         yield CaseError(
             f"water.{key}",
             stress,
             "nothing drives the water; give motion.slope, or water.column.drive = 'tau_star'",
         )
+
+
+def _over_bed(case: Case, water: Water, keys: Column) -> Iterator[CaseError]:
+    """Water that is driven ends above the loose bed it is to move."""
+    over, depth = water_over(case), water.depth or 0.0
+    driven = keys.drive != "slope" or case.motion.gravity * slope_at_last(case) != 0.0
+    if over > 0.0 or not driven or case.grains.density <= water.density:
+        return
+    top = bed_top(case)
+    yield CaseError(
+        "water.depth",
+        water.depth,
+        f"ends in the bed: water.zero + depth is z = {top + over:.4g} m, and loose grains as dense as "
+        f"{packed(case):g} fill up to z = {top:.4g} m; must be above {depth - over:.4g} m, or leave out "
+        "water.zero: the depth counts from the top of the bed then",
+    )
 
 
 def _contradictions(case: Case, water: Water, keys: Column, depth: float) -> Iterator[CaseError]:
@@ -142,6 +192,13 @@ def _contradictions(case: Case, water: Water, keys: Column, depth: float) -> Ite
         yield CaseError(
             "water.column.cell", keys.cell, f"{cell:g} m asks for more than {MOST_CELLS:,} cells in the depth"
         )
+    if water.depth is not None and cell > 0.5 * water.depth:
+        yield CaseError(
+            "water.column.cell",
+            keys.cell,
+            f"{cell:.3g} m must be at most half of water.depth, {water.depth:g} m: two cells or more",
+        )
+        return
     rough = water.roughness or d
     if keys.bed == "rough" and cell <= rough / 15.0:
         yield CaseError(
@@ -152,6 +209,10 @@ def _contradictions(case: Case, water: Water, keys: Column, depth: float) -> Ite
         )
     known = keys.bottom is not None and water.zero is not None and keys.bed == "moving"
     falls = keys.drive == "slope" and case.motion.gravity > 0.0
+    estimated = water.depth is not None and depth != water.depth
+    asked, along = u_star_asked(case), case.motion.gravity * math.sin(slope_at_last(case))
+    if estimated and falls and along > 0.0 and asked > 0.0:  # the top of a loose bed is known to half a grain
+        depth = min(max(asked**2 / along, depth - 0.5 * d, 0.5 * depth), depth + 0.5 * d)
     for text in refuse(
         depth=depth,
         dz=cell,
@@ -165,5 +226,14 @@ def _contradictions(case: Case, water: Water, keys: Column, depth: float) -> Ite
         rho_w=water.density,
         g=case.motion.gravity,
     ):
-        key = "column.bottom" if "column begins" in text else "u_star" if water.u_star else "tau_star"
-        yield CaseError(f"water.{key}", None, text)
+        if "column begins" in text:
+            allowed = f"{text}; must be at most water.zero, {water.zero:g} m, or left out"
+            yield CaseError("water.column.bottom", keys.bottom, allowed)
+            continue
+        key, more = "u_star" if water.u_star else "tau_star", ""
+        if estimated:
+            over = water_over(case)
+            more += f"; depth is that over the loose bed, {over:.3g} m give or take half a grain"
+        if "rises downstream" in text:
+            more += "; motion.slope must be above 0, or give water.column.drive = 'tau_star'"
+        yield CaseError(f"water.{key}", getattr(water, key), text + more)

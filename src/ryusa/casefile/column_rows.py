@@ -5,10 +5,12 @@ from typing import Literal
 
 from ryusa.casefile.column import CELL, Column
 from ryusa.casefile.derive import slope_at_last
+from ryusa.casefile.grains import bed_thickness, bed_top, packed, water_over
 from ryusa.casefile.rows import Row, row_of
 from ryusa.casefile.schema import Case
 from ryusa.casefile.water import hindrance_exponent, terminal_velocity
 from ryusa.laws import drag, transport
+from ryusa.laws.eddies import eddy_life
 
 THROUGHOUT, NEAR = 0.8, 2.5  # Rouse numbers below which grains fill the depth, and leave the bed for long
 SHEET, THICK = 0.5, 1.0  # tau_star from which a bed begins to move as a sheet, and surely does
@@ -18,16 +20,20 @@ def origin_of_u_star(case: Case) -> str:
     """Where the friction velocity of a case comes from."""
     wet = case.water
     assert wet is not None
+    keys = wet.column or Column()
+    if wet.profile == "column" and keys.drive == "tau_star" and water_over(case) != wet.depth:
+        key = "tau_star" if wet.tau_star is not None else "u_star"
+        return f"what water.{key}, at water.zero, leaves of stress at the top of the bed"
     if wet.tau_star is not None:
         return "sqrt(tau_star (rho_s/rho_w - 1) g d)"
     if wet.u_star is not None:
         return "water.u_star"
-    keys = wet.column or Column()
+    over = ", h over the bed" if water_over(case) != wet.depth else ""
     if keys.drive == "discharge":
-        return "to expect: Eq. (9) with the mean speed discharge/depth"
+        return f"to expect: Eq. (9) with the mean speed discharge/h{over}"
     if keys.drive == "pressure gradient":
-        return "sqrt(h (g sin(slope) - (dp/dx)/rho_w)), steady flow"
-    return "sqrt(g h sin(slope)), steady flow"
+        return f"sqrt(h (g sin(slope) - (dp/dx)/rho_w)), steady flow{over}"
+    return f"sqrt(g h sin(slope)), steady flow{over}"
 
 
 def regime(tau_star: float, d_star: float, rouse: float) -> tuple[str, str]:
@@ -74,6 +80,7 @@ def column_rows(case: Case) -> list[Row]:
     cell = keys.cell or CELL * found.d
     still = not found.u_star > 0.0
     rows = [row_of("water", "depth", wet.depth, "cm", "water.depth, above water.zero")]
+    rows += _bed(case, keys)
     if not still:
         rows += _motion(case, keys)
     elif keys.drive != "discharge":
@@ -91,6 +98,34 @@ def column_rows(case: Case) -> list[Row]:
     return rows
 
 
+def _bed(case: Case, keys: Column) -> list[Row]:
+    """The loose bed, and the water over it."""
+    if keys.bed != "moving" or math.isnan(bed_top(case)):
+        return []
+    wet = case.water
+    assert wet is not None
+    thick, over, top = bed_thickness(case), water_over(case), bed_top(case)
+    how = f"free grains once as dense as {packed(case):g} (water.column.packed)"
+    given = "water.zero not given: the depth counts from there"
+    if wet.zero is not None:
+        given = f"water.zero + depth less the top of the bed, z = {100.0 * top:.3g} cm"
+    return [
+        row_of("water", "bed thickness", thick, "cm", how),
+        row_of("water", "water over the bed", over, "cm", given, "" if over > 0.0 else "note"),
+    ]
+
+
+def _eddies(case: Case, keys: Column) -> list[Row]:
+    """Turbulent fluctuations, where asked for."""
+    if keys.fluctuations == "none":
+        return []
+    found = case.derived
+    z = min(found.d, water_over(case))
+    life = eddy_life(found.u_star / (keys.kappa * z))
+    how = f"{keys.fluctuations}: rms normal to the bed; near it an eddy lives {life:.2g} s (2 kappa d/u_star)"
+    return [row_of("water", "eddies", found.u_star, "m/s", how)]
+
+
 def _motion(case: Case, keys: Column) -> list[Row]:
     """Numbers of flowing water, and what its grains will do."""
     wet, found = case.water, case.derived
@@ -100,6 +135,7 @@ def _motion(case: Case, keys: Column) -> list[Row]:
     re = drag.reynolds(found.u_star, found.d, wet.viscosity)
     how = "u_star d/nu" + ("; u_star after the last slope of the timeline" if tilted else "")
     rows = [row_of("water", "Re_star", re, "-", how, after)]
+    rows += _eddies(case, keys)
     settling = terminal_velocity(case)
     if not (0.0 < settling < math.inf) or math.isnan(found.tau_star):
         return rows

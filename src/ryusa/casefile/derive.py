@@ -5,7 +5,7 @@ from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
 from ryusa.casefile.column import CELL, ONLY_IN_A_COLUMN, Column
-from ryusa.casefile.grains import counts, packed, sizes
+from ryusa.casefile.grains import counts, packed, sizes, water_over
 from ryusa.casefile.schema import Case, StiffnessForOverlap, StiffnessForTime
 from ryusa.laws import collision, drag, motion, water
 from ryusa.laws import contact as contact_law
@@ -109,18 +109,38 @@ def slope_at_last(case: Case) -> float:
     return slope(case)
 
 
-def column_u_star(case: Case, k_rough: float) -> float:
-    """Friction velocity of a column that names none [m/s]: of its driver in steady flow; nan if nothing does.
+def u_star_asked(case: Case) -> float:
+    """Friction velocity that water.tau_star or water.u_star asks for, at water.zero [m/s]; nan without."""
+    wet = case.water
+    if wet is None:
+        return math.nan
+    if wet.tau_star is not None:
+        d, g = sizes(case)[0], case.motion.gravity
+        return water.u_star_from_tau_star(wet.tau_star, case.grains.density, wet.density, g, d)
+    return math.nan if wet.u_star is None else wet.u_star
 
-    A discharge is that of Eq. (9), whose mean over the depth is the speed at depth/e.
+
+def column_u_star(case: Case, k_rough: float) -> float:
+    """Friction velocity of a column over its bed [m/s]: of its driver in steady flow; nan if nothing does.
+
+    A discharge is that of Eq. (9), whose mean over the depth is the speed at depth/e. The driver TAU holds
+    the stress asked for at the zero of the water: loose grains above it have water in their pores too.
     """
     wet = case.water
     assert wet is not None
-    keys, depth = wet.column or Column(), wet.depth or math.nan
+    keys, depth = wet.column or Column(), water_over(case)
+    if not depth > 0.0:
+        return math.nan
     if keys.discharge is not None:
         unit = water.log_law_rough(depth / math.e, 1.0, k_rough)
         return abs(keys.discharge) / depth / unit if unit > 0.0 else math.nan
-    pull = case.motion.gravity * math.sin(slope_at_last(case)) + (keys.pressure_gradient or 0.0) / wet.density
+    along = case.motion.gravity * math.sin(slope_at_last(case))
+    pull = along + (keys.pressure_gradient or 0.0) / wet.density
+    if keys.drive == "tau_star" and wet.depth is not None:
+        if depth == wet.depth:
+            return u_star_asked(case)
+        within = depth + max(wet.depth - depth, 0.0) * (1.0 - packed(case))
+        pull += (u_star_asked(case) ** 2 - along * within) / wet.depth
     return math.sqrt(abs(pull) * depth) or math.nan
 
 
@@ -235,11 +255,12 @@ def derive(case: Case) -> Derived:
     if case.water is not None:
         wet, rho_s = case.water, case.grains.density
         k_rough = wet.roughness if wet.roughness is not None else d
-        if wet.tau_star is not None:
+        driven = wet.profile == "column" and (wet.column or Column()).drive == "tau_star"
+        u_star = u_star_asked(case)
+        if wet.tau_star is not None and not driven:
             tau_star = wet.tau_star
-            u_star = water.u_star_from_tau_star(tau_star, rho_s, wet.density, g, d)
-        elif wet.u_star is not None or wet.profile == "column":
-            u_star = column_u_star(case, k_rough) if wet.u_star is None else wet.u_star
+        elif wet.profile == "column" or wet.u_star is not None:
+            u_star = column_u_star(case, k_rough) if math.isnan(u_star) or driven else u_star
             heavier = rho_s > wet.density and g > 0.0
             tau_star = water.tau_star_from_u_star(u_star, rho_s, wet.density, g, d) if heavier else math.nan
     return Derived(

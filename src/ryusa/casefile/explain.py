@@ -10,6 +10,7 @@ from ryusa.casefile.builders import Box, Drop, Flume, Packing
 from ryusa.casefile.column_rows import column_rows, origin_of_u_star
 from ryusa.casefile.derive import MANY, Derived, Pair, events_of, slope_at_last
 from ryusa.casefile.films import film_rows
+from ryusa.casefile.grains import water_over
 from ryusa.casefile.rows import Row, row_of
 from ryusa.casefile.schema import Case, StiffnessForOverlap, StiffnessForTime, Water
 from ryusa.casefile.table import table_of
@@ -238,8 +239,9 @@ def _water(case: Case, found: Derived) -> list[Row]:
         rows.append(row_of("water", "u_star", found.u_star, "m/s", origin_of_u_star(case)))
         if not math.isnan(found.tau_star):
             rows.append(row_of("water", "tau_star", found.tau_star, "-", "u_star^2/((rho_s/rho_w - 1) g d)"))
-        if wet.depth is not None and (tilt := slope_at_last(case)) > 0.0:
-            implied = water.u_star_from_slope(wet.depth, tilt, found.g)
+        depth = water_over(case)
+        if depth > 0.0 and (tilt := slope_at_last(case)) > 0.0:
+            implied = water.u_star_from_slope(depth, tilt, found.g)
             apart = abs(implied / found.u_star - 1.0) > 0.1
             how, flag = "sqrt(g h sin(slope)), to compare", "note" if apart else ""
             if implied != found.u_star:

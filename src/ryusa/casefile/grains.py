@@ -112,6 +112,33 @@ def bed_thickness(case: Case) -> float:
     return counts(case)[0] * case.grains.shape_volume * cube / (bed_area(case) * packed(case))
 
 
+def bed_top(case: Case) -> float:
+    """Height where loose grains end once as dense as `water.column.packed` [m]; nan if unknown."""
+    build, d = case.build, case.grains.diameter
+    if isinstance(build, Flume):
+        return bed_thickness(case)
+    if not isinstance(build, Packing):
+        return math.nan
+    crest = {"plane": 0.0, "flat": d, "random": (1.0 + 0.5 * build.bed_height) * d}[build.bed]
+    return crest + bed_thickness(case)
+
+
+def water_over(case: Case) -> float:
+    """Depth of the water over the loose bed of a column [m]; below zero where it ends in the bed.
+
+    It is `water.depth` where that counts from the top of the bed, over a fixed bed, and where the bed is not
+    known.
+    """
+    wet = case.water
+    if wet is None or wet.depth is None:
+        return math.nan
+    over_loose = wet.profile == "column" and (wet.column or Column()).bed == "moving"
+    if wet.zero is None or not over_loose:
+        return wet.depth
+    top = bed_top(case)
+    return wet.depth if math.isnan(top) else wet.zero + wet.depth - top
+
+
 def packed(case: Case) -> float:
     """Concentration of a case's bed at rest, where eddies have no room [-]."""
     keys = (case.water and case.water.column) or Column()

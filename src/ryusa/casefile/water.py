@@ -3,7 +3,7 @@
 import math
 
 from ryusa.casefile.derive import mass
-from ryusa.casefile.grains import sizes
+from ryusa.casefile.grains import sizes, water_over
 from ryusa.casefile.schema import Case
 from ryusa.laws import drag, hindrance, water
 
@@ -27,12 +27,12 @@ def water_speed(case: Case, z: float) -> float:
 
 
 def _steady_speed(case: Case, z: float) -> float:
-    """Speed to expect of a steady column without grains [m/s] by the log law of its bed; 0 in still water."""
+    """Speed to expect of a steady column [m/s], z above its bed, by its log law; 0 in still water."""
     wet, u_star = case.water, case.derived.u_star
     assert wet is not None
     if math.isnan(u_star):
         return 0.0
-    z = min(z, wet.depth or math.inf)
+    z = min(z, water_over(case))
     if wet.column is not None and wet.column.bed == "smooth":
         return water.log_law_smooth(z, u_star, wet.viscosity)
     return water.log_law_rough(z, u_star, case.derived.k_rough)
