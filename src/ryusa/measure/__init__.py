@@ -1,5 +1,6 @@
 """Numbers from a run folder: every function reads results and returns a frozen record; none steps a grain."""
 
+from ryusa.measure.bed_stress import BedStress, bed_stress
 from ryusa.measure.collisions import Collisions, ContactTimes, collisions, contact_times, turned_time
 from ryusa.measure.energy import Energy, energy
 from ryusa.measure.entrainment import Entrainment, entrainment
@@ -27,6 +28,7 @@ __all__ = [
     "Alternating",
     "Average",
     "Averages",
+    "BedStress",
     "Collisions",
     "ContactTimes",
     "Energy",
@@ -47,6 +49,7 @@ __all__ = [
     "Vibration",
     "alternating",
     "average",
+    "bed_stress",
     "block_error",
     "collisions",
     "companions",
