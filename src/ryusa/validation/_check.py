@@ -21,6 +21,7 @@ NAMES = (
     "rolling",
     "gas",
     "incline",
+    "transport",
 )
 
 
