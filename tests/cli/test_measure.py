@@ -9,6 +9,8 @@ from ryusa.cli import app
 from ryusa.experiments import case_path
 from ryusa.running.runner import run
 
+CASES = case_path("saltation.toml").parent
+
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
@@ -186,3 +188,45 @@ def test_rods_are_measured_over_a_time_asked_for(folder, tmp_path):
     assert result.exit_code == 0, result.output
     assert "a rod: movers that touch (gap below 0.05 d) for 0.05 s" in result.output.replace("\n", " ")
     assert "null_share" in result.output
+
+
+@pytest.fixture(scope="module")
+def wet(tmp_path_factory):
+    """A short flow of water over a small loose bed."""
+    folder = tmp_path_factory.mktemp("runs") / "wet"
+    overrides = {"build.columns": "8", "build.layers": "4", "stop.time": "0.2 s", "record.settle": "0.1 s"}
+    run(read(CASES / "movable_bed.toml", overrides), folder, progress=False)
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("what", "words"),
+    [
+        ("water", ("tau_bed", "discharge", "carried on to the bed")),
+        ("transport", ("q_star", "layer_thickness", "tau_star")),
+        ("entrainment", ("deposition", "moving_speed")),
+        ("stress", ("temperature", "xz [Pa]")),
+    ],
+)
+def test_water_and_what_it_carries_are_measured(wet, tmp_path, what, words):
+    table = tmp_path / f"{what}.csv"
+    result = call("measure", wet, what, "--csv", table)
+    assert result.exit_code == 0, result.output
+    assert all(word in result.output for word in words)
+    with table.open() as file:
+        assert len(list(csv.DictReader(file))) > 5
+
+
+@pytest.mark.parametrize("what", ["water", "transport", "grains"])
+def test_water_and_what_it_carries_are_drawn(wet, tmp_path, what):
+    result = call("draw", wet, what, "-o", tmp_path / "picture.svg")
+    assert result.exit_code == 0, result.output
+    drawn = (tmp_path / "picture.svg").read_text()
+    assert {"water": "surface", "transport": "Wong", "grains": "speed"}[what] in drawn
+    assert len((tmp_path / "picture.csv").read_text().splitlines()) > 5
+
+
+def test_a_dry_run_has_no_water_to_measure(folder):
+    result = call("measure", folder, "water", "--begin", "0 s")
+    assert result.exit_code != 0
+    assert "no column of water" in result.output

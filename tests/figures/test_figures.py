@@ -139,6 +139,12 @@ def test_grains_that_stick_out_of_a_period_show_at_both_ends():
     assert len(circles(figure)[1].get_offsets()) == 4
 
 
+def test_the_surface_of_the_water_is_in_the_picture():
+    dry, wet = figures.snapshot(moment(), "none"), figures.snapshot(moment(surface=0.02), "none")
+    assert dry.axes[0].get_ylim()[1] < 2.0 < wet.axes[0].get_ylim()[1]
+    assert any(2.0 in np.asarray(line.get_ydata()) for line in wet.axes[0].lines)
+
+
 def test_the_nearest_row_is_drawn_last():
     rows = moment(x=np.array([(0.0, 0.002, 0.003), (0.0, 0.0, 0.003), (0.0, 0.001, 0.003)]))
     figure = figures.snapshot(rows)

@@ -132,10 +132,11 @@ def _side_walls(case: Case, width: float) -> Iterator[CaseError]:
     if width < largest:
         text = f"must be at least {largest:.4g} m, the largest diameter: no grain fits between the walls"
         yield CaseError("water.column.side_walls", width, text)
-    elif isinstance(build, Flume) and build.walls and build.width is not None:
-        if abs(width - build.width) > AGREE * build.width:
-            text = f"must be build.width, {build.width:g} m, where build.walls = true"
-            yield CaseError("water.column.side_walls", width, text)
+        return
+    stands = build.width if isinstance(build, Flume) and build.walls else None
+    if stands is not None and abs(width - stands) > AGREE * stands:
+        text = f"must be build.width, {stands:g} m, where build.walls = true"
+        yield CaseError("water.column.side_walls", width, text)
 
 
 def _driver(case: Case, water: Water, keys: Column) -> Iterator[CaseError]:

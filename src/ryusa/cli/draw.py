@@ -26,7 +26,19 @@ if TYPE_CHECKING:
 
     Drawn = tuple[Figure, list[dict[str, object]]]
 
-PICTURES = ("grains", "tracks", "spin", "energy", "contacts", "hops", "profile", "surface", "vibration")
+PICTURES = (
+    "grains",
+    "tracks",
+    "spin",
+    "energy",
+    "contacts",
+    "hops",
+    "profile",
+    "water",
+    "transport",
+    "surface",
+    "vibration",
+)
 COLOURS = ("speed", "spin", "none")
 SIDES = ("right", "left")
 
@@ -63,9 +75,13 @@ def draw(
     ] = None,
     begin: Annotated[
         str | None,
-        typer.Option(help="tracks, profile, vibration: from this time on; default after settling."),
+        typer.Option(
+            help="tracks, profile, water, transport, vibration: from this time on; default after settling."
+        ),
     ] = None,
-    end: Annotated[str | None, typer.Option(help="tracks, profile, vibration: up to this time.")] = None,
+    end: Annotated[
+        str | None, typer.Option(help="tracks, profile, water, transport, vibration: up to this time.")
+    ] = None,
     length: Annotated[str | None, typer.Option(help="tracks: way shown, such as 20cm.")] = None,
     exaggeration: Annotated[float, typer.Option(help="tracks: heights drawn this many times larger.")] = 1.0,
     at: Annotated[str | None, typer.Option(help="grains, surface: the moment; default the last.")] = None,
@@ -117,6 +133,8 @@ def _picture(what: str, results: "Results", wanted: Wanted) -> "Drawn":
         "vibration": _vibration,
         "tracks": _tracks,
         "profile": _profile,
+        "water": _water,
+        "transport": _transport,
         "hops": _hops,
         "contacts": _contacts,
     }
@@ -183,6 +201,25 @@ def _profile(results: "Results", wanted: Wanted) -> "Drawn":
     end = end_of(results) if wanted.end is None else wanted.end
     layers = measure.profiles(results, wanted.begin, end, bed=True)
     return figures.profiles({results.folder.name: layers}), layers.rows()
+
+
+def _water(results: "Results", wanted: Wanted) -> "Drawn":
+    from ryusa import figures, measure
+
+    if wanted.begin is None:
+        need_settled(results, "say --begin 0s to see what is there")
+    found = measure.water(results, wanted.begin, end_of(results) if wanted.end is None else wanted.end)
+    return figures.water(found), found.rows()
+
+
+def _transport(results: "Results", wanted: Wanted) -> "Drawn":
+    from ryusa import figures, measure
+
+    if wanted.begin is None:
+        need_settled(results, "say --begin 0s to see what is there")
+    found = measure.transport(results, wanted.begin, end_of(results) if wanted.end is None else wanted.end)
+    lines = [figures.Formula(*one) for one in measure.classical(results, found)]
+    return figures.transport_of_run(found, lines, results.folder.name), found.rows()
 
 
 def _hops(results: "Results", wanted: Wanted) -> "Drawn":

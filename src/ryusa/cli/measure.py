@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ryusa.cli.options import known, metres, need, need_settled, open_run, seconds, within, write_rows
-from ryusa.cli.packing import print_surface, print_vibration
+from ryusa.cli.packing import print_stress, print_surface, print_vibration
 
 if TYPE_CHECKING:
     from ryusa.measure import Averages, Surface, Vibration
@@ -23,9 +23,14 @@ MEASURES = (
     "profile",
     "paths",
     "rods",
+    "water",
+    "transport",
+    "entrainment",
+    "stress",
     "vibration",
     "surface",
 )
+FLOWS = ("profile", "paths", "rods", "water", "transport", "entrainment", "stress")
 
 
 def register(app: typer.Typer) -> None:
@@ -42,10 +47,11 @@ def measure(
         float, typer.Option(help="saltation: flights that rise less, in diameters, join two bounces.")
     ] = 0.1,
     begin: Annotated[
-        str | None, typer.Option(help="profile, paths, rods: from this time on; default after settling.")
+        str | None,
+        typer.Option(help=f"{', '.join(FLOWS)}, vibration: from this time on; default after settling."),
     ] = None,
-    end: Annotated[str | None, typer.Option(help="profile, paths, rods, vibration: up to this time.")] = None,
-    layer: Annotated[float, typer.Option(help="profile: thickness of a layer, in diameters.")] = 0.5,
+    end: Annotated[str | None, typer.Option(help="As for --begin: up to this time.")] = None,
+    layer: Annotated[float, typer.Option(help="profile, stress: thickness of a layer, in diameters.")] = 0.5,
     window: Annotated[
         str | None,
         typer.Option(
@@ -74,7 +80,7 @@ def measure(
     elif what == "surface":
         found = _surface(results, seconds(at), known(side, ("right", "left"), "--side"))
         print_surface(found)
-    elif what in {"profile", "paths", "rods"}:
+    elif what in FLOWS:
         found = _flow(results, what, seconds(begin) if begin else after, seconds(end), layer, seconds(window))
     else:
         found = _measured(results, what, after, rise)
@@ -83,6 +89,8 @@ def measure(
         _print(averages)
     elif what == "energy":
         _print_energy(found)
+    elif what == "stress":
+        print_stress(found)
     elif what == "tracks" and csv is None:
         typer.echo(f"{len(found.t)} frames of {len(found.grains)} grains; --csv FILE writes them")
     if csv is not None:
@@ -139,6 +147,10 @@ def _flow(
     last = float("inf") if end is None else end
     if what == "profile":
         return measure.profiles(results, begin, last, layer=layer)
+    if what == "stress":
+        return measure.kinetic_stress(results, begin, last, layer=layer)
+    if what in {"water", "transport", "entrainment"}:
+        return getattr(measure, what)(results, begin, last)
     if what == "rods":
         return measure.rods(results, begin, last, window)
     return measure.paths(results, begin, last, window=1.0 if window is None else window)

@@ -1,4 +1,4 @@
-"""What `ryusa measure` prints of grains that come to rest: trembling, and the surface of a heap."""
+"""What `ryusa measure` prints in tables of their own: trembling, the surface of a heap, stresses."""
 
 import math
 from typing import TYPE_CHECKING
@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from ryusa.measure import Surface, Vibration
+    from ryusa.measure import KineticStress, Surface, Vibration
 
 DIAMETERS = 1.0e-3  # default threshold, in mean diameters
 LINES = 12  # windows printed
@@ -34,6 +34,22 @@ def print_vibration(found: "Vibration", threshold: float | None) -> None:
         f"within {found.window:g} s",
         f"{len(found.grains)} grains, {int(found.n_frame.min())} frames in a window",
         f"at rest from t = {rest:.4g} s on" if math.isfinite(rest) else "not at rest by the last window",
+    )
+
+
+def print_stress(found: "KineticStress") -> None:
+    """Print granular temperature and the stress of the grains' motion, from the highest layer down."""
+    names = ("z/d", "phi", "temperature [m2/s2]", "xx [Pa]", "yy [Pa]", "zz [Pa]", "xz [Pa]")
+    table, one = _table(names), found.profiles
+    columns = (found.temperature, found.xx, found.yy, found.zz, found.xz)
+    for k in reversed(range(len(one.z))):
+        if one.phi.value[k] > 0.0:
+            cells = (one.z[k] / one.d, one.phi.value[k], *(layers.value[k] for layers in columns))
+            table.add_row(*(f"{cell:.3g}" for cell in cells))
+    _say(
+        table,
+        "stress that the motion of grains carries, sigma phi <v'v'>, by height above the bed's crest",
+        "errors are in the CSV",
     )
 
 

@@ -13,8 +13,9 @@ from ryusa.figures.snapshot import snapshot
 from ryusa.figures.spin import spin
 from ryusa.figures.style import save
 from ryusa.figures.tracks import tracks, tracks_from_start, tracks_side_by_side
-from ryusa.figures.transport import Formula, Rates, transport
+from ryusa.figures.transport import Formula, Rates, transport, transport_of_run
 from ryusa.figures.vibration import vibration
+from ryusa.figures.water import water
 
 __all__ = [
     "Band",
@@ -45,6 +46,8 @@ __all__ = [
     "tracks_from_start",
     "tracks_side_by_side",
     "transport",
+    "transport_of_run",
     "turning",
     "vibration",
+    "water",
 ]

@@ -17,6 +17,7 @@ from ryusa.measure import Snapshot
 from ryusa.measure.repose import STILL, G
 
 CM = 100.0  # centimetres in a metre
+WET, SURFACE = "#e8f1f8", "#0072B2"  # water, and its surface
 PLAIN, RIM, SOLID = "#cfdce8", "#3c4a57", "#d8d4cc"
 WIDE = 2.2  # from this ratio of the sides on a picture is two columns wide
 SLIM, LOW = 0.75, 9.0  # smallest and largest width over height
@@ -68,6 +69,8 @@ def panel(seen: Snapshot, above: float = 0.0) -> tuple[Figure, Axes]:
     axes.tick_params(top=False, right=False)
     text = f"$t$ = {seen.t:.4g} s" + (f", lane {seen.lane} of {seen.lanes}" if seen.lanes > 1 else "")
     axes.annotate(text, (0, 1), (0, 4), xycoords="axes fraction", textcoords="offset points", fontsize=7.0)
+    if math.isfinite(seen.surface):
+        _water(axes, seen.surface, box)
     planes(axes, seen.plane_point, seen.plane_normal, box, CM)
     circles(axes, seen.bed_x, seen.bed_d, style.BED, "#8c8578", period=seen.period)
     return figure, axes
@@ -76,6 +79,14 @@ def panel(seen: Snapshot, above: float = 0.0) -> tuple[Figure, Axes]:
 def grains(axes: Axes, seen: Snapshot, colours: Any, zorder: float = 2.0) -> None:
     """Draw the free grains; `colours` is one or one per grain."""
     circles(axes, seen.x, seen.d, colours, RIM, period=seen.period, zorder=zorder)
+
+
+def _water(axes: Axes, surface: float, box: Box) -> None:
+    """Tint what is below the surface of the water, and mark it as surveyors do."""
+    low, high, x = box[2] * CM, surface * CM, 0.97 * box[1] * CM + 0.03 * box[0] * CM
+    axes.axhspan(low, high, color=WET, lw=0.0, zorder=0.2)
+    axes.axhline(high, color=SURFACE, lw=0.8, zorder=0.4)
+    axes.plot([x], [high], marker=7, ms=4.5, color=SURFACE, mew=0.0, zorder=3.0)  # stands on the line
 
 
 def circles(
@@ -136,6 +147,8 @@ def _box(seen: Snapshot) -> Box:
     near = (seen.bed_x[:, 0] > left) & (seen.bed_x[:, 0] < right) & (seen.bed_x[:, 2] < top + room)
     if near.any():
         bottom = min(bottom, float((seen.bed_x[near, 2] - 0.5 * seen.bed_d[near]).min()))
+    if math.isfinite(seen.surface):
+        top = max(top, seen.surface)
     bottom, top = bottom - 0.3 * room, top + 0.5 * room
     ratio = (right - left) / (top - bottom)
     if ratio < SLIM:  # a slim column gets room at its sides

@@ -1,5 +1,6 @@
 """Transport rate over bed shear stress, with formulae behind: the chart every bed-load study shows."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -10,9 +11,11 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from ryusa.figures import style
+from ryusa.measure import Transport
 
 Floats = NDArray[np.float64]
 INK = "#5a5a5a"
+BINS = 100  # points of a line over time
 DASHES = (*style.LINES, (0, (7, 1.2, 1, 1.2, 1, 1.2)), (0, (9, 3)), (0, (1, 3)))
 
 
@@ -62,6 +65,66 @@ def transport(rates: Sequence[Rates], formulae: Sequence[Formula] = (), note: st
     note : a line of text in the lower right corner.
     """
     figure, (axes,) = style.new(height=3.0)
+    _chart(axes, rates, formulae, note)
+    return figure
+
+
+@style.house
+def transport_of_run(found: Transport, formulae: Sequence[Formula] = (), name: str = "run") -> Figure:
+    """Draw q_star of a run over time, and its mean against tau_star.
+
+    Parameters
+    ----------
+    found : `measure.transport`.
+    formulae : as in `transport`.
+    name : of the run.
+
+    Notes
+    -----
+    Frames are averaged over a hundredth of the time, or the line is lost in single grains; the band is the
+    mean with one standard error. A run without a tau_star has no second panel.
+    """
+    chart = found.tau_star > 0.0
+    width, ratios = (style.PAGE, [1.15, 1.0]) if chart else (style.COLUMN, [1.0])
+    figure, axes = style.new(
+        1, len(ratios), width=width, height=3.0 if chart else 2.4, gridspec_kw={"width_ratios": ratios}
+    )
+    _over_time(axes[0], found)
+    if chart:
+        mean = found.averages["q_star"]
+        one = np.array([found.tau_star]), np.array([mean.value]), np.array([mean.error])
+        error = None if math.isnan(found.tau_error) else np.array([found.tau_error])
+        _chart(axes[1], [Rates(name, *one, error)], formulae, "")
+        for panel, text in zip(axes, ("(a)", "(b)"), strict=True):
+            panel.annotate(
+                text, (0, 1), (0, 3), xycoords="axes fraction", textcoords="offset points", weight="bold"
+            )
+    return figure
+
+
+def _over_time(axes: Axes, found: Transport) -> None:
+    every = max(len(found.t) // BINS, 1)
+    parts = np.array_split(np.arange(len(found.t)), max(len(found.t) // every, 1))
+    t = [float(found.t[part].mean()) for part in parts]
+    q = [float((found.q_star[part] @ found.dt[part]) / found.dt[part].sum()) for part in parts]
+    mean = found.averages["q_star"]
+    axes.plot(t, q, color=style.COLOURS[0], lw=0.8)
+    axes.axhline(mean.value, color=style.COLOURS[1], lw=0.9, ls="--")
+    if np.isfinite(mean.error):
+        low, high = mean.value - mean.error, mean.value + mean.error
+        axes.axhspan(low, high, color=style.COLOURS[1], alpha=0.2, lw=0.0)
+    axes.annotate(
+        rf"mean {mean.value:.3g} $\pm$ {mean.error:.1g}", (1, 1), (-4, -4), "axes fraction",
+        textcoords="offset points", ha="right", va="top", fontsize=6.5, color=style.COLOURS[1],
+    )  # fmt: skip
+    low, high = min(*q, 0.0), max(*q, 0.0)
+    axes.set_ylim(low, high + 0.15 * (high - low) if high > low else 1.0)
+    axes.set_xlim(float(found.t[0] - 0.5 * found.dt[0]), float(found.t[-1] + 0.5 * found.dt[-1]))
+    axes.set_xlabel("time  $t$  (s)")
+    axes.set_ylabel(r"transport rate  $q_*$  (–)")
+
+
+def _chart(axes: Axes, rates: Sequence[Rates], formulae: Sequence[Formula], note: str) -> None:
     axes.set_xscale("log")
     axes.set_yscale("log")
     for k, one in enumerate(formulae):
@@ -82,7 +145,6 @@ def transport(rates: Sequence[Rates], formulae: Sequence[Formula] = (), note: st
             note, (1, 0), (-4, 4), "axes fraction", textcoords="offset points", ha="right", fontsize=6.5,
             color="#444444",
         )  # fmt: skip
-    return figure
 
 
 def _points(axes: Axes, one: Rates, k: int) -> None:

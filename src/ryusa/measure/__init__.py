@@ -4,6 +4,7 @@ from ryusa.measure.bed_stress import BedStress, bed_stress
 from ryusa.measure.collisions import Collisions, ContactTimes, collisions, contact_times, turned_time
 from ryusa.measure.energy import Energy, energy
 from ryusa.measure.entrainment import Entrainment, entrainment
+from ryusa.measure.formulae import Curve, classical
 from ryusa.measure.paths import Alternating, Paths, alternating, paths
 from ryusa.measure.profiles import Layers, Profiles, profiles
 from ryusa.measure.repose import Surface, surface
@@ -23,6 +24,7 @@ from ryusa.measure.vibration import (
     trembling_share,
     vibration,
 )
+from ryusa.measure.water import WaterProfile, water
 
 __all__ = [
     "Alternating",
@@ -31,6 +33,7 @@ __all__ = [
     "BedStress",
     "Collisions",
     "ContactTimes",
+    "Curve",
     "Energy",
     "Entrainment",
     "KineticStress",
@@ -47,10 +50,12 @@ __all__ = [
     "Transport",
     "Trembling",
     "Vibration",
+    "WaterProfile",
     "alternating",
     "average",
     "bed_stress",
     "block_error",
+    "classical",
     "collisions",
     "companions",
     "contact_times",
@@ -74,5 +79,6 @@ __all__ = [
     "trembling_share",
     "turned_time",
     "vibration",
+    "water",
     "write_csv",
 ]

@@ -28,6 +28,7 @@ class Snapshot:
     bed_x, bed_d : fixed grains that are there now [m], shapes (n_bed, 3) and (n_bed,).
     plane_point, plane_normal : planes that are there now and stand upright on the x-z plane, (n_plane, 3).
     period : along x [m]; inf where open.
+    surface : height of the water's surface where a column was solved [m]; nan elsewhere.
     lane, lanes : number of the lane shown, in order of y, and of all lanes; 0 and 1 where there are none.
     """
 
@@ -44,6 +45,7 @@ class Snapshot:
     period: float
     lane: int = 0
     lanes: int = 1
+    surface: float = math.nan
 
     def rows(self) -> list[dict[str, object]]:
         """One dictionary per free grain."""
@@ -82,6 +84,7 @@ def snapshot(run: Run, t: float | None = None, lane: int | None = None) -> Snaps
     bed = scene.fixed_active.copy()
     if lanes > 1 and len(shown):
         bed &= np.abs(scene.x_fixed[:, 1] - x[shown[0], 1]) < 0.5 * float(scene.d.max())
+    water = getattr(run, "water", None)
     planes = scene.plane_active.copy()
     if len(planes):
         planes &= np.abs(scene.plane_normal[:, 1]) < UPRIGHT
@@ -99,6 +102,7 @@ def snapshot(run: Run, t: float | None = None, lane: int | None = None) -> Snaps
         period=float(scene.period[0]),
         lane=chosen,
         lanes=lanes,
+        surface=math.nan if water is None else float(water.z_surface[k]),
     )
 
 

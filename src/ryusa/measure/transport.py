@@ -26,6 +26,7 @@ from ryusa.measure.profiles import (
 from ryusa.measure.snapshot import lanes_of, scene_at
 from ryusa.measure.statistics import Average, average, block_errors, ratio
 from ryusa.measure.table import Averages
+from ryusa.measure.water import water
 from ryusa.model import Scene
 
 MIDDLE = 0.9  # share of the flux between the levels of the transport layer
@@ -45,7 +46,10 @@ class Transport:
     flux : volume of grains that crosses a unit of area in a second, over height [m/s].
     scale : sqrt(R g d**3) that makes q dimensionless [m2/s].
     excess : R, density of grains over water less 1; 1 in a dry flow, nan where grains do not sink [-].
-    tau_star : dimensionless shear stress the case asks for, or the one handed in [-]; nan where neither is.
+    tau_star : dimensionless shear stress at the bed [-]: of the water of the run where it solved a column
+        (`measure.water`), else the one the case asks for, or the one handed in; nan where there is none.
+    tau_error : its standard error [-]; nan where it is not measured.
+    bed : height of the bed at which it is measured [m]; nan where it is not.
     d, g : mean diameter of the free grains [m] and length of the gravity vector [m/s2].
     averages : q, q_star, layer_low, layer_high, layer_thickness, with errors and steadiness.
     """
@@ -61,6 +65,8 @@ class Transport:
     scale: float
     excess: float
     tau_star: float
+    tau_error: float
+    bed: float
     d: float
     g: float
     averages: Averages
@@ -124,7 +130,8 @@ def transport(
     begin, end : window [s]; `begin` defaults to the case's `record.settle`.
     layer, origin : layers of the flux, as in `profiles`; thickness in mean diameters.
     rho_w : density of water in q_star [kg/m3]; default that of the case; 0 for a dry flow.
-    tau_star : what to put beside q_star [-]; default from the friction velocity of the case's water.
+    tau_star : what to put beside q_star [-]; default that of the run's water at the bed (`measure.water`), or
+        where no column was solved from the friction velocity of the case.
 
     Raises
     ------
@@ -151,6 +158,9 @@ def transport(
     scale = math.sqrt(excess * g * d**3)
     window = (since, float(t[-1]))
     q = ratio("q", "m2/s", [moved], [dt], window)
+    stress, bed = _measured(run, since, end) if tau_star is None and rho_w is None else (None, math.nan)
+    if tau_star is None:
+        tau_star = _tau_star(scene, excess, d, g) if stress is None else stress.value
     return Transport(
         t=0.5 * (t[1:] + t[:-1]),
         dt=dt,
@@ -162,7 +172,9 @@ def transport(
         flux=_mean("flux", "m/s", carried / thickness),
         scale=scale,
         excess=excess,
-        tau_star=_tau_star(scene, excess, d, g) if tau_star is None else tau_star,
+        tau_star=tau_star,
+        tau_error=math.nan if stress is None else stress.error,
+        bed=bed,
         d=d,
         g=g,
         averages=Averages(
@@ -171,8 +183,10 @@ def transport(
                 q,
                 replace(q, name="q_star", unit="-", value=q.value / scale, error=q.error / scale),
                 *_layer(carried, edge * thickness, thickness, window),
+                *([] if stress is None else [stress]),
             ),
             (
+                _of_stress(tau_star, bed),
                 f"q_star = q/sqrt(R g d^3), R = {excess:.4g}, g = {g:.4g} m/s2, d = {d:.4g} m",
                 f"transport layer: the middle {MIDDLE:.0%} of the flux, heights above z = {z_0:.4g} m",
             ),
@@ -297,6 +311,23 @@ def _excess(run: Run, scene: Scene, rho_s: float, rho_w: float | None) -> float:
         return 1.0
     excess = rho_s / rho_w - 1.0
     return excess if excess > 0.0 else math.nan
+
+
+def _measured(run: Run, begin: float, end: float) -> tuple[Average | None, float]:
+    """Shear stress of the water at the bed [-] and the height of that [m], where a run solved a column."""
+    if getattr(run, "water", None) is None:
+        return None, math.nan
+    found = water(run, begin, end)
+    return found.averages["tau_star"], found.bed
+
+
+def _of_stress(tau_star: float, bed: float) -> str:
+    """Where tau_star comes from."""
+    if math.isnan(tau_star):
+        return "tau_star: none, for the water names no stress, or has no bed or nothing clear above it"
+    if math.isnan(bed):
+        return f"tau_star = {tau_star:.4g}, what the case asks for"
+    return f"tau_star: shear stress of the clear water, carried on to the bed at z = {bed:.4g} m"
 
 
 def _tau_star(scene: Scene, excess: float, d: float, g: float) -> float:

@@ -1,0 +1,67 @@
+"""Classical bed-load formulae at the grains, slope and depth of a run, to stand behind its transport rate."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ryusa.laws import debris
+from ryusa.laws import transport as laws
+from ryusa.measure._run import Floats, Run
+from ryusa.measure.snapshot import scene_at
+from ryusa.measure.transport import Transport
+
+BELOW, ABOVE = 4.0, 4.0  # how far the lines reach to either side of a run's tau_star, as factors
+LEAST, MOST = 0.03, 1.0  # and how far at least
+THRESHOLD = 0.05  # of Ashida & Michiue, as its docstring says
+C_S, ALPHA, K_D, K_F = 0.3, 0.25, 0.0828, 0.16  # of Egashira, Miyamoto & Itoh
+
+
+class Curve(NamedTuple):
+    """One formula: its author, dimensionless shear stress and transport rate [-], shapes (n,)."""
+
+    label: str
+    tau_star: Floats
+    q_star: Floats
+
+
+def classical(run: Run, found: Transport) -> list[Curve]:
+    """Meyer-Peter & Mueller, Wong & Parker, Ashida & Michiue, and Egashira where the run has a slope.
+
+    Parameters
+    ----------
+    run : its slope, friction and restitution go into Egashira's formula, which has depth beyond all layers.
+    found : `measure.transport` of it.
+
+    Notes
+    -----
+    All for a plane bed without bed forms. Egashira's speaks of bed load, not of debris flow: it ends where
+    the slope leaves no layer.
+    """
+    middle = found.tau_star if found.tau_star > 0.0 else math.sqrt(LEAST * MOST)
+    tau = np.geomspace(min(LEAST, middle / BELOW), max(MOST, middle * ABOVE), 240)
+    lines = [
+        Curve("Meyer-Peter & Müller 1948", tau, _each(laws.q_star_meyer_peter_mueller, tau)),
+        Curve("Wong & Parker 2006", tau, _each(laws.q_star_wong_parker, tau)),
+        Curve(
+            "Ashida & Michiue 1972",
+            tau,
+            np.array([laws.q_star_ashida_michiue(one, one, THRESHOLD) for one in tau]),
+        ),
+    ]
+    scene = scene_at(run, float(found.t[0]))
+    slope = math.atan2(float(scene.gravity[0]), -float(scene.gravity[2]))
+    contact = run.case.get("contact") or {}
+    e, angle = contact.get("restitution"), math.atan(scene.contact.mu)
+    if found.excess > 0.0 and slope > 0.0 and e is not None:
+        ratio = 1.0 + found.excess
+        f = debris.collision_factor(C_S, float(e), K_D, ratio, 1.0) + debris.pore_factor(C_S, K_F)
+        q = np.array([laws.q_star_egashira(one, slope, angle, C_S, ALPHA, f, 1.0e9) for one in tau])
+        if np.isfinite(q).all():
+            lines.append(Curve("Egashira et al. 1997", tau, q))
+    return lines
+
+
+def _each(law: object, tau: Floats) -> Floats:
+    assert callable(law)
+    return np.array([law(float(one)) for one in tau], dtype=np.float64)
