@@ -117,3 +117,12 @@ def test_grains_lie_at_the_bottom_as_dense_as_asked_and_none_is_lost():
     assert phi[0] == pytest.approx(0.5)
     end = D + (0.3 * 3.0 - 0.1) / 0.5 * D
     assert np.interp(-0.25, -phi, column.z) == pytest.approx(end, abs=column.dz)
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_water_among_fixed_grains_nowhere_runs_backwards(form):
+    made, column = bed(form)
+    coupling = alone((replace(made[0], dt=1e-3), made[1]), column)
+    for _ in range(60):
+        coupling.exchange(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros((0, 4)))
+    assert coupling.state.u.min() >= 0.0

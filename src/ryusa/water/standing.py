@@ -69,9 +69,10 @@ class Standing:
 
         Notes
         -----
-        The drag of a grain follows from the mean speed over its volume and goes to the cells that it lies in
-        with the same slices; its slope is laid into each cell as if the grain lay there alone. So the sum is
-        exact where the speed no longer changes, and a step of any length is stable.
+        The drag of a grain over its slip follows from the mean speed over its volume; every slice then drags
+        the water of its cell by that water's own speed, as slices of free grains do. Its slope is laid into
+        each cell as if the grain lay there alone. So the sum is exact where the speed no longer changes, and
+        a step of any length is stable.
         """
         n = len(phi)
         given = np.zeros((n, 3))
@@ -83,6 +84,7 @@ class Standing:
             at = to_grains(cut, np.column_stack([state.u, state.w, np.minimum(phi, PACKED)]), "wet")
             out = _drags(water, at, cut.share, self.d)
             given = to_cells(cut, out, "wet").cells / cells.volume
+            given[:, 0] *= state.u
         wet = np.clip((state.z_surface - cells.faces[:-1]) / cells.dz, 0.0, 1.0)
         return _held(given, water, self.phi, wet, state.gradient, rho_g_x)
 
@@ -134,6 +136,7 @@ def flowing(column: Column, water: Water, fixed: Floats, free: Floats, d: float)
         if column.bed is not Bed.ROUGH:
             drags = _drags(water, np.column_stack([state.u, 0.0 * wet, phi]), wet, sizes)
             given = drags * (phi / volume(d, math.pi / 6.0))[:, None]
+            given[:, 0] *= state.u
             held = _held(given, water, phi, wet, state.gradient, column.rho_w * column.g_x)
         now, _ = steady(column, phi, held.force, slope=held.slope, carried=held.carried, guess=state.u)
         change, state = float(np.max(np.abs(now.u - state.u))), now
@@ -162,7 +165,7 @@ def _held(given: Floats, water: Water, phi: Floats, wet: Floats, gradient: float
 
 
 def _drags(water: Water, at: Floats, share: Floats, d: Floats) -> Floats:
-    """Drag along x [N], its slope [N s/m] and drag along z [N] of resting grains, shape (n_grain, 3)."""
+    """Of resting grains: drag over slip [N s/m], slope of drag [N s/m], drag along z [N], (n_grain, 3)."""
     out = np.zeros((len(d), 3))
     if water.drag != Drag.NONE:
         _resist(
@@ -178,11 +181,11 @@ def _resist(
     law: int, hindrance: int, stress: bool, exponent: float, at: Floats, share: Floats, d: Floats, nu: float,
     rho_w: float, a_2: float, c_d: float, out: Floats,
 ) -> None:  # fmt: skip
-    """Drag along x, its slope [N s/m], drag along z of each grain; at: u, w [m/s] and phi [-]."""
+    """Drag over slip, slope of drag [N s/m], drag along z [N] of each grain; at: u, w [m/s], phi [-]."""
     for i in range(d.shape[0]):
         u, w, phi = at[i, 0], at[i, 1], at[i, 2]
         slip = max(math.sqrt(u * u + w * w), 1.0e-9 * nu / d[i])
         k = share[i] * hindered(law, hindrance, stress, exponent, slip, phi, d[i], nu, rho_w, a_2, c_d)
         more = slip * (1.0 + NUDGE)
         k_more = share[i] * hindered(law, hindrance, stress, exponent, more, phi, d[i], nu, rho_w, a_2, c_d)
-        out[i, 0], out[i, 1], out[i, 2] = k * u, (k_more * (1.0 + NUDGE) - k) / NUDGE, k * w
+        out[i, 0], out[i, 1], out[i, 2] = k, (k_more * (1.0 + NUDGE) - k) / NUDGE, k * w
