@@ -1,0 +1,140 @@
+"""What water that feels its grains costs: a flowing bed of 20,172 grains in 3D, on one thread.
+
+    python benchmarks/coupling.py              # three to four minutes
+    python benchmarks/coupling.py --save       # and keep the table in benchmarks/results/
+
+The packaged dense 3D case under a column of water, as `ryusa run` steps it: 50 steps, then the exchange. The
+same grains are stepped dry, in water that is given (log law), in a column, and in one with fluctuations, in
+turns, so that a drift of the machine's speed meets all. The share is that of the exchange (cutting grains,
+sums both ways, the water's own step, telling the grains) in the time of its steps and itself; what water
+costs within a step, drag first of all, is the difference of the columns to "dry".
+"""
+
+import argparse
+import datetime
+import json
+import os
+import platform
+import statistics
+import time
+from dataclasses import replace
+from importlib.metadata import version
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from ryusa.build import build
+from ryusa.casefile import read
+from ryusa.engine.cpu import CpuEngine
+from ryusa.running.provenance import processor
+from ryusa.water.coupling import Coupling
+
+REPEATS = 15
+FLOW = 12_000  # steps under water before anything is timed
+COLUMN = {
+    "motion.slope": "1/10",
+    "motion.plane": "false",
+    "water": "{ profile = 'column', depth = '4 cm', hindrance = 'Di Felice' }",
+}
+KINDS: dict[str, dict[str, str]] = {
+    "dry": {"motion.slope": "1/10"},
+    "given water": {"motion.slope": "1/10", "water": "{ profile = 'log rough', tau_star = 1.2 }"},
+    "column": COLUMN,
+    "column, random walk": COLUMN
+    | {
+        "water": "{ profile = 'column', depth = '4 cm', hindrance = 'Di Felice', "
+        "column = { fluctuations = 'random walk' } }"
+    },
+}
+
+
+def case_of(keys: dict[str, str], columns: int) -> Any:
+    """The packaged case with water over it, and no timeline."""
+    path = Path(str(files("ryusa").joinpath("cases", "dense_3d.toml")))
+    size = {"build.columns": str(columns), "build.rows": str(columns), "timeline": "[]"}
+    return read(path, size | {"time.steps_per_contact": "20"} | keys)
+
+
+def measure(columns: int) -> list[dict[str, Any]]:
+    """Time a step and an exchange of every kind of water on the same grains."""
+    built = {name: build(case_of(keys, columns)) for name, keys in KINDS.items()}
+    scene, column = built["column"].scene, built["column"].scene.column
+    assert column is not None
+    flowing = CpuEngine(threads=2)
+    flowing.load(scene, built["column"].state)
+    coupling = Coupling.begin(scene, column, column.interval, built["column"].state.x)
+    flowing.immerse(coupling.seen)
+    done = 0
+    while done < FLOW:
+        done += (k := coupling.steps)
+        flowing.advance(k).raise_if_any()
+        flowing.immerse(coupling.exchange(*flowing.drift()))
+    state = flowing.state()
+    engines, couplings = {}, {}
+    for name, one in built.items():
+        engine = engines[name] = CpuEngine()
+        dt = replace(one.scene, dt=scene.dt)  # one step for all
+        own = replace(
+            state, immersed=None if one.scene.column is None else state.immersed, contacts=state.contacts
+        )
+        engine.load(dt, own)
+        if one.scene.column is not None:
+            water = Coupling.begin(dt, one.scene.column, column.interval, state.x, coupling.state, state.step)
+            couplings[name] = water
+            engine.immerse(water.seen)
+    taken: dict[str, list[float]] = {name: [] for name in engines}
+    given: dict[str, list[float]] = {name: [] for name in couplings}
+    for turn in range(REPEATS + 2):
+        for name, engine in engines.items():
+            steps = couplings[name].steps if name in couplings else column.interval
+            begin = time.perf_counter()
+            engine.advance(steps).raise_if_any()
+            middle = time.perf_counter()
+            if name in couplings:
+                engine.immerse(couplings[name].exchange(*engine.drift()))
+            if turn > 1:
+                taken[name].append((middle - begin) / steps)
+            if turn > 1 and name in couplings:
+                given[name].append((time.perf_counter() - middle) / couplings[name].steps)
+    rows = []
+    for name, times in taken.items():
+        step = statistics.median(times)
+        row: dict[str, Any] = {"water": name, "grains": scene.n_grain, "us a step": round(1e6 * step, 1)}
+        if name in given:
+            more = statistics.median(given[name])
+            row |= {
+                "steps an exchange": couplings[name].steps,
+                "cells": couplings[name].column.n,
+                "us a step for the exchange": round(1e6 * more, 1),
+                "exchange [ms]": round(1e3 * more * couplings[name].steps, 2),
+                "share of the exchange [%]": round(100.0 * more / (step + more), 2),
+            }
+        rows.append(row)
+    return rows
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--columns", type=int, default=41, help="grains along x and y: 41 x 41 x 12")
+    parser.add_argument("--save", action="store_true", help="keep the table in benchmarks/results/")
+    options = parser.parse_args()
+    table: dict[str, Any] = {
+        "date": datetime.date.today().isoformat(),
+        "machine": {"cpu": processor(), "system": platform.platform(), "python": platform.python_version()},
+        "versions": {name: version(name) for name in ("ryusa", "numba", "llvmlite", "numpy")},
+        "load average before": [round(a, 2) for a in os.getloadavg()],
+        "rows": measure(options.columns),
+    }
+    for row in table["rows"]:
+        print(", ".join(f"{key} {value}" for key, value in row.items()), flush=True)
+    if options.save:
+        file = Path(__file__).parent / "results" / f"coupling-{table['date']}.json"
+        file.parent.mkdir(exist_ok=True)
+        file.write_text(json.dumps(table, indent=1) + "\n")
+        print(f"kept in {file.relative_to(Path(__file__).parent.parent)}")
+
+
+if __name__ == "__main__":
+    main()
