@@ -22,6 +22,7 @@ NAMES = (
     "gas",
     "incline",
     "transport",
+    "equilibrium",
 )
 
 
