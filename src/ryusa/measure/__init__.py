@@ -1,6 +1,5 @@
 """Numbers from a run folder: every function reads results and returns a frozen record; none steps a grain."""
 
-from ryusa.measure.bed_stress import BedStress, bed_stress
 from ryusa.measure.collisions import Collisions, ContactTimes, collisions, contact_times, turned_time
 from ryusa.measure.energy import Energy, energy
 from ryusa.measure.entrainment import Entrainment, entrainment
@@ -30,7 +29,6 @@ __all__ = [
     "Alternating",
     "Average",
     "Averages",
-    "BedStress",
     "Collisions",
     "ContactTimes",
     "Curve",
@@ -53,7 +51,6 @@ __all__ = [
     "WaterProfile",
     "alternating",
     "average",
-    "bed_stress",
     "block_error",
     "classical",
     "collisions",

@@ -10,7 +10,7 @@ from ryusa.campaign import Level, Variant, Work
 from ryusa.figures.comparison import Axis, Line
 from ryusa.laws import debris
 from ryusa.laws import transport as laws
-from ryusa.measure import bed_stress, transport
+from ryusa.measure import transport, water
 from ryusa.model.scene import Floats
 from ryusa.results import Results
 from ryusa.validation._check import Comparison, Error, Found, Source, Tolerance, at_most, case_run
@@ -40,14 +40,15 @@ def runs(level: Level) -> Sequence[Work]:
 def measure(run: Results, one: Variant) -> dict[str, float]:
     """Rate, stress, their errors, the depth of the water in grains, and how the rate moved."""
     del one
-    moved, stress = transport(run), bed_stress(run)
-    q, tau = moved.averages["q_star"], stress.averages["tau_star"]
+    moved, flow = transport(run), water(run)
+    rate = moved.averages["q_star"]
     half = len(moved.q_star) // 2
     before = float(moved.q_star[:half].mean())
     return {
-        "q_star": q.value, "q_error": q.error, "tau_star": tau.value, "tau_error": tau.error,
+        "q_star": rate.value, "q_error": rate.error,
+        "tau_star": moved.tau_star, "tau_error": moved.tau_error,
         "slope": math.atan2(float(run.scene.gravity[0]), -float(run.scene.gravity[2])),
-        "depth": (stress.z_surface - stress.z_bed) / moved.d,
+        "depth": (flow.surface - flow.bed) / moved.d,
         "drift": float(moved.q_star[half:].mean()) / before - 1.0 if before > 0.0 else math.nan,
         "layer": moved.averages["layer_thickness"].value / moved.d,
     }  # fmt: skip
@@ -119,8 +120,8 @@ def compare(found: Found, level: Level) -> Sequence[Comparison]:
                 "slopes": ", ".join(f"{math.tan(one):.3g}" for one in slope),
                 "depth": ", ".join(f"{one:.0f} d" for one in depth),
             },
-            "tau_star is that of the water at the level where the bed is half as dense as below, and what "
-            f"the water above gave to grains; judged from {JUDGED} on. {moved}.",
+            "tau_star is that of the clear water, carried on to the bed, where grains are half as dense as at "
+            f"rest (docs/theory.md); judged from {JUDGED} on. {moved}.",
             [Line("Egashira, Miyamoto & Itoh 1997, level bed", FINE, egashira(FINE, 0.0, 1.0e9))],
         )
     ]  # fmt: skip
