@@ -120,7 +120,7 @@ def compare(found: Found, level: Level) -> Sequence[Comparison]:
                 "slopes": ", ".join(f"{math.tan(one):.3g}" for one in slope),
                 "depth": ", ".join(f"{one:.0f} d" for one in depth),
             },
-            "tau_star is that of the clear water, carried on to the bed, where grains are half as dense as at "
+            "tau_star is that of the clear water, carried on to where the bed is half as dense as at "
             f"rest (docs/theory.md); judged from {JUDGED} on. {moved}.",
             [Line("Egashira, Miyamoto & Itoh 1997, level bed", FINE, egashira(FINE, 0.0, 1.0e9))],
         )
