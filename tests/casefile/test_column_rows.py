@@ -148,3 +148,14 @@ def test_still_water_may_end_in_the_bed(case: CaseOf) -> None:
     found = flowing(case, shallow, **FLUME, **{"motion.slope": "0"})
     assert found["water over the bed"].flag == "note"
     assert found["driver"].value == "none"
+
+
+@pytest.mark.parametrize(
+    ("name", "tau_star", "n"),
+    [("bedload_3d", 0.2, 600), ("sheet_flow", 1.0, 650), ("debris_equilibrium", 0.4, 630)],
+)
+def test_shipped_flows_in_three_dimensions_say_what_they_ask_for(shipped, name, tau_star, n) -> None:
+    found = read(shipped / f"{name}.toml")
+    assert found.derived.n_grain == n
+    assert rows(found)["tau_star"].value == pytest.approx(tau_star, rel=0.06)
+    assert rows(found)["overlap/d at rest"].flag != "warning"

@@ -16,8 +16,8 @@ from ryusa.results import Results
 from ryusa.validation._check import Comparison, Error, Found, Source, Tolerance, at_most, case_run
 
 TITLE = "Transport of sediment against the stress on the bed"
-SLOPES = {"bedload_3d": (0.005, 0.00825, 0.0132, 0.0248), "sheet_flow": (0.0275, 0.0468, 0.0825)}
-DEEP = {0.0825: {"build.layers": "16", "build.width": "1.6 cm"}}  # fewer layers would move to the last one
+SLOPES = {"bedload_3d": (0.005, 0.00825, 0.0132, 0.0248), "sheet_flow": (0.0275, 0.0468, 0.07)}
+DEEP = {0.07: {"build.layers": "14", "build.length": "4.5 cm"}}  # fewer would move down to the last one
 QUICK = {"motion.slope": "0.0248", "stop.time": "2 s", "record.settle": "1 s"}
 JUDGED = 0.08  # tau_star from where on every formula is far enough above its threshold
 CRITICAL = 0.05  # of Ashida & Michiue
