@@ -187,8 +187,8 @@ def q_star_ashida_michiue(tau_star: float, tau_star_e: float, tau_star_c: float)
     Notes
     -----
     Source: Ashida & Michiue 1972, 17 tau_e**1.5 (1 - tau_c/tau) (1 - sqrt(tau_c/tau)). Without bed forms it
-    is 17 (tau - tau_c) (sqrt(tau) - sqrt(tau_c)). Read in public code; the threshold 0.05 is
-    from memory. Zero below the threshold.
+    is 17 (tau - tau_c) (sqrt(tau) - sqrt(tau_c)). Read in public code, the threshold 0.05 too, there
+    after Parker's e-book, chapter 7. Zero below the threshold.
 
     Examples
     --------

@@ -13,7 +13,7 @@ from ryusa.laws import transport as laws
 from ryusa.measure import transport, water
 from ryusa.model.scene import Floats
 from ryusa.results import Results
-from ryusa.validation._check import Comparison, Error, Found, Source, Tolerance, at_most, case_run
+from ryusa.validation._check import Comparison, Error, Found, Known, Source, Tolerance, at_most, case_run
 
 TITLE = "Transport of sediment against the stress on the bed"
 SLOPES = {"bedload_3d": (0.005, 0.00825, 0.0132, 0.0248), "sheet_flow": (0.0275, 0.0468, 0.07)}
@@ -100,7 +100,7 @@ def compare(found: Found, level: Level) -> Sequence[Comparison]:
             "rate", "Transport rate from the threshold to sheet flow",
             Source(
                 "8 (tau_star - 0.047)^1.5; 3.97 (tau_star - 0.0495)^1.5; 17 (tau_star - 0.05) "
-                "(tau_star^0.5 - 0.05^0.5): fits to flumes, the last read in public code"
+                "(tau_star^0.5 - 0.05^0.5): fits to flumes, as public codes have them", Known.QUOTED,
             ),
             Axis("tau_star at the bed", log=True), Axis("q_star", log=True), [Line("grains", tau, q)],
             [Line(name, FINE, one) for name, one in formulae(FINE).items()],
