@@ -146,7 +146,7 @@ def test_richardson_and_zakis_exponent_comes_from_a_lone_grain(case: CaseOf) -> 
         ("", "cell = '2 cm'", {}, "water.column.cell", "at most half of water.depth"),
         ("", "packed = 0.8", SPACE, "water.column.packed", "at most 0.7405"),
         ("", "side_walls = '1 mm'", {}, "water.column.side_walls", "at least 0.002 m, the largest diameter"),
-        ("", "side_walls = '2 cm'", NARROW, "water.column.side_walls", "must be build.width, 0.0066 m"),
+        ("", "side_walls = '6 mm'", NARROW, "water.column.side_walls", "at least build.width, 0.0066 m"),
         ("", "drive = 'discharge', discharge = '-1 m2/s'", {}, "water.column.discharge", "above 0 m2/s"),
         (
             "",

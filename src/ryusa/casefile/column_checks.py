@@ -127,15 +127,15 @@ def _boundaries(case: Case, water: Water, keys: Column) -> Iterator[CaseError]:
 
 
 def _side_walls(case: Case, width: float) -> Iterator[CaseError]:
-    """Side walls have room for a grain, and stand where those of the flume do."""
+    """Side walls have room for a grain, and stand no closer than those of the flume."""
     largest, build = sizes(case)[2], case.build
     if width < largest:
         text = f"must be at least {largest:.4g} m, the largest diameter: no grain fits between the walls"
         yield CaseError("water.column.side_walls", width, text)
         return
     stands = build.width if isinstance(build, Flume) and build.walls else None
-    if stands is not None and abs(width - stands) > AGREE * stands:
-        text = f"must be build.width, {stands:g} m, where build.walls = true"
+    if stands is not None and width < (1.0 - AGREE) * stands:
+        text = f"must be at least build.width, {stands:g} m, where build.walls = true; wider ones slow water less"
         yield CaseError("water.column.side_walls", width, text)
 
 

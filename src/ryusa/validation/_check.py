@@ -23,6 +23,7 @@ NAMES = (
     "incline",
     "transport",
     "equilibrium",
+    "frey",
 )
 
 
