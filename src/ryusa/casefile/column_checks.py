@@ -135,7 +135,7 @@ def _side_walls(case: Case, width: float) -> Iterator[CaseError]:
         return
     stands = build.width if isinstance(build, Flume) and build.walls else None
     if stands is not None and width < (1.0 - AGREE) * stands:
-        text = f"must be at least build.width, {stands:g} m, where build.walls = true; wider ones slow water less"
+        text = f"must be at least build.width, {stands:g} m, where build.walls = true"
         yield CaseError("water.column.side_walls", width, text)
 
 
