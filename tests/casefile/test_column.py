@@ -225,3 +225,13 @@ def test_any_value_of_any_key_is_read_or_refused_with_a_case_error(
         return
     assert found.explain()
     assert found.resolved()
+
+
+def test_a_stress_on_the_rigid_bed_under_grains_that_all_move_does_not_contradict(case: CaseOf) -> None:
+    # fig17: no deposit; the stress of slope and whole depth, though loose grains take up half of it at rest
+    tau_star = 0.02 * math.sin(math.atan(0.05)) / (1.65 * D)
+    loose = "{ kind = 'packing', columns = 20, layers = 6, bed = 'flat' }"
+    one = wet(case, f"tau_star = {tau_star:.6g}, zero = '0.2 cm'", build=loose)
+    assert one.derived.tau_star == pytest.approx(tau_star, rel=1e-5)
+    with pytest.raises(CaseError, match="contradict"):
+        wet(case, f"tau_star = {2.0 * tau_star:.6g}, zero = '0.2 cm'", build=loose)

@@ -213,7 +213,11 @@ def _contradictions(case: Case, water: Water, keys: Column, depth: float) -> Ite
     estimated = water.depth is not None and depth != water.depth
     asked, along = u_star_asked(case), case.motion.gravity * math.sin(slope_at_last(case))
     if estimated and falls and along > 0.0 and asked > 0.0:  # the top of a loose bed is known to half a grain
-        depth = min(max(asked**2 / along, depth - 0.5 * d, 0.5 * depth), depth + 0.5 * d)
+        fits = asked**2 / along
+        if water.depth is not None and abs(fits - water.depth) <= AGREE * water.depth:
+            depth = water.depth  # no deposit: the stress is that on the rigid bed, all grains move over it
+        else:
+            depth = min(max(fits, depth - 0.5 * d, 0.5 * depth), depth + 0.5 * d)
     for text in refuse(
         depth=depth,
         dz=cell,
