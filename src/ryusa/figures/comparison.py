@@ -59,9 +59,13 @@ def compared(
             one.x, one.y, MARKERS[k % len(MARKERS)] if few else "-", color=colours[one.name],
             ms=3.4 if few else None, label=one.name, zorder=3,
         )  # fmt: skip
-    for set_scale, axis, values in ((axes.set_xscale, x, "x"), (axes.set_yscale, y, "y")):
-        if axis.log and all(np.all(getattr(one, values) > 0.0) for one in (*ours, *references)):
-            set_scale("log")
+    for name, axis in (("x", x), ("y", y)):
+        shown = np.concatenate([np.ravel(getattr(one, name)) for one in ours])
+        if axis.log and len(shown) and np.all(shown > 0.0):
+            axes.set(**{f"{name}scale": "log"})
+            low, _ = axes.get_xlim() if name == "x" else axes.get_ylim()
+            # a formula that ends at its threshold would stretch the axis without end
+            axes.set(**{f"{name}lim": (max(low, float(shown.min()) / 10.0), None)})
     axes.set_xlabel(str(x))
     axes.set_ylabel(str(y))
     axes.legend(fontsize=6.0)

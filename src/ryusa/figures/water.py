@@ -55,7 +55,7 @@ def water(found: WaterProfile) -> Figure:
             weight="bold",
         )  # fmt: skip
         panel.locator_params(axis="x", nbins=5)
-    speeds.legend(loc="center right")
+    speeds.legend(loc="center left")
     if np.isfinite(found.tau_bed):
         stress.legend(loc="lower right", fontsize=6.2)
     _name(amount, "surface", top, WATER, -3)
