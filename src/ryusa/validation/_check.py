@@ -18,6 +18,7 @@ NAMES = (
     "suspension",
     "balance",
     "impact",
+    "rebound",
     "rolling",
     "gas",
     "incline",
