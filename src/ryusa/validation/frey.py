@@ -60,11 +60,11 @@ SAID = {
     ),
 }
 CHOICES = {
-    "published": Choice("as published", {}, (6, 20)),
+    "published": Choice("as published", {}, (6, 14, 20)),
     "peer": Choice(
         "as published, side walls slowing the water as little as in the source's code",
         {"water.column.side_walls": "28 mm"},
-        (6, 20),
+        (6, 14, 20),
     ),
 }
 
@@ -76,7 +76,7 @@ def _work(choice: str, run: int) -> Variant:
 
 
 def runs(level: Level) -> Sequence[Work]:
-    """Four runs of some minutes, at the full level."""
+    """Six runs of some minutes, at the full level."""
     if level is not Level.FULL:
         return []
     return [_work(name, run) for name, choice in CHOICES.items() for run in choice.runs]
