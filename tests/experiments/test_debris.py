@@ -19,6 +19,7 @@ class Fake(Debris):
     """A run of known numbers."""
 
     near_surface: float = 0.3
+    topmost: float = 0.2
     near_bed: float = 0.5
     speed: float = 1.0
     q: float = 0.004
@@ -30,9 +31,9 @@ def flow(**changed):
     """A run that is all the paper says; what is changed is said."""
     contacts = {
         "all contacts": Contacts(100, 7e-5, 7e-5, 0.7),
-        "two free grains": Contacts(50, 6e-5, 6e-5, 0.65),
+        "two free grains": Contacts(50, 6.6e-5, 6.6e-5, 0.65),
     }
-    contacts["fixed grain"] = Contacts(50, 8e-5, 8e-5, 0.75)
+    contacts["fixed grain"] = Contacts(50, 7.4e-5, 7.4e-5, 0.75)
     known = {
         "profile": None, "water": None, "depth": 0.0148, "thrown": 3.0, "rms_z": 0.08, "rest": 0.0,
         "contacts": contacts, "closed": {"fixed grain": (8e-5, 0.74)}, "companions": 0.1, "rods": 0.0,
@@ -63,6 +64,17 @@ def test_how_many_grains_are_put_in_can_decide():
     )
     assert found["fig17"].word is Word.ONLY_IF
     assert found["fig17"].condition.startswith(f"{AMOUNT} 4 to 6")
+
+
+def test_a_contact_time_of_which_no_kind_of_pair_has_that_digit_is_not_the_paper_s():
+    apart = {
+        "all contacts": Contacts(100, 6.3e-5, 6.3e-5, 0.7),
+        "two free grains": Contacts(50, 6e-5, 6e-5, 0.7),
+        "fixed grain": Contacts(50, 8e-5, 8e-5, 0.7),
+    }
+    found = verdicts(fig17, STANDARD, lambda one: flow(contacts=apart))
+    assert found["fig17-time"].word is Word.NOT
+    assert found["fig17-e"].word is Word.REPRODUCED
 
 
 def test_grains_in_parallel_layers_are_not_what_the_paper_simulated():
@@ -112,6 +124,7 @@ def test_the_upper_third_and_the_lowest_diameter_are_cut_out_of_the_profile_exac
         depth=6 * D,
     )  # fmt: skip
     assert one.near_surface == pytest.approx(0.1 + 10.0 * 5.0 * D)
+    assert one.topmost == pytest.approx(0.1 + 10.0 * 5.5 * D)
     assert one.near_bed == pytest.approx(0.7)
 
 

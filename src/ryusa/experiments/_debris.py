@@ -104,8 +104,16 @@ class Debris:
     @property
     def near_surface(self) -> float:
         """Concentration in the upper third of the depth [-]."""
-        phi = np.nan_to_num(self.profile.phi.value)
-        return float(phi @ self._inside(UPPER * self.depth, self.depth)) / ((1.0 - UPPER) * self.depth)
+        return self._phi(UPPER * self.depth, self.depth)
+
+    @property
+    def topmost(self) -> float:
+        """Concentration in the uppermost diameter of the depth [-]."""
+        return self._phi(self.depth - self.profile.d, self.depth)
+
+    def _phi(self, low: float, high: float) -> float:
+        """Concentration between two heights [m]."""
+        return float(np.nan_to_num(self.profile.phi.value) @ self._inside(low, high)) / (high - low)
 
     @property
     def near_bed(self) -> float:
@@ -268,6 +276,7 @@ def row(one: Debris) -> dict[str, object]:
     return {
         "n_per_depth": float(one.profile.volume.mean()) / one.depth,
         "phi_near_surface": one.near_surface,
+        "phi_topmost": one.topmost,
         "speed_m_per_s": one.speed,
         "speed_near_bed_m_per_s": one.near_bed,
         "q_m2_per_s": one.q,

@@ -15,14 +15,20 @@ FIGURE = "fig17"
 TITLE = "Ito's debris flow over a rigid bed: concentration, ways, contacts"
 CLAIMS = ("fig17", "fig17-time", "fig17-e")
 PAIR = "which pair"
-SURFACE = Band(0.25, 0.35, "-", "about 0.3 near the surface: 0.25 to 0.35 in the upper third of the depth")
+SURFACE = Band(
+    0.25,
+    0.35,
+    "-",
+    "about 0.3 near the surface, where grains of the upper layer go: 0.25 to 0.35 in the upper third of the "
+    "depth, 2.2 diameters",
+)
 UP_AND_DOWN = Band(
     1.0,
     float("inf"),
     "-",
     "thrown up and down: within 1 s grains of the upper third leave their layer, by more than one diameter",
 )
-SEVEN = Band(6.0e-5, 8.0e-5, "s", "about 7e-5 s: one digit, give or take one, 6e-5 to 8e-5 s")
+SEVEN = Band(6.5e-5, 7.5e-5, "s", "about 7e-5 s: one digit, 6.5e-5 to 7.5e-5 s")
 BOUNCE = Band(0.65, 0.75, "-", "about 0.7: one digit, 0.65 to 0.75")
 # claim -> what is read of contacts, which of the closed forms it is held against, what is asked
 OF_CONTACTS = {
@@ -70,6 +76,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             SETTLED,
             also=(
                 f"effect of how many grains are put in: {amounts}",
+                f"as shipped, in the uppermost diameter of the depth alone: {told('topmost')}",
                 f"as shipped: mean speed of the grains {told('speed')} m/s ({told('near_bed')} m/s near the "
                 f"bed), flux {told('q', 1e4)} cm2/s; speed of the second half second over that of the first "
                 f"{told('drift')}",

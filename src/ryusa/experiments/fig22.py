@@ -32,10 +32,10 @@ SHIPPED = {PHI: "30 deg", SLIP: "spring", SLOPE: "1/4 (1.5)", DEPTH: "5 layers"}
 MOVERS = 10  # of all windows, below which nothing is said about rods
 RODS = Band(0.1, math.inf, "-", "like rods: at least a tenth of the movers beyond what shuffled ways leave")
 MORE = Band(
-    0.1,
+    math.log10(2.0),
     math.inf,
     "-",
-    "unable to climb: at least a tenth more of the movers in rods than where grains may turn",
+    "unable to climb: at least twice as many in rods, 0.301 decades, as where grains may turn",
 )
 SPINS = Band(
     100.0, math.inf, "rad/s", "spin fast: a twentieth of the movers beyond 100 rad/s, 16 turns a second"
@@ -48,7 +48,7 @@ CHANGED = Band(
 )
 STANDS = "nothing moves"
 PART_RODS = "movers in rods less those with shuffled ways"
-PART_MORE = "movers in rods, locked less free"
+PART_MORE = "movers in rods, locked over free, in decades"
 PART_SPIN = "spin that a twentieth of the movers exceeds"
 PART_Q = "flux, free over locked, in decades"
 PART_SPEED = "speed of the movers, free over locked, in decades"
@@ -164,14 +164,16 @@ def _both(found: Found, plan: Plan, chosen: Mapping[str, str]) -> list[tuple[Bed
     return [(found[_run(chosen, LOCKED, seed)], found[_run(chosen, FREE, seed)]) for seed in plan.seeds]
 
 
-def _more(locked: Bed, free: Bed) -> float:
-    """Share in rods, locked less free; 0 where locked grains stand."""
-    return 0.0 if locked.stands else locked.rods.share - (0.0 if free.stands else free.rods.share)
-
-
 def _decades(above: float, below: float, least: float) -> float:
     """Logarithm of a ratio: fluxes of locked beds differ by factors from seed to seed."""
     return math.log10(max(above, least) / max(below, least))
+
+
+def _more(locked: Bed, free: Bed) -> float:
+    """Share in rods, locked over free; 0 where locked grains stand, and one in a hundred counts as least."""
+    if locked.stands:
+        return 0.0
+    return _decades(locked.rods.share, 0.0 if free.stands else free.rods.share, 0.01)
 
 
 PARTS: dict[str, tuple[tuple[str, Callable[[Bed, Bed], float], Band], ...]] = {
@@ -193,7 +195,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     for claim, parts in PARTS.items():
         for part, value, band in parts:
             groups = [[value(*pair) for pair in _both(found, plan, one)] for one in settings(plan)]
-            spread = pool(groups) if part == PART_SPIN else None  # rods scatter as the bed gives way or not
+            spread = pool(groups) if part in {PART_RODS, PART_SPIN} else None
             for one, values in zip(settings(plan), groups, strict=True):
                 trial = Trial(part, dict(one), over_seeds(values, band.unit, spread), band)
                 tried.setdefault(claim, []).append(_standing(trial, claim, _both(found, plan, one)))
