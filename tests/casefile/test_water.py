@@ -2,11 +2,13 @@
 
 import math
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 
-from ryusa.casefile import Case
+from ryusa.casefile import Case, read
 from ryusa.casefile.water import terminal_velocity, water_speed
+from ryusa.errors import CaseError
 
 CaseOf = Callable[..., Case]
 WATER = "{ profile = 'log rough', tau_star = 0.3, depth = '2 cm' }"
@@ -26,3 +28,23 @@ def test_water_above_its_depth_does_what_the_case_says(case: CaseOf) -> None:
         surface, higher = water_speed(wet, 0.02), water_speed(wet, 0.04)
         assert surface == pytest.approx(wet.derived.u_star * (8.5 + 5.75 * 1.0))
         assert (higher > surface) - (higher < surface) == expected
+
+
+def test_a_step_in_which_drag_turns_a_slip_round_is_refused(case: CaseOf) -> None:
+    # Stokes: (sigma + rho/2) d^2/(18 rho nu) = 3150 * 4e-6/(18 * 1000 * nu); dt of 50 steps is 2e-6 s or so
+    keys = {"time.step": "2e-6 s", "contact.friction_angle": "30 deg"}
+    slowest = 3150.0 * 4e-6 / 18.0e3 / 2e-6
+    thin = f"{{ profile = 'still', drag = 'Schiller-Naumann', viscosity = '{0.99 * slowest:g} m2/s' }}"
+    assert case(water=thin, **keys).water is not None
+    with pytest.raises(
+        CaseError, match=r"time\.step.*too long for the water: drag stops .* within 1\.98e-06"
+    ):
+        case(water=thin.replace(f"{0.99 * slowest:g}", f"{1.01 * slowest:g}"), **keys)
+
+
+def test_a_column_wants_a_step_below_a_quarter_of_the_drag_time(shipped: Path) -> None:
+    path = shipped / "settling_column.toml"
+    most = 0.25 * 3150.0 * 0.25e-6 / 18.0e3 / read(path).derived.dt  # viscosity whose drag asks for this dt
+    read(path, {"water.viscosity": f"{0.99 * most:g} m2/s"})
+    with pytest.raises(CaseError, match="must be below a quarter of that"):
+        read(path, {"water.viscosity": f"{1.01 * most:g} m2/s"})

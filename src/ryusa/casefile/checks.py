@@ -11,6 +11,7 @@ from ryusa.casefile.derive import may_spin
 from ryusa.casefile.films import check_film_step, check_films
 from ryusa.casefile.grains import flume_count, periodic, sizes
 from ryusa.casefile.schema import Case, Spread
+from ryusa.casefile.water import check_drag_step
 from ryusa.errors import CaseError
 
 RIVALS: dict[str, tuple[tuple[str, str], ...]] = {
@@ -41,7 +42,7 @@ def check(case: Case, data: dict[str, Any]) -> list[CaseError]:
     found = [*_numbers(case)]
     if found:
         return found
-    step = [*_step(case, data), *check_film_step(case)]
+    step = [*_step(case, data), *check_film_step(case), *check_drag_step(case)]
     return [*_space(case), *step, *([] if step else _frames(case, data)), *_record(case)]
 
 

@@ -1,11 +1,14 @@
 """What the water of a case does: its speed over height, its drag, and how fast a grain settles in it."""
 
 import math
+from collections.abc import Iterator
 
 from ryusa.casefile.derive import mass
 from ryusa.casefile.grains import sizes, water_over
 from ryusa.casefile.schema import Case
+from ryusa.errors import CaseError
 from ryusa.laws import drag, hindrance, water
+from ryusa.model.column import STIFF
 
 
 def water_speed(case: Case, z: float) -> float:
@@ -86,3 +89,31 @@ def terminal_velocity(case: Case) -> float:
         else:
             low = w
     return 0.5 * (low + high)
+
+
+def check_drag_step(case: Case) -> Iterator[CaseError]:
+    """Find a time step too long for the drag of the smallest grain, alone and at its settling velocity.
+
+    Drag is explicit: beyond one drag time in a step a slip changes its sign, beyond two it grows without end.
+    An exchange of a column takes at least one step, and no more than a quarter of that time.
+    """
+    wet, dt = case.water, case.derived.dt
+    if wet is None or wet.drag == "none":
+        return
+    d, speed = sizes(case)[1], terminal_velocity(case)
+    if not 0.0 < speed < math.inf:
+        speed = 1.0e-3 * wet.viscosity / d  # no weight: slow enough for Stokes' drag
+    c_d = drag_coefficient(case, drag.reynolds(speed, d, wet.viscosity))
+    rate = drag.drag_factor(speed, c_d, wet.density, wet.shape_area, d) / sum(mass(case, d)[:2])
+    column = wet.profile == "column"
+    most = STIFF if column else 1.0
+    if dt * rate > most:
+        key = "steps_per_contact" if case.time.step is None else "step"
+        share = f"a quarter of that, {most / rate:.3g} s" if column else "that"
+        yield CaseError(
+            f"time.{key}",
+            getattr(case.time, key),
+            f"dt = {dt:.3g} s is too long for the water: drag stops the smallest grain within "
+            f"{1.0 / rate:.3g} s, and dt must be below {share}; take a shorter step, larger grains or a "
+            "thinner fluid",
+        )

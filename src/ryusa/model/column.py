@@ -10,6 +10,7 @@ from ryusa.model.arrays import Floats
 
 NAN = float("nan")
 AGREE = 0.02  # relative; numbers that say the same thing twice may differ by so much (rounded input)
+STIFF = 0.25  # of the time in which drag equalises water and grains: longest interval between two exchanges
 
 
 class Mixing(IntEnum):

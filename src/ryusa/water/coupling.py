@@ -11,7 +11,7 @@ import numpy as np
 
 from ryusa.errors import WaterError
 from ryusa.model import Coupled, Scene
-from ryusa.model.column import Bed, Budget, Column, Mixing, Start, WaterState
+from ryusa.model.column import STIFF, Bed, Budget, Column, Mixing, Start, WaterState
 from ryusa.model.eddies import Eddies
 from ryusa.model.enums import Buoyancy
 from ryusa.model.immersed import A_X, DRAG, EXTRA_X, EXTRA_Z, N_SEEN, PHI, SHARE, SHEAR, U, V, W
@@ -23,8 +23,6 @@ from ryusa.water.drive import discharge
 from ryusa.water.exchange import Cells, Slices, carried, slices, to_cells, to_grains
 from ryusa.water.solve import advance
 from ryusa.water.standing import PACKED, Held, Standing, flowing
-
-QUARTER = 0.25  # of the time in which drag equalises water and grains: longest interval
 
 
 @dataclass
@@ -227,9 +225,9 @@ class Coupling:
             float(np.max(per / water, initial=0.0)),
             float(np.max(drag / (scene.m + scene.m_added), initial=0.0)),
         )
-        if fastest * scene.dt * self.longest <= QUARTER:
+        if fastest * scene.dt * self.longest <= STIFF:
             return self.longest
-        most = math.floor(QUARTER / (fastest * scene.dt))
+        most = math.floor(STIFF / (fastest * scene.dt))
         if most < 1:
             raise WaterError(
                 f"Drag equalises water and grains within {1.0 / fastest:.3g} s, which a step of "
