@@ -1,5 +1,6 @@
 """Pictures are looked at by people; here: that they are drawn, show what they are given and are written."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -39,6 +40,19 @@ def test_a_long_track_is_cut_into_panels_with_round_grains_and_a_bed_without_gap
         bed = next(one for one in axes.collections if isinstance(one, PatchCollection))
         low, high = axes.get_xlim()
         assert len(bed.get_paths()) >= (high - low) / (1e3 * D)
+
+
+def test_a_way_that_is_high_for_its_length_leaves_no_panel_empty():
+    high = replace(path(), z=20.0 * path().z)
+    for axes in figures.tracks(high).axes:
+        assert any(np.isfinite(line.get_xdata()).any() for line in axes.lines)
+
+
+def test_a_way_is_drawn_up_to_the_edge_of_its_panel_however_few_its_frames():
+    few = path(n=12)
+    for axes in figures.tracks(few).axes[:-1]:
+        drawn = [x for line in axes.lines for x in line.get_xdata() if np.isfinite(x)]
+        assert max(drawn) >= axes.get_xlim()[1]
 
 
 def test_exaggerated_heights_are_said_to_be_so():

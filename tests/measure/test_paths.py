@@ -3,7 +3,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from ryusa.measure import energy, rows_of, spin, tracks, write_csv
+from ryusa.measure import energy, farthest, rows_of, spin, tracks, write_csv
 from ryusa.model import Book, Tally
 from ryusa.model.tally import HELD
 from ryusa.results.schema import TALLY, tally_row
@@ -34,6 +34,14 @@ def test_tracks_show_only_the_bed_of_their_own_lane(make):
     assert found.t.min() >= 0.01
     assert found.t.max() <= 0.03
     assert len(found.rows()) == len(found.t)
+
+
+def test_the_grain_that_goes_farthest_is_told_within_the_window(make):
+    t, x, _, events = make.hopping([2.0e-3] * 3, grain=1, n_grain=2)
+    still = np.broadcast_to(x[:1], x.shape)
+    run = make.run_of(t, np.stack([still, x], axis=1), np.stack([x, x], axis=1), events)
+    assert farthest(run) == 1
+    assert farthest(run, begin=t[-1]) == 0  # one frame alone says nothing
 
 
 def test_the_energy_account_closes_where_its_terms_say_so():

@@ -71,7 +71,11 @@ def draw(
         typer.Option("--output", "-o", help="PNG, SVG or PDF; default WHAT.png here, with SVG and CSV."),
     ] = None,
     grain: Annotated[
-        list[int] | None, typer.Option(help="tracks, spin, vibration: only this grain; may be repeated.")
+        list[int] | None,
+        typer.Option(
+            help="tracks, spin, vibration: only this grain; may be repeated. tracks: default the first, of "
+            "many the one that goes farthest."
+        ),
     ] = None,
     begin: Annotated[
         str | None,
@@ -180,7 +184,10 @@ def _tracks(results: "Results", wanted: Wanted) -> "Drawn":
 
     begin = settle_time(results) if wanted.begin is None else wanted.begin
     end = float("inf") if wanted.end is None else wanted.end
-    paths = measure.tracks(results, wanted.grains if wanted.grains is not None else [0], begin, end)
+    chosen = wanted.grains
+    if chosen is None:
+        chosen = [measure.farthest(results, begin, end) if _many(results) else 0]
+    paths = measure.tracks(results, chosen, begin, end)
     if len(paths.t) < 2 and wanted.begin is None:
         need_settled(results, "say --begin 0s to see what is there")
     need(len(paths.t) > 1, results, f"two frames from t = {begin:g} s to {end_of(results, end):.3g} s")
@@ -191,6 +198,11 @@ def _tracks(results: "Results", wanted: Wanted) -> "Drawn":
         around=measure.snapshot(results, float(paths.t[-1])),
     )
     return figure, paths.rows()
+
+
+def _many(results: "Results") -> bool:
+    """Whether grains lie on each other, so that the first of them says little."""
+    return results.case.get("build", {}).get("kind") not in {"saltation", "drop"}
 
 
 def _profile(results: "Results", wanted: Wanted) -> "Drawn":

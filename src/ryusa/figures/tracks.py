@@ -45,12 +45,13 @@ def tracks(
     d = float(found.d[0]) if len(found.d) else 1.0
     x0 = float(np.nanmin(found.x)) - d
     total = (float(np.nanmax(found.x)) + d - x0) if length is None else length
-    rows = panels or min(max(math.ceil(total / (40.0 * d)), 1), 8)
-    span = total / rows
     inside = found.x <= x0 + total
     top = float(found.z[inside].max()) + 0.8 * d
     bottom = float(found.bed_z.min()) - 0.1 * d if len(found.bed_z) else float(found.z.min()) - d
-    tall = (top - bottom) * exaggeration * rows * (style.PAGE - 0.6) / TALLEST  # least span
+    each = (top - bottom) * exaggeration * (style.PAGE - 0.6) / TALLEST  # least span for every row there is
+    fit = max(math.floor(math.sqrt(total / each)), 1)  # more rows would be wider than the way is long
+    rows = panels or min(max(math.ceil(total / (40.0 * d)), 1), fit, 8)
+    span, tall = total / rows, each * rows
     if span < tall:
         x0, span = x0 - 0.5 * (tall - span), tall
     row = (style.PAGE - 0.6) * (top - bottom) / span * exaggeration
@@ -188,8 +189,11 @@ def _path(axes: Axes, found: Tracks, column: int, low: float, high: float, scale
     if not near.any():
         return
     colour = style.COLOURS[column % len(style.COLOURS)]
-    # a break wherever the grain is outside the panel
-    axes.plot(np.where(near, x, np.nan) * scale, z * scale, color=colour, lw=0.9, solid_joinstyle="round")
+    # a break wherever the grain is outside the panel, beyond the first frame there
+    drawn = near.copy()
+    drawn[1:] |= near[:-1]
+    drawn[:-1] |= near[1:]
+    axes.plot(np.where(drawn, x, np.nan) * scale, z * scale, color=colour, lw=0.9, solid_joinstyle="round")
     # outlines of the grain every so many diameters of way, so that its size can be seen
     if found.x.shape[1] == 1:
         ways = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(z)))])

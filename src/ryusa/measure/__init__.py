@@ -13,7 +13,7 @@ from ryusa.measure.snapshot import Snapshot, snapshot
 from ryusa.measure.spin import Spin, spin
 from ryusa.measure.statistics import Average, average, block_error, ratio
 from ryusa.measure.table import Averages, rows_of, write_csv
-from ryusa.measure.tracks import Tracks, tracks
+from ryusa.measure.tracks import Tracks, farthest, tracks
 from ryusa.measure.transport import KineticStress, Transport, kinetic_stress, transport
 from ryusa.measure.vibration import (
     Trembling,
@@ -58,6 +58,7 @@ __all__ = [
     "contact_times",
     "energy",
     "entrainment",
+    "farthest",
     "grouping",
     "kinetic_stress",
     "paths",

@@ -74,3 +74,18 @@ def tracks(
         bed_d=scene.d_fixed[near] if len(bed) else np.zeros(0),
         period=float(scene.period[0]),
     )
+
+
+def farthest(run: Run, begin: float = -math.inf, end: float = math.inf) -> int:
+    """Id of the free grain that goes farthest along the bed within a window [s]; 0 where there is none.
+
+    Parameters
+    ----------
+    run, begin, end : as in `tracks`.
+    """
+    t = np.asarray(run.frames.t, dtype=np.float64)
+    inside = np.flatnonzero((t >= begin) & (t <= end))
+    if len(inside) < 2:
+        return 0
+    first, last = (np.asarray(run.frames.x[int(k)], dtype=np.float64)[:, 0] for k in inside[[0, -1]])
+    return int(np.argmax(np.abs(last - first)))
