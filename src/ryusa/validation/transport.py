@@ -116,7 +116,8 @@ def compare(found: Found, level: Level) -> Sequence[Comparison]:
                 Error("scatter about that, a factor", float(np.exp(off.std())), "-"),
             ],
             {
-                "grains": "spheres of 4 mm +- 10 %, free to spin, mu = 0.577, e = 0.5",
+                "grains": "spheres of 4 mm +- 10 %, free to spin, mu = 0.577, e = 0.5, no dashpot "
+                "along the contact",
                 "slopes": ", ".join(f"{math.tan(one):.3g}" for one in slope),
                 "depth": ", ".join(f"{one:.0f} d" for one in depth),
             },
