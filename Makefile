@@ -117,8 +117,8 @@ pictures: $(HAS_RYUSA) ## draw docs/pictures anew from the runs in runs/paper; m
 	cp $(addprefix $(PAPER)/,fig07/fig06.png fig07/fig07.png fig07/fig07-turning.png spin_time/spin-time.png \
 	    hops/hops.png fig20/fig20.png fig20/fig20-hops.png fig21/fig21.png) $(DRAWN)
 
-bench: $(HAS_RYUSA) ## time whole workloads; keeps the table in benchmarks/results/
-	$(BIN)/python benchmarks/flows.py --save
+bench: $(HAS_RYUSA) ## time ryusa beside its peers on a quiet machine (hours); table in benchmarks/results/
+	$(BIN)/python benchmarks/run.py
 
 constraints: $(HAS_TESTS) ## write constraints.txt anew from what .venv holds
 	$(BIN)/python -m pip freeze --exclude ryusa | grep -v '@\|^\#' > constraints.txt

@@ -1,0 +1,46 @@
+"""ryusa, run like a peer: in a process of its own, by the door a user's script takes."""
+
+import json
+import os
+import sys
+from dataclasses import dataclass, field
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from peer import Job
+from workloads import TOTAL
+
+ALONE = ", one thread"
+
+
+@dataclass(frozen=True)
+class Ryusa:
+    """ryusa with the slip rule of a peer; finds its own skin."""
+
+    slip: str = TOTAL
+    cache: Path | None = None  # where compiled kernels are kept; numba's own place when not given
+    alone: bool = False  # on one thread beside others of more, for the efficiency
+    label: str = ""
+    skins: dict[str, tuple[float, ...]] = field(default_factory=dict)
+    share: float = 1.0
+
+    @property
+    def name(self) -> str:
+        return f"ryusa ({self.slip}){ALONE if self.alone else ''}"
+
+    def version(self) -> str:
+        from ryusa.running.provenance import commit
+
+        return f"{version('ryusa')} ({(commit() or '?')[:9]})"
+
+    def command(self, job: Job, folder: Path) -> tuple[list[str], dict[str, str]]:
+        environment = dict(os.environ)
+        if self.cache is not None:
+            environment["NUMBA_CACHE_DIR"] = str(self.cache)
+        ours = Path(__file__).resolve().parent / "ours.py"
+        return [sys.executable, str(ours), json.dumps(job.plain() | {"slip": self.slip})], environment
+
+    def read(self, job: Job, folder: Path, said: str) -> tuple[float, dict[str, Any]]:
+        found = json.loads(said.splitlines()[-1])
+        return float(found.pop("loop")), found
