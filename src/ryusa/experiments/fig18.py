@@ -67,6 +67,8 @@ def _run(chosen: Mapping[str, str], seed: int) -> Variant:
             "contact.damping": f"{ETA_N / s:.5g} N s/cm",
             "contact.shear_damping": f"{ETA_S / s:.5g} N s/cm",
         }
+        if s > float(SHIPPED[LONGER]):  # so long a step would carry a grain a quarter of its diameter
+            keys["time.steps_per_contact"] = f"{15.0 * s / float(SHIPPED[LONGER]):g}"
     return variant("fig18", keys, seed)
 
 
