@@ -4,12 +4,14 @@ from typing import Any, NamedTuple
 
 
 class Grains(NamedTuple):
-    """Grains by place. n free grains, n_solid with the fixed ones, n_total with the planes."""
+    """Grains by place. n free grains, n_solid with the fixed ones, n_total with the planes.
 
-    x: Any  # centres [m], (n_solid, 3)
-    v: Any  # velocities [m/s], (n_total, 3); zero beyond n
-    w: Any  # spins [rad/s], (n_total, 3); zero beyond n
-    r: Any  # radii [m], (n_total,); inf for planes
+    Vectors lie in rows of four doubles, a whole vector register; what the fourth is, is said.
+    """
+
+    x: Any  # centres [m], and 0, (n_total, 4)
+    v: Any  # velocities [m/s], and 0, (n_total, 4); zero beyond n
+    w: Any  # spins [rad/s], and the radius [m], (n_total, 4); zero beyond n, inf the radius of planes
     m: Any  # mass with added mass [kg], (n_total,); inf beyond n
     m_bare: Any  # mass without added mass [kg], (n,)
     m_weight: Any  # mass that gravity sees [kg], (n,)
@@ -17,27 +19,45 @@ class Grains(NamedTuple):
     ids: Any  # id of each place, (n_solid,)
     image: Any  # periods crossed, (n, 2)
     tracked: Any  # whether its contacts are recorded, by id, (n,)
-    f: Any  # contact force so far in this step [N], (n, 3)
-    torque: Any  # contact torque so far in this step [N m], (n, 3)
-    film: Any  # force of films so far in this step [N], (n, 3); (0, 0) without
-    touches: Any  # contacts so far in this step, (n,)
     touched: Any  # contacts in the last step, (n,)
+    film: Any  # force of films so far in this step [N], rows as those of `Pairs.f`, 4 wide; (0, 0) without
     seen: Any  # water at each grain, columns of model.immersed, (n, N_SEEN); (0, 0) without a column
     taken: Any  # impulse it took from the water [N s], and drag over slip, (n, N_TAKEN); (0, 0) without
 
 
 class Pairs(NamedTuple):
-    """Verlet list and contact memory. Partners of grain i are partners[start[i]:start[i + 1]]."""
+    """The wide list: every pair that may touch before the list is made anew, and where forces go.
+
+    Partners of grain i are partners[start[i]:start[i + 1]]. `f` has a row for each free grain, then one for each
+    block that takes what nobody wants (the side of fixed grains and planes), then one for each pair whose partner
+    belongs to another block: that side waits there until the partner's block fetches it.
+    """
 
     start: Any  # (n + 1,)
     partners: Any  # places, (n_pair,)
-    live: Any  # 1 where the pair is in touch and its row holds, (n_pair,)
-    mem: Any  # rows of contact memory (rows.py), (n_pair, width)
-    react_start: Any  # first slot in `react` of each block, (n_block + 1,)
-    react: Any  # force and torque that a block leaves for a partner in another, (n_cross, 6)
-    react_touch: Any  # 1 where that slot holds a contact in this step, 2 a film, (n_cross,)
-    incoming_start: Any  # slots meant for grain j: incoming[incoming_start[j]:incoming_start[j + 1]]
+    cross_start: Any  # first crossing pair of each block, (n_block + 1,)
+    near: Any  # 1 where that crossing pair is in the near list, (n_cross,)
+    incoming_start: Any  # crossing pairs with partner j: incoming[incoming_start[j]:incoming_start[j + 1]]
     incoming: Any  # (n_cross,)
+    f: Any  # force [N], nothing, torque [N m] and contacts so far in this step, (n + n_block + n_cross, 8)
+
+
+class Near(NamedTuple):
+    """The near list: pairs that may touch within the next few steps, with the memory of those that do.
+
+    Each block has room for lanes first[b] to first[b + 1], whole batches, of which count[b] are taken, in the order
+    of the wide list.
+    """
+
+    first: Any  # (n_block + 1,)
+    count: Any  # (n_block,)
+    live: Any  # how many of them touched when the list was made, (n_block,)
+    i: Any  # place of the grain that owns the pair, (n_lane,)
+    j: Any  # place of its partner
+    to: Any  # row of `Pairs.f` for the partner
+    pair: Any  # number in the wide list
+    memory: Any  # batches of rows (engine/lanes.py), (n_lane * N_MEMORY,)
+    extra: Any  # rolling friction and open record, (n_lane, width); (0, width) where there is neither
 
 
 class Walls(NamedTuple):

@@ -1,58 +1,10 @@
-"""Carry contact memory from an old list to a new one, and tell blocks what they owe each other."""
+"""What blocks owe each other, and grains brought back into the period."""
 
 from typing import Any
 
 import numpy as np
 
 from ryusa.engine._kernel import kernel
-
-
-@kernel()
-def count_live(n_pair: int, live: Any) -> int:
-    """Pairs in touch among the first n_pair of the list."""
-    count = 0
-    for p in range(n_pair):
-        count += live[p]
-    return count
-
-
-@kernel()
-def take_rows(
-    n: int, start: Any, partners: Any, live: Any, mem: Any, ids: Any, out_i: Any, out_j: Any, rows: Any
-) -> None:
-    """Copy ids and rows of all pairs in touch, in list order."""
-    k = 0
-    for i in range(n):
-        for p in range(start[i], start[i + 1]):
-            if live[p]:
-                out_i[k] = ids[i]
-                j = partners[p]
-                out_j[k] = ids[j] if j < n else j
-                rows[k, :] = mem[p, :]
-                k += 1
-
-
-@kernel()
-def put_rows(
-    n: int, start: Any, partners: Any, live: Any, mem: Any, index: Any, i_ids: Any, j_ids: Any, rows: Any
-) -> int:
-    """Lay rows into a new list; returns the first contact that has no place in it, or -1.
-
-    `index` turns the id of a free grain into its place in the engine's order.
-    """
-    for k in range(len(i_ids)):
-        i = index[i_ids[k]]
-        j = index[j_ids[k]] if j_ids[k] < n else j_ids[k]
-        found = False
-        for p in range(start[i], start[i + 1]):
-            if partners[p] == j:
-                live[p] = 1
-                mem[p, :] = rows[k, :]
-                found = True
-                break
-        if not found:
-            return k
-    return -1
 
 
 @kernel()

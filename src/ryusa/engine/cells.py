@@ -100,7 +100,7 @@ def _neighbours(c: int, n: int, periodic: bool, out: Any) -> int:
 @kernel()
 def list_pairs(
     x: Any,
-    r: Any,
+    w: Any,
     ids: Any,
     offset: int,
     grid: Any,
@@ -116,11 +116,11 @@ def list_pairs(
 
     Parameters
     ----------
-    offset : added to the numbers in the grid to get the index into x and r (free grains 0, fixed grains n).
+    offset : added to the numbers in the grid to get the index into x and w (free grains 0, fixed grains n).
     grid : low, width, dims, first and order of `grid_of` and `sort_into`.
     lanes : a plane scene, where grains at another y are in another lane and never met.
     half : only partners with a higher id (each free pair once); grain i itself never.
-    partners : int32 array to fill from `used`; where it is too short counting goes on and nothing is written.
+    partners : uint32 array to fill from `used`; where it is too short counting goes on and nothing is written.
     """
     low, width, dims, first, order = grid
     near = np.empty((3, 3), np.int64)
@@ -139,7 +139,7 @@ def list_pairs(
                         continue
                     if lanes and x[j, 1] != x[i, 1]:
                         continue
-                    reach = r[i] + r[j] + skin
+                    reach = w[i, 3] + w[j, 3] + skin
                     d_x = wrap(x[j, 0] - x[i, 0], period[0])
                     d_y = wrap(x[j, 1] - x[i, 1], period[1])
                     d_z = x[j, 2] - x[i, 2]
@@ -153,7 +153,7 @@ def list_pairs(
 @kernel()
 def build_list(
     x: Any,
-    r: Any,
+    w: Any,
     ids: Any,
     n: int,
     n_solid: int,
@@ -176,14 +176,14 @@ def build_list(
     normals, points = walls.normals, walls.points
     for i in range(n):
         start[i] = used
-        used = list_pairs(x, r, ids, 0, free_grid, period, skin, lanes, i, True, partners, used)
+        used = list_pairs(x, w, ids, 0, free_grid, period, skin, lanes, i, True, partners, used)
         if len(fixed_grid[4]) > 0:
-            used = list_pairs(x, r, ids, n, fixed_grid, period, skin, lanes, i, False, partners, used)
+            used = list_pairs(x, w, ids, n, fixed_grid, period, skin, lanes, i, False, partners, used)
         for k in range(len(normals)):
             gap = 0.0
             for a in range(3):
                 gap += (x[i, a] - points[k, a]) * normals[k, a]
-            if active_planes[k] and gap < r[i] + skin:
+            if active_planes[k] and gap < w[i, 3] + skin:
                 if used < len(partners):
                     partners[used] = n_solid + k
                 used += 1

@@ -5,18 +5,27 @@ from dataclasses import replace
 
 import numpy as np
 
-from ryusa.engine.arrays import Ledger
+from ryusa.engine.arrays import Ledger, Near
 from ryusa.engine.faults import fault_of, lost_of, unsafe_of
-from ryusa.engine.listing import Layout, take_memory
+from ryusa.engine.lanes import LANES, MEMORY, N_MEMORY
+from ryusa.engine.listing import Layout, Memory, film_reach, take_memory
 from ryusa.engine.march import make_run
 from ryusa.engine.memory import closed_records, contacts_of, memory_of
+from ryusa.engine.near import cut
 from ryusa.engine.numbers import choice_of, numbers_of, potential_energy, rolling_energy, variant_of
 from ryusa.engine.rows import (
     C_DT,
     C_SKIN,
     C_STEP_LIMIT,
     C_T_ZERO,
+    K_LEAST,
+    K_MOST,
+    K_SINCE,
+    K_SKIN,
+    K_TRAVEL,
+    K_WASTE,
     N_BOOKS,
+    N_CLOCK,
     N_KINETIC,
     N_N_CONTACT,
     N_N_ENDED,
@@ -35,6 +44,7 @@ from ryusa.engine.rows import (
     PENDING,
     STOP_EVENTS,
     STOP_LIST,
+    STOP_ROOM,
     STOP_UNSAFE,
 )
 from ryusa.engine.seam import Flags
@@ -49,6 +59,7 @@ from ryusa.model.tally import N_BOOK
 _MANY = 256  # grains from which work is cut into blocks
 _RECORDS = 256  # room for ended contacts in a block, beside one a grain
 _BLOCKS = 8
+_NEAR_SKIN = 0.01  # first reach of the near list, over the smallest diameter
 # Measured, and fixed so that a run never depends on a clock: cost of a rebuild and of a step [ns].
 _REBUILD, _REBUILD_GRAIN, _STEP_GRAIN = 60_000.0, 300.0, 80.0
 _SUMS = (N_KINETIC, N_SPIN, N_POTENTIAL, N_SPRING_N, N_SPRING_S, N_SPRING_R, N_N_CONTACT)
@@ -72,6 +83,7 @@ class CpuEngine:
         self._pool: ThreadPoolExecutor | None = None
         self._drained: list[np.ndarray] = []
         self._scene: Scene | None = None
+        self._spares: list[Near] = []
 
     def refuses(self, scene: Scene) -> tuple[str, ...]:
         """Reasons why this engine cannot carry the scene; () when it can."""
@@ -119,7 +131,7 @@ class CpuEngine:
         self._choice = choice_of(scene)
         self._run = make_run(self._variant)
         blocks = _BLOCKS if n >= _MANY else 1
-        self._layout = Layout(scene, blocks, self._variant.row_width)
+        self._layout = Layout(scene, blocks, self._variant)
         self._numbers = numbers_of(scene)
         self._smallest = float(np.concatenate([scene.d, scene.d_fixed]).min(initial=np.inf))
         self._numbers[C_T_ZERO] = state.t - state.step * scene.dt
@@ -142,14 +154,19 @@ class CpuEngine:
             np.add.at(by_id.touched, touching, 1)
         resumed = state.x_listed is not None and not changed and not len(dropped)
         if resumed:
-            by_id.x[:n] = state.x_listed
+            by_id.x[:n, :3] = state.x_listed
         self._travel = state.engine.get("travel", 0.0) if resumed else 0.0
         self._grains, self._pairs, self._x_listed, _ = self._layout.list_pairs(
-            by_id, self._layout.empty_pairs(), self._skin, memory
+            by_id, self._layout.empty_pairs(), self._skin
         )
         if resumed:
-            self._grains.x[:n] = state.x[self._grains.ids[:n]]
+            self._grains.x[:n, :3] = state.x[self._grains.ids[:n]]
         self._numbers[C_SKIN] = self._skin
+        self._clock = np.zeros(N_CLOCK)
+        self._clock[K_SKIN] = _NEAR_SKIN * self._smallest
+        self._near = self._layout.room_for(np.zeros(blocks, np.int64))
+        self._make_room()
+        self._look_near(memory)
         if state.step == 0:
             self._first_account(scene, state)
 
@@ -169,11 +186,11 @@ class CpuEngine:
         back = np.argsort(grains.ids[:n])
         books = self._ledger.books.copy()
         books[:, N_BOOK : N_BOOK + len(PENDING)] = self._ledger.now[:, PENDING]
-        contacts = contacts_of(take_memory(n, grains, self._pairs), self._variant)
+        contacts = contacts_of(take_memory(n, grains, self._near), self._variant)
         state = State(
-            x=grains.x[:n][back],
-            v=grains.v[:n][back],
-            omega=grains.w[:n][back],
+            x=grains.x[:n, :3][back],
+            v=grains.v[:n, :3][back],
+            omega=grains.w[:n, :3][back],
             step=self._step,
             t=self._t,
             image=grains.image[back],
@@ -194,7 +211,8 @@ class CpuEngine:
         """Centres [m], velocities [m/s] and what was taken from the water (model.immersed), by id."""
         n, ids = self._n, self._grains.ids[: self._n]
         x, v, taken = np.empty((n, 3)), np.empty((n, 3)), np.empty(self._grains.taken.shape)
-        x[ids], v[ids], taken[ids[: len(taken)]] = self._grains.x[:n], self._grains.v[:n], self._grains.taken
+        x[ids], v[ids] = self._grains.x[:n, :3], self._grains.v[:n, :3]
+        taken[ids[: len(taken)]] = self._grains.taken
         return x, v, taken
 
     def immerse(self, seen: Floats) -> None:
@@ -217,7 +235,7 @@ class CpuEngine:
         if self._step and more.any():  # energy of the water that moves along with a grain, or no longer does
             added = grains.m[: self._n] - grains.m_bare[: self._n]
             gain = np.zeros(self._n)
-            gain[ids] = 0.5 * added * more * np.sum(grains.v[: self._n] ** 2, axis=1)
+            gain[ids] = 0.5 * added * more * np.sum(grains.v[: self._n, :3] ** 2, axis=1)
             self._ledger.now[0, N_PEND_FLOW] += float(gain.sum())
         grains.seen[:] = seen[ids]
         grains.taken[:] = 0.0
@@ -261,15 +279,21 @@ class CpuEngine:
         while n_steps > 0:
             arguments = (
                 threads, n_steps, self._step, self._travel, np.zeros(1, np.int64), self._numbers,
-                layout.block_start, self._n, layout.n_solid, self._grains,
-                layout.walls, self._pairs, self._ledger, self._choice,
+                layout.block_start, self._n, layout.n_solid, self._grains, layout.walls, self._pairs,
+                self._near,
             )  # fmt: skip
+            more = (self._ledger, self._choice, self._clock)
             if threads > 1 and self._pool is None:
                 self._pool = ThreadPoolExecutor(self._threads - 1, thread_name_prefix="ryusa")
             others = (
-                [self._pool.submit(self._run, k, *arguments) for k in range(1, threads)] if self._pool else []
+                [
+                    self._pool.submit(self._run, k, *arguments, self._spares[k], *more)
+                    for k in range(1, threads)
+                ]
+                if self._pool
+                else []
             )
-            done, self._travel, stop = self._run(0, *arguments)
+            done, self._travel, stop = self._run(0, *arguments, self._spares[0], *more)
             for other in others:
                 other.result()
             self._step += done
@@ -280,6 +304,8 @@ class CpuEngine:
                 fault = self._relist()
                 if fault is not None:
                     return Flags(fault)
+            elif stop == STOP_ROOM:
+                self._make_room()
             elif stop == STOP_EVENTS:
                 self._drain()
             elif stop == STOP_UNSAFE:
@@ -298,13 +324,51 @@ class CpuEngine:
         elif cost < 0.03 * _STEP_GRAIN * self._n:
             self._skin = max(self._skin / 1.25, 0.02 * self._smallest)
         self._since, self._travel, self._relisted = 0, 0.0, self._relisted + 1
-        memory = take_memory(self._n, self._grains, self._pairs)
+        memory = take_memory(self._n, self._grains, self._near)
         by_id = self._layout.unsorted(self._grains)
         self._grains, self._pairs, self._x_listed, lost = self._layout.list_pairs(
-            by_id, self._pairs, self._skin, memory
+            by_id, self._pairs, self._skin
         )
+        self._look_near(memory)
         self._numbers[C_SKIN] = self._skin
         return lost_of(self._grains, lost, self._step, self._t) if lost >= 0 else None
+
+    def _look_near(self, memory: Memory) -> None:
+        """Cut a near list out of a new wide one, making room where there is none, and lay memory into it."""
+        scene, clock, blocks = self._scene, self._clock, self._layout.block_start
+        assert scene is not None
+        clock[K_LEAST], clock[K_MOST] = 1e-4 * self._smallest, 0.5 * self._skin
+        clock[K_SKIN] = min(max(clock[K_SKIN], clock[K_LEAST]), clock[K_MOST])
+        clock[K_TRAVEL], clock[K_SINCE] = self._travel, 0.0
+        # a pair that parted in the last step is still to be found
+        way = 2.0 * float(self._ledger.now[:, N_SPEED_MAX].max()) * scene.dt
+        reach_on = max(float(clock[K_SKIN]), way) + film_reach(scene)
+        for b in range(len(blocks) - 1):
+            self._near.count[b] = 0
+        for b in range(len(blocks) - 1):
+            while not cut(
+                b, blocks[b], blocks[b + 1], self._n, self._layout.n_solid, reach_on, self._variant.plane_case,
+                self._variant.rotation, self._numbers, self._grains, self._layout.walls, self._pairs,
+                self._near, self._spares[0],
+            ):  # fmt: skip
+                self._make_room()
+        self._layout.remember(self._grains, self._near, memory)
+        clock[K_WASTE] = float(self._near.count.sum() - self._near.live.sum())
+
+    def _make_room(self) -> None:
+        """Half as much room again in every block of the near list, and more in the smallest."""
+        near, blocks = self._near, len(self._near.count)
+        lanes = np.maximum(np.diff(near.first) * 3 // 2, self._n // blocks + LANES)
+        new = self._layout.room_for(lanes)
+        for b in range(blocks):
+            a, k, count = int(near.first[b]), int(new.first[b]), int(near.count[b])
+            for name in ("i", "j", "to", "pair", "extra"):
+                getattr(new, name)[k : k + count] = getattr(near, name)[a : a + count]
+            rows = -(-count // LANES) * MEMORY
+            new.memory[k * N_MEMORY : k * N_MEMORY + rows] = near.memory[a * N_MEMORY : a * N_MEMORY + rows]
+            new.count[b], new.live[b] = count, near.live[b]
+        self._near = new
+        self._spares = [self._layout.room_for(lanes[:1]) for _ in range(min(self._threads, blocks))]
 
     def _first_account(self, scene: Scene, state: State) -> None:
         """What grains hold before the first step, which adds springs of pairs that begin in touch."""

@@ -44,7 +44,7 @@ def fault_of(now: Floats, numbers: Floats, step: int) -> RunError:
 
 def unsafe_of(grains: Grains, n: int, numbers: Floats, smallest: float, step: int, t: float) -> ListUnsafe:
     """The fastest grain, which went too far in one step."""
-    speed = np.linalg.norm(grains.v[:n], axis=1)
+    speed = np.linalg.norm(grains.v[:n, :3], axis=1)
     place = int(speed.argmax())
     way = speed[place] * numbers[C_DT] / smallest
     return ListUnsafe(
@@ -59,6 +59,6 @@ def unsafe_of(grains: Grains, n: int, numbers: Floats, smallest: float, step: in
 def lost_of(grains: Grains, grain: int, step: int, t: float) -> GrainLost:
     """A grain outside the world."""
     place = int(np.flatnonzero(grains.ids == grain)[0])
-    where = ", ".join(f"{a:.4g}" for a in grains.x[place])
+    where = ", ".join(f"{a:.4g}" for a in grains.x[place, :3])
     hint = "Widen domain.low and domain.high, or look at what threw it."
     return GrainLost(f"a grain left the world at ({where}) m", grain=grain, step=step, t=t, hint=hint)

@@ -4,9 +4,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ryusa.engine.arrays import Grains, Pairs, Walls
-from ryusa.engine.carry import count_live, cross_lists, put_rows, take_rows, wrap_grains
+from ryusa.engine.arrays import Grains, Near, Pairs, Walls
+from ryusa.engine.carry import cross_lists, wrap_grains
 from ryusa.engine.cells import build_list, grid_of, sort_into
+from ryusa.engine.lanes import LANES, N_MEMORY
+from ryusa.engine.near import count_live, put_rows, take_rows
+from ryusa.engine.rows import BASE, Variant
 from ryusa.model import Scene, State
 from ryusa.model.enums import Profile
 from ryusa.model.immersed import Immersed
@@ -24,9 +27,9 @@ class Memory(NamedTuple):
 class Layout:
     """What of a scene the list needs, by id, and how to lay it out."""
 
-    def __init__(self, scene: Scene, blocks: int, width: int) -> None:
+    def __init__(self, scene: Scene, blocks: int, kind: Variant) -> None:
         n, n_fixed, n_plane = scene.n_grain, scene.n_fixed, scene.n_plane
-        self.n, self.n_solid, self.width = n, n + n_fixed, width
+        self.n, self.n_solid, self.kind = n, n + n_fixed, kind
         inf = np.full(n_fixed + n_plane, np.inf)
         self.r = np.concatenate([0.5 * scene.d, 0.5 * scene.d_fixed, np.full(n_plane, np.inf)])
         self.m = np.concatenate([scene.m + scene.m_added, inf])
@@ -48,17 +51,27 @@ class Layout:
     def empty_pairs(self) -> Pairs:
         """A list without pairs."""
         none = np.zeros(0, np.int64)
-        live, touch = np.zeros(0, np.uint8), np.zeros(0, np.uint8)
         return Pairs(
-            np.zeros(self.n + 1, np.int64), np.zeros(0, np.int32), live, np.zeros((0, self.width)),
-            np.zeros(len(self.block_start), np.int64), np.zeros((0, 6)), touch,
-            np.zeros(self.n + 1, np.int64), none,
+            np.zeros(self.n + 1, np.int64), np.zeros(0, np.uint32), none, np.zeros(0, np.uint8),
+            none, none, np.zeros((0, 8)),
+        )  # fmt: skip
+
+    def room_for(self, lanes: np.ndarray) -> Near:
+        """An empty near list with room for so many lanes in each block."""
+        batches = (lanes + LANES - 1) // LANES
+        first = np.concatenate([[0], np.cumsum(batches)]) * LANES
+        total, blocks = int(first[-1]), len(lanes)
+        place = [np.zeros(total, np.uint32) for _ in range(4)]
+        return Near(
+            first, np.zeros(blocks, np.int64), np.zeros(blocks, np.int64), *place,
+            np.zeros(total * N_MEMORY), np.zeros((total, self.kind.extra_width)),
         )  # fmt: skip
 
     def by_id(self, state: State) -> Grains:
         """Arrays of a state, still in the order of ids."""
         n, scene = self.n, self.scene
         still = np.zeros((len(self.r) - n, 3))
+        radius = self.r[:, None]
         image = np.array(state.image, dtype=np.int32) if len(state.image) == n else np.zeros((n, 2), np.int32)
         spin = state.omega if scene.rotation else np.zeros((n, 3))
         none = Immersed(np.zeros((0, 0)), np.zeros((0, 0)))
@@ -66,10 +79,9 @@ class Layout:
             none = Immersed.still(n)
         immersed = state.immersed or none
         return Grains(
-            x=np.vstack([state.x, self.x_fixed]),
-            v=np.vstack([state.v, still]),
-            w=np.vstack([spin, still]),
-            r=self.r,
+            x=np.hstack([np.vstack([state.x, self.x_fixed, still[len(self.x_fixed) :]]), np.zeros_like(radius)]),
+            v=np.hstack([np.vstack([state.v, still]), np.zeros_like(radius)]),
+            w=np.hstack([np.vstack([spin, still]), radius]),
             m=self.m,
             m_bare=scene.m,
             m_weight=scene.m_weight,
@@ -77,11 +89,8 @@ class Layout:
             ids=np.arange(self.n_solid),
             image=image,
             tracked=self.tracked,
-            f=np.zeros((n, 3)),
-            torque=np.zeros((n, 3)),
-            film=np.zeros((n, 3) if film_reach(scene) > 0.0 else (0, 0)),
-            touches=np.zeros(n, np.int32),
             touched=np.zeros(n, np.int32),
+            film=np.zeros((0, 0)),
             seen=np.array(immersed.seen),
             taken=np.array(immersed.taken),
         )
@@ -105,7 +114,7 @@ class Layout:
         )
 
     def list_pairs(
-        self, by_id: Grains, pairs: Pairs, skin: float, memory: Memory
+        self, by_id: Grains, pairs: Pairs, skin: float
     ) -> tuple[Grains, Pairs, Floats, int]:
         """Wrap, sort and list.
 
@@ -114,7 +123,6 @@ class Layout:
         by_id : arrays in the order of ids; positions are brought inside the period.
         pairs : the old list, whose arrays are used again where they are large enough.
         skin : reach of the list beyond touch and films [m].
-        memory : pairs in touch.
 
         Returns
         -------
@@ -124,7 +132,7 @@ class Layout:
         n, scene, period = self.n, self.scene, self.period
         x = by_id.x
         lost = int(wrap_grains(x[:n], by_id.image, period, self.low, self.high))
-        listed = x[:n].copy()
+        listed = x[:n, :3].copy()
         skin = skin + film_reach(scene)
         size = 2.0 * float(self.r[: self.n_solid].max(initial=0.0)) + skin
         low, wide, dims = grid_of(x, n, size, period)
@@ -133,10 +141,9 @@ class Layout:
         place = np.arange(len(self.r))
         place[:n] = order
         grains = by_id._replace(
-            x=x[place[: self.n_solid]],
+            x=x[place],
             v=by_id.v[place],
             w=by_id.w[place],
-            r=self.r[place],
             m=self.m[place],
             m_bare=scene.m[order],
             m_weight=scene.m_weight[order],
@@ -153,40 +160,44 @@ class Layout:
         bed_first = sort_into(bed, len(bed), bed_low, bed_wide, bed_dims, bed_order)
         free = (low, wide, dims, first, np.arange(n))
         fixed = (bed_low, bed_wide, bed_dims, bed_first, self.standing[bed_order])
-        start, partners, live, mem = pairs.start, pairs.partners, pairs.live, pairs.mem
+        start, partners = pairs.start, pairs.partners
         while True:
             used = build_list(
-                grains.x, grains.r, grains.ids, n, self.n_solid, self.walls, scene.plane_active,
+                grains.x, grains.w, grains.ids, n, self.n_solid, self.walls, scene.plane_active,
                 free, fixed, period, skin, scene.plane_case, start, partners,
             )  # fmt: skip
             if used <= len(partners):
                 break
-            room = int(1.2 * used) + 64
-            partners, live, mem = (
-                np.zeros(room, np.int32),
-                np.zeros(room, np.uint8),
-                np.zeros((room, self.width)),
-            )
-        live[:used] = 0
-        index = np.empty(n, np.int64)
-        index[order] = np.arange(n)
-        missing = put_rows(n, start, partners, live, mem, index, memory.i, memory.j, memory.rows)
-        if missing >= 0:
-            raise AssertionError(
-                f"pair {memory.i[missing]}, {memory.j[missing]} is in touch and not in the list"
-            )
-        react_start, incoming_start, incoming = cross_lists(n, self.block_start, start, partners)
-        crossing = int(react_start[-1])
+            partners = np.zeros(int(1.2 * used) + 64, np.uint32)
+        cross_start, incoming_start, incoming = cross_lists(n, self.block_start, start, partners)
+        crossing = int(cross_start[-1])
+        rows = n + len(self.block_start) - 1 + crossing
+        grains = grains._replace(film=np.zeros((rows, 4) if self.kind.film else (0, 0)))
         return (
             grains,
             Pairs(
-                start, partners, live, mem, react_start, np.zeros((crossing, 6)),
-                np.zeros(crossing, np.uint8),
-                incoming_start, incoming,
+                start, partners, cross_start, np.zeros(crossing, np.uint8), incoming_start, incoming,
+                np.zeros((rows, 8)),
             ),
             listed,
             lost,
         )  # fmt: skip
+
+    def remember(self, grains: Grains, near: Near, memory: Memory) -> None:
+        """Lay the memory of touching pairs into a near list.
+
+        Raises
+        ------
+        AssertionError : a pair in touch is not in the list.
+        """
+        index = np.empty(self.n, np.int64)
+        index[grains.ids[: self.n]] = np.arange(self.n)
+        block_of = np.repeat(np.arange(len(near.count)), np.diff(self.block_start))
+        missing = put_rows(self.n, near, block_of, index, memory.i, memory.j, memory.rows)
+        if missing >= 0:
+            raise AssertionError(
+                f"pair {memory.i[missing]}, {memory.j[missing]} is in touch and not in the list"
+            )
 
 
 def film_reach(scene: Scene) -> float:
@@ -194,11 +205,10 @@ def film_reach(scene: Scene) -> float:
     return 0.0 if scene.water.profile == Profile.NONE else scene.water.film_reach
 
 
-def take_memory(n: int, grains: Grains, pairs: Pairs) -> Memory:
+def take_memory(n: int, grains: Grains, near: Near) -> Memory:
     """Copy ids and rows of all pairs in touch, in list order."""
-    count = count_live(int(pairs.start[n]), pairs.live)
-    memory = Memory(
-        np.empty(count, np.int64), np.empty(count, np.int64), np.empty((count, pairs.mem.shape[1]))
-    )
-    take_rows(n, pairs.start, pairs.partners, pairs.live, pairs.mem, grains.ids, *memory)
+    count = count_live(near)
+    width = BASE + near.extra.shape[1]
+    memory = Memory(np.empty(count, np.int64), np.empty(count, np.int64), np.empty((count, width)))
+    take_rows(n, near, grains.ids, *memory)
     return memory

@@ -1,188 +1,105 @@
-"""Motion of one block of grains, and the loop over steps that threads run together."""
+"""The loop over steps that threads run together, block by block."""
 # ruff: noqa: F403, F405  (the columns of rows.py, all of them plain integers)
 
-import math
 from functools import cache
 from typing import Any
 
+import numpy as np
+
 from ryusa.engine._kernel import FAST, kernel
-from ryusa.engine.arrays import Grains, Ledger, Pairs, Walls
-from ryusa.engine.kernels import forces
+from ryusa.engine.arrays import Grains, Ledger, Near, Pairs, Walls
+from ryusa.engine.batch import hand_out, lay_out, reckon
+from ryusa.engine.company import keep_company, wet_dashpots
+from ryusa.engine.lanes import D_SUMS, DESK, LANES, M_DASH_N, M_F_N, M_LIVE, M_SPRING_S, MEMORY
+from ryusa.engine.motion import motion
+from ryusa.engine.near import cut
 from ryusa.engine.rows import *
 from ryusa.engine.sync import meet
-from ryusa.engine.wet import water_on, water_speed
-from ryusa.laws.motion import acceleration, acceleration_spin, semi_implicit
-from ryusa.laws.torque import torque_dennis, torque_stokes
-from ryusa.model.enums import Above, WaterTorque
-from ryusa.model.immersed import A_X, DRAG, EXTRA_X, EXTRA_Z, SHARE, SHEAR
-from ryusa.model.resistance import drag_of
 from ryusa.model.tally import Book
 
-DRY = int(Above.DRY)
-STOKES = int(WaterTorque.STOKES)
-B_DRAG, B_TORQUE, B_LIFT, B_FLOW = int(Book.DRAG), int(Book.TORQUE), int(Book.LIFT), int(Book.FLOW)
-B_FILM = int(Book.FILM)
-FILM = 2  # in Pairs.react_touch
+B_STEP, B_DASH_N, B_DASH_S = int(Book.STEP), int(Book.DASH_N), int(Book.DASH_S)
+B_SLIDE, B_RELEASED_N, B_RELEASED_S = int(Book.SLIDE), int(Book.RELEASED_N), int(Book.RELEASED_S)
 
 
 @kernel(fastmath=FAST, forceinline=True)
-def motion(
+def forces(
     kind: Variant,
     choice: Choice,
-    lo: int,
-    hi: int,
-    first: bool,
+    b: int,
+    n: int,
+    n_solid: int,
+    step: int,
+    t: float,
+    hdt: float,
     last: bool,
     c: Any,
     grains: Grains,
+    walls: Walls,
     pairs: Pairs,
+    near: Near,
+    desk: Any,
+    ended: Any,
     book: Any,
     now: Any,
 ) -> None:
-    """Gather what other blocks stored, add water and weight, and move grains lo..hi-1 by one step."""
-    plane_case, rotation = kind.plane_case, kind.rotation
-    profile, above, drag, torque_law = choice.profile, choice.above, choice.drag, choice.torque
-    film = kind.film
-    column, seen, taken = kind.column, grains.seen, grains.taken
-    x, v, w, r, m, inertia, ids = grains.x, grains.v, grains.w, grains.r, grains.m, grains.inertia, grains.ids
-    m_bare, m_weight, image = grains.m_bare, grains.m_weight, grains.image
-    f, torque, touches, touched = grains.f, grains.torque, grains.touches, grains.touched
-    react, react_touch, incoming = pairs.react, pairs.react_touch, pairs.incoming
-    incoming_start = pairs.incoming_start
-    dt, g_x, g_y, g_z = c[C_DT], c[C_G_X], c[C_G_Y], c[C_G_Z]
-    half = 0.0 if first else 0.5 * dt
-    speed_2 = spin_2 = kinetic = spin = potential = 0.0
-    book[B_DRAG] += now[N_PEND_DRAG]
-    book[B_TORQUE] += now[N_PEND_TORQUE]
-    pend_drag = pend_torque = work_drag = work_torque = 0.0
-    if column:
-        book[B_LIFT] += now[N_PEND_LIFT]
-        book[B_FLOW] += now[N_PEND_FLOW]
-    if film:
-        book[B_FILM] -= now[N_PEND_FILM]
-    pend_lift = pend_flow = work_lift = work_flow = pend_film = work_film = 0.0
-    for i in range(lo, hi):
-        f_x, f_y, f_z = f[i, 0], f[i, 1], f[i, 2]
-        t_x, t_y, t_z = torque[i, 0], torque[i, 1], torque[i, 2]
-        hits = touches[i]
-        f[i, 0] = f[i, 1] = f[i, 2] = torque[i, 0] = torque[i, 1] = torque[i, 2] = 0.0
-        touches[i] = 0
-        h_x = h_y = h_z = 0.0
-        if film:
-            h_x, h_y, h_z = grains.film[i, 0], grains.film[i, 1], grains.film[i, 2]
-            grains.film[i, 0] = grains.film[i, 1] = grains.film[i, 2] = 0.0
-        for k in range(incoming_start[i], incoming_start[i + 1]):
-            q = incoming[k]
-            if film and react_touch[q] == FILM:
-                h_x, h_y, h_z = h_x - react[q, 0], h_y - react[q, 1], h_z - react[q, 2]
-            elif react_touch[q]:
-                f_x, f_y, f_z = f_x - react[q, 0], f_y - react[q, 1], f_z - react[q, 2]
-                t_x, t_y, t_z = t_x + react[q, 3], t_y + react[q, 4], t_z + react[q, 5]
-                hits += 1
-        touched[i] = hits
-
-        v_x, v_y, v_z = v[i, 0], v[i, 1], v[i, 2]
-        d_x = d_y = d_z = l_x = l_y = l_z = e_x = e_z = turn = 0.0
-        wet = 1.0
-        m_i, m_b, m_w = m[i], m_bare[i], m_weight[i]
-        added = m_i - m_b
-        if column:
-            wet = seen[i, SHARE]
-            dry = wet == 0.0
-            added *= wet  # water moves along with what of a grain is in it
-            e_x, e_z = seen[i, EXTRA_X] + added * seen[i, A_X], seen[i, EXTRA_Z]
-            turn = 0.5 * seen[i, SHEAR]
-            if not dry:
-                k_d, d_x, d_y, d_z, l_x, l_y, l_z = water_on(choice, c, r[i], seen[i], v[i], w[i])
-                taken[i, DRAG] = k_d
-        else:
-            z = x[i, 2] - c[C_Z_ZERO]
-            dry = profile == 0 or (above == DRY and z > c[C_DEPTH])
-            if drag and not dry:
-                u_x, u_y, u_z = water_speed(profile, above, z, c) - v_x, -v_y, -v_z
-                slip = math.sqrt(u_x * u_x + u_y * u_y + u_z * u_z)
-                k_d = drag_of(drag, slip, 2.0 * r[i], c[C_NU], c[C_RHO_W], c[C_A_2], c[C_C_D])
-                d_x, d_y, d_z = k_d * u_x, k_d * u_y, k_d * u_z
-        if column:
-            f_x, f_y, f_z = f_x + l_x + e_x, f_y + l_y, f_z + l_z + e_z
-        if film:
-            f_x, f_y, f_z = f_x + h_x, f_y + h_y, f_z + h_z
-        y_x, y_z = x[i, 0], x[i, 2]
-        x[i, 0], a_x = semi_implicit(x[i, 0], v_x, acceleration(f_x, d_x, m_w * g_x, m_b, added), dt)
-        x[i, 2], a_z = semi_implicit(x[i, 2], v_z, acceleration(f_z, d_z, m_w * g_z, m_b, added), dt)
-        a_y = v_y
-        y_y = x[i, 1]
-        if not plane_case:
-            x[i, 1], a_y = semi_implicit(x[i, 1], v_y, acceleration(f_y, d_y, m_w * g_y, m_b, added), dt)
-        v[i, 0], v[i, 1], v[i, 2] = a_x, a_y, a_z
-        if column:
-            if not dry:
-                taken[i, 0] += dt * (d_x + l_x + added * seen[i, A_X]) - added * (a_x - v_x)
-                taken[i, 1] += dt * (d_y + l_y) - added * (a_y - v_y)
-                taken[i, 2] += dt * (d_z + l_z) - added * (a_z - v_z)
-            work_lift += half * (l_x * v_x + l_y * v_y + l_z * v_z)
-            pend_lift += 0.5 * dt * (l_x * a_x + l_y * a_y + l_z * a_z)
-            work_flow += half * (e_x * v_x + e_z * v_z)
-            pend_flow += 0.5 * dt * (e_x * a_x + e_z * a_z)
-        if film:
-            work_film += half * (h_x * v_x + h_y * v_y + h_z * v_z)
-            pend_film += 0.5 * dt * (h_x * a_x + h_y * a_y + h_z * a_z)
-        square = a_x * a_x + a_y * a_y + a_z * a_z
-        if not square < math.inf and now[N_FAULT] == FAULT_NONE:
-            now[N_FAULT], now[N_FAULT_GRAIN], now[N_FAULT_PARTNER] = FAULT_NOT_A_NUMBER, ids[i], -1
-        speed_2 = max(speed_2, square)
-        if drag:
-            work_drag += half * (d_x * v_x + d_y * v_y + d_z * v_z)
-            pend_drag += 0.5 * dt * (d_x * a_x + d_y * a_y + d_z * a_z)
-
-        if rotation:
-            o_x, o_y, o_z = w[i, 0], w[i, 1], w[i, 2]
-            k_t = 0.0
-            if torque_law and not dry:
-                o_rel = o_y - turn
-                size = math.sqrt(o_x * o_x + o_rel * o_rel + o_z * o_z)
-                if torque_law == STOKES:
-                    k_t = torque_stokes(size, 2.0 * r[i], c[C_NU], c[C_RHO_W])
-                else:
-                    k_t = torque_dennis(size, 2.0 * r[i], c[C_NU], c[C_RHO_W])
-                k_t *= wet
-            i_i = inertia[i]
-            b_y = o_y + dt * acceleration_spin(t_y - k_t * (o_y - turn), i_i)
-            b_x, b_z = o_x, o_z
-            if not plane_case:
-                b_x = o_x + dt * acceleration_spin(t_x - k_t * o_x, i_i)
-                b_z = o_z + dt * acceleration_spin(t_z - k_t * o_z, i_i)
-            w[i, 0], w[i, 1], w[i, 2] = b_x, b_y, b_z
-            whirl = b_x * b_x + b_y * b_y + b_z * b_z
-            if not whirl < math.inf and now[N_FAULT] == FAULT_NONE:
-                now[N_FAULT], now[N_FAULT_GRAIN], now[N_FAULT_PARTNER] = FAULT_NOT_A_NUMBER, ids[i], -1
-            spin_2 = max(spin_2, whirl)
-            if torque_law:
-                work_torque -= half * k_t * (o_x * o_x + (o_y - turn) * o_y + o_z * o_z)
-                pend_torque -= 0.5 * dt * k_t * (o_x * b_x + (o_y - turn) * b_y + o_z * b_z)
-            if last:
-                spin += 0.5 * i_i * (o_x * b_x + o_y * b_y + o_z * b_z)
-        if last:
-            kinetic += 0.5 * (m_b + added if column else m_i) * (v_x * a_x + v_y * a_y + v_z * a_z)
-            if image[i, 0] != 0:
-                y_x += image[i, 0] * c[C_PERIOD_X]
-            if image[i, 1] != 0:
-                y_y += image[i, 1] * c[C_PERIOD_Y]
-            potential -= m_w * (g_x * y_x + g_y * y_y + g_z * y_z)
-    now[N_PEND_DRAG], now[N_PEND_TORQUE] = pend_drag, pend_torque
-    book[B_DRAG] += work_drag
-    book[B_TORQUE] += work_torque
-    if column:
-        now[N_PEND_LIFT], now[N_PEND_FLOW] = pend_lift, pend_flow
-        book[B_LIFT] += work_lift
-        book[B_FLOW] += work_flow
-    if film:
-        now[N_PEND_FILM] = pend_film
-        book[B_FILM] -= work_film
-    now[N_SPEED_MAX], now[N_SPIN_MAX] = math.sqrt(speed_2), math.sqrt(spin_2)
-    now[N_FAULT_SHOWN], now[N_ENDED_SHOWN] = now[N_FAULT], now[N_N_ENDED]
+    """Forces of every pair that block b owns."""
+    f, ids = pairs.f, grains.ids
+    sums = desk[D_SUMS : D_SUMS + 7]
+    sums[:] = 0.0
+    sums[6] = now[N_OVERLAP_MAX]
+    spring_r = 0.0
+    first, end = near.first[b], near.first[b] + near.count[b]
+    f[n + b, :] = 0.0  # what fixed grains and planes would get
+    while first < end:
+        m = min(LANES, end - first)
+        i_of, j_of, to = near.i[first : first + m], near.j[first : first + m], near.to[first : first + m]
+        memory = near.memory[first // LANES * MEMORY : (first // LANES + 1) * MEMORY]
+        lanes = lay_out(m, n_solid, i_of, j_of, grains, walls, desk)
+        if choice.rebound:
+            wet_dashpots(choice, m, i_of, j_of, c, grains, desk, memory)
+        reckon(kind, choice, lanes, hdt, c, desk, memory)
+        if kind.rolling or kind.events or kind.film:
+            spring_r += keep_company(
+                kind, choice, m, n, t, hdt, i_of, j_of, to, c, grains, desk, memory,
+                near.extra[first : first + m], ended, book, now,
+            )  # fmt: skip
+        most = hand_out(m, i_of, to, desk, f, sums)
+        if most >= 0:
+            i, j = i_of[most], j_of[most]
+            now[N_OVERLAP_GRAIN], now[N_OVERLAP_STEP] = ids[i], step
+            if sums[6] > c[C_OVERLAP_LIMIT] and now[N_FAULT] == FAULT_NONE:
+                now[N_FAULT], now[N_FAULT_GRAIN] = FAULT_OVERLAP, ids[i]
+                now[N_FAULT_PARTNER] = ids[j] if j < n else j
+        first += LANES
+    book[B_DASH_N] += sums[0]
+    book[B_DASH_S] += sums[1]
+    book[B_SLIDE] += sums[2]
+    book[B_RELEASED_N] += sums[3]
+    book[B_RELEASED_S] += sums[4]
+    book[B_STEP] += sums[5]
+    now[N_OVERLAP_MAX] = sums[6]
     if last:
-        now[N_KINETIC], now[N_SPIN], now[N_POTENTIAL] = kinetic, spin, potential
+        now[N_SPRING_N], now[N_SPRING_S], now[N_N_CONTACT] = springs(b, c, near)
+        now[N_SPRING_R] = spring_r
+
+
+@kernel(fastmath=FAST)
+def springs(b: int, c: Any, near: Near) -> tuple[float, float, int]:
+    """Energy in the normal and tangential springs of block b [J], and its contacts."""
+    k_n, k_s, memory = c[C_K_N], c[C_K_S], near.memory
+    normal = tangential = 0.0
+    count = 0
+    for k in range(near.first[b], near.first[b] + near.count[b]):
+        place = k // LANES * MEMORY + k % LANES
+        if memory[place + M_LIVE] > 0.0:
+            e_n = memory[place + M_F_N] - memory[place + M_DASH_N]
+            if k_n > 0.0:
+                normal += 0.5 * e_n * e_n / k_n
+            if k_s > 0.0:
+                for a in range(3):
+                    tangential += 0.5 * memory[place + M_SPRING_S + a * LANES] ** 2 / k_s
+            count += 1
+    return normal, tangential, count
 
 
 @cache
@@ -204,50 +121,62 @@ def make_run(kind: Variant) -> Any:
         grains: Grains,
         walls: Walls,
         pairs: Pairs,
+        near: Near,
+        spare: Near,
         ledger: Ledger,
         choice: Choice,
+        clock: Any,
     ) -> tuple[int, float, int]:
         """March up to n_steps; all threads come back with the same (steps done, travel, stop)."""
-        ended, books, now, react_start = ledger.ended, ledger.books, ledger.now, pairs.react_start
+        ended, books, now = ledger.ended, ledger.books, ledger.now
         n_block = len(block_start) - 1
         b_0, b_1 = thread * n_block // n_threads, (thread + 1) * n_block // n_threads
         dt, t_zero, skin, step_limit = c[C_DT], c[C_T_ZERO], c[C_SKIN], c[C_STEP_LIMIT]
+        desk = np.zeros(DESK)
+        near_skin, near_travel, since = clock[K_SKIN], clock[K_TRAVEL], clock[K_SINCE]
+        cuts, waste = clock[K_CUTS], clock[K_WASTE]
+        cost = COST_LOOK * pairs.start[n] + COST_GRAIN * n
         target = done = 0
         stop = STOP_DONE
         while done < n_steps:
             if 2.0 * travel > skin:
                 stop = STOP_LIST
                 break
+            idle = COST_LANE * waste * since  # spent on pairs that do not touch
+            if 2.0 * (travel - near_travel) > near_skin or idle > 4.0 * cost:
+                near_skin *= 1.25 if idle < cost else 0.8
+                near_skin = min(max(near_skin, clock[K_LEAST]), clock[K_MOST])
+                reach_on = near_skin + (c[C_FILM_REACH] if kind.film else 0.0)
+                for b in range(b_0, b_1):
+                    room = cut(
+                        b, block_start[b], block_start[b + 1], n, n_solid, reach_on, kind.plane_case,
+                        kind.rotation, c, grains, walls, pairs, near, spare,
+                    )  # fmt: skip
+                    now[b, N_FULL] = 0.0 if room else 1.0
+                target = meet(count, n_threads, target)
+                near_travel, since, waste = travel, 0.0, 0.0
+                cuts += 1.0
+                for b in range(n_block):
+                    waste += near.count[b] - near.live[b]
+                    if now[b, N_FULL] > 0.0:
+                        stop = STOP_ROOM
+                if stop != STOP_DONE:
+                    near_travel = -np.inf
+                    break
             last = done == n_steps - 1
             t = t_zero + step * dt
             hdt = 0.0 if step == 0 else 0.5 * dt
             for b in range(b_0, b_1):
-                lo, hi = block_start[b], block_start[b + 1]
-                q = react_start[b]
                 forces(
-                    kind,
-                    choice,
-                    lo,
-                    hi,
-                    n,
-                    n_solid,
-                    step,
-                    t,
-                    hdt,
-                    last,
-                    c,
-                    grains,
-                    walls,
-                    pairs,
-                    q,
-                    ended[b],
-                    books[b],
-                    now[b],
-                )
+                    kind, choice, b, n, n_solid, step, t, hdt, last, c, grains, walls, pairs, near, desk,
+                    ended[b], books[b], now[b],
+                )  # fmt: skip
             target = meet(count, n_threads, target)
             for b in range(b_0, b_1):
-                lo, hi = block_start[b], block_start[b + 1]
-                motion(kind, choice, lo, hi, step == 0, last, c, grains, pairs, books[b], now[b])
+                motion(
+                    kind, choice, block_start[b], block_start[b + 1], n + n_block, step == 0, last, c, grains,
+                    pairs, books[b], now[b],
+                )  # fmt: skip
             target = meet(count, n_threads, target)
             fastest = 0.0
             full = False
@@ -257,6 +186,7 @@ def make_run(kind: Variant) -> Any:
                 if now[b, N_FAULT_SHOWN] != FAULT_NONE:
                     stop = STOP_FAULT
             travel += fastest * dt
+            since += 1.0
             step += 1
             done += 1
             if fastest * dt > step_limit and stop == STOP_DONE:
@@ -267,6 +197,9 @@ def make_run(kind: Variant) -> Any:
                 stop = STOP_EVENTS
                 break
         meet(count, n_threads, target)
+        if thread == 0:
+            clock[K_SKIN], clock[K_TRAVEL], clock[K_SINCE] = near_skin, near_travel, since
+            clock[K_CUTS], clock[K_WASTE] = cuts, waste
         return done, travel, stop
 
     return run

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ryusa.engine.listing import Layout, Memory
-from ryusa.engine.pair import begin_row
+from ryusa.engine.pair import dashpots
 from ryusa.engine.rows import (
     E_ALONE,
     E_CLOSING_END,
@@ -19,6 +19,7 @@ from ryusa.engine.rows import (
     R_DASH_R,
     R_DASH_S,
     R_ETA_N,
+    R_ETA_S,
     R_F_N,
     R_SPRING_R,
     R_SPRING_S,
@@ -53,8 +54,10 @@ def memory_of(
 ) -> Memory:
     """Rows from a snapshot; dashpots follow from masses anew, but one that a film has fixed stays."""
     rows = np.zeros((len(contacts), variant.row_width))
+    w = np.zeros((len(layout.r), 4))
+    w[:, 3] = layout.r
     for row, i, j in zip(rows, contacts.i, contacts.j, strict=True):
-        begin_row(row, variant.rotation, i, j, numbers, layout.m, layout.r, layout.inertia)
+        row[R_ETA_N], row[R_ETA_S] = dashpots(i, j, variant.rotation, numbers, layout.m, w, layout.inertia)
     if choice.rebound:
         rows[:, R_ETA_N] = contacts.eta_n
     rows[:, R_SPRING_S : R_SPRING_S + 3], rows[:, R_DASH_S : R_DASH_S + 3] = (

@@ -1,10 +1,11 @@
-"""What one pair keeps: its first touch, its rolling friction, and the account it closes when it parts."""
+"""What belongs to one pair alone: its dashpots and its rolling friction."""
 # ruff: noqa: F403, F405  (the columns of rows.py, all of them plain integers)
 
 import math
 from typing import Any
 
 from ryusa.engine._kernel import FAST, kernel
+from ryusa.engine.lanes import X_DASH_R, X_ROLLING, X_SPRING_R
 from ryusa.engine.rows import *
 from ryusa.laws.collision import effective_mass, effective_mass_tangential, zeta_no_tension, zeta_tension
 from ryusa.laws.contact import damping, damping_in_steps
@@ -34,33 +35,34 @@ Body = tuple[
 ROLL_PRINTED, ROLL_CONSTANT, ROLL_EPSD = int(Rolling.PRINTED), int(Rolling.CONSTANT), int(Rolling.EPSD)
 ARM_WIDTH = int(Arm.CONTACT_WIDTH)
 EXPONENTIAL = int(Rebound.EXPONENTIAL)
-B_DASH_N, B_DASH_S, B_SLIDE, B_ROLL = int(Book.DASH_N), int(Book.DASH_S), int(Book.SLIDE), int(Book.ROLL)
-B_STEP = int(Book.STEP)
-B_RELEASED_N, B_RELEASED_S, B_RELEASED_R = int(Book.RELEASED_N), int(Book.RELEASED_S), int(Book.RELEASED_R)
+B_ROLL, B_RELEASED_R = int(Book.ROLL), int(Book.RELEASED_R)
 
 
 @kernel()
-def begin_row(row: Any, rotation: int, i: int, j: int, c: Any, m: Any, r: Any, inertia: Any) -> None:
-    """Give a pair that just touched an empty memory and its dashpots."""
-    row[:] = 0.0
-    m_t = effective_mass_tangential(m[i], r[i], inertia[i], m[j], r[j], inertia[j], rotation != 0)
+def dashpots(
+    i: int, j: int, rotation: int, c: Any, m: Any, w: Any, inertia: Any
+) -> tuple[float, float]:
+    """Normal and tangential dashpot of a pair [N s/m]; `w` as in `arrays.Grains`."""
+    m_t = effective_mass_tangential(m[i], w[i, 3], inertia[i], m[j], w[j, 3], inertia[j], rotation != 0)
     m_n = effective_mass(m[i], m[j])
-    row[R_ETA_N] = c[C_ETA_N] + damping_in_steps(damping(c[C_ZETA_N], c[C_K_N], m_n), m_n, c[C_DT])
-    row[R_ETA_S] = c[C_ETA_S] + damping_in_steps(damping(c[C_ZETA_S], c[C_K_S], m_t), m_t, c[C_DT])
+    return (
+        c[C_ETA_N] + damping_in_steps(damping(c[C_ZETA_N], c[C_K_N], m_n), m_n, c[C_DT]),
+        c[C_ETA_S] + damping_in_steps(damping(c[C_ZETA_S], c[C_K_S], m_t), m_t, c[C_DT]),
+    )
 
 
 @kernel()
-def wet_row(row: Any, choice: Choice, closing: float, i: int, j: int, c: Any, m: Any, r: Any) -> None:
-    """Give a pair that just touched under water the normal dashpot of its rebound at this closing speed."""
+def dashpot_wet(choice: Choice, closing: float, i: int, j: int, c: Any, m: Any, w: Any) -> float:
+    """Normal dashpot [N s/m] of a pair that just touched under water, of its rebound at this closing speed."""
     m_n = effective_mass(m[i], m[j])
-    st = stokes_number(closing, m_n, reduced_radius(r[i], r[j]), c[C_RHO_W], c[C_NU])
+    st = stokes_number(closing, m_n, reduced_radius(w[i, 3], w[j, 3]), c[C_RHO_W], c[C_NU])
     if choice.rebound == EXPONENTIAL:
         e = restitution_exponential(c[C_E_DRY], st, c[C_ST_C])
     else:
-        e = restitution_davis(c[C_E_DRY], st, c[C_ASPERITY], 2.0 * min(r[i], r[j]))
+        e = restitution_davis(c[C_E_DRY], st, c[C_ASPERITY], 2.0 * min(w[i, 3], w[j, 3]))
     e = max(e, c[C_E_LEAST])
     zeta = zeta_tension(e) if choice.tension else zeta_no_tension(e)
-    row[R_ETA_N] = damping_in_steps(damping(zeta, c[C_K_N], m_n), m_n, c[C_DT])
+    return damping_in_steps(damping(zeta, c[C_K_N], m_n), m_n, c[C_DT])
 
 
 @kernel(fastmath=FAST)
@@ -101,7 +103,7 @@ def roll(
     e_x = e_y = e_z = 0.0  # spring
     q_x = q_y = q_z = 0.0  # the rest
     energy = stored = 0.0
-    p_x, p_y, p_z = row[R_SPRING_R], row[R_SPRING_R + 1], row[R_SPRING_R + 2]
+    p_x, p_y, p_z = row[X_SPRING_R], row[X_SPRING_R + 1], row[X_SPRING_R + 2]
     if model == ROLL_PRINTED:
         size = math.sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2])
         if size > 0.0:
@@ -136,52 +138,27 @@ def roll(
         elif scale < 1.0:
             book[B_ROLL] += taken + stored - energy
     book[B_ROLL] -= hdt * (
-        s_x * (row[R_DASH_R] + q_x) + s_y * (row[R_DASH_R + 1] + q_y) + s_z * (row[R_DASH_R + 2] + q_z)
+        s_x * (row[X_DASH_R] + q_x) + s_y * (row[X_DASH_R + 1] + q_y) + s_z * (row[X_DASH_R + 2] + q_z)
     )
-    row[R_SPRING_R], row[R_SPRING_R + 1], row[R_SPRING_R + 2] = e_x, e_y, e_z
-    row[R_DASH_R], row[R_DASH_R + 1], row[R_DASH_R + 2] = q_x, q_y, q_z
+    row[X_SPRING_R], row[X_SPRING_R + 1], row[X_SPRING_R + 2] = e_x, e_y, e_z
+    row[X_DASH_R], row[X_DASH_R + 1], row[X_DASH_R + 2] = q_x, q_y, q_z
     return e_x + q_x, e_y + q_y, e_z + q_z, energy
 
 
 @kernel(fastmath=FAST)
-def part(
-    tension: int,
-    rolling: int,
-    row: Any,
-    c: Any,
-    hdt: float,
-    closing: float,
-    slip: Vector,
-    w_i: Vector,
-    w_j: Vector,
-    radius: float,
-    book: Any,
+def roll_out(
+    rolling: int, row: Any, c: Any, hdt: float, w_i: Vector, w_j: Vector, radius: float, book: Any
 ) -> None:
-    """Close the account of a pair that parted: the last half interval, and what its springs still held.
+    """Close the rolling account of a pair that parted: the last half interval, and what its spring still held.
 
-    `rolling` is the model of the rolling friction, 0 without; `radius` the reduced radius of the pair [m].
+    `rolling` is the model, `radius` the reduced radius of the pair [m]; the row is empty afterwards.
     """
-    k_n, k_s = c[C_K_N], c[C_K_S]
-    s_x, s_y, s_z = slip
-    if row[R_F_N] > 0.0 or tension:
-        book[B_DASH_N] += hdt * closing * row[R_DASH_N]
-    else:
-        book[B_RELEASED_N] += hdt * closing * row[R_DASH_N]
-    if k_n > 0.0:
-        e_n = row[R_F_N] - row[R_DASH_N]
-        book[B_STEP] += 0.5 * e_n * (-2.0 * hdt * closing - e_n / k_n)
-    e_x, e_y, e_z = row[R_SPRING_S], row[R_SPRING_S + 1], row[R_SPRING_S + 2]
-    d_x, d_y, d_z = row[R_DASH_S], row[R_DASH_S + 1], row[R_DASH_S + 2]
-    if k_s > 0.0:
-        book[B_RELEASED_S] += 0.5 * (e_x * e_x + e_y * e_y + e_z * e_z) / k_s
-    book[B_RELEASED_S] -= hdt * (s_x * e_x + s_y * e_y + s_z * e_z)
-    book[B_DASH_S] -= hdt * (s_x * d_x + s_y * d_y + s_z * d_z)
-    if rolling:
-        sign = 1.0 if rolling == ROLL_PRINTED else -1.0
-        w_x, w_y, w_z = w_i[0] + sign * w_j[0], w_i[1] + sign * w_j[1], w_i[2] + sign * w_j[2]
-        e_x, e_y, e_z = row[R_SPRING_R], row[R_SPRING_R + 1], row[R_SPRING_R + 2]
-        k_r = epsd_stiffness(k_n, c[C_ROLL] * radius, c[C_ROLL_STIFFNESS])
-        if rolling == ROLL_EPSD and k_r > 0.0:
-            book[B_RELEASED_R] += 0.5 * (e_x * e_x + e_y * e_y + e_z * e_z) / k_r
-        book[B_RELEASED_R] -= hdt * (w_x * e_x + w_y * e_y + w_z * e_z)
-        book[B_ROLL] -= hdt * (w_x * row[R_DASH_R] + w_y * row[R_DASH_R + 1] + w_z * row[R_DASH_R + 2])
+    sign = 1.0 if rolling == ROLL_PRINTED else -1.0
+    w_x, w_y, w_z = w_i[0] + sign * w_j[0], w_i[1] + sign * w_j[1], w_i[2] + sign * w_j[2]
+    e_x, e_y, e_z = row[X_SPRING_R], row[X_SPRING_R + 1], row[X_SPRING_R + 2]
+    k_r = epsd_stiffness(c[C_K_N], c[C_ROLL] * radius, c[C_ROLL_STIFFNESS])
+    if rolling == ROLL_EPSD and k_r > 0.0:
+        book[B_RELEASED_R] += 0.5 * (e_x * e_x + e_y * e_y + e_z * e_z) / k_r
+    book[B_RELEASED_R] -= hdt * (w_x * e_x + w_y * e_y + w_z * e_z)
+    book[B_ROLL] -= hdt * (w_x * row[X_DASH_R] + w_y * row[X_DASH_R + 1] + w_z * row[X_DASH_R + 2])
+    row[:X_ROLLING] = 0.0

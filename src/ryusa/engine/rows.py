@@ -101,6 +101,17 @@ N_ENDED_SHOWN = 19
 N_PEND_LIFT = 20
 N_PEND_FLOW = 21
 N_PEND_FILM = 22
+N_FULL = 23  # 1 where the near list of the block found no room
+
+# The near list's own clock, kept between calls; it never shows in the bits.
+K_SKIN = 0  # reach of the near list beyond touch [m]
+K_TRAVEL = 1  # how far the fastest grain had gone when it was cut [m]
+K_SINCE = 2  # steps since
+K_CUTS = 3  # cuts so far
+K_WASTE = 4  # lanes that do not touch, counted at the last cut
+K_LEAST = 5  # smallest and largest skin [m]
+K_MOST = 6
+N_CLOCK = 8
 
 # What a kernel cannot raise.
 FAULT_NONE = 0
@@ -114,6 +125,11 @@ STOP_LIST = 1  # the list wants a rebuild
 STOP_EVENTS = 2  # event buffers want draining
 STOP_FAULT = 3
 STOP_UNSAFE = 4  # a grain went further in one step than the list allows
+STOP_ROOM = 5  # the near list wants more room
+
+# Measured, and fixed so that a run never depends on a clock [ns]: to look at a pair of the wide list and at a grain
+# while the near list is cut, and to carry a lane that does not touch through a step.
+COST_LOOK, COST_GRAIN, COST_LANE = 2.5, 4.0, 14.0
 
 BASE, WITH_ROLLING = 10, 16  # doubles a row takes without and with rolling friction
 # widths padded to whole cache lines, so that blocks of different threads do not share one
@@ -141,7 +157,12 @@ class Variant(NamedTuple):
     @property
     def row_width(self) -> int:
         """Doubles per contact row."""
-        return self.event_column + (N_EVENT if self.events else 0)
+        return BASE + self.extra_width
+
+    @property
+    def extra_width(self) -> int:
+        """Doubles that only rolling friction and records keep."""
+        return (WITH_ROLLING - BASE if self.rolling else 0) + (N_EVENT if self.events else 0)
 
     @property
     def event_column(self) -> int:
