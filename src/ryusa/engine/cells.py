@@ -120,7 +120,7 @@ def list_pairs(
     grid : low, width, dims, first and order of `grid_of` and `sort_into`.
     lanes : a plane scene, where grains at another y are in another lane and never met.
     half : only partners with a higher id (each free pair once); grain i itself never.
-    partners : uint32 array to fill from `used`; where it is too short counting goes on and nothing is written.
+    partners : uint32 array to fill from `used`; where it is too short counting goes on without writing.
     """
     low, width, dims, first, order = grid
     near = np.empty((3, 3), np.int64)

@@ -2,38 +2,37 @@
 
 Lane by lane, after (or, for the rebound, before) the law of contact has been reckoned for the whole batch.
 """
-# ruff: noqa: F403, F405  (the places of lanes.py and the columns of rows.py, all of them plain integers)
+# ruff: noqa: E741, F403, F405  (l is a lane; the places of lanes.py and the columns of rows.py, all of them plain integers)
 
-import math
 from typing import Any
 
 from ryusa.engine._kernel import FAST, kernel
-from ryusa.engine.arrays import Grains
+from ryusa.engine.arrays import Grains, Near
+from ryusa.engine.batch import overlap_on
 from ryusa.engine.lanes import *
 from ryusa.engine.pair import ROLL_PRINTED, dashpot_wet, roll, roll_out
 from ryusa.engine.records import begin_record, end_record, keep_record
 from ryusa.engine.rows import *
-from ryusa.laws.geometry import overlap as overlap_of
 from ryusa.laws.geometry import wrap
 from ryusa.laws.immersed import lubrication_force
 from ryusa.laws.rolling import reduced_radius
 
 
 @kernel(fastmath=FAST)
-def wet_dashpots(
-    choice: Choice, m: int, i_of: Any, j_of: Any, c: Any, grains: Grains, desk: Any, memory: Any
-) -> None:
+def wet_dashpots(choice: Choice, m: int, which: Any, c: Any, grains: Grains, near: Near, desk: Any) -> None:
     """Give lanes that touch now and did not before the normal dashpot of their rebound."""
     for l in range(m):
-        if memory[M_LIVE + l] > 0.0:
+        overlap = overlap_on(l, c, desk)
+        if desk[D_WAS + l] > 0.0 or overlap <= 0.0:
             continue
+        k = which[l]
         d_x, d_z = wrap(desk[D_APART + 4 * l], c[C_PERIOD_X]), desk[D_APART + 4 * l + 2]
         d_y = wrap(desk[D_APART + 4 * l + 1], c[C_PERIOD_Y])
-        distance = math.sqrt(d_x * d_x + d_y * d_y + d_z * d_z)
-        if overlap_of(desk[D_SPIN_I + 4 * l + 3], desk[D_SPIN_J + 4 * l + 3], distance) > 0.0:
-            u = desk[D_SLIP + 4 * l : D_SLIP + 4 * l + 3]
-            closing = (u[0] * d_x + u[1] * d_y + u[2] * d_z) / distance
-            memory[M_ETA_N + l] = dashpot_wet(choice, closing, i_of[l], j_of[l], c, grains.m, grains.w)
+        distance = desk[D_SPIN_I + 4 * l + 3] + desk[D_SPIN_J + 4 * l + 3] - overlap
+        u_x, u_y, u_z = desk[D_MOVING + 4 * l], desk[D_MOVING + 4 * l + 1], desk[D_MOVING + 4 * l + 2]
+        closing = (u_x * d_x + u_y * d_y + u_z * d_z) / distance
+        desk[D_ETA_N + l] = dashpot_wet(choice, closing, near.i[k], near.j[k], c, grains.m, grains.w)
+        near.rows[k, R_ETA_N] = desk[D_ETA_N + l]
 
 
 @kernel(fastmath=FAST)
@@ -44,33 +43,30 @@ def keep_company(
     n: int,
     t: float,
     hdt: float,
-    i_of: Any,
-    j_of: Any,
-    to: Any,
+    which: Any,
     c: Any,
     grains: Grains,
+    near: Near,
     desk: Any,
-    memory: Any,
-    extra: Any,
     ended: Any,
     book: Any,
     now: Any,
 ) -> float:
     """Rolling friction, records and films of the first m lanes; returns the energy in rolling springs [J]."""
     v, w, touched = grains.v, grains.w, grains.touched
-    dt, k_n, width = c[C_DT], c[C_K_N], extra.shape[1]
+    rows, dt, k_n, width = near.rows, c[C_DT], c[C_K_N], near.rows.shape[1]
     held = 0.0
     for l in range(m):
-        was, live = desk[D_WAS + l] > 0.0, memory[M_LIVE + l] > 0.0
+        was, live = desk[D_WAS + l] > 0.0, desk[D_TORQUE_I + 4 * l + 3] > 0.0
         overlap, closing = desk[D_OVERLAP + l], desk[D_CLOSING + l]
         if not (was or live or (kind.film and overlap > -c[C_FILM_REACH])):
             continue
-        i, j = i_of[l], j_of[l]
-        normal = (desk[D_NORMAL + l], desk[D_NORMAL + LANES + l], desk[D_NORMAL + 2 * LANES + l])
-        slip = (desk[D_SLIDING_V + l], desk[D_SLIDING_V + LANES + l], desk[D_SLIDING_V + 2 * LANES + l])
+        row, i, j = rows[which[l]], near.i[which[l]], near.j[which[l]]
+        normal = (desk[D_NORMAL + l], desk[D_NORMAL + PITCH + l], desk[D_NORMAL + 2 * PITCH + l])
+        slip = (desk[D_SLIP + l], desk[D_SLIP + PITCH + l], desk[D_SLIP + 2 * PITCH + l])
         force = (desk[D_FORCE + 4 * l], desk[D_FORCE + 4 * l + 1], desk[D_FORCE + 4 * l + 2])
         spin_i, spin_j = (w[i, 0], w[i, 1], w[i, 2]), (w[j, 0], w[j, 1], w[j, 2])
-        f_n = memory[M_F_N + l]
+        f_n = desk[D_SPRING + 4 * l + 3]
         if kind.rolling:
             if live:
                 turned = (
@@ -80,7 +76,7 @@ def keep_company(
                 )
                 share_j = float(max(touched[j], 1)) if j < n else 1.0
                 r_x, r_y, r_z, e_r = roll(
-                    choice.rolling, choice.arm, extra[l], c, f_n, overlap, hdt,
+                    choice.rolling, choice.arm, row, c, f_n, overlap, hdt,
                     (w[i, 3], grains.m[i], grains.inertia[i], float(max(touched[i], 1))),
                     (w[j, 3], grains.m[j], grains.inertia[j], share_j),
                     normal, turned, spin_i, spin_j, book,
@@ -92,9 +88,9 @@ def keep_company(
                 held += e_r
             elif was:
                 radius = reduced_radius(w[i, 3], w[j, 3])
-                roll_out(choice.rolling, extra[l], c, hdt, spin_i, spin_j, radius, book)
+                roll_out(choice.rolling, row, c, hdt, spin_i, spin_j, radius, book)
         if kind.events:
-            record = extra[l, width - N_EVENT :]
+            record = row[width - N_EVENT :]
             if live and not was:
                 record[:] = 0.0
                 begin_record(
@@ -103,7 +99,7 @@ def keep_company(
                 )  # fmt: skip
             if live:
                 keep_record(
-                    record, t, dt, overlap, f_n, k_n * overlap + memory[M_ETA_N + l] * closing, force,
+                    record, t, dt, overlap, f_n, k_n * overlap + desk[D_ETA_N + l] * closing, force,
                     desk[D_SLIDES + l] > 0.0, touched[i] > 1 or (j < n and touched[j] > 1),
                 )  # fmt: skip
             elif was and record[E_J] >= 0.0:
@@ -118,5 +114,5 @@ def keep_company(
             )
             for k in range(3):
                 grains.film[i, k] -= f * normal[k]
-                grains.film[to[l], k] += f * normal[k]
+                grains.film[near.to[which[l]], k] += f * normal[k]
     return held

@@ -5,27 +5,20 @@ from dataclasses import replace
 
 import numpy as np
 
-from ryusa.engine.arrays import Ledger, Near
+from ryusa.engine.arrays import Ledger
 from ryusa.engine.faults import fault_of, lost_of, unsafe_of
-from ryusa.engine.lanes import LANES, MEMORY, N_MEMORY
-from ryusa.engine.listing import Layout, Memory, film_reach, take_memory
+from ryusa.engine.listing import Layout, Memory, take_memory
 from ryusa.engine.march import make_run
 from ryusa.engine.memory import closed_records, contacts_of, memory_of
-from ryusa.engine.near import cut
+from ryusa.engine.nearlist import NearList
 from ryusa.engine.numbers import choice_of, numbers_of, potential_energy, rolling_energy, variant_of
 from ryusa.engine.rows import (
     C_DT,
     C_SKIN,
     C_STEP_LIMIT,
     C_T_ZERO,
-    K_LEAST,
-    K_MOST,
-    K_SINCE,
-    K_SKIN,
-    K_TRAVEL,
-    K_WASTE,
+    COST_LOOK,
     N_BOOKS,
-    N_CLOCK,
     N_KINETIC,
     N_N_CONTACT,
     N_N_ENDED,
@@ -59,9 +52,9 @@ from ryusa.model.tally import N_BOOK
 _MANY = 256  # grains from which work is cut into blocks
 _RECORDS = 256  # room for ended contacts in a block, beside one a grain
 _BLOCKS = 8
-_NEAR_SKIN = 0.01  # first reach of the near list, over the smallest diameter
-# Measured, and fixed so that a run never depends on a clock: cost of a rebuild and of a step [ns].
-_REBUILD, _REBUILD_GRAIN, _STEP_GRAIN = 60_000.0, 300.0, 80.0
+# Measured, and fixed so that a run never depends on a clock: cost of a wide list [ns], and how often it is
+# looked through.
+_REBUILD, _REBUILD_GRAIN, _STEPS_A_CUT = 60_000.0, 300.0, 8.0
 _SUMS = (N_KINETIC, N_SPIN, N_POTENTIAL, N_SPRING_N, N_SPRING_S, N_SPRING_R, N_N_CONTACT)
 _SHORTEST_PERIOD = 3.0  # in diameters: below, a pair could touch through two images
 
@@ -83,7 +76,6 @@ class CpuEngine:
         self._pool: ThreadPoolExecutor | None = None
         self._drained: list[np.ndarray] = []
         self._scene: Scene | None = None
-        self._spares: list[Near] = []
 
     def refuses(self, scene: Scene) -> tuple[str, ...]:
         """Reasons why this engine cannot carry the scene; () when it can."""
@@ -162,11 +154,8 @@ class CpuEngine:
         if resumed:
             self._grains.x[:n, :3] = state.x[self._grains.ids[:n]]
         self._numbers[C_SKIN] = self._skin
-        self._clock = np.zeros(N_CLOCK)
-        self._clock[K_SKIN] = _NEAR_SKIN * self._smallest
-        self._near = self._layout.room_for(np.zeros(blocks, np.int64))
-        self._make_room()
-        self._look_near(memory)
+        self._near = NearList(self._layout, self._threads, self._smallest)
+        self._cut_near(memory)
         if state.step == 0:
             self._first_account(scene, state)
 
@@ -186,7 +175,7 @@ class CpuEngine:
         back = np.argsort(grains.ids[:n])
         books = self._ledger.books.copy()
         books[:, N_BOOK : N_BOOK + len(PENDING)] = self._ledger.now[:, PENDING]
-        contacts = contacts_of(take_memory(n, grains, self._near), self._variant)
+        contacts = contacts_of(take_memory(n, grains, self._near.pairs), self._variant)
         state = State(
             x=grains.x[:n, :3][back],
             v=grains.v[:n, :3][back],
@@ -280,20 +269,20 @@ class CpuEngine:
             arguments = (
                 threads, n_steps, self._step, self._travel, np.zeros(1, np.int64), self._numbers,
                 layout.block_start, self._n, layout.n_solid, self._grains, layout.walls, self._pairs,
-                self._near,
+                self._near.pairs,
             )  # fmt: skip
-            more = (self._ledger, self._choice, self._clock)
+            more = (self._ledger, self._choice, self._near.clock)
             if threads > 1 and self._pool is None:
                 self._pool = ThreadPoolExecutor(self._threads - 1, thread_name_prefix="ryusa")
             others = (
                 [
-                    self._pool.submit(self._run, k, *arguments, self._spares[k], *more)
+                    self._pool.submit(self._run, k, *arguments, self._near.spares[k], *more)
                     for k in range(1, threads)
                 ]
                 if self._pool
                 else []
             )
-            done, self._travel, stop = self._run(0, *arguments, self._spares[0], *more)
+            done, self._travel, stop = self._run(0, *arguments, self._near.spares[0], *more)
             for other in others:
                 other.result()
             self._step += done
@@ -305,7 +294,7 @@ class CpuEngine:
                 if fault is not None:
                     return Flags(fault)
             elif stop == STOP_ROOM:
-                self._make_room()
+                self._near.make_room()
             elif stop == STOP_EVENTS:
                 self._drain()
             elif stop == STOP_UNSAFE:
@@ -318,57 +307,32 @@ class CpuEngine:
 
     def _relist(self) -> RunError | None:
         """Choose a skin from counted work, bring grains back into the period, and list pairs anew."""
-        cost = (_REBUILD + _REBUILD_GRAIN * self._n) / max(self._since, 1)
-        if cost > 0.1 * _STEP_GRAIN * self._n:
-            self._skin = min(1.25 * self._skin, self._smallest)
-        elif cost < 0.03 * _STEP_GRAIN * self._n:
-            self._skin = max(self._skin / 1.25, 0.02 * self._smallest)
+        # go on widening or narrowing as long as it pays; from counts that a resumed run has too
+        spent = (_REBUILD + _REBUILD_GRAIN * self._n) / max(self._since, 1)
+        spent += COST_LOOK * float(self._pairs.start[-1]) / _STEPS_A_CUT
+        if spent > self._spent:
+            self._way = 1.0 / self._way
+        self._spent = spent
+        self._skin = min(max(self._way * self._skin, 0.02 * self._smallest), self._smallest)
+        self._skin = max(self._skin, self._last_way())
         self._since, self._travel, self._relisted = 0, 0.0, self._relisted + 1
-        memory = take_memory(self._n, self._grains, self._near)
+        memory = take_memory(self._n, self._grains, self._near.pairs)
         by_id = self._layout.unsorted(self._grains)
         self._grains, self._pairs, self._x_listed, lost = self._layout.list_pairs(
             by_id, self._pairs, self._skin
         )
-        self._look_near(memory)
+        self._cut_near(memory)
         self._numbers[C_SKIN] = self._skin
         return lost_of(self._grains, lost, self._step, self._t) if lost >= 0 else None
 
-    def _look_near(self, memory: Memory) -> None:
-        """Cut a near list out of a new wide one, making room where there is none, and lay memory into it."""
-        scene, clock, blocks = self._scene, self._clock, self._layout.block_start
-        assert scene is not None
-        clock[K_LEAST], clock[K_MOST] = 1e-4 * self._smallest, 0.5 * self._skin
-        clock[K_SKIN] = min(max(clock[K_SKIN], clock[K_LEAST]), clock[K_MOST])
-        clock[K_TRAVEL], clock[K_SINCE] = self._travel, 0.0
-        # a pair that parted in the last step is still to be found
-        way = 2.0 * float(self._ledger.now[:, N_SPEED_MAX].max()) * scene.dt
-        reach_on = max(float(clock[K_SKIN]), way) + film_reach(scene)
-        for b in range(len(blocks) - 1):
-            self._near.count[b] = 0
-        for b in range(len(blocks) - 1):
-            while not cut(
-                b, blocks[b], blocks[b + 1], self._n, self._layout.n_solid, reach_on, self._variant.plane_case,
-                self._variant.rotation, self._numbers, self._grains, self._layout.walls, self._pairs,
-                self._near, self._spares[0],
-            ):  # fmt: skip
-                self._make_room()
-        self._layout.remember(self._grains, self._near, memory)
-        clock[K_WASTE] = float(self._near.count.sum() - self._near.live.sum())
+    def _cut_near(self, memory: Memory) -> None:
+        self._near.begin(
+            self._grains, self._pairs, self._skin, self._travel, self._last_way(), self._numbers, memory
+        )
 
-    def _make_room(self) -> None:
-        """Half as much room again in every block of the near list, and more in the smallest."""
-        near, blocks = self._near, len(self._near.count)
-        lanes = np.maximum(np.diff(near.first) * 3 // 2, self._n // blocks + LANES)
-        new = self._layout.room_for(lanes)
-        for b in range(blocks):
-            a, k, count = int(near.first[b]), int(new.first[b]), int(near.count[b])
-            for name in ("i", "j", "to", "pair", "extra"):
-                getattr(new, name)[k : k + count] = getattr(near, name)[a : a + count]
-            rows = -(-count // LANES) * MEMORY
-            new.memory[k * N_MEMORY : k * N_MEMORY + rows] = near.memory[a * N_MEMORY : a * N_MEMORY + rows]
-            new.count[b], new.live[b] = count, near.live[b]
-        self._near = new
-        self._spares = [self._layout.room_for(lanes[:1]) for _ in range(min(self._threads, blocks))]
+    def _last_way(self) -> float:
+        """How far a pair may have parted in the last step [m]: its account is still to be closed."""
+        return 2.001 * float(self._ledger.now[:, N_SPEED_MAX].max() * self._numbers[C_DT])
 
     def _first_account(self, scene: Scene, state: State) -> None:
         """What grains hold before the first step, which adds springs of pairs that begin in touch."""
@@ -392,6 +356,7 @@ class CpuEngine:
         now = self._ledger.now
         block = int(now[:, N_OVERLAP_MAX].argmax())
         own = {"skin": self._skin, "travel": self._travel, "since": float(self._since)}
+        own |= {"skin_way": self._way, "skin_spent": self._spent}
         own |= {"speed_max": float(now[:, N_SPEED_MAX].max()), "spin_max": float(now[:, N_SPIN_MAX].max())}
         own["overlap_max"] = float(now[block, N_OVERLAP_MAX])
         own["overlap_grain"] = float(now[block, N_OVERLAP_GRAIN])
@@ -402,6 +367,7 @@ class CpuEngine:
         own, books, now = state.engine, self._ledger.books, self._ledger.now
         self._skin = own.get("skin", self._skin_first * self._smallest)
         self._since = int(own.get("since", 0))
+        self._way, self._spent = own.get("skin_way", 1.25), own.get("skin_spent", np.inf)
         if state.books.shape == books.shape:
             books[:] = state.books
             now[:, PENDING] = books[:, N_BOOK : N_BOOK + len(PENDING)]

@@ -1,52 +1,40 @@
-"""How a batch of pairs lies in memory: what the law of contact reads and leaves, lane by lane.
+"""The desk: how a batch of touching pairs lies in memory while the law of contact works on it, lane by lane.
 
-The loop over lanes becomes vector instructions: eight pairs at a time where the machine has them. For that it works on
-two flat arrays only, at places known when it is compiled. Groups of four doubles belong to one pair, so that they
-are filled and emptied by whole vectors. Plain integers, since kernels read them as constants.
+The loop over lanes becomes vector instructions: eight pairs at a time where the machine has them. For that
+it works on one flat array, at places known when it is compiled. Groups of four doubles belong to one pair, so
+that they are filled and emptied by whole vectors; rows hold one double a pair. Plain integers, since kernels read
+them as constants.
 """
 
 LANES = 64  # pairs in a batch
+PITCH = (
+    LANES + 8
+)  # between rows: with a power of two all rows would fall into the same few places of the cache
 
-# Desk: what one batch works on, the same few kilobytes for batch after batch. Groups of four:
+# Groups of four:
 D_APART = 0  # from i to j [m], and nothing
-D_SLIP = 4 * LANES  # velocity of i against j [m/s], and nothing
-D_SPIN_I = 8 * LANES  # spin of i [rad/s] and its radius [m]
-D_SPIN_J = 12 * LANES
-D_FORCE = 16 * LANES  # force on i [N], and nothing
-D_TORQUE_I = 20 * LANES  # torque on i [N m], and 1 where they touch
-D_TORQUE_J = 24 * LANES
-# and rows of one double a pair:
-D_DASH_N = 28 * LANES  # what goes into the books [J]
-D_DASH_S = 29 * LANES
-D_SLIDE = 30 * LANES
-D_RELEASED_N = 31 * LANES
-D_RELEASED_S = 32 * LANES
-D_STEP = 33 * LANES
-D_OVERLAP = 34 * LANES  # [m]; of every lane, negative where they do not touch
-D_RATIO = 35 * LANES  # overlap over the smaller diameter [-], 0 where they do not touch
-# for rolling friction, films and records alone:
-D_WAS = 36 * LANES  # 1 where they touched in the last step
-D_CLOSING = 37 * LANES  # [m/s]
-D_NORMAL = 38 * LANES  # three rows [-]
-D_SLIDING_V = 41 * LANES  # slip velocity at the contact point, three rows [m/s]
-D_SLIDES = 44 * LANES  # 1 where it slides
-D_SUMS = 45 * LANES  # books of the block so far, and its largest ratio of overlap
-DESK = D_SUMS + 8
-
-# Memory of a batch: rows of one double a pair. A pair that does not touch holds zeros, but for its dashpots.
-M_SPRING_S = 0  # tangential spring force on i [N], three rows; a plane scene uses the first
-M_DASH_S = 3 * LANES  # tangential dashpot force on i in the last step [N]
-M_DASH_N = 6 * LANES  # normal force less normal spring in the last step [N]
-M_F_N = 7 * LANES  # normal force in the last step [N]
-M_ETA_N = 8 * LANES  # dashpots of this pair [N s/m]
-M_ETA_S = 9 * LANES
-M_LIVE = 10 * LANES  # 1 where they touched in the last step
-N_MEMORY = 11
-MEMORY = N_MEMORY * LANES
-
-# What only some variants keep, a row of doubles a pair.
-X_SPRING_R = 0  # rolling spring torque on i [N m]
-X_DASH_R = 3  # rolling torque on i in the last step, less its spring [N m]
-X_ROLLING = 6
-
+D_MOVING = 4 * PITCH  # velocity of i against j [m/s], and nothing
+D_SPIN_I = 8 * PITCH  # spin of i [rad/s] and its radius [m]
+D_SPIN_J = 12 * PITCH
+D_SPRING = 16 * PITCH  # memory: tangential spring force on i, and normal force [N]
+D_DASH = 20 * PITCH  # memory: tangential dashpot force on i, and normal force less normal spring [N]
+D_FORCE = 24 * PITCH  # force on i [N], and nothing
+D_TORQUE_I = 28 * PITCH  # torque on i [N m], and 1 where they touch
+D_TORQUE_J = 32 * PITCH
+# Rows:
+D_ETA_N = 36 * PITCH  # dashpots of this pair [N s/m]
+D_ETA_S = 37 * PITCH
+D_WAS = 38 * PITCH  # 1 where they touched in the last step
+D_EXCESS = 39 * PITCH  # overlap less the largest so far for its size [m]
+# Books [J], summed lane by lane until the block is done:
+D_BOOKS = 40 * PITCH
+D_DASH_N, D_DASH_S, D_SLIDE, D_RELEASED_N, D_RELEASED_S, D_STEP = (D_BOOKS + k * PITCH for k in range(6))
+N_LANE_BOOK = 6
+# Rows for rolling friction, films and records alone:
+D_OVERLAP = 46 * PITCH  # [m], negative where they do not touch
+D_CLOSING = 47 * PITCH  # [m/s]
+D_NORMAL = 48 * PITCH  # three rows [-]
+D_SLIP = 51 * PITCH  # slip velocity at the contact point, three rows [m/s]
+D_SLIDES = 54 * PITCH  # 1 where it slides
+DESK = 55 * PITCH
 FAR = 1.0e9  # [m] where a lane without a pair puts its partner

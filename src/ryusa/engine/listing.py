@@ -7,9 +7,8 @@ import numpy as np
 from ryusa.engine.arrays import Grains, Near, Pairs, Walls
 from ryusa.engine.carry import cross_lists, wrap_grains
 from ryusa.engine.cells import build_list, grid_of, sort_into
-from ryusa.engine.lanes import LANES, N_MEMORY
 from ryusa.engine.near import count_live, put_rows, take_rows
-from ryusa.engine.rows import BASE, Variant
+from ryusa.engine.rows import Variant
 from ryusa.model import Scene, State
 from ryusa.model.enums import Profile
 from ryusa.model.immersed import Immersed
@@ -56,16 +55,13 @@ class Layout:
             none, none, np.zeros((0, 8)),
         )  # fmt: skip
 
-    def room_for(self, lanes: np.ndarray) -> Near:
-        """An empty near list with room for so many lanes in each block."""
-        batches = (lanes + LANES - 1) // LANES
-        first = np.concatenate([[0], np.cumsum(batches)]) * LANES
-        total, blocks = int(first[-1]), len(lanes)
-        place = [np.zeros(total, np.uint32) for _ in range(4)]
-        return Near(
-            first, np.zeros(blocks, np.int64), np.zeros(blocks, np.int64), *place,
-            np.zeros(total * N_MEMORY), np.zeros((total, self.kind.extra_width)),
-        )  # fmt: skip
+    def room_for(self, pairs: np.ndarray) -> Near:
+        """An empty near list with room for so many pairs in each block."""
+        first = np.concatenate([[0], np.cumsum(pairs)])
+        total = int(first[-1])
+        i, j, to, pair = (np.zeros(total, np.uint32) for _ in range(4))
+        rows = np.zeros((total, self.kind.row_width))
+        return Near(first, np.zeros(len(pairs), np.int64), i, j, to, pair, np.zeros(total, np.uint8), rows)
 
     def by_id(self, state: State) -> Grains:
         """Arrays of a state, still in the order of ids."""
@@ -79,7 +75,9 @@ class Layout:
             none = Immersed.still(n)
         immersed = state.immersed or none
         return Grains(
-            x=np.hstack([np.vstack([state.x, self.x_fixed, still[len(self.x_fixed) :]]), np.zeros_like(radius)]),
+            x=np.hstack(
+                [np.vstack([state.x, self.x_fixed, still[len(self.x_fixed) :]]), np.zeros_like(radius)]
+            ),
             v=np.hstack([np.vstack([state.v, still]), np.zeros_like(radius)]),
             w=np.hstack([np.vstack([spin, still]), radius]),
             m=self.m,
@@ -113,9 +111,7 @@ class Layout:
             taken=grains.taken[wet],
         )
 
-    def list_pairs(
-        self, by_id: Grains, pairs: Pairs, skin: float
-    ) -> tuple[Grains, Pairs, Floats, int]:
+    def list_pairs(self, by_id: Grains, pairs: Pairs, skin: float) -> tuple[Grains, Pairs, Floats, int]:
         """Wrap, sort and list.
 
         Parameters
@@ -208,7 +204,7 @@ def film_reach(scene: Scene) -> float:
 def take_memory(n: int, grains: Grains, near: Near) -> Memory:
     """Copy ids and rows of all pairs in touch, in list order."""
     count = count_live(near)
-    width = BASE + near.extra.shape[1]
+    width = near.rows.shape[1]
     memory = Memory(np.empty(count, np.int64), np.empty(count, np.int64), np.empty((count, width)))
     take_rows(n, near, grains.ids, *memory)
     return memory

@@ -1,5 +1,5 @@
 """The loop over steps that threads run together, block by block."""
-# ruff: noqa: F403, F405  (the columns of rows.py, all of them plain integers)
+# ruff: noqa: E741, F403, F405  (l is a lane; the columns of rows.py, all of them plain integers)
 
 from functools import cache
 from typing import Any
@@ -7,24 +7,27 @@ from typing import Any
 import numpy as np
 
 from ryusa.engine._kernel import FAST, kernel
-from ryusa.engine.arrays import Grains, Ledger, Near, Pairs, Walls
-from ryusa.engine.batch import hand_out, lay_out, reckon
+from ryusa.engine.arrays import Grains, Ledger, Near, Pairs, Walls, Work
+from ryusa.engine.batch import hand_out, lay_out, look, make_reckon, overlap_on
 from ryusa.engine.company import keep_company, wet_dashpots
-from ryusa.engine.lanes import D_SUMS, DESK, LANES, M_DASH_N, M_F_N, M_LIVE, M_SPRING_S, MEMORY
+from ryusa.engine.lanes import D_APART, D_BOOKS, D_SPIN_I, D_SPIN_J, DESK, LANES, N_LANE_BOOK, PITCH
 from ryusa.engine.motion import motion
 from ryusa.engine.near import cut
 from ryusa.engine.rows import *
 from ryusa.engine.sync import meet
 from ryusa.model.tally import Book
 
-B_STEP, B_DASH_N, B_DASH_S = int(Book.STEP), int(Book.DASH_N), int(Book.DASH_S)
-B_SLIDE, B_RELEASED_N, B_RELEASED_S = int(Book.SLIDE), int(Book.RELEASED_N), int(Book.RELEASED_S)
+# the books a lane keeps, in the order of lanes.py
+BOOKS = tuple(
+    int(book) for book in (Book.DASH_N, Book.DASH_S, Book.SLIDE, Book.RELEASED_N, Book.RELEASED_S, Book.STEP)
+)
 
 
 @kernel(fastmath=FAST, forceinline=True)
 def forces(
     kind: Variant,
     choice: Choice,
+    reckon: Any,
     b: int,
     n: int,
     n_solid: int,
@@ -37,67 +40,87 @@ def forces(
     walls: Walls,
     pairs: Pairs,
     near: Near,
-    desk: Any,
+    work: Work,
     ended: Any,
     book: Any,
     now: Any,
 ) -> None:
-    """Forces of every pair that block b owns."""
-    f, ids = pairs.f, grains.ids
-    sums = desk[D_SUMS : D_SUMS + 7]
-    sums[:] = 0.0
-    sums[6] = now[N_OVERLAP_MAX]
+    """Forces of every pair that block b owns, batch by batch of those that touch."""
+    desk, apart, hit, which = work.desk, work.apart, work.hit, work.which
+    reach_on = c[C_FILM_REACH] if kind.film else 0.0
+    live = near.live
     spring_r = 0.0
-    first, end = near.first[b], near.first[b] + near.count[b]
-    f[n + b, :] = 0.0  # what fixed grains and planes would get
-    while first < end:
-        m = min(LANES, end - first)
-        i_of, j_of, to = near.i[first : first + m], near.j[first : first + m], near.to[first : first + m]
-        memory = near.memory[first // LANES * MEMORY : (first // LANES + 1) * MEMORY]
-        lanes = lay_out(m, n_solid, i_of, j_of, grains, walls, desk)
+    pairs.f[n + b, :] = 0.0  # what fixed grains and planes would get
+    desk[D_BOOKS : D_BOOKS + N_LANE_BOOK * PITCH] = 0.0
+    k = looked = near.first[b]
+    end = k + near.count[b]
+    from_ = k
+    while True:
+        m = 0
+        while m < LANES and k < end:
+            if k == looked:
+                from_, looked = k, min(k + LANES, end)
+                look(kind.plane_case, reach_on, k, looked - k, n_solid, c, grains, walls, near, apart, hit)
+            l = k - from_
+            if hit[l] > 0.0 or live[k]:
+                which[m] = k
+                for a in range(4):
+                    desk[D_APART + 4 * m + a] = apart[4 * l + a]
+                m += 1
+            k += 1
+        if m == 0:
+            break
+        lanes = lay_out(m, which, n_solid, grains, near, desk)
         if choice.rebound:
-            wet_dashpots(choice, m, i_of, j_of, c, grains, desk, memory)
-        reckon(kind, choice, lanes, hdt, c, desk, memory)
+            wet_dashpots(choice, m, which, c, grains, near, desk)
+        reckon(choice, lanes, hdt, now[N_OVERLAP_MAX], c, desk)
         if kind.rolling or kind.events or kind.film:
             spring_r += keep_company(
-                kind, choice, m, n, t, hdt, i_of, j_of, to, c, grains, desk, memory,
-                near.extra[first : first + m], ended, book, now,
-            )  # fmt: skip
-        most = hand_out(m, i_of, to, desk, f, sums)
-        if most >= 0:
-            i, j = i_of[most], j_of[most]
-            now[N_OVERLAP_GRAIN], now[N_OVERLAP_STEP] = ids[i], step
-            if sums[6] > c[C_OVERLAP_LIMIT] and now[N_FAULT] == FAULT_NONE:
-                now[N_FAULT], now[N_FAULT_GRAIN] = FAULT_OVERLAP, ids[i]
-                now[N_FAULT_PARTNER] = ids[j] if j < n else j
-        first += LANES
-    book[B_DASH_N] += sums[0]
-    book[B_DASH_S] += sums[1]
-    book[B_SLIDE] += sums[2]
-    book[B_RELEASED_N] += sums[3]
-    book[B_RELEASED_S] += sums[4]
-    book[B_STEP] += sums[5]
-    now[N_OVERLAP_MAX] = sums[6]
+                kind, choice, m, n, t, hdt, which, c, grains, near, desk, ended, book, now
+            )
+        if hand_out(m, which, near, desk, pairs.f):
+            guard(m, which, n, step, c, grains, near, desk, now)
+    for row in range(N_LANE_BOOK):
+        total = 0.0
+        for l in range(LANES):
+            total += desk[D_BOOKS + row * PITCH + l]
+        book[BOOKS[row]] += total
     if last:
         now[N_SPRING_N], now[N_SPRING_S], now[N_N_CONTACT] = springs(b, c, near)
         now[N_SPRING_R] = spring_r
 
 
+@kernel()
+def guard(
+    m: int, which: Any, n: int, step: int, c: Any, grains: Grains, near: Near, desk: Any, now: Any
+) -> None:
+    """Note the largest overlap among the first m lanes, and flag one beyond the limit."""
+    ids = grains.ids
+    for l in range(m):
+        smaller = 2.0 * min(desk[D_SPIN_I + 4 * l + 3], desk[D_SPIN_J + 4 * l + 3])
+        ratio = overlap_on(l, c, desk) / smaller
+        if ratio > now[N_OVERLAP_MAX]:
+            i, j = near.i[which[l]], near.j[which[l]]
+            now[N_OVERLAP_MAX], now[N_OVERLAP_GRAIN], now[N_OVERLAP_STEP] = ratio, ids[i], step
+            if ratio > c[C_OVERLAP_LIMIT] and now[N_FAULT] == FAULT_NONE:
+                now[N_FAULT], now[N_FAULT_GRAIN] = FAULT_OVERLAP, ids[i]
+                now[N_FAULT_PARTNER] = ids[j] if j < n else j
+
+
 @kernel(fastmath=FAST)
 def springs(b: int, c: Any, near: Near) -> tuple[float, float, int]:
     """Energy in the normal and tangential springs of block b [J], and its contacts."""
-    k_n, k_s, memory = c[C_K_N], c[C_K_S], near.memory
+    k_n, k_s, rows = c[C_K_N], c[C_K_S], near.rows
     normal = tangential = 0.0
     count = 0
     for k in range(near.first[b], near.first[b] + near.count[b]):
-        place = k // LANES * MEMORY + k % LANES
-        if memory[place + M_LIVE] > 0.0:
-            e_n = memory[place + M_F_N] - memory[place + M_DASH_N]
+        if near.live[k]:
+            e_n = rows[k, R_F_N] - rows[k, R_DASH_N]
             if k_n > 0.0:
                 normal += 0.5 * e_n * e_n / k_n
             if k_s > 0.0:
                 for a in range(3):
-                    tangential += 0.5 * memory[place + M_SPRING_S + a * LANES] ** 2 / k_s
+                    tangential += 0.5 * rows[k, R_SPRING_S + a] ** 2 / k_s
             count += 1
     return normal, tangential, count
 
@@ -105,6 +128,8 @@ def springs(b: int, c: Any, near: Near) -> tuple[float, float, int]:
 @cache
 def make_run(kind: Variant) -> Any:
     """Build the stepping function of one variant; compiled when first called, then kept on disk."""
+    company = kind.rolling or kind.events or kind.film
+    reckon = make_reckon(kind.plane_case, kind.rotation, 1 if company else 0)
 
     @kernel(nogil=True, fastmath=FAST)
     def run(
@@ -132,20 +157,25 @@ def make_run(kind: Variant) -> Any:
         n_block = len(block_start) - 1
         b_0, b_1 = thread * n_block // n_threads, (thread + 1) * n_block // n_threads
         dt, t_zero, skin, step_limit = c[C_DT], c[C_T_ZERO], c[C_SKIN], c[C_STEP_LIMIT]
-        desk = np.zeros(DESK)
+        work = Work(np.zeros(DESK), np.zeros(4 * LANES), np.zeros(LANES), np.zeros(LANES, np.int64))
         near_skin, near_travel, since = clock[K_SKIN], clock[K_TRAVEL], clock[K_SINCE]
-        cuts, waste = clock[K_CUTS], clock[K_WASTE]
-        cost = COST_LOOK * pairs.start[n] + COST_GRAIN * n
+        way, spent, steps, before = clock[K_WAY], clock[K_SPENT], clock[K_STEPS], clock[K_BEFORE]
+        lanes = clock[K_LANES]
+        look = COST_LOOK * pairs.start[n] + COST_GRAIN * n
         target = done = 0
         stop = STOP_DONE
         while done < n_steps:
             if 2.0 * travel > skin:
                 stop = STOP_LIST
                 break
-            idle = COST_LANE * waste * since  # spent on pairs that do not touch
-            if 2.0 * (travel - near_travel) > near_skin or idle > 4.0 * cost:
-                near_skin *= 1.25 if idle < cost else 0.8
-                near_skin = min(max(near_skin, clock[K_LEAST]), clock[K_MOST])
+            if 2.0 * (travel - near_travel) > near_skin or since >= 8.0 * STEPS_A_SKIN:
+                spent += since * COST_NEAR * lanes + look + COST_LAY * lanes
+                steps += since
+                if steps >= STEPS_A_SKIN:  # go on widening or narrowing as long as it pays
+                    if spent > before * steps:
+                        way = 1.0 / way
+                    before, spent, steps = spent / steps, 0.0, 0.0
+                    near_skin = min(max(way * near_skin, clock[K_LEAST]), clock[K_MOST])
                 reach_on = near_skin + (c[C_FILM_REACH] if kind.film else 0.0)
                 for b in range(b_0, b_1):
                     room = cut(
@@ -154,10 +184,9 @@ def make_run(kind: Variant) -> Any:
                     )  # fmt: skip
                     now[b, N_FULL] = 0.0 if room else 1.0
                 target = meet(count, n_threads, target)
-                near_travel, since, waste = travel, 0.0, 0.0
-                cuts += 1.0
+                near_travel, since, lanes = travel, 0.0, 0.0
                 for b in range(n_block):
-                    waste += near.count[b] - near.live[b]
+                    lanes += near.count[b]
                     if now[b, N_FULL] > 0.0:
                         stop = STOP_ROOM
                 if stop != STOP_DONE:
@@ -168,7 +197,8 @@ def make_run(kind: Variant) -> Any:
             hdt = 0.0 if step == 0 else 0.5 * dt
             for b in range(b_0, b_1):
                 forces(
-                    kind, choice, b, n, n_solid, step, t, hdt, last, c, grains, walls, pairs, near, desk,
+                    kind, choice, reckon, b, n, n_solid, step, t, hdt, last, c, grains, walls, pairs, near,
+                    work,
                     ended[b], books[b], now[b],
                 )  # fmt: skip
             target = meet(count, n_threads, target)
@@ -199,7 +229,8 @@ def make_run(kind: Variant) -> Any:
         meet(count, n_threads, target)
         if thread == 0:
             clock[K_SKIN], clock[K_TRAVEL], clock[K_SINCE] = near_skin, near_travel, since
-            clock[K_CUTS], clock[K_WASTE] = cuts, waste
+            clock[K_WAY], clock[K_SPENT], clock[K_STEPS], clock[K_BEFORE] = way, spent, steps, before
+            clock[K_LANES] = lanes
         return done, travel, stop
 
     return run

@@ -183,5 +183,3 @@ def motion(
     now[N_FAULT_SHOWN], now[N_ENDED_SHOWN] = now[N_FAULT], now[N_N_ENDED]
     if last:
         now[N_KINETIC], now[N_SPIN], now[N_POTENTIAL] = kinetic, spin, potential
-
-

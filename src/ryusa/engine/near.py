@@ -1,26 +1,17 @@
-"""The near list: cut from the wide one every few steps, so that a step looks at hardly more than what touches.
+"""The near list: cut from the wide one every few steps, so that a step sees little more than what touches.
 
-Lanes keep the order of the wide list, and a lane that does not touch adds nothing: when the near list is cut never
-shows in the bits of a run.
+Pairs keep the order of the wide list, and those that do not touch are passed over: when the near list is cut
+never shows in the bits of a run.
 """
-# ruff: noqa: F403, F405  (the places of lanes.py and the columns of rows.py, all of them plain integers)
+# ruff: noqa: F403, F405  (the columns of rows.py, all of them plain integers)
 
 from typing import Any
 
 from ryusa.engine._kernel import kernel
 from ryusa.engine.arrays import Grains, Near, Pairs, Walls
-from ryusa.engine.lanes import *
 from ryusa.engine.pair import dashpots
 from ryusa.engine.rows import *
 from ryusa.laws.geometry import wrap
-
-
-@kernel(forceinline=True)
-def copy_lane(a: int, from_memory: Any, b: int, to_memory: Any) -> None:
-    """Copy the memory of lane a of one array of batches to lane b of another."""
-    p, q = a // LANES * MEMORY + a % LANES, b // LANES * MEMORY + b % LANES
-    for k in range(N_MEMORY):
-        to_memory[q + k * LANES] = from_memory[p + k * LANES]
 
 
 @kernel()
@@ -48,9 +39,8 @@ def cut(
     start, partners = pairs.start, pairs.partners
     l_x, l_y = c[C_PERIOD_X], c[C_PERIOD_Y]
     first, had = near.first[b], near.count[b]
-    room = near.first[b + 1] - first
-    width = near.extra.shape[1] if len(near.extra) else 0
-    old = new = live = 0
+    room, width = near.first[b + 1] - first, near.rows.shape[1]
+    old = new = 0
     q = pairs.cross_start[b]
     for i in range(lo, hi):
         x_i, y_i, z_i, r_i = x[i, 0], x[i, 1], x[i, 2], w[i, 3] + reach_on
@@ -73,8 +63,8 @@ def cut(
             while old < had and near.pair[first + old] < p:
                 old += 1
             known = old < had and near.pair[first + old] == p
-            if known and not close:  # one that parted since the last step has an account to close
-                close = near.memory[(first + old) // LANES * MEMORY + M_LIVE + (first + old) % LANES] > 0.0
+            if known and near.live[first + old]:
+                close = True  # also one that parted since the last step: it has an account to close
             to = j
             if j >= n:
                 to = n + b
@@ -87,31 +77,24 @@ def cut(
             if new == room:
                 return False
             spare.i[new], spare.j[new], spare.to[new], spare.pair[new] = i, j, to, p
-            place = new // LANES * MEMORY + new % LANES
             if known:
-                copy_lane(first + old, near.memory, new, spare.memory)
+                spare.live[new] = near.live[first + old]
                 for k in range(width):
-                    spare.extra[new, k] = near.extra[first + old, k]
-                if spare.memory[place + M_LIVE] > 0.0:
-                    live += 1
+                    spare.rows[new, k] = near.rows[first + old, k]
             else:
-                for k in range(N_MEMORY):
-                    spare.memory[place + k * LANES] = 0.0
-                eta = dashpots(i, j, rotation, c, grains.m, w, grains.inertia)
-                spare.memory[place + M_ETA_N], spare.memory[place + M_ETA_S] = eta
+                spare.live[new] = 0
                 for k in range(width):
-                    spare.extra[new, k] = 0.0
+                    spare.rows[new, k] = 0.0
+                eta = dashpots(i, j, rotation, c, grains.m, w, grains.inertia)
+                spare.rows[new, R_ETA_N], spare.rows[new, R_ETA_S] = eta
             new += 1
-    near.count[b], near.live[b] = new, live
+    near.count[b] = new
     near.i[first : first + new] = spare.i[:new]
     near.j[first : first + new] = spare.j[:new]
     near.to[first : first + new] = spare.to[:new]
     near.pair[first : first + new] = spare.pair[:new]
-    batches = (new + LANES - 1) // LANES * MEMORY
-    place = first // LANES * MEMORY
-    near.memory[place : place + batches] = spare.memory[:batches]
-    if width:
-        near.extra[first : first + new] = spare.extra[:new]
+    near.live[first : first + new] = spare.live[:new]
+    near.rows[first : first + new] = spare.rows[:new]
     return True
 
 
@@ -121,26 +104,21 @@ def count_live(near: Near) -> int:
     total = 0
     for b in range(len(near.count)):
         for k in range(near.first[b], near.first[b] + near.count[b]):
-            if near.memory[k // LANES * MEMORY + M_LIVE + k % LANES] > 0.0:
-                total += 1
+            total += near.live[k]
     return total
 
 
 @kernel()
 def take_rows(n: int, near: Near, ids: Any, out_i: Any, out_j: Any, rows: Any) -> None:
-    """Copy ids and memory of all pairs in touch, in the order of the list; rows are those of rows.py."""
+    """Copy ids and memory of all pairs in touch, in the order of the list."""
     t = 0
     for b in range(len(near.count)):
         for k in range(near.first[b], near.first[b] + near.count[b]):
-            place = k // LANES * MEMORY + k % LANES
-            if near.memory[place + M_LIVE] > 0.0:
+            if near.live[k]:
                 i, j = near.i[k], near.j[k]
                 out_i[t] = ids[i]
                 out_j[t] = ids[j] if j < n else j
-                for a in range(BASE):
-                    rows[t, a] = near.memory[place + a * LANES]
-                for a in range(rows.shape[1] - BASE):
-                    rows[t, BASE + a] = near.extra[k, a]
+                rows[t, :] = near.rows[k, :]
                 t += 1
 
 
@@ -156,7 +134,7 @@ def put_rows(n: int, near: Near, block_of: Any, index: Any, i_ids: Any, j_ids: A
         b = block_of[i]
         low, high = near.first[b], near.first[b] + near.count[b]
         end = high
-        while low < high:  # the first lane of grain i
+        while low < high:  # the first pair of grain i
             middle = (low + high) // 2
             if near.i[middle] < i:
                 low = middle + 1
@@ -166,11 +144,6 @@ def put_rows(n: int, near: Near, block_of: Any, index: Any, i_ids: Any, j_ids: A
             low += 1
         if low == end or near.i[low] != i:
             return t
-        place = low // LANES * MEMORY + low % LANES
-        for a in range(BASE):
-            near.memory[place + a * LANES] = rows[t, a]
-        near.memory[place + M_LIVE] = 1.0
-        near.live[b] += 1
-        for a in range(rows.shape[1] - BASE):
-            near.extra[low, a] = rows[t, BASE + a]
+        near.rows[low, :] = rows[t, :]
+        near.live[low] = 1
     return -1

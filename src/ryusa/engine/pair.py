@@ -5,7 +5,6 @@ import math
 from typing import Any
 
 from ryusa.engine._kernel import FAST, kernel
-from ryusa.engine.lanes import X_DASH_R, X_ROLLING, X_SPRING_R
 from ryusa.engine.rows import *
 from ryusa.laws.collision import effective_mass, effective_mass_tangential, zeta_no_tension, zeta_tension
 from ryusa.laws.contact import damping, damping_in_steps
@@ -39,9 +38,7 @@ B_ROLL, B_RELEASED_R = int(Book.ROLL), int(Book.RELEASED_R)
 
 
 @kernel()
-def dashpots(
-    i: int, j: int, rotation: int, c: Any, m: Any, w: Any, inertia: Any
-) -> tuple[float, float]:
+def dashpots(i: int, j: int, rotation: int, c: Any, m: Any, w: Any, inertia: Any) -> tuple[float, float]:
     """Normal and tangential dashpot of a pair [N s/m]; `w` as in `arrays.Grains`."""
     m_t = effective_mass_tangential(m[i], w[i, 3], inertia[i], m[j], w[j, 3], inertia[j], rotation != 0)
     m_n = effective_mass(m[i], m[j])
@@ -53,7 +50,7 @@ def dashpots(
 
 @kernel()
 def dashpot_wet(choice: Choice, closing: float, i: int, j: int, c: Any, m: Any, w: Any) -> float:
-    """Normal dashpot [N s/m] of a pair that just touched under water, of its rebound at this closing speed."""
+    """Normal dashpot [N s/m] of a pair that just touched under water at this closing speed."""
     m_n = effective_mass(m[i], m[j])
     st = stokes_number(closing, m_n, reduced_radius(w[i, 3], w[j, 3]), c[C_RHO_W], c[C_NU])
     if choice.rebound == EXPONENTIAL:
@@ -103,7 +100,7 @@ def roll(
     e_x = e_y = e_z = 0.0  # spring
     q_x = q_y = q_z = 0.0  # the rest
     energy = stored = 0.0
-    p_x, p_y, p_z = row[X_SPRING_R], row[X_SPRING_R + 1], row[X_SPRING_R + 2]
+    p_x, p_y, p_z = row[R_SPRING_R], row[R_SPRING_R + 1], row[R_SPRING_R + 2]
     if model == ROLL_PRINTED:
         size = math.sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2])
         if size > 0.0:
@@ -138,10 +135,10 @@ def roll(
         elif scale < 1.0:
             book[B_ROLL] += taken + stored - energy
     book[B_ROLL] -= hdt * (
-        s_x * (row[X_DASH_R] + q_x) + s_y * (row[X_DASH_R + 1] + q_y) + s_z * (row[X_DASH_R + 2] + q_z)
+        s_x * (row[R_DASH_R] + q_x) + s_y * (row[R_DASH_R + 1] + q_y) + s_z * (row[R_DASH_R + 2] + q_z)
     )
-    row[X_SPRING_R], row[X_SPRING_R + 1], row[X_SPRING_R + 2] = e_x, e_y, e_z
-    row[X_DASH_R], row[X_DASH_R + 1], row[X_DASH_R + 2] = q_x, q_y, q_z
+    row[R_SPRING_R], row[R_SPRING_R + 1], row[R_SPRING_R + 2] = e_x, e_y, e_z
+    row[R_DASH_R], row[R_DASH_R + 1], row[R_DASH_R + 2] = q_x, q_y, q_z
     return e_x + q_x, e_y + q_y, e_z + q_z, energy
 
 
@@ -149,16 +146,16 @@ def roll(
 def roll_out(
     rolling: int, row: Any, c: Any, hdt: float, w_i: Vector, w_j: Vector, radius: float, book: Any
 ) -> None:
-    """Close the rolling account of a pair that parted: the last half interval, and what its spring still held.
+    """Close the rolling account of a pair that parted: the last half interval, and what its spring held.
 
-    `rolling` is the model, `radius` the reduced radius of the pair [m]; the row is empty afterwards.
+    `rolling` is the model, `radius` the reduced radius of the pair [m]; its part of the row is emptied.
     """
     sign = 1.0 if rolling == ROLL_PRINTED else -1.0
     w_x, w_y, w_z = w_i[0] + sign * w_j[0], w_i[1] + sign * w_j[1], w_i[2] + sign * w_j[2]
-    e_x, e_y, e_z = row[X_SPRING_R], row[X_SPRING_R + 1], row[X_SPRING_R + 2]
+    e_x, e_y, e_z = row[R_SPRING_R], row[R_SPRING_R + 1], row[R_SPRING_R + 2]
     k_r = epsd_stiffness(c[C_K_N], c[C_ROLL] * radius, c[C_ROLL_STIFFNESS])
     if rolling == ROLL_EPSD and k_r > 0.0:
         book[B_RELEASED_R] += 0.5 * (e_x * e_x + e_y * e_y + e_z * e_z) / k_r
     book[B_RELEASED_R] -= hdt * (w_x * e_x + w_y * e_y + w_z * e_z)
-    book[B_ROLL] -= hdt * (w_x * row[X_DASH_R] + w_y * row[X_DASH_R + 1] + w_z * row[X_DASH_R + 2])
-    row[:X_ROLLING] = 0.0
+    book[B_ROLL] -= hdt * (w_x * row[R_DASH_R] + w_y * row[R_DASH_R + 1] + w_z * row[R_DASH_R + 2])
+    row[R_SPRING_R:R_ROLLING] = 0.0

@@ -7,15 +7,16 @@ from typing import NamedTuple
 
 from ryusa.model.contacts import N_EVENT
 
-# Contact row: vectors take three columns. A plane scene keeps components along its one tangent in the first.
+# Row of a pair: vectors take three columns. A plane scene keeps the component along its one tangent.
 R_SPRING_S = 0  # tangential spring force on grain i [N]
-R_DASH_S = 3  # tangential dashpot force on i in the last step [N]
-R_DASH_N = 6  # normal force less normal spring in the last step [N]
-R_F_N = 7  # normal force in the last step [N]
+R_F_N = 3  # normal force in the last step [N]
+R_DASH_S = 4  # tangential dashpot force on i in the last step [N]
+R_DASH_N = 7  # normal force less normal spring in the last step [N]
 R_ETA_N = 8  # dashpots of this pair [N s/m]
 R_ETA_S = 9
 R_SPRING_R = 10  # rolling spring torque on i [N m]; from here on only where rolling friction acts
 R_DASH_R = 13  # rolling torque on i in the last step, less its spring [N m]
+R_ROLLING = 16
 
 # Open contact record, counted from where it starts in the row (fields of model.EVENT).
 E_I = 0
@@ -107,11 +108,14 @@ N_FULL = 23  # 1 where the near list of the block found no room
 K_SKIN = 0  # reach of the near list beyond touch [m]
 K_TRAVEL = 1  # how far the fastest grain had gone when it was cut [m]
 K_SINCE = 2  # steps since
-K_CUTS = 3  # cuts so far
-K_WASTE = 4  # lanes that do not touch, counted at the last cut
-K_LEAST = 5  # smallest and largest skin [m]
-K_MOST = 6
-N_CLOCK = 8
+K_LANES = 3  # lanes of all blocks
+K_LEAST = 4  # smallest and largest skin [m]
+K_MOST = 5
+K_WAY = 6  # factor by which the skin last changed
+K_SPENT = 7  # what steps and cuts cost since it changed [ns], by count, and how many they were
+K_STEPS = 8
+K_BEFORE = 9  # what a step cost with the skin before [ns]
+N_CLOCK = 12
 
 # What a kernel cannot raise.
 FAULT_NONE = 0
@@ -127,9 +131,10 @@ STOP_FAULT = 3
 STOP_UNSAFE = 4  # a grain went further in one step than the list allows
 STOP_ROOM = 5  # the near list wants more room
 
-# Measured, and fixed so that a run never depends on a clock [ns]: to look at a pair of the wide list and at a grain
-# while the near list is cut, and to carry a lane that does not touch through a step.
-COST_LOOK, COST_GRAIN, COST_LANE = 2.5, 4.0, 14.0
+# Measured, and fixed so that a run never depends on a clock [ns]: to look at a pair of the wide list and at a
+# grain while the near list is cut, to list a near pair, and to look at it in a step.
+COST_LOOK, COST_GRAIN, COST_LAY, COST_NEAR = 2.5, 4.0, 8.0, 3.0
+STEPS_A_SKIN = 64  # how long one skin of the near list is tried, at least
 
 BASE, WITH_ROLLING = 10, 16  # doubles a row takes without and with rolling friction
 # widths padded to whole cache lines, so that blocks of different threads do not share one
@@ -157,12 +162,7 @@ class Variant(NamedTuple):
     @property
     def row_width(self) -> int:
         """Doubles per contact row."""
-        return BASE + self.extra_width
-
-    @property
-    def extra_width(self) -> int:
-        """Doubles that only rolling friction and records keep."""
-        return (WITH_ROLLING - BASE if self.rolling else 0) + (N_EVENT if self.events else 0)
+        return self.event_column + (N_EVENT if self.events else 0)
 
     @property
     def event_column(self) -> int:

@@ -97,59 +97,29 @@ def slip_scale(size: float, tau_c: float) -> float:
 
 
 @law
-def slide_spring(size: float, tau_c: float) -> tuple[float, float, float]:
-    """Cap the spring, keep the dashpot: Eq. (3) as printed.
+def slide(size: float, tau_c: float, drop: bool, total: bool) -> tuple[float, float, float]:
+    """Cap what resists sliding, in one of three named ways.
 
     Parameters
     ----------
-    size : length of the tangential spring force before the cap, abs(e) [N].
+    size : length of the force before the cap [N]: of the spring, abs(e), or with `total` of spring and
+        dashpot, abs(e + d).
     tau_c : shear strength [N].
+    drop : the dashpot falls away while sliding.
+    total : spring and dashpot are capped together, as LAMMPS and LIGGGHTS do: the dashpot keeps its value and
+        the spring takes what is left, so that the sum has length tau_c. With neither the spring is capped and
+        the dashpot kept: Eq. (3) as printed.
 
     Returns
     -------
     a, b, c : e becomes a e + b d and d becomes c d, for spring force e and dashpot force d, vectors in 3D or
         components along the one tangent of a plane scene; a < 1 means sliding [-].
 
-    >>> slide_spring(2.0, 1.0)
-    (0.5, 0.0, 1.0)
-    """
-    return slip_scale(size, tau_c), 0.0, 1.0
-
-
-@law
-def slide_spring_drop(size: float, tau_c: float) -> tuple[float, float, float]:
-    """Cap the spring and drop the dashpot while sliding.
-
-    Parameters
-    ----------
-    size, tau_c : as in `slide_spring` [N]; returns the same three factors.
-
-    >>> slide_spring_drop(2.0, 1.0)
-    (0.5, 0.0, 0.0)
+    >>> slide(2.0, 1.0, False, False), slide(2.0, 1.0, True, False), slide(2.0, 1.0, False, True)
+    ((0.5, 0.0, 1.0), (0.5, 0.0, 0.0), (0.5, -0.5, 1.0))
     """
     scale = slip_scale(size, tau_c)
-    return scale, 0.0, 0.0 if scale < 1.0 else 1.0
-
-
-@law
-def slide_total(size: float, tau_c: float) -> tuple[float, float, float]:
-    """Cap spring and dashpot together, as LAMMPS and LIGGGHTS do.
-
-    Parameters
-    ----------
-    size : length of spring plus dashpot before the cap, abs(e + d) [N].
-    tau_c : shear strength [N]; returns the same three factors as `slide_spring`.
-
-    Notes
-    -----
-    While sliding the dashpot keeps its value and the spring takes what is left, so that the sum has length
-    tau_c.
-
-    >>> slide_total(2.0, 1.0)
-    (0.5, -0.5, 1.0)
-    """
-    scale = slip_scale(size, tau_c)
-    return scale, scale - 1.0, 1.0
+    return scale, scale - 1.0 if total else 0.0, 0.0 if drop and scale < 1.0 else 1.0
 
 
 @law
