@@ -5,8 +5,8 @@ are read at places known beforehand: that lets the compiler turn the loop of `re
 instructions (engine/lanes.py).
 
 Books are kept by velocity interval: at x(n) the velocity v(n-1/2) and the forces of steps n-1 and n give the
-work u dt (f(n-1) + f(n))/2, exact for the scheme when kinetic energy is m v(n-1/2) v(n+1/2)/2. A spring met or
-left within a step is booked for what the half interval takes beyond what it held (design/0005).
+work u dt (f(n-1) + f(n))/2, exact for the scheme when kinetic energy is m v(n-1/2) v(n+1/2)/2. A spring met
+or left within a step is booked for what the half interval takes beyond what it held (design/0005).
 """
 # ruff: noqa: E741, F403, F405  (l is a lane; the places of lanes.py and the columns of rows.py, all of them plain integers)
 

@@ -2,8 +2,8 @@
 
 The loop over lanes becomes vector instructions: eight pairs at a time where the machine has them. For that
 it works on one flat array, at places known when it is compiled. Groups of four doubles belong to one pair, so
-that they are filled and emptied by whole vectors; rows hold one double a pair. Plain integers, since kernels read
-them as constants.
+that they are filled and emptied by whole vectors; rows hold one double a pair. Plain integers, since kernels
+read them as constants.
 """
 
 LANES = 64  # pairs in a batch
