@@ -82,6 +82,29 @@ def test_the_motion_to_expect_follows_from_stress_and_settling(
     assert why in because
 
 
+def test_where_the_moving_layer_fills_the_depth_it_is_a_debris_flow() -> None:
+    said, because = regime(1.08, D_STAR, 4.0, layer=20.0, depth=6.8)
+    assert said == "debris flow"
+    assert "Egashira" in because
+    assert regime(1.08, D_STAR, 4.0, layer=6.7, depth=6.8)[0] == "sheet flow"
+    assert regime(0.03, D_STAR, 4.0, layer=math.inf, depth=6.8)[0] == "no motion"
+    assert "of any thickness" in regime(0.3, D_STAR, 4.0, layer=math.inf, depth=6.8)[1]
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("bedload_3d", "bed load: rolling and saltation"),
+        ("sheet_flow", "sheet flow"),
+        ("debris_equilibrium", "debris flow"),
+        ("paper/fig17", "debris flow"),  # as the paper calls it
+        ("paper/fig22", "debris flow"),  # friction is that of the timeline's end, not of the settling
+    ],
+)
+def test_the_shipped_flows_are_told_by_their_names(shipped, name, words) -> None:
+    assert rows(read(shipped / f"{name}.toml"))["expected motion"].value == words
+
+
 @pytest.mark.parametrize("drag", ["none", "24/Re+0.4"])
 @pytest.mark.parametrize("density", ["1000 kg/m3", "3000 kg/m3", "2650 kg/m3"])
 def test_grains_that_float_or_feel_nothing_are_explained(case: CaseOf, drag: str, density: str) -> None:

@@ -4,16 +4,21 @@ import math
 from typing import Literal
 
 from ryusa.casefile.column import CELL, Column
-from ryusa.casefile.derive import slope_at_last
+from ryusa.casefile.derive import friction_at_last, slope_at_last
 from ryusa.casefile.grains import bed_thickness, bed_top, packed, water_over
 from ryusa.casefile.rows import Row, row_of
 from ryusa.casefile.schema import Case
 from ryusa.casefile.water import hindrance_exponent, terminal_velocity
 from ryusa.laws import drag, transport
 from ryusa.laws.eddies import eddy_life
+from ryusa.model.column import AGREE
 
 THROUGHOUT, NEAR = 0.8, 2.5  # Rouse numbers below which grains fill the depth, and leave the bed for long
 SHEET, THICK = 0.5, 1.0  # tau_star from which a bed begins to move as a sheet, and surely does
+C_S, ALPHA = (
+    0.3,
+    0.25,
+)  # of Egashira's moving layer: concentration, pressure of collisions per static pressure
 
 
 def origin_of_u_star(case: Case) -> str:
@@ -36,7 +41,9 @@ def origin_of_u_star(case: Case) -> str:
     return f"sqrt(g h sin(slope)), steady flow{over}"
 
 
-def regime(tau_star: float, d_star: float, rouse: float) -> tuple[str, str]:
+def regime(
+    tau_star: float, d_star: float, rouse: float, layer: float = 0.0, depth: float = math.inf
+) -> tuple[str, str]:
     """How grains will move, in words, and by which numbers.
 
     Parameters
@@ -44,25 +51,31 @@ def regime(tau_star: float, d_star: float, rouse: float) -> tuple[str, str]:
     tau_star : dimensionless shear stress [-].
     d_star : dimensionless diameter D_* [-].
     rouse : Rouse number [-].
+    layer, depth : thickness of the moving layer, and depth of the water over the bed, in grains [-].
 
     Notes
     -----
     Threshold: Soulsby & Whitehouse 1997. Suspension: Rouse 1937. Sheet flow from tau_star 0.5 to 1 on: Wilson
-    1987; Sumer, Kozakiewicz, Fredsoe & Deigaard 1996.
+    1987; Sumer, Kozakiewicz, Fredsoe & Deigaard 1996. Debris flow where the layer fills the depth:
+    Egashira, Miyamoto & Itoh 1997.
 
-    >>> regime(0.3, 50.0, 7.6)[0], regime(0.03, 50.0, 24.0)[0]
-    ('bed load: rolling and saltation', 'no motion')
+    >>> regime(0.3, 50.0, 7.6)[0], regime(0.03, 50.0, 24.0)[0], regime(1.1, 55.0, 4.1, 20.0, 6.8)[0]
+    ('bed load: rolling and saltation', 'no motion', 'debris flow')
     """
     threshold = transport.tau_star_critical(d_star)
     begins = f"threshold {threshold:.3g}, Soulsby & Whitehouse 1997"
     if tau_star < threshold:
         return "no motion", f"tau_star below its {begins}; on a slope or in a loose bed some still move"
+    if layer >= depth:
+        thick = "of any thickness" if math.isinf(layer) else f"{layer:.3g} d"
+        why = f"the moving layer, {thick}, fills the depth of {depth:.3g} d: Egashira, Miyamoto & Itoh 1997"
+        return "debris flow", f"{why}; {begins}"
     if rouse < NEAR:
         where = "throughout the depth" if rouse < THROUGHOUT else "near the bed"
         words, why = f"suspension {where}", f"Rouse number below {THROUGHOUT if rouse < THROUGHOUT else NEAR}"
     else:
         words, why = "bed load: rolling and saltation", f"Rouse number above {NEAR}"
-    if tau_star >= THICK:
+    if tau_star >= (1.0 - AGREE) * THICK:
         words = f"sheet flow with {words}" if rouse < NEAR else "sheet flow"
     elif tau_star >= SHEET:
         words += ", towards sheet flow"
@@ -142,5 +155,8 @@ def _motion(case: Case, keys: Column) -> list[Row]:
     rouse = transport.rouse_number(settling, found.u_star, keys.kappa)
     rows.append(row_of("water", "Rouse number", rouse, "-", "settling velocity over kappa u_star"))
     d_star = transport.d_star(case.grains.density / wet.density - 1.0, found.g, found.d, wet.viscosity)
-    words, why = regime(found.tau_star, d_star, rouse)
+    layer = transport.bedload_layer(
+        found.tau_star, slope_at_last(case), math.atan(friction_at_last(case)), C_S, ALPHA
+    )
+    words, why = regime(found.tau_star, d_star, rouse, layer, water_over(case) / found.d)
     return [*rows, Row("water", "expected motion", words, "", words, why)]

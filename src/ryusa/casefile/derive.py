@@ -152,6 +152,16 @@ def friction(case: Case) -> float:
     return contact.friction if contact.friction is not None else math.nan
 
 
+def friction_at_last(case: Case) -> float:
+    """Friction coefficient after the last change of the timeline [-]."""
+    for change in reversed(case.timeline):
+        if change.friction_angle is not None:
+            return math.tan(change.friction_angle)
+        if change.friction is not None:
+            return change.friction
+    return friction(case)
+
+
 def restitution(case: Case) -> tuple[float, float, float, float]:
     """Restitution asked for, normal and tangential, and the damping ratios that give them; nan for constants.
 
