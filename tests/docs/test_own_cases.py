@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from ryusa import measure, run
 from ryusa.build import build
 from ryusa.casefile import read
 from ryusa.engine.cpu import CpuEngine
@@ -53,3 +54,14 @@ def test_the_box_settles_without_friction_and_gets_it_back(blocks, tmp_path):
     path.write_text(head + box + changes + REST.replace("0.05", "0.5"), encoding="utf-8")
     assert {"floor", "back", "gate", "pit"} <= set(stepped(path).groups)
     assert len(read(path).timeline) == 3
+
+
+def test_the_bed_under_water_runs_and_its_water_is_measured(blocks, tmp_path):
+    (text,) = [text for kind, text in blocks if kind == "toml" and 'profile = "column"' in text]
+    path = tmp_path / "gravel.toml"
+    path.write_text(text, encoding="utf-8")
+    assert read(path).derived.tau_star == pytest.approx(0.25, abs=0.01)
+    short = {"stop.time": "0.04 s", "record.settle": "0.01 s", "record.frames": "5 ms"}
+    found = run(read(path, short), tmp_path / "run", progress=False)
+    assert measure.water(found).averages["discharge"].value > 0.0
+    assert measure.transport(found).averages["tau_star"].value > 0.0
