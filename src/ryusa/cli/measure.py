@@ -163,7 +163,7 @@ def _print(averages: "Averages") -> None:
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column("quantity")
-    for name in ("value", "± s.e.", "unit", "n", "window [s]", "steady?"):
+    for name in ("value", "± s.e.", "unit", "n", "window \\[s]", "steady?"):
         table.add_column(name, justify="left" if name in {"unit", "steady?"} else "right")
     doubtful = False
     for one in averages.items:

@@ -23,16 +23,18 @@ def spin(found: Spin, grains: Sequence[int] | None = None, until: float | None =
     """
     figure, (axes,) = style.new(height=2.5)
     columns = range(found.omega.shape[1]) if grains is None else grains
+    far = float(np.abs(found.distance).max(initial=0.0)) if until is None else until
+    unit, scale = ("m", 1.0) if far >= 0.1 else ("mm", 1.0e3)
     for order, g in enumerate(columns):
         x = found.distance[:, g]
         keep = x <= until if until is not None else np.ones(len(x), dtype=np.bool_)
         first = order == 0
         axes.plot(
-            x[keep], found.omega[keep, g], color=style.COLOURS[0] if first else "#9fb9cc",
+            scale * x[keep], found.omega[keep, g], color=style.COLOURS[0] if first else "#9fb9cc",
             lw=0.9 if first else 0.5, zorder=3 if first else 2,
         )  # fmt: skip
     axes.axhline(0.0, color=style.FAINT, lw=0.5)
-    axes.set_xlabel("distance along the bed  $x$  (m)")
+    axes.set_xlabel(f"distance along the bed  $x$  ({unit})")
     axes.set_ylabel("spin  $\\omega_y$  (rad/s)")
     axes.margins(x=0.0)
     axes.tick_params(right=False, which="both")
