@@ -43,8 +43,9 @@ def water(found: WaterProfile) -> Figure:
     axes[0].set_ylabel("height  $z$  (cm)")
     lowest = float(min(faces[0], top))
     axes[0].set_ylim(lowest, top + 0.06 * (top - lowest))
+    flows = np.nanmin(found.u.value[wet]) >= 0.0  # swift below the surface, and without stress at the bottom
     for k, panel in enumerate(axes):
-        if panel is amount or (np.nanmin(found.u.value[wet]) >= 0.0 and panel is speeds):
+        if panel is amount or (flows and panel is speeds):
             panel.set_xlim(left=0.0)
         panel.axhline(top, color=WATER, lw=0.7, zorder=1)
         if np.isfinite(found.bed):
@@ -55,9 +56,10 @@ def water(found: WaterProfile) -> Figure:
             weight="bold",
         )  # fmt: skip
         panel.locator_params(axis="x", nbins=5)
-    speeds.legend(loc="center left")
+    place = {"loc": "upper left", "bbox_to_anchor": (0.0, 1.0 / 1.06)} if flows else {"loc": "best"}
+    speeds.legend(**place)
     if np.isfinite(found.tau_bed):
-        stress.legend(loc="lower right", fontsize=6.2)
+        stress.legend(loc="lower right" if flows else "best", fontsize=6.2)
     _name(amount, "surface", top, WATER, -3)
     if np.isfinite(found.bed):
         _name(amount, "bed", found.bed * CM, SAND, 3)
