@@ -58,6 +58,17 @@ def test_the_energy_account_closes_where_its_terms_say_so():
     assert found.rows()[2]["given_drag_J"] == 0.2
 
 
+def test_grains_that_begin_on_their_way_do_not_open_the_account():
+    tally = {name: np.zeros(3) for name in TALLY.names}
+    tally["t"] = np.arange(3.0)
+    tally["kinetic"] = np.array([1.3, 1.0, 0.7])  # before the first step nothing is booked
+    tally[Book.START.name.lower()] = np.array([0.0, 1.0, 1.0])
+    tally["dash_n"] = np.array([0.0, 0.0, 0.3])
+    found = energy(SimpleNamespace(tally=tally))
+    assert found.t.tolist() == [1.0, 2.0]
+    assert found.residual == pytest.approx(0.0, abs=1e-15)
+
+
 def test_the_residual_is_that_of_the_tally_wherever_heights_begin():
     values = {"kinetic": 0.5, "potential": 0.4, "dash_n": 0.3, "switch": 0.1, "step": 0.02, "start": 1.0}
     for height in (0.0, 1.0e3):

@@ -58,6 +58,7 @@ def energy(found: Energy) -> Figure:
         axes.legend(loc="lower left", fontsize=6.3, bbox_to_anchor=(0.0, 1.0), ncols=3, borderaxespad=0.2)
     flow.set_xlabel("time  $t$  (s)")
     at: Any = {"xycoords": "axes fraction", "textcoords": "offset points", "fontsize": 6.3}
+    at["bbox"] = {"facecolor": "white", "alpha": 0.8, "lw": 0.0, "pad": 0.5}
     flow.annotate(f"residual {found.residual:.1e}", (0, 0), (4, 4), **at)
     return figure
 

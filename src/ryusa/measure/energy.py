@@ -52,7 +52,10 @@ def energy(run: Run) -> Energy:
     A first frame taken before the first step, when nothing is booked yet, is left out.
     """
     tally = run.tally
-    if len(tally["t"]) > 1 and not any(tally[name][0] for name in (*HELD, "start")):
+    unbooked = (
+        len(tally["t"]) > 1 and tally["start"][0] != tally["start"][-1]
+    )  # start is that of the first step
+    if unbooked or (len(tally["t"]) > 1 and not any(tally[name][0] for name in (*HELD, "start"))):
         tally = {name: values[1:] for name, values in tally.items()}
     held = {name: np.asarray(tally[name], dtype=np.float64) for name in HELD}
     lost = {book.name.lower(): np.asarray(tally[book.name.lower()], dtype=np.float64) for book in LOSSES}
