@@ -80,4 +80,4 @@ class Work(NamedTuple):
     desk: Any  # a batch of touching pairs (lanes.py), (DESK,)
     apart: Any  # way from i to j [m] of a batch of near pairs, and their reach, groups of four, (4 * LANES,)
     hit: Any  # 1 where they touch, (LANES,)
-    which: Any  # near pairs on the desk, (LANES,)
+    which: Any  # near pairs on the desk, (LANES,), uint32

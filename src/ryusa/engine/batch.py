@@ -16,6 +16,7 @@ from typing import Any
 
 from ryusa.engine._kernel import FAST, kernel
 from ryusa.engine.arrays import Grains, Near, Walls
+from ryusa.engine.four import add4, copy4, take4
 from ryusa.engine.lanes import *
 from ryusa.engine.rows import *
 from ryusa.laws.contact import normal_force, shear_strength, slide
@@ -39,8 +40,8 @@ def look(
     l_x, l_y = c[C_PERIOD_X], c[C_PERIOD_Y]
     for l in range(m):
         i, j = near.i[first + l], near.j[first + l]
-        for k in range(4):
-            apart[4 * l + k] = x[j, k] - x[i, k]
+        copy4(apart, 4 * l, x, 4 * j)
+        take4(apart, 4 * l, x, 4 * i)
         apart[4 * l + 3] = w[i, 3] + w[j, 3]
         if j >= n_solid:
             a, r = j - n_solid, w[i, 3]
@@ -66,21 +67,18 @@ def lay_out(m: int, which: Any, n_solid: int, grains: Grains, near: Near, desk: 
     Those are whole vectors of eight: the lanes beyond m hold pairs far apart.
     """
     v, w, rows = grains.v, grains.w, near.rows
+    width = rows.shape[1]
     for l in range(m):
         k = which[l]
         i, j = near.i[k], near.j[k]
-        for a in range(4):
-            desk[D_MOVING + 4 * l + a] = v[i, a] - v[j, a]
-        for a in range(4):
-            desk[D_SPIN_I + 4 * l + a] = w[i, a]
-        for a in range(4):
-            desk[D_SPIN_J + 4 * l + a] = w[j, a]
+        copy4(desk, D_MOVING + 4 * l, v, 4 * i)
+        take4(desk, D_MOVING + 4 * l, v, 4 * j)
+        copy4(desk, D_SPIN_I + 4 * l, w, 4 * i)
+        copy4(desk, D_SPIN_J + 4 * l, w, 4 * j)
         if j >= n_solid:
             desk[D_SPIN_J + 4 * l + 3] = w[i, 3]
-        for a in range(4):
-            desk[D_SPRING + 4 * l + a] = rows[k, a]
-        for a in range(4):
-            desk[D_DASH + 4 * l + a] = rows[k, R_DASH_S + a]
+        copy4(desk, D_SPRING + 4 * l, rows, width * k)
+        copy4(desk, D_DASH + 4 * l, rows, width * k + R_DASH_S)
         desk[D_ETA_N + l], desk[D_ETA_S + l] = rows[k, R_ETA_N], rows[k, R_ETA_S]
         desk[D_WAS + l] = near.live[k]
     whole = (m + 7) // 8 * 8
@@ -248,21 +246,16 @@ def hand_out(m: int, which: Any, near: Near, desk: Any, f: Any) -> bool:
     `which` are the near pairs on the lanes. Returns whether an overlap is larger than any before.
     """
     rows, larger = near.rows, False
+    width = rows.shape[1]
     for l in range(m):
         k = which[l]
         i, j = near.i[k], near.to[k]
-        for a in range(4):
-            f[i, a] += desk[D_FORCE + 4 * l + a]
-        for a in range(4):
-            f[i, 4 + a] += desk[D_TORQUE_I + 4 * l + a]
-        for a in range(4):
-            f[j, a] -= desk[D_FORCE + 4 * l + a]
-        for a in range(4):
-            f[j, 4 + a] += desk[D_TORQUE_J + 4 * l + a]
-        for a in range(4):
-            rows[k, a] = desk[D_SPRING + 4 * l + a]
-        for a in range(4):
-            rows[k, R_DASH_S + a] = desk[D_DASH + 4 * l + a]
+        add4(f, 8 * i, desk, D_FORCE + 4 * l)
+        add4(f, 8 * i + 4, desk, D_TORQUE_I + 4 * l)
+        take4(f, 8 * j, desk, D_FORCE + 4 * l)
+        add4(f, 8 * j + 4, desk, D_TORQUE_J + 4 * l)
+        copy4(rows, width * k, desk, D_SPRING + 4 * l)
+        copy4(rows, width * k + R_DASH_S, desk, D_DASH + 4 * l)
         near.live[k] = desk[D_TORQUE_I + 4 * l + 3] > 0.0
         larger = larger or desk[D_EXCESS + l] > 0.0
     return larger

@@ -10,6 +10,7 @@ from ryusa.engine._kernel import FAST, kernel
 from ryusa.engine.arrays import Grains, Ledger, Near, Pairs, Walls, Work
 from ryusa.engine.batch import hand_out, lay_out, look, make_reckon, overlap_on
 from ryusa.engine.company import keep_company, wet_dashpots
+from ryusa.engine.four import copy4
 from ryusa.engine.lanes import D_APART, D_BOOKS, D_SPIN_I, D_SPIN_J, DESK, LANES, N_LANE_BOOK, PITCH
 from ryusa.engine.motion import motion
 from ryusa.engine.near import cut
@@ -64,8 +65,7 @@ def forces(
             l = k - from_
             if hit[l] > 0.0 or live[k]:
                 which[m] = k
-                for a in range(4):
-                    desk[D_APART + 4 * m + a] = apart[4 * l + a]
+                copy4(desk, D_APART + 4 * m, apart, 4 * l)
                 m += 1
             k += 1
         if m == 0:
@@ -157,7 +157,7 @@ def make_run(kind: Variant) -> Any:
         n_block = len(block_start) - 1
         b_0, b_1 = thread * n_block // n_threads, (thread + 1) * n_block // n_threads
         dt, t_zero, skin, step_limit = c[C_DT], c[C_T_ZERO], c[C_SKIN], c[C_STEP_LIMIT]
-        work = Work(np.zeros(DESK), np.zeros(4 * LANES), np.zeros(LANES), np.zeros(LANES, np.int64))
+        work = Work(np.zeros(DESK), np.zeros(4 * LANES), np.zeros(LANES), np.zeros(LANES, np.uint32))
         near_skin, near_travel, since = clock[K_SKIN], clock[K_TRAVEL], clock[K_SINCE]
         way, spent, steps, before = clock[K_WAY], clock[K_SPENT], clock[K_STEPS], clock[K_BEFORE]
         lanes = clock[K_LANES]
