@@ -5,11 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
 from ryusa.figures.style import COLOURS, FAINT, LINES, MARKERS, house, new
 from ryusa.model.scene import Floats
 
 _FEW = 25  # points of a curve that are shown one by one
+SHORT = 20.0  # a logarithmic axis that spans less names 1, 2 and 5 in plain digits
 
 
 @dataclass(frozen=True)
@@ -66,6 +68,12 @@ def compared(
             low, _ = axes.get_xlim() if name == "x" else axes.get_ylim()
             # a formula that ends at its threshold would stretch the axis without end
             axes.set(**{f"{name}lim": (max(low, float(shown.min()) / 10.0), None)})
+            low, high = axes.get_xlim() if name == "x" else axes.get_ylim()
+            if high < SHORT * low:
+                ticks = axes.xaxis if name == "x" else axes.yaxis
+                ticks.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+                ticks.set_major_formatter(StrMethodFormatter("{x:g}"))
+                ticks.set_minor_formatter(NullFormatter())
     axes.set_xlabel(str(x))
     axes.set_ylabel(str(y))
     axes.legend(fontsize=6.0)
