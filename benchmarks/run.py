@@ -5,8 +5,8 @@
     python benchmarks/run.py --parts speed --only W1-20k W2-20k --threads 2 --peers LAMMPS
     python benchmarks/run.py --parts memory scaling
 
-What is done is kept in the work folder after every round, and not done again; another commit of ryusa, or
---fresh, begins anew. A machine on which others work is refused; with --anyway the table says so.
+What is done is kept in the work folder after every round, and not done again; another ryusa, or --fresh,
+begins anew. A machine on which others work is refused; with --anyway the table says so.
 """
 
 import argparse
@@ -24,7 +24,7 @@ import report
 import speed
 import workloads
 from peer_lammps import found_lammps, found_liggghts
-from peer_ryusa import Ryusa
+from peer_ryusa import Ryusa, digest
 from peer_yade import found_yade
 from workloads import Grains, Workload, workload
 
@@ -50,21 +50,23 @@ class Bench:
         self.state = self._begin()
 
     def _begin(self) -> dict[str, Any]:
-        ours = Ryusa().version()
-        before = json.loads(self.file.read_text()) if self.file.exists() and not self.options.fresh else {}
-        if before and before["versions"].get("ryusa") != ours:
-            print(
-                f"{self.file}: taken with ryusa {before['versions'].get('ryusa')}, now {ours}; "
-                "builds and skins of the peers are kept, the rest is begun anew"
-            )
-            before = {"speed": {key: {"tuned": row["tuned"]} for key, row in before.get("speed", {}).items()}}
-        versions = {"ryusa": ours, **_packages()}
+        fresh = self.options.fresh or not self.file.exists()
+        before: dict[str, Any] = {} if fresh else json.loads(self.file.read_text())
+        if before.get("anyway") and not self.options.anyway:
+            print(f"{self.file}: not taken on a quiet machine, begun anew")
+            before = {}
+        if before and before["source"] != digest():
+            print(f"{self.file}: taken with another ryusa; builds and skins of the peers stay, no more")
+            kept = {key: {"tuned": row["tuned"]} for key, row in before.get("speed", {}).items()}
+            before = {"speed": kept, "anyway": before["anyway"]}
+        versions = {"ryusa": Ryusa().version(), **_packages()}
         for name, builds in self.peers.items():
             versions |= {f"{name}, {one.label}": one.version() for one in builds}
         return before | {
-            "command": " ".join(["python", "benchmarks/run.py", *sys.argv[1:]]),
+            "command": " ".join(["python", "benchmarks/run.py", *map(_without_folders, sys.argv[1:])]),
             "anyway": before.get("anyway", False) or self.options.anyway,
             "machine": machine.describe(),
+            "source": digest(),
             "versions": before.get("versions", {}) | versions,
         }
 
@@ -144,6 +146,10 @@ class Bench:
                 print(part, flush=True)
                 self.state[part] = getattr(self, part)()
             self.keep()
+
+
+def _without_folders(word: str) -> str:
+    return Path(word).name if Path(word).is_absolute() else word
 
 
 def _packages() -> dict[str, str]:

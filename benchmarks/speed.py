@@ -92,6 +92,8 @@ def side_by_side(
     if threads > 1:
         codes.append((Ryusa(slips[0], alone=True), replace(job, threads=1)))
     rounds = row.setdefault("rounds", [])
+    if any(set(one["codes"]) != {code.name for code, _ in codes} for one in rounds):
+        rounds.clear()  # taken with other codes beside
     watch = Watch()
     while sum(one["quiet"] or anyway for one in rounds) < pairs and len(rounds) < MOST * pairs:
         one: dict[str, Any] = {}

@@ -59,9 +59,9 @@ class Workload:
 BED = {
     "100": Size(3, 1, 1000, 200_000),
     "1k": Size(9, 1, 1000, 40_000),
-    "2k": Size(13, 1, 2000, 16_000),
+    "2k": Size(13, 1, 2000, 32_000),
     "10k": Size(9, 3, 1000, 4000),
-    "20k": Size(41, 1, 1000, 2000),
+    "20k": Size(41, 1, 1000, 4000),
     "100k": Size(13, 7, 400, 800),
     "200k": Size(41, 3, 400, 1000),
     "1M": Size(41, 7, 100, 200),
@@ -69,8 +69,8 @@ BED = {
 # A column as wide as it is high, half way between release and first fall of its top.
 PLANE = {
     "1k": Size(31, 1, 2000, 40_000),
-    "2k": Size(45, 1, 2000, 20_000),
-    "20k": Size(142, 1, 1000, 4000),
+    "2k": Size(45, 1, 2000, 40_000),
+    "20k": Size(142, 1, 1000, 8000),
     "200k": Size(447, 1, 400, 1000),
 }
 POLY = 0.2  # spread of the polydisperse bed
