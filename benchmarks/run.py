@@ -55,7 +55,7 @@ class Bench:
         if before.get("anyway") and not self.options.anyway:
             print(f"{self.file}: not taken on a quiet machine, begun anew")
             before = {}
-        if before and before["source"] != digest():
+        if before and before.get("source") != digest():
             print(f"{self.file}: taken with another ryusa; builds and skins of the peers stay, no more")
             kept = {key: {"tuned": row["tuned"]} for key, row in before.get("speed", {}).items()}
             before = {"speed": kept, "anyway": before["anyway"]}
