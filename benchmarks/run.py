@@ -29,6 +29,7 @@ from peer_yade import found_yade
 from workloads import Grains, Workload, workload
 
 HERE = Path(__file__).resolve().parent
+BUILD = HERE.parent / "build"
 PARTS = ("law", "flows", "speed", "memory", "start", "scaling", "kernels")
 QUICK = 0.25  # of the steps
 MEMORY = ("1k", "20k", "200k", "1M")
@@ -177,11 +178,9 @@ def main() -> None:
     parser.add_argument("--fresh", action="store_true", help="forget what was done before")
     parser.add_argument("--name", help="of the table; quick or full, and the date, when not given")
     parser.add_argument(
-        "--work", type=Path, default=Path("build/benchmarks"), help="grains and figures on the way"
+        "--work", type=Path, default=BUILD / "benchmarks", help="grains and figures on the way"
     )
-    parser.add_argument(
-        "--builds", type=Path, default=Path("build/peers"), help="builds of LAMMPS, see peers.sh"
-    )
+    parser.add_argument("--builds", type=Path, default=BUILD / "peers", help="builds of LAMMPS, see peers.sh")
     parser.add_argument(
         "--out", type=Path, help="where the table goes; benchmarks/results, quick: the work folder"
     )
@@ -195,7 +194,7 @@ def main() -> None:
     bench = Bench(options)
     bench.run()
     print(report.markdown(bench.state))
-    print(f"kept in {options.out}/{bench.file.stem}.md")
+    print(f"kept in {options.out / bench.file.stem}.md")
 
 
 if __name__ == "__main__":
