@@ -79,7 +79,7 @@ def lay_out(m: int, which: Any, n_solid: int, grains: Grains, near: Near, desk: 
             desk[D_SPIN_J + 4 * l + 3] = w[i, 3]
         copy4(desk, D_SPRING + 4 * l, rows, width * k)
         copy4(desk, D_DASH + 4 * l, rows, width * k + R_DASH_S)
-        desk[D_ETA_N + l], desk[D_ETA_S + l] = rows[k, R_ETA_N], rows[k, R_ETA_S]
+        desk[D_MOVING + 4 * l + 3], desk[D_ETA_S + l] = rows[k, R_ETA_N], rows[k, R_ETA_S]
         desk[D_WAS + l] = near.live[k]
     whole = (m + 7) // 8 * 8
     for l in range(m, whole):
@@ -87,7 +87,7 @@ def lay_out(m: int, which: Any, n_solid: int, grains: Grains, near: Near, desk: 
             desk[D_APART + 4 * l + a] = desk[D_MOVING + 4 * l + a] = 0.0
             desk[D_SPIN_I + 4 * l + a] = desk[D_SPIN_J + 4 * l + a] = 0.0
             desk[D_SPRING + 4 * l + a] = desk[D_DASH + 4 * l + a] = 0.0
-        desk[D_ETA_N + l] = desk[D_ETA_S + l] = desk[D_WAS + l] = 0.0
+        desk[D_ETA_S + l] = desk[D_WAS + l] = 0.0
         desk[D_APART + 4 * l] = FAR
     return whole
 
@@ -102,22 +102,18 @@ def overlap_on(l: int, c: Any, desk: Any) -> float:
 
 
 @cache
-def make_reckon(plane_case: int, rotation: int, company: int) -> Any:
-    """Build the law of one variant; `company` where rolling friction, films or records want more of it."""
+def make_reckon(plane_case: int, rotation: int) -> Any:
+    """Build the law of one variant.
+
+    Three loops, not one: each finds what the next needs on the desk. One long loop has more numbers alive than
+    there are registers, and waits for its own divisions and roots.
+    """
 
     @kernel(fastmath=FAST)
-    def reckon(choice: Choice, m: int, hdt: float, most: float, c: Any, desk: Any) -> None:
-        """Forces, torques and work of the first m lanes; their memory goes from the last step to this one.
-
-        `most` is the largest overlap over diameter so far [-].
-        """
-        total, drop, cap_total = choice.slip == SLIP_TOTAL, choice.slip == SLIP_DROP, choice.cap == CAP_TOTAL
-        least = -math.inf if choice.tension else 0.0  # a contact that may pull has no least force
-        dt, k_n, k_s, mu, cohesion = c[C_DT], c[C_K_N], c[C_K_S], c[C_MU], c[C_COHESION]
-        l_x, l_y = c[C_PERIOD_X], c[C_PERIOD_Y]
-        soft_n, soft_s = 1.0 / k_n if k_n > 0.0 else 0.0, 1.0 / k_s if k_s > 0.0 else 0.0
+    def see(m: int, most: float, c: Any, desk: Any) -> None:
+        """How each pair meets: normal, overlap, arms, closing speed and slip; and its spring and dashpot."""
+        dt, k_n, l_x, l_y = c[C_DT], c[C_K_N], c[C_PERIOD_X], c[C_PERIOD_Y]
         for l in range(min(m, LANES)):  # never more: the compiler has to know
-            # geometry
             d_x, d_y, d_z = wrap(desk[D_APART + 4 * l], l_x), 0.0, desk[D_APART + 4 * l + 2]
             square = d_x * d_x + d_z * d_z
             if not plane_case:
@@ -127,8 +123,7 @@ def make_reckon(plane_case: int, rotation: int, company: int) -> Any:
             distance = math.sqrt(square)
             inverse = 1.0 / distance
             n_x, n_y, n_z = d_x * inverse, d_y * inverse, d_z * inverse
-            overlap = overlap_of(r_i, r_j, distance)
-            touching = overlap > 0.0
+            overlap = overlap_of(desk[D_APART + 4 * l + 3], 0.0, distance)
             a_i = arm(r_i, overlap)
             a_j = distance - a_i
 
@@ -137,7 +132,6 @@ def make_reckon(plane_case: int, rotation: int, company: int) -> Any:
             i_x, i_y, i_z = desk[D_SPIN_I + 4 * l], desk[D_SPIN_I + 4 * l + 1], desk[D_SPIN_I + 4 * l + 2]
             j_x, j_y, j_z = desk[D_SPIN_J + 4 * l], desk[D_SPIN_J + 4 * l + 1], desk[D_SPIN_J + 4 * l + 2]
             closing = u_x * n_x + u_z * n_z
-            s_y = s_z = 0.0
             if plane_case:
                 s_x = u_x * n_z - u_z * n_x
                 if rotation:
@@ -151,31 +145,60 @@ def make_reckon(plane_case: int, rotation: int, company: int) -> Any:
                     s_x += g_y * n_z - g_z * n_y
                     s_y += g_z * n_x - g_x * n_z
                     s_z += g_x * n_y - g_y * n_x
+                    twist = 0.5 * dt * ((i_x + j_x) * n_x + (i_y + j_y) * n_y + (i_z + j_z) * n_z)
+                    desk[D_TWIST + l] = twist
+                desk[D_NORMAL + PITCH + l] = n_y
+                desk[D_SLIP + PITCH + l], desk[D_SLIP + 2 * PITCH + l] = s_y, s_z
+            desk[D_NORMAL + l], desk[D_NORMAL + 2 * PITCH + l] = n_x, n_z
+            desk[D_SLIP + l] = s_x
+            desk[D_OVERLAP + l], desk[D_CLOSING + l] = overlap, closing
+            desk[D_ARM_I + l], desk[D_ARM_J + l] = a_i, a_j
+            desk[D_EXCESS + l] = overlap - 2.0 * most * min(r_i, r_j)
+            desk[D_RAW + l] = normal_force(overlap, closing, k_n, desk[D_MOVING + 4 * l + 3])
 
-            # normal force
-            was = desk[D_WAS + l] > 0.0
-            f_old, d_old = desk[D_SPRING + 4 * l + 3], desk[D_DASH + 4 * l + 3]
+    @kernel(fastmath=FAST)
+    def push(least: float, m: int, hdt: float, c: Any, desk: Any) -> None:
+        """Normal force, and the later half of its books. `least` is the least force a contact can have [N]."""
+        k_n = c[C_K_N]
+        for l in range(min(m, LANES)):
+            overlap, closing, was = desk[D_OVERLAP + l], desk[D_CLOSING + l], desk[D_WAS + l] > 0.0
+            touching = overlap > 0.0
             e_n = k_n * overlap if touching else 0.0
-            f_n = max(normal_force(overlap, closing, k_n, desk[D_ETA_N + l]), least) if touching else 0.0
+            f_n = max(desk[D_RAW + l], least) if touching else 0.0
             held = touching and f_n > least
-            d_n = f_n - e_n
-            drawn = f_old > least
-            first, second = hdt * closing * d_old, hdt * closing * d_n
-            e_old = f_old - d_old
+            work = hdt * closing * (f_n - e_n)
             met = touching and (not was) and hdt > 0.0
-            left = was and not touching
-            given = -0.5 * e_n * (2.0 * hdt * closing - overlap) if met else 0.0
-            given += 0.5 * e_old * (-2.0 * hdt * closing - e_old * soft_n) if left else 0.0
+            desk[D_DASH_N + l] += work if held else 0.0
+            desk[D_RELEASED_N + l] += 0.0 if held else work
+            desk[D_STEP + l] += -0.5 * e_n * (2.0 * hdt * closing - overlap) if met else 0.0
+            desk[D_F_N + l], desk[D_E_N + l] = f_n, e_n
+            desk[D_HELD + l], desk[D_LIVE + l] = 1.0 if held else 0.0, 1.0 if touching else 0.0
 
-            # tangential force
+    @kernel(fastmath=FAST)
+    def shear(
+        total: bool, drop: bool, cap_total: bool, least: float, m: int, hdt: float, c: Any, desk: Any
+    ) -> None:
+        """Tangential force, its books and the earlier half of the normal ones, and what both grains get."""
+        dt, k_n, k_s, mu, cohesion = c[C_DT], c[C_K_N], c[C_K_S], c[C_MU], c[C_COHESION]
+        soft_n, soft_s = 1.0 / k_n if k_n > 0.0 else 0.0, 1.0 / k_s if k_s > 0.0 else 0.0
+        for l in range(min(m, LANES)):
+            n_x, n_y, n_z = desk[D_NORMAL + l], 0.0, desk[D_NORMAL + 2 * PITCH + l]
+            f_n, e_n, held, live = desk[D_F_N + l], desk[D_E_N + l], desk[D_HELD + l], desk[D_LIVE + l]
             p_x, p_y, p_z = desk[D_SPRING + 4 * l], desk[D_SPRING + 4 * l + 1], desk[D_SPRING + 4 * l + 2]
             q_x, q_y, q_z = desk[D_DASH + 4 * l], desk[D_DASH + 4 * l + 1], desk[D_DASH + 4 * l + 2]
+            s_x, s_y, s_z = desk[D_SLIP + l], 0.0, 0.0
+            eta_s, closing = desk[D_ETA_S + l], desk[D_CLOSING + l]
+            f_old, d_old = desk[D_SPRING + 4 * l + 3], desk[D_DASH + 4 * l + 3]
+            work, e_old, drawn = hdt * closing * d_old, f_old - d_old, f_old > least
+            left = desk[D_WAS + l] > live
+            desk[D_DASH_N + l] += work if drawn else 0.0
+            desk[D_RELEASED_N + l] += 0.0 if drawn else work
+            desk[D_STEP + l] += 0.5 * e_old * (-2.0 * hdt * closing - e_old * soft_n) if left else 0.0
             if not plane_case:
-                twist = 0.0
-                if rotation:
-                    twist = 0.5 * dt * ((i_x + j_x) * n_x + (i_y + j_y) * n_y + (i_z + j_z) * n_z)
+                n_y = desk[D_NORMAL + PITCH + l]
+                s_y, s_z = desk[D_SLIP + PITCH + l], desk[D_SLIP + 2 * PITCH + l]
+                twist = desk[D_TWIST + l] if rotation else 0.0
                 p_x, p_y, p_z = turn(p_x, p_y, p_z, n_x, n_y, n_z, twist)
-            eta_s = desk[D_ETA_S + l]
             tau_c = shear_strength(f_n if cap_total else e_n, cohesion, mu)
             e_x, e_y, e_z = p_x - k_s * s_x * dt, p_y, p_z  # the last two zeros in a plane
             b_x, b_y, b_z = -eta_s * s_x, q_y, q_z
@@ -189,9 +212,7 @@ def make_reckon(plane_case: int, rotation: int, company: int) -> Any:
                 g_y, g_z = e_y + b_y if total else e_y, e_z + b_z if total else e_z
                 size = math.sqrt(g_x * g_x + g_y * g_y + g_z * g_z)
             share, swap, keep = slide(size, tau_c, drop, total)
-            share = share if held else 0.0
-            swap = swap if held else 0.0
-            keep = keep if held else 0.0
+            share, swap, keep = held * share, held * swap, held * keep
             e_x, b_x = share * e_x + swap * b_x, keep * b_x
             taken, lost = s_x * (p_x + e_x), s_x * (q_x + b_x)
             spent = p_x * p_x - e_x * e_x
@@ -201,27 +222,15 @@ def make_reckon(plane_case: int, rotation: int, company: int) -> Any:
                 taken += s_y * (p_y + e_y) + s_z * (p_z + e_z)
                 lost += s_y * (q_y + b_y) + s_z * (q_z + b_z)
                 spent += p_y * p_y - e_y * e_y + (p_z * p_z - e_z * e_z)
-            taken = 0.5 * spent * soft_s - hdt * taken
-            taken = taken if share < 1.0 else 0.0
-
-            # what is left for the books, for the next step, and for the two grains
-            desk[D_DASH_N + l] += (first if drawn else 0.0) + (second if held else 0.0)
-            desk[D_RELEASED_N + l] += (0.0 if drawn else first) + (0.0 if held else second)
+            taken = 0.5 * spent * soft_s - hdt * taken if share < 1.0 else 0.0
             desk[D_DASH_S + l] += -hdt * lost
-            desk[D_SLIDE + l] += taken if held else 0.0
-            desk[D_RELEASED_S + l] += 0.0 if held else taken
-            desk[D_STEP + l] += given
-            desk[D_EXCESS + l] = overlap - 2.0 * most * min(r_i, r_j)
+            desk[D_SLIDE + l] += held * taken
+            desk[D_RELEASED_S + l] += taken - held * taken
+            desk[D_SLIDES + l] = 1.0 if share < 1.0 else 0.0
             desk[D_SPRING + 4 * l], desk[D_SPRING + 4 * l + 1] = e_x, e_y
             desk[D_SPRING + 4 * l + 2], desk[D_SPRING + 4 * l + 3] = e_z, f_n
             desk[D_DASH + 4 * l], desk[D_DASH + 4 * l + 1] = b_x, b_y
-            desk[D_DASH + 4 * l + 2], desk[D_DASH + 4 * l + 3] = b_z, d_n
-            live = 1.0 if touching else 0.0
-            if company:
-                desk[D_CLOSING + l], desk[D_OVERLAP + l] = closing, overlap
-                desk[D_NORMAL + l], desk[D_NORMAL + PITCH + l], desk[D_NORMAL + 2 * PITCH + l] = n_x, n_y, n_z
-                desk[D_SLIP + l], desk[D_SLIP + PITCH + l], desk[D_SLIP + 2 * PITCH + l] = s_x, s_y, s_z
-                desk[D_SLIDES + l] = 1.0 if share < 1.0 else 0.0
+            desk[D_DASH + 4 * l + 2], desk[D_DASH + 4 * l + 3] = b_z, f_n - e_n
             if plane_case:
                 h = e_x + b_x
                 h_x, h_y, h_z = h * n_z, 0.0, -h * n_x
@@ -229,12 +238,26 @@ def make_reckon(plane_case: int, rotation: int, company: int) -> Any:
             else:
                 h_x, h_y, h_z = e_x + b_x, e_y + b_y, e_z + b_z
                 t_x, t_y, t_z = n_y * h_z - n_z * h_y, n_z * h_x - n_x * h_z, n_x * h_y - n_y * h_x
+            a_i, a_j = desk[D_ARM_I + l], desk[D_ARM_J + l]
             desk[D_FORCE + 4 * l], desk[D_FORCE + 4 * l + 1] = h_x - f_n * n_x, h_y - f_n * n_y
             desk[D_FORCE + 4 * l + 2], desk[D_FORCE + 4 * l + 3] = h_z - f_n * n_z, 0.0
             desk[D_TORQUE_I + 4 * l], desk[D_TORQUE_I + 4 * l + 1] = a_i * t_x, a_i * t_y
             desk[D_TORQUE_I + 4 * l + 2], desk[D_TORQUE_I + 4 * l + 3] = a_i * t_z, live
             desk[D_TORQUE_J + 4 * l], desk[D_TORQUE_J + 4 * l + 1] = a_j * t_x, a_j * t_y
             desk[D_TORQUE_J + 4 * l + 2], desk[D_TORQUE_J + 4 * l + 3] = a_j * t_z, live
+
+    @kernel(fastmath=FAST)
+    def reckon(choice: Choice, m: int, hdt: float, most: float, c: Any, desk: Any) -> None:
+        """Forces, torques and work of the first m lanes; their memory goes from the last step to this one.
+
+        `most` is the largest overlap over diameter so far [-].
+        """
+        # a contact that may pull has no least force
+        least = -math.inf if choice.tension else 0.0
+        total, drop, cap_total = choice.slip == SLIP_TOTAL, choice.slip == SLIP_DROP, choice.cap == CAP_TOTAL
+        see(m, most, c, desk)
+        push(least, m, hdt, c, desk)
+        shear(total, drop, cap_total, least, m, hdt, c, desk)
 
     return reckon
 

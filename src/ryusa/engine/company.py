@@ -31,8 +31,8 @@ def wet_dashpots(choice: Choice, m: int, which: Any, c: Any, grains: Grains, nea
         distance = desk[D_SPIN_I + 4 * l + 3] + desk[D_SPIN_J + 4 * l + 3] - overlap
         u_x, u_y, u_z = desk[D_MOVING + 4 * l], desk[D_MOVING + 4 * l + 1], desk[D_MOVING + 4 * l + 2]
         closing = (u_x * d_x + u_y * d_y + u_z * d_z) / distance
-        desk[D_ETA_N + l] = dashpot_wet(choice, closing, near.i[k], near.j[k], c, grains.m, grains.w)
-        near.rows[k, R_ETA_N] = desk[D_ETA_N + l]
+        eta_n = dashpot_wet(choice, closing, near.i[k], near.j[k], c, grains.m, grains.w)
+        desk[D_MOVING + 4 * l + 3] = near.rows[k, R_ETA_N] = eta_n
 
 
 @kernel(fastmath=FAST)
@@ -54,7 +54,7 @@ def keep_company(
 ) -> float:
     """Rolling friction, records and films of the first m lanes; returns the energy in rolling springs [J]."""
     v, w, touched = grains.v, grains.w, grains.touched
-    rows, dt, k_n, width = near.rows, c[C_DT], c[C_K_N], near.rows.shape[1]
+    rows, dt, width = near.rows, c[C_DT], near.rows.shape[1]
     held = 0.0
     for l in range(m):
         was, live = desk[D_WAS + l] > 0.0, desk[D_TORQUE_I + 4 * l + 3] > 0.0
@@ -99,7 +99,7 @@ def keep_company(
                 )  # fmt: skip
             if live:
                 keep_record(
-                    record, t, dt, overlap, f_n, k_n * overlap + desk[D_ETA_N + l] * closing, force,
+                    record, t, dt, overlap, f_n, desk[D_RAW + l], force,
                     desk[D_SLIDES + l] > 0.0, touched[i] > 1 or (j < n and touched[j] > 1),
                 )  # fmt: skip
             elif was and record[E_J] >= 0.0:

@@ -128,8 +128,7 @@ def springs(b: int, c: Any, near: Near) -> tuple[float, float, int]:
 @cache
 def make_run(kind: Variant) -> Any:
     """Build the stepping function of one variant; compiled when first called, then kept on disk."""
-    company = kind.rolling or kind.events or kind.film
-    reckon = make_reckon(kind.plane_case, kind.rotation, 1 if company else 0)
+    reckon = make_reckon(kind.plane_case, kind.rotation)
 
     @kernel(nogil=True, fastmath=FAST)
     def run(
