@@ -15,7 +15,6 @@ from functools import cache
 from typing import Any
 
 from ryusa.engine._kernel import FAST, kernel
-from ryusa.engine.arrays import Grains, Near, Walls
 from ryusa.engine.four import add4, copy4, take4
 from ryusa.engine.lanes import *
 from ryusa.engine.rows import *
@@ -29,17 +28,16 @@ SLIP_DROP, SLIP_TOTAL, CAP_TOTAL = int(Slip.SPRING_DROP), int(Slip.TOTAL), int(C
 
 @kernel(fastmath=FAST, forceinline=True)
 def look(
-    plane_case: int, reach_on: float, first: int, m: int, n_solid: int, c: Any, grains: Grains, walls: Walls,
-    near: Near, apart: Any, hit: Any,
+    plane_case: int, reach_on: float, first: int, m: int, n_solid: int, c: Any, x: Any, w: Any, i_of: Any,
+    j_of: Any, points: Any, normals: Any, apart: Any, hit: Any,
 ) -> None:  # fmt: skip
     """Tell which of m <= LANES near pairs touch; `apart` gets their way from i to j [m].
 
     A plane is met as a grain of the same size that touches it from behind.
     """
-    x, w = grains.x, grains.w
     l_x, l_y = c[C_PERIOD_X], c[C_PERIOD_Y]
     for l in range(m):
-        i, j = near.i[first + l], near.j[first + l]
+        i, j = i_of[first + l], j_of[first + l]
         copy4(apart, 4 * l, x, 4 * j)
         take4(apart, 4 * l, x, 4 * i)
         apart[4 * l + 3] = w[i, 3] + w[j, 3]
@@ -47,9 +45,9 @@ def look(
             a, r = j - n_solid, w[i, 3]
             gap = 0.0
             for k in range(3):
-                gap += (x[i, k] - walls.points[a, k]) * walls.normals[a, k]
+                gap += (x[i, k] - points[a, k]) * normals[a, k]
             for k in range(3):
-                apart[4 * l + k] = -(gap + r) * walls.normals[a, k]
+                apart[4 * l + k] = -(gap + r) * normals[a, k]
             apart[4 * l + 3] = 2.0 * r
     for l in range(min(m, LANES)):
         d_x, d_z, reach = wrap(apart[4 * l], l_x), apart[4 * l + 2], apart[4 * l + 3] + reach_on
@@ -61,16 +59,17 @@ def look(
 
 
 @kernel(fastmath=FAST, forceinline=True)
-def lay_out(m: int, which: Any, n_solid: int, grains: Grains, near: Near, desk: Any) -> int:
+def lay_out(
+    m: int, which: Any, n_solid: int, v: Any, w: Any, i_of: Any, j_of: Any, live: Any, rows: Any, desk: Any
+) -> int:
     """Lay near pairs on the first m lanes, their way from i to j lies there; returns the lanes to reckon.
 
     Those are whole vectors of eight: the lanes beyond m hold pairs far apart.
     """
-    v, w, rows = grains.v, grains.w, near.rows
     width = rows.shape[1]
     for l in range(m):
         k = which[l]
-        i, j = near.i[k], near.j[k]
+        i, j = i_of[k], j_of[k]
         copy4(desk, D_MOVING + 4 * l, v, 4 * i)
         take4(desk, D_MOVING + 4 * l, v, 4 * j)
         copy4(desk, D_SPIN_I + 4 * l, w, 4 * i)
@@ -80,7 +79,7 @@ def lay_out(m: int, which: Any, n_solid: int, grains: Grains, near: Near, desk: 
         copy4(desk, D_SPRING + 4 * l, rows, width * k)
         copy4(desk, D_DASH + 4 * l, rows, width * k + R_DASH_S)
         desk[D_MOVING + 4 * l + 3], desk[D_ETA_S + l] = rows[k, R_ETA_N], rows[k, R_ETA_S]
-        desk[D_WAS + l] = near.live[k]
+        desk[D_WAS + l] = live[k]
     whole = (m + 7) // 8 * 8
     for l in range(m, whole):
         for a in range(4):
@@ -105,7 +104,7 @@ def overlap_on(l: int, c: Any, desk: Any) -> float:
 def make_reckon(plane_case: int, rotation: int) -> Any:
     """Build the law of one variant.
 
-    Three loops, not one: each finds what the next needs on the desk. One long loop has more numbers alive than
+    Three loops, not one: each finds on the desk what it needs. One long loop has more numbers alive than
     there are registers, and waits for its own divisions and roots.
     """
 
@@ -158,7 +157,7 @@ def make_reckon(plane_case: int, rotation: int) -> Any:
 
     @kernel(fastmath=FAST)
     def push(least: float, m: int, hdt: float, c: Any, desk: Any) -> None:
-        """Normal force, and the later half of its books. `least` is the least force a contact can have [N]."""
+        """Normal force, and the later half of its books; `least` is the least a contact can have [N]."""
         k_n = c[C_K_N]
         for l in range(min(m, LANES)):
             overlap, closing, was = desk[D_OVERLAP + l], desk[D_CLOSING + l], desk[D_WAS + l] > 0.0
@@ -263,22 +262,21 @@ def make_reckon(plane_case: int, rotation: int) -> Any:
 
 
 @kernel(fastmath=FAST, forceinline=True)
-def hand_out(m: int, which: Any, near: Near, desk: Any, f: Any) -> bool:
+def hand_out(m: int, which: Any, i_of: Any, to: Any, live: Any, rows: Any, desk: Any, f: Any) -> bool:
     """Add the first m lanes to their grains, one by one in the order of the list, and keep their memory.
 
     `which` are the near pairs on the lanes. Returns whether an overlap is larger than any before.
     """
-    rows, larger = near.rows, False
-    width = rows.shape[1]
+    width, larger = rows.shape[1], False
     for l in range(m):
         k = which[l]
-        i, j = near.i[k], near.to[k]
+        i, j = i_of[k], to[k]
         add4(f, 8 * i, desk, D_FORCE + 4 * l)
         add4(f, 8 * i + 4, desk, D_TORQUE_I + 4 * l)
         take4(f, 8 * j, desk, D_FORCE + 4 * l)
         add4(f, 8 * j + 4, desk, D_TORQUE_J + 4 * l)
         copy4(rows, width * k, desk, D_SPRING + 4 * l)
         copy4(rows, width * k + R_DASH_S, desk, D_DASH + 4 * l)
-        near.live[k] = desk[D_TORQUE_I + 4 * l + 3] > 0.0
+        live[k] = desk[D_TORQUE_I + 4 * l + 3] > 0.0
         larger = larger or desk[D_EXCESS + l] > 0.0
     return larger

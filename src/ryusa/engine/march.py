@@ -49,7 +49,10 @@ def forces(
     """Forces of every pair that block b owns, batch by batch of those that touch."""
     desk, apart, hit, which = work.desk, work.apart, work.hit, work.which
     reach_on = c[C_FILM_REACH] if kind.film else 0.0
-    live = near.live
+    # arrays are handed over one by one: a tuple of them would have its references counted for every batch
+    x, v, w, f = grains.x, grains.v, grains.w, pairs.f
+    i_of, j_of, to, live, rows = near.i, near.j, near.to, near.live, near.rows
+    points, normals = walls.points, walls.normals
     spring_r = 0.0
     pairs.f[n + b, :] = 0.0  # what fixed grains and planes would get
     desk[D_BOOKS : D_BOOKS + N_LANE_BOOK * PITCH] = 0.0
@@ -61,7 +64,10 @@ def forces(
         while m < LANES and k < end:
             if k == looked:
                 from_, looked = k, min(k + LANES, end)
-                look(kind.plane_case, reach_on, k, looked - k, n_solid, c, grains, walls, near, apart, hit)
+                look(
+                    kind.plane_case, reach_on, k, looked - k, n_solid, c, x, w, i_of, j_of, points, normals,
+                    apart, hit,
+                )  # fmt: skip
             l = k - from_
             if hit[l] > 0.0 or live[k]:
                 which[m] = k
@@ -70,7 +76,7 @@ def forces(
             k += 1
         if m == 0:
             break
-        lanes = lay_out(m, which, n_solid, grains, near, desk)
+        lanes = lay_out(m, which, n_solid, v, w, i_of, j_of, live, rows, desk)
         if choice.rebound:
             wet_dashpots(choice, m, which, c, grains, near, desk)
         reckon(choice, lanes, hdt, now[N_OVERLAP_MAX], c, desk)
@@ -78,7 +84,7 @@ def forces(
             spring_r += keep_company(
                 kind, choice, m, n, t, hdt, which, c, grains, near, desk, ended, book, now
             )
-        if hand_out(m, which, near, desk, pairs.f):
+        if hand_out(m, which, i_of, to, live, rows, desk, f):
             guard(m, which, n, step, c, grains, near, desk, now)
     for row in range(N_LANE_BOOK):
         total = 0.0
