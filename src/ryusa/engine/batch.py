@@ -11,7 +11,6 @@ or left within a step is booked for what the half interval takes beyond what it 
 # ruff: noqa: E741, F403, F405  (l is a lane; the places of lanes.py and the columns of rows.py, all of them plain integers)
 
 import math
-from functools import cache
 from typing import Any
 
 from ryusa.engine._kernel import FAST, kernel
@@ -100,14 +99,7 @@ def overlap_on(l: int, c: Any, desk: Any) -> float:
     return overlap_of(desk[D_SPIN_I + 4 * l + 3], desk[D_SPIN_J + 4 * l + 3], distance)
 
 
-@cache
-def make_reckon(plane_case: int, rotation: int) -> Any:
-    """Build the law of one variant.
-
-    Three loops, not one: each finds on the desk what it needs. One long loop has more numbers alive than
-    there are registers, and waits for its own divisions and roots.
-    """
-
+def _make_see(plane_case: int) -> Any:
     @kernel(fastmath=FAST)
     def see(m: int, most: float, c: Any, desk: Any) -> None:
         """How each pair meets: normal, overlap, arms, closing speed and slip; and its spring and dashpot."""
@@ -133,19 +125,17 @@ def make_reckon(plane_case: int, rotation: int) -> Any:
             closing = u_x * n_x + u_z * n_z
             if plane_case:
                 s_x = u_x * n_z - u_z * n_x
-                if rotation:
-                    s_x += a_i * i_y + a_j * j_y
+                s_x += a_i * i_y + a_j * j_y
             else:
                 u_y = desk[D_MOVING + 4 * l + 1]
                 closing += u_y * n_y
                 s_x, s_y, s_z = u_x - closing * n_x, u_y - closing * n_y, u_z - closing * n_z
-                if rotation:
-                    g_x, g_y, g_z = a_i * i_x + a_j * j_x, a_i * i_y + a_j * j_y, a_i * i_z + a_j * j_z
-                    s_x += g_y * n_z - g_z * n_y
-                    s_y += g_z * n_x - g_x * n_z
-                    s_z += g_x * n_y - g_y * n_x
-                    twist = 0.5 * dt * ((i_x + j_x) * n_x + (i_y + j_y) * n_y + (i_z + j_z) * n_z)
-                    desk[D_TWIST + l] = twist
+                g_x, g_y, g_z = a_i * i_x + a_j * j_x, a_i * i_y + a_j * j_y, a_i * i_z + a_j * j_z
+                s_x += g_y * n_z - g_z * n_y
+                s_y += g_z * n_x - g_x * n_z
+                s_z += g_x * n_y - g_y * n_x
+                twist = 0.5 * dt * ((i_x + j_x) * n_x + (i_y + j_y) * n_y + (i_z + j_z) * n_z)
+                desk[D_TWIST + l] = twist
                 desk[D_NORMAL + PITCH + l] = n_y
                 desk[D_SLIP + PITCH + l], desk[D_SLIP + 2 * PITCH + l] = s_y, s_z
             desk[D_NORMAL + l], desk[D_NORMAL + 2 * PITCH + l] = n_x, n_z
@@ -155,24 +145,29 @@ def make_reckon(plane_case: int, rotation: int) -> Any:
             desk[D_EXCESS + l] = overlap - 2.0 * most * min(r_i, r_j)
             desk[D_RAW + l] = normal_force(overlap, closing, k_n, desk[D_MOVING + 4 * l + 3])
 
-    @kernel(fastmath=FAST)
-    def push(least: float, m: int, hdt: float, c: Any, desk: Any) -> None:
-        """Normal force, and the later half of its books; `least` is the least a contact can have [N]."""
-        k_n = c[C_K_N]
-        for l in range(min(m, LANES)):
-            overlap, closing, was = desk[D_OVERLAP + l], desk[D_CLOSING + l], desk[D_WAS + l] > 0.0
-            touching = overlap > 0.0
-            e_n = k_n * overlap if touching else 0.0
-            f_n = max(desk[D_RAW + l], least) if touching else 0.0
-            held = touching and f_n > least
-            work = hdt * closing * (f_n - e_n)
-            met = touching and (not was) and hdt > 0.0
-            desk[D_DASH_N + l] += work if held else 0.0
-            desk[D_RELEASED_N + l] += 0.0 if held else work
-            desk[D_STEP + l] += -0.5 * e_n * (2.0 * hdt * closing - overlap) if met else 0.0
-            desk[D_F_N + l], desk[D_E_N + l] = f_n, e_n
-            desk[D_HELD + l], desk[D_LIVE + l] = 1.0 if held else 0.0, 1.0 if touching else 0.0
+    return see
 
+
+@kernel(fastmath=FAST)
+def _push(least: float, m: int, hdt: float, c: Any, desk: Any) -> None:
+    """Normal force, and the later half of its books; `least` is the least a contact can have [N]."""
+    k_n = c[C_K_N]
+    for l in range(min(m, LANES)):
+        overlap, closing, was = desk[D_OVERLAP + l], desk[D_CLOSING + l], desk[D_WAS + l] > 0.0
+        touching = overlap > 0.0
+        e_n = k_n * overlap if touching else 0.0
+        f_n = max(desk[D_RAW + l], least) if touching else 0.0
+        held = touching and f_n > least
+        work = hdt * closing * (f_n - e_n)
+        met = touching and (not was) and hdt > 0.0
+        desk[D_DASH_N + l] += work if held else 0.0
+        desk[D_RELEASED_N + l] += 0.0 if held else work
+        desk[D_STEP + l] += -0.5 * e_n * (2.0 * hdt * closing - overlap) if met else 0.0
+        desk[D_F_N + l], desk[D_E_N + l] = f_n, e_n
+        desk[D_HELD + l], desk[D_LIVE + l] = 1.0 if held else 0.0, 1.0 if touching else 0.0
+
+
+def _make_shear(plane_case: int) -> Any:
     @kernel(fastmath=FAST)
     def shear(
         total: bool, drop: bool, cap_total: bool, least: float, m: int, hdt: float, c: Any, desk: Any
@@ -196,7 +191,7 @@ def make_reckon(plane_case: int, rotation: int) -> Any:
             if not plane_case:
                 n_y = desk[D_NORMAL + PITCH + l]
                 s_y, s_z = desk[D_SLIP + PITCH + l], desk[D_SLIP + 2 * PITCH + l]
-                twist = desk[D_TWIST + l] if rotation else 0.0
+                twist = desk[D_TWIST + l]
                 p_x, p_y, p_z = turn(p_x, p_y, p_z, n_x, n_y, n_z, twist)
             tau_c = shear_strength(f_n if cap_total else e_n, cohesion, mu)
             e_x, e_y, e_z = p_x - k_s * s_x * dt, p_y, p_z  # the last two zeros in a plane
@@ -245,20 +240,32 @@ def make_reckon(plane_case: int, rotation: int) -> Any:
             desk[D_TORQUE_J + 4 * l], desk[D_TORQUE_J + 4 * l + 1] = a_j * t_x, a_j * t_y
             desk[D_TORQUE_J + 4 * l + 2], desk[D_TORQUE_J + 4 * l + 3] = a_j * t_z, live
 
-    @kernel(fastmath=FAST)
-    def reckon(choice: Choice, m: int, hdt: float, most: float, c: Any, desk: Any) -> None:
-        """Forces, torques and work of the first m lanes; their memory goes from the last step to this one.
+    return shear
 
-        `most` is the largest overlap over diameter so far [-].
-        """
-        # a contact that may pull has no least force
-        least = -math.inf if choice.tension else 0.0
-        total, drop, cap_total = choice.slip == SLIP_TOTAL, choice.slip == SLIP_DROP, choice.cap == CAP_TOTAL
-        see(m, most, c, desk)
-        push(least, m, hdt, c, desk)
-        shear(total, drop, cap_total, least, m, hdt, c, desk)
 
-    return reckon
+# Built once for a plane and once for space; not handed over as functions, which numba could not keep on disk.
+_see_plane, _see_space = _make_see(1), _make_see(0)
+_shear_plane, _shear_space = _make_shear(1), _make_shear(0)
+
+
+@kernel(fastmath=FAST, forceinline=True)
+def reckon(kind: Variant, choice: Choice, m: int, hdt: float, most: float, c: Any, desk: Any) -> None:
+    """Forces, torques and work of the first m lanes; their memory goes from the last step to this one.
+
+    Three loops, not one: each finds on the desk what it needs. One long loop has more numbers alive than
+    there are registers, and waits for its own divisions and roots. `most` is the largest overlap over
+    diameter so far [-]. Spins of locked grains are zero.
+    """
+    least = -math.inf if choice.tension else 0.0  # a contact that may pull has no least force
+    total, drop, cap_total = choice.slip == SLIP_TOTAL, choice.slip == SLIP_DROP, choice.cap == CAP_TOTAL
+    if kind.plane_case:
+        _see_plane(m, most, c, desk)
+        _push(least, m, hdt, c, desk)
+        _shear_plane(total, drop, cap_total, least, m, hdt, c, desk)
+    else:
+        _see_space(m, most, c, desk)
+        _push(least, m, hdt, c, desk)
+        _shear_space(total, drop, cap_total, least, m, hdt, c, desk)
 
 
 @kernel(fastmath=FAST, forceinline=True)

@@ -8,7 +8,7 @@ import numpy as np
 
 from ryusa.engine._kernel import FAST, kernel
 from ryusa.engine.arrays import Grains, Ledger, Near, Pairs, Walls, Work
-from ryusa.engine.batch import hand_out, lay_out, look, make_reckon, overlap_on
+from ryusa.engine.batch import hand_out, lay_out, look, overlap_on, reckon
 from ryusa.engine.company import keep_company, wet_dashpots
 from ryusa.engine.four import copy4
 from ryusa.engine.lanes import D_APART, D_BOOKS, D_SPIN_I, D_SPIN_J, DESK, LANES, N_LANE_BOOK, PITCH
@@ -28,7 +28,6 @@ BOOKS = tuple(
 def forces(
     kind: Variant,
     choice: Choice,
-    reckon: Any,
     b: int,
     n: int,
     n_solid: int,
@@ -79,7 +78,7 @@ def forces(
         lanes = lay_out(m, which, n_solid, v, w, i_of, j_of, live, rows, desk)
         if choice.rebound:
             wet_dashpots(choice, m, which, c, grains, near, desk)
-        reckon(choice, lanes, hdt, now[N_OVERLAP_MAX], c, desk)
+        reckon(kind, choice, lanes, hdt, now[N_OVERLAP_MAX], c, desk)
         if kind.rolling or kind.events or kind.film:
             spring_r += keep_company(
                 kind, choice, m, n, t, hdt, which, c, grains, near, desk, ended, book, now
@@ -134,7 +133,6 @@ def springs(b: int, c: Any, near: Near) -> tuple[float, float, int]:
 @cache
 def make_run(kind: Variant) -> Any:
     """Build the stepping function of one variant; compiled when first called, then kept on disk."""
-    reckon = make_reckon(kind.plane_case, kind.rotation)
 
     @kernel(nogil=True, fastmath=FAST)
     def run(
@@ -202,7 +200,7 @@ def make_run(kind: Variant) -> Any:
             hdt = 0.0 if step == 0 else 0.5 * dt
             for b in range(b_0, b_1):
                 forces(
-                    kind, choice, reckon, b, n, n_solid, step, t, hdt, last, c, grains, walls, pairs, near,
+                    kind, choice, b, n, n_solid, step, t, hdt, last, c, grains, walls, pairs, near,
                     work,
                     ended[b], books[b], now[b],
                 )  # fmt: skip
