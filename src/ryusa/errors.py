@@ -56,6 +56,16 @@ class ResultsError(RyusaError):
     """A run folder that cannot be read or written."""
 
 
+class DiskFull(ResultsError):
+    """No room left where the run writes."""
+
+    exit_code = 3
+
+
+class CheckpointError(ResultsError):
+    """A checkpoint that cannot be gone on from: damaged, of another run, or not of this code."""
+
+
 class RunError(RyusaError):
     """A number that went wrong while stepping: names grain, partner, step and time, and what to try."""
 

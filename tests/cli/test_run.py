@@ -171,7 +171,7 @@ def test_a_fault_while_stepping_has_exit_code_3_and_one_message(ryusa_: Any, dro
     assert ryusa.Results.open("out").status == "failed"
 
 
-def test_ctrl_c_ends_with_exit_code_130_and_readable_frames(
+def test_ctrl_c_ends_with_exit_code_5_and_readable_frames(
     ryusa_: Any, drop: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def engine(threads: int) -> Any:
@@ -188,9 +188,10 @@ def test_ctrl_c_ends_with_exit_code_130_and_readable_frames(
 
     monkeypatch.setattr(runner, "_cpu_engine", engine)
     done = ryusa_("run", drop, "-o", "out")
-    assert done.code == 130
+    assert done.code == 5
+    assert "ryusa resume out" in done.out
     results = ryusa.Results.open("out")
-    assert results.status == "interrupted"
+    assert results.status == "stopped"
     assert len(results.frames) > 5
     assert "Ctrl-C" in results.provenance["message"]
 

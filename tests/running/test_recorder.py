@@ -260,7 +260,7 @@ def test_parts_stay_few_however_long_a_run_takes() -> None:
         n += 1
     assert n < 1000
     assert buffer_limit(0) == 64 << 20
-    assert buffer_limit(10_000) == 1 << 30
+    assert buffer_limit(10_000) == 1 << 28
     assert flush_after(0.0, 0) == 2.0
     assert flush_after(86400.0, 100) == 60.0
 
@@ -268,7 +268,7 @@ def test_parts_stay_few_however_long_a_run_takes() -> None:
 def test_a_full_disk_is_one_clear_error_and_spares_what_is_there(
     recorder: Recorder, tally: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from ryusa.running import vtkhdf
+    from ryusa.running import disk
 
     recorder.frame(moment(0), tally())
     recorder.flush()
@@ -277,7 +277,7 @@ def test_a_full_disk_is_one_clear_error_and_spares_what_is_there(
     def full(path: Path) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(vtkhdf, "sync", full)
+    monkeypatch.setattr(disk, "sync", full)
     with pytest.raises(ResultsError, match="No space left on device"):
         recorder.flush()
     assert len(Results.open(tmp_path).frames) == 1

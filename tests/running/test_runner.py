@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ryusa.casefile import estimate, read_text
-from ryusa.errors import CaseError, ResultsError, RunError
+from ryusa.errors import CaseError, DiskFull, ResultsError, RunError
 from ryusa.model import RollingLaw
 from ryusa.model.enums import EventRule, Rolling
 from ryusa.results import Results
@@ -135,7 +135,7 @@ def test_a_signal_ends_a_run_cleanly(go: Any, engine: Any, number: signal.Signal
     engine.on_advance = lambda step: os.kill(os.getpid(), number) if step >= 400 else None
     before = signal.getsignal(number)
     results = go()
-    assert results.status == "interrupted"
+    assert results.status == "stopped"
     assert results.frames.step[-1] <= 400
     assert signal.getsignal(number) is before
 
@@ -211,19 +211,63 @@ def test_check_and_run_agree_on_what_fits_events_counted(
     assert not (tmp_path / "run").exists()
 
 
-def test_a_disk_that_fills_up_on_the_way_ends_the_run_with_what_was_written(
-    go: Any, engine: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    from ryusa.running import recorder, vtkhdf
+@pytest.fixture
+def full(monkeypatch: pytest.MonkeyPatch) -> Any:
+    """A disk that has no room from a step on, and has again later."""
+    from ryusa.running import disk, loop, recorder
 
-    def full(*_: Any) -> None:
+    sync, state = disk.sync, {"full": False}
+
+    def refuses(path: Path) -> None:
+        if state["full"]:
+            raise OSError(28, "No space left on device")
+        sync(path)
+
+    monkeypatch.setattr(disk, "sync", refuses)
+    monkeypatch.setattr(recorder, "flush_after", lambda elapsed, n_part: 0.0)
+    monkeypatch.setattr(loop, "_LOOK_FOR_ROOM", 0.01)
+    return state
+
+
+def test_a_full_disk_pauses_a_run_which_goes_on_when_there_is_room(
+    go: Any, engine: Any, full: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from ryusa.running import loop
+
+    looks: list[float] = []
+
+    def sleep(seconds: float) -> None:
+        looks.append(seconds)
+        full["full"] = len(looks) < 5
+
+    monkeypatch.setattr(loop.time, "sleep", sleep)
+    engine.on_advance = lambda step: full.update(full=step == 500)
+    results = go()
+    assert results.complete
+    assert len(looks) == 5
+    assert results.frames.step.tolist() == list(range(0, 1001, 100))
+    log = (results.folder / "log.txt").read_text()
+    assert log.count("paused: ") == 1
+    assert log.count("there is room again") == 1
+
+
+def test_a_disk_that_stays_full_ends_the_run_with_what_was_written_and_a_final_status(
+    go: Any, engine: Any, full: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from ryusa.running import disk, loop
+
+    monkeypatch.setattr(loop, "_DISK_PATIENCE", 0.05)
+
+    def nothing_new(path: Path, content: bytes) -> Path:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(recorder, "flush_after", lambda elapsed, n_part: 0.0)
-    engine.on_advance = lambda step: monkeypatch.setattr(vtkhdf, "sync", full) if step >= 500 else None
-    with pytest.raises(ResultsError, match="No space left"):
+    engine.on_advance = lambda step: step >= 500 and monkeypatch.setattr(disk, "write_beside", nothing_new)
+    with pytest.raises(DiskFull, match="No space left"):
         go()
-    assert len(Results.open(tmp_path / "run").frames) >= 4
+    results = Results.open(tmp_path / "run")
+    assert len(results.frames) >= 4
+    assert results.status == "failed"
+    assert "No space left" in results.provenance["message"]
 
 
 @pytest.mark.parametrize(
@@ -363,7 +407,7 @@ def test_an_interrupt_while_kernels_load_waits_and_ends_the_run(
 
     monkeypatch.setattr(engine, "load", interrupted)
     results = go()
-    assert results.status == "interrupted"
+    assert results.status == "stopped"
     assert results.frames.step.tolist() == [0]
 
 

@@ -10,6 +10,7 @@ from ryusa.errors import CaseError, RyusaError
 
 if TYPE_CHECKING:
     from ryusa.casefile.schema import Case
+    from ryusa.results import Results
 
 CaseFile = Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML).", show_default=False)]
 Settings = Annotated[
@@ -22,13 +23,28 @@ Settings = Annotated[
 ]
 Seed = Annotated[int | None, typer.Option("--seed", help="Change the seed of the case.", show_default=False)]
 
-_INTERRUPTED = 130  # exit code after Ctrl-C, as for any command
+Threads = Annotated[
+    int, typer.Option("--threads", metavar="N", help="Threads; the numbers do not depend on it.")
+]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no closing lines.")]
+Every = Annotated[
+    str, typer.Option("--checkpoint", metavar="TIME", help="Wall time between checkpoints; 'never' for none.")
+]
+Force = Annotated[
+    bool,
+    typer.Option(
+        "--force",
+        help="Go on by another version or processor, or with another stop rule: right, not the same.",
+    ),
+]
+
+_STOPPED = 5  # exit code after Ctrl-C or SIGTERM: `ryusa resume` goes on
 _WIDE = 160  # columns of a table that goes to a file or pipe
 
 
 def register(app: typer.Typer) -> None:
     """Put the commands of this module on the app."""
-    for command in (new, check, run, schema):
+    for command in (new, check, run, resume, schema):
         app.command()(command)
 
 
@@ -106,13 +122,20 @@ def run(
         bool, typer.Option("--overwrite", help="Replace an earlier run in that folder.")
     ] = False,
     settings: Settings = None,
-    threads: Annotated[
-        int, typer.Option("--threads", metavar="N", help="Threads; the numbers do not depend on it.")
-    ] = 1,
+    threads: Threads = 1,
     seed: Seed = None,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no closing lines.")] = False,
+    quiet: Quiet = False,
+    checkpoint: Every = "5min",
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on where this run stopped; begin where there is none.")
+    ] = False,
+    force: Force = False,
 ) -> None:
-    """Run a case and write a run folder; Ctrl-C ends it with everything readable."""
+    """Run a case and write a run folder; Ctrl-C stops it with everything readable and a checkpoint.
+
+    SIGUSR1 asks for a checkpoint. A stopped run leaves with 5, and --resume or
+    `ryusa resume` goes on with the same bits.
+    """
     from ryusa.running.interrupt import listening
 
     with listening() as heard:  # before anything heavy is loaded
@@ -120,13 +143,67 @@ def run(
         from ryusa.running.runner import run as run_case
 
         heard.raise_if_asked("before the first step; no run folder was made")
-        results = run_case(found, out, threads=threads, progress=not quiet, overwrite=overwrite)
+        results = run_case(
+            found, out, threads=threads, progress=not quiet, overwrite=overwrite,
+            checkpoint=_every(checkpoint), resume=resume, force=force,
+        )  # fmt: skip
+    _close(results, quiet)
+
+
+def resume(
+    folder: Annotated[Path, typer.Argument(metavar="RUN", help="A run folder.", show_default=False)],
+    threads: Threads = 1,
+    quiet: Quiet = False,
+    checkpoint: Every = "5min",
+    force: Force = False,
+) -> None:
+    """Go on with a run that was stopped or killed, bit for bit as if it never had been."""
+    from ryusa.running.interrupt import listening
+
+    with listening() as heard:
+        from ryusa.casefile.read import read
+        from ryusa.results import Results, schema
+
+        before = Results.open(folder)
+        if not (folder / schema.CASE_TOML).is_file():
+            from ryusa.errors import ResultsError
+
+            raise ResultsError(f"{folder}: holds no case; ryusa.run_scene(..., resume=True) goes on with it")
+        overrides = before.provenance.get("overrides")
+        said = {str(key): str(one) for key, one in overrides.items()} if isinstance(overrides, dict) else {}
+        found = read(folder / schema.CASE_TOML, said)
+        from ryusa.running.runner import run as run_case
+
+        heard.raise_if_asked("before the first step; nothing was changed")
+        results = run_case(
+            found, folder, threads=threads, progress=not quiet, checkpoint=_every(checkpoint), resume=True,
+            force=force,
+        )  # fmt: skip
+    _close(results, quiet)
+
+
+def _close(results: "Results", quiet: bool) -> None:
+    folder = results.folder
     if not quiet:
-        folder = results.folder
         typer.echo(f"{folder}: {results.status}. Open {folder / 'grains.vtkhdf'} in ParaView")
-        typer.echo(f"next: ryusa measure {folder} WHAT, ryusa draw {folder} WHAT")
+        if results.complete:
+            typer.echo(f"next: ryusa measure {folder} WHAT, ryusa draw {folder} WHAT")
+        else:
+            typer.echo(f"next: ryusa resume {folder}")
     if not results.complete:
-        raise typer.Exit(_INTERRUPTED)
+        raise typer.Exit(_STOPPED)
+
+
+def _every(text: str) -> float:
+    """Wall time between two checkpoints [s]."""
+    if text == "never":
+        return float("inf")
+    from ryusa.cli.options import seconds
+
+    found = seconds(text) or 0.0
+    if not found > 0.0:
+        raise CaseError("--checkpoint", text, "must be longer than 0 s, or 'never'")
+    return found
 
 
 def schema() -> None:

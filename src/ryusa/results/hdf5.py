@@ -92,3 +92,13 @@ def plain_dataset(file: h5py.File, name: str, path: Path) -> h5py.Dataset:
 def read_dataset(file: h5py.File, name: str, path: Path) -> np.ndarray:
     """The whole of a plain dataset."""
     return plain_dataset(file, name, path)[()]
+
+
+def read_integer(file: h5py.File, name: str, path: Path) -> int | None:
+    """A whole number kept as an attribute of the file; None where there is none."""
+    if name not in file.attrs:
+        return None
+    kept = file.attrs.get_id(name)
+    if kept.shape != () or kept.dtype.kind not in "iu":
+        raise ResultsError(f"{path}: its '{name}' is no whole number")
+    return int(np.asarray(file.attrs[name]))

@@ -25,6 +25,8 @@ class Part:
     step: NDArray[np.int64]
     n_contact: int
     files: OpenFiles  # shared by all parts of a run
+    end: int | None = None  # step up to which all is in here or in a part before; None in old folders
+    tail: bool = False  # contacts of an unfinished stretch, which going on writes again
 
     @property
     def n_frame(self) -> int:

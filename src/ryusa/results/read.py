@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from ryusa.errors import ResultsError
 from ryusa.model import EVENT, Scene
 from ryusa.results import schema
-from ryusa.results.hdf5 import OpenFiles, opened, plain_dataset, read_dataset
+from ryusa.results.hdf5 import OpenFiles, opened, plain_dataset, read_dataset, read_integer
 from ryusa.results.lazy import LazyFrames, Part
 from ryusa.results.scene_file import read_scene
 from ryusa.results.water import WaterFrames, read_water
@@ -105,20 +105,20 @@ class Results:
     def __init__(self, folder: Path) -> None:
         """Use `Results.open`."""
         self.folder = folder
-        self.provenance = _read_json(folder / schema.PROVENANCE)
+        self.provenance = read_json(folder / schema.PROVENANCE)
         written = self.provenance.get("format")
         if written != schema.FORMAT:
             raise ResultsError(
                 f"{folder}: format {written!r}, this ryusa reads {schema.FORMAT}. Read it with the version "
                 f"named in {schema.PROVENANCE}"
             )
-        self.case = _read_json(folder / schema.CASE_JSON, missing_ok=True)
-        self.summary = _read_json(folder / schema.SUMMARY, missing_ok=True)
-        self.scenes = _read_scenes(
+        self.case = read_json(folder / schema.CASE_JSON, missing_ok=True)
+        self.summary = read_json(folder / schema.SUMMARY, missing_ok=True)
+        self.scenes = read_scenes(
             folder
         )  # (step, t [s], Scene) at the start and after every change of the timeline
         self.scene: Scene = self.scenes[0][2]  # as the run began
-        self._parts = _read_parts(folder, self.scene.n_grain)
+        self._parts = read_parts(folder, self.scene.n_grain)
         self.frames = Frames(self._parts, self.scene.n_grain, self.scene.period)
 
     @staticmethod
@@ -140,7 +140,7 @@ class Results:
 
     @property
     def status(self) -> str:
-        """One of running, complete, interrupted, failed; a killed run still says running."""
+        """One of running, complete, stopped, interrupted, failed; a killed run still says running."""
         return str(self.provenance.get("status"))
 
     @property
@@ -153,7 +153,7 @@ class Results:
         """Contacts that ended: structured array of dtype model.EVENT, sorted by t_part [s]."""
         rows = [part.contacts() for part in self._parts if part.n_contact]
         joined = np.concatenate(rows) if rows else np.zeros(0, dtype=EVENT)
-        joined = joined[np.argsort(joined["t_part"], kind="stable")]
+        joined = joined[np.lexsort((joined["j"], joined["i"], joined["t_part"]))]
         joined.flags.writeable = False
         return joined
 
@@ -201,7 +201,8 @@ def _joined(arrays: list[NDArray[Any]], dtype: np.dtype[Any]) -> NDArray[Any]:
     return joined
 
 
-def _read_json(path: Path, *, missing_ok: bool = False) -> dict[str, Any]:
+def read_json(path: Path, *, missing_ok: bool = False) -> dict[str, Any]:
+    """A table of keys from a file of a run folder."""
     if missing_ok and not path.exists() and not path.is_symlink():
         return {}
     if path.is_symlink() or not path.is_file():
@@ -217,7 +218,8 @@ def _read_json(path: Path, *, missing_ok: bool = False) -> dict[str, Any]:
     return found
 
 
-def _numbered(folder: Path, pattern: "Any") -> list[Path]:
+def numbered(folder: Path, pattern: "Any") -> list[Path]:
+    """Files in parts/ that are named so, in order."""
     parts = folder / schema.PARTS
     if parts.is_symlink():
         raise ResultsError(f"{parts}: is a link; links are not followed")
@@ -227,8 +229,9 @@ def _numbered(folder: Path, pattern: "Any") -> list[Path]:
         raise ResultsError(f"{parts}: cannot be listed ({error})") from error
 
 
-def _read_scenes(folder: Path) -> list[tuple[int, float, Scene]]:
-    scenes = [read_scene(path) for path in _numbered(folder, schema.SCENE_NAME)]
+def read_scenes(folder: Path) -> list[tuple[int, float, Scene]]:
+    """Step and time [s] from which each scene of a run holds, and the scene."""
+    scenes = [read_scene(path) for path in numbered(folder, schema.SCENE_NAME)]
     if not scenes:
         raise ResultsError(f"{folder}: the run was stopped before its first scene was written")
     if len({scene.n_grain for _, _, scene in scenes}) > 1:
@@ -236,20 +239,22 @@ def _read_scenes(folder: Path) -> list[tuple[int, float, Scene]]:
     return scenes
 
 
-def _read_parts(folder: Path, n_grain: int) -> list[Part]:
+def read_parts(folder: Path, n_grain: int) -> list[Part]:
+    """Every part of a run, in order."""
     parts: list[Part] = []
     files = OpenFiles()
     first = 0
-    for number, path in enumerate(_numbered(folder, schema.PART_NAME)):
+    for number, path in enumerate(numbered(folder, schema.PART_NAME)):
         if path.name != schema.part_name(number):
             raise ResultsError(f"{path.parent}: {schema.part_name(number)} is missing")
-        part = _read_part(path, first, n_grain, files)
+        part = read_part(path, first, n_grain, files)
         parts.append(part)
         first += part.n_frame
     return parts
 
 
-def _read_part(path: Path, first: int, n_grain: int, files: OpenFiles) -> Part:
+def read_part(path: Path, first: int, n_grain: int, files: OpenFiles) -> Part:
+    """Open a part whose first frame is number `first`, every shape checked."""
     with opened(path) as file:
         t, step = read_dataset(file, "t", path), read_dataset(file, "step", path)
         k = len(t) if t.ndim == 1 else -1
@@ -261,7 +266,11 @@ def _read_part(path: Path, first: int, n_grain: int, files: OpenFiles) -> Part:
         _check(tally, (k,), schema.BEFORE_FILMS if earlier else schema.TALLY, path)
         contacts = plain_dataset(file, "contacts", path)
         _check(contacts, (contacts.shape[0] if contacts.ndim == 1 else -1,), EVENT, path)
-        return Part(path=path, first=first, t=t, step=step, n_contact=len(contacts), files=files)
+        end, tail = read_integer(file, schema.END_STEP, path), read_integer(file, schema.TAIL, path)
+        return Part(
+            path=path, first=first, t=t, step=step, n_contact=len(contacts), files=files, end=end,
+            tail=bool(tail),
+        )  # fmt: skip
 
 
 def _check(dataset: h5py.Dataset, shape: tuple[int, ...], dtype: np.dtype[Any], path: Path) -> None:

@@ -1,5 +1,6 @@
 """A Scene as a small HDF5 file in parts/, and back: measures need its sizes, masses, laws and water."""
 
+import hashlib
 import json
 from dataclasses import asdict, fields
 from pathlib import Path
@@ -20,17 +21,41 @@ _LIMIT = 1 << 20  # bytes of JSON read from a scene file
 
 def write_scene(file: h5py.File, scene: Scene, step: int, t: float) -> None:
     """Write `scene`, valid from `step` and time `t` [s] on, into an open HDF5 file."""
-    scalars: dict[str, Any] = {}
-    for f in fields(Scene):
-        value = getattr(scene, f.name)
-        if f.name in _ARRAYS:
-            file.create_dataset(f.name, data=np.asarray(value))
-        else:
-            scalars[f.name] = asdict(value) if f.name in _LAWS and value is not None else value
-    scalars["step"], scalars["t"] = step, t
+    for name in _ARRAYS:
+        file.create_dataset(name, data=np.asarray(getattr(scene, name)))
+    scalars = _scalars(scene) | {"step": step, "t": t}
     file.create_dataset(
         "scalars", data=np.frombuffer(json.dumps(scalars, default=_plain).encode(), dtype=np.uint8)
     )
+
+
+def _scalars(scene: Scene) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for f in fields(Scene):
+        if f.name not in _ARRAYS:
+            value = getattr(scene, f.name)
+            found[f.name] = asdict(value) if f.name in _LAWS and value is not None else value
+    return found
+
+
+def scene_digest(scene: Scene) -> str:
+    """Digest of every number of a scene; the same before it is written and after it is read."""
+    digest = hashlib.sha256()
+    for name in _ARRAYS:
+        array = np.ascontiguousarray(getattr(scene, name))
+        digest.update(f"{name} {array.shape} ".encode())
+        digest.update(array.astype(np.float64).tobytes())
+    digest.update(json.dumps(_even(_scalars(scene)), sort_keys=True).encode())
+    return digest.hexdigest()
+
+
+def _even(value: Any) -> Any:
+    """Numbers of any kind as floats, so that 0 and 0.0 are one."""
+    if isinstance(value, dict):
+        return {str(key): _even(one) for key, one in value.items()}
+    if isinstance(value, list | tuple):
+        return [_even(one) for one in value]
+    return value if value is None or isinstance(value, str) else float(value)
 
 
 def read_scene(path: Path) -> tuple[int, float, Scene]:

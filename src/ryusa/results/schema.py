@@ -18,13 +18,21 @@ SUMMARY = "summary.json"
 LOG = "log.txt"
 GRAINS = "grains.vtkhdf"  # the file to open in ParaView
 BED = "bed.vtkhdf"
+CHECKPOINT = "checkpoint.h5"  # to go on from; gone once the run is complete
+CHECKPOINT_BEFORE = "checkpoint-before.h5"  # the one before
+LOCK = ".lock"  # held by the process that writes
 PARTS = "parts"  # folder of write-once HDF5 files
 
 PART_NAME = re.compile(r"part-(\d{6})\.h5")
 SCENE_NAME = re.compile(r"scene-(\d{6})\.h5")
 
 # status in provenance.json
-RUNNING, COMPLETE, INTERRUPTED, FAILED = "running", "complete", "interrupted", "failed"
+RUNNING, COMPLETE, STOPPED, FAILED = "running", "complete", "stopped", "failed"
+INTERRUPTED = "interrupted"  # at once, by a second Ctrl-C: no checkpoint of that moment
+
+# attributes of a part
+END_STEP = "end_step"  # all that ended up to this step is in this part or an earlier one
+TAIL = "tail"  # 1 where contacts of an unfinished stretch follow; the next part takes its place
 
 # datasets of a part: k frames of n grains
 FRAME_DATASETS = {

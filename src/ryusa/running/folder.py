@@ -1,25 +1,25 @@
 """A folder for a run: refused when taken, when it cannot be written, when the frames would not fit."""
 
 import json
-import os
-import shutil
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Generator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-from ryusa.errors import CaseError, ResultsError
+from ryusa.errors import CaseError, DiskFull, ResultsError
 from ryusa.results import schema
-from ryusa.running.vtkhdf import POINTS, sync
+from ryusa.running.disk import disk, free_bytes, write_over, write_whole
+from ryusa.running.vtkhdf import POINTS
 
 _FILES = (
     schema.CASE_TOML, schema.CASE_JSON, schema.SUMMARY, schema.LOG, schema.GRAINS, schema.BED,
-    schema.PROVENANCE,
+    schema.CHECKPOINT, schema.CHECKPOINT_BEFORE, schema.PROVENANCE,
 )  # fmt: skip
 
 
-def prepare(folder: Path, *, overwrite: bool) -> None:
-    """Make `folder` and parts/ in it, empty of any earlier run.
+def make_folder(folder: Path, *, overwrite: bool) -> None:
+    """Make `folder`, unless it holds what must not be touched.
 
     Raises
     ------
@@ -29,7 +29,7 @@ def prepare(folder: Path, *, overwrite: bool) -> None:
     -----
     A folder with an empty parts/ and nothing else was left by a run killed as it began; it is used.
     """
-    try:
+    with _writing(folder):
         if folder.is_symlink() or (folder.exists() and not folder.is_dir()):
             raise ResultsError(f"{folder}: is there and is not a folder. Choose another with -o")
         if folder.exists() and any(folder.iterdir()) and not _just_begun(folder):
@@ -39,10 +39,24 @@ def prepare(folder: Path, *, overwrite: bool) -> None:
                 )
             if not overwrite:
                 raise ResultsError(
-                    f"{folder}: holds a run already. Choose another folder with -o, or say --overwrite"
+                    f"{folder}: holds a run already. Choose another folder with -o, go on with --resume, "
+                    "or say --overwrite"
                 )
+        folder.mkdir(parents=True, exist_ok=True)
+
+
+def prepare(folder: Path) -> None:
+    """Empty `folder`, which is locked, of an earlier run, and make parts/ in it."""
+    with _writing(folder):
+        if is_run(folder):
             clear(folder)
-        (folder / schema.PARTS).mkdir(parents=True, exist_ok=True)
+        (folder / schema.PARTS).mkdir(exist_ok=True)
+
+
+@contextmanager
+def _writing(folder: Path) -> Generator[None]:
+    try:
+        yield
     except OSError as error:
         raise ResultsError(
             f"{folder}: cannot be written ({error.strerror or error}). Choose another with -o"
@@ -64,7 +78,7 @@ def _just_begun(folder: Path) -> bool:
     """True for a folder that holds what `prepare` makes and nothing a run wrote."""
     parts, unfinished = folder / schema.PARTS, folder / f".{schema.PROVENANCE}.new"
     return (
-        set(folder.iterdir()) <= {parts, unfinished}
+        set(folder.iterdir()) <= {parts, unfinished, folder / schema.LOCK}
         and parts.is_dir()
         and not parts.is_symlink()
         and not any(parts.iterdir())
@@ -90,15 +104,27 @@ def write_json(path: Path, content: Mapping[str, Any]) -> None:
     ------
     ResultsError : the disk is full or the folder is gone.
     """
-    beside = path.with_name(f".{path.name}.new")
+    with disk(path):
+        write_whole(path, _json(content))
+
+
+def write_last_words(path: Path, content: Mapping[str, Any]) -> None:
+    """As `write_json`; on a disk without room, over the old ones in their place."""
     try:
-        beside.write_text(
-            json.dumps(_plain(content), indent=1, ensure_ascii=False, allow_nan=False) + "\n", "utf-8"
-        )
-        sync(beside)
-        os.replace(beside, path)
-    except OSError as error:
-        raise ResultsError(f"{path}: cannot be written ({error.strerror or error})") from error
+        write_json(path, content)
+    except DiskFull:
+        with disk(path):
+            write_over(path, _json(content))
+
+
+def as_written(content: Mapping[str, Any]) -> dict[str, Any]:
+    """Content as it will be read back from JSON."""
+    return json.loads(_json(content))
+
+
+def _json(content: Mapping[str, Any]) -> bytes:
+    text = json.dumps(_plain(content), indent=1, ensure_ascii=False, allow_nan=False)
+    return f"{text}\n".encode()
 
 
 def _plain(value: Any) -> Any:
@@ -164,9 +190,42 @@ def refuse_if_too_big(
     )
 
 
-def free_bytes(place: Path) -> int:
-    """Free space on the disk that holds `place` [B]."""
-    return shutil.disk_usage(place).free
+def refuse_if_too_large(needed: float, n_grain: int) -> None:
+    """Compare the memory that a run takes with what this machine has to give.
+
+    Parameters
+    ----------
+    needed : by the run's grains [B].
+    n_grain : free grains.
+
+    Raises
+    ------
+    CaseError : it would not fit.
+    """
+    there = memory_there()
+    if there is not None and needed > there:
+        raise CaseError(
+            "build", None,
+            f"gives {n_grain} grains, which need {size(needed)} of memory; this machine has {size(there)} to "
+            "give. Take fewer grains, or record.events = 'none', which needs a third",
+        )  # fmt: skip
+
+
+def memory_there() -> float | None:
+    """Memory that this process could still have [B]; None where the system does not say."""
+    try:
+        lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()
+        free = next(int(line.split()[1]) * 1024 for line in lines if line.startswith("MemAvailable:"))
+    except (OSError, StopIteration, ValueError, IndexError):
+        return None
+    with suppress(OSError, ValueError, StopIteration):  # a container may have less
+        group = Path("/sys/fs/cgroup")
+        most = int((group / "memory.max").read_text(encoding="ascii"))
+        used = int((group / "memory.current").read_text(encoding="ascii"))
+        stat = (group / "memory.stat").read_text(encoding="ascii").splitlines()
+        cached = next(int(line.split()[1]) for line in stat if line.startswith("inactive_file "))
+        free = min(free, most - used + cached)
+    return float(free)
 
 
 def size(nbytes: float) -> str:

@@ -8,17 +8,22 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ryusa.engine.seam import Engine, Flags
-from ryusa.errors import RyusaError
-from ryusa.model import Scene, State
+from ryusa.errors import DiskFull, RyusaError
+from ryusa.model import EVENT, Scene, State
 from ryusa.results import schema
 from ryusa.running import provenance
+from ryusa.running.checkpoint import Kept
 from ryusa.running.closing import closing_lines
-from ryusa.running.folder import write_json
+from ryusa.running.folder import write_json, write_last_words
 from ryusa.running.interrupt import Heard, listening
+from ryusa.running.keeper import Keeper
+from ryusa.running.place import Place
 from ryusa.running.progress import Moment, Progress
 from ryusa.running.recorder import Recorder
+from ryusa.running.snapshot import kept_state
 from ryusa.running.stops import Hops, Rest, Stop
 from ryusa.running.watch import Watch
 from ryusa.water.coupling import Coupling
@@ -27,6 +32,9 @@ _CHUNK = 0.25  # s of wall time between two looks at the clock and at Ctrl-C
 _CHUNK_FIRST = (1, 16)  # steps of the first calls, before the speed is known
 _COMPILING = "compiling kernels for this machine: once, some ten seconds; later runs start at once"
 _NEVER = 2**62  # steps
+_HAND_OVER = 65_536  # steps after which contacts are handed over where nothing else falls due before
+_LOOK_FOR_ROOM = 1.0  # s between two looks whether a full disk has room again
+_DISK_PATIENCE = 86_400.0  # s
 
 
 @dataclass(frozen=True)
@@ -51,63 +59,125 @@ class Loop:
     watch: Watch
     progress: Progress
     origin: dict[str, Any]  # provenance of a run that has begun
+    keeper: Keeper | None = None  # writes checkpoints
     status: str = schema.RUNNING
     message: str = ""
     _step: int = 0
     _t_zero: float = 0.0
+    _first: int = 0  # step of frame 0
+    _frame: int = 1  # number of the next one
+    _n_changed: int = 0  # entries of the timeline done
     _heard: Heard = field(default_factory=Heard)
     _resting: bool = False
+    _hopped: bool = False
+    _gathered: list[NDArray[np.void]] = field(default_factory=list[NDArray[np.void]])
     _calls: int = 0
     _water: Coupling | None = None
     _speed: float = 0.0  # steps per second, lately
     _warm: tuple[int, float] = (0, 0.0)  # step and wall time when kernels were ready
     _begun: float = field(default_factory=time.monotonic)
 
-    def run(self, state: State) -> None:
-        """Run to the end, whatever it is; the run folder is whole when this returns or raises."""
+    def run(self, state: State, kept: Kept | None = None) -> None:
+        """Run to the end, whatever it is; the run folder is whole when this returns or raises.
+
+        Parameters
+        ----------
+        state : the first moment, or that of a checkpoint; then `scene` is the one that held there.
+        kept : where the loop stood, its part of a checkpoint.
+        """
         try:
             with listening() as self._heard:
-                self._run(state)
-                self.recorder.flush()
+                self._run(state, kept)
+                self._with_room(self.recorder.flush)
+                if self.status == schema.STOPPED:
+                    self._keep()
+                    self._write_tail()
         except BaseException as error:
-            self.status = schema.INTERRUPTED if isinstance(error, KeyboardInterrupt) else schema.FAILED
-            self.message = str(error) or type(error).__name__
+            self.status, self.message = schema.FAILED, str(error) or type(error).__name__
+            if isinstance(error, KeyboardInterrupt):
+                self.status = schema.INTERRUPTED
+            elif isinstance(error, DiskFull) and self._heard.by:
+                self.status, self.message = schema.STOPPED, f"{self._heard.by} while the disk was full"
             # one of our own is said by whoever catches it
             self.progress.line(f"{self.status}: {self.message}", shown=not isinstance(error, RyusaError))
-            with suppress(RyusaError, OSError):
-                self.recorder.flush()
-            with suppress(RyusaError, OSError):
-                self._close()
+            for last in (self.recorder.flush, self._write_tail, self._close):
+                with suppress(RyusaError, OSError):
+                    last()
             raise
         self.progress.line(f"{self.status}: {self.message}")
         for line in closing_lines(self._close()):
             self.progress.line(line)
+        if self.keeper is not None and self.status == schema.COMPLETE:
+            self.keeper.remove()
 
-    def _run(self, state: State) -> None:
-        self._step, self._t_zero = state.step, state.t - state.step * self.scene.dt
-        self._rest, self._hops = Rest(self.stop), Hops(self.scene, self.stop)
-        first, frame, last = state.step, 1, self._last_step()
-        look_every = self._look_every()
-        with self.progress.patience(_COMPILING):
-            self.engine.load(self.scene, state)
-        self._immerse(state)
-        self._frame()
-        self._change_if_due()
-        self.recorder.flush()
+    def _run(self, state: State, kept: Kept | None) -> None:
+        if kept is None:
+            self._begin(state)
+        else:
+            self._go_on(state, kept)
+        last, look_every = self._last_step(), self._look_every()
         while not self._done(last):
-            next_frame = first + round(frame * self.frames / self.scene.dt)
+            next_frame = self._first + round(self._frame * self.frames / self.scene.dt)
             next_change = self.changes[0][0] if self.changes else _NEVER
             next_look = (self._step // look_every + 1) * look_every
-            if not self._go_to(min(next_frame, next_change, next_look, last)):
+            hand_over = (self._step // _HAND_OVER + 1) * _HAND_OVER
+            due = min(next_frame, next_change, next_look, last)
+            if not self._go_to(min(due, hand_over)):
                 continue
+            self._hand_over()
             if self._step == next_frame:
-                self._frame()
-                frame += 1
+                self._record()
+                self._frame += 1
+            if self._step == due:
+                self._hopped = self._hops.reached()
             if self._step == next_look and not self.changes:
                 self._resting = self._rest.reached(self._t, self._fastest())
             self._change_if_due()
-            if self.recorder.flush_if_due():
+            self._end_stretch()
+
+    def _begin(self, state: State) -> None:
+        self._step, self._t_zero = state.step, state.t - state.step * self.scene.dt
+        self._first = state.step
+        self._rest, self._hops = Rest(self.stop), Hops(self.scene, self.stop)
+        with self.progress.patience(_COMPILING):
+            self.engine.load(self.scene, state)
+        self._immerse(state)
+        self._record()
+        self._change_if_due()
+        self.recorder.reached(self._step)
+        self._with_room(self.recorder.flush)
+
+    def _go_on(self, state: State, kept: Kept) -> None:
+        """Stand where the checkpoint was written, which may be any step."""
+        self._step, self._warm = state.step, (state.step, time.monotonic())
+        self._rest, self._hops = Rest(self.stop), Hops(self.recorder.first_scene, self.stop)
+        place = Place.of(kept, self.scene)
+        self._t_zero, self._first, self._frame = place.t_zero, place.first, place.frame
+        self._resting, self._hopped = place.resting, place.hopped
+        self._rest.since = place.since
+        self._hops.parted[:], self._hops.count[:] = place.parted, place.hops
+        self._gathered = [place.gathered] if len(place.gathered) else []
+        self._begun -= place.wall
+        self._n_changed = place.changed
+        with self.progress.patience(_COMPILING):
+            self.engine.load(self.scene, state)
+        self._immerse(state)
+
+    def _place(self) -> "Place":
+        return Place(
+            t_zero=self._t_zero, first=self._first, frame=self._frame, changed=self._n_changed,
+            resting=self._resting, hopped=self._hopped, since=self._rest.since,
+            wall=time.monotonic() - self._begun, parted=self._hops.parted, hops=self._hops.count,
+            gathered=self._sorted(),
+        )  # fmt: skip
+
+    def _end_stretch(self) -> None:
+        """All up to this step is done and recorded."""
+        self.recorder.reached(self._step)
+        if self._with_room(self.recorder.flush_if_due):
+            with suppress(DiskFull):
                 write_json(self.recorder.folder / schema.SUMMARY, self._summary())
+        self._keep_if_due()
 
     def _go_to(self, target: int) -> bool:
         """Advance to a step in calls of bounded wall time; False when somebody said stop on the way."""
@@ -115,17 +185,75 @@ class Loop:
             self._advance(min(target - self._step, self._chunk()))
             if self.progress.due():
                 self.progress.update(self._moment())
+            if self._step < target:
+                self._keep_if_due()
         return self._step == target
+
+    def _keep_if_due(self) -> None:
+        if self.keeper is not None and (self._heard.keep or self.keeper.due()):
+            self._heard.keep = False
+            self._keep()
+
+    def _keep(self) -> None:
+        """Write a checkpoint of this very step; one that finds no room is told, and the last one stays."""
+        if self.keeper is None or self._step == self._first:
+            return
+        self.recorder.flush_if_large()
+        parts = {"loop": self._place().kept(), "watch": self.watch.kept(), "recorder": self.recorder.kept()}
+        try:
+            self.keeper.write(kept_state(self.state()), self.scene, parts)
+        except RyusaError as error:
+            self.progress.line(f"no checkpoint: {error}")
+            return
+        if self.status == schema.STOPPED:
+            self.progress.line(f"checkpoint at step {self._step}: ryusa resume {self.recorder.folder}")
+
+    def _gather(self) -> None:
+        events = self.engine.events()
+        if len(events):
+            self._gathered.append(np.array(events, dtype=EVENT))
+
+    def _sorted(self) -> NDArray[np.void]:
+        """Contacts that ended in this stretch, in an order that does not know how it was cut into calls."""
+        if not self._gathered:
+            return np.zeros(0, dtype=EVENT)
+        rows = np.concatenate(self._gathered)
+        return rows[np.lexsort((rows["t_begin"], rows["j"], rows["i"], rows["t_part"]))]
+
+    def _hand_over(self) -> None:
+        events, self._gathered = self._sorted(), []
+        self.recorder.contacts(events)
+        self.watch.contacts(events)
+        if self.stop.saltations is not None:
+            self._hops.contacts(events)
+
+    def _write_tail(self) -> None:
+        """Leave what ended in the stretch that was not finished, for whoever reads and does not go on."""
+        self.recorder.tail(self._sorted())
+
+    def _with_room(self, action: Callable[[], bool]) -> bool:
+        """Do what writes; where the disk is full, wait until there is room or somebody says stop."""
+        begun, said = time.monotonic(), False
+        while True:
+            try:
+                done = action()
+            except DiskFull as error:
+                if self._heard.by or time.monotonic() - begun > _DISK_PATIENCE:
+                    raise
+                if not said:
+                    self.progress.line(f"paused: {error}. It goes on when there is room; Ctrl-C stops it")
+                said = True
+                time.sleep(_LOOK_FOR_ROOM)
+                continue
+            if said:
+                self.progress.line("there is room again: the run goes on")
+            return done
 
     def _advance(self, n_steps: int) -> None:
         begun = time.monotonic()
         with self.progress.patience(_COMPILING) if self._calls == 0 else nullcontext():
             flags = self._steps(n_steps)
-        events = self.engine.events()
-        self.recorder.contacts(events)
-        self.watch.contacts(events)
-        if self.stop.saltations is not None:
-            self._hops.contacts(events)
+        self._gather()
         if flags:
             self._step = self.engine.state().step
             flags.raise_if_any()
@@ -180,6 +308,8 @@ class Loop:
             state = self.engine.state()
             self.scene = change.apply(self.scene)
             self.engine.load(self.scene, state)
+            self._gather()
+            self._n_changed += 1
             if self._water is not None and self.scene.column is not None:
                 self._water.change(self.scene, self.scene.column)
             self.watch.scene = self.scene
@@ -187,7 +317,7 @@ class Loop:
             self._rest = Rest(self.stop)
             self.progress.line(f"t = {self._t:.6g} s: {change.what}")
 
-    def _frame(self) -> None:
+    def _record(self) -> None:
         tally = self.engine.tally()
         self.recorder.frame(self.engine.state(), tally, self._water)
         self.watch.frame(tally)
@@ -219,10 +349,10 @@ class Loop:
 
     def _done(self, last: int) -> bool:
         if self._heard.by:
-            self.status, self.message = schema.INTERRUPTED, f"{self._heard.by} at t = {self._t:.6g} s"
+            self.status, self.message = schema.STOPPED, f"{self._heard.by} at t = {self._t:.6g} s"
         elif self._step >= last:
             self.status, self.message = schema.COMPLETE, f"reached {self.stop.time:g} s"
-        elif self._hops.reached():
+        elif self._hopped:
             self.status, self.message = schema.COMPLETE, f"every grain did {self._hops.least} saltations"
         elif self._resting:
             self.status = schema.COMPLETE
@@ -263,7 +393,7 @@ class Loop:
     def _close(self) -> dict[str, Any]:
         summary = self._summary()
         folder = self.recorder.folder
-        write_json(folder / schema.SUMMARY, summary)
         closed = {**self.origin, "status": self.status, "message": self.message, "end": provenance.now()}
-        write_json(folder / schema.PROVENANCE, closed)
+        write_last_words(folder / schema.PROVENANCE, closed)
+        write_json(folder / schema.SUMMARY, summary)
         return summary

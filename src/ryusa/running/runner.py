@@ -2,6 +2,7 @@
 
 import math
 import os
+import sys
 import tomllib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -10,16 +11,30 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ryusa.engine.seam import Engine
-from ryusa.errors import CaseError, ResultsError
+from ryusa.errors import CaseError, CheckpointError, ResultsError
 from ryusa.model import Scene, State
 from ryusa.model.enums import EventRule
 from ryusa.results import Results, schema
+from ryusa.results.scene_file import scene_digest
 from ryusa.running import provenance
-from ryusa.running.folder import prepare, refuse_if_not_writable, refuse_if_too_big, write_json
+from ryusa.running.checkpoint import Kept
+from ryusa.running.folder import (
+    as_written,
+    is_run,
+    make_folder,
+    prepare,
+    refuse_if_not_writable,
+    refuse_if_too_big,
+    refuse_if_too_large,
+    write_json,
+)
 from ryusa.running.interrupt import listening
+from ryusa.running.keeper import EVERY, Keeper, identity_of
+from ryusa.running.lock import locked
 from ryusa.running.loop import Change, Loop
 from ryusa.running.progress import Progress
-from ryusa.running.recorder import Recorder, bytes_per_frame
+from ryusa.running.recorder import Left, Recorder, bytes_per_frame
+from ryusa.running.resume import Going, look
 from ryusa.running.stops import Stop
 from ryusa.running.watch import Watch
 
@@ -39,6 +54,9 @@ def run(
     progress: bool = True,
     overwrite: bool = False,
     engine: Engine | None = None,
+    checkpoint: float = EVERY,
+    resume: bool = False,
+    force: bool = False,
 ) -> Results:
     """Run a case and open what it wrote.
 
@@ -50,23 +68,32 @@ def run(
     progress : show a bar (or lines, where stderr is no terminal).
     overwrite : replace an earlier run in `folder`; anything but a run is never touched.
     engine : steps the grains; the CPU engine when not given.
+    checkpoint : wall time between two checkpoints [s]; inf for none but those asked for by a signal.
+    resume : go on where an earlier run of this case in `folder` stopped; a complete one is opened, and where
+        there is none the run begins.
+    force : go on also where the numbers will not be those of a run never stopped: another version or
+        processor, another stop rule.
 
     Returns
     -------
-    results : the open run folder; its status says whether the run was interrupted (Ctrl-C).
+    results : the open run folder; its status says whether the run was stopped (Ctrl-C).
 
     Raises
     ------
     CaseError, ResultsError : the case cannot be run as it stands, or the folder cannot be used.
+    CheckpointError : there is a run to go on with, but not by this process, case or code.
     RunError : a number went wrong while stepping; the frames before it are in the folder.
     KeyboardInterrupt : Ctrl-C before the first step; no run folder was made. Later ones end the run in order.
     """
     with listening() as heard:
         from ryusa.build import build, change
-        from ryusa.casefile.estimate import disk_for_events, disk_needed, frames_expected
+        from ryusa.casefile.estimate import disk_for_events, disk_needed, frames_expected, memory_needed
 
-        built = build(case)
-        heard.raise_if_asked(_BEFORE)
+        def make() -> _Made:
+            built = build(case)
+            heard.raise_if_asked(_BEFORE)
+            return built.scene, built.state, tuple(str(note) for note in built.notes)
+
         stop = Stop(
             time=math.inf if case.stop.time is None else case.stop.time,
             rest_speed=case.stop.rest.speed if case.stop.rest else 0.0,
@@ -78,23 +105,20 @@ def run(
             Change(entry.at, partial(_changed, change, case, entry), words)
             for entry, words in zip(case.timeline, _words(case), strict=True)
         ]
-        return run_scene(
-            built.scene,
-            built.state,
-            folder if folder is not None else Path("runs") / case.name,
-            frames=case.record.frames,
-            stop=stop,
-            changes=changes,
-            threads=threads,
-            progress=progress,
-            overwrite=overwrite,
-            engine=engine,
-            about=_About(
-                resolved=case.resolved(), text=case.text, seed=case.seed, overrides=case.overrides,
-                disk=_Disk(frames_expected(case), disk_needed(case), disk_for_events(case)),
-                notes=tuple(built.notes),
-            ),
+        refuse_if_too_large(memory_needed(case), case.derived.n_grain)
+        about = _About(
+            resolved=case.resolved(), text=case.text, seed=case.seed, overrides=case.overrides,
+            disk=_Disk(frames_expected(case), disk_needed(case), disk_for_events(case)),
         )  # fmt: skip
+        return _carry_out(
+            make,
+            Path(folder if folder is not None else Path("runs") / case.name),
+            case.record.frames,
+            stop,
+            changes,
+            _How(threads, progress, overwrite, engine, checkpoint, resume, force),
+            about,
+        )
 
 
 def _changed(
@@ -131,7 +155,19 @@ class _About:
     seed: int | None = None
     overrides: dict[str, str] | None = None
     disk: "_Disk | None" = None
-    notes: Sequence[str] = ()  # of the builder, for the log
+
+
+@dataclass(frozen=True)
+class _How:
+    """What a user says of a run beside the case."""
+
+    threads: int
+    progress: bool
+    overwrite: bool
+    engine: Engine | None
+    checkpoint: float
+    resume: bool
+    force: bool
 
 
 def run_scene(
@@ -146,7 +182,9 @@ def run_scene(
     progress: bool = True,
     overwrite: bool = False,
     engine: Engine | None = None,
-    about: _About | None = None,
+    checkpoint: float = EVERY,
+    resume: bool = False,
+    force: bool = False,
 ) -> Results:
     """Run a scene built grain by grain, without a case file.
 
@@ -157,8 +195,8 @@ def run_scene(
     frames : time between frames [s]; frame k falls on step round(k frames/dt).
     stop : when to stop.
     changes : changes of the scene on the way, in any order.
-    threads, progress, overwrite, engine : as in `run`.
-    about : left to `run`.
+    threads, progress, overwrite, engine, checkpoint, resume, force : as in `run`; to go on, everything else
+        must be given as it was.
 
     Returns
     -------
@@ -166,13 +204,44 @@ def run_scene(
 
     Raises
     ------
-    CaseError, ResultsError, RunError : as in `run`.
+    CaseError, ResultsError, CheckpointError, RunError : as in `run`.
     """
-    folder = Path(folder)
-    about = about or _About({"title": "", "record": {"frames": frames, "settle": stop.settle}})
-    _refuse(scene, frames, stop)
+    about = _About({"title": "", "record": {"frames": frames, "settle": stop.settle}})
+    how = _How(threads, progress, overwrite, engine, checkpoint, resume, force)
+    return _carry_out(lambda: (scene, state, ()), Path(folder), frames, stop, changes, how, about)
+
+
+_Made = tuple[Scene, State, Sequence[str]]  # and notes of the builder, for the log
+
+
+def _carry_out(
+    make: Callable[[], _Made],
+    folder: Path,
+    frames: float,
+    stop: Stop,
+    changes: Sequence[Change],
+    how: _How,
+    about: _About,
+) -> Results:
+    """Run from the first step, or go on."""
     with listening() as heard:
-        engine = engine if engine is not None else _cpu_engine(threads)
+        engine = how.engine if how.engine is not None else _cpu_engine(how.threads)
+        origin = provenance.begin(
+            threads=how.threads, seed=about.seed, engine=type(engine).__name__,
+            overrides=about.overrides or {},
+        )  # fmt: skip
+        resolved = as_written(about.resolved)
+        run = _Run(folder, frames, stop, changes, how, engine, origin, resolved, about.text)
+        if how.resume and is_run(folder):
+            refuse_if_not_writable(folder)
+            with locked(folder):
+                going = look(folder, resolved, run.identity, origin, force=how.force)
+                if going is not None and going.complete:
+                    return _said_complete(folder, how)
+                if going is not None:
+                    return run.go_on(going, make)
+        scene, state, notes = make()
+        _refuse(scene, frames, stop)
         reasons = engine.refuses(scene)
         if reasons:
             raise CaseError("engine", type(engine).__name__, f"cannot carry this case: {'; '.join(reasons)}")
@@ -184,28 +253,105 @@ def run_scene(
                 folder, interval=frames, n_frame=disk.n_frame,
                 for_frames=disk.for_frames, for_events=disk.for_events,
             )  # fmt: skip
-        origin = provenance.begin(
-            threads=threads, seed=about.seed, engine=type(engine).__name__, overrides=about.overrides or {}
-        )
         heard.raise_if_asked(_BEFORE)
-        prepare(folder, overwrite=overwrite)
-        write_json(folder / schema.PROVENANCE, origin)
-        write_json(folder / schema.CASE_JSON, about.resolved)
-        if about.text is not None:
-            _write_text(folder / schema.CASE_TOML, about.text)
-        said = Progress(folder / schema.LOG, shown=progress)
+        make_folder(folder, overwrite=how.overwrite or how.resume)
+        with locked(folder):
+            prepare(folder)
+            run.write_case()
+            first = ("nothing to go on from: the run begins",) if how.resume else ()
+            return run.begin(scene, state, (*first, *notes))
+
+
+def _said_complete(folder: Path, how: _How) -> Results:
+    results = Results.open(folder)
+    if how.progress:
+        print(f"{folder}: is complete already ({results.provenance.get('message')})", file=sys.stderr)
+    return results
+
+
+@dataclass
+class _Run:
+    """One process that writes a run folder."""
+
+    folder: Path
+    frames: float
+    stop: Stop
+    changes: Sequence[Change]
+    how: _How
+    engine: Engine
+    origin: dict[str, Any]
+    resolved: dict[str, Any]
+    text: str | None
+
+    def write_case(self) -> None:
+        """Write where the run came from, and its case."""
+        write_json(self.folder / schema.PROVENANCE, self.origin)
+        write_json(self.folder / schema.CASE_JSON, self.resolved)
+        if self.text is not None:
+            _write_text(self.folder / schema.CASE_TOML, self.text)
+
+    def begin(self, scene: Scene, state: State, notes: Sequence[str]) -> Results:
+        """From the first step."""
+        return self._loop(scene, scene, state, Watch(scene, state), notes, None, None)
+
+    def go_on(self, going: Going, make: Callable[[], _Made]) -> Results:
+        """From where an earlier process stood."""
+        notes = list(going.said)
+        if going.state is None or going.now is None or going.kept is None:
+            scene, state, _ = make()
+            if going.scene is None or scene_digest(scene) != scene_digest(going.scene):
+                raise CheckpointError(
+                    f"{self.folder}: the case gives another scene now than it did; --overwrite begins anew"
+                )
+            now, watch, kept = scene, Watch(scene, state), None
+        else:
+            scene, now, state, kept = going.scene or going.now, going.now, going.state, going.kept
+            watch = Watch(scene, State.at_rest(going.x_first if going.x_first is not None else state.x))
+            watch.go_on(kept.part("watch"))
+            watch.scene = now
+        resumed = {name: self.origin[name] for name in ("begin", "ryusa", "commit", "threads", "command")}
+        resumed |= {"step": state.step, "t": state.t, "said": notes}
+        earlier = going.origin.get("resumed")
+        earlier = earlier if isinstance(earlier, list) else []
+        self.origin = {
+            **going.origin, "overrides": self.origin["overrides"], "status": schema.RUNNING, "message": "",
+            "end": None, "resumed": [*earlier, resumed],
+        }  # fmt: skip
+        self.write_case()
+        notes.insert(0, f"goes on from step {state.step}, t = {state.t:.6g} s")
+        return self._loop(scene, now, state, watch, notes, going.left, kept)
+
+    @property
+    def identity(self) -> dict[str, Any]:
+        """Whose checkpoint this process writes."""
+        changes = [(one.at, one.what) for one in self.changes]
+        return identity_of(self.origin, self.resolved, frames=self.frames, stop=self.stop, changes=changes)
+
+    def _loop(
+        self,
+        first: Scene,
+        now: Scene,
+        state: State,
+        watch: Watch,
+        notes: Sequence[str],
+        left: Left | None,
+        kept: Kept | None,
+    ) -> Results:
+        said = Progress(self.folder / schema.LOG, shown=self.how.progress)
         try:
-            for note in about.notes:
-                said.line(str(note))
+            for note in notes:
+                said.line(note)
+            done = 0 if left is None else len(left.scenes) - 1
+            changes = sorted((round(one.at / now.dt), k, one) for k, one in enumerate(self.changes))
             loop = Loop(
-                engine=engine, scene=scene, frames=frames, stop=stop,
-                changes=sorted((round(one.at / scene.dt), k, one) for k, one in enumerate(changes)),
-                recorder=Recorder(folder, scene), watch=Watch(scene, state), progress=said, origin=origin,
+                engine=self.engine, scene=now, frames=self.frames, stop=self.stop, changes=changes[done:],
+                recorder=Recorder(self.folder, now, left=left), watch=watch, progress=said,
+                origin=self.origin, keeper=Keeper(self.folder, self.identity, first, self.how.checkpoint),
             )  # fmt: skip
-            loop.run(state)
+            loop.run(state, None if kept is None else kept.part("loop"))
         finally:
             said.close()
-    return Results.open(folder)
+        return Results.open(self.folder)
 
 
 def _refuse(scene: Scene, frames: float, stop: Stop) -> None:

@@ -34,16 +34,16 @@ class Rest:
 
     def __init__(self, stop: Stop) -> None:
         self._stop = stop
-        self._since: float | None = None
+        self.since: float | None = None  # when all were slow first [s]
 
     def reached(self, t: float, speed_max: float) -> bool:
         """Take the largest speed of a centre or a spinning surface [m/s] at time t [s]."""
         if speed_max >= self._stop.rest_speed:
-            self._since = None
+            self.since = None
             return False
-        if self._since is None:
-            self._since = t
-        return t - self._since >= self._stop.rest_for
+        if self.since is None:
+            self.since = t
+        return t - self.since >= self._stop.rest_for
 
 
 class Hops:
@@ -60,7 +60,7 @@ class Hops:
         with np.errstate(divide="ignore"):
             self._flight = 2.0 * np.sqrt(2.0 * HOP_RISE * scene.d / fall)
         self._n_grain, self._stop = scene.n_grain, stop
-        self._parted = np.full(scene.n_grain, -math.inf)
+        self.parted = np.full(scene.n_grain, -math.inf)
         self.count = np.zeros(scene.n_grain, dtype=np.int64)
         tracked = np.asarray(scene.tracked, dtype=bool)
         self._watched = tracked if len(tracked) == scene.n_grain else np.ones(scene.n_grain, dtype=bool)
@@ -71,10 +71,10 @@ class Hops:
         for i, begin, part in zip(
             bed["i"].tolist(), bed["t_begin"].tolist(), bed["t_part"].tolist(), strict=True
         ):
-            parted = self._parted[i]
+            parted = self.parted[i]
             if parted >= self._stop.settle and begin - parted > self._flight[i]:
                 self.count[i] += 1
-            self._parted[i] = max(parted, part)
+            self.parted[i] = max(parted, part)
 
     @property
     def least(self) -> int:

@@ -5,7 +5,6 @@ parts, so that it can be written anew in a moment and put in place by a rename; 
 the new one, both whole.
 """
 
-import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,6 +15,7 @@ import numpy as np
 
 from ryusa.model import EVENT, Scene
 from ryusa.results import schema
+from ryusa.running.disk import image, write_whole
 
 _VERSION = np.array([2, 0], dtype=np.int64)  # the first that knows steps of PolyData
 _CELLS = ("Vertices", "Lines", "Polygons", "Strips")
@@ -34,25 +34,12 @@ class PartSize:
     name: str
     n_frame: int
     n_contact: int
+    end: int = 0  # step up to which all that was recorded is in this part or an earlier one
 
 
 def write_atomic(path: Path, fill: Callable[[h5py.File], None]) -> None:
     """Write an HDF5 file so that `path` is either as before or whole, also after a power cut."""
-    beside = path.with_name(f".{path.name}.new")
-    with h5py.File(beside, "w", locking=False) as file:
-        fill(file)
-    sync(beside)
-    os.replace(beside, path)
-    sync(path.parent)
-
-
-def sync(path: Path) -> None:
-    """Push a file or folder to the disk."""
-    handle = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)
+    write_whole(path, image(fill))
 
 
 def write_points(parts: Path, scene: Scene) -> None:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ryusa.errors import CheckpointError
 from ryusa.laws.collision import (
     collision_time,
     damping_ratio,
@@ -20,6 +21,7 @@ from ryusa.laws.torque import reynolds_spin, torque_in_range
 from ryusa.model import Book, Scene, State, Tally
 from ryusa.model.enums import Damping, WaterTorque
 from ryusa.model.tally import HELD
+from ryusa.running.checkpoint import Kept
 
 BAND = (0.001, 0.01)  # stable band of overlap/d, the paper's fig11
 TRAVEL_LIMIT = 0.3  # of d along the bed within one contact; beyond, contacts end by geometry, not by Eq. (8)
@@ -195,6 +197,36 @@ class Watch:
                 f"the energy account leaves {tally.residual:.1e} unexplained, above {RESIDUAL_LIMIT:g}"
             )
         return said
+
+    def kept(self) -> Kept:
+        """All that was seen so far, for a checkpoint."""
+        about = {"n_contact": self.n_contact, "range": self._range, "re_spin": self._re_spin}
+        about |= {"travel_most": self._travel_most, "averages": [vars(one) for one in self._averages()]}
+        return Kept(about, {"histogram": self._histogram})
+
+    def go_on(self, kept: Kept) -> None:
+        """Take what was seen up to a checkpoint.
+
+        Raises
+        ------
+        CheckpointError : it is not what a watch keeps.
+        """
+        try:
+            about, histogram = kept.about, kept.arrays["histogram"]
+            low, high = (float(one) for one in about["range"])
+            if histogram.shape != self._histogram.shape or histogram.dtype != np.int64:
+                raise ValueError(f"a histogram of shape {histogram.shape}")
+            for one, seen in zip(self._averages(), about["averages"], strict=True):
+                one.n, one.mean, one.spread = int(seen["n"]), float(seen["mean"]), float(seen["spread"])
+            self.n_contact, self._re_spin = int(about["n_contact"]), float(about["re_spin"])
+            self._travel_most = float(about["travel_most"])
+        except (KeyError, TypeError, ValueError) as error:
+            raise CheckpointError(f"the checkpoint's live numbers are not readable ({error})") from error
+        self._histogram, self._range = histogram, (low, high)
+
+    def _averages(self) -> list[Average]:
+        kinds = (self._normal, self._stuck, self._slid)
+        return [*(one for kind in kinds for one in kind.values()), self._travel]
 
     def _observed(self) -> dict[str, float | int | None]:
         """Steps per contact found: number, smallest, quantiles to 2.3 %, largest."""

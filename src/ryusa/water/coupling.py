@@ -128,9 +128,8 @@ class Coupling:
     def change(self, scene: Scene, column: Column) -> None:
         """Go on in a scene that the timeline changed: its slope, or fixed grains taken away."""
         if not np.array_equal(scene.fixed_active, self.scene.fixed_active):
-            self.phi = self.phi - self._bed.phi
             self._bed = _bed(scene, self._slices.cells, column.bed)
-            self.phi += self._bed.phi
+            self.phi = _phi(self._slices, self._volume) + self._bed.phi  # as a resume finds it, to the bit
         self.scene, self.column = scene, column
 
     def exchange(self, x: Floats, v: Floats, taken: Floats) -> Floats:

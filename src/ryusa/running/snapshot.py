@@ -1,0 +1,178 @@
+"""A `State` as plain arrays and numbers for a checkpoint, and back, every shape and id checked on the way.
+
+What comes back goes to compiled code that checks nothing: an id out of range would write where it must not.
+"""
+
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ryusa.errors import CheckpointError
+from ryusa.model import Contacts, Coupled, Immersed, Scene, State
+from ryusa.model.column import WaterState
+from ryusa.model.contacts import N_EVENT
+from ryusa.model.eddies import Eddies
+from ryusa.model.immersed import N_SEEN, N_TAKEN
+from ryusa.model.tally import N_BOOK
+from ryusa.running.checkpoint import Kept
+
+_BLOCKS = 64  # rows of the books, at most
+_COLUMNS = 64  # of the books, at most
+_FLOAT, _INT, _INT32 = np.dtype(np.float64), np.dtype(np.int64), np.dtype(np.int32)
+_EDGE = 1e12  # m; beyond no grain is
+
+
+def kept_state(state: State) -> Kept:
+    """All of a state, nested parts under names with slashes."""
+    about: dict[str, Any] = {}
+    arrays: dict[str, np.ndarray] = {}
+    _take("", state, about, arrays)
+    return Kept(about, arrays)
+
+
+def _take(before: str, value: Any, about: dict[str, Any], arrays: dict[str, np.ndarray]) -> None:
+    for one in fields(value):
+        inner, name = getattr(value, one.name), f"{before}{one.name}"
+        if isinstance(inner, np.ndarray):
+            arrays[name] = inner
+        elif is_dataclass(inner):
+            about[name] = True
+            _take(f"{name}/", inner, about, arrays)
+        else:
+            about[name] = inner
+
+
+def state_of(kept: Kept, scene: Scene) -> State:
+    """The state that a checkpoint holds, for a scene.
+
+    Raises
+    ------
+    CheckpointError : it does not fit the scene, or holds what no state holds.
+    """
+    try:
+        return _Reader(kept, scene).state()
+    except (KeyError, TypeError, ValueError, OverflowError) as error:
+        raise CheckpointError(f"the checkpoint's state is not one of ryusa ({error})") from error
+
+
+class _Reader:
+    def __init__(self, kept: Kept, scene: Scene) -> None:
+        self._about, self._arrays, self._scene = kept.about, kept.arrays, scene
+
+    def state(self) -> State:
+        n, about = self._scene.n_grain, self._about
+        step, t = int(about["step"]), float(about["t"])
+        if step < 0 or not np.isfinite(t):
+            raise ValueError(f"step {step}, t = {t}")
+        image = self._arrays.get("image", np.zeros((0, 2), _INT32))
+        state = State(
+            x=self._place("x", n),
+            v=self._floats("v", (n, 3)),
+            omega=self._floats("omega", (n, 3)),
+            step=step,
+            t=t,
+            image=self._array("image", (len(image) and n, 2), _INT32),
+            contacts=self._contacts(),
+            books=self._books(),
+            x_listed=self._place("x_listed", n) if "x_listed" in self._arrays else None,
+            immersed=self._immersed(n) if about.get("immersed") else None,
+            water=self._water(n) if about.get("water") else None,
+            engine=_numbers(about["engine"]),
+        )
+        if self._scene.column is not None and (state.water is None) != (state.immersed is None):
+            raise ValueError("water without what its grains were told, or the other way round")
+        return state
+
+    def _contacts(self) -> Contacts:
+        scene = self._scene
+        n, last = scene.n_grain, scene.n_grain + scene.n_fixed + scene.n_plane
+        k = len(self._arrays["contacts/i"])
+        i, j = (self._array(f"contacts/{name}", (k,), _INT) for name in "ij")
+        if k and (i.min() < 0 or i.max() >= n or np.any(j <= i) or j.max() >= last):
+            raise ValueError("a contact of grains that are not there")
+        if len(np.unique(i * np.int64(last) + j)) < k:
+            raise ValueError("a contact twice")
+        rows = {name: (k, 3) for name in ("spring_s", "dash_s", "spring_r", "dash_r")}
+        found = {name: self._floats(f"contacts/{name}", shape) for name, shape in rows.items()}
+        found |= {name: self._floats(f"contacts/{name}", (k,)) for name in ("dash_n", "f_n", "eta_n")}
+        event = self._array("contacts/event", (k, N_EVENT), _FLOAT)
+        return Contacts(i=i, j=j, event=event, **found)
+
+    def _books(self) -> NDArray[np.float64]:
+        books = self._array("books", None, _FLOAT)
+        if books.ndim != 2 or len(books) > _BLOCKS or not N_BOOK <= books.shape[1] <= _COLUMNS:
+            raise ValueError(f"books of shape {books.shape}")
+        return books
+
+    def _immersed(self, n: int) -> Immersed:
+        return Immersed(
+            self._floats("immersed/seen", (n, N_SEEN)), self._floats("immersed/taken", (n, N_TAKEN))
+        )
+
+    def _water(self, n: int) -> Coupled:
+        column, about = self._scene.column, self._about
+        if column is None:
+            raise ValueError("water, but the scene has no column of it")
+        cells = {name: (column.n,) for name in ("u", "w", "content", "shear", "du_dt", "dtau_dz")}
+        cells |= {name: (column.n + 1,) for name in ("tau", "nu_t")}
+        profiles: dict[str, Any] = {
+            name: self._floats(f"water/water/{name}", shape) for name, shape in cells.items()
+        }
+        eddies = None
+        if about.get("water/eddies"):
+            eddies = Eddies(
+                self._floats("water/eddies/r", (n, 3)),
+                self._floats("water/eddies/spent", (n,)),
+                self._array("water/eddies/count", (n,), _INT).copy(),
+            )
+            eddies = Eddies(eddies.r.copy(), eddies.spent.copy(), eddies.count)
+        steps, due, exchanges = (int(about[f"water/{name}"]) for name in ("steps", "due", "exchanges"))
+        if steps < 1 or due <= int(about["step"]):
+            raise ValueError(f"{steps} steps between exchanges, the next at step {due}")
+        return Coupled(
+            water=WaterState(
+                **profiles,
+                z_surface=float(about["water/water/z_surface"]),
+                volume=float(about["water/water/volume"]),
+                gradient=float(about["water/water/gradient"]),
+                t=float(about["water/water/t"]),
+                step=int(about["water/water/step"]),
+            ),
+            z=self._floats("water/z", (n,)),
+            force_z=self._floats("water/force_z", (column.n,)),
+            steps=steps,
+            due=due,
+            exchanges=exchanges,
+            worst=float(about["water/worst"]),
+            eddies=eddies,
+        )
+
+    def _place(self, name: str, n: int) -> NDArray[np.float64]:
+        x = self._floats(name, (n, 3))
+        if n and np.abs(x).max() > _EDGE:
+            raise ValueError(f"'{name}' has a grain beyond {_EDGE:g} m")
+        return x
+
+    def _floats(self, name: str, shape: tuple[int, ...]) -> NDArray[np.float64]:
+        array = self._array(name, shape, _FLOAT)
+        if not np.isfinite(array).all():
+            raise ValueError(f"'{name}' holds a number that is not finite")
+        return array
+
+    def _array(self, name: str, shape: tuple[int, ...] | None, dtype: np.dtype[Any]) -> np.ndarray:
+        array = self._arrays[name]
+        if array.dtype != dtype or (shape is not None and array.shape != shape):
+            raise ValueError(f"'{name}' is {array.shape} of {array.dtype}, expected {shape} of {dtype}")
+        return array
+
+
+def _numbers(given: Any) -> dict[str, float]:
+    if not isinstance(given, Mapping):
+        raise TypeError("an engine's numbers are no table")
+    found = {str(name): float(value) for name, value in given.items()}
+    if not all(np.isfinite(value) for value in found.values()):
+        raise ValueError("a number of the engine is not finite")
+    return found

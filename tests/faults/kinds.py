@@ -1,0 +1,183 @@
+"""The five kinds of run that the fault campaign kills, small enough to be made many times."""
+
+DRY_2D = """
+title = "Grains settle between walls, then a gate opens and the bed is tilted"
+[grains]
+diameter = "0.2 cm"
+density = "2650 kg/m3"
+spread = 0.2
+[contact]
+stiffness = "100 N/cm"
+restitution = 0.7
+friction_angle = "30 deg"
+[motion]
+rotation = "free"
+plane = true
+[build]
+kind = "box"
+columns = 8
+layers = 6
+walls = "grains"
+run_out = "4 cm"
+[time]
+steps_per_contact = 20
+[[timeline]]
+at = "0.05 s"
+remove = "gate"
+[[timeline]]
+at = "0.09 s"
+slope_angle = "10 deg"
+[stop]
+time = "0.2 s"
+[record]
+frames = "2 ms"
+events = "all"
+"""
+
+DRY_3D = """
+title = "A layer of grains in space, periodic, tilted on the way"
+[grains]
+diameter = "0.2 cm"
+density = "2650 kg/m3"
+[contact]
+stiffness = "200 N/cm"
+restitution = 0.5
+friction_angle = "30 deg"
+[motion]
+rotation = "free"
+plane = false
+[build]
+kind = "packing"
+columns = 7
+rows = 7
+layers = 6
+[time]
+steps_per_contact = 20
+[[timeline]]
+at = "0.03 s"
+slope_angle = "26 deg"
+[stop]
+time = "0.08 s"
+[record]
+frames = "1 ms"
+events = "all"
+"""
+
+SALTATION = """
+title = "Grains hop over fixed ones in a log law of water, until each has done so many saltations"
+[grains]
+diameter = "0.2 cm"
+density = "2650 kg/m3"
+[contact]
+stiffness = "100 N/cm"
+shear_ratio = 0.2857
+restitution = 0.7
+friction_angle = "30 deg"
+[motion]
+rotation = "locked"
+plane = true
+slope = "1/20"
+[water]
+profile = "log rough"
+tau_star = 0.3
+depth = "2 cm"
+zero = "0.15 cm"
+roughness = "0.2 cm"
+drag = "24/Re+0.4"
+added_mass = 0.5
+[build]
+kind = "saltation"
+n_bed = 20
+starts = 4
+[time]
+steps_per_contact = 50
+[stop]
+saltations = 8
+time = "4 s"
+[record]
+frames = "5 ms"
+events = "all"
+settle = "0.2 s"
+"""
+
+TWO_WAY = """
+title = "Grains over a bed and a column of water move each other, in eddies"
+[grains]
+diameter = "0.2 cm"
+density = "2650 kg/m3"
+spread = 0.1
+[contact]
+stiffness = "100 N/cm"
+restitution = 0.7
+friction_angle = "30 deg"
+[motion]
+rotation = "free"
+plane = true
+slope = "1/20"
+[water]
+profile = "column"
+depth = "1 cm"
+buoyancy = "stress"
+drag = "24/Re+0.4"
+hindrance = "Di Felice"
+torque = "Dennis"
+density = "1000 kg/m3"
+viscosity = "1e-6 m2/s"
+[water.column]
+start = "steady"
+bed = "moving"
+drive = "slope"
+mixing_length = "Li-Sawamoto"
+packed = 0.5
+surface = "depth"
+interval = 20
+fluctuations = "random walk"
+[build]
+kind = "packing"
+columns = 12
+layers = 4
+[time]
+steps_per_contact = 20
+[stop]
+time = "0.15 s"
+[record]
+frames = "2 ms"
+events = "all"
+"""
+
+ROLLING = """
+title = "A heap of grains that resist rolling, until it rests"
+[grains]
+diameter = "0.2 cm"
+density = "2650 kg/m3"
+spread = 0.2
+[contact]
+stiffness = "50 N/cm"
+restitution = 0.3
+friction_angle = "30 deg"
+[rolling]
+model = "spring-dashpot-slider"
+arm = "reduced radius"
+coefficient = 0.2
+[motion]
+rotation = "free"
+plane = true
+[build]
+kind = "box"
+columns = 6
+layers = 5
+run_out = "3 cm"
+[time]
+steps_per_contact = 20
+[[timeline]]
+at = "0.1 s"
+remove = "gate"
+[stop]
+time = "0.6 s"
+rest = { speed = "5 mm/s", duration = "0.05 s" }
+[record]
+frames = "5 ms"
+events = "all"
+"""
+
+KINDS = {"dry-2d": DRY_2D, "dry-3d": DRY_3D, "saltation": SALTATION, "two-way": TWO_WAY, "rolling": ROLLING}

@@ -1,0 +1,289 @@
+"""Going on: with the same bits, by the same case and code only, neither repeating nor dropping anything."""
+
+import json
+import os
+import shutil
+import signal
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import ryusa
+from ryusa.casefile.read import read_text
+from ryusa.errors import CheckpointError, ResultsError
+from ryusa.results import Results, schema
+from ryusa.running import keeper, loop, recorder
+from ryusa.running.runner import run_scene
+from ryusa.running.stops import Stop
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "faults"))
+from campaign import differences
+from kinds import KINDS
+
+CASE = KINDS["rolling"]
+SHORT = {"stop.time": "0.13 s"}
+
+
+def run(folder: Path, overrides: dict[str, str] | None = None, **how: Any) -> Results:
+    return ryusa.run(read_text(CASE, SHORT | (overrides or {})), folder, progress=False, **how)
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Results:
+    return run(tmp_path_factory.mktemp("whole") / "run")
+
+
+@pytest.fixture
+def stop_at(monkeypatch: pytest.MonkeyPatch) -> Any:
+    """Say SIGTERM (or SIGUSR1) once the loop has passed a step, in calls of 37 steps."""
+    asked: list[tuple[int, signal.Signals]] = []
+    advance = loop.Loop._advance
+
+    def watched(self: Any, n_steps: int) -> None:
+        advance(self, n_steps)
+        while asked and self._step >= asked[0][0]:
+            os.kill(os.getpid(), asked.pop(0)[1])
+
+    monkeypatch.setattr(loop.Loop, "_advance", watched)
+    monkeypatch.setattr(loop.Loop, "_chunk", lambda self: 37)
+    return lambda step, number=signal.SIGTERM: asked.append((step, number))
+
+
+@pytest.fixture
+def stopped(tmp_path: Path, stop_at: Any) -> Path:
+    """A run stopped somewhere between two frames, after the gate opened."""
+    stop_at(19_000)
+    results = run(tmp_path / "run")
+    assert results.status == schema.STOPPED
+    assert results.summary["steps"] % 37
+    return tmp_path / "run"
+
+
+def test_a_stopped_run_goes_on_with_the_same_bits(stopped: Path, whole: Results) -> None:
+    assert (stopped / schema.CHECKPOINT).is_file()
+    results = run(stopped, resume=True)
+    assert differences(whole.folder, stopped) == []
+    assert not (stopped / schema.CHECKPOINT).exists()
+    assert [one["step"] for one in results.provenance["resumed"]] == [
+        results.provenance["resumed"][0]["step"]
+    ]
+    assert "goes on from step" in (stopped / schema.LOG).read_text()
+
+
+@pytest.mark.parametrize("steps", [(1, 20, 400), (5_000, 5_001, 17_323), (17_324, 17_325, 22_000)])
+def test_a_run_stopped_over_and_over_goes_on_with_the_same_bits(
+    tmp_path: Path, stop_at: Any, whole: Results, steps: tuple[int, ...]
+) -> None:
+    for step in steps:
+        stop_at(step)
+        run(tmp_path / "run", resume=True)
+    run(tmp_path / "run", resume=True)
+    assert differences(whole.folder, tmp_path / "run") == []
+
+
+def test_contacts_of_an_unfinished_stretch_are_readable_and_not_counted_twice(
+    stopped: Path, whole: Results
+) -> None:
+    before = Results.open(stopped)
+    parts = sorted((stopped / "parts").glob("part-*"))
+    assert before._parts[-1].tail
+    assert before.contacts["t_part"].max() > before.frames.t[-1]
+    run(stopped, resume=True)
+    assert not any(part.tail for part in Results.open(stopped)._parts)
+    assert len(parts) >= 1
+
+
+def test_sigusr1_asks_for_a_checkpoint_and_the_run_goes_on(
+    tmp_path: Path, stop_at: Any, whole: Results
+) -> None:
+    seen: list[bool] = []
+    stop_at(9_000, signal.SIGUSR1)
+    write = keeper.Keeper.write
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(keeper.Keeper, "write", lambda *arguments: (seen.append(True), write(*arguments))[1])
+        assert run(tmp_path / "run").complete
+    assert seen == [True]
+    assert differences(whole.folder, tmp_path / "run") == []
+
+
+def test_parts_after_the_checkpoint_are_kept_and_not_written_twice(
+    tmp_path: Path, stop_at: Any, whole: Results, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(recorder, "flush_after", lambda elapsed, n_part: 0.0)
+    folder = tmp_path / "run"
+    stop_at(9_000, signal.SIGUSR1)
+    stop_at(19_000)
+    run(folder)
+    (folder / schema.CHECKPOINT).unlink()  # as if killed: only that of SIGUSR1 is left
+    (folder / schema.CHECKPOINT_BEFORE).rename(folder / schema.CHECKPOINT)
+    parts = [one for one in sorted((folder / "parts").glob("part-*"))[:-1]]
+    stamps = [one.stat().st_mtime_ns for one in parts]
+    run(folder, resume=True)
+    assert [one.stat().st_mtime_ns for one in parts] == stamps
+    assert differences(whole.folder, folder) == []
+
+
+def test_a_run_killed_before_its_first_checkpoint_keeps_its_frames(stopped: Path, whole: Results) -> None:
+    (stopped / schema.CHECKPOINT).unlink()
+    first = sorted((stopped / "parts").glob("part-*"))[0]
+    stamp = first.stat().st_mtime_ns
+    run(stopped, resume=True)
+    assert first.stat().st_mtime_ns == stamp
+    assert differences(whole.folder, stopped) == []
+
+
+def test_a_damaged_checkpoint_gives_way_to_the_one_before(
+    tmp_path: Path, stop_at: Any, whole: Results
+) -> None:
+    folder = tmp_path / "run"
+    stop_at(9_000, signal.SIGUSR1)
+    stop_at(19_000)
+    run(folder)
+    with (folder / schema.CHECKPOINT).open("r+b") as file:
+        file.seek(4000)
+        file.write(b"rust")
+    results = run(folder, resume=True)
+    assert differences(whole.folder, folder) == []
+    assert any("damaged" in one for one in results.provenance["resumed"][0]["said"])
+
+
+def test_without_a_good_checkpoint_a_run_is_refused_in_one_line(stopped: Path) -> None:
+    (stopped / schema.CHECKPOINT).write_bytes(b"junk")
+    with pytest.raises(CheckpointError, match="not a checkpoint of this version") as caught:
+        run(stopped, resume=True)
+    assert "\n" not in str(caught.value)
+    assert Results.open(stopped).status == "stopped"
+
+
+def test_a_damaged_part_after_the_checkpoint_is_made_again(
+    tmp_path: Path, stop_at: Any, whole: Results, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(recorder, "flush_after", lambda elapsed, n_part: 0.0)
+    folder = tmp_path / "run"
+    stop_at(9_000, signal.SIGUSR1)
+    stop_at(19_000)
+    run(folder)
+    (folder / schema.CHECKPOINT).unlink()
+    (folder / schema.CHECKPOINT_BEFORE).rename(folder / schema.CHECKPOINT)
+    parts = sorted((folder / "parts").glob("part-*"))
+    parts[-4].write_bytes(parts[-4].read_bytes()[:1000])
+    run(folder, resume=True)
+    assert differences(whole.folder, folder) == []
+
+
+def test_a_part_missing_before_the_checkpoint_is_told(stopped: Path) -> None:
+    sorted((stopped / "parts").glob("part-*"))[0].unlink()
+    with pytest.raises(CheckpointError, match=r"part-000000\.h5 is missing.*before the checkpoint"):
+        run(stopped, resume=True)
+
+
+def test_a_checkpoint_of_another_run_is_refused(stopped: Path, tmp_path: Path, stop_at: Any) -> None:
+    stop_at(15_000)
+    run(tmp_path / "other", {"seed": "2"})
+    shutil.copy(tmp_path / "other" / schema.CHECKPOINT, stopped / schema.CHECKPOINT)
+    with pytest.raises(CheckpointError, match="that of another run"):
+        run(stopped, resume=True)
+
+
+def test_a_changed_case_is_told_by_key_and_refused(stopped: Path) -> None:
+    for how in ({}, {"force": True}):
+        with pytest.raises(
+            CheckpointError, match=r"the case has changed since: contact.restitution 0.3 is now"
+        ):
+            run(stopped, {"contact.restitution": "0.4"}, resume=True, **how)
+
+
+def test_a_longer_run_is_told_and_goes_on_when_forced(stopped: Path, tmp_path: Path) -> None:
+    longer = {"stop.time": "0.14 s"}
+    with pytest.raises(CheckpointError, match=r"stop.time 0.13 is now 0.14.*With --force"):
+        run(stopped, longer, resume=True)
+    run(stopped, longer, resume=True, force=True)
+    assert differences(run(tmp_path / "longer", longer).folder, stopped) == []
+
+
+@pytest.mark.parametrize("name", ["commit", "processor", "numba"])
+def test_another_version_or_machine_is_told_and_goes_on_only_when_forced(
+    stopped: Path, name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from ryusa.running import resume
+
+    code = resume.code_of
+    monkeypatch.setattr(resume, "code_of", lambda origin: {**code(origin), name: "another"})
+    with pytest.raises(CheckpointError, match=f"elsewhere or by another version: {name} .* is now another"):
+        run(stopped, resume=True)
+    results = run(stopped, resume=True, force=True)
+    assert results.complete
+    assert any("another version" in one for one in results.provenance["resumed"][0]["said"])
+
+
+def test_with_nothing_to_go_on_from_a_run_begins_and_says_so(tmp_path: Path) -> None:
+    results = run(tmp_path / "run", resume=True)
+    assert results.complete
+    assert "nothing to go on from: the run begins" in (tmp_path / "run" / schema.LOG).read_text()
+    assert "resumed" not in results.provenance
+
+
+def test_a_complete_run_is_opened_and_left_as_it_is(tmp_path: Path) -> None:
+    run(tmp_path / "run")
+    stamps = {one: one.stat().st_mtime_ns for one in tmp_path.rglob("*") if one.is_file()}
+    assert run(tmp_path / "run", resume=True).complete
+    assert {one: one.stat().st_mtime_ns for one in tmp_path.rglob("*") if one.is_file()} == stamps
+    with pytest.raises(CheckpointError, match=r"is complete, and the case has changed since: seed"):
+        run(tmp_path / "run", {"seed": "2"}, resume=True)
+
+
+def test_a_folder_that_is_no_run_is_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "thesis.tex").write_text("all of it")
+    with pytest.raises(ResultsError, match="no run of ryusa"):
+        run(tmp_path, resume=True)
+    assert [one.name for one in tmp_path.iterdir()] == ["thesis.tex"]
+
+
+def test_frames_that_come_out_otherwise_end_the_run_before_anything_is_written(
+    stopped: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (stopped / schema.CHECKPOINT).unlink()
+    state = loop.Loop.state
+    advance = loop.Loop._steps
+
+    def disturbed(self: Any, n_steps: int) -> Any:
+        flags = advance(self, n_steps)
+        self.engine._grains.x[0, 2] += 1e-15
+        return flags
+
+    monkeypatch.setattr(loop.Loop, "_steps", disturbed)
+    before = Results.open(stopped)
+    with pytest.raises(CheckpointError, match="It is not the same run"):
+        run(stopped, resume=True)
+    after = Results.open(stopped)
+    assert after.status == "failed"
+    assert np.array_equal(before.frames.x[:], after.frames.x[:])
+    assert state is loop.Loop.state
+
+
+def test_a_scene_built_grain_by_grain_goes_on_too(
+    scene: Any, state: Any, engine: Any, tmp_path: Path, stop_at: Any
+) -> None:
+    from ryusa.engine.cpu import CpuEngine
+
+    x = np.array([[0.005, 0.0, 0.02], [0.015, 0.0, 0.02], [0.025, 0.0, 0.02]])
+    first = ryusa.State.at_rest(x)
+    how: dict[str, Any] = {"frames": 1e-3, "stop": Stop(time=0.02), "progress": False, "resume": True}
+    run_scene(scene, first, tmp_path / "whole", **how, engine=CpuEngine())
+    stop_at(700)
+    assert run_scene(scene, first, tmp_path / "hurt", **how).status == "stopped"
+    run_scene(scene, first, tmp_path / "hurt", **how)
+    assert differences(tmp_path / "whole", tmp_path / "hurt") == []
+    with pytest.raises(CheckpointError, match="is complete, and the case has changed since"):
+        run_scene(scene, first, tmp_path / "hurt", **{**how, "frames": 2e-3})
+
+
+def test_provenance_of_a_run_that_went_on_is_that_of_its_begin(stopped: Path) -> None:
+    before = json.loads((stopped / schema.PROVENANCE).read_text())
+    after = run(stopped, resume=True).provenance
+    assert after["begin"] == before["begin"]
+    assert after["end"] >= before["end"]
+    assert after["status"] == "complete"
