@@ -106,6 +106,10 @@ class ContactSlotsFull(RunError):
     """A fixed buffer of contacts is full and could not grow."""
 
 
+class EnergyCreated(RunError):
+    """The energy account does not hold: the grains have what nobody gave."""
+
+
 class WaterError(RyusaError):
     """The column of water cannot go on: says why, at which of its steps, and what to try."""
 

@@ -262,3 +262,56 @@ def test_help_loads_nothing_heavy() -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip().splitlines()[-1] == "HEAVY"
+
+
+def test_a_run_stopped_goes_on_by_either_command_and_inspect_tells_all_the_way(
+    ryusa_: Any, drop: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from ryusa.running import loop
+
+    asked: list[float] = []
+    advance = loop.Loop._advance
+
+    def watched(self: Any, n_steps: int) -> None:
+        advance(self, n_steps)
+        if asked and self._t > asked[0]:
+            asked.pop()
+            os.kill(os.getpid(), signal.SIGTERM)
+
+    monkeypatch.setattr(loop.Loop, "_advance", watched)
+    asked.append(0.01)
+    assert ryusa_("run", drop, "-o", "out", "--resume").code == 5
+    said = ryusa_("inspect", "out").out
+    assert "stopped: SIGTERM at t = 0.01" in said
+    assert "checkpoint.h5 at step" in said
+    assert "ryusa resume out" in said
+    asked.append(0.02)
+    assert ryusa_("resume", "out").code == 5
+    done = ryusa_("run", drop, "-o", "out", "--resume")
+    assert done.code == 0
+    assert "goes on from step" in done.err
+    said = ryusa_("inspect", "out").out
+    assert said.count("gone on") == 2
+    assert "complete: reached" in said
+    assert "residual" in said
+    again = ryusa_("resume", "out")
+    assert (again.code, "is complete already" in again.err) == (0, True)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["resume", "nowhere"], "nowhere: no run folder of ryusa"),
+        (["inspect", "nowhere"], "nowhere: no such run folder"),
+        (["run", "drop.toml", "--checkpoint", "soon"], "soon"),
+        (["run", "drop.toml", "--checkpoint", "0 s"], "must be longer than 0 s"),
+        (["run", "drop.toml", "--checkpoint", "-5 min"], "must be longer than 0 s"),
+    ],
+)
+def test_what_cannot_be_gone_on_with_or_asked_for_is_one_line(
+    ryusa_: Any, drop: str, words: list[str], said: str
+) -> None:
+    done = ryusa_(*[drop if word == "drop.toml" else word for word in words])
+    assert done.code == 2
+    assert said in done.err
+    assert "Traceback" not in done.err

@@ -284,7 +284,7 @@ def _one(one: Work, names: Sequence[str], *, folder: Path, again: bool, load: Lo
         answer = None if again else one.open(place)
         opened = answer is not None
         if not opened:
-            answer = one.make(place)
+            answer = one.make(place, anew=again)
     except RunError as error:  # for some experiments that is an answer: a law that makes energy ends so
         for name in names:
             faults[name] = told(error)

@@ -62,8 +62,11 @@ class Work(Protocol):
         """What was finished in `folder`; None where it is not there, of another kind, or damaged."""
         ...
 
-    def make(self, folder: Path) -> Any:
-        """Do it, keep it in `folder`, and give what `open` would. An interrupt is a KeyboardInterrupt."""
+    def make(self, folder: Path, *, anew: bool = False) -> Any:
+        """Do it, keep it in `folder`, and give what `open` would. An interrupt is a KeyboardInterrupt.
+
+        What was stopped on the way goes on from there, unless it shall be made `anew`.
+        """
         ...
 
 
@@ -136,11 +139,12 @@ class Variant(Work):
             return None
         return old if old.complete and self._is(old.case) else None
 
-    def make(self, folder: Path) -> Results:
-        """Run it; a run that was stopped is no basis for a verdict, and interrupts."""
+    def make(self, folder: Path, *, anew: bool = False) -> Results:
+        """Run it, or go on with it; a run that was stopped is no basis for a verdict, and interrupts."""
         from ryusa.running.runner import run
 
-        done = run(self.read(), folder, threads=1, progress=False, overwrite=True)
+        resume = not anew and _origin(folder) is None  # one that is complete was not fit to be opened
+        done = run(self.read(), folder, threads=1, progress=False, overwrite=True, resume=resume)
         if not done.complete:
             raise KeyboardInterrupt
         return done
@@ -216,7 +220,7 @@ class Calculation(Work):
         except (OSError, ValueError, KeyError):
             return None
 
-    def make(self, folder: Path) -> Numbers:
+    def make(self, folder: Path, *, anew: bool = False) -> Numbers:
         """Call the function and keep what it returns."""
         about = provenance.begin(threads=1, seed=None, engine=self._name, overrides=self._said())
         function = getattr(import_module(self.module), self.function)

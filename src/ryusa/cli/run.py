@@ -44,7 +44,7 @@ _WIDE = 160  # columns of a table that goes to a file or pipe
 
 def register(app: typer.Typer) -> None:
     """Put the commands of this module on the app."""
-    for command in (new, check, run, resume, schema):
+    for command in (new, check, run, resume, inspect, schema):
         app.command()(command)
 
 
@@ -162,14 +162,15 @@ def resume(
 
     with listening() as heard:
         from ryusa.casefile.read import read
-        from ryusa.results import Results, schema
+        from ryusa.errors import ResultsError
+        from ryusa.results import schema
+        from ryusa.results.read import read_json
 
-        before = Results.open(folder)
+        if not schema.is_run_folder(folder):
+            raise ResultsError(f"{folder}: no run folder of ryusa")
         if not (folder / schema.CASE_TOML).is_file():
-            from ryusa.errors import ResultsError
-
             raise ResultsError(f"{folder}: holds no case; ryusa.run_scene(..., resume=True) goes on with it")
-        overrides = before.provenance.get("overrides")
+        overrides = read_json(folder / schema.PROVENANCE).get("overrides")
         said = {str(key): str(one) for key, one in overrides.items()} if isinstance(overrides, dict) else {}
         found = read(folder / schema.CASE_TOML, said)
         from ryusa.running.runner import run as run_case
@@ -180,6 +181,16 @@ def resume(
             force=force,
         )  # fmt: skip
     _close(results, quiet)
+
+
+def inspect(
+    folder: Annotated[Path, typer.Argument(metavar="RUN", help="A run folder.", show_default=False)],
+) -> None:
+    """Say what ran, how far, its energy account, what to mind, and whether it is complete."""
+    from ryusa.running.inspection import inspection
+
+    for line in inspection(folder):
+        typer.echo(line)
 
 
 def _close(results: "Results", quiet: bool) -> None:

@@ -40,6 +40,23 @@ def locked(folder: Path) -> Generator[str]:
         file.close()
 
 
+def holder(folder: Path) -> str:
+    """Who writes into a run folder now; "" where nobody does, as far as can be told."""
+    path = folder / schema.LOCK
+    flags = os.O_RDONLY | os.O_CLOEXEC | getattr(os, "O_NOFOLLOW", 0)
+    try:
+        file = os.fdopen(os.open(path, flags), "rb")
+    except OSError:
+        return ""
+    with file:
+        left = _who(file)
+        try:
+            _hold(file, path, left, shared=True)
+        except ResultsError:
+            return f"process {left['pid']} on {left['host']}" if left else "another process"
+    return ""
+
+
 def _taken(path: Path) -> tuple[IO[bytes], str]:
     flags = os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | getattr(os, "O_NOFOLLOW", 0)
     while True:
@@ -60,7 +77,7 @@ def _taken(path: Path) -> tuple[IO[bytes], str]:
             raise
 
 
-def _hold(file: IO[bytes], path: Path, left: dict[str, Any]) -> None:
+def _hold(file: IO[bytes], path: Path, left: dict[str, Any], *, shared: bool = False) -> None:
     """Take the lock, or say who has it."""
     who = f"process {left['pid']} on {left['host']}" if left else "another process"
     if fcntl is None:
@@ -68,7 +85,7 @@ def _hold(file: IO[bytes], path: Path, left: dict[str, Any]) -> None:
             raise ResultsError(f"{path.parent}: {who} writes into it")
         return
     try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        fcntl.flock(file, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
     except BlockingIOError:
         raise ResultsError(
             f"{path.parent}: {who} writes into it. Wait for it, or choose another folder with -o"

@@ -18,6 +18,7 @@ from ryusa.running import provenance
 from ryusa.running.checkpoint import Kept
 from ryusa.running.closing import closing_lines
 from ryusa.running.folder import write_json, write_last_words
+from ryusa.running.guards import energy_created
 from ryusa.running.interrupt import Heard, listening
 from ryusa.running.keeper import Keeper
 from ryusa.running.place import Place
@@ -318,9 +319,11 @@ class Loop:
             self.progress.line(f"t = {self._t:.6g} s: {change.what}")
 
     def _record(self) -> None:
-        tally = self.engine.tally()
-        self.recorder.frame(self.engine.state(), tally, self._water)
+        state, tally = self.engine.state(), self.engine.tally()
+        self.recorder.frame(state, tally, self._water)
         self.watch.frame(tally)
+        if fault := energy_created(self.scene, state, tally):
+            raise fault
 
     def _fastest(self) -> float:
         """Fastest grain now [m/s]: its centre, or its surface where it spins in place."""

@@ -70,7 +70,7 @@ def run(
     engine : steps the grains; the CPU engine when not given.
     checkpoint : wall time between two checkpoints [s]; inf for none but those asked for by a signal.
     resume : go on where an earlier run of this case in `folder` stopped; a complete one is opened, and where
-        there is none the run begins.
+        there is none the run begins. With `overwrite` it also begins where it cannot go on.
     force : go on also where the numbers will not be those of a run never stopped: another version or
         processor, another stop rule.
 
@@ -232,10 +232,16 @@ def _carry_out(
         )  # fmt: skip
         resolved = as_written(about.resolved)
         run = _Run(folder, frames, stop, changes, how, engine, origin, resolved, about.text)
+        first: tuple[str, ...] = ("nothing to go on from: the run begins",) if how.resume else ()
         if how.resume and is_run(folder):
             refuse_if_not_writable(folder)
             with locked(folder):
-                going = look(folder, resolved, run.identity, origin, force=how.force)
+                try:
+                    going = look(folder, resolved, run.identity, origin, force=how.force)
+                except CheckpointError as error:
+                    if not how.overwrite:
+                        raise
+                    going, first = None, (f"begins anew: {error}",)
                 if going is not None and going.complete:
                     return _said_complete(folder, how)
                 if going is not None:
@@ -258,7 +264,6 @@ def _carry_out(
         with locked(folder):
             prepare(folder)
             run.write_case()
-            first = ("nothing to go on from: the run begins",) if how.resume else ()
             return run.begin(scene, state, (*first, *notes))
 
 
@@ -310,7 +315,7 @@ class _Run:
             watch.go_on(kept.part("watch"))
             watch.scene = now
         resumed = {name: self.origin[name] for name in ("begin", "ryusa", "commit", "threads", "command")}
-        resumed |= {"step": state.step, "t": state.t, "said": notes}
+        resumed |= {"step": state.step, "t": state.t, "said": list(notes)}
         earlier = going.origin.get("resumed")
         earlier = earlier if isinstance(earlier, list) else []
         self.origin = {

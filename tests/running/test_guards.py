@@ -1,0 +1,64 @@
+import numpy as np
+import pytest
+
+from ryusa.errors import CaseError, EnergyCreated
+from ryusa.model import Book, State, Tally
+from ryusa.model.tally import N_BOOK
+from ryusa.results import Results
+from ryusa.running import folder as folder_module
+from ryusa.running.folder import memory_there, refuse_if_too_large
+from ryusa.running.guards import energy_created
+from ryusa.running.runner import run_scene
+from ryusa.running.stops import Stop
+
+
+def account(kinetic, start=0.0):
+    books = [0.0] * N_BOOK
+    books[Book.START] = start
+    return Tally(0.0, kinetic, 0.0, 0.0, 0.0, 0.0, 0.0, tuple(books), 0.004, 0, 0, 1.0, 1.0, 0)
+
+
+def moving(n=3):
+    v = np.zeros((n, 3))
+    v[1, 0] = 7.0
+    return State(x=np.zeros((n, 3)), v=v, omega=np.zeros((n, 3)), step=40, t=0.5)
+
+
+def test_energy_from_nowhere_names_the_fastest_grain_step_time_and_remedy(scene):
+    fault = energy_created(scene, moving(), account(kinetic=1.0, start=0.2))
+    assert isinstance(fault, EnergyCreated)
+    assert (fault.grain, fault.step, fault.t) == (1, 40, 0.5)
+    assert "0.8 J came from nowhere" in str(fault)
+    assert "steps_per_contact" in fault.hint
+
+
+@pytest.mark.parametrize("tally", [account(1.0, 1.0), account(1.0, 0.6), account(0.2, 1.0), account(1e-12)])
+def test_energy_kept_lost_or_round_off_of_grains_at_rest_is_no_fault(scene, tally):
+    assert energy_created(scene, moving(), tally) is None
+
+
+def test_a_run_that_creates_energy_stops_and_keeps_its_frames(scene, state, engine, tmp_path, monkeypatch):
+    tally = engine.tally
+    monkeypatch.setattr(
+        engine, "tally", lambda: account(1.0) if engine.state().step >= 500 else account(1.0, 1.0)
+    )
+    with pytest.raises(EnergyCreated):
+        run_scene(
+            scene, state, tmp_path / "run", frames=1e-3, stop=Stop(time=0.01), engine=engine, progress=False
+        )
+    results = Results.open(tmp_path / "run")
+    assert results.status == "failed"
+    assert results.frames.step[-1] == 500
+    assert tally is not None
+
+
+def test_more_memory_than_there_is_is_refused_before_the_first_grain(monkeypatch):
+    monkeypatch.setattr(folder_module, "memory_there", lambda: 1e9)
+    refuse_if_too_large(0.9e9, 10)
+    with pytest.raises(CaseError, match=r"need 2 GB of memory; this machine has 1 GB to give"):
+        refuse_if_too_large(2e9, 10**6)
+
+
+def test_memory_there_is_a_number_of_bytes_where_the_system_says():
+    there = memory_there()
+    assert there is None or 1e6 < there < 1e15
