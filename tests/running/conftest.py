@@ -9,7 +9,7 @@ import pytest
 
 from ryusa.engine.seam import Flags
 from ryusa.errors import RunError
-from ryusa.model import EVENT, ContactLaw, Scene, State, Tally
+from ryusa.model import EVENT, Book, ContactLaw, Scene, State, Tally
 from ryusa.model.tally import N_BOOK
 
 
@@ -86,7 +86,10 @@ class FallingGrains:
         return self._state
 
     def tally(self) -> Tally:
-        return make_tally(self._state.t, speed_max=self.speed(self._state.step))
+        tally = make_tally(self._state.t, speed_max=self.speed(self._state.step))
+        books = [0.0] * N_BOOK
+        books[Book.START] = tally.held
+        return replace(tally, books=tuple(books))
 
     def events(self) -> np.ndarray:
         due = [self.events_at.pop(k) for k in sorted(self.events_at) if k <= self._state.step]

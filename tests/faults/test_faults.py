@@ -1,0 +1,142 @@
+"""The fault campaign: whatever ends a run, and whenever, nothing is lost and what goes on is the same run.
+
+Short here (about a minute); `pytest tests/faults -m slow` is the long form, 200 kills.
+"""
+
+import os
+import random
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+from campaign import differences, run
+from kinds import KINDS
+
+from ryusa.results import Results
+from ryusa.running import disk, keeper, loop, recorder
+
+HERE = Path(__file__).parent
+
+
+def kill(folder: Path, kind: str, kills: int, seed: int) -> None:
+    words = [sys.executable, str(HERE / "campaign.py"), str(folder), str(kills), str(seed), kind]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert f"{kind}: {kills} kills" in done.stdout
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
+@pytest.mark.parametrize("kind", KINDS)
+def test_runs_killed_at_random_moments_lose_nothing_and_end_the_same(tmp_path: Path, kind: str) -> None:
+    kill(tmp_path, kind, 2, seed=1)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
+@pytest.mark.parametrize("kind", KINDS)
+def test_two_hundred_kills_lose_nothing(tmp_path: Path, kind: str) -> None:
+    kill(tmp_path, kind, 40, seed=int.from_bytes(os.urandom(4)))
+
+
+@pytest.mark.parametrize("kind", ["rolling", "two-way"])
+def test_a_disk_that_fills_up_again_and_again_loses_nothing(
+    tmp_path: Path, kind: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run(kind, tmp_path / "whole")
+    draw, full = random.Random(5), [0]
+    beside = disk.write_beside
+
+    def narrow(path: Path, content: bytes) -> Path:
+        if path.parent != tmp_path / "hurt" and path.parent.parent != tmp_path / "hurt":
+            return beside(path, content)
+        if full[0] == 0 and draw.random() < 0.2 and path.suffix in {".h5", ".vtkhdf"}:
+            full[0] = draw.randint(1, 4)
+        if full[0]:
+            path.with_name(f".{path.name}.new").write_bytes(content[: draw.randint(0, len(content))])
+            raise OSError(28, "No space left on device")
+        return beside(path, content)
+
+    def sleep(seconds: float) -> None:
+        full[0] = max(full[0] - 1, 0)
+
+    monkeypatch.setattr(recorder, "flush_after", lambda elapsed, n_part: 0.02)
+    monkeypatch.setattr(loop.time, "sleep", sleep)
+    monkeypatch.setattr(keeper, "_SHARE", 1.0)
+    begin = recorder.Recorder.flush
+    begun: list[bool] = []
+
+    def flush(self: Any) -> bool:
+        if not begun:  # from the first frame on
+            monkeypatch.setattr(disk, "write_beside", narrow)
+            begun.append(True)
+        return begin(self)
+
+    monkeypatch.setattr(recorder.Recorder, "flush", flush)
+    results = run(kind, tmp_path / "hurt", checkpoint=0.1)
+    assert "paused: " in (results.folder / "log.txt").read_text()
+    assert differences(tmp_path / "whole", tmp_path / "hurt") == []
+
+
+SMALL = """
+import os, subprocess, sys, threading, time
+from pathlib import Path
+disk = Path(sys.argv[1])
+sys.path.insert(0, sys.argv[2])
+subprocess.run(["mount", "-t", "tmpfs", "-o", "size=30m", "none", disk], check=True)
+from campaign import differences, run
+from ryusa.running import loop
+loop._LOOK_FOR_ROOM = 0.05
+filler = disk / "filler"
+filler.write_bytes(bytes(14 << 20))
+log = disk / "hurt" / "log.txt"
+seen = []
+
+def watch():
+    while not (log.is_file() and "paused: " in log.read_text()):
+        time.sleep(0.02)
+    seen.append(True)
+    filler.unlink()
+
+threading.Thread(target=watch, daemon=True).start()
+run("dry-3d", disk / "hurt")
+assert seen
+run("dry-3d", Path(sys.argv[3]))
+assert differences(disk / "hurt", Path(sys.argv[3])) == []
+print("nothing lost")
+"""
+
+
+@pytest.mark.slow
+def test_a_small_disk_that_is_full_pauses_a_run_until_there_is_room(tmp_path: Path) -> None:
+    space = ["unshare", "--user", "--map-root-user", "--mount"]
+    if shutil.which("unshare") is None or subprocess.run([*space, "true"], check=False).returncode:
+        pytest.skip("no user namespaces here")
+    (tmp_path / "disk").mkdir()
+    words = [sys.executable, "-c", SMALL, str(tmp_path / "disk"), str(HERE), str(tmp_path / "whole")]
+    done = subprocess.run([*space, *words], capture_output=True, text=True, check=False)
+    assert "nothing lost" in done.stdout, done.stdout + done.stderr
+
+
+def test_a_folder_is_read_while_it_is_written(tmp_path: Path) -> None:
+    code = f"import sys; sys.path.insert(0, {str(HERE)!r}); import campaign; from pathlib import Path; "
+    code += "campaign.recorder.flush_after = lambda elapsed, n: 0.0; "
+    code += "campaign.run('two-way', Path(sys.argv[1]), checkpoint=0.1)"
+    writer = subprocess.Popen([sys.executable, "-c", code, str(tmp_path / "run")])
+    seen: list[int] = []
+    try:
+        while writer.poll() is None:
+            if (tmp_path / "run" / "grains.vtkhdf").exists():
+                frames = Results.open(tmp_path / "run").frames
+                assert frames.x[-1].shape == (48, 3)
+                seen.append(len(frames))
+    finally:
+        writer.kill()
+        writer.wait()
+    assert sorted(seen) == seen
+    assert len(set(seen)) > 3
