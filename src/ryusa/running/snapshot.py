@@ -61,6 +61,7 @@ def state_of(kept: Kept, scene: Scene) -> State:
 class _Reader:
     def __init__(self, kept: Kept, scene: Scene) -> None:
         self._about, self._arrays, self._scene = kept.about, kept.arrays, scene
+        self._read: set[str] = set()
 
     def state(self) -> State:
         n, about = self._scene.n_grain, self._about
@@ -82,6 +83,8 @@ class _Reader:
             water=self._water(n) if about.get("water") else None,
             engine=_numbers(about["engine"]),
         )
+        if unknown := sorted(set(self._arrays) - self._read):
+            raise ValueError(f"'{unknown[0]}' belongs to no state that this version knows")
         if self._scene.column is not None and (state.water is None) != (state.immersed is None):
             raise ValueError("water without what its grains were told, or the other way round")
         return state
@@ -164,6 +167,7 @@ class _Reader:
 
     def _array(self, name: str, shape: tuple[int, ...] | None, dtype: np.dtype[Any]) -> np.ndarray:
         array = self._arrays[name]
+        self._read.add(name)
         if array.dtype != dtype or (shape is not None and array.shape != shape):
             raise ValueError(f"'{name}' is {array.shape} of {array.dtype}, expected {shape} of {dtype}")
         return array
