@@ -22,7 +22,7 @@ HAS_RYUSA  := $(VENV)/.has-ryusa
 HAS_TESTS  := $(VENV)/.has-tests
 
 .DEFAULT_GOAL := help
-.PHONY: help demo demo-run test check lint format types walls unit docs pictures bench paper paper-quick validate validate-quick slow constraints clean
+.PHONY: help demo demo-run test check lint format types walls unit docs pictures bench paper paper-quick validate validate-quick faults slow constraints clean
 
 help: ## list these targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 22
@@ -97,6 +97,9 @@ validate: $(HAS_RYUSA) ## ours on every reference, with its error: runs/validati
 
 validate-quick: $(HAS_RYUSA) ## the same in short; fails where something lies outside its tolerance
 	$(BIN)/ryusa validate --quick -o $(CHECKED) --jobs $(JOBS) --again
+
+faults: $(HAS_TESTS) ## the fault campaign: 200 kills, full disks, a thousand damaged and foreign folders
+	$(BIN)/python -m pytest -q -n $(JOBS) tests/faults -m "slow or not slow"
 
 slow: $(HAS_TESTS) ## tests that take longer than about ten seconds
 	$(BIN)/python -m pytest -q -n $(JOBS) -m slow

@@ -39,7 +39,7 @@ def some_state() -> State:
     return State(
         x=x, v=draw.random((N, 3)), omega=draw.random((N, 3)), step=7, t=0.1 + 0.2,
         image=np.ones((N, 2), np.int32), contacts=contacts, books=draw.random((8, 24)), x_listed=x + 1e-9,
-        engine={"skin": 1 / 3, "since": 5.0},
+        engine={"skin": 1 / 3e4, "since": 5.0},
     )  # fmt: skip
 
 

@@ -287,3 +287,21 @@ def test_provenance_of_a_run_that_went_on_is_that_of_its_begin(stopped: Path) ->
     assert after["begin"] == before["begin"]
     assert after["end"] >= before["end"]
     assert after["status"] == "complete"
+
+
+def test_a_case_with_a_table_goes_on_from_its_run_folder_alone(tmp_path: Path, stop_at: Any) -> None:
+    from ryusa.casefile.read import read
+
+    rows = "".join(f"{0.3 * k},{1.0 + 0.1 * k},0.2\n" for k in range(3))
+    (tmp_path / "three.csv").write_text("x [cm],z [cm],d [cm]\n" + rows)
+    text = CASE[: CASE.index("[build]")] + '[build]\nkind = "table"\nfile = "three.csv"\n'
+    text += '[[planes]]\nname = "floor"\npoint = ["0 m", "0 m", "0 m"]\nnormal = [0.0, 0.0, 1.0]\n'
+    (tmp_path / "case.toml").write_text(text + '[stop]\ntime = "0.05 s"\n[record]\nframes = "2 ms"\n')
+    case = read(tmp_path / "case.toml")
+    ryusa.run(case, tmp_path / "whole", progress=False)
+    stop_at(3_000)
+    assert not ryusa.run(case, tmp_path / "hurt", progress=False).complete
+    (tmp_path / "three.csv").unlink()
+    case = read(tmp_path / "hurt" / "case.toml")
+    ryusa.run(case, tmp_path / "hurt", progress=False, resume=True)
+    assert differences(tmp_path / "whole", tmp_path / "hurt") == []

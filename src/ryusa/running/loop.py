@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.engine.seam import Engine, Flags
-from ryusa.errors import DiskFull, RyusaError
+from ryusa.errors import CheckpointError, DiskFull, RyusaError
 from ryusa.model import EVENT, Scene, State
 from ryusa.results import schema
 from ryusa.running import provenance
@@ -160,9 +160,12 @@ class Loop:
         self._gathered = [place.gathered] if len(place.gathered) else []
         self._begun -= place.wall
         self._n_changed = place.changed
-        with self.progress.patience(_COMPILING):
-            self.engine.load(self.scene, state)
-        self._immerse(state)
+        try:
+            with self.progress.patience(_COMPILING):
+                self.engine.load(self.scene, state)
+            self._immerse(state)
+        except (ValueError, ArithmeticError, AssertionError) as error:
+            raise CheckpointError(f"the checkpoint's state cannot be gone on from ({error})") from error
 
     def _place(self) -> "Place":
         return Place(

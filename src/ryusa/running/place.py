@@ -1,5 +1,6 @@
 """Where the loop stands between two calls of the engine: its part of a checkpoint."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -48,7 +49,7 @@ class Place:
                 since=None if since is None else float(since), wall=float(about["wall"]),
                 parted=arrays["parted"], hops=arrays["hops"], gathered=gathered,
             )  # fmt: skip
-        except (KeyError, TypeError, ValueError) as error:
+        except (KeyError, TypeError, ValueError, OverflowError) as error:
             raise CheckpointError(f"the checkpoint does not say where the loop stood ({error})") from error
         ids = (gathered["i"], gathered["j"]) if gathered.dtype == EVENT else ()
         last = n + scene.n_fixed + scene.n_plane
@@ -60,7 +61,8 @@ class Place:
             or any(len(one) and not (one.min() >= 0 and one.max() < last) for one in ids)
             or any(len(one) and one.max() >= n for one in ids[:1])
             or not (np.isfinite(place.t_zero) and 0.0 <= place.wall < 1e12)
-            or min(place.first, place.frame, place.changed) < 0
+            or not all(0 <= one < 2**53 for one in (place.first, place.frame, place.changed))
+            or not math.isfinite(place.since or 0.0)
         ):
             raise CheckpointError("the checkpoint's place of the loop does not fit the scene")
         return place

@@ -164,7 +164,7 @@ def _from_checkpoint(
         n_part, parts_end, end, n_frame, n_contact = (
             int(stood.about[name]) for name in ("n_part", "parts_end", "end", "n_frame", "n_contact")
         )
-    except (KeyError, TypeError, ValueError) as error:
+    except (KeyError, TypeError, ValueError, OverflowError) as error:
         raise CheckpointError(f"{folder}: the checkpoint does not say what was recorded ({error})") from error
     parts, damaged = _parts(folder, scene.n_grain, at_least=n_part)
     if damaged:

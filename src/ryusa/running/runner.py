@@ -18,6 +18,7 @@ from ryusa.results import Results, schema
 from ryusa.results.scene_file import scene_digest
 from ryusa.running import provenance
 from ryusa.running.checkpoint import Kept
+from ryusa.running.disk import disk, write_whole
 from ryusa.running.folder import (
     as_written,
     is_run,
@@ -108,7 +109,7 @@ def run(
         refuse_if_too_large(memory_needed(case), case.derived.n_grain)
         about = _About(
             resolved=case.resolved(), text=case.text, seed=case.seed, overrides=case.overrides,
-            disk=_Disk(frames_expected(case), disk_needed(case), disk_for_events(case)),
+            disk=_Disk(frames_expected(case), disk_needed(case), disk_for_events(case)), table=_table(case),
         )  # fmt: skip
         return _carry_out(
             make,
@@ -125,6 +126,17 @@ def _changed(
     change: "Callable[[Case, Scene, Entry], Scene]", case: "Case", entry: "Entry", scene: Scene
 ) -> Scene:
     return change(case, scene, entry)
+
+
+def _table(case: "Case") -> Path | None:
+    """The table of first grains, where it can lie beside the case in the run folder as it does now."""
+    from ryusa.casefile.builders import Table
+
+    if not isinstance(case.build, Table) or case.path is None:
+        return None
+    name = case.build.file
+    plain = Path(name).name == name and Path(name).suffix not in {".json", ".toml", ".vtkhdf", ".h5", ".txt"}
+    return case.path.resolve().parent / name if plain and not name.startswith(".") else None
 
 
 def _words(case: "Case") -> list[str]:
@@ -155,6 +167,7 @@ class _About:
     seed: int | None = None
     overrides: dict[str, str] | None = None
     disk: "_Disk | None" = None
+    table: Path | None = None  # of first grains, which the case names
 
 
 @dataclass(frozen=True)
@@ -231,7 +244,7 @@ def _carry_out(
             overrides=about.overrides or {},
         )  # fmt: skip
         resolved = as_written(about.resolved)
-        run = _Run(folder, frames, stop, changes, how, engine, origin, resolved, about.text)
+        run = _Run(folder, frames, stop, changes, how, engine, origin, resolved, about)
         first: tuple[str, ...] = ("nothing to go on from: the run begins",) if how.resume else ()
         if how.resume and is_run(folder):
             refuse_if_not_writable(folder)
@@ -253,11 +266,11 @@ def _carry_out(
             raise CaseError("engine", type(engine).__name__, f"cannot carry this case: {'; '.join(reasons)}")
         refuse_if_not_writable(folder)
         n_frame = stop.time / frames + 1
-        disk = about.disk or _Disk(n_frame, n_frame * bytes_per_frame(scene.n_grain))
-        if math.isfinite(disk.n_frame):
+        fits = about.disk or _Disk(n_frame, n_frame * bytes_per_frame(scene.n_grain))
+        if math.isfinite(fits.n_frame):
             refuse_if_too_big(
-                folder, interval=frames, n_frame=disk.n_frame,
-                for_frames=disk.for_frames, for_events=disk.for_events,
+                folder, interval=frames, n_frame=fits.n_frame,
+                for_frames=fits.for_frames, for_events=fits.for_events,
             )  # fmt: skip
         heard.raise_if_asked(_BEFORE)
         make_folder(folder, overwrite=how.overwrite or how.resume)
@@ -286,14 +299,18 @@ class _Run:
     engine: Engine
     origin: dict[str, Any]
     resolved: dict[str, Any]
-    text: str | None
+    about: _About
 
     def write_case(self) -> None:
         """Write where the run came from, and its case."""
         write_json(self.folder / schema.PROVENANCE, self.origin)
         write_json(self.folder / schema.CASE_JSON, self.resolved)
-        if self.text is not None:
-            _write_text(self.folder / schema.CASE_TOML, self.text)
+        if self.about.text is not None:
+            _write_text(self.folder / schema.CASE_TOML, self.about.text)
+        table = self.about.table
+        if table is not None and table.parent != self.folder.resolve():
+            with disk(self.folder):
+                write_whole(self.folder / table.name, table.read_bytes())
 
     def begin(self, scene: Scene, state: State, notes: Sequence[str]) -> Results:
         """From the first step."""

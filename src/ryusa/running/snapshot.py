@@ -19,6 +19,7 @@ from ryusa.model.immersed import N_SEEN, N_TAKEN
 from ryusa.model.tally import N_BOOK
 from ryusa.running.checkpoint import Kept
 
+_LATEST = 2**62  # step
 _BLOCKS = 64  # rows of the books, at most
 _COLUMNS = 64  # of the books, at most
 _FLOAT, _INT, _INT32 = np.dtype(np.float64), np.dtype(np.int64), np.dtype(np.int32)
@@ -66,7 +67,7 @@ class _Reader:
     def state(self) -> State:
         n, about = self._scene.n_grain, self._about
         step, t = int(about["step"]), float(about["t"])
-        if step < 0 or not np.isfinite(t):
+        if not 0 <= step < _LATEST or not np.isfinite(t):
             raise ValueError(f"step {step}, t = {t}")
         image = self._arrays.get("image", np.zeros((0, 2), _INT32))
         state = State(
@@ -81,7 +82,7 @@ class _Reader:
             x_listed=self._place("x_listed", n) if "x_listed" in self._arrays else None,
             immersed=self._immersed(n) if about.get("immersed") else None,
             water=self._water(n) if about.get("water") else None,
-            engine=_numbers(about["engine"]),
+            engine=self._numbers(),
         )
         if unknown := sorted(set(self._arrays) - self._read):
             raise ValueError(f"'{unknown[0]}' belongs to no state that this version knows")
@@ -133,7 +134,7 @@ class _Reader:
             )
             eddies = Eddies(eddies.r.copy(), eddies.spent.copy(), eddies.count)
         steps, due, exchanges = (int(about[f"water/{name}"]) for name in ("steps", "due", "exchanges"))
-        if steps < 1 or due <= int(about["step"]):
+        if not 1 <= steps < _LATEST or not int(about["step"]) < due < _LATEST:
             raise ValueError(f"{steps} steps between exchanges, the next at step {due}")
         return Coupled(
             water=WaterState(
@@ -172,11 +173,15 @@ class _Reader:
             raise ValueError(f"'{name}' is {array.shape} of {array.dtype}, expected {shape} of {dtype}")
         return array
 
-
-def _numbers(given: Any) -> dict[str, float]:
-    if not isinstance(given, Mapping):
-        raise TypeError("an engine's numbers are no table")
-    found = {str(name): float(value) for name, value in given.items()}
-    if not all(np.isfinite(value) for value in found.values()):
-        raise ValueError("a number of the engine is not finite")
-    return found
+    def _numbers(self) -> dict[str, float]:
+        """An engine's own numbers; a skin wider than a grain would list every pair."""
+        given = self._about["engine"]
+        if not isinstance(given, Mapping) or len(given) > _COLUMNS:
+            raise TypeError("an engine's numbers are no table")
+        found = {str(name): float(value) for name, value in given.items()}
+        if any(np.isnan(value) for value in found.values()):  # an engine may wait for ever: inf
+            raise ValueError("a number of the engine is none")
+        widest = float(np.concatenate([self._scene.d, self._scene.d_fixed]).max(initial=0.0))
+        if not 0.0 <= found.get("skin", 0.0) <= widest:
+            raise ValueError(f"a skin of {found['skin']:g} m")
+        return found

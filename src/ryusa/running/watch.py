@@ -214,13 +214,15 @@ class Watch:
         try:
             about, histogram = kept.about, kept.arrays["histogram"]
             low, high = (float(one) for one in about["range"])
-            if histogram.shape != self._histogram.shape or histogram.dtype != np.int64:
+            if histogram.shape != self._histogram.shape or histogram.dtype != np.int64 or histogram.min() < 0:
                 raise ValueError(f"a histogram of shape {histogram.shape}")
             for one, seen in zip(self._averages(), about["averages"], strict=True):
                 one.n, one.mean, one.spread = int(seen["n"]), float(seen["mean"]), float(seen["spread"])
             self.n_contact, self._re_spin = int(about["n_contact"]), float(about["re_spin"])
             self._travel_most = float(about["travel_most"])
-        except (KeyError, TypeError, ValueError) as error:
+            if not all(one.n >= 0 and one.spread >= 0.0 for one in self._averages()):
+                raise ValueError("an average of less than nothing")
+        except (KeyError, TypeError, ValueError, OverflowError) as error:
             raise CheckpointError(f"the checkpoint's live numbers are not readable ({error})") from error
         self._histogram, self._range = histogram, (low, high)
 

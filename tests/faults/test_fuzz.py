@@ -1,0 +1,200 @@
+"""Run folders and checkpoints from strangers: read, inspected, gone on with, or refused by name."""
+
+import hashlib
+import json
+import math
+import shutil
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+from kinds import KINDS
+
+import ryusa
+from ryusa.casefile.read import read_text
+from ryusa.errors import RyusaError
+from ryusa.results import Results, schema
+from ryusa.running import loop
+from ryusa.running.checkpoint import _HEAD, _MAGIC, read_checkpoint
+from ryusa.running.disk import image
+from ryusa.running.inspection import inspection
+
+SHORT = {"dry-2d": "0.01 s", "two-way": "0.004 s", "rolling": "0.01 s"}
+FAST = settings(
+    max_examples=25,
+    deadline=None,
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
+)
+SLOW = settings(FAST, max_examples=1000)
+
+
+def go(kind: str, folder: Path, **how: Any) -> Results:
+    case = read_text(KINDS[kind], {"stop.time": SHORT[kind], "record.frames": "1 ms"})
+    return ryusa.run(case, folder, progress=False, **how)
+
+
+@pytest.fixture(scope="module", params=list(SHORT))
+def stopped(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path]:
+    """A run of each kind, stopped in the middle with a checkpoint."""
+    kind, folder = request.param, tmp_path_factory.mktemp("run") / "run"
+    advance = loop.Loop._advance
+
+    def watched(self: Any, n_steps: int) -> None:
+        advance(self, n_steps)
+        if self._t > 0.6 * self.stop.time:
+            self._heard.by = "the test"
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(loop.Loop, "_advance", watched)
+        patch.setattr(loop.Loop, "_chunk", lambda self: 101)
+        assert go(kind, folder).status == "stopped"
+    return kind, folder
+
+
+def judged(kind: str, folder: Path) -> None:
+    """Everything a user may do with a folder ends well, or in one named error."""
+    for act in (read_all, inspection, lambda one: go(kind, one, resume=True)):
+        try:
+            act(folder)
+        except RyusaError as error:
+            assert str(error)
+
+
+def read_all(folder: Path) -> None:
+    results = Results.open(folder)
+    for array in (results.frames.x, results.frames.v, results.frames.omega):
+        array[:]
+    assert len(results.contacts) >= 0
+    assert results.tally
+    assert results.water is None or len(results.water.u) >= 0
+
+
+def damage_a_file(kind: str, folder: Path, data: st.DataObject) -> None:
+    files = sorted(one for one in folder.rglob("*") if one.is_file())
+    path = data.draw(st.sampled_from(files), "file")
+    content = bytearray(path.read_bytes())
+    how = data.draw(st.sampled_from(["cut", "flip", "zero", "swap", "away", "junk"]), "how")
+    place = data.draw(st.integers(0, max(len(content) - 1, 0)), "place")
+    if how == "cut":
+        content = content[:place]
+    elif how == "flip" and content:
+        content[place] ^= 1 << data.draw(st.integers(0, 7))
+    elif how == "zero":
+        content[place : place + 64] = bytes(len(content[place : place + 64]))
+    elif how == "swap":
+        content = bytearray(data.draw(st.sampled_from(files)).read_bytes())
+    elif how == "junk":
+        content = bytearray(data.draw(st.binary(max_size=300)))
+    if how == "away":
+        path.unlink()
+    else:
+        path.write_bytes(content)
+    judged(kind, folder)
+
+
+anything = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=5)
+    | st.sampled_from([-1, 0, 2**31, 2**63, 10**400, 1e308, -math.inf, math.nan]),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=5), inner, max_size=3),
+    max_leaves=4,
+)  # fmt: skip
+
+
+def leaves(value: Any, way: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
+    """Ways to everything within plain data."""
+    found = [way] if way else []
+    inner = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    return found + [one for key, child in inner for one in leaves(child, (*way, key))]
+
+
+def change_json(kind: str, folder: Path, data: st.DataObject) -> None:
+    path = data.draw(st.sampled_from(sorted(folder.glob("*.json"))), "file")
+    content = json.loads(path.read_text())
+    put(content, data)
+    path.write_text(json.dumps(content))
+    judged(kind, folder)
+
+
+def put(content: Any, data: st.DataObject) -> None:
+    *way, last = data.draw(st.sampled_from(leaves(content)), "way")
+    for key in way:
+        content = content[key]
+    content[last] = data.draw(anything, "value")
+
+
+def sign_another_checkpoint(kind: str, folder: Path, data: st.DataObject) -> None:
+    """A checkpoint that a stranger changed, with the right digest."""
+    n = Results.open(folder).scene.n_grain
+    kept = read_checkpoint(folder / schema.CHECKPOINT, n)
+    about, arrays = kept.about, dict(kept.arrays)
+    if data.draw(st.booleans(), "numbers"):
+        put(about, data)
+    else:
+        name = data.draw(st.sampled_from(sorted(arrays)), "array")
+        arrays[name] = changed(arrays[name], data)
+    text = json.dumps({**about, "arrays": sorted(arrays)}).encode()
+
+    def fill(file: h5py.File) -> None:
+        file["about"] = np.frombuffer(text, np.uint8)
+        for name, array in arrays.items():
+            file[name] = array
+
+    body = image(fill)
+    head = _MAGIC + f"{len(body)} {hashlib.sha256(body).hexdigest()}\n".encode()
+    (folder / schema.CHECKPOINT).write_bytes(head.ljust(_HEAD, b"\0") + body)
+    judged(kind, folder)
+
+
+def changed(array: np.ndarray, data: st.DataObject) -> np.ndarray:
+    how = data.draw(st.sampled_from(["value", "shorter", "longer", "other type", "flat"]), "how")
+    if how == "value" and array.size and array.dtype.names is None:
+        array = array.copy()
+        integers, floats = st.integers(-3, 2**31 - 1), st.floats() | st.floats(-1e-3, 1e-3)
+        value = data.draw(integers if array.dtype.kind in "iu" else floats, "value")
+        array.flat[data.draw(st.integers(0, array.size - 1), "place")] = value
+        return array
+    if how == "longer" and array.ndim:
+        return np.concatenate([array, array[-1:]])
+    if how == "other type" and array.dtype.names is None:
+        return array.astype(np.float32)
+    return array.reshape(-1) if how == "flat" else array[:-1]
+
+
+Trick = Callable[[str, Path, st.DataObject], None]
+TRICKS: list[Trick] = [damage_a_file, change_json, sign_another_checkpoint]
+
+
+def fuzzed(trick: Trick, stopped: tuple[str, Path], tmp_path: Path, data: st.DataObject) -> None:
+    kind, source = stopped
+    folder = tmp_path / "run"
+    shutil.rmtree(folder, ignore_errors=True)
+    shutil.copytree(source, folder)
+    trick(kind, folder, data)
+
+
+@pytest.mark.parametrize("trick", TRICKS)
+@FAST
+@given(data=st.data())
+def test_a_folder_of_a_stranger_is_used_or_refused_by_name(
+    trick: Trick, stopped: tuple[str, Path], tmp_path: Path, data: st.DataObject
+) -> None:
+    fuzzed(trick, stopped, tmp_path, data)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("trick", TRICKS)
+@SLOW
+@given(data=st.data())
+def test_a_thousand_folders_of_strangers_are_used_or_refused_by_name(
+    trick: Trick, stopped: tuple[str, Path], tmp_path: Path, data: st.DataObject
+) -> None:
+    fuzzed(trick, stopped, tmp_path, data)
