@@ -111,11 +111,15 @@ def identity_of(
 
 def code_of(origin: Mapping[str, Any]) -> dict[str, str]:
     """Versions and processor that the bits of a run depend on, by the names a user knows."""
-    packages, machine = origin.get("packages") or {}, origin.get("machine") or {}
+    packages, machine = _table(origin.get("packages")), _table(origin.get("machine"))
     found = {"ryusa": origin.get("ryusa"), "commit": origin.get("commit")}
     found |= {name: packages.get(name) for name in _PACKAGES}
     found |= {"processor": machine.get("processor"), "architecture": machine.get("architecture")}
     return {name: str(value) for name, value in found.items()}
+
+
+def _table(value: Any) -> Mapping[str, Any]:
+    return value if isinstance(value, Mapping) else {}
 
 
 def case_digest(resolved: Mapping[str, Any]) -> str:

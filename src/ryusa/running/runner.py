@@ -244,13 +244,16 @@ def _carry_out(
             overrides=about.overrides or {},
         )  # fmt: skip
         resolved = as_written(about.resolved)
-        run = _Run(folder, frames, stop, changes, how, engine, origin, resolved, about)
+        whose = identity_of(
+            origin, resolved, frames=frames, stop=stop, changes=[(one.at, one.what) for one in changes]
+        )
+        run = _Run(folder, frames, stop, changes, how, engine, origin, resolved, about, whose)
         first: tuple[str, ...] = ("nothing to go on from: the run begins",) if how.resume else ()
         if how.resume and is_run(folder):
             refuse_if_not_writable(folder)
             with locked(folder):
                 try:
-                    going = look(folder, resolved, run.identity, origin, force=how.force)
+                    going = look(folder, resolved, whose, origin, force=how.force)
                 except CheckpointError as error:
                     if not how.overwrite:
                         raise
@@ -300,6 +303,7 @@ class _Run:
     origin: dict[str, Any]
     resolved: dict[str, Any]
     about: _About
+    identity: dict[str, Any]  # of the checkpoints it writes
 
     def write_case(self) -> None:
         """Write where the run came from, and its case."""
@@ -342,12 +346,6 @@ class _Run:
         self.write_case()
         notes.insert(0, f"goes on from step {state.step}, t = {state.t:.6g} s")
         return self._loop(scene, now, state, watch, notes, going.left, kept)
-
-    @property
-    def identity(self) -> dict[str, Any]:
-        """Whose checkpoint this process writes."""
-        changes = [(one.at, one.what) for one in self.changes]
-        return identity_of(self.origin, self.resolved, frames=self.frames, stop=self.stop, changes=changes)
 
     def _loop(
         self,
