@@ -317,7 +317,8 @@ class Loop:
             if self._water is not None and self.scene.column is not None:
                 self._water.change(self.scene, self.scene.column)
             self.watch.scene = self.scene
-            self.recorder.scene(self.scene, self._step, self._t)
+            scene, step, t = self.scene, self._step, self._t
+            self._with_room(lambda scene=scene, step=step, t=t: self.recorder.scene(scene, step, t))
             self._rest = Rest(self.stop)
             self.progress.line(f"t = {self._t:.6g} s: {change.what}")
 

@@ -122,17 +122,19 @@ class Recorder:
             else:
                 self._take_over(left)
 
-    def scene(self, scene: Scene, step: int, t: float) -> None:
-        """Write the scene that holds from `step`, time `t` [s], on."""
+    def scene(self, scene: Scene, step: int, t: float) -> bool:
+        """Write the scene that holds from `step`, time `t` [s], on; asked again where the disk was full."""
 
         def fill(file: h5py.File) -> None:
             write_scene(file, scene, step, t)
 
         with disk(self.folder):
             write_atomic(self.folder / schema.PARTS / schema.scene_name(self._n_scene), fill)
-            self._n_scene += 1
-            if self._show(t, scene):
-                write_bed(self.folder / schema.BED, self._scenes)
+            shown = self._shown(t, scene)
+            if shown is not self._scenes:
+                write_bed(self.folder / schema.BED, shown)
+        self._scenes, self._n_scene = shown, self._n_scene + 1
+        return True
 
     def frame(self, state: State, tally: Tally, water: Coupling | None = None) -> None:
         """Keep a frame; its arrays are copied. `water` where a column of it is solved."""
@@ -266,7 +268,7 @@ class Recorder:
         self.n_frame, self.n_contact = left.n_frame, left.n_contact
         self._n_scene, self._end = len(left.scenes), left.end
         for t, scene in left.scenes:
-            self._show(t, scene)
+            self._scenes = self._shown(t, scene)
         write_bed(self.folder / schema.BED, self._scenes)
         if left.waiting:
             self._take_rows(left.waiting)
@@ -298,12 +300,11 @@ class Recorder:
                     "there. It is not the same run; --overwrite begins anew"
                 )
 
-    def _show(self, t: float, scene: Scene) -> bool:
-        """Keep a scene for the bed if it shows another one than before."""
+    def _shown(self, t: float, scene: Scene) -> list[tuple[float, Scene]]:
+        """Scenes that show another bed than the one before, with this one if it does."""
         if self._scenes and _same_bed(self._scenes[-1][1], scene):
-            return False
-        self._scenes.append((t, scene))
-        return True
+            return self._scenes
+        return [*self._scenes, (t, scene)]
 
     def _room(self, k: int) -> dict[str, NDArray[Any]]:
         return {
