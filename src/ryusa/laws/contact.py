@@ -106,7 +106,7 @@ def slide(size: float, tau_c: float, drop: bool, total: bool) -> tuple[float, fl
         dashpot, abs(e + d).
     tau_c : shear strength [N].
     drop : the dashpot falls away while sliding.
-    total : spring and dashpot are capped together, as LAMMPS and LIGGGHTS do: the dashpot keeps its value and
+    total : spring and dashpot are capped together, as LAMMPS does: the dashpot keeps its value and
         the spring takes what is left, so that the sum has length tau_c. With neither the spring is capped and
         the dashpot kept: Eq. (3) as printed.
 

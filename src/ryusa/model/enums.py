@@ -15,7 +15,7 @@ class Slip(IntEnum):
 
     SPRING = 0  # Eq. (3): the spring is capped, the dashpot stays
     SPRING_DROP = 1  # the spring is capped, the dashpot is dropped while sliding
-    TOTAL = 2  # spring and dashpot together are capped (LAMMPS, LIGGGHTS)
+    TOTAL = 2  # spring and dashpot together are capped (LAMMPS; LIGGGHTS and YADE drop the dashpot)
 
 
 class Cap(IntEnum):
