@@ -80,7 +80,7 @@ def check_frames(folder: Path, at_least: int) -> int:
     assert np.array_equal(steps, np.arange(len(steps)))
     assert np.array_equal(points, steps[:, None, None] + offsets)
     assert np.array_equal(events["t_begin"], steps * 1e-3)
-    return n
+    return min(n, len(steps))  # between a part and the index that names it a reader may look
 
 
 def test_after_sigkill_at_any_moment_every_flushed_frame_is_readable(writer: Any) -> None:
