@@ -115,6 +115,27 @@ def test_a_worker_whose_answer_cannot_be_sent_spares_the_others(fakes, tmp_path,
     assert "cannot pickle" in next(iter(found.problems.values()))
 
 
+def test_a_run_stopped_on_the_way_goes_on_from_its_checkpoint(fakes, tmp_path, monkeypatch):
+    from ryusa.running import loop
+
+    fakes["one"] = Fake(seeds=(1,))
+    advance = loop.Loop._advance
+
+    def stopped(self, n_steps):
+        advance(self, n_steps)
+        self._heard.by = "the test"
+
+    with monkeypatch.context() as patch:
+        patch.setattr(loop.Loop, "_advance", stopped)
+        with pytest.raises(KeyboardInterrupt):
+            carry_out(("one",), Plan(), tmp_path)
+    assert carry_out(("one",), Plan(), tmp_path).n_run == 1
+    about = next(tmp_path.glob("*/*/provenance.json"))
+    assert [one["step"] for one in json.loads(about.read_text())["resumed"]] == [1]
+    carry_out(("one",), Plan(), tmp_path, again=True)
+    assert "resumed" not in json.loads(about.read_text())
+
+
 def test_a_run_that_failed_is_tried_again_and_it_alone(fakes, tmp_path, monkeypatch):
     fakes["both"], fakes["first"] = Fake(), Fake(seeds=(1,))
     real = runner.run
