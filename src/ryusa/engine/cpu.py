@@ -15,7 +15,6 @@ from ryusa.engine.numbers import choice_of, numbers_of, potential_energy, rollin
 from ryusa.engine.rows import (
     C_DT,
     C_SKIN,
-    C_STEP_LIMIT,
     C_T_ZERO,
     COST_LOOK,
     N_BOOKS,
@@ -127,7 +126,6 @@ class CpuEngine:
         self._numbers = numbers_of(scene)
         self._smallest = float(np.concatenate([scene.d, scene.d_fixed]).min(initial=np.inf))
         self._numbers[C_T_ZERO] = state.t - state.step * scene.dt
-        self._numbers[C_STEP_LIMIT] = 0.25 * self._smallest
         records = (n // blocks + _RECORDS, N_EVENT) if scene.events != EventRule.NONE else (1, 1)
         self._ledger = Ledger(
             np.zeros((blocks, *records)), np.zeros((blocks, N_BOOKS)), np.zeros((blocks, N_NOW))

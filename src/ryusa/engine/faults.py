@@ -32,7 +32,10 @@ def fault_of(now: Floats, numbers: Floats, step: int) -> RunError:
         "partner": None if partner < 0 else partner,
     }
     if fault == FAULT_NOT_A_NUMBER:
-        hint = "Forces grew without bound: look at the frames before, and at the step and the springs."
+        hint = (
+            "Forces grew without bound, most likely a step too long for its springs: take more "
+            "time.steps_per_contact, and look at the frames before."
+        )
         return NotANumber("velocity is not finite", **where, hint=hint)
     if fault == FAULT_OVERLAP:
         found = f"overlap is {now[block, N_OVERLAP_MAX]:.3g} of the smaller diameter, more than the limit"
@@ -52,7 +55,8 @@ def unsafe_of(grains: Grains, n: int, numbers: Floats, smallest: float, step: in
         grain=int(grains.ids[place]),
         step=step,
         t=t,
-        hint="It could pass through others unseen: take a smaller step, or look for what threw it.",
+        hint="So fast, it could pass through others unseen. Most likely a contact too stiff or too deep for "
+        "the step threw it: take more time.steps_per_contact, and look at the frames before.",
     )
 
 
@@ -60,5 +64,8 @@ def lost_of(grains: Grains, grain: int, step: int, t: float) -> GrainLost:
     """A grain outside the world."""
     place = int(np.flatnonzero(grains.ids == grain)[0])
     where = ", ".join(f"{a:.4g}" for a in grains.x[place, :3])
-    hint = "Widen domain.low and domain.high, or look at what threw it."
+    hint = (
+        "It flew, rolled or fell out, through a gap or a bed too soft to hold it: close the gap, take a "
+        "larger contact.stiffness, or widen domain.low and domain.high."
+    )
     return GrainLost(f"a grain left the world at ({where}) m", grain=grain, step=step, t=t, hint=hint)

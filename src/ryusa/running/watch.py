@@ -25,6 +25,7 @@ from ryusa.running.checkpoint import Kept
 
 BAND = (0.001, 0.01)  # stable band of overlap/d, the paper's fig11
 TRAVEL_LIMIT = 0.3  # of d along the bed within one contact; beyond, contacts end by geometry, not by Eq. (8)
+PASSED = 0.64  # overlap/d below which no grain passes through another (design/0008)
 STEPS_LEAST = 10  # per contact
 RESIDUAL_LIMIT = 1e-3  # of the energy account
 QUANTILES = (0.01, 0.1, 0.5, 0.9, 0.99)
@@ -168,6 +169,11 @@ class Watch:
         """Say where the run left the stable band."""
         said: list[str] = []
         largest = tally.overlap_max
+        if largest > PASSED:
+            said.append(
+                f"largest overlap/d {largest:.3g} is above {PASSED}: grains may have passed "
+                "through each other"
+            )
         touched = self.n_contact > 0 or tally.n_contact > 0
         if largest > BAND[1]:
             said.append(
