@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -30,6 +32,17 @@ def test_energy_from_nowhere_names_the_fastest_grain_step_time_and_remedy(scene)
     assert (fault.grain, fault.step, fault.t) == (1, 40, 0.5)
     assert "0.8 J came from nowhere" in str(fault)
     assert "steps_per_contact" in fault.hint
+
+
+def test_energy_that_the_step_gives_to_springs_comes_from_nowhere_too(scene):
+    boiling = account(kinetic=1.0, start=0.2)
+    books = list(boiling.books)
+    books[Book.STEP], books[Book.SLIDE] = 3.0, 2.2
+    boiling = replace(boiling, books=tuple(books))
+    assert boiling.residual < 1e-9
+    fault = energy_created(scene, moving(), boiling)
+    assert fault is not None
+    assert "3 J came from nowhere" in str(fault)
 
 
 @pytest.mark.parametrize("tally", [account(1.0, 1.0), account(1.0, 0.6), account(0.2, 1.0), account(1e-12)])
