@@ -327,6 +327,7 @@ class Loop:
         self.recorder.frame(state, tally, self._water)
         self.watch.frame(tally)
         if fault := energy_created(self.scene, state, tally):
+            self.recorder.reached(self._step)  # this frame belongs to the run that failed
             raise fault
 
     def _fastest(self) -> float:

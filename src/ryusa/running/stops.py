@@ -57,8 +57,8 @@ class Hops:
     def __init__(self, scene: Scene, stop: Stop) -> None:
         g = math.hypot(*(float(component) for component in scene.gravity))
         fall = g * scene.m_weight / (scene.m + scene.m_added)
-        with np.errstate(divide="ignore"):
-            self._flight = 2.0 * np.sqrt(2.0 * HOP_RISE * scene.d / fall)
+        with np.errstate(divide="ignore"):  # what floats never comes back
+            self._flight = 2.0 * np.sqrt(2.0 * HOP_RISE * scene.d / np.maximum(fall, 0.0))
         self._n_grain, self._stop = scene.n_grain, stop
         self.parted = np.full(scene.n_grain, -math.inf)
         self.count = np.zeros(scene.n_grain, dtype=np.int64)
