@@ -2,6 +2,18 @@
 
 from typing import Any, NamedTuple
 
+import numpy as np
+
+_LINE = 64  # bytes of a cache line
+
+
+def aligned(*shape: int) -> np.ndarray:
+    """Zeros that begin at a cache line: rows of eight doubles then take one line each, not two."""
+    size = 8 * int(np.prod(shape))
+    raw = np.zeros(size + _LINE, np.uint8)
+    first = -raw.ctypes.data % _LINE
+    return raw[first : first + size].view(np.float64).reshape(shape)
+
 
 class Grains(NamedTuple):
     """Grains by place. n free grains, n_solid with the fixed ones, n_total with the planes.
@@ -9,9 +21,9 @@ class Grains(NamedTuple):
     Vectors lie in rows of four doubles, a whole vector register; what the fourth is, is said.
     """
 
-    x: Any  # centres [m], and 0, (n_total, 4)
+    x: Any  # centres and radius [m], (n_total, 4); inf the radius of planes
     v: Any  # velocities [m/s], and 0, (n_total, 4); zero beyond n
-    w: Any  # spins [rad/s], and the radius [m], (n_total, 4); zero beyond n, inf the radius of planes
+    w: Any  # spins [rad/s], and the radius [m], (n_total, 4); zero beyond n; beside v in one cache line
     m: Any  # mass with added mass [kg], (n_total,); inf beyond n
     m_bare: Any  # mass without added mass [kg], (n,)
     m_weight: Any  # mass that gravity sees [kg], (n,)
@@ -56,7 +68,8 @@ class Near(NamedTuple):
     to: Any  # row of `Pairs.f` for the partner
     pair: Any  # number in the wide list
     live: Any  # 1 where they touch and the row holds
-    rows: Any  # memory (rows.py), (n_near, width); zero where they do not touch, but for the dashpots
+    eta: Any  # normal and tangential dashpot [N s/m], (n_near, 2)
+    rows: Any  # memory (rows.py), (n_near, width); zero where they do not touch
 
 
 class Walls(NamedTuple):
@@ -78,6 +91,8 @@ class Work(NamedTuple):
     """What one thread reckons on."""
 
     desk: Any  # a batch of touching pairs (lanes.py), (DESK,)
-    apart: Any  # way from i to j [m] of a batch of near pairs, and their reach, groups of four, (4 * LANES,)
-    hit: Any  # 1 where they touch, (LANES,)
-    which: Any  # near pairs on the desk, (LANES,), uint32
+    table: Any  # a batch of grains in motion (lanes.py), (TABLE,)
+    glance: Any  # way from i to j and both radii [m] of pairs that are looked at, four each, (4 * LANES,)
+    apart: Any  # the same of pairs that wait, (8 * LANES,)
+    hit: Any  # 1 where a pair that is looked at touches, (LANES,)
+    which: Any  # near pairs that wait, then those on the desk, (2 * LANES,), uint32

@@ -14,7 +14,7 @@ import math
 from typing import Any
 
 from ryusa.engine._kernel import FAST, kernel
-from ryusa.engine.four import add4, copy4, take4
+from ryusa.engine.four import add4, apart4, copy4, take4
 from ryusa.engine.lanes import *
 from ryusa.engine.rows import *
 from ryusa.laws.contact import normal_force, shear_strength, slide
@@ -27,41 +27,46 @@ SLIP_DROP, SLIP_TOTAL, CAP_TOTAL = int(Slip.SPRING_DROP), int(Slip.TOTAL), int(C
 
 @kernel(fastmath=FAST, forceinline=True)
 def look(
-    plane_case: int, reach_on: float, first: int, m: int, n_solid: int, c: Any, x: Any, w: Any, i_of: Any,
-    j_of: Any, points: Any, normals: Any, apart: Any, hit: Any,
-) -> None:  # fmt: skip
-    """Tell which of m <= LANES near pairs touch; `apart` gets their way from i to j [m].
+    plane_case: int, reach_on: float, first: int, m: int, waiting: int, n_solid: int, c: Any, x: Any,
+    i_of: Any, j_of: Any, live: Any, points: Any, normals: Any, glance: Any, hit: Any, apart: Any, which: Any,
+) -> int:  # fmt: skip
+    """Let those of m <= LANES near pairs wait that touch or did in the last step; returns how many wait.
 
-    A plane is met as a grain of the same size that touches it from behind.
+    `which` and `apart` get their numbers and ways from i to j [m]; `glance` is room to look at all. A plane
+    is met as a grain of the same size that touches it from behind.
     """
     l_x, l_y = c[C_PERIOD_X], c[C_PERIOD_Y]
     for l in range(m):
         i, j = i_of[first + l], j_of[first + l]
-        copy4(apart, 4 * l, x, 4 * j)
-        take4(apart, 4 * l, x, 4 * i)
-        apart[4 * l + 3] = w[i, 3] + w[j, 3]
+        apart4(glance, 4 * l, x, 4 * j, 4 * i)
         if j >= n_solid:
-            a, r = j - n_solid, w[i, 3]
+            a, r = j - n_solid, x[i, 3]
             gap = 0.0
             for k in range(3):
                 gap += (x[i, k] - points[a, k]) * normals[a, k]
             for k in range(3):
-                apart[4 * l + k] = -(gap + r) * normals[a, k]
-            apart[4 * l + 3] = 2.0 * r
+                glance[4 * l + k] = -(gap + r) * normals[a, k]
+            glance[4 * l + 3] = 2.0 * r
     for l in range(min(m, LANES)):
-        d_x, d_z, reach = wrap(apart[4 * l], l_x), apart[4 * l + 2], apart[4 * l + 3] + reach_on
+        d_x, d_z, reach = wrap(glance[4 * l], l_x), glance[4 * l + 2], glance[4 * l + 3] + reach_on
         square = d_x * d_x + d_z * d_z
         if not plane_case:
-            d_y = wrap(apart[4 * l + 1], l_y)
+            d_y = wrap(glance[4 * l + 1], l_y)
             square += d_y * d_y
         hit[l] = 1.0 if square < reach * reach else 0.0
+    for l in range(m):  # no branch: which pairs touch cannot be foretold
+        which[waiting] = first + l
+        copy4(apart, 4 * waiting, glance, 4 * l)
+        waiting += int(hit[l] > 0.0) | int(live[first + l])
+    return waiting
 
 
 @kernel(fastmath=FAST, forceinline=True)
 def lay_out(
-    m: int, which: Any, n_solid: int, v: Any, w: Any, i_of: Any, j_of: Any, live: Any, rows: Any, desk: Any
-) -> int:
-    """Lay near pairs on the first m lanes, their way from i to j lies there; returns the lanes to reckon.
+    m: int, which: Any, apart: Any, n_solid: int, v: Any, w: Any, i_of: Any, j_of: Any, live: Any, eta: Any,
+    rows: Any, desk: Any,
+) -> int:  # fmt: skip
+    """Lay the first m pairs that wait on as many lanes; returns the lanes to reckon.
 
     Those are whole vectors of eight: the lanes beyond m hold pairs far apart.
     """
@@ -69,15 +74,16 @@ def lay_out(
     for l in range(m):
         k = which[l]
         i, j = i_of[k], j_of[k]
-        copy4(desk, D_MOVING + 4 * l, v, 4 * i)
-        take4(desk, D_MOVING + 4 * l, v, 4 * j)
-        copy4(desk, D_SPIN_I + 4 * l, w, 4 * i)
-        copy4(desk, D_SPIN_J + 4 * l, w, 4 * j)
+        copy4(desk, D_APART + 4 * l, apart, 4 * l)
+        copy4(desk, D_MOVING + 4 * l, v, 8 * i)
+        take4(desk, D_MOVING + 4 * l, v, 8 * j)
+        copy4(desk, D_SPIN_I + 4 * l, w, 8 * i)
+        copy4(desk, D_SPIN_J + 4 * l, w, 8 * j)
         if j >= n_solid:
             desk[D_SPIN_J + 4 * l + 3] = w[i, 3]
         copy4(desk, D_SPRING + 4 * l, rows, width * k)
         copy4(desk, D_DASH + 4 * l, rows, width * k + R_DASH_S)
-        desk[D_MOVING + 4 * l + 3], desk[D_ETA_S + l] = rows[k, R_ETA_N], rows[k, R_ETA_S]
+        desk[D_MOVING + 4 * l + 3], desk[D_ETA_S + l] = eta[k, ETA_N], eta[k, ETA_S]
         desk[D_WAS + l] = live[k]
     whole = (m + 7) // 8 * 8
     for l in range(m, whole):

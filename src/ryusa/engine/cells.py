@@ -100,7 +100,6 @@ def _neighbours(c: int, n: int, periodic: bool, out: Any) -> int:
 @kernel()
 def list_pairs(
     x: Any,
-    w: Any,
     ids: Any,
     offset: int,
     grid: Any,
@@ -116,7 +115,7 @@ def list_pairs(
 
     Parameters
     ----------
-    offset : added to the numbers in the grid to get the index into x and w (free grains 0, fixed grains n).
+    offset : added to the numbers in the grid to get the index into x (free grains 0, fixed grains n).
     grid : low, width, dims, first and order of `grid_of` and `sort_into`.
     lanes : a plane scene, where grains at another y are in another lane and never met.
     half : only partners with a higher id (each free pair once); grain i itself never.
@@ -139,7 +138,7 @@ def list_pairs(
                         continue
                     if lanes and x[j, 1] != x[i, 1]:
                         continue
-                    reach = w[i, 3] + w[j, 3] + skin
+                    reach = x[i, 3] + x[j, 3] + skin
                     d_x = wrap(x[j, 0] - x[i, 0], period[0])
                     d_y = wrap(x[j, 1] - x[i, 1], period[1])
                     d_z = x[j, 2] - x[i, 2]
@@ -153,7 +152,6 @@ def list_pairs(
 @kernel()
 def build_list(
     x: Any,
-    w: Any,
     ids: Any,
     n: int,
     n_solid: int,
@@ -176,14 +174,14 @@ def build_list(
     normals, points = walls.normals, walls.points
     for i in range(n):
         start[i] = used
-        used = list_pairs(x, w, ids, 0, free_grid, period, skin, lanes, i, True, partners, used)
+        used = list_pairs(x, ids, 0, free_grid, period, skin, lanes, i, True, partners, used)
         if len(fixed_grid[4]) > 0:
-            used = list_pairs(x, w, ids, n, fixed_grid, period, skin, lanes, i, False, partners, used)
+            used = list_pairs(x, ids, n, fixed_grid, period, skin, lanes, i, False, partners, used)
         for k in range(len(normals)):
             gap = 0.0
             for a in range(3):
                 gap += (x[i, a] - points[k, a]) * normals[k, a]
-            if active_planes[k] and gap < w[i, 3] + skin:
+            if active_planes[k] and gap < x[i, 3] + skin:
                 if used < len(partners):
                     partners[used] = n_solid + k
                 used += 1

@@ -32,7 +32,7 @@ def wet_dashpots(choice: Choice, m: int, which: Any, c: Any, grains: Grains, nea
         u_x, u_y, u_z = desk[D_MOVING + 4 * l], desk[D_MOVING + 4 * l + 1], desk[D_MOVING + 4 * l + 2]
         closing = (u_x * d_x + u_y * d_y + u_z * d_z) / distance
         eta_n = dashpot_wet(choice, closing, near.i[k], near.j[k], c, grains.m, grains.w)
-        desk[D_MOVING + 4 * l + 3] = near.rows[k, R_ETA_N] = eta_n
+        desk[D_MOVING + 4 * l + 3] = near.eta[k, ETA_N] = eta_n
 
 
 @kernel(fastmath=FAST)

@@ -4,7 +4,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ryusa.engine.arrays import Grains, Near, Pairs, Walls
+from ryusa.engine.arrays import Grains, Near, Pairs, Walls, aligned
 from ryusa.engine.carry import cross_lists, wrap_grains
 from ryusa.engine.cells import build_list, grid_of, sort_into
 from ryusa.engine.near import count_live, put_rows, take_rows
@@ -16,10 +16,11 @@ from ryusa.model.scene import Floats
 
 
 class Memory(NamedTuple):
-    """Touching pairs by id, with their rows (rows.py)."""
+    """Touching pairs by id, with their dashpots and rows (rows.py)."""
 
     i: np.ndarray
     j: np.ndarray
+    eta: Floats
     rows: Floats
 
 
@@ -52,7 +53,7 @@ class Layout:
         none = np.zeros(0, np.int64)
         return Pairs(
             np.zeros(self.n + 1, np.int64), np.zeros(0, np.uint32), none, np.zeros(0, np.uint8),
-            none, none, np.zeros((0, 8)),
+            none, none, aligned(0, 8),
         )  # fmt: skip
 
     def room_for(self, pairs: np.ndarray) -> Near:
@@ -60,26 +61,27 @@ class Layout:
         first = np.concatenate([[0], np.cumsum(pairs)])
         total = int(first[-1])
         i, j, to, pair = (np.zeros(total, np.uint32) for _ in range(4))
-        rows = np.zeros((total, self.kind.row_width))
-        return Near(first, np.zeros(len(pairs), np.int64), i, j, to, pair, np.zeros(total, np.uint8), rows)
+        live, eta, rows = np.zeros(total, np.uint8), np.zeros((total, 2)), aligned(total, self.kind.row_width)
+        return Near(first, np.zeros(len(pairs), np.int64), i, j, to, pair, live, eta, rows)
 
     def by_id(self, state: State) -> Grains:
         """Arrays of a state, still in the order of ids."""
         n, scene = self.n, self.scene
         still = np.zeros((len(self.r) - n, 3))
-        radius = self.r[:, None]
         image = np.array(state.image, dtype=np.int32) if len(state.image) == n else np.zeros((n, 2), np.int32)
         spin = state.omega if scene.rotation else np.zeros((n, 3))
         none = Immersed(np.zeros((0, 0)), np.zeros((0, 0)))
         if scene.water.profile == Profile.COLUMN:
             none = Immersed.still(n)
         immersed = state.immersed or none
+        x, v, w = _vectors(len(self.r))
+        x[:, :3] = np.vstack([state.x, self.x_fixed, still[len(self.x_fixed) :]])
+        v[:n, :3], w[:n, :3] = state.v, spin
+        x[:, 3] = w[:, 3] = self.r
         return Grains(
-            x=np.hstack(
-                [np.vstack([state.x, self.x_fixed, still[len(self.x_fixed) :]]), np.zeros_like(radius)]
-            ),
-            v=np.hstack([np.vstack([state.v, still]), np.zeros_like(radius)]),
-            w=np.hstack([np.vstack([spin, still]), radius]),
+            x=x,
+            v=v,
+            w=w,
             m=self.m,
             m_bare=scene.m,
             m_weight=scene.m_weight,
@@ -136,10 +138,13 @@ class Layout:
         first = sort_into(x, n, low, wide, dims, order)
         place = np.arange(len(self.r))
         place[:n] = order
+        moved = _vectors(len(place))
+        for array, was in zip(moved, (x, by_id.v, by_id.w), strict=True):
+            array[:] = was[place]
         grains = by_id._replace(
-            x=x[place],
-            v=by_id.v[place],
-            w=by_id.w[place],
+            x=moved[0],
+            v=moved[1],
+            w=moved[2],
             m=self.m[place],
             m_bare=scene.m[order],
             m_weight=scene.m_weight[order],
@@ -159,7 +164,7 @@ class Layout:
         start, partners = pairs.start, pairs.partners
         while True:
             used = build_list(
-                grains.x, grains.w, grains.ids, n, self.n_solid, self.walls, scene.plane_active,
+                grains.x, grains.ids, n, self.n_solid, self.walls, scene.plane_active,
                 free, fixed, period, skin, scene.plane_case, start, partners,
             )  # fmt: skip
             if used <= len(partners):
@@ -173,7 +178,7 @@ class Layout:
             grains,
             Pairs(
                 start, partners, cross_start, np.zeros(crossing, np.uint8), incoming_start, incoming,
-                np.zeros((rows, 8)),
+                aligned(rows, 8),
             ),
             listed,
             lost,
@@ -189,11 +194,17 @@ class Layout:
         index = np.empty(self.n, np.int64)
         index[grains.ids[: self.n]] = np.arange(self.n)
         block_of = np.repeat(np.arange(len(near.count)), np.diff(self.block_start))
-        missing = put_rows(self.n, near, block_of, index, memory.i, memory.j, memory.rows)
+        missing = put_rows(self.n, near, block_of, index, *memory)
         if missing >= 0:
             raise AssertionError(
                 f"pair {memory.i[missing]}, {memory.j[missing]} is in touch and not in the list"
             )
+
+
+def _vectors(n: int) -> tuple[Floats, Floats, Floats]:
+    """Room for x, v and w of n places (arrays.Grains); v and w share a line."""
+    both = aligned(n, 8)
+    return aligned(n, 4), both[:, :4], both[:, 4:]
 
 
 def film_reach(scene: Scene) -> float:
@@ -205,6 +216,7 @@ def take_memory(n: int, grains: Grains, near: Near) -> Memory:
     """Copy ids and rows of all pairs in touch, in list order."""
     count = count_live(near)
     width = near.rows.shape[1]
-    memory = Memory(np.empty(count, np.int64), np.empty(count, np.int64), np.empty((count, width)))
+    i, j = np.empty(count, np.int64), np.empty(count, np.int64)
+    memory = Memory(i, j, np.empty((count, 2)), np.empty((count, width)))
     take_rows(n, near, grains.ids, *memory)
     return memory

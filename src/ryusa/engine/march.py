@@ -11,7 +11,7 @@ from ryusa.engine.arrays import Grains, Ledger, Near, Pairs, Walls, Work
 from ryusa.engine.batch import hand_out, lay_out, look, overlap_on, reckon
 from ryusa.engine.company import keep_company, wet_dashpots
 from ryusa.engine.four import copy4
-from ryusa.engine.lanes import D_APART, D_BOOKS, D_SPIN_I, D_SPIN_J, DESK, LANES, N_LANE_BOOK, PITCH
+from ryusa.engine.lanes import D_BOOKS, D_SPIN_I, D_SPIN_J, DESK, LANES, N_LANE_BOOK, PITCH, TABLE
 from ryusa.engine.motion import motion
 from ryusa.engine.near import cut
 from ryusa.engine.rows import *
@@ -46,36 +46,30 @@ def forces(
     now: Any,
 ) -> None:
     """Forces of every pair that block b owns, batch by batch of those that touch."""
-    desk, apart, hit, which = work.desk, work.apart, work.hit, work.which
+    desk, glance, apart, hit, which = work.desk, work.glance, work.apart, work.hit, work.which
     reach_on = c[C_FILM_REACH] if kind.film else 0.0
     # arrays are handed over one by one: a tuple of them would have its references counted for every batch
     x, v, w, f = grains.x, grains.v, grains.w, pairs.f
-    i_of, j_of, to, live, rows = near.i, near.j, near.to, near.live, near.rows
+    i_of, j_of, to, live, eta, rows = near.i, near.j, near.to, near.live, near.eta, near.rows
     points, normals = walls.points, walls.normals
     spring_r = 0.0
     pairs.f[n + b, :] = 0.0  # what fixed grains and planes would get
     desk[D_BOOKS : D_BOOKS + N_LANE_BOOK * PITCH] = 0.0
-    k = looked = near.first[b]
+    k = near.first[b]
     end = k + near.count[b]
-    from_ = k
+    waiting = 0
     while True:
-        m = 0
-        while m < LANES and k < end:
-            if k == looked:
-                from_, looked = k, min(k + LANES, end)
-                look(
-                    kind.plane_case, reach_on, k, looked - k, n_solid, c, x, w, i_of, j_of, points, normals,
-                    apart, hit,
-                )  # fmt: skip
-            l = k - from_
-            if hit[l] > 0.0 or live[k]:
-                which[m] = k
-                copy4(desk, D_APART + 4 * m, apart, 4 * l)
-                m += 1
-            k += 1
+        while waiting < LANES and k < end:
+            some = min(LANES, end - k)
+            waiting = look(
+                kind.plane_case, reach_on, k, some, waiting, n_solid, c, x, i_of, j_of, live, points, normals,
+                glance, hit, apart, which,
+            )  # fmt: skip
+            k += some
+        m = min(waiting, LANES)
         if m == 0:
             break
-        lanes = lay_out(m, which, n_solid, v, w, i_of, j_of, live, rows, desk)
+        lanes = lay_out(m, which, apart, n_solid, v, w, i_of, j_of, live, eta, rows, desk)
         if choice.rebound:
             wet_dashpots(choice, m, which, c, grains, near, desk)
         reckon(kind, choice, lanes, hdt, now[N_OVERLAP_MAX], c, desk)
@@ -85,6 +79,10 @@ def forces(
             )
         if hand_out(m, which, i_of, to, live, rows, desk, f):
             guard(m, which, n, step, c, grains, near, desk, now)
+        waiting -= m
+        for l in range(waiting):
+            which[l] = which[LANES + l]
+            copy4(apart, 4 * l, apart, 4 * (LANES + l))
     for row in range(N_LANE_BOOK):
         total = 0.0
         for l in range(LANES):
@@ -160,7 +158,10 @@ def make_run(kind: Variant) -> Any:
         n_block = len(block_start) - 1
         b_0, b_1 = thread * n_block // n_threads, (thread + 1) * n_block // n_threads
         dt, t_zero, skin, step_limit = c[C_DT], c[C_T_ZERO], c[C_SKIN], c[C_STEP_LIMIT]
-        work = Work(np.zeros(DESK), np.zeros(4 * LANES), np.zeros(LANES), np.zeros(LANES, np.uint32))
+        work = Work(
+            np.zeros(DESK), np.zeros(TABLE), np.zeros(4 * LANES), np.zeros(8 * LANES), np.zeros(LANES),
+            np.zeros(2 * LANES, np.uint32),
+        )  # fmt: skip
         near_skin, near_travel, since = clock[K_SKIN], clock[K_TRAVEL], clock[K_SINCE]
         way, spent, steps, before = clock[K_WAY], clock[K_SPENT], clock[K_STEPS], clock[K_BEFORE]
         lanes = clock[K_LANES]
@@ -208,7 +209,7 @@ def make_run(kind: Variant) -> Any:
             for b in range(b_0, b_1):
                 motion(
                     kind, choice, block_start[b], block_start[b + 1], n + n_block, step == 0, last, c, grains,
-                    pairs, books[b], now[b],
+                    pairs, work.table, books[b], now[b],
                 )  # fmt: skip
             target = meet(count, n_threads, target)
             fastest = 0.0

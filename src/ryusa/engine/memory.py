@@ -15,11 +15,11 @@ from ryusa.engine.rows import (
     E_T_END,
     E_T_PART,
     E_V_END,
+    ETA_N,
+    ETA_S,
     R_DASH_N,
     R_DASH_R,
     R_DASH_S,
-    R_ETA_N,
-    R_ETA_S,
     R_F_N,
     R_SPRING_R,
     R_SPRING_S,
@@ -33,7 +33,7 @@ from ryusa.model.scene import Floats
 
 def contacts_of(memory: Memory, variant: Variant) -> Contacts:
     """Contacts of a snapshot."""
-    i, j, rows = memory
+    i, j, eta, rows = memory
     none = np.zeros((len(i), 3))
     return Contacts(
         i=i,
@@ -44,7 +44,7 @@ def contacts_of(memory: Memory, variant: Variant) -> Contacts:
         f_n=rows[:, R_F_N].copy(),
         spring_r=rows[:, R_SPRING_R : R_SPRING_R + 3].copy() if variant.rolling else none,
         dash_r=rows[:, R_DASH_R : R_DASH_R + 3].copy() if variant.rolling else none,
-        eta_n=rows[:, R_ETA_N].copy(),
+        eta_n=eta[:, ETA_N].copy(),
         event=rows[:, variant.event_column :].copy() if variant.events else np.zeros((len(i), N_EVENT)),
     )
 
@@ -54,12 +54,12 @@ def memory_of(
 ) -> Memory:
     """Rows from a snapshot; dashpots follow from masses anew, but one that a film has fixed stays."""
     rows = np.zeros((len(contacts), variant.row_width))
-    w = np.zeros((len(layout.r), 4))
-    w[:, 3] = layout.r
-    for row, i, j in zip(rows, contacts.i, contacts.j, strict=True):
-        row[R_ETA_N], row[R_ETA_S] = dashpots(i, j, variant.rotation, numbers, layout.m, w, layout.inertia)
+    eta, x = np.zeros((len(contacts), 2)), np.zeros((len(layout.r), 4))
+    x[:, 3] = layout.r
+    for row, i, j in zip(eta, contacts.i, contacts.j, strict=True):
+        row[ETA_N], row[ETA_S] = dashpots(i, j, variant.rotation, numbers, layout.m, x, layout.inertia)
     if choice.rebound:
-        rows[:, R_ETA_N] = contacts.eta_n
+        eta[:, ETA_N] = contacts.eta_n
     rows[:, R_SPRING_S : R_SPRING_S + 3], rows[:, R_DASH_S : R_DASH_S + 3] = (
         contacts.spring_s,
         contacts.dash_s,
@@ -72,7 +72,7 @@ def memory_of(
         )
     if variant.events:
         rows[:, variant.event_column :] = contacts.event
-    return Memory(contacts.i, contacts.j, rows)
+    return Memory(contacts.i, contacts.j, eta, rows)
 
 
 def closed_records(state: State, places: np.ndarray) -> np.ndarray:

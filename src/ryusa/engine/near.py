@@ -35,7 +35,7 @@ def cut(
 
     `spare` is room to work in, as large as the largest block. Returns whether there was room.
     """
-    x, w = grains.x, grains.w
+    x = grains.x
     start, partners = pairs.start, pairs.partners
     l_x, l_y = c[C_PERIOD_X], c[C_PERIOD_Y]
     first, had = near.first[b], near.count[b]
@@ -43,7 +43,7 @@ def cut(
     old = new = 0
     q = pairs.cross_start[b]
     for i in range(lo, hi):
-        x_i, y_i, z_i, r_i = x[i, 0], x[i, 1], x[i, 2], w[i, 3] + reach_on
+        x_i, y_i, z_i, r_i = x[i, 0], x[i, 1], x[i, 2], x[i, 3] + reach_on
         for p in range(start[i], start[i + 1]):
             j = partners[p]
             if j < n_solid:
@@ -52,7 +52,7 @@ def cut(
                 if not plane_case:
                     d_y = wrap(x[j, 1] - y_i, l_y)
                     square += d_y * d_y
-                reach = r_i + w[j, 3]
+                reach = r_i + x[j, 3]
                 close = square < reach * reach
             else:
                 a = j - n_solid
@@ -79,14 +79,19 @@ def cut(
             spare.i[new], spare.j[new], spare.to[new], spare.pair[new] = i, j, to, p
             if known:
                 spare.live[new] = near.live[first + old]
+                spare.eta[new, ETA_N], spare.eta[new, ETA_S] = (
+                    near.eta[first + old, ETA_N],
+                    near.eta[first + old, ETA_S],
+                )
                 for k in range(width):
                     spare.rows[new, k] = near.rows[first + old, k]
             else:
                 spare.live[new] = 0
                 for k in range(width):
                     spare.rows[new, k] = 0.0
-                eta = dashpots(i, j, rotation, c, grains.m, w, grains.inertia)
-                spare.rows[new, R_ETA_N], spare.rows[new, R_ETA_S] = eta
+                spare.eta[new, ETA_N], spare.eta[new, ETA_S] = dashpots(
+                    i, j, rotation, c, grains.m, x, grains.inertia
+                )
             new += 1
     near.count[b] = new
     near.i[first : first + new] = spare.i[:new]
@@ -94,6 +99,7 @@ def cut(
     near.to[first : first + new] = spare.to[:new]
     near.pair[first : first + new] = spare.pair[:new]
     near.live[first : first + new] = spare.live[:new]
+    near.eta[first : first + new] = spare.eta[:new]
     near.rows[first : first + new] = spare.rows[:new]
     return True
 
@@ -109,8 +115,8 @@ def count_live(near: Near) -> int:
 
 
 @kernel()
-def take_rows(n: int, near: Near, ids: Any, out_i: Any, out_j: Any, rows: Any) -> None:
-    """Copy ids and memory of all pairs in touch, in the order of the list."""
+def take_rows(n: int, near: Near, ids: Any, out_i: Any, out_j: Any, eta: Any, rows: Any) -> None:
+    """Copy ids, dashpots and memory of all pairs in touch, in the order of the list."""
     t = 0
     for b in range(len(near.count)):
         for k in range(near.first[b], near.first[b] + near.count[b]):
@@ -118,13 +124,16 @@ def take_rows(n: int, near: Near, ids: Any, out_i: Any, out_j: Any, rows: Any) -
                 i, j = near.i[k], near.j[k]
                 out_i[t] = ids[i]
                 out_j[t] = ids[j] if j < n else j
+                eta[t, :] = near.eta[k, :]
                 rows[t, :] = near.rows[k, :]
                 t += 1
 
 
 @kernel()
-def put_rows(n: int, near: Near, block_of: Any, index: Any, i_ids: Any, j_ids: Any, rows: Any) -> int:
-    """Lay memory into a new list; returns the first contact that has no place in it, or -1.
+def put_rows(
+    n: int, near: Near, block_of: Any, index: Any, i_ids: Any, j_ids: Any, eta: Any, rows: Any
+) -> int:
+    """Lay dashpots and memory into a new list; returns the first contact that has no place in it, or -1.
 
     `index` turns the id of a free grain into its place, `block_of` the place into its block.
     """
@@ -144,6 +153,7 @@ def put_rows(n: int, near: Near, block_of: Any, index: Any, i_ids: Any, j_ids: A
             low += 1
         if low == end or near.i[low] != i:
             return t
+        near.eta[low, :] = eta[t, :]
         near.rows[low, :] = rows[t, :]
         near.live[low] = 1
     return -1

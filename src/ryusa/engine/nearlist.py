@@ -65,7 +65,7 @@ class NearList:
         new = self._layout.room_for(room)
         for b, have in enumerate(count):
             a, k = int(old.first[b]), int(new.first[b])
-            for name in ("i", "j", "to", "pair", "live", "rows"):
+            for name in ("i", "j", "to", "pair", "live", "eta", "rows"):
                 getattr(new, name)[k : k + have] = getattr(old, name)[a : a + have]
             new.count[b] = have
         self.pairs = new

@@ -38,9 +38,9 @@ B_ROLL, B_RELEASED_R = int(Book.ROLL), int(Book.RELEASED_R)
 
 
 @kernel()
-def dashpots(i: int, j: int, rotation: int, c: Any, m: Any, w: Any, inertia: Any) -> tuple[float, float]:
-    """Normal and tangential dashpot of a pair [N s/m]; `w` as in `arrays.Grains`."""
-    m_t = effective_mass_tangential(m[i], w[i, 3], inertia[i], m[j], w[j, 3], inertia[j], rotation != 0)
+def dashpots(i: int, j: int, rotation: int, c: Any, m: Any, x: Any, inertia: Any) -> tuple[float, float]:
+    """Normal and tangential dashpot of a pair [N s/m]; `x` as in `arrays.Grains`."""
+    m_t = effective_mass_tangential(m[i], x[i, 3], inertia[i], m[j], x[j, 3], inertia[j], rotation != 0)
     m_n = effective_mass(m[i], m[j])
     return (
         c[C_ETA_N] + damping_in_steps(damping(c[C_ZETA_N], c[C_K_N], m_n), m_n, c[C_DT]),

@@ -12,11 +12,10 @@ R_SPRING_S = 0  # tangential spring force on grain i [N]
 R_F_N = 3  # normal force in the last step [N]
 R_DASH_S = 4  # tangential dashpot force on i in the last step [N]
 R_DASH_N = 7  # normal force less normal spring in the last step [N]
-R_ETA_N = 8  # dashpots of this pair [N s/m]
-R_ETA_S = 9
-R_SPRING_R = 10  # rolling spring torque on i [N m]; from here on only where rolling friction acts
-R_DASH_R = 13  # rolling torque on i in the last step, less its spring [N m]
-R_ROLLING = 16
+R_SPRING_R = 8  # rolling spring torque on i [N m]; from here on only where rolling friction acts
+R_DASH_R = 11  # rolling torque on i in the last step, less its spring [N m]
+R_ROLLING = 14
+ETA_N, ETA_S = 0, 1  # dashpots of a pair [N s/m], beside its row
 
 # Open contact record, counted from where it starts in the row (fields of model.EVENT).
 E_I = 0
@@ -136,7 +135,7 @@ STOP_ROOM = 5  # the near list wants more room
 COST_LOOK, COST_GRAIN, COST_LAY, COST_NEAR = 2.5, 4.0, 8.0, 3.0
 STEPS_A_SKIN = 64  # how long one skin of the near list is tried, at least
 
-BASE, WITH_ROLLING = 10, 16  # doubles a row takes without and with rolling friction
+BASE, WITH_ROLLING = 8, 16  # doubles a row takes without and with rolling friction: whole cache lines
 # widths padded to whole cache lines, so that blocks of different threads do not share one
 N_NOW = 24
 N_BOOKS = 24
