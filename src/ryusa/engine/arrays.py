@@ -48,8 +48,8 @@ class Pairs(NamedTuple):
     start: Any  # (n + 1,)
     partners: Any  # places, (n_pair,)
     cross_start: Any  # first crossing pair of each block, (n_block + 1,)
-    near: Any  # 1 where that crossing pair is in the near list, (n_cross,)
-    incoming_start: Any  # crossing pairs with partner j: incoming[incoming_start[j]:incoming_start[j + 1]]
+    near: Any  # 1 where the crossing pair of a row of `f` is in the near list, (n + n_block + n_cross,)
+    incoming_start: Any  # rows for grain j: incoming[incoming_start[j]:incoming_start[j + 1]]
     incoming: Any  # (n_cross,)
     f: Any  # force [N], nothing, torque [N m] and contacts so far in this step, (n + n_block + n_cross, 8)
 
@@ -68,8 +68,8 @@ class Near(NamedTuple):
     to: Any  # row of `Pairs.f` for the partner
     pair: Any  # number in the wide list
     live: Any  # 1 where they touch and the row holds
-    eta: Any  # normal and tangential dashpot [N s/m], (n_near, 2)
-    rows: Any  # memory (rows.py), (n_near, width); zero where they do not touch
+    eta: Any  # normal and tangential dashpot [N s/m], (n_near, 2); holds where they touch
+    rows: Any  # memory (rows.py), (n_near, width); holds where they touch
 
 
 class Walls(NamedTuple):

@@ -14,8 +14,10 @@ import math
 from typing import Any
 
 from ryusa.engine._kernel import FAST, kernel
-from ryusa.engine.four import add4, apart4, copy4, take4
+from ryusa.engine.four import add4, copy4, take4
+from ryusa.engine.glance import see_apart, tell_near
 from ryusa.engine.lanes import *
+from ryusa.engine.pair import begin_row
 from ryusa.engine.rows import *
 from ryusa.laws.contact import normal_force, shear_strength, slide
 from ryusa.laws.geometry import arm, turn, wrap
@@ -32,28 +34,11 @@ def look(
 ) -> int:  # fmt: skip
     """Let those of m <= LANES near pairs wait that touch or did in the last step; returns how many wait.
 
-    `which` and `apart` get their numbers and ways from i to j [m]; `glance` is room to look at all. A plane
-    is met as a grain of the same size that touches it from behind.
+    `which` and `apart` get their numbers and ways from i to j [m]; `glance` is room to look at all.
     """
-    l_x, l_y = c[C_PERIOD_X], c[C_PERIOD_Y]
     for l in range(m):
-        i, j = i_of[first + l], j_of[first + l]
-        apart4(glance, 4 * l, x, 4 * j, 4 * i)
-        if j >= n_solid:
-            a, r = j - n_solid, x[i, 3]
-            gap = 0.0
-            for k in range(3):
-                gap += (x[i, k] - points[a, k]) * normals[a, k]
-            for k in range(3):
-                glance[4 * l + k] = -(gap + r) * normals[a, k]
-            glance[4 * l + 3] = 2.0 * r
-    for l in range(min(m, LANES)):
-        d_x, d_z, reach = wrap(glance[4 * l], l_x), glance[4 * l + 2], glance[4 * l + 3] + reach_on
-        square = d_x * d_x + d_z * d_z
-        if not plane_case:
-            d_y = wrap(glance[4 * l + 1], l_y)
-            square += d_y * d_y
-        hit[l] = 1.0 if square < reach * reach else 0.0
+        see_apart(l, i_of[first + l], j_of[first + l], n_solid, x, points, normals, glance)
+    tell_near(plane_case, reach_on, m, c, glance, hit)
     for l in range(m):  # no branch: which pairs touch cannot be foretold
         which[waiting] = first + l
         copy4(apart, 4 * waiting, glance, 4 * l)
@@ -63,8 +48,8 @@ def look(
 
 @kernel(fastmath=FAST, forceinline=True)
 def lay_out(
-    m: int, which: Any, apart: Any, n_solid: int, v: Any, w: Any, i_of: Any, j_of: Any, live: Any, eta: Any,
-    rows: Any, desk: Any,
+    rotation: int, m: int, which: Any, apart: Any, n_solid: int, c: Any, mass: Any, inertia: Any, x: Any,
+    v: Any, w: Any, i_of: Any, j_of: Any, live: Any, eta: Any, rows: Any, desk: Any,
 ) -> int:  # fmt: skip
     """Lay the first m pairs that wait on as many lanes; returns the lanes to reckon.
 
@@ -74,6 +59,8 @@ def lay_out(
     for l in range(m):
         k = which[l]
         i, j = i_of[k], j_of[k]
+        if not live[k]:
+            begin_row(k, i, j, rotation, c, mass, x, inertia, eta, rows)
         copy4(desk, D_APART + 4 * l, apart, 4 * l)
         copy4(desk, D_MOVING + 4 * l, v, 8 * i)
         take4(desk, D_MOVING + 4 * l, v, 8 * j)

@@ -9,7 +9,7 @@ from ryusa.engine._kernel import kernel
 
 @kernel()
 def cross_lists(n: int, block_start: Any, start: Any, partners: Any) -> tuple[Any, Any, Any]:
-    """Number the pairs whose partner belongs to another block.
+    """Number the rows of `Pairs.f` for pairs whose partner belongs to another block.
 
     Returns the first number of each block (n_block + 1) and, for each grain, the numbers of the pairs
     that others own and it is partner of: incoming[incoming_start[j]:incoming_start[j + 1]], in list order.
@@ -29,7 +29,7 @@ def cross_lists(n: int, block_start: Any, start: Any, partners: Any) -> tuple[An
         incoming_start[j + 1] += incoming_start[j]
     fill = incoming_start[:-1].copy()
     incoming = np.empty(first[n_block], np.int64)
-    q = 0
+    q = n + n_block
     for b in range(n_block):
         lo, hi = block_start[b], block_start[b + 1]
         for p in range(start[lo], start[hi]):

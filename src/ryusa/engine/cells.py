@@ -80,77 +80,62 @@ def sort_into(x: Any, n: int, low: Any, width: Any, dims: Any, order: Any) -> An
     return first
 
 
-@kernel()
-def _neighbours(c: int, n: int, periodic: bool, out: Any) -> int:
-    # indices along one axis of the cells next to cell c, each once
-    count = 0
-    for step in range(-1, 2):
-        a = c + step
-        if periodic:
-            if (n == 1 and step != 0) or (n == 2 and step < 0):
-                continue
-            out[count] = (a + n) % n
-            count += 1
-        elif 0 <= a < n:
-            out[count] = a
-            count += 1
-    return count
+@kernel(forceinline=True)
+def _beside(c: int, step: int, n: int, periodic: bool) -> int:
+    # index along one axis of a cell one step from cell c, or -1; in few periodic cells each comes once
+    a = c + step
+    if periodic:
+        return -1 if (n == 1 and step != 0) or (n == 2 and step < 0) else (a + n) % n
+    return a if 0 <= a < n else -1
 
 
-@kernel()
-def list_pairs(
-    x: Any,
-    ids: Any,
-    offset: int,
-    grid: Any,
-    period: Any,
-    skin: float,
-    lanes: bool,
-    i: int,
-    half: bool,
-    partners: Any,
-    used: int,
-) -> int:
-    """Append to `partners` all grains of one grid within reach of grain i; returns the new count.
+@kernel(forceinline=True)
+def _list_near(
+    i: int, offset: int, low: Any, width: Any, dims: Any, first: Any, order: Any, x: Any, ids: Any,
+    period: Any, skin: float, lanes: bool, partners: Any, used: int,
+) -> int:  # fmt: skip
+    """Append to `partners` all grains of one grid with a higher id than grain i and within its reach.
 
     Parameters
     ----------
-    offset : added to the numbers in the grid to get the index into x (free grains 0, fixed grains n).
-    grid : low, width, dims, first and order of `grid_of` and `sort_into`.
+    offset : added to the numbers in the grid to get places (free grains 0, fixed grains n).
+    low, width, dims, first, order : the grid, of `grid_of` and `sort_into`.
     lanes : a plane scene, where grains at another y are in another lane and never met.
-    half : only partners with a higher id (each free pair once); grain i itself never.
-    partners : uint32 array to fill from `used`; where it is too short counting goes on without writing.
+    partners : uint32 array to fill from `used`.
+
+    Returns
+    -------
+    The new count, or -1 where `partners` is too short.
     """
-    low, width, dims, first, order = grid
-    near = np.empty((3, 3), np.int64)
-    count = np.empty(3, np.int64)
-    for k in range(3):
-        count[k] = _neighbours(
-            _cell(x[i, k], low[k], width[k]), dims[k], k < 2 and period[k] < math.inf, near[k]
-        )
-    for a in range(count[0]):
-        for b in range(count[1]):
-            for c in range(count[2]):
-                cell = (near[0, a] * dims[1] + near[1, b]) * dims[2] + near[2, c]
-                for slot in range(first[cell], first[cell + 1]):
-                    j = order[slot] + offset
-                    if half and ids[j] <= ids[i]:
-                        continue
-                    if lanes and x[j, 1] != x[i, 1]:
-                        continue
-                    reach = x[i, 3] + x[j, 3] + skin
-                    d_x = wrap(x[j, 0] - x[i, 0], period[0])
-                    d_y = wrap(x[j, 1] - x[i, 1], period[1])
-                    d_z = x[j, 2] - x[i, 2]
-                    if d_x * d_x + d_y * d_y + d_z * d_z < reach * reach:
-                        if used < len(partners):
-                            partners[used] = j
-                        used += 1
+    x_i, y_i, z_i, r_i, id_i = x[i, 0], x[i, 1], x[i, 2], x[i, 3] + skin, ids[i]
+    l_x, l_y, n_x, n_y, n_z = period[0], period[1], dims[0], dims[1], dims[2]
+    c_x, c_y, c_z = _cell(x_i, low[0], width[0]), _cell(y_i, low[1], width[1]), _cell(z_i, low[2], width[2])
+    bottom, top = max(c_z - 1, 0), min(c_z + 1, n_z - 1)
+    if top < bottom:
+        return used
+    for k in range(9):
+        a = _beside(c_x, k // 3 - 1, n_x, l_x < math.inf)
+        b = _beside(c_y, k % 3 - 1, n_y, l_y < math.inf)
+        if a < 0 or b < 0:
+            continue
+        column = (a * n_y + b) * n_z
+        begin, end = first[column + bottom], first[column + top + 1]  # cells of a column lie side by side
+        if used + end - begin >= len(partners):
+            return -1
+        for slot in range(begin, end):  # no branch: who is near cannot be foretold
+            j = order[slot] + offset
+            d_x, d_y, d_z = wrap(x[j, 0] - x_i, l_x), wrap(x[j, 1] - y_i, l_y), x[j, 2] - z_i
+            reach = r_i + x[j, 3]
+            met = (d_x * d_x + d_y * d_y + d_z * d_z < reach * reach) & (ids[j] > id_i)
+            partners[used] = j
+            used += int(met & ((not lanes) | (x[j, 1] == y_i)))
     return used
 
 
-@kernel()
+@kernel(nogil=True)
 def build_list(
+    lo: int,
+    hi: int,
     x: Any,
     ids: Any,
     n: int,
@@ -165,25 +150,29 @@ def build_list(
     start: Any,
     partners: Any,
 ) -> int:
-    """Fill the Verlet list: partners of grain i are partners[start[i]:start[i + 1]]; returns the pairs found.
+    """Fill the Verlet list of grains lo..hi-1, each pair under its lower id, and return the pairs found.
 
-    Free partners come first, then fixed grains, then planes, each in a fixed order. When the result is
-    larger than len(partners) the list is not usable: make room and call again.
+    Partners of grain i begin at partners[start[i]]. Free ones come first, then fixed grains, then planes,
+    each in a fixed order. Returns -1 where `partners` is too short.
     """
-    used = 0
+    low, width, dims, first, order = free_grid
+    low_b, width_b, dims_b, first_b, order_b = fixed_grid
     normals, points = walls.normals, walls.points
-    for i in range(n):
+    used, bed = 0, len(order_b) > 0
+    for i in range(lo, hi):
         start[i] = used
-        used = list_pairs(x, ids, 0, free_grid, period, skin, lanes, i, True, partners, used)
-        if len(fixed_grid[4]) > 0:
-            used = list_pairs(x, ids, n, fixed_grid, period, skin, lanes, i, False, partners, used)
+        used = _list_near(i, 0, low, width, dims, first, order, x, ids, period, skin, lanes, partners, used)
+        if bed and used >= 0:
+            used = _list_near(
+                i, n, low_b, width_b, dims_b, first_b, order_b, x, ids, period, skin, lanes, partners, used
+            )
+        if used < 0 or used + len(normals) > len(partners):
+            return -1
         for k in range(len(normals)):
             gap = 0.0
             for a in range(3):
                 gap += (x[i, a] - points[k, a]) * normals[k, a]
             if active_planes[k] and gap < x[i, 3] + skin:
-                if used < len(partners):
-                    partners[used] = n_solid + k
+                partners[used] = n_solid + k
                 used += 1
-    start[n] = used
     return used

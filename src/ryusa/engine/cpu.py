@@ -1,7 +1,10 @@
 """The CPU engine: owns the arrays, has the neighbour list rebuilt, lets compiled threads march in between."""
 
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -10,14 +13,16 @@ from ryusa.engine.faults import fault_of, lost_of, unsafe_of
 from ryusa.engine.listing import Layout, Memory, take_memory
 from ryusa.engine.march import make_run
 from ryusa.engine.memory import closed_records, contacts_of, memory_of
+from ryusa.engine.near import best_skin
 from ryusa.engine.nearlist import NearList
-from ryusa.engine.numbers import choice_of, numbers_of, potential_energy, rolling_energy, variant_of
+from ryusa.engine.numbers import choice_of, energy_of_switch, numbers_of, potential_energy, variant_of
 from ryusa.engine.rows import (
     C_DT,
     C_SKIN,
     C_T_ZERO,
     COST_LOOK,
     N_BOOKS,
+    N_FULL,
     N_KINETIC,
     N_N_CONTACT,
     N_N_ENDED,
@@ -50,10 +55,10 @@ from ryusa.model.tally import N_BOOK
 
 _MANY = 256  # grains from which work is cut into blocks
 _RECORDS = 256  # room for ended contacts in a block, beside one a grain
-_BLOCKS = 8
+_BLOCKS = 4, 32  # at least and at most; in between one for 2048 grains, a power of two
 # Measured, and fixed so that a run never depends on a clock: cost of a wide list [ns], and how often it is
 # looked through.
-_REBUILD, _REBUILD_GRAIN, _STEPS_A_CUT = 60_000.0, 300.0, 8.0
+_LIST, _LIST_GRAIN, _STEPS_A_CUT = 300_000.0, 600.0, 16.0
 _SUMS = (N_KINETIC, N_SPIN, N_POTENTIAL, N_SPRING_N, N_SPRING_S, N_SPRING_R, N_N_CONTACT)
 _SHORTEST_PERIOD = 3.0  # in diameters: below, a pair could touch through two images
 
@@ -63,7 +68,7 @@ class CpuEngine:
 
     Parameters
     ----------
-    threads : threads that share a step; more than the number of blocks (1 below 256 grains, else 8) are idle.
+    threads : threads that share a step; more than there are blocks (`_blocks`) are idle.
     skin : first reach of the neighbour list beyond touch, over the smallest diameter [-]; adapts to
     counted work.
     """
@@ -72,7 +77,8 @@ class CpuEngine:
         if threads < 1:
             raise ValueError(f"threads = {threads}: at least 1")
         self._threads, self._skin_first = threads, skin
-        self._pool: ThreadPoolExecutor | None = None
+        others = threads - 1  # the caller works too
+        self._pool = ThreadPoolExecutor(others, thread_name_prefix="ryusa") if others else None
         self._drained: list[np.ndarray] = []
         self._scene: Scene | None = None
 
@@ -121,7 +127,7 @@ class CpuEngine:
         self._variant = variant_of(scene)
         self._choice = choice_of(scene)
         self._run = make_run(self._variant)
-        blocks = _BLOCKS if n >= _MANY else 1
+        blocks = _blocks(n)
         self._layout = Layout(scene, blocks, self._variant)
         self._numbers = numbers_of(scene)
         self._smallest = float(np.concatenate([scene.d, scene.d_fixed]).min(initial=np.inf))
@@ -136,7 +142,7 @@ class CpuEngine:
         contacts, dropped = _still_there(scene, state.contacts)
         self._drained = self._drained if changed else []
         if before is not None and changed:
-            self._book_switch(before, scene, state, dropped)
+            self._ledger.books[0, Book.SWITCH] += energy_of_switch(before, scene, state, dropped)
             self._drained.append(closed_records(state, dropped))
         memory = memory_of(contacts, self._variant, self._choice, self._numbers, self._layout)
         by_id = self._layout.by_id(state)
@@ -147,7 +153,7 @@ class CpuEngine:
             by_id.x[:n, :3] = state.x_listed
         self._travel = state.engine.get("travel", 0.0) if resumed else 0.0
         self._grains, self._pairs, self._x_listed, _ = self._layout.list_pairs(
-            by_id, self._layout.empty_pairs(), self._skin
+            by_id, self._layout.empty_pairs(), self._skin, self._share
         )
         if resumed:
             self._grains.x[:n, :3] = state.x[self._grains.ids[:n]]
@@ -270,8 +276,6 @@ class CpuEngine:
                 self._near.pairs,
             )  # fmt: skip
             more = (self._ledger, self._choice, self._near.clock)
-            if threads > 1 and self._pool is None:
-                self._pool = ThreadPoolExecutor(self._threads - 1, thread_name_prefix="ryusa")
             others = (
                 [
                     self._pool.submit(self._run, k, *arguments, self._near.spares[k], *more)
@@ -292,7 +296,7 @@ class CpuEngine:
                 if fault is not None:
                     return Flags(fault)
             elif stop == STOP_ROOM:
-                self._near.make_room()
+                self._near.make_room(self._ledger.now[:, N_FULL])
             elif stop == STOP_EVENTS:
                 self._drain()
             elif stop == STOP_UNSAFE:
@@ -305,19 +309,17 @@ class CpuEngine:
 
     def _relist(self) -> RunError | None:
         """Choose a skin from counted work, bring grains back into the period, and list pairs anew."""
-        # go on widening or narrowing as long as it pays; from counts that a resumed run has too
-        spent = (_REBUILD + _REBUILD_GRAIN * self._n) / max(self._since, 1)
-        spent += COST_LOOK * float(self._pairs.start[-1]) / _STEPS_A_CUT
-        if spent > self._spent:
-            self._way = 1.0 / self._way
-        self._spent = spent
-        self._skin = min(max(self._way * self._skin, 0.02 * self._smallest), self._smallest)
-        self._skin = max(self._skin, self._last_way())
-        self._since, self._travel, self._relisted = 0, 0.0, self._relisted + 1
         memory = take_memory(self._n, self._grains, self._near.pairs)
+        apart = float(self._pairs.start[-1]) - len(memory.i)  # from counts that a resumed run has too
+        skin = best_skin(
+            self._skin, 2.0 * self._travel / max(self._since, 1), _LIST + _LIST_GRAIN * self._n,
+            COST_LOOK * apart / _STEPS_A_CUT,
+        )  # fmt: skip
+        self._skin = max(min(max(skin, 0.02 * self._smallest), self._smallest), self._last_way())
+        self._since, self._travel, self._relisted = 0, 0.0, self._relisted + 1
         by_id = self._layout.unsorted(self._grains)
         self._grains, self._pairs, self._x_listed, lost = self._layout.list_pairs(
-            by_id, self._pairs, self._skin
+            by_id, self._pairs, self._skin, self._share
         )
         self._cut_near(memory)
         self._numbers[C_SKIN] = self._skin
@@ -325,8 +327,17 @@ class CpuEngine:
 
     def _cut_near(self, memory: Memory) -> None:
         self._near.begin(
-            self._grains, self._pairs, self._skin, self._travel, self._last_way(), self._numbers, memory
-        )
+            self._grains, self._pairs, self._skin, self._travel, self._last_way(), self._numbers, memory,
+            self._share,
+        )  # fmt: skip
+
+    def _share(self, task: Callable[[int, int], Any]) -> list[Any]:
+        """Results of a task for blocks first..last-1, in order, one for each thread."""
+        blocks = len(self._layout.block_start) - 1
+        ends = [k * blocks // self._threads for k in range(self._threads + 1)]
+        parts = [(a, b) for a, b in pairwise(ends) if b > a]
+        others = [self._pool.submit(task, *part) for part in parts[1:]] if self._pool else []
+        return [task(*parts[0]), *(other.result() for other in others)]
 
     def _last_way(self) -> float:
         """How far a pair may have parted in the last step [m]: its account is still to be closed."""
@@ -354,7 +365,6 @@ class CpuEngine:
         now = self._ledger.now
         block = int(now[:, N_OVERLAP_MAX].argmax())
         own = {"skin": self._skin, "travel": self._travel, "since": float(self._since)}
-        own |= {"skin_way": self._way, "skin_spent": self._spent}
         own |= {"speed_max": float(now[:, N_SPEED_MAX].max()), "spin_max": float(now[:, N_SPIN_MAX].max())}
         own["overlap_max"] = float(now[block, N_OVERLAP_MAX])
         own["overlap_grain"] = float(now[block, N_OVERLAP_GRAIN])
@@ -365,7 +375,6 @@ class CpuEngine:
         own, books, now = state.engine, self._ledger.books, self._ledger.now
         self._skin = own.get("skin", self._skin_first * self._smallest)
         self._since = int(own.get("since", 0))
-        self._way, self._spent = own.get("skin_way", 1.25), own.get("skin_spent", np.inf)
         if state.books.shape == books.shape:
             books[:] = state.books
             now[:, PENDING] = books[:, N_BOOK : N_BOOK + len(PENDING)]
@@ -377,21 +386,14 @@ class CpuEngine:
         for column in _SUMS:
             now[0, column] = own.get(f"sum_{column}", 0.0)
 
-    def _book_switch(self, before: Scene, scene: Scene, state: State, dropped: np.ndarray) -> None:
-        """Energy a change of the timeline gives: height on a new slope, spin locked, springs let go."""
-        given = potential_energy(scene, state) - potential_energy(before, state)
-        if before.rotation and not scene.rotation:
-            given -= float(0.5 * np.sum(scene.inertia[:, None] * state.omega**2))
-            given -= rolling_energy(before, state, np.arange(len(state.contacts)))
-        elif len(dropped):
-            given -= rolling_energy(before, state, dropped)
-        if len(dropped):
-            law, gone = before.contact, state.contacts
-            e_n = gone.f_n[dropped] - gone.dash_n[dropped]
-            given -= float(np.sum(0.5 * e_n**2 / law.k_n))
-            if law.k_s > 0.0:
-                given -= float(np.sum(0.5 * gone.spring_s[dropped] ** 2 / law.k_s))
-        self._ledger.books[0, Book.SWITCH] += given
+
+def _blocks(n: int) -> int:
+    """Into how many blocks the work on n grains is cut; never by the number of threads.
+
+    Thin blocks have many pairs with their neighbours, which cost more.
+    """
+    least, most = _BLOCKS
+    return 1 if n < _MANY else int(min(max(2.0 ** round(np.log2(n / 2048)), least), most))
 
 
 def _refuse_near_lanes(scene: Scene, state: State) -> None:

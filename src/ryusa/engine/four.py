@@ -41,8 +41,7 @@ add4 = _made(lambda builder, into, come: builder.fadd(builder.load(into, align=8
 take4 = _made(lambda builder, into, come: builder.fsub(builder.load(into, align=8), come))
 
 
-@intrinsic
-def spread4(typingctx: Any, to: Any, at: Any, value: Any) -> Any:
+def _spread(typingctx: Any, to: Any, at: Any, value: Any) -> Any:
     """Put one number at four places."""
 
     def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
@@ -57,8 +56,7 @@ def spread4(typingctx: Any, to: Any, at: Any, value: Any) -> Any:
     return types.void(to, types.intp, types.float64), codegen
 
 
-@intrinsic
-def apart4(typingctx: Any, to: Any, at: Any, source: Any, j: Any, i: Any) -> Any:
+def _apart(typingctx: Any, to: Any, at: Any, source: Any, j: Any, i: Any) -> Any:
     """Put the way from row i to row j at `at`, three differences, and the sum of what is fourth in both."""
 
     def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
@@ -70,3 +68,7 @@ def apart4(typingctx: Any, to: Any, at: Any, source: Any, j: Any, i: Any) -> Any
         return context.get_dummy_value()
 
     return types.void(to, types.intp, source, types.intp, types.intp), codegen
+
+
+spread4: Any = intrinsic(_spread)
+apart4: Any = intrinsic(_apart)

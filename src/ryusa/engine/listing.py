@@ -1,5 +1,6 @@
 """Lay grains out in cell order and list their pairs; the memory of touching pairs comes along."""
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,6 +14,10 @@ from ryusa.model import Scene, State
 from ryusa.model.enums import Profile
 from ryusa.model.immersed import Immersed
 from ryusa.model.scene import Floats
+
+Share = Callable[
+    [Callable[[int, int], Any]], list[Any]
+]  # results of a task for blocks first..last-1, in order
 
 
 class Memory(NamedTuple):
@@ -113,14 +118,17 @@ class Layout:
             taken=grains.taken[wet],
         )
 
-    def list_pairs(self, by_id: Grains, pairs: Pairs, skin: float) -> tuple[Grains, Pairs, Floats, int]:
+    def list_pairs(
+        self, by_id: Grains, pairs: Pairs, skin: float, share: Share
+    ) -> tuple[Grains, Pairs, Floats, int]:
         """Wrap, sort and list.
 
         Parameters
         ----------
         by_id : arrays in the order of ids; positions are brought inside the period.
-        pairs : the old list, whose arrays are used again where they are large enough.
+        pairs : the old list, which tells how much room the new one may need.
         skin : reach of the list beyond touch and films [m].
+        share : has threads share the blocks.
 
         Returns
         -------
@@ -161,15 +169,27 @@ class Layout:
         bed_first = sort_into(bed, len(bed), bed_low, bed_wide, bed_dims, bed_order)
         free = (low, wide, dims, first, np.arange(n))
         fixed = (bed_low, bed_wide, bed_dims, bed_first, self.standing[bed_order])
-        start, partners = pairs.start, pairs.partners
-        while True:
-            used = build_list(
-                grains.x, grains.ids, n, self.n_solid, self.walls, scene.plane_active,
-                free, fixed, period, skin, scene.plane_case, start, partners,
-            )  # fmt: skip
-            if used <= len(partners):
-                break
-            partners = np.zeros(int(1.2 * used) + 64, np.uint32)
+        start = np.zeros(n + 1, np.int64)
+        blocks = self.block_start
+
+        def list_some(first: int, last: int) -> tuple[int, np.ndarray]:
+            lo, hi = blocks[first], blocks[last]
+            room = int(1.1 * (pairs.start[hi] - pairs.start[lo])) + 256
+            while True:
+                partners = np.empty(room, np.uint32)
+                used = build_list(
+                    lo, hi, grains.x, grains.ids, n, self.n_solid, self.walls, scene.plane_active, free,
+                    fixed, period, skin, scene.plane_case, start, partners,
+                )  # fmt: skip
+                if used >= 0:
+                    return hi, partners[:used]
+                room = 2 * room
+
+        found = share(list_some)
+        for hi, some in found[:-1]:
+            start[hi:n] += len(some)
+        partners = np.concatenate([some for _, some in found])
+        start[n] = len(partners)
         cross_start, incoming_start, incoming = cross_lists(n, self.block_start, start, partners)
         crossing = int(cross_start[-1])
         rows = n + len(self.block_start) - 1 + crossing
@@ -177,7 +197,7 @@ class Layout:
         return (
             grains,
             Pairs(
-                start, partners, cross_start, np.zeros(crossing, np.uint8), incoming_start, incoming,
+                start, partners, cross_start, np.zeros(rows, np.uint8), incoming_start, incoming,
                 aligned(rows, 8),
             ),
             listed,

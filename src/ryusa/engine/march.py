@@ -13,7 +13,7 @@ from ryusa.engine.company import keep_company, wet_dashpots
 from ryusa.engine.four import copy4
 from ryusa.engine.lanes import D_BOOKS, D_SPIN_I, D_SPIN_J, DESK, LANES, N_LANE_BOOK, PITCH, TABLE
 from ryusa.engine.motion import motion
-from ryusa.engine.near import cut
+from ryusa.engine.near import best_skin, cut
 from ryusa.engine.rows import *
 from ryusa.engine.sync import meet
 from ryusa.model.tally import Book
@@ -51,7 +51,7 @@ def forces(
     # arrays are handed over one by one: a tuple of them would have its references counted for every batch
     x, v, w, f = grains.x, grains.v, grains.w, pairs.f
     i_of, j_of, to, live, eta, rows = near.i, near.j, near.to, near.live, near.eta, near.rows
-    points, normals = walls.points, walls.normals
+    mass, inertia, points, normals = grains.m, grains.inertia, walls.points, walls.normals
     spring_r = 0.0
     pairs.f[n + b, :] = 0.0  # what fixed grains and planes would get
     desk[D_BOOKS : D_BOOKS + N_LANE_BOOK * PITCH] = 0.0
@@ -69,7 +69,25 @@ def forces(
         m = min(waiting, LANES)
         if m == 0:
             break
-        lanes = lay_out(m, which, apart, n_solid, v, w, i_of, j_of, live, eta, rows, desk)
+        lanes = lay_out(
+            kind.rotation,
+            m,
+            which,
+            apart,
+            n_solid,
+            c,
+            mass,
+            inertia,
+            x,
+            v,
+            w,
+            i_of,
+            j_of,
+            live,
+            eta,
+            rows,
+            desk,
+        )
         if choice.rebound:
             wet_dashpots(choice, m, which, c, grains, near, desk)
         reckon(kind, choice, lanes, hdt, now[N_OVERLAP_MAX], c, desk)
@@ -163,8 +181,7 @@ def make_run(kind: Variant) -> Any:
             np.zeros(2 * LANES, np.uint32),
         )  # fmt: skip
         near_skin, near_travel, since = clock[K_SKIN], clock[K_TRAVEL], clock[K_SINCE]
-        way, spent, steps, before = clock[K_WAY], clock[K_SPENT], clock[K_STEPS], clock[K_BEFORE]
-        lanes = clock[K_LANES]
+        lanes, touching = clock[K_LANES], clock[K_TOUCHING]
         look = COST_LOOK * pairs.start[n] + COST_GRAIN * n
         target = done = 0
         stop = STOP_DONE
@@ -172,26 +189,29 @@ def make_run(kind: Variant) -> Any:
             if 2.0 * travel > skin:
                 stop = STOP_LIST
                 break
-            if 2.0 * (travel - near_travel) > near_skin or since >= 8.0 * STEPS_A_SKIN:
-                spent += since * COST_NEAR * lanes + look + COST_LAY * lanes
-                steps += since
-                if steps >= STEPS_A_SKIN:  # go on widening or narrowing as long as it pays
-                    if spent > before * steps:
-                        way = 1.0 / way
-                    before, spent, steps = spent / steps, 0.0, 0.0
-                    near_skin = min(max(way * near_skin, clock[K_LEAST]), clock[K_MOST])
-                reach_on = near_skin + (c[C_FILM_REACH] if kind.film else 0.0)
-                for b in range(b_0, b_1):
-                    room = cut(
-                        b, block_start[b], block_start[b + 1], n, n_solid, reach_on, kind.plane_case,
-                        kind.rotation, c, grains, walls, pairs, near, spare,
+            if 2.0 * (travel - near_travel) > near_skin or since >= LONGEST_CUT:
+                if since > 0.0:
+                    near_skin = best_skin(
+                        near_skin, 2.0 * (travel - near_travel) / since, look + COST_LAY * lanes,
+                        COST_NEAR * (lanes - touching),
                     )  # fmt: skip
-                    now[b, N_FULL] = 0.0 if room else 1.0
+                    near_skin = min(max(near_skin, clock[K_LEAST]), clock[K_MOST])
+                fastest = 0.0
+                for b in range(n_block):
+                    fastest = max(fastest, now[b, N_SPEED_MAX])
+                # also pairs that parted in the last step: they have an account to close
+                reach_on = max(near_skin, 2.001 * fastest * dt) + (c[C_FILM_REACH] if kind.film else 0.0)
+                for b in range(b_0, b_1):
+                    now[b, N_FULL], now[b, N_TOUCHING] = cut(
+                        b, block_start[b], block_start[b + 1], n, n_solid, reach_on, kind.plane_case, c,
+                        grains, walls, pairs, near, spare,
+                    )  # fmt: skip
                 target = meet(count, n_threads, target)
-                near_travel, since, lanes = travel, 0.0, 0.0
+                near_travel, since, lanes, touching = travel, 0.0, 0.0, 0.0
                 for b in range(n_block):
                     lanes += near.count[b]
-                    if now[b, N_FULL] > 0.0:
+                    touching += now[b, N_TOUCHING]
+                    if now[b, N_FULL] != 0.0:
                         stop = STOP_ROOM
                 if stop != STOP_DONE:
                     near_travel = -np.inf
@@ -208,7 +228,7 @@ def make_run(kind: Variant) -> Any:
             target = meet(count, n_threads, target)
             for b in range(b_0, b_1):
                 motion(
-                    kind, choice, block_start[b], block_start[b + 1], n + n_block, step == 0, last, c, grains,
+                    kind, choice, block_start[b], block_start[b + 1], step == 0, last, c, grains,
                     pairs, work.table, books[b], now[b],
                 )  # fmt: skip
             target = meet(count, n_threads, target)
@@ -233,8 +253,7 @@ def make_run(kind: Variant) -> Any:
         meet(count, n_threads, target)
         if thread == 0:
             clock[K_SKIN], clock[K_TRAVEL], clock[K_SINCE] = near_skin, near_travel, since
-            clock[K_WAY], clock[K_SPENT], clock[K_STEPS], clock[K_BEFORE] = way, spent, steps, before
-            clock[K_LANES] = lanes
+            clock[K_LANES], clock[K_TOUCHING] = lanes, touching
         return done, travel, stop
 
     return run

@@ -1,7 +1,7 @@
 """Motion of one block of grains: a batch at a time laid on the table, moved there by vector instructions.
 
-Force, velocity and position lie on the table component by component, so that one loop moves all of them and no
-number has to change its lane. What is fourth in a row does not move: the radius behind a position or a spin.
+Force, velocity and position lie on the table component by component, so that one loop moves all of them and
+no number has to change its lane. What is fourth in a row stays: the radius behind a position or a spin.
 """
 # ruff: noqa: E741, F403, F405  (l is a lane; the places of lanes.py and the columns of rows.py, all of them plain integers)
 
@@ -19,7 +19,7 @@ from ryusa.laws.motion import acceleration, acceleration_spin, semi_implicit
 
 @kernel(fastmath=FAST, forceinline=True)
 def fetch(
-    kind: Variant, first: int, m: int, crossing: int, grains: Grains, near: Any, incoming: Any,
+    kind: Variant, first: int, m: int, grains: Grains, near: Any, incoming: Any,
     incoming_start: Any, f: Any, x: Any, v: Any, w: Any, table: Any,
 ) -> None:  # fmt: skip
     """Lay grains first..first+m-1 on the table with all forces on them, also what other blocks stored."""
@@ -31,8 +31,8 @@ def fetch(
         spread4(f, 8 * i, 0.0)
         spread4(f, 8 * i + 4, 0.0)
         for k in range(incoming_start[i], incoming_start[i + 1]):
-            if near[incoming[k]]:
-                q = crossing + incoming[k]
+            q = incoming[k]
+            if near[q]:
                 add4(table, M_PUSH + 4 * l, f, 8 * q)
                 add4(table, M_TURN + 4 * l, f, 8 * q + 4)
                 spread4(f, 8 * q, 0.0)
@@ -63,8 +63,8 @@ def advance(rotation: int, dt: float, table: Any) -> None:
     """Velocities, positions and spins a step later, of every lane."""
     for k in range(4 * MOVERS):
         a = acceleration(
-            table[M_PUSH + k], table[M_DRAG + k], table[M_WEIGHT + k] * table[M_GRAVITY + k], table[M_MASS + k],
-            table[M_ADDED + k],
+            table[M_PUSH + k], table[M_DRAG + k], table[M_WEIGHT + k] * table[M_GRAVITY + k],
+            table[M_MASS + k], table[M_ADDED + k],
         )  # fmt: skip
         table[M_X + k], table[M_V_NEW + k] = semi_implicit(table[M_X + k], table[M_V + k], a, dt)
         if rotation:
@@ -101,7 +101,6 @@ def motion(
     choice: Choice,
     lo: int,
     hi: int,
-    crossing: int,
     begins: bool,
     last: bool,
     c: Any,
@@ -127,7 +126,7 @@ def motion(
         now[N_KINETIC] = now[N_SPIN] = now[N_POTENTIAL] = 0.0
     for first in range(lo, hi, MOVERS):
         m = min(MOVERS, hi - first)
-        fetch(kind, first, m, crossing, grains, near, incoming, incoming_start, f, x, v, w, table)
+        fetch(kind, first, m, grains, near, incoming, incoming_start, f, x, v, w, table)
         if wet:
             push_of_water(kind, choice, first, m, c, grains, table)
         advance(kind.rotation, dt, table)

@@ -3,105 +3,149 @@
 Pairs keep the order of the wide list, and those that do not touch are passed over: when the near list is cut
 never shows in the bits of a run.
 """
-# ruff: noqa: F403, F405  (the columns of rows.py, all of them plain integers)
+# ruff: noqa: E741, F403  (l is a lane; the columns of rows.py, all of them plain integers)
 
+import math
 from typing import Any
+
+import numpy as np
 
 from ryusa.engine._kernel import kernel
 from ryusa.engine.arrays import Grains, Near, Pairs, Walls
-from ryusa.engine.pair import dashpots
+from ryusa.engine.four import copy4
+from ryusa.engine.glance import see_apart, tell_near
+from ryusa.engine.lanes import LANES
 from ryusa.engine.rows import *
-from ryusa.laws.geometry import wrap
+
+_SLACK = 2 * LANES  # pairs are listed by the batch, where a whole one would find room
+
+
+@kernel(nogil=True)
+def cut_blocks(
+    first: int, last: int, block_start: Any, n: int, n_solid: int, reach_on: float, plane_case: int, c: Any,
+    grains: Grains, walls: Walls, pairs: Pairs, near: Near, spare: Near, wanted: Any,
+) -> None:  # fmt: skip
+    """Cut the lists of blocks first..last-1; `wanted` gets the room that each wants (see `cut`)."""
+    for b in range(first, last):
+        wanted[b] = cut(
+            b, block_start[b], block_start[b + 1], n, n_solid, reach_on, plane_case, c, grains, walls, pairs,
+            near, spare,
+        )[0]  # fmt: skip
 
 
 @kernel()
 def cut(
-    b: int,
-    lo: int,
-    hi: int,
-    n: int,
-    n_solid: int,
-    reach_on: float,
-    plane_case: int,
-    rotation: int,
-    c: Any,
-    grains: Grains,
-    walls: Walls,
-    pairs: Pairs,
-    near: Near,
-    spare: Near,
-) -> bool:
+    b: int, lo: int, hi: int, n: int, n_solid: int, reach_on: float, plane_case: int, c: Any, grains: Grains,
+    walls: Walls, pairs: Pairs, near: Near, spare: Near,
+) -> tuple[int, int]:  # fmt: skip
     """List anew the pairs of block b, grains lo..hi-1, that are nearer than `reach_on` [m] beyond touch.
 
-    `spare` is room to work in, as large as the largest block. Returns whether there was room.
+    `spare` has room for the pairs in touch of any block. Returns how much room is wanted where there was too
+    little (the list then holds the pairs in touch alone), 0 where there was enough, -1 where a pair in touch
+    is beyond reach, which should not be; and how many are in touch.
     """
-    x = grains.x
-    start, partners = pairs.start, pairs.partners
-    l_x, l_y = c[C_PERIOD_X], c[C_PERIOD_Y]
-    first, had = near.first[b], near.count[b]
-    room, width = near.first[b + 1] - first, near.rows.shape[1]
-    old = new = 0
-    q = pairs.cross_start[b]
-    for i in range(lo, hi):
-        x_i, y_i, z_i, r_i = x[i, 0], x[i, 1], x[i, 2], x[i, 3] + reach_on
-        for p in range(start[i], start[i + 1]):
-            j = partners[p]
-            if j < n_solid:
-                d_x, d_z = wrap(x[j, 0] - x_i, l_x), x[j, 2] - z_i
-                square = d_x * d_x + d_z * d_z
-                if not plane_case:
-                    d_y = wrap(x[j, 1] - y_i, l_y)
-                    square += d_y * d_y
-                reach = r_i + x[j, 3]
-                close = square < reach * reach
-            else:
-                a = j - n_solid
-                gap = 0.0
-                for k in range(3):
-                    gap += (x[i, k] - walls.points[a, k]) * walls.normals[a, k]
-                close = gap < r_i
-            while old < had and near.pair[first + old] < p:
-                old += 1
-            known = old < had and near.pair[first + old] == p
-            if known and near.live[first + old]:
-                close = True  # also one that parted since the last step: it has an account to close
-            to = j
-            if j >= n:
-                to = n + b
-            elif j < lo or j >= hi:
-                pairs.near[q] = close
-                to = n + len(near.count) + q
-                q += 1
-            if not close:
-                continue
-            if new == room:
-                return False
-            spare.i[new], spare.j[new], spare.to[new], spare.pair[new] = i, j, to, p
-            if known:
-                spare.live[new] = near.live[first + old]
-                spare.eta[new, ETA_N], spare.eta[new, ETA_S] = (
-                    near.eta[first + old, ETA_N],
-                    near.eta[first + old, ETA_S],
-                )
-                for k in range(width):
-                    spare.rows[new, k] = near.rows[first + old, k]
-            else:
-                spare.live[new] = 0
-                for k in range(width):
-                    spare.rows[new, k] = 0.0
-                spare.eta[new, ETA_N], spare.eta[new, ETA_S] = dashpots(
-                    i, j, rotation, c, grains.m, x, grains.inertia
-                )
-            new += 1
+    first, touching = near.first[b], _put_aside(b, near, spare)
+    room = near.first[b + 1] - first
+    i_of, j_of, to_of, pair, live = near.i, near.j, near.to, near.pair, near.live
+    x, start, partners, wanted = grains.x, pairs.start, pairs.partners, pairs.near
+    points, normals = walls.points, walls.normals
+    glance, hit, owner = np.empty(4 * LANES), np.empty(LANES), np.empty(LANES, np.uint32)
+    new, i, crossing = 0, lo, n + len(near.count) + pairs.cross_start[b]
+    full = False
+    for begin in range(start[lo], start[hi], LANES):
+        m = min(LANES, start[hi] - begin)
+        for l in range(m):
+            while begin + l >= start[i + 1]:
+                i += 1
+            owner[l] = i
+            see_apart(l, i, partners[begin + l], n_solid, x, points, normals, glance)
+        tell_near(plane_case, reach_on, m, c, glance, hit)
+        full = full or new + m > room
+        for l in range(m):  # no branch: who is near cannot be foretold
+            j, close = int(partners[begin + l]), int(hit[l] > 0.0)
+            outside = int(j < n) & (int(j < lo) | int(j >= hi))
+            to = crossing if outside else j if j < n else n + b
+            crossing += outside
+            wanted[to] = close
+            if not full:
+                at = first + new
+                i_of[at], j_of[at], to_of[at], pair[at] = owner[l], j, to, begin + l
+            new += close
+    if full:
+        _take_back(b, touching, near, spare)
+        return new + _SLACK, touching
+    live[first : first + new] = 0
     near.count[b] = new
-    near.i[first : first + new] = spare.i[:new]
-    near.j[first : first + new] = spare.j[:new]
-    near.to[first : first + new] = spare.to[:new]
-    near.pair[first : first + new] = spare.pair[:new]
-    near.live[first : first + new] = spare.live[:new]
-    near.eta[first : first + new] = spare.eta[:new]
-    near.rows[first : first + new] = spare.rows[:new]
-    return True
+    k = first
+    for t in range(touching):
+        while k < first + new and pair[k] < spare.pair[t]:
+            k += 1
+        if k == first + new or pair[k] != spare.pair[t]:
+            return -1, touching
+        live[k] = 1
+        _copy_row(near, k, spare, t)
+    return 0, touching
+
+
+@kernel(forceinline=True)
+def _copy_row(to: Near, at: int, source: Near, of: int) -> None:
+    width = to.rows.shape[1]
+    to.eta[at, 0], to.eta[at, 1] = source.eta[of, 0], source.eta[of, 1]
+    for k in range(0, width - 3, 4):
+        copy4(to.rows, width * at + k, source.rows, width * of + k)
+    for k in range(width // 4 * 4, width):
+        to.rows[at, k] = source.rows[of, k]
+
+
+@kernel()
+def _put_aside(b: int, near: Near, spare: Near) -> int:
+    """Copy the pairs in touch of block b; returns how many there are."""
+    t = 0
+    for k in range(near.first[b], near.first[b] + near.count[b]):
+        if near.live[k]:
+            spare.i[t], spare.j[t], spare.to[t], spare.pair[t] = (
+                near.i[k],
+                near.j[k],
+                near.to[k],
+                near.pair[k],
+            )
+            spare.eta[t, :] = near.eta[k, :]
+            spare.rows[t, :] = near.rows[k, :]
+            t += 1
+    return t
+
+
+@kernel()
+def _take_back(b: int, touching: int, near: Near, spare: Near) -> None:
+    """Make the pairs put aside the whole list of block b."""
+    first = near.first[b]
+    end = first + touching
+    near.count[b] = touching
+    near.i[first:end], near.j[first:end] = spare.i[:touching], spare.j[:touching]
+    near.to[first:end], near.pair[first:end] = spare.to[:touching], spare.pair[:touching]
+    near.live[first:end] = 1
+    near.eta[first:end] = spare.eta[:touching]
+    near.rows[first:end] = spare.rows[:touching]
+
+
+@kernel()
+def best_skin(skin: float, closing: float, making: float, keeping: float) -> float:
+    """Reach of a list beyond touch that costs least [m]; at most twice, at least half of what it is.
+
+    Parameters
+    ----------
+    skin : its reach now [m].
+    closing : how much nearer two grains may come in a step [m]: a list lasts skin/closing steps.
+    making : cost of making the list.
+    keeping : cost in each step of its pairs that do not touch; their number goes with the skin.
+
+    Notes
+    -----
+    The cost of a step, making closing/s + keeping s/skin, is least at s = sqrt(making closing skin/keeping).
+    """
+    if keeping <= 0.0:
+        return 2.0 * skin
+    return min(max(math.sqrt(making * closing * skin / keeping), 0.5 * skin), 2.0 * skin)
 
 
 @kernel()

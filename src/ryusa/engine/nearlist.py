@@ -4,9 +4,9 @@ import numpy as np
 
 from ryusa.engine.arrays import Grains, Near, Pairs
 from ryusa.engine.lanes import LANES
-from ryusa.engine.listing import Layout, Memory, film_reach
-from ryusa.engine.near import cut
-from ryusa.engine.rows import K_LANES, K_LEAST, K_MOST, K_SINCE, K_SKIN, K_TRAVEL, K_WAY, N_CLOCK
+from ryusa.engine.listing import Layout, Memory, Share, film_reach
+from ryusa.engine.near import cut_blocks
+from ryusa.engine.rows import K_LANES, K_LEAST, K_MOST, K_SINCE, K_SKIN, K_TOUCHING, K_TRAVEL, N_CLOCK
 from ryusa.model.scene import Floats
 
 _SKIN = 0.01  # first reach, over the smallest diameter
@@ -29,12 +29,12 @@ class NearList:
         self.pairs = layout.room_for(np.zeros(blocks, np.int64))
         self.spares: list[Near] = []
         self.clock = np.zeros(N_CLOCK)
-        self.clock[K_SKIN], self.clock[K_WAY] = _SKIN * smallest, 1.25
-        self.make_room()
+        self.clock[K_SKIN] = _SKIN * smallest
+        self.make_room(np.full(blocks, layout.n // blocks))
 
     def begin(
         self, grains: Grains, wide: Pairs, skin: float, travel: float, parted: float, numbers: Floats,
-        memory: Memory,
+        memory: Memory, share: Share,
     ) -> None:  # fmt: skip
         """Cut from a new wide list, and lay in the memory of pairs in touch.
 
@@ -42,6 +42,7 @@ class NearList:
         ----------
         skin, travel : reach of the wide list beyond touch, and how far the fastest grain has gone since [m].
         parted : how far a pair in touch may have parted in the last step [m].
+        share : has threads share the blocks.
         """
         layout, clock, kind = self._layout, self.clock, self._layout.kind
         clock[K_LEAST], clock[K_MOST] = _LEAST * self._smallest, 0.5 * skin
@@ -49,21 +50,35 @@ class NearList:
         clock[K_TRAVEL], clock[K_SINCE] = travel, 0.0
         reach_on = max(float(clock[K_SKIN]), parted) + film_reach(layout.scene)
         self.pairs.count[:] = 0
-        for b, (lo, hi) in enumerate(zip(layout.block_start[:-1], layout.block_start[1:], strict=True)):
-            while not cut(
-                b, lo, hi, layout.n, layout.n_solid, reach_on, kind.plane_case, kind.rotation, numbers,
-                grains, layout.walls, wide, self.pairs, self.spares[0],
-            ):  # fmt: skip
-                self.make_room()
-        layout.remember(grains, self.pairs, memory)
-        clock[K_LANES] = float(self.pairs.count.sum())
 
-    def make_room(self) -> None:
-        """Half as much room again in every block, and at least one pair a grain."""
-        old, count = self.pairs, self.pairs.count
-        room = np.maximum(np.diff(old.first) * 3 // 2, self._layout.n // len(count) + LANES)
+        wanted = np.zeros(len(layout.block_start) - 1, np.int64)
+
+        def cut_some(first: int, last: int) -> None:
+            cut_blocks(
+                first, last, layout.block_start, layout.n, layout.n_solid, reach_on, kind.plane_case, numbers,
+                grains, layout.walls, wide, self.pairs, self.spares[0], wanted,
+            )  # fmt: skip
+
+        share(cut_some)
+        while wanted.any():
+            self.make_room(wanted)
+            share(cut_some)
+        layout.remember(grains, self.pairs, memory)
+        clock[K_LANES], clock[K_TOUCHING] = float(self.pairs.count.sum()), float(len(memory.i))
+
+    def make_room(self, wanted: np.ndarray) -> None:
+        """Make room for so many pairs in each block, and some more; what is in the list stays.
+
+        Raises
+        ------
+        AssertionError : a pair in touch was found beyond reach.
+        """
+        old, room, wanted = self.pairs, np.diff(self.pairs.first), wanted.astype(np.int64)
+        if (wanted < 0).any():
+            raise AssertionError("a pair in touch is not in the list")
+        room = np.maximum(room, (wanted > 0) * (wanted + wanted // 8 + LANES))
         new = self._layout.room_for(room)
-        for b, have in enumerate(count):
+        for b, have in enumerate(old.count):
             a, k = int(old.first[b]), int(new.first[b])
             for name in ("i", "j", "to", "pair", "live", "eta", "rows"):
                 getattr(new, name)[k : k + have] = getattr(old, name)[a : a + have]

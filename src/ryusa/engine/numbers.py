@@ -118,3 +118,23 @@ def rolling_energy(scene: Scene, state: State, places: np.ndarray) -> float:
         k_r = epsd_stiffness(scene.contact.k_n, f, scene.rolling.stiffness_factor)
         energy += 0.5 * float(np.sum(state.contacts.spring_r[place] ** 2)) / k_r if k_r > 0.0 else 0.0
     return energy
+
+
+def energy_of_switch(before: Scene, scene: Scene, state: State, dropped: np.ndarray) -> float:
+    """Energy a change of the timeline gives [J]: height on a new slope, spin locked, springs let go.
+
+    `dropped` are the places of contacts that the change takes away.
+    """
+    given = potential_energy(scene, state) - potential_energy(before, state)
+    if before.rotation and not scene.rotation:
+        given -= float(0.5 * np.sum(scene.inertia[:, None] * state.omega**2))
+        given -= rolling_energy(before, state, np.arange(len(state.contacts)))
+    elif len(dropped):
+        given -= rolling_energy(before, state, dropped)
+    if len(dropped):
+        law, gone = before.contact, state.contacts
+        e_n = gone.f_n[dropped] - gone.dash_n[dropped]
+        given -= float(np.sum(0.5 * e_n**2 / law.k_n))
+        if law.k_s > 0.0:
+            given -= float(np.sum(0.5 * gone.spring_s[dropped] ** 2 / law.k_s))
+    return given

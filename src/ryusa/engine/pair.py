@@ -49,6 +49,16 @@ def dashpots(i: int, j: int, rotation: int, c: Any, m: Any, x: Any, inertia: Any
 
 
 @kernel()
+def begin_row(
+    k: int, i: int, j: int, rotation: int, c: Any, m: Any, x: Any, inertia: Any, eta: Any, rows: Any
+) -> None:
+    """Empty the row of near pair k, which may touch now and did not before, and give it its dashpots."""
+    for a in range(rows.shape[1]):
+        rows[k, a] = 0.0
+    eta[k, ETA_N], eta[k, ETA_S] = dashpots(i, j, rotation, c, m, x, inertia)
+
+
+@kernel()
 def dashpot_wet(choice: Choice, closing: float, i: int, j: int, c: Any, m: Any, w: Any) -> float:
     """Normal dashpot [N s/m] of a pair that just touched under water at this closing speed."""
     m_n = effective_mass(m[i], m[j])

@@ -101,7 +101,8 @@ N_ENDED_SHOWN = 19
 N_PEND_LIFT = 20
 N_PEND_FLOW = 21
 N_PEND_FILM = 22
-N_FULL = 23  # 1 where the near list of the block found no room
+N_FULL = 23  # pairs that found no room when the near list of the block was cut, all of them; else 0
+N_TOUCHING = 24  # pairs in touch when it was cut
 
 # The near list's own clock, kept between calls; it never shows in the bits.
 K_SKIN = 0  # reach of the near list beyond touch [m]
@@ -110,11 +111,8 @@ K_SINCE = 2  # steps since
 K_LANES = 3  # lanes of all blocks
 K_LEAST = 4  # smallest and largest skin [m]
 K_MOST = 5
-K_WAY = 6  # factor by which the skin last changed
-K_SPENT = 7  # what steps and cuts cost since it changed [ns], by count, and how many they were
-K_STEPS = 8
-K_BEFORE = 9  # what a step cost with the skin before [ns]
-N_CLOCK = 12
+K_TOUCHING = 6  # pairs in touch when it was cut
+N_CLOCK = 8
 
 # What a kernel cannot raise.
 FAULT_NONE = 0
@@ -132,12 +130,12 @@ STOP_ROOM = 5  # the near list wants more room
 
 # Measured, and fixed so that a run never depends on a clock [ns]: to look at a pair of the wide list and at a
 # grain while the near list is cut, to list a near pair, and to look at it in a step.
-COST_LOOK, COST_GRAIN, COST_LAY, COST_NEAR = 2.5, 4.0, 8.0, 3.0
-STEPS_A_SKIN = 64  # how long one skin of the near list is tried, at least
+COST_LOOK, COST_GRAIN, COST_LAY, COST_NEAR = 7.0, 5.0, 10.0, 3.0
+LONGEST_CUT = 512.0  # steps after which the near list is cut though nothing moves
 
 BASE, WITH_ROLLING = 8, 16  # doubles a row takes without and with rolling friction: whole cache lines
 # widths padded to whole cache lines, so that blocks of different threads do not share one
-N_NOW = 24
+N_NOW = 32
 N_BOOKS = 24
 PENDING = (
     N_PEND_DRAG,

@@ -1,0 +1,40 @@
+"""A glance at pairs, many at once: how far they are apart, and which of them are near."""
+# ruff: noqa: E741, F403, F405  (l is a lane; the columns of rows.py, all of them plain integers)
+
+from typing import Any
+
+from ryusa.engine._kernel import FAST, kernel
+from ryusa.engine.four import apart4
+from ryusa.engine.lanes import LANES
+from ryusa.engine.rows import *
+from ryusa.laws.geometry import wrap
+
+
+@kernel(fastmath=FAST, forceinline=True)
+def see_apart(l: int, i: int, j: int, n_solid: int, x: Any, points: Any, normals: Any, glance: Any) -> None:
+    """Lay the way from grain i to partner j and both radii together [m] on lane l.
+
+    A plane is met as a grain of the same size that touches it from behind.
+    """
+    apart4(glance, 4 * l, x, 4 * j, 4 * i)
+    if j >= n_solid:
+        a, r = j - n_solid, x[i, 3]
+        gap = 0.0
+        for k in range(3):
+            gap += (x[i, k] - points[a, k]) * normals[a, k]
+        for k in range(3):
+            glance[4 * l + k] = -(gap + r) * normals[a, k]
+        glance[4 * l + 3] = 2.0 * r
+
+
+@kernel(fastmath=FAST, forceinline=True)
+def tell_near(plane_case: int, reach_on: float, m: int, c: Any, glance: Any, hit: Any) -> None:
+    """Set `hit` to 1 where one of the first m lanes is nearer than `reach_on` [m] beyond touch, else to 0."""
+    l_x, l_y = c[C_PERIOD_X], c[C_PERIOD_Y]
+    for l in range(min(m, LANES)):
+        d_x, d_z, reach = wrap(glance[4 * l], l_x), glance[4 * l + 2], glance[4 * l + 3] + reach_on
+        square = d_x * d_x + d_z * d_z
+        if not plane_case:
+            d_y = wrap(glance[4 * l + 1], l_y)
+            square += d_y * d_y
+        hit[l] = 1.0 if square < reach * reach else 0.0
