@@ -13,6 +13,7 @@ from ryusa.errors import ResultsError
 from ryusa.model import State
 from ryusa.results import Results, schema
 from ryusa.running import recorder as recorder_module
+from ryusa.running import vtkhdf
 from ryusa.running.recorder import Recorder, buffer_limit, bytes_per_frame, flush_after
 
 WRITER = """
@@ -22,8 +23,10 @@ sys.path.insert(0, sys.argv[2])
 import numpy as np
 from conftest import make_event, make_scene, make_tally
 from ryusa.model import State
+from ryusa.running import vtkhdf
 from ryusa.running.recorder import Recorder
 
+vtkhdf.SHELF = 3
 folder = Path(sys.argv[1])
 folder.mkdir()
 scene = make_scene(4)
@@ -240,7 +243,7 @@ def test_a_part_is_written_when_enough_has_gathered(
 def test_parts_are_written_by_the_clock(
     tmp_path: Path, scene: Any, tally: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(recorder_module, "write_index", lambda *_: None)
+    monkeypatch.setattr(recorder_module, "write_index", lambda *_: 0)
     now = [0.0]
     recorder = Recorder(tmp_path, scene, clock=lambda: now[0])
     written = []
@@ -251,6 +254,27 @@ def test_parts_are_written_by_the_clock(
     at = np.flatnonzero(written)
     assert np.all(np.diff(at[at < 200]) == 2)
     assert np.all(np.diff(at[at > 400]) >= 5)
+
+
+def test_an_index_with_shelves_shows_every_frame_and_names_few_files(
+    recorder: Recorder, tally: Any, event: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(vtkhdf, "SHELF", 3)
+    for k in range(11):
+        recorder.frame(moment(k), tally(k))
+        recorder.contacts(event(1, 5, k * 1e-3, k * 1e-3 + 1e-4))
+        recorder.flush()
+    assert len(list((tmp_path / "parts").glob("shelf-*"))) == 3
+    with h5py.File(tmp_path / schema.GRAINS, "r") as file:
+        sources = {one.file_name for one in file["VTKHDF/Points"].virtual_sources()}
+        assert len(sources) == 3 + 2
+        assert file["ryusa/step"][:].tolist() == [moment(k).step for k in range(11)]
+        assert file["ryusa/tally"]["t"].tolist() == list(range(11))
+        assert len(file["ryusa/contacts"]) == 11
+    monkeypatch.chdir("/")  # where the reader stands does not matter
+    shown = vtk_frames(tmp_path / schema.GRAINS, list(range(11)))
+    for k, frame in enumerate(shown):
+        assert np.array_equal(frame["points"], moment(k).x)
 
 
 def test_parts_stay_few_however_long_a_run_takes() -> None:

@@ -25,6 +25,7 @@ PARTS = "parts"  # folder of write-once HDF5 files
 
 PART_NAME = re.compile(r"part-(\d{6})\.h5")
 SCENE_NAME = re.compile(r"scene-(\d{6})\.h5")
+SHELF_NAME = re.compile(r"shelf-(\d{6})\.h5")  # index over some parts, for the index over all
 
 # status in provenance.json
 RUNNING, COMPLETE, STOPPED, FAILED = "running", "complete", "stopped", "failed"
@@ -79,6 +80,11 @@ def whole(tally: NDArray[np.void]) -> NDArray[np.void]:
 def part_name(k: int) -> str:
     """File name of part k."""
     return f"part-{k:06d}.h5"
+
+
+def shelf_name(k: int) -> str:
+    """File name of shelf k."""
+    return f"shelf-{k:06d}.h5"
 
 
 def scene_name(k: int) -> str:

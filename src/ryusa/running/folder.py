@@ -90,7 +90,8 @@ def clear(folder: Path) -> None:
     parts = folder / schema.PARTS
     for entry in list(parts.iterdir()):
         name = entry.name.removeprefix(".").removesuffix(".new")
-        if name == POINTS or schema.PART_NAME.fullmatch(name) or schema.SCENE_NAME.fullmatch(name):
+        ours = (schema.PART_NAME, schema.SCENE_NAME, schema.SHELF_NAME)
+        if name == POINTS or any(one.fullmatch(name) for one in ours):
             entry.unlink()
     for name in _FILES:
         (folder / f".{name}.new").unlink(missing_ok=True)

@@ -102,6 +102,7 @@ class Recorder:
         self._flushed = self._begun
         self._parts: list[PartSize] = []
         self._index_is_old = False
+        self._shelved = 0  # shelves of the index that this process wrote
         self.first_scene = scene if left is None else left.scenes[0][1]
         self._end = 0  # step up to which all is gathered or written
         self._n_scene = 0
@@ -216,8 +217,7 @@ class Recorder:
             self._tally, self._contacts, self._water = [], [], {}
         elif not self._index_is_old:
             return False
-        with disk(self.folder):
-            write_index(self.folder, self._parts, self.n_grain)
+        self._write_index()
         self._index_is_old = False
         return True
 
@@ -226,8 +226,7 @@ class Recorder:
         if len(events) and self._quiet_until is None:
             self.contacts(events)
             self._write_part(tail=True)
-            with disk(self.folder):
-                write_index(self.folder, self._parts, self.n_grain)
+            self._write_index()
 
     def kept(self) -> Kept:
         """Where the recorder stands, and what has gathered, for a checkpoint."""
@@ -254,6 +253,10 @@ class Recorder:
         self._parts.append(part)
         self._index_is_old = True
 
+    def _write_index(self) -> None:
+        with disk(self.folder):
+            self._shelved = write_index(self.folder, self._parts, self.n_grain, self._shelved)
+
     def _rows(self) -> dict[str, NDArray[Any]]:
         """What has gathered, by dataset of a part."""
         rows: dict[str, NDArray[Any]] = {name: self._buffer[name][: self._count] for name in self._buffer}
@@ -273,7 +276,7 @@ class Recorder:
         if left.waiting:
             self._take_rows(left.waiting)
         if self._parts:
-            write_index(self.folder, self._parts, self.n_grain)
+            self._write_index()
 
     def _take_rows(self, waiting: Mapping[str, NDArray[Any]]) -> None:
         self._count = len(waiting["t"])

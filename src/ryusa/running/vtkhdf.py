@@ -2,7 +2,8 @@
 
 `grains.vtkhdf` holds no numbers of its own: each dataset is an HDF5 virtual dataset over the write-once
 parts, so that it can be written anew in a moment and put in place by a rename; a reader sees the old index or
-the new one, both whole.
+the new one, both whole. Every so many parts stand on a shelf, an index of their own that is written once:
+what the index of the run takes in time and memory does not grow with the run.
 """
 
 from collections.abc import Callable
@@ -21,6 +22,7 @@ _VERSION = np.array([2, 0], dtype=np.int64)  # the first that knows steps of Pol
 _CELLS = ("Vertices", "Lines", "Polygons", "Strips")
 _INT = np.dtype(np.int64)
 _FLOAT = np.dtype(np.float64)
+SHELF = 32  # parts; HDF5 takes 4 kB for each of a dataset, until the file is closed
 POINTS = "points.h5"  # in parts/: what is the same in every frame
 _PLANE_REACH = (
     50.0  # half the side of the square drawn for a plane where nothing else bounds it, in largest d
@@ -53,13 +55,46 @@ def write_points(parts: Path, scene: Scene) -> None:
     write_atomic(parts / POINTS, fill)
 
 
-def write_index(folder: Path, parts: list[PartSize], n_grain: int) -> None:
-    """Write `grains.vtkhdf` over `parts`; at least one frame is needed."""
+def write_index(folder: Path, parts: list[PartSize], n_grain: int, shelved: int = 0) -> int:
+    """Write `grains.vtkhdf` over `parts`; at least one frame is needed.
+
+    Parameters
+    ----------
+    shelved : shelves that are there already and hold what they should.
+
+    Returns
+    -------
+    shelved : those that are there now.
+    """
+    shelves = [_shelf(k, parts[k * SHELF : (k + 1) * SHELF]) for k in range(len(parts) // SHELF)]
+    for k, shelf in enumerate(shelves[shelved:], shelved):
+        _write_shelf(folder / schema.PARTS / shelf.name, parts[k * SHELF : (k + 1) * SHELF], n_grain)
 
     def fill(file: h5py.File) -> None:
-        _fill_index(file, parts, n_grain)
+        _fill_index(file, [*shelves, *parts[len(shelves) * SHELF :]], n_grain)
 
     write_atomic(folder / schema.GRAINS, fill)
+    return len(shelves)
+
+
+def _shelf(k: int, parts: list[PartSize]) -> PartSize:
+    frames, contacts = sum(one.n_frame for one in parts), sum(one.n_contact for one in parts)
+    return PartSize(schema.shelf_name(k), frames, contacts, parts[-1].end)
+
+
+def _write_shelf(path: Path, parts: list[PartSize], n: int) -> None:
+    """Write an index that looks like one large part."""
+    shapes = {
+        name: ((n, *tail) if name in schema.PER_GRAIN else tail, dtype)
+        for name, (dtype, tail) in schema.FRAME_DATASETS.items()
+    }
+    shapes |= {"point_offset": ((), _INT), "tally": ((), schema.TALLY), "contacts": ((), EVENT)}
+
+    def fill(file: h5py.File) -> None:
+        for name, (tail, dtype) in shapes.items():
+            _gather(file, name, parts, name, tail, dtype, folder="", flat=False)
+
+    write_atomic(path, fill)
 
 
 def _fill_index(file: h5py.File, parts: list[PartSize], n: int) -> None:
@@ -114,20 +149,22 @@ def _gather(
     source: str,
     tail: tuple[int, ...],
     dtype: np.dtype[Any],
+    *,
+    folder: str = f"{schema.PARTS}/",
+    flat: bool = True,
 ) -> None:
-    """Put the rows of all parts behind one another; a part's (k, n, 3) becomes (k n, 3) rows."""
+    """Put the rows of all parts behind one another; flat, a part's (k, n, 3) becomes (k n, 3) rows."""
     counts = [part.n_contact if source == "contacts" else part.n_frame for part in parts]
-    rows = tail[0] if tail else 1
+    rows, rest = (tail[0], tail[1:]) if tail and flat else (1, tail)
     if sum(counts) * rows == 0:
-        group.create_dataset(name, (0, *tail[1:]), dtype)
+        group.create_dataset(name, (0, *rest), dtype)
         return
-    layout = h5py.VirtualLayout((sum(counts) * rows, *tail[1:]), dtype)
+    layout = h5py.VirtualLayout((sum(counts) * rows, *rest), dtype)
     begin = 0
     for part, count in zip(parts, counts, strict=True):
         if count:
-            file = f"{schema.PARTS}/{part.name}"
             layout[begin : begin + count * rows] = h5py.VirtualSource(
-                file, source, shape=(count, *tail), dtype=dtype
+                folder + part.name, source, shape=(count, *tail), dtype=dtype
             )
             begin += count * rows
     group.create_virtual_dataset(name, layout)
