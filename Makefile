@@ -22,7 +22,7 @@ HAS_RYUSA  := $(VENV)/.has-ryusa
 HAS_TESTS  := $(VENV)/.has-tests
 
 .DEFAULT_GOAL := help
-.PHONY: help demo demo-run test check lint format types walls unit docs pictures bench paper paper-quick validate validate-quick faults slow constraints clean
+.PHONY: help demo demo-run test check lint format types walls unit docs pictures bench paper paper-quick validate validate-quick faults fuzz soak slow constraints clean
 
 help: ## list these targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 22
@@ -97,6 +97,15 @@ validate: $(HAS_RYUSA) ## ours on every reference, with its error: runs/validati
 
 validate-quick: $(HAS_RYUSA) ## the same in short; fails where something lies outside its tolerance
 	$(BIN)/ryusa validate --quick -o $(CHECKED) --jobs $(JOBS) --again
+
+fuzz: $(HAS_TESTS) ## 20,000 case files, 200 through the command line, then a quarter of an hour guided by coverage
+	@$(PIP) --editable '.[fuzz]'
+	$(BIN)/python tests/faults/fuzz.py cases 20000 1
+	$(BIN)/python tests/faults/fuzz.py cli 200 1
+	$(BIN)/python tests/faults/fuzz.py guided 900
+
+soak: $(HAS_TESTS) ## half an hour of a two-way run, whose memory must stay flat
+	$(BIN)/python tests/faults/soak.py build/soak 30
 
 faults: $(HAS_TESTS) ## the fault campaign: 200 kills, full disks, a thousand damaged and foreign folders
 	$(BIN)/python -m pytest -q -n $(JOBS) tests/faults -m "slow or not slow"

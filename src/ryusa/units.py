@@ -71,6 +71,8 @@ def quantity(text: object, unit: str) -> float:
     value = float(Decimal(found.group()) * Decimal(repr(_factor(written, unit))))
     if not math.isfinite(value):
         raise UnitError(f"too large a number; needs {_kind(unit)}, such as {example}")
+    if value == 0.0 and Decimal(found.group()) != 0:
+        raise UnitError(f"too small a number; needs {_kind(unit)}, such as {example}")
     return value
 
 
@@ -141,7 +143,10 @@ def _to_si(written: str) -> tuple[float, tuple[tuple[str, int], ...]]:
             power = sign * int(found.group(2) or 1)
             if abs(power) > 9:
                 raise UnitError(f"cannot read the unit '{written}'")
-            factor *= one**power
+            try:
+                factor *= one**power
+            except OverflowError:
+                raise UnitError(f"too large a unit: '{written}'") from None
             for base, exponent in bases:
                 dimension[base] = dimension.get(base, 0) + exponent * power
             position, sign, pending = position + found.end(), 1, False

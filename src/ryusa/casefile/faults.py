@@ -43,6 +43,7 @@ def _fault(one: dict[str, Any], data: dict[str, Any]) -> CaseError:
     kind, context = one["type"], one.get("ctx", {})
     value = _value(data, path)
     if kind == "extra_forbidden":
+        path = (*_plain(one["loc"][:-1]), one["loc"][-1])  # a key may look like a branch
         return CaseError(dotted(path), None, "unknown key", nearest_key(path, data))
     if kind == "missing":
         return CaseError(dotted(path), None, _missing(path, data))
@@ -180,9 +181,10 @@ def _step(here: Any, part: str | int) -> Any:
 def _value(data: Any, path: Sequence[str | int]) -> Any:
     for part in path:
         data = _step(data, part)
-    if isinstance(data, dict) or len(repr(data)) > _LONGEST_VALUE:
+    try:
+        return None if isinstance(data, dict) or len(repr(data)) > _LONGEST_VALUE else data
+    except ValueError:  # a whole number of thousands of digits
         return None
-    return data
 
 
 def _missing(path: Sequence[str | int], data: dict[str, Any]) -> str:

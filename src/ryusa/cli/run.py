@@ -39,6 +39,7 @@ Force = Annotated[
 ]
 
 _STOPPED = 5  # exit code after Ctrl-C or SIGTERM: `ryusa resume` goes on
+_LAID_OUT = 100_000  # grains at most that `check` lays out, in half a second
 _WIDE = 160  # columns of a table that goes to a file or pipe
 
 
@@ -91,7 +92,8 @@ def check(case: CaseFile, settings: Settings = None, seed: Seed = None) -> None:
 
     from ryusa.build import build
 
-    built = build(found)
+    n_grain = found.derived.n_grain + found.derived.n_fixed
+    built = build(found) if n_grain <= _LAID_OUT else None
     console = Console()
     if not console.is_terminal:
         console = Console(width=_WIDE)
@@ -108,7 +110,8 @@ def check(case: CaseFile, settings: Settings = None, seed: Seed = None) -> None:
         table.add_row(f"  {escape(row.name)}", escape(row.shown), escape(mark + row.how), style=style)
     console.print(table)
     console.print("[bold]chosen because the case leaves it open[/bold]")
-    for note in built.notes:
+    notes = (f"not told for more than {_LAID_OUT} grains, which `ryusa run` lays out",)
+    for note in built.notes if built is not None else notes:
         console.print(f"  {escape(note)}", highlight=False)
 
 

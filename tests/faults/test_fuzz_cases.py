@@ -1,0 +1,63 @@
+"""Case files from strangers: explained, laid out, or refused by name; never a traceback, never a hang.
+
+Short here; `make fuzz` is the long form, and tells its figures.
+"""
+
+import sys
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+from fuzz import Tally, cli, judged
+from strange_cases import strange_cases, strange_tables
+
+from ryusa.casefile.read import read_text
+from ryusa.errors import CaseError
+from ryusa.units import UnitError, quantity
+
+MANY = settings(max_examples=400, deadline=None, suppress_health_check=list(HealthCheck))
+
+
+@MANY
+@given(text=strange_cases(), table=strange_tables())
+def test_a_strange_case_file_is_used_or_refused_by_name(
+    tmp_path_factory: pytest.TempPathFactory, text: str, table: str
+) -> None:
+    tally = Tally()
+    judged(tmp_path_factory.getbasetemp(), text, table, tally)
+    assert tally.outcomes["wrong"] == 0, tally.wrong[0]
+
+
+def test_strange_case_files_get_an_answer_from_the_command_line(tmp_path: Path) -> None:
+    tally = cli(tmp_path, 4, 5)
+    assert tally.outcomes["wrong"] == 0, tally.wrong[0]
+    assert sum(tally.outcomes.values()) == 4
+
+
+# what fuzzing found
+
+
+@pytest.mark.parametrize("key", ["<", "'<number>'", "'<table>'"])
+def test_an_unknown_key_that_looks_like_one_of_ours_is_refused_by_name(key: str) -> None:
+    name = key.strip("'")
+    with pytest.raises(CaseError, match=f"{name}: unknown key"):
+        read_text(f'"{name}" = 1\n')
+
+
+def test_a_unit_beyond_all_numbers_is_refused() -> None:
+    with pytest.raises(UnitError, match="too large a unit"):
+        quantity("1 Ylightyear^9", "m")
+
+
+def test_a_number_that_would_become_nothing_is_refused() -> None:
+    with pytest.raises(UnitError, match="too small"):
+        quantity("1e-400 m", "m")
+    assert quantity("0e-400 m", "m") == 0.0
+
+
+def test_a_whole_number_too_long_to_be_shown_is_refused() -> None:
+    with pytest.raises(CaseError, match=r"grains\.spread"):
+        read_text(f"[grains]\nspread = 0x{'f' * 9_000}\n")
