@@ -2,13 +2,13 @@
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from ryusa.engine.arrays import Ledger
+from ryusa.engine.entry import events_of, refuse_misfit, still_there
 from ryusa.engine.faults import fault_of, lost_of, unsafe_of
 from ryusa.engine.listing import Layout, Memory, take_memory
 from ryusa.engine.march import make_run
@@ -45,8 +45,8 @@ from ryusa.engine.rows import (
     STOP_UNSAFE,
 )
 from ryusa.engine.seam import Flags
-from ryusa.errors import NotANumber, RunError
-from ryusa.model import EVENT, Book, Contacts, Immersed, Scene, State, Tally
+from ryusa.errors import RunError
+from ryusa.model import Book, Immersed, Scene, State, Tally
 from ryusa.model.contacts import N_EVENT
 from ryusa.model.enums import Arm, Damping, EventRule, Rebound, Rolling
 from ryusa.model.immersed import SHARE
@@ -107,20 +107,8 @@ class CpuEngine:
         reasons = self.refuses(scene)
         if reasons:
             raise ValueError("; ".join(reasons))
+        refuse_misfit(scene, state)
         n = scene.n_grain
-        if state.x.shape != (n, 3):
-            raise ValueError(f"state.x has shape {state.x.shape}, the scene has {n} free grains")
-        if scene.plane_case:
-            _refuse_near_lanes(scene, state)
-        bad = np.flatnonzero(~np.isfinite(np.hstack([state.x, state.v, state.omega])).all(axis=1))
-        if len(bad):
-            raise NotANumber(
-                "position, velocity or spin is not finite",
-                grain=int(bad[0]),
-                step=state.step,
-                t=state.t,
-                hint="Nothing was stepped: give finite numbers.",
-            )
         before, self._scene = self._scene, scene
         changed = before is not None and before is not scene and state.step > 0
         self._n, self._step, self._t = n, state.step, state.t
@@ -139,7 +127,7 @@ class CpuEngine:
         self._relisted = 0
         self._read_own(state)
 
-        contacts, dropped = _still_there(scene, state.contacts)
+        contacts, dropped = still_there(scene, state.contacts)
         self._drained = self._drained if changed else []
         if before is not None and changed:
             self._ledger.books[0, Book.SWITCH] += energy_of_switch(before, scene, state, dropped)
@@ -259,13 +247,7 @@ class CpuEngine:
         self._drain()
         rows = np.concatenate(self._drained) if self._drained else np.zeros((0, N_EVENT))
         self._drained = []
-        events = np.zeros(len(rows), EVENT)
-        column = 0
-        for name in EVENT.names or ():
-            wide = len(EVENT[name].shape) > 0
-            events[name] = rows[:, column : column + 3] if wide else rows[:, column]
-            column += 3 if wide else 1
-        return events[np.lexsort((events["j"], events["i"], events["t_part"]))]
+        return events_of(rows)
 
     def _march(self, n_steps: int) -> Flags:
         layout, threads = self._layout, min(self._threads, len(self._layout.block_start) - 1)
@@ -394,25 +376,3 @@ def _blocks(n: int) -> int:
     """
     least, most = _BLOCKS
     return 1 if n < _MANY else int(min(max(2.0 ** round(np.log2(n / 2048)), least), most))
-
-
-def _refuse_near_lanes(scene: Scene, state: State) -> None:
-    """In a plane scene another y is another lane; lanes closer than a diameter would hide contacts."""
-    lanes = np.unique(np.concatenate([state.x[:, 1], scene.x_fixed[:, 1]]))
-    largest = float(np.concatenate([scene.d, scene.d_fixed]).max(initial=0.0))
-    apart = np.diff(lanes)
-    if len(apart) and apart.min() < largest * (1.0 - 1e-9):
-        y = lanes[int(apart.argmin())]
-        text = f"a plane scene has grains at y = {y:g} m and {apart.min():g} m beside, less than a diameter"
-        raise ValueError(f"{text} ({largest:g} m): give them the same y, or set the lanes apart")
-
-
-def _still_there(scene: Scene, contacts: Contacts) -> tuple[Contacts, np.ndarray]:
-    """Contacts whose partner still stands, and the places of those whose partner was taken away."""
-    active = np.concatenate([np.ones(scene.n_grain, np.bool_), scene.fixed_active, scene.plane_active])
-    keep = active[contacts.j]
-    if keep.all():
-        return contacts, np.zeros(0, np.int64)
-    return replace(contacts, **{name: array[keep] for name, array in vars(contacts).items()}), np.flatnonzero(
-        ~keep
-    )

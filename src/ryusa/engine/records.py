@@ -117,7 +117,8 @@ def end_record(
         record[E_OMEGA_END + k] = w[i, k]
     slot = int(now[N_N_ENDED])
     if slot < len(ended):
-        ended[slot] = record
+        for k in range(N_EVENT):
+            ended[slot, k] = record[k]
         now[N_N_ENDED] = slot + 1
     elif now[N_FAULT] == FAULT_NONE:
         now[N_FAULT], now[N_FAULT_GRAIN], now[N_FAULT_PARTNER] = FAULT_EVENTS_FULL, record[E_I], record[E_J]
