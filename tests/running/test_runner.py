@@ -441,3 +441,13 @@ def test_slow_kernels_are_explained_once(
     log = (go(progress=True, stop=Stop(time=1e-3)).folder / "log.txt").read_text()
     assert log.count("compiling kernels") == 1
     assert capsys.readouterr().err.count("compiling kernels") == 1
+
+
+def test_an_engine_is_chosen_by_name_or_refused_in_one_line(go: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    from ryusa.engine.cuda import presence
+
+    with pytest.raises(CaseError, match="engine = 'gpu': must be 'cpu' or 'cuda'"):
+        go(engine="gpu")
+    monkeypatch.setattr(presence, "absent", lambda: "the CUDA driver finds no card")
+    with pytest.raises(CaseError, match="engine = 'cuda': the CUDA driver finds no card"):
+        go(engine="cuda")

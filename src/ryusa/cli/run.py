@@ -26,6 +26,10 @@ Seed = Annotated[int | None, typer.Option("--seed", help="Change the seed of the
 Threads = Annotated[
     int, typer.Option("--threads", metavar="N", help="Threads; the numbers do not depend on it.")
 ]
+Engine = Annotated[
+    str | None,
+    typer.Option("--engine", metavar="NAME", help="What steps the grains: cpu or cuda.", show_default="cpu"),
+]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no closing lines.")]
 Every = Annotated[
     str, typer.Option("--checkpoint", metavar="TIME", help="Wall time between checkpoints; 'never' for none.")
@@ -126,6 +130,7 @@ def run(
     ] = False,
     settings: Settings = None,
     threads: Threads = 1,
+    engine: Engine = None,
     seed: Seed = None,
     quiet: Quiet = False,
     checkpoint: Every = "5min",
@@ -148,7 +153,7 @@ def run(
         heard.raise_if_asked("before the first step; no run folder was made")
         results = run_case(
             found, out, threads=threads, progress=not quiet, overwrite=overwrite,
-            checkpoint=_every(checkpoint), resume=resume, force=force,
+            checkpoint=_every(checkpoint), resume=resume, force=force, engine=engine,
         )  # fmt: skip
     _close(results, quiet)
 
@@ -173,7 +178,8 @@ def resume(
             raise ResultsError(f"{folder}: no run folder of ryusa")
         if not (folder / schema.CASE_TOML).is_file():
             raise ResultsError(f"{folder}: holds no case; ryusa.run_scene(..., resume=True) goes on with it")
-        overrides = read_json(folder / schema.PROVENANCE).get("overrides")
+        origin = read_json(folder / schema.PROVENANCE)
+        overrides, engine = origin.get("overrides"), "cuda" if origin.get("engine") == "CudaEngine" else None
         said = {str(key): str(one) for key, one in overrides.items()} if isinstance(overrides, dict) else {}
         found = read(folder / schema.CASE_TOML, said)
         from ryusa.running.runner import run as run_case
@@ -181,7 +187,7 @@ def resume(
         heard.raise_if_asked("before the first step; nothing was changed")
         results = run_case(
             found, folder, threads=threads, progress=not quiet, checkpoint=_every(checkpoint), resume=True,
-            force=force,
+            force=force, engine=engine,
         )  # fmt: skip
     _close(results, quiet)
 

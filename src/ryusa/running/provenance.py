@@ -27,7 +27,7 @@ def begin(*, threads: int, seed: int | None, engine: str, overrides: dict[str, s
         "end": None,
         "ryusa": __version__,
         "commit": commit(),
-        "packages": {name: _version(name) for name in _PACKAGES},
+        "packages": versions(),
         "python": platform.python_version(),
         "system": f"{platform.system()} {platform.release()}",
         "machine": {"processor": processor(), "cores": os.cpu_count(), "architecture": platform.machine()},
@@ -37,6 +37,11 @@ def begin(*, threads: int, seed: int | None, engine: str, overrides: dict[str, s
         "overrides": overrides,
         "command": _command(),
     }
+
+
+def versions() -> dict[str, str | None]:
+    """Versions of what the numbers of a run depend on."""
+    return {name: _version(name) for name in _PACKAGES}
 
 
 def now() -> str:

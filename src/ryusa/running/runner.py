@@ -54,7 +54,7 @@ def run(
     threads: int = 1,
     progress: bool = True,
     overwrite: bool = False,
-    engine: Engine | None = None,
+    engine: Engine | str | None = None,
     checkpoint: float = EVERY,
     resume: bool = False,
     force: bool = False,
@@ -68,7 +68,7 @@ def run(
     threads : threads of the CPU engine; the numbers do not depend on it.
     progress : show a bar (or lines, where stderr is no terminal).
     overwrite : replace an earlier run in `folder`; anything but a run is never touched.
-    engine : steps the grains; the CPU engine when not given.
+    engine : steps the grains: "cpu", "cuda" or an engine; the CPU engine when not given.
     checkpoint : wall time between two checkpoints [s]; inf for none but those asked for by a signal.
     resume : go on where an earlier run of this case in `folder` stopped; a complete one is opened, and where
         there is none the run begins. With `overwrite` it also begins where it cannot go on.
@@ -177,7 +177,7 @@ class _How:
     threads: int
     progress: bool
     overwrite: bool
-    engine: Engine | None
+    engine: Engine | str | None
     checkpoint: float
     resume: bool
     force: bool
@@ -194,7 +194,7 @@ def run_scene(
     threads: int = 1,
     progress: bool = True,
     overwrite: bool = False,
-    engine: Engine | None = None,
+    engine: Engine | str | None = None,
     checkpoint: float = EVERY,
     resume: bool = False,
     force: bool = False,
@@ -238,7 +238,7 @@ def _carry_out(
 ) -> Results:
     """Run from the first step, or go on."""
     with listening() as heard:
-        engine = how.engine if how.engine is not None else _cpu_engine(how.threads)
+        engine = _engine(how.engine, how.threads)
         origin = provenance.begin(
             threads=how.threads, seed=about.seed, engine=type(engine).__name__,
             overrides=about.overrides or {},
@@ -387,9 +387,23 @@ def _refuse(scene: Scene, frames: float, stop: Stop) -> None:
         raise CaseError("record.events", "none", "must be 'all' or 'tracked' when saltations end the run")
 
 
-def _cpu_engine(threads: int) -> Engine:
+def _engine(named: Engine | str | None, threads: int) -> Engine:
+    """The engine asked for, by name or as it is."""
+    if named is not None and not isinstance(named, str):
+        return named
     if threads < 1:
         raise CaseError("threads", threads, "must be at least 1")
+    if named == "cuda":
+        from ryusa.engine.cuda.presence import absent
+
+        reason = absent()
+        if reason:
+            raise CaseError("engine", named, reason)
+        from ryusa.engine.cuda.engine import CudaEngine
+
+        return CudaEngine()
+    if named not in {None, "cpu"}:
+        raise CaseError("engine", named, "must be 'cpu' or 'cuda'")
     from ryusa.engine.cpu import CpuEngine
 
     return CpuEngine(threads=threads)

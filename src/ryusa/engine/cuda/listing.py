@@ -1,0 +1,290 @@
+"""Who is near whom, all on the device: cells by counting, then neighbours, then the memory of those in touch.
+
+Order never depends on which thread comes first: grains stand by cell and by id within a cell, neighbours by
+id. Cells repeat along every axis, so that a grain far away falls into some cell and is passed over by its
+distance; so the grid needs no walls.
+"""
+
+import math
+from typing import Any
+
+from ryusa.engine.cuda.columns import Bodies, Pairs, Walls
+from ryusa.engine.cuda.device import cuda, device, same
+from ryusa.engine.pair import dashpots
+from ryusa.engine.rows import ETA_N, ETA_S, R_ROLLING
+from ryusa.laws.geometry import wrap
+
+CHUNK = 64  # numbers that one thread adds up in a row
+
+# Columns of the grid, doubles: period in x and y, world, corner and width of cells, reach of the list.
+G_PERIOD = 0
+G_LOW = 2
+G_HIGH = 5
+G_CORNER = 8
+G_WIDTH = 11
+G_REACH = 14
+N_GRID = 15
+
+_dashpots = same(dashpots)
+
+
+@device
+def along(x: float, corner: float, width: float, dim: int) -> int:
+    """Cell of a coordinate along one axis; what is no number falls into cell 0."""
+    q = (x - corner) / width
+    return int(math.floor(q)) % dim if math.fabs(q) < 1.0e15 else 0  # noqa: RUF046  (on a card a float)
+
+
+@cuda.jit
+def wipe(values: Any, value: int) -> None:
+    """Set every number to one value."""
+    for k in range(cuda.grid(1), values.shape[0], cuda.gridsize(1)):
+        values[k] = value
+
+
+@cuda.jit
+def bring_in(n: int, x: Any, image: Any, ids: Any, grid: Any, listed: Any, lost: Any) -> None:
+    """Bring grains back into the period, count it, keep where they are, by id, and find the lost one."""
+    for i in range(cuda.grid(1), n, cuda.gridsize(1)):
+        inside = True
+        for k in range(3):
+            if k < 2 and grid[G_PERIOD + k] < math.inf:
+                shift = math.floor(x[i, k] / grid[G_PERIOD + k])
+                if shift != 0.0:
+                    x[i, k] -= shift * grid[G_PERIOD + k]
+                    image[i, k] += int(shift)
+            inside = inside and x[i, k] >= grid[G_LOW + k] and x[i, k] <= grid[G_HIGH + k]
+            listed[ids[i], k] = x[i, k]
+        if not inside:
+            cuda.atomic.min(lost, 0, ids[i])
+
+
+@cuda.jit
+def count_cells(places: Any, x: Any, grid: Any, dims: Any, cell: Any, count: Any) -> None:
+    """Cell of every grain in `places`, and grains of every cell."""
+    for s in range(cuda.grid(1), places.shape[0], cuda.gridsize(1)):
+        i = places[s]
+        a = along(x[i, 0], grid[G_CORNER], grid[G_WIDTH], dims[0])
+        b = along(x[i, 1], grid[G_CORNER + 1], grid[G_WIDTH + 1], dims[1])
+        c = along(x[i, 2], grid[G_CORNER + 2], grid[G_WIDTH + 2], dims[2])
+        cell[s] = (a * dims[1] + b) * dims[2] + c
+        cuda.atomic.add(count, cell[s], 1)
+
+
+@cuda.jit
+def fill_cells(places: Any, cell: Any, first: Any, taken: Any, order: Any) -> None:
+    """Put the grains of every cell into its slots, in whatever order the threads come."""
+    for s in range(cuda.grid(1), places.shape[0], cuda.gridsize(1)):
+        order[first[cell[s]] + cuda.atomic.add(taken, cell[s], 1)] = places[s]
+
+
+@cuda.jit
+def tidy_cells(n_cell: int, first: Any, ids: Any, order: Any) -> None:
+    """Bring the grains of every cell into the order of their ids."""
+    for c in range(cuda.grid(1), n_cell, cuda.gridsize(1)):
+        for k in range(first[c] + 1, first[c + 1]):
+            one = order[k]
+            at = k
+            while at > first[c] and ids[order[at - 1]] > ids[one]:
+                order[at] = order[at - 1]
+                at -= 1
+            order[at] = one
+
+
+@cuda.jit
+def add_chunks(n: int, values: Any, sums: Any) -> None:
+    """Sum of every chunk of values[:n]."""
+    for c in range(cuda.grid(1), sums.shape[0], cuda.gridsize(1)):
+        total = 0
+        for k in range(c * CHUNK, min((c + 1) * CHUNK, n)):
+            total += values[k]
+        sums[c] = total
+
+
+@cuda.jit
+def run_chunks(n: int, values: Any, before: Any) -> None:
+    """Turn values[:n] into what comes before each of them, given what comes before each chunk."""
+    for c in range(cuda.grid(1), before.shape[0], cuda.gridsize(1)):
+        total = before[c]
+        for k in range(c * CHUNK, min((c + 1) * CHUNK, n)):
+            value = values[k]
+            values[k] = total
+            total += value
+
+
+@cuda.jit
+def gather(n: int, half: int, order: Any, old: Bodies, new: Bodies, of: Bodies) -> None:
+    """Lay free grains out anew: place s gets what stood at place order[s]; `of` holds what stays, by id."""
+    for s in range(cuda.grid(1), n, cuda.gridsize(1)):
+        o = order[s]
+        name = old.ids[o]
+        for k in range(4):
+            new.x[1 - half, s, k] = old.x[half, o, k]
+            new.v[1 - half, s, k] = old.v[half, o, k]
+            new.w[1 - half, s, k] = old.w[half, o, k]
+        new.touched[1 - half, s] = old.touched[half, o]
+        new.ids[s] = name
+        new.m[s], new.inertia[s] = of.m[name], of.inertia[name]
+        new.m_bare[s], new.m_weight[s] = of.m_bare[name], of.m_weight[name]
+        for k in range(2):
+            new.image[s, k] = old.image[o, k]
+        if old.seen.shape[0] == n:
+            for k in range(old.seen.shape[1]):
+                new.seen[s, k] = old.seen[o, k]
+            for k in range(old.taken.shape[1]):
+                new.taken[s, k] = old.taken[o, k]
+
+
+@cuda.jit
+def spread(n: int, half: int, bodies: Bodies) -> None:
+    """Give the half that a step will write the radii of the half that holds."""
+    for i in range(cuda.grid(1), n, cuda.gridsize(1)):
+        bodies.x[1 - half, i, 3] = bodies.x[half, i, 3]
+        bodies.v[1 - half, i, 3] = bodies.v[half, i, 3]
+        bodies.w[1 - half, i, 3] = bodies.w[half, i, 3]
+
+
+@device
+def near(i: int, j: int, lanes: int, x: Any, grid: Any) -> bool:
+    """Whether two grains come within reach; in a plane scene another y is another lane, never met."""
+    if lanes and x[j, 1] != x[i, 1]:
+        return False
+    reach = x[i, 3] + x[j, 3] + grid[G_REACH]
+    d_x = wrap(x[j, 0] - x[i, 0], grid[G_PERIOD])
+    d_y = wrap(x[j, 1] - x[i, 1], grid[G_PERIOD + 1])
+    d_z = x[j, 2] - x[i, 2]
+    return d_x * d_x + d_y * d_y + d_z * d_z < reach * reach
+
+
+@device
+def put(begin: int, end: int, j: int, n_solid: int, ids: Any, partners: Any) -> None:
+    """Put a neighbour among those of one grain, in the order of ids; `end` is one beyond the last."""
+    mine = ids[j] if j < n_solid else j
+    at = end
+    while at > begin:
+        other = partners[at - 1]
+        if (ids[other] if other < n_solid else other) < mine:
+            break
+        partners[at] = other
+        at -= 1
+    partners[at] = j
+
+
+@cuda.jit
+def find(
+    write: int, n: int, n_solid: int, lanes: int, x: Any, ids: Any, walls: Walls, grid: Any, dims: Any,
+    first: Any, first_fixed: Any, fixed: Any, start: Any, partners: Any,
+) -> None:  # fmt: skip
+    """Count the neighbours of every grain into `start`, or, once that is summed up, write them."""
+    for i in range(cuda.grid(1), n, cuda.gridsize(1)):
+        begin = start[i] if write else 0
+        end = begin
+        c_x = along(x[i, 0], grid[G_CORNER], grid[G_WIDTH], dims[0])
+        c_y = along(x[i, 1], grid[G_CORNER + 1], grid[G_WIDTH + 1], dims[1])
+        c_z = along(x[i, 2], grid[G_CORNER + 2], grid[G_WIDTH + 2], dims[2])
+        # each of the cells around once, also where they are fewer than three
+        n_x, n_y, n_z = min(dims[0], 3), min(dims[1], 3), min(dims[2], 3)
+        for s in range(n_x * n_y * n_z):
+            a = (c_x + s // (n_y * n_z) - n_x // 3 + dims[0]) % dims[0]
+            b = (c_y + s // n_z % n_y - n_y // 3 + dims[1]) % dims[1]
+            c = (c_z + s % n_z - n_z // 3 + dims[2]) % dims[2]
+            cell = (a * dims[1] + b) * dims[2] + c
+            for j in range(first[cell], first[cell + 1]):
+                if j != i and near(i, j, lanes, x, grid):
+                    if write:
+                        put(begin, end, j, n_solid, ids, partners)
+                    end += 1
+            for slot in range(first_fixed[cell], first_fixed[cell + 1]):
+                j = fixed[slot]
+                if near(i, j, lanes, x, grid):
+                    if write:
+                        put(begin, end, j, n_solid, ids, partners)
+                    end += 1
+        for k in range(walls.normals.shape[0]):
+            gap = 0.0
+            for a in range(3):
+                gap += (x[i, a] - walls.points[k, a]) * walls.normals[k, a]
+            if walls.active[k] and gap < x[i, 3] + grid[G_REACH]:
+                if write:
+                    put(begin, end, n_solid + k, n_solid, ids, partners)
+                end += 1
+        if not write:
+            start[i] = end
+
+
+@cuda.jit
+def carry(
+    n: int, n_solid: int, rotation: int, half: int, c: Any, order: Any, bodies: Bodies, ids_before: Any,
+    before: Pairs, pairs: Pairs, missing: Any,
+) -> None:  # fmt: skip
+    """Give every neighbour its dashpots, and what touches its memory from the list before.
+
+    Both lists are in the order of ids. `missing` gets the lowest id of a grain whose partner in touch is not
+    in the new list.
+    """
+    x = bodies.x[half]
+    width = pairs.rows.shape[1]
+    for i in range(cuda.grid(1), n, cuda.gridsize(1)):
+        old, end = before.start[order[i]], before.start[order[i] + 1]
+        for k in range(pairs.start[i], pairs.start[i + 1]):
+            j = pairs.partners[k]
+            mine = bodies.ids[j] if j < n_solid else j
+            pairs.live[k] = 0
+            known = False
+            while old < end and not known:
+                q = before.partners[old]
+                theirs = ids_before[q] if q < n_solid else q
+                if theirs > mine:
+                    break
+                known = theirs == mine and before.live[old] != 0
+                if not known:
+                    if before.live[old] != 0:
+                        cuda.atomic.min(missing, 0, bodies.ids[i])
+                    old += 1
+            if known:
+                pairs.live[k] = 1
+                pairs.eta[k, ETA_N], pairs.eta[k, ETA_S] = before.eta[old, ETA_N], before.eta[old, ETA_S]
+                for e in range(width):
+                    pairs.rows[k, e] = before.rows[old, e]
+                old += 1
+            else:
+                own = j >= n or mine > bodies.ids[i]
+                a, b = (i, j) if own else (j, i)
+                for e in range(min(width, R_ROLLING)):
+                    pairs.rows[k, e] = 0.0
+                eta_n, eta_s = _dashpots(a, b, rotation, c, bodies.m, x, bodies.inertia)
+                pairs.eta[k, ETA_N], pairs.eta[k, ETA_S] = eta_n, eta_s
+        while old < end:
+            if before.live[old] != 0:
+                cuda.atomic.min(missing, 0, bodies.ids[i])
+            old += 1
+
+
+@cuda.jit
+def count_live(n: int, ids: Any, pairs: Pairs, count: Any) -> None:
+    """Pairs in touch that each grain keeps."""
+    for i in range(cuda.grid(1), n, cuda.gridsize(1)):
+        total = 0
+        for k in range(pairs.start[i], pairs.start[i + 1]):
+            j = pairs.partners[k]
+            if pairs.live[k] != 0 and (j >= n or ids[j] > ids[i]):
+                total += 1
+        count[i] = total
+
+
+@cuda.jit
+def take_live(
+    n: int, ids: Any, pairs: Pairs, start: Any, i_ids: Any, j_ids: Any, eta: Any, rows: Any
+) -> None:
+    """Copy ids and memory of the pairs in touch."""
+    for i in range(cuda.grid(1), n, cuda.gridsize(1)):
+        at = start[i]
+        for k in range(pairs.start[i], pairs.start[i + 1]):
+            j = pairs.partners[k]
+            if pairs.live[k] != 0 and (j >= n or ids[j] > ids[i]):
+                i_ids[at] = ids[i]
+                j_ids[at] = ids[j] if j < n else j
+                eta[at, ETA_N], eta[at, ETA_S] = pairs.eta[k, ETA_N], pairs.eta[k, ETA_S]
+                for e in range(pairs.rows.shape[1]):
+                    rows[at, e] = pairs.rows[k, e]
+                at += 1

@@ -1,0 +1,158 @@
+"""One grain, one step: water, weight, and the scheme; as engine/motion.py, whose laws these are."""
+# ruff: noqa: F403, F405  (the columns of rows.py, all of them plain integers)
+
+import math
+from functools import cache
+from typing import Any
+
+from ryusa.engine.cuda.columns import *
+from ryusa.engine.cuda.device import device, same
+from ryusa.engine.rows import *
+from ryusa.engine.wet import water_on, water_speed
+from ryusa.laws.motion import acceleration, acceleration_spin, semi_implicit
+from ryusa.laws.torque import torque_dennis, torque_stokes
+from ryusa.model.enums import Above, WaterTorque
+from ryusa.model.immersed import A_X, DRAG, EXTRA_X, EXTRA_Z, SHARE, SHEAR
+from ryusa.model.resistance import drag_of
+from ryusa.model.tally import Book
+
+DRY = int(Above.DRY)
+STOKES = int(WaterTorque.STOKES)
+B_DRAG, B_TORQUE, B_LIFT, B_FLOW = int(Book.DRAG), int(Book.TORQUE), int(Book.LIFT), int(Book.FLOW)
+B_FILM = int(Book.FILM)
+
+Vector = tuple[float, float, float]
+_water_on, _water_speed, _drag_of = same(water_on), same(water_speed), same(drag_of)
+
+
+@cache
+def make_move(kind: Variant, choice: Choice) -> Any:
+    """Build the motion of one grain for one variant."""
+    plane_case, rotation, column, film = kind.plane_case, kind.rotation, kind.column, kind.film
+    profile, above, drag, torque_law = choice.profile, choice.above, choice.drag, choice.torque
+
+    @device
+    def move(
+        i: int,
+        half: int,
+        first: bool,
+        last: bool,
+        c: Any,
+        bodies: Bodies,
+        force: Vector,
+        torque: Vector,
+        from_film: Vector,
+        account: Any,
+    ) -> None:
+        """Move the grain at place i by one step, from `half` of its arrays to the other.
+
+        Parameters
+        ----------
+        first, last : whether this is the first step of the run, and the last of a call.
+        force, torque : of its contacts [N], [N m].
+        from_film : force of films of water [N].
+        """
+        other = 1 - half
+        x, v, w, image, seen, taken = (
+            bodies.x[half], bodies.v[half], bodies.w[half], bodies.image, bodies.seen, bodies.taken,
+        )  # fmt: skip
+        dt, g_x, g_y, g_z = c[C_DT], c[C_G_X], c[C_G_Y], c[C_G_Z]
+        halved = 0.0 if first else 0.5 * dt
+        f_x, f_y, f_z = force
+        t_x, t_y, t_z = torque
+        h_x, h_y, h_z = from_film
+        y_x, y_y, y_z = x[i, 0], x[i, 1], x[i, 2]
+        v_x, v_y, v_z = v[i, 0], v[i, 1], v[i, 2]
+        o_x, o_y, o_z, r = w[i, 0], w[i, 1], w[i, 2], w[i, 3]
+        d_x = d_y = d_z = l_x = l_y = l_z = e_x = e_z = turn = 0.0
+        wet = 1.0
+        m_b, m_w = bodies.m_bare[i], bodies.m_weight[i]
+        added = bodies.m[i] - m_b
+        if column:
+            wet = seen[i, SHARE]
+            dry = wet == 0.0
+            added *= wet  # water moves along with what of a grain is in it
+            e_x, e_z = seen[i, EXTRA_X] + added * seen[i, A_X], seen[i, EXTRA_Z]
+            turn = 0.5 * seen[i, SHEAR]
+            if not dry:
+                k_d, d_x, d_y, d_z, l_x, l_y, l_z = _water_on(choice, c, r, seen[i], v[i], w[i])
+                taken[i, DRAG] = k_d
+        else:
+            z = y_z - c[C_Z_ZERO]
+            dry = profile == 0 or (above == DRY and z > c[C_DEPTH])
+            if drag and not dry:
+                u_x, u_y, u_z = _water_speed(profile, above, z, c) - v_x, -v_y, -v_z
+                slip = math.sqrt(u_x * u_x + u_y * u_y + u_z * u_z)
+                k_d = _drag_of(drag, slip, 2.0 * r, c[C_NU], c[C_RHO_W], c[C_A_2], c[C_C_D])
+                d_x, d_y, d_z = k_d * u_x, k_d * u_y, k_d * u_z
+        if column:
+            f_x, f_y, f_z = f_x + l_x + e_x, f_y + l_y, f_z + l_z + e_z
+        if film:
+            f_x, f_y, f_z = f_x + h_x, f_y + h_y, f_z + h_z
+
+        new_x, a_x = semi_implicit(y_x, v_x, acceleration(f_x, d_x, m_w * g_x, m_b, added), dt)
+        new_z, a_z = semi_implicit(y_z, v_z, acceleration(f_z, d_z, m_w * g_z, m_b, added), dt)
+        new_y, a_y = y_y, v_y
+        if not plane_case:
+            new_y, a_y = semi_implicit(y_y, v_y, acceleration(f_y, d_y, m_w * g_y, m_b, added), dt)
+        to_x, to_v = bodies.x[other], bodies.v[other]
+        to_x[i, 0], to_x[i, 1], to_x[i, 2] = new_x, new_y, new_z
+        to_v[i, 0], to_v[i, 1], to_v[i, 2] = a_x, a_y, a_z
+        square = a_x * a_x + a_y * a_y + a_z * a_z
+        bad = not square < math.inf
+        account[A_SPEED_2] = max(account[A_SPEED_2], square)
+
+        if drag:
+            account[B_DRAG] += halved * (d_x * v_x + d_y * v_y + d_z * v_z)
+            account[A_PEND_DRAG] += 0.5 * dt * (d_x * a_x + d_y * a_y + d_z * a_z)
+        if column:
+            if not dry:
+                taken[i, 0] += dt * (d_x + l_x + added * seen[i, A_X]) - added * (a_x - v_x)
+                taken[i, 1] += dt * (d_y + l_y) - added * (a_y - v_y)
+                taken[i, 2] += dt * (d_z + l_z) - added * (a_z - v_z)
+            account[B_LIFT] += halved * (l_x * v_x + l_y * v_y + l_z * v_z)
+            account[A_PEND_LIFT] += 0.5 * dt * (l_x * a_x + l_y * a_y + l_z * a_z)
+            account[B_FLOW] += halved * (e_x * v_x + e_z * v_z)
+            account[A_PEND_FLOW] += 0.5 * dt * (e_x * a_x + e_z * a_z)
+        if film:
+            account[B_FILM] -= halved * (h_x * v_x + h_y * v_y + h_z * v_z)
+            account[A_PEND_FILM] += 0.5 * dt * (h_x * a_x + h_y * a_y + h_z * a_z)
+
+        b_x, b_y, b_z = o_x, o_y, o_z
+        if rotation:
+            k_t = 0.0
+            if torque_law and not dry:
+                o_rel = o_y - turn
+                size = math.sqrt(o_x * o_x + o_rel * o_rel + o_z * o_z)
+                if torque_law == STOKES:
+                    k_t = torque_stokes(size, 2.0 * r, c[C_NU], c[C_RHO_W])
+                else:
+                    k_t = torque_dennis(size, 2.0 * r, c[C_NU], c[C_RHO_W])
+                k_t *= wet
+            i_i = bodies.inertia[i]
+            b_y = o_y + dt * acceleration_spin(t_y - k_t * (o_y - turn), i_i)
+            if not plane_case:
+                b_x = o_x + dt * acceleration_spin(t_x - k_t * o_x, i_i)
+                b_z = o_z + dt * acceleration_spin(t_z - k_t * o_z, i_i)
+            whirl = b_x * b_x + b_y * b_y + b_z * b_z
+            bad = bad or not whirl < math.inf
+            account[A_SPIN_2] = max(account[A_SPIN_2], whirl)
+            if torque_law:
+                account[B_TORQUE] -= halved * k_t * (o_x * o_x + (o_y - turn) * o_y + o_z * o_z)
+                account[A_PEND_TORQUE] -= 0.5 * dt * k_t * (o_x * b_x + (o_y - turn) * b_y + o_z * b_z)
+            if last:
+                account[A_SPIN] += 0.5 * i_i * (o_x * b_x + o_y * b_y + o_z * b_z)
+        to_w = bodies.w[other]
+        to_w[i, 0], to_w[i, 1], to_w[i, 2] = b_x, b_y, b_z
+        if bad:
+            account[A_BAD] = min(account[A_BAD], float(bodies.ids[i]))
+        if last:
+            m_i = m_b + added if column else bodies.m[i]
+            account[A_KINETIC] += 0.5 * m_i * (v_x * a_x + v_y * a_y + v_z * a_z)
+            if image[i, 0] != 0:
+                y_x += image[i, 0] * c[C_PERIOD_X]
+            if image[i, 1] != 0:
+                y_y += image[i, 1] * c[C_PERIOD_Y]
+            account[A_POTENTIAL] -= m_w * (g_x * y_x + g_y * y_y + g_z * y_z)
+
+    return move

@@ -1,0 +1,279 @@
+"""Arrays on the device and how they are laid out: from a scene and a state, in cell order, and back."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from ryusa.engine.cuda import listing
+from ryusa.engine.cuda.columns import IN_SIMULATOR, MOST_BLOCKS, NOBODY, ON_CARD, Bodies, Pairs, Shape, Walls
+from ryusa.engine.cuda.device import cuda
+from ryusa.engine.cuda.presence import simulated
+from ryusa.engine.listing import Layout, Memory
+from ryusa.engine.memory import memory_of
+from ryusa.engine.rows import Choice, Variant
+from ryusa.model import Scene, State
+from ryusa.model.immersed import N_SEEN, N_TAKEN, Immersed
+from ryusa.model.scene import Floats
+
+_MARGIN = 1.0 + 1e-9  # of a cell beyond reach: a grain on its edge may fall to either side
+
+
+def shape() -> Shape:
+    """How work is cut up here."""
+    return IN_SIMULATOR if simulated() else ON_CARD
+
+
+def blocks(n: int) -> int:
+    """Blocks for n grains; of n alone, so that sums have the same order on every card."""
+    return max(1, min(-(-n // shape().threads), MOST_BLOCKS))
+
+
+def launch(kernel: Any, n: int, *arguments: Any) -> None:
+    """Run a kernel with about one thread for each of n."""
+    kernel[blocks(n), shape().threads](*arguments)
+
+
+def one(value: int) -> Any:
+    """An int64 on the device."""
+    return cuda.to_device(np.full(1, value))
+
+
+class Store:
+    """What lies on the device for one scene.
+
+    Parameters
+    ----------
+    scene, state : as loaded; positions are those the list is to be built from.
+    kind, choice : variant and laws.
+    numbers : scalars of the scene (engine/rows.py).
+    extent : lowest and highest corner of the grid [m], shape (2, 3); chosen from where grains stand if None.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        state: State,
+        kind: Variant,
+        choice: Choice,
+        numbers: Floats,
+        extent: Floats | None,
+    ) -> None:
+        self.scene, self.kind, self.n = scene, kind, scene.n_grain
+        layout = self.layout = Layout(scene, 1, kind)
+        self.n_solid = layout.n_solid
+        memory = memory_of(state.contacts, kind, choice, numbers, layout)
+        by_id = layout.by_id(state)
+        x = by_id.x.copy()
+        x[:, 3] = layout.r
+        self.standing = (self.n + layout.standing).astype(np.int32)
+        still = x[self.standing, :3]
+        if extent is None:
+            where = np.vstack([x[: self.n, :3], still])
+            extent = np.stack([where.min(axis=0, initial=np.inf), where.max(axis=0, initial=-np.inf)])
+        self.extent = extent
+        touched = np.zeros((2, self.n), np.int32)
+        for touching in (memory.i, memory.j[memory.j < self.n]):
+            np.add.at(touched[0], touching, 1)
+        wet = (
+            Immersed(by_id.seen, by_id.taken)
+            if kind.column
+            else Immersed(np.zeros((1, N_SEEN)), np.zeros((1, N_TAKEN)))
+        )
+        # both orders share what has two halves
+        shared: dict[str, Any] = {
+            "x": cuda.to_device(np.stack([x, x])),
+            "v": cuda.to_device(np.stack([by_id.v, by_id.v])),
+            "w": cuda.to_device(np.stack([by_id.w, by_id.w])),
+            "tracked": cuda.to_device(layout.tracked.astype(np.uint8)),
+            "touched": cuda.to_device(touched),
+        }
+
+        def own() -> Bodies:
+            return Bodies(
+                **shared,
+                m=cuda.to_device(layout.m),
+                inertia=cuda.to_device(layout.inertia),
+                m_bare=cuda.to_device(np.asarray(scene.m, np.float64)),
+                m_weight=cuda.to_device(np.asarray(scene.m_weight, np.float64)),
+                ids=cuda.to_device(np.arange(self.n_solid, dtype=np.int32)),
+                image=cuda.to_device(np.ascontiguousarray(by_id.image)),
+                seen=cuda.to_device(wet.seen),
+                taken=cuda.to_device(wet.taken),
+            )
+
+        self.bodies, self._spare, self._of = own(), own(), own()
+        self.half = 0
+        self.walls = Walls(
+            cuda.to_device(layout.walls.normals),
+            cuda.to_device(layout.walls.points),
+            cuda.to_device(np.asarray(scene.plane_active, np.uint8)),
+        )
+        self.c = cuda.to_device(numbers)
+        self.listed = cuda.to_device(np.zeros((self.n, 3)))
+        self._most_cells = 4 * (self.n + len(still)) + 64
+        self._cell = cuda.to_device(np.zeros(max(self.n, len(still), 1), np.int64))
+        self._taken, self._first, self._first_fixed = (
+            cuda.to_device(np.zeros(self._most_cells + 1, np.int64)) for _ in range(3)
+        )
+        self._order, self._places = (
+            cuda.to_device(np.arange(max(self.n, 1), dtype=np.int32)) for _ in range(2)
+        )
+        self._fixed = cuda.to_device(np.zeros(max(len(still), 1), np.int32))
+        self._still = cuda.to_device(self.standing)
+        self.pairs = self._by_id(memory)
+        self._next = self._room(0)
+        self.n_pair = 0
+
+    def _room(self, pairs: int) -> Pairs:
+        """An empty list with room for so many neighbours."""
+        room = max(pairs, 1)
+        return Pairs(
+            cuda.to_device(np.zeros(self.n + 1, np.int64)),
+            cuda.device_array(room, np.int32),
+            cuda.device_array(room, np.uint8),
+            cuda.device_array((room, 2), np.float64),
+            cuda.device_array((room, self.kind.row_width), np.float64),
+        )
+
+    def _by_id(self, memory: Memory) -> Pairs:
+        """A list in the order of ids of the pairs in touch alone, each from both sides."""
+        both = memory.j < self.n
+        owner = np.concatenate([memory.i, memory.j[both]])
+        partner = np.concatenate([memory.j, memory.i[both]])
+        which = np.concatenate([np.arange(len(both)), np.flatnonzero(both)])
+        order = np.lexsort((partner, owner))
+        start = np.concatenate([[0], np.cumsum(np.bincount(owner, minlength=self.n))])
+        which, partners = which[order], partner[order]
+        eta, rows = memory.eta[which], memory.rows[which]
+        if not len(order):  # no array on a device is empty
+            partners, eta, rows = np.zeros(1), np.zeros((1, 2)), np.zeros((1, self.kind.row_width))
+        return Pairs(
+            cuda.to_device(start.astype(np.int64)),
+            cuda.to_device(partners.astype(np.int32)),
+            cuda.to_device(np.full(len(partners), 1 if len(order) else 0, np.uint8)),
+            cuda.to_device(np.ascontiguousarray(eta)),
+            cuda.to_device(np.ascontiguousarray(rows)),
+        )
+
+    def list_pairs(self, skin: float, film_reach: float) -> int:
+        """Wrap, sort and list anew, memory carried along; returns the lowest id of a lost grain, or -1.
+
+        Raises
+        ------
+        AssertionError : a pair in touch is not in the new list.
+        """
+        n, half = self.n, self.half
+        grid, dims = self._grid(skin + film_reach)
+        n_cell = int(np.prod(dims))
+        grid, dims = cuda.to_device(grid), cuda.to_device(dims)
+        old, new, ids = self.bodies, self._spare, self.bodies.ids
+        lost, missing = one(NOBODY), one(NOBODY)
+        launch(listing.bring_in, n, n, old.x[half], old.image, ids, grid, self.listed, lost)
+        self._sort(self._places, n, n_cell, old.x[half], ids, grid, dims, self._first, self._order)
+        still = len(self.standing)
+        if still:
+            self._sort(
+                self._still, still, n_cell, old.x[half], ids, grid, dims, self._first_fixed, self._fixed
+            )
+        launch(listing.gather, n, n, half, self._order, old, new, self._of)
+        self.bodies, self._spare = new, old
+        half = self.half = 1 - half
+        launch(listing.spread, n, n, half, new)
+
+        start = self._next.start
+        common = (
+            n, self.n_solid, self.kind.plane_case, new.x[half], new.ids, self.walls, grid, dims, self._first,
+            self._first_fixed, self._fixed, start,
+        )  # fmt: skip
+        launch(listing.wipe, n + 1, start, 0)
+        launch(listing.find, n, 0, *common, self._next.partners)
+        self._sum_up(start, n + 1)
+        self.n_pair = int(start[n : n + 1].copy_to_host()[0])
+        if self.n_pair > self._next.partners.shape[0]:
+            self._next = self._room(0)  # lets go of the old arrays before the new ones are asked for
+            self._next = self._room(self.n_pair * 5 // 4)._replace(start=start)
+        launch(listing.find, n, 1, *common, self._next.partners)
+        launch(
+            listing.carry, n, n, self.n_solid, self.kind.rotation, half, self.c, self._order, new, old.ids,
+            self.pairs, self._next, missing,
+        )  # fmt: skip
+        self.pairs, self._next = self._next, self.pairs
+        grain = int(missing.copy_to_host()[0])
+        if grain != NOBODY:
+            raise AssertionError(f"a pair of grain {grain} is in touch and not in the list")
+        grain = int(lost.copy_to_host()[0])
+        return -1 if grain == NOBODY else grain
+
+    def _grid(self, reach: float) -> tuple[Floats, np.ndarray]:
+        """Cells wide enough for a reach beyond touch [m], and no more than about four a grain."""
+        scene = self.scene
+        size = (2.0 * float(self.layout.r[: self.n_solid].max(initial=0.0)) + reach) * _MARGIN
+        span = np.array([*scene.period, np.inf])
+        closed = np.isfinite(span)
+        low = np.where(closed, 0.0, self.extent[0])
+        span = np.where(closed, span, self.extent[1] - self.extent[0])
+        while True:
+            dims = [math.floor(one / size) + (not shut) for one, shut in zip(span, closed, strict=True)]
+            dims = [max(1, dim) for dim in dims]
+            if math.prod(dims) <= self._most_cells:
+                break
+            size *= 1.26
+        width = np.where(closed, span / dims, size)
+        grid = np.concatenate([scene.period, scene.world_low, scene.world_high, low, width, [reach]])
+        return grid, np.array(dims, np.int64)
+
+    def _sort(
+        self, places: Any, n: int, n_cell: int, x: Any, ids: Any, grid: Any, dims: Any, first: Any, order: Any
+    ) -> None:
+        """Order the grains at n places by cell, and by id within a cell."""
+        launch(listing.wipe, n_cell + 1, first, 0)
+        launch(listing.wipe, n_cell + 1, self._taken, 0)
+        launch(listing.count_cells, n, places, x, grid, dims, self._cell, first)
+        self._sum_up(first, n_cell + 1)
+        launch(listing.fill_cells, n, places, self._cell, first, self._taken, order)
+        launch(listing.tidy_cells, n_cell, n_cell, first, ids, order)
+
+    def _sum_up(self, values: Any, n: int) -> None:
+        """Turn values[:n] into the sums of those before each, chunks of chunks."""
+        chunks = -(-n // listing.CHUNK)
+        before = cuda.to_device(np.zeros(chunks, np.int64))
+        if chunks > 1:
+            launch(listing.add_chunks, chunks, n, values, before)
+            self._sum_up(before, chunks)
+        launch(listing.run_chunks, chunks, n, values, before)
+
+    def place_at(self, x: Floats) -> None:
+        """Put grains at x [m], by id, without wrapping or listing."""
+        ids = self.ids()
+        for half in (0, 1):
+            all_x = self.bodies.x[half].copy_to_host()
+            all_x[: self.n, :3] = x[ids]
+            self.bodies.x[half].copy_to_device(all_x)
+
+    def ids(self) -> np.ndarray:
+        """Id of the free grain at each place."""
+        return self.bodies.ids.copy_to_host()[: self.n]
+
+    def by_id(self, name: str, ids: np.ndarray) -> np.ndarray:
+        """One array of free grains, in the order of ids."""
+        array = getattr(self.bodies, name)
+        found = (array[self.half] if name in ("x", "v", "w", "touched") else array).copy_to_host()[: self.n]
+        out = np.empty_like(found)
+        out[ids] = found
+        return out
+
+    def memory(self) -> Memory:
+        """Pairs in touch with their rows, in the order of ids."""
+        n, count = self.n, cuda.to_device(np.zeros(self.n + 1, np.int64))
+        launch(listing.count_live, n, n, self.bodies.ids, self.pairs, count)
+        self._sum_up(count, n + 1)
+        total = int(count[n : n + 1].copy_to_host()[0])
+        room = max(total, 1)
+        i, j = (cuda.to_device(np.zeros(room, np.int64)) for _ in range(2))
+        eta, rows = (cuda.to_device(np.zeros((room, width))) for width in (2, self.kind.row_width))
+        launch(listing.take_live, n, n, self.bodies.ids, self.pairs, count, i, j, eta, rows)
+        i_ids, j_ids = i.copy_to_host()[:total], j.copy_to_host()[:total]
+        order = np.lexsort((j_ids, i_ids))
+        eta, rows = eta.copy_to_host()[:total], rows.copy_to_host()[:total]
+        return Memory(i_ids[order], j_ids[order], eta[order], rows[order])

@@ -1,0 +1,41 @@
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner
+
+from ryusa.cli import app
+from ryusa.engine.cuda import presence
+from ryusa.running import doctor
+
+
+def test_the_doctor_names_cache_threads_vectors_and_engines() -> None:
+    done = CliRunner().invoke(app, ["doctor"])
+    assert done.exit_code == 0
+    for name in ("packages", "processor", "vectors", "threads", "cache", "engine cpu", "engine cuda"):
+        assert f"\n{name} " in done.output
+    assert "numba" in done.output
+
+
+def test_the_doctor_says_why_cuda_cannot_be_used_or_what_card_there_is(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(presence, "absent", lambda: "the CUDA driver finds no card")
+    assert dict(doctor.diagnosis())["engine cuda"] == "no: the CUDA driver finds no card"
+    monkeypatch.setattr(presence, "absent", lambda: "")
+    monkeypatch.setattr(presence, "card", lambda: "A card")
+    assert dict(doctor.diagnosis())["engine cuda"] == "available: A card"
+
+
+def test_the_doctor_says_when_numba_may_not_keep_what_it_compiled(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Any
+) -> None:
+    from ryusa.engine import pair
+
+    class Kept:
+        cache_path = str(tmp_path / "file" / "cache")
+
+    (tmp_path / "file").write_text("no folder")
+    monkeypatch.setattr(pair, "dashpots", type("Compiled", (), {"_cache": Kept})())
+    found = dict(doctor.diagnosis())["cache"]
+    assert found.startswith("no writing to")
+    assert "NUMBA_CACHE_DIR" in found

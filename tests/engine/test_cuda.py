@@ -1,0 +1,143 @@
+"""The CUDA engine: its tests run in numba's simulator, in their own process; its kernels become PTX here."""
+
+import importlib
+import os
+import subprocess
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+from numba import types
+
+from ryusa.engine.rows import Choice, Variant
+from ryusa.errors import CaseError
+
+pytest.importorskip("numba_cuda", reason="CUDA's compiler is an extra")
+cuda = pytest.importorskip("numba.cuda")
+
+HERE = Path(__file__).parent
+CC = (8, 0)  # compute capability compiled for
+DRY = Choice(*[0] * len(Choice._fields))
+# every branch that a kernel may take, at least once
+KINDS = {
+    "dry, 3D": (Variant(0, 1, 0, 0, 0, 0), DRY),
+    "dry, plane, records of some, may pull": (
+        Variant(1, 1, 0, 1, 0, 0), DRY._replace(events=1, tension=1, slip=1),
+    ),
+    "no rotation": (Variant(0, 0, 0, 0, 0, 0), DRY._replace(slip=2, cap=1)),
+    "flow, rolling spring": (
+        Variant(0, 1, 1, 1, 0, 0),
+        DRY._replace(rolling=3, arm=1, events=2, profile=1, above=2, drag=2, torque=2),
+    ),
+    "rolling as printed, film": (
+        Variant(0, 1, 1, 0, 0, 1), DRY._replace(rolling=1, profile=4, drag=4, torque=1, rebound=2),
+    ),
+    "column, rolling constant": (
+        Variant(0, 1, 1, 1, 1, 1),
+        DRY._replace(
+            rolling=2, events=2, profile=5, drag=4, torque=2, buoyancy=1, hindrance=5, lift=2, magnus=2,
+            rebound=1,
+        ),
+    ),
+}  # fmt: skip
+
+
+def in_simulator(*words: str) -> subprocess.CompletedProcess[str]:
+    """Run this Python with the simulator for a card."""
+    command = [sys.executable, *words]
+    return subprocess.run(
+        command, env=os.environ | {"NUMBA_ENABLE_CUDASIM": "1"}, cwd=HERE.parents[1], check=False,
+        capture_output=True, text=True, timeout=1800,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("part", ["frozen", "not frozen"])
+def test_the_engine_does_in_the_simulator_what_the_cpu_does(part: str) -> None:
+    file = HERE / "in_cuda_simulator.py"
+    done = in_simulator("-m", "pytest", "-q", "-p", "no:cacheprovider", "-k", part, str(file))
+    assert done.returncode == 0, done.stdout[-6000:] + done.stderr[-2000:]
+
+
+@pytest.fixture
+def card(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Stand for the card that numba-cuda asks when one function calls another; nothing is run on it."""
+    dispatcher = importlib.import_module("numba.cuda.dispatcher")
+    monkeypatch.setattr(dispatcher, "get_current_device", lambda: SimpleNamespace(compute_capability=CC))
+
+
+def entry(kernel, *arguments):
+    """PTX of a kernel."""
+    ptx, _ = cuda.compile(kernel.py_func, types.void(*arguments), device=False, abi="numba", cc=CC)
+    assert ".visible .entry" in ptx
+    return ptx
+
+
+NUMBER, COUNT = types.float64, types.int64
+F1, F2, F3 = (types.Array(NUMBER, dims, "C") for dims in (1, 2, 3))
+I1, I4, I42, U1 = COUNT[::1], types.int32[::1], types.int32[:, ::1], types.uint8[::1]
+
+
+def groups():
+    from ryusa.engine.cuda.columns import Bodies, Pairs, Walls
+
+    return (
+        types.NamedTuple((F3, F3, F3, F1, F1, F1, F1, I4, I42, U1, I42, F2, F2), Bodies),
+        types.NamedTuple((F2, F2, U1), Walls),
+        types.NamedTuple((I1, I4, U1, F2, F2), Pairs),
+    )
+
+
+@pytest.mark.usefixtures("card")
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_step_becomes_ptx_in_double_precision_without_racing_sums(kind: str) -> None:
+    from ryusa.engine.cuda.columns import ON_CARD
+    from ryusa.engine.cuda.step import make_step
+
+    bodies, walls, pairs = groups()
+    step = make_step(*KINDS[kind], ON_CARD)
+    ptx = entry(step, COUNT, COUNT, COUNT, F1, I1, bodies, walls, pairs, F2, F2)
+    assert ".f64" in ptx
+    for space in (
+        "global",
+        "shared",
+        "local",
+    ):  # exp rounds an exponent in single precision, nothing is kept so
+        assert f"{space}.f32" not in ptx
+    assert "atom.global.add.f64" not in ptx  # no sum may depend on which thread comes first
+
+
+@pytest.mark.usefixtures("card")
+def test_every_other_kernel_becomes_ptx() -> None:
+    from ryusa.engine.cuda import listing
+    from ryusa.engine.cuda.columns import ON_CARD
+    from ryusa.engine.cuda.step import make_close
+
+    bodies, walls, pairs = groups()
+    entry(make_close(ON_CARD), COUNT, COUNT, COUNT, F1, F2, I1, F1, F2, F2)
+    entry(listing.wipe, I1, COUNT)
+    entry(listing.bring_in, COUNT, F2, I42, I4, F1, F2, I1)
+    entry(listing.count_cells, I4, F2, F1, I1, I1, I1)
+    entry(listing.fill_cells, I4, I1, I1, I1, I4)
+    entry(listing.tidy_cells, COUNT, I1, I4, I4)
+    entry(listing.add_chunks, COUNT, I1, I1)
+    entry(listing.run_chunks, COUNT, I1, I1)
+    entry(listing.gather, COUNT, COUNT, I4, bodies, bodies, bodies)
+    entry(listing.spread, COUNT, COUNT, bodies)
+    entry(listing.find, COUNT, COUNT, COUNT, COUNT, F2, I4, walls, F1, I1, I1, I1, I4, I1, I4)
+    entry(listing.carry, COUNT, COUNT, COUNT, COUNT, F1, I4, bodies, I4, pairs, pairs, I1)
+    entry(listing.count_live, COUNT, I4, pairs, I1)
+    entry(listing.take_live, COUNT, I4, pairs, I1, I1, I1, F2, F2)
+
+
+def test_without_a_card_one_line_says_what_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
+    from ryusa.engine.cuda import presence
+
+    if presence.absent() == "":
+        pytest.skip("there is a card")
+    from ryusa.engine.cuda.engine import CudaEngine
+
+    with pytest.raises(CaseError, match="engine = 'cuda': no CUDA driver answers"):
+        CudaEngine()
+    monkeypatch.setattr(presence, "find_spec", lambda name: None)
+    assert presence.absent() == "the package numba-cuda is not installed: pip install 'ryusa[cuda]'"
