@@ -85,6 +85,9 @@ class FallingGrains:
     def state(self) -> State:
         return self._state
 
+    def grains(self) -> State:
+        return self.state()
+
     def tally(self) -> Tally:
         tally = make_tally(self._state.t, speed_max=self.speed(self._state.step))
         books = [0.0] * N_BOOK

@@ -68,8 +68,8 @@ class Near(NamedTuple):
     to: Any  # row of `Pairs.f` for the partner
     pair: Any  # number in the wide list
     live: Any  # 1 where they touch and the row holds
-    eta: Any  # normal and tangential dashpot [N s/m], (n_near, 2); holds where they touch
-    rows: Any  # memory (rows.py), (n_near, width); holds where they touch
+    eta: Any  # normal and tangential dashpot [N s/m], (n_near, 2); (1, 2) where all are alike
+    rows: Any  # memory (rows.py), (n_near, width); it and `eta` hold where they touch
 
 
 class Walls(NamedTuple):

@@ -17,7 +17,7 @@ from ryusa.engine._kernel import FAST, kernel
 from ryusa.engine.four import add4, copy4, take4
 from ryusa.engine.glance import see_apart, tell_near
 from ryusa.engine.lanes import *
-from ryusa.engine.pair import begin_row
+from ryusa.engine.pair import begin_row, place_of_eta
 from ryusa.engine.rows import *
 from ryusa.laws.contact import normal_force, shear_strength, slide
 from ryusa.laws.geometry import arm, turn, wrap
@@ -70,7 +70,8 @@ def lay_out(
             desk[D_SPIN_J + 4 * l + 3] = w[i, 3]
         copy4(desk, D_SPRING + 4 * l, rows, width * k)
         copy4(desk, D_DASH + 4 * l, rows, width * k + R_DASH_S)
-        desk[D_MOVING + 4 * l + 3], desk[D_ETA_S + l] = eta[k, ETA_N], eta[k, ETA_S]
+        e = place_of_eta(k, eta)
+        desk[D_MOVING + 4 * l + 3], desk[D_ETA_S + l] = eta[e, ETA_N], eta[e, ETA_S]
         desk[D_WAS + l] = live[k]
     whole = (m + 7) // 8 * 8
     for l in range(m, whole):

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -16,6 +17,7 @@ from ryusa.engine.memory import closed_records, contacts_of, memory_of
 from ryusa.engine.near import best_skin
 from ryusa.engine.nearlist import NearList
 from ryusa.engine.numbers import choice_of, energy_of_switch, numbers_of, potential_energy, variant_of
+from ryusa.engine.refusals import refusals
 from ryusa.engine.rows import (
     C_DT,
     C_SKIN,
@@ -48,7 +50,7 @@ from ryusa.engine.seam import Flags
 from ryusa.errors import RunError
 from ryusa.model import Book, Immersed, Scene, State, Tally
 from ryusa.model.contacts import N_EVENT
-from ryusa.model.enums import Arm, Damping, EventRule, Rebound, Rolling
+from ryusa.model.enums import EventRule
 from ryusa.model.immersed import SHARE
 from ryusa.model.scene import Floats
 from ryusa.model.tally import N_BOOK
@@ -60,7 +62,6 @@ _BLOCKS = 4, 32  # at least and at most; in between one for 2048 grains, a power
 # looked through.
 _LIST, _LIST_GRAIN, _STEPS_A_CUT = 300_000.0, 600.0, 16.0
 _SUMS = (N_KINETIC, N_SPIN, N_POTENTIAL, N_SPRING_N, N_SPRING_S, N_SPRING_R, N_N_CONTACT)
-_SHORTEST_PERIOD = 3.0  # in diameters: below, a pair could touch through two images
 
 
 class CpuEngine:
@@ -68,7 +69,7 @@ class CpuEngine:
 
     Parameters
     ----------
-    threads : threads that share a step; more than there are blocks (`_blocks`) are idle.
+    threads : threads that share a step; more than there are blocks (`blocks_of`) are idle.
     skin : first reach of the neighbour list beyond touch, over the smallest diameter [-]; adapts to
     counted work.
     """
@@ -84,23 +85,7 @@ class CpuEngine:
 
     def refuses(self, scene: Scene) -> tuple[str, ...]:
         """Reasons why this engine cannot carry the scene; () when it can."""
-        reasons: list[str] = []
-        if scene.rolling.model == Rolling.EPSD and scene.rolling.arm == Arm.CONTACT_WIDTH:
-            reasons.append(
-                "the spring-dashpot-slider needs rolling.arm = 'reduced radius': its stiffness may not change"
-            )
-        if scene.water.rebound != Rebound.DRY and scene.contact.damping == Damping.CONSTANTS:
-            reasons.append("an immersed rebound needs a restitution in air: contact.damping gives constants")
-        largest = float(np.concatenate([scene.d, scene.d_fixed[scene.fixed_active]]).max(initial=0.0))
-        for axis, length in zip("xy", scene.period, strict=True):
-            if length < _SHORTEST_PERIOD * largest:
-                reasons.append(
-                    f"the period in {axis} ({length:g} m) is shorter than 3 diameters ({largest:g} m)"
-                )
-        for k, axis in enumerate("xy"):
-            if np.isfinite(scene.period[k]) and np.any(scene.plane_normal[scene.plane_active, k] != 0.0):
-                reasons.append(f"a plane stands across the periodic direction {axis}")
-        return tuple(reasons)
+        return refusals(scene)
 
     def load(self, scene: Scene, state: State) -> None:
         """Take a scene and a fresh state or a snapshot; a scene changed on the way is booked."""
@@ -115,7 +100,7 @@ class CpuEngine:
         self._variant = variant_of(scene)
         self._choice = choice_of(scene)
         self._run = make_run(self._variant)
-        blocks = _blocks(n)
+        blocks = blocks_of(n)
         self._layout = Layout(scene, blocks, self._variant)
         self._numbers = numbers_of(scene)
         self._smallest = float(np.concatenate([scene.d, scene.d_fixed]).min(initial=np.inf))
@@ -141,7 +126,7 @@ class CpuEngine:
             by_id.x[:n, :3] = state.x_listed
         self._travel = state.engine.get("travel", 0.0) if resumed else 0.0
         self._grains, self._pairs, self._x_listed, _ = self._layout.list_pairs(
-            by_id, self._layout.empty_pairs(), self._skin, self._share
+            by_id, self._layout.empty_pairs().start, self._skin, self._share
         )
         if resumed:
             self._grains.x[:n, :3] = state.x[self._grains.ids[:n]]
@@ -161,6 +146,19 @@ class CpuEngine:
             n_steps -= 1
         return self._march(n_steps)
 
+    def grains(self) -> State:
+        """Where grains are and how they move, without contacts and books: a frame."""
+        n, grains = self._n, self._grains
+        back = np.argsort(grains.ids[:n])
+        return State(
+            x=grains.x[:n, :3][back],
+            v=grains.v[:n, :3][back],
+            omega=grains.w[:n, :3][back],
+            step=self._step,
+            t=self._t,
+            image=grains.image[back],
+        )
+
     def state(self) -> State:
         """Read-only snapshot: all that an exact resume needs."""
         n, grains = self._n, self._grains
@@ -168,13 +166,8 @@ class CpuEngine:
         books = self._ledger.books.copy()
         books[:, N_BOOK : N_BOOK + len(PENDING)] = self._ledger.now[:, PENDING]
         contacts = contacts_of(take_memory(n, grains, self._near.pairs), self._variant)
-        state = State(
-            x=grains.x[:n, :3][back],
-            v=grains.v[:n, :3][back],
-            omega=grains.w[:n, :3][back],
-            step=self._step,
-            t=self._t,
-            image=grains.image[back],
+        state = replace(
+            self.grains(),
             contacts=contacts,
             books=books,
             x_listed=self._x_listed.copy(),
@@ -299,9 +292,10 @@ class CpuEngine:
         )  # fmt: skip
         self._skin = max(min(max(skin, 0.02 * self._smallest), self._smallest), self._last_way())
         self._since, self._travel, self._relisted = 0, 0.0, self._relisted + 1
+        starts, self._pairs = self._pairs.start, self._layout.empty_pairs()  # frees the old list
         by_id = self._layout.unsorted(self._grains)
         self._grains, self._pairs, self._x_listed, lost = self._layout.list_pairs(
-            by_id, self._pairs, self._skin, self._share
+            by_id, starts, self._skin, self._share
         )
         self._cut_near(memory)
         self._numbers[C_SKIN] = self._skin
@@ -369,7 +363,7 @@ class CpuEngine:
             now[0, column] = own.get(f"sum_{column}", 0.0)
 
 
-def _blocks(n: int) -> int:
+def blocks_of(n: int) -> int:
     """Into how many blocks the work on n grains is cut; never by the number of threads.
 
     Thin blocks have many pairs with their neighbours, which cost more.

@@ -11,7 +11,7 @@ from ryusa.engine.cells import build_list, grid_of, sort_into
 from ryusa.engine.near import count_live, put_rows, take_rows
 from ryusa.engine.rows import Variant
 from ryusa.model import Scene, State
-from ryusa.model.enums import Profile
+from ryusa.model.enums import Damping, Profile, Rebound
 from ryusa.model.immersed import Immersed
 from ryusa.model.scene import Floats
 
@@ -40,6 +40,8 @@ class Layout:
         self.m = np.concatenate([scene.m + scene.m_added, inf])
         self.inertia = np.concatenate([scene.inertia, inf])
         self.tracked = scene.tracked if len(scene.tracked) == n else np.zeros(n, np.bool_)
+        law, water = scene.contact, scene.water
+        self.many_dashpots = law.damping != Damping.CONSTANTS or water.rebound != Rebound.DRY
         self.period, self.scene = np.array(scene.period), scene
         self.low, self.high = np.array(scene.world_low), np.array(scene.world_high)
         self.block_start = np.arange(blocks + 1) * n // blocks
@@ -66,7 +68,8 @@ class Layout:
         first = np.concatenate([[0], np.cumsum(pairs)])
         total = int(first[-1])
         i, j, to, pair = (np.zeros(total, np.uint32) for _ in range(4))
-        live, eta, rows = np.zeros(total, np.uint8), np.zeros((total, 2)), aligned(total, self.kind.row_width)
+        live, rows = np.zeros(total, np.uint8), aligned(total, self.kind.row_width)
+        eta = np.zeros((total if self.many_dashpots else 1, 2))
         return Near(first, np.zeros(len(pairs), np.int64), i, j, to, pair, live, eta, rows)
 
     def by_id(self, state: State) -> Grains:
@@ -119,14 +122,14 @@ class Layout:
         )
 
     def list_pairs(
-        self, by_id: Grains, pairs: Pairs, skin: float, share: Share
+        self, by_id: Grains, starts: np.ndarray, skin: float, share: Share
     ) -> tuple[Grains, Pairs, Floats, int]:
         """Wrap, sort and list.
 
         Parameters
         ----------
         by_id : arrays in the order of ids; positions are brought inside the period.
-        pairs : the old list, which tells how much room the new one may need.
+        starts : of the old list, which tells how much room the new one may need.
         skin : reach of the list beyond touch and films [m].
         share : has threads share the blocks.
 
@@ -146,13 +149,9 @@ class Layout:
         first = sort_into(x, n, low, wide, dims, order)
         place = np.arange(len(self.r))
         place[:n] = order
-        moved = _vectors(len(place))
-        for array, was in zip(moved, (x, by_id.v, by_id.w), strict=True):
-            array[:] = was[place]
+        for array in (x, by_id.v, by_id.w):  # in place: there may be a million of them
+            array[:n] = array[order]
         grains = by_id._replace(
-            x=moved[0],
-            v=moved[1],
-            w=moved[2],
             m=self.m[place],
             m_bare=scene.m[order],
             m_weight=scene.m_weight[order],
@@ -174,7 +173,7 @@ class Layout:
 
         def list_some(first: int, last: int) -> tuple[int, np.ndarray]:
             lo, hi = blocks[first], blocks[last]
-            room = int(1.1 * (pairs.start[hi] - pairs.start[lo])) + 256
+            room = int(1.1 * (starts[hi] - starts[lo])) + 256
             while True:
                 partners = np.empty(room, np.uint32)
                 used = build_list(

@@ -15,6 +15,7 @@ from ryusa.engine.arrays import Grains, Near, Pairs, Walls
 from ryusa.engine.four import copy4
 from ryusa.engine.glance import see_apart, tell_near
 from ryusa.engine.lanes import LANES
+from ryusa.engine.pair import place_of_eta
 from ryusa.engine.rows import *
 
 _SLACK = 2 * LANES  # pairs are listed by the batch, where a whole one would find room
@@ -90,7 +91,8 @@ def cut(
 @kernel(forceinline=True)
 def _copy_row(to: Near, at: int, source: Near, of: int) -> None:
     width = to.rows.shape[1]
-    to.eta[at, 0], to.eta[at, 1] = source.eta[of, 0], source.eta[of, 1]
+    a, e = place_of_eta(at, to.eta), place_of_eta(of, source.eta)
+    to.eta[a, 0], to.eta[a, 1] = source.eta[e, 0], source.eta[e, 1]
     for k in range(0, width - 3, 4):
         copy4(to.rows, width * at + k, source.rows, width * of + k)
     for k in range(width // 4 * 4, width):
@@ -103,14 +105,9 @@ def _put_aside(b: int, near: Near, spare: Near) -> int:
     t = 0
     for k in range(near.first[b], near.first[b] + near.count[b]):
         if near.live[k]:
-            spare.i[t], spare.j[t], spare.to[t], spare.pair[t] = (
-                near.i[k],
-                near.j[k],
-                near.to[k],
-                near.pair[k],
-            )
-            spare.eta[t, :] = near.eta[k, :]
-            spare.rows[t, :] = near.rows[k, :]
+            spare.i[t], spare.j[t] = near.i[k], near.j[k]
+            spare.to[t], spare.pair[t] = near.to[k], near.pair[k]
+            _copy_row(spare, t, near, k)
             t += 1
     return t
 
@@ -124,8 +121,8 @@ def _take_back(b: int, touching: int, near: Near, spare: Near) -> None:
     near.i[first:end], near.j[first:end] = spare.i[:touching], spare.j[:touching]
     near.to[first:end], near.pair[first:end] = spare.to[:touching], spare.pair[:touching]
     near.live[first:end] = 1
-    near.eta[first:end] = spare.eta[:touching]
-    near.rows[first:end] = spare.rows[:touching]
+    for t in range(touching):
+        _copy_row(near, first + t, spare, t)
 
 
 @kernel()
@@ -168,7 +165,7 @@ def take_rows(n: int, near: Near, ids: Any, out_i: Any, out_j: Any, eta: Any, ro
                 i, j = near.i[k], near.j[k]
                 out_i[t] = ids[i]
                 out_j[t] = ids[j] if j < n else j
-                eta[t, :] = near.eta[k, :]
+                eta[t, :] = near.eta[place_of_eta(k, near.eta), :]
                 rows[t, :] = near.rows[k, :]
                 t += 1
 
@@ -197,7 +194,7 @@ def put_rows(
             low += 1
         if low == end or near.i[low] != i:
             return t
-        near.eta[low, :] = eta[t, :]
+        near.eta[place_of_eta(low, near.eta), :] = eta[t, :]
         near.rows[low, :] = rows[t, :]
         near.live[low] = 1
     return -1

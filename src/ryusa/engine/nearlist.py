@@ -78,9 +78,12 @@ class NearList:
             raise AssertionError("a pair in touch is not in the list")
         room = np.maximum(room, (wanted > 0) * (wanted + wanted // 8 + LANES))
         new = self._layout.room_for(room)
+        many = self._layout.many_dashpots
+        if not many:
+            new.eta[:] = old.eta
         for b, have in enumerate(old.count):
             a, k = int(old.first[b]), int(new.first[b])
-            for name in ("i", "j", "to", "pair", "live", "eta", "rows"):
+            for name in ("i", "j", "to", "pair", "live", "rows", *(("eta",) if many else ())):
                 getattr(new, name)[k : k + have] = getattr(old, name)[a : a + have]
             new.count[b] = have
         self.pairs = new

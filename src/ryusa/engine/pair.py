@@ -48,14 +48,24 @@ def dashpots(i: int, j: int, rotation: int, c: Any, m: Any, x: Any, inertia: Any
     )
 
 
+@kernel(forceinline=True)
+def place_of_eta(k: int, eta: Any) -> int:
+    """Where the dashpots of near pair k are."""
+    return k if len(eta) > 1 else 0
+
+
 @kernel()
 def begin_row(
     k: int, i: int, j: int, rotation: int, c: Any, m: Any, x: Any, inertia: Any, eta: Any, rows: Any
 ) -> None:
-    """Empty the row of near pair k, which may touch now and did not before, and give it its dashpots."""
+    """Empty the row of near pair k, which may touch now and did not before, and give it its dashpots.
+
+    Where all are alike every thread writes the same numbers to the same place.
+    """
     for a in range(rows.shape[1]):
         rows[k, a] = 0.0
-    eta[k, ETA_N], eta[k, ETA_S] = dashpots(i, j, rotation, c, m, x, inertia)
+    e = place_of_eta(k, eta)
+    eta[e, ETA_N], eta[e, ETA_S] = dashpots(i, j, rotation, c, m, x, inertia)
 
 
 @kernel()

@@ -51,6 +51,10 @@ class Engine(Protocol):
         """Do n_steps steps, fewer if a fault stops the run; the state before the fault stays readable."""
         ...
 
+    def grains(self) -> State:
+        """Where grains are and how they move, no contacts and no books: a frame, not enough to go on from."""
+        ...
+
     def state(self) -> State:
         """Read-only snapshot: all that an exact resume needs."""
         ...

@@ -259,7 +259,7 @@ class Loop:
             flags = self._steps(n_steps)
         self._gather()
         if flags:
-            self._step = self.engine.state().step
+            self._step = self.engine.grains().step
             flags.raise_if_any()
         now = time.monotonic()
         speed = n_steps / max(now - begun, 1e-9)
@@ -323,7 +323,7 @@ class Loop:
             self.progress.line(f"t = {self._t:.6g} s: {change.what}")
 
     def _record(self) -> None:
-        state, tally = self.engine.state(), self.engine.tally()
+        state, tally = self.engine.grains(), self.engine.tally()
         self.recorder.frame(state, tally, self._water)
         self.watch.frame(tally)
         if fault := energy_created(self.scene, state, tally):
@@ -335,7 +335,7 @@ class Loop:
         fastest = self.engine.tally().speed_max
         if fastest >= self.stop.rest_speed or not self.scene.rotation:
             return fastest
-        spin = np.linalg.norm(self.engine.state().omega, axis=1)
+        spin = np.linalg.norm(self.engine.grains().omega, axis=1)
         return max(fastest, float((spin * self.scene.d / 2).max(initial=0.0)))
 
     @property

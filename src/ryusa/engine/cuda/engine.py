@@ -1,10 +1,11 @@
 """The CUDA engine: has the list made anew, launches steps in between, and tells what lies on the device."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from ryusa.engine.cpu import CpuEngine, _blocks
+from ryusa.engine.cpu import blocks_of
 from ryusa.engine.cuda.columns import (
     F_ENDED,
     F_PARITY,
@@ -30,6 +31,7 @@ from ryusa.engine.listing import film_reach
 from ryusa.engine.memory import closed_records, contacts_of
 from ryusa.engine.near import best_skin
 from ryusa.engine.numbers import choice_of, energy_of_switch, numbers_of, potential_energy, variant_of
+from ryusa.engine.refusals import refusals
 from ryusa.engine.rows import (
     C_DT,
     C_T_ZERO,
@@ -94,7 +96,7 @@ class CudaEngine:
 
     def refuses(self, scene: Scene) -> tuple[str, ...]:
         """Reasons why this engine cannot carry the scene; () when it can. Those of the CPU engine."""
-        return CpuEngine().refuses(scene)
+        return refusals(scene)
 
     def load(self, scene: Scene, state: State) -> None:
         """Take a scene and a fresh state or a snapshot; a scene changed on the way is booked."""
@@ -159,24 +161,31 @@ class CudaEngine:
             n_steps -= 1
         return self._march(n_steps)
 
-    def state(self) -> State:
-        """Read-only snapshot: all that an exact resume needs."""
+    def grains(self) -> State:
+        """Where grains are and how they move, without contacts and books: a frame."""
         store, ids = self._store, self._store.ids()
-        now = self._d_now.copy_to_host()
-        books = np.zeros((_blocks(self._n), N_BOOKS))  # as many rows as the CPU engine keeps
-        books[0] = self._d_books.copy_to_host()[0]
-        books[0, N_BOOK : N_BOOK + len(PENDING)] = now[0, PENDING]
-        contacts = contacts_of(store.memory(), self._variant)
-        immersed = None
-        if self._variant.column:
-            immersed = Immersed(store.by_id("seen", ids), store.by_id("taken", ids))
-        state = State(
+        return State(
             x=np.ascontiguousarray(store.by_id("x", ids)[:, :3]),
             v=np.ascontiguousarray(store.by_id("v", ids)[:, :3]),
             omega=np.ascontiguousarray(store.by_id("w", ids)[:, :3]),
             step=self._step,
             t=self._t,
             image=store.by_id("image", ids),
+        )
+
+    def state(self) -> State:
+        """Read-only snapshot: all that an exact resume needs."""
+        store, ids = self._store, self._store.ids()
+        now = self._d_now.copy_to_host()
+        books = np.zeros((blocks_of(self._n), N_BOOKS))  # as many rows as the CPU engine keeps
+        books[0] = self._d_books.copy_to_host()[0]
+        books[0, N_BOOK : N_BOOK + len(PENDING)] = now[0, PENDING]
+        contacts = contacts_of(store.memory(), self._variant)
+        immersed = None
+        if self._variant.column:
+            immersed = Immersed(store.by_id("seen", ids), store.by_id("taken", ids))
+        state = replace(
+            self.grains(),
             contacts=contacts,
             books=books,
             x_listed=store.listed.copy_to_host(),
