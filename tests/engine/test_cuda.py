@@ -2,6 +2,7 @@
 
 import importlib
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -59,6 +60,12 @@ def test_the_engine_does_in_the_simulator_what_the_cpu_does(part: str) -> None:
     assert done.returncode == 0, done.stdout[-6000:] + done.stderr[-2000:]
 
 
+def test_the_program_for_a_card_runs_in_the_simulator() -> None:
+    done = in_simulator("benchmarks/card.py", "--simulated")
+    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-2000:]
+    assert '"same bits twice": true, "both sides alike": true' in done.stdout
+
+
 @pytest.fixture
 def card(monkeypatch: pytest.MonkeyPatch) -> None:
     """Stand for the card that numba-cuda asks when one function calls another; nothing is run on it."""
@@ -66,10 +73,19 @@ def card(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(dispatcher, "get_current_device", lambda: SimpleNamespace(compute_capability=CC))
 
 
-def entry(kernel, *arguments):
-    """PTX of a kernel."""
+def entry(kernel, *arguments, threads=128):
+    """PTX of a kernel, once it was assembled for a card and found to fit a block of so many threads there."""
     ptx, _ = cuda.compile(kernel.py_func, types.void(*arguments), device=False, abi="numba", cc=CC)
     assert ".visible .entry" in ptx
+    links = pytest.importorskip("cuda.bindings.nvjitlink")
+    link = links.create(2, ["-arch=sm_80", "-Xptxas=-v"])
+    links.add_data(link, links.InputType.PTX, ptx.encode() + b"\0", len(ptx) + 1, "kernel")
+    links.complete(link)
+    said = bytearray(links.get_info_log_size(link))
+    links.get_info_log(link, said)
+    links.destroy(link)
+    registers = max(map(int, re.findall(r"Used (\d+) registers", said.decode())))
+    assert registers * threads <= 65_536
     return ptx
 
 
@@ -114,7 +130,7 @@ def test_every_other_kernel_becomes_ptx() -> None:
     from ryusa.engine.cuda.step import make_close
 
     bodies, walls, pairs = groups()
-    entry(make_close(ON_CARD), COUNT, COUNT, COUNT, F1, F2, I1, F1, F2, F2)
+    entry(make_close(ON_CARD), COUNT, COUNT, COUNT, F1, F2, I1, F1, F2, F2, threads=ON_CARD.closers)
     entry(listing.wipe, I1, COUNT)
     entry(listing.bring_in, COUNT, F2, I42, I4, F1, F2, I1)
     entry(listing.count_cells, I4, F2, F1, I1, I1, I1)

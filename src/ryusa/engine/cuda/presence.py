@@ -21,7 +21,7 @@ def absent() -> str:
     except CudaSupportError as error:
         lines = [line.strip() for line in str(error).splitlines()]
         said = [line for line in lines if line and not line.endswith((":", "init"))]
-        return f"no CUDA driver answers: {said[0] if said else error}"
+        return f"no CUDA driver answers: {said[0].rstrip('.') if said else error}"
     return "" if cards else "the CUDA driver finds no card"
 
 
