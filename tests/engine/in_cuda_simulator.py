@@ -8,17 +8,15 @@ import math
 import os
 import signal
 import sys
-import threading
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from numba.cuda.simulator.kernelapi import FakeCUDAShared
-from numba.np.numpy_support import as_dtype
 from tests.engine.conftest import D, bits
 
 from ryusa.build import scene
 from ryusa.engine.cpu import CpuEngine
+from ryusa.engine.cuda import store
 from ryusa.engine.cuda.engine import CudaEngine
 from ryusa.errors import GrainLost, ListUnsafe, NotANumber, OverlapTooLarge
 from ryusa.model import Book, RollingLaw, Water
@@ -42,19 +40,6 @@ from ryusa.running.runner import run_scene
 from ryusa.running.stops import Stop
 
 sys.setswitchinterval(2e-5)  # the simulator polls its threads: without this each wait costs 5 ms
-_one_at_a_time = threading.Lock()
-
-
-def _shared(self, shape, dtype):
-    """Shared memory by line: the simulator's own gives two threads that come together one array each."""
-    frame = sys._getframe(1)
-    with _one_at_a_time:
-        return self._allocations.setdefault(
-            (frame.f_code.co_filename, frame.f_lineno), np.empty(shape, as_dtype(dtype))
-        )
-
-
-FakeCUDAShared.array = _shared
 
 FLOW = Water(
     profile=Profile.LOG_ROUGH, u_star=0.1, k_rough=D, depth=2.5 * D, above=Above.DRY, drag=Drag.RE_04,
@@ -214,18 +199,30 @@ def test_run_again_split_or_resumed_it_gives_the_same_bits(kind):
 def test_both_sides_of_every_pair_hold_the_same_bits():
     engine = loaded(CudaEngine(), heap(**KINDS["flow, rolling spring, records"]))
     engine.advance(5).raise_if_any()
-    store = engine._store
-    start, partners, live, _, rows = (array.copy_to_host() for array in store.pairs)
-    ids = store.bodies.ids.copy_to_host()
+    held = engine._store
+    start, partners, live, _, rows = (array.copy_to_host() for array in held.pairs)
+    ids = held.bodies.ids.copy_to_host()
     found = {}
-    for i in range(store.n):
+    for i in range(held.n):
         for k in range(start[i], start[i + 1]):
-            if partners[k] < store.n:
+            if partners[k] < held.n:
                 found.setdefault(frozenset((ids[i], ids[partners[k]])), []).append(
                     (live[k], rows[k, :14].tobytes())
                 )
     assert all(len(sides) == 2 and sides[0] == sides[1] for sides in found.values() if sides[0][0])
     assert sum(bool(sides[0][0]) for sides in found.values()) > 20
+
+
+def test_grains_may_outnumber_threads(monkeypatch):
+    made, ended = heap(**KINDS["3D, records"]), []
+    for _ in range(2):
+        engine = loaded(CudaEngine(), made)
+        engine.advance(4).raise_if_any()
+        ended.append((engine.state(), engine.tally()))
+        monkeypatch.setattr(store, "MOST_BLOCKS", 2)  # of three
+    (a, first), (b, second) = ended
+    assert all(np.array_equal(getattr(a, name), getattr(b, name)) for name in ("x", "v", "omega"))
+    alike(second, first, 1e-14)
 
 
 @pytest.mark.parametrize("seed", range(4))

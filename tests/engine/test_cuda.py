@@ -112,7 +112,7 @@ def test_the_step_becomes_ptx_in_double_precision_without_racing_sums(kind: str)
 
     bodies, walls, pairs = groups()
     step = make_step(*KINDS[kind], ON_CARD)
-    ptx = entry(step, COUNT, COUNT, COUNT, F1, I1, bodies, walls, pairs, F2, F2)
+    ptx = entry(step, COUNT, COUNT, COUNT, F1, I1, bodies, walls, pairs, F2, F1)
     assert ".f64" in ptx
     for space in (
         "global",
@@ -130,7 +130,7 @@ def test_every_other_kernel_becomes_ptx() -> None:
     from ryusa.engine.cuda.step import make_close
 
     bodies, walls, pairs = groups()
-    entry(make_close(ON_CARD), COUNT, COUNT, COUNT, F1, F2, I1, F1, F2, F2, threads=ON_CARD.closers)
+    entry(make_close(ON_CARD), COUNT, COUNT, COUNT, F1, F1, I1, F1, F2, F2, threads=ON_CARD.closers)
     entry(listing.wipe, I1, COUNT)
     entry(listing.bring_in, COUNT, F2, I42, I4, F1, F2, I1)
     entry(listing.count_cells, I4, F2, F1, I1, I1, I1)

@@ -116,6 +116,11 @@ class Shape(NamedTuple):
         """Parts of a block that are added up by themselves."""
         return max(1, self.threads // self.group)
 
+    @property
+    def desk(self) -> int:
+        """Doubles that a block shares while it adds up."""
+        return self.group * (self.threads + self.parts)
+
 
 ON_CARD = Shape(128, 8, 960, 24)
 IN_SIMULATOR = Shape(8, N_COLUMN, 8, 1)  # where every thread is one of Python's, and waits are dear

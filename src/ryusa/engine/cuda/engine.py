@@ -144,7 +144,7 @@ class CudaEngine:
         self._d_flow, self._d_pace = cuda.to_device(self._flow), cuda.to_device(self._pace)
         self._d_now, self._d_books = cuda.to_device(now), cuda.to_device(books)
         self._d_ended = cuda.to_device(np.zeros((self._room, N_EVENT)))
-        self._d_partial = cuda.to_device(np.zeros((blocks(n), N_COLUMN)))
+        self._d_partial = cuda.to_device(np.zeros(blocks(n) * N_COLUMN))
         self._list()
         if resumed:
             self._store.place_at(state.x)
@@ -275,7 +275,9 @@ class CudaEngine:
     def _march(self, n_steps: int) -> Flags:
         """Launch steps until they are done; a step that comes after a stop passes over itself."""
         target, store = self._step + n_steps, self._store
-        n_block = blocks(self._n)
+        n_block, cut = blocks(self._n), shape()
+        step = self._step_kernel[n_block, cut.threads, 0, 8 * cut.desk]
+        close = self._close_kernel[1, cut.closers, 0, 8 * cut.segments * N_COLUMN]
         while self._step < target:
             if 2.0 * self._travel > self._skin:
                 fault = self._relist()
@@ -283,11 +285,11 @@ class CudaEngine:
                     return Flags(fault)
             was = self._step
             for _ in range(min(target - was, self._until_list())):
-                self._step_kernel[n_block, shape().threads](
+                step(
                     target, self._n, store.n_solid, store.c, self._d_flow, store.bodies, store.walls,
                     store.pairs, self._d_ended, self._d_partial,
                 )  # fmt: skip
-                self._close_kernel[1, shape().closers](
+                close(
                     target, n_block, self._room, store.c, self._d_partial, self._d_flow, self._d_pace,
                     self._d_books, self._d_now,
                 )  # fmt: skip

@@ -205,38 +205,38 @@ def make_step(kind: Variant, choice: Choice, shape: Shape) -> Any:
             move(i, half, first, last, c, bodies, (f_x, f_y, f_z), (t_x, t_y, t_z), (h_x, h_y, h_z), account)
 
         # what the threads of a block have in their accounts, added in a fixed order
-        desk = cuda.shared.array((group, threads), float64)
-        sums = cuda.shared.array((parts, group), float64)
-        me, block = cuda.threadIdx.x, cuda.blockIdx.x
+        desk = cuda.shared.array(0, float64)  # `Shape.desk` doubles: a row a column, then sums of parts
+        sums, me, row = group * threads, cuda.threadIdx.x, cuda.blockIdx.x * N_COLUMN
         for lead in range(0, N_COLUMN, group):
             cuda.syncthreads()
             for k in range(group):
-                desk[k, me] = account[lead + k]
+                desk[k * threads + me] = account[lead + k]
             cuda.syncthreads()
             for task in range(me, group * parts, threads):
                 column, part = task % group, task // group
                 total = 0.0
                 for k in range(part * run, (part + 1) * run):
-                    total += desk[column, k]
-                sums[part, column] = total
+                    total += desk[column * threads + k]
+                desk[sums + task] = total
             cuda.syncthreads()
             for column in range(me, group, threads):
                 if lead + column < N_SUM:
                     total = 0.0
-                    for k in range(parts):
-                        total += sums[k, column]
-                    partial[block, lead + column] = total
+                    for part in range(parts):
+                        total += desk[sums + part * group + column]
+                    partial[row + lead + column] = total
             if me == 0 and lead + group > N_SUM:
                 for k in range(1, threads):
-                    account[A_SPEED_2] = max(account[A_SPEED_2], desk[A_SPEED_2 - lead, k])
-                    account[A_SPIN_2] = max(account[A_SPIN_2], desk[A_SPIN_2 - lead, k])
-                    account[A_BAD] = min(account[A_BAD], desk[A_BAD - lead, k])
+                    at_k = k - lead * threads
+                    account[A_SPEED_2] = max(account[A_SPEED_2], desk[A_SPEED_2 * threads + at_k])
+                    account[A_SPIN_2] = max(account[A_SPIN_2], desk[A_SPIN_2 * threads + at_k])
+                    account[A_BAD] = min(account[A_BAD], desk[A_BAD * threads + at_k])
                     guard(
-                        desk[A_OVERLAP - lead, k], desk[A_OVERLAP_GRAIN - lead, k],
-                        desk[A_OVERLAP_PARTNER - lead, k], account,
+                        desk[A_OVERLAP * threads + at_k], desk[A_OVERLAP_GRAIN * threads + at_k],
+                        desk[A_OVERLAP_PARTNER * threads + at_k], account,
                     )  # fmt: skip
                 for k in range(N_SUM, N_COLUMN):
-                    partial[block, k] = account[k]
+                    partial[row + k] = account[k]
 
     return step
 
@@ -254,19 +254,20 @@ def make_close(shape: Shape) -> Any:
 
         `room` is that for records of ended contacts.
         """
-        desk = cuda.shared.array((segments, N_COLUMN), float64)
+        desk = cuda.shared.array(0, float64)  # a row of columns for each segment
         me = cuda.threadIdx.x
         if flow[F_STOP] != STOP_DONE:
             return
         for task in range(me, N_COLUMN * segments, closers):
-            _add_up(task % N_COLUMN, task // N_COLUMN, task // N_COLUMN, n_block, segments, partial, desk)
+            part = task // N_COLUMN
+            _add_up(task % N_COLUMN, part, part, n_block, segments, partial, desk)
         cuda.syncthreads()
         for column in range(me, N_COLUMN, closers):
             _add_up(column, 0, 0, segments, 1, desk, desk)
         cuda.syncthreads()
         if me == 0:
-            _enter(target, c, desk[0], flow, books[0], now[0])
-            _decide(room, c, desk[0], flow, pace, now[0])
+            _enter(target, desk, flow, books[0], now[0])
+            _decide(room, c, desk, flow, pace, now[0])
 
     return close
 
@@ -276,30 +277,28 @@ def _add_up(column: int, to: int, begin: int, end: int, every: int, rows: Any, d
     """Add up one column over some rows, or find its extreme; the pair of the largest overlap goes along."""
     if column == A_OVERLAP:
         best, grain, partner = -1.0, float(NOBODY), float(NOBODY)
-        for k in range(begin, end, every):
-            ratio, one, other = rows[k, A_OVERLAP], rows[k, A_OVERLAP_GRAIN], rows[k, A_OVERLAP_PARTNER]
+        for k in range(begin * N_COLUMN, end * N_COLUMN, every * N_COLUMN):
+            ratio, one, other = rows[k + A_OVERLAP], rows[k + A_OVERLAP_GRAIN], rows[k + A_OVERLAP_PARTNER]
             if ratio > best or (ratio == best and (one < grain or (one == grain and other < partner))):
                 best, grain, partner = ratio, one, other
-        desk[to, A_OVERLAP], desk[to, A_OVERLAP_GRAIN], desk[to, A_OVERLAP_PARTNER] = best, grain, partner
-    elif column == A_BAD:
-        lowest = float(NOBODY)
-        for k in range(begin, end, every):
-            lowest = min(lowest, rows[k, A_BAD])
-        desk[to, A_BAD] = lowest
-    elif column in (A_SPEED_2, A_SPIN_2):
-        largest = 0.0
-        for k in range(begin, end, every):
-            largest = max(largest, rows[k, column])
-        desk[to, column] = largest
-    elif column < N_SUM:
-        total = 0.0
-        for k in range(begin, end, every):
-            total += rows[k, column]
-        desk[to, column] = total
+        at = to * N_COLUMN
+        desk[at + A_OVERLAP], desk[at + A_OVERLAP_GRAIN], desk[at + A_OVERLAP_PARTNER] = best, grain, partner
+        return
+    if column in (A_OVERLAP_GRAIN, A_OVERLAP_PARTNER):
+        return
+    total = float(NOBODY) if column == A_BAD else 0.0
+    for k in range(begin * N_COLUMN + column, end * N_COLUMN, every * N_COLUMN):
+        if column < N_SUM:
+            total += rows[k]
+        elif column == A_BAD:
+            total = min(total, rows[k])
+        else:
+            total = max(total, rows[k])
+    desk[to * N_COLUMN + column] = total
 
 
 @device
-def _enter(target: int, c: Any, sums: Any, flow: Any, books: Any, now: Any) -> None:
+def _enter(target: int, sums: Any, flow: Any, books: Any, now: Any) -> None:
     """Enter what a step did: the half interval of water that waited, then its own works; and extremes."""
     _close_interval(books, now)
     for k in range(N_BOOK):
