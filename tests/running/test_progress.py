@@ -44,6 +44,19 @@ def test_lines_come_every_tenth_of_the_way_at_most_every_five_seconds(
     assert (tmp_path / "log.txt").read_text().count("particle-steps/s") == len(lines)
 
 
+@pytest.mark.parametrize("kind", [io.StringIO, Terminal])
+def test_a_run_that_goes_on_reckons_what_is_left_from_where_it_began_again(
+    tmp_path: Path, now: list[float], kind: type[io.StringIO]
+) -> None:
+    progress = make(tmp_path, now, kind())
+    now[0] = 1.0
+    progress.starts_at(0.5)
+    now[0] = 7.0
+    progress.update(moment(0.6))
+    progress.close()
+    assert "about 24 s left" in (tmp_path / "log.txt").read_text()
+
+
 def test_a_slow_run_says_a_line_a_minute(tmp_path: Path, now: list[float]) -> None:
     stream = io.StringIO()
     progress = make(tmp_path, now, stream)

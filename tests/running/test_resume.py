@@ -106,6 +106,7 @@ def test_sigusr1_asks_for_a_checkpoint_and_the_run_goes_on(
         patch.setattr(keeper.Keeper, "write", lambda *arguments: (seen.append(True), write(*arguments))[1])
         assert run(tmp_path / "run").complete
     assert seen == [True]
+    assert "as asked" in (tmp_path / "run" / schema.LOG).read_text()
     assert differences(whole.folder, tmp_path / "run") == []
 
 

@@ -164,6 +164,7 @@ class Loop:
             with self.progress.patience(_COMPILING):
                 self.engine.load(self.scene, state)
             self._immerse(state)
+            self.progress.starts_at(self._moment().share)
         except (ValueError, ArithmeticError, AssertionError) as error:
             raise CheckpointError(f"the checkpoint's state cannot be gone on from ({error})") from error
 
@@ -195,10 +196,10 @@ class Loop:
 
     def _keep_if_due(self) -> None:
         if self.keeper is not None and (self._heard.keep or self.keeper.due()):
-            self._heard.keep = False
-            self._keep()
+            asked, self._heard.keep = self._heard.keep, False
+            self._keep(told=asked)
 
-    def _keep(self) -> None:
+    def _keep(self, *, told: bool = False) -> None:
         """Write a checkpoint of this very step; one that finds no room is told, and the last one stays."""
         if self.keeper is None or self._step == self._first:
             return
@@ -211,6 +212,8 @@ class Loop:
             return
         if self.status == schema.STOPPED:
             self.progress.line(f"checkpoint at step {self._step}: ryusa resume {self.recorder.folder}")
+        elif told:
+            self.progress.line(f"checkpoint at step {self._step}, t = {self._t:.6g} s, as asked")
 
     def _gather(self) -> None:
         events = self.engine.events()

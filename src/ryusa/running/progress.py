@@ -53,7 +53,7 @@ class Progress:
         self._stream = sys.stderr if stream is None else stream
         self._log = log.open("a", encoding="utf-8", buffering=1)
         self._begun = self._last = self._last_log = clock()
-        self._share = self._share_log = 0.0
+        self._share = self._share_log = 0.0  # of the way: at the start, at the last line
         self._bar: RichProgress | None = None
         self._task: TaskID | None = None
         self._explained: set[str] = set()
@@ -70,6 +70,12 @@ class Progress:
         """Is it time for new numbers? Ask before working them out."""
         return self._clock() - self._last >= (_BAR_EVERY if self._bar is not None else _LINE_EVERY)
 
+    def starts_at(self, share: float) -> None:
+        """Begin with a share of the way done; what is left is reckoned from here."""
+        self._begun, self._share = self._clock(), share
+        if self._bar is not None and self._task is not None:
+            self._bar.reset(self._task, completed=share, now="")
+
     def update(self, moment: Moment) -> None:
         """Show new numbers."""
         now = self._clock()
@@ -80,7 +86,7 @@ class Progress:
         if now - self._last_log < _LINE_EVERY or (slow and now - self._last_log < 12 * _LINE_EVERY):
             return
         self._last_log, self._share_log = now, moment.share
-        text = f"{100 * moment.share:3.0f} %  {moment}{_left(now - self._begun, moment.share)}"
+        text = f"{100 * moment.share:3.0f} %  {moment}{_left(now - self._begun, self._share, moment.share)}"
         self._write_log(text)
         if self._bar is None:
             self._show(text)
@@ -125,10 +131,10 @@ class Progress:
             print(text, file=self._stream, flush=True)
 
 
-def _left(elapsed: float, share: float) -> str:
-    if share <= 0.0 or share >= 1.0:
+def _left(elapsed: float, begun: float, share: float) -> str:
+    if share <= begun or share >= 1.0:
         return ""
-    return f"  about {elapsed * (1.0 / share - 1.0):.0f} s left"
+    return f"  about {elapsed * (1.0 - share) / (share - begun):.0f} s left"
 
 
 def _bar(stream: TextIO) -> "tuple[RichProgress, TaskID]":
