@@ -6,7 +6,10 @@
 The packaged dense 3D case, as `ryusa run` steps it, contacts recorded or not. A checkpoint is timed whole:
 the state taken from the engine, laid into HDF5, digested, written, synced and renamed. Its share is that of
 one in every interval; by default 300 s, and never more than 1 % of the time, since a dear checkpoint puts off
-the next. Guards of the loop are timed at every frame, where they look, over the steps between two frames.
+the next. Guards of the loop are timed at every frame, where they look, over the steps between two frames;
+the look for room on the disk over the least time between two parts. Guards inside a step (is every speed a
+number, does an overlap exceed) cannot be taken out of a kernel; they are timed in a loop of their own, over
+as many grains and pairs, which is more than they cost where their numbers lie in registers already.
 """
 
 import argparse
@@ -23,14 +26,19 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numba import njit
+
 from ryusa.build import build
 from ryusa.casefile import read
 from ryusa.engine.cpu import CpuEngine
+from ryusa.running.disk import free_bytes
 from ryusa.running.guards import energy_created
 from ryusa.running.keeper import EVERY, Keeper
 from ryusa.running.provenance import processor
 from ryusa.running.snapshot import kept_state
 
+SOONEST = 2.0  # s between two parts at least
 REPEATS = 7
 STEPS = 400  # timed together
 
@@ -43,6 +51,17 @@ def median(call: Callable[[], Any], times: int = REPEATS) -> float:
         call()
         taken.append(time.perf_counter() - begin)
     return statistics.median(taken)
+
+
+@njit(error_model="numpy")
+def checks(squares: Any, overlaps: Any, smaller: Any, most: float) -> tuple[bool, bool]:
+    """What guards look at in a step: a speed that is no number, an overlap beyond the largest so far."""
+    lost = larger = False
+    for i in range(len(squares)):
+        lost = lost or not squares[i] < np.inf
+    for k in range(len(overlaps)):
+        larger = larger or overlaps[k] > most * smaller[k]
+    return lost, larger
 
 
 def measure(events: str, columns: int, folder: Path) -> dict[str, Any]:
@@ -61,17 +80,30 @@ def measure(events: str, columns: int, folder: Path) -> dict[str, Any]:
     state, tally = engine.state(), engine.tally()
     guard = median(lambda: energy_created(scene, state, tally))
     frame = round(case.record.frames / scene.dt)
+    n_pair = len(state.contacts)
+    seen = np.sum(state.v**2, axis=1), np.full(n_pair, 1e-6), np.full(n_pair, float(scene.d.min())), 1.0
+    checks(*seen)
+    inside = median(lambda: [checks(*seen) for _ in range(100)]) / 100
+    room = median(lambda: free_bytes(folder), 100)
+    shares = {
+        "share of checkpoints [%]": 100.0 * whole / (EVERY + whole),
+        "share of guards at frames [%]": 100.0 * guard / (frame * step),
+        "share of guards in a step, at most [%]": 100.0 * inside / step,
+        "share of looks for room [%]": 100.0 * room / SOONEST,
+    }
     return {
         "events": events,
         "grains": scene.n_grain,
-        "contacts": len(state.contacts),
+        "contacts": n_pair,
         "us a step": round(1e6 * step, 1),
         "checkpoint [ms]": round(1e3 * whole, 1),
         "checkpoint [MB]": round(keeper.size / 1e6, 2),
-        "share of checkpoints [%]": round(100.0 * whole / (EVERY + whole), 4),
         "guard a frame [us]": round(1e6 * guard, 1),
         "steps a frame": frame,
-        "share of guards [%]": round(100.0 * guard / (frame * step), 5),
+        "guards in a step, at most [us]": round(1e6 * inside, 1),
+        "look for room [us]": round(1e6 * room, 1),
+        **{name: round(share, 5) for name, share in shares.items()},
+        "share in all [%]": round(sum(shares.values()), 3),
     }
 
 
