@@ -73,7 +73,7 @@ def quantity(text: object, unit: str) -> float:
         raise UnitError(f"too large a number; needs {_kind(unit)}, such as {example}")
     if value == 0.0 and Decimal(found.group()) != 0:
         raise UnitError(f"too small a number; needs {_kind(unit)}, such as {example}")
-    return value
+    return value + 0.0  # no -0.0
 
 
 def format_quantity(value: float, unit: str, digits: int = 4) -> str:

@@ -5,8 +5,7 @@
 
 Targets are `schema` (a case file), `units`, `results` (a file of a run folder put in the place of one) and
 `resume` (a checkpoint, its numbers or one of its arrays changed and signed again). Anything but a named error
-is a crash, and so is no answer
-in time. Needs `pip install ryusa[fuzz]`.
+is a crash, and so is no answer in time. Needs `pip install ryusa[fuzz]`.
 """
 
 import hashlib

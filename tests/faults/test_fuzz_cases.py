@@ -3,6 +3,7 @@
 Short here; `make fuzz` is the long form, and tells its figures.
 """
 
+import math
 import sys
 from pathlib import Path
 
@@ -12,8 +13,9 @@ from hypothesis import HealthCheck, given, settings
 sys.path.insert(0, str(Path(__file__).parent))
 
 from fuzz import Tally, cli, judged
-from strange_cases import strange_cases, strange_tables
+from strange_cases import bases, strange_cases, strange_tables, toml_of
 
+from ryusa.build import build
 from ryusa.casefile.read import read_text
 from ryusa.errors import CaseError
 from ryusa.units import UnitError, quantity
@@ -56,6 +58,15 @@ def test_a_number_that_would_become_nothing_is_refused() -> None:
     with pytest.raises(UnitError, match="too small"):
         quantity("1e-400 m", "m")
     assert quantity("0e-400 m", "m") == 0.0
+
+
+def test_less_than_nothing_of_nothing_is_nothing() -> None:
+    text = toml_of(next(base for base in bases() if base["build"]["kind"] == "packing"))
+    for gap in ("-0.0", "0.0"):
+        case = read_text(text, {"build.gap": gap})
+        assert math.copysign(1.0, case.build.gap) == 1.0
+        build(case)
+    assert math.copysign(1.0, quantity("-0 m", "m")) == 1.0
 
 
 def test_a_whole_number_too_long_to_be_shown_is_refused() -> None:

@@ -40,7 +40,7 @@ def read_ratio(value: Any) -> Any:
     bottom = 100.0 if percent else float(below or 1.0)
     if bottom == 0.0 or not math.isfinite(float(top) / bottom):
         raise ValueError("needs a finite ratio such as '1/20'")
-    return float(top) / bottom
+    return float(top) / bottom + 0.0  # no -0.0
 
 
 Number = Annotated[float, Strict(), AllowInfNan(False)]

@@ -53,7 +53,7 @@ def read_text(text: str, overrides: Mapping[str, str] | None = None, *, path: Pa
     """Read and check a case given as text; `path` names the file it came from."""
     source = path.name if path is not None else None
     try:
-        data: dict[str, Any] = tomllib.loads(text)
+        data: dict[str, Any] = tomllib.loads(text, parse_float=_unsigned)
     except (
         ValueError
     ) as error:  # TOMLDecodeError names line and column; numbers of thousands of digits end here too
@@ -72,6 +72,10 @@ def read_text(text: str, overrides: Mapping[str, str] | None = None, *, path: Pa
     return case
 
 
+def _unsigned(text: str) -> float:
+    return float(text) + 0.0  # -0.0 is no length of a range, says numpy
+
+
 def with_overrides(data: dict[str, Any], overrides: Mapping[str, str]) -> dict[str, Any]:
     """Set dotted keys in a copy of the file's data."""
     if not overrides:
@@ -84,7 +88,7 @@ def with_overrides(data: dict[str, Any], overrides: Mapping[str, str]) -> dict[s
 
 def _toml_value(text: str) -> Any:
     try:
-        found = tomllib.loads(f"value = {text}")
+        found = tomllib.loads(f"value = {text}", parse_float=_unsigned)
     except (ValueError, RecursionError):
         return text
     return found["value"] if set(found) == {"value"} else text

@@ -74,7 +74,8 @@ class Progress:
         """Begin with a share of the way done; what is left is reckoned from here."""
         self._begun, self._share = self._clock(), share
         if self._bar is not None and self._task is not None:
-            self._bar.reset(self._task, completed=share, now="")
+            self._bar.reset(self._task, now="")
+            self._bar.update(self._task, completed=share)
 
     def update(self, moment: Moment) -> None:
         """Show new numbers."""
