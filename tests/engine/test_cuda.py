@@ -22,20 +22,20 @@ CC = (8, 0)  # compute capability compiled for
 DRY = Choice(*[0] * len(Choice._fields))
 # every branch that a kernel may take, at least once
 KINDS = {
-    "dry, 3D": (Variant(0, 1, 0, 0, 0, 0), DRY),
+    "dry, 3D": (Variant(0, 1, 0, 0, 0, 0, 0), DRY),
     "dry, plane, records of some, may pull": (
-        Variant(1, 1, 0, 1, 0, 0), DRY._replace(events=1, tension=1, slip=1),
+        Variant(1, 1, 0, 1, 0, 0, 0), DRY._replace(events=1, tension=1, slip=1),
     ),
-    "no rotation": (Variant(0, 0, 0, 0, 0, 0), DRY._replace(slip=2, cap=1)),
+    "no rotation": (Variant(0, 0, 0, 0, 0, 0, 0), DRY._replace(slip=2, cap=1)),
     "flow, rolling spring": (
-        Variant(0, 1, 1, 1, 0, 0),
+        Variant(0, 1, 1, 1, 0, 0, 1),
         DRY._replace(rolling=3, arm=1, events=2, profile=1, above=2, drag=2, torque=2),
     ),
     "rolling as printed, film": (
-        Variant(0, 1, 1, 0, 0, 1), DRY._replace(rolling=1, profile=4, drag=4, torque=1, rebound=2),
+        Variant(0, 1, 1, 0, 0, 1, 1), DRY._replace(rolling=1, profile=4, drag=4, torque=1, rebound=2),
     ),
     "column, rolling constant": (
-        Variant(0, 1, 1, 1, 1, 1),
+        Variant(0, 1, 1, 1, 1, 1, 1),
         DRY._replace(
             rolling=2, events=2, profile=5, drag=4, torque=2, buoyancy=1, hindrance=5, lift=2, magnus=2,
             rebound=1,

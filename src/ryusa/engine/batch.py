@@ -243,7 +243,7 @@ _shear_plane, _shear_space = _make_shear(1), _make_shear(0)
 
 
 @kernel(fastmath=FAST, forceinline=True)
-def reckon(kind: Variant, choice: Choice, m: int, hdt: float, most: float, c: Any, desk: Any) -> None:
+def reckon(flat: int | None, choice: Choice, m: int, hdt: float, most: float, c: Any, desk: Any) -> None:
     """Forces, torques and work of the first m lanes; their memory goes from the last step to this one.
 
     Three loops, not one: each finds on the desk what it needs. One long loop has more numbers alive than
@@ -252,7 +252,7 @@ def reckon(kind: Variant, choice: Choice, m: int, hdt: float, most: float, c: An
     """
     least = -math.inf if choice.tension else 0.0  # a contact that may pull has no least force
     total, drop, cap_total = choice.slip == SLIP_TOTAL, choice.slip == SLIP_DROP, choice.cap == CAP_TOTAL
-    if kind.plane_case:
+    if flat is not None:
         _see_plane(m, most, c, desk)
         _push(least, m, hdt, c, desk)
         _shear_plane(total, drop, cap_total, least, m, hdt, c, desk)

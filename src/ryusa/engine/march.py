@@ -18,6 +18,7 @@ from ryusa.engine.rows import *
 from ryusa.engine.sync import meet
 from ryusa.model.tally import Book
 
+Maybe = int | None  # 1, or None for what a variant goes without
 # the books a lane keeps, in the order of lanes.py
 BOOKS = tuple(
     int(book) for book in (Book.DASH_N, Book.DASH_S, Book.SLIDE, Book.RELEASED_N, Book.RELEASED_S, Book.STEP)
@@ -27,6 +28,9 @@ BOOKS = tuple(
 @kernel(fastmath=FAST, forceinline=True)
 def forces(
     kind: Variant,
+    flat: Maybe,
+    water: Maybe,
+    company: Maybe,
     choice: Choice,
     b: int,
     n: int,
@@ -88,10 +92,10 @@ def forces(
             rows,
             desk,
         )
-        if choice.rebound:
+        if water is not None and choice.rebound:
             wet_dashpots(choice, m, which, c, grains, near, desk)
-        reckon(kind, choice, lanes, hdt, now[N_OVERLAP_MAX], c, desk)
-        if kind.rolling or kind.events or kind.film:
+        reckon(flat, choice, lanes, hdt, now[N_OVERLAP_MAX], c, desk)
+        if company is not None:
             spring_r += keep_company(
                 kind, choice, m, n, t, hdt, which, c, grains, near, desk, ended, book, now
             )
@@ -148,7 +152,13 @@ def springs(b: int, c: Any, near: Near) -> tuple[float, float, int]:
 
 @cache
 def make_run(kind: Variant) -> Any:
-    """Build the stepping function of one variant; compiled when first called, then kept on disk."""
+    """Build the stepping function of one variant; compiled when first called, then kept on disk.
+
+    What a variant goes without is handed on as None: the compiler then leaves it out before it types it.
+    """
+    flat: Maybe = 1 if kind.plane_case else None
+    water: Maybe = 1 if kind.water else None
+    company: Maybe = 1 if kind.rolling or kind.events or kind.film else None
 
     @kernel(nogil=True, fastmath=FAST)
     def run(
@@ -221,14 +231,13 @@ def make_run(kind: Variant) -> Any:
             hdt = 0.0 if step == 0 else 0.5 * dt
             for b in range(b_0, b_1):
                 forces(
-                    kind, choice, b, n, n_solid, step, t, hdt, last, c, grains, walls, pairs, near,
-                    work,
-                    ended[b], books[b], now[b],
+                    kind, flat, water, company, choice, b, n, n_solid, step, t, hdt, last, c, grains, walls,
+                    pairs, near, work, ended[b], books[b], now[b],
                 )  # fmt: skip
             target = meet(count, n_threads, target)
             for b in range(b_0, b_1):
                 motion(
-                    kind, choice, block_start[b], block_start[b + 1], step == 0, last, c, grains,
+                    kind, water, choice, block_start[b], block_start[b + 1], step == 0, last, c, grains,
                     pairs, work.table, books[b], now[b],
                 )  # fmt: skip
             target = meet(count, n_threads, target)

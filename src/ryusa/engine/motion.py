@@ -98,6 +98,7 @@ def energies(kind: Variant, first: int, m: int, c: Any, grains: Grains, table: A
 @kernel(fastmath=FAST, forceinline=True)
 def motion(
     kind: Variant,
+    water: int | None,
     choice: Choice,
     lo: int,
     hi: int,
@@ -115,7 +116,6 @@ def motion(
     f, near, incoming, incoming_start = pairs.f, pairs.near, pairs.incoming, pairs.incoming_start
     dt = c[C_DT]
     half = 0.0 if begins else 0.5 * dt
-    wet = kind.column or kind.film or choice.drag or choice.torque
     speed_2 = spin_2 = 0.0
     for l in range(MOVERS):
         table[M_GRAVITY + 4 * l], table[M_GRAVITY + 4 * l + 2] = c[C_G_X], c[C_G_Z]
@@ -127,10 +127,10 @@ def motion(
     for first in range(lo, hi, MOVERS):
         m = min(MOVERS, hi - first)
         fetch(kind, first, m, grains, near, incoming, incoming_start, f, x, v, w, table)
-        if wet:
+        if water is not None:
             push_of_water(kind, choice, first, m, c, grains, table)
         advance(kind.rotation, dt, table)
-        if wet:
+        if water is not None:
             work_of_water(kind, choice, first, m, half, c, grains, table, book, now)
         if last:
             energies(kind, first, m, c, grains, table, now)

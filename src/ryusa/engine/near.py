@@ -75,7 +75,8 @@ def cut(
     if full:
         _take_back(b, touching, near, spare)
         return new + _SLACK, touching
-    live[first : first + new] = 0
+    for k in range(first, first + new):
+        live[k] = 0
     near.count[b] = new
     k = first
     for t in range(touching):
@@ -84,19 +85,20 @@ def cut(
         if k == first + new or pair[k] != spare.pair[t]:
             return -1, touching
         live[k] = 1
-        _copy_row(near, k, spare, t)
+        _copy_row(k, near.eta, near.rows, t, spare.eta, spare.rows)
     return 0, touching
 
 
 @kernel(forceinline=True)
-def _copy_row(to: Near, at: int, source: Near, of: int) -> None:
-    width = to.rows.shape[1]
-    a, e = place_of_eta(at, to.eta), place_of_eta(of, source.eta)
-    to.eta[a, 0], to.eta[a, 1] = source.eta[e, 0], source.eta[e, 1]
+def _copy_row(at: int, to_eta: Any, to_rows: Any, of: int, eta: Any, rows: Any) -> None:
+    # four by four: slices would have their references counted
+    width = rows.shape[1]
+    a, e = place_of_eta(at, to_eta), place_of_eta(of, eta)
+    to_eta[a, 0], to_eta[a, 1] = eta[e, 0], eta[e, 1]
     for k in range(0, width - 3, 4):
-        copy4(to.rows, width * at + k, source.rows, width * of + k)
+        copy4(to_rows, width * at + k, rows, width * of + k)
     for k in range(width // 4 * 4, width):
-        to.rows[at, k] = source.rows[of, k]
+        to_rows[at, k] = rows[of, k]
 
 
 @kernel()
@@ -107,7 +109,7 @@ def _put_aside(b: int, near: Near, spare: Near) -> int:
         if near.live[k]:
             spare.i[t], spare.j[t] = near.i[k], near.j[k]
             spare.to[t], spare.pair[t] = near.to[k], near.pair[k]
-            _copy_row(spare, t, near, k)
+            _copy_row(t, spare.eta, spare.rows, k, near.eta, near.rows)
             t += 1
     return t
 
@@ -116,13 +118,12 @@ def _put_aside(b: int, near: Near, spare: Near) -> int:
 def _take_back(b: int, touching: int, near: Near, spare: Near) -> None:
     """Make the pairs put aside the whole list of block b."""
     first = near.first[b]
-    end = first + touching
     near.count[b] = touching
-    near.i[first:end], near.j[first:end] = spare.i[:touching], spare.j[:touching]
-    near.to[first:end], near.pair[first:end] = spare.to[:touching], spare.pair[:touching]
-    near.live[first:end] = 1
     for t in range(touching):
-        _copy_row(near, first + t, spare, t)
+        k = first + t
+        near.i[k], near.j[k], near.to[k], near.pair[k] = spare.i[t], spare.j[t], spare.to[t], spare.pair[t]
+        near.live[k] = 1
+        _copy_row(k, near.eta, near.rows, t, spare.eta, spare.rows)
 
 
 @kernel()
@@ -165,8 +166,7 @@ def take_rows(n: int, near: Near, ids: Any, out_i: Any, out_j: Any, eta: Any, ro
                 i, j = near.i[k], near.j[k]
                 out_i[t] = ids[i]
                 out_j[t] = ids[j] if j < n else j
-                eta[t, :] = near.eta[place_of_eta(k, near.eta), :]
-                rows[t, :] = near.rows[k, :]
+                _copy_row(t, eta, rows, k, near.eta, near.rows)
                 t += 1
 
 
@@ -194,7 +194,6 @@ def put_rows(
             low += 1
         if low == end or near.i[low] != i:
             return t
-        near.eta[place_of_eta(low, near.eta), :] = eta[t, :]
-        near.rows[low, :] = rows[t, :]
+        _copy_row(low, near.eta, near.rows, t, eta, rows)
         near.live[low] = 1
     return -1

@@ -23,6 +23,7 @@ def variant_of(scene: Scene) -> Variant:
         events=int(scene.events != EventRule.NONE),
         column=int(scene.water.profile == Profile.COLUMN),
         film=int(scene.water.profile != Profile.NONE and scene.water.film_reach > 0.0),
+        water=int(scene.water.profile != Profile.NONE),
     )
 
 

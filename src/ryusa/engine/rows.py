@@ -155,6 +155,7 @@ class Variant(NamedTuple):
     events: int
     column: int
     film: int  # films resist before touch
+    water: int  # there is any
 
     @property
     def row_width(self) -> int:
