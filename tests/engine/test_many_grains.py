@@ -56,6 +56,18 @@ def test_split_calls_and_a_resumed_snapshot_give_the_same_bits(kind):
     assert np.sort(np.concatenate([early, resumed.events()])).tobytes() == np.sort(records).tobytes()
 
 
+def test_an_account_kept_in_other_blocks_is_taken_over_as_their_sum():
+    made = pile(n=400)
+    state = run(made, 700).state()
+    other = replace(state, books=np.array_split(state.books, 2)[0] * 0.0 + state.books.sum(axis=0) / 2.0)
+    engine, same = CpuEngine(), CpuEngine()
+    engine.load(made[0], other)
+    same.load(made[0], state)
+    assert len(other.books) != len(state.books)
+    assert engine.tally().books == pytest.approx(same.tally().books, rel=1e-12)
+    assert engine.tally().residual == pytest.approx(same.tally().residual, abs=1e-12)
+
+
 @pytest.mark.parametrize("plane_case", [False, True])
 @pytest.mark.parametrize("slip", list(Slip))
 def test_forces_at_one_frozen_state_agree_with_a_plain_reference(plane_case, slip):

@@ -351,10 +351,13 @@ class CpuEngine:
         own, books, now = state.engine, self._ledger.books, self._ledger.now
         self._skin = own.get("skin", self._skin_first * self._smallest)
         self._since = int(own.get("since", 0))
+        columns = state.books.shape[1]
         if state.books.shape == books.shape:
             books[:] = state.books
-            now[:, PENDING] = books[:, N_BOOK : N_BOOK + len(PENDING)]
-            books[:, N_BOOK:] = 0.0
+        else:  # of another cut into blocks: the account is their sum
+            books[0, :columns] = state.books.sum(axis=0)
+        now[:, PENDING] = books[:, N_BOOK : N_BOOK + len(PENDING)]
+        books[:, N_BOOK:] = 0.0
         now[:, N_OVERLAP_MAX] = own.get("overlap_max", 0.0)
         now[:, N_OVERLAP_GRAIN] = own.get("overlap_grain", -1.0)
         now[:, N_OVERLAP_STEP] = own.get("overlap_step", 0.0)

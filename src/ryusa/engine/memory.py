@@ -3,7 +3,7 @@
 import numpy as np
 
 from ryusa.engine.listing import Layout, Memory
-from ryusa.engine.pair import dashpots
+from ryusa.engine.pair import dashpots_of
 from ryusa.engine.rows import (
     E_ALONE,
     E_CLOSING_END,
@@ -16,7 +16,6 @@ from ryusa.engine.rows import (
     E_T_PART,
     E_V_END,
     ETA_N,
-    ETA_S,
     R_DASH_N,
     R_DASH_R,
     R_DASH_S,
@@ -56,8 +55,7 @@ def memory_of(
     rows = np.zeros((len(contacts), variant.row_width))
     eta, x = np.zeros((len(contacts), 2)), np.zeros((len(layout.r), 4))
     x[:, 3] = layout.r
-    for row, i, j in zip(eta, contacts.i, contacts.j, strict=True):
-        row[ETA_N], row[ETA_S] = dashpots(i, j, variant.rotation, numbers, layout.m, x, layout.inertia)
+    dashpots_of(contacts.i, contacts.j, variant.rotation, numbers, layout.m, x, layout.inertia, eta)
     if choice.rebound:
         eta[:, ETA_N] = contacts.eta_n
     rows[:, R_SPRING_S : R_SPRING_S + 3], rows[:, R_DASH_S : R_DASH_S + 3] = (

@@ -48,6 +48,13 @@ def dashpots(i: int, j: int, rotation: int, c: Any, m: Any, x: Any, inertia: Any
     )
 
 
+@kernel()
+def dashpots_of(i: Any, j: Any, rotation: int, c: Any, m: Any, x: Any, inertia: Any, out: Any) -> None:
+    """Fill `out`, (n, 2), with the dashpots of pairs i, j."""
+    for k in range(len(i)):
+        out[k, ETA_N], out[k, ETA_S] = dashpots(i[k], j[k], rotation, c, m, x, inertia)
+
+
 @kernel(forceinline=True)
 def place_of_eta(k: int, eta: Any) -> int:
     """Where the dashpots of near pair k are."""
