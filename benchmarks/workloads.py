@@ -61,17 +61,17 @@ BED = {
     "1k": Size(9, 1, 1000, 40_000),
     "2k": Size(13, 1, 2000, 32_000),
     "10k": Size(9, 3, 1000, 4000),
-    "20k": Size(41, 1, 1000, 4000),
+    "20k": Size(41, 1, 1000, 3000),
     "100k": Size(13, 7, 400, 800),
-    "200k": Size(41, 3, 400, 1000),
+    "200k": Size(41, 3, 200, 400),
     "1M": Size(41, 7, 100, 200),
 }
 # A column as wide as it is high, half way between release and first fall of its top.
 PLANE = {
     "1k": Size(31, 1, 2000, 40_000),
     "2k": Size(45, 1, 2000, 40_000),
-    "20k": Size(142, 1, 1000, 8000),
-    "200k": Size(447, 1, 400, 1000),
+    "20k": Size(142, 1, 1000, 5000),
+    "200k": Size(447, 1, 200, 500),
 }
 POLY = 0.2  # spread of the polydisperse bed
 PLANE_SPREAD = 0.1  # of every plane column, or it would be a crystal

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ryusa.engine.account import begin_account, book_start, extremes_of, read_account, tally_of
 from ryusa.engine.arrays import Ledger
 from ryusa.engine.entry import events_of, refuse_misfit, still_there
 from ryusa.engine.faults import fault_of, lost_of, unsafe_of
@@ -16,7 +17,7 @@ from ryusa.engine.march import make_run
 from ryusa.engine.memory import closed_records, contacts_of, memory_of
 from ryusa.engine.near import best_skin
 from ryusa.engine.nearlist import NearList
-from ryusa.engine.numbers import choice_of, energy_of_switch, numbers_of, potential_energy, variant_of
+from ryusa.engine.numbers import choice_of, energy_of_switch, numbers_of, variant_of
 from ryusa.engine.refusals import refusals
 from ryusa.engine.rows import (
     C_DT,
@@ -25,21 +26,10 @@ from ryusa.engine.rows import (
     COST_LOOK,
     N_BOOKS,
     N_FULL,
-    N_KINETIC,
-    N_N_CONTACT,
     N_N_ENDED,
     N_NOW,
-    N_OVERLAP_GRAIN,
-    N_OVERLAP_MAX,
-    N_OVERLAP_STEP,
     N_PEND_FLOW,
-    N_POTENTIAL,
     N_SPEED_MAX,
-    N_SPIN,
-    N_SPIN_MAX,
-    N_SPRING_N,
-    N_SPRING_R,
-    N_SPRING_S,
     PENDING,
     STOP_EVENTS,
     STOP_LIST,
@@ -61,7 +51,6 @@ _BLOCKS = 4, 32  # at least and at most; in between one for 2048 grains, a power
 # Measured, and fixed so that a run never depends on a clock: cost of a wide list [ns], and how often it is
 # looked through.
 _LIST, _LIST_GRAIN, _STEPS_A_CUT = 300_000.0, 600.0, 16.0
-_SUMS = (N_KINETIC, N_SPIN, N_POTENTIAL, N_SPRING_N, N_SPRING_S, N_SPRING_R, N_N_CONTACT)
 
 
 class CpuEngine:
@@ -134,13 +123,13 @@ class CpuEngine:
         self._near = NearList(self._layout, self._threads, self._smallest)
         self._cut_near(memory)
         if state.step == 0:
-            self._first_account(scene, state)
+            begin_account(scene, state, self._ledger.now, self._ledger.books)
 
     def advance(self, n_steps: int) -> Flags:
         """Do n_steps steps, fewer if a fault stops the run."""
         if n_steps > 0 and self._step == 0:
             flags = self._march(1)
-            self._ledger.books[0, Book.START] = float(sum(self._ledger.now[:, k].sum() for k in _SUMS[:-1]))
+            book_start(self._ledger.now, self._ledger.books)
             if flags:
                 return flags
             n_steps -= 1
@@ -216,24 +205,8 @@ class CpuEngine:
 
     def tally(self) -> Tally:
         """Energy account and extremes at the moment of the last force evaluation."""
-        own, now = self._own(), self._ledger.now
-        sums = [float(now[:, column].sum()) for column in _SUMS]
-        return Tally(
-            t=float(self._t - self._numbers[C_DT]) if self._step else self._t,
-            kinetic=sums[0],
-            spin=sums[1],
-            potential=sums[2],
-            spring_n=sums[3],
-            spring_s=sums[4],
-            spring_r=sums[5],
-            books=tuple(float(b) for b in self._ledger.books[:, :N_BOOK].sum(axis=0)),
-            overlap_max=own["overlap_max"],
-            overlap_grain=int(own["overlap_grain"]),
-            overlap_step=int(own["overlap_step"]),
-            speed_max=own["speed_max"],
-            spin_max=own["spin_max"],
-            n_contact=int(sums[6]),
-        )
+        t = float(self._t - self._numbers[C_DT]) if self._step else self._t
+        return tally_of(t, self._ledger.now, self._ledger.books)
 
     def events(self) -> np.ndarray:
         """Contacts ended since last asked, in order of parting."""
@@ -319,16 +292,6 @@ class CpuEngine:
         """How far a pair may have parted in the last step [m]: its account is still to be closed."""
         return 2.001 * float(self._ledger.now[:, N_SPEED_MAX].max() * self._numbers[C_DT])
 
-    def _first_account(self, scene: Scene, state: State) -> None:
-        """What grains hold before the first step, which adds springs of pairs that begin in touch."""
-        now, spin = self._ledger.now, state.omega if scene.rotation else np.zeros_like(state.omega)
-        now[0, N_KINETIC] = 0.5 * np.sum((scene.m + scene.m_added)[:, None] * state.v**2)
-        now[0, N_SPIN] = 0.5 * np.sum(scene.inertia[:, None] * spin**2)
-        now[0, N_POTENTIAL] = potential_energy(scene, state)
-        now[0, N_SPEED_MAX] = np.sqrt(np.sum(state.v**2, axis=1).max(initial=0.0))
-        now[0, N_SPIN_MAX] = np.sqrt(np.sum(spin**2, axis=1).max(initial=0.0))
-        self._ledger.books[0, Book.START] = now[0, [N_KINETIC, N_SPIN, N_POTENTIAL]].sum()
-
     def _drain(self) -> None:
         for block, row in enumerate(self._ledger.now):
             count = int(row[N_N_ENDED])
@@ -338,32 +301,13 @@ class CpuEngine:
 
     def _own(self) -> dict[str, float]:
         """The engine's own numbers, as a snapshot keeps them."""
-        now = self._ledger.now
-        block = int(now[:, N_OVERLAP_MAX].argmax())
         own = {"skin": self._skin, "travel": self._travel, "since": float(self._since)}
-        own |= {"speed_max": float(now[:, N_SPEED_MAX].max()), "spin_max": float(now[:, N_SPIN_MAX].max())}
-        own["overlap_max"] = float(now[block, N_OVERLAP_MAX])
-        own["overlap_grain"] = float(now[block, N_OVERLAP_GRAIN])
-        own["overlap_step"] = float(now[block, N_OVERLAP_STEP])
-        return own | {f"sum_{column}": float(now[:, column].sum()) for column in _SUMS}
+        return own | extremes_of(self._ledger.now)
 
     def _read_own(self, state: State) -> None:
-        own, books, now = state.engine, self._ledger.books, self._ledger.now
-        self._skin = own.get("skin", self._skin_first * self._smallest)
-        self._since = int(own.get("since", 0))
-        columns = state.books.shape[1]
-        if state.books.shape == books.shape:
-            books[:] = state.books
-        else:  # of another cut into blocks: the account is their sum
-            books[0, :columns] = state.books.sum(axis=0)
-        now[:, PENDING] = books[:, N_BOOK : N_BOOK + len(PENDING)]
-        books[:, N_BOOK:] = 0.0
-        now[:, N_OVERLAP_MAX] = own.get("overlap_max", 0.0)
-        now[:, N_OVERLAP_GRAIN] = own.get("overlap_grain", -1.0)
-        now[:, N_OVERLAP_STEP] = own.get("overlap_step", 0.0)
-        now[:, N_SPEED_MAX], now[:, N_SPIN_MAX] = own.get("speed_max", 0.0), own.get("spin_max", 0.0)
-        for column in _SUMS:
-            now[0, column] = own.get(f"sum_{column}", 0.0)
+        self._skin = state.engine.get("skin", self._skin_first * self._smallest)
+        self._since = int(state.engine.get("since", 0))
+        read_account(state, self._ledger.now, self._ledger.books)
 
 
 def blocks_of(n: int) -> int:

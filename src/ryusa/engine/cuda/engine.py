@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from ryusa.engine.account import begin_account, book_start, extremes_of, read_account, tally_of
 from ryusa.engine.cpu import blocks_of
 from ryusa.engine.cuda.columns import (
     F_ENDED,
@@ -30,26 +31,15 @@ from ryusa.engine.faults import fault_of, lost_of, unsafe_of
 from ryusa.engine.listing import film_reach
 from ryusa.engine.memory import closed_records, contacts_of
 from ryusa.engine.near import best_skin
-from ryusa.engine.numbers import choice_of, energy_of_switch, numbers_of, potential_energy, variant_of
+from ryusa.engine.numbers import choice_of, energy_of_switch, numbers_of, variant_of
 from ryusa.engine.refusals import refusals
 from ryusa.engine.rows import (
     C_DT,
     C_T_ZERO,
     N_BOOKS,
-    N_KINETIC,
-    N_N_CONTACT,
     N_NOW,
-    N_OVERLAP_GRAIN,
-    N_OVERLAP_MAX,
-    N_OVERLAP_STEP,
     N_PEND_FLOW,
-    N_POTENTIAL,
     N_SPEED_MAX,
-    N_SPIN,
-    N_SPIN_MAX,
-    N_SPRING_N,
-    N_SPRING_R,
-    N_SPRING_S,
     PENDING,
     STOP_DONE,
     STOP_EVENTS,
@@ -66,7 +56,6 @@ from ryusa.model.scene import Floats
 from ryusa.model.tally import N_BOOK
 
 _RECORDS = 256  # room for ended contacts, beside one a grain
-_SUMS = (N_KINETIC, N_SPIN, N_POTENTIAL, N_SPRING_N, N_SPRING_S, N_SPRING_R, N_N_CONTACT)
 # What a new list moves for a grain, and a step for a listed neighbour [B]: the skin follows from such counts,
 # never from a clock.
 _RELIST_GRAIN, _LOOK = 4000.0, 36.0
@@ -138,7 +127,7 @@ class CudaEngine:
         self._flow = np.zeros(N_FLOW, np.int64)
         self._flow[F_STEP], self._flow[F_SPILT] = state.step, NOBODY
         if state.step == 0:
-            self._first_account(scene, state, now, books)
+            begin_account(scene, state, now, books)
         self._pace = np.zeros(N_PACE)
         self._pace[P_FASTEST] = now[0, N_SPEED_MAX]
         self._d_flow, self._d_pace = cuda.to_device(self._flow), cuda.to_device(self._pace)
@@ -154,7 +143,7 @@ class CudaEngine:
         if n_steps > 0 and self._step == 0:
             flags = self._march(1)
             now, books = self._d_now.copy_to_host(), self._d_books.copy_to_host()
-            books[0, Book.START] = float(sum(now[0, k] for k in _SUMS[:-1]))
+            book_start(now, books)
             self._d_books.copy_to_device(books)
             if flags:
                 return flags
@@ -237,25 +226,8 @@ class CudaEngine:
 
     def tally(self) -> Tally:
         """Energy account and extremes at the moment of the last force evaluation."""
-        now = self._d_now.copy_to_host()
-        own = self._own(now)
-        sums = [float(now[0, column]) for column in _SUMS]
-        return Tally(
-            t=float(self._t - self._numbers[C_DT]) if self._step else self._t,
-            kinetic=sums[0],
-            spin=sums[1],
-            potential=sums[2],
-            spring_n=sums[3],
-            spring_s=sums[4],
-            spring_r=sums[5],
-            books=tuple(float(b) for b in self._d_books.copy_to_host()[0, :N_BOOK]),
-            overlap_max=own["overlap_max"],
-            overlap_grain=int(own["overlap_grain"]),
-            overlap_step=int(own["overlap_step"]),
-            speed_max=own["speed_max"],
-            spin_max=own["spin_max"],
-            n_contact=int(sums[6]),
-        )
+        t = float(self._t - self._numbers[C_DT]) if self._step else self._t
+        return tally_of(t, self._d_now.copy_to_host(), self._d_books.copy_to_host())
 
     def events(self) -> np.ndarray:
         """Contacts ended since last asked, in order of parting."""
@@ -364,38 +336,16 @@ class CudaEngine:
         x, v, w = (store.by_id(name, ids) for name in ("x", "v", "w"))
         return Placed(x, v, w, np.arange(self._n), None, None)
 
-    def _first_account(self, scene: Scene, state: State, now: Floats, books: Floats) -> None:
-        """What grains hold before the first step, which adds springs of pairs that begin in touch."""
-        spin = state.omega if scene.rotation else np.zeros_like(state.omega)
-        now[0, N_KINETIC] = 0.5 * np.sum((scene.m + scene.m_added)[:, None] * state.v**2)
-        now[0, N_SPIN] = 0.5 * np.sum(scene.inertia[:, None] * spin**2)
-        now[0, N_POTENTIAL] = potential_energy(scene, state)
-        now[0, N_SPEED_MAX] = np.sqrt(np.sum(state.v**2, axis=1).max(initial=0.0))
-        now[0, N_SPIN_MAX] = np.sqrt(np.sum(spin**2, axis=1).max(initial=0.0))
-        books[0, Book.START] = now[0, [N_KINETIC, N_SPIN, N_POTENTIAL]].sum()
-
     def _read_own(self, state: State) -> tuple[Floats, Floats]:
         """The engine's own numbers from a snapshot; returns what holds now, and the books."""
-        own, now, books = state.engine, np.zeros((1, N_NOW)), np.zeros((1, N_BOOKS))
-        self._skin = own.get("skin", self._skin_first * self._smallest)
-        self._since = int(own.get("since", 0))
-        books[0, : state.books.shape[1]] = state.books.sum(axis=0)  # the CPU engine keeps several rows
-        now[0, PENDING] = books[0, N_BOOK : N_BOOK + len(PENDING)]
-        books[0, N_BOOK:] = 0.0
-        now[0, N_OVERLAP_MAX] = own.get("overlap_max", 0.0)
-        now[0, N_OVERLAP_GRAIN] = own.get("overlap_grain", -1.0)
-        now[0, N_OVERLAP_STEP] = own.get("overlap_step", 0.0)
-        now[0, N_SPEED_MAX], now[0, N_SPIN_MAX] = own.get("speed_max", 0.0), own.get("spin_max", 0.0)
-        for column in _SUMS:
-            now[0, column] = own.get(f"sum_{column}", 0.0)
+        now, books = np.zeros((1, N_NOW)), np.zeros((1, N_BOOKS))
+        self._skin = state.engine.get("skin", self._skin_first * self._smallest)
+        self._since = int(state.engine.get("since", 0))
+        read_account(state, now, books)
         return now, books
 
     def _own(self, now: Floats) -> dict[str, float]:
         """The engine's own numbers, as a snapshot keeps them; the names are those of the CPU engine."""
         own = {"skin": self._skin, "travel": self._travel, "since": float(self._since)}
-        own |= {"speed_max": float(now[0, N_SPEED_MAX]), "spin_max": float(now[0, N_SPIN_MAX])}
-        own["overlap_max"] = float(now[0, N_OVERLAP_MAX])
-        own["overlap_grain"] = float(now[0, N_OVERLAP_GRAIN])
-        own["overlap_step"] = float(now[0, N_OVERLAP_STEP])
         own |= {f"extent_{k}": float(value) for k, value in enumerate(self._store.extent.ravel())}
-        return own | {f"sum_{column}": float(now[0, column]) for column in _SUMS}
+        return own | extremes_of(now)
