@@ -9,7 +9,7 @@ import pytest
 
 from ryusa.casefile import Case, disk_needed, frames_expected, read, steps_expected
 from ryusa.casefile.derive import events_of
-from ryusa.casefile.estimate import disk_for_events, events_expected, memory_needed
+from ryusa.casefile.estimate import BYTES_PER_GRAIN, disk_for_events, events_expected, memory_needed
 from ryusa.laws import collision
 from ryusa.model.contacts import N_EVENT
 
@@ -130,7 +130,9 @@ def test_contacts_to_record_are_counted_before_the_run(case: CaseOf) -> None:
     dense = case(build="{ kind = 'packing', columns = 101, layers = 10 }", **{"record.events": "all"})
     assert 1e5 < events_expected(dense) < 1e6  # 1010 grains, 0.1 s
     assert disk_for_events(dense) == 8 * N_EVENT * events_expected(dense)
-    assert memory_needed(dense) > 3 * memory_needed(many)
+    frames = 3 * BYTES_PER_GRAIN * 1010
+    assert memory_needed(dense) - memory_needed(many) == (1010 + dense.derived.n_fixed) * 800
+    assert 250e6 < memory_needed(many) < 250e6 + frames * frames_expected(many) + 1600 * 1010
 
 
 def test_frames_and_bytes_are_counted_before_the_run(case: CaseOf) -> None:

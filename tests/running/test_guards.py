@@ -72,6 +72,13 @@ def test_more_memory_than_there_is_is_refused_before_the_first_grain(monkeypatch
         refuse_if_too_large(2e9, 10**6)
 
 
+def test_a_scene_made_by_hand_is_held_against_memory_too(scene, state, engine, tmp_path, monkeypatch):
+    monkeypatch.setattr(folder_module, "memory_there", lambda: 5e3)
+    with pytest.raises(CaseError, match="Take fewer grains"):
+        run_scene(scene, state, tmp_path / "run", frames=1e-3, stop=Stop(time=0.01), engine=engine)
+    assert not (tmp_path / "run").exists()
+
+
 def test_memory_there_is_a_number_of_bytes_where_the_system_says():
     there = memory_there()
     assert there is None or 1e6 < there < 1e15

@@ -11,8 +11,11 @@ from ryusa.model.contacts import N_EVENT
 BYTES_PER_GRAIN = 80  # of a frame: x, v, omega, image
 BYTES_PER_FRAME = 264  # t, step, offset for ParaView and tally
 BYTES_PER_RUN = 100_000  # headers of the parts, log, summary, bed
-MEMORY_PER_GRAIN = 450  # bytes while running without records of contacts
+MEMORY_PER_RUN = 250_000_000  # bytes of any process that runs
+MEMORY_PER_GRAIN = 800  # bytes while running without records of contacts
 MEMORY_WITH_EVENTS = 1600  # bytes a grain where contacts are recorded
+FRAMES_HELD = 64 << 20  # bytes of frames that wait to be written, and at least one frame ...
+COPIES = 3  # ... and what it takes to write them
 BYTES_PER_EVENT = 8 * N_EVENT
 EVENTS_ALONE = 20.0  # contacts that end per second, of a saltating or dropped grain
 EVENTS_DENSE = 20.0  # of a grain among others, per sqrt(d/g); between 3 and 50 where counted
@@ -87,8 +90,11 @@ def memory_per_grain(case: Case) -> int:
 
 
 def memory_needed(case: Case) -> int:
-    """Bytes of memory the grains will take while running."""
-    return (case.derived.n_grain + case.derived.n_fixed) * memory_per_grain(case)
+    """Bytes of memory a run will take, frames that wait to be written with it."""
+    frame = case.derived.n_grain * BYTES_PER_GRAIN
+    held = max(frame, min(FRAMES_HELD, frames_expected(case) * frame))
+    grains = (case.derived.n_grain + case.derived.n_fixed) * memory_per_grain(case)
+    return MEMORY_PER_RUN + grains + COPIES * held
 
 
 def seconds_needed(case: Case) -> float:

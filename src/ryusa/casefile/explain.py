@@ -293,7 +293,14 @@ def _cost(case: Case) -> list[Row]:
         Row("cost", "disk for frames", disk, "B", human(disk), "positions, velocities and spins"),
         *_events(case),
         *_disk(case),
-        Row("cost", "memory", memory, "B", human(memory), f"{each} B a grain, events {events_of(case)}"),
+        Row(
+            "cost",
+            "memory",
+            memory,
+            "B",
+            human(memory),
+            f"{each} B a grain, events {events_of(case)}; frames that wait; the rest 250 MB",
+        ),
         Row("cost", "wall time", seconds, "s", wall, "rule of thumb, one core"),
     ]
 

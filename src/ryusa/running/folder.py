@@ -208,7 +208,7 @@ def refuse_if_too_large(needed: float, n_grain: int) -> None:
         raise CaseError(
             "build", None,
             f"gives {n_grain} grains, which need {size(needed)} of memory; this machine has {size(there)} to "
-            "give. Take fewer grains, or record.events = 'none', which needs a third",
+            "give. Take fewer grains, or record.events = 'none', which needs half",
         )  # fmt: skip
 
 

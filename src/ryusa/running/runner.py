@@ -219,6 +219,10 @@ def run_scene(
     ------
     CaseError, ResultsError, CheckpointError, RunError : as in `run`.
     """
+    from ryusa.casefile.estimate import MEMORY_PER_GRAIN, MEMORY_WITH_EVENTS
+
+    each = MEMORY_PER_GRAIN if scene.events == EventRule.NONE else MEMORY_WITH_EVENTS
+    refuse_if_too_large((scene.n_grain + scene.n_fixed) * each, scene.n_grain)
     about = _About({"title": "", "record": {"frames": frames, "settle": stop.settle}})
     how = _How(threads, progress, overwrite, engine, checkpoint, resume, force)
     return _carry_out(lambda: (scene, state, ()), Path(folder), frames, stop, changes, how, about)
