@@ -25,7 +25,7 @@ PARTS = "parts"  # folder of write-once HDF5 files
 
 PART_NAME = re.compile(r"part-(\d{6})\.h5")
 SCENE_NAME = re.compile(r"scene-(\d{6})\.h5")
-SHELF_NAME = re.compile(r"shelf-(\d{6})\.h5")  # index over some parts, for the index over all
+SHELF_NAME = re.compile(r"shelf-(\d{6})-\d+-\d+\.h5")  # index over some parts, for the index over all
 
 # status in provenance.json
 RUNNING, COMPLETE, STOPPED, FAILED = "running", "complete", "stopped", "failed"
@@ -82,9 +82,9 @@ def part_name(k: int) -> str:
     return f"part-{k:06d}.h5"
 
 
-def shelf_name(k: int) -> str:
-    """File name of shelf k."""
-    return f"shelf-{k:06d}.h5"
+def shelf_name(first: int, n_frame: int, n_contact: int) -> str:
+    """File name of the shelf that begins with part `first`: no two that differ share a name."""
+    return f"shelf-{first:06d}-{n_frame}-{n_contact}.h5"
 
 
 def scene_name(k: int) -> str:

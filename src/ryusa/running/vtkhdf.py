@@ -65,6 +65,11 @@ def write_index(folder: Path, parts: list[PartSize], n_grain: int, shelved: int 
     Returns
     -------
     shelved : those that are there now.
+
+    Notes
+    -----
+    A shelf is never written over by another: until the new index is in place, the old one and whoever reads by
+    it need theirs.
     """
     shelves = [_shelf(k, parts[k * SHELF : (k + 1) * SHELF]) for k in range(len(parts) // SHELF)]
     for k, shelf in enumerate(shelves[shelved:], shelved):
@@ -79,7 +84,7 @@ def write_index(folder: Path, parts: list[PartSize], n_grain: int, shelved: int 
 
 def _shelf(k: int, parts: list[PartSize]) -> PartSize:
     frames, contacts = sum(one.n_frame for one in parts), sum(one.n_contact for one in parts)
-    return PartSize(schema.shelf_name(k), frames, contacts, parts[-1].end)
+    return PartSize(schema.shelf_name(k * SHELF, frames, contacts), frames, contacts, parts[-1].end)
 
 
 def _write_shelf(path: Path, parts: list[PartSize], n: int) -> None:
