@@ -68,8 +68,8 @@ def write_index(folder: Path, parts: list[PartSize], n_grain: int, shelved: int 
 
     Notes
     -----
-    A shelf is never written over by another: until the new index is in place, the old one and whoever reads by
-    it need theirs.
+    A shelf is never written over by another: until the new index is in place, the old one and whoever reads
+    by it need theirs.
     """
     shelves = [_shelf(k, parts[k * SHELF : (k + 1) * SHELF]) for k in range(len(parts) // SHELF)]
     for k, shelf in enumerate(shelves[shelved:], shelved):
