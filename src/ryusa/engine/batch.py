@@ -119,7 +119,8 @@ def _make_see(plane_case: int) -> Any:
             closing = u_x * n_x + u_z * n_z
             if plane_case:
                 s_x = u_x * n_z - u_z * n_x
-                s_x += a_i * i_y + a_j * j_y
+                # in a plane spin has one component; the zeros beside it are read to read all four of a group
+                s_x += a_i * (i_x + i_y + i_z) + a_j * (j_x + j_y + j_z)
             else:
                 u_y = desk[D_MOVING + 4 * l + 1]
                 closing += u_y * n_y
