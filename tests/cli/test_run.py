@@ -174,7 +174,7 @@ def test_a_fault_while_stepping_has_exit_code_3_and_one_message(ryusa_: Any, dro
 def test_ctrl_c_ends_with_exit_code_5_and_readable_frames(
     ryusa_: Any, drop: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def engine(threads: int) -> Any:
+    def engine(named: str | None, threads: int) -> Any:
         from ryusa.engine.cpu import CpuEngine
 
         class Interrupted(CpuEngine):
@@ -186,7 +186,7 @@ def test_ctrl_c_ends_with_exit_code_5_and_readable_frames(
 
         return Interrupted(threads)
 
-    monkeypatch.setattr(runner, "_cpu_engine", engine)
+    monkeypatch.setattr(runner, "_engine", engine)
     done = ryusa_("run", drop, "-o", "out")
     assert done.code == 5
     assert "ryusa resume out" in done.out
