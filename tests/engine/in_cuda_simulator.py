@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from tests.engine.conftest import D, bits
+from tests.engine.reference import touching_pairs
 
 from ryusa.build import scene
 from ryusa.engine.cpu import CpuEngine
@@ -242,18 +243,11 @@ def test_the_list_finds_every_pair_that_a_search_of_all_pairs_finds(seed):
     fixed = replace(fixed, overlap_limit=math.inf, world_low=(-math.inf,) * 3, world_high=(math.inf,) * 3)
     engine = CudaEngine(skin=0.05)
     engine.load(fixed, first)
-    r = 0.5 * np.concatenate([fixed.d, fixed.d_fixed])
     for _ in range(3):
         before = engine.state()
         engine.advance(1).raise_if_any()
         after = engine.state().contacts
-        everyone = np.vstack([before.x, fixed.x_fixed])
-        apart = everyone[:, None] - everyone[None]
-        for axis in range(2):
-            if math.isfinite(period[axis]):
-                apart[..., axis] -= period[axis] * np.round(apart[..., axis] / period[axis])
-        touching = np.linalg.norm(apart, axis=2) < r[:, None] + r[None]
-        expected = {(i, j) for i, j in zip(*np.nonzero(np.triu(touching, 1)), strict=True) if i < n}
+        expected = touching_pairs(fixed, before)
         assert set(zip(after.i, after.j, strict=True)) == expected
         assert len(expected) > 10
         engine.advance(4).raise_if_any()

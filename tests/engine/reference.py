@@ -99,3 +99,14 @@ def carried(spring: np.ndarray, normal: np.ndarray, twist: float) -> np.ndarray:
     turned = spring + twist * np.cross(normal, spring)
     turned = turned - float(turned @ normal) * normal
     return turned * (size / float(np.linalg.norm(turned)))
+
+
+def touching_pairs(fixed: Scene, state: State) -> set[tuple[int, int]]:
+    """Pairs (i, j) in touch, i a free grain and the lower id, by a search of all pairs; no planes."""
+    x, r = np.vstack([state.x, fixed.x_fixed]), 0.5 * np.concatenate([fixed.d, fixed.d_fixed])
+    apart = x[:, None] - x[None]
+    for axis, period in enumerate(fixed.period):
+        if math.isfinite(period):
+            apart[..., axis] -= period * np.round(apart[..., axis] / period)
+    touching = np.linalg.norm(apart, axis=2) < r[:, None] + r[None]
+    return {(i, j) for i, j in zip(*np.nonzero(np.triu(touching, 1)), strict=True) if i < fixed.n_grain}
