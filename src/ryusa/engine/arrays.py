@@ -4,6 +4,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ryusa.engine.lanes import DESK, LANES, TABLE
+
 _LINE = 64  # bytes of a cache line
 
 
@@ -23,6 +25,7 @@ class Grains(NamedTuple):
 
     x: Any  # centres and radius [m], (n_total, 4); inf the radius of planes
     v: Any  # velocities [m/s], and 0, (n_total, 4); zero beyond n
+    then: Any  # velocities when the near list was cut [m/s], and 0, (n, 4)
     w: Any  # spins [rad/s], and the radius [m], (n_total, 4); zero beyond n; beside v in one cache line
     m: Any  # mass with added mass [kg], (n_total,); inf beyond n
     m_bare: Any  # mass without added mass [kg], (n,)
@@ -88,11 +91,19 @@ class Ledger(NamedTuple):
 
 
 class Work(NamedTuple):
-    """What one thread reckons on."""
+    """What one thread reckons on (`workplace`)."""
 
     desk: Any  # a batch of touching pairs (lanes.py), (DESK,)
-    table: Any  # a batch of grains in motion (lanes.py), (TABLE,)
+    table: Any  # a grain in the water (lanes.py), (TABLE,)
     glance: Any  # way from i to j and both radii [m] of pairs that are looked at, four each, (4 * LANES,)
     apart: Any  # the same of pairs that wait, (8 * LANES,)
     hit: Any  # 1 where a pair that is looked at touches, (LANES,)
     which: Any  # near pairs that wait, then those on the desk, (2 * LANES,), uint32
+
+
+def workplace() -> Work:
+    """Room for one thread."""
+    return Work(
+        aligned(DESK), aligned(TABLE), aligned(4 * LANES), aligned(8 * LANES), aligned(LANES),
+        np.zeros(2 * LANES, np.uint32),
+    )  # fmt: skip

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ryusa.engine.account import begin_account, book_start, extremes_of, read_account, tally_of
-from ryusa.engine.arrays import Ledger
+from ryusa.engine.arrays import Ledger, workplace
 from ryusa.engine.entry import events_of, refuse_misfit, still_there
 from ryusa.engine.faults import fault_of, lost_of, unsafe_of
 from ryusa.engine.listing import Layout, Memory, take_memory
@@ -67,6 +67,7 @@ class CpuEngine:
         if threads < 1:
             raise ValueError(f"threads = {threads}: at least 1")
         self._threads, self._skin_first = threads, skin
+        self._work = [workplace() for _ in range(threads)]
         others = threads - 1  # the caller works too
         self._pool = ThreadPoolExecutor(others, thread_name_prefix="ryusa") if others else None
         self._drained: list[np.ndarray] = []
@@ -223,16 +224,20 @@ class CpuEngine:
                 layout.block_start, self._n, layout.n_solid, self._grains, layout.walls, self._pairs,
                 self._near.pairs,
             )  # fmt: skip
-            more = (self._ledger, self._choice, self._near.clock)
+            more = (self._choice, self._near.clock)
             others = (
                 [
-                    self._pool.submit(self._run, k, *arguments, self._near.spares[k], *more)
+                    self._pool.submit(
+                        self._run, k, *arguments, self._near.spares[k], self._ledger, self._work[k], *more
+                    )
                     for k in range(1, threads)
                 ]
                 if self._pool
                 else []
             )
-            done, self._travel, stop = self._run(0, *arguments, self._near.spares[0], *more)
+            done, self._travel, stop = self._run(
+                0, *arguments, self._near.spares[0], self._ledger, self._work[0], *more
+            )
             for other in others:
                 other.result()
             self._step += done
@@ -276,7 +281,7 @@ class CpuEngine:
 
     def _cut_near(self, memory: Memory) -> None:
         self._near.begin(
-            self._grains, self._pairs, self._skin, self._travel, self._last_way(), self._numbers, memory,
+            self._grains, self._pairs, self._skin, self._last_way() / 2.001, self._numbers, memory,
             self._share,
         )  # fmt: skip
 

@@ -46,22 +46,15 @@ D_LIVE = 61 * PITCH  # 1 where they touch
 DESK = 62 * PITCH
 FAR = 1.0e9  # [m] where a lane without a pair puts its partner
 
-# Grains in motion lie on a smaller table of the same kind, in groups of four:
-MOVERS = 16  # grains in a batch
-_GROUP = 4 * MOVERS + 8
-M_X = 0  # centre [m] and radius
-M_V = _GROUP  # velocity [m/s] and spin [rad/s] before the step, and after it
-M_V_NEW = 2 * _GROUP
-M_W = 3 * _GROUP
-M_W_NEW = 4 * _GROUP
-M_PUSH = 5 * _GROUP  # force [N] but for drag and weight
-M_DRAG = 6 * _GROUP  # [N]
-M_TURN = 7 * _GROUP  # torque [N m], and contacts
-M_MASS = 8 * _GROUP  # mass, added mass in the water, mass that gravity sees [kg], each for every component
-M_ADDED = 9 * _GROUP
-M_WEIGHT = 10 * _GROUP
-M_INERTIA = 11 * _GROUP  # [kg m2]
-M_GRAVITY = 12 * _GROUP  # [m/s2]
-M_LIFT = 13 * _GROUP  # lift and Magnus force [N], and torque of the water over spin [N m s]
-M_FLOW = 14 * _GROUP  # force of the flow on what it carries [N], and 1 where a grain is in the water
-TABLE = 15 * _GROUP
+# A grain in the water lies on a table, in groups of four:
+M_V = 0  # velocity [m/s] and spin [rad/s] before the step, and after it
+M_V_NEW = 4
+M_W = 8
+M_W_NEW = 12
+M_PUSH = 16  # force [N] but for drag and weight
+M_DRAG = 20  # [N]
+M_TURN = 24  # torque [N m], and contacts
+M_LIFT = 28  # lift and Magnus force [N], and torque of the water over spin [N m s]
+M_FLOW = 32  # force of the flow on what it carries [N], and 1 where a grain is in the water
+M_ADDED = 36  # added mass in the water [kg], and nothing
+TABLE = 40

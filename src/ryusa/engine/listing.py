@@ -37,6 +37,7 @@ class Layout:
         self.n, self.n_solid, self.kind = n, n + n_fixed, kind
         inf = np.full(n_fixed + n_plane, np.inf)
         self.r = np.concatenate([0.5 * scene.d, 0.5 * scene.d_fixed, np.full(n_plane, np.inf)])
+        self.largest = 2.0 * float(self.r[: self.n_solid].max(initial=0.0))
         self.m = np.concatenate([scene.m + scene.m_added, inf])
         self.inertia = np.concatenate([scene.inertia, inf])
         self.tracked = scene.tracked if len(scene.tracked) == n else np.zeros(n, np.bool_)
@@ -89,6 +90,7 @@ class Layout:
         return Grains(
             x=x,
             v=v,
+            then=aligned(n, 4),
             w=w,
             m=self.m,
             m_bare=scene.m,
@@ -143,7 +145,7 @@ class Layout:
         lost = int(wrap_grains(x[:n], by_id.image, period, self.low, self.high))
         listed = x[:n, :3].copy()
         skin = skin + film_reach(scene)
-        size = 2.0 * float(self.r[: self.n_solid].max(initial=0.0)) + skin
+        size = self.largest + skin
         low, wide, dims = grid_of(x, n, size, period)
         order = np.empty(n, np.int64)
         first = sort_into(x, n, low, wide, dims, order)
@@ -203,21 +205,12 @@ class Layout:
             lost,
         )  # fmt: skip
 
-    def remember(self, grains: Grains, near: Near, memory: Memory) -> None:
-        """Lay the memory of touching pairs into a near list.
-
-        Raises
-        ------
-        AssertionError : a pair in touch is not in the list.
-        """
+    def remember(self, grains: Grains, near: Near, memory: Memory) -> int:
+        """Lay the memory of touching pairs into a near list; returns the first that is not in it, or -1."""
         index = np.empty(self.n, np.int64)
         index[grains.ids[: self.n]] = np.arange(self.n)
         block_of = np.repeat(np.arange(len(near.count)), np.diff(self.block_start))
-        missing = put_rows(self.n, near, block_of, index, *memory)
-        if missing >= 0:
-            raise AssertionError(
-                f"pair {memory.i[missing]}, {memory.j[missing]} is in touch and not in the list"
-            )
+        return int(put_rows(self.n, near, block_of, index, *memory))
 
 
 def _vectors(n: int) -> tuple[Floats, Floats, Floats]:

@@ -11,9 +11,10 @@ from ryusa.engine.arrays import Grains, Ledger, Near, Pairs, Walls, Work
 from ryusa.engine.batch import hand_out, lay_out, look, overlap_on, reckon
 from ryusa.engine.company import keep_company, wet_dashpots
 from ryusa.engine.four import copy4
-from ryusa.engine.lanes import D_BOOKS, D_SPIN_I, D_SPIN_J, DESK, LANES, N_LANE_BOOK, PITCH, TABLE
+from ryusa.engine.lanes import D_BOOKS, D_SPIN_I, D_SPIN_J, LANES, N_LANE_BOOK, PITCH
+from ryusa.engine.lend import lend
 from ryusa.engine.motion import motion
-from ryusa.engine.near import best_skin, cut
+from ryusa.engine.near import cut, plan_cut, steps_ahead
 from ryusa.engine.rows import *
 from ryusa.engine.sync import meet
 from ryusa.model.tally import Book
@@ -178,20 +179,18 @@ def make_run(kind: Variant) -> Any:
         near: Near,
         spare: Near,
         ledger: Ledger,
+        work: Work,
         choice: Choice,
         clock: Any,
     ) -> tuple[int, float, int]:
         """March up to n_steps; all threads come back with the same (steps done, travel, stop)."""
+        c, grains, walls, pairs, work = lend(c), lend(grains), lend(walls), lend(pairs), lend(work)
+        near, spare, ledger, block_start = lend(near), lend(spare), lend(ledger), lend(block_start)
         ended, books, now = ledger.ended, ledger.books, ledger.now
         n_block = len(block_start) - 1
         b_0, b_1 = thread * n_block // n_threads, (thread + 1) * n_block // n_threads
         dt, t_zero, skin, step_limit = c[C_DT], c[C_T_ZERO], c[C_SKIN], c[C_STEP_LIMIT]
-        work = Work(
-            np.zeros(DESK), np.zeros(TABLE), np.zeros(4 * LANES), np.zeros(8 * LANES), np.zeros(LANES),
-            np.zeros(2 * LANES, np.uint32),
-        )  # fmt: skip
-        near_skin, near_travel, since = clock[K_SKIN], clock[K_TRAVEL], clock[K_SINCE]
-        lanes, touching = clock[K_LANES], clock[K_TOUCHING]
+        own = clock.copy()
         look = COST_LOOK * pairs.start[n] + COST_GRAIN * n
         target = done = 0
         stop = STOP_DONE
@@ -199,32 +198,27 @@ def make_run(kind: Variant) -> Any:
             if 2.0 * travel > skin:
                 stop = STOP_LIST
                 break
-            if 2.0 * (travel - near_travel) > near_skin or since >= LONGEST_CUT:
-                if since > 0.0:
-                    near_skin = best_skin(
-                        near_skin, 2.0 * (travel - near_travel) / since, look + COST_LAY * lanes,
-                        COST_NEAR * (lanes - touching),
-                    )  # fmt: skip
-                    near_skin = min(max(near_skin, clock[K_LEAST]), clock[K_MOST])
+            if own[K_STRAY] > own[K_SKIN] or own[K_SINCE] >= own[K_LASTS]:
+                plan_cut(own, look)
                 fastest = 0.0
                 for b in range(n_block):
                     fastest = max(fastest, now[b, N_SPEED_MAX])
-                # also pairs that parted in the last step: they have an account to close
-                reach_on = max(near_skin, 2.001 * fastest * dt) + (c[C_FILM_REACH] if kind.film else 0.0)
+                own[K_LASTS] = steps_ahead(own, fastest * dt)
+                reach_on = ROUNDED_UP * own[K_SKIN] + (c[C_FILM_REACH] if kind.film else 0.0)
                 for b in range(b_0, b_1):
                     now[b, N_FULL], now[b, N_TOUCHING] = cut(
-                        b, block_start[b], block_start[b + 1], n, n_solid, reach_on, kind.plane_case, c,
-                        grains, walls, pairs, near, spare,
+                        b, block_start[b], block_start[b + 1], n, n_solid, reach_on, own[K_LASTS] * dt,
+                        kind.plane_case, c, grains, walls, pairs, near, spare,
                     )  # fmt: skip
                 target = meet(count, n_threads, target)
-                near_travel, since, lanes, touching = travel, 0.0, 0.0, 0.0
+                own[K_STRAY] = own[K_SINCE] = own[K_LANES] = own[K_TOUCHING] = 0.0
                 for b in range(n_block):
-                    lanes += near.count[b]
-                    touching += now[b, N_TOUCHING]
+                    own[K_LANES] += near.count[b]
+                    own[K_TOUCHING] += now[b, N_TOUCHING]
                     if now[b, N_FULL] != 0.0:
                         stop = STOP_ROOM
                 if stop != STOP_DONE:
-                    near_travel = -np.inf
+                    own[K_STRAY] = np.inf
                     break
             last = done == n_steps - 1
             t = t_zero + step * dt
@@ -241,15 +235,16 @@ def make_run(kind: Variant) -> Any:
                     pairs, work.table, books[b], now[b],
                 )  # fmt: skip
             target = meet(count, n_threads, target)
-            fastest = 0.0
+            fastest = stray = 0.0
             full = False
             for b in range(n_block):
-                fastest = max(fastest, now[b, N_SPEED_MAX])
+                fastest, stray = max(fastest, now[b, N_SPEED_MAX]), max(stray, now[b, N_STRAY_MAX])
                 full = full or now[b, N_ENDED_SHOWN] > 0.5 * ended.shape[1]
                 if now[b, N_FAULT_SHOWN] != FAULT_NONE:
                     stop = STOP_FAULT
             travel += fastest * dt
-            since += 1.0
+            own[K_STRAY] += 2.0 * stray * dt
+            own[K_SINCE] += 1.0
             step += 1
             done += 1
             if fastest * dt > step_limit and stop == STOP_DONE:
@@ -261,8 +256,7 @@ def make_run(kind: Variant) -> Any:
                 break
         meet(count, n_threads, target)
         if thread == 0:
-            clock[K_SKIN], clock[K_TRAVEL], clock[K_SINCE] = near_skin, near_travel, since
-            clock[K_LANES], clock[K_TOUCHING] = lanes, touching
+            clock[:] = own
         return done, travel, stop
 
     return run

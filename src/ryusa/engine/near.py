@@ -3,7 +3,7 @@
 Pairs keep the order of the wide list, and those that do not touch are passed over: when the near list is cut
 never shows in the bits of a run.
 """
-# ruff: noqa: E741, F403  (l is a lane; the columns of rows.py, all of them plain integers)
+# ruff: noqa: E741, F403, F405  (l is a lane; the columns of rows.py, all of them plain integers)
 
 import math
 from typing import Any
@@ -13,7 +13,7 @@ import numpy as np
 from ryusa.engine._kernel import kernel
 from ryusa.engine.arrays import Grains, Near, Pairs, Walls
 from ryusa.engine.four import copy4
-from ryusa.engine.glance import see_apart, tell_near
+from ryusa.engine.glance import see_apart, see_drift, tell_coming
 from ryusa.engine.lanes import LANES
 from ryusa.engine.pair import place_of_eta
 from ryusa.engine.rows import *
@@ -23,34 +23,41 @@ _SLACK = 2 * LANES  # pairs are listed by the batch, where a whole one would fin
 
 @kernel(nogil=True)
 def cut_blocks(
-    first: int, last: int, block_start: Any, n: int, n_solid: int, reach_on: float, plane_case: int, c: Any,
-    grains: Grains, walls: Walls, pairs: Pairs, near: Near, spare: Near, wanted: Any,
+    first: int, last: int, block_start: Any, n: int, n_solid: int, reach_on: float, ahead: float,
+    plane_case: int, c: Any, grains: Grains, walls: Walls, pairs: Pairs, near: Near, spare: Near, wanted: Any,
 ) -> None:  # fmt: skip
     """Cut the lists of blocks first..last-1; `wanted` gets the room that each wants (see `cut`)."""
     for b in range(first, last):
         wanted[b] = cut(
-            b, block_start[b], block_start[b + 1], n, n_solid, reach_on, plane_case, c, grains, walls, pairs,
-            near, spare,
+            b, block_start[b], block_start[b + 1], n, n_solid, reach_on, ahead, plane_case, c, grains, walls,
+            pairs, near, spare,
         )[0]  # fmt: skip
 
 
 @kernel()
 def cut(
-    b: int, lo: int, hi: int, n: int, n_solid: int, reach_on: float, plane_case: int, c: Any, grains: Grains,
-    walls: Walls, pairs: Pairs, near: Near, spare: Near,
+    b: int, lo: int, hi: int, n: int, n_solid: int, reach_on: float, ahead: float, plane_case: int, c: Any,
+    grains: Grains, walls: Walls, pairs: Pairs, near: Near, spare: Near,
 ) -> tuple[int, int]:  # fmt: skip
-    """List anew the pairs of block b, grains lo..hi-1, that are nearer than `reach_on` [m] beyond touch.
+    """List anew the pairs of block b, grains lo..hi-1, that come nearer than `reach_on` [m] beyond touch.
 
-    `spare` has room for the pairs in touch of any block. Returns how much room is wanted where there was too
-    little (the list then holds the pairs in touch alone), 0 where there was enough, -1 where a pair in touch
-    is beyond reach, which should not be; and how many are in touch.
+    They do so within `ahead` seconds if each grain keeps its velocity, which is noted in `Grains.then`; or
+    did within the last step, and have an account to close. `spare` has room for the pairs in touch of any
+    block. Returns how much room is wanted where there was too little (the list then holds the pairs in touch
+    alone), 0 where there was enough, -1 where a pair in touch is beyond reach, which should not be; and how
+    many are in touch.
     """
     first, touching = near.first[b], _put_aside(b, near, spare)
     room = near.first[b + 1] - first
     i_of, j_of, to_of, pair, live = near.i, near.j, near.to, near.pair, near.live
-    x, start, partners, wanted = grains.x, pairs.start, pairs.partners, pairs.near
+    x, v, then, start, partners, wanted = (
+        grains.x, grains.v, grains.then, pairs.start, pairs.partners, pairs.near,
+    )  # fmt: skip
     points, normals = walls.points, walls.normals
-    glance, hit, owner = np.empty(4 * LANES), np.empty(LANES), np.empty(LANES, np.uint32)
+    glance, drift = np.empty(4 * LANES), np.empty(4 * LANES)
+    hit, owner = np.empty(LANES), np.empty(LANES, np.uint32)
+    for g in range(lo, hi):
+        copy4(then, 4 * g, v, 8 * g)
     new, i, crossing = 0, lo, n + len(near.count) + pairs.cross_start[b]
     full = False
     for begin in range(start[lo], start[hi], LANES):
@@ -60,7 +67,8 @@ def cut(
                 i += 1
             owner[l] = i
             see_apart(l, i, partners[begin + l], n_solid, x, points, normals, glance)
-        tell_near(plane_case, reach_on, m, c, glance, hit)
+            see_drift(l, i, partners[begin + l], n_solid, v, normals, drift)
+        tell_coming(plane_case, reach_on, c[C_DT], ahead, m, c, glance, drift, hit)
         full = full or new + m > room
         for l in range(m):  # no branch: who is near cannot be foretold
             j, close = int(partners[begin + l]), int(hit[l] > 0.0)
@@ -144,6 +152,39 @@ def best_skin(skin: float, closing: float, making: float, keeping: float) -> flo
     if keeping <= 0.0:
         return 2.0 * skin
     return min(max(math.sqrt(making * closing * skin / keeping), 0.5 * skin), 2.0 * skin)
+
+
+@kernel()
+def plan_cut(clock: Any, look: float) -> None:
+    """Choose reach and time ahead of the next near list from how the last one fared.
+
+    Parameters
+    ----------
+    clock : places K_ of rows.py.
+    look : cost of looking at all pairs of the wide list.
+    """
+    since = clock[K_SINCE]
+    if since == 0.0:
+        return
+    rate = clock[K_STRAY] / since
+    skin = best_skin(
+        clock[K_SKIN], rate, look + COST_LAY * clock[K_LANES],
+        COST_NEAR * (clock[K_LANES] - clock[K_TOUCHING]),
+    )  # fmt: skip
+    skin = min(max(skin, clock[K_LEAST]), clock[K_MOST])
+    clock[K_SKIN] = skin
+    clock[K_AHEAD] = min(LOOK_AHEAD * skin / rate, LONGEST_CUT) if rate > 0.0 else LONGEST_CUT
+
+
+@kernel()
+def steps_ahead(clock: Any, way: float) -> float:
+    """Steps a near list may last, where the fastest grain goes `way` in one [m].
+
+    In a period no more than leave the nearest image of a partner the one that matters.
+    """
+    if way > 0.0:
+        return max(math.floor(min(clock[K_AHEAD], (clock[K_ROOM] - clock[K_SKIN]) / (2.0 * way))), 1.0)
+    return clock[K_AHEAD]
 
 
 @kernel()

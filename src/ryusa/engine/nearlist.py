@@ -5,12 +5,27 @@ import numpy as np
 from ryusa.engine.arrays import Grains, Near, Pairs
 from ryusa.engine.lanes import LANES
 from ryusa.engine.listing import Layout, Memory, Share, film_reach
-from ryusa.engine.near import cut_blocks
-from ryusa.engine.rows import K_LANES, K_LEAST, K_MOST, K_SINCE, K_SKIN, K_TOUCHING, K_TRAVEL, N_CLOCK
+from ryusa.engine.near import cut_blocks, steps_ahead
+from ryusa.engine.rows import (
+    C_DT,
+    K_AHEAD,
+    K_LANES,
+    K_LASTS,
+    K_LEAST,
+    K_MOST,
+    K_ROOM,
+    K_SINCE,
+    K_SKIN,
+    K_STRAY,
+    K_TOUCHING,
+    N_CLOCK,
+    ROUNDED_UP,
+)
 from ryusa.model.scene import Floats
 
-_SKIN = 0.01  # first reach, over the smallest diameter
+_SKIN = 0.003  # first reach, over the smallest diameter
 _LEAST = 1e-4  # smallest
+_AHEAD = 20.0  # steps it should last at first
 
 
 class NearList:
@@ -29,41 +44,55 @@ class NearList:
         self.pairs = layout.room_for(np.zeros(blocks, np.int64))
         self.spares: list[Near] = []
         self.clock = np.zeros(N_CLOCK)
-        self.clock[K_SKIN] = _SKIN * smallest
+        self.clock[K_SKIN], self.clock[K_AHEAD] = _SKIN * smallest, _AHEAD
         self.make_room(np.full(blocks, layout.n // blocks))
 
     def begin(
-        self, grains: Grains, wide: Pairs, skin: float, travel: float, parted: float, numbers: Floats,
-        memory: Memory, share: Share,
+        self, grains: Grains, wide: Pairs, skin: float, way: float, numbers: Floats, memory: Memory,
+        share: Share,
     ) -> None:  # fmt: skip
         """Cut from a new wide list, and lay in the memory of pairs in touch.
 
         Parameters
         ----------
-        skin, travel : reach of the wide list beyond touch, and how far the fastest grain has gone since [m].
-        parted : how far a pair in touch may have parted in the last step [m].
+        skin : reach of the wide list beyond touch [m].
+        way : how far the fastest grain goes in a step [m].
         share : has threads share the blocks.
+
+        Raises
+        ------
+        AssertionError : a pair in touch is not in the wide list.
         """
         layout, clock, kind = self._layout, self.clock, self._layout.kind
         clock[K_LEAST], clock[K_MOST] = _LEAST * self._smallest, 0.5 * skin
         clock[K_SKIN] = min(max(clock[K_SKIN], clock[K_LEAST]), clock[K_MOST])
-        clock[K_TRAVEL], clock[K_SINCE] = travel, 0.0
-        reach_on = max(float(clock[K_SKIN]), parted) + film_reach(layout.scene)
-        self.pairs.count[:] = 0
-
+        clock[K_STRAY] = clock[K_SINCE] = 0.0
+        clock[K_ROOM] = 0.5 * layout.period.min() - layout.largest - film_reach(layout.scene)
+        clock[K_LASTS] = steps_ahead(clock, way)
+        reach_on = ROUNDED_UP * float(clock[K_SKIN]) + film_reach(layout.scene)
+        ahead = float(clock[K_LASTS] * numbers[C_DT])
         wanted = np.zeros(len(layout.block_start) - 1, np.int64)
 
         def cut_some(first: int, last: int) -> None:
             cut_blocks(
-                first, last, layout.block_start, layout.n, layout.n_solid, reach_on, kind.plane_case, numbers,
-                grains, layout.walls, wide, self.pairs, self.spares[0], wanted,
+                first, last, layout.block_start, layout.n, layout.n_solid, reach_on, ahead, kind.plane_case,
+                numbers, grains, layout.walls, wide, self.pairs, self.spares[0], wanted,
             )  # fmt: skip
 
-        share(cut_some)
-        while wanted.any():
-            self.make_room(wanted)
+        while True:
+            self.pairs.count[:] = 0
             share(cut_some)
-        layout.remember(grains, self.pairs, memory)
+            while wanted.any():
+                self.make_room(wanted)
+                share(cut_some)
+            missing = layout.remember(grains, self.pairs, memory)
+            if missing < 0:
+                break
+            if reach_on > skin + film_reach(layout.scene):
+                raise AssertionError(
+                    f"pair {memory.i[missing]}, {memory.j[missing]} is in touch and not in the list"
+                )
+            reach_on *= 2.0  # somebody moved grains apart that a snapshot has in touch
         clock[K_LANES], clock[K_TOUCHING] = float(self.pairs.count.sum()), float(len(memory.i))
 
     def make_room(self, wanted: np.ndarray) -> None:

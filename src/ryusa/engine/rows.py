@@ -103,16 +103,20 @@ N_PEND_FLOW = 21
 N_PEND_FILM = 22
 N_FULL = 23  # pairs that found no room when the near list of the block was cut, all of them; else 0
 N_TOUCHING = 24  # pairs in touch when it was cut
+N_STRAY_MAX = 25  # largest difference of a velocity to what it was then [m/s]
 
 # The near list's own clock, kept between calls; it never shows in the bits.
 K_SKIN = 0  # reach of the near list beyond touch [m]
-K_TRAVEL = 1  # how far the fastest grain had gone when it was cut [m]
+K_STRAY = 1  # how much nearer two grains may be than if each had kept its velocity since then [m]
 K_SINCE = 2  # steps since
 K_LANES = 3  # lanes of all blocks
 K_LEAST = 4  # smallest and largest skin [m]
 K_MOST = 5
 K_TOUCHING = 6  # pairs in touch when it was cut
-N_CLOCK = 8
+K_AHEAD = 7  # steps it should last
+K_LASTS = 8  # steps it does last at most
+K_ROOM = 9  # how far a pair may move before another image of it is the nearer one [m]
+N_CLOCK = 10
 
 # What a kernel cannot raise.
 FAULT_NONE = 0
@@ -132,6 +136,8 @@ STOP_ROOM = 5  # the near list wants more room
 # grain while the near list is cut, to list a near pair, and to look at it in a step.
 COST_LOOK, COST_GRAIN, COST_LAY, COST_NEAR = 7.0, 5.0, 10.0, 3.0
 LONGEST_CUT = 512.0  # steps after which the near list is cut though nothing moves
+LOOK_AHEAD = 1.5  # steps a near list is cut for, over those it should last
+ROUNDED_UP = 1.000001  # what keeps a reach from falling short by round-off
 
 BASE, WITH_ROLLING = 8, 16  # doubles a row takes without and with rolling friction: whole cache lines
 # widths padded to whole cache lines, so that blocks of different threads do not share one
