@@ -96,7 +96,6 @@ class Work(NamedTuple):
     desk: Any  # a batch of touching pairs (lanes.py), (DESK,)
     table: Any  # a grain in the water (lanes.py), (TABLE,)
     glance: Any  # way from i to j and both radii [m] of pairs that are looked at, four each, (4 * LANES,)
-    apart: Any  # the same of pairs that wait, (8 * LANES,)
     hit: Any  # 1 where a pair that is looked at touches, (LANES,)
     which: Any  # near pairs that wait, then those on the desk, (2 * LANES,), uint32
 
@@ -104,6 +103,6 @@ class Work(NamedTuple):
 def workplace() -> Work:
     """Room for one thread."""
     return Work(
-        aligned(DESK), aligned(TABLE), aligned(4 * LANES), aligned(8 * LANES), aligned(LANES),
+        aligned(DESK), aligned(TABLE), aligned(4 * LANES), aligned(LANES),
         np.zeros(2 * LANES, np.uint32),
     )  # fmt: skip

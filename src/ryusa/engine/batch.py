@@ -14,7 +14,7 @@ import math
 from typing import Any
 
 from ryusa.engine._kernel import FAST, kernel
-from ryusa.engine.four import add4, copy4, take4
+from ryusa.engine.four import add4, copy4, read4, take4, with_last, write4
 from ryusa.engine.glance import see_apart, tell_near
 from ryusa.engine.lanes import *
 from ryusa.engine.pair import begin_row, place_of_eta
@@ -30,26 +30,25 @@ SLIP_DROP, SLIP_TOTAL, CAP_TOTAL = int(Slip.SPRING_DROP), int(Slip.TOTAL), int(C
 @kernel(fastmath=FAST, forceinline=True)
 def look(
     plane_case: int, reach_on: float, first: int, m: int, waiting: int, n_solid: int, c: Any, x: Any,
-    i_of: Any, j_of: Any, live: Any, points: Any, normals: Any, glance: Any, hit: Any, apart: Any, which: Any,
+    i_of: Any, j_of: Any, live: Any, points: Any, normals: Any, glance: Any, hit: Any, which: Any,
 ) -> int:  # fmt: skip
     """Let those of m <= LANES near pairs wait that touch or did in the last step; returns how many wait.
 
-    `which` and `apart` get their numbers and ways from i to j [m]; `glance` is room to look at all.
+    `which` gets their numbers; `glance` and `hit` are room to look at all.
     """
     for l in range(m):
         see_apart(l, i_of[first + l], j_of[first + l], n_solid, x, points, normals, glance)
     tell_near(plane_case, reach_on, m, c, glance, hit)
     for l in range(m):  # no branch: which pairs touch cannot be foretold
         which[waiting] = first + l
-        copy4(apart, 4 * waiting, glance, 4 * l)
         waiting += int(hit[l] > 0.0) | int(live[first + l])
     return waiting
 
 
 @kernel(fastmath=FAST, forceinline=True)
 def lay_out(
-    rotation: int, m: int, which: Any, apart: Any, n_solid: int, c: Any, mass: Any, inertia: Any, x: Any,
-    v: Any, w: Any, i_of: Any, j_of: Any, live: Any, eta: Any, rows: Any, desk: Any,
+    rotation: int, m: int, which: Any, n_solid: int, c: Any, mass: Any, inertia: Any, x: Any, v: Any, w: Any,
+    points: Any, normals: Any, i_of: Any, j_of: Any, live: Any, eta: Any, rows: Any, desk: Any,
 ) -> int:  # fmt: skip
     """Lay the first m pairs that wait on as many lanes; returns the lanes to reckon.
 
@@ -61,18 +60,16 @@ def lay_out(
         i, j = i_of[k], j_of[k]
         if not live[k]:
             begin_row(k, i, j, rotation, c, mass, x, inertia, eta, rows)
-        copy4(desk, D_APART + 4 * l, apart, 4 * l)
-        copy4(desk, D_MOVING + 4 * l, v, 8 * i)
-        take4(desk, D_MOVING + 4 * l, v, 8 * j)
+        see_apart(D_APART // 4 + l, i, j, n_solid, x, points, normals, desk)
+        e = place_of_eta(k, eta)
+        write4(desk, D_MOVING + 4 * l, with_last(read4(v, 8 * i) - read4(v, 8 * j), eta[e, ETA_N]))
         copy4(desk, D_SPIN_I + 4 * l, w, 8 * i)
         copy4(desk, D_SPIN_J + 4 * l, w, 8 * j)
         if j >= n_solid:
             desk[D_SPIN_J + 4 * l + 3] = w[i, 3]
         copy4(desk, D_SPRING + 4 * l, rows, width * k)
         copy4(desk, D_DASH + 4 * l, rows, width * k + R_DASH_S)
-        e = place_of_eta(k, eta)
-        desk[D_MOVING + 4 * l + 3], desk[D_ETA_S + l] = eta[e, ETA_N], eta[e, ETA_S]
-        desk[D_WAS + l] = live[k]
+        desk[D_ETA_S + l], desk[D_WAS + l] = eta[e, ETA_S], live[k]
     whole = (m + 7) // 8 * 8
     for l in range(m, whole):
         for a in range(4):

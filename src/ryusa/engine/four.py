@@ -10,8 +10,7 @@ from typing import Any
 
 from llvmlite import ir
 from numba import types
-from numba.core.typing import signature
-from numba.core.typing.templates import AbstractTemplate, infer_global
+from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 from numba.extending import intrinsic, lower_builtin, models, register_model
 
 _FOUR = ir.VectorType(ir.DoubleType(), 4)
@@ -113,7 +112,8 @@ def _made_operator(operation: Any, name: str) -> None:
         a, b = (_as_four(builder, kind, value) for kind, value in zip(sig.args, args, strict=True))
         return getattr(builder, name)(a, b)
 
-    infer_global(operation)(Typed)
+    register: Any = infer_global(operation)
+    register(Typed)
     for kinds in ((Four, Four), (Four, types.Float), (types.Float, Four)):
         lower_builtin(operation, *kinds)(codegen)
 

@@ -12,7 +12,8 @@ def _lent(builder: Any, kind: Any, value: Any) -> Any:
         owner = value.type.elements[0]
         return builder.insert_value(value, ir.Constant(owner, None), 0)
     if isinstance(kind, types.BaseTuple):
-        for k, part in enumerate(kind):
+        parts: Any = kind
+        for k, part in enumerate(parts):
             value = builder.insert_value(value, _lent(builder, part, builder.extract_value(value, k)), k)
     return value
 

@@ -10,7 +10,6 @@ from ryusa.engine._kernel import FAST, kernel
 from ryusa.engine.arrays import Grains, Ledger, Near, Pairs, Walls, Work
 from ryusa.engine.batch import hand_out, lay_out, look, overlap_on, reckon
 from ryusa.engine.company import keep_company, wet_dashpots
-from ryusa.engine.four import copy4
 from ryusa.engine.lanes import D_BOOKS, D_SPIN_I, D_SPIN_J, LANES, N_LANE_BOOK, PITCH
 from ryusa.engine.lend import lend
 from ryusa.engine.motion import motion
@@ -51,7 +50,7 @@ def forces(
     now: Any,
 ) -> None:
     """Forces of every pair that block b owns, batch by batch of those that touch."""
-    desk, glance, apart, hit, which = work.desk, work.glance, work.apart, work.hit, work.which
+    desk, glance, hit, which = work.desk, work.glance, work.hit, work.which
     reach_on = c[C_FILM_REACH] if kind.film else 0.0
     # arrays are handed over one by one: a tuple of them would have its references counted for every batch
     x, v, w, f = grains.x, grains.v, grains.w, pairs.f
@@ -68,7 +67,7 @@ def forces(
             some = min(LANES, end - k)
             waiting = look(
                 kind.plane_case, reach_on, k, some, waiting, n_solid, c, x, i_of, j_of, live, points, normals,
-                glance, hit, apart, which,
+                glance, hit, which,
             )  # fmt: skip
             k += some
         m = min(waiting, LANES)
@@ -78,7 +77,6 @@ def forces(
             kind.rotation,
             m,
             which,
-            apart,
             n_solid,
             c,
             mass,
@@ -86,6 +84,8 @@ def forces(
             x,
             v,
             w,
+            points,
+            normals,
             i_of,
             j_of,
             live,
@@ -105,7 +105,6 @@ def forces(
         waiting -= m
         for l in range(waiting):
             which[l] = which[LANES + l]
-            copy4(apart, 4 * l, apart, 4 * (LANES + l))
     for row in range(N_LANE_BOOK):
         total = 0.0
         for l in range(LANES):
