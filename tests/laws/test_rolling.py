@@ -62,7 +62,7 @@ def test_eq_13_as_printed_needs_compression():
 def test_the_constant_torque_stops_a_spin_but_never_reverses_it(cap, spin, inertia, dt):
     size = rolling.rolling_constant(cap, spin, inertia, dt)
     assert 0.0 <= size <= cap
-    after = abs(spin) - motion.acceleration_spin(size, inertia) * dt
+    after = abs(spin) - motion.acceleration_spin(size, 1.0 / inertia) * dt
     assert -1e-12 * abs(spin) <= after <= abs(spin)
 
 

@@ -31,6 +31,8 @@ class Grains(NamedTuple):
     m_bare: Any  # mass without added mass [kg], (n,)
     m_weight: Any  # mass that gravity sees [kg], (n,)
     inertia: Any  # [kg m2], (n_total,); inf beyond n
+    per_m: Any  # one over mass with added mass [1/kg], (n,)
+    per_inertia: Any  # one over moment of inertia [1/(kg m2)], (n,)
     ids: Any  # id of each place, (n_solid,)
     image: Any  # periods crossed, (n, 2)
     tracked: Any  # whether its contacts are recorded, by id, (n,)
@@ -51,6 +53,7 @@ class Pairs(NamedTuple):
     start: Any  # (n + 1,)
     partners: Any  # places, (n_pair,)
     cross_start: Any  # first crossing pair of each block, (n_block + 1,)
+    crossing: Any  # numbers of the pairs that cross, (n_cross,)
     near: Any  # 1 where the crossing pair of a row of `f` is in the near list, (n + n_block + n_cross,)
     incoming_start: Any  # rows for grain j: incoming[incoming_start[j]:incoming_start[j + 1]]
     incoming: Any  # (n_cross,)

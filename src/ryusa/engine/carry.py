@@ -8,11 +8,12 @@ from ryusa.engine._kernel import kernel
 
 
 @kernel()
-def cross_lists(n: int, block_start: Any, start: Any, partners: Any) -> tuple[Any, Any, Any]:
+def cross_lists(n: int, block_start: Any, start: Any, partners: Any) -> tuple[Any, Any, Any, Any]:
     """Number the rows of `Pairs.f` for pairs whose partner belongs to another block.
 
-    Returns the first number of each block (n_block + 1) and, for each grain, the numbers of the pairs
-    that others own and it is partner of: incoming[incoming_start[j]:incoming_start[j + 1]], in list order.
+    Returns the first of them in each block (n_block + 1); their numbers in the wide list; and, for each
+    grain, the rows of the pairs that others own and it is partner of:
+    incoming[incoming_start[j]:incoming_start[j + 1]], in list order.
     """
     n_block = len(block_start) - 1
     first = np.zeros(n_block + 1, np.int64)
@@ -28,17 +29,17 @@ def cross_lists(n: int, block_start: Any, start: Any, partners: Any) -> tuple[An
     for j in range(n):
         incoming_start[j + 1] += incoming_start[j]
     fill = incoming_start[:-1].copy()
-    incoming = np.empty(first[n_block], np.int64)
+    incoming, crossing = np.empty(first[n_block], np.int64), np.empty(first[n_block], np.uint32)
     q = n + n_block
     for b in range(n_block):
         lo, hi = block_start[b], block_start[b + 1]
         for p in range(start[lo], start[hi]):
             j = partners[p]
             if j < n and (j < lo or j >= hi):
-                incoming[fill[j]] = q
+                incoming[fill[j]], crossing[q - n - n_block] = q, p
                 fill[j] += 1
                 q += 1
-    return first, incoming_start, incoming
+    return first, crossing, incoming_start, incoming
 
 
 @kernel()

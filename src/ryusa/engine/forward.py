@@ -157,7 +157,7 @@ def _fill(
                     torque[j] -= r * f_s
             for i in range(n):
                 for axis in range(2):
-                    a = acceleration(force[i, axis], 0.0, 0.0, m, 0.0)
+                    a = acceleration(force[i, axis], 0.0, 0.0, 1.0 / m)
                     x[i, axis], v[i, axis] = forward_euler(x[i, axis], v[i, axis], a, dt)
                 if free:
-                    omega[i] += acceleration_spin(torque[i], inertia) * dt
+                    omega[i] += acceleration_spin(torque[i], 1.0 / inertia) * dt

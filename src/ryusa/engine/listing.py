@@ -60,8 +60,8 @@ class Layout:
         """A list without pairs."""
         none = np.zeros(0, np.int64)
         return Pairs(
-            np.zeros(self.n + 1, np.int64), np.zeros(0, np.uint32), none, np.zeros(0, np.uint8),
-            none, none, aligned(0, 8),
+            np.zeros(self.n + 1, np.int64), np.zeros(0, np.uint32), none, np.zeros(0, np.uint32),
+            np.zeros(0, np.uint8), none, none, aligned(0, 8),
         )  # fmt: skip
 
     def room_for(self, pairs: np.ndarray) -> Near:
@@ -96,6 +96,8 @@ class Layout:
             m_bare=scene.m,
             m_weight=scene.m_weight,
             inertia=self.inertia,
+            per_m=1.0 / self.m[:n],
+            per_inertia=1.0 / self.inertia[:n],
             ids=np.arange(self.n_solid),
             image=image,
             tracked=self.tracked,
@@ -158,6 +160,8 @@ class Layout:
             m_bare=scene.m[order],
             m_weight=scene.m_weight[order],
             inertia=self.inertia[place],
+            per_m=1.0 / self.m[order],
+            per_inertia=1.0 / self.inertia[order],
             ids=place[: self.n_solid].copy(),
             image=by_id.image[order],
             touched=by_id.touched[order],
@@ -191,14 +195,13 @@ class Layout:
             start[hi:n] += len(some)
         partners = np.concatenate([some for _, some in found])
         start[n] = len(partners)
-        cross_start, incoming_start, incoming = cross_lists(n, self.block_start, start, partners)
-        crossing = int(cross_start[-1])
-        rows = n + len(self.block_start) - 1 + crossing
+        cross_start, crossing, incoming_start, incoming = cross_lists(n, self.block_start, start, partners)
+        rows = n + len(self.block_start) - 1 + len(crossing)
         grains = grains._replace(film=np.zeros((rows, 4) if self.kind.film else (0, 0)))
         return (
             grains,
             Pairs(
-                start, partners, cross_start, np.zeros(rows, np.uint8), incoming_start, incoming,
+                start, partners, cross_start, crossing, np.zeros(rows, np.uint8), incoming_start, incoming,
                 aligned(rows, 8),
             ),
             listed,

@@ -74,6 +74,7 @@ def motion(
     """Gather what other blocks stored, add water and weight, and move grains lo..hi-1 by one step."""
     x, v, w, then, ids, image = grains.x, grains.v, grains.w, grains.then, grains.ids, grains.image
     m_all, m_bare, m_weight, inertia = grains.m, grains.m_bare, grains.m_weight, grains.inertia
+    per_m, per_inertia = grains.per_m, grains.per_inertia
     f, near, incoming, incoming_start = pairs.f, pairs.near, pairs.incoming, pairs.incoming_start
     dt, film, touched = c[C_DT], grains.film, grains.touched
     half = 0.0 if begins else 0.5 * dt
@@ -90,20 +91,19 @@ def motion(
         if kind.rolling or kind.events:
             touched[i] = int(part(turn, 3))
         place, before, spin = read4(x, 4 * i), read4(v, 8 * i), read4(w, 8 * i)
-        added, drag = m_all[i] - m_bare[i], four_of(0.0, 0.0, 0.0, 0.0)
+        drag, inverse = four_of(0.0, 0.0, 0.0, 0.0), per_m[i]
         if water is not None:
             write4(table, M_PUSH, push)
             write4(table, M_TURN, turn)
-            table[M_ADDED] = added
+            table[M_ADDED] = m_all[i] - m_bare[i]
             push_of_water(kind, choice, i, c, grains, table)
-            push, turn, drag, added = (
-                read4(table, M_PUSH), read4(table, M_TURN), read4(table, M_DRAG), table[M_ADDED],
-            )  # fmt: skip
-        a = acceleration(push, drag, m_weight[i] * gravity, m_bare[i], added)
+            push, turn, drag = read4(table, M_PUSH), read4(table, M_TURN), read4(table, M_DRAG)
+            inverse = 1.0 / (m_bare[i] + table[M_ADDED])
+        a = acceleration(push, drag, m_weight[i] * gravity, inverse)
         place, after = semi_implicit(place, before, a, dt)
         whirl = spin
         if kind.rotation:  # the count of contacts, fourth, turns nothing
-            whirl = spin + dt * acceleration_spin(with_last(turn, 0.0), inertia[i])
+            whirl = spin + dt * acceleration_spin(with_last(turn, 0.0), per_inertia[i])
         if water is not None:
             write4(table, M_V, before)
             write4(table, M_V_NEW, after)
@@ -111,7 +111,7 @@ def motion(
             write4(table, M_W_NEW, whirl)
             work_of_water(kind, choice, i, half, c, grains, table, book, now)
         if last:
-            now[N_KINETIC] += 0.5 * (m_bare[i] + added) * product_of(before, after)
+            now[N_KINETIC] += 0.5 / inverse * product_of(before, after)
             now[N_SPIN] += 0.5 * inertia[i] * product_of(spin, whirl) if kind.rotation else 0.0
             now[N_POTENTIAL] -= m_weight[i] * height_of(i, c, x, image)
         write4(x, 4 * i, place)

@@ -49,17 +49,14 @@ def cut(
     """
     first, touching = near.first[b], _put_aside(b, near, spare)
     room = near.first[b + 1] - first
-    i_of, j_of, to_of, pair, live = near.i, near.j, near.to, near.pair, near.live
-    x, v, then, start, partners, wanted = (
-        grains.x, grains.v, grains.then, pairs.start, pairs.partners, pairs.near,
-    )  # fmt: skip
+    i_of, pair, live = near.i, near.pair, near.live
+    x, v, then, start, partners = grains.x, grains.v, grains.then, pairs.start, pairs.partners
     points, normals = walls.points, walls.normals
     glance, drift = np.empty(4 * LANES), np.empty(4 * LANES)
     hit, owner = np.empty(LANES), np.empty(LANES, np.uint32)
     for g in range(lo, hi):
         copy4(then, 4 * g, v, 8 * g)
-    new, i, crossing = 0, lo, n + len(near.count) + pairs.cross_start[b]
-    full = False
+    new, i, full = 0, lo, False
     for begin in range(start[lo], start[hi], LANES):
         m = min(LANES, start[hi] - begin)
         for l in range(m):
@@ -71,21 +68,16 @@ def cut(
         tell_coming(plane_case, reach_on, c[C_DT], ahead, m, c, glance, drift, hit)
         full = full or new + m > room
         for l in range(m):  # no branch: who is near cannot be foretold
-            j, close = int(partners[begin + l]), int(hit[l] > 0.0)
-            outside = int(j < n) & (int(j < lo) | int(j >= hi))
-            to = crossing if outside else j if j < n else n + b
-            crossing += outside
-            wanted[to] = close
             if not full:
-                at = first + new
-                i_of[at], j_of[at], to_of[at], pair[at] = owner[l], j, to, begin + l
-            new += close
+                i_of[first + new], pair[first + new] = owner[l], begin + l
+            new += int(hit[l] > 0.0)
     if full:
         _take_back(b, touching, near, spare)
         return new + _SLACK, touching
+    near.count[b] = new
+    _address(b, lo, hi, n, pairs, near)
     for k in range(first, first + new):
         live[k] = 0
-    near.count[b] = new
     k = first
     for t in range(touching):
         while k < first + new and pair[k] < spare.pair[t]:
@@ -95,6 +87,25 @@ def cut(
         live[k] = 1
         _copy_row(k, near.eta, near.rows, t, spare.eta, spare.rows)
     return 0, touching
+
+
+@kernel()
+def _address(b: int, lo: int, hi: int, n: int, pairs: Pairs, near: Near) -> None:
+    """Tell the near pairs of block b their partners, and where the force on those goes."""
+    first, rows, crossing, wanted = pairs.cross_start[b], n + len(near.count), pairs.crossing, pairs.near
+    last = pairs.cross_start[b + 1]
+    wanted[rows + first : rows + last] = 0
+    q = first
+    for k in range(near.first[b], near.first[b] + near.count[b]):
+        p = near.pair[k]
+        j = pairs.partners[p]
+        near.j[k] = j
+        near.to[k] = j if j < n else n + b
+        if j < n and (j < lo or j >= hi):
+            while crossing[q] < p:
+                q += 1
+            near.to[k] = rows + q
+            wanted[rows + q] = 1
 
 
 @kernel(forceinline=True)

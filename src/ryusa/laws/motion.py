@@ -16,7 +16,7 @@ def inertia_sphere(m: float, d: float) -> float:
 
 
 @law
-def acceleration(contact: float, drag: float, weight: float, m: float, m_added: float) -> float:
+def acceleration(contact: float, drag: float, weight: float, inverse_m: float) -> float:
     """One component of a grain's acceleration [m/s2].
 
     Parameters
@@ -24,8 +24,8 @@ def acceleration(contact: float, drag: float, weight: float, m: float, m_added: 
     contact : sum of contact forces on the grain [N]; Eqs. (5)-(6).
     drag : drag force [N], zero when dry; Eqs. (10)-(11).
     weight : submerged weight, mass that gravity sees times the component of gravity [N].
-    m : mass [kg].
-    m_added : added mass [kg], in the inertia only.
+    inverse_m : one over mass and added mass [1/kg]; it changes less often than forces, and a division is
+        what a step would wait for.
 
     Notes
     -----
@@ -34,22 +34,24 @@ def acceleration(contact: float, drag: float, weight: float, m: float, m_added: 
 
     Examples
     --------
-    >>> acceleration(3.0, 1.0, -2.0, 1.5, 0.5)
+    >>> acceleration(3.0, 1.0, -2.0, 0.5)
     1.0
     """
-    return (contact + drag + weight) / (m + m_added)
+    return (contact + drag + weight) * inverse_m
 
 
 @law
-def acceleration_spin(torque: float, inertia: float) -> float:
-    """One component of a grain's angular acceleration [rad/s2]. Eq. (7); torque [N m], inertia [kg m2].
+def acceleration_spin(torque: float, inverse_inertia: float) -> float:
+    """One component of a grain's angular acceleration [rad/s2]. Eq. (7).
+
+    Torque [N m] and one over the moment of inertia [1/(kg m2)].
 
     Examples
     --------
-    >>> acceleration_spin(3.0, 1.5)
-    2.0
+    >>> acceleration_spin(3.0, 0.5)
+    1.5
     """
-    return torque / inertia
+    return torque * inverse_inertia
 
 
 @law

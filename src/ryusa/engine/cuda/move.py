@@ -90,11 +90,12 @@ def make_move(kind: Variant, choice: Choice) -> Any:
         if film:
             f_x, f_y, f_z = f_x + h_x, f_y + h_y, f_z + h_z
 
-        new_x, a_x = semi_implicit(y_x, v_x, acceleration(f_x, d_x, m_w * g_x, m_b, added), dt)
-        new_z, a_z = semi_implicit(y_z, v_z, acceleration(f_z, d_z, m_w * g_z, m_b, added), dt)
+        per_m = 1.0 / (m_b + added)
+        new_x, a_x = semi_implicit(y_x, v_x, acceleration(f_x, d_x, m_w * g_x, per_m), dt)
+        new_z, a_z = semi_implicit(y_z, v_z, acceleration(f_z, d_z, m_w * g_z, per_m), dt)
         new_y, a_y = y_y, v_y
         if not plane_case:
-            new_y, a_y = semi_implicit(y_y, v_y, acceleration(f_y, d_y, m_w * g_y, m_b, added), dt)
+            new_y, a_y = semi_implicit(y_y, v_y, acceleration(f_y, d_y, m_w * g_y, per_m), dt)
         to_x, to_v = bodies.x[other], bodies.v[other]
         to_x[i, 0], to_x[i, 1], to_x[i, 2] = new_x, new_y, new_z
         to_v[i, 0], to_v[i, 1], to_v[i, 2] = a_x, a_y, a_z
@@ -130,10 +131,11 @@ def make_move(kind: Variant, choice: Choice) -> Any:
                     k_t = torque_dennis(size, 2.0 * r, c[C_NU], c[C_RHO_W])
                 k_t *= wet
             i_i = bodies.inertia[i]
-            b_y = o_y + dt * acceleration_spin(t_y - k_t * (o_y - turn), i_i)
+            per_i = 1.0 / i_i
+            b_y = o_y + dt * acceleration_spin(t_y - k_t * (o_y - turn), per_i)
             if not plane_case:
-                b_x = o_x + dt * acceleration_spin(t_x - k_t * o_x, i_i)
-                b_z = o_z + dt * acceleration_spin(t_z - k_t * o_z, i_i)
+                b_x = o_x + dt * acceleration_spin(t_x - k_t * o_x, per_i)
+                b_z = o_z + dt * acceleration_spin(t_z - k_t * o_z, per_i)
             whirl = b_x * b_x + b_y * b_y + b_z * b_z
             bad = bad or not whirl < math.inf
             account[A_SPIN_2] = max(account[A_SPIN_2], whirl)
