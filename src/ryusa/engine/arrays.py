@@ -50,6 +50,7 @@ class Pairs(NamedTuple):
     whose partner belongs to another block: that side waits there until the partner's block fetches it.
     """
 
+    slab: int  # places between two layers of cells: so much later come partners not met before
     start: Any  # (n + 1,)
     partners: Any  # places, (n_pair,)
     cross_start: Any  # first crossing pair of each block, (n_block + 1,)

@@ -179,3 +179,21 @@ write4: Any = intrinsic(_write)
 four_of: Any = intrinsic(_four_of)
 part: Any = intrinsic(prefer_literal=True)(_part)
 with_last: Any = intrinsic(_with_last)
+
+
+def _ask(typingctx: Any, array: Any, at: Any) -> Any:
+    """Ask for the line of memory that holds place `at`, to have it at hand soon."""
+
+    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        number, name = ir.IntType(32), "llvm.prefetch.p0i8"
+        row = _row(context, builder, signature.args[0], args[0], args[1])
+        line = builder.bitcast(row, ir.IntType(8).as_pointer())
+        kind = ir.FunctionType(ir.VoidType(), [line.type, number, number, number])
+        function = builder.module.globals.get(name) or ir.Function(builder.module, kind, name)
+        builder.call(function, [line, number(0), number(3), number(1)])  # to read, to keep, data
+        return context.get_dummy_value()
+
+    return types.void(array, types.intp), codegen
+
+
+ask: Any = intrinsic(_ask)

@@ -8,6 +8,7 @@ import numpy as np
 from ryusa.engine.arrays import Grains, Near, Pairs, Walls, aligned
 from ryusa.engine.carry import cross_lists, wrap_grains
 from ryusa.engine.cells import build_list, grid_of, sort_into
+from ryusa.engine.lanes import LANES
 from ryusa.engine.near import count_live, put_rows, take_rows
 from ryusa.engine.rows import Variant
 from ryusa.model import Scene, State
@@ -18,6 +19,9 @@ from ryusa.model.scene import Floats
 Share = Callable[
     [Callable[[int, int], Any]], list[Any]
 ]  # results of a task for blocks first..last-1, in order
+
+
+_CACHED = 8192  # grains that a cache holds: more have to be asked for in time
 
 
 class Memory(NamedTuple):
@@ -60,7 +64,7 @@ class Layout:
         """A list without pairs."""
         none = np.zeros(0, np.int64)
         return Pairs(
-            np.zeros(self.n + 1, np.int64), np.zeros(0, np.uint32), none, np.zeros(0, np.uint32),
+            0, np.zeros(self.n + 1, np.int64), np.zeros(0, np.uint32), none, np.zeros(0, np.uint32),
             np.zeros(0, np.uint8), none, none, aligned(0, 8),
         )  # fmt: skip
 
@@ -197,12 +201,13 @@ class Layout:
         start[n] = len(partners)
         cross_start, crossing, incoming_start, incoming = cross_lists(n, self.block_start, start, partners)
         rows = n + len(self.block_start) - 1 + len(crossing)
+        slab = int(1.1 * n / dims[0]) + LANES if n > _CACHED else n
         grains = grains._replace(film=np.zeros((rows, 4) if self.kind.film else (0, 0)))
         return (
             grains,
             Pairs(
-                start, partners, cross_start, crossing, np.zeros(rows, np.uint8), incoming_start, incoming,
-                aligned(rows, 8),
+                slab, start, partners, cross_start, crossing, np.zeros(rows, np.uint8), incoming_start,
+                incoming, aligned(rows, 8),
             ),
             listed,
             lost,

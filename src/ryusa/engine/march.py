@@ -10,6 +10,7 @@ from ryusa.engine._kernel import FAST, kernel
 from ryusa.engine.arrays import Grains, Ledger, Near, Pairs, Walls, Work
 from ryusa.engine.batch import hand_out, lay_out, look, overlap_on, reckon
 from ryusa.engine.company import keep_company, wet_dashpots
+from ryusa.engine.four import ask
 from ryusa.engine.lanes import D_BOOKS, D_SPIN_I, D_SPIN_J, LANES, N_LANE_BOOK, PITCH
 from ryusa.engine.lend import lend
 from ryusa.engine.motion import motion
@@ -33,6 +34,7 @@ def forces(
     company: Maybe,
     choice: Choice,
     b: int,
+    hi: int,
     n: int,
     n_solid: int,
     step: int,
@@ -49,7 +51,7 @@ def forces(
     book: Any,
     now: Any,
 ) -> None:
-    """Forces of every pair that block b owns, batch by batch of those that touch."""
+    """Forces of every pair that block b, grains up to hi-1, owns, batch by batch of those that touch."""
     desk, glance, hit, which = work.desk, work.glance, work.hit, work.which
     reach_on = c[C_FILM_REACH] if kind.film else 0.0
     # arrays are handed over one by one: a tuple of them would have its references counted for every batch
@@ -65,6 +67,11 @@ def forces(
     while True:
         while waiting < LANES and k < end:
             some = min(LANES, end - k)
+            for g in range(i_of[k] + pairs.slab, min(i_of[k + some - 1] + pairs.slab + 1, n)):
+                ask(x, 4 * g)
+                ask(v, 8 * g)
+                if g < hi:  # beyond, another thread may be writing
+                    ask(f, 8 * g)
             waiting = look(
                 kind.plane_case, reach_on, k, some, waiting, n_solid, c, x, i_of, j_of, live, points, normals,
                 glance, hit, which,
@@ -224,8 +231,8 @@ def make_run(kind: Variant) -> Any:
             hdt = 0.0 if step == 0 else 0.5 * dt
             for b in range(b_0, b_1):
                 forces(
-                    kind, flat, water, company, choice, b, n, n_solid, step, t, hdt, last, c, grains, walls,
-                    pairs, near, work, ended[b], books[b], now[b],
+                    kind, flat, water, company, choice, b, block_start[b + 1], n, n_solid, step, t, hdt, last,
+                    c, grains, walls, pairs, near, work, ended[b], books[b], now[b],
                 )  # fmt: skip
             target = meet(count, n_threads, target)
             for b in range(b_0, b_1):
