@@ -16,3 +16,8 @@ _EDITION = edition(LAWS, _HERE, _HERE.parent / "model")
 def kernel(**options: Any) -> Callable[[F], F]:
     """Compile a function when first called; the text of laws, model and engine is its edition."""
     return compiled(_EDITION, **options)
+
+
+def inner(**options: Any) -> Callable[[F], F]:
+    """A kernel that only kernels call: without an entry from Python, which takes its time to compile."""
+    return kernel(no_cpython_wrapper=True, no_cfunc_wrapper=True, **options)

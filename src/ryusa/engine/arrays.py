@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ryusa.engine.lanes import DESK, LANES, TABLE
+from ryusa.engine.rows import N_CLOCK
 
 _LINE = 64  # bytes of a cache line
 
@@ -100,13 +101,15 @@ class Work(NamedTuple):
     desk: Any  # a batch of touching pairs (lanes.py), (DESK,)
     table: Any  # a grain in the water (lanes.py), (TABLE,)
     glance: Any  # way from i to j and both radii [m] of pairs that are looked at, four each, (4 * LANES,)
+    drift: Any  # velocity of j against i [m/s], and 0, of pairs that are looked at, (4 * LANES,)
     hit: Any  # 1 where a pair that is looked at touches, (LANES,)
     which: Any  # near pairs that wait, then those on the desk, (2 * LANES,), uint32
+    clock: Any  # this thread's copy of the near list's clock, (N_CLOCK,)
 
 
 def workplace() -> Work:
     """Room for one thread."""
     return Work(
-        aligned(DESK), aligned(TABLE), aligned(4 * LANES), aligned(LANES),
-        np.zeros(2 * LANES, np.uint32),
+        aligned(DESK), aligned(TABLE), aligned(4 * LANES), aligned(4 * LANES), aligned(LANES),
+        np.zeros(2 * LANES, np.uint32), aligned(N_CLOCK),
     )  # fmt: skip

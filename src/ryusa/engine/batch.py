@@ -13,7 +13,7 @@ or left within a step is booked for what the half interval takes beyond what it 
 import math
 from typing import Any
 
-from ryusa.engine._kernel import FAST, kernel
+from ryusa.engine._kernel import FAST, inner
 from ryusa.engine.four import add4, copy4, read4, take4, with_last, write4
 from ryusa.engine.glance import see_apart, tell_near
 from ryusa.engine.lanes import *
@@ -27,7 +27,7 @@ from ryusa.model.enums import Cap, Slip
 SLIP_DROP, SLIP_TOTAL, CAP_TOTAL = int(Slip.SPRING_DROP), int(Slip.TOTAL), int(Cap.TOTAL)
 
 
-@kernel(fastmath=FAST, forceinline=True)
+@inner(fastmath=FAST, forceinline=True)
 def look(
     plane_case: int, reach_on: float, first: int, m: int, waiting: int, n_solid: int, c: Any, x: Any,
     i_of: Any, j_of: Any, live: Any, points: Any, normals: Any, glance: Any, hit: Any, which: Any,
@@ -45,7 +45,7 @@ def look(
     return waiting
 
 
-@kernel(fastmath=FAST, forceinline=True)
+@inner(fastmath=FAST, forceinline=True)
 def lay_out(
     rotation: int, m: int, which: Any, n_solid: int, c: Any, mass: Any, inertia: Any, x: Any, v: Any, w: Any,
     points: Any, normals: Any, i_of: Any, j_of: Any, live: Any, eta: Any, rows: Any, desk: Any,
@@ -81,7 +81,7 @@ def lay_out(
     return whole
 
 
-@kernel(fastmath=FAST)
+@inner(fastmath=FAST)
 def overlap_on(l: int, c: Any, desk: Any) -> float:
     """Overlap of the pair on lane l [m]."""
     d_x, d_z = wrap(desk[D_APART + 4 * l], c[C_PERIOD_X]), desk[D_APART + 4 * l + 2]
@@ -91,7 +91,7 @@ def overlap_on(l: int, c: Any, desk: Any) -> float:
 
 
 def _make_see(plane_case: int) -> Any:
-    @kernel(fastmath=FAST)
+    @inner(fastmath=FAST)
     def see(m: int, most: float, c: Any, desk: Any) -> None:
         """How each pair meets: normal, overlap, arms, closing speed and slip; and its spring and dashpot."""
         dt, k_n, l_x, l_y = c[C_DT], c[C_K_N], c[C_PERIOD_X], c[C_PERIOD_Y]
@@ -140,7 +140,7 @@ def _make_see(plane_case: int) -> Any:
     return see
 
 
-@kernel(fastmath=FAST)
+@inner(fastmath=FAST)
 def _push(least: float, m: int, hdt: float, c: Any, desk: Any) -> None:
     """Normal force, and the later half of its books; `least` is the least a contact can have [N]."""
     k_n = c[C_K_N]
@@ -160,7 +160,7 @@ def _push(least: float, m: int, hdt: float, c: Any, desk: Any) -> None:
 
 
 def _make_shear(plane_case: int) -> Any:
-    @kernel(fastmath=FAST)
+    @inner(fastmath=FAST)
     def shear(
         total: bool, drop: bool, cap_total: bool, least: float, m: int, hdt: float, c: Any, desk: Any
     ) -> None:
@@ -240,7 +240,7 @@ _see_plane, _see_space = _make_see(1), _make_see(0)
 _shear_plane, _shear_space = _make_shear(1), _make_shear(0)
 
 
-@kernel(fastmath=FAST, forceinline=True)
+@inner(fastmath=FAST, forceinline=True)
 def reckon(flat: int | None, choice: Choice, m: int, hdt: float, most: float, c: Any, desk: Any) -> None:
     """Forces, torques and work of the first m lanes; their memory goes from the last step to this one.
 
@@ -260,7 +260,7 @@ def reckon(flat: int | None, choice: Choice, m: int, hdt: float, most: float, c:
         _shear_space(total, drop, cap_total, least, m, hdt, c, desk)
 
 
-@kernel(fastmath=FAST, forceinline=True)
+@inner(fastmath=FAST, forceinline=True)
 def hand_out(m: int, which: Any, i_of: Any, to: Any, live: Any, rows: Any, desk: Any, f: Any) -> bool:
     """Add the first m lanes to their grains, one by one in the order of the list, and keep their memory.
 

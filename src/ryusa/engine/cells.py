@@ -9,78 +9,67 @@ from typing import Any
 
 import numpy as np
 
-from ryusa.engine._kernel import kernel
+from ryusa.engine._kernel import inner, kernel
 from ryusa.laws.geometry import wrap
+from ryusa.model.scene import Floats
+
+Grid = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
-@kernel()
-def grid_of(x: Any, n: int, size: float, period: Any) -> Any:
+def grid_of(x: Floats, n: int, size: float, period: Floats) -> Grid:
     """Bounds of a grid over x[:n]; cells are at least `size` wide and no more than about four a grain.
 
     Returns low (3), width (3), dims (3), as float64, float64 and int64 arrays.
     """
-    low = np.zeros(3)
-    width = np.full(3, size)
-    dims = np.ones(3, np.int64)
-    if n == 0:
-        return low, width, dims
-    high = np.zeros(3)
-    for k in range(3):
-        if k < 2 and period[k] < math.inf:
-            low[k], high[k] = 0.0, period[k]
-        else:
-            low[k] = high[k] = x[0, k]
-            for i in range(1, n):
-                low[k] = min(low[k], x[i, k])
-                high[k] = max(high[k], x[i, k])
+    round_about = period < math.inf
+    low, high = np.zeros(3), np.zeros(3)
+    if n:
+        low, high = x[:n, :3].min(axis=0), x[:n, :3].max(axis=0)
+    low[:2][round_about], high[:2][round_about] = 0.0, period[round_about]
+    more = np.array([*np.where(round_about, 0.0, 1.0), 1.0])  # a period is filled, a length has a rest
     cell = size
-    while True:
-        total = 1.0
-        for k in range(3):
-            total *= max(
-                1.0, math.floor((high[k] - low[k]) / cell) + (0.0 if k < 2 and period[k] < math.inf else 1.0)
-            )
-        if total <= 4.0 * n + 64.0:
-            break
+    while np.prod(np.maximum(np.floor((high - low) / cell) + more, 1.0)) > 4.0 * n + 64.0:
         cell *= 1.26
-    for k in range(3):
-        if k < 2 and period[k] < math.inf:
-            dims[k] = max(1, math.floor(period[k] / cell))
-            width[k] = period[k] / dims[k]
-        else:
-            dims[k] = math.floor((high[k] - low[k]) / cell) + 1
-            width[k] = cell
-    return low, width, dims
+    dims = np.maximum(np.floor((high - low) / cell) + more, 1.0)
+    width = np.full(3, cell)
+    width[:2][round_about] = period[round_about] / dims[:2][round_about]
+    return low, width, dims.astype(np.int64)
 
 
-@kernel()
+def sort_into(x: Floats, n: int, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
+    """Sort x[:n] by cell; returns the first slot of each cell (n_cell + 1), and the numbers in that order."""
+    cells = int(np.prod(grid[2]))
+    first, fill, where, order = (np.zeros(k, np.int64) for k in (cells + 1, cells, n, n))
+    _sort(x, n, *grid, first, fill, where, order)
+    return first, order
+
+
+@inner(forceinline=True)
 def _cell(x: float, low: float, width: float) -> int:
     # far from the grid a plain int() would overflow; one cell outside is as good as a thousand
     return int(min(max(math.floor((x - low) / width), -2.0), 1.0e9))
 
 
 @kernel()
-def sort_into(x: Any, n: int, low: Any, width: Any, dims: Any, order: Any) -> Any:
-    """Counting sort of x[:n] by cell; fills `order` and returns the first slot of each cell (n_cell + 1)."""
-    n_cell = dims[0] * dims[1] * dims[2]
-    first = np.zeros(n_cell + 1, np.int64)
-    where = np.empty(n, np.int64)
+def _sort(
+    x: Any, n: int, low: Any, width: Any, dims: Any, first: Any, fill: Any, where: Any, order: Any
+) -> None:
+    # a counting sort; `fill` and `where` are room for it
     for i in range(n):
         a = min(max(_cell(x[i, 0], low[0], width[0]), 0), dims[0] - 1)
         b = min(max(_cell(x[i, 1], low[1], width[1]), 0), dims[1] - 1)
         c = min(max(_cell(x[i, 2], low[2], width[2]), 0), dims[2] - 1)
         where[i] = (a * dims[1] + b) * dims[2] + c
         first[where[i] + 1] += 1
-    for c in range(n_cell):
+    for c in range(len(fill)):
+        fill[c] = first[c]
         first[c + 1] += first[c]
-    fill = first[:-1].copy()
     for i in range(n):
         order[fill[where[i]]] = i
         fill[where[i]] += 1
-    return first
 
 
-@kernel(forceinline=True)
+@inner(forceinline=True)
 def _beside(c: int, step: int, n: int, periodic: bool) -> int:
     # index along one axis of a cell one step from cell c, or -1; in few periodic cells each comes once
     a = c + step
@@ -89,7 +78,7 @@ def _beside(c: int, step: int, n: int, periodic: bool) -> int:
     return a if 0 <= a < n else -1
 
 
-@kernel(forceinline=True)
+@inner(forceinline=True)
 def _list_near(
     i: int, offset: int, low: Any, width: Any, dims: Any, first: Any, order: Any, x: Any, ids: Any,
     period: Any, skin: float, lanes: bool, partners: Any, used: int,

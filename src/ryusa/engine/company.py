@@ -6,7 +6,7 @@ Lane by lane, after (or, for the rebound, before) the law of contact has been re
 
 from typing import Any
 
-from ryusa.engine._kernel import FAST, kernel
+from ryusa.engine._kernel import FAST, inner, kernel
 from ryusa.engine.arrays import Grains, Near
 from ryusa.engine.batch import overlap_on
 from ryusa.engine.lanes import *
@@ -35,7 +35,7 @@ def wet_dashpots(choice: Choice, m: int, which: Any, c: Any, grains: Grains, nea
         desk[D_MOVING + 4 * l + 3] = near.eta[k, ETA_N] = eta_n
 
 
-@kernel(fastmath=FAST)
+@inner(fastmath=FAST)
 def keep_company(
     kind: Variant,
     choice: Choice,

@@ -3,14 +3,14 @@
 
 from typing import Any
 
-from ryusa.engine._kernel import FAST, kernel
+from ryusa.engine._kernel import FAST, inner
 from ryusa.engine.four import apart4
 from ryusa.engine.lanes import LANES
 from ryusa.engine.rows import *
 from ryusa.laws.geometry import wrap
 
 
-@kernel(fastmath=FAST, forceinline=True)
+@inner(fastmath=FAST, forceinline=True)
 def see_apart(l: int, i: int, j: int, n_solid: int, x: Any, points: Any, normals: Any, glance: Any) -> None:
     """Lay the way from grain i to partner j and both radii together [m] on lane l.
 
@@ -27,7 +27,7 @@ def see_apart(l: int, i: int, j: int, n_solid: int, x: Any, points: Any, normals
         glance[4 * l + 3] = 2.0 * r
 
 
-@kernel(fastmath=FAST, forceinline=True)
+@inner(fastmath=FAST, forceinline=True)
 def tell_near(plane_case: int, reach_on: float, m: int, c: Any, glance: Any, hit: Any) -> None:
     """Set `hit` to 1 where one of the first m lanes is nearer than `reach_on` [m] beyond touch, else to 0."""
     l_x, l_y = c[C_PERIOD_X], c[C_PERIOD_Y]
@@ -40,7 +40,7 @@ def tell_near(plane_case: int, reach_on: float, m: int, c: Any, glance: Any, hit
         hit[l] = 1.0 if square < reach * reach else 0.0
 
 
-@kernel(fastmath=FAST, forceinline=True)
+@inner(fastmath=FAST, forceinline=True)
 def see_drift(l: int, i: int, j: int, n_solid: int, v: Any, normals: Any, drift: Any) -> None:
     """Lay the velocity of partner j against grain i [m/s] on lane l; of a plane only along its normal."""
     apart4(drift, 4 * l, v, 8 * j, 8 * i)
@@ -51,7 +51,7 @@ def see_drift(l: int, i: int, j: int, n_solid: int, v: Any, normals: Any, drift:
             drift[4 * l + k] = -leaving * normals[a, k]
 
 
-@kernel(fastmath=FAST, forceinline=True)
+@inner(fastmath=FAST, forceinline=True)
 def tell_coming(
     plane_case: int, reach_on: float, past: float, ahead: float, m: int, c: Any, glance: Any, drift: Any,
     hit: Any,

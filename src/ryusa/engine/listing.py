@@ -152,9 +152,8 @@ class Layout:
         listed = x[:n, :3].copy()
         skin = skin + film_reach(scene)
         size = self.largest + skin
-        low, wide, dims = grid_of(x, n, size, period)
-        order = np.empty(n, np.int64)
-        first = sort_into(x, n, low, wide, dims, order)
+        grid = grid_of(x, n, size, period)
+        first, order = sort_into(x, n, grid)
         place = np.arange(len(self.r))
         place[:n] = order
         for array in (x, by_id.v, by_id.w):  # in place: there may be a million of them
@@ -173,11 +172,10 @@ class Layout:
             taken=by_id.taken[order[: len(by_id.seen)]],
         )
         bed = np.ascontiguousarray(self.x_fixed[self.standing])
-        bed_low, bed_wide, bed_dims = grid_of(bed, len(bed), size, period)
-        bed_order = np.empty(len(bed), np.int64)
-        bed_first = sort_into(bed, len(bed), bed_low, bed_wide, bed_dims, bed_order)
-        free = (low, wide, dims, first, np.arange(n))
-        fixed = (bed_low, bed_wide, bed_dims, bed_first, self.standing[bed_order])
+        bed_grid = grid_of(bed, len(bed), size, period)
+        bed_first, bed_order = sort_into(bed, len(bed), bed_grid)
+        free = (*grid, first, np.arange(n))
+        fixed = (*bed_grid, bed_first, self.standing[bed_order])
         start = np.zeros(n + 1, np.int64)
         blocks = self.block_start
 
@@ -201,7 +199,7 @@ class Layout:
         start[n] = len(partners)
         cross_start, crossing, incoming_start, incoming = cross_lists(n, self.block_start, start, partners)
         rows = n + len(self.block_start) - 1 + len(crossing)
-        slab = int(1.1 * n / dims[0]) + LANES if n > _CACHED else n
+        slab = int(1.1 * n / grid[2][0]) + LANES if n > _CACHED else n
         grains = grains._replace(film=np.zeros((rows, 4) if self.kind.film else (0, 0)))
         return (
             grains,

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from ryusa.engine._kernel import FAST, kernel
+from ryusa.engine._kernel import FAST, inner, kernel
 from ryusa.engine.arrays import Grains, Ledger, Near, Pairs, Walls, Work
 from ryusa.engine.batch import hand_out, lay_out, look, overlap_on, reckon
 from ryusa.engine.company import keep_company, wet_dashpots
-from ryusa.engine.four import ask
+from ryusa.engine.four import ask, spread4
 from ryusa.engine.lanes import D_BOOKS, D_SPIN_I, D_SPIN_J, LANES, N_LANE_BOOK, PITCH
 from ryusa.engine.lend import lend
 from ryusa.engine.motion import motion
@@ -26,7 +26,7 @@ BOOKS = tuple(
 )
 
 
-@kernel(fastmath=FAST, forceinline=True)
+@inner(fastmath=FAST, forceinline=True)
 def forces(
     kind: Variant,
     flat: Maybe,
@@ -59,8 +59,10 @@ def forces(
     i_of, j_of, to, live, eta, rows = near.i, near.j, near.to, near.live, near.eta, near.rows
     mass, inertia, points, normals = grains.m, grains.inertia, walls.points, walls.normals
     spring_r = 0.0
-    pairs.f[n + b, :] = 0.0  # what fixed grains and planes would get
-    desk[D_BOOKS : D_BOOKS + N_LANE_BOOK * PITCH] = 0.0
+    spread4(f, 8 * (n + b), 0.0)  # what fixed grains and planes would get
+    spread4(f, 8 * (n + b) + 4, 0.0)
+    for place in range(D_BOOKS, D_BOOKS + N_LANE_BOOK * PITCH):
+        desk[place] = 0.0
     k = near.first[b]
     end = k + near.count[b]
     waiting = 0
@@ -122,7 +124,7 @@ def forces(
         now[N_SPRING_R] = spring_r
 
 
-@kernel()
+@inner()
 def guard(
     m: int, which: Any, n: int, step: int, c: Any, grains: Grains, near: Near, desk: Any, now: Any
 ) -> None:
@@ -139,7 +141,7 @@ def guard(
                 now[N_FAULT_PARTNER] = ids[j] if j < n else j
 
 
-@kernel(fastmath=FAST)
+@inner(fastmath=FAST)
 def springs(b: int, c: Any, near: Near) -> tuple[float, float, int]:
     """Energy in the normal and tangential springs of block b [J], and its contacts."""
     k_n, k_s, rows = c[C_K_N], c[C_K_S], near.rows
@@ -196,7 +198,9 @@ def make_run(kind: Variant) -> Any:
         n_block = len(block_start) - 1
         b_0, b_1 = thread * n_block // n_threads, (thread + 1) * n_block // n_threads
         dt, t_zero, skin, step_limit = c[C_DT], c[C_T_ZERO], c[C_SKIN], c[C_STEP_LIMIT]
-        own = clock.copy()
+        own = work.clock
+        for k in range(N_CLOCK):
+            own[k] = clock[k]
         look = COST_LOOK * pairs.start[n] + COST_GRAIN * n
         target = done = 0
         stop = STOP_DONE
@@ -214,7 +218,7 @@ def make_run(kind: Variant) -> Any:
                 for b in range(b_0, b_1):
                     now[b, N_FULL], now[b, N_TOUCHING] = cut(
                         b, block_start[b], block_start[b + 1], n, n_solid, reach_on, own[K_LASTS] * dt,
-                        kind.plane_case, c, grains, walls, pairs, near, spare,
+                        kind.plane_case, c, grains, walls, pairs, near, spare, work,
                     )  # fmt: skip
                 target = meet(count, n_threads, target)
                 own[K_STRAY] = own[K_SINCE] = own[K_LANES] = own[K_TOUCHING] = 0.0
@@ -262,7 +266,8 @@ def make_run(kind: Variant) -> Any:
                 break
         meet(count, n_threads, target)
         if thread == 0:
-            clock[:] = own
+            for k in range(N_CLOCK):
+                clock[k] = own[k]
         return done, travel, stop
 
     return run

@@ -7,7 +7,7 @@ What is fourth in a row stays what it is: the radius behind a position or a spin
 import math
 from typing import Any
 
-from ryusa.engine._kernel import FAST, kernel
+from ryusa.engine._kernel import FAST, inner
 from ryusa.engine.arrays import Grains, Pairs
 from ryusa.engine.four import add4, four_of, part, read4, spread4, with_last, write4
 from ryusa.engine.lanes import *
@@ -16,20 +16,20 @@ from ryusa.engine.wet import close_interval, push_of_water, work_of_water
 from ryusa.laws.motion import acceleration, acceleration_spin, semi_implicit
 
 
-@kernel(fastmath=FAST, forceinline=True)
+@inner(fastmath=FAST, forceinline=True)
 def square_of(row: Any) -> float:
     """Square of the length of a vector, the first three of a row."""
     x, y, z = part(row, 0), part(row, 1), part(row, 2)
     return x * x + y * y + z * z
 
 
-@kernel(fastmath=FAST, forceinline=True)
+@inner(fastmath=FAST, forceinline=True)
 def product_of(a: Any, b: Any) -> float:
     """Scalar product of two vectors, the first three of a row."""
     return part(a, 0) * part(b, 0) + part(a, 1) * part(b, 1) + part(a, 2) * part(b, 2)
 
 
-@kernel(fastmath=FAST, forceinline=True)
+@inner(fastmath=FAST, forceinline=True)
 def fetch(i: int, near: Any, incoming: Any, incoming_start: Any, f: Any, film: Any) -> None:
     """Add to the forces on grain i what other blocks stored for it; `film` may be empty."""
     for k in range(incoming_start[i], incoming_start[i + 1]):
@@ -44,7 +44,7 @@ def fetch(i: int, near: Any, incoming: Any, incoming_start: Any, f: Any, film: A
                 spread4(film, 4 * q, 0.0)
 
 
-@kernel(fastmath=FAST, forceinline=True)
+@inner(fastmath=FAST, forceinline=True)
 def height_of(i: int, c: Any, x: Any, image: Any) -> float:
     """Height of grain i along gravity, times gravity [m2/s2], the periods it crossed counted."""
     y_x, y_y = x[i, 0], x[i, 1]
@@ -55,7 +55,7 @@ def height_of(i: int, c: Any, x: Any, image: Any) -> float:
     return c[C_G_X] * y_x + c[C_G_Y] * y_y + c[C_G_Z] * x[i, 2]
 
 
-@kernel(fastmath=FAST, forceinline=True)
+@inner(fastmath=FAST, forceinline=True)
 def motion(
     kind: Variant,
     water: int | None,

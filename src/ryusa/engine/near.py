@@ -8,10 +8,8 @@ never shows in the bits of a run.
 import math
 from typing import Any
 
-import numpy as np
-
-from ryusa.engine._kernel import kernel
-from ryusa.engine.arrays import Grains, Near, Pairs, Walls
+from ryusa.engine._kernel import inner, kernel
+from ryusa.engine.arrays import Grains, Near, Pairs, Walls, Work
 from ryusa.engine.four import copy4
 from ryusa.engine.glance import see_apart, see_drift, tell_coming
 from ryusa.engine.lanes import LANES
@@ -24,20 +22,21 @@ _SLACK = 2 * LANES  # pairs are listed by the batch, where a whole one would fin
 @kernel(nogil=True)
 def cut_blocks(
     first: int, last: int, block_start: Any, n: int, n_solid: int, reach_on: float, ahead: float,
-    plane_case: int, c: Any, grains: Grains, walls: Walls, pairs: Pairs, near: Near, spare: Near, wanted: Any,
+    plane_case: int, c: Any, grains: Grains, walls: Walls, pairs: Pairs, near: Near, spare: Near, work: Work,
+    wanted: Any,
 ) -> None:  # fmt: skip
     """Cut the lists of blocks first..last-1; `wanted` gets the room that each wants (see `cut`)."""
     for b in range(first, last):
         wanted[b] = cut(
             b, block_start[b], block_start[b + 1], n, n_solid, reach_on, ahead, plane_case, c, grains, walls,
-            pairs, near, spare,
+            pairs, near, spare, work,
         )[0]  # fmt: skip
 
 
-@kernel()
+@inner()
 def cut(
     b: int, lo: int, hi: int, n: int, n_solid: int, reach_on: float, ahead: float, plane_case: int, c: Any,
-    grains: Grains, walls: Walls, pairs: Pairs, near: Near, spare: Near,
+    grains: Grains, walls: Walls, pairs: Pairs, near: Near, spare: Near, work: Work,
 ) -> tuple[int, int]:  # fmt: skip
     """List anew the pairs of block b, grains lo..hi-1, that come nearer than `reach_on` [m] beyond touch.
 
@@ -52,8 +51,7 @@ def cut(
     i_of, pair, live = near.i, near.pair, near.live
     x, v, then, start, partners = grains.x, grains.v, grains.then, pairs.start, pairs.partners
     points, normals = walls.points, walls.normals
-    glance, drift = np.empty(4 * LANES), np.empty(4 * LANES)
-    hit, owner = np.empty(LANES), np.empty(LANES, np.uint32)
+    glance, drift, hit, owner = work.glance, work.drift, work.hit, work.which
     for g in range(lo, hi):
         copy4(then, 4 * g, v, 8 * g)
     new, i, full = 0, lo, False
@@ -89,12 +87,13 @@ def cut(
     return 0, touching
 
 
-@kernel()
+@inner()
 def _address(b: int, lo: int, hi: int, n: int, pairs: Pairs, near: Near) -> None:
     """Tell the near pairs of block b their partners, and where the force on those goes."""
     first, rows, crossing, wanted = pairs.cross_start[b], n + len(near.count), pairs.crossing, pairs.near
     last = pairs.cross_start[b + 1]
-    wanted[rows + first : rows + last] = 0
+    for row in range(rows + first, rows + last):
+        wanted[row] = 0
     q = first
     for k in range(near.first[b], near.first[b] + near.count[b]):
         p = near.pair[k]
@@ -108,7 +107,7 @@ def _address(b: int, lo: int, hi: int, n: int, pairs: Pairs, near: Near) -> None
             wanted[rows + q] = 1
 
 
-@kernel(forceinline=True)
+@inner(forceinline=True)
 def _copy_row(at: int, to_eta: Any, to_rows: Any, of: int, eta: Any, rows: Any) -> None:
     # four by four: slices would have their references counted
     width = rows.shape[1]
@@ -120,7 +119,7 @@ def _copy_row(at: int, to_eta: Any, to_rows: Any, of: int, eta: Any, rows: Any) 
         to_rows[at, k] = rows[of, k]
 
 
-@kernel()
+@inner()
 def _put_aside(b: int, near: Near, spare: Near) -> int:
     """Copy the pairs in touch of block b; returns how many there are."""
     t = 0
@@ -133,7 +132,7 @@ def _put_aside(b: int, near: Near, spare: Near) -> int:
     return t
 
 
-@kernel()
+@inner()
 def _take_back(b: int, touching: int, near: Near, spare: Near) -> None:
     """Make the pairs put aside the whole list of block b."""
     first = near.first[b]
@@ -165,7 +164,7 @@ def best_skin(skin: float, closing: float, making: float, keeping: float) -> flo
     return min(max(math.sqrt(making * closing * skin / keeping), 0.5 * skin), 2.0 * skin)
 
 
-@kernel()
+@inner()
 def plan_cut(clock: Any, look: float) -> None:
     """Choose reach and time ahead of the next near list from how the last one fared.
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ryusa.engine.arrays import Grains, Near, Pairs
+from ryusa.engine.arrays import Grains, Near, Pairs, workplace
 from ryusa.engine.lanes import LANES
 from ryusa.engine.listing import Layout, Memory, Share, film_reach
 from ryusa.engine.near import cut_blocks, steps_ahead
@@ -76,7 +76,7 @@ class NearList:
         def cut_some(first: int, last: int) -> None:
             cut_blocks(
                 first, last, layout.block_start, layout.n, layout.n_solid, reach_on, ahead, kind.plane_case,
-                numbers, grains, layout.walls, wide, self.pairs, self.spares[0], wanted,
+                numbers, grains, layout.walls, wide, self.pairs, self.spares[0], workplace(), wanted,
             )  # fmt: skip
 
         while True:

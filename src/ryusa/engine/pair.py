@@ -4,7 +4,7 @@
 import math
 from typing import Any
 
-from ryusa.engine._kernel import FAST, kernel
+from ryusa.engine._kernel import FAST, inner, kernel
 from ryusa.engine.rows import *
 from ryusa.laws.collision import effective_mass, effective_mass_tangential, zeta_no_tension, zeta_tension
 from ryusa.laws.contact import damping, damping_in_steps
@@ -37,7 +37,7 @@ EXPONENTIAL = int(Rebound.EXPONENTIAL)
 B_ROLL, B_RELEASED_R = int(Book.ROLL), int(Book.RELEASED_R)
 
 
-@kernel()
+@inner()
 def dashpots(i: int, j: int, rotation: int, c: Any, m: Any, x: Any, inertia: Any) -> tuple[float, float]:
     """Normal and tangential dashpot of a pair [N s/m]; `x` as in `arrays.Grains`."""
     m_t = effective_mass_tangential(m[i], x[i, 3], inertia[i], m[j], x[j, 3], inertia[j], rotation != 0)
@@ -55,13 +55,13 @@ def dashpots_of(i: Any, j: Any, rotation: int, c: Any, m: Any, x: Any, inertia: 
         out[k, ETA_N], out[k, ETA_S] = dashpots(i[k], j[k], rotation, c, m, x, inertia)
 
 
-@kernel(forceinline=True)
+@inner(forceinline=True)
 def place_of_eta(k: int, eta: Any) -> int:
     """Where the dashpots of near pair k are."""
     return k if len(eta) > 1 else 0
 
 
-@kernel()
+@inner()
 def begin_row(
     k: int, i: int, j: int, rotation: int, c: Any, m: Any, x: Any, inertia: Any, eta: Any, rows: Any
 ) -> None:
@@ -185,4 +185,5 @@ def roll_out(
         book[B_RELEASED_R] += 0.5 * (e_x * e_x + e_y * e_y + e_z * e_z) / k_r
     book[B_RELEASED_R] -= hdt * (w_x * e_x + w_y * e_y + w_z * e_z)
     book[B_ROLL] -= hdt * (w_x * row[R_DASH_R] + w_y * row[R_DASH_R + 1] + w_z * row[R_DASH_R + 2])
-    row[R_SPRING_R:R_ROLLING] = 0.0
+    for k in range(R_SPRING_R, R_ROLLING):
+        row[k] = 0.0

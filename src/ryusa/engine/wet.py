@@ -4,7 +4,7 @@
 import math
 from typing import Any
 
-from ryusa.engine._kernel import FAST, kernel
+from ryusa.engine._kernel import FAST, inner
 from ryusa.engine.arrays import Grains
 from ryusa.engine.four import spread4
 from ryusa.engine.lanes import *
@@ -33,7 +33,7 @@ B_DRAG, B_TORQUE, B_LIFT, B_FLOW = int(Book.DRAG), int(Book.TORQUE), int(Book.LI
 B_FILM = int(Book.FILM)
 
 
-@kernel(forceinline=True)
+@inner(forceinline=True)
 def water_speed(profile: int, above: int, z: float, c: Any) -> float:
     """Speed of the water along x at height z over the zero of the profile [m/s]."""
     if above == HOLD:
@@ -47,7 +47,7 @@ def water_speed(profile: int, above: int, z: float, c: Any) -> float:
     return 0.0
 
 
-@kernel(forceinline=True)
+@inner(forceinline=True)
 def water_on(
     choice: Choice, c: Any, r: float, seen: Any, v: Any, w: Any
 ) -> tuple[float, float, float, float, float, float, float]:
@@ -84,7 +84,7 @@ def water_on(
     return k_d, k_d * u_x, k_d * u_y, k_d * u_z, share * l_x, share * l_y, share * l_z
 
 
-@kernel()
+@inner()
 def close_interval(book: Any, now: Any) -> None:
     """Book the second half of the work of the water in the step before."""
     book[B_DRAG] += now[N_PEND_DRAG]
@@ -95,7 +95,7 @@ def close_interval(book: Any, now: Any) -> None:
     now[N_PEND_DRAG] = now[N_PEND_TORQUE] = now[N_PEND_LIFT] = now[N_PEND_FLOW] = now[N_PEND_FILM] = 0.0
 
 
-@kernel(fastmath=FAST)
+@inner(fastmath=FAST)
 def push_of_water(kind: Variant, choice: Choice, i: int, c: Any, grains: Grains, table: Any) -> None:
     """Lay forces and torques of the water on grain i beside those of contacts."""
     x, v, w, seen, taken, film = grains.x, grains.v, grains.w, grains.seen, grains.taken, grains.film
@@ -144,7 +144,7 @@ def push_of_water(kind: Variant, choice: Choice, i: int, c: Any, grains: Grains,
     table[M_LIFT + 3], table[M_FLOW + 3] = k_t, 0.0 if dry else 1.0
 
 
-@kernel(fastmath=FAST)
+@inner(fastmath=FAST)
 def work_of_water(
     kind: Variant, choice: Choice, i: int, half: float, c: Any, grains: Grains, table: Any,
     book: Any, now: Any,
