@@ -310,8 +310,9 @@ def test_lanes_closer_than_a_diameter_are_refused():
         CpuEngine().load(fixed, replace(first, x=x))
 
 
+@pytest.mark.parametrize("per_contact", [400.0, 160.0])  # in the second grains fly far between two lists
 @pytest.mark.parametrize("seed", range(8))
-def test_the_list_finds_every_pair_that_a_search_of_all_pairs_finds(seed):
+def test_the_list_finds_every_pair_that_a_search_of_all_pairs_finds(seed, per_contact):
     # sizes 1:6, fixed grains larger and smaller than free ones, periods or none, threads or none
     rng = np.random.default_rng(seed)
     n, plane_case, periodic = 120, bool(seed % 2), bool(seed % 4 < 2)
@@ -334,7 +335,7 @@ def test_the_list_finds_every_pair_that_a_search_of_all_pairs_finds(seed):
         plane_case=plane_case,
         allow_overlap=True,
         stiffness=0.05,
-        steps_per_contact=400.0,
+        steps_per_contact=per_contact,
     )
     fixed = replace(fixed, overlap_limit=math.inf, world_low=(-math.inf,) * 3, world_high=(math.inf,) * 3)
     engine = CpuEngine(threads=1 + seed % 3)
@@ -345,5 +346,5 @@ def test_the_list_finds_every_pair_that_a_search_of_all_pairs_finds(seed):
         after = engine.state().contacts
         expected = touching_pairs(fixed, before)
         assert set(zip(after.i, after.j, strict=True)) == expected
-        assert len(expected) > 20
+        assert len(expected) > 5
         engine.advance(40).raise_if_any()
