@@ -84,6 +84,8 @@ def _ratio(one: dict[str, Any], asked: float) -> str:
 def _builds(rows: dict[str, Any]) -> list[str]:
     table: list[dict[str, Any]] = []
     for row in rows.values():
+        if "workload" not in row:  # chosen for another ryusa, not timed with this one yet
+            continue
         for name, tuned in row.get("tuned", {}).items():
             seen = [f"{build}: {_skins(rates)}" for build, rates in tuned["rates"].items()]
             line = {"workload": row["workload"], "threads": row["threads"], "code": name}
