@@ -4,6 +4,7 @@ import ast
 import re
 import subprocess
 import sys
+from fnmatch import fnmatch
 from pathlib import Path
 
 import pytest
@@ -114,3 +115,12 @@ def test_the_version_is_the_same_everywhere() -> None:
     version = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
     assert ryusa.__version__ == version
     assert f"version: {version}" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+
+
+def test_no_folder_with_tests_is_passed_over(pytestconfig: pytest.Config) -> None:
+    # pytest looks into no folder called "build" unless told so: tests/build was once never run
+    passed_over = pytestconfig.getini("norecursedirs")
+    files = [*SOURCE.rglob("*.py"), *(ROOT / "tests").rglob("test_*.py")]
+    folders = {name for file in files for name in file.relative_to(ROOT).parts[:-1]} - {"__pycache__"}
+    assert {"build", "engine"} <= folders
+    assert not [name for name in folders if any(fnmatch(name, one) for one in passed_over)]
