@@ -25,6 +25,30 @@ _NAMES = {  # what an SI unit measures, for messages
     "rad": "an angle",
     "rad/s": "a spin",
 }
+_METRE, _SECOND, _GRAM, _RADIAN = (("meter", 1),), (("second", 1),), (("gram", 1),), (("radian", 1),)
+_NEWTON, _PASCAL = (("gram", 1), ("meter", 1), ("second", -2)), (("gram", 1), ("meter", -1), ("second", -2))
+COMMON = {  # what most cases are written in: sooner than Pint reads its definitions, and held to it by a test
+    "%": (0.01, ()),
+    "m": (1.0, _METRE),
+    "km": (1e3, _METRE),
+    "cm": (1e-2, _METRE),
+    "mm": (1e-3, _METRE),
+    "um": (1e-6, _METRE),
+    "s": (1.0, _SECOND),
+    "ms": (1e-3, _SECOND),
+    "us": (1e-6, _SECOND),
+    "min": (60.0, _SECOND),
+    "h": (3600.0, _SECOND),
+    "kg": (1.0, _GRAM),
+    "g": (1e-3, _GRAM),
+    "N": (1.0, _NEWTON),
+    "kN": (1e3, _NEWTON),
+    "Pa": (1.0, _PASCAL),
+    "kPa": (1e3, _PASCAL),
+    "MPa": (1e6, _PASCAL),
+    "rad": (1.0, _RADIAN),
+    "deg": (math.pi / 180.0, _RADIAN),
+}
 
 
 class UnitError(ValueError):
@@ -166,8 +190,11 @@ def _to_si(written: str) -> tuple[float, tuple[tuple[str, int], ...]]:
 @cache
 def _atom(name: str) -> tuple[float, tuple[tuple[str, int], ...]]:
     """Factor to SI and root dimension of one unit name; angles keep `radian`."""
-    if name == "%":
-        return 0.01, ()
+    return COMMON[name] if name in COMMON else from_pint(name)
+
+
+def from_pint(name: str) -> tuple[float, tuple[tuple[str, int], ...]]:
+    """The same, asked of Pint, which reads some thousand definitions before it answers."""
     registry, plain = _registry(), {"°": "degree"}.get(name, name)
     if plain in {"degC", "degF", "celsius", "fahrenheit", "°C", "°F"}:
         raise UnitError(f"'{name}' has an offset and is no plain unit")

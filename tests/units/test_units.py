@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ryusa.units import UnitError, format_quantity, quantity
+from ryusa.units import COMMON, UnitError, format_quantity, from_pint, quantity
 
 GOOD = [
     ("100 N/cm", "N/m", 1.0e4),
@@ -121,3 +121,9 @@ def test_any_text_is_a_number_or_a_unit_error(text: str) -> None:
 def test_near_quantities_never_raise_anything_else(text: str) -> None:
     with contextlib.suppress(UnitError):
         quantity(text, "N/m")
+
+
+@pytest.mark.parametrize("name", sorted(COMMON.keys() - {"%"}))
+def test_a_common_unit_is_what_pint_says_it_is(name):
+    factor, bases = from_pint(name)
+    assert (factor, tuple(sorted(bases))) == COMMON[name]

@@ -2,7 +2,6 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import KDTree
 
 from ryusa.build.layout import Layout, unit
 from ryusa.errors import CaseError
@@ -40,6 +39,8 @@ def refuse_overlaps(layout: Layout, key: str, plane: bool = False) -> None:
 
     In a plane scene grains overlap in x-z and only with others of their lane.
     """
+    from scipy.spatial import KDTree  # a tenth of a second, and few need it
+
     lanes = lanes_of(layout, key) if plane else None
     if layout.allow_overlap:
         return
