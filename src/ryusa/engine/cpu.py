@@ -268,7 +268,9 @@ class CpuEngine:
             self._skin, 2.0 * self._travel / max(self._since, 1), _LIST + _LIST_GRAIN * self._n,
             COST_LOOK * apart / _STEPS_A_CUT,
         )  # fmt: skip
-        self._skin = max(min(max(skin, 0.02 * self._smallest), self._smallest), self._last_way())
+        # pairs in touch may have parted in the last step: their account is still to be closed
+        parted = 2.001 * self._way()
+        self._skin = max(min(max(skin, 0.02 * self._smallest), self._smallest), parted)
         self._since, self._travel, self._relisted = 0, 0.0, self._relisted + 1
         starts, self._pairs = self._pairs.start, self._layout.empty_pairs()  # frees the old list
         by_id = self._layout.unsorted(self._grains)
@@ -281,7 +283,7 @@ class CpuEngine:
 
     def _cut_near(self, memory: Memory) -> None:
         self._near.begin(
-            self._grains, self._pairs, self._skin, self._last_way() / 2.001, self._numbers, memory,
+            self._grains, self._pairs, self._skin, self._way(), self._numbers, memory,
             self._share,
         )  # fmt: skip
 
@@ -293,9 +295,9 @@ class CpuEngine:
         others = [self._pool.submit(task, *part) for part in parts[1:]] if self._pool else []
         return [task(*parts[0]), *(other.result() for other in others)]
 
-    def _last_way(self) -> float:
-        """How far a pair may have parted in the last step [m]: its account is still to be closed."""
-        return 2.001 * float(self._ledger.now[:, N_SPEED_MAX].max() * self._numbers[C_DT])
+    def _way(self) -> float:
+        """How far the fastest grain went in the last step [m]."""
+        return float(self._ledger.now[:, N_SPEED_MAX].max() * self._numbers[C_DT])
 
     def _drain(self) -> None:
         for block, row in enumerate(self._ledger.now):

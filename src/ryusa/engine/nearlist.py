@@ -56,7 +56,7 @@ class NearList:
         Parameters
         ----------
         skin : reach of the wide list beyond touch [m].
-        way : how far the fastest grain goes in a step [m].
+        way : how far the fastest grain went in the last step [m].
         share : has threads share the blocks.
 
         Raises
