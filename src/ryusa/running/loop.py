@@ -77,6 +77,7 @@ class Loop:
     _speed: float = 0.0  # steps per second, lately
     _warm: tuple[int, float] = (0, 0.0)  # step and wall time when kernels were ready
     _begun: float = field(default_factory=time.monotonic)
+    _stands: bool = False  # the engine has a state
 
     def run(self, state: State, kept: Kept | None = None) -> None:
         """Run to the end, whatever it is; the run folder is whole when this returns or raises.
@@ -101,7 +102,7 @@ class Loop:
                 self.status, self.message = schema.STOPPED, f"{self._heard.by} while the disk was full"
             # one of our own is said by whoever catches it
             self.progress.line(f"{self.status}: {self.message}", shown=not isinstance(error, RyusaError))
-            for last in (self.recorder.flush, self._write_tail, self._close):
+            for last in self._last():
                 with suppress(RyusaError, OSError):
                     last()
             raise
@@ -110,6 +111,11 @@ class Loop:
             self.progress.line(line)
         if self.keeper is not None and self.status == schema.COMPLETE:
             self.keeper.remove()
+
+    def _last(self) -> tuple[Callable[[], Any], ...]:
+        """What a run that ends early still writes; where the engine took no state, that it failed."""
+        whole = self.recorder.flush, self._write_tail, self._close
+        return whole if self._stands else (self._last_words,)
 
     def _run(self, state: State, kept: Kept | None) -> None:
         if kept is None:
@@ -142,6 +148,7 @@ class Loop:
         self._rest, self._hops = Rest(self.stop), Hops(self.scene, self.stop)
         with self.progress.patience(_COMPILING):
             self.engine.load(self.scene, state)
+        self._stands = True
         self._immerse(state)
         self._record()
         self._change_if_due()
@@ -164,6 +171,7 @@ class Loop:
             with self.progress.patience(_COMPILING):
                 self.engine.load(self.scene, state)
             self._immerse(state)
+            self._stands = True
             self.progress.starts_at(self._moment().share)
         except (ValueError, ArithmeticError, AssertionError) as error:
             raise CheckpointError(f"the checkpoint's state cannot be gone on from ({error})") from error
@@ -403,8 +411,10 @@ class Loop:
 
     def _close(self) -> dict[str, Any]:
         summary = self._summary()
-        folder = self.recorder.folder
-        closed = {**self.origin, "status": self.status, "message": self.message, "end": provenance.now()}
-        write_last_words(folder / schema.PROVENANCE, closed)
-        write_json(folder / schema.SUMMARY, summary)
+        self._last_words()
+        write_json(self.recorder.folder / schema.SUMMARY, summary)
         return summary
+
+    def _last_words(self) -> None:
+        closed = {**self.origin, "status": self.status, "message": self.message, "end": provenance.now()}
+        write_last_words(self.recorder.folder / schema.PROVENANCE, closed)
