@@ -45,8 +45,22 @@ def book_start(now: Floats, books: Floats) -> None:
 
 
 def read_account(state: State, now: Floats, books: Floats) -> None:
-    """Take over the account and the extremes of a snapshot, also one cut into other blocks."""
+    """Take over the account and the extremes of a snapshot, also one cut into other blocks.
+
+    Raises
+    ------
+    ValueError : a count, a grain or a step of the snapshot that cannot be.
+    """
     own, columns = state.engine, state.books.shape[1]
+    limits = {
+        "overlap_grain": (-1.0, len(state.x) - 1.0),
+        "overlap_step": (0.0, float(state.step)),
+        f"sum_{N_N_CONTACT}": (0.0, 2.0**53),
+    }
+    for name, (least, most) in limits.items():
+        value = own.get(name, least)
+        if not least <= value <= most:
+            raise ValueError(f"{name} = {value:g} in the snapshot: between {least:g} and {most:g}")
     if state.books.shape == books.shape:
         books[:] = state.books
     else:
