@@ -1,5 +1,6 @@
 """`ryusa new`, `check`, `run`, `schema`: from a case file to a run folder."""
 
+import gc
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -234,8 +235,6 @@ def schema() -> None:
 
 
 def _read(path: Path, settings: list[str] | None, seed: int | None) -> "Case":
-    from ryusa.casefile.read import read
-
     overrides: dict[str, str] = {}
     for setting in settings or []:
         key, equals, value = setting.partition("=")
@@ -244,7 +243,14 @@ def _read(path: Path, settings: list[str] | None, seed: int | None) -> "Case":
         overrides[key.strip()] = value.strip()
     if seed is not None:
         overrides["seed"] = str(seed)
-    return read(path, overrides)
+    gc.disable()  # modules are loaded here: collections free nothing and cost a quarter of an answer
+    try:
+        from ryusa.casefile.read import read
+
+        return read(path, overrides)
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 def _kinds() -> dict[str, str]:
