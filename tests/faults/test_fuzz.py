@@ -194,6 +194,41 @@ def test_a_state_no_engine_takes_is_refused_and_the_run_can_still_go_on_from_a_g
     assert go(kind, folder, resume=True).status == "complete"
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("value", [-sys.float_info.max, sys.float_info.max, 1e99, -1e99, 1e9, -1.0, -1e-169])
+def test_an_extreme_number_anywhere_in_a_checkpoint_is_gone_on_from_or_refused_by_name(
+    value: float, stopped: tuple[str, Path], tmp_path: Path
+) -> None:
+    kind, source = stopped
+    kept = read_checkpoint(source / schema.CHECKPOINT, Results.open(source).scene.n_grain)
+    floats = [name for name, one in kept.arrays.items() if one.dtype.kind == "f" and one.size]
+    assert floats
+    folder = tmp_path / "run"
+    for name in floats:
+        for place in {0, kept.arrays[name].size - 1}:
+            shutil.copytree(source, folder)
+            arrays = {**kept.arrays, name: kept.arrays[name].copy()}
+            arrays[name].flat[place] = value
+            sign(folder, dict(kept.about), arrays)
+            judged(kind, folder)
+            shutil.rmtree(folder)
+
+
+def test_an_eddy_viscosity_that_cannot_be_is_refused(stopped: tuple[str, Path], tmp_path: Path) -> None:
+    kind, source = stopped
+    if kind != "two-way":
+        return
+    shutil.copytree(source, folder := tmp_path / "run")
+    kept = read_checkpoint(folder / schema.CHECKPOINT, Results.open(folder).scene.n_grain)
+    name = "state/water/water/nu_t"
+    for value, why in [(-1e-169, "less than nothing"), (sys.float_info.max, "at most 1e\\+100")]:
+        arrays = {**kept.arrays, name: kept.arrays[name].copy()}
+        arrays[name][0] = value
+        sign(folder, dict(kept.about), arrays)
+        with pytest.raises(RyusaError, match=why):
+            go(kind, folder, resume=True)
+
+
 Trick = Callable[[str, Path, st.DataObject], None]
 TRICKS: list[Trick] = [damage_a_file, change_json, sign_another_checkpoint]
 

@@ -24,6 +24,7 @@ _BLOCKS = 64  # rows of the books, at most
 _COLUMNS = 64  # of the books, at most
 _FLOAT, _INT, _INT32 = np.dtype(np.float64), np.dtype(np.int64), np.dtype(np.int32)
 _EDGE = 1e12  # m; beyond no grain is
+_LARGEST = 1e100  # in any unit: squares and products of a few such are still numbers
 
 
 def kept_state(state: State) -> Kept:
@@ -125,6 +126,8 @@ class _Reader:
         profiles: dict[str, Any] = {
             name: self._floats(f"water/water/{name}", shape) for name, shape in cells.items()
         }
+        if (profiles["nu_t"] < 0.0).any():
+            raise ValueError("an eddy viscosity of less than nothing")
         eddies = None
         if about.get("water/eddies"):
             eddies = Eddies(
@@ -164,6 +167,8 @@ class _Reader:
         array = self._array(name, shape, _FLOAT)
         if not np.isfinite(array).all():
             raise ValueError(f"'{name}' holds a number that is not finite")
+        if array.size and np.abs(array).max() > _LARGEST:
+            raise ValueError(f"'{name}' holds {array.flat[np.abs(array).argmax()]:g}: at most {_LARGEST:g}")
         return array
 
     def _array(self, name: str, shape: tuple[int, ...] | None, dtype: np.dtype[Any]) -> np.ndarray:
