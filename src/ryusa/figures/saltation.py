@@ -142,7 +142,8 @@ def _shade(axes: Axes, skim: float) -> None:
         "color": "#555555",
     }
     plain = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}
-    axes.annotate("skims the crests,\n$u t/d > 0.3$", (0, 0), (4, 4), bbox=plain, **how)
+    # Below what was measured: a point may lie where the words are.
+    axes.annotate("skims the crests,\n$u t/d > 0.3$", (0, 0), (4, 4), bbox=plain, zorder=1, **how)
 
 
 @style.house
