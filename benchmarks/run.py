@@ -49,6 +49,7 @@ class Bench:
         found = {"LAMMPS": found_lammps(options.builds), "LIGGGHTS": found_liggghts(), "YADE": found_yade()}
         self.peers: dict[str, list[Any]] = {name: found[name] for name in options.peers if found[name]}
         self.state = self._begin()
+        self.watch = machine.Watch(self.state.get("spin", float("inf")))
 
     def _begin(self) -> dict[str, Any]:
         fresh = self.options.fresh or not self.file.exists()
@@ -59,20 +60,23 @@ class Bench:
         if before and before.get("source") != digest():
             print(f"{self.file}: taken with another ryusa; builds and skins of the peers stay, no more")
             kept = {key: {"tuned": row["tuned"]} for key, row in before.get("speed", {}).items()}
-            before = {"speed": kept, "anyway": before["anyway"]}
+            before = {"speed": kept, "anyway": before["anyway"], "spin": before.get("spin", float("inf"))}
         versions = {"ryusa": Ryusa().version(), **_packages()}
         for name, builds in self.peers.items():
             versions |= {f"{name}, {one.label}": one.version() for one in builds}
+        about = machine.describe()
+        command = " ".join(["python", "benchmarks/run.py", *map(_without_folders, sys.argv[1:])])
         return before | {
-            "command": " ".join(["python", "benchmarks/run.py", *map(_without_folders, sys.argv[1:])]),
+            "sittings": [*before.get("sittings", []), {"date": about.pop("date"), "command": command}],
             "anyway": before.get("anyway", False) or self.options.anyway,
-            "machine": machine.describe(),
+            "machine": about,
             "source": digest(),
             "versions": before.get("versions", {}) | versions,
         }
 
     def keep(self) -> None:
         """Keep all figures, and the page made of them."""
+        self.state["spin"] = self.watch.fastest
         for folder in dict.fromkeys((self.work, self.options.out)):
             folder.mkdir(parents=True, exist_ok=True)
             (folder / self.file.name).write_text(json.dumps(self.state, indent=1) + "\n")
@@ -98,6 +102,7 @@ class Bench:
                 speed.side_by_side(
                     load, path, n, threads, peers, pairs=self.pairs, scale=self.scale,
                     anyway=self.options.anyway, work=self.work, row=rows.setdefault(key, {}), keep=self.keep,
+                    watch=self.watch,
                 )  # fmt: skip
 
     def _loads(self) -> list[Workload]:
@@ -188,10 +193,10 @@ def main() -> None:
     options.name = options.name or f"{'quick' if options.quick else 'full'}"
     options.work = options.work.resolve()
     options.out = options.out or (options.work if options.quick else HERE / "results")
-    why = machine.noise(machine.Watch())
+    bench = Bench(options)
+    why = machine.noise(bench.watch)
     if why and not options.anyway:
         sys.exit(f"this machine is not quiet: {why}. Wait, or give --anyway")
-    bench = Bench(options)
     bench.run()
     print(report.markdown(bench.state))
     print(f"kept in {options.out / bench.file.stem}.md")

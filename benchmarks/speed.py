@@ -65,6 +65,7 @@ def side_by_side(
     work: Path,
     row: dict[str, Any],
     keep: Callable[[], None],
+    watch: Watch,
 ) -> None:
     """Fill a row of the table: builds and skins first, then rounds; what is there is not done again."""
     grid = load.grid
@@ -94,7 +95,6 @@ def side_by_side(
     rounds = row.setdefault("rounds", [])
     if any(set(one["codes"]) != {code.name for code, _ in codes} for one in rounds):
         rounds.clear()  # taken with other codes beside
-    watch = Watch()
     while sum(one["quiet"] or anyway for one in rounds) < pairs and len(rounds) < MOST * pairs:
         one: dict[str, Any] = {}
         watch.begin()
