@@ -14,7 +14,7 @@ LOAD = 0.3  # load average above which a machine is not quiet
 OTHERS = 0.08  # cores that other processes may use meanwhile
 STEAL = 0.03  # cores' worth of time that the host may take away
 VECTORS = ("avx512f", "avx2", "avx", "asimd")
-SLOW = 1.08  # of the fastest spin seen, now or in an earlier sitting
+SLOW = 1.25  # of the fastest spin seen, now or in an earlier sitting; a tenth or two up and down is usual
 SPINS = 30  # one or two seconds
 
 

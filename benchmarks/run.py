@@ -77,10 +77,12 @@ class Bench:
     def keep(self) -> None:
         """Keep all figures, and the page made of them."""
         self.state["spin"] = self.watch.fastest
-        for folder in dict.fromkeys((self.work, self.options.out)):
-            folder.mkdir(parents=True, exist_ok=True)
-            (folder / self.file.name).write_text(json.dumps(self.state, indent=1) + "\n")
-            (folder / self.file.name).with_suffix(".md").write_text(report.markdown(self.state))
+        self._write(self.work)
+
+    def _write(self, folder: Path) -> None:
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / self.file.name).write_text(json.dumps(self.state, indent=1) + "\n")
+        (folder / self.file.name).with_suffix(".md").write_text(report.markdown(self.state))
 
     def grains(self, load: Workload) -> tuple[Path, int]:
         """First grains of a workload, settled when they are not there yet, and how many are free."""
@@ -152,6 +154,7 @@ class Bench:
                 print(part, flush=True)
                 self.state[part] = getattr(self, part)()
             self.keep()
+        self._write(self.options.out)
 
 
 def _without_folders(word: str) -> str:
@@ -164,6 +167,19 @@ def _packages() -> dict[str, str]:
     return {name: version(name) for name in ("numba", "llvmlite", "numpy")}
 
 
+def _key(word: str) -> str:
+    try:
+        return workloads.named(word).key
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+
+
+def _count(word: str) -> int:
+    if not word.isdecimal() or int(word) < 1:
+        raise argparse.ArgumentTypeError(f"{word!r} is no number of at least 1")
+    return int(word)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
@@ -171,28 +187,35 @@ def main() -> None:
     cores = len(os.sched_getaffinity(0))
     parser.add_argument("--parts", nargs="+", choices=PARTS, default=list(PARTS))
     parser.add_argument(
-        "--only", nargs="+", metavar="WORKLOAD", help="such as W1-20k, W2-20k-poly, W1-20k-water, W3-200k"
+        "--only",
+        nargs="+",
+        type=_key,
+        metavar="WORKLOAD",
+        help="such as W1-20k, W2-20k-poly, W1-20k-water, W3-200k",
     )
-    parser.add_argument("--threads", nargs="+", type=int, default=[n for n in (1, 2) if n <= cores])
+    parser.add_argument("--threads", nargs="+", type=_count, default=[n for n in (1, 2) if n <= cores])
     parser.add_argument(
         "--peers", nargs="*", choices=["LAMMPS", "LIGGGHTS", "YADE"], default=["LAMMPS", "LIGGGHTS", "YADE"]
     )
-    parser.add_argument("--pairs", type=int, help="rounds; 7, quick 3")
+    parser.add_argument("--pairs", type=_count, help="rounds; 7, quick 3")
     parser.add_argument("--quick", action="store_true", help="2k grains, a quarter of the steps")
     parser.add_argument("--anyway", action="store_true", help="also on a machine that is not quiet")
     parser.add_argument("--fresh", action="store_true", help="forget what was done before")
-    parser.add_argument("--name", help="of the table; quick or full, and the date, when not given")
+    parser.add_argument("--name", default="", help="of the table; quick or full when not given")
     parser.add_argument(
         "--work", type=Path, default=BUILD / "benchmarks", help="grains and figures on the way"
     )
     parser.add_argument("--builds", type=Path, default=BUILD / "peers", help="builds of LAMMPS, see peers.sh")
     parser.add_argument(
-        "--out", type=Path, help="where the table goes; benchmarks/results, quick: the work folder"
+        "--out",
+        type=Path,
+        help="where the table goes when all is done; benchmarks/results for everything, else the work folder",
     )
     options = parser.parse_args()
     options.name = options.name or f"{'quick' if options.quick else 'full'}"
     options.work = options.work.resolve()
-    options.out = options.out or (options.work if options.quick else HERE / "results")
+    partly = options.quick or options.anyway or options.only or options.parts != list(PARTS)
+    options.out = options.out or (options.work if partly else HERE / "results")
     bench = Bench(options)
     why = machine.noise(bench.watch)
     if why and not options.anyway:

@@ -12,6 +12,7 @@ from peer import Job, Peer, PeerError, carry_out
 from peer_ryusa import ALONE, Ryusa
 from workloads import Workload
 
+SKINS = 6  # to try at most
 TUNE = 0.25  # of the steps, for a look at builds and skins
 MOST = 2  # rounds, over those wanted, where some were not quiet
 
@@ -28,7 +29,7 @@ def run(peer: Peer, job: Job, work: Path) -> Any:
 
 
 def tune(builds: list[Any], job: Job, n: int, work: Path) -> dict[str, Any]:
-    """Fastest build at a middle skin, then its best skin of three; all rates are kept."""
+    """Fastest build at a middle skin, then its best skin of three, or of more; all rates are kept."""
     short = job.times(TUNE)
     load = job.load.name
     middle = builds[0].skins[load][1]
@@ -47,9 +48,15 @@ def tune(builds: list[Any], job: Job, n: int, work: Path) -> dict[str, Any]:
     best = max(builds, key=lambda build: once(build, middle))
     if not seen[best.label][f"{middle:g}"]:
         return {"build": None, "rates": seen}
-    skins = best.skins[load]
-    skin = max(skins, key=lambda one: seen[best.label][f"{middle:g}"] if one == middle else once(best, one))
-    return {"build": best.label, "skin": skin, "rates": seen}
+    rates = seen[best.label]
+    found = {skin: rates.get(f"{skin:g}") or once(best, skin) for skin in best.skins[load]}
+    while len(found) < SKINS:  # until the best lies between two others
+        skin = max(found, key=lambda one: found[one])
+        if min(found) < skin < max(found):
+            break
+        skin = round(skin * (1.5 if skin == max(found) else 0.5), 4)
+        found[skin] = once(best, skin)
+    return {"build": best.label, "skin": max(found, key=lambda one: found[one]), "rates": seen}
 
 
 def side_by_side(

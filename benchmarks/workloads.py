@@ -86,9 +86,14 @@ def workload(name: str, size: str, *, poly: bool = False, column: bool = False) 
 
 def named(key: str) -> Workload:
     """Workload by its key: name, size, then `poly` or `water`."""
-    name, size, *more = key.split("-")
-    if name not in _WHAT or size not in (PLANE if name == "W3" else BED) or set(more) - {"poly", "water"}:
-        raise ValueError(f"{key}: no such workload; a name of {', '.join(_WHAT)}, a size, then poly or water")
+    name, _, rest = key.partition("-")
+    size, *more = rest.split("-")
+    sizes = PLANE if name == "W3" else BED
+    if name not in _WHAT or size not in sizes or set(more) - {"poly", "water"}:
+        raise ValueError(
+            f"{key!r} is no workload: one of {', '.join(_WHAT)}, a size of {', '.join(sizes)}, "
+            "then poly or water, such as W1-20k-poly"
+        )
     return workload(name, size, poly="poly" in more, column="water" in more)
 
 

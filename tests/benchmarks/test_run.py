@@ -40,7 +40,9 @@ def test_the_benchmark_writes_figures_with_their_machine_and_does_nothing_twice(
     assert json.loads((tmp_path / "quick.json").read_text())["speed"] == kept["speed"]
 
 
-def test_an_unknown_workload_is_named(quick) -> None:
-    done = quick("--parts", "speed", "--only", "W1-3k")
-    assert done.returncode != 0
-    assert "W1-3k" in done.stderr
+@pytest.mark.parametrize("word", ["W1-3k", "W9", "W3-100", "W1-2k-wet"])
+def test_an_unknown_workload_is_named_before_anything_is_done(quick, tmp_path: Path, word: str) -> None:
+    done = quick("--parts", "speed", "--only", word)
+    assert done.returncode == 2
+    assert f"'{word}' is no workload: one of W1, W2, W3" in done.stderr
+    assert not list(tmp_path.iterdir())

@@ -273,6 +273,21 @@ def test_a_script_with_bad_arrays_is_told(keys: dict[str, object]) -> None:
         scene(**keys)  # type: ignore[arg-type]
 
 
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("density", 0.0), ("stiffness", -1e4), ("stiffness", math.nan), ("shear_ratio", -0.1),
+        ("restitution", 1.5), ("restitution", 0.0), ("restitution_shear", math.nan), ("friction", -0.1),
+        ("gravity", math.inf),
+        ("slope", 1.6), ("dt", 0.0), ("steps_per_contact", 0.0), ("period", (0.0, math.inf)),
+    ],
+)  # fmt: skip
+def test_a_script_with_a_number_out_of_range_is_told_which(key: str, value: object) -> None:
+    with pytest.raises(CaseError, match=f"^{key} = .*must") as caught:
+        scene(x=[[0.0, 0.0, 0.0]], d=0.002, **{key: value})  # type: ignore[arg-type]
+    assert caught.value.key == key
+
+
 def test_a_plane_script_has_lanes_that_are_equal_or_a_diameter_apart() -> None:
     over = [[0.0, 0.0, 0.01], [0.0, 0.0, 0.0125]]
     scene(x=over, d=0.002, plane_case=True)

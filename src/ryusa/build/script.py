@@ -1,7 +1,7 @@
 """A scene grain by grain, without a file."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -68,13 +68,25 @@ def scene(
 
     Raises
     ------
-    CaseError : shapes that do not fit, a number that is not finite, overlapping first grains, lanes of a
-        plane scene closer than the largest diameter, a wall that crosses a period.
+    CaseError : shapes that do not fit, a number that is not finite or out of its range, overlapping first
+        grains, lanes of a plane scene closer than the largest diameter, a wall that crosses a period.
 
     >>> fixed, first = scene(x=[[0.0, 0.0, 0.011]], d=0.002, planes=[("floor", (0, 0, 0), (0, 0, 1))])
     >>> fixed.n_grain, fixed.n_plane, first.n_grain
     (1, 1, 1)
     """
+    above_zero = {"density": density, "stiffness": stiffness, "steps_per_contact": steps_per_contact}
+    at_least_zero = {"shear_ratio": shear_ratio, "friction": friction, "gravity": gravity}
+    _refuse({**above_zero, "dt": dt}, lambda one: one > 0.0, "must be finite and greater than 0")
+    _refuse(at_least_zero, lambda one: one >= 0.0, "must be finite and at least 0")
+    _refuse({"slope": slope}, lambda one: abs(one) < math.pi / 2, "must lie between -pi/2 and pi/2 rad")
+    _refuse(
+        {"restitution": restitution, "restitution_shear": restitution_shear},
+        lambda one: 0.0 < one <= 1.0,
+        "must be greater than 0 and at most 1",
+    )
+    if not all(one > 0.0 for one in period):
+        raise CaseError("period", period, "must be greater than 0 in x and y, or inf where open")
     centres = _rows(x, "x", None)
     n = len(centres)
     if n == 0:
@@ -129,6 +141,12 @@ def scene(
         events=events,
     )
     return assemble(layout, laws)
+
+
+def _refuse(numbers: Mapping[str, float | None], fits: Callable[[float], bool], allowed: str) -> None:
+    for name, one in numbers.items():
+        if one is not None and not (math.isfinite(one) and fits(one)):
+            raise CaseError(name, one, allowed)
 
 
 def _refuse_walls(layout: Layout, plane_case: bool) -> None:

@@ -47,7 +47,8 @@ def _contacts(summary: dict[str, Any]) -> list[str]:
 def _water(found: dict[str, Any]) -> str:
     return (
         f"water: {found['exchanges']} exchanges, the last {found['steps_between']} steps apart; "
-        f"discharge {found['discharge']:.3g} m2/s, bed stress {found['bed_stress']:.3g} Pa; "
+        f"discharge {found['discharge']:.3g} m2/s, stress under the grains, on the floor of the column, "
+        f"{found['bed_stress']:.3g} Pa; "
         f"momentum not explained {found['momentum_residual']:.1e} of the largest term"
     )
 
