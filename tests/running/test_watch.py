@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from ryusa.errors import CheckpointError
 from ryusa.laws.collision import collision_time, contact_time_no_tension, omega_natural
 from ryusa.model import State
 from ryusa.running.closing import closing_lines
@@ -251,3 +252,20 @@ def test_closing_lines_name_every_book(scene: Any, state: Any, tally: Any) -> No
     more = {"steps": 1, "frames": 2, "contacts": 0, "wall": 1.0, "particle_steps_per_second": 5e6}
     text = "\n".join(closing_lines({**Watch(scene, state).numbers(tally()), **more}))
     assert all(f"{book.name.lower()} " in text for book in Book)
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [("n", 2), ("n", 10**400), ("n", -1), ("mean", math.nan), ("spread", math.inf)],
+    ids=["more", "huge", "negative", "nan", "inf"],
+)
+def test_a_checkpoint_of_averages_that_cannot_be_is_refused(
+    scene: Any, state: Any, event: Any, key: str, value: float
+) -> None:
+    watch = Watch(scene, state)
+    watch.contacts(event(0, 3, 0, 1e-4))
+    kept = watch.kept()
+    Watch(scene, state).go_on(kept)
+    kept.about["averages"][0] = {**kept.about["averages"][0], key: value}
+    with pytest.raises(CheckpointError, match="average"):
+        Watch(scene, state).go_on(kept)

@@ -32,6 +32,7 @@ QUANTILES = (0.01, 0.1, 0.5, 0.9, 0.99)
 _CLOSING_LEAST = 20.0  # times g t_col: in slower contacts the weight takes part (5 % of the speed and more)
 _BOUNCE_LONGEST = 3.0  # times the shortest contact: what lasts longer rolls or rests
 _SLIP_LEAST = 0.1  # of the closing speed: less slip than this has no tangential restitution to speak of
+_MOST = np.iinfo(np.int64).max  # contacts a run can count
 _DECADES, _BINS = (-1, 8), 100  # histogram of steps per contact: range of powers of ten, bins in each
 
 
@@ -53,6 +54,10 @@ class Average:
         self.spread += float(((values - mean) ** 2).sum()) + shift * shift * self.n * n / total
         self.mean += shift * n / total
         self.n = total
+
+    def possible(self, most: int) -> bool:
+        """Whether so many samples can have given these numbers."""
+        return 0 <= self.n <= most and math.isfinite(self.mean) and 0.0 <= self.spread < math.inf
 
     def as_dict(self) -> dict[str, float | int | None]:
         """Number, mean and standard error; None where there are too few samples."""
@@ -226,8 +231,10 @@ class Watch:
                 one.n, one.mean, one.spread = int(seen["n"]), float(seen["mean"]), float(seen["spread"])
             self.n_contact, self._re_spin = int(about["n_contact"]), float(about["re_spin"])
             self._travel_most = float(about["travel_most"])
-            if not all(one.n >= 0 and one.spread >= 0.0 for one in self._averages()):
-                raise ValueError("an average of less than nothing")
+            if not 0 <= self.n_contact <= _MOST:
+                raise ValueError("contacts that nobody can have counted")
+            if not all(one.possible(self.n_contact) for one in self._averages()):
+                raise ValueError("an average of less than nothing, or of more contacts than there were")
         except (KeyError, TypeError, ValueError, OverflowError) as error:
             raise CheckpointError(f"the checkpoint's live numbers are not readable ({error})") from error
         self._histogram, self._range = histogram, (low, high)
