@@ -8,7 +8,7 @@ import pytest
 from ryusa.experiments import Level, Plan, Word, _saltation, carry_out, fig07, fig20, fig21, hops, spin_time
 from ryusa.experiments._experiment import PHI, SLIP
 from ryusa.experiments._saltation import K_N, SHIPPED, Hops
-from ryusa.figures.saltation import Way
+from ryusa.figures.saltation import SpinPath
 from ryusa.measure import ContactTimes, Saltation, Tracks, average
 from ryusa.measure.table import Averages
 
@@ -114,7 +114,7 @@ def test_full_fig20_sweeps_what_is_left_open_one_at_a_time_and_the_rule_for_a_ho
 def spun(mean, gains, torque="none"):
     against = {"rolling": 0.9, "water_turn": 20.0, "beyond_dennis": 0.0}
     gains = tuple(np.array(one) for one in gains)
-    return fig21.Spun(made_up(), mean, mean, gains, against, Way(torque, EMPTY, EMPTY))
+    return fig21.Spun(made_up(), mean, mean, gains, against, SpinPath(torque, EMPTY, EMPTY))
 
 
 GROWING = [[300.0, 300.0, 300.0, -50.0, 50.0, -50.0]] * 8

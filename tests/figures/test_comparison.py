@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from ryusa.figures.comparison import Axis, Line, compared
+from ryusa.figures.comparison import Axis, Curve, compared
 
 
 def named(last):
     """Words beside the ticks of a logarithmic x-axis from 10 on, within its limits."""
     x = np.geomspace(10.0, last, 4)
-    figure = compared(Axis("cells", log=True), Axis("speed"), [Line("ours", x, x)], [Line("known", x, x)])
+    figure = compared(Axis("cells", log=True), Axis("speed"), [Curve("ours", x, x)], [Curve("known", x, x)])
     figure.canvas.draw()
     axis = figure.axes[0].xaxis
     low, high = figure.axes[0].get_xlim()

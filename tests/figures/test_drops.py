@@ -6,11 +6,11 @@ K = np.logspace(0, 6, 4)
 
 
 def test_charts_of_drops_are_in_the_units_of_the_paper():
-    line = figures.Curve("Eq. (8)", K, 1 / np.sqrt(K))
-    run = figures.Points("run", K, 1 / np.sqrt(K), 0 * K)
-    region = figures.Band(("0.01", "0.001"), K[:2], 1 / K[:2], K[2:], 1 / K[2:])
+    line = figures.StiffnessCurve("Eq. (8)", K, 1 / np.sqrt(K))
+    run = figures.StiffnessPoints("run", K, 1 / np.sqrt(K), 0 * K)
+    region = figures.StiffnessBand(("0.01", "0.001"), K[:2], 1 / K[:2], K[2:], 1 / K[2:])
     figure = figures.drop_chart(
-        "time", [line], [run], quoted=[figures.Quote(1.0e4, 0.01, "0.2 cm")], band=region
+        "time", [line], [run], quoted=[figures.QuotedPoint(1.0e4, 0.01, "0.2 cm")], band=region
     )
     (axes,) = figure.axes
     assert axes.get_xlabel().endswith("(N/cm)")
@@ -24,7 +24,7 @@ def test_charts_of_drops_are_in_the_units_of_the_paper():
 
 def test_rebounds_show_the_range_over_phases_and_the_line_of_ten_steps():
     steps = np.array([5.0, 10.0, 50.0])
-    one = figures.Rebound(steps, np.full(3, 0.7), np.full(3, 0.6), np.full(3, 0.8))
+    one = figures.ReboundCurve(steps, np.full(3, 0.7), np.full(3, 0.6), np.full(3, 0.8))
     figure = figures.rebounds({"runs": one}, 0.7, 0.05, 10.0)
     (axes,) = figure.axes
     assert [text.get_text() for text in axes.get_xticklabels()] == ["5", "10", "50"]

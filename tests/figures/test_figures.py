@@ -8,7 +8,7 @@ import pytest
 from matplotlib.collections import EllipseCollection, PatchCollection
 
 from ryusa import figures
-from ryusa.measure import Energy, Snapshot, Spin, Surface, Tracks, Vibration, average
+from ryusa.measure import Energy, HeapSurface, Snapshot, Spin, Tracks, Vibration, average
 from ryusa.measure.table import Averages
 from ryusa.model import EVENT, ContactLaw, Scene
 
@@ -68,8 +68,8 @@ def test_tracks_side_by_side_share_their_scale():
 
 def test_measured_points_carry_error_bars_and_the_axes_their_units():
     k = np.logspace(2, 5, 4)
-    points = figures.Points("run", k, 1 / np.sqrt(k), 0.1 / np.sqrt(k))
-    figure = figures.over_stiffness("time", [figures.Curve("Eq. (8)", k, 1 / np.sqrt(k))], [points])
+    points = figures.StiffnessPoints("run", k, 1 / np.sqrt(k), 0.1 / np.sqrt(k))
+    figure = figures.over_stiffness("time", [figures.StiffnessCurve("Eq. (8)", k, 1 / np.sqrt(k))], [points])
     axes = figure.axes[0]
     assert axes.get_xlabel().endswith("(N/m)")
     assert axes.get_ylabel().endswith("(s)")
@@ -193,7 +193,7 @@ def surface_of(**changes):
         "still": 0.001,
         "moving": 0.0,
     }
-    return Surface(**(what | changes))
+    return HeapSurface(**(what | changes))
 
 
 def test_a_fitted_slope_is_written_with_its_error_and_its_range():

@@ -8,7 +8,7 @@ import pytest
 
 from ryusa.campaign import Level, calculation
 from ryusa.errors import ResultsError
-from ryusa.figures.comparison import Axis, Line
+from ryusa.figures.comparison import Axis, Curve
 from ryusa.report import validation as page
 from ryusa.report.validation import make, table, write
 from ryusa.validation import Comparison, Error, Known, Source, Tolerance, Word, at_most, case_run
@@ -41,7 +41,8 @@ class Fake:
         return [
             Comparison(
                 "square", "Square & <i>", Source("y = x^2"), Axis("x"), Axis("y", "m"),
-                [Line("ours", ours["x"], self.factor * ours["y"])], [Line("law", ours["x"], ours["x"] ** 2)],
+                [Curve("ours", ours["x"], self.factor * ours["y"])],
+                [Curve("law", ours["x"], ours["x"] ** 2)],
                 [Error("largest difference", error, "m", at_most(0.1, "a tenth"))], said="it is a square",
             )
         ]  # fmt: skip
@@ -159,7 +160,7 @@ def test_what_is_no_number_is_missed():
 
 
 def test_a_reference_from_memory_is_shown_and_must_not_decide():
-    line, axis = Line("a", np.zeros(2), np.zeros(2)), Axis("x")
+    line, axis = Curve("a", np.zeros(2), np.zeros(2)), Axis("x")
     shown = Comparison(
         "m", "M", Source("someone", Known.MEMORY), axis, axis, [line], [line], [Error("e", 1.0)]
     )
@@ -189,7 +190,7 @@ class OfRuns:
 
     def compare(self, found, level):
         count = np.array([float(n) for n in found.values()])
-        lines = [Line("ours", count, count)]
+        lines = [Curve("ours", count, count)]
         errors = [Error("frames", count.min(), "-", Tolerance(1.0, math.inf, "more than none"))]
         return [Comparison("frames", "Frames", Source("a count"), Axis("a"), Axis("b"), lines, lines, errors)]
 

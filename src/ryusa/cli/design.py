@@ -9,7 +9,7 @@ import typer
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from ryusa.measure.stability import Choice, Grain
+    from ryusa.measure.stability import Grain, StiffnessChoice
 
 RATE = 5.0e6  # grain steps per second and core that the cost assumes
 
@@ -83,7 +83,7 @@ def _positive(key: str, text: str, unit: str) -> float:
     return value
 
 
-def _table(chosen: "list[Choice]", steps_per_contact: float) -> "Table":
+def _table(chosen: "list[StiffnessChoice]", steps_per_contact: float) -> "Table":
     from rich import box
     from rich.table import Table
 
@@ -111,7 +111,7 @@ def _table(chosen: "list[Choice]", steps_per_contact: float) -> "Table":
     return table
 
 
-def _write(grain: "Grain", chosen: "list[Choice]", folder: Path) -> list[Path]:
+def _write(grain: "Grain", chosen: "list[StiffnessChoice]", folder: Path) -> list[Path]:
     import numpy as np
 
     from ryusa.errors import ResultsError

@@ -11,7 +11,7 @@ from ryusa.cli.options import known, metres, need, need_settled, open_run, secon
 from ryusa.cli.packing import print_stress, print_surface, print_vibration
 
 if TYPE_CHECKING:
-    from ryusa.measure import Averages, Surface, Vibration
+    from ryusa.measure import Averages, HeapSurface, Vibration
     from ryusa.results import Results
 
 MEASURES = (
@@ -131,7 +131,7 @@ def _vibration(
     )
 
 
-def _surface(results: "Results", at: float | None, side: str) -> "Surface":
+def _surface(results: "Results", at: float | None, side: str) -> "HeapSurface":
     from ryusa import measure
 
     return measure.surface(results, at, "right" if side == "right" else "left")

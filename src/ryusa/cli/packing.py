@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from ryusa.measure import KineticStress, Surface, Vibration
+    from ryusa.measure import HeapSurface, KineticStress, Vibration
 
 DIAMETERS = 1.0e-3  # default threshold, in mean diameters
 LINES = 12  # windows printed
@@ -53,7 +53,7 @@ def print_stress(found: "KineticStress") -> None:
     )
 
 
-def print_surface(found: "Surface") -> None:
+def print_surface(found: "HeapSurface") -> None:
     """Print slope, height and run-out of a heap, angles in degrees."""
     table = _table(("quantity", "value", "unit"))
     table.columns[0].justify = "left"

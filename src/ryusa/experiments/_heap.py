@@ -9,7 +9,7 @@ from scipy import stats
 
 from ryusa.experiments._experiment import PHI, SLIP, Plan, Variant, variant
 from ryusa.experiments._verdict import CONFIDENCE, Interval, Pooled, over_seeds
-from ryusa.measure import Snapshot, Surface, snapshot, surface
+from ryusa.measure import HeapSurface, Snapshot, snapshot, surface
 from ryusa.results import Results
 
 CASE = "fig19"
@@ -26,7 +26,7 @@ class Heap:
     """The heap at the end of one run."""
 
     seen: Snapshot
-    found: Surface
+    found: HeapSurface
     start: Snapshot | None  # as the gate goes; None where it was not kept
     t_gate: float  # [s]
     t_end: float  # [s]

@@ -129,8 +129,8 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
     lines, runs = [], []
     for d, time in zip(_drops.SIZES, times(found, plan), strict=True):
         m = Setup(d=d).m
-        lines.append(figures.Curve(d, k, np.array([collision_time(m, one) for one in k])))
-        runs.append(figures.Points(f"run, d = {d}", k, time, np.zeros(len(k))))
-    quote = figures.Quote(100.0 * SOFT, 0.01, _drops.DIAMETER)
+        lines.append(figures.StiffnessCurve(d, k, np.array([collision_time(m, one) for one in k])))
+        runs.append(figures.StiffnessPoints(f"run, d = {d}", k, time, np.zeros(len(k))))
+    quote = figures.QuotedPoint(100.0 * SOFT, 0.01, _drops.DIAMETER)
     words = ("Eq. (8)", "2650 kg/m³, e = 1, no weight")
     return {"fig04": figures.drop_chart("time", lines, runs, quoted=[quote], words=words)}

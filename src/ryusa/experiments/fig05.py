@@ -113,7 +113,7 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
     """Both times over k_n, as in the paper, and their ratio for every choice."""
     k = np.array(stiffnesses(plan)) * 100.0
     nothing = np.zeros(len(k))
-    law = figures.Curve("Eq. (8)", k, np.array([collision_time(Setup().m, one) for one in k]))
+    law = figures.StiffnessCurve("Eq. (8)", k, np.array([collision_time(Setup().m, one) for one in k]))
     ratios = {
         tuple(chosen.values()): np.array(
             [ratio(found[setup(chosen, one).variant]) for one in stiffnesses(plan)]
@@ -121,15 +121,17 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
         for chosen in choices(plan)
     }
     runs = [
-        figures.Points(f"run, e = 0.7, {parting}", k, values * law.y, nothing)
+        figures.StiffnessPoints(f"run, e = 0.7, {parting}", k, values * law.y, nothing)
         for (speed, parting), values in ratios.items()
         if speed == _drops.SPEED
     ]
     speeds = sorted(
         (key for key in ratios if key[1] == _drops.NO_TENSION), key=lambda one: float(one[0].split()[0])
     )
-    by_speed = [figures.Points(_named(key[0], ratios[key]), k, ratios[key], nothing) for key in speeds]
-    one = figures.Curve("Eq. (8)", k, np.ones(len(k)))
+    by_speed = [
+        figures.StiffnessPoints(_named(key[0], ratios[key]), k, ratios[key], nothing) for key in speeds
+    ]
+    one = figures.StiffnessCurve("Eq. (8)", k, np.ones(len(k)))
     words = f"d = 0.2 cm, impact at {_drops.SPEED}"
     return {
         "fig05": figures.drop_chart("time", [law], runs, words=("Eq. (8)", words)),

@@ -122,8 +122,8 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
     here = _saltation.stiffness(next(iter(sweep)))
     theory = np.logspace(1.0, 5.5, 46)  # [N/m]
     curves = [
-        figures.Curve("Eq. (8)", theory, times.eq_8 * np.sqrt(here / theory)),
-        figures.Curve("with added mass and dashpot", theory, times.damped * np.sqrt(here / theory)),
+        figures.StiffnessCurve("Eq. (8)", theory, times.eq_8 * np.sqrt(here / theory)),
+        figures.StiffnessCurve("with added mass and dashpot", theory, times.damped * np.sqrt(here / theory)),
     ]
     skim = min(
         (_saltation.stiffness(one) for one, point in sweep.items() if point.travel < SKIM), default=0.0
@@ -143,7 +143,7 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
     return pictures
 
 
-def _points(k: np.ndarray, means: Sequence[Interval]) -> figures.Points:
+def _points(k: np.ndarray, means: Sequence[Interval]) -> figures.StiffnessPoints:
     values = np.array([one.value for one in means])
     half = np.array([0.5 * (one.high - one.low) for one in means])
-    return figures.Points("runs, mean over all starts", k, values, half)
+    return figures.StiffnessPoints("runs, mean over all starts", k, values, half)

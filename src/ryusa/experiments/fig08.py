@@ -133,9 +133,11 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
         one = Setup(d=d)
         law = np.array([overlap_max(0.3, one.m, s, one.zeta) for s in k]) / quantity(d, "m")
         drops = [found[Setup(d=d, k_n=s).variant] for s in stiffnesses(plan)]
-        lines.append(figures.Curve(d, k, law))
+        lines.append(figures.StiffnessCurve(d, k, law))
         runs.append(
-            figures.Points(f"run, d = {d}", k, np.array([np.median(r.overlap) for r in drops]), 0 * k)
+            figures.StiffnessPoints(
+                f"run, d = {d}", k, np.array([np.median(r.overlap) for r in drops]), 0 * k
+            )
         )
     by_speed = []
     for e in dict.fromkeys(one[E] for one in dropped(plan)):
@@ -154,7 +156,7 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
             "overlap",
             lines,
             runs,
-            quoted=[figures.Quote(100.0 * K_N, 0.01, _drops.DIAMETER)],
+            quoted=[figures.QuotedPoint(100.0 * K_N, 0.01, _drops.DIAMETER)],
             levels=BAND,
             words=words,
         ),

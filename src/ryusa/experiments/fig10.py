@@ -17,7 +17,7 @@ from ryusa.figures.trembling import over_threshold
 from ryusa.figures.vibration import vibration as draw_vibration
 from ryusa.measure import Snapshot, Vibration, rest_time, snapshot, trembling_share, vibration
 from ryusa.measure.statistics import Floats
-from ryusa.measure.vibration import WINDOW, By
+from ryusa.measure.vibration import WINDOW, ExtentRule
 from ryusa.results import Results
 
 FIGURE = "fig10"
@@ -35,7 +35,7 @@ THRESHOLDS = {
     "0.0003 d": 3.0e-4,
     "0.01 d": 1.0e-2,
 }
-WAYS: dict[str, By] = {
+WAYS: dict[str, ExtentRule] = {
     "net": "net",
     "to and fro": "z",
 }  # the paper's displacement; the span, which never aliases

@@ -73,7 +73,7 @@ def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
     return _drops.rows(setups(plan), found)
 
 
-def band(sizes: Sequence[str], springs: Sequence[float], speed: str, found: Found) -> figures.Band:
+def band(sizes: Sequence[str], springs: Sequence[float], speed: str, found: Found) -> figures.StiffnessBand:
     """Edges of the band as runs have it: k_n and time where overlap/d is 0.01 and 0.001, between two runs."""
     edges: list[tuple[float, float, float, float]] = []
     for d in sizes:
@@ -86,20 +86,24 @@ def band(sizes: Sequence[str], springs: Sequence[float], speed: str, found: Foun
         soft, stiff = np.log(BAND[1]), np.log(BAND[0])
         edges.append(tuple(np.exp([np.interp(at, x, y) for at in (soft, stiff) for y in (k, t)])))
     k_soft, t_soft, k_stiff, t_stiff = np.array(edges).T
-    return figures.Band((f"{BAND[1]:g}", f"{BAND[0]:g}"), k_soft, t_soft, k_stiff, t_stiff)
+    return figures.StiffnessBand((f"{BAND[1]:g}", f"{BAND[0]:g}"), k_soft, t_soft, k_stiff, t_stiff)
 
 
 def times(
     sizes: Sequence[str], springs: Sequence[float], speed: str, found: Found
-) -> tuple[list[figures.Curve], list[figures.Points]]:
+) -> tuple[list[figures.StiffnessCurve], list[figures.StiffnessPoints]]:
     """Lines of Eq. (8) and contact times of runs, by diameter."""
     k = np.array(springs) * 100.0
-    lines = [figures.Curve(d, k, np.array([collision_time(Setup(d=d).m, s) for s in k])) for d in sizes]
+    lines = [
+        figures.StiffnessCurve(d, k, np.array([collision_time(Setup(d=d).m, s) for s in k])) for d in sizes
+    ]
     runs = []
     for d in sizes:
         drops = [found[Setup(d=d, k_n=s, speed=speed).variant] for s in springs]
         runs.append(
-            figures.Points(f"run, d = {d}", k, np.array([np.median(one.time) for one in drops]), 0 * k)
+            figures.StiffnessPoints(
+                f"run, d = {d}", k, np.array([np.median(one.time) for one in drops]), 0 * k
+            )
         )
     return lines, runs
 
@@ -108,7 +112,7 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
     """Contact times with the band across them."""
     springs = fig08.stiffnesses(plan)
     lines, runs = times(_drops.SIZES, springs, _drops.SPEED, found)
-    quote = figures.Quote(Setup(time=TIME).stiffness, quantity(TIME, "s"), _drops.DIAMETER)
+    quote = figures.QuotedPoint(Setup(time=TIME).stiffness, quantity(TIME, "s"), _drops.DIAMETER)
     words = ("Eq. (8)", f"e = 0.7, impact at {_drops.SPEED}; shaded: overlap/d 0.001 to 0.01")
     region = band(_drops.SIZES, springs, _drops.SPEED, found)
     return {"fig11": figures.drop_chart("time", lines, runs, quoted=[quote], band=region, words=words)}

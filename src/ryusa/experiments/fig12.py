@@ -103,7 +103,9 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
     """Contact times of large grains with the band across them."""
     springs = stiffnesses(plan)
     lines, runs = fig11.times(_drops.LARGE, springs, SHIPPED, found)
-    quotes = tuple(figures.Quote(Setup(d=D, time=time).stiffness, quantity(time, "s"), D) for time in TIMES)
+    quotes = tuple(
+        figures.QuotedPoint(Setup(d=D, time=time).stiffness, quantity(time, "s"), D) for time in TIMES
+    )
     words = ("Eq. (8)", f"e = 0.7, impact at {SHIPPED}; shaded: overlap/d 0.001 to 0.01")
     region = fig11.band(_drops.LARGE, springs, SHIPPED, found)
     return {"fig12": figures.drop_chart("time", lines, runs, quoted=quotes, band=region, words=words)}

@@ -153,7 +153,7 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
         pictures["fig15-locked"] = figures.profiles(_profiles(found, plan, locked), ("phi", "v_x"))
     if len(tried) > 1:
         lines = [
-            figures.Choice(
+            figures.SensitivityRow(
                 _avalanche.label(one),
                 {
                     window: [
@@ -165,7 +165,7 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
             )
             for one in tried
         ]
-        pictures["fig15-choices"] = figures.choices(lines, tuple(PANELS), (1.0,) * len(PANELS))
+        pictures["fig15-choices"] = figures.sensitivity(lines, tuple(PANELS), (1.0,) * len(PANELS))
     return pictures
 
 

@@ -201,7 +201,7 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
     }
     if len(settings(plan)) > 1:
         lines = [
-            figures.Choice(
+            figures.SensitivityRow(
                 _label(one),
                 {
                     f"rotation {rot}": [
@@ -214,7 +214,7 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
             if one[1] != AS_SHIPPED or _few(one[0])
         ]
         scales = (1 / d, 1 / d, 1.0, 1.0, 1.0)
-        pictures["free-choices"] = figures.choices(lines, tuple(PANELS.values()), scales)
+        pictures["free-choices"] = figures.sensitivity(lines, tuple(PANELS.values()), scales)
     return pictures
 
 

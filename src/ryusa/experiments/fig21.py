@@ -10,7 +10,7 @@ from ryusa.experiments import _saltation
 from ryusa.experiments._experiment import Found, Plan, Variant
 from ryusa.experiments._saltation import PHI, SHIPPED, SLIP, Hops
 from ryusa.experiments._verdict import Band, Finding, Trial, over_seeds, pool
-from ryusa.figures.saltation import Way, spin_over_way
+from ryusa.figures.saltation import SpinPath, spin_over_way
 from ryusa.measure import saltation, spin
 from ryusa.measure.spin import spin_against
 from ryusa.measure.statistics import Floats
@@ -55,7 +55,7 @@ class Spun:
     largest: float
     gains: tuple[Floats, ...]
     against: Mapping[str, float]
-    way: Way
+    way: SpinPath
 
     def share(self, which: str) -> float:
         """Share of hits that add spin: "early" ones, or "later" ones."""
@@ -104,7 +104,7 @@ def measure(run: Results, one: Variant) -> Spun:
         found.largest,
         tuple(gain[bounces["grain"] == g] for g in np.unique(bounces["grain"])),
         {item.name: item.value for item in spin_against(run).items},
-        Way(one.get("water.torque", "none"), found.distance[:, 0], found.omega[:, 0]),
+        SpinPath(one.get("water.torque", "none"), found.distance[:, 0], found.omega[:, 0]),
     )
 
 
@@ -233,5 +233,5 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
     return {"fig21": spin_over_way(ways, QUOTED, WAY)}
 
 
-def _named(way: Way, label: str) -> Way:
-    return Way(label, way.distance, way.omega)
+def _named(way: SpinPath, label: str) -> SpinPath:
+    return SpinPath(label, way.distance, way.omega)

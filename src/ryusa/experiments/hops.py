@@ -9,7 +9,7 @@ from ryusa.experiments import _saltation
 from ryusa.experiments._experiment import Found, Plan, Variant
 from ryusa.experiments._saltation import K_N, SHIPPED, SKIM, STIFF, STIFFNESSES, WIDE, Hops
 from ryusa.experiments._verdict import Band, Finding, Interval, Trial, over_seeds
-from ryusa.figures.saltation import Line, over_stiffness_in_cm
+from ryusa.figures.saltation import StiffnessSeries, over_stiffness_in_cm
 from ryusa.results import Results
 
 FIGURE = "hops"
@@ -134,14 +134,16 @@ def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
 
 def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
     """Heights and lengths against stiffness, with the band that counts as no change."""
-    panels: dict[str, list[Line]] = {}
+    panels: dict[str, list[StiffnessSeries]] = {}
     for name, words in AXES.items():
         for rotation in rotations(plan):
             k = np.array([_saltation.stiffness(one) for one in every(plan, rotation)])
             means = [_mean(found, plan, one, name, rotation) for one in every(plan, rotation)]
             half = np.array([0.5 * (one.high - one.low) for one in means])
             values = np.array([one.value for one in means])
-            panels.setdefault(words, []).append(Line(f"rotation {rotation}", k, 1e2 * values, 1e2 * half))
+            panels.setdefault(words, []).append(
+                StiffnessSeries(f"rotation {rotation}", k, 1e2 * values, 1e2 * half)
+            )
     base = [1e2 * _mean(found, plan, STIFF, name).value for name in AXES]
     levels = [(SAME.low * one, SAME.high * one) for one in base]
     runs = {one: found[_run(one, plan.seeds[0])] for one in every(plan)}

@@ -103,10 +103,11 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
     springs = fig05.stiffnesses(plan)
     k, m = np.array(springs) * 100.0, Setup().m
     lines = [
-        figures.Curve("Eq. (8)", k, np.array([collision_time(one, s) for s in k])) for one in (m, m / 2.0)
+        figures.StiffnessCurve("Eq. (8)", k, np.array([collision_time(one, s) for s in k]))
+        for one in (m, m / 2.0)
     ]
     runs = [
-        figures.Points(
+        figures.StiffnessPoints(
             label, k, np.array([np.median(found[two(SHIPPED, s)[at].variant].time) for s in springs]), 0 * k
         )
         for label, at in (("run, struck grain fixed", 1), ("run, struck grain free", 0))

@@ -9,7 +9,7 @@ from ryusa.experiments import _saltation
 from ryusa.experiments._experiment import Found, Plan, Variant
 from ryusa.experiments._saltation import K_N, SHIPPED, SKIM, Hops, sweep_run
 from ryusa.experiments._verdict import Band, Finding, Trial, over_seeds
-from ryusa.figures.saltation import Line, over_stiffness_in_cm
+from ryusa.figures.saltation import StiffnessSeries, over_stiffness_in_cm
 from ryusa.results import Results
 
 FIGURE = "spin-time"
@@ -105,7 +105,7 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
     """Contact time over Eq. (8) against stiffness, locked and free."""
     sweep = _sweep(found, plan)
     k = np.array([_saltation.stiffness(one) for one in sweep])
-    lines: list[Line] = []
+    lines: list[StiffnessSeries] = []
     for name, make in (("locked", sweep_run), ("free", _free)):
         means = [
             over_seeds(
@@ -118,7 +118,7 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
             for one in sweep
         ]
         half = np.array([0.5 * (one.high - one.low) for one in means])
-        lines.append(Line(f"rotation {name}", k, np.array([one.value for one in means]), half))
+        lines.append(StiffnessSeries(f"rotation {name}", k, np.array([one.value for one in means]), half))
     skim = min((_saltation.stiffness(one) for one, run in sweep.items() if run.travel < SKIM), default=0.0)
     return {
         "spin-time": over_stiffness_in_cm({"mean contact time over Eq. (8)  (–)": lines}, skim=skim, one=True)

@@ -149,11 +149,11 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
     """Restitution over steps per contact, one picture per way to part."""
     pictures: dict[str, Figure] = {}
     for parting in partings(plan):
-        schemes: dict[str, figures.Rebound] = {}
+        schemes: dict[str, figures.ReboundCurve] = {}
         for scheme in (OURS, EULER, SUMMED):
             steps = counts(plan) if scheme == OURS else (3.0, *counts(plan))
             e = [rebound(found, scheme, parting, one) for one in steps]
-            schemes[f"{scheme} (runs)" if scheme == OURS else scheme] = figures.Rebound(
+            schemes[f"{scheme} (runs)" if scheme == OURS else scheme] = figures.ReboundCurve(
                 np.array(steps),
                 np.array([one.mean() for one in e]),
                 np.array([one.min() for one in e]),

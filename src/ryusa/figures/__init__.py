@@ -1,14 +1,14 @@
 """One function per kind of plot. A figure takes measured records and draws them; it computes no numbers."""
 
-from ryusa.figures.choices import Choice, choices
 from ryusa.figures.collisions import collision_times
-from ryusa.figures.contact import Band, Curve, Points, over_stiffness, turning
-from ryusa.figures.drops import Quote, Rebound, drop_chart, over_speed, rebounds
+from ryusa.figures.contact import StiffnessBand, StiffnessCurve, StiffnessPoints, over_stiffness, turning
+from ryusa.figures.drops import QuotedPoint, ReboundCurve, drop_chart, over_speed, rebounds
 from ryusa.figures.energy import energy
 from ryusa.figures.hops import contact_times, hops
 from ryusa.figures.profiles import profiles
 from ryusa.figures.repose import surface
 from ryusa.figures.rods import rod_lengths, rods
+from ryusa.figures.sensitivity import SensitivityRow, sensitivity
 from ryusa.figures.snapshot import snapshot
 from ryusa.figures.spin import spin
 from ryusa.figures.style import save
@@ -18,15 +18,14 @@ from ryusa.figures.vibration import vibration
 from ryusa.figures.water import water
 
 __all__ = [
-    "Band",
-    "Choice",
-    "Curve",
     "Formula",
-    "Points",
-    "Quote",
+    "QuotedPoint",
     "Rates",
-    "Rebound",
-    "choices",
+    "ReboundCurve",
+    "SensitivityRow",
+    "StiffnessBand",
+    "StiffnessCurve",
+    "StiffnessPoints",
     "collision_times",
     "contact_times",
     "drop_chart",
@@ -39,6 +38,7 @@ __all__ = [
     "rod_lengths",
     "rods",
     "save",
+    "sensitivity",
     "snapshot",
     "spin",
     "surface",

@@ -2,24 +2,24 @@
 
 from matplotlib.figure import Figure
 
-from ryusa.figures.contact import Band, Curve, over_stiffness
+from ryusa.figures.contact import StiffnessBand, StiffnessCurve, over_stiffness
 from ryusa.measure.stability import BAND, Chart, Grain
 
 
 def times(found: Chart, grain: Grain, band: bool) -> Figure:
     """Eq. (8) over stiffness, with the stable band or without."""
-    curves = [Curve(_length(d), found.k_n, t) for d, t in zip(found.d, found.time, strict=True)]
+    curves = [StiffnessCurve(_length(d), found.k_n, t) for d, t in zip(found.d, found.time, strict=True)]
     soft, stiff = found.band_k
     t_soft, t_stiff = found.band_time
     words = (f"{BAND[1]:g}", f"{BAND[0]:g}")
-    region = Band(words, soft, t_soft, stiff, t_stiff) if band else None
+    region = StiffnessBand(words, soft, t_soft, stiff, t_stiff) if band else None
     text = _note(grain, band)
     return over_stiffness("time", curves, band=region, note=f"shaded: overlap/d\n{text}" if band else text)
 
 
 def overlaps(found: Chart, grain: Grain) -> Figure:
     """Largest overlap over stiffness."""
-    curves = [Curve(_length(d), found.k_n, t) for d, t in zip(found.d, found.overlap, strict=True)]
+    curves = [StiffnessCurve(_length(d), found.k_n, t) for d, t in zip(found.d, found.overlap, strict=True)]
     return over_stiffness("overlap", curves, levels=BAND, note=_note(grain))
 
 

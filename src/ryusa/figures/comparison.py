@@ -27,7 +27,7 @@ class Axis:
 
 
 @dataclass(frozen=True)
-class Line:
+class Curve:
     """One curve; what is not finite is left out."""
 
     name: str
@@ -37,7 +37,7 @@ class Line:
 
 @house
 def compared(
-    x: Axis, y: Axis, ours: Sequence[Line], references: Sequence[Line], beside: Sequence[Line] = ()
+    x: Axis, y: Axis, ours: Sequence[Curve], references: Sequence[Curve], beside: Sequence[Curve] = ()
 ) -> Figure:
     """Draw ours as coloured signs, or lines where they are many, references as black ones, others faint.
 
@@ -80,9 +80,9 @@ def compared(
     return figure
 
 
-def _few(one: Line) -> bool:
+def _few(one: Curve) -> bool:
     return len(one.x) <= _FEW
 
 
-def _few_all(lines: Sequence[Line]) -> bool:
+def _few_all(lines: Sequence[Curve]) -> bool:
     return all(_few(one) for one in lines)

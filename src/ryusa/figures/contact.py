@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ryusa.figures import style
 
 Floats = NDArray[np.float64]
-Quantity = Literal["time", "overlap"]
+ContactQuantity = Literal["time", "overlap"]
 
 _AXIS = {
     "time": "contact time  $t$  (s)",
@@ -21,7 +21,7 @@ _AXIS = {
 
 
 @dataclass(frozen=True)
-class Curve:
+class StiffnessCurve:
     """A line over stiffness.
 
     Attributes
@@ -37,8 +37,8 @@ class Curve:
 
 
 @dataclass(frozen=True)
-class Points:
-    """Measured values over stiffness with their standard errors; same units as Curve."""
+class StiffnessPoints:
+    """Measured values over stiffness with their standard errors; same units as StiffnessCurve."""
 
     label: str
     k_n: Floats
@@ -47,7 +47,7 @@ class Points:
 
 
 @dataclass(frozen=True)
-class Band:
+class StiffnessBand:
     """A region between two lines over stiffness.
 
     Attributes
@@ -66,10 +66,10 @@ class Band:
 
 @style.house
 def over_stiffness(
-    quantity: Quantity,
-    curves: Sequence[Curve],
-    points: Sequence[Points] = (),
-    band: Band | None = None,
+    quantity: ContactQuantity,
+    curves: Sequence[StiffnessCurve],
+    points: Sequence[StiffnessPoints] = (),
+    band: StiffnessBand | None = None,
     levels: tuple[float, float] | None = None,
     note: str = "",
 ) -> Figure:
@@ -150,7 +150,7 @@ def turning(runs: Mapping[str, tuple[Floats, Floats]], closed: tuple[Floats, Flo
     return figure
 
 
-def _fill(axes: Axes, band: Band) -> None:
+def _fill(axes: Axes, band: StiffnessBand) -> None:
     x = np.concatenate([band.k_low, band.k_high[::-1]])
     y = np.concatenate([band.y_low, band.y_high[::-1]])
     axes.fill(x, y, color=style.BAND, lw=0)
@@ -163,7 +163,7 @@ def _fill(axes: Axes, band: Band) -> None:
         axes.annotate(label, at, (-1, -1), color="#4c6340", **how)
 
 
-def _label_end(axes: Axes, curve: Curve, colour: Any) -> None:
+def _label_end(axes: Axes, curve: StiffnessCurve, colour: Any) -> None:
     at = (float(curve.k_n[-1]), float(curve.y[-1]))
     axes.annotate(
         curve.label, at, xytext=(3, 0), textcoords="offset points", va="center", fontsize=6.5, color=colour

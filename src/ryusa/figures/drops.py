@@ -10,10 +10,10 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from ryusa.figures import style
-from ryusa.figures.contact import Band, Curve, Points
+from ryusa.figures.contact import StiffnessBand, StiffnessCurve, StiffnessPoints
 
 Floats = NDArray[np.float64]
-Quantity = Literal["time", "overlap", "ratio"]
+DropQuantity = Literal["time", "overlap", "ratio"]
 
 QUOTED = "Osada et al. 2004"
 _PER_CM = 0.01  # N/m -> N/cm
@@ -25,7 +25,7 @@ _AXIS = {
 
 
 @dataclass(frozen=True)
-class Quote:
+class QuotedPoint:
     """A number that the paper gives, at its place in a chart; y as drawn, k_n [N/m]; `of` names the grain."""
 
     k_n: float
@@ -34,7 +34,7 @@ class Quote:
 
 
 @dataclass(frozen=True)
-class Rebound:
+class ReboundCurve:
     """Restitution over steps per contact, with its range over the phases of first touch."""
 
     steps: Floats
@@ -45,12 +45,12 @@ class Rebound:
 
 @style.house
 def drop_chart(
-    quantity: Quantity,
-    lines: Sequence[Curve],
-    runs: Sequence[Points],
+    quantity: DropQuantity,
+    lines: Sequence[StiffnessCurve],
+    runs: Sequence[StiffnessPoints],
     *,
-    quoted: Sequence[Quote] = (),
-    band: Band | None = None,
+    quoted: Sequence[QuotedPoint] = (),
+    band: StiffnessBand | None = None,
     levels: tuple[float, float] | None = None,
     words: tuple[str, str] = ("", ""),
     legend: Literal["lower left", "upper right"] = "lower left",
@@ -153,7 +153,7 @@ def over_speed(
 
 @style.house
 def rebounds(
-    schemes: Mapping[str, Rebound], asked: float, off: float, least: float, note: str = ""
+    schemes: Mapping[str, ReboundCurve], asked: float, off: float, least: float, note: str = ""
 ) -> Figure:
     """Draw restitution against steps per contact; bars span all phases of first touch.
 
@@ -191,7 +191,7 @@ def rebounds(
     return figure
 
 
-def _fill(axes: Axes, band: Band) -> None:
+def _fill(axes: Axes, band: StiffnessBand) -> None:
     """Shade a region and name its soft edge at its upper end, its stiff edge at its lower one."""
     k = np.concatenate([band.k_low, band.k_high[::-1]]) * _PER_CM
     axes.fill(k, np.concatenate([band.y_low, band.y_high[::-1]]), color=style.BAND, lw=0)

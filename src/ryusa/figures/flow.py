@@ -10,11 +10,13 @@ from numpy.typing import NDArray
 from ryusa.figures import style
 
 Floats = NDArray[np.float64]
-Curves = Mapping[str, tuple[Floats, Floats]]
+SpeedCurves = Mapping[str, tuple[Floats, Floats]]
 
 
 @style.house
-def speeds(panels: Mapping[str, Curves], d: float, flows: float, g: float = 9.8, note: str = "") -> Figure:
+def speeds(
+    panels: Mapping[str, SpeedCurves], d: float, flows: float, g: float = 9.8, note: str = ""
+) -> Figure:
     """Draw the mean speed of the free grains along the bed over time, one panel per way to start.
 
     Parameters

@@ -7,14 +7,14 @@ from matplotlib.figure import Figure
 
 from ryusa.figures import style
 from ryusa.figures.snapshot import CM, PLAIN, grains, panel
-from ryusa.measure import Snapshot, Surface
+from ryusa.measure import HeapSurface, Snapshot
 
 AWAY = "#f4f2ee"  # grains that are no part of the heap
 FITTED, OTHER = "#D55E00", "#0072B2"
 
 
 @style.house
-def surface(seen: Snapshot, found: Surface) -> Figure:
+def surface(seen: Snapshot, found: HeapSurface) -> Figure:
     """Draw the heap, the highest point of each bin, and the slope between the heights it is fitted to.
 
     Parameters
@@ -49,7 +49,7 @@ def surface(seen: Snapshot, found: Surface) -> Figure:
     return figure
 
 
-def _words(found: Surface) -> str:
+def _words(found: HeapSurface) -> str:
     if not math.isfinite(found.angle):
         return "no slope fitted: " + found.flags[-1].partition(":")[0]
     known = [one for one in (found.angle, *found.angles.values()) if math.isfinite(one)]

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from ryusa.figures import style
-from ryusa.figures.contact import Curve, Points
+from ryusa.figures.contact import StiffnessCurve, StiffnessPoints
 from ryusa.measure.spin import TURN
 
 Floats = NDArray[np.float64]
@@ -23,7 +23,7 @@ _K_N = "normal stiffness  $k_n$  (N/cm)"
 
 
 @dataclass(frozen=True)
-class Line:
+class StiffnessSeries:
     """Values over stiffness.
 
     Attributes
@@ -41,7 +41,7 @@ class Line:
 
 
 @dataclass(frozen=True)
-class Way:
+class SpinPath:
     """Spin of one grain along its way.
 
     Attributes
@@ -57,7 +57,9 @@ class Way:
 
 
 @style.house
-def contact_times_over_stiffness(curves: Sequence[Curve], runs: Points, skim: float = 0.0) -> Figure:
+def contact_times_over_stiffness(
+    curves: Sequence[StiffnessCurve], runs: StiffnessPoints, skim: float = 0.0
+) -> Figure:
     """Draw mean contact times and closed forms, both axes logarithmic.
 
     Parameters
@@ -89,7 +91,7 @@ def contact_times_over_stiffness(curves: Sequence[Curve], runs: Points, skim: fl
 
 @style.house
 def over_stiffness_in_cm(
-    panels: Mapping[str, Sequence[Line]],
+    panels: Mapping[str, Sequence[StiffnessSeries]],
     levels: Sequence[tuple[float, float]] = (),
     skim: float = 0.0,
     one: bool = False,
@@ -147,7 +149,7 @@ def _shade(axes: Axes, skim: float) -> None:
 
 
 @style.house
-def spin_over_way(ways: Sequence[Way], quoted: float, until: float) -> Figure:
+def spin_over_way(ways: Sequence[SpinPath], quoted: float, until: float) -> Figure:
     """Draw spin over distance as the paper does, clockwise (rolling downstream) negative.
 
     Parameters

@@ -3,10 +3,10 @@
 from ryusa.measure.collisions import Collisions, ContactTimes, collisions, contact_times, turned_time
 from ryusa.measure.energy import Energy, energy
 from ryusa.measure.entrainment import Entrainment, entrainment
-from ryusa.measure.formulae import Curve, classical
+from ryusa.measure.formulae import FormulaCurve, classical
 from ryusa.measure.paths import Alternating, Paths, alternating, paths
 from ryusa.measure.profiles import Layers, Profiles, profiles
-from ryusa.measure.repose import Surface, surface
+from ryusa.measure.repose import HeapSurface, surface
 from ryusa.measure.rods import Rod, Rods, companions, rods
 from ryusa.measure.saltation import Saltation, grouping, saltation
 from ryusa.measure.snapshot import Snapshot, snapshot
@@ -31,9 +31,10 @@ __all__ = [
     "Averages",
     "Collisions",
     "ContactTimes",
-    "Curve",
     "Energy",
     "Entrainment",
+    "FormulaCurve",
+    "HeapSurface",
     "KineticStress",
     "Layers",
     "Paths",
@@ -43,7 +44,6 @@ __all__ = [
     "Saltation",
     "Snapshot",
     "Spin",
-    "Surface",
     "Tracks",
     "Transport",
     "Trembling",

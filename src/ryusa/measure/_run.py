@@ -10,7 +10,7 @@ from ryusa.model import Scene
 Floats = NDArray[np.float64]
 
 
-class Frames(Protocol):
+class FrameArrays(Protocol):
     """Snapshots; the big arrays may be read from the disk when they are indexed."""
 
     t: Floats  # [s], shape (n_frame,)

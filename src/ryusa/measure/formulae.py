@@ -17,7 +17,7 @@ THRESHOLD = 0.05  # of Ashida & Michiue, as its docstring says
 C_S, ALPHA, K_D, K_F = 0.3, 0.25, 0.0828, 0.16  # of Egashira, Miyamoto & Itoh
 
 
-class Curve(NamedTuple):
+class FormulaCurve(NamedTuple):
     """One formula: its author, dimensionless shear stress and transport rate [-], shapes (n,)."""
 
     label: str
@@ -25,7 +25,7 @@ class Curve(NamedTuple):
     q_star: Floats
 
 
-def classical(run: Run, found: Transport) -> list[Curve]:
+def classical(run: Run, found: Transport) -> list[FormulaCurve]:
     """Meyer-Peter & Mueller, Wong & Parker, Ashida & Michiue, and Egashira where the run has a slope.
 
     Parameters
@@ -41,9 +41,9 @@ def classical(run: Run, found: Transport) -> list[Curve]:
     middle = found.tau_star if found.tau_star > 0.0 else math.sqrt(LEAST * MOST)
     tau = np.geomspace(min(LEAST, middle / BELOW), max(MOST, middle * ABOVE), 240)
     lines = [
-        Curve("Meyer-Peter & Müller 1948", tau, _each(laws.q_star_meyer_peter_mueller, tau)),
-        Curve("Wong & Parker 2006", tau, _each(laws.q_star_wong_parker, tau)),
-        Curve(
+        FormulaCurve("Meyer-Peter & Müller 1948", tau, _each(laws.q_star_meyer_peter_mueller, tau)),
+        FormulaCurve("Wong & Parker 2006", tau, _each(laws.q_star_wong_parker, tau)),
+        FormulaCurve(
             "Ashida & Michiue 1972",
             tau,
             np.array([laws.q_star_ashida_michiue(one, one, THRESHOLD) for one in tau]),
@@ -58,7 +58,7 @@ def classical(run: Run, found: Transport) -> list[Curve]:
         f = debris.collision_factor(C_S, float(e), K_D, ratio, 1.0) + debris.pore_factor(C_S, K_F)
         q = np.array([laws.q_star_egashira(one, slope, angle, C_S, ALPHA, f, 1.0e9) for one in tau])
         if np.isfinite(q).all():
-            lines.append(Curve("Egashira et al. 1997", tau, q))
+            lines.append(FormulaCurve("Egashira et al. 1997", tau, q))
     return lines
 
 

@@ -25,7 +25,7 @@ LEAST = 10  # frames in a window
 ROUND_OFF = 1.0e-6  # of a window, by which a frame may miss its edge
 
 Ints = NDArray[np.int64]
-By = Literal["contacts", "heights"]
+TurnRule = Literal["contacts", "heights"]
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,7 @@ class Alternating:
 
     grains: Ints
     turns: Ints
-    by: By
+    by: TurnRule
 
 
 def paths(
@@ -177,7 +177,7 @@ def paths(
 
 
 def alternating(
-    run: Run, begin: float | None = None, end: float = math.inf, turns: int = 2, by: By | None = None
+    run: Run, begin: float | None = None, end: float = math.inf, turns: int = 2, by: TurnRule | None = None
 ) -> Alternating:
     """Grains that touch the fixed bed and movers in turn within a window.
 
@@ -196,7 +196,7 @@ def alternating(
     """
     since = settle_time(run) if begin is None else begin
     scene = scene_at(run, since)
-    way: By = by or ("heights" if scene.events == EventRule.NONE else "contacts")
+    way: TurnRule = by or ("heights" if scene.events == EventRule.NONE else "contacts")
     found = (_turns_of_contacts if way == "contacts" else _turns_of_heights)(run, scene, since, end)
     if way == "contacts" and scene.events == EventRule.TRACKED:
         found = np.where(scene.tracked, found, 0)

@@ -25,7 +25,7 @@ Side = Literal["right", "left"]
 
 
 @dataclass(frozen=True)
-class Surface:
+class HeapSurface:
     """Free surface of a heap at one moment. Angles in radians, heights above z = 0.
 
     Attributes
@@ -119,7 +119,7 @@ def surface(
     still: float | None = None,
     floor: float | None = None,
     lane: int | None = None,
-) -> Surface:
+) -> HeapSurface:
     """Free surface of a heap and the slope of one side of it.
 
     Parameters
@@ -168,7 +168,7 @@ def surface(
     around = np.linalg.norm(np.asarray(run.frames.omega[k])[ids], axis=1) * r
     order = slice(None) if sign > 0.0 else slice(None, None, -1)
     line[:, 0] *= sign
-    return Surface(
+    return HeapSurface(
         t=seen.t,
         side=side,
         x=(sign * s)[order],

@@ -56,7 +56,7 @@ class Grain:
 
 
 @dataclass(frozen=True)
-class Choice:
+class StiffnessChoice:
     """What follows from one stiffness; "fixed" against a fixed grain, "free" between two alike.
 
     Attributes
@@ -102,7 +102,7 @@ def stable_range(grain: Grain, band: tuple[float, float] = BAND) -> tuple[float,
     return soft, stiff
 
 
-def choice(grain: Grain, k_n: float, steps_per_contact: float = 50.0, rate: float = 5.0e6) -> Choice:
+def choice(grain: Grain, k_n: float, steps_per_contact: float = 50.0, rate: float = 5.0e6) -> StiffnessChoice:
     """Everything that follows from a stiffness.
 
     Parameters
@@ -116,7 +116,7 @@ def choice(grain: Grain, k_n: float, steps_per_contact: float = 50.0, rate: floa
     fixed, free = grain.m_moving, 0.5 * grain.m_moving
     time_fixed = contact_time_no_tension(zeta, omega_natural(k_n, fixed))
     dt = shortest_contact(free, k_n, zeta, False) / steps_per_contact
-    return Choice(
+    return StiffnessChoice(
         k_n=k_n,
         k_s=SHEAR_RATIO * k_n,
         overlap_fixed=overlap_max(grain.speed, fixed, k_n, zeta) / grain.d,

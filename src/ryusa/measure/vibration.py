@@ -15,7 +15,7 @@ WINDOW = 0.01  # [s], that of fig10
 LEAST = 10  # frames in a window; with fewer a vibration could fall between them
 LATE = 0.25  # of the time between frames, by which one may miss its time: it waits for a whole step
 
-By = Literal["z", "path", "net"]
+ExtentRule = Literal["z", "path", "net"]
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class Vibration:
         """So many mean diameters as a threshold [m]."""
         return count * self.d_mean
 
-    def extent(self, by: By = "z") -> Floats:
+    def extent(self, by: ExtentRule = "z") -> Floats:
         """What a threshold is held against [m], (n_window, n_grain): span_z, span or the size of net."""
         return {"z": self.span_z, "path": self.span, "net": np.abs(self.net)}[by]
 
@@ -162,7 +162,7 @@ def vibration(
     )
 
 
-def trembling(found: Vibration, t: float, threshold: float, by: By = "z") -> Trembling:
+def trembling(found: Vibration, t: float, threshold: float, by: ExtentRule = "z") -> Trembling:
     """Grains that move by more than `threshold` within the window that ends at time t, or last before it.
 
     Parameters
@@ -180,13 +180,13 @@ def trembling(found: Vibration, t: float, threshold: float, by: By = "z") -> Tre
     return Trembling(found.grains[over], share, float(found.begin[k]), float(found.end[k]), threshold)
 
 
-def trembling_share(found: Vibration, threshold: float, by: By = "z") -> Floats:
+def trembling_share(found: Vibration, threshold: float, by: ExtentRule = "z") -> Floats:
     """Share of grains that move by more than `threshold` [m] in each window [-], shape (n_window,)."""
     over = found.extent(by) > threshold
     return over.mean(axis=1) if over.shape[1] else np.zeros(len(over))
 
 
-def rest_time(found: Vibration, threshold: float, by: By = "z") -> float:
+def rest_time(found: Vibration, threshold: float, by: ExtentRule = "z") -> float:
     """First time after which no grain moves by more than `threshold` [m] in a window [s]; nan if never.
 
     It is known no better than to one window. A grain that rolls along the bed does not rest by "path".

@@ -8,7 +8,7 @@ from typing import Any
 
 from ryusa.campaign import Campaign, Fault, Level, Say, carry_out, spared
 from ryusa.figures import save
-from ryusa.figures.comparison import Line, compared
+from ryusa.figures.comparison import Curve, compared
 from ryusa.report.html import embedded, template, write_log, write_whole
 from ryusa.report.origin import counted, json_number, missing_runs, origin, traces_of
 from ryusa.running import provenance
@@ -300,7 +300,7 @@ def _error(one: Error) -> dict[str, Any]:
     }
 
 
-def _line(one: Line) -> dict[str, Any]:
+def _line(one: Curve) -> dict[str, Any]:
     """A curve with as many points and digits as a reader of the file needs."""
     step = max(1, -(-len(one.x) // MOST))
     return {

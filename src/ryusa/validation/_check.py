@@ -9,7 +9,7 @@ from typing import Any, Protocol
 
 from ryusa.campaign import Level, Variant, Work
 from ryusa.errors import CaseError
-from ryusa.figures.comparison import Axis, Line
+from ryusa.figures.comparison import Axis, Curve
 from ryusa.results import Results
 
 NAMES = (
@@ -115,12 +115,12 @@ class Comparison:
     source: Source
     x: Axis
     y: Axis
-    ours: Sequence[Line]
-    references: Sequence[Line]
+    ours: Sequence[Curve]
+    references: Sequence[Curve]
     errors: Sequence[Error]
     settings: Mapping[str, str] = field(default_factory=dict[str, str])
     said: str = ""
-    beside: Sequence[Line] = ()
+    beside: Sequence[Curve] = ()
 
     def __post_init__(self) -> None:
         """Let nothing from memory decide."""

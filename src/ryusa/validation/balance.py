@@ -12,7 +12,7 @@ import numpy as np
 from ryusa.build import scene
 from ryusa.campaign import Level, Work, calculation
 from ryusa.engine.cpu import CpuEngine
-from ryusa.figures.comparison import Axis, Line
+from ryusa.figures.comparison import Axis, Curve
 from ryusa.model import EVENT, Column, Scene, State, Water
 from ryusa.model.column import Bed, Mixing, Start
 from ryusa.model.enums import Buoyancy, Drag, EventRule, Hindrance, Profile
@@ -123,13 +123,13 @@ def runs(level: Level) -> Sequence[Work]:
 def compare(found: Found, level: Level) -> Sequence[Comparison]:
     """What the bed carries over the weight, averaged over a growing time."""
     time = LONG[level] * (1.0 + np.arange(PARTS)) / PARTS
-    ours: list[Line] = []
+    ours: list[Curve] = []
     errors: list[Error] = []
     closes = 0.0
     for form in FORMS:
         weight, contacts, water, gain = np.cumsum(found[_call(form, level)]["parts"], axis=0).T
         ratio = -(contacts + water) / weight
-        ours.append(Line(f"buoyancy {form}", time, ratio))
+        ours.append(Curve(f"buoyancy {form}", time, ratio))
         why = "momentum that comes and goes within the time"
         errors.append(
             Error(f"{form}: bed over weight, less 1", abs(float(ratio[-1]) - 1.0), "-", at_most(0.01, why))
@@ -144,7 +144,7 @@ def compare(found: Found, level: Level) -> Sequence[Comparison]:
             "bed-stress", "Stress of the bed over the downslope weight of the mixture",
             Source("steady uniform flow: bed stress = integral of (rho (1 - phi) + sigma phi) g sin(slope)"),
             Axis("averaged over", "s"), Axis("bed stress over weight"), ours,
-            [Line("1", time, np.ones(PARTS))], errors,
+            [Curve("1", time, np.ones(PARTS))], errors,
             {"slope": "0.1", "grains": "32 on a rough row", "depth": "4 d"},
             "Grains give what their contacts say, the water what its stress on the bed and its drag on fixed "
             "grains say; neither knows of the other.",

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ryusa.campaign import Level, Variant, Work
-from ryusa.figures.comparison import Axis, Line
+from ryusa.figures.comparison import Axis, Curve
 from ryusa.laws.debris import (
     collision_factor,
     equilibrium_concentration,
@@ -141,8 +141,8 @@ def compare(found: Found, level: Level) -> Sequence[Comparison]:
                 "Takahashi 1978; Egashira, Miyamoto & Itoh 1997: c = rho tan(slope)/((sigma - rho) "
                 "(tan(phi) - tan(slope))); Takahashi at most 0.9 of the bed's"
             ),
-            Axis("slope", "deg"), Axis("concentration"), [Line("grains", np.degrees(slope), c)],
-            [Line(f"phi = {math.degrees(phi):.1f} deg, of the dry flow", fine, _curve(fine, phi, wet))],
+            Axis("slope", "deg"), Axis("concentration"), [Curve("grains", np.degrees(slope), c)],
+            [Curve(f"phi = {math.degrees(phi):.1f} deg, of the dry flow", fine, _curve(fine, phi, wet))],
             [
                 Error(
                     "largest relative difference", float(np.abs(c / closed - 1.0).max()), "-",
@@ -153,7 +153,7 @@ def compare(found: Found, level: Level) -> Sequence[Comparison]:
             "Mean from the bed, where grains have a twentieth of the surface's speed, to the surface; three "
             f"dimensions, for a plane packs to 0.55 only. Dry flow: tan(phi) = {dry['friction']:.3f}. "
             f"{said}.",
-            [Line("phi = 38 deg", fine, _curve(fine, SAND, wet))],
+            [Curve("phi = 38 deg", fine, _curve(fine, SAND, wet))],
         ),
         _velocity(wet, phi, settings),
     ]  # fmt: skip
@@ -161,8 +161,8 @@ def compare(found: Found, level: Level) -> Sequence[Comparison]:
 
 def _velocity(wet: Sequence[dict[str, Any]], phi: float, settings: dict[str, str]) -> Comparison:
     """Speed of the water over height, beside the law of a uniform mixture."""
-    ours: list[Line] = []
-    theirs: list[Line] = []
+    ours: list[Curve] = []
+    theirs: list[Curve] = []
     ratios: list[float] = []
     for one in wet:
         name = f"{math.degrees(one['slope']):.0f} deg"
@@ -174,8 +174,8 @@ def _velocity(wet: Sequence[dict[str, Any]], phi: float, settings: dict[str, str
             velocity_egashira(D * float(at), depth, c, slope, phi, one["densest"], f, RHO_S, RHO_W, G, D)
             for at in z
         ]
-        ours.append(Line(name, u, z))
-        theirs.append(Line(name, np.array(law), z))
+        ours.append(Curve(name, u, z))
+        theirs.append(Curve(name, np.array(law), z))
         ratios.append(float(u[-1]) / law[-1] if law[-1] > 0.0 else math.nan)
     return Comparison(
         "velocity", "Speed over height",

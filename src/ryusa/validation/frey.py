@@ -9,7 +9,7 @@ from io import StringIO
 import numpy as np
 
 from ryusa.campaign import Level, Variant, Work
-from ryusa.figures.comparison import Axis, Line
+from ryusa.figures.comparison import Axis, Curve
 from ryusa.measure import profiles, transport
 from ryusa.model.scene import Floats
 from ryusa.results import Results
@@ -153,7 +153,7 @@ def _compare(
     return [
         Comparison(
             f"{name}-{run}-phi", f"Run {run}, {choice.words}: concentration", SOURCE, height, Axis("phi"),
-            [Line("beads", z_ours[window], phi_ours[window])], [Line(f"Frey, run {run}", z, phi)],
+            [Curve("beads", z_ours[window], phi_ours[window])], [Curve(f"Frey, run {run}", z, phi)],
             [
                 Error(
                     "q_star over that of the flume", q_star / q_flume, "-",
@@ -165,9 +165,9 @@ def _compare(
         ),
         Comparison(
             f"{name}-{run}-u", f"Run {run}, {choice.words}: speed", SOURCE, height, Axis("speed", "m/s"),
-            [Line("beads", z_ours[window], u_ours[window])], [Line(f"Frey, run {run}", z, u)],
+            [Curve("beads", z_ours[window], u_ours[window])], [Curve(f"Frey, run {run}", z, u)],
             [Error("rms of u", rms(u_ours, u), "m/s", at_most(0.05, "a tenth of the water's speed"))],
             settings, SAID[name],
-            [Line("water", np.asarray(ours["z_water"]), np.asarray(ours["u_water"]))],
+            [Curve("water", np.asarray(ours["z_water"]), np.asarray(ours["u_water"]))],
         ),
     ]  # fmt: skip

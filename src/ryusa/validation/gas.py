@@ -8,7 +8,7 @@ import numpy as np
 from ryusa.build import scene
 from ryusa.campaign import Level, Work, calculation
 from ryusa.engine.cpu import CpuEngine
-from ryusa.figures.comparison import Axis, Line
+from ryusa.figures.comparison import Axis, Curve
 from ryusa.laws import collision
 from ryusa.model import ContactLaw
 from ryusa.model.enums import EventRule
@@ -91,8 +91,8 @@ def compare(found: Found, level: Level) -> Sequence[Comparison]:
                 "Haff 1983, T = T_0/(1 + t/tau_0)^2; rate of Enskog's theory (van Noije & Ernst 1998) with "
                 "Carnahan & Starling's chi, and what floor and lid take"
             ),
-            Axis("time over tau_0"), Axis("T/T_0"), [Line("2450 grains", ours["t"], ours["T"])],
-            [Line("Haff", ours["t"], (1.0 + ours["t"]) ** -2.0)],
+            Axis("time over tau_0"), Axis("T/T_0"), [Curve("2450 grains", ours["t"], ours["T"])],
+            [Curve("Haff", ours["t"], (1.0 + ours["t"]) ** -2.0)],
             [
                 Error(
                     "tau_0 over that of theory, less 1", abs(1.0 / rate - 1.0), "-",

@@ -8,7 +8,7 @@ import numpy as np
 from ryusa.build import scene
 from ryusa.campaign import Level, Work, calculation
 from ryusa.engine.cpu import CpuEngine
-from ryusa.figures.comparison import Axis, Line
+from ryusa.figures.comparison import Axis, Curve
 from ryusa.laws import collision
 from ryusa.model import ContactLaw
 from ryusa.model.enums import Cap, Slip
@@ -133,10 +133,10 @@ def _restitution(found: Found) -> Comparison:
         ),
         Axis("restitution asked"), Axis("restitution got"),
         [
-            Line(f"{words}, 50 steps a contact", asked, _mean(found, "e", tension, 50.0))
+            Curve(f"{words}, 50 steps a contact", asked, _mean(found, "e", tension, 50.0))
             for tension, words in NAMED.items()
         ],
-        [Line("as asked", np.array([0.0, 1.0]), np.array([0.0, 1.0]))],
+        [Curve("as asked", np.array([0.0, 1.0]), np.array([0.0, 1.0]))],
         [
             Error(
                 "mean over 20 phases of first touch, 50 steps", worst(50.0, True), "-",
@@ -164,8 +164,8 @@ def _duration(found: Found) -> Comparison:
         "contact-time", "Contact time over that of the damped oscillator",
         Source("pi/(omega_0 sqrt(1 - zeta^2)); without tension Schwager & Poeschel 2007, eq. 21"),
         Axis("restitution asked"), Axis("contact time over closed form"),
-        [Line(f"{NAMED[t]}, {n:g} steps a contact", asked, times) for (t, n), times in every.items()],
-        [Line("closed form", asked, np.ones(len(asked)))],
+        [Curve(f"{NAMED[t]}, {n:g} steps a contact", asked, times) for (t, n), times in every.items()],
+        [Curve("closed form", asked, np.ones(len(asked)))],
         [
             Error(
                 "largest relative difference, 50 steps", worst[50.0], "-",
@@ -203,8 +203,8 @@ def _test_4(found: Found) -> Sequence[Comparison]:
                 "after Kharaz et al., as digitised in KratosMultiphysics", Known.QUOTED,
             ),
             Axis("angle of impact from the normal", "deg"), Axis(words, unit),
-            [Line("linear spring, 400 steps a contact", angle, ours[key])],
-            [Line("gross sliding", fine, sliding(fine)[k]), Line("Chung & Ooi, test 4", angle, table)],
+            [Curve("linear spring, 400 steps a contact", angle, ours[key])],
+            [Curve("gross sliding", fine, sliding(fine)[k]), Curve("Chung & Ooi, test 4", angle, table)],
             [
                 Error(
                     f"{told}, closed form", float(off), said,

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ryusa.campaign import Level, Variant, Work
-from ryusa.figures.comparison import Axis, Line
+from ryusa.figures.comparison import Axis, Curve
 from ryusa.measure import profiles
 from ryusa.model.scene import Floats
 from ryusa.results import Results
@@ -89,8 +89,8 @@ def compare(found: Found, level: Level) -> Sequence[Comparison]:
         Comparison(
             "bagnold", "Velocity over height",
             Source("Bagnold: u = u_s - (2/3) (I/d) sqrt(phi g cos(theta)) s^1.5, s below the surface"),
-            Axis("height above the bed over d"), Axis("speed", "m/s"), [Line("grains", z / d, u)],
-            [Line("Bagnold, I of the core", z / d, surface - law * s**1.5)],
+            Axis("height above the bed over d"), Axis("speed", "m/s"), [Curve("grains", z / d, u)],
+            [Curve("Bagnold, I of the core", z / d, surface - law * s**1.5)],
             [
                 Error(
                     "exponent of s, core", exponent(s[core], u[core]), "-",
@@ -103,8 +103,8 @@ def compare(found: Found, level: Level) -> Sequence[Comparison]:
         Comparison(
             "inertial-number", "Inertial number over height",
             Source("steady flow down an incline: tau/p = tan(theta) everywhere, so I is uniform"),
-            Axis("height above the bed over d"), Axis("I"), [Line("grains", (z / d)[core], inertial[core])],
-            [Line("mean of the core", (z / d)[core], np.full(int(core.sum()), i_mean))],
+            Axis("height above the bed over d"), Axis("I"), [Curve("grains", (z / d)[core], inertial[core])],
+            [Curve("mean of the core", (z / d)[core], np.full(int(core.sum()), i_mean))],
             [
                 Error(
                     "largest relative difference, core", spread, "-", at_most(0.1, "a depth of ten grains")

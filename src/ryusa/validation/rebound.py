@@ -9,7 +9,7 @@ import numpy as np
 from ryusa.build import scene
 from ryusa.campaign import Level, Work, calculation
 from ryusa.engine.cpu import CpuEngine
-from ryusa.figures.comparison import Axis, Line
+from ryusa.figures.comparison import Axis, Curve
 from ryusa.model import Water
 from ryusa.model.enums import Drag, Profile, Rebound
 from ryusa.model.scene import Floats
@@ -150,8 +150,8 @@ def _law(found: Found, name: str) -> Comparison:
     return Comparison(
         name.lower(), f"Rebound '{name}': restitution asked and got", SOURCES[name],
         STOKES, Axis("restitution"),
-        [Line(f"{one}, {FINE:g} steps", st, found[_bounce(name, one, FINE)]["e"]) for one in PARTNERS],
-        [Line("as asked", DENSE, asked(name, DENSE))],
+        [Curve(f"{one}, {FINE:g} steps", st, found[_bounce(name, one, FINE)]["e"]) for one in PARTNERS],
+        [Curve("as asked", DENSE, asked(name, DENSE))],
         [
             Error(
                 "largest difference, 300 steps a dry contact", float(np.abs(off[FINE]).max()), "-",
@@ -179,7 +179,7 @@ def _films(found: Found) -> Comparison:
             "and out, with e_dry between"
         ),
         STOKES, Axis("speed out over speed in"),
-        [Line(one, st, e) for one, e in got.items()], [Line("closed form", DENSE, through(DENSE))],
+        [Curve(one, st, e) for one, e in got.items()], [Curve("closed form", DENSE, through(DENSE))],
         [
             Error(
                 "largest difference", max(float(np.abs(e - through(st)).max()) for e in got.values()), "-",
@@ -201,10 +201,10 @@ def _trend(found: Found) -> Comparison:
             Known.MEMORY,
         ),
         STOKES, Axis("restitution over that in air"),
-        [Line(name, st, e / E_DRY) for name, e in got.items()],
+        [Curve(name, st, e / E_DRY) for name, e in got.items()],
         [
-            Line("none below about 10", np.array([st[0], ends]), np.zeros(2)),
-            Line("that in air", np.array([500.0, st[-1]]), np.ones(2)),
+            Curve("none below about 10", np.array([st[0], ends]), np.zeros(2)),
+            Curve("that in air", np.array([500.0, st[-1]]), np.ones(2)),
         ],
         [
             Error(f"{name}, left at St = {ends:g}", float(np.interp(math.log(ends), np.log(st), e / E_DRY)))

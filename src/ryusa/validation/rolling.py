@@ -8,7 +8,7 @@ import numpy as np
 from ryusa.build import scene
 from ryusa.campaign import Level, Work, calculation
 from ryusa.engine.cpu import CpuEngine
-from ryusa.figures.comparison import Axis, Line
+from ryusa.figures.comparison import Axis, Curve
 from ryusa.model import ContactLaw, RollingLaw
 from ryusa.model.enums import Arm, Rolling, Slip
 from ryusa.model.scene import Floats
@@ -83,10 +83,10 @@ def _slides(found: Found) -> Comparison:
         "slide-to-roll", "It slides until it rolls at 5/7 of its speed",
         Source("v = v_0 - mu g t until 2 v_0/(7 mu g), then (5/7) v_0"),
         Axis("time", "s"), Axis("speed", "m/s"),
-        [Line("speed", t, ours["v"]), Line("spin times radius", t, 0.5 * D * ours["omega"])],
+        [Curve("speed", t, ours["v"]), Curve("spin times radius", t, 0.5 * D * ours["omega"])],
         [
-            Line("speed", t, law),
-            Line("spin times radius", t, np.minimum(2.5 * MU * G * t, 5.0 / 7.0 * FAST)),
+            Curve("speed", t, law),
+            Curve("spin times radius", t, np.minimum(2.5 * MU * G * t, 5.0 / 7.0 * FAST)),
         ],
         [
             Error(
@@ -111,7 +111,8 @@ def _stops(found: Found, model: str) -> Comparison:
     return Comparison(
         f"stops-{model}", f"Rolling friction stops it: {model}",
         Source("x = v_0 t - a t^2/2, a = (5/7) mu_r g, up to v_0^2/(2 a); Ai et al. 2011 name the types"),
-        Axis("time", "s"), Axis("way", "mm"), [Line("way", t, 1e3 * ours["x"])], [Line("way", t, 1e3 * law)],
+        Axis("time", "s"), Axis("way", "mm"),
+        [Curve("way", t, 1e3 * ours["x"])], [Curve("way", t, 1e3 * law)],
         [
             Error(
                 "largest difference over the way", relative(ours["x"], law), "-",

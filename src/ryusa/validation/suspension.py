@@ -9,7 +9,7 @@ import numpy as np
 from ryusa.build import scene
 from ryusa.campaign import Level, Work, calculation
 from ryusa.engine.cpu import CpuEngine
-from ryusa.figures.comparison import Axis, Line
+from ryusa.figures.comparison import Axis, Curve
 from ryusa.laws.hindrance import exponent_settling
 from ryusa.model import Column, Water
 from ryusa.model.column import Bed
@@ -146,15 +146,15 @@ def compare(found: Found, level: Level) -> Sequence[Comparison]:
 
 def _compare(found: Found, where: str, form: str) -> Comparison:
     fine = np.linspace(0.01, 0.5, 99)
-    ours: list[Line] = []
-    references: list[Line] = []
+    ours: list[Curve] = []
+    references: list[Curve] = []
     errors: list[Error] = []
     for law in LAWS:
         numbers = found[_call(law, where, form)]
         n = exponent(law, where, form)
         name = f"{law}, n = {n:.3g}" if law != "Gidaspow" else "Gidaspow, Ergun below eps = 0.8"
-        ours.append(Line(name, numbers["phi"], numbers["w"]))
-        references.append(Line(name, fine, expected(law, where, form, fine)))
+        ours.append(Curve(name, numbers["phi"], numbers["w"]))
+        references.append(Curve(name, fine, expected(law, where, form, fine)))
         if law == "Gidaspow":
             off = numbers["w"] / expected(law, where, form, numbers["phi"]) - 1.0
             errors.append(Error(f"{law}: largest relative difference", float(np.abs(off).max()), "-", CLOSE))

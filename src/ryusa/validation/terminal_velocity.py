@@ -9,7 +9,7 @@ import numpy as np
 from ryusa.build import scene
 from ryusa.campaign import Level, Work, calculation
 from ryusa.engine.cpu import CpuEngine
-from ryusa.figures.comparison import Axis, Line
+from ryusa.figures.comparison import Axis, Curve
 from ryusa.laws import drag
 from ryusa.model import Water
 from ryusa.model.enums import Drag, EventRule, Profile
@@ -84,8 +84,8 @@ def compare(found: Found, level: Level) -> Sequence[Comparison]:
     roots = Comparison(
         "drag-laws", "Terminal velocity under every drag law",
         Source("root of C_D(Re) w^2 = (4/3) (rho_s/rho - 1) g d"), D, W,
-        [Line(law, mm, w) for law, w in ours.items()],
-        [Line(law, 1e3 * FINE, np.array([root(LAWS[law][1], float(d)) for d in FINE])) for law in LAWS],
+        [Curve(law, mm, w) for law, w in ours.items()],
+        [Curve(law, 1e3 * FINE, np.array([root(LAWS[law][1], float(d)) for d in FINE])) for law in LAWS],
         [
             Error(
                 f"{law}: largest relative difference",
@@ -105,8 +105,8 @@ def compare(found: Found, level: Level) -> Sequence[Comparison]:
             "Soulsby 1997; Dietrich 1982 without shape; Ferguson & Church 2004: fits to measured sand",
             Known.QUOTED,
         ),
-        D, W, [Line(law, mm, ours[law]) for law in shown],
-        [Line(name, 1e3 * FINE, np.array([w(float(d)) for d in FINE])) for name, w in FIELD.items()],
+        D, W, [Curve(law, mm, ours[law]) for law in shown],
+        [Curve(name, 1e3 * FINE, np.array([w(float(d)) for d in FINE])) for name, w in FIELD.items()],
         [
             Error(
                 f"{law} against {name}: largest relative difference",

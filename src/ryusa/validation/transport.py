@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ryusa.campaign import Level, Variant, Work
-from ryusa.figures.comparison import Axis, Line
+from ryusa.figures.comparison import Axis, Curve
 from ryusa.laws import debris
 from ryusa.laws import transport as laws
 from ryusa.measure import transport, water
@@ -102,8 +102,8 @@ def compare(found: Found, level: Level) -> Sequence[Comparison]:
                 "8 (tau_star - 0.047)^1.5; 3.97 (tau_star - 0.0495)^1.5; 17 (tau_star - 0.05) "
                 "(tau_star^0.5 - 0.05^0.5): fits to flumes, as public codes have them", Known.QUOTED,
             ),
-            Axis("tau_star at the bed", log=True), Axis("q_star", log=True), [Line("grains", tau, q)],
-            [Line(name, FINE, one) for name, one in formulae(FINE).items()],
+            Axis("tau_star at the bed", log=True), Axis("q_star", log=True), [Curve("grains", tau, q)],
+            [Curve(name, FINE, one) for name, one in formulae(FINE).items()],
             [
                 Error(
                     "largest factor outside the formulae", worst, "-",
@@ -123,6 +123,6 @@ def compare(found: Found, level: Level) -> Sequence[Comparison]:
             },
             "tau_star is that of the clear water, carried on to where the bed is half as dense as at "
             f"rest (docs/theory.md); judged from {JUDGED} on. {moved}.",
-            [Line("Egashira, Miyamoto & Itoh 1997, level bed", FINE, egashira(FINE, 0.0, 1.0e9))],
+            [Curve("Egashira, Miyamoto & Itoh 1997, level bed", FINE, egashira(FINE, 0.0, 1.0e9))],
         )
     ]  # fmt: skip

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ryusa.campaign import Level, Work, calculation
-from ryusa.figures.comparison import Axis, Line
+from ryusa.figures.comparison import Axis, Curve
 from ryusa.laws.turbulence import speed_mean_rough
 from ryusa.laws.water import log_law_rough, log_law_smooth
 from ryusa.model.column import Bed, Column, Drive, Mixing, Top
@@ -142,8 +142,8 @@ def _laminar_flow(found: Found, which: str) -> Comparison:
         said = "The order is log2 of the errors on 40 and 80 cells."
         kept = [last, Error("order of convergence in space", order, "-", SECOND)]
     return Comparison(
-        which, title, Source(words), Z, U, [Line("20 cells", shown["z"], shown["u"])],
-        [Line("closed form", fine.z, exact(fine))], kept, {"depth": "1 cm", "nu": "1e-5 m2/s"}, said,
+        which, title, Source(words), Z, U, [Curve("20 cells", shown["z"], shown["u"])],
+        [Curve("closed form", fine.z, exact(fine))], kept, {"depth": "1 cm", "nu": "1e-5 m2/s"}, said,
     )  # fmt: skip
 
 
@@ -155,8 +155,8 @@ def _rough(found: Found) -> Comparison:
     return Comparison(
         "log-rough", "The log law over a rough bed",
         Source("the paper, Eq. (9): U/u_star = 8.5 + 5.75 log10(z/k_s)"),
-        Axis("height", "m", log=True), U, [Line("parabolic mixing length, 40 cells", ours["z"], ours["u"])],
-        [Line("Eq. (9)", ours["z"], law)],
+        Axis("height", "m", log=True), U, [Curve("parabolic mixing length, 40 cells", ours["z"], ours["u"])],
+        [Curve("Eq. (9)", ours["z"], law)],
         [
             Error("largest relative difference on 10 to 80 cells", max(every), "-", at_most(1e-7, "one law")),
             Error(
@@ -184,8 +184,8 @@ def _rough_discharge(found: Found) -> Comparison:
     return Comparison(
         "log-discharge", "Discharge of the log law",
         Source("Eq. (9) over depth: q = u_star h (8.5 - 5.75/ln(10) + 5.75 log10(h/k_s)), from k_s/30 up"),
-        Axis("cells", log=True), Axis("discharge", "m2/s"), [Line("column", grids, ours)],
-        [Line("integral of Eq. (9)", grids, np.full(len(grids), exact))],
+        Axis("cells", log=True), Axis("discharge", "m2/s"), [Curve("column", grids, ours)],
+        [Curve("integral of Eq. (9)", grids, np.full(len(grids), exact))],
         [
             Error("relative difference, 40 cells", float(error[2]), "-", at_most(1.2e-3, "a log by cells")),
             Error(
@@ -203,8 +203,8 @@ def _smooth(found: Found) -> Comparison:
     return Comparison(
         "log-smooth", "The log law over a smooth bed, coarse grid",
         Source("two layers: u+ = z+ up to 11.3, then ln(z+/11.3)/0.41 + 11.3"),
-        Axis("height", "m", log=True), U, [Line("parabolic mixing length, 20 cells", ours["z"], ours["u"])],
-        [Line("two-layer law", ours["z"], law)],
+        Axis("height", "m", log=True), U, [Curve("parabolic mixing length, 20 cells", ours["z"], ours["u"])],
+        [Curve("two-layer law", ours["z"], law)],
         [
             Error(
                 "largest relative difference", float(np.abs(ours["u"] / law - 1.0).max()), "-",
@@ -226,8 +226,8 @@ def _van_driest(found: Found) -> Comparison:
     return Comparison(
         "van-driest", "Viscous layer and log layer over a smooth bed, fine grid",
         Source("law of the wall: u+ = z+; u+ = ln(z+)/0.41 + 5.25, where van Driest's length leads"),
-        wall, Axis("u+"), [Line("van Driest's mixing length, 1000 cells", z_plus, u_plus)],
-        [Line("u+ = z+", steps, steps), Line("log law", z_plus[log], law)],
+        wall, Axis("u+"), [Curve("van Driest's mixing length, 1000 cells", z_plus, u_plus)],
+        [Curve("u+ = z+", steps, steps), Curve("log law", z_plus[log], law)],
         [
             Error("z+ below 3, relative", viscous, "-", at_most(5e-3, "eddies begin")),
             Error(

@@ -11,7 +11,7 @@ from ryusa.measure import Average
 
 
 @dataclass(frozen=True)
-class Choice:
+class SensitivityRow:
     """One row: what was chosen, and what came out, by series (such as rotation locked and free)."""
 
     label: str
@@ -19,7 +19,7 @@ class Choice:
 
 
 @style.house
-def choices(rows: Sequence[Choice], titles: Sequence[str], scales: Sequence[float]) -> Figure:
+def sensitivity(rows: Sequence[SensitivityRow], titles: Sequence[str], scales: Sequence[float]) -> Figure:
     """Draw every result with its standard error; the first row is the base, its values run down as lines.
 
     Parameters
