@@ -39,7 +39,7 @@ def measure(n_grain: int, per_d: float, spread: float) -> dict[str, Any]:
     ids = rng.permutation(n_grain)
     found = exchange.slices(z, d, cells, ids)
     parts: dict[str, Callable[[], Any]] = {
-        "slices": lambda: exchange.slices(z, d, cells, ids, again=found),
+        "slices": lambda: exchange.slices(z, d, cells, ids, reuse=found),
         "concentration": lambda: exchange.concentration(found),
         "two to cells": lambda: exchange.to_cells(found, amounts),
         "three to grains": lambda: exchange.to_grains(found, speeds),

@@ -176,5 +176,5 @@ def test_a_bed_that_never_packs_is_warned_of(tmp_path: Path) -> None:
         made = run_scene(
             replace(fixed, column=column), first, folder, frames=10 * fixed.dt, stop=stop, progress=False
         )
-        assert any("nowhere packed" in text for text in made.summary["warnings"]) is said
+        assert any("packed concentration" in text for text in made.summary["warnings"]) is said
         assert 0.05 < made.summary["water"]["densest"] < 0.61

@@ -1,4 +1,4 @@
-"""Columns that the tests of this room share."""
+"""Columns shared by the tests of the water."""
 
 from dataclasses import replace
 

@@ -19,7 +19,7 @@ D, G = 2.0e-3, 9.80665
 FORMS = list(Buoyancy)
 
 
-def march(made, column, intervals, longest=20, water_state=None):
+def advance_together(made, column, intervals, longest=20, water_state=None):
     """Step grains and water together; yields the coupling and the engine after every interval."""
     fixed, first = made
     engine = CpuEngine()
@@ -61,7 +61,7 @@ def test_grains_and_water_together_gain_what_weight_and_bed_give(form):
     every = {"lift": Lift.WIBERG_SMITH, "magnus": Magnus.LOTH, "hindrance": Hindrance.DI_FELICE}
     made, area = cloud(form, torque=WaterTorque.DENNIS, **every)
     fixed, dt = made[0], made[0].dt
-    for coupling, _, steps, (_, v, _, _, v_now, _) in march(made, column_of(area), 12):
+    for coupling, _, steps, (_, v, _, _, v_now, _) in advance_together(made, column_of(area), 12):
         budget, time = coupling.budget, steps * dt
         grains = float(fixed.m @ (v_now[:, 0] - v[:, 0])) / (area * time)
         weight = float(fixed.m.sum()) * fixed.gravity[0] / area
@@ -97,7 +97,7 @@ def test_a_suspension_settles_as_its_hindrance_implies(form, law, exponent):
         z_low=0.0, dz=pitch * d, n=layers, depth=layers * pitch * d, area=wide * pitch * d * d, bed=Bed.MOVING
     )
     speeds = []
-    for _, engine, *_ in march(made, column, 40, longest=10):
+    for _, engine, *_ in advance_together(made, column, 40, longest=10):
         speeds.append(-float(engine.drift()[1][np.flatnonzero(b == layers // 2), 2].mean()))
     found = math.log(speeds[-1] / w_0) / math.log(1.0 - phi)
     if law is Hindrance.RICHARDSON_ZAKI:
@@ -131,7 +131,7 @@ def test_a_neutral_grain_at_the_speed_of_the_water_stays_with_it(form, stays):
     made = (made[0], replace(made[1], v=v))
     slips = [
         np.abs(engine.drift()[1][:, 0] - u).max()
-        for _, engine, *_ in march(made, column, 40, 20, water_state)
+        for _, engine, *_ in advance_together(made, column, 40, 20, water_state)
     ]
     free = G * math.sin(0.05) * 40 * 20 * made[0].dt
     assert bool(slips[-1] < 0.02 * free) is stays

@@ -1,11 +1,11 @@
-"""Grains that walk from eddy to eddy: what they are told, how long, and that fluid stays mixed."""
+"""Random walk of grains from eddy to eddy: fluctuations, lifetimes, and fluid that stays mixed."""
 
 import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.water.test_coupling import D, cloud, column_of, march
+from tests.water.test_coupling import D, advance_together, cloud, column_of
 
 from ryusa.model.column import Bed, Fluctuations, Mixing, WaterState
 from ryusa.model.enums import Buoyancy
@@ -26,7 +26,7 @@ def walk(steps, dt, shear=1.0, seed=3, n=N):
 
 
 @pytest.mark.parametrize("shear", [2.0, -2.0])
-def test_the_reynolds_stress_and_the_variances_are_those_asked_for(shear):
+def test_the_reynolds_stress_and_the_variances_are_those_prescribed(shear):
     u_tau = 0.3 * ONE
     u = eddies.speeds(eddies.begin(11, N), False, u_tau, 0.0 * ONE, shear * ONE) / 0.3
     error = 4.0 / math.sqrt(N)
@@ -38,7 +38,7 @@ def test_the_reynolds_stress_and_the_variances_are_those_asked_for(shear):
     assert not eddies.speeds(eddies.begin(11, N), True, u_tau, 0.0 * ONE, shear * ONE)[:, 1].any()
 
 
-def test_eddies_live_as_long_as_the_shear_says_and_forget_one_another():
+def test_eddies_last_as_long_as_the_shear_implies_and_are_independent():
     dt, shear = 0.02, 5.0  # life 2/5 s: 20 steps
     states = list(walk(60, dt, shear))
     w = np.array([one.r[:, 2] for one in states])
@@ -114,7 +114,9 @@ def test_with_fluctuations_grains_and_water_still_gain_what_weight_and_bed_give(
     column = _stirred(area)
     water, _ = steady(column, np.zeros(column.n), None)
     fixed, dt = made[0], made[0].dt
-    for coupling, _, steps, (_, v, seen, _, v_now, _) in march(made, column, 12, water_state=water):
+    for coupling, _, steps, (_, v, seen, _, v_now, _) in advance_together(
+        made, column, 12, water_state=water
+    ):
         budget, time = coupling.budget, steps * dt
         grains = float(fixed.m @ (v_now[:, 0] - v[:, 0])) / (area * time)
         weight = float(fixed.m.sum()) * fixed.gravity[0] / area
@@ -125,22 +127,24 @@ def test_with_fluctuations_grains_and_water_still_gain_what_weight_and_bed_give(
     assert coupling.eddies.count.any()
 
 
-def test_grains_are_told_the_turbulence_of_where_they_are():
+def test_grains_feel_the_turbulence_at_their_position():
     from ryusa.water import steady
 
     n = 4000
     made, area = cloud(Buoyancy.STRESS, n=n)
     column = _stirred(1e6 * area)  # so wide that the grains do not slow the water
     water, _ = steady(column, np.zeros(column.n), None)
-    (coupling, *_rest), *_ = march(made, column, 1, water_state=water)
-    plain, *_ = march(made, replace(column, fluctuations=Fluctuations.NONE), 1, water_state=water)
-    told = coupling.seen[:, [0, 2]] - plain[0].seen[:, [0, 2]]
+    (coupling, *_rest), *_ = advance_together(made, column, 1, water_state=water)
+    plain, *_ = advance_together(made, replace(column, fluctuations=Fluctuations.NONE), 1, water_state=water)
+    fluctuation = coupling.seen[:, [0, 2]] - plain[0].seen[:, [0, 2]]
     z, surface = made[1].x[:, 2], 25.0 * D
     u_star = math.sqrt(9.80665 * math.sin(0.05) * surface)
     share = 1.0 - z / surface  # of u_star**2, linear over the depth
     error = 4.0 / math.sqrt(n)
-    assert np.mean(told[:, 0] * told[:, 1] / share) == pytest.approx(-(u_star**2), rel=4.0 * error)
-    assert np.mean(told[:, 1] ** 2 / share) == pytest.approx(u_star**2, rel=4.0 * error)
+    assert np.mean(fluctuation[:, 0] * fluctuation[:, 1] / share) == pytest.approx(
+        -(u_star**2), rel=4.0 * error
+    )
+    assert np.mean(fluctuation[:, 1] ** 2 / share) == pytest.approx(u_star**2, rel=4.0 * error)
 
 
 def test_a_grain_astride_the_crest_of_a_bed_drifts_no_faster_than_its_eddies():

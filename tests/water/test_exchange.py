@@ -51,24 +51,24 @@ def test_slices_are_those_of_the_law_and_add_up_to_the_grain(packing):
     np.testing.assert_allclose(dense(found) / whole[:, None], expected / whole[:, None], rtol=0, atol=1e-12)
     assert (dense(found) >= 0.0).all()
     np.testing.assert_allclose(found.whole, whole, rtol=1e-14)
-    np.testing.assert_allclose(dense(found).sum(axis=1), found.wet, rtol=1e-13, atol=1e-30)
-    np.testing.assert_allclose((found.wet + found.below + found.above) / whole, 1.0, rtol=1e-12)
+    np.testing.assert_allclose(dense(found).sum(axis=1), found.submerged, rtol=1e-13, atol=1e-30)
+    np.testing.assert_allclose((found.submerged + found.below + found.above) / whole, 1.0, rtol=1e-12)
 
 
 @settings(deadline=None)
 @given(packings())
-def test_concentration_holds_the_wet_volume_of_all_grains(packing):
+def test_concentration_holds_the_submerged_volume_of_all_grains(packing):
     z, d, cells, _ = packing
     found = exchange.slices(z, d, cells)
     phi = exchange.concentration(found)
     assert phi.shape == (cells.n,)
-    assert phi.sum() * cells.volume == pytest.approx(found.wet.sum(), rel=1e-13)
+    assert phi.sum() * cells.volume == pytest.approx(found.submerged.sum(), rel=1e-13)
     twice = exchange.concentration(found, bed=found)
     np.testing.assert_array_equal(twice, 2.0 * phi)
 
 
 @settings(deadline=None)
-@given(packings(), st.sampled_from(["whole", "wet"]), st.sampled_from([(), (3,)]))
+@given(packings(), st.sampled_from(["whole", "submerged"]), st.sampled_from([(), (3,)]))
 def test_what_grains_give_is_what_cells_get_and_what_is_left_over(packing, share, columns):
     z, d, cells, rng = packing
     found = exchange.slices(z, d, cells)
@@ -76,16 +76,16 @@ def test_what_grains_give_is_what_cells_get_and_what_is_left_over(packing, share
     got = exchange.to_cells(found, amounts, share)
     size = np.abs(amounts).sum(axis=0)
     assert np.all(np.abs(got.cells.sum(axis=0) + got.below + got.above - amounts.sum(axis=0)) < 1e-12 * size)
-    if share == "wet":
+    if share == "submerged":
         in_water = found.share > 1e-15
         assert np.all(np.abs(got.cells.sum(axis=0) - amounts[in_water].sum(axis=0)) <= 1e-12 * size)
     elif columns == ():
-        part = amounts * found.wet / found.whole
+        part = amounts * found.submerged / found.whole
         assert got.cells.sum() == pytest.approx(part.sum(), abs=1e-12 * size)
 
 
 @settings(deadline=None)
-@given(packings(), st.sampled_from(["whole", "wet"]))
+@given(packings(), st.sampled_from(["whole", "submerged"]))
 def test_giving_and_taking_carry_the_same_work(packing, share):
     z, d, cells, rng = packing
     found = exchange.slices(z, d, cells)
@@ -115,9 +115,9 @@ def test_a_uniform_flow_is_seen_as_it_is(packing):
     wet = found.share > 1e-15
     np.testing.assert_allclose(exchange.to_grains(found, u)[:, 0], 0.7 * found.share, rtol=1e-12)
     np.testing.assert_allclose(
-        exchange.to_grains(found, u, "wet")[wet], u[:1].repeat(wet.sum(), 0), rtol=1e-12
+        exchange.to_grains(found, u, "submerged")[wet], u[:1].repeat(wet.sum(), 0), rtol=1e-12
     )
-    assert not exchange.to_grains(found, u, "wet")[~wet].any()
+    assert not exchange.to_grains(found, u, "submerged")[~wet].any()
     np.testing.assert_allclose(
         exchange.faces_to_grains(found, np.full(cells.n + 1, 0.7)), 0.7 * found.share, rtol=1e-12
     )
@@ -133,7 +133,9 @@ def test_bits_do_not_depend_on_where_grains_lie_in_memory(packing, seed):
     ids = np.random.default_rng(seed).permutation(len(z))
     one, other = exchange.slices(z, d, cells), exchange.slices(z[ids], d[ids], cells, ids=ids)
     np.testing.assert_array_equal(exchange.concentration(other), exchange.concentration(one))
-    np.testing.assert_array_equal(exchange.carried(other, v[ids]), exchange.carried(one, v))
+    np.testing.assert_array_equal(
+        exchange.weighted_concentration(other, v[ids]), exchange.weighted_concentration(one, v)
+    )
     first, second = exchange.to_cells(one, v), exchange.to_cells(other, v[ids])
     np.testing.assert_array_equal(second.cells, first.cells)
     np.testing.assert_array_equal(second.above, first.above)
@@ -141,17 +143,17 @@ def test_bits_do_not_depend_on_where_grains_lie_in_memory(packing, seed):
     np.testing.assert_array_equal(exchange.to_grains(other, speed), exchange.to_grains(one, speed)[ids])
 
 
-def test_memory_used_again_gives_the_same_bits():
+def test_reused_memory_gives_the_same_bits():
     rng = np.random.default_rng(1)
     d, cells = D * rng.uniform(1.0, 2.0, 50), Cells(0.0, 0.3 * D, 40, AREA)
     old = exchange.slices(rng.uniform(-D, 14 * D, 50), d, cells)
     z = rng.uniform(-D, 14 * D, 50)
     fresh = exchange.slices(z, d, cells)
     phi = exchange.concentration(fresh)
-    reused = exchange.slices(z, d, cells, again=old)
+    reused = exchange.slices(z, d, cells, reuse=old)
     assert reused.volume is old.volume
     np.testing.assert_array_equal(exchange.concentration(reused), phi)
-    np.testing.assert_array_equal(reused.wet, fresh.wet)
+    np.testing.assert_array_equal(reused.submerged, fresh.submerged)
 
 
 def test_a_grain_half_out_of_the_water_by_hand():
@@ -163,11 +165,11 @@ def test_a_grain_half_out_of_the_water_by_hand():
     weight = np.array([2.0, 4.0, 8.0])
     got = exchange.to_cells(found, weight)
     np.testing.assert_allclose([*got.cells, got.below, got.above], [0.0, 4.0, 1.0, 8.0, 1.0], atol=1e-15)
-    got = exchange.to_cells(found, weight, "wet")
+    got = exchange.to_cells(found, weight, "submerged")
     np.testing.assert_allclose([*got.cells, got.below, got.above], [0.0, 4.0, 2.0, 8.0, 0.0], atol=1e-15)
     speed = np.array([1.0, 2.0, 3.0])
     np.testing.assert_allclose(exchange.to_grains(found, speed), [1.5, 2.0, 0.0])
-    np.testing.assert_allclose(exchange.to_grains(found, speed, "wet"), [3.0, 2.0, 0.0])
+    np.testing.assert_allclose(exchange.to_grains(found, speed, "submerged"), [3.0, 2.0, 0.0])
 
 
 def test_the_flux_of_a_cell_is_concentration_times_speed():
@@ -175,7 +177,9 @@ def test_the_flux_of_a_cell_is_concentration_times_speed():
     found = exchange.slices(np.array([D, 0.5 * D]), np.full(2, D), cells)
     half = math.pi / 12 * D**3 / (AREA * D)
     np.testing.assert_allclose(exchange.concentration(found), [3 * half, half])
-    np.testing.assert_allclose(exchange.carried(found, np.array([1.0, -2.0])), [-3 * half, half])
+    np.testing.assert_allclose(
+        exchange.weighted_concentration(found, np.array([1.0, -2.0])), [-3 * half, half]
+    )
 
 
 @pytest.mark.parametrize("share", [0.4, 0.2, 0.1])
@@ -187,14 +191,14 @@ def test_a_linear_flow_is_seen_at_the_centre_as_cells_get_thin(share):
     assert np.abs(off).max() < 0.06 * share**2 * D
 
 
-def test_no_grain_is_no_fault():
+def test_no_grains_are_accepted():
     none = exchange.slices(np.zeros(0), np.zeros(0), Cells(0.0, D, 4, AREA))
     assert not exchange.concentration(none).any()
     assert exchange.to_cells(none, np.zeros((0, 2))).cells.shape == (4, 2)
     assert exchange.to_grains(none, np.ones(4)).shape == (0,)
 
 
-def test_what_makes_no_sense_is_refused():
+def test_invalid_input_is_refused():
     cells = Cells(0.0, D, 4, AREA)
     one = exchange.slices(np.zeros(1), np.full(1, D), cells)
     with pytest.raises(ValueError, match="dz and area positive"):
@@ -207,9 +211,9 @@ def test_what_makes_no_sense_is_refused():
         exchange.slices(np.zeros(1), np.zeros(1), cells)
     with pytest.raises(ValueError, match="permutation"):
         exchange.slices(np.zeros(2), np.full(2, D), cells, ids=np.array([1, 1]))
-    with pytest.raises(ValueError, match="one row a grain"):
+    with pytest.raises(ValueError, match="one row per grain"):
         exchange.to_cells(one, np.zeros(2))
-    with pytest.raises(ValueError, match="one row a face"):
+    with pytest.raises(ValueError, match="one row per face"):
         exchange.slope_to_grains(one, np.zeros(4))
     with pytest.raises(ValueError, match="the same cells"):
         exchange.concentration(one, bed=exchange.slices(np.zeros(1), np.full(1, D), Cells(0.0, D, 5, AREA)))

@@ -123,7 +123,7 @@ def test_a_coarse_grid_over_a_smooth_wall_follows_the_two_layer_law(n):
     assert state.u == pytest.approx(law, rel=0.01)
 
 
-def test_the_stress_asked_for_is_the_stress_of_the_bed(river):
+def test_the_prescribed_stress_is_the_stress_of_the_bed(river):
     c = replace(river, g_x=0.0, drive=Drive.TAU, tau=river.rho_w * U_STAR**2)
     state, _ = steady(c)
     assert state.tau[0] == pytest.approx(c.tau, rel=1e-12)
@@ -150,7 +150,7 @@ def test_drag_of_a_resting_bed_stops_the_water_in_it(bedload, phi):
     assert -budget.grains > 0.99 * budget.gravity
 
 
-def test_no_eddies_breed_in_gaps_below_the_highest_packed_cell(bedload, phi):
+def test_no_eddies_grow_in_gaps_below_the_highest_packed_cell(bedload, phi):
     packed = np.where(bedload.z < 0.02, 0.7, phi)
     loose = packed.copy()
     loose[[5, 17, 33]] = 0.3  # gaps between layers of the bed, whose crest stays packed

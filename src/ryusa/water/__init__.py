@@ -1,4 +1,4 @@
-"""Water over a bed as a column of cells: closures, drivers, the implicit step, steady flow."""
+"""Water over a bed as a column of cells: closures, driving force, implicit time step, steady flow."""
 
 from ryusa.water.drive import discharge, driving_stress, friction_velocity
 from ryusa.water.solve import advance

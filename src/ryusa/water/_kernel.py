@@ -1,4 +1,4 @@
-"""The decorator of the column's functions, and the numbers of a column as they take them."""
+"""Decorator for the compiled functions of the column, and the column's parameters as they take them."""
 
 from collections.abc import Callable
 from functools import lru_cache
@@ -17,12 +17,12 @@ _EDITION = edition(LAWS, _HERE, *(_MODEL / name for name in ("column.py", "enums
 
 
 def kernel(function: F) -> F:
-    """Compile a function when first called; the text of laws, of this room and what it compiles of model."""
+    """Compile a function at its first call. The cache key covers the sources of laws, water and the model."""
     return compiled(_EDITION, fastmath=False)(function)
 
 
-class Numbers(NamedTuple):
-    """A column as plain numbers, for compiled functions."""
+class ColumnParameters(NamedTuple):
+    """Parameters of a column as plain numbers, for compiled functions."""
 
     n: int
     z_low: float
@@ -51,10 +51,10 @@ class Numbers(NamedTuple):
 
 
 @lru_cache(maxsize=16)
-def numbers(column: Column) -> Numbers:
-    """The numbers of a column; integers and floats as Numba wants them."""
+def parameters_of(column: Column) -> ColumnParameters:
+    """Parameters of a column as the integers and floats that Numba expects."""
     c = column
-    return Numbers(
+    return ColumnParameters(
         n=int(c.n),
         z_low=float(c.z_low),
         dz=float(c.dz),

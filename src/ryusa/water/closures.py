@@ -1,4 +1,4 @@
-"""Eddies and walls of a column: which law speaks at which face; every formula is a law."""
+"""Closures of a column: applies the laws of turbulence and of walls to its cells and faces."""
 
 import math
 
@@ -19,18 +19,18 @@ from ryusa.laws.turbulence import (
 )
 from ryusa.model.column import Bed, Mixing, SideWalls
 from ryusa.model.scene import Floats
-from ryusa.water._kernel import Numbers, kernel
+from ryusa.water._kernel import ColumnParameters, kernel
 
 ROUGH, SMOOTH, MOVING = int(Bed.ROUGH), int(Bed.SMOOTH), int(Bed.MOVING)
 LAMINAR, PRANDTL, PARABOLIC = int(Mixing.LAMINAR), int(Mixing.PRANDTL), int(Mixing.PARABOLIC)
 VAN_DRIEST, LI_SAWAMOTO = int(Mixing.VAN_DRIEST), int(Mixing.LI_SAWAMOTO)
 BLASIUS, KARMAN_PRANDTL = int(SideWalls.BLASIUS), int(SideWalls.KARMAN_PRANDTL)
-RE_SLOW = 1500.0  # below, the gap between side walls is laminar; both turbulent laws are smaller there
+RE_SLOW = 1500.0  # below it the flow between the side walls is laminar; both turbulent laws give less there
 
 
 @kernel
-def pores(p: Numbers, phi: float) -> float:
-    """Square of the length of the eddies in the pores [m2]; at most d**2, 0 where they are not asked for."""
+def pores(p: ColumnParameters, phi: float) -> float:
+    """Square of the mixing length in the pores [m2]; at most d**2, and 0 where k_f is 0."""
     if p.k_f > 0.0:
         length = min(length_pore_egashira(phi, p.d, p.k_f), p.d) if phi > 0.0 else p.d
         return length * length
@@ -39,13 +39,13 @@ def pores(p: Numbers, phi: float) -> float:
 
 @kernel
 def averaged(dz: float, d: float, m: int, phi: Floats) -> Floats:
-    """Concentration averaged over the height of a grain in the cells 0..m [-]; as it is where d is nan.
+    """Concentration averaged over one grain diameter in the cells 0..m [-]; unchanged where d is nan.
 
-    Layers of a bed and the few grains of a small scene leave no trace in it. At the ends the part of the
-    window counts that lies in the cells.
+    The average removes the layering of a bed and the scatter of a scene with few grains. At both ends only
+    the part of the window that lies in the cells is used.
     """
     mean = phi.copy()
-    reach = 0.5 * d / dz - 0.5  # cells on either side, the last in part
+    reach = 0.5 * d / dz - 0.5  # cells on either side, the last one partly
     if reach > 0.0:
         full = math.floor(reach)
         for k in range(m + 1):
@@ -59,7 +59,7 @@ def averaged(dz: float, d: float, m: int, phi: Floats) -> Floats:
 
 
 @kernel
-def packed_below(p: Numbers, m: int, phi: Floats) -> int:
+def packed_below(p: ColumnParameters, m: int, phi: Floats) -> int:
     """Lowest face above all packed cells, phi >= phi_max, of the cells 0..m; 0 where none is packed."""
     for k in range(m, -1, -1):
         if phi[k] >= p.phi_max:
@@ -69,7 +69,7 @@ def packed_below(p: Numbers, m: int, phi: Floats) -> int:
 
 @kernel
 def mixing_lengths(
-    p: Numbers, m: int, phi: Floats, z: Floats, z_surface: float, u_star: float, square: Floats
+    p: ColumnParameters, m: int, phi: Floats, z: Floats, z_surface: float, u_star: float, square: Floats
 ) -> None:
     """Square of the mixing length times the share of water at the faces 0..m [m2], written to `square`.
 
@@ -81,15 +81,16 @@ def mixing_lengths(
     z : middles of the wet part of the cells [m], shape (n,).
     z_surface : height of the surface [m].
     u_star : friction velocity at the bed [m/s], for van Driest.
-    square : shape (n + 1,); zero from the surface on, and at the bed but for the eddies of the pores.
+    square : shape (n + 1,); zero at and above the surface, and at the bed except for the pore length.
 
     Notes
     -----
-    Over a fixed bed the length of a face is taken at `height_between` of the middles beside it, so that the
-    cells follow the log law from the wall on. The eddies of the pores count where they are the larger ones;
-    they are at most one grain large, also where grains are few. For Li & Sawamoto's length phi is averaged
-    over a grain, and all below the highest packed cell counts as packed, or eddies would breed in loose
-    places of the bed; so does YADE's HydroForceEngine, whose code was read, with phi of the cells as it is.
+    Over a fixed bed the length at a face is taken at `height_between` of the two neighbouring cell middles,
+    so that the cells reproduce the log law from the wall upwards. The pore length is used where it is the
+    larger one; it never exceeds one grain diameter. For the length of Li & Sawamoto phi is averaged over one
+    diameter, and every cell below the highest packed cell is treated as packed: otherwise the mixing length
+    would grow in loose parts of the bed. YADE's HydroForceEngine (code read) does the same with the phi of
+    the cells, without averaging.
     """
     square[:] = 0.0
     crest, mean = 0, phi
@@ -125,10 +126,10 @@ def mixing_lengths(
 
 
 @kernel
-def bed_stress(p: Numbers, u: float, z: float, square: float) -> tuple[float, float]:
-    """Stress of the bed over density [m2/s2] and its slope [m/s]; u [m/s] at the height z [m] over it.
+def bed_stress(p: ColumnParameters, u: float, z: float, square: float) -> tuple[float, float]:
+    """Bed stress over density [m2/s2] and its derivative [m/s]; u [m/s] at the height z [m] above the bed.
 
-    `square` [m2] is that of `mixing_lengths` at the bed, for walls without a law of their own.
+    `square` [m2] is the value of `mixing_lengths` at the bed, used where no wall law applies.
     """
     if p.bed == ROUGH:
         return wall_rough(u, z, p.k_rough)
@@ -139,28 +140,28 @@ def bed_stress(p: Numbers, u: float, z: float, square: float) -> tuple[float, fl
 
 
 @kernel
-def bed_shear(p: Numbers, u: float, z: float, stress: float) -> float:
-    """Velocity gradient [1/s] where the lowest speed is, z [m] over the wall; stress over density [m2/s2]."""
+def bed_shear(p: ColumnParameters, u: float, z: float, stress: float) -> float:
+    """Velocity gradient [1/s] in the lowest cell, z [m] above the wall; stress over density [m2/s2]."""
     if p.bed == ROUGH or (p.bed == SMOOTH and z * math.sqrt(abs(stress)) > 11.3 * p.nu):
         return math.copysign(math.sqrt(abs(stress)), stress) / (p.kappa * z)
     return u / z
 
 
 @kernel
-def side_drag(p: Numbers, u: float) -> tuple[float, float]:
-    """How the side walls slow water of speed u [m/s] down [m/s2], and how that changes with u [1/s]."""
+def side_drag(p: ColumnParameters, u: float) -> tuple[float, float]:
+    """Deceleration by the side walls at speed u [m/s2], and its derivative with respect to u [1/s]."""
     re = 2.0 * abs(u) * p.width / p.nu
     if not re > 0.0:
         return 0.0 * u, 0.0
     friction = friction_gap_laminar(re)
     power = 1.0  # the drag grows with this power of the speed
     if re > RE_SLOW:
-        swift = 0.0
+        turbulent = 0.0
         if p.side == BLASIUS:
-            swift = friction_blasius(re)
+            turbulent = friction_blasius(re)
         elif p.side == KARMAN_PRANDTL:
-            swift = friction_karman_prandtl(re)
-        if swift > friction:
-            friction, power = swift, 1.75
+            turbulent = friction_karman_prandtl(re)
+        if turbulent > friction:
+            friction, power = turbulent, 1.75
     drag = side_wall_drag(u, friction, p.width)
     return drag, power * drag / u

@@ -1,7 +1,7 @@
-"""Water and grains hand over what they do to each other, once in an interval of steps. design/0007.
+"""Two-way coupling of water and grains: momentum is exchanged once per coupling interval (design/0007).
 
-Within an interval the slices of the grains and the water hold still. What a grain took in it goes back to the
-cells with the same slices, so that momentum closes to round-off.
+Within an interval the slices of the grains and the state of the water are constant. The impulse that a grain
+received is taken from the cells with the same slices, so that momentum is conserved to round-off.
 """
 
 import math
@@ -17,32 +17,32 @@ from ryusa.model.enums import Buoyancy
 from ryusa.model.immersed import A_X, DRAG, EXTRA_X, EXTRA_Z, N_SEEN, PHI, SHARE, SHEAR, U, V, W
 from ryusa.model.scene import Floats
 from ryusa.water import eddies
-from ryusa.water.brim import below
 from ryusa.water.closures import averaged
 from ryusa.water.drive import discharge
-from ryusa.water.exchange import Cells, Slices, carried, slices, to_cells, to_grains
+from ryusa.water.exchange import Cells, Slices, slices, to_cells, to_grains, weighted_concentration
+from ryusa.water.fixed_grains import DENSEST, FixedGrainForces, FixedGrains, steady_start
+from ryusa.water.free_surface import submerged_part
 from ryusa.water.solve import advance
-from ryusa.water.standing import PACKED, Held, Standing, flowing
 
 
 @dataclass
 class Coupling:
-    """The column of a run, and the water as its grains see it.
+    """The column of water of a run, and the state of the water at its grains.
 
     Attributes
     ----------
-    scene : what holds still; its water has the profile COLUMN.
+    scene : the scene; its water has the profile COLUMN.
     column : cells, boundaries, driver, closures.
-    longest : steps of the engine in an interval, at most.
-    steps : steps in the interval under way; 1 in the first, before any drag is known.
-    state : the water now.
-    phi : concentration of grains, fixed ones included, in the cells now [-], shape (n,).
-    budget : momentum of the water over the last interval; None before the first.
+    longest : largest number of engine steps in an interval.
+    steps : steps in the present interval; 1 in the first, where no drag is known yet.
+    state : present state of the water.
+    phi : present concentration of grains in the cells, fixed ones included [-], shape (n,).
+    budget : momentum budget of the water over the last interval; None before the first.
     seen : what the grains were told last, columns of `model.immersed`.
     due : step of the engine at which the next exchange is due.
-    exchanges : done so far.
-    worst : largest residual of the water's momentum over its largest term so far [-].
-    eddies : those the grains are in; None without fluctuations.
+    exchanges : number of exchanges so far.
+    worst : largest residual of the momentum budget so far, over its largest term [-].
+    eddies : present eddies of the grains; None without fluctuations.
     """
 
     scene: Scene
@@ -56,11 +56,11 @@ class Coupling:
     due: int
     exchanges: int
     worst: float
-    _slices: Slices  # of whole grains: what fills the cells
-    _wet: Slices  # of what of them is below the surface: what water and grains do to each other
-    _bed: Standing  # fixed grains
+    _slices: Slices  # of whole grains: volume in the cells
+    _submerged: Slices  # of the parts below the surface: exchange of forces
+    _bed: FixedGrains  # fixed grains
     _volume: Floats  # of each grain, A_3 d**3 [m3]
-    _force_z: Floats  # of the water on grains along z, by volume of cells [N/m3]
+    _force_z: Floats  # of the water on grains along z, per volume of cells [N/m3]
     _z: Floats  # heights at which the grains are cut [m]
     eddies: Eddies | None = None
 
@@ -68,12 +68,12 @@ class Coupling:
     def begin(
         scene: Scene, column: Column, longest: int, x: Floats, state: WaterState | None = None, step: int = 0
     ) -> "Coupling":
-        """Cut the grains at x [m], and fill the column: as it says it begins, or with a state given.
+        """Cut the grains at x [m], and fill the column with its initial state or with a given one.
 
         Raises
         ------
-        ValueError : the column cannot be run, or the steps of an interval are fewer than one.
-        WaterError : no steady water was found to begin with.
+        ValueError : the column is not valid, or `longest` is less than 1.
+        WaterError : no steady initial state was found.
         """
         faults = column.refuses()
         if faults or longest < 1:
@@ -86,15 +86,17 @@ class Coupling:
         phi = free + bed.phi
         if state is None and column.start is Start.STEADY:
             every = np.concatenate([scene.d, bed.d])
-            state = flowing(column, scene.water, bed.phi, free, float((every**3).sum() / (every**2).sum()))
+            state = steady_start(
+                column, scene.water, bed.phi, free, float((every**3).sum() / (every**2).sum())
+            )
         now = WaterState.at_rest(column, phi) if state is None else state
         coupling = Coupling(
             scene, column, longest, 1, now, phi, None, np.zeros((scene.n_grain, N_SEEN)), step + 1, 0, 0.0,
-            cut, below(cut, x[:, 2], scene.d, now.z_surface), bed, solid, np.zeros(column.n),
+            cut, submerged_part(cut, x[:, 2], scene.d, now.z_surface), bed, solid, np.zeros(column.n),
             np.array(x[:, 2]),
         )  # fmt: skip
         coupling.eddies = eddies.begin(column.seed, scene.n_grain) if column.fluctuations else None
-        coupling.seen = coupling._told()
+        coupling.seen = coupling._fluid_at_grains()
         return coupling
 
     @staticmethod
@@ -103,12 +105,12 @@ class Coupling:
 
         Raises
         ------
-        ValueError : as `begin`, or the snapshot is of another column or other grains.
+        ValueError : as `begin`, or the snapshot does not match the column or the grains.
         """
         if found.water.u.shape != (column.n,) or found.z.shape != (scene.n_grain,):
             raise ValueError(
-                f"a snapshot of {len(found.water.u)} cells and {len(found.z)} grains does not go on in a "
-                f"column of {column.n} cells with {scene.n_grain} grains"
+                f"the snapshot has {len(found.water.u)} cells and {len(found.z)} grains, the run has "
+                f"{column.n} cells and {scene.n_grain} grains"
             )
         x = np.zeros((scene.n_grain, 3))
         x[:, 2] = found.z
@@ -126,10 +128,10 @@ class Coupling:
         return Coupled(self.state, z, force_z, self.steps, self.due, self.exchanges, self.worst, self.eddies)
 
     def change(self, scene: Scene, column: Column) -> None:
-        """Go on in a scene that the timeline changed: its slope, or fixed grains taken away."""
+        """Take over a scene that the timeline changed: its slope, or removed fixed grains."""
         if not np.array_equal(scene.fixed_active, self.scene.fixed_active):
             self._bed = _bed(scene, self._slices.cells, column.bed)
-            self.phi = _phi(self._slices, self._volume) + self._bed.phi  # as a resume finds it, to the bit
+            self.phi = _phi(self._slices, self._volume) + self._bed.phi  # the same bits as after a resume
         self.scene, self.column = scene, column
 
     def exchange(self, x: Floats, v: Floats, taken: Floats) -> Floats:
@@ -147,41 +149,41 @@ class Coupling:
         dt, before = self.steps * self.scene.dt, self.state
         force = self.force(taken, dt)
         self._z = np.ascontiguousarray(x[:, 2])
-        self._slices = slices(self._z, self.scene.d, self._slices.cells, again=self._slices)
+        self._slices = slices(self._z, self.scene.d, self._slices.cells, reuse=self._slices)
         self.phi = _phi(self._slices, self._volume) + self._bed.phi
-        phi_w = carried(self._slices, v[:, 2] * self._volume / self._slices.whole)
-        held = self._bed.hold(self.scene.water, self.column.rho_w * self.column.g_x, before, self.phi)
-        self._force_z += held.force_z
+        phi_w = weighted_concentration(self._slices, v[:, 2] * self._volume / self._slices.whole)
+        fixed = self._bed.forces(self.scene.water, self.column.rho_w * self.column.g_x, before, self.phi)
+        self._force_z += fixed.force_z
         self.state, budget = advance(
-            self.column, before, self.phi, force + held.force, dt, slope=held.slope, carried=held.carried,
+            self.column, before, self.phi, force + fixed.force, dt, slope=fixed.slope, carried=fixed.carried,
             phi_w=phi_w,
         )  # fmt: skip
-        self._wet = below(self._slices, self._z, self.scene.d, self.state.z_surface)
-        self.budget = _with_fixed(budget, held, self.state, before, self.column.dz)
+        self._submerged = submerged_part(self._slices, self._z, self.scene.d, self.state.z_surface)
+        self.budget = _with_fixed(budget, fixed, self.state, before, self.column.dz)
         self.exchanges, self.worst = self.exchanges + 1, max(self.worst, self.budget.relative)
         self.steps = min(self.longest, self._resolved(taken[:, DRAG]))
         self.due += self.steps
         if self.eddies is not None:
             self.eddies = eddies.renew(self.eddies, self.column.seed, dt, self.seen[:, SHEAR])
-        self.seen = self._told()
+        self.seen = self._fluid_at_grains()
         return self.seen
 
     def force(self, taken: Floats, dt: float) -> Floats:
-        """All forces of the water on grains along the bed over an interval, by volume of cells [N/m3].
+        """Force of the water on grains along the bed, averaged over an interval, per volume of cells [N/m3].
 
-        Every slice of a grain drags the water by its own slip: the sum over slices is what the grain took.
+        Each slice acts on the water with the slip in its cell; the sum over slices is the force on the grain.
         """
-        scene, cut, u, k_d = self.scene, self._wet, self.state.u, taken[:, DRAG]
+        scene, cut, u, k_d = self.scene, self._submerged, self.state.u, taken[:, DRAG]
         archimedes = (scene.m_weight - scene.m) * scene.gravity[0]
         mean = taken[:, 0] / dt
-        both = to_cells(cut, np.column_stack([mean, taken[:, 2] / dt]), "wet").cells / cut.cells.volume
-        rest = to_cells(cut, archimedes + self.seen[:, EXTRA_X], "wet").cells / cut.cells.volume
-        slip = to_cells(cut, np.column_stack([k_d, k_d * to_grains(cut, u, "wet")]), "wet").cells
+        both = to_cells(cut, np.column_stack([mean, taken[:, 2] / dt]), "submerged").cells / cut.cells.volume
+        rest = to_cells(cut, archimedes + self.seen[:, EXTRA_X], "submerged").cells / cut.cells.volume
+        slip = to_cells(cut, np.column_stack([k_d, k_d * to_grains(cut, u, "submerged")]), "submerged").cells
         self._force_z = both[:, 1]
         return both[:, 0] + rest + (slip[:, 0] * u - slip[:, 1]) / cut.cells.volume
 
     def numbers(self) -> dict[str, float | int]:
-        """Say how the water stands, for the summary of a run; SI."""
+        """State of the water for the summary of a run; SI."""
         state, column = self.state, self.column
         return {
             "exchanges": self.exchanges,
@@ -196,12 +198,12 @@ class Coupling:
         }
 
     def densest(self) -> float:
-        """Densest place of the bed now, averaged over the height of a grain [-]."""
+        """Largest concentration, averaged over the height of a grain [-]."""
         column = self.column
         return float(np.max(averaged(column.dz, column.d, column.n - 1, self.phi)))
 
     def warnings(self) -> list[str]:
-        """What is odd about the water now, in sentences."""
+        """Warnings about the water, one sentence each."""
         column, densest = self.column, self.densest()
         if (
             column.mixing is not Mixing.LI_SAWAMOTO
@@ -210,16 +212,16 @@ class Coupling:
         ):
             return []
         return [
-            f"the bed is nowhere packed: concentration {densest:.3g} at most over the height of a grain, "
-            f"below {column.phi_max:.3g}; eddies reach into it. If it lies still, give water.column.packed "
-            "its concentration"
+            f"no part of the bed reaches the packed concentration {column.phi_max:.3g}: the largest is "
+            f"{densest:.3g}, averaged over the height of a grain, so turbulence enters the bed. If the bed "
+            "is at rest, set water.column.packed to its concentration"
         ]
 
     def _resolved(self, drag: Floats) -> int:
-        """Steps an interval may have where drag is so stiff [N s/m], shape (n_grain,)."""
-        scene, cut = self.scene, self._wet
-        per = to_cells(cut, drag, "wet").cells / cut.cells.volume
-        water = scene.water.rho_w * np.maximum(1.0 - self.phi, 1.0 - PACKED)
+        """Steps for which an interval resolves the drag, with coefficients [N s/m], shape (n_grain,)."""
+        scene, cut = self.scene, self._submerged
+        per = to_cells(cut, drag, "submerged").cells / cut.cells.volume
+        water = scene.water.rho_w * np.maximum(1.0 - self.phi, 1.0 - DENSEST)
         fastest = max(
             float(np.max(per / water, initial=0.0)),
             float(np.max(drag / (scene.m + scene.m_added), initial=0.0)),
@@ -229,36 +231,38 @@ class Coupling:
         most = math.floor(STIFF / (fastest * scene.dt))
         if most < 1:
             raise WaterError(
-                f"Drag equalises water and grains within {1.0 / fastest:.3g} s, which a step of "
+                f"Drag brings grains to the speed of the water within {1.0 / fastest:.3g} s, which a step of "
                 f"{scene.dt:.3g} s does not resolve",
                 step=self.state.step,
                 t=self.state.t,
-                hint="Take a shorter step (time.step), larger grains or a thinner fluid.",
+                hint="Take a shorter step (time.step), larger grains or a less viscous fluid.",
             )
         return most
 
-    def _told(self) -> Floats:
-        """Water at every grain."""
-        scene, state, cut = self.scene, self.state, self._wet
+    def _fluid_at_grains(self) -> Floats:
+        """State of the water at every grain."""
+        scene, state, cut = self.scene, self.state, self._submerged
         eps = 1.0 - self.phi
         water = scene.water
         along = np.column_stack([state.u, state.w, state.shear, self.phi, state.du_dt, state.dtau_dz])
-        at = to_grains(cut, along, "wet")
+        at = to_grains(cut, along, "submerged")
         share = cut.share
         seen = np.zeros((scene.n_grain, N_SEEN))
         seen[:, U], seen[:, W], seen[:, SHEAR] = at[:, 0], at[:, 1], at[:, 2]
-        seen[:, PHI], seen[:, A_X], seen[:, SHARE] = np.minimum(at[:, 3], PACKED), at[:, 4], share
+        seen[:, PHI], seen[:, A_X], seen[:, SHARE] = np.minimum(at[:, 3], DENSEST), at[:, 4], share
         if self.eddies is not None:
             u_tau, drift = eddies.turbulence(self.column, state, self.phi, cut)
             seen[:, [U, V, W]] += eddies.speeds(self.eddies, scene.plane_case, u_tau, drift, at[:, 2])
         solid = self._volume * share
         g_x, g_z = scene.gravity[0], scene.gravity[2]
-        # the part above the water has no buoyancy
+        # no buoyancy on the part above the water
         out = (1.0 - share) * self._volume * water.rho_w
         seen[:, EXTRA_X], seen[:, EXTRA_Z] = out * g_x, out * g_z
         if water.buoyancy == Buoyancy.STRESS:
             seen[:, EXTRA_X] += solid * (at[:, 5] + state.gradient + water.rho_w * g_x)
-            seen[:, EXTRA_Z] += solid * to_grains(cut, self._force_z / np.maximum(eps, 1.0 - PACKED), "wet")
+            seen[:, EXTRA_Z] += solid * to_grains(
+                cut, self._force_z / np.maximum(eps, 1.0 - DENSEST), "submerged"
+            )
         elif water.buoyancy == Buoyancy.WEIGHT:
             seen[:, EXTRA_X] += solid * state.gradient
         else:
@@ -267,18 +271,20 @@ class Coupling:
 
 
 def _phi(cut: Slices, solid: Floats) -> Floats:
-    """Concentration of grains of volume `solid` [m3], whose spheres are cut."""
-    return carried(cut, solid / cut.whole)
+    """Concentration of grains of volume `solid` [m3], with the slices of their spheres."""
+    return weighted_concentration(cut, solid / cut.whole)
 
 
-def _bed(scene: Scene, cells: Cells, bed: Bed) -> Standing:
-    """The fixed grains that stand."""
+def _bed(scene: Scene, cells: Cells, bed: Bed) -> FixedGrains:
+    """The fixed grains that are still there."""
     there = scene.fixed_active
-    return Standing.at(scene.x_fixed[there, 2], scene.d_fixed[there], cells, bed)
+    return FixedGrains.at(scene.x_fixed[there, 2], scene.d_fixed[there], cells, bed)
 
 
-def _with_fixed(budget: Budget, held: Held, now: WaterState, before: WaterState, dz: float) -> Budget:
-    """The budget with what the fixed grains took apart from what the free ones did."""
+def _with_fixed(
+    budget: Budget, fixed: FixedGrainForces, now: WaterState, before: WaterState, dz: float
+) -> Budget:
+    """The budget, with the force on fixed grains separated from that on free grains."""
     wet = now.content > 0.0
-    taken = float(held.force.sum() + (held.slope * (now.u - before.u))[wet].sum()) * dz
+    taken = float(fixed.force.sum() + (fixed.slope * (now.u - before.u))[wet].sum()) * dz
     return replace(budget, grains=budget.grains + taken, fixed=budget.carried - taken, carried=0.0)

@@ -1,17 +1,17 @@
-"""What drives the water: gravity, a pressure gradient, a stress at the bed, a discharge."""
+"""Driving force of the water: gravity, a pressure gradient, a bed stress or a discharge."""
 
 import math
 
 from ryusa.model.column import Column, Drive, WaterState
 from ryusa.model.scene import Floats
-from ryusa.water._kernel import Numbers, kernel
+from ryusa.water._kernel import ColumnParameters, kernel
 
 GRADIENT, TAU, DISCHARGE = int(Drive.GRADIENT), int(Drive.TAU), int(Drive.DISCHARGE)
 
 
 @kernel
 def water_above(content: Floats, z_low: float, dz: float, z_bed: float, z_surface: float) -> float:
-    """Water over the bed per area [m]; the cell that the bed cuts counts with its share above."""
+    """Water above the bed per area [m]; a cell cut by the bed counts with the part above it."""
     total = 0.0
     for k in range(len(content)):
         low = z_low + k * dz
@@ -22,14 +22,14 @@ def water_above(content: Floats, z_low: float, dz: float, z_bed: float, z_surfac
 
 
 @kernel
-def gradient_asked(p: Numbers, content: Floats, z_surface: float) -> float:
-    """Pressure gradient -dp/dx [Pa/m] of the driver; 0 for DISCHARGE, which the step solves for.
+def imposed_gradient(p: ColumnParameters, content: Floats, z_surface: float) -> float:
+    """Imposed pressure gradient -dp/dx [Pa/m]; 0 for DISCHARGE, where the time step solves for it.
 
     Notes
     -----
-    TAU: what gravity along the slope does not give, spread evenly over the depth, so that the water above
-    the bed is driven with the stress asked for. It is the stress of the bed in steady flow, less what side
-    walls and grains take.
+    TAU: the part that gravity along the slope does not supply, spread evenly over the depth, so that the
+    water above the bed is driven with the stress of the case. In steady flow the bed carries that stress
+    minus what side walls and grains take.
     """
     if p.drive == GRADIENT:
         return p.gradient
@@ -40,7 +40,7 @@ def gradient_asked(p: Numbers, content: Floats, z_surface: float) -> float:
 
 
 def driving_stress(column: Column, state: WaterState) -> float:
-    """Stress with which slope and pressure drive the water above the bed [Pa]."""
+    """Stress by which slope and pressure gradient drive the water above the bed [Pa]."""
     content = water_above(state.content, column.z_low, column.dz, column.origin, state.z_surface)
     return column.rho_w * column.g_x * content + state.gradient * (state.z_surface - column.origin)
 

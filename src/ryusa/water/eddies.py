@@ -1,9 +1,10 @@
-"""Turbulent fluctuations: every grain walks from eddy to eddy.
+"""Turbulent fluctuations by a discrete random walk: each grain passes through a sequence of eddies.
 
-An eddy keeps its speed over u_tau as long as it lives; its age counts in lives of where the grain is.
-Exchanges renew what is over, so that an eddy lasts one interval at least. The draw of an eddy follows from
-(seed, grain, how many eddies the grain has left) alone: threads, order and resume cannot matter. A drift
-keeps fluid mixed; that a heavy grain falls out of an eddy before it is over is not counted.
+An eddy keeps its speed over u_tau during its lifetime; its age is measured in lifetimes at the position of
+the grain. Eddies are renewed at exchanges, so that an eddy lasts at least one interval. The random numbers of
+an eddy follow from (seed, grain, number of earlier eddies of the grain) alone: they do not depend on threads,
+order or resume. A drift velocity keeps fluid particles uniformly mixed; the shorter interaction of a heavy
+grain that falls out of its eddy is not modelled.
 """
 
 import math
@@ -18,13 +19,13 @@ from ryusa.model.scene import Floats
 from ryusa.water._kernel import kernel
 from ryusa.water.exchange import Slices, faces_to_grains, to_grains
 
-LEAST = 0.01  # share of water in a cell that is taken as packed
+LEAST = 0.01  # lower limit of the volume fraction of water in a cell
 GOLDEN, MIX_1, MIX_2 = 0x9E3779B97F4A7C15, 0xBF58476D1CE4E5B9, 0x94D049BB133111EB
 
 
 @kernel
 def _mixed(word: Any) -> Any:
-    """Scramble 64 bits: the last lines of SplitMix64 (Steele, Lea & Flood 2014)."""
+    """Mix 64 bits with the finaliser of SplitMix64 (Steele, Lea & Flood 2014)."""
     word = (word ^ (word >> np.uint64(30))) * np.uint64(MIX_1)
     word = (word ^ (word >> np.uint64(27))) * np.uint64(MIX_2)
     return word ^ (word >> np.uint64(31))
@@ -32,7 +33,7 @@ def _mixed(word: Any) -> Any:
 
 @kernel
 def draw(seed: int, grain: int, count: int, k: int) -> float:
-    """Uniform number in (0, 1) [-], number k of an eddy of a grain."""
+    """Uniform random number in (0, 1) [-], number k of eddy `count` of a grain."""
     word = _mixed(np.uint64(seed) + np.uint64(GOLDEN))
     word = _mixed(word + np.uint64(GOLDEN) * np.uint64(grain + 1))
     word = _mixed(word + np.uint64(GOLDEN) * np.uint64(count + 1))
@@ -42,7 +43,7 @@ def draw(seed: int, grain: int, count: int, k: int) -> float:
 
 @kernel
 def _born(seed: int, grain: int, count: int, r: Floats) -> None:
-    """Draw eddy `count` of a grain; by Box & Muller from four uniform numbers."""
+    """Draw the speeds of eddy `count` of a grain, by Box & Muller from four uniform numbers."""
     for k, axis in ((0, 0), (2, 1)):
         size = math.sqrt(-2.0 * math.log(draw(seed, grain, count, k)))
         turn = 2.0 * math.pi * draw(seed, grain, count, k + 1)
@@ -79,7 +80,7 @@ def _speeds(plane: bool, r: Floats, u_tau: Floats, drift: Floats, shear: Floats,
 
 @kernel
 def _drift(dz: float, u_tau: Floats, viscosity: Floats, drift: Floats) -> None:
-    """Drift in cells from strength [m/s] and diffusivity l u_tau [m2/s] at their faces."""
+    """Drift velocity in cells, from u_tau [m/s] and diffusivity l u_tau [m2/s] at their faces."""
     for k in range(len(drift)):
         length = 0.0
         for f in (k, k + 1):
@@ -89,21 +90,21 @@ def _drift(dz: float, u_tau: Floats, viscosity: Floats, drift: Floats) -> None:
 
 
 def begin(seed: int, n_grain: int) -> Eddies:
-    """Put every grain into an eddy, somewhere in its life; `seed` is that of the case."""
+    """Put every grain into an eddy of random age; `seed` is that of the case."""
     r, spent = np.zeros((n_grain, 3)), np.zeros(n_grain)
     _begin(seed, r, spent)
     return Eddies(r, spent, np.zeros(n_grain, np.int64))
 
 
 def renew(eddies: Eddies, seed: int, dt: float, shear: Floats) -> Eddies:
-    """Let eddies age, and renew those that are over.
+    """Advance the age of the eddies, and renew those that have ended.
 
     Parameters
     ----------
-    eddies : those the grains were in.
+    eddies : present eddies of the grains.
     seed : of the case.
-    dt : time gone by [s].
-    shear : velocity gradient of the water at each grain meanwhile [1/s], shape (n_grain,).
+    dt : elapsed time [s].
+    shear : velocity gradient of the water at each grain in that time [1/s], shape (n_grain,).
     """
     r, spent, count = eddies.r.copy(), eddies.spent.copy(), eddies.count.copy()
     _renew(seed, dt, np.ascontiguousarray(shear), r, spent, count)
@@ -111,13 +112,13 @@ def renew(eddies: Eddies, seed: int, dt: float, shear: Floats) -> Eddies:
 
 
 def speeds(eddies: Eddies, plane: bool, u_tau: Floats, drift: Floats, shear: Floats) -> Floats:
-    """Speed of the water beyond its mean at each grain [m/s], shape (n_grain, 3).
+    """Velocity fluctuation of the water at each grain [m/s], shape (n_grain, 3).
 
     Parameters
     ----------
-    eddies : those the grains are in.
-    plane : motion in x-z only; eddies have no speed across then.
-    u_tau, drift : strength of the turbulence at each grain and mean vertical speed of its eddies [m/s].
+    eddies : present eddies of the grains.
+    plane : motion in x-z only; then there is no transverse fluctuation.
+    u_tau, drift : intensity of the turbulence at each grain, and drift velocity along z [m/s].
     shear : velocity gradient of the water there [1/s]; all of shape (n_grain,).
     """
     u = np.empty((len(u_tau), 3))
@@ -126,7 +127,7 @@ def speeds(eddies: Eddies, plane: bool, u_tau: Floats, drift: Floats, shear: Flo
 
 
 def turbulence(column: Column, state: WaterState, phi: Floats, cut: Slices) -> tuple[Floats, Floats]:
-    """Strength of the turbulence at each grain u_tau and mean vertical speed of its eddies [m/s], (n_grain,).
+    """Intensity u_tau of the turbulence at each grain, and drift velocity along z [m/s], shape (n_grain,).
 
     Parameters
     ----------
@@ -136,8 +137,8 @@ def turbulence(column: Column, state: WaterState, phi: Floats, cut: Slices) -> t
 
     Notes
     -----
-    u_tau**2 is the turbulent part of the shear stress over density and share of water, nu_t |dU/dz|/eps. A
-    wall has no eddies but on a rough bed, where the lowest cell is as turbulent as the face above it.
+    u_tau**2 is the turbulent part of the shear stress over density and volume fraction, nu_t |dU/dz|/eps. It
+    vanishes at a wall, except at a rough bed, where the lowest cell takes the value of the face above it.
     """
     eps = np.maximum(1.0 - phi, LEAST)
     share = np.concatenate([eps[:1], 0.5 * (eps[1:] + eps[:-1]), eps[-1:]])
@@ -147,4 +148,4 @@ def turbulence(column: Column, state: WaterState, phi: Floats, cut: Slices) -> t
         square[0] = square[1]
     drift = np.empty(column.n)
     _drift(column.dz, np.sqrt(square), viscosity, drift)
-    return np.sqrt(faces_to_grains(cut, square, "wet")), to_grains(cut, drift, "wet")
+    return np.sqrt(faces_to_grains(cut, square, "submerged")), to_grains(cut, drift, "submerged")

@@ -1,15 +1,15 @@
-"""Slices of grains in a column of cells: what grains fill, what they give to cells, what they take from them.
+"""Slices of grains in a column of cells, and the exchange of volume, momentum and speed between the two.
 
-A grain i puts the volume V_ik of its sphere, cut by two horizontal planes, into cell k. The same V_ik carry
-everything in both directions, so that what the grains give is what the cells get, to round-off:
+Grain i has the volume V_ik of its sphere, cut by two horizontal planes, in cell k. The same V_ik are the
+weights in both directions, so that what the grains give equals what the cells receive, to round-off:
 
 - concentration, phi_k = sum over grains of V_ik / (A dz);
 - grains to cells, Q_k = sum over grains of Q_i V_ik / V_i;
 - cells to grains, q_i = sum over cells of q_k V_ik / V_i; so the sum of Q_i q_i over grains is that of
   Q_k q_k over cells.
 
-A sum over cells runs upwards, a sum over grains in the order of their ids, both in one thread: the bits
-depend neither on the number of threads nor, once `ids` is given, on the order of the grains in memory.
+Sums over cells run upwards and sums over grains in the order of their ids, both in one thread: the bits
+depend neither on the number of threads nor, if `ids` is given, on the order of the grains in memory.
 """
 
 import math
@@ -24,8 +24,8 @@ from ryusa.laws.slices import sphere_slice
 from ryusa.model.scene import Floats
 
 Ints = NDArray[np.int64]
-Share = Literal["whole", "wet"]
-DRY = 1.0e-15  # wet part of a grain, over its volume, up to which it counts as dry: round-off
+Share = Literal["whole", "submerged"]
+DRY = 1.0e-15  # submerged of the volume of a grain; a smaller submerged part counts as dry (round-off)
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Cells:
     z_low : height of the lowest face [m].
     dz : height of a cell [m].
     n : number of cells.
-    area : of the bed, all lanes of a plane scene together [m2].
+    area : of the bed, summed over all lanes of a plane scene [m2].
     """
 
     z_low: float
@@ -69,19 +69,19 @@ class Cells:
 
 @dataclass(frozen=True)
 class Slices:
-    """Volumes of grains in cells; a row per grain, rows as the grains were handed in.
+    """Volumes of grains in cells; one row per grain, in the order given.
 
     Attributes
     ----------
-    cells : what the grains are cut by.
+    cells : the cells that cut the grains.
     first : lowest cell a grain reaches into, shape (n_grain,).
-    count : number of cells it reaches into, shape (n_grain,); 0 where it lies beyond all cells.
-    volume : V_ik of cell first + s in column s [m3], shape (n_grain, width); the widest grain sets the width,
-        and what lies beyond `count` means nothing.
+    count : number of cells it reaches into, shape (n_grain,); 0 where it lies outside all cells.
+    volume : V_ik of cell first + s in column s [m3], shape (n_grain, width); the largest grain sets the
+        width, and values beyond `count` are undefined.
     whole : volume V_i of the grain [m3], shape (n_grain,).
-    wet : part of it that lies in cells, the sum of its slices [m3], shape (n_grain,).
+    submerged : part of it that lies in cells, the sum of its slices [m3], shape (n_grain,).
     below, above : parts that lie below the lowest and above the highest face [m3], shape (n_grain,); with
-        `wet` they add up to `whole`, to round-off.
+        `submerged` they add up to `whole`, to round-off.
     order : rows in the order of the grains' ids, in which sums over grains run, shape (n_grain,).
     """
 
@@ -90,7 +90,7 @@ class Slices:
     count: Ints
     volume: Floats
     whole: Floats
-    wet: Floats
+    submerged: Floats
     below: Floats
     above: Floats
     order: Ints
@@ -102,18 +102,18 @@ class Slices:
 
     @property
     def share(self) -> Floats:
-        """Part of each grain that lies in cells, wet over whole [-], shape (n_grain,)."""
-        return self.wet / self.whole
+        """Part of each grain that lies in cells, submerged over whole volume [-], shape (n_grain,)."""
+        return self.submerged / self.whole
 
 
 @dataclass(frozen=True)
-class Given:
-    """What grains gave away, in the unit of what they had.
+class CellTotals:
+    """Amounts that the grains gave, in the unit of the amounts.
 
     Attributes
     ----------
-    cells : to each cell, shape (n,), or (n, m) for m quantities.
-    below, above : what had no cell to go to, shape () or (m,). The three add up to what the grains had.
+    cells : received by each cell, shape (n,), or (n, m) for m quantities.
+    below, above : parts outside the column, shape () or (m,). The three add up to the total of the grains.
     """
 
     cells: Floats
@@ -122,7 +122,7 @@ class Given:
 
 
 def slices(
-    z: Floats, d: Floats, cells: Cells, ids: Ints | None = None, again: Slices | None = None
+    z: Floats, d: Floats, cells: Cells, ids: Ints | None = None, reuse: Slices | None = None
 ) -> Slices:
     """Cut grains by the faces of cells.
 
@@ -131,16 +131,16 @@ def slices(
     z : heights of the centres [m], shape (n_grain,).
     d : diameters [m], > 0, shape (n_grain,).
     cells : the cells.
-    ids : id of each row, a permutation of 0 .. n_grain - 1; default the rows are in the order of ids.
-    again : slices of the same number of grains that are needed no more: their memory is written over.
+    ids : id of each row, a permutation of 0 .. n_grain - 1; by default the rows are in the order of ids.
+    reuse : slices of the same number of grains that are no longer needed: their memory is reused.
 
     Raises
     ------
-    ValueError : shapes that differ, ids that are no permutation, a height or diameter that is no such thing.
+    ValueError : shapes that differ, ids that are no permutation, a height or diameter out of range.
 
     Notes
     -----
-    Both sides of a face see the same height of it, so the slices of a grain add up without a seam.
+    Both cells at a face use the same height of it, so that the slices of a grain add up exactly.
 
     >>> half = slices(np.array([0.0]), np.array([2.0]), Cells(z_low=0.0, dz=0.5, n=4, area=1.0))
     >>> half.volume[0, :2] / math.pi  # 0.5 - 0.5**3/3, and the cap above it
@@ -150,20 +150,22 @@ def slices(
     """
     z, d = np.ascontiguousarray(z, dtype=np.float64), np.ascontiguousarray(d, dtype=np.float64)
     if z.ndim != 1 or z.shape != d.shape:
-        raise ValueError(f"heights of shape {z.shape}, diameters of shape {d.shape}: one of each a grain")
+        raise ValueError(
+            f"heights of shape {z.shape}, diameters of shape {d.shape}: one height and one diameter per grain"
+        )
     bad = np.flatnonzero(~(np.isfinite(z) & (d > 0.0) & np.isfinite(d)))
     if len(bad):
         raise ValueError(f"grain in row {bad[0]}: z = {z[bad[0]]:g} m, d = {d[bad[0]]:g} m")
     n = len(z)
     width = int(min(float(d.max(initial=0.0)) / cells.dz + 2.0, float(cells.n)))
-    if again is not None and again.volume.shape == (n, width):
-        first, count, volume, parts = again.first, again.count, again.volume, again
-        whole, wet, below, above = parts.whole, parts.wet, parts.below, parts.above
+    if reuse is not None and reuse.volume.shape == (n, width):
+        first, count, volume, parts = reuse.first, reuse.count, reuse.volume, reuse
+        whole, submerged, below, above = parts.whole, parts.submerged, parts.below, parts.above
     else:
         first, count, volume = np.empty(n, np.int64), np.empty(n, np.int64), np.empty((n, width))
-        whole, wet, below, above = (np.empty(n) for _ in range(4))
-    _cut(z, 0.5 * d, cells.z_low, cells.dz, cells.n, first, count, volume, whole, wet, below, above)
-    return Slices(cells, first, count, volume, whole, wet, below, above, _order(ids, n))
+        whole, submerged, below, above = (np.empty(n) for _ in range(4))
+    _cut(z, 0.5 * d, cells.z_low, cells.dz, cells.n, first, count, volume, whole, submerged, below, above)
+    return Slices(cells, first, count, volume, whole, submerged, below, above, _order(ids, n))
 
 
 def concentration(grains: Slices, bed: Slices | None = None) -> Floats:
@@ -172,17 +174,17 @@ def concentration(grains: Slices, bed: Slices | None = None) -> Floats:
     Parameters
     ----------
     grains : slices of the free grains.
-    bed : slices of the fixed grains in the same cells, where they shall count too.
+    bed : slices of the fixed grains in the same cells; None leaves them out.
     """
-    phi = carried(grains, np.ones(grains.n_grain))
+    phi = weighted_concentration(grains, np.ones(grains.n_grain))
     if bed is None:
         return phi
     if bed.cells != grains.cells:
-        raise ValueError(f"bed in {bed.cells}, free grains in {grains.cells}: the same cells")
-    return phi + carried(bed, np.ones(bed.n_grain))
+        raise ValueError(f"bed in {bed.cells}, free grains in {grains.cells}: must be the same cells")
+    return phi + weighted_concentration(bed, np.ones(bed.n_grain))
 
 
-def carried(grains: Slices, values: Floats) -> Floats:
+def weighted_concentration(grains: Slices, values: Floats) -> Floats:
     """Concentration times the mean of a quantity in each cell, sum of V_ik q_i / (A dz).
 
     Parameters
@@ -200,34 +202,35 @@ def carried(grains: Slices, values: Floats) -> Floats:
     return sums[0] if flat else np.ascontiguousarray(sums.T)
 
 
-def to_cells(grains: Slices, amounts: Floats, share: Share = "whole") -> Given:
-    """Give what grains have to the cells they lie in.
+def to_cells(grains: Slices, amounts: Floats, share: Share = "whole") -> CellTotals:
+    """Distribute amounts of grains over the cells in which they lie.
 
     Parameters
     ----------
     grains : slices.
     amounts : of each grain (an impulse [N s], a force [N], a volume [m3]), shape (n_grain,) or (n_grain, m).
-    share : "whole", a cell gets V_ik/V_i: what the part of a grain beyond the cells has goes to no cell;
-        "wet", it gets V_ik over the wet volume: a grain that lies in any cell gives all to cells.
+    share : "whole", a cell receives the fraction V_ik/V_i, and the part of a grain outside the cells goes to
+        no cell; "submerged", it receives V_ik over the submerged volume, and a grain that lies in any cell
+        gives everything to cells.
     """
     table, flat = _table(amounts, grains.n_grain, "grain")
     sums, outside = _give(grains, table, *_factors(grains, share))
     return (
-        Given(sums[0], outside[0, 0], outside[0, 1])
+        CellTotals(sums[0], outside[0, 0], outside[0, 1])
         if flat
-        else Given(np.ascontiguousarray(sums.T), outside[:, 0].copy(), outside[:, 1].copy())
+        else CellTotals(np.ascontiguousarray(sums.T), outside[:, 0].copy(), outside[:, 1].copy())
     )
 
 
 def to_grains(grains: Slices, values: Floats, share: Share = "whole") -> Floats:
-    """Mean over a grain of what cells have.
+    """Mean of cell values over each grain.
 
     Parameters
     ----------
     grains : slices.
     values : of each cell (a speed [m/s], a force per volume [N/m3]), shape (n,) or (n, m).
-    share : "whole", sum of V_ik q_k / V_i: beyond the cells q counts as 0; "wet", the mean over the part of
-        the grain that lies in cells, and 0 where none does.
+    share : "whole", sum of V_ik q_k / V_i, with q = 0 outside the cells; "submerged", the mean over the part
+        of the grain that lies in cells, and 0 where none does.
 
     Returns
     -------
@@ -242,7 +245,7 @@ def to_grains(grains: Slices, values: Floats, share: Share = "whole") -> Floats:
 
 
 def slope_to_grains(grains: Slices, faces: Floats, share: Share = "whole") -> Floats:
-    """Mean over a grain of the derivative along z of what faces have.
+    """Mean over each grain of the z derivative of face values.
 
     Parameters
     ----------
@@ -252,14 +255,14 @@ def slope_to_grains(grains: Slices, faces: Floats, share: Share = "whole") -> Fl
 
     Returns
     -------
-    Unit of `faces` over metre. Times V_i it is what the cells lose: with the stress tau, V d tau/dz.
+    Unit of `faces` over metre. Times V_i it equals the loss of the cells: with the stress tau, V d tau/dz.
     """
     table = _at_faces(grains, faces)
     return to_grains(grains, np.diff(table, axis=0) / grains.cells.dz, share)
 
 
 def faces_to_grains(grains: Slices, faces: Floats, share: Share = "whole") -> Floats:
-    """Mean over a grain of what faces have (such as dU/dz [1/s]); a cell has the mean of its two faces.
+    """Mean over each grain of face values (such as dU/dz [1/s]); a cell has the mean of its two faces.
 
     Parameters
     ----------
@@ -282,12 +285,14 @@ def _give(grains: Slices, table: Floats, per: Floats, outer: Floats) -> tuple[Fl
 
 
 def _factors(grains: Slices, share: Share) -> tuple[Floats, Floats]:
-    """What turns the volumes of a grain into weights, in cells and outside [1/m3]."""
+    """Factors that turn volumes of a grain into weights, in cells and outside [1/m3]."""
     if share == "whole":
         per = 1.0 / grains.whole
         return per, per
-    dry = grains.wet <= DRY * grains.whole
-    return np.where(dry, 0.0, 1.0 / np.where(dry, 1.0, grains.wet)), np.where(dry, 1.0 / grains.whole, 0.0)
+    dry = grains.submerged <= DRY * grains.whole
+    return np.where(dry, 0.0, 1.0 / np.where(dry, 1.0, grains.submerged)), np.where(
+        dry, 1.0 / grains.whole, 0.0
+    )
 
 
 def _order(ids: Ints | None, n: int) -> Ints:
@@ -304,24 +309,24 @@ def _order(ids: Ints | None, n: int) -> Ints:
 
 
 def _table(values: Floats, n: int, what: str) -> tuple[Floats, bool]:
-    """Values as (n, m), and whether they came as one column."""
+    """Values as (n, m), and whether they were given as one column."""
     table = np.ascontiguousarray(values, dtype=np.float64)
     if table.ndim not in (1, 2) or len(table) != n:
-        raise ValueError(f"values of shape {table.shape}: one row a {what}, {n} of them")
+        raise ValueError(f"values of shape {table.shape}: one row per {what}, {n} in all")
     return (table[:, None], True) if table.ndim == 1 else (table, False)
 
 
 def _at_faces(grains: Slices, faces: Floats) -> Floats:
     table = np.asarray(faces, dtype=np.float64)
     if table.ndim not in (1, 2) or len(table) != grains.cells.n + 1:
-        raise ValueError(f"values of shape {table.shape}: one row a face, {grains.cells.n + 1} of them")
+        raise ValueError(f"values of shape {table.shape}: one row per face, {grains.cells.n + 1} in all")
     return table
 
 
-@law  # for its compiler, as the two below: a loop over arrays that calls laws
+@law  # compiled as a law is, like the two below: a loop over arrays that calls laws
 def _cut(
     z: Floats, r: Floats, z_low: float, dz: float, n: int,
-    first: Ints, count: Ints, volume: Floats, whole: Floats, wet: Floats, below: Floats, above: Floats,
+    first: Ints, count: Ints, volume: Floats, whole: Floats, submerged: Floats, below: Floats, above: Floats,
 ) -> None:  # fmt: skip
     """Write slices of every grain."""
     top = float(n)
@@ -337,7 +342,7 @@ def _cut(
             part = max(sphere_slice(r[i], a, b), 0.0)  # at a pole round-off may make it negative
             volume[i, s] = part
             total += part
-        wet[i] = total
+        submerged[i] = total
         whole[i] = sphere_slice(r[i], -r[i], r[i])
         below[i] = max(sphere_slice(r[i], -r[i], z_low - z[i]), 0.0)
         above[i] = max(sphere_slice(r[i], z_low + n * dz - z[i], r[i]), 0.0)
@@ -348,9 +353,9 @@ def _add(
     order: Ints, first: Ints, count: Ints, volume: Floats, below: Floats, above: Floats,
     per: Floats, outer: Floats, amounts: Floats, sums: Floats, outside: Floats,
 ) -> None:  # fmt: skip
-    """Add amounts (n_grain, m) to the cells (m, n), and what has no cell to outside (m, 2)."""
-    for place in range(order.shape[0]):
-        i = order[place]
+    """Add amounts (n_grain, m) to the cells (m, n), and parts outside the column to outside (m, 2)."""
+    for rank in range(order.shape[0]):
+        i = order[rank]
         low, high = first[i], first[i] + count[i]
         for c in range(amounts.shape[1]):
             amount = amounts[i, c] * per[i]
@@ -364,7 +369,7 @@ def _add(
 
 @law
 def _take(first: Ints, count: Ints, volume: Floats, per: Floats, columns: Floats, out: Floats) -> None:
-    """Means over each grain, out (n_grain, m), of what cells have, columns (m, n)."""
+    """Means over each grain, out (n_grain, m), of cell values, columns (m, n)."""
     for i in range(first.shape[0]):
         low, high = first[i], first[i] + count[i]
         for c in range(columns.shape[0]):

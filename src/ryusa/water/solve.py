@@ -1,12 +1,13 @@
 """One implicit step of the column: a tridiagonal system inside Newton's method.
 
-Momentum of the water along the bed, U its speed and eps = 1 - phi its share of a cell:
+Momentum of the water along the bed, with its speed U and its volume fraction eps = 1 - phi:
 
     d(rho eps U)/dt + d(rho eps w U)/dz = d tau/dz - dp/dx + rho eps g_x - (all forces of water on grains)
     tau = rho (nu + nu_t) dU/dz
 
-This holds for every form of buoyancy (design/0007), because each only decides what the water does to the
-grains. Where that is not known beforehand, `carried` gives the share of d tau/dz that the grains take.
+This holds for every form of buoyancy (design/0007), because the form only decides which force the water
+exerts on the grains. Where that force depends on the solution, `carried` gives the share of d tau/dz that the
+grains take.
 """
 
 import numpy as np
@@ -14,8 +15,8 @@ import numpy as np
 from ryusa.errors import WaterError
 from ryusa.model.column import Budget, Column, WaterState
 from ryusa.model.scene import Floats
-from ryusa.water import march as at
-from ryusa.water._kernel import numbers
+from ryusa.water import time_step as kernels
+from ryusa.water._kernel import parameters_of
 
 
 def advance(
@@ -29,29 +30,31 @@ def advance(
     carried: Floats | None = None,
     phi_w: Floats | None = None,
 ) -> tuple[WaterState, Budget]:
-    """Water after a step dt, and where its momentum came from.
+    """State of the water after a step dt, and its momentum budget.
 
     Parameters
     ----------
-    column, state : what holds still and what moves.
+    column, state : fixed parameters, and the present state of the water.
     phi : concentration of grains at the end of the step [-], shape (n,).
-    force : all forces along the bed that the water put on the grains during the step, whatever the form of
+    force : all forces along the bed that the water exerted on the grains during the step, for any form of
         buoyancy, per volume of the cells [N/m3], shape (n,); None: no grains.
     dt : step [s]; any length is stable.
-    slope : how `force` grows with the water's speed [N s/m4], for forces that are not settled yet; None: 0.
-    carried : share of d tau/dz that the grains take on top of `force`, phi for the form `stress` where its
-        part is not in `force` [-]; None: 0.
-    phi_w : phi times the vertical speed of the grains [m/s], for the water's own; None: 0.
+    slope : derivative of `force` with respect to the speed of the water [N s/m4], for forces that depend on
+        the solution; None: 0.
+    carried : share of d tau/dz that the grains take in addition to `force` [-]: phi for the form `stress`
+        where that part is not in `force`; None: 0.
+    phi_w : phi times the vertical speed of the grains [m/s], from which that of the water follows; None: 0.
 
     Notes
     -----
-    Solved to round-off, not linearised over the step: the steady state does not depend on dt. Raises
-    `WaterError` when the surface leaves the column, grains leave no room for water, or a number is lost.
+    The nonlinear system is solved to round-off, so that the steady state does not depend on dt. Raises
+    `WaterError` if the surface leaves the column, if grains fill a cell completely, or if a value is not
+    finite.
     """
-    return _march(column, state, phi, force, slope, carried, phi_w, 1.0 / dt, state.u, dt)
+    return solve_step(column, state, phi, force, slope, carried, phi_w, 1.0 / dt, state.u, dt)
 
 
-def _march(
+def solve_step(
     column: Column,
     state: WaterState,
     phi: Floats,
@@ -63,15 +66,18 @@ def _march(
     guess: Floats,
     dt: float,
 ) -> tuple[WaterState, Budget]:
+    """Solve the balance of `advance`; 1/dt = `per_dt` [1/s], Newton's method starts at `guess` [m/s]."""
     n = column.n
-    given = np.zeros((8, n))  # one array of one kind, so that the step is compiled once
+    given = np.zeros((8, n))  # a single array type, so that the step is compiled once
     for row, values in enumerate((state.u, state.content, guess, phi, force, slope, carried, phi_w)):
         if values is not None:
             given[row] = values
-    rows, faces, out = np.empty((6, n)), np.empty((2, n + 1)), np.empty(at.N_OUT)
-    answer = at.march(numbers(column), given, float(state.volume), float(per_dt), rows, faces, out)
-    if answer != at.DONE:
-        raise _error(answer, state)
+    rows, faces, out = np.empty((6, n)), np.empty((2, n + 1)), np.empty(kernels.N_OUT)
+    status = kernels.time_step(
+        parameters_of(column), given, float(state.volume), float(per_dt), rows, faces, out
+    )
+    if status != kernels.DONE:
+        raise _error(status, state)
     rows.flags.writeable = faces.flags.writeable = False
     now = WaterState(
         u=rows[0],
@@ -82,47 +88,48 @@ def _march(
         dtau_dz=rows[5],
         tau=faces[0],
         nu_t=faces[1],
-        z_surface=float(out[at.SURFACE]),
+        z_surface=float(out[kernels.SURFACE]),
         volume=state.volume,
-        gradient=float(out[at.GRADIENT]),
+        gradient=float(out[kernels.GRADIENT]),
         t=state.t + dt,
         step=state.step + 1,
     )
     budget = Budget(
-        change=float(out[at.B_CHANGE]),
-        gravity=float(out[at.B_GRAVITY]),
-        driver=float(out[at.B_DRIVER]),
-        bed=float(out[at.B_BED]),
-        lid=float(out[at.B_LID]),
-        side=float(out[at.B_SIDE]),
-        grains=float(out[at.B_GRAINS]),
-        carried=float(out[at.B_CARRIED]),
-        surface=float(out[at.B_SURFACE]),
-        iterations=int(out[at.TURNS]),
+        change=float(out[kernels.B_CHANGE]),
+        gravity=float(out[kernels.B_GRAVITY]),
+        driver=float(out[kernels.B_DRIVER]),
+        bed=float(out[kernels.B_BED]),
+        lid=float(out[kernels.B_LID]),
+        side=float(out[kernels.B_SIDE]),
+        grains=float(out[kernels.B_GRAINS]),
+        carried=float(out[kernels.B_SHARED]),
+        surface=float(out[kernels.B_SURFACE]),
+        iterations=int(out[kernels.ITERATIONS]),
     )
     return now, budget
 
 
 FAULTS = {
-    at.TOO_SHORT: (
-        "The water does not fit into the column",
-        "Give the column more cells, or check the volume of water.",
+    kernels.TOO_SHORT: (
+        "The water surface is above the top of the column",
+        "Raise the top of the column (water.depth, water.column.cell), or check the volume of water.",
     ),
-    at.NO_ROOM: (
+    kernels.NO_ROOM: (
         "A concentration of grains is not between 0 and 1",
-        "Where grains overlap far, or cells are thin and the area is small, choose thicker cells.",
+        "Take thicker cells (water.column.cell), which average over more grains; check for large overlaps.",
     ),
-    at.NOT_A_NUMBER: (
-        "A speed of the water is no longer finite",
-        "Look at the forces that the grains hand over, and at the driver.",
+    kernels.NOT_A_NUMBER: (
+        "A speed of the water is not finite",
+        "Check the driving force (water.column.drive) and the speeds of the grains in the last frames.",
     ),
-    at.NOT_CLOSE: (
-        "The stresses of the water found no balance",
-        "A shorter step helps, or cells that are fine enough for the wall.",
+    kernels.NOT_CONVERGED: (
+        "The iteration for the stresses of the water did not converge",
+        "Take a shorter exchange interval (water.column.interval), or thinner cells at the wall "
+        "(water.column.cell).",
     ),
 }
 
 
-def _error(answer: int, state: WaterState) -> WaterError:
-    cause, hint = FAULTS[answer]
+def _error(status: int, state: WaterState) -> WaterError:
+    cause, hint = FAULTS[status]
     return WaterError(cause, step=state.step, t=state.t, hint=hint)

@@ -1,4 +1,4 @@
-"""Grains that stand still: what they take from the water, and how water begins to flow over them."""
+"""Fixed grains: forces of the water on them, and the steady flow with which a run starts."""
 
 import math
 from dataclasses import replace
@@ -12,7 +12,7 @@ from ryusa.model import Column, Water
 from ryusa.model.column import Bed, Mixing, Start
 from ryusa.model.enums import Buoyancy, Drag, EventRule, Hindrance, Profile
 from ryusa.water.coupling import Coupling
-from ryusa.water.standing import lying
+from ryusa.water.fixed_grains import settled_concentration
 
 D, G, SLOPE = 2.0e-3, 9.80665, 0.05
 FORMS = list(Buoyancy)
@@ -67,13 +67,13 @@ def test_a_long_step_over_fixed_grains_is_stable_and_ends_in_the_same_flow(form)
     none = np.zeros((0, 3)), np.zeros((0, 3)), np.zeros((0, 4))
     for _ in range(400):
         fine.exchange(*none)
-    again = alone((replace(made[0], dt=1.0), made[1]), column)
+    coarse = alone((replace(made[0], dt=1.0), made[1]), column)
     for _ in range(60):
-        again.exchange(*none)
-    assert again.state.u == pytest.approx(fine.state.u, rel=1e-3, abs=1e-3)
+        coarse.exchange(*none)
+    assert coarse.state.u == pytest.approx(fine.state.u, rel=1e-3, abs=1e-3)
 
 
-def test_fixed_grains_under_a_rough_wall_leave_the_drag_to_it():
+def test_fixed_grains_under_a_rough_wall_take_no_force():
     made, column = bed(Buoyancy.STRESS)
     rough = replace(column, z_low=5.0 * D, n=110, bed=Bed.ROUGH, k_rough=D, mixing=Mixing.PARABOLIC)
     coupling = alone(made, rough)
@@ -108,11 +108,11 @@ def test_still_water_begins_at_rest_either_way():
     assert (Coupling.begin(level, still, 50, made[1].x).state.u == 0.0).all()
 
 
-def test_grains_lie_at_the_bottom_as_dense_as_asked_and_none_is_lost():
+def test_settled_grains_have_the_packed_concentration_and_none_is_lost():
     _, column = bed(Buoyancy.STRESS)
     free = np.where((column.z > 6.0 * D) & (column.z < 9.0 * D), 0.3, 0.0)
     fixed = np.where(column.z < D, 0.4, 0.0)
-    phi = lying(column, fixed, free, D)
+    phi = settled_concentration(column, fixed, free, D)
     assert phi.sum() == pytest.approx(free.sum() + fixed.sum(), rel=0.01)  # of the mean at the lowest cells
     assert phi[0] == pytest.approx(0.5)
     end = D + (0.3 * 3.0 - 0.1) / 0.5 * D

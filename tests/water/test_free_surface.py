@@ -1,4 +1,4 @@
-"""Grains at the surface: water acts on what lies below it, and what it gives it loses."""
+"""Grains at the free surface: water acts only on the part below it, and momentum is conserved."""
 
 import math
 from dataclasses import replace
@@ -11,9 +11,9 @@ from ryusa.engine.cpu import CpuEngine
 from ryusa.model import Column, Water
 from ryusa.model.column import Bed, Mixing, Surface
 from ryusa.model.enums import Buoyancy, Drag, EventRule, Lift, Profile, WaterTorque
-from ryusa.water.brim import below
 from ryusa.water.coupling import Coupling
 from ryusa.water.exchange import Cells, slices, to_cells
+from ryusa.water.free_surface import submerged_part
 
 D, G = 2.0e-3, 9.80665
 FORMS = list(Buoyancy)
@@ -54,14 +54,14 @@ def stepped(made, column, intervals, longest=20):
 def test_slices_end_at_the_surface():
     z, d = np.array([9.0, 10.0, 10.35, 11.2]) * D, np.full(4, D)
     whole = slices(z, d, Cells(0.0, 0.2 * D, 100, 1.0))
-    cut = below(whole, z, d, SURFACE)
+    cut = submerged_part(whole, z, d, SURFACE)
     high = np.clip(SURFACE - z, -0.5 * D, 0.5 * D)
     cap = math.pi * (0.25 * D * D * (high + 0.5 * D) - (high**3 + 0.125 * D**3) / 3.0)
-    assert cut.wet == pytest.approx(cap, rel=1e-12, abs=1e-24)
-    assert cut.wet + cut.above == pytest.approx(cut.whole)
-    assert to_cells(cut, np.ones(4), "wet").cells.sum() == pytest.approx(3.0)  # the last is dry
-    assert to_cells(cut, np.ones(4), "wet").above == 1.0
-    assert below(whole, z, d, 12.0 * D) is whole
+    assert cut.submerged == pytest.approx(cap, rel=1e-12, abs=1e-24)
+    assert cut.submerged + cut.above == pytest.approx(cut.whole)
+    assert to_cells(cut, np.ones(4), "submerged").cells.sum() == pytest.approx(3.0)  # the last is dry
+    assert to_cells(cut, np.ones(4), "submerged").above == 1.0
+    assert submerged_part(whole, z, d, 12.0 * D) is whole
 
 
 @pytest.mark.parametrize("form", FORMS)

@@ -1,4 +1,4 @@
-"""The column's step, compiled: water laid into cells, Newton's method, the books."""
+"""Compiled implicit time step of the column: water level, Newton's method, momentum budget."""
 
 from typing import NamedTuple
 
@@ -7,25 +7,27 @@ import numpy as np
 from ryusa.laws.turbulence import eddy_viscosity
 from ryusa.model.column import Drive, SideWalls, Surface, Top
 from ryusa.model.scene import Floats
-from ryusa.water._kernel import Numbers, kernel
+from ryusa.water._kernel import ColumnParameters, kernel
 from ryusa.water.closures import VAN_DRIEST, bed_shear, bed_stress, mixing_lengths, side_drag
-from ryusa.water.drive import gradient_asked
+from ryusa.water.drive import imposed_gradient
 
 LID, VOLUME, DISCHARGE = int(Top.LID), int(Surface.VOLUME), int(Drive.DISCHARGE)
 NO_WALLS = int(SideWalls.NONE)
-CLOSE = 1.0e-13  # relative change of the speed at which Newton's method ends
-ENOUGH = 1.0e-9  # relative change that is accepted when the next is no smaller: round-off of the solution
-MOST = 300  # iterations
-SLOW = 30  # iterations after which only half of a change is taken: the wall's two layers meet in a kink
-DONE, TOO_SHORT, NO_ROOM, NOT_A_NUMBER, NOT_CLOSE = range(5)
-# what a step writes beside its profiles
-SURFACE, GRADIENT, TURNS = range(3)
-B_GRAVITY, B_DRIVER, B_BED, B_LID, B_SIDE, B_GRAINS, B_CARRIED, B_SURFACE, B_CHANGE = range(3, 12)
+TOLERANCE = 1.0e-13  # relative change of the speed at which Newton's method stops
+ROUND_OFF = 1.0e-9  # relative change accepted where the next is no smaller: limit of round-off
+MAX_ITERATIONS = 300
+DAMPED_AFTER = (
+    30  # iterations after which only half of a change is taken: the wall's two layers meet in a kink
+)
+DONE, TOO_SHORT, NO_ROOM, NOT_A_NUMBER, NOT_CONVERGED = range(5)
+# scalars that a step writes, beside its profiles
+SURFACE, GRADIENT, ITERATIONS = range(3)
+B_GRAVITY, B_DRIVER, B_BED, B_LID, B_SIDE, B_GRAINS, B_SHARED, B_SURFACE, B_CHANGE = range(3, 12)
 N_OUT = 12
 
 
 class Sources(NamedTuple):
-    """What the grains do to the cells during a step, each of shape (n,); see `solve.advance`."""
+    """Action of the grains on the cells during a step, each of shape (n,); see `solve.advance`."""
 
     phi: Floats
     force: Floats
@@ -34,14 +36,14 @@ class Sources(NamedTuple):
     phi_w: Floats
 
 
-class Work(NamedTuple):
-    """Arrays of one step; cells of shape (n,), faces of shape (n + 1,)."""
+class StepWorkspace(NamedTuple):
+    """Work arrays of one step; cells of shape (n,), faces of shape (n + 1,)."""
 
     h: Floats  # wet thickness of a cell [m]
     z: Floats  # middle of its wet part [m]
-    q: Floats  # water through a face, upwards, per area [m/s]
-    below: Floats  # weight of the cell under a face in what flows through it [-]
-    square: Floats  # share of water times mixing length squared at a face [m2]
+    q: Floats  # upward flux of water through a face, per area [m/s]
+    below: Floats  # weight of the cell below a face in the momentum of that flux [-]
+    square: Floats  # volume fraction of water times mixing length squared at a face [m2]
     k_face: Floats  # tau/rho at a face is k_face (u above - u below) - r_face
     r_face: Floats
     k_side: Floats  # side walls and cell: r_side - k_side u [m2/s2]
@@ -55,13 +57,15 @@ class Work(NamedTuple):
 
 
 @kernel
-def fill(p: Numbers, phi: Floats, volume: float, content: Floats, h: Floats, z: Floats) -> tuple[int, float]:
-    """Lay the water into the cells: content, wet thickness h and its middle z [m], each of shape (n,).
+def distribute_water(
+    p: ColumnParameters, phi: Floats, volume: float, content: Floats, h: Floats, z: Floats
+) -> tuple[int, float]:
+    """Distribute the water over the cells: content, wet thickness h and its middle z [m], shape (n,).
 
     Returns
     -------
-    m, z_surface : highest wet cell and height of the surface [m]; m = n where the column is too short, -1
-        where a concentration leaves no room for water.
+    m, z_surface : highest wet cell, and height of the surface [m]; m = n if the column is too short, -1 if a
+        concentration is not below 1.
     """
     left = volume
     m = -1
@@ -91,19 +95,25 @@ def fill(p: Numbers, phi: Floats, volume: float, content: Floats, h: Floats, z: 
 
 
 @kernel
-def flow_up(
-    p: Numbers, m: int, content: Floats, content_old: Floats, u_old: Floats, per_dt: float, work: Work
+def vertical_flow(
+    p: ColumnParameters,
+    m: int,
+    content: Floats,
+    content_old: Floats,
+    u_old: Floats,
+    per_dt: float,
+    work: StepWorkspace,
 ) -> int:
-    """Water through the faces from what the cells gained, and how its momentum goes along.
+    """Vertical flux of water through the faces, from the change of content, and how it carries momentum.
 
     Returns
     -------
-    last : highest cell that has water or had some before the step; it still hands its momentum down.
+    last : highest cell with water now or before the step; the latter still passes its momentum down.
 
     Notes
     -----
-    The mean of both cells where friction between them is stronger than the flow (no false diffusion), else
-    the cell that the water leaves.
+    The flux carries the mean speed of both cells where friction between them exceeds it (no numerical
+    diffusion), else the speed of the upstream cell.
     """
     q, below = work.q, work.below
     last = m
@@ -127,8 +137,8 @@ def flow_up(
 
 
 @kernel
-def linearise(p: Numbers, m: int, u: Floats, content: Floats, work: Work) -> None:
-    """Newton's tangent of all stresses at the speeds u: bed, faces, lid and side walls."""
+def linearise(p: ColumnParameters, m: int, u: Floats, content: Floats, work: StepWorkspace) -> None:
+    """Linearise all stresses at the speeds u for Newton's method: bed, faces, lid and side walls."""
     wall = work.z[0] - p.z_low
     stress, rate = bed_stress(p, u[0], wall, work.square[0])
     work.k_face[0], work.r_face[0] = rate, rate * u[0] - stress
@@ -148,7 +158,7 @@ def linearise(p: Numbers, m: int, u: Floats, content: Floats, work: Work) -> Non
 
 @kernel
 def assemble(
-    p: Numbers,
+    p: ColumnParameters,
     m: int,
     last: int,
     u_old: Floats,
@@ -158,9 +168,9 @@ def assemble(
     gradient: float,
     lost: float,
     per_dt: float,
-    work: Work,
+    work: StepWorkspace,
 ) -> None:
-    """The balance of every cell, divided by the density: a u_below + b u + c u_above = r [m2/s2]."""
+    """Momentum balance of each cell over density: a u_below + b u + c u_above = r [m2/s2]."""
     a, b, c, r, y, q, below = work.a, work.b, work.c, work.r, work.y, work.q, work.below
     for k in range(last + 1):
         share = 1.0 - given.carried[k] if k <= m else 1.0
@@ -180,8 +190,8 @@ def assemble(
 
 
 @kernel
-def tridiagonal(n: int, both: bool, work: Work) -> None:
-    """Solve the system for r, and for y if `both`; the answers replace them."""
+def tridiagonal(n: int, both: bool, work: StepWorkspace) -> None:
+    """Solve the system for r, and for y if `both`, in place."""
     a, b, c, r, y, scratch = work.a, work.b, work.c, work.r, work.y, work.scratch
     scratch[0] = c[0] / b[0]
     r[0] /= b[0]
@@ -199,8 +209,8 @@ def tridiagonal(n: int, both: bool, work: Work) -> None:
 
 
 @kernel
-def book(
-    p: Numbers,
+def write_results(
+    p: ColumnParameters,
     m: int,
     last: int,
     u_old: Floats,
@@ -212,9 +222,9 @@ def book(
     rows: Floats,
     faces: Floats,
     out: Floats,
-    work: Work,
+    work: StepWorkspace,
 ) -> None:
-    """Write stresses, what grains will read, and the budget; stresses as the last linear system had them."""
+    """Write stresses, derivatives and momentum budget, with the stresses of the last linear system."""
     u, content, tau, nu_t = rows[0], rows[2], faces[0], faces[1]
     tau[:] = 0.0
     nu_t[:] = 0.0
@@ -233,7 +243,7 @@ def book(
             out[B_DRIVER] += gradient * work.h[k]
             out[B_SIDE] += p.rho_w * (work.r_side[k] - work.k_side[k] * u[k])
             out[B_GRAINS] -= (given.force[k] + given.slope[k] * (u[k] - u_old[k])) * p.dz
-            out[B_CARRIED] -= given.carried[k] * (tau[k + 1] - tau[k])
+            out[B_SHARED] -= given.carried[k] * (tau[k + 1] - tau[k])
     out[B_GRAINS] -= lost * p.dz
     out[B_BED], out[B_LID] = -tau[0], tau[m + 1]
     out[B_SURFACE] = -p.rho_w * work.q[last + 1] * u[last]
@@ -257,24 +267,30 @@ def book(
 
 
 @kernel
-def march(
-    p: Numbers, given_rows: Floats, volume: float, per_dt: float, rows: Floats, faces: Floats, out: Floats
+def time_step(
+    p: ColumnParameters,
+    given_rows: Floats,
+    volume: float,
+    per_dt: float,
+    rows: Floats,
+    faces: Floats,
+    out: Floats,
 ) -> int:
     """One step, backward Euler, solved to round-off; per_dt = 1/dt, 0 for the steady state.
 
-    given_rows : u and content before, speeds to start from, then those of `Sources`, rows of shape (n,).
-    rows, faces : u, w, content, shear, du_dt, dtau_dz, shape (6, n); tau, nu_t, shape (2, n + 1); written.
+    given_rows : u and content before the step, first guess of u, then the fields of `Sources`; shape (8, n).
+    rows, faces : output; u, w, content, shear, du_dt, dtau_dz, shape (6, n); tau, nu_t, shape (2, n + 1).
     """
     n = p.n
     u_old, content_old, guess = given_rows[0], given_rows[1], given_rows[2]
     given = Sources(given_rows[3], given_rows[4], given_rows[5], given_rows[6], given_rows[7])
     u, content = rows[0], rows[2]
     cells, edges = np.zeros((10, n)), np.zeros((5, n + 1))
-    work = Work(
+    work = StepWorkspace(
         cells[0], cells[1], edges[0], edges[1], edges[2], edges[3], edges[4], cells[2], cells[3], cells[4],
         cells[5], cells[6], cells[7], cells[8], cells[9],
     )  # fmt: skip
-    m, z_surface = fill(p, given.phi, volume, content, work.h, work.z)
+    m, z_surface = distribute_water(p, given.phi, volume, content, work.h, work.z)
     if m < 0:
         return NO_ROOM
     if m >= n:
@@ -283,27 +299,37 @@ def march(
     stress, _ = bed_stress(p, guess[0], wall, 0.0)
     u_star = np.sqrt(abs(stress))
     mixing_lengths(p, m, given.phi, work.z, z_surface, u_star, work.square)
-    last = flow_up(p, m, content, content_old, u_old, per_dt, work)
-    lost = 0.0  # forces in cells that are dry now go to the highest wet one
+    last = vertical_flow(p, m, content, content_old, u_old, per_dt, work)
+    lost = 0.0  # forces in cells that have run dry act on the highest wet cell
     for k in range(m + 1, n):
         lost += given.force[k]
-    gradient = gradient_asked(p, content, z_surface)
-    seek = p.drive == DISCHARGE
+    gradient = imposed_gradient(p, content, z_surface)
+    solve_gradient = p.drive == DISCHARGE
     u[:] = guess
-    answer = NOT_CLOSE
+    status = NOT_CONVERGED
     change_before = np.inf
-    for turn in range(MOST):
-        if p.mixing == VAN_DRIEST and turn > 0:
+    for iteration in range(MAX_ITERATIONS):
+        if p.mixing == VAN_DRIEST and iteration > 0:
             stress, _ = bed_stress(p, u[0], wall, work.square[0])
-            part = 1.0 if turn < SLOW else 0.5
+            part = 1.0 if iteration < DAMPED_AFTER else 0.5
             u_star += part * (np.sqrt(abs(stress)) - u_star)
             mixing_lengths(p, m, given.phi, work.z, z_surface, u_star, work.square)
         linearise(p, m, u, content, work)
         assemble(
-            p, m, last, u_old, content, content_old, given, 0.0 if seek else gradient, lost, per_dt, work
+            p,
+            m,
+            last,
+            u_old,
+            content,
+            content_old,
+            given,
+            0.0 if solve_gradient else gradient,
+            lost,
+            per_dt,
+            work,
         )
-        tridiagonal(last + 1, seek, work)
-        if seek:
+        tridiagonal(last + 1, solve_gradient, work)
+        if solve_gradient:
             has, gives = 0.0, 0.0
             for k in range(m + 1):
                 has += content[k] * work.r[k]
@@ -317,17 +343,17 @@ def march(
             scale = max(scale, abs(work.r[k]))
             if not np.isfinite(work.r[k]):
                 return NOT_A_NUMBER
-        stuck = change <= ENOUGH * scale and change >= 0.9 * change_before
-        if change <= CLOSE * scale or stuck:
-            answer = DONE
+        stuck = change <= ROUND_OFF * scale and change >= 0.9 * change_before
+        if change <= TOLERANCE * scale or stuck:
+            status = DONE
         change_before = change
-        part = 1.0 if turn < SLOW or answer == DONE else 0.5
+        part = 1.0 if iteration < DAMPED_AFTER or status == DONE else 0.5
         for k in range(last + 1):
             u[k] = work.r[k] if part == 1.0 else u[k] + part * (work.r[k] - u[k])
-        out[TURNS] = turn + 1.0
-        if answer == DONE:
+        out[ITERATIONS] = iteration + 1.0
+        if status == DONE:
             break
-    if answer == DONE:
+    if status == DONE:
         out[SURFACE], out[GRADIENT] = z_surface, gradient
-        book(p, m, last, u_old, content_old, given, gradient, lost, per_dt, rows, faces, out, work)
-    return answer
+        write_results(p, m, last, u_old, content_old, given, gradient, lost, per_dt, rows, faces, out, work)
+    return status
