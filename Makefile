@@ -90,7 +90,7 @@ paper: $(HAS_RYUSA) ## every claim of the paper, judged over three seeds: runs/p
 
 paper-quick: $(HAS_TESTS) ## every claim of the paper in minutes, indicative; refuses a ledger with a gap
 	$(BIN)/ryusa paper --quick -o $(LEDGER) --jobs $(JOBS) --again
-	$(BIN)/python tests/report/check_ledger.py $(LEDGER)/ledger-quick.json
+	$(BIN)/python tests/studies/osada2004/check_ledger.py $(LEDGER)/ledger-quick.json
 
 validate: $(HAS_RYUSA) ## ours on every reference, with its error: runs/validation/validation.html
 	$(BIN)/ryusa validate --jobs $(JOBS)

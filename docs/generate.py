@@ -200,7 +200,7 @@ def _parameter(parameter: Any) -> str:
 
 def validation_table() -> str:
     """Table of every comparison, from the kept ledger of a full `ryusa validate`."""
-    from ryusa.report.validation import table
+    from ryusa.studies.validation.ledger import table
 
     return table(json.loads((HERE / "validation-ledger.json").read_text(encoding="utf-8"))) + "\n"
 

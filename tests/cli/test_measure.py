@@ -5,8 +5,8 @@ import pytest
 from typer.testing import CliRunner
 
 from ryusa.casefile.read import read
+from ryusa.cases import case_path
 from ryusa.cli import app
-from ryusa.experiments import case_path
 from ryusa.running.runner import run
 
 CASES = case_path("saltation.toml").parent

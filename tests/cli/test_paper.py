@@ -4,11 +4,10 @@ import re
 import pytest
 from typer.testing import CliRunner
 
-from ryusa import report
 from ryusa.cli import app
-from ryusa.experiments import NAMES, Level, Plan, Word, load
-from ryusa.paper import CLAIMS
-from ryusa.report import Row
+from ryusa.studies.osada2004 import NAMES, Level, Plan, Word, ledger, load, page
+from ryusa.studies.osada2004.ledger import Row
+from ryusa.studies.osada2004.paper import CLAIMS
 
 
 def call(*words):
@@ -76,8 +75,8 @@ class Broken:
 
 
 def test_a_failed_run_is_told_at_the_end_and_by_the_exit_code(tmp_path, monkeypatch):
-    monkeypatch.setattr(report, "make", lambda *_, **__: Broken(tmp_path))
-    monkeypatch.setattr(report, "write", lambda *_: (tmp_path / "ledger.html",))
+    monkeypatch.setattr(ledger, "make", lambda *_, **__: Broken(tmp_path))
+    monkeypatch.setattr(page, "write", lambda *_: (tmp_path / "ledger.html",))
     result = call("--quick", "-o", tmp_path)
     assert result.exit_code == 3
     assert "1 run could not be carried out or measured:\n  fig20 [free]: grain 7 lost" in result.stderr
@@ -89,8 +88,8 @@ def test_a_failed_run_is_told_at_the_end_and_by_the_exit_code(tmp_path, monkeypa
 def test_an_error_in_the_program_has_its_own_exit_code_and_no_traceback(tmp_path, monkeypatch):
     broken = Broken(tmp_path)
     broken.faults = {"fig20: judging": "error in the program: IndexError: no such (fig20.py, line 3)"}
-    monkeypatch.setattr(report, "make", lambda *_, **__: broken)
-    monkeypatch.setattr(report, "write", lambda *_: (tmp_path / "ledger.html",))
+    monkeypatch.setattr(ledger, "make", lambda *_, **__: broken)
+    monkeypatch.setattr(page, "write", lambda *_: (tmp_path / "ledger.html",))
     assert call("--quick", "-o", tmp_path).exit_code == 3
     broken.traces, broken.log = {"fig20: judging": "Traceback (most recent call last):"}, "ledger-errors.log"
     result = call("--quick", "-o", tmp_path)

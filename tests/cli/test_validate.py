@@ -4,7 +4,7 @@ import pytest
 from typer.testing import CliRunner
 
 from ryusa.cli import app
-from ryusa.validation import NAMES, load, water_alone
+from ryusa.studies.validation import NAMES, load, water_alone
 
 
 def call(*words):

@@ -4,8 +4,8 @@ import json
 import re
 from pathlib import Path
 
-from ryusa.experiments import Word
-from ryusa.paper import CLAIMS
+from ryusa.studies.osada2004 import Word
+from ryusa.studies.osada2004.paper import CLAIMS
 
 DOCS = Path(__file__).parents[2] / "docs"
 

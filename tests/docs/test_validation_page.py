@@ -4,8 +4,8 @@ import json
 import re
 from pathlib import Path
 
-from ryusa.report.validation import table
-from ryusa.validation import NAMES, Word
+from ryusa.studies.validation import NAMES, Word
+from ryusa.studies.validation.ledger import table
 
 DOCS = Path(__file__).parents[2] / "docs"
 

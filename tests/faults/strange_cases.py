@@ -5,13 +5,13 @@ import json
 import tomllib
 from copy import deepcopy
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
 from hypothesis import strategies as st
 from kinds import KINDS
 
 from ryusa.casefile import json_schema_text
+from ryusa.cases import FOLDERS, case_files
 
 UNITS = (
     "m", "cm", "mm", "um", "km", "s", "ms", "min", "h", "m/s", "cm/s", "m/s2", "m s^-2", "N/m", "N/cm",
@@ -50,10 +50,9 @@ ROWS = "x [cm], z [cm], d [cm], vx [m/s], fixed, group\n0, 0.2, 0.2, 0.1, 0,\n1,
 @cache
 def bases() -> tuple[dict[str, Any], ...]:
     """Every case that comes with ryusa, those of the fault campaign, and one with a table."""
-    cases = files("ryusa.cases")
     texts = [*KINDS.values(), TABLE]
-    for folder in (cases, cases.joinpath("paper"), cases.joinpath("validation")):
-        texts += [one.read_text(encoding="utf-8") for one in folder.iterdir() if one.name.endswith(".toml")]
+    for folder in FOLDERS:
+        texts += [one.read_text(encoding="utf-8") for one in case_files(folder).values()]
     return tuple(tomllib.loads(text) for text in texts)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ryusa.casefile.read import read
-from ryusa.experiments import case_path
+from ryusa.cases import case_path
 from ryusa.measure import collisions, turned_time
 from ryusa.running.runner import run
 

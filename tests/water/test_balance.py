@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from ryusa.model.enums import Buoyancy
-from ryusa.validation.balance import Flow
+from ryusa.studies.validation.balance import Flow
 
 
 @pytest.mark.parametrize("form", list(Buoyancy))

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ryusa.cli.campaign import console, cores, interrupted, tell_failures
+from ryusa.cli.study import console, cores, interrupted, tell_failures
 
 if TYPE_CHECKING:
-    from ryusa.experiments import Plan
-    from ryusa.report import Ledger
+    from ryusa.studies.osada2004 import Plan
+    from ryusa.studies.osada2004.ledger import Ledger
 
 _MOST_SEEDS = 1000
 
@@ -67,8 +67,9 @@ def paper(
         _list(plan, chosen, out, jobs, again)
         return
     from ryusa.errors import ResultsError
-    from ryusa.experiments import Lines
-    from ryusa.report import make, write
+    from ryusa.studies.osada2004 import Lines
+    from ryusa.studies.osada2004.ledger import make
+    from ryusa.studies.osada2004.page import write
 
     try:
         ledger = make(
@@ -92,7 +93,7 @@ def paper(
 
 def _plan(quick: bool, full: bool, seeds: str | None) -> "Plan":
     from ryusa.errors import CaseError
-    from ryusa.experiments import Level, Plan
+    from ryusa.studies.osada2004 import Level, Plan
 
     if quick and full:
         raise CaseError("--quick", None, "goes without --full")
@@ -121,7 +122,7 @@ def _known(word: str) -> list[str]:
     """Experiments that a word means: their name, the paper's way of writing a figure, or a claim."""
     from ryusa.casefile.faults import nearest_word
     from ryusa.errors import CaseError
-    from ryusa.experiments import NAMES, load
+    from ryusa.studies.osada2004 import NAMES, load
 
     plain = re.sub(r"[\s.]+", "", word.lower())
     figure = re.fullmatch(r"(?:figure|fig)?0*(\d+)(.*)", plain)
@@ -141,7 +142,7 @@ def _list(plan: "Plan", chosen: Sequence[str] | None, out: Path, jobs: int | Non
     from rich import box
     from rich.table import Table
 
-    from ryusa.experiments import NAMES, load, outlook
+    from ryusa.studies.osada2004 import NAMES, load, outlook
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for heading in ("name", "what it answers", "claims"):
@@ -166,7 +167,7 @@ def _print(ledger: "Ledger") -> None:
     from rich.markup import escape
     from rich.table import Table
 
-    from ryusa.experiments import Word
+    from ryusa.studies.osada2004 import Word
 
     if ledger.plan.level == "quick":
         typer.echo(

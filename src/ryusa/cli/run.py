@@ -1,12 +1,12 @@
 """`ryusa new`, `check`, `run`, `schema`: from a case file to a run folder."""
 
 import gc
-from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ryusa.cases import case_files, case_path
 from ryusa.errors import CaseError, RyusaError
 
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ def new(
         path = Path(f"{kind.rpartition('/')[2]}.toml")
     elif path.is_dir():
         path /= f"{kind.rpartition('/')[2]}.toml"
-    source = files("ryusa.cases").joinpath(f"{kind}.toml")
+    source = case_path(f"{kind}.toml")
     try:
         with path.open("xb") as file:
             file.write(source.read_bytes())
@@ -257,13 +257,7 @@ def _kinds() -> dict[str, str]:
     """Case files that come with ryusa: name (paper/fig19 for one of the paper's) and title."""
     import tomllib
 
-    found: dict[str, str] = {}
-    root = files("ryusa.cases")
-    for before, folder in (("", root), ("paper/", root.joinpath("paper"))):
-        if not folder.is_dir():
-            continue
-        for entry in sorted(folder.iterdir(), key=lambda one: one.name):
-            if entry.name.endswith(".toml"):
-                title = tomllib.loads(entry.read_text(encoding="utf-8")).get("title", "")
-                found[before + entry.name.removesuffix(".toml")] = str(title)
-    return found
+    return {
+        name: str(tomllib.loads(path.read_text(encoding="utf-8")).get("title", ""))
+        for name, path in (case_files() | case_files("paper")).items()
+    }

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ryusa.cli.campaign import console, cores, interrupted, tell_failures
+from ryusa.cli.study import console, cores, interrupted, tell_failures
 
 if TYPE_CHECKING:
-    from ryusa.campaign import Level
-    from ryusa.report.validation import Validation
+    from ryusa.studies.validation.ledger import Validation
+    from ryusa.study import Level
 
 MISSED = 4  # exit code where all was computed and something lies outside its tolerance
 
@@ -46,16 +46,16 @@ def validate(
     An interrupted validation goes on where it stopped when the same command is
     given again. Leaves with 4 where something lies outside its tolerance.
     """
-    from ryusa.campaign import Level, Lines
     from ryusa.errors import ResultsError
+    from ryusa.study import Level, Lines
 
     level = Level.QUICK if quick else Level.FULL
     chosen = None if not names else [_known(name) for name in names]
     if show:
         _list(level, chosen, out, jobs, again)
         return
-    from ryusa.report.validation import make, write
-    from ryusa.validation import Word
+    from ryusa.studies.validation import Word
+    from ryusa.studies.validation.ledger import make, write
 
     try:
         made = make(chosen, level, out, jobs=jobs or cores(), again=again, say=None if quiet else Lines())
@@ -77,7 +77,7 @@ def validate(
 def _known(word: str) -> str:
     """Name of a check; hyphens as on the page are understood."""
     from ryusa.cli.options import known
-    from ryusa.validation import NAMES
+    from ryusa.studies.validation import NAMES
 
     return known(word.replace("-", "_").split("/", 1)[0], NAMES, "check")
 
@@ -86,8 +86,8 @@ def _list(level: "Level", chosen: Sequence[str] | None, out: Path, jobs: int | N
     from rich import box
     from rich.table import Table
 
-    from ryusa.campaign import Work, outlook
-    from ryusa.validation import NAMES, load
+    from ryusa.studies.validation import NAMES, load
+    from ryusa.study import Work, outlook
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for heading in ("name", "what it checks"):
@@ -110,8 +110,8 @@ def _print(made: "Validation") -> None:
     from rich.markup import escape
     from rich.table import Table
 
-    from ryusa.report.validation import error_in_words, tolerance_in_words
-    from ryusa.validation import Word
+    from ryusa.studies.validation import Word
+    from ryusa.studies.validation.ledger import error_in_words, tolerance_in_words
 
     table = Table(box=None, pad_edge=False, show_header=False)
     table.add_column(no_wrap=True)

@@ -1,0 +1,142 @@
+"""Fig. 5: contact time with e = 0.7 against Eq. (8), which knows neither dashpot nor weight."""
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ryusa import figures
+from ryusa.laws.collision import collision_time, contact_time_no_tension, contact_time_tension
+from ryusa.studies.osada2004 import _drops
+from ryusa.studies.osada2004._drops import Drop, Setup
+from ryusa.studies.osada2004._experiment import Found, Plan, Variant
+from ryusa.study.judge import Band, Finding, Trial, over_range
+
+FIGURE = "fig5"
+TITLE = "Contact time with e = 0.7 beside Eq. (8)"
+CLAIMS = ("fig5",)
+SPEED, PARTING = "impact speed (fig5)", "parting (fig5)"
+HARDLY = Band(0.9, 1.1, "-", f"hardly differs: 0.9 to 1.1 of Eq. (8), {_drops.ABOUT}")
+STAYS = "stays on its partner: weight against a soft spring"
+
+
+def stiffnesses(plan: Plan) -> tuple[float, ...]:
+    """Springs of the chart [N/cm]; softer ones let a grain of 1 m/s through its partner."""
+    return plan.pick((0.1, 10.0, 1000.0), (0.1, 1.0, 10.0, 100.0, 1000.0))
+
+
+def choices(plan: Plan) -> list[dict[str, str]]:
+    """Impact speeds and partings tried, the shipped ones first."""
+    speeds = plan.pick(
+        (_drops.SPEED,),
+        (_drops.SPEED, "0.01 m/s", "0.03 m/s", "0.1 m/s", "1 m/s"),
+        (_drops.SPEED, "0.01 m/s", "0.02 m/s", "0.03 m/s", "0.05 m/s", "0.1 m/s", "0.5 m/s", "1 m/s"),
+    )
+    partings = plan.pick((_drops.NO_TENSION,), (_drops.NO_TENSION, _drops.TENSION))
+    return [{SPEED: speed, PARTING: parting} for parting in partings for speed in speeds]
+
+
+def setup(chosen: Mapping[str, str], k_n: float) -> Setup:
+    """One drop under a set of choices."""
+    return Setup(k_n=k_n, speed=chosen[SPEED], parting=chosen[PARTING])
+
+
+def setups(plan: Plan) -> list[Setup]:
+    """Every drop."""
+    return [setup(chosen, k_n) for chosen in choices(plan) for k_n in stiffnesses(plan)]
+
+
+def cases(plan: Plan) -> Sequence[Variant]:
+    """One run per setup."""
+    return [one.variant for one in setups(plan)]
+
+
+measure = _drops.measure
+
+
+def ratio(drop: Drop) -> float:
+    """Contact time over Eq. (8) [-], middle of the phases; nan where the grain stays."""
+    return float(np.median(drop.time) / drop.eq_8) if drop.parts else math.nan
+
+
+def judge(found: Found, plan: Plan) -> Sequence[Finding]:
+    """Within 10 % of Eq. (8) for every spring."""
+    trials: list[Trial] = []
+    ends = f"{stiffnesses(plan)[0]:g} to {stiffnesses(plan)[-1]:g} N/cm"
+    part = f"contact time over Eq. (8), farthest from 1 of k_n = {ends}"
+    for chosen in choices(plan):
+        drops: list[Drop] = [found[setup(chosen, k_n).variant] for k_n in stiffnesses(plan)]
+        stay = [f"{k_n:g} N/cm" for k_n, one in zip(stiffnesses(plan), drops, strict=True) if not one.parts]
+        if stay:
+            nothing = over_range([math.nan], "-", "phases of first touch")
+            trials.append(Trial(part, chosen, nothing, HARDLY, False, f"{STAYS} ({', '.join(stay)})"))
+            continue
+        worst = max(drops, key=lambda one: abs(ratio(one) - 1.0))
+        trials.append(Trial(part, chosen, worst.over_phases(worst.time / worst.eq_8, "-"), HARDLY))
+    zeta = {name: Setup(parting=name).zeta for name in (_drops.NO_TENSION, _drops.TENSION)}
+    no_pull = contact_time_no_tension(zeta[_drops.NO_TENSION], 1.0) / math.pi
+    pull = contact_time_tension(zeta[_drops.TENSION], 1.0) / math.pi
+    every = [(one, found[one.variant]) for one in setups(plan)]
+    slack = [(one.heaviness, float(np.median(drop.e))) for one, drop in every if drop.parts]
+    light = sorted((one.heaviness, HARDLY.low <= ratio(drop) <= HARDLY.high) for one, drop in every)
+    most = max((h for k, (h, _) in enumerate(light) if all(good for _, good in light[: k + 1])), default=0.0)
+    least = min(slack, key=lambda one: one[1])
+    return (
+        Finding(
+            "fig5",
+            tuple(trials),
+            f"The dashpot shifts the time little: without weight to {no_pull:.3f} of Eq. (8) if it may not "
+            f"pull, to {pull:.4f} if it may. Weight does more: with g/(v omega_0) near 1, soft springs and "
+            "slow impacts, the grain leans on its partner, touches longer, and at last does not come off.",
+            {"restitution": "0.7", "d": _drops.DIAMETER, "weight": "yes"},
+            also=(
+                f"weight eats restitution too: e = {least[1]:.2f} instead of 0.7 "
+                f"at g/(v omega_0) = {least[0]:.2f}",
+                f"within 10 % in every run with g/(v omega_0) up to {most:.2g}",
+            ),
+        ),
+    )
+
+
+def _named(speed: str, values: np.ndarray) -> str:
+    """Label of a series; says where points are missing."""
+    return f"run, {speed}" + ("; on the softest it stays" if np.isnan(values).any() else "")
+
+
+def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
+    """One line per drop."""
+    return _drops.rows(setups(plan), found)
+
+
+def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
+    """Both times over k_n, as in the paper, and their ratio for every choice."""
+    k = np.array(stiffnesses(plan)) * 100.0
+    nothing = np.zeros(len(k))
+    law = figures.StiffnessCurve("Eq. (8)", k, np.array([collision_time(Setup().m, one) for one in k]))
+    ratios = {
+        tuple(chosen.values()): np.array(
+            [ratio(found[setup(chosen, one).variant]) for one in stiffnesses(plan)]
+        )
+        for chosen in choices(plan)
+    }
+    runs = [
+        figures.StiffnessPoints(f"run, e = 0.7, {parting}", k, values * law.y, nothing)
+        for (speed, parting), values in ratios.items()
+        if speed == _drops.SPEED
+    ]
+    speeds = sorted(
+        (key for key in ratios if key[1] == _drops.NO_TENSION), key=lambda one: float(one[0].split()[0])
+    )
+    by_speed = [
+        figures.StiffnessPoints(_named(key[0], ratios[key]), k, ratios[key], nothing) for key in speeds
+    ]
+    one = figures.StiffnessCurve("Eq. (8)", k, np.ones(len(k)))
+    words = f"d = 0.2 cm, impact at {_drops.SPEED}"
+    return {
+        "fig05": figures.drop_chart("time", [law], runs, words=("Eq. (8)", words)),
+        "fig05-speed": figures.drop_chart(
+            "ratio", [one], by_speed, levels=(HARDLY.low, HARDLY.high), legend="upper right",
+            words=("Eq. (8)", "e = 0.7, no tension, with weight; shaded: 10 %"),
+        ),
+    }  # fmt: skip

@@ -1,0 +1,66 @@
+"""Fig. 14: concentration over height of a dry avalanche, collision time 0.01 s and 0.0001 s."""
+
+import math
+from collections.abc import Mapping, Sequence
+from itertools import combinations
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ryusa import figures
+from ryusa.studies.osada2004 import _avalanche
+from ryusa.studies.osada2004._avalanche import FIRST, SHIPPED, SOFT, STIFF, Pair, together, unlike
+from ryusa.studies.osada2004._experiment import Found, Plan
+from ryusa.study.judge import Band, Finding, short
+
+FIGURE = "fig14"
+TITLE = "Concentration of a dry avalanche"
+CLAIMS = ("fig14",)
+PART = "difference of the two profiles of concentration, means over seeds, over their mean"
+ALIKE = Band(-math.inf, 0.10, "-", "alike: mean difference over all layers at most 10 % of the mean")
+
+cases, measure = _avalanche.cases, _avalanche.measure
+
+
+def judge(found: Found, plan: Plan) -> Sequence[Finding]:
+    """Alike, where both are avalanches."""
+    alike = _avalanche.trials(found, plan, PART, together(unlike), ALIKE)
+    base = _avalanche.pairs(found, plan, SHIPPED, FIRST)
+    depth = [float(np.mean([(p.soft if k == 0 else p.stiff).profile.top() for p in base])) for k in range(2)]
+    volume = float(np.mean([p.soft.profile.volume.mean() for p in base]))
+    return (
+        Finding(
+            "fig14",
+            (*alike, *_avalanche.flows(found, plan)),
+            f"Equal grains on equal bed: only dilation can differ. {short(100 * volume)} cm of solid "
+            f"volume fill {short(100 * depth[0])} cm ({SOFT}) and {short(100 * depth[1])} cm ({STIFF}) as "
+            "shipped. Where one of the two does not flow it stays the packing that settled, and the profiles "
+            "differ.",
+            _avalanche.SETTLED,
+            also=_scatter(base),
+        ),
+    )
+
+
+def _scatter(base: Sequence[Pair]) -> tuple[str, ...]:
+    """How much two runs of the same collision time differ that have other seeds."""
+    if len(base) < 2:
+        return ()
+    halves = {SOFT: [one.soft for one in base], STIFF: [one.stiff for one in base]}
+    told = [
+        f"{short(float(np.mean([unlike([Pair(a, b)]) for a, b in combinations(runs, 2)])))} with {time}"
+        for time, runs in halves.items()
+    ]
+    return (f"single runs that differ in the seed alone are unlike by {', '.join(told)}",)
+
+
+def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
+    """One line per run and window."""
+    return _avalanche.rows(found, plan)
+
+
+def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
+    """Concentration against height, as in the paper."""
+    (pair, *_) = _avalanche.pairs(found, plan, SHIPPED, FIRST)
+    both = {SOFT: pair.soft.profile, STIFF: pair.stiff.profile}
+    return {"fig14": figures.profiles(both, ("phi",), area=True)}

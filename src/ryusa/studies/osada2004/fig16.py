@@ -1,0 +1,132 @@
+"""Fig. 16: ways of grains that meet bed and movers in turn, collision time 0.01 s and 0.0001 s."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ryusa import figures
+from ryusa.studies.osada2004 import _avalanche
+from ryusa.studies.osada2004._avalanche import ALL, BETWEEN, FIRST, SHIPPED, SOFT, STIFF, Pair, together
+from ryusa.studies.osada2004._experiment import Found, Plan
+from ryusa.study.judge import Band, Finding, Trial, short
+
+FIGURE = "fig16"
+TITLE = "Ways of grains in a dry avalanche"
+CLAIMS = ("fig16",)
+GRAINS = "grains"
+MORE, LESS = float("inf"), 1.0
+# part of the claim -> what it is of each run, and what is asked of 0.0001 s over 0.01 s
+PARTS: dict[str, tuple[str, Band]] = {
+    "turns of the vertical motion per second, 0.0001 s over 0.01 s": (
+        "reversals", Band(1.0, MORE, "-", "very jagged: more turns, ratio above 1"),
+    ),
+    "way along the bed in 1 s, 0.0001 s over 0.01 s": (
+        "advance", Band(0.0, LESS, "-", "shorter: ratio below 1"),
+    ),
+    "vertical way over advance, 0.0001 s over 0.01 s": (
+        "jaggedness", Band(1.0, MORE, "-", "0.01 s nearer to parallel layers: ratio above 1"),
+    ),
+}  # fmt: skip
+NONE = "no grain meets bed and movers in turn, or none advances, in one of the runs"
+
+cases, measure = _avalanche.cases, _avalanche.measure
+
+
+def judge(found: Found, plan: Plan) -> Sequence[Finding]:
+    """Jagged, short and not in layers."""
+    tried = [
+        replace(one, choices={**one.choices, GRAINS: grains})
+        for grains in (BETWEEN, ALL)
+        for part, (name, band) in PARTS.items()
+        for ratio in [together(partial(_ratio, name=name, grains=grains))]
+        for one in map(_without, _avalanche.trials(found, plan, part, ratio, band))
+    ]
+    tried += [
+        replace(one, choices={**one.choices, GRAINS: grains})
+        for grains in (BETWEEN, ALL)
+        for one in _avalanche.flows(found, plan)
+    ]
+    base = _avalanche.pairs(found, plan, SHIPPED, FIRST)
+    words = {
+        (name, grains): " against ".join(
+            short(_mean([getattr(one.ways[grains], name) for one in runs]))
+            for runs in ([pair.soft for pair in base], [pair.stiff for pair in base])
+        )
+        for name in ("n", "reversals", "fine", "advance", "jaggedness")
+        for grains in (BETWEEN, ALL)
+    }
+
+    def said(grains: str) -> str:
+        return (
+            f"{words['reversals', grains]} vertical turns a second, {words['advance', grains]} m of way, "
+            f"{words['jaggedness', grains]} m up and down per metre of way"
+        )
+
+    shape = "; ".join(
+        f"{_avalanche.label(one)}, {window}: "
+        f"{short(_avalanche.mean(found, plan, one, window, together(_per_metre)))}"
+        for one, window in _avalanche.sets(plan)
+        if all(pair.kind != "creeps" for pair in _avalanche.pairs(found, plan, one, window))
+    )
+    return (
+        Finding(
+            "fig16",
+            tuple(tried),
+            "A grain of the lowest layer goes up and down once over every bed grain that it passes, whatever "
+            f"the collision time: who goes farther turns more often. {SOFT} against {STIFF}, as shipped: "
+            f"{said(BETWEEN)}.",
+            {**_avalanche.SETTLED, "turns counted from": "0.02 d, frames of 10 ms"},
+            also=(
+                f"grains of the lowest layer that meet bed and movers in turn, of {_avalanche.LOWEST}: "
+                f"{words['n', BETWEEN]}",
+                f"all grains: {said(ALL)}",
+                f"vertical turns per metre of way, all grains, {STIFF} over {SOFT}: {shape}",
+                f"vertical turns a second counted from {_avalanche.FINE:g} d, lowest layer: "
+                f"{words['fine', BETWEEN]}; all grains: {words['fine', ALL]}",
+            ),
+        ),
+    )
+
+
+def _ratio(found: Sequence[Pair], name: str, grains: str) -> float:
+    """Mean of the stiff runs over that of the soft ones; nan where most pairs have nothing to compare.
+
+    Not the mean of their ratios: one soft run whose grains hardly advance would outweigh all others.
+    """
+    both = [[getattr(one.ways[grains], name) for one in (pair.soft, pair.stiff)] for pair in found]
+    kept = [pair for pair in both if all(map(math.isfinite, pair))]
+    soft, stiff = np.mean(kept, axis=0) if 2 * len(kept) > len(both) else (math.nan, math.nan)
+    return float(stiff / soft) if soft != 0.0 else math.nan
+
+
+def _mean(values: Sequence[float]) -> float:
+    """Mean of the seeds that have a number."""
+    kept = [value for value in values if math.isfinite(value)]
+    return float(np.mean(kept)) if kept else math.nan
+
+
+def _per_metre(found: Sequence[Pair]) -> float:
+    """Turns per way of all grains, stiff over soft [-]."""
+    return _ratio(found, "reversals", ALL) / _ratio(found, "advance", ALL)
+
+
+def _without(one: Trial) -> Trial:
+    """Let a trial without a number fail: there are no such ways to compare."""
+    return one if math.isfinite(one.found.value) else replace(one, decided=False, note=NONE)
+
+
+def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
+    """One line per run and window."""
+    return _avalanche.rows(found, plan)
+
+
+def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
+    """Two ways of each run over the bed, as in the paper."""
+    (pair, *_) = _avalanche.pairs(found, plan, SHIPPED, FIRST)
+    ways = {f"(a) {SOFT}": pair.soft.path, f"(b) {STIFF}": pair.stiff.path}
+    far = max(float((one.x - one.x[0, 0]).max()) for one in ways.values())
+    return {"fig16": figures.tracks_side_by_side(ways, far + float(pair.soft.profile.d), "cm")}

@@ -1,0 +1,152 @@
+"""In steady flow bed and fixed grains carry the downslope weight of water and grains, whatever the buoyancy.
+
+What grains give to the bed is read from the contacts' own impulses, which know nothing of the water.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ryusa.build import scene
+from ryusa.engine.cpu import CpuEngine
+from ryusa.figures.comparison import Axis, Curve
+from ryusa.model import EVENT, Column, Scene, State, Water
+from ryusa.model.column import Bed, Mixing, Start
+from ryusa.model.enums import Buoyancy, Drag, EventRule, Hindrance, Profile
+from ryusa.model.scene import Floats
+from ryusa.studies.validation._check import Comparison, Error, Found, Source, at_most
+from ryusa.study import Level, Work, calculation
+from ryusa.water.coupling import Coupling
+
+TITLE = "The bed carries the weight of the mixture"
+D, G, SLOPE, WIDE = 2.0e-3, 9.80665, 0.1, 20  # [m], [m/s2], [rad], grains
+SETTLE = 1.0  # [s]
+LONG = {Level.QUICK: 2.5, Level.FULL: 10.0}  # [s]
+PARTS = 10  # of that time
+FORMS = {"stress": Buoyancy.STRESS, "weight": Buoyancy.WEIGHT, "pressure": Buoyancy.PRESSURE}
+_IMPULSE_X = (EVENT.fields or {})["impulse"][1] // 8  # its column in an open record
+
+
+class Impulses(NamedTuple):
+    """By area of bed over a time [Pa s]."""
+
+    weight: float  # along the slope, of water and grains
+    contacts: float  # of fixed grains on free ones; negative slows them
+    water: float  # stress of the bed, drag of fixed grains, and what passes the surface
+    gain: float  # of momentum
+
+
+def moving_bed(form: Buoyancy) -> tuple[tuple[Scene, State], Column]:
+    """Two layers of loose grains on a row of fixed ones of random height, under water four grains deep."""
+    rng = np.random.default_rng(5)
+    row = np.zeros((WIDE, 3))
+    row[:, 0], row[:, 2] = (np.arange(WIDE) + 0.5) * D, rng.uniform(0.0, 0.5, WIDE) * D
+    a, b = (g.ravel() for g in np.meshgrid(np.arange(16), np.arange(2), indexing="ij"))
+    x = np.column_stack([(a + 0.5 + 0.3 * b) * 1.25 * D, 0.0 * a, (1.7 + 1.15 * b) * D])
+    water = Water(
+        profile=Profile.COLUMN, drag=Drag.SCHILLER_NAUMANN, hindrance=Hindrance.DI_FELICE, buoyancy=form
+    )
+    made = scene(
+        x, D * rng.uniform(0.9, 1.1, len(x)), x_fixed=row, d_fixed=D, gravity=G, slope=SLOPE, stiffness=100.0,
+        water=water, period=(WIDE * D, math.inf), plane_case=True, events=EventRule.ALL,
+    )  # fmt: skip
+    column = Column(
+        z_low=-0.5 * D, dz=0.1 * D, n=120, depth=4.0 * D, z_bed=2.0 * D, area=WIDE * D * D, bed=Bed.MOVING,
+        mixing=Mixing.LI_SAWAMOTO, phi_max=0.55, d=D, g_x=G * math.sin(SLOPE), start=Start.STEADY,
+    )  # fmt: skip
+    return made, column
+
+
+class Flow:
+    """Grains and water, and the impulses of their contacts with the bed."""
+
+    def __init__(self, form: Buoyancy) -> None:
+        (self.fixed, first), self.column = moving_bed(form)
+        self.engine = CpuEngine()
+        self.engine.load(self.fixed, first)
+        self.coupling = Coupling.begin(self.fixed, self.column, 100, first.x)
+        self.engine.immerse(self.coupling.seen)
+
+    def run(self, time: float) -> Impulses:
+        """Step on for a time [s] and add up what came in and what went out."""
+        fixed, column, coupling = self.fixed, self.column, self.coupling
+        v, u = self.engine.drift()[1], coupling.state
+        weight, contacts, water, spent = 0.0, -self._held(), 0.0, 0.0
+        self.engine.events()
+        while spent < time:
+            steps = coupling.steps
+            dt = steps * fixed.dt
+            self.engine.advance(steps).raise_if_any()
+            events = self.engine.events()
+            contacts += self._of_fixed(events["i"], events["j"], events["impulse"][:, 0])
+            self.engine.immerse(coupling.exchange(*self.engine.drift()))
+            budget = coupling.budget
+            if budget is not None:
+                weight += (budget.gravity + fixed.m.sum() * fixed.gravity[0] / column.area) * dt
+                water += (budget.bed + budget.fixed + budget.surface) * dt
+            spent += dt
+        gain = float(fixed.m @ (self.engine.drift()[1] - v)[:, 0]) / column.area
+        now = coupling.state
+        gain += column.rho_w * float(now.content @ now.u - u.content @ u.u)
+        return Impulses(float(weight), (contacts + self._held()) / column.area, float(water), gain)
+
+    def _held(self) -> float:
+        """What contacts that are not over have given so far [N s]."""
+        now = self.engine.state().contacts
+        return self._of_fixed(now.i, now.j, now.event[:, _IMPULSE_X])
+
+    def _of_fixed(self, i: Any, j: Any, impulse: Floats) -> float:
+        """Sum of what fixed grains gave along the bed [N s]."""
+        n = self.fixed.n_grain
+        return float(impulse[(j >= n) & (i < n)].sum())
+
+
+def weigh(form: str, time: float) -> dict[str, Floats]:
+    """Impulses in PARTS of a time [s] after settling [Pa s], shape (PARTS, 4); mean grain speed [m/s]."""
+    flow = Flow(FORMS[form])
+    flow.run(SETTLE)
+    parts = [flow.run(time / PARTS) for _ in range(PARTS)]
+    return {"parts": np.array(parts), "speed": np.array(flow.engine.drift()[1][:, 0].mean())}
+
+
+def _call(form: str, level: Level) -> Work:
+    return calculation(weigh, form=form, time=LONG[level], seconds=5.0 * (SETTLE + LONG[level]))
+
+
+def runs(level: Level) -> Sequence[Work]:
+    """Every form of buoyancy; full for longer."""
+    return [_call(form, level) for form in FORMS]
+
+
+def compare(found: Found, level: Level) -> Sequence[Comparison]:
+    """What the bed carries over the weight, averaged over a growing time."""
+    time = LONG[level] * (1.0 + np.arange(PARTS)) / PARTS
+    ours: list[Curve] = []
+    errors: list[Error] = []
+    closes = 0.0
+    for form in FORMS:
+        weight, contacts, water, gain = np.cumsum(found[_call(form, level)]["parts"], axis=0).T
+        ratio = -(contacts + water) / weight
+        ours.append(Curve(f"buoyancy {form}", time, ratio))
+        why = "momentum that comes and goes within the time"
+        errors.append(
+            Error(f"{form}: bed over weight, less 1", abs(float(ratio[-1]) - 1.0), "-", at_most(0.01, why))
+        )
+        off = np.abs(weight + contacts + water - gain) / weight
+        closes = max(closes, float(off.max()))
+    errors.append(
+        Error("largest momentum not accounted for, over weight", closes, "-", at_most(1e-9, "round-off"))
+    )
+    return [
+        Comparison(
+            "bed-stress", "Stress of the bed over the downslope weight of the mixture",
+            Source("steady uniform flow: bed stress = integral of (rho (1 - phi) + sigma phi) g sin(slope)"),
+            Axis("averaged over", "s"), Axis("bed stress over weight"), ours,
+            [Curve("1", time, np.ones(PARTS))], errors,
+            {"slope": "0.1", "grains": "32 on a rough row", "depth": "4 d"},
+            "Grains give what their contacts say, the water what its stress on the bed and its drag on fixed "
+            "grains say; neither knows of the other.",
+        )
+    ]  # fmt: skip

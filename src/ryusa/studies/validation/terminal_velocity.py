@@ -1,0 +1,121 @@
+"""One grain that falls in still water, under every drag law; beside it the formulae of the field."""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ryusa.build import scene
+from ryusa.engine.cpu import CpuEngine
+from ryusa.figures.comparison import Axis, Curve
+from ryusa.laws import drag
+from ryusa.model import Water
+from ryusa.model.enums import Drag, EventRule, Profile
+from ryusa.model.scene import Floats
+from ryusa.studies.validation._check import Comparison, Error, Found, Known, Source, at_most
+from ryusa.study import Level, Work, calculation
+
+TITLE = "One grain falls in still water"
+RATIO, G, NU = 1.65, 9.81, 1.0e-6  # quartz in water: [-], [m/s2], [m2/s]
+SIZES = (0.1e-3, 0.2e-3, 0.5e-3, 1.0e-3, 2.0e-3, 4.0e-3, 6.0e-3)  # [m]
+FINE = np.geomspace(SIZES[0], SIZES[-1], 60)
+STEPS = 4000  # 20 response times
+LAWS: Mapping[str, tuple[Drag, Callable[[float], float]]] = {
+    "constant 0.4": (Drag.CONSTANT, lambda _: 0.4),
+    "24/Re + 0.4": (Drag.RE_04, drag.c_d_re_04),
+    "24/Re + 2": (Drag.RE_2, drag.c_d_re_2),
+    "Schiller-Naumann": (Drag.SCHILLER_NAUMANN, drag.c_d_schiller_naumann),
+    "Ferguson-Church sphere": (Drag.FERGUSON_CHURCH_SPHERE, drag.c_d_ferguson_church_sphere),
+    "Ferguson-Church sand": (Drag.FERGUSON_CHURCH_SAND, drag.c_d_ferguson_church_sand),
+}
+FIELD: Mapping[str, Callable[[float], float]] = {
+    "Soulsby 1997, natural sand": lambda d: drag.terminal_velocity_soulsby(RATIO, G, d, NU),
+    "Dietrich 1982, nearly round": lambda d: drag.terminal_velocity_dietrich(RATIO, G, d, NU),
+    "Ferguson & Church 2004, sand": lambda d: drag.terminal_velocity_ferguson_church(
+        RATIO, G, d, NU, 18.0, 1.0
+    ),
+}
+D, W = Axis("diameter", "mm", log=True), Axis("terminal velocity", "m/s", log=True)
+
+
+def root(c_d: Callable[[float], float], d: float) -> float:
+    """Speed at which drag carries the submerged weight [m/s]: C_D(w d/nu) w**2 = (4/3) R g d."""
+    weight, low, high = 4.0 / 3.0 * RATIO * G * d, 1e-9, 20.0
+    for _ in range(100):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if c_d(middle * d / NU) * middle**2 < weight else (low, middle)
+    return low
+
+
+def fall(law: str) -> dict[str, Floats]:
+    """Speed after 20 response times from rest [m/s], stepped by the engine, for each of SIZES [m]."""
+    kind, c_d = LAWS[law]
+    speeds: list[float] = []
+    for d in SIZES:
+        water = Water(profile=Profile.STILL, drag=kind, c_d=0.4)
+        response = (RATIO + 1.5) / RATIO * root(c_d, d) / G  # added mass included
+        made = scene(
+            [[0.0, 0.0, 0.0]], d, density=1000.0 * (RATIO + 1.0), water=water, gravity=G,
+            dt=20.0 * response / STEPS, plane_case=True, events=EventRule.NONE,
+        )  # fmt: skip
+        engine = CpuEngine()
+        engine.load(replace(made[0], world_low=(-math.inf,) * 3), made[1])
+        engine.advance(STEPS).raise_if_any()
+        speeds.append(-float(engine.state().v[0, 2]))
+    return {"d": np.array(SIZES), "w": np.array(speeds)}
+
+
+def _call(law: str) -> Work:
+    return calculation(fall, law=law, seconds=0.2)
+
+
+def runs(level: Level) -> Sequence[Work]:
+    """Every drag law; they take no time, so both levels have all."""
+    del level
+    return [_call(law) for law in LAWS]
+
+
+def compare(found: Found, level: Level) -> Sequence[Comparison]:
+    """Set the stepped grain against the root of the balance, and two of our laws against the field's."""
+    del level
+    ours = {law: found[_call(law)]["w"] for law in LAWS}
+    mm = 1e3 * np.array(SIZES)
+    roots = Comparison(
+        "drag-laws", "Terminal velocity under every drag law",
+        Source("root of C_D(Re) w^2 = (4/3) (rho_s/rho - 1) g d"), D, W,
+        [Curve(law, mm, w) for law, w in ours.items()],
+        [Curve(law, 1e3 * FINE, np.array([root(LAWS[law][1], float(d)) for d in FINE])) for law in LAWS],
+        [
+            Error(
+                f"{law}: largest relative difference",
+                max(abs(w / root(LAWS[law][1], d) - 1.0) for d, w in zip(SIZES, speeds, strict=True)), "-",
+                at_most(1e-7, "20 response times from rest: exp(-20), and round-off"),
+            )
+            for law, speeds in ours.items()
+        ],
+        {"density": "2650 kg/m3", "nu": "1e-6 m2/s", "g": "9.81 m/s2"},
+        "The engine's step has the balance as its fixed point, whatever the step.",
+    )  # fmt: skip
+    shown = ("Schiller-Naumann", "Ferguson-Church sphere", "Ferguson-Church sand")
+    law_of = {"Soulsby 1997, natural sand": shown[2], "Dietrich 1982, nearly round": shown[0]}
+    field = Comparison(
+        "field", "Our drag laws beside the field's settling formulae",
+        Source(
+            "Soulsby 1997; Dietrich 1982 without shape; Ferguson & Church 2004: fits to measured sand",
+            Known.QUOTED,
+        ),
+        D, W, [Curve(law, mm, ours[law]) for law in shown],
+        [Curve(name, 1e3 * FINE, np.array([w(float(d)) for d in FINE])) for name, w in FIELD.items()],
+        [
+            Error(
+                f"{law} against {name}: largest relative difference",
+                max(abs(w / FIELD[name](d) - 1.0) for d, w in zip(SIZES, ours[law], strict=True)),
+            )
+            for name, law in law_of.items()
+        ],
+        {"density": "2650 kg/m3", "nu": "1e-6 m2/s", "g": "9.81 m/s2"},
+        "Grains of the field are no spheres, and its formulae differ from each other by as much; the choice "
+        "of a drag law for sand is a choice of shape.",
+    )  # fmt: skip
+    return [roots, field]

@@ -1,0 +1,143 @@
+"""What a campaign will cost before it starts: runs, seconds, bytes."""
+
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from ryusa import __version__
+from ryusa.errors import CaseError
+from ryusa.running import provenance
+from ryusa.running.folder import existing, free_bytes, size
+from ryusa.study.task import Work
+
+
+@dataclass(frozen=True)
+class Outlook:
+    """What lies ahead.
+
+    Attributes
+    ----------
+    costs : runs to be made, with the core seconds of each by rule of thumb.
+    there : finished runs of the very same case that will be opened.
+    disk : bytes that the runs to be made will take.
+    jobs : runs at a time.
+    others : of the finished runs, how many each other state of the code made.
+    """
+
+    costs: Mapping[Work, float]
+    there: tuple[Work, ...]
+    disk: int
+    jobs: int
+    others: Mapping[str, int] = field(default_factory=dict[str, int])
+
+    @property
+    def core_seconds(self) -> float:
+        """All runs one after the other [s]."""
+        return sum(self.costs.values())
+
+    @property
+    def seconds(self) -> float:
+        """Wall time [s]: no shorter than the longest run."""
+        return max(self.core_seconds / self.jobs, max(self.costs.values(), default=0.0))
+
+    def __str__(self) -> str:
+        if not self.costs:
+            return f"nothing to run; {_runs(len(self.there), 'finished ')} will be opened{self._old()}"
+        there = f" ({len(self.there)} more are there and will be opened)" if self.there else ""
+        at_once = "one at a time" if self.jobs == 1 else f"{self.jobs} at a time"
+        return (
+            f"{_runs(len(self.costs))} to make{there}: about {duration(self.seconds)} {at_once} "
+            f"({self.core_seconds / 60:.0f} core minutes by rule of thumb), {size(self.disk)} on the disk"
+            f"{self._old()}"
+        )
+
+    def _old(self) -> str:
+        if not self.others:
+            return ""
+        made = ", ".join(f"{n} by {code_in_words(code)}" for code, n in self.others.items())
+        vague = "; changes that no commit holds count as another state" if "+" in "".join(self.others) else ""
+        return (
+            f"\nOther states of the code than the present {code_in_words(present())} made "
+            f"{sum(self.others.values())} of the {len(self.there)} that are there ({made}{vague}); "
+            "--again makes all anew"
+        )
+
+
+def _runs(n: int, how: str = "") -> str:
+    return f"{n} {how}{'run' if n == 1 else 'runs'}"
+
+
+def code_of(origin: Mapping[str, Any]) -> str:
+    """State of the code that made a run, from its provenance: the commit, else the version."""
+    return str(origin.get("commit") or f"ryusa {origin.get('ryusa') or 'of unknown version'}")
+
+
+def present() -> str:
+    """State of the code that is running."""
+    return code_of({"commit": provenance.commit(), "ryusa": __version__})
+
+
+def is_other(code: str, opened: bool) -> bool:
+    """Whether a run was made, or may have been made, by another state of the code than the present one.
+
+    A commit with changes on top names no one state: of an opened run it cannot be told.
+    """
+    return code != present() or (opened and code.endswith("+"))
+
+
+def code_in_words(code: str) -> str:
+    """Say a state of the code shortly.
+
+    >>> code_in_words("0123456789abcdef+"), code_in_words("ryusa 0.1.0")
+    ('0123456789ab with changes', 'ryusa 0.1.0')
+    """
+    if code.startswith("ryusa"):
+        return code
+    return code.removesuffix("+")[:12] + (" with changes" if code.endswith("+") else "")
+
+
+def outlook(wanted: Iterable[Work], folder: Path, *, jobs: int, again: bool = False) -> Outlook:
+    """Say what it takes to have these runs in `folder`; every case is read, and so checked.
+
+    Raises
+    ------
+    CaseError : a case cannot be run.
+    """
+    wanted = list(dict.fromkeys(wanted))
+    origins = {} if again else {one: one.origin(folder / one.folder) for one in wanted}
+    there = {one: code_of(found) for one, found in origins.items() if found is not None}
+    costs = {one: one.cost() for one in wanted if one not in there}
+    others = Counter(code for code in there.values() if is_other(code, opened=True))
+    disk = sum(one.disk() for one in costs)
+    return Outlook(costs, tuple(there), disk, jobs, dict(others.most_common()))
+
+
+def refuse_if_too_big(ahead: Outlook, folder: Path) -> None:
+    """Compare what the runs will take with the free space on the disk.
+
+    Raises
+    ------
+    CaseError : they would not fit.
+    """
+    place = existing(folder)
+    free = free_bytes(place)
+    if ahead.disk > free:
+        raise CaseError(
+            "disk",
+            None,
+            f"{len(ahead.costs)} runs need {size(ahead.disk)}, but only {size(free)} are free at {place}. "
+            "Choose another disk with -o, or run fewer experiments at a time",
+        )
+
+
+def duration(seconds: float) -> str:
+    """Say a time so that nobody takes it for exact.
+
+    >>> duration(42.0), duration(600.0), duration(9000.0)
+    ('42 s', '10 min', '2.5 h')
+    """
+    if seconds < 90.0:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.0f} min" if seconds < 5400.0 else f"{seconds / 3600:.1f} h"

@@ -1,0 +1,71 @@
+"""What pages share: templates, pictures that a page holds itself, files written whole."""
+
+import base64
+import io
+import os
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
+from PIL import Image
+
+from ryusa.study import code_in_words
+
+COLOURS = 256  # of an embedded picture
+ONE_COLUMN = 1600  # pixels; a wider picture is shown over the whole page, or its letters would be too small
+
+
+def template(path: Path, **filters: Callable[..., Any]) -> Template:
+    """Give the template of a study, which may include those of this room; an unknown name is an error."""
+    folders = [path.parent, Path(__file__).parent]
+    page = Environment(
+        loader=FileSystemLoader(folders), autoescape=True, undefined=StrictUndefined,
+        trim_blocks=True, lstrip_blocks=True,
+    )  # fmt: skip
+    page.filters.update({"number": number, "code": code_in_words, **filters})
+    return page.get_template(path.name)
+
+
+def embedded(picture: Path) -> str:
+    """Give a PNG as an address that holds the picture itself, pixel by pixel, in at most COLOURS colours.
+
+    A third of the bytes of the file it is made from, which stays as it is.
+    """
+    held = io.BytesIO()
+    with Image.open(picture) as image:
+        flat = image.convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
+    flat.save(held, "PNG", optimize=True)
+    return "data:image/png;base64," + base64.b64encode(held.getvalue()).decode("ascii")
+
+
+def is_wide(picture: Path) -> bool:
+    """Whether its letters need the whole width of the page: a picture of two columns."""
+    with Image.open(picture) as image:
+        return image.width > ONE_COLUMN
+
+
+def number(value: object) -> str:
+    """Give a value of a table as text, floats to four digits.
+
+    >>> number(0.123456), number(None), number("30 deg")
+    ('0.1235', '', '30 deg')
+    """
+    if value is None:
+        return ""
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def write_log(log: Path, traces: Mapping[str, str]) -> None:
+    """Keep the tracebacks of errors in the program, and none of an earlier time."""
+    if traces:
+        write_whole(log, "\n".join(f"{what}\n{trace}" for what, trace in traces.items()))
+    else:
+        log.unlink(missing_ok=True)
+
+
+def write_whole(path: Path, text: str) -> None:
+    """Write text beside its place and move it there whole."""
+    beside = path.with_name(f".{path.name}.new")
+    beside.write_text(text, encoding="utf-8")
+    os.replace(beside, path)

@@ -1,0 +1,57 @@
+"""Where the numbers of a page came from: code, machine, runs, and what went wrong."""
+
+import math
+import platform
+from collections.abc import Mapping
+from typing import Any
+
+from ryusa.running import provenance
+from ryusa.study import Campaign, Fault, Work
+
+_NAMED = 3  # runs that failed, named in a row
+
+
+def counted(campaign: Campaign, jobs: int) -> dict[str, Any]:
+    """Runs made and opened, by which code, in how much time."""
+    return {
+        "runs_made": campaign.n_run,
+        "runs_opened": campaign.n_opened,
+        "wall_s": round(campaign.seconds, 1),
+        "jobs": jobs,
+        "commits_of_runs": dict(campaign.commits.most_common()),
+        "of_other_code": dict(campaign.others.most_common()),
+    }
+
+
+def missing_runs(missing: Mapping[Work, Fault], n: int) -> str:
+    """Which runs failed, and why; the first few of many."""
+    told = [f"{one.label}: {fault.words}" for one, fault in list(missing.items())[:_NAMED]]
+    more = f"; and {len(missing) - _NAMED} more" if len(missing) > _NAMED else ""
+    return f"{len(missing)} of {n} runs failed, so it was not judged; {'; '.join(told)}{more}"
+
+
+def traces_of(campaign: Campaign, faults: Mapping[str, Fault]) -> dict[str, str]:
+    """Tracebacks of errors in the program, each once, under what they spoiled."""
+    every = [
+        (f"{name}: run {one.label}", fault)
+        for name, found in campaign.missing.items()
+        for one, fault in found.items()
+    ]
+    return {what: fault.trace for what, fault in [*every, *faults.items()] if fault.trace}
+
+
+def json_number(value: float) -> float | None:
+    """JSON knows no infinity and no nan."""
+    return value if math.isfinite(value) else None
+
+
+def origin(counts: Mapping[str, Any]) -> dict[str, Any]:
+    """Versions, commit and machine, with the counts of the runs."""
+    found = provenance.begin(threads=1, seed=None, engine="CpuEngine", overrides={})
+    kept = ("ryusa", "commit", "packages", "python", "system", "machine")
+    return {
+        "made": provenance.now(),
+        **{key: found[key] for key in kept},
+        **counts,
+        "node": platform.machine(),
+    }

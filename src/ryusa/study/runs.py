@@ -1,0 +1,304 @@
+"""Carry out the runs that are asked for: each once, several at a time, finished ones opened again."""
+
+import os
+import signal
+import threading
+import time
+from collections import Counter
+from collections.abc import Callable, Generator, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import closing, contextmanager
+from dataclasses import dataclass, field
+from functools import partial
+from multiprocessing import get_context, parent_process
+from pathlib import Path
+from typing import Any
+
+from ryusa.errors import ResultsError, RunError
+from ryusa.study.cost import Outlook, code_of, is_other, outlook, present, refuse_if_too_big
+from ryusa.study.fault import Fault, spared, told
+from ryusa.study.progress import Say
+from ryusa.study.task import Calculation, Work
+
+_WAIT = 0.2  # s between two looks at who has finished
+_PATIENCE = 5.0  # s that a run has to close its folder before its process is ended
+Load = Callable[[str], Any]
+
+_ONE_THREAD = {name: "1" for name in ("NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")}
+
+
+@dataclass(frozen=True)
+class Done:
+    """One run, measured."""
+
+    one: Work
+    measured: Mapping[str, Any]  # by experiment
+    opened: bool  # it was there already
+    seconds: float
+    faults: Mapping[str, Fault] = field(default_factory=dict[str, Fault])  # by experiment that has no numbers
+    commit: str = ""  # of the code that made the run, or its version
+    broken: bool = False  # the run itself failed, whoever wants it
+
+    @property
+    def problem(self) -> str:
+        """Why it could not be run to its end, or measured."""
+        if self.broken:
+            return next(iter(self.faults.values())).words if self.faults else ""
+        return "; ".join(f"{name}: {one.words}" for name, one in self.faults.items())
+
+
+@dataclass
+class Campaign:
+    """What a campaign found.
+
+    Attributes
+    ----------
+    found : measured numbers by experiment, then by run.
+    n_run, n_opened : runs made, and finished runs of the very same case opened again.
+    seconds : wall time.
+    problems : runs that could not be carried out or measured, with the reason.
+    missing : by experiment, its runs without numbers.
+    commits : how many runs each state of the code made.
+    others : the same, of those states that are not, or may not be, the one that is running.
+    """
+
+    found: dict[str, dict[Any, Any]]
+    n_run: int = 0
+    n_opened: int = 0
+    seconds: float = 0.0
+    problems: dict[str, str] = field(default_factory=dict[str, str])
+    missing: dict[str, dict[Work, Fault]] = field(default_factory=dict[str, dict[Work, Fault]])
+    commits: Counter[str] = field(default_factory=Counter[str])
+    others: Counter[str] = field(default_factory=Counter[str])
+
+
+def carry_out(
+    works: Mapping[str, Sequence[Work]],
+    load: Load,
+    folder: Path,
+    *,
+    jobs: int = 1,
+    again: bool = False,
+    say: Say | None = None,
+) -> Campaign:
+    """Do every piece of work once, and measure each for everyone who wants it.
+
+    Parameters
+    ----------
+    works : who wants it (an experiment, a check) -> runs and calculations.
+    load : gives who wants it by name, in any process: a function of a module. Its `measure(results, run)`
+        makes numbers of a run, small enough to be sent between processes; those of a calculation are handed
+        on as they are. A run that breaks down is an answer where it has a `failed(error)` that gives one.
+    folder : runs go into `folder/<case>/<variant>`; finished runs of the very same case are opened.
+    jobs : runs at a time, each in its own process on one thread; the numbers do not depend on it.
+    again : run even what is there.
+    say : is told what goes on.
+
+    Raises
+    ------
+    CaseError : a case cannot be run, or all runs together do not fit on the disk; nothing was run.
+    ResultsError : a process was ended from outside; what was finished stays.
+    KeyboardInterrupt : Ctrl-C or SIGTERM; what was finished stays and is opened next time.
+    """
+    begun, say = time.monotonic(), say or Say()
+    wanted = _wanted(works)
+    ahead = outlook(wanted, folder, jobs=jobs, again=again)  # reads, and so checks, every case first
+    refuse_if_too_big(ahead, folder)
+    found: dict[str, dict[Any, Any]] = {name: {} for name in works}
+    campaign = Campaign(found)
+    say.begin(ahead)
+    try:
+        runs = _done(
+            _order(ahead), wanted, partial(_one, folder=folder, again=again, load=load), folder, jobs, say
+        )
+        with _stopped_by_sigterm(), closing(runs):
+            for done in runs:
+                _count(campaign, done)
+                say.done(done.one, done.seconds, done.opened, done.problem)
+    finally:
+        say.end()
+    for name, measured in found.items():  # in the order asked for, whoever finished first
+        found[name] = {one: measured[one] for one in works[name] if one in measured}
+    campaign.seconds = time.monotonic() - begun
+    return campaign
+
+
+def _wanted(works: Mapping[str, Sequence[Work]]) -> dict[Work, list[str]]:
+    """Every piece of work, with those who want it."""
+    wanted: dict[Work, list[str]] = {}
+    for name, every in works.items():
+        for one in every:
+            users = wanted.setdefault(one, [])
+            if name not in users:
+                users.append(name)
+    return wanted
+
+
+def _order(ahead: Outlook) -> list[Work]:
+    """What is there first, then the longest first: no core idles at the end."""
+    return [*ahead.there, *sorted(ahead.costs, key=lambda one: -ahead.costs[one])]
+
+
+def _count(campaign: Campaign, done: Done) -> None:
+    campaign.n_opened += done.opened
+    campaign.n_run += not done.opened
+    if done.commit:
+        campaign.commits[done.commit] += 1
+        if is_other(done.commit, done.opened):
+            campaign.others[done.commit] += 1
+    if done.problem:
+        campaign.problems[done.one.label] = done.problem
+    for name, numbers in done.measured.items():
+        campaign.found[name][done.one] = numbers
+    for name, fault in done.faults.items():
+        campaign.missing.setdefault(name, {})[done.one] = fault
+
+
+def _done(
+    order: Sequence[Work],
+    wanted: Mapping[Work, Sequence[str]],
+    do: Callable[[Work, Sequence[str]], Done],
+    folder: Path,
+    jobs: int,
+    say: Say,
+) -> Generator[Done]:
+    if jobs == 1 or len(order) <= 1:
+        for one in order:
+            say.started(one)
+            yield do(one, tuple(wanted[one]))
+        return
+    pool = ProcessPoolExecutor(jobs, mp_context=get_context("spawn"), initializer=_settle_in)
+    waiting = list(reversed(order))
+    running: dict[Future[Done], Work] = {}
+    try:
+        while waiting or running:
+            while waiting and len(running) < jobs:
+                one = waiting.pop()
+                with _for_a_child():
+                    future = pool.submit(do, one, tuple(wanted[one]))
+                running[future] = one
+                say.started(one)
+            ready, _ = wait(running, _WAIT, FIRST_COMPLETED)
+            say.tick()
+            for future in ready:
+                one = running[future]
+                try:
+                    done = future.result()
+                except BrokenProcessPool:
+                    raise
+                except Exception as error:  # what was measured cannot be sent from process to process
+                    faults = dict.fromkeys(wanted[one], told(error))
+                    done = Done(one, {}, False, 0.0, faults, broken=True)
+                del running[future]
+                yield done
+    except BrokenProcessPool:
+        labels = ", ".join(one.label for one in running.values())
+        raise ResultsError(
+            "the process of a run was ended from outside, perhaps for want of memory; "
+            f"running were: {labels}. {folder} holds what was finished, the same command goes on from "
+            "there; -j 1 needs least memory"
+        ) from None
+    finally:
+        if running or waiting:
+            _end(pool)
+        else:
+            pool.shutdown(wait=True)
+
+
+def _end(pool: ProcessPoolExecutor) -> None:
+    """Stop what is running: on SIGTERM a run closes its folder in order; whoever does not is killed."""
+    processes = list((pool._processes or {}).values())
+    pool.shutdown(wait=False, cancel_futures=True)
+    for process in processes:
+        if process.is_alive():
+            process.terminate()
+    deadline = time.monotonic() + _PATIENCE
+    for process in processes:
+        process.join(max(0.0, deadline - time.monotonic()))
+        if process.is_alive():
+            process.kill()
+
+
+@contextmanager
+def _for_a_child() -> Generator[None]:
+    """Start processes with one thread for numerics, and deaf to Ctrl-C from their first moment on."""
+    before = {name: os.environ.get(name) for name in _ONE_THREAD}
+    os.environ.update(_ONE_THREAD)
+    can_hold = hasattr(signal, "pthread_sigmask")
+    if can_hold:
+        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        if can_hold:
+            signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
+
+
+def _settle_in() -> None:
+    """Leave Ctrl-C to the parent, which ends the runs with SIGTERM, and do not outlive it."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # a run would listen to it again
+    threading.Thread(target=_leave_with_parent, daemon=True).start()
+
+
+def _leave_with_parent() -> None:
+    parent = parent_process()
+    if parent is not None:
+        parent.join()
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(_PATIENCE)
+        os._exit(1)
+
+
+@contextmanager
+def _stopped_by_sigterm() -> Generator[None]:
+    """Within the block SIGTERM is what Ctrl-C is."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def stop(_: int, __: object) -> None:
+        raise KeyboardInterrupt("SIGTERM")
+
+    before = signal.signal(signal.SIGTERM, stop)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def _one(one: Work, names: Sequence[str], *, folder: Path, again: bool, load: Load) -> Done:
+    """Run, or open, and measure; what goes wrong in one run comes back as words and spares the others."""
+    begun = time.monotonic()
+    measured: dict[str, Any] = {}
+    faults: dict[str, Fault] = {}
+    place = folder / one.folder
+    try:
+        answer = None if again else one.open(place)
+        opened = answer is not None
+        if not opened:
+            answer = one.make(place, anew=again)
+    except RunError as error:  # for some experiments that is an answer: a law that makes energy ends so
+        for name in names:
+            faults[name] = told(error)
+            with spared(faults, name):
+                hook = getattr(load(name), "failed", None)
+                if hook is not None and (said := hook(error)) is not None:
+                    measured[name] = said
+                    del faults[name]
+        return Done(one, measured, False, time.monotonic() - begun, faults, present(), broken=True)
+    except Exception as error:
+        faults = dict.fromkeys(names, told(error))
+        return Done(one, {}, False, time.monotonic() - begun, faults, broken=True)
+    for name in names:
+        with spared(faults, name):
+            measured[name] = answer if isinstance(one, Calculation) else load(name).measure(answer, one)
+    made_by = code_of(one.origin(place) or {})
+    return Done(one, measured, opened, time.monotonic() - begun, faults, made_by)

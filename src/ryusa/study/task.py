@@ -1,0 +1,255 @@
+"""What a campaign carries out: runs of case files, and calculations; each kept in a folder of its own."""
+
+import hashlib
+import json
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
+
+import numpy as np
+
+from ryusa.cases import FOLDERS
+from ryusa.errors import ResultsError, RyusaError
+from ryusa.results import Results, schema
+from ryusa.running import provenance
+from ryusa.running.folder import write_json
+
+if TYPE_CHECKING:
+    from ryusa.casefile.schema import Case
+
+# What the rule of thumb for a single run cannot know. Counted in the 639 runs of the standard level of the
+# paper's ledger, seeds 1 to 3, two at a time on two cores of an AMD EPYC: 43 core minutes in all, of which
+# this rule says 46; of one set-up it is right within a factor of 1.6. The shares are of steps, and so do not
+# depend on the machine.
+_TO_REST = 0.63  # share of the longest time allowed that a run takes which may end at rest
+_TO_HOPS = 0.80  # the same where a number of hops may end it
+_ROLLING = 1.8  # a law of rolling resistance, over none in the same heap; 1.5 to 2.1
+_BEGIN = 0.14  # s to begin, to open and to measure a short run in a process that is warm
+
+_NUMBERS = "numbers.npz"  # of a calculation
+
+
+@runtime_checkable
+class Work(Protocol):
+    """One piece of work, small enough to be sent between processes; equal ones are done once."""
+
+    @property
+    def folder(self) -> str:
+        """Folder of it below that of all work."""
+        ...
+
+    @property
+    def label(self) -> str:
+        """Words for the progress line."""
+        ...
+
+    def cost(self) -> float:
+        """Core seconds by rule of thumb."""
+        ...
+
+    def disk(self) -> int:
+        """Bytes that it will take."""
+        ...
+
+    def origin(self, folder: Path) -> dict[str, Any] | None:
+        """Provenance of the very same work, finished in `folder`; None where there is none."""
+        ...
+
+    def open(self, folder: Path) -> Any | None:
+        """What was finished in `folder`; None where it is not there, of another kind, or damaged."""
+        ...
+
+    def make(self, folder: Path, *, anew: bool = False) -> Any:
+        """Do it, keep it in `folder`, and give what `open` would. An interrupt is a KeyboardInterrupt.
+
+        What was stopped on the way goes on from there, unless it shall be made `anew`.
+        """
+        ...
+
+
+def _folder(name: str, said: str, changed: object) -> str:
+    """Give a readable name, different for different settings."""
+    words = re.sub(r"[^A-Za-z0-9.+-]+", "", said)[:60] or "as-shipped"
+    return f"{name}/{words}-{hashlib.sha256(repr(changed).encode()).hexdigest()[:8]}"
+
+
+@dataclass(frozen=True)
+class Variant(Work):
+    """One run: a case file that ships with the package and what is changed in it. Equal ones are one run."""
+
+    case: str  # "fig19" is fig19.toml in the folder `cases`
+    overrides: tuple[tuple[str, str], ...] = ()  # sorted; keys and values as `ryusa run --set` takes them
+    cases: Path = FOLDERS[""]  # folder of the case file
+
+    @property
+    def folder(self) -> str:
+        """Folder of the run below that of all runs: readable, and different for different overrides."""
+        said = "-".join(re.sub(r"[^A-Za-z0-9.+]+", "", value) for _, value in self.overrides)
+        return _folder(self.case, said, self.overrides)
+
+    @property
+    def label(self) -> str:
+        """Words for the progress line."""
+        return " ".join((self.case, *(value for _, value in self.overrides)))
+
+    def read(self) -> "Case":
+        """Give the checked case."""
+        return _read(self)
+
+    def get(self, key: str, default: str = "") -> str:
+        """Value of one override as text."""
+        return dict(self.overrides).get(key, default)
+
+    def cost(self) -> float:
+        """Core seconds of the run by rule of thumb."""
+        from ryusa.casefile.estimate import SECONDS_PER_RUN, seconds_needed
+
+        case = self.read()
+        share = (
+            _TO_HOPS if case.stop.saltations is not None else _TO_REST if case.stop.rest is not None else 1.0
+        )
+        law = 1.0 if case.rolling.model == "none" else _ROLLING
+        return _BEGIN + share * law * (seconds_needed(case) - SECONDS_PER_RUN)
+
+    def disk(self) -> int:
+        """Bytes that the run will take."""
+        from ryusa.casefile.estimate import disk_in_all
+
+        return disk_in_all(self.read())
+
+    def origin(self, folder: Path) -> dict[str, Any] | None:
+        """Provenance of a finished run of the very same case; None where there is none."""
+        found = _origin(folder)
+        try:
+            case = json.loads((folder / schema.CASE_JSON).read_text(encoding="utf-8"))
+        except (OSError, ValueError):
+            return None
+        return found if found is not None and self._is(case) else None
+
+    def open(self, folder: Path) -> Results | None:
+        """Open a finished run of the very same case; one of another version, or damaged, counts as none."""
+        if not (folder / schema.CASE_JSON).is_file():
+            return None
+        try:
+            old = Results.open(folder)
+        except (RyusaError, OSError):
+            return None
+        return old if old.complete and self._is(old.case) else None
+
+    def make(self, folder: Path, *, anew: bool = False) -> Results:
+        """Run it, or go on with it; a run that was stopped is no basis for a verdict, and interrupts."""
+        from ryusa.running.runner import run
+
+        resume = not anew and _origin(folder) is None  # one that is complete was not fit to be opened
+        done = run(self.read(), folder, threads=1, progress=False, overwrite=True, resume=resume)
+        if not done.complete:
+            raise KeyboardInterrupt
+        return done
+
+    def _is(self, case: Mapping[str, Any]) -> bool:
+        """Whether the case that a run folder holds is the very case of this run."""
+        return case == json.loads(json.dumps(self.read().resolved()))
+
+
+@lru_cache(maxsize=4096)
+def _read(one: Variant) -> "Case":
+    from ryusa.casefile.read import read
+
+    return read(one.cases / f"{one.case}.toml", dict(one.overrides))
+
+
+Numbers = Mapping[str, Any]  # names to arrays and numbers
+
+
+@dataclass(frozen=True)
+class Calculation(Work):
+    """One call of a function of the package that needs no case file; its arrays are kept.
+
+    The function takes the arguments by name and returns a mapping from names to arrays or numbers.
+    """
+
+    module: str  # such as "ryusa.studies.validation.suspension"
+    function: str
+    arguments: tuple[tuple[str, Any], ...] = ()  # sorted; numbers, words, tuples of them
+    seconds: float = 0.1  # of one core, by rule of thumb
+
+    @property
+    def _module(self) -> str:
+        """Module as the kept folders name it: results made before the studies had a room stay valid."""
+        return self.module.replace("ryusa.studies.", "ryusa.", 1)
+
+    @property
+    def _name(self) -> str:
+        return f"{self.module.rsplit('.', 1)[-1]}-{self.function}".replace("_", "-")
+
+    @property
+    def folder(self) -> str:
+        """Folder of the numbers: readable, and different for different arguments."""
+        said = "-".join(f"{value}" for _, value in self.arguments)
+        return _folder(self._name, said, (self._module, self.function, self.arguments))
+
+    @property
+    def label(self) -> str:
+        """Words for the progress line."""
+        return " ".join((self._name, *(str(value) for _, value in self.arguments)))
+
+    def cost(self) -> float:
+        """Core seconds as the module thinks."""
+        return self.seconds
+
+    def disk(self) -> int:
+        """Bytes: small beside any run."""
+        return 20_000
+
+    def origin(self, folder: Path) -> dict[str, Any] | None:
+        """Provenance of the very same calculation, finished; None where there is none."""
+        found = _origin(folder)
+        return found if found is not None and found.get("overrides") == self._said() else None
+
+    def open(self, folder: Path) -> Numbers | None:
+        """Open the numbers kept."""
+        if self.origin(folder) is None:
+            return None
+        try:
+            with np.load(folder / _NUMBERS, allow_pickle=False) as kept:
+                return {name: kept[name] for name in kept.files}
+        except (OSError, ValueError, KeyError):
+            return None
+
+    def make(self, folder: Path, *, anew: bool = False) -> Numbers:
+        """Call the function and keep what it returns."""
+        about = provenance.begin(threads=1, seed=None, engine=self._name, overrides=self._said())
+        function = getattr(import_module(self.module), self.function)
+        found = {name: np.asarray(value) for name, value in function(**dict(self.arguments)).items()}
+        if odd := [name for name, value in found.items() if value.dtype.hasobject]:
+            raise ResultsError(f"{self.label}: {', '.join(odd)} cannot be kept as an array")
+        folder.mkdir(parents=True, exist_ok=True)
+        np.savez(folder / _NUMBERS, allow_pickle=False, **found)
+        write_json(folder / schema.PROVENANCE, {**about, "status": schema.COMPLETE, "end": provenance.now()})
+        return found
+
+    def _said(self) -> dict[str, str]:
+        """Arguments as the provenance holds them."""
+        return {"function": f"{self._module}.{self.function}", **{k: repr(v) for k, v in self.arguments}}
+
+
+def calculation(function: Any, *, seconds: float = 0.1, **arguments: Any) -> Calculation:
+    """Name one call of a function of a module.
+
+    >>> calculation(case_path, name="drop.toml").label
+    'cases-case-path drop.toml'
+    """
+    return Calculation(function.__module__, function.__name__, tuple(sorted(arguments.items())), seconds)
+
+
+def _origin(folder: Path) -> dict[str, Any] | None:
+    """Provenance of something finished; None where there is none."""
+    try:
+        origin = json.loads((folder / schema.PROVENANCE).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    return origin if isinstance(origin, dict) and origin.get("status") == schema.COMPLETE else None

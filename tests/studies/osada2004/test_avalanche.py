@@ -1,0 +1,216 @@
+"""The avalanche claims, judged on made-up flows: some under which each holds, some under which it fails."""
+
+import math
+
+import numpy as np
+import pytest
+
+from ryusa.measure import Layers, Profiles, Tracks
+from ryusa.measure.table import Averages
+from ryusa.studies.osada2004 import Level, Plan, Word, _avalanche, carry_out, fig14, fig15, fig16
+from ryusa.studies.osada2004._avalanche import ALL, BETWEEN, SHIPPED, SOFT, WINDOWS, Pair, Ways, Window
+from ryusa.studies.osada2004._experiment import PHI, ROTATION, SLIP
+
+STANDARD = Plan(Level.STANDARD, (1, 2, 3))
+QUICK = Plan(Level.QUICK, (1,))
+EMPTY = np.zeros(0)
+PATH = Tracks((0,), EMPTY, EMPTY, EMPTY, EMPTY, EMPTY, EMPTY, EMPTY, 4.4)
+N = 20  # layers
+
+
+def layers(name, value):
+    return Layers(name, "-", value, np.zeros(len(value)))
+
+
+def flow(speed=4.0, phi=0.5, lowest=0, **ways):
+    """A flow whose speed grows with height by half, with a uniform concentration."""
+    at = np.arange(N, dtype=float)
+    v = speed * (0.75 + 0.5 * at / (N - 1))
+    full = np.full(N, phi)
+    none = np.full(N, math.nan)
+    profile = Profiles(
+        z=(lowest + at + 0.5) * 0.1, thickness=0.1, origin=0.2, d=0.2, phi=layers("phi", full),
+        area_fraction=layers("area_fraction", 1.5 * full), v_x=layers("v_x", v), v_z=layers("v_z", none),
+        spin=layers("spin", none), temperature_x=layers("temperature_x", none),
+        temperature_z=layers("temperature_z", none), flux=layers("flux", full * v), bed=none,
+        t=np.arange(2.0), q=np.full(2, 0.1 * float((full * v).sum())), speed=np.full(2, speed),
+        volume=np.full(2, 1.0), density=2650.0, area=1.0, lanes=1, averages=Averages("profile", (), ()),
+    )  # fmt: skip
+    way = Ways(**{"n": 9, "reversals": 10.0, "fine": 20.0, "advance": 2.0, "jaggedness": 0.1, **ways})
+    return Window(profile, {BETWEEN: way, ALL: way}, PATH, 100.0, 1.0)
+
+
+def made(soft, stiff, plan=STANDARD):
+    """What the runs would give; soft and stiff make a flow from a factor near 1, different for every seed."""
+    return {
+        one: dict.fromkeys(WINDOWS, (stiff if "contact.stiffness" in dict(one.overrides) else soft)(
+            1.0 + 0.002 * (int(one.get("seed")) % 1000 - 2)
+        ))
+        for one in _avalanche.cases(plan)
+    }  # fmt: skip
+
+
+def words(experiment, soft, stiff):
+    return {one.claim: one.word for one in experiment.judge(made(soft, stiff), STANDARD)}
+
+
+def test_the_case_ships_as_the_first_setting_and_tilts_when_the_windows_begin():
+    case = _avalanche.run(SHIPPED, SOFT, 1).read()
+    assert case.motion.rotation == "free"
+    assert case.contact.slip == SHIPPED[SLIP]
+    assert math.degrees(case.contact.friction_angle) == pytest.approx(30.0)
+    assert case.timeline[0].at == pytest.approx(_avalanche.TILT)
+    assert case.record.frames == pytest.approx(_avalanche.FRAME)
+    assert case.stop.time == pytest.approx(_avalanche.TILT + max(end for _, end in WINDOWS.values()))
+
+
+def test_the_first_setting_of_every_level_is_the_shipped_one():
+    for level in Level:
+        assert _avalanche.settings(Plan(level, (1,)))[0] == SHIPPED
+
+
+def test_every_other_packing_can_be_read_and_keeps_a_lowest_layer_to_follow():
+    for one in _avalanche.OTHERS:
+        case = _avalanche.run({**SHIPPED, _avalanche.PACKING: one}, SOFT, 1).read()
+        assert case.record.tracked == tuple(range(_avalanche.LOWEST))
+        assert case.build.columns == _avalanche.LOWEST
+
+
+def test_equal_profiles_are_alike_and_half_as_dense_ones_are_not():
+    assert words(fig14, flow_at(4.0), flow_at(3.0))["fig14"] is Word.REPRODUCED
+    assert words(fig14, flow_at(4.0), flow_at(4.0, phi=0.25))["fig14"] is Word.NOT
+
+
+def test_a_heap_at_rest_is_no_avalanche_however_alike_it_is():
+    assert words(fig14, flow_at(4.0), flow_at(0.01))["fig14"] is Word.NOT
+
+
+def flow_at(speed, **how):
+    return lambda chance: flow(speed * chance, **how)
+
+
+def test_runs_are_compared_in_the_same_layers_wherever_their_profiles_begin():
+    pair = Pair(flow(2.0), flow(2.0, lowest=5))
+    (soft, _), (stiff, _) = _avalanche.layers([pair])
+    assert len(soft) == N + 5
+    assert (soft[:5] > 0).all()
+    assert (stiff[:5] == 0).all()
+    assert len(_avalanche.faster([pair])) == N - 5
+    assert _avalanche.unlike([pair]) == pytest.approx(10 * 0.5 / (N * 0.5))
+
+
+def test_scatter_of_single_runs_is_no_difference_of_what_they_have_in_common():
+    def scattered(sign):
+        one = flow(4.0)
+        one.profile.phi.value[:] += sign * 0.05 * (-1.0) ** np.arange(N)
+        return one
+
+    found = [Pair(scattered(1), scattered(-1)), Pair(scattered(-1), scattered(1))]
+    assert _avalanche.unlike(found[:1]) == pytest.approx(0.2)
+    assert _avalanche.unlike(found) == pytest.approx(0.0, abs=1e-12)
+    assert _avalanche.together(_avalanche.unlike)(found[:1]) == pytest.approx([0.2])
+
+
+def test_speeds_of_a_layer_are_weighted_with_what_is_there():
+    (phi, speed), _ = _avalanche.layers([Pair(flow(4.0), flow(4.0)), Pair(flow(2.0, phi=0.25), flow(4.0))])
+    assert phi == pytest.approx(np.full(N, 0.375))
+    assert speed[0] == pytest.approx(0.75 * (0.5 * 4.0 + 0.25 * 2.0) / 0.75)
+
+
+def test_pairs_that_creep_or_stick_to_the_bed_are_told_from_those_that_move():
+    stuck = flow(4.0)
+    stuck.profile.v_x.value[0] = 0.01
+    assert Pair(flow(4.0), flow(4.0)).kind == "moves"
+    assert Pair(flow(4.0), stuck).kind == "stuck"
+    assert Pair(flow(4.0), flow(0.05)).kind == "creeps"
+
+
+def test_fig15_asks_for_about_a_metre_a_second():
+    assert words(fig15, flow_at(5.0), flow_at(4.0))["fig15"] is Word.REPRODUCED
+    assert words(fig15, flow_at(4.1), flow_at(4.0))["fig15"] is Word.NOT
+    assert words(fig15, flow_at(7.0), flow_at(4.0))["fig15"] is Word.NOT
+
+
+def test_fig15_fails_where_a_layer_is_slower():
+    def crossing(chance):
+        one = flow(5.0 * chance)
+        one.profile.v_x.value[0] = 0.1
+        return one
+
+    assert words(fig15, crossing, flow_at(4.0))["fig15"] is Word.NOT
+
+
+@pytest.mark.parametrize(
+    ("soft", "word"),
+    [(flow_at(5.0), Word.REPRODUCED), (flow_at(4.2), Word.NOT), (flow_at(5.0, phi=0.7), Word.NOT)],
+)
+def test_fig15_flux_asks_for_more_transport_at_equal_concentration(soft, word):
+    assert words(fig15, soft, flow_at(4.0))["fig15-flux"] is word
+
+
+JAGGED = {"reversals": 20.0, "advance": 1.0, "jaggedness": 0.3}
+
+
+def test_fig16_holds_where_short_contacts_rattle_and_go_less_far():
+    assert words(fig16, flow_at(4.0), flow_at(4.0, **JAGGED))["fig16"] is Word.REPRODUCED
+
+
+@pytest.mark.parametrize(("name", "value"), [("reversals", 5.0), ("advance", 3.0), ("jaggedness", 0.05)])
+def test_fig16_fails_if_one_of_its_three_parts_does(name, value):
+    assert words(fig16, flow_at(4.0), flow_at(4.0, **{**JAGGED, name: value}))["fig16"] is Word.NOT
+
+
+def test_one_run_whose_grains_hardly_advance_does_not_outweigh_the_others():
+    def soft(advance):
+        return Pair(flow(4.0, advance=advance), flow(4.0, advance=1.0))
+
+    assert fig16._ratio([soft(0.001), soft(2.0), soft(1.999)], "advance", ALL) == pytest.approx(0.75)
+    nothing = Pair(flow(4.0, advance=math.nan), flow(4.0))
+    assert fig16._ratio([nothing, soft(2.0), soft(2.0)], "advance", ALL) == pytest.approx(0.5)
+    assert math.isnan(fig16._ratio([nothing, nothing, soft(2.0)], "advance", ALL))
+
+
+def test_fig16_fails_where_one_of_the_two_only_creeps():
+    assert words(fig16, flow_at(4.0), flow_at(0.05, **JAGGED))["fig16"] is Word.NOT
+
+
+def test_fig16_fails_where_no_grain_alternates():
+    nothing = {"n": 0, "reversals": math.nan, "advance": math.nan, "jaggedness": math.nan}
+    (found,) = fig16.judge(made(flow_at(4.0), flow_at(4.0, **nothing)), STANDARD)
+    assert found.word is Word.NOT
+    assert all(one.note for one in found.trials if "over sqrt(g d)" not in one.part)
+
+
+def test_a_seed_without_a_number_is_left_out_where_most_have_one():
+    nan = math.nan
+    assert _avalanche._numbers([1.0, nan, 2.0]) == [1.0, 2.0]
+    assert len(_avalanche._numbers([1.0, nan, nan])) == 3
+
+
+def test_more_seeds_of_the_shipped_setting_keep_those_of_the_plan_and_differ():
+    seeds = _avalanche.seeds(STANDARD, SHIPPED)
+    assert seeds[:3] == [1, 2, 3]
+    assert len(set(seeds)) == 3 * _avalanche.STARTS
+    assert _avalanche.seeds(QUICK, SHIPPED) == [1]
+
+
+def test_choices_are_those_that_experiments_share():
+    for experiment in (fig14, fig15, fig16):
+        for one in experiment.judge(made(flow_at(5.0), flow_at(4.0)), STANDARD):
+            assert {ROTATION, PHI, SLIP} <= set(one.trials[0].choices)
+            first = {**SHIPPED, _avalanche.WINDOW: _avalanche.FIRST}
+            assert first.items() <= one.trials[0].choices.items()
+
+
+@pytest.mark.slow
+def test_the_shipped_pair_flows_and_is_drawn(tmp_path):
+    names = ("fig14", "fig15", "fig16")
+    campaign = carry_out(names, QUICK, tmp_path)
+    assert not campaign.problems
+    for name, experiment in zip(names, (fig14, fig15, fig16), strict=True):
+        found = campaign.found[name]
+        assert experiment.draw(found, QUICK)
+        assert experiment.rows(found, QUICK)
+        assert experiment.judge(found, QUICK)
+    pair = _avalanche.pairs(campaign.found["fig14"], QUICK, SHIPPED, _avalanche.FIRST)[0]
+    assert pair.slower > 1.0

@@ -1,0 +1,55 @@
+import runpy
+from pathlib import Path
+
+from ryusa.studies.osada2004 import Word
+from ryusa.studies.osada2004.paper import CLAIMS
+
+faults = runpy.run_path(str(Path(__file__).with_name("check_ledger.py")))["faults"]
+
+
+def whole():
+    spread = [{"value": 1.0}]
+    sweep = [{"part": "length", "note": "", "choices": {}}]
+    rows = [
+        {
+            "id": one, "verdict": str(Word.NOT), "spread": [*spread], "sweep": [dict(sweep[0])],
+            "decided_by": "physics", "problem": "",
+        }
+        for one in CLAIMS
+    ]  # fmt: skip
+    return {"claims": rows, "errors_in": [], "faults": {}, "log": ""}
+
+
+def row(ledger, claim):
+    return next(one for one in ledger["claims"] if one["id"] == claim)
+
+
+def test_a_whole_ledger_has_no_fault():
+    assert faults(whole()) == []
+
+
+def test_what_is_missing_is_named():
+    ledger = whole()
+    ledger["claims"].remove(row(ledger, "fig5"))
+    row(ledger, "fig4")["spread"] = []
+    row(ledger, "fig7")["spread"] = [{"value": None}]
+    row(ledger, "fig8")["spread"] = []
+    row(ledger, "fig11")["problem"] = "2 of 3 runs failed"
+    row(ledger, "fig12")["decided_by"] = ""
+    row(ledger, "fig14")["verdict"] = "fine"
+    assert [one.split(":")[0] for one in faults(ledger)] == [
+        "fig5", "fig4", "fig7", "fig8", "fig11", "fig12", "fig14",
+    ]  # fmt: skip
+
+
+def test_a_number_that_is_none_needs_a_note():
+    ledger = whole()
+    row(ledger, "fig7")["spread"] = [{"value": None}]
+    row(ledger, "fig7")["sweep"] = [{"part": "slope", "note": "stands as a wall", "choices": {}}]
+    assert faults(ledger) == []
+
+
+def test_an_error_in_the_program_is_a_fault_whatever_the_rows_say():
+    ledger = whole() | {"errors_in": ["fig5: run drop 1"], "log": "ledger-errors.log"}
+    assert faults(ledger) == ["fig5: run drop 1: error in the program, see ledger-errors.log"]
+    assert faults(whole() | {"faults": {"fig5: its table": "KeyError"}}) == ["fig5: its table: KeyError"]

@@ -1,0 +1,181 @@
+import numpy as np
+import pytest
+
+from ryusa.laws.collision import collision_time, overlap_max
+from ryusa.studies.osada2004 import (
+    Level,
+    Plan,
+    Word,
+    _drops,
+    carry_out,
+    fig04,
+    fig05,
+    fig08,
+    fig11,
+    fig12,
+    load,
+    pair,
+    steps,
+)
+from ryusa.studies.osada2004._drops import Drop, Setup
+from ryusa.units import quantity
+
+QUICK = Plan(Level.QUICK, (1,))
+STANDARD = Plan(Level.STANDARD, (1,))
+
+
+def ideal(one, time=1.0, overlap=1.0, e=None, copies=20, ended=20):
+    """A drop as the closed forms have it, or off by factors."""
+    m = one.m / 2 if one.partner == "free" else one.m
+    deep = overlap_max(quantity(one.speed, "m/s"), m, one.stiffness, one.zeta) / quantity(one.d, "m")
+    eq_8 = collision_time(m, one.stiffness)
+    each = np.ones(ended)
+    return Drop(
+        d=quantity(one.d, "m"), k_n=one.stiffness, eq_8=eq_8, copies=copies, time=time * eq_8 * each,
+        overlap=overlap * deep * each, speed=quantity(one.speed, "m/s") * each,
+        e=(one.e if e is None else e) * each,
+    )  # fmt: skip
+
+
+def word(name, found, plan=QUICK):
+    return {one.claim: one.word for one in load(name).judge(found, plan)}[load(name).CLAIMS[0]]
+
+
+def every(experiment, plan=QUICK, **how):
+    return {one.variant: ideal(one, **how) for one in experiment.setups(plan)}
+
+
+def test_the_case_ships_as_the_base_drop_of_the_experiments():
+    shipped, asked = (v.read() for v in (_drops.variant(_drops.CASE), Setup().variant))
+    assert asked.derived.dt == pytest.approx(shipped.derived.dt, rel=1e-6)
+    assert asked.build.height == pytest.approx(shipped.build.height, rel=1e-2)
+    assert asked.build.height_step * _drops.COPIES == pytest.approx(asked.build.height, rel=1e-3)
+    assert asked.stop.time == pytest.approx(shipped.stop.time, rel=0.05)
+    changed = {"build", "stop", "record", "time", "derived"}
+    for name, section in asked.resolved().items():
+        if name not in changed:
+            assert section == shipped.resolved()[name], name
+
+
+def test_a_setup_asks_for_the_steps_and_stiffness_it_names():
+    assert Setup(steps=7.0).variant.read().derived.steps_per_contact == pytest.approx(7.0)
+    assert Setup(steps=5.0, parting="tension").variant.read().derived.steps_per_contact == pytest.approx(5.0)
+    assert Setup(d="20 cm", time="0.01 s").variant.read().derived.fixed.t_undamped == pytest.approx(0.01)
+    pair_of_one_dashpot = Setup(partner="free", one_dashpot=True).variant.read().derived
+    assert pair_of_one_dashpot.fixed.e == pytest.approx(0.7)
+    assert pair_of_one_dashpot.free.e < 0.65
+
+
+def test_fig4_holds_for_eq_8_and_for_nothing_else():
+    assert word("fig04", every(fig04)) is Word.REPRODUCED
+    assert word("fig04", every(fig04, time=1.5)) is Word.NOT
+    stiff_is_slow = {
+        one.variant: ideal(one, time=1.0 if one.k_n == fig04.SOFT else 1.0e6 * one.k_n)
+        for one in fig04.setups(QUICK)
+    }
+    assert word("fig04", stiff_is_slow) is Word.NOT
+
+
+def test_fig5_fails_where_the_time_differs_or_the_grain_stays():
+    assert word("fig05", every(fig05, time=0.93)) is Word.REPRODUCED
+    assert word("fig05", every(fig05, time=1.3)) is Word.NOT
+    stays = every(fig05, time=0.93)
+    stays[fig05.setup(fig05.choices(QUICK)[0], 0.1).variant] = ideal(Setup(k_n=0.1), ended=7)
+    (found,) = fig05.judge(stays, QUICK)
+    assert found.word is Word.NOT
+    assert "0.1 N/cm" in found.trials[0].note
+
+
+def test_half_the_mass_differs_too_much_from_the_whole():
+    assert word("pair", every(pair)) is Word.NOT
+    alike = {
+        one.variant: ideal(one, time=2**0.5 if one.partner == "free" else 1.0) for one in pair.setups(QUICK)
+    }
+    assert word("pair", alike) is Word.REPRODUCED
+
+
+def hits(plan, speed, overlap):
+    return {one: fig08.Hits(np.full(9, speed), np.full(9, overlap)) for one in fig08.saltating(plan)}
+
+
+def test_fig8_needs_a_harder_hit_than_a_saltating_grain_gives():
+    soft = hits(QUICK, 0.3, 0.0042)
+    (found,) = fig08.judge(every(fig08) | soft, QUICK)
+    assert found.word is Word.NOT
+    assert "asks for 0.72 m/s" in found.decided_by
+    assert word("fig08", every(fig08, overlap=2.4) | soft) is Word.ONLY_IF
+    assert word("fig08", every(fig08, overlap=2.4) | hits(QUICK, 0.72, 0.01)) is Word.REPRODUCED
+    (swept,) = fig08.judge(every(fig08, STANDARD) | hits(STANDARD, 0.3, 0.0042), STANDARD)
+    assert swept.word is Word.ONLY_IF
+    assert swept.condition.startswith(
+        "impact speed (fig8) 0.7 m/s or impact speed (fig8) 0.6 m/s, restitution"
+    )
+
+
+def test_fig11_holds_between_a_soft_and_a_hard_hit():
+    assert word("fig11", every(fig11)) is Word.REPRODUCED
+    assert word("fig11", every(fig11, overlap=5.0)) is Word.NOT
+    (swept,) = fig11.judge(every(fig11, STANDARD), STANDARD)
+    assert swept.condition.startswith("impact speed (fig11) 0.1 m/s to 0.7 m/s")
+
+
+def test_the_band_of_the_runs_is_that_of_the_closed_form():
+    found = every(fig11, STANDARD)
+    springs = fig08.stiffnesses(STANDARD)
+    edges = fig11.band(_drops.SIZES, springs, _drops.SPEED, found)
+    for d, k in zip(_drops.SIZES, edges.k_low, strict=True):
+        assert Setup(d=d, k_n=k / 100.0).deepest == pytest.approx(0.01, rel=1e-6)
+
+
+@pytest.mark.parametrize("plan", [QUICK, STANDARD])
+def test_two_times_that_differ_by_100_do_not_fit_a_band_of_10(plan):
+    (found,) = fig12.judge(every(fig12, plan), plan)
+    assert found.word is Word.CONTRADICTS
+    assert "100" in found.contradiction
+
+
+def test_fig12_would_hold_if_overlaps_were_alike():
+    alike = every(fig12)
+    for one in fig12.setups(QUICK)[:2]:
+        alike[one.variant] = ideal(one, overlap=0.005 / one.deepest)
+    assert word("fig12", alike) is Word.REPRODUCED
+
+
+def test_the_rule_of_ten_steps_wants_both_sides_of_ten():
+    always_right = every(steps)
+    (found,) = steps.judge(always_right, QUICK)
+    assert [one.holds for one in found.base] == [True, False]
+    off_below = {one.variant: ideal(one, e=0.8 if one.steps < 10 else 0.72) for one in steps.setups(QUICK)}
+    (found,) = steps.judge(off_below, QUICK)
+    assert [one.holds for one in found.base] == [True, True]
+    off_at_ten = {one.variant: ideal(one, e=0.8) for one in steps.setups(QUICK)}
+    (found,) = steps.judge(off_at_ten, QUICK)
+    assert [one.holds for one in found.base] == [False, True]
+
+
+@pytest.mark.parametrize("parting", ["no tension", "tension"])
+@pytest.mark.parametrize("summed", [False, True])
+def test_forward_differences_reach_the_restitution_asked_for_in_small_steps(parting, summed):
+    errors = [np.abs(steps.forward(n, parting, summed) - 0.7).max() for n in (200, 400, 800)]
+    assert errors[2] < 0.01
+    assert errors[0] > 1.5 * errors[1] > 2.25 * errors[2]
+
+
+def test_forward_differences_gain_energy_at_ten_steps():
+    assert steps.forward(10, "tension", summed=False).min() > 1.0
+    assert steps.forward(10, "no tension", summed=False).min() > 1.0
+    assert steps.forward(20, "tension", summed=False).max() < 1.0  # beyond pi/(2 zeta), which is 14
+
+
+def test_the_runs_of_steps_keep_restitution_at_ten_and_lose_it_at_five(tmp_path):
+    campaign = carry_out(("steps",), QUICK, tmp_path)
+    assert not campaign.problems
+    found = campaign.found["steps"]
+    at = {one.steps: found[one.variant] for one in steps.setups(QUICK)}
+    assert all(one.parts for one in at.values())
+    assert np.abs(at[10.0].e - 0.7).max() < 0.03
+    assert np.abs(at[5.0].e - 0.7).max() > 0.05
+    assert np.abs(at[50.0].time / at[50.0].eq_8 - 0.929).max() < 5e-3
+    assert np.ptp(at[50.0].e) > 0.0  # the copies touch at different phases
+    for picture in steps.draw(found, QUICK).values():
+        picture.canvas.draw()

@@ -1,0 +1,51 @@
+import pytest
+
+from ryusa.errors import CaseError
+from ryusa.studies.osada2004 import NAMES, Level, Plan, Variant, carry_out, load, variant
+from ryusa.studies.osada2004.paper import CLAIMS
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("level", list(Level))
+def test_every_experiment_has_its_parts_and_its_cases_can_be_read(name, level):
+    experiment = load(name)
+    assert experiment.FIGURE
+    assert experiment.TITLE
+    assert set(experiment.CLAIMS) <= set(CLAIMS)
+    assert experiment.CLAIMS
+    runs = list(dict.fromkeys(experiment.cases(Plan(level, (1,)))))
+    folders = [one.folder for one in runs]
+    assert len(folders) == len(set(folders))
+    for one in runs:
+        one.read()
+
+
+def test_every_claim_is_judged_once():
+    judged = [claim for name in NAMES for claim in load(name).CLAIMS]
+    assert sorted(judged) == sorted(CLAIMS)
+
+
+def test_a_higher_level_runs_all_that_a_lower_one_runs():
+    for name in NAMES:
+        quick, standard, full = (set(load(name).cases(Plan(level, (1,)))) for level in Level)
+        assert quick <= standard <= full, name
+
+
+def test_an_unknown_experiment_is_named():
+    with pytest.raises(CaseError, match="fig99"):
+        load("fig99")
+
+
+def test_variants_with_the_same_overrides_are_one_run_whatever_their_order():
+    one = variant("saltation", {"motion.rotation": "free", "contact.stiffness": "1 N/cm"}, 2)
+    other = variant("saltation", {"contact.stiffness": "1 N/cm", "motion.rotation": "free"}, 2)
+    assert one == other
+    assert one.folder == other.folder
+    assert one != variant("saltation", {"contact.stiffness": "1 N/cm", "motion.rotation": "free"}, 3)
+    assert Variant("saltation").folder.startswith("saltation/")
+
+
+def test_nothing_to_run_is_a_campaign_too(tmp_path):
+    found = carry_out((), Plan(), tmp_path)
+    assert found.found == {}
+    assert found.n_run == 0

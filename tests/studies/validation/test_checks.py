@@ -1,0 +1,68 @@
+"""Every check, as far as it can be told without a long run; all of the quick level where slow tests run."""
+
+import numpy as np
+import pytest
+
+from ryusa.studies.validation import NAMES, Word, load, relative, terminal_velocity
+from ryusa.studies.validation.ledger import make
+from ryusa.studies.validation.suspension import expected, exponent
+from ryusa.study import Level, Variant, Work
+
+LEVELS = (Level.QUICK, Level.FULL)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_check_names_its_runs_and_what_they_cost(name):
+    check = load(name)
+    assert check.TITLE
+    for level in LEVELS:
+        runs = check.runs(level)
+        assert all(isinstance(one, Work) for one in runs)
+        assert len({one.folder for one in runs}) == len(set(runs))
+        assert all(one.cost() > 0.0 for one in runs)
+        if any(isinstance(one, Variant) for one in runs):
+            assert check.measure
+
+
+def test_quick_is_quick():
+    works = {one for name in NAMES for one in load(name).runs(Level.QUICK)}
+    assert sum(one.cost() for one in works) < 240.0  # core seconds, by rule of thumb
+
+
+@pytest.mark.slow
+def test_every_check_of_the_quick_level_is_within(tmp_path):
+    made = make(None, Level.QUICK, tmp_path, jobs=2)
+    assert {one.id: one.word for one in made.rows if one.word not in (Word.WITHIN, Word.SHOWN)} == {}
+    assert len({one.id for one in made.rows}) == len(made.rows)
+
+
+@pytest.mark.parametrize(
+    ("d", "schiller", "sphere", "sand"),
+    [(1e-4, 0.0080, 0.0080, 0.0075), (1e-3, 0.1551, 0.1846, 0.1263), (6e-3, 0.5425, 0.5591, 0.3559)],
+)
+def test_roots_are_those_of_the_known_table(d, schiller, sphere, sand):
+    laws = terminal_velocity.LAWS
+    asked = {"Schiller-Naumann": schiller, "Ferguson-Church sphere": sphere, "Ferguson-Church sand": sand}
+    for law, speed in asked.items():
+        assert terminal_velocity.root(laws[law][1], d) == pytest.approx(speed, abs=6e-5)
+
+
+@pytest.mark.parametrize(
+    ("law", "stokes", "newton"),
+    [("none", 2.0, 1.5), ("power 3.1", 5.1, 3.05), ("Wen-Yu", 4.65, 2.325), ("Di Felice", 4.7, 2.35)],
+)
+def test_exponents_are_those_of_the_table_in_hindrance(law, stokes, newton):
+    assert exponent(law, "stokes", "stress") == pytest.approx(stokes)
+    assert exponent(law, "newton", "stress") == pytest.approx(newton)
+
+
+def test_a_bed_of_ergun_settles_the_same_under_both_forms():
+    phi = np.array([0.3, 0.45])
+    assert expected("Gidaspow", "newton", "stress", phi) == pytest.approx(
+        expected("Gidaspow", "newton", "weight", phi)
+    )
+
+
+def test_no_reference_gives_no_number():
+    assert np.isnan(relative([], []))
+    assert np.isnan(relative([1.0], [0.0]))

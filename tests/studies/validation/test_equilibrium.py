@@ -1,0 +1,95 @@
+"""How debris flows are judged, from runs made up in closed form."""
+
+import math
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from ryusa.build import scene
+from ryusa.laws.debris import equilibrium_concentration
+from ryusa.model import EVENT
+from ryusa.studies.validation import Word, equilibrium
+from ryusa.study import Level
+
+D, RHO = 4.0e-3, 2650.0
+COLUMNS, LAYERS = 4, 10
+
+
+@pytest.fixture
+def run():
+    """A block of cubic layers of grains; speeds [m/s] of the layers, shape (n_frame, LAYERS)."""
+
+    def build(speeds, gravity, water=None, interval=0.01):
+        a, b, c = (g.ravel() for g in np.meshgrid(*map(np.arange, (COLUMNS, COLUMNS, LAYERS)), indexing="ij"))
+        x = (np.column_stack([a, b, c]) + 0.5) * D
+        fixed, _ = scene(
+            x, D, density=RHO, period=(COLUMNS * D, COLUMNS * D), plane_case=False, stiffness=1000.0,
+        )  # fmt: skip
+        fixed = replace(fixed, gravity=np.array(gravity))
+        speeds = np.asarray(speeds)
+        v = np.zeros((len(speeds), len(x), 3))
+        v[:, :, 0] = speeds[:, c]
+        t = interval * np.arange(len(speeds))
+        return SimpleNamespace(
+            case={"record": {"settle": 0.0}},
+            frames=SimpleNamespace(t=t, x=np.broadcast_to(x, v.shape), v=v, omega=0.0 * v),
+            contacts=np.zeros(0, EVENT), scene=fixed, scene_at=lambda _: fixed, tally={}, water=water,
+        )  # fmt: skip
+
+    return build
+
+
+def test_friction_is_what_stops_the_grains_that_move(run):
+    down, into, friction, still = 3.0, 9.0, 0.5, 4
+    t = 0.01 * np.arange(60)
+    moving = np.maximum(1.0 - (friction * into - down) * t, 0.0)  # the upper layers as a block
+    speeds = np.where(np.arange(LAYERS) < still, 0.0, moving[:, None])
+    found = equilibrium.stopping(run(speeds, [down, 0.0, -into]))
+    assert found["friction"] == pytest.approx(friction, rel=1e-6)
+
+
+def test_a_flow_holds_what_lies_between_bed_and_surface(run):
+    z = (np.arange(200) + 0.5) * 0.1 * D
+    speed = np.maximum(np.arange(LAYERS) - 4.0, 0.0)  # the bed ends in the fifth layer
+    surface, u_top = 12.0 * D, 10.0
+    water = SimpleNamespace(
+        t=0.01 * np.arange(20), z=z, faces=0.1 * D * np.arange(201), u=np.full((20, 200), u_top),
+        tau=np.zeros((20, 201)), z_surface=np.full(20, surface),
+    )  # fmt: skip
+    gravity = [1.0, 0.0, -9.0]
+    found = equilibrium.flowing(run(np.tile(speed, (20, 1)), gravity, water))
+    bed = found["bed"] * D
+    assert 4.5 * D < bed < 5.5 * D
+    above = (math.pi / 6.0) * (10.0 * D - bed)  # nearly: cubic layers
+    assert found["c"] == pytest.approx(above / (surface - bed), rel=0.1)
+    solid = found["c"] * found["depth"]
+    mu = (1000.0 * found["depth"] + 1650.0 * solid) / (9.0 * 1650.0 * solid)
+    assert found["mu"] == pytest.approx(mu, rel=1e-9)
+    assert found["error"] == pytest.approx(0.0, abs=1e-9)
+    assert found["faster"] == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize(("factor", "word"), [(1.0, Word.WITHIN), (2.0, Word.MISSED)])
+def test_concentrations_are_held_against_the_friction_of_the_dry_flow(factor, word):
+    friction = 0.55
+    *wet, dry = equilibrium.runs(Level.FULL)
+    found: dict = {dry: {"friction": friction, "time": 0.5}}
+    for one in wet:
+        slope = math.radians(float(one.get("motion.slope_angle").split()[0]))
+        c = factor * equilibrium_concentration(slope, math.atan(friction), RHO, 1000.0)
+        found[one] = {
+            "slope": slope, "c": c, "error": 0.01, "c_tenth": c, "faster": 0.0, "depth": 10.0, "speed": 1.0,
+            "water": 0.01, "mu": friction, "densest": 0.6, "bed": 5.0,
+            "z": np.arange(1.0, 10.0), "u": np.ones(9),
+        }  # fmt: skip
+    made, velocity = equilibrium.compare(found, Level.FULL)
+    assert made.errors[0].value == pytest.approx(factor - 1.0, abs=1e-9)
+    assert made.word is word
+    assert velocity.word is Word.SHOWN
+
+
+def test_nothing_is_run_at_the_quick_level():
+    assert not equilibrium.runs(Level.QUICK)
+    assert not equilibrium.compare({}, Level.QUICK)

@@ -1,0 +1,214 @@
+"""What `make` and `write` do with checks that are right, wrong, broken, or cut short."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+from ryusa.report import validation as page
+
+from ryusa.errors import ResultsError
+from ryusa.figures.comparison import Axis, Curve
+from ryusa.studies.validation import Comparison, Error, Known, Source, Tolerance, Word, at_most, case_run
+from ryusa.studies.validation.ledger import make, table, write
+from ryusa.study import Level, calculation
+
+CALLS = []
+
+
+def parabola(n):
+    CALLS.append(n)
+    x = np.linspace(0.0, 1.0, n)
+    return {"x": x, "y": x**2}
+
+
+class Fake:
+    """A check of two calculations."""
+
+    TITLE = "Fake <b>"
+
+    def __init__(self, factor=1.0, trouble=None, works=None):
+        self.factor, self.trouble, self.works = factor, trouble, works
+
+    def runs(self, level):
+        return self.works or [calculation(parabola, n=n) for n in (5, 9 if level is Level.QUICK else 17)]
+
+    def compare(self, found, level):
+        if self.trouble:
+            raise self.trouble
+        ours = list(found.values())[-1]
+        error = float(np.abs(self.factor * ours["y"] - ours["x"] ** 2).max())
+        return [
+            Comparison(
+                "square", "Square & <i>", Source("y = x^2"), Axis("x"), Axis("y", "m"),
+                [Curve("ours", ours["x"], self.factor * ours["y"])],
+                [Curve("law", ours["x"], ours["x"] ** 2)],
+                [Error("largest difference", error, "m", at_most(0.1, "a tenth"))], said="it is a square",
+            )
+        ]  # fmt: skip
+
+
+@pytest.fixture
+def checks(monkeypatch):
+    known = {}
+    monkeypatch.setattr(page, "load", known.__getitem__)
+    monkeypatch.setattr(page, "NAMES", known)
+    CALLS.clear()
+    return known
+
+
+def test_a_second_call_opens_what_was_computed_and_gives_the_same(checks, tmp_path):
+    checks["one"] = Fake()
+    first = make(None, Level.FULL, tmp_path)
+    second = make(None, Level.FULL, tmp_path)
+    assert CALLS == [5, 17]
+    assert second.counts["runs_opened"] == 2
+    assert [one.plain(tmp_path) for one in second.rows] == [one.plain(tmp_path) for one in first.rows]
+    make(None, Level.FULL, tmp_path, again=True)
+    assert CALLS == [5, 17, 5, 17]
+
+
+def test_an_interrupted_validation_goes_on_where_it_stopped(checks, tmp_path, monkeypatch):
+    checks["one"] = Fake()
+    real = page.carry_out
+
+    def stops(*words, say=None, **how):
+        class Stop(page.Say):
+            def done(self, *_):
+                raise KeyboardInterrupt
+
+        return real(*words, say=Stop(), **how)
+
+    monkeypatch.setattr(page, "carry_out", stops)
+    with pytest.raises(KeyboardInterrupt):
+        make(None, Level.FULL, tmp_path)
+    assert CALLS == [5]
+    monkeypatch.setattr(page, "carry_out", real)
+    made = make(None, Level.FULL, tmp_path)
+    assert CALLS == [5, 17]
+    assert made.rows[0].word is Word.WITHIN
+
+
+def test_damaged_numbers_are_computed_anew(checks, tmp_path):
+    checks["one"] = Fake()
+    make(None, Level.FULL, tmp_path)
+    next(tmp_path.glob("runs/*/*5*/numbers.npz")).write_bytes(b"PK half")
+    assert make(None, Level.FULL, tmp_path).rows[0].word is Word.WITHIN
+    assert len(CALLS) == 3
+
+
+def test_a_curve_that_is_too_far_off_is_missed(checks, tmp_path):
+    checks["one"] = Fake(factor=1.5)
+    made = make(None, Level.QUICK, tmp_path)
+    (row,) = made.plain()["comparisons"]
+    assert row["verdict"] == "missed"
+    assert row["errors"][0]["value"] == pytest.approx(0.5)
+    assert row["errors"][0]["within"] is False
+    assert not made.problems and not made.faults  # computed in order: the number is the answer
+
+
+def test_an_error_in_one_check_costs_no_other(checks, tmp_path):
+    checks["bad"], checks["good"] = Fake(trouble=IndexError("no such row")), Fake()
+    checks["told"] = Fake(trouble=ResultsError("no steady state"))
+    made = make(None, Level.QUICK, tmp_path)
+    assert [one.word for one in made.rows] == [Word.UNDECIDED, Word.WITHIN, Word.UNDECIDED]
+    assert "IndexError: no such row" in made.rows[0].problem
+    assert set(made.traces) == {"bad: comparing"}
+    files = write(made)
+    assert "could not be judged" in files[0].read_text(encoding="utf-8")
+    assert "IndexError" in (tmp_path / made.log).read_text(encoding="utf-8")
+
+
+def broken():
+    raise ValueError("no root")
+
+
+def test_a_calculation_that_fails_leaves_its_check_unjudged_and_no_other(checks, tmp_path):
+    checks["bad"], checks["good"] = Fake(works=[calculation(broken)]), Fake()
+    made = make(None, Level.QUICK, tmp_path)
+    assert [one.word for one in made.rows] == [Word.UNDECIDED, Word.WITHIN]
+    assert "ValueError: no root" in next(iter(made.problems.values()))
+    assert made.traces
+
+
+def test_the_page_holds_its_pictures_and_escapes_words(checks, tmp_path):
+    checks["one"] = Fake()
+    files = write(make(None, Level.QUICK, tmp_path), tmp_path / "copy" / "validation.json")
+    assert [one.name for one in files] == [
+        "validation-quick.html",
+        "validation-quick.json",
+        "validation.json",
+    ]
+    text = files[0].read_text(encoding="utf-8")
+    assert "data:image/png;base64," in text
+    assert "Square &amp; &lt;i&gt;" in text
+    assert "<link" not in text and 'src="pictures' not in text
+    kept = json.loads(files[2].read_text(encoding="utf-8"))
+    assert kept["comparisons"][0]["ours"][0]["name"] == "ours"
+    assert table(kept).splitlines()[2].startswith("| one/square: Square")
+
+
+def test_a_part_never_replaces_the_whole(checks, tmp_path):
+    checks["one"], checks["two"] = Fake(), Fake()
+    assert make(["one"], Level.FULL, tmp_path).stem == "validation-part"
+    assert make(None, Level.FULL, tmp_path).stem == "validation"
+
+
+def test_what_is_no_number_is_missed():
+    assert Error("e", math.nan, "-", at_most(1.0, "why")).within is False
+    assert Error("e", 3.0, "-", Tolerance(1.0, math.inf, "why")).within is True
+
+
+def test_a_reference_from_memory_is_shown_and_must_not_decide():
+    line, axis = Curve("a", np.zeros(2), np.zeros(2)), Axis("x")
+    shown = Comparison(
+        "m", "M", Source("someone", Known.MEMORY), axis, axis, [line], [line], [Error("e", 1.0)]
+    )
+    assert shown.word is Word.SHOWN
+    with pytest.raises(ValueError, match="from memory"):
+        Comparison(
+            "m", "M", Source("someone", Known.MEMORY), axis, axis, [line], [line],
+            [Error("e", 1.0, "-", at_most(2.0, "why"))],
+        )  # fmt: skip
+
+
+class OfRuns:
+    """A check of two runs of a case file."""
+
+    TITLE = "Runs"
+    CASES = tuple(
+        case_run("saltation", {"stop.time": "0.01 s", "record.settle": "0 s", "seed": seed}, folder="paper")
+        for seed in ("1", "2")
+    )
+
+    def runs(self, level):
+        return self.CASES[: 1 if level is Level.QUICK else 2]
+
+    def measure(self, run, one):
+        assert one in self.CASES
+        return len(run.frames)
+
+    def compare(self, found, level):
+        count = np.array([float(n) for n in found.values()])
+        lines = [Curve("ours", count, count)]
+        errors = [Error("frames", count.min(), "-", Tolerance(1.0, math.inf, "more than none"))]
+        return [Comparison("frames", "Frames", Source("a count"), Axis("a"), Axis("b"), lines, lines, errors)]
+
+
+def test_runs_of_case_files_are_kept_and_opened(checks, tmp_path):
+    checks["runs"] = OfRuns()
+    quick = make(None, Level.QUICK, tmp_path)
+    assert (quick.counts["runs_made"], quick.counts["runs_opened"]) == (1, 0)
+    full = make(None, Level.FULL, tmp_path)
+    assert (full.counts["runs_made"], full.counts["runs_opened"]) == (1, 1)
+    assert full.rows[0].word is Word.WITHIN
+    assert len(list((tmp_path / "runs" / "saltation").glob("*/grains.vtkhdf"))) == 2
+
+
+def test_a_check_without_work_at_a_level_has_no_row(checks, tmp_path):
+    checks["one"], checks["later"] = Fake(), Fake()
+    checks["later"].runs = lambda _: []
+    checks["later"].compare = lambda *_: []
+    made = make(None, Level.QUICK, tmp_path)
+    assert [one.check for one in made.rows] == ["one"]
+    write(made)

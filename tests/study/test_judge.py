@@ -1,0 +1,110 @@
+import math
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from ryusa.studies.osada2004 import Band, Finding, Trial, Word, over_range, over_seeds, pool
+
+BAND = Band(1.0, 2.0, "m", "1 to 2 m")
+
+
+def trial(value, low=None, high=None, part="length", **choices):
+    found = over_range(
+        [value if low is None else low, value, value if high is None else high], "m", "3 tries"
+    )
+    return Trial(part, choices, found, BAND)
+
+
+def finding(*trials, contradiction=""):
+    return Finding("fig4", trials, "nothing", contradiction=contradiction)
+
+
+def test_an_interval_of_three_seeds_is_students():
+    values = [1.0, 2.0, 4.0]
+    found = over_seeds(values, "m")
+    low, high = stats.t.interval(0.95, 2, np.mean(values), stats.sem(values))
+    assert found.low == pytest.approx(low)
+    assert found.high == pytest.approx(high)
+
+
+def test_a_pooled_spread_counts_where_the_own_is_no_larger():
+    noisy, quiet = [1.0, 2.0, 3.0], [5.0, 5.1, 4.9]
+    spread = pool([noisy, quiet])
+    assert over_seeds(noisy, "m", spread) == over_seeds(noisy, "m")
+    assert over_seeds(quiet, "m", spread).high > over_seeds(quiet, "m").high
+    alike = [[1.0, 2.0, 3.0], [5.0, 6.1, 7.0], [2.0, 3.0, 3.9]]
+    assert over_seeds(alike[2], "m", pool(alike)).high < over_seeds(alike[2], "m").high
+
+
+@pytest.mark.parametrize("sigma", [1.0, 3.0])
+def test_a_setting_of_a_sweep_is_covered_even_where_it_scatters_three_times_as_much(sigma):
+    rng = np.random.default_rng(5)
+    hits: list[bool] = []
+    for _ in range(2000):
+        groups = [list(rng.normal(3.0, sigma if k == 0 else 1.0, 3)) for k in range(8)]
+        one = over_seeds(groups[0], "m", pool(groups))
+        hits.append(one.low <= 3.0 <= one.high)
+    assert np.mean(hits) > 0.92
+
+
+def test_intervals_hold_the_true_mean_as_often_as_they_say():
+    rng = np.random.default_rng(4)
+    hits = [over_seeds(list(rng.normal(3.0, 1.0, 3)), "m") for _ in range(2000)]
+    share = np.mean([one.low <= 3.0 <= one.high for one in hits])
+    assert 0.935 < share < 0.965
+
+
+def test_one_seed_has_no_interval_and_a_number_that_is_none_decides_nothing():
+    one = over_seeds([1.5], "m")
+    assert one.low == one.value == one.high
+    assert BAND.holds(over_seeds([1.5, math.nan], "m")) is None
+
+
+def test_a_band_wants_the_whole_interval_inside_or_outside():
+    assert trial(1.5, 1.2, 1.8).holds is True
+    assert trial(3.0, 2.5, 3.5).holds is False
+    assert trial(1.9, 1.7, 2.1).holds is None
+
+
+@pytest.mark.parametrize(
+    ("trials", "word"),
+    [
+        ([trial(1.5, phi="10 deg"), trial(1.6, phi="20 deg")], Word.REPRODUCED),
+        ([trial(1.5, phi="10 deg"), trial(3.0, phi="20 deg")], Word.ONLY_IF),
+        ([trial(3.0, phi="10 deg"), trial(1.5, phi="20 deg")], Word.ONLY_IF),
+        ([trial(3.0, phi="10 deg"), trial(4.0, phi="20 deg")], Word.NOT),
+        ([trial(1.9, 1.7, 2.1, phi="10 deg"), trial(4.0, phi="20 deg")], Word.UNDECIDED),
+        ([trial(1.5, phi="10 deg"), trial(1.9, 1.7, 2.1, phi="20 deg")], Word.REPRODUCED),
+        ([trial(1.5, part="height"), trial(3.0, part="length")], Word.NOT),
+        ([], Word.UNDECIDED),
+    ],
+)
+def test_one_rule_turns_trials_into_a_verdict(trials, word):
+    assert finding(*trials).word is word
+
+
+def test_what_the_equations_exclude_contradicts_them_whatever_was_run():
+    assert finding(trial(1.5), contradiction="a band of 10 cannot hold 100").word is Word.CONTRADICTS
+
+
+def test_the_condition_names_the_choices_under_which_a_claim_holds():
+    values = {"10 deg": 3.0, "20 deg": 1.2, "30 deg": 1.5, "40 deg": 3.0}
+    found = finding(*(trial(value, phi=phi, slip="spring") for phi, value in values.items()))
+    assert found.condition == "phi 20 deg to 30 deg (2 of 4 settings)"
+
+
+def test_a_decided_trial_needs_no_number():
+    wall = Trial("slope", {}, over_seeds([math.nan], "deg"), BAND, decided=False, note="stands as a wall")
+    assert wall.holds is False
+
+
+def test_a_condition_names_no_combination_that_fails():
+    held = {
+        ("10 deg", "total"): 1.5,
+        ("20 deg", "spring"): 1.5,
+        ("10 deg", "spring"): 3.0,
+        ("20 deg", "total"): 3.0,
+    }
+    found = finding(*(trial(value, phi=phi, slip=slip) for (phi, slip), value in held.items()))
+    assert found.condition == "as it ships or phi 20 deg, slip spring (2 of 4 settings)"

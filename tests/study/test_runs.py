@@ -1,0 +1,371 @@
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+
+from ryusa.errors import CaseError, NotANumber, ResultsError
+from ryusa.running import runner
+from ryusa.studies.osada2004 import (
+    Lines,
+    Outlook,
+    Plan,
+    Say,
+    _campaign,
+    carry_out,
+    outlook,
+    variant,
+)
+from ryusa.study import cost as cost_module
+from ryusa.study import runs as runs_module
+
+SHORT = {"stop.time": "0.01 s", "record.settle": "0 s"}
+
+
+class Fake:
+    """An experiment of two short runs."""
+
+    FIGURE = TITLE = "fake"
+    CLAIMS = ("fig20", "fig20-shear")
+
+    def __init__(self, trouble=None, seeds=(1, 2)):
+        self.trouble, self.seeds = trouble, seeds
+
+    def cases(self, plan):
+        del plan
+        return [variant("saltation", SHORT, seed) for seed in self.seeds]
+
+    def measure(self, run, one):
+        if self.trouble is not None and one.get("seed") == "2":
+            raise self.trouble
+        return len(run.frames)
+
+
+@pytest.fixture
+def fakes(monkeypatch):
+    known = {}
+    monkeypatch.setattr(_campaign, "load", known.__getitem__)
+    return known
+
+
+def test_an_interrupted_campaign_goes_on_where_it_stopped(fakes, tmp_path):
+    fakes["one"] = Fake(KeyboardInterrupt())
+    with pytest.raises(KeyboardInterrupt):
+        carry_out(("one",), Plan(), tmp_path)
+    fakes["one"] = Fake()
+    second = carry_out(("one",), Plan(), tmp_path)
+    assert second.n_opened == 2  # the interrupt came while the second was measured, its run was finished
+    assert second.n_run == 0
+    assert len(second.found["one"]) == 2
+    assert carry_out(("one",), Plan(), tmp_path, again=True).n_run == 2
+
+
+def test_a_damaged_or_unfinished_run_is_made_anew(fakes, tmp_path):
+    fakes["one"] = Fake()
+    carry_out(("one",), Plan(), tmp_path)
+    first, second = (tmp_path / one.folder for one in fakes["one"].cases(Plan()))
+    about = first / "provenance.json"
+    about.write_text(about.read_text().replace('"complete"', '"running"'))
+    shutil.rmtree(second)
+    assert carry_out(("one",), Plan(), tmp_path).n_run == 2
+
+
+def test_what_fails_in_one_experiment_spares_the_others(fakes, tmp_path):
+    fakes["good"], fakes["bad"] = Fake(), Fake(ResultsError("no hop at all"))
+    found = carry_out(("good", "bad"), Plan(), tmp_path)
+    assert found.n_run == 2
+    assert len(found.found["good"]) == 2
+    assert len(found.found["bad"]) == 1
+    assert list(found.problems.values()) == ["bad: no hop at all"]
+
+
+def test_an_error_in_the_program_costs_its_experiment_and_no_other(fakes, tmp_path):
+    fakes["good"], fakes["bad"] = Fake(), Fake(IndexError("list index out of range"))
+    found = carry_out(("good", "bad"), Plan(), tmp_path)
+    assert len(found.found["good"]) == 2
+    assert set(found.missing) == {"bad"}
+    (fault,) = found.missing["bad"].values()
+    assert "error in the program: IndexError: list index out of range (test_runs.py, line" in fault.words
+    assert "in measure)" in fault.words
+    assert fault.trace.startswith("Traceback")
+    assert list(found.problems.values()) == [f"bad: {fault.words}"]
+    fakes["bad"] = Fake()
+    assert carry_out(("good", "bad"), Plan(), tmp_path).n_opened == 2  # repaired: nothing is run again
+
+
+def test_a_worker_whose_answer_cannot_be_sent_spares_the_others(fakes, tmp_path, monkeypatch):
+    fakes["one"] = Fake()
+
+    def answer(one, *_, **__):
+        if one.get("seed") == "2":
+            raise TypeError("cannot pickle a generator")
+        return runs_module.Done(one, {"one": 1}, False, 1.0)
+
+    monkeypatch.setattr(runs_module, "_one", answer)
+    monkeypatch.setattr(runs_module, "ProcessPoolExecutor", lambda jobs, **_: ThreadPoolExecutor(jobs))
+    found = carry_out(("one",), Plan(), tmp_path, jobs=2)
+    assert len(found.found["one"]) == 1
+    assert [one.get("seed") for one in found.missing["one"]] == ["2"]
+    assert "cannot pickle" in next(iter(found.problems.values()))
+
+
+def test_a_run_stopped_on_the_way_goes_on_from_its_checkpoint(fakes, tmp_path, monkeypatch):
+    from ryusa.running import loop
+
+    fakes["one"] = Fake(seeds=(1,))
+    advance = loop.Loop._advance
+
+    def stopped(self, n_steps):
+        advance(self, n_steps)
+        self._heard.by = "the test"
+
+    with monkeypatch.context() as patch:
+        patch.setattr(loop.Loop, "_advance", stopped)
+        with pytest.raises(KeyboardInterrupt):
+            carry_out(("one",), Plan(), tmp_path)
+    assert carry_out(("one",), Plan(), tmp_path).n_run == 1
+    about = next(tmp_path.glob("*/*/provenance.json"))
+    assert [one["step"] for one in json.loads(about.read_text())["resumed"]] == [1]
+    carry_out(("one",), Plan(), tmp_path, again=True)
+    assert "resumed" not in json.loads(about.read_text())
+
+
+def test_a_run_that_failed_is_tried_again_and_it_alone(fakes, tmp_path, monkeypatch):
+    fakes["both"], fakes["first"] = Fake(), Fake(seeds=(1,))
+    real = runner.run
+
+    def breaks(case, *words, **how):
+        if case.seed == 2:
+            raise NotANumber("force is no number", grain=3, step=7, t=0.1, hint="Take shorter steps")
+        return real(case, *words, **how)
+
+    monkeypatch.setattr(runner, "run", breaks)
+    found = carry_out(("both", "first"), Plan(), tmp_path)
+    assert len(found.found["first"]) == 1
+    assert set(found.missing) == {"both"}
+    assert "grain 3" in next(iter(found.problems.values()))
+    assert not any(one.trace for one in found.missing["both"].values())  # no error in the program
+    monkeypatch.setattr(runner, "run", real)
+    second = carry_out(("both", "first"), Plan(), tmp_path)
+    assert (second.n_run, second.n_opened) == (1, 1)
+    assert len(second.found["both"]) == 2
+    assert not second.problems
+
+
+def test_a_run_that_breaks_down_while_stepping_is_no_finished_run(fakes, tmp_path):
+    limit = {**SHORT, "domain.overlap_limit": "1e-9", "stop.time": "0.3 s"}
+    fakes["one"] = Fake(seeds=())
+    fakes["one"].cases = lambda _: [variant("saltation", SHORT), variant("saltation", limit)]
+    for opened in (0, 1):
+        found = carry_out(("one",), Plan(), tmp_path)
+        assert found.n_opened == opened
+        assert len(found.found["one"]) == 1
+        assert "overlap" in next(iter(found.problems.values()))
+
+
+def test_an_answer_to_a_breakdown_that_goes_wrong_itself_is_told(fakes, tmp_path, monkeypatch):
+    def breaks(*_, **__):
+        raise NotANumber("force is no number", grain=3, step=7, t=0.1, hint="Take shorter steps")
+
+    def wrong(_):
+        raise ValueError("no answer")
+
+    fakes["answers"], fakes["errs"] = Fake(seeds=(1,)), Fake(seeds=(1,))
+    fakes["answers"].failed, fakes["errs"].failed = str, wrong
+    monkeypatch.setattr(runner, "run", breaks)
+    found = carry_out(("answers", "errs"), Plan(), tmp_path)
+    assert "grain 3" in next(iter(found.found["answers"].values()))
+    assert set(found.missing) == {"errs"}
+    assert "ValueError: no answer" in next(iter(found.problems.values()))
+
+
+def test_runs_that_do_not_fit_on_the_disk_are_refused_before_the_first(fakes, tmp_path, monkeypatch):
+    fakes["one"] = Fake()
+    monkeypatch.setattr(cost_module, "free_bytes", lambda _: 1000)
+    with pytest.raises(CaseError, match=r"2 runs need .* only 1 kB are free"):
+        carry_out(("one",), Plan(), tmp_path / "deep" / "er")
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_outlook_counts_what_is_there_and_never_ends_before_the_longest_run(tmp_path):
+    runs = [variant("saltation", SHORT, seed) for seed in range(1, 4)]
+    carry_out((), Plan(), tmp_path)
+    ahead = outlook([*runs, runs[0]], tmp_path, jobs=2)
+    assert len(ahead.costs) == 3
+    assert ahead.seconds == pytest.approx(ahead.core_seconds / 2)
+    assert outlook(runs, tmp_path, jobs=100).seconds == pytest.approx(max(ahead.costs.values()))
+    assert "3 runs to make: about" in str(ahead)
+    finished(tmp_path, runs[0], "a" * 40)
+    later = outlook(runs, tmp_path, jobs=2)
+    assert later.there == (runs[0],)
+    assert "(1 more are there and will be opened)" in str(later)
+    assert len(outlook(runs, tmp_path, jobs=2, again=True).costs) == 3
+
+
+def finished(place, one, commit, seed=None):
+    """Leave what the outlook reads of a finished run; of another case where a seed is given."""
+    folder = place / one.folder
+    folder.mkdir(parents=True, exist_ok=True)
+    about = {"status": "complete", "commit": commit, "ryusa": "0.0.1"}
+    (folder / "provenance.json").write_text(json.dumps(about))
+    case = variant(one.case, SHORT, seed) if seed else one
+    (folder / "case.json").write_text(json.dumps(case.read().resolved()))
+
+
+def test_a_folder_that_holds_another_case_is_run_again(tmp_path):
+    runs = [variant("saltation", SHORT, seed) for seed in (1, 2)]
+    finished(tmp_path, runs[0], "a" * 40, seed=7)
+    finished(tmp_path, runs[1], "a" * 40)
+    assert outlook(runs, tmp_path, jobs=1).there == (runs[1],)
+
+
+def test_the_outlook_says_which_runs_another_state_of_the_code_made(tmp_path, monkeypatch):
+    monkeypatch.setattr(cost_module.provenance, "commit", lambda: "c" * 40)
+    runs = [variant("saltation", SHORT, seed) for seed in range(1, 7)]
+    for one, commit in zip(runs, ["c" * 40, "a" * 40, "a" * 40, "c" * 40 + "+", None], strict=False):
+        finished(tmp_path, one, commit)
+    ahead = outlook(runs, tmp_path, jobs=1)
+    assert len(ahead.there) == 5
+    assert ahead.others == {"a" * 40: 2, "c" * 40 + "+": 1, "ryusa 0.0.1": 1}
+    said = str(ahead)
+    assert "than the present cccccccccccc made 4 of the 5 that are there (2 by aaaaaaaaaaaa, " in said
+    assert "1 by cccccccccccc with changes" in said
+    assert "--again makes all anew" in said
+    assert "anew" not in str(outlook(runs[:1], tmp_path, jobs=1))  # nothing of other code, nothing to say
+
+
+def test_a_campaign_counts_the_runs_of_other_code(fakes, tmp_path, monkeypatch):
+    fakes["one"] = Fake()
+    carry_out(("one",), Plan(), tmp_path)
+    about = next(tmp_path.glob("*/*/provenance.json"))
+    changed = json.loads(about.read_text()) | {"commit": "a" * 40}
+    about.write_text(json.dumps(changed))
+    monkeypatch.setattr(cost_module.provenance, "commit", lambda: "c" * 40)
+    found = carry_out(("one",), Plan(), tmp_path)
+    assert found.n_opened == 2
+    assert found.others["a" * 40] == 1
+    assert found.commits["a" * 40] == 1
+
+
+def test_a_law_of_rolling_resistance_costs_time():
+    rolls = {"rolling.model": "constant", "rolling.coefficient": "0.1"}
+    assert variant("fig19", rolls).cost() > 1.5 * variant("fig19").cost()
+
+
+def test_the_time_left_follows_from_how_long_the_finished_runs_took(capsys):
+    now = [0.0]
+    runs = [variant("saltation", SHORT, seed) for seed in range(1, 5)]
+    say = Lines(clock=lambda: now[0])
+    say.begin(Outlook(dict.fromkeys(runs, 10.0), (), 10**6, 2))
+    assert say.left() == pytest.approx(20.0)
+    say.started(runs[0])
+    say.started(runs[1])
+    now[0] = 20.0  # twice as slow as thought
+    say.done(runs[0], 20.0, opened=False, problem="")
+    say.done(runs[1], 20.0, opened=False, problem="grain 7 lost")
+    assert say.left() == pytest.approx(20.0)
+    say.started(runs[2])
+    now[0] = 35.0
+    assert say.left() == pytest.approx(20.0)  # the last one has not begun
+    say.tick()
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert "2/4 runs, about 20 s left, now: saltation 0 s 3 0.01 s" in said.err
+    assert "grain 7 lost" in said.err
+
+
+def test_who_says_nothing_needs_no_more(fakes, tmp_path):
+    fakes["one"] = Fake(seeds=(1,))
+    assert carry_out(("one",), Plan(), tmp_path, say=Say()).n_run == 1
+
+
+# -------------------------------------------------------------------------------------------------- signals
+
+
+def family(group):
+    """Processes of a group that are alive, with their command lines."""
+    found = {}
+    for place in Path("/proc").glob("[0-9]*"):
+        try:
+            stat = (place / "stat").read_text().rsplit(")", 1)[1].split()
+            if int(stat[2]) == group and stat[0] != "Z":
+                found[int(place.name)] = (place / "cmdline").read_text().replace("\0", " ")
+        except OSError:
+            continue
+    return found
+
+
+@pytest.fixture
+def campaign(tmp_path):
+    """A campaign of two runs at a time, while both are running."""
+    hears = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)"  # a CI job may not
+    words = ["-c", f"{hears}; from ryusa.cli import main; main()", "paper", "fig20", "--quick", "-j", "2"]
+    words += ["--seeds", "8"]  # enough runs that some are still under way when the first two are seen
+    process = subprocess.Popen(
+        [sys.executable, *words, "-o", tmp_path], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        start_new_session=True,
+    )  # fmt: skip
+    for _ in range(600):
+        if len(list(tmp_path.glob("runs/*/*/log.txt"))) >= 2:
+            break
+        assert process.poll() is None, process.communicate()
+        time.sleep(0.1)
+    yield process
+    if family(process.pid):
+        os.killpg(process.pid, signal.SIGKILL)
+    process.communicate()
+
+
+def gone(pid):
+    """Whether every process of the group ends, a moment for the system to clear up given."""
+    for _ in range(100):
+        if not family(pid):
+            return True
+        time.sleep(0.1)
+    return False
+
+
+needs_proc = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="reads /proc")
+
+
+@needs_proc
+@pytest.mark.parametrize("how", ["ctrl-c", "term"])
+def test_an_interrupt_ends_every_process_and_says_how_to_go_on(campaign, how):
+    if how == "ctrl-c":
+        os.killpg(campaign.pid, signal.SIGINT)  # a terminal tells the whole group
+    else:
+        campaign.terminate()
+    _, said = campaign.communicate(timeout=30)
+    assert campaign.returncode == 130
+    assert "the same command goes on from there" in said
+    assert "Traceback" not in said
+    assert gone(campaign.pid)
+
+
+@needs_proc
+def test_a_killed_process_is_told_and_nothing_hangs(campaign):
+    workers = [one for one, words in family(campaign.pid).items() if "spawn_main" in words]
+    os.kill(workers[0], signal.SIGKILL)
+    _, said = campaign.communicate(timeout=30)
+    assert campaign.returncode == 2
+    assert "ended from outside" in said
+    assert "running were: saltation" in said
+    assert "the same command goes on from there" in said.replace("\n", " ")
+    assert gone(campaign.pid)
+
+
+@needs_proc
+def test_no_process_outlives_a_killed_campaign(campaign):
+    campaign.kill()
+    campaign.wait(timeout=30)
+    for _ in range(300):
+        if not family(campaign.pid):
+            break
+        time.sleep(0.1)
+    assert not family(campaign.pid)
