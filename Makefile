@@ -20,9 +20,10 @@ PIP    := $(BIN)/python -m pip install -qq --disable-pip-version-check --constra
 HAS_PYTHON := $(VENV)/.has-python
 HAS_RYUSA  := $(VENV)/.has-ryusa
 HAS_TESTS  := $(VENV)/.has-tests
+HAS_DOCS   := $(VENV)/.has-docs
 
 .DEFAULT_GOAL := help
-.PHONY: help demo demo-run test check lint format types walls unit docs pictures bench paper paper-quick validate validate-quick faults fuzz soak slow constraints clean
+.PHONY: help demo demo-run test check lint format types walls unit docs site pictures bench paper paper-quick validate validate-quick faults fuzz soak slow constraints clean
 
 help: ## list these targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 22
@@ -48,6 +49,11 @@ $(HAS_RYUSA): pyproject.toml constraints.txt | $(HAS_PYTHON)
 $(HAS_TESTS): pyproject.toml constraints.txt | $(HAS_RYUSA)
 	@echo "installing what the tests need into $(VENV) (about 1 GB: vtk and the CUDA compiler are large)"
 	@$(PIP) --editable '.[test]'
+	@touch $@
+
+$(HAS_DOCS): pyproject.toml constraints.txt | $(HAS_TESTS)
+	@echo "installing what the documentation site needs into $(VENV)"
+	@$(PIP) --editable '.[docs]'
 	@touch $@
 
 # ---------------------------------------------------------------------------------------------------------- demo
@@ -121,6 +127,9 @@ format: $(HAS_TESTS) ## let ruff format and repair what it can
 
 docs: $(HAS_RYUSA) ## write docs/case-file.md, commands.md and the table of validation.md anew
 	$(BIN)/python docs/generate.py
+
+site: $(HAS_DOCS) ## the documentation as a site: build/site/index.html; every warning is an error
+	$(BIN)/python docs/site/make.py build/site
 
 pictures: $(HAS_RYUSA) ## draw docs/pictures anew from the runs in runs/paper; makes those that are missing
 	$(BIN)/ryusa paper fig20 --full -o $(PAPER) --jobs $(JOBS)

@@ -227,12 +227,39 @@ def _between_markers(page: Path, generated: str) -> str:
     return f"{head}{BEGIN}\n\n{generated}\n{END}{tail}"
 
 
+def stale() -> list[Path]:
+    """Pages that are not as the code has them."""
+    return [page for page, text in pages().items() if not page.exists() or page.read_text("utf-8") != text]
+
+
+def undocumented() -> list[str]:
+    """Keys of the case file, commands and options without a description."""
+    from ryusa.casefile.read import json_schema
+
+    schema = json_schema()
+    found: list[str] = []
+    for place, model in [("", schema), *((f"{name}: ", one) for name, one in schema["$defs"].items())]:
+        for key, about in model.get("properties", {}).items():
+            inner = [schema["$defs"][name] for name in _inner_models(about)]
+            if not about.get("description") and not any(one.get("description") for one in inner):
+                found.append(f"case key {place}{key}: no description")
+    for name, command in commands().items():
+        if not command.help:
+            found.append(f"ryusa {name}: no help")
+        found += [
+            f"ryusa {name} {'/'.join(parameter.opts)}: no help"
+            for parameter in command.params
+            if _parameter(parameter) and not parameter.help
+        ]
+    return found
+
+
 def main() -> None:
     """Write every page that is not as it should be."""
-    for page, text in pages().items():
-        if not page.exists() or page.read_text(encoding="utf-8") != text:
-            page.write_text(text, encoding="utf-8")
-            print(f"wrote {page.relative_to(HERE.parent)}")
+    current = pages()
+    for page in stale():
+        page.write_text(current[page], encoding="utf-8")
+        print(f"wrote {page.relative_to(HERE.parent)}")
 
 
 if __name__ == "__main__":

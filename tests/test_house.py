@@ -101,7 +101,7 @@ def test_every_dependency_has_its_line_in_the_design_note() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     note = (ROOT / "design" / "0002-dependencies.md").read_text(encoding="utf-8")
     extras = project["optional-dependencies"]
-    for need in [*project["dependencies"], *extras["test"]]:
+    for need in [*project["dependencies"], *extras["test"], *extras["docs"]]:
         name = re.match(r"[A-Za-z0-9_-]+", need)
         assert name is not None
         assert re.search(rf"^\| [^|]*\b{re.escape(name.group())}\b", note, flags=re.MULTILINE), need

@@ -38,7 +38,7 @@ def test_the_gate_case_runs_and_its_gate_can_be_removed(blocks, tmp_path):
 
 
 def test_the_table_case_runs(blocks, tmp_path):
-    (csv,) = [text for kind, text in blocks if kind == "csv"]
+    (csv,) = [text for kind, text in blocks if kind == "text"]
     (tmp_path / "grains.csv").write_text(csv, encoding="utf-8")
     head = blocks[0][1].split("[rolling]")[0]
     path = tmp_path / "table.toml"

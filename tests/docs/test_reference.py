@@ -55,7 +55,12 @@ def test_every_dataset_of_a_contact_is_documented() -> None:
 def test_links_between_pages_lead_somewhere() -> None:
     root = DOCS.parent
     broken: list[str] = []
-    for page in [root / "README.md", *DOCS.glob("*.md"), *(root / "design").glob("*.md")]:
+    for page in [
+        root / "README.md",
+        root / "CONTRIBUTING.md",
+        *DOCS.glob("*.md"),
+        *(root / "design").glob("*.md"),
+    ]:
         for target in re.findall(r"\]\(([^)#\s]+)[^)]*\)", page.read_text(encoding="utf-8")):
             if "://" not in target and not (page.parent / target).exists():
                 broken.append(f"{page.relative_to(root)}: {target}")

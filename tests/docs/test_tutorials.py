@@ -33,7 +33,9 @@ def play(page: Path) -> None:
             assert done.returncode == 0, f"{page.name}:{line}: ryusa {command}\n{done.stdout}{done.stderr}"
 
 
-@pytest.mark.parametrize("name", ["docs/saltation.md", "docs/theory.md", "README.md"])
+@pytest.mark.parametrize(
+    "name", ["docs/getting-started.md", "docs/saltation.md", "docs/theory.md", "README.md"]
+)
 def test_a_page_runs_from_top_to_bottom(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     page = ROOT / name
     assert list(blocks(page)), "a page that promises to run has blocks"

@@ -1,0 +1,93 @@
+"""Settings of the documentation site; `make site` builds it (see `make.py` beside this file)."""
+
+import os
+import sys
+from pathlib import Path
+
+import numba
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+from docstrings import setup as docstrings_setup
+
+# ---------------------------------------------------------------------------------------- compiled functions
+
+
+def _plain(*args, **_options):
+    """Stand in for `numba.njit`: keep a function as it is, with its signature and docstring."""
+
+    def keep(function):
+        function.py_func = function
+        return function
+
+    return keep(args[0]) if args and callable(args[0]) else keep
+
+
+numba.njit = _plain
+os.environ["NUMBA_DISABLE_JIT"] = "1"
+
+import ryusa
+
+# --------------------------------------------------------------------------------------------------- content
+
+project = "ryusa"
+author = "The ryusa developers"
+copyright = "2026, the ryusa developers"
+version = release = ryusa.__version__
+root_doc = "index"
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "numpydoc",
+    "sphinx.ext.viewcode",
+    "sphinx_design",
+]
+myst_enable_extensions = ["colon_fence", "deflist", "attrs_inline"]
+myst_heading_anchors = 4
+default_role = "code"
+nitpicky = True
+# Only names of ryusa have pages here; types of Python, NumPy and other packages are shown without a link.
+nitpick_ignore_regex = [(r"py:.*", r"(?!ryusa\.).*")]
+
+# ------------------------------------------------------------------------------------------------- reference
+
+autodoc_member_order = "bysource"
+autodoc_typehints = "signature"
+autodoc_preserve_defaults = True
+python_use_unqualified_type_names = True
+python_display_short_literal_types = True
+add_module_names = False
+numpydoc_show_class_members = False
+numpydoc_xref_param_type = False
+maximum_signature_line_length = 90
+toc_object_entries_show_parents = "hide"
+
+# ------------------------------------------------------------------------------------------------------ look
+
+html_theme = "pydata_sphinx_theme"
+html_title = "ryusa"
+html_static_path = ["static"]
+html_css_files = ["site.css"]
+html_show_sourcelink = False
+html_copy_source = False
+html_theme_options = {
+    "logo": {"text": "ryusa 流砂"},
+    "header_links_before_dropdown": 8,
+    "navigation_depth": 3,
+    "show_nav_level": 1,
+    "show_toc_level": 2,
+    "navbar_align": "left",
+    "navbar_end": ["theme-switcher"],
+    "navbar_persistent": ["search-button"],
+    "footer_start": ["copyright"],
+    "footer_end": ["theme-version"],
+    "secondary_sidebar_items": ["page-toc"],
+    "pygments_light_style": "tango",
+    "pygments_dark_style": "monokai",
+}
+html_sidebars = {"index": [], "getting-started": [], "gallery": [], "glossary": []}
+
+
+def setup(app):
+    """Connect what turns the docstrings of ryusa into what numpydoc reads."""
+    docstrings_setup(app)

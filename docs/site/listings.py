@@ -1,0 +1,75 @@
+"""Pages that list what the package holds: every law, every packaged case."""
+
+import ast
+import importlib
+import re
+from importlib import resources
+from pathlib import Path
+
+import api
+
+
+def laws_page() -> str:
+    """Every law with its one-line description and its source, by module."""
+    lines = [
+        "# All laws",
+        "",
+        "Every function of `ryusa.laws` that carries the decorator `@law`: scalars in, scalars out, SI "
+        "units, compiled for the CPU and for CUDA from the same text. The name leads to the full docstring "
+        "with parameters, source and a worked number; [Theory](theory.md) says how the laws belong together.",
+    ]
+    for name in api.modules():
+        if not name.startswith("ryusa.laws."):
+            continue
+        module = importlib.import_module(name)
+        tree = ast.parse(Path(module.__file__ or "").read_text(encoding="utf-8"))
+        laws = [node for node in tree.body if isinstance(node, ast.FunctionDef) and _is_law(node)]
+        if not laws:
+            continue
+        about = (ast.get_docstring(tree) or "").split("\n\n")[0].replace("\n", " ")
+        lines += [
+            "",
+            f"## {name.removeprefix('ryusa.')}",
+            "",
+            about,
+            "",
+            "| law | what it gives | source |",
+            "|---|---|---|",
+        ]
+        for node in laws:
+            text = ast.get_docstring(node) or ""
+            first = " ".join(text.split("\n\n")[0].split())
+            link = f"{{py:func}}`{node.name} <{name}.{node.name}>`"
+            lines.append(f"| {link} | {_plain(first)} | {_plain(_source(text))} |")
+    return "\n".join([*lines, ""])
+
+
+def _is_law(node: ast.FunctionDef) -> bool:
+    return not node.name.startswith("_") and any(
+        isinstance(d, ast.Name) and d.id == "law" for d in node.decorator_list
+    )
+
+
+def _source(text: str) -> str:
+    found = re.search(r"Source: (.*?)(?:[;.](?:\s|$)|, \(|\n\n)", text, flags=re.DOTALL)
+    return " ".join(found[1].split()) if found else ""
+
+
+def _plain(text: str) -> str:
+    return re.sub(r"([|*_])", r"\\\1", text) if "`" not in text else text.replace("|", "\\|")
+
+
+def cases_page() -> str:
+    """Every packaged case in full, with the command that writes it."""
+    lines = [
+        "# Packaged cases",
+        "",
+        "`ryusa new KIND` writes one of these files, commented, as a start for a case of your own.",
+    ]
+    folder = resources.files("ryusa") / "cases"
+    for entry in sorted(folder.iterdir(), key=lambda one: one.name):
+        if entry.name.endswith(".toml"):
+            kind = entry.name.removesuffix(".toml")
+            lines += ["", f"## {kind}", "", "```sh", f"ryusa new {kind}", "```", "", "```toml"]
+            lines += [entry.read_text(encoding="utf-8").rstrip(), "```"]
+    return "\n".join([*lines, ""])
