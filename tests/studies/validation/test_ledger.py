@@ -5,11 +5,11 @@ import math
 
 import numpy as np
 import pytest
-from ryusa.report import validation as page
 
 from ryusa.errors import ResultsError
 from ryusa.figures.comparison import Axis, Curve
 from ryusa.studies.validation import Comparison, Error, Known, Source, Tolerance, Word, at_most, case_run
+from ryusa.studies.validation import ledger as page
 from ryusa.studies.validation.ledger import make, table, write
 from ryusa.study import Level, calculation
 
