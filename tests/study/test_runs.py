@@ -13,14 +13,14 @@ import pytest
 from ryusa.errors import CaseError, NotANumber, ResultsError
 from ryusa.running import runner
 from ryusa.studies.osada2004 import (
-    Lines,
-    Outlook,
+    CostEstimate,
     Plan,
-    Say,
+    ProgressLines,
+    StudyProgress,
     _campaign,
     carry_out,
-    outlook,
-    variant,
+    estimate_cost,
+    paper_run,
 )
 from ryusa.study import cost as cost_module
 from ryusa.study import runs as runs_module
@@ -39,7 +39,7 @@ class Fake:
 
     def cases(self, plan):
         del plan
-        return [variant("saltation", SHORT, seed) for seed in self.seeds]
+        return [paper_run("saltation", SHORT, seed) for seed in self.seeds]
 
     def measure(self, run, one):
         if self.trouble is not None and one.get("seed") == "2":
@@ -105,7 +105,7 @@ def test_a_worker_whose_answer_cannot_be_sent_spares_the_others(fakes, tmp_path,
     def answer(one, *_, **__):
         if one.get("seed") == "2":
             raise TypeError("cannot pickle a generator")
-        return runs_module.Done(one, {"one": 1}, False, 1.0)
+        return runs_module.TaskResult(one, {"one": 1}, False, 1.0)
 
     monkeypatch.setattr(runs_module, "_one", answer)
     monkeypatch.setattr(runs_module, "ProcessPoolExecutor", lambda jobs, **_: ThreadPoolExecutor(jobs))
@@ -161,7 +161,7 @@ def test_a_run_that_failed_is_tried_again_and_it_alone(fakes, tmp_path, monkeypa
 def test_a_run_that_breaks_down_while_stepping_is_no_finished_run(fakes, tmp_path):
     limit = {**SHORT, "domain.overlap_limit": "1e-9", "stop.time": "0.3 s"}
     fakes["one"] = Fake(seeds=())
-    fakes["one"].cases = lambda _: [variant("saltation", SHORT), variant("saltation", limit)]
+    fakes["one"].cases = lambda _: [paper_run("saltation", SHORT), paper_run("saltation", limit)]
     for opened in (0, 1):
         found = carry_out(("one",), Plan(), tmp_path)
         assert found.n_opened == opened
@@ -194,18 +194,18 @@ def test_runs_that_do_not_fit_on_the_disk_are_refused_before_the_first(fakes, tm
 
 
 def test_the_outlook_counts_what_is_there_and_never_ends_before_the_longest_run(tmp_path):
-    runs = [variant("saltation", SHORT, seed) for seed in range(1, 4)]
+    runs = [paper_run("saltation", SHORT, seed) for seed in range(1, 4)]
     carry_out((), Plan(), tmp_path)
-    ahead = outlook([*runs, runs[0]], tmp_path, jobs=2)
+    ahead = estimate_cost([*runs, runs[0]], tmp_path, jobs=2)
     assert len(ahead.costs) == 3
     assert ahead.seconds == pytest.approx(ahead.core_seconds / 2)
-    assert outlook(runs, tmp_path, jobs=100).seconds == pytest.approx(max(ahead.costs.values()))
+    assert estimate_cost(runs, tmp_path, jobs=100).seconds == pytest.approx(max(ahead.costs.values()))
     assert "3 runs to make: about" in str(ahead)
     finished(tmp_path, runs[0], "a" * 40)
-    later = outlook(runs, tmp_path, jobs=2)
+    later = estimate_cost(runs, tmp_path, jobs=2)
     assert later.there == (runs[0],)
     assert "(1 more are there and will be opened)" in str(later)
-    assert len(outlook(runs, tmp_path, jobs=2, again=True).costs) == 3
+    assert len(estimate_cost(runs, tmp_path, jobs=2, again=True).costs) == 3
 
 
 def finished(place, one, commit, seed=None):
@@ -214,30 +214,32 @@ def finished(place, one, commit, seed=None):
     folder.mkdir(parents=True, exist_ok=True)
     about = {"status": "complete", "commit": commit, "ryusa": "0.0.1"}
     (folder / "provenance.json").write_text(json.dumps(about))
-    case = variant(one.case, SHORT, seed) if seed else one
+    case = paper_run(one.case, SHORT, seed) if seed else one
     (folder / "case.json").write_text(json.dumps(case.read().resolved()))
 
 
 def test_a_folder_that_holds_another_case_is_run_again(tmp_path):
-    runs = [variant("saltation", SHORT, seed) for seed in (1, 2)]
+    runs = [paper_run("saltation", SHORT, seed) for seed in (1, 2)]
     finished(tmp_path, runs[0], "a" * 40, seed=7)
     finished(tmp_path, runs[1], "a" * 40)
-    assert outlook(runs, tmp_path, jobs=1).there == (runs[1],)
+    assert estimate_cost(runs, tmp_path, jobs=1).there == (runs[1],)
 
 
 def test_the_outlook_says_which_runs_another_state_of_the_code_made(tmp_path, monkeypatch):
     monkeypatch.setattr(cost_module.provenance, "commit", lambda: "c" * 40)
-    runs = [variant("saltation", SHORT, seed) for seed in range(1, 7)]
+    runs = [paper_run("saltation", SHORT, seed) for seed in range(1, 7)]
     for one, commit in zip(runs, ["c" * 40, "a" * 40, "a" * 40, "c" * 40 + "+", None], strict=False):
         finished(tmp_path, one, commit)
-    ahead = outlook(runs, tmp_path, jobs=1)
+    ahead = estimate_cost(runs, tmp_path, jobs=1)
     assert len(ahead.there) == 5
     assert ahead.others == {"a" * 40: 2, "c" * 40 + "+": 1, "ryusa 0.0.1": 1}
     said = str(ahead)
     assert "than the present cccccccccccc made 4 of the 5 that are there (2 by aaaaaaaaaaaa, " in said
     assert "1 by cccccccccccc with changes" in said
     assert "--again makes all anew" in said
-    assert "anew" not in str(outlook(runs[:1], tmp_path, jobs=1))  # nothing of other code, nothing to say
+    assert "anew" not in str(
+        estimate_cost(runs[:1], tmp_path, jobs=1)
+    )  # nothing of other code, nothing to say
 
 
 def test_a_campaign_counts_the_runs_of_other_code(fakes, tmp_path, monkeypatch):
@@ -255,14 +257,14 @@ def test_a_campaign_counts_the_runs_of_other_code(fakes, tmp_path, monkeypatch):
 
 def test_a_law_of_rolling_resistance_costs_time():
     rolls = {"rolling.model": "constant", "rolling.coefficient": "0.1"}
-    assert variant("fig19", rolls).cost() > 1.5 * variant("fig19").cost()
+    assert paper_run("fig19", rolls).cost() > 1.5 * paper_run("fig19").cost()
 
 
 def test_the_time_left_follows_from_how_long_the_finished_runs_took(capsys):
     now = [0.0]
-    runs = [variant("saltation", SHORT, seed) for seed in range(1, 5)]
-    say = Lines(clock=lambda: now[0])
-    say.begin(Outlook(dict.fromkeys(runs, 10.0), (), 10**6, 2))
+    runs = [paper_run("saltation", SHORT, seed) for seed in range(1, 5)]
+    say = ProgressLines(clock=lambda: now[0])
+    say.begin(CostEstimate(dict.fromkeys(runs, 10.0), (), 10**6, 2))
     assert say.left() == pytest.approx(20.0)
     say.started(runs[0])
     say.started(runs[1])
@@ -282,7 +284,7 @@ def test_the_time_left_follows_from_how_long_the_finished_runs_took(capsys):
 
 def test_who_says_nothing_needs_no_more(fakes, tmp_path):
     fakes["one"] = Fake(seeds=(1,))
-    assert carry_out(("one",), Plan(), tmp_path, say=Say()).n_run == 1
+    assert carry_out(("one",), Plan(), tmp_path, say=StudyProgress()).n_run == 1
 
 
 # -------------------------------------------------------------------------------------------------- signals

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from ryusa.model.enums import Buoyancy
-from ryusa.studies.validation.balance import Flow
+from ryusa.studies.validation.balance import ChannelFlow
 
 
 @pytest.mark.parametrize("form", list(Buoyancy))
 def test_bed_and_fixed_grains_carry_the_weight_of_the_mixture(form):
-    flow = Flow(form)
+    flow = ChannelFlow(form)
     flow.run(1.0)
     weight, contacts, water, gain = flow.run(2.5)
     assert -contacts > 0.8 * weight

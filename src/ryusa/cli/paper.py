@@ -67,7 +67,7 @@ def paper(
         _list(plan, chosen, out, jobs, again)
         return
     from ryusa.errors import ResultsError
-    from ryusa.studies.osada2004 import Lines
+    from ryusa.studies.osada2004 import ProgressLines
     from ryusa.studies.osada2004.ledger import make
     from ryusa.studies.osada2004.page import write
 
@@ -78,7 +78,7 @@ def paper(
             out,
             jobs=jobs or cores(),
             again=again,
-            say=None if quiet else Lines(),
+            say=None if quiet else ProgressLines(),
         )
         files = write(ledger, json)
     except KeyboardInterrupt:
@@ -142,7 +142,7 @@ def _list(plan: "Plan", chosen: Sequence[str] | None, out: Path, jobs: int | Non
     from rich import box
     from rich.table import Table
 
-    from ryusa.studies.osada2004 import NAMES, load, outlook
+    from ryusa.studies.osada2004 import NAMES, estimate_cost, load
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for heading in ("name", "what it answers", "claims"):
@@ -158,7 +158,7 @@ def _list(plan: "Plan", chosen: Sequence[str] | None, out: Path, jobs: int | Non
         every += runs
     console().print(table)
     typer.echo("A run that several experiments need is made once.")
-    typer.echo(f"{plan.level}: {outlook(every, out / 'runs', jobs=jobs or cores(), again=again)}")
+    typer.echo(f"{plan.level}: {estimate_cost(every, out / 'runs', jobs=jobs or cores(), again=again)}")
 
 
 def _print(ledger: "Ledger") -> None:

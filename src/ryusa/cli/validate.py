@@ -47,7 +47,7 @@ def validate(
     given again. Leaves with 4 where something lies outside its tolerance.
     """
     from ryusa.errors import ResultsError
-    from ryusa.study import Level, Lines
+    from ryusa.study import Level, ProgressLines
 
     level = Level.QUICK if quick else Level.FULL
     chosen = None if not names else [_known(name) for name in names]
@@ -58,7 +58,9 @@ def validate(
     from ryusa.studies.validation.ledger import make, write
 
     try:
-        made = make(chosen, level, out, jobs=jobs or cores(), again=again, say=None if quiet else Lines())
+        made = make(
+            chosen, level, out, jobs=jobs or cores(), again=again, say=None if quiet else ProgressLines()
+        )
         files = write(made, json)
     except KeyboardInterrupt:
         interrupted(out)
@@ -87,21 +89,21 @@ def _list(level: "Level", chosen: Sequence[str] | None, out: Path, jobs: int | N
     from rich.table import Table
 
     from ryusa.studies.validation import NAMES, load
-    from ryusa.study import Work, outlook
+    from ryusa.study import Task, estimate_cost
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for heading in ("name", "what it checks"):
         table.add_column(heading, no_wrap=heading == "name")
     for heading in ("runs", "core minutes"):
         table.add_column(heading, justify="right")
-    every: list[Work] = []
+    every: list[Task] = []
     for name in chosen or NAMES:
         runs = list(dict.fromkeys(load(name).runs(level)))
         minutes = sum(one.cost() for one in runs) / 60.0
         table.add_row(name, load(name).TITLE, str(len(runs)), f"{minutes:.1f}")
         every += runs
     console().print(table)
-    typer.echo(f"{level}: {outlook(every, out / 'runs', jobs=jobs or cores(), again=again)}")
+    typer.echo(f"{level}: {estimate_cost(every, out / 'runs', jobs=jobs or cores(), again=again)}")
 
 
 def _print(made: "Validation") -> None:

@@ -1,28 +1,28 @@
 """Work carried out once, several pieces at a time, kept, and opened next time."""
 
-from ryusa.study.cost import Outlook, code_in_words, duration, outlook
-from ryusa.study.fault import Fault, spared
+from ryusa.study.cost import CostEstimate, code_in_words, duration, estimate_cost
+from ryusa.study.fault import Fault, noted
 from ryusa.study.plan import Level, Plan
-from ryusa.study.progress import Lines, Say
-from ryusa.study.runs import Campaign, carry_out
-from ryusa.study.task import Calculation, Numbers, Variant, Work, calculation
+from ryusa.study.progress import ProgressLines, StudyProgress
+from ryusa.study.runs import TaskResults, carry_out
+from ryusa.study.task import Calculation, CaseRun, Numbers, Task, calculation
 
 __all__ = [
     "Calculation",
-    "Campaign",
+    "CaseRun",
+    "CostEstimate",
     "Fault",
     "Level",
-    "Lines",
     "Numbers",
-    "Outlook",
     "Plan",
-    "Say",
-    "Variant",
-    "Work",
+    "ProgressLines",
+    "StudyProgress",
+    "Task",
+    "TaskResults",
     "calculation",
     "carry_out",
     "code_in_words",
     "duration",
-    "outlook",
-    "spared",
+    "estimate_cost",
+    "noted",
 ]

@@ -10,11 +10,11 @@ from ryusa import __version__
 from ryusa.errors import CaseError
 from ryusa.running import provenance
 from ryusa.running.folder import existing, free_bytes, size
-from ryusa.study.task import Work
+from ryusa.study.task import Task
 
 
 @dataclass(frozen=True)
-class Outlook:
+class CostEstimate:
     """What lies ahead.
 
     Attributes
@@ -26,8 +26,8 @@ class Outlook:
     others : of the finished runs, how many each other state of the code made.
     """
 
-    costs: Mapping[Work, float]
-    there: tuple[Work, ...]
+    costs: Mapping[Task, float]
+    there: tuple[Task, ...]
     disk: int
     jobs: int
     others: Mapping[str, int] = field(default_factory=dict[str, int])
@@ -98,7 +98,7 @@ def code_in_words(code: str) -> str:
     return code.removesuffix("+")[:12] + (" with changes" if code.endswith("+") else "")
 
 
-def outlook(wanted: Iterable[Work], folder: Path, *, jobs: int, again: bool = False) -> Outlook:
+def estimate_cost(wanted: Iterable[Task], folder: Path, *, jobs: int, again: bool = False) -> CostEstimate:
     """Say what it takes to have these runs in `folder`; every case is read, and so checked.
 
     Raises
@@ -111,10 +111,10 @@ def outlook(wanted: Iterable[Work], folder: Path, *, jobs: int, again: bool = Fa
     costs = {one: one.cost() for one in wanted if one not in there}
     others = Counter(code for code in there.values() if is_other(code, opened=True))
     disk = sum(one.disk() for one in costs)
-    return Outlook(costs, tuple(there), disk, jobs, dict(others.most_common()))
+    return CostEstimate(costs, tuple(there), disk, jobs, dict(others.most_common()))
 
 
-def refuse_if_too_big(ahead: Outlook, folder: Path) -> None:
+def refuse_if_too_big(ahead: CostEstimate, folder: Path) -> None:
     """Compare what the runs will take with the free space on the disk.
 
     Raises

@@ -27,12 +27,12 @@ class Fault:
     trace: str = ""
 
 
-def told(error: BaseException) -> Fault:
+def fault_of(error: BaseException) -> Fault:
     """Put an error into words; anything but a named error of ours is a fault of the program.
 
-    >>> told(RyusaError("no hop at all"))
+    >>> fault_of(RyusaError("no hop at all"))
     Fault(words='no hop at all', trace='')
-    >>> told(ValueError("no such column")).words
+    >>> fault_of(ValueError("no such column")).words
     'error in the program: ValueError: no such column'
     """
     if isinstance(error, RyusaError):
@@ -61,7 +61,7 @@ def _foreign(file: str) -> bool:
 
 
 @contextmanager
-def spared(
+def noted(
     faults: MutableMapping[str, Fault], what: str, passing: tuple[type[Exception], ...] = ()
 ) -> Generator[None]:
     """Within the block an error is noted under `what` and ends the block alone; an interrupt ends all.
@@ -77,4 +77,4 @@ def spared(
     except passing:
         raise
     except Exception as error:  # the point of it: one experiment must not cost the others their hours
-        faults[what] = told(error)
+        faults[what] = fault_of(error)

@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from typing import Any
 
 from ryusa.running import provenance
-from ryusa.study import Campaign, Fault, Work
+from ryusa.study import Fault, Task, TaskResults
 
 _NAMED = 3  # runs that failed, named in a row
 
 
-def counted(campaign: Campaign, jobs: int) -> dict[str, Any]:
+def counted(campaign: TaskResults, jobs: int) -> dict[str, Any]:
     """Runs made and opened, by which code, in how much time."""
     return {
         "runs_made": campaign.n_run,
@@ -23,14 +23,14 @@ def counted(campaign: Campaign, jobs: int) -> dict[str, Any]:
     }
 
 
-def missing_runs(missing: Mapping[Work, Fault], n: int) -> str:
+def missing_runs(missing: Mapping[Task, Fault], n: int) -> str:
     """Which runs failed, and why; the first few of many."""
     told = [f"{one.label}: {fault.words}" for one, fault in list(missing.items())[:_NAMED]]
     more = f"; and {len(missing) - _NAMED} more" if len(missing) > _NAMED else ""
     return f"{len(missing)} of {n} runs failed, so it was not judged; {'; '.join(told)}{more}"
 
 
-def traces_of(campaign: Campaign, faults: Mapping[str, Fault]) -> dict[str, str]:
+def traces_of(campaign: TaskResults, faults: Mapping[str, Fault]) -> dict[str, str]:
     """Tracebacks of errors in the program, each once, under what they spoiled."""
     every = [
         (f"{name}: run {one.label}", fault)

@@ -4,20 +4,20 @@ import sys
 import time
 from collections.abc import Callable
 
-from ryusa.study.cost import Outlook, duration
-from ryusa.study.task import Work
+from ryusa.study.cost import CostEstimate, duration
+from ryusa.study.task import Task
 
 
-class Say:
+class StudyProgress:
     """Told what goes on; says nothing."""
 
-    def begin(self, ahead: Outlook) -> None:
+    def begin(self, ahead: CostEstimate) -> None:
         """All runs, with what each costs."""
 
-    def started(self, one: Work) -> None:
+    def started(self, one: Task) -> None:
         """A run begins."""
 
-    def done(self, one: Work, seconds: float, opened: bool, problem: str) -> None:
+    def done(self, one: Task, seconds: float, opened: bool, problem: str) -> None:
         """A run is over."""
 
     def tick(self) -> None:
@@ -27,7 +27,7 @@ class Say:
         """All runs are over, or the campaign was interrupted."""
 
 
-class Lines(Say):
+class ProgressLines(StudyProgress):
     """A bar on a terminal, a line now and then elsewhere; on stderr."""
 
     EVERY = 10.0  # s between two lines where stderr is no terminal
@@ -39,8 +39,8 @@ class Lines(Say):
 
         self._console = Console(stderr=True, highlight=False)
         self._clock = clock
-        self._costs: dict[Work, float] = {}
-        self._now: dict[Work, float] = {}  # when each began
+        self._costs: dict[Task, float] = {}
+        self._now: dict[Task, float] = {}  # when each began
         self._run_cost = self._run_seconds = 0.0  # thought of, and taken, by the runs made
         self._finished = self._total = 0
         self._jobs = 1
@@ -53,7 +53,7 @@ class Lines(Say):
         )  # fmt: skip
         self._task = None
 
-    def begin(self, ahead: Outlook) -> None:
+    def begin(self, ahead: CostEstimate) -> None:
         """Say what lies ahead and open the bar."""
         self._costs, self._jobs = dict(ahead.costs), ahead.jobs
         self._total = len(ahead.costs) + len(ahead.there)
@@ -64,12 +64,12 @@ class Lines(Say):
             self._task = self._bar.add_task("", total=self._total, words="")
             self._bar.start()
 
-    def started(self, one: Work) -> None:
+    def started(self, one: Task) -> None:
         """Remember who is running."""
         self._now[one] = self._clock()
         self.tick()
 
-    def done(self, one: Work, seconds: float, opened: bool, problem: str) -> None:
+    def done(self, one: Task, seconds: float, opened: bool, problem: str) -> None:
         """Count it, and learn from it how long the rest will take."""
         self._finished += 1
         self._now.pop(one, None)

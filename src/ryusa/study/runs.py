@@ -16,10 +16,10 @@ from pathlib import Path
 from typing import Any
 
 from ryusa.errors import ResultsError, RunError
-from ryusa.study.cost import Outlook, code_of, is_other, outlook, present, refuse_if_too_big
-from ryusa.study.fault import Fault, spared, told
-from ryusa.study.progress import Say
-from ryusa.study.task import Calculation, Work
+from ryusa.study.cost import CostEstimate, code_of, estimate_cost, is_other, present, refuse_if_too_big
+from ryusa.study.fault import Fault, fault_of, noted
+from ryusa.study.progress import StudyProgress
+from ryusa.study.task import Calculation, Task
 
 _WAIT = 0.2  # s between two looks at who has finished
 _PATIENCE = 5.0  # s that a run has to close its folder before its process is ended
@@ -29,10 +29,10 @@ _ONE_THREAD = {name: "1" for name in ("NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "O
 
 
 @dataclass(frozen=True)
-class Done:
+class TaskResult:
     """One run, measured."""
 
-    one: Work
+    one: Task
     measured: Mapping[str, Any]  # by experiment
     opened: bool  # it was there already
     seconds: float
@@ -49,7 +49,7 @@ class Done:
 
 
 @dataclass
-class Campaign:
+class TaskResults:
     """What a campaign found.
 
     Attributes
@@ -68,20 +68,20 @@ class Campaign:
     n_opened: int = 0
     seconds: float = 0.0
     problems: dict[str, str] = field(default_factory=dict[str, str])
-    missing: dict[str, dict[Work, Fault]] = field(default_factory=dict[str, dict[Work, Fault]])
+    missing: dict[str, dict[Task, Fault]] = field(default_factory=dict[str, dict[Task, Fault]])
     commits: Counter[str] = field(default_factory=Counter[str])
     others: Counter[str] = field(default_factory=Counter[str])
 
 
 def carry_out(
-    works: Mapping[str, Sequence[Work]],
+    works: Mapping[str, Sequence[Task]],
     load: Load,
     folder: Path,
     *,
     jobs: int = 1,
     again: bool = False,
-    say: Say | None = None,
-) -> Campaign:
+    say: StudyProgress | None = None,
+) -> TaskResults:
     """Do every piece of work once, and measure each for everyone who wants it.
 
     Parameters
@@ -101,12 +101,12 @@ def carry_out(
     ResultsError : a process was ended from outside; what was finished stays.
     KeyboardInterrupt : Ctrl-C or SIGTERM; what was finished stays and is opened next time.
     """
-    begun, say = time.monotonic(), say or Say()
+    begun, say = time.monotonic(), say or StudyProgress()
     wanted = _wanted(works)
-    ahead = outlook(wanted, folder, jobs=jobs, again=again)  # reads, and so checks, every case first
+    ahead = estimate_cost(wanted, folder, jobs=jobs, again=again)  # reads, and so checks, every case first
     refuse_if_too_big(ahead, folder)
     found: dict[str, dict[Any, Any]] = {name: {} for name in works}
-    campaign = Campaign(found)
+    campaign = TaskResults(found)
     say.begin(ahead)
     try:
         runs = _done(
@@ -124,9 +124,9 @@ def carry_out(
     return campaign
 
 
-def _wanted(works: Mapping[str, Sequence[Work]]) -> dict[Work, list[str]]:
+def _wanted(works: Mapping[str, Sequence[Task]]) -> dict[Task, list[str]]:
     """Every piece of work, with those who want it."""
-    wanted: dict[Work, list[str]] = {}
+    wanted: dict[Task, list[str]] = {}
     for name, every in works.items():
         for one in every:
             users = wanted.setdefault(one, [])
@@ -135,12 +135,12 @@ def _wanted(works: Mapping[str, Sequence[Work]]) -> dict[Work, list[str]]:
     return wanted
 
 
-def _order(ahead: Outlook) -> list[Work]:
+def _order(ahead: CostEstimate) -> list[Task]:
     """What is there first, then the longest first: no core idles at the end."""
     return [*ahead.there, *sorted(ahead.costs, key=lambda one: -ahead.costs[one])]
 
 
-def _count(campaign: Campaign, done: Done) -> None:
+def _count(campaign: TaskResults, done: TaskResult) -> None:
     campaign.n_opened += done.opened
     campaign.n_run += not done.opened
     if done.commit:
@@ -156,13 +156,13 @@ def _count(campaign: Campaign, done: Done) -> None:
 
 
 def _done(
-    order: Sequence[Work],
-    wanted: Mapping[Work, Sequence[str]],
-    do: Callable[[Work, Sequence[str]], Done],
+    order: Sequence[Task],
+    wanted: Mapping[Task, Sequence[str]],
+    do: Callable[[Task, Sequence[str]], TaskResult],
     folder: Path,
     jobs: int,
-    say: Say,
-) -> Generator[Done]:
+    say: StudyProgress,
+) -> Generator[TaskResult]:
     if jobs == 1 or len(order) <= 1:
         for one in order:
             say.started(one)
@@ -170,7 +170,7 @@ def _done(
         return
     pool = ProcessPoolExecutor(jobs, mp_context=get_context("spawn"), initializer=_settle_in)
     waiting = list(reversed(order))
-    running: dict[Future[Done], Work] = {}
+    running: dict[Future[TaskResult], Task] = {}
     try:
         while waiting or running:
             while waiting and len(running) < jobs:
@@ -188,8 +188,8 @@ def _done(
                 except BrokenProcessPool:
                     raise
                 except Exception as error:  # what was measured cannot be sent from process to process
-                    faults = dict.fromkeys(wanted[one], told(error))
-                    done = Done(one, {}, False, 0.0, faults, broken=True)
+                    faults = dict.fromkeys(wanted[one], fault_of(error))
+                    done = TaskResult(one, {}, False, 0.0, faults, broken=True)
                 del running[future]
                 yield done
     except BrokenProcessPool:
@@ -274,7 +274,7 @@ def _stopped_by_sigterm() -> Generator[None]:
         signal.signal(signal.SIGTERM, before)
 
 
-def _one(one: Work, names: Sequence[str], *, folder: Path, again: bool, load: Load) -> Done:
+def _one(one: Task, names: Sequence[str], *, folder: Path, again: bool, load: Load) -> TaskResult:
     """Run, or open, and measure; what goes wrong in one run comes back as words and spares the others."""
     begun = time.monotonic()
     measured: dict[str, Any] = {}
@@ -287,18 +287,18 @@ def _one(one: Work, names: Sequence[str], *, folder: Path, again: bool, load: Lo
             answer = one.make(place, anew=again)
     except RunError as error:  # for some experiments that is an answer: a law that makes energy ends so
         for name in names:
-            faults[name] = told(error)
-            with spared(faults, name):
+            faults[name] = fault_of(error)
+            with noted(faults, name):
                 hook = getattr(load(name), "failed", None)
                 if hook is not None and (said := hook(error)) is not None:
                     measured[name] = said
                     del faults[name]
-        return Done(one, measured, False, time.monotonic() - begun, faults, present(), broken=True)
+        return TaskResult(one, measured, False, time.monotonic() - begun, faults, present(), broken=True)
     except Exception as error:
-        faults = dict.fromkeys(names, told(error))
-        return Done(one, {}, False, time.monotonic() - begun, faults, broken=True)
+        faults = dict.fromkeys(names, fault_of(error))
+        return TaskResult(one, {}, False, time.monotonic() - begun, faults, broken=True)
     for name in names:
-        with spared(faults, name):
+        with noted(faults, name):
             measured[name] = answer if isinstance(one, Calculation) else load(name).measure(answer, one)
     made_by = code_of(one.origin(place) or {})
-    return Done(one, measured, opened, time.monotonic() - begun, faults, made_by)
+    return TaskResult(one, measured, opened, time.monotonic() - begun, faults, made_by)

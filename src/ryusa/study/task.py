@@ -34,7 +34,7 @@ _NUMBERS = "numbers.npz"  # of a calculation
 
 
 @runtime_checkable
-class Work(Protocol):
+class Task(Protocol):
     """One piece of work, small enough to be sent between processes; equal ones are done once."""
 
     @property
@@ -78,7 +78,7 @@ def _folder(name: str, said: str, changed: object) -> str:
 
 
 @dataclass(frozen=True)
-class Variant(Work):
+class CaseRun(Task):
     """One run: a case file that ships with the package and what is changed in it. Equal ones are one run."""
 
     case: str  # "fig19" is fig19.toml in the folder `cases`
@@ -156,7 +156,7 @@ class Variant(Work):
 
 
 @lru_cache(maxsize=4096)
-def _read(one: Variant) -> "Case":
+def _read(one: CaseRun) -> "Case":
     from ryusa.casefile.read import read
 
     return read(one.cases / f"{one.case}.toml", dict(one.overrides))
@@ -166,7 +166,7 @@ Numbers = Mapping[str, Any]  # names to arrays and numbers
 
 
 @dataclass(frozen=True)
-class Calculation(Work):
+class Calculation(Task):
     """One call of a function of the package that needs no case file; its arrays are kept.
 
     The function takes the arguments by name and returns a mapping from names to arrays or numbers.

@@ -8,7 +8,16 @@ import pytest
 from ryusa.measure import Layers, Profiles, Tracks
 from ryusa.measure.table import Averages
 from ryusa.studies.osada2004 import Level, Plan, Word, _avalanche, carry_out, fig14, fig15, fig16
-from ryusa.studies.osada2004._avalanche import ALL, BETWEEN, SHIPPED, SOFT, WINDOWS, Pair, Ways, Window
+from ryusa.studies.osada2004._avalanche import (
+    ALL,
+    BETWEEN,
+    SHIPPED,
+    SOFT,
+    WINDOWS,
+    RunPair,
+    Ways,
+    Window,
+)
 from ryusa.studies.osada2004._experiment import PHI, ROTATION, SLIP
 
 STANDARD = Plan(Level.STANDARD, (1, 2, 3))
@@ -90,7 +99,7 @@ def flow_at(speed, **how):
 
 
 def test_runs_are_compared_in_the_same_layers_wherever_their_profiles_begin():
-    pair = Pair(flow(2.0), flow(2.0, lowest=5))
+    pair = RunPair(flow(2.0), flow(2.0, lowest=5))
     (soft, _), (stiff, _) = _avalanche.layers([pair])
     assert len(soft) == N + 5
     assert (soft[:5] > 0).all()
@@ -105,14 +114,16 @@ def test_scatter_of_single_runs_is_no_difference_of_what_they_have_in_common():
         one.profile.phi.value[:] += sign * 0.05 * (-1.0) ** np.arange(N)
         return one
 
-    found = [Pair(scattered(1), scattered(-1)), Pair(scattered(-1), scattered(1))]
+    found = [RunPair(scattered(1), scattered(-1)), RunPair(scattered(-1), scattered(1))]
     assert _avalanche.unlike(found[:1]) == pytest.approx(0.2)
     assert _avalanche.unlike(found) == pytest.approx(0.0, abs=1e-12)
     assert _avalanche.together(_avalanche.unlike)(found[:1]) == pytest.approx([0.2])
 
 
 def test_speeds_of_a_layer_are_weighted_with_what_is_there():
-    (phi, speed), _ = _avalanche.layers([Pair(flow(4.0), flow(4.0)), Pair(flow(2.0, phi=0.25), flow(4.0))])
+    (phi, speed), _ = _avalanche.layers(
+        [RunPair(flow(4.0), flow(4.0)), RunPair(flow(2.0, phi=0.25), flow(4.0))]
+    )
     assert phi == pytest.approx(np.full(N, 0.375))
     assert speed[0] == pytest.approx(0.75 * (0.5 * 4.0 + 0.25 * 2.0) / 0.75)
 
@@ -120,9 +131,9 @@ def test_speeds_of_a_layer_are_weighted_with_what_is_there():
 def test_pairs_that_creep_or_stick_to_the_bed_are_told_from_those_that_move():
     stuck = flow(4.0)
     stuck.profile.v_x.value[0] = 0.01
-    assert Pair(flow(4.0), flow(4.0)).kind == "moves"
-    assert Pair(flow(4.0), stuck).kind == "stuck"
-    assert Pair(flow(4.0), flow(0.05)).kind == "creeps"
+    assert RunPair(flow(4.0), flow(4.0)).kind == "moves"
+    assert RunPair(flow(4.0), stuck).kind == "stuck"
+    assert RunPair(flow(4.0), flow(0.05)).kind == "creeps"
 
 
 def test_fig15_asks_for_about_a_metre_a_second():
@@ -162,10 +173,10 @@ def test_fig16_fails_if_one_of_its_three_parts_does(name, value):
 
 def test_one_run_whose_grains_hardly_advance_does_not_outweigh_the_others():
     def soft(advance):
-        return Pair(flow(4.0, advance=advance), flow(4.0, advance=1.0))
+        return RunPair(flow(4.0, advance=advance), flow(4.0, advance=1.0))
 
     assert fig16._ratio([soft(0.001), soft(2.0), soft(1.999)], "advance", ALL) == pytest.approx(0.75)
-    nothing = Pair(flow(4.0, advance=math.nan), flow(4.0))
+    nothing = RunPair(flow(4.0, advance=math.nan), flow(4.0))
     assert fig16._ratio([nothing, soft(2.0), soft(2.0)], "advance", ALL) == pytest.approx(0.5)
     assert math.isnan(fig16._ratio([nothing, nothing, soft(2.0)], "advance", ALL))
 

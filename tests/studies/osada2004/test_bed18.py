@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ryusa.studies.osada2004 import Level, Plan, Word, bed18, carry_out
-from ryusa.studies.osada2004.bed18 import MOVING, REST, SLOPE, START, Flow
+from ryusa.studies.osada2004.bed18 import MOVING, REST, SLOPE, START, TiltedBedRun
 
 QUICK = Plan(Level.QUICK, (1,))
 STANDARD = Plan(Level.STANDARD, (1, 2, 3))
@@ -16,7 +16,7 @@ def flow(speed, seed=1):
     t = 0.01 * np.arange(151)
     v = np.where(t > 0.3, [speed(one) for one in t], 0.0) * math.sqrt(G * D) * (1.0 + 0.01 * seed)
     x = np.concatenate([[0.0], np.cumsum(0.5 * (v[1:] + v[:-1]) * 0.01)])
-    return Flow(t, v, x, D, G, None)
+    return TiltedBedRun(t, v, x, D, G, None)
 
 
 def synthetic(plan, speed):

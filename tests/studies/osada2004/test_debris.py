@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from ryusa.studies.osada2004 import Level, Plan, Word, _debris, carry_out, fig17, fig17_free, fig18
-from ryusa.studies.osada2004._debris import AMOUNT, Contacts, Debris
+from ryusa.studies.osada2004._debris import AMOUNT, Debris, DebrisContacts
 
 QUICK = Plan(Level.QUICK, (1,))
 STANDARD = Plan(Level.STANDARD, (1, 2, 3))
@@ -30,10 +30,10 @@ class Fake(Debris):
 def flow(**changed):
     """A run that is all the paper says; what is changed is said."""
     contacts = {
-        "all contacts": Contacts(100, 7e-5, 7e-5, 0.7),
-        "two free grains": Contacts(50, 6.6e-5, 6.6e-5, 0.65),
+        "all contacts": DebrisContacts(100, 7e-5, 7e-5, 0.7),
+        "two free grains": DebrisContacts(50, 6.6e-5, 6.6e-5, 0.65),
     }
-    contacts["fixed grain"] = Contacts(50, 7.4e-5, 7.4e-5, 0.75)
+    contacts["fixed grain"] = DebrisContacts(50, 7.4e-5, 7.4e-5, 0.75)
     known = {
         "profile": None, "water": None, "depth": 0.0148, "thrown": 3.0, "rms_z": 0.08, "rest": 0.0,
         "contacts": contacts, "closed": {"fixed grain": (8e-5, 0.74)}, "companions": 0.1, "rods": 0.0,
@@ -68,9 +68,9 @@ def test_how_many_grains_are_put_in_can_decide():
 
 def test_a_contact_time_of_which_no_kind_of_pair_has_that_digit_is_not_the_paper_s():
     apart = {
-        "all contacts": Contacts(100, 6.3e-5, 6.3e-5, 0.7),
-        "two free grains": Contacts(50, 6e-5, 6e-5, 0.7),
-        "fixed grain": Contacts(50, 8e-5, 8e-5, 0.7),
+        "all contacts": DebrisContacts(100, 6.3e-5, 6.3e-5, 0.7),
+        "two free grains": DebrisContacts(50, 6e-5, 6e-5, 0.7),
+        "fixed grain": DebrisContacts(50, 8e-5, 8e-5, 0.7),
     }
     found = verdicts(fig17, STANDARD, lambda one: flow(contacts=apart))
     assert found["fig17-time"].word is Word.NOT
@@ -134,9 +134,9 @@ def test_a_short_run_of_the_real_scene_can_be_measured_and_drawn(tmp_path, monke
         cut = {"stop.time": "0.3 s", "record.settle": "0.1 s"}
         return plain(case, {**(overrides or {}), **cut}, seed)
 
-    plain = _debris.variant
-    monkeypatch.setattr(_debris, "variant", short)
-    monkeypatch.setattr(fig18, "variant", short)
+    plain = _debris.task
+    monkeypatch.setattr(_debris, "paper_run", short)
+    monkeypatch.setattr(fig18, "paper_run", short)
     names = ("fig17", "fig17_free", "fig18")
     campaign = carry_out(names, QUICK, tmp_path)
     assert not campaign.problems

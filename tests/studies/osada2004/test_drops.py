@@ -17,7 +17,7 @@ from ryusa.studies.osada2004 import (
     pair,
     steps,
 )
-from ryusa.studies.osada2004._drops import Drop, Setup
+from ryusa.studies.osada2004._drops import DropRun, Setup
 from ryusa.units import quantity
 
 QUICK = Plan(Level.QUICK, (1,))
@@ -30,7 +30,7 @@ def ideal(one, time=1.0, overlap=1.0, e=None, copies=20, ended=20):
     deep = overlap_max(quantity(one.speed, "m/s"), m, one.stiffness, one.zeta) / quantity(one.d, "m")
     eq_8 = collision_time(m, one.stiffness)
     each = np.ones(ended)
-    return Drop(
+    return DropRun(
         d=quantity(one.d, "m"), k_n=one.stiffness, eq_8=eq_8, copies=copies, time=time * eq_8 * each,
         overlap=overlap * deep * each, speed=quantity(one.speed, "m/s") * each,
         e=(one.e if e is None else e) * each,
@@ -42,11 +42,11 @@ def word(name, found, plan=QUICK):
 
 
 def every(experiment, plan=QUICK, **how):
-    return {one.variant: ideal(one, **how) for one in experiment.setups(plan)}
+    return {one.task: ideal(one, **how) for one in experiment.setups(plan)}
 
 
 def test_the_case_ships_as_the_base_drop_of_the_experiments():
-    shipped, asked = (v.read() for v in (_drops.variant(_drops.CASE), Setup().variant))
+    shipped, asked = (v.read() for v in (_drops.paper_run(_drops.CASE), Setup().task))
     assert asked.derived.dt == pytest.approx(shipped.derived.dt, rel=1e-6)
     assert asked.build.height == pytest.approx(shipped.build.height, rel=1e-2)
     assert asked.build.height_step * _drops.COPIES == pytest.approx(asked.build.height, rel=1e-3)
@@ -58,10 +58,10 @@ def test_the_case_ships_as_the_base_drop_of_the_experiments():
 
 
 def test_a_setup_asks_for_the_steps_and_stiffness_it_names():
-    assert Setup(steps=7.0).variant.read().derived.steps_per_contact == pytest.approx(7.0)
-    assert Setup(steps=5.0, parting="tension").variant.read().derived.steps_per_contact == pytest.approx(5.0)
-    assert Setup(d="20 cm", time="0.01 s").variant.read().derived.fixed.t_undamped == pytest.approx(0.01)
-    pair_of_one_dashpot = Setup(partner="free", one_dashpot=True).variant.read().derived
+    assert Setup(steps=7.0).task.read().derived.steps_per_contact == pytest.approx(7.0)
+    assert Setup(steps=5.0, parting="tension").task.read().derived.steps_per_contact == pytest.approx(5.0)
+    assert Setup(d="20 cm", time="0.01 s").task.read().derived.fixed.t_undamped == pytest.approx(0.01)
+    pair_of_one_dashpot = Setup(partner="free", one_dashpot=True).task.read().derived
     assert pair_of_one_dashpot.fixed.e == pytest.approx(0.7)
     assert pair_of_one_dashpot.free.e < 0.65
 
@@ -70,7 +70,7 @@ def test_fig4_holds_for_eq_8_and_for_nothing_else():
     assert word("fig04", every(fig04)) is Word.REPRODUCED
     assert word("fig04", every(fig04, time=1.5)) is Word.NOT
     stiff_is_slow = {
-        one.variant: ideal(one, time=1.0 if one.k_n == fig04.SOFT else 1.0e6 * one.k_n)
+        one.task: ideal(one, time=1.0 if one.k_n == fig04.SOFT else 1.0e6 * one.k_n)
         for one in fig04.setups(QUICK)
     }
     assert word("fig04", stiff_is_slow) is Word.NOT
@@ -80,7 +80,7 @@ def test_fig5_fails_where_the_time_differs_or_the_grain_stays():
     assert word("fig05", every(fig05, time=0.93)) is Word.REPRODUCED
     assert word("fig05", every(fig05, time=1.3)) is Word.NOT
     stays = every(fig05, time=0.93)
-    stays[fig05.setup(fig05.choices(QUICK)[0], 0.1).variant] = ideal(Setup(k_n=0.1), ended=7)
+    stays[fig05.setup(fig05.choices(QUICK)[0], 0.1).task] = ideal(Setup(k_n=0.1), ended=7)
     (found,) = fig05.judge(stays, QUICK)
     assert found.word is Word.NOT
     assert "0.1 N/cm" in found.trials[0].note
@@ -89,7 +89,7 @@ def test_fig5_fails_where_the_time_differs_or_the_grain_stays():
 def test_half_the_mass_differs_too_much_from_the_whole():
     assert word("pair", every(pair)) is Word.NOT
     alike = {
-        one.variant: ideal(one, time=2**0.5 if one.partner == "free" else 1.0) for one in pair.setups(QUICK)
+        one.task: ideal(one, time=2**0.5 if one.partner == "free" else 1.0) for one in pair.setups(QUICK)
     }
     assert word("pair", alike) is Word.REPRODUCED
 
@@ -137,7 +137,7 @@ def test_two_times_that_differ_by_100_do_not_fit_a_band_of_10(plan):
 def test_fig12_would_hold_if_overlaps_were_alike():
     alike = every(fig12)
     for one in fig12.setups(QUICK)[:2]:
-        alike[one.variant] = ideal(one, overlap=0.005 / one.deepest)
+        alike[one.task] = ideal(one, overlap=0.005 / one.deepest)
     assert word("fig12", alike) is Word.REPRODUCED
 
 
@@ -145,10 +145,10 @@ def test_the_rule_of_ten_steps_wants_both_sides_of_ten():
     always_right = every(steps)
     (found,) = steps.judge(always_right, QUICK)
     assert [one.holds for one in found.base] == [True, False]
-    off_below = {one.variant: ideal(one, e=0.8 if one.steps < 10 else 0.72) for one in steps.setups(QUICK)}
+    off_below = {one.task: ideal(one, e=0.8 if one.steps < 10 else 0.72) for one in steps.setups(QUICK)}
     (found,) = steps.judge(off_below, QUICK)
     assert [one.holds for one in found.base] == [True, True]
-    off_at_ten = {one.variant: ideal(one, e=0.8) for one in steps.setups(QUICK)}
+    off_at_ten = {one.task: ideal(one, e=0.8) for one in steps.setups(QUICK)}
     (found,) = steps.judge(off_at_ten, QUICK)
     assert [one.holds for one in found.base] == [False, True]
 
@@ -171,7 +171,7 @@ def test_the_runs_of_steps_keep_restitution_at_ten_and_lose_it_at_five(tmp_path)
     campaign = carry_out(("steps",), QUICK, tmp_path)
     assert not campaign.problems
     found = campaign.found["steps"]
-    at = {one.steps: found[one.variant] for one in steps.setups(QUICK)}
+    at = {one.steps: found[one.task] for one in steps.setups(QUICK)}
     assert all(one.parts for one in at.values())
     assert np.abs(at[10.0].e - 0.7).max() < 0.03
     assert np.abs(at[5.0].e - 0.7).max() > 0.05

@@ -1,7 +1,7 @@
 import pytest
 
 from ryusa.errors import CaseError
-from ryusa.studies.osada2004 import NAMES, Level, Plan, Variant, carry_out, load, variant
+from ryusa.studies.osada2004 import NAMES, CaseRun, Level, Plan, carry_out, load, paper_run
 from ryusa.studies.osada2004.paper import CLAIMS
 
 
@@ -37,12 +37,12 @@ def test_an_unknown_experiment_is_named():
 
 
 def test_variants_with_the_same_overrides_are_one_run_whatever_their_order():
-    one = variant("saltation", {"motion.rotation": "free", "contact.stiffness": "1 N/cm"}, 2)
-    other = variant("saltation", {"contact.stiffness": "1 N/cm", "motion.rotation": "free"}, 2)
+    one = paper_run("saltation", {"motion.rotation": "free", "contact.stiffness": "1 N/cm"}, 2)
+    other = paper_run("saltation", {"contact.stiffness": "1 N/cm", "motion.rotation": "free"}, 2)
     assert one == other
     assert one.folder == other.folder
-    assert one != variant("saltation", {"contact.stiffness": "1 N/cm", "motion.rotation": "free"}, 3)
-    assert Variant("saltation").folder.startswith("saltation/")
+    assert one != paper_run("saltation", {"contact.stiffness": "1 N/cm", "motion.rotation": "free"}, 3)
+    assert CaseRun("saltation").folder.startswith("saltation/")
 
 
 def test_nothing_to_run_is_a_campaign_too(tmp_path):

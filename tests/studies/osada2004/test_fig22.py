@@ -5,7 +5,7 @@ import pytest
 
 from ryusa.measure import Averages, Rods
 from ryusa.studies.osada2004 import Level, Plan, Word, carry_out, fig22
-from ryusa.studies.osada2004.fig22 import FREE, LOCKED, SLOPE, Bed
+from ryusa.studies.osada2004.fig22 import FREE, LOCKED, SLOPE, MovableBedRun
 
 QUICK = Plan(Level.QUICK, (1,))
 STANDARD = Plan(Level.STANDARD, (1, 2, 3))
@@ -20,7 +20,7 @@ def bed(share, q=1e-4, speed=0.1, spin=0.0, movers=100, null=0.02):
         averages=Averages("rods", (), ()),
     )  # fmt: skip
     v = np.full(movers, speed)
-    return Bed(rods=found, q=q, v=v, spin=np.full(movers, spin), profile=None, followed=())  # type: ignore[arg-type]
+    return MovableBedRun(rods=found, q=q, v=v, spin=np.full(movers, spin), profile=None, followed=())  # type: ignore[arg-type]
 
 
 def rotation(one):
@@ -39,7 +39,7 @@ def as_told(one):
 @pytest.fixture(autouse=True)
 def without_profile(monkeypatch):
     """Beds of this file have no profile, whose diameter the spin is set against."""
-    monkeypatch.setattr(Bed, "rolling", 0.8)
+    monkeypatch.setattr(MovableBedRun, "rolling", 0.8)
 
 
 @pytest.mark.parametrize("plan", [QUICK, STANDARD])

@@ -15,7 +15,7 @@ from ryusa.studies.osada2004 import (
     _campaign,
     ledger,
     over_seeds,
-    variant,
+    paper_run,
 )
 from ryusa.studies.osada2004.ledger import make
 from ryusa.studies.osada2004.page import write
@@ -32,7 +32,7 @@ class Fake:
         self.CLAIMS, self.trouble = claims, trouble
 
     def cases(self, plan):
-        return [variant("saltation", SHORT, seed) for seed in plan.seeds]
+        return [paper_run("saltation", SHORT, seed) for seed in plan.seeds]
 
     def measure(self, run, one):
         del one

@@ -21,7 +21,7 @@ from ryusa.studies.osada2004 import (
     spin_time,
 )
 from ryusa.studies.osada2004._experiment import PHI, SLIP
-from ryusa.studies.osada2004._saltation import K_N, SHIPPED, Hops
+from ryusa.studies.osada2004._saltation import K_N, SHIPPED, SaltationRun
 
 STANDARD = Plan(Level.STANDARD, (1, 2, 3))
 FULL = Plan(Level.FULL, (1, 2, 3))
@@ -39,7 +39,7 @@ def made_up(highest=0.006, **changed):
     items = tuple(average(name, "-", [[value, value]]) for name, value in {**BASE, **changed}.items())
     times = ContactTimes(1.0e-4, 1.09e-4, 1.01e-4)
     found = Saltation(EMPTY, EMPTY, EMPTY, times, 0.1, Averages("saltation", items, ()))
-    return Hops(found, PATH, 0.002, 0.005, highest, np.array([0.1]), np.array([0.9]))
+    return SaltationRun(found, PATH, 0.002, 0.005, highest, np.array([0.1]), np.array([0.9]))
 
 
 def scatter(one):

@@ -6,7 +6,7 @@ import pytest
 from ryusa.studies.validation import NAMES, Word, load, relative, terminal_velocity
 from ryusa.studies.validation.ledger import make
 from ryusa.studies.validation.suspension import expected, exponent
-from ryusa.study import Level, Variant, Work
+from ryusa.study import CaseRun, Level, Task
 
 LEVELS = (Level.QUICK, Level.FULL)
 
@@ -17,10 +17,10 @@ def test_a_check_names_its_runs_and_what_they_cost(name):
     assert check.TITLE
     for level in LEVELS:
         runs = check.runs(level)
-        assert all(isinstance(one, Work) for one in runs)
+        assert all(isinstance(one, Task) for one in runs)
         assert len({one.folder for one in runs}) == len(set(runs))
         assert all(one.cost() > 0.0 for one in runs)
-        if any(isinstance(one, Variant) for one in runs):
+        if any(isinstance(one, CaseRun) for one in runs):
             assert check.measure
 
 

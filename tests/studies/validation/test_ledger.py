@@ -73,7 +73,7 @@ def test_an_interrupted_validation_goes_on_where_it_stopped(checks, tmp_path, mo
     real = page.carry_out
 
     def stops(*words, say=None, **how):
-        class Stop(page.Say):
+        class Stop(page.StudyProgress):
             def done(self, *_):
                 raise KeyboardInterrupt
 

@@ -10,7 +10,7 @@ import numpy as np
 from ryusa.measure import Profiles, Tracks, alternating, paths, profiles, tracks
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
-from ryusa.studies.osada2004._experiment import PHI, ROTATION, SLIP, Found, Plan, Variant, variant
+from ryusa.studies.osada2004._experiment import PHI, ROTATION, SLIP, CaseRun, Found, Plan, paper_run
 from ryusa.study.judge import Band, Trial, over_seeds, pool, pseudo_values
 
 CASE = "avalanche"
@@ -110,7 +110,7 @@ Avalanche = Mapping[str, Window]  # by name of the window
 
 
 @dataclass(frozen=True)
-class Pair:
+class RunPair:
     """The run with the long and that with the short collision time, same seed, choices and window."""
 
     soft: Window
@@ -132,15 +132,15 @@ class Pair:
         return "stuck" if lowest < least else "moves"
 
 
-Numbers = Callable[[Sequence[Pair]], list[float]]  # of the pairs of one setting and window: one per seed
+Numbers = Callable[[Sequence[RunPair]], list[float]]  # of the pairs of one setting and window: one per seed
 
 
-def each(value: Callable[[Pair], float]) -> Numbers:
+def each(value: Callable[[RunPair], float]) -> Numbers:
     """Take a number from every pair by itself."""
     return lambda found: [value(pair) for pair in found]
 
 
-def together(value: Callable[[Sequence[Pair]], float]) -> Numbers:
+def together(value: Callable[[Sequence[RunPair]], float]) -> Numbers:
     """Take a number from what all pairs give together, such as the difference of their mean profiles.
 
     Profiles of single runs differ by 5 to 10 % from seed to seed alone; the mean of such differences, or the
@@ -149,7 +149,7 @@ def together(value: Callable[[Sequence[Pair]], float]) -> Numbers:
     return lambda found: pseudo_values(value, found)
 
 
-def layers(found: Sequence[Pair]) -> tuple[tuple[Floats, Floats], tuple[Floats, Floats]]:
+def layers(found: Sequence[RunPair]) -> tuple[tuple[Floats, Floats], tuple[Floats, Floats]]:
     """Concentration and speed of the soft runs, and of the stiff ones, on common layers; 0 where is none.
 
     Means over pairs; the speed is weighted with concentration [m/s].
@@ -168,14 +168,14 @@ def layers(found: Sequence[Pair]) -> tuple[tuple[Floats, Floats], tuple[Floats, 
     return means[0], means[1]
 
 
-def unlike(found: Sequence[Pair]) -> float:
+def unlike(found: Sequence[RunPair]) -> float:
     """Mean difference of concentration over mean concentration of the layers of the flow [-]."""
     (soft, _), (stiff, _) = layers(found)
     there = np.maximum(soft, stiff) > SPARSE
     return float(np.abs(soft - stiff)[there].mean() / (0.5 * (soft + stiff)[there]).mean())
 
 
-def faster(found: Sequence[Pair]) -> Floats:
+def faster(found: Sequence[RunPair]) -> Floats:
     """Speed of the soft runs less that of the stiff ones in every layer that both fill [m/s]."""
     (phi_soft, soft), (phi_stiff, stiff) = layers(found)
     return (soft - stiff)[np.minimum(phi_soft, phi_stiff) > THIN]
@@ -208,16 +208,16 @@ def settings(plan: Plan) -> list[dict[str, str]]:
     return [SHIPPED, *(one for one in sets if one != SHIPPED)]
 
 
-def run(chosen: Mapping[str, str], time: str, seed: int) -> Variant:
+def run(chosen: Mapping[str, str], time: str, seed: int) -> CaseRun:
     """One run of the case; what is as shipped is not said."""
     changed = {KEYS[name]: value for name, value in chosen.items() if name in KEYS and SHIPPED[name] != value}
     changed |= OTHERS.get(chosen[PACKING], {})
     if time != SOFT:
         changed["contact.stiffness"] = f'{{ collision_time = "{time}" }}'
-    return variant(CASE, changed, seed)
+    return paper_run(CASE, changed, seed)
 
 
-def cases(plan: Plan) -> Sequence[Variant]:
+def cases(plan: Plan) -> Sequence[CaseRun]:
     """Both collision times for every setting and seed."""
     return [run(one, time, seed) for one in settings(plan) for seed in seeds(plan, one) for time in TIMES]
 
@@ -229,7 +229,7 @@ def seeds(plan: Plan, chosen: Mapping[str, str]) -> list[int]:
 
 
 @lru_cache(maxsize=2)
-def measure(results: Results, one: Variant) -> Avalanche:
+def measure(results: Results, one: CaseRun) -> Avalanche:
     """Profiles and ways in every window of one run; three experiments ask for the same numbers."""
     del one
     return {name: _window(results, TILT + begin, TILT + end) for name, (begin, end) in WINDOWS.items()}
@@ -280,9 +280,11 @@ def _together(path: Tracks) -> Tracks:
     return replace(path, x=path.x - np.floor(path.x[:1] / path.period) * path.period)
 
 
-def pairs(found: Found, plan: Plan, chosen: Mapping[str, str], window: str) -> list[Pair]:
+def pairs(found: Found, plan: Plan, chosen: Mapping[str, str], window: str) -> list[RunPair]:
     """Pairs of runs of one setting, by seed."""
-    return [Pair(*(found[run(chosen, time, seed)][window] for time in TIMES)) for seed in seeds(plan, chosen)]
+    return [
+        RunPair(*(found[run(chosen, time, seed)][window] for time in TIMES)) for seed in seeds(plan, chosen)
+    ]
 
 
 def sets(plan: Plan) -> list[tuple[dict[str, str], str]]:

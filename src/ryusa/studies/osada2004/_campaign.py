@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from ryusa.studies.osada2004._experiment import load
-from ryusa.study import Campaign, Plan, Say
+from ryusa.study import Plan, StudyProgress, TaskResults
 from ryusa.study import carry_out as carry_out_works
 
 
@@ -15,8 +15,8 @@ def carry_out(
     *,
     jobs: int = 1,
     again: bool = False,
-    say: Say | None = None,
-) -> Campaign:
+    say: StudyProgress | None = None,
+) -> TaskResults:
     """Run every case that the experiments need, and measure each for every experiment that wants it.
 
     Parameters

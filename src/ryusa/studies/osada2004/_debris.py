@@ -13,7 +13,7 @@ from ryusa.measure.collisions import Partner
 from ryusa.measure.entrainment import SPEED as MOVES
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
-from ryusa.studies.osada2004._experiment import PHI, SLIP, Found, Plan, Variant, variant
+from ryusa.studies.osada2004._experiment import PHI, SLIP, CaseRun, Found, Plan, paper_run
 from ryusa.study.judge import Band, Trial, over_seeds, pool
 
 CASE = "fig17"
@@ -60,7 +60,7 @@ SHOWN = 0.2  # of the window, drawn as tracks [s]
 
 
 @dataclass(frozen=True)
-class Contacts:
+class DebrisContacts:
     """Contacts with one kind of partner in a run."""
 
     n: int
@@ -94,7 +94,7 @@ class Debris:
     thrown: float
     rms_z: float
     rest: float
-    contacts: Mapping[str, Contacts]
+    contacts: Mapping[str, DebrisContacts]
     closed: Mapping[str, tuple[float, float]]
     companions: float
     rods: float
@@ -179,16 +179,21 @@ def settings(plan: Plan) -> list[dict[str, str]]:
     return [SHIPPED, *({**SHIPPED, name: value} for name, values in changes for value in values)]
 
 
-def run(chosen: Mapping[str, str], seed: int, changed: Mapping[str, str] | None = None) -> Variant:
+def run(chosen: Mapping[str, str], seed: int, changed: Mapping[str, str] | None = None) -> CaseRun:
     """One run of the case; what is as shipped is not said."""
     keys = {KEYS[name]: value for name, value in chosen.items() if name in KEYS and SHIPPED[name] != value}
     if chosen[START] != SHIPPED[START]:
         keys["build.speed"] = STARTS[chosen[START]]
-    return variant(CASE, {**keys, **OTHERS.get(chosen[WATER], {}), **(changed or {})}, seed)
+    return paper_run(CASE, {**keys, **OTHERS.get(chosen[WATER], {}), **(changed or {})}, seed)
 
 
 def trials(
-    found: Found, plan: Plan, part: str, numbers: Numbers, band: Band, sets: Sequence[Mapping[str, str]]
+    found: Found,
+    plan: Plan,
+    part: str,
+    numbers: Numbers,
+    band: Band,
+    sets: Sequence[Mapping[str, str]],
 ) -> list[Trial]:
     """One part of a claim under every setting; the spread between seeds is pooled over them."""
     groups = [numbers([found[run(one, seed)] for seed in plan.seeds]) for one in sets]
@@ -205,7 +210,7 @@ def mean(found: Found, plan: Plan, value: Callable[[Debris], float], chosen: Map
 
 
 @lru_cache(maxsize=2)
-def measure(results: Results, one: Variant) -> Debris:
+def measure(results: Results, one: CaseRun) -> Debris:
     """Everything the three experiments ask of one run."""
     del one
     profile = profiles(results, layer=LAYER, origin="mean crest", bed=True)
@@ -238,12 +243,12 @@ def measure(results: Results, one: Variant) -> Debris:
     )
 
 
-def _contacts(results: Results, partner: Partner) -> Contacts:
+def _contacts(results: Results, partner: Partner) -> DebrisContacts:
     found = collisions(results, partner)
     if not len(found.events):
-        return Contacts(0, math.nan, math.nan, math.nan)
+        return DebrisContacts(0, math.nan, math.nan, math.nan)
     averages = found.averages
-    return Contacts(
+    return DebrisContacts(
         len(found.events),
         averages["duration"].value,
         averages["duration_alone"].value,

@@ -21,7 +21,7 @@ from ryusa.laws.drag import volume
 from ryusa.measure import collisions, contact_times
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
-from ryusa.studies.osada2004._experiment import Found, Variant, variant
+from ryusa.studies.osada2004._experiment import CaseRun, Found, paper_run
 from ryusa.study.judge import Band, Interval, over_range
 from ryusa.units import quantity
 
@@ -47,7 +47,7 @@ _SHIPPED = {  # what the case file says already
 
 
 @dataclass(frozen=True)
-class Drop:
+class DropRun:
     """A drop; arrays have one entry per copy whose contact ended (fewer than `copies`: it stays)."""
 
     d: float  # [m]
@@ -131,7 +131,7 @@ class Setup:
         return 9.8 / (quantity(self.speed, "m/s") * omega_natural(self.stiffness, self.m))
 
     @property
-    def variant(self) -> Variant:
+    def task(self) -> CaseRun:
         """The run."""
         eq_8 = collision_time(self.m, self.stiffness)
         dt = self.shortest / self.steps * (1.0 - 1.0e-9)  # the case reader compares with what it works out
@@ -158,17 +158,17 @@ class Setup:
             changed["contact.damping"] = f"{damping(self.zeta, self.stiffness, self.m):.9g} N s/m"
         if self.steps != 50.0:
             changed["time.step"] = f"{dt:.12g} s"
-        return variant(CASE, changed)
+        return paper_run(CASE, changed)
 
 
-def measure(run: Results, one: Variant) -> Drop:
+def measure(run: Results, one: CaseRun) -> DropRun:
     """Keep the first contact of every copy."""
     del one
     copies = int(run.case["build"]["copies"])
     found, scene = collisions(run), run.scene
     first = [int(np.flatnonzero(found.events["i"] == i)[0]) for i in range(copies) if i in found.events["i"]]
     partner = copies if run.case["build"]["partner"] == "free" else None
-    return Drop(
+    return DropRun(
         d=float(scene.d[0]),
         k_n=float(scene.contact.k_n),
         eq_8=contact_times(scene, 0, partner).eq_8,
@@ -191,7 +191,7 @@ def rows(setups: Sequence[Setup], found: Found) -> list[dict[str, object]]:
     """One line per drop: the middle over its phases, and the extremes of e."""
     lines: list[dict[str, object]] = []
     for one in setups:
-        drop: Drop = found[one.variant]
+        drop: DropRun = found[one.task]
         middle = {name: float(np.median(getattr(drop, name))) if drop.parts else math.nan for name in _KEPT}
         low, high = (float(drop.e.min()), float(drop.e.max())) if drop.parts else (math.nan, math.nan)
         lines.append(

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from ryusa.cases import FOLDERS
 from ryusa.errors import CaseError
 from ryusa.results import Results
-from ryusa.study import Level, Plan, Variant
+from ryusa.study import CaseRun, Level, Plan
 from ryusa.study.judge import Finding
 
 __all__ = [
@@ -18,13 +18,13 @@ __all__ = [
     "RATIO",
     "ROTATION",
     "SLIP",
+    "CaseRun",
     "Experiment",
     "Found",
     "Level",
     "Plan",
-    "Variant",
     "load",
-    "variant",
+    "paper_run",
 ]
 
 NAMES = (
@@ -60,7 +60,7 @@ RATIO = "k_s/k_n"
 ROTATION = "rotation"  # only where the paper does not say it
 
 
-def variant(case: str, overrides: Mapping[str, str] | None = None, seed: int = 1) -> Variant:
+def paper_run(case: str, overrides: Mapping[str, str] | None = None, seed: int = 1) -> CaseRun:
     """Name one run.
 
     Parameters
@@ -70,10 +70,10 @@ def variant(case: str, overrides: Mapping[str, str] | None = None, seed: int = 1
     seed : the one seed of all its randomness.
     """
     changed = {**(overrides or {}), "seed": str(seed)}
-    return Variant(case, tuple(sorted(changed.items())), FOLDERS["paper"])
+    return CaseRun(case, tuple(sorted(changed.items())), FOLDERS["paper"])
 
 
-Found = Mapping[Variant, Any]
+Found = Mapping[CaseRun, Any]
 
 
 class Experiment(Protocol):
@@ -88,11 +88,11 @@ class Experiment(Protocol):
     TITLE: str
     CLAIMS: tuple[str, ...]  # ids of `paper.CLAIMS` that it judges
 
-    def cases(self, plan: Plan) -> Sequence[Variant]:
+    def cases(self, plan: Plan) -> Sequence[CaseRun]:
         """Runs it needs; none for a chart of closed forms."""
         ...
 
-    def measure(self, run: Results, one: Variant) -> Any:
+    def measure(self, run: Results, one: CaseRun) -> Any:
         """Numbers of one run, small enough to be sent between processes."""
         ...
 

@@ -9,7 +9,7 @@ from scipy import stats
 
 from ryusa.measure import HeapSurface, Snapshot, snapshot, surface
 from ryusa.results import Results
-from ryusa.studies.osada2004._experiment import PHI, SLIP, Plan, Variant, variant
+from ryusa.studies.osada2004._experiment import PHI, SLIP, CaseRun, Plan, paper_run
 from ryusa.study.judge import CONFIDENCE, Interval, Pooled, over_seeds
 
 CASE = "fig19"
@@ -51,11 +51,11 @@ class Heap:
 
 def run(
     chosen: Mapping[str, str], rotation: str, seed: int, more: Mapping[str, str] | None = None
-) -> Variant:
+) -> CaseRun:
     """One heap; the shipped one turns freely."""
     changed = {KEYS[name]: value for name, value in chosen.items() if name in KEYS and SHIPPED[name] != value}
     changed |= {} if rotation == "free" else {"timeline.1.rotation": rotation}
-    return variant(CASE, changed | dict(more or {}), seed)
+    return paper_run(CASE, changed | dict(more or {}), seed)
 
 
 def starts(plan: Plan, n: int = STARTS) -> list[int]:

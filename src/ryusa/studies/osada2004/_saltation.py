@@ -10,7 +10,7 @@ import numpy as np
 from ryusa.measure import Saltation, Tracks, collisions, saltation, tracks
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
-from ryusa.studies.osada2004._experiment import PHI, RATIO, SLIP, Plan, Variant, variant
+from ryusa.studies.osada2004._experiment import PHI, RATIO, SLIP, CaseRun, Plan, paper_run
 from ryusa.study.judge import Pooled, pool
 
 CASE = "saltation"
@@ -36,7 +36,7 @@ WIDE = {"build.starts": "48", "record.frames": "5 ms"}
 
 
 @dataclass(frozen=True)
-class Hops:
+class SaltationRun:
     """Hops of one run, and the path of its first start after settling.
 
     Attributes
@@ -112,12 +112,12 @@ def overrides(chosen: Mapping[str, str]) -> dict[str, str]:
 
 def run(
     chosen: Mapping[str, str], rotation: str, seed: int, more: Mapping[str, str] | None = None
-) -> Variant:
+) -> CaseRun:
     """One run of the case under a set of choices."""
-    return variant(CASE, {**overrides(chosen), "motion.rotation": rotation, **(more or {})}, seed)
+    return paper_run(CASE, {**overrides(chosen), "motion.rotation": rotation, **(more or {})}, seed)
 
 
-def sweep_run(chosen: Mapping[str, str], seed: int) -> Variant:
+def sweep_run(chosen: Mapping[str, str], seed: int) -> CaseRun:
     """Locked run of a sweep over stiffness: with many starts where only the stiffness is changed."""
     only_k = all(chosen[name] == value for name, value in SHIPPED.items())
     return run(chosen, "locked", seed, WIDE if only_k else None)
@@ -134,14 +134,14 @@ def stiffness(words: str) -> float:
 
 
 @lru_cache(maxsize=2)
-def hops(results: Results) -> Hops:
+def hops(results: Results) -> SaltationRun:
     """Measure one run; several experiments ask for the same numbers."""
     found = saltation(results, hops=HOPS)
     begin = float(found.hops["t_begin"][0]) if len(found.hops) else 0.0
     d = float(results.scene.d[0])
     touch = collisions(results, "bed")
     lone = np.isfinite(touch.restitution)
-    return Hops(
+    return SaltationRun(
         found,
         tracks(results, [0], begin, begin + 1.0),
         d,

@@ -12,7 +12,7 @@ from ryusa.figures.snapshot import snapshot as draw_snapshot
 from ryusa.measure import Snapshot, snapshot
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
-from ryusa.studies.osada2004._experiment import PHI, RATIO, SLIP, Found, Plan, Variant, variant
+from ryusa.studies.osada2004._experiment import PHI, RATIO, SLIP, CaseRun, Found, Plan, paper_run
 from ryusa.study.judge import Band, Finding, Trial, over_range, short
 
 FIGURE = "fig19"
@@ -44,7 +44,7 @@ KEEPS = 0.5  # of the speed 0.3 s before; a bed one degree too flat loses 0.4 sq
 
 
 @dataclass(frozen=True)
-class Flow:
+class TiltedBedRun:
     """One run.
 
     Attributes
@@ -106,7 +106,7 @@ def settings(plan: Plan) -> list[dict[str, str]]:
     return list({tuple(one.items()): one for one in every}.values())
 
 
-def _run(chosen: Mapping[str, str], seed: int, rotation: str = "free") -> Variant:
+def _run(chosen: Mapping[str, str], seed: int, rotation: str = "free") -> CaseRun:
     changed = {
         "timeline.0.friction_angle": chosen[PHI],
         "timeline.1.rotation": rotation,
@@ -116,25 +116,25 @@ def _run(chosen: Mapping[str, str], seed: int, rotation: str = "free") -> Varian
     }
     shipped = ("30 deg", "free", "21 deg", "21 deg", "random")
     kept = {key: text for (key, text), old in zip(changed.items(), shipped, strict=True) if text != old}
-    return variant("bed18", kept, seed)
+    return paper_run("bed18", kept, seed)
 
 
-def _control(name: str, seed: int) -> Variant:
+def _control(name: str, seed: int) -> CaseRun:
     slope, rotation = CONTROLS[name]
     return _run(SHIPPED | {SLOPE: slope, START: MOVING}, seed, rotation)
 
 
-def cases(plan: Plan) -> Sequence[Variant]:
+def cases(plan: Plan) -> Sequence[CaseRun]:
     """Every setting and seed, and the controls with one seed."""
     runs = [_run(one, seed) for one in settings(plan) for seed in plan.seeds]
     controls = [_control(name, plan.seeds[0]) for name in plan.pick((), tuple(CONTROLS))]
     return list(dict.fromkeys([*runs, *controls]))
 
 
-def measure(run: Results, one: Variant) -> Flow:
+def measure(run: Results, one: CaseRun) -> TiltedBedRun:
     """Mean motion along the bed and the last moment."""
     del one
-    return Flow(
+    return TiltedBedRun(
         t=np.asarray(run.frames.t),
         v=np.asarray(run.frames.v[:])[:, :, 0].mean(axis=1),
         x=np.asarray(run.frames.x[:])[:, :, 0].mean(axis=1),
@@ -159,7 +159,7 @@ def _degrees(text: str) -> float:
     return float(text.split(maxsplit=1)[0])
 
 
-def _flows(flow: Flow) -> bool:
+def _flows(flow: TiltedBedRun) -> bool:
     return flow.speed() > FLOWS and flow.keeps > KEEPS
 
 
@@ -170,7 +170,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         slope = one[SLOPE]
         if _degrees(slope) < HEAP + TOLD:
             continue
-        runs: list[Flow] = [found[_run(one, seed)] for seed in plan.seeds]
+        runs: list[TiltedBedRun] = [found[_run(one, seed)] for seed in plan.seeds]
         flowing = sum(_flows(run) for run in runs)
         decided = True if flowing == len(runs) else None if flowing else False
         chosen = {name: value for name, value in one.items() if name != SLOPE}
@@ -187,7 +187,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             f"paper's heap with rotation free ends at {HEAP:g} deg"
         )
     for name in plan.pick((), tuple(CONTROLS)):
-        flow: Flow = found[_control(name, plan.seeds[0])]
+        flow: TiltedBedRun = found[_control(name, plan.seeds[0])]
         also.append(
             f"{PUSH} until 0.45 s, then {name}: at most {short(flow.most)} sqrt(g d), "
             f"{short(flow.speed())} at the end"
@@ -246,13 +246,13 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
     seed = plan.seeds[0]
     shown = [one for one in settings(plan) if one == SHIPPED | {SLOPE: one[SLOPE], START: one[START]}]
     for one in sorted(shown, key=lambda one: one[SLOPE]):
-        flow: Flow = found[_run(one, seed)]
+        flow: TiltedBedRun = found[_run(one, seed)]
         panels.setdefault(one[START], {})[one[SLOPE]] = (flow.t, flow.v)
     if plan.pick(False, True):
         for name in CONTROLS:
             flow = found[_control(name, seed)]
             panels[MOVING][name] = (flow.t, flow.v)
-    fastest: Flow = max((found[_run(one, seed)] for one in shown), key=lambda flow: flow.speed())
+    fastest: TiltedBedRun = max((found[_run(one, seed)] for one in shown), key=lambda flow: flow.speed())
     note = f"friction angle {SHIPPED[PHI]}, tilted at 0.3 s (once moving: {PUSH} until 0.45 s)"
     return {
         "bed18": speeds(panels, fastest.d, FLOWS, fastest.g, note),

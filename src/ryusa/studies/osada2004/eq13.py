@@ -16,7 +16,7 @@ from ryusa.laws.rolling import rolling_arm_width
 from ryusa.measure import spin
 from ryusa.results import Results
 from ryusa.studies.osada2004 import _heap, _saltation
-from ryusa.studies.osada2004._experiment import PHI, RATIO, SLIP, Found, Level, Plan, Variant
+from ryusa.studies.osada2004._experiment import PHI, RATIO, SLIP, CaseRun, Found, Level, Plan
 from ryusa.study.judge import Band, Finding, Interval, Trial, over_seeds, pool
 
 FIGURE = "fig23"
@@ -98,7 +98,7 @@ def _starts(plan: Plan, chosen: Mapping[str, str]) -> list[int]:
     return _heap.starts(plan, plan.pick(1, 1, _heap.STARTS if compared else 1))
 
 
-def run(chosen: Mapping[str, str], seed: int) -> Variant:
+def run(chosen: Mapping[str, str], seed: int) -> CaseRun:
     """One heap; stretched in time as sqrt(d) where the grains are of another size."""
     more = {"rolling.model": KINDS[chosen[MODEL]], "rolling.coefficient": chosen[COEFFICIENT]}
     more |= {key: _value(chosen[name]) for name, key in KEYS.items() if chosen[name] != BASE[name]}
@@ -118,13 +118,13 @@ def _value(text: str) -> str:
     return str(_first(text) / 100.0) if text.endswith("%") else text
 
 
-def _spin(model: str, seed: int) -> Variant:
+def _spin(model: str, seed: int) -> CaseRun:
     """A saltating grain that turns, with a rolling friction or without."""
     more = {} if model == "none" else {"rolling.model": KINDS[model], "rolling.coefficient": SPIN_AT[model]}
     return _saltation.run(_saltation.SHIPPED, "free", seed, more)
 
 
-def cases(plan: Plan) -> Sequence[Variant]:
+def cases(plan: Plan) -> Sequence[CaseRun]:
     """Heaps under every setting and without rolling friction; saltating grains under each form."""
     plain = [_heap.run({PHI: phi}, "free", seed) for phi in _angles(plan) for seed in plan.seeds]
     heaps = [run(chosen, seed) for chosen in settings(plan) for seed in _starts(plan, chosen)]
@@ -135,7 +135,7 @@ def _angles(plan: Plan) -> list[str]:
     return plan.pick(["30 deg"], ["30 deg", "40 deg"])
 
 
-def measure(results: Results, one: Variant) -> _heap.Heap | float:
+def measure(results: Results, one: CaseRun) -> _heap.Heap | float:
     """Slope of a heap, or mean absolute spin of a saltating grain [rad/s]."""
     return _heap.heap(results) if one.case == _heap.CASE else spin(results).averages["spin_absolute"].value
 

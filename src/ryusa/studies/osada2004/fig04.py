@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 from ryusa import figures
 from ryusa.laws.collision import collision_time
 from ryusa.studies.osada2004 import _drops
-from ryusa.studies.osada2004._drops import Drop, Setup
-from ryusa.studies.osada2004._experiment import Found, Plan, Variant
+from ryusa.studies.osada2004._drops import DropRun, Setup
+from ryusa.studies.osada2004._experiment import CaseRun, Found, Plan
 from ryusa.study.judge import Band, Finding, Trial, over_range
 
 FIGURE = "fig4"
@@ -51,9 +51,9 @@ def setups(plan: Plan) -> list[Setup]:
     return chart + others + weighted(plan)
 
 
-def cases(plan: Plan) -> Sequence[Variant]:
+def cases(plan: Plan) -> Sequence[CaseRun]:
     """One run per setup; there is no chance in them, so that every seed would give the same."""
-    return [one.variant for one in setups(plan)]
+    return [one.task for one in setups(plan)]
 
 
 measure = _drops.measure
@@ -62,7 +62,7 @@ measure = _drops.measure
 def times(found: Found, plan: Plan) -> np.ndarray:
     """Contact time [s], by diameter, then stiffness."""
     return np.array(
-        [[np.median(found[lossless(d, k_n).variant].time) for k_n in stiffnesses(plan)] for d in _drops.SIZES]
+        [[np.median(found[lossless(d, k_n).task].time) for k_n in stiffnesses(plan)] for d in _drops.SIZES]
     )
 
 
@@ -70,7 +70,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """About 0.01 s for the soft spring; shorter for small and for stiff."""
     trials: list[Trial] = []
     for density in densities(plan):
-        drop: Drop = found[lossless(_drops.DIAMETER, SOFT, density).variant]
+        drop: DropRun = found[lossless(_drops.DIAMETER, SOFT, density).task]
         part = "contact time, d = 0.2 cm, k_n = 0.01 N/cm"
         trials.append(Trial(part, {DENSITY: density}, drop.over_phases(drop.time, "s"), QUOTED))
     grid = times(found, plan)
@@ -82,7 +82,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         Trial("contact time, next stiffer over softer spring", base, _ratios(stiffer, "springs"), SHORTER),
     ]
     law = np.array([[drop.eq_8 for drop in row] for row in _grid(found, plan)])
-    heavy = [(one.speed, found[one.variant]) for one in weighted(plan)]
+    heavy = [(one.speed, found[one.task]) for one in weighted(plan)]
     also = [f"runs over Eq. (8): {np.min(grid / law):.4f} to {np.max(grid / law):.4f}"]
     also += [
         f"with its weight, dropped at {speed}: {_over(drop)} of Eq. (8), overlap/d {_deep(drop)}"
@@ -102,19 +102,19 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     )
 
 
-def _grid(found: Found, plan: Plan) -> list[list[Drop]]:
-    return [[found[lossless(d, k_n).variant] for k_n in stiffnesses(plan)] for d in _drops.SIZES]
+def _grid(found: Found, plan: Plan) -> list[list[DropRun]]:
+    return [[found[lossless(d, k_n).task] for k_n in stiffnesses(plan)] for d in _drops.SIZES]
 
 
 def _ratios(values: Sequence[float], of_what: str):
     return over_range(values, "-", f"{len(values)} pairs of {of_what}")
 
 
-def _over(drop: Drop) -> str:
+def _over(drop: DropRun) -> str:
     return f"{np.median(drop.time) / drop.eq_8:.3g}" if drop.parts else "stays, no number"
 
 
-def _deep(drop: Drop) -> str:
+def _deep(drop: DropRun) -> str:
     return f"{np.median(drop.overlap):.2g}" if drop.parts else "none"
 
 

@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 from ryusa import figures
 from ryusa.laws.collision import collision_time, contact_time_no_tension, contact_time_tension
 from ryusa.studies.osada2004 import _drops
-from ryusa.studies.osada2004._drops import Drop, Setup
-from ryusa.studies.osada2004._experiment import Found, Plan, Variant
+from ryusa.studies.osada2004._drops import DropRun, Setup
+from ryusa.studies.osada2004._experiment import CaseRun, Found, Plan
 from ryusa.study.judge import Band, Finding, Trial, over_range
 
 FIGURE = "fig5"
@@ -47,15 +47,15 @@ def setups(plan: Plan) -> list[Setup]:
     return [setup(chosen, k_n) for chosen in choices(plan) for k_n in stiffnesses(plan)]
 
 
-def cases(plan: Plan) -> Sequence[Variant]:
+def cases(plan: Plan) -> Sequence[CaseRun]:
     """One run per setup."""
-    return [one.variant for one in setups(plan)]
+    return [one.task for one in setups(plan)]
 
 
 measure = _drops.measure
 
 
-def ratio(drop: Drop) -> float:
+def ratio(drop: DropRun) -> float:
     """Contact time over Eq. (8) [-], middle of the phases; nan where the grain stays."""
     return float(np.median(drop.time) / drop.eq_8) if drop.parts else math.nan
 
@@ -66,7 +66,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     ends = f"{stiffnesses(plan)[0]:g} to {stiffnesses(plan)[-1]:g} N/cm"
     part = f"contact time over Eq. (8), farthest from 1 of k_n = {ends}"
     for chosen in choices(plan):
-        drops: list[Drop] = [found[setup(chosen, k_n).variant] for k_n in stiffnesses(plan)]
+        drops: list[DropRun] = [found[setup(chosen, k_n).task] for k_n in stiffnesses(plan)]
         stay = [f"{k_n:g} N/cm" for k_n, one in zip(stiffnesses(plan), drops, strict=True) if not one.parts]
         if stay:
             nothing = over_range([math.nan], "-", "phases of first touch")
@@ -77,7 +77,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     zeta = {name: Setup(parting=name).zeta for name in (_drops.NO_TENSION, _drops.TENSION)}
     no_pull = contact_time_no_tension(zeta[_drops.NO_TENSION], 1.0) / math.pi
     pull = contact_time_tension(zeta[_drops.TENSION], 1.0) / math.pi
-    every = [(one, found[one.variant]) for one in setups(plan)]
+    every = [(one, found[one.task]) for one in setups(plan)]
     slack = [(one.heaviness, float(np.median(drop.e))) for one, drop in every if drop.parts]
     light = sorted((one.heaviness, HARDLY.low <= ratio(drop) <= HARDLY.high) for one, drop in every)
     most = max((h for k, (h, _) in enumerate(light) if all(good for _, good in light[: k + 1])), default=0.0)
@@ -115,9 +115,7 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
     nothing = np.zeros(len(k))
     law = figures.StiffnessCurve("Eq. (8)", k, np.array([collision_time(Setup().m, one) for one in k]))
     ratios = {
-        tuple(chosen.values()): np.array(
-            [ratio(found[setup(chosen, one).variant]) for one in stiffnesses(plan)]
-        )
+        tuple(chosen.values()): np.array([ratio(found[setup(chosen, one).task]) for one in stiffnesses(plan)])
         for chosen in choices(plan)
     }
     runs = [

@@ -11,8 +11,8 @@ from ryusa.figures.saltation import contact_times_over_stiffness
 from ryusa.measure import Tracks, turned_time
 from ryusa.results import Results
 from ryusa.studies.osada2004 import _saltation
-from ryusa.studies.osada2004._experiment import Found, Plan, Variant
-from ryusa.studies.osada2004._saltation import K_N, SHIPPED, SKIM, Hops, sweep_run
+from ryusa.studies.osada2004._experiment import CaseRun, Found, Plan
+from ryusa.studies.osada2004._saltation import K_N, SHIPPED, SKIM, SaltationRun, sweep_run
 from ryusa.study.judge import Band, Finding, Interval, Trial, over_seeds
 
 FIGURE = "fig7"
@@ -32,21 +32,21 @@ PATH = {**SHIPPED, K_N: "1 N/cm"}  # Fig. 6
 class Point:
     """One run; its whole path where Fig. 6 shows it."""
 
-    hops: Hops
+    hops: SaltationRun
     path: Tracks | None
 
 
-def cases(plan: Plan) -> Sequence[Variant]:
+def cases(plan: Plan) -> Sequence[CaseRun]:
     """Rotation locked: every stiffness and set of choices; the run of Fig. 6."""
     runs = [sweep_run(one, seed) for one in _saltation.with_stiffness(plan) for seed in plan.seeds]
     return [*runs, _path(plan)]
 
 
-def _path(plan: Plan) -> Variant:
+def _path(plan: Plan) -> CaseRun:
     return _saltation.run(PATH, "locked", plan.seeds[0])
 
 
-def measure(run: Results, one: Variant) -> Point:
+def measure(run: Results, one: CaseRun) -> Point:
     """Hops of all starts."""
     shown = one == _saltation.run(PATH, "locked", run.case["seed"])
     return Point(_saltation.hops(run), _saltation.whole_path(run) if shown else None)
@@ -94,7 +94,7 @@ def _values(found: Found, plan: Plan, chosen: Mapping[str, str], name: str) -> l
     return [found[sweep_run(chosen, seed)].hops.value(name) for seed in plan.seeds]
 
 
-def _sweep(found: Found, plan: Plan) -> dict[str, Hops]:
+def _sweep(found: Found, plan: Plan) -> dict[str, SaltationRun]:
     """The first seed at every stiffness, soft to stiff."""
     return {
         k: found[sweep_run({**SHIPPED, K_N: k}, plan.seeds[0])].hops

@@ -13,8 +13,8 @@ from ryusa.measure.stability import BAND
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
 from ryusa.studies.osada2004 import _drops, _saltation
-from ryusa.studies.osada2004._drops import Drop, Setup
-from ryusa.studies.osada2004._experiment import Found, Plan, Variant
+from ryusa.studies.osada2004._drops import DropRun, Setup
+from ryusa.studies.osada2004._experiment import CaseRun, Found, Plan
 from ryusa.study.judge import Finding, Trial, over_seeds
 from ryusa.units import quantity
 
@@ -71,17 +71,17 @@ def setups(plan: Plan) -> list[Setup]:
     return list(dict.fromkeys([setup(one) for one in dropped(plan)] + chart(plan)))
 
 
-def saltating(plan: Plan) -> list[Variant]:
+def saltating(plan: Plan) -> list[CaseRun]:
     """The saltation of fig20, rotation locked, at 100 N/cm as it ships."""
     return [_saltation.run(_saltation.SHIPPED, "locked", seed) for seed in plan.seeds]
 
 
-def cases(plan: Plan) -> Sequence[Variant]:
+def cases(plan: Plan) -> Sequence[CaseRun]:
     """Drops, and the saltation that says how hard a grain really hits."""
-    return [*(one.variant for one in setups(plan)), *saltating(plan)]
+    return [*(one.task for one in setups(plan)), *saltating(plan)]
 
 
-def measure(run: Results, one: Variant) -> Drop | Hits:
+def measure(run: Results, one: CaseRun) -> DropRun | Hits:
     """Keep overlaps and speeds."""
     if one.case == _drops.CASE:
         return _drops.measure(run, one)
@@ -93,7 +93,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """0.01 at 100 N/cm, by impact speed."""
     trials: list[Trial] = []
     for chosen in dropped(plan):
-        drop: Drop = found[setup(chosen).variant]
+        drop: DropRun = found[setup(chosen).task]
         trials.append(Trial(PART, chosen, drop.over_phases(drop.overlap, "-"), QUOTED))
     hits: list[Hits] = [found[one] for one in saltating(plan)]
     for word, pick in ((MEAN, np.mean), (HARDEST, np.max)):
@@ -132,7 +132,7 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
     for d in _drops.SIZES:
         one = Setup(d=d)
         law = np.array([overlap_max(0.3, one.m, s, one.zeta) for s in k]) / quantity(d, "m")
-        drops = [found[Setup(d=d, k_n=s).variant] for s in stiffnesses(plan)]
+        drops = [found[Setup(d=d, k_n=s).task] for s in stiffnesses(plan)]
         lines.append(figures.StiffnessCurve(d, k, law))
         runs.append(
             figures.StiffnessPoints(
@@ -142,7 +142,7 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
     by_speed = []
     for e in dict.fromkeys(one[E] for one in dropped(plan)):
         at = sorted(
-            (found[setup(one).variant] for one in dropped(plan) if one[E] == e), key=lambda r: r.speed[0]
+            (found[setup(one).task] for one in dropped(plan) if one[E] == e), key=lambda r: r.speed[0]
         )
         speeds, overlaps = (
             np.array([np.median(getattr(r, name)) for r in at]) for name in ("speed", "overlap")

@@ -17,7 +17,7 @@ from ryusa.measure import Snapshot, Vibration, rest_time, snapshot, trembling_sh
 from ryusa.measure.statistics import Floats
 from ryusa.measure.vibration import WINDOW, ExtentRule
 from ryusa.results import Results
-from ryusa.studies.osada2004._experiment import PHI, RATIO, ROTATION, SLIP, Found, Plan, Variant, variant
+from ryusa.studies.osada2004._experiment import PHI, RATIO, ROTATION, SLIP, CaseRun, Found, Plan, paper_run
 from ryusa.study.judge import Band, Finding, Interval, Trial, over_range, over_seeds, pool, short
 
 FIGURE = "fig10"
@@ -94,12 +94,12 @@ def starts(plan: Plan, chosen: Mapping[str, str] = SHIPPED) -> list[int]:
     return [seed + SECOND * one for seed in plan.seeds for one in range(count)]
 
 
-def _run(chosen: Mapping[str, str], k_n: str, seed: int) -> Variant:
+def _run(chosen: Mapping[str, str], k_n: str, seed: int) -> CaseRun:
     changed = {KEYS[name]: chosen[name] for name in KEYS if chosen[name] != SHIPPED[name]}
-    return variant("fig10", changed | ({} if k_n == SOFT else {"contact.stiffness": k_n}), seed)
+    return paper_run("fig10", changed | ({} if k_n == SOFT else {"contact.stiffness": k_n}), seed)
 
 
-def _other(size: str, overlap: str, rotation: str, seed: int) -> Variant:
+def _other(size: str, overlap: str, rotation: str, seed: int) -> CaseRun:
     """A box of other grains, times stretched as sqrt(d/g), stiffness from what overlap the fall may make."""
     d = float(size.split(maxsplit=1)[0]) / 100.0
     speed = math.sqrt(2.0 * 9.8 * FALL * d)
@@ -111,10 +111,10 @@ def _other(size: str, overlap: str, rotation: str, seed: int) -> Variant:
         "stop.time": f"{0.5001 * stretch:.9g} s",
         "record.frames": f"{0.0002 * stretch:.9g} s",
     }
-    return variant("fig10", changed | ({} if rotation == "locked" else {KEYS[ROTATION]: rotation}), seed)
+    return paper_run("fig10", changed | ({} if rotation == "locked" else {KEYS[ROTATION]: rotation}), seed)
 
 
-def others(plan: Plan, rotation: str) -> list[Variant]:
+def others(plan: Plan, rotation: str) -> list[CaseRun]:
     """Runs with other diameters; with free rotation fewer of them."""
     sizes, overlaps = plan.pick(SIZES[:2], SIZES), plan.pick(OVERLAPS[:2], OVERLAPS)
     if rotation == "free":
@@ -123,13 +123,13 @@ def others(plan: Plan, rotation: str) -> list[Variant]:
     return [_other(size, one, rotation, seed) for size in sizes for one in overlaps for seed in seeds]
 
 
-def cases(plan: Plan) -> Sequence[Variant]:
+def cases(plan: Plan) -> Sequence[CaseRun]:
     """Soft and stiff under every setting, then other diameters."""
     runs = [_run(one, k, seed) for one in settings(plan) for k in (SOFT, STIFF) for seed in starts(plan, one)]
     return list(dict.fromkeys([*runs, *others(plan, "locked"), *others(plan, "free")]))
 
 
-def measure(run: Results, one: Variant) -> Fall:
+def measure(run: Results, one: CaseRun) -> Fall:
     """Motion in windows of 0.01 s, or in proportion to sqrt(d/g); forward differences in the shipped box."""
     d = float(run.scene.d.mean())
     window = WINDOW * math.sqrt(d / D)

@@ -9,8 +9,8 @@ from ryusa import figures
 from ryusa.laws.collision import collision_time
 from ryusa.measure.stability import BAND
 from ryusa.studies.osada2004 import _drops, fig08
-from ryusa.studies.osada2004._drops import Drop, Setup
-from ryusa.studies.osada2004._experiment import Found, Plan, Variant
+from ryusa.studies.osada2004._drops import DropRun, Setup
+from ryusa.studies.osada2004._experiment import CaseRun, Found, Plan
 from ryusa.study.judge import Band, Finding, Trial
 from ryusa.units import quantity
 
@@ -33,9 +33,9 @@ def setups(plan: Plan) -> list[Setup]:
     return [Setup(time=TIME, speed=speed) for speed in speeds(plan)] + fig08.chart(plan)
 
 
-def cases(plan: Plan) -> Sequence[Variant]:
+def cases(plan: Plan) -> Sequence[CaseRun]:
     """One run per setup."""
-    return [one.variant for one in setups(plan)]
+    return [one.task for one in setups(plan)]
 
 
 measure = _drops.measure
@@ -45,7 +45,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """A contact of 0.0001 s lies in the band."""
     trials: list[Trial] = []
     for speed in speeds(plan):
-        drop: Drop = found[Setup(time=TIME, speed=speed).variant]
+        drop: DropRun = found[Setup(time=TIME, speed=speed).task]
         part = f"overlap/d of a contact of {TIME}, d = 0.2 cm"
         trials.append(Trial(part, {SPEED: speed}, drop.over_phases(drop.overlap, "-"), INSIDE))
     base, v = trials[0].found.value, quantity(_drops.SPEED, "m/s")
@@ -77,7 +77,7 @@ def band(sizes: Sequence[str], springs: Sequence[float], speed: str, found: Foun
     """Edges of the band as runs have it: k_n and time where overlap/d is 0.01 and 0.001, between two runs."""
     edges: list[tuple[float, float, float, float]] = []
     for d in sizes:
-        drops: list[Drop] = [found[Setup(d=d, k_n=k_n, speed=speed).variant] for k_n in springs]
+        drops: list[DropRun] = [found[Setup(d=d, k_n=k_n, speed=speed).task] for k_n in springs]
         x = np.log([np.median(one.overlap) for one in drops][::-1])
         k, t = (
             np.log(values[::-1])
@@ -99,7 +99,7 @@ def times(
     ]
     runs = []
     for d in sizes:
-        drops = [found[Setup(d=d, k_n=s, speed=speed).variant] for s in springs]
+        drops = [found[Setup(d=d, k_n=s, speed=speed).task] for s in springs]
         runs.append(
             figures.StiffnessPoints(
                 f"run, d = {d}", k, np.array([np.median(one.time) for one in drops]), 0 * k

@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 from ryusa import figures
 from ryusa.measure.stability import BAND
 from ryusa.studies.osada2004 import _drops, fig11
-from ryusa.studies.osada2004._drops import Drop, Setup
-from ryusa.studies.osada2004._experiment import Found, Plan, Variant
+from ryusa.studies.osada2004._drops import DropRun, Setup
+from ryusa.studies.osada2004._experiment import CaseRun, Found, Plan
 from ryusa.study.judge import Finding, Trial, over_range
 from ryusa.units import quantity
 
@@ -40,9 +40,9 @@ def setups(plan: Plan) -> list[Setup]:
     return [one for one in pairs if one.deepest < 0.9] + chart
 
 
-def cases(plan: Plan) -> Sequence[Variant]:
+def cases(plan: Plan) -> Sequence[CaseRun]:
     """One run per setup."""
-    return [one.variant for one in setups(plan)]
+    return [one.task for one in setups(plan)]
 
 
 measure = _drops.measure
@@ -63,7 +63,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
                 note = f"would go through its partner (overlap/d {one.deepest:.2g})"
                 trials.append(Trial(part, {SPEED: speed}, nothing, fig11.INSIDE, False, note))
                 continue
-            drop: Drop = found[one.variant]
+            drop: DropRun = found[one.task]
             trials.append(Trial(part, {SPEED: speed}, drop.over_phases(drop.overlap, "-"), fig11.INSIDE))
             middles.append(trials[-1].found.value)
             rate[time].append(middles[-1] / quantity(speed, "m/s"))

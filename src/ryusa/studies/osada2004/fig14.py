@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from ryusa import figures
 from ryusa.studies.osada2004 import _avalanche
-from ryusa.studies.osada2004._avalanche import FIRST, SHIPPED, SOFT, STIFF, Pair, together, unlike
+from ryusa.studies.osada2004._avalanche import FIRST, SHIPPED, SOFT, STIFF, RunPair, together, unlike
 from ryusa.studies.osada2004._experiment import Found, Plan
 from ryusa.study.judge import Band, Finding, short
 
@@ -42,13 +42,13 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     )
 
 
-def _scatter(base: Sequence[Pair]) -> tuple[str, ...]:
+def _scatter(base: Sequence[RunPair]) -> tuple[str, ...]:
     """How much two runs of the same collision time differ that have other seeds."""
     if len(base) < 2:
         return ()
     halves = {SOFT: [one.soft for one in base], STIFF: [one.stiff for one in base]}
     told = [
-        f"{short(float(np.mean([unlike([Pair(a, b)]) for a, b in combinations(runs, 2)])))} with {time}"
+        f"{short(float(np.mean([unlike([RunPair(a, b)]) for a, b in combinations(runs, 2)])))} with {time}"
         for time, runs in halves.items()
     ]
     return (f"single runs that differ in the seed alone are unlike by {', '.join(told)}",)

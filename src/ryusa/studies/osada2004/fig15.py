@@ -16,7 +16,7 @@ from ryusa.studies.osada2004._avalanche import (
     STIFF,
     WINDOWS,
     Numbers,
-    Pair,
+    RunPair,
     each,
     faster,
     together,
@@ -48,11 +48,11 @@ CAPS = ("spring", "total")
 cases, measure = _avalanche.cases, _avalanche.measure
 
 
-def _mean(found: Sequence[Pair]) -> float:
+def _mean(found: Sequence[RunPair]) -> float:
     return CM * float(faster(found).mean())
 
 
-def _least(found: Sequence[Pair]) -> float:
+def _least(found: Sequence[RunPair]) -> float:
     return CM * float(faster(found).min())
 
 

@@ -10,7 +10,16 @@ from matplotlib.figure import Figure
 
 from ryusa import figures
 from ryusa.studies.osada2004 import _avalanche
-from ryusa.studies.osada2004._avalanche import ALL, BETWEEN, FIRST, SHIPPED, SOFT, STIFF, Pair, together
+from ryusa.studies.osada2004._avalanche import (
+    ALL,
+    BETWEEN,
+    FIRST,
+    SHIPPED,
+    SOFT,
+    STIFF,
+    RunPair,
+    together,
+)
 from ryusa.studies.osada2004._experiment import Found, Plan
 from ryusa.study.judge import Band, Finding, Trial, short
 
@@ -92,7 +101,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     )
 
 
-def _ratio(found: Sequence[Pair], name: str, grains: str) -> float:
+def _ratio(found: Sequence[RunPair], name: str, grains: str) -> float:
     """Mean of the stiff runs over that of the soft ones; nan where most pairs have nothing to compare.
 
     Not the mean of their ratios: one soft run whose grains hardly advance would outweigh all others.
@@ -109,7 +118,7 @@ def _mean(values: Sequence[float]) -> float:
     return float(np.mean(kept)) if kept else math.nan
 
 
-def _per_metre(found: Sequence[Pair]) -> float:
+def _per_metre(found: Sequence[RunPair]) -> float:
     """Turns per way of all grains, stiff over soft [-]."""
     return _ratio(found, "reversals", ALL) / _ratio(found, "advance", ALL)
 

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from ryusa import figures
 from ryusa.studies.osada2004 import _debris
 from ryusa.studies.osada2004._debris import AMOUNT, PARTNERS, SETTLED, SHIPPED, Debris, each
-from ryusa.studies.osada2004._experiment import Found, Plan, Variant
+from ryusa.studies.osada2004._experiment import CaseRun, Found, Plan
 from ryusa.study.judge import Band, Finding, Trial, over_seeds, short
 
 FIGURE = "fig17"
@@ -39,7 +39,7 @@ OF_CONTACTS = {
 measure = _debris.measure
 
 
-def cases(plan: Plan) -> Sequence[Variant]:
+def cases(plan: Plan) -> Sequence[CaseRun]:
     """Every setting and seed."""
     return [_debris.run(one, seed) for one in _debris.settings(plan) for seed in plan.seeds]
 

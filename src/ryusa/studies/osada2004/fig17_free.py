@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from ryusa import figures
 from ryusa.studies.osada2004 import _debris
 from ryusa.studies.osada2004._debris import AMOUNT, FREE, LOCKED, SETTLED, SHIPPED, START, Debris, each
-from ryusa.studies.osada2004._experiment import PHI, SLIP, Found, Plan, Variant
+from ryusa.studies.osada2004._experiment import PHI, SLIP, CaseRun, Found, Plan
 from ryusa.study.judge import Band, Finding, Trial, over_seeds, pool, short
 
 FIGURE = "fig17"
@@ -45,7 +45,7 @@ def free_settings(plan: Plan) -> list[dict[str, str]]:
     return [SHIPPED, *({**SHIPPED, name: value} for name, values in changes for value in values)]
 
 
-def _free(chosen: Mapping[str, str], seed: int, cure: str = "") -> Variant:
+def _free(chosen: Mapping[str, str], seed: int, cure: str = "") -> CaseRun:
     return _debris.run(chosen, seed, {"motion.rotation": "free", **CURES.get(cure, {})})
 
 
@@ -53,7 +53,7 @@ def _cures(plan: Plan) -> Sequence[str]:
     return plan.pick((), tuple(CURES))
 
 
-def cases(plan: Plan) -> Sequence[Variant]:
+def cases(plan: Plan) -> Sequence[CaseRun]:
     """Locked grains under every setting, free ones under some."""
     return [
         *(_debris.run(one, seed) for one in locked_settings(plan) for seed in plan.seeds),

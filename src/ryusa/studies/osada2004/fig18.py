@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from ryusa import figures
 from ryusa.studies.osada2004 import _debris
 from ryusa.studies.osada2004._debris import SETTLED, Debris
-from ryusa.studies.osada2004._experiment import PHI, SLIP, Found, Plan, Variant, variant
+from ryusa.studies.osada2004._experiment import PHI, SLIP, CaseRun, Found, Plan, paper_run
 from ryusa.study.judge import Band, Finding, Trial, over_seeds, pool, short
 
 FIGURE = "fig18"
@@ -53,12 +53,12 @@ def settings(plan: Plan) -> list[dict[str, str]]:
     return [SHIPPED, *({**SHIPPED, name: value} for name, values in changes for value in values)]
 
 
-def _run(chosen: Mapping[str, str], seed: int) -> Variant:
+def _run(chosen: Mapping[str, str], seed: int) -> CaseRun:
     """Contacts so many times as long as in fig17; those of once are its own case."""
     keys = {KEYS[name]: value for name, value in chosen.items() if name in KEYS and SHIPPED[name] != value}
     longer = chosen[LONGER]
     if longer == "1":
-        return variant(_debris.CASE, keys, seed)
+        return paper_run(_debris.CASE, keys, seed)
     if longer != SHIPPED[LONGER]:
         s = float(longer)
         keys |= {
@@ -69,14 +69,14 @@ def _run(chosen: Mapping[str, str], seed: int) -> Variant:
         }
         if s > float(SHIPPED[LONGER]):  # so long a step would carry a grain a quarter of its diameter
             keys["time.steps_per_contact"] = f"{15.0 * s / float(SHIPPED[LONGER]):g}"
-    return variant("fig18", keys, seed)
+    return paper_run("fig18", keys, seed)
 
 
-def _short(chosen: Mapping[str, str], seed: int) -> Variant:
+def _short(chosen: Mapping[str, str], seed: int) -> CaseRun:
     return _run({**chosen, LONGER: "1"}, seed)
 
 
-def cases(plan: Plan) -> Sequence[Variant]:
+def cases(plan: Plan) -> Sequence[CaseRun]:
     """Long and short contacts for every setting and seed."""
     both = [(one, seed) for one in settings(plan) for seed in plan.seeds]
     return list(dict.fromkeys(which(one, seed) for one, seed in both for which in (_run, _short)))

@@ -9,7 +9,7 @@ from ryusa.figures.repose import surface as draw_surface
 from ryusa.figures.slopes import Slope, slopes
 from ryusa.results import Results
 from ryusa.studies.osada2004 import _heap
-from ryusa.studies.osada2004._experiment import PHI, RATIO, ROTATION, SLIP, Found, Plan, Variant
+from ryusa.studies.osada2004._experiment import PHI, RATIO, ROTATION, SLIP, CaseRun, Found, Plan
 from ryusa.study.judge import Band, Finding, Trial, pool
 
 FIGURE = "fig19"
@@ -78,12 +78,12 @@ def starts(plan: Plan, rotation: str, chosen: Mapping[str, str]) -> list[int]:
     return _heap.starts(plan, NEAR_STARTS if near and chosen[PHI] == NEAR else 1)
 
 
-def run(chosen: Mapping[str, str], rotation: str, seed: int) -> Variant:
+def run(chosen: Mapping[str, str], rotation: str, seed: int) -> CaseRun:
     """One run."""
     return _heap.run(chosen, rotation, seed, OTHERS[chosen[GROUND]])
 
 
-def cases(plan: Plan) -> Sequence[Variant]:
+def cases(plan: Plan) -> Sequence[CaseRun]:
     """Locked and free under every setting and seed."""
     return [
         run(chosen, rotation, seed)
@@ -93,7 +93,7 @@ def cases(plan: Plan) -> Sequence[Variant]:
     ]
 
 
-def measure(results: Results, one: Variant) -> _heap.Heap:
+def measure(results: Results, one: CaseRun) -> _heap.Heap:
     """Slope at the end."""
     del one
     return _heap.heap(results)

@@ -9,8 +9,8 @@ from ryusa import figures
 from ryusa.measure import Average, saltation
 from ryusa.results import Results
 from ryusa.studies.osada2004 import _saltation
-from ryusa.studies.osada2004._experiment import PHI, SLIP, Found, Plan, Variant
-from ryusa.studies.osada2004._saltation import SHIPPED, Hops
+from ryusa.studies.osada2004._experiment import PHI, SLIP, CaseRun, Found, Plan
+from ryusa.studies.osada2004._saltation import SHIPPED, SaltationRun
 from ryusa.study.judge import Band, Finding, Trial, over_seeds, pool
 
 FIGURE = "fig20"
@@ -67,7 +67,7 @@ Setting = tuple[dict[str, str], str]  # set of shared choices, label of the othe
 class Both:
     """Hops of one run; `regrouped` has the averages with other thresholds, by label, of the shipped runs."""
 
-    hops: Hops
+    hops: SaltationRun
     regrouped: Mapping[str, Mapping[str, Average]]
 
     def average(self, label: str, name: str) -> Average:
@@ -81,7 +81,7 @@ def settings(plan: Plan) -> list[Setting]:
     return [*((one, AS_SHIPPED) for one in _saltation.choices(plan)), *((SHIPPED, label) for label in others)]
 
 
-def cases(plan: Plan) -> Sequence[Variant]:
+def cases(plan: Plan) -> Sequence[CaseRun]:
     """Locked and free for every setting and seed."""
     runs = [
         _run(one, rotation, seed)
@@ -92,12 +92,12 @@ def cases(plan: Plan) -> Sequence[Variant]:
     return list(dict.fromkeys(runs))
 
 
-def _run(setting: Setting, rotation: str, seed: int) -> Variant:
+def _run(setting: Setting, rotation: str, seed: int) -> CaseRun:
     chosen, label = setting
     return _saltation.run(chosen, rotation, seed, OTHERS.get(label))
 
 
-def measure(run: Results, one: Variant) -> Both:
+def measure(run: Results, one: CaseRun) -> Both:
     """Hops of all starts."""
     names = [*JUMPS.values(), *SHEARS.values(), *PANELS]
     regrouped: dict[str, dict[str, Average]] = {}

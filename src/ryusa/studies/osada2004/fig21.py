@@ -12,8 +12,8 @@ from ryusa.measure.spin import spin_against
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
 from ryusa.studies.osada2004 import _saltation
-from ryusa.studies.osada2004._experiment import Found, Plan, Variant
-from ryusa.studies.osada2004._saltation import PHI, SHIPPED, SLIP, Hops
+from ryusa.studies.osada2004._experiment import CaseRun, Found, Plan
+from ryusa.studies.osada2004._saltation import PHI, SHIPPED, SLIP, SaltationRun
 from ryusa.study.judge import Band, Finding, Trial, over_seeds, pool
 
 FIGURE = "fig21"
@@ -50,7 +50,7 @@ class Spun:
     way : of the first start.
     """
 
-    hops: Hops
+    hops: SaltationRun
     mean: float
     largest: float
     gains: tuple[Floats, ...]
@@ -74,7 +74,7 @@ def settings(plan: Plan) -> list[dict[str, str]]:
     return [*({**one, STARTS: FLOWING} for one in sets), *({**one, STARTS: RESTING} for one in rest)]
 
 
-def cases(plan: Plan) -> Sequence[Variant]:
+def cases(plan: Plan) -> Sequence[CaseRun]:
     """Rotation free: every set of choices, and the water's torque; locked to set bed shear against."""
     runs = [_run(one, seed) for one in settings(plan) for seed in plan.seeds]
     runs += [_torque(name, seed) for name in TORQUES for seed in plan.seeds]
@@ -82,19 +82,19 @@ def cases(plan: Plan) -> Sequence[Variant]:
     return list(dict.fromkeys(runs))
 
 
-def _run(chosen: Mapping[str, str], seed: int) -> Variant:
+def _run(chosen: Mapping[str, str], seed: int) -> CaseRun:
     return _saltation.run(chosen, "free", seed, REST if chosen[STARTS] == RESTING else None)
 
 
-def _torque(name: str, seed: int) -> Variant:
+def _torque(name: str, seed: int) -> CaseRun:
     return _saltation.run(SHIPPED, "free", seed, {} if name == "none" else {"water.torque": name})
 
 
-def _locked(seed: int) -> Variant:
+def _locked(seed: int) -> CaseRun:
     return _saltation.run(SHIPPED, "locked", seed)
 
 
-def measure(run: Results, one: Variant) -> Spun:
+def measure(run: Results, one: CaseRun) -> Spun:
     """Spin after settling, and what every hit did to it from the first on."""
     found, bounces = spin(run), saltation(run, settle=0.0).bounces
     gain = bounces["omega_after"] - bounces["omega_before"]

@@ -11,7 +11,7 @@ from ryusa import figures
 from ryusa.measure import Profiles, Rods, Snapshot, profiles, rods, snapshot, transport
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
-from ryusa.studies.osada2004._experiment import PHI, RATIO, SLIP, Found, Plan, Variant, variant
+from ryusa.studies.osada2004._experiment import PHI, RATIO, SLIP, CaseRun, Found, Plan, paper_run
 from ryusa.study.judge import Band, Finding, Trial, over_seeds, pool, short
 
 FIGURE = "fig22"
@@ -56,7 +56,7 @@ MOMENTS = 3  # drawn of a rod
 
 
 @dataclass(frozen=True)
-class Bed:
+class MovableBedRun:
     """One run, after it has settled.
 
     Attributes
@@ -116,7 +116,7 @@ def settings(plan: Plan) -> list[dict[str, str]]:
     return [SHIPPED, *({**SHIPPED, name: value} for name, values in changes for value in values)]
 
 
-def _run(chosen: Mapping[str, str], rotation: str, seed: int) -> Variant:
+def _run(chosen: Mapping[str, str], rotation: str, seed: int) -> CaseRun:
     """One run of the case; what is as shipped is not said."""
     changed = {
         "timeline.0.friction_angle": (chosen[PHI], SHIPPED[PHI]),
@@ -125,10 +125,12 @@ def _run(chosen: Mapping[str, str], rotation: str, seed: int) -> Variant:
         "timeline.2.slope": (SLOPES[chosen[SLOPE]], SLOPES[SHIPPED[SLOPE]]),
         "build.layers": (DEPTHS[chosen[DEPTH]], DEPTHS[SHIPPED[DEPTH]]),
     }
-    return variant(CASE, {key: value for key, (value, shipped) in changed.items() if value != shipped}, seed)
+    return paper_run(
+        CASE, {key: value for key, (value, shipped) in changed.items() if value != shipped}, seed
+    )
 
 
-def cases(plan: Plan) -> Sequence[Variant]:
+def cases(plan: Plan) -> Sequence[CaseRun]:
     """Locked and free grains for every setting and seed."""
     return [
         _run(one, rotation, seed)
@@ -138,7 +140,7 @@ def cases(plan: Plan) -> Sequence[Variant]:
     ]
 
 
-def measure(run: Results, one: Variant) -> Bed:
+def measure(run: Results, one: CaseRun) -> MovableBedRun:
     """Rods, flux, speeds and spins of the movers, and the longest rod on its way."""
     del one
     found = rods(run)
@@ -149,7 +151,7 @@ def measure(run: Results, one: Variant) -> Bed:
     moves = v > profile.d / found.window  # the speed of a mover in rods
     longest = found.longest
     moments = [] if longest is None else longest.begin + found.window * np.linspace(0.0, 1.0, MOMENTS)
-    return Bed(
+    return MovableBedRun(
         rods=found,
         q=transport(run).averages["q"].value,
         v=v[moves],
@@ -159,7 +161,7 @@ def measure(run: Results, one: Variant) -> Bed:
     )
 
 
-def _both(found: Found, plan: Plan, chosen: Mapping[str, str]) -> list[tuple[Bed, Bed]]:
+def _both(found: Found, plan: Plan, chosen: Mapping[str, str]) -> list[tuple[MovableBedRun, MovableBedRun]]:
     """Locked and free run of every seed."""
     return [(found[_run(chosen, LOCKED, seed)], found[_run(chosen, FREE, seed)]) for seed in plan.seeds]
 
@@ -169,14 +171,14 @@ def _decades(above: float, below: float, least: float) -> float:
     return math.log10(max(above, least) / max(below, least))
 
 
-def _more(locked: Bed, free: Bed) -> float:
+def _more(locked: MovableBedRun, free: MovableBedRun) -> float:
     """Share in rods, locked over free; 0 where locked grains stand, and one in a hundred counts as least."""
     if locked.stands:
         return 0.0
     return _decades(locked.rods.share, 0.0 if free.stands else free.rods.share, 0.01)
 
 
-PARTS: dict[str, tuple[tuple[str, Callable[[Bed, Bed], float], Band], ...]] = {
+PARTS: dict[str, tuple[tuple[str, Callable[[MovableBedRun, MovableBedRun], float], Band], ...]] = {
     "fig22": (
         (PART_RODS, lambda locked, free: locked.excess, RODS),
         (PART_MORE, _more, MORE),
@@ -222,7 +224,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     )
 
 
-def _standing(trial: Trial, claim: str, runs: Sequence[tuple[Bed, Bed]]) -> Trial:
+def _standing(trial: Trial, claim: str, runs: Sequence[tuple[MovableBedRun, MovableBedRun]]) -> Trial:
     """Say so where locked grains do not move at all: then there is no rod."""
     if claim != "fig22" or not all(locked.stands for locked, _ in runs):
         return trial
@@ -249,7 +251,7 @@ def _mean(values: Sequence[float]) -> str:
     return short(float(np.mean(kept))) if kept else "none"
 
 
-def _by_rotation(found: Found, plan: Plan, chosen: Mapping[str, str]) -> dict[str, list[Bed]]:
+def _by_rotation(found: Found, plan: Plan, chosen: Mapping[str, str]) -> dict[str, list[MovableBedRun]]:
     runs = _both(found, plan, chosen)
     return {LOCKED: [locked for locked, _ in runs], FREE: [free for _, free in runs]}
 
@@ -295,7 +297,7 @@ def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
     for one in settings(plan):
         for rotation in (LOCKED, FREE):
             for seed in plan.seeds:
-                bed: Bed = found[_run(one, rotation, seed)]
+                bed: MovableBedRun = found[_run(one, rotation, seed)]
                 lines.append(
                     {
                         **one, "rotation": rotation, "seed": seed, "movers": int(bed.rods.movers.sum()),
@@ -311,8 +313,8 @@ def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
 def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
     """The longest rod on its way, how long rods are, and the profiles."""
     seed = plan.seeds[0]
-    locked: Bed = found[_run(SHIPPED, LOCKED, seed)]
-    free: Bed = found[_run(SHIPPED, FREE, seed)]
+    locked: MovableBedRun = found[_run(SHIPPED, LOCKED, seed)]
+    free: MovableBedRun = found[_run(SHIPPED, FREE, seed)]
     pictures = {
         "fig22-lengths": figures.rod_lengths({LOCKED: locked.rods, FREE: free.rods}),
         "fig22-free": figures.profiles({LOCKED: locked.profile, FREE: free.profile}, ("phi", "v_x", "spin")),

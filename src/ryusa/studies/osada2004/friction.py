@@ -12,7 +12,7 @@ MARKS = {HOLDS: "●", SOME: "◐", FAILS: "○", OPEN: "?", NONE: "·"}  # told
 
 
 @dataclass(frozen=True)
-class Cell:
+class AngleCell:
     """One claim at one friction angle."""
 
     word: str = NONE
@@ -26,16 +26,16 @@ class Cell:
 
 
 @dataclass(frozen=True)
-class Line:
+class AngleRow:
     """One claim, with rotation as it says or as it was chosen."""
 
     claim: str
     rotation: str
-    cells: tuple[Cell, ...]
+    cells: tuple[AngleCell, ...]
     holds: str  # friction angles at which it holds, in words
 
 
-def by_angle(claims: Sequence[Mapping[str, Any]]) -> tuple[tuple[str, ...], tuple[Line, ...]]:
+def by_angle(claims: Sequence[Mapping[str, Any]]) -> tuple[tuple[str, ...], tuple[AngleRow, ...]]:
     """Friction angles tried, and a line per claim and state of rotation that was tried at any.
 
     Parameters
@@ -51,7 +51,7 @@ def by_angle(claims: Sequence[Mapping[str, Any]]) -> tuple[tuple[str, ...], tupl
         value for one in claims for trial in one["sweep"] if (value := trial["choices"].get(PHI)) is not None
     }
     angles = tuple(sorted(tried, key=degrees))
-    lines: list[Line] = []
+    lines: list[AngleRow] = []
     for one in claims:
         held = outcomes(one["sweep"])
         if any(PHI in dict(key) for key in held):
@@ -69,13 +69,13 @@ def outcomes(sweep: Sequence[Mapping[str, Any]]) -> dict[tuple[tuple[str, str], 
 
 def _lines(
     claim: Mapping[str, Any], held: Mapping[tuple[tuple[str, str], ...], str], angles: Sequence[str]
-) -> list[Line]:
+) -> list[AngleRow]:
     shipped = dict(next(iter(held)))
     states = list(dict.fromkeys(dict(key).get(ROTATION, "") for key in held))
-    lines: list[Line] = []
+    lines: list[AngleRow] = []
     for state in states:
         base = {**shipped, ROTATION: state} if state else shipped
-        cells: list[Cell] = []
+        cells: list[AngleCell] = []
         for angle in angles:
             here = [
                 (key, word)
@@ -85,22 +85,22 @@ def _lines(
             cells.append(_cell(here, tuple({**base, PHI: angle}.items())))
         fits = [one for one, cell in zip(angles, cells, strict=True) if cell.word in {HOLDS, SOME}]
         asked = [one for one, cell in zip(angles, cells, strict=True) if cell.n]
-        lines.append(Line(claim["id"], state or rotation_of(claim), tuple(cells), ranges(fits, asked)))
+        lines.append(AngleRow(claim["id"], state or rotation_of(claim), tuple(cells), ranges(fits, asked)))
     return lines
 
 
 def _cell(
     here: Sequence[tuple[tuple[tuple[str, str], ...], str]], shipped: tuple[tuple[str, str], ...]
-) -> Cell:
+) -> AngleCell:
     n_holds = sum(word == HOLDS for _, word in here)
     if not here:
-        return Cell()
+        return AngleCell()
     word = {key: one for key, one in here}.get(shipped, NONE)
     if word != HOLDS and n_holds:
         word = SOME
     elif word == NONE:
         word = FAILS if all(one == FAILS for _, one in here) else OPEN
-    return Cell(word, n_holds, len(here))
+    return AngleCell(word, n_holds, len(here))
 
 
 def rotation_of(claim: Mapping[str, Any]) -> str:

@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 from ryusa.figures.saltation import StiffnessSeries, over_stiffness_in_cm
 from ryusa.results import Results
 from ryusa.studies.osada2004 import _saltation
-from ryusa.studies.osada2004._experiment import Found, Plan, Variant
-from ryusa.studies.osada2004._saltation import K_N, SHIPPED, SKIM, STIFF, STIFFNESSES, WIDE, Hops
+from ryusa.studies.osada2004._experiment import CaseRun, Found, Plan
+from ryusa.studies.osada2004._saltation import K_N, SHIPPED, SKIM, STIFF, STIFFNESSES, WIDE, SaltationRun
 from ryusa.study.judge import Band, Finding, Interval, Trial, over_seeds
 
 FIGURE = "hops"
@@ -42,7 +42,7 @@ def rotations(plan: Plan) -> tuple[str, ...]:
     return plan.pick(("locked",), ("locked",), ("locked", "free"))
 
 
-def cases(plan: Plan) -> Sequence[Variant]:
+def cases(plan: Plan) -> Sequence[CaseRun]:
     """Every stiffness with many starts."""
     return [
         _run(k, seed, rotation)
@@ -58,11 +58,11 @@ def every(plan: Plan, rotation: str = "locked") -> list[str]:
     return [k for k in _saltation.softest(sets) if rotation == "locked" or k != STIFFNESSES[0]]
 
 
-def _run(k: str, seed: int, rotation: str = "locked") -> Variant:
+def _run(k: str, seed: int, rotation: str = "locked") -> CaseRun:
     return _saltation.run({**SHIPPED, K_N: k}, rotation, seed, WIDE)
 
 
-def measure(run: Results, one: Variant) -> Hops:
+def measure(run: Results, one: CaseRun) -> SaltationRun:
     """Hops of all starts."""
     del one
     return _saltation.hops(run)

@@ -13,18 +13,18 @@ from ryusa.running import provenance
 from ryusa.running.folder import refuse_if_not_writable
 from ryusa.studies.osada2004 import (
     NAMES,
-    Campaign,
     Fault,
     Finding,
     Interval,
     Level,
     Plan,
-    Say,
+    StudyProgress,
+    TaskResults,
     Trial,
     Word,
     carry_out,
     load,
-    spared,
+    noted,
 )
 from ryusa.studies.osada2004.common import Common, common
 from ryusa.studies.osada2004.paper import CITATION, CLAIMS, Claim
@@ -121,7 +121,7 @@ def make(
     *,
     jobs: int = 1,
     again: bool = False,
-    say: Say | None = None,
+    say: StudyProgress | None = None,
 ) -> Ledger:
     """Run what is needed, judge every claim, and write tables and pictures.
 
@@ -158,7 +158,7 @@ def make(
 
 def _judged(
     name: str,
-    campaign: Campaign,
+    campaign: TaskResults,
     plan: Plan,
     folder: Path,
     tables: dict[str, list[dict[str, object]]],
@@ -176,16 +176,16 @@ def _judged(
         return _unjudged(name, problem)
     judging, table, drawing = f"{name}: judging", f"{name}: its table", f"{name}: its pictures"
     tables[name] = []
-    with spared(faults, table):
+    with noted(faults, table):
         tables[name] = experiment.rows(found, plan)
     home = folder / name
-    with spared(faults, table, passing=(OSError,)):
+    with noted(faults, table, passing=(OSError,)):
         write_csv(home / f"{name}.csv", tables[name])
     figures: Mapping[str, Figure] = {}
-    with spared(faults, drawing):
+    with noted(faults, drawing):
         figures = experiment.draw(found, plan)
     pictures: list[Path] = []
-    with spared(faults, drawing, passing=(OSError,)):
+    with noted(faults, drawing, passing=(OSError,)):
         for picture, figure in figures.items():
             save(figure, home / f"{picture}.svg")
             pictures.append(save(figure, home / f"{picture}.png"))
@@ -196,7 +196,7 @@ def _judged(
         if what in faults
     ]
     rows: dict[str, Row] = {}
-    with spared(faults, judging):
+    with noted(faults, judging):
         findings = {one.claim: one for one in experiment.judge(found, plan)}
         if set(findings) != set(experiment.CLAIMS):
             raise ValueError(f"{name} judged {', '.join(findings)}, not {', '.join(experiment.CLAIMS)}")

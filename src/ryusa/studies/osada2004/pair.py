@@ -9,7 +9,7 @@ from ryusa import figures
 from ryusa.laws.collision import collision_time
 from ryusa.studies.osada2004 import _drops, fig05
 from ryusa.studies.osada2004._drops import Setup
-from ryusa.studies.osada2004._experiment import Found, Plan, Variant
+from ryusa.studies.osada2004._experiment import CaseRun, Found, Plan
 from ryusa.study.judge import Band, Finding, Trial, over_range
 
 FIGURE = "pair"
@@ -49,9 +49,9 @@ def setups(plan: Plan) -> list[Setup]:
     return list(dict.fromkeys(one for way in ways for one in way))
 
 
-def cases(plan: Plan) -> Sequence[Variant]:
+def cases(plan: Plan) -> Sequence[CaseRun]:
     """Free and fixed partner for every set and spring."""
-    return [one.variant for one in setups(plan)]
+    return [one.task for one in setups(plan)]
 
 
 measure = _drops.measure
@@ -59,7 +59,7 @@ measure = _drops.measure
 
 def ratio(found: Found, chosen: Mapping[str, str], k_n: float) -> float:
     """Contact time with a free over that with a fixed partner [-]."""
-    free, fixed = (found[one.variant] for one in two(chosen, k_n))
+    free, fixed = (found[one.task] for one in two(chosen, k_n))
     return float(np.median(free.time) / np.median(fixed.time))
 
 
@@ -79,7 +79,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     middle = trials[0].found.value
     also = [f"on the paper's log-log chart {middle:.2f} is {abs(np.log10(middle)):.2f} of a decade"]
     if len(trials) > 1:
-        e = np.median(found[two(choices(plan)[2], springs[-1])[0].variant].e)
+        e = np.median(found[two(choices(plan)[2], springs[-1])[0].task].e)
         also.append(f"one dashpot for both: e = {e:.2f} between free grains where it is 0.7 on a fixed one")
     return (
         Finding(
@@ -108,7 +108,7 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
     ]
     runs = [
         figures.StiffnessPoints(
-            label, k, np.array([np.median(found[two(SHIPPED, s)[at].variant].time) for s in springs]), 0 * k
+            label, k, np.array([np.median(found[two(SHIPPED, s)[at].task].time) for s in springs]), 0 * k
         )
         for label, at in (("run, struck grain fixed", 1), ("run, struck grain free", 0))
     ]

@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 from ryusa.figures.saltation import StiffnessSeries, over_stiffness_in_cm
 from ryusa.results import Results
 from ryusa.studies.osada2004 import _saltation
-from ryusa.studies.osada2004._experiment import Found, Plan, Variant
-from ryusa.studies.osada2004._saltation import K_N, SHIPPED, SKIM, Hops, sweep_run
+from ryusa.studies.osada2004._experiment import CaseRun, Found, Plan
+from ryusa.studies.osada2004._saltation import K_N, SHIPPED, SKIM, SaltationRun, sweep_run
 from ryusa.study.judge import Band, Finding, Trial, over_seeds
 
 FIGURE = "spin-time"
@@ -30,16 +30,16 @@ def settings(plan: Plan) -> list[dict[str, str]]:
     return [one for one in sets if _saltation.stiffness(one[K_N]) >= SOFTEST]
 
 
-def cases(plan: Plan) -> Sequence[Variant]:
+def cases(plan: Plan) -> Sequence[CaseRun]:
     """Locked and free for every stiffness and set of choices."""
     return [make(one, seed) for one in settings(plan) for seed in plan.seeds for make in (sweep_run, _free)]
 
 
-def _free(chosen: Mapping[str, str], seed: int) -> Variant:
+def _free(chosen: Mapping[str, str], seed: int) -> CaseRun:
     return _saltation.run(chosen, "free", seed)
 
 
-def measure(run: Results, one: Variant) -> Hops:
+def measure(run: Results, one: CaseRun) -> SaltationRun:
     """Hops of all starts."""
     del one
     return _saltation.hops(run)
@@ -81,7 +81,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     )
 
 
-def _sweep(found: Found, plan: Plan) -> dict[str, Hops]:
+def _sweep(found: Found, plan: Plan) -> dict[str, SaltationRun]:
     """Free runs of the first seed, soft to stiff."""
     return {k: found[_free({**SHIPPED, K_N: k}, plan.seeds[0])] for k in _saltation.softest(settings(plan))}
 

@@ -10,8 +10,8 @@ from ryusa import figures
 from ryusa.engine.forward import restitution
 from ryusa.measure.statistics import Floats
 from ryusa.studies.osada2004 import _drops
-from ryusa.studies.osada2004._drops import COPIES, NO_TENSION, TENSION, Drop, Setup
-from ryusa.studies.osada2004._experiment import Found, Plan, Variant
+from ryusa.studies.osada2004._drops import COPIES, NO_TENSION, TENSION, DropRun, Setup
+from ryusa.studies.osada2004._experiment import CaseRun, Found, Plan
 from ryusa.study.judge import Band, Finding, Interval, Trial, over_range
 
 FIGURE = "steps"
@@ -44,9 +44,9 @@ def setups(plan: Plan) -> list[Setup]:
     return [Setup(parting=parting, steps=steps) for parting in partings(plan) for steps in counts(plan)]
 
 
-def cases(plan: Plan) -> Sequence[Variant]:
+def cases(plan: Plan) -> Sequence[CaseRun]:
     """One run per setup."""
-    return [one.variant for one in setups(plan)]
+    return [one.task for one in setups(plan)]
 
 
 measure = _drops.measure
@@ -76,7 +76,7 @@ def rebound(found: Found, scheme: str, parting: str, steps: float) -> Floats:
     """Restitution by phase [-]; nan for a copy that never comes off."""
     if scheme != OURS:
         return forward(steps, parting, scheme == SUMMED)
-    drop: Drop = found[Setup(parting=parting, steps=steps).variant]
+    drop: DropRun = found[Setup(parting=parting, steps=steps).task]
     return np.concatenate([drop.e, np.full(drop.copies - len(drop.e), np.nan)])
 
 
@@ -128,7 +128,7 @@ def _stable(parting: str) -> float:
 
 
 def _needed(scheme: str, parting: str) -> str:
-    """Say from how many steps on the scheme keeps e."""
+    """StudyProgress from how many steps on the scheme keeps e."""
     tried = (*range(3, 40), *range(40, 200, 5))
     good = [bool(np.abs(forward(n, parting, scheme == SUMMED) - E).max() <= OFF) for n in tried]
     last = max((k for k, one in enumerate(good) if not one), default=-1)

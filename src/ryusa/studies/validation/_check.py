@@ -11,7 +11,7 @@ from ryusa.cases import FOLDERS
 from ryusa.errors import CaseError
 from ryusa.figures.comparison import Axis, Curve
 from ryusa.results import Results
-from ryusa.study import Level, Variant, Work
+from ryusa.study import CaseRun, Level, Task
 
 NAMES = (
     "water_alone",
@@ -145,14 +145,14 @@ class Check(Protocol):
 
     TITLE: str
 
-    def runs(self, level: Level) -> Sequence[Work]:
+    def runs(self, level: Level) -> Sequence[Task]:
         """Runs of case files (`case_run`) and calculations (`calculation`); level is quick or full.
 
         No calculation takes longer than seconds, so that an interrupt costs little; longer ones are runs.
         """
         ...
 
-    def measure(self, run: Results, one: Variant) -> Any:
+    def measure(self, run: Results, one: CaseRun) -> Any:
         """Numbers of one run of a case file, small; not needed where all are calculations."""
         ...
 
@@ -172,7 +172,7 @@ def load(name: str) -> Check:
     return module
 
 
-def case_run(case: str, overrides: Mapping[str, str] | None = None, folder: str = "validation") -> Variant:
+def case_run(case: str, overrides: Mapping[str, str] | None = None, folder: str = "validation") -> CaseRun:
     """Name one run of a case file.
 
     Parameters
@@ -181,7 +181,7 @@ def case_run(case: str, overrides: Mapping[str, str] | None = None, folder: str 
     overrides : keys of the case and values as text with units, as `ryusa run --set` takes them.
     folder : which of the packaged folders, of `cases.FOLDERS`; "" holds the general cases.
     """
-    return Variant(case, tuple(sorted((overrides or {}).items())), FOLDERS[folder])
+    return CaseRun(case, tuple(sorted((overrides or {}).items())), FOLDERS[folder])
 
 
 def relative(ours: Any, reference: Any) -> float:

@@ -17,7 +17,7 @@ from ryusa.model.column import Bed, Mixing, Start
 from ryusa.model.enums import Buoyancy, Drag, EventRule, Hindrance, Profile
 from ryusa.model.scene import Floats
 from ryusa.studies.validation._check import Comparison, Error, Found, Source, at_most
-from ryusa.study import Level, Work, calculation
+from ryusa.study import Level, Task, calculation
 from ryusa.water.coupling import Coupling
 
 TITLE = "The bed carries the weight of the mixture"
@@ -59,7 +59,7 @@ def moving_bed(form: Buoyancy) -> tuple[tuple[Scene, State], Column]:
     return made, column
 
 
-class Flow:
+class ChannelFlow:
     """Grains and water, and the impulses of their contacts with the bed."""
 
     def __init__(self, form: Buoyancy) -> None:
@@ -105,17 +105,17 @@ class Flow:
 
 def weigh(form: str, time: float) -> dict[str, Floats]:
     """Impulses in PARTS of a time [s] after settling [Pa s], shape (PARTS, 4); mean grain speed [m/s]."""
-    flow = Flow(FORMS[form])
+    flow = ChannelFlow(FORMS[form])
     flow.run(SETTLE)
     parts = [flow.run(time / PARTS) for _ in range(PARTS)]
     return {"parts": np.array(parts), "speed": np.array(flow.engine.drift()[1][:, 0].mean())}
 
 
-def _call(form: str, level: Level) -> Work:
+def _call(form: str, level: Level) -> Task:
     return calculation(weigh, form=form, time=LONG[level], seconds=5.0 * (SETTLE + LONG[level]))
 
 
-def runs(level: Level) -> Sequence[Work]:
+def runs(level: Level) -> Sequence[Task]:
     """Every form of buoyancy; full for longer."""
     return [_call(form, level) for form in FORMS]
 

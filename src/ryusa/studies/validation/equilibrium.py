@@ -22,7 +22,7 @@ from ryusa.measure import profiles
 from ryusa.model.scene import Floats
 from ryusa.results import Results
 from ryusa.studies.validation._check import Comparison, Error, Found, Source, at_most, case_run
-from ryusa.study import Level, Variant, Work
+from ryusa.study import CaseRun, Level, Task
 
 TITLE = "Debris flow in equilibrium with its slope"
 # slope -> depth of water over the bed at first: flows about as deep as each other once the bed is eroded
@@ -35,7 +35,7 @@ SAND = math.radians(38.0)
 E, K_D, K_F, G, D = 0.7, 0.0828, 0.16, 9.81, 4.0e-3  # restitution, Egashira's constants; [m/s2], [m]
 
 
-def runs(level: Level) -> Sequence[Work]:
+def runs(level: Level) -> Sequence[Task]:
     """Every slope, and the dry flow; only at the full level."""
     if level is not Level.FULL:
         return []
@@ -46,7 +46,7 @@ def runs(level: Level) -> Sequence[Work]:
     return [*wet, case_run("friction_angle")]
 
 
-def measure(run: Results, one: Variant) -> dict[str, Any]:
+def measure(run: Results, one: CaseRun) -> dict[str, Any]:
     """Friction of a dry flow, or what a debris flow holds."""
     return stopping(run) if one.case == "friction_angle" else flowing(run)
 

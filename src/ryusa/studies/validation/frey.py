@@ -22,7 +22,7 @@ from ryusa.studies.validation._check import (
     at_most,
     case_run,
 )
-from ryusa.study import Level, Variant, Work
+from ryusa.study import CaseRun, Level, Task
 
 TITLE = "Bed load in a narrow flume"
 D, EXCESS, G, SLOPE = 6.0e-3, 1.5, 9.81, 0.1  # of the case file [m], [-], [m/s2], [rad]
@@ -78,13 +78,13 @@ CHOICES = {
 }
 
 
-def _work(choice: str, run: int) -> Variant:
+def _work(choice: str, run: int) -> CaseRun:
     flume = FLUME[run]
     keys = {"water.depth": flume.depth, "build.layers": flume.layers, **CHOICES[choice].overrides}
     return case_run("frey", keys)
 
 
-def runs(level: Level) -> Sequence[Work]:
+def runs(level: Level) -> Sequence[Task]:
     """Six runs of some minutes, at the full level."""
     if level is not Level.FULL:
         return []
@@ -105,7 +105,7 @@ def rate(z: Floats, phi: Floats, u: Floats) -> float:
     return float(np.trapezoid(phi * u, z)) * D / math.sqrt(EXCESS * G * math.cos(SLOPE) * D**3)
 
 
-def measure(run: Results, one: Variant) -> dict[str, Floats | float]:
+def measure(run: Results, one: CaseRun) -> dict[str, Floats | float]:
     """Profiles of beads and water over the window, and the transport rate with its error."""
     del one
     found = profiles(run, layer=LAYER, origin=0.0)

@@ -13,7 +13,7 @@ from ryusa.model import ContactLaw
 from ryusa.model.enums import EventRule
 from ryusa.model.scene import Floats
 from ryusa.studies.validation._check import Comparison, Error, Found, Source, at_most
-from ryusa.study import Level, Work, calculation
+from ryusa.study import Level, Task, calculation
 
 TITLE = "A granular gas cools"
 E, PHI = 0.9, 0.02
@@ -71,11 +71,11 @@ def cool(seed: int, times: float) -> dict[str, Floats]:
     return {"t": np.array(t), "T": np.array(hot)}
 
 
-def _cool(level: Level) -> Work:
+def _cool(level: Level) -> Task:
     return calculation(cool, seed=1, times=LONG[level], seconds=240.0 * LONG[level])
 
 
-def runs(level: Level) -> Sequence[Work]:
+def runs(level: Level) -> Sequence[Task]:
     """One gas, in quick only for a short while."""
     return [_cool(level)]
 

@@ -13,7 +13,7 @@ from ryusa.model import ContactLaw
 from ryusa.model.enums import Cap, Slip
 from ryusa.model.scene import Floats
 from ryusa.studies.validation._check import Comparison, Error, Found, Known, Source, at_most
-from ryusa.study import Level, Work, calculation
+from ryusa.study import Level, Task, calculation
 
 TITLE = "A grain hits"
 ASKED = (0.1, 0.3, 0.5, 0.7, 0.9, 0.98)
@@ -96,15 +96,15 @@ def sliding(angle: Floats) -> tuple[Floats, Floats, Floats]:
     return 1.0 - MU * (1.0 + E) / tan, spin, np.degrees(np.arctan((tan - 3.5 * MU * (1.0 + E)) / E))
 
 
-def _bounce(e: float, tension: bool, per_contact: float) -> Work:
+def _bounce(e: float, tension: bool, per_contact: float) -> Task:
     return calculation(bounce, e=e, tension=tension, per_contact=per_contact, seconds=0.05)
 
 
-def _oblique() -> Work:
+def _oblique() -> Task:
     return calculation(oblique, per_contact=400.0, seconds=0.05)
 
 
-def runs(level: Level) -> Sequence[Work]:
+def runs(level: Level) -> Sequence[Task]:
     """Head on with and without tension, at 50 and 500 steps a contact; oblique. At both levels."""
     del level
     return [*(_bounce(e, t, n) for t in (False, True) for n in (50.0, 500.0) for e in ASKED), _oblique()]

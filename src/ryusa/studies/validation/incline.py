@@ -10,7 +10,7 @@ from ryusa.measure import profiles
 from ryusa.model.scene import Floats
 from ryusa.results import Results
 from ryusa.studies.validation._check import Comparison, Error, Found, Source, Tolerance, at_most, case_run
-from ryusa.study import Level, Variant, Work
+from ryusa.study import CaseRun, Level, Task
 
 TITLE = "A dense flow down an incline"
 SLOPE, G = math.radians(24.0), 9.8  # of the case file [rad], [m/s2]
@@ -18,12 +18,12 @@ LAYER = 1.0  # thickness of a layer [d]; thinner ones see the layers that grains
 CORE = (0.2, 0.8)  # of the depth, away from bed and surface
 
 
-def runs(level: Level) -> Sequence[Work]:
+def runs(level: Level) -> Sequence[Task]:
     """One run of minutes, at the full level."""
     return [case_run("incline")] if level is Level.FULL else []
 
 
-def measure(run: Results, one: Variant) -> dict[str, Floats | float]:
+def measure(run: Results, one: CaseRun) -> dict[str, Floats | float]:
     """Profiles after settling, and how the mean speed moved."""
     del one
     found = profiles(run, layer=LAYER)

@@ -11,7 +11,7 @@ from ryusa.figures.comparison import Curve, compared
 from ryusa.running import provenance
 from ryusa.running.folder import refuse_if_not_writable, write_json
 from ryusa.studies.validation import NAMES, Comparison, Error, Word, load
-from ryusa.study import Campaign, Fault, Level, Say, carry_out, spared
+from ryusa.study import Fault, Level, StudyProgress, TaskResults, carry_out, noted
 from ryusa.study.html import embedded, template, write_log, write_whole
 from ryusa.study.origin import counted, json_number, missing_runs, origin, traces_of
 
@@ -114,7 +114,7 @@ def make(
     *,
     jobs: int = 1,
     again: bool = False,
-    say: Say | None = None,
+    say: StudyProgress | None = None,
 ) -> Validation:
     """Compute what is needed, set it against every reference, and draw it.
 
@@ -135,7 +135,7 @@ def make(
     faults: dict[str, Fault] = {}
     works: dict[str, Any] = {}
     for name in chosen:
-        with spared(faults, f"{name}: its runs"):
+        with noted(faults, f"{name}: its runs"):
             works[name] = load(name).runs(level)
     campaign = carry_out(works, load, folder / "runs", jobs=jobs, again=again, say=say)
     rows = [row for name in chosen for row in _rows(name, campaign, level, folder, faults)]
@@ -148,7 +148,7 @@ def make(
 
 
 def _rows(
-    name: str, campaign: Campaign, level: Level, folder: Path, faults: dict[str, Fault]
+    name: str, campaign: TaskResults, level: Level, folder: Path, faults: dict[str, Fault]
 ) -> Sequence[Row]:
     """Comparisons of one check; where a run failed, or comparing ends in an error, one row that says why."""
     asked, judging = f"{name}: its runs", f"{name}: comparing"
@@ -158,7 +158,7 @@ def _rows(
     if missing:
         return (Row(name, None, problem=missing_runs(missing, len(found) + len(missing))),)
     comparisons: Sequence[Comparison] = ()
-    with spared(faults, judging):
+    with noted(faults, judging):
         comparisons = load(name).compare(found, level)
         for one in comparisons:
             Row(name, one).plain(folder)  # an error in a curve shows here, and not while writing
@@ -168,7 +168,7 @@ def _rows(
     for one in comparisons:
         drawing = f"{name}: picture of {one.id}"
         picture: Path | None = None
-        with spared(faults, drawing, passing=(OSError,)):
+        with noted(faults, drawing, passing=(OSError,)):
             figure = compared(one.x, one.y, one.ours, one.references, one.beside)
             picture = save(figure, folder / "pictures" / f"{name}-{one.id}.png")
         rows.append(Row(name, one, picture, faults[drawing].words if drawing in faults else ""))

@@ -13,7 +13,7 @@ from ryusa.model import Water
 from ryusa.model.enums import Drag, Profile, Rebound
 from ryusa.model.scene import Floats
 from ryusa.studies.validation._check import Comparison, Error, Found, Known, Source, at_most
-from ryusa.study import Level, Work, calculation
+from ryusa.study import Level, Task, calculation
 
 TITLE = "A grain hits under water"
 D, DENSITY, NU, RHO, C_M = 2.0e-3, 2650.0, 1.0e-6, 1000.0, 0.5  # [m], [kg/m3], [m2/s], [kg/m3], [-]
@@ -104,15 +104,15 @@ def _apart(engine: CpuEngine, partner: str) -> tuple[float, float]:
     return z - (0.5 * D if partner == "wall" else D), w
 
 
-def _bounce(law: str, partner: str, per_contact: float) -> Work:
+def _bounce(law: str, partner: str, per_contact: float) -> Task:
     return calculation(bounce, law=law, partner=partner, per_contact=per_contact, seconds=0.05)
 
 
-def _film(partner: str) -> Work:
+def _film(partner: str) -> Task:
     return calculation(film, partner=partner, seconds=3.0)
 
 
-def runs(level: Level) -> Sequence[Work]:
+def runs(level: Level) -> Sequence[Task]:
     """Both laws on every partner at two time steps, and films; at both levels."""
     del level
     laws = [_bounce(law, partner, n) for law in LAWS for partner in PARTNERS for n in (COARSE, FINE)]

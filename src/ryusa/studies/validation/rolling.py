@@ -12,7 +12,7 @@ from ryusa.model import ContactLaw, RollingLaw
 from ryusa.model.enums import Arm, Rolling, Slip
 from ryusa.model.scene import Floats
 from ryusa.studies.validation._check import Comparison, Error, Found, Source, at_most, relative
-from ryusa.study import Level, Work, calculation
+from ryusa.study import Level, Task, calculation
 
 TITLE = "A sphere slides and rolls"
 G, D, K_N = 9.80665, 2.0e-3, 1.0e3  # [m/s2], [m], [N/m]
@@ -59,11 +59,11 @@ def _watch(
     return {"t": t, "x": x, "v": speed, "omega": spin}
 
 
-def _roll(model: str) -> Work:
+def _roll(model: str) -> Task:
     return calculation(roll, model=model)
 
 
-def runs(level: Level) -> Sequence[Work]:
+def runs(level: Level) -> Sequence[Task]:
     """Sliding into rolling, and both laws of rolling friction, at both levels."""
     del level
     return [calculation(slide), *(_roll(one) for one in MODELS)]

@@ -15,7 +15,7 @@ from ryusa.model.column import Bed
 from ryusa.model.enums import Buoyancy, Drag, EventRule, Hindrance, Profile
 from ryusa.model.scene import Floats
 from ryusa.studies.validation._check import Comparison, Error, Found, Source, at_most
-from ryusa.study import Level, Work, calculation
+from ryusa.study import Level, Task, calculation
 from ryusa.water.coupling import Coupling
 
 TITLE = "A suspension settles"
@@ -128,11 +128,11 @@ def _settle(law: Hindrance, where: Range, form: Buoyancy, phi: float, end: float
     return -float(engine.drift()[1][middle, 2].mean()) / where.w_0
 
 
-def _call(law: str, where: str, form: str) -> Work:
+def _call(law: str, where: str, form: str) -> Task:
     return calculation(settle, law=law, where=where, form=form, seconds=0.5)
 
 
-def runs(level: Level) -> Sequence[Work]:
+def runs(level: Level) -> Sequence[Task]:
     """Every hindrance under every form of buoyancy in both ranges, at both levels."""
     del level
     return [_call(law, where, form) for where in RANGES for form in FORMS for law in LAWS]

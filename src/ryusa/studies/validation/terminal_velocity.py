@@ -14,7 +14,7 @@ from ryusa.model import Water
 from ryusa.model.enums import Drag, EventRule, Profile
 from ryusa.model.scene import Floats
 from ryusa.studies.validation._check import Comparison, Error, Found, Known, Source, at_most
-from ryusa.study import Level, Work, calculation
+from ryusa.study import Level, Task, calculation
 
 TITLE = "One grain falls in still water"
 RATIO, G, NU = 1.65, 9.81, 1.0e-6  # quartz in water: [-], [m/s2], [m2/s]
@@ -66,11 +66,11 @@ def fall(law: str) -> dict[str, Floats]:
     return {"d": np.array(SIZES), "w": np.array(speeds)}
 
 
-def _call(law: str) -> Work:
+def _call(law: str) -> Task:
     return calculation(fall, law=law, seconds=0.2)
 
 
-def runs(level: Level) -> Sequence[Work]:
+def runs(level: Level) -> Sequence[Task]:
     """Every drag law; they take no time, so both levels have all."""
     del level
     return [_call(law) for law in LAWS]

@@ -22,7 +22,7 @@ from ryusa.studies.validation._check import (
     at_most,
     case_run,
 )
-from ryusa.study import Level, Variant, Work
+from ryusa.study import CaseRun, Level, Task
 
 TITLE = "Transport of sediment against the stress on the bed"
 SLOPES = {"bedload_3d": (0.005, 0.00825, 0.0132, 0.0248), "sheet_flow": (0.0275, 0.0468, 0.07)}
@@ -35,7 +35,7 @@ FINE = np.geomspace(0.05, 2.5, 120)
 PHI_S, C_S, ALPHA, E, K_D, K_F = math.radians(38.5), 0.3, 0.25, 0.85, 0.0828, 0.16
 
 
-def runs(level: Level) -> Sequence[Work]:
+def runs(level: Level) -> Sequence[Task]:
     """Slopes from the threshold to sheet flow; quick one short run."""
     if level is Level.QUICK:
         return [case_run("bedload_3d", QUICK, folder="")]
@@ -46,7 +46,7 @@ def runs(level: Level) -> Sequence[Work]:
     ]
 
 
-def measure(run: Results, one: Variant) -> dict[str, float]:
+def measure(run: Results, one: CaseRun) -> dict[str, float]:
     """Rate, stress, their errors, the depth of the water in grains, and how the rate moved."""
     del one
     moved, flow = transport(run), water(run)

@@ -12,7 +12,7 @@ from ryusa.laws.water import log_law_rough, log_law_smooth
 from ryusa.model.column import Bed, Column, Drive, Mixing, Top
 from ryusa.model.scene import Floats
 from ryusa.studies.validation._check import Comparison, Error, Found, Source, Tolerance, at_most, relative
-from ryusa.study import Level, Work, calculation
+from ryusa.study import Level, Task, calculation
 from ryusa.water import discharge, steady
 
 TITLE = "Water alone"
@@ -105,11 +105,11 @@ def flow(which: str, n: int) -> dict[str, Floats]:
     return {"z": c.z, "u": state.u, "q": np.array(discharge(state)), "tau": state.tau}
 
 
-def _call(which: str, n: int) -> Work:
+def _call(which: str, n: int) -> Task:
     return calculation(flow, which=which, n=n, seconds=0.05)
 
 
-def runs(level: Level) -> Sequence[Work]:
+def runs(level: Level) -> Sequence[Task]:
     """Each flow on a few grids; they take no time, so both levels have all."""
     del level
     grids = [_call(which, n) for which in (*LAMINAR, "river") for n in GRIDS]
