@@ -42,7 +42,7 @@ def pressed(n: int) -> Any:
 
 def agreement(n: int, warm: int) -> dict[str, Any]:
     """Largest difference of force and torque from the CPU's at one state, over the largest of one contact."""
-    from ryusa.engine.cpu import CpuEngine
+    from ryusa.engine.cpu.engine import CpuEngine
     from ryusa.engine.cuda.engine import CudaEngine
 
     scene, state = pressed(n)
@@ -164,7 +164,7 @@ def main() -> None:
     if args.simulated:  # before numba is loaded
         os.environ["NUMBA_ENABLE_CUDASIM"] = "1"
         sys.setswitchinterval(2e-5)
-    from ryusa.engine.cuda.presence import absent, card
+    from ryusa.engine.cuda.availability import absent, card
 
     if reason := absent():
         raise SystemExit(f"benchmarks/card.py: {reason}. --simulated tries the program without a card")

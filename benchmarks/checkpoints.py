@@ -31,7 +31,7 @@ from numba import njit
 
 from ryusa.build import build
 from ryusa.casefile import read
-from ryusa.engine.cpu import CpuEngine
+from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.running.disk import free_bytes
 from ryusa.running.guards import energy_created
 from ryusa.running.keeper import EVERY, Keeper

@@ -25,7 +25,7 @@ from typing import Any
 
 from ryusa.build import build
 from ryusa.casefile import read
-from ryusa.engine.cpu import CpuEngine
+from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.running.provenance import processor
 from ryusa.water.coupling import Coupling
 

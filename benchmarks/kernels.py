@@ -20,7 +20,7 @@ import workloads
 from prepare import free_scene
 from workloads import DT, D, Grains
 
-from ryusa.engine.cpu import CpuEngine
+from ryusa.engine.cpu.engine import CpuEngine
 
 REPEATS = 7
 FAST = 0.01 * D / DT  # m/s: a hundredth of a diameter a step

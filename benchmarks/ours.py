@@ -22,7 +22,7 @@ from workloads import Grains, Workload
 
 from ryusa.build import build
 from ryusa.casefile import read_text
-from ryusa.engine.cpu import CpuEngine
+from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.model import Scene, State, Tally
 from ryusa.running.runner import run_scene
 from ryusa.running.stops import Stop

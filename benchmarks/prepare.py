@@ -21,7 +21,7 @@ from workloads import DT, Grains, Workload
 
 from ryusa.build import build
 from ryusa.casefile import read
-from ryusa.engine.cpu import CpuEngine
+from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.model import State
 
 SETTLE = 60_000  # steps

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from ryusa.build import build, change
 from ryusa.casefile import Case, read_text
 from ryusa.casefile.grains import periodic
-from ryusa.engine.cpu import CpuEngine
+from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.errors import CaseError
 
 D = 0.002

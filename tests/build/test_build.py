@@ -15,8 +15,8 @@ from ryusa.build.overlaps import refuse_overlaps
 from ryusa.casefile import Case, Change, read_text
 from ryusa.casefile.grains import periodic
 from ryusa.casefile.water import drag_coefficient, water_speed
-from ryusa.engine import wet
-from ryusa.engine.numbers import numbers_of
+from ryusa.engine.cpu import fluid_forces as wet
+from ryusa.engine.shared.numbers import numbers_of
 from ryusa.errors import CaseError
 from ryusa.laws import drag
 from ryusa.model.enums import Damping, Drag, EventRule, Profile

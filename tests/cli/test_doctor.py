@@ -4,7 +4,7 @@ import pytest
 from typer.testing import CliRunner
 
 from ryusa.cli import app
-from ryusa.engine.cuda import presence
+from ryusa.engine.cuda import availability as presence
 from ryusa.running import doctor
 
 
@@ -29,7 +29,7 @@ def test_the_doctor_says_why_cuda_cannot_be_used_or_what_card_there_is(
 def test_the_doctor_says_when_numba_may_not_keep_what_it_compiled(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Any
 ) -> None:
-    from ryusa.engine import pair
+    from ryusa.engine.shared import pair
 
     class Kept:
         cache_path = str(tmp_path / "file" / "cache")

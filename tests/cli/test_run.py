@@ -175,7 +175,7 @@ def test_ctrl_c_ends_with_exit_code_5_and_readable_frames(
     ryusa_: Any, drop: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def engine(named: str | None, threads: int) -> Any:
-        from ryusa.engine.cpu import CpuEngine
+        from ryusa.engine.cpu.engine import CpuEngine
 
         class Interrupted(CpuEngine):
             def advance(self, n_steps: int) -> Any:

@@ -8,7 +8,7 @@ import pytest
 from ryusa import measure, run
 from ryusa.build import build
 from ryusa.casefile import read
-from ryusa.engine.cpu import CpuEngine
+from ryusa.engine.cpu.engine import CpuEngine
 
 PAGE = Path(__file__).parents[2] / "docs" / "cases-of-your-own.md"
 REST = '[motion]\nrotation = "free"\nplane = true\n[stop]\ntime = "0.05 s"\n[record]\nframes = "1 ms"\n'

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ryusa.build import scene
-from ryusa.engine.cpu import CpuEngine
+from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.model import ContactLaw, Scene, State
 from ryusa.model.enums import Cap, EventRule, Slip
 

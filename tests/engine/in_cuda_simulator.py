@@ -16,8 +16,8 @@ from tests.engine.conftest import D, bits
 from tests.engine.reference import touching_pairs
 
 from ryusa.build import scene
-from ryusa.engine.cpu import CpuEngine
-from ryusa.engine.cuda import store
+from ryusa.engine.cpu.engine import CpuEngine
+from ryusa.engine.cuda import device_state as store
 from ryusa.engine.cuda.engine import CudaEngine
 from ryusa.errors import GrainLost, ListUnsafe, NotANumber, OverlapTooLarge
 from ryusa.model import Book, RollingLaw, Water
@@ -36,7 +36,7 @@ from ryusa.model.enums import (
     Slip,
     WaterTorque,
 )
-from ryusa.model.immersed import A_X, EXTRA_X, N_SEEN, PHI, SHARE, SHEAR, U
+from ryusa.model.fluid import A_X, EXTRA_X, N_SEEN, PHI, SHARE, SHEAR, U
 from ryusa.running.runner import run_scene
 from ryusa.running.stops import Stop
 

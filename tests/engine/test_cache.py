@@ -6,7 +6,7 @@ import sys
 
 STEP = """
 from ryusa.build import scene
-from ryusa.engine.cpu import CpuEngine
+from ryusa.engine.cpu.engine import CpuEngine
 
 engine = CpuEngine()
 engine.load(*scene([[0.0, 0.0, 0.0], [0.0, 0.0, 2.0e-3]], 2.0e-3))

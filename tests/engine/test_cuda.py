@@ -11,7 +11,7 @@ from types import SimpleNamespace
 import pytest
 from numba import types
 
-from ryusa.engine.rows import Choice, Variant
+from ryusa.engine.shared.rows import Choice, Variant
 from ryusa.errors import CaseError
 
 pytest.importorskip("numba_cuda", reason="CUDA's compiler is an extra")
@@ -95,7 +95,7 @@ I1, I4, I42, U1 = COUNT[::1], types.int32[::1], types.int32[:, ::1], types.uint8
 
 
 def groups():
-    from ryusa.engine.cuda.columns import Bodies, Pairs, Walls
+    from ryusa.engine.cuda.arrays import Bodies, Pairs, Walls
 
     return (
         types.NamedTuple((F3, F3, F3, F1, F1, F1, F1, I4, I42, U1, I42, F2, F2), Bodies),
@@ -107,7 +107,7 @@ def groups():
 @pytest.mark.usefixtures("card")
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_step_becomes_ptx_in_double_precision_without_racing_sums(kind: str) -> None:
-    from ryusa.engine.cuda.columns import ON_CARD
+    from ryusa.engine.cuda.arrays import ON_CARD
     from ryusa.engine.cuda.step import make_step
 
     bodies, walls, pairs = groups()
@@ -125,8 +125,8 @@ def test_the_step_becomes_ptx_in_double_precision_without_racing_sums(kind: str)
 
 @pytest.mark.usefixtures("card")
 def test_every_other_kernel_becomes_ptx() -> None:
-    from ryusa.engine.cuda import listing
-    from ryusa.engine.cuda.columns import ON_CARD
+    from ryusa.engine.cuda import verlet_list as listing
+    from ryusa.engine.cuda.arrays import ON_CARD
     from ryusa.engine.cuda.step import make_close
 
     bodies, walls, pairs = groups()
@@ -147,7 +147,7 @@ def test_every_other_kernel_becomes_ptx() -> None:
 
 
 def test_without_a_card_one_line_says_what_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
-    from ryusa.engine.cuda import presence
+    from ryusa.engine.cuda import availability as presence
 
     if presence.absent() == "":
         pytest.skip("there is a card")

@@ -8,7 +8,7 @@ import pytest
 from tests.engine.conftest import D, bits, pile, run
 
 from ryusa.build import scene
-from ryusa.engine.cpu import CpuEngine
+from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.laws import immersed
 from ryusa.laws.reduced import reduced
 from ryusa.model import Book, ContactLaw, Water

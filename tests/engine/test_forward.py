@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from ryusa.engine.forward import march, step
+from ryusa.engine.forward_euler import march, step
 from ryusa.laws.collision import zeta_no_tension
 from ryusa.model import Scene
 from ryusa.model.scene import ContactLaw

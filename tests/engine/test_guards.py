@@ -7,8 +7,8 @@ import pytest
 from tests.engine.conftest import D, contact_law, pile
 
 from ryusa.build import scene
-from ryusa.engine import cpu
-from ryusa.engine.cpu import CpuEngine
+from ryusa.engine.cpu import engine as cpu
+from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.errors import ContactSlotsFull, GrainLost, ListUnsafe, NotANumber, OverlapTooLarge
 from ryusa.model import RollingLaw
 from ryusa.model.enums import Arm, EventRule, Rolling

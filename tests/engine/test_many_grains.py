@@ -9,7 +9,7 @@ from tests.engine.conftest import D, bits, contact_law, pile, run
 from tests.engine.reference import accelerations, touching_pairs
 
 from ryusa.build import scene
-from ryusa.engine.cpu import CpuEngine
+from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.model import Book, RollingLaw, Water
 from ryusa.model.enums import Arm, Drag, EventRule, Profile, Rolling, Slip, WaterTorque
 

@@ -8,7 +8,7 @@ import pytest
 from tests.engine.conftest import D, contact_law, run
 
 from ryusa.build import scene
-from ryusa.engine.cpu import CpuEngine
+from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.laws import collision, drag
 from ryusa.model import Book, RollingLaw, Water
 from ryusa.model.enums import Arm, Drag, Profile, Rolling, Slip, WaterTorque

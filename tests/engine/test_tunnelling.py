@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from tests.engine.conftest import D
 
 from ryusa.build import scene
-from ryusa.engine.cpu import CpuEngine
-from ryusa.engine.numbers import STEP_LIMIT
+from ryusa.engine.cpu.engine import CpuEngine
+from ryusa.engine.shared.numbers import STEP_LIMIT
 from ryusa.errors import GrainLost, ListUnsafe, OverlapTooLarge
 
 HIDDEN = 0.032  # of the smallest diameter: what two grains may overlap between two steps

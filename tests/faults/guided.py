@@ -187,7 +187,7 @@ def main() -> None:
 
     for one in iter_modules(ryusa.laws.__path__, "ryusa.laws."):
         import_module(one.name)  # numba compiles what is not instrumented
-    import ryusa.engine.cpu
+    import ryusa.engine.cpu.engine
     import ryusa.water.coupling
 
     with atheris.instrument_imports(include=["ryusa"]):

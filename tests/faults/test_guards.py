@@ -20,7 +20,7 @@ import ryusa
 from ryusa.build import scene
 from ryusa.casefile.read import read_text
 from ryusa.cli import main
-from ryusa.engine import cpu
+from ryusa.engine.cpu import engine as cpu
 from ryusa.errors import (
     CaseError,
     ContactSlotsFull,

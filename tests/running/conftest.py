@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ryusa.engine.seam import Flags
+from ryusa.engine.protocol import Flags
 from ryusa.errors import RunError
 from ryusa.model import EVENT, Book, ContactLaw, Scene, State, Tally
 from ryusa.model.tally import N_BOOK

@@ -268,7 +268,7 @@ def test_frames_that_come_out_otherwise_end_the_run_before_anything_is_written(
 def test_a_scene_built_grain_by_grain_goes_on_too(
     scene: Any, state: Any, engine: Any, tmp_path: Path, stop_at: Any
 ) -> None:
-    from ryusa.engine.cpu import CpuEngine
+    from ryusa.engine.cpu.engine import CpuEngine
 
     x = np.array([[0.005, 0.0, 0.02], [0.015, 0.0, 0.02], [0.025, 0.0, 0.02]])
     first = ryusa.State.at_rest(x)

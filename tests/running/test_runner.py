@@ -444,7 +444,7 @@ def test_slow_kernels_are_explained_once(
 
 
 def test_an_engine_is_chosen_by_name_or_refused_in_one_line(go: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    from ryusa.engine.cuda import presence
+    from ryusa.engine.cuda import availability as presence
 
     with pytest.raises(CaseError, match="engine = 'gpu': must be 'cpu' or 'cuda'"):
         go(engine="gpu")

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from ryusa.build import scene
-from ryusa.engine.cpu import CpuEngine
+from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.model import Column, Scene, State, Water
 from ryusa.model.column import Bed, Fluctuations, Mixing, Start
 from ryusa.model.enums import Drag, EventRule, Hindrance, Profile, Rebound

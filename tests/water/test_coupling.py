@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from ryusa.build import scene
-from ryusa.engine.cpu import CpuEngine
+from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.laws import drag
 from ryusa.laws.hindrance import exponent_settling
 from ryusa.model import Column, Water

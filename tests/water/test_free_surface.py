@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from ryusa.build import scene
-from ryusa.engine.cpu import CpuEngine
+from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.model import Column, Water
 from ryusa.model.column import Bed, Mixing, Surface
 from ryusa.model.enums import Buoyancy, Drag, EventRule, Lift, Profile, WaterTorque

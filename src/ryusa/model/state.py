@@ -6,7 +6,7 @@ import numpy as np
 
 from ryusa.model.arrays import Floats
 from ryusa.model.contacts import Contacts
-from ryusa.model.immersed import Coupled, Immersed
+from ryusa.model.fluid import Coupled, Immersed
 from ryusa.model.tally import N_BOOK
 
 

@@ -48,7 +48,7 @@ def _vectors() -> str:
 
 def _cache() -> str:
     """Where numba keeps compiled code, and whether it can."""
-    from ryusa.engine import pair
+    from ryusa.engine.shared import pair
 
     kept: Any = pair.dashpots
     place = getattr(getattr(kept, "_cache", None), "cache_path", None)
@@ -66,7 +66,7 @@ def _cache() -> str:
 
 
 def _cuda() -> str:
-    from ryusa.engine.cuda.presence import absent, card
+    from ryusa.engine.cuda.availability import absent, card
 
     reason = absent()
     return f"no: {reason}" if reason else f"available: {card()}"

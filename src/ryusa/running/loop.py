@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ryusa.engine.seam import Engine, Flags
+from ryusa.engine.protocol import Engine, Flags
 from ryusa.errors import CheckpointError, DiskFull, RyusaError
 from ryusa.model import EVENT, Scene, State
 from ryusa.results import schema

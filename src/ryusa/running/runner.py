@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ryusa.engine.seam import Engine
+from ryusa.engine.protocol import Engine
 from ryusa.errors import CaseError, CheckpointError, ResultsError
 from ryusa.model import Scene, State
 from ryusa.model.enums import EventRule
@@ -398,7 +398,7 @@ def _engine(named: Engine | str | None, threads: int) -> Engine:
     if threads < 1:
         raise CaseError("threads", threads, "must be at least 1")
     if named == "cuda":
-        from ryusa.engine.cuda.presence import absent
+        from ryusa.engine.cuda.availability import absent
 
         reason = absent()
         if reason:
@@ -408,7 +408,7 @@ def _engine(named: Engine | str | None, threads: int) -> Engine:
         return CudaEngine()
     if named not in {None, "cpu"}:
         raise CaseError("engine", named, "must be 'cpu' or 'cuda'")
-    from ryusa.engine.cpu import CpuEngine
+    from ryusa.engine.cpu.engine import CpuEngine
 
     return CpuEngine(threads=threads)
 

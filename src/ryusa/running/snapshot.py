@@ -15,7 +15,7 @@ from ryusa.model import Contacts, Coupled, Immersed, Scene, State
 from ryusa.model.column import WaterState
 from ryusa.model.contacts import N_EVENT
 from ryusa.model.eddies import Eddies
-from ryusa.model.immersed import N_SEEN, N_TAKEN
+from ryusa.model.fluid import N_SEEN, N_TAKEN
 from ryusa.model.tally import N_BOOK
 from ryusa.running.checkpoint import Kept
 

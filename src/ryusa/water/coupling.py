@@ -14,7 +14,7 @@ from ryusa.model import Coupled, Scene
 from ryusa.model.column import STIFF, Bed, Budget, Column, Mixing, Start, WaterState
 from ryusa.model.eddies import Eddies
 from ryusa.model.enums import Buoyancy
-from ryusa.model.immersed import A_X, DRAG, EXTRA_X, EXTRA_Z, N_SEEN, PHI, SHARE, SHEAR, U, V, W
+from ryusa.model.fluid import A_X, DRAG, EXTRA_X, EXTRA_Z, N_SEEN, PHI, SHARE, SHEAR, U, V, W
 from ryusa.model.scene import Floats
 from ryusa.water import eddies
 from ryusa.water.closures import averaged
@@ -38,7 +38,7 @@ class Coupling:
     state : present state of the water.
     phi : present concentration of grains in the cells, fixed ones included [-], shape (n,).
     budget : momentum budget of the water over the last interval; None before the first.
-    seen : what the grains were told last, columns of `model.immersed`.
+    seen : what the grains were told last, columns of `model.fluid`.
     due : step of the engine at which the next exchange is due.
     exchanges : number of exchanges so far.
     worst : largest residual of the momentum budget so far, over its largest term [-].
@@ -101,7 +101,7 @@ class Coupling:
 
     @staticmethod
     def resume(scene: Scene, column: Column, longest: int, found: Coupled, seen: Floats) -> "Coupling":
-        """Go on from a snapshot; `seen` is what its grains were told, columns of `model.immersed`.
+        """Go on from a snapshot; `seen` is what its grains were told, columns of `model.fluid`.
 
         Raises
         ------
@@ -140,11 +140,11 @@ class Coupling:
         Parameters
         ----------
         x, v : centres and velocities of the grains now [m], [m/s], shape (n_grain, 3).
-        taken : what each took from the water in the interval, columns of `model.immersed`.
+        taken : what each took from the water in the interval, columns of `model.fluid`.
 
         Returns
         -------
-        seen : columns of `model.immersed`, shape (n_grain, N_SEEN); for the engine.
+        seen : columns of `model.fluid`, shape (n_grain, N_SEEN); for the engine.
         """
         dt, before = self.steps * self.scene.dt, self.state
         force = self.force(taken, dt)

@@ -5,7 +5,7 @@ from importlib import import_module
 from types import FunctionType
 from typing import Any, TypeVar
 
-from ryusa.engine.cuda.presence import simulated
+from ryusa.engine.cuda.availability import simulated
 
 F = TypeVar("F", bound=Callable[..., Any])
 

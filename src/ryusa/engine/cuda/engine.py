@@ -5,9 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from ryusa.engine.account import begin_account, book_start, extremes_of, read_account, tally_of
-from ryusa.engine.cpu import blocks_of
-from ryusa.engine.cuda.columns import (
+from ryusa.engine.cpu.engine import blocks_of
+from ryusa.engine.cpu.prune import best_skin
+from ryusa.engine.cpu.verlet_list import film_reach
+from ryusa.engine.cuda.arrays import (
     F_ENDED,
     F_PARITY,
     F_SPILT,
@@ -22,18 +23,18 @@ from ryusa.engine.cuda.columns import (
     P_TRAVEL,
     Placed,
 )
+from ryusa.engine.cuda.availability import absent
 from ryusa.engine.cuda.device import cuda
-from ryusa.engine.cuda.presence import absent
+from ryusa.engine.cuda.device_state import Store, blocks, shape
 from ryusa.engine.cuda.step import make_close, make_step
-from ryusa.engine.cuda.store import Store, blocks, shape
-from ryusa.engine.entry import events_of, refuse_misfit, still_there
-from ryusa.engine.faults import fault_of, lost_of, unsafe_of
-from ryusa.engine.listing import film_reach
-from ryusa.engine.memory import closed_records, contacts_of
-from ryusa.engine.near import best_skin
-from ryusa.engine.numbers import choice_of, energy_of_switch, numbers_of, variant_of
-from ryusa.engine.refusals import refusals
-from ryusa.engine.rows import (
+from ryusa.engine.protocol import Flags
+from ryusa.engine.shared.contact_memory import closed_records, contacts_of
+from ryusa.engine.shared.energy_account import begin_account, book_start, extremes_of, read_account, tally_of
+from ryusa.engine.shared.entry import events_of, refuse_misfit, still_there
+from ryusa.engine.shared.faults import fault_of, lost_of, unsafe_of
+from ryusa.engine.shared.numbers import choice_of, energy_of_switch, numbers_of, variant_of
+from ryusa.engine.shared.refusals import refusals
+from ryusa.engine.shared.rows import (
     C_DT,
     C_T_ZERO,
     N_BOOKS,
@@ -46,12 +47,11 @@ from ryusa.engine.rows import (
     STOP_LIST,
     STOP_UNSAFE,
 )
-from ryusa.engine.seam import Flags
 from ryusa.errors import CaseError, RunError
 from ryusa.model import Book, Immersed, Scene, State, Tally
 from ryusa.model.contacts import N_EVENT
 from ryusa.model.enums import EventRule
-from ryusa.model.immersed import SHARE
+from ryusa.model.fluid import SHARE
 from ryusa.model.scene import Floats
 from ryusa.model.tally import N_BOOK
 
@@ -189,7 +189,7 @@ class CudaEngine:
         return state
 
     def drift(self) -> tuple[Floats, Floats, Floats]:
-        """Centres [m], velocities [m/s] and what was taken from the water (model.immersed), by id."""
+        """Centres [m], velocities [m/s] and what was taken from the water (model.fluid), by id."""
         store, ids = self._store, self._store.ids()
         taken = store.by_id("taken", ids) if self._variant.column else np.zeros((0, 0))
         return (
@@ -203,7 +203,7 @@ class CudaEngine:
 
         Parameters
         ----------
-        seen : by id, columns of `model.immersed`, shape (n_grain, N_SEEN).
+        seen : by id, columns of `model.fluid`, shape (n_grain, N_SEEN).
 
         Raises
         ------

@@ -8,10 +8,10 @@ import math
 from functools import cache
 from typing import Any
 
-from ryusa.engine.cuda.columns import A_OVERLAP, A_OVERLAP_GRAIN, A_OVERLAP_PARTNER
+from ryusa.engine.cuda.arrays import A_OVERLAP, A_OVERLAP_GRAIN, A_OVERLAP_PARTNER
 from ryusa.engine.cuda.device import device, same
-from ryusa.engine.pair import dashpot_wet
-from ryusa.engine.rows import *
+from ryusa.engine.shared.pair import dashpot_wet
+from ryusa.engine.shared.rows import *
 from ryusa.laws.contact import normal_force, shear_strength, slide
 from ryusa.laws.geometry import arm, turn
 from ryusa.laws.geometry import overlap as overlap_of

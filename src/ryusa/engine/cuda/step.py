@@ -7,14 +7,14 @@ from typing import Any
 
 from numba import float64
 
-from ryusa.engine.cuda.columns import *
+from ryusa.engine.cpu.fluid_forces import close_interval
+from ryusa.engine.cuda.arrays import *
 from ryusa.engine.cuda.device import cuda, device, same
-from ryusa.engine.cuda.move import make_move
+from ryusa.engine.cuda.integration import make_move
 from ryusa.engine.cuda.pair import guard, make_touch, meet
-from ryusa.engine.pair import ROLL_PRINTED, roll, roll_out
-from ryusa.engine.records import begin_record, end_record, keep_record
-from ryusa.engine.rows import *
-from ryusa.engine.wet import close_interval
+from ryusa.engine.shared.contact_records import begin_record, end_record, keep_record
+from ryusa.engine.shared.pair import ROLL_PRINTED, roll, roll_out
+from ryusa.engine.shared.rows import *
 from ryusa.laws.geometry import wrap
 from ryusa.laws.immersed import lubrication_force
 from ryusa.laws.rolling import reduced_radius

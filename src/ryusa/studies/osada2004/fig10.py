@@ -9,7 +9,7 @@ from typing import Any, cast
 import numpy as np
 from matplotlib.figure import Figure
 
-from ryusa.engine.forward import march, step
+from ryusa.engine.forward_euler import march, step
 from ryusa.figures.snapshot import snapshot as draw_snapshot
 from ryusa.figures.trembling import over_threshold
 from ryusa.figures.vibration import vibration as draw_vibration

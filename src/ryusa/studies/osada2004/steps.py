@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ryusa import figures
-from ryusa.engine.forward import restitution
+from ryusa.engine.forward_euler import restitution
 from ryusa.measure.statistics import Floats
 from ryusa.studies.osada2004 import _drops
 from ryusa.studies.osada2004._drops import COPIES, NO_TENSION, TENSION, DropRun, Setup

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ryusa.build import scene
-from ryusa.engine.cpu import CpuEngine
+from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.figures.comparison import Axis, Curve
 from ryusa.model import EVENT, Column, Scene, State, Water
 from ryusa.model.column import Bed, Mixing, Start

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ryusa.build import scene
-from ryusa.engine.cpu import CpuEngine
+from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.figures.comparison import Axis, Curve
 from ryusa.laws import collision
 from ryusa.model import ContactLaw

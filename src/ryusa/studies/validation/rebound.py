@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ryusa.build import scene
-from ryusa.engine.cpu import CpuEngine
+from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.figures.comparison import Axis, Curve
 from ryusa.model import Water
 from ryusa.model.enums import Drag, Profile, Rebound

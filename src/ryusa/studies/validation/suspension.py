@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ryusa.build import scene
-from ryusa.engine.cpu import CpuEngine
+from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.figures.comparison import Axis, Curve
 from ryusa.laws.hindrance import exponent_settling
 from ryusa.model import Column, Water

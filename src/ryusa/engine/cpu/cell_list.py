@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ryusa.engine._kernel import inner, kernel
+from ryusa.engine.shared.kernel import inner, kernel
 from ryusa.laws.geometry import wrap
 from ryusa.model.scene import Floats
 

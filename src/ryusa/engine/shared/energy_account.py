@@ -5,8 +5,8 @@
 
 import numpy as np
 
-from ryusa.engine.numbers import potential_energy
-from ryusa.engine.rows import (
+from ryusa.engine.shared.numbers import potential_energy
+from ryusa.engine.shared.rows import (
     N_KINETIC,
     N_N_CONTACT,
     N_OVERLAP_GRAIN,

@@ -8,13 +8,13 @@ never shows in the bits of a run.
 import math
 from typing import Any
 
-from ryusa.engine._kernel import inner, kernel
-from ryusa.engine.arrays import Grains, Near, Pairs, Walls, Work
-from ryusa.engine.four import copy4
-from ryusa.engine.glance import see_apart, see_drift, tell_coming
-from ryusa.engine.lanes import LANES
-from ryusa.engine.pair import place_of_eta
-from ryusa.engine.rows import *
+from ryusa.engine.cpu.arrays import Grains, Near, Pairs, Walls, Work
+from ryusa.engine.cpu.batch_layout import LANES
+from ryusa.engine.cpu.cutoff import see_apart, see_drift, tell_coming
+from ryusa.engine.cpu.simd.vec4 import copy4
+from ryusa.engine.shared.kernel import inner, kernel
+from ryusa.engine.shared.pair import place_of_eta
+from ryusa.engine.shared.rows import *
 
 _SLACK = 2 * LANES  # pairs are listed by the batch, where a whole one would find room
 

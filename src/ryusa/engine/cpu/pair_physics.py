@@ -6,13 +6,13 @@ Lane by lane, after (or, for the rebound, before) the law of contact has been re
 
 from typing import Any
 
-from ryusa.engine._kernel import FAST, inner, kernel
-from ryusa.engine.arrays import Grains, Near
-from ryusa.engine.batch import overlap_on
-from ryusa.engine.lanes import *
-from ryusa.engine.pair import ROLL_PRINTED, dashpot_wet, roll, roll_out
-from ryusa.engine.records import begin_record, end_record, keep_record
-from ryusa.engine.rows import *
+from ryusa.engine.cpu.arrays import Grains, Near
+from ryusa.engine.cpu.batch_layout import *
+from ryusa.engine.cpu.pair_batch import overlap_on
+from ryusa.engine.shared.contact_records import begin_record, end_record, keep_record
+from ryusa.engine.shared.kernel import FAST, inner, kernel
+from ryusa.engine.shared.pair import ROLL_PRINTED, dashpot_wet, roll, roll_out
+from ryusa.engine.shared.rows import *
 from ryusa.laws.geometry import wrap
 from ryusa.laws.immersed import lubrication_force
 from ryusa.laws.rolling import reduced_radius

@@ -5,15 +5,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ryusa.engine.arrays import Grains, Near, Pairs, Walls, aligned
-from ryusa.engine.carry import cross_lists, wrap_grains
-from ryusa.engine.cells import build_list, grid_of, sort_into
-from ryusa.engine.lanes import LANES
-from ryusa.engine.near import count_live, put_rows, take_rows
-from ryusa.engine.rows import Variant
+from ryusa.engine.cpu.arrays import Grains, Near, Pairs, Walls, aligned
+from ryusa.engine.cpu.batch_layout import LANES
+from ryusa.engine.cpu.block_exchange import cross_lists, wrap_grains
+from ryusa.engine.cpu.cell_list import build_list, grid_of, sort_into
+from ryusa.engine.cpu.prune import count_live, put_rows, take_rows
+from ryusa.engine.shared.rows import Variant
 from ryusa.model import Scene, State
 from ryusa.model.enums import Damping, Profile, Rebound
-from ryusa.model.immersed import Immersed
+from ryusa.model.fluid import Immersed
 from ryusa.model.scene import Floats
 
 Share = Callable[

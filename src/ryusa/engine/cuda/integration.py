@@ -5,14 +5,14 @@ import math
 from functools import cache
 from typing import Any
 
-from ryusa.engine.cuda.columns import *
+from ryusa.engine.cpu.fluid_forces import water_on, water_speed
+from ryusa.engine.cuda.arrays import *
 from ryusa.engine.cuda.device import device, same
-from ryusa.engine.rows import *
-from ryusa.engine.wet import water_on, water_speed
+from ryusa.engine.shared.rows import *
 from ryusa.laws.motion import acceleration, acceleration_spin, semi_implicit
 from ryusa.laws.torque import torque_dennis, torque_stokes
 from ryusa.model.enums import Above, WaterTorque
-from ryusa.model.immersed import A_X, DRAG, EXTRA_X, EXTRA_Z, SHARE, SHEAR
+from ryusa.model.fluid import A_X, DRAG, EXTRA_X, EXTRA_Z, SHARE, SHEAR
 from ryusa.model.resistance import drag_of
 from ryusa.model.tally import Book
 

@@ -8,10 +8,10 @@ distance; so the grid needs no walls.
 import math
 from typing import Any
 
-from ryusa.engine.cuda.columns import Bodies, Pairs, Walls
+from ryusa.engine.cuda.arrays import Bodies, Pairs, Walls
 from ryusa.engine.cuda.device import cuda, device, same
-from ryusa.engine.pair import dashpots
-from ryusa.engine.rows import ETA_N, ETA_S, R_ROLLING
+from ryusa.engine.shared.pair import dashpots
+from ryusa.engine.shared.rows import ETA_N, ETA_S, R_ROLLING
 from ryusa.laws.geometry import wrap
 
 CHUNK = 64  # numbers that one thread adds up in a row

@@ -5,15 +5,15 @@ from typing import Any
 
 import numpy as np
 
-from ryusa.engine.cuda import listing
-from ryusa.engine.cuda.columns import IN_SIMULATOR, MOST_BLOCKS, NOBODY, ON_CARD, Bodies, Pairs, Shape, Walls
+from ryusa.engine.cpu.verlet_list import Layout, Memory
+from ryusa.engine.cuda import verlet_list as listing
+from ryusa.engine.cuda.arrays import IN_SIMULATOR, MOST_BLOCKS, NOBODY, ON_CARD, Bodies, Pairs, Shape, Walls
+from ryusa.engine.cuda.availability import simulated
 from ryusa.engine.cuda.device import cuda
-from ryusa.engine.cuda.presence import simulated
-from ryusa.engine.listing import Layout, Memory
-from ryusa.engine.memory import memory_of
-from ryusa.engine.rows import Choice, Variant
+from ryusa.engine.shared.contact_memory import memory_of
+from ryusa.engine.shared.rows import Choice, Variant
 from ryusa.model import Scene, State
-from ryusa.model.immersed import N_SEEN, N_TAKEN, Immersed
+from ryusa.model.fluid import N_SEEN, N_TAKEN, Immersed
 from ryusa.model.scene import Floats
 
 _MARGIN = 1.0 + 1e-9  # of a cell beyond reach: a grain on its edge may fall to either side

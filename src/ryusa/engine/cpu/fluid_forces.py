@@ -4,11 +4,11 @@
 import math
 from typing import Any
 
-from ryusa.engine._kernel import FAST, inner
-from ryusa.engine.arrays import Grains
-from ryusa.engine.four import spread4
-from ryusa.engine.lanes import *
-from ryusa.engine.rows import *
+from ryusa.engine.cpu.arrays import Grains
+from ryusa.engine.cpu.batch_layout import *
+from ryusa.engine.cpu.simd.vec4 import spread4
+from ryusa.engine.shared.kernel import FAST, inner
+from ryusa.engine.shared.rows import *
 from ryusa.laws.lift import (
     lift_saffman_mei,
     lift_wiberg_smith,
@@ -19,7 +19,7 @@ from ryusa.laws.lift import (
 from ryusa.laws.torque import torque_dennis, torque_stokes
 from ryusa.laws.water import log_law_rough, log_law_smooth, uniform
 from ryusa.model.enums import Above, Buoyancy, Lift, Magnus, Profile, WaterTorque
-from ryusa.model.immersed import A_X, DRAG, EXTRA_X, EXTRA_Z, PHI, SHARE, SHEAR, U, V, W
+from ryusa.model.fluid import A_X, DRAG, EXTRA_X, EXTRA_Z, PHI, SHARE, SHEAR, U, V, W
 from ryusa.model.resistance import drag_of, hindered
 from ryusa.model.tally import Book
 

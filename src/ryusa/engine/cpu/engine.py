@@ -8,18 +8,19 @@ from typing import Any
 
 import numpy as np
 
-from ryusa.engine.account import begin_account, book_start, extremes_of, read_account, tally_of
-from ryusa.engine.arrays import Ledger, workplace
-from ryusa.engine.entry import events_of, refuse_misfit, still_there
-from ryusa.engine.faults import fault_of, lost_of, unsafe_of
-from ryusa.engine.listing import Layout, Memory, take_memory
-from ryusa.engine.march import make_run
-from ryusa.engine.memory import closed_records, contacts_of, memory_of
-from ryusa.engine.near import best_skin
-from ryusa.engine.nearlist import NearList
-from ryusa.engine.numbers import choice_of, energy_of_switch, numbers_of, variant_of
-from ryusa.engine.refusals import refusals
-from ryusa.engine.rows import (
+from ryusa.engine.cpu.arrays import Ledger, workplace
+from ryusa.engine.cpu.candidate_pairs import NearList
+from ryusa.engine.cpu.prune import best_skin
+from ryusa.engine.cpu.time_loop import make_run
+from ryusa.engine.cpu.verlet_list import Layout, Memory, take_memory
+from ryusa.engine.protocol import Flags
+from ryusa.engine.shared.contact_memory import closed_records, contacts_of, memory_of
+from ryusa.engine.shared.energy_account import begin_account, book_start, extremes_of, read_account, tally_of
+from ryusa.engine.shared.entry import events_of, refuse_misfit, still_there
+from ryusa.engine.shared.faults import fault_of, lost_of, unsafe_of
+from ryusa.engine.shared.numbers import choice_of, energy_of_switch, numbers_of, variant_of
+from ryusa.engine.shared.refusals import refusals
+from ryusa.engine.shared.rows import (
     C_DT,
     C_SKIN,
     C_T_ZERO,
@@ -36,12 +37,11 @@ from ryusa.engine.rows import (
     STOP_ROOM,
     STOP_UNSAFE,
 )
-from ryusa.engine.seam import Flags
 from ryusa.errors import RunError
 from ryusa.model import Book, Immersed, Scene, State, Tally
 from ryusa.model.contacts import N_EVENT
 from ryusa.model.enums import EventRule
-from ryusa.model.immersed import SHARE
+from ryusa.model.fluid import SHARE
 from ryusa.model.scene import Floats
 from ryusa.model.tally import N_BOOK
 
@@ -172,7 +172,7 @@ class CpuEngine:
         return state
 
     def drift(self) -> tuple[Floats, Floats, Floats]:
-        """Centres [m], velocities [m/s] and what was taken from the water (model.immersed), by id."""
+        """Centres [m], velocities [m/s] and what was taken from the water (model.fluid), by id."""
         n, ids = self._n, self._grains.ids[: self._n]
         x, v, taken = np.empty((n, 3)), np.empty((n, 3)), np.empty(self._grains.taken.shape)
         x[ids], v[ids] = self._grains.x[:n, :3], self._grains.v[:n, :3]
@@ -184,7 +184,7 @@ class CpuEngine:
 
         Parameters
         ----------
-        seen : by id, columns of `model.immersed`, shape (n_grain, N_SEEN).
+        seen : by id, columns of `model.fluid`, shape (n_grain, N_SEEN).
 
         Raises
         ------

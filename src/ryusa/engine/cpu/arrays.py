@@ -4,8 +4,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ryusa.engine.lanes import DESK, LANES, TABLE
-from ryusa.engine.rows import N_CLOCK
+from ryusa.engine.cpu.batch_layout import DESK, LANES, TABLE
+from ryusa.engine.shared.rows import N_CLOCK
 
 _LINE = 64  # bytes of a cache line
 
@@ -39,7 +39,7 @@ class Grains(NamedTuple):
     tracked: Any  # whether its contacts are recorded, by id, (n,)
     touched: Any  # contacts in the last step, (n,)
     film: Any  # force of films so far in this step [N], rows as those of `Pairs.f`, 4 wide; (0, 0) without
-    seen: Any  # water at each grain, columns of model.immersed, (n, N_SEEN); (0, 0) without a column
+    seen: Any  # water at each grain, columns of model.fluid, (n, N_SEEN); (0, 0) without a column
     taken: Any  # impulse it took from the water [N s], and drag over slip, (n, N_TAKEN); (0, 0) without
 
 

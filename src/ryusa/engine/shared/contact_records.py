@@ -3,9 +3,9 @@
 
 from typing import Any
 
-from ryusa.engine._kernel import kernel
-from ryusa.engine.arrays import Grains
-from ryusa.engine.rows import *
+from ryusa.engine.cpu.arrays import Grains
+from ryusa.engine.shared.kernel import kernel
+from ryusa.engine.shared.rows import *
 from ryusa.model.enums import EventRule
 
 Vector = tuple[float, float, float]

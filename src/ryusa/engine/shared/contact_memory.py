@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from ryusa.engine.listing import Layout, Memory
-from ryusa.engine.pair import dashpots_of
-from ryusa.engine.rows import (
+from ryusa.engine.cpu.verlet_list import Layout, Memory
+from ryusa.engine.shared.pair import dashpots_of
+from ryusa.engine.shared.rows import (
     E_ALONE,
     E_CLOSING_END,
     E_I,

@@ -13,12 +13,12 @@ or left within a step is booked for what the half interval takes beyond what it 
 import math
 from typing import Any
 
-from ryusa.engine._kernel import FAST, inner
-from ryusa.engine.four import add4, copy4, read4, take4, with_last, write4
-from ryusa.engine.glance import see_apart, tell_near
-from ryusa.engine.lanes import *
-from ryusa.engine.pair import begin_row, place_of_eta
-from ryusa.engine.rows import *
+from ryusa.engine.cpu.batch_layout import *
+from ryusa.engine.cpu.cutoff import see_apart, tell_near
+from ryusa.engine.cpu.simd.vec4 import add4, copy4, read4, take4, with_last, write4
+from ryusa.engine.shared.kernel import FAST, inner
+from ryusa.engine.shared.pair import begin_row, place_of_eta
+from ryusa.engine.shared.rows import *
 from ryusa.laws.contact import normal_force, shear_strength, slide
 from ryusa.laws.geometry import arm, turn, wrap
 from ryusa.laws.geometry import overlap as overlap_of

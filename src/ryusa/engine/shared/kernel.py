@@ -9,8 +9,9 @@ from ryusa.laws._law import LAWS, compiled, edition
 F = TypeVar("F", bound=Callable[..., Any])
 FAST = {"contract", "nsz"}  # fused multiply-add and no care for the sign of zero; nothing that hides a NaN
 
-_HERE = Path(__file__).parent
-_EDITION = edition(LAWS, _HERE, _HERE.parent / "model")
+_ENGINE = Path(__file__).parents[1]
+# A kernel of one room is inlined into kernels of the other: both have one edition, and that of CUDA none.
+_EDITION = edition(LAWS, _ENGINE / "shared", _ENGINE / "cpu", _ENGINE.parent / "model")
 
 
 def kernel(**options: Any) -> Callable[[F], F]:

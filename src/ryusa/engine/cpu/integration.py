@@ -7,12 +7,12 @@ What is fourth in a row stays what it is: the radius behind a position or a spin
 import math
 from typing import Any
 
-from ryusa.engine._kernel import FAST, inner
-from ryusa.engine.arrays import Grains, Pairs
-from ryusa.engine.four import add4, four_of, part, read4, spread4, with_last, write4
-from ryusa.engine.lanes import *
-from ryusa.engine.rows import *
-from ryusa.engine.wet import close_interval, push_of_water, work_of_water
+from ryusa.engine.cpu.arrays import Grains, Pairs
+from ryusa.engine.cpu.batch_layout import *
+from ryusa.engine.cpu.fluid_forces import close_interval, push_of_water, work_of_water
+from ryusa.engine.cpu.simd.vec4 import add4, four_of, part, read4, spread4, with_last, write4
+from ryusa.engine.shared.kernel import FAST, inner
+from ryusa.engine.shared.rows import *
 from ryusa.laws.motion import acceleration, acceleration_spin, semi_implicit
 
 

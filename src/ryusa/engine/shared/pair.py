@@ -4,8 +4,8 @@
 import math
 from typing import Any
 
-from ryusa.engine._kernel import FAST, inner, kernel
-from ryusa.engine.rows import *
+from ryusa.engine.shared.kernel import FAST, inner, kernel
+from ryusa.engine.shared.rows import *
 from ryusa.laws.collision import effective_mass, effective_mass_tangential, zeta_no_tension, zeta_tension
 from ryusa.laws.contact import damping, damping_in_steps
 from ryusa.laws.geometry import turn

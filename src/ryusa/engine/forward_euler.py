@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ryusa.engine._kernel import kernel
+from ryusa.engine.shared.kernel import kernel
 from ryusa.laws.collision import (
     effective_mass,
     effective_mass_tangential,

@@ -26,7 +26,7 @@ class Bodies(NamedTuple):
     image: Any  # periods crossed, int32, (n, 2)
     tracked: Any  # 1 where its contacts are recorded, by id, uint8, (n,)
     touched: Any  # contacts in the last step, int32, (2, n)
-    seen: Any  # water at each grain, columns of model.immersed, (n, N_SEEN); (1, N_SEEN) without a column
+    seen: Any  # water at each grain, columns of model.fluid, (n, N_SEEN); (1, N_SEEN) without a column
     taken: Any  # impulse it took from the water [N s], and drag over slip, (n, N_TAKEN)
 
 

@@ -3,10 +3,10 @@
 
 from typing import Any
 
-from ryusa.engine._kernel import FAST, inner
-from ryusa.engine.four import apart4
-from ryusa.engine.lanes import LANES
-from ryusa.engine.rows import *
+from ryusa.engine.cpu.batch_layout import LANES
+from ryusa.engine.cpu.simd.vec4 import apart4
+from ryusa.engine.shared.kernel import FAST, inner
+from ryusa.engine.shared.rows import *
 from ryusa.laws.geometry import wrap
 
 

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from ryusa.engine.arrays import Grains, Near, Pairs, workplace
-from ryusa.engine.lanes import LANES
-from ryusa.engine.listing import Layout, Memory, Share, film_reach
-from ryusa.engine.near import cut_blocks, steps_ahead
-from ryusa.engine.rows import (
+from ryusa.engine.cpu.arrays import Grains, Near, Pairs, workplace
+from ryusa.engine.cpu.batch_layout import LANES
+from ryusa.engine.cpu.prune import cut_blocks, steps_ahead
+from ryusa.engine.cpu.verlet_list import Layout, Memory, Share, film_reach
+from ryusa.engine.shared.rows import (
     C_DT,
     K_AHEAD,
     K_LANES,

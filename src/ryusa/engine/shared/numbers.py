@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ryusa.engine import rows as k
-from ryusa.engine.rows import Choice, Variant
+from ryusa.engine.shared import rows as k
+from ryusa.engine.shared.rows import Choice, Variant
 from ryusa.laws.rolling import epsd_stiffness, reduced_radius
 from ryusa.model import Scene, State
 from ryusa.model.enums import Damping, EventRule, Profile, Rolling

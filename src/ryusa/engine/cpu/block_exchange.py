@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ryusa.engine._kernel import kernel
+from ryusa.engine.shared.kernel import kernel
 
 Whole = NDArray[np.int64]
 

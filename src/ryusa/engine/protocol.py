@@ -37,14 +37,14 @@ class Engine(Protocol):
         ...
 
     def immerse(self, seen: Floats) -> None:
-        """Tell every grain its water, columns of model.immersed, held until told again.
+        """Tell every grain its water, columns of model.fluid, held until told again.
 
         A snapshot carries it, and the impulse that each grain took since.
         """
         ...
 
     def drift(self) -> tuple[Floats, Floats, Floats]:
-        """Centres [m], velocities [m/s] and what was taken from the water (model.immersed), by id; cheap."""
+        """Centres [m], velocities [m/s] and what was taken from the water (model.fluid), by id; cheap."""
         ...
 
     def advance(self, n_steps: int) -> Flags:

@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from ryusa.engine.arrays import Grains
-from ryusa.engine.rows import (
+from ryusa.engine.cpu.arrays import Grains
+from ryusa.engine.shared.rows import (
     C_DT,
     C_OVERLAP_LIMIT,
     C_T_ZERO,

@@ -6,17 +6,17 @@ from typing import Any
 
 import numpy as np
 
-from ryusa.engine._kernel import FAST, inner, kernel
-from ryusa.engine.arrays import Grains, Ledger, Near, Pairs, Walls, Work
-from ryusa.engine.batch import hand_out, lay_out, look, overlap_on, reckon
-from ryusa.engine.company import keep_company, wet_dashpots
-from ryusa.engine.four import ask, spread4
-from ryusa.engine.lanes import D_BOOKS, D_SPIN_I, D_SPIN_J, LANES, N_LANE_BOOK, PITCH
-from ryusa.engine.lend import lend
-from ryusa.engine.motion import motion
-from ryusa.engine.near import cut, plan_cut, steps_ahead
-from ryusa.engine.rows import *
-from ryusa.engine.sync import meet
+from ryusa.engine.cpu.arrays import Grains, Ledger, Near, Pairs, Walls, Work
+from ryusa.engine.cpu.barrier import meet
+from ryusa.engine.cpu.batch_layout import D_BOOKS, D_SPIN_I, D_SPIN_J, LANES, N_LANE_BOOK, PITCH
+from ryusa.engine.cpu.integration import motion
+from ryusa.engine.cpu.pair_batch import hand_out, lay_out, look, overlap_on, reckon
+from ryusa.engine.cpu.pair_physics import keep_company, wet_dashpots
+from ryusa.engine.cpu.prune import cut, plan_cut, steps_ahead
+from ryusa.engine.cpu.simd.borrow import lend
+from ryusa.engine.cpu.simd.vec4 import ask, spread4
+from ryusa.engine.shared.kernel import FAST, inner, kernel
+from ryusa.engine.shared.rows import *
 from ryusa.model.tally import Book
 
 Maybe = int | None  # 1, or None for what a variant goes without

@@ -1,0 +1,1 @@
+"""The CPU engine: compiled threads that step blocks of grains and meet at a barrier."""

@@ -1,0 +1,1 @@
+"""What every engine shares: layout, parameters, contact memory and records, energy account, refusals."""
