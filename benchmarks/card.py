@@ -70,7 +70,7 @@ def agreement(n: int, warm: int) -> dict[str, Any]:
 
 def sides(engine: Any) -> bool:
     """Whether both sides of every pair in touch keep the same bits."""
-    store = engine._store
+    store = engine._device
     start, partners, live, _, rows = (array.copy_to_host() for array in store.pairs)
     owner = np.repeat(np.arange(store.n), np.diff(start))
     partners, live, rows = (array[: start[-1]] for array in (partners, live, rows))
@@ -138,7 +138,7 @@ def timed(n: int, copying: float) -> dict[str, Any]:
         engine.advance(steps).raise_if_any()
         taken.append((time.perf_counter() - begun) / steps)
     step, total = statistics.median(taken), cuda.current_context().get_memory_info().total
-    listed, touching = engine._store.n_pair / n, 2.0 * engine.tally().n_contact / n
+    listed, touching = engine._device.n_pair / n, 2.0 * engine.tally().n_contact / n
     asked = n * (A_GRAIN + A_NEIGHBOUR * listed + A_TOUCH * touching)
     return {
         "grains": n,
@@ -149,7 +149,7 @@ def timed(n: int, copying: float) -> dict[str, Any]:
         "GB/s asked for": round(asked / step / 1e9, 1),
         "share of copying": round(asked / step / copying, 3),
         "bytes a grain on the card": round((total - free_before) / n),
-        "lists": engine._relisted,
+        "lists": engine._n_list,
     }
 
 
@@ -164,11 +164,11 @@ def main() -> None:
     if args.simulated:  # before numba is loaded
         os.environ["NUMBA_ENABLE_CUDASIM"] = "1"
         sys.setswitchinterval(2e-5)
-    from ryusa.engine.cuda.availability import absent, card
+    from ryusa.engine.cuda.availability import device_name, unavailable
 
-    if reason := absent():
+    if reason := unavailable():
         raise SystemExit(f"benchmarks/card.py: {reason}. --simulated tries the program without a card")
-    rows: list[dict[str, Any]] = [{"card": card()}]
+    rows: list[dict[str, Any]] = [{"card": device_name()}]
     rows.append(agreement(8, 5) if args.simulated else agreement(FROZEN, 20))
     rows.append(twice(8, 6) if args.simulated else twice(FROZEN, TWICE))
     for row in rows:

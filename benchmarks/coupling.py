@@ -63,25 +63,23 @@ def measure(columns: int) -> list[dict[str, Any]]:
     flowing = CpuEngine(threads=2)
     flowing.load(scene, built["column"].state)
     coupling = Coupling.begin(scene, column, column.interval, built["column"].state.x)
-    flowing.immerse(coupling.seen)
+    flowing.set_fluid(coupling.sampled)
     done = 0
     while done < FLOW:
         done += (k := coupling.steps)
         flowing.advance(k).raise_if_any()
-        flowing.immerse(coupling.exchange(*flowing.drift()))
+        flowing.set_fluid(coupling.exchange(*flowing.kinematics()))
     state = flowing.state()
     engines, couplings = {}, {}
     for name, one in built.items():
         engine = engines[name] = CpuEngine()
         dt = replace(one.scene, dt=scene.dt)  # one step for all
-        own = replace(
-            state, immersed=None if one.scene.column is None else state.immersed, contacts=state.contacts
-        )
+        own = replace(state, fluid=None if one.scene.column is None else state.fluid, contacts=state.contacts)
         engine.load(dt, own)
         if one.scene.column is not None:
             water = Coupling.begin(dt, one.scene.column, column.interval, state.x, coupling.state, state.step)
             couplings[name] = water
-            engine.immerse(water.seen)
+            engine.set_fluid(water.sampled)
     taken: dict[str, list[float]] = {name: [] for name in engines}
     given: dict[str, list[float]] = {name: [] for name in couplings}
     for turn in range(REPEATS + 2):
@@ -91,7 +89,7 @@ def measure(columns: int) -> list[dict[str, Any]]:
             engine.advance(steps).raise_if_any()
             middle = time.perf_counter()
             if name in couplings:
-                engine.immerse(couplings[name].exchange(*engine.drift()))
+                engine.set_fluid(couplings[name].exchange(*engine.kinematics()))
             if turn > 1:
                 taken[name].append((middle - begin) / steps)
             if turn > 1 and name in couplings:

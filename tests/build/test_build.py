@@ -15,8 +15,8 @@ from ryusa.build.overlaps import refuse_overlaps
 from ryusa.casefile import Case, Change, read_text
 from ryusa.casefile.grains import periodic
 from ryusa.casefile.water import drag_coefficient, water_speed
-from ryusa.engine.cpu import fluid_forces as wet
-from ryusa.engine.shared.numbers import numbers_of
+from ryusa.engine.shared import fluid
+from ryusa.engine.shared.parameters import parameters_of
 from ryusa.errors import CaseError
 from ryusa.laws import drag
 from ryusa.model.enums import Damping, Drag, EventRule, Profile
@@ -402,8 +402,10 @@ def test_case_and_engine_read_the_same_water(profile: str, above: str) -> None:
         water=f"{{ profile = '{profile}', {shear} zero = '0 m', depth = '2 cm', above = '{above}' }}",
     )
     water = build(one).scene.water
-    numbers = numbers_of(build(one).scene)
-    in_the_engine: Any = getattr(wet.water_speed, "py_func", wet.water_speed)  # only kernels call it compiled
+    numbers = parameters_of(build(one).scene)
+    in_the_engine: Any = getattr(
+        fluid.water_speed, "py_func", fluid.water_speed
+    )  # only kernels call it compiled
     for z in (-1e-3, 1e-5, 1e-3, 0.019, 0.03):
         expected = in_the_engine(int(water.profile), int(water.above), z, numbers)
         if above == "dry" and z > water.depth:

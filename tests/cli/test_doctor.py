@@ -4,7 +4,7 @@ import pytest
 from typer.testing import CliRunner
 
 from ryusa.cli import app
-from ryusa.engine.cuda import availability as presence
+from ryusa.engine.cuda import availability
 from ryusa.running import doctor
 
 
@@ -19,23 +19,23 @@ def test_the_doctor_names_cache_threads_vectors_and_engines() -> None:
 def test_the_doctor_says_why_cuda_cannot_be_used_or_what_card_there_is(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(presence, "absent", lambda: "the CUDA driver finds no card")
+    monkeypatch.setattr(availability, "unavailable", lambda: "the CUDA driver finds no card")
     assert dict(doctor.diagnosis())["engine cuda"] == "no: the CUDA driver finds no card"
-    monkeypatch.setattr(presence, "absent", lambda: "")
-    monkeypatch.setattr(presence, "card", lambda: "A card")
+    monkeypatch.setattr(availability, "unavailable", lambda: "")
+    monkeypatch.setattr(availability, "device_name", lambda: "A card")
     assert dict(doctor.diagnosis())["engine cuda"] == "available: A card"
 
 
 def test_the_doctor_says_when_numba_may_not_keep_what_it_compiled(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Any
 ) -> None:
-    from ryusa.engine.shared import pair
+    from ryusa.engine.shared import dashpots
 
     class Kept:
         cache_path = str(tmp_path / "file" / "cache")
 
     (tmp_path / "file").write_text("no folder")
-    monkeypatch.setattr(pair, "dashpots", type("Compiled", (), {"_cache": Kept})())
+    monkeypatch.setattr(dashpots, "dashpots", type("Compiled", (), {"_cache": Kept})())
     found = dict(doctor.diagnosis())["cache"]
     assert found.startswith("no writing to")
     assert "NUMBA_CACHE_DIR" in found

@@ -36,7 +36,7 @@ from ryusa.model.enums import (
     Slip,
     WaterTorque,
 )
-from ryusa.model.fluid import A_X, EXTRA_X, N_SEEN, PHI, SHARE, SHEAR, U
+from ryusa.model.fluid import A_X, EXTRA_X, N_SAMPLED, PHI, SHEAR, SUBMERGED, U
 from ryusa.running.runner import run_scene
 from ryusa.running.stops import Stop
 
@@ -99,18 +99,18 @@ def heap(plane_case=False, walls=False, seed=5, stir=0.1, **more):
 def told(fixed, seed=9):
     """Water at every grain, of every kind."""
     rng = np.random.default_rng(seed)
-    seen = np.zeros((fixed.n_grain, N_SEEN))
+    seen = np.zeros((fixed.n_grain, N_SAMPLED))
     seen[:, U : U + 3] = rng.normal(0.2, 0.1, (fixed.n_grain, 3))
     seen[:, SHEAR], seen[:, PHI], seen[:, A_X] = 30.0, 0.3, rng.normal(0.0, 1.0, fixed.n_grain)
     seen[:, EXTRA_X : EXTRA_X + 2] = rng.normal(0.0, 1e-6, (fixed.n_grain, 2))
-    seen[:, SHARE] = rng.choice([0.0, 0.4, 1.0], fixed.n_grain)
+    seen[:, SUBMERGED] = rng.choice([0.0, 0.4, 1.0], fixed.n_grain)
     return seen
 
 
 def loaded(engine, made):
     engine.load(*made)
     if made[0].water.profile == Profile.COLUMN:
-        engine.immerse(told(made[0]))
+        engine.set_fluid(told(made[0]))
     return engine
 
 
@@ -154,8 +154,8 @@ def test_one_frozen_state_and_a_short_run_agree_with_the_cpu(kind):
     alike(mine.tally(), theirs.tally(), 1e-11)
     ended = mine.events()
     assert ended["j"].tolist() == theirs.events()["j"].tolist()
-    if a.immersed is not None:
-        assert a.immersed.taken == pytest.approx(b.immersed.taken, rel=1e-9, abs=1e-20)
+    if a.fluid is not None:
+        assert a.fluid.impulse == pytest.approx(b.fluid.impulse, rel=1e-9, abs=1e-20)
 
 
 def test_two_grains_rebound_as_asked_and_as_on_the_cpu():
@@ -188,7 +188,7 @@ def test_run_again_split_or_resumed_it_gives_the_same_bits(kind):
                 kept, engine = engine.state(), CudaEngine(skin=0.03)
                 engine.load(made[0], kept)
                 assert bits(engine.state()) == bits(kept)
-        assert engine._relisted > (0 if resume else 1)
+        assert engine._n_list > (0 if resume else 1)
         early.append(engine.events())
         return bits(engine.state()), np.sort(np.concatenate(early)).tobytes(), engine.tally()
 
@@ -200,7 +200,7 @@ def test_run_again_split_or_resumed_it_gives_the_same_bits(kind):
 def test_both_sides_of_every_pair_hold_the_same_bits():
     engine = loaded(CudaEngine(), heap(**KINDS["flow, rolling spring, records"]))
     engine.advance(5).raise_if_any()
-    held = engine._store
+    held = engine._device
     start, partners, live, _, rows = (array.copy_to_host() for array in held.pairs)
     ids = held.bodies.ids.copy_to_host()
     found = {}
@@ -251,7 +251,7 @@ def test_the_list_finds_every_pair_that_a_search_of_all_pairs_finds(seed):
         assert set(zip(after.i, after.j, strict=True)) == expected
         assert len(expected) > 10
         engine.advance(4).raise_if_any()
-    assert engine._relisted > 0
+    assert engine._n_list > 0
 
 
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")  # inf - inf, which numpy's scalars tell of
@@ -304,7 +304,7 @@ def test_what_the_engine_cannot_carry_is_refused_with_its_reason():
     with pytest.raises(ValueError, match="shorter than 3 diameters"):
         CudaEngine().load(short, first)
     with pytest.raises(ValueError, match="no column of water"):
-        loaded(CudaEngine(), (fixed, first)).immerse(np.zeros((fixed.n_grain, N_SEEN)))
+        loaded(CudaEngine(), (fixed, first)).set_fluid(np.zeros((fixed.n_grain, N_SAMPLED)))
 
 
 def test_a_snapshot_goes_from_one_engine_to_the_other_with_its_account():

@@ -11,7 +11,7 @@ from types import SimpleNamespace
 import pytest
 from numba import types
 
-from ryusa.engine.shared.rows import Choice, Variant
+from ryusa.engine.shared.variant import KernelVariant, LawChoice
 from ryusa.errors import CaseError
 
 pytest.importorskip("numba_cuda", reason="CUDA's compiler is an extra")
@@ -19,23 +19,23 @@ cuda = pytest.importorskip("numba.cuda")
 
 HERE = Path(__file__).parent
 CC = (8, 0)  # compute capability compiled for
-DRY = Choice(*[0] * len(Choice._fields))
+DRY = LawChoice(*[0] * len(LawChoice._fields))
 # every branch that a kernel may take, at least once
 KINDS = {
-    "dry, 3D": (Variant(0, 1, 0, 0, 0, 0, 0), DRY),
+    "dry, 3D": (KernelVariant(0, 1, 0, 0, 0, 0, 0), DRY),
     "dry, plane, records of some, may pull": (
-        Variant(1, 1, 0, 1, 0, 0, 0), DRY._replace(events=1, tension=1, slip=1),
+        KernelVariant(1, 1, 0, 1, 0, 0, 0), DRY._replace(events=1, tension=1, slip=1),
     ),
-    "no rotation": (Variant(0, 0, 0, 0, 0, 0, 0), DRY._replace(slip=2, cap=1)),
+    "no rotation": (KernelVariant(0, 0, 0, 0, 0, 0, 0), DRY._replace(slip=2, cap=1)),
     "flow, rolling spring": (
-        Variant(0, 1, 1, 1, 0, 0, 1),
+        KernelVariant(0, 1, 1, 1, 0, 0, 1),
         DRY._replace(rolling=3, arm=1, events=2, profile=1, above=2, drag=2, torque=2),
     ),
     "rolling as printed, film": (
-        Variant(0, 1, 1, 0, 0, 1, 1), DRY._replace(rolling=1, profile=4, drag=4, torque=1, rebound=2),
+        KernelVariant(0, 1, 1, 0, 0, 1, 1), DRY._replace(rolling=1, profile=4, drag=4, torque=1, rebound=2),
     ),
     "column, rolling constant": (
-        Variant(0, 1, 1, 1, 1, 1, 1),
+        KernelVariant(0, 1, 1, 1, 1, 1, 1),
         DRY._replace(
             rolling=2, events=2, profile=5, drag=4, torque=2, buoyancy=1, hindrance=5, lift=2, magnus=2,
             rebound=1,
@@ -95,12 +95,12 @@ I1, I4, I42, U1 = COUNT[::1], types.int32[::1], types.int32[:, ::1], types.uint8
 
 
 def groups():
-    from ryusa.engine.cuda.arrays import Bodies, Pairs, Walls
+    from ryusa.engine.cuda.arrays import DeviceGrainArrays, DevicePairArrays, DeviceWallArrays
 
     return (
-        types.NamedTuple((F3, F3, F3, F1, F1, F1, F1, I4, I42, U1, I42, F2, F2), Bodies),
-        types.NamedTuple((F2, F2, U1), Walls),
-        types.NamedTuple((I1, I4, U1, F2, F2), Pairs),
+        types.NamedTuple((F3, F3, F3, F1, F1, F1, F1, I4, I42, U1, I42, F2, F2), DeviceGrainArrays),
+        types.NamedTuple((F2, F2, U1), DeviceWallArrays),
+        types.NamedTuple((I1, I4, U1, F2, F2), DevicePairArrays),
     )
 
 
@@ -125,35 +125,35 @@ def test_the_step_becomes_ptx_in_double_precision_without_racing_sums(kind: str)
 
 @pytest.mark.usefixtures("card")
 def test_every_other_kernel_becomes_ptx() -> None:
-    from ryusa.engine.cuda import verlet_list as listing
+    from ryusa.engine.cuda import verlet_list
     from ryusa.engine.cuda.arrays import ON_CARD
     from ryusa.engine.cuda.step import make_close
 
     bodies, walls, pairs = groups()
     entry(make_close(ON_CARD), COUNT, COUNT, COUNT, F1, F1, I1, F1, F2, F2, threads=ON_CARD.closers)
-    entry(listing.wipe, I1, COUNT)
-    entry(listing.bring_in, COUNT, F2, I42, I4, F1, F2, I1)
-    entry(listing.count_cells, I4, F2, F1, I1, I1, I1)
-    entry(listing.fill_cells, I4, I1, I1, I1, I4)
-    entry(listing.tidy_cells, COUNT, I1, I4, I4)
-    entry(listing.add_chunks, COUNT, I1, I1)
-    entry(listing.run_chunks, COUNT, I1, I1)
-    entry(listing.gather, COUNT, COUNT, I4, bodies, bodies, bodies)
-    entry(listing.spread, COUNT, COUNT, bodies)
-    entry(listing.find, COUNT, COUNT, COUNT, COUNT, F2, I4, walls, F1, I1, I1, I1, I4, I1, I4)
-    entry(listing.carry, COUNT, COUNT, COUNT, COUNT, F1, I4, bodies, I4, pairs, pairs, I1)
-    entry(listing.count_live, COUNT, I4, pairs, I1)
-    entry(listing.take_live, COUNT, I4, pairs, I1, I1, I1, F2, F2)
+    entry(verlet_list.fill, I1, COUNT)
+    entry(verlet_list.wrap_grains, COUNT, F2, I42, I4, F1, F2, I1)
+    entry(verlet_list.count_cells, I4, F2, F1, I1, I1, I1)
+    entry(verlet_list.fill_cells, I4, I1, I1, I1, I4)
+    entry(verlet_list.sort_cells, COUNT, I1, I4, I4)
+    entry(verlet_list.sum_chunks, COUNT, I1, I1)
+    entry(verlet_list.scan_chunks, COUNT, I1, I1)
+    entry(verlet_list.reorder, COUNT, COUNT, I4, bodies, bodies, bodies)
+    entry(verlet_list.copy_radii, COUNT, COUNT, bodies)
+    entry(verlet_list.find_neighbours, COUNT, COUNT, COUNT, COUNT, F2, I4, walls, F1, I1, I1, I1, I4, I1, I4)
+    entry(verlet_list.transfer_memory, COUNT, COUNT, COUNT, COUNT, F1, I4, bodies, I4, pairs, pairs, I1)
+    entry(verlet_list.count_touching, COUNT, I4, pairs, I1)
+    entry(verlet_list.collect_touching, COUNT, I4, pairs, I1, I1, I1, F2, F2)
 
 
 def test_without_a_card_one_line_says_what_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
-    from ryusa.engine.cuda import availability as presence
+    from ryusa.engine.cuda import availability
 
-    if presence.absent() == "":
+    if availability.unavailable() == "":
         pytest.skip("there is a card")
     from ryusa.engine.cuda.engine import CudaEngine
 
     with pytest.raises(CaseError, match="engine = 'cuda': no CUDA driver answers"):
         CudaEngine()
-    monkeypatch.setattr(presence, "find_spec", lambda name: None)
-    assert presence.absent() == "the package numba-cuda is not installed: pip install 'ryusa[cuda]'"
+    monkeypatch.setattr(availability, "find_spec", lambda name: None)
+    assert availability.unavailable() == "the package numba-cuda is not installed: pip install 'ryusa[cuda]'"

@@ -103,7 +103,7 @@ def test_drained_records_lose_nothing_however_small_the_buffer(monkeypatch):
     monkeypatch.setattr(cpu, "_RECORDS", -170)
     small, flags = advance(made, 6000)
     assert not flags
-    assert small._ledger.ended.shape[1] == 30
+    assert small._accounts.ended.shape[1] == 30
     assert len(whole) > 100
     assert small.events().tobytes() == whole.tobytes()
 

@@ -11,7 +11,7 @@ from tests.engine.conftest import D
 
 from ryusa.build import scene
 from ryusa.engine.cpu.engine import CpuEngine
-from ryusa.engine.shared.numbers import STEP_LIMIT
+from ryusa.engine.shared.parameters import LARGEST_DISPLACEMENT
 from ryusa.errors import GrainLost, ListUnsafe, OverlapTooLarge
 
 HIDDEN = 0.032  # of the smallest diameter: what two grains may overlap between two steps
@@ -22,7 +22,7 @@ BELOW, ABOVE = 0.9999, 1.0001  # times the limit
 def shot(x, v, d, share=BELOW, **more):
     """Grains that move by a share of the limit in each step, along v of length 1."""
     sizes = [np.min(d), np.min(more["d_fixed"])] if "d_fixed" in more else [np.min(d)]
-    speed = share * STEP_LIMIT * min(sizes) / DT
+    speed = share * LARGEST_DISPLACEMENT * min(sizes) / DT
     fixed, first = scene(
         x, d, v=speed * np.asarray(v, dtype=float), gravity=0.0, rotation=False, dt=DT,
         stiffness=1e4, friction=0.0, **more,
@@ -42,7 +42,7 @@ def first_touch(made, n_steps=60):
 
 
 @given(
-    ratio=st.floats(1.0, 20.0), way=st.floats(1e-3, 2 * STEP_LIMIT), depth=st.floats(0.0, 1.0),
+    ratio=st.floats(1.0, 20.0), way=st.floats(1e-3, 2 * LARGEST_DISPLACEMENT), depth=st.floats(0.0, 1.0),
     phase=st.floats(0.0, 1.0),
 )  # fmt: skip
 def test_what_two_steps_can_hide_is_a_thirtieth_of_the_smallest_grain(ratio, way, depth, phase):
@@ -61,8 +61,8 @@ def test_what_two_steps_can_hide_is_a_thirtieth_of_the_smallest_grain(ratio, way
 def test_two_grains_that_change_sides_within_a_step_overlap_by_more_than_the_limit(p, q, ratio, smaller):
     p, q, smaller = np.array(p), np.array(q), min(smaller, ratio)  # d_small <= R
     step = np.linalg.norm(q - p)
-    if step > 2 * STEP_LIMIT:
-        q = p + (q - p) * (2 * STEP_LIMIT / step)
+    if step > 2 * LARGEST_DISPLACEMENT:
+        q = p + (q - p) * (2 * LARGEST_DISPLACEMENT / step)
     if p @ q < 0.0:
         nearest = min(np.linalg.norm(p), np.linalg.norm(q))
         assert (ratio - nearest) / smaller > 0.64
@@ -73,7 +73,7 @@ PHASES = np.linspace(0.0, 1.0, 17)
 
 @pytest.mark.parametrize("phase", PHASES)
 def test_two_grains_that_meet_head_on_just_below_the_limit_are_seen_in_touch(phase):
-    gap = (2.0 + phase) * STEP_LIMIT * D
+    gap = (2.0 + phase) * LARGEST_DISPLACEMENT * D
     made = shot([[0, 0, 0], [D + gap, 0, 0]], [[1, 0, 0], [-1, 0, 0]], D)
     step, fault = first_touch(made)
     assert step == math.ceil((2.0 + phase) / (2 * BELOW))
@@ -99,14 +99,16 @@ def test_a_way_just_above_the_limit_stops_the_run_and_names_grain_and_remedy():
 @pytest.mark.parametrize("phase", PHASES)
 def test_a_grazing_pair_deeper_than_what_two_steps_can_hide_is_seen(phase):
     miss = D * (1.0 - 1.01 * HIDDEN)
-    ahead = (3.0 + phase) * STEP_LIMIT * D
+    ahead = (3.0 + phase) * LARGEST_DISPLACEMENT * D
     made = shot([[0, 0, 0], [2 * ahead, 0, miss]], [[1, 0, 0], [-1, 0, 0]], D)
     assert first_touch(made)[0] is not None
 
 
 def test_a_grazing_pair_shallower_than_that_can_be_hidden_which_is_why_it_has_a_number():
     miss = D * (1.0 - 0.95 * HIDDEN)
-    made = shot([[0, 0, 0], [2 * 3.5 * STEP_LIMIT * D * BELOW, 0, miss]], [[1, 0, 0], [-1, 0, 0]], D)
+    made = shot(
+        [[0, 0, 0], [2 * 3.5 * LARGEST_DISPLACEMENT * D * BELOW, 0, miss]], [[1, 0, 0], [-1, 0, 0]], D
+    )
     assert first_touch(made)[0] is None
 
 
@@ -114,7 +116,7 @@ def test_a_grazing_pair_shallower_than_that_can_be_hidden_which_is_why_it_has_a_
 @pytest.mark.parametrize(("free", "fixed"), [(1.0, 0.2), (0.2, 1.0), (1.0, 1.0)])
 def test_a_grain_shot_at_a_bed_grain_of_any_size_is_seen_in_touch(phase, free, fixed):
     smallest = min(free, fixed) * D
-    touch, ahead = (free + fixed) * D / 2, (1.0 + phase) * STEP_LIMIT * smallest
+    touch, ahead = (free + fixed) * D / 2, (1.0 + phase) * LARGEST_DISPLACEMENT * smallest
     bed = {"x_fixed": [[0, 0, 0], [3 * D, 0, 0]], "d_fixed": [fixed * D, D]}
     step, fault = first_touch(shot([[0, 0, touch + ahead]], [[0, 0, -1]], free * D, **bed))
     assert step == math.ceil((1.0 + phase) / BELOW)
@@ -125,7 +127,7 @@ def test_a_grain_shot_at_a_bed_grain_of_any_size_is_seen_in_touch(phase, free, f
 
 @pytest.mark.parametrize("phase", PHASES)
 def test_two_grains_that_meet_across_a_periodic_side_are_seen_in_touch(phase):
-    gap, length = (2.0 + phase) * STEP_LIMIT * D, 6 * D
+    gap, length = (2.0 + phase) * LARGEST_DISPLACEMENT * D, 6 * D
     x = [[0.5 * D, 0, 0], [length + 0.5 * D - D - gap, 0, 0]]  # they touch through x = 0
     step, fault = first_touch(shot(x, [[-1, 0, 0], [1, 0, 0]], D, period=(length, math.inf)))
     assert step == math.ceil((2.0 + phase) / (2 * BELOW))
@@ -135,7 +137,7 @@ def test_two_grains_that_meet_across_a_periodic_side_are_seen_in_touch(phase):
 @pytest.mark.parametrize("phase", PHASES)
 def test_a_grain_shot_at_a_wall_is_seen_in_touch_and_does_not_leave_it_behind(phase):
     wall = {"planes": [("floor", (0, 0, 0), (0, 0, 1))]}
-    z = 0.5 * D + (1.0 + phase) * STEP_LIMIT * D
+    z = 0.5 * D + (1.0 + phase) * LARGEST_DISPLACEMENT * D
     made = shot([[0, 0, z], [0, 0, 9 * D]], [[0, 0, -1], [0, 0, 0]], D, **wall)
     step, fault = first_touch(made)
     assert step == math.ceil((1.0 + phase) / BELOW)

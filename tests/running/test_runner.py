@@ -444,10 +444,10 @@ def test_slow_kernels_are_explained_once(
 
 
 def test_an_engine_is_chosen_by_name_or_refused_in_one_line(go: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    from ryusa.engine.cuda import availability as presence
+    from ryusa.engine.cuda import availability
 
     with pytest.raises(CaseError, match="engine = 'gpu': must be 'cpu' or 'cuda'"):
         go(engine="gpu")
-    monkeypatch.setattr(presence, "absent", lambda: "the CUDA driver finds no card")
+    monkeypatch.setattr(availability, "unavailable", lambda: "the CUDA driver finds no card")
     with pytest.raises(CaseError, match="engine = 'cuda': the CUDA driver finds no card"):
         go(engine="cuda")

@@ -18,4 +18,4 @@ def test_bed_and_fixed_grains_carry_the_weight_of_the_mixture(form):
     assert -contacts > 0.8 * weight
     assert weight + contacts + water == pytest.approx(gain, abs=1e-9 * weight)
     assert -(contacts + water) == pytest.approx(weight, rel=0.01)
-    assert np.mean(flow.engine.drift()[1][:, 0]) > 0.02  # [m/s]; it is bed load that the contacts carry
+    assert np.mean(flow.engine.kinematics()[1][:, 0]) > 0.02  # [m/s]; it is bed load that the contacts carry

@@ -25,13 +25,13 @@ def advance_together(made, column, intervals, longest=20, water_state=None):
     engine = CpuEngine()
     engine.load(fixed, first)
     coupling = Coupling.begin(fixed, column, longest, first.x, water_state)
-    engine.immerse(coupling.seen)
+    engine.set_fluid(coupling.sampled)
     for _ in range(intervals):
-        steps, before = coupling.steps, coupling.seen
-        x, v, _ = engine.drift()
+        steps, before = coupling.steps, coupling.sampled
+        x, v, _ = engine.kinematics()
         engine.advance(steps).raise_if_any()
-        x_now, v_now, taken = engine.drift()
-        engine.immerse(coupling.exchange(x_now, v_now, taken))
+        x_now, v_now, taken = engine.kinematics()
+        engine.set_fluid(coupling.exchange(x_now, v_now, taken))
         yield coupling, engine, steps, (x, v, before, x_now, v_now, taken)
 
 
@@ -98,7 +98,7 @@ def test_a_suspension_settles_as_its_hindrance_implies(form, law, exponent):
     )
     speeds = []
     for _, engine, *_ in advance_together(made, column, 40, longest=10):
-        speeds.append(-float(engine.drift()[1][np.flatnonzero(b == layers // 2), 2].mean()))
+        speeds.append(-float(engine.kinematics()[1][np.flatnonzero(b == layers // 2), 2].mean()))
     found = math.log(speeds[-1] / w_0) / math.log(1.0 - phi)
     if law is Hindrance.RICHARDSON_ZAKI:
         n = exponent
@@ -130,7 +130,7 @@ def test_a_neutral_grain_at_the_speed_of_the_water_stays_with_it(form, stays):
     v = np.column_stack([u, 0.0 * u, 0.0 * u])
     made = (made[0], replace(made[1], v=v))
     slips = [
-        np.abs(engine.drift()[1][:, 0] - u).max()
+        np.abs(engine.kinematics()[1][:, 0] - u).max()
         for _, engine, *_ in advance_together(made, column, 40, 20, water_state)
     ]
     free = G * math.sin(0.05) * 40 * 20 * made[0].dt
@@ -157,7 +157,7 @@ def test_every_slice_of_a_grain_drags_the_water_by_its_own_slip():
     coupling = Coupling.begin(fixed, column, 20, first.x, sheared)
     k_d, dt = 2.0e-5, 1e-3
     taken = np.zeros((6, 4))
-    taken[:, 0], taken[:, 3] = k_d * coupling.seen[:, 0] * dt, k_d  # drag on grains at rest
+    taken[:, 0], taken[:, 3] = k_d * coupling.sampled[:, 0] * dt, k_d  # drag on grains at rest
     force = coupling.force(taken, dt)
     volume = column.dz * area
     assert (force * volume).sum() == pytest.approx(taken[:, 0].sum() / dt, rel=1e-12)

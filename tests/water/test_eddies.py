@@ -136,7 +136,7 @@ def test_grains_feel_the_turbulence_at_their_position():
     water, _ = steady(column, np.zeros(column.n), None)
     (coupling, *_rest), *_ = advance_together(made, column, 1, water_state=water)
     plain, *_ = advance_together(made, replace(column, fluctuations=Fluctuations.NONE), 1, water_state=water)
-    fluctuation = coupling.seen[:, [0, 2]] - plain[0].seen[:, [0, 2]]
+    fluctuation = coupling.sampled[:, [0, 2]] - plain[0].sampled[:, [0, 2]]
     z, surface = made[1].x[:, 2], 25.0 * D
     u_star = math.sqrt(9.80665 * math.sin(0.05) * surface)
     share = 1.0 - z / surface  # of u_star**2, linear over the depth

@@ -96,7 +96,7 @@ def test_water_begins_as_it_flows_over_the_bed(form):
     assert over == pytest.approx(1000.0 * column.g_x * 9.0 * D, rel=0.01)
     engine = CpuEngine()
     engine.load(*made)
-    engine.immerse(coupling.seen)
+    engine.set_fluid(coupling.sampled)
     engine.advance(1).raise_if_any()
     assert engine.state().v[0, 0] > 0.0
 

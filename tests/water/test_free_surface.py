@@ -42,12 +42,12 @@ def stepped(made, column, intervals, longest=20):
     engine = CpuEngine()
     engine.load(*made)
     coupling = Coupling.begin(made[0], column, longest, made[1].x)
-    engine.immerse(coupling.seen)
+    engine.set_fluid(coupling.sampled)
     for _ in range(intervals):
-        steps, before = coupling.steps, engine.drift()[1]
+        steps, before = coupling.steps, engine.kinematics()[1]
         engine.advance(steps).raise_if_any()
-        x, v, taken = engine.drift()
-        engine.immerse(coupling.exchange(x, v, taken))
+        x, v, taken = engine.kinematics()
+        engine.set_fluid(coupling.exchange(x, v, taken))
         yield coupling, engine, steps, before, v
 
 
@@ -70,7 +70,7 @@ def test_a_grain_above_the_surface_falls_freely(form):
     made, area = made_of([SURFACE + 4.0 * D], form, slope=0.1, **laws)
     every = [*stepped(made, column_of(area, g_x=G * math.sin(0.1)), 3)]
     engine, count = every[-1][1], sum(steps for _, _, steps, *_ in every)
-    v = engine.drift()[1][0] / (count * made[0].dt)
+    v = engine.kinematics()[1][0] / (count * made[0].dt)
     assert v[2] == pytest.approx(-G * math.cos(0.1), rel=1e-9)
     assert v[0] == pytest.approx(G * math.sin(0.1), rel=1e-9)
 
@@ -81,9 +81,9 @@ def test_a_grain_half_in_the_water_has_half_its_buoyancy_and_added_mass(form):
     engine = CpuEngine()
     engine.load(fixed, first)
     coupling = Coupling.begin(fixed, column_of(area), 20, first.x)
-    engine.immerse(coupling.seen)
+    engine.set_fluid(coupling.sampled)
     engine.advance(1).raise_if_any()
-    rho_s, v_z = 2650.0, engine.drift()[1][0, 2]
+    rho_s, v_z = 2650.0, engine.kinematics()[1][0, 2]
     pull = (rho_s - 0.5 * 1000.0) * G / (rho_s + 0.5 * 0.5 * 1000.0)
     assert v_z == pytest.approx(-pull * fixed.dt, rel=1e-6)
 
@@ -113,5 +113,5 @@ def test_the_energy_of_water_that_a_grain_takes_along_is_booked():
     made, area = made_of([SURFACE + 1.0 * D, SURFACE + 0.3 * D])
     begin = replace(made[1], v=np.tile([0.0, 0.0, -0.5], (2, 1)))
     *_, (_, engine, *_) = stepped((made[0], begin), column_of(area), 200, 5)
-    assert float(engine.drift()[0][:, 2].max()) < SURFACE - 0.5 * D
+    assert float(engine.kinematics()[0][:, 2].max()) < SURFACE - 0.5 * D
     assert engine.tally().residual < 1e-3

@@ -36,14 +36,14 @@ class Engine(Protocol):
         """Take a scene and a fresh state or a snapshot; also when the timeline changes the scene mid-run."""
         ...
 
-    def immerse(self, seen: Floats) -> None:
+    def set_fluid(self, sampled: Floats) -> None:
         """Tell every grain its water, columns of model.fluid, held until told again.
 
         A snapshot carries it, and the impulse that each grain took since.
         """
         ...
 
-    def drift(self) -> tuple[Floats, Floats, Floats]:
+    def kinematics(self) -> tuple[Floats, Floats, Floats]:
         """Centres [m], velocities [m/s] and what was taken from the water (model.fluid), by id; cheap."""
         ...
 

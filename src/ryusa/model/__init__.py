@@ -2,7 +2,7 @@
 
 from ryusa.model.column import Budget, Column, WaterState
 from ryusa.model.contacts import EVENT, Contacts
-from ryusa.model.fluid import Coupled, Immersed
+from ryusa.model.fluid import CouplingState, FluidAtGrains
 from ryusa.model.scene import ContactLaw, RollingLaw, Scene, Water
 from ryusa.model.state import State
 from ryusa.model.tally import Book, Tally
@@ -14,8 +14,8 @@ __all__ = [
     "Column",
     "ContactLaw",
     "Contacts",
-    "Coupled",
-    "Immersed",
+    "CouplingState",
+    "FluidAtGrains",
     "RollingLaw",
     "Scene",
     "State",

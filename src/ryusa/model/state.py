@@ -6,7 +6,7 @@ import numpy as np
 
 from ryusa.model.arrays import Floats
 from ryusa.model.contacts import Contacts
-from ryusa.model.fluid import Coupled, Immersed
+from ryusa.model.fluid import CouplingState, FluidAtGrains
 from ryusa.model.tally import N_BOOK
 
 
@@ -30,8 +30,8 @@ class State:
         default_factory=lambda: np.zeros((1, N_BOOK))
     )  # energy account so far [J], a row per block
     x_listed: Floats | None = None  # where the grains were when the neighbour list was built [m]
-    immersed: Immersed | None = None  # water at every grain, where a column of water is solved
-    water: Coupled | None = None  # the column itself, which no engine knows
+    fluid: FluidAtGrains | None = None  # water at every grain, where a column of water is solved
+    coupling: CouplingState | None = None  # the column itself, which no engine knows
     engine: dict[str, float] = field(
         default_factory=lambda: {}
     )  # an engine's own numbers (skin, travel, extremes)

@@ -19,7 +19,7 @@ from ryusa.results import schema
 from ryusa.results.hdf5 import DAMAGE, read_dataset
 from ryusa.running.disk import image, sync, write_beside
 
-_MAGIC = b"ryusa checkpoint 1\n"
+_MAGIC = b"ryusa checkpoint 2\n"
 _HEAD = 512  # bytes before the HDF5 file
 _ABOUT = "about"
 _ABOUT_LIMIT = 16 << 20  # bytes of JSON

@@ -48,9 +48,9 @@ def _vectors() -> str:
 
 def _cache() -> str:
     """Where numba keeps compiled code, and whether it can."""
-    from ryusa.engine.shared import pair
+    from ryusa.engine.shared import dashpots
 
-    kept: Any = pair.dashpots
+    kept: Any = dashpots.dashpots
     place = getattr(getattr(kept, "_cache", None), "cache_path", None)
     if place is None:
         return "no folder found: every process compiles anew. Set NUMBA_CACHE_DIR to a folder of yours"
@@ -66,7 +66,7 @@ def _cache() -> str:
 
 
 def _cuda() -> str:
-    from ryusa.engine.cuda.availability import absent, card
+    from ryusa.engine.cuda.availability import device_name, unavailable
 
-    reason = absent()
-    return f"no: {reason}" if reason else f"available: {card()}"
+    reason = unavailable()
+    return f"no: {reason}" if reason else f"available: {device_name()}"

@@ -149,7 +149,7 @@ class Loop:
         with self.progress.patience(_COMPILING):
             self.engine.load(self.scene, state)
         self._stands = True
-        self._immerse(state)
+        self._begin_water(state)
         self._record()
         self._change_if_due()
         self.recorder.reached(self._step)
@@ -170,7 +170,7 @@ class Loop:
         try:
             with self.progress.patience(_COMPILING):
                 self.engine.load(self.scene, state)
-            self._immerse(state)
+            self._begin_water(state)
             self._stands = True
             self.progress.starts_at(self._moment().share)
         except (ValueError, ArithmeticError, AssertionError) as error:
@@ -291,26 +291,26 @@ class Loop:
                 return flags
             self._step += k
             if self._water is not None and self._step == due:
-                self.engine.immerse(self._water.exchange(*self.engine.drift()))
+                self.engine.set_fluid(self._water.exchange(*self.engine.kinematics()))
         return Flags()
 
-    def _immerse(self, state: State) -> None:
+    def _begin_water(self, state: State) -> None:
         """Fill the column of water, where the scene has one, and tell the grains; or go on as it stood."""
         column = self.scene.column
         if column is None:
             return
-        if state.water is not None and state.immersed is not None:
-            seen = state.immersed.seen
-            self._water = Coupling.resume(self.scene, column, column.interval, state.water, seen)
+        if state.coupling is not None and state.fluid is not None:
+            sampled = state.fluid.sampled
+            self._water = Coupling.resume(self.scene, column, column.interval, state.coupling, sampled)
             return
-        x, _, _ = self.engine.drift()
+        x, _, _ = self.engine.kinematics()
         self._water = Coupling.begin(self.scene, column, column.interval, x, step=self._step)
-        self.engine.immerse(self._water.seen)
+        self.engine.set_fluid(self._water.sampled)
 
     def state(self) -> State:
         """Snapshot of grains and water: all that an exact resume needs."""
         state = self.engine.state()
-        return state if self._water is None else replace(state, water=self._water.snapshot())
+        return state if self._water is None else replace(state, coupling=self._water.snapshot())
 
     def _chunk(self) -> int:
         if self._calls < len(_CHUNK_FIRST):

@@ -398,9 +398,9 @@ def _engine(named: Engine | str | None, threads: int) -> Engine:
     if threads < 1:
         raise CaseError("threads", threads, "must be at least 1")
     if named == "cuda":
-        from ryusa.engine.cuda.availability import absent
+        from ryusa.engine.cuda.availability import unavailable
 
-        reason = absent()
+        reason = unavailable()
         if reason:
             raise CaseError("engine", named, reason)
         from ryusa.engine.cuda.engine import CudaEngine

@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.errors import CheckpointError
-from ryusa.model import Contacts, Coupled, Immersed, Scene, State
+from ryusa.model import Contacts, CouplingState, FluidAtGrains, Scene, State
 from ryusa.model.column import WaterState
 from ryusa.model.contacts import N_EVENT
 from ryusa.model.eddies import Eddies
-from ryusa.model.fluid import N_SEEN, N_TAKEN
+from ryusa.model.fluid import N_IMPULSE, N_SAMPLED
 from ryusa.model.tally import N_BOOK
 from ryusa.running.checkpoint import Kept
 
@@ -81,14 +81,14 @@ class _Reader:
             contacts=self._contacts(),
             books=self._books(),
             x_listed=self._place("x_listed", n) if "x_listed" in self._arrays else None,
-            immersed=self._immersed(n) if about.get("immersed") else None,
-            water=self._water(n) if about.get("water") else None,
+            fluid=self._fluid(n) if about.get("fluid") else None,
+            coupling=self._coupling(n) if about.get("coupling") else None,
             engine=self._numbers(),
         )
         if unknown := sorted(set(self._arrays) - self._read):
             raise ValueError(f"'{unknown[0]}' belongs to no state that this version knows")
-        if self._scene.column is not None and (state.water is None) != (state.immersed is None):
-            raise ValueError("water without what its grains were told, or the other way round")
+        if self._scene.column is not None and (state.coupling is None) != (state.fluid is None):
+            raise ValueError("a column of water without the water at its grains, or the reverse")
         return state
 
     def _contacts(self) -> Contacts:
@@ -112,48 +112,48 @@ class _Reader:
             raise ValueError(f"books of shape {books.shape}")
         return books
 
-    def _immersed(self, n: int) -> Immersed:
-        return Immersed(
-            self._floats("immersed/seen", (n, N_SEEN)), self._floats("immersed/taken", (n, N_TAKEN))
+    def _fluid(self, n: int) -> FluidAtGrains:
+        return FluidAtGrains(
+            self._floats("fluid/sampled", (n, N_SAMPLED)), self._floats("fluid/impulse", (n, N_IMPULSE))
         )
 
-    def _water(self, n: int) -> Coupled:
+    def _coupling(self, n: int) -> CouplingState:
         column, about = self._scene.column, self._about
         if column is None:
             raise ValueError("water, but the scene has no column of it")
         cells = {name: (column.n,) for name in ("u", "w", "content", "shear", "du_dt", "dtau_dz")}
         cells |= {name: (column.n + 1,) for name in ("tau", "nu_t")}
         profiles: dict[str, Any] = {
-            name: self._floats(f"water/water/{name}", shape) for name, shape in cells.items()
+            name: self._floats(f"coupling/water/{name}", shape) for name, shape in cells.items()
         }
         if (profiles["nu_t"] < 0.0).any():
             raise ValueError("an eddy viscosity of less than nothing")
         eddies = None
-        if about.get("water/eddies"):
+        if about.get("coupling/eddies"):
             eddies = Eddies(
-                self._floats("water/eddies/r", (n, 3)),
-                self._floats("water/eddies/spent", (n,)),
-                self._array("water/eddies/count", (n,), _INT).copy(),
+                self._floats("coupling/eddies/r", (n, 3)),
+                self._floats("coupling/eddies/spent", (n,)),
+                self._array("coupling/eddies/count", (n,), _INT).copy(),
             )
             eddies = Eddies(eddies.r.copy(), eddies.spent.copy(), eddies.count)
-        steps, due, exchanges = (int(about[f"water/{name}"]) for name in ("steps", "due", "exchanges"))
+        steps, due, exchanges = (int(about[f"coupling/{name}"]) for name in ("steps", "due", "exchanges"))
         if not 1 <= steps < _LATEST or not int(about["step"]) < due < _LATEST:
             raise ValueError(f"{steps} steps between exchanges, the next at step {due}")
-        return Coupled(
+        return CouplingState(
             water=WaterState(
                 **profiles,
-                z_surface=float(about["water/water/z_surface"]),
-                volume=float(about["water/water/volume"]),
-                gradient=float(about["water/water/gradient"]),
-                t=float(about["water/water/t"]),
-                step=int(about["water/water/step"]),
+                z_surface=float(about["coupling/water/z_surface"]),
+                volume=float(about["coupling/water/volume"]),
+                gradient=float(about["coupling/water/gradient"]),
+                t=float(about["coupling/water/t"]),
+                step=int(about["coupling/water/step"]),
             ),
-            z=self._floats("water/z", (n,)),
-            force_z=self._floats("water/force_z", (column.n,)),
+            z=self._floats("coupling/z", (n,)),
+            force_z=self._floats("coupling/force_z", (column.n,)),
             steps=steps,
             due=due,
             exchanges=exchanges,
-            worst=float(about["water/worst"]),
+            worst=float(about["coupling/worst"]),
             eddies=eddies,
         )
 

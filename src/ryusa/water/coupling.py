@@ -10,11 +10,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ryusa.errors import WaterError
-from ryusa.model import Coupled, Scene
+from ryusa.model import CouplingState, Scene
 from ryusa.model.column import STIFF, Bed, Budget, Column, Mixing, Start, WaterState
 from ryusa.model.eddies import Eddies
 from ryusa.model.enums import Buoyancy
-from ryusa.model.fluid import A_X, DRAG, EXTRA_X, EXTRA_Z, N_SEEN, PHI, SHARE, SHEAR, U, V, W
+from ryusa.model.fluid import A_X, DRAG, EXTRA_X, EXTRA_Z, N_SAMPLED, PHI, SHEAR, SUBMERGED, U, V, W
 from ryusa.model.scene import Floats
 from ryusa.water import eddies
 from ryusa.water.closures import averaged
@@ -38,7 +38,7 @@ class Coupling:
     state : present state of the water.
     phi : present concentration of grains in the cells, fixed ones included [-], shape (n,).
     budget : momentum budget of the water over the last interval; None before the first.
-    seen : what the grains were told last, columns of `model.fluid`.
+    sampled : water at the grains as given last, columns of `model.fluid`.
     due : step of the engine at which the next exchange is due.
     exchanges : number of exchanges so far.
     worst : largest residual of the momentum budget so far, over its largest term [-].
@@ -52,7 +52,7 @@ class Coupling:
     state: WaterState
     phi: Floats
     budget: Budget | None
-    seen: Floats
+    sampled: Floats
     due: int
     exchanges: int
     worst: float
@@ -91,17 +91,19 @@ class Coupling:
             )
         now = WaterState.at_rest(column, phi) if state is None else state
         coupling = Coupling(
-            scene, column, longest, 1, now, phi, None, np.zeros((scene.n_grain, N_SEEN)), step + 1, 0, 0.0,
+            scene, column, longest, 1, now, phi, None, np.zeros((scene.n_grain, N_SAMPLED)), step + 1, 0, 0.0,
             cut, submerged_part(cut, x[:, 2], scene.d, now.z_surface), bed, solid, np.zeros(column.n),
             np.array(x[:, 2]),
         )  # fmt: skip
         coupling.eddies = eddies.begin(column.seed, scene.n_grain) if column.fluctuations else None
-        coupling.seen = coupling._fluid_at_grains()
+        coupling.sampled = coupling._fluid_at_grains()
         return coupling
 
     @staticmethod
-    def resume(scene: Scene, column: Column, longest: int, found: Coupled, seen: Floats) -> "Coupling":
-        """Go on from a snapshot; `seen` is what its grains were told, columns of `model.fluid`.
+    def resume(
+        scene: Scene, column: Column, longest: int, found: CouplingState, sampled: Floats
+    ) -> "Coupling":
+        """Go on from a snapshot; `sampled` is the water at its grains, columns of `model.fluid`.
 
         Raises
         ------
@@ -117,15 +119,17 @@ class Coupling:
         coupling = Coupling.begin(scene, column, longest, x, found.water)
         coupling.steps, coupling.due = found.steps, found.due
         coupling.exchanges, coupling.worst = found.exchanges, found.worst
-        coupling.seen, coupling._force_z = seen, found.force_z
+        coupling.sampled, coupling._force_z = sampled, found.force_z
         coupling.eddies = found.eddies
         return coupling
 
-    def snapshot(self) -> Coupled:
-        """All that `resume` needs, beside what the grains were told."""
+    def snapshot(self) -> CouplingState:
+        """All that `resume` needs, beside the water at the grains."""
         z, force_z = self._z.copy(), self._force_z.copy()
         z.flags.writeable = force_z.flags.writeable = False
-        return Coupled(self.state, z, force_z, self.steps, self.due, self.exchanges, self.worst, self.eddies)
+        return CouplingState(
+            self.state, z, force_z, self.steps, self.due, self.exchanges, self.worst, self.eddies
+        )
 
     def change(self, scene: Scene, column: Column) -> None:
         """Take over a scene that the timeline changed: its slope, or removed fixed grains."""
@@ -134,20 +138,20 @@ class Coupling:
             self.phi = _phi(self._slices, self._volume) + self._bed.phi  # the same bits as after a resume
         self.scene, self.column = scene, column
 
-    def exchange(self, x: Floats, v: Floats, taken: Floats) -> Floats:
+    def exchange(self, x: Floats, v: Floats, impulse: Floats) -> Floats:
         """Give the water what the grains took in the interval, move it on, and tell the grains anew.
 
         Parameters
         ----------
         x, v : centres and velocities of the grains now [m], [m/s], shape (n_grain, 3).
-        taken : what each took from the water in the interval, columns of `model.fluid`.
+        impulse : what each took from the water in the interval, columns of `model.fluid`.
 
         Returns
         -------
-        seen : columns of `model.fluid`, shape (n_grain, N_SEEN); for the engine.
+        sampled : columns of `model.fluid`, shape (n_grain, N_SAMPLED); for the engine.
         """
         dt, before = self.steps * self.scene.dt, self.state
-        force = self.force(taken, dt)
+        force = self.force(impulse, dt)
         self._z = np.ascontiguousarray(x[:, 2])
         self._slices = slices(self._z, self.scene.d, self._slices.cells, reuse=self._slices)
         self.phi = _phi(self._slices, self._volume) + self._bed.phi
@@ -161,23 +165,25 @@ class Coupling:
         self._submerged = submerged_part(self._slices, self._z, self.scene.d, self.state.z_surface)
         self.budget = _with_fixed(budget, fixed, self.state, before, self.column.dz)
         self.exchanges, self.worst = self.exchanges + 1, max(self.worst, self.budget.relative)
-        self.steps = min(self.longest, self._resolved(taken[:, DRAG]))
+        self.steps = min(self.longest, self._resolved(impulse[:, DRAG]))
         self.due += self.steps
         if self.eddies is not None:
-            self.eddies = eddies.renew(self.eddies, self.column.seed, dt, self.seen[:, SHEAR])
-        self.seen = self._fluid_at_grains()
-        return self.seen
+            self.eddies = eddies.renew(self.eddies, self.column.seed, dt, self.sampled[:, SHEAR])
+        self.sampled = self._fluid_at_grains()
+        return self.sampled
 
-    def force(self, taken: Floats, dt: float) -> Floats:
+    def force(self, impulse: Floats, dt: float) -> Floats:
         """Force of the water on grains along the bed, averaged over an interval, per volume of cells [N/m3].
 
         Each slice acts on the water with the slip in its cell; the sum over slices is the force on the grain.
         """
-        scene, cut, u, k_d = self.scene, self._submerged, self.state.u, taken[:, DRAG]
+        scene, cut, u, k_d = self.scene, self._submerged, self.state.u, impulse[:, DRAG]
         archimedes = (scene.m_weight - scene.m) * scene.gravity[0]
-        mean = taken[:, 0] / dt
-        both = to_cells(cut, np.column_stack([mean, taken[:, 2] / dt]), "submerged").cells / cut.cells.volume
-        rest = to_cells(cut, archimedes + self.seen[:, EXTRA_X], "submerged").cells / cut.cells.volume
+        mean = impulse[:, 0] / dt
+        both = (
+            to_cells(cut, np.column_stack([mean, impulse[:, 2] / dt]), "submerged").cells / cut.cells.volume
+        )
+        rest = to_cells(cut, archimedes + self.sampled[:, EXTRA_X], "submerged").cells / cut.cells.volume
         slip = to_cells(cut, np.column_stack([k_d, k_d * to_grains(cut, u, "submerged")]), "submerged").cells
         self._force_z = both[:, 1]
         return both[:, 0] + rest + (slip[:, 0] * u - slip[:, 1]) / cut.cells.volume
@@ -247,27 +253,31 @@ class Coupling:
         along = np.column_stack([state.u, state.w, state.shear, self.phi, state.du_dt, state.dtau_dz])
         at = to_grains(cut, along, "submerged")
         share = cut.share
-        seen = np.zeros((scene.n_grain, N_SEEN))
-        seen[:, U], seen[:, W], seen[:, SHEAR] = at[:, 0], at[:, 1], at[:, 2]
-        seen[:, PHI], seen[:, A_X], seen[:, SHARE] = np.minimum(at[:, 3], DENSEST), at[:, 4], share
+        sampled = np.zeros((scene.n_grain, N_SAMPLED))
+        sampled[:, U], sampled[:, W], sampled[:, SHEAR] = at[:, 0], at[:, 1], at[:, 2]
+        sampled[:, PHI], sampled[:, A_X], sampled[:, SUBMERGED] = (
+            np.minimum(at[:, 3], DENSEST),
+            at[:, 4],
+            share,
+        )
         if self.eddies is not None:
             u_tau, drift = eddies.turbulence(self.column, state, self.phi, cut)
-            seen[:, [U, V, W]] += eddies.speeds(self.eddies, scene.plane_case, u_tau, drift, at[:, 2])
+            sampled[:, [U, V, W]] += eddies.speeds(self.eddies, scene.plane_case, u_tau, drift, at[:, 2])
         solid = self._volume * share
         g_x, g_z = scene.gravity[0], scene.gravity[2]
         # no buoyancy on the part above the water
         out = (1.0 - share) * self._volume * water.rho_w
-        seen[:, EXTRA_X], seen[:, EXTRA_Z] = out * g_x, out * g_z
+        sampled[:, EXTRA_X], sampled[:, EXTRA_Z] = out * g_x, out * g_z
         if water.buoyancy == Buoyancy.STRESS:
-            seen[:, EXTRA_X] += solid * (at[:, 5] + state.gradient + water.rho_w * g_x)
-            seen[:, EXTRA_Z] += solid * to_grains(
+            sampled[:, EXTRA_X] += solid * (at[:, 5] + state.gradient + water.rho_w * g_x)
+            sampled[:, EXTRA_Z] += solid * to_grains(
                 cut, self._force_z / np.maximum(eps, 1.0 - DENSEST), "submerged"
             )
         elif water.buoyancy == Buoyancy.WEIGHT:
-            seen[:, EXTRA_X] += solid * state.gradient
+            sampled[:, EXTRA_X] += solid * state.gradient
         else:
-            seen[:, EXTRA_X] += solid * water.rho_w * g_x
-        return seen
+            sampled[:, EXTRA_X] += solid * water.rho_w * g_x
+        return sampled
 
 
 def _phi(cut: Slices, solid: Floats) -> Floats:

@@ -4,21 +4,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ryusa.engine.cpu.batch_layout import DESK, LANES, TABLE
-from ryusa.engine.shared.rows import N_CLOCK
-
-_LINE = 64  # bytes of a cache line
-
-
-def aligned(*shape: int) -> np.ndarray:
-    """Zeros that begin at a cache line: rows of eight doubles then take one line each, not two."""
-    size = 8 * int(np.prod(shape))
-    raw = np.zeros(size + _LINE, np.uint8)
-    first = -raw.ctypes.data % _LINE
-    return raw[first : first + size].view(np.float64).reshape(shape)
+from ryusa.engine.cpu import batch_layout as B
+from ryusa.engine.cpu import grain_layout as G
+from ryusa.engine.cpu import prune_schedule as K
+from ryusa.engine.shared.layout import aligned
 
 
-class Grains(NamedTuple):
+class GrainArrays(NamedTuple):
     """Grains by place. n free grains, n_solid with the fixed ones, n_total with the planes.
 
     Vectors lie in rows of four doubles, a whole vector register; what the fourth is, is said.
@@ -26,7 +18,7 @@ class Grains(NamedTuple):
 
     x: Any  # centres and radius [m], (n_total, 4); inf the radius of planes
     v: Any  # velocities [m/s], and 0, (n_total, 4); zero beyond n
-    then: Any  # velocities when the near list was cut [m/s], and 0, (n, 4)
+    v_pruned: Any  # velocities when the near list was cut [m/s], and 0, (n, 4)
     w: Any  # spins [rad/s], and the radius [m], (n_total, 4); zero beyond n; beside v in one cache line
     m: Any  # mass with added mass [kg], (n_total,); inf beyond n
     m_bare: Any  # mass without added mass [kg], (n,)
@@ -37,13 +29,13 @@ class Grains(NamedTuple):
     ids: Any  # id of each place, (n_solid,)
     image: Any  # periods crossed, (n, 2)
     tracked: Any  # whether its contacts are recorded, by id, (n,)
-    touched: Any  # contacts in the last step, (n,)
+    n_touching: Any  # contacts in the last step, (n,)
     film: Any  # force of films so far in this step [N], rows as those of `Pairs.f`, 4 wide; (0, 0) without
-    seen: Any  # water at each grain, columns of model.fluid, (n, N_SEEN); (0, 0) without a column
-    taken: Any  # impulse it took from the water [N s], and drag over slip, (n, N_TAKEN); (0, 0) without
+    fluid: Any  # water at each grain, columns of model.fluid, (n, N_SEEN); (0, 0) without a column
+    impulse: Any  # impulse it took from the water [N s], and drag over slip, (n, N_TAKEN); (0, 0) without
 
 
-class Pairs(NamedTuple):
+class PairArrays(NamedTuple):
     """The wide list: every pair that may touch before the list is made anew, and where forces go.
 
     Partners of grain i are partners[start[i]:start[i + 1]]. `f` has a row for each free grain, then one for
@@ -56,13 +48,13 @@ class Pairs(NamedTuple):
     partners: Any  # places, (n_pair,)
     cross_start: Any  # first crossing pair of each block, (n_block + 1,)
     crossing: Any  # numbers of the pairs that cross, (n_cross,)
-    near: Any  # 1 where the crossing pair of a row of `f` is in the near list, (n + n_block + n_cross,)
+    active: Any  # 1 where the crossing pair of a row of `f` is in the near list, (n + n_block + n_cross,)
     incoming_start: Any  # rows for grain j: incoming[incoming_start[j]:incoming_start[j + 1]]
     incoming: Any  # (n_cross,)
     f: Any  # force [N], nothing, torque [N m] and contacts so far in this step, (n + n_block + n_cross, 8)
 
 
-class Near(NamedTuple):
+class CandidateArrays(NamedTuple):
     """The near list: pairs that may touch within the next few steps, with the memory of those that do.
 
     Each block has room for pairs first[b] to first[b + 1], of which count[b] are taken, in the order of the
@@ -73,43 +65,43 @@ class Near(NamedTuple):
     count: Any  # (n_block,)
     i: Any  # place of the grain that owns the pair, (n_near,)
     j: Any  # place of its partner
-    to: Any  # row of `Pairs.f` for the partner
-    pair: Any  # number in the wide list
-    live: Any  # 1 where they touch and the row holds
+    target: Any  # row of `Pairs.f` for the partner
+    index: Any  # number in the wide list
+    touching: Any  # 1 where they touch and the row holds
     eta: Any  # normal and tangential dashpot [N s/m], (n_near, 2); (1, 2) where all are alike
     rows: Any  # memory (rows.py), (n_near, width); it and `eta` hold where they touch
 
 
-class Walls(NamedTuple):
+class WallArrays(NamedTuple):
     """Planes."""
 
     normals: Any  # (n_plane, 3)
     points: Any  # [m], (n_plane, 3)
 
 
-class Ledger(NamedTuple):
+class AccountArrays(NamedTuple):
     """What each block writes down."""
 
     ended: Any  # records of contacts that parted, (n_block, slots, N_EVENT)
     books: Any  # energy account [J], (n_block, N_BOOKS), columns of model.tally.Book
-    now: Any  # what holds now, (n_block, N_NOW), columns N_ of rows.py
+    stats: Any  # what holds now, (n_block, N_NOW), columns N_ of rows.py
 
 
-class Work(NamedTuple):
+class Workspace(NamedTuple):
     """What one thread reckons on (`workplace`)."""
 
-    desk: Any  # a batch of touching pairs (lanes.py), (DESK,)
+    batch: Any  # a batch of touching pairs (lanes.py), (DESK,)
     table: Any  # a grain in the water (lanes.py), (TABLE,)
-    glance: Any  # way from i to j and both radii [m] of pairs that are looked at, four each, (4 * LANES,)
-    drift: Any  # velocity of j against i [m/s], and 0, of pairs that are looked at, (4 * LANES,)
-    hit: Any  # 1 where a pair that is looked at touches, (LANES,)
-    which: Any  # near pairs that wait, then those on the desk, (2 * LANES,), uint32
-    clock: Any  # this thread's copy of the near list's clock, (N_CLOCK,)
+    separation: Any  # way from i to j and both radii [m] of pairs that are looked at, four each, (4 * LANES,)
+    velocity: Any  # velocity of j against i [m/s], and 0, of pairs that are looked at, (4 * LANES,)
+    inside: Any  # 1 where a pair that is looked at touches, (LANES,)
+    selected: Any  # near pairs that wait, then those on the desk, (2 * LANES,), uint32
+    schedule: Any  # this thread's copy of the near list's clock, (N_CLOCK,)
 
 
-def workplace() -> Work:
+def workspace_of_thread() -> Workspace:
     """Room for one thread."""
-    return Work(
-        aligned(DESK), aligned(TABLE), aligned(4 * LANES), aligned(4 * LANES), aligned(LANES),
-        np.zeros(2 * LANES, np.uint32), aligned(N_CLOCK),
+    return Workspace(
+        aligned(B.SIZE), aligned(G.SIZE), aligned(4 * B.LANES), aligned(4 * B.LANES), aligned(B.LANES),
+        np.zeros(2 * B.LANES, np.uint32), aligned(K.N_SCHEDULE),
     )  # fmt: skip

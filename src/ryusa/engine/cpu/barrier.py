@@ -41,7 +41,7 @@ def _load(typingctx: Any, array: Any) -> Any:
 
 
 @njit(nogil=True)
-def meet(count: Any, n_threads: int, target: int) -> int:
+def wait(count: Any, n_threads: int, target: int) -> int:
     """Wait until all threads have come here; returns the target of the next meeting.
 
     Parameters

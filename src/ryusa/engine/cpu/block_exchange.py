@@ -1,6 +1,5 @@
-"""What blocks owe each other, and grains brought back into the period."""
+"""Crossing pairs: rows where one block leaves forces for grains of another, added there after the barrier."""
 
-import math
 from typing import Any
 
 import numpy as np
@@ -11,7 +10,7 @@ from ryusa.engine.shared.kernel import kernel
 Whole = NDArray[np.int64]
 
 
-def cross_lists(
+def number_crossing_pairs(
     n: int, block_start: Whole, start: Whole, partners: np.ndarray
 ) -> tuple[Whole, np.ndarray, Whole, Whole]:
     """Number the rows of `Pairs.f` for pairs whose partner belongs to another block.
@@ -53,23 +52,3 @@ def _number(
                 incoming[fill[j]], crossing[q] = row + q, p
                 fill[j] += 1
                 q += 1
-
-
-@kernel()
-def wrap_grains(x: Any, image: Any, period: Any, low: Any, high: Any) -> int:
-    """Bring grains back into the period, count it, and return the first one outside the world, or -1."""
-    lost = -1
-    for i in range(len(x)):
-        for k in range(2):
-            length = period[k]
-            if length < np.inf:
-                shift = math.floor(x[i, k] / length)
-                if shift != 0.0:
-                    x[i, k] -= shift * length
-                    image[i, k] += int(shift)
-        inside = True
-        for k in range(3):
-            inside = inside and low[k] <= x[i, k] <= high[k]
-        if not inside and lost < 0:
-            lost = i
-    return lost

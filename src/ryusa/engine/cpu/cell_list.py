@@ -36,7 +36,7 @@ def grid_of(x: Floats, n: int, size: float, period: Floats) -> Grid:
     return low, width, dims.astype(np.int64)
 
 
-def sort_into(x: Floats, n: int, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
+def sort_by_cell(x: Floats, n: int, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
     """Sort x[:n] by cell; returns the first slot of each cell (n_cell + 1), and the numbers in that order."""
     cells = int(np.prod(grid[2]))
     first, fill, where, order = (np.zeros(k, np.int64) for k in (cells + 1, cells, n, n))
@@ -70,7 +70,7 @@ def _sort(
 
 
 @inner(forceinline=True)
-def _beside(c: int, step: int, n: int, periodic: bool) -> int:
+def _neighbour_cell(c: int, step: int, n: int, periodic: bool) -> int:
     # index along one axis of a cell one step from cell c, or -1; in few periodic cells each comes once
     a = c + step
     if periodic:
@@ -79,9 +79,9 @@ def _beside(c: int, step: int, n: int, periodic: bool) -> int:
 
 
 @inner(forceinline=True)
-def _list_near(
+def _append_partners(
     i: int, offset: int, low: Any, width: Any, dims: Any, first: Any, order: Any, x: Any, ids: Any,
-    period: Any, skin: float, lanes: bool, partners: Any, used: int,
+    period: Any, skin: float, plane_case: bool, partners: Any, used: int,
 ) -> int:  # fmt: skip
     """Append to `partners` all grains of one grid with a higher id than grain i and within its reach.
 
@@ -103,8 +103,8 @@ def _list_near(
     if top < bottom:
         return used
     for k in range(9):
-        a = _beside(c_x, k // 3 - 1, n_x, l_x < math.inf)
-        b = _beside(c_y, k % 3 - 1, n_y, l_y < math.inf)
+        a = _neighbour_cell(c_x, k // 3 - 1, n_x, l_x < math.inf)
+        b = _neighbour_cell(c_y, k % 3 - 1, n_y, l_y < math.inf)
         if a < 0 or b < 0:
             continue
         column = (a * n_y + b) * n_z
@@ -117,7 +117,7 @@ def _list_near(
             reach = r_i + x[j, 3]
             met = (d_x * d_x + d_y * d_y + d_z * d_z < reach * reach) & (ids[j] > id_i)
             partners[used] = j
-            used += int(met & ((not lanes) | (x[j, 1] == y_i)))
+            used += int(met & ((not plane_case) | (x[j, 1] == y_i)))
     return used
 
 
@@ -135,7 +135,7 @@ def build_list(
     fixed_grid: Any,
     period: Any,
     skin: float,
-    lanes: bool,
+    plane_case: bool,
     start: Any,
     partners: Any,
 ) -> int:
@@ -150,10 +150,25 @@ def build_list(
     used, bed = 0, len(order_b) > 0
     for i in range(lo, hi):
         start[i] = used
-        used = _list_near(i, 0, low, width, dims, first, order, x, ids, period, skin, lanes, partners, used)
+        used = _append_partners(
+            i, 0, low, width, dims, first, order, x, ids, period, skin, plane_case, partners, used
+        )
         if bed and used >= 0:
-            used = _list_near(
-                i, n, low_b, width_b, dims_b, first_b, order_b, x, ids, period, skin, lanes, partners, used
+            used = _append_partners(
+                i,
+                n,
+                low_b,
+                width_b,
+                dims_b,
+                first_b,
+                order_b,
+                x,
+                ids,
+                period,
+                skin,
+                plane_case,
+                partners,
+                used,
             )
         if used < 0 or used + len(normals) > len(partners):
             return -1
@@ -165,3 +180,23 @@ def build_list(
                 partners[used] = n_solid + k
                 used += 1
     return used
+
+
+@kernel()
+def wrap_grains(x: Any, image: Any, period: Any, low: Any, high: Any) -> int:
+    """Bring grains back into the period, count it, and return the first one outside the world, or -1."""
+    lost = -1
+    for i in range(len(x)):
+        for k in range(2):
+            length = period[k]
+            if length < np.inf:
+                shift = math.floor(x[i, k] / length)
+                if shift != 0.0:
+                    x[i, k] -= shift * length
+                    image[i, k] += int(shift)
+        inside = True
+        for k in range(3):
+            inside = inside and low[k] <= x[i, k] <= high[k]
+        if not inside and lost < 0:
+            lost = i
+    return lost

@@ -8,46 +8,41 @@ from typing import Any
 
 import numpy as np
 
-from ryusa.engine.cpu.arrays import Ledger, workplace
-from ryusa.engine.cpu.candidate_pairs import NearList
-from ryusa.engine.cpu.prune import best_skin
+from ryusa.engine.cpu.arrays import AccountArrays, workspace_of_thread
+from ryusa.engine.cpu.candidate_pairs import CandidatePairs
+from ryusa.engine.cpu.prune_schedule import COST_LOOK
 from ryusa.engine.cpu.time_loop import make_run
-from ryusa.engine.cpu.verlet_list import Layout, Memory, take_memory
+from ryusa.engine.cpu.verlet_list import BlockLayout, collect_memory
 from ryusa.engine.protocol import Flags
-from ryusa.engine.shared.contact_memory import closed_records, contacts_of, memory_of
-from ryusa.engine.shared.energy_account import begin_account, book_start, extremes_of, read_account, tally_of
-from ryusa.engine.shared.entry import events_of, refuse_misfit, still_there
-from ryusa.engine.shared.faults import fault_of, lost_of, unsafe_of
-from ryusa.engine.shared.numbers import choice_of, energy_of_switch, numbers_of, variant_of
-from ryusa.engine.shared.refusals import refusals
-from ryusa.engine.shared.rows import (
-    C_DT,
-    C_SKIN,
-    C_T_ZERO,
-    COST_LOOK,
-    N_BOOKS,
-    N_FULL,
-    N_N_ENDED,
-    N_NOW,
-    N_PEND_FLOW,
-    N_SPEED_MAX,
-    PENDING,
-    STOP_EVENTS,
-    STOP_LIST,
-    STOP_ROOM,
-    STOP_UNSAFE,
+from ryusa.engine.shared import block_statistics as S
+from ryusa.engine.shared import parameters as P
+from ryusa.engine.shared.contact_memory import ContactMemory, contacts_of, memory_of, remaining_contacts
+from ryusa.engine.shared.contact_records import closed_records, sorted_events
+from ryusa.engine.shared.energy_account import (
+    N_ACCOUNT,
+    begin_account,
+    blocks_of,
+    energy_of_change,
+    enter_start,
+    extremes_of,
+    read_account,
+    tally_of,
 )
+from ryusa.engine.shared.faults import fault_of, lost_of, unsafe_of
+from ryusa.engine.shared.parameters import parameters_of
+from ryusa.engine.shared.refusals import check_state, refusals
+from ryusa.engine.shared.skin import best_skin
+from ryusa.engine.shared.status import STOP_EVENTS, STOP_LIST, STOP_ROOM, STOP_UNSAFE
+from ryusa.engine.shared.variant import choice_of, variant_of
 from ryusa.errors import RunError
-from ryusa.model import Book, Immersed, Scene, State, Tally
+from ryusa.model import Book, FluidAtGrains, Scene, State, Tally
 from ryusa.model.contacts import N_EVENT
 from ryusa.model.enums import EventRule
-from ryusa.model.fluid import SHARE
+from ryusa.model.fluid import SUBMERGED
 from ryusa.model.scene import Floats
 from ryusa.model.tally import N_BOOK
 
-_MANY = 256  # grains from which work is cut into blocks
 _RECORDS = 256  # room for ended contacts in a block, beside one a grain
-_BLOCKS = 4, 32  # at least and at most; in between one for 2048 grains, a power of two
 # Measured, and fixed so that a run never depends on a clock: cost of a wide list [ns], and how often it is
 # looked through.
 _LIST, _LIST_GRAIN, _STEPS_A_CUT = 300_000.0, 600.0, 16.0
@@ -67,10 +62,10 @@ class CpuEngine:
         if threads < 1:
             raise ValueError(f"threads = {threads}: at least 1")
         self._threads, self._skin_first = threads, skin
-        self._work = [workplace() for _ in range(threads)]
+        self._work = [workspace_of_thread() for _ in range(threads)]
         others = threads - 1  # the caller works too
         self._pool = ThreadPoolExecutor(others, thread_name_prefix="ryusa") if others else None
-        self._drained: list[np.ndarray] = []
+        self._records_drained: list[np.ndarray] = []
         self._scene: Scene | None = None
 
     def refuses(self, scene: Scene) -> tuple[str, ...]:
@@ -82,7 +77,7 @@ class CpuEngine:
         reasons = self.refuses(scene)
         if reasons:
             raise ValueError("; ".join(reasons))
-        refuse_misfit(scene, state)
+        check_state(scene, state)
         n = scene.n_grain
         before, self._scene = self._scene, scene
         changed = before is not None and before is not scene and state.step > 0
@@ -91,26 +86,26 @@ class CpuEngine:
         self._choice = choice_of(scene)
         self._run = make_run(self._variant)
         blocks = blocks_of(n)
-        self._layout = Layout(scene, blocks, self._variant)
-        self._numbers = numbers_of(scene)
+        self._layout = BlockLayout(scene, blocks, self._variant)
+        self._parameters = parameters_of(scene)
         self._smallest = float(np.concatenate([scene.d, scene.d_fixed]).min(initial=np.inf))
-        self._numbers[C_T_ZERO] = state.t - state.step * scene.dt
+        self._parameters[P.T_ZERO] = state.t - state.step * scene.dt
         records = (n // blocks + _RECORDS, N_EVENT) if scene.events != EventRule.NONE else (1, 1)
-        self._ledger = Ledger(
-            np.zeros((blocks, *records)), np.zeros((blocks, N_BOOKS)), np.zeros((blocks, N_NOW))
+        self._accounts = AccountArrays(
+            np.zeros((blocks, *records)), np.zeros((blocks, N_ACCOUNT)), np.zeros((blocks, S.N_STATISTIC))
         )
-        self._relisted = 0
-        self._read_own(state)
+        self._n_list = 0
+        self._read_own_numbers(state)
 
-        contacts, dropped = still_there(scene, state.contacts)
-        self._drained = self._drained if changed else []
+        contacts, dropped = remaining_contacts(scene, state.contacts)
+        self._records_drained = self._records_drained if changed else []
         if before is not None and changed:
-            self._ledger.books[0, Book.SWITCH] += energy_of_switch(before, scene, state, dropped)
-            self._drained.append(closed_records(state, dropped))
-        memory = memory_of(contacts, self._variant, self._choice, self._numbers, self._layout)
-        by_id = self._layout.by_id(state)
+            self._accounts.books[0, Book.SWITCH] += energy_of_change(before, scene, state, dropped)
+            self._records_drained.append(closed_records(state, dropped))
+        memory = memory_of(contacts, self._variant, self._choice, self._parameters, self._layout)
+        by_id = self._layout.grains_by_id(state)
         for touching in (contacts.i, contacts.j[contacts.j < n]):
-            np.add.at(by_id.touched, touching, 1)
+            np.add.at(by_id.n_touching, touching, 1)
         resumed = state.x_listed is not None and not changed and not len(dropped)
         if resumed:
             by_id.x[:n, :3] = state.x_listed
@@ -120,21 +115,21 @@ class CpuEngine:
         )
         if resumed:
             self._grains.x[:n, :3] = state.x[self._grains.ids[:n]]
-        self._numbers[C_SKIN] = self._skin
-        self._near = NearList(self._layout, self._threads, self._smallest)
-        self._cut_near(memory)
+        self._parameters[P.SKIN] = self._skin
+        self._candidates = CandidatePairs(self._layout, self._threads, self._smallest)
+        self._prune(memory)
         if state.step == 0:
-            begin_account(scene, state, self._ledger.now, self._ledger.books)
+            begin_account(scene, state, self._accounts.stats, self._accounts.books)
 
     def advance(self, n_steps: int) -> Flags:
         """Do n_steps steps, fewer if a fault stops the run."""
         if n_steps > 0 and self._step == 0:
-            flags = self._march(1)
-            book_start(self._ledger.now, self._ledger.books)
+            flags = self._advance(1)
+            enter_start(self._accounts.stats, self._accounts.books)
             if flags:
                 return flags
             n_steps -= 1
-        return self._march(n_steps)
+        return self._advance(n_steps)
 
     def grains(self) -> State:
         """Where grains are and how they move, without contacts and books: a frame."""
@@ -153,33 +148,34 @@ class CpuEngine:
         """Read-only snapshot: all that an exact resume needs."""
         n, grains = self._n, self._grains
         back = np.argsort(grains.ids[:n])
-        books = self._ledger.books.copy()
-        books[:, N_BOOK : N_BOOK + len(PENDING)] = self._ledger.now[:, PENDING]
-        contacts = contacts_of(take_memory(n, grains, self._near.pairs), self._variant)
+        books = self._accounts.books.copy()
+        books[:, N_BOOK : N_BOOK + len(S.PENDING)] = self._accounts.stats[:, S.PENDING]
+        contacts = contacts_of(collect_memory(n, grains, self._candidates.pairs), self._variant)
+        fluid = FluidAtGrains(grains.fluid[back], grains.impulse[back]) if self._variant.column else None
         state = replace(
             self.grains(),
             contacts=contacts,
             books=books,
             x_listed=self._x_listed.copy(),
-            immersed=Immersed(grains.seen[back], grains.taken[back]) if self._variant.column else None,
-            engine=self._own(),
+            fluid=fluid,
+            engine=self._own_numbers(),
         )
-        wet = vars(state.immersed).values() if state.immersed else ()
+        sampled = vars(fluid).values() if fluid else ()
         for array in (
-            state.x, state.v, state.omega, state.image, state.books, *vars(contacts).values(), *wet,
+            state.x, state.v, state.omega, state.image, state.books, *vars(contacts).values(), *sampled,
         ):  # fmt: skip
             array.flags.writeable = False
         return state
 
-    def drift(self) -> tuple[Floats, Floats, Floats]:
+    def kinematics(self) -> tuple[Floats, Floats, Floats]:
         """Centres [m], velocities [m/s] and what was taken from the water (model.fluid), by id."""
         n, ids = self._n, self._grains.ids[: self._n]
-        x, v, taken = np.empty((n, 3)), np.empty((n, 3)), np.empty(self._grains.taken.shape)
+        x, v, impulse = np.empty((n, 3)), np.empty((n, 3)), np.empty(self._grains.impulse.shape)
         x[ids], v[ids] = self._grains.x[:n, :3], self._grains.v[:n, :3]
-        taken[ids[: len(taken)]] = self._grains.taken
-        return x, v, taken
+        impulse[ids[: len(impulse)]] = self._grains.impulse
+        return x, v, impulse
 
-    def immerse(self, seen: Floats) -> None:
+    def set_fluid(self, sampled: Floats) -> None:
         """Tell every grain its water for the steps to come, and begin to count its impulse anew.
 
         Parameters
@@ -192,43 +188,49 @@ class CpuEngine:
         """
         if not self._variant.column:
             raise ValueError("the scene has no column of water: water.profile is not COLUMN")
-        if seen.shape != self._grains.seen.shape:
-            raise ValueError(f"seen has shape {seen.shape}, not {self._grains.seen.shape}")
+        if sampled.shape != self._grains.fluid.shape:
+            raise ValueError(f"sampled has shape {sampled.shape}, not {self._grains.fluid.shape}")
         grains, ids = self._grains, self._grains.ids[: self._n]
-        more = seen[ids, SHARE] - grains.seen[:, SHARE]
+        more = sampled[ids, SUBMERGED] - grains.fluid[:, SUBMERGED]
         if self._step and more.any():  # energy of the water that moves along with a grain, or no longer does
             added = grains.m[: self._n] - grains.m_bare[: self._n]
             gain = np.zeros(self._n)
             gain[ids] = 0.5 * added * more * np.sum(grains.v[: self._n, :3] ** 2, axis=1)
-            self._ledger.now[0, N_PEND_FLOW] += float(gain.sum())
-        grains.seen[:] = seen[ids]
-        grains.taken[:] = 0.0
+            self._accounts.stats[0, S.PENDING_FLOW] += float(gain.sum())
+        grains.fluid[:] = sampled[ids]
+        grains.impulse[:] = 0.0
 
     def tally(self) -> Tally:
         """Energy account and extremes at the moment of the last force evaluation."""
-        t = float(self._t - self._numbers[C_DT]) if self._step else self._t
-        return tally_of(t, self._ledger.now, self._ledger.books)
+        t = float(self._t - self._parameters[P.DT]) if self._step else self._t
+        return tally_of(t, self._accounts.stats, self._accounts.books)
 
     def events(self) -> np.ndarray:
         """Contacts ended since last asked, in order of parting."""
-        self._drain()
-        rows = np.concatenate(self._drained) if self._drained else np.zeros((0, N_EVENT))
-        self._drained = []
-        return events_of(rows)
+        self._drain_records()
+        rows = np.concatenate(self._records_drained) if self._records_drained else np.zeros((0, N_EVENT))
+        self._records_drained = []
+        return sorted_events(rows)
 
-    def _march(self, n_steps: int) -> Flags:
+    def _advance(self, n_steps: int) -> Flags:
         layout, threads = self._layout, min(self._threads, len(self._layout.block_start) - 1)
         while n_steps > 0:
             arguments = (
-                threads, n_steps, self._step, self._travel, np.zeros(1, np.int64), self._numbers,
+                threads, n_steps, self._step, self._travel, np.zeros(1, np.int64), self._parameters,
                 layout.block_start, self._n, layout.n_solid, self._grains, layout.walls, self._pairs,
-                self._near.pairs,
+                self._candidates.pairs,
             )  # fmt: skip
-            more = (self._choice, self._near.clock)
+            more = (self._choice, self._candidates.schedule)
             others = (
                 [
                     self._pool.submit(
-                        self._run, k, *arguments, self._near.spares[k], self._ledger, self._work[k], *more
+                        self._run,
+                        k,
+                        *arguments,
+                        self._candidates.spares[k],
+                        self._accounts,
+                        self._work[k],
+                        *more,
                     )
                     for k in range(1, threads)
                 ]
@@ -236,54 +238,54 @@ class CpuEngine:
                 else []
             )
             done, self._travel, stop = self._run(
-                0, *arguments, self._near.spares[0], self._ledger, self._work[0], *more
+                0, *arguments, self._candidates.spares[0], self._accounts, self._work[0], *more
             )
             for other in others:
                 other.result()
             self._step += done
             self._since += done
             n_steps -= done
-            self._t = float(self._numbers[C_T_ZERO] + self._step * self._numbers[C_DT])
+            self._t = float(self._parameters[P.T_ZERO] + self._step * self._parameters[P.DT])
             if stop == STOP_LIST:
-                fault = self._relist()
+                fault = self._rebuild_list()
                 if fault is not None:
                     return Flags(fault)
             elif stop == STOP_ROOM:
-                self._near.make_room(self._ledger.now[:, N_FULL])
+                self._candidates.make_room(self._accounts.stats[:, S.ROOM_WANTED])
             elif stop == STOP_EVENTS:
-                self._drain()
+                self._drain_records()
             elif stop == STOP_UNSAFE:
                 return Flags(
-                    unsafe_of(self._grains, self._n, self._numbers, self._smallest, self._step, self._t)
+                    unsafe_of(self._grains, self._n, self._parameters, self._smallest, self._step, self._t)
                 )
             elif stop:
-                return Flags(fault_of(self._ledger.now, self._numbers, self._step - 1))
+                return Flags(fault_of(self._accounts.stats, self._parameters, self._step - 1))
         return Flags()
 
-    def _relist(self) -> RunError | None:
+    def _rebuild_list(self) -> RunError | None:
         """Choose a skin from counted work, bring grains back into the period, and list pairs anew."""
-        memory = take_memory(self._n, self._grains, self._near.pairs)
+        memory = collect_memory(self._n, self._grains, self._candidates.pairs)
         apart = float(self._pairs.start[-1]) - len(memory.i)  # from counts that a resumed run has too
         skin = best_skin(
             self._skin, 2.0 * self._travel / max(self._since, 1), _LIST + _LIST_GRAIN * self._n,
             COST_LOOK * apart / _STEPS_A_CUT,
         )  # fmt: skip
         # pairs in touch may have parted in the last step: their account is still to be closed
-        parted = 2.001 * self._way()
+        parted = 2.001 * self._fastest_displacement()
         self._skin = max(min(max(skin, 0.02 * self._smallest), self._smallest), parted)
-        self._since, self._travel, self._relisted = 0, 0.0, self._relisted + 1
+        self._since, self._travel, self._n_list = 0, 0.0, self._n_list + 1
         starts, self._pairs = self._pairs.start, self._layout.empty_pairs()  # frees the old list
         by_id = self._layout.unsorted(self._grains)
         self._grains, self._pairs, self._x_listed, lost = self._layout.list_pairs(
             by_id, starts, self._skin, self._share
         )
-        self._cut_near(memory)
-        self._numbers[C_SKIN] = self._skin
+        self._prune(memory)
+        self._parameters[P.SKIN] = self._skin
         return lost_of(self._grains, lost, self._step, self._t) if lost >= 0 else None
 
-    def _cut_near(self, memory: Memory) -> None:
-        self._near.begin(
-            self._grains, self._pairs, self._skin, self._way(), self._numbers, memory,
+    def _prune(self, memory: ContactMemory) -> None:
+        self._candidates.begin(
+            self._grains, self._pairs, self._skin, self._fastest_displacement(), self._parameters, memory,
             self._share,
         )  # fmt: skip
 
@@ -295,32 +297,23 @@ class CpuEngine:
         others = [self._pool.submit(task, *part) for part in parts[1:]] if self._pool else []
         return [task(*parts[0]), *(other.result() for other in others)]
 
-    def _way(self) -> float:
+    def _fastest_displacement(self) -> float:
         """How far the fastest grain went in the last step [m]."""
-        return float(self._ledger.now[:, N_SPEED_MAX].max() * self._numbers[C_DT])
+        return float(self._accounts.stats[:, S.SPEED_MAX].max() * self._parameters[P.DT])
 
-    def _drain(self) -> None:
-        for block, row in enumerate(self._ledger.now):
-            count = int(row[N_N_ENDED])
+    def _drain_records(self) -> None:
+        for block, row in enumerate(self._accounts.stats):
+            count = int(row[S.N_ENDED])
             if count:
-                self._drained.append(self._ledger.ended[block, :count].copy())
-                row[N_N_ENDED] = 0.0
+                self._records_drained.append(self._accounts.ended[block, :count].copy())
+                row[S.N_ENDED] = 0.0
 
-    def _own(self) -> dict[str, float]:
+    def _own_numbers(self) -> dict[str, float]:
         """The engine's own numbers, as a snapshot keeps them."""
         own = {"skin": self._skin, "travel": self._travel, "since": float(self._since)}
-        return own | extremes_of(self._ledger.now)
+        return own | extremes_of(self._accounts.stats)
 
-    def _read_own(self, state: State) -> None:
+    def _read_own_numbers(self, state: State) -> None:
         self._skin = state.engine.get("skin", self._skin_first * self._smallest)
         self._since = int(state.engine.get("since", 0))
-        read_account(state, self._ledger.now, self._ledger.books)
-
-
-def blocks_of(n: int) -> int:
-    """Into how many blocks the work on n grains is cut; never by the number of threads.
-
-    Thin blocks have many pairs with their neighbours, which cost more.
-    """
-    least, most = _BLOCKS
-    return 1 if n < _MANY else int(min(max(2.0 ** round(np.log2(n / 2048)), least), most))
+        read_account(state, self._accounts.stats, self._accounts.books)

@@ -2,46 +2,53 @@
 
 What is fourth in a row stays what it is: the radius behind a position or a spin.
 """
-# ruff: noqa: F403, F405  (the places of lanes.py and the columns of rows.py, all of them plain integers)
 
 import math
 from typing import Any
 
-from ryusa.engine.cpu.arrays import Grains, Pairs
-from ryusa.engine.cpu.batch_layout import *
-from ryusa.engine.cpu.fluid_forces import close_interval, push_of_water, work_of_water
-from ryusa.engine.cpu.simd.vec4 import add4, four_of, part, read4, spread4, with_last, write4
+from ryusa.engine.cpu import grain_layout as G
+from ryusa.engine.cpu.arrays import GrainArrays, PairArrays
+from ryusa.engine.cpu.fluid_forces import fluid_forces, fluid_work
+from ryusa.engine.cpu.simd.vec4 import add4, component, fill4, read4, vec4_of, with_fourth, write4
+from ryusa.engine.shared import block_statistics as S
+from ryusa.engine.shared import parameters as P
+from ryusa.engine.shared.fluid import close_fluid_interval
 from ryusa.engine.shared.kernel import FAST, inner
-from ryusa.engine.shared.rows import *
+from ryusa.engine.shared.status import FAULT_NONE, FAULT_NOT_A_NUMBER
+from ryusa.engine.shared.variant import KernelVariant, LawChoice
 from ryusa.laws.motion import acceleration, acceleration_spin, semi_implicit
 
 
 @inner(fastmath=FAST, forceinline=True)
-def square_of(row: Any) -> float:
+def square_length(row: Any) -> float:
     """Square of the length of a vector, the first three of a row."""
-    x, y, z = part(row, 0), part(row, 1), part(row, 2)
+    x, y, z = component(row, 0), component(row, 1), component(row, 2)
     return x * x + y * y + z * z
 
 
 @inner(fastmath=FAST, forceinline=True)
-def product_of(a: Any, b: Any) -> float:
+def dot(a: Any, b: Any) -> float:
     """Scalar product of two vectors, the first three of a row."""
-    return part(a, 0) * part(b, 0) + part(a, 1) * part(b, 1) + part(a, 2) * part(b, 2)
+    return (
+        component(a, 0) * component(b, 0)
+        + component(a, 1) * component(b, 1)
+        + component(a, 2) * component(b, 2)
+    )
 
 
 @inner(fastmath=FAST, forceinline=True)
-def fetch(i: int, near: Any, incoming: Any, incoming_start: Any, f: Any, film: Any) -> None:
+def gather_incoming(i: int, active: Any, incoming: Any, incoming_start: Any, f: Any, film: Any) -> None:
     """Add to the forces on grain i what other blocks stored for it; `film` may be empty."""
     for k in range(incoming_start[i], incoming_start[i + 1]):
         q = incoming[k]
-        if near[q]:
+        if active[q]:
             add4(f, 8 * i, f, 8 * q)
             add4(f, 8 * i + 4, f, 8 * q + 4)
-            spread4(f, 8 * q, 0.0)
-            spread4(f, 8 * q + 4, 0.0)
+            fill4(f, 8 * q, 0.0)
+            fill4(f, 8 * q + 4, 0.0)
             if len(film):
                 add4(film, 4 * i, film, 4 * q)
-                spread4(film, 4 * q, 0.0)
+                fill4(film, 4 * q, 0.0)
 
 
 @inner(fastmath=FAST, forceinline=True)
@@ -49,81 +56,81 @@ def height_of(i: int, c: Any, x: Any, image: Any) -> float:
     """Height of grain i along gravity, times gravity [m2/s2], the periods it crossed counted."""
     y_x, y_y = x[i, 0], x[i, 1]
     if image[i, 0] != 0:
-        y_x += image[i, 0] * c[C_PERIOD_X]
+        y_x += image[i, 0] * c[P.PERIOD_X]
     if image[i, 1] != 0:
-        y_y += image[i, 1] * c[C_PERIOD_Y]
-    return c[C_G_X] * y_x + c[C_G_Y] * y_y + c[C_G_Z] * x[i, 2]
+        y_y += image[i, 1] * c[P.PERIOD_Y]
+    return c[P.G_X] * y_x + c[P.G_Y] * y_y + c[P.G_Z] * x[i, 2]
 
 
 @inner(fastmath=FAST, forceinline=True)
-def motion(
-    kind: Variant,
+def integrate(
+    variant: KernelVariant,
     water: int | None,
-    choice: Choice,
+    choice: LawChoice,
     lo: int,
     hi: int,
     begins: bool,
     last: bool,
     c: Any,
-    grains: Grains,
-    pairs: Pairs,
+    grains: GrainArrays,
+    pairs: PairArrays,
     table: Any,
-    book: Any,
-    now: Any,
+    account: Any,
+    stats: Any,
 ) -> None:
     """Gather what other blocks stored, add water and weight, and move grains lo..hi-1 by one step."""
-    x, v, w, then, ids, image = grains.x, grains.v, grains.w, grains.then, grains.ids, grains.image
+    x, v, w, v_pruned, ids, image = grains.x, grains.v, grains.w, grains.v_pruned, grains.ids, grains.image
     m_all, m_bare, m_weight, inertia = grains.m, grains.m_bare, grains.m_weight, grains.inertia
     per_m, per_inertia = grains.per_m, grains.per_inertia
-    f, near, incoming, incoming_start = pairs.f, pairs.near, pairs.incoming, pairs.incoming_start
-    dt, film, touched = c[C_DT], grains.film, grains.touched
+    f, active, incoming, incoming_start = pairs.f, pairs.active, pairs.incoming, pairs.incoming_start
+    dt, film, n_touching = c[P.DT], grains.film, grains.n_touching
     half = 0.0 if begins else 0.5 * dt
-    speed_2 = spin_2 = stray_2 = 0.0
-    gravity = four_of(c[C_G_X], 0.0 if kind.plane_case else c[C_G_Y], c[C_G_Z], 0.0)
-    close_interval(book, now)
+    speed_2 = spin_2 = velocity_change_2 = 0.0
+    gravity = vec4_of(c[P.G_X], 0.0 if variant.plane_case else c[P.G_Y], c[P.G_Z], 0.0)
+    close_fluid_interval(account, stats)
     if last:
-        now[N_KINETIC] = now[N_SPIN] = now[N_POTENTIAL] = 0.0
+        stats[S.KINETIC] = stats[S.SPIN] = stats[S.POTENTIAL] = 0.0
     for i in range(lo, hi):
-        fetch(i, near, incoming, incoming_start, f, film)
+        gather_incoming(i, active, incoming, incoming_start, f, film)
         push, turn = read4(f, 8 * i), read4(f, 8 * i + 4)
-        spread4(f, 8 * i, 0.0)
-        spread4(f, 8 * i + 4, 0.0)
-        if kind.rolling or kind.events:
-            touched[i] = int(part(turn, 3))
-        place, before, spin = read4(x, 4 * i), read4(v, 8 * i), read4(w, 8 * i)
-        drag, inverse = four_of(0.0, 0.0, 0.0, 0.0), per_m[i]
+        fill4(f, 8 * i, 0.0)
+        fill4(f, 8 * i + 4, 0.0)
+        if variant.rolling or variant.events:
+            n_touching[i] = int(component(turn, 3))
+        x_new, before, spin = read4(x, 4 * i), read4(v, 8 * i), read4(w, 8 * i)
+        drag, inverse = vec4_of(0.0, 0.0, 0.0, 0.0), per_m[i]
         if water is not None:
-            write4(table, M_PUSH, push)
-            write4(table, M_TURN, turn)
-            table[M_ADDED] = m_all[i] - m_bare[i]
-            push_of_water(kind, choice, i, c, grains, table)
-            push, turn, drag = read4(table, M_PUSH), read4(table, M_TURN), read4(table, M_DRAG)
-            inverse = 1.0 / (m_bare[i] + table[M_ADDED])
+            write4(table, G.FORCE, push)
+            write4(table, G.TORQUE, turn)
+            table[G.ADDED] = m_all[i] - m_bare[i]
+            fluid_forces(variant, choice, i, c, grains, table)
+            push, turn, drag = read4(table, G.FORCE), read4(table, G.TORQUE), read4(table, G.DRAG)
+            inverse = 1.0 / (m_bare[i] + table[G.ADDED])
         a = acceleration(push, drag, m_weight[i] * gravity, inverse)
-        place, after = semi_implicit(place, before, a, dt)
+        x_new, after = semi_implicit(x_new, before, a, dt)
         whirl = spin
-        if kind.rotation:  # the count of contacts, fourth, turns nothing
-            whirl = spin + dt * acceleration_spin(with_last(turn, 0.0), per_inertia[i])
+        if variant.rotation:  # the count of contacts, fourth, turns nothing
+            whirl = spin + dt * acceleration_spin(with_fourth(turn, 0.0), per_inertia[i])
         if water is not None:
-            write4(table, M_V, before)
-            write4(table, M_V_NEW, after)
-            write4(table, M_W, spin)
-            write4(table, M_W_NEW, whirl)
-            work_of_water(kind, choice, i, half, c, grains, table, book, now)
+            write4(table, G.V, before)
+            write4(table, G.V_NEW, after)
+            write4(table, G.W, spin)
+            write4(table, G.W_NEW, whirl)
+            fluid_work(variant, choice, i, half, c, grains, table, account, stats)
         if last:
-            now[N_KINETIC] += 0.5 / inverse * product_of(before, after)
-            now[N_SPIN] += 0.5 * inertia[i] * product_of(spin, whirl) if kind.rotation else 0.0
-            now[N_POTENTIAL] -= m_weight[i] * height_of(i, c, x, image)
-        write4(x, 4 * i, place)
+            stats[S.KINETIC] += 0.5 / inverse * dot(before, after)
+            stats[S.SPIN] += 0.5 * inertia[i] * dot(spin, whirl) if variant.rotation else 0.0
+            stats[S.POTENTIAL] -= m_weight[i] * height_of(i, c, x, image)
+        write4(x, 4 * i, x_new)
         write4(v, 8 * i, after)
-        fast, fast_spin = square_of(after), 0.0
-        if kind.rotation:
+        fast, fast_spin = square_length(after), 0.0
+        if variant.rotation:
             write4(w, 8 * i, whirl)
-            fast_spin = square_of(whirl)
-        if not fast + fast_spin < math.inf and now[N_FAULT] == FAULT_NONE:
-            now[N_FAULT], now[N_FAULT_GRAIN], now[N_FAULT_PARTNER] = FAULT_NOT_A_NUMBER, ids[i], -1
+            fast_spin = square_length(whirl)
+        if not fast + fast_spin < math.inf and stats[S.FAULT] == FAULT_NONE:
+            stats[S.FAULT], stats[S.FAULT_GRAIN], stats[S.FAULT_PARTNER] = FAULT_NOT_A_NUMBER, ids[i], -1
         speed_2, spin_2 = max(speed_2, fast), max(spin_2, fast_spin)
-        stray_2 = max(stray_2, square_of(after - read4(then, 4 * i)))
-    now[N_SPEED_MAX], now[N_SPIN_MAX] = math.sqrt(speed_2), math.sqrt(spin_2)
-    now[N_STRAY_MAX] = math.sqrt(stray_2)
-    now[N_FAULT_SHOWN], now[N_ENDED_SHOWN] = now[N_FAULT], now[N_N_ENDED]
+        velocity_change_2 = max(velocity_change_2, square_length(after - read4(v_pruned, 4 * i)))
+    stats[S.SPEED_MAX], stats[S.SPIN_MAX] = math.sqrt(speed_2), math.sqrt(spin_2)
+    stats[S.VELOCITY_CHANGE_MAX] = math.sqrt(velocity_change_2)
+    stats[S.FAULT_POSTED], stats[S.N_ENDED_POSTED] = stats[S.FAULT], stats[S.N_ENDED]

@@ -2,117 +2,134 @@
 
 Lane by lane, after (or, for the rebound, before) the law of contact has been reckoned for the whole batch.
 """
-# ruff: noqa: E741, F403, F405  (l is a lane; the places of lanes.py and the columns of rows.py, all of them plain integers)
+# ruff: noqa: E741  (l is a lane)
 
 from typing import Any
 
-from ryusa.engine.cpu.arrays import Grains, Near
-from ryusa.engine.cpu.batch_layout import *
-from ryusa.engine.cpu.pair_batch import overlap_on
+from ryusa.engine.cpu import batch_layout as B
+from ryusa.engine.cpu.arrays import CandidateArrays, GrainArrays
+from ryusa.engine.cpu.pair_batch import overlap_of_lane
+from ryusa.engine.shared import memory_rows as M
+from ryusa.engine.shared import parameters as P
+from ryusa.engine.shared import record_fields as R
 from ryusa.engine.shared.contact_records import begin_record, end_record, keep_record
+from ryusa.engine.shared.dashpots import dashpot_immersed
 from ryusa.engine.shared.kernel import FAST, inner, kernel
-from ryusa.engine.shared.pair import ROLL_PRINTED, dashpot_wet, roll, roll_out
-from ryusa.engine.shared.rows import *
+from ryusa.engine.shared.rolling import ROLL_PRINTED, end_rolling, rolling_friction
+from ryusa.engine.shared.variant import KernelVariant, LawChoice
 from ryusa.laws.geometry import wrap
 from ryusa.laws.immersed import lubrication_force
 from ryusa.laws.rolling import reduced_radius
+from ryusa.model.contacts import N_EVENT
 
 
 @kernel(fastmath=FAST)
-def wet_dashpots(choice: Choice, m: int, which: Any, c: Any, grains: Grains, near: Near, desk: Any) -> None:
+def immersed_dashpots(
+    choice: LawChoice,
+    m: int,
+    selected: Any,
+    c: Any,
+    grains: GrainArrays,
+    candidates: CandidateArrays,
+    batch: Any,
+) -> None:
     """Give lanes that touch now and did not before the normal dashpot of their rebound."""
     for l in range(m):
-        overlap = overlap_on(l, c, desk)
-        if desk[D_WAS + l] > 0.0 or overlap <= 0.0:
+        overlap = overlap_of_lane(l, c, batch)
+        if batch[B.WAS_TOUCHING + l] > 0.0 or overlap <= 0.0:
             continue
-        k = which[l]
-        d_x, d_z = wrap(desk[D_APART + 4 * l], c[C_PERIOD_X]), desk[D_APART + 4 * l + 2]
-        d_y = wrap(desk[D_APART + 4 * l + 1], c[C_PERIOD_Y])
-        distance = desk[D_SPIN_I + 4 * l + 3] + desk[D_SPIN_J + 4 * l + 3] - overlap
-        u_x, u_y, u_z = desk[D_MOVING + 4 * l], desk[D_MOVING + 4 * l + 1], desk[D_MOVING + 4 * l + 2]
+        k = selected[l]
+        d_x, d_z = wrap(batch[B.SEPARATION + 4 * l], c[P.PERIOD_X]), batch[B.SEPARATION + 4 * l + 2]
+        d_y = wrap(batch[B.SEPARATION + 4 * l + 1], c[P.PERIOD_Y])
+        distance = batch[B.SPIN_I + 4 * l + 3] + batch[B.SPIN_J + 4 * l + 3] - overlap
+        u_x, u_y, u_z = (
+            batch[B.RELATIVE_VELOCITY + 4 * l],
+            batch[B.RELATIVE_VELOCITY + 4 * l + 1],
+            batch[B.RELATIVE_VELOCITY + 4 * l + 2],
+        )
         closing = (u_x * d_x + u_y * d_y + u_z * d_z) / distance
-        eta_n = dashpot_wet(choice, closing, near.i[k], near.j[k], c, grains.m, grains.w)
-        desk[D_MOVING + 4 * l + 3] = near.eta[k, ETA_N] = eta_n
+        eta_n = dashpot_immersed(choice, closing, candidates.i[k], candidates.j[k], c, grains.m, grains.w)
+        batch[B.RELATIVE_VELOCITY + 4 * l + 3] = candidates.eta[k, M.ETA_N] = eta_n
 
 
 @inner(fastmath=FAST)
-def keep_company(
-    kind: Variant,
-    choice: Choice,
+def optional_physics(
+    variant: KernelVariant,
+    choice: LawChoice,
     m: int,
     n: int,
     t: float,
     hdt: float,
-    which: Any,
+    selected: Any,
     c: Any,
-    grains: Grains,
-    near: Near,
-    desk: Any,
+    grains: GrainArrays,
+    candidates: CandidateArrays,
+    batch: Any,
     ended: Any,
-    book: Any,
-    now: Any,
+    account: Any,
+    stats: Any,
 ) -> float:
     """Rolling friction, records and films of the first m lanes; returns the energy in rolling springs [J]."""
-    v, w, touched = grains.v, grains.w, grains.touched
-    rows, dt, width = near.rows, c[C_DT], near.rows.shape[1]
+    v, w, n_touching = grains.v, grains.w, grains.n_touching
+    rows, dt, width = candidates.rows, c[P.DT], candidates.rows.shape[1]
     held = 0.0
     for l in range(m):
-        was, live = desk[D_WAS + l] > 0.0, desk[D_TORQUE_I + 4 * l + 3] > 0.0
-        overlap, closing = desk[D_OVERLAP + l], desk[D_CLOSING + l]
-        if not (was or live or (kind.film and overlap > -c[C_FILM_REACH])):
+        was, touching = batch[B.WAS_TOUCHING + l] > 0.0, batch[B.TORQUE_I + 4 * l + 3] > 0.0
+        overlap, closing = batch[B.OVERLAP + l], batch[B.CLOSING + l]
+        if not (was or touching or (variant.film and overlap > -c[P.FILM_REACH])):
             continue
-        row, i, j = rows[which[l]], near.i[which[l]], near.j[which[l]]
-        normal = (desk[D_NORMAL + l], desk[D_NORMAL + PITCH + l], desk[D_NORMAL + 2 * PITCH + l])
-        slip = (desk[D_SLIP + l], desk[D_SLIP + PITCH + l], desk[D_SLIP + 2 * PITCH + l])
-        force = (desk[D_FORCE + 4 * l], desk[D_FORCE + 4 * l + 1], desk[D_FORCE + 4 * l + 2])
+        row, i, j = rows[selected[l]], candidates.i[selected[l]], candidates.j[selected[l]]
+        normal = (batch[B.NORMAL + l], batch[B.NORMAL + B.PITCH + l], batch[B.NORMAL + 2 * B.PITCH + l])
+        slip = (batch[B.SLIP + l], batch[B.SLIP + B.PITCH + l], batch[B.SLIP + 2 * B.PITCH + l])
+        force = (batch[B.FORCE + 4 * l], batch[B.FORCE + 4 * l + 1], batch[B.FORCE + 4 * l + 2])
         spin_i, spin_j = (w[i, 0], w[i, 1], w[i, 2]), (w[j, 0], w[j, 1], w[j, 2])
-        f_n = desk[D_SPRING + 4 * l + 3]
-        if kind.rolling:
-            if live:
+        f_n = batch[B.SPRING + 4 * l + 3]
+        if variant.rolling:
+            if touching:
                 turned = (
                     normal[1] * force[2] - normal[2] * force[1],
                     normal[2] * force[0] - normal[0] * force[2],
                     normal[0] * force[1] - normal[1] * force[0],
                 )
-                share_j = float(max(touched[j], 1)) if j < n else 1.0
-                r_x, r_y, r_z, e_r = roll(
+                share_j = float(max(n_touching[j], 1)) if j < n else 1.0
+                r_x, r_y, r_z, e_r = rolling_friction(
                     choice.rolling, choice.arm, row, c, f_n, overlap, hdt,
-                    (w[i, 3], grains.m[i], grains.inertia[i], float(max(touched[i], 1))),
+                    (w[i, 3], grains.m[i], grains.inertia[i], float(max(n_touching[i], 1))),
                     (w[j, 3], grains.m[j], grains.inertia[j], share_j),
-                    normal, turned, spin_i, spin_j, book,
+                    normal, turned, spin_i, spin_j, account,
                 )  # fmt: skip
                 sign = 1.0 if choice.rolling == ROLL_PRINTED else -1.0
                 for k, r in enumerate((r_x, r_y, r_z)):
-                    desk[D_TORQUE_I + 4 * l + k] += r
-                    desk[D_TORQUE_J + 4 * l + k] += sign * r
+                    batch[B.TORQUE_I + 4 * l + k] += r
+                    batch[B.TORQUE_J + 4 * l + k] += sign * r
                 held += e_r
             elif was:
                 radius = reduced_radius(w[i, 3], w[j, 3])
-                roll_out(choice.rolling, row, c, hdt, spin_i, spin_j, radius, book)
-        if kind.events:
+                end_rolling(choice.rolling, row, c, hdt, spin_i, spin_j, radius, account)
+        if variant.events:
             record = row[width - N_EVENT :]
-            if live and not was:
+            if touching and not was:
                 record[:] = 0.0
                 begin_record(
-                    kind.plane_case, choice.events, record, t, dt, overlap, closing, slip, normal, i, j, n,
-                    grains, c[C_PERIOD_X], c[C_PERIOD_Y],
+                    variant.plane_case, choice.events, record, t, dt, overlap, closing, slip, normal, i, j, n,
+                    grains, c[P.PERIOD_X], c[P.PERIOD_Y],
                 )  # fmt: skip
-            if live:
+            if touching:
                 keep_record(
-                    record, t, dt, overlap, f_n, desk[D_RAW + l], force,
-                    desk[D_SLIDES + l] > 0.0, touched[i] > 1 or (j < n and touched[j] > 1),
+                    record, t, dt, overlap, f_n, batch[B.RAW + l], force,
+                    batch[B.SLIDES + l] > 0.0, n_touching[i] > 1 or (j < n and n_touching[j] > 1),
                 )  # fmt: skip
-            elif was and record[E_J] >= 0.0:
+            elif was and record[R.PARTNER] >= 0.0:
                 end_record(
-                    kind.plane_case, choice.tension, record, record[E_T_PART], t, overlap, closing, slip,
-                    normal, i, v, w, ended, now,
+                    variant.plane_case, choice.tension, record, record[R.T_PART], t, overlap, closing, slip,
+                    normal, i, v, w, ended, stats,
                 )  # fmt: skip
-        if kind.film and not live and overlap > -c[C_FILM_REACH]:
+        if variant.film and not touching and overlap > -c[P.FILM_REACH]:
             radius = reduced_radius(w[i, 3], w[j, 3])
             f = lubrication_force(
-                -overlap, closing, radius, c[C_ASPERITY], c[C_FILM_REACH], c[C_RHO_W], c[C_NU]
+                -overlap, closing, radius, c[P.ASPERITY], c[P.FILM_REACH], c[P.RHO_W], c[P.NU]
             )
             for k in range(3):
                 grains.film[i, k] -= f * normal[k]
-                grains.film[near.to[which[l]], k] += f * normal[k]
+                grains.film[candidates.target[selected[l]], k] += f * normal[k]
     return held

@@ -1,38 +1,62 @@
 """The loop over steps that threads run together, block by block."""
-# ruff: noqa: E741, F403, F405  (l is a lane; the columns of rows.py, all of them plain integers)
+# ruff: noqa: E741  (l is a lane)
 
 from functools import cache
 from typing import Any
 
 import numpy as np
 
-from ryusa.engine.cpu.arrays import Grains, Ledger, Near, Pairs, Walls, Work
-from ryusa.engine.cpu.barrier import meet
-from ryusa.engine.cpu.batch_layout import D_BOOKS, D_SPIN_I, D_SPIN_J, LANES, N_LANE_BOOK, PITCH
-from ryusa.engine.cpu.integration import motion
-from ryusa.engine.cpu.pair_batch import hand_out, lay_out, look, overlap_on, reckon
-from ryusa.engine.cpu.pair_physics import keep_company, wet_dashpots
-from ryusa.engine.cpu.prune import cut, plan_cut, steps_ahead
-from ryusa.engine.cpu.simd.borrow import lend
-from ryusa.engine.cpu.simd.vec4 import ask, spread4
+from ryusa.engine.cpu import batch_layout as B
+from ryusa.engine.cpu import prune_schedule as K
+from ryusa.engine.cpu.arrays import (
+    AccountArrays,
+    CandidateArrays,
+    GrainArrays,
+    PairArrays,
+    WallArrays,
+    Workspace,
+)
+from ryusa.engine.cpu.barrier import wait
+from ryusa.engine.cpu.integration import integrate
+from ryusa.engine.cpu.pair_batch import compute, filter_pairs, gather, overlap_of_lane, scatter
+from ryusa.engine.cpu.pair_physics import immersed_dashpots, optional_physics
+from ryusa.engine.cpu.prune import prune
+from ryusa.engine.cpu.prune_schedule import COST_GRAIN, COST_LOOK, ROUNDED_UP, plan_prune, steps_ahead
+from ryusa.engine.cpu.simd.borrow import borrow
+from ryusa.engine.cpu.simd.prefetch import prefetch
+from ryusa.engine.cpu.simd.vec4 import fill4
+from ryusa.engine.shared import block_statistics as S
+from ryusa.engine.shared import memory_rows as M
+from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.kernel import FAST, inner, kernel
-from ryusa.engine.shared.rows import *
+from ryusa.engine.shared.status import (
+    FAULT_NONE,
+    FAULT_OVERLAP,
+    STOP_DONE,
+    STOP_EVENTS,
+    STOP_FAULT,
+    STOP_LIST,
+    STOP_ROOM,
+    STOP_UNSAFE,
+)
+from ryusa.engine.shared.variant import KernelVariant, LawChoice
 from ryusa.model.tally import Book
 
-Maybe = int | None  # 1, or None for what a variant goes without
+Present = int | None  # 1, or None for what a variant goes without
 # the books a lane keeps, in the order of lanes.py
 BOOKS = tuple(
-    int(book) for book in (Book.DASH_N, Book.DASH_S, Book.SLIDE, Book.RELEASED_N, Book.RELEASED_S, Book.STEP)
+    int(account)
+    for account in (Book.DASH_N, Book.DASH_S, Book.SLIDE, Book.RELEASED_N, Book.RELEASED_S, Book.STEP)
 )
 
 
 @inner(fastmath=FAST, forceinline=True)
-def forces(
-    kind: Variant,
-    flat: Maybe,
-    water: Maybe,
-    company: Maybe,
-    choice: Choice,
+def block_forces(
+    variant: KernelVariant,
+    flat: Present,
+    water: Present,
+    optional: Present,
+    choice: LawChoice,
     b: int,
     hi: int,
     n: int,
@@ -42,50 +66,57 @@ def forces(
     hdt: float,
     last: bool,
     c: Any,
-    grains: Grains,
-    walls: Walls,
-    pairs: Pairs,
-    near: Near,
-    work: Work,
+    grains: GrainArrays,
+    walls: WallArrays,
+    pairs: PairArrays,
+    candidates: CandidateArrays,
+    work: Workspace,
     ended: Any,
-    book: Any,
-    now: Any,
+    account: Any,
+    stats: Any,
 ) -> None:
     """Forces of every pair that block b, grains up to hi-1, owns, batch by batch of those that touch."""
-    desk, glance, hit, which = work.desk, work.glance, work.hit, work.which
-    reach_on = c[C_FILM_REACH] if kind.film else 0.0
+    batch, separation, inside, selected = work.batch, work.separation, work.inside, work.selected
+    reach_on = c[P.FILM_REACH] if variant.film else 0.0
     # arrays are handed over one by one: a tuple of them would have its references counted for every batch
     x, v, w, f = grains.x, grains.v, grains.w, pairs.f
-    i_of, j_of, to, live, eta, rows = near.i, near.j, near.to, near.live, near.eta, near.rows
+    i_of, j_of, to, touching, eta, rows = (
+        candidates.i,
+        candidates.j,
+        candidates.target,
+        candidates.touching,
+        candidates.eta,
+        candidates.rows,
+    )
     mass, inertia, points, normals = grains.m, grains.inertia, walls.points, walls.normals
     spring_r = 0.0
-    spread4(f, 8 * (n + b), 0.0)  # what fixed grains and planes would get
-    spread4(f, 8 * (n + b) + 4, 0.0)
-    for place in range(D_BOOKS, D_BOOKS + N_LANE_BOOK * PITCH):
-        desk[place] = 0.0
-    k = near.first[b]
-    end = k + near.count[b]
+    fill4(f, 8 * (n + b), 0.0)  # what fixed grains and planes would get
+    fill4(f, 8 * (n + b) + 4, 0.0)
+    for place in range(B.WORK, B.WORK + B.N_WORK * B.PITCH):
+        batch[place] = 0.0
+    k = candidates.first[b]
+    end = k + candidates.count[b]
     waiting = 0
     while True:
-        while waiting < LANES and k < end:
-            some = min(LANES, end - k)
+        while waiting < B.LANES and k < end:
+            some = min(B.LANES, end - k)
             for g in range(i_of[k] + pairs.slab, min(i_of[k + some - 1] + pairs.slab + 1, n)):
-                ask(x, 4 * g)
-                ask(v, 8 * g)
+                prefetch(x, 4 * g)
+                prefetch(v, 8 * g)
                 if g < hi:  # beyond, another thread may be writing
-                    ask(f, 8 * g)
-            waiting = look(
-                kind.plane_case, reach_on, k, some, waiting, n_solid, c, x, i_of, j_of, live, points, normals,
-                glance, hit, which,
+                    prefetch(f, 8 * g)
+            waiting = filter_pairs(
+                variant.plane_case, reach_on, k, some, waiting, n_solid, c, x, i_of, j_of, touching, points,
+                normals, separation, inside, selected,
             )  # fmt: skip
             k += some
-        m = min(waiting, LANES)
+        m = min(waiting, B.LANES)
         if m == 0:
             break
-        lanes = lay_out(
-            kind.rotation,
+        lanes = gather(
+            variant.rotation,
             m,
-            which,
+            selected,
             n_solid,
             c,
             mass,
@@ -97,77 +128,85 @@ def forces(
             normals,
             i_of,
             j_of,
-            live,
+            touching,
             eta,
             rows,
-            desk,
+            batch,
         )
         if water is not None and choice.rebound:
-            wet_dashpots(choice, m, which, c, grains, near, desk)
-        reckon(flat, choice, lanes, hdt, now[N_OVERLAP_MAX], c, desk)
-        if company is not None:
-            spring_r += keep_company(
-                kind, choice, m, n, t, hdt, which, c, grains, near, desk, ended, book, now
+            immersed_dashpots(choice, m, selected, c, grains, candidates, batch)
+        compute(flat, choice, lanes, hdt, stats[S.OVERLAP_MAX], c, batch)
+        if optional is not None:
+            spring_r += optional_physics(
+                variant, choice, m, n, t, hdt, selected, c, grains, candidates, batch, ended, account, stats
             )
-        if hand_out(m, which, i_of, to, live, rows, desk, f):
-            guard(m, which, n, step, c, grains, near, desk, now)
+        if scatter(m, selected, i_of, to, touching, rows, batch, f):
+            track_overlap(m, selected, n, step, c, grains, candidates, batch, stats)
         waiting -= m
         for l in range(waiting):
-            which[l] = which[LANES + l]
-    for row in range(N_LANE_BOOK):
+            selected[l] = selected[B.LANES + l]
+    for row in range(B.N_WORK):
         total = 0.0
-        for l in range(LANES):
-            total += desk[D_BOOKS + row * PITCH + l]
-        book[BOOKS[row]] += total
+        for l in range(B.LANES):
+            total += batch[B.WORK + row * B.PITCH + l]
+        account[BOOKS[row]] += total
     if last:
-        now[N_SPRING_N], now[N_SPRING_S], now[N_N_CONTACT] = springs(b, c, near)
-        now[N_SPRING_R] = spring_r
+        stats[S.SPRING_N], stats[S.SPRING_S], stats[S.N_CONTACT] = spring_energy(b, c, candidates)
+        stats[S.SPRING_R] = spring_r
 
 
 @inner()
-def guard(
-    m: int, which: Any, n: int, step: int, c: Any, grains: Grains, near: Near, desk: Any, now: Any
+def track_overlap(
+    m: int,
+    selected: Any,
+    n: int,
+    step: int,
+    c: Any,
+    grains: GrainArrays,
+    candidates: CandidateArrays,
+    batch: Any,
+    stats: Any,
 ) -> None:
     """Note the largest overlap among the first m lanes, and flag one beyond the limit."""
     ids = grains.ids
     for l in range(m):
-        smaller = 2.0 * min(desk[D_SPIN_I + 4 * l + 3], desk[D_SPIN_J + 4 * l + 3])
-        ratio = overlap_on(l, c, desk) / smaller
-        if ratio > now[N_OVERLAP_MAX]:
-            i, j = near.i[which[l]], near.j[which[l]]
-            now[N_OVERLAP_MAX], now[N_OVERLAP_GRAIN], now[N_OVERLAP_STEP] = ratio, ids[i], step
-            if ratio > c[C_OVERLAP_LIMIT] and now[N_FAULT] == FAULT_NONE:
-                now[N_FAULT], now[N_FAULT_GRAIN] = FAULT_OVERLAP, ids[i]
-                now[N_FAULT_PARTNER] = ids[j] if j < n else j
+        smaller = 2.0 * min(batch[B.SPIN_I + 4 * l + 3], batch[B.SPIN_J + 4 * l + 3])
+        ratio = overlap_of_lane(l, c, batch) / smaller
+        if ratio > stats[S.OVERLAP_MAX]:
+            i, j = candidates.i[selected[l]], candidates.j[selected[l]]
+            stats[S.OVERLAP_MAX], stats[S.OVERLAP_GRAIN], stats[S.OVERLAP_STEP] = ratio, ids[i], step
+            if ratio > c[P.OVERLAP_LIMIT] and stats[S.FAULT] == FAULT_NONE:
+                stats[S.FAULT], stats[S.FAULT_GRAIN] = FAULT_OVERLAP, ids[i]
+                stats[S.FAULT_PARTNER] = ids[j] if j < n else j
 
 
 @inner(fastmath=FAST)
-def springs(b: int, c: Any, near: Near) -> tuple[float, float, int]:
+def spring_energy(b: int, c: Any, candidates: CandidateArrays) -> tuple[float, float, int]:
     """Energy in the normal and tangential springs of block b [J], and its contacts."""
-    k_n, k_s, rows = c[C_K_N], c[C_K_S], near.rows
+    k_n, k_s, rows = c[P.K_N], c[P.K_S], candidates.rows
     normal = tangential = 0.0
     count = 0
-    for k in range(near.first[b], near.first[b] + near.count[b]):
-        if near.live[k]:
-            e_n = rows[k, R_F_N] - rows[k, R_DASH_N]
+    for k in range(candidates.first[b], candidates.first[b] + candidates.count[b]):
+        if candidates.touching[k]:
+            e_n = rows[k, M.F_N] - rows[k, M.DASH_N]
             if k_n > 0.0:
                 normal += 0.5 * e_n * e_n / k_n
             if k_s > 0.0:
                 for a in range(3):
-                    tangential += 0.5 * rows[k, R_SPRING_S + a] ** 2 / k_s
+                    tangential += 0.5 * rows[k, M.SPRING_S + a] ** 2 / k_s
             count += 1
     return normal, tangential, count
 
 
 @cache
-def make_run(kind: Variant) -> Any:
+def make_run(variant: KernelVariant) -> Any:
     """Build the stepping function of one variant; compiled when first called, then kept on disk.
 
     What a variant goes without is handed on as None: the compiler then leaves it out before it types it.
     """
-    flat: Maybe = 1 if kind.plane_case else None
-    water: Maybe = 1 if kind.water else None
-    company: Maybe = 1 if kind.rolling or kind.events or kind.film else None
+    flat: Present = 1 if variant.plane_case else None
+    water: Present = 1 if variant.water else None
+    optional: Present = 1 if variant.rolling or variant.events or variant.film else None
 
     @kernel(nogil=True, fastmath=FAST)
     def run(
@@ -181,80 +220,88 @@ def make_run(kind: Variant) -> Any:
         block_start: Any,
         n: int,
         n_solid: int,
-        grains: Grains,
-        walls: Walls,
-        pairs: Pairs,
-        near: Near,
-        spare: Near,
-        ledger: Ledger,
-        work: Work,
-        choice: Choice,
-        clock: Any,
+        grains: GrainArrays,
+        walls: WallArrays,
+        pairs: PairArrays,
+        candidates: CandidateArrays,
+        spare: CandidateArrays,
+        accounts_of_blocks: AccountArrays,
+        work: Workspace,
+        choice: LawChoice,
+        schedule: Any,
     ) -> tuple[int, float, int]:
         """March up to n_steps; all threads come back with the same (steps done, travel, stop)."""
-        c, grains, walls, pairs, work = lend(c), lend(grains), lend(walls), lend(pairs), lend(work)
-        near, spare, ledger, block_start = lend(near), lend(spare), lend(ledger), lend(block_start)
-        ended, books, now = ledger.ended, ledger.books, ledger.now
+        c, grains, walls, pairs, work = borrow(c), borrow(grains), borrow(walls), borrow(pairs), borrow(work)
+        candidates, spare, accounts_of_blocks, block_start = (
+            borrow(candidates),
+            borrow(spare),
+            borrow(accounts_of_blocks),
+            borrow(block_start),
+        )
+        ended, books, stats = accounts_of_blocks.ended, accounts_of_blocks.books, accounts_of_blocks.stats
         n_block = len(block_start) - 1
         b_0, b_1 = thread * n_block // n_threads, (thread + 1) * n_block // n_threads
-        dt, t_zero, skin, step_limit = c[C_DT], c[C_T_ZERO], c[C_SKIN], c[C_STEP_LIMIT]
-        own = work.clock
-        for k in range(N_CLOCK):
-            own[k] = clock[k]
-        look = COST_LOOK * pairs.start[n] + COST_GRAIN * n
+        dt, t_zero, skin, step_limit = c[P.DT], c[P.T_ZERO], c[P.SKIN], c[P.DISPLACEMENT_LIMIT]
+        own = work.schedule
+        for k in range(K.N_SCHEDULE):
+            own[k] = schedule[k]
+        listing_cost = COST_LOOK * pairs.start[n] + COST_GRAIN * n
         target = done = 0
         stop = STOP_DONE
         while done < n_steps:
             if 2.0 * travel > skin:
                 stop = STOP_LIST
                 break
-            if own[K_STRAY] > own[K_SKIN] or own[K_SINCE] >= own[K_LASTS]:
-                plan_cut(own, look)
+            if own[K.APPROACH] > own[K.SKIN] or own[K.SINCE] >= own[K.LASTS]:
+                plan_prune(own, listing_cost)
                 fastest = 0.0
                 for b in range(n_block):
-                    fastest = max(fastest, now[b, N_SPEED_MAX])
-                own[K_LASTS] = steps_ahead(own, fastest * dt)
-                reach_on = ROUNDED_UP * own[K_SKIN] + (c[C_FILM_REACH] if kind.film else 0.0)
+                    fastest = max(fastest, stats[b, S.SPEED_MAX])
+                own[K.LASTS] = steps_ahead(own, fastest * dt)
+                reach_on = ROUNDED_UP * own[K.SKIN] + (c[P.FILM_REACH] if variant.film else 0.0)
                 for b in range(b_0, b_1):
-                    now[b, N_FULL], now[b, N_TOUCHING] = cut(
-                        b, block_start[b], block_start[b + 1], n, n_solid, reach_on, own[K_LASTS] * dt,
-                        kind.plane_case, c, grains, walls, pairs, near, spare, work,
+                    stats[b, S.ROOM_WANTED], stats[b, S.N_TOUCHING] = prune(
+                        b, block_start[b], block_start[b + 1], n, n_solid, reach_on, own[K.LASTS] * dt,
+                        variant.plane_case, c, grains, walls, pairs, candidates, spare, work,
                     )  # fmt: skip
-                target = meet(count, n_threads, target)
-                own[K_STRAY] = own[K_SINCE] = own[K_LANES] = own[K_TOUCHING] = 0.0
+                target = wait(count, n_threads, target)
+                own[K.APPROACH] = own[K.SINCE] = own[K.CANDIDATES] = own[K.TOUCHING] = 0.0
                 for b in range(n_block):
-                    own[K_LANES] += near.count[b]
-                    own[K_TOUCHING] += now[b, N_TOUCHING]
-                    if now[b, N_FULL] != 0.0:
+                    own[K.CANDIDATES] += candidates.count[b]
+                    own[K.TOUCHING] += stats[b, S.N_TOUCHING]
+                    if stats[b, S.ROOM_WANTED] != 0.0:
                         stop = STOP_ROOM
                 if stop != STOP_DONE:
-                    own[K_STRAY] = np.inf
+                    own[K.APPROACH] = np.inf
                     break
             last = done == n_steps - 1
             t = t_zero + step * dt
             hdt = 0.0 if step == 0 else 0.5 * dt
             for b in range(b_0, b_1):
-                forces(
-                    kind, flat, water, company, choice, b, block_start[b + 1], n, n_solid, step, t, hdt, last,
-                    c, grains, walls, pairs, near, work, ended[b], books[b], now[b],
+                block_forces(
+                    variant, flat, water, optional, choice, b, block_start[b + 1], n, n_solid, step, t, hdt,
+                    last, c, grains, walls, pairs, candidates, work, ended[b], books[b], stats[b],
                 )  # fmt: skip
-            target = meet(count, n_threads, target)
+            target = wait(count, n_threads, target)
             for b in range(b_0, b_1):
-                motion(
-                    kind, water, choice, block_start[b], block_start[b + 1], step == 0, last, c, grains,
-                    pairs, work.table, books[b], now[b],
+                integrate(
+                    variant, water, choice, block_start[b], block_start[b + 1], step == 0, last, c, grains,
+                    pairs, work.table, books[b], stats[b],
                 )  # fmt: skip
-            target = meet(count, n_threads, target)
-            fastest = stray = 0.0
+            target = wait(count, n_threads, target)
+            fastest = velocity_change = 0.0
             full = False
             for b in range(n_block):
-                fastest, stray = max(fastest, now[b, N_SPEED_MAX]), max(stray, now[b, N_STRAY_MAX])
-                full = full or now[b, N_ENDED_SHOWN] > 0.5 * ended.shape[1]
-                if now[b, N_FAULT_SHOWN] != FAULT_NONE:
+                fastest, velocity_change = (
+                    max(fastest, stats[b, S.SPEED_MAX]),
+                    max(velocity_change, stats[b, S.VELOCITY_CHANGE_MAX]),
+                )
+                full = full or stats[b, S.N_ENDED_POSTED] > 0.5 * ended.shape[1]
+                if stats[b, S.FAULT_POSTED] != FAULT_NONE:
                     stop = STOP_FAULT
             travel += fastest * dt
-            own[K_STRAY] += 2.0 * stray * dt
-            own[K_SINCE] += 1.0
+            own[K.APPROACH] += 2.0 * velocity_change * dt
+            own[K.SINCE] += 1.0
             step += 1
             done += 1
             if fastest * dt > step_limit and stop == STOP_DONE:
@@ -264,10 +311,10 @@ def make_run(kind: Variant) -> Any:
             if full:
                 stop = STOP_EVENTS
                 break
-        meet(count, n_threads, target)
+        wait(count, n_threads, target)
         if thread == 0:
-            for k in range(N_CLOCK):
-                clock[k] = own[k]
+            for k in range(K.N_SCHEDULE):
+                schedule[k] = own[k]
         return done, travel, stop
 
     return run

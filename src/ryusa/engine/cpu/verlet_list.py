@@ -1,101 +1,60 @@
-"""Lay grains out in cell order and list their pairs; the memory of touching pairs comes along."""
+"""The Verlet list of the CPU engine: grains in cell order, and the pairs that may touch before the next."""
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from ryusa.engine.cpu.arrays import Grains, Near, Pairs, Walls, aligned
-from ryusa.engine.cpu.batch_layout import LANES
-from ryusa.engine.cpu.block_exchange import cross_lists, wrap_grains
-from ryusa.engine.cpu.cell_list import build_list, grid_of, sort_into
-from ryusa.engine.cpu.prune import count_live, put_rows, take_rows
-from ryusa.engine.shared.rows import Variant
+from ryusa.engine.cpu import batch_layout as B
+from ryusa.engine.cpu.arrays import CandidateArrays, GrainArrays, PairArrays, WallArrays
+from ryusa.engine.cpu.block_exchange import number_crossing_pairs
+from ryusa.engine.cpu.cell_list import build_list, grid_of, sort_by_cell, wrap_grains
+from ryusa.engine.cpu.prune import copy_rows_in, copy_rows_out, count_touching
+from ryusa.engine.shared.contact_memory import ContactMemory
+from ryusa.engine.shared.layout import Layout, aligned, film_reach
+from ryusa.engine.shared.variant import KernelVariant
 from ryusa.model import Scene, State
-from ryusa.model.enums import Damping, Profile, Rebound
-from ryusa.model.fluid import Immersed
 from ryusa.model.scene import Floats
 
-Share = Callable[
-    [Callable[[int, int], Any]], list[Any]
-]  # results of a task for blocks first..last-1, in order
+# Results of a task for blocks first..last-1, in order.
+Share = Callable[[Callable[[int, int], Any]], list[Any]]
+
+_CACHED = 8192  # grains that a cache holds: more have to be prefetched
 
 
-_CACHED = 8192  # grains that a cache holds: more have to be asked for in time
+class BlockLayout(Layout):
+    """The layout of a scene cut into blocks of grains, and the lists built from it."""
 
+    def __init__(self, scene: Scene, blocks: int, variant: KernelVariant) -> None:
+        super().__init__(scene, variant)
+        self.block_start = np.arange(blocks + 1) * self.n // blocks
+        self.walls = WallArrays(self.plane_normals, self.plane_points)
 
-class Memory(NamedTuple):
-    """Touching pairs by id, with their dashpots and rows (rows.py)."""
-
-    i: np.ndarray
-    j: np.ndarray
-    eta: Floats
-    rows: Floats
-
-
-class Layout:
-    """What of a scene the list needs, by id, and how to lay it out."""
-
-    def __init__(self, scene: Scene, blocks: int, kind: Variant) -> None:
-        n, n_fixed, n_plane = scene.n_grain, scene.n_fixed, scene.n_plane
-        self.n, self.n_solid, self.kind = n, n + n_fixed, kind
-        inf = np.full(n_fixed + n_plane, np.inf)
-        self.r = np.concatenate([0.5 * scene.d, 0.5 * scene.d_fixed, np.full(n_plane, np.inf)])
-        self.largest = 2.0 * float(self.r[: self.n_solid].max(initial=0.0))
-        self.m = np.concatenate([scene.m + scene.m_added, inf])
-        self.inertia = np.concatenate([scene.inertia, inf])
-        self.tracked = scene.tracked if len(scene.tracked) == n else np.zeros(n, np.bool_)
-        law, water = scene.contact, scene.water
-        self.many_dashpots = law.damping != Damping.CONSTANTS or water.rebound != Rebound.DRY
-        self.period, self.scene = np.array(scene.period), scene
-        self.low, self.high = np.array(scene.world_low), np.array(scene.world_high)
-        self.block_start = np.arange(blocks + 1) * n // blocks
-        self.walls = Walls(
-            np.ascontiguousarray(scene.plane_normal, dtype=np.float64).reshape(-1, 3),
-            np.ascontiguousarray(scene.plane_point, dtype=np.float64).reshape(-1, 3),
-        )
-        # fixed grains are listed from where they stand inside the period
-        self.x_fixed = np.array(scene.x_fixed, dtype=np.float64).reshape(-1, 3)
-        for k in np.flatnonzero(np.isfinite(self.period)):
-            self.x_fixed[:, k] %= self.period[k]
-        self.standing = np.flatnonzero(scene.fixed_active)
-
-    def empty_pairs(self) -> Pairs:
-        """A list without pairs."""
+    def empty_pairs(self) -> PairArrays:
+        """A Verlet list without pairs."""
         none = np.zeros(0, np.int64)
-        return Pairs(
+        return PairArrays(
             0, np.zeros(self.n + 1, np.int64), np.zeros(0, np.uint32), none, np.zeros(0, np.uint32),
             np.zeros(0, np.uint8), none, none, aligned(0, 8),
         )  # fmt: skip
 
-    def room_for(self, pairs: np.ndarray) -> Near:
-        """An empty near list with room for so many pairs in each block."""
+    def empty_candidates(self, pairs: np.ndarray) -> CandidateArrays:
+        """A list of candidate pairs, empty, with room for so many in each block."""
         first = np.concatenate([[0], np.cumsum(pairs)])
         total = int(first[-1])
-        i, j, to, pair = (np.zeros(total, np.uint32) for _ in range(4))
-        live, rows = np.zeros(total, np.uint8), aligned(total, self.kind.row_width)
+        i, j, target, index = (np.zeros(total, np.uint32) for _ in range(4))
+        touching, rows = np.zeros(total, np.uint8), aligned(total, self.variant.row_width)
         eta = np.zeros((total if self.many_dashpots else 1, 2))
-        return Near(first, np.zeros(len(pairs), np.int64), i, j, to, pair, live, eta, rows)
+        return CandidateArrays(
+            first, np.zeros(len(pairs), np.int64), i, j, target, index, touching, eta, rows
+        )
 
-    def by_id(self, state: State) -> Grains:
-        """Arrays of a state, still in the order of ids."""
+    def grains_by_id(self, state: State) -> GrainArrays:
+        """Grain arrays of a state, still in the order of ids."""
         n, scene = self.n, self.scene
-        still = np.zeros((len(self.r) - n, 3))
-        image = np.array(state.image, dtype=np.int32) if len(state.image) == n else np.zeros((n, 2), np.int32)
-        spin = state.omega if scene.rotation else np.zeros((n, 3))
-        none = Immersed(np.zeros((0, 0)), np.zeros((0, 0)))
-        if scene.water.profile == Profile.COLUMN:
-            none = Immersed.still(n)
-        immersed = state.immersed or none
-        x, v, w = _vectors(len(self.r))
-        x[:, :3] = np.vstack([state.x, self.x_fixed, still[len(self.x_fixed) :]])
-        v[:n, :3], w[:n, :3] = state.v, spin
-        x[:, 3] = w[:, 3] = self.r
-        return Grains(
-            x=x,
-            v=v,
-            then=aligned(n, 4),
-            w=w,
+        return GrainArrays(
+            **self.by_id(state)._asdict(),
+            v_pruned=aligned(n, 4),
             m=self.m,
             m_bare=scene.m,
             m_weight=scene.m_weight,
@@ -103,15 +62,12 @@ class Layout:
             per_m=1.0 / self.m[:n],
             per_inertia=1.0 / self.inertia[:n],
             ids=np.arange(self.n_solid),
-            image=image,
             tracked=self.tracked,
-            touched=np.zeros(n, np.int32),
+            n_touching=np.zeros(n, np.int32),
             film=np.zeros((0, 0)),
-            seen=np.array(immersed.seen),
-            taken=np.array(immersed.taken),
         )
 
-    def unsorted(self, grains: Grains) -> Grains:
+    def unsorted(self, grains: GrainArrays) -> GrainArrays:
         """The arrays that move, back in the order of ids."""
         n = self.n
         back = np.argsort(grains.ids[:n])
@@ -119,27 +75,27 @@ class Layout:
         for name in ("x", "v", "w"):
             moved[name] = getattr(grains, name)
             moved[name][:n] = moved[name][:n][back]
-        wet = back[: len(grains.seen)]
+        with_fluid = back[: len(grains.fluid)]
         return grains._replace(
             **moved,
             image=grains.image[back],
-            touched=grains.touched[back],
+            n_touching=grains.n_touching[back],
             ids=np.arange(self.n_solid),
-            seen=grains.seen[wet],
-            taken=grains.taken[wet],
+            fluid=grains.fluid[with_fluid],
+            impulse=grains.impulse[with_fluid],
         )
 
     def list_pairs(
-        self, by_id: Grains, starts: np.ndarray, skin: float, share: Share
-    ) -> tuple[Grains, Pairs, Floats, int]:
-        """Wrap, sort and list.
+        self, by_id: GrainArrays, starts: np.ndarray, skin: float, share: Share
+    ) -> tuple[GrainArrays, PairArrays, Floats, int]:
+        """Bring grains into the period, sort them by cell, and list their pairs.
 
         Parameters
         ----------
         by_id : arrays in the order of ids; positions are brought inside the period.
         starts : of the old list, which tells how much room the new one may need.
         skin : reach of the list beyond touch and films [m].
-        share : has threads share the blocks.
+        share : distributes the blocks over threads.
 
         Returns
         -------
@@ -153,7 +109,7 @@ class Layout:
         skin = skin + film_reach(scene)
         size = self.largest + skin
         grid = grid_of(x, n, size, period)
-        first, order = sort_into(x, n, grid)
+        first, order = sort_by_cell(x, n, grid)
         place = np.arange(len(self.r))
         place[:n] = order
         for array in (x, by_id.v, by_id.w):  # in place: there may be a million of them
@@ -167,13 +123,13 @@ class Layout:
             per_inertia=1.0 / self.inertia[order],
             ids=place[: self.n_solid].copy(),
             image=by_id.image[order],
-            touched=by_id.touched[order],
-            seen=by_id.seen[order[: len(by_id.seen)]],
-            taken=by_id.taken[order[: len(by_id.seen)]],
+            n_touching=by_id.n_touching[order],
+            fluid=by_id.fluid[order[: len(by_id.fluid)]],
+            impulse=by_id.impulse[order[: len(by_id.fluid)]],
         )
         bed = np.ascontiguousarray(self.x_fixed[self.standing])
         bed_grid = grid_of(bed, len(bed), size, period)
-        bed_first, bed_order = sort_into(bed, len(bed), bed_grid)
+        bed_first, bed_order = sort_by_cell(bed, len(bed), bed_grid)
         free = (*grid, first, np.arange(n))
         fixed = (*bed_grid, bed_first, self.standing[bed_order])
         start = np.zeros(n + 1, np.int64)
@@ -197,13 +153,15 @@ class Layout:
             start[hi:n] += len(some)
         partners = np.concatenate([some for _, some in found])
         start[n] = len(partners)
-        cross_start, crossing, incoming_start, incoming = cross_lists(n, self.block_start, start, partners)
+        cross_start, crossing, incoming_start, incoming = number_crossing_pairs(
+            n, self.block_start, start, partners
+        )
         rows = n + len(self.block_start) - 1 + len(crossing)
-        slab = int(1.1 * n / grid[2][0]) + LANES if n > _CACHED else n
-        grains = grains._replace(film=np.zeros((rows, 4) if self.kind.film else (0, 0)))
+        slab = int(1.1 * n / grid[2][0]) + B.LANES if n > _CACHED else n
+        grains = grains._replace(film=np.zeros((rows, 4) if self.variant.film else (0, 0)))
         return (
             grains,
-            Pairs(
+            PairArrays(
                 slab, start, partners, cross_start, crossing, np.zeros(rows, np.uint8), incoming_start,
                 incoming, aligned(rows, 8),
             ),
@@ -211,30 +169,19 @@ class Layout:
             lost,
         )  # fmt: skip
 
-    def remember(self, grains: Grains, near: Near, memory: Memory) -> int:
-        """Lay the memory of touching pairs into a near list; returns the first that is not in it, or -1."""
+    def place_memory(self, grains: GrainArrays, candidates: CandidateArrays, memory: ContactMemory) -> int:
+        """Put the memory of touching pairs into a list of candidates; returns the first not in it, or -1."""
         index = np.empty(self.n, np.int64)
         index[grains.ids[: self.n]] = np.arange(self.n)
-        block_of = np.repeat(np.arange(len(near.count)), np.diff(self.block_start))
-        return int(put_rows(self.n, near, block_of, index, *memory))
+        block_of = np.repeat(np.arange(len(candidates.count)), np.diff(self.block_start))
+        return int(copy_rows_in(self.n, candidates, block_of, index, *memory))
 
 
-def _vectors(n: int) -> tuple[Floats, Floats, Floats]:
-    """Room for x, v and w of n places (arrays.Grains); v and w share a line."""
-    both = aligned(n, 8)
-    return aligned(n, 4), both[:, :4], both[:, 4:]
-
-
-def film_reach(scene: Scene) -> float:
-    """Gap below which films resist [m]; 0 where there are none."""
-    return 0.0 if scene.water.profile == Profile.NONE else scene.water.film_reach
-
-
-def take_memory(n: int, grains: Grains, near: Near) -> Memory:
+def collect_memory(n: int, grains: GrainArrays, candidates: CandidateArrays) -> ContactMemory:
     """Copy ids and rows of all pairs in touch, in list order."""
-    count = count_live(near)
-    width = near.rows.shape[1]
+    count = count_touching(candidates)
+    width = candidates.rows.shape[1]
     i, j = np.empty(count, np.int64), np.empty(count, np.int64)
-    memory = Memory(i, j, np.empty((count, 2)), np.empty((count, width)))
-    take_rows(n, near, grains.ids, *memory)
+    memory = ContactMemory(i, j, np.empty((count, 2)), np.empty((count, width)))
+    copy_rows_out(n, candidates, grains.ids, *memory)
     return memory

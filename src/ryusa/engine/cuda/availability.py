@@ -6,7 +6,7 @@ from typing import Any
 _PACKAGE = "the package numba-cuda is not installed: pip install 'ryusa[cuda]'"
 
 
-def absent() -> str:
+def unavailable() -> str:
     """Why no CUDA device can be used here, in one line; nothing when one can."""
     if find_spec("numba_cuda") is None:
         return _PACKAGE
@@ -25,7 +25,7 @@ def absent() -> str:
     return "" if cards else "the CUDA driver finds no card"
 
 
-def card() -> str:
+def device_name() -> str:
     """Name of the card that would be used; only where `absent` finds nothing."""
     from numba import cuda
 

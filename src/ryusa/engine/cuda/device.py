@@ -17,7 +17,7 @@ def device(function: F) -> F:
     return cuda.jit(device=True)(function)
 
 
-def same(function: F) -> F:
+def on_device(function: F) -> F:
     """The text of a function of the CPU engine, compiled for the device; laws need no such help."""
     return device(_plain(function) if simulated() else _text(function))
 

@@ -5,21 +5,30 @@ from typing import Any
 
 import numpy as np
 
-from ryusa.engine.cpu.verlet_list import Layout, Memory
-from ryusa.engine.cuda import verlet_list as listing
-from ryusa.engine.cuda.arrays import IN_SIMULATOR, MOST_BLOCKS, NOBODY, ON_CARD, Bodies, Pairs, Shape, Walls
+from ryusa.engine.cuda import verlet_list as kernels
+from ryusa.engine.cuda.arrays import (
+    IN_SIMULATOR,
+    MOST_BLOCKS,
+    ON_CARD,
+    DeviceGrainArrays,
+    DevicePairArrays,
+    DeviceWallArrays,
+    LaunchShape,
+)
 from ryusa.engine.cuda.availability import simulated
 from ryusa.engine.cuda.device import cuda
-from ryusa.engine.shared.contact_memory import memory_of
-from ryusa.engine.shared.rows import Choice, Variant
+from ryusa.engine.cuda.step_totals import NO_GRAIN
+from ryusa.engine.shared.contact_memory import ContactMemory, memory_of
+from ryusa.engine.shared.layout import Layout
+from ryusa.engine.shared.variant import KernelVariant, LawChoice
 from ryusa.model import Scene, State
-from ryusa.model.fluid import N_SEEN, N_TAKEN, Immersed
+from ryusa.model.fluid import N_IMPULSE, N_SAMPLED, FluidAtGrains
 from ryusa.model.scene import Floats
 
 _MARGIN = 1.0 + 1e-9  # of a cell beyond reach: a grain on its edge may fall to either side
 
 
-def shape() -> Shape:
+def shape() -> LaunchShape:
     """How work is cut up here."""
     return IN_SIMULATOR if simulated() else ON_CARD
 
@@ -39,7 +48,7 @@ def one(value: int) -> Any:
     return cuda.to_device(np.full(1, value))
 
 
-class Store:
+class DeviceState:
     """What lies on the device for one scene.
 
     Parameters
@@ -54,15 +63,15 @@ class Store:
         self,
         scene: Scene,
         state: State,
-        kind: Variant,
-        choice: Choice,
-        numbers: Floats,
+        variant: KernelVariant,
+        choice: LawChoice,
+        parameters: Floats,
         extent: Floats | None,
     ) -> None:
-        self.scene, self.kind, self.n = scene, kind, scene.n_grain
-        layout = self.layout = Layout(scene, 1, kind)
+        self.scene, self.variant, self.n = scene, variant, scene.n_grain
+        layout = self.layout = Layout(scene, variant)
         self.n_solid = layout.n_solid
-        memory = memory_of(state.contacts, kind, choice, numbers, layout)
+        memory = memory_of(state.contacts, variant, choice, parameters, layout)
         by_id = layout.by_id(state)
         x = by_id.x.copy()
         x[:, 3] = layout.r
@@ -72,13 +81,13 @@ class Store:
             where = np.vstack([x[: self.n, :3], still])
             extent = np.stack([where.min(axis=0, initial=np.inf), where.max(axis=0, initial=-np.inf)])
         self.extent = extent
-        touched = np.zeros((2, self.n), np.int32)
+        n_touching = np.zeros((2, self.n), np.int32)
         for touching in (memory.i, memory.j[memory.j < self.n]):
-            np.add.at(touched[0], touching, 1)
-        wet = (
-            Immersed(by_id.seen, by_id.taken)
-            if kind.column
-            else Immersed(np.zeros((1, N_SEEN)), np.zeros((1, N_TAKEN)))
+            np.add.at(n_touching[0], touching, 1)
+        fluid = (
+            FluidAtGrains(by_id.fluid, by_id.impulse)
+            if variant.column
+            else FluidAtGrains(np.zeros((1, N_SAMPLED)), np.zeros((1, N_IMPULSE)))
         )
         # both orders share what has two halves
         shared: dict[str, Any] = {
@@ -86,11 +95,11 @@ class Store:
             "v": cuda.to_device(np.stack([by_id.v, by_id.v])),
             "w": cuda.to_device(np.stack([by_id.w, by_id.w])),
             "tracked": cuda.to_device(layout.tracked.astype(np.uint8)),
-            "touched": cuda.to_device(touched),
+            "n_touching": cuda.to_device(n_touching),
         }
 
-        def own() -> Bodies:
-            return Bodies(
+        def own() -> DeviceGrainArrays:
+            return DeviceGrainArrays(
                 **shared,
                 m=cuda.to_device(layout.m),
                 inertia=cuda.to_device(layout.inertia),
@@ -98,18 +107,18 @@ class Store:
                 m_weight=cuda.to_device(np.asarray(scene.m_weight, np.float64)),
                 ids=cuda.to_device(np.arange(self.n_solid, dtype=np.int32)),
                 image=cuda.to_device(np.ascontiguousarray(by_id.image)),
-                seen=cuda.to_device(wet.seen),
-                taken=cuda.to_device(wet.taken),
+                fluid=cuda.to_device(fluid.sampled),
+                impulse=cuda.to_device(fluid.impulse),
             )
 
         self.bodies, self._spare, self._of = own(), own(), own()
         self.half = 0
-        self.walls = Walls(
-            cuda.to_device(layout.walls.normals),
-            cuda.to_device(layout.walls.points),
+        self.walls = DeviceWallArrays(
+            cuda.to_device(layout.plane_normals),
+            cuda.to_device(layout.plane_points),
             cuda.to_device(np.asarray(scene.plane_active, np.uint8)),
         )
-        self.c = cuda.to_device(numbers)
+        self.c = cuda.to_device(parameters)
         self.listed = cuda.to_device(np.zeros((self.n, 3)))
         self._most_cells = 4 * (self.n + len(still)) + 64
         self._cell = cuda.to_device(np.zeros(max(self.n, len(still), 1), np.int64))
@@ -125,18 +134,18 @@ class Store:
         self._next = self._room(0)
         self.n_pair = 0
 
-    def _room(self, pairs: int) -> Pairs:
+    def _room(self, pairs: int) -> DevicePairArrays:
         """An empty list with room for so many neighbours."""
         room = max(pairs, 1)
-        return Pairs(
+        return DevicePairArrays(
             cuda.to_device(np.zeros(self.n + 1, np.int64)),
             cuda.device_array(room, np.int32),
             cuda.device_array(room, np.uint8),
             cuda.device_array((room, 2), np.float64),
-            cuda.device_array((room, self.kind.row_width), np.float64),
+            cuda.device_array((room, self.variant.row_width), np.float64),
         )
 
-    def _by_id(self, memory: Memory) -> Pairs:
+    def _by_id(self, memory: ContactMemory) -> DevicePairArrays:
         """A list in the order of ids of the pairs in touch alone, each from both sides."""
         both = memory.j < self.n
         owner = np.concatenate([memory.i, memory.j[both]])
@@ -147,8 +156,8 @@ class Store:
         which, partners = which[order], partner[order]
         eta, rows = memory.eta[which], memory.rows[which]
         if not len(order):  # no array on a device is empty
-            partners, eta, rows = np.zeros(1), np.zeros((1, 2)), np.zeros((1, self.kind.row_width))
-        return Pairs(
+            partners, eta, rows = np.zeros(1), np.zeros((1, 2)), np.zeros((1, self.variant.row_width))
+        return DevicePairArrays(
             cuda.to_device(start.astype(np.int64)),
             cuda.to_device(partners.astype(np.int32)),
             cuda.to_device(np.full(len(partners), 1 if len(order) else 0, np.uint8)),
@@ -168,42 +177,42 @@ class Store:
         n_cell = int(np.prod(dims))
         grid, dims = cuda.to_device(grid), cuda.to_device(dims)
         old, new, ids = self.bodies, self._spare, self.bodies.ids
-        lost, missing = one(NOBODY), one(NOBODY)
-        launch(listing.bring_in, n, n, old.x[half], old.image, ids, grid, self.listed, lost)
+        lost, missing = one(NO_GRAIN), one(NO_GRAIN)
+        launch(kernels.wrap_grains, n, n, old.x[half], old.image, ids, grid, self.listed, lost)
         self._sort(self._places, n, n_cell, old.x[half], ids, grid, dims, self._first, self._order)
         still = len(self.standing)
         if still:
             self._sort(
                 self._still, still, n_cell, old.x[half], ids, grid, dims, self._first_fixed, self._fixed
             )
-        launch(listing.gather, n, n, half, self._order, old, new, self._of)
+        launch(kernels.reorder, n, n, half, self._order, old, new, self._of)
         self.bodies, self._spare = new, old
         half = self.half = 1 - half
-        launch(listing.spread, n, n, half, new)
+        launch(kernels.copy_radii, n, n, half, new)
 
         start = self._next.start
         common = (
-            n, self.n_solid, self.kind.plane_case, new.x[half], new.ids, self.walls, grid, dims, self._first,
-            self._first_fixed, self._fixed, start,
+            n, self.n_solid, self.variant.plane_case, new.x[half], new.ids, self.walls, grid, dims,
+            self._first, self._first_fixed, self._fixed, start,
         )  # fmt: skip
-        launch(listing.wipe, n + 1, start, 0)
-        launch(listing.find, n, 0, *common, self._next.partners)
+        launch(kernels.fill, n + 1, start, 0)
+        launch(kernels.find_neighbours, n, 0, *common, self._next.partners)
         self._sum_up(start, n + 1)
         self.n_pair = int(start[n : n + 1].copy_to_host()[0])
         if self.n_pair > self._next.partners.shape[0]:
             self._next = self._room(0)  # lets go of the old arrays before the new ones are asked for
             self._next = self._room(self.n_pair * 5 // 4)._replace(start=start)
-        launch(listing.find, n, 1, *common, self._next.partners)
+        launch(kernels.find_neighbours, n, 1, *common, self._next.partners)
         launch(
-            listing.carry, n, n, self.n_solid, self.kind.rotation, half, self.c, self._order, new, old.ids,
-            self.pairs, self._next, missing,
+            kernels.transfer_memory, n, n, self.n_solid, self.variant.rotation, half, self.c, self._order,
+            new, old.ids, self.pairs, self._next, missing,
         )  # fmt: skip
         self.pairs, self._next = self._next, self.pairs
         grain = int(missing.copy_to_host()[0])
-        if grain != NOBODY:
+        if grain != NO_GRAIN:
             raise AssertionError(f"a pair of grain {grain} is in touch and not in the list")
         grain = int(lost.copy_to_host()[0])
-        return -1 if grain == NOBODY else grain
+        return -1 if grain == NO_GRAIN else grain
 
     def _grid(self, reach: float) -> tuple[Floats, np.ndarray]:
         """Cells wide enough for a reach beyond touch [m], and no more than about four a grain."""
@@ -227,23 +236,23 @@ class Store:
         self, places: Any, n: int, n_cell: int, x: Any, ids: Any, grid: Any, dims: Any, first: Any, order: Any
     ) -> None:
         """Order the grains at n places by cell, and by id within a cell."""
-        launch(listing.wipe, n_cell + 1, first, 0)
-        launch(listing.wipe, n_cell + 1, self._taken, 0)
-        launch(listing.count_cells, n, places, x, grid, dims, self._cell, first)
+        launch(kernels.fill, n_cell + 1, first, 0)
+        launch(kernels.fill, n_cell + 1, self._taken, 0)
+        launch(kernels.count_cells, n, places, x, grid, dims, self._cell, first)
         self._sum_up(first, n_cell + 1)
-        launch(listing.fill_cells, n, places, self._cell, first, self._taken, order)
-        launch(listing.tidy_cells, n_cell, n_cell, first, ids, order)
+        launch(kernels.fill_cells, n, places, self._cell, first, self._taken, order)
+        launch(kernels.sort_cells, n_cell, n_cell, first, ids, order)
 
     def _sum_up(self, values: Any, n: int) -> None:
         """Turn values[:n] into the sums of those before each, chunks of chunks."""
-        chunks = -(-n // listing.CHUNK)
+        chunks = -(-n // kernels.CHUNK)
         before = cuda.to_device(np.zeros(chunks, np.int64))
         if chunks > 1:
-            launch(listing.add_chunks, chunks, n, values, before)
+            launch(kernels.sum_chunks, chunks, n, values, before)
             self._sum_up(before, chunks)
-        launch(listing.run_chunks, chunks, n, values, before)
+        launch(kernels.scan_chunks, chunks, n, values, before)
 
-    def place_at(self, x: Floats) -> None:
+    def set_positions(self, x: Floats) -> None:
         """Put grains at x [m], by id, without wrapping or listing."""
         ids = self.ids()
         for half in (0, 1):
@@ -258,22 +267,24 @@ class Store:
     def by_id(self, name: str, ids: np.ndarray) -> np.ndarray:
         """One array of free grains, in the order of ids."""
         array = getattr(self.bodies, name)
-        found = (array[self.half] if name in ("x", "v", "w", "touched") else array).copy_to_host()[: self.n]
+        found = (array[self.half] if name in ("x", "v", "w", "n_touching") else array).copy_to_host()[
+            : self.n
+        ]
         out = np.empty_like(found)
         out[ids] = found
         return out
 
-    def memory(self) -> Memory:
+    def memory(self) -> ContactMemory:
         """Pairs in touch with their rows, in the order of ids."""
         n, count = self.n, cuda.to_device(np.zeros(self.n + 1, np.int64))
-        launch(listing.count_live, n, n, self.bodies.ids, self.pairs, count)
+        launch(kernels.count_touching, n, n, self.bodies.ids, self.pairs, count)
         self._sum_up(count, n + 1)
         total = int(count[n : n + 1].copy_to_host()[0])
         room = max(total, 1)
         i, j = (cuda.to_device(np.zeros(room, np.int64)) for _ in range(2))
-        eta, rows = (cuda.to_device(np.zeros((room, width))) for width in (2, self.kind.row_width))
-        launch(listing.take_live, n, n, self.bodies.ids, self.pairs, count, i, j, eta, rows)
+        eta, rows = (cuda.to_device(np.zeros((room, width))) for width in (2, self.variant.row_width))
+        launch(kernels.collect_touching, n, n, self.bodies.ids, self.pairs, count, i, j, eta, rows)
         i_ids, j_ids = i.copy_to_host()[:total], j.copy_to_host()[:total]
         order = np.lexsort((j_ids, i_ids))
         eta, rows = eta.copy_to_host()[:total], rows.copy_to_host()[:total]
-        return Memory(i_ids[order], j_ids[order], eta[order], rows[order])
+        return ContactMemory(i_ids[order], j_ids[order], eta[order], rows[order])

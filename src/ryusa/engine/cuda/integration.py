@@ -1,18 +1,19 @@
 """One grain, one step: water, weight, and the scheme; as engine/motion.py, whose laws these are."""
-# ruff: noqa: F403, F405  (the columns of rows.py, all of them plain integers)
 
 import math
 from functools import cache
 from typing import Any
 
-from ryusa.engine.cpu.fluid_forces import water_on, water_speed
-from ryusa.engine.cuda.arrays import *
-from ryusa.engine.cuda.device import device, same
-from ryusa.engine.shared.rows import *
+from ryusa.engine.cuda import step_totals as T
+from ryusa.engine.cuda.arrays import DeviceGrainArrays
+from ryusa.engine.cuda.device import device, on_device
+from ryusa.engine.shared import parameters as P
+from ryusa.engine.shared.fluid import column_forces, water_speed
+from ryusa.engine.shared.variant import KernelVariant, LawChoice
 from ryusa.laws.motion import acceleration, acceleration_spin, semi_implicit
 from ryusa.laws.torque import torque_dennis, torque_stokes
 from ryusa.model.enums import Above, WaterTorque
-from ryusa.model.fluid import A_X, DRAG, EXTRA_X, EXTRA_Z, SHARE, SHEAR
+from ryusa.model.fluid import A_X, DRAG, EXTRA_X, EXTRA_Z, SHEAR, SUBMERGED
 from ryusa.model.resistance import drag_of
 from ryusa.model.tally import Book
 
@@ -22,27 +23,27 @@ B_DRAG, B_TORQUE, B_LIFT, B_FLOW = int(Book.DRAG), int(Book.TORQUE), int(Book.LI
 B_FILM = int(Book.FILM)
 
 Vector = tuple[float, float, float]
-_water_on, _water_speed, _drag_of = same(water_on), same(water_speed), same(drag_of)
+_column_forces, _water_speed, _drag_of = on_device(column_forces), on_device(water_speed), on_device(drag_of)
 
 
 @cache
-def make_move(kind: Variant, choice: Choice) -> Any:
+def make_integrate(variant: KernelVariant, choice: LawChoice) -> Any:
     """Build the motion of one grain for one variant."""
-    plane_case, rotation, column, film = kind.plane_case, kind.rotation, kind.column, kind.film
+    plane_case, rotation, column, film = variant.plane_case, variant.rotation, variant.column, variant.film
     profile, above, drag, torque_law = choice.profile, choice.above, choice.drag, choice.torque
 
     @device
-    def move(
+    def integrate(
         i: int,
         half: int,
         first: bool,
         last: bool,
         c: Any,
-        bodies: Bodies,
+        bodies: DeviceGrainArrays,
         force: Vector,
         torque: Vector,
         from_film: Vector,
-        account: Any,
+        totals: Any,
     ) -> None:
         """Move the grain at place i by one step, from `half` of its arrays to the other.
 
@@ -53,10 +54,10 @@ def make_move(kind: Variant, choice: Choice) -> Any:
         from_film : force of films of water [N].
         """
         other = 1 - half
-        x, v, w, image, seen, taken = (
-            bodies.x[half], bodies.v[half], bodies.w[half], bodies.image, bodies.seen, bodies.taken,
+        x, v, w, image, fluid, impulse = (
+            bodies.x[half], bodies.v[half], bodies.w[half], bodies.image, bodies.fluid, bodies.impulse,
         )  # fmt: skip
-        dt, g_x, g_y, g_z = c[C_DT], c[C_G_X], c[C_G_Y], c[C_G_Z]
+        dt, g_x, g_y, g_z = c[P.DT], c[P.G_X], c[P.G_Y], c[P.G_Z]
         halved = 0.0 if first else 0.5 * dt
         f_x, f_y, f_z = force
         t_x, t_y, t_z = torque
@@ -65,25 +66,25 @@ def make_move(kind: Variant, choice: Choice) -> Any:
         v_x, v_y, v_z = v[i, 0], v[i, 1], v[i, 2]
         o_x, o_y, o_z, r = w[i, 0], w[i, 1], w[i, 2], w[i, 3]
         d_x = d_y = d_z = l_x = l_y = l_z = e_x = e_z = turn = 0.0
-        wet = 1.0
+        submerged = 1.0
         m_b, m_w = bodies.m_bare[i], bodies.m_weight[i]
         added = bodies.m[i] - m_b
         if column:
-            wet = seen[i, SHARE]
-            dry = wet == 0.0
-            added *= wet  # water moves along with what of a grain is in it
-            e_x, e_z = seen[i, EXTRA_X] + added * seen[i, A_X], seen[i, EXTRA_Z]
-            turn = 0.5 * seen[i, SHEAR]
+            submerged = fluid[i, SUBMERGED]
+            dry = submerged == 0.0
+            added *= submerged  # water moves along with what of a grain is in it
+            e_x, e_z = fluid[i, EXTRA_X] + added * fluid[i, A_X], fluid[i, EXTRA_Z]
+            turn = 0.5 * fluid[i, SHEAR]
             if not dry:
-                k_d, d_x, d_y, d_z, l_x, l_y, l_z = _water_on(choice, c, r, seen[i], v[i], w[i])
-                taken[i, DRAG] = k_d
+                k_d, d_x, d_y, d_z, l_x, l_y, l_z = _column_forces(choice, c, r, fluid[i], v[i], w[i])
+                impulse[i, DRAG] = k_d
         else:
-            z = y_z - c[C_Z_ZERO]
-            dry = profile == 0 or (above == DRY and z > c[C_DEPTH])
+            z = y_z - c[P.Z_ZERO]
+            dry = profile == 0 or (above == DRY and z > c[P.DEPTH])
             if drag and not dry:
                 u_x, u_y, u_z = _water_speed(profile, above, z, c) - v_x, -v_y, -v_z
                 slip = math.sqrt(u_x * u_x + u_y * u_y + u_z * u_z)
-                k_d = _drag_of(drag, slip, 2.0 * r, c[C_NU], c[C_RHO_W], c[C_A_2], c[C_C_D])
+                k_d = _drag_of(drag, slip, 2.0 * r, c[P.NU], c[P.RHO_W], c[P.A_2], c[P.C_D])
                 d_x, d_y, d_z = k_d * u_x, k_d * u_y, k_d * u_z
         if column:
             f_x, f_y, f_z = f_x + l_x + e_x, f_y + l_y, f_z + l_z + e_z
@@ -101,23 +102,23 @@ def make_move(kind: Variant, choice: Choice) -> Any:
         to_v[i, 0], to_v[i, 1], to_v[i, 2] = a_x, a_y, a_z
         square = a_x * a_x + a_y * a_y + a_z * a_z
         bad = not square < math.inf
-        account[A_SPEED_2] = max(account[A_SPEED_2], square)
+        totals[T.SPEED_2] = max(totals[T.SPEED_2], square)
 
         if drag:
-            account[B_DRAG] += halved * (d_x * v_x + d_y * v_y + d_z * v_z)
-            account[A_PEND_DRAG] += 0.5 * dt * (d_x * a_x + d_y * a_y + d_z * a_z)
+            totals[B_DRAG] += halved * (d_x * v_x + d_y * v_y + d_z * v_z)
+            totals[T.PENDING_DRAG] += 0.5 * dt * (d_x * a_x + d_y * a_y + d_z * a_z)
         if column:
             if not dry:
-                taken[i, 0] += dt * (d_x + l_x + added * seen[i, A_X]) - added * (a_x - v_x)
-                taken[i, 1] += dt * (d_y + l_y) - added * (a_y - v_y)
-                taken[i, 2] += dt * (d_z + l_z) - added * (a_z - v_z)
-            account[B_LIFT] += halved * (l_x * v_x + l_y * v_y + l_z * v_z)
-            account[A_PEND_LIFT] += 0.5 * dt * (l_x * a_x + l_y * a_y + l_z * a_z)
-            account[B_FLOW] += halved * (e_x * v_x + e_z * v_z)
-            account[A_PEND_FLOW] += 0.5 * dt * (e_x * a_x + e_z * a_z)
+                impulse[i, 0] += dt * (d_x + l_x + added * fluid[i, A_X]) - added * (a_x - v_x)
+                impulse[i, 1] += dt * (d_y + l_y) - added * (a_y - v_y)
+                impulse[i, 2] += dt * (d_z + l_z) - added * (a_z - v_z)
+            totals[B_LIFT] += halved * (l_x * v_x + l_y * v_y + l_z * v_z)
+            totals[T.PENDING_LIFT] += 0.5 * dt * (l_x * a_x + l_y * a_y + l_z * a_z)
+            totals[B_FLOW] += halved * (e_x * v_x + e_z * v_z)
+            totals[T.PENDING_FLOW] += 0.5 * dt * (e_x * a_x + e_z * a_z)
         if film:
-            account[B_FILM] -= halved * (h_x * v_x + h_y * v_y + h_z * v_z)
-            account[A_PEND_FILM] += 0.5 * dt * (h_x * a_x + h_y * a_y + h_z * a_z)
+            totals[B_FILM] -= halved * (h_x * v_x + h_y * v_y + h_z * v_z)
+            totals[T.PENDING_FILM] += 0.5 * dt * (h_x * a_x + h_y * a_y + h_z * a_z)
 
         b_x, b_y, b_z = o_x, o_y, o_z
         if rotation:
@@ -126,10 +127,10 @@ def make_move(kind: Variant, choice: Choice) -> Any:
                 o_rel = o_y - turn
                 size = math.sqrt(o_x * o_x + o_rel * o_rel + o_z * o_z)
                 if torque_law == STOKES:
-                    k_t = torque_stokes(size, 2.0 * r, c[C_NU], c[C_RHO_W])
+                    k_t = torque_stokes(size, 2.0 * r, c[P.NU], c[P.RHO_W])
                 else:
-                    k_t = torque_dennis(size, 2.0 * r, c[C_NU], c[C_RHO_W])
-                k_t *= wet
+                    k_t = torque_dennis(size, 2.0 * r, c[P.NU], c[P.RHO_W])
+                k_t *= submerged
             i_i = bodies.inertia[i]
             per_i = 1.0 / i_i
             b_y = o_y + dt * acceleration_spin(t_y - k_t * (o_y - turn), per_i)
@@ -138,23 +139,23 @@ def make_move(kind: Variant, choice: Choice) -> Any:
                 b_z = o_z + dt * acceleration_spin(t_z - k_t * o_z, per_i)
             whirl = b_x * b_x + b_y * b_y + b_z * b_z
             bad = bad or not whirl < math.inf
-            account[A_SPIN_2] = max(account[A_SPIN_2], whirl)
+            totals[T.SPIN_2] = max(totals[T.SPIN_2], whirl)
             if torque_law:
-                account[B_TORQUE] -= halved * k_t * (o_x * o_x + (o_y - turn) * o_y + o_z * o_z)
-                account[A_PEND_TORQUE] -= 0.5 * dt * k_t * (o_x * b_x + (o_y - turn) * b_y + o_z * b_z)
+                totals[B_TORQUE] -= halved * k_t * (o_x * o_x + (o_y - turn) * o_y + o_z * o_z)
+                totals[T.PENDING_TORQUE] -= 0.5 * dt * k_t * (o_x * b_x + (o_y - turn) * b_y + o_z * b_z)
             if last:
-                account[A_SPIN] += 0.5 * i_i * (o_x * b_x + o_y * b_y + o_z * b_z)
+                totals[T.SPIN] += 0.5 * i_i * (o_x * b_x + o_y * b_y + o_z * b_z)
         to_w = bodies.w[other]
         to_w[i, 0], to_w[i, 1], to_w[i, 2] = b_x, b_y, b_z
         if bad:
-            account[A_BAD] = min(account[A_BAD], float(bodies.ids[i]))
+            totals[T.NOT_FINITE] = min(totals[T.NOT_FINITE], float(bodies.ids[i]))
         if last:
             m_i = m_b + added if column else bodies.m[i]
-            account[A_KINETIC] += 0.5 * m_i * (v_x * a_x + v_y * a_y + v_z * a_z)
+            totals[T.KINETIC] += 0.5 * m_i * (v_x * a_x + v_y * a_y + v_z * a_z)
             if image[i, 0] != 0:
-                y_x += image[i, 0] * c[C_PERIOD_X]
+                y_x += image[i, 0] * c[P.PERIOD_X]
             if image[i, 1] != 0:
-                y_y += image[i, 1] * c[C_PERIOD_Y]
-            account[A_POTENTIAL] -= m_w * (g_x * y_x + g_y * y_y + g_z * y_z)
+                y_y += image[i, 1] * c[P.PERIOD_Y]
+            totals[T.POTENTIAL] -= m_w * (g_x * y_x + g_y * y_y + g_z * y_z)
 
-    return move
+    return integrate

@@ -2,16 +2,17 @@
 
 The pair is seen from the grain with the lower id, a, whichever side reckons it. Books as in engine/batch.py.
 """
-# ruff: noqa: F403, F405  (the columns of rows.py, all of them plain integers)
 
 import math
 from functools import cache
 from typing import Any
 
-from ryusa.engine.cuda.arrays import A_OVERLAP, A_OVERLAP_GRAIN, A_OVERLAP_PARTNER
-from ryusa.engine.cuda.device import device, same
-from ryusa.engine.shared.pair import dashpot_wet
-from ryusa.engine.shared.rows import *
+from ryusa.engine.cuda import step_totals as T
+from ryusa.engine.cuda.device import device, on_device
+from ryusa.engine.shared import memory_rows as M
+from ryusa.engine.shared import parameters as P
+from ryusa.engine.shared.dashpots import dashpot_immersed
+from ryusa.engine.shared.variant import KernelVariant, LawChoice
 from ryusa.laws.contact import normal_force, shear_strength, slide
 from ryusa.laws.geometry import arm, turn
 from ryusa.laws.geometry import overlap as overlap_of
@@ -22,11 +23,11 @@ B_DASH_N, B_DASH_S, B_SLIDE = int(Book.DASH_N), int(Book.DASH_S), int(Book.SLIDE
 B_RELEASED_N, B_RELEASED_S, B_STEP = int(Book.RELEASED_N), int(Book.RELEASED_S), int(Book.STEP)
 
 Vector = tuple[float, float, float]
-_dashpot_wet = same(dashpot_wet)
+_dashpot_immersed = on_device(dashpot_immersed)
 
 
 @device
-def meet(
+def contact_kinematics(
     plane_case: int, d: Vector, r_a: float, r_b: float, u: Vector, w_a: Vector, w_b: Vector, dt: float
 ) -> tuple[Vector, float, float, float, float, Vector, float]:
     """How a pair meets.
@@ -71,15 +72,15 @@ def meet(
 
 
 @cache
-def make_touch(kind: Variant, choice: Choice) -> Any:
+def make_contact_force(variant: KernelVariant, choice: LawChoice) -> Any:
     """Build the contact of one pair for one variant."""
-    plane_case = kind.plane_case
+    plane_case = variant.plane_case
     least = -math.inf if choice.tension else 0.0  # a contact that may pull has no least force
     total, drop = choice.slip == int(Slip.TOTAL), choice.slip == int(Slip.SPRING_DROP)
     cap_total, rebound = choice.cap == int(Cap.TOTAL), choice.rebound
 
     @device
-    def touch(
+    def contact_force(
         a: int,
         b: int,
         weight: float,
@@ -88,10 +89,10 @@ def make_touch(kind: Variant, choice: Choice) -> Any:
         c: Any,
         m: Any,
         w: Any,
-        met: tuple[Vector, float, float, float, float, Vector, float],
+        kinematics: tuple[Vector, float, float, float, float, Vector, float],
         eta: Any,
         row: Any,
-        account: Any,
+        totals: Any,
     ) -> tuple[bool, float, float, bool, Vector, Vector]:
         """Forces of a pair that touches or did so in the last step; its row goes on by one step.
 
@@ -109,22 +110,22 @@ def make_touch(kind: Variant, choice: Choice) -> Any:
         Whether they touch, normal force [N] and what it was before it was cut, whether they slide, tangential
         force on a [N] and normal times that force [N].
         """
-        normal, overlap, _, _, closing, slip, twist = met
-        dt, k_n, k_s = c[C_DT], c[C_K_N], c[C_K_S]
+        normal, overlap, _, _, closing, slip, twist = kinematics
+        dt, k_n, k_s = c[P.DT], c[P.K_N], c[P.K_S]
         soft_n, soft_s = 1.0 / k_n if k_n > 0.0 else 0.0, 1.0 / k_s if k_s > 0.0 else 0.0
         n_x, n_y, n_z = normal
         s_x, s_y, s_z = slip
         live = overlap > 0.0
         p_x = p_y = p_z = q_x = q_y = q_z = f_old = d_old = 0.0
         if was:
-            p_x, p_y, p_z = row[R_SPRING_S], row[R_SPRING_S + 1], row[R_SPRING_S + 2]
-            q_x, q_y, q_z = row[R_DASH_S], row[R_DASH_S + 1], row[R_DASH_S + 2]
-            f_old, d_old = row[R_F_N], row[R_DASH_N]
+            p_x, p_y, p_z = row[M.SPRING_S], row[M.SPRING_S + 1], row[M.SPRING_S + 2]
+            q_x, q_y, q_z = row[M.DASH_S], row[M.DASH_S + 1], row[M.DASH_S + 2]
+            f_old, d_old = row[M.F_N], row[M.DASH_N]
         elif rebound and live:
-            eta[ETA_N] = _dashpot_wet(choice, closing, a, b, c, m, w)
+            eta[M.ETA_N] = _dashpot_immersed(choice, closing, a, b, c, m, w)
 
         # along the normal; work of the half interval after and the one before
-        raw = normal_force(overlap, closing, k_n, eta[ETA_N])
+        raw = normal_force(overlap, closing, k_n, eta[M.ETA_N])
         e_n = k_n * overlap if live else 0.0
         f_n = max(raw, least) if live else 0.0
         held = 1.0 if live and f_n > least else 0.0
@@ -132,18 +133,18 @@ def make_touch(kind: Variant, choice: Choice) -> Any:
         before = hdt * closing * d_old
         e_old = f_old - d_old
         drawn = 1.0 if f_old > least else 0.0
-        account[B_DASH_N] += weight * (held * work + drawn * before)
-        account[B_RELEASED_N] += weight * ((1.0 - held) * work + (1.0 - drawn) * before)
+        totals[B_DASH_N] += weight * (held * work + drawn * before)
+        totals[B_RELEASED_N] += weight * ((1.0 - held) * work + (1.0 - drawn) * before)
         if live and not was and hdt > 0.0:
-            account[B_STEP] -= weight * 0.5 * e_n * (2.0 * hdt * closing - overlap)
+            totals[B_STEP] -= weight * 0.5 * e_n * (2.0 * hdt * closing - overlap)
         if was and not live:
-            account[B_STEP] += weight * 0.5 * e_old * (-2.0 * hdt * closing - e_old * soft_n)
+            totals[B_STEP] += weight * 0.5 * e_old * (-2.0 * hdt * closing - e_old * soft_n)
 
         # along the tangent
-        eta_s = eta[ETA_S]
+        eta_s = eta[M.ETA_S]
         if not plane_case:
             p_x, p_y, p_z = turn(p_x, p_y, p_z, n_x, n_y, n_z, twist)
-        tau_c = shear_strength(f_n if cap_total else e_n, c[C_COHESION], c[C_MU])
+        tau_c = shear_strength(f_n if cap_total else e_n, c[P.COHESION], c[P.MU])
         e_x, e_y, e_z = p_x - k_s * s_x * dt, 0.0, 0.0
         b_x, b_y, b_z = -eta_s * s_x, 0.0, 0.0
         g_x, g_y, g_z = e_x, 0.0, 0.0
@@ -159,17 +160,17 @@ def make_touch(kind: Variant, choice: Choice) -> Any:
         e_x, e_y, e_z = share * e_x + swap * b_x, share * e_y + swap * b_y, share * e_z + swap * b_z
         b_x, b_y, b_z = keep * b_x, keep * b_y, keep * b_z
         lost = s_x * (q_x + b_x) + s_y * (q_y + b_y) + s_z * (q_z + b_z)
-        account[B_DASH_S] -= weight * hdt * lost
+        totals[B_DASH_S] -= weight * hdt * lost
         slides = share < 1.0
         if slides:
             spent = p_x * p_x - e_x * e_x + (p_y * p_y - e_y * e_y) + (p_z * p_z - e_z * e_z)
             taken = s_x * (p_x + e_x) + s_y * (p_y + e_y) + s_z * (p_z + e_z)
             taken = weight * (0.5 * spent * soft_s - hdt * taken)
-            account[B_SLIDE] += held * taken
-            account[B_RELEASED_S] += taken - held * taken
+            totals[B_SLIDE] += held * taken
+            totals[B_RELEASED_S] += taken - held * taken
 
-        row[R_SPRING_S], row[R_SPRING_S + 1], row[R_SPRING_S + 2], row[R_F_N] = e_x, e_y, e_z, f_n
-        row[R_DASH_S], row[R_DASH_S + 1], row[R_DASH_S + 2], row[R_DASH_N] = b_x, b_y, b_z, f_n - e_n
+        row[M.SPRING_S], row[M.SPRING_S + 1], row[M.SPRING_S + 2], row[M.F_N] = e_x, e_y, e_z, f_n
+        row[M.DASH_S], row[M.DASH_S + 1], row[M.DASH_S + 2], row[M.DASH_N] = b_x, b_y, b_z, f_n - e_n
         if plane_case:
             h = e_x + b_x
             return live, f_n, raw, slides, (h * n_z, 0.0, -h * n_x), (0.0, h, 0.0)
@@ -177,17 +178,17 @@ def make_touch(kind: Variant, choice: Choice) -> Any:
         turned = (n_y * h_z - n_z * h_y, n_z * h_x - n_x * h_z, n_x * h_y - n_y * h_x)
         return live, f_n, raw, slides, (h_x, h_y, h_z), turned
 
-    return touch
+    return contact_force
 
 
 @device
-def guard(ratio: float, id_a: float, id_b: float, account: Any) -> None:
+def track_overlap(ratio: float, id_a: float, id_b: float, totals: Any) -> None:
     """Keep the largest overlap over diameter that this thread has seen, of several the lowest ids."""
-    if ratio < account[A_OVERLAP]:
+    if ratio < totals[T.OVERLAP]:
         return
-    grain, partner = account[A_OVERLAP_GRAIN], account[A_OVERLAP_PARTNER]
-    if ratio == account[A_OVERLAP] and (id_a > grain or (id_a == grain and id_b >= partner)):
+    grain, partner = totals[T.OVERLAP_GRAIN], totals[T.OVERLAP_PARTNER]
+    if ratio == totals[T.OVERLAP] and (id_a > grain or (id_a == grain and id_b >= partner)):
         return
-    account[A_OVERLAP] = ratio
-    account[A_OVERLAP_GRAIN] = id_a
-    account[A_OVERLAP_PARTNER] = id_b
+    totals[T.OVERLAP] = ratio
+    totals[T.OVERLAP_GRAIN] = id_a
+    totals[T.OVERLAP_PARTNER] = id_b

@@ -1,5 +1,4 @@
 """One step: a kernel in which every grain gathers its forces and moves, and one that adds up what is left."""
-# ruff: noqa: F403, F405  (the columns of rows.py, all of them plain integers)
 
 import math
 from functools import cache
@@ -7,14 +6,38 @@ from typing import Any
 
 from numba import float64
 
-from ryusa.engine.cpu.fluid_forces import close_interval
-from ryusa.engine.cuda.arrays import *
-from ryusa.engine.cuda.device import cuda, device, same
-from ryusa.engine.cuda.integration import make_move
-from ryusa.engine.cuda.pair import guard, make_touch, meet
+from ryusa.engine.cuda import run_status as F
+from ryusa.engine.cuda import step_totals as T
+from ryusa.engine.cuda.arrays import (
+    DeviceGrainArrays,
+    DevicePairArrays,
+    DeviceWallArrays,
+    LaunchShape,
+    RecordedGrains,
+)
+from ryusa.engine.cuda.device import cuda, device, on_device
+from ryusa.engine.cuda.integration import make_integrate
+from ryusa.engine.cuda.pair import contact_kinematics, make_contact_force, track_overlap
+from ryusa.engine.cuda.step_totals import NO_GRAIN
+from ryusa.engine.shared import block_statistics as S
+from ryusa.engine.shared import memory_rows as M
+from ryusa.engine.shared import parameters as P
+from ryusa.engine.shared import record_fields as R
 from ryusa.engine.shared.contact_records import begin_record, end_record, keep_record
-from ryusa.engine.shared.pair import ROLL_PRINTED, roll, roll_out
-from ryusa.engine.shared.rows import *
+from ryusa.engine.shared.fluid import close_fluid_interval
+from ryusa.engine.shared.rolling import ROLL_PRINTED, end_rolling, rolling_friction
+from ryusa.engine.shared.status import (
+    FAULT_EVENTS_FULL,
+    FAULT_NONE,
+    FAULT_NOT_A_NUMBER,
+    FAULT_OVERLAP,
+    STOP_DONE,
+    STOP_EVENTS,
+    STOP_FAULT,
+    STOP_LIST,
+    STOP_UNSAFE,
+)
+from ryusa.engine.shared.variant import KernelVariant, LawChoice
 from ryusa.laws.geometry import wrap
 from ryusa.laws.immersed import lubrication_force
 from ryusa.laws.rolling import reduced_radius
@@ -23,19 +46,27 @@ from ryusa.model.tally import N_BOOK, Book
 
 B_ROLL, B_RELEASED_R = int(Book.ROLL), int(Book.RELEASED_R)
 
-_roll, _roll_out, _close_interval = same(roll), same(roll_out), same(close_interval)
-_begin_record, _keep_record, _end_record = same(begin_record), same(keep_record), same(end_record)
+_rolling_friction, _end_rolling, _close_fluid_interval = (
+    on_device(rolling_friction),
+    on_device(end_rolling),
+    on_device(close_fluid_interval),
+)
+_begin_record, _keep_record, _end_record = (
+    on_device(begin_record),
+    on_device(keep_record),
+    on_device(end_record),
+)
 
 
 @cache
-def make_step(kind: Variant, choice: Choice, shape: Shape) -> Any:
+def make_step(variant: KernelVariant, choice: LawChoice, shape: LaunchShape) -> Any:
     """Build the kernel of one variant, for blocks of one shape."""
-    plane_case, rolling, events, film = kind.plane_case, kind.rolling, kind.events, kind.film
+    plane_case, rolling, events, film = variant.plane_case, variant.rolling, variant.events, variant.film
     model, arms, tension, rule = choice.rolling, choice.arm, choice.tension, choice.events
-    record_at, threads, group, parts = kind.event_column, shape.threads, shape.group, shape.parts
+    record_at, threads, group, parts = variant.event_column, shape.threads, shape.group, shape.parts
     run = threads // parts
     both_ways = 1.0 if model == ROLL_PRINTED else -1.0  # Eq. (13) as printed turns both grains one way
-    touch, move = make_touch(kind, choice), make_move(kind, choice)
+    contact_force, integrate = make_contact_force(variant, choice), make_integrate(variant, choice)
 
     @cuda.jit
     def step(
@@ -43,29 +74,29 @@ def make_step(kind: Variant, choice: Choice, shape: Shape) -> Any:
         n: int,
         n_solid: int,
         c: Any,
-        flow: Any,
-        bodies: Bodies,
-        walls: Walls,
-        pairs: Pairs,
+        status: Any,
+        bodies: DeviceGrainArrays,
+        walls: DeviceWallArrays,
+        pairs: DevicePairArrays,
         ended: Any,
         partial: Any,
     ) -> None:
         """Do one step, unless something waits for the host; step `target` - 1 is the last of a call."""
-        if flow[F_STOP] != STOP_DONE:
+        if status[F.STOP] != STOP_DONE:
             return
-        account = cuda.local.array(N_COLUMN, float64)
-        for k in range(N_COLUMN):
-            account[k] = 0.0
-        account[A_OVERLAP], account[A_OVERLAP_GRAIN] = -1.0, NOBODY
-        account[A_OVERLAP_PARTNER], account[A_BAD] = NOBODY, NOBODY
-        book = cuda.local.array(N_BOOK, float64)
-        last_words = cuda.local.array(N_NOW, float64)
-        half, at = flow[F_PARITY], flow[F_STEP]
+        totals = cuda.local.array(T.N_COLUMN, float64)
+        for k in range(T.N_COLUMN):
+            totals[k] = 0.0
+        totals[T.OVERLAP], totals[T.OVERLAP_GRAIN] = -1.0, NO_GRAIN
+        totals[T.OVERLAP_PARTNER], totals[T.NOT_FINITE] = NO_GRAIN, NO_GRAIN
+        work = cuda.local.array(N_BOOK, float64)
+        record_stats = cuda.local.array(S.N_STATISTIC, float64)
+        half, at = status[F.CURRENT], status[F.STEP]
         first, last = at == 0, at == target - 1
-        dt, k_n, k_s = c[C_DT], c[C_K_N], c[C_K_S]
-        l_x, l_y = c[C_PERIOD_X], c[C_PERIOD_Y]
-        t, hdt = c[C_T_ZERO] + at * dt, 0.0 if first else 0.5 * dt
-        film_reach = c[C_FILM_REACH] if film else 0.0
+        dt, k_n, k_s = c[P.DT], c[P.K_N], c[P.K_S]
+        l_x, l_y = c[P.PERIOD_X], c[P.PERIOD_Y]
+        t, hdt = c[P.T_ZERO] + at * dt, 0.0 if first else 0.5 * dt
+        film_reach = c[P.FILM_REACH] if film else 0.0
         x, v, w, m, inertia, ids = (
             bodies.x[half],
             bodies.v[half],
@@ -74,8 +105,8 @@ def make_step(kind: Variant, choice: Choice, shape: Shape) -> Any:
             bodies.inertia,
             bodies.ids,
         )
-        touched = bodies.touched[half]
-        start, partners, lives, rows = pairs.start, pairs.partners, pairs.live, pairs.rows
+        n_touching = bodies.n_touching[half]
+        start, partners, lives, rows = pairs.start, pairs.partners, pairs.touching, pairs.rows
 
         for i in range(cuda.grid(1), n, cuda.gridsize(1)):
             x_i, y_i, z_i, r_i = x[i, 0], x[i, 1], x[i, 2], x[i, 3]
@@ -113,14 +144,14 @@ def make_step(kind: Variant, choice: Choice, shape: Shape) -> Any:
                 a, b = (i, j) if own else (j, i)
                 r_a, r_b = (r_i, r_j) if own else (r_j, r_i)
                 w_a, w_b = (w[a, 0], w[a, 1], w[a, 2]), (w[b, 0], w[b, 1], w[b, 2])
-                met = meet(plane_case, (d_x, d_y, d_z), r_a, r_b, u, w_a, w_b, dt)
-                normal, overlap, arm_a, arm_b, closing, slip, _ = met
+                kinematics = contact_kinematics(plane_case, (d_x, d_y, d_z), r_a, r_b, u, w_a, w_b, dt)
+                normal, overlap, arm_a, arm_b, closing, slip, _ = kinematics
                 arm_i = arm_a if own else arm_b
                 weight = 1.0 if own else 0.0
                 if was or overlap > 0.0:
                     row = rows[k]
-                    live, f_n, raw, slides, along, turned = touch(
-                        a, b, weight, was, hdt, c, m, w, met, pairs.eta[k], row, account
+                    live, f_n, raw, slides, along, turned = contact_force(
+                        a, b, weight, was, hdt, c, m, w, kinematics, pairs.eta[k], row, totals
                     )
                     lives[k] = 1 if live else 0
                     p_x, p_y, p_z = (
@@ -131,213 +162,240 @@ def make_step(kind: Variant, choice: Choice, shape: Shape) -> Any:
                     if live:
                         hits += 1
                         if own:
-                            guard(
+                            track_overlap(
                                 overlap / (2.0 * min(r_i, r_j)),
                                 float(id_i),
                                 float(ids[j] if j < n else j),
-                                account,
+                                totals,
                             )
                     if rolling:
-                        for a_book in range(N_BOOK):
-                            book[a_book] = 0.0
+                        for term in range(N_BOOK):
+                            work[term] = 0.0
                         r_wall = math.inf if plane else r_j  # of a plane
                         if live:
-                            share_i, share_j = float(max(touched[i], 1)), 1.0
+                            share_i, share_j = float(max(n_touching[i], 1)), 1.0
                             if j < n:
-                                share_j = float(max(touched[j], 1))
+                                share_j = float(max(n_touching[j], 1))
                             side_i = (r_i, m[i], inertia[i], share_i)
                             side_j = (r_wall, m[j], inertia[j], share_j)
-                            q_x, q_y, q_z, held = _roll(
+                            q_x, q_y, q_z, held = _rolling_friction(
                                 model, arms, row, c, f_n, overlap, hdt,
                                 side_i if own else side_j, side_j if own else side_i,
                                 normal, (
                                     normal[1] * p_z - normal[2] * p_y,
                                     normal[2] * p_x - normal[0] * p_z,
                                     normal[0] * p_y - normal[1] * p_x,
-                                ), w_a, w_b, book,
+                                ), w_a, w_b, work,
                             )  # fmt: skip
                             turn_i = 1.0 if own else both_ways
                             t_x, t_y, t_z = t_x + turn_i * q_x, t_y + turn_i * q_y, t_z + turn_i * q_z
                             if last:
-                                account[A_SPRING_R] += weight * held
+                                totals[T.SPRING_R] += weight * held
                         elif was:
-                            _roll_out(model, row, c, hdt, w_a, w_b, reduced_radius(r_i, r_wall), book)
-                        account[B_ROLL] += weight * book[B_ROLL]
-                        account[B_RELEASED_R] += weight * book[B_RELEASED_R]
+                            _end_rolling(model, row, c, hdt, w_a, w_b, reduced_radius(r_i, r_wall), work)
+                        totals[B_ROLL] += weight * work[B_ROLL]
+                        totals[B_RELEASED_R] += weight * work[B_RELEASED_R]
                     if events and own:
                         record = row[record_at:]
                         if live and not was:
                             for e in range(N_EVENT):
                                 record[e] = 0.0
-                            seen: Any = Placed(x, v, w, ids, bodies.image, bodies.tracked)
+                            fluid: Any = RecordedGrains(x, v, w, ids, bodies.image, bodies.tracked)
                             _begin_record(
                                 plane_case, rule, record, t, dt, overlap, closing, slip, normal, i, j, n,
-                                seen, l_x, l_y,
+                                fluid, l_x, l_y,
                             )  # fmt: skip
                         if live:
-                            company = touched[i] > 1 or (j < n and touched[j] > 1)
-                            _keep_record(record, t, dt, overlap, f_n, raw, (p_x, p_y, p_z), slides, company)
-                        elif was and record[E_J] >= 0.0:
-                            slot = cuda.atomic.add(flow, F_ENDED, 1)  # they are put in order later
+                            others = n_touching[i] > 1 or (j < n and n_touching[j] > 1)
+                            _keep_record(record, t, dt, overlap, f_n, raw, (p_x, p_y, p_z), slides, others)
+                        elif was and record[R.PARTNER] >= 0.0:
+                            slot = cuda.atomic.add(status, F.ENDED, 1)  # they are put in order later
                             if slot < ended.shape[0]:
-                                last_words[N_N_ENDED] = last_words[N_FAULT] = 0.0
+                                record_stats[S.N_ENDED] = record_stats[S.FAULT] = 0.0
                                 _end_record(
-                                    plane_case, tension, record, record[E_T_PART], t, overlap, closing, slip,
-                                    normal, i, v, w, ended[slot : slot + 1], last_words,
+                                    plane_case, tension, record, record[R.T_PART], t, overlap, closing, slip,
+                                    normal, i, v, w, ended[slot : slot + 1], record_stats,
                                 )  # fmt: skip
                             else:
-                                cuda.atomic.min(flow, F_SPILT, id_i)
+                                cuda.atomic.min(status, F.OVERFLOWED, id_i)
                     if last and live and own:
-                        e_n = f_n - row[R_DASH_N]
+                        e_n = f_n - row[M.DASH_N]
                         if k_n > 0.0:
-                            account[A_SPRING_N] += 0.5 * e_n * e_n / k_n
+                            totals[T.SPRING_N] += 0.5 * e_n * e_n / k_n
                         if k_s > 0.0:
                             for s in range(3):
-                                account[A_SPRING_S] += 0.5 * row[R_SPRING_S + s] ** 2 / k_s
-                        account[A_N_CONTACT] += 1.0
+                                totals[T.SPRING_S] += 0.5 * row[M.SPRING_S + s] ** 2 / k_s
+                        totals[T.N_CONTACT] += 1.0
                 if film and overlap <= 0.0 and overlap > -film_reach:
                     radius = reduced_radius(r_i, math.inf if plane else r_j)
                     push = sign * lubrication_force(
-                        -overlap, closing, radius, c[C_ASPERITY], film_reach, c[C_RHO_W], c[C_NU]
+                        -overlap, closing, radius, c[P.ASPERITY], film_reach, c[P.RHO_W], c[P.NU]
                     )
                     h_x, h_y, h_z = h_x - push * normal[0], h_y - push * normal[1], h_z - push * normal[2]
-            bodies.touched[1 - half, i] = hits
-            move(i, half, first, last, c, bodies, (f_x, f_y, f_z), (t_x, t_y, t_z), (h_x, h_y, h_z), account)
+            bodies.n_touching[1 - half, i] = hits
+            integrate(
+                i, half, first, last, c, bodies, (f_x, f_y, f_z), (t_x, t_y, t_z), (h_x, h_y, h_z), totals
+            )
 
         # what the threads of a block have in their accounts, added in a fixed order
-        desk = cuda.shared.array(0, float64)  # `Shape.desk` doubles: a row a column, then sums of parts
-        sums, me, row = group * threads, cuda.threadIdx.x, cuda.blockIdx.x * N_COLUMN
-        for lead in range(0, N_COLUMN, group):
+        shared_sums = cuda.shared.array(
+            0, float64
+        )  # `Shape.desk` doubles: a row a column, then sums of parts
+        sums, me, row = group * threads, cuda.threadIdx.x, cuda.blockIdx.x * T.N_COLUMN
+        for lead in range(0, T.N_COLUMN, group):
             cuda.syncthreads()
             for k in range(group):
-                desk[k * threads + me] = account[lead + k]
+                shared_sums[k * threads + me] = totals[lead + k]
             cuda.syncthreads()
             for task in range(me, group * parts, threads):
                 column, part = task % group, task // group
                 total = 0.0
                 for k in range(part * run, (part + 1) * run):
-                    total += desk[column * threads + k]
-                desk[sums + task] = total
+                    total += shared_sums[column * threads + k]
+                shared_sums[sums + task] = total
             cuda.syncthreads()
             for column in range(me, group, threads):
-                if lead + column < N_SUM:
+                if lead + column < T.N_SUM:
                     total = 0.0
                     for part in range(parts):
-                        total += desk[sums + part * group + column]
+                        total += shared_sums[sums + part * group + column]
                     partial[row + lead + column] = total
-            if me == 0 and lead + group > N_SUM:
+            if me == 0 and lead + group > T.N_SUM:
                 for k in range(1, threads):
                     at_k = k - lead * threads
-                    account[A_SPEED_2] = max(account[A_SPEED_2], desk[A_SPEED_2 * threads + at_k])
-                    account[A_SPIN_2] = max(account[A_SPIN_2], desk[A_SPIN_2 * threads + at_k])
-                    account[A_BAD] = min(account[A_BAD], desk[A_BAD * threads + at_k])
-                    guard(
-                        desk[A_OVERLAP * threads + at_k], desk[A_OVERLAP_GRAIN * threads + at_k],
-                        desk[A_OVERLAP_PARTNER * threads + at_k], account,
+                    totals[T.SPEED_2] = max(totals[T.SPEED_2], shared_sums[T.SPEED_2 * threads + at_k])
+                    totals[T.SPIN_2] = max(totals[T.SPIN_2], shared_sums[T.SPIN_2 * threads + at_k])
+                    totals[T.NOT_FINITE] = min(
+                        totals[T.NOT_FINITE], shared_sums[T.NOT_FINITE * threads + at_k]
+                    )
+                    track_overlap(
+                        shared_sums[T.OVERLAP * threads + at_k],
+                        shared_sums[T.OVERLAP_GRAIN * threads + at_k],
+                        shared_sums[T.OVERLAP_PARTNER * threads + at_k], totals,
                     )  # fmt: skip
-                for k in range(N_SUM, N_COLUMN):
-                    partial[row + k] = account[k]
+                for k in range(T.N_SUM, T.N_COLUMN):
+                    partial[row + k] = totals[k]
 
     return step
 
 
 @cache
-def make_close(shape: Shape) -> Any:
+def make_close(shape: LaunchShape) -> Any:
     """Build the kernel that adds up the blocks and decides whether to go on; one block of `closers`."""
     closers, segments = shape.closers, shape.segments
 
     @cuda.jit
     def close(
-        target: int, n_block: int, room: int, c: Any, partial: Any, flow: Any, pace: Any, books: Any, now: Any
+        target: int,
+        n_block: int,
+        room: int,
+        c: Any,
+        partial: Any,
+        status: Any,
+        motion: Any,
+        books: Any,
+        stats: Any,
     ) -> None:
         """Close a step: books, extremes, faults, how far the fastest grain went, and whether to stop.
 
         `room` is that for records of ended contacts.
         """
-        desk = cuda.shared.array(0, float64)  # a row of columns for each segment
+        shared_sums = cuda.shared.array(0, float64)  # a row of columns for each segment
         me = cuda.threadIdx.x
-        if flow[F_STOP] != STOP_DONE:
+        if status[F.STOP] != STOP_DONE:
             return
-        for task in range(me, N_COLUMN * segments, closers):
-            part = task // N_COLUMN
-            _add_up(task % N_COLUMN, part, part, n_block, segments, partial, desk)
+        for task in range(me, T.N_COLUMN * segments, closers):
+            part = task // T.N_COLUMN
+            _reduce(task % T.N_COLUMN, part, part, n_block, segments, partial, shared_sums)
         cuda.syncthreads()
-        for column in range(me, N_COLUMN, closers):
-            _add_up(column, 0, 0, segments, 1, desk, desk)
+        for column in range(me, T.N_COLUMN, closers):
+            _reduce(column, 0, 0, segments, 1, shared_sums, shared_sums)
         cuda.syncthreads()
         if me == 0:
-            _enter(target, desk, flow, books[0], now[0])
-            _decide(room, c, desk, flow, pace, now[0])
+            _enter_totals(target, shared_sums, status, books[0], stats[0])
+            _decide_stop(room, c, shared_sums, status, motion, stats[0])
 
     return close
 
 
 @device
-def _add_up(column: int, to: int, begin: int, end: int, every: int, rows: Any, desk: Any) -> None:
+def _reduce(column: int, to: int, begin: int, end: int, every: int, rows: Any, shared_sums: Any) -> None:
     """Add up one column over some rows, or find its extreme; the pair of the largest overlap goes along."""
-    if column == A_OVERLAP:
-        best, grain, partner = -1.0, float(NOBODY), float(NOBODY)
-        for k in range(begin * N_COLUMN, end * N_COLUMN, every * N_COLUMN):
-            ratio, one, other = rows[k + A_OVERLAP], rows[k + A_OVERLAP_GRAIN], rows[k + A_OVERLAP_PARTNER]
+    if column == T.OVERLAP:
+        best, grain, partner = -1.0, float(NO_GRAIN), float(NO_GRAIN)
+        for k in range(begin * T.N_COLUMN, end * T.N_COLUMN, every * T.N_COLUMN):
+            ratio, one, other = rows[k + T.OVERLAP], rows[k + T.OVERLAP_GRAIN], rows[k + T.OVERLAP_PARTNER]
             if ratio > best or (ratio == best and (one < grain or (one == grain and other < partner))):
                 best, grain, partner = ratio, one, other
-        at = to * N_COLUMN
-        desk[at + A_OVERLAP], desk[at + A_OVERLAP_GRAIN], desk[at + A_OVERLAP_PARTNER] = best, grain, partner
+        at = to * T.N_COLUMN
+        (
+            shared_sums[at + T.OVERLAP],
+            shared_sums[at + T.OVERLAP_GRAIN],
+            shared_sums[at + T.OVERLAP_PARTNER],
+        ) = best, grain, partner
         return
-    if column in (A_OVERLAP_GRAIN, A_OVERLAP_PARTNER):
+    if column in (T.OVERLAP_GRAIN, T.OVERLAP_PARTNER):
         return
-    total = float(NOBODY) if column == A_BAD else 0.0
-    for k in range(begin * N_COLUMN + column, end * N_COLUMN, every * N_COLUMN):
-        if column < N_SUM:
+    total = float(NO_GRAIN) if column == T.NOT_FINITE else 0.0
+    for k in range(begin * T.N_COLUMN + column, end * T.N_COLUMN, every * T.N_COLUMN):
+        if column < T.N_SUM:
             total += rows[k]
-        elif column == A_BAD:
+        elif column == T.NOT_FINITE:
             total = min(total, rows[k])
         else:
             total = max(total, rows[k])
-    desk[to * N_COLUMN + column] = total
+    shared_sums[to * T.N_COLUMN + column] = total
 
 
 @device
-def _enter(target: int, sums: Any, flow: Any, books: Any, now: Any) -> None:
+def _enter_totals(target: int, sums: Any, status: Any, books: Any, stats: Any) -> None:
     """Enter what a step did: the half interval of water that waited, then its own works; and extremes."""
-    _close_interval(books, now)
+    _close_fluid_interval(books, stats)
     for k in range(N_BOOK):
         books[k] += sums[k]
-    now[N_PEND_DRAG], now[N_PEND_TORQUE] = sums[A_PEND_DRAG], sums[A_PEND_TORQUE]
-    now[N_PEND_LIFT], now[N_PEND_FLOW], now[N_PEND_FILM] = (
-        sums[A_PEND_LIFT], sums[A_PEND_FLOW], sums[A_PEND_FILM],
+    stats[S.PENDING_DRAG], stats[S.PENDING_TORQUE] = sums[T.PENDING_DRAG], sums[T.PENDING_TORQUE]
+    stats[S.PENDING_LIFT], stats[S.PENDING_FLOW], stats[S.PENDING_FILM] = (
+        sums[T.PENDING_LIFT], sums[T.PENDING_FLOW], sums[T.PENDING_FILM],
     )  # fmt: skip
-    if flow[F_STEP] == target - 1:
-        now[N_KINETIC], now[N_SPIN], now[N_POTENTIAL] = sums[A_KINETIC], sums[A_SPIN], sums[A_POTENTIAL]
-        now[N_SPRING_N], now[N_SPRING_S] = sums[A_SPRING_N], sums[A_SPRING_S]
-        now[N_SPRING_R], now[N_N_CONTACT] = sums[A_SPRING_R], sums[A_N_CONTACT]
-    now[N_SPEED_MAX], now[N_SPIN_MAX] = math.sqrt(sums[A_SPEED_2]), math.sqrt(sums[A_SPIN_2])
-    if sums[A_OVERLAP] > now[N_OVERLAP_MAX]:
-        now[N_OVERLAP_MAX], now[N_OVERLAP_GRAIN] = sums[A_OVERLAP], sums[A_OVERLAP_GRAIN]
-        now[N_OVERLAP_STEP] = flow[F_STEP]
+    if status[F.STEP] == target - 1:
+        stats[S.KINETIC], stats[S.SPIN], stats[S.POTENTIAL] = sums[T.KINETIC], sums[T.SPIN], sums[T.POTENTIAL]
+        stats[S.SPRING_N], stats[S.SPRING_S] = sums[T.SPRING_N], sums[T.SPRING_S]
+        stats[S.SPRING_R], stats[S.N_CONTACT] = sums[T.SPRING_R], sums[T.N_CONTACT]
+    stats[S.SPEED_MAX], stats[S.SPIN_MAX] = math.sqrt(sums[T.SPEED_2]), math.sqrt(sums[T.SPIN_2])
+    if sums[T.OVERLAP] > stats[S.OVERLAP_MAX]:
+        stats[S.OVERLAP_MAX], stats[S.OVERLAP_GRAIN] = sums[T.OVERLAP], sums[T.OVERLAP_GRAIN]
+        stats[S.OVERLAP_STEP] = status[F.STEP]
 
 
 @device
-def _decide(room: int, c: Any, sums: Any, flow: Any, pace: Any, now: Any) -> None:
+def _decide_stop(room: int, c: Any, sums: Any, status: Any, motion: Any, stats: Any) -> None:
     """Find the first fault, count the step, and stop for the host where it has something to do."""
-    if now[N_OVERLAP_STEP] == flow[F_STEP] and now[N_OVERLAP_MAX] > c[C_OVERLAP_LIMIT]:
-        now[N_FAULT], now[N_FAULT_GRAIN], now[N_FAULT_PARTNER] = (
-            FAULT_OVERLAP, sums[A_OVERLAP_GRAIN], sums[A_OVERLAP_PARTNER],
+    if stats[S.OVERLAP_STEP] == status[F.STEP] and stats[S.OVERLAP_MAX] > c[P.OVERLAP_LIMIT]:
+        stats[S.FAULT], stats[S.FAULT_GRAIN], stats[S.FAULT_PARTNER] = (
+            FAULT_OVERLAP, sums[T.OVERLAP_GRAIN], sums[T.OVERLAP_PARTNER],
         )  # fmt: skip
-    elif sums[A_BAD] < NOBODY:
-        now[N_FAULT], now[N_FAULT_GRAIN], now[N_FAULT_PARTNER] = FAULT_NOT_A_NUMBER, sums[A_BAD], -1.0
-    elif flow[F_ENDED] > room:
-        now[N_FAULT], now[N_FAULT_GRAIN], now[N_FAULT_PARTNER] = FAULT_EVENTS_FULL, flow[F_SPILT], -1.0
-    fastest = now[N_SPEED_MAX]
-    travel = pace[P_TRAVEL] + fastest * c[C_DT]
-    pace[P_TRAVEL], pace[P_FASTEST] = travel, fastest
-    if now[N_FAULT] != FAULT_NONE:
-        flow[F_STOP] = STOP_FAULT
-    elif fastest * c[C_DT] > c[C_STEP_LIMIT]:
-        flow[F_STOP] = STOP_UNSAFE
-    elif 2.0 * travel > pace[P_SKIN]:
-        flow[F_STOP] = STOP_LIST
-    elif 2 * flow[F_ENDED] > room:
-        flow[F_STOP] = STOP_EVENTS
-    flow[F_PARITY] = 1 - flow[F_PARITY]
-    flow[F_STEP] += 1
+    elif sums[T.NOT_FINITE] < NO_GRAIN:
+        stats[S.FAULT], stats[S.FAULT_GRAIN], stats[S.FAULT_PARTNER] = (
+            FAULT_NOT_A_NUMBER,
+            sums[T.NOT_FINITE],
+            -1.0,
+        )
+    elif status[F.ENDED] > room:
+        stats[S.FAULT], stats[S.FAULT_GRAIN], stats[S.FAULT_PARTNER] = (
+            FAULT_EVENTS_FULL,
+            status[F.OVERFLOWED],
+            -1.0,
+        )
+    fastest = stats[S.SPEED_MAX]
+    travel = motion[F.TRAVEL] + fastest * c[P.DT]
+    motion[F.TRAVEL], motion[F.FASTEST] = travel, fastest
+    if stats[S.FAULT] != FAULT_NONE:
+        status[F.STOP] = STOP_FAULT
+    elif fastest * c[P.DT] > c[P.DISPLACEMENT_LIMIT]:
+        status[F.STOP] = STOP_UNSAFE
+    elif 2.0 * travel > motion[F.SKIN]:
+        status[F.STOP] = STOP_LIST
+    elif 2 * status[F.ENDED] > room:
+        status[F.STOP] = STOP_EVENTS
+    status[F.CURRENT] = 1 - status[F.CURRENT]
+    status[F.STEP] += 1

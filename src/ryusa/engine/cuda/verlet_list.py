@@ -8,10 +8,10 @@ distance; so the grid needs no walls.
 import math
 from typing import Any
 
-from ryusa.engine.cuda.arrays import Bodies, Pairs, Walls
-from ryusa.engine.cuda.device import cuda, device, same
-from ryusa.engine.shared.pair import dashpots
-from ryusa.engine.shared.rows import ETA_N, ETA_S, R_ROLLING
+from ryusa.engine.cuda.arrays import DeviceGrainArrays, DevicePairArrays, DeviceWallArrays
+from ryusa.engine.cuda.device import cuda, device, on_device
+from ryusa.engine.shared import memory_rows as M
+from ryusa.engine.shared.dashpots import dashpots
 from ryusa.laws.geometry import wrap
 
 CHUNK = 64  # numbers that one thread adds up in a row
@@ -25,7 +25,7 @@ G_WIDTH = 11
 G_REACH = 14
 N_GRID = 15
 
-_dashpots = same(dashpots)
+_dashpots = on_device(dashpots)
 
 
 @device
@@ -36,14 +36,14 @@ def along(x: float, corner: float, width: float, dim: int) -> int:
 
 
 @cuda.jit
-def wipe(values: Any, value: int) -> None:
+def fill(values: Any, value: int) -> None:
     """Set every number to one value."""
     for k in range(cuda.grid(1), values.shape[0], cuda.gridsize(1)):
         values[k] = value
 
 
 @cuda.jit
-def bring_in(n: int, x: Any, image: Any, ids: Any, grid: Any, listed: Any, lost: Any) -> None:
+def wrap_grains(n: int, x: Any, image: Any, ids: Any, grid: Any, listed: Any, lost: Any) -> None:
     """Bring grains back into the period, count it, keep where they are, by id, and find the lost one."""
     for i in range(cuda.grid(1), n, cuda.gridsize(1)):
         inside = True
@@ -72,14 +72,14 @@ def count_cells(places: Any, x: Any, grid: Any, dims: Any, cell: Any, count: Any
 
 
 @cuda.jit
-def fill_cells(places: Any, cell: Any, first: Any, taken: Any, order: Any) -> None:
+def fill_cells(places: Any, cell: Any, first: Any, impulse: Any, order: Any) -> None:
     """Put the grains of every cell into its slots, in whatever order the threads come."""
     for s in range(cuda.grid(1), places.shape[0], cuda.gridsize(1)):
-        order[first[cell[s]] + cuda.atomic.add(taken, cell[s], 1)] = places[s]
+        order[first[cell[s]] + cuda.atomic.add(impulse, cell[s], 1)] = places[s]
 
 
 @cuda.jit
-def tidy_cells(n_cell: int, first: Any, ids: Any, order: Any) -> None:
+def sort_cells(n_cell: int, first: Any, ids: Any, order: Any) -> None:
     """Bring the grains of every cell into the order of their ids."""
     for c in range(cuda.grid(1), n_cell, cuda.gridsize(1)):
         for k in range(first[c] + 1, first[c + 1]):
@@ -92,7 +92,7 @@ def tidy_cells(n_cell: int, first: Any, ids: Any, order: Any) -> None:
 
 
 @cuda.jit
-def add_chunks(n: int, values: Any, sums: Any) -> None:
+def sum_chunks(n: int, values: Any, sums: Any) -> None:
     """Sum of every chunk of values[:n]."""
     for c in range(cuda.grid(1), sums.shape[0], cuda.gridsize(1)):
         total = 0
@@ -102,7 +102,7 @@ def add_chunks(n: int, values: Any, sums: Any) -> None:
 
 
 @cuda.jit
-def run_chunks(n: int, values: Any, before: Any) -> None:
+def scan_chunks(n: int, values: Any, before: Any) -> None:
     """Turn values[:n] into what comes before each of them, given what comes before each chunk."""
     for c in range(cuda.grid(1), before.shape[0], cuda.gridsize(1)):
         total = before[c]
@@ -113,7 +113,9 @@ def run_chunks(n: int, values: Any, before: Any) -> None:
 
 
 @cuda.jit
-def gather(n: int, half: int, order: Any, old: Bodies, new: Bodies, of: Bodies) -> None:
+def reorder(
+    n: int, half: int, order: Any, old: DeviceGrainArrays, new: DeviceGrainArrays, of: DeviceGrainArrays
+) -> None:
     """Lay free grains out anew: place s gets what stood at place order[s]; `of` holds what stays, by id."""
     for s in range(cuda.grid(1), n, cuda.gridsize(1)):
         o = order[s]
@@ -122,21 +124,21 @@ def gather(n: int, half: int, order: Any, old: Bodies, new: Bodies, of: Bodies) 
             new.x[1 - half, s, k] = old.x[half, o, k]
             new.v[1 - half, s, k] = old.v[half, o, k]
             new.w[1 - half, s, k] = old.w[half, o, k]
-        new.touched[1 - half, s] = old.touched[half, o]
+        new.n_touching[1 - half, s] = old.n_touching[half, o]
         new.ids[s] = name
         new.m[s], new.inertia[s] = of.m[name], of.inertia[name]
         new.m_bare[s], new.m_weight[s] = of.m_bare[name], of.m_weight[name]
         for k in range(2):
             new.image[s, k] = old.image[o, k]
-        if old.seen.shape[0] == n:
-            for k in range(old.seen.shape[1]):
-                new.seen[s, k] = old.seen[o, k]
-            for k in range(old.taken.shape[1]):
-                new.taken[s, k] = old.taken[o, k]
+        if old.fluid.shape[0] == n:
+            for k in range(old.fluid.shape[1]):
+                new.fluid[s, k] = old.fluid[o, k]
+            for k in range(old.impulse.shape[1]):
+                new.impulse[s, k] = old.impulse[o, k]
 
 
 @cuda.jit
-def spread(n: int, half: int, bodies: Bodies) -> None:
+def copy_radii(n: int, half: int, bodies: DeviceGrainArrays) -> None:
     """Give the half that a step will write the radii of the half that holds."""
     for i in range(cuda.grid(1), n, cuda.gridsize(1)):
         bodies.x[1 - half, i, 3] = bodies.x[half, i, 3]
@@ -145,9 +147,9 @@ def spread(n: int, half: int, bodies: Bodies) -> None:
 
 
 @device
-def near(i: int, j: int, lanes: int, x: Any, grid: Any) -> bool:
+def within_reach(i: int, j: int, plane_case: int, x: Any, grid: Any) -> bool:
     """Whether two grains come within reach; in a plane scene another y is another lane, never met."""
-    if lanes and x[j, 1] != x[i, 1]:
+    if plane_case and x[j, 1] != x[i, 1]:
         return False
     reach = x[i, 3] + x[j, 3] + grid[G_REACH]
     d_x = wrap(x[j, 0] - x[i, 0], grid[G_PERIOD])
@@ -157,7 +159,7 @@ def near(i: int, j: int, lanes: int, x: Any, grid: Any) -> bool:
 
 
 @device
-def put(begin: int, end: int, j: int, n_solid: int, ids: Any, partners: Any) -> None:
+def insert(begin: int, end: int, j: int, n_solid: int, ids: Any, partners: Any) -> None:
     """Put a neighbour among those of one grain, in the order of ids; `end` is one beyond the last."""
     mine = ids[j] if j < n_solid else j
     at = end
@@ -171,9 +173,9 @@ def put(begin: int, end: int, j: int, n_solid: int, ids: Any, partners: Any) -> 
 
 
 @cuda.jit
-def find(
-    write: int, n: int, n_solid: int, lanes: int, x: Any, ids: Any, walls: Walls, grid: Any, dims: Any,
-    first: Any, first_fixed: Any, fixed: Any, start: Any, partners: Any,
+def find_neighbours(
+    write: int, n: int, n_solid: int, plane_case: int, x: Any, ids: Any, walls: DeviceWallArrays, grid: Any,
+    dims: Any, first: Any, first_fixed: Any, fixed: Any, start: Any, partners: Any,
 ) -> None:  # fmt: skip
     """Count the neighbours of every grain into `start`, or, once that is summed up, write them."""
     for i in range(cuda.grid(1), n, cuda.gridsize(1)):
@@ -190,15 +192,15 @@ def find(
             c = (c_z + s % n_z - n_z // 3 + dims[2]) % dims[2]
             cell = (a * dims[1] + b) * dims[2] + c
             for j in range(first[cell], first[cell + 1]):
-                if j != i and near(i, j, lanes, x, grid):
+                if j != i and within_reach(i, j, plane_case, x, grid):
                     if write:
-                        put(begin, end, j, n_solid, ids, partners)
+                        insert(begin, end, j, n_solid, ids, partners)
                     end += 1
             for slot in range(first_fixed[cell], first_fixed[cell + 1]):
                 j = fixed[slot]
-                if near(i, j, lanes, x, grid):
+                if within_reach(i, j, plane_case, x, grid):
                     if write:
-                        put(begin, end, j, n_solid, ids, partners)
+                        insert(begin, end, j, n_solid, ids, partners)
                     end += 1
         for k in range(walls.normals.shape[0]):
             gap = 0.0
@@ -206,16 +208,16 @@ def find(
                 gap += (x[i, a] - walls.points[k, a]) * walls.normals[k, a]
             if walls.active[k] and gap < x[i, 3] + grid[G_REACH]:
                 if write:
-                    put(begin, end, n_solid + k, n_solid, ids, partners)
+                    insert(begin, end, n_solid + k, n_solid, ids, partners)
                 end += 1
         if not write:
             start[i] = end
 
 
 @cuda.jit
-def carry(
-    n: int, n_solid: int, rotation: int, half: int, c: Any, order: Any, bodies: Bodies, ids_before: Any,
-    before: Pairs, pairs: Pairs, missing: Any,
+def transfer_memory(
+    n: int, n_solid: int, rotation: int, half: int, c: Any, order: Any, bodies: DeviceGrainArrays,
+    ids_before: Any, before: DevicePairArrays, pairs: DevicePairArrays, missing: Any,
 ) -> None:  # fmt: skip
     """Give every neighbour its dashpots, and what touches its memory from the list before.
 
@@ -229,62 +231,65 @@ def carry(
         for k in range(pairs.start[i], pairs.start[i + 1]):
             j = pairs.partners[k]
             mine = bodies.ids[j] if j < n_solid else j
-            pairs.live[k] = 0
+            pairs.touching[k] = 0
             known = False
             while old < end and not known:
                 q = before.partners[old]
                 theirs = ids_before[q] if q < n_solid else q
                 if theirs > mine:
                     break
-                known = theirs == mine and before.live[old] != 0
+                known = theirs == mine and before.touching[old] != 0
                 if not known:
-                    if before.live[old] != 0:
+                    if before.touching[old] != 0:
                         cuda.atomic.min(missing, 0, bodies.ids[i])
                     old += 1
             if known:
-                pairs.live[k] = 1
-                pairs.eta[k, ETA_N], pairs.eta[k, ETA_S] = before.eta[old, ETA_N], before.eta[old, ETA_S]
+                pairs.touching[k] = 1
+                pairs.eta[k, M.ETA_N], pairs.eta[k, M.ETA_S] = (
+                    before.eta[old, M.ETA_N],
+                    before.eta[old, M.ETA_S],
+                )
                 for e in range(width):
                     pairs.rows[k, e] = before.rows[old, e]
                 old += 1
             else:
                 own = j >= n or mine > bodies.ids[i]
                 a, b = (i, j) if own else (j, i)
-                for e in range(min(width, R_ROLLING)):
+                for e in range(min(width, M.END_ROLLING)):
                     pairs.rows[k, e] = 0.0
                 eta_n, eta_s = _dashpots(a, b, rotation, c, bodies.m, x, bodies.inertia)
-                pairs.eta[k, ETA_N], pairs.eta[k, ETA_S] = eta_n, eta_s
+                pairs.eta[k, M.ETA_N], pairs.eta[k, M.ETA_S] = eta_n, eta_s
         while old < end:
-            if before.live[old] != 0:
+            if before.touching[old] != 0:
                 cuda.atomic.min(missing, 0, bodies.ids[i])
             old += 1
 
 
 @cuda.jit
-def count_live(n: int, ids: Any, pairs: Pairs, count: Any) -> None:
+def count_touching(n: int, ids: Any, pairs: DevicePairArrays, count: Any) -> None:
     """Pairs in touch that each grain keeps."""
     for i in range(cuda.grid(1), n, cuda.gridsize(1)):
         total = 0
         for k in range(pairs.start[i], pairs.start[i + 1]):
             j = pairs.partners[k]
-            if pairs.live[k] != 0 and (j >= n or ids[j] > ids[i]):
+            if pairs.touching[k] != 0 and (j >= n or ids[j] > ids[i]):
                 total += 1
         count[i] = total
 
 
 @cuda.jit
-def take_live(
-    n: int, ids: Any, pairs: Pairs, start: Any, i_ids: Any, j_ids: Any, eta: Any, rows: Any
+def collect_touching(
+    n: int, ids: Any, pairs: DevicePairArrays, start: Any, i_ids: Any, j_ids: Any, eta: Any, rows: Any
 ) -> None:
     """Copy ids and memory of the pairs in touch."""
     for i in range(cuda.grid(1), n, cuda.gridsize(1)):
         at = start[i]
         for k in range(pairs.start[i], pairs.start[i + 1]):
             j = pairs.partners[k]
-            if pairs.live[k] != 0 and (j >= n or ids[j] > ids[i]):
+            if pairs.touching[k] != 0 and (j >= n or ids[j] > ids[i]):
                 i_ids[at] = ids[i]
                 j_ids[at] = ids[j] if j < n else j
-                eta[at, ETA_N], eta[at, ETA_S] = pairs.eta[k, ETA_N], pairs.eta[k, ETA_S]
+                eta[at, M.ETA_N], eta[at, M.ETA_S] = pairs.eta[k, M.ETA_N], pairs.eta[k, M.ETA_S]
                 for e in range(pairs.rows.shape[1]):
                     rows[at, e] = pairs.rows[k, e]
                 at += 1

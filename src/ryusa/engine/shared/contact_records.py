@@ -1,12 +1,17 @@
-"""Open records of contacts: what is written at first touch, while touching, and at parting."""
-# ruff: noqa: F403, F405  (the columns of rows.py, all of them plain integers)
+"""Records of contacts: opened at first touch, kept while touching, closed at parting."""
 
 from typing import Any
 
-from ryusa.engine.cpu.arrays import Grains
+import numpy as np
+
+from ryusa.engine.shared import block_statistics as S
+from ryusa.engine.shared import record_fields as R
 from ryusa.engine.shared.kernel import kernel
-from ryusa.engine.shared.rows import *
+from ryusa.engine.shared.status import FAULT_EVENTS_FULL, FAULT_NONE
+from ryusa.model import EVENT, State
+from ryusa.model.contacts import N_EVENT
 from ryusa.model.enums import EventRule
+from ryusa.model.scene import Floats
 
 Vector = tuple[float, float, float]
 ONLY_TRACKED = int(EventRule.TRACKED)
@@ -35,28 +40,28 @@ def begin_record(
     i: int,
     j: int,
     n: int,
-    grains: Grains,
+    grains: Any,
     l_x: float,
     l_y: float,
 ) -> None:
     """Open the record of a pair in its first step of touch; the moment of touch is interpolated."""
     x, v, w, ids, image, tracked = grains.x, grains.v, grains.w, grains.ids, grains.image, grains.tracked
     if rule == ONLY_TRACKED and not (tracked[ids[i]] or (j < n and tracked[ids[j]])):
-        record[E_J] = -1.0  # nobody asked for this one
+        record[R.PARTNER] = -1.0  # nobody asked for this one
         return
-    record[E_I] = ids[i]
-    record[E_J] = ids[j] if j < n else j
-    record[E_T_BEGIN] = t - min(overlap / closing, dt) if closing > 0.0 else t
-    record[E_T_END] = t
-    record[E_CLOSING_BEGIN] = closing
-    _put(record, E_SLIP_BEGIN, plane_case, slip, normal)
-    record[E_ALONE] = 1.0
-    record[E_X_BEGIN] = x[i, 0] + (image[i, 0] * l_x if image[i, 0] != 0 else 0.0)
-    record[E_X_BEGIN + 1] = x[i, 1] + (image[i, 1] * l_y if image[i, 1] != 0 else 0.0)
-    record[E_X_BEGIN + 2] = x[i, 2]
+    record[R.GRAIN] = ids[i]
+    record[R.PARTNER] = ids[j] if j < n else j
+    record[R.T_BEGIN] = t - min(overlap / closing, dt) if closing > 0.0 else t
+    record[R.T_END] = t
+    record[R.CLOSING_BEGIN] = closing
+    _put(record, R.SLIP_BEGIN, plane_case, slip, normal)
+    record[R.ALONE] = 1.0
+    record[R.X_BEGIN] = x[i, 0] + (image[i, 0] * l_x if image[i, 0] != 0 else 0.0)
+    record[R.X_BEGIN + 1] = x[i, 1] + (image[i, 1] * l_y if image[i, 1] != 0 else 0.0)
+    record[R.X_BEGIN + 2] = x[i, 2]
     for k in range(3):
-        record[E_V_BEGIN + k] = v[i, k]
-        record[E_OMEGA_BEGIN + k] = w[i, k]
+        record[R.V_BEGIN + k] = v[i, k]
+        record[R.OMEGA_BEGIN + k] = w[i, k]
 
 
 @kernel()
@@ -69,24 +74,24 @@ def keep_record(
     f_raw: float,
     force: Vector,
     sliding: bool,
-    company: bool,
+    others: bool,
 ) -> None:
     """Carry an open record through a step of touch; until the pair parts T_PART holds the last f_n."""
-    if record[E_J] < 0.0:
+    if record[R.PARTNER] < 0.0:
         return
-    record[E_OVERLAP_MAX] = max(record[E_OVERLAP_MAX], overlap)
-    record[E_IMPULSE_N] += f_n * dt
+    record[R.OVERLAP_MAX] = max(record[R.OVERLAP_MAX], overlap)
+    record[R.IMPULSE_N] += f_n * dt
     for k in range(3):
-        record[E_IMPULSE + k] += force[k] * dt
+        record[R.IMPULSE + k] += force[k] * dt
     if sliding and f_n != 0.0:
-        record[E_T_SLIDE] += dt
-    if company:
-        record[E_ALONE] = 0.0
+        record[R.T_SLIDE] += dt
+    if others:
+        record[R.ALONE] = 0.0
     if f_n != 0.0:
-        record[E_T_END] = t
-    elif record[E_T_PART] > 0.0:  # the force ended within this step
-        record[E_T_END] = t - dt * f_raw / (f_raw - record[E_T_PART])
-    record[E_T_PART] = f_n
+        record[R.T_END] = t
+    elif record[R.T_PART] > 0.0:  # the force ended within this step
+        record[R.T_END] = t - dt * f_raw / (f_raw - record[R.T_PART])
+    record[R.T_PART] = f_n
 
 
 @kernel()
@@ -104,21 +109,49 @@ def end_record(
     v: Any,
     w: Any,
     ended: Any,
-    now: Any,
+    stats: Any,
 ) -> None:
     """Close a record in the first step without overlap and put it with the ended ones of the block."""
-    record[E_T_PART] = t + overlap / abs(closing) if closing < 0.0 else t
+    record[R.T_PART] = t + overlap / abs(closing) if closing < 0.0 else t
     if tension or f_n > 0.0:
-        record[E_T_END] = record[E_T_PART]
-    record[E_CLOSING_END] = closing
-    _put(record, E_SLIP_END, plane_case, slip, normal)
+        record[R.T_END] = record[R.T_PART]
+    record[R.CLOSING_END] = closing
+    _put(record, R.SLIP_END, plane_case, slip, normal)
     for k in range(3):
-        record[E_V_END + k] = v[i, k]
-        record[E_OMEGA_END + k] = w[i, k]
-    slot = int(now[N_N_ENDED])
+        record[R.V_END + k] = v[i, k]
+        record[R.OMEGA_END + k] = w[i, k]
+    slot = int(stats[S.N_ENDED])
     if slot < len(ended):
         for k in range(N_EVENT):
             ended[slot, k] = record[k]
-        now[N_N_ENDED] = slot + 1
-    elif now[N_FAULT] == FAULT_NONE:
-        now[N_FAULT], now[N_FAULT_GRAIN], now[N_FAULT_PARTNER] = FAULT_EVENTS_FULL, record[E_I], record[E_J]
+        stats[S.N_ENDED] = slot + 1
+    elif stats[S.FAULT] == FAULT_NONE:
+        stats[S.FAULT], stats[S.FAULT_GRAIN], stats[S.FAULT_PARTNER] = (
+            FAULT_EVENTS_FULL,
+            record[R.GRAIN],
+            record[R.PARTNER],
+        )
+
+
+def closed_records(state: State, places: np.ndarray) -> np.ndarray:
+    """Open records of contacts whose partner is taken away, closed now; what parting would tell stays nan."""
+    rows = state.contacts.event[places].copy()
+    rows = rows[(rows[:, R.PARTNER] >= 0.0) & (rows[:, R.OVERLAP_MAX] > 0.0)]
+    rows[:, R.T_END] = rows[:, R.T_PART] = state.t
+    rows[:, R.CLOSING_END], rows[:, R.ALONE] = np.nan, 0.0
+    rows[:, R.SLIP_END : R.SLIP_END + 3] = np.nan
+    grains = rows[:, R.GRAIN].astype(np.int64)
+    rows[:, R.V_END : R.V_END + 3] = state.v[grains]
+    rows[:, R.OMEGA_END : R.OMEGA_END + 3] = state.omega[grains]
+    return rows
+
+
+def sorted_events(rows: Floats) -> np.ndarray:
+    """Records of ended contacts, shape (n, N_EVENT), as a structured array in order of parting."""
+    events = np.zeros(len(rows), EVENT)
+    column = 0
+    for name in EVENT.names or ():
+        wide = len(EVENT[name].shape) > 0
+        events[name] = rows[:, column : column + 3] if wide else rows[:, column]
+        column += 3 if wide else 1
+    return events[np.lexsort((events["j"], events["i"], events["t_part"]))]

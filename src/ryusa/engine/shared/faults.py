@@ -4,27 +4,18 @@ from typing import Any
 
 import numpy as np
 
-from ryusa.engine.cpu.arrays import Grains
-from ryusa.engine.shared.rows import (
-    C_DT,
-    C_OVERLAP_LIMIT,
-    C_T_ZERO,
-    FAULT_NOT_A_NUMBER,
-    FAULT_OVERLAP,
-    N_FAULT,
-    N_FAULT_GRAIN,
-    N_FAULT_PARTNER,
-    N_OVERLAP_MAX,
-)
+from ryusa.engine.shared import block_statistics as S
+from ryusa.engine.shared import parameters as P
+from ryusa.engine.shared.status import FAULT_NOT_A_NUMBER, FAULT_OVERLAP
 from ryusa.errors import ContactSlotsFull, GrainLost, ListUnsafe, NotANumber, OverlapTooLarge, RunError
 from ryusa.model.scene import Floats
 
 
-def fault_of(now: Floats, numbers: Floats, step: int) -> RunError:
+def fault_of(stats: Floats, parameters: Floats, step: int) -> RunError:
     """The first fault that a block flagged in this step."""
-    block = int(np.argmax(now[:, N_FAULT] != 0))
-    fault, grain, partner = (int(now[block, k]) for k in (N_FAULT, N_FAULT_GRAIN, N_FAULT_PARTNER))
-    t = float(numbers[C_T_ZERO] + step * numbers[C_DT])
+    block = int(np.argmax(stats[:, S.FAULT] != 0))
+    fault, grain, partner = (int(stats[block, k]) for k in (S.FAULT, S.FAULT_GRAIN, S.FAULT_PARTNER))
+    t = float(parameters[P.T_ZERO] + step * parameters[P.DT])
     where: dict[str, Any] = {
         "grain": grain,
         "step": step,
@@ -38,20 +29,20 @@ def fault_of(now: Floats, numbers: Floats, step: int) -> RunError:
         )
         return NotANumber("velocity is not finite", **where, hint=hint)
     if fault == FAULT_OVERLAP:
-        found = f"overlap is {now[block, N_OVERLAP_MAX]:.3g} of the smaller diameter, more than the limit"
+        found = f"overlap is {stats[block, S.OVERLAP_MAX]:.3g} of the smaller diameter, more than the limit"
         hint = "Use stiffer springs (contact.stiffness), or raise domain.overlap_limit if this is meant."
-        return OverlapTooLarge(f"{found} {numbers[C_OVERLAP_LIMIT]:g}", **where, hint=hint)
+        return OverlapTooLarge(f"{found} {parameters[P.OVERLAP_LIMIT]:g}", **where, hint=hint)
     hint = "Record fewer of them: record.events = 'tracked' or 'none'."
     return ContactSlotsFull("more contacts ended in one step than the record holds", **where, hint=hint)
 
 
-def unsafe_of(grains: Grains, n: int, numbers: Floats, smallest: float, step: int, t: float) -> ListUnsafe:
+def unsafe_of(grains: Any, n: int, parameters: Floats, smallest: float, step: int, t: float) -> ListUnsafe:
     """The fastest grain, which went too far in one step."""
     speed = np.linalg.norm(grains.v[:n, :3], axis=1)
     place = int(speed.argmax())
-    way = speed[place] * numbers[C_DT] / smallest
+    displacement = speed[place] * parameters[P.DT] / smallest
     return ListUnsafe(
-        f"a grain moves {way:.2g} diameters in one step ({speed[place]:.3g} m/s)",
+        f"a grain moves {displacement:.2g} diameters in one step ({speed[place]:.3g} m/s)",
         grain=int(grains.ids[place]),
         step=step,
         t=t,
@@ -60,7 +51,7 @@ def unsafe_of(grains: Grains, n: int, numbers: Floats, smallest: float, step: in
     )
 
 
-def lost_of(grains: Grains, grain: int, step: int, t: float) -> GrainLost:
+def lost_of(grains: Any, grain: int, step: int, t: float) -> GrainLost:
     """A grain outside the world."""
     place = int(np.flatnonzero(grains.ids == grain)[0])
     where = ", ".join(f"{a:.4g}" for a in grains.x[place, :3])

@@ -1,8 +1,9 @@
-"""What the CPU engine cannot carry, told before anything is stepped."""
+"""What engines refuse before any step: a scene they cannot simulate, a state that does not fit it."""
 
 import numpy as np
 
-from ryusa.model import Scene
+from ryusa.errors import NotANumber
+from ryusa.model import Scene, State
 from ryusa.model.enums import Arm, Damping, Rebound, Rolling
 
 _SHORTEST_PERIOD = 3.0  # in diameters: below, a pair could touch through two images
@@ -25,3 +26,37 @@ def refusals(scene: Scene) -> tuple[str, ...]:
         if np.isfinite(scene.period[k]) and np.any(scene.plane_normal[scene.plane_active, k] != 0.0):
             reasons.append(f"a plane stands across the periodic direction {axis}")
     return tuple(reasons)
+
+
+def check_state(scene: Scene, state: State) -> None:
+    """Refuse a state of another scene, one that is not finite, and lanes of a plane scene that would meet.
+
+    Raises
+    ------
+    ValueError, NotANumber : what is wrong; the latter names the grain.
+    """
+    n = scene.n_grain
+    if state.x.shape != (n, 3):
+        raise ValueError(f"state.x has shape {state.x.shape}, the scene has {n} free grains")
+    if scene.plane_case:
+        _check_lanes(scene, state)
+    bad = np.flatnonzero(~np.isfinite(np.hstack([state.x, state.v, state.omega])).all(axis=1))
+    if len(bad):
+        raise NotANumber(
+            "position, velocity or spin is not finite",
+            grain=int(bad[0]),
+            step=state.step,
+            t=state.t,
+            hint="Nothing was stepped: give finite numbers.",
+        )
+
+
+def _check_lanes(scene: Scene, state: State) -> None:
+    """In a plane scene another y is another lane; lanes closer than a diameter would hide contacts."""
+    lanes = np.unique(np.concatenate([state.x[:, 1], scene.x_fixed[:, 1]]))
+    largest = float(np.concatenate([scene.d, scene.d_fixed]).max(initial=0.0))
+    apart = np.diff(lanes)
+    if len(apart) and apart.min() < largest * (1.0 - 1e-9):
+        y = lanes[int(apart.argmin())]
+        text = f"a plane scene has grains at y = {y:g} m and {apart.min():g} m beside, less than a diameter"
+        raise ValueError(f"{text} ({largest:g} m): give them the same y, or set the lanes apart")

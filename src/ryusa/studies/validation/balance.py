@@ -67,12 +67,12 @@ class ChannelFlow:
         self.engine = CpuEngine()
         self.engine.load(self.fixed, first)
         self.coupling = Coupling.begin(self.fixed, self.column, 100, first.x)
-        self.engine.immerse(self.coupling.seen)
+        self.engine.set_fluid(self.coupling.sampled)
 
     def run(self, time: float) -> Impulses:
         """Step on for a time [s] and add up what came in and what went out."""
         fixed, column, coupling = self.fixed, self.column, self.coupling
-        v, u = self.engine.drift()[1], coupling.state
+        v, u = self.engine.kinematics()[1], coupling.state
         weight, contacts, water, spent = 0.0, -self._held(), 0.0, 0.0
         self.engine.events()
         while spent < time:
@@ -81,13 +81,13 @@ class ChannelFlow:
             self.engine.advance(steps).raise_if_any()
             events = self.engine.events()
             contacts += self._of_fixed(events["i"], events["j"], events["impulse"][:, 0])
-            self.engine.immerse(coupling.exchange(*self.engine.drift()))
+            self.engine.set_fluid(coupling.exchange(*self.engine.kinematics()))
             budget = coupling.budget
             if budget is not None:
                 weight += (budget.gravity + fixed.m.sum() * fixed.gravity[0] / column.area) * dt
                 water += (budget.bed + budget.fixed + budget.surface) * dt
             spent += dt
-        gain = float(fixed.m @ (self.engine.drift()[1] - v)[:, 0]) / column.area
+        gain = float(fixed.m @ (self.engine.kinematics()[1] - v)[:, 0]) / column.area
         now = coupling.state
         gain += column.rho_w * float(now.content @ now.u - u.content @ u.u)
         return Impulses(float(weight), (contacts + self._held()) / column.area, float(water), gain)
@@ -108,7 +108,7 @@ def weigh(form: str, time: float) -> dict[str, Floats]:
     flow = ChannelFlow(FORMS[form])
     flow.run(SETTLE)
     parts = [flow.run(time / PARTS) for _ in range(PARTS)]
-    return {"parts": np.array(parts), "speed": np.array(flow.engine.drift()[1][:, 0].mean())}
+    return {"parts": np.array(parts), "speed": np.array(flow.engine.kinematics()[1][:, 0].mean())}
 
 
 def _call(form: str, level: Level) -> Task:

@@ -117,15 +117,15 @@ def _settle(law: Hindrance, where: Range, form: Buoyancy, phi: float, end: float
     engine = CpuEngine()
     engine.load(fixed, first)
     coupling = Coupling.begin(fixed, column, EXCHANGE, first.x)
-    engine.immerse(coupling.seen)
+    engine.set_fluid(coupling.sampled)
     middle = np.flatnonzero(b == LAYERS // 2)
     done = 0
     while done < RESPONSES / where.a * STEPS_IN_ONE:
         steps = coupling.steps
         engine.advance(steps).raise_if_any()
-        engine.immerse(coupling.exchange(*engine.drift()))
+        engine.set_fluid(coupling.exchange(*engine.kinematics()))
         done += steps
-    return -float(engine.drift()[1][middle, 2].mean()) / where.w_0
+    return -float(engine.kinematics()[1][middle, 2].mean()) / where.w_0
 
 
 def _call(law: str, where: str, form: str) -> Task:

@@ -7,18 +7,18 @@ from numba import types
 from numba.extending import intrinsic
 
 
-def _lent(builder: Any, kind: Any, value: Any) -> Any:
+def _borrowed(builder: Any, kind: Any, value: Any) -> Any:
     if isinstance(kind, types.Array):
         owner = value.type.elements[0]
         return builder.insert_value(value, ir.Constant(owner, None), 0)
     if isinstance(kind, types.BaseTuple):
         parts: Any = kind
         for k, part in enumerate(parts):
-            value = builder.insert_value(value, _lent(builder, part, builder.extract_value(value, k)), k)
+            value = builder.insert_value(value, _borrowed(builder, part, builder.extract_value(value, k)), k)
     return value
 
 
-def _lend(typingctx: Any, value: Any) -> Any:
+def _borrow(typingctx: Any, value: Any) -> Any:
     """The same array, or tuple of arrays, without an owner.
 
     Counting up and down is an atomic instruction each: a tenth of a step. Whoever lends has to hold the
@@ -26,9 +26,9 @@ def _lend(typingctx: Any, value: Any) -> Any:
     """
 
     def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        return _lent(builder, signature.args[0], args[0])
+        return _borrowed(builder, signature.args[0], args[0])
 
     return value(value), codegen
 
 
-lend: Any = intrinsic(_lend)
+borrow: Any = intrinsic(_borrow)

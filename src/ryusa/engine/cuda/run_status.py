@@ -1,0 +1,15 @@
+"""Where a run stands, kept on the device: whole numbers and doubles, by the places named here."""
+
+# int64
+STOP = 0  # 0, or why steps are passed over (rows.py)
+STEP = 1  # done since the start of the run
+CURRENT = 2  # half that holds now
+ENDED = 3  # records that wait to be fetched
+OVERFLOWED = 4  # lowest id of a grain whose record found no room
+N_STATUS = 8
+
+# The same, doubles.
+TRAVEL = 0  # how far the fastest grain may have gone since the list was made [m]
+SKIN = 1  # reach of the list beyond touch [m]
+FASTEST = 2  # speed in the last step [m/s]
+N_MOTION = 3

@@ -1,0 +1,93 @@
+"""Forces of the water on one grain by the law that a number names, and the account of its half intervals."""
+
+import math
+from typing import Any
+
+from ryusa.engine.shared import block_statistics as S
+from ryusa.engine.shared import parameters as P
+from ryusa.engine.shared.kernel import inner
+from ryusa.engine.shared.variant import LawChoice
+from ryusa.laws.lift import (
+    lift_saffman_mei,
+    lift_wiberg_smith,
+    magnus_loth,
+    magnus_oesterle_dinh,
+    magnus_rubinow_keller,
+)
+from ryusa.laws.water import log_law_rough, log_law_smooth, uniform
+from ryusa.model.enums import Above, Buoyancy, Lift, Magnus, Profile
+from ryusa.model.fluid import PHI, SHEAR, SUBMERGED, U, V, W
+from ryusa.model.resistance import hindered
+from ryusa.model.tally import Book
+
+ROUGH, SMOOTH, UNIFORM = int(Profile.LOG_ROUGH), int(Profile.LOG_SMOOTH), int(Profile.UNIFORM)
+HOLD = int(Above.HOLD)
+STRESS = int(Buoyancy.STRESS)
+WIBERG_SMITH, SAFFMAN_MEI = int(Lift.WIBERG_SMITH), int(Lift.SAFFMAN_MEI)
+LOTH, OESTERLE_DINH = int(Magnus.LOTH), int(Magnus.OESTERLE_DINH)
+B_DRAG, B_TORQUE, B_LIFT, B_FLOW = int(Book.DRAG), int(Book.TORQUE), int(Book.LIFT), int(Book.FLOW)
+B_FILM = int(Book.FILM)
+
+
+@inner(forceinline=True)
+def water_speed(profile: int, above: int, z: float, c: Any) -> float:
+    """Speed of the water along x at height z over the zero of the profile [m/s]."""
+    if above == HOLD:
+        z = min(z, c[P.DEPTH])
+    if profile == ROUGH:
+        return log_law_rough(z, c[P.U_STAR], c[P.K_ROUGH])
+    if profile == SMOOTH:
+        return log_law_smooth(z, c[P.U_STAR], c[P.NU])
+    if profile == UNIFORM:
+        return uniform(z, c[P.U_UNIFORM])
+    return 0.0
+
+
+@inner(forceinline=True)
+def column_forces(
+    choice: LawChoice, c: Any, r: float, fluid: Any, v: Any, w: Any
+) -> tuple[float, float, float, float, float, float, float]:
+    """Drag over slip [N s/m] of a column of water on one grain, then drag, then lift and Magnus force [N]."""
+    d, nu, rho_w, tangential = 2.0 * r, c[P.NU], c[P.RHO_W], fluid[SHEAR]
+    u_x, u_y, u_z = fluid[U] - v[0], fluid[V] - v[1], fluid[W] - v[2]
+    slip = math.sqrt(u_x * u_x + u_y * u_y + u_z * u_z)
+    share = fluid[SUBMERGED]
+    k_d = 0.0
+    if choice.drag:
+        k_d = share * hindered(
+            choice.drag, choice.hindrance, choice.buoyancy == STRESS, c[P.HINDRANCE], slip, fluid[PHI],
+            d, nu, rho_w, c[P.A_2], c[P.C_D],
+        )  # fmt: skip
+    l_x = l_y = l_z = 0.0
+    if choice.lift == WIBERG_SMITH:
+        half = 0.5 * tangential * d
+        l_z = lift_wiberg_smith(u_x + half, u_x - half, c[P.C_L], rho_w, c[P.A_2], d)
+    elif choice.lift == SAFFMAN_MEI:
+        k = lift_saffman_mei(slip, tangential, d, nu, rho_w)
+        l_x, l_z = -k * u_z, k * u_x
+    if choice.magnus:
+        o_x, o_y, o_z = -w[0], 0.5 * tangential - w[1], -w[2]
+        spin = math.sqrt(o_x * o_x + o_y * o_y + o_z * o_z)
+        if choice.magnus == LOTH:
+            k = magnus_loth(slip, spin, d, nu, rho_w)
+        elif choice.magnus == OESTERLE_DINH:
+            k = magnus_oesterle_dinh(slip, spin, d, nu, rho_w)
+        else:
+            k = magnus_rubinow_keller(d, rho_w)
+        l_x += k * (o_y * u_z - o_z * u_y)
+        l_y += k * (o_z * u_x - o_x * u_z)
+        l_z += k * (o_x * u_y - o_y * u_x)
+    return k_d, k_d * u_x, k_d * u_y, k_d * u_z, share * l_x, share * l_y, share * l_z
+
+
+@inner()
+def close_fluid_interval(account: Any, stats: Any) -> None:
+    """Book the second half of the work of the water in the step before."""
+    account[B_DRAG] += stats[S.PENDING_DRAG]
+    account[B_TORQUE] += stats[S.PENDING_TORQUE]
+    account[B_LIFT] += stats[S.PENDING_LIFT]
+    account[B_FLOW] += stats[S.PENDING_FLOW]
+    account[B_FILM] -= stats[S.PENDING_FILM]
+    stats[S.PENDING_DRAG] = stats[S.PENDING_TORQUE] = stats[S.PENDING_LIFT] = stats[S.PENDING_FLOW] = stats[
+        S.PENDING_FILM
+    ] = 0.0

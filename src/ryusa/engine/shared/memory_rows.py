@@ -1,0 +1,17 @@
+"""How the memory of a pair in touch lies in a row of doubles.
+
+Vectors take three columns. A plane scene keeps the component along its one tangent in the first of them.
+"""
+
+# Row of a pair: vectors take three columns. A plane scene keeps the component along its one tangent.
+SPRING_S = 0  # tangential spring force on grain i [N]
+F_N = 3  # normal force in the last step [N]
+DASH_S = 4  # tangential dashpot force on i in the last step [N]
+DASH_N = 7  # normal force less normal spring in the last step [N]
+SPRING_R = 8  # rolling spring torque on i [N m]; from here on only where rolling friction acts
+DASH_R = 11  # rolling torque on i in the last step, less its spring [N m]
+END_ROLLING = 14
+WIDTH, WIDTH_ROLLING = 8, 16  # doubles of a row without and with rolling friction: whole cache lines
+
+# Dashpots of a pair [N s/m], kept beside its row.
+ETA_N, ETA_S = 0, 1

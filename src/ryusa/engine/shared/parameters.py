@@ -1,0 +1,101 @@
+"""Parameters of a scene: one row of doubles that kernels read at the places named here."""
+
+import numpy as np
+
+from ryusa.model import Scene
+from ryusa.model.enums import Damping
+from ryusa.model.scene import Floats
+
+# Scalars a kernel reads.
+DT = 0
+K_N = 1
+K_S = 2
+MU = 3
+COHESION = 4
+ROLLING = 5
+ROLLING_STIFFNESS = 6
+ROLLING_ZETA = 7
+OVERLAP_LIMIT = 8
+DISPLACEMENT_LIMIT = 9  # longest way a grain may go in one step [m]
+PERIOD_X = 10
+PERIOD_Y = 11
+G_X = 12
+G_Y = 13
+G_Z = 14
+U_STAR = 15
+K_ROUGH = 16
+Z_ZERO = 17
+U_UNIFORM = 18
+DEPTH = 19
+NU = 20
+RHO_W = 21
+C_D = 22
+A_2 = 23
+SKIN = 24
+T_ZERO = 25  # time of step 0 [s]
+ZETA_N = 26
+ZETA_S = 27
+ETA_N = 28  # constants, 0 where they follow from restitution
+ETA_S = 29
+HINDRANCE = 30  # exponent
+C_L = 31
+FILM_REACH = 32  # gap below which a film resists before touch [m]
+ASPERITY = 33
+ST_C = 34
+E_DRY = 35  # restitution asked for [-]
+E_LEAST = 36
+N_PARAMETER = E_LEAST + 1
+
+# Largest displacement of a grain in one step, over the smallest diameter: two grains that approach each other
+# by twice that cannot pass through each other unseen (design/0008).
+LARGEST_DISPLACEMENT = 0.25
+
+
+def parameters_of(scene: Scene) -> Floats:
+    """The scalars of a scene, by the C_ names of rows.py; the skin is the engine's own."""
+    law, rolling, water = scene.contact, scene.rolling, scene.water
+    asked = law.damping == Damping.RESTITUTION
+    table = {
+        DT: scene.dt,
+        K_N: law.k_n,
+        K_S: law.k_s,
+        MU: law.mu,
+        COHESION: law.cohesion,
+        ROLLING: rolling.coefficient,
+        ROLLING_STIFFNESS: rolling.stiffness_factor,
+        ROLLING_ZETA: rolling.zeta_r,
+        OVERLAP_LIMIT: scene.overlap_limit,
+        DISPLACEMENT_LIMIT: LARGEST_DISPLACEMENT
+        * float(np.concatenate([scene.d, scene.d_fixed]).min(initial=np.inf)),
+        PERIOD_X: scene.period[0],
+        PERIOD_Y: scene.period[1],
+        G_X: scene.gravity[0],
+        G_Y: scene.gravity[1],
+        G_Z: scene.gravity[2],
+        U_STAR: water.u_star,
+        K_ROUGH: water.k_rough,
+        Z_ZERO: water.z_zero,
+        U_UNIFORM: water.u_uniform,
+        DEPTH: water.depth,
+        NU: water.nu,
+        RHO_W: water.rho_w,
+        C_D: water.c_d,
+        A_2: water.a_2,
+        SKIN: 0.0,
+        T_ZERO: 0.0,
+        ZETA_N: law.zeta_n if asked else 0.0,
+        ZETA_S: law.zeta_s if asked else 0.0,
+        ETA_N: 0.0 if asked else law.eta_n,
+        ETA_S: 0.0 if asked else law.eta_s,
+        HINDRANCE: water.hindrance_exponent,
+        C_L: water.c_l,
+        FILM_REACH: water.film_reach,
+        ASPERITY: water.asperity,
+        ST_C: water.st_c,
+        E_DRY: law.e_n,
+        E_LEAST: water.e_least,
+    }
+    parameters = np.zeros(len(table))
+    for place, value in table.items():
+        parameters[place] = value
+    return parameters

@@ -1,0 +1,135 @@
+"""Rolling friction of one pair, with its energy account."""
+
+import math
+from typing import Any
+
+from ryusa.engine.shared import memory_rows as M
+from ryusa.engine.shared import parameters as P
+from ryusa.engine.shared.kernel import FAST, kernel
+from ryusa.laws.geometry import turn
+from ryusa.laws.rolling import (
+    epsd_damping,
+    epsd_spring,
+    epsd_stiffness,
+    epsd_torque,
+    inertia_rolling,
+    inertia_spin,
+    reduced_radius,
+    rolling_arm_width,
+    rolling_constant,
+    rolling_printed,
+    slider_scale,
+)
+from ryusa.model.enums import Arm, Rolling
+from ryusa.model.tally import Book
+
+Vector = tuple[float, float, float]
+Body = tuple[
+    float, float, float, float
+]  # radius, mass with added mass, inertia, contacts that share the inertia
+
+ROLL_PRINTED, ROLL_CONSTANT, ROLL_EPSD = int(Rolling.PRINTED), int(Rolling.CONSTANT), int(Rolling.EPSD)
+ARM_WIDTH = int(Arm.CONTACT_WIDTH)
+B_ROLL, B_RELEASED_R = int(Book.ROLL), int(Book.RELEASED_R)
+
+
+@kernel(fastmath=FAST)
+def rolling_friction(
+    model: int,
+    arms: int,
+    row: Any,
+    c: Any,
+    f_n: float,
+    overlap: float,
+    hdt: float,
+    body_i: Body,
+    body_j: Body,
+    n: Vector,
+    t: Vector,
+    w_i: Vector,
+    w_j: Vector,
+    account: Any,
+) -> tuple[float, float, float, float]:
+    """Rolling friction of one contact: torque on grain i [N m] and the energy in its spring [J].
+
+    `t` is n x F, the direction in which the tangential force turns both grains; Eq. (13) as printed
+    opposes it on each of the two. The other models oppose the relative spin and give the opposite torque
+    to j.
+    """
+    r_i, m_i, inertia_i, share_i = body_i
+    r_j, m_j, inertia_j, share_j = body_j
+    dt, k_n = c[P.DT], c[P.K_N]
+    sign = 1.0 if model == ROLL_PRINTED else -1.0
+    s_x, s_y, s_z = w_i[0] + sign * w_j[0], w_i[1] + sign * w_j[1], w_i[2] + sign * w_j[2]
+    along = s_x * n[0] + s_y * n[1] + s_z * n[2]
+    s_x, s_y, s_z = s_x - along * n[0], s_y - along * n[1], s_z - along * n[2]
+    length = reduced_radius(r_i, r_j)
+    if arms == ARM_WIDTH:
+        length = rolling_arm_width(r_i, r_j, overlap)
+    f = c[P.ROLLING] * length
+    cap = rolling_printed(f_n, f)
+    e_x = e_y = e_z = 0.0  # spring
+    q_x = q_y = q_z = 0.0  # the rest
+    energy = stored = 0.0
+    p_x, p_y, p_z = row[M.SPRING_R], row[M.SPRING_R + 1], row[M.SPRING_R + 2]
+    if model == ROLL_PRINTED:
+        size = math.sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2])
+        if size > 0.0:
+            q_x, q_y, q_z = -cap * t[0] / size, -cap * t[1] / size, -cap * t[2] / size
+    elif model == ROLL_CONSTANT:
+        size = math.sqrt(s_x * s_x + s_y * s_y + s_z * s_z)
+        if size > 0.0:
+            # several contacts brake one grain at once: each may take its share of the inertia
+            most = rolling_constant(cap, size, inertia_spin(inertia_i / share_i, inertia_j / share_j), dt)
+            q_x, q_y, q_z = -most * s_x / size, -most * s_y / size, -most * s_z / size
+    elif model == ROLL_EPSD:
+        k_r = epsd_stiffness(k_n, f, c[P.ROLLING_STIFFNESS])
+        eta_r = epsd_damping(
+            k_r, inertia_rolling(m_i, r_i, inertia_i, m_j, r_j, inertia_j), c[P.ROLLING_ZETA]
+        )
+        twist = 0.5 * dt * ((w_i[0] + w_j[0]) * n[0] + (w_i[1] + w_j[1]) * n[1] + (w_i[2] + w_j[2]) * n[2])
+        p_x, p_y, p_z = turn(p_x, p_y, p_z, n[0], n[1], n[2], twist)
+        e_x, e_y, e_z = (
+            epsd_spring(p_x, s_x, k_r, dt),
+            epsd_spring(p_y, s_y, k_r, dt),
+            epsd_spring(p_z, s_z, k_r, dt),
+        )
+        scale = slider_scale(math.sqrt(e_x * e_x + e_y * e_y + e_z * e_z), cap)
+        e_x, e_y, e_z = scale * e_x, scale * e_y, scale * e_z
+        q_x = epsd_torque(e_x, s_x, eta_r, scale) - e_x
+        q_y = epsd_torque(e_y, s_y, eta_r, scale) - e_y
+        q_z = epsd_torque(e_z, s_z, eta_r, scale) - e_z
+        if k_r > 0.0:
+            energy = 0.5 * (e_x * e_x + e_y * e_y + e_z * e_z) / k_r
+            stored = 0.5 * (p_x * p_x + p_y * p_y + p_z * p_z) / k_r
+        taken = -hdt * (s_x * (p_x + e_x) + s_y * (p_y + e_y) + s_z * (p_z + e_z))
+        if f_n <= 0.0:
+            account[B_RELEASED_R] += taken + stored - energy
+        elif scale < 1.0:
+            account[B_ROLL] += taken + stored - energy
+    account[B_ROLL] -= hdt * (
+        s_x * (row[M.DASH_R] + q_x) + s_y * (row[M.DASH_R + 1] + q_y) + s_z * (row[M.DASH_R + 2] + q_z)
+    )
+    row[M.SPRING_R], row[M.SPRING_R + 1], row[M.SPRING_R + 2] = e_x, e_y, e_z
+    row[M.DASH_R], row[M.DASH_R + 1], row[M.DASH_R + 2] = q_x, q_y, q_z
+    return e_x + q_x, e_y + q_y, e_z + q_z, energy
+
+
+@kernel(fastmath=FAST)
+def end_rolling(
+    rolling: int, row: Any, c: Any, hdt: float, w_i: Vector, w_j: Vector, radius: float, account: Any
+) -> None:
+    """Close the rolling account of a pair that parted: the last half interval, and what its spring held.
+
+    `rolling` is the model, `radius` the reduced radius of the pair [m]; its part of the row is emptied.
+    """
+    sign = 1.0 if rolling == ROLL_PRINTED else -1.0
+    w_x, w_y, w_z = w_i[0] + sign * w_j[0], w_i[1] + sign * w_j[1], w_i[2] + sign * w_j[2]
+    e_x, e_y, e_z = row[M.SPRING_R], row[M.SPRING_R + 1], row[M.SPRING_R + 2]
+    k_r = epsd_stiffness(c[P.K_N], c[P.ROLLING] * radius, c[P.ROLLING_STIFFNESS])
+    if rolling == ROLL_EPSD and k_r > 0.0:
+        account[B_RELEASED_R] += 0.5 * (e_x * e_x + e_y * e_y + e_z * e_z) / k_r
+    account[B_RELEASED_R] -= hdt * (w_x * e_x + w_y * e_y + w_z * e_z)
+    account[B_ROLL] -= hdt * (w_x * row[M.DASH_R] + w_y * row[M.DASH_R + 1] + w_z * row[M.DASH_R + 2])
+    for k in range(M.SPRING_R, M.END_ROLLING):
+        row[k] = 0.0

@@ -1,0 +1,85 @@
+"""What a kernel is compiled for, and the laws it picks while it runs."""
+
+from typing import NamedTuple
+
+from ryusa.engine.shared import memory_rows as M
+from ryusa.model import Scene
+from ryusa.model.contacts import N_EVENT
+from ryusa.model.enums import EventRule, Profile, Rolling
+
+
+class KernelVariant(NamedTuple):
+    """What a kernel is compiled for; each is kept on disk once built."""
+
+    plane_case: int
+    rotation: int
+    rolling: int
+    events: int
+    column: int
+    film: int  # films resist before touch
+    water: int  # there is any
+
+    @property
+    def row_width(self) -> int:
+        """Doubles per contact row."""
+        return self.event_column + (N_EVENT if self.events else 0)
+
+    @property
+    def event_column(self) -> int:
+        """Where the open record starts."""
+        return M.WIDTH_ROLLING if self.rolling else M.WIDTH
+
+
+class LawChoice(NamedTuple):
+    """Laws a kernel picks while it runs (model.enums); always the same, so that a branch is free."""
+
+    slip: int
+    cap: int
+    tension: int
+    rolling: int
+    arm: int
+    events: int
+    profile: int
+    above: int
+    drag: int
+    torque: int
+    buoyancy: int
+    hindrance: int
+    lift: int
+    magnus: int
+    rebound: int
+
+
+def variant_of(scene: Scene) -> KernelVariant:
+    """The kernel this scene needs."""
+    return KernelVariant(
+        plane_case=int(scene.plane_case),
+        rotation=int(scene.rotation),
+        rolling=int(scene.rotation and scene.rolling.model != Rolling.NONE),
+        events=int(scene.events != EventRule.NONE),
+        column=int(scene.water.profile == Profile.COLUMN),
+        film=int(scene.water.profile != Profile.NONE and scene.water.film_reach > 0.0),
+        water=int(scene.water.profile != Profile.NONE),
+    )
+
+
+def choice_of(scene: Scene) -> LawChoice:
+    """The laws this scene names."""
+    law, rolling, water = scene.contact, scene.rolling, scene.water
+    return LawChoice(
+        slip=int(law.slip),
+        cap=int(law.cap),
+        tension=int(law.tension),
+        rolling=int(rolling.model),
+        arm=int(rolling.arm),
+        events=int(scene.events),
+        profile=int(water.profile),
+        above=int(water.above),
+        drag=int(water.drag),
+        torque=int(water.torque),
+        buoyancy=int(water.buoyancy),
+        hindrance=int(water.hindrance),
+        lift=int(water.lift),
+        magnus=int(water.magnus),
+        rebound=int(water.rebound) if water.profile != Profile.NONE else 0,
+    )
