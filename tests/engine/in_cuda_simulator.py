@@ -337,7 +337,7 @@ def test_a_run_chosen_by_name_goes_on_from_its_checkpoint_with_the_same_bits(tmp
         )
 
     whole = go("whole", 12)
-    assert whole.provenance["engine"] == "CudaEngine"
+    assert whole.provenance["engine"] == "cuda"
     assert whole.complete
     assert len(whole.frames) == 3
 
@@ -347,7 +347,6 @@ def test_a_run_chosen_by_name_goes_on_from_its_checkpoint_with_the_same_bits(tmp
                 os.kill(os.getpid(), signal.SIGINT)
             return super().advance(n_steps)
 
-    Cut.__name__ = "CudaEngine"
     stop = Stop(time=11.5 * fixed.dt)
     part = run_scene(
         fixed, first, tmp_path / "cut", frames=6 * fixed.dt, stop=stop, engine=Cut(), progress=False

@@ -11,6 +11,7 @@ from types import SimpleNamespace
 import pytest
 from numba import types
 
+from ryusa.engine import registry
 from ryusa.engine.shared.variant import KernelVariant, LawChoice
 from ryusa.errors import CaseError
 
@@ -151,9 +152,7 @@ def test_without_a_card_one_line_says_what_is_missing(monkeypatch: pytest.Monkey
 
     if availability.unavailable() == "":
         pytest.skip("there is a card")
-    from ryusa.engine.cuda.engine import CudaEngine
-
     with pytest.raises(CaseError, match="engine = 'cuda': no CUDA driver answers"):
-        CudaEngine()
+        registry.create("cuda")
     monkeypatch.setattr(availability, "find_spec", lambda name: None)
     assert availability.unavailable() == "the package numba-cuda is not installed: pip install 'ryusa[cuda]'"

@@ -52,6 +52,8 @@ def make_event(i: int, j: int, t_begin: float, t_part: float, **columns: object)
 class FallingGrains:
     """An engine in which nothing touches: x(step) is known; events and faults are put in by the test."""
 
+    name = "falling grains"
+
     def __init__(self) -> None:
         self.fault_at: int | None = None
         self.events_at: dict[int, np.ndarray] = {}

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ryusa.cases import case_files, case_path
+from ryusa.engine import registry
 from ryusa.errors import CaseError, RyusaError
 
 if TYPE_CHECKING:
@@ -28,8 +29,8 @@ Threads = Annotated[
     int, typer.Option("--threads", metavar="N", help="Threads; the numbers do not depend on it.")
 ]
 Engine = Annotated[
-    str | None,
-    typer.Option("--engine", metavar="NAME", help="What steps the grains: cpu or cuda.", show_default="cpu"),
+    str,
+    typer.Option("--engine", metavar="NAME", help=f"Engine that steps the grains: {registry.summary()}."),
 ]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no closing lines.")]
 Every = Annotated[
@@ -131,7 +132,7 @@ def run(
     ] = False,
     settings: Settings = None,
     threads: Threads = 1,
-    engine: Engine = None,
+    engine: Engine = registry.DEFAULT,
     seed: Seed = None,
     quiet: Quiet = False,
     checkpoint: Every = "5min",
@@ -180,7 +181,7 @@ def resume(
         if not (folder / schema.CASE_TOML).is_file():
             raise ResultsError(f"{folder}: holds no case; ryusa.run_scene(..., resume=True) goes on with it")
         origin = read_json(folder / schema.PROVENANCE)
-        overrides, engine = origin.get("overrides"), "cuda" if origin.get("engine") == "CudaEngine" else None
+        overrides, engine = origin.get("overrides"), origin.get("engine")
         said = {str(key): str(one) for key, one in overrides.items()} if isinstance(overrides, dict) else {}
         found = read(folder / schema.CASE_TOML, said)
         from ryusa.running.runner import run as run_case
@@ -188,7 +189,7 @@ def resume(
         heard.raise_if_asked("before the first step; nothing was changed")
         results = run_case(
             found, folder, threads=threads, progress=not quiet, checkpoint=_every(checkpoint), resume=True,
-            force=force, engine=engine,
+            force=force, engine=engine if engine in registry.names() else None,
         )  # fmt: skip
     _close(results, quiet)
 

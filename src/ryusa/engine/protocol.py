@@ -1,4 +1,4 @@
-"""The narrow seam between the one loop and whatever machine steps the grains."""
+"""What the loop over steps asks of an engine."""
 
 from dataclasses import dataclass
 from typing import Protocol
@@ -12,7 +12,7 @@ from ryusa.model.scene import Floats
 
 @dataclass(frozen=True)
 class Flags:
-    """What a kernel could not say by raising: the first fault of an `advance`, or nothing."""
+    """The first fault of an `advance`, or none: a kernel cannot raise."""
 
     fault: RunError | None = None  # names grain, partner, step, cause and remedy
 
@@ -26,25 +26,33 @@ class Flags:
 
 
 class Engine(Protocol):
-    """A handful of verbs; growing it wants a design note."""
+    """Steps the grains of a scene.
+
+    Attributes
+    ----------
+    name : as in the registry; provenance and checkpoints record it.
+    """
+
+    @property
+    def name(self) -> str: ...  # noqa: D102
 
     def refuses(self, scene: Scene) -> tuple[str, ...]:
-        """Reasons why this engine cannot carry a law of the scene; () when it can carry all."""
+        """Reasons why this engine cannot simulate the scene; () when it can."""
         ...
 
     def load(self, scene: Scene, state: State) -> None:
-        """Take a scene and a fresh state or a snapshot; also when the timeline changes the scene mid-run."""
+        """Take a scene and an initial state or a snapshot; also when the timeline changes the scene."""
         ...
 
     def set_fluid(self, sampled: Floats) -> None:
-        """Tell every grain its water, columns of model.fluid, held until told again.
+        """Set the water at every grain, columns of model.fluid by id, held until it is set again.
 
-        A snapshot carries it, and the impulse that each grain took since.
+        The impulse of the fluid on the grains is counted anew from here. A snapshot carries both.
         """
         ...
 
     def kinematics(self) -> tuple[Floats, Floats, Floats]:
-        """Centres [m], velocities [m/s] and what was taken from the water (model.fluid), by id; cheap."""
+        """Centres [m], velocities [m/s] and impulse from the fluid (model.fluid), by id; cheap."""
         ...
 
     def advance(self, n_steps: int) -> Flags:
@@ -52,7 +60,7 @@ class Engine(Protocol):
         ...
 
     def grains(self) -> State:
-        """Where grains are and how they move, no contacts and no books: a frame, not enough to go on from."""
+        """Positions and motion of the grains, without contacts or energy account: a frame, not a snapshot."""
         ...
 
     def state(self) -> State:
@@ -64,5 +72,5 @@ class Engine(Protocol):
         ...
 
     def events(self) -> np.ndarray:
-        """Contacts ended since last asked: structured array of dtype model.EVENT, in order of ending step."""
+        """Contacts ended since the last call: structured array of dtype model.EVENT, in order of parting."""
         ...

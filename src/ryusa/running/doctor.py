@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ryusa import __version__
+from ryusa.engine import registry
 from ryusa.running.provenance import processor, versions
 
 # Of those the processor has, the widest that numbers of a run are reckoned with.
@@ -24,8 +25,7 @@ def diagnosis() -> list[tuple[str, str]]:
         ("vectors", _vectors()),
         ("threads", f"{_cores()} at most; `ryusa run --threads N`, any number gives the same bits"),
         ("cache", _cache()),
-        ("engine cpu", "available"),
-        ("engine cuda", _cuda()),
+        *((f"engine {name}", _engine(name)) for name in registry.names()),
     ]
 
 
@@ -65,8 +65,9 @@ def _cache() -> str:
     return f"{folder}, writable, holds {size / 2**20:.0f} MiB"
 
 
-def _cuda() -> str:
-    from ryusa.engine.cuda.availability import device_name, unavailable
-
-    reason = unavailable()
-    return f"no: {reason}" if reason else f"available: {device_name()}"
+def _engine(name: str) -> str:
+    """Whether an engine can be used here, and its device."""
+    if reason := registry.unavailable(name):
+        return f"no: {reason}"
+    device = registry.device_of(name)
+    return f"available: {device}" if device else "available"

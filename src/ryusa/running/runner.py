@@ -10,6 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ryusa.engine import registry
 from ryusa.engine.protocol import Engine
 from ryusa.errors import CaseError, CheckpointError, ResultsError
 from ryusa.model import Scene, State
@@ -68,7 +69,8 @@ def run(
     threads : threads of the CPU engine; the numbers do not depend on it.
     progress : show a bar (or lines, where stderr is no terminal).
     overwrite : replace an earlier run in `folder`; anything but a run is never touched.
-    engine : steps the grains: "cpu", "cuda" or an engine; the CPU engine when not given.
+    engine : the engine that steps the grains, by its name in `ryusa.engine.registry` or as an object; "cpu"
+        when not given.
     checkpoint : wall time between two checkpoints [s]; inf for none but those asked for by a signal.
     resume : go on where an earlier run of this case in `folder` stopped; a complete one is opened, and where
         there is none the run begins. With `overwrite` it also begins where it cannot go on.
@@ -244,7 +246,7 @@ def _carry_out(
     with listening() as heard:
         engine = _engine(how.engine, how.threads)
         origin = provenance.begin(
-            threads=how.threads, seed=about.seed, engine=type(engine).__name__,
+            threads=how.threads, seed=about.seed, engine=engine.name,
             overrides=about.overrides or {},
         )  # fmt: skip
         resolved = as_written(about.resolved)
@@ -270,7 +272,7 @@ def _carry_out(
         _refuse(scene, frames, stop)
         reasons = engine.refuses(scene)
         if reasons:
-            raise CaseError("engine", type(engine).__name__, f"cannot carry this case: {'; '.join(reasons)}")
+            raise CaseError("engine", engine.name, f"cannot carry this case: {'; '.join(reasons)}")
         refuse_if_not_writable(folder)
         n_frame = stop.time / frames + 1
         fits = about.disk or _Disk(n_frame, n_frame * bytes_per_frame(scene.n_grain))
@@ -395,22 +397,7 @@ def _engine(named: Engine | str | None, threads: int) -> Engine:
     """The engine asked for, by name or as it is."""
     if named is not None and not isinstance(named, str):
         return named
-    if threads < 1:
-        raise CaseError("threads", threads, "must be at least 1")
-    if named == "cuda":
-        from ryusa.engine.cuda.availability import unavailable
-
-        reason = unavailable()
-        if reason:
-            raise CaseError("engine", named, reason)
-        from ryusa.engine.cuda.engine import CudaEngine
-
-        return CudaEngine()
-    if named not in {None, "cpu"}:
-        raise CaseError("engine", named, "must be 'cpu' or 'cuda'")
-    from ryusa.engine.cpu.engine import CpuEngine
-
-    return CpuEngine(threads=threads)
+    return registry.create(named or registry.DEFAULT, threads=threads)
 
 
 def _write_text(path: Path, text: str) -> None:

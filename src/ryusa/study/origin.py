@@ -5,6 +5,7 @@ import platform
 from collections.abc import Mapping
 from typing import Any
 
+from ryusa.engine import registry
 from ryusa.running import provenance
 from ryusa.study import Fault, Task, TaskResults
 
@@ -47,7 +48,7 @@ def json_number(value: float) -> float | None:
 
 def origin(counts: Mapping[str, Any]) -> dict[str, Any]:
     """Versions, commit and machine, with the counts of the runs."""
-    found = provenance.begin(threads=1, seed=None, engine="CpuEngine", overrides={})
+    found = provenance.begin(threads=1, seed=None, engine=registry.DEFAULT, overrides={})
     kept = ("ryusa", "commit", "packages", "python", "system", "machine")
     return {
         "made": provenance.now(),

@@ -58,6 +58,8 @@ class CpuEngine:
     counted work.
     """
 
+    name = "cpu"
+
     def __init__(self, threads: int = 1, skin: float = 0.1) -> None:
         if threads < 1:
             raise ValueError(f"threads = {threads}: at least 1")

@@ -8,7 +8,6 @@ import numpy as np
 from ryusa.engine.cuda import run_status as F
 from ryusa.engine.cuda import step_totals as T
 from ryusa.engine.cuda.arrays import RecordedGrains
-from ryusa.engine.cuda.availability import unavailable
 from ryusa.engine.cuda.device import cuda
 from ryusa.engine.cuda.device_state import DeviceState, blocks, shape
 from ryusa.engine.cuda.step import make_close, make_step
@@ -35,7 +34,7 @@ from ryusa.engine.shared.refusals import check_state, refusals
 from ryusa.engine.shared.skin import best_skin
 from ryusa.engine.shared.status import STOP_DONE, STOP_EVENTS, STOP_LIST, STOP_UNSAFE
 from ryusa.engine.shared.variant import choice_of, variant_of
-from ryusa.errors import CaseError, RunError
+from ryusa.errors import RunError
 from ryusa.model import Book, FluidAtGrains, Scene, State, Tally
 from ryusa.model.contacts import N_EVENT
 from ryusa.model.enums import EventRule
@@ -57,16 +56,11 @@ class CudaEngine:
     ----------
     skin : first reach of the neighbour list beyond touch, over the smallest diameter [-]; adapts to
         counted work.
-
-    Raises
-    ------
-    CaseError : there is no CUDA device, and what is missing.
     """
 
+    name = "cuda"
+
     def __init__(self, skin: float = 0.1) -> None:
-        reason = unavailable()
-        if reason:
-            raise CaseError("engine", "cuda", reason)
         self._skin_first = skin
         self._scene: Scene | None = None
         self._records_drained: list[np.ndarray] = []

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ryusa.build import scene
-from ryusa.engine.cpu.engine import CpuEngine
+from ryusa.engine import registry
 from ryusa.figures.comparison import Axis, Curve
 from ryusa.model import EVENT, Column, Scene, State, Water
 from ryusa.model.column import Bed, Mixing, Start
@@ -64,7 +64,7 @@ class ChannelFlow:
 
     def __init__(self, form: Buoyancy) -> None:
         (self.fixed, first), self.column = moving_bed(form)
-        self.engine = CpuEngine()
+        self.engine = registry.create()
         self.engine.load(self.fixed, first)
         self.coupling = Coupling.begin(self.fixed, self.column, 100, first.x)
         self.engine.set_fluid(self.coupling.sampled)

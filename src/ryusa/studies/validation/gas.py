@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ryusa.build import scene
-from ryusa.engine.cpu.engine import CpuEngine
+from ryusa.engine import registry
 from ryusa.figures.comparison import Axis, Curve
 from ryusa.laws import collision
 from ryusa.model import ContactLaw
@@ -58,7 +58,7 @@ def cool(seed: int, times: float) -> dict[str, Floats]:
         planes=[("floor", (0, 0, -0.5 * D), (0, 0, 1)), ("lid", (0, 0, height + 0.5 * D), (0, 0, -1))],
         steps_per_contact=STEPS, events=EventRule.NONE,
     )  # fmt: skip
-    engine = CpuEngine()
+    engine = registry.create()
     engine.load(fixed, first)
     tau = cooling_time(height)
     every = max(1, round(times * tau / fixed.dt / (SHOTS - 1)))

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ryusa.build import scene
-from ryusa.engine.cpu.engine import CpuEngine
+from ryusa.engine import registry
 from ryusa.figures.comparison import Axis, Curve
 from ryusa.laws import collision
 from ryusa.model import ContactLaw
@@ -49,7 +49,7 @@ def bounce(e: float, tension: bool, per_contact: float) -> dict[str, Floats]:
     took: list[float] = []
     for phase in np.arange(PHASES) / PHASES:
         gap = (3.0 + phase) * SPEED * dt
-        engine = CpuEngine()
+        engine = registry.create()
         engine.load(*scene(
             [[0.0, 0.0, D + gap]], D, v=[[0.0, 0.0, -SPEED]], x_fixed=[[0.0, 0.0, 0.0]], d_fixed=D,
             contact=law, dt=dt, gravity=0.0, rotation=False, plane_case=True,
@@ -74,7 +74,7 @@ def oblique(per_contact: float) -> dict[str, Floats]:
         angle = math.radians(degrees)
         probe, _ = scene([[0.0, 0.0, 1.0]], 2.0 * RADIUS, density=DENSITY, contact=law)
         dt = collision.collision_time(float(probe.m[0]), law.k_n) / per_contact
-        engine = CpuEngine()
+        engine = registry.create()
         engine.load(*scene(
             [[0.0, 0.0, RADIUS + 1e-7]], 2.0 * RADIUS, density=DENSITY,
             v=[[FAST * math.sin(angle), 0.0, -FAST * math.cos(angle)]],

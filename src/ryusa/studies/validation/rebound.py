@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from ryusa.build import scene
-from ryusa.engine.cpu.engine import CpuEngine
+from ryusa.engine import registry
+from ryusa.engine.protocol import Engine
 from ryusa.figures.comparison import Axis, Curve
 from ryusa.model import Water
 from ryusa.model.enums import Drag, Profile, Rebound
@@ -77,9 +78,7 @@ def film(partner: str) -> dict[str, Floats]:
     return {"e": np.array(got)}
 
 
-def _meet(
-    speed: float, partner: str, water: Water, per_contact: float, gap: float
-) -> tuple[CpuEngine, float]:
+def _meet(speed: float, partner: str, water: Water, per_contact: float, gap: float) -> tuple[Engine, float]:
     """A grain on its way down to its partner, and the time step."""
     x, v = [[0.0, 0.0, (0.5 * D if partner == "wall" else D) + gap]], [[0.0, 0.0, -speed]]
     if partner == "free grain":
@@ -90,12 +89,12 @@ def _meet(
         planes=[("wall", (0, 0, 0), (0, 0, 1))] if partner == "wall" else (),
         x_fixed=[[0.0, 0.0, 0.0]] if partner == "fixed grain" else None, d_fixed=D,
     )  # fmt: skip
-    engine = CpuEngine()
+    engine = registry.create()
     engine.load(*made)
     return engine, made[0].dt
 
 
-def _apart(engine: CpuEngine, partner: str) -> tuple[float, float]:
+def _apart(engine: Engine, partner: str) -> tuple[float, float]:
     """Gap between a grain and its partner [m], and how fast it opens [m/s]."""
     now = engine.state()
     z, w = float(now.x[0, 2]), float(now.v[0, 2])

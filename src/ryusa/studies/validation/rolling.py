@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ryusa.build import scene
-from ryusa.engine.cpu.engine import CpuEngine
+from ryusa.engine import registry
 from ryusa.figures.comparison import Axis, Curve
 from ryusa.model import ContactLaw, RollingLaw
 from ryusa.model.enums import Arm, Rolling, Slip
@@ -46,7 +46,7 @@ def _watch(
         planes=[("floor", (0, 0, 0), (0, 0, 1))], contact=law, rolling=rolling, gravity=G, plane_case=True,
         allow_overlap=True,
     )  # fmt: skip
-    engine = CpuEngine()
+    engine = registry.create()
     engine.load(fixed, first)
     every = max(1, math.ceil(time / fixed.dt / (SHOTS - 1)))
     rows: list[tuple[float, float, float, float]] = []

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ryusa.build import scene
-from ryusa.engine.cpu.engine import CpuEngine
+from ryusa.engine import registry
 from ryusa.figures.comparison import Axis, Curve
 from ryusa.laws.hindrance import exponent_settling
 from ryusa.model import Column, Water
@@ -114,7 +114,7 @@ def _settle(law: Hindrance, where: Range, form: Buoyancy, phi: float, end: float
         z_low=0.0, dz=pitch * d, n=LAYERS + BELOW, depth=(LAYERS + BELOW) * pitch * d,
         area=WIDE * pitch * d * d, nu=where.nu, bed=Bed.MOVING,
     )  # fmt: skip
-    engine = CpuEngine()
+    engine = registry.create()
     engine.load(fixed, first)
     coupling = Coupling.begin(fixed, column, EXCHANGE, first.x)
     engine.set_fluid(coupling.sampled)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ryusa.build import scene
-from ryusa.engine.cpu.engine import CpuEngine
+from ryusa.engine import registry
 from ryusa.figures.comparison import Axis, Curve
 from ryusa.laws import drag
 from ryusa.model import Water
@@ -59,7 +59,7 @@ def fall(law: str) -> dict[str, Floats]:
             [[0.0, 0.0, 0.0]], d, density=1000.0 * (RATIO + 1.0), water=water, gravity=G,
             dt=20.0 * response / STEPS, plane_case=True, events=EventRule.NONE,
         )  # fmt: skip
-        engine = CpuEngine()
+        engine = registry.create()
         engine.load(replace(made[0], world_low=(-math.inf,) * 3), made[1])
         engine.advance(STEPS).raise_if_any()
         speeds.append(-float(engine.state().v[0, 2]))
