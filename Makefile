@@ -23,7 +23,7 @@ HAS_TESTS  := $(VENV)/.has-tests
 HAS_DOCS   := $(VENV)/.has-docs
 
 .DEFAULT_GOAL := help
-.PHONY: help demo demo-run test check lint format types walls unit docs site pictures bench paper paper-quick validate validate-quick faults fuzz soak slow constraints clean
+.PHONY: help demo demo-run test check lint format types walls unit docs site pictures gallery bench paper paper-quick validate validate-quick faults fuzz soak slow constraints clean
 
 help: ## list these targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 22
@@ -137,6 +137,10 @@ pictures: $(HAS_RYUSA) ## draw docs/pictures anew from the runs in runs/paper; m
 	$(BIN)/ryusa paper fig07 spin_time hops fig20 fig21 -o $(PAPER) --jobs $(JOBS)
 	cp $(addprefix $(PAPER)/,fig07/fig06.png fig07/fig07.png fig07/fig07-turning.png spin_time/spin-time.png \
 	    hops/hops.png fig20/fig20.png fig20/fig20-hops.png fig21/fig21.png) $(DRAWN)
+
+gallery: $(HAS_RYUSA) ## run the packaged cases of the gallery and draw their pictures (minutes)
+	rm -rf build/gallery
+	$(BIN)/python docs/site/gallery.py build/gallery
 
 bench: $(HAS_RYUSA) ## time ryusa beside its peers on a quiet machine (hours); table in benchmarks/results/
 	$(BIN)/python benchmarks/run.py

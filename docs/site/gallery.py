@@ -1,6 +1,11 @@
-"""The gallery: every picture of docs/pictures with the commands that draw it, from gallery.toml."""
+"""The gallery: every picture of docs/pictures with the commands that draw it, from gallery.toml.
+
+`python docs/site/gallery.py FOLDER` draws those of the packaged cases anew; `make gallery` does it.
+"""
 
 import shlex
+import subprocess
+import sys
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -64,3 +69,28 @@ def _unknown(line: str, known: dict[str, Any]) -> list[str]:
         for word in words
         if word.startswith("--") and word not in options
     ]
+
+
+def draw(folder: Path) -> None:
+    """Run the commands of every picture of a packaged case in a folder, and keep the pictures."""
+    from PIL import Image
+
+    folder.mkdir(parents=True)
+    ran: set[str] = set()
+    for one in entries():
+        if any(line.startswith("ryusa paper") for line in one["commands"]):
+            continue
+        for line in one["commands"]:
+            if line not in ran:
+                print(line, flush=True)
+                words = shlex.split(line)[1:]
+                subprocess.run([sys.executable, "-m", "ryusa", *words], cwd=folder, check=True)
+                ran.add(line)
+        with Image.open(folder / one["file"]) as picture:
+            small = picture.convert("RGB")
+        small.thumbnail((1400, 1400), Image.Resampling.LANCZOS)
+        small.quantize(128, dither=Image.Dither.NONE).save(PICTURES / one["file"], optimize=True)
+
+
+if __name__ == "__main__":
+    draw(Path(sys.argv[1]))
