@@ -34,7 +34,9 @@ class Engine(Protocol):
     """
 
     @property
-    def name(self) -> str: ...  # noqa: D102
+    def name(self) -> str:
+        """Name by which a user chooses it, such as "cpu"."""
+        ...
 
     def refuses(self, scene: Scene) -> tuple[str, ...]:
         """Reasons why this engine cannot simulate the scene; () when it can."""
