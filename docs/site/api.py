@@ -6,6 +6,8 @@ import pkgutil
 from pathlib import Path
 from types import ModuleType
 
+from docstrings import escaped
+
 import ryusa
 
 
@@ -95,7 +97,8 @@ def _exports(name: str, module: ModuleType) -> list[str]:
         if any(part.startswith("_") for part in home.split(".")):
             own.append(one)
         elif home.startswith("ryusa"):
-            taken.append(f"* :py:obj:`{one} <{home}.{thing.__qualname__}>`")
+            first = " ".join((thing.__doc__ or "").split("\n\n")[0].split())
+            taken.append(f"* :py:obj:`{one} <{home}.{thing.__qualname__}>`: {escaped([first])[0]}")
     if taken:
         lines += [".. rubric:: Names offered here", "", *sorted(taken), ""]
     for one in own:

@@ -21,25 +21,20 @@ ENTRY = re.compile(r"^(\*{0,2}[\w.]+(?:, \*{0,2}[\w.]+)*) : (.*)$")
 def described(lines: list[str]) -> list[str]:
     """Docstring whose ``name : text`` entries are a name, then an indented description.
 
-    >>> described(
-    ...     [
-    ...         "Parameters",
-    ...         "----------",
-    ...         "d : diameter [m],",
-    ...         "    of a sphere.",
-    ...         "",
-    ...         "Notes",
-    ...         "-----",
-    ...         "a : b",
-    ...     ]
-    ... )
+    >>> text = "Parameters|----------|d : diameter [m],|    of a sphere.||Notes|-----|a : b"
+    >>> described(text.split("|"))
     ['Parameters', '----------', 'd', '    diameter [m], of a sphere.', '', 'Notes', '-----', 'a : b']
+    >>> described(["Returns", "-------", "d : diameter [m].", "", ">>> 1 + 1", "2"])[3:]
+    ['    diameter [m].', '', 'Examples', '--------', '>>> 1 + 1', '2']
     """
     found: list[str] = []
     inside = False
     for k, line in enumerate(lines):
         if k + 1 < len(lines) and re.fullmatch(r"-{3,}", lines[k + 1].strip()):
             inside = line.strip() in ENTRIES
+        if inside and line.startswith(">>>"):  # an example without a heading ends the section
+            inside = False
+            found += ["Examples", "--------"]
         entry = ENTRY.match(line) if inside else None
         if entry:
             found += [entry[1], "    " + entry[2]]

@@ -51,7 +51,7 @@ def _is_law(node: ast.FunctionDef) -> bool:
 
 
 def _source(text: str) -> str:
-    found = re.search(r"Source: (.*?)(?:[;.](?:\s|$)|, \(|\n\n)", text, flags=re.DOTALL)
+    found = re.search(r"Source: (.*?)(?:;|(?<!Eq)(?<!Eqs)(?<! al)\.)(?:\s|$)", text, flags=re.DOTALL)
     return " ".join(found[1].split()) if found else ""
 
 

@@ -146,7 +146,7 @@ def main() -> int:
     stage.changelog()
     stage.write("gallery.md", stage.relinked(gallery.page(), ROOT / "docs" / "gallery.md", "gallery.md"))
     problems += gallery.problems()
-    stage.write("laws.md", listings.laws_page())
+    stage.write("law-index.md", listings.laws_page())
     stage.write("cases.md", listings.cases_page())
     (stage.folder / "api").mkdir()
     api.write_pages(stage.folder / "api")
