@@ -65,6 +65,7 @@ def make_step(variant: KernelVariant, choice: LawChoice, shape: LaunchShape) -> 
     model, arms, tension, rule = choice.rolling, choice.arm, choice.tension, choice.events
     record_at, threads, group, parts = variant.event_column, shape.threads, shape.group, shape.parts
     run = threads // parts
+    n_total, n_stat = T.N_COLUMN, S.N_STATISTIC  # the size of a local array has to be a literal
     both_ways = 1.0 if model == ROLL_PRINTED else -1.0  # Eq. (13) as printed turns both grains one way
     contact_force, integrate = make_contact_force(variant, choice), make_integrate(variant, choice)
 
@@ -84,13 +85,13 @@ def make_step(variant: KernelVariant, choice: LawChoice, shape: LaunchShape) -> 
         """Do one step, unless something waits for the host; step `target` - 1 is the last of a call."""
         if status[F.STOP] != STOP_DONE:
             return
-        totals = cuda.local.array(T.N_COLUMN, float64)
+        totals = cuda.local.array(n_total, float64)
         for k in range(T.N_COLUMN):
             totals[k] = 0.0
         totals[T.OVERLAP], totals[T.OVERLAP_GRAIN] = -1.0, NO_GRAIN
         totals[T.OVERLAP_PARTNER], totals[T.NOT_FINITE] = NO_GRAIN, NO_GRAIN
         work = cuda.local.array(N_BOOK, float64)
-        record_stats = cuda.local.array(S.N_STATISTIC, float64)
+        record_stats = cuda.local.array(n_stat, float64)
         half, at = status[F.CURRENT], status[F.STEP]
         first, last = at == 0, at == target - 1
         dt, k_n, k_s = c[P.DT], c[P.K_N], c[P.K_S]
