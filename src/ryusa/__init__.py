@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from ryusa import measure
+    from ryusa.casefile.case import Case
     from ryusa.casefile.read import read as load
-    from ryusa.casefile.schema import Case
     from ryusa.model import Scene, State
     from ryusa.results import Results
     from ryusa.running.runner import run, run_scene
@@ -21,7 +21,7 @@ __version__ = "0.1.0"
 
 # name -> (module, name there); "" for the module itself. Loaded when first asked for.
 _LAZY = {
-    "Case": ("ryusa.casefile.schema", "Case"),
+    "Case": ("ryusa.casefile.case", "Case"),
     "Results": ("ryusa.results", "Results"),
     "Scene": ("ryusa.model", "Scene"),
     "State": ("ryusa.model", "State"),

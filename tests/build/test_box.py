@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ryusa.build import build, change
-from ryusa.casefile import Case, read_text
-from ryusa.casefile.grains import periodic
+from ryusa.casefile import Case, derive, read_text
+from ryusa.casefile.builders.values import periodic
 from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.errors import CaseError
 
@@ -108,8 +108,8 @@ def test_a_box_never_overlaps_and_holds_its_lattice(
     )
     built = build(one)  # refuses overlaps of free grains itself
     scene, x = built.scene, built.state.x
-    assert scene.n_grain == one.derived.n_grain == columns * rows * layers
-    assert scene.n_fixed == one.derived.n_fixed
+    assert scene.n_grain == derive(one).n_grain == columns * rows * layers
+    assert scene.n_fixed == derive(one).n_fixed
     assert periodic(one) == tuple(math.isfinite(length) for length in scene.period)
     assert (x[:, 0] - scene.d / 2 > -1e-12).all()
     if scene.n_fixed > 1 and plane:

@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from ryusa.build import build, change, scene
 from ryusa.build.layout import Layout, Wall
 from ryusa.build.overlaps import refuse_overlaps
-from ryusa.casefile import Case, Change, read_text
-from ryusa.casefile.grains import periodic
-from ryusa.casefile.water import drag_coefficient, water_speed
+from ryusa.casefile import Case, ChangeSection, derive, read_text
+from ryusa.casefile.builders.values import periodic
+from ryusa.casefile.water.values import drag_coefficient, water_speed
 from ryusa.engine.shared import fluid
 from ryusa.engine.shared.parameters import parameters_of
 from ryusa.errors import CaseError
@@ -151,10 +151,10 @@ def test_a_packing_never_overlaps(
         seed=str(seed),
     )
     built = build(one)  # refuses overlaps itself
-    assert built.scene.n_grain == one.derived.n_grain == columns * rows * layers
-    assert built.scene.n_fixed == one.derived.n_fixed
-    assert built.scene.d.min() >= one.derived.d_min * (1 - 1e-12)
-    assert built.scene.d.max() <= one.derived.d_max * (1 + 1e-12)
+    assert built.scene.n_grain == derive(one).n_grain == columns * rows * layers
+    assert built.scene.n_fixed == derive(one).n_fixed
+    assert built.scene.d.min() >= derive(one).d_min * (1 - 1e-12)
+    assert built.scene.d.max() <= derive(one).d_max * (1 + 1e-12)
     if plane:
         assert not built.state.x[:, 1].any()
     for axis in (0, 1):
@@ -217,13 +217,13 @@ def test_planes_of_the_case_become_groups_that_the_timeline_can_remove() -> None
 def test_changes_tilt_gravity_and_switch_friction_and_rotation() -> None:
     one = case("{ kind = 'drop', height = '1 cm' }")
     before = build(one).scene
-    tilted = change(one, before, Change.model_validate({"at": "0 s", "slope_angle": "30 deg"}))
+    tilted = change(one, before, ChangeSection.model_validate({"at": "0 s", "slope_angle": "30 deg"}))
     assert tilted.gravity == pytest.approx([9.80665 / 2, 0.0, -9.80665 * math.sqrt(3) / 2])
-    slippery = change(one, before, Change.model_validate({"at": "0 s", "friction": 0.0}))
+    slippery = change(one, before, ChangeSection.model_validate({"at": "0 s", "friction": 0.0}))
     assert slippery.contact.mu == 0.0
     assert replace(slippery.contact, mu=before.contact.mu) == before.contact
-    assert not change(one, before, Change.model_validate({"at": "0 s", "rotation": "locked"})).rotation
-    bare = change(one, before, Change.model_validate({"at": "0 s", "remove": "bed"}))
+    assert not change(one, before, ChangeSection.model_validate({"at": "0 s", "rotation": "locked"})).rotation
+    bare = change(one, before, ChangeSection.model_validate({"at": "0 s", "remove": "bed"}))
     assert bare.fixed_active.tolist() == [False]
 
 
@@ -350,7 +350,7 @@ def test_an_open_packing_stands_between_its_walls(plane: str) -> None:
     )
     built = build(one)
     assert built.scene.period == (math.inf, math.inf)
-    assert (built.scene.n_grain, built.scene.n_fixed) == (15 * rows, one.derived.n_fixed)
+    assert (built.scene.n_grain, built.scene.n_fixed) == (15 * rows, derive(one).n_fixed)
     bed = built.scene.x_fixed
     assert bed[:, 0].min() > 0.0
     assert bed[:, 0].max() < 5 * pitch
@@ -410,7 +410,7 @@ def test_case_and_engine_read_the_same_water(profile: str, above: str) -> None:
         expected = in_the_engine(int(water.profile), int(water.above), z, numbers)
         if above == "dry" and z > water.depth:
             expected = 0.0  # the engine leaves drag out altogether
-        assert water_speed(one, z) == pytest.approx(expected, rel=1e-12)
+        assert water_speed(one, derive(one), z) == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize(

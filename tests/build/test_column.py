@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from ryusa.build import build, change
-from ryusa.casefile import Case, Change, read, read_text
-from ryusa.casefile.water import terminal_velocity
+from ryusa.casefile import Case, ChangeSection, read, read_text
+from ryusa.casefile.water.values import terminal_velocity
 from ryusa.errors import CaseError
 from ryusa.model import Column
 from ryusa.model.column import Bed, Drive, Fluctuations, Mixing, SideWalls, Surface
@@ -165,7 +165,7 @@ def test_every_word_of_the_case_reaches_the_column() -> None:
 def test_a_new_slope_drives_the_water_too() -> None:
     one = case()
     before = build(one).scene
-    tilted = change(one, before, Change.model_validate({"at": "0 s", "slope_angle": "30 deg"}))
+    tilted = change(one, before, ChangeSection.model_validate({"at": "0 s", "slope_angle": "30 deg"}))
     assert tilted.column is not None and before.column is not None
     assert tilted.column.g_x == pytest.approx(G / 2)
     assert tilted.column.g_x == tilted.gravity[0]

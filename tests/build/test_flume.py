@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from ryusa.build import build
-from ryusa.casefile import Case, read_text
-from ryusa.casefile.grains import bed_area, bed_thickness
+from ryusa.casefile import Case, derive, read_text
+from ryusa.casefile.builders.values import bed_area
+from ryusa.casefile.column.bed import bed_thickness
 from ryusa.errors import CaseError
 
 D = 0.006
@@ -70,7 +71,7 @@ def test_the_base_lies_at_zero_on_average_over_eleven_twelfths_of_a_grain() -> N
 def test_the_zero_of_the_water_is_where_the_loose_bed_ends_when_packed() -> None:
     one = case(water=WATER)
     built = build(one)
-    height = one.derived.n_grain * math.pi / 6 * D**3 / (0.3 * 0.0065 * 0.61)
+    height = derive(one).n_grain * math.pi / 6 * D**3 / (0.3 * 0.0065 * 0.61)
     assert built.scene.water.z_zero == pytest.approx(height, rel=1e-12)
     assert bed_thickness(one) == pytest.approx(height, rel=1e-12)
     assert built.scene.column is not None

@@ -4,16 +4,16 @@ from collections.abc import Callable
 
 import pytest
 
-from ryusa.casefile import Case, estimate
-from ryusa.casefile.box import box_plan, hole
-from ryusa.casefile.builders import Box
-from ryusa.casefile.explain import expected_speed
+from ryusa.casefile import Case, derive, estimate, explain
+from ryusa.casefile.builders.box import box_plan, hole
+from ryusa.casefile.builders.schema import BoxSection
+from ryusa.casefile.contact.impact import expected_speed
 
 CaseOf = Callable[..., Case]
 
 
-def keys(**others: object) -> Box:
-    return Box.model_validate({"kind": "box", "columns": 4, "layers": 3, **others})
+def keys(**others: object) -> BoxSection:
+    return BoxSection.model_validate({"kind": "box", "columns": 4, "layers": 3, **others})
 
 
 def test_fixed_grains_are_counted_whole() -> None:
@@ -40,10 +40,10 @@ def test_a_sheet_of_grains_has_holes_and_a_line_has_none() -> None:
 
 def test_a_box_is_judged_by_the_fall_of_its_top_layer(case: CaseOf) -> None:
     low = case(build="{ kind = 'box', columns = 4, layers = 3 }")
-    assert expected_speed(low)[1].startswith("fall through one diameter")
+    assert expected_speed(low, derive(low))[1].startswith("fall through one diameter")
     high = case(build="{ kind = 'box', columns = 4, layers = 3, height = '1 cm' }")
-    speed, origin = expected_speed(high)
+    speed, origin = expected_speed(high, derive(high))
     assert speed**2 == pytest.approx(2 * 9.80665 * (0.01 + 3 * 0.1 * 0.002))
     assert "top layer" in origin
-    assert any(row.name == "overlap/d at rest" for row in high.explain())
-    assert estimate.events_expected(high) > 12 * 20 * 0.1
+    assert any(row.name == "overlap/d at rest" for row in explain(high))
+    assert estimate.events_expected(high, derive(high)) > 12 * 20 * 0.1

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from ryusa.casefile import Case, all_keys
-from ryusa.casefile.water import hindrance_exponent, terminal_velocity, water_speed
+from ryusa.casefile import Case, all_keys, derive, explain, resolved
+from ryusa.casefile.water.values import hindrance_exponent, terminal_velocity, water_speed
 from ryusa.errors import CaseError
 from ryusa.laws import drag, hindrance
 
@@ -34,7 +34,7 @@ def wet(case: CaseOf, keys: str = "", column: str = "", **others: str) -> Case:
 def test_a_column_needs_no_table_of_its_own(case: CaseOf) -> None:
     one = case(build=PACKING, water="{ profile = 'column', depth = '2 cm' }", **{"motion.slope": "1/20"})
     assert one.water is not None and one.water.column is None
-    kept = one.resolved()["water"]
+    kept = resolved(one)["water"]
     assert kept["column"]["cell"] == pytest.approx(0.1 * D)
     assert (kept["column"]["mixing_length"], kept["column"]["interval"]) == ("Li-Sawamoto", 50)
     assert (kept["buoyancy"], kept["hindrance"]) == ("stress", "Di Felice")
@@ -42,7 +42,7 @@ def test_a_column_needs_no_table_of_its_own(case: CaseOf) -> None:
 
 
 def test_water_that_is_given_says_nothing_of_a_column(case: CaseOf) -> None:
-    kept = case(water="{ profile = 'still' }").resolved()["water"]
+    kept = resolved(case(water="{ profile = 'still' }"))["water"]
     assert not {"column", "buoyancy", "hindrance", "lift", "magnus"} & set(kept)
 
 
@@ -71,28 +71,29 @@ def test_the_bed_chooses_the_mixing_length(case: CaseOf, bed: str, mixing: str) 
     ],
 )
 def test_the_driver_gives_the_friction_velocity(case: CaseOf, keys: str, column: str, u_star: float) -> None:
-    found = wet(case, keys, column).derived
+    found = derive(wet(case, keys, column))
     assert found.u_star == pytest.approx(u_star, rel=1e-4)
     assert found.tau_star == pytest.approx(u_star**2 / (1.65 * G * D), rel=2e-4)
 
 
 def test_still_water_has_no_friction_velocity(case: CaseOf) -> None:
     still = wet(case, motion__slope="0")
-    assert math.isnan(still.derived.u_star)
-    assert water_speed(still, 0.01) == 0.0
+    assert math.isnan(derive(still).u_star)
+    assert water_speed(still, derive(still), 0.01) == 0.0
 
 
 def test_a_slope_of_the_timeline_drives_the_water(case: CaseOf) -> None:
     keys = {"motion__slope": "0", "timeline": "[{ at = '0.01 s', slope = '1/20' }]"}
-    assert wet(case, **keys).derived.u_star == pytest.approx(U_STAR)
+    assert derive(wet(case, **keys)).u_star == pytest.approx(U_STAR)
     wet(case, "tau_star = 0.3", **keys)
 
 
 def test_the_speed_to_expect_is_that_of_the_log_law_up_to_the_surface(case: CaseOf) -> None:
     rough, smooth = wet(case, column="bed = 'rough'"), wet(case, column="bed = 'smooth'")
-    assert water_speed(rough, 0.02) == pytest.approx(U_STAR * (8.5 + 5.75))
-    assert water_speed(rough, 0.05) == water_speed(rough, 0.02)
-    assert water_speed(smooth, 0.02) > water_speed(rough, 0.02)
+    at = derive(rough)
+    assert water_speed(rough, at, 0.02) == pytest.approx(U_STAR * (8.5 + 5.75))
+    assert water_speed(rough, at, 0.05) == water_speed(rough, at, 0.02)
+    assert water_speed(smooth, derive(smooth), 0.02) > water_speed(rough, at, 0.02)
 
 
 def test_richardson_and_zakis_exponent_comes_from_a_lone_grain(case: CaseOf) -> None:
@@ -110,7 +111,7 @@ def test_richardson_and_zakis_exponent_comes_from_a_lone_grain(case: CaseOf) -> 
     [
         ("above = 'hold'", "", {}, "water.above", "ends at its surface"),
         ("depth = '-2 cm'", "", {}, "water.depth", "greater than 0"),
-        ("speed = '1 m/s'", "", {}, "water.speed", "no meaning with profile 'column'"),
+        ("speed = '1 m/s'", "", {}, "water.speed", "no effect with profile 'column'"),
         ("roughness = '1 mm'", "", {}, "water.roughness", "over a moving bed"),
         ("roughness = '1 mm'", "bed = 'smooth'", {}, "water.roughness", "over a smooth bed"),
         ("hindrance = 'power'", "", {}, "water.hindrance_exponent", "missing"),
@@ -192,8 +193,8 @@ def test_a_column_without_a_depth_is_told(case: CaseOf) -> None:
         "column = { cell = '1 mm' }",
     ],
 )
-def test_keys_of_a_column_have_no_meaning_elsewhere(case: CaseOf, keys: str) -> None:
-    with pytest.raises(CaseError, match="has no meaning with profile 'log rough'") as caught:
+def test_keys_of_a_column_have_no_effect_elsewhere(case: CaseOf, keys: str) -> None:
+    with pytest.raises(CaseError, match="has no effect with profile 'log rough'") as caught:
         case(water=f"{{ profile = 'log rough', tau_star = 0.3, {keys} }}")
     assert caught.value.key == f"water.{keys.split(maxsplit=1)[0]}"
 
@@ -223,8 +224,8 @@ def test_any_value_of_any_key_is_read_or_refused_with_a_case_error(
     except CaseError as error:
         assert str(error)
         return
-    assert found.explain()
-    assert found.resolved()
+    assert explain(found)
+    assert resolved(found)
 
 
 def test_a_stress_on_the_rigid_bed_under_grains_that_all_move_does_not_contradict(case: CaseOf) -> None:
@@ -232,6 +233,6 @@ def test_a_stress_on_the_rigid_bed_under_grains_that_all_move_does_not_contradic
     tau_star = 0.02 * math.sin(math.atan(0.05)) / (1.65 * D)
     loose = "{ kind = 'packing', columns = 20, layers = 6, bed = 'flat' }"
     one = wet(case, f"tau_star = {tau_star:.6g}, zero = '0.2 cm'", build=loose)
-    assert one.derived.tau_star == pytest.approx(tau_star, rel=1e-5)
+    assert derive(one).tau_star == pytest.approx(tau_star, rel=1e-5)
     with pytest.raises(CaseError, match="contradict"):
         wet(case, f"tau_star = {2.0 * tau_star:.6g}, zero = '0.2 cm'", build=loose)

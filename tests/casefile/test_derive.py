@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from ryusa.casefile import Case, disk_needed, frames_expected, read, steps_expected
-from ryusa.casefile.derive import events_of
+from ryusa.casefile import Case, derive, disk_needed, explain, frames_expected, read, resolved, steps_expected
 from ryusa.casefile.estimate import BYTES_PER_GRAIN, disk_for_events, events_expected, memory_needed
+from ryusa.casefile.record import events_of
 from ryusa.laws import collision
 from ryusa.model.contacts import N_EVENT
 
@@ -20,7 +20,7 @@ MASS = 2650.0 * math.pi / 6 * 0.002**3
 
 
 def test_a_quartz_grain_weighs_as_a_sphere(case: CaseOf) -> None:
-    found = case().derived
+    found = derive(case())
     assert found.m == pytest.approx(MASS, rel=1e-14)
     assert found.m_added == 0.0
     assert found.m_weight == found.m
@@ -28,7 +28,7 @@ def test_a_quartz_grain_weighs_as_a_sphere(case: CaseOf) -> None:
 
 
 def test_water_adds_mass_to_the_inertia_and_takes_weight(case: CaseOf) -> None:
-    found = case(water=WATER).derived
+    found = derive(case(water=WATER))
     assert found.m_added == pytest.approx(MASS * 500 / 2650, rel=1e-12)
     assert found.m_weight == pytest.approx(MASS * 1650 / 2650, rel=1e-12)
     assert found.fixed.m == pytest.approx(found.m + found.m_added, rel=1e-14)
@@ -36,15 +36,15 @@ def test_water_adds_mass_to_the_inertia_and_takes_weight(case: CaseOf) -> None:
 
 
 def test_u_star_and_tau_star_give_each_other(case: CaseOf) -> None:
-    found = case(
-        water="{ profile = 'log rough', u_star = '9.85 cm/s' }", **{"motion.gravity": "9.8 m/s2"}
-    ).derived
+    found = derive(
+        case(water="{ profile = 'log rough', u_star = '9.85 cm/s' }", **{"motion.gravity": "9.8 m/s2"})
+    )
     assert found.tau_star == pytest.approx(0.3, abs=2e-4)
 
 
 def test_the_contact_time_of_the_paper_comes_out(case: CaseOf) -> None:
-    assert case().derived.fixed.t_undamped == pytest.approx(1.05e-4, rel=5e-3)
-    assert case(**{"contact.stiffness": "0.01 N/cm"}).derived.fixed.t_undamped == pytest.approx(
+    assert derive(case()).fixed.t_undamped == pytest.approx(1.05e-4, rel=5e-3)
+    assert derive(case(**{"contact.stiffness": "0.01 N/cm"})).fixed.t_undamped == pytest.approx(
         1.05e-2, rel=5e-3
     )
 
@@ -52,7 +52,7 @@ def test_the_contact_time_of_the_paper_comes_out(case: CaseOf) -> None:
 @pytest.mark.parametrize("parting", ["tension", "no tension"])
 @pytest.mark.parametrize("e", ["0.1", "0.7", "1.0"])
 def test_asked_restitution_is_that_of_both_pairs(case: CaseOf, parting: str, e: str) -> None:
-    found = case(**{"contact.parting": parting, "contact.restitution": e}).derived
+    found = derive(case(**{"contact.parting": parting, "contact.restitution": e}))
     assert found.fixed.e == pytest.approx(float(e), rel=1e-9)
     assert found.free.e == pytest.approx(float(e), rel=1e-9)
     assert found.free.eta_n == pytest.approx(found.fixed.eta_n / math.sqrt(2), rel=1e-12)
@@ -60,7 +60,7 @@ def test_asked_restitution_is_that_of_both_pairs(case: CaseOf, parting: str, e: 
 
 def test_a_constant_dashpot_gives_two_restitutions(case: CaseOf) -> None:
     keys = {"grains.diameter": "2.18 mm", "contact.stiffness": "200 N/cm", "contact.damping": "0.001 N s/cm"}
-    found = case(**keys, **{"contact.parting": "tension"}).derived
+    found = derive(case(**keys, **{"contact.parting": "tension"}))
     assert found.fixed.e == pytest.approx(0.745, abs=1e-3)
     assert found.free.e == pytest.approx(0.658, abs=1e-3)
     assert found.fixed.t_col == pytest.approx(8.46e-5, rel=2e-3)
@@ -68,39 +68,39 @@ def test_a_constant_dashpot_gives_two_restitutions(case: CaseOf) -> None:
 
 
 def test_stiffness_asked_for_by_overlap_gives_that_overlap(case: CaseOf) -> None:
-    found = case(**{"contact.stiffness": "{ overlap = 0.01, speed = '0.6 m/s' }"}).derived
+    found = derive(case(**{"contact.stiffness": "{ overlap = 0.01, speed = '0.6 m/s' }"}))
     deepest = collision.overlap_max(0.6, found.fixed.m, found.k_n, found.fixed.zeta_n)
     assert deepest == pytest.approx(0.01 * 0.002, rel=1e-12)
 
 
 def test_stiffness_asked_for_by_time_gives_eq_8(case: CaseOf) -> None:
-    found = case(water=WATER, **{"contact.stiffness": "{ collision_time = '1e-4 s' }"}).derived
+    found = derive(case(water=WATER, **{"contact.stiffness": "{ collision_time = '1e-4 s' }"}))
     assert found.fixed.t_undamped == pytest.approx(1e-4, rel=1e-12)
 
 
 def test_k_s_is_two_sevenths_unless_said_otherwise(case: CaseOf) -> None:
-    assert case().derived.k_s == pytest.approx(1e4 * 2 / 7)
-    assert case(**{"contact.shear_ratio": "0.075"}).derived.k_s == pytest.approx(750.0)
-    assert case(**{"contact.shear_stiffness": "15 N/cm"}).derived.k_s == pytest.approx(1500.0)
+    assert derive(case()).k_s == pytest.approx(1e4 * 2 / 7)
+    assert derive(case(**{"contact.shear_ratio": "0.075"})).k_s == pytest.approx(750.0)
+    assert derive(case(**{"contact.shear_stiffness": "15 N/cm"})).k_s == pytest.approx(1500.0)
 
 
 def test_the_step_follows_the_lightest_pair_that_can_meet(case: CaseOf) -> None:
-    fixed = case().derived
+    fixed = derive(case())
     assert fixed.dt == pytest.approx(fixed.fixed.t_col / 50, rel=1e-12)
-    meeting = case(build="{ kind = 'drop', partner = 'free', height = '1 cm' }").derived
+    meeting = derive(case(build="{ kind = 'drop', partner = 'free', height = '1 cm' }"))
     assert meeting.dt == pytest.approx(fixed.dt / math.sqrt(2), rel=1e-12)
-    mixed = case(build=PACKING, **{"grains.spread": "0.1"}).derived
+    mixed = derive(case(build=PACKING, **{"grains.spread": "0.1"}))
     assert mixed.dt == pytest.approx(meeting.dt * 0.9**1.5, rel=1e-12)
 
 
 def test_many_starts_do_not_meet_each_other(case: CaseOf) -> None:
-    found = case(build="{ kind = 'saltation', starts = 5 }", water=WATER).derived
+    found = derive(case(build="{ kind = 'saltation', starts = 5 }", water=WATER))
     assert (found.n_grain, found.n_fixed, found.meet) == (5, 100, False)
     assert found.dt == pytest.approx(found.fixed.t_col / 50)
 
 
 def test_a_resolved_case_is_plain_json_in_si(case: CaseOf) -> None:
-    plain = json.loads(json.dumps(case(water=WATER).resolved(), allow_nan=False))
+    plain = json.loads(json.dumps(resolved(case(water=WATER)), allow_nan=False))
     assert plain["grains"]["diameter"] == 0.002
     assert plain["contact"]["stiffness"] == 1.0e4
     assert plain["contact"]["friction"] == pytest.approx(math.tan(math.pi / 6))
@@ -111,13 +111,13 @@ def test_a_resolved_case_is_plain_json_in_si(case: CaseOf) -> None:
 
 def test_the_largest_stable_step_is_that_of_the_stiffer_motion(case: CaseOf) -> None:
     keys = {"contact.damping": "0 N s/m", "contact.shear_ratio": "10"}
-    locked, free = case(**keys).derived, case(**keys, **{"motion.rotation": "free"}).derived
-    later = case(**keys, timeline="[{ at = '0.05 s', rotation = 'free' }]").derived
+    locked, free = derive(case(**keys)), derive(case(**keys, **{"motion.rotation": "free"}))
+    later = derive(case(**keys, timeline="[{ at = '0.05 s', rotation = 'free' }]"))
     omega = math.sqrt(1e4 / MASS)
     assert locked.step_limit == pytest.approx(2.0 / omega / math.sqrt(10.0))
     assert free.step_limit == pytest.approx(2.0 / omega / math.sqrt(35.0))  # m_t = 2/7 m
     assert later.step_limit == free.step_limit
-    assert case(**{"contact.damping": "0 N s/m"}).derived.step_limit == pytest.approx(2.0 / omega)
+    assert derive(case(**{"contact.damping": "0 N s/m"})).step_limit == pytest.approx(2.0 / omega)
 
 
 def test_contacts_to_record_are_counted_before_the_run(case: CaseOf) -> None:
@@ -125,21 +125,23 @@ def test_contacts_to_record_are_counted_before_the_run(case: CaseOf) -> None:
     many = case(build="{ kind = 'packing', columns = 101, layers = 10 }")
     assert (events_of(few), events_of(many)) == ("all", "none")
     assert many.record.events is None
-    assert many.resolved()["record"]["events"] == "none"
-    assert disk_for_events(many) == 0
+    assert resolved(many)["record"]["events"] == "none"
+    assert disk_for_events(many, derive(many)) == 0
     dense = case(build="{ kind = 'packing', columns = 101, layers = 10 }", **{"record.events": "all"})
-    assert 1e5 < events_expected(dense) < 1e6  # 1010 grains, 0.1 s
-    assert disk_for_events(dense) == 8 * N_EVENT * events_expected(dense)
+    assert 1e5 < events_expected(dense, derive(dense)) < 1e6  # 1010 grains, 0.1 s
+    assert disk_for_events(dense, derive(dense)) == 8 * N_EVENT * events_expected(dense, derive(dense))
     frames = 3 * BYTES_PER_GRAIN * 1010
-    assert memory_needed(dense) - memory_needed(many) == (1010 + dense.derived.n_fixed) * 800
-    assert 250e6 < memory_needed(many) < 250e6 + frames * frames_expected(many) + 1600 * 1010
+    asked = memory_needed(dense, derive(dense))
+    assert asked - memory_needed(many, derive(many)) == (1010 + derive(dense).n_fixed) * 800
+    assert 250e6 < memory_needed(many, derive(many)) < 250e6 + frames * frames_expected(many) + 1600 * 1010
 
 
 def test_frames_and_bytes_are_counted_before_the_run(case: CaseOf) -> None:
     one = case(**{"stop.time": "1 s", "record.frames": "1 ms"})
     assert frames_expected(one) in (1001, 1002)
-    assert steps_expected(one) == math.ceil(1.0 / one.derived.dt)
-    assert disk_needed(case(**{"stop.time": "1e5 s", "record.frames": "10 us"})) > 10e9
+    assert steps_expected(one, derive(one)) == math.ceil(1.0 / derive(one).dt)
+    long = case(**{"stop.time": "1e5 s", "record.frames": "10 us"})
+    assert disk_needed(long, derive(long)) > 10e9
 
 
 def test_every_shipped_case_is_good_and_stays_in_its_limits(shipped: Path) -> None:
@@ -148,5 +150,5 @@ def test_every_shipped_case_is_good_and_stays_in_its_limits(shipped: Path) -> No
     for file in files:
         one = read(file)
         assert one.title
-        assert one.derived.steps_per_contact >= 10.0 - 1e-9
-        assert len(one.explain()) > 20
+        assert derive(one).steps_per_contact >= 10.0 - 1e-9
+        assert len(explain(one)) > 20

@@ -1,11 +1,11 @@
-"""Keys of films between grains: what is missing, what has no meaning, and what a check explains."""
+"""Keys of films between grains: what is missing, what has no effect, and what a check explains."""
 
 from collections.abc import Callable
 
 import pytest
 
 from ryusa.build import build
-from ryusa.casefile import Case
+from ryusa.casefile import Case, explain
 from ryusa.errors import CaseError
 from ryusa.laws import immersed
 from ryusa.model.enums import Rebound
@@ -24,19 +24,19 @@ def wet(case: CaseOf, keys: str, **others: str) -> Case:
     [
         ("rebound = 'Davis'", {}, "water.asperity", "missing; rebound 'Davis'"),
         ("film = 'lubrication'", {}, "water.asperity", "missing; film 'lubrication'"),
-        ("asperity = '10 um'", {}, "water.asperity", "no meaning with rebound 'dry'"),
+        ("asperity = '10 um'", {}, "water.asperity", "no effect with rebound 'dry'"),
         ("rebound = 'Davis', asperity = '2 mm'", {}, "water.asperity", "below the mean radius"),
-        ("rebound_stokes = 30.0", {}, "water.rebound_stokes", "no meaning with rebound 'dry'"),
-        ("rebound_least = 0.1", {}, "water.rebound_least", "no meaning with rebound 'dry'"),
+        ("rebound_stokes = 30.0", {}, "water.rebound_stokes", "no effect with rebound 'dry'"),
+        ("rebound_least = 0.1", {}, "water.rebound_least", "no effect with rebound 'dry'"),
         ("rebound = 'exponential', rebound_least = 0.8", {}, "water.rebound_least", "must not be above"),
-        ("film_reach = '1 mm'", {}, "water.film_reach", "no meaning with film 'none'"),
+        ("film_reach = '1 mm'", {}, "water.film_reach", "no effect with film 'none'"),
         (
             "film = 'lubrication', asperity = '10 um', film_reach = '3 mm'", {}, "water.film_reach",
             "mean diameter",
         ),
         (
             "film = 'lubrication', asperity = '10 um', rebound = 'exponential'", {}, "water.film",
-            "counts already",
+            "which includes the film",
         ),
         ("film = 'lubrication', asperity = '1 nm', viscosity = '1e-4 m2/s'", {}, "water.asperity", "resolve"),
         (
@@ -72,7 +72,7 @@ def test_keys_of_films_reach_the_scene(case: CaseOf) -> None:
 
 
 def test_a_check_says_how_much_a_settling_grain_rebounds(case: CaseOf) -> None:
-    rows = {row.name: row.value for row in wet(case, "rebound = 'exponential'").explain()}
+    rows = {row.name: row.value for row in explain(wet(case, "rebound = 'exponential'"))}
     st = rows["Stokes number"]
     assert rows["restitution under water"] == pytest.approx(immersed.restitution_exponential(0.7, st, 35.0))
-    assert "Stokes number" not in {row.name for row in wet(case, "drag = 'constant'").explain()}
+    assert "Stokes number" not in {row.name for row in explain(wet(case, "drag = 'constant'"))}

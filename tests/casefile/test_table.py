@@ -3,7 +3,7 @@ from pathlib import Path
 import pytest
 
 from ryusa.build import build
-from ryusa.casefile import read
+from ryusa.casefile import derive, explain, read
 from ryusa.errors import CaseError
 
 CSV = """# a line of remarks
@@ -26,7 +26,7 @@ def write(folder: Path, text: str, table: str, name: str = "grains.csv") -> Path
 
 def test_a_table_gives_grains_in_si_and_groups_stand_together(text: str, tmp_path: Path) -> None:
     case = read(write(tmp_path, text, CSV))
-    assert (case.derived.n_grain, case.derived.n_fixed, case.derived.meet) == (1, 3, False)
+    assert (derive(case).n_grain, derive(case).n_fixed, derive(case).meet) == (1, 3, False)
     built = build(case)
     assert built.state.x.tolist() == [[0.005, 0.0, 0.005]]
     assert built.state.v[0, 0] == pytest.approx(0.1)
@@ -92,7 +92,7 @@ def test_a_missing_table_is_told(text: str, tmp_path: Path) -> None:
 
 def test_the_step_follows_the_smallest_free_grain_of_a_table(text: str, tmp_path: Path) -> None:
     table = "x [cm],z [cm],d [cm],fixed\n0,0.1,0.05,1\n1,1,0.1,0\n2,1,0.2,0\n"
-    found = read(write(tmp_path, text, table)).derived
+    found = derive(read(write(tmp_path, text, table)))
     assert (found.d, found.d_min, found.d_max) == (0.002, 0.001, 0.002)
     assert found.dt == pytest.approx(found.free.t_col * 0.5**1.5 / 50, rel=1e-12)
 
@@ -104,11 +104,11 @@ def test_a_plane_table_keeps_to_its_lanes(text: str, tmp_path: Path) -> None:
     assert "line 2" in str(caught.value)
     assert "line 3" in str(caught.value)
     case = read(write(tmp_path, text, table.format(y=0.2)))
-    assert not case.derived.meet
+    assert not derive(case).meet
     assert build(case).scene.n_grain == 2
-    assert read(write(tmp_path, text, table.format(y=0))).derived.meet
+    assert derive(read(write(tmp_path, text, table.format(y=0)))).meet
     spatial = read(write(tmp_path, text, table.format(y=0.2)), {"motion.plane": "false"})
-    assert spatial.derived.meet
+    assert derive(spatial).meet
 
 
 def test_a_wall_may_not_cross_the_period_of_a_table(text: str, tmp_path: Path) -> None:
@@ -122,5 +122,5 @@ def test_a_wall_may_not_cross_the_period_of_a_table(text: str, tmp_path: Path) -
 def test_a_fast_spin_in_a_table_is_warned_of(text: str, tmp_path: Path) -> None:
     table = "x [cm],z [cm],d [cm],wy [rad/s]\n0,1,0.2,-1100\n1,1,0.1,2000\n"
     keys = {"water": "{ profile = 'still', torque = 'Dennis' }", "motion.rotation": "free"}
-    rows = {row.name: row for row in read(write(tmp_path, text, table), keys).explain()}
+    rows = {row.name: row for row in explain(read(write(tmp_path, text, table), keys))}
     assert (rows["rotational Re"].value, rows["rotational Re"].flag) == (pytest.approx(4400.0), "warning")

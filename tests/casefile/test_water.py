@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from ryusa.casefile import Case, read
-from ryusa.casefile.water import terminal_velocity, water_speed
+from ryusa.casefile import Case, derive, read
+from ryusa.casefile.water.values import terminal_velocity, water_speed
 from ryusa.errors import CaseError
 
 CaseOf = Callable[..., Case]
@@ -25,8 +25,9 @@ def test_settling_velocity_agrees_with_ferguson_and_church(case: CaseOf) -> None
 def test_water_above_its_depth_does_what_the_case_says(case: CaseOf) -> None:
     for above, expected in (("continue", 1.0), ("hold", 0.0), ("dry", -1.0)):
         wet = case(water=WATER.replace("}", f", above = '{above}' }}"))
-        surface, higher = water_speed(wet, 0.02), water_speed(wet, 0.04)
-        assert surface == pytest.approx(wet.derived.u_star * (8.5 + 5.75 * 1.0))
+        found = derive(wet)
+        surface, higher = water_speed(wet, found, 0.02), water_speed(wet, found, 0.04)
+        assert surface == pytest.approx(found.u_star * (8.5 + 5.75 * 1.0))
         assert (higher > surface) - (higher < surface) == expected
 
 
@@ -37,14 +38,14 @@ def test_a_step_in_which_drag_turns_a_slip_round_is_refused(case: CaseOf) -> Non
     thin = f"{{ profile = 'still', drag = 'Schiller-Naumann', viscosity = '{0.99 * slowest:g} m2/s' }}"
     assert case(water=thin, **keys).water is not None
     with pytest.raises(
-        CaseError, match=r"time\.step.*too long for the water: drag stops .* within 1\.98e-06"
+        CaseError, match=r"time\.step.*too long for the drag, which slows .* within 1\.98e-06"
     ):
         case(water=thin.replace(f"{0.99 * slowest:g}", f"{1.01 * slowest:g}"), **keys)
 
 
 def test_a_column_wants_a_step_below_a_quarter_of_the_drag_time(shipped: Path) -> None:
     path = shipped / "settling_column.toml"
-    most = 0.25 * 3150.0 * 0.25e-6 / 18.0e3 / read(path).derived.dt  # viscosity whose drag asks for this dt
+    most = 0.25 * 3150.0 * 0.25e-6 / 18.0e3 / derive(read(path)).dt  # viscosity whose drag asks for this dt
     read(path, {"water.viscosity": f"{0.99 * most:g} m2/s"})
     with pytest.raises(CaseError, match="must be below a quarter of that"):
         read(path, {"water.viscosity": f"{1.01 * most:g} m2/s"})

@@ -7,7 +7,7 @@ import pytest
 
 from ryusa import measure, run
 from ryusa.build import build
-from ryusa.casefile import read
+from ryusa.casefile import derive, read
 from ryusa.engine.cpu.engine import CpuEngine
 
 PAGE = Path(__file__).parents[2] / "docs" / "cases-of-your-own.md"
@@ -60,7 +60,7 @@ def test_the_bed_under_water_runs_and_its_water_is_measured(blocks, tmp_path):
     (text,) = [text for kind, text in blocks if kind == "toml" and 'profile = "column"' in text]
     path = tmp_path / "gravel.toml"
     path.write_text(text, encoding="utf-8")
-    assert read(path).derived.tau_star == pytest.approx(0.25, abs=0.01)
+    assert derive(read(path)).tau_star == pytest.approx(0.25, abs=0.01)
     short = {"stop.time": "0.04 s", "record.settle": "0.01 s", "record.frames": "5 ms"}
     found = run(read(path, short), tmp_path / "run", progress=False)
     assert measure.water(found).averages["discharge"].value > 0.0

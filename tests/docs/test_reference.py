@@ -25,7 +25,7 @@ def test_reference_pages_are_current(generate: ModuleType) -> None:
 
 
 def test_every_key_of_the_case_file_is_documented() -> None:
-    from ryusa.casefile.faults import all_keys
+    from ryusa.casefile.keys import all_keys
 
     text = (DOCS / "case-file.md").read_text(encoding="utf-8")
     missing = [key for key in all_keys() if f"`{key}`" not in text and f"[{key}]" not in text]

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ryusa.casefile import estimate, read_text
+from ryusa.casefile import derive, estimate, read_text
 from ryusa.errors import CaseError, DiskFull, ResultsError, RunError
 from ryusa.model import RollingLaw
 from ryusa.model.enums import EventRule, Rolling
@@ -202,7 +202,8 @@ def test_check_and_run_agree_on_what_fits_events_counted(
     stop: str, key: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     case = read_text(DROP, {"stop.time": stop, "record.frames": stop})
-    frames, events = estimate.disk_needed(case), estimate.disk_for_events(case)
+    derived = derive(case)
+    frames, events = estimate.disk_needed(case, derived), estimate.disk_for_events(case, derived)
     assert frames == estimate.frames_expected(case) * bytes_per_frame(1) + estimate.BYTES_PER_RUN
     monkeypatch.setattr(folder_module, "free_bytes", lambda place: frames + events - 1)
     with pytest.raises(CaseError, match="contact events about") as caught:

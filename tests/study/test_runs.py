@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from ryusa.casefile import resolved
 from ryusa.errors import CaseError, NotANumber, ResultsError
 from ryusa.running import runner
 from ryusa.studies.osada2004 import (
@@ -215,7 +216,7 @@ def finished(place, one, commit, seed=None):
     about = {"status": "complete", "commit": commit, "ryusa": "0.0.1"}
     (folder / "provenance.json").write_text(json.dumps(about))
     case = paper_run(one.case, SHORT, seed) if seed else one
-    (folder / "case.json").write_text(json.dumps(case.read().resolved()))
+    (folder / "case.json").write_text(json.dumps(resolved(case.read())))
 
 
 def test_a_folder_that_holds_another_case_is_run_again(tmp_path):

@@ -4,28 +4,29 @@ import numpy as np
 
 from ryusa.build.layout import Layout, Wall, still
 from ryusa.build.sizes import draw
-from ryusa.casefile.box import BoxPlan, box_plan, stands_on_floor
-from ryusa.casefile.builders import Box
-from ryusa.casefile.schema import Case
+from ryusa.casefile.builders.box import BoxPlan, box_plan, stands_on_floor
+from ryusa.casefile.builders.schema import BoxSection
+from ryusa.casefile.case import Case
+from ryusa.casefile.derive import Derived
 from ryusa.model.scene import Floats
 
 ZERO = 0.25  # depth of the profile's zero below the crest of a floor of grains, in diameters
 
 
-def box(case: Case) -> Layout:
+def box(case: Case, derived: Derived) -> Layout:
     """Free lattice between x = 0 and the gate, floor with its base at z = 0; periodic in y unless plane.
 
     Groups `floor`, `back` and `gate`, whether of grains or planes; `pit`, a plane, when there is a drop.
     """
     keys = case.build
-    assert isinstance(keys, Box)
+    assert isinstance(keys, BoxSection)
     rng = np.random.default_rng(case.seed)
-    d, plane = case.derived.d, case.motion.plane
-    plan = box_plan(keys, d, case.derived.d_max, plane)
+    d, plane = derived.d, case.motion.plane
+    plan = box_plan(keys, d, derived.d_max, plane)
     floor = _floor(keys, plan, rng, d, plane)
     back, gate = _stacks(keys, plan, floor, d, plane)
     top = float(floor[:, 2].max()) + d / 2.0 if len(floor) else 0.0
-    x = _lattice(keys, plan, rng, case.derived.d_max, plane)
+    x = _lattice(keys, plan, rng, derived.d_max, plane)
     x[:, 2] += top + keys.height
     parts = [(name, rows) for name, rows in (("floor", floor), ("back", back), ("gate", gate)) if len(rows)]
     firsts = np.cumsum([0, *(len(rows) for _, rows in parts)]).tolist()
@@ -48,7 +49,7 @@ def box(case: Case) -> Layout:
     )
 
 
-def _lattice(keys: Box, plan: BoxPlan, rng: np.random.Generator, d_max: float, plane: bool) -> Floats:
+def _lattice(keys: BoxSection, plan: BoxPlan, rng: np.random.Generator, d_max: float, plane: bool) -> Floats:
     """Jittered centres from z = 0 upwards, each axis d_max apart at least [m]."""
     cells = np.stack(
         np.meshgrid(np.arange(keys.layers), np.arange(keys.rows), np.arange(keys.columns), indexing="ij"), -1
@@ -62,14 +63,14 @@ def _lattice(keys: Box, plan: BoxPlan, rng: np.random.Generator, d_max: float, p
     return np.asarray(x)
 
 
-def _floor(keys: Box, plan: BoxPlan, rng: np.random.Generator, d: float, plane: bool) -> Floats:
+def _floor(keys: BoxSection, plan: BoxPlan, rng: np.random.Generator, d: float, plane: bool) -> Floats:
     """Touching grains from x = 0 to the end of the run-out, x fastest [m]."""
     x = _sheet(plan, plan.n_floor, d, plane)
     x[:, 2] = d / 2.0 + rng.uniform(0.0, keys.floor_height * d, len(x))
     return x
 
 
-def _stacks(keys: Box, plan: BoxPlan, floor: Floats, d: float, plane: bool) -> tuple[Floats, Floats]:
+def _stacks(keys: BoxSection, plan: BoxPlan, floor: Floats, d: float, plane: bool) -> tuple[Floats, Floats]:
     """Grains of back wall and gate, from the bottom of the floor or, where it goes on, from its top [m]."""
     back, gate = _sheet(plan, plan.n_back, d, plane), _sheet(plan, plan.n_gate, d, plane)
     for stack in (back, gate):
@@ -91,7 +92,7 @@ def _sheet(plan: BoxPlan, n: int, d: float, plane: bool) -> Floats:
     return x
 
 
-def _walls(keys: Box, plan: BoxPlan) -> tuple[Wall, ...]:
+def _walls(keys: BoxSection, plan: BoxPlan) -> tuple[Wall, ...]:
     walls: list[Wall] = []
     if keys.floor == "plane":
         walls.append(Wall("floor", (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)))
@@ -103,7 +104,7 @@ def _walls(keys: Box, plan: BoxPlan) -> tuple[Wall, ...]:
     return tuple(walls)
 
 
-def _notes(case: Case, keys: Box) -> tuple[str, ...]:
+def _notes(case: Case, keys: BoxSection) -> tuple[str, ...]:
     """Choices the case left open."""
     notes: list[str] = []
     for key in ("floor", "walls"):

@@ -14,11 +14,13 @@ from ryusa.build.overlaps import refuse_overlaps
 from ryusa.build.packing import packing
 from ryusa.build.saltation import saltation
 from ryusa.build.table import table
-from ryusa.casefile.column import Column
-from ryusa.casefile.derive import events_of
+from ryusa.casefile.case import Case
+from ryusa.casefile.column.schema import column_keys
+from ryusa.casefile.derive import Derived, derive
 from ryusa.casefile.films import film_reach
-from ryusa.casefile.schema import Case
-from ryusa.casefile.water import hindrance_exponent
+from ryusa.casefile.motion import slab_width
+from ryusa.casefile.record import events_of
+from ryusa.casefile.water.values import hindrance_exponent
 from ryusa.errors import CaseError
 from ryusa.model import ContactLaw, RollingLaw, Scene, State, Water
 from ryusa.model.enums import (
@@ -104,37 +106,42 @@ class Built:
     notes: tuple[str, ...]  # choices the case left open and the builder made
 
 
-def build(case: Case) -> Built:
+def build(case: Case, derived: Derived | None = None) -> Built:
     """Place the first grains of a case.
+
+    Parameters
+    ----------
+    case : a checked case.
+    derived : what follows from it; computed when not given.
 
     Raises
     ------
     CaseError : first grains overlap or stand between lanes, or the timeline names a group that is not there.
     """
-    layout = BUILDERS[case.build.kind](case)
+    found = derived or derive(case)
+    layout = BUILDERS[case.build.kind](case, found)
     layout = _with_planes(layout, case)
     refuse_overlaps(layout, "build.file" if case.build.kind == "table" else "build", case.motion.plane)
     _refuse_unknown_groups(layout, case)
-    laws = replace(laws_of(case, layout.z_zero), column=column_of(case, layout))
+    laws = replace(laws_of(case, found, layout.z_zero), column=column_of(case, found, layout))
     scene, state = assemble(layout, laws)
     return Built(scene, state, (*layout.notes, *notes_of(case)))
 
 
-def laws_of(case: Case, z_zero: float) -> Laws:
+def laws_of(case: Case, derived: Derived, z_zero: float) -> Laws:
     """Laws of a case; `z_zero` [m] is where the water profile begins unless the case says so."""
-    found = case.derived
     return Laws(
         density=case.grains.density,
         a_3=case.grains.shape_volume,
-        contact=contact_of(case),
-        dt=found.dt,
+        contact=contact_of(case, derived),
+        dt=derived.dt,
         rolling=rolling_of(case),
-        water=water_of(case, z_zero),
-        g=found.g,
-        slope=found.slope,
+        water=water_of(case, derived, z_zero),
+        g=derived.g,
+        slope=derived.slope,
         rotation=case.motion.rotation == "free",
         plane_case=case.motion.plane,
-        slab_width=(case.motion.slab_width or found.d) if case.motion.plane else math.nan,
+        slab_width=slab_width(case) if case.motion.plane else math.nan,
         overlap_limit=case.domain.overlap_limit,
         events=EVENTS[events_of(case)],
         tracked=case.record.tracked,
@@ -143,9 +150,9 @@ def laws_of(case: Case, z_zero: float) -> Laws:
     )
 
 
-def contact_of(case: Case) -> ContactLaw:
+def contact_of(case: Case, derived: Derived) -> ContactLaw:
     """Contact law of a case."""
-    found, contact = case.derived, case.contact
+    found, contact = derived, case.contact
     constants = math.isnan(found.e_n)
     return ContactLaw(
         k_n=found.k_n,
@@ -178,9 +185,9 @@ def rolling_of(case: Case) -> RollingLaw:
     )
 
 
-def water_of(case: Case, z_zero: float) -> Water:
+def water_of(case: Case, derived: Derived, z_zero: float) -> Water:
     """Water of a case; profile NONE when dry."""
-    water, found = case.water, case.derived
+    water, found = case.water, derived
     if water is None:
         return Water()
     return Water(
@@ -233,7 +240,7 @@ def notes_of(case: Case) -> tuple[str, ...]:
         if key not in contact.model_fields_set:
             notes.append(f"{meaning} {getattr(contact, key)} (contact.{key} not given)")
     if water is not None:
-        bed = (water.column or Column()).bed if water.profile == "column" else ""
+        bed = column_keys(case).bed if water.profile == "column" else ""
         if water.roughness is None and (water.profile == "log rough" or bed == "rough"):
             notes.append("roughness k_s of Eq. (9) = mean d (water.roughness not given)")
         if water.depth is None:
@@ -256,7 +263,7 @@ def notes_of(case: Case) -> tuple[str, ...]:
 
 
 def _column_notes(case: Case) -> list[str]:
-    keys = (case.water and case.water.column) or Column()
+    keys = column_keys(case)
     notes = [
         f"{words} {getattr(keys, key)} (water.column.{key} not given)"
         for key, words in (("bed", "bed of the water"), ("drive", "driver of the water"))

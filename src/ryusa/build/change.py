@@ -6,12 +6,13 @@ from dataclasses import replace
 import numpy as np
 
 from ryusa.build.assemble import gravity
-from ryusa.casefile.schema import Case, Change
+from ryusa.casefile.case import Case
+from ryusa.casefile.record import ChangeSection
 from ryusa.errors import CaseError
 from ryusa.model import Scene
 
 
-def change(case: Case, scene: Scene, entry: Change) -> Scene:
+def change(case: Case, scene: Scene, entry: ChangeSection) -> Scene:
     """Scene after one entry of the timeline: a group gone, gravity tilted, friction or rotation switched.
 
     A new slope drives a column of water, too.

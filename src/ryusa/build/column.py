@@ -5,13 +5,14 @@ import math
 import numpy as np
 
 from ryusa.build.layout import Layout
-from ryusa.casefile.builders import Flume
-from ryusa.casefile.column import CELL
-from ryusa.casefile.column import Column as Keys
-from ryusa.casefile.column_checks import SPARE
-from ryusa.casefile.derive import u_star_asked
-from ryusa.casefile.grains import packed
-from ryusa.casefile.schema import Case
+from ryusa.casefile.builders.schema import FlumeSection
+from ryusa.casefile.case import Case
+from ryusa.casefile.column.bed import packed
+from ryusa.casefile.column.checks import SPARE
+from ryusa.casefile.column.schema import CELL, column_keys
+from ryusa.casefile.derive import Derived
+from ryusa.casefile.motion import slab_width
+from ryusa.casefile.water.values import u_star_given
 from ryusa.errors import CaseError
 from ryusa.model import Column
 from ryusa.model.column import Bed, Drive, Fluctuations, Mixing, SideWalls, Start, Surface
@@ -51,18 +52,18 @@ def zero_of(case: Case, z_zero: float) -> float:
     return z_zero
 
 
-def column_of(case: Case, layout: Layout) -> Column | None:
+def column_of(case: Case, derived: Derived, layout: Layout) -> Column | None:
     """Column of water of a case over its first grains; None for water that does not feel them.
 
     Raises
     ------
     CaseError : the column cannot be: it begins above the bed, or asks for too many cells.
     """
-    water, found = case.water, case.derived
+    water, found = case.water, derived
     if water is None or water.profile != "column":
         return None
     assert water.depth is not None
-    keys = water.column or Keys()
+    keys = column_keys(case)
     z_bed = zero_of(case, layout.z_zero)
     dz = keys.cell or CELL * found.d
     z_low = keys.bottom if keys.bottom is not None else min(bottom_of(layout), z_bed)
@@ -93,7 +94,7 @@ def column_of(case: Case, layout: Layout) -> Column | None:
         g_x=found.g * math.sin(found.slope),
         drive=DRIVES[keys.drive],
         gradient=keys.pressure_gradient or 0.0,
-        tau=water.density * u_star_asked(case) ** 2 if keys.drive == "tau_star" else math.nan,
+        tau=water.density * u_star_given(case) ** 2 if keys.drive == "tau_star" else math.nan,
         discharge=math.nan if keys.discharge is None else keys.discharge,
         mixing=MIXINGS[keys.mixing],
         kappa=keys.kappa,
@@ -124,7 +125,7 @@ def area_of(case: Case, layout: Layout) -> float:
     """Bed under the column [m2]: in a plane scene a slab for every lane."""
     if case.motion.plane:
         lanes = len(np.unique(layout.x[:, 1]))
-        return layout.period[0] * (case.motion.slab_width or case.derived.d) * lanes
-    if isinstance(case.build, Flume) and case.build.width is not None:
+        return layout.period[0] * slab_width(case) * lanes
+    if isinstance(case.build, FlumeSection) and case.build.width is not None:
         return layout.period[0] * case.build.width
     return layout.period[0] * layout.period[1]

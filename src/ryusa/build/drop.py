@@ -5,16 +5,17 @@ import math
 import numpy as np
 
 from ryusa.build.layout import LANE, Layout, Wall, still
-from ryusa.casefile.builders import Drop
-from ryusa.casefile.schema import Case
+from ryusa.casefile.builders.schema import DropSection
+from ryusa.casefile.case import Case
+from ryusa.casefile.derive import Derived
 
 GAP = 0.1  # first gap when only a speed is given, in diameters
 
 
-def drop(case: Case) -> Layout:
+def drop(case: Case, _derived: Derived) -> Layout:
     """Struck grain at x = 0 with its base at z = 0, striking grain `height` above it; group `struck`."""
     keys = case.build
-    assert isinstance(keys, Drop)
+    assert isinstance(keys, DropSection)
     d, copies = case.grains.diameter, keys.copies
     height = GAP * d if keys.height is None else keys.height
     lanes = np.arange(copies)

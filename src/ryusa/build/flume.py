@@ -6,25 +6,27 @@ import numpy as np
 
 from ryusa.build.layout import Layout, Wall, still
 from ryusa.build.sizes import draw
-from ryusa.casefile.builders import Flume
-from ryusa.casefile.column import Column
-from ryusa.casefile.grains import bed_counts, bed_thickness, flume_count, packed
-from ryusa.casefile.schema import Case
+from ryusa.casefile.builders.schema import FlumeSection
+from ryusa.casefile.builders.values import bed_counts, flume_count
+from ryusa.casefile.case import Case
+from ryusa.casefile.column.bed import bed_thickness, packed
+from ryusa.casefile.column.schema import column_keys
+from ryusa.casefile.derive import Derived
 from ryusa.model.scene import Floats
 
 SIDES = ("right", "left")  # looking downstream: y = 0 and y = width
 
 
-def flume(case: Case) -> Layout:
+def flume(case: Case, derived: Derived) -> Layout:
     """Free lattice over a base whose centres lie at z = 0 on average; groups `bed`, `right`, `left`."""
     keys = case.build
-    assert isinstance(keys, Flume)
+    assert isinstance(keys, FlumeSection)
     rng = np.random.default_rng(case.seed)
-    d, plane = case.derived.d, case.motion.plane
+    d, plane = derived.d, case.motion.plane
     wide = d if plane or keys.width is None else keys.width
     x_fixed = _base(case, keys, rng, wide)
     top = float(x_fixed[:, 2].max()) + d / 2.0 if len(x_fixed) else 0.0
-    x = _lattice(case, keys, rng, wide)
+    x = _lattice(case, keys, rng, wide, derived.d_max)
     if plane:
         x[:, 1] = 0.0
     x[:, 2] += top
@@ -59,18 +61,18 @@ def bed_level(case: Case, base: float, crest: float | None) -> tuple[float, str]
     base : from where loose grains begin to fill [m].
     crest : mean top of the fixed grains [m]; None over a plane.
     """
-    keys = (case.water and case.water.column) or Column()
+    keys = column_keys(case)
     if case.water is None or case.water.profile != "column" or keys.bed != "moving":
         if keys.bottom is not None:
             return keys.bottom, "at water.column.bottom"
         if crest is None:
             return base, "at the floor"
-        return crest - 0.25 * case.derived.d, "d/4 below the mean crest of the fixed bed"
+        return crest - 0.25 * case.grains.diameter, "d/4 below the mean crest of the fixed bed"
     level = base + bed_thickness(case)
     return level, f"where the grains end once they lie as dense as {packed(case):g}"
 
 
-def _base(case: Case, keys: Flume, rng: np.random.Generator, wide: float) -> Floats:
+def _base(case: Case, keys: FlumeSection, rng: np.random.Generator, wide: float) -> Floats:
     """Fixed grains of mean diameter, evenly spaced, at random or equal height around z = 0 [m]."""
     n_x, n_y = bed_counts(case)
     grid = np.stack(np.meshgrid(np.arange(n_y), np.arange(n_x), indexing="ij"), -1).reshape(-1, 2)
@@ -81,14 +83,13 @@ def _base(case: Case, keys: Flume, rng: np.random.Generator, wide: float) -> Flo
     if not case.motion.plane:
         x[:, 1] = (grid[:, 0] + 0.5) * wide / n_y
     if keys.bed == "random":
-        x[:, 2] = rng.uniform(-0.5, 0.5, len(x)) * keys.bed_height * case.derived.d
+        x[:, 2] = rng.uniform(-0.5, 0.5, len(x)) * keys.bed_height * case.grains.diameter
         x[:, 2] -= x[:, 2].mean()
     return x
 
 
-def _lattice(case: Case, keys: Flume, rng: np.random.Generator, wide: float) -> Floats:
+def _lattice(case: Case, keys: FlumeSection, rng: np.random.Generator, wide: float, d_max: float) -> Floats:
     """Jittered centres from z = 0 upwards, neighbours and walls kept clear [m]; the highest layer in part."""
-    d_max = case.derived.d_max
     free = d_max * (1.0 + keys.gap)
     n_x = max(int(keys.length / free), 1)
     n_y = 1 if case.motion.plane else max(int(wide / free), 1)

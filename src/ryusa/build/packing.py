@@ -5,19 +5,19 @@ import numpy as np
 from ryusa.build.flume import bed_level
 from ryusa.build.layout import Layout, Wall, still
 from ryusa.build.sizes import draw
-from ryusa.casefile.builders import Packing
-from ryusa.casefile.grains import bed_counts
-from ryusa.casefile.schema import Case
+from ryusa.casefile.builders.schema import PackingSection
+from ryusa.casefile.builders.values import bed_counts
+from ryusa.casefile.case import Case
+from ryusa.casefile.derive import Derived
 from ryusa.model.scene import Floats
 
 
-def packing(case: Case) -> Layout:
+def packing(case: Case, derived: Derived) -> Layout:
     """Free lattice above the bed, periodic in x (and in y in three dimensions) or open; group `bed`."""
     keys = case.build
-    assert isinstance(keys, Packing)
+    assert isinstance(keys, PackingSection)
     rng = np.random.default_rng(case.seed)
-    found = case.derived
-    d, d_max, plane = found.d, found.d_max, case.motion.plane
+    d, d_max, plane = derived.d, derived.d_max, case.motion.plane
     pitch = d_max * (1.0 + keys.gap)
     wide, deep = keys.columns * pitch, keys.rows * pitch
     inf = float("inf")
@@ -58,10 +58,10 @@ def packing(case: Case) -> Layout:
     )
 
 
-def _bed(case: Case, keys: Packing, rng: np.random.Generator, wide: float, deep: float) -> Floats:
+def _bed(case: Case, keys: PackingSection, rng: np.random.Generator, wide: float, deep: float) -> Floats:
     """Fixed grains of mean diameter, evenly spaced under the block, at random or equal height [m]."""
     n_x, n_y = bed_counts(case)
-    d = case.derived.d
+    d = case.grains.diameter
     grid = np.stack(np.meshgrid(np.arange(n_y), np.arange(n_x), indexing="ij"), -1).reshape(-1, 2)
     x = still(len(grid))
     x[:, 0] = (grid[:, 1] + 0.5) * wide / n_x

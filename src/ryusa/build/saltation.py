@@ -3,18 +3,19 @@
 import numpy as np
 
 from ryusa.build.layout import LANE, Layout, still
-from ryusa.casefile.builders import Saltation
-from ryusa.casefile.schema import Case
-from ryusa.casefile.water import water_speed
+from ryusa.casefile.builders.schema import SaltationSection
+from ryusa.casefile.case import Case
+from ryusa.casefile.derive import Derived
+from ryusa.casefile.water.values import water_speed
 
 ZERO = 0.25  # depth of the profile's zero below the crest, in diameters: the classical choice
 START = 2.0  # first gap above the crest, in diameters
 
 
-def saltation(case: Case) -> Layout:
+def saltation(case: Case, derived: Derived) -> Layout:
     """Bed centres at z = d/2, crest at z = d, one free grain per lane at a random x; group `bed`."""
     keys = case.build
-    assert isinstance(keys, Saltation)
+    assert isinstance(keys, SaltationSection)
     d, n_bed, starts = case.grains.diameter, keys.n_bed, keys.starts
     period = n_bed * d
     rng = np.random.default_rng(case.seed)
@@ -25,7 +26,9 @@ def saltation(case: Case) -> Layout:
     z_zero = (1.0 - ZERO) * d
     zero = z_zero if case.water is None or case.water.zero is None else case.water.zero
     v = still(starts)
-    v[:, 0] = water_speed(case, float(x[0, 2]) - zero) if keys.start_speed is None else keys.start_speed
+    v[:, 0] = (
+        water_speed(case, derived, float(x[0, 2]) - zero) if keys.start_speed is None else keys.start_speed
+    )
     x_fixed = np.zeros((starts, n_bed, 3))
     x_fixed[:, :, 0] = (np.arange(n_bed) + 0.5) * d
     x_fixed[:, :, 1] = x[:, 1, None]

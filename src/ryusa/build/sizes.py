@@ -4,14 +4,14 @@ import math
 
 import numpy as np
 
+from ryusa.casefile.case import Case
 from ryusa.casefile.grains import CUT, spread_of
-from ryusa.casefile.schema import Case
 from ryusa.model.scene import Floats
 
 
 def draw(case: Case, n: int, rng: np.random.Generator) -> Floats:
     """Diameters [m] of n grains as `grains.spread` has them."""
-    d, (kind, ratio) = case.grains.diameter, spread_of(case)
+    d, (kind, ratio) = case.grains.diameter, spread_of(case.grains)
     if ratio == 0.0:
         return np.full(n, d)
     if kind == "uniform":

@@ -3,17 +3,18 @@
 import numpy as np
 
 from ryusa.build.layout import Layout
-from ryusa.casefile.builders import Table
-from ryusa.casefile.schema import Case
-from ryusa.casefile.table import table_of
+from ryusa.casefile.builders.schema import TableSection
+from ryusa.casefile.builders.table import table_of
+from ryusa.casefile.case import Case
+from ryusa.casefile.derive import Derived
 from ryusa.errors import CaseError
 from ryusa.model.scene import Floats
 
 
-def table(case: Case) -> Layout:
+def table(case: Case, _derived: Derived) -> Layout:
     """Grains as the table has them; ids follow its order, but rows of one group stand together."""
     keys, grid = case.build, table_of(case)
-    assert isinstance(keys, Table)
+    assert isinstance(keys, TableSection)
     assert grid is not None
     if case.motion.plane:
         for name in ("vy", "wx", "wz"):

@@ -3,9 +3,11 @@
 import math
 import shutil
 
-from ryusa.casefile.builders import Box, Flume, Packing, Table
-from ryusa.casefile.derive import events_of
-from ryusa.casefile.schema import Case
+from ryusa.casefile.builders.schema import BoxSection, FlumeSection, PackingSection, TableSection
+from ryusa.casefile.case import Case
+from ryusa.casefile.derive import Derived
+from ryusa.casefile.record import MANY, events_of
+from ryusa.casefile.rows import ExplainRow, Flag, count, number, word
 from ryusa.model.contacts import N_EVENT
 
 BYTES_PER_GRAIN = 80  # of a frame: x, v, omega, image
@@ -26,6 +28,7 @@ SECONDS_PER_GRAIN = 6.5e-8  # and per grain in it, in a plane scene
 SECONDS_PER_GRAIN_3D = 1.3e-7
 SECONDS_PER_GRAIN_IN_WATER = 6.0e-8  # on top
 SECONDS_PER_SALTATION = 0.15  # simulated, where only a number of saltations ends the run
+HOUR = 3600.0  # [s]
 SECONDS_TO_REST = 10.0  # simulated, where only rest ends it
 
 
@@ -42,9 +45,9 @@ def time_expected(case: Case) -> tuple[float, str]:
     return min(found)
 
 
-def steps_expected(case: Case) -> int:
+def steps_expected(case: Case, derived: Derived) -> int:
     """Steps of the run at most, or by guess where only events end it."""
-    return math.ceil(time_expected(case)[0] / case.derived.dt)
+    return math.ceil(time_expected(case)[0] / derived.dt)
 
 
 def frames_expected(case: Case) -> int:
@@ -52,31 +55,31 @@ def frames_expected(case: Case) -> int:
     return math.floor(time_expected(case)[0] / case.record.frames) + 2
 
 
-def disk_needed(case: Case) -> int:
+def disk_needed(case: Case, derived: Derived) -> int:
     """Bytes that the frames of a run will take; contacts recorded come on top."""
-    frame = case.derived.n_grain * BYTES_PER_GRAIN + BYTES_PER_FRAME
+    frame = derived.n_grain * BYTES_PER_GRAIN + BYTES_PER_FRAME
     return frames_expected(case) * frame + BYTES_PER_RUN
 
 
-def events_expected(case: Case) -> int:
+def events_expected(case: Case, derived: Derived) -> int:
     """Contacts recorded, by a rule of thumb."""
-    kept, n = events_of(case), case.derived.n_grain
+    kept, n = events_of(case), derived.n_grain
     if kept == "tracked":
         n = len(set(case.record.tracked))
     rate = EVENTS_ALONE
-    if isinstance(case.build, Packing | Flume | Table | Box) and case.derived.meet:
-        rate = max(rate, EVENTS_DENSE * math.sqrt(case.derived.g / case.derived.d))
+    if isinstance(case.build, PackingSection | FlumeSection | TableSection | BoxSection) and derived.meet:
+        rate = max(rate, EVENTS_DENSE * math.sqrt(derived.g / derived.d))
     return 0 if kept == "none" else math.ceil(n * rate * time_expected(case)[0])
 
 
-def disk_for_events(case: Case) -> int:
+def disk_for_events(case: Case, derived: Derived) -> int:
     """Bytes that the contacts recorded will take, by a rule of thumb."""
-    return events_expected(case) * BYTES_PER_EVENT
+    return events_expected(case, derived) * BYTES_PER_EVENT
 
 
-def disk_in_all(case: Case) -> int:
+def disk_in_all(case: Case, derived: Derived) -> int:
     """Bytes that a run will take on the disk; `ryusa run` refuses what does not fit."""
-    return disk_needed(case) + disk_for_events(case)
+    return disk_needed(case, derived) + disk_for_events(case, derived)
 
 
 def free_here() -> int:
@@ -89,17 +92,76 @@ def memory_per_grain(case: Case) -> int:
     return MEMORY_PER_GRAIN if events_of(case) == "none" else MEMORY_WITH_EVENTS
 
 
-def memory_needed(case: Case) -> int:
+def memory_needed(case: Case, derived: Derived) -> int:
     """Bytes of memory a run will take, frames that wait to be written with it."""
-    frame = case.derived.n_grain * BYTES_PER_GRAIN
+    frame = derived.n_grain * BYTES_PER_GRAIN
     held = max(frame, min(FRAMES_HELD, frames_expected(case) * frame))
-    grains = (case.derived.n_grain + case.derived.n_fixed) * memory_per_grain(case)
+    grains = (derived.n_grain + derived.n_fixed) * memory_per_grain(case)
     return MEMORY_PER_RUN + grains + COPIES * held
 
 
-def seconds_needed(case: Case) -> float:
+def seconds_needed(case: Case, derived: Derived) -> float:
     """Wall time by a rule of thumb [s], one core."""
     per_grain = SECONDS_PER_GRAIN if case.motion.plane else SECONDS_PER_GRAIN_3D
     if case.water is not None:
         per_grain += SECONDS_PER_GRAIN_IN_WATER
-    return SECONDS_PER_RUN + steps_expected(case) * (SECONDS_PER_STEP + per_grain * case.derived.n_grain)
+    return SECONDS_PER_RUN + steps_expected(case, derived) * (SECONDS_PER_STEP + per_grain * derived.n_grain)
+
+
+def cost_rows(case: Case, derived: Derived) -> list[ExplainRow]:
+    """Steps, frames, disk, memory and wall time."""
+    simulated, origin = time_expected(case)
+    disk, seconds = disk_needed(case, derived), seconds_needed(case, derived)
+    memory, each = memory_needed(case, derived), memory_per_grain(case)
+    wall = f"{seconds / HOUR:.3g} h" if seconds > HOUR else f"{seconds:.3g} s"
+    held = (
+        f"{human(MEMORY_PER_RUN)} for the program, {each} B per grain (events {events_of(case)}), and frames"
+    )
+    return [
+        number("cost", "simulated time", simulated, "s", origin),
+        count("cost", "steps", steps_expected(case, derived), "simulated time over dt"),
+        count("cost", "frames", frames_expected(case), f"one every {case.record.frames:g} s (record.frames)"),
+        _size("disk for frames", disk, "positions, velocities and spins of the free grains"),
+        *_events(case, derived),
+        *_disk(case, derived),
+        _size("memory", memory, f"{held} waiting to be written"),
+        ExplainRow("cost", "wall time", seconds, "s", wall, "rule of thumb for one core"),
+    ]
+
+
+def _events(case: Case, derived: Derived) -> list[ExplainRow]:
+    kept, asked = events_of(case), case.record.events
+    origin = "record.events"
+    if asked is None:
+        origin = f"record.events not given: all with up to {MANY} free grains or where saltations end the run"
+    rows = [word("cost", "contacts recorded", kept, origin, "" if asked else "note")]
+    if kept != "none":
+        contacts = f"about {events_expected(case, derived):,} contacts, rule of thumb"
+        rows.append(_size("disk for events", disk_for_events(case, derived), contacts))
+    return rows
+
+
+def _disk(case: Case, derived: Derived) -> list[ExplainRow]:
+    """Disk needed in all, where more is needed than is free."""
+    needed, free = disk_in_all(case, derived), free_here()
+    if needed <= free:
+        return []
+    origin = f"frames and events, but only {human(free)} are free in this folder: `ryusa run` will refuse"
+    return [_size("disk in all", needed, origin, "warning")]
+
+
+def _size(name: str, size: int, origin: str, flag: Flag = "") -> ExplainRow:
+    return ExplainRow("cost", name, size, "B", human(size), origin, flag)
+
+
+def human(size: float) -> str:
+    """Bytes as a person writes them.
+
+    >>> human(2_500_000)
+    '2.5 MB'
+    """
+    for unit in ("B", "kB", "MB", "GB"):
+        if size < 1000.0:
+            return f"{size:.3g} {unit}"
+        size /= 1000.0
+    return f"{size:.3g} TB"

@@ -1,37 +1,42 @@
-"""Films of water between grains: their keys checked, and explained back."""
+"""Water films between grains: restitution under water and lubrication, keys of [water]."""
 
 import math
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
-from ryusa.casefile.derive import Derived, restitution
-from ryusa.casefile.rows import Row, row_of
-from ryusa.casefile.schema import Case, Water
-from ryusa.casefile.water import terminal_velocity
+from ryusa.casefile.contact.values import restitution
+from ryusa.casefile.rows import ExplainRow, number
+from ryusa.casefile.water.schema import WaterSection
+from ryusa.casefile.water.values import terminal_velocity
 from ryusa.errors import CaseError
 from ryusa.laws import collision, immersed
+
+if TYPE_CHECKING:
+    from ryusa.casefile.case import Case
+    from ryusa.casefile.derive import Derived
 
 REACH = 0.25  # of a film when the case gives none, in mean diameters
 
 
-def film_reach(case: Case) -> float:
-    """Gap from which films resist [m]; 0 where they do not."""
+def film_reach(case: "Case") -> float:
+    """Gap below which the film force acts [m]; 0 without film force."""
     wet = case.water
     if wet is None or wet.film == "none":
         return 0.0
     return wet.film_reach if wet.film_reach is not None else REACH * case.grains.diameter
 
 
-def check_films(case: Case) -> Iterator[CaseError]:
+def check_films(case: "Case") -> Iterator[CaseError]:
     """Find keys of films that are missing, have no meaning or contradict each other."""
     wet = case.water
     if wet is None:
         return
     given, film = wet.model_fields_set, wet.film != "none"
     if wet.rebound != "dry" and film:
-        text = f"counts the approach that rebound '{wet.rebound}' counts already; take one of the two"
+        text = f"contradicts rebound '{wet.rebound}', which includes the film; take one of the two"
         yield CaseError("water.film", wet.film, text)
     if wet.rebound != "dry" and case.contact.restitution is None:
-        text = f"missing; rebound '{wet.rebound}' begins from the restitution in air"
+        text = f"missing; rebound '{wet.rebound}' reduces the restitution in air"
         yield CaseError("contact.restitution", None, text)
     elif wet.rebound != "dry" and wet.rebound_least > (case.contact.restitution or 1.0):
         text = f"must not be above contact.restitution = {case.contact.restitution:g}"
@@ -41,22 +46,24 @@ def check_films(case: Case) -> Iterator[CaseError]:
         ("rebound_least", wet.rebound != "dry"),
     ):
         if key in given and not needed:
-            text = f"has no meaning with rebound '{wet.rebound}'"
+            text = f"has no effect with rebound '{wet.rebound}'"
             yield CaseError(f"water.{key}", getattr(wet, key), text)
     if wet.film_reach is not None and not film:
-        yield CaseError("water.film_reach", wet.film_reach, f"has no meaning with film '{wet.film}'")
+        yield CaseError("water.film_reach", wet.film_reach, f"has no effect with film '{wet.film}'")
     yield from _lengths(case, wet, film)
 
 
-def _lengths(case: Case, wet: Water, film: bool) -> Iterator[CaseError]:
+def _lengths(case: "Case", wet: WaterSection, film: bool) -> Iterator[CaseError]:
     d, needed = case.grains.diameter, film or wet.rebound == "Davis"
     if wet.asperity is None:
         if needed:
             who = f"film '{wet.film}'" if film else f"rebound '{wet.rebound}'"
-            yield CaseError("water.asperity", None, f"missing; {who} ends where the grains touch")
+            yield CaseError(
+                "water.asperity", None, f"missing; {who} needs the film thickness at which grains touch"
+            )
         return
     if not needed:
-        text = f"has no meaning with rebound '{wet.rebound}' and film '{wet.film}'"
+        text = f"has no effect with rebound '{wet.rebound}' and film '{wet.film}'"
         yield CaseError("water.asperity", wet.asperity, text)
     elif wet.asperity >= 0.5 * d:
         text = f"must be below the mean radius, {0.5 * d:g} m"
@@ -65,67 +72,74 @@ def _lengths(case: Case, wet: Water, film: bool) -> Iterator[CaseError]:
         yield CaseError("water.film_reach", wet.film_reach, f"must not be above the mean diameter, {d:g} m")
 
 
-def check_film_step(case: Case) -> Iterator[CaseError]:
+def check_film_step(case: "Case", derived: "Derived") -> Iterator[CaseError]:
     """Find a time step too long for the dashpot of a wet contact, or for a film about to touch."""
-    wet, found = case.water, case.derived
+    wet = case.water
     if wet is None:
         return
-    lightest = _lightest(case, found)
+    lightest = _lightest(derived)
     if wet.rebound != "dry":
         zeta = _zeta(case, wet.rebound_least)
-        m = 0.5 * lightest if found.meet else lightest
-        most = collision.step_limit(zeta, collision.omega_natural(found.k_n, m))
-        if found.dt > most:
+        m = 0.5 * lightest if derived.meet else lightest
+        most = collision.step_limit(zeta, collision.omega_natural(derived.k_n, m))
+        if derived.dt > most:
             text = (
-                f"a contact so damped needs a step below {most:.3g} s, and dt = {found.dt:.3g} s; take a "
-                f"shorter step or let more rebound"
+                f"a contact damped to this restitution needs a step below {most:.3g} s, and dt = "
+                f"{derived.dt:.3g} s; take a shorter step or a larger water.rebound_least"
             )
             yield CaseError("water.rebound_least", wet.rebound_least, text)
     if wet.film != "none" and wet.asperity is not None:
-        rate = _film_rate(found.d_min, lightest, wet)
-        if found.dt * rate > 1.0:
+        rate = _film_rate(derived.d_min, lightest, wet)
+        if derived.dt * rate > 1.0:
             text = (
                 f"a film of {wet.asperity:.3g} m stops a grain within {1.0 / rate:.3g} s, which dt = "
-                f"{found.dt:.3g} s does not resolve; take a shorter step or rougher grains"
+                f"{derived.dt:.3g} s does not resolve; take a shorter step or a larger asperity"
             )
             yield CaseError("water.asperity", wet.asperity, text)
 
 
-def _lightest(case: Case, found: Derived) -> float:
+def _lightest(derived: "Derived") -> float:
     """Mass of the smallest grain with its added mass [kg]."""
-    return (found.m + found.m_added) * (found.d_min / found.d) ** 3
+    return (derived.m + derived.m_added) * (derived.d_min / derived.d) ** 3
 
 
-def _film_rate(d: float, m: float, wet: Water) -> float:
+def _film_rate(d: float, m: float, wet: WaterSection) -> float:
     """Rate at which the thinnest film slows a grain of mass m [kg] against a wall [1/s]."""
     return 1.0 / (
         immersed.stokes_number(1.0, m, 0.5 * d, wet.density, wet.viscosity) * (wet.asperity or math.nan)
     )
 
 
-def _zeta(case: Case, e: float) -> float:
+def _zeta(case: "Case", e: float) -> float:
     tension = case.contact.parting == "tension"
     return collision.zeta_tension(e) if tension else collision.zeta_no_tension(e)
 
 
-def film_rows(case: Case) -> list[Row]:
-    """Rows about rebound under water; none where it is dry."""
-    wet, found = case.water, case.derived
+def film_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
+    """Restitution under water and reach of films; none where contacts are those in air."""
+    wet = case.water
     if wet is None or (wet.rebound == "dry" and wet.film == "none"):
         return []
-    rows: list[Row] = []
+    rows: list[ExplainRow] = []
     speed = terminal_velocity(case)
     if 0.0 < speed < math.inf:
-        st = immersed.stokes_number(speed, found.m + found.m_added, 0.5 * found.d, wet.density, wet.viscosity)
-        rows.append(row_of("water", "Stokes number", st, "-", "of a wall met at the settling velocity"))
+        m, r = derived.m + derived.m_added, 0.5 * derived.d
+        st = immersed.stokes_number(speed, m, r, wet.density, wet.viscosity)
+        rows.append(
+            number("water", "Stokes number", st, "-", "of an impact on a wall at the settling velocity")
+        )
         if wet.rebound != "dry":
             e = restitution(case)[0]
             if wet.rebound == "exponential":
                 e = immersed.restitution_exponential(e, st, wet.rebound_stokes)
             else:
-                e = immersed.restitution_davis(e, st, wet.asperity or math.nan, found.d)
-            how = f"rebound {wet.rebound} at that speed, at least {wet.rebound_least:g}"
-            rows.append(row_of("water", "restitution under water", max(e, wet.rebound_least), "-", how))
+                e = immersed.restitution_davis(e, st, wet.asperity or math.nan, derived.d)
+            origin = f"rebound {wet.rebound} at this Stokes number, not below {wet.rebound_least:g}"
+            e = max(e, wet.rebound_least)
+            rows.append(number("water", "restitution under water", e, "-", origin))
     if wet.film != "none":
-        rows.append(row_of("water", "reach of films", film_reach(case), "cm", f"film {wet.film}"))
+        origin = (
+            "water.film_reach" if wet.film_reach is not None else f"{REACH:g} d (water.film_reach not given)"
+        )
+        rows.append(number("water", "reach of films", film_reach(case), "cm", origin))
     return rows

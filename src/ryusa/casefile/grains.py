@@ -1,164 +1,98 @@
-"""How many grains a case asks for, how large they are, and the bed they make."""
+"""[grains]: sizes, density and shape of the free grains, and the masses that follow."""
 
 import math
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-import numpy as np
+from pydantic import Discriminator, Field, Tag
 
-from ryusa.casefile.box import box_plan
-from ryusa.casefile.builders import Box, Drop, Flume, Packing, Saltation, Table
-from ryusa.casefile.column import PACKED, PACKED_PLANE, Column
-from ryusa.casefile.schema import Case, Spread
-from ryusa.casefile.table import table_of
+from ryusa.casefile.quantities import Density, Length, Number, Ratio
+from ryusa.casefile.rows import ExplainRow, count, number
+from ryusa.casefile.section import Section
+from ryusa.laws import drag, motion
+
+if TYPE_CHECKING:
+    from ryusa.casefile.case import Case
+    from ryusa.casefile.derive import Derived
+
 
 CUT = 2.5  # standard deviations at which normal and lognormal sizes are cut
 
 
-def spread_of(case: Case) -> tuple[str, float]:
+class SpreadSection(Section):
+    """Distribution of grain sizes about the mean diameter."""
+
+    kind: Literal["uniform", "normal", "lognormal"] = "uniform"
+    """Shape of the size distribution; normal and lognormal are cut at 2.5 standard deviations."""
+    ratio: Number = Field(ge=0, lt=0.9)
+    """Half width (uniform) or standard deviation (normal, lognormal) over the mean diameter."""
+
+
+def _spread_kind(value: Any) -> str:
+    return "<number>" if isinstance(value, (int, float, str)) else "<table>"
+
+
+class GrainsSection(Section):
+    """The free grains."""
+
+    diameter: Annotated[Length, Field(ge=1.0e-7, le=1.0e3)]
+    """Mean diameter d; with a table of grains, the reference diameter of u_star, roughness and overlap/d."""
+    density: Annotated[Density, Field(ge=1.0, le=1.0e6)]
+    """Density of the grain material, rho_s."""
+    spread: Annotated[
+        Annotated[Ratio, Field(ge=0, lt=0.9), Tag("<number>")] | Annotated[SpreadSection, Tag("<table>")],
+        Discriminator(_spread_kind),
+    ] = 0.0
+    """Spread of the sizes: a number is the half width of a uniform distribution over the mean diameter."""
+    shape_volume: Annotated[Number, Field(gt=0, le=1)] = math.pi / 6
+    """A_3: volume of a grain over d cubed; pi/6 for a sphere."""
+
+
+def spread_of(grains: GrainsSection) -> tuple[str, float]:
     """Shape and relative width of the size distribution."""
-    spread = case.grains.spread
-    return (spread.kind, spread.ratio) if isinstance(spread, Spread) else ("uniform", float(spread))
+    spread = grains.spread
+    return (spread.kind, spread.ratio) if isinstance(spread, SpreadSection) else ("uniform", float(spread))
 
 
-def sizes(case: Case) -> tuple[float, float, float]:
-    """Mean diameter as the case states it, smallest of free grains and largest that can occur [m]."""
-    table = table_of(case)
-    if table is not None:
-        every = table.column("d")
-        return case.grains.diameter, float(every[~table.fixed].min()), float(every.max())
-    d, (kind, ratio) = case.grains.diameter, spread_of(case)
-    if kind == "uniform":
-        return d, d * (1.0 - ratio), d * (1.0 + ratio)
-    if kind == "normal":
-        return d, d * max(1.0 - CUT * ratio, 0.05), d * (1.0 + CUT * ratio)
-    width = math.sqrt(math.log1p(ratio * ratio))
-    return (
-        d,
-        d * math.exp(-0.5 * width * width - CUT * width),
-        d * math.exp(-0.5 * width * width + CUT * width),
-    )
+def mass(case: "Case", d: float) -> tuple[float, float, float, float]:
+    """Mass, added mass, submerged mass [kg] and moment of inertia [kg m2] of a grain of diameter d [m]."""
+    volume = drag.volume(d, case.grains.shape_volume)
+    m = case.grains.density * volume
+    inertia = motion.inertia_sphere(m, d)
+    if case.water is None:
+        return m, 0.0, m, inertia
+    rho_w = case.water.density
+    m_added = drag.added_mass(rho_w, case.water.added_mass, volume)
+    return m, m_added, drag.submerged_mass(m, rho_w, volume), inertia
 
 
-def counts(case: Case) -> tuple[int, int, bool]:
-    """Free grains, fixed grains, and whether two free grains can meet."""
-    build = case.build
-    table = table_of(case)
-    if table is not None:
-        n_fixed = int(table.fixed.sum())
-        n_free = table.n - n_fixed
-        places = len(np.unique(table.column("y")[~table.fixed])) if case.motion.plane else 1
-        return n_free, n_fixed, n_free > places
-    if isinstance(build, Drop):
-        free = 2 if build.partner == "free" else 1
-        return build.copies * free, build.copies * (build.partner == "fixed"), build.partner == "free"
-    if isinstance(build, Saltation):
-        return build.starts, build.starts * build.n_bed, False
-    if isinstance(build, Box):
-        d, _, d_max = sizes(case)
-        n_fixed = box_plan(build, d, d_max, case.motion.plane).n_fixed
-        return build.columns * build.rows * build.layers, n_fixed, True
-    bed = bed_counts(case)
-    if isinstance(build, Flume):
-        return flume_count(case), bed[0] * bed[1], True
-    assert isinstance(build, Packing)
-    return build.columns * build.rows * build.layers, bed[0] * bed[1], True
-
-
-def bed_counts(case: Case) -> tuple[int, int]:
-    """Fixed grains of the bed of a packing or a flume along x and y; (0, 0) over a plane."""
-    build = case.build
-    if isinstance(build, Flume):
-        return (0, 0) if build.bed == "plane" else _side_by_side(case, build)
-    if not isinstance(build, Packing) or build.bed == "plane":
-        return 0, 0
-    d, _, d_max = sizes(case)
-    pitch = d_max * (1.0 + build.gap)
-    fewest = 3 if build.periodic else 1
-    n_x, n_y = (max(round(count * pitch / d), fewest) for count in (build.columns, build.rows))
-    return n_x, 1 if case.motion.plane else n_y
-
-
-def _side_by_side(case: Case, build: Flume) -> tuple[int, int]:
-    """Mean grains that fit length and width of a flume."""
-    d = case.grains.diameter
-    return max(int(build.length / d * (1.0 + 1e-9)), 1), max(int((build.width or d) / d * (1.0 + 1e-9)), 1)
-
-
-def flume_count(case: Case) -> int:
-    """Free grains of a flume."""
-    assert isinstance(case.build, Flume)
-    n_x, n_y = _side_by_side(case, case.build)
-    return round(case.build.layers * n_x * n_y)
-
-
-def bed_area(case: Case) -> float:
-    """Area of bed under the grains of a packing or a flume, a slab in a plane scene [m2]; nan for others."""
-    build, slab = case.build, case.motion.slab_width or case.grains.diameter
-    if isinstance(build, Flume):
-        return build.length * (slab if case.motion.plane or build.width is None else build.width)
-    if isinstance(build, Packing):
-        pitch = sizes(case)[2] * (1.0 + build.gap)
-        return build.columns * pitch * (slab if case.motion.plane else build.rows * pitch)
-    return math.nan
-
-
-def bed_thickness(case: Case) -> float:
-    """How high free grains lie above their bed once as dense as `water.column.packed` [m]; nan if unknown.
-
-    The base of fixed grains of random height takes up to half a layer more.
-    """
-    d, (kind, ratio) = case.grains.diameter, spread_of(case)
-    # mean of d**3: uniform sizes have a variance of ratio**2/3, the others of ratio**2
-    cube = d**3 * (1.0 + 3.0 * ratio**2 / (3.0 if kind == "uniform" else 1.0))
-    return counts(case)[0] * case.grains.shape_volume * cube / (bed_area(case) * packed(case))
-
-
-def bed_top(case: Case) -> float:
-    """Height where loose grains end once as dense as `water.column.packed` [m]; nan if unknown."""
-    build, d = case.build, case.grains.diameter
-    if isinstance(build, Flume):
-        return bed_thickness(case)
-    if not isinstance(build, Packing):
-        return math.nan
-    crest = {"plane": 0.0, "flat": d, "random": (1.0 + 0.5 * build.bed_height) * d}[build.bed]
-    return crest + bed_thickness(case)
-
-
-def water_over(case: Case) -> float:
-    """Depth of the water over the loose bed of a column [m]; below zero where it ends in the bed.
-
-    It is `water.depth` where that counts from the top of the bed, over a fixed bed, and where the bed is not
-    known.
-    """
-    wet = case.water
-    if wet is None or wet.depth is None:
-        return math.nan
-    over_loose = wet.profile == "column" and (wet.column or Column()).bed == "moving"
-    if wet.zero is None or not over_loose:
-        return wet.depth
-    top = bed_top(case)
-    return wet.depth if math.isnan(top) else wet.zero + wet.depth - top
-
-
-def packed(case: Case) -> float:
-    """Concentration of a case's bed at rest, where eddies have no room [-]."""
-    keys = (case.water and case.water.column) or Column()
-    if keys.packed is not None:
-        return keys.packed
-    if not case.motion.plane:
-        return PACKED
-    d = sizes(case)[0]
-    return PACKED_PLANE * d / (case.motion.slab_width or d)
-
-
-def periodic(case: Case) -> tuple[bool, bool]:
-    """Whether x and y are periodic."""
-    build = case.build
-    if isinstance(build, Flume):
-        return True, not (case.motion.plane or build.walls)
-    if isinstance(build, Packing):
-        return build.periodic, build.periodic and not case.motion.plane
-    if isinstance(build, Box):
-        return False, not case.motion.plane
-    if isinstance(build, Table):
-        return case.domain.period_x is not None, case.domain.period_y is not None
-    return isinstance(build, Saltation), False
+def grain_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
+    """Sizes, numbers and masses of the grains."""
+    several = derived.d_max > derived.d_min
+    rows = [number("grains", "mean diameter" if several else "diameter", derived.d, "cm", "grains.diameter")]
+    if several:
+        rows += [
+            number("grains", "smallest diameter", derived.d_min, "cm", "lower end of the size distribution"),
+            number("grains", "largest diameter", derived.d_max, "cm", "upper end of the size distribution"),
+        ]
+    builder = f"builder '{case.build.kind}'"
+    rows += [
+        count("grains", "free grains", derived.n_grain, builder),
+        count("grains", "fixed grains", derived.n_fixed, builder),
+        number(
+            "grains",
+            "mass m",
+            derived.m,
+            "kg",
+            "rho_s A_3 d^3; that of spheres in a plane scene too",
+        ),
+    ]
+    if case.water is not None:
+        added = f"rho_w C_M A_3 d^3, C_M = {case.water.added_mass:g}; adds to inertia, not to weight"
+        rows += [
+            number("grains", "added mass", derived.m_added, "kg", added),
+            number("grains", "submerged mass", derived.m_weight, "kg", "(rho_s - rho_w) A_3 d^3"),
+        ]
+    return [
+        *rows,
+        number("grains", "moment of inertia", derived.inertia, "kg m2", "m d^2/10, without added mass"),
+    ]

@@ -9,7 +9,6 @@ from pydantic import AllowInfNan, BeforeValidator, Field, Strict, WithJsonSchema
 from ryusa.units import quantity
 
 _RATIO = re.compile(r"\s*([+-]?[0-9]*\.?[0-9]+(?:[eE][+-]?[0-9]+)?)\s*(?:/\s*([0-9]*\.?[0-9]+)|(%))?\s*")
-_MUST_BE_TEXT = "string"
 
 
 def _si(unit: str) -> BeforeValidator:
@@ -20,9 +19,7 @@ def _si(unit: str) -> BeforeValidator:
 
 
 def _text(what: str, *examples: str) -> WithJsonSchema:
-    return WithJsonSchema(
-        {"type": _MUST_BE_TEXT, "format": "quantity", "title": what, "examples": list(examples)}
-    )
+    return WithJsonSchema({"type": "string", "format": "quantity", "title": what, "examples": list(examples)})
 
 
 def read_ratio(value: Any) -> Any:
@@ -68,3 +65,10 @@ Ratio = Annotated[
 
 PositiveLength = Annotated[Length, Field(gt=0)]
 Point = tuple[Length, Length, Length]
+
+# the same quantity wherever a case gives it
+STEEPEST = 1.5  # slope angles stay below 86 deg [rad]
+Slope = Annotated[Ratio, Field(ge=-14, le=14)]
+SlopeAngle = Annotated[Angle, Field(ge=-STEEPEST, le=STEEPEST)]
+FrictionAngle = Annotated[Angle, Field(ge=0, lt=math.pi / 2)]
+FrictionCoefficient = Annotated[Number, Field(ge=0, le=1.0e6)]

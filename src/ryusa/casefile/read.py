@@ -1,21 +1,19 @@
 """TOML to a checked `Case`: the only door for case files."""
 
-import copy
 import json
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
 
-from ryusa.casefile.checks import RIVALS, check
+from ryusa.casefile.case import Case
+from ryusa.casefile.checks import check
 from ryusa.casefile.faults import faults
-from ryusa.casefile.schema import Case
+from ryusa.casefile.overrides import parsed, with_overrides
 from ryusa.errors import CaseError
 
 LARGEST_FILE = 4 << 20  # bytes; a case file is a page of text, grains in number belong in a CSV table
-DEEPEST_KEY = 8
 
 
 def read(path: str | Path, overrides: Mapping[str, str] | None = None) -> Case:
@@ -53,7 +51,7 @@ def read_text(text: str, overrides: Mapping[str, str] | None = None, *, path: Pa
     """Read and check a case given as text; `path` names the file it came from."""
     source = path.name if path is not None else None
     try:
-        data: dict[str, Any] = tomllib.loads(text, parse_float=_unsigned)
+        data: dict[str, Any] = parsed(text)
     except (
         ValueError
     ) as error:  # TOMLDecodeError names line and column; numbers of thousands of digits end here too
@@ -70,53 +68,6 @@ def read_text(text: str, overrides: Mapping[str, str] | None = None, *, path: Pa
     if found:
         raise CaseError.together(found, source)
     return case
-
-
-def _unsigned(text: str) -> float:
-    return float(text) + 0.0  # -0.0 is no length of a range, says numpy
-
-
-def with_overrides(data: dict[str, Any], overrides: Mapping[str, str]) -> dict[str, Any]:
-    """Set dotted keys in a copy of the file's data."""
-    if not overrides:
-        return data
-    data = copy.deepcopy(data)
-    for key, text in overrides.items():
-        _set(data, key, _toml_value(text))
-    return data
-
-
-def _toml_value(text: str) -> Any:
-    try:
-        found = tomllib.loads(f"value = {text}", parse_float=_unsigned)
-    except (ValueError, RecursionError):
-        return text
-    return found["value"] if set(found) == {"value"} else text
-
-
-def _set(data: dict[str, Any], key: str, value: Any) -> None:
-    parts = key.split(".")
-    if not all(parts) or len(parts) > DEEPEST_KEY:
-        raise CaseError(f"--set {key}", None, "needs a dotted key such as contact.stiffness")
-    here: Any = data
-    for part in parts[:-1]:
-        if isinstance(here, dict):
-            here = here.setdefault(part, {})
-        elif isinstance(here, list) and part.isdecimal() and int(part) < len(here):
-            here = here[int(part)]
-        else:
-            raise CaseError(f"--set {key}", None, f"'{part}' is no table in this case")
-    last = parts[-1]
-    if isinstance(here, list) and last.isdecimal() and int(last) < len(here):
-        here[int(last)] = value
-    elif isinstance(here, dict):
-        for group in RIVALS.get(parts[0], ()):
-            if last in group:
-                for rival in group:
-                    here.pop(rival, None)
-        here[last] = value
-    else:
-        raise CaseError(f"--set {key}", None, f"'{parts[-2]}' is no table in this case")
 
 
 def json_schema() -> dict[str, Any]:

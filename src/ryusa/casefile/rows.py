@@ -1,33 +1,43 @@
-"""Lines of an explained case."""
+"""Rows of an explained case: the table that `ryusa check` prints."""
 
 from dataclasses import dataclass
 from typing import Literal
 
 from ryusa.units import format_quantity
 
+Flag = Literal["", "note", "warning"]
+
 
 @dataclass(frozen=True)
-class Row:
-    """One line of the explanation."""
+class ExplainRow:
+    """One number or word of an explained case."""
 
     section: str
     name: str
     value: float | int | str  # SI, or a word
     unit: str  # of the value; "" for words and counts
-    shown: str  # value and unit as a person writes them
-    how: str  # where it comes from
-    flag: Literal["", "note", "warning"] = ""
+    shown: str  # value and unit as printed
+    origin: str  # the key or formula it comes from, and what to note about it
+    flag: Flag = ""
 
 
-def row_of(
-    section: str, name: str, value: float, unit: str, how: str, flag: Literal["", "note", "warning"] = ""
-) -> Row:
-    """Line whose value is shown in the unit asked for."""
-    si = _SHOWN.get(unit, (unit, unit))
-    return Row(section, name, value, si[0], format_quantity(value, si[1]), how, flag)
+def number(section: str, name: str, value: float, unit: str, origin: str, flag: Flag = "") -> ExplainRow:
+    """Row of a number in SI, printed in `unit`."""
+    si = _SI.get(unit, (unit, unit))
+    return ExplainRow(section, name, value, si[0], format_quantity(value, si[1]), origin, flag)
 
 
-_SHOWN = {  # unit asked for: (SI unit of the value, unit shown)
+def word(section: str, name: str, value: str, origin: str, flag: Flag = "") -> ExplainRow:
+    """Row of a word."""
+    return ExplainRow(section, name, value, "", value, origin, flag)
+
+
+def count(section: str, name: str, value: int, origin: str, flag: Flag = "") -> ExplainRow:
+    """Row of a whole number."""
+    return ExplainRow(section, name, value, "", f"{value:,}", origin, flag)
+
+
+_SI = {  # unit printed: (SI unit of the value, unit for the formatter)
     "cm": ("m", "cm"),
     "N/cm": ("N/m", "N/cm"),
     "N s/cm": ("N s/m", "N s/cm"),

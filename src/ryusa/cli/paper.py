@@ -120,7 +120,7 @@ def _seeds(text: str) -> tuple[int, ...]:
 
 def _known(word: str) -> list[str]:
     """Experiments that a word means: their name, the paper's way of writing a figure, or a claim."""
-    from ryusa.casefile.faults import nearest_word
+    from ryusa.casefile.spelling import nearest_word
     from ryusa.errors import CaseError
     from ryusa.studies.osada2004 import NAMES, load
 

@@ -11,7 +11,7 @@ from ryusa.engine import registry
 from ryusa.errors import CaseError, RyusaError
 
 if TYPE_CHECKING:
-    from ryusa.casefile.schema import Case
+    from ryusa.casefile.case import Case
     from ryusa.results import Results
 
 CaseFile = Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML).", show_default=False)]
@@ -71,7 +71,7 @@ def new(
             typer.echo(f"{name:<24}{title}")
         return
     if kind not in kinds:
-        from ryusa.casefile.faults import nearest_word
+        from ryusa.casefile.spelling import nearest_word
 
         raise CaseError("kind", kind, f"must be one of {', '.join(kinds)}", nearest_word(kind, list(kinds)))
     if path is None:
@@ -97,9 +97,11 @@ def check(case: CaseFile, settings: Settings = None, seed: Seed = None) -> None:
     from rich.table import Table
 
     from ryusa.build import build
+    from ryusa.casefile import derive, explain
 
-    n_grain = found.derived.n_grain + found.derived.n_fixed
-    built = build(found) if n_grain <= _LAID_OUT else None
+    derived = derive(found)
+    n_grain = derived.n_grain + derived.n_fixed
+    built = build(found, derived) if n_grain <= _LAID_OUT else None
     console = Console()
     if not console.is_terminal:
         console = Console(width=_WIDE)
@@ -107,13 +109,13 @@ def check(case: CaseFile, settings: Settings = None, seed: Seed = None) -> None:
     for heading in ("name", "value", "where it comes from"):
         table.add_column(heading, overflow="fold", justify="left")
     section = None
-    for row in found.explain():
+    for row in explain(found, derived):
         if row.section != section:
             section = row.section
             table.add_row(f"[bold]{escape(section)}[/bold]")
         style = {"warning": "yellow", "note": "cyan"}.get(row.flag)
         mark = "warning: " if row.flag == "warning" else ""
-        table.add_row(f"  {escape(row.name)}", escape(row.shown), escape(mark + row.how), style=style)
+        table.add_row(f"  {escape(row.name)}", escape(row.shown), escape(mark + row.origin), style=style)
     console.print(table)
     console.print("[bold]chosen because the case leaves it open[/bold]")
     notes = (f"not told for more than {_LAID_OUT} grains, which `ryusa run` lays out",)

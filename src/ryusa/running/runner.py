@@ -41,8 +41,8 @@ from ryusa.running.stops import Stop
 from ryusa.running.watch import Watch
 
 if TYPE_CHECKING:
-    from ryusa.casefile.schema import Case
-    from ryusa.casefile.schema import Change as Entry
+    from ryusa.casefile.case import Case
+    from ryusa.casefile.record import ChangeSection
 
 _MOST_STEPS = 2**62
 _BEFORE = "before the first step; no run folder was made"
@@ -90,10 +90,14 @@ def run(
     """
     with listening() as heard:
         from ryusa.build import build, change
+        from ryusa.casefile.derive import derive
         from ryusa.casefile.estimate import disk_for_events, disk_needed, frames_expected, memory_needed
+        from ryusa.casefile.resolved import resolved
+
+        derived = derive(case)
 
         def make() -> _Made:
-            built = build(case)
+            built = build(case, derived)
             heard.raise_if_asked(_BEFORE)
             return built.scene, built.state, tuple(str(note) for note in built.notes)
 
@@ -108,10 +112,11 @@ def run(
             Change(entry.at, partial(_changed, change, case, entry), words)
             for entry, words in zip(case.timeline, _words(case), strict=True)
         ]
-        refuse_if_too_large(memory_needed(case), case.derived.n_grain)
+        refuse_if_too_large(memory_needed(case, derived), derived.n_grain)
         about = _About(
-            resolved=case.resolved(), text=case.text, seed=case.seed, overrides=case.overrides,
-            disk=_Disk(frames_expected(case), disk_needed(case), disk_for_events(case)), table=_table(case),
+            resolved=resolved(case, derived), text=case.text, seed=case.seed, overrides=case.overrides,
+            disk=_Disk(frames_expected(case), disk_needed(case, derived), disk_for_events(case, derived)),
+            table=_table(case),
         )  # fmt: skip
         return _carry_out(
             make,
@@ -125,16 +130,19 @@ def run(
 
 
 def _changed(
-    change: "Callable[[Case, Scene, Entry], Scene]", case: "Case", entry: "Entry", scene: Scene
+    change: "Callable[[Case, Scene, ChangeSection], Scene]",
+    case: "Case",
+    entry: "ChangeSection",
+    scene: Scene,
 ) -> Scene:
     return change(case, scene, entry)
 
 
 def _table(case: "Case") -> Path | None:
     """The table of first grains, where it can lie beside the case in the run folder as it does now."""
-    from ryusa.casefile.builders import Table
+    from ryusa.casefile.builders.schema import TableSection
 
-    if not isinstance(case.build, Table) or case.path is None:
+    if not isinstance(case.build, TableSection) or case.path is None:
         return None
     name = case.build.file
     plain = Path(name).name == name and Path(name).suffix not in {".json", ".toml", ".vtkhdf", ".h5", ".txt"}
@@ -143,7 +151,7 @@ def _table(case: "Case") -> Path | None:
 
 def _words(case: "Case") -> list[str]:
     """Entries of the timeline as the case says them, with its units, overrides applied; for the log."""
-    from ryusa.casefile.read import with_overrides
+    from ryusa.casefile.overrides import with_overrides
 
     said = with_overrides(tomllib.loads(case.text), case.overrides).get("timeline", [])
     if len(said) != len(case.timeline):  # a case made in Python has no text

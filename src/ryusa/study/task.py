@@ -19,7 +19,7 @@ from ryusa.running import provenance
 from ryusa.running.folder import write_json
 
 if TYPE_CHECKING:
-    from ryusa.casefile.schema import Case
+    from ryusa.casefile.case import Case
 
 # What the rule of thumb for a single run cannot know. Counted in the 639 runs of the standard level of the
 # paper's ledger, seeds 1 to 3, two at a time on two cores of an AMD EPYC: 43 core minutes in all, of which
@@ -106,6 +106,7 @@ class CaseRun(Task):
 
     def cost(self) -> float:
         """Core seconds of the run by rule of thumb."""
+        from ryusa.casefile.derive import derive
         from ryusa.casefile.estimate import SECONDS_PER_RUN, seconds_needed
 
         case = self.read()
@@ -113,13 +114,15 @@ class CaseRun(Task):
             _TO_HOPS if case.stop.saltations is not None else _TO_REST if case.stop.rest is not None else 1.0
         )
         law = 1.0 if case.rolling.model == "none" else _ROLLING
-        return _BEGIN + share * law * (seconds_needed(case) - SECONDS_PER_RUN)
+        return _BEGIN + share * law * (seconds_needed(case, derive(case)) - SECONDS_PER_RUN)
 
     def disk(self) -> int:
         """Bytes that the run will take."""
+        from ryusa.casefile.derive import derive
         from ryusa.casefile.estimate import disk_in_all
 
-        return disk_in_all(self.read())
+        case = self.read()
+        return disk_in_all(case, derive(case))
 
     def origin(self, folder: Path) -> dict[str, Any] | None:
         """Provenance of a finished run of the very same case; None where there is none."""
@@ -152,7 +155,9 @@ class CaseRun(Task):
 
     def _is(self, case: Mapping[str, Any]) -> bool:
         """Whether the case that a run folder holds is the very case of this run."""
-        return case == json.loads(json.dumps(self.read().resolved()))
+        from ryusa.casefile.resolved import resolved
+
+        return case == json.loads(json.dumps(resolved(self.read())))
 
 
 @lru_cache(maxsize=4096)

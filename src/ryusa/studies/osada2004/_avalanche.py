@@ -345,7 +345,9 @@ def creep(chosen: Mapping[str, str], time: str) -> float:
     the slope of n + 1 - k layers on its contacts, slides at (n + 1 - k) m g sin(theta)/(2 eta_s), and the
     mean over the layers of the sums of these is (n + 1)(2 n + 1)/6 times m g sin(theta)/(2 eta_s).
     """
-    found = run(chosen, time, 1).read().derived
+    from ryusa.casefile.derive import derive
+
+    found = derive(run(chosen, time, 1).read())
     weight = found.m_weight * GRAVITY * math.sin(SLOPE)
     return (LAYERS + 1) * (2 * LAYERS + 1) / 6.0 * weight / (BELOW * found.free.eta_s)
 

@@ -3,16 +3,13 @@
 from pathlib import PurePosixPath
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, Field
 
 from ryusa.casefile.quantities import Count, Length, Number, PositiveLength, Speed, Spin
+from ryusa.casefile.section import Section
 
 
-class _Keys(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
-
-
-class Drop(_Keys):
+class DropSection(Section):
     """One grain dropped on a fixed grain, a free grain or a plane."""
 
     kind: Literal["drop"]
@@ -35,7 +32,7 @@ class Drop(_Keys):
     """How much higher each further copy starts."""
 
 
-class Saltation(_Keys):
+class SaltationSection(Section):
     """A grain over a line of fixed, touching grains, several starts side by side."""
 
     kind: Literal["saltation"]
@@ -57,7 +54,7 @@ def _relative(path: str) -> str:
     return str(parts)
 
 
-class Table(_Keys):
+class TableSection(Section):
     """Grains read from a CSV table."""
 
     kind: Literal["table"]
@@ -69,7 +66,7 @@ class Table(_Keys):
     """May first grains overlap."""
 
 
-class Packing(_Keys):
+class PackingSection(Section):
     """Layers of grains on a jittered lattice over fixed grains of random height; settles when run."""
 
     kind: Literal["packing"]
@@ -95,7 +92,7 @@ class Packing(_Keys):
     [[planes]], at x = 0 and x = columns (1 + gap) largest diameters, or grains roll off the bed."""
 
 
-class Flume(_Keys):
+class FlumeSection(Section):
     """A channel, periodic along x: loose grains over a base of fixed ones, between side walls or not."""
 
     kind: Literal["flume"]
@@ -120,7 +117,7 @@ class Flume(_Keys):
     2014 has 11/12."""
 
 
-class Box(_Keys):
+class BoxSection(Section):
     """Grains fall into a box of floor, back wall and gate; what the timeline removes lets them out."""
 
     kind: Literal["box"]
@@ -153,4 +150,7 @@ class Box(_Keys):
     Group `pit`."""
 
 
-Build = Annotated[Drop | Saltation | Table | Packing | Flume | Box, Field(discriminator="kind")]
+BuildSection = Annotated[
+    DropSection | SaltationSection | TableSection | PackingSection | FlumeSection | BoxSection,
+    Field(discriminator="kind"),
+]

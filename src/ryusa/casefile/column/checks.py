@@ -1,35 +1,40 @@
-"""Checks of water that feels its grains: what a column needs, what has no meaning, what contradicts."""
+"""Checks of a column of water: keys that are missing or without effect, and contradictions."""
 
 import math
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
-from pydantic import BaseModel
-
-from ryusa.casefile.builders import Flume
-from ryusa.casefile.column import CELL, ONLY_IN_A_COLUMN, Column
-from ryusa.casefile.derive import slope_at_last, u_star_asked
-from ryusa.casefile.grains import bed_top, packed, periodic, sizes, water_over
-from ryusa.casefile.schema import Case, Water
+from ryusa.casefile.builders.schema import FlumeSection
+from ryusa.casefile.builders.values import periodic, sizes
+from ryusa.casefile.column.bed import bed_top, packed, water_over
+from ryusa.casefile.column.schema import CELL, ONLY_IN_A_COLUMN, ColumnSection, column_keys
+from ryusa.casefile.motion import slope_at_last
+from ryusa.casefile.section import given
+from ryusa.casefile.water.schema import WaterSection
+from ryusa.casefile.water.values import u_star_given
 from ryusa.errors import CaseError
 from ryusa.model.column import AGREE, refuse
+
+if TYPE_CHECKING:
+    from ryusa.casefile.case import Case
 
 MOST_CELLS = 20_000
 DENSEST = math.pi / math.sqrt(18.0)  # concentration of the densest packing of equal spheres
 SPARE = 1.2  # height of the column over the depth
 
 
-def check_column(case: Case) -> Iterator[CaseError]:
-    """Find the faults of a case's column of water, and keys that only a column understands."""
+def check_column(case: "Case") -> Iterator[CaseError]:
+    """Find faults of the column of water, and keys that have an effect only with a column."""
     water = case.water
     if water is None:
         return
     if water.profile != "column":
         for key in ONLY_IN_A_COLUMN:
-            if _given(water, key):
+            if given(water, key):
                 value = None if key == "column" else getattr(water, key)
-                yield CaseError(f"water.{key}", value, f"has no meaning with profile '{water.profile}'")
+                yield CaseError(f"water.{key}", value, f"has no effect with profile '{water.profile}'")
         return
-    keys = water.column or Column()
+    keys = column_keys(case)
     yield from _place(case, water)
     yield from _laws(water)
     yield from _boundaries(case, water, keys)
@@ -43,11 +48,7 @@ def check_column(case: Case) -> Iterator[CaseError]:
         yield from shallow or _contradictions(case, water, keys, over if over > 0.0 else water.depth)
 
 
-def _given(section: BaseModel, key: str) -> bool:
-    return key in section.model_fields_set and getattr(section, key) is not None
-
-
-def _place(case: Case, water: Water) -> Iterator[CaseError]:
+def _place(case: "Case", water: WaterSection) -> Iterator[CaseError]:
     """A column covers a piece of bed that goes on for ever."""
     along, across = periodic(case)
     kind = case.build.kind
@@ -65,10 +66,10 @@ def _place(case: Case, water: Water) -> Iterator[CaseError]:
         )
 
 
-def _laws(water: Water) -> Iterator[CaseError]:
-    if _given(water, "above"):
+def _laws(water: WaterSection) -> Iterator[CaseError]:
+    if given(water, "above"):
         yield CaseError(
-            "water.above", water.above, "has no meaning with profile 'column', which ends at its surface"
+            "water.above", water.above, "has no effect with profile 'column', which ends at its surface"
         )
     if water.hindrance == "power" and water.hindrance_exponent is None:
         yield CaseError("water.hindrance_exponent", None, "missing; hindrance 'power' needs it")
@@ -76,19 +77,19 @@ def _laws(water: Water) -> Iterator[CaseError]:
         yield CaseError(
             "water.hindrance_exponent",
             water.hindrance_exponent,
-            f"has no meaning with hindrance '{water.hindrance}'",
+            f"has no effect with hindrance '{water.hindrance}'",
         )
-    if _given(water, "hindrance") and water.hindrance != "none" and water.drag == "none":
-        yield CaseError("water.hindrance", water.hindrance, "has no meaning with drag 'none'")
-    if _given(water, "lift_coefficient") and water.lift != "Wiberg-Smith":
+    if given(water, "hindrance") and water.hindrance != "none" and water.drag == "none":
+        yield CaseError("water.hindrance", water.hindrance, "has no effect with drag 'none'")
+    if given(water, "lift_coefficient") and water.lift != "Wiberg-Smith":
         yield CaseError(
-            "water.lift_coefficient", water.lift_coefficient, f"has no meaning with lift '{water.lift}'"
+            "water.lift_coefficient", water.lift_coefficient, f"has no effect with lift '{water.lift}'"
         )
 
 
-def _boundaries(case: Case, water: Water, keys: Column) -> Iterator[CaseError]:
+def _boundaries(case: "Case", water: WaterSection, keys: ColumnSection) -> Iterator[CaseError]:
     if water.roughness is not None and keys.bed != "rough":
-        yield CaseError("water.roughness", water.roughness, f"has no meaning over a {keys.bed} bed")
+        yield CaseError("water.roughness", water.roughness, f"has no effect over a {keys.bed} bed")
     if keys.mixing == "van Driest" and keys.bed == "moving":
         yield CaseError(
             "water.column.mixing_length", keys.mixing, "needs a wall: water.column.bed 'smooth' or 'rough'"
@@ -101,17 +102,17 @@ def _boundaries(case: Case, water: Water, keys: Column) -> Iterator[CaseError]:
         )
     if keys.side_walls is not None:
         yield from _side_walls(case, keys.side_walls)
-    if _given(keys, "packed") and keys.mixing != "Li-Sawamoto":
+    if given(keys, "packed") and keys.mixing != "Li-Sawamoto":
         yield CaseError(
-            "water.column.packed", keys.packed, f"has no meaning with mixing_length '{keys.mixing}'"
+            "water.column.packed", keys.packed, f"has no effect with mixing_length '{keys.mixing}'"
         )
-    if _given(keys, "kappa") and keys.mixing == "none":
-        yield CaseError("water.column.kappa", keys.kappa, "has no meaning with mixing_length 'none'")
+    if given(keys, "kappa") and keys.mixing == "none":
+        yield CaseError("water.column.kappa", keys.kappa, "has no effect with mixing_length 'none'")
     if keys.fluctuations != "none" and keys.mixing == "none" and keys.pore_eddies == 0.0:
         yield CaseError(
-            "water.column.fluctuations", keys.fluctuations, "has no meaning with mixing_length 'none'"
+            "water.column.fluctuations", keys.fluctuations, "has no effect with mixing_length 'none'"
         )
-    if _given(keys, "side_friction") and keys.side_walls is None:
+    if given(keys, "side_friction") and keys.side_walls is None:
         yield CaseError("water.column.side_friction", keys.side_friction, "needs water.column.side_walls")
     if keys.start == "steady" and water.drag == "none":
         yield CaseError(
@@ -126,27 +127,27 @@ def _boundaries(case: Case, water: Water, keys: Column) -> Iterator[CaseError]:
         )
 
 
-def _side_walls(case: Case, width: float) -> Iterator[CaseError]:
+def _side_walls(case: "Case", width: float) -> Iterator[CaseError]:
     """Side walls have room for a grain, and stand no closer than those of the flume."""
     largest, build = sizes(case)[2], case.build
     if width < largest:
         text = f"must be at least {largest:.4g} m, the largest diameter: no grain fits between the walls"
         yield CaseError("water.column.side_walls", width, text)
         return
-    stands = build.width if isinstance(build, Flume) and build.walls else None
+    stands = build.width if isinstance(build, FlumeSection) and build.walls else None
     if stands is not None and width < (1.0 - AGREE) * stands:
         text = f"must be at least build.width, {stands:g} m, where build.walls = true"
         yield CaseError("water.column.side_walls", width, text)
 
 
-def _driver(case: Case, water: Water, keys: Column) -> Iterator[CaseError]:
+def _driver(case: "Case", water: WaterSection, keys: ColumnSection) -> Iterator[CaseError]:
     """What drives the water is given once, and nothing else is."""
     for key, drive in (("pressure_gradient", "pressure gradient"), ("discharge", "discharge")):
         value = getattr(keys, key)
         if keys.drive == drive and value is None:
             yield CaseError(f"water.column.{key}", None, f"missing; drive '{drive}' needs it")
         if keys.drive != drive and value is not None:
-            yield CaseError(f"water.column.{key}", value, f"has no meaning with drive '{keys.drive}'")
+            yield CaseError(f"water.column.{key}", value, f"has no effect with drive '{keys.drive}'")
     key = "u_star" if water.u_star is not None else "tau_star"
     stress = getattr(water, key)
     level = case.motion.gravity * slope_at_last(case) == 0.0
@@ -161,7 +162,7 @@ def _driver(case: Case, water: Water, keys: Column) -> Iterator[CaseError]:
     if keys.drive == "tau_star" and stress is None:
         yield CaseError("water.tau_star", None, "missing; drive 'tau_star' needs tau_star or u_star")
     elif keys.drive in {"pressure gradient", "discharge"} and stress is not None:
-        yield CaseError(f"water.{key}", stress, f"has no meaning with drive '{keys.drive}'")
+        yield CaseError(f"water.{key}", stress, f"has no effect with drive '{keys.drive}'")
     elif keys.drive == "slope" and stress is not None and level:
         yield CaseError(
             f"water.{key}",
@@ -170,7 +171,7 @@ def _driver(case: Case, water: Water, keys: Column) -> Iterator[CaseError]:
         )
 
 
-def _over_bed(case: Case, water: Water, keys: Column) -> Iterator[CaseError]:
+def _over_bed(case: "Case", water: WaterSection, keys: ColumnSection) -> Iterator[CaseError]:
     """Water that is driven ends above the loose bed it is to move."""
     over, depth = water_over(case), water.depth or 0.0
     driven = keys.drive != "slope" or case.motion.gravity * slope_at_last(case) != 0.0
@@ -186,7 +187,9 @@ def _over_bed(case: Case, water: Water, keys: Column) -> Iterator[CaseError]:
     )
 
 
-def _contradictions(case: Case, water: Water, keys: Column, depth: float) -> Iterator[CaseError]:
+def _contradictions(
+    case: "Case", water: WaterSection, keys: ColumnSection, depth: float
+) -> Iterator[CaseError]:
     """Water that cannot be, in the words of the model."""
     d, cell = case.grains.diameter, keys.cell or CELL * case.grains.diameter
     if not SPARE * depth / cell <= MOST_CELLS:
@@ -211,7 +214,7 @@ def _contradictions(case: Case, water: Water, keys: Column, depth: float) -> Ite
     known = keys.bottom is not None and water.zero is not None and keys.bed == "moving"
     falls = keys.drive == "slope" and case.motion.gravity > 0.0
     estimated = water.depth is not None and depth != water.depth
-    asked, along = u_star_asked(case), case.motion.gravity * math.sin(slope_at_last(case))
+    asked, along = u_star_given(case), case.motion.gravity * math.sin(slope_at_last(case))
     if estimated and falls and along > 0.0 and asked > 0.0:  # the top of a loose bed is known to half a grain
         fits = asked**2 / along
         if water.depth is not None and abs(fits - water.depth) <= AGREE * water.depth:

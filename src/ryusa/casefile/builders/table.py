@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ryusa.casefile.builders import Table
+from ryusa.casefile.builders.schema import TableSection
 from ryusa.errors import CaseError
 from ryusa.model.scene import Bools, Floats
 from ryusa.units import UnitError, quantity
 
 if TYPE_CHECKING:
-    from ryusa.casefile.schema import Case
+    from ryusa.casefile.case import Case
 
 UNITS = {
     **dict.fromkeys(("x", "y", "z", "d"), "m"),
@@ -27,7 +27,7 @@ _YES, _NO = {"1", "true", "yes", "fixed"}, {"0", "false", "no", "free", ""}
 
 
 @dataclass(frozen=True)
-class Grid:
+class GrainTable:
     """Rows of a table in SI."""
 
     name: str
@@ -46,9 +46,9 @@ class Grid:
         return self.columns.get(name, np.zeros(self.n))
 
 
-def table_of(case: "Case") -> Grid | None:
+def table_of(case: "Case") -> GrainTable | None:
     """Read the table that a case names; None for other builders."""
-    if not isinstance(case.build, Table):
+    if not isinstance(case.build, TableSection):
         return None
     folder = (case.path.parent if case.path is not None else Path()).resolve()
     path = (folder / case.build.file).resolve()
@@ -64,7 +64,7 @@ def table_of(case: "Case") -> Grid | None:
 
 
 @lru_cache(maxsize=4)
-def _read(path: Path, name: str, _changed: int, _size: int) -> Grid:
+def _read(path: Path, name: str, _changed: int, _size: int) -> GrainTable:
     try:
         with path.open(newline="", encoding="utf-8-sig") as file:
             rows = [
@@ -106,7 +106,7 @@ def _read(path: Path, name: str, _changed: int, _size: int) -> Grid:
     if all(fixed):
         raise CaseError("build.file", name, "holds no free grain")
     arrays = {one: np.array(values, dtype=np.float64) for one, values in columns.items()}
-    return Grid(
+    return GrainTable(
         name, arrays, np.array(fixed, dtype=np.bool_), tuple(group), tuple(line for line, _ in rows[1:])
     )
 

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from ryusa.casefile.builders import Box
+from ryusa.casefile.builders.schema import BoxSection
 
 SPARE = 2  # wall grains above the lattice
 ROUND_OFF = 1.0e-9  # of a diameter, forgiven before a length takes one more grain
@@ -28,7 +28,7 @@ class BoxPlan:
         return self.n_deep * (self.n_floor + self.n_back + self.n_gate)
 
 
-def box_plan(build: Box, d: float, d_max: float, plane: bool) -> BoxPlan:
+def box_plan(build: BoxSection, d: float, d_max: float, plane: bool) -> BoxPlan:
     """Plan of a box of grains of mean diameter d and largest diameter d_max [m]."""
     pitch = d_max * (1.0 + build.gap)
     wide, deep = build.columns * pitch, build.rows * pitch
@@ -53,7 +53,7 @@ def box_plan(build: Box, d: float, d_max: float, plane: bool) -> BoxPlan:
     )
 
 
-def stands_on_floor(build: Box) -> bool:
+def stands_on_floor(build: BoxSection) -> bool:
     """Whether a gate of grains stands on the floor's grains, for these go on beneath it."""
     return build.floor == "grains" and build.run_out > 0.0
 
@@ -67,7 +67,7 @@ def fitting(length: float, d: float) -> int:
     return math.ceil(length / d - ROUND_OFF)
 
 
-def hole(build: Box, plane: bool) -> float:
+def hole(build: BoxSection, plane: bool) -> float:
     """Largest grain, in mean diameters, that could slip through a floor or wall of grains."""
     if build.floor != "grains" and build.walls != "grains":
         return 0.0

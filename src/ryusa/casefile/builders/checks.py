@@ -1,0 +1,101 @@
+"""Checks of [build] that need more than one key."""
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from ryusa.casefile.builders.box import hole
+from ryusa.casefile.builders.schema import (
+    BoxSection,
+    DropSection,
+    FlumeSection,
+    PackingSection,
+    SaltationSection,
+)
+from ryusa.casefile.builders.values import FEWEST_PERIODS, flume_count, periodic, sizes
+from ryusa.casefile.grains import spread_of
+from ryusa.casefile.motion import may_rotate
+from ryusa.errors import CaseError
+
+if TYPE_CHECKING:
+    from ryusa.casefile.case import Case
+
+
+def check_builder(case: "Case") -> Iterator[CaseError]:
+    """Find keys of the builder that are missing, have no effect or contradict other sections."""
+    build = case.build
+    _, ratio = spread_of(case.grains)
+    if isinstance(build, (DropSection, SaltationSection)) and ratio > 0.0:
+        yield CaseError("grains.spread", ratio, f"must be 0 for builder '{build.kind}'")
+    if isinstance(build, DropSection):
+        if build.height is None and build.speed == 0.0:
+            yield CaseError("build.height", None, "missing; a drop needs height or speed")
+        if build.spin != 0.0 and not may_rotate(case):
+            yield CaseError("build.spin", build.spin, "needs motion.rotation = 'free'")
+        if abs(build.offset) >= case.grains.diameter:
+            yield CaseError(
+                "build.offset", build.offset, "must be smaller than the diameter, or nothing is struck"
+            )
+        if build.offset != 0.0 and build.partner == "plane":
+            yield CaseError("build.offset", build.offset, "has no effect with partner 'plane'")
+    if isinstance(build, (DropSection, SaltationSection)) and not case.motion.plane:
+        lanes = build.copies if isinstance(build, DropSection) else build.starts
+        if lanes > 1:
+            key = "build.copies" if isinstance(build, DropSection) else "build.starts"
+            yield CaseError(key, lanes, "needs motion.plane = true; in three dimensions lanes could meet")
+    if isinstance(build, PackingSection | BoxSection) and case.motion.plane and build.rows > 1:
+        yield CaseError("build.rows", build.rows, "must be 1 in a plane scene")
+    if isinstance(build, PackingSection | BoxSection) and periodic(case)[1] and build.rows < FEWEST_PERIODS:
+        yield CaseError("build.rows", build.rows, f"must be at least {FEWEST_PERIODS} where y is periodic")
+    if isinstance(build, FlumeSection):
+        yield from _flume(case, build)
+    if isinstance(build, BoxSection):
+        yield from _box(case, build)
+
+
+def _flume(case: "Case", build: FlumeSection) -> Iterator[CaseError]:
+    plane, (_, across), (_, _, largest) = case.motion.plane, periodic(case), sizes(case)
+    if plane and build.width is not None:
+        yield CaseError("build.width", build.width, "has no effect in a plane scene; motion.slab_width has")
+    if not plane and build.width is None:
+        yield CaseError("build.width", None, "missing; a flume in three dimensions needs its width")
+    for key, value, least in (
+        ("length", build.length, FEWEST_PERIODS * largest),
+        ("width", build.width, FEWEST_PERIODS * largest if across else largest),
+    ):
+        if value is not None and value < least:
+            yield CaseError(f"build.{key}", value, f"must be at least {least:.4g} m for grains of this size")
+    if flume_count(case) < 1:
+        yield CaseError("build.layers", build.layers, "gives no grain; more layers or a longer flume")
+
+
+def _box(case: "Case", build: BoxSection) -> Iterator[CaseError]:
+    if build.floor == "plane":
+        for key in ("run_out", "drop", "floor_height"):
+            value = getattr(build, key)
+            if value is not None and (key == "drop" or value > 0.0):
+                yield CaseError(
+                    f"build.{key}", value, "has no effect with floor 'plane', which is flat and never ends"
+                )
+    d, d_min, _ = sizes(case)
+    if d_min <= (free := hole(build, case.motion.plane)) * d:
+        yield CaseError(
+            "grains.spread",
+            None,
+            f"the smallest grain, {d_min:.3g} m, slips through fixed grains of mean diameter: through up to "
+            f"{free:.2g} d; take less spread (or floor_height), or build.floor = 'plane', walls = 'planes'",
+        )
+    caught = build.drop is not None or any(plane.normal[2] > 0.0 for plane in case.planes)
+    for number, change in enumerate(case.timeline):
+        ends = build.floor == "grains" and (
+            change.remove == "back" or (change.remove == "gate" and build.run_out == 0.0)
+        )
+        if not caught and (ends or change.remove == "floor"):
+            ways = ["build.run_out makes it longer"] if change.remove == "gate" else []
+            ways += ["build.drop catches them"] if build.floor == "grains" else []
+            ways += ["build.floor = 'plane' never ends"] if ends else []
+            yield CaseError(
+                f"timeline.{number}.remove",
+                change.remove,
+                "lets grains fall out of the world, for no floor is there; "
+                + ", ".join([*ways, "a plane of [[planes]] catches them"]),
+            )

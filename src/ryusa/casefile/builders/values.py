@@ -1,0 +1,120 @@
+"""What a builder will place: sizes and numbers of grains, the fixed bed, the periods."""
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ryusa.casefile.builders.box import box_plan
+from ryusa.casefile.builders.schema import (
+    BoxSection,
+    DropSection,
+    FlumeSection,
+    PackingSection,
+    SaltationSection,
+    TableSection,
+)
+from ryusa.casefile.builders.table import table_of
+from ryusa.casefile.grains import CUT, spread_of
+from ryusa.casefile.motion import slab_width
+
+if TYPE_CHECKING:
+    from ryusa.casefile.case import Case
+
+FEWEST_PERIODS = 3  # largest diameters that a period must hold
+
+
+def sizes(case: "Case") -> tuple[float, float, float]:
+    """Mean diameter as the case states it, smallest of free grains and largest that can occur [m]."""
+    table = table_of(case)
+    if table is not None:
+        every = table.column("d")
+        return case.grains.diameter, float(every[~table.fixed].min()), float(every.max())
+    d, (kind, ratio) = case.grains.diameter, spread_of(case.grains)
+    if kind == "uniform":
+        return d, d * (1.0 - ratio), d * (1.0 + ratio)
+    if kind == "normal":
+        return d, d * max(1.0 - CUT * ratio, 0.05), d * (1.0 + CUT * ratio)
+    width = math.sqrt(math.log1p(ratio * ratio))
+    return (
+        d,
+        d * math.exp(-0.5 * width * width - CUT * width),
+        d * math.exp(-0.5 * width * width + CUT * width),
+    )
+
+
+def counts(case: "Case") -> tuple[int, int, bool]:
+    """Free grains, fixed grains, and whether two free grains can meet."""
+    build = case.build
+    table = table_of(case)
+    if table is not None:
+        n_fixed = int(table.fixed.sum())
+        n_free = table.n - n_fixed
+        places = len(np.unique(table.column("y")[~table.fixed])) if case.motion.plane else 1
+        return n_free, n_fixed, n_free > places
+    if isinstance(build, DropSection):
+        free = 2 if build.partner == "free" else 1
+        return build.copies * free, build.copies * (build.partner == "fixed"), build.partner == "free"
+    if isinstance(build, SaltationSection):
+        return build.starts, build.starts * build.n_bed, False
+    if isinstance(build, BoxSection):
+        d, _, d_max = sizes(case)
+        n_fixed = box_plan(build, d, d_max, case.motion.plane).n_fixed
+        return build.columns * build.rows * build.layers, n_fixed, True
+    bed = bed_counts(case)
+    if isinstance(build, FlumeSection):
+        return flume_count(case), bed[0] * bed[1], True
+    assert isinstance(build, PackingSection)
+    return build.columns * build.rows * build.layers, bed[0] * bed[1], True
+
+
+def bed_counts(case: "Case") -> tuple[int, int]:
+    """Fixed grains of the bed of a packing or a flume along x and y; (0, 0) over a plane."""
+    build = case.build
+    if isinstance(build, FlumeSection):
+        return (0, 0) if build.bed == "plane" else _side_by_side(case, build)
+    if not isinstance(build, PackingSection) or build.bed == "plane":
+        return 0, 0
+    d, _, d_max = sizes(case)
+    pitch = d_max * (1.0 + build.gap)
+    fewest = 3 if build.periodic else 1
+    n_x, n_y = (max(round(count * pitch / d), fewest) for count in (build.columns, build.rows))
+    return n_x, 1 if case.motion.plane else n_y
+
+
+def _side_by_side(case: "Case", build: FlumeSection) -> tuple[int, int]:
+    """Mean grains that fit length and width of a flume."""
+    d = case.grains.diameter
+    return max(int(build.length / d * (1.0 + 1e-9)), 1), max(int((build.width or d) / d * (1.0 + 1e-9)), 1)
+
+
+def flume_count(case: "Case") -> int:
+    """Free grains of a flume."""
+    assert isinstance(case.build, FlumeSection)
+    n_x, n_y = _side_by_side(case, case.build)
+    return round(case.build.layers * n_x * n_y)
+
+
+def bed_area(case: "Case") -> float:
+    """Area of bed under the grains of a packing or a flume, a slab in a plane scene [m2]; nan for others."""
+    build, slab = case.build, slab_width(case)
+    if isinstance(build, FlumeSection):
+        return build.length * (slab if case.motion.plane or build.width is None else build.width)
+    if isinstance(build, PackingSection):
+        pitch = sizes(case)[2] * (1.0 + build.gap)
+        return build.columns * pitch * (slab if case.motion.plane else build.rows * pitch)
+    return math.nan
+
+
+def periodic(case: "Case") -> tuple[bool, bool]:
+    """Whether x and y are periodic."""
+    build = case.build
+    if isinstance(build, FlumeSection):
+        return True, not (case.motion.plane or build.walls)
+    if isinstance(build, PackingSection):
+        return build.periodic, build.periodic and not case.motion.plane
+    if isinstance(build, BoxSection):
+        return False, not case.motion.plane
+    if isinstance(build, TableSection):
+        return case.domain.period_x is not None, case.domain.period_y is not None
+    return isinstance(build, SaltationSection), False

@@ -1,0 +1,66 @@
+"""A case as data: every section of a case file, checked and in SI."""
+
+from pathlib import Path
+from typing import Annotated
+
+from pydantic import Field, PrivateAttr
+
+from ryusa.casefile.builders.schema import BuildSection
+from ryusa.casefile.contact.schema import ContactSection, RollingSection
+from ryusa.casefile.domain import DomainSection, PlaneSection
+from ryusa.casefile.grains import GrainsSection
+from ryusa.casefile.motion import MotionSection
+from ryusa.casefile.quantities import Count
+from ryusa.casefile.record import ChangeSection, RecordSection, StopSection
+from ryusa.casefile.section import Section
+from ryusa.casefile.time import TimeSection
+from ryusa.casefile.water.schema import WaterSection
+
+
+class Case(Section):
+    """A case: what one run is to compute; every value is in SI once read."""
+
+    title: Annotated[str, Field(max_length=200)] = ""
+    """What this case is about."""
+    seed: Annotated[Count, Field(ge=0, lt=2**63)] = 1
+    """Seed of all random numbers of the case."""
+    grains: GrainsSection
+    contact: ContactSection
+    rolling: RollingSection = RollingSection()
+    motion: MotionSection
+    domain: DomainSection = DomainSection()
+    planes: tuple[PlaneSection, ...] = ()
+    """Flat walls."""
+    water: WaterSection | None = None
+    """Water; left out of a dry case."""
+    build: BuildSection
+    """First grains: kind names the builder, its keys follow."""
+    time: TimeSection = TimeSection()
+    stop: StopSection
+    timeline: tuple[ChangeSection, ...] = ()
+    """Changes of the scene during the run, in order of time."""
+    record: RecordSection = RecordSection()
+
+    _text: str = PrivateAttr("")
+    _path: Path | None = PrivateAttr(None)
+    _overrides: dict[str, str] = PrivateAttr(default_factory=lambda: {})
+
+    @property
+    def text(self) -> str:
+        """The case file as the user wrote it, without overrides."""
+        return self._text
+
+    @property
+    def path(self) -> Path | None:
+        """File the case was read from; None for a case given as text."""
+        return self._path
+
+    @property
+    def overrides(self) -> dict[str, str]:
+        """Keys set from outside the file."""
+        return dict(self._overrides)
+
+    @property
+    def name(self) -> str:
+        """Name for folders: that of the file without its ending."""
+        return self._path.stem if self._path is not None else "case"

@@ -1,0 +1,1 @@
+"""[water.column]: a column of water that exchanges momentum with the grains."""

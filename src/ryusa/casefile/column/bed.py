@@ -1,0 +1,64 @@
+"""The loose bed under a column of water: how thick it lies, where it ends, and the depth of water over it."""
+
+import math
+from typing import TYPE_CHECKING
+
+from ryusa.casefile.builders.schema import FlumeSection, PackingSection
+from ryusa.casefile.builders.values import bed_area, counts
+from ryusa.casefile.column.schema import column_keys
+from ryusa.casefile.grains import spread_of
+from ryusa.casefile.motion import slab_width
+
+if TYPE_CHECKING:
+    from ryusa.casefile.case import Case
+
+# concentration of a bed at rest [-]; in a plane scene, of spheres in a slab one diameter wide
+PACKED, PACKED_PLANE = 0.61, 0.55
+
+
+def packed(case: "Case") -> float:
+    """Concentration of the bed at rest [-], at which the mixing length is zero."""
+    keys = column_keys(case)
+    if keys.packed is not None:
+        return keys.packed
+    if not case.motion.plane:
+        return PACKED
+    return PACKED_PLANE * case.grains.diameter / slab_width(case)
+
+
+def bed_thickness(case: "Case") -> float:
+    """Thickness of the free grains settled to the concentration `packed` [m]; nan if unknown.
+
+    A base of fixed grains of random height takes up to half a layer more.
+    """
+    d, (kind, ratio) = case.grains.diameter, spread_of(case.grains)
+    # mean of d**3: uniform sizes have a variance of ratio**2/3, the others of ratio**2
+    cube = d**3 * (1.0 + 3.0 * ratio**2 / (3.0 if kind == "uniform" else 1.0))
+    return counts(case)[0] * case.grains.shape_volume * cube / (bed_area(case) * packed(case))
+
+
+def bed_top(case: "Case") -> float:
+    """Height of the top of the free grains settled to the concentration `packed` [m]; nan if unknown."""
+    build, d = case.build, case.grains.diameter
+    if isinstance(build, FlumeSection):
+        return bed_thickness(case)
+    if not isinstance(build, PackingSection):
+        return math.nan
+    crest = {"plane": 0.0, "flat": d, "random": (1.0 + 0.5 * build.bed_height) * d}[build.bed]
+    return crest + bed_thickness(case)
+
+
+def water_over(case: "Case") -> float:
+    """Depth of the water over the loose bed of a column [m]; negative where the surface lies within the bed.
+
+    It is `water.depth` itself where that is measured from the top of the bed, over a fixed bed, and where the
+    bed is not known.
+    """
+    wet = case.water
+    if wet is None or wet.depth is None:
+        return math.nan
+    over_loose = wet.profile == "column" and column_keys(case).bed == "moving"
+    if wet.zero is None or not over_loose:
+        return wet.depth
+    top = bed_top(case)
+    return wet.depth if math.isnan(top) else wet.zero + wet.depth - top

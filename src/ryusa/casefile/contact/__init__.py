@@ -1,0 +1,1 @@
+"""[contact] and [rolling]: springs, dashpots, slider and rolling resistance of every contact."""

@@ -1,0 +1,43 @@
+"""Checks of [contact] and [rolling] that need more than one key."""
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from ryusa.casefile.motion import may_rotate
+from ryusa.errors import CaseError
+
+if TYPE_CHECKING:
+    from ryusa.casefile.case import Case
+
+
+def check_contact(case: "Case") -> Iterator[CaseError]:
+    """Find friction or damping that is missing, and a Coulomb limit that contradicts the slip rule."""
+    contact = case.contact
+    if contact.friction is None and contact.friction_angle is None:
+        yield CaseError(
+            "contact.friction_angle",
+            None,
+            "missing; give friction_angle or friction: there is no default, because results depend on it",
+        )
+    if contact.restitution is None and contact.damping is None:
+        yield CaseError(
+            "contact.restitution", None, "missing; give restitution, or damping (a constant dashpot)"
+        )
+    if contact.slip == "total" and contact.cap == "spring":
+        yield CaseError("contact.cap", "spring", "must be 'total' (or left out) with slip 'total'")
+
+
+def check_rolling(case: "Case") -> Iterator[CaseError]:
+    """Find keys of rolling resistance that are missing, have no effect or contradict each other."""
+    rolling = case.rolling
+    if rolling.model != "none":
+        if not may_rotate(case):
+            yield CaseError("rolling.model", rolling.model, "needs motion.rotation = 'free'")
+        if rolling.coefficient == 0.0:
+            yield CaseError("rolling.coefficient", None, f"missing or zero; model '{rolling.model}' needs it")
+    elif rolling.coefficient > 0.0:
+        yield CaseError("rolling.coefficient", rolling.coefficient, "has no effect with rolling.model 'none'")
+    if rolling.model == "spring-dashpot-slider" and rolling.arm == "contact width":
+        yield CaseError(
+            "rolling.arm", rolling.arm, "must be 'reduced radius' (or left out) with spring-dashpot-slider"
+        )

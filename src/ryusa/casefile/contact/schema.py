@@ -1,0 +1,107 @@
+"""Keys of [contact] and [rolling]."""
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Discriminator, Field, Tag
+
+from ryusa.casefile.quantities import (
+    Dashpot,
+    Duration,
+    Force,
+    FrictionAngle,
+    FrictionCoefficient,
+    Number,
+    Speed,
+    Stiffness,
+)
+from ryusa.casefile.section import Section
+
+RIVALS = (
+    ("friction_angle", "friction"),
+    ("shear_ratio", "shear_stiffness"),
+    ("restitution", "damping"),
+    ("restitution", "shear_damping"),
+    ("restitution_shear", "damping"),
+    ("restitution_shear", "shear_damping"),
+)
+
+
+class OverlapStiffnessSection(Section):
+    """Stiffness from the largest overlap allowed in an impact."""
+
+    overlap: Annotated[Number, Field(gt=0, le=0.5)]
+    """Largest overlap over d in the impact of one mean grain on a fixed one."""
+    speed: Annotated[Speed, Field(gt=0)]
+    """Impact speed at which this overlap is reached."""
+
+
+class TimeStiffnessSection(Section):
+    """Stiffness from the collision time of Eq. (8)."""
+
+    collision_time: Duration
+    """Duration of an undamped collision of one mean grain with a fixed one, Eq. (8), with added mass."""
+
+
+def _stiffness_kind(value: Any) -> str:
+    """Branch of the union for a value from the file, or for one already read that is written again."""
+    if isinstance(value, TimeStiffnessSection):
+        return "<time>"
+    if isinstance(value, OverlapStiffnessSection):
+        return "<overlap>"
+    if isinstance(value, dict):
+        return "<time>" if "collision_time" in value else "<overlap>"
+    return "<value>"
+
+
+class ContactSection(Section):
+    """Springs, dashpots and slider of every contact, Eqs. (1)-(4)."""
+
+    stiffness: Annotated[
+        Annotated[Annotated[Stiffness, Field(ge=1.0e-9, le=1.0e15)], Tag("<value>")]
+        | Annotated[OverlapStiffnessSection, Tag("<overlap>")]
+        | Annotated[TimeStiffnessSection, Tag("<time>")],
+        Discriminator(_stiffness_kind),
+    ]
+    """Normal stiffness k_n of the linear spring: a value, or { overlap, speed }, or { collision_time }."""
+    shear_ratio: Annotated[Number, Field(ge=0, le=10)] | None = None
+    """k_s over k_n; 2/7 when neither this nor shear_stiffness is given."""
+    shear_stiffness: Annotated[Stiffness, Field(ge=0, le=1.0e15)] | None = None
+    """Tangential stiffness k_s, instead of shear_ratio."""
+    restitution: Annotated[Number, Field(gt=0, le=1)] | None = None
+    """Normal coefficient of restitution e, the same on fixed grains and between free grains."""
+    restitution_shear: Annotated[Number, Field(gt=0, le=1)] | None = None
+    """Tangential coefficient of restitution e_s; equal to restitution when not given."""
+    damping: Annotated[Dashpot, Field(ge=0, le=1.0e12)] | None = None
+    """Constant normal dashpot eta_n, instead of restitution."""
+    shear_damping: Annotated[Dashpot, Field(ge=0, le=1.0e12)] | None = None
+    """Constant tangential dashpot eta_s; zero when only damping is given."""
+    friction_angle: FrictionAngle | None = None
+    """Internal friction angle phi of Eq. (4)."""
+    friction: FrictionCoefficient | None = None
+    """Friction coefficient mu = tan(phi), instead of friction_angle."""
+    cohesion: Annotated[Force, Field(ge=0)] = 0.0
+    """Cohesion c of Eq. (4): the shear force that a contact carries without normal force."""
+    slip: Literal["spring", "spring-drop", "total"] = "spring"
+    """Force that the Coulomb limit caps: "spring" caps the tangential spring and keeps the dashpot,
+    "spring-drop" caps the spring and drops the dashpot while sliding, "total" caps their sum."""
+    cap: Literal["spring", "total"] | None = None
+    """Normal force in the Coulomb limit: that of the spring, e_n, or the total, f_n; "total" when not given
+    with slip = "total", else "spring"."""
+    parting: Literal["no tension", "tension"] = "no tension"
+    """Whether the normal dashpot may pull before the overlap ends."""
+
+
+class RollingSection(Section):
+    """Rolling resistance, Eq. (13) and its variants."""
+
+    model: Literal["none", "printed", "constant", "spring-dashpot-slider"] = "none"
+    """None, Eq. (13) as printed, a constant torque against the relative rotation, or a spring that slides."""
+    arm: Literal["contact width", "reduced radius"] | None = None
+    """Length that the coefficient multiplies; "contact width", as in Eq. (13), when not given. The
+    spring-dashpot-slider always takes "reduced radius"."""
+    coefficient: Annotated[Number, Field(ge=0)] = 0.0
+    """f' of Eq. (13) with the contact width, or mu_r with the reduced radius."""
+    stiffness_factor: Annotated[Number, Field(gt=0)] = 2.25
+    """Rolling stiffness over k_n times lever arm squared; only for spring-dashpot-slider."""
+    damping_ratio: Annotated[Number, Field(ge=0)] = 0.3
+    """Damping ratio of the rolling spring; only for spring-dashpot-slider."""

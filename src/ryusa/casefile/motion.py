@@ -1,0 +1,67 @@
+"""[motion]: rotation, plane or space, slope and gravity."""
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from pydantic import Field
+
+from ryusa.casefile.quantities import Acceleration, PositiveLength, Slope, SlopeAngle
+from ryusa.casefile.section import Section
+from ryusa.errors import CaseError
+
+if TYPE_CHECKING:
+    from ryusa.casefile.case import Case
+
+RIVALS = (("slope", "slope_angle"),)
+
+
+class MotionSection(Section):
+    """How grains may move, and the gravity that acts on them."""
+
+    rotation: Literal["locked", "free"]
+    """Whether grains rotate: "free", or "locked" (translation only)."""
+    plane: bool = True
+    """true: grains move in the x-z plane only; false: in three dimensions."""
+    slope: Slope | None = None
+    """Bed slope as a tangent, positive where the bed falls towards +x; 0 when no slope is given."""
+    slope_angle: SlopeAngle | None = None
+    """Bed slope as an angle, instead of slope."""
+    gravity: Annotated[Acceleration, Field(ge=0, le=1.0e4)] = 9.80665
+    """Acceleration of gravity g."""
+    slab_width: PositiveLength | None = None
+    """Width in y that a plane scene stands for when concentrations and fluxes are computed; the mean diameter
+    when not given."""
+
+
+def slope(case: "Case") -> float:
+    """Bed slope at the start [rad], positive down towards +x."""
+    if case.motion.slope_angle is not None:
+        return case.motion.slope_angle
+    return math.atan(case.motion.slope or 0.0)
+
+
+def slope_at_last(case: "Case") -> float:
+    """Bed slope after the last change of the timeline [rad], positive down towards +x."""
+    for change in reversed(case.timeline):
+        if change.slope is not None or change.slope_angle is not None:
+            return change.slope_angle if change.slope_angle is not None else math.atan(change.slope or 0.0)
+    return slope(case)
+
+
+def may_rotate(case: "Case") -> bool:
+    """Whether grains rotate from the start or after some change of the timeline."""
+    return case.motion.rotation == "free" or any(change.rotation == "free" for change in case.timeline)
+
+
+def slab_width(case: "Case") -> float:
+    """Width that a plane scene stands for [m]."""
+    return case.motion.slab_width or case.grains.diameter
+
+
+def check_motion(case: "Case") -> Iterator[CaseError]:
+    """Find keys of [motion] that have no effect."""
+    if case.motion.slab_width is not None and not case.motion.plane:
+        yield CaseError(
+            "motion.slab_width", case.motion.slab_width, "has no effect unless motion.plane = true"
+        )

@@ -1,0 +1,59 @@
+"""A case with everything that follows from it, as plain data: the content of case.json."""
+
+import math
+from dataclasses import asdict
+from typing import Any
+
+from ryusa.casefile.case import Case
+from ryusa.casefile.column.bed import packed
+from ryusa.casefile.column.schema import CELL, ONLY_IN_A_COLUMN, column_keys
+from ryusa.casefile.derive import Derived, derive
+from ryusa.casefile.motion import slab_width
+from ryusa.casefile.record import events_of
+
+
+def resolved(case: Case, derived: Derived | None = None) -> dict[str, Any]:
+    """Give the case as plain data in SI with what follows filled in; numbers that do not exist are None."""
+    data: dict[str, Any] = case.model_dump(mode="json", by_alias=True)
+    found = derived or derive(case)
+    data["contact"] |= {
+        "stiffness": found.k_n,
+        "shear_stiffness": found.k_s,
+        "shear_ratio": found.k_s / found.k_n,
+    }
+    data["contact"] |= {"friction": found.mu, "friction_angle": math.atan(found.mu)}
+    if not math.isnan(found.e_n):
+        data["contact"] |= {"restitution": found.e_n, "restitution_shear": found.e_s}
+    data["motion"] |= {"slope": math.tan(found.slope), "slope_angle": found.slope}
+    data["motion"]["slab_width"] = slab_width(case)
+    data["record"]["events"] = events_of(case)
+    data["time"] |= {"step": found.dt, "steps_per_contact": found.steps_per_contact}
+    if case.water is not None:
+        data["water"] |= {"u_star": found.u_star, "tau_star": found.tau_star, "roughness": found.k_rough}
+        _resolve_column(case, data["water"])
+    data["derived"] = asdict(found)
+    return _plain(data)
+
+
+def _resolve_column(case: Case, data: dict[str, Any]) -> None:
+    """Fill in the column of water; where there is none, its keys say nothing."""
+    wet = case.water
+    assert wet is not None
+    if wet.profile == "column":
+        keys = column_keys(case)
+        cell = keys.cell or CELL * case.grains.diameter
+        data["column"] = keys.model_dump(mode="json") | {"cell": cell, "mixing_length": keys.mixing}
+        data["column"]["packed"] = packed(case)
+        return
+    for key in ONLY_IN_A_COLUMN:
+        del data[key]
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _plain(one) for key, one in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(one) for one in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value

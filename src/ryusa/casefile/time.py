@@ -1,0 +1,98 @@
+"""[time]: the time step, and what limits it."""
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Annotated, Any
+
+from pydantic import Field
+
+from ryusa.casefile.quantities import Duration, Number
+from ryusa.casefile.rows import ExplainRow, number
+from ryusa.casefile.section import Section
+from ryusa.errors import CaseError
+
+if TYPE_CHECKING:
+    from ryusa.casefile.case import Case
+    from ryusa.casefile.derive import Derived
+
+RIVALS = (("steps_per_contact", "step"),)
+STEPS_PER_CONTACT = 50.0  # when the case gives no step
+COARSEST, FINEST = 5.0, 1.0e4  # steps per contact that a given step must lie between
+FEWEST_STEPS = 10.0  # per contact, below which the restitution is off: the paper
+CLOSE = 0.5  # fraction of the largest stable step beyond which grains in several contacts may be unstable
+
+
+class TimeSection(Section):
+    """The time step."""
+
+    steps_per_contact: Annotated[Number, Field(ge=10, le=10_000)] | None = None
+    """Number of steps in the shortest contact that can occur; 50 when no step is given."""
+    step: Duration | None = None
+    """Time step dt, instead of steps_per_contact."""
+
+
+def check_time(case: "Case", derived: "Derived", data: dict[str, Any]) -> Iterator[CaseError]:
+    """Find a time step beyond the stability limit of a contact, too coarse or needlessly fine."""
+    written = data.get("time", {})
+    if derived.dt > derived.step_limit:
+        key = "steps_per_contact" if case.time.step is None else "step"
+        yield CaseError(f"time.{key}", written.get(key), _unstable(derived, key))
+    if case.time.step is None:
+        return
+    t_col, steps = derived.shortest, derived.steps_per_contact
+    if steps < COARSEST:
+        yield CaseError(
+            "time.step",
+            written.get("step"),
+            f"must be below {t_col / COARSEST:.3g} s, a fifth of the shortest contact, {t_col:.3g} s",
+        )
+    if steps > FINEST:
+        yield CaseError(
+            "time.step",
+            written.get("step"),
+            f"must be above {t_col / FINEST:.3g} s, 1e-4 of the shortest contact, {t_col:.3g} s",
+        )
+
+
+def _unstable(derived: "Derived", key: str) -> str:
+    """Which motion is unstable, and what makes it stable."""
+    tangential = derived.step_limit_shear == derived.step_limit
+    which, softer = ("tangential", "contact.shear_ratio") if tangential else ("normal", "contact.stiffness")
+    shorter = "a larger time.steps_per_contact" if key == "steps_per_contact" else "a smaller time.step"
+    return (
+        f"dt = {derived.dt:.3g} s is above {derived.step_limit:.3g} s, the largest step at which the {which} "
+        f"motion in a contact is stable. Either take {shorter} (a shorter step), or raise the limit with a "
+        f"smaller {softer} (a slower oscillation) or less damping"
+    )
+
+
+def time_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
+    """Durations of contacts and the time step."""
+    rows: list[ExplainRow] = []
+    undamped = "Eq. (8) with added mass, without damping"
+    for name, pair in (("on fixed", derived.fixed), ("between grains", derived.free)):
+        rows += [
+            number("time", f"collision time {name}", pair.t_undamped, "s", undamped),
+            number("time", f"contact time {name}", pair.t_col, "s", f"with damping, {case.contact.parting}"),
+        ]
+    partners = "two free grains" if derived.meet else "a grain on a fixed one"
+    size = ", both of the smallest diameter" if derived.meet else ", of the smallest diameter"
+    partners += size if derived.d_max > derived.d_min else ""
+    few = derived.steps_per_contact < FEWEST_STEPS
+    ratio = "shortest contact over dt"
+    ratio += "; the paper asks for at least ten: with fewer the restitution is not reached" if few else ""
+    step = "time.step"
+    if case.time.step is None:
+        step = f"shortest contact over {derived.steps_per_contact:.4g} (steps per contact)"
+    which = "tangential" if derived.step_limit_shear == derived.step_limit else "normal"
+    close = derived.dt > CLOSE * derived.step_limit
+    limit = (
+        f"stability of the {which} motion in one contact; dt is {derived.dt / derived.step_limit:.2g} of it"
+    )
+    limit += "; a grain in several contacts at once needs a smaller step" if close else ""
+    return [
+        *rows,
+        number("time", "shortest contact", derived.shortest, "s", partners),
+        number("time", "largest stable step", derived.step_limit, "s", limit, "warning" if close else ""),
+        number("time", "dt", derived.dt, "s", step),
+        number("time", "steps per contact", derived.steps_per_contact, "-", ratio, "warning" if few else ""),
+    ]

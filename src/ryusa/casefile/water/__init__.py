@@ -1,0 +1,1 @@
+"""[water]: velocity profile, drag, added mass and torque."""

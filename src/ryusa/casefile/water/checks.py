@@ -1,0 +1,79 @@
+"""Checks of [water] that need more than one key."""
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from ryusa.casefile.builders.values import sizes
+from ryusa.casefile.grains import mass
+from ryusa.casefile.motion import may_rotate
+from ryusa.casefile.section import given
+from ryusa.casefile.water.values import drag_coefficient, terminal_velocity
+from ryusa.errors import CaseError
+from ryusa.laws import drag
+from ryusa.model.column import STIFF
+
+if TYPE_CHECKING:
+    from ryusa.casefile.case import Case
+    from ryusa.casefile.derive import Derived
+
+
+def check_water(case: "Case") -> Iterator[CaseError]:
+    """Find keys of the water that are missing, have no effect or contradict each other."""
+    water = case.water
+    if water is None:
+        return
+    profile = f"profile '{water.profile}'"
+    shear = water.tau_star is not None or water.u_star is not None
+    logarithmic = water.profile.startswith("log")
+    if logarithmic and not shear:
+        yield CaseError("water.tau_star", None, f"missing; {profile} needs tau_star or u_star")
+    if not (logarithmic or water.profile == "column") and shear:
+        key = "tau_star" if water.tau_star is not None else "u_star"
+        yield CaseError(f"water.{key}", getattr(water, key), f"has no effect with {profile}")
+    if water.speed is None and water.profile == "uniform":
+        yield CaseError("water.speed", None, f"missing; {profile} needs it")
+    if water.speed is not None and water.profile != "uniform":
+        yield CaseError("water.speed", water.speed, f"has no effect with {profile}")
+    if water.roughness is not None and water.profile not in {"log rough", "column"}:
+        yield CaseError("water.roughness", water.roughness, f"has no effect with {profile}")
+    if water.tau_star is not None and case.grains.density <= water.density:
+        yield CaseError(
+            "water.tau_star", water.tau_star, "needs grains denser than water; give u_star instead"
+        )
+    if given(water, "drag_coefficient") and water.drag != "constant":
+        yield CaseError(
+            "water.drag_coefficient", water.drag_coefficient, f"has no effect with drag '{water.drag}'"
+        )
+    if water.above != "continue" and water.depth is None and water.profile != "column":
+        yield CaseError("water.depth", None, f"missing; above = '{water.above}' needs it")
+    if water.torque != "none" and not may_rotate(case):
+        yield CaseError("water.torque", water.torque, "needs motion.rotation = 'free'")
+
+
+def check_drag_step(case: "Case", derived: "Derived") -> Iterator[CaseError]:
+    """Find a time step too long for the drag on the smallest grain, alone and at its settling velocity.
+
+    Drag is explicit: with a step above one relaxation time the relative velocity changes its sign, above two
+    it grows without bound. A column exchanges momentum once a step at most, and needs a quarter of that time.
+    """
+    wet, dt = case.water, derived.dt
+    if wet is None or wet.drag == "none":
+        return
+    d, speed = sizes(case)[1], terminal_velocity(case)
+    if not 0.0 < speed < math.inf:
+        speed = 1.0e-3 * wet.viscosity / d  # without weight: slow enough for Stokes' drag
+    c_d = drag_coefficient(case, drag.reynolds(speed, d, wet.viscosity))
+    rate = drag.drag_factor(speed, c_d, wet.density, wet.shape_area, d) / sum(mass(case, d)[:2])
+    column = wet.profile == "column"
+    most = STIFF if column else 1.0
+    if dt * rate > most:
+        key = "steps_per_contact" if case.time.step is None else "step"
+        limit = f"a quarter of that, {most / rate:.3g} s" if column else "that"
+        yield CaseError(
+            f"time.{key}",
+            getattr(case.time, key),
+            f"dt = {dt:.3g} s is too long for the drag, which slows the smallest grain within "
+            f"{1.0 / rate:.3g} s; dt must be below {limit}. Take a shorter step, larger grains or a less "
+            "viscous fluid",
+        )

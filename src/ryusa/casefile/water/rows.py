@@ -1,0 +1,74 @@
+"""Rows of `ryusa check` about the water: friction velocity, Reynolds numbers, settling velocity."""
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ryusa.casefile.builders.schema import DropSection
+from ryusa.casefile.builders.table import table_of
+from ryusa.casefile.column.bed import water_over
+from ryusa.casefile.motion import slope_at_last
+from ryusa.casefile.rows import ExplainRow, Flag, number
+from ryusa.casefile.water.schema import WaterSection
+from ryusa.casefile.water.values import terminal_velocity
+from ryusa.laws import drag, torque, water
+
+if TYPE_CHECKING:
+    from ryusa.casefile.case import Case
+    from ryusa.casefile.derive import Derived
+
+APART = 0.1  # relative difference between two friction velocities that is worth a note
+
+
+def water_rows(case: "Case", derived: "Derived", origin: str) -> list[ExplainRow]:
+    """Friction velocity (and its `origin`), roughness, settling velocity; none in a dry case."""
+    wet = case.water
+    if wet is None:
+        return []
+    rows = _shear(case, derived, wet, origin) if derived.u_star > 0.0 else []
+    settling = terminal_velocity(case)
+    if math.isfinite(settling):
+        re = drag.reynolds(settling, derived.d, wet.viscosity)
+        rows += [
+            number("water", "settling velocity", settling, "m/s", f"of a single mean grain, drag {wet.drag}"),
+            number("water", "grain Re", re, "-", "settling velocity times d/nu"),
+        ]
+    return rows
+
+
+def _shear(case: "Case", derived: "Derived", wet: WaterSection, origin: str) -> list[ExplainRow]:
+    rows = [number("water", "u_star", derived.u_star, "m/s", origin)]
+    if not math.isnan(derived.tau_star):
+        rows.append(number("water", "tau_star", derived.tau_star, "-", "u_star^2/((rho_s/rho_w - 1) g d)"))
+    depth, tilt = water_over(case), slope_at_last(case)
+    if depth > 0.0 and tilt > 0.0:
+        implied = water.u_star_from_slope(depth, tilt, derived.g)
+        differs: Flag = "note" if abs(implied / derived.u_star - 1.0) > APART else ""
+        if implied != derived.u_star:
+            formula = "sqrt(g h sin(slope)), for comparison"
+            rows.append(number("water", "u_star of slope and depth", implied, "m/s", formula, differs))
+    rough = derived.u_star * derived.k_rough / wet.viscosity
+    rows.append(number("water", "roughness Re", rough, "-", "u_star k_s/nu; hydraulically rough above 70"))
+    return rows
+
+
+def rotation_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
+    """Reynolds number of the fastest rotation at the start, where the water exerts a torque."""
+    wet = case.water
+    if wet is None or wet.torque == "none":
+        return []
+    spin, d = abs(case.build.spin) if isinstance(case.build, DropSection) else 0.0, derived.d
+    if (table := table_of(case)) is not None:
+        spins, sizes = np.abs(table.column("wy")), table.column("d")
+        if not case.motion.plane:
+            spins = np.sqrt(spins**2 + table.column("wx") ** 2 + table.column("wz") ** 2)
+        fastest = int(np.argmax(np.where(table.fixed, 0.0, spins * sizes**2)))
+        spin, d = float(spins[fastest]), float(sizes[fastest])
+    if spin == 0.0:
+        return []
+    beyond = wet.torque == "Dennis" and not torque.torque_in_range(spin, d, wet.viscosity)
+    origin = f"d^2 omega/nu at the start, omega = {spin:.4g} rad/s"
+    origin += "; torque Dennis is fitted up to 4000 only" if beyond else ""
+    re_r = torque.reynolds_spin(spin, d, wet.viscosity)
+    return [number("water", "rotational Re", re_r, "-", origin, "warning" if beyond else "")]
