@@ -42,7 +42,6 @@ from ryusa.running.watch import Watch
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
-    from ryusa.casefile.record import ChangeSection
 
 _MOST_STEPS = 2**62
 _BEFORE = "before the first step; no run folder was made"
@@ -90,9 +89,8 @@ def run(
     """
     with listening() as heard:
         from ryusa.build import build, change
-        from ryusa.casefile.derive import derive
+        from ryusa.casefile import derive, resolved
         from ryusa.casefile.estimate import disk_for_events, disk_needed, frames_expected, memory_needed
-        from ryusa.casefile.resolved import resolved
 
         derived = derive(case)
 
@@ -109,7 +107,7 @@ def run(
             settle=case.record.settle,
         )
         changes = [
-            Change(entry.at, partial(_changed, change, case, entry), words)
+            Change(entry.at, partial(change, case, entry=entry), words)
             for entry, words in zip(case.timeline, _words(case), strict=True)
         ]
         refuse_if_too_large(memory_needed(case, derived), derived.n_grain)
@@ -127,15 +125,6 @@ def run(
             _How(threads, progress, overwrite, engine, checkpoint, resume, force),
             about,
         )
-
-
-def _changed(
-    change: "Callable[[Case, Scene, ChangeSection], Scene]",
-    case: "Case",
-    entry: "ChangeSection",
-    scene: Scene,
-) -> Scene:
-    return change(case, scene, entry)
 
 
 def _table(case: "Case") -> Path | None:
