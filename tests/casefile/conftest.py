@@ -4,6 +4,7 @@ from pathlib import Path
 import pytest
 
 from ryusa.casefile import Case, read_text
+from ryusa.cases import FOLDERS, case_files
 
 DRY = """
 [grains]
@@ -39,7 +40,6 @@ def case() -> Callable[..., Case]:
 
 
 @pytest.fixture
-def shipped() -> Path:
-    import ryusa.cases as _cases
-
-    return Path(next(iter(_cases.__path__)))
+def packaged() -> list[Path]:
+    """Every case file of the package: the general ones and those of each study."""
+    return [path for folder in FOLDERS for path in case_files(folder).values()]

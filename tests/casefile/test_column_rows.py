@@ -8,6 +8,7 @@ import pytest
 from ryusa.casefile import Case, derive, explain, read
 from ryusa.casefile.column.rows import regime
 from ryusa.casefile.rows import ExplainRow
+from ryusa.cases import case_path
 from ryusa.errors import CaseError
 from ryusa.laws import transport
 
@@ -101,8 +102,8 @@ def test_where_the_moving_layer_fills_the_depth_it_is_a_debris_flow() -> None:
         ("paper/fig22", "debris flow"),  # friction is that of the timeline's end, not of the settling
     ],
 )
-def test_the_shipped_flows_are_told_by_their_names(shipped, name, words) -> None:
-    assert rows(read(shipped / f"{name}.toml"))["expected motion"].value == words
+def test_the_shipped_flows_are_told_by_their_names(name, words) -> None:
+    assert rows(read(case_path(f"{name}.toml")))["expected motion"].value == words
 
 
 @pytest.mark.parametrize("drag", ["none", "24/Re+0.4"])
@@ -112,8 +113,8 @@ def test_grains_that_float_or_feel_nothing_are_explained(case: CaseOf, drag: str
     assert ("expected motion" in flowing(case, water)) == (drag != "none" and density == "1000 kg/m3")
 
 
-def test_the_shipped_columns_are_explained_without_a_warning(shipped) -> None:
-    settling, bed = (read(shipped / f"{name}.toml") for name in ("settling_column", "movable_bed"))
+def test_the_shipped_columns_are_explained_without_a_warning() -> None:
+    settling, bed = (read(case_path(f"{name}.toml")) for name in ("settling_column", "movable_bed"))
     assert not [row for row in (*explain(settling), *explain(bed)) if row.flag == "warning"]
     assert rows(settling)["hindrance exponent n"].value == pytest.approx(2.97, abs=0.01)
     assert rows(bed)["expected motion"].value == "bed load: rolling and saltation"
@@ -177,8 +178,8 @@ def test_still_water_may_end_in_the_bed(case: CaseOf) -> None:
     ("name", "tau_star", "n"),
     [("bedload_3d", 0.2, 600), ("sheet_flow", 1.0, 650), ("debris_equilibrium", 0.4, 630)],
 )
-def test_shipped_flows_in_three_dimensions_say_what_they_ask_for(shipped, name, tau_star, n) -> None:
-    found = read(shipped / f"{name}.toml")
+def test_shipped_flows_in_three_dimensions_say_what_they_ask_for(name, tau_star, n) -> None:
+    found = read(case_path(f"{name}.toml"))
     assert derive(found).n_grain == n
     assert rows(found)["tau_star"].value == pytest.approx(tau_star, rel=0.06)
     assert rows(found)["overlap/d at rest"].flag != "warning"

@@ -78,8 +78,8 @@ def test_the_published_schema_is_current() -> None:
     assert json.loads(published) == json.loads(json_schema_text()), "run: python docs/generate.py"
 
 
-def test_shipped_cases_use_only_known_keys_and_no_path_of_a_machine(shipped: Path) -> None:
-    for file in shipped.rglob("*.toml"):
+def test_shipped_cases_use_only_known_keys_and_no_path_of_a_machine(packaged: list[Path]) -> None:
+    for file in packaged:
         content = file.read_text(encoding="utf-8")
         assert not re.search(r"[\"'](/|[A-Z]:)", content), file.name
 
@@ -108,8 +108,8 @@ def test_every_way_to_say_a_thing_is_written_again_without_a_warning(
         assert resolved(found)["contact"]["stiffness"] == derive(found).k_n
 
 
-def test_every_shipped_case_is_written_again_without_a_warning(shipped: Path) -> None:
+def test_every_shipped_case_is_written_again_without_a_warning(packaged: list[Path]) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        for path in sorted(shipped.rglob("*.toml")):
+        for path in packaged:
             assert resolved(read(path))["contact"]["stiffness"] > 0.0

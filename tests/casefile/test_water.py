@@ -2,12 +2,12 @@
 
 import math
 from collections.abc import Callable
-from pathlib import Path
 
 import pytest
 
 from ryusa.casefile import Case, derive, read
 from ryusa.casefile.water.values import terminal_velocity, water_speed
+from ryusa.cases import case_path
 from ryusa.errors import CaseError
 
 CaseOf = Callable[..., Case]
@@ -43,8 +43,8 @@ def test_a_step_in_which_drag_turns_a_slip_round_is_refused(case: CaseOf) -> Non
         case(water=thin.replace(f"{0.99 * slowest:g}", f"{1.01 * slowest:g}"), **keys)
 
 
-def test_a_column_wants_a_step_below_a_quarter_of_the_drag_time(shipped: Path) -> None:
-    path = shipped / "settling_column.toml"
+def test_a_column_wants_a_step_below_a_quarter_of_the_drag_time() -> None:
+    path = case_path("settling_column.toml")
     most = 0.25 * 3150.0 * 0.25e-6 / 18.0e3 / derive(read(path)).dt  # viscosity whose drag asks for this dt
     read(path, {"water.viscosity": f"{0.99 * most:g} m2/s"})
     with pytest.raises(CaseError, match="must be below a quarter of that"):
