@@ -23,7 +23,7 @@ HAS_TESTS  := $(VENV)/.has-tests
 HAS_DOCS   := $(VENV)/.has-docs
 
 .DEFAULT_GOAL := help
-.PHONY: help demo demo-run test check lint format types walls unit docs site pictures gallery bench paper paper-quick validate validate-quick faults fuzz soak slow constraints clean
+.PHONY: help demo demo-run test check lint format types walls unit docs site pictures gallery bench paper paper-quick validate validate-quick faults fuzz soak slow golden constraints clean
 
 help: ## list these targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 22
@@ -118,6 +118,9 @@ faults: $(HAS_TESTS) ## the fault campaign: 200 kills, full disks, a thousand da
 
 slow: $(HAS_TESTS) ## tests that take longer than about ten seconds
 	$(BIN)/python -m pytest -q -n $(JOBS) -m slow
+
+golden: $(HAS_TESTS) ## run the recipes in tests/golden, keep the numbers that moved and say which did
+	$(BIN)/python tests/golden/goldens.py
 
 # --------------------------------------------------------------------------------------------------------- other
 
