@@ -85,6 +85,17 @@ def test_every_picture_is_drawn_with_its_numbers_beside_it(folder, tmp_path, wha
         (("measure", "{}", "vibration", "--threshold", "2"), "missing unit"),
         (("measure", "{}", "vibration", "--window", "1 us"), "frames in a window"),
         (("measure", "no-such-run", "saltation"), "no-such-run"),
+        (
+            ("measure", "{}", "saltation", "--layer", "1"),
+            "saltation does not take it; it takes --settle, --rise",
+        ),
+        (("measure", "{}", "profile", "--at", "0 s"), "it takes --settle, --begin, --end, --layer"),
+        (("measure", "{}", "energy", "--begin", "0 s"), "energy takes no options"),
+        (("draw", "{}", "hops", "--lane", "0"), "hops takes no options"),
+        (
+            ("draw", "{}", "grains", "--begin", "0 s"),
+            "grains does not take it; it takes --at, --colour, --lane",
+        ),
     ],
 )
 def test_a_wrong_word_gives_one_message_and_exit_code_two(folder, words, message):
@@ -151,7 +162,7 @@ def heap(tmp_path_factory):
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("vibration",), "0.001 mean diameters, --threshold not given"),
+        (("vibration",), "0.001 mean diameters, the default"),
         (("vibration", "--threshold", "2 um", "--window", "20 ms"), "within 0.02 s"),
         (("surface",), "right slope at t = 0.5 s"),
         (("surface", "--at", "0.35 s"), "stands like a wall"),

@@ -8,6 +8,29 @@ from ryusa.measure._run import Floats, Run
 from ryusa.model import Book
 from ryusa.model.tally import GIFTS, HELD, LOSSES, residual_of
 
+TERMS = {
+    "kinetic": "kinetic, added mass included",
+    "spin": "rotational",
+    "potential": "potential, weight less buoyancy",
+    "spring_n": "normal springs",
+    "spring_s": "tangential springs",
+    "spring_r": "rolling springs",
+    "dash_n": "normal dashpots",
+    "dash_s": "tangential dashpots",
+    "slide": "sliding friction",
+    "roll": "rolling friction",
+    "released_n": "released at parting, normal springs",
+    "released_s": "released at parting, tangential springs",
+    "released_r": "released at parting, rolling springs",
+    "film": "lubrication films",
+    "drag": "drag",
+    "torque": "torque of the water",
+    "lift": "lift and Magnus force",
+    "flow": "pressure, stress, acceleration of the water",
+    "switch": "changes by the timeline",
+    "step": "finite time step",
+}  # key of a term -> what it is, as printed and drawn
+
 
 @dataclass(frozen=True)
 class Energy:

@@ -1,0 +1,151 @@
+"""The measures and the pictures of a run, one line each; from here follow commands, help, docs and names.
+
+A line names its function as "module:function", and `load` imports it, so that the tables cost nothing.
+`ryusa measure` and `ryusa draw`, their `--help`, the tables of the command reference and the functions of
+`ryusa.measure` are made from them: a new measure or picture needs one line here beside its own file.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import import_module
+from typing import Any
+
+OPTION_NAMES = {"t": "--at", "grains": "--grain"}  # where an option is not called as the keyword it sets
+
+
+@dataclass(frozen=True)
+class MeasureEntry:
+    """A measure: what `ryusa measure RUN name` calls.
+
+    Attributes
+    ----------
+    name : word on the command line.
+    function : "module:function"; called with the results of a run and the options. The record it returns has
+        `rows()` for the CSV; it is printed as its `averages` where it has them, else as a table of rows.
+    doc : one line for help and docs.
+    options : keywords of the function that can be given on the command line.
+    settled : whether it covers what follows `record.settle` unless told otherwise; --settle shifts that.
+    printing : options that only change what is printed.
+    """
+
+    name: str
+    function: str
+    doc: str
+    options: tuple[str, ...] = ()
+    settled: bool = False
+    printing: tuple[str, ...] = ()
+
+    @property
+    def given_as(self) -> tuple[str, ...]:
+        """Options of the command line that it takes, such as "--begin"."""
+        settle = ("settle",) if self.settled and "settle" not in self.options else ()
+        return tuple(option(keyword) for keyword in (*settle, *self.options, *self.printing))
+
+
+@dataclass(frozen=True)
+class PictureEntry:
+    """A picture: what `ryusa draw RUN name` calls.
+
+    Attributes
+    ----------
+    name : word on the command line.
+    function : "module:function". With a `measure`, it draws the record which that measure returns; without,
+        it is called with the results of a run and the options, and returns the figure and the rows for CSV.
+    doc : one line for help and docs.
+    options : keywords that can be given on the command line, of the measure where there is one.
+    settled : whether it covers what follows `record.settle` unless told otherwise.
+    measure : name of the measure it draws, or "".
+    """
+
+    name: str
+    function: str
+    doc: str
+    options: tuple[str, ...] = ()
+    settled: bool = False
+    measure: str = ""
+
+    @property
+    def given_as(self) -> tuple[str, ...]:
+        """Options of the command line that it takes, such as "--begin"."""
+        return tuple(option(keyword) for keyword in self.options)
+
+
+WINDOW = ("begin", "end")
+
+MEASURES = (
+    MeasureEntry("saltation", "ryusa.measure.saltation:saltation",
+                 "hops over fixed grains: height, length, speed, contact time",
+                 ("settle", "rise"), settled=True),
+    MeasureEntry("collisions", "ryusa.measure.collisions:collisions",
+                 "single contacts: duration, overlap, restitution",
+                 ("settle", "end"), settled=True),
+    MeasureEntry("spin", "ryusa.measure.spin:spin", "spin about the axis across the flow",
+                 ("settle",), settled=True),
+    MeasureEntry("energy", "ryusa.measure.energy:energy", "every term of the energy account"),
+    MeasureEntry("tracks", "ryusa.measure.tracks:tracks", "paths of the grains in the x-z plane", WINDOW),
+    MeasureEntry("profile", "ryusa.measure.profiles:profiles",
+                 "concentration, velocity, spin and flux over height",
+                 (*WINDOW, "layer"), settled=True),
+    MeasureEntry("paths", "ryusa.measure.paths:paths",
+                 "shape of grain paths: advance, vertical range, reversals",
+                 (*WINDOW, "window"), settled=True),
+    MeasureEntry("rods", "ryusa.measure.rods:rods",
+                 "groups of moving grains that stay in contact",
+                 (*WINDOW, "window"), settled=True),
+    MeasureEntry("water", "ryusa.measure.water:water",
+                 "water over height, and its shear stress at the bed",
+                 WINDOW, settled=True),
+    MeasureEntry("transport", "ryusa.measure.transport:transport",
+                 "sediment transport rate and the layer that carries it", WINDOW, settled=True),
+    MeasureEntry("entrainment", "ryusa.measure.entrainment:entrainment",
+                 "grains that start and stop to move, per area and time", WINDOW, settled=True),
+    MeasureEntry("stress", "ryusa.measure.transport:kinetic_stress",
+                 "granular temperature and kinetic stress over height", (*WINDOW, "layer"), settled=True),
+    MeasureEntry("vibration", "ryusa.measure.vibration:vibration",
+                 "grains that do not come to rest",
+                 (*WINDOW, "window"), printing=("threshold",)),
+    MeasureEntry("surface", "ryusa.measure.repose:surface",
+                 "free surface of a heap: slope, height, run-out", ("t", "side")),
+)  # fmt: skip
+
+PICTURES = (
+    PictureEntry("grains", "ryusa.figures.runs:grains", "grains at one moment, to scale",
+                 ("t", "colour", "lane")),
+    PictureEntry("tracks", "ryusa.figures.runs:tracks", "paths of grains over the bed, to scale",
+                 ("grains", *WINDOW, "length", "exaggeration"), settled=True),
+    PictureEntry("spin", "ryusa.figures.runs:spin", "spin over distance", ("grains", "length")),
+    PictureEntry("energy", "ryusa.figures.runs:energy", "the energy account over time"),
+    PictureEntry("contacts", "ryusa.figures.runs:contacts", "distribution of contact times", settled=True),
+    PictureEntry("hops", "ryusa.figures.runs:hops", "distribution of jump heights and lengths", settled=True),
+    PictureEntry("profile", "ryusa.figures.runs:profile", "concentration and grain speed over height",
+                 WINDOW, settled=True),
+    PictureEntry("water", "ryusa.figures.water:water",
+                 "velocity, concentration and shear stress over height",
+                 WINDOW, settled=True, measure="water"),
+    PictureEntry("transport", "ryusa.figures.runs:transport",
+                 "transport rate over time, and beside bed-load formulae", WINDOW, settled=True),
+    PictureEntry("surface", "ryusa.figures.runs:surface", "a heap with its free surface and fitted slope",
+                 ("t", "side", "lane")),
+    PictureEntry("vibration", "ryusa.figures.runs:vibration", "grains that do not come to rest",
+                 ("grains", *WINDOW)),
+)  # fmt: skip
+
+
+def option(keyword: str) -> str:
+    """The option of the command line that sets a keyword.
+
+    >>> option("begin"), option("t")
+    ('--begin', '--at')
+    """
+    return OPTION_NAMES.get(keyword, f"--{keyword}")
+
+
+def load(function: str) -> Callable[..., Any]:
+    """The function that a line names.
+
+    >>> load("math:sqrt")(4.0)
+    2.0
+    """
+    module, _, name = function.partition(":")
+    found: Callable[..., Any] = getattr(import_module(module), name)
+    return found

@@ -1,0 +1,190 @@
+"""What `ryusa measure` prints: averages with their errors, or a table of the rows that --csv writes."""
+
+import math
+import sys
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+from ryusa.errors import ResultsError
+from ryusa.measure.energy import TERMS
+
+if TYPE_CHECKING:
+    from ryusa.measure import Averages, Energy, HeapSurface, KineticStress, Saltation, Tracks, Vibration
+    from ryusa.results import Results
+
+DIAMETERS = 1.0e-3  # default threshold, in mean diameters
+WIDTH = 120  # columns where the output is no terminal
+LINES = 12  # windows printed, and rows of a table that has no form of its own
+
+
+def print_found(name: str, found: Any, results: "Results", **printing: Any) -> None:
+    """Print what a measure found: in a form of its own, as averages, or as the first rows of its table."""
+    if name == "saltation":
+        _need_hops(found, results)
+    if name in _OWN_FORM:
+        _OWN_FORM[name](found, **printing)
+    elif hasattr(found, "averages"):
+        _print_averages(found.averages)
+    else:
+        _print_rows(found.rows())
+
+
+def _need_hops(found: "Saltation", results: "Results") -> None:
+    if not len(found.hops):
+        since = found.averages.items[0].window[0]
+        raise ResultsError(f"{results.folder}: does not hold hops over fixed grains after t = {since:g} s")
+
+
+def _print_averages(averages: "Averages") -> None:
+    """Print each average with standard error, number of samples, window and steadiness; then the notes."""
+    names = ("quantity", "value", "± s.e.", "unit", "n", "window \\[s]", "steady?")
+    table = _table(names, left=("quantity", "unit", "steady?"))
+    short = False
+    for one in averages.items:
+        if one.n == 0:
+            table.add_row(one.name, "-", "-", one.unit, "0", "-", "-")
+            continue
+        steady = "-" if math.isnan(one.drift) else "yes" if one.steady else f"no, drift {one.drift:.1f} s.e."
+        mark = "" if one.plateau or math.isnan(one.error) else "*"
+        short = short or bool(mark)
+        window = f"{one.window[0]:.3g} .. {one.window[1]:.4g}"
+        error = f"{one.error:.2g}{mark}"
+        table.add_row(one.name, f"{one.value:.5g}", error, one.unit, str(one.n), window, steady)
+    warning = ("* the record is too short for this error to have converged: it may be larger",) * short
+    _show(table, *warning, *averages.notes)
+
+
+def _print_rows(rows: list[dict[str, object]]) -> None:
+    """Print the first rows of a table; numbers by four digits."""
+    table = _table(tuple(rows[0]) if rows else ("no rows",))
+    for row in rows[:LINES]:
+        table.add_row(*(f"{value:.4g}" if isinstance(value, float) else str(value) for value in row.values()))
+    more = (f"the first {LINES} of {len(rows)} rows; --csv FILE writes all",) * (len(rows) > LINES)
+    _show(table, *more)
+
+
+def _print_tracks(found: "Tracks") -> None:
+    print(f"{len(found.t)} frames of {len(found.grains)} grains; --csv FILE writes them")
+
+
+def _print_energy(found: "Energy") -> None:
+    """Print every term of the account at the end of the run, by its name and by its column in the CSV."""
+    table = _table(("term at the end of the run", "energy [J]", "column of the CSV"))
+    table.columns[0].justify = table.columns[2].justify = "left"
+
+    def add(group: str, key: str, terms: Mapping[str, Any]) -> None:
+        for name, values in terms.items():
+            value = f"{values[-1]:.6g}" if len(values) else "-"
+            table.add_row(f"{group}: {TERMS[name]}", value, f"{key}_{name}_J")
+
+    add("held", "held", found.held)
+    add("lost", "lost", found.lost)
+    add("supplied", "given", found.given)
+    rest = f"{found.imbalance[-1]:.3g}" if len(found.imbalance) else "-"
+    table.add_row("imbalance: held - start - supplied + lost", rest, "imbalance_J")
+    _show(
+        table,
+        f"largest imbalance over largest term: {found.residual:.2g}",
+        "docs/glossary.md explains the terms",
+    )
+
+
+def _print_vibration(found: "Vibration", threshold: float | None = None) -> None:
+    """Print the share of grains that vibrate over time, and when the last one rests; threshold in m."""
+    from ryusa.measure import rest_time, trembling_share
+    from ryusa.units import format_quantity
+
+    limit = found.diameters(DIAMETERS) if threshold is None else threshold
+    given = f"{limit / found.d_mean:.3g} mean diameters" + ("" if threshold else ", the default")
+    table = _table(
+        ("end of window [s]", "share that vibrates", "largest range of z [µm]", "largest change of z [µm]")
+    )
+    share = trembling_share(found, limit)
+    n = len(found.end)
+    for k in sorted({round((j + 1) * n / min(n, LINES)) - 1 for j in range(min(n, LINES))}):
+        spans = found.span_z[k].max() * 1e6, abs(found.net[k]).max() * 1e6
+        table.add_row(f"{found.end[k]:.4g}", f"{share[k]:.3g}", *(f"{one:.4g}" for one in spans))
+    rest = rest_time(found, limit)
+    _show(
+        table,
+        f"a grain vibrates if its height varies by more than {format_quantity(limit, 'um')} ({given}) "
+        f"within {found.window:g} s",
+        f"{len(found.grains)} grains, at least {int(found.n_frame.min())} frames in a window",
+        f"at rest from t = {rest:.4g} s on" if math.isfinite(rest) else "not at rest in the last window",
+    )
+
+
+def _print_stress(found: "KineticStress") -> None:
+    """Print granular temperature and the stress of the grains' motion, from the highest layer down."""
+    names = ("z/d", "phi", "temperature [m2/s2]", "xx [Pa]", "yy [Pa]", "zz [Pa]", "xz [Pa]")
+    table, one = _table(names), found.profiles
+    columns = (found.temperature, found.xx, found.yy, found.zz, found.xz)
+    for k in reversed(range(len(one.z))):
+        if one.phi.value[k] > 0.0:
+            cells = (one.z[k] / one.d, one.phi.value[k], *(layers.value[k] for layers in columns))
+            table.add_row(*(f"{cell:.3g}" for cell in cells))
+    _show(
+        table,
+        "kinetic stress rho_s phi <v'v'>, over height above the crest of the bed",
+        "the CSV has the standard errors",
+    )
+
+
+def _print_surface(found: "HeapSurface") -> None:
+    """Print slope, height and run-out of a heap, angles in degrees."""
+    table = _table(("quantity", "value", "unit"), left=("quantity", "unit"))
+    low, high = found.fit
+    table.add_row(f"slope, fitted from {low:g} to {high:g} of the height", _degrees(found.angle), "deg")
+    table.add_row("± s.e. of the fit", _degrees(found.error), "deg")
+    for name, angle in found.angles.items():
+        table.add_row(f"slope, {name}", _degrees(angle), "deg")
+    table.add_row("range of these slopes", _degrees(found.spread), "deg")
+    rows = (("crest above the floor", found.crest - found.floor), ("toe at x", found.toe))
+    for name, value in (*rows, ("run-out", found.run_out)):
+        table.add_row(name, f"{100.0 * value:.4g}", "cm")
+    table.add_row("largest speed", f"{found.speed:.3g}", "m/s")
+    table.add_row("largest surface speed by spin, |omega| d/2", f"{found.surface_speed:.3g}", "m/s")
+    state = (
+        "at rest: no grain exceeds"
+        if found.at_rest
+        else f"in motion: {found.moving:.3g} of the grains exceed"
+    )
+    _show(
+        table,
+        f"{found.side} slope at t = {found.t:.4g} s, fitted to {int(found.inside.sum())} of {len(found.x)} "
+        "bins",
+        f"{state} {found.still:.3g} m/s (speed plus |omega| d/2)",
+        f"{len(found.grains)} grains in the heap, {found.away} away from it",
+        *(f"warning: {flag}" for flag in found.flags),
+    )
+
+
+def _degrees(angle: float) -> str:
+    return f"{math.degrees(angle):.1f}" if math.isfinite(angle) else "-"
+
+
+def _table(names: tuple[str, ...], left: tuple[str, ...] = ("unit",)) -> Table:
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for name in names:
+        table.add_column(name, justify="left" if name in left else "right")
+    return table
+
+
+def _show(table: Table, *lines: str) -> None:
+    console = Console(width=None if sys.stdout.isatty() else WIDTH)
+    console.print(table)
+    for line in lines:
+        console.print(line, highlight=False, soft_wrap=True)
+
+
+_OWN_FORM: dict[str, Callable[..., None]] = {
+    "energy": _print_energy,
+    "stress": _print_stress,
+    "surface": _print_surface,
+    "tracks": _print_tracks,
+    "vibration": _print_vibration,
+}
