@@ -156,6 +156,15 @@ def _escape(text: str) -> str:
 CATALOGUE = {"measure": MEASURES, "draw": PICTURES}
 
 
+def measures_table() -> str:
+    """Every measure with what it gives, and its function."""
+    rows = [
+        f"| `{one.name}` | {one.doc} | `ryusa.measure.{one.function.partition(':')[2]}(run)` |"
+        for one in MEASURES
+    ]
+    return "\n".join(["| `WHAT` | what it gives | Python |", "|---|---|---|", *rows]) + "\n"
+
+
 def command_reference() -> str:
     """Every command of the command line with its arguments and options."""
     lines: list[str] = []
@@ -227,6 +236,7 @@ def pages() -> dict[Path, str]:
     return {
         HERE / "case-file.md": _between_markers(HERE / "case-file.md", case_reference()),
         HERE / "commands.md": _between_markers(HERE / "commands.md", command_reference()),
+        HERE / "measuring.md": _between_markers(HERE / "measuring.md", measures_table()),
         HERE / "validation.md": _between_markers(HERE / "validation.md", validation_table()),
         HERE / "case.schema.json": json_schema_text(),
     }
