@@ -186,8 +186,8 @@ def test_water_begins_at_the_floor(floor: str, zero: float) -> None:
     [
         ("rows = 2", {}, "build.rows", "must be 1 in a plane scene"),
         ("rows = 2", {"motion__plane": "false"}, "build.rows", "at least 3"),
-        ("floor = 'plane', run_out = '1 cm'", {}, "build.run_out", "never ends"),
-        ("floor = 'plane', drop = '1 cm'", {}, "build.drop", "never ends"),
+        ("floor = 'plane', run_out = '1 cm'", {}, "build.run_out", "unbounded"),
+        ("floor = 'plane', drop = '1 cm'", {}, "build.drop", "unbounded"),
         ("floor = 'plane', floor_height = 0.2", {}, "build.floor_height", "flat"),
         ("", {"timeline": GATE}, "timeline.0.remove", "build.drop catches them"),
         (

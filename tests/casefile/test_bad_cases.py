@@ -183,7 +183,7 @@ def test_a_missing_file_a_folder_and_a_binary_file_are_told(tmp_path: Path) -> N
     with pytest.raises(CaseError, match="is a folder"):
         read(tmp_path)
     (tmp_path / "bytes.toml").write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(CaseError, match="no UTF-8"):
+    with pytest.raises(CaseError, match="not UTF-8"):
         read(tmp_path / "bytes.toml")
     with pytest.raises(CaseError, match="cannot be read"):
         read("a\0b.toml")

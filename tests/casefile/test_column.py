@@ -109,7 +109,7 @@ def test_richardson_and_zakis_exponent_comes_from_a_lone_grain(case: CaseOf) -> 
 @pytest.mark.parametrize(
     ("keys", "column", "others", "key", "part"),
     [
-        ("above = 'hold'", "", {}, "water.above", "ends at its surface"),
+        ("above = 'hold'", "", {}, "water.above", "above the surface of a column"),
         ("depth = '-2 cm'", "", {}, "water.depth", "greater than 0"),
         ("speed = '1 m/s'", "", {}, "water.speed", "no effect with profile 'column'"),
         ("roughness = '1 mm'", "", {}, "water.roughness", "over a moving bed"),
@@ -143,7 +143,7 @@ def test_richardson_and_zakis_exponent_comes_from_a_lone_grain(case: CaseOf) -> 
         ("", "side_friction = 'Blasius'", {}, "water.column.side_friction", "side_walls"),
         ("", "cel = '1 mm'", {}, "water.column.cel", "Did you mean 'water.column.cell'"),
         ("", "cell = '1 nm'", {}, "water.column.cell", "more than 20,000 cells"),
-        ("", "cell = '0.1 mm', bed = 'rough'", {}, "water.column.cell", "a 15th of the roughness"),
+        ("", "cell = '0.1 mm', bed = 'rough'", {}, "water.column.cell", "1/15 of the roughness"),
         ("", "cell = '2 cm'", {}, "water.column.cell", "at most half of water.depth"),
         ("", "packed = 0.8", SPACE, "water.column.packed", "at most 0.7405"),
         ("", "side_walls = '1 mm'", {}, "water.column.side_walls", "at least 0.002 m, the largest diameter"),
@@ -156,14 +156,20 @@ def test_richardson_and_zakis_exponent_comes_from_a_lone_grain(case: CaseOf) -> 
             "water.column.pressure_gradient",
             "nothing drives",
         ),
-        ("zero = '-2 cm'", "", {}, "water.depth", "ends in the bed"),
+        ("zero = '-2 cm'", "", {}, "water.depth", "puts the surface into the bed"),
         ("zero = '0 cm', depth = '0.9 cm'", "", NARROW, "water.depth", "must be above 0.009364 m"),
         ("", "interval = 0", {}, "water.column.interval", "at least 1"),
         ("zero = '1 cm'", "bottom = '2 cm'", {}, "water.column.bottom", "must be at most water.zero, 0.01 m"),
         ("zero = '1 cm'", "bottom = '0 cm', bed = 'rough'", {}, "water.column.bottom", "a fixed bed"),
         ("", "", {"build": "{ kind = 'drop', height = '1 cm' }"}, "water.profile", "periodic in x"),
         ("", "", {"build": "{ kind = 'box', columns = 3, layers = 2 }"}, "water.profile", "periodic in x"),
-        ("", "", {"build": PACKING.replace("}", ", periodic = false }")}, "water.profile", "closes it"),
+        (
+            "",
+            "",
+            {"build": PACKING.replace("}", ", periodic = false }")},
+            "water.profile",
+            "give build.periodic = true",
+        ),
     ],
 )
 def test_a_column_that_cannot_be_is_refused(

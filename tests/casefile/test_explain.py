@@ -25,20 +25,20 @@ def test_every_number_the_issue_asks_for_is_explained(case: CaseOf) -> None:
         "added mass",
         "normal stiffness k_n",
         "tangential stiffness k_s",
-        "eta_n on fixed",
-        "eta_n between grains",
-        "restitution e on fixed",
-        "restitution e between grains",
-        "collision time on fixed",
-        "contact time between grains",
+        "normal dashpot eta_n on a fixed grain",
+        "normal dashpot eta_n between free grains",
+        "restitution e on a fixed grain",
+        "restitution e between free grains",
+        "collision time on a fixed grain",
+        "contact time between free grains",
         "dt",
         "steps per contact",
         "largest overlap/d",
-        "u t/d",
+        "travel per contact u t/d",
         "u_star",
         "tau_star",
         "grain Re",
-        "tangential half period on fixed",
+        "tangential half period on a fixed grain",
         "disk for frames",
         "memory",
         "steps",
@@ -66,16 +66,17 @@ def test_the_stable_band_has_a_verdict(case: CaseOf, stiffness: str, word: str, 
 
 def test_a_grain_that_skims_the_crests_is_warned_of(case: CaseOf) -> None:
     assert any(
-        text.startswith("u t/d") for text in warnings(case(**SALTATION, **{"contact.stiffness": "1 N/cm"}))
+        text.startswith("travel per contact u t/d")
+        for text in warnings(case(**SALTATION, **{"contact.stiffness": "1 N/cm"}))
     )
     assert not warnings(case(**SALTATION))
 
 
 def test_tangential_restitution_is_said_to_be_undefined_where_periods_differ(case: CaseOf) -> None:
-    soft = rows(case(**{"contact.shear_ratio": "0.075"}))["tangential half period on fixed"]
-    assert "not defined" in soft.origin
-    matched = rows(case(**{"motion.rotation": "free"}))["tangential half period on fixed"]
-    assert "not defined" not in matched.origin
+    soft = rows(case(**{"contact.shear_ratio": "0.075"}))["tangential half period on a fixed grain"]
+    assert "too different" in soft.origin
+    matched = rows(case(**{"motion.rotation": "free"}))["tangential half period on a fixed grain"]
+    assert "too different" not in matched.origin
     assert "1 times the collision time" in matched.origin
 
 

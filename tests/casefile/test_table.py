@@ -52,7 +52,7 @@ def test_a_table_gives_grains_in_si_and_groups_stand_together(text: str, tmp_pat
         ("", "at least one grain"),
     ],
 )
-def test_a_bad_table_is_told_with_its_line(text: str, tmp_path: Path, table: str, part: str) -> None:
+def test_a_bad_table_is_reported_with_its_line(text: str, tmp_path: Path, table: str, part: str) -> None:
     with pytest.raises(CaseError, match=r"build\.file") as caught:
         build(read(write(tmp_path, text, table)))
     assert part in str(caught.value)

@@ -44,7 +44,7 @@ def drop(here: Path, ryusa_: Any) -> str:
 
 
 def test_a_newcomer_gets_from_new_to_a_run_folder(ryusa_: Any, drop: str, here: Path) -> None:
-    assert "contact time on fixed" in ryusa_("check", drop).out
+    assert "contact time on a fixed grain" in ryusa_("check", drop).out
     done = ryusa_("run", drop, "--set", "stop.time=20 ms", "--seed", "5")
     assert done.code == 0, done.err
     assert "grains.vtkhdf" in done.out

@@ -76,6 +76,16 @@ DRAGS = {
     "Ferguson-Church sand": Drag.FERGUSON_CHURCH_SAND,
 }
 _OF_A_COLUMN = ("buoyancy", "hindrance", "lift", "magnus")
+_WATER_DEFAULTS = {  # key of [water]: how `ryusa check` calls it, and its unit
+    "drag": ("drag law", ""),
+    "viscosity": ("kinematic viscosity", " m2/s"),
+    "above": ("speed above the depth", ""),
+    "torque": ("torque of the water", ""),
+    "buoyancy": ("buoyancy", ""),
+    "hindrance": ("hindrance", ""),
+    "lift": ("lift", ""),
+    "magnus": ("Magnus lift", ""),
+}
 TORQUES = {"none": WaterTorque.NONE, "Stokes": WaterTorque.STOKES, "Dennis": WaterTorque.DENNIS}
 REBOUNDS = {"dry": Rebound.DRY, "exponential": Rebound.EXPONENTIAL, "Davis": Rebound.DAVIS}
 BUOYANCIES = {"weight": Buoyancy.WEIGHT, "stress": Buoyancy.STRESS, "pressure": Buoyancy.PRESSURE}
@@ -236,18 +246,18 @@ def notes_of(case: Case) -> tuple[str, ...]:
         notes.append("k_s = 2/7 k_n (contact.shear_ratio not given)")
     if contact.restitution is not None and contact.restitution_shear is None:
         notes.append("tangential restitution = normal restitution (contact.restitution_shear not given)")
-    for key, meaning in (("slip", "the cap holds"), ("parting", "parting with")):
+    for key, what in (("slip", "slip rule"), ("parting", "parting")):
         if key not in contact.model_fields_set:
-            notes.append(f"{meaning} {getattr(contact, key)} (contact.{key} not given)")
+            notes.append(f"{what}: {getattr(contact, key)} (contact.{key} not given)")
     if water is not None:
         bed = column_keys(case).bed if water.profile == "column" else ""
         if water.roughness is None and (water.profile == "log rough" or bed == "rough"):
             notes.append("roughness k_s of Eq. (9) = mean d (water.roughness not given)")
         if water.depth is None:
-            notes.append("water without a surface (water.depth not given)")
+            notes.append("water of unlimited depth (water.depth not given)")
         notes += [
-            f"{key} {getattr(water, key)} (water.{key} not given)"
-            for key in ("drag", "viscosity", "above", "torque", *_OF_A_COLUMN)
+            f"{what}: {getattr(water, key)}{unit} (water.{key} not given)"
+            for key, (what, unit) in _WATER_DEFAULTS.items()
             if key not in water.model_fields_set
             and not (key == "torque" and case.motion.rotation == "locked")
             and not (key == "above" and bed)
@@ -265,12 +275,12 @@ def notes_of(case: Case) -> tuple[str, ...]:
 def _column_notes(case: Case) -> list[str]:
     keys = column_keys(case)
     notes = [
-        f"{words} {getattr(keys, key)} (water.column.{key} not given)"
-        for key, words in (("bed", "bed of the water"), ("drive", "driver of the water"))
+        f"{what}: {getattr(keys, key)} (water.column.{key} not given)"
+        for key, what in (("bed", "lower boundary of the water"), ("drive", "driver of the water"))
         if key not in keys.model_fields_set
     ]
     if keys.mixing_length is None:
-        notes.append(f"mixing length {keys.mixing} (water.column.mixing_length not given)")
+        notes.append(f"mixing length: {keys.mixing} (water.column.mixing_length not given)")
     return notes
 
 

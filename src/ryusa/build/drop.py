@@ -31,7 +31,7 @@ def drop(case: Case, _derived: Derived) -> Layout:
     struck = still(copies)
     struck[:, 1], struck[:, 2] = x[:, 1], d / 2.0
     same, rest = np.full(copies, d), still(copies)
-    notes = (f"first gap {GAP:g} d (build.height not given)",) if keys.height is None else ()
+    notes = (f"gap at the start {GAP:g} d (build.height not given)",) if keys.height is None else ()
     if keys.partner == "plane":
         floor = (Wall("floor", (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)),)
         return Layout(d=same, x=x, v=v, omega=omega, walls=floor, notes=notes)

@@ -69,7 +69,7 @@ def bed_level(case: Case, base: float, crest: float | None) -> tuple[float, str]
             return base, "at the floor"
         return crest - 0.25 * case.grains.diameter, "d/4 below the mean crest of the fixed bed"
     level = base + bed_thickness(case)
-    return level, f"where the grains end once they lie as dense as {packed(case):g}"
+    return level, f"at the top of the grains settled to the concentration {packed(case):g}"
 
 
 def _base(case: Case, keys: FlumeSection, rng: np.random.Generator, wide: float) -> Floats:

@@ -31,7 +31,7 @@ _MESSAGES = {
 }
 _LINEAR = (
     "unknown key; the only contact law is a linear spring and dashpot so far: give contact.stiffness "
-    "(a value, { overlap, speed } or { collision_time }), see 'Contact' in docs/theory.md"
+    "(a value, { overlap, speed } or { collision_time }), see 'Normal force' in docs/theory.md"
 )
 _OTHER_CONTACT_LAWS = {
     *("young", "youngs_modulus", "young_modulus", "elastic_modulus", "shear_modulus"),

@@ -45,7 +45,7 @@ def _set(data: dict[str, Any], key: str, value: Any) -> None:
         elif isinstance(here, list) and part.isdecimal() and int(part) < len(here):
             here = here[int(part)]
         else:
-            raise CaseError(f"--set {key}", None, f"'{part}' is no table in this case")
+            raise CaseError(f"--set {key}", None, f"'{part}' is not a table in this case")
     last = parts[-1]
     if isinstance(here, list) and last.isdecimal() and int(last) < len(here):
         here[int(last)] = value
@@ -56,4 +56,4 @@ def _set(data: dict[str, Any], key: str, value: Any) -> None:
                     here.pop(rival, None)
         here[last] = value
     else:
-        raise CaseError(f"--set {key}", None, f"'{parts[-2]}' is no table in this case")
+        raise CaseError(f"--set {key}", None, f"'{parts[-2]}' is not a table in this case")

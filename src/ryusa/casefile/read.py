@@ -1,4 +1,4 @@
-"""TOML to a checked `Case`: the only door for case files."""
+"""TOML to a checked `Case`: every case file is read here."""
 
 import json
 from collections.abc import Mapping
@@ -13,7 +13,7 @@ from ryusa.casefile.faults import faults
 from ryusa.casefile.overrides import parsed, with_overrides
 from ryusa.errors import CaseError
 
-LARGEST_FILE = 4 << 20  # bytes; a case file is a page of text, grains in number belong in a CSV table
+LARGEST_FILE = 4 << 20  # bytes; a table of many grains belongs in a CSV file
 
 
 def read(path: str | Path, overrides: Mapping[str, str] | None = None) -> Case:
@@ -23,25 +23,27 @@ def read(path: str | Path, overrides: Mapping[str, str] | None = None) -> Case:
     ----------
     path : a TOML file.
     overrides : values set from outside, such as `{"contact.stiffness": "10 N/cm"}`; TOML or plain text.
-        An override displaces its rival (`motion.slope_angle` displaces `motion.slope`).
+        An override removes the other key for the same thing (`motion.slope_angle` removes `motion.slope`).
 
     Raises
     ------
-    CaseError : the file is missing or unreadable, or holds faults; all faults found are told at once.
+    CaseError : the file is missing or unreadable, or holds faults; all faults found are reported together.
     """
     path = Path(path)
     try:
         if path.is_dir():
             raise CaseError(str(path), None, "is a folder; a case is a TOML file")
         if path.stat().st_size > LARGEST_FILE:
-            raise CaseError(str(path), None, f"is larger than {LARGEST_FILE >> 20} MiB; this is no case file")
+            raise CaseError(
+                str(path), None, f"is larger than {LARGEST_FILE >> 20} MiB, the limit for a case file"
+            )
         text = path.read_bytes().decode("utf-8")
     except FileNotFoundError:
         raise CaseError(
             str(path), None, "file not found; 'ryusa new saltation' writes a case to start from"
         ) from None
     except UnicodeDecodeError as error:
-        raise CaseError(str(path), None, f"is no UTF-8 text (byte {error.start})") from None
+        raise CaseError(str(path), None, f"is not UTF-8 text (byte {error.start})") from None
     except (OSError, ValueError) as error:
         raise CaseError(str(path), None, f"cannot be read: {error}") from None
     return read_text(text, overrides, path=path)

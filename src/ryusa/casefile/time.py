@@ -69,7 +69,7 @@ def time_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     """Durations of contacts and the time step."""
     rows: list[ExplainRow] = []
     undamped = "Eq. (8) with added mass, without damping"
-    for name, pair in (("on fixed", derived.fixed), ("between grains", derived.free)):
+    for name, pair in (("on a fixed grain", derived.fixed), ("between free grains", derived.free)):
         rows += [
             number("time", f"collision time {name}", pair.t_undamped, "s", undamped),
             number("time", f"contact time {name}", pair.t_col, "s", f"with damping, {case.contact.parting}"),

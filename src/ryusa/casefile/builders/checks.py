@@ -33,7 +33,7 @@ def check_builder(case: "Case") -> Iterator[CaseError]:
             yield CaseError("build.spin", build.spin, "needs motion.rotation = 'free'")
         if abs(build.offset) >= case.grains.diameter:
             yield CaseError(
-                "build.offset", build.offset, "must be smaller than the diameter, or nothing is struck"
+                "build.offset", build.offset, "must be smaller than the diameter, or the grains do not meet"
             )
         if build.offset != 0.0 and build.partner == "plane":
             yield CaseError("build.offset", build.offset, "has no effect with partner 'plane'")
@@ -41,11 +41,13 @@ def check_builder(case: "Case") -> Iterator[CaseError]:
         lanes = build.copies if isinstance(build, DropSection) else build.starts
         if lanes > 1:
             key = "build.copies" if isinstance(build, DropSection) else "build.starts"
-            yield CaseError(key, lanes, "needs motion.plane = true; in three dimensions lanes could meet")
+            yield CaseError(
+                key, lanes, "needs motion.plane = true; in three dimensions grains of two lanes could meet"
+            )
     if isinstance(build, PackingSection | BoxSection) and case.motion.plane and build.rows > 1:
         yield CaseError("build.rows", build.rows, "must be 1 in a plane scene")
     if isinstance(build, PackingSection | BoxSection) and periodic(case)[1] and build.rows < FEWEST_PERIODS:
-        yield CaseError("build.rows", build.rows, f"must be at least {FEWEST_PERIODS} where y is periodic")
+        yield CaseError("build.rows", build.rows, f"must be at least {FEWEST_PERIODS}, because y is periodic")
     if isinstance(build, FlumeSection):
         yield from _flume(case, build)
     if isinstance(build, BoxSection):
@@ -55,9 +57,11 @@ def check_builder(case: "Case") -> Iterator[CaseError]:
 def _flume(case: "Case", build: FlumeSection) -> Iterator[CaseError]:
     plane, (_, across), (_, _, largest) = case.motion.plane, periodic(case), sizes(case)
     if plane and build.width is not None:
-        yield CaseError("build.width", build.width, "has no effect in a plane scene; motion.slab_width has")
+        yield CaseError(
+            "build.width", build.width, "has no effect in a plane scene; give motion.slab_width instead"
+        )
     if not plane and build.width is None:
-        yield CaseError("build.width", None, "missing; a flume in three dimensions needs its width")
+        yield CaseError("build.width", None, "missing; a flume in three dimensions needs a width")
     for key, value, least in (
         ("length", build.length, FEWEST_PERIODS * largest),
         ("width", build.width, FEWEST_PERIODS * largest if across else largest),
@@ -65,7 +69,7 @@ def _flume(case: "Case", build: FlumeSection) -> Iterator[CaseError]:
         if value is not None and value < least:
             yield CaseError(f"build.{key}", value, f"must be at least {least:.4g} m for grains of this size")
     if flume_count(case) < 1:
-        yield CaseError("build.layers", build.layers, "gives no grain; more layers or a longer flume")
+        yield CaseError("build.layers", build.layers, "gives no grain; take more layers or a longer flume")
 
 
 def _box(case: "Case", build: BoxSection) -> Iterator[CaseError]:
@@ -74,15 +78,16 @@ def _box(case: "Case", build: BoxSection) -> Iterator[CaseError]:
             value = getattr(build, key)
             if value is not None and (key == "drop" or value > 0.0):
                 yield CaseError(
-                    f"build.{key}", value, "has no effect with floor 'plane', which is flat and never ends"
+                    f"build.{key}", value, "has no effect with floor 'plane', which is flat and unbounded"
                 )
     d, d_min, _ = sizes(case)
     if d_min <= (free := hole(build, case.motion.plane)) * d:
         yield CaseError(
             "grains.spread",
             None,
-            f"the smallest grain, {d_min:.3g} m, slips through fixed grains of mean diameter: through up to "
-            f"{free:.2g} d; take less spread (or floor_height), or build.floor = 'plane', walls = 'planes'",
+            f"the smallest grain, {d_min:.3g} m, slips through openings of up to {free:.2g} d between the "
+            "fixed grains of mean diameter; take a smaller spread (or build.floor_height), or build.floor = "
+            "'plane' and build.walls = 'planes'",
         )
     caught = build.drop is not None or any(plane.normal[2] > 0.0 for plane in case.planes)
     for number, change in enumerate(case.timeline):
@@ -90,12 +95,11 @@ def _box(case: "Case", build: BoxSection) -> Iterator[CaseError]:
             change.remove == "back" or (change.remove == "gate" and build.run_out == 0.0)
         )
         if not caught and (ends or change.remove == "floor"):
-            ways = ["build.run_out makes it longer"] if change.remove == "gate" else []
-            ways += ["build.drop catches them"] if build.floor == "grains" else []
-            ways += ["build.floor = 'plane' never ends"] if ends else []
+            ways = ["build.run_out (a longer floor)"] if change.remove == "gate" else []
+            ways += ["build.drop (a plane that catches them)"] if build.floor == "grains" else []
+            ways += ["build.floor = 'plane'"] if ends else []
             yield CaseError(
                 f"timeline.{number}.remove",
                 change.remove,
-                "lets grains fall out of the world, for no floor is there; "
-                + ", ".join([*ways, "a plane of [[planes]] catches them"]),
+                f"lets grains fall beside the floor; give {', '.join([*ways, 'a plane in [[planes]]'])}",
             )

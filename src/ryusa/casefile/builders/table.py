@@ -53,13 +53,15 @@ def table_of(case: "Case") -> GrainTable | None:
     folder = (case.path.parent if case.path is not None else Path()).resolve()
     path = (folder / case.build.file).resolve()
     if not path.is_relative_to(folder):
-        raise CaseError("build.file", case.build.file, "leads outside the folder of the case file")
+        raise CaseError("build.file", case.build.file, "points outside the folder of the case file")
     try:
         stamp = path.stat()
     except OSError:
-        raise CaseError("build.file", case.build.file, f"no such file beside the case, in {folder}") from None
+        raise CaseError(
+            "build.file", case.build.file, f"no such file in the folder of the case, {folder}"
+        ) from None
     if stamp.st_size > LARGEST_FILE:
-        raise CaseError("build.file", case.build.file, "is larger than 1 GiB")
+        raise CaseError("build.file", case.build.file, "is larger than 1 GiB, the limit for a table")
     return _read(path, case.build.file, stamp.st_mtime_ns, stamp.st_size)
 
 
@@ -104,7 +106,7 @@ def _read(path: Path, name: str, _changed: int, _size: int) -> GrainTable:
         fixed.append(word in _YES)
         group.append(cells.get("group", "").strip())
     if all(fixed):
-        raise CaseError("build.file", name, "holds no free grain")
+        raise CaseError("build.file", name, "has no free grain")
     arrays = {one: np.array(values, dtype=np.float64) for one, values in columns.items()}
     return GrainTable(
         name, arrays, np.array(fixed, dtype=np.bool_), tuple(group), tuple(line for line, _ in rows[1:])
@@ -140,5 +142,5 @@ def _number(cell: str, factor: float, where: str, name: str) -> float:
     except ValueError:
         value = float("nan")
     if not np.isfinite(value):
-        raise CaseError("build.file", name, f"{where}: {cell.strip()!r} is no finite number")
+        raise CaseError("build.file", name, f"{where}: {cell.strip()!r} is not a finite number")
     return value

@@ -49,27 +49,31 @@ def check_column(case: "Case") -> Iterator[CaseError]:
 
 
 def _place(case: "Case", water: WaterSection) -> Iterator[CaseError]:
-    """A column covers a piece of bed that goes on for ever."""
+    """A column is averaged over x and y, so the bed under it must be periodic."""
     along, across = periodic(case)
     kind = case.build.kind
     if not along:
-        ways = {"packing": "; build.periodic = true closes it", "table": "; give domain.period_x"}
+        ways = {"packing": "; give build.periodic = true", "table": "; give domain.period_x"}
         yield CaseError(
             "water.profile",
             water.profile,
-            f"needs a bed periodic in x, which builder '{kind}' does not give here{ways.get(kind, '')}",
+            f"needs a bed periodic in x, and that of builder '{kind}' is not{ways.get(kind, '')}",
         )
     elif not (across or case.motion.plane or kind == "flume"):
         way = "domain.period_y" if kind == "table" else "motion.plane = true"
         yield CaseError(
-            "water.profile", water.profile, f"needs a bed periodic in y too in three dimensions; give {way}"
+            "water.profile",
+            water.profile,
+            f"needs a bed that is periodic in y as well in three dimensions; give {way}",
         )
 
 
 def _laws(water: WaterSection) -> Iterator[CaseError]:
     if given(water, "above"):
         yield CaseError(
-            "water.above", water.above, "has no effect with profile 'column', which ends at its surface"
+            "water.above",
+            water.above,
+            "has no effect with profile 'column': no water is above the surface of a column",
         )
     if water.hindrance == "power" and water.hindrance_exponent is None:
         yield CaseError("water.hindrance_exponent", None, "missing; hindrance 'power' needs it")
@@ -98,7 +102,7 @@ def _boundaries(case: "Case", water: WaterSection, keys: ColumnSection) -> Itera
         yield CaseError(
             "water.column.packed",
             keys.packed,
-            f"must be at most {DENSEST:.4g}, pi/sqrt(18): equal spheres lie no denser",
+            f"must be at most {DENSEST:.4g}, pi/sqrt(18), the densest packing of equal spheres",
         )
     if keys.side_walls is not None:
         yield from _side_walls(case, keys.side_walls)
@@ -116,7 +120,9 @@ def _boundaries(case: "Case", water: WaterSection, keys: ColumnSection) -> Itera
         yield CaseError("water.column.side_friction", keys.side_friction, "needs water.column.side_walls")
     if keys.start == "steady" and water.drag == "none":
         yield CaseError(
-            "water.column.start", keys.start, "needs drag, or nothing among the grains stops the water"
+            "water.column.start",
+            keys.start,
+            "needs drag: without it nothing slows the water between the grains",
         )
     fixed = keys.bed != "moving"
     if fixed and keys.bottom is not None and water.zero is not None and keys.bottom != water.zero:
@@ -131,17 +137,17 @@ def _side_walls(case: "Case", width: float) -> Iterator[CaseError]:
     """Side walls have room for a grain, and stand no closer than those of the flume."""
     largest, build = sizes(case)[2], case.build
     if width < largest:
-        text = f"must be at least {largest:.4g} m, the largest diameter: no grain fits between the walls"
+        text = f"must be at least {largest:.4g} m, the largest diameter, for a grain to fit between the walls"
         yield CaseError("water.column.side_walls", width, text)
         return
     stands = build.width if isinstance(build, FlumeSection) and build.walls else None
     if stands is not None and width < (1.0 - AGREE) * stands:
-        text = f"must be at least build.width, {stands:g} m, where build.walls = true"
+        text = f"must be at least build.width, {stands:g} m, because build.walls = true"
         yield CaseError("water.column.side_walls", width, text)
 
 
 def _driver(case: "Case", water: WaterSection, keys: ColumnSection) -> Iterator[CaseError]:
-    """What drives the water is given once, and nothing else is."""
+    """The driver of the water is given once, and nothing else drives it."""
     for key, drive in (("pressure_gradient", "pressure gradient"), ("discharge", "discharge")):
         value = getattr(keys, key)
         if keys.drive == drive and value is None:
@@ -157,7 +163,7 @@ def _driver(case: "Case", water: WaterSection, keys: ColumnSection) -> Iterator[
         yield CaseError(
             "water.column.pressure_gradient",
             keys.pressure_gradient,
-            "nothing drives the water; must not be 0 Pa/m on a level bed, or leave it and the drive out",
+            "nothing drives the water on a level bed: must not be 0 Pa/m; for still water leave drive out",
         )
     if keys.drive == "tau_star" and stress is None:
         yield CaseError("water.tau_star", None, "missing; drive 'tau_star' needs tau_star or u_star")
@@ -172,7 +178,7 @@ def _driver(case: "Case", water: WaterSection, keys: ColumnSection) -> Iterator[
 
 
 def _over_bed(case: "Case", water: WaterSection, keys: ColumnSection) -> Iterator[CaseError]:
-    """Water that is driven ends above the loose bed it is to move."""
+    """The surface of water that is driven lies above the loose bed."""
     over, depth = water_over(case), water.depth or 0.0
     driven = keys.drive != "slope" or case.motion.gravity * slope_at_last(case) != 0.0
     if over > 0.0 or not driven or case.grains.density <= water.density:
@@ -181,16 +187,16 @@ def _over_bed(case: "Case", water: WaterSection, keys: ColumnSection) -> Iterato
     yield CaseError(
         "water.depth",
         water.depth,
-        f"ends in the bed: water.zero + depth is z = {top + over:.4g} m, and loose grains as dense as "
-        f"{packed(case):g} fill up to z = {top:.4g} m; must be above {depth - over:.4g} m, or leave out "
-        "water.zero: the depth counts from the top of the bed then",
+        f"puts the surface into the bed: water.zero + depth is z = {top + over:.4g} m, and loose grains at "
+        f"concentration {packed(case):g} reach z = {top:.4g} m; must be above {depth - over:.4g} m, or leave "
+        "out water.zero to measure the depth from the top of the bed",
     )
 
 
 def _contradictions(
     case: "Case", water: WaterSection, keys: ColumnSection, depth: float
 ) -> Iterator[CaseError]:
-    """Water that cannot be, in the words of the model."""
+    """Cells that do not fit the depth, and stress, slope and depth that contradict each other."""
     d, cell = case.grains.diameter, keys.cell or CELL * case.grains.diameter
     if not SPARE * depth / cell <= MOST_CELLS:
         yield CaseError(
@@ -200,7 +206,7 @@ def _contradictions(
         yield CaseError(
             "water.column.cell",
             keys.cell,
-            f"{cell:.3g} m must be at most half of water.depth, {water.depth:g} m: two cells or more",
+            f"{cell:.3g} m must be at most half of water.depth, {water.depth:g} m, to give two cells",
         )
         return
     rough = water.roughness or d
@@ -208,8 +214,8 @@ def _contradictions(
         yield CaseError(
             "water.column.cell",
             keys.cell,
-            f"{cell:.3g} m must be above a 15th of the roughness, {rough / 15.0:.3g} m: Eq. (9) is zero "
-            f"below a 30th; a tenth is a good choice",
+            f"{cell:.3g} m must be above 1/15 of the roughness, {rough / 15.0:.3g} m, because Eq. (9) is "
+            "zero below 1/30; 1/10 is a good choice",
         )
     known = keys.bottom is not None and water.zero is not None and keys.bed == "moving"
     falls = keys.drive == "slope" and case.motion.gravity > 0.0
@@ -241,7 +247,7 @@ def _contradictions(
         key, more = "u_star" if water.u_star else "tau_star", ""
         if estimated:
             over = water_over(case)
-            more += f"; depth is that over the loose bed, {over:.3g} m give or take half a grain"
+            more += f"; the depth is that over the loose bed, {over:.3g} m, give or take half a grain"
         if "rises downstream" in text:
             more += "; motion.slope must be above 0, or give water.column.drive = 'tau_star'"
         yield CaseError(f"water.{key}", getattr(water, key), text + more)

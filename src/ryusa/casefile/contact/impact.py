@@ -57,7 +57,9 @@ def impact_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
         origin = f"distance over d travelled within one contact at {along:.3g} m/s ({where})"
         if skims:
             origin += f"; above {SKIMMING:g} grains pass each other before the contact time is over"
-        rows.append(number("impact", "u t/d", travel, "-", origin, "warning" if skims else ""))
+        rows.append(
+            number("impact", "travel per contact u t/d", travel, "-", origin, "warning" if skims else "")
+        )
     return rows
 
 

@@ -36,21 +36,21 @@ def contact_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
 def damping_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     """Dashpots, the restitution they give and the half period of the tangential spring."""
     by_restitution, parting = not math.isnan(derived.e_n), case.contact.parting
-    normal, shear, reached = "contact.damping, a constant", "contact.shear_damping, a constant", ""
+    normal, shear = "contact.damping, a constant", "contact.shear_damping, a constant"
     if by_restitution:
         normal, shear = "2 zeta sqrt(k_n m_eff) for contact.restitution", "2 zeta_s sqrt(k_s m_t)"
     reached = f"contact.restitution, {parting}" if by_restitution else f"from eta_n and m_eff, {parting}"
     differ = not by_restitution and abs(derived.fixed.e - derived.free.e) > 0.02
     rows: list[ExplainRow] = []
-    for name, pair in (("on fixed", derived.fixed), ("between grains", derived.free)):
+    for name, pair in (("on a fixed grain", derived.fixed), ("between free grains", derived.free)):
         rows += [
-            number("damping", f"eta_n {name}", pair.eta_n, "N s/cm", normal),
-            number("damping", f"eta_s {name}", pair.eta_s, "N s/cm", shear),
+            number("damping", f"normal dashpot eta_n {name}", pair.eta_n, "N s/cm", normal),
+            number("damping", f"tangential dashpot eta_s {name}", pair.eta_s, "N s/cm", shear),
             number("damping", f"restitution e {name}", pair.e, "-", reached, "note" if differ else ""),
         ]
-    rows.append(_half_period(case, "on fixed", derived.fixed))
+    rows.append(_half_period(case, "on a fixed grain", derived.fixed))
     if derived.meet:
-        rows.append(_half_period(case, "between grains", derived.free))
+        rows.append(_half_period(case, "between free grains", derived.free))
     return rows
 
 
@@ -59,8 +59,7 @@ def _half_period(case: "Case", name: str, pair: PairValues) -> ExplainRow:
     if math.isinf(pair.t_shear):
         return word("damping", name, "none", "k_s = 0: no tangential spring")
     ratio = pair.t_shear / pair.t_undamped
-    origin, flag = f"{ratio:.3g} times the collision time, rotation {case.motion.rotation}", ""
-    far: Flag = "note" if not 1.0 / FAR_APART <= ratio <= FAR_APART else flag
-    if far:
-        origin += "; tangential restitution is not defined at so different a duration"
+    origin = f"{ratio:.3g} times the collision time, rotation {case.motion.rotation}"
+    far: Flag = "" if 1.0 / FAR_APART <= ratio <= FAR_APART else "note"
+    origin += "; too different for a tangential restitution" if far else ""
     return number("damping", name, pair.t_shear, "s", origin, far)

@@ -1,0 +1,90 @@
+"""A hint is given where two words are near, and nowhere else."""
+
+from collections.abc import Callable
+
+import pytest
+
+from ryusa.casefile import Case, all_keys
+from ryusa.casefile.spelling import nearest_word
+from ryusa.errors import CaseError
+
+CaseOf = Callable[..., Case]
+WORDS = sorted({part for key in all_keys() for part in key.split(".")})
+
+NEAR = [
+    ("diametr", "diameter"),
+    ("diamter", "diameter"),
+    ("Diameter", "diameter"),
+    ("stifness", "stiffness"),
+    ("restituion", "restitution"),
+    ("friction_angel", "friction_angle"),
+    ("frictionangle", "friction_angle"),
+    ("viscocity", "viscosity"),
+    ("rougness", "roughness"),
+    ("densty", "density"),
+    ("lenght", "length"),
+    ("tau", "tau_star"),
+    ("ustar", "u_star"),
+    ("rotaton", "rotation"),
+    ("timelime", "timeline"),
+    ("contakt", "contact"),
+    ("steps_per_contacts", "steps_per_contact"),
+    ("colum", "column"),
+]
+FAR = [
+    "inflow",
+    "outflow",
+    "young",
+    "poisson",
+    "mesh",
+    "nozzle",
+    "salinity",
+    "temperature",
+    "hertz",
+    "x",
+    "",
+    "porosity",
+    "boundary",
+    "cellsize_of_the_mesh",
+]
+
+
+@pytest.mark.parametrize(("written", "meant"), NEAR)
+def test_a_misspelt_key_is_recognised(written: str, meant: str) -> None:
+    assert nearest_word(written, WORDS) == meant
+
+
+@pytest.mark.parametrize("written", FAR)
+def test_a_word_that_is_no_misspelling_gets_no_hint(written: str) -> None:
+    assert nearest_word(written, WORDS) is None
+
+
+def test_every_key_is_found_again_with_a_letter_left_out_or_two_swapped() -> None:
+    for word in (one for one in WORDS if len(one) > 5):
+        for place in range(1, len(word) - 1):
+            short = word[:place] + word[place + 1 :]
+            swapped = word[:place] + word[place + 1] + word[place] + word[place + 2 :]
+            for written in (short, swapped):
+                found = nearest_word(written, WORDS)
+                assert found is not None, written
+                assert found == word or written in WORDS or len(found) <= len(word) + 1
+
+
+def test_a_key_of_another_table_is_pointed_to(case: CaseOf) -> None:
+    with pytest.raises(CaseError, match=r"contact\.diameter: unknown key\. Did you mean 'grains\.diameter'"):
+        case(**{"contact.diameter": "'1 mm'"})
+
+
+def test_an_unknown_boundary_gets_no_hint(case: CaseOf) -> None:
+    with pytest.raises(CaseError) as caught:
+        case(**{"domain.inflow": "1"})
+    assert caught.value.nearest is None
+
+
+@pytest.mark.parametrize("key", ["young", "youngs_modulus", "poisson_ratio", "law"])
+def test_a_key_of_another_contact_law_is_answered_by_the_only_one_there_is(case: CaseOf, key: str) -> None:
+    with pytest.raises(CaseError, match="linear spring and dashpot") as caught:
+        case(**{f"contact.{key}": "1"})
+    assert "contact.stiffness" in str(caught.value)
+    assert "docs/theory.md" in str(caught.value)
+    assert caught.value.nearest is None
