@@ -28,7 +28,7 @@ def bits(state: State) -> tuple[bytes, ...]:
             state.v,
             state.omega,
             state.image,
-            state.books,
+            *((state.engine.arrays[name] for name in sorted(state.engine.arrays)) if state.engine else ()),
             contacts.i,
             contacts.j,
             contacts.spring_s,

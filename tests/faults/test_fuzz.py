@@ -218,7 +218,7 @@ def test_an_eddy_viscosity_that_cannot_be_is_refused(stopped: tuple[str, Path], 
     kind, source = stopped
     shutil.copytree(source, folder := tmp_path / "run")
     kept = read_checkpoint(folder / schema.CHECKPOINT, Results.open(folder).scene.n_grain)
-    name = "state/water/water/nu_t"
+    name = "state/coupling/water/nu_t"
     assert (name in kept.arrays) == (kind == "two-way")
     if kind != "two-way":
         return

@@ -1,6 +1,7 @@
 """The file: what is written comes back bit for bit, and anything else is refused in one line."""
 
 import hashlib
+from collections.abc import Mapping
 from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -10,8 +11,9 @@ import numpy as np
 import pytest
 
 from ryusa.errors import CheckpointError, RyusaError
-from ryusa.model import Contacts, State
+from ryusa.model import Contacts, EngineBlock, State, Tally
 from ryusa.model.contacts import N_EVENT
+from ryusa.model.tally import N_BOOK
 from ryusa.results import schema
 from ryusa.running.checkpoint import Kept, read_checkpoint, write_checkpoint
 from ryusa.running.disk import image
@@ -23,6 +25,8 @@ N = 3
 def bits(value: Any) -> Any:
     if is_dataclass(value):
         return {one.name: bits(getattr(value, one.name)) for one in fields(value)}
+    if isinstance(value, Mapping):
+        return {name: bits(one) for name, one in value.items()}
     return (value.dtype, value.tobytes()) if isinstance(value, np.ndarray) else repr(value)
 
 
@@ -38,9 +42,19 @@ def some_state() -> State:
     x = draw.random((N, 3))
     return State(
         x=x, v=draw.random((N, 3)), omega=draw.random((N, 3)), step=7, t=0.1 + 0.2,
-        image=np.ones((N, 2), np.int32), contacts=contacts, books=draw.random((8, 24)), x_listed=x + 1e-9,
-        engine={"skin": 1 / 3e4, "since": 5.0},
+        image=np.ones((N, 2), np.int32), contacts=contacts,
+        tally=Tally(
+            0.3, *draw.random(6).tolist(), tuple(draw.random(N_BOOK).tolist()), 0.01, 2, 5, 1.5, 30.0, 2,
+            tuple(draw.random(5).tolist()),
+        ),
+        engine=EngineBlock("cpu", 1, {"x_listed": x + 1e-9}, {"skin": 1 / 3e4, "since": 5.0}),
     )  # fmt: skip
+
+
+def with_tally(**changes: Any) -> State:
+    state = some_state()
+    assert state.tally is not None
+    return replace(state, tally=replace(state.tally, **changes))
 
 
 @pytest.fixture
@@ -96,12 +110,18 @@ def test_any_flipped_bit_is_refused(path: Path) -> None:
 def signed(path: Path, fill: Any) -> None:
     """A file that a stranger made, with the right digest."""
     body = image(fill)
-    head = f"ryusa checkpoint 1\n{len(body)} {hashlib.sha256(body).hexdigest()}\n".encode()
+    head = f"ryusa checkpoint 2\n{len(body)} {hashlib.sha256(body).hexdigest()}\n".encode()
     path.write_bytes(head.ljust(512, b"\0") + body)
 
 
 def put_json(file: h5py.File, text: bytes) -> None:
     file["about"] = np.frombuffer(text, np.uint8)
+
+
+def test_a_checkpoint_of_an_earlier_format_is_refused_with_both_formats(path: Path) -> None:
+    path.write_bytes(path.read_bytes().replace(b"checkpoint 2", b"checkpoint 1", 1))
+    with pytest.raises(CheckpointError, match="format 1, this one reads format 2"):
+        read_checkpoint(path, N)
 
 
 @pytest.mark.parametrize(
@@ -160,9 +180,12 @@ def change_contacts(**arrays: np.ndarray) -> State:
         replace(some_state(), v=np.full((3, 3), np.inf)),
         replace(some_state(), step=-1),
         replace(some_state(), t=float("nan")),
-        replace(some_state(), books=np.zeros((8, 3))),
-        replace(some_state(), books=np.zeros((10**5, 24))),
-        replace(some_state(), engine={"skin": float("nan")}),
+        with_tally(books=(0.0,) * 3),
+        with_tally(books=(float("nan"),) * N_BOOK),
+        with_tally(pending=(1e300,) * 5),
+        with_tally(overlap_step="x"),
+        replace(some_state(), engine=EngineBlock("cpu", 1, {"x_listed": np.full((N, 3), np.inf)}, {})),
+        replace(some_state(), engine=EngineBlock("cpu", 1, {}, dict.fromkeys(map(str, range(100)), 1.0))),
         replace(some_state(), image=np.zeros((2, 2), np.int32)),
     ],
 )

@@ -58,7 +58,7 @@ def stepping(fixed, state) -> loop_module.Loop:
         CpuEngine(), fixed, 1.0, stop, [], nothing, nothing, nothing, {}, _step=state.step
     )
     loop.engine.load(fixed, state)
-    loop._immerse(state)
+    loop._begin_water(state)
     return loop
 
 
@@ -131,7 +131,7 @@ def test_a_snapshot_of_another_column_is_refused() -> None:
     fixed, first = falling()
     state = stepping(fixed, first).state()
     assert fixed.column is not None
-    with pytest.raises(ValueError, match="48 cells and 30 grains does not go on in a column of 49 cells"):
+    with pytest.raises(ValueError, match="48 cells and 30 grains, the run has 49 cells"):
         stepping(replace(fixed, column=replace(fixed.column, n=49)), state)
 
 

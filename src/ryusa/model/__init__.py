@@ -2,6 +2,7 @@
 
 from ryusa.model.column import Budget, Column, WaterState
 from ryusa.model.contacts import EVENT, Contacts
+from ryusa.model.engine_block import EngineBlock
 from ryusa.model.fluid import CouplingState, FluidAtGrains
 from ryusa.model.scene import ContactLaw, RollingLaw, Scene, Water
 from ryusa.model.state import State
@@ -15,6 +16,7 @@ __all__ = [
     "ContactLaw",
     "Contacts",
     "CouplingState",
+    "EngineBlock",
     "FluidAtGrains",
     "RollingLaw",
     "Scene",

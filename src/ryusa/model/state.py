@@ -6,8 +6,9 @@ import numpy as np
 
 from ryusa.model.arrays import Floats
 from ryusa.model.contacts import Contacts
+from ryusa.model.engine_block import EngineBlock
 from ryusa.model.fluid import CouplingState, FluidAtGrains
-from ryusa.model.tally import N_BOOK
+from ryusa.model.tally import Tally
 
 
 @dataclass(frozen=True)
@@ -26,15 +27,10 @@ class State:
         default_factory=lambda: np.zeros((0, 2), dtype=np.int32)
     )  # periods crossed in x, y
     contacts: Contacts = field(default_factory=Contacts.none)
-    books: Floats = field(
-        default_factory=lambda: np.zeros((1, N_BOOK))
-    )  # energy account so far [J], a row per block
-    x_listed: Floats | None = None  # where the grains were when the neighbour list was built [m]
+    tally: Tally | None = None  # energy account and extremes so far; None before the first step
     fluid: FluidAtGrains | None = None  # water at every grain, where a column of water is solved
     coupling: CouplingState | None = None  # the column itself, which no engine knows
-    engine: dict[str, float] = field(
-        default_factory=lambda: {}
-    )  # an engine's own numbers (skin, travel, extremes)
+    engine: EngineBlock | None = None  # what the engine that wrote this needs besides
 
     @staticmethod
     def at_rest(x: Floats) -> "State":
@@ -48,3 +44,11 @@ class State:
     def n_grain(self) -> int:
         """Number of free grains."""
         return len(self.x)
+
+
+def make_read_only(state: State) -> None:
+    """Protect every array of a snapshot from being written to."""
+    parts = [state, state.contacts, *(one for one in (state.fluid,) if one is not None)]
+    arrays = [one for part in parts for one in vars(part).values() if isinstance(one, np.ndarray)]
+    for array in (*arrays, *(state.engine.arrays.values() if state.engine else ())):
+        array.flags.writeable = False

@@ -29,6 +29,7 @@ class Book(IntEnum):
 
 
 N_BOOK = len(Book)
+PENDING = (Book.DRAG, Book.TORQUE, Book.LIFT, Book.FLOW, Book.FILM)  # terms with half a step still to book
 LOSSES = (
     Book.DASH_N, Book.DASH_S, Book.SLIDE, Book.ROLL, Book.RELEASED_N, Book.RELEASED_S, Book.RELEASED_R,
     Book.FILM,
@@ -76,6 +77,7 @@ class Tally:
     speed_max: float  # largest grain speed in the last step [m/s]
     spin_max: float  # largest spin in the last step [rad/s]
     n_contact: int  # pairs in touch now
+    pending: tuple[float, ...] = (0.0,) * len(PENDING)  # second half of the work of the step under way [J]
 
     @property
     def held(self) -> float:

@@ -7,6 +7,7 @@ dataset `about` is JSON: numbers, names, and the list of arrays that belong to i
 import hashlib
 import json
 import os
+import re
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -126,7 +127,10 @@ def _plain(value: np.generic) -> Any:
 def _head(head: bytes, path: Path) -> tuple[int, str]:
     """Length and digest of what follows."""
     if len(head) < _HEAD or not head.startswith(_MAGIC):
-        raise CheckpointError(f"{path}: not a checkpoint of this version of ryusa")
+        other = re.match(rb"ryusa checkpoint (\d{1,6})\n", head)
+        reads = _MAGIC.split()[-1].decode()
+        why = f" (format {other.group(1).decode()}, this one reads format {reads})" if other else ""
+        raise CheckpointError(f"{path}: not a checkpoint of this version of ryusa{why}")
     try:
         length, digest = head[len(_MAGIC) :].split(b"\n", 1)[0].decode("ascii").split(" ")
         return int(length), digest

@@ -11,17 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.errors import CheckpointError
-from ryusa.model import Contacts, CouplingState, FluidAtGrains, Scene, State
+from ryusa.model import Contacts, CouplingState, EngineBlock, FluidAtGrains, Scene, State
 from ryusa.model.column import WaterState
 from ryusa.model.contacts import N_EVENT
 from ryusa.model.eddies import Eddies
 from ryusa.model.fluid import N_IMPULSE, N_SAMPLED
-from ryusa.model.tally import N_BOOK
+from ryusa.model.tally import N_BOOK, PENDING, Tally
 from ryusa.running.checkpoint import Kept
 
 _LATEST = 2**62  # step
-_BLOCKS = 64  # rows of the books, at most
-_COLUMNS = 64  # of the books, at most
+_NUMBERS = 64  # of an engine, at most
 _FLOAT, _INT, _INT32 = np.dtype(np.float64), np.dtype(np.int64), np.dtype(np.int32)
 _EDGE = 1e12  # m; beyond no grain is
 _LARGEST = 1e100  # in any unit: squares and products of a few such are still numbers
@@ -40,6 +39,8 @@ def _take(before: str, value: Any, about: dict[str, Any], arrays: dict[str, np.n
         inner, name = getattr(value, one.name), f"{before}{one.name}"
         if isinstance(inner, np.ndarray):
             arrays[name] = inner
+        elif isinstance(inner, Mapping) and all(isinstance(part, np.ndarray) for part in inner.values()):
+            arrays.update({f"{name}/{key}": part for key, part in inner.items()})
         elif is_dataclass(inner):
             about[name] = True
             _take(f"{name}/", inner, about, arrays)
@@ -79,11 +80,10 @@ class _Reader:
             t=t,
             image=self._array("image", (len(image) and n, 2), _INT32),
             contacts=self._contacts(),
-            books=self._books(),
-            x_listed=self._place("x_listed", n) if "x_listed" in self._arrays else None,
+            tally=self._tally(),
             fluid=self._fluid(n) if about.get("fluid") else None,
             coupling=self._coupling(n) if about.get("coupling") else None,
-            engine=self._numbers(),
+            engine=self._engine(),
         )
         if unknown := sorted(set(self._arrays) - self._read):
             raise ValueError(f"'{unknown[0]}' belongs to no state that this version knows")
@@ -106,11 +106,21 @@ class _Reader:
         event = self._array("contacts/event", (k, N_EVENT), _FLOAT)
         return Contacts(i=i, j=j, event=event, **found)
 
-    def _books(self) -> NDArray[np.float64]:
-        books = self._array("books", None, _FLOAT)
-        if books.ndim != 2 or len(books) > _BLOCKS or not N_BOOK <= books.shape[1] <= _COLUMNS:
-            raise ValueError(f"books of shape {books.shape}")
-        return books
+    def _tally(self) -> Tally | None:
+        about = self._about
+        if not about.get("tally"):
+            return None
+        given = {one.name: about[f"tally/{one.name}"] for one in fields(Tally)}
+        lengths = {"books": N_BOOK, "pending": len(PENDING)}
+        found: dict[str, Any] = {}
+        for name, value in given.items():
+            values = [float(one) for one in (value if name in lengths else [value])]
+            if len(values) != lengths.get(name, 1) or not all(abs(one) <= _LARGEST for one in values):
+                raise ValueError(f"{name} = {str(value)[:60]} in the energy account")
+            found[name] = tuple(values) if name in lengths else values[0]
+        for name in ("overlap_grain", "overlap_step", "n_contact"):
+            found[name] = int(found[name])
+        return Tally(**found)
 
     def _fluid(self, n: int) -> FluidAtGrains:
         return FluidAtGrains(
@@ -163,7 +173,7 @@ class _Reader:
             raise ValueError(f"'{name}' has a grain beyond {_EDGE:g} m")
         return x
 
-    def _floats(self, name: str, shape: tuple[int, ...]) -> NDArray[np.float64]:
+    def _floats(self, name: str, shape: tuple[int, ...] | None) -> NDArray[np.float64]:
         array = self._array(name, shape, _FLOAT)
         if not np.isfinite(array).all():
             raise ValueError(f"'{name}' holds a number that is not finite")
@@ -178,15 +188,18 @@ class _Reader:
             raise ValueError(f"'{name}' is {array.shape} of {array.dtype}, expected {shape} of {dtype}")
         return array
 
-    def _numbers(self) -> dict[str, float]:
-        """An engine's own numbers; a skin wider than a grain would list every pair."""
-        given = self._about["engine"]
-        if not isinstance(given, Mapping) or len(given) > _COLUMNS:
-            raise TypeError("an engine's numbers are no table")
-        found = {str(name): float(value) for name, value in given.items()}
-        if any(np.isnan(value) for value in found.values()):  # an engine may wait for ever: inf
-            raise ValueError("a number of the engine is none")
-        widest = float(np.concatenate([self._scene.d, self._scene.d_fixed]).max(initial=0.0))
-        if not 0.0 <= found.get("skin", 0.0) <= widest:
-            raise ValueError(f"a skin of {found['skin']:g} m")
-        return found
+    def _engine(self) -> EngineBlock | None:
+        """The block of an engine, which alone knows what its arrays and numbers mean and checks them."""
+        about = self._about
+        if not about.get("engine"):
+            return None
+        numbers, start = about["engine/numbers"], "engine/arrays/"
+        if not isinstance(numbers, Mapping) or len(numbers) > _NUMBERS:
+            raise TypeError("the numbers of an engine are no table")
+        names = [name for name in self._arrays if name.startswith(start)]
+        return EngineBlock(
+            engine=str(about["engine/engine"]),
+            version=int(about["engine/version"]),
+            arrays={name.removeprefix(start): self._floats(name, None) for name in names},
+            numbers={str(name): float(value) for name, value in numbers.items()},
+        )

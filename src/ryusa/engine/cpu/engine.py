@@ -20,11 +20,10 @@ from ryusa.engine.shared.contact_memory import ContactMemory, contacts_of, memor
 from ryusa.engine.shared.contact_records import closed_records, sorted_events
 from ryusa.engine.shared.energy_account import (
     N_ACCOUNT,
+    account_arrays,
     begin_account,
-    blocks_of,
     energy_of_change,
     enter_start,
-    extremes_of,
     read_account,
     tally_of,
 )
@@ -35,13 +34,17 @@ from ryusa.engine.shared.skin import best_skin
 from ryusa.engine.shared.status import STOP_EVENTS, STOP_LIST, STOP_ROOM, STOP_UNSAFE
 from ryusa.engine.shared.variant import choice_of, variant_of
 from ryusa.errors import RunError
-from ryusa.model import Book, FluidAtGrains, Scene, State, Tally
+from ryusa.model import Book, EngineBlock, FluidAtGrains, Scene, State, Tally
 from ryusa.model.contacts import N_EVENT
 from ryusa.model.enums import EventRule
 from ryusa.model.fluid import SUBMERGED
 from ryusa.model.scene import Floats
-from ryusa.model.tally import N_BOOK
+from ryusa.model.state import make_read_only
 
+VERSION = 1  # of the block in a snapshot
+_FARTHEST = 1e12  # [m]; beyond there is no grain
+_MANY = 256  # grains from which work is cut into blocks
+_BLOCKS = 4, 32  # at least and at most; in between one for 2048 grains, a power of two
 _RECORDS = 256  # room for ended contacts in a block, beside one a grain
 # Measured, and fixed so that a run never depends on a clock: cost of a wide list [ns], and how often it is
 # looked through.
@@ -97,7 +100,7 @@ class CpuEngine:
             np.zeros((blocks, *records)), np.zeros((blocks, N_ACCOUNT)), np.zeros((blocks, S.N_STATISTIC))
         )
         self._n_list = 0
-        self._read_own_numbers(state)
+        own = self._read_block(state)
 
         contacts, dropped = remaining_contacts(scene, state.contacts)
         self._records_drained = self._records_drained if changed else []
@@ -108,10 +111,11 @@ class CpuEngine:
         by_id = self._layout.grains_by_id(state)
         for touching in (contacts.i, contacts.j[contacts.j < n]):
             np.add.at(by_id.n_touching, touching, 1)
-        resumed = state.x_listed is not None and not changed and not len(dropped)
-        if resumed:
-            by_id.x[:n, :3] = state.x_listed
-        self._travel = state.engine.get("travel", 0.0) if resumed else 0.0
+        resumed = own is not None and not changed and not len(dropped)
+        self._travel = 0.0
+        if own is not None and resumed:
+            by_id.x[:n, :3] = own.array("x_listed", (n, 3), _FARTHEST)
+            self._travel = own.number("travel", 0.0, np.inf)
         self._grains, self._pairs, self._x_listed, _ = self._layout.list_pairs(
             by_id, self._layout.empty_pairs().start, self._skin, self._share
         )
@@ -150,23 +154,17 @@ class CpuEngine:
         """Read-only snapshot: all that an exact resume needs."""
         n, grains = self._n, self._grains
         back = np.argsort(grains.ids[:n])
-        books = self._accounts.books.copy()
-        books[:, N_BOOK : N_BOOK + len(S.PENDING)] = self._accounts.stats[:, S.PENDING]
         contacts = contacts_of(collect_memory(n, grains, self._candidates.pairs), self._variant)
+        block = self._block()
         fluid = FluidAtGrains(grains.fluid[back], grains.impulse[back]) if self._variant.column else None
         state = replace(
             self.grains(),
             contacts=contacts,
-            books=books,
-            x_listed=self._x_listed.copy(),
+            tally=self.tally(),
             fluid=fluid,
-            engine=self._own_numbers(),
+            engine=block,
         )
-        sampled = vars(fluid).values() if fluid else ()
-        for array in (
-            state.x, state.v, state.omega, state.image, state.books, *vars(contacts).values(), *sampled,
-        ):  # fmt: skip
-            array.flags.writeable = False
+        make_read_only(state)
         return state
 
     def kinematics(self) -> tuple[Floats, Floats, Floats]:
@@ -310,12 +308,36 @@ class CpuEngine:
                 self._records_drained.append(self._accounts.ended[block, :count].copy())
                 row[S.N_ENDED] = 0.0
 
-    def _own_numbers(self) -> dict[str, float]:
-        """The engine's own numbers, as a snapshot keeps them."""
-        own = {"skin": self._skin, "travel": self._travel, "since": float(self._since)}
-        return own | extremes_of(self._accounts.stats)
+    def _block(self) -> EngineBlock:
+        """What an exact resume needs beside the state."""
+        arrays = {
+            "x_listed": self._x_listed.copy(),
+            **account_arrays(self._accounts.stats, self._accounts.books),
+        }
+        numbers = {"skin": self._skin, "travel": self._travel, "since": float(self._since)}
+        return EngineBlock(self.name, VERSION, arrays, numbers)
 
-    def _read_own_numbers(self, state: State) -> None:
-        self._skin = state.engine.get("skin", self._skin_first * self._smallest)
-        self._since = int(state.engine.get("since", 0))
-        read_account(state, self._accounts.stats, self._accounts.books)
+    def _read_block(self, state: State) -> EngineBlock | None:
+        """Skin and account of a snapshot; returns the block, None where another engine wrote the snapshot.
+
+        Raises
+        ------
+        ValueError : the block has another version, or a value out of range.
+        """
+        own = state.engine if state.engine is not None and state.engine.engine == self.name else None
+        self._skin, self._since = self._skin_first * self._smallest, 0
+        if own is not None:
+            own.check(VERSION)
+            self._skin = own.number("skin", 0.0, self._layout.largest)
+            self._since = int(own.number("since", 0.0, state.step))
+        read_account(state, self._accounts.stats, self._accounts.books, own)
+        return own
+
+
+def blocks_of(n: int) -> int:
+    """Into how many blocks the work on n grains is cut; never by the number of threads.
+
+    Thin blocks have many pairs with their neighbours, which cost more.
+    """
+    least, most = _BLOCKS
+    return 1 if n < _MANY else int(min(max(2.0 ** round(np.log2(n / 2048)), least), most))

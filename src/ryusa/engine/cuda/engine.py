@@ -20,10 +20,8 @@ from ryusa.engine.shared.contact_records import closed_records, sorted_events
 from ryusa.engine.shared.energy_account import (
     N_ACCOUNT,
     begin_account,
-    blocks_of,
     energy_of_change,
     enter_start,
-    extremes_of,
     read_account,
     tally_of,
 )
@@ -35,13 +33,15 @@ from ryusa.engine.shared.skin import best_skin
 from ryusa.engine.shared.status import STOP_DONE, STOP_EVENTS, STOP_LIST, STOP_UNSAFE
 from ryusa.engine.shared.variant import choice_of, variant_of
 from ryusa.errors import RunError
-from ryusa.model import Book, FluidAtGrains, Scene, State, Tally
+from ryusa.model import Book, EngineBlock, FluidAtGrains, Scene, State, Tally
 from ryusa.model.contacts import N_EVENT
 from ryusa.model.enums import EventRule
 from ryusa.model.fluid import SUBMERGED
 from ryusa.model.scene import Floats
-from ryusa.model.tally import N_BOOK
+from ryusa.model.state import make_read_only
 
+VERSION = 1  # of the block in a snapshot
+_FARTHEST = 1e12  # [m]; beyond there is no grain
 _RECORDS = 256  # room for ended contacts, beside one a grain
 # What a new list moves for a grain, and a step for a listed neighbour [B]: the skin follows from such counts,
 # never from a clock.
@@ -86,26 +86,29 @@ class CudaEngine:
         self._parameters[P.T_ZERO] = state.t - state.step * scene.dt
         self._room = n + _RECORDS if scene.events != EventRule.NONE else 1
         self._n_list = 0
-        stats, books = self._read_own_numbers(state)
+        stats, books = np.zeros((1, S.N_STATISTIC)), np.zeros((1, N_ACCOUNT))
+        read_account(state, stats, books, None)  # its one row is the sum
+        own = self._read_block(state)
 
         contacts, dropped = remaining_contacts(scene, state.contacts)
         self._records_drained = self._records_drained if changed else []
         if before is not None and changed:
             books[0, Book.SWITCH] += energy_of_change(before, scene, state, dropped)
             self._records_drained.append(closed_records(state, dropped))
-        resumed = state.x_listed is not None and not changed and not len(dropped)
-        own = state.engine
-        extent = np.array([own.get(f"extent_{k}", np.nan) for k in range(6)]).reshape(2, 3)
-        self._travel = own.get("travel", 0.0) if resumed else 0.0
+        resumed = own is not None and not changed and not len(dropped)
+        self._travel, x, extent = 0.0, state.x, None
+        if own is not None and resumed:
+            self._travel = own.number("travel", 0.0, np.inf)
+            x = own.array("x_listed", (n, 3), _FARTHEST)
+        if own is not None and not changed:
+            extent = own.array("extent", (2, 3), _FARTHEST)
         self._fluid = None
         if self._variant.column:
             self._fluid = (state.fluid or FluidAtGrains.at_rest(n)).sampled.copy()
-        x = state.x_listed if resumed and state.x_listed is not None else state.x
         placed = State(
             x=x, v=state.v, omega=state.omega, image=state.image, fluid=state.fluid, contacts=contacts
         )
-        known = extent if np.isfinite(extent).all() and not changed else None
-        self._device = DeviceState(scene, placed, self._variant, self._choice, self._parameters, known)
+        self._device = DeviceState(scene, placed, self._variant, self._choice, self._parameters, extent)
         self._status = np.zeros(F.N_STATUS, np.int64)
         self._status[F.STEP], self._status[F.OVERFLOWED] = state.step, NO_GRAIN
         if state.step == 0:
@@ -147,10 +150,6 @@ class CudaEngine:
     def state(self) -> State:
         """Read-only snapshot: all that an exact resume needs."""
         device, ids = self._device, self._device.ids()
-        stats = self._d_stats.copy_to_host()
-        books = np.zeros((blocks_of(self._n), N_ACCOUNT))  # as many rows as the CPU engine keeps
-        books[0] = self._d_books.copy_to_host()[0]
-        books[0, N_BOOK : N_BOOK + len(S.PENDING)] = stats[0, S.PENDING]
         contacts = contacts_of(device.memory(), self._variant)
         fluid = None
         if self._variant.column:
@@ -158,16 +157,11 @@ class CudaEngine:
         state = replace(
             self.grains(),
             contacts=contacts,
-            books=books,
-            x_listed=device.listed.copy_to_host(),
+            tally=self.tally(),
             fluid=fluid,
-            engine=self._own_numbers(stats),
+            engine=self._block(),
         )
-        sampled = vars(fluid).values() if fluid else ()
-        for array in (
-            state.x, state.v, state.omega, state.image, state.books, *vars(contacts).values(), *sampled,
-        ):  # fmt: skip
-            array.flags.writeable = False
+        make_read_only(state)
         return state
 
     def kinematics(self) -> tuple[Floats, Floats, Floats]:
@@ -318,16 +312,24 @@ class CudaEngine:
         x, v, w = (device.by_id(name, ids) for name in ("x", "v", "w"))
         return RecordedGrains(x, v, w, np.arange(self._n), None, None)
 
-    def _read_own_numbers(self, state: State) -> tuple[Floats, Floats]:
-        """The engine's own numbers from a snapshot; returns what holds now, and the books."""
-        stats, books = np.zeros((1, S.N_STATISTIC)), np.zeros((1, N_ACCOUNT))
-        self._skin = state.engine.get("skin", self._skin_first * self._smallest)
-        self._since = int(state.engine.get("since", 0))
-        read_account(state, stats, books)
-        return stats, books
+    def _read_block(self, state: State) -> EngineBlock | None:
+        """Skin of a snapshot; returns the block, None where another engine wrote the snapshot.
 
-    def _own_numbers(self, stats: Floats) -> dict[str, float]:
-        """The engine's own numbers, as a snapshot keeps them; the names are those of the CPU engine."""
-        own = {"skin": self._skin, "travel": self._travel, "since": float(self._since)}
-        own |= {f"extent_{k}": float(value) for k, value in enumerate(self._device.extent.ravel())}
-        return own | extremes_of(stats)
+        Raises
+        ------
+        ValueError : the block has another version, or a value out of range.
+        """
+        own = state.engine if state.engine is not None and state.engine.engine == self.name else None
+        self._skin, self._since = self._skin_first * self._smallest, 0
+        if own is not None and self._scene is not None:
+            own.check(VERSION)
+            largest = float(np.concatenate([self._scene.d, self._scene.d_fixed]).max(initial=0.0))
+            self._skin = own.number("skin", 0.0, largest)
+            self._since = int(own.number("since", 0.0, state.step))
+        return own
+
+    def _block(self) -> EngineBlock:
+        """What an exact resume needs beside the state."""
+        arrays = {"x_listed": self._device.listed.copy_to_host(), "extent": self._device.extent.copy()}
+        numbers = {"skin": self._skin, "travel": self._travel, "since": float(self._since)}
+        return EngineBlock(self.name, VERSION, arrays, numbers)

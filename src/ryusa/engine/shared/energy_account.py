@@ -7,14 +7,13 @@ import numpy as np
 
 from ryusa.engine.shared import block_statistics as S
 from ryusa.laws.rolling import epsd_stiffness, reduced_radius
-from ryusa.model import Scene, State, Tally
+from ryusa.model import EngineBlock, Scene, State, Tally
 from ryusa.model.enums import Rolling
 from ryusa.model.scene import Floats
-from ryusa.model.tally import N_BOOK, Book
+from ryusa.model.tally import HELD, N_BOOK, Book
 
-_MANY = 256  # grains from which work is cut into blocks
-_BLOCKS = 4, 32  # at least and at most; in between one for 2048 grains, a power of two
 N_ACCOUNT = 24  # doubles of the account of a block: whole cache lines
+_LARGEST = 1e100  # [J]
 _SUMS = (S.KINETIC, S.SPIN, S.POTENTIAL, S.SPRING_N, S.SPRING_S, S.SPRING_R, S.N_CONTACT)
 
 
@@ -34,66 +33,63 @@ def enter_start(stats: Floats, books: Floats) -> None:
     books[0, Book.START] = float(sum(stats[:, column].sum() for column in _SUMS[:-1]))
 
 
-def read_account(state: State, stats: Floats, books: Floats) -> None:
-    """Take over the account and the extremes of a snapshot, also one cut into other blocks.
+def read_account(state: State, stats: Floats, books: Floats, block: EngineBlock | None) -> None:
+    """Continue the account and the extremes of a snapshot.
+
+    Parameters
+    ----------
+    stats, books : of this engine, a row for each of its blocks; filled.
+    block : of the engine itself, with the account of each of its blocks; without one the sums of the
+        snapshot go to the first block, which agrees to round-off.
 
     Raises
     ------
-    ValueError : a count, a grain or a step of the snapshot that cannot be.
+    ValueError : a count, a grain or a step of the snapshot is out of range.
     """
-    own, columns = state.engine, state.books.shape[1]
+    tally = state.tally
+    stats[:, S.OVERLAP_GRAIN] = -1.0
+    if tally is None:
+        return
     limits = {
-        "overlap_grain": (-1.0, len(state.x) - 1.0),
-        "overlap_step": (0.0, float(state.step)),
-        f"sum_{S.N_CONTACT}": (0.0, 2.0**53),
+        "overlap_grain": (-1, len(state.x) - 1),
+        "overlap_step": (0, state.step),
+        "n_contact": (0, 2**53),
     }
     for name, (least, most) in limits.items():
-        value = own.get(name, least)
+        value = getattr(tally, name)
         if not least <= value <= most:
-            raise ValueError(f"{name} = {value:g} in the snapshot: between {least:g} and {most:g}")
-    if state.books.shape == books.shape:
-        books[:] = state.books
+            raise ValueError(f"{name} = {value} in the snapshot: must be {least} to {most}")
+    if block is None:
+        books[0, :N_BOOK], stats[0, S.PENDING] = tally.books, tally.pending
     else:
-        books[0, :columns] = state.books.sum(axis=0)
-    stats[:, S.PENDING] = books[:, N_BOOK : N_BOOK + len(S.PENDING)]
-    books[:, N_BOOK:] = 0.0
-    stats[:, S.OVERLAP_MAX] = own.get("overlap_max", 0.0)
-    stats[:, S.OVERLAP_GRAIN] = own.get("overlap_grain", -1.0)
-    stats[:, S.OVERLAP_STEP] = own.get("overlap_step", 0.0)
-    stats[:, S.SPEED_MAX], stats[:, S.SPIN_MAX] = own.get("speed_max", 0.0), own.get("spin_max", 0.0)
-    for column in _SUMS:
-        stats[0, column] = own.get(f"sum_{column}", 0.0)
+        books[:, :N_BOOK] = block.array("work", (len(books), N_BOOK), _LARGEST)
+        stats[:, S.PENDING] = block.array("pending", (len(books), len(S.PENDING)), _LARGEST)
+    stats[:, S.OVERLAP_MAX] = tally.overlap_max
+    stats[:, S.OVERLAP_GRAIN], stats[:, S.OVERLAP_STEP] = tally.overlap_grain, tally.overlap_step
+    stats[:, S.SPEED_MAX], stats[:, S.SPIN_MAX] = tally.speed_max, tally.spin_max
+    stats[0, _SUMS] = (*(getattr(tally, name) for name in HELD), tally.n_contact)
 
 
-def extremes_of(stats: Floats) -> dict[str, float]:
-    """Extremes and sums, by the names that a snapshot keeps them under."""
-    block = int(stats[:, S.OVERLAP_MAX].argmax())
-    own = {"speed_max": float(stats[:, S.SPEED_MAX].max()), "spin_max": float(stats[:, S.SPIN_MAX].max())}
-    own["overlap_max"] = float(stats[block, S.OVERLAP_MAX])
-    own["overlap_grain"] = float(stats[block, S.OVERLAP_GRAIN])
-    own["overlap_step"] = float(stats[block, S.OVERLAP_STEP])
-    return own | {f"sum_{column}": float(stats[:, column].sum()) for column in _SUMS}
+def account_arrays(stats: Floats, books: Floats) -> dict[str, Floats]:
+    """The account of each block, for the block of an engine (`read_account`)."""
+    return {"work": books[:, :N_BOOK].copy(), "pending": stats[:, S.PENDING].copy()}
 
 
 def tally_of(t: float, stats: Floats, books: Floats) -> Tally:
     """Energy account and extremes at time t [s]."""
-    own = extremes_of(stats)
-    sums = [own[f"sum_{column}"] for column in _SUMS]
+    block = stats[int(stats[:, S.OVERLAP_MAX].argmax())]
+    held = dict(zip(HELD, (float(stats[:, column].sum()) for column in _SUMS), strict=False))
     return Tally(
         t=t,
-        kinetic=sums[0],
-        spin=sums[1],
-        potential=sums[2],
-        spring_n=sums[3],
-        spring_s=sums[4],
-        spring_r=sums[5],
+        **held,
         books=tuple(float(b) for b in books[:, :N_BOOK].sum(axis=0)),
-        overlap_max=own["overlap_max"],
-        overlap_grain=int(own["overlap_grain"]),
-        overlap_step=int(own["overlap_step"]),
-        speed_max=own["speed_max"],
-        spin_max=own["spin_max"],
-        n_contact=int(sums[6]),
+        overlap_max=float(block[S.OVERLAP_MAX]),
+        overlap_grain=int(block[S.OVERLAP_GRAIN]),
+        overlap_step=int(block[S.OVERLAP_STEP]),
+        speed_max=float(stats[:, S.SPEED_MAX].max()),
+        spin_max=float(stats[:, S.SPIN_MAX].max()),
+        n_contact=int(stats[:, S.N_CONTACT].sum()),
+        pending=tuple(float(one) for one in stats[:, S.PENDING].sum(axis=0)),
     )
 
 
@@ -138,12 +134,3 @@ def energy_of_change(before: Scene, scene: Scene, state: State, dropped: np.ndar
         if law.k_s > 0.0:
             given -= float(np.sum(0.5 * gone.spring_s[dropped] ** 2 / law.k_s))
     return given
-
-
-def blocks_of(n: int) -> int:
-    """Into how many blocks the work on n grains is cut; never by the number of threads.
-
-    Thin blocks have many pairs with their neighbours, which cost more.
-    """
-    least, most = _BLOCKS
-    return 1 if n < _MANY else int(min(max(2.0 ** round(np.log2(n / 2048)), least), most))
