@@ -17,6 +17,17 @@ BLIND = {
     ("contact.slip_spring", "spring_n"),
     ("contact.slide", "size"),
     ("contact.slide", "tau_c"),
+    # the step of a contact: not used in a plane
+    *(("contact_step.contact_force", name) for name in ("n_y", "h_y", "h_z")),
+    *(("contact_step.contact_kinematics", name) for name in ("d_y", "u_y", "w_ix", "w_iz", "w_jx", "w_jz")),
+    ("contact_step.contact_kinematics", "dt"),
+    *(("contact_step.tangential_step", name) for name in ("n_x", "n_y", "n_z", "twist", "s_y", "s_z")),
+    *(("contact_step.tangential_step", name) for name in ("f_n", "e_n", "cohesion", "mu")),  # of tau_c
+    ("contact_step.tangential_step", "soft_s"),  # used while sliding
+    ("contact_step.normal_step", "overlap"),  # comes from positions, which the grain step looks at
+    ("contact_step.normal_step", "least"),  # 0 or -inf
+    ("contact_step.normal_work_of_last_force", "least"),
+    ("contact_step.normal_work_of_last_force", "soft_n"),
     ("contact.slip_spring", "cohesion"),
     ("contact.slip_spring", "mu"),
     ("debris.equilibrium_concentration", "rho_s"),  # infinite on too steep a slope, whatever the densities

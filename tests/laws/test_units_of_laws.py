@@ -26,6 +26,9 @@ EXPONENTS = {  # exponents of kg, m, s
     "N": (1, 1, -2),
     "Pa": (1, -1, -2),
     "N/m": (1, 0, -2),
+    "m/N": (-1, 0, 2),
+    "N s": (1, 1, -1),
+    "J": (1, 2, -2),
     "N s/m": (1, 0, -1),
     "N m": (1, 2, -2),
     "N m s": (1, 2, -1),
@@ -61,6 +64,17 @@ UNITS = {
     "contact.slide": "N, N, -, - -> -, -, -",
     "contact.damping_in_steps": "N s/m, kg, s -> N s/m",
     "contact.damping": "-, N/m, kg -> N s/m",
+    "contact_step.contact_kinematics": (
+        "bool, m, m, m, m, m, m/s, m/s, m/s, rad/s, rad/s, rad/s, rad/s, rad/s, rad/s, s"
+        " -> -, -, -, m, m, m, m/s, m/s, m/s, m/s, -"
+    ),
+    "contact_step.normal_step": "m, m/s, N, bool, N, N/m, s -> N, N, -, -, J, J, J",
+    "contact_step.normal_work_of_last_force": "m/s, N, N, bool, N, m/N, s -> J, J, J",
+    "contact_step.tangential_step": (
+        "bool, bool, bool, bool, -, -, -, -, N, N, -, m/s, m/s, m/s, N, N, N, N, N, N,"
+        " N/m, m/N, N s/m, N, -, s, s -> N, N, N, N, N, N, -, J, J, J"
+    ),
+    "contact_step.contact_force": "bool, -, -, -, N, N, N, N -> N, N, N, N, N, N",
     "debris.equilibrium_concentration": "-, -, kg/m3, kg/m3 -> -",
     "debris.equilibrium_takahashi": "-, -, kg/m3, kg/m3, - -> -",
     "debris.collision_factor": "-, -, -, kg/m3, kg/m3 -> -",

@@ -21,9 +21,16 @@ from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.kernel import FAST, inner
 from ryusa.engine.shared.variant import LawChoice
-from ryusa.laws.contact import normal_force, shear_strength, slide
-from ryusa.laws.geometry import arm, turn, wrap
+from ryusa.laws.contact import normal_force
+from ryusa.laws.contact_step import (
+    contact_force,
+    contact_kinematics,
+    normal_step,
+    normal_work_of_last_force,
+    tangential_step,
+)
 from ryusa.laws.geometry import overlap as overlap_of
+from ryusa.laws.geometry import wrap
 from ryusa.model.enums import Cap, Slip
 
 SLIP_DROP, SLIP_TOTAL, CAP_TOTAL = int(Slip.SPRING_DROP), int(Slip.TOTAL), int(Cap.TOTAL)
@@ -97,43 +104,26 @@ def overlap_of_lane(l: int, c: Any, batch: Any) -> float:
     return overlap_of(batch[B.SPIN_I + 4 * l + 3], batch[B.SPIN_J + 4 * l + 3], distance)
 
 
-def _make_kinematics(plane_case: int) -> Any:
+def _make_kinematics(plane: bool) -> Any:
     @inner(fastmath=FAST)
     def kinematics(m: int, most: float, c: Any, batch: Any) -> None:
-        """How each pair meets: normal, overlap, arms, closing speed and slip; and its spring and dashpot."""
+        """Geometry and velocities of every contact, and its normal force before it is cut."""
         dt, k_n, l_x, l_y = c[P.DT], c[P.K_N], c[P.PERIOD_X], c[P.PERIOD_Y]
         for l in range(min(m, B.LANES)):  # never more: the compiler has to know
             d_x, d_y, d_z = wrap(batch[B.SEPARATION + 4 * l], l_x), 0.0, batch[B.SEPARATION + 4 * l + 2]
-            square = d_x * d_x + d_z * d_z
-            if not plane_case:
-                d_y = wrap(batch[B.SEPARATION + 4 * l + 1], l_y)
-                square += d_y * d_y
-            r_i, r_j = batch[B.SPIN_I + 4 * l + 3], batch[B.SPIN_J + 4 * l + 3]
-            distance = math.sqrt(square)
-            inverse = 1.0 / distance
-            n_x, n_y, n_z = d_x * inverse, d_y * inverse, d_z * inverse
-            overlap = overlap_of(batch[B.SEPARATION + 4 * l + 3], 0.0, distance)
-            a_i = arm(r_i, overlap)
-            a_j = distance - a_i
-
-            # velocities at the contact point; s is the slip of i against j, in a plane along (n_z, 0, -n_x)
             u_x, u_y, u_z = batch[B.RELATIVE_VELOCITY + 4 * l], 0.0, batch[B.RELATIVE_VELOCITY + 4 * l + 2]
             i_x, i_y, i_z = batch[B.SPIN_I + 4 * l], batch[B.SPIN_I + 4 * l + 1], batch[B.SPIN_I + 4 * l + 2]
             j_x, j_y, j_z = batch[B.SPIN_J + 4 * l], batch[B.SPIN_J + 4 * l + 1], batch[B.SPIN_J + 4 * l + 2]
-            closing = u_x * n_x + u_z * n_z
-            if plane_case:
-                s_x = u_x * n_z - u_z * n_x
-                # in a plane spin has one component; the zeros beside it are read to read all four of a group
-                s_x += a_i * (i_x + i_y + i_z) + a_j * (j_x + j_y + j_z)
+            if plane:  # spin has one component; the zeros beside it are read to read all four of a group
+                i_y, j_y = i_x + i_y + i_z, j_x + j_y + j_z
             else:
-                u_y = batch[B.RELATIVE_VELOCITY + 4 * l + 1]
-                closing += u_y * n_y
-                s_x, s_y, s_z = u_x - closing * n_x, u_y - closing * n_y, u_z - closing * n_z
-                g_x, g_y, g_z = a_i * i_x + a_j * j_x, a_i * i_y + a_j * j_y, a_i * i_z + a_j * j_z
-                s_x += g_y * n_z - g_z * n_y
-                s_y += g_z * n_x - g_x * n_z
-                s_z += g_x * n_y - g_y * n_x
-                twist = 0.5 * dt * ((i_x + j_x) * n_x + (i_y + j_y) * n_y + (i_z + j_z) * n_z)
+                d_y, u_y = wrap(batch[B.SEPARATION + 4 * l + 1], l_y), batch[B.RELATIVE_VELOCITY + 4 * l + 1]
+            r_i, r_j = batch[B.SPIN_I + 4 * l + 3], batch[B.SPIN_J + 4 * l + 3]
+            n_x, n_y, n_z, overlap, a_i, a_j, closing, s_x, s_y, s_z, twist = contact_kinematics(
+                plane, d_x, d_y, d_z, batch[B.SEPARATION + 4 * l + 3], r_i, u_x, u_y, u_z,
+                i_x, i_y, i_z, j_x, j_y, j_z, dt,
+            )  # fmt: skip
+            if not plane:
                 batch[B.TWIST + l] = twist
                 batch[B.NORMAL + B.PITCH + l] = n_y
                 batch[B.SLIP + B.PITCH + l], batch[B.SLIP + 2 * B.PITCH + l] = s_y, s_z
@@ -149,96 +139,63 @@ def _make_kinematics(plane_case: int) -> Any:
 
 @inner(fastmath=FAST)
 def _normal_force(least: float, m: int, hdt: float, c: Any, batch: Any) -> None:
-    """Normal force, and the later half of its books; `least` is the least a contact can have [N]."""
+    """Normal force and the second half of its work; `least` is the least a contact can have [N]."""
     k_n = c[P.K_N]
     for l in range(min(m, B.LANES)):
-        overlap, closing, was = batch[B.OVERLAP + l], batch[B.CLOSING + l], batch[B.WAS_TOUCHING + l] > 0.0
-        touching = overlap > 0.0
-        e_n = k_n * overlap if touching else 0.0
-        f_n = max(batch[B.RAW + l], least) if touching else 0.0
-        held = touching and f_n > least
-        work = hdt * closing * (f_n - e_n)
-        met = touching and (not was) and hdt > 0.0
-        batch[B.DASH_N + l] += work if held else 0.0
-        batch[B.RELEASED_N + l] += 0.0 if held else work
-        batch[B.STEP + l] += -0.5 * e_n * (2.0 * hdt * closing - overlap) if met else 0.0
+        f_n, e_n, held, touching, dashpot_n, released_n, step = normal_step(
+            batch[B.OVERLAP + l], batch[B.CLOSING + l], batch[B.RAW + l], batch[B.WAS_TOUCHING + l] > 0.0,
+            least, k_n, hdt,
+        )  # fmt: skip
+        batch[B.DASH_N + l] += dashpot_n
+        batch[B.RELEASED_N + l] += released_n
+        batch[B.STEP + l] += step
         batch[B.F_N + l], batch[B.E_N + l] = f_n, e_n
-        batch[B.HELD + l], batch[B.TOUCHING + l] = 1.0 if held else 0.0, 1.0 if touching else 0.0
+        batch[B.HELD + l], batch[B.TOUCHING + l] = held, touching
 
 
-def _make_tangential(plane_case: int) -> Any:
+def _make_tangential(plane: bool) -> Any:
     @inner(fastmath=FAST)
     def tangential(
         total: bool, drop: bool, cap_total: bool, least: float, m: int, hdt: float, c: Any, batch: Any
     ) -> None:
-        """Tangential force, its books and the earlier half of the normal ones, and what both grains get."""
+        """Tangential force, its work, the first half of the normal work; force and torques on both grains."""
         dt, k_n, k_s, mu, cohesion = c[P.DT], c[P.K_N], c[P.K_S], c[P.MU], c[P.COHESION]
         soft_n, soft_s = 1.0 / k_n if k_n > 0.0 else 0.0, 1.0 / k_s if k_s > 0.0 else 0.0
         for l in range(min(m, B.LANES)):
             n_x, n_y, n_z = batch[B.NORMAL + l], 0.0, batch[B.NORMAL + 2 * B.PITCH + l]
-            f_n, e_n, held, touching = (
-                batch[B.F_N + l],
-                batch[B.E_N + l],
-                batch[B.HELD + l],
-                batch[B.TOUCHING + l],
-            )
+            f_n, e_n = batch[B.F_N + l], batch[B.E_N + l]
+            held, touching = batch[B.HELD + l], batch[B.TOUCHING + l]
             p_x, p_y, p_z = batch[B.SPRING + 4 * l], batch[B.SPRING + 4 * l + 1], batch[B.SPRING + 4 * l + 2]
             q_x, q_y, q_z = batch[B.DASH + 4 * l], batch[B.DASH + 4 * l + 1], batch[B.DASH + 4 * l + 2]
-            s_x, s_y, s_z = batch[B.SLIP + l], 0.0, 0.0
-            eta_s, closing = batch[B.ETA_S + l], batch[B.CLOSING + l]
-            f_old, d_old = batch[B.SPRING + 4 * l + 3], batch[B.DASH + 4 * l + 3]
-            work, e_old, drawn = hdt * closing * d_old, f_old - d_old, f_old > least
-            left = batch[B.WAS_TOUCHING + l] > touching
-            batch[B.DASH_N + l] += work if drawn else 0.0
-            batch[B.RELEASED_N + l] += 0.0 if drawn else work
-            batch[B.STEP + l] += 0.5 * e_old * (-2.0 * hdt * closing - e_old * soft_n) if left else 0.0
-            if not plane_case:
-                n_y = batch[B.NORMAL + B.PITCH + l]
+            s_x, s_y, s_z, twist = batch[B.SLIP + l], 0.0, 0.0, 0.0
+            if not plane:
+                n_y, twist = batch[B.NORMAL + B.PITCH + l], batch[B.TWIST + l]
                 s_y, s_z = batch[B.SLIP + B.PITCH + l], batch[B.SLIP + 2 * B.PITCH + l]
-                twist = batch[B.TWIST + l]
-                p_x, p_y, p_z = turn(p_x, p_y, p_z, n_x, n_y, n_z, twist)
-            tau_c = shear_strength(f_n if cap_total else e_n, cohesion, mu)
-            e_x, e_y, e_z = p_x - k_s * s_x * dt, p_y, p_z  # the last two zeros in a plane
-            b_x, b_y, b_z = -eta_s * s_x, q_y, q_z
-            if not plane_case:
-                e_y, e_z = p_y - k_s * s_y * dt, p_z - k_s * s_z * dt
-                b_y, b_z = -eta_s * s_y, -eta_s * s_z
-            g_x = e_x + b_x if total else e_x
-            if plane_case:
-                size = math.fabs(g_x)
-            else:
-                g_y, g_z = e_y + b_y if total else e_y, e_z + b_z if total else e_z
-                size = math.sqrt(g_x * g_x + g_y * g_y + g_z * g_z)
-            share, swap, keep = slide(size, tau_c, drop, total)
-            share, swap, keep = held * share, held * swap, held * keep
-            e_x, b_x = share * e_x + swap * b_x, keep * b_x
-            taken, lost = s_x * (p_x + e_x), s_x * (q_x + b_x)
-            spent = p_x * p_x - e_x * e_x
-            if not plane_case:
-                e_y, b_y = share * e_y + swap * b_y, keep * b_y
-                e_z, b_z = share * e_z + swap * b_z, keep * b_z
-                taken += s_y * (p_y + e_y) + s_z * (p_z + e_z)
-                lost += s_y * (q_y + b_y) + s_z * (q_z + b_z)
-                spent += p_y * p_y - e_y * e_y + (p_z * p_z - e_z * e_z)
-            taken = 0.5 * spent * soft_s - hdt * taken if share < 1.0 else 0.0
-            batch[B.DASH_S + l] += -hdt * lost
-            batch[B.SLIDE + l] += held * taken
-            batch[B.RELEASED_S + l] += taken - held * taken
+            dashpot_n, released_n, step = normal_work_of_last_force(
+                batch[B.CLOSING + l], batch[B.SPRING + 4 * l + 3], batch[B.DASH + 4 * l + 3],
+                batch[B.WAS_TOUCHING + l] > touching, least, soft_n, hdt,
+            )  # fmt: skip
+            e_x, e_y, e_z, b_x, b_y, b_z, share, dashpot_s, sliding, released_s = tangential_step(
+                plane, total, drop, cap_total, n_x, n_y, n_z, twist, f_n, e_n, held, s_x, s_y, s_z,
+                p_x, p_y, p_z, q_x, q_y, q_z, k_s, soft_s, batch[B.ETA_S + l], cohesion, mu, dt, hdt,
+            )  # fmt: skip
+            f_x, f_y, f_z, t_x, t_y, t_z = contact_force(
+                plane, n_x, n_y, n_z, f_n, e_x + b_x, e_y + b_y, e_z + b_z
+            )
+            batch[B.DASH_N + l] += dashpot_n
+            batch[B.RELEASED_N + l] += released_n
+            batch[B.STEP + l] += step
+            batch[B.DASH_S + l] += dashpot_s
+            batch[B.SLIDE + l] += sliding
+            batch[B.RELEASED_S + l] += released_s
             batch[B.SLIDES + l] = 1.0 if share < 1.0 else 0.0
             batch[B.SPRING + 4 * l], batch[B.SPRING + 4 * l + 1] = e_x, e_y
             batch[B.SPRING + 4 * l + 2], batch[B.SPRING + 4 * l + 3] = e_z, f_n
             batch[B.DASH + 4 * l], batch[B.DASH + 4 * l + 1] = b_x, b_y
             batch[B.DASH + 4 * l + 2], batch[B.DASH + 4 * l + 3] = b_z, f_n - e_n
-            if plane_case:
-                h = e_x + b_x
-                h_x, h_y, h_z = h * n_z, 0.0, -h * n_x
-                t_x, t_y, t_z = 0.0, h, 0.0
-            else:
-                h_x, h_y, h_z = e_x + b_x, e_y + b_y, e_z + b_z
-                t_x, t_y, t_z = n_y * h_z - n_z * h_y, n_z * h_x - n_x * h_z, n_x * h_y - n_y * h_x
             a_i, a_j = batch[B.ARM_I + l], batch[B.ARM_J + l]
-            batch[B.FORCE + 4 * l], batch[B.FORCE + 4 * l + 1] = h_x - f_n * n_x, h_y - f_n * n_y
-            batch[B.FORCE + 4 * l + 2], batch[B.FORCE + 4 * l + 3] = h_z - f_n * n_z, 0.0
+            batch[B.FORCE + 4 * l], batch[B.FORCE + 4 * l + 1] = f_x, f_y
+            batch[B.FORCE + 4 * l + 2], batch[B.FORCE + 4 * l + 3] = f_z, 0.0
             batch[B.TORQUE_I + 4 * l], batch[B.TORQUE_I + 4 * l + 1] = a_i * t_x, a_i * t_y
             batch[B.TORQUE_I + 4 * l + 2], batch[B.TORQUE_I + 4 * l + 3] = a_i * t_z, touching
             batch[B.TORQUE_J + 4 * l], batch[B.TORQUE_J + 4 * l + 1] = a_j * t_x, a_j * t_y
@@ -248,8 +205,8 @@ def _make_tangential(plane_case: int) -> Any:
 
 
 # Built once for a plane and once for space; not handed over as functions, which numba could not keep on disk.
-_kinematics_plane, _kinematics_space = _make_kinematics(1), _make_kinematics(0)
-_tangential_plane, _tangential_space = _make_tangential(1), _make_tangential(0)
+_kinematics_plane, _kinematics_space = _make_kinematics(True), _make_kinematics(False)
+_tangential_plane, _tangential_space = _make_tangential(True), _make_tangential(False)
 
 
 @inner(fastmath=FAST, forceinline=True)

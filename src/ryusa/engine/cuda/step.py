@@ -17,7 +17,7 @@ from ryusa.engine.cuda.arrays import (
 )
 from ryusa.engine.cuda.device import cuda, device, on_device
 from ryusa.engine.cuda.integration import make_integrate
-from ryusa.engine.cuda.pair import contact_kinematics, make_contact_force, track_overlap
+from ryusa.engine.cuda.pair import make_contact, track_overlap
 from ryusa.engine.cuda.step_totals import NO_GRAIN
 from ryusa.engine.shared import block_statistics as S
 from ryusa.engine.shared import memory_rows as M
@@ -38,6 +38,7 @@ from ryusa.engine.shared.status import (
     STOP_UNSAFE,
 )
 from ryusa.engine.shared.variant import KernelVariant, LawChoice
+from ryusa.laws.contact_step import contact_kinematics
 from ryusa.laws.geometry import wrap
 from ryusa.laws.immersed import lubrication_force
 from ryusa.laws.rolling import reduced_radius
@@ -61,13 +62,14 @@ _begin_record, _keep_record, _end_record = (
 @cache
 def make_step(variant: KernelVariant, choice: LawChoice, shape: LaunchShape) -> Any:
     """Build the kernel of one variant, for blocks of one shape."""
-    plane_case, rolling, events, film = variant.plane_case, variant.rolling, variant.events, variant.film
+    plane_case = variant.plane_case != 0
+    rolling, events, film = variant.rolling, variant.events, variant.film
     model, arms, tension, rule = choice.rolling, choice.arm, choice.tension, choice.events
     record_at, threads, group, parts = variant.event_column, shape.threads, shape.group, shape.parts
     run = threads // parts
     n_total, n_stat = T.N_COLUMN, S.N_STATISTIC  # the size of a local array has to be a literal
     both_ways = 1.0 if model == ROLL_PRINTED else -1.0  # Eq. (13) as printed turns both grains one way
-    contact_force, integrate = make_contact_force(variant, choice), make_integrate(variant, choice)
+    contact, integrate = make_contact(variant, choice), make_integrate(variant, choice)
 
     @cuda.jit
     def step(
@@ -141,23 +143,26 @@ def make_step(variant: KernelVariant, choice: LawChoice, shape: LaunchShape) -> 
                     continue
 
                 # seen from the grain with the lower id, whichever side this is: both get the same bits
-                u = (sign * (v[i, 0] - v[j, 0]), sign * (v[i, 1] - v[j, 1]), sign * (v[i, 2] - v[j, 2]))
+                u_x, u_y, u_z = (
+                    sign * (v[i, 0] - v[j, 0]), sign * (v[i, 1] - v[j, 1]), sign * (v[i, 2] - v[j, 2]),
+                )  # fmt: skip
                 a, b = (i, j) if own else (j, i)
-                r_a, r_b = (r_i, r_j) if own else (r_j, r_i)
+                r_a = r_i if own else r_j
                 w_a, w_b = (w[a, 0], w[a, 1], w[a, 2]), (w[b, 0], w[b, 1], w[b, 2])
-                kinematics = contact_kinematics(plane_case, (d_x, d_y, d_z), r_a, r_b, u, w_a, w_b, dt)
-                normal, overlap, arm_a, arm_b, closing, slip, _ = kinematics
+                n_x, n_y, n_z, overlap, arm_a, arm_b, closing, s_x, s_y, s_z, twist = contact_kinematics(
+                    plane_case, d_x, d_y, d_z, r_i + r_j, r_a, u_x, u_y, u_z,
+                    w_a[0], w_a[1], w_a[2], w_b[0], w_b[1], w_b[2], dt,
+                )  # fmt: skip
+                normal, slip = (n_x, n_y, n_z), (s_x, s_y, s_z)
                 arm_i = arm_a if own else arm_b
                 weight = 1.0 if own else 0.0
                 if was or overlap > 0.0:
                     row = rows[k]
-                    live, f_n, raw, slides, along, turned = contact_force(
-                        a, b, weight, was, hdt, c, m, w, kinematics, pairs.eta[k], row, totals
-                    )
-                    lives[k] = 1 if live else 0
-                    p_x, p_y, p_z = (
-                        along[0] - f_n * normal[0], along[1] - f_n * normal[1], along[2] - f_n * normal[2],
+                    live, f_n, raw, slides, (p_x, p_y, p_z), turned = contact(
+                        a, b, weight, was, hdt, c, m, w, normal, overlap, closing, slip, twist, pairs.eta[k],
+                        row, totals,
                     )  # fmt: skip
+                    lives[k] = 1 if live else 0
                     f_x, f_y, f_z = f_x + sign * p_x, f_y + sign * p_y, f_z + sign * p_z
                     t_x, t_y, t_z = t_x + arm_i * turned[0], t_y + arm_i * turned[1], t_z + arm_i * turned[2]
                     if live:

@@ -4,10 +4,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
 
-from ryusa.laws._law import LAWS, compiled, edition
+from ryusa.laws._law import FAST, LAWS, compiled, edition
 
 F = TypeVar("F", bound=Callable[..., Any])
-FAST = {"contract", "nsz"}  # fused multiply-add and no care for the sign of zero; nothing that hides a NaN
+
+__all__ = ["FAST", "inner", "kernel"]
 
 _ENGINE = Path(__file__).parents[1]
 # A kernel of one room is inlined into kernels of the other: both have one edition, and that of CUDA none.

@@ -1,0 +1,277 @@
+"""One contact, one time step: how two grains meet, the forces between them, and the work these forces do.
+
+Every engine calls these functions: it gathers the numbers of a pair, and scatters what comes back. Work is
+accounted by velocity interval. Over the interval from x(n-1) to x(n), with the velocity v(n-1/2), a force
+does the work v dt (f(n-1) + f(n))/2, which is exact for the scheme when kinetic energy is taken as
+m v(n-1/2).v(n+1/2)/2. Vectors are along x, y and z. A plane scene keeps one tangential component, along
+(n_z, 0, -n_x), as the first of the three: it needs no rotation of the contact frame, and no square root for
+the length.
+"""
+
+import math
+
+from ryusa.laws._law import step_law
+from ryusa.laws.contact import shear_strength, slide
+from ryusa.laws.geometry import arm, turn
+from ryusa.laws.geometry import overlap as overlap_of
+
+
+@step_law
+def contact_kinematics(
+    plane: bool, d_x: float, d_y: float, d_z: float, reach: float, r_i: float, u_x: float, u_y: float,
+    u_z: float, w_ix: float, w_iy: float, w_iz: float, w_jx: float, w_jy: float, w_jz: float, dt: float,
+) -> tuple[float, float, float, float, float, float, float, float, float, float, float]:  # fmt: skip
+    """How grain i meets grain j.
+
+    Parameters
+    ----------
+    plane : the grains move in the x-z plane; y components, and spins but that about y, are not used.
+    d_x, d_y, d_z : from the centre of i to that of j, the nearest periodic image [m].
+    reach : sum of the two radii [m].
+    r_i : radius of i [m].
+    u_x, u_y, u_z : velocity of i less that of j [m/s].
+    w_ix, w_iy, w_iz, w_jx, w_jy, w_jz : spins [rad/s].
+    dt : time step [s].
+
+    Returns
+    -------
+    n_x, n_y, n_z : unit normal from i to j [-].
+    overlap : positive in touch [m].
+    a_i, a_j : arms from the centres to the contact point [m].
+    closing : speed at which the surfaces approach [m/s].
+    s_x, s_y, s_z : slip velocity of i against j at the contact point [m/s].
+    twist : angle the pair turned about its normal within the step [rad].
+
+    Notes
+    -----
+    Source: the paper, Eqs. (2) and (12), with unit normals instead of angles, and with arms to the middle of
+    the overlap (`geometry.arm`). Two equal spheres that roll on each other do not slip:
+
+    >>> spins = 0.0, 3.0, 0.0, 0.0, -3.0, 0.0
+    >>> met = contact_kinematics(True, 1.5, 0.0, 0.0, 2.0, 1.0, 0.5, 0.0, 0.0, *spins, 0.1)
+    >>> met[:6], met[6], met[7]
+    ((1.0, 0.0, 0.0, 0.5, 0.75, 0.75), 0.5, 0.0)
+    """
+    n_y = s_y = s_z = twist = 0.0
+    square = d_x * d_x + d_z * d_z
+    if not plane:
+        square += d_y * d_y
+    distance = math.sqrt(square)
+    inverse = 1.0 / distance
+    n_x, n_z = d_x * inverse, d_z * inverse
+    overlap = overlap_of(reach, 0.0, distance)
+    a_i = arm(r_i, overlap)
+    a_j = distance - a_i
+    closing = u_x * n_x + u_z * n_z
+    if plane:
+        s_x = u_x * n_z - u_z * n_x
+        s_x += a_i * w_iy + a_j * w_jy
+    else:
+        n_y = d_y * inverse
+        closing += u_y * n_y
+        s_x, s_y, s_z = u_x - closing * n_x, u_y - closing * n_y, u_z - closing * n_z
+        g_x, g_y, g_z = a_i * w_ix + a_j * w_jx, a_i * w_iy + a_j * w_jy, a_i * w_iz + a_j * w_jz
+        s_x += g_y * n_z - g_z * n_y
+        s_y += g_z * n_x - g_x * n_z
+        s_z += g_x * n_y - g_y * n_x
+        twist = 0.5 * dt * ((w_ix + w_jx) * n_x + (w_iy + w_jy) * n_y + (w_iz + w_jz) * n_z)
+    return n_x, n_y, n_z, overlap, a_i, a_j, closing, s_x, s_y, s_z, twist
+
+
+@step_law
+def normal_step(
+    overlap: float, closing: float, raw: float, was_touching: bool, least: float, k_n: float, hdt: float
+) -> tuple[float, float, float, float, float, float, float]:
+    """Normal force of a step, and its work over the half interval before it.
+
+    Parameters
+    ----------
+    overlap, closing : as `contact_kinematics` gives them [m], [m/s].
+    raw : normal force before it is cut (`contact.normal_force`) [N].
+    was_touching : the pair touched in the last step.
+    least : least normal force a contact may have [N]: 0, or -inf where the dashpot may pull.
+    k_n : normal stiffness [N/m].
+    hdt : half the time step [s]; 0 in the first step of a run.
+
+    Returns
+    -------
+    f_n : normal force [N]; positive pushes apart.
+    e_n : that of the spring alone [N].
+    held, touching : 1 where the contact resists, and where the grains touch; else 0 [-].
+    dashpot, released : work that the dashpot took, and that a cut force left out [J].
+    step : energy that the step gave because the spring began within it [J].
+
+    Notes
+    -----
+    Source: the paper, Eq. (1), read from overlap. A spring that begins within a step holds k_n overlap**2/2,
+    and the half interval takes e_n closing hdt for it: `step` is the difference.
+
+    >>> [round(x, 9) for x in normal_step(1.0e-5, 0.1, 0.11, True, 0.0, 1.0e4, 1.0e-6)]
+    [0.11, 0.1, 1.0, 1.0, 1e-09, 0.0, 0.0]
+    """
+    touching = overlap > 0.0
+    e_n = k_n * overlap if touching else 0.0
+    f_n = max(raw, least) if touching else 0.0
+    held = touching and f_n > least
+    work = hdt * closing * (f_n - e_n)
+    begins = touching and (not was_touching) and hdt > 0.0
+    step = -0.5 * e_n * (2.0 * hdt * closing - overlap) if begins else 0.0
+    dashpot, released = work if held else 0.0, 0.0 if held else work
+    return f_n, e_n, 1.0 if held else 0.0, 1.0 if touching else 0.0, dashpot, released, step
+
+
+@step_law
+def normal_work_of_last_force(
+    closing: float, f_old: float, d_old: float, ends: bool, least: float, soft_n: float, hdt: float
+) -> tuple[float, float, float]:
+    """Work of the normal force of the last step over the half interval after it [J].
+
+    Parameters
+    ----------
+    closing : closing speed now, which is that of the interval [m/s].
+    f_old : normal force in the last step [N].
+    d_old : that force less its spring [N].
+    ends : the pair touched in the last step and does no more.
+    least : as in `normal_step` [N].
+    soft_n : one over the normal stiffness [m/N]; 0 without a spring.
+    hdt : half the time step [s].
+
+    Returns
+    -------
+    dashpot, released : work that the dashpot took, and that a cut force left out [J].
+    step : energy that the step gave because the spring ended within it [J].
+
+    >>> [round(x, 12) for x in normal_work_of_last_force(-0.1, 0.11, 0.01, False, 0.0, 1.0e-4, 1.0e-6)]
+    [-1e-09, 0.0, 0.0]
+    """
+    work, e_old, held = hdt * closing * d_old, f_old - d_old, f_old > least
+    step = 0.5 * e_old * (-2.0 * hdt * closing - e_old * soft_n) if ends else 0.0
+    return work if held else 0.0, 0.0 if held else work, step
+
+
+@step_law
+def tangential_step(
+    plane: bool, total: bool, drop: bool, cap_total: bool, n_x: float, n_y: float, n_z: float, twist: float,
+    f_n: float, e_n: float, held: float, s_x: float, s_y: float, s_z: float, p_x: float, p_y: float,
+    p_z: float, q_x: float, q_y: float, q_z: float, k_s: float, soft_s: float, eta_s: float, cohesion: float,
+    mu: float, dt: float, hdt: float,
+) -> tuple[float, float, float, float, float, float, float, float, float, float]:  # fmt: skip
+    """Tangential spring and dashpot on grain i after a step, and the work of the whole interval.
+
+    Parameters
+    ----------
+    plane : as in `contact_kinematics`.
+    total, drop : how sliding is capped, as in `contact.slide`.
+    cap_total : friction is fed by the whole normal force; else by its spring, Eq. (4) as printed.
+    n_x, n_y, n_z, twist, s_x, s_y, s_z : as `contact_kinematics` gives them [-], [rad], [m/s].
+    f_n, e_n, held : as `normal_step` gives them [N], [N], [-].
+    p_x, p_y, p_z : spring force on i in the last step [N].
+    q_x, q_y, q_z : dashpot force on i in the last step [N].
+    k_s, eta_s : tangential stiffness [N/m] and dashpot [N s/m].
+    soft_s : one over the stiffness [m/N]; 0 without a spring.
+    cohesion, mu : of the shear strength, as in `contact.shear_strength` [N], [-].
+    dt, hdt : time step and half of it [s]; `hdt` is 0 in the first step of a run.
+
+    Returns
+    -------
+    e_x, e_y, e_z : spring force on i [N].
+    b_x, b_y, b_z : dashpot force on i [N].
+    share : part of the spring that is left; less than 1 where the contact slides [-].
+    dashpot, sliding, released : work that the dashpot took, that sliding took, and that was left out because
+        the contact does not hold [J].
+
+    Notes
+    -----
+    Source: the paper, Eqs. (2)-(4). In plane motion components y and z are handed through. Sliding takes the
+    energy that leaves the spring less what the interval puts into it.
+
+    >>> spring = tangential_step(
+    ...     True,
+    ...     False,
+    ...     False,
+    ...     False,
+    ...     0.0,
+    ...     0.0,
+    ...     1.0,
+    ...     0.0,
+    ...     1.0,
+    ...     1.0,
+    ...     1.0,
+    ...     -0.1,
+    ...     0.0,
+    ...     0.0,
+    ...     0.5,
+    ...     0.0,
+    ...     0.0,
+    ...     0.0,
+    ...     0.0,
+    ...     0.0,
+    ...     1.0,
+    ...     1.0,
+    ...     0.0,
+    ...     0.0,
+    ...     0.5,
+    ...     0.1,
+    ...     0.05,
+    ... )
+    >>> spring[0], round(spring[6], 3), round(spring[8], 12)
+    (0.5, 0.98, 0.005)
+    """
+    tau_c = shear_strength(f_n if cap_total else e_n, cohesion, mu)
+    if plane:
+        e_x, e_y, e_z = p_x - k_s * s_x * dt, p_y, p_z
+        b_x, b_y, b_z = -eta_s * s_x, q_y, q_z
+        size = math.fabs(e_x + b_x if total else e_x)
+    else:
+        p_x, p_y, p_z = turn(p_x, p_y, p_z, n_x, n_y, n_z, twist)
+        e_x, e_y, e_z = p_x - k_s * s_x * dt, p_y - k_s * s_y * dt, p_z - k_s * s_z * dt
+        b_x, b_y, b_z = -eta_s * s_x, -eta_s * s_y, -eta_s * s_z
+        g_x = e_x + b_x if total else e_x
+        g_y, g_z = e_y + b_y if total else e_y, e_z + b_z if total else e_z
+        size = math.sqrt(g_x * g_x + g_y * g_y + g_z * g_z)
+    share, swap, keep = slide(size, tau_c, drop, total)
+    share, swap, keep = held * share, held * swap, held * keep
+    e_x, b_x = share * e_x + swap * b_x, keep * b_x
+    taken, lost = s_x * (p_x + e_x), s_x * (q_x + b_x)
+    spent = p_x * p_x - e_x * e_x
+    if not plane:
+        e_y, b_y = share * e_y + swap * b_y, keep * b_y
+        e_z, b_z = share * e_z + swap * b_z, keep * b_z
+        taken += s_y * (p_y + e_y) + s_z * (p_z + e_z)
+        lost += s_y * (q_y + b_y) + s_z * (q_z + b_z)
+        spent += p_y * p_y - e_y * e_y + (p_z * p_z - e_z * e_z)
+    taken = 0.5 * spent * soft_s - hdt * taken if share < 1.0 else 0.0
+    return e_x, e_y, e_z, b_x, b_y, b_z, share, -hdt * lost, held * taken, taken - held * taken
+
+
+@step_law
+def contact_force(
+    plane: bool, n_x: float, n_y: float, n_z: float, f_n: float, h_x: float, h_y: float, h_z: float
+) -> tuple[float, float, float, float, float, float]:
+    """Force on grain i of a contact, and what an arm makes the torque on either grain.
+
+    Parameters
+    ----------
+    plane : as in `contact_kinematics`.
+    n_x, n_y, n_z : unit normal from i to j [-].
+    f_n : normal force [N].
+    h_x, h_y, h_z : tangential force on i [N].
+
+    Returns
+    -------
+    f_x, f_y, f_z : force on i [N]; that on j is its opposite.
+    t_x, t_y, t_z : normal times tangential force [N]; an arm times it is the torque on that grain, for both.
+
+    Notes
+    -----
+    Source: the paper, Eqs. (5)-(7).
+
+    >>> contact_force(True, 0.0, 0.0, 1.0, 2.0, 0.5, 0.0, 0.0)
+    (0.5, 0.0, -2.0, 0.0, 0.5, 0.0)
+    """
+    if plane:
+        t_x, t_y, t_z = 0.0, h_x, 0.0
+        h_x, h_y, h_z = h_x * n_z, 0.0, -h_x * n_x
+    else:
+        t_x, t_y, t_z = n_y * h_z - n_z * h_y, n_z * h_x - n_x * h_z, n_x * h_y - n_y * h_x
+    return h_x - f_n * n_x, h_y - f_n * n_y, h_z - f_n * n_z, t_x, t_y, t_z
