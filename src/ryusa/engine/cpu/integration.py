@@ -16,7 +16,13 @@ from ryusa.engine.shared.fluid import close_fluid_interval
 from ryusa.engine.shared.kernel import FAST, inner
 from ryusa.engine.shared.status import FAULT_NONE, FAULT_NOT_A_NUMBER
 from ryusa.engine.shared.variant import KernelVariant, LawChoice
-from ryusa.laws.motion import acceleration, acceleration_spin, semi_implicit
+from ryusa.laws.grain_step import (
+    kinetic_energy,
+    potential_energy,
+    rotation_step,
+    translation_step,
+    unwrapped,
+)
 
 
 @inner(fastmath=FAST, forceinline=True)
@@ -27,13 +33,12 @@ def square_length(row: Any) -> float:
 
 
 @inner(fastmath=FAST, forceinline=True)
-def dot(a: Any, b: Any) -> float:
-    """Scalar product of two vectors, the first three of a row."""
-    return (
-        component(a, 0) * component(b, 0)
-        + component(a, 1) * component(b, 1)
-        + component(a, 2) * component(b, 2)
-    )
+def kinetic_energy_of_row(m: float, before: Any, after: Any) -> float:
+    """Kinetic energy [J] of a mass or a moment of inertia, its velocities the first three of a row."""
+    return kinetic_energy(
+        m, component(before, 0), component(before, 1), component(before, 2),
+        component(after, 0), component(after, 1), component(after, 2),
+    )  # fmt: skip
 
 
 @inner(fastmath=FAST, forceinline=True)
@@ -49,17 +54,6 @@ def gather_incoming(i: int, active: Any, incoming: Any, incoming_start: Any, f: 
             if len(film):
                 add4(film, 4 * i, film, 4 * q)
                 fill4(film, 4 * q, 0.0)
-
-
-@inner(fastmath=FAST, forceinline=True)
-def height_of(i: int, c: Any, x: Any, image: Any) -> float:
-    """Height of grain i along gravity, times gravity [m2/s2], the periods it crossed counted."""
-    y_x, y_y = x[i, 0], x[i, 1]
-    if image[i, 0] != 0:
-        y_x += image[i, 0] * c[P.PERIOD_X]
-    if image[i, 1] != 0:
-        y_y += image[i, 1] * c[P.PERIOD_Y]
-    return c[P.G_X] * y_x + c[P.G_Y] * y_y + c[P.G_Z] * x[i, 2]
 
 
 @inner(fastmath=FAST, forceinline=True)
@@ -106,11 +100,10 @@ def integrate(
             fluid_forces(variant, choice, i, c, grains, table)
             push, turn, drag = read4(table, G.FORCE), read4(table, G.TORQUE), read4(table, G.DRAG)
             inverse = 1.0 / (m_bare[i] + table[G.ADDED])
-        a = acceleration(push, drag, m_weight[i] * gravity, inverse)
-        x_new, after = semi_implicit(x_new, before, a, dt)
+        x_new, after = translation_step(x_new, before, push, drag, m_weight[i] * gravity, inverse, dt)
         whirl = spin
         if variant.rotation:  # the count of contacts, fourth, turns nothing
-            whirl = spin + dt * acceleration_spin(with_fourth(turn, 0.0), per_inertia[i])
+            whirl = rotation_step(spin, with_fourth(turn, 0.0), per_inertia[i], dt)
         if water is not None:
             write4(table, G.V, before)
             write4(table, G.V_NEW, after)
@@ -118,9 +111,12 @@ def integrate(
             write4(table, G.W_NEW, whirl)
             fluid_work(variant, choice, i, half, c, grains, table, account, stats)
         if last:
-            stats[S.KINETIC] += 0.5 / inverse * dot(before, after)
-            stats[S.SPIN] += 0.5 * inertia[i] * dot(spin, whirl) if variant.rotation else 0.0
-            stats[S.POTENTIAL] -= m_weight[i] * height_of(i, c, x, image)
+            stats[S.KINETIC] += kinetic_energy_of_row(1.0 / inverse, before, after)
+            stats[S.SPIN] += kinetic_energy_of_row(inertia[i], spin, whirl) if variant.rotation else 0.0
+            stats[S.POTENTIAL] += potential_energy(
+                m_weight[i], c[P.G_X], c[P.G_Y], c[P.G_Z], unwrapped(x[i, 0], image[i, 0], c[P.PERIOD_X]),
+                unwrapped(x[i, 1], image[i, 1], c[P.PERIOD_Y]), x[i, 2],
+            )  # fmt: skip
         write4(x, 4 * i, x_new)
         write4(v, 8 * i, after)
         fast, fast_spin = square_length(after), 0.0

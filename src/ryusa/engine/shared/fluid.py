@@ -5,7 +5,7 @@ from typing import Any
 
 from ryusa.engine.shared import block_statistics as S
 from ryusa.engine.shared import parameters as P
-from ryusa.engine.shared.kernel import inner
+from ryusa.engine.shared.kernel import FAST, inner
 from ryusa.engine.shared.variant import LawChoice
 from ryusa.laws.lift import (
     lift_saffman_mei,
@@ -14,14 +14,16 @@ from ryusa.laws.lift import (
     magnus_oesterle_dinh,
     magnus_rubinow_keller,
 )
+from ryusa.laws.torque import torque_dennis, torque_stokes
 from ryusa.laws.water import log_law_rough, log_law_smooth, uniform
-from ryusa.model.enums import Above, Buoyancy, Lift, Magnus, Profile
+from ryusa.model.enums import Above, Buoyancy, Lift, Magnus, Profile, WaterTorque
 from ryusa.model.fluid import PHI, SHEAR, SUBMERGED, U, V, W
-from ryusa.model.resistance import hindered
+from ryusa.model.resistance import drag_of, hindered
 from ryusa.model.tally import Book
 
 ROUGH, SMOOTH, UNIFORM = int(Profile.LOG_ROUGH), int(Profile.LOG_SMOOTH), int(Profile.UNIFORM)
-HOLD = int(Above.HOLD)
+HOLD, DRY = int(Above.HOLD), int(Above.DRY)
+STOKES = int(WaterTorque.STOKES)
 STRESS = int(Buoyancy.STRESS)
 WIBERG_SMITH, SAFFMAN_MEI = int(Lift.WIBERG_SMITH), int(Lift.SAFFMAN_MEI)
 LOTH, OESTERLE_DINH = int(Magnus.LOTH), int(Magnus.OESTERLE_DINH)
@@ -78,6 +80,33 @@ def column_forces(
         l_y += k * (o_z * u_x - o_x * u_z)
         l_z += k * (o_x * u_y - o_y * u_x)
     return k_d, k_d * u_x, k_d * u_y, k_d * u_z, share * l_x, share * l_y, share * l_z
+
+
+@inner(fastmath=FAST)
+def profile_drag(
+    choice: LawChoice, c: Any, r: float, z: float, v_x: float, v_y: float, v_z: float
+) -> tuple[bool, float, float, float]:
+    """Whether a grain at height z is out of the water of a given profile, and the drag on it [N]."""
+    z = z - c[P.Z_ZERO]
+    dry = choice.profile == 0 or (choice.above == DRY and z > c[P.DEPTH])
+    d_x = d_y = d_z = 0.0
+    if choice.drag and not dry:
+        u_x, u_y, u_z = water_speed(choice.profile, choice.above, z, c) - v_x, -v_y, -v_z
+        slip = math.sqrt(u_x * u_x + u_y * u_y + u_z * u_z)
+        k_d = drag_of(choice.drag, slip, 2.0 * r, c[P.NU], c[P.RHO_W], c[P.A_2], c[P.C_D])
+        d_x, d_y, d_z = k_d * u_x, k_d * u_y, k_d * u_z
+    return dry, d_x, d_y, d_z
+
+
+@inner(fastmath=FAST)
+def torque_over_spin(
+    choice: LawChoice, c: Any, submerged: float, r: float, o_x: float, o_y: float, o_z: float
+) -> float:
+    """Torque of the water on a grain over its spin o against the water [N m s]."""
+    spin = math.sqrt(o_x * o_x + o_y * o_y + o_z * o_z)
+    if choice.torque == STOKES:
+        return submerged * torque_stokes(spin, 2.0 * r, c[P.NU], c[P.RHO_W])
+    return submerged * torque_dennis(spin, 2.0 * r, c[P.NU], c[P.RHO_W])
 
 
 @inner()
