@@ -38,7 +38,7 @@ def case_reference() -> str:
     definitions: dict[str, Any] = schema["$defs"]
     top: dict[str, Any] = schema["properties"]
     required = set(schema.get("required", []))
-    lines = ["## Beside the tables", "", *_table("", _plain_keys(top), required, definitions)]
+    lines = ["## Top-level keys", "", *_table("", _plain_keys(top), required, definitions)]
     for key, about in top.items():
         if key in _plain_keys(top):
             continue
