@@ -73,7 +73,7 @@ html_copy_source = False
 html_theme_options = {
     "logo": {"text": "ryusa 流砂"},
     "header_links_before_dropdown": 8,
-    "collapse_navigation": True,  # else every page holds the tree of all modules, and the build takes twice as long
+    "collapse_navigation": True,  # otherwise every page holds the tree of all modules
     "navigation_depth": 3,
     "show_nav_level": 1,
     "show_toc_level": 2,
