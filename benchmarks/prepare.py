@@ -154,8 +154,9 @@ def _kept(scene: Any, state: State, without: str | None = None) -> Grains:
 def free_scene(grains: Grains, slip: str, slope: float, *, plane: bool) -> tuple[Any, State]:
     """Scene and first state of given grains, by the front door for scripts."""
     from ryusa.build import scene
+    from ryusa.laws.families import Cap, Slip
     from ryusa.model import ContactLaw
-    from ryusa.model.enums import Cap, Damping, EventRule, Slip
+    from ryusa.model.scene import Damping, EventRule
 
     law = ContactLaw(
         k_n=workloads.K_N, k_s=workloads.K_S, mu=workloads.MU, damping=Damping.CONSTANTS,

@@ -19,8 +19,9 @@ from ryusa.engine.shared import fluid
 from ryusa.engine.shared.parameters import parameters_of
 from ryusa.errors import CaseError
 from ryusa.laws import drag
-from ryusa.model.enums import Damping, Drag, EventRule, Profile
-from ryusa.model.resistance import drag_of
+from ryusa.laws.dispatch import drag_of
+from ryusa.laws.families import Drag, Profile
+from ryusa.model.scene import Damping, EventRule
 
 BASE = """
 [grains]

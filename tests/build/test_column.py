@@ -10,9 +10,20 @@ from ryusa.build import build, change
 from ryusa.casefile import Case, ChangeSection, read, read_text
 from ryusa.casefile.water.values import terminal_velocity
 from ryusa.errors import CaseError
+from ryusa.laws.families import (
+    BedKind,
+    Buoyancy,
+    Drive,
+    Fluctuations,
+    Hindrance,
+    Lift,
+    Magnus,
+    Mixing,
+    Profile,
+    SideWalls,
+    SurfaceRule,
+)
 from ryusa.model import Column
-from ryusa.model.column import Bed, Drive, Fluctuations, Mixing, SideWalls, Surface
-from ryusa.model.enums import Buoyancy, Hindrance, Lift, Magnus, Profile
 from ryusa.running.runner import run
 
 D, G = 0.002, 9.80665
@@ -131,7 +142,7 @@ def test_over_a_fixed_bed_the_column_begins_at_its_zero(build_: str, zero: float
     ):
         found = column(build=build_, **{"water__column__bed": "rough"} | keys)
         assert (found.z_low, found.origin) == (pytest.approx(z_low), pytest.approx(z_low))
-        assert (found.bed, found.k_rough, found.mixing) == (Bed.ROUGH, D, Mixing.PARABOLIC)
+        assert (found.bed, found.k_rough, found.mixing) == (BedKind.ROUGH, D, Mixing.PARABOLIC)
 
 
 def test_a_floor_is_the_bottom_and_a_bottom_given_is_taken() -> None:
@@ -148,13 +159,13 @@ def test_every_word_of_the_case_reaches_the_column() -> None:
     keys += " kappa = 0.4, pore_eddies = 0.16, side_walls = '10 cm', side_friction = 'Karman-Prandtl',"
     keys += " interval = 10, cell = '1 mm'"
     found = column(water__column=f"{{ {keys} }}")
-    assert (found.surface, found.drive, found.discharge) == (Surface.VOLUME, Drive.DISCHARGE, 0.02)
+    assert (found.surface, found.drive, found.discharge) == (SurfaceRule.VOLUME, Drive.DISCHARGE, 0.02)
     assert (found.mixing, found.kappa, found.k_f, found.d) == (Mixing.PRANDTL, 0.4, 0.16, D)
     assert (found.side, found.width, found.interval) == (SideWalls.KARMAN_PRANDTL, 0.1, 10)
     assert found.dz == 0.001
     assert found.g_x == pytest.approx(G * math.sin(math.atan(0.05)))
     plain = column()
-    assert (plain.side, plain.drive, plain.bed) == (SideWalls.NONE, Drive.GRAVITY, Bed.MOVING)
+    assert (plain.side, plain.drive, plain.bed) == (SideWalls.NONE, Drive.GRAVITY, BedKind.MOVING)
     assert column(water__column="{ drive = 'tau_star' }", water__tau_star="0.3").tau == pytest.approx(
         0.3 * 1650 * G * D
     )

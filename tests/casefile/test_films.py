@@ -8,7 +8,7 @@ from ryusa.build import build
 from ryusa.casefile import Case, explain
 from ryusa.errors import CaseError
 from ryusa.laws import immersed
-from ryusa.model.enums import Rebound
+from ryusa.laws.families import Rebound
 
 CaseOf = Callable[..., Case]
 

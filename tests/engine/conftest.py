@@ -5,8 +5,9 @@ import pytest
 
 from ryusa.build import scene
 from ryusa.engine.cpu.engine import CpuEngine
+from ryusa.laws.families import Cap, Slip
 from ryusa.model import ContactLaw, Scene, State
-from ryusa.model.enums import Cap, EventRule, Slip
+from ryusa.model.scene import EventRule
 
 D = 2.0e-3  # [m]
 

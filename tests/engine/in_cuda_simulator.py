@@ -20,13 +20,11 @@ from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.engine.cuda import device_state as store
 from ryusa.engine.cuda.engine import CudaEngine
 from ryusa.errors import GrainLost, ListUnsafe, NotANumber, OverlapTooLarge
-from ryusa.model import Book, RollingLaw, Water
-from ryusa.model.enums import (
+from ryusa.laws.families import (
     Above,
     Arm,
     Buoyancy,
     Drag,
-    EventRule,
     Hindrance,
     Lift,
     Magnus,
@@ -36,7 +34,9 @@ from ryusa.model.enums import (
     Slip,
     WaterTorque,
 )
+from ryusa.model import Book, RollingLaw, Water
 from ryusa.model.fluid import A_X, EXTRA_X, N_SAMPLED, PHI, SHEAR, SUBMERGED, U
+from ryusa.model.scene import EventRule
 from ryusa.running.runner import run_scene
 from ryusa.running.stops import Stop
 

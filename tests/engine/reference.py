@@ -5,8 +5,8 @@ import math
 import numpy as np
 
 from ryusa.laws import drag, torque, water
+from ryusa.laws.families import Slip
 from ryusa.model import Scene, State
-from ryusa.model.enums import Slip
 
 
 def accelerations(fixed: Scene, state: State) -> tuple[np.ndarray, np.ndarray]:

@@ -10,9 +10,10 @@ from tests.engine.conftest import D, bits, pile, run
 from ryusa.build import scene
 from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.laws import immersed
+from ryusa.laws.families import Drag, Profile, Rebound
 from ryusa.laws.reduced import reduced
 from ryusa.model import Book, ContactLaw, Water
-from ryusa.model.enums import Damping, Drag, EventRule, Profile, Rebound
+from ryusa.model.scene import Damping, EventRule
 
 NU, RHO, E_DRY, ROUGH = 1.0e-6, 1000.0, 0.9, 2.0e-5
 STILL = Water(profile=Profile.STILL, drag=Drag.NONE, nu=NU, asperity=ROUGH)

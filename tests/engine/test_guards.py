@@ -10,8 +10,9 @@ from ryusa.build import scene
 from ryusa.engine.cpu import engine as cpu
 from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.errors import ContactSlotsFull, GrainLost, ListUnsafe, NotANumber, OverlapTooLarge
+from ryusa.laws.families import Arm, Rolling
 from ryusa.model import RollingLaw
-from ryusa.model.enums import Arm, EventRule, Rolling
+from ryusa.model.scene import EventRule
 
 
 def advance(made, n_steps, threads=1):

@@ -10,8 +10,9 @@ from tests.engine.reference import accelerations, touching_pairs
 
 from ryusa.build import scene
 from ryusa.engine.cpu.engine import CpuEngine
+from ryusa.laws.families import Arm, Drag, Profile, Rolling, Slip, WaterTorque
 from ryusa.model import Book, RollingLaw, Water
-from ryusa.model.enums import Arm, Drag, EventRule, Profile, Rolling, Slip, WaterTorque
+from ryusa.model.scene import EventRule
 
 WET = Water(
     profile=Profile.LOG_ROUGH, u_star=0.1, k_rough=D, depth=0.05, drag=Drag.RE_04, torque=WaterTorque.DENNIS

@@ -10,8 +10,8 @@ from tests.engine.conftest import D, contact_law, run
 from ryusa.build import scene
 from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.laws import collision, drag
+from ryusa.laws.families import Arm, Drag, Profile, Rolling, Slip, WaterTorque
 from ryusa.model import Book, RollingLaw, Water
-from ryusa.model.enums import Arm, Drag, Profile, Rolling, Slip, WaterTorque
 
 G = 9.80665
 FLOOR = [("floor", (0, 0, 0), (0, 0, 1))]

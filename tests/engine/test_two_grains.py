@@ -9,21 +9,20 @@ from tests.engine.conftest import D, contact_law, run
 
 from ryusa.build import scene
 from ryusa.laws import collision
+from ryusa.laws.families import Drag, Profile, Slip
 from ryusa.model import Book, Water
-from ryusa.model.enums import Drag, Profile, Slip
 
 SPEED = 0.5  # [m/s]
 
 
 def head_on(e, partner="fixed", tension=False, water=None, phase=0.0, per_contact=50.0, speed=SPEED):
     """A grain flies at another without gravity; `phase` shifts first touch by part of a step."""
-    zeta = collision.zeta_tension(e) if tension else collision.zeta_no_tension(e)
+    zeta = collision.zeta_for_restitution(e, tension)
     law = contact_law(zeta_n=zeta, tension=tension)
     probe, _ = scene([[0.0, 0.0, 0.01]], D, contact=law, water=water)
     m = float(probe.m[0] + probe.m_added[0])
     m_eff = m if partner == "fixed" else 0.5 * m
-    time = collision.contact_time_tension if tension else collision.contact_time_no_tension
-    t_col = time(zeta, math.sqrt(law.k_n / m_eff))
+    t_col = collision.contact_time(zeta, math.sqrt(law.k_n / m_eff), tension)
     dt = t_col / per_contact
     gap = (3.0 + phase) * speed * dt
     common = {"contact": law, "dt": dt, "gravity": 0.0, "rotation": False, "plane_case": True, "water": water}
@@ -128,7 +127,7 @@ def test_gross_sliding_follows_the_sliding_law(slip):
     # exact for a cap on the total, and on the spring with tension and the dashpot dropped (validation.md, a)
     e, mu, angle = 0.7, 0.1, math.radians(60.0)
     tension = slip == Slip.SPRING_DROP
-    zeta = collision.zeta_tension(e) if tension else collision.zeta_no_tension(e)
+    zeta = collision.zeta_for_restitution(e, tension)
     law = contact_law(mu=mu, zeta_n=zeta, zeta_s=0.1, slip=slip, tension=tension)
     event, _ = oblique(angle, law)
     e_t = 1.0 - mu * (1.0 + e) / math.tan(angle)

@@ -17,6 +17,8 @@ from numba.core.dispatcher import Dispatcher
 
 import ryusa.laws
 
+TABLES = {"families", "dispatch"}  # they choose among the laws
+
 
 @dataclass(frozen=True)
 class Law:
@@ -44,8 +46,9 @@ def flat(answer: Any) -> list[Any]:
 
 
 def modules() -> list[ModuleType]:
-    """The modules of the laws room, without the decorator's."""
+    """The modules of the laws room that hold laws."""
     names = [info.name for info in pkgutil.iter_modules(ryusa.laws.__path__) if not info.name.startswith("_")]
+    names = [name for name in names if name not in TABLES]
     return [importlib.import_module(f"ryusa.laws.{name}") for name in sorted(names)]
 
 

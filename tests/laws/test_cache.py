@@ -1,10 +1,14 @@
 """Compiled laws are kept on disk, but never an old one."""
 
 import os
+import pickle
 import shutil
 import subprocess
 import sys
 from pathlib import Path
+
+import numba
+from numba.core.caching import IndexDataCacheFile
 
 import ryusa.laws
 from ryusa.laws import collision
@@ -42,7 +46,15 @@ def test_a_law_that_calls_a_changed_law_in_another_file_is_compiled_anew(tmp_pat
     assert ask() == ["10.0", "0"]
 
 
-def test_the_text_of_all_laws_is_in_the_key_of_the_cache():
+def test_what_another_edition_kept_is_not_read(tmp_path):
     dispatcher = collision.effective_mass
-    signature = dispatcher.compile("float64(float64, float64)") and dispatcher.signatures[0]
-    assert EDITION in dispatcher._cache._index_key(signature, dispatcher.targetctx.codegen())
+    dispatcher.compile("float64(float64, float64)")
+    kept = dispatcher._cache._cache_file
+    assert EDITION in kept._version
+    assert kept._load_index()
+    other = IndexDataCacheFile(str(tmp_path), "law", kept._source_stamp)
+    (tmp_path / "law.nbi").write_bytes(
+        pickle.dumps(f"{numba.__version__} older") + b"of modules that are gone"
+    )
+    other._version = kept._version
+    assert other._load_index() == {}

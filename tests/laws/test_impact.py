@@ -15,8 +15,7 @@ ASKED = [0.1, 0.3, 0.5, 0.7, 0.8, 0.9, 0.98]
 def hit(zeta, tension, n_steps, phase, scheme=motion.semi_implicit, correct=True):
     """Impact at speed 1 with m = k_n = 1: restitution got, duration of the force over the closed form."""
     force = normal_force if tension else normal_force_no_tension
-    time = collision.contact_time_tension if tension else collision.contact_time_no_tension
-    expected = time(zeta, 1.0)
+    expected = collision.contact_time(zeta, 1.0, tension)
     dt = expected / n_steps
     eta = damping_in_steps(2.0 * zeta, 1.0, dt) if correct else 2.0 * zeta
     x, v, t = -phase * dt, 1.0, 0.0  # x is the overlap
@@ -35,7 +34,7 @@ def hit(zeta, tension, n_steps, phase, scheme=motion.semi_implicit, correct=True
 
 def hits(e, tension, n_steps, correct=True):
     """Restitution got and duration over the closed form at all phases of first touch."""
-    zeta = collision.zeta_tension(e) if tension else collision.zeta_no_tension(e)
+    zeta = collision.zeta_for_restitution(e, tension)
     return np.array([hit(zeta, tension, n_steps, phase, correct=correct) for phase in PHASES]).T
 
 
@@ -53,9 +52,10 @@ def test_fifty_steps_per_contact_give_the_restitution_and_the_time_asked_for(e, 
 @pytest.mark.parametrize("e", [0.1, 0.3, 0.5])
 def test_heavily_damped_contacts_are_shorter_by_the_stiffness_that_the_lag_adds(e, tension):
     _, duration = hits(e, tension, 50)
-    zeta = collision.zeta_tension(e) if tension else collision.zeta_no_tension(e)
-    time = collision.contact_time_tension if tension else collision.contact_time_no_tension
-    assert duration.mean() == pytest.approx(1.0 - 0.5 * zeta * time(zeta, 1.0) / 50, abs=8e-3)
+    zeta = collision.zeta_for_restitution(e, tension)
+    assert duration.mean() == pytest.approx(
+        1.0 - 0.5 * zeta * collision.contact_time(zeta, 1.0, tension) / 50, abs=8e-3
+    )
 
 
 @pytest.mark.parametrize("tension", [True, False])
@@ -63,10 +63,11 @@ def test_heavily_damped_contacts_are_shorter_by_the_stiffness_that_the_lag_adds(
 def test_uncorrected_heavy_damping_is_short_of_restitution_by_the_half_step_the_dashpot_lags(e, tension):
     # The dashpot sees the velocity of half a step before: the pair acts as if lighter by eta dt/2, which
     # shortens the contact and strengthens the decay; in all ln(e) grows by a factor 1 + zeta omega_0 dt/2.
-    zeta = collision.zeta_tension(e) if tension else collision.zeta_no_tension(e)
-    time = collision.contact_time_tension if tension else collision.contact_time_no_tension
+    zeta = collision.zeta_for_restitution(e, tension)
     got, duration = hits(e, tension, 50, correct=False)
-    assert got.mean() == pytest.approx(e ** (1.0 + 0.5 * zeta * time(zeta, 1.0) / 50), abs=2e-3)
+    assert got.mean() == pytest.approx(
+        e ** (1.0 + 0.5 * zeta * collision.contact_time(zeta, 1.0, tension) / 50), abs=2e-3
+    )
     assert np.abs(got - e).max() < 1.5e-2
     assert abs(duration.mean() - 1.0) < 2e-2
 

@@ -11,7 +11,7 @@ from ryusa.errors import ResultsError
 from ryusa.measure import alternating, paths
 from ryusa.measure.paths import _zigzag
 from ryusa.model import EVENT
-from ryusa.model.enums import EventRule
+from ryusa.model.scene import EventRule
 
 D = 0.002
 T = np.arange(2001) * 1.0e-3

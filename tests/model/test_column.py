@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ryusa.model.column import Bed, Column, Drive, Mixing, SideWalls, Surface, Top, WaterState, refuse
+from ryusa.laws.families import BedKind, Drive, Mixing, SideWalls, SurfaceRule
+from ryusa.model.column import Column, Top, WaterState, refuse
 
 GOOD = Column(z_low=0.0, dz=5e-4, n=40, depth=0.02)
 
@@ -24,13 +25,13 @@ def test_a_good_column_is_not_refused():
         ({"dz": -1e-3}, "thickness"),
         ({"n": 1}, "at least 2"),
         ({"n": 20}, "below the surface at 0.02 m: 40 cells"),
-        ({"z_low": 0.01, "z_bed": 0.0, "bed": Bed.MOVING}, "above the bed"),
-        ({"z_low": -0.1, "z_bed": 0.0, "bed": Bed.MOVING}, "below the bed"),
+        ({"z_low": 0.01, "z_bed": 0.0, "bed": BedKind.MOVING}, "above the bed"),
+        ({"z_low": -0.1, "z_bed": 0.0, "bed": BedKind.MOVING}, "below the bed"),
         ({"z_low": -0.1, "z_bed": 0.0, "n": 300}, "bottom of the column"),
-        ({"bed": Bed.ROUGH}, "roughness"),
-        ({"bed": Bed.ROUGH, "k_rough": 0.02}, "k_rough/30"),
-        ({"bed": Bed.MOVING, "mixing": Mixing.VAN_DRIEST}, "needs a wall"),
-        ({"top": Top.LID, "surface": Surface.VOLUME}, "lid"),
+        ({"bed": BedKind.ROUGH}, "roughness"),
+        ({"bed": BedKind.ROUGH, "k_rough": 0.02}, "k_rough/30"),
+        ({"bed": BedKind.MOVING, "mixing": Mixing.VAN_DRIEST}, "needs a wall"),
+        ({"top": Top.LID, "surface": SurfaceRule.VOLUME}, "lid"),
         ({"side": SideWalls.BLASIUS}, "width"),
         ({"drive": Drive.TAU}, "tau"),
         ({"drive": Drive.DISCHARGE}, "discharge"),

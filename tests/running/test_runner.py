@@ -9,8 +9,9 @@ import pytest
 
 from ryusa.casefile import derive, estimate, read_text
 from ryusa.errors import CaseError, DiskFull, ResultsError, RunError
+from ryusa.laws.families import Rolling
 from ryusa.model import RollingLaw
-from ryusa.model.enums import EventRule, Rolling
+from ryusa.model.scene import EventRule
 from ryusa.results import Results
 from ryusa.running import folder as folder_module
 from ryusa.running.loop import Change

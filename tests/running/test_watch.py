@@ -198,8 +198,8 @@ def test_a_contact_cut_by_the_timeline_counts_but_says_nothing_of_restitution(
 
 
 def _dennis(scene_with: Any, **changes: Any) -> Any:
+    from ryusa.laws.families import Profile, WaterTorque
     from ryusa.model import Water
-    from ryusa.model.enums import Profile, WaterTorque
 
     water = Water(profile=Profile.STILL, nu=1e-6, rho_w=1000.0, torque=WaterTorque.DENNIS)
     return scene_with(3, **{"water": water, "rotation": True, **changes})
@@ -226,7 +226,7 @@ def test_spin_beyond_the_range_of_the_waters_torque_is_warned_of(
 def test_constant_dashpots_say_what_restitution_follows(scene_with: Any, state: Any, tally: Any) -> None:
     from ryusa.laws.collision import restitution_no_tension, restitution_tension
     from ryusa.model import ContactLaw
-    from ryusa.model.enums import Damping
+    from ryusa.model.scene import Damping
 
     law = ContactLaw(1e4, 2857.0, 0.5, damping=Damping.CONSTANTS, eta_n=0.1, eta_s=0.05)
     scene = scene_with(3, rotation=False, contact=law)

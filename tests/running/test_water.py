@@ -10,9 +10,9 @@ import pytest
 
 from ryusa.build import scene
 from ryusa.engine.cpu.engine import CpuEngine
+from ryusa.laws.families import BedKind, Drag, Fluctuations, Hindrance, Mixing, Profile, Rebound, Start
 from ryusa.model import Column, Scene, State, Water
-from ryusa.model.column import Bed, Fluctuations, Mixing, Start
-from ryusa.model.enums import Drag, EventRule, Hindrance, Profile, Rebound
+from ryusa.model.scene import EventRule
 from ryusa.results import Results
 from ryusa.running import loop as loop_module
 from ryusa.running.runner import run_scene
@@ -33,8 +33,8 @@ def falling(interval=10):
         planes=[("floor", (0.0, 0.0, 0.0), (0.0, 0.0, 1.0))], events=EventRule.NONE,
     )  # fmt: skip
     column = Column(
-        z_low=0.0, dz=0.25 * D, n=48, depth=10.0 * D, area=n * 2.0 * D * D, bed=Bed.ROUGH, k_rough=0.5 * D,
-        mixing=Mixing.PARABOLIC, g_x=G * math.sin(0.05), interval=interval,
+        z_low=0.0, dz=0.25 * D, n=48, depth=10.0 * D, area=n * 2.0 * D * D, bed=BedKind.ROUGH,
+        k_rough=0.5 * D, mixing=Mixing.PARABOLIC, g_x=G * math.sin(0.05), interval=interval,
     )  # fmt: skip
     return replace(fixed, column=column), first
 
@@ -44,7 +44,7 @@ def over_fixed_grains() -> tuple[Scene, State]:
     fixed, first = falling()
     n = 30
     row = np.column_stack([(np.arange(n) + 0.5) * 2.0 * D, np.zeros(n), np.full(n, 0.5 * D)])
-    column = replace(fixed.column, bed=Bed.MOVING, mixing=Mixing.PRANDTL, start=Start.STEADY)
+    column = replace(fixed.column, bed=BedKind.MOVING, mixing=Mixing.PRANDTL, start=Start.STEADY)
     return replace(
         fixed, x_fixed=row, d_fixed=np.full(n, D), fixed_active=np.ones(n, dtype=np.bool_), column=column
     ), first

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ryusa.model.column import Bed, Column, Mixing
+from ryusa.laws.families import BedKind, Mixing
+from ryusa.model.column import Column
 
 
 @pytest.fixture
@@ -22,7 +23,7 @@ def river() -> Column:
         dz=5e-4,
         n=40,
         depth=0.02,
-        bed=Bed.ROUGH,
+        bed=BedKind.ROUGH,
         k_rough=0.002,
         mixing=Mixing.PARABOLIC,
         kappa=np.log(10.0) / 5.75,
@@ -34,7 +35,14 @@ def river() -> Column:
 def bedload(river: Column) -> Column:
     """Two centimetres of water over a bed of grains of the same depth."""
     return replace(
-        river, n=90, z_bed=0.02, bed=Bed.MOVING, mixing=Mixing.LI_SAWAMOTO, kappa=0.41, dz=5e-4, phi_max=0.61
+        river,
+        n=90,
+        z_bed=0.02,
+        bed=BedKind.MOVING,
+        mixing=Mixing.LI_SAWAMOTO,
+        kappa=0.41,
+        dz=5e-4,
+        phi_max=0.61,
     )
 
 

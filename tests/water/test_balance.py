@@ -6,7 +6,7 @@ What grains give to the bed is read from the contacts' own impulses, which know 
 import numpy as np
 import pytest
 
-from ryusa.model.enums import Buoyancy
+from ryusa.laws.families import Buoyancy
 from ryusa.studies.validation.balance import ChannelFlow
 
 

@@ -9,10 +9,10 @@ import pytest
 from ryusa.build import scene
 from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.laws import drag
+from ryusa.laws.families import BedKind, Buoyancy, Drag, Hindrance, Lift, Magnus, Mixing, Profile, WaterTorque
 from ryusa.laws.hindrance import exponent_settling
 from ryusa.model import Column, Water
-from ryusa.model.column import Bed, Mixing
-from ryusa.model.enums import Buoyancy, Drag, EventRule, Hindrance, Lift, Magnus, Profile, WaterTorque
+from ryusa.model.scene import EventRule
 from ryusa.water.coupling import Coupling
 
 D, G = 2.0e-3, 9.80665
@@ -51,7 +51,7 @@ def cloud(form, n=40, slope=0.05, density=2650.0, **more):
 
 
 def column_of(area, **more):
-    given = {"z_low": 0.0, "dz": 0.2 * D, "n": 130, "depth": 25.0 * D, "area": area, "bed": Bed.ROUGH}
+    given = {"z_low": 0.0, "dz": 0.2 * D, "n": 130, "depth": 25.0 * D, "area": area, "bed": BedKind.ROUGH}
     given |= {"k_rough": 0.4 * D, "mixing": Mixing.PARABOLIC, "g_x": G * math.sin(0.05)}
     return Column(**(given | more))
 
@@ -94,7 +94,12 @@ def test_a_suspension_settles_as_its_hindrance_implies(form, law, exponent):
     )  # fmt: skip
     made = (replace(made[0], world_low=(-math.inf,) * 3), made[1])
     column = Column(
-        z_low=0.0, dz=pitch * d, n=layers, depth=layers * pitch * d, area=wide * pitch * d * d, bed=Bed.MOVING
+        z_low=0.0,
+        dz=pitch * d,
+        n=layers,
+        depth=layers * pitch * d,
+        area=wide * pitch * d * d,
+        bed=BedKind.MOVING,
     )
     speeds = []
     for _, engine, *_ in advance_together(made, column, 40, longest=10):
@@ -151,7 +156,7 @@ def test_fixed_grains_fill_the_cells_that_they_stand_in():
 def test_every_slice_of_a_grain_drags_the_water_by_its_own_slip():
     made, area = cloud(Buoyancy.PRESSURE, n=6)
     fixed, first = made
-    column = column_of(area, bed=Bed.NO_SLIP, mixing=Mixing.LAMINAR)
+    column = column_of(area, bed=BedKind.NO_SLIP, mixing=Mixing.LAMINAR)
     at_rest = Coupling.begin(fixed, column, 20, first.x).state
     sheared = replace(at_rest, u=3.0 * (column.z - column.z_low))
     coupling = Coupling.begin(fixed, column, 20, first.x, sheared)

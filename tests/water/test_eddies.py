@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from tests.water.test_coupling import D, advance_together, cloud, column_of
 
-from ryusa.model.column import Bed, Fluctuations, Mixing, WaterState
-from ryusa.model.enums import Buoyancy
+from ryusa.laws.families import BedKind, Buoyancy, Fluctuations, Mixing
+from ryusa.model.column import WaterState
 from ryusa.water import advance, eddies
 from ryusa.water.exchange import Cells, slices
 
@@ -148,7 +148,7 @@ def test_grains_feel_the_turbulence_at_their_position():
 
 
 def test_a_grain_astride_the_crest_of_a_bed_drifts_no_faster_than_its_eddies():
-    column = column_of(1.0, bed=Bed.MOVING, mixing=Mixing.LI_SAWAMOTO, d=D)
+    column = column_of(1.0, bed=BedKind.MOVING, mixing=Mixing.LI_SAWAMOTO, d=D)
     phi = np.where(column.z < 8.0 * D, 0.62, 0.0)
     drag = np.where(phi > 0.0, 1e7, 0.0)  # of grains at rest [N s/m4]
     none = np.zeros(column.n)

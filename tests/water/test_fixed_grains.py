@@ -8,9 +8,9 @@ import pytest
 
 from ryusa.build import scene
 from ryusa.engine.cpu.engine import CpuEngine
+from ryusa.laws.families import BedKind, Buoyancy, Drag, Hindrance, Mixing, Profile, Start
 from ryusa.model import Column, Water
-from ryusa.model.column import Bed, Mixing, Start
-from ryusa.model.enums import Buoyancy, Drag, EventRule, Hindrance, Profile
+from ryusa.model.scene import EventRule
 from ryusa.water.coupling import Coupling
 from ryusa.water.fixed_grains import settled_concentration
 
@@ -29,8 +29,8 @@ def bed(form, layers=5, wide=12):
         events=EventRule.NONE,
     )  # fmt: skip
     column = Column(
-        z_low=0.0, dz=0.1 * D, n=160, depth=10.0 * D, z_bed=5.0 * D, area=wide * 1.1 * D * D, bed=Bed.MOVING,
-        mixing=Mixing.LI_SAWAMOTO, phi_max=0.5, g_x=G * math.sin(SLOPE), d=D,
+        z_low=0.0, dz=0.1 * D, n=160, depth=10.0 * D, z_bed=5.0 * D, area=wide * 1.1 * D * D,
+        bed=BedKind.MOVING, mixing=Mixing.LI_SAWAMOTO, phi_max=0.5, g_x=G * math.sin(SLOPE), d=D,
     )  # fmt: skip
     return made, column
 
@@ -75,7 +75,7 @@ def test_a_long_step_over_fixed_grains_is_stable_and_ends_in_the_same_flow(form)
 
 def test_fixed_grains_under_a_rough_wall_take_no_force():
     made, column = bed(Buoyancy.STRESS)
-    rough = replace(column, z_low=5.0 * D, n=110, bed=Bed.ROUGH, k_rough=D, mixing=Mixing.PARABOLIC)
+    rough = replace(column, z_low=5.0 * D, n=110, bed=BedKind.ROUGH, k_rough=D, mixing=Mixing.PARABOLIC)
     coupling = alone(made, rough)
     coupling.exchange(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros((0, 4)))
     assert coupling.budget.fixed == 0.0

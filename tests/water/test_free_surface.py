@@ -8,9 +8,9 @@ import pytest
 
 from ryusa.build import scene
 from ryusa.engine.cpu.engine import CpuEngine
+from ryusa.laws.families import BedKind, Buoyancy, Drag, Lift, Mixing, Profile, SurfaceRule, WaterTorque
 from ryusa.model import Column, Water
-from ryusa.model.column import Bed, Mixing, Surface
-from ryusa.model.enums import Buoyancy, Drag, EventRule, Lift, Profile, WaterTorque
+from ryusa.model.scene import EventRule
 from ryusa.water.coupling import Coupling
 from ryusa.water.exchange import Cells, slices, to_cells
 from ryusa.water.free_surface import submerged_part
@@ -21,7 +21,7 @@ SURFACE = 10.3 * D  # in the midst of a cell
 
 
 def column_of(area, **more):
-    given = {"z_low": 0.0, "dz": 0.2 * D, "n": 100, "depth": SURFACE, "area": area, "bed": Bed.MOVING}
+    given = {"z_low": 0.0, "dz": 0.2 * D, "n": 100, "depth": SURFACE, "area": area, "bed": BedKind.MOVING}
     return Column(**(given | more))
 
 
@@ -88,13 +88,13 @@ def test_a_grain_half_in_the_water_has_half_its_buoyancy_and_added_mass(form):
     assert v_z == pytest.approx(-pull * fixed.dt, rel=1e-6)
 
 
-@pytest.mark.parametrize("surface", list(Surface))
+@pytest.mark.parametrize("surface", list(SurfaceRule))
 @pytest.mark.parametrize("form", FORMS)
 def test_momentum_closes_where_grains_pass_the_surface(form, surface):
     heights = SURFACE + np.linspace(-3.0, 3.0, 24) * D
     made, area = made_of(heights, form, slope=0.05, lift=Lift.WIBERG_SMITH)
     column = column_of(
-        area, surface=surface, bed=Bed.ROUGH, k_rough=0.4 * D, mixing=Mixing.PARABOLIC,
+        area, surface=surface, bed=BedKind.ROUGH, k_rough=0.4 * D, mixing=Mixing.PARABOLIC,
         g_x=G * math.sin(0.05),
     )  # fmt: skip
     fixed, levels = made[0], []
@@ -106,7 +106,7 @@ def test_momentum_closes_where_grains_pass_the_surface(form, surface):
         given = weight + budget.gravity + budget.driver + budget.bed + budget.surface
         assert grains + budget.change == pytest.approx(given, rel=1e-10, abs=1e-9 * weight)
         levels.append(coupling.state.z_surface)
-    assert (float(np.ptp(levels)) > 0.1 * column.dz) == (surface is Surface.VOLUME)
+    assert (float(np.ptp(levels)) > 0.1 * column.dz) == (surface is SurfaceRule.VOLUME)
 
 
 def test_the_energy_of_water_that_a_grain_takes_along_is_booked():

@@ -6,7 +6,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from ryusa.model.column import Column, Drive, Mixing, SideWalls, Top, WaterState
+from ryusa.laws.families import Drive, Mixing, SideWalls
+from ryusa.model.column import Column, Top, WaterState
 from ryusa.water import advance, discharge, steady
 
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from ryusa.errors import WaterError
-from ryusa.model.column import Bed, Budget, Column, Drive, Mixing, SideWalls, Surface, Top, WaterState
+from ryusa.laws.families import BedKind, Drive, Mixing, SideWalls, SurfaceRule
+from ryusa.model.column import Budget, Column, Top, WaterState
 from ryusa.water import advance, discharge, driving_stress, steady
 
 
@@ -21,7 +22,7 @@ def momentum(column: Column, state: WaterState) -> float:
 
 COLUMNS = {
     "moving bed": {},
-    "volume": {"surface": Surface.VOLUME},
+    "volume": {"surface": SurfaceRule.VOLUME},
     "side walls": {"side": SideWalls.BLASIUS, "width": 0.0065},
     "discharge": {"drive": Drive.DISCHARGE, "discharge": 0.02, "g_x": 0.0},
     "tau": {"drive": Drive.TAU, "tau": 15.0},
@@ -53,7 +54,7 @@ def test_the_share_that_grains_carry_is_booked(bedload, phi):
 
 
 @pytest.mark.parametrize("dt", [1e-6, 1e-3, 1.0, 1e3, 1e9])
-@pytest.mark.parametrize("bed", [Bed.ROUGH, Bed.SMOOTH])
+@pytest.mark.parametrize("bed", [BedKind.ROUGH, BedKind.SMOOTH])
 def test_the_steady_state_stays_and_does_not_depend_on_the_step(river, dt, bed):
     c = replace(river, bed=bed)
     rest = steady(c)[0]
@@ -78,7 +79,7 @@ def test_a_step_of_any_length_from_rest_is_stable_and_never_overshoots(river, dt
 
 @pytest.mark.parametrize("mixing", list(Mixing))
 def test_time_stepping_ends_at_the_steady_flow_with_every_mixing_length(bedload, phi, mixing):
-    bed = Bed.SMOOTH if mixing is Mixing.VAN_DRIEST else Bed.MOVING
+    bed = BedKind.SMOOTH if mixing is Mixing.VAN_DRIEST else BedKind.MOVING
     c = replace(bedload, mixing=mixing, bed=bed, nu=1e-6 if mixing else 1e-4)
     slope = 1e4 * phi
     rest = steady(c, phi, np.zeros(c.n), slope=slope)[0]
@@ -118,7 +119,7 @@ def test_the_driving_stress_is_the_one_of_the_case_for_any_slope(bedload, phi):
 
 
 def test_a_volume_of_water_is_kept_while_its_surface_moves(bedload):
-    c = replace(bedload, surface=Surface.VOLUME, n=100)
+    c = replace(bedload, surface=SurfaceRule.VOLUME, n=100)
     state = WaterState.at_rest(c, 0.6 / (1.0 + np.exp((c.z - 0.02) / 1e-3)))
     volume = state.volume
     heights = []
@@ -136,7 +137,7 @@ def test_a_volume_of_water_is_kept_while_its_surface_moves(bedload):
 
 def test_a_plug_of_water_keeps_its_speed_while_grains_and_surface_move(bedload):
     """No stress, no force: water that is pushed up or down carries its own speed along."""
-    c = replace(bedload, surface=Surface.VOLUME, n=100, g_x=0.0, mixing=Mixing.LAMINAR, nu=1e-30)
+    c = replace(bedload, surface=SurfaceRule.VOLUME, n=100, g_x=0.0, mixing=Mixing.LAMINAR, nu=1e-30)
     state = replace(WaterState.at_rest(c, np.zeros(c.n)), u=np.full(c.n, 0.7))
     for k in range(100):
         now = 0.05 / (1.0 + np.exp((c.z - 0.02 - 2e-3 * np.sin(0.3 * k)) / 1e-3))
@@ -173,7 +174,7 @@ def test_arrays_of_a_state_are_read_only(river):
 
 
 def test_water_that_outgrows_the_column_is_an_error(bedload):
-    c = replace(bedload, surface=Surface.VOLUME)
+    c = replace(bedload, surface=SurfaceRule.VOLUME)
     state = WaterState.at_rest(c, np.zeros(c.n))
     with pytest.raises(WaterError, match="above the top of the column"):
         advance(c, state, np.full(c.n, 0.5), None, 1e-3)

@@ -6,9 +6,10 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from ryusa.laws.families import BedKind, Drive, Mixing
 from ryusa.laws.turbulence import length_van_driest, speed_mean_rough
 from ryusa.laws.water import log_law_rough, log_law_smooth
-from ryusa.model.column import Bed, Column, Drive, Mixing
+from ryusa.model.column import Column
 from ryusa.water import discharge, friction_velocity, steady
 from ryusa.water.closures import averaged
 
@@ -69,7 +70,7 @@ def test_the_length_of_li_and_sawamoto_is_prandtls_in_clear_water(river):
     assert steady(c)[0].u == pytest.approx(steady(replace(river, mixing=Mixing.PRANDTL))[0].u, rel=1e-9)
 
 
-def smooth(n: int, mixing: Mixing, bed: Bed) -> Column:
+def smooth(n: int, mixing: Mixing, bed: BedKind) -> Column:
     """A smooth channel with u_star h/nu = 1000."""
     depth, nu = 0.02, 1e-6
     return Column(
@@ -85,7 +86,7 @@ def smooth(n: int, mixing: Mixing, bed: Bed) -> Column:
 
 
 def test_van_driest_gives_the_viscous_layer_and_the_log_layer():
-    c = smooth(1000, Mixing.VAN_DRIEST, Bed.NO_SLIP)
+    c = smooth(1000, Mixing.VAN_DRIEST, BedKind.NO_SLIP)
     state, _ = steady(c)
     u_star = friction_velocity(c, state)
     assert u_star == pytest.approx(0.05, rel=1e-12)
@@ -107,7 +108,7 @@ def test_van_driest_is_of_second_order():
     speed = np.cumsum(shear) * depth / fine
     found = []
     for n in (500, 1000, 2000):
-        c = smooth(n, Mixing.VAN_DRIEST, Bed.NO_SLIP)
+        c = smooth(n, Mixing.VAN_DRIEST, BedKind.NO_SLIP)
         u = steady(c)[0].u
         found.append(np.abs(u - np.interp(c.z, z + 0.5 * depth / fine, speed)).max() / u[-1])
     assert found[1] < 6e-4
@@ -116,7 +117,7 @@ def test_van_driest_is_of_second_order():
 
 @pytest.mark.parametrize("n", [5, 10, 20])
 def test_a_coarse_grid_over_a_smooth_wall_follows_the_two_layer_law(n):
-    c = smooth(n, Mixing.PARABOLIC, Bed.SMOOTH)
+    c = smooth(n, Mixing.PARABOLIC, BedKind.SMOOTH)
     state, _ = steady(c)
     law = np.array([log_law_smooth(float(x), 0.05, c.nu) for x in c.z])
     assert state.tau[0] == pytest.approx(c.rho_w * 0.05**2, rel=1e-12)
@@ -132,7 +133,7 @@ def test_the_prescribed_stress_is_the_stress_of_the_bed(river):
 
 def test_the_eddies_of_the_pores_carry_a_debris_flow_with_the_profile_of_bagnold():
     """Uniform c and linear stress: U = (2/3) sqrt(g_x/f_f)/d (h**1.5 - (h - z)**1.5)."""
-    c = Column(z_low=0.0, dz=1e-3, n=100, depth=0.1, nu=1e-12, g_x=2.0, bed=Bed.MOVING, k_f=0.16, d=0.005)
+    c = Column(z_low=0.0, dz=1e-3, n=100, depth=0.1, nu=1e-12, g_x=2.0, bed=BedKind.MOVING, k_f=0.16, d=0.005)
     phi = np.full(c.n, 0.4)
     f_f = 0.16 * 0.6 ** (5 / 3) * 0.4 ** (-2 / 3)
     u = steady(c, phi)[0].u

@@ -7,9 +7,9 @@ import numpy as np
 
 from ryusa.build.layout import Layout, mask, unit
 from ryusa.laws import drag, motion
+from ryusa.laws.families import Profile
 from ryusa.model import Column, ContactLaw, RollingLaw, Scene, State, Water
-from ryusa.model.enums import EventRule, Profile
-from ryusa.model.scene import Floats
+from ryusa.model.scene import EventRule, Floats
 
 
 @dataclass(frozen=True)

@@ -22,15 +22,12 @@ from ryusa.casefile.motion import slab_width
 from ryusa.casefile.record import events_of
 from ryusa.casefile.water.values import hindrance_exponent
 from ryusa.errors import CaseError
-from ryusa.model import ContactLaw, RollingLaw, Scene, State, Water
-from ryusa.model.enums import (
+from ryusa.laws.families import (
     Above,
     Arm,
     Buoyancy,
     Cap,
-    Damping,
     Drag,
-    EventRule,
     Hindrance,
     Lift,
     Magnus,
@@ -40,6 +37,8 @@ from ryusa.model.enums import (
     Slip,
     WaterTorque,
 )
+from ryusa.model import ContactLaw, RollingLaw, Scene, State, Water
+from ryusa.model.scene import Damping, EventRule
 
 BUILDERS = {
     "drop": drop,
@@ -48,32 +47,6 @@ BUILDERS = {
     "packing": packing,
     "flume": flume,
     "box": box,
-}
-SLIPS = {"spring": Slip.SPRING, "spring-drop": Slip.SPRING_DROP, "total": Slip.TOTAL}
-CAPS = {"spring": Cap.SPRING, "total": Cap.TOTAL}
-ROLLINGS = {
-    "none": Rolling.NONE,
-    "printed": Rolling.PRINTED,
-    "constant": Rolling.CONSTANT,
-    "spring-dashpot-slider": Rolling.EPSD,
-}
-ARMS = {"contact width": Arm.CONTACT_WIDTH, "reduced radius": Arm.REDUCED_RADIUS}
-PROFILES = {
-    "log rough": Profile.LOG_ROUGH,
-    "log smooth": Profile.LOG_SMOOTH,
-    "uniform": Profile.UNIFORM,
-    "still": Profile.STILL,
-    "column": Profile.COLUMN,
-}
-ABOVES = {"continue": Above.CONTINUE, "hold": Above.HOLD, "dry": Above.DRY}
-DRAGS = {
-    "none": Drag.NONE,
-    "constant": Drag.CONSTANT,
-    "24/Re+0.4": Drag.RE_04,
-    "24/Re+2": Drag.RE_2,
-    "Schiller-Naumann": Drag.SCHILLER_NAUMANN,
-    "Ferguson-Church sphere": Drag.FERGUSON_CHURCH_SPHERE,
-    "Ferguson-Church sand": Drag.FERGUSON_CHURCH_SAND,
 }
 _OF_A_COLUMN = ("buoyancy", "hindrance", "lift", "magnus")
 _WATER_DEFAULTS = {  # key of [water]: how `ryusa check` calls it, and its unit
@@ -153,7 +126,7 @@ def laws_of(case: Case, derived: Derived, z_zero: float) -> Laws:
         plane_case=case.motion.plane,
         slab_width=slab_width(case) if case.motion.plane else math.nan,
         overlap_limit=case.domain.overlap_limit,
-        events=EVENTS[events_of(case)],
+        events=EventRule[events_of(case).upper()],
         tracked=case.record.tracked,
         low=case.domain.low,
         high=case.domain.high,
@@ -176,8 +149,8 @@ def contact_of(case: Case, derived: Derived) -> ContactLaw:
         zeta_s=0.0 if constants else found.fixed.zeta_s,
         eta_n=found.fixed.eta_n if constants else 0.0,
         eta_s=found.fixed.eta_s if constants else 0.0,
-        slip=SLIPS[contact.slip],
-        cap=CAPS[contact.cap or ("total" if contact.slip == "total" else "spring")],
+        slip=Slip.of(contact.slip),
+        cap=Cap.of(contact.cap or ("total" if contact.slip == "total" else "spring")),
         tension=contact.parting == "tension",
     )
 
@@ -187,8 +160,8 @@ def rolling_of(case: Case) -> RollingLaw:
     rolling = case.rolling
     arm = rolling.arm or ("reduced radius" if rolling.model == "spring-dashpot-slider" else "contact width")
     return RollingLaw(
-        model=ROLLINGS[rolling.model],
-        arm=ARMS[arm],
+        model=Rolling.of(rolling.model),
+        arm=Arm.of(arm),
         coefficient=rolling.coefficient,
         stiffness_factor=rolling.stiffness_factor,
         zeta_r=rolling.damping_ratio,
@@ -201,21 +174,21 @@ def water_of(case: Case, derived: Derived, z_zero: float) -> Water:
     if water is None:
         return Water()
     return Water(
-        profile=PROFILES[water.profile],
+        profile=Profile.of(water.profile),
         u_star=0.0 if math.isnan(found.u_star) else found.u_star,
         k_rough=found.k_rough,
         z_zero=zero_of(case, z_zero),
         u_uniform=water.speed or 0.0,
         depth=math.inf if water.depth is None else water.depth,
-        above=ABOVES[water.above],
+        above=Above.of(water.above),
         nu=water.viscosity,
         rho_w=water.density,
-        drag=DRAGS[water.drag],
+        drag=Drag.of(water.drag),
         c_d=water.drag_coefficient,
         a_2=water.shape_area,
         c_m=water.added_mass,
-        torque=TORQUES[water.torque],
-        rebound=REBOUNDS[water.rebound],
+        torque=WaterTorque.of(water.torque),
+        rebound=Rebound.of(water.rebound),
         st_c=water.rebound_stokes,
         e_least=water.rebound_least,
         asperity=water.asperity or 0.0,
@@ -229,12 +202,12 @@ def column_laws_of(case: Case) -> dict[str, Any]:
     water = case.water
     assert water is not None
     return {
-        "buoyancy": BUOYANCIES[water.buoyancy],
-        "hindrance": HINDRANCES[water.hindrance],
+        "buoyancy": Buoyancy.of(water.buoyancy),
+        "hindrance": Hindrance.of(water.hindrance),
         "hindrance_exponent": hindrance_exponent(case),
-        "lift": LIFTS[water.lift],
+        "lift": Lift.of(water.lift),
         "c_l": water.lift_coefficient,
-        "magnus": MAGNUSES[water.magnus],
+        "magnus": Magnus.of(water.magnus),
     }
 
 

@@ -14,27 +14,9 @@ from ryusa.casefile.derive import Derived
 from ryusa.casefile.motion import slab_width
 from ryusa.casefile.water.values import u_star_given
 from ryusa.errors import CaseError
+from ryusa.laws.families import BedKind, Drive, Fluctuations, Mixing, SideWalls, Start, SurfaceRule
 from ryusa.model import Column
-from ryusa.model.column import Bed, Drive, Fluctuations, Mixing, SideWalls, Start, Surface
 
-BEDS = {"moving": Bed.MOVING, "rough": Bed.ROUGH, "smooth": Bed.SMOOTH}
-SURFACES = {"depth": Surface.DEPTH, "volume": Surface.VOLUME}
-DRIVES = {
-    "slope": Drive.GRAVITY,
-    "tau_star": Drive.TAU,
-    "pressure gradient": Drive.GRADIENT,
-    "discharge": Drive.DISCHARGE,
-}
-MIXINGS = {
-    "none": Mixing.LAMINAR,
-    "Prandtl": Mixing.PRANDTL,
-    "parabolic": Mixing.PARABOLIC,
-    "van Driest": Mixing.VAN_DRIEST,
-    "Li-Sawamoto": Mixing.LI_SAWAMOTO,
-}
-SIDES = {"Blasius": SideWalls.BLASIUS, "Karman-Prandtl": SideWalls.KARMAN_PRANDTL}
-STARTS = {"rest": Start.REST, "steady": Start.STEADY}
-FLUCTUATIONS = {"none": Fluctuations.NONE, "random walk": Fluctuations.RANDOM_WALK}
 MOST_CELLS = 100_000
 
 
@@ -86,25 +68,25 @@ def column_of(case: Case, derived: Derived, layout: Layout) -> Column | None:
         z_bed=z_bed,
         rho_w=water.density,
         nu=water.viscosity,
-        bed=BEDS[keys.bed],
+        bed=BedKind.of(keys.bed),
         k_rough=found.k_rough,
-        surface=SURFACES[keys.surface],
-        side=SideWalls.NONE if keys.side_walls is None else SIDES[keys.side_friction],
+        surface=SurfaceRule.of(keys.surface),
+        side=SideWalls.NONE if keys.side_walls is None else SideWalls.of(keys.side_friction),
         width=math.nan if keys.side_walls is None else keys.side_walls,
         g_x=found.g * math.sin(found.slope),
-        drive=DRIVES[keys.drive],
+        drive=Drive.of(keys.drive),
         gradient=keys.pressure_gradient or 0.0,
         tau=water.density * u_star_given(case) ** 2 if keys.drive == "tau_star" else math.nan,
         discharge=math.nan if keys.discharge is None else keys.discharge,
-        mixing=MIXINGS[keys.mixing],
+        mixing=Mixing.of(keys.mixing),
         kappa=keys.kappa,
         phi_max=packed(case),
         k_f=keys.pore_eddies,
         d=found.d,
-        fluctuations=FLUCTUATIONS[keys.fluctuations],
+        fluctuations=Fluctuations.of(keys.fluctuations),
         seed=case.seed,
         interval=keys.interval,
-        start=STARTS[keys.start or ("rest" if water.drag == "none" else "steady")],
+        start=Start.of(keys.start or ("rest" if water.drag == "none" else "steady")),
     )
     if faults := column.refuses():
         raise CaseError("water.column", None, "; ".join(faults))

@@ -11,9 +11,9 @@ from ryusa.build.layout import Layout, Wall
 from ryusa.build.overlaps import refuse_overlaps
 from ryusa.errors import CaseError
 from ryusa.laws import collision
+from ryusa.laws.families import Cap, Slip
 from ryusa.model import ContactLaw, RollingLaw, Scene, State, Water
-from ryusa.model.enums import Cap, EventRule, Slip
-from ryusa.model.scene import Floats
+from ryusa.model.scene import EventRule, Floats
 
 
 def scene(
@@ -116,7 +116,7 @@ def scene(
             mu=friction,
             e_n=restitution,
             e_s=e_s,
-            zeta_n=collision.zeta_tension(restitution) if tension else collision.zeta_no_tension(restitution),
+            zeta_n=collision.zeta_for_restitution(restitution, tension),
             zeta_s=collision.zeta_tension(e_s),
             slip=slip,
             cap=Cap.TOTAL if slip == Slip.TOTAL else Cap.SPRING,

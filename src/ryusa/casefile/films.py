@@ -79,7 +79,7 @@ def check_film_step(case: "Case", derived: "Derived") -> Iterator[CaseError]:
         return
     lightest = _lightest(derived)
     if wet.rebound != "dry":
-        zeta = _zeta(case, wet.rebound_least)
+        zeta = collision.zeta_for_restitution(wet.rebound_least, case.contact.parting == "tension")
         m = 0.5 * lightest if derived.meet else lightest
         most = collision.step_limit(zeta, collision.omega_natural(derived.k_n, m))
         if derived.dt > most:
@@ -108,11 +108,6 @@ def _film_rate(d: float, m: float, wet: WaterSection) -> float:
     return 1.0 / (
         immersed.stokes_number(1.0, m, 0.5 * d, wet.density, wet.viscosity) * (wet.asperity or math.nan)
     )
-
-
-def _zeta(case: "Case", e: float) -> float:
-    tension = case.contact.parting == "tension"
-    return collision.zeta_tension(e) if tension else collision.zeta_no_tension(e)
 
 
 def film_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:

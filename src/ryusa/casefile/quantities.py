@@ -4,8 +4,10 @@ import math
 import re
 from typing import Annotated, Any
 
-from pydantic import AllowInfNan, BeforeValidator, Field, Strict, WithJsonSchema
+from pydantic import AllowInfNan, BeforeValidator, Field, GetCoreSchemaHandler, Strict, WithJsonSchema
+from pydantic_core import CoreSchema, core_schema
 
+from ryusa.laws._family import Family
 from ryusa.units import quantity
 
 _RATIO = re.compile(r"\s*([+-]?[0-9]*\.?[0-9]+(?:[eE][+-]?[0-9]+)?)\s*(?:/\s*([0-9]*\.?[0-9]+)|(%))?\s*")
@@ -38,6 +40,16 @@ def read_ratio(value: Any) -> Any:
     if bottom == 0.0 or not math.isfinite(float(top) / bottom):
         raise ValueError("needs a finite ratio such as '1/20'")
     return float(top) / bottom + 0.0  # no -0.0
+
+
+class WordOf:
+    """Annotation of a text that must be a word of a family of laws; JSON Schema gets the words too."""
+
+    def __init__(self, family: type[Family]) -> None:
+        self._family = family
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.literal_schema(list(self._family.words()))
 
 
 Number = Annotated[float, Strict(), AllowInfNan(False)]

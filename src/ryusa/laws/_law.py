@@ -24,20 +24,21 @@ FAST = {"contract", "nsz"}  # fused multiply-add and no care for the sign of zer
 EDITION = edition(LAWS)
 
 
-def compiled(edition: str, **options: Any) -> Callable[[F], F]:
+def compiled(edition: str | None, **options: Any) -> Callable[[F], F]:
     """Compile a function when it is first called, and keep it on disk as long as its edition is the same.
 
+    Without an edition it is not kept: Numba cannot keep what was built from other compiled functions.
+
     Typed as identity, so that the signature survives. Numba's cache looks at the function's own file alone
-    and would go on calling an old law from another file: the edition goes into its key. That is private to
-    Numba, so tests/laws/test_cache.py watches it.
+    and would go on calling an old law from another file: the edition becomes a part of the version that it
+    compares before it reads what it kept. That is private to Numba, so tests/laws/test_cache.py watches it.
     """
 
     def decorate(function: F) -> F:
-        dispatcher: Any = numba.njit(error_model="numpy", cache=True, **options)(function)
-        cache: Any = getattr(dispatcher, "_cache", None)
-        if hasattr(cache, "_index_key"):
-            key = cache._index_key
-            cache._index_key = lambda sig, codegen: (*key(sig, codegen), edition)
+        dispatcher: Any = numba.njit(error_model="numpy", cache=edition is not None, **options)(function)
+        kept: Any = getattr(getattr(dispatcher, "_cache", None), "_cache_file", None)
+        if kept is not None:
+            kept._version = f"{kept._version} {edition}"
         return cast(F, dispatcher)
 
     return decorate

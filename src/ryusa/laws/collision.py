@@ -152,6 +152,24 @@ def contact_time_no_tension(zeta: float, omega_0: float) -> float:
 
 
 @law
+def contact_time(zeta: float, omega_0: float, tension: bool) -> float:
+    """Contact time [s] of a damped contact.
+
+    Parameters
+    ----------
+    zeta : damping ratio [-].
+    omega_0 : undamped angular frequency [rad/s].
+    tension : whether the dashpot may pull.
+
+    Examples
+    --------
+    >>> contact_time(0.5, 1.0, True) == contact_time_tension(0.5, 1.0)
+    True
+    """
+    return contact_time_tension(zeta, omega_0) if tension else contact_time_no_tension(zeta, omega_0)
+
+
+@law
 def shortest_contact(m: float, k_n: float, zeta: float, tension: bool) -> float:
     """Shortest contact that a pair can have [s], damped or undamped; the time step is a part of it.
 
@@ -175,9 +193,7 @@ def shortest_contact(m: float, k_n: float, zeta: float, tension: bool) -> float:
     >>> round(shortest_contact(1.0, 1.0, 0.12221, False) / t_col, 3)  # e = 0.7
     0.929
     """
-    omega_0 = omega_natural(k_n, m)
-    damped = contact_time_tension(zeta, omega_0) if tension else contact_time_no_tension(zeta, omega_0)
-    return min(damped, collision_time(m, k_n))
+    return min(contact_time(zeta, omega_natural(k_n, m), tension), collision_time(m, k_n))
 
 
 @law
@@ -208,6 +224,18 @@ def restitution_no_tension(zeta: float) -> float:
     0.7
     """
     return math.exp(-2.0 * zeta * phase_to_largest(zeta))
+
+
+@law
+def restitution_for_zeta(zeta: float, tension: bool) -> float:
+    """Restitution [-] that a damping ratio zeta [-] gives; `tension`: whether the dashpot may pull.
+
+    Examples
+    --------
+    >>> restitution_for_zeta(0.2, False) == restitution_no_tension(0.2)
+    True
+    """
+    return restitution_tension(zeta) if tension else restitution_no_tension(zeta)
 
 
 @law
@@ -260,6 +288,18 @@ def zeta_no_tension(e: float) -> float:
             return trial
         zeta = trial
     return zeta
+
+
+@law
+def zeta_for_restitution(e: float, tension: bool) -> float:
+    """Damping ratio [-] that gives a restitution e [-]; `tension`: whether the dashpot may pull.
+
+    Examples
+    --------
+    >>> zeta_for_restitution(0.7, False) == zeta_no_tension(0.7)
+    True
+    """
+    return zeta_tension(e) if tension else zeta_no_tension(e)
 
 
 @law
@@ -325,7 +365,7 @@ def stiffness_for_time(t_col: float, m: float, zeta: float, tension: bool) -> fl
     >>> round(stiffness_for_time(collision_time(1.11e-5, 1.0), 1.11e-5, 0.0, False), 12)
     1.0
     """
-    phase = contact_time_tension(zeta, 1.0) if tension else contact_time_no_tension(zeta, 1.0)
+    phase = contact_time(zeta, 1.0, tension)
     return m * (phase / t_col) * (phase / t_col)
 
 

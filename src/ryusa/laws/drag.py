@@ -18,6 +18,18 @@ def reynolds(speed: float, d: float, nu: float) -> float:
 
 
 @law
+def c_d_constant(c_d: float) -> float:
+    """Drag coefficient that is the same at every Re [-], as given.
+
+    Examples
+    --------
+    >>> c_d_constant(0.44)
+    0.44
+    """
+    return c_d
+
+
+@law
 def c_d_re_04(re: float) -> float:
     """Drag coefficient 24/Re + 0.4 [-]; Stokes at small Re, 0.4 at large.
 

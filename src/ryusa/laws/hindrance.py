@@ -91,14 +91,26 @@ def exponent_settling(a: float, p: float, q: float, stress: bool) -> float:
 
 
 @law
-def richardson_zaki(slip: float, eps: float, n: float, stress: bool) -> tuple[float, float]:
+def unhindered(slip: float) -> tuple[float, float]:
+    """Drag of a lone grain, as if there were no neighbours; answers the slip [m/s] and the factor 1 [-].
+
+    Examples
+    --------
+    >>> unhindered(0.1)
+    (0.1, 1.0)
+    """
+    return slip, 1.0
+
+
+@law
+def richardson_zaki(slip: float, eps: float, exponent: float, stress: bool) -> tuple[float, float]:
     """Hindered drag that makes a suspension settle with eps**n exactly, whatever the drag law.
 
     Parameters
     ----------
     slip : speed of the water against the grain [m/s], >= 0.
     eps : void fraction 1 - phi [-], > 0.
-    n : exponent [-]; `exponent_rowe`, `exponent_garside` or one's own.
+    exponent : n [-]; `exponent_rowe`, `exponent_garside` or one's own.
     stress : whether buoyancy is that of the mixture (model A).
 
     Returns
@@ -116,7 +128,7 @@ def richardson_zaki(slip: float, eps: float, n: float, stress: bool) -> tuple[fl
     >>> richardson_zaki(0.1, 0.5, 3.0, False), richardson_zaki(0.1, 0.5, 3.0, True)
     ((0.4, 1.0), (0.4, 0.5))
     """
-    return slip * eps ** (1.0 - n), eps if stress else 1.0
+    return slip * eps ** (1.0 - exponent), eps if stress else 1.0
 
 
 @law
@@ -262,14 +274,14 @@ def di_felice(slip: float, eps: float, d: float, nu: float, stress: bool) -> tup
 
 
 @law
-def power(slip: float, eps: float, m: float) -> tuple[float, float]:
+def power(slip: float, eps: float, exponent: float) -> tuple[float, float]:
     """Hindered drag, eps**-m times that of a lone grain at the same slip.
 
     Parameters
     ----------
     slip : speed of the water against the grain [m/s], >= 0.
     eps : void fraction 1 - phi [-], > 0.
-    m : exponent [-].
+    exponent : m [-].
 
     Returns
     -------
@@ -286,4 +298,4 @@ def power(slip: float, eps: float, m: float) -> tuple[float, float]:
     >>> power(0.1, 0.5, 3.0)
     (0.1, 8.0)
     """
-    return slip, eps**-m
+    return slip, eps**-exponent

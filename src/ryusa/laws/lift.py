@@ -32,6 +32,29 @@ def lift_wiberg_smith(top: float, bottom: float, c_l: float, rho_w: float, a_2: 
 
 
 @law
+def shear_lift_wiberg_smith(
+    top: float, bottom: float, c_l: float, rho_w: float, a_2: float, d: float
+) -> tuple[float, float]:
+    """Shear lift after Wiberg and Smith, as every law of shear lift answers.
+
+    Parameters
+    ----------
+    top, bottom, c_l, rho_w, a_2, d : as in `lift_wiberg_smith`.
+
+    Returns
+    -------
+    normal : force along z, away from the bed [N].
+    across : factor k [N s/m] of a force k (w x e_y), w = water - grain; none here.
+
+    Examples
+    --------
+    >>> shear_lift_wiberg_smith(0.1, 0.1, 0.2, 1000.0, 0.7854, 0.002)
+    (0.0, 0.0)
+    """
+    return lift_wiberg_smith(top, bottom, c_l, rho_w, a_2, d), 0.0
+
+
+@law
 def saffman_mei(re: float, beta: float) -> float:
     """Shear lift as a part of Saffman's [-], after Mei.
 
@@ -86,6 +109,29 @@ def lift_saffman_mei(slip: float, shear: float, d: float, nu: float, rho_w: floa
     if slip == 0.0:
         return k
     return k * saffman_mei(reynolds(slip, d, nu), 0.5 * rate * d / slip)
+
+
+@law
+def shear_lift_saffman_mei(
+    slip: float, shear: float, d: float, nu: float, rho_w: float
+) -> tuple[float, float]:
+    """Shear lift after Saffman and Mei, as every law of shear lift answers.
+
+    Parameters
+    ----------
+    slip, shear, d, nu, rho_w : as in `lift_saffman_mei`.
+
+    Returns
+    -------
+    normal : force along z, away from the bed [N]; none here.
+    across : factor k [N s/m] of the force k (w x e_y), w = water - grain.
+
+    Examples
+    --------
+    >>> shear_lift_saffman_mei(0.1, 0.0, 0.002, 1.0e-6, 1000.0)
+    (0.0, 0.0)
+    """
+    return 0.0, lift_saffman_mei(slip, shear, d, nu, rho_w)
 
 
 @law

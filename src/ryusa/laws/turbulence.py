@@ -52,6 +52,32 @@ def length_parabolic(z: float, depth: float, kappa: float) -> float:
 
 
 @law
+def length_parabolic_between(z: float, face: float, depth: float, kappa: float) -> float:
+    """Mixing length in an open channel at a face between two cells [m].
+
+    Parameters
+    ----------
+    z : height at which the log law has the slope of its chord between the middles of the two cells [m],
+        `height_between`; the face itself over a moving bed.
+    face : height of the face [m]; zero at and below 0.
+    depth, kappa : as in `length_parabolic`.
+
+    Notes
+    -----
+    Source: derived. sqrt(1 - z/depth) is taken at the face, where the stress is, and kappa z at `z`, so that
+    cells follow the log law from the wall on.
+
+    Examples
+    --------
+    >>> round(length_parabolic_between(0.0144, 0.015, 0.02, 0.4), 6)  # 0.4 * 0.0144 * sqrt(1/4)
+    0.00288
+    """
+    if face <= 0.0:
+        return 0.0 * kappa
+    return length_parabolic(face, depth, kappa) * (z / face)
+
+
+@law
 def length_van_driest(z: float, u_star: float, nu: float, kappa: float) -> float:
     """Mixing length over a smooth wall [m], kappa z (1 - exp(-z+/26)), z+ = z u_star/nu.
 
@@ -228,6 +254,31 @@ def wall_smooth(u_x: float, z: float, nu: float) -> tuple[float, float]:
     if not z * u_star > 11.3 * nu:
         return nu * u_x / z, nu / z
     return math.copysign(u_star * u_star, u_x), 2.0 * u_star / (abs(u_x) / u_star + 1.0 / 0.41)
+
+
+@law
+def wall_no_slip(u_x: float, z: float, nu: float, square: float) -> tuple[float, float]:
+    """Stress of a wall without slip over density [m2/s2], with the sign of u_x, and its slope with u_x [m/s].
+
+    Parameters
+    ----------
+    u_x : water speed at height z [m/s].
+    z : height above the wall [m], > 0.
+    nu : kinematic viscosity [m2/s].
+    square : square of the mixing length at the wall, times the share of the water [m2]; 0 without eddies.
+
+    Notes
+    -----
+    Source: (nu + nu_t) u_x/z with nu_t of `eddy_viscosity` at the velocity gradient u_x/z.
+
+    Examples
+    --------
+    >>> stress, slope = wall_no_slip(0.01, 1.0e-4, 1.0e-6, 0.0)  # nu u/z and nu/z
+    >>> round(stress, 9), round(slope, 9)
+    (0.0001, 0.01)
+    """
+    nu_t = eddy_viscosity(1.0, u_x / z, square)
+    return (nu + nu_t) * u_x / z, (nu + 2.0 * nu_t) / z
 
 
 @law

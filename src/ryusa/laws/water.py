@@ -85,6 +85,18 @@ def uniform(z: float, speed: float) -> float:
 
 
 @law
+def still(z: float) -> float:
+    """Water at rest [m/s], whatever the height z [m].
+
+    Examples
+    --------
+    >>> still(0.01)
+    0.0
+    """
+    return 0.0
+
+
+@law
 def u_star_from_tau_star(tau_star: float, rho_s: float, rho_w: float, g: float, d: float) -> float:
     """Friction velocity [m/s] from the dimensionless shear stress (Shields number).
 

@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 
 from ryusa.laws.collision import (
     collision_time,
-    contact_time_no_tension,
-    contact_time_tension,
+    contact_time,
     damping_ratio,
     omega_natural,
 )
@@ -18,7 +17,7 @@ from ryusa.measure._run import Floats, Run, settle_time
 from ryusa.measure.statistics import Average, average
 from ryusa.measure.table import Averages
 from ryusa.model import Scene
-from ryusa.model.enums import Damping
+from ryusa.model.scene import Damping
 
 Partner = Literal["all", "bed", "free", "plane"]
 
@@ -193,8 +192,7 @@ def _of_kind(j: NDArray[np.int64], scene: Scene, partner: Partner) -> NDArray[np
 def _damped(scene: Scene, mass: float) -> float:
     law = scene.contact
     zeta = law.zeta_n if law.damping == Damping.RESTITUTION else damping_ratio(law.eta_n, law.k_n, mass)
-    time = contact_time_tension if law.tension else contact_time_no_tension
-    return time(zeta, omega_natural(law.k_n, mass))
+    return contact_time(zeta, omega_natural(law.k_n, mass), law.tension)
 
 
 def _expected(scene: Scene, pair: Floats) -> Floats:

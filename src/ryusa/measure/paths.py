@@ -15,7 +15,7 @@ from ryusa.measure.snapshot import scene_at
 from ryusa.measure.statistics import average, ratio
 from ryusa.measure.table import Averages
 from ryusa.model import Scene
-from ryusa.model.enums import EventRule
+from ryusa.model.scene import EventRule
 
 WINDOW = 1.0  # [s], that of fig16
 THRESHOLD = 0.02  # vertical excursion that counts, in diameters of the grain

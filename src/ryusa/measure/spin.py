@@ -5,12 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ryusa.laws.families import Profile
 from ryusa.laws.torque import torque_in_range
 from ryusa.laws.water import log_law_rough
 from ryusa.measure._run import Floats, Run, settle_time
 from ryusa.measure.statistics import average, ratio
 from ryusa.measure.table import Averages
-from ryusa.model.enums import Profile
 
 TURN = 2.0 * math.pi
 

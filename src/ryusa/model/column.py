@@ -6,6 +6,7 @@ from enum import IntEnum
 
 import numpy as np
 
+from ryusa.laws.families import BedKind, Drive, Fluctuations, Mixing, SideWalls, Start, SurfaceRule
 from ryusa.model.arrays import Floats
 
 NAN = float("nan")
@@ -13,68 +14,11 @@ AGREE = 0.02  # relative; numbers that say the same thing twice may differ by so
 STIFF = 0.25  # of the time in which drag equalises water and grains: longest interval between two exchanges
 
 
-class Mixing(IntEnum):
-    """Where the mixing length comes from."""
-
-    LAMINAR = 0  # no eddies
-    PRANDTL = 1  # kappa z
-    PARABOLIC = 2  # kappa z sqrt(1 - z/depth), Nezu
-    VAN_DRIEST = 3  # kappa z (1 - exp(-z+/26))
-    LI_SAWAMOTO = 4  # kappa times the integral of (phi_max - phi)/phi_max
-
-
-class Bed(IntEnum):
-    """What the water meets at the bottom of the column."""
-
-    NO_SLIP = 0  # smooth wall, molecular stress in the lowest half cell
-    SMOOTH = 1  # smooth wall, two-layer law: the same as NO_SLIP while z+ <= 11.3
-    ROUGH = 2  # Eq. (9) at the middle of the lowest cell
-    MOVING = 3  # deep under grains, whose drag has stopped the water: no slip, and no wall for the eddies
-
-
 class Top(IntEnum):
     """What is above the water."""
 
     FREE = 0  # a surface without stress
     LID = 1  # a plate that moves at u_lid, molecular stress in the highest half cell
-
-
-class Surface(IntEnum):
-    """What is kept when grains come and go."""
-
-    DEPTH = 0  # the height of the surface; water passes through it
-    VOLUME = 1  # the volume of water; the surface moves
-
-
-class Drive(IntEnum):
-    """What drives the water beside gravity along the slope."""
-
-    GRAVITY = 0  # nothing else
-    GRADIENT = 1  # a given pressure gradient
-    TAU = 2  # the pressure gradient that brings the driving stress at z_bed to the one asked for
-    DISCHARGE = 3  # the pressure gradient that keeps the discharge of water, step by step
-
-
-class Start(IntEnum):
-    """How the water begins."""
-
-    REST = 0
-    STEADY = 1  # as it flows past grains at rest
-
-
-class Fluctuations(IntEnum):
-    """Turbulent speeds that grains meet beside the mean."""
-
-    NONE = 0
-    RANDOM_WALK = 1  # from eddy to eddy
-
-
-class SideWalls(IntEnum):
-    """Friction of the two smooth walls of a narrow flume."""
-
-    NONE = 0
-    BLASIUS = 1
-    KARMAN_PRANDTL = 2
 
 
 @dataclass(frozen=True)
@@ -90,11 +34,11 @@ class Column:
     rho_w: float = 1000.0  # density [kg/m3]
     nu: float = 1.0e-6  # kinematic viscosity [m2/s]
     # boundaries
-    bed: Bed = Bed.NO_SLIP
+    bed: BedKind = BedKind.NO_SLIP
     k_rough: float = NAN  # equivalent roughness of Eq. (9) [m]
     top: Top = Top.FREE
     u_lid: float = 0.0  # speed of the lid [m/s]
-    surface: Surface = Surface.DEPTH
+    surface: SurfaceRule = SurfaceRule.DEPTH
     side: SideWalls = SideWalls.NONE
     width: float = NAN  # between the side walls [m]
     # driver
@@ -146,11 +90,11 @@ class Column:
         for name in ("area", "rho_w", "nu", "kappa", "phi_max"):
             if not getattr(self, name) > 0.0:
                 faults.append(f"{name} = {getattr(self, name):g}: must be above 0")
-        if self.bed is not Bed.MOVING and abs(self.origin - self.z_low) > 1e-9 * abs(self.dz):
+        if self.bed is not BedKind.MOVING and abs(self.origin - self.z_low) > 1e-9 * abs(self.dz):
             faults.append(
                 f"z_bed = {self.origin:g} m: a fixed bed is the bottom of the column, {self.z_low:g} m"
             )
-        if self.bed is Bed.ROUGH:
+        if self.bed is BedKind.ROUGH:
             if not self.k_rough > 0.0:
                 faults.append(f"k_rough = {self.k_rough:g} m: a rough bed needs a roughness above 0")
             elif self.dz <= self.k_rough / 15.0:
@@ -158,9 +102,9 @@ class Column:
                     f"dz = {self.dz:g} m: Eq. (9) is zero below k_rough/30 = {self.k_rough / 30.0:.3g} m, "
                     f"and the middle of the lowest cell must lie above; ten times as much is a good choice"
                 )
-        if self.bed is Bed.MOVING and self.mixing is Mixing.VAN_DRIEST:
+        if self.bed is BedKind.MOVING and self.mixing is Mixing.VAN_DRIEST:
             faults.append("van Driest's length needs a wall: choose another mixing length over a moving bed")
-        if self.top is Top.LID and self.surface is Surface.VOLUME:
+        if self.top is Top.LID and self.surface is SurfaceRule.VOLUME:
             faults.append("a lid holds the surface in its place: keep the depth, not the volume")
         if self.side is not SideWalls.NONE and not self.width > 0.0:
             faults.append(f"width = {self.width:g} m: side walls need a width above 0")
@@ -189,7 +133,7 @@ class WaterState:
     tau: Floats  # shear stress of the water at the faces [Pa], shape (n + 1,); the bed's is the first
     nu_t: Floats  # eddy viscosity at the faces [m2/s], shape (n + 1,)
     z_surface: float  # height of the surface [m]
-    volume: float  # water per area of bed [m], kept where Surface.VOLUME is chosen
+    volume: float  # water per area of bed [m], kept where SurfaceRule.VOLUME is chosen
     gradient: float = 0.0  # -dp/dx of the driver [Pa/m]
     t: float = 0.0  # [s]
     step: int = 0  # steps of the water done

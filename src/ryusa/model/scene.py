@@ -1,19 +1,16 @@
 """What holds still during a run: grains' sizes and masses, bed, planes, laws, water, step."""
 
 from dataclasses import dataclass, field
+from enum import IntEnum
 
 import numpy as np
 
-from ryusa.model.arrays import Bools, Floats
-from ryusa.model.column import Column
-from ryusa.model.enums import (
+from ryusa.laws.families import (
     Above,
     Arm,
     Buoyancy,
     Cap,
-    Damping,
     Drag,
-    EventRule,
     Hindrance,
     Lift,
     Magnus,
@@ -23,8 +20,25 @@ from ryusa.model.enums import (
     Slip,
     WaterTorque,
 )
+from ryusa.model.arrays import Bools, Floats
+from ryusa.model.column import Column
 
 _INF = float("inf")
+
+
+class Damping(IntEnum):
+    """Where the dashpots come from."""
+
+    RESTITUTION = 0  # from the restitution asked for and the pair's effective mass
+    CONSTANTS = 1  # eta_n, eta_s given in N s/m
+
+
+class EventRule(IntEnum):
+    """Which contacts are recorded."""
+
+    NONE = 0
+    TRACKED = 1
+    ALL = 2
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ import numpy as np
 
 from ryusa.errors import ResultsError
 from ryusa.model import Column, ContactLaw, RollingLaw, Scene, Water
-from ryusa.model.enums import EventRule
+from ryusa.model.scene import EventRule
 from ryusa.results.hdf5 import opened, read_dataset
 
 _LAWS: dict[str, type] = {"contact": ContactLaw, "rolling": RollingLaw, "water": Water, "column": Column}

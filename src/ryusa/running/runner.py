@@ -14,7 +14,7 @@ from ryusa.engine import registry
 from ryusa.engine.protocol import Engine
 from ryusa.errors import CaseError, CheckpointError, ResultsError
 from ryusa.model import Scene, State
-from ryusa.model.enums import EventRule
+from ryusa.model.scene import EventRule
 from ryusa.results import Results, schema
 from ryusa.results.scene_file import scene_digest
 from ryusa.running import provenance

@@ -13,13 +13,14 @@ from ryusa.laws.collision import (
     damping_ratio,
     effective_mass,
     effective_mass_tangential,
-    restitution_no_tension,
+    restitution_for_zeta,
     restitution_tension,
     shortest_contact,
 )
+from ryusa.laws.families import WaterTorque
 from ryusa.laws.torque import reynolds_spin, torque_in_range
 from ryusa.model import Book, Scene, State, Tally
-from ryusa.model.enums import Damping, WaterTorque
+from ryusa.model.scene import Damping
 from ryusa.model.tally import HELD
 from ryusa.running.checkpoint import Kept
 
@@ -288,11 +289,10 @@ def _follows(scene: Scene, free_pairs: bool) -> dict[str, tuple[float, float | N
     inertia, spins = float(scene.inertia.mean()), bool(scene.rotation)
     others = {"fixed": (math.inf, math.inf)} if scene.n_fixed + scene.n_plane else {}
     others |= {"free": (m, inertia)} if free_pairs else {}
-    normal = restitution_tension if law.tension else restitution_no_tension
     found: dict[str, tuple[float, float | None]] = {}
     for name, (m_j, inertia_j) in others.items():
         m_t = effective_mass_tangential(m, r, inertia, m_j, r, inertia_j, spins)
-        e_n = normal(damping_ratio(law.eta_n, law.k_n, effective_mass(m, m_j)))
+        e_n = restitution_for_zeta(damping_ratio(law.eta_n, law.k_n, effective_mass(m, m_j)), law.tension)
         e_s = restitution_tension(damping_ratio(law.eta_s, law.k_s, m_t)) if law.k_s > 0.0 else None
         found[name] = (e_n, e_s)
     return found

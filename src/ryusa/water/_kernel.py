@@ -12,8 +12,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 _HERE = Path(__file__).parent
-_MODEL = _HERE.parent / "model"
-_EDITION = edition(LAWS, _HERE, *(_MODEL / name for name in ("column.py", "enums.py", "resistance.py")))
+_EDITION = edition(LAWS, _HERE, _HERE.parent / "model" / "column.py")
 
 
 def kernel(function: F) -> F:

@@ -2,6 +2,7 @@
 
 import math
 
+from ryusa.laws.families import BedKind, Mixing, SideWalls
 from ryusa.laws.turbulence import (
     eddy_viscosity,
     friction_blasius,
@@ -17,11 +18,10 @@ from ryusa.laws.turbulence import (
     wall_rough,
     wall_smooth,
 )
-from ryusa.model.column import Bed, Mixing, SideWalls
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import ColumnParameters, kernel
 
-ROUGH, SMOOTH, MOVING = int(Bed.ROUGH), int(Bed.SMOOTH), int(Bed.MOVING)
+ROUGH, SMOOTH, MOVING = int(BedKind.ROUGH), int(BedKind.SMOOTH), int(BedKind.MOVING)
 LAMINAR, PRANDTL, PARABOLIC = int(Mixing.LAMINAR), int(Mixing.PRANDTL), int(Mixing.PARABOLIC)
 VAN_DRIEST, LI_SAWAMOTO = int(Mixing.VAN_DRIEST), int(Mixing.LI_SAWAMOTO)
 BLASIUS, KARMAN_PRANDTL = int(SideWalls.BLASIUS), int(SideWalls.KARMAN_PRANDTL)

@@ -10,10 +10,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ryusa.errors import WaterError
+from ryusa.laws.families import BedKind, Buoyancy, Mixing, Start
 from ryusa.model import CouplingState, Scene
-from ryusa.model.column import STIFF, Bed, Budget, Column, Mixing, Start, WaterState
+from ryusa.model.column import STIFF, Budget, Column, WaterState
 from ryusa.model.eddies import Eddies
-from ryusa.model.enums import Buoyancy
 from ryusa.model.fluid import A_X, DRAG, EXTRA_X, EXTRA_Z, N_SAMPLED, PHI, SHEAR, SUBMERGED, U, V, W
 from ryusa.model.scene import Floats
 from ryusa.water import eddies
@@ -213,7 +213,7 @@ class Coupling:
         column, densest = self.column, self.densest()
         if (
             column.mixing is not Mixing.LI_SAWAMOTO
-            or column.bed is not Bed.MOVING
+            or column.bed is not BedKind.MOVING
             or densest >= column.phi_max
         ):
             return []
@@ -285,7 +285,7 @@ def _phi(cut: Slices, solid: Floats) -> Floats:
     return weighted_concentration(cut, solid / cut.whole)
 
 
-def _bed(scene: Scene, cells: Cells, bed: Bed) -> FixedGrains:
+def _bed(scene: Scene, cells: Cells, bed: BedKind) -> FixedGrains:
     """The fixed grains that are still there."""
     there = scene.fixed_active
     return FixedGrains.at(scene.x_fixed[there, 2], scene.d_fixed[there], cells, bed)

@@ -2,7 +2,8 @@
 
 import math
 
-from ryusa.model.column import Column, Drive, WaterState
+from ryusa.laws.families import Drive
+from ryusa.model.column import Column, WaterState
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import ColumnParameters, kernel
 

@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 
 from ryusa.laws.eddies import eddy_along, eddy_drift, eddy_life
-from ryusa.model.column import Bed, Column, WaterState
+from ryusa.laws.families import BedKind
+from ryusa.model.column import Column, WaterState
 from ryusa.model.eddies import Eddies
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import kernel
@@ -144,7 +145,7 @@ def turbulence(column: Column, state: WaterState, phi: Floats, cut: Slices) -> t
     share = np.concatenate([eps[:1], 0.5 * (eps[1:] + eps[:-1]), eps[-1:]])
     viscosity = state.nu_t / share
     square = np.abs(state.tau) / column.rho_w * viscosity / (column.nu + state.nu_t)
-    if column.bed is Bed.ROUGH:
+    if column.bed is BedKind.ROUGH:
         square[0] = square[1]
     drift = np.empty(column.n)
     _drift(column.dz, np.sqrt(square), viscosity, drift)

@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ryusa.errors import WaterError
+from ryusa.laws.dispatch import hindered
 from ryusa.laws.drag import volume
-from ryusa.model.column import Bed, Column, WaterState
-from ryusa.model.enums import Buoyancy, Drag
-from ryusa.model.resistance import hindered
+from ryusa.laws.families import BedKind, Buoyancy, Drag
+from ryusa.model.column import Column, WaterState
 from ryusa.model.scene import Floats, Water
 from ryusa.water._kernel import kernel
 from ryusa.water.exchange import Cells, Slices, concentration, slices, to_cells, to_grains
@@ -54,11 +54,11 @@ class FixedGrains:
     covered_by_wall_law: bool
 
     @staticmethod
-    def at(z: Floats, d: Floats, cells: Cells, bed: Bed) -> "FixedGrains":
+    def at(z: Floats, d: Floats, cells: Cells, bed: BedKind) -> "FixedGrains":
         """Spheres at heights z [m] with diameters d [m] in a column with the bed condition `bed`."""
         cut = slices(z, d, cells)
         return FixedGrains(
-            cut, np.ascontiguousarray(z), np.ascontiguousarray(d), concentration(cut), bed is Bed.ROUGH
+            cut, np.ascontiguousarray(z), np.ascontiguousarray(d), concentration(cut), bed is BedKind.ROUGH
         )
 
     def forces(self, water: Water, rho_g_x: float, state: WaterState, phi: Floats) -> FixedGrainForces:
@@ -130,13 +130,13 @@ def steady_start(column: Column, water: Water, fixed: Floats, free: Floats, d: f
     because first grains are placed loosely. Over a wall it flows as without free grains.
     """
     start = WaterState.at_rest(column, fixed + free)
-    phi = settled_concentration(column, fixed, free, d) if column.bed is Bed.MOVING else fixed
+    phi = settled_concentration(column, fixed, free, d) if column.bed is BedKind.MOVING else fixed
     state = WaterState.at_rest(column, phi)
     sizes = np.full(column.n, d)
     submerged = np.clip((column.z_surface - column.faces[:-1]) / column.dz, 0.0, 1.0)
     for _ in range(MAX_ITERATIONS):
         forces = FixedGrainForces(*np.zeros((4, column.n)))
-        if column.bed is not Bed.ROUGH:
+        if column.bed is not BedKind.ROUGH:
             drags = _drags(water, np.column_stack([state.u, 0.0 * submerged, phi]), submerged, sizes)
             given = drags * (phi / volume(d, math.pi / 6.0))[:, None]
             given[:, 0] *= state.u

@@ -5,7 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ryusa.model.column import Bed, Budget, Column, Drive, WaterState
+from ryusa.laws.families import BedKind, Drive
+from ryusa.model.column import Budget, Column, WaterState
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import parameters_of
 from ryusa.water.drive import imposed_gradient
@@ -56,5 +57,5 @@ def _first_guess(column: Column, rest: WaterState) -> Floats:
         gradient = imposed_gradient(p, rest.content, rest.z_surface)
         stress = column.g_x * rest.volume + gradient * (rest.z_surface - column.z_low) / column.rho_w
         scale = math.copysign(math.sqrt(abs(stress)), stress)
-    rough = column.k_rough if column.bed is Bed.ROUGH else column.dz
+    rough = column.k_rough if column.bed is BedKind.ROUGH else column.dz
     return scale * np.maximum(8.5 + 5.75 * np.log10(over / rough), 1.0)

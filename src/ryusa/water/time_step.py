@@ -4,14 +4,15 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ryusa.laws.families import Drive, SideWalls, SurfaceRule
 from ryusa.laws.turbulence import eddy_viscosity
-from ryusa.model.column import Drive, SideWalls, Surface, Top
+from ryusa.model.column import Top
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import ColumnParameters, kernel
 from ryusa.water.closures import VAN_DRIEST, bed_shear, bed_stress, mixing_lengths, side_drag
 from ryusa.water.drive import imposed_gradient
 
-LID, VOLUME, DISCHARGE = int(Top.LID), int(Surface.VOLUME), int(Drive.DISCHARGE)
+LID, VOLUME, DISCHARGE = int(Top.LID), int(SurfaceRule.VOLUME), int(Drive.DISCHARGE)
 NO_WALLS = int(SideWalls.NONE)
 TOLERANCE = 1.0e-13  # relative change of the speed at which Newton's method stops
 ROUND_OFF = 1.0e-9  # relative change accepted where the next is no smaller: limit of round-off

@@ -1,16 +1,24 @@
 """Keys of [water.column]."""
 
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field
 
-from ryusa.casefile.quantities import Count, Length, Number, PositiveLength, PressureGradient, UnitDischarge
+from ryusa.casefile.quantities import (
+    Count,
+    Length,
+    Number,
+    PositiveLength,
+    PressureGradient,
+    UnitDischarge,
+    WordOf,
+)
 from ryusa.casefile.section import Section
+from ryusa.laws import families
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
 
-Mixing = Literal["Li-Sawamoto", "Prandtl", "parabolic", "van Driest", "none"]
 # keys of [water] that have an effect only with profile "column"
 ONLY_IN_A_COLUMN = (
     "buoyancy",
@@ -32,12 +40,12 @@ class ColumnSection(Section):
     bottom: Length | None = None
     """Height of the lowest cell face. When not given: over a moving bed the lower edge of the lowest grain or
     the floor, over a fixed bed the zero of the water."""
-    bed: Literal["moving", "rough", "smooth"] = "moving"
+    bed: Annotated[str, WordOf(families.BedKind)] = "moving"
     """Lower boundary of the water: grains whose drag brings it to rest, the rough bed of Eq. (9), or a smooth
     wall."""
-    surface: Literal["depth", "volume"] = "depth"
+    surface: Annotated[str, WordOf(families.SurfaceRule)] = "depth"
     """What is held constant while grains move: the height of the surface or the volume of water."""
-    drive: Literal["slope", "tau_star", "pressure gradient", "discharge"] = "slope"
+    drive: Annotated[str, WordOf(families.Drive)] = "slope"
     """What drives the water: the slope alone, or beside it a pressure gradient: the one that gives the stress
     water.tau_star (or u_star) at the zero of the water, the one given, or the one that keeps the discharge
     constant."""
@@ -45,11 +53,11 @@ class ColumnSection(Section):
     """-dp/dx of drive = "pressure gradient"; positive drives towards +x."""
     discharge: UnitDischarge | None = None
     """Discharge of water per width of drive = "discharge"."""
-    start: Literal["steady", "rest"] | None = None
+    start: Annotated[str, WordOf(families.Start)] | None = None
     """State of the water at the start: at rest, or in steady flow. Steady flow is computed over a moving bed
     with the grains settled to the concentration `packed`, over a fixed bed without free grains; it is the
     default, except without drag."""
-    mixing_length: Mixing | None = None
+    mixing_length: Annotated[str, WordOf(families.Mixing)] | None = None
     """Mixing length of the turbulence: kappa times the integral of (packed - phi)/packed over height (default
     over a moving bed), kappa z, kappa z sqrt(1 - z/depth) of Nezu (default over a fixed bed), kappa z with
     van Driest's damping at the wall, or no turbulence."""
@@ -64,16 +72,16 @@ class ColumnSection(Section):
     none."""
     side_walls: PositiveLength | None = None
     """Distance between two smooth side walls that slow the water; no side walls when not given."""
-    side_friction: Literal["Blasius", "Karman-Prandtl"] = "Blasius"
+    side_friction: Annotated[str, WordOf(families.SideWalls)] = "Blasius"
     """Friction law of turbulent water at the side walls."""
-    fluctuations: Literal["none", "random walk"] = "none"
+    fluctuations: Annotated[str, WordOf(families.Fluctuations)] = "none"
     """Turbulent velocity fluctuations at each grain beside the mean velocity: none, or a random walk with the
     strength of the turbulent stress and the time scale at which the eddy viscosity spreads momentum."""
     interval: Annotated[Count, Field(ge=1, le=100_000)] = 50
     """Most steps between two exchanges of momentum of water and grains; fewer where the drag is stiff."""
 
     @property
-    def mixing(self) -> Mixing:
+    def mixing(self) -> str:
         """Mixing length given, or the default of the bed."""
         return self.mixing_length or ("Li-Sawamoto" if self.bed == "moving" else "parabolic")
 

@@ -1,6 +1,6 @@
 """Keys of [contact] and [rolling]."""
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from pydantic import Discriminator, Field, Tag
 
@@ -13,8 +13,10 @@ from ryusa.casefile.quantities import (
     Number,
     Speed,
     Stiffness,
+    WordOf,
 )
 from ryusa.casefile.section import Section
+from ryusa.laws import families
 
 RIVALS = (
     ("friction_angle", "friction"),
@@ -81,22 +83,22 @@ class ContactSection(Section):
     """Friction coefficient mu = tan(phi), instead of friction_angle."""
     cohesion: Annotated[Force, Field(ge=0)] = 0.0
     """Cohesion c of Eq. (4): the shear force that a contact carries without normal force."""
-    slip: Literal["spring", "spring-drop", "total"] = "spring"
+    slip: Annotated[str, WordOf(families.Slip)] = "spring"
     """Force that the Coulomb limit caps: "spring" caps the tangential spring and keeps the dashpot,
     "spring-drop" caps the spring and drops the dashpot while sliding, "total" caps their sum."""
-    cap: Literal["spring", "total"] | None = None
+    cap: Annotated[str, WordOf(families.Cap)] | None = None
     """Normal force in the Coulomb limit: that of the spring, e_n, or the total, f_n; "total" when not given
     with slip = "total", else "spring"."""
-    parting: Literal["no tension", "tension"] = "no tension"
+    parting: Annotated[str, WordOf(families.Parting)] = "no tension"
     """Whether the normal dashpot may pull before the overlap ends."""
 
 
 class RollingSection(Section):
     """Rolling resistance, Eq. (13) and its variants."""
 
-    model: Literal["none", "printed", "constant", "spring-dashpot-slider"] = "none"
+    model: Annotated[str, WordOf(families.Rolling)] = "none"
     """None, Eq. (13) as printed, a constant torque against the relative rotation, or a spring that slides."""
-    arm: Literal["contact width", "reduced radius"] | None = None
+    arm: Annotated[str, WordOf(families.Arm)] | None = None
     """Length that the coefficient multiplies; "contact width", as in Eq. (13), when not given. The
     spring-dashpot-slider always takes "reduced radius"."""
     coefficient: Annotated[Number, Field(ge=0)] = 0.0

@@ -66,7 +66,7 @@ def restitution(case: "Case") -> tuple[float, float, float, float]:
     return (
         e_n,
         e_s,
-        collision.zeta_tension(e_n) if tension else collision.zeta_no_tension(e_n),
+        collision.zeta_for_restitution(e_n, tension),
         collision.zeta_tension(e_s),
     )
 
@@ -120,11 +120,6 @@ def pair_values(case: "Case", d: float, free: bool, rotates: bool | None = None)
         eta_n, eta_s = contact_law.damping(zeta_n, k_n, m_eff), contact_law.damping(zeta_s, k_s, m_t)
     omega = collision.omega_natural(k_n, m_eff)
     tension = contact.parting == "tension"
-    time, rest = (
-        (collision.contact_time_tension, collision.restitution_tension)
-        if tension
-        else (collision.contact_time_no_tension, collision.restitution_no_tension)
-    )
     return PairValues(
         m=m_eff,
         m_t=m_t,
@@ -132,9 +127,9 @@ def pair_values(case: "Case", d: float, free: bool, rotates: bool | None = None)
         zeta_s=zeta_s,
         eta_n=eta_n,
         eta_s=eta_s,
-        e=rest(zeta_n),
+        e=collision.restitution_for_zeta(zeta_n, tension),
         e_s=collision.restitution_tension(zeta_s),
         t_undamped=collision.collision_time(m_eff, k_n),
-        t_col=time(zeta_n, omega),
+        t_col=collision.contact_time(zeta_n, omega, tension),
         t_shear=math.inf if k_s == 0.0 else collision.collision_time(m_t, k_s),
     )

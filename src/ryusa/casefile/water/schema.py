@@ -1,13 +1,14 @@
 """Keys of [water]."""
 
 import math
-from typing import Annotated, Literal
+from typing import Annotated
 
 from pydantic import Field
 
 from ryusa.casefile.column.schema import ColumnSection
-from ryusa.casefile.quantities import Density, Length, Number, PositiveLength, Speed, Viscosity
+from ryusa.casefile.quantities import Density, Length, Number, PositiveLength, Speed, Viscosity, WordOf
 from ryusa.casefile.section import Section
+from ryusa.laws import families
 
 RIVALS = (("tau_star", "u_star"),)
 
@@ -15,7 +16,7 @@ RIVALS = (("tau_star", "u_star"),)
 class WaterSection(Section):
     """The water: its velocity profile, Eq. (9), drag, added mass and torque, Eqs. (10)-(11)."""
 
-    profile: Literal["log rough", "log smooth", "uniform", "still", "column"]
+    profile: Annotated[str, WordOf(families.Profile)]
     """Velocity over height: Eq. (9), the log law of a smooth wall, the same speed everywhere, water at rest,
     or a column that exchanges momentum with the grains (see `water.column`)."""
     tau_star: Annotated[Number, Field(gt=0)] | None = None
@@ -33,22 +34,14 @@ class WaterSection(Section):
     """Speed of the uniform profile."""
     depth: PositiveLength | None = None
     """Water depth above the zero; unlimited when not given. A column needs it."""
-    above: Literal["continue", "hold", "dry"] = "continue"
+    above: Annotated[str, WordOf(families.Above)] = "continue"
     """Speed above the depth: that of the profile, that of the surface, or (dry) neither drag nor torque;
     buoyancy and added mass stay as under water."""
     density: Annotated[Density, Field(ge=1.0e-3, le=1.0e6)] = 1000.0
     """Density of water, rho_w."""
     viscosity: Annotated[Viscosity, Field(ge=1.0e-12, le=1.0e3)] = 1.0e-6
     """Kinematic viscosity nu."""
-    drag: Literal[
-        "24/Re+0.4",
-        "24/Re+2",
-        "constant",
-        "Schiller-Naumann",
-        "Ferguson-Church sphere",
-        "Ferguson-Church sand",
-        "none",
-    ] = "24/Re+0.4"
+    drag: Annotated[str, WordOf(families.Drag)] = "24/Re+0.4"
     """Law of the drag coefficient C_D."""
     drag_coefficient: Annotated[Number, Field(ge=0)] = 0.4
     """C_D of drag = "constant"."""
@@ -56,9 +49,9 @@ class WaterSection(Section):
     """A_2: projected area of a grain over d squared; pi/4 for a sphere."""
     added_mass: Annotated[Number, Field(ge=0, le=5)] = 0.5
     """Added-mass coefficient C_M."""
-    torque: Literal["none", "Stokes", "Dennis"] = "none"
+    torque: Annotated[str, WordOf(families.WaterTorque)] = "none"
     """Torque of the water on a rotating grain."""
-    rebound: Literal["dry", "exponential", "Davis"] = "dry"
+    rebound: Annotated[str, WordOf(families.Rebound)] = "dry"
     """Restitution of a contact under water: "dry" takes that of [contact]; the others reduce it by the Stokes
     number St at first touch, times exp(-St_c/St) (Legendre et al.) or times 1 + ln(2 asperity/d)/St (Davis
     et al.)."""
@@ -66,7 +59,7 @@ class WaterSection(Section):
     """St_c of rebound = "exponential"."""
     rebound_least: Annotated[Number, Field(gt=0, le=1)] = 0.01
     """Lower bound of the restitution under water; zero would need an infinite dashpot."""
-    film: Literal["none", "lubrication"] = "none"
+    film: Annotated[str, WordOf(families.Film)] = "none"
     """Force of the water film between grains that approach but do not touch. Exclusive with a rebound other
     than "dry", which includes the effect of the film."""
     film_reach: PositiveLength | None = None
@@ -74,20 +67,20 @@ class WaterSection(Section):
     asperity: PositiveLength | None = None
     """Height of the surface asperities, the film thickness at which grains touch; needed by rebound = "Davis"
     and film = "lubrication"."""
-    buoyancy: Literal["stress", "weight", "pressure"] = "stress"
+    buoyancy: Annotated[str, WordOf(families.Buoyancy)] = "stress"
     """Column only. Force of the undisturbed water on a grain, beside drag, lift and added mass: pressure and
     shear stress as on an equal volume of water (design/0007), the weight of that volume as in
     Eqs. (10)-(11), or the pressure normal to the bed alone."""
-    hindrance: Literal["none", "Richardson-Zaki", "power", "Wen-Yu", "Gidaspow", "Di Felice"] = "Di Felice"
+    hindrance: Annotated[str, WordOf(families.Hindrance)] = "Di Felice"
     """Column only. How neighbouring grains change the drag."""
     hindrance_exponent: Annotated[Number, Field(ge=0, le=20)] | None = None
     """n of hindrance = "Richardson-Zaki", when not given that of Rowe at the settling velocity of a single
     grain; m of hindrance = "power"."""
-    lift: Literal["none", "Wiberg-Smith", "Saffman-Mei"] = "none"
+    lift: Annotated[str, WordOf(families.Lift)] = "none"
     """Column only. Lift due to the shear of the water."""
     lift_coefficient: Annotated[Number, Field(ge=0, le=10)] = 0.2
     """C_L of lift = "Wiberg-Smith"."""
-    magnus: Literal["none", "Rubinow-Keller", "Loth", "Oesterle-Dinh"] = "none"
+    magnus: Annotated[str, WordOf(families.Magnus)] = "none"
     """Column only. Lift due to the rotation of a grain relative to the water."""
     column: ColumnSection | None = None
     """The column of water of profile = "column"."""

@@ -7,6 +7,8 @@ from ryusa.casefile.builders.values import sizes
 from ryusa.casefile.column.bed import water_over
 from ryusa.casefile.grains import mass
 from ryusa.laws import drag, hindrance, water
+from ryusa.laws._family import evaluate
+from ryusa.laws.families import Drag
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
@@ -69,20 +71,8 @@ def hindrance_exponent(case: "Case") -> float:
 def drag_coefficient(case: "Case", re: float) -> float:
     """C_D of a case at a grain Reynolds number [-]."""
     assert case.water is not None
-    if case.water.drag == "constant":
-        return case.water.drag_coefficient
-    if case.water.drag == "none":
-        return 0.0
-    return _C_D[case.water.drag](re)
-
-
-_C_D = {
-    "24/Re+0.4": drag.c_d_re_04,
-    "24/Re+2": drag.c_d_re_2,
-    "Schiller-Naumann": drag.c_d_schiller_naumann,
-    "Ferguson-Church sphere": drag.c_d_ferguson_church_sphere,
-    "Ferguson-Church sand": drag.c_d_ferguson_church_sand,
-}
+    law = Drag.of(case.water.drag)
+    return 0.0 if law == Drag.NONE else evaluate(law, re=re, c_d=case.water.drag_coefficient)
 
 
 def terminal_velocity(case: "Case") -> float:

@@ -36,9 +36,8 @@ from ryusa.engine.shared.variant import choice_of, variant_of
 from ryusa.errors import RunError
 from ryusa.model import Book, EngineBlock, FluidAtGrains, Scene, State, Tally
 from ryusa.model.contacts import N_EVENT
-from ryusa.model.enums import EventRule
 from ryusa.model.fluid import SUBMERGED
-from ryusa.model.scene import Floats
+from ryusa.model.scene import EventRule, Floats
 from ryusa.model.state import make_read_only
 
 VERSION = 1  # of the block in a snapshot

@@ -29,9 +29,9 @@ from ryusa.laws.contact_step import (
     normal_work_of_last_force,
     tangential_step,
 )
+from ryusa.laws.families import Cap, Slip
 from ryusa.laws.geometry import overlap as overlap_of
 from ryusa.laws.geometry import wrap
-from ryusa.model.enums import Cap, Slip
 
 SLIP_DROP, SLIP_TOTAL, CAP_TOTAL = int(Slip.SPRING_DROP), int(Slip.TOTAL), int(Cap.TOTAL)
 

@@ -15,7 +15,7 @@ from ryusa.engine.shared.dashpots import dashpot_immersed
 from ryusa.engine.shared.variant import KernelVariant, LawChoice
 from ryusa.laws.contact import normal_force
 from ryusa.laws.contact_step import contact_force, normal_step, normal_work_of_last_force, tangential_step
-from ryusa.model.enums import Cap, Slip
+from ryusa.laws.families import Cap, Slip
 from ryusa.model.tally import Book
 
 B_DASH_N, B_DASH_S, B_SLIDE = int(Book.DASH_N), int(Book.DASH_S), int(Book.SLIDE)

@@ -10,8 +10,7 @@ from ryusa.engine.shared.kernel import kernel
 from ryusa.engine.shared.status import FAULT_EVENTS_FULL, FAULT_NONE
 from ryusa.model import EVENT, State
 from ryusa.model.contacts import N_EVENT
-from ryusa.model.enums import EventRule
-from ryusa.model.scene import Floats
+from ryusa.model.scene import EventRule, Floats
 
 Vector = tuple[float, float, float]
 ONLY_TRACKED = int(EventRule.TRACKED)

@@ -8,9 +8,9 @@ from ryusa.engine.shared.kernel import inner, kernel
 from ryusa.engine.shared.variant import LawChoice
 from ryusa.laws.collision import effective_mass, effective_mass_tangential, zeta_no_tension, zeta_tension
 from ryusa.laws.contact import damping, damping_in_steps
+from ryusa.laws.families import Rebound
 from ryusa.laws.immersed import restitution_davis, restitution_exponential, stokes_number
 from ryusa.laws.rolling import reduced_radius
-from ryusa.model.enums import Rebound
 
 EXPONENTIAL = int(Rebound.EXPONENTIAL)
 

@@ -6,9 +6,9 @@
 import numpy as np
 
 from ryusa.engine.shared import block_statistics as S
+from ryusa.laws.families import Rolling
 from ryusa.laws.rolling import epsd_stiffness, reduced_radius
 from ryusa.model import EngineBlock, Scene, State, Tally
-from ryusa.model.enums import Rolling
 from ryusa.model.scene import Floats
 from ryusa.model.tally import HELD, N_BOOK, Book
 

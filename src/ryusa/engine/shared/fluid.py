@@ -7,6 +7,8 @@ from ryusa.engine.shared import block_statistics as S
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.kernel import FAST, inner
 from ryusa.engine.shared.variant import LawChoice
+from ryusa.laws.dispatch import drag_of, hindered
+from ryusa.laws.families import Above, Buoyancy, Lift, Magnus, Profile, WaterTorque
 from ryusa.laws.lift import (
     lift_saffman_mei,
     lift_wiberg_smith,
@@ -16,9 +18,7 @@ from ryusa.laws.lift import (
 )
 from ryusa.laws.torque import torque_dennis, torque_stokes
 from ryusa.laws.water import log_law_rough, log_law_smooth, uniform
-from ryusa.model.enums import Above, Buoyancy, Lift, Magnus, Profile, WaterTorque
 from ryusa.model.fluid import PHI, SHEAR, SUBMERGED, U, V, W
-from ryusa.model.resistance import drag_of, hindered
 from ryusa.model.tally import Book
 
 ROUGH, SMOOTH, UNIFORM = int(Profile.LOG_ROUGH), int(Profile.LOG_SMOOTH), int(Profile.UNIFORM)

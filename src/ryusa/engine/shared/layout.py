@@ -5,9 +5,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ryusa.engine.shared.variant import KernelVariant
+from ryusa.laws.families import Profile, Rebound
 from ryusa.model import FluidAtGrains, Scene, State
-from ryusa.model.enums import Damping, Profile, Rebound
-from ryusa.model.scene import Floats
+from ryusa.model.scene import Damping, Floats
 
 _CACHE_LINE = 64  # [B]
 

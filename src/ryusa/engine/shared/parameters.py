@@ -3,8 +3,7 @@
 import numpy as np
 
 from ryusa.model import Scene
-from ryusa.model.enums import Damping
-from ryusa.model.scene import Floats
+from ryusa.model.scene import Damping, Floats
 
 # Scalars a kernel reads.
 DT = 0

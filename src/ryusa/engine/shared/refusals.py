@@ -3,8 +3,9 @@
 import numpy as np
 
 from ryusa.errors import NotANumber
+from ryusa.laws.families import Arm, Rebound, Rolling
 from ryusa.model import Scene, State
-from ryusa.model.enums import Arm, Damping, Rebound, Rolling
+from ryusa.model.scene import Damping
 
 _SHORTEST_PERIOD = 3.0  # in diameters: below, a pair could touch through two images
 

@@ -6,6 +6,7 @@ from typing import Any
 from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.kernel import FAST, kernel
+from ryusa.laws.families import Arm, Rolling
 from ryusa.laws.geometry import turn
 from ryusa.laws.rolling import (
     epsd_damping,
@@ -20,7 +21,6 @@ from ryusa.laws.rolling import (
     rolling_printed,
     slider_scale,
 )
-from ryusa.model.enums import Arm, Rolling
 from ryusa.model.tally import Book
 
 Vector = tuple[float, float, float]

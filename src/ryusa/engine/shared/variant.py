@@ -3,9 +3,10 @@
 from typing import NamedTuple
 
 from ryusa.engine.shared import memory_rows as M
+from ryusa.laws.families import Profile, Rolling
 from ryusa.model import Scene
 from ryusa.model.contacts import N_EVENT
-from ryusa.model.enums import EventRule, Profile, Rolling
+from ryusa.model.scene import EventRule
 
 
 class KernelVariant(NamedTuple):
@@ -31,7 +32,7 @@ class KernelVariant(NamedTuple):
 
 
 class LawChoice(NamedTuple):
-    """Laws a kernel picks while it runs (model.enums); always the same, so that a branch is free."""
+    """Laws a kernel picks while it runs (laws.families); always the same, so that a branch is free."""
 
     slip: int
     cap: int

@@ -13,8 +13,7 @@ from ryusa.laws.collision import (
     overlap_max,
     shortest_contact,
     stiffness_for_time,
-    zeta_no_tension,
-    zeta_tension,
+    zeta_for_restitution,
 )
 from ryusa.laws.contact import damping
 from ryusa.laws.drag import volume
@@ -108,7 +107,7 @@ class Setup:
     @property
     def zeta(self) -> float:
         """Damping ratio that gives e [-]."""
-        return zeta_tension(self.e) if self.parting == TENSION else zeta_no_tension(self.e)
+        return zeta_for_restitution(self.e, self.parting == TENSION)
 
     @property
     def shortest(self) -> float:

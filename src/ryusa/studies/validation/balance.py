@@ -12,10 +12,9 @@ import numpy as np
 from ryusa.build import scene
 from ryusa.engine import registry
 from ryusa.figures.comparison import Axis, Curve
+from ryusa.laws.families import BedKind, Buoyancy, Drag, Hindrance, Mixing, Profile, Start
 from ryusa.model import EVENT, Column, Scene, State, Water
-from ryusa.model.column import Bed, Mixing, Start
-from ryusa.model.enums import Buoyancy, Drag, EventRule, Hindrance, Profile
-from ryusa.model.scene import Floats
+from ryusa.model.scene import EventRule, Floats
 from ryusa.studies.validation._check import Comparison, Error, Found, Source, at_most
 from ryusa.study import Level, Task, calculation
 from ryusa.water.coupling import Coupling
@@ -53,8 +52,9 @@ def moving_bed(form: Buoyancy) -> tuple[tuple[Scene, State], Column]:
         water=water, period=(WIDE * D, math.inf), plane_case=True, events=EventRule.ALL,
     )  # fmt: skip
     column = Column(
-        z_low=-0.5 * D, dz=0.1 * D, n=120, depth=4.0 * D, z_bed=2.0 * D, area=WIDE * D * D, bed=Bed.MOVING,
-        mixing=Mixing.LI_SAWAMOTO, phi_max=0.55, d=D, g_x=G * math.sin(SLOPE), start=Start.STEADY,
+        z_low=-0.5 * D, dz=0.1 * D, n=120, depth=4.0 * D, z_bed=2.0 * D, area=WIDE * D * D,
+        bed=BedKind.MOVING, mixing=Mixing.LI_SAWAMOTO, phi_max=0.55, d=D, g_x=G * math.sin(SLOPE),
+        start=Start.STEADY,
     )  # fmt: skip
     return made, column
 

@@ -10,8 +10,7 @@ from ryusa.engine import registry
 from ryusa.figures.comparison import Axis, Curve
 from ryusa.laws import collision
 from ryusa.model import ContactLaw
-from ryusa.model.enums import EventRule
-from ryusa.model.scene import Floats
+from ryusa.model.scene import EventRule, Floats
 from ryusa.studies.validation._check import Comparison, Error, Found, Source, at_most
 from ryusa.study import Level, Task, calculation
 

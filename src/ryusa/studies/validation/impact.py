@@ -9,8 +9,8 @@ from ryusa.build import scene
 from ryusa.engine import registry
 from ryusa.figures.comparison import Axis, Curve
 from ryusa.laws import collision
+from ryusa.laws.families import Cap, Slip
 from ryusa.model import ContactLaw
-from ryusa.model.enums import Cap, Slip
 from ryusa.model.scene import Floats
 from ryusa.studies.validation._check import Comparison, Error, Found, Known, Source, at_most
 from ryusa.study import Level, Task, calculation
@@ -39,11 +39,10 @@ TEST_4 = {
 
 def bounce(e: float, tension: bool, per_contact: float) -> dict[str, Floats]:
     """Restitution got [-] and contact time over that of the oscillator [-], for each phase of first touch."""
-    zeta = collision.zeta_tension(e) if tension else collision.zeta_no_tension(e)
+    zeta = collision.zeta_for_restitution(e, tension)
     law = ContactLaw(k_n=1e4, k_s=0.0, mu=0.0, zeta_n=zeta, tension=tension)
     probe, _ = scene([[0.0, 0.0, 0.01]], D, contact=law)
-    time = collision.contact_time_tension if tension else collision.contact_time_no_tension
-    t_col = time(zeta, math.sqrt(law.k_n / float(probe.m[0])))
+    t_col = collision.contact_time(zeta, math.sqrt(law.k_n / float(probe.m[0])), tension)
     dt = t_col / per_contact
     got: list[float] = []
     took: list[float] = []

@@ -10,8 +10,8 @@ from ryusa.build import scene
 from ryusa.engine import registry
 from ryusa.engine.protocol import Engine
 from ryusa.figures.comparison import Axis, Curve
+from ryusa.laws.families import Drag, Profile, Rebound
 from ryusa.model import Water
-from ryusa.model.enums import Drag, Profile, Rebound
 from ryusa.model.scene import Floats
 from ryusa.studies.validation._check import Comparison, Error, Found, Known, Source, at_most
 from ryusa.study import Level, Task, calculation

@@ -8,8 +8,8 @@ import numpy as np
 from ryusa.build import scene
 from ryusa.engine import registry
 from ryusa.figures.comparison import Axis, Curve
+from ryusa.laws.families import Arm, Rolling, Slip
 from ryusa.model import ContactLaw, RollingLaw
-from ryusa.model.enums import Arm, Rolling, Slip
 from ryusa.model.scene import Floats
 from ryusa.studies.validation._check import Comparison, Error, Found, Source, at_most, relative
 from ryusa.study import Level, Task, calculation

@@ -9,11 +9,10 @@ import numpy as np
 from ryusa.build import scene
 from ryusa.engine import registry
 from ryusa.figures.comparison import Axis, Curve
+from ryusa.laws.families import BedKind, Buoyancy, Drag, Hindrance, Profile
 from ryusa.laws.hindrance import exponent_settling
 from ryusa.model import Column, Water
-from ryusa.model.column import Bed
-from ryusa.model.enums import Buoyancy, Drag, EventRule, Hindrance, Profile
-from ryusa.model.scene import Floats
+from ryusa.model.scene import EventRule, Floats
 from ryusa.studies.validation._check import Comparison, Error, Found, Source, at_most
 from ryusa.study import Level, Task, calculation
 from ryusa.water.coupling import Coupling
@@ -112,7 +111,7 @@ def _settle(law: Hindrance, where: Range, form: Buoyancy, phi: float, end: float
     # one layer of grains in each cell, wherever they are: the same concentration in all
     column = Column(
         z_low=0.0, dz=pitch * d, n=LAYERS + BELOW, depth=(LAYERS + BELOW) * pitch * d,
-        area=WIDE * pitch * d * d, nu=where.nu, bed=Bed.MOVING,
+        area=WIDE * pitch * d * d, nu=where.nu, bed=BedKind.MOVING,
     )  # fmt: skip
     engine = registry.create()
     engine.load(fixed, first)

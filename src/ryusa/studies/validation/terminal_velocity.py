@@ -10,9 +10,9 @@ from ryusa.build import scene
 from ryusa.engine import registry
 from ryusa.figures.comparison import Axis, Curve
 from ryusa.laws import drag
+from ryusa.laws.families import Drag, Profile
 from ryusa.model import Water
-from ryusa.model.enums import Drag, EventRule, Profile
-from ryusa.model.scene import Floats
+from ryusa.model.scene import EventRule, Floats
 from ryusa.studies.validation._check import Comparison, Error, Found, Known, Source, at_most
 from ryusa.study import Level, Task, calculation
 

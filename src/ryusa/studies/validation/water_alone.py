@@ -7,9 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from ryusa.figures.comparison import Axis, Curve
+from ryusa.laws.families import BedKind, Drive, Mixing
 from ryusa.laws.turbulence import speed_mean_rough
 from ryusa.laws.water import log_law_rough, log_law_smooth
-from ryusa.model.column import Bed, Column, Drive, Mixing, Top
+from ryusa.model.column import Column, Top
 from ryusa.model.scene import Floats
 from ryusa.studies.validation._check import Comparison, Error, Found, Source, Tolerance, at_most, relative
 from ryusa.study import Level, Task, calculation
@@ -78,12 +79,12 @@ LAMINAR: Mapping[str, tuple[Callable[[int], Column], Callable[[Column], Floats],
 def river(n: int) -> Column:
     """The paper's saltation without viscosity, 2 cm deep over a rough bed; kappa = ln(10)/5.75 of Eq. (9)."""
     return Column(
-        z_low=0.0, dz=DEPTH / n, n=n, depth=DEPTH, nu=1e-12, bed=Bed.ROUGH, k_rough=ROUGH,
+        z_low=0.0, dz=DEPTH / n, n=n, depth=DEPTH, nu=1e-12, bed=BedKind.ROUGH, k_rough=ROUGH,
         mixing=Mixing.PARABOLIC, kappa=math.log(10.0) / 5.75, g_x=U_STAR**2 / DEPTH,
     )  # fmt: skip
 
 
-def smooth(n: int, mixing: Mixing, bed: Bed) -> Column:
+def smooth(n: int, mixing: Mixing, bed: BedKind) -> Column:
     """Water over a smooth bed, u_star depth/nu = 1000."""
     return Column(
         z_low=0.0, dz=DEPTH / n, n=n, depth=DEPTH, bed=bed, mixing=mixing,
@@ -97,8 +98,8 @@ def flow(which: str, n: int) -> dict[str, Floats]:
         **{name: made[0] for name, made in LAMINAR.items()},
         "river": river,
         "viscous": lambda n: replace(river(n), nu=1e-6, kappa=0.41),
-        "coarse": lambda n: smooth(n, Mixing.PARABOLIC, Bed.SMOOTH),
-        "fine": lambda n: smooth(n, Mixing.VAN_DRIEST, Bed.NO_SLIP),
+        "coarse": lambda n: smooth(n, Mixing.PARABOLIC, BedKind.SMOOTH),
+        "fine": lambda n: smooth(n, Mixing.VAN_DRIEST, BedKind.NO_SLIP),
     }
     c = columns[which](n)
     state, _ = steady(c)

@@ -1,0 +1,196 @@
+"""A family of named choices, and the compiled function that calls the law of a number."""
+
+import inspect
+import math
+from collections.abc import Callable
+from enum import IntEnum
+from functools import cache
+from typing import Any, ClassVar, Self, TypeVar
+
+from ryusa.laws._law import compiled
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+class Family(IntEnum):
+    """A closed set of choices, one per line; base of the tables in `ryusa.laws.families`.
+
+    A member is written as a tuple of the attributes below. Its number is what scenes, checkpoints and kernels
+    hold and never changes; its word is what a case file says.
+
+    Attributes
+    ----------
+    word : in a case file; empty where a case file cannot ask for it.
+    function : the law; None where there is nothing to evaluate, or where the choice is a rule.
+    about : what it says, in one line.
+    source : where it comes from.
+    takes : keys of the case file, in the section of the family, that only some of its choices take.
+    marks : what sets a rule apart from the others of its family; read by `marked`.
+    """
+
+    _value_: int
+    word: str
+    function: Callable[..., Any] | None
+    about: str
+    source: str
+    takes: tuple[str, ...]
+    marks: tuple[str, ...]
+
+    key: ClassVar[str]  # of the case file
+
+    def __new__(
+        cls,
+        number: int,
+        word: str,
+        function: Callable[..., Any] | None,
+        about: str,
+        source: str = "",
+        takes: tuple[str, ...] = (),
+        marks: tuple[str, ...] = (),
+    ) -> Self:
+        if number in cls._value2member_map_:
+            raise ValueError(f"{cls.__name__}: number {number} is given twice, also to '{word}'")
+        member = int.__new__(cls, number)
+        member._value_ = number
+        member.word, member.function, member.about, member.source = word, function, about, source
+        member.takes, member.marks = takes, marks
+        return member
+
+    def __init_subclass__(cls, key: str = "") -> None:
+        super().__init_subclass__()
+        cls.key = key
+
+    @classmethod
+    def words(cls) -> tuple[str, ...]:
+        """Words that a case file may use, in order of their numbers."""
+        return tuple(choice.word for choice in cls if choice.word)
+
+    @classmethod
+    def of(cls, word: str) -> Self:
+        """The choice that a word of a case file names.
+
+        Raises
+        ------
+        ValueError : no choice has this word.
+        """
+        for choice in cls:
+            if choice.word == word and word:
+                return choice
+        raise ValueError(
+            f"{cls.key or cls.__name__}: {word!r} is none of {', '.join(map(repr, cls.words()))}"
+        )
+
+    @classmethod
+    def all_takes(cls) -> tuple[str, ...]:
+        """Keys that some choice of the family takes."""
+        return tuple(dict.fromkeys(key for choice in cls for key in choice.takes))
+
+
+def dispatch(
+    family: type[Family],
+    arguments: tuple[str, ...],
+    *,
+    answers: int = 1,
+    unasked: tuple[Family, ...] = (),
+    fastmath: bool | set[str] = False,
+) -> Any:
+    """Build the compiled function that evaluates the law of a number: f(number, *arguments).
+
+    Parameters
+    ----------
+    family : its choices.
+    arguments : names of what every law of the family may ask for, in the order in which callers give it. A
+        law takes those that its parameters name.
+    answers : how many numbers each law answers; a tuple if more than one.
+    unasked : choices that callers treat themselves and never ask for.
+    fastmath : as Numba takes it.
+
+    Notes
+    -----
+    A number that is none of the family answers nan, on which every engine stops. The function is compiled
+    into its callers, on the CPU and for CUDA, and is not called from Python: see `evaluate`.
+
+    Raises
+    ------
+    TypeError : a choice has no function, or its function has a parameter that the family does not give.
+    """
+    flags = frozenset(fastmath) if isinstance(fastmath, set) else fastmath
+    chain = _nothing_known(answers, flags)
+    for choice in reversed(family):
+        if choice in unasked:
+            continue
+        places = tuple(map(arguments.index, _asked_by(choice, arguments)))
+        chain = _link(int(choice), choice.function, _picker(places, flags), chain, flags)
+    return chain
+
+
+def evaluate(choice: Family, **given: Any) -> Any:
+    """What the law of a choice answers, from Python; it takes what it asks for from `given`.
+
+    Raises
+    ------
+    TypeError : the choice has no function, or asks for what is not given.
+    """
+    names = _asked_by(choice, tuple(given))
+    assert choice.function is not None
+    return choice.function(*(given[name] for name in names))
+
+
+def _asked_by(choice: Family, arguments: tuple[str, ...]) -> tuple[str, ...]:
+    """Names of the parameters of a choice's law."""
+    who = f"{type(choice).__name__}.{choice.name} ('{choice.word}')"
+    if choice.function is None:
+        raise TypeError(f"{who} has no function in laws/families.py, and its dispatch asks for one")
+    names = tuple(inspect.signature(getattr(choice.function, "py_func", choice.function)).parameters)
+    for name in names:
+        if name not in arguments:
+            raise TypeError(f"{who} asks for '{name}'; its family is given {', '.join(arguments)}")
+    return names
+
+
+def _uncached(fastmath: Any) -> Callable[[F], F]:
+    """Compile, without keeping it on disk by itself: its laws are in its closure."""
+    fast = set(fastmath) if isinstance(fastmath, frozenset) else fastmath
+    return compiled(None, fastmath=fast, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+
+
+@cache
+def _picker(places: tuple[int, ...], fastmath: Any) -> Any:
+    """Function that picks the arguments of a law, by their places, from all that its family is given."""
+    if not places:
+
+        @_uncached(fastmath)
+        def none(given: Any) -> Any:
+            return ()
+
+        return none
+    first, rest = places[0], _picker(places[1:], fastmath)
+
+    @_uncached(fastmath)
+    def pick(given: Any) -> Any:
+        return (given[first], *rest(given))
+
+    return pick
+
+
+def _link(number: int, law: Any, pick: Any, rest: Any, fastmath: Any) -> Any:
+    """One question of a dispatch: is it this law, or one of the rest."""
+
+    @_uncached(fastmath)
+    def link(chosen: Any, *given: Any) -> Any:
+        if chosen == number:
+            return law(*pick(given))
+        return rest(chosen, *given)
+
+    return link
+
+
+def _nothing_known(answers: int, fastmath: Any) -> Any:
+    """Last of a dispatch: a number that is none of the family."""
+    lost = math.nan if answers == 1 else (math.nan,) * answers
+
+    @_uncached(fastmath)
+    def unknown(chosen: Any, *given: Any) -> Any:
+        return lost
+
+    return unknown

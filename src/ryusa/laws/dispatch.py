@@ -1,0 +1,103 @@
+"""The law of a number: compiled functions that engines and the water call, built from the table of families.
+
+Each takes a number of its family and, in this order, all that its laws may ask for; a law takes what its
+parameters name. A number that is none of the family answers nan.
+"""
+
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+from ryusa.laws._family import dispatch
+from ryusa.laws._law import EDITION, compiled
+from ryusa.laws.drag import drag_factor, reynolds
+from ryusa.laws.families import (
+    Arm,
+    BedKind,
+    Drag,
+    Hindrance,
+    Lift,
+    Magnus,
+    Mixing,
+    Profile,
+    Rebound,
+    SideWalls,
+    WaterTorque,
+)
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+# C_D [-] of a lone grain.
+drag_coefficient = dispatch(Drag, ("re", "c_d"), unasked=(Drag.NONE,))
+# Slip at which a lone grain is taken [m/s], and the factor of its drag [-].
+hindrance = dispatch(Hindrance, ("slip", "eps", "exponent", "d", "nu", "stress"), answers=2)
+# Force along z [N], and factor k [N s/m] of the force k (w x e_y), w = water - grain.
+shear_lift = dispatch(
+    Lift,
+    ("top", "bottom", "slip", "shear", "d", "nu", "rho_w", "a_2", "c_l"),
+    answers=2,
+    unasked=(Lift.NONE,),
+)
+# Factor k [kg] of the force k (Omega x w).
+magnus = dispatch(Magnus, ("slip", "spin", "d", "nu", "rho_w"), unasked=(Magnus.NONE,))
+# Factor k [N m s] of the torque -k omega.
+water_torque = dispatch(WaterTorque, ("spin", "d", "nu", "rho_w"), unasked=(WaterTorque.NONE,))
+# Speed of the water along x [m/s].
+profile_speed = dispatch(
+    Profile, ("z", "u_star", "k_rough", "nu", "speed"), unasked=(Profile.NONE, Profile.COLUMN)
+)
+# Restitution of a contact under water [-].
+wet_restitution = dispatch(Rebound, ("e_dry", "st", "st_c", "roughness", "d"), unasked=(Rebound.DRY,))
+# Length that turns the coefficient of rolling friction into its arm [m].
+rolling_length = dispatch(Arm, ("r_i", "r_j", "overlap"))
+# Mixing length [m] at a face.
+mixing_length = dispatch(
+    Mixing, ("z", "face", "depth", "u_star", "nu", "kappa"), unasked=(Mixing.LAMINAR, Mixing.LI_SAWAMOTO)
+)
+# Stress of the bed over density [m2/s2], and its slope [m/s].
+wall_stress = dispatch(BedKind, ("u_x", "z", "nu", "k_rough", "square"), answers=2)
+# Friction factor of turbulent water at the side walls [-].
+side_friction = dispatch(SideWalls, ("re",), unasked=(SideWalls.NONE,))
+
+
+def _inlined(function: F) -> F:
+    """Compile into whoever calls."""
+    return compiled(EDITION, fastmath=False, forceinline=True)(function)
+
+
+@_inlined
+def drag_of(law: int, speed: float, d: float, nu: float, rho_w: float, a_2: float, c_d: float) -> float:
+    """Drag of a lone grain over relative velocity [N s/m].
+
+    Parameters
+    ----------
+    law : of `Drag`, not NONE.
+    speed : relative [m/s].
+    d : diameter [m].
+    nu, rho_w : kinematic viscosity and density of the water [m2/s], [kg/m3].
+    a_2, c_d : area coefficient of Eq. (10), and drag coefficient where it is constant [-].
+    """
+    if speed == 0.0:
+        return 0.0
+    return drag_factor(speed, drag_coefficient(law, reynolds(speed, d, nu), c_d), rho_w, a_2, d)
+
+
+@_inlined
+def hindered(
+    law: int, among: int, stress: bool, exponent: float, slip: float, phi: float,
+    d: float, nu: float, rho_w: float, a_2: float, c_d: float,
+) -> float:  # fmt: skip
+    """Drag among neighbours over relative velocity [N s/m].
+
+    Parameters
+    ----------
+    law, among : of `Drag`, not NONE, and `Hindrance`.
+    stress : True where pressure and stress of the mixture act beside the drag (model A).
+    exponent : of the hindrance, where it takes one [-].
+    slip : relative speed [m/s].
+    phi : concentration of grains around it [-], below 1.
+    d, nu, rho_w, a_2, c_d : as in `drag_of`.
+    """
+    if slip == 0.0:
+        return 0.0
+    speed, factor = hindrance(among, slip, 1.0 - phi, exponent, d, nu, stress)
+    return factor * drag_of(law, speed, d, nu, rho_w, a_2, c_d) * speed / slip

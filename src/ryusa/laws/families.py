@@ -1,0 +1,288 @@
+"""The choices of physics, each declared once: its word, its number, its law, what it says, its source.
+
+From this table follow the words of the case file and its JSON Schema, the numbers in scenes and kernels, the
+way from a word to its law, what `ryusa check` prints, and docs/laws.md. A further law is one function in its
+own file and one line here.
+
+A choice reads: number, word, function, what it says, source, keys of the case file that it takes, marks.
+Numbers are kept in scenes and checkpoints: a new choice takes a new one, and none is used again. A choice
+without a word cannot be asked for in a case file. The functions of one family take their arguments by name
+from those that `laws.dispatch` gives to the family.
+"""
+# fmt: off
+
+from ryusa.laws._family import Family
+from ryusa.laws.contact import normal_force, normal_force_no_tension, slide
+from ryusa.laws.drag import (
+    c_d_constant,
+    c_d_ferguson_church_sand,
+    c_d_ferguson_church_sphere,
+    c_d_re_04,
+    c_d_re_2,
+    c_d_schiller_naumann,
+)
+from ryusa.laws.hindrance import di_felice, gidaspow, power, richardson_zaki, unhindered, wen_yu
+from ryusa.laws.immersed import lubrication_force, restitution_davis, restitution_exponential
+from ryusa.laws.lift import (
+    magnus_loth,
+    magnus_oesterle_dinh,
+    magnus_rubinow_keller,
+    shear_lift_saffman_mei,
+    shear_lift_wiberg_smith,
+)
+from ryusa.laws.rolling import reduced_radius, rolling_arm_width
+from ryusa.laws.torque import torque_dennis, torque_stokes
+from ryusa.laws.turbulence import (
+    friction_blasius,
+    friction_karman_prandtl,
+    length_parabolic_between,
+    length_prandtl,
+    length_van_driest,
+    wall_no_slip,
+    wall_rough,
+    wall_smooth,
+)
+from ryusa.laws.water import log_law_rough, log_law_smooth, still, uniform
+
+# ------------------------------------------------------------------------------------------------- contacts
+
+
+class Parting(Family, key="contact.parting"):
+    """Normal contact: whether the dashpot may pull before the overlap ends."""
+
+    NO_TENSION = (0, "no tension", normal_force_no_tension,
+        "the normal force ends where it would pull", "Eq. (1); Schwager & Poeschel 2007")
+    TENSION = (1, "tension", normal_force,
+        "the dashpot may pull until the overlap ends", "Eq. (1) as printed")
+
+
+class Slip(Family, key="contact.slip"):
+    """Tangential contact: what the Coulomb cap holds. Marks: what enters `contact.slide`."""
+
+    SPRING = (0, "spring", slide, "the spring is capped, the dashpot kept", "Eqs. (2)-(4) as printed")
+    SPRING_DROP = (1, "spring-drop", slide,
+        "the spring is capped, the dashpot left out while sliding", "Eqs. (2)-(4)", (), ("drop",))
+    TOTAL = (2, "total", slide,
+        "spring and dashpot are capped together", "LAMMPS; Luding 2008", (), ("total",))
+
+
+class Cap(Family, key="contact.cap"):
+    """Coulomb cap: the normal force that feeds Eq. (4)."""
+
+    SPRING = (0, "spring", None, "the spring e_n alone", "Eq. (4) as printed")
+    TOTAL = (1, "total", None, "the whole normal force f_n", "LAMMPS", (), ("total",))
+
+
+class Rolling(Family, key="rolling.model"):
+    """Rolling friction."""
+
+    NONE = (0, "none", None, "no rolling friction")
+    PRINTED = (1, "printed", None,
+        "f N against the torque of the shear force, unlimited", "Eq. (13) as printed",
+        ("arm", "coefficient"), ("both alike",))
+    CONSTANT = (2, "constant", None,
+        "f N against the relative spin, which it cannot reverse in a step", "Ai et al. 2011, type A",
+        ("arm", "coefficient"))
+    EPSD = (3, "spring-dashpot-slider", None,
+        "elastic-plastic spring with a dashpot, capped at f N", "Ai et al. 2011, type C",
+        ("arm", "coefficient", "stiffness_factor", "damping_ratio"), ("spring",))
+
+
+class Arm(Family, key="rolling.arm"):
+    """Rolling friction: the length that turns its coefficient into the arm f."""
+
+    CONTACT_WIDTH = (0, "contact width", rolling_arm_width,
+        "f = f' b, b the width of the contact", "Eq. (13)")
+    REDUCED_RADIUS = (1, "reduced radius", reduced_radius,
+        "f = mu_r R*, R* = R_i R_j/(R_i + R_j)", "Ai et al. 2011")
+
+
+# ------------------------------------------------------------------------------------- water of a given flow
+
+
+class Profile(Family, key="water.profile"):
+    """Speed of the water over height."""
+
+    NONE = (0, "", None, "no water")
+    LOG_ROUGH = (1, "log rough", log_law_rough, "logarithmic over a rough bed", "Eq. (9)",
+        ("tau_star", "u_star", "roughness"))
+    LOG_SMOOTH = (2, "log smooth", log_law_smooth, "two-layer law over a smooth bed",
+        "law of the wall, u+ = z+ up to 11.3", ("tau_star", "u_star"))
+    UNIFORM = (3, "uniform", uniform, "one speed above the zero", "", ("speed",))
+    STILL = (4, "still", still, "water at rest")
+    COLUMN = (5, "column", None, "a column of water that grains slow down and stir", "design/0007",
+        ("tau_star", "u_star", "roughness"))
+
+
+class Above(Family, key="water.above"):
+    """What is above the depth of the water."""
+
+    CONTINUE = (0, "continue", None, "the profile goes on")
+    HOLD = (1, "hold", None, "the speed of the surface goes on", "", (), ("hold",))
+    DRY = (2, "dry", None, "neither drag nor torque; the weight stays that under water", "", (), ("dry",))
+
+
+# ------------------------------------------------------------------------------------------- water on a grain
+
+
+class Drag(Family, key="water.drag"):
+    """Drag coefficient C_D of a lone grain; Re is the slip times d/nu."""
+
+    NONE = (0, "none", None, "no drag")
+    CONSTANT = (1, "constant", c_d_constant, "one number for every Re", "", ("drag_coefficient",))
+    RE_04 = (2, "24/Re+0.4", c_d_re_04, "24/Re + 0.4: spheres", "usual in Japanese bed-load work")
+    RE_2 = (3, "24/Re+2", c_d_re_2, "24/Re + 2: angular natural grains", "Rubey's form")
+    SCHILLER_NAUMANN = (4, "Schiller-Naumann", c_d_schiller_naumann,
+        "24/Re (1 + 0.15 Re^0.687), 0.44 above Re = 1000: smooth spheres", "Schiller & Naumann 1933")
+    FERGUSON_CHURCH_SPHERE = (5, "Ferguson-Church sphere", c_d_ferguson_church_sphere,
+        "(1/3) (sqrt(0.3) + sqrt(0.3 + 72/Re))^2: settling of spheres", "Ferguson & Church 2004")
+    FERGUSON_CHURCH_SAND = (6, "Ferguson-Church sand", c_d_ferguson_church_sand,
+        "(1/3) (sqrt(0.75) + sqrt(0.75 + 72/Re))^2: settling of natural sand", "Ferguson & Church 2004")
+
+
+class Hindrance(Family, key="water.hindrance"):
+    """How neighbours change the drag of a grain; n is the exponent of settling, after Stokes and Newton."""
+
+    NONE = (0, "none", unhindered, "the drag of a lone grain; n = 2 and 1.5 with buoyancy `stress`")
+    RICHARDSON_ZAKI = (1, "Richardson-Zaki", richardson_zaki,
+        "a suspension settles with (1 - phi)^n exactly", "Richardson & Zaki 1954; n of Rowe 1987",
+        ("hindrance_exponent",))
+    POWER = (2, "power", power, "(1 - phi)^-m times the lone drag; n = 2 + m and (3 + m)/2 with `stress`",
+        "YADE, m = 3.1", ("hindrance_exponent",))
+    WEN_YU = (3, "Wen-Yu", wen_yu, "(1 - phi)^-3.65 F_0((1 - phi) slip); n = 4.65 and 2.33",
+        "Wen & Yu 1966")
+    GIDASPOW = (4, "Gidaspow", gidaspow, "Wen & Yu up to phi = 0.2, Ergun's packed bed beyond",
+        "Gidaspow 1994")
+    DI_FELICE = (5, "Di Felice", di_felice, "(1 - phi)^-chi(Re) F_0((1 - phi) slip); n = 4.7 and 2.35",
+        "Di Felice 1994")
+
+
+class Buoyancy(Family, key="water.buoyancy"):
+    """Force of the water on a grain beside drag, lift and added mass."""
+
+    WEIGHT = (0, "weight", None, "V (-rho_w g - dp/dx): that of its volume of water", "Eqs. (10)-(11)")
+    STRESS = (1, "stress", None, "V (-grad p + d tau/dz): pressure and shear stress of the mixture",
+        "design/0007", (), ("stress",))
+    PRESSURE = (2, "pressure", None, "rho_w V g cos(slope), normal to the bed alone", "design/0007")
+
+
+class Lift(Family, key="water.lift"):
+    """Lift by the shear of the water."""
+
+    NONE = (0, "none", None, "no shear lift")
+    WIBERG_SMITH = (1, "Wiberg-Smith", shear_lift_wiberg_smith,
+        "(1/2) rho_w C_L A (u_top^2 - u_bottom^2)", "Wiberg & Smith 1985", ("lift_coefficient",))
+    SAFFMAN_MEI = (2, "Saffman-Mei", shear_lift_saffman_mei,
+        "1.615 rho_w sqrt(nu |dU/dz|) d^2, times Mei's factor, across the slip", "Saffman 1965; Mei 1992")
+
+
+class Magnus(Family, key="water.magnus"):
+    """Lift by the spin of a grain against that of the water, k (Omega x slip)."""
+
+    NONE = (0, "none", None, "no lift by spin")
+    RUBINOW_KELLER = (1, "Rubinow-Keller", magnus_rubinow_keller, "k = pi rho_w R^3: Re << 1",
+        "Rubinow & Keller 1961")
+    LOTH = (2, "Loth", magnus_loth, "Rubinow & Keller, reduced by the inertia of the water", "Loth 2008")
+    OESTERLE_DINH = (3, "Oesterle-Dinh", magnus_oesterle_dinh,
+        "Rubinow & Keller, reduced as measured for 10 < Re < 140", "Oesterle & Bui Dinh 1998")
+
+
+class WaterTorque(Family, key="water.torque"):
+    """Torque of the water on a spinning grain."""
+
+    NONE = (0, "none", None, "no torque")
+    STOKES = (1, "Stokes", torque_stokes, "pi rho_w nu d^3 omega: slow spin", "Stokes")
+    DENNIS = (2, "Dennis", torque_dennis, "Stokes up to Re_r = 32, 12.9/sqrt(Re_r) + 128.4/Re_r beyond",
+        "Dennis, Singh & Ingham 1980")
+
+
+# -------------------------------------------------------------------------------- films of water at a contact
+
+
+class Rebound(Family, key="water.rebound"):
+    """Restitution of a contact in water, by the Stokes number St of its first touch."""
+
+    DRY = (0, "dry", None, "that of [contact]")
+    EXPONENTIAL = (1, "exponential", restitution_exponential, "e exp(-St_c/St)", "Legendre et al. 2005, 2006",
+        ("rebound_stokes", "rebound_least"))
+    DAVIS = (2, "Davis", restitution_davis, "e (1 + ln(2 asperity/d)/St)", "Davis, Serayssol & Hinch 1986",
+        ("rebound_least", "asperity"))
+
+
+class Film(Family, key="water.film"):
+    """Force of the film of water between grains that do not touch."""
+
+    NONE = (0, "none", None, "no force before touch")
+    LUBRICATION = (1, "lubrication", lubrication_force, "6 pi mu R*^2 v/(gap + asperity), none in touch",
+        "Izard, Bonometti & Lacaze 2014; YADE", ("film_reach", "asperity"))
+
+
+# ------------------------------------------------------------------------------------------ column of water
+
+
+class BedKind(Family, key="water.column.bed"):
+    """What the water meets at the bottom of the column."""
+
+    NO_SLIP = (0, "", wall_no_slip, "smooth wall, molecular stress in the lowest half cell")
+    SMOOTH = (1, "smooth", wall_smooth, "smooth wall, two-layer law", "law of the wall")
+    ROUGH = (2, "rough", wall_rough, "rough bed, at the middle of the lowest cell", "Eq. (9)", ("roughness",))
+    MOVING = (3, "moving", wall_no_slip, "grains, whose drag stops the water; no wall for the eddies")
+
+
+class SurfaceRule(Family, key="water.column.surface"):
+    """What stays when grains come and go."""
+
+    DEPTH = (0, "depth", None, "the height of the surface; water passes through it")
+    VOLUME = (1, "volume", None, "the volume of the water; the surface moves")
+
+
+class Drive(Family, key="water.column.drive"):
+    """What drives the water beside gravity along the slope."""
+
+    GRAVITY = (0, "slope", None, "nothing else")
+    GRADIENT = (1, "pressure gradient", None, "the pressure gradient given", "", ("pressure_gradient",))
+    TAU = (2, "tau_star", None, "the pressure gradient that gives the stress asked for at water.zero", "",
+        ("tau_star", "u_star"))
+    DISCHARGE = (3, "discharge", None, "the pressure gradient that keeps the discharge", "", ("discharge",))
+
+
+class Start(Family, key="water.column.start"):
+    """How the water begins."""
+
+    REST = (0, "rest", None, "at rest")
+    STEADY = (1, "steady", None, "flowing steadily past grains at rest")
+
+
+class Mixing(Family, key="water.column.mixing_length"):
+    """Mixing length of the eddies."""
+
+    LAMINAR = (0, "none", None, "no eddies")
+    PRANDTL = (1, "Prandtl", length_prandtl, "kappa z", "Prandtl 1925", ("kappa",))
+    PARABOLIC = (2, "parabolic", length_parabolic_between, "kappa z sqrt(1 - z/depth)",
+        "Nezu & Nakagawa 1993; YADE", ("kappa",))
+    VAN_DRIEST = (3, "van Driest", length_van_driest, "kappa z (1 - exp(-z+/26))", "van Driest 1956",
+        ("kappa",))
+    LI_SAWAMOTO = (4, "Li-Sawamoto", None, "kappa times the integral of (packed - phi)/packed",
+        "Li & Sawamoto 1995", ("kappa", "packed"))
+
+
+class SideWalls(Family, key="water.column.side_friction"):
+    """Friction of turbulent water at two smooth side walls; slow water follows plane Poiseuille flow."""
+
+    NONE = (0, "", None, "no side walls")
+    BLASIUS = (1, "Blasius", friction_blasius, "f = 0.3164 Re^-0.25", "Blasius 1913")
+    KARMAN_PRANDTL = (2, "Karman-Prandtl", friction_karman_prandtl, "1/sqrt(f) = 2 log10(Re sqrt(f)) - 0.8",
+        "Prandtl 1935")
+
+
+class Fluctuations(Family, key="water.column.fluctuations"):
+    """Turbulent speeds that grains meet beside the mean."""
+
+    NONE = (0, "none", None, "the mean flow alone")
+    RANDOM_WALK = (1, "random walk", None, "each grain walks from eddy to eddy", "YADE; Maurin et al. 2015")
+
+
+FAMILIES: tuple[type[Family], ...] = (
+    Parting, Slip, Cap, Rolling, Arm, Profile, Above, Drag, Hindrance, Buoyancy, Lift, Magnus, WaterTorque,
+    Rebound, Film, BedKind, SurfaceRule, Drive, Start, Mixing, SideWalls, Fluctuations,
+)
