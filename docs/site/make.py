@@ -23,6 +23,7 @@ import listings
 
 FENCE = re.compile(r"^(```|~~~|:::).*?^\1", flags=re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"(?P<text>\[[^\]]*\])\((?P<target>[^)\s#]+)(?P<anchor>#[^)\s]*)?\)")
+UNLISTED, LEDGERS = "@unlisted", "@ledgers"  # in the table of contents of a page
 REMOTE = re.compile(r"^[a-z]+:")
 
 
@@ -30,8 +31,8 @@ def places() -> dict[Path, str]:
     """File of the repository to its place in the site, for every page written by hand."""
     found = {page: page.name for page in sorted((ROOT / "docs").glob("*.md"))}
     found |= {page: page.name for page in sorted((HERE / "pages").glob("*.md"))}
-    for folder in ("design", "design/lab"):
-        found |= {page: f"{folder}/{page.name}" for page in sorted((ROOT / folder).glob("*.md"))}
+    for folder, place in (("docs/ledgers", "ledgers"), ("design", "design"), ("design/lab", "design/lab")):
+        found |= {page: f"{place}/{page.name}" for page in sorted((ROOT / folder).glob("*.md"))}
     found[ROOT / "CONTRIBUTING.md"] = "contributing.md"
     found[ROOT / "benchmarks" / "README.md"] = "benchmarks.md"
     found[ROOT / "benchmarks" / "results" / "full.md"] = "benchmark-tables.md"
@@ -59,15 +60,23 @@ class Stage:
 
     def gather(self) -> None:
         """Write every page with its links rewritten."""
-        front = HERE / "pages" / "index.md"
         for page, place in self.places.items():
             if page == ROOT / "README.md":
                 continue  # the site has its own front page, to which links to the README lead
-            self.write(place, self.relinked(page.read_text(encoding="utf-8"), page, place))
-        assert front in self.places
+            text = page.read_text(encoding="utf-8").replace(UNLISTED, "\n".join(self.unlisted()))
+            ledgers = [one.removesuffix(".md") for one in self.places.values() if one.startswith("ledgers/")]
+            text = text.replace(LEDGERS, "\n".join(ledgers))
+            self.write(place, self.relinked(text, page, place))
         shutil.copytree(HERE / "static", self.folder / "static")
         shutil.copy(HERE / "conf.py", self.folder)
         shutil.copy(HERE / "docstrings.py", self.folder)
+
+    def unlisted(self) -> list[str]:
+        """Pages that no table of contents names: they stand at the end of the how-to guides."""
+        contents = " ".join(page.read_text(encoding="utf-8") for page in (HERE / "pages").glob("*.md"))
+        named = set(re.findall(r"[\w/-]+", contents))
+        pages = [place.removesuffix(".md") for place in self.places.values()]
+        return [page for page in pages if "/" not in page and page not in {"index", *named}]
 
     def write(self, place: str, text: str) -> None:
         """Write one page."""
