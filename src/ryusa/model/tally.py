@@ -9,22 +9,22 @@ import numpy as np
 
 
 class Book(IntEnum):
-    """Work booked while stepping [J]. Losses are positive when energy leaves, gifts when it comes in."""
+    """Terms of the energy account, summed while stepping [J]; losses and gifts are positive as such."""
 
     DASH_N = 0  # lost to normal dashpots
     DASH_S = 1  # lost to tangential dashpots
     SLIDE = 2  # lost to sliding
     ROLL = 3  # lost to rolling friction (slider and dashpot)
-    RELEASED_N = 4  # normal springs let go when the force ends before the overlap does
-    RELEASED_S = 5  # tangential springs let go at parting
-    RELEASED_R = 6  # rolling springs let go at parting
+    RELEASED_N = 4  # lost: left in normal springs whose force ended before the overlap did
+    RELEASED_S = 5  # lost: left in tangential springs when a contact ended
+    RELEASED_R = 6  # lost: left in rolling springs when a contact ended
     DRAG = 7  # given by drag
     TORQUE = 8  # given by the water's torque
     LIFT = 9  # given by lift and the Magnus force
     SWITCH = 10  # given by a change of the timeline (gravity, friction, rotation, a gate)
-    STEP = 11  # given by the step: springs met and left within one, (1/2) k overlap (closing dt - overlap)
+    STEP = 11  # given by the finite step where contacts begin and end, (1/2) k overlap (closing dt - overlap)
     START = 12  # energy at the first step: kinetic + spin + potential + springs
-    FLOW = 13  # given by pressure, stress and acceleration of the water, beyond what still water does
+    FLOW = 13  # given by pressure, stress and acceleration of the water, beyond buoyancy in still water
     FILM = 14  # lost to films of water between grains that do not touch
 
 
