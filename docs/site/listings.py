@@ -5,8 +5,44 @@ import importlib
 import re
 from importlib import resources
 from pathlib import Path
+from typing import Any
 
 import api
+
+
+def choices_page() -> str:
+    """Every choice of physics that a case can name, from the table of `ryusa.laws.families`."""
+    from ryusa.laws.families import FAMILIES
+
+    lines = [
+        "# Choices of physics",
+        "",
+        "Every word that a case file can use to choose a law, with what it stands for, its source and the "
+        "keys that only this choice takes. The tables follow from `ryusa.laws.families`.",
+    ]
+    for family in FAMILIES:
+        about = " ".join((family.__doc__ or "").split()).partition(" Marks:")[0]
+        lines += ["", f"## {family.key}", "", about, ""]
+        lines += ["| word | what it gives | source | keys | law |", "|---|---|---|---|---|"]
+        for choice in family:
+            if choice.word:
+                keys = ", ".join(f"`{key}`" for key in choice.takes)
+                cells = [
+                    f'`"{choice.word}"`',
+                    _plain(choice.about),
+                    _plain(choice.source),
+                    keys,
+                    _law(choice),
+                ]
+                lines.append(f"| {' | '.join(cells)} |")
+    return "\n".join([*lines, ""])
+
+
+def _law(choice: Any) -> str:
+    if choice.function is None:
+        return ""
+    function = getattr(choice.function, "py_func", choice.function)
+    return f"{{py:func}}`{function.__name__} <{function.__module__}.{function.__name__}>`"
 
 
 def laws_page() -> str:

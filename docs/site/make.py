@@ -155,6 +155,7 @@ def main() -> int:
     stage.changelog()
     stage.write("gallery.md", stage.relinked(gallery.page(), ROOT / "docs" / "gallery.md", "gallery.md"))
     problems += gallery.problems()
+    stage.write("choices.md", listings.choices_page())
     stage.write("law-index.md", listings.laws_page())
     stage.write("cases.md", listings.cases_page())
     (stage.folder / "api").mkdir()

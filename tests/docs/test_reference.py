@@ -45,6 +45,41 @@ def test_the_readme_shows_every_command(generate: ModuleType) -> None:
     assert not missing
 
 
+def test_the_readme_names_every_choice_of_contact_and_water() -> None:
+    from ryusa.laws.families import (
+        Drag,
+        Film,
+        Hindrance,
+        Lift,
+        Magnus,
+        Mixing,
+        Parting,
+        Profile,
+        Rebound,
+        Rolling,
+        SideWalls,
+        Slip,
+        WaterTorque,
+    )
+
+    laws = (DOCS.parent / "README.md").read_text(encoding="utf-8").split("## Laws")[1].split("## Speed")[0]
+    families = (
+        Parting,
+        Slip,
+        Rolling,
+        Profile,
+        Drag,
+        Hindrance,
+        Lift,
+        Magnus,
+        WaterTorque,
+        Mixing,
+        SideWalls,
+    )
+    words = {word for family in (*families, Rebound, Film) for word in family.words()} - {"none", "dry"}
+    assert not [word for word in sorted(words) if f"`{word}`" not in laws]
+
+
 def test_every_dataset_of_a_contact_is_documented() -> None:
     from ryusa.model import EVENT
 
