@@ -5,9 +5,10 @@ import pytest
 from typer.testing import CliRunner
 
 from ryusa.cli import app
-from ryusa.studies.osada2004 import NAMES, Level, Plan, Word, ledger, load, page
-from ryusa.studies.osada2004.ledger import Row
-from ryusa.studies.osada2004.paper import CLAIMS
+from ryusa.studies.osada2004.study import NAMES, PAPER, load
+from ryusa.study import Band, Finding, Level, Plan, Trial, exact, ledger, page
+from ryusa.study.entry import LedgerEntry
+from ryusa.study.ledger import Ledger
 
 
 def call(*words):
@@ -58,40 +59,35 @@ def test_the_list_says_how_long_it_takes_and_how_much_disk(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-class Broken:
+def broken(folder, **more):
     """A ledger in which one run failed."""
-
-    def __init__(self, folder):
-        self.rows = (
-            Row(CLAIMS["fig20"], Word.UNDECIDED, None, "fig20", problem="1 of 2 runs failed"),
-            Row(CLAIMS["fig16"], Word.LOST, None),
-        )
-        self.plan, self.folder, self.problems = (
-            Plan(Level.QUICK, (1,)),
-            folder,
-            {"fig20 [free]": "grain 7 lost"},
-        )
-        self.faults, self.traces, self.log = {}, {}, ""
+    held = Finding("fig16", (Trial("speed", {}, exact(1.0, "m/s"), Band(0.0, 2.0, "m/s", "slow")),))
+    entries = (
+        LedgerEntry("fig20", "fig20", None, problem="1 of 2 runs failed"),
+        LedgerEntry("fig16", "fig16", held),
+    )
+    problems = {"fig20 [free]": "grain 7 lost"}
+    return Ledger(PAPER, entries, Plan(Level.QUICK, (1,)), folder, problems, {}, {}, **more)
 
 
 def test_a_failed_run_is_told_at_the_end_and_by_the_exit_code(tmp_path, monkeypatch):
-    monkeypatch.setattr(ledger, "make", lambda *_, **__: Broken(tmp_path))
+    monkeypatch.setattr(ledger, "make", lambda *_, **__: broken(tmp_path))
     monkeypatch.setattr(page, "write", lambda *_: (tmp_path / "ledger.html",))
     result = call("--quick", "-o", tmp_path)
     assert result.exit_code == 3
     assert "1 run could not be carried out or measured:\n  fig20 [free]: grain 7 lost" in result.stderr
     assert "not judged, see below" in result.stdout
-    assert "1 undecided (spread); 1 not testable (figure lost)" in result.stdout
+    assert "1 reproduced; 1 undecided (spread)" in result.stdout
     assert all(len(line) <= 100 for line in result.stdout.splitlines() if "wrote" not in line)
 
 
 def test_an_error_in_the_program_has_its_own_exit_code_and_no_traceback(tmp_path, monkeypatch):
-    broken = Broken(tmp_path)
-    broken.faults = {"fig20: judging": "error in the program: IndexError: no such (fig20.py, line 3)"}
-    monkeypatch.setattr(ledger, "make", lambda *_, **__: broken)
+    faults = {"fig20: judging": "error in the program: IndexError: no such (fig20.py, line 3)"}
+    monkeypatch.setattr(ledger, "make", lambda *_, **__: broken(tmp_path, faults=faults))
     monkeypatch.setattr(page, "write", lambda *_: (tmp_path / "ledger.html",))
     assert call("--quick", "-o", tmp_path).exit_code == 3
-    broken.traces, broken.log = {"fig20: judging": "Traceback (most recent call last):"}, "ledger-errors.log"
+    traces = {"fig20: judging": "Traceback (most recent call last):"}
+    monkeypatch.setattr(ledger, "make", lambda *_, **__: broken(tmp_path, faults=faults, traces=traces))
     result = call("--quick", "-o", tmp_path)
     assert result.exit_code == 1
     assert "1 step after the runs failed:\n  fig20: judging: error in the program" in result.stderr
@@ -104,7 +100,7 @@ def test_a_figure_is_run_judged_and_written_and_a_second_time_opened(tmp_path):
     first = call("fig20", "--quick", "-o", tmp_path, "-q", "-j", 1)
     assert first.exit_code == 0, first.output
     ledger = json.loads((tmp_path / "ledger-quick-part.json").read_text())
-    assert [one["id"] for one in ledger["claims"]] == ["fig20", "fig20-shear"]
+    assert [one["id"] for one in ledger["findings"]] == ["fig20", "fig20-shear"]
     assert ledger["provenance"]["runs_made"] == 2
     assert (tmp_path / "ledger-quick-part.html").stat().st_size > 100_000
     assert not list(tmp_path.glob(".*.new"))
@@ -112,4 +108,4 @@ def test_a_figure_is_run_judged_and_written_and_a_second_time_opened(tmp_path):
     assert again.exit_code == 0, again.output
     second = json.loads((tmp_path / "copy.json").read_text())
     assert second["provenance"]["runs_opened"] == 2
-    assert second["claims"] == ledger["claims"]
+    assert second["findings"] == ledger["findings"]

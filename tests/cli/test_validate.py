@@ -4,7 +4,8 @@ import pytest
 from typer.testing import CliRunner
 
 from ryusa.cli import app
-from ryusa.studies.validation import NAMES, load, water_alone
+from ryusa.studies.validation import water_alone
+from ryusa.studies.validation.study import NAMES, load
 
 
 def call(*words):
@@ -36,7 +37,7 @@ def test_a_check_is_computed_written_and_a_second_time_opened(tmp_path):
     kept = json.loads((tmp_path / "copy.json").read_text(encoding="utf-8"))
     assert again.exit_code == 0
     assert kept["provenance"]["runs_made"] == 0
-    assert {one["verdict"] for one in kept["comparisons"]} == {"within"}
+    assert {one["verdict"] for one in kept["findings"]} == {"within"}
 
 
 def test_a_miss_has_its_own_exit_code_and_is_named(tmp_path, monkeypatch):
@@ -49,7 +50,7 @@ def test_a_miss_has_its_own_exit_code_and_is_named(tmp_path, monkeypatch):
 
 
 def test_an_error_in_the_program_leaves_with_1_and_a_repaired_one_needs_no_run(tmp_path, monkeypatch):
-    monkeypatch.setattr(water_alone, "compare", lambda *_: 1 / 0)
+    monkeypatch.setattr(water_alone, "judge", lambda *_: 1 / 0)
     result = call("water_alone", "--quick", "-o", tmp_path, "-q", "-j", 1)
     assert result.exit_code == 1
     assert "holds their tracebacks" in result.stderr

@@ -1,11 +1,11 @@
 """The story page says of every claim what the kept ledger says."""
 
-import json
 import re
 from pathlib import Path
 
-from ryusa.studies.osada2004 import Word
 from ryusa.studies.osada2004.paper import CLAIMS
+from ryusa.studies.osada2004.study import PAPER
+from ryusa.study.kept import read_ledger
 
 DOCS = Path(__file__).parents[2] / "docs"
 
@@ -19,18 +19,18 @@ def page():
 
 def kept():
     """Claim -> verdict, as the kept ledger has them."""
-    ledger = json.loads((DOCS / "paper-ledger.json").read_text(encoding="utf-8"))
-    return {one["id"]: one["verdict"] for one in ledger["claims"]}
+    ledger = read_ledger(DOCS / "ledgers" / "paper.json.xz")
+    return {one["id"]: one["verdict"] for one in ledger["findings"]}
 
 
 def test_every_claim_stands_on_the_page_with_its_verdict():
     assert page() == kept()
-    assert set(kept().values()) <= set(Word)
+    assert set(kept().values()) <= set(PAPER.words.values())
 
 
 def test_the_kept_ledger_is_whole_and_says_where_it_came_from():
-    ledger = json.loads((DOCS / "paper-ledger.json").read_text(encoding="utf-8"))
-    assert {one["id"] for one in ledger["claims"]} == set(CLAIMS)
+    ledger = read_ledger(DOCS / "ledgers" / "paper.json.xz")
+    assert {one["id"] for one in ledger["findings"]} == set(CLAIMS)
     assert re.fullmatch(r"[0-9a-f]{40}", ledger["provenance"]["commit"])
     assert ledger["provenance"]["packages"]["numba"]
     assert not ledger["indicative"]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from ryusa.studies.osada2004 import Band, Finding, Trial, Word, over_range, over_seeds, pool
+from ryusa.study import Band, Finding, Outcome, Trial, over_range, over_seeds, pool
 
 BAND = Band(1.0, 2.0, "m", "1 to 2 m")
 
@@ -70,22 +70,22 @@ def test_a_band_wants_the_whole_interval_inside_or_outside():
 @pytest.mark.parametrize(
     ("trials", "word"),
     [
-        ([trial(1.5, phi="10 deg"), trial(1.6, phi="20 deg")], Word.REPRODUCED),
-        ([trial(1.5, phi="10 deg"), trial(3.0, phi="20 deg")], Word.ONLY_IF),
-        ([trial(3.0, phi="10 deg"), trial(1.5, phi="20 deg")], Word.ONLY_IF),
-        ([trial(3.0, phi="10 deg"), trial(4.0, phi="20 deg")], Word.NOT),
-        ([trial(1.9, 1.7, 2.1, phi="10 deg"), trial(4.0, phi="20 deg")], Word.UNDECIDED),
-        ([trial(1.5, phi="10 deg"), trial(1.9, 1.7, 2.1, phi="20 deg")], Word.REPRODUCED),
-        ([trial(1.5, part="height"), trial(3.0, part="length")], Word.NOT),
-        ([], Word.UNDECIDED),
+        ([trial(1.5, phi="10 deg"), trial(1.6, phi="20 deg")], Outcome.HOLDS),
+        ([trial(1.5, phi="10 deg"), trial(3.0, phi="20 deg")], Outcome.ONLY_IF),
+        ([trial(3.0, phi="10 deg"), trial(1.5, phi="20 deg")], Outcome.ONLY_IF),
+        ([trial(3.0, phi="10 deg"), trial(4.0, phi="20 deg")], Outcome.FAILS),
+        ([trial(1.9, 1.7, 2.1, phi="10 deg"), trial(4.0, phi="20 deg")], Outcome.UNDECIDED),
+        ([trial(1.5, phi="10 deg"), trial(1.9, 1.7, 2.1, phi="20 deg")], Outcome.HOLDS),
+        ([trial(1.5, part="height"), trial(3.0, part="length")], Outcome.FAILS),
+        ([], Outcome.UNDECIDED),
     ],
 )
 def test_one_rule_turns_trials_into_a_verdict(trials, word):
-    assert finding(*trials).word is word
+    assert finding(*trials).outcome is word
 
 
 def test_what_the_equations_exclude_contradicts_them_whatever_was_run():
-    assert finding(trial(1.5), contradiction="a band of 10 cannot hold 100").word is Word.CONTRADICTS
+    assert finding(trial(1.5), contradiction="a band of 10 cannot hold 100").outcome is Outcome.EXCLUDED
 
 
 def test_the_condition_names_the_choices_under_which_a_claim_holds():

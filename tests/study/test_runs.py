@@ -13,16 +13,9 @@ import pytest
 from ryusa.casefile import resolved
 from ryusa.errors import CaseError, NotANumber, ResultsError
 from ryusa.running import runner
-from ryusa.studies.osada2004 import (
-    CostEstimate,
-    Plan,
-    ProgressLines,
-    StudyProgress,
-    _campaign,
-    carry_out,
-    estimate_cost,
-    paper_run,
-)
+from ryusa.studies.osada2004._experiment import paper_run
+from ryusa.study import CostEstimate, Plan, ProgressLines, StudyProgress, estimate_cost
+from ryusa.study import carry_out as carry_out_tasks
 from ryusa.study import cost as cost_module
 from ryusa.study import runs as runs_module
 
@@ -38,7 +31,7 @@ class Fake:
     def __init__(self, trouble=None, seeds=(1, 2)):
         self.trouble, self.seeds = trouble, seeds
 
-    def cases(self, plan):
+    def tasks(self, plan):
         del plan
         return [paper_run("saltation", SHORT, seed) for seed in self.seeds]
 
@@ -49,37 +42,41 @@ class Fake:
 
 
 @pytest.fixture
-def fakes(monkeypatch):
-    known = {}
-    monkeypatch.setattr(_campaign, "load", known.__getitem__)
-    return known
+def fakes():
+    return {}
+
+
+def carry_out(known, names, plan, folder, **how):
+    return carry_out_tasks(
+        {name: known[name].tasks(plan) for name in names}, known.__getitem__, folder, **how
+    )
 
 
 def test_an_interrupted_campaign_goes_on_where_it_stopped(fakes, tmp_path):
     fakes["one"] = Fake(KeyboardInterrupt())
     with pytest.raises(KeyboardInterrupt):
-        carry_out(("one",), Plan(), tmp_path)
+        carry_out(fakes, ("one",), Plan(), tmp_path)
     fakes["one"] = Fake()
-    second = carry_out(("one",), Plan(), tmp_path)
+    second = carry_out(fakes, ("one",), Plan(), tmp_path)
     assert second.n_opened == 2  # the interrupt came while the second was measured, its run was finished
     assert second.n_run == 0
     assert len(second.found["one"]) == 2
-    assert carry_out(("one",), Plan(), tmp_path, again=True).n_run == 2
+    assert carry_out(fakes, ("one",), Plan(), tmp_path, again=True).n_run == 2
 
 
 def test_a_damaged_or_unfinished_run_is_made_anew(fakes, tmp_path):
     fakes["one"] = Fake()
-    carry_out(("one",), Plan(), tmp_path)
-    first, second = (tmp_path / one.folder for one in fakes["one"].cases(Plan()))
+    carry_out(fakes, ("one",), Plan(), tmp_path)
+    first, second = (tmp_path / one.folder for one in fakes["one"].tasks(Plan()))
     about = first / "provenance.json"
     about.write_text(about.read_text().replace('"complete"', '"running"'))
     shutil.rmtree(second)
-    assert carry_out(("one",), Plan(), tmp_path).n_run == 2
+    assert carry_out(fakes, ("one",), Plan(), tmp_path).n_run == 2
 
 
 def test_what_fails_in_one_experiment_spares_the_others(fakes, tmp_path):
     fakes["good"], fakes["bad"] = Fake(), Fake(ResultsError("no hop at all"))
-    found = carry_out(("good", "bad"), Plan(), tmp_path)
+    found = carry_out(fakes, ("good", "bad"), Plan(), tmp_path)
     assert found.n_run == 2
     assert len(found.found["good"]) == 2
     assert len(found.found["bad"]) == 1
@@ -88,7 +85,7 @@ def test_what_fails_in_one_experiment_spares_the_others(fakes, tmp_path):
 
 def test_an_error_in_the_program_costs_its_experiment_and_no_other(fakes, tmp_path):
     fakes["good"], fakes["bad"] = Fake(), Fake(IndexError("list index out of range"))
-    found = carry_out(("good", "bad"), Plan(), tmp_path)
+    found = carry_out(fakes, ("good", "bad"), Plan(), tmp_path)
     assert len(found.found["good"]) == 2
     assert set(found.missing) == {"bad"}
     (fault,) = found.missing["bad"].values()
@@ -97,7 +94,7 @@ def test_an_error_in_the_program_costs_its_experiment_and_no_other(fakes, tmp_pa
     assert fault.trace.startswith("Traceback")
     assert list(found.problems.values()) == [f"bad: {fault.words}"]
     fakes["bad"] = Fake()
-    assert carry_out(("good", "bad"), Plan(), tmp_path).n_opened == 2  # repaired: nothing is run again
+    assert carry_out(fakes, ("good", "bad"), Plan(), tmp_path).n_opened == 2  # repaired: nothing is run again
 
 
 def test_a_worker_whose_answer_cannot_be_sent_spares_the_others(fakes, tmp_path, monkeypatch):
@@ -110,7 +107,7 @@ def test_a_worker_whose_answer_cannot_be_sent_spares_the_others(fakes, tmp_path,
 
     monkeypatch.setattr(runs_module, "_one", answer)
     monkeypatch.setattr(runs_module, "ProcessPoolExecutor", lambda jobs, **_: ThreadPoolExecutor(jobs))
-    found = carry_out(("one",), Plan(), tmp_path, jobs=2)
+    found = carry_out(fakes, ("one",), Plan(), tmp_path, jobs=2)
     assert len(found.found["one"]) == 1
     assert [one.get("seed") for one in found.missing["one"]] == ["2"]
     assert "cannot pickle" in next(iter(found.problems.values()))
@@ -129,11 +126,11 @@ def test_a_run_stopped_on_the_way_goes_on_from_its_checkpoint(fakes, tmp_path, m
     with monkeypatch.context() as patch:
         patch.setattr(loop.Loop, "_advance", stopped)
         with pytest.raises(KeyboardInterrupt):
-            carry_out(("one",), Plan(), tmp_path)
-    assert carry_out(("one",), Plan(), tmp_path).n_run == 1
+            carry_out(fakes, ("one",), Plan(), tmp_path)
+    assert carry_out(fakes, ("one",), Plan(), tmp_path).n_run == 1
     about = next(tmp_path.glob("*/*/provenance.json"))
     assert [one["step"] for one in json.loads(about.read_text())["resumed"]] == [1]
-    carry_out(("one",), Plan(), tmp_path, again=True)
+    carry_out(fakes, ("one",), Plan(), tmp_path, again=True)
     assert "resumed" not in json.loads(about.read_text())
 
 
@@ -147,13 +144,13 @@ def test_a_run_that_failed_is_tried_again_and_it_alone(fakes, tmp_path, monkeypa
         return real(case, *words, **how)
 
     monkeypatch.setattr(runner, "run", breaks)
-    found = carry_out(("both", "first"), Plan(), tmp_path)
+    found = carry_out(fakes, ("both", "first"), Plan(), tmp_path)
     assert len(found.found["first"]) == 1
     assert set(found.missing) == {"both"}
     assert "grain 3" in next(iter(found.problems.values()))
     assert not any(one.trace for one in found.missing["both"].values())  # no error in the program
     monkeypatch.setattr(runner, "run", real)
-    second = carry_out(("both", "first"), Plan(), tmp_path)
+    second = carry_out(fakes, ("both", "first"), Plan(), tmp_path)
     assert (second.n_run, second.n_opened) == (1, 1)
     assert len(second.found["both"]) == 2
     assert not second.problems
@@ -162,9 +159,9 @@ def test_a_run_that_failed_is_tried_again_and_it_alone(fakes, tmp_path, monkeypa
 def test_a_run_that_breaks_down_while_stepping_is_no_finished_run(fakes, tmp_path):
     limit = {**SHORT, "domain.overlap_limit": "1e-9", "stop.time": "0.3 s"}
     fakes["one"] = Fake(seeds=())
-    fakes["one"].cases = lambda _: [paper_run("saltation", SHORT), paper_run("saltation", limit)]
+    fakes["one"].tasks = lambda _: [paper_run("saltation", SHORT), paper_run("saltation", limit)]
     for opened in (0, 1):
-        found = carry_out(("one",), Plan(), tmp_path)
+        found = carry_out(fakes, ("one",), Plan(), tmp_path)
         assert found.n_opened == opened
         assert len(found.found["one"]) == 1
         assert "overlap" in next(iter(found.problems.values()))
@@ -180,7 +177,7 @@ def test_an_answer_to_a_breakdown_that_goes_wrong_itself_is_told(fakes, tmp_path
     fakes["answers"], fakes["errs"] = Fake(seeds=(1,)), Fake(seeds=(1,))
     fakes["answers"].failed, fakes["errs"].failed = str, wrong
     monkeypatch.setattr(runner, "run", breaks)
-    found = carry_out(("answers", "errs"), Plan(), tmp_path)
+    found = carry_out(fakes, ("answers", "errs"), Plan(), tmp_path)
     assert "grain 3" in next(iter(found.found["answers"].values()))
     assert set(found.missing) == {"errs"}
     assert "ValueError: no answer" in next(iter(found.problems.values()))
@@ -190,13 +187,13 @@ def test_runs_that_do_not_fit_on_the_disk_are_refused_before_the_first(fakes, tm
     fakes["one"] = Fake()
     monkeypatch.setattr(cost_module, "free_bytes", lambda _: 1000)
     with pytest.raises(CaseError, match=r"2 runs need .* only 1 kB are free"):
-        carry_out(("one",), Plan(), tmp_path / "deep" / "er")
+        carry_out(fakes, ("one",), Plan(), tmp_path / "deep" / "er")
     assert not list(tmp_path.iterdir())
 
 
 def test_the_outlook_counts_what_is_there_and_never_ends_before_the_longest_run(tmp_path):
     runs = [paper_run("saltation", SHORT, seed) for seed in range(1, 4)]
-    carry_out((), Plan(), tmp_path)
+    carry_out({}, (), Plan(), tmp_path)
     ahead = estimate_cost([*runs, runs[0]], tmp_path, jobs=2)
     assert len(ahead.costs) == 3
     assert ahead.seconds == pytest.approx(ahead.core_seconds / 2)
@@ -245,12 +242,12 @@ def test_the_outlook_says_which_runs_another_state_of_the_code_made(tmp_path, mo
 
 def test_a_campaign_counts_the_runs_of_other_code(fakes, tmp_path, monkeypatch):
     fakes["one"] = Fake()
-    carry_out(("one",), Plan(), tmp_path)
+    carry_out(fakes, ("one",), Plan(), tmp_path)
     about = next(tmp_path.glob("*/*/provenance.json"))
     changed = json.loads(about.read_text()) | {"commit": "a" * 40}
     about.write_text(json.dumps(changed))
     monkeypatch.setattr(cost_module.provenance, "commit", lambda: "c" * 40)
-    found = carry_out(("one",), Plan(), tmp_path)
+    found = carry_out(fakes, ("one",), Plan(), tmp_path)
     assert found.n_opened == 2
     assert found.others["a" * 40] == 1
     assert found.commits["a" * 40] == 1
@@ -285,7 +282,7 @@ def test_the_time_left_follows_from_how_long_the_finished_runs_took(capsys):
 
 def test_who_says_nothing_needs_no_more(fakes, tmp_path):
     fakes["one"] = Fake(seeds=(1,))
-    assert carry_out(("one",), Plan(), tmp_path, say=StudyProgress()).n_run == 1
+    assert carry_out(fakes, ("one",), Plan(), tmp_path, progress=StudyProgress()).n_run == 1
 
 
 # -------------------------------------------------------------------------------------------------- signals
@@ -346,7 +343,7 @@ def test_an_interrupt_ends_every_process_and_says_how_to_go_on(campaign, how):
         campaign.terminate()
     _, said = campaign.communicate(timeout=30)
     assert campaign.returncode == 130
-    assert "the same command goes on from there" in said
+    assert "The same command continues there" in said
     assert "Traceback" not in said
     assert gone(campaign.pid)
 
@@ -359,7 +356,7 @@ def test_a_killed_process_is_told_and_nothing_hangs(campaign):
     assert campaign.returncode == 2
     assert "ended from outside" in said
     assert "running were: saltation" in said
-    assert "the same command goes on from there" in said.replace("\n", " ")
+    assert "The same command continues there" in said.replace("\n", " ")
     assert gone(campaign.pid)
 
 

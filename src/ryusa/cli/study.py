@@ -1,15 +1,211 @@
-"""What `ryusa paper` and `ryusa validate` say in the same words."""
+"""`ryusa study`, and what it shares with `ryusa paper` and `ryusa validate`."""
 
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Generator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
+if TYPE_CHECKING:
+    from ryusa.study import Plan, Study
+    from ryusa.study.ledger import Ledger
+
 INTERRUPTED = 130  # exit code after Ctrl-C
-FAILED = 3  # exit code where some runs could not be carried out, or something not judged
-BROKEN = 1  # exit code where an error in the program is behind it, as Python's own
+FAILED = 3  # exit code where a run could not be carried out, or something could not be judged
+BROKEN = 1  # exit code of an error in the program, as Python's own
 WIDE = 100  # columns of a table that goes to a file or pipe
+MOST_SEEDS = 1000
+
+# Options that all studies share.
+
+
+Jobs = Annotated[
+    int | None, typer.Option("--jobs", "-j", metavar="N", min=1, help="Runs at a time; default: all cores.")
+]
+Again = Annotated[
+    bool, typer.Option("--again", help="Make every run anew; otherwise finished runs are opened.")
+]
+Seeds = Annotated[
+    str | None,
+    typer.Option("--seeds", metavar="N|A,B,..", help="Number of seeds, or the seeds; default 3, quick 1."),
+]
+Json = Annotated[
+    Path | None,
+    typer.Option("--json", metavar="FILE", help="Write the ledger here too; compressed if FILE ends in .xz."),
+]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Show no progress.")]
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command()(study)
+
+
+def study(
+    folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="Holds study.py and its case files.")],
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "-o", "--out", metavar="FOLDER", help="Page, table, pictures and runs; default runs/NAME."
+        ),
+    ] = None,
+    quick: Annotated[bool, typer.Option("--quick", help="Quick level, one seed.")] = False,
+    full: Annotated[bool, typer.Option("--full", help="Full level.")] = False,
+    seeds: Seeds = None,
+    json: Json = None,
+    jobs: Jobs = None,
+    again: Again = False,
+    show: Annotated[
+        bool, typer.Option("--list", help="List the runs, with time and disk; run nothing.")
+    ] = False,
+    quiet: Quiet = False,
+) -> None:
+    """Run a study of your own, and write one page with its numbers, intervals and pictures.
+
+    FOLDER holds study.py: a docstring, tasks(plan) and measure(results, task);
+    see docs/study-of-your-own.md. An interrupted study continues where it
+    stopped when the same command is given again: finished runs are opened.
+    """
+    from ryusa.study.user import open_study
+
+    plan = plan_of(quick, full, seeds)
+    mine = open_study(folder)
+    out = Path("runs") / mine.name if out is None else out
+    if show:
+        _list(mine, plan, out, jobs, again)
+        return
+    ledger, files = carried_out(mine, None, plan, out, json, jobs, again, quiet)
+    _print(ledger)
+    finish(ledger, files, out)
+
+
+def carried_out(
+    chosen: "Study",
+    names: Sequence[str] | None,
+    plan: "Plan",
+    out: Path,
+    json: Path | None,
+    jobs: int | None,
+    again: bool,
+    quiet: bool,
+) -> "tuple[Ledger, tuple[Path, ...]]":
+    """Run a study and write its ledger and page; an interrupt leaves with its own exit code."""
+    from ryusa.errors import ResultsError
+    from ryusa.study import ProgressLines
+    from ryusa.study.ledger import make
+    from ryusa.study.page import write
+
+    try:
+        progress = None if quiet else ProgressLines()
+        ledger = make(chosen, names, plan, out, jobs=jobs or cores(), again=again, progress=progress)
+        return ledger, write(ledger, json)
+    except KeyboardInterrupt:
+        interrupted(out)
+    except OSError as error:
+        raise ResultsError(f"{out}: cannot be written ({error.strerror or error})") from None
+
+
+def finish(ledger: "Ledger", files: Sequence[Path], out: Path) -> None:
+    """Name the files that were written, and what went wrong; leave where anything did."""
+    for path in files:
+        typer.echo(f"wrote {path}")
+    report_failures(ledger.problems, ledger.faults, ledger.traces, out / ledger.log)
+
+
+def plan_of(quick: bool, full: bool, seeds: str | None) -> "Plan":
+    """Level and seeds from the options."""
+    from ryusa.errors import CaseError
+    from ryusa.study import Level, Plan
+
+    if quick and full:
+        raise CaseError("--quick", None, "cannot be combined with --full")
+    level = Level.QUICK if quick else Level.FULL if full else Level.STANDARD
+    return Plan(level, tuple(range(1, 2 if quick else 4)) if seeds is None else _seeds(seeds))
+
+
+def _seeds(text: str) -> tuple[int, ...]:
+    from ryusa.errors import CaseError
+
+    words = [one.strip() for one in text.split(",")]
+    allowed = f"must be a number of seeds, 1 to {MOST_SEEDS}, or different seeds such as 4,5,6"
+    if not all(one.isdecimal() for one in words):
+        raise CaseError("--seeds", text, allowed)
+    numbers = [int(one) for one in words]
+    if len(numbers) == 1:
+        if not 1 <= numbers[0] <= MOST_SEEDS:
+            raise CaseError("--seeds", text, allowed)
+        return tuple(range(1, numbers[0] + 1))
+    if len(set(numbers)) < len(numbers) or max(numbers) >= 2**63:
+        raise CaseError("--seeds", text, allowed)
+    return tuple(numbers)
+
+
+@contextmanager
+def listing(columns: Sequence[str]) -> Generator[Any]:
+    """Table of what a study would run; printed at the end of the block."""
+    from rich import box
+    from rich.table import Table
+
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for heading in columns:
+        table.add_column(heading, no_wrap=heading == "name")
+    for heading in ("runs", "core minutes"):
+        table.add_column(heading, justify="right")
+    yield table
+    console().print(table)
+
+
+def _list(mine: "Study", plan: "Plan", out: Path, jobs: int | None, again: bool) -> None:
+    """Every run of a user's study, and what all of them cost."""
+    from ryusa.study import estimate_cost
+
+    (name,) = mine.parts
+    tasks = list(dict.fromkeys(mine.part(name).tasks(plan)))
+    with listing(("name",)) as table:
+        for one in tasks:
+            table.add_row(one.label, "1", f"{one.cost() / 60.0:.1f}")
+    typer.echo(f"{plan.level}: {estimate_cost(tasks, out / 'runs', jobs=jobs or cores(), again=again)}")
+
+
+def numbers_table() -> Any:
+    """Table without a frame for what was found: name, label, words."""
+    from rich.table import Table
+
+    table = Table(box=None, pad_edge=False, show_header=False)
+    table.add_column(no_wrap=True)
+    table.add_column(no_wrap=True)
+    table.add_column(ratio=1, overflow="fold")
+    return table
+
+
+def _print(ledger: "Ledger") -> None:
+    """Every number of a user's study, with its verdict."""
+    from rich.markup import escape
+
+    from ryusa.study.entry import plain_entry
+    from ryusa.study.page import interval
+
+    table = numbers_table()
+    for entry in ledger.entries:
+        plain = plain_entry(ledger.study, entry, ledger.folder)
+        first = [entry.id, f"{plain['verdict']} {plain['condition']}".strip()]
+        if not plain["trials"]:
+            table.add_row(*first, escape(entry.problem or "no number"))
+        for one in plain["trials"]:
+            choices = "".join(f"{key} {value}, " for key, value in one["choices"].items())
+            table.add_row(*first, escape(f"{choices}{one['part']}: {interval(one)}"))
+            first = ["", ""]
+    console().print(table)
+    print_counts(ledger)
+
+
+def print_counts(ledger: "Ledger") -> None:
+    """How many findings have each verdict."""
+    words = ledger.study.words
+    counts = Counter(words[one.outcome] for one in ledger.entries)
+    typer.echo("; ".join(f"{counts[word]} {word}" for word in dict.fromkeys(words.values()) if counts[word]))
 
 
 def cores() -> int:
@@ -28,21 +224,21 @@ def console() -> Any:
 
 
 def interrupted(out: Path) -> NoReturn:
-    """Say how to go on, and leave."""
-    typer.echo(f"interrupted; {out} holds what was finished, the same command goes on from there", err=True)
+    """Say how to continue, and leave."""
+    typer.echo(f"interrupted; finished runs are kept in {out}. The same command continues there", err=True)
     raise typer.Exit(INTERRUPTED) from None
 
 
-def tell_failures(
+def report_failures(
     problems: Mapping[str, str], faults: Mapping[str, str], traces: Mapping[str, str], log: Path
 ) -> None:
-    """Say on stderr what went wrong, and leave where anything did."""
-    _tell(problems, "run could not be carried out or measured", "runs could not be carried out or measured")
-    _tell(faults, "step after the runs failed", "steps after the runs failed")
+    """Name on stderr what went wrong, and leave where anything did."""
+    _report(problems, "run could not be carried out or measured", "runs could not be carried out or measured")
+    _report(faults, "step after the runs failed", "steps after the runs failed")
     if traces:
         typer.echo(
             f"errors in the program, not in the case: {log} holds their tracebacks. What was "
-            "finished is kept; after a repair the same command needs to do only what failed",
+            "finished is kept; once the error is repaired, the same command repeats only what failed",
             err=True,
         )
         raise typer.Exit(BROKEN)
@@ -50,7 +246,7 @@ def tell_failures(
         raise typer.Exit(FAILED)
 
 
-def _tell(found: Mapping[str, str], one: str, many: str) -> None:
+def _report(found: Mapping[str, str], one: str, many: str) -> None:
     """List what went wrong, on stderr."""
     if found:
         typer.echo(f"{len(found)} {one if len(found) == 1 else many}:", err=True)

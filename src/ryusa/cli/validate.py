@@ -1,4 +1,4 @@
-"""`ryusa validate`: set ours against every reference, with the error as a number."""
+"""`ryusa validate`: compare ours with every reference, with each error as a number."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -6,11 +6,23 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ryusa.cli.study import console, cores, interrupted, tell_failures
+from ryusa.cli.study import (
+    Again,
+    Jobs,
+    Json,
+    Quiet,
+    carried_out,
+    console,
+    cores,
+    finish,
+    listing,
+    numbers_table,
+    print_counts,
+)
 
 if TYPE_CHECKING:
-    from ryusa.studies.validation.ledger import Validation
-    from ryusa.study import Level
+    from ryusa.study import Plan
+    from ryusa.study.ledger import Ledger
 
 MISSED = 4  # exit code where all was computed and something lies outside its tolerance
 
@@ -22,55 +34,40 @@ def register(app: typer.Typer) -> None:
 
 def validate(
     names: Annotated[
-        list[str] | None, typer.Argument(metavar="NAME", help="Checks, such as water_alone; all if none.")
+        list[str] | None,
+        typer.Argument(metavar="NAME", help="Checks, such as water_alone; default: all."),
     ] = None,
     out: Annotated[
-        Path, typer.Option("-o", "--out", metavar="FOLDER", help="Page, pictures and runs go here.")
+        Path, typer.Option("-o", "--out", metavar="FOLDER", help="Page, pictures and runs.")
     ] = Path("runs/validation"),
-    quick: Annotated[bool, typer.Option("--quick", help="What takes seconds; for every change.")] = False,
-    json: Annotated[
-        Path | None, typer.Option("--json", metavar="FILE", help="Write the numbers here too.")
-    ] = None,
-    jobs: Annotated[
-        int | None,
-        typer.Option("--jobs", "-j", metavar="N", min=1, help="Runs at a time; default: all cores."),
-    ] = None,
-    again: Annotated[
-        bool, typer.Option("--again", help="Compute anew what was finished; else it is opened.")
+    quick: Annotated[
+        bool, typer.Option("--quick", help="Only what takes seconds; for every change.")
     ] = False,
-    show: Annotated[bool, typer.Option("--list", help="List checks, time and disk; run nothing.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress while running.")] = False,
+    json: Json = None,
+    jobs: Jobs = None,
+    again: Again = False,
+    show: Annotated[
+        bool, typer.Option("--list", help="List the checks, with time and disk; run nothing.")
+    ] = False,
+    quiet: Quiet = False,
 ) -> None:
-    """Set ours against closed forms and measurements, and write one page with every error as a number.
+    """Compare ours with closed forms and measurements, and write one page with every error as a number.
 
-    An interrupted validation goes on where it stopped when the same command is
-    given again. Leaves with 4 where something lies outside its tolerance.
+    An interrupted validation continues where it stopped when the same command
+    is given again. Exits with 4 where something lies outside its tolerance.
     """
-    from ryusa.errors import ResultsError
-    from ryusa.study import Level, ProgressLines
+    from ryusa.studies.validation.study import VALIDATION
+    from ryusa.study import Level, Outcome, Plan
 
-    level = Level.QUICK if quick else Level.FULL
+    plan = Plan(Level.QUICK if quick else Level.FULL, ())
     chosen = None if not names else [_known(name) for name in names]
     if show:
-        _list(level, chosen, out, jobs, again)
+        _list(plan, chosen, out, jobs, again)
         return
-    from ryusa.studies.validation import Word
-    from ryusa.studies.validation.ledger import make, write
-
-    try:
-        made = make(
-            chosen, level, out, jobs=jobs or cores(), again=again, say=None if quiet else ProgressLines()
-        )
-        files = write(made, json)
-    except KeyboardInterrupt:
-        interrupted(out)
-    except OSError as error:
-        raise ResultsError(f"{out}: cannot be written ({error.strerror or error})") from None
-    _print(made)
-    for path in files:
-        typer.echo(f"wrote {path}")
-    tell_failures(made.problems, made.faults, made.traces, out / made.log)
-    missed = [one.id for one in made.rows if one.word is Word.MISSED]
+    ledger, files = carried_out(VALIDATION, chosen, plan, out, json, jobs, again, quiet)
+    _print(ledger)
+    finish(ledger, files, out)
+    missed = [one.id for one in ledger.entries if one.outcome is Outcome.FAILS]
     if missed:
         typer.echo(f"{len(missed)} outside the tolerance: {', '.join(missed)}", err=True)
         raise typer.Exit(MISSED)
@@ -79,52 +76,38 @@ def validate(
 def _known(word: str) -> str:
     """Name of a check; hyphens as on the page are understood."""
     from ryusa.cli.options import known
-    from ryusa.studies.validation import NAMES
+    from ryusa.studies.validation.study import NAMES
 
     return known(word.replace("-", "_").split("/", 1)[0], NAMES, "check")
 
 
-def _list(level: "Level", chosen: Sequence[str] | None, out: Path, jobs: int | None, again: bool) -> None:
-    from rich import box
-    from rich.table import Table
-
-    from ryusa.studies.validation import NAMES, load
+def _list(plan: "Plan", chosen: Sequence[str] | None, out: Path, jobs: int | None, again: bool) -> None:
+    from ryusa.studies.validation.study import NAMES, load
     from ryusa.study import Task, estimate_cost
 
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for heading in ("name", "what it checks"):
-        table.add_column(heading, no_wrap=heading == "name")
-    for heading in ("runs", "core minutes"):
-        table.add_column(heading, justify="right")
     every: list[Task] = []
-    for name in chosen or NAMES:
-        runs = list(dict.fromkeys(load(name).runs(level)))
-        minutes = sum(one.cost() for one in runs) / 60.0
-        table.add_row(name, load(name).TITLE, str(len(runs)), f"{minutes:.1f}")
-        every += runs
-    console().print(table)
-    typer.echo(f"{level}: {estimate_cost(every, out / 'runs', jobs=jobs or cores(), again=again)}")
+    with listing(("name", "what it checks")) as table:
+        for name in chosen or NAMES:
+            tasks = list(dict.fromkeys(load(name).tasks(plan)))
+            minutes = sum(one.cost() for one in tasks) / 60.0
+            table.add_row(name, load(name).TITLE, str(len(tasks)), f"{minutes:.1f}")
+            every += tasks
+    typer.echo(f"{plan.level}: {estimate_cost(every, out / 'runs', jobs=jobs or cores(), again=again)}")
 
 
-def _print(made: "Validation") -> None:
-    from collections import Counter
-
+def _print(ledger: "Ledger") -> None:
     from rich.markup import escape
-    from rich.table import Table
 
-    from ryusa.studies.validation import Word
-    from ryusa.studies.validation.ledger import error_in_words, tolerance_in_words
+    from ryusa.study.entry import plain_entry
+    from ryusa.study.page import interval
+    from ryusa.study.study import limits_in_words
 
-    table = Table(box=None, pad_edge=False, show_header=False)
-    table.add_column(no_wrap=True)
-    table.add_column(no_wrap=True)
-    table.add_column(ratio=1, overflow="fold")
-    for row in made.rows:
-        plain = row.plain(made.folder)
+    table = numbers_table()
+    for entry in ledger.entries:
+        plain = plain_entry(ledger.study, entry, ledger.folder)
         said = "; ".join(
-            f"{each['name']} {error_in_words(each)} ({tolerance_in_words(each)})" for each in plain["errors"]
+            f"{each['part']} {interval(each)} ({limits_in_words(each)})" for each in plain["trials"]
         )
-        table.add_row(row.id, str(row.word), escape(said or "see below"))
+        table.add_row(entry.id, plain["verdict"], escape(said or "see below"))
     console().print(table)
-    counts = Counter(row.word for row in made.rows)
-    typer.echo("; ".join(f"{counts[word]} {word}" for word in Word if counts[word]))
+    print_counts(ledger)

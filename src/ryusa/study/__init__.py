@@ -1,28 +1,78 @@
-"""Work carried out once, several pieces at a time, kept, and opened next time."""
+"""Studies: what is run, what is measured in each run, what follows from it, and the page that says so.
 
+A study has parts (`StudyPart`). Each names its tasks, measures every run, and judges what was measured. The
+framework carries out every task once, keeps it, opens it again the next time, and writes ledger and page.
+"""
+
+from ryusa.study.compare import comparison, misfit, relative
 from ryusa.study.cost import CostEstimate, code_in_words, duration, estimate_cost
 from ryusa.study.fault import Fault, noted
+from ryusa.study.interval import (
+    CONFIDENCE,
+    Interval,
+    Pooled,
+    exact,
+    over_range,
+    over_seeds,
+    pool,
+    pseudo_values,
+    short,
+)
+from ryusa.study.judge import (
+    Band,
+    Finding,
+    Known,
+    Outcome,
+    ReferenceChart,
+    Source,
+    Trial,
+    at_most,
+)
 from ryusa.study.plan import Level, Plan
 from ryusa.study.progress import ProgressLines, StudyProgress
 from ryusa.study.runs import TaskResults, carry_out
-from ryusa.study.task import Calculation, CaseRun, Numbers, Task, calculation
+from ryusa.study.study import Found, Study, StudyPart
+from ryusa.study.task import Calculation, CaseRun, Task, calculation, case_run
 
 __all__ = [
+    "CONFIDENCE",
+    "Band",
     "Calculation",
     "CaseRun",
     "CostEstimate",
     "Fault",
+    "Finding",
+    "Found",
+    "Interval",
+    "Known",
     "Level",
-    "Numbers",
+    "Outcome",
     "Plan",
+    "Pooled",
     "ProgressLines",
+    "ReferenceChart",
+    "Source",
+    "Study",
+    "StudyPart",
     "StudyProgress",
     "Task",
     "TaskResults",
+    "Trial",
+    "at_most",
     "calculation",
     "carry_out",
+    "case_run",
     "code_in_words",
+    "comparison",
     "duration",
     "estimate_cost",
+    "exact",
+    "misfit",
     "noted",
+    "over_range",
+    "over_seeds",
+    "pool",
+    "pseudo_values",
+    "relative",
+    "short",
 ]

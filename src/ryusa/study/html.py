@@ -1,8 +1,7 @@
-"""What pages share: templates, pictures that a page holds itself, files written whole."""
+"""What all pages share: templates, and pictures that a page holds itself."""
 
 import base64
 import io
-import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -10,7 +9,8 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
 from PIL import Image
 
-from ryusa.study import code_in_words
+from ryusa.running.disk import write_whole
+from ryusa.study.cost import code_in_words
 
 COLOURS = 256  # of an embedded picture
 ONE_COLUMN = 1600  # pixels; a wider picture is shown over the whole page, or its letters would be too small
@@ -59,13 +59,6 @@ def number(value: object) -> str:
 def write_log(log: Path, traces: Mapping[str, str]) -> None:
     """Keep the tracebacks of errors in the program, and none of an earlier time."""
     if traces:
-        write_whole(log, "\n".join(f"{what}\n{trace}" for what, trace in traces.items()))
+        write_whole(log, "\n".join(f"{what}\n{trace}" for what, trace in traces.items()).encode())
     else:
         log.unlink(missing_ok=True)
-
-
-def write_whole(path: Path, text: str) -> None:
-    """Write text beside its place and move it there whole."""
-    beside = path.with_name(f".{path.name}.new")
-    beside.write_text(text, encoding="utf-8")
-    os.replace(beside, path)

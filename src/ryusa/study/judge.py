@@ -1,151 +1,70 @@
-"""From numbers to a verdict: intervals over seeds, the band a claim asks for, and one rule for all claims."""
+"""From numbers to a verdict: the band that is asked for, the settings tried, and one rule for all studies."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import TypeVar
 
-import numpy as np
-from scipy import stats
+from ryusa.figures.comparison import Axis, Curve
+from ryusa.study.interval import Interval
 
-CONFIDENCE = 0.95
-Item = TypeVar("Item")
 _NAMED = 3  # sets of choices named in a condition, at most
 
 
-class Word(StrEnum):
-    """The verdicts there are."""
+class Outcome(StrEnum):
+    """What became of a finding. Each study has its own words for these."""
 
-    REPRODUCED = "reproduced"
-    ONLY_IF = "reproduced only if"
-    NOT = "not reproduced"
-    CONTRADICTS = "contradicts its own equations"
-    UNDECIDED = "undecided (spread)"
-    LOST = "not testable (figure lost)"
+    HOLDS = "holds"
+    ONLY_IF = "holds only if"
+    FAILS = "fails"
+    EXCLUDED = "excluded by its own equations"
+    SHOWN = "shown"
+    UNDECIDED = "undecided"
+
+
+class Known(StrEnum):
+    """How a reference is known."""
+
+    CLOSED = "closed form"  # derived; the reader can check it against the equation of the source
+    READ = "read in the source"
+    QUOTED = "read where it is quoted"
+    MEMORY = "from memory"  # shown, and never decides
 
 
 @dataclass(frozen=True)
-class Interval:
-    """A number and how far it may be off."""
+class Source:
+    """Where a reference comes from."""
 
-    value: float
-    low: float
-    high: float
-    unit: str
-    n: int  # seeds, or whatever `how` says
-    how: str
-
-    def __str__(self) -> str:
-        if not math.isfinite(self.value):
-            return "no number"
-        unit = "" if self.unit == "-" else f" {self.unit}"
-        middle, low, high = short(self.value), short(self.low), short(self.high)
-        return f"{middle}{unit}" if low == high else f"{middle}{unit} ({low} to {high})"
+    words: str  # author, year, equation or table
+    known: Known = Known.CLOSED
 
 
-def short(value: float) -> str:
-    """Give three digits, and no power of ten where plain digits do.
+@dataclass(frozen=True)
+class ReferenceChart:
+    """Our curves on reference curves; a reference named as one of ours belongs to it.
 
-    >>> short(1042.0), short(0.01049), short(2.0e-6)
-    ('1042', '0.0105', '2e-06')
-    """
-    return f"{value:.0f}" if 1e3 <= abs(value) < 1e6 else f"{value:.3g}"
-
-
-def over_seeds(values: Sequence[float], unit: str, pooled: "Pooled | None" = None) -> Interval:
-    """Mean over seeds with its 95 % interval by Student's t.
-
-    Parameters
+    Attributes
     ----------
-    values : one number per seed.
-    unit : of the numbers.
-    pooled : spread of all settings of a sweep, and its degrees of freedom; counts where the own standard
-        deviation is no larger. Few seeds alone give an interval far too wide (n = 3: 2.5 standard deviations)
-        or, by luck, far too narrow. A setting that scatters more than the others keeps its own.
-
-    Notes
-    -----
-    One seed has no interval: low, value and high are the same and the row is indicative. A value that is not
-    finite makes all three nan.
-
-    >>> str(over_seeds([1.0, 2.0, 3.0], "m"))
-    '2 m (-0.484 to 4.48)'
+    x, y : the axes.
+    ours, references : the curves compared.
+    beside : further curves, shown and not compared.
     """
-    numbers = np.asarray(values, dtype=np.float64)
-    n = len(numbers)
-    if n == 0 or not np.all(np.isfinite(numbers)):
-        return Interval(math.nan, math.nan, math.nan, unit, n, f"mean of {n} seeds")
-    mean = float(numbers.mean())
-    if n == 1:
-        return Interval(mean, mean, mean, unit, 1, "one seed, no interval")
-    spread, freedom = float(numbers.std(ddof=1)), n - 1
-    how = f"95 % of the mean of {n} seeds, Student's t"
-    if pooled is not None and pooled.freedom > freedom and pooled.spread >= spread:
-        spread, freedom = pooled.spread, pooled.freedom
-        how += f", spread pooled over the sweep ({freedom} degrees of freedom)"
-    half = float(stats.t.ppf(0.5 + CONFIDENCE / 2, freedom)) * spread / math.sqrt(n)
-    return Interval(mean, mean - half, mean + half, unit, n, how)
 
-
-def pseudo_values(value: Callable[[Sequence[Item]], float], items: Sequence[Item]) -> list[float]:
-    """Jackknife: one number per item for a value that all items have together.
-
-    Their mean is the value freed of its bias of order 1/n (Quenouille 1956, Biometrika 43, 353), their
-    scatter gives its error (Tukey 1958, Ann. Math. Stat. 29, 614). For a plain mean they are the items.
-
-    >>> pseudo_values(lambda x: sum(x) / len(x), [1.0, 2.0, 6.0])
-    [1.0, 2.0, 6.0]
-    """
-    n, whole = len(items), value(items)
-    if n < 2:
-        return [whole]
-    return [n * whole - (n - 1) * value([*items[:k], *items[k + 1 :]]) for k in range(n)]
-
-
-@dataclass(frozen=True)
-class Pooled:
-    """Standard deviation within the settings of a sweep, and its degrees of freedom."""
-
-    spread: float
-    freedom: int
-
-
-def pool(groups: Sequence[Sequence[float]]) -> Pooled | None:
-    """Pool the spread between seeds over settings; None where no setting has two finite numbers.
-
-    >>> pool([[1.0, 3.0], [5.0, 7.0]])
-    Pooled(spread=1.4142135623730951, freedom=2)
-    """
-    kept = [np.asarray(one, dtype=np.float64) for one in groups]
-    kept = [one for one in kept if len(one) > 1 and np.all(np.isfinite(one))]
-    freedom = sum(len(one) - 1 for one in kept)
-    if freedom == 0:
-        return None
-    return Pooled(math.sqrt(sum(float(((one - one.mean()) ** 2).sum()) for one in kept) / freedom), freedom)
-
-
-def over_range(values: Sequence[float], unit: str, of_what: str) -> Interval:
-    """Middle and range of numbers without chance in them; `of_what` such as "12 impact speeds".
-
-    >>> str(over_range([1.0, 2.0, 4.0], "s", "3 speeds"))
-    '2 s (1 to 4)'
-    """
-    numbers = np.asarray(values, dtype=np.float64)
-    if len(numbers) == 0 or not np.all(np.isfinite(numbers)):
-        return Interval(math.nan, math.nan, math.nan, unit, len(numbers), f"range over {of_what}")
-    low, high = float(numbers.min()), float(numbers.max())
-    return Interval(float(np.median(numbers)), low, high, unit, len(numbers), f"range over {of_what}")
+    x: Axis
+    y: Axis
+    ours: Sequence[Curve]
+    references: Sequence[Curve]
+    beside: Sequence[Curve] = ()
 
 
 @dataclass(frozen=True)
 class Band:
-    """What a claim asks of a number, as an inequality; either end may be infinite."""
+    """What is asked of a number, as an inequality; either end may be infinite."""
 
     low: float
     high: float
     unit: str
-    says: str  # how the paper's words became numbers
+    says: str  # why these limits: how words became numbers, or how accurate the method can be
 
     def holds(self, found: Interval) -> bool | None:
         """True with the whole interval inside, False with all of it outside, None where it straddles."""
@@ -158,29 +77,46 @@ class Band:
         return None
 
 
+def at_most(high: float, says: str, unit: str = "-") -> Band:
+    """Give the band of an error that cannot be negative.
+
+    >>> at_most(0.02, "half a cell")
+    Band(low=0.0, high=0.02, unit='-', says='half a cell')
+    """
+    return Band(0.0, high, unit, says)
+
+
 @dataclass(frozen=True)
 class Trial:
-    """One part of a claim under one set of free choices.
+    """One number of a finding, under one set of free choices.
 
     Attributes
     ----------
     part : what was measured, such as "slope of the heap at rest".
-    choices : every free choice that is varied, by name; the same names in every trial of a claim.
-    found, band : the number, and what the claim asks of it.
+    choices : every free choice that is varied, by name; the same names in every trial of a finding.
+    found : the number.
+    band : what is asked of it; None where the number is shown and decides nothing.
     decided : verdict where no number can carry it, such as a heap that stands as a wall; `note` says why.
     """
 
     part: str
     choices: Mapping[str, str]
     found: Interval
-    band: Band
+    band: Band | None
     decided: bool | None = None
     note: str = ""
 
     @property
+    def judged(self) -> bool:
+        """Whether anything is asked of it."""
+        return self.band is not None or self.decided is not None
+
+    @property
     def holds(self) -> bool | None:
-        """Whether this part holds; None where it cannot be told."""
-        return self.decided if self.decided is not None else self.band.holds(self.found)
+        """Whether this part holds; None where it cannot be decided."""
+        if self.decided is not None or self.band is None:
+            return self.decided
+        return self.band.holds(self.found)
 
 
 Key = tuple[tuple[str, str], ...]
@@ -188,56 +124,73 @@ Key = tuple[tuple[str, str], ...]
 
 @dataclass(frozen=True)
 class Finding:
-    """What became of one claim.
+    """What was found about one claim or one reference.
 
     Attributes
     ----------
-    claim : id of `paper.CLAIMS`.
-    trials : every setting tried; those of the base, as the case file ships, come first.
+    id : of the claim; of a comparison, short lower-case words with hyphens, unique within its part.
+    trials : every number and setting tried; those of the case file as it ships come first.
     decided_by : one or two sentences on the physics that decides it.
     settings : what all trials share, in words.
-    contradiction : set where the paper's own equations exclude the claim; says how, with the numbers found.
-    also : numbers that belong to the story and decide nothing.
-    beside : trials of something else than what the claim is about, such as other forms of a law.
+    contradiction : set where the source's own equations exclude the claim; says how, with the numbers found.
+    also : further numbers, which decide nothing.
+    beside : trials of something else than what the finding is about, such as other forms of a law.
+    title : what is compared; empty where the part's own title says it.
+    source : of the reference.
+    chart : our curves on those of the reference.
+
+    Raises
+    ------
+    ValueError : a reference known from memory would decide; it may only be shown.
     """
 
-    claim: str
+    id: str
     trials: tuple[Trial, ...]
-    decided_by: str
+    decided_by: str = ""
     settings: Mapping[str, str] = field(default_factory=dict[str, str])
     contradiction: str = ""
     also: tuple[str, ...] = ()
     beside: tuple[Trial, ...] = ()
+    title: str = ""
+    source: Source | None = None
+    chart: ReferenceChart | None = None
+
+    def __post_init__(self) -> None:
+        """Let nothing that is known from memory alone decide."""
+        from_memory = self.source is not None and self.source.known is Known.MEMORY
+        if from_memory and any(one.judged for one in self.trials):
+            raise ValueError(f"{self.id}: a reference from memory may be shown, but must not decide")
 
     @property
     def by_choice(self) -> dict[Key, bool | None]:
-        """Whether the claim holds under each set of choices: every part must."""
+        """Whether it holds under each set of choices: every part that is judged must."""
         parts: dict[Key, list[bool | None]] = {}
         for one in self.trials:
-            parts.setdefault(tuple(one.choices.items()), []).append(one.holds)
+            if one.judged:
+                parts.setdefault(tuple(one.choices.items()), []).append(one.holds)
         return {
             key: False if False in held else None if None in held else True for key, held in parts.items()
         }
 
     @property
-    def word(self) -> Word:
-        """The verdict: one rule for every claim.
+    def outcome(self) -> Outcome:
+        """The verdict: one rule for every finding of every study.
 
-        It holds under some sets of choices and fails under others: reproduced only if. It fails under none
-        and holds as the case file ships: reproduced. It holds under none and fails as the case ships: not
-        reproduced. Else the intervals straddle the line: undecided. A claim that the paper's own equations
-        exclude contradicts them, whatever the runs say. `counts` says how many sets are behind it.
+        It holds under some sets of choices and fails under others: holds only if. It fails under none and
+        holds as the case file ships: holds. It holds under none and fails as the case ships: fails. Otherwise
+        the intervals straddle a limit: undecided. A claim that the equations of its own source exclude is
+        excluded, whatever the runs say. Numbers of which nothing is asked are shown.
         """
         if self.contradiction:
-            return Word.CONTRADICTS
+            return Outcome.EXCLUDED
         held = list(self.by_choice.values())
         if not held:
-            return Word.UNDECIDED
+            return Outcome.SHOWN if self.trials else Outcome.UNDECIDED
         if True in held and False in held:
-            return Word.ONLY_IF
+            return Outcome.ONLY_IF
         if held[0] is None:
-            return Word.UNDECIDED
-        return Word.REPRODUCED if held[0] else Word.NOT
+            return Outcome.UNDECIDED
+        return Outcome.HOLDS if held[0] else Outcome.FAILS
 
     @property
     def counts(self) -> dict[str, int]:
@@ -254,7 +207,7 @@ class Finding:
         """
         held = self.by_choice
         good = [dict(key) for key, one in held.items() if one]
-        if self.word is not Word.ONLY_IF:
+        if self.outcome is not Outcome.ONLY_IF:
             return ""
         tried = {name: list(dict.fromkeys(dict(key)[name] for key in held)) for name in good[0]}
         fits = {
@@ -262,15 +215,15 @@ class Finding:
         }
         inside = [one for key, one in held.items() if all(value in fits[name] for name, value in key)]
         if False not in inside:
-            told = [
+            said = [
                 f"{name} {_listed(fits[name], tried[name])}" for name in tried if fits[name] != tried[name]
             ]
         else:
             first = dict(next(iter(held)))
             sets = [", ".join(f"{k} {v}" for k, v in one.items() if v != first[k]) for one in good]
-            told = [" or ".join(one or "as it ships" for one in sets[:_NAMED])]
-            told += [f"or {len(sets) - _NAMED} more"] if len(sets) > _NAMED else []
-        return f"{'; '.join(told)} ({len(good)} of {len(held)} settings)"
+            said = [" or ".join(one or "as it ships" for one in sets[:_NAMED])]
+            said += [f"or {len(sets) - _NAMED} more"] if len(sets) > _NAMED else []
+        return f"{'; '.join(said)} ({len(good)} of {len(held)} settings)"
 
     @property
     def base(self) -> tuple[Trial, ...]:

@@ -74,26 +74,26 @@ class TaskResults:
 
 
 def carry_out(
-    works: Mapping[str, Sequence[Task]],
+    tasks: Mapping[str, Sequence[Task]],
     load: Load,
     folder: Path,
     *,
     jobs: int = 1,
     again: bool = False,
-    say: StudyProgress | None = None,
+    progress: StudyProgress | None = None,
 ) -> TaskResults:
     """Do every piece of work once, and measure each for everyone who wants it.
 
     Parameters
     ----------
-    works : who wants it (an experiment, a check) -> runs and calculations.
+    tasks : who wants it (an experiment, a check) -> runs and calculations.
     load : gives who wants it by name, in any process: a function of a module. Its `measure(results, run)`
         makes numbers of a run, small enough to be sent between processes; those of a calculation are handed
         on as they are. A run that breaks down is an answer where it has a `failed(error)` that gives one.
     folder : runs go into `folder/<case>/<variant>`; finished runs of the very same case are opened.
     jobs : runs at a time, each in its own process on one thread; the numbers do not depend on it.
     again : run even what is there.
-    say : is told what goes on.
+    progress : shows how far it is.
 
     Raises
     ------
@@ -101,33 +101,38 @@ def carry_out(
     ResultsError : a process was ended from outside; what was finished stays.
     KeyboardInterrupt : Ctrl-C or SIGTERM; what was finished stays and is opened next time.
     """
-    begun, say = time.monotonic(), say or StudyProgress()
-    wanted = _wanted(works)
+    begun, progress = time.monotonic(), progress or StudyProgress()
+    wanted = _wanted(tasks)
     ahead = estimate_cost(wanted, folder, jobs=jobs, again=again)  # reads, and so checks, every case first
     refuse_if_too_big(ahead, folder)
-    found: dict[str, dict[Any, Any]] = {name: {} for name in works}
+    found: dict[str, dict[Any, Any]] = {name: {} for name in tasks}
     campaign = TaskResults(found)
-    say.begin(ahead)
+    progress.begin(ahead)
     try:
         runs = _done(
-            _order(ahead), wanted, partial(_one, folder=folder, again=again, load=load), folder, jobs, say
+            _order(ahead),
+            wanted,
+            partial(_one, folder=folder, again=again, load=load),
+            folder,
+            jobs,
+            progress,
         )
         with _stopped_by_sigterm(), closing(runs):
             for done in runs:
                 _count(campaign, done)
-                say.done(done.one, done.seconds, done.opened, done.problem)
+                progress.done(done.one, done.seconds, done.opened, done.problem)
     finally:
-        say.end()
+        progress.end()
     for name, measured in found.items():  # in the order asked for, whoever finished first
-        found[name] = {one: measured[one] for one in works[name] if one in measured}
+        found[name] = {one: measured[one] for one in tasks[name] if one in measured}
     campaign.seconds = time.monotonic() - begun
     return campaign
 
 
-def _wanted(works: Mapping[str, Sequence[Task]]) -> dict[Task, list[str]]:
+def _wanted(tasks: Mapping[str, Sequence[Task]]) -> dict[Task, list[str]]:
     """Every piece of work, with those who want it."""
     wanted: dict[Task, list[str]] = {}
-    for name, every in works.items():
+    for name, every in tasks.items():
         for one in every:
             users = wanted.setdefault(one, [])
             if name not in users:
@@ -161,11 +166,11 @@ def _done(
     do: Callable[[Task, Sequence[str]], TaskResult],
     folder: Path,
     jobs: int,
-    say: StudyProgress,
+    progress: StudyProgress,
 ) -> Generator[TaskResult]:
     if jobs == 1 or len(order) <= 1:
         for one in order:
-            say.started(one)
+            progress.started(one)
             yield do(one, tuple(wanted[one]))
         return
     pool = ProcessPoolExecutor(jobs, mp_context=get_context("spawn"), initializer=_settle_in)
@@ -178,9 +183,9 @@ def _done(
                 with _for_a_child():
                     future = pool.submit(do, one, tuple(wanted[one]))
                 running[future] = one
-                say.started(one)
+                progress.started(one)
             ready, _ = wait(running, _WAIT, FIRST_COMPLETED)
-            say.tick()
+            progress.tick()
             for future in ready:
                 one = running[future]
                 try:
@@ -280,6 +285,7 @@ def _one(one: Task, names: Sequence[str], *, folder: Path, again: bool, load: Lo
     measured: dict[str, Any] = {}
     faults: dict[str, Fault] = {}
     place = folder / one.folder
+    parts = {name: load(name) for name in names}  # first: a calculation may be a function of theirs
     try:
         answer = None if again else one.open(place)
         opened = answer is not None
@@ -289,7 +295,7 @@ def _one(one: Task, names: Sequence[str], *, folder: Path, again: bool, load: Lo
         for name in names:
             faults[name] = fault_of(error)
             with noted(faults, name):
-                hook = getattr(load(name), "failed", None)
+                hook = getattr(parts[name], "failed", None)
                 if hook is not None and (said := hook(error)) is not None:
                     measured[name] = said
                     del faults[name]
@@ -299,6 +305,6 @@ def _one(one: Task, names: Sequence[str], *, folder: Path, again: bool, load: Lo
         return TaskResult(one, {}, False, time.monotonic() - begun, faults, broken=True)
     for name in names:
         with noted(faults, name):
-            measured[name] = answer if isinstance(one, Calculation) else load(name).measure(answer, one)
+            measured[name] = answer if isinstance(one, Calculation) else parts[name].measure(answer, one)
     made_by = code_of(one.origin(place) or {})
     return TaskResult(one, measured, opened, time.monotonic() - begun, faults, made_by)

@@ -1,10 +1,11 @@
-"""What a campaign carries out: runs of case files, and calculations; each kept in a folder of its own."""
+"""What a study carries out: runs of case files, and calculations; each kept in a folder of its own."""
 
 import hashlib
 import json
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from difflib import get_close_matches
 from functools import lru_cache
 from importlib import import_module
 from pathlib import Path
@@ -13,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 import numpy as np
 
 from ryusa.cases import FOLDERS
-from ryusa.errors import ResultsError, RyusaError
+from ryusa.errors import CaseError, ResultsError, RyusaError
 from ryusa.results import Results, schema
 from ryusa.running import provenance
 from ryusa.running.folder import write_json
@@ -158,6 +159,28 @@ class CaseRun(Task):
         from ryusa.casefile.resolved import resolved
 
         return case == json.loads(json.dumps(resolved(self.read())))
+
+
+def case_run(path: Path, overrides: Mapping[str, str] | None = None, *, seed: int | None = None) -> CaseRun:
+    """Name one run of a case file.
+
+    Parameters
+    ----------
+    path : of the case file: `case_path("saltation.toml")` for one of the package, or a file of your own.
+    overrides : keys of the case and values as text with units, as `ryusa run --set` takes them.
+    seed : the one seed of all its randomness; None leaves that of the case file.
+
+    Raises
+    ------
+    CaseError : there is no such file; names those beside it.
+    """
+    if not path.is_file():
+        beside = [one.name for one in sorted(path.parent.glob("*.toml"))]
+        allowed = f"there is no such file. {path.parent} holds {', '.join(beside) or 'no case file'}"
+        near = get_close_matches(path.name, beside, 1)
+        raise CaseError("case file", str(path), allowed, near[0] if near else None)
+    changed = {**(overrides or {}), **({} if seed is None else {"seed": str(seed)})}
+    return CaseRun(path.stem, tuple(sorted(changed.items())), path.parent)
 
 
 @lru_cache(maxsize=4096)

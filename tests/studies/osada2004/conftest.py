@@ -4,10 +4,12 @@ from pathlib import Path
 import pytest
 
 from ryusa.figures.style import new, save
-from ryusa.studies.osada2004 import PHI, ROTATION, Band, Finding, Interval, Level, Plan, Trial, Word
-from ryusa.studies.osada2004.common import common
-from ryusa.studies.osada2004.ledger import Ledger, Row
+from ryusa.studies.osada2004._experiment import PHI, ROTATION
 from ryusa.studies.osada2004.paper import CLAIMS
+from ryusa.studies.osada2004.study import PAPER
+from ryusa.study import Band, Finding, Interval, Level, Plan, Trial
+from ryusa.study.entry import LedgerEntry
+from ryusa.study.ledger import Ledger
 
 BAND = Band(1.0, 2.0, "m", "1 to 2 m")
 NASTY = "<script>alert('x')</script> & \"quotes\" {{ 7 * 7 }}"
@@ -45,14 +47,13 @@ def every_word(tmp_path: Path, picture: Path) -> Ledger:
         "fig14": finding("fig14", Trial("speed", {"x" * 90: "y" * 90}, nan, BAND)),
         "eq13": finding("eq13", Trial("slope", {}, nan, BAND, decided=False, note="stands as a wall")),
     }
-    rows = {name: Row(CLAIMS[name], one.word, one, "fig20") for name, one in found.items()}
-    rows["fig20"] = Row(CLAIMS["fig20"], found["fig20"].word, found["fig20"], "fig20", (picture,))
-    rows["fig4"] = Row(CLAIMS["fig4"], Word.UNDECIDED, None, "fig20", problem=f"1 of 2 runs failed {NASTY}")
-    rows["fig16"] = Row(CLAIMS["fig16"], Word.LOST, None)
+    rows = {name: LedgerEntry(name, "fig20", one) for name, one in found.items()}
+    rows["fig20"] = LedgerEntry("fig20", "fig20", found["fig20"], (picture,))
+    rows["fig4"] = LedgerEntry("fig4", "fig20", None, problem=f"1 of 2 runs failed {NASTY}")
     table = [{"seed": seed, "jump": 0.123456789, "word": NASTY, "none": None} for seed in range(70)]
     return Ledger(
-        tuple(rows[one] for one in CLAIMS if one in rows), Plan(Level.STANDARD, (1, 2, 3)), tmp_path,
-        common([(name, one) for name, one in found.items()]), {f"fig20 {NASTY}": "grain 7 lost"},
+        PAPER, tuple(rows[one] for one in CLAIMS if one in rows), Plan(Level.STANDARD, (1, 2, 3)), tmp_path,
+        {f"fig20 {NASTY}": "grain 7 lost"},
         {
             "runs_made": 2, "runs_opened": 1, "wall_s": 61.0, "jobs": 2,
             "commits_of_runs": {"a" * 40: 1, "b" * 40 + "+": 2},

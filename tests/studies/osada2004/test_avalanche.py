@@ -7,7 +7,7 @@ import pytest
 
 from ryusa.measure import Layers, Profiles, Tracks
 from ryusa.measure.table import Averages
-from ryusa.studies.osada2004 import Level, Plan, Word, _avalanche, carry_out, fig14, fig15, fig16
+from ryusa.studies.osada2004 import _avalanche, fig14, fig15, fig16
 from ryusa.studies.osada2004._avalanche import (
     ALL,
     BETWEEN,
@@ -19,6 +19,8 @@ from ryusa.studies.osada2004._avalanche import (
     Window,
 )
 from ryusa.studies.osada2004._experiment import PHI, ROTATION, SLIP
+from ryusa.studies.osada2004.study import load
+from ryusa.study import Level, Outcome, Plan, carry_out
 
 STANDARD = Plan(Level.STANDARD, (1, 2, 3))
 QUICK = Plan(Level.QUICK, (1,))
@@ -55,12 +57,12 @@ def made(soft, stiff, plan=STANDARD):
         one: dict.fromkeys(WINDOWS, (stiff if "contact.stiffness" in dict(one.overrides) else soft)(
             1.0 + 0.002 * (int(one.get("seed")) % 1000 - 2)
         ))
-        for one in _avalanche.cases(plan)
+        for one in _avalanche.tasks(plan)
     }  # fmt: skip
 
 
 def words(experiment, soft, stiff):
-    return {one.claim: one.word for one in experiment.judge(made(soft, stiff), STANDARD)}
+    return {one.id: one.outcome for one in experiment.judge(made(soft, stiff), STANDARD)}
 
 
 def test_the_case_ships_as_the_first_setting_and_tilts_when_the_windows_begin():
@@ -86,12 +88,12 @@ def test_every_other_packing_can_be_read_and_keeps_a_lowest_layer_to_follow():
 
 
 def test_equal_profiles_are_alike_and_half_as_dense_ones_are_not():
-    assert words(fig14, flow_at(4.0), flow_at(3.0))["fig14"] is Word.REPRODUCED
-    assert words(fig14, flow_at(4.0), flow_at(4.0, phi=0.25))["fig14"] is Word.NOT
+    assert words(fig14, flow_at(4.0), flow_at(3.0))["fig14"] is Outcome.HOLDS
+    assert words(fig14, flow_at(4.0), flow_at(4.0, phi=0.25))["fig14"] is Outcome.FAILS
 
 
 def test_a_heap_at_rest_is_no_avalanche_however_alike_it_is():
-    assert words(fig14, flow_at(4.0), flow_at(0.01))["fig14"] is Word.NOT
+    assert words(fig14, flow_at(4.0), flow_at(0.01))["fig14"] is Outcome.FAILS
 
 
 def flow_at(speed, **how):
@@ -137,9 +139,9 @@ def test_pairs_that_creep_or_stick_to_the_bed_are_told_from_those_that_move():
 
 
 def test_fig15_asks_for_about_a_metre_a_second():
-    assert words(fig15, flow_at(5.0), flow_at(4.0))["fig15"] is Word.REPRODUCED
-    assert words(fig15, flow_at(4.1), flow_at(4.0))["fig15"] is Word.NOT
-    assert words(fig15, flow_at(7.0), flow_at(4.0))["fig15"] is Word.NOT
+    assert words(fig15, flow_at(5.0), flow_at(4.0))["fig15"] is Outcome.HOLDS
+    assert words(fig15, flow_at(4.1), flow_at(4.0))["fig15"] is Outcome.FAILS
+    assert words(fig15, flow_at(7.0), flow_at(4.0))["fig15"] is Outcome.FAILS
 
 
 def test_fig15_fails_where_a_layer_is_slower():
@@ -148,12 +150,12 @@ def test_fig15_fails_where_a_layer_is_slower():
         one.profile.v_x.value[0] = 0.1
         return one
 
-    assert words(fig15, crossing, flow_at(4.0))["fig15"] is Word.NOT
+    assert words(fig15, crossing, flow_at(4.0))["fig15"] is Outcome.FAILS
 
 
 @pytest.mark.parametrize(
     ("soft", "word"),
-    [(flow_at(5.0), Word.REPRODUCED), (flow_at(4.2), Word.NOT), (flow_at(5.0, phi=0.7), Word.NOT)],
+    [(flow_at(5.0), Outcome.HOLDS), (flow_at(4.2), Outcome.FAILS), (flow_at(5.0, phi=0.7), Outcome.FAILS)],
 )
 def test_fig15_flux_asks_for_more_transport_at_equal_concentration(soft, word):
     assert words(fig15, soft, flow_at(4.0))["fig15-flux"] is word
@@ -163,12 +165,12 @@ JAGGED = {"reversals": 20.0, "advance": 1.0, "jaggedness": 0.3}
 
 
 def test_fig16_holds_where_short_contacts_rattle_and_go_less_far():
-    assert words(fig16, flow_at(4.0), flow_at(4.0, **JAGGED))["fig16"] is Word.REPRODUCED
+    assert words(fig16, flow_at(4.0), flow_at(4.0, **JAGGED))["fig16"] is Outcome.HOLDS
 
 
 @pytest.mark.parametrize(("name", "value"), [("reversals", 5.0), ("advance", 3.0), ("jaggedness", 0.05)])
 def test_fig16_fails_if_one_of_its_three_parts_does(name, value):
-    assert words(fig16, flow_at(4.0), flow_at(4.0, **{**JAGGED, name: value}))["fig16"] is Word.NOT
+    assert words(fig16, flow_at(4.0), flow_at(4.0, **{**JAGGED, name: value}))["fig16"] is Outcome.FAILS
 
 
 def test_one_run_whose_grains_hardly_advance_does_not_outweigh_the_others():
@@ -182,13 +184,13 @@ def test_one_run_whose_grains_hardly_advance_does_not_outweigh_the_others():
 
 
 def test_fig16_fails_where_one_of_the_two_only_creeps():
-    assert words(fig16, flow_at(4.0), flow_at(0.05, **JAGGED))["fig16"] is Word.NOT
+    assert words(fig16, flow_at(4.0), flow_at(0.05, **JAGGED))["fig16"] is Outcome.FAILS
 
 
 def test_fig16_fails_where_no_grain_alternates():
     nothing = {"n": 0, "reversals": math.nan, "advance": math.nan, "jaggedness": math.nan}
     (found,) = fig16.judge(made(flow_at(4.0), flow_at(4.0, **nothing)), STANDARD)
-    assert found.word is Word.NOT
+    assert found.outcome is Outcome.FAILS
     assert all(one.note for one in found.trials if "over sqrt(g d)" not in one.part)
 
 
@@ -216,7 +218,7 @@ def test_choices_are_those_that_experiments_share():
 @pytest.mark.slow
 def test_the_shipped_pair_flows_and_is_drawn(tmp_path):
     names = ("fig14", "fig15", "fig16")
-    campaign = carry_out(names, QUICK, tmp_path)
+    campaign = carry_out({name: load(name).tasks(QUICK) for name in names}, load, tmp_path)
     assert not campaign.problems
     for name, experiment in zip(names, (fig14, fig15, fig16), strict=True):
         found = campaign.found[name]

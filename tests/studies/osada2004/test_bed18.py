@@ -3,8 +3,10 @@ import math
 import numpy as np
 import pytest
 
-from ryusa.studies.osada2004 import Level, Plan, Word, bed18, carry_out
+from ryusa.studies.osada2004 import bed18
 from ryusa.studies.osada2004.bed18 import MOVING, REST, SLOPE, START, TiltedBedRun
+from ryusa.studies.osada2004.study import load
+from ryusa.study import Level, Outcome, Plan, carry_out
 
 QUICK = Plan(Level.QUICK, (1,))
 STANDARD = Plan(Level.STANDARD, (1, 2, 3))
@@ -22,7 +24,7 @@ def flow(speed, seed=1):
 def synthetic(plan, speed):
     """What a campaign finds if speed(slope [deg], start) gives the speed over time."""
     found = {}
-    for one in bed18.cases(plan):
+    for one in bed18.tasks(plan):
         first, slope = (
             float(one.get(f"timeline.{k}.slope_angle", "21 deg").split(maxsplit=1)[0]) for k in (2, 3)
         )
@@ -37,23 +39,25 @@ def judged(plan, speed):
 
 @pytest.mark.parametrize("plan", [QUICK, STANDARD])
 def test_a_bed_that_flows_at_every_slope_is_what_the_paper_says(plan):
-    assert judged(plan, lambda slope, start: lambda t: 0.5).word is Word.REPRODUCED
+    assert judged(plan, lambda slope, start: lambda t: 0.5).outcome is Outcome.HOLDS
 
 
 @pytest.mark.parametrize("speed", [0.0, 0.001])
 def test_a_bed_that_stands_or_creeps_is_not(speed):
-    assert judged(STANDARD, lambda slope, start: lambda t: speed).word is Word.NOT
+    assert judged(STANDARD, lambda slope, start: lambda t: speed).outcome is Outcome.FAILS
 
 
 def test_a_bed_that_still_moves_but_dies_out_is_not():
-    assert judged(STANDARD, lambda slope, start: lambda t: math.exp(-(t - 0.3) / 0.3)).word is Word.NOT
+    assert (
+        judged(STANDARD, lambda slope, start: lambda t: math.exp(-(t - 0.3) / 0.3)).outcome is Outcome.FAILS
+    )
 
 
 def test_a_bed_that_flows_from_some_slope_on_gives_that_slope():
     finding = judged(
         STANDARD, lambda slope, start: lambda t: 0.5 if slope > (22 if start == REST else 20) else 0
     )
-    assert finding.word is Word.ONLY_IF
+    assert finding.outcome is Outcome.ONLY_IF
     assert finding.condition == "start (bed18) once moving (3 of 4 settings)"
     found = synthetic(STANDARD, lambda slope, start: lambda t: 0.5 if slope > 22 else 0)
     assert bed18.flattest(found, STANDARD, REST) == 23.0
@@ -76,8 +80,8 @@ def test_a_bed_from_rest_is_tilted_once_and_one_that_moves_is_pushed_first():
 
 @pytest.mark.slow
 def test_the_bed_is_run_measured_judged_and_drawn(tmp_path):
-    found = carry_out(("bed18",), QUICK, tmp_path).found["bed18"]
+    found = carry_out({name: load(name).tasks(QUICK) for name in ("bed18",)}, load, tmp_path).found["bed18"]
     (finding,) = bed18.judge(found, QUICK)
-    assert finding.claim == "bed18"
+    assert finding.id == "bed18"
     assert len(bed18.rows(found, QUICK)) == 1
     assert set(bed18.draw(found, QUICK)) == {"bed18", "bed18-snapshot"}

@@ -1,27 +1,25 @@
 import runpy
 from pathlib import Path
 
-from ryusa.studies.osada2004 import Word
 from ryusa.studies.osada2004.paper import CLAIMS
 
 faults = runpy.run_path(str(Path(__file__).with_name("check_ledger.py")))["faults"]
 
 
 def whole():
-    spread = [{"value": 1.0}]
-    sweep = [{"part": "length", "note": "", "choices": {}}]
+    trial = {"part": "length", "value": 1.0, "note": "", "choices": {}}
     rows = [
         {
-            "id": one, "verdict": str(Word.NOT), "spread": [*spread], "sweep": [dict(sweep[0])],
+            "id": one, "verdict": "not reproduced", "trials": [dict(trial)],
             "decided_by": "physics", "problem": "",
         }
         for one in CLAIMS
     ]  # fmt: skip
-    return {"claims": rows, "errors_in": [], "faults": {}, "log": ""}
+    return {"findings": rows, "errors_in": [], "faults": {}, "log": ""}
 
 
 def row(ledger, claim):
-    return next(one for one in ledger["claims"] if one["id"] == claim)
+    return next(one for one in ledger["findings"] if one["id"] == claim)
 
 
 def test_a_whole_ledger_has_no_fault():
@@ -30,10 +28,10 @@ def test_a_whole_ledger_has_no_fault():
 
 def test_what_is_missing_is_named():
     ledger = whole()
-    ledger["claims"].remove(row(ledger, "fig5"))
-    row(ledger, "fig4")["spread"] = []
-    row(ledger, "fig7")["spread"] = [{"value": None}]
-    row(ledger, "fig8")["spread"] = []
+    ledger["findings"].remove(row(ledger, "fig5"))
+    row(ledger, "fig4")["trials"] = []
+    row(ledger, "fig7")["trials"][0]["value"] = None
+    row(ledger, "fig8")["trials"] = []
     row(ledger, "fig11")["problem"] = "2 of 3 runs failed"
     row(ledger, "fig12")["decided_by"] = ""
     row(ledger, "fig14")["verdict"] = "fine"
@@ -44,8 +42,7 @@ def test_what_is_missing_is_named():
 
 def test_a_number_that_is_none_needs_a_note():
     ledger = whole()
-    row(ledger, "fig7")["spread"] = [{"value": None}]
-    row(ledger, "fig7")["sweep"] = [{"part": "slope", "note": "stands as a wall", "choices": {}}]
+    row(ledger, "fig7")["trials"][0] |= {"value": None, "note": "stands as a wall"}
     assert faults(ledger) == []
 
 

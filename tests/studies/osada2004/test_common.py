@@ -1,7 +1,8 @@
 from dataclasses import replace
 
-from ryusa.studies.osada2004 import PHI, SLIP, Band, Finding, Trial, over_seeds
+from ryusa.studies.osada2004._experiment import PHI, SLIP
 from ryusa.studies.osada2004.common import common
+from ryusa.study import Band, Finding, Trial, over_seeds
 
 WANTED = Band(0.5, 1.5, "-", "about one")
 
@@ -29,7 +30,7 @@ def test_the_best_set_is_the_one_known_by_hand():
         ("three", found("fig7", {("10", ""): True, ("20", ""): True})),
         ("four", found("fig8", {("10", ""): False, ("20", ""): False})),
     ]
-    sets = common(findings)
+    sets = common([one for _, one in findings])
     assert len(sets) == 4
     best = sets[0]
     assert dict(best.choices) == {PHI: "20", "slip rule": "b"}
@@ -46,7 +47,7 @@ def test_a_choice_of_one_experiment_alone_stays_free_for_its_claim():
         ("one", found("fig10-soft", {("10", "1 mm/s"): False, ("10", "9 mm/s"): True}, "threshold")),
         ("two", found("fig14", {("10", ""): True, ("20", ""): True})),
     ]
-    sets = common(findings)
+    sets = common([one for _, one in findings])
     assert [dict(one.choices) for one in sets] == [{PHI: "10"}, {PHI: "20"}]
     assert sets[0].holds == ("fig10-soft", "fig14")
     assert sets[1].untried == ("fig10-soft",)
@@ -55,13 +56,13 @@ def test_a_choice_of_one_experiment_alone_stays_free_for_its_claim():
 def test_a_claim_that_its_own_equations_exclude_never_counts():
     good = found("fig12", {("10", ""): True})
     excluded = Finding("fig12", good.trials, "physics", contradiction="10 is less than 100")
-    sets = common([("one", excluded), ("two", found("fig14", {("10", ""): True}))])
+    sets = common([excluded, found("fig14", {("10", ""): True})])
     assert sets[0].holds == ("fig14",)
     assert sets[0].fails == ("fig12",)
 
 
 def test_claims_that_need_different_friction_do_not_hold_together():
-    sets = common([("one", found("fig4", {("10", ""): True})), ("one", found("fig5", {("20", ""): True}))])
+    sets = common([found("fig4", {("10", ""): True}), found("fig5", {("20", ""): True})])
     assert [one.holds for one in sets] == [("fig4",), ("fig5",)]
     assert [one.untried for one in sets] == [("fig5",), ("fig4",)]
 
@@ -69,6 +70,6 @@ def test_claims_that_need_different_friction_do_not_hold_together():
 def test_what_was_run_with_one_slip_rule_says_nothing_of_another():
     varied = found("fig4", {("10", "spring"): True, ("10", "total"): True}, SLIP)
     fixed = replace(found("fig5", {("10", ""): True}), settings={SLIP: "spring"})
-    sets = {one.choices[SLIP]: one for one in common([("one", varied), ("two", fixed)])}
+    sets = {one.choices[SLIP]: one for one in common([varied, fixed])}
     assert sets["spring"].holds == ("fig4", "fig5")
     assert sets["total"].untried == ("fig5",)

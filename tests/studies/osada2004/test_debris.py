@@ -6,8 +6,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from ryusa.studies.osada2004 import Level, Plan, Word, _debris, carry_out, fig17, fig17_free, fig18
+from ryusa.studies.osada2004 import _debris, fig17, fig17_free, fig18
 from ryusa.studies.osada2004._debris import AMOUNT, Debris, DebrisContacts
+from ryusa.studies.osada2004.study import load
+from ryusa.study import Level, Outcome, Plan, carry_out
 
 QUICK = Plan(Level.QUICK, (1,))
 STANDARD = Plan(Level.STANDARD, (1, 2, 3))
@@ -44,8 +46,8 @@ def flow(**changed):
 
 def verdicts(module, plan, of):
     """Claim -> verdict where `of(variant)` gives the run."""
-    found = {one: of(one) for one in module.cases(plan)}
-    return {one.claim: one for one in module.judge(found, plan)}
+    found = {one: of(one) for one in module.tasks(plan)}
+    return {one.id: one for one in module.judge(found, plan)}
 
 
 def is_free(one):
@@ -55,14 +57,14 @@ def is_free(one):
 @pytest.mark.parametrize("plan", [QUICK, STANDARD])
 def test_a_flow_as_the_paper_tells_it_is_reproduced(plan):
     found = verdicts(fig17, plan, lambda one: flow())
-    assert {claim: one.word for claim, one in found.items()} == dict.fromkeys(fig17.CLAIMS, Word.REPRODUCED)
+    assert {claim: one.word for claim, one in found.items()} == dict.fromkeys(fig17.CLAIMS, Outcome.HOLDS)
 
 
 def test_how_many_grains_are_put_in_can_decide():
     found = verdicts(
         fig17, STANDARD, lambda one: flow(near_surface=0.15 if one.get("build.layers") == "3" else 0.3)
     )
-    assert found["fig17"].word is Word.ONLY_IF
+    assert found["fig17"].outcome is Outcome.ONLY_IF
     assert found["fig17"].condition.startswith(f"{AMOUNT} 4 to 6")
 
 
@@ -73,25 +75,28 @@ def test_a_contact_time_of_which_no_kind_of_pair_has_that_digit_is_not_the_paper
         "fixed grain": DebrisContacts(50, 8e-5, 8e-5, 0.7),
     }
     found = verdicts(fig17, STANDARD, lambda one: flow(contacts=apart))
-    assert found["fig17-time"].word is Word.NOT
-    assert found["fig17-e"].word is Word.REPRODUCED
+    assert found["fig17-time"].outcome is Outcome.FAILS
+    assert found["fig17-e"].outcome is Outcome.HOLDS
 
 
 def test_grains_in_parallel_layers_are_not_what_the_paper_simulated():
-    assert verdicts(fig17, STANDARD, lambda one: flow(thrown=0.5))["fig17"].word is Word.NOT
+    assert verdicts(fig17, STANDARD, lambda one: flow(thrown=0.5))["fig17"].outcome is Outcome.FAILS
 
 
 def test_locking_does_harm_where_it_makes_rods_or_a_deposit():
     for harm in ({"rods": 0.4}, {"rest": 0.3}):
-        assert verdicts(fig17_free, STANDARD, lambda one, h=harm: flow(**h))["fig17-lock"].word is Word.NOT
-    assert verdicts(fig17_free, STANDARD, lambda one: flow())["fig17-lock"].word is Word.REPRODUCED
+        assert (
+            verdicts(fig17_free, STANDARD, lambda one, h=harm: flow(**h))["fig17-lock"].outcome
+            is Outcome.FAILS
+        )
+    assert verdicts(fig17_free, STANDARD, lambda one: flow())["fig17-lock"].outcome is Outcome.HOLDS
 
 
 def test_free_grains_must_be_much_faster_near_the_bed_and_carry_more():
     fast = {"near_bed": 1.2, "q": 0.008}
     found = verdicts(fig17_free, STANDARD, lambda one: flow(**fast) if is_free(one) else flow())
-    assert found["fig17-free"].word is Word.REPRODUCED
-    assert verdicts(fig17_free, STANDARD, lambda one: flow())["fig17-free"].word is Word.NOT
+    assert found["fig17-free"].outcome is Outcome.HOLDS
+    assert verdicts(fig17_free, STANDARD, lambda one: flow())["fig17-free"].outcome is Outcome.FAILS
 
 
 def test_long_contacts_must_carry_along_and_damp():
@@ -99,8 +104,8 @@ def test_long_contacts_must_carry_along_and_damp():
         long = one.case == "fig18"
         return flow(companions=0.6, rms_z=0.06, steep=0.05) if long else flow()
 
-    assert verdicts(fig18, STANDARD, of)["fig18"].word is Word.REPRODUCED
-    assert verdicts(fig18, STANDARD, lambda one: flow())["fig18"].word is Word.NOT
+    assert verdicts(fig18, STANDARD, of)["fig18"].outcome is Outcome.HOLDS
+    assert verdicts(fig18, STANDARD, lambda one: flow())["fig18"].outcome is Outcome.FAILS
 
 
 def test_longer_contacts_keep_the_restitution_of_the_paper_s_constants():
@@ -138,11 +143,11 @@ def test_a_short_run_of_the_real_scene_can_be_measured_and_drawn(tmp_path, monke
     monkeypatch.setattr(_debris, "paper_run", short)
     monkeypatch.setattr(fig18, "paper_run", short)
     names = ("fig17", "fig17_free", "fig18")
-    campaign = carry_out(names, QUICK, tmp_path)
+    campaign = carry_out({name: load(name).tasks(QUICK) for name in names}, load, tmp_path)
     assert not campaign.problems
     for name, module in zip(names, (fig17, fig17_free, fig18), strict=True):
         found = campaign.found[name]
-        assert {one.claim for one in module.judge(found, QUICK)} == set(module.CLAIMS)
+        assert {one.id for one in module.judge(found, QUICK)} == set(module.CLAIMS)
         assert module.draw(found, QUICK)
         assert module.rows(found, QUICK)
     (base,) = [one for variant, one in campaign.found["fig17"].items() if not is_free(variant)]

@@ -3,22 +3,10 @@ import pytest
 
 from ryusa.casefile import derive, resolved
 from ryusa.laws.collision import collision_time, overlap_max
-from ryusa.studies.osada2004 import (
-    Level,
-    Plan,
-    Word,
-    _drops,
-    carry_out,
-    fig04,
-    fig05,
-    fig08,
-    fig11,
-    fig12,
-    load,
-    pair,
-    steps,
-)
+from ryusa.studies.osada2004 import _drops, fig04, fig05, fig08, fig11, fig12, pair, steps
 from ryusa.studies.osada2004._drops import DropRun, Setup
+from ryusa.studies.osada2004.study import load
+from ryusa.study import Level, Outcome, Plan, carry_out
 from ryusa.units import quantity
 
 QUICK = Plan(Level.QUICK, (1,))
@@ -39,7 +27,7 @@ def ideal(one, time=1.0, overlap=1.0, e=None, copies=20, ended=20):
 
 
 def word(name, found, plan=QUICK):
-    return {one.claim: one.word for one in load(name).judge(found, plan)}[load(name).CLAIMS[0]]
+    return {one.id: one.outcome for one in load(name).judge(found, plan)}[load(name).CLAIMS[0]]
 
 
 def every(experiment, plan=QUICK, **how):
@@ -68,31 +56,31 @@ def test_a_setup_asks_for_the_steps_and_stiffness_it_names():
 
 
 def test_fig4_holds_for_eq_8_and_for_nothing_else():
-    assert word("fig04", every(fig04)) is Word.REPRODUCED
-    assert word("fig04", every(fig04, time=1.5)) is Word.NOT
+    assert word("fig04", every(fig04)) is Outcome.HOLDS
+    assert word("fig04", every(fig04, time=1.5)) is Outcome.FAILS
     stiff_is_slow = {
         one.task: ideal(one, time=1.0 if one.k_n == fig04.SOFT else 1.0e6 * one.k_n)
         for one in fig04.setups(QUICK)
     }
-    assert word("fig04", stiff_is_slow) is Word.NOT
+    assert word("fig04", stiff_is_slow) is Outcome.FAILS
 
 
 def test_fig5_fails_where_the_time_differs_or_the_grain_stays():
-    assert word("fig05", every(fig05, time=0.93)) is Word.REPRODUCED
-    assert word("fig05", every(fig05, time=1.3)) is Word.NOT
+    assert word("fig05", every(fig05, time=0.93)) is Outcome.HOLDS
+    assert word("fig05", every(fig05, time=1.3)) is Outcome.FAILS
     stays = every(fig05, time=0.93)
     stays[fig05.setup(fig05.choices(QUICK)[0], 0.1).task] = ideal(Setup(k_n=0.1), ended=7)
     (found,) = fig05.judge(stays, QUICK)
-    assert found.word is Word.NOT
+    assert found.outcome is Outcome.FAILS
     assert "0.1 N/cm" in found.trials[0].note
 
 
 def test_half_the_mass_differs_too_much_from_the_whole():
-    assert word("pair", every(pair)) is Word.NOT
+    assert word("pair", every(pair)) is Outcome.FAILS
     alike = {
         one.task: ideal(one, time=2**0.5 if one.partner == "free" else 1.0) for one in pair.setups(QUICK)
     }
-    assert word("pair", alike) is Word.REPRODUCED
+    assert word("pair", alike) is Outcome.HOLDS
 
 
 def hits(plan, speed, overlap):
@@ -102,20 +90,20 @@ def hits(plan, speed, overlap):
 def test_fig8_needs_a_harder_hit_than_a_saltating_grain_gives():
     soft = hits(QUICK, 0.3, 0.0042)
     (found,) = fig08.judge(every(fig08) | soft, QUICK)
-    assert found.word is Word.NOT
+    assert found.outcome is Outcome.FAILS
     assert "asks for 0.72 m/s" in found.decided_by
-    assert word("fig08", every(fig08, overlap=2.4) | soft) is Word.ONLY_IF
-    assert word("fig08", every(fig08, overlap=2.4) | hits(QUICK, 0.72, 0.01)) is Word.REPRODUCED
+    assert word("fig08", every(fig08, overlap=2.4) | soft) is Outcome.ONLY_IF
+    assert word("fig08", every(fig08, overlap=2.4) | hits(QUICK, 0.72, 0.01)) is Outcome.HOLDS
     (swept,) = fig08.judge(every(fig08, STANDARD) | hits(STANDARD, 0.3, 0.0042), STANDARD)
-    assert swept.word is Word.ONLY_IF
+    assert swept.outcome is Outcome.ONLY_IF
     assert swept.condition.startswith(
         "impact speed (fig8) 0.7 m/s or impact speed (fig8) 0.6 m/s, restitution"
     )
 
 
 def test_fig11_holds_between_a_soft_and_a_hard_hit():
-    assert word("fig11", every(fig11)) is Word.REPRODUCED
-    assert word("fig11", every(fig11, overlap=5.0)) is Word.NOT
+    assert word("fig11", every(fig11)) is Outcome.HOLDS
+    assert word("fig11", every(fig11, overlap=5.0)) is Outcome.FAILS
     (swept,) = fig11.judge(every(fig11, STANDARD), STANDARD)
     assert swept.condition.startswith("impact speed (fig11) 0.1 m/s to 0.7 m/s")
 
@@ -131,7 +119,7 @@ def test_the_band_of_the_runs_is_that_of_the_closed_form():
 @pytest.mark.parametrize("plan", [QUICK, STANDARD])
 def test_two_times_that_differ_by_100_do_not_fit_a_band_of_10(plan):
     (found,) = fig12.judge(every(fig12, plan), plan)
-    assert found.word is Word.CONTRADICTS
+    assert found.outcome is Outcome.EXCLUDED
     assert "100" in found.contradiction
 
 
@@ -139,7 +127,7 @@ def test_fig12_would_hold_if_overlaps_were_alike():
     alike = every(fig12)
     for one in fig12.setups(QUICK)[:2]:
         alike[one.task] = ideal(one, overlap=0.005 / one.deepest)
-    assert word("fig12", alike) is Word.REPRODUCED
+    assert word("fig12", alike) is Outcome.HOLDS
 
 
 def test_the_rule_of_ten_steps_wants_both_sides_of_ten():
@@ -169,7 +157,7 @@ def test_forward_differences_gain_energy_at_ten_steps():
 
 
 def test_the_runs_of_steps_keep_restitution_at_ten_and_lose_it_at_five(tmp_path):
-    campaign = carry_out(("steps",), QUICK, tmp_path)
+    campaign = carry_out({name: load(name).tasks(QUICK) for name in ("steps",)}, load, tmp_path)
     assert not campaign.problems
     found = campaign.found["steps"]
     at = {one.steps: found[one.task] for one in steps.setups(QUICK)}

@@ -1,8 +1,10 @@
 import pytest
 
 from ryusa.errors import CaseError
-from ryusa.studies.osada2004 import NAMES, CaseRun, Level, Plan, carry_out, load, paper_run
+from ryusa.studies.osada2004._experiment import paper_run
 from ryusa.studies.osada2004.paper import CLAIMS
+from ryusa.studies.osada2004.study import NAMES, load
+from ryusa.study import CaseRun, Level, Plan, carry_out
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -13,7 +15,7 @@ def test_every_experiment_has_its_parts_and_its_cases_can_be_read(name, level):
     assert experiment.TITLE
     assert set(experiment.CLAIMS) <= set(CLAIMS)
     assert experiment.CLAIMS
-    runs = list(dict.fromkeys(experiment.cases(Plan(level, (1,)))))
+    runs = list(dict.fromkeys(experiment.tasks(Plan(level, (1,)))))
     folders = [one.folder for one in runs]
     assert len(folders) == len(set(folders))
     for one in runs:
@@ -27,7 +29,7 @@ def test_every_claim_is_judged_once():
 
 def test_a_higher_level_runs_all_that_a_lower_one_runs():
     for name in NAMES:
-        quick, standard, full = (set(load(name).cases(Plan(level, (1,)))) for level in Level)
+        quick, standard, full = (set(load(name).tasks(Plan(level, (1,)))) for level in Level)
         assert quick <= standard <= full, name
 
 
@@ -46,6 +48,6 @@ def test_variants_with_the_same_overrides_are_one_run_whatever_their_order():
 
 
 def test_nothing_to_run_is_a_campaign_too(tmp_path):
-    found = carry_out((), Plan(), tmp_path)
+    found = carry_out({name: load(name).tasks(Plan()) for name in ()}, load, tmp_path)
     assert found.found == {}
     assert found.n_run == 0

@@ -5,8 +5,10 @@ import pytest
 
 from ryusa.casefile import derive
 from ryusa.measure import Vibration
-from ryusa.studies.osada2004 import Level, Plan, Word, carry_out, fig10
+from ryusa.studies.osada2004 import fig10
 from ryusa.studies.osada2004.fig10 import EULER, ONE_STEP, OURS, SOFT, STIFF, SUMMED, Fall
+from ryusa.studies.osada2004.study import load
+from ryusa.study import Level, Outcome, Plan, carry_out
 
 QUICK = Plan(Level.QUICK, (1,))
 STANDARD = Plan(Level.STANDARD, (1, 2, 3))
@@ -27,7 +29,7 @@ def motion(moving, until=0.5, size=0.1 * D):
 def synthetic(plan, soft, stiff, other=lambda overlap: motion(0)):
     """What a campaign finds if every box of a kind moves alike."""
     found = {}
-    for one in fig10.cases(plan):
+    for one in fig10.tasks(plan):
         asked = one.get("contact.stiffness", SOFT)
         moved = {SOFT: soft, STIFF: stiff}.get(asked)
         overlap = float(asked.split()[3].strip(",")) if moved is None else 0.02
@@ -37,39 +39,39 @@ def synthetic(plan, soft, stiff, other=lambda overlap: motion(0)):
 
 
 def words(found, plan):
-    return {one.claim: one.word for one in fig10.judge(found, plan)}
+    return {one.id: one.outcome for one in fig10.judge(found, plan)}
 
 
 @pytest.mark.parametrize("plan", [QUICK, STANDARD])
 def test_half_that_tremble_and_stiff_grains_at_rest_are_what_the_paper_says(plan):
     said = words(synthetic(plan, motion(20), motion(GRAINS, 0.1)), plan)
-    assert set(said.values()) == {Word.REPRODUCED}
+    assert set(said.values()) == {Outcome.HOLDS}
 
 
 @pytest.mark.parametrize(("moving", "until"), [(0, 0.5), (GRAINS, 0.5), (20, 0.4)])
 def test_soft_grains_that_rest_or_that_all_tremble_are_not(moving, until):
     said = words(synthetic(STANDARD, motion(moving, until), motion(0)), STANDARD)
-    assert said["fig10-soft"] is Word.NOT
+    assert said["fig10-soft"] is Outcome.FAILS
 
 
 @pytest.mark.parametrize("until", [0.2, 0.5])
 def test_one_stiff_grain_that_moves_too_long_is_enough_against_it(until):
     said = words(synthetic(STANDARD, motion(20), motion(1, until)), STANDARD)
-    assert said["fig10-stiff"] is Word.NOT
+    assert said["fig10-stiff"] is Outcome.FAILS
 
 
 def test_motion_between_two_thresholds_makes_the_verdict_depend_on_the_threshold():
     found = synthetic(STANDARD, motion(20, size=2e-4 * D), motion(0))
-    soft = next(one for one in fig10.judge(found, STANDARD) if one.claim == "fig10-soft")
-    assert soft.word is Word.ONLY_IF
+    soft = next(one for one in fig10.judge(found, STANDARD) if one.id == "fig10-soft")
+    assert soft.outcome is Outcome.ONLY_IF
     assert "0.00001 d to 0.0001 d" in soft.condition
 
 
 def test_the_rule_fails_if_a_grain_trembles_below_it_and_not_if_above():
     below = synthetic(STANDARD, motion(20), motion(0), lambda overlap: motion(int(overlap < 0.006)))
     above = synthetic(STANDARD, motion(20), motion(0), lambda overlap: motion(int(overlap > 0.02)))
-    assert words(below, STANDARD)["fig10-rule"] is Word.NOT
-    assert words(above, STANDARD)["fig10-rule"] is Word.REPRODUCED
+    assert words(below, STANDARD)["fig10-rule"] is Outcome.FAILS
+    assert words(above, STANDARD)["fig10-rule"] is Outcome.HOLDS
 
 
 def test_other_diameters_fall_as_many_diameters_and_as_long_in_their_own_time():
@@ -84,8 +86,8 @@ def test_other_diameters_fall_as_many_diameters_and_as_long_in_their_own_time():
 
 @pytest.mark.slow
 def test_the_box_is_run_measured_judged_and_drawn(tmp_path):
-    found = carry_out(("fig10",), QUICK, tmp_path).found["fig10"]
-    assert {one.claim for one in fig10.judge(found, QUICK)} == set(fig10.CLAIMS)
+    found = carry_out({name: load(name).tasks(QUICK) for name in ("fig10",)}, load, tmp_path).found["fig10"]
+    assert {one.id for one in fig10.judge(found, QUICK)} == set(fig10.CLAIMS)
     assert {row[fig10.SCHEME] for row in fig10.rows(found, QUICK)} == {OURS, SUMMED, EULER, ONE_STEP}
     assert {"fig10a", "fig10b", "fig09-start"} <= set(fig10.draw(found, QUICK))
     one = found[fig10._run(fig10.SHIPPED, SOFT, 1)]

@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 
 from ryusa.measure import Averages, Rods
-from ryusa.studies.osada2004 import Level, Plan, Word, carry_out, fig22
+from ryusa.studies.osada2004 import fig22
 from ryusa.studies.osada2004.fig22 import FREE, LOCKED, SLOPE, MovableBedRun
+from ryusa.studies.osada2004.study import load
+from ryusa.study import Level, Outcome, Plan, carry_out
 
 QUICK = Plan(Level.QUICK, (1,))
 STANDARD = Plan(Level.STANDARD, (1, 2, 3))
@@ -28,8 +30,8 @@ def rotation(one):
 
 
 def judged(plan, of):
-    found = {one: of(one) for one in fig22.cases(plan)}
-    return {one.claim: one for one in fig22.judge(found, plan)}
+    found = {one: of(one) for one in fig22.tasks(plan)}
+    return {one.id: one for one in fig22.judge(found, plan)}
 
 
 def as_told(one):
@@ -45,18 +47,18 @@ def without_profile(monkeypatch):
 @pytest.mark.parametrize("plan", [QUICK, STANDARD])
 def test_rods_of_locked_grains_and_fast_spin_of_free_ones_are_what_the_paper_says(plan):
     found = judged(plan, as_told)
-    assert {claim: one.word for claim, one in found.items()} == dict.fromkeys(fig22.CLAIMS, Word.REPRODUCED)
+    assert {claim: one.word for claim, one in found.items()} == dict.fromkeys(fig22.CLAIMS, Outcome.HOLDS)
 
 
 def test_rods_that_free_grains_make_as_well_are_not_the_paper_s():
-    assert judged(STANDARD, lambda one: bed(0.6))["fig22"].word is Word.NOT
+    assert judged(STANDARD, lambda one: bed(0.6))["fig22"].outcome is Outcome.FAILS
 
 
 def test_rods_that_shuffled_ways_make_as_well_are_none():
     def of(one):
         return bed(0.6, null=0.58) if rotation(one) == LOCKED else bed(0.03)
 
-    assert judged(STANDARD, of)["fig22"].word is Word.NOT
+    assert judged(STANDARD, of)["fig22"].outcome is Outcome.FAILS
 
 
 def test_a_bed_that_stands_has_no_rods_and_says_so():
@@ -65,7 +67,7 @@ def test_a_bed_that_stands_has_no_rods_and_says_so():
         return bed(0.0, q=0.0, movers=0) if stands else as_told(one)
 
     finding = judged(STANDARD, of)["fig22"]
-    assert finding.word is Word.ONLY_IF
+    assert finding.outcome is Outcome.ONLY_IF
     assert SLOPE in finding.condition
     assert {one.note for one in finding.trials if one.choices[SLOPE].startswith("1/10")} == {fig22.STANDS}
 
@@ -73,13 +75,13 @@ def test_a_bed_that_stands_has_no_rods_and_says_so():
 def test_free_grains_that_do_not_spin_or_go_as_locked_ones_are_not_what_the_paper_says():
     slow = judged(STANDARD, lambda one: bed(0.6) if rotation(one) == LOCKED else bed(0.0, q=1e-3, speed=0.5))
     same = judged(STANDARD, lambda one: bed(0.6) if rotation(one) == LOCKED else bed(0.0, spin=300.0))
-    assert slow["fig22-free"].word is Word.NOT
-    assert same["fig22-free"].word is Word.NOT
+    assert slow["fig22-free"].outcome is Outcome.FAILS
+    assert same["fig22-free"].outcome is Outcome.FAILS
 
 
 @pytest.mark.slow
 def test_the_real_scene_makes_rods_where_locked_and_none_where_free(tmp_path):
-    campaign = carry_out(("fig22",), QUICK, tmp_path)
+    campaign = carry_out({name: load(name).tasks(QUICK) for name in ("fig22",)}, load, tmp_path)
     assert not campaign.problems
     found = campaign.found["fig22"]
     by_rotation = {rotation(one): run for one, run in found.items()}

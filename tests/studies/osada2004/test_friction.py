@@ -1,4 +1,4 @@
-from ryusa.studies.osada2004 import PHI, ROTATION
+from ryusa.studies.osada2004._experiment import PHI, ROTATION
 from ryusa.studies.osada2004.friction import FAILS, HOLDS, NONE, OPEN, SOME, by_angle, ranges
 
 
@@ -6,7 +6,7 @@ def claim(outcomes, settings=None, setup="", names=(PHI, "slip rule")):
     sweep = [
         {"choices": dict(zip(names, key, strict=True)), "outcome": word} for key, word in outcomes.items()
     ]
-    return {"id": "fig19", "sweep": sweep, "settings": settings or {}, "setup": setup, "statement": ""}
+    return {"id": "fig19", "trials": sweep, "settings": settings or {}, "setup": setup, "statement": ""}
 
 
 def test_a_cell_tells_what_holds_as_shipped_and_what_elsewhere():
@@ -25,7 +25,7 @@ def test_a_cell_tells_what_holds_as_shipped_and_what_elsewhere():
 
 def test_every_part_of_a_claim_must_hold():
     one = claim({("30 deg", "a"): "holds"})
-    one["sweep"].append({"choices": one["sweep"][0]["choices"], "outcome": "fails"})
+    one["trials"].append({"choices": one["trials"][0]["choices"], "outcome": "fails"})
     _, (line,) = by_angle([one])
     assert line.cells[0].word == FAILS
     assert line.holds == "nowhere tried"

@@ -6,7 +6,9 @@ import pytest
 
 from ryusa.casefile import derive
 from ryusa.errors import GrainLost, ListUnsafe, OverlapTooLarge
-from ryusa.studies.osada2004 import Level, Plan, Word, _heap, eq13, fig19
+from ryusa.studies.osada2004 import _heap, eq13, fig19
+from ryusa.studies.osada2004.study import load
+from ryusa.study import Level, Outcome, Plan
 
 QUICK = Plan(Level.QUICK, (1,))
 STANDARD = Plan(Level.STANDARD, (1, 2, 3))
@@ -40,7 +42,7 @@ def of(slopes, plan=STANDARD):
 
 def test_a_slope_as_reported_under_every_choice_is_reproduced():
     locked, free = fig19.judge(of(lambda rotation, _: fig19.PAPER[rotation]), STANDARD)
-    assert locked.word is free.word is Word.REPRODUCED
+    assert locked.outcome is free.outcome is Outcome.HOLDS
 
 
 def test_a_slope_that_hangs_on_friction_is_reproduced_only_there():
@@ -48,20 +50,20 @@ def test_a_slope_that_hangs_on_friction_is_reproduced_only_there():
         return 18.0 if rotation == "free" else 10.0 + float(chosen["friction angle"].split()[0])
 
     locked, _ = fig19.judge(of(slope), STANDARD)
-    assert locked.word is Word.NOT  # 30 deg would need phi 20 to 26: 20 gives 30, at the very edge
+    assert locked.outcome is Outcome.FAILS  # 30 deg would need phi 20 to 26: 20 gives 30, at the very edge
     locked, _ = fig19.judge(of(lambda r, c: slope(r, c) + 3.0), STANDARD)
-    assert locked.word is Word.ONLY_IF
+    assert locked.outcome is Outcome.ONLY_IF
     assert "friction angle 20 deg" in locked.condition
 
 
 def test_a_heap_that_stands_like_a_wall_or_still_moves_is_no_final_slope():
     walls = of(lambda rotation, _: math.nan if rotation == "locked" else 18.0)
     locked, free = fig19.judge(walls, STANDARD)
-    assert locked.word is Word.NOT
+    assert locked.outcome is Outcome.FAILS
     assert locked.base[0].note == "stands like a wall"
-    assert free.word is Word.REPRODUCED
+    assert free.outcome is Outcome.HOLDS
     creeping = {one: heap(fig19.PAPER["locked"], moving=0.2) for one in of(lambda *_: 33.0)}
-    assert fig19.judge(creeping, STANDARD)[0].word is Word.NOT
+    assert fig19.judge(creeping, STANDARD)[0].outcome is Outcome.FAILS
 
 
 def test_starts_of_different_seeds_are_different_heaps():
@@ -105,7 +107,7 @@ def test_a_setting_under_which_most_heaps_stand_fails():
 
 
 def test_every_other_heap_of_the_full_level_can_be_read():
-    for one in {*fig19.cases(FULL), *eq13.cases(FULL)}:
+    for one in {*fig19.tasks(FULL), *eq13.tasks(FULL)}:
         grains = derive(one.read()).n_grain
         assert grains > 100 if one.case == _heap.CASE else grains == 8, one.label
 
@@ -129,7 +131,7 @@ def test_the_form_that_gives_the_slope_of_gravel_is_named():
         return heap((36.0 if chosen[eq13.MODEL] == eq13.SPRING else 18.0) + 0.1 * seed)
 
     (finding,) = eq13.judge(rolled(STANDARD, slopes), STANDARD)
-    assert finding.word is Word.NOT  # another law that can is no help to Eq. (13)
+    assert finding.outcome is Outcome.FAILS  # another law that can is no help to Eq. (13)
     assert {one.choices[eq13.MODEL] for one in finding.trials} == {eq13.PRINTED}
     stands = {one.choices[eq13.MODEL] for one in finding.beside if one.part == "final slope" and one.holds}
     assert stands == {eq13.SPRING}
@@ -187,9 +189,9 @@ def test_energy_that_the_printed_law_makes_is_told():
 
 @pytest.mark.slow
 def test_a_heap_collapses_to_about_18_degrees_when_its_grains_turn(tmp_path):
-    from ryusa.studies.osada2004 import carry_out
+    from ryusa.study import carry_out
 
-    campaign = carry_out(["fig19"], QUICK, tmp_path, jobs=2)
+    campaign = carry_out({name: load(name).tasks(QUICK) for name in ["fig19"]}, load, tmp_path, jobs=2)
     free = fig19.judge(campaign.found["fig19"], QUICK)[1]
     assert 12.0 < free.base[0].found.value < 24.0
     assert not campaign.problems

@@ -5,20 +5,11 @@ import pytest
 
 from ryusa.errors import ResultsError
 from ryusa.figures.style import new
-from ryusa.studies.osada2004 import (
-    Band,
-    Finding,
-    Level,
-    Plan,
-    Trial,
-    Word,
-    _campaign,
-    ledger,
-    over_seeds,
-    paper_run,
-)
-from ryusa.studies.osada2004.ledger import make
-from ryusa.studies.osada2004.page import write
+from ryusa.studies.osada2004._experiment import paper_run
+from ryusa.studies.osada2004.study import PaperStudy
+from ryusa.study import Band, Finding, Level, Outcome, Plan, Trial, ledger, over_seeds
+from ryusa.study.ledger import make as make_study
+from ryusa.study.page import write
 
 SHORT = {"stop.time": "0.01 s", "record.settle": "0 s"}
 
@@ -31,7 +22,7 @@ class Fake:
     def __init__(self, claims, trouble=None):
         self.CLAIMS, self.trouble = claims, trouble
 
-    def cases(self, plan):
+    def tasks(self, plan):
         return [paper_run("saltation", SHORT, seed) for seed in plan.seeds]
 
     def measure(self, run, one):
@@ -55,22 +46,35 @@ class Fake:
         return {"fig20-shear-more": new()[0], "fig20": new()[0], "other": new()[0]}
 
 
+class Fakes(PaperStudy):
+    """The paper's study with experiments of our own."""
+
+    def __init__(self, known):
+        self.known = known
+
+    @property
+    def parts(self):
+        return tuple(self.known)
+
+    def part(self, name):
+        return self.known[name]
+
+
 @pytest.fixture
-def fakes(monkeypatch):
-    known = {"good": Fake(("fig20", "fig20-shear")), "bad": Fake(("fig4", "fig5"), ResultsError("no hop"))}
-    for place in (_campaign, ledger):
-        monkeypatch.setattr(place, "load", known.__getitem__)
-    monkeypatch.setattr("ryusa.studies.osada2004.page.load", known.__getitem__)
-    monkeypatch.setattr(ledger, "NAMES", tuple(known))
-    return known
+def fakes():
+    return {"good": Fake(("fig20", "fig20-shear")), "bad": Fake(("fig4", "fig5"), ResultsError("no hop"))}
+
+
+def make(known, names, plan, folder):
+    return make_study(Fakes(known), names, plan, folder)
 
 
 def test_a_run_that_fails_costs_its_experiment_its_verdict_and_no_other(fakes, tmp_path: Path):
-    made = make(None, Plan(Level.QUICK, (1,)), tmp_path)
-    by_id = {row.claim.id: row for row in made.rows}
+    made = make(fakes, None, Plan(Level.QUICK, (1,)), tmp_path)
+    by_id = {row.id: row for row in made.entries}
     assert set(by_id) == {"fig4", "fig5", "fig20", "fig20-shear"}
-    assert by_id["fig20"].word is Word.REPRODUCED
-    assert by_id["fig4"].word is Word.UNDECIDED
+    assert by_id["fig20"].outcome is Outcome.HOLDS
+    assert by_id["fig4"].outcome is Outcome.UNDECIDED
     assert "1 of 1 runs failed" in by_id["fig4"].problem
     assert by_id["fig5"].problem.endswith("saltation 0 s 1 0.01 s: no hop")
     assert list(made.problems.values()) == ["bad: no hop"]
@@ -85,14 +89,14 @@ def test_an_error_in_the_program_is_told_kept_in_a_log_and_costs_no_other_claim(
 
     fakes["bad"] = Fake(("fig4", "fig5"))
     setattr(fakes["bad"], step, wrong)
-    made = make(None, Plan(Level.QUICK, (1,)), tmp_path)
-    rows = {row.claim.id: row for row in made.rows}
-    assert rows["fig20"].word is Word.REPRODUCED
+    made = make(fakes, None, Plan(Level.QUICK, (1,)), tmp_path)
+    rows = {row.id: row for row in made.entries}
+    assert rows["fig20"].outcome is Outcome.HOLDS
     assert not rows["fig20"].problem
     for claim in ("fig4", "fig5"):
         assert "IndexError: tuple index out of range (test_ledger.py, line" in rows[claim].problem
         judged = step in {"rows", "draw"}  # the verdict does not need them
-        assert rows[claim].word is (Word.REPRODUCED if judged else Word.UNDECIDED)
+        assert rows[claim].outcome is (Outcome.HOLDS if judged else Outcome.UNDECIDED)
         assert (rows[claim].finding is not None) == judged
     write(made)
     log = (tmp_path / "ledger-quick-errors.log").read_text()
@@ -106,7 +110,7 @@ def test_an_error_in_the_program_is_told_kept_in_a_log_and_costs_no_other_claim(
     assert plain["log"] == "ledger-quick-errors.log"
     assert plain["errors_in"]
     fakes["bad"] = Fake(("fig4", "fig5"))
-    write(make(None, Plan(Level.QUICK, (1,)), tmp_path))
+    write(make(fakes, None, Plan(Level.QUICK, (1,)), tmp_path))
     assert not (tmp_path / "ledger-quick-errors.log").exists()
 
 
@@ -116,8 +120,8 @@ def test_a_finding_that_cannot_be_told_or_is_of_another_claim_is_an_error(fakes,
     fakes["good"].judge = lambda *_: [
         Finding(one, (None,), "physics") for one in ("fig20", "fig20-shear")
     ]  # no trial at all
-    made = make(None, Plan(Level.QUICK, (1,)), tmp_path)
-    rows = {row.claim.id: row for row in made.rows}
+    made = make(fakes, None, Plan(Level.QUICK, (1,)), tmp_path)
+    rows = {row.id: row for row in made.entries}
     assert "bad judged fig4, not fig4, fig5" in rows["fig5"].problem
     assert "AttributeError" in rows["fig20"].problem
     assert set(made.traces) == {"bad: judging", "good: judging"}
@@ -128,23 +132,22 @@ def test_a_full_disk_is_no_error_of_an_experiment(fakes, tmp_path: Path, monkeyp
         raise OSError(28, "No space left on device")
 
     del fakes["bad"]
-    monkeypatch.setattr(ledger, "NAMES", tuple(fakes))
     monkeypatch.setattr(ledger, "write_csv", full)
     with pytest.raises(OSError, match="No space left"):
-        make(None, Plan(Level.QUICK, (1,)), tmp_path)
+        make(fakes, None, Plan(Level.QUICK, (1,)), tmp_path)
 
 
 def test_pictures_go_to_the_claim_they_are_named_after(fakes, tmp_path: Path):
-    made = make(["good"], Plan(Level.QUICK, (1,)), tmp_path)
-    shown = {row.claim.id: [one.stem for one in row.pictures] for row in made.rows}
+    made = make(fakes, ["good"], Plan(Level.QUICK, (1,)), tmp_path)
+    shown = {row.id: [one.stem for one in row.pictures] for row in made.entries}
     assert shown == {"fig20": ["fig20", "other"], "fig20-shear": ["fig20-shear-more"]}
     assert (tmp_path / "good" / "good.csv").is_file()
     assert set(shown) == {"fig20", "fig20-shear"}  # named experiments bring no rows that wait for water
 
 
 def test_the_ledger_counts_its_runs_and_the_code_that_made_them(fakes, tmp_path: Path):
-    first = make(["good"], Plan(Level.STANDARD, (1, 2)), tmp_path).plain()["provenance"]
-    second = make(["good"], Plan(Level.STANDARD, (1, 2)), tmp_path).plain()["provenance"]
+    first = make(fakes, ["good"], Plan(Level.STANDARD, (1, 2)), tmp_path).plain()["provenance"]
+    second = make(fakes, ["good"], Plan(Level.STANDARD, (1, 2)), tmp_path).plain()["provenance"]
     assert (first["runs_made"], first["runs_opened"]) == (2, 0)
     assert (second["runs_made"], second["runs_opened"]) == (0, 2)
     assert first["commits_of_runs"] == second["commits_of_runs"]

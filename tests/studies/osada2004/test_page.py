@@ -8,23 +8,15 @@ import pytest
 from PIL import Image, ImageChops
 
 from ryusa.errors import ResultsError
-from ryusa.studies.osada2004 import Level, Plan, Word, page
-from ryusa.studies.osada2004.page import write
+from ryusa.running import disk
 from ryusa.studies.osada2004.paper import CLAIMS
-from ryusa.study import html
+from ryusa.studies.osada2004.study import PAPER
+from ryusa.study import Level, Plan, html, page
+from ryusa.study.page import write
 
 KEYS = {
-    "id",
-    "verdict",
-    "statement",
-    "ours",
-    "spread",
-    "settings",
-    "decided_by",
-    "sweep",
-    "caution",
-    "condition",
-}
+    "id", "verdict", "outcome", "statement", "settings", "decided_by", "trials", "caution", "condition",
+}  # fmt: skip
 VOID = {"meta", "img", "br", "hr", "link", "input"}
 
 
@@ -69,17 +61,16 @@ def test_the_json_holds_every_key_and_no_number_that_is_none(every_word):
     text = files[1].read_text(encoding="utf-8")
     plain = json.loads(text, parse_constant=refuse)
     assert text == files[2].read_text(encoding="utf-8")
-    assert {one["verdict"] for one in plain["claims"]} == {str(word) for word in Word}
-    for one in plain["claims"]:
+    assert {one["verdict"] for one in plain["findings"]} == set(PAPER.words.values()) - {"shown"}
+    for one in plain["findings"]:
         assert set(one) >= KEYS
-        assert isinstance(one["ours"], str)
         assert isinstance(one["settings"], dict)
-        for spread in one["spread"]:
-            assert set(spread) == {"value", "low", "high", "unit", "n", "how"}
+        for trial in one["trials"]:
+            assert set(trial) >= {"value", "low", "high", "unit", "n", "how", "asked", "outcome"}
     assert {"ryusa", "commit", "packages", "python", "machine", "made"} <= set(plain["provenance"])
-    by_id = {one["id"]: one for one in plain["claims"]}
-    assert by_id["fig14"]["spread"][0]["value"] is None
-    assert by_id["eq13"]["ours"] == "slope: stands as a wall"
+    by_id = {one["id"]: one for one in plain["findings"]}
+    assert by_id["fig14"]["trials"][0]["value"] is None
+    assert by_id["eq13"]["trials"][0]["note"] == "stands as a wall"
     assert by_id["fig20"]["pictures"] == ["fig20/fig20.png"]
 
 
@@ -101,10 +92,10 @@ def test_the_page_is_whole_alone_and_safe(every_word):
 def test_every_claim_has_a_section_its_verdict_in_words_and_its_statement(every_word):
     write(every_word)
     reader, _ = read(every_word)
-    assert {row.claim.id for row in every_word.rows} <= set(reader.ids)
-    for row in every_word.rows:
-        assert str(row.word) in reader.text
-        assert row.claim.says in reader.text
+    assert {row.id for row in every_word.entries} <= set(reader.ids)
+    for row in every_word.entries:
+        assert PAPER.words[row.outcome] in reader.text
+        assert CLAIMS[row.id].says in reader.text
     assert "stands as a wall" in reader.text
     assert "a band of 10 cannot hold 100" in reader.text
     assert "1 of 2 runs failed" in reader.text
@@ -115,8 +106,8 @@ def test_every_claim_has_a_section_its_verdict_in_words_and_its_statement(every_
 
 
 def test_a_picture_keeps_its_pixels_in_fewer_bytes(every_word):
-    (picture,) = next(row for row in every_word.rows if row.pictures).pictures
-    address = page.embedded(picture)
+    (picture,) = next(row for row in every_word.entries if row.pictures).pictures
+    address = html.embedded(picture)
     held = base64.b64decode(address.removeprefix("data:image/png;base64,"))
     assert len(held) < picture.stat().st_size / 2
     with Image.open(io.BytesIO(held)) as small, Image.open(picture) as whole:
@@ -126,7 +117,7 @@ def test_a_picture_keeps_its_pixels_in_fewer_bytes(every_word):
 
 
 def test_a_picture_of_two_columns_is_shown_over_the_whole_page(every_word):
-    (picture,) = next(row for row in every_word.rows if row.pictures).pictures
+    (picture,) = next(row for row in every_word.entries if row.pictures).pictures
     write(every_word)
     assert 'class="whole"' not in read(every_word)[1]
     with Image.open(picture) as image:
@@ -161,15 +152,15 @@ def test_a_page_without_intervals_says_so_at_its_head(every_word, plan, said):
 def test_a_page_of_some_claims_says_that_it_is_a_part(every_word):
     write(every_word)
     plain = json.loads((every_word.folder / "ledger.json").read_text(encoding="utf-8"))
-    n = len(plain["claims"])
+    n = len(plain["findings"])
     assert n < len(CLAIMS)
     assert f"A part, {n} of the {len(CLAIMS)} claims, of" in read(every_word)[0].text
-    whole = {**plain, "claims": [{**plain["claims"][0], "id": one} for one in CLAIMS]}
-    assert "Every figure and claim of" in page.render(whole, every_word.tables, every_word.folder)
+    whole = {**plain, "findings": [{**plain["findings"][0], "id": one} for one in CLAIMS]}
+    assert "Every figure and claim of" in page.render(PAPER, whole, every_word.tables, every_word.folder)
 
 
 def test_an_empty_ledger_is_a_page_too(every_word):
-    empty = replace(every_word, rows=(), common=(), problems={}, tables={})
+    empty = replace(every_word, entries=(), problems={}, tables={})
     write(empty)
     read(empty)
 
@@ -181,20 +172,20 @@ def test_a_file_that_cannot_be_written_leaves_the_old_one_whole(every_word, monk
     def fail(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(html.os, "replace", fail)
+    monkeypatch.setattr(disk.os, "replace", fail)
     with pytest.raises((OSError, ResultsError)):
-        write(replace(every_word, rows=()))
+        write(replace(every_word, entries=()))
     assert (every_word.folder / "ledger.html").read_bytes() == before
 
 
 def test_an_open_question_is_answered_by_what_was_told_of_it(every_word):
     rows = tuple(
         replace(row, finding=replace(row.finding, also=("torque takes half the spin", "something else")))
-        if row.claim.id == "fig20"
+        if row.id == "fig20"
         else row
-        for row in every_word.rows
+        for row in every_word.entries
     )
-    write(replace(every_word, rows=rows))
+    write(replace(every_word, entries=rows))
     _, text = read(every_word)
     answer = text[text.index('id="water-torque"') : text.index('id="claims"')]
     assert "torque takes half the spin" in answer

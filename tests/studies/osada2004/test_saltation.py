@@ -8,20 +8,11 @@ import pytest
 from ryusa.figures.saltation import SpinPath
 from ryusa.measure import ContactTimes, Saltation, Tracks, average
 from ryusa.measure.table import Averages
-from ryusa.studies.osada2004 import (
-    Level,
-    Plan,
-    Word,
-    _saltation,
-    carry_out,
-    fig07,
-    fig20,
-    fig21,
-    hops,
-    spin_time,
-)
+from ryusa.studies.osada2004 import _saltation, fig07, fig20, fig21, hops, spin_time
 from ryusa.studies.osada2004._experiment import PHI, SLIP
 from ryusa.studies.osada2004._saltation import K_N, SHIPPED, SaltationRun
+from ryusa.studies.osada2004.study import load
+from ryusa.study import Level, Outcome, Plan, carry_out
 
 STANDARD = Plan(Level.STANDARD, (1, 2, 3))
 FULL = Plan(Level.FULL, (1, 2, 3))
@@ -52,8 +43,8 @@ def stiffness(one):
 
 
 def judged(module, make, plan=STANDARD):
-    found = {one: make(one) for one in module.cases(plan)}
-    return {one.claim: one for one in module.judge(found, plan)}
+    found = {one: make(one) for one in module.tasks(plan)}
+    return {one.id: one for one in module.judge(found, plan)}
 
 
 def test_fig7_holds_only_for_stiffnesses_whose_contact_times_are_those_of_eq_8():
@@ -62,22 +53,22 @@ def test_fig7_holds_only_for_stiffnesses_whose_contact_times_are_those_of_eq_8()
         return fig07.Point(made_up(contact_time_over_eq8=share * scatter(one)), None)
 
     found = judged(fig07, make)["fig7"]
-    assert found.word is Word.ONLY_IF
+    assert found.outcome is Outcome.ONLY_IF
     assert "k_n 3 N/cm to 1000 N/cm" in found.condition
 
 
 def test_fig7_fails_where_no_contact_time_is_that_of_eq_8():
     found = judged(fig07, lambda one: fig07.Point(made_up(contact_time_over_eq8=1.3 * scatter(one)), None))
-    assert found["fig7"].word is Word.NOT
+    assert found["fig7"].outcome is Outcome.FAILS
 
 
-@pytest.mark.parametrize(("change", "word"), [(0.99, Word.REPRODUCED), (0.9, Word.NOT)])
+@pytest.mark.parametrize(("change", "word"), [(0.99, Outcome.HOLDS), (0.9, Outcome.FAILS)])
 def test_spin_time_asks_for_the_same_time_locked_and_free(change, word):
     def make(one):
         share = change if one.get("motion.rotation") == "free" else 1.0
         return made_up(contact_time=1e-4 * share * scatter(one))
 
-    assert judged(spin_time, make)["spin-time"].word is word
+    assert judged(spin_time, make)["spin-time"].outcome is word
 
 
 def test_the_scatter_of_grains_that_skim_does_not_widen_the_others():
@@ -93,9 +84,9 @@ def test_hops_fails_below_a_stiffness_if_one_of_its_three_parts_does(changed):
         return made_up(**{changed: value})
 
     found = judged(hops, make)["hops"]
-    assert found.word is Word.ONLY_IF
+    assert found.outcome is Outcome.ONLY_IF
     assert "10 N/cm to 1000 N/cm" in found.condition
-    assert judged(hops, lambda one: made_up())["hops"].word is Word.REPRODUCED
+    assert judged(hops, lambda one: made_up())["hops"].outcome is Outcome.HOLDS
 
 
 def test_fig20_compares_free_with_locked_under_the_same_choices():
@@ -108,14 +99,14 @@ def test_fig20_compares_free_with_locked_under_the_same_choices():
         return fig20.Both(made_up(jump_height=high, jump_length=far, **changed), {})
 
     found = judged(fig20, make)
-    assert found["fig20-shear"].word is Word.ONLY_IF
+    assert found["fig20-shear"].outcome is Outcome.ONLY_IF
     assert "slip rule total" in found["fig20-shear"].condition
-    assert found["fig20"].word is Word.NOT  # higher, but not longer
+    assert found["fig20"].outcome is Outcome.FAILS  # higher, but not longer
     assert {trial.choices[PHI] for trial in found["fig20"].trials} >= {"10 deg", "30 deg"}
 
 
 def test_full_fig20_sweeps_what_is_left_open_one_at_a_time_and_the_rule_for_a_hop():
-    made = {one.get("motion.rotation"): made_up() for one in fig20.cases(FULL)}
+    made = {one.get("motion.rotation"): made_up() for one in fig20.tasks(FULL)}
     labels = {name: made_up().found.averages for name in fig20.RISES}
     found = judged(fig20, lambda one: fig20.Both(made[one.get("motion.rotation")], labels), FULL)
     others = {trial.choices[fig20.OTHER] for trial in found["fig20"].trials}
@@ -138,18 +129,18 @@ def test_fig21_holds_while_it_spins_up_for_grains_that_gain_at_each_of_their_fir
         return spun(900.0 * scatter(one), GROWING if weak else AT_ONCE)
 
     found = judged(fig21, make)["fig21"]
-    assert found.word is Word.ONLY_IF
+    assert found.outcome is Outcome.ONLY_IF
     assert "slip rule total" in found.condition
     assert "while it spins up" in found.condition
 
 
 def test_fig21_fails_at_another_level_even_where_spin_grows():
     found = judged(fig21, lambda one: spun(500.0 * scatter(one), GROWING))
-    assert found["fig21"].word is Word.NOT
+    assert found["fig21"].outcome is Outcome.FAILS
 
 
 def test_the_water_removes_a_share_of_the_spin_beyond_its_own_turn():
-    made = {one: spun(220.0 if one.get("water.torque") else 1020.0, AT_ONCE) for one in fig21.cases(STANDARD)}
+    made = {one: spun(220.0 if one.get("water.torque") else 1020.0, AT_ONCE) for one in fig21.tasks(STANDARD)}
     assert fig21.removed(made, STANDARD, "Dennis") == pytest.approx([0.8, 0.8, 0.8])
     rows = fig21.rows(made, STANDARD)
     assert {row["water torque"] for row in rows} == {"none", "Stokes", "Dennis"}
@@ -168,11 +159,11 @@ def test_the_shipped_stiffness_changes_nothing_in_the_case():
 def test_the_saltation_experiments_run_and_draw_at_quick_level(tmp_path):
     plan = Plan(Level.QUICK, (1,))
     names = ("fig07", "spin_time", "hops", "fig20", "fig21")
-    campaign = carry_out(names, plan, tmp_path)
+    campaign = carry_out({name: load(name).tasks(plan) for name in names}, load, tmp_path)
     assert not campaign.problems
     for module in (fig07, spin_time, hops, fig20, fig21):
         found = campaign.found[module.__name__.rsplit(".", maxsplit=1)[-1]]
         assert all(np.isfinite(t.found.value) for one in module.judge(found, plan) for t in one.trials)
         assert module.rows(found, plan)
         assert module.draw(found, plan)
-    assert replace(found[fig21.cases(plan)[0]]).mean > 0.0
+    assert replace(found[fig21.tasks(plan)[0]]).mean > 0.0

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from ryusa.studies.validation import NAMES, Word, load, relative, terminal_velocity
-from ryusa.studies.validation.ledger import make
+from ryusa.studies.validation import terminal_velocity
+from ryusa.studies.validation.study import NAMES, VALIDATION, load
 from ryusa.studies.validation.suspension import expected, exponent
-from ryusa.study import CaseRun, Level, Task
+from ryusa.study import CaseRun, Level, Outcome, Plan, Task, relative
+from ryusa.study.ledger import make
 
 LEVELS = (Level.QUICK, Level.FULL)
 
@@ -16,7 +17,7 @@ def test_a_check_names_its_runs_and_what_they_cost(name):
     check = load(name)
     assert check.TITLE
     for level in LEVELS:
-        runs = check.runs(level)
+        runs = check.tasks(Plan(level, ()))
         assert all(isinstance(one, Task) for one in runs)
         assert len({one.folder for one in runs}) == len(set(runs))
         assert all(one.cost() > 0.0 for one in runs)
@@ -25,15 +26,17 @@ def test_a_check_names_its_runs_and_what_they_cost(name):
 
 
 def test_quick_is_quick():
-    works = {one for name in NAMES for one in load(name).runs(Level.QUICK)}
+    works = {one for name in NAMES for one in load(name).tasks(Plan(Level.QUICK, ()))}
     assert sum(one.cost() for one in works) < 240.0  # core seconds, by rule of thumb
 
 
 @pytest.mark.slow
 def test_every_check_of_the_quick_level_is_within(tmp_path):
-    made = make(None, Level.QUICK, tmp_path, jobs=2)
-    assert {one.id: one.word for one in made.rows if one.word not in (Word.WITHIN, Word.SHOWN)} == {}
-    assert len({one.id for one in made.rows}) == len(made.rows)
+    made = make(VALIDATION, None, Plan(Level.QUICK, ()), tmp_path, jobs=2)
+    assert {
+        one.id: one.outcome for one in made.entries if one.outcome not in (Outcome.HOLDS, Outcome.SHOWN)
+    } == {}
+    assert len({one.id for one in made.entries}) == len(made.entries)
 
 
 @pytest.mark.parametrize(

@@ -10,8 +10,8 @@ import pytest
 from ryusa.build import scene
 from ryusa.laws.debris import equilibrium_concentration
 from ryusa.model import EVENT
-from ryusa.studies.validation import Word, equilibrium
-from ryusa.study import Level
+from ryusa.studies.validation import equilibrium
+from ryusa.study import Level, Outcome, Plan
 
 D, RHO = 4.0e-3, 2650.0
 COLUMNS, LAYERS = 4, 10
@@ -71,10 +71,10 @@ def test_a_flow_holds_what_lies_between_bed_and_surface(run):
     assert found["faster"] == pytest.approx(0.0, abs=1e-12)
 
 
-@pytest.mark.parametrize(("factor", "word"), [(1.0, Word.WITHIN), (2.0, Word.MISSED)])
+@pytest.mark.parametrize(("factor", "word"), [(1.0, Outcome.HOLDS), (2.0, Outcome.FAILS)])
 def test_concentrations_are_held_against_the_friction_of_the_dry_flow(factor, word):
     friction = 0.55
-    *wet, dry = equilibrium.runs(Level.FULL)
+    *wet, dry = equilibrium.tasks(Plan(Level.FULL, ()))
     found: dict = {dry: {"friction": friction, "time": 0.5}}
     for one in wet:
         slope = math.radians(float(one.get("motion.slope_angle").split()[0]))
@@ -84,12 +84,12 @@ def test_concentrations_are_held_against_the_friction_of_the_dry_flow(factor, wo
             "water": 0.01, "mu": friction, "densest": 0.6, "bed": 5.0,
             "z": np.arange(1.0, 10.0), "u": np.ones(9),
         }  # fmt: skip
-    made, velocity = equilibrium.compare(found, Level.FULL)
-    assert made.errors[0].value == pytest.approx(factor - 1.0, abs=1e-9)
-    assert made.word is word
-    assert velocity.word is Word.SHOWN
+    made, velocity = equilibrium.judge(found, Plan(Level.FULL, ()))
+    assert made.trials[0].found.value == pytest.approx(factor - 1.0, abs=1e-9)
+    assert made.outcome is word
+    assert velocity.outcome is Outcome.SHOWN
 
 
 def test_nothing_is_run_at_the_quick_level():
-    assert not equilibrium.runs(Level.QUICK)
-    assert not equilibrium.compare({}, Level.QUICK)
+    assert not equilibrium.tasks(Plan(Level.QUICK, ()))
+    assert not equilibrium.judge({}, Plan(Level.QUICK, ()))

@@ -6,7 +6,7 @@ import pytest
 from ryusa.casefile import derive, read
 from ryusa.cases import case_path
 from ryusa.studies.validation import frey
-from ryusa.study import Level
+from ryusa.study import Level, Outcome, Plan
 
 
 def test_the_measured_profiles_carry_what_the_flume_carried() -> None:
@@ -24,7 +24,7 @@ def test_the_measured_profiles_carry_what_the_flume_carried() -> None:
 def test_profiles_equal_to_the_flumes_have_no_error() -> None:
     flume = frey.measured()
     found = {}
-    for work in frey.runs(Level.FULL):
+    for work in frey.tasks(Plan(Level.FULL, ())):
         depth = dict(work.overrides)["water.depth"]
         run = next(run for run, one in frey.FLUME.items() if one.depth == depth)
         z, phi, u = flume[run]
@@ -32,14 +32,14 @@ def test_profiles_equal_to_the_flumes_have_no_error() -> None:
             "z": z, "phi": phi, "u": u, "z_water": z, "u_water": 2.0 * u,
             "q_star": frey.rate(z, phi, u), "q_error": 0.0, "time": 60.0,
         }  # fmt: skip
-    for one in frey.compare(found, Level.FULL):
-        assert one.word == "within"
-        assert [error.value for error in one.errors if "rms" in error.name] == [0.0]
-    assert frey.runs(Level.QUICK) == []
+    for one in frey.judge(found, Plan(Level.FULL, ())):
+        assert one.outcome is Outcome.HOLDS
+        assert [each.found.value for each in one.trials if "rms" in each.part] == [0.0]
+    assert frey.tasks(Plan(Level.QUICK, ())) == []
 
 
 def test_every_run_is_of_the_published_flume() -> None:
-    for work in frey.runs(Level.FULL):
+    for work in frey.tasks(Plan(Level.FULL, ())):
         case = read(case_path("validation/frey.toml"), dict(work.overrides))
         assert case.stop.time is not None
         assert case.stop.time - case.record.settle >= 60.0

@@ -6,14 +6,30 @@ import math
 import numpy as np
 import pytest
 
+from ryusa.cases import case_path
 from ryusa.errors import ResultsError
 from ryusa.figures.comparison import Axis, Curve
-from ryusa.studies.validation import Comparison, Error, Known, Source, Tolerance, Word, at_most, case_run
-from ryusa.studies.validation import ledger as page
-from ryusa.studies.validation.ledger import make, table, write
-from ryusa.study import Level, calculation
+from ryusa.studies.validation.study import ValidationStudy, table
+from ryusa.study import (
+    Band,
+    Known,
+    Level,
+    Outcome,
+    Plan,
+    Source,
+    StudyProgress,
+    at_most,
+    calculation,
+    case_run,
+    comparison,
+    misfit,
+)
+from ryusa.study import ledger as ledger_module
+from ryusa.study.ledger import make as make_study
+from ryusa.study.page import write
 
 CALLS = []
+SHORT = {"stop.time": "0.01 s", "record.settle": "0 s"}
 
 
 def parabola(n):
@@ -30,90 +46,111 @@ class Fake:
     def __init__(self, factor=1.0, trouble=None, works=None):
         self.factor, self.trouble, self.works = factor, trouble, works
 
-    def runs(self, level):
-        return self.works or [calculation(parabola, n=n) for n in (5, 9 if level is Level.QUICK else 17)]
+    def tasks(self, plan):
+        return self.works or [calculation(parabola, n=n) for n in (5, 9 if plan.level is Level.QUICK else 17)]
 
-    def compare(self, found, level):
+    def judge(self, found, plan):
         if self.trouble:
             raise self.trouble
         ours = list(found.values())[-1]
         error = float(np.abs(self.factor * ours["y"] - ours["x"] ** 2).max())
         return [
-            Comparison(
+            comparison(
                 "square", "Square & <i>", Source("y = x^2"), Axis("x"), Axis("y", "m"),
                 [Curve("ours", ours["x"], self.factor * ours["y"])],
                 [Curve("law", ours["x"], ours["x"] ** 2)],
-                [Error("largest difference", error, "m", at_most(0.1, "a tenth"))], said="it is a square",
+                [misfit("largest difference", error, "m", at_most(0.1, "a tenth"))], said="it is a square",
             )
         ]  # fmt: skip
 
 
+class Checks(ValidationStudy):
+    """The validation with checks of our own."""
+
+    def __init__(self):
+        self.known = {}
+
+    @property
+    def parts(self):
+        return tuple(self.known)
+
+    def part(self, name):
+        return self.known[name]
+
+    def __setitem__(self, name, check):
+        self.known[name] = check
+
+    def __getitem__(self, name):
+        return self.known[name]
+
+
 @pytest.fixture
-def checks(monkeypatch):
-    known = {}
-    monkeypatch.setattr(page, "load", known.__getitem__)
-    monkeypatch.setattr(page, "NAMES", known)
+def checks():
     CALLS.clear()
-    return known
+    return Checks()
+
+
+def make(checks, names, level, folder, **how):
+    return make_study(checks, names, Plan(level, ()), folder, **how)
 
 
 def test_a_second_call_opens_what_was_computed_and_gives_the_same(checks, tmp_path):
     checks["one"] = Fake()
-    first = make(None, Level.FULL, tmp_path)
-    second = make(None, Level.FULL, tmp_path)
+    first = make(checks, None, Level.FULL, tmp_path)
+    second = make(checks, None, Level.FULL, tmp_path)
     assert CALLS == [5, 17]
     assert second.counts["runs_opened"] == 2
-    assert [one.plain(tmp_path) for one in second.rows] == [one.plain(tmp_path) for one in first.rows]
-    make(None, Level.FULL, tmp_path, again=True)
+    assert second.plain()["findings"] == first.plain()["findings"]
+    make(checks, None, Level.FULL, tmp_path, again=True)
     assert CALLS == [5, 17, 5, 17]
 
 
 def test_an_interrupted_validation_goes_on_where_it_stopped(checks, tmp_path, monkeypatch):
     checks["one"] = Fake()
-    real = page.carry_out
+    real = ledger_module.carry_out
 
-    def stops(*words, say=None, **how):
-        class Stop(page.StudyProgress):
+    def stops(*words, progress=None, **how):
+        class Stop(StudyProgress):
             def done(self, *_):
                 raise KeyboardInterrupt
 
-        return real(*words, say=Stop(), **how)
+        return real(*words, progress=Stop(), **how)
 
-    monkeypatch.setattr(page, "carry_out", stops)
+    monkeypatch.setattr(ledger_module, "carry_out", stops)
     with pytest.raises(KeyboardInterrupt):
-        make(None, Level.FULL, tmp_path)
+        make(checks, None, Level.FULL, tmp_path)
     assert CALLS == [5]
-    monkeypatch.setattr(page, "carry_out", real)
-    made = make(None, Level.FULL, tmp_path)
+    monkeypatch.setattr(ledger_module, "carry_out", real)
+    made = make(checks, None, Level.FULL, tmp_path)
     assert CALLS == [5, 17]
-    assert made.rows[0].word is Word.WITHIN
+    assert made.entries[0].outcome is Outcome.HOLDS
 
 
 def test_damaged_numbers_are_computed_anew(checks, tmp_path):
     checks["one"] = Fake()
-    make(None, Level.FULL, tmp_path)
+    make(checks, None, Level.FULL, tmp_path)
     next(tmp_path.glob("runs/*/*5*/numbers.npz")).write_bytes(b"PK half")
-    assert make(None, Level.FULL, tmp_path).rows[0].word is Word.WITHIN
+    assert make(checks, None, Level.FULL, tmp_path).entries[0].outcome is Outcome.HOLDS
     assert len(CALLS) == 3
 
 
 def test_a_curve_that_is_too_far_off_is_missed(checks, tmp_path):
     checks["one"] = Fake(factor=1.5)
-    made = make(None, Level.QUICK, tmp_path)
-    (row,) = made.plain()["comparisons"]
+    made = make(checks, None, Level.QUICK, tmp_path)
+    (row,) = made.plain()["findings"]
     assert row["verdict"] == "missed"
-    assert row["errors"][0]["value"] == pytest.approx(0.5)
-    assert row["errors"][0]["within"] is False
+    assert row["trials"][0]["value"] == pytest.approx(0.5)
+    assert row["trials"][0]["outcome"] == "fails"
     assert not made.problems and not made.faults  # computed in order: the number is the answer
 
 
 def test_an_error_in_one_check_costs_no_other(checks, tmp_path):
     checks["bad"], checks["good"] = Fake(trouble=IndexError("no such row")), Fake()
     checks["told"] = Fake(trouble=ResultsError("no steady state"))
-    made = make(None, Level.QUICK, tmp_path)
-    assert [one.word for one in made.rows] == [Word.UNDECIDED, Word.WITHIN, Word.UNDECIDED]
-    assert "IndexError: no such row" in made.rows[0].problem
-    assert set(made.traces) == {"bad: comparing"}
+    made = make(checks, None, Level.QUICK, tmp_path)
+    assert [one.outcome for one in made.entries] == [Outcome.UNDECIDED, Outcome.HOLDS, Outcome.UNDECIDED]
+    assert "IndexError: no such row" in made.entries[0].problem
+    assert set(made.traces) == {"bad: judging"}
     files = write(made)
     assert "could not be judged" in files[0].read_text(encoding="utf-8")
     assert "IndexError" in (tmp_path / made.log).read_text(encoding="utf-8")
@@ -125,15 +162,15 @@ def broken():
 
 def test_a_calculation_that_fails_leaves_its_check_unjudged_and_no_other(checks, tmp_path):
     checks["bad"], checks["good"] = Fake(works=[calculation(broken)]), Fake()
-    made = make(None, Level.QUICK, tmp_path)
-    assert [one.word for one in made.rows] == [Word.UNDECIDED, Word.WITHIN]
+    made = make(checks, None, Level.QUICK, tmp_path)
+    assert [one.outcome for one in made.entries] == [Outcome.UNDECIDED, Outcome.HOLDS]
     assert "ValueError: no root" in next(iter(made.problems.values()))
     assert made.traces
 
 
 def test_the_page_holds_its_pictures_and_escapes_words(checks, tmp_path):
     checks["one"] = Fake()
-    files = write(make(None, Level.QUICK, tmp_path), tmp_path / "copy" / "validation.json")
+    files = write(make(checks, None, Level.QUICK, tmp_path), tmp_path / "copy" / "validation.json")
     assert [one.name for one in files] == [
         "validation-quick.html",
         "validation-quick.json",
@@ -144,31 +181,31 @@ def test_the_page_holds_its_pictures_and_escapes_words(checks, tmp_path):
     assert "Square &amp; &lt;i&gt;" in text
     assert "<link" not in text and 'src="pictures' not in text
     kept = json.loads(files[2].read_text(encoding="utf-8"))
-    assert kept["comparisons"][0]["ours"][0]["name"] == "ours"
+    assert kept["findings"][0]["chart"]["ours"][0]["name"] == "ours"
     assert table(kept).splitlines()[2].startswith("| one/square: Square")
 
 
 def test_a_part_never_replaces_the_whole(checks, tmp_path):
     checks["one"], checks["two"] = Fake(), Fake()
-    assert make(["one"], Level.FULL, tmp_path).stem == "validation-part"
-    assert make(None, Level.FULL, tmp_path).stem == "validation"
+    assert make(checks, ["one"], Level.FULL, tmp_path).stem == "validation-part"
+    assert make(checks, None, Level.FULL, tmp_path).stem == "validation"
 
 
 def test_what_is_no_number_is_missed():
-    assert Error("e", math.nan, "-", at_most(1.0, "why")).within is False
-    assert Error("e", 3.0, "-", Tolerance(1.0, math.inf, "why")).within is True
+    assert misfit("e", math.nan, "-", at_most(1.0, "why")).holds is False
+    assert misfit("e", 3.0, "-", Band(1.0, math.inf, "-", "why")).holds is True
 
 
 def test_a_reference_from_memory_is_shown_and_must_not_decide():
     line, axis = Curve("a", np.zeros(2), np.zeros(2)), Axis("x")
-    shown = Comparison(
-        "m", "M", Source("someone", Known.MEMORY), axis, axis, [line], [line], [Error("e", 1.0)]
+    shown = comparison(
+        "m", "M", Source("someone", Known.MEMORY), axis, axis, [line], [line], [misfit("e", 1.0)]
     )
-    assert shown.word is Word.SHOWN
+    assert shown.outcome is Outcome.SHOWN
     with pytest.raises(ValueError, match="from memory"):
-        Comparison(
+        comparison(
             "m", "M", Source("someone", Known.MEMORY), axis, axis, [line], [line],
-            [Error("e", 1.0, "-", at_most(2.0, "why"))],
+            [misfit("e", 1.0, "-", at_most(2.0, "why"))],
         )  # fmt: skip
 
 
@@ -177,38 +214,40 @@ class OfRuns:
 
     TITLE = "Runs"
     CASES = tuple(
-        case_run("saltation", {"stop.time": "0.01 s", "record.settle": "0 s", "seed": seed}, folder="paper")
-        for seed in ("1", "2")
+        case_run(
+            case_path("paper/saltation.toml"), {"stop.time": "0.01 s", "record.settle": "0 s"}, seed=seed
+        )
+        for seed in (1, 2)
     )
 
-    def runs(self, level):
-        return self.CASES[: 1 if level is Level.QUICK else 2]
+    def tasks(self, plan):
+        return self.CASES[: 1 if plan.level is Level.QUICK else 2]
 
     def measure(self, run, one):
         assert one in self.CASES
         return len(run.frames)
 
-    def compare(self, found, level):
+    def judge(self, found, plan):
         count = np.array([float(n) for n in found.values()])
         lines = [Curve("ours", count, count)]
-        errors = [Error("frames", count.min(), "-", Tolerance(1.0, math.inf, "more than none"))]
-        return [Comparison("frames", "Frames", Source("a count"), Axis("a"), Axis("b"), lines, lines, errors)]
+        errors = [misfit("frames", count.min(), "-", Band(1.0, math.inf, "-", "more than none"))]
+        return [comparison("frames", "Frames", Source("a count"), Axis("a"), Axis("b"), lines, lines, errors)]
 
 
 def test_runs_of_case_files_are_kept_and_opened(checks, tmp_path):
     checks["runs"] = OfRuns()
-    quick = make(None, Level.QUICK, tmp_path)
+    quick = make(checks, None, Level.QUICK, tmp_path)
     assert (quick.counts["runs_made"], quick.counts["runs_opened"]) == (1, 0)
-    full = make(None, Level.FULL, tmp_path)
+    full = make(checks, None, Level.FULL, tmp_path)
     assert (full.counts["runs_made"], full.counts["runs_opened"]) == (1, 1)
-    assert full.rows[0].word is Word.WITHIN
+    assert full.entries[0].outcome is Outcome.HOLDS
     assert len(list((tmp_path / "runs" / "saltation").glob("*/grains.vtkhdf"))) == 2
 
 
 def test_a_check_without_work_at_a_level_has_no_row(checks, tmp_path):
     checks["one"], checks["later"] = Fake(), Fake()
-    checks["later"].runs = lambda _: []
-    checks["later"].compare = lambda *_: []
-    made = make(None, Level.QUICK, tmp_path)
-    assert [one.check for one in made.rows] == ["one"]
+    checks["later"].tasks = lambda _: []
+    checks["later"].judge = lambda *_: []
+    made = make(checks, None, Level.QUICK, tmp_path)
+    assert [one.part for one in made.entries] == ["one"]
     write(made)

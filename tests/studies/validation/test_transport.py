@@ -5,13 +5,13 @@ import math
 import numpy as np
 import pytest
 
-from ryusa.studies.validation import Word, transport
-from ryusa.study import Level
+from ryusa.studies.validation import transport
+from ryusa.study import Level, Outcome, Plan
 
 
 def made(factor, level=Level.FULL):
     """What runs would give that carry a multiple of Meyer-Peter & Mueller's rate."""
-    runs = transport.runs(level)
+    runs = transport.tasks(Plan(level, ()))
     stress = np.geomspace(0.06, 1.5, len(runs)) if len(runs) > 1 else np.array([0.3])
     rates = factor * transport.formulae(stress)["Meyer-Peter & Mueller 1948"]
     return {
@@ -25,20 +25,20 @@ def made(factor, level=Level.FULL):
 
 @pytest.mark.parametrize("level", [Level.QUICK, Level.FULL])
 def test_rates_of_a_formula_lie_between_the_formulae(level):
-    (found,) = transport.compare(made(1.0, level), level)
-    assert found.word is Word.WITHIN
-    assert found.errors[0].value == pytest.approx(1.0)
+    (found,) = transport.judge(made(1.0, level), Plan(level, ()))
+    assert found.outcome is Outcome.HOLDS
+    assert found.trials[0].found.value == pytest.approx(1.0)
 
 
 def test_rates_far_above_all_formulae_are_missed():
-    (found,) = transport.compare(made(5.0), Level.FULL)
-    assert found.word is Word.MISSED
+    (found,) = transport.judge(made(5.0), Plan(Level.FULL, ()))
+    assert found.outcome is Outcome.FAILS
 
 
 def test_a_bed_that_lies_still_above_the_threshold_is_missed():
-    (found,) = transport.compare(made(0.0, Level.QUICK), Level.QUICK)
-    assert found.errors[0].value == math.inf
-    assert found.word is Word.MISSED
+    (found,) = transport.judge(made(0.0, Level.QUICK), Plan(Level.QUICK, ()))
+    assert found.trials[0].found.value == math.inf
+    assert found.outcome is Outcome.FAILS
 
 
 def test_below_the_threshold_nothing_is_judged():

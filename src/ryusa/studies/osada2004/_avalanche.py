@@ -11,7 +11,7 @@ from ryusa.measure import Profiles, Tracks, alternating, paths, profiles, tracks
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
 from ryusa.studies.osada2004._experiment import PHI, ROTATION, SLIP, CaseRun, Found, Plan, paper_run
-from ryusa.study.judge import Band, Trial, over_seeds, pool, pseudo_values
+from ryusa.study import Band, Trial, over_seeds, pool, pseudo_values
 
 CASE = "avalanche"
 TILT = 1.0  # of the case's timeline [s]
@@ -217,7 +217,7 @@ def run(chosen: Mapping[str, str], time: str, seed: int) -> CaseRun:
     return paper_run(CASE, changed, seed)
 
 
-def cases(plan: Plan) -> Sequence[CaseRun]:
+def tasks(plan: Plan) -> Sequence[CaseRun]:
     """Both collision times for every setting and seed."""
     return [run(one, time, seed) for one in settings(plan) for seed in seeds(plan, one) for time in TIMES]
 

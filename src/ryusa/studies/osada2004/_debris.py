@@ -14,7 +14,7 @@ from ryusa.measure.entrainment import SPEED as MOVES
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
 from ryusa.studies.osada2004._experiment import PHI, SLIP, CaseRun, Found, Plan, paper_run
-from ryusa.study.judge import Band, Trial, over_seeds, pool
+from ryusa.study import Band, Trial, over_seeds, pool
 
 CASE = "fig17"
 LOCKED, FREE = "locked", "free"

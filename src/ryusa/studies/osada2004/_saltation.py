@@ -11,7 +11,7 @@ from ryusa.measure import Saltation, Tracks, collisions, saltation, tracks
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
 from ryusa.studies.osada2004._experiment import PHI, RATIO, SLIP, CaseRun, Plan, paper_run
-from ryusa.study.judge import Pooled, pool
+from ryusa.study import Pooled, pool
 
 CASE = "saltation"
 HOPS = 30  # of each start, as in the paper

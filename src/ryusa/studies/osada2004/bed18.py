@@ -13,7 +13,7 @@ from ryusa.measure import Snapshot, snapshot
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
 from ryusa.studies.osada2004._experiment import PHI, RATIO, SLIP, CaseRun, Found, Plan, paper_run
-from ryusa.study.judge import Band, Finding, Trial, over_range, short
+from ryusa.study import Band, Finding, Trial, over_range, short
 
 FIGURE = "fig19"
 TITLE = "A dry bed is tilted"
@@ -124,7 +124,7 @@ def _control(name: str, seed: int) -> CaseRun:
     return _run(SHIPPED | {SLOPE: slope, START: MOVING}, seed, rotation)
 
 
-def cases(plan: Plan) -> Sequence[CaseRun]:
+def tasks(plan: Plan) -> Sequence[CaseRun]:
     """Every setting and seed, and the controls with one seed."""
     runs = [_run(one, seed) for one in settings(plan) for seed in plan.seeds]
     controls = [_control(name, plan.seeds[0]) for name in plan.pick((), tuple(CONTROLS))]

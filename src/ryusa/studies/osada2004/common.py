@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from itertools import product
 from typing import Any
 
-from ryusa.studies.osada2004 import PHI, RATIO, ROTATION, SLIP, Finding
+from ryusa.studies.osada2004._experiment import PHI, RATIO, ROTATION, SLIP
+from ryusa.study import Finding
 
 SHARED = (PHI, SLIP, RATIO, ROTATION)  # choices of the model itself; others belong to one set-up
 FIXED = (PHI, SLIP, RATIO)  # said in a finding's settings, they were not varied: other values are untried
@@ -33,7 +34,7 @@ class Common:
         }
 
 
-def common(findings: Sequence[tuple[str, Finding]]) -> tuple[Common, ...]:
+def common(findings: Sequence[Finding]) -> tuple[Common, ...]:
     """Every set of the choices that belong to the model, the one under which most claims hold first.
 
     A choice that belongs to one set-up (a threshold, an impact speed, a time window) is free for its claim:
@@ -42,20 +43,20 @@ def common(findings: Sequence[tuple[str, Finding]]) -> tuple[Common, ...]:
 
     Parameters
     ----------
-    findings : name of the experiment and what it found, one pair per claim.
+    findings : what was found, one per claim.
     """
     shared = _shared(findings)
     values = {
-        key: list(dict.fromkeys(v for _, one in findings for t in one.trials if (v := t.choices.get(key))))
+        key: list(dict.fromkeys(v for one in findings for t in one.trials if (v := t.choices.get(key))))
         for key in shared
     }
     sets = [dict(zip(shared, chosen, strict=True)) for chosen in product(*values.values())]
-    found = [_under(chosen, [one for _, one in findings]) for chosen in sets]
+    found = [_under(chosen, findings) for chosen in sets]
     return tuple(sorted(found, key=lambda one: (-len(one.holds), len(one.fails), len(one.untried))))
 
 
-def _shared(findings: Sequence[tuple[str, Finding]]) -> list[str]:
-    tried = {key for _, one in findings for trial in one.trials for key in trial.choices}
+def _shared(findings: Sequence[Finding]) -> list[str]:
+    tried = {key for one in findings for trial in one.trials for key in trial.choices}
     return [key for key in SHARED if key in tried]
 
 
@@ -76,5 +77,5 @@ def _under(chosen: Mapping[str, str], findings: Sequence[Finding]) -> Common:
             word = "holds"
         else:
             word = "undecided" if None in outcomes else "fails"
-        held[word].append(one.claim)
+        held[word].append(one.id)
     return Common(chosen, *(tuple(held[word]) for word in ("holds", "fails", "undecided", "untried")))

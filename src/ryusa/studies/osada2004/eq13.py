@@ -16,8 +16,8 @@ from ryusa.laws.rolling import rolling_arm_width
 from ryusa.measure import spin
 from ryusa.results import Results
 from ryusa.studies.osada2004 import _heap, _saltation
-from ryusa.studies.osada2004._experiment import PHI, RATIO, SLIP, CaseRun, Found, Level, Plan
-from ryusa.study.judge import Band, Finding, Interval, Trial, over_seeds, pool
+from ryusa.studies.osada2004._experiment import PHI, RATIO, SLIP, CaseRun, Found, Plan
+from ryusa.study import Band, Finding, Interval, Level, Trial, over_seeds, pool
 
 FIGURE = "fig23"
 TITLE = "Rolling friction identified against the heap and the spin of a saltating grain"
@@ -124,7 +124,7 @@ def _spin(model: str, seed: int) -> CaseRun:
     return _saltation.run(_saltation.SHIPPED, "free", seed, more)
 
 
-def cases(plan: Plan) -> Sequence[CaseRun]:
+def tasks(plan: Plan) -> Sequence[CaseRun]:
     """Heaps under every setting and without rolling friction; saltating grains under each form."""
     plain = [_heap.run({PHI: phi}, "free", seed) for phi in _angles(plan) for seed in plan.seeds]
     heaps = [run(chosen, seed) for chosen in settings(plan) for seed in _starts(plan, chosen)]

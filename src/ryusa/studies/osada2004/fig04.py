@@ -11,7 +11,7 @@ from ryusa.laws.collision import collision_time
 from ryusa.studies.osada2004 import _drops
 from ryusa.studies.osada2004._drops import DropRun, Setup
 from ryusa.studies.osada2004._experiment import CaseRun, Found, Plan
-from ryusa.study.judge import Band, Finding, Trial, over_range
+from ryusa.study import Band, Finding, Trial, over_range
 
 FIGURE = "fig4"
 TITLE = "Contact time against stiffness, Eq. (8)"
@@ -51,7 +51,7 @@ def setups(plan: Plan) -> list[Setup]:
     return chart + others + weighted(plan)
 
 
-def cases(plan: Plan) -> Sequence[CaseRun]:
+def tasks(plan: Plan) -> Sequence[CaseRun]:
     """One run per setup; there is no chance in them, so that every seed would give the same."""
     return [one.task for one in setups(plan)]
 

@@ -11,7 +11,7 @@ from ryusa.laws.collision import collision_time, contact_time_no_tension, contac
 from ryusa.studies.osada2004 import _drops
 from ryusa.studies.osada2004._drops import DropRun, Setup
 from ryusa.studies.osada2004._experiment import CaseRun, Found, Plan
-from ryusa.study.judge import Band, Finding, Trial, over_range
+from ryusa.study import Band, Finding, Trial, over_range
 
 FIGURE = "fig5"
 TITLE = "Contact time with e = 0.7 beside Eq. (8)"
@@ -47,7 +47,7 @@ def setups(plan: Plan) -> list[Setup]:
     return [setup(chosen, k_n) for chosen in choices(plan) for k_n in stiffnesses(plan)]
 
 
-def cases(plan: Plan) -> Sequence[CaseRun]:
+def tasks(plan: Plan) -> Sequence[CaseRun]:
     """One run per setup."""
     return [one.task for one in setups(plan)]
 

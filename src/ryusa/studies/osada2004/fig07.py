@@ -13,7 +13,7 @@ from ryusa.results import Results
 from ryusa.studies.osada2004 import _saltation
 from ryusa.studies.osada2004._experiment import CaseRun, Found, Plan
 from ryusa.studies.osada2004._saltation import K_N, SHIPPED, SKIM, SaltationRun, sweep_run
-from ryusa.study.judge import Band, Finding, Interval, Trial, over_seeds
+from ryusa.study import Band, Finding, Interval, Trial, over_seeds
 
 FIGURE = "fig7"
 TITLE = "Contact time of a saltating grain, and its path"
@@ -36,7 +36,7 @@ class Point:
     path: Tracks | None
 
 
-def cases(plan: Plan) -> Sequence[CaseRun]:
+def tasks(plan: Plan) -> Sequence[CaseRun]:
     """Rotation locked: every stiffness and set of choices; the run of Fig. 6."""
     runs = [sweep_run(one, seed) for one in _saltation.with_stiffness(plan) for seed in plan.seeds]
     return [*runs, _path(plan)]

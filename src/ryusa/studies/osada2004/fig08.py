@@ -15,7 +15,7 @@ from ryusa.results import Results
 from ryusa.studies.osada2004 import _drops, _saltation
 from ryusa.studies.osada2004._drops import DropRun, Setup
 from ryusa.studies.osada2004._experiment import CaseRun, Found, Plan
-from ryusa.study.judge import Finding, Trial, over_seeds
+from ryusa.study import Finding, Trial, over_seeds
 from ryusa.units import quantity
 
 FIGURE = "fig8"
@@ -76,7 +76,7 @@ def saltating(plan: Plan) -> list[CaseRun]:
     return [_saltation.run(_saltation.SHIPPED, "locked", seed) for seed in plan.seeds]
 
 
-def cases(plan: Plan) -> Sequence[CaseRun]:
+def tasks(plan: Plan) -> Sequence[CaseRun]:
     """Drops, and the saltation that says how hard a grain really hits."""
     return [*(one.task for one in setups(plan)), *saltating(plan)]
 

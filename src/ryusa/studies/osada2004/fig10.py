@@ -18,7 +18,7 @@ from ryusa.measure.statistics import Floats
 from ryusa.measure.vibration import WINDOW, ExtentRule
 from ryusa.results import Results
 from ryusa.studies.osada2004._experiment import PHI, RATIO, ROTATION, SLIP, CaseRun, Found, Plan, paper_run
-from ryusa.study.judge import Band, Finding, Interval, Trial, over_range, over_seeds, pool, short
+from ryusa.study import Band, Finding, Interval, Trial, over_range, over_seeds, pool, short
 
 FIGURE = "fig10"
 TITLE = "Grains in a box: which spring lets them come to rest"
@@ -123,7 +123,7 @@ def others(plan: Plan, rotation: str) -> list[CaseRun]:
     return [_other(size, one, rotation, seed) for size in sizes for one in overlaps for seed in seeds]
 
 
-def cases(plan: Plan) -> Sequence[CaseRun]:
+def tasks(plan: Plan) -> Sequence[CaseRun]:
     """Soft and stiff under every setting, then other diameters."""
     runs = [_run(one, k, seed) for one in settings(plan) for k in (SOFT, STIFF) for seed in starts(plan, one)]
     return list(dict.fromkeys([*runs, *others(plan, "locked"), *others(plan, "free")]))

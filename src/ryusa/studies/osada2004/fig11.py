@@ -11,7 +11,7 @@ from ryusa.measure.stability import BAND
 from ryusa.studies.osada2004 import _drops, fig08
 from ryusa.studies.osada2004._drops import DropRun, Setup
 from ryusa.studies.osada2004._experiment import CaseRun, Found, Plan
-from ryusa.study.judge import Band, Finding, Trial
+from ryusa.study import Band, Finding, Trial
 from ryusa.units import quantity
 
 FIGURE = "fig11"
@@ -33,7 +33,7 @@ def setups(plan: Plan) -> list[Setup]:
     return [Setup(time=TIME, speed=speed) for speed in speeds(plan)] + fig08.chart(plan)
 
 
-def cases(plan: Plan) -> Sequence[CaseRun]:
+def tasks(plan: Plan) -> Sequence[CaseRun]:
     """One run per setup."""
     return [one.task for one in setups(plan)]
 

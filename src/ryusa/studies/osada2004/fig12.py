@@ -10,7 +10,7 @@ from ryusa.measure.stability import BAND
 from ryusa.studies.osada2004 import _drops, fig11
 from ryusa.studies.osada2004._drops import DropRun, Setup
 from ryusa.studies.osada2004._experiment import CaseRun, Found, Plan
-from ryusa.study.judge import Finding, Trial, over_range
+from ryusa.study import Finding, Trial, over_range
 from ryusa.units import quantity
 
 FIGURE = "fig12"
@@ -40,7 +40,7 @@ def setups(plan: Plan) -> list[Setup]:
     return [one for one in pairs if one.deepest < 0.9] + chart
 
 
-def cases(plan: Plan) -> Sequence[CaseRun]:
+def tasks(plan: Plan) -> Sequence[CaseRun]:
     """One run per setup."""
     return [one.task for one in setups(plan)]
 

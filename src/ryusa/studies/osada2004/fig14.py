@@ -11,7 +11,7 @@ from ryusa import figures
 from ryusa.studies.osada2004 import _avalanche
 from ryusa.studies.osada2004._avalanche import FIRST, SHIPPED, SOFT, STIFF, RunPair, together, unlike
 from ryusa.studies.osada2004._experiment import Found, Plan
-from ryusa.study.judge import Band, Finding, short
+from ryusa.study import Band, Finding, short
 
 FIGURE = "fig14"
 TITLE = "Concentration of a dry avalanche"
@@ -19,7 +19,7 @@ CLAIMS = ("fig14",)
 PART = "difference of the two profiles of concentration, means over seeds, over their mean"
 ALIKE = Band(-math.inf, 0.10, "-", "alike: mean difference over all layers at most 10 % of the mean")
 
-cases, measure = _avalanche.cases, _avalanche.measure
+tasks, measure = _avalanche.tasks, _avalanche.measure
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:

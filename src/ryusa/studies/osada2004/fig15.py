@@ -25,7 +25,7 @@ from ryusa.studies.osada2004._avalanche import (
 from ryusa.studies.osada2004._experiment import PHI, ROTATION, SLIP, Found, Plan
 from ryusa.studies.osada2004.fig14 import ALIKE
 from ryusa.studies.osada2004.fig14 import PART as ALIKE_PART
-from ryusa.study.judge import Band, Finding, short
+from ryusa.study import Band, Finding, short
 
 FIGURE = "fig15"
 TITLE = "Grain speed and flux of a dry avalanche"
@@ -45,7 +45,7 @@ MORE = Band(
 LOCKED = {**SHIPPED, ROTATION: "locked", PHI: "20 deg"}
 CAPS = ("spring", "total")
 
-cases, measure = _avalanche.cases, _avalanche.measure
+tasks, measure = _avalanche.tasks, _avalanche.measure
 
 
 def _mean(found: Sequence[RunPair]) -> float:

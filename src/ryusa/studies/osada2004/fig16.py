@@ -21,7 +21,7 @@ from ryusa.studies.osada2004._avalanche import (
     together,
 )
 from ryusa.studies.osada2004._experiment import Found, Plan
-from ryusa.study.judge import Band, Finding, Trial, short
+from ryusa.study import Band, Finding, Trial, short
 
 FIGURE = "fig16"
 TITLE = "Ways of grains in a dry avalanche"
@@ -42,7 +42,7 @@ PARTS: dict[str, tuple[str, Band]] = {
 }  # fmt: skip
 NONE = "no grain meets bed and movers in turn, or none advances, in one of the runs"
 
-cases, measure = _avalanche.cases, _avalanche.measure
+tasks, measure = _avalanche.tasks, _avalanche.measure
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:

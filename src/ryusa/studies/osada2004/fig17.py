@@ -9,7 +9,7 @@ from ryusa import figures
 from ryusa.studies.osada2004 import _debris
 from ryusa.studies.osada2004._debris import AMOUNT, PARTNERS, SETTLED, SHIPPED, Debris, each
 from ryusa.studies.osada2004._experiment import CaseRun, Found, Plan
-from ryusa.study.judge import Band, Finding, Trial, over_seeds, short
+from ryusa.study import Band, Finding, Trial, over_seeds, short
 
 FIGURE = "fig17"
 TITLE = "Ito's debris flow over a rigid bed: concentration, ways, contacts"
@@ -39,7 +39,7 @@ OF_CONTACTS = {
 measure = _debris.measure
 
 
-def cases(plan: Plan) -> Sequence[CaseRun]:
+def tasks(plan: Plan) -> Sequence[CaseRun]:
     """Every setting and seed."""
     return [_debris.run(one, seed) for one in _debris.settings(plan) for seed in plan.seeds]
 

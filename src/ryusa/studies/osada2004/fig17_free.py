@@ -9,7 +9,7 @@ from ryusa import figures
 from ryusa.studies.osada2004 import _debris
 from ryusa.studies.osada2004._debris import AMOUNT, FREE, LOCKED, SETTLED, SHIPPED, START, Debris, each
 from ryusa.studies.osada2004._experiment import PHI, SLIP, CaseRun, Found, Plan
-from ryusa.study.judge import Band, Finding, Trial, over_seeds, pool, short
+from ryusa.study import Band, Finding, Trial, over_seeds, pool, short
 
 FIGURE = "fig17"
 TITLE = "Ito's debris flow with rotation locked and free"
@@ -53,7 +53,7 @@ def _cures(plan: Plan) -> Sequence[str]:
     return plan.pick((), tuple(CURES))
 
 
-def cases(plan: Plan) -> Sequence[CaseRun]:
+def tasks(plan: Plan) -> Sequence[CaseRun]:
     """Locked grains under every setting, free ones under some."""
     return [
         *(_debris.run(one, seed) for one in locked_settings(plan) for seed in plan.seeds),

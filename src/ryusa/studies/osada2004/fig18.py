@@ -8,7 +8,7 @@ from ryusa import figures
 from ryusa.studies.osada2004 import _debris
 from ryusa.studies.osada2004._debris import SETTLED, Debris
 from ryusa.studies.osada2004._experiment import PHI, SLIP, CaseRun, Found, Plan, paper_run
-from ryusa.study.judge import Band, Finding, Trial, over_seeds, pool, short
+from ryusa.study import Band, Finding, Trial, over_seeds, pool, short
 
 FIGURE = "fig18"
 TITLE = "What long and short contacts do to the ways of grains"
@@ -76,7 +76,7 @@ def _short(chosen: Mapping[str, str], seed: int) -> CaseRun:
     return _run({**chosen, LONGER: "1"}, seed)
 
 
-def cases(plan: Plan) -> Sequence[CaseRun]:
+def tasks(plan: Plan) -> Sequence[CaseRun]:
     """Long and short contacts for every setting and seed."""
     both = [(one, seed) for one in settings(plan) for seed in plan.seeds]
     return list(dict.fromkeys(which(one, seed) for one, seed in both for which in (_run, _short)))

@@ -10,7 +10,7 @@ from ryusa.figures.slopes import Slope, slopes
 from ryusa.results import Results
 from ryusa.studies.osada2004 import _heap
 from ryusa.studies.osada2004._experiment import PHI, RATIO, ROTATION, SLIP, CaseRun, Found, Plan
-from ryusa.study.judge import Band, Finding, Trial, pool
+from ryusa.study import Band, Finding, Trial, pool
 
 FIGURE = "fig19"
 TITLE = "Slope of a heap whose wall is taken away"
@@ -83,7 +83,7 @@ def run(chosen: Mapping[str, str], rotation: str, seed: int) -> CaseRun:
     return _heap.run(chosen, rotation, seed, OTHERS[chosen[GROUND]])
 
 
-def cases(plan: Plan) -> Sequence[CaseRun]:
+def tasks(plan: Plan) -> Sequence[CaseRun]:
     """Locked and free under every setting and seed."""
     return [
         run(chosen, rotation, seed)

@@ -11,7 +11,7 @@ from ryusa.results import Results
 from ryusa.studies.osada2004 import _saltation
 from ryusa.studies.osada2004._experiment import PHI, SLIP, CaseRun, Found, Plan
 from ryusa.studies.osada2004._saltation import SHIPPED, SaltationRun
-from ryusa.study.judge import Band, Finding, Trial, over_seeds, pool
+from ryusa.study import Band, Finding, Trial, over_seeds, pool
 
 FIGURE = "fig20"
 TITLE = "Saltation with and without rotation"
@@ -81,7 +81,7 @@ def settings(plan: Plan) -> list[Setting]:
     return [*((one, AS_SHIPPED) for one in _saltation.choices(plan)), *((SHIPPED, label) for label in others)]
 
 
-def cases(plan: Plan) -> Sequence[CaseRun]:
+def tasks(plan: Plan) -> Sequence[CaseRun]:
     """Locked and free for every setting and seed."""
     runs = [
         _run(one, rotation, seed)

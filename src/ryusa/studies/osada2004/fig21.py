@@ -14,7 +14,7 @@ from ryusa.results import Results
 from ryusa.studies.osada2004 import _saltation
 from ryusa.studies.osada2004._experiment import CaseRun, Found, Plan
 from ryusa.studies.osada2004._saltation import PHI, SHIPPED, SLIP, SaltationRun
-from ryusa.study.judge import Band, Finding, Trial, over_seeds, pool
+from ryusa.study import Band, Finding, Trial, over_seeds, pool
 
 FIGURE = "fig21"
 TITLE = "Spin of a saltating grain"
@@ -74,7 +74,7 @@ def settings(plan: Plan) -> list[dict[str, str]]:
     return [*({**one, STARTS: FLOWING} for one in sets), *({**one, STARTS: RESTING} for one in rest)]
 
 
-def cases(plan: Plan) -> Sequence[CaseRun]:
+def tasks(plan: Plan) -> Sequence[CaseRun]:
     """Rotation free: every set of choices, and the water's torque; locked to set bed shear against."""
     runs = [_run(one, seed) for one in settings(plan) for seed in plan.seeds]
     runs += [_torque(name, seed) for name in TORQUES for seed in plan.seeds]

@@ -12,7 +12,7 @@ from ryusa.measure import Profiles, Rods, Snapshot, profiles, rods, snapshot, tr
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
 from ryusa.studies.osada2004._experiment import PHI, RATIO, SLIP, CaseRun, Found, Plan, paper_run
-from ryusa.study.judge import Band, Finding, Trial, over_seeds, pool, short
+from ryusa.study import Band, Finding, Trial, over_seeds, pool, short
 
 FIGURE = "fig22"
 TITLE = "Movable bed under water, rotation locked and free"
@@ -130,7 +130,7 @@ def _run(chosen: Mapping[str, str], rotation: str, seed: int) -> CaseRun:
     )
 
 
-def cases(plan: Plan) -> Sequence[CaseRun]:
+def tasks(plan: Plan) -> Sequence[CaseRun]:
     """Locked and free grains for every setting and seed."""
     return [
         _run(one, rotation, seed)

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ryusa.studies.osada2004 import PHI, ROTATION
+from ryusa.studies.osada2004._experiment import PHI, ROTATION
 
 HOLDS, SOME, FAILS, OPEN, NONE = "holds", "holds elsewhere", "fails", "undecided", "not run"
 MARKS = {HOLDS: "●", SOME: "◐", FAILS: "○", OPEN: "?", NONE: "·"}  # told apart without colour
@@ -48,12 +48,12 @@ def by_angle(claims: Sequence[Mapping[str, Any]]) -> tuple[tuple[str, ...], tupl
     only with another choice changed too it says so.
     """
     tried = {
-        value for one in claims for trial in one["sweep"] if (value := trial["choices"].get(PHI)) is not None
+        value for one in claims for trial in one["trials"] if (value := trial["choices"].get(PHI)) is not None
     }
     angles = tuple(sorted(tried, key=degrees))
     lines: list[AngleRow] = []
     for one in claims:
-        held = outcomes(one["sweep"])
+        held = outcomes(one["trials"])
         if any(PHI in dict(key) for key in held):
             lines += _lines(one, held, angles)
     return angles, tuple(lines)

@@ -10,7 +10,7 @@ from ryusa.results import Results
 from ryusa.studies.osada2004 import _saltation
 from ryusa.studies.osada2004._experiment import CaseRun, Found, Plan
 from ryusa.studies.osada2004._saltation import K_N, SHIPPED, SKIM, STIFF, STIFFNESSES, WIDE, SaltationRun
-from ryusa.study.judge import Band, Finding, Interval, Trial, over_seeds
+from ryusa.study import Band, Finding, Interval, Trial, over_seeds
 
 FIGURE = "hops"
 TITLE = "Jumps with the same restitution and other contact times"
@@ -42,7 +42,7 @@ def rotations(plan: Plan) -> tuple[str, ...]:
     return plan.pick(("locked",), ("locked",), ("locked", "free"))
 
 
-def cases(plan: Plan) -> Sequence[CaseRun]:
+def tasks(plan: Plan) -> Sequence[CaseRun]:
     """Every stiffness with many starts."""
     return [
         _run(k, seed, rotation)

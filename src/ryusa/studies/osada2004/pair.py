@@ -10,7 +10,7 @@ from ryusa.laws.collision import collision_time
 from ryusa.studies.osada2004 import _drops, fig05
 from ryusa.studies.osada2004._drops import Setup
 from ryusa.studies.osada2004._experiment import CaseRun, Found, Plan
-from ryusa.study.judge import Band, Finding, Trial, over_range
+from ryusa.study import Band, Finding, Trial, over_range
 
 FIGURE = "pair"
 TITLE = "Contact time with the struck grain free to move"
@@ -49,7 +49,7 @@ def setups(plan: Plan) -> list[Setup]:
     return list(dict.fromkeys(one for way in ways for one in way))
 
 
-def cases(plan: Plan) -> Sequence[CaseRun]:
+def tasks(plan: Plan) -> Sequence[CaseRun]:
     """Free and fixed partner for every set and spring."""
     return [one.task for one in setups(plan)]
 

@@ -10,7 +10,7 @@ from ryusa.results import Results
 from ryusa.studies.osada2004 import _saltation
 from ryusa.studies.osada2004._experiment import CaseRun, Found, Plan
 from ryusa.studies.osada2004._saltation import K_N, SHIPPED, SKIM, SaltationRun, sweep_run
-from ryusa.study.judge import Band, Finding, Trial, over_seeds
+from ryusa.study import Band, Finding, Trial, over_seeds
 
 FIGURE = "spin-time"
 TITLE = "Contact time with rotation locked and free"
@@ -30,7 +30,7 @@ def settings(plan: Plan) -> list[dict[str, str]]:
     return [one for one in sets if _saltation.stiffness(one[K_N]) >= SOFTEST]
 
 
-def cases(plan: Plan) -> Sequence[CaseRun]:
+def tasks(plan: Plan) -> Sequence[CaseRun]:
     """Locked and free for every stiffness and set of choices."""
     return [make(one, seed) for one in settings(plan) for seed in plan.seeds for make in (sweep_run, _free)]
 

@@ -12,7 +12,7 @@ from ryusa.measure.statistics import Floats
 from ryusa.studies.osada2004 import _drops
 from ryusa.studies.osada2004._drops import COPIES, NO_TENSION, TENSION, DropRun, Setup
 from ryusa.studies.osada2004._experiment import CaseRun, Found, Plan
-from ryusa.study.judge import Band, Finding, Interval, Trial, over_range
+from ryusa.study import Band, Finding, Interval, Trial, over_range
 
 FIGURE = "steps"
 TITLE = "Steps per contact against abnormal rebound"
@@ -44,7 +44,7 @@ def setups(plan: Plan) -> list[Setup]:
     return [Setup(parting=parting, steps=steps) for parting in partings(plan) for steps in counts(plan)]
 
 
-def cases(plan: Plan) -> Sequence[CaseRun]:
+def tasks(plan: Plan) -> Sequence[CaseRun]:
     """One run per setup."""
     return [one.task for one in setups(plan)]
 

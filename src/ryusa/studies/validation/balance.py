@@ -15,8 +15,19 @@ from ryusa.figures.comparison import Axis, Curve
 from ryusa.laws.families import BedKind, Buoyancy, Drag, Hindrance, Mixing, Profile, Start
 from ryusa.model import EVENT, Column, Scene, State, Water
 from ryusa.model.scene import EventRule, Floats
-from ryusa.studies.validation._check import Comparison, Error, Found, Source, at_most
-from ryusa.study import Level, Task, calculation
+from ryusa.study import (
+    Finding,
+    Found,
+    Level,
+    Plan,
+    Source,
+    Task,
+    Trial,
+    at_most,
+    calculation,
+    comparison,
+    misfit,
+)
 from ryusa.water.coupling import Coupling
 
 TITLE = "The bed carries the weight of the mixture"
@@ -115,32 +126,32 @@ def _call(form: str, level: Level) -> Task:
     return calculation(weigh, form=form, time=LONG[level], seconds=5.0 * (SETTLE + LONG[level]))
 
 
-def runs(level: Level) -> Sequence[Task]:
+def tasks(plan: Plan) -> Sequence[Task]:
     """Every form of buoyancy; full for longer."""
-    return [_call(form, level) for form in FORMS]
+    return [_call(form, plan.level) for form in FORMS]
 
 
-def compare(found: Found, level: Level) -> Sequence[Comparison]:
+def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """What the bed carries over the weight, averaged over a growing time."""
-    time = LONG[level] * (1.0 + np.arange(PARTS)) / PARTS
+    time = LONG[plan.level] * (1.0 + np.arange(PARTS)) / PARTS
     ours: list[Curve] = []
-    errors: list[Error] = []
+    errors: list[Trial] = []
     closes = 0.0
     for form in FORMS:
-        weight, contacts, water, gain = np.cumsum(found[_call(form, level)]["parts"], axis=0).T
+        weight, contacts, water, gain = np.cumsum(found[_call(form, plan.level)]["parts"], axis=0).T
         ratio = -(contacts + water) / weight
         ours.append(Curve(f"buoyancy {form}", time, ratio))
         why = "momentum that comes and goes within the time"
         errors.append(
-            Error(f"{form}: bed over weight, less 1", abs(float(ratio[-1]) - 1.0), "-", at_most(0.01, why))
+            misfit(f"{form}: bed over weight, less 1", abs(float(ratio[-1]) - 1.0), "-", at_most(0.01, why))
         )
         off = np.abs(weight + contacts + water - gain) / weight
         closes = max(closes, float(off.max()))
     errors.append(
-        Error("largest momentum not accounted for, over weight", closes, "-", at_most(1e-9, "round-off"))
+        misfit("largest momentum not accounted for, over weight", closes, "-", at_most(1e-9, "round-off"))
     )
     return [
-        Comparison(
+        comparison(
             "bed-stress", "Stress of the bed over the downslope weight of the mixture",
             Source("steady uniform flow: bed stress = integral of (rho (1 - phi) + sigma phi) g sin(slope)"),
             Axis("averaged over", "s"), Axis("bed stress over weight"), ours,

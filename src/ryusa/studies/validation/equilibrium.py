@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from ryusa.cases import case_path
 from ryusa.figures.comparison import Axis, Curve
 from ryusa.laws.debris import (
     collision_factor,
@@ -21,8 +22,19 @@ from ryusa.laws.debris import (
 from ryusa.measure import profiles
 from ryusa.model.scene import Floats
 from ryusa.results import Results
-from ryusa.studies.validation._check import Comparison, Error, Found, Source, at_most, case_run
-from ryusa.study import CaseRun, Level, Task
+from ryusa.study import (
+    CaseRun,
+    Finding,
+    Found,
+    Level,
+    Plan,
+    Source,
+    Task,
+    at_most,
+    case_run,
+    comparison,
+    misfit,
+)
 
 TITLE = "Debris flow in equilibrium with its slope"
 # slope -> depth of water over the bed at first: flows about as deep as each other once the bed is eroded
@@ -35,15 +47,15 @@ SAND = math.radians(38.0)
 E, K_D, K_F, G, D = 0.7, 0.0828, 0.16, 9.81, 4.0e-3  # restitution, Egashira's constants; [m/s2], [m]
 
 
-def runs(level: Level) -> Sequence[Task]:
+def tasks(plan: Plan) -> Sequence[Task]:
     """Every slope, and the dry flow; only at the full level."""
-    if level is not Level.FULL:
+    if plan.level is not Level.FULL:
         return []
     wet = [
-        case_run("debris_equilibrium", {"motion.slope_angle": slope, "water.depth": depth}, folder="")
+        case_run(case_path("debris_equilibrium.toml"), {"motion.slope_angle": slope, "water.depth": depth})
         for slope, depth in SLOPES.items()
     ]
-    return [*wet, case_run("friction_angle")]
+    return [*wet, case_run(case_path("validation/friction_angle.toml"))]
 
 
 def measure(run: Results, one: CaseRun) -> dict[str, Any]:
@@ -117,11 +129,11 @@ def _layer(run: Results, begin: float, end: float, slow: float = SLOW) -> dict[s
     }  # fmt: skip
 
 
-def compare(found: Found, level: Level) -> Sequence[Comparison]:
+def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """Concentration over slope."""
-    if level is not Level.FULL:
+    if plan.level is not Level.FULL:
         return []
-    *wet, dry = (found[one] for one in runs(level))
+    *wet, dry = (found[one] for one in tasks(plan))
     slope, c = (np.array([one[key] for one in wet]) for key in ("slope", "c"))
     phi = math.atan(dry["friction"])
     fine = np.linspace(8.0, 20.0, 49)
@@ -135,7 +147,7 @@ def compare(found: Found, level: Level) -> Sequence[Comparison]:
     )
     settings = {"grains": "spheres of 4 mm +- 10 %, free to spin, mu = 0.577, e = 0.7"}
     return [
-        Comparison(
+        comparison(
             "concentration", "Concentration against slope",
             Source(
                 "Takahashi 1978; Egashira, Miyamoto & Itoh 1997: c = rho tan(slope)/((sigma - rho) "
@@ -144,7 +156,7 @@ def compare(found: Found, level: Level) -> Sequence[Comparison]:
             Axis("slope", "deg"), Axis("concentration"), [Curve("grains", np.degrees(slope), c)],
             [Curve(f"phi = {math.degrees(phi):.1f} deg, of the dry flow", fine, _curve(fine, phi, wet))],
             [
-                Error(
+                misfit(
                     "largest relative difference", float(np.abs(c / closed - 1.0).max()), "-",
                     at_most(0.25, "1 deg of friction and half a grain of bed are a tenth of c each"),
                 ),
@@ -159,7 +171,7 @@ def compare(found: Found, level: Level) -> Sequence[Comparison]:
     ]  # fmt: skip
 
 
-def _velocity(wet: Sequence[dict[str, Any]], phi: float, settings: dict[str, str]) -> Comparison:
+def _velocity(wet: Sequence[dict[str, Any]], phi: float, settings: dict[str, str]) -> Finding:
     """Speed of the water over height, beside the law of a uniform mixture."""
     ours: list[Curve] = []
     theirs: list[Curve] = []
@@ -177,7 +189,7 @@ def _velocity(wet: Sequence[dict[str, Any]], phi: float, settings: dict[str, str
         ours.append(Curve(name, u, z))
         theirs.append(Curve(name, np.array(law), z))
         ratios.append(float(u[-1]) / law[-1] if law[-1] > 0.0 else math.nan)
-    return Comparison(
+    return comparison(
         "velocity", "Speed over height",
         Source(
             "Egashira, Miyamoto & Itoh 1997, integrated: U = (2/3) K (h^1.5 - (h - z)^1.5), the same "
@@ -185,7 +197,7 @@ def _velocity(wet: Sequence[dict[str, Any]], phi: float, settings: dict[str, str
         ),
         Axis("speed of the water", "m/s"), Axis("height above the bed over d"), ours, theirs,
         [
-            Error(f"surface's speed over theirs, {line.name}", ratio)
+            misfit(f"surface's speed over theirs, {line.name}", ratio)
             for line, ratio in zip(ours, ratios, strict=True)
         ],
         settings,

@@ -12,17 +12,21 @@ from ryusa.figures.comparison import Axis, Curve
 from ryusa.measure import profiles, transport
 from ryusa.model.scene import Floats
 from ryusa.results import Results
-from ryusa.studies.validation._check import (
-    Comparison,
-    Error,
+from ryusa.study import (
+    Band,
+    CaseRun,
+    Finding,
     Found,
     Known,
+    Level,
+    Plan,
     Source,
-    Tolerance,
+    Task,
     at_most,
     case_run,
+    comparison,
+    misfit,
 )
-from ryusa.study import CaseRun, Level, Task
 
 TITLE = "Bed load in a narrow flume"
 D, EXCESS, G, SLOPE = 6.0e-3, 1.5, 9.81, 0.1  # of the case file [m], [-], [m/s2], [rad]
@@ -81,12 +85,12 @@ CHOICES = {
 def _work(choice: str, run: int) -> CaseRun:
     flume = FLUME[run]
     keys = {"water.depth": flume.depth, "build.layers": flume.layers, **CHOICES[choice].overrides}
-    return case_run("frey", keys)
+    return case_run(case_path("validation/frey.toml"), keys)
 
 
-def runs(level: Level) -> Sequence[Task]:
+def tasks(plan: Plan) -> Sequence[Task]:
     """Six runs of some minutes, at the full level."""
-    if level is not Level.FULL:
+    if plan.level is not Level.FULL:
         return []
     return [_work(name, run) for name, choice in CHOICES.items() for run in choice.runs]
 
@@ -122,9 +126,9 @@ def measure(run: Results, one: CaseRun) -> dict[str, Floats | float]:
     }  # fmt: skip
 
 
-def compare(found: Found, level: Level) -> Sequence[Comparison]:
+def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """Concentration and speed over height for each run and each set of parameters."""
-    if level is not Level.FULL:
+    if plan.level is not Level.FULL:
         return []
     flume = measured()
     return [
@@ -141,7 +145,7 @@ def _compare(
     run: int,
     flume: tuple[Floats, Floats, Floats],
     ours: Mapping[str, Floats | float],
-) -> list[Comparison]:
+) -> list[Finding]:
     z, phi, u = flume
     there = (z >= LOW) & (phi >= LEAST)
     at = np.arange(LOW, float(z[there].max()) + 1e-9, STEP)
@@ -160,22 +164,22 @@ def _compare(
     window = (z_ours >= LOW - 1.0) & (z_ours <= float(z.max()))
     height = Axis("height over the base over d")
     return [
-        Comparison(
+        comparison(
             f"{name}-{run}-phi", f"Run {run}, {choice.words}: concentration", SOURCE, height, Axis("phi"),
             [Curve("beads", z_ours[window], phi_ours[window])], [Curve(f"Frey, run {run}", z, phi)],
             [
-                Error(
+                misfit(
                     "q_star over that of the flume", q_star / q_flume, "-",
-                    Tolerance(0.7, 1.3, "the peer that was fitted to this flume keeps within 30 %"),
+                    Band(0.7, 1.3, "-", "the peer that was fitted to this flume keeps within 30 %"),
                 ),
-                Error("rms of phi", rms(phi_ours, phi), "-", at_most(0.05, "a tenth of a packed bed")),
+                misfit("rms of phi", rms(phi_ours, phi), "-", at_most(0.05, "a tenth of a packed bed")),
             ],
             settings, SAID[name],
         ),
-        Comparison(
+        comparison(
             f"{name}-{run}-u", f"Run {run}, {choice.words}: speed", SOURCE, height, Axis("speed", "m/s"),
             [Curve("beads", z_ours[window], u_ours[window])], [Curve(f"Frey, run {run}", z, u)],
-            [Error("rms of u", rms(u_ours, u), "m/s", at_most(0.05, "a tenth of the water's speed"))],
+            [misfit("rms of u", rms(u_ours, u), "m/s", at_most(0.05, "a tenth of the water's speed"))],
             settings, SAID[name],
             [Curve("water", np.asarray(ours["z_water"]), np.asarray(ours["u_water"]))],
         ),

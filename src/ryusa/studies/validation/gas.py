@@ -11,8 +11,7 @@ from ryusa.figures.comparison import Axis, Curve
 from ryusa.laws import collision
 from ryusa.model import ContactLaw
 from ryusa.model.scene import EventRule, Floats
-from ryusa.studies.validation._check import Comparison, Error, Found, Source, at_most
-from ryusa.study import Level, Task, calculation
+from ryusa.study import Finding, Found, Level, Plan, Source, Task, at_most, calculation, comparison, misfit
 
 TITLE = "A granular gas cools"
 E, PHI = 0.9, 0.02
@@ -74,17 +73,17 @@ def _cool(level: Level) -> Task:
     return calculation(cool, seed=1, times=LONG[level], seconds=240.0 * LONG[level])
 
 
-def runs(level: Level) -> Sequence[Task]:
+def tasks(plan: Plan) -> Sequence[Task]:
     """One gas, in quick only for a short while."""
-    return [_cool(level)]
+    return [_cool(plan.level)]
 
 
-def compare(found: Found, level: Level) -> Sequence[Comparison]:
+def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """Slope of 1/sqrt(T): what it cools, over what Haff says."""
-    ours = found[_cool(level)]
+    ours = found[_cool(plan.level)]
     rate = float(np.polyfit(ours["t"], 1.0 / np.sqrt(ours["T"]), 1)[0])
     return [
-        Comparison(
+        comparison(
             "haff", "Temperature of a freely cooling gas",
             Source(
                 "Haff 1983, T = T_0/(1 + t/tau_0)^2; rate of Enskog's theory (van Noije & Ernst 1998) with "
@@ -93,10 +92,10 @@ def compare(found: Found, level: Level) -> Sequence[Comparison]:
             Axis("time over tau_0"), Axis("T/T_0"), [Curve("2450 grains", ours["t"], ours["T"])],
             [Curve("Haff", ours["t"], (1.0 + ours["t"]) ** -2.0)],
             [
-                Error(
+                misfit(
                     "tau_0 over that of theory, less 1", abs(1.0 / rate - 1.0), "-",
                     at_most(
-                        0.03 if level is Level.FULL else 0.15,
+                        0.03 if plan.level is Level.FULL else 0.15,
                         "number of collisions, and contacts that take time",
                     ),
                 )

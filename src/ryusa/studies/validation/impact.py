@@ -12,8 +12,18 @@ from ryusa.laws import collision
 from ryusa.laws.families import Cap, Slip
 from ryusa.model import ContactLaw
 from ryusa.model.scene import Floats
-from ryusa.studies.validation._check import Comparison, Error, Found, Known, Source, at_most
-from ryusa.study import Level, Task, calculation
+from ryusa.study import (
+    Finding,
+    Found,
+    Known,
+    Plan,
+    Source,
+    Task,
+    at_most,
+    calculation,
+    comparison,
+    misfit,
+)
 
 TITLE = "A grain hits"
 ASKED = (0.1, 0.3, 0.5, 0.7, 0.9, 0.98)
@@ -103,28 +113,28 @@ def _oblique() -> Task:
     return calculation(oblique, per_contact=400.0, seconds=0.05)
 
 
-def runs(level: Level) -> Sequence[Task]:
+def tasks(plan: Plan) -> Sequence[Task]:
     """Head on with and without tension, at 50 and 500 steps a contact; oblique. At both levels."""
-    del level
+    del plan
     return [*(_bounce(e, t, n) for t in (False, True) for n in (50.0, 500.0) for e in ASKED), _oblique()]
 
 
-def compare(found: Found, level: Level) -> Sequence[Comparison]:
+def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """Restitution, contact time, and the three numbers of a sliding impact."""
-    del level
+    del plan
     return [_restitution(found), _duration(found), *_test_4(found)]
 
 
 NAMED = {False: "force never pulls", True: "dashpot may pull"}
 
 
-def _restitution(found: Found) -> Comparison:
+def _restitution(found: Found) -> Finding:
     def worst(steps: float, mean: bool) -> float:
         every = [found[_bounce(e, t, steps)]["e"] - e for t in NAMED for e in ASKED]
         return float(max(abs(one.mean()) if mean else np.abs(one).max() for one in every))
 
     asked = np.array(ASKED)
-    return Comparison(
+    return comparison(
         "restitution", "Restitution asked and got",
         Source(
             "damped oscillator, exp(-pi zeta/sqrt(1 - zeta^2)); without tension Schwager & Poeschel 2007, "
@@ -137,15 +147,15 @@ def _restitution(found: Found) -> Comparison:
         ],
         [Curve("as asked", np.array([0.0, 1.0]), np.array([0.0, 1.0]))],
         [
-            Error(
+            misfit(
                 "mean over 20 phases of first touch, 50 steps", worst(50.0, True), "-",
                 at_most(2e-3, "1/50^2, and more where it is strongly damped"),
             ),
-            Error(
+            misfit(
                 "worst phase, 50 steps", worst(50.0, False), "-",
                 at_most(1.5e-2, "the dashpot jumps at touch: first order"),
             ),
-            Error("worst phase, 500 steps", worst(500.0, False), "-", at_most(1.5e-3, "a tenth of that")),
+            misfit("worst phase, 500 steps", worst(500.0, False), "-", at_most(1.5e-3, "a tenth of that")),
         ],
         {"d": "2 mm", "k_n": "1e4 N/m", "speed": "0.5 m/s"},
     )  # fmt: skip
@@ -155,22 +165,22 @@ def _mean(found: Found, what: str, tension: bool, steps: float) -> Floats:
     return np.array([found[_bounce(e, tension, steps)][what].mean() for e in ASKED])
 
 
-def _duration(found: Found) -> Comparison:
+def _duration(found: Found) -> Finding:
     asked = np.array(ASKED)
     every = {(t, n): _mean(found, "time", t, n) for t in NAMED for n in (50.0, 500.0)}
     worst = {n: max(float(np.abs(every[t, n] - 1.0).max()) for t in NAMED) for n in (50.0, 500.0)}
-    return Comparison(
+    return comparison(
         "contact-time", "Contact time over that of the damped oscillator",
         Source("pi/(omega_0 sqrt(1 - zeta^2)); without tension Schwager & Poeschel 2007, eq. 21"),
         Axis("restitution asked"), Axis("contact time over closed form"),
         [Curve(f"{NAMED[t]}, {n:g} steps a contact", asked, times) for (t, n), times in every.items()],
         [Curve("closed form", asked, np.ones(len(asked)))],
         [
-            Error(
+            misfit(
                 "largest relative difference, 50 steps", worst[50.0], "-",
                 at_most(0.05, "the dashpot sees a speed half a step old: zeta omega_0 dt"),
             ),
-            Error(
+            misfit(
                 "largest relative difference, 500 steps", worst[500.0], "-", at_most(0.005, "a tenth of that")
             ),
         ],
@@ -178,7 +188,7 @@ def _duration(found: Found) -> Comparison:
     )  # fmt: skip
 
 
-def _test_4(found: Found) -> Sequence[Comparison]:
+def _test_4(found: Found) -> Sequence[Finding]:
     ours = found[_oblique()]
     angle = np.array(ANGLES)
     law = sliding(angle)
@@ -188,14 +198,14 @@ def _test_4(found: Found) -> Sequence[Comparison]:
         ("spin", "spin", "rad/s", 0.02),
         ("leaves", "angle of the touching point", "deg", 2.0),
     )
-    made: list[Comparison] = []
+    made: list[Finding] = []
     for k, (key, words, unit, read) in enumerate(kinds):
         table = np.array([TEST_4[one][k] for one in ANGLES])
         off = np.abs(ours[key] - law[k]).max() / (1.0 if key == "leaves" else np.abs(law[k]).max())
         far = np.abs(ours[key] - table).max() / (1.0 if key == "leaves" else np.abs(table).max())
         told = "largest difference" if key == "leaves" else "largest difference over the largest value"
         said = unit if key == "leaves" else "-"
-        made.append(Comparison(
+        made.append(comparison(
             f"oblique-{key.replace('_', '-')}", f"Oblique impact, sliding branch: {words}",
             Source(
                 "gross sliding: e_t = 1 - mu (1 + e)/tan(theta); Chung & Ooi 2011, test 4, aluminium oxide "
@@ -205,11 +215,11 @@ def _test_4(found: Found) -> Sequence[Comparison]:
             [Curve("linear spring, 400 steps a contact", angle, ours[key])],
             [Curve("gross sliding", fine, sliding(fine)[k]), Curve("Chung & Ooi, test 4", angle, table)],
             [
-                Error(
+                misfit(
                     f"{told}, closed form", float(off), said,
                     at_most(0.2 if key == "leaves" else 5e-3, "1/400 and the first step"),
                 ),
-                Error(f"{told}, test 4", float(far), said, at_most(read, "digitised curve")),
+                misfit(f"{told}, test 4", float(far), said, at_most(read, "digitised curve")),
             ],
             {"radius": "2.5 mm", "speed": "3.9 m/s", "e": "0.98", "mu": "0.092", "slip": "total"},
             "Below 32.5 deg the table is Hertz and Mindlin's, no target for a linear spring.",

@@ -5,12 +5,25 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ryusa.cases import case_path
 from ryusa.figures.comparison import Axis, Curve
 from ryusa.measure import profiles
 from ryusa.model.scene import Floats
 from ryusa.results import Results
-from ryusa.studies.validation._check import Comparison, Error, Found, Source, Tolerance, at_most, case_run
-from ryusa.study import CaseRun, Level, Task
+from ryusa.study import (
+    Band,
+    CaseRun,
+    Finding,
+    Found,
+    Level,
+    Plan,
+    Source,
+    Task,
+    at_most,
+    case_run,
+    comparison,
+    misfit,
+)
 
 TITLE = "A dense flow down an incline"
 SLOPE, G = math.radians(24.0), 9.8  # of the case file [rad], [m/s2]
@@ -18,9 +31,9 @@ LAYER = 1.0  # thickness of a layer [d]; thinner ones see the layers that grains
 CORE = (0.2, 0.8)  # of the depth, away from bed and surface
 
 
-def runs(level: Level) -> Sequence[Task]:
+def tasks(plan: Plan) -> Sequence[Task]:
     """One run of minutes, at the full level."""
-    return [case_run("incline")] if level is Level.FULL else []
+    return [case_run(case_path("validation/incline.toml"))] if plan.level is Level.FULL else []
 
 
 def measure(run: Results, one: CaseRun) -> dict[str, Floats | float]:
@@ -57,11 +70,11 @@ def exponent(s: Floats, u: Floats) -> float:
     return float(tried[int(np.argmin([left(n) for n in tried]))])
 
 
-def compare(found: Found, level: Level) -> Sequence[Comparison]:
+def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """Exponent of the profile, and the inertial number over the depth."""
-    if level is not Level.FULL:
+    if plan.level is not Level.FULL:
         return []
-    ours = found[case_run("incline")]
+    ours = found[case_run(case_path("validation/incline.toml"))]
     z, u, phi, d = (np.asarray(ours[key]) for key in ("z", "u", "phi", "d"))
     s, mean = below_surface(ours)
     core = (s > CORE[0] * s[0]) & (s < CORE[1] * s[0])
@@ -79,37 +92,37 @@ def compare(found: Found, level: Level) -> Sequence[Comparison]:
         "depth": f"{s[0] / float(d):.1f} d",
         "phi": f"{mean:.3f}",
     }
-    steady = Error(
+    steady = misfit(
         "mean speed of the second half over the first, less 1",
         abs(float(ours["drift"])),
         "-",
         at_most(0.05, "it is to be steady"),
     )
     return [
-        Comparison(
+        comparison(
             "bagnold", "Velocity over height",
             Source("Bagnold: u = u_s - (2/3) (I/d) sqrt(phi g cos(theta)) s^1.5, s below the surface"),
             Axis("height above the bed over d"), Axis("speed", "m/s"), [Curve("grains", z / d, u)],
             [Curve("Bagnold, I of the core", z / d, surface - law * s**1.5)],
             [
-                Error(
+                misfit(
                     "exponent of s, core", exponent(s[core], u[core]), "-",
-                    Tolerance(1.4, 1.6, "3/2, and a flow of some ten grains"),
+                    Band(1.4, 1.6, "-", "3/2, and a flow of some ten grains"),
                 ),
                 steady,
             ],
             settings, "The core is 0.2 to 0.8 of the depth; bed and surface have their own layers.",
         ),
-        Comparison(
+        comparison(
             "inertial-number", "Inertial number over height",
             Source("steady flow down an incline: tau/p = tan(theta) everywhere, so I is uniform"),
             Axis("height above the bed over d"), Axis("I"), [Curve("grains", (z / d)[core], inertial[core])],
             [Curve("mean of the core", (z / d)[core], np.full(int(core.sum()), i_mean))],
             [
-                Error(
+                misfit(
                     "largest relative difference, core", spread, "-", at_most(0.1, "a depth of ten grains")
                 ),
-                Error("phi, largest relative difference, core", even, "-", at_most(0.05, "phi follows I")),
+                misfit("phi, largest relative difference, core", even, "-", at_most(0.05, "phi follows I")),
             ],
             settings, "Layers of half a grain would see how grains lie over the bed.",
         ),

@@ -13,8 +13,18 @@ from ryusa.figures.comparison import Axis, Curve
 from ryusa.laws.families import Drag, Profile, Rebound
 from ryusa.model import Water
 from ryusa.model.scene import Floats
-from ryusa.studies.validation._check import Comparison, Error, Found, Known, Source, at_most
-from ryusa.study import Level, Task, calculation
+from ryusa.study import (
+    Finding,
+    Found,
+    Known,
+    Plan,
+    Source,
+    Task,
+    at_most,
+    calculation,
+    comparison,
+    misfit,
+)
 
 TITLE = "A grain hits under water"
 D, DENSITY, NU, RHO, C_M = 2.0e-3, 2650.0, 1.0e-6, 1000.0, 0.5  # [m], [kg/m3], [m2/s], [kg/m3], [-]
@@ -111,16 +121,16 @@ def _film(partner: str) -> Task:
     return calculation(film, partner=partner, seconds=3.0)
 
 
-def runs(level: Level) -> Sequence[Task]:
+def tasks(plan: Plan) -> Sequence[Task]:
     """Both laws on every partner at two time steps, and films; at both levels."""
-    del level
+    del plan
     laws = [_bounce(law, partner, n) for law in LAWS for partner in PARTNERS for n in (COARSE, FINE)]
     return [*laws, *(_film(partner) for partner in PARTNERS)]
 
 
-def compare(found: Found, level: Level) -> Sequence[Comparison]:
+def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """Both laws as asked, films as they follow, and all three beside spheres on a wall."""
-    del level
+    del plan
     return [*(_law(found, name) for name in LAWS), _films(found), _trend(found)]
 
 
@@ -141,26 +151,26 @@ SETTINGS = {
 ROUGHNESS = {"roughness": f"{1e6 * ROUGH:g} um"}
 
 
-def _law(found: Found, name: str) -> Comparison:
+def _law(found: Found, name: str) -> Finding:
     st = np.array(ASKED)
     law = asked(name, st)
     off = {n: np.array([found[_bounce(name, one, n)]["e"] - law for one in PARTNERS]) for n in (COARSE, FINE)}
     worst = {n: float(np.abs(each / law)[:, law >= MUCH].max()) for n, each in off.items()}
-    return Comparison(
+    return comparison(
         name.lower(), f"Rebound '{name}': restitution asked and got", SOURCES[name],
         STOKES, Axis("restitution"),
         [Curve(f"{one}, {FINE:g} steps", st, found[_bounce(name, one, FINE)]["e"]) for one in PARTNERS],
         [Curve("as asked", DENSE, asked(name, DENSE))],
         [
-            Error(
+            misfit(
                 "largest difference, 300 steps a dry contact", float(np.abs(off[FINE]).max()), "-",
                 at_most(2e-3, "the dashpot jumps at touch: first order in the step"),
             ),
-            Error(
+            misfit(
                 "the same, relative, where 0.1 or more is left", worst[FINE], "-",
                 at_most(0.02, "a stronger dashpot than a dry contact has, and so fewer steps to its time"),
             ),
-            Error(
+            misfit(
                 "the same at 50 steps", worst[COARSE], "-", at_most(0.08, "a step six times as long")
             ),
         ],
@@ -168,10 +178,10 @@ def _law(found: Found, name: str) -> Comparison:
     )  # fmt: skip
 
 
-def _films(found: Found) -> Comparison:
+def _films(found: Found) -> Finding:
     st = np.array(ASKED)
     got = {one: found[_film(one)]["e"] for one in PARTNERS}
-    return Comparison(
+    return comparison(
         "film", "Film 'lubrication': speed out of it over speed into it",
         Source(
             "6 pi mu r^2 closing (1/(gap + roughness) - 1/(reach + roughness)) integrated over the gap, in "
@@ -180,7 +190,7 @@ def _films(found: Found) -> Comparison:
         STOKES, Axis("speed out over speed in"),
         [Curve(one, st, e) for one, e in got.items()], [Curve("closed form", DENSE, through(DENSE))],
         [
-            Error(
+            misfit(
                 "largest difference", max(float(np.abs(e - through(st)).max()) for e in got.values()), "-",
                 at_most(2e-3, "that of a dry contact at 300 steps"),
             )
@@ -189,11 +199,11 @@ def _films(found: Found) -> Comparison:
     )  # fmt: skip
 
 
-def _trend(found: Found) -> Comparison:
+def _trend(found: Found) -> Finding:
     st, ends = np.array(ASKED), 10.0
     got = {f"rebound '{name}'": found[_bounce(name, "wall", FINE)]["e"] for name in LAWS}
     got["film 'lubrication'"] = found[_film("wall")]["e"]
-    return Comparison(
+    return comparison(
         "trend", "Restitution over that in air, against a wall",
         Source(
             "Gondret, Lance & Petit 2002: no rebound below St of about 10, that in air at large St",
@@ -206,7 +216,7 @@ def _trend(found: Found) -> Comparison:
             Curve("that in air", np.array([500.0, st[-1]]), np.ones(2)),
         ],
         [
-            Error(f"{name}, left at St = {ends:g}", float(np.interp(math.log(ends), np.log(st), e / E_DRY)))
+            misfit(f"{name}, left at St = {ends:g}", float(np.interp(math.log(ends), np.log(st), e / E_DRY)))
             for name, e in got.items()
         ],
         SETTINGS | ROUGHNESS,

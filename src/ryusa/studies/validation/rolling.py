@@ -11,8 +11,18 @@ from ryusa.figures.comparison import Axis, Curve
 from ryusa.laws.families import Arm, Rolling, Slip
 from ryusa.model import ContactLaw, RollingLaw
 from ryusa.model.scene import Floats
-from ryusa.studies.validation._check import Comparison, Error, Found, Source, at_most, relative
-from ryusa.study import Level, Task, calculation
+from ryusa.study import (
+    Finding,
+    Found,
+    Plan,
+    Source,
+    Task,
+    at_most,
+    calculation,
+    comparison,
+    misfit,
+    relative,
+)
 
 TITLE = "A sphere slides and rolls"
 G, D, K_N = 9.80665, 2.0e-3, 1.0e3  # [m/s2], [m], [N/m]
@@ -63,23 +73,23 @@ def _roll(model: str) -> Task:
     return calculation(roll, model=model)
 
 
-def runs(level: Level) -> Sequence[Task]:
+def tasks(plan: Plan) -> Sequence[Task]:
     """Sliding into rolling, and both laws of rolling friction, at both levels."""
-    del level
+    del plan
     return [calculation(slide), *(_roll(one) for one in MODELS)]
 
 
-def compare(found: Found, level: Level) -> Sequence[Comparison]:
+def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """Speed while sliding and after it; way until it stops."""
-    del level
+    del plan
     return [_slides(found), *(_stops(found, one) for one in MODELS)]
 
 
-def _slides(found: Found) -> Comparison:
+def _slides(found: Found) -> Finding:
     ours = found[calculation(slide)]
     t = ours["t"]
     law = np.maximum(FAST - MU * G * t, 5.0 / 7.0 * FAST)
-    return Comparison(
+    return comparison(
         "slide-to-roll", "It slides until it rolls at 5/7 of its speed",
         Source("v = v_0 - mu g t until 2 v_0/(7 mu g), then (5/7) v_0"),
         Axis("time", "s"), Axis("speed", "m/s"),
@@ -89,11 +99,11 @@ def _slides(found: Found) -> Comparison:
             Curve("spin times radius", t, np.minimum(2.5 * MU * G * t, 5.0 / 7.0 * FAST)),
         ],
         [
-            Error(
+            misfit(
                 "largest difference over the first speed", relative(ours["v"], law), "-",
                 at_most(2e-3, "a spring holds a little before it slips"),
             ),
-            Error(
+            misfit(
                 "last speed over (5/7) v_0, less 1", abs(float(ours["v"][-1] / law[-1]) - 1.0), "-",
                 at_most(2e-3, "what the tangential spring holds"),
             ),
@@ -102,23 +112,23 @@ def _slides(found: Found) -> Comparison:
     )  # fmt: skip
 
 
-def _stops(found: Found, model: str) -> Comparison:
+def _stops(found: Found, model: str) -> Finding:
     ours = found[_roll(model)]
     t, brake = ours["t"], 5.0 / 7.0 * MU_R * G
     until = np.minimum(t, SLOW / brake)
     law = SLOW * until - 0.5 * brake * until**2
     stop = 0.5 * SLOW**2 / brake
-    return Comparison(
+    return comparison(
         f"stops-{model}", f"Rolling friction stops it: {model}",
         Source("x = v_0 t - a t^2/2, a = (5/7) mu_r g, up to v_0^2/(2 a); Ai et al. 2011 name the types"),
         Axis("time", "s"), Axis("way", "mm"),
         [Curve("way", t, 1e3 * ours["x"])], [Curve("way", t, 1e3 * law)],
         [
-            Error(
+            misfit(
                 "largest difference over the way", relative(ours["x"], law), "-",
                 at_most(5e-3, "the spring of the slider winds up first"),
             ),
-            Error(
+            misfit(
                 "way until it stops over v_0^2/(2 a), less 1", abs(float(ours["x"][-1]) / stop - 1.0), "-",
                 at_most(5e-3, "the same"),
             ),

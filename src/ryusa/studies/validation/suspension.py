@@ -13,8 +13,18 @@ from ryusa.laws.families import BedKind, Buoyancy, Drag, Hindrance, Profile
 from ryusa.laws.hindrance import exponent_settling
 from ryusa.model import Column, Water
 from ryusa.model.scene import EventRule, Floats
-from ryusa.studies.validation._check import Comparison, Error, Found, Source, at_most
-from ryusa.study import Level, Task, calculation
+from ryusa.study import (
+    Finding,
+    Found,
+    Plan,
+    Source,
+    Task,
+    Trial,
+    at_most,
+    calculation,
+    comparison,
+    misfit,
+)
 from ryusa.water.coupling import Coupling
 
 TITLE = "A suspension settles"
@@ -131,23 +141,23 @@ def _call(law: str, where: str, form: str) -> Task:
     return calculation(settle, law=law, where=where, form=form, seconds=0.5)
 
 
-def runs(level: Level) -> Sequence[Task]:
+def tasks(plan: Plan) -> Sequence[Task]:
     """Every hindrance under every form of buoyancy in both ranges, at both levels."""
-    del level
+    del plan
     return [_call(law, where, form) for where in RANGES for form in FORMS for law in LAWS]
 
 
-def compare(found: Found, level: Level) -> Sequence[Comparison]:
+def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """One picture per range and form of buoyancy."""
-    del level
+    del plan
     return [_compare(found, where, form) for where in RANGES for form in FORMS]
 
 
-def _compare(found: Found, where: str, form: str) -> Comparison:
+def _compare(found: Found, where: str, form: str) -> Finding:
     fine = np.linspace(0.01, 0.5, 99)
     ours: list[Curve] = []
     references: list[Curve] = []
-    errors: list[Error] = []
+    errors: list[Trial] = []
     for law in LAWS:
         numbers = found[_call(law, where, form)]
         n = exponent(law, where, form)
@@ -156,11 +166,11 @@ def _compare(found: Found, where: str, form: str) -> Comparison:
         references.append(Curve(name, fine, expected(law, where, form, fine)))
         if law == "Gidaspow":
             off = numbers["w"] / expected(law, where, form, numbers["phi"]) - 1.0
-            errors.append(Error(f"{law}: largest relative difference", float(np.abs(off).max()), "-", CLOSE))
+            errors.append(misfit(f"{law}: largest relative difference", float(np.abs(off).max()), "-", CLOSE))
         else:
             off = np.log(numbers["w"]) / np.log1p(-numbers["phi"]) - n
-            errors.append(Error(f"{law}: largest error of n", float(np.abs(off).max()), "-", CLOSE))
-    return Comparison(
+            errors.append(misfit(f"{law}: largest error of n", float(np.abs(off).max()), "-", CLOSE))
+    return comparison(
         f"{where}-{form}", f"{RANGES[where].words}, buoyancy {form}",
         Source(
             "w = w_0 (1 - phi)^n, n = 1 - p + (q + A)/a of drag eps^-q F_0(eps^p w/eps), F_0 ~ w^a, A = 1 "

@@ -13,8 +13,18 @@ from ryusa.laws import drag
 from ryusa.laws.families import Drag, Profile
 from ryusa.model import Water
 from ryusa.model.scene import EventRule, Floats
-from ryusa.studies.validation._check import Comparison, Error, Found, Known, Source, at_most
-from ryusa.study import Level, Task, calculation
+from ryusa.study import (
+    Finding,
+    Found,
+    Known,
+    Plan,
+    Source,
+    Task,
+    at_most,
+    calculation,
+    comparison,
+    misfit,
+)
 
 TITLE = "One grain falls in still water"
 RATIO, G, NU = 1.65, 9.81, 1.0e-6  # quartz in water: [-], [m/s2], [m2/s]
@@ -70,24 +80,24 @@ def _call(law: str) -> Task:
     return calculation(fall, law=law, seconds=0.2)
 
 
-def runs(level: Level) -> Sequence[Task]:
+def tasks(plan: Plan) -> Sequence[Task]:
     """Every drag law; they take no time, so both levels have all."""
-    del level
+    del plan
     return [_call(law) for law in LAWS]
 
 
-def compare(found: Found, level: Level) -> Sequence[Comparison]:
+def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """Set the stepped grain against the root of the balance, and two of our laws against the field's."""
-    del level
+    del plan
     ours = {law: found[_call(law)]["w"] for law in LAWS}
     mm = 1e3 * np.array(SIZES)
-    roots = Comparison(
+    roots = comparison(
         "drag-laws", "Terminal velocity under every drag law",
         Source("root of C_D(Re) w^2 = (4/3) (rho_s/rho - 1) g d"), D, W,
         [Curve(law, mm, w) for law, w in ours.items()],
         [Curve(law, 1e3 * FINE, np.array([root(LAWS[law][1], float(d)) for d in FINE])) for law in LAWS],
         [
-            Error(
+            misfit(
                 f"{law}: largest relative difference",
                 max(abs(w / root(LAWS[law][1], d) - 1.0) for d, w in zip(SIZES, speeds, strict=True)), "-",
                 at_most(1e-7, "20 response times from rest: exp(-20), and round-off"),
@@ -99,7 +109,7 @@ def compare(found: Found, level: Level) -> Sequence[Comparison]:
     )  # fmt: skip
     shown = ("Schiller-Naumann", "Ferguson-Church sphere", "Ferguson-Church sand")
     law_of = {"Soulsby 1997, natural sand": shown[2], "Dietrich 1982, nearly round": shown[0]}
-    field = Comparison(
+    field = comparison(
         "field", "Our drag laws beside the field's settling formulae",
         Source(
             "Soulsby 1997; Dietrich 1982 without shape; Ferguson & Church 2004: fits to measured sand",
@@ -108,7 +118,7 @@ def compare(found: Found, level: Level) -> Sequence[Comparison]:
         D, W, [Curve(law, mm, ours[law]) for law in shown],
         [Curve(name, 1e3 * FINE, np.array([w(float(d)) for d in FINE])) for name, w in FIELD.items()],
         [
-            Error(
+            misfit(
                 f"{law} against {name}: largest relative difference",
                 max(abs(w / FIELD[name](d) - 1.0) for d, w in zip(SIZES, ours[law], strict=True)),
             )

@@ -6,23 +6,28 @@ from typing import Any
 
 import numpy as np
 
+from ryusa.cases import case_path
 from ryusa.figures.comparison import Axis, Curve
 from ryusa.laws import debris
 from ryusa.laws import transport as laws
 from ryusa.measure import transport, water
 from ryusa.model.scene import Floats
 from ryusa.results import Results
-from ryusa.studies.validation._check import (
-    Comparison,
-    Error,
+from ryusa.study import (
+    Band,
+    CaseRun,
+    Finding,
     Found,
     Known,
+    Level,
+    Plan,
     Source,
-    Tolerance,
+    Task,
     at_most,
     case_run,
+    comparison,
+    misfit,
 )
-from ryusa.study import CaseRun, Level, Task
 
 TITLE = "Transport of sediment against the stress on the bed"
 SLOPES = {"bedload_3d": (0.005, 0.00825, 0.0132, 0.0248), "sheet_flow": (0.0275, 0.0468, 0.07)}
@@ -35,12 +40,12 @@ FINE = np.geomspace(0.05, 2.5, 120)
 PHI_S, C_S, ALPHA, E, K_D, K_F = math.radians(38.5), 0.3, 0.25, 0.85, 0.0828, 0.16
 
 
-def runs(level: Level) -> Sequence[Task]:
+def tasks(plan: Plan) -> Sequence[Task]:
     """Slopes from the threshold to sheet flow; quick one short run."""
-    if level is Level.QUICK:
-        return [case_run("bedload_3d", QUICK, folder="")]
+    if plan.level is Level.QUICK:
+        return [case_run(case_path("bedload_3d.toml"), QUICK)]
     return [
-        case_run(case, {"motion.slope": f"{slope:g}", **DEEP.get(slope, {})}, folder="")
+        case_run(case_path(f"{case}.toml"), {"motion.slope": f"{slope:g}", **DEEP.get(slope, {})})
         for case, slopes in SLOPES.items()
         for slope in slopes
     ]
@@ -88,9 +93,9 @@ def outside(tau_star: Floats, q_star: Floats) -> Floats:
         return np.maximum(1.0, np.maximum(q_star / band.max(axis=0), band.min(axis=0) / q_star))
 
 
-def compare(found: Found, level: Level) -> Sequence[Comparison]:
+def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """Rates over stress, and how far they lie from the formulae."""
-    each = [found[one] for one in runs(level)]
+    each = [found[one] for one in tasks(plan)]
     tau, q, slope, depth, drift = (
         np.array([one[key] for one in each]) for key in ("tau_star", "q_star", "slope", "depth", "drift")
     )
@@ -105,7 +110,7 @@ def compare(found: Found, level: Level) -> Sequence[Comparison]:
         for t, r, s, one in zip(tau, q, drift, each, strict=True)
     )
     return [
-        Comparison(
+        comparison(
             "rate", "Transport rate from the threshold to sheet flow",
             Source(
                 "8 (tau_star - 0.047)^1.5; 3.97 (tau_star - 0.0495)^1.5; 17 (tau_star - 0.05) "
@@ -114,15 +119,15 @@ def compare(found: Found, level: Level) -> Sequence[Comparison]:
             Axis("tau_star at the bed", log=True), Axis("q_star", log=True), [Curve("grains", tau, q)],
             [Curve(name, FINE, one) for name, one in formulae(FINE).items()],
             [
-                Error(
+                misfit(
                     "largest factor outside the formulae", worst, "-",
                     at_most(2.0, "the formulae differ by 3, measurements scatter about each by 2"),
                 ),
-                Error(
+                misfit(
                     "geometric mean of rate over the formulae's", float(np.exp(off.mean())), "-",
-                    Tolerance(0.5, 2.0, "the same"),
+                    Band(0.5, 2.0, "-", "the same"),
                 ),
-                Error("scatter about that, a factor", float(np.exp(off.std())), "-"),
+                misfit("scatter about that, a factor", float(np.exp(off.std())), "-"),
             ],
             {
                 "grains": "spheres of 4 mm +- 10 %, free to spin, mu = 0.577, e = 0.5, no dashpot "

@@ -12,8 +12,19 @@ from ryusa.laws.turbulence import speed_mean_rough
 from ryusa.laws.water import log_law_rough, log_law_smooth
 from ryusa.model.column import Column, Top
 from ryusa.model.scene import Floats
-from ryusa.studies.validation._check import Comparison, Error, Found, Source, Tolerance, at_most, relative
-from ryusa.study import Level, Task, calculation
+from ryusa.study import (
+    Band,
+    Finding,
+    Found,
+    Plan,
+    Source,
+    Task,
+    at_most,
+    calculation,
+    comparison,
+    misfit,
+    relative,
+)
 from ryusa.water import discharge, steady
 
 TITLE = "Water alone"
@@ -24,7 +35,7 @@ SMOOTH_CELLS = 1000
 U = Axis("speed", "m/s")
 Z = Axis("height", "m")
 FAR = "largest difference over the largest speed, 80 cells"
-SECOND = Tolerance(1.9, 2.1, "central differences are of second order")
+SECOND = Band(1.9, 2.1, "-", "central differences are of second order")
 
 
 def _laminar(n: int, **more: object) -> Column:
@@ -110,16 +121,16 @@ def _call(which: str, n: int) -> Task:
     return calculation(flow, which=which, n=n, seconds=0.05)
 
 
-def runs(level: Level) -> Sequence[Task]:
+def tasks(plan: Plan) -> Sequence[Task]:
     """Each flow on a few grids; they take no time, so both levels have all."""
-    del level
+    del plan
     grids = [_call(which, n) for which in (*LAMINAR, "river") for n in GRIDS]
     return [*grids, _call("viscous", 40), _call("coarse", 20), _call("fine", SMOOTH_CELLS)]
 
 
-def compare(found: Found, level: Level) -> Sequence[Comparison]:
+def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """Profiles, discharge and order of convergence."""
-    del level
+    del plan
     laminar = [_laminar_flow(found, name) for name in LAMINAR]
     return [_rough(found), _rough_discharge(found), _smooth(found), _van_driest(found), *laminar]
 
@@ -129,38 +140,40 @@ def _errors(found: Found, which: str, exact: Callable[[Column], Floats]) -> list
     return [relative(found[_call(which, n)]["u"], exact(make(n))) for n in GRIDS]
 
 
-def _laminar_flow(found: Found, which: str) -> Comparison:
+def _laminar_flow(found: Found, which: str) -> Finding:
     make, exact, title, words = LAMINAR[which]
     errors = _errors(found, which, exact)
     shown = found[_call(which, 20)]
     fine = make(200)
     if which == "couette":  # linear: there is nothing to converge
-        last = Error(FAR, errors[-1], "-", at_most(1e-12, "linear in z: round-off"))
+        last = misfit(FAR, errors[-1], "-", at_most(1e-12, "linear in z: round-off"))
         said, kept = "A linear profile is met without error.", [last]
     else:
         order = float(np.log2(errors[-2] / errors[-1]))
-        last = Error(FAR, errors[-1], "-", at_most(3e-4, "1/n^2 for n cells, and twice as much"))
+        last = misfit(FAR, errors[-1], "-", at_most(3e-4, "1/n^2 for n cells, and twice as much"))
         said = "The order is log2 of the errors on 40 and 80 cells."
-        kept = [last, Error("order of convergence in space", order, "-", SECOND)]
-    return Comparison(
+        kept = [last, misfit("order of convergence in space", order, "-", SECOND)]
+    return comparison(
         which, title, Source(words), Z, U, [Curve("20 cells", shown["z"], shown["u"])],
         [Curve("closed form", fine.z, exact(fine))], kept, {"depth": "1 cm", "nu": "1e-5 m2/s"}, said,
     )  # fmt: skip
 
 
-def _rough(found: Found) -> Comparison:
+def _rough(found: Found) -> Finding:
     ours = found[_call("river", 40)]
     usual = found[_call("viscous", 40)]
     law = np.array([log_law_rough(float(z), U_STAR, ROUGH) for z in ours["z"]])
     every = [_rough_error(found, n) for n in GRIDS]
-    return Comparison(
+    return comparison(
         "log-rough", "The log law over a rough bed",
         Source("the paper, Eq. (9): U/u_star = 8.5 + 5.75 log10(z/k_s)"),
         Axis("height", "m", log=True), U, [Curve("parabolic mixing length, 40 cells", ours["z"], ours["u"])],
         [Curve("Eq. (9)", ours["z"], law)],
         [
-            Error("largest relative difference on 10 to 80 cells", max(every), "-", at_most(1e-7, "one law")),
-            Error(
+            misfit(
+                "largest relative difference on 10 to 80 cells", max(every), "-", at_most(1e-7, "one law")
+            ),
+            misfit(
                 "the same with nu = 1e-6 m2/s and kappa = 0.41", relative(usual["u"], law), "-",
                 at_most(0.03, "0.41 is not ln(10)/5.75 = 0.4005: 2.4 %"),
             ),
@@ -176,38 +189,38 @@ def _rough_error(found: Found, n: int) -> float:
     return float(np.abs(ours["u"] / law - 1.0).max())
 
 
-def _rough_discharge(found: Found) -> Comparison:
+def _rough_discharge(found: Found) -> Finding:
     exact = DEPTH * speed_mean_rough(DEPTH, U_STAR, ROUGH)
     ours = np.array([float(found[_call("river", n)]["q"]) for n in GRIDS])
     error = np.abs(ours / exact - 1.0)
     grids = np.array(GRIDS, dtype=np.float64)
     order = float(np.log2(error[0] / error[-1]) / 3.0)
-    return Comparison(
+    return comparison(
         "log-discharge", "Discharge of the log law",
         Source("Eq. (9) over depth: q = u_star h (8.5 - 5.75/ln(10) + 5.75 log10(h/k_s)), from k_s/30 up"),
         Axis("cells", log=True), Axis("discharge", "m2/s"), [Curve("column", grids, ours)],
         [Curve("integral of Eq. (9)", grids, np.full(len(grids), exact))],
         [
-            Error("relative difference, 40 cells", float(error[2]), "-", at_most(1.2e-3, "a log by cells")),
-            Error(
+            misfit("relative difference, 40 cells", float(error[2]), "-", at_most(1.2e-3, "a log by cells")),
+            misfit(
                 "order of convergence in space, 10 to 80 cells", order, "-",
-                Tolerance(0.9, math.inf, "the log is singular at the bed: its lowest cell is of first order"),
+                Band(0.9, math.inf, "-", "the log is singular at the bed: its lowest cell is of first order"),
             ),
         ],
         {"u_star": "0.0985 m/s", "depth": "2 cm", "k_s": "2 mm"},
     )  # fmt: skip
 
 
-def _smooth(found: Found) -> Comparison:
+def _smooth(found: Found) -> Finding:
     ours = found[_call("coarse", 20)]
     law = np.array([log_law_smooth(float(z), 0.05, 1e-6) for z in ours["z"]])
-    return Comparison(
+    return comparison(
         "log-smooth", "The log law over a smooth bed, coarse grid",
         Source("two layers: u+ = z+ up to 11.3, then ln(z+/11.3)/0.41 + 11.3"),
         Axis("height", "m", log=True), U, [Curve("parabolic mixing length, 20 cells", ours["z"], ours["u"])],
         [Curve("two-layer law", ours["z"], law)],
         [
-            Error(
+            misfit(
                 "largest relative difference", float(np.abs(ours["u"] / law - 1.0).max()), "-",
                 at_most(0.01, "the law leaves out viscosity above z+ = 11.3"),
             )
@@ -216,7 +229,7 @@ def _smooth(found: Found) -> Comparison:
     )  # fmt: skip
 
 
-def _van_driest(found: Found) -> Comparison:
+def _van_driest(found: Found) -> Finding:
     ours = found[_call("fine", SMOOTH_CELLS)]
     z_plus, u_plus = ours["z"] * 0.05 / 1e-6, ours["u"] / 0.05
     low, log = z_plus < 3.0, (z_plus > 50.0) & (z_plus < 100.0)
@@ -224,14 +237,14 @@ def _van_driest(found: Found) -> Comparison:
     law = np.log(z_plus[log]) / 0.41 + 5.25
     steps = np.geomspace(0.5, 11.0, 40)
     wall = Axis("z+", log=True)
-    return Comparison(
+    return comparison(
         "van-driest", "Viscous layer and log layer over a smooth bed, fine grid",
         Source("law of the wall: u+ = z+; u+ = ln(z+)/0.41 + 5.25, where van Driest's length leads"),
         wall, Axis("u+"), [Curve("van Driest's mixing length, 1000 cells", z_plus, u_plus)],
         [Curve("u+ = z+", steps, steps), Curve("log law", z_plus[log], law)],
         [
-            Error("z+ below 3, relative", viscous, "-", at_most(5e-3, "eddies begin")),
-            Error(
+            misfit("z+ below 3, relative", viscous, "-", at_most(5e-3, "eddies begin")),
+            misfit(
                 "z+ 50 to 100, relative", float(np.abs(u_plus[log] / law - 1.0).max()), "-",
                 at_most(0.015, "stress falls by z/h = 0.1 over the layer"),
             ),

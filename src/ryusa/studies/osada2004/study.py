@@ -1,0 +1,132 @@
+"""The paper as a study: `ryusa paper`."""
+
+from collections.abc import Mapping, Sequence
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from ryusa.errors import CaseError
+from ryusa.studies.osada2004._experiment import NAMES
+from ryusa.studies.osada2004.common import common
+from ryusa.studies.osada2004.friction import MARKS, by_angle
+from ryusa.studies.osada2004.paper import CITATION, CLAIMS
+from ryusa.study import Finding, Outcome, Study, StudyPart
+from ryusa.study.page import interval
+
+BEST = 5  # sets of common choices shown
+# What the paper left open, the claims whose runs answer it, and a word in what they say of it ("" is all).
+QUESTIONS = (
+    (
+        "Rolling friction",
+        "rolling-friction",
+        "The paper's open question ii: Eq. (13) as a model of rolling friction, its coefficient to be found.",
+        ("eq13",),
+        "",
+    ),
+    (
+        "Water torque",
+        "water-torque",
+        "The paper's open question iii: the torque of the water on a spinning grain.",
+        ("fig21", "fig20"),
+        "torque",
+    ),
+)
+
+
+class PaperStudy(Study):
+    """Every experiment that answers the paper, with the words of its page."""
+
+    name = "paper"
+    title = "What holds of the paper's claims, and what decides it"
+    command = "ryusa paper"
+    parts = NAMES
+    words: Mapping[Outcome, str] = {
+        Outcome.HOLDS: "reproduced",
+        Outcome.ONLY_IF: "reproduced only if",
+        Outcome.FAILS: "not reproduced",
+        Outcome.EXCLUDED: "contradicts its own equations",
+        Outcome.UNDECIDED: "undecided (spread)",
+        Outcome.SHOWN: "shown",
+    }
+    template = Path(__file__).with_name("paper.html")
+
+    def part(self, name: str) -> StudyPart:
+        """Return the experiment of that name (see NAMES)."""
+        return load(name)
+
+    def figure(self, name: str) -> str:
+        """What the paper calls the figure of an experiment, such as "fig19"."""
+        part: Any = load(name)
+        return str(part.FIGURE)
+
+    def about(self, entry: str) -> dict[str, Any]:
+        """What the paper says: figure, statement, set-up, what it leaves open, and a caution of ours."""
+        claim = CLAIMS[entry]
+        return {
+            "figure": claim.figure,
+            "statement": claim.says,
+            "setup": claim.setup,
+            "left_open": claim.free,
+            "caution": claim.caution,
+        }
+
+    def order(self, entries: Sequence[str]) -> Sequence[str]:
+        """The order of the claims in the paper."""
+        return [one for one in CLAIMS if one in entries]
+
+    def head(self, findings: Sequence[Finding]) -> dict[str, Any]:
+        """The paper, and the sets of free choices, best first."""
+        return {"paper": CITATION, "common_choices": [one.plain() for one in common(findings)]}
+
+    def facts(self, entry: Mapping[str, Any]) -> list[tuple[str, str]]:
+        """Set-up, what is left open, and the statement."""
+        return [
+            (f"Fig. {entry['figure']}" if entry["figure"] else "In the text", entry["setup"]),
+            ("left open", entry["left_open"] or "nothing"),
+            ("the paper says", entry["statement"]),
+        ]
+
+    def asked(self, trial: Mapping[str, Any]) -> str:
+        """The paper's words with the limits that were made of them."""
+        return "shown only" if trial["asked"] is None else trial["asked"]["says"]
+
+    def context(self, ledger: Mapping[str, Any]) -> dict[str, Any]:
+        """Common choices, the friction angle, and the open questions."""
+        findings: list[dict[str, Any]] = [{**one, "ours": _ours(one)} for one in ledger["findings"]]
+        here = {one["id"] for one in findings}
+        angles, lines = by_angle(findings)
+        return {
+            "findings": findings,
+            "n_claims": len(CLAIMS),
+            "common": [one for one in ledger["common_choices"] if one["choices"]][:BEST],
+            "angles": angles,
+            "lines": lines,
+            "marks": MARKS,
+            "questions": [
+                (title, anchor, about, answers(findings, ids, word))
+                for title, anchor, about, ids, word in QUESTIONS
+                if any(one in here for one in ids)
+            ],
+        }
+
+
+def load(name: str) -> StudyPart:
+    """Return the experiment of that name (see NAMES)."""
+    if name not in NAMES:
+        raise CaseError("experiment", name, f"must be one of {', '.join(NAMES)}")
+    module: Any = import_module(f"ryusa.studies.osada2004.{name}")
+    return module
+
+
+def answers(findings: Sequence[Mapping[str, Any]], ids: Sequence[str], word: str) -> list[dict[str, Any]]:
+    """Entries of these claims, with what they say of a question; without those that say nothing of it."""
+    rows = {one["id"]: {**one, "told": [said for said in one["also"] if word in said]} for one in findings}
+    return [rows[one] for one in ids if one in rows and (not word or rows[one]["told"])]
+
+
+def _ours(entry: Mapping[str, Any]) -> str:
+    """Numbers of the case file as it ships."""
+    return "; ".join(f"{one['part']}: {one['note'] or interval(one)}" for one in entry["base"])
+
+
+PAPER = PaperStudy()

@@ -1,0 +1,105 @@
+"""The validation as a study: `ryusa validate`."""
+
+from collections.abc import Mapping
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from ryusa.errors import CaseError
+from ryusa.study import Finding, Level, Outcome, Study, StudyPart
+from ryusa.study.page import interval
+from ryusa.study.study import limits_in_words
+
+NAMES = (
+    "water_alone",
+    "terminal_velocity",
+    "suspension",
+    "balance",
+    "impact",
+    "rebound",
+    "rolling",
+    "gas",
+    "incline",
+    "transport",
+    "equilibrium",
+    "frey",
+)
+
+
+class ValidationStudy(Study):
+    """Every check of the package, with the words of its page."""
+
+    name = "validation"
+    title = "Our curve beside each reference, and how far off it is"
+    command = "ryusa validate"
+    stem = "validation"
+    parts = NAMES
+    level = Level.FULL
+    words: Mapping[Outcome, str] = {
+        Outcome.HOLDS: "within",
+        Outcome.ONLY_IF: "within only if",
+        Outcome.FAILS: "missed",
+        Outcome.EXCLUDED: "missed",
+        Outcome.SHOWN: "shown",
+        Outcome.UNDECIDED: "not judged",
+    }
+    template = Path(__file__).with_name("validation.html")
+
+    def part(self, name: str) -> StudyPart:
+        """Return the check of that name (see NAMES)."""
+        return load(name)
+
+    def entry_id(self, part: str, finding: Finding | None) -> str:
+        """Name on the page, such as "water-alone/log-rough"."""
+        name = part.replace("_", "-")
+        return name if finding is None else f"{name}/{finding.id}"
+
+
+def load(name: str) -> StudyPart:
+    """Return the check of that name (see NAMES)."""
+    if name not in NAMES:
+        raise CaseError("check", name, f"must be one of {', '.join(NAMES)}")
+    module: Any = import_module(f"ryusa.studies.validation.{name}")
+    return module
+
+
+VALIDATION = ValidationStudy()
+
+
+def table(plain: Mapping[str, Any]) -> str:
+    """Give the lines of the table of docs/validation.md, from what the ledger holds.
+
+    Of several errors it shows those that miss, or the one that uses most of its tolerance.
+    """
+    lines = ["| comparison | reference | error | may be | verdict |", "|---|---|---|---|---|"]
+    for row in plain["findings"]:
+        told = telling(row["trials"])
+        more = len(row["trials"]) - len(told)
+        errors = [f"{each['part']}: {interval(each)}" for each in told]
+        errors += [f"and {more} more"] if more else []
+        asked = [limits_in_words(each) for each in told]
+        cells = [f"{row['id']}: {row['title']}", row["source"], "<br>".join(errors), "<br>".join(asked)]
+        cells.append(row["verdict"])
+        lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
+    return "\n".join(lines)
+
+
+def telling(errors: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Give the errors that miss; otherwise the one that uses most of its tolerance, or the first.
+
+    >>> asked = {"low": 0.0, "high": 1.0, "unit": "-", "says": ""}
+    >>> small = {"part": "a", "value": 0.1, "asked": asked, "outcome": "holds"}
+    >>> [one["part"] for one in telling([small, {**small, "part": "b", "value": 0.2}])]
+    ['b']
+    """
+    missed = [one for one in errors if one["outcome"] == "fails"]
+    judged = [one for one in errors if one["outcome"] == "holds"]
+    return missed or sorted(judged, key=_used)[-1:] or errors[:1]
+
+
+def _used(one: Mapping[str, Any]) -> float:
+    """Share of its tolerance that an error uses [-]; one without an upper end uses none."""
+    low, high = one["asked"]["low"] or 0.0, one["asked"]["high"]
+    if high is None:
+        return 0.0
+    return abs(one["value"] - 0.5 * (low + high)) / (0.5 * (high - low)) if low else one["value"] / high

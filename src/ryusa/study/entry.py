@@ -1,0 +1,102 @@
+"""One line of a ledger: what was found about one claim or reference, as the JSON file holds it."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ryusa.figures.comparison import Curve
+from ryusa.study.interval import Interval
+from ryusa.study.judge import Finding, Outcome, Trial
+from ryusa.study.origin import json_number
+from ryusa.study.study import Study
+
+DIGITS = 6  # of a curve in the JSON file
+MOST = 200  # points of a curve in the JSON file
+
+
+@dataclass(frozen=True)
+class LedgerEntry:
+    """What was found, its pictures, and what went wrong."""
+
+    id: str
+    part: str
+    finding: Finding | None  # None where nothing could be run or judged
+    pictures: tuple[Path, ...] = ()
+    problem: str = ""  # why it could not be judged, or what is missing beside the verdict
+
+    @property
+    def outcome(self) -> Outcome:
+        """The verdict."""
+        return Outcome.UNDECIDED if self.finding is None else self.finding.outcome
+
+
+def plain_entry(study: Study, entry: LedgerEntry, folder: Path) -> dict[str, Any]:
+    """Give an entry as the JSON file holds it; pictures relative to `folder`."""
+    found = entry.finding if entry.finding is not None else Finding(entry.id, ())
+    settings = {**found.settings, **(found.base[0].choices if found.base else {})}
+    return {
+        "id": entry.id,
+        "part": entry.part,
+        "title": found.title or study.part(entry.part).TITLE,
+        "outcome": str(entry.outcome),
+        "verdict": study.words[entry.outcome],
+        "condition": found.condition,
+        "counts": found.counts,
+        **study.about(entry.id),
+        "source": "" if found.source is None else found.source.words,
+        "known": "" if found.source is None else str(found.source.known),
+        "settings": settings,
+        "trials": [_trial(one) for one in found.trials],
+        "beside": [_trial(one) for one in found.beside],
+        "decided_by": found.decided_by,
+        "contradiction": found.contradiction,
+        "also": list(found.also),
+        "chart": _chart(found),
+        "problem": entry.problem,
+        "pictures": [one.relative_to(folder).as_posix() for one in entry.pictures],
+    }
+
+
+def ours_in_words(finding: Finding) -> str:
+    """Say the numbers of the case file as it ships."""
+    return "; ".join(f"{one.part}: {one.note or one.found}" for one in finding.base)
+
+
+def _trial(one: Trial) -> dict[str, Any]:
+    held = {True: "holds", False: "fails", None: "undecided"}[one.holds] if one.judged else "shown"
+    band = one.band
+    return {
+        "part": one.part, "choices": dict(one.choices), **_interval(one.found),
+        "asked": None if band is None else {
+            "low": json_number(band.low), "high": json_number(band.high), "unit": band.unit, "says": band.says
+        },
+        "outcome": held, "note": one.note,
+    }  # fmt: skip
+
+
+def _interval(found: Interval) -> dict[str, Any]:
+    return {
+        **{name: json_number(getattr(found, name)) for name in ("value", "low", "high")},
+        "unit": found.unit, "n": found.n, "how": found.how,
+    }  # fmt: skip
+
+
+def _chart(found: Finding) -> dict[str, Any] | None:
+    if found.chart is None:
+        return None
+    return {
+        "axes": [str(found.chart.x), str(found.chart.y)],
+        "ours": [_curve(one) for one in found.chart.ours],
+        "references": [_curve(one) for one in found.chart.references],
+        "beside": [_curve(one) for one in found.chart.beside],
+    }
+
+
+def _curve(one: Curve) -> dict[str, Any]:
+    """A curve with as many points and digits as a reader of the file needs."""
+    step = max(1, -(-len(one.x) // MOST))
+    return {
+        "name": one.name,
+        "x": [float(f"{value:.{DIGITS}g}") for value in one.x[::step]],
+        "y": [float(f"{value:.{DIGITS}g}") for value in one.y[::step]],
+    }

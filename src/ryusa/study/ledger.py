@@ -1,0 +1,250 @@
+"""The ledger of a study: carry out its tasks, judge every part, keep what was found."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from ryusa.errors import RyusaError
+from ryusa.figures import save
+from ryusa.figures.comparison import compared
+from ryusa.measure import write_csv
+from ryusa.running import provenance
+from ryusa.running.folder import refuse_if_not_writable
+from ryusa.study.entry import LedgerEntry, plain_entry
+from ryusa.study.fault import Fault, noted
+from ryusa.study.judge import Finding
+from ryusa.study.means import means, rows_of
+from ryusa.study.origin import counted, missing_runs, origin, traces_of
+from ryusa.study.plan import Level, Plan
+from ryusa.study.progress import StudyProgress
+from ryusa.study.runs import TaskResults, carry_out
+from ryusa.study.study import Study
+from ryusa.study.task import Task
+
+FORMAT = 2  # of the JSON file; `kept.read` reads format 1 too
+
+
+@dataclass(frozen=True)
+class Ledger:
+    """What a study found, how it was made, and where.
+
+    Attributes
+    ----------
+    entries : one per claim or comparison.
+    problems : runs that could not be carried out or measured, with the reason.
+    counts : runs made, runs opened, wall time [s], processes.
+    tables : lines of the CSV table, by part.
+    stem : of its files; another level, or a part of the study, never replaces the whole.
+    faults : what went wrong after the runs.
+    traces : tracebacks of errors in the program, for the log.
+    """
+
+    study: Study
+    entries: tuple[LedgerEntry, ...]
+    plan: Plan
+    folder: Path
+    problems: Mapping[str, str]
+    counts: Mapping[str, Any]
+    tables: Mapping[str, list[dict[str, object]]]
+    stem: str = "ledger"
+    faults: Mapping[str, str] = field(default_factory=dict[str, str])
+    traces: Mapping[str, str] = field(default_factory=dict[str, str])
+
+    @property
+    def log(self) -> str:
+        """Name of the file that holds the tracebacks; empty where there are none."""
+        return f"{self.stem}-errors.log" if self.traces else ""
+
+    def plain(self) -> dict[str, Any]:
+        """Give the ledger as the JSON file holds it."""
+        findings = [one.finding for one in self.entries if one.finding is not None]
+        return {
+            "format": FORMAT,
+            "study": self.study.name,
+            "level": str(self.plan.level),
+            "indicative": self.plan.level is Level.QUICK or len(self.plan.seeds) == 1,
+            "seeds": list(self.plan.seeds),
+            **self.study.head(findings),
+            "findings": [plain_entry(self.study, one, self.folder) for one in self.entries],
+            "problems": dict(self.problems),
+            "faults": dict(self.faults),
+            "errors_in": list(self.traces),
+            "log": self.log,
+            "provenance": origin(self.counts),
+        }
+
+
+def make(
+    study: Study,
+    names: Sequence[str] | None,
+    plan: Plan,
+    folder: Path,
+    *,
+    jobs: int = 1,
+    again: bool = False,
+    progress: StudyProgress | None = None,
+) -> Ledger:
+    """Carry out what is needed, judge every part, and write tables and pictures.
+
+    Parameters
+    ----------
+    study : what is to be run.
+    names : parts of it; None takes all.
+    plan : level and seeds.
+    folder : runs go into `folder/runs`, tables and pictures of each part into `folder/<part>`.
+    jobs, again, progress : as in `carry_out`.
+
+    Raises
+    ------
+    KeyboardInterrupt : Ctrl-C; finished runs stay and are opened next time.
+    RyusaError : a case cannot be run; or the only part asked for cannot name its tasks.
+    """
+    chosen = study.parts if names is None else tuple(dict.fromkeys(names))
+    refuse_if_not_writable(folder)
+    provenance.commit()  # read now: code that changes meanwhile is not what is running
+    faults: dict[str, Fault] = {}
+    tasks: dict[str, Sequence[Task]] = {name: () for name in chosen}
+    for name in chosen:
+        with noted(faults, _naming(name), passing=(RyusaError,) if len(chosen) == 1 else ()):
+            tasks[name] = study.part(name).tasks(plan)
+    results = carry_out(tasks, study.part, folder / "runs", jobs=jobs, again=again, progress=progress)
+    tables: dict[str, list[dict[str, object]]] = {}
+    entries: dict[str, LedgerEntry] = {}
+    for name in chosen:
+        for one in _judged(study, name, results, plan, folder, tables, faults):
+            entries[one.id] = one
+    level = "" if plan.level is study.level else f"-{plan.level}"
+    return Ledger(
+        study, tuple(entries[one] for one in study.order(list(entries))), plan, folder, results.problems,
+        counted(results, jobs), tables, f"{study.stem}{level}{'' if names is None else '-part'}",
+        {what: one.words for what, one in faults.items()}, traces_of(results, faults),
+    )  # fmt: skip
+
+
+def _naming(name: str) -> str:
+    return f"{name}: its tasks"
+
+
+def _judged(
+    study: Study,
+    name: str,
+    results: TaskResults,
+    plan: Plan,
+    folder: Path,
+    tables: dict[str, list[dict[str, object]]],
+    faults: dict[str, Fault],
+) -> list[LedgerEntry]:
+    """Entries of one part; its table and pictures are written on the way.
+
+    Where a run of it failed, or judging it ends in an error, nothing of it is judged: its entries say why,
+    and the other parts stand. Without its table or pictures it keeps its verdict, and its entries say so.
+    """
+    if _naming(name) in faults:
+        return _unjudged(study, name, f"its tasks could not be named: {faults[_naming(name)].words}")
+    part, found = study.part(name), results.found[name]
+    missing = results.missing.get(name, {})
+    if missing:
+        return _unjudged(study, name, missing_runs(missing, len(found) + len(missing)))
+    pictures = _drawn(part, name, found, plan, folder, tables, faults)
+    judging = f"{name}: judging"
+    entries: list[LedgerEntry] = []
+    with noted(faults, judging):
+        for finding in _findings(study, name, found, plan):
+            one = LedgerEntry(study.entry_id(name, finding), name, finding)
+            plain_entry(study, one, folder)  # an error in a condition shows here, not while writing
+            entries.append(one)
+    if judging in faults:
+        entries = _unjudged(study, name, f"it could not be judged: {faults[judging].words}")
+    shared = share_out(pictures, [one.id for one in entries])
+    whole: list[LedgerEntry] = []
+    for one in entries:
+        shown = (*_charted(one, folder / name, faults), *shared[one.id])
+        said = [
+            f"{what.removeprefix(f'{name}: ')} could not be made: {faults[what].words}"
+            for what in (f"{name}: its table", f"{name}: its pictures", f"{name}: chart of {one.id}")
+            if what in faults
+        ]
+        problem = "; ".join([one.problem, *said] if one.problem else said)
+        whole.append(LedgerEntry(one.id, name, one.finding, shown, problem))
+    return whole
+
+
+def _findings(study: Study, name: str, found: Mapping[Any, Any], plan: Plan) -> list[Finding]:
+    """What the part itself finds, or the means of what it measures."""
+    part: Any = study.part(name)
+    if getattr(part, "judge", None) is None:
+        return means(found, part.TITLE)
+    findings: list[Finding] = list(part.judge(found, plan))
+    claims = study.claims(name)
+    ids = [one.id for one in findings]
+    if claims and set(ids) != set(claims):
+        raise ValueError(f"{name} judged {', '.join(ids)}, not {', '.join(claims)}")
+    return findings
+
+
+def _drawn(
+    part: Any,
+    name: str,
+    found: Mapping[Any, Any],
+    plan: Plan,
+    folder: Path,
+    tables: dict[str, list[dict[str, object]]],
+    faults: dict[str, Fault],
+) -> list[Path]:
+    """Write the table of a part and draw its pictures; a full disk ends the study."""
+    table, drawing = f"{name}: its table", f"{name}: its pictures"
+    rows: list[dict[str, object]] = []
+    with noted(faults, table):
+        if hasattr(part, "rows"):
+            rows = part.rows(found, plan)
+        elif not hasattr(part, "judge"):
+            rows = rows_of(found)
+    tables[name] = rows
+    if rows:
+        with noted(faults, table, passing=(OSError,)):
+            write_csv(folder / name / f"{name}.csv", rows)
+    figures: Mapping[str, Figure] = {}
+    with noted(faults, drawing):
+        if hasattr(part, "draw"):
+            figures = part.draw(found, plan)
+    pictures: list[Path] = []
+    with noted(faults, drawing, passing=(OSError,)):
+        for picture, figure in figures.items():
+            pictures.append(_saved(figure, folder / name / picture))
+    return pictures
+
+
+def _charted(one: LedgerEntry, folder: Path, faults: dict[str, Fault]) -> tuple[Path, ...]:
+    """Draw the curves of a finding on those of its reference."""
+    if one.finding is None or one.finding.chart is None:
+        return ()
+    chart = one.finding.chart
+    drawn: tuple[Path, ...] = ()
+    with noted(faults, f"{one.part}: chart of {one.id}", passing=(OSError,)):
+        figure = compared(chart.x, chart.y, chart.ours, chart.references, chart.beside)
+        drawn = (_saved(figure, folder / one.finding.id),)
+    return drawn
+
+
+def _saved(figure: Figure, path: Path) -> Path:
+    """Save a picture as SVG and PNG; a name may hold dots."""
+    save(figure, path.with_name(f"{path.name}.svg"))
+    return save(figure, path.with_name(f"{path.name}.png"))
+
+
+def _unjudged(study: Study, name: str, problem: str) -> list[LedgerEntry]:
+    ids = study.claims(name) or (study.entry_id(name, None),)
+    return [LedgerEntry(one, name, None, problem=problem) for one in ids]
+
+
+def share_out(pictures: Sequence[Path], entries: Sequence[str]) -> dict[str, tuple[Path, ...]]:
+    """Give each picture to the entry that its name begins with, else to the first entry."""
+    shared: dict[str, list[Path]] = {one: [] for one in entries}
+    for picture in pictures:
+        fits = [one for one in entries if picture.stem == one or picture.stem.startswith(f"{one}-")]
+        if entries:
+            shared[max(fits, key=len, default=entries[0])].append(picture)
+    return {one: tuple(found) for one, found in shared.items()}

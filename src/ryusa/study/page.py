@@ -1,0 +1,137 @@
+"""The page of a study: its ledger as one HTML file that needs nothing but itself."""
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from ryusa.running.disk import write_whole
+from ryusa.study.html import embedded, is_wide, template, write_log
+from ryusa.study.interval import short
+from ryusa.study.kept import write_ledger
+from ryusa.study.ledger import Ledger
+from ryusa.study.study import LOOKS, Study, limits_in_words
+
+WHOLE_TABLE = 60  # rows; of a longer table the page holds the first HEAD
+HEAD = 20
+OPEN_SWEEP = 12  # rows; a longer sweep is folded
+
+
+def write(ledger: Ledger, copy: Path | None = None) -> tuple[Path, ...]:
+    """Write page and JSON into the folder of the ledger, and a copy of the JSON where asked.
+
+    Each file is written beside its place and moved there whole.
+
+    Raises
+    ------
+    OSError : a file cannot be written.
+    """
+    plain = ledger.plain()
+    page = ledger.folder / f"{ledger.stem}.html"
+    files = [ledger.folder / f"{ledger.stem}.json", *([] if copy is None else [copy])]
+    for path in files:  # first: whatever becomes of the page, the numbers are kept
+        write_ledger(path, plain)
+    write_log(ledger.folder / f"{ledger.stem}-errors.log", ledger.traces)
+    write_whole(page, render(ledger.study, plain, ledger.tables, ledger.folder).encode())
+    return (page, *files)
+
+
+def render(
+    study: Study,
+    plain: Mapping[str, Any],
+    tables: Mapping[str, Sequence[Mapping[str, object]]],
+    folder: Path,
+) -> str:
+    """Make the page.
+
+    Parameters
+    ----------
+    study : whose ledger it is.
+    plain : the ledger as the JSON file holds it.
+    tables : lines of the CSV table, by part.
+    folder : what the pictures' paths start from.
+    """
+    findings: list[dict[str, Any]] = plain["findings"]
+    first: dict[str, str] = {}  # part -> entry whose section holds its table
+    for one in findings:
+        first.setdefault(one["part"], one["id"])
+    sections = [_section(study, one, first, tables, folder) for one in findings]
+    outcomes = Counter(one["outcome"] for one in findings)
+    page = template(study.template, interval=interval, limits=limits_in_words, asked=study.asked)
+    context = {
+        "ledger": plain,
+        "study": study,
+        "findings": sections,
+        "parts": [
+            (study.part(name).TITLE, [one for one in sections if one["part"] == name]) for name in first
+        ],
+        "counts": [
+            (study.words[one], outcomes[str(one)], *LOOKS[one]) for one in LOOKS if outcomes[str(one)]
+        ],
+        "looks": {str(one): look for one, look in LOOKS.items()},
+        "words": {str(one): word for one, word in study.words.items()},
+        "open_sweep": OPEN_SWEEP,
+        **study.context({**plain, "findings": sections}),
+    }
+    return page.render(context)
+
+
+def _section(
+    study: Study,
+    entry: Mapping[str, Any],
+    first: Mapping[str, str],
+    tables: Mapping[str, Sequence[Mapping[str, object]]],
+    folder: Path,
+) -> dict[str, Any]:
+    """What the section of one entry shows beside the entry itself."""
+    name = entry["part"]
+    holder = first[name]
+    rows = tables.get(name, ()) if holder == entry["id"] else ()
+    base = [one for one in entry["trials"] if one["choices"] == entry["trials"][0]["choices"]]
+    return {
+        **entry,
+        "facts": study.facts(entry),
+        "images": [(one, embedded(folder / one)) for one in entry["pictures"] if not is_wide(folder / one)],
+        "wide": [(one, embedded(folder / one)) for one in entry["pictures"] if is_wide(folder / one)],
+        "hows": list(dict.fromkeys(one["how"] for one in base if one["n"] > 1 or one["choices"])),
+        "base": base,
+        "varied": list(dict.fromkeys(key for one in entry["trials"] for key in one["choices"])),
+        "columns": list(dict.fromkeys(key for row in rows for key in row)),
+        "rows": list(rows) if len(rows) < WHOLE_TABLE else list(rows[:HEAD]),
+        "n_rows": len(rows),
+        "file": f"{name}/{name}.csv",
+        "holder": holder,
+    }
+
+
+def interval(found: Mapping[str, Any]) -> str:
+    """Say a number and its interval in words.
+
+    >>> interval({"value": 2.0, "low": 1.0, "high": 3.0, "unit": "m"})
+    '2 m (1 to 3)'
+    """
+    if found["value"] is None:
+        return "no number"
+    unit = "" if found["unit"] == "-" else f" {found['unit']}"
+    middle = f"{short(found['value'])}{unit}"
+    low, high = (short(end) if end is not None else "no limit" for end in (found["low"], found["high"]))
+    return middle if low == high else f"{middle} ({low} to {high})"
+
+
+def summary(study: Study, plain: Mapping[str, Any]) -> str:
+    """Give one line per number as a Markdown table, for a reader of the repository and for `git diff`.
+
+    A finding with a sweep has the line of the case file as it ships; the sweep is in the ledger itself.
+    """
+    lines = ["| finding | number | value and interval | asked | verdict |", "|---|---|---|---|---|"]
+    for one in plain["findings"]:
+        base = [each for each in one["trials"] if each["choices"] == one["trials"][0]["choices"]]
+        verdict = f"{one['verdict']} {one['condition']}".strip()
+        for k, each in enumerate(base or [None]):
+            cells = [one["id"], "", "", "", ""] if k == 0 else ["", "", "", "", ""]
+            if each is not None:
+                note = f", {each['note']}" if each["note"] else ""
+                cells[1:4] = [each["part"], interval(each) + note, study.asked(each)]
+            cells[4] = verdict if k == 0 else ""
+            lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
+    return "\n".join(lines)
