@@ -355,7 +355,7 @@ def test_a_killed_process_is_told_and_nothing_hangs(campaign):
     _, said = campaign.communicate(timeout=30)
     assert campaign.returncode == 2
     assert "ended from outside" in said
-    assert "running were: saltation" in said
+    assert "it was running: saltation" in said
     assert "The same command continues there" in said.replace("\n", " ")
     assert gone(campaign.pid)
 

@@ -200,9 +200,9 @@ def _done(
     except BrokenProcessPool:
         labels = ", ".join(one.label for one in running.values())
         raise ResultsError(
-            "the process of a run was ended from outside, perhaps for want of memory; "
-            f"running were: {labels}. {folder} holds what was finished, the same command goes on from "
-            "there; -j 1 needs least memory"
+            "the process of a run was ended from outside, perhaps for want of memory; it was running: "
+            f"{labels}. Finished runs are kept in {folder}. The same command continues there; -j 1 needs "
+            "the least memory"
         ) from None
     finally:
         if running or waiting:
