@@ -54,10 +54,12 @@ def in_simulator(*words: str) -> subprocess.CompletedProcess[str]:
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("part", ["frozen", "not frozen"])
-def test_the_engine_does_in_the_simulator_what_the_cpu_does(part: str) -> None:
-    file = HERE / "in_cuda_simulator.py"
-    done = in_simulator("-m", "pytest", "-q", "-p", "no:cacheprovider", "-k", part, str(file))
+@pytest.mark.parametrize(
+    "file, part",
+    [("test_engines.py", "frozen"), ("test_engines.py", "not frozen"), ("in_cuda_simulator.py", "test")],
+)
+def test_the_engine_does_in_the_simulator_what_every_engine_does(file: str, part: str) -> None:
+    done = in_simulator("-m", "pytest", "-q", "-p", "no:cacheprovider", "-k", part, str(HERE / file))
     assert done.returncode == 0, done.stdout[-6000:] + done.stderr[-2000:]
 
 
