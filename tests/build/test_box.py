@@ -189,14 +189,14 @@ def test_water_begins_at_the_floor(floor: str, zero: float) -> None:
         ("floor = 'plane', run_out = '1 cm'", {}, "build.run_out", "unbounded"),
         ("floor = 'plane', drop = '1 cm'", {}, "build.drop", "unbounded"),
         ("floor = 'plane', floor_height = 0.2", {}, "build.floor_height", "flat"),
-        ("", {"timeline": GATE}, "timeline.0.remove", "build.drop catches them"),
+        ("", {"timeline": GATE}, "timeline.0.remove", "build.drop (a plane that catches them)"),
         (
             "run_out = '9 cm'",
             {"timeline": GATE.replace("gate", "back")},
             "timeline.0.remove",
-            "no floor is there",
+            "lets grains fall beside the floor",
         ),
-        ("floor = 'plane'", {"timeline": GATE.replace("gate", "floor")}, "timeline.0.remove", "plane of"),
+        ("floor = 'plane'", {"timeline": GATE.replace("gate", "floor")}, "timeline.0.remove", "a plane in [[planes]]"),
         ("", {"timeline": GATE.replace("gate", "pit")}, "timeline.0.remove", "floor, back, gate"),
         ("floor_height = 0.9", {"grains__spread": "0.7"}, "grains.spread", "slips through"),
         (

@@ -130,7 +130,7 @@ def test_a_packing_flows_over_where_its_grains_will_end(packed: float) -> None:
     assert found is not None
     solid = float(np.sum(scene.d**3)) * math.pi / 6
     assert (found.origin - D) * found.area * packed == pytest.approx(solid)
-    assert any("lie as dense" in note for note in built.notes)
+    assert any("settled to the concentration" in note for note in built.notes)
 
 
 @pytest.mark.parametrize(("build_", "zero"), [(FLAT, 0.75 * D), (FLOOR, 0.0)])

@@ -76,7 +76,7 @@ def test_the_zero_of_the_water_is_where_the_loose_bed_ends_when_packed() -> None
     assert bed_thickness(one) == pytest.approx(height, rel=1e-12)
     assert built.scene.column is not None
     assert built.scene.column.area == pytest.approx(0.3 * 0.0065)
-    assert any("as dense as 0.61" in note for note in built.notes)
+    assert any("settled to the concentration 0.61" in note for note in built.notes)
 
 
 def test_a_plane_flume_is_one_slab_wide() -> None:
@@ -104,5 +104,5 @@ def test_a_flume_that_cannot_be_is_refused(keys: str, others: dict[str, str], ke
 
 
 def test_a_flume_without_width_in_three_dimensions_is_refused() -> None:
-    with pytest.raises(CaseError, match="needs its width"):
+    with pytest.raises(CaseError, match="needs a width"):
         read_text(BASE.replace('width = "6.5 mm"\n', ""))

@@ -199,10 +199,10 @@ def test_ctrl_c_ends_with_exit_code_5_and_readable_frames(
 def test_ctrl_c_before_the_first_step_ends_with_exit_code_130(
     ryusa_: Any, drop: str, here: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def swallowed(case: Any) -> Any:
+    def swallowed(case: Any, derived: Any) -> Any:
         with suppress(KeyboardInterrupt):  # as a callback of the compiler does
             os.kill(os.getpid(), signal.SIGINT)
-        return built(case)
+        return built(case, derived)
 
     built = build.build
     monkeypatch.setattr(build, "build", swallowed)
@@ -215,7 +215,7 @@ def test_ctrl_c_before_the_first_step_ends_with_exit_code_130(
 def test_ctrl_c_in_any_command_is_one_line_and_exit_code_130(
     ryusa_: Any, drop: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def interrupted(case: Any) -> Any:
+    def interrupted(*_: Any) -> Any:
         raise KeyboardInterrupt
 
     monkeypatch.setattr(build, "build", interrupted)
