@@ -196,7 +196,12 @@ def test_water_begins_at_the_floor(floor: str, zero: float) -> None:
             "timeline.0.remove",
             "lets grains fall beside the floor",
         ),
-        ("floor = 'plane'", {"timeline": GATE.replace("gate", "floor")}, "timeline.0.remove", "a plane in [[planes]]"),
+        (
+            "floor = 'plane'",
+            {"timeline": GATE.replace("gate", "floor")},
+            "timeline.0.remove",
+            "a plane in [[planes]]",
+        ),
         ("", {"timeline": GATE.replace("gate", "pit")}, "timeline.0.remove", "floor, back, gate"),
         ("floor_height = 0.9", {"grains__spread": "0.7"}, "grains.spread", "slips through"),
         (

@@ -41,6 +41,7 @@ def energy_created(scene: Scene, state: State, tally: Tally) -> EnergyCreated | 
         grain=grain,
         step=state.step,
         t=state.t,
-        hint="The step is too long for the springs, or they are too soft: take more time.steps_per_contact, "
-        "or a larger contact.stiffness.",
+        hint="Either the step is too long to resolve a contact: raise time.steps_per_contact, which "
+        "shortens the step. Or the springs are so soft that grains overlap deeply: raise "
+        "contact.stiffness, which keeps overlaps small.",
     )

@@ -45,7 +45,7 @@ def _shear(case: "Case", derived: "Derived", wet: WaterSection, origin: str) -> 
     if depth > 0.0 and tilt > 0.0:
         implied = water.u_star_from_slope(depth, tilt, derived.g)
         differs: Flag = "note" if abs(implied / derived.u_star - 1.0) > APART else ""
-        if implied != derived.u_star:
+        if not math.isclose(implied, derived.u_star, rel_tol=1e-9):
             formula = "sqrt(g h sin(slope)), for comparison"
             rows.append(number("water", "u_star of slope and depth", implied, "m/s", formula, differs))
     rough = derived.u_star * derived.k_rough / wet.viscosity

@@ -24,8 +24,8 @@ def fault_of(stats: Floats, parameters: Floats, step: int) -> RunError:
     }
     if fault == FAULT_NOT_A_NUMBER:
         hint = (
-            "Forces grew without bound, most likely a step too long for its springs: take more "
-            "time.steps_per_contact, and look at the frames before."
+            "Forces grew without bound, most likely because the step is too long for the springs: raise "
+            "time.steps_per_contact, which shortens the step, and inspect the frames before."
         )
         return NotANumber("velocity is not finite", **where, hint=hint)
     if fault == FAULT_OVERLAP:
@@ -46,8 +46,9 @@ def unsafe_of(grains: Any, n: int, parameters: Floats, smallest: float, step: in
         grain=int(grains.ids[place]),
         step=step,
         t=t,
-        hint="So fast, it could pass through others unseen. Most likely a contact too stiff or too deep for "
-        "the step threw it: take more time.steps_per_contact, and look at the frames before.",
+        hint="At this speed it could pass through another grain between two steps. Most likely the step "
+        "is too long for a contact that accelerated it: raise time.steps_per_contact, which shortens the "
+        "step, and inspect the frames before.",
     )
 
 
