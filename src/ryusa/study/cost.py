@@ -1,4 +1,4 @@
-"""What a campaign will cost before it starts: runs, seconds, bytes."""
+"""Cost of a study before it starts: runs, seconds, bytes."""
 
 from collections import Counter
 from collections.abc import Iterable, Mapping
@@ -15,7 +15,7 @@ from ryusa.study.task import Task
 
 @dataclass(frozen=True)
 class CostEstimate:
-    """What lies ahead.
+    """What the runs of a study will cost.
 
     Attributes
     ----------
@@ -88,7 +88,7 @@ def is_other(code: str, opened: bool) -> bool:
 
 
 def code_in_words(code: str) -> str:
-    """Say a state of the code shortly.
+    """Give a state of the code in short.
 
     >>> code_in_words("0123456789abcdef+"), code_in_words("ryusa 0.1.0")
     ('0123456789ab with changes', 'ryusa 0.1.0')
@@ -99,7 +99,7 @@ def code_in_words(code: str) -> str:
 
 
 def estimate_cost(wanted: Iterable[Task], folder: Path, *, jobs: int, again: bool = False) -> CostEstimate:
-    """Say what it takes to have these runs in `folder`; every case is read, and so checked.
+    """Estimate what it takes to have these runs in `folder`; every case is read, and so checked.
 
     Raises
     ------
@@ -128,12 +128,12 @@ def refuse_if_too_big(ahead: CostEstimate, folder: Path) -> None:
             "disk",
             None,
             f"{len(ahead.costs)} runs need {size(ahead.disk)}, but only {size(free)} are free at {place}. "
-            "Choose another disk with -o, or run fewer experiments at a time",
+            "Choose another disk with -o, or run fewer parts at a time",
         )
 
 
 def duration(seconds: float) -> str:
-    """Say a time so that nobody takes it for exact.
+    """Give a time with as many digits as an estimate has.
 
     >>> duration(42.0), duration(600.0), duration(9000.0)
     ('42 s', '10 min', '2.5 h')

@@ -12,15 +12,15 @@ from ryusa.study import Fault, Task, TaskResults
 _NAMED = 3  # runs that failed, named in a row
 
 
-def counted(campaign: TaskResults, jobs: int) -> dict[str, Any]:
+def counted(results: TaskResults, jobs: int) -> dict[str, Any]:
     """Runs made and opened, by which code, in how much time."""
     return {
-        "runs_made": campaign.n_run,
-        "runs_opened": campaign.n_opened,
-        "wall_s": round(campaign.seconds, 1),
+        "runs_made": results.n_run,
+        "runs_opened": results.n_opened,
+        "wall_s": round(results.seconds, 1),
         "jobs": jobs,
-        "commits_of_runs": dict(campaign.commits.most_common()),
-        "of_other_code": dict(campaign.others.most_common()),
+        "commits_of_runs": dict(results.commits.most_common()),
+        "of_other_code": dict(results.others.most_common()),
     }
 
 
@@ -31,11 +31,11 @@ def missing_runs(missing: Mapping[Task, Fault], n: int) -> str:
     return f"{len(missing)} of {n} runs failed, so it was not judged; {'; '.join(told)}{more}"
 
 
-def traces_of(campaign: TaskResults, faults: Mapping[str, Fault]) -> dict[str, str]:
+def traces_of(results: TaskResults, faults: Mapping[str, Fault]) -> dict[str, str]:
     """Tracebacks of errors in the program, each once, under what they spoiled."""
     every = [
         (f"{name}: run {one.label}", fault)
-        for name, found in campaign.missing.items()
+        for name, found in results.missing.items()
         for one, fault in found.items()
     ]
     return {what: fault.trace for what, fault in [*every, *faults.items()] if fault.trace}

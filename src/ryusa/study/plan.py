@@ -1,4 +1,4 @@
-"""How much a campaign covers."""
+"""How much a study covers."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -17,7 +17,7 @@ class Level(StrEnum):
 
 @dataclass(frozen=True)
 class Plan:
-    """What a campaign is to cover."""
+    """Level and seeds of a study."""
 
     level: Level = Level.STANDARD
     seeds: tuple[int, ...] = (1, 2, 3)

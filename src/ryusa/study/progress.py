@@ -1,4 +1,4 @@
-"""What a campaign says meanwhile: a bar on a terminal, a line now and then elsewhere; on stderr."""
+"""Progress of a study, on stderr: a bar on a terminal, a line every ten seconds elsewhere."""
 
 import sys
 import time
@@ -9,7 +9,7 @@ from ryusa.study.task import Task
 
 
 class StudyProgress:
-    """Told what goes on; says nothing."""
+    """Receives the progress of a study; shows nothing."""
 
     def begin(self, ahead: CostEstimate) -> None:
         """All runs, with what each costs."""
@@ -24,11 +24,11 @@ class StudyProgress:
         """Time went by."""
 
     def end(self) -> None:
-        """All runs are over, or the campaign was interrupted."""
+        """All runs are over, or the study was interrupted."""
 
 
 class ProgressLines(StudyProgress):
-    """A bar on a terminal, a line now and then elsewhere; on stderr."""
+    """Shows a bar on a terminal, a line every ten seconds elsewhere; on stderr."""
 
     EVERY = 10.0  # s between two lines where stderr is no terminal
 
@@ -40,8 +40,8 @@ class ProgressLines(StudyProgress):
         self._console = Console(stderr=True, highlight=False)
         self._clock = clock
         self._costs: dict[Task, float] = {}
-        self._now: dict[Task, float] = {}  # when each began
-        self._run_cost = self._run_seconds = 0.0  # thought of, and taken, by the runs made
+        self._now: dict[Task, float] = {}  # start time of each
+        self._run_cost = self._run_seconds = 0.0  # estimated and measured, of the runs made
         self._finished = self._total = 0
         self._jobs = 1
         self._last = clock()
@@ -54,7 +54,7 @@ class ProgressLines(StudyProgress):
         self._task = None
 
     def begin(self, ahead: CostEstimate) -> None:
-        """Say what lies ahead and open the bar."""
+        """Print the estimated cost and open the bar."""
         self._costs, self._jobs = dict(ahead.costs), ahead.jobs
         self._total = len(ahead.costs) + len(ahead.there)
         if not self._total:
@@ -65,12 +65,12 @@ class ProgressLines(StudyProgress):
             self._bar.start()
 
     def started(self, one: Task) -> None:
-        """Remember who is running."""
+        """Note when a run began."""
         self._now[one] = self._clock()
         self.tick()
 
     def done(self, one: Task, seconds: float, opened: bool, problem: str) -> None:
-        """Count it, and learn from it how long the rest will take."""
+        """Count it, and correct the estimate of the time left."""
         self._finished += 1
         self._now.pop(one, None)
         cost = self._costs.pop(one, 0.0)
@@ -82,7 +82,7 @@ class ProgressLines(StudyProgress):
         self.tick()
 
     def tick(self) -> None:
-        """Show it, if it is time."""
+        """Show the progress, at most every ten seconds."""
         now = self._clock()
         left = self.left()
         words = f"about {duration(left)} left, " if left > 0.0 else ""
@@ -94,13 +94,13 @@ class ProgressLines(StudyProgress):
             print(f"{self._finished}/{self._total} runs, {words}", file=sys.stderr, flush=True)
 
     def end(self) -> None:
-        """Take the bar away."""
+        """Close the bar."""
         if self._task is not None:
             self._bar.stop()
             self._task = None
 
     def left(self) -> float:
-        """Wall time left [s], by rule of thumb, corrected by how wrong that was for the runs made so far."""
+        """Wall time left [s]: the estimate, corrected by its error over the runs made so far."""
         wrong = self._run_seconds / self._run_cost if self._run_cost > 0.0 else 1.0
         now = self._clock()
         rest = [

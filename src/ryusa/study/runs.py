@@ -1,4 +1,4 @@
-"""Carry out the runs that are asked for: each once, several at a time, finished ones opened again."""
+"""Carry out tasks: each once, several at a time; finished ones are opened."""
 
 import os
 import signal
@@ -21,8 +21,8 @@ from ryusa.study.fault import Fault, fault_of, noted
 from ryusa.study.progress import StudyProgress
 from ryusa.study.task import Calculation, Task
 
-_WAIT = 0.2  # s between two looks at who has finished
-_PATIENCE = 5.0  # s that a run has to close its folder before its process is ended
+_WAIT = 0.2  # s between two checks for finished runs
+_PATIENCE = 5.0  # s that a run has to close its folder before its process is killed
 Load = Callable[[str], Any]
 
 _ONE_THREAD = {name: "1" for name in ("NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")}
@@ -50,7 +50,7 @@ class TaskResult:
 
 @dataclass
 class TaskResults:
-    """What a campaign found.
+    """What the tasks of a study gave.
 
     Attributes
     ----------
@@ -82,14 +82,14 @@ def carry_out(
     again: bool = False,
     progress: StudyProgress | None = None,
 ) -> TaskResults:
-    """Do every piece of work once, and measure each for everyone who wants it.
+    """Carry out every task once, and measure it for every part that needs it.
 
     Parameters
     ----------
-    tasks : who wants it (an experiment, a check) -> runs and calculations.
-    load : gives who wants it by name, in any process: a function of a module. Its `measure(results, run)`
-        makes numbers of a run, small enough to be sent between processes; those of a calculation are handed
-        on as they are. A run that breaks down is an answer where it has a `failed(error)` that gives one.
+    tasks : runs and calculations, by the part that needs them.
+    load : returns the part of that name, in any process. Its `measure(results, task)` gives numbers of a run,
+        small enough to be sent between processes; those of a calculation are passed on unchanged. A run that
+        breaks down is an answer where the part has a `failed(error)` that gives one.
     folder : runs go into `folder/<case>/<variant>`; finished runs of the very same case are opened.
     jobs : runs at a time, each in its own process on one thread; the numbers do not depend on it.
     again : run even what is there.
@@ -106,7 +106,7 @@ def carry_out(
     ahead = estimate_cost(wanted, folder, jobs=jobs, again=again)  # reads, and so checks, every case first
     refuse_if_too_big(ahead, folder)
     found: dict[str, dict[Any, Any]] = {name: {} for name in tasks}
-    campaign = TaskResults(found)
+    results = TaskResults(found)
     progress.begin(ahead)
     try:
         runs = _done(
@@ -119,14 +119,14 @@ def carry_out(
         )
         with _stopped_by_sigterm(), closing(runs):
             for done in runs:
-                _count(campaign, done)
+                _count(results, done)
                 progress.done(done.one, done.seconds, done.opened, done.problem)
     finally:
         progress.end()
     for name, measured in found.items():  # in the order asked for, whoever finished first
         found[name] = {one: measured[one] for one in tasks[name] if one in measured}
-    campaign.seconds = time.monotonic() - begun
-    return campaign
+    results.seconds = time.monotonic() - begun
+    return results
 
 
 def _wanted(tasks: Mapping[str, Sequence[Task]]) -> dict[Task, list[str]]:
@@ -145,19 +145,19 @@ def _order(ahead: CostEstimate) -> list[Task]:
     return [*ahead.there, *sorted(ahead.costs, key=lambda one: -ahead.costs[one])]
 
 
-def _count(campaign: TaskResults, done: TaskResult) -> None:
-    campaign.n_opened += done.opened
-    campaign.n_run += not done.opened
+def _count(results: TaskResults, done: TaskResult) -> None:
+    results.n_opened += done.opened
+    results.n_run += not done.opened
     if done.commit:
-        campaign.commits[done.commit] += 1
+        results.commits[done.commit] += 1
         if is_other(done.commit, done.opened):
-            campaign.others[done.commit] += 1
+            results.others[done.commit] += 1
     if done.problem:
-        campaign.problems[done.one.label] = done.problem
+        results.problems[done.one.label] = done.problem
     for name, numbers in done.measured.items():
-        campaign.found[name][done.one] = numbers
+        results.found[name][done.one] = numbers
     for name, fault in done.faults.items():
-        campaign.missing.setdefault(name, {})[done.one] = fault
+        results.missing.setdefault(name, {})[done.one] = fault
 
 
 def _done(

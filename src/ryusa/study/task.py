@@ -67,7 +67,7 @@ class Task(Protocol):
     def make(self, folder: Path, *, anew: bool = False) -> Any:
         """Do it, keep it in `folder`, and give what `open` would. An interrupt is a KeyboardInterrupt.
 
-        What was stopped on the way goes on from there, unless it shall be made `anew`.
+        An interrupted task continues where it stopped, unless it is to be made `anew`.
         """
         ...
 
@@ -145,7 +145,7 @@ class CaseRun(Task):
         return old if old.complete and self._is(old.case) else None
 
     def make(self, folder: Path, *, anew: bool = False) -> Results:
-        """Run it, or go on with it; a run that was stopped is no basis for a verdict, and interrupts."""
+        """Run it, or continue it; a run that was stopped is no basis for a verdict, and interrupts."""
         from ryusa.running.runner import run
 
         resume = not anew and _origin(folder) is None  # one that is complete was not fit to be opened
