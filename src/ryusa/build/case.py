@@ -150,7 +150,7 @@ def contact_of(case: Case, derived: Derived) -> ContactLaw:
         eta_n=found.fixed.eta_n if constants else 0.0,
         eta_s=found.fixed.eta_s if constants else 0.0,
         slip=Slip.of(contact.slip),
-        cap=Cap.of(contact.cap or ("total" if contact.slip == "total" else "spring")),
+        cap=Cap.of(contact.cap or ("total" if "total" in Slip.of(contact.slip).marks else "spring")),
         tension=contact.parting == "tension",
     )
 
@@ -158,7 +158,9 @@ def contact_of(case: Case, derived: Derived) -> ContactLaw:
 def rolling_of(case: Case) -> RollingLaw:
     """Rolling friction of a case."""
     rolling = case.rolling
-    arm = rolling.arm or ("reduced radius" if rolling.model == "spring-dashpot-slider" else "contact width")
+    arm = rolling.arm or (
+        "reduced radius" if "spring" in Rolling.of(rolling.model).marks else "contact width"
+    )
     return RollingLaw(
         model=Rolling.of(rolling.model),
         arm=Arm.of(arm),

@@ -119,7 +119,7 @@ def scene(
             zeta_n=collision.zeta_for_restitution(restitution, tension),
             zeta_s=collision.zeta_tension(e_s),
             slip=slip,
-            cap=Cap.TOTAL if slip == Slip.TOTAL else Cap.SPRING,
+            cap=Cap.TOTAL if "total" in slip.marks else Cap.SPRING,
             tension=tension,
         )
     if dt is None:

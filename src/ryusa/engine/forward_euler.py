@@ -11,8 +11,7 @@ from ryusa.laws.collision import (
     effective_mass,
     effective_mass_tangential,
     shortest_contact,
-    zeta_no_tension,
-    zeta_tension,
+    zeta_for_restitution,
 )
 from ryusa.laws.contact import damping, slip_spring
 from ryusa.laws.motion import acceleration, acceleration_spin, forward_euler, inertia_sphere
@@ -66,7 +65,7 @@ def march(
 
 def _zeta(scene: Scene) -> float:
     law = scene.contact
-    return (zeta_tension if law.tension else zeta_no_tension)(law.e_n)
+    return zeta_for_restitution(law.e_n, law.tension)
 
 
 @kernel()

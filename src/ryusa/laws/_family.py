@@ -108,7 +108,7 @@ def dispatch(
     Notes
     -----
     A number that is none of the family answers nan, on which every engine stops. The function is compiled
-    into its callers, on the CPU and for CUDA, and is not called from Python: see `evaluate`.
+    into its callers, on the CPU and for CUDA; from Python see `evaluate`.
 
     Raises
     ------
@@ -122,6 +122,24 @@ def dispatch(
         places = tuple(map(arguments.index, _asked_by(choice, arguments)))
         chain = _link(int(choice), choice.function, _picker(places, flags), chain, flags)
     return chain
+
+
+def marked(family: type[Family], mark: str) -> Any:
+    """Build the compiled function that tells whether the choice of a number carries a mark: f(number).
+
+    Raises
+    ------
+    TypeError : no choice of the family carries it.
+    """
+    bits = sum(1 << int(choice) for choice in family if mark in choice.marks)
+    if not bits:
+        raise TypeError(f"no choice of {family.__name__} is marked '{mark}' in laws/families.py")
+
+    @_uncached(False)
+    def carries(chosen: Any) -> Any:
+        return (bits >> chosen) & 1 != 0
+
+    return carries
 
 
 def evaluate(choice: Family, **given: Any) -> Any:
@@ -151,7 +169,7 @@ def _asked_by(choice: Family, arguments: tuple[str, ...]) -> tuple[str, ...]:
 def _uncached(fastmath: Any) -> Callable[[F], F]:
     """Compile, without keeping it on disk by itself: its laws are in its closure."""
     fast = set(fastmath) if isinstance(fastmath, frozenset) else fastmath
-    return compiled(None, fastmath=fast, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+    return compiled(None, fastmath=fast)
 
 
 @cache

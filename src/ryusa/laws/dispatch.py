@@ -7,12 +7,13 @@ parameters name. A number that is none of the family answers nan.
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-from ryusa.laws._family import dispatch
+from ryusa.laws._family import dispatch, marked
 from ryusa.laws._law import EDITION, compiled
 from ryusa.laws.drag import drag_factor, reynolds
 from ryusa.laws.families import (
     Arm,
     BedKind,
+    Cap,
     Drag,
     Hindrance,
     Lift,
@@ -20,7 +21,9 @@ from ryusa.laws.families import (
     Mixing,
     Profile,
     Rebound,
+    Rolling,
     SideWalls,
+    Slip,
     WaterTorque,
 )
 
@@ -57,6 +60,14 @@ mixing_length = dispatch(
 wall_stress = dispatch(BedKind, ("u_x", "z", "nu", "k_rough", "square"), answers=2)
 # Friction factor of turbulent water at the side walls [-].
 side_friction = dispatch(SideWalls, ("re",), unasked=(SideWalls.NONE,))
+
+# What enters `contact.slide`: whether the dashpot falls away while sliding, and whether the cap holds it too.
+slip_drops = marked(Slip, "drop")
+slip_total = marked(Slip, "total")
+# Whether the whole normal force feeds the Coulomb cap.
+cap_total = marked(Cap, "total")
+# Whether rolling friction turns both grains the same way; else the torque on j is opposite to that on i.
+rolling_alike = marked(Rolling, "both alike")
 
 
 def _inlined(function: F) -> F:

@@ -2,29 +2,20 @@
 
 import math
 
-from ryusa.laws.families import BedKind, Mixing, SideWalls
+from ryusa.laws.dispatch import mixing_length, side_friction, wall_stress
+from ryusa.laws.families import BedKind, Mixing
 from ryusa.laws.turbulence import (
-    eddy_viscosity,
-    friction_blasius,
     friction_gap_laminar,
-    friction_karman_prandtl,
     height_between,
     length_growth_li_sawamoto,
-    length_parabolic,
     length_pore_egashira,
-    length_prandtl,
-    length_van_driest,
     side_wall_drag,
-    wall_rough,
-    wall_smooth,
 )
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import ColumnParameters, kernel
 
 ROUGH, SMOOTH, MOVING = int(BedKind.ROUGH), int(BedKind.SMOOTH), int(BedKind.MOVING)
-LAMINAR, PRANDTL, PARABOLIC = int(Mixing.LAMINAR), int(Mixing.PRANDTL), int(Mixing.PARABOLIC)
-VAN_DRIEST, LI_SAWAMOTO = int(Mixing.VAN_DRIEST), int(Mixing.LI_SAWAMOTO)
-BLASIUS, KARMAN_PRANDTL = int(SideWalls.BLASIUS), int(SideWalls.KARMAN_PRANDTL)
+LAMINAR, VAN_DRIEST, LI_SAWAMOTO = int(Mixing.LAMINAR), int(Mixing.VAN_DRIEST), int(Mixing.LI_SAWAMOTO)
 RE_SLOW = 1500.0  # below it the flow between the side walls is laminar; both turbulent laws give less there
 
 
@@ -105,13 +96,7 @@ def mixing_lengths(
         low, high = z[f - 1] - p.z_bed, z[f] - p.z_bed
         at = height_between(low, high) if walled and low > 0.0 else face
         length = 0.0
-        if p.mixing == PRANDTL:
-            length = length_prandtl(at, p.kappa)
-        elif p.mixing == PARABOLIC and face > 0.0:
-            length = length_parabolic(face, depth, p.kappa) * (at / face)
-        elif p.mixing == VAN_DRIEST:
-            length = length_van_driest(at, u_star, p.nu, p.kappa)
-        elif p.mixing == LI_SAWAMOTO:
+        if p.mixing == LI_SAWAMOTO:
             below, above = 0.0, 0.0
             if f > crest:
                 below = length_growth_li_sawamoto(mean[f - 1], p.phi_max, p.dz, p.kappa)
@@ -120,6 +105,8 @@ def mixing_lengths(
             low, high = grown + 0.5 * below, grown + below + 0.5 * above
             grown += below
             length = height_between(low, high) if walled and low > 0.0 else grown
+        elif p.mixing != LAMINAR:
+            length = mixing_length(p.mixing, at, face, depth, u_star, p.nu, p.kappa)
         share = 0.5 * (phi[f - 1] + phi[f])
         square[f] = max((1.0 - share) * length * length, pores(p, share))
     square[0] = pores(p, phi[0])
@@ -131,12 +118,7 @@ def bed_stress(p: ColumnParameters, u: float, z: float, square: float) -> tuple[
 
     `square` [m2] is the value of `mixing_lengths` at the bed, used where no wall law applies.
     """
-    if p.bed == ROUGH:
-        return wall_rough(u, z, p.k_rough)
-    if p.bed == SMOOTH:
-        return wall_smooth(u, z, p.nu)
-    nu_t = eddy_viscosity(1.0, u / z, square)
-    return (p.nu + nu_t) * u / z, (p.nu + 2.0 * nu_t) / z
+    return wall_stress(p.bed, u, z, p.nu, p.k_rough, square)
 
 
 @kernel
@@ -155,12 +137,8 @@ def side_drag(p: ColumnParameters, u: float) -> tuple[float, float]:
         return 0.0 * u, 0.0
     friction = friction_gap_laminar(re)
     power = 1.0  # the drag grows with this power of the speed
-    if re > RE_SLOW:
-        turbulent = 0.0
-        if p.side == BLASIUS:
-            turbulent = friction_blasius(re)
-        elif p.side == KARMAN_PRANDTL:
-            turbulent = friction_karman_prandtl(re)
+    if p.side and re > RE_SLOW:
+        turbulent = side_friction(p.side, re)
         if turbulent > friction:
             friction, power = turbulent, 1.75
     drag = side_wall_drag(u, friction, p.width)

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 from ryusa.casefile.motion import may_rotate
 from ryusa.errors import CaseError
+from ryusa.laws.families import Rolling, Slip
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
@@ -23,8 +24,8 @@ def check_contact(case: "Case") -> Iterator[CaseError]:
         yield CaseError(
             "contact.restitution", None, "missing; give restitution, or damping (a constant dashpot)"
         )
-    if contact.slip == "total" and contact.cap == "spring":
-        yield CaseError("contact.cap", "spring", "must be 'total' (or left out) with slip 'total'")
+    if "total" in Slip.of(contact.slip).marks and contact.cap == "spring":
+        yield CaseError("contact.cap", "spring", f"must be 'total' (or left out) with slip '{contact.slip}'")
 
 
 def check_rolling(case: "Case") -> Iterator[CaseError]:
@@ -37,7 +38,7 @@ def check_rolling(case: "Case") -> Iterator[CaseError]:
             yield CaseError("rolling.coefficient", None, f"missing or zero; model '{rolling.model}' needs it")
     elif rolling.coefficient > 0.0:
         yield CaseError("rolling.coefficient", rolling.coefficient, "has no effect with rolling.model 'none'")
-    if rolling.model == "spring-dashpot-slider" and rolling.arm == "contact width":
+    if "spring" in Rolling.of(rolling.model).marks and rolling.arm == "contact width":
         yield CaseError(
             "rolling.arm", rolling.arm, "must be 'reduced radius' (or left out) with spring-dashpot-slider"
         )

@@ -29,11 +29,9 @@ from ryusa.laws.contact_step import (
     normal_work_of_last_force,
     tangential_step,
 )
-from ryusa.laws.families import Cap, Slip
+from ryusa.laws.dispatch import cap_total, slip_drops, slip_total
 from ryusa.laws.geometry import overlap as overlap_of
 from ryusa.laws.geometry import wrap
-
-SLIP_DROP, SLIP_TOTAL, CAP_TOTAL = int(Slip.SPRING_DROP), int(Slip.TOTAL), int(Cap.TOTAL)
 
 
 @inner(fastmath=FAST, forceinline=True)
@@ -218,15 +216,15 @@ def compute(flat: int | None, choice: LawChoice, m: int, hdt: float, most: float
     diameter so far [-]. Spins of locked grains are zero.
     """
     least = -math.inf if choice.tension else 0.0  # a contact that may pull has no least force
-    total, drop, cap_total = choice.slip == SLIP_TOTAL, choice.slip == SLIP_DROP, choice.cap == CAP_TOTAL
+    total, drop, whole = slip_total(choice.slip), slip_drops(choice.slip), cap_total(choice.cap)
     if flat is not None:
         _kinematics_plane(m, most, c, batch)
         _normal_force(least, m, hdt, c, batch)
-        _tangential_plane(total, drop, cap_total, least, m, hdt, c, batch)
+        _tangential_plane(total, drop, whole, least, m, hdt, c, batch)
     else:
         _kinematics_space(m, most, c, batch)
         _normal_force(least, m, hdt, c, batch)
-        _tangential_space(total, drop, cap_total, least, m, hdt, c, batch)
+        _tangential_space(total, drop, whole, least, m, hdt, c, batch)
 
 
 @inner(fastmath=FAST, forceinline=True)

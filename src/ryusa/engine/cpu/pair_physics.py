@@ -15,8 +15,9 @@ from ryusa.engine.shared import record_fields as R
 from ryusa.engine.shared.contact_records import begin_record, end_record, keep_record
 from ryusa.engine.shared.dashpots import dashpot_immersed
 from ryusa.engine.shared.kernel import FAST, inner, kernel
-from ryusa.engine.shared.rolling import ROLL_PRINTED, end_rolling, rolling_friction
+from ryusa.engine.shared.rolling import end_rolling, rolling_friction
 from ryusa.engine.shared.variant import KernelVariant, LawChoice
+from ryusa.laws.dispatch import rolling_alike
 from ryusa.laws.geometry import wrap
 from ryusa.laws.immersed import lubrication_force
 from ryusa.laws.rolling import reduced_radius
@@ -98,7 +99,7 @@ def optional_physics(
                     (w[j, 3], grains.m[j], grains.inertia[j], share_j),
                     normal, turned, spin_i, spin_j, account,
                 )  # fmt: skip
-                sign = 1.0 if choice.rolling == ROLL_PRINTED else -1.0
+                sign = 1.0 if rolling_alike(choice.rolling) else -1.0
                 for k, r in enumerate((r_x, r_y, r_z)):
                     batch[B.TORQUE_I + 4 * l + k] += r
                     batch[B.TORQUE_J + 4 * l + k] += sign * r

@@ -30,8 +30,8 @@ def make_contact(variant: KernelVariant, choice: LawChoice) -> Any:
     """Build the contact of one pair for one variant."""
     plane_case = variant.plane_case != 0
     least = -math.inf if choice.tension else 0.0  # a contact that may pull has no least force
-    total, drop = choice.slip == int(Slip.TOTAL), choice.slip == int(Slip.SPRING_DROP)
-    cap_total, rebound = choice.cap == int(Cap.TOTAL), choice.rebound
+    total, drop = "total" in Slip(choice.slip).marks, "drop" in Slip(choice.slip).marks
+    cap_total, rebound = "total" in Cap(choice.cap).marks, choice.rebound
 
     @device
     def contact(

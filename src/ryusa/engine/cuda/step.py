@@ -25,7 +25,7 @@ from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared import record_fields as R
 from ryusa.engine.shared.contact_records import begin_record, end_record, keep_record
 from ryusa.engine.shared.fluid import close_fluid_interval
-from ryusa.engine.shared.rolling import ROLL_PRINTED, end_rolling, rolling_friction
+from ryusa.engine.shared.rolling import end_rolling, rolling_friction
 from ryusa.engine.shared.status import (
     FAULT_EVENTS_FULL,
     FAULT_NONE,
@@ -39,6 +39,7 @@ from ryusa.engine.shared.status import (
 )
 from ryusa.engine.shared.variant import KernelVariant, LawChoice
 from ryusa.laws.contact_step import contact_kinematics
+from ryusa.laws.families import Rolling
 from ryusa.laws.geometry import wrap
 from ryusa.laws.immersed import lubrication_force
 from ryusa.laws.rolling import reduced_radius
@@ -68,7 +69,9 @@ def make_step(variant: KernelVariant, choice: LawChoice, shape: LaunchShape) -> 
     record_at, threads, group, parts = variant.event_column, shape.threads, shape.group, shape.parts
     run = threads // parts
     n_total, n_stat = T.N_COLUMN, S.N_STATISTIC  # the size of a local array has to be a literal
-    both_ways = 1.0 if model == ROLL_PRINTED else -1.0  # Eq. (13) as printed turns both grains one way
+    both_ways = (
+        1.0 if "both alike" in Rolling(model).marks else -1.0
+    )  # Eq. (13) as printed turns both grains one way
     contact, integrate = make_contact(variant, choice), make_integrate(variant, choice)
 
     @cuda.jit

@@ -6,13 +6,11 @@ from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.kernel import inner, kernel
 from ryusa.engine.shared.variant import LawChoice
-from ryusa.laws.collision import effective_mass, effective_mass_tangential, zeta_no_tension, zeta_tension
+from ryusa.laws.collision import effective_mass, effective_mass_tangential, zeta_for_restitution
 from ryusa.laws.contact import damping, damping_in_steps
-from ryusa.laws.families import Rebound
-from ryusa.laws.immersed import restitution_davis, restitution_exponential, stokes_number
+from ryusa.laws.dispatch import wet_restitution
+from ryusa.laws.immersed import stokes_number
 from ryusa.laws.rolling import reduced_radius
-
-EXPONENTIAL = int(Rebound.EXPONENTIAL)
 
 
 @inner()
@@ -38,10 +36,7 @@ def dashpot_immersed(choice: LawChoice, closing: float, i: int, j: int, c: Any, 
     """Normal dashpot [N s/m] of a pair that just touched under water at this closing speed."""
     m_n = effective_mass(m[i], m[j])
     st = stokes_number(closing, m_n, reduced_radius(w[i, 3], w[j, 3]), c[P.RHO_W], c[P.NU])
-    if choice.rebound == EXPONENTIAL:
-        e = restitution_exponential(c[P.E_DRY], st, c[P.ST_C])
-    else:
-        e = restitution_davis(c[P.E_DRY], st, c[P.ASPERITY], 2.0 * min(w[i, 3], w[j, 3]))
-    e = max(e, c[P.E_LEAST])
-    zeta = zeta_tension(e) if choice.tension else zeta_no_tension(e)
+    smaller = 2.0 * min(w[i, 3], w[j, 3])
+    e = wet_restitution(choice.rebound, c[P.E_DRY], st, c[P.ST_C], c[P.ASPERITY], smaller)
+    zeta = zeta_for_restitution(max(e, c[P.E_LEAST]), choice.tension != 0)
     return damping_in_steps(damping(zeta, c[P.K_N], m_n), m_n, c[P.DT])

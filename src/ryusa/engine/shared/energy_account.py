@@ -6,7 +6,6 @@
 import numpy as np
 
 from ryusa.engine.shared import block_statistics as S
-from ryusa.laws.families import Rolling
 from ryusa.laws.rolling import epsd_stiffness, reduced_radius
 from ryusa.model import EngineBlock, Scene, State, Tally
 from ryusa.model.scene import Floats
@@ -104,7 +103,7 @@ def potential_energy(scene: Scene, state: State) -> float:
 
 def rolling_energy(scene: Scene, state: State, places: np.ndarray) -> float:
     """Energy in the rolling springs of some of a state's contacts [J]."""
-    if scene.rolling.model != Rolling.EPSD:
+    if "spring" not in scene.rolling.model.marks:
         return 0.0
     r = 0.5 * np.concatenate([scene.d, scene.d_fixed, np.full(scene.n_plane, np.inf)])
     energy = 0.0

@@ -7,26 +7,13 @@ from ryusa.engine.shared import block_statistics as S
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.kernel import FAST, inner
 from ryusa.engine.shared.variant import LawChoice
-from ryusa.laws.dispatch import drag_of, hindered
-from ryusa.laws.families import Above, Buoyancy, Lift, Magnus, Profile, WaterTorque
-from ryusa.laws.lift import (
-    lift_saffman_mei,
-    lift_wiberg_smith,
-    magnus_loth,
-    magnus_oesterle_dinh,
-    magnus_rubinow_keller,
-)
-from ryusa.laws.torque import torque_dennis, torque_stokes
-from ryusa.laws.water import log_law_rough, log_law_smooth, uniform
+from ryusa.laws.dispatch import drag_of, hindered, magnus, profile_speed, shear_lift, water_torque
+from ryusa.laws.families import Above, Buoyancy
 from ryusa.model.fluid import PHI, SHEAR, SUBMERGED, U, V, W
 from ryusa.model.tally import Book
 
-ROUGH, SMOOTH, UNIFORM = int(Profile.LOG_ROUGH), int(Profile.LOG_SMOOTH), int(Profile.UNIFORM)
 HOLD, DRY = int(Above.HOLD), int(Above.DRY)
-STOKES = int(WaterTorque.STOKES)
 STRESS = int(Buoyancy.STRESS)
-WIBERG_SMITH, SAFFMAN_MEI = int(Lift.WIBERG_SMITH), int(Lift.SAFFMAN_MEI)
-LOTH, OESTERLE_DINH = int(Magnus.LOTH), int(Magnus.OESTERLE_DINH)
 B_DRAG, B_TORQUE, B_LIFT, B_FLOW = int(Book.DRAG), int(Book.TORQUE), int(Book.LIFT), int(Book.FLOW)
 B_FILM = int(Book.FILM)
 
@@ -36,13 +23,7 @@ def water_speed(profile: int, above: int, z: float, c: Any) -> float:
     """Speed of the water along x at height z over the zero of the profile [m/s]."""
     if above == HOLD:
         z = min(z, c[P.DEPTH])
-    if profile == ROUGH:
-        return log_law_rough(z, c[P.U_STAR], c[P.K_ROUGH])
-    if profile == SMOOTH:
-        return log_law_smooth(z, c[P.U_STAR], c[P.NU])
-    if profile == UNIFORM:
-        return uniform(z, c[P.U_UNIFORM])
-    return 0.0
+    return profile_speed(profile, z, c[P.U_STAR], c[P.K_ROUGH], c[P.NU], c[P.U_UNIFORM])
 
 
 @inner(forceinline=True)
@@ -61,21 +42,16 @@ def column_forces(
             d, nu, rho_w, c[P.A_2], c[P.C_D],
         )  # fmt: skip
     l_x = l_y = l_z = 0.0
-    if choice.lift == WIBERG_SMITH:
+    if choice.lift:
         half = 0.5 * tangential * d
-        l_z = lift_wiberg_smith(u_x + half, u_x - half, c[P.C_L], rho_w, c[P.A_2], d)
-    elif choice.lift == SAFFMAN_MEI:
-        k = lift_saffman_mei(slip, tangential, d, nu, rho_w)
-        l_x, l_z = -k * u_z, k * u_x
+        normal, k = shear_lift(
+            choice.lift, u_x + half, u_x - half, slip, tangential, d, nu, rho_w, c[P.A_2], c[P.C_L]
+        )
+        l_x, l_z = -k * u_z, normal + k * u_x
     if choice.magnus:
         o_x, o_y, o_z = -w[0], 0.5 * tangential - w[1], -w[2]
         spin = math.sqrt(o_x * o_x + o_y * o_y + o_z * o_z)
-        if choice.magnus == LOTH:
-            k = magnus_loth(slip, spin, d, nu, rho_w)
-        elif choice.magnus == OESTERLE_DINH:
-            k = magnus_oesterle_dinh(slip, spin, d, nu, rho_w)
-        else:
-            k = magnus_rubinow_keller(d, rho_w)
+        k = magnus(choice.magnus, slip, spin, d, nu, rho_w)
         l_x += k * (o_y * u_z - o_z * u_y)
         l_y += k * (o_z * u_x - o_x * u_z)
         l_z += k * (o_x * u_y - o_y * u_x)
@@ -104,9 +80,7 @@ def torque_over_spin(
 ) -> float:
     """Torque of the water on a grain over its spin o against the water [N m s]."""
     spin = math.sqrt(o_x * o_x + o_y * o_y + o_z * o_z)
-    if choice.torque == STOKES:
-        return submerged * torque_stokes(spin, 2.0 * r, c[P.NU], c[P.RHO_W])
-    return submerged * torque_dennis(spin, 2.0 * r, c[P.NU], c[P.RHO_W])
+    return submerged * water_torque(choice.torque, spin, 2.0 * r, c[P.NU], c[P.RHO_W])
 
 
 @inner()

@@ -1,8 +1,12 @@
 """What engines refuse before any step: a scene they cannot simulate, a state that does not fit it."""
 
+from typing import get_type_hints
+
 import numpy as np
 
+from ryusa.engine.shared.rolling import MODELS
 from ryusa.errors import NotANumber
+from ryusa.laws._family import Family
 from ryusa.laws.families import Arm, Rebound, Rolling
 from ryusa.model import Scene, State
 from ryusa.model.scene import Damping
@@ -12,7 +16,12 @@ _SHORTEST_PERIOD = 3.0  # in diameters: below, a pair could touch through two im
 
 def refusals(scene: Scene) -> tuple[str, ...]:
     """Reasons why the engine cannot carry the scene; () when it can."""
-    reasons: list[str] = []
+    reasons = unknown_choices(scene)
+    if reasons:
+        return tuple(reasons)
+    if scene.rolling.model != Rolling.NONE and scene.rolling.model not in MODELS:
+        word = scene.rolling.model.word
+        reasons.append(f"rolling.model '{word}' has no branch in engine/shared/rolling.py")
     if scene.rolling.model == Rolling.EPSD and scene.rolling.arm == Arm.CONTACT_WIDTH:
         reasons.append(
             "the spring-dashpot-slider needs rolling.arm = 'reduced radius': its stiffness may not change"
@@ -61,3 +70,19 @@ def _check_lanes(scene: Scene, state: State) -> None:
         y = lanes[int(apart.argmin())]
         text = f"a plane scene has grains at y = {y:g} m and {apart.min():g} m beside, less than a diameter"
         raise ValueError(f"{text} ({largest:g} m): give them the same y, or set the lanes apart")
+
+
+def unknown_choices(scene: Scene) -> list[str]:
+    """Choices of a scene, each by its family, whose number is none of the table of laws."""
+    found: list[str] = []
+    for part in (scene.contact, scene.rolling, scene.water, scene.column):
+        if part is None:
+            continue
+        for name, kind in get_type_hints(type(part)).items():
+            if not (isinstance(kind, type) and issubclass(kind, Family)):
+                continue
+            number = int(getattr(part, name))
+            if number not in [int(choice) for choice in kind]:
+                known = ", ".join(f"{int(choice)} ({choice.word or choice.name})" for choice in kind)
+                found.append(f"{kind.key}: number {number} is none of {known}")
+    return found

@@ -6,7 +6,8 @@ from typing import Any
 from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.kernel import FAST, kernel
-from ryusa.laws.families import Arm, Rolling
+from ryusa.laws.dispatch import rolling_alike, rolling_length
+from ryusa.laws.families import Rolling
 from ryusa.laws.geometry import turn
 from ryusa.laws.rolling import (
     epsd_damping,
@@ -15,8 +16,6 @@ from ryusa.laws.rolling import (
     epsd_torque,
     inertia_rolling,
     inertia_spin,
-    reduced_radius,
-    rolling_arm_width,
     rolling_constant,
     rolling_printed,
     slider_scale,
@@ -28,8 +27,8 @@ Body = tuple[
     float, float, float, float
 ]  # radius, mass with added mass, inertia, contacts that share the inertia
 
-ROLL_PRINTED, ROLL_CONSTANT, ROLL_EPSD = int(Rolling.PRINTED), int(Rolling.CONSTANT), int(Rolling.EPSD)
-ARM_WIDTH = int(Arm.CONTACT_WIDTH)
+MODELS = (Rolling.PRINTED, Rolling.CONSTANT, Rolling.EPSD)  # a branch of `rolling_friction` for each
+PRINTED, CONSTANT, EPSD = (int(model) for model in MODELS)
 B_ROLL, B_RELEASED_R = int(Book.ROLL), int(Book.RELEASED_R)
 
 
@@ -59,30 +58,27 @@ def rolling_friction(
     r_i, m_i, inertia_i, share_i = body_i
     r_j, m_j, inertia_j, share_j = body_j
     dt, k_n = c[P.DT], c[P.K_N]
-    sign = 1.0 if model == ROLL_PRINTED else -1.0
+    sign = 1.0 if rolling_alike(model) else -1.0
     s_x, s_y, s_z = w_i[0] + sign * w_j[0], w_i[1] + sign * w_j[1], w_i[2] + sign * w_j[2]
     along = s_x * n[0] + s_y * n[1] + s_z * n[2]
     s_x, s_y, s_z = s_x - along * n[0], s_y - along * n[1], s_z - along * n[2]
-    length = reduced_radius(r_i, r_j)
-    if arms == ARM_WIDTH:
-        length = rolling_arm_width(r_i, r_j, overlap)
-    f = c[P.ROLLING] * length
+    f = c[P.ROLLING] * rolling_length(arms, r_i, r_j, overlap)
     cap = rolling_printed(f_n, f)
     e_x = e_y = e_z = 0.0  # spring
     q_x = q_y = q_z = 0.0  # the rest
     energy = stored = 0.0
     p_x, p_y, p_z = row[M.SPRING_R], row[M.SPRING_R + 1], row[M.SPRING_R + 2]
-    if model == ROLL_PRINTED:
+    if model == PRINTED:
         size = math.sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2])
         if size > 0.0:
             q_x, q_y, q_z = -cap * t[0] / size, -cap * t[1] / size, -cap * t[2] / size
-    elif model == ROLL_CONSTANT:
+    elif model == CONSTANT:
         size = math.sqrt(s_x * s_x + s_y * s_y + s_z * s_z)
         if size > 0.0:
             # several contacts brake one grain at once: each may take its share of the inertia
             most = rolling_constant(cap, size, inertia_spin(inertia_i / share_i, inertia_j / share_j), dt)
             q_x, q_y, q_z = -most * s_x / size, -most * s_y / size, -most * s_z / size
-    elif model == ROLL_EPSD:
+    elif model == EPSD:
         k_r = epsd_stiffness(k_n, f, c[P.ROLLING_STIFFNESS])
         eta_r = epsd_damping(
             k_r, inertia_rolling(m_i, r_i, inertia_i, m_j, r_j, inertia_j), c[P.ROLLING_ZETA]
@@ -107,6 +103,8 @@ def rolling_friction(
             account[B_RELEASED_R] += taken + stored - energy
         elif scale < 1.0:
             account[B_ROLL] += taken + stored - energy
+    else:
+        q_x = q_y = q_z = math.nan  # `refusals` names such a model before any step
     account[B_ROLL] -= hdt * (
         s_x * (row[M.DASH_R] + q_x) + s_y * (row[M.DASH_R + 1] + q_y) + s_z * (row[M.DASH_R + 2] + q_z)
     )
@@ -123,11 +121,11 @@ def end_rolling(
 
     `rolling` is the model, `radius` the reduced radius of the pair [m]; its part of the row is emptied.
     """
-    sign = 1.0 if rolling == ROLL_PRINTED else -1.0
+    sign = 1.0 if rolling_alike(rolling) else -1.0
     w_x, w_y, w_z = w_i[0] + sign * w_j[0], w_i[1] + sign * w_j[1], w_i[2] + sign * w_j[2]
     e_x, e_y, e_z = row[M.SPRING_R], row[M.SPRING_R + 1], row[M.SPRING_R + 2]
     k_r = epsd_stiffness(c[P.K_N], c[P.ROLLING] * radius, c[P.ROLLING_STIFFNESS])
-    if rolling == ROLL_EPSD and k_r > 0.0:
+    if rolling == EPSD and k_r > 0.0:
         account[B_RELEASED_R] += 0.5 * (e_x * e_x + e_y * e_y + e_z * e_z) / k_r
     account[B_RELEASED_R] -= hdt * (w_x * e_x + w_y * e_y + w_z * e_z)
     account[B_ROLL] -= hdt * (w_x * row[M.DASH_R] + w_y * row[M.DASH_R + 1] + w_z * row[M.DASH_R + 2])
