@@ -8,9 +8,10 @@ import numpy as np
 
 from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run
-from ryusa.measure.statistics import average, ratio
+from ryusa.measure.statistics import Average, average, ratio
 from ryusa.measure.table import Averages
 from ryusa.measure.transport import places_of, window_of
+from ryusa.model import Scene
 
 SPEED = 0.1  # speed from which a grain moves, over sqrt(g d)
 DURATION = 1.0  # time for which it must, over sqrt(d/g)
@@ -98,37 +99,8 @@ def entrainment(
             f"{n + 1} frames from t = {t[0]:g} s to {t[-1]:g} s: too few to see a grain rest and move for "
             f"{duration:g} s each"
         )
-    ball = np.pi / 6.0 * scene.d**3
-    counts = np.zeros((4, n))  # started, stopped, and both by volume
-    moving, way = np.zeros(n), np.zeros(n)  # volume in motion, and volume times way along x
-    state, last_flag, length = (np.full(scene.n_grain, -1, dtype=np.int64) for _ in range(3))
-    k = 0
-    for x in places_of(run, first, last):
-        for before, after in pairwise(x):
-            flag = (np.linalg.norm(after - before, axis=1) > speed * dt[k]).astype(np.int64)
-            moving[k] = (flag * ball).sum()
-            way[k] = (flag * ball * (after - before)[:, 0]).sum()
-            length = np.where(flag == last_flag, length + 1, 1)
-            last_flag = flag
-            sure = length >= need
-            up, down = sure & (flag == 1) & (state == 0), sure & (flag == 0) & (state == 1)
-            counts[:, k - need + 1] += up.sum(), down.sum(), ball[up].sum(), ball[down].sum()
-            state = np.where(sure, flag, state)
-            k += 1
+    counts, moving, distance = _count(run, first, last, scene, speed * dt, need)
     seen = slice(need, n - need + 1)
-    window = (float(t[need]), float(t[n - need + 1]))
-    rates = [
-        ratio(name, unit, [counts[c, seen] / area], [dt[seen]], window)
-        for c, (name, unit) in enumerate(
-            (
-                ("entrainment", "1/(m2 s)"),
-                ("deposition", "1/(m2 s)"),
-                ("entrained_volume", "m/s"),
-                ("deposited_volume", "m/s"),
-            )
-        )
-    ]
-    whole = (float(t[0]), float(t[-1]))
     return Entrainment(
         t=(0.5 * (t[1:] + t[:-1]))[seen],
         dt=dt[seen],
@@ -142,13 +114,68 @@ def entrainment(
         averages=Averages(
             "entrainment",
             (
-                *rates,
-                average("moving", "m", [moving / area], whole),
-                ratio("moving_speed", "m/s", [way], [moving * dt], whole),
+                *_rates(counts[:, seen] / area, dt[seen], (float(t[need]), float(t[n - need + 1]))),
+                *_motion(moving, distance, dt, area, (float(t[0]), float(t[-1]))),
             ),
             (
-                f"a grain moves beyond {speed:.3g} m/s; it is counted once it does, or does not, for "
-                f"{need * step:.3g} s",
+                f"a grain moves if it is faster than {speed:.3g} m/s; it is counted once it has moved, or "
+                f"rested, for {need * step:.3g} s",
             ),
         ),
     )
+
+
+def _count(
+    run: Run, first: int, last: int, scene: Scene, threshold: Floats, need: int
+) -> tuple[Floats, Floats, Floats]:
+    """Count the grains that start and stop between frames.
+
+    Parameters
+    ----------
+    threshold : displacement between two frames beyond which a grain moves [m], shape (n,).
+    need : frame intervals for which a grain must move or rest to be counted.
+
+    Returns
+    -------
+    counts : grains that start, grains that stop, and the volume of both [m3], shape (4, n).
+    moving, distance : volume in motion [m3], and volume times displacement along x [m4], shape (n,).
+    """
+    ball = np.pi / 6.0 * scene.d**3
+    n = len(threshold)
+    counts, moving, distance = np.zeros((4, n)), np.zeros(n), np.zeros(n)
+    state, last_flag, length = (np.full(scene.n_grain, -1, dtype=np.int64) for _ in range(3))
+    k = 0
+    for x in places_of(run, first, last):
+        for before, after in pairwise(x):
+            flag = (np.linalg.norm(after - before, axis=1) > threshold[k]).astype(np.int64)
+            moving[k] = (flag * ball).sum()
+            distance[k] = (flag * ball * (after - before)[:, 0]).sum()
+            length = np.where(flag == last_flag, length + 1, 1)
+            last_flag = flag
+            sure = length >= need
+            up, down = sure & (flag == 1) & (state == 0), sure & (flag == 0) & (state == 1)
+            counts[:, k - need + 1] += up.sum(), down.sum(), ball[up].sum(), ball[down].sum()
+            state = np.where(sure, flag, state)
+            k += 1
+    return counts, moving, distance
+
+
+def _rates(per_area: Floats, dt: Floats, window: tuple[float, float]) -> list[Average]:
+    """Rates of entrainment and deposition, by number and by volume, from the counts per area (4, n)."""
+    names = (
+        ("entrainment", "1/(m2 s)"),
+        ("deposition", "1/(m2 s)"),
+        ("entrained_volume", "m/s"),
+        ("deposited_volume", "m/s"),
+    )
+    return [ratio(name, unit, [per_area[c]], [dt], window) for c, (name, unit) in enumerate(names)]
+
+
+def _motion(
+    moving: Floats, distance: Floats, dt: Floats, area: float, window: tuple[float, float]
+) -> list[Average]:
+    """Volume of moving grains per area, and their mean speed along the bed."""
+    return [
+        average("moving", "m", [moving / area], window),
+        ratio("moving_speed", "m/s", [distance], [moving * dt], window),
+    ]

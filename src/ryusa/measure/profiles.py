@@ -166,40 +166,24 @@ def profiles(
     `x`, which no profile can tell. In a plane scene the width is `slab_width`, and lanes are averaged.
     """
     since = settle_time(run) if begin is None else begin
-    t = np.asarray(run.frames.t, dtype=np.float64)
-    first, last = int(np.searchsorted(t, since, "left")), int(np.searchsorted(t, end, "right"))
+    first, last = _frames(run, since, end)
+    t = np.asarray(run.frames.t, dtype=np.float64)[first:last]
     scene = scene_at(run, since)
-    if last <= first or scene.n_grain == 0:
-        raise ResultsError(f"no frame of free grains from t = {since:g} s to {end:g} s")
-    t = t[first:last]
     z_0, thickness = _origin(scene, origin), layer * float(scene.d.mean())
     _, lanes = lanes_of(np.asarray(run.frames.x[first], dtype=np.float64)[:, 1], scene)
     length = float(scene.period[0]) if between is None else between[1] - between[0]
     width = _width(scene, lanes)
     if not (math.isfinite(length) and length > 0.0):
-        raise ResultsError("the scene is open along x: say between which two x the profile is wanted")
+        raise ResultsError("the scene is open along x: `between` must say from which x to which")
     sums, edge = _sums(run, first, last, scene, z_0, thickness, between, bed)
     n_layer, area = sums.shape[1], length * width
     space = area * thickness
     side = length * thickness * lanes if scene.plane_case else math.nan
-    volume = sums[:, :, V]
-    weight = volume.sum(axis=1)
+    volume, weight = sums[:, :, V], sums[:, :, V].sum(axis=1)
     with np.errstate(invalid="ignore", divide="ignore"):
         speed = sums[:, :, U_X].sum(axis=1) / weight
     q = sums[:, :, U_X].sum(axis=1) / area
-    window = (since, float(t[-1]))
-    averages = Averages(
-        "profile",
-        (
-            average("flux", "m2/s", [q], window),
-            average("speed", "m/s", [speed], window),
-        ),
-        (
-            f"grains on a unit of bed: {float(weight.mean()) / area:.4g} m of solid volume, in "
-            f"{n_layer} layers of {thickness:.3g} m, mean of {len(t)} frames",
-        ),
-    )
-    ball = np.pi / 6.0 * scene.d**3
+    fixed = _bed(scene, edge, n_layer, z_0, thickness, between) / space if bed else None
     return Profiles(
         z=(edge + np.arange(n_layer) + 0.5) * thickness,
         thickness=thickness,
@@ -213,17 +197,41 @@ def profiles(
         temperature_x=_variance("temperature_x", sums[:, :, U_XX], sums[:, :, U_X], volume),
         temperature_z=_variance("temperature_z", sums[:, :, U_ZZ], sums[:, :, U_Z], volume),
         flux=_mean("flux", "m/s", sums[:, :, U_X] / space),
-        bed=_bed(scene, edge, n_layer, z_0, thickness, between) / space
-        if bed
-        else np.full(n_layer, math.nan),
+        bed=np.full(n_layer, math.nan) if fixed is None else fixed,
         t=t,
         q=q,
         speed=speed,
         volume=weight / area,
-        density=float(scene.m.sum() / ball.sum()),
+        density=float(scene.m.sum() / (np.pi / 6.0 * scene.d**3).sum()),
         area=area,
         lanes=lanes,
-        averages=averages,
+        averages=_averages(q, speed, weight / area, n_layer, thickness, (since, float(t[-1]))),
+    )
+
+
+def _frames(run: Run, begin: float, end: float) -> tuple[int, int]:
+    """First frame within a window [s], and one beyond the last."""
+    t = np.asarray(run.frames.t, dtype=np.float64)
+    first, last = int(np.searchsorted(t, begin, "left")), int(np.searchsorted(t, end, "right"))
+    if last <= first or scene_at(run, begin).n_grain == 0:
+        raise ResultsError(f"no frame of free grains from t = {begin:g} s to {end:g} s")
+    return first, last
+
+
+def _averages(
+    q: Floats, speed: Floats, volume: Floats, n_layer: int, thickness: float, window: tuple[float, float]
+) -> Averages:
+    """Averages of flux and speed, with the solid volume per area of bed [m] as a note."""
+    return Averages(
+        "profile",
+        (
+            average("flux", "m2/s", [q], window),
+            average("speed", "m/s", [speed], window),
+        ),
+        (
+            f"solid volume per area of bed: {float(volume.mean()):.4g} m, in {n_layer} layers of "
+            f"{thickness:.3g} m, mean of {len(volume)} frames",
+        ),
     )
 
 

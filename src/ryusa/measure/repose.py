@@ -155,19 +155,14 @@ def surface(
     x, z, r = sign * seen.x[chosen, 0], seen.x[chosen, 2], 0.5 * seen.d[chosen]
     s, top = _profile(x, z, r, bin * d)
     inside, angle, error, line = _slope(s, top, level, fit)
-    middle = 0.5 * (fit[0] + fit[1])
-    halves = {"upper half": (middle, fit[1]), "lower half": (fit[0], middle)}
-    others = {f"{low:g} to {high:g}": (low, high) for low, high in OTHER_FITS if (low, high) != fit} | halves
-    angles = {name: _slope(s, top, level, share)[1] for name, share in others.items()}
+    line[:, 0] *= sign
+    angles = _other_slopes(s, top, level, fit)
     known = [one for one in (angle, *angles.values()) if math.isfinite(one)]
     start, toe = _start(run, sign, level, lane), float((x + r).max())
-    gravity = float(np.linalg.norm(scene.gravity)) or G
-    limit = STILL * math.sqrt(gravity * d) if still is None else still
-    k = frame_at(run, seen.t)
     ids = seen.grains[chosen]
-    around = np.linalg.norm(np.asarray(run.frames.omega[k])[ids], axis=1) * r
+    around = np.linalg.norm(np.asarray(run.frames.omega[frame_at(run, seen.t)])[ids], axis=1) * r
+    limit = _still(scene, d) if still is None else still
     order = slice(None) if sign > 0.0 else slice(None, None, -1)
-    line[:, 0] *= sign
     return HeapSurface(
         t=seen.t,
         side=side,
@@ -193,6 +188,20 @@ def surface(
         still=limit,
         moving=float((seen.speed[chosen] + around > limit).mean()),
     )
+
+
+def _other_slopes(s: Floats, top: Floats, level: float, fit: tuple[float, float]) -> dict[str, float]:
+    """Slope over other ranges of the height than `fit`, and over both halves of it [rad], by name."""
+    middle = 0.5 * (fit[0] + fit[1])
+    halves = {"upper half": (middle, fit[1]), "lower half": (fit[0], middle)}
+    others = {f"{low:g} to {high:g}": (low, high) for low, high in OTHER_FITS if (low, high) != fit} | halves
+    return {name: _slope(s, top, level, share)[1] for name, share in others.items()}
+
+
+def _still(scene: Scene, d: float) -> float:
+    """Speed below which a grain counts as still [m/s]."""
+    gravity = float(np.linalg.norm(scene.gravity)) or G
+    return STILL * math.sqrt(gravity * d)
 
 
 def _floor(scene: Scene, seen: Snapshot) -> float:

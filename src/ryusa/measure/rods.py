@@ -12,7 +12,7 @@ from scipy.spatial import KDTree
 
 from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run
-from ryusa.measure.statistics import ratio
+from ryusa.measure.statistics import Average, ratio
 from ryusa.measure.table import Averages
 from ryusa.measure.transport import window_of
 from ryusa.model import Scene
@@ -33,6 +33,15 @@ class Rod:
 
     begin: float
     grains: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class _Criteria:
+    """Least displacement of a mover [m], largest turn of a bearing [rad], largest gap over the mean d [-]."""
+
+    way: float
+    bearing: float
+    gap: float
 
 
 @dataclass(frozen=True)
@@ -148,30 +157,19 @@ def rods(
     starts = np.arange(0, len(t) - n, n)
     if not len(starts):
         raise ResultsError(f"no window of {n * frame:.3g} s from t = {t[0]:g} s to {t[-1]:g} s")
-    rng = np.random.default_rng(seed)
+    criteria = _Criteria(way * d, bearing, gap)
     movers, touching, bound = np.zeros((3, len(starts)), dtype=np.int64)
-    null = np.zeros(len(starts))
     found: list[Rod] = []
     seen: list[_Seen] = []
     for k, start in enumerate(starts.tolist()):
         x = np.asarray(run.frames.x[first + start : first + start + n + 1], dtype=np.float64)
-        going = np.flatnonzero(x[-1, :, 0] - x[0, :, 0] >= way * d)
-        movers[k] = len(going)
-        x = np.ascontiguousarray(x[:, going])
-        pairs = _pairs(x[0], scene.d[going], scene, gap)
-        touching[k] = len(np.unique(pairs))
-        kept = pairs[_bound(x, pairs, scene.d[going], scene, bearing, gap)]
-        bound[k] = len(np.unique(kept))
-        found += [Rod(float(t[start]), tuple(going[one].tolist())) for one in _clusters(kept, len(going))]
-        seen.append(_Seen(x, pairs, scene.d[going], np.floor(x[:, :, 2].mean(axis=0) / d).astype(np.int64)))
-    for _ in range(shuffles):
-        for k, x in enumerate(_shuffled(seen, rng)):
-            one = seen[k]
-            kept = one.pairs[_bound(x, one.pairs, one.d, scene, bearing, gap)]
-            null[k] += len(np.unique(kept))
-    null /= max(shuffles, 1)
+        ids, one = _movers(x, scene, criteria)
+        kept = one.pairs[_bound(one.x, one.pairs, one.d, scene, criteria)]
+        movers[k], touching[k], bound[k] = len(ids), len(np.unique(one.pairs)), len(np.unique(kept))
+        found += [Rod(float(t[start]), tuple(ids[group].tolist())) for group in _clusters(kept, len(ids))]
+        seen.append(one)
+    null = _null(seen, scene, criteria, shuffles, seed)
     sizes = np.array([len(one.grains) for one in found], dtype=np.int64)
-    span = (float(t[0]), float(t[-1]))
     return Rods(
         begin=t[starts],
         movers=movers,
@@ -183,17 +181,46 @@ def rods(
         window=n * frame,
         averages=Averages(
             "rods",
+            _shares(movers, touching, bound, null, (float(t[0]), float(t[-1]))),
             (
-                ratio("share", "-", [bound.astype(np.float64)], [movers.astype(np.float64)], span),
-                ratio("null_share", "-", [null], [movers.astype(np.float64)], span),
-                ratio("kept", "-", [bound.astype(np.float64)], [touching.astype(np.float64)], span),
-            ),
-            (
-                f"a rod: movers that touch (gap below {gap:g} d) for {n * frame:.3g} s, in which they go "
-                f"{way:g} d or more and turn about each other by less than {math.degrees(bearing):.3g} deg; "
-                f"looked at in {n + 1} frames of each of {len(starts)} windows",
+                f"a rod: moving grains that touch (gap below {gap:g} d) for {n * frame:.3g} s, travel "
+                f"{way:g} d or more in it and turn about each other by less than "
+                f"{math.degrees(bearing):.3g} deg; judged from {n + 1} frames in each of {len(starts)} windows",
             ),
         ),
+    )
+
+
+def _movers(x: Floats, scene: Scene, criteria: _Criteria) -> tuple[Ints, _Seen]:
+    """Grains that move in one window with frames x (n_frame, n_grain, 3) [m], and their ids."""
+    d = float(scene.d.mean())
+    ids = np.flatnonzero(x[-1, :, 0] - x[0, :, 0] >= criteria.way)
+    x = np.ascontiguousarray(x[:, ids])
+    pairs = _pairs(x[0], scene.d[ids], scene, criteria.gap)
+    layer = np.floor(x[:, :, 2].mean(axis=0) / d).astype(np.int64)
+    return ids, _Seen(x, pairs, scene.d[ids], layer)
+
+
+def _null(seen: Sequence[_Seen], scene: Scene, criteria: _Criteria, shuffles: int, seed: int) -> Floats:
+    """Movers in rods in each window when displacements are shuffled, mean over the shuffles, (n_window,)."""
+    rng = np.random.default_rng(seed)
+    null = np.zeros(len(seen))
+    for _ in range(shuffles):
+        for k, x in enumerate(_shuffled(seen, rng)):
+            one = seen[k]
+            null[k] += len(np.unique(one.pairs[_bound(x, one.pairs, one.d, scene, criteria)]))
+    return null / max(shuffles, 1)
+
+
+def _shares(
+    movers: Ints, touching: Ints, bound: Ints, null: Floats, window: tuple[float, float]
+) -> tuple[Average, ...]:
+    """Share of the movers in rods, the same of the null model, and the share of contacts that is kept."""
+    every, touch, kept = ([one.astype(np.float64)] for one in (movers, touching, bound))
+    return (
+        ratio("share", "-", kept, every, window),
+        ratio("null_share", "-", [null], every, window),
+        ratio("kept", "-", kept, touch, window),
     )
 
 
@@ -247,13 +274,13 @@ def _between(x: Floats, pairs: Ints, scene: Scene) -> Floats:
     return way
 
 
-def _bound(x: Floats, pairs: Ints, d: Floats, scene: Scene, bearing: float, gap: float) -> Bools:
+def _bound(x: Floats, pairs: Ints, d: Floats, scene: Scene, criteria: _Criteria) -> Bools:
     """Whether pairs keep contact and bearing in all frames of x (n_frame, n, 3), shape (n_pair,)."""
     way = _between(x, pairs, scene)
     apart = np.linalg.norm(way, axis=2)
-    touch = apart <= 0.5 * (1.0 + gap) * (d[pairs[:, 0]] + d[pairs[:, 1]])
+    touch = apart <= 0.5 * (1.0 + criteria.gap) * (d[pairs[:, 0]] + d[pairs[:, 1]])
     along = np.einsum("fpc,pc->fp", way, way[0]) / np.maximum(apart * apart[0], 1.0e-300)
-    return np.asarray((touch & (along > math.cos(bearing))).all(axis=0))
+    return np.asarray((touch & (along > math.cos(criteria.bearing))).all(axis=0))
 
 
 def _clusters(pairs: Ints, n: int) -> Iterator[Ints]:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ryusa.errors import ResultsError
 from ryusa.laws.transport import tau_star_from_stress
@@ -13,6 +14,7 @@ from ryusa.measure.profiles import Layers, Profiles, profiles
 from ryusa.measure.snapshot import scene_at
 from ryusa.measure.statistics import average, block_errors
 from ryusa.measure.table import Averages
+from ryusa.model import Scene
 
 CLEAR = 0.01  # concentration up to which water counts as clear
 FEWEST = 3  # faces in clear water from which its stress is carried on to the bed
@@ -51,7 +53,7 @@ class WaterProfile:
     grains: Profiles
     bed: float
     surface: float
-    clear: np.ndarray[Any, np.dtype[np.bool_]]
+    clear: NDArray[np.bool_]
     tau_bed: float
     d: float
     averages: Averages
@@ -99,6 +101,38 @@ def water(run: Run, begin: float | None = None, end: float = math.inf) -> WaterP
     the water above the bed, as the stress of a flume's depth and slope does, and not what side walls take.
     tau_star = tau_bed/((rho_s - rho_w) g d).
     """
+    found, span, since = _frames(run, begin, end)
+    scene = scene_at(run, since)
+    d = float(scene.d.mean())
+    keys: dict[str, Any] = (run.case.get("water") or {}).get("column") or {}
+    packed = float(keys.get("packed") or math.nan)
+    surfaces = found.z_surface[span]
+    even = _averaged(found.phi[span].mean(axis=0), d / float(found.faces[1] - found.faces[0]))
+    rigid = keys.get("bed") in {"rough", "smooth"}
+    bed = float(found.faces[0]) if rigid else _top(found.z, even, HALF * packed)
+    clear = _clear(found.faces, even, bed, float(surfaces.min()))
+    tau = _stress_at_bed(found.tau[span], found.faces, surfaces, clear, bed)
+    averages = _averages(found, span, scene, bed, tau, packed)
+    return WaterProfile(
+        t=found.t[span],
+        z=found.z,
+        faces=found.faces,
+        u=_mean("u", "m/s", found.u[span]),
+        phi=_mean("phi", "-", found.phi[span]),
+        tau=_mean("tau", "Pa", found.tau[span]),
+        nu_t=_mean("nu_t", "m2/s", found.nu_t[span]),
+        grains=profiles(run, begin, end, LAYER),
+        bed=bed,
+        surface=float(surfaces.mean()),
+        clear=clear,
+        tau_bed=averages["tau_bed"].value,
+        d=d,
+        averages=averages,
+    )
+
+
+def _frames(run: Run, begin: float | None, end: float) -> tuple[Any, slice, float]:
+    """Column of water of a run, its frames within a window, and the begin of the window [s]."""
     found = getattr(run, "water", None)
     if found is None:
         raise ResultsError("the run solved no column of water (water.profile = 'column')")
@@ -106,71 +140,60 @@ def water(run: Run, begin: float | None = None, end: float = math.inf) -> WaterP
     first, last = int(np.searchsorted(found.t, since, "left")), int(np.searchsorted(found.t, end, "right"))
     if last <= first:
         raise ResultsError(f"no frame from t = {since:g} s to {end:g} s")
-    span = slice(first, last)
-    scene = scene_at(run, since)
-    d, g = float(scene.d.mean()), float(np.linalg.norm(scene.gravity))
-    window = (float(found.t[first]), float(found.t[last - 1]))
-    keys: dict[str, Any] = (run.case.get("water") or {}).get("column") or {}
-    z, faces = found.z, found.faces
-    phi, surfaces = found.phi[span], found.z_surface[span]
-    surface, even = float(surfaces.mean()), _averaged(phi.mean(axis=0), d / float(faces[1] - faces[0]))
-    packed = float(keys.get("packed") or math.nan)
-    bed = float(faces[0]) if keys.get("bed") in {"rough", "smooth"} else _top(z, even, HALF * packed)
+    return found, slice(first, last), since
+
+
+def _clear(faces: Floats, phi: Floats, bed: float, surface: float) -> NDArray[np.bool_]:
+    """Faces between clear cells, above the bed and below the lowest surface [m], shape (n + 1,)."""
     clear = np.zeros(len(faces), dtype=np.bool_)
-    full = float(surfaces.min())
-    clear[1:-1] = (np.maximum(even[1:], even[:-1]) <= CLEAR) & (faces[1:-1] < full)
+    clear[1:-1] = (np.maximum(phi[1:], phi[:-1]) <= CLEAR) & (faces[1:-1] < surface)
     if math.isfinite(bed):
         clear &= faces > bed
+    return clear
+
+
+def _stress_at_bed(
+    tau: Floats, faces: Floats, surfaces: Floats, clear: NDArray[np.bool_], bed: float
+) -> Floats:
+    """Shear stress of clear water, extrapolated to the bed [Pa], shape (n_frame,); nan where it is not known.
+
+    The least-squares line through tau at the clear faces that is zero at the surface.
+    """
     arm = surfaces[:, None] - faces[clear]
     enough = np.count_nonzero(clear) >= FEWEST and math.isfinite(bed)
-    per_depth = (
-        (found.tau[span][:, clear] * arm).sum(axis=1) / (arm * arm).sum(axis=1) if enough else math.nan
-    )
-    tau = np.broadcast_to(per_depth * (surfaces - bed), surfaces.shape)
+    per_depth = (tau[:, clear] * arm).sum(axis=1) / (arm * arm).sum(axis=1) if enough else math.nan
+    return np.broadcast_to(per_depth * (surfaces - bed), surfaces.shape)
+
+
+def _averages(found: Any, span: slice, scene: Scene, bed: float, tau: Floats, packed: float) -> Averages:
+    """Averages over the frames of what is known in each; tau is the stress at the bed [Pa]."""
+    window = (float(found.t[span][0]), float(found.t[span][-1]))
+    surfaces, content, u = found.z_surface[span], found.content[span], found.u[span]
+    d, g = float(scene.d.mean()), float(np.linalg.norm(scene.gravity))
     rho_s = float(scene.m.sum() / (np.pi / 6.0 * scene.d**3).sum())
     rho_w = scene.water.rho_w
     per = tau_star_from_stress(1.0, rho_s, rho_w, g, d) if rho_s > rho_w and g > 0.0 else math.nan
-    discharge = (found.content[span] * found.u[span]).sum(axis=1)
-    over = _over(found.content[span], faces, bed)
+    over = _over(content, found.faces, bed)
     speed = np.divide(
-        _over(found.content[span] * found.u[span], faces, bed),
-        over,
-        np.full(len(over), math.nan),
-        where=over > 0,
+        _over(content * u, found.faces, bed), over, np.full(len(over), math.nan), where=over > 0
     )
-    tau_bed = average("tau_bed", "Pa", [tau], window)
-    return WaterProfile(
-        t=found.t[span],
-        z=z,
-        faces=faces,
-        u=_mean("u", "m/s", found.u[span]),
-        phi=_mean("phi", "-", phi),
-        tau=_mean("tau", "Pa", found.tau[span]),
-        nu_t=_mean("nu_t", "m2/s", found.nu_t[span]),
-        grains=profiles(run, begin, end, LAYER),
-        bed=bed,
-        surface=surface,
-        clear=clear,
-        tau_bed=tau_bed.value,
-        d=d,
-        averages=Averages(
-            "water",
-            (
-                average("surface", "m", [surfaces], window),
-                average("bed", "m", [np.full(len(surfaces), bed)], window),
-                average("depth", "m", [surfaces - bed], window),
-                tau_bed,
-                average("tau_star", "-", [tau * per], window),
-                average("u_star", "m/s", [np.sqrt(np.abs(tau) / rho_w)], window),
-                average("discharge", "m2/s", [discharge], window),
-                average("speed", "m/s", [speed], window),
-            ),
-            (
-                f"bed: where concentration falls below {HALF:g} of packed, {packed:g}; depth: from there to "
-                "the surface, speed: mean of the water over the bed",
-                "tau_bed: stress of clear water, carried on to the bed in a straight line; "
-                f"tau_star = tau_bed/((rho_s - rho_w) g d), d = {d:.4g} m",
-            ),
+    return Averages(
+        "water",
+        (
+            average("surface", "m", [surfaces], window),
+            average("bed", "m", [np.full(len(surfaces), bed)], window),
+            average("depth", "m", [surfaces - bed], window),
+            average("tau_bed", "Pa", [tau], window),
+            average("tau_star", "-", [tau * per], window),
+            average("u_star", "m/s", [np.sqrt(np.abs(tau) / rho_w)], window),
+            average("discharge", "m2/s", [(content * u).sum(axis=1)], window),
+            average("speed", "m/s", [speed], window),
+        ),
+        (
+            f"bed: height where the concentration falls below {HALF:g} of packed, {packed:g}; depth: from "
+            "the bed to the surface; speed: mean of the water above the bed",
+            "tau_bed: shear stress of the clear water, extrapolated to the bed along a straight line; "
+            f"tau_star = tau_bed/((rho_s - rho_w) g d), d = {d:.4g} m",
         ),
     )
 
