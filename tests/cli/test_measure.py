@@ -197,7 +197,7 @@ def test_a_packing_is_drawn(heap, tmp_path, words):
 def test_rods_are_measured_over_a_time_asked_for(folder, tmp_path):
     result = call("measure", folder, "rods", "--window", "0.05 s", "--csv", tmp_path / "rods.csv")
     assert result.exit_code == 0, result.output
-    assert "a rod: movers that touch (gap below 0.05 d) for 0.05 s" in result.output.replace("\n", " ")
+    assert "a rod: moving grains that touch (gap below 0.05 d) for 0.05 s" in result.output.replace("\n", " ")
     assert "null_share" in result.output
 
 
@@ -213,7 +213,7 @@ def wet(tmp_path_factory):
 @pytest.mark.parametrize(
     ("what", "words"),
     [
-        ("water", ("tau_bed", "discharge", "carried on to the bed")),
+        ("water", ("tau_bed", "discharge", "extrapolated to the bed")),
         ("transport", ("q_star", "layer_thickness", "tau_star")),
         ("entrainment", ("deposition", "moving_speed")),
         ("stress", ("temperature", "xz [Pa]")),

@@ -246,7 +246,10 @@ def test_a_high_path_fits_on_a_page_and_says_whose_it_is():
     figure = figures.tracks(drop, around=moment())
     figure.canvas.draw()
     assert figure.get_size_inches()[1] < 6.0
-    assert figure.axes[0].get_title(loc="left") == "grain 4, $t$ = 0 to 0.3 s"
+    assert (
+        figure.axes[0].get_title(loc="left")
+        == "grain 4, $t$ = 0 to 0.3 s, its outline at equal distances along the path"
+    )
     assert len(figure.axes[0].patches) == 1
 
 

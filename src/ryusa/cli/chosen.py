@@ -1,6 +1,6 @@
 """Options of `ryusa measure` and `ryusa draw`: those that were typed, checked, as keywords of a function."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from difflib import get_close_matches
 from inspect import cleandoc
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import typer
 
 from ryusa.catalogue import OPTION_NAMES, MeasureEntry, PictureEntry, option
-from ryusa.cli.options import grains_of, known, metres, need_settled, seconds, within
+from ryusa.cli.options import known, metres, need_settled, seconds, within
 from ryusa.errors import CaseError
 
 if TYPE_CHECKING:
     from ryusa.results import Results
 
+Check = Callable[[str, Any, "Results"], Any]  # option, value as typed and the run -> value in SI units
 Entry = TypeVar("Entry", MeasureEntry, PictureEntry)
 
 ALWAYS = {"run", "what", "csv", "output"}  # arguments, and options that every measure or every picture takes
-COLOURS = ("speed", "spin", "none")
 SIDES = ("right", "left")
 
 
@@ -39,9 +39,12 @@ def listed(text: str, entries: tuple[Entry, ...]) -> str:
 
 
 def keywords(
-    context: typer.Context, entry: MeasureEntry | PictureEntry, results: "Results"
+    context: typer.Context,
+    entry: MeasureEntry | PictureEntry,
+    results: "Results",
+    checks: Mapping[str, Check],
 ) -> dict[str, Any]:
-    """Keywords for the function of an entry, from the options that were typed.
+    """Keywords for the function of an entry, from the options that were typed; each passes its check.
 
     An option that the entry does not take is an error, so that none is silently ignored. An entry that covers
     what follows `record.settle` needs a run that lasted longer, unless --settle or --begin say otherwise.
@@ -54,7 +57,7 @@ def keywords(
     for name, value in typed.items():
         if name not in entry.given_as:
             raise CaseError(name, value, _taken(entry), _nearest(name, entry))
-    given = {name: _checked(name, value, results) for name, value in typed.items()}
+    given = {name: checks[name](name, value, results) for name, value in typed.items()}
     settle = given.get("--settle")
     if settle is not None and "settle" not in entry.options:
         del given["--settle"]
@@ -83,13 +86,9 @@ def _nearest(name: str, entry: MeasureEntry | PictureEntry) -> str | None:
     return near[0] if near else None
 
 
-def _checked(name: str, value: Any, results: "Results") -> Any:
-    """The value of an option in SI units, within its range."""
-    check = _CHECKS[name]
-    return check(name, value, results)
+def in_range(low: float, high: float) -> Check:
+    """A number from low to high."""
 
-
-def _within(low: float, high: float) -> Callable[[str, Any, "Results"], float]:
     def check(name: str, value: Any, _results: "Results") -> float:
         within(name, value, low, high)
         return float(value)
@@ -97,43 +96,16 @@ def _within(low: float, high: float) -> Callable[[str, Any, "Results"], float]:
     return check
 
 
-def _one_of(words: tuple[str, ...]) -> Callable[[str, Any, "Results"], str]:
+def one_of(words: tuple[str, ...]) -> Check:
+    """One of some words."""
     return lambda name, value, _results: known(value, words, name)
 
 
-def _window(name: str, value: Any, _results: "Results") -> float:
-    found = seconds(value) or 0.0
-    within(name, found, 1.0e-9, 1.0e9)
-    return found
-
-
-def _length(name: str, value: Any, results: "Results") -> float:
-    found = metres(value) or 0.0
-    within(name, found, float(results.scene.d[0]), 1.0e6)
-    return found
-
-
-def _seconds(_name: str, value: Any, _results: "Results") -> Any:
+def time(_name: str, value: Any, _results: "Results") -> float | None:
+    """A time with its unit [s]."""
     return seconds(value)
 
 
-def _metres(_name: str, value: Any, _results: "Results") -> Any:
+def length(_name: str, value: Any, _results: "Results") -> float | None:
+    """A length with its unit [m]."""
     return metres(value)
-
-
-_CHECKS: dict[str, Callable[[str, Any, "Results"], Any]] = {
-    "--at": _seconds,
-    "--begin": _seconds,
-    "--colour": _one_of(COLOURS),
-    "--end": _seconds,
-    "--exaggeration": _within(0.1, 100.0),
-    "--grain": lambda _name, value, results: grains_of(value, results),
-    "--lane": lambda _name, value, _results: value,
-    "--layer": _within(0.01, 100.0),
-    "--length": _length,
-    "--rise": _within(0.0, 100.0),
-    "--settle": _seconds,
-    "--side": _one_of(SIDES),
-    "--threshold": _metres,
-    "--window": _window,
-}

@@ -6,13 +6,34 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ryusa.catalogue import MEASURES, PICTURES, PictureEntry, load
-from ryusa.cli.chosen import COLOURS, SIDES, entry_of, keywords, listed, taking
-from ryusa.cli.options import open_run, write_rows
+from ryusa.cli import chosen
+from ryusa.cli.chosen import SIDES, entry_of, keywords, listed, taking
+from ryusa.cli.options import grains_of, metres, open_run, within, write_rows
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ryusa.results import Results
+
+
+def _length(name: str, value: str, results: "Results") -> float:
+    found = metres(value) or 0.0
+    within(name, found, float(results.scene.d[0]), 1.0e6)
+    return found
+
+
+COLOURS = ("speed", "spin", "none")
+CHECKS: dict[str, chosen.Check] = {
+    "--at": chosen.time,
+    "--begin": chosen.time,
+    "--colour": chosen.one_of(COLOURS),
+    "--end": chosen.time,
+    "--exaggeration": chosen.in_range(0.1, 100.0),
+    "--grain": lambda _name, value, results: grains_of(value, results),
+    "--lane": lambda _name, value, _results: value,
+    "--length": _length,
+    "--side": chosen.one_of(SIDES),
+}
 
 
 def register(app: typer.Typer) -> None:
@@ -74,7 +95,7 @@ def draw(
     """
     results = open_run(run)
     entry = entry_of(what, PICTURES, "draw")
-    figure, rows = _drawn(entry, results, keywords(context, entry, results))
+    figure, rows = _drawn(entry, results, keywords(context, entry, results, CHECKS))
     from ryusa.errors import CaseError, ResultsError
     from ryusa.figures import save
 

@@ -6,8 +6,21 @@ from typing import Annotated
 import typer
 
 from ryusa.catalogue import MEASURES, load
+from ryusa.cli import chosen
 from ryusa.cli.chosen import SIDES, entry_of, keywords, listed, taking
-from ryusa.cli.options import open_run, write_rows
+from ryusa.cli.options import open_run, seconds, within, write_rows
+
+CHECKS: dict[str, chosen.Check] = {
+    "--at": chosen.time,
+    "--begin": chosen.time,
+    "--end": chosen.time,
+    "--layer": chosen.in_range(0.01, 100.0),
+    "--rise": chosen.in_range(0.0, 100.0),
+    "--settle": chosen.time,
+    "--side": chosen.one_of(SIDES),
+    "--threshold": chosen.length,
+    "--window": lambda name, value, _results: _window(name, value),
+}
 
 
 def register(app: typer.Typer) -> None:
@@ -77,7 +90,7 @@ def measure(
     """
     results = open_run(run)
     entry = entry_of(what, MEASURES, "measure")
-    given = keywords(context, entry, results)
+    given = keywords(context, entry, results, CHECKS)
     printed = {name: given.pop(name) for name in entry.printing if name in given}
     found = load(entry.function)(results, **given)
     from ryusa.cli.printing import print_found
@@ -85,3 +98,9 @@ def measure(
     print_found(entry.name, found, results, **printed)
     if csv is not None:
         typer.echo(f"wrote {write_rows(csv, found.rows())}")
+
+
+def _window(name: str, value: str) -> float:
+    found = seconds(value) or 0.0
+    within(name, found, 1.0e-9, 1.0e9)
+    return found

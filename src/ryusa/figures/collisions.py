@@ -1,4 +1,4 @@
-"""How long contacts last, whoever the partner is."""
+"""Duration of contacts, by kind of partner."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -38,11 +38,12 @@ def collision_times(found: Collisions, scene: Scene) -> Figure:
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.set_xlim(edges[0], edges[-1])
-    axes.set_xlabel("contact time  (s)")
-    axes.set_ylabel("contacts")
+    axes.set_ylim(0.8, None)  # single contacts stand on the axis
+    axes.set_xlabel("contact time  $t$  (s)")
+    axes.set_ylabel("number of contacts")
     axes.legend(
         loc="lower left", bbox_to_anchor=(0.0, 1.0), borderaxespad=0.2, ncols=2, fontsize=6.3,
-        title="partner, and Eq. (8) with dashpot for a single impact (dashed)", title_fontsize=6.3,
+        title="partner; dashed: Eq. (8) with dashpot, single impact", title_fontsize=6.3,
         alignment="left",
     )  # fmt: skip
     return figure

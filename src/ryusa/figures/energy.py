@@ -7,59 +7,53 @@ from matplotlib.figure import Figure
 
 from ryusa.figures import style
 from ryusa.measure import Energy
+from ryusa.measure.energy import TERMS
 
-_NAMES = {
-    "kinetic": "kinetic (with added mass)",
-    "spin": "spin",
-    "potential": "potential",
-    "spring_n": "normal springs",
-    "spring_s": "tangential springs",
-    "spring_r": "rolling springs",
-    "dash_n": "normal dashpots",
-    "dash_s": "tangential dashpots",
-    "slide": "sliding",
-    "roll": "rolling friction",
-    "released_n": "released normal springs",
-    "released_s": "released shear springs",
-    "released_r": "released rolling springs",
-    "drag": "drag",
-    "torque": "torque of the water",
-    "lift": "lift",
-    "switch": "timeline",
-    "step": "the step",
+SUPPLIED, LOST = "-", (0, (4, 1.5))  # line of a term that is supplied, and of one that is lost
+BLUE, RED, GREEN, PINK, SKY, AMBER, BLACK = style.COLOURS
+# One colour per term, whatever else is drawn, so that pictures of several runs can be compared.
+HELD = {
+    "kinetic": BLUE,
+    "spin": RED,
+    "potential": GREEN,
+    "spring_n": PINK,
+    "spring_s": SKY,
+    "spring_r": AMBER,
 }
+WORK = {
+    "drag": BLUE, "torque": RED, "lift": GREEN, "flow": SKY, "switch": AMBER, "step": PINK,
+    "dash_n": BLUE, "dash_s": RED, "slide": GREEN, "roll": PINK, "film": SKY, "released_n": AMBER,
+    "released_s": BLACK, "released_r": style.FAINT,
+}  # fmt: skip
 
 
 @style.house
 def energy(found: Energy) -> Figure:
-    """Draw what is held (above) and what came and went (below); terms that stay zero are left out."""
-    figure, (held, flow) = style.new(2, width=4.8, height=4.6, sharex=True)
+    """Draw the energy held (above), and supplied and lost (below); terms that stay zero are left out."""
+    figure, (held, flow) = style.new(2, width=4.8, height=4.9, sharex=True)
     unit, name = _prefix(found)
-    for k, (term, values) in enumerate(_alive(found.held)):
+    for term, values in _alive(found.held):
         base = values[0] if term == "potential" else 0.0
-        label = "potential, change" if term == "potential" else _NAMES.get(term, term)
-        held.plot(
-            found.t, (values - base) / unit, style.LINES[k // 4], color=style.COLOURS[k % 7], label=label
-        )
-    order = 0
-    for sign, word, terms in ((1.0, "+", found.given), (-1.0, "–", found.lost)):
+        label = "potential, change" if term == "potential" else TERMS[term]
+        held.plot(found.t, (values - base) / unit, color=HELD[term], label=label)
+    for sign, word, line, terms in ((1.0, "+", SUPPLIED, found.given), (-1.0, "–", LOST, found.lost)):
         for term, values in _alive(terms):
-            line = style.LINES[order // len(style.COLOURS)]
-            colour = style.COLOURS[order % len(style.COLOURS)]
-            label = f"{word} {_NAMES.get(term, term)}"
-            flow.plot(found.t, sign * values / unit, line, color=colour, label=label)
-            order += 1
-    flow.plot(found.t, found.imbalance / unit, color="black", lw=0.8, ls=":", label="unexplained")
-    for axes, text in ((held, f"held  ({name})"), (flow, f"given (+), lost (–)  ({name})")):
+            label = f"{word} {TERMS[term]}"
+            flow.plot(found.t, sign * values / unit, ls=line, color=WORK[term], label=label)
+    flow.plot(found.t, found.imbalance / unit, color="black", lw=0.8, ls=":", label="imbalance")
+    for axes, text in ((held, f"held  ({name})"), (flow, f"supplied (+), lost (–)  ({name})")):
         axes.axhline(0.0, color=style.FAINT, lw=0.4, zorder=0)
         axes.set_ylabel(text)
         axes.margins(x=0.0)
-    for axes in (held, flow):
-        axes.legend(loc="lower left", fontsize=6.3, bbox_to_anchor=(0.0, 1.0), ncols=3, borderaxespad=0.2)
+    for axes, columns in ((held, 3), (flow, 2)):
+        axes.legend(
+            loc="lower left", fontsize=5.8, bbox_to_anchor=(0.0, 1.0), ncols=columns, borderaxespad=0.2,
+            labelspacing=0.3, columnspacing=1.0,
+        )  # fmt: skip
     flow.set_xlabel("time  $t$  (s)")
     at: Any = {"xycoords": "axes fraction", "textcoords": "offset points", "fontsize": 6.3}
     at["bbox"] = {"facecolor": "white", "alpha": 0.8, "lw": 0.0, "pad": 0.5}
-    flow.annotate(f"residual {found.residual:.1e}", (0, 0), (4, 4), **at)
+    flow.annotate(f"largest imbalance over largest term: {found.residual:.1e}", (0, 0), (4, 4), **at)
     return figure
 
 

@@ -1,4 +1,4 @@
-"""How fast a bed moves as time goes on."""
+"""Mean speed of a bed over time."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,4 @@
-"""How high and how far grains hop: histograms of one or several runs."""
+"""Heights and lengths of hops: histograms of one or several runs."""
 
 from collections.abc import Mapping
 
@@ -33,7 +33,7 @@ def hops(runs: Mapping[str, Saltation], d: float) -> Figure:
             share = np.full(len(values), 1.0 / len(values))
             axes.hist(values, edges, weights=share, histtype="stepfilled", color=colour, alpha=0.18, lw=0)
             axes.hist(values, edges, weights=share, histtype="step", color=colour, lw=1.0,
-                      label=f"{name} ({len(values)} hops)")  # fmt: skip
+                      label=f"{name} ({len(values)} hops, dashed: mean)")  # fmt: skip
             axes.axvline(float(values.mean()), color=colour, lw=0.9, ls="--")
         axes.set_xlabel(text)
         axes.set_xlim(0.0, None)
@@ -52,9 +52,9 @@ def contact_times(found: Saltation) -> Figure:
         axes.hist(ratio, 60, color=style.COLOURS[0], alpha=0.75, lw=0)
         axes.axvline(float(ratio.mean()), color=style.COLOURS[1], label=f"mean {ratio.mean():.3f}")
     added, damped = found.times.added / found.times.eq_8, found.times.damped / found.times.eq_8
-    axes.axvline(added, color="black", lw=0.8, ls="--", label=f"Eq. (8), added mass {added:.3f}")
-    axes.axvline(damped, color="black", lw=0.8, ls=":", label=f"damped too {damped:.3f}")
+    axes.axvline(added, color="black", lw=0.8, ls="--", label=f"Eq. (8) with added mass {added:.3f}")
+    axes.axvline(damped, color="black", lw=0.8, ls=":", label=f"and with dashpot {damped:.3f}")
     axes.set_xlabel("contact time over Eq. (8) of the dry grain  (–)")
-    axes.set_ylabel("bed contacts")
+    axes.set_ylabel("number of bed contacts")
     axes.legend(loc="best", fontsize=6.5)
     return figure

@@ -11,13 +11,13 @@ from ryusa.figures import style
 from ryusa.measure import Layers, Profiles
 
 CM = 100.0  # centimetres in a metre
-LEAST = 0.01  # of the largest concentration; where there is less, a mean speed is that of a few strays
+LEAST = 0.01  # of the largest concentration; where there is less, few grains make the mean speed
 
 Height = Literal["cm", "d"]
 Shown = Literal["phi", "area_fraction", "v_x", "v_z", "spin", "temperature_x", "temperature_z", "flux"]
 LABELS: dict[str, tuple[float, str]] = {
-    "phi": (1.0, r"concentration  $\phi$  (-)"),
-    "area_fraction": (1.0, "area fraction  (-)"),
+    "phi": (1.0, r"concentration  $\phi$  (–)"),
+    "area_fraction": (1.0, "area fraction  (–)"),
     "v_x": (CM, "grain speed  $v_x$  (cm/s)"),
     "v_z": (CM, "grain speed  $v_z$  (cm/s)"),
     "spin": (1.0, r"spin  $\omega_y$  (rad/s)"),
@@ -41,7 +41,7 @@ def profiles(
     found : name of the run -> its profiles (`measure.profiles`).
     shown : quantities, one panel each.
     height : unit of z, centimetres or mean diameters of each run.
-    area : lay the area fraction of plane scenes over the concentration, as a thin line.
+    area : draw the area fraction of plane scenes over the concentration, as a thin line.
     """
     figure, axes = style.new(
         1, len(shown), width=min(style.PAGE, 0.3 + 1.75 * len(shown) + 1.1), height=2.7, sharey=True
@@ -64,7 +64,7 @@ def profiles(
         if len(shown) > 1:
             _letter(panel, f"({'abcdefgh'[k]})")
     axes[0].set_ylabel(
-        "height above the bed  $z/d$  (-)" if height == "d" else "height above the bed  $z$  (cm)"
+        "height above the bed  $z/d$  (–)" if height == "d" else "height above the bed  $z$  (cm)"
     )
     tops = [one.top(0.999) / one.d if height == "d" else one.top(0.999) * CM for one in found.values()]
     feet = [_foot(one) / one.d if height == "d" else _foot(one) * CM for one in found.values()]
@@ -90,6 +90,8 @@ def _bed(axes: Axes, one: Profiles, z: np.ndarray, *, first: bool) -> None:
     """Fill the concentration of the fixed grains, where it was measured; runs share one bed."""
     if first and np.isfinite(one.bed).any():
         axes.fill_betweenx(z, 0.0, one.bed, step="mid", color=style.BED, alpha=0.6, lw=0.0, zorder=0)
+        axes.annotate("shaded: fixed grains", (1, 0), (-3, 4), "axes fraction", textcoords="offset points",
+                      ha="right", fontsize=6.0, color="#444444")  # fmt: skip
 
 
 def _foot(one: Profiles) -> float:

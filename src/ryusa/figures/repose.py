@@ -34,14 +34,21 @@ def surface(seen: Snapshot, found: HeapSurface) -> Figure:
                 color=style.FAINT, annotation_clip=False,
             )  # fmt: skip
     axes.axhline(found.floor * CM, color="black", lw=0.5, ls="--", zorder=3)
-    for inside, colour in ((False, OTHER), (True, FITTED)):
+    for inside, colour, name in ((False, OTHER, "surface"), (True, FITTED, "in the fit")):
         chosen = found.inside == inside
         axes.plot(
             found.x[chosen] * CM, found.z[chosen] * CM, "o", ms=2.4, mfc="white", mec=colour,
-            mew=0.7, zorder=5,
+            mew=0.7, zorder=5, label=name,
         )  # fmt: skip
     axes.plot(found.line[:, 0] * CM, found.line[:, 1] * CM, color=FITTED, lw=1.4, zorder=4)
-    axes.plot([found.toe * CM], [found.floor * CM], "^", color="black", ms=3.5, zorder=5, clip_on=False)
+    axes.plot([found.toe * CM], [found.floor * CM], "^", color="black", ms=3.5, ls="none", zorder=5,
+              clip_on=False, label="toe")  # fmt: skip
+    axes.legend(
+        loc="center right" if found.side == "right" else "center left",
+        fontsize=5.8,
+        handletextpad=0.2,
+        labelspacing=0.25,
+    )
     axes.annotate(
         _words(found), (1, 1), (0, 4), xycoords="axes fraction", textcoords="offset points", ha="right",
         fontsize=7.0,

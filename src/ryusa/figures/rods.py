@@ -1,4 +1,4 @@
-"""Rods of movers at several moments, and how many grains rods have: the form of the paper's fig22."""
+"""Rods of moving grains at several times, and how many grains rods have: the form of the paper's fig22."""
 
 from collections.abc import Mapping, Sequence
 
@@ -16,11 +16,11 @@ MORE = 9  # rods of so many grains and more share a bar
 
 @style.house
 def rods(seen: Sequence[Snapshot], marked: Sequence[int]) -> Figure:
-    """Draw moments one above the other; marked grains are black, as in the paper.
+    """Draw several times one above the other; marked grains are black, as in the paper.
 
     Parameters
     ----------
-    seen : moments of one run (`measure.snapshot`).
+    seen : snapshots of one run (`measure.snapshot`).
     marked : ids of the grains to follow.
     """
     first = seen[0]
@@ -48,7 +48,7 @@ def rods(seen: Sequence[Snapshot], marked: Sequence[int]) -> Figure:
 
 @style.house
 def rod_lengths(found: Mapping[str, Rods]) -> Figure:
-    """Draw how many of the movers go in rods of n grains, and beside it the null model, run by run."""
+    """Draw the share of moving grains in rods of n grains, and beside it the null model, run by run."""
     figure, (bars, shares) = style.new(1, 2, width=style.PAGE, height=2.4)
     n = np.arange(OWN, MORE + 1)
     wide = 0.8 / len(found)
@@ -63,9 +63,9 @@ def rod_lengths(found: Mapping[str, Rods]) -> Figure:
         shares.bar([s + 0.18], [one.null_share], 0.34, color=colour, alpha=0.35)
     bars.set_xticks(n, [*(str(k) for k in n[:-1]), f"{MORE}+"])
     bars.set_xlabel("grains in a rod")
-    bars.set_ylabel("share of the movers (-)")
+    bars.set_ylabel("share of the moving grains  (–)")
     bars.legend()
     shares.set_xticks(np.arange(len(found)), list(found))
-    shares.set_ylabel("movers in rods (-)\npale: ways shuffled")
+    shares.set_ylabel("moving grains in rods  (–)\npale: displacements shuffled")
     shares.set_ylim(0.0, 1.0)
     return figure

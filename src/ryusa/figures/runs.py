@@ -36,15 +36,14 @@ def tracks(
 
     Parameters
     ----------
-    grains : ids; default the first grain, or where grains lie on each other the one that goes farthest.
+    grains : ids; default the first of lone grains, in a bed or heap the one that goes farthest.
     length : distance along the bed that is shown [m]; default all.
     exaggeration : vertical over horizontal scale.
     """
     since = settle_time(results) if begin is None else begin
     chosen = grains
     if chosen is None:
-        lone = results.case.get("build", {}).get("kind") in {"saltation", "drop"}
-        chosen = [0 if lone else measure.farthest(results, since, end)]
+        chosen = [0 if _lone(results) else measure.farthest(results, since, end)]
     paths = measure.tracks(results, chosen, since, end)
     last = min(end, float(results.frames.t[-1])) if len(results.frames) else 0.0
     _need(len(paths.t) > 1, results, f"two frames from t = {since:g} s to {last:.3g} s")
@@ -68,9 +67,9 @@ def energy(results: Results) -> Drawn:
 
 
 def contacts(results: Results) -> Drawn:
-    """Contact times of hops over the bed, or else of all contacts."""
-    hopping = measure.saltation(results)
-    if len(hopping.hops):
+    """Contact times with the bed where lone grains hop over it, else of all contacts by kind of partner."""
+    hopping = measure.saltation(results) if _lone(results) else None
+    if hopping is not None and len(hopping.hops):
         return figures.contact_times(hopping), [{"contact_time_s": float(t)} for t in hopping.contact_time]
     found = measure.collisions(results)
     _need(len(found.events) > 0, results, "contacts that ended after the settling time (record.events)")
@@ -113,6 +112,11 @@ def vibration(
     """Motion of grains within short windows; by default of the two that move most."""
     found = measure.vibration(results, begin=begin, end=end)
     return figures.vibration(found, grains or found.most_restless(2)), found.rows()
+
+
+def _lone(results: Results) -> bool:
+    """Whether the case has lone grains, which do not lie on each other."""
+    return results.case.get("build", {}).get("kind") in {"saltation", "drop"}
 
 
 def _need(there: bool, results: Results, what: str) -> None:

@@ -1,4 +1,4 @@
-"""Slope of heaps against a friction angle or coefficient, with what is wanted of them."""
+"""Slope of heaps against a friction angle or coefficient, beside what the paper reports."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Spin of saltating grains against the way they went."""
+"""Spin of saltating grains over the distance they travelled."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -19,7 +19,7 @@ def spin(found: Spin, grains: Sequence[int] | None = None, until: float | None =
     ----------
     found : `measure.spin`.
     grains : columns drawn; default all, the first one dark and the others faint.
-    until : way shown [m]; default all.
+    until : distance shown [m]; default all.
     """
     figure, (axes,) = style.new(height=2.5)
     columns = range(found.omega.shape[1]) if grains is None else grains
@@ -37,6 +37,8 @@ def spin(found: Spin, grains: Sequence[int] | None = None, until: float | None =
     axes.set_xlabel(f"distance along the bed  $x$  ({unit})")
     axes.set_ylabel("spin  $\\omega_y$  (rad/s)")
     axes.margins(x=0.0)
+    if not found.omega.any():  # rotation is locked: any scale would be that of round-off
+        axes.set_ylim(-1.0, 1.0)
     axes.tick_params(right=False, which="both")
     right = axes.secondary_yaxis("right", functions=(_turns, _spin))
     right.set_ylabel("turns per second  (1/s)", fontsize=8.0)

@@ -33,14 +33,14 @@ def tracks(
     Parameters
     ----------
     found : paths (`measure.tracks`).
-    panels : rows the way is cut into; default what makes a row about 40 diameters long.
+    panels : rows the path is cut into; default what makes a row about 40 diameters long.
     exaggeration : vertical over horizontal scale; 1 keeps grains round. Stated in the figure when not 1.
-    length : way shown [m]; default all.
+    length : distance shown [m]; default all.
     around : its planes are drawn.
 
     Notes
     -----
-    A path that is high for its way gets a wider way around it, so that the picture fits on a page.
+    A path that is high for its length gets more room at its sides, so that the picture fits on a page.
     """
     d = float(found.d[0]) if len(found.d) else 1.0
     x0 = float(np.nanmin(found.x)) - d
@@ -49,7 +49,7 @@ def tracks(
     top = float(found.z[inside].max()) + 0.8 * d
     bottom = float(found.bed_z.min()) - 0.1 * d if len(found.bed_z) else float(found.z.min()) - d
     each = (top - bottom) * exaggeration * (style.PAGE - 0.6) / TALLEST  # least span for every row there is
-    fit = max(math.floor(math.sqrt(total / each)), 1)  # more rows would be wider than the way is long
+    fit = max(math.floor(math.sqrt(total / each)), 1)  # more rows would be wider than the path is long
     rows = panels or min(max(math.ceil(total / (40.0 * d)), 1), fit, 8)
     span, tall = total / rows, each * rows
     if span < tall:
@@ -71,7 +71,7 @@ def tracks(
     figure.supylabel("height  $z$  (mm)", fontsize=8.0)
     axes[0].set_title(_caption(found), loc="left", fontsize=6.5)
     if exaggeration != 1.0:
-        axes[0].set_title(f"heights drawn {exaggeration:g} times too large", loc="right", fontsize=6.5)
+        axes[0].set_title(f"vertical scale exaggerated {exaggeration:g} times", loc="right", fontsize=6.5)
     return figure
 
 
@@ -82,7 +82,8 @@ def _caption(found: Tracks) -> str:
         f", ... ({len(found.grains)} in all)" if many else ""
     )
     when = f", $t$ = {found.t[0]:.4g} to {found.t[-1]:.4g} s" if len(found.t) else ""
-    return f"grain{'s' if len(found.grains) > 1 else ''} {names}{when}"
+    outlines = ", its outline at equal distances along the path" if len(found.grains) == 1 else ""
+    return f"grain{'s' if len(found.grains) > 1 else ''} {names}{when}{outlines}"
 
 
 @style.house
@@ -94,7 +95,7 @@ def tracks_side_by_side(
     Parameters
     ----------
     found : name written into the panel -> paths.
-    length : way shown [m].
+    length : distance shown [m].
     unit : of both axes.
     """
     runs, scale = list(found.values()), {"mm": MM, "cm": CM}[unit]
@@ -122,17 +123,17 @@ def tracks_side_by_side(
 
 @style.house
 def tracks_from_start(found: Mapping[str, Tracks], marks: float = 0.1, length: float | None = None) -> Figure:
-    """Draw the ways of many grains one above another, each from its start: the form of the paper's fig16.
+    """Draw the paths of many grains one above another, each from its start: the form of the paper's fig16.
 
     Parameters
     ----------
     found : name of the run -> paths (`measure.tracks`), all within windows of equal length; one panel each.
-    marks : time between the dots on a way [s]; a ring is the start.
-    length : way shown [m]; default that of the grain that went farthest in any run.
+    marks : time between the dots on a path [s]; a ring is the start.
+    length : distance shown [m]; default that of the grain that went farthest in any run.
 
     Notes
     -----
-    To scale. Ways are moved up or down so that they do not cross: the one that got farthest lies on top.
+    To scale. Paths are shifted vertically so that they do not cross: the longest lies on top.
     """
     runs = list(found.values())
     d = float(np.mean(runs[0].d))
@@ -151,9 +152,9 @@ def tracks_from_start(found: Mapping[str, Tracks], marks: float = 0.1, length: f
         panel.set_ylim(bottom, top)
         panel.set_aspect("equal")
         panel.set_title(name, loc="left", fontsize=7.5)
-        panel.set_xlabel("distance from the start  $(x - x_0)/d$  (-)")
+        panel.set_xlabel("distance from the start  $(x - x_0)/d$  (–)")
     axes[-1].set_title(f"a dot every {marks:g} s", loc="right", fontsize=6.5)
-    axes[0].set_ylabel("height, ways set apart  $z/d$  (-)")
+    axes[0].set_ylabel("height, paths set apart  $z/d$  (–)")
     return figure
 
 
@@ -194,7 +195,7 @@ def _path(axes: Axes, found: Tracks, column: int, low: float, high: float, scale
     drawn[1:] |= near[:-1]
     drawn[:-1] |= near[1:]
     axes.plot(np.where(drawn, x, np.nan) * scale, z * scale, color=colour, lw=0.9, solid_joinstyle="round")
-    # outlines of the grain every so many diameters of way, so that its size can be seen
+    # the grain's outline at equal distances along its path, so that its size can be seen
     if found.x.shape[1] == 1:
         ways = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(z)))])
         marks = np.unique(np.searchsorted(ways, np.arange(0.0, ways[-1], 2.5 * d)))

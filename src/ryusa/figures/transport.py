@@ -114,7 +114,7 @@ def _over_time(axes: Axes, found: Transport) -> None:
         low, high = mean.value - mean.error, mean.value + mean.error
         axes.axhspan(low, high, color=style.COLOURS[1], alpha=0.2, lw=0.0)
     axes.annotate(
-        rf"mean {mean.value:.3g} $\pm$ {mean.error:.1g}", (1, 1), (-4, -4), "axes fraction",
+        rf"mean {mean.value:.3g} $\pm$ {mean.error:.2g}", (1, 1), (-4, -4), "axes fraction",
         textcoords="offset points", ha="right", va="top", fontsize=6.5, color=style.COLOURS[1],
     )  # fmt: skip
     low, high = min(*q, 0.0), max(*q, 0.0)

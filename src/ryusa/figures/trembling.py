@@ -1,4 +1,4 @@
-"""How many grains tremble, over the threshold from which on they count."""
+"""Share of grains that vibrate, over the threshold of their displacement."""
 
 from collections.abc import Mapping
 
@@ -40,8 +40,8 @@ def over_threshold(
     axes.set_ylim(-0.02, 1.05)
     axes.annotate(words, (1, level[1]), (-3, -3), axes.get_yaxis_transform(), "offset points", ha="right",
                   va="top", fontsize=6.5, color="#4c6340")  # fmt: skip
-    axes.set_xlabel("threshold  (mean diameters in a window)")
-    axes.set_ylabel("share that moved farther  (–)")
+    axes.set_xlabel("threshold of the displacement in a window, over mean $d$  (–)")
+    axes.set_ylabel("share of grains beyond it  (–)")
     figure.legend(*axes.get_legend_handles_labels(), loc="outside upper center", ncols=2, fontsize=6.0,
                   title=note or None, title_fontsize=6.5)  # fmt: skip
     return figure

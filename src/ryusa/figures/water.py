@@ -9,7 +9,7 @@ from ryusa.measure import Layers
 from ryusa.measure.water import WaterProfile
 
 CM = 100.0  # centimetres in a metre
-STRAY = 0.01  # concentration below which a mean grain speed is that of a few strays
+STRAY = 0.01  # concentration below which few grains make the mean speed
 WATER, GRAINS, SAND = "#0072B2", "#D55E00", "#8c6d3f"
 
 
@@ -19,8 +19,8 @@ def water(found: WaterProfile) -> Figure:
 
     Parameters
     ----------
-    found : `measure.water`. A line marks the surface, another the bed; the stress of the clear water that is
-        carried on to the bed is dashed.
+    found : `measure.water`. A line marks the surface, another the bed; the stress of the clear water,
+        extrapolated to the bed, is dashed.
     """
     figure, axes = style.new(1, 3, width=style.PAGE, height=2.9, sharey=True)
     z, faces, top = found.z * CM, found.faces * CM, found.surface * CM
@@ -32,11 +32,11 @@ def water(found: WaterProfile) -> Figure:
     speeds.set_xlabel("speed along the bed  $U, v_x$  (cm/s)")
     _band(amount, found.phi, z, 1.0, z > -np.inf, SAND, "", "-")
     amount.set_xlabel(r"concentration  $\phi$  (–)")
-    _band(stress, found.tau, faces, 1.0, through, WATER, "of the water", "-")
+    _band(stress, found.tau, faces, 1.0, through, WATER, "water", "-")
     if np.isfinite(found.tau_bed):
         stress.plot(
             [0.0, found.tau_bed], [top, found.bed * CM], color="#444444", lw=0.9, ls=(0, (4, 2)),
-            label=rf"clear water, to $\tau_b$ = {found.tau_bed:.3g} Pa",
+            label=rf"extrapolated, $\tau_b$ = {found.tau_bed:.3g} Pa",
         )  # fmt: skip
         stress.plot([found.tau_bed], [found.bed * CM], "o", ms=3.2, mfc="white", color="#444444")
     stress.set_xlabel(r"shear stress  $\tau$  (Pa)")

@@ -1,4 +1,4 @@
-"""Cut the life of one grain over a fixed bed into bounces and hops."""
+"""Divide the path of one grain over a fixed bed into bounces and hops."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -32,7 +32,7 @@ HOP = np.dtype(
         ("impulse_shear", np.float64),  # impulse of the bed against x in that bounce [N s]
     ]
 )
-# One row per bounce: bed contacts not parted by a flight that rises more than the threshold.
+# One row per bounce: bed contacts without a flight between them that rises more than the threshold.
 BOUNCE = np.dtype(
     [
         ("grain", np.int64),

@@ -1,4 +1,4 @@
-"""What a measure asks of a run folder; `results.Results` answers it, and so may a fake in a test."""
+"""What a measure needs of a run folder; `results.Results` provides it, and so may a stand-in in a test."""
 
 from typing import Any, Protocol
 
@@ -31,7 +31,7 @@ class Run(Protocol):
 
 
 def settle_time(run: Run) -> float:
-    """Time before which measures look away [s]: `record.settle` of the case, else 0."""
+    """Time before which measures ignore the record [s]: `record.settle` of the case, else 0."""
     value = (run.case.get("record") or {}).get("settle")
     return 0.0 if value is None else float(value)
 

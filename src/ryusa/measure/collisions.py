@@ -1,4 +1,4 @@
-"""Single contacts: how long, how deep, how hard, and what restitution they really gave."""
+"""Single contacts: duration, overlap, closing speed, and the restitution that resulted."""
 
 import math
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ Partner = Literal["all", "bed", "free", "plane"]
 
 @dataclass(frozen=True)
 class ContactTimes:
-    """What the closed forms say about one grain against one partner.
+    """Closed forms of the contact time of one grain with one partner.
 
     Attributes
     ----------

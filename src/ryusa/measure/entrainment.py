@@ -81,7 +81,7 @@ def entrainment(
 
     Notes
     -----
-    The speed of a grain between two frames is the way between its centres over the time, so trembling in
+    The speed of a grain between two frames is the way between its centres over the time, so vibration in
     place does not count as moving. A grain has started once it was at rest for `duration`, whatever it did
     in between, and then moves for `duration`; it is counted when that began. Starts and stops of the first
     and last `duration` of the window cannot be told, and it is shortened by as much. Both rates depend on the

@@ -1,4 +1,4 @@
-"""Classical bed-load formulae at the grains, slope and depth of a run, to stand behind its transport rate."""
+"""Classical bed-load formulae for the grains and slope of a run, to compare its transport rate with."""
 
 import math
 from typing import NamedTuple

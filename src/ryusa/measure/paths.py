@@ -1,4 +1,4 @@
-"""The shape of grains' ways in a flow: how far, how high, how often up and down; who meets bed and movers."""
+"""Shape of grain paths in a flow: advance, vertical range, reversals; contacts with bed and moving grains."""
 
 import math
 from collections.abc import Sequence
@@ -30,7 +30,7 @@ TurnRule = Literal["contacts", "heights"]
 
 @dataclass(frozen=True)
 class Paths:
-    """Ways of grains within windows that follow one another; arrays are (n_window, n_grain).
+    """Paths of grains within consecutive windows; arrays are (n_window, n_grain).
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class Paths:
     begin, end : edges of the windows [s], shape (n_window,).
     threshold : vertical excursion from which a turn counts, in diameters of the grain [-].
     crest : height of the bed's crest [m].
-    advance : way along the bed from begin to end [m], with its sign.
+    advance : displacement along the bed from begin to end [m].
     range_z : highest less lowest centre [m].
     reversals : turns of the vertical motion per second [1/s].
     way_z : sum of the heights gained and lost between those turns [m].
@@ -94,12 +94,12 @@ class Paths:
 
 @dataclass(frozen=True)
 class Alternating:
-    """Grains that were at the fixed bed and among movers in turn, most turns first.
+    """Grains that alternate between the fixed bed and moving grains, most changes first.
 
     Attributes
     ----------
     grains : ids.
-    turns : changes from bed to movers or back, one per grain.
+    turns : changes from bed to moving grains or back, one per grain.
     by : "contacts" where they were recorded; else "heights".
     """
 
@@ -116,7 +116,7 @@ def paths(
     grains: Sequence[int] | None = None,
     threshold: float = THRESHOLD,
 ) -> Paths:
-    """Advance, vertical range, turns and jaggedness of the way of every grain.
+    """Advance, vertical range, reversals and jaggedness of the path of every grain.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ def paths(
     window : length of each window [s].
     grains : ids of free grains; default all.
     threshold : a turn of the vertical motion counts once the grain has come back by more than so many of its
-        diameters; smaller wiggles count neither as turns nor as way.
+        diameters; smaller oscillations count neither as turns nor as vertical path.
 
     Raises
     ------
@@ -134,10 +134,11 @@ def paths(
 
     Notes
     -----
-    Ways are those of the recorded frames: what a grain does between two of them is not seen. Compare runs
+    Paths are those of the recorded frames: motion between two of them is not resolved. Compare runs
     with the same frame interval and the same threshold only. The crest is the top of the highest fixed grain.
-    Averages are over grains, each window of each grain a sample; grains of one flow meet one another, so
-    their standard error is a lower bound. Jaggedness is averaged as sum of ways over sum of advances.
+    Averages are over grains, each window of each grain a sample; grains of one flow collide with each other,
+    so that their standard error is a lower bound. Jaggedness is the sum of vertical paths over the sum of
+    advances.
     """
     since = settle_time(run) if begin is None else begin
     t = np.asarray(run.frames.t, dtype=np.float64)
@@ -179,13 +180,13 @@ def paths(
 def alternating(
     run: Run, begin: float | None = None, end: float = math.inf, turns: int = 2, by: TurnRule | None = None
 ) -> Alternating:
-    """Grains that touch the fixed bed and movers in turn within a window.
+    """Grains that touch the fixed bed and moving grains alternately within a window.
 
     Parameters
     ----------
     run : a run folder.
     begin, end : window [s]; `begin` defaults to the case's `record.settle`.
-    turns : least number of changes from bed to movers or back.
+    turns : least number of changes from bed to moving grains or back.
     by : "contacts", as they began one after another, or "heights": at the bed below crest + 0.5 d, away from
         it above crest + d, in between as before. Default contacts where the run recorded them; of a run that
         recorded tracked grains, those only.
@@ -260,7 +261,7 @@ def _averages(
     return Averages(
         "paths",
         (*items, ratio("jaggedness", "-", list(way.T), list(advance.T), window)),
-        ("errors are those over grains that meet one another: lower bounds",),
+        ("errors are lower bounds: grains of one flow collide with each other",),
     )
 
 

@@ -1,4 +1,4 @@
-"""Rods: movers that touch and keep their bearing, and so go downstream as one rigid body (fig22)."""
+"""Rods: moving grains that stay in contact and keep their bearing, as one rigid body (fig22)."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -56,7 +56,7 @@ class _Seen:
 
 @dataclass(frozen=True)
 class Rods:
-    """Movers that keep contact and bearing throughout a window of time.
+    """Moving grains that keep contact and bearing throughout a window of time.
 
     Attributes
     ----------
@@ -65,7 +65,7 @@ class Rods:
     touching : of these, grains that touch another mover as the window begins.
     bound : of these, grains that keep contact and bearing with one to its end: they are in a rod.
     lengths : how many rods of n grains there were in all windows, shape (longest + 1,); n is the index.
-    null : movers in a rod if every mover had gone the way of one picked at random from its layer and any
+    null : movers in a rod if every mover had the displacement of one drawn at random from its layer and any
         window, mean of the shuffles, shape (n_window,).
     longest : the rod of the most grains, of several the first; None where there is none.
     window : how long a rod lasts at least [s].
@@ -90,7 +90,7 @@ class Rods:
 
     @property
     def null_share(self) -> float:
-        """The same for shuffled ways [-]."""
+        """The same for shuffled displacements [-]."""
         whole = int(self.movers.sum())
         return float(self.null.sum()) / whole if whole else math.nan
 
@@ -129,7 +129,7 @@ def rods(
     run : a run folder, periodic along x.
     begin, end : where the windows lie [s]; `begin` defaults to the case's `record.settle`.
     window : how long a rod must last [s]; default 5 sqrt(d/g), rounded to whole frames.
-    way : way along the bed in a window from which a grain is a mover, in mean diameters.
+    way : displacement along the bed in a window from which a grain is a mover, in mean diameters.
     bearing : the direction from one grain to the other turns by less than this [rad].
     gap : largest gap of two grains that touch, over the mean of their diameters.
     shuffles, seed : of the null model.
@@ -143,10 +143,10 @@ def rods(
     Two movers are bound where in every frame of the window they touch and the direction from one to the
     other is within `bearing` of that at its begin: they neither part nor roll or climb over each other. A rod
     is a cluster of movers that are bound one to the next. A rod that outlasts a window counts again in the
-    next. A grain that climbs from one pocket of a bed of its like to the next turns by 60 degrees about the
-    one below. The null model gives every mover its own place and the way of a mover picked at random whose
-    mean height is in the same layer, one diameter thick, from all windows: grains that move as grains of
-    their height do, and know nothing of each other.
+    next. A grain that climbs from one pocket of a bed of equal grains to the next turns by 60 degrees about
+    the one below. The null model gives every mover its own place and the displacement of a mover drawn at
+    random from all windows, whose mean height is in the same layer, one diameter thick: grains that move as
+    grains of their height do, independently of each other.
     """
     t, first, _, scene, _ = window_of(run, begin, end, least=3)
     d = float(scene.d.mean())
@@ -185,7 +185,8 @@ def rods(
             (
                 f"a rod: moving grains that touch (gap below {gap:g} d) for {n * frame:.3g} s, travel "
                 f"{way:g} d or more in it and turn about each other by less than "
-                f"{math.degrees(bearing):.3g} deg; judged from {n + 1} frames in each of {len(starts)} windows",
+                f"{math.degrees(bearing):.3g} deg; judged from {n + 1} frames in each of {len(starts)} "
+                "windows",
             ),
         ),
     )
@@ -227,9 +228,9 @@ def _shares(
 def companions(run: Run, begin: float | None = None, end: float = math.inf, gap: float = GAP) -> float:
     """Correlation of the speeds along the bed of grains that touch, over their layer's mean [-].
 
-    1 where neighbours go along together, 0 where they know nothing of each other, below 0 where they have
-    just thrown each other apart. The mean that is subtracted is that of all grains and frames whose centres
-    lie in the same layer, half a diameter thick. nan where nothing touches.
+    1 where neighbours move together, 0 where they are independent, below 0 where they have just collided.
+    The mean that is subtracted is that of all grains and frames whose centres lie in the same layer, half a
+    diameter thick. nan where nothing touches.
     """
     t, first, last, scene, _ = window_of(run, begin, end, least=2)
     d = float(scene.d.mean())

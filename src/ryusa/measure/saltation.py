@@ -133,8 +133,9 @@ def _averages(found: list[Bounces], times: ContactTimes, begin: float, rise: flo
     highest = max((float(one.hops["rise"].max()) for one in found if len(one.hops)), default=math.nan)
     notes = (
         f"{count} hops of {sum(1 for one in found if len(one.hops))} starts after {begin:g} s; "
-        f"flights that rise less than {rise:g} d do not part two bounces",
+        f"a flight that rises less than {rise:g} d counts as part of one bounce",
         f"highest jump {highest:.4g} m above take-off; crest of the bed at z = {crest:.4g} m",
-        f"Eq. (8): {times.eq_8:.4g} s; with added mass {times.added:.4g} s; damped {times.damped:.4g} s",
+        f"Eq. (8): {times.eq_8:.4g} s; with added mass {times.added:.4g} s; and with dashpot "
+        f"{times.damped:.4g} s",
     )
     return Averages("saltation", items, notes)

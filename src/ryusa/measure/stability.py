@@ -1,4 +1,4 @@
-"""What the closed forms say about a grain before a run: stiffness, contact time, overlap, step, cost."""
+"""Closed forms for a grain before a run: stiffness, contact time, overlap, time step, cost."""
 
 import math
 from dataclasses import dataclass, replace

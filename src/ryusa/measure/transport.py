@@ -1,4 +1,4 @@
-"""How much sediment a flow carries: its rate, the layer it moves in, the stress that its motion carries."""
+"""Sediment transport: its rate, the layer that carries it, and the kinetic stress of the grains."""
 
 import math
 from collections.abc import Iterator
@@ -324,10 +324,10 @@ def _measured(run: Run, begin: float, end: float) -> tuple[Average | None, float
 def _of_stress(tau_star: float, bed: float) -> str:
     """Where tau_star comes from."""
     if math.isnan(tau_star):
-        return "tau_star: none, for the water names no stress, or has no bed or nothing clear above it"
+        return "tau_star: none, without a friction velocity or a column with clear water above a bed"
     if math.isnan(bed):
-        return f"tau_star = {tau_star:.4g}, what the case asks for"
-    return f"tau_star: shear stress of the clear water, carried on to the bed at z = {bed:.4g} m"
+        return f"tau_star = {tau_star:.4g}, as the case asks for"
+    return f"tau_star: shear stress of the clear water, extrapolated to the bed at z = {bed:.4g} m"
 
 
 def _tau_star(scene: Scene, excess: float, d: float, g: float) -> float:

@@ -1,4 +1,4 @@
-"""Grains that will not come to rest: how far each moves within short windows, as in the paper's fig10."""
+"""Grains that do not come to rest: how far each moves within short windows, as in the paper's fig10."""
 
 import math
 from collections.abc import Sequence
@@ -33,7 +33,7 @@ class Vibration:
     net : z at the end less z at the begin [m], the paper's "relative displacement"; (n_window, n_grain).
     span_z : largest less smallest z of all frames in the window [m], the same shape.
     span : twice the largest distance from the grain's mean place in the window, in x, y and z [m].
-    turn : way of the surface of a grain that spins: largest |omega| d/2 times the window [m]; 0 where
+    turn : path of the surface of a grain that spins: largest |omega| d/2 times the window [m]; 0 where
         rotation is locked.
     """
 
@@ -132,8 +132,8 @@ def vibration(
     frames = np.diff(near) + 1
     if frames.min() - 1 < LEAST:
         raise ResultsError(
-            f"{frames.min() - 1} frames in a window of {window:g} s, {LEAST} needed so that no vibration "
-            f"falls between them: record.frames = {window / LEAST:g} s or shorter, or a longer window"
+            f"{frames.min() - 1} frames in a window of {window:g} s, {LEAST} needed to resolve a "
+            f"vibration: record.frames = {window / LEAST:g} s or shorter, or a longer window"
         )
     ids = np.arange(scene.n_grain) if grains is None else np.asarray(grains, dtype=np.int64)
     shape = (count, len(ids))
