@@ -1,1 +1,1 @@
-"""The CPU engine: compiled threads that step blocks of grains and meet at a barrier."""
+"""The CPU engine: compiled threads that step blocks of grains and wait for each other at a barrier."""

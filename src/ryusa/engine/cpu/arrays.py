@@ -13,12 +13,12 @@ from ryusa.engine.shared.layout import aligned
 class GrainArrays(NamedTuple):
     """Grains by place. n free grains, n_solid with the fixed ones, n_total with the planes.
 
-    Vectors lie in rows of four doubles, a whole vector register; what the fourth is, is said.
+    Vectors lie in rows of four doubles, a whole vector register; the fourth column is named with each.
     """
 
     x: Any  # centres and radius [m], (n_total, 4); inf the radius of planes
     v: Any  # velocities [m/s], and 0, (n_total, 4); zero beyond n
-    v_pruned: Any  # velocities when the near list was cut [m/s], and 0, (n, 4)
+    v_pruned: Any  # velocities at the last pruning [m/s], and 0, (n, 4)
     w: Any  # spins [rad/s], and the radius [m], (n_total, 4); zero beyond n; beside v in one cache line
     m: Any  # mass with added mass [kg], (n_total,); inf beyond n
     m_bare: Any  # mass without added mass [kg], (n,)
@@ -30,17 +30,17 @@ class GrainArrays(NamedTuple):
     image: Any  # periods crossed, (n, 2)
     tracked: Any  # whether its contacts are recorded, by id, (n,)
     n_touching: Any  # contacts in the last step, (n,)
-    film: Any  # force of films so far in this step [N], rows as those of `Pairs.f`, 4 wide; (0, 0) without
-    fluid: Any  # water at each grain, columns of model.fluid, (n, N_SEEN); (0, 0) without a column
-    impulse: Any  # impulse it took from the water [N s], and drag over slip, (n, N_TAKEN); (0, 0) without
+    film: Any  # force of films in this step [N], (rows of `PairArrays.f`, 4); (0, 0) without films
+    fluid: Any  # water at each grain, columns of model.fluid, (n, N_SAMPLED); (0, 0) without a column
+    impulse: Any  # impulse from the water [N s], and drag over slip, (n, N_IMPULSE); (0, 0) without
 
 
 class PairArrays(NamedTuple):
-    """The wide list: every pair that may touch before the list is made anew, and where forces go.
+    """The Verlet list: every pair that may touch before the list is rebuilt, and the rows that forces go to.
 
     Partners of grain i are partners[start[i]:start[i + 1]]. `f` has a row for each free grain, then one for
-    each block that takes what nobody wants (the side of fixed grains and planes), then one for each pair
-    whose partner belongs to another block: that side waits there until the partner's block fetches it.
+    each block for forces that are not used (those on fixed grains and planes), then one for each pair
+    whose partner belongs to another block: that force waits there until the partner's block gathers it.
     """
 
     slab: int  # places between two layers of cells: so much later come partners not met before
@@ -48,28 +48,28 @@ class PairArrays(NamedTuple):
     partners: Any  # places, (n_pair,)
     cross_start: Any  # first crossing pair of each block, (n_block + 1,)
     crossing: Any  # numbers of the pairs that cross, (n_cross,)
-    active: Any  # 1 where the crossing pair of a row of `f` is in the near list, (n + n_block + n_cross,)
+    active: Any  # 1 where the crossing pair of a row of `f` is a candidate, (n + n_block + n_cross,)
     incoming_start: Any  # rows for grain j: incoming[incoming_start[j]:incoming_start[j + 1]]
     incoming: Any  # (n_cross,)
     f: Any  # force [N], nothing, torque [N m] and contacts so far in this step, (n + n_block + n_cross, 8)
 
 
 class CandidateArrays(NamedTuple):
-    """The near list: pairs that may touch within the next few steps, with the memory of those that do.
+    """Candidate pairs: those that may touch within the next few steps, with the memory of those that do.
 
     Each block has room for pairs first[b] to first[b + 1], of which count[b] are taken, in the order of the
-    wide list.
+    Verlet list.
     """
 
     first: Any  # (n_block + 1,)
     count: Any  # (n_block,)
     i: Any  # place of the grain that owns the pair, (n_near,)
     j: Any  # place of its partner
-    target: Any  # row of `Pairs.f` for the partner
-    index: Any  # number in the wide list
+    target: Any  # row of `PairArrays.f` for the partner
+    index: Any  # number in the Verlet list
     touching: Any  # 1 where they touch and the row holds
     eta: Any  # normal and tangential dashpot [N s/m], (n_near, 2); (1, 2) where all are alike
-    rows: Any  # memory (rows.py), (n_near, width); it and `eta` hold where they touch
+    rows: Any  # memory (shared/memory_rows.py), (n_near, width); it and `eta` hold where they touch
 
 
 class WallArrays(NamedTuple):
@@ -80,23 +80,23 @@ class WallArrays(NamedTuple):
 
 
 class AccountArrays(NamedTuple):
-    """What each block writes down."""
+    """What each block records."""
 
     ended: Any  # records of contacts that parted, (n_block, slots, N_EVENT)
-    books: Any  # energy account [J], (n_block, N_BOOKS), columns of model.tally.Book
-    stats: Any  # what holds now, (n_block, N_NOW), columns N_ of rows.py
+    books: Any  # energy account [J], (n_block, N_ACCOUNT), columns of model.tally.Book
+    stats: Any  # statistics, (n_block, N_STATISTIC), columns of shared/block_statistics.py
 
 
 class Workspace(NamedTuple):
-    """What one thread reckons on (`workplace`)."""
+    """Workspace of one thread (`workspace_of_thread`)."""
 
-    batch: Any  # a batch of touching pairs (lanes.py), (DESK,)
-    table: Any  # a grain in the water (lanes.py), (TABLE,)
-    separation: Any  # way from i to j and both radii [m] of pairs that are looked at, four each, (4 * LANES,)
-    velocity: Any  # velocity of j against i [m/s], and 0, of pairs that are looked at, (4 * LANES,)
-    inside: Any  # 1 where a pair that is looked at touches, (LANES,)
-    selected: Any  # near pairs that wait, then those on the desk, (2 * LANES,), uint32
-    schedule: Any  # this thread's copy of the near list's clock, (N_CLOCK,)
+    batch: Any  # a batch of touching pairs (batch_layout.py)
+    table: Any  # a grain in the water (grain_layout.py)
+    separation: Any  # separation from i to j and sum of radii [m] of candidates, four each, (4 * LANES,)
+    velocity: Any  # velocity of j against i [m/s], and 0, of candidates, (4 * LANES,)
+    inside: Any  # 1 where a candidate touches, (LANES,)
+    selected: Any  # selected candidates, the first of them in the batch, (2 * LANES,), uint32
+    schedule: Any  # this thread's copy of the prune schedule, (N_SCHEDULE,)
 
 
 def workspace_of_thread() -> Workspace:

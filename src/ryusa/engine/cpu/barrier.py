@@ -1,7 +1,7 @@
 """A spin barrier for threads inside one compiled call.
 
 A launch of numba's own parallel loops costs from 2 us (omp) to 460 us (tbb); 2,000 grains step in 100.
-So threads are plain Python threads that run one compiled function without the GIL and meet at this barrier,
+So threads are plain Python threads that run one compiled function without the GIL and wait at this barrier,
 which costs well under a microsecond when every thread has a core.
 """
 
@@ -13,7 +13,7 @@ from numba import njit, types
 from numba.extending import intrinsic
 
 _yield_core: Any = types.ExternalFunction("sched_yield", types.int32()) if sys.platform != "win32" else None
-_SPINS = 4000  # looks at the counter before the core is offered to others
+_SPINS = 4000  # reads of the counter before the core is offered to others
 
 
 @intrinsic
@@ -42,13 +42,13 @@ def _load(typingctx: Any, array: Any) -> Any:
 
 @njit(nogil=True)
 def wait(count: Any, n_threads: int, target: int) -> int:
-    """Wait until all threads have come here; returns the target of the next meeting.
+    """Wait until all threads have arrived; returns the target of the next call.
 
     Parameters
     ----------
-    count : int64 array of one element, shared by the threads, 0 before the first meeting.
-    n_threads : number of threads that meet; 1 returns at once.
-    target : 0 at first, then what the last meeting returned.
+    count : int64 array of one element, shared by the threads, 0 before the first call.
+    n_threads : number of threads; with 1 it returns at once.
+    target : 0 at first, then what the last call returned.
     """
     if n_threads == 1:
         return 0

@@ -1,4 +1,4 @@
-"""The desk: how a batch of touching pairs lies in memory while the law of contact works on it, lane by lane.
+"""How a batch of touching pairs lies in memory while the contact law is computed, lane by lane.
 
 The loop over lanes becomes vector instructions: eight pairs at a time where the machine has them. For that
 it works on one flat array, at places known when it is compiled. Groups of four doubles belong to one pair, so
@@ -23,7 +23,7 @@ TORQUE_I = 28 * PITCH  # torque on i [N m], and 1 where they touch
 TORQUE_J = 32 * PITCH
 # Rows:
 ETA_S = 36 * PITCH  # tangential dashpot [N s/m]
-RAW = 37 * PITCH  # normal force before it is cut [N]
+RAW = 37 * PITCH  # normal force before the limit [N]
 WAS_TOUCHING = 38 * PITCH  # 1 where they touched in the last step
 EXCESS = 39 * PITCH  # overlap less the largest so far for its size [m]
 # Books [J], summed lane by lane until the block is done:

@@ -15,7 +15,7 @@ def number_crossing_pairs(
 ) -> tuple[Whole, np.ndarray, Whole, Whole]:
     """Number the rows of `Pairs.f` for pairs whose partner belongs to another block.
 
-    Returns the first of them in each block (n_block + 1); their numbers in the wide list; and, for each
+    Returns the first of them in each block (n_block + 1); their numbers in the Verlet list; and, for each
     grain, the rows of the pairs that others own and it is partner of:
     incoming[incoming_start[j]:incoming_start[j + 1]], in list order.
     """

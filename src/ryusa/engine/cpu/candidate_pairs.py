@@ -1,4 +1,4 @@
-"""The near list of a run as the engine keeps it: its room, and the clock by which it is cut."""
+"""The candidate pairs of a run: their arrays, and the schedule by which they are pruned."""
 
 import numpy as np
 
@@ -19,12 +19,12 @@ _AHEAD = 20.0  # steps it should last at first
 
 
 class CandidatePairs:
-    """Pairs that may touch within the next few steps, cut anew while stepping (engine/march.py).
+    """Pairs that may touch within the next few steps, pruned again while stepping (time_loop.py).
 
     Parameters
     ----------
     layout : of the scene.
-    threads : how many cut at once.
+    threads : number that prune at once.
     smallest : diameter [m].
     """
 
@@ -47,17 +47,17 @@ class CandidatePairs:
         memory: ContactMemory,
         share: Share,
     ) -> None:
-        """Cut from a new wide list, and lay in the memory of pairs in touch.
+        """Prune a new Verlet list, and copy the memory of pairs in touch into it.
 
         Parameters
         ----------
-        skin : reach of the wide list beyond touch [m].
-        way : how far the fastest grain went in the last step [m].
-        share : has threads share the blocks.
+        skin : reach of the Verlet list beyond touch [m].
+        displacement : of the fastest grain in the last step [m].
+        share : distributes the blocks over threads.
 
         Raises
         ------
-        AssertionError : a pair in touch is not in the wide list.
+        AssertionError : a pair in touch is not in the Verlet list.
         """
         layout, schedule, variant = self._layout, self.schedule, self._layout.variant
         schedule[K.LEAST], schedule[K.MOST] = _LEAST * self._smallest, 0.5 * skin

@@ -1,4 +1,4 @@
-"""Who is near whom: a cell grid and, from it, a Verlet list of pairs.
+"""A cell grid and, from it, a Verlet list of pairs.
 
 Grains are sorted by cell, and by id within a cell, so that order and list follow from positions alone: a
 resumed run builds the same list as the run it continues.
@@ -111,7 +111,7 @@ def _append_partners(
         begin, end = first[column + bottom], first[column + top + 1]  # cells of a column lie side by side
         if used + end - begin >= len(partners):
             return -1
-        for slot in range(begin, end):  # no branch: who is near cannot be foretold
+        for slot in range(begin, end):  # no branch: which pairs are near is not predictable
             j = order[slot] + offset
             d_x, d_y, d_z = wrap(x[j, 0] - x_i, l_x), wrap(x[j, 1] - y_i, l_y), x[j, 2] - z_i
             reach = r_i + x[j, 3]

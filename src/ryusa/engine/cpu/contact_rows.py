@@ -10,7 +10,7 @@ from ryusa.engine.shared.kernel import inner
 
 @inner(forceinline=True)
 def dashpot_row(k: int, eta: Any) -> int:
-    """Where the dashpots of near pair k are."""
+    """Row of the dashpots of candidate k."""
     return k if len(eta) > 1 else 0
 
 
@@ -18,7 +18,7 @@ def dashpot_row(k: int, eta: Any) -> int:
 def begin_row(
     k: int, i: int, j: int, rotation: int, c: Any, m: Any, x: Any, inertia: Any, eta: Any, rows: Any
 ) -> None:
-    """Empty the row of near pair k, which may touch now and did not before, and give it its dashpots.
+    """Clear the row of candidate k, which may touch now and did not before, and set its dashpots.
 
     Where all are alike every thread writes the same numbers to the same place.
     """

@@ -1,4 +1,4 @@
-"""A glance at pairs, many at once: how far they are apart, which of them are near, and which will be."""
+"""Distance of many pairs at once: which are within a cutoff, and which approach it."""
 # ruff: noqa: E741  (l is a lane)
 
 from typing import Any
@@ -14,9 +14,9 @@ from ryusa.laws.geometry import wrap
 def set_separation(
     l: int, i: int, j: int, n_solid: int, x: Any, points: Any, normals: Any, separation: Any
 ) -> None:
-    """Lay the way from grain i to partner j and both radii together [m] on lane l.
+    """Write the separation from grain i to partner j and the sum of the radii [m] to lane l.
 
-    A plane is met as a grain of the same size that touches it from behind.
+    A plane is treated as a grain of the same size that touches it from behind.
     """
     difference4(separation, 4 * l, x, 4 * j, 4 * i)
     if j >= n_solid:
@@ -33,7 +33,7 @@ def set_separation(
 def mark_within_cutoff(
     plane_case: int, reach_on: float, m: int, c: Any, separation: Any, inside: Any
 ) -> None:
-    """Set `hit` to 1 where one of the first m lanes is nearer than `reach_on` [m] beyond touch, else to 0."""
+    """Set `inside` to 1 where one of the first m lanes is nearer than `reach_on` [m] beyond touch, else 0."""
     l_x, l_y = c[P.PERIOD_X], c[P.PERIOD_Y]
     for l in range(min(m, B.LANES)):
         d_x, d_z, reach = (
@@ -50,7 +50,7 @@ def mark_within_cutoff(
 
 @inner(fastmath=FAST, forceinline=True)
 def set_relative_velocity(l: int, i: int, j: int, n_solid: int, v: Any, normals: Any, velocity: Any) -> None:
-    """Lay the velocity of partner j against grain i [m/s] on lane l; of a plane only along its normal."""
+    """Write the velocity of partner j against grain i [m/s] to lane l; of a plane only along its normal."""
     difference4(velocity, 4 * l, v, 8 * j, 8 * i)
     if j >= n_solid:
         a = j - n_solid
@@ -64,7 +64,7 @@ def mark_approaching(
     plane_case: int, reach_on: float, past: float, ahead: float, m: int, c: Any, separation: Any,
     velocity: Any, inside: Any,
 ) -> None:  # fmt: skip
-    """Set `hit` to 1 where one of the first m lanes comes nearer than `reach_on` [m] beyond touch, else to 0.
+    """Set `inside` to 1 where one of m lanes comes nearer than `reach_on` [m] beyond touch, else to 0.
 
     Between `past` seconds ago and `ahead` seconds from now, each grain keeping the velocity it has.
     """
@@ -76,7 +76,7 @@ def mark_approaching(
         if not plane_case:
             d_y, u_y = wrap(separation[4 * l + 1], l_y), velocity[4 * l + 1]
         along, speed_2 = d_x * u_x + d_y * u_y + d_z * u_z, u_x * u_x + u_y * u_y + u_z * u_z
-        nearest = -along / speed_2 if speed_2 > 0.0 else 0.0  # when they are
+        nearest = -along / speed_2 if speed_2 > 0.0 else 0.0  # when they are nearest
         nearest = min(max(nearest, -past), ahead)
         d_x, d_y, d_z = d_x + nearest * u_x, d_y + nearest * u_y, d_z + nearest * u_z
         inside[l] = 1.0 if d_x * d_x + d_y * d_y + d_z * d_z < reach * reach else 0.0

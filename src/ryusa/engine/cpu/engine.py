@@ -1,4 +1,4 @@
-"""The CPU engine: owns the arrays, has the neighbour list rebuilt, lets compiled threads march in between."""
+"""The CPU engine: owns the arrays, rebuilds the Verlet list, and runs compiled threads in between."""
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -10,7 +10,7 @@ import numpy as np
 
 from ryusa.engine.cpu.arrays import AccountArrays, workspace_of_thread
 from ryusa.engine.cpu.candidate_pairs import CandidatePairs
-from ryusa.engine.cpu.prune_schedule import COST_LOOK
+from ryusa.engine.cpu.prune_schedule import COST_TEST
 from ryusa.engine.cpu.time_loop import make_run
 from ryusa.engine.cpu.verlet_list import BlockLayout, collect_memory
 from ryusa.engine.protocol import Flags
@@ -42,11 +42,11 @@ from ryusa.model.state import make_read_only
 
 VERSION = 1  # of the block in a snapshot
 _FARTHEST = 1e12  # [m]; beyond there is no grain
-_MANY = 256  # grains from which work is cut into blocks
+_MANY = 256  # grains from which work is divided into blocks
 _BLOCKS = 4, 32  # at least and at most; in between one for 2048 grains, a power of two
 _RECORDS = 256  # room for ended contacts in a block, beside one a grain
-# Measured, and fixed so that a run never depends on a clock: cost of a wide list [ns], and how often it is
-# looked through.
+# Measured, and fixed so that a run never depends on a clock: cost of a Verlet list [ns], and steps
+# between two prunings.
 _LIST, _LIST_GRAIN, _STEPS_A_CUT = 300_000.0, 600.0, 16.0
 
 
@@ -73,11 +73,11 @@ class CpuEngine:
         self._scene: Scene | None = None
 
     def refuses(self, scene: Scene) -> tuple[str, ...]:
-        """Reasons why this engine cannot carry the scene; () when it can."""
+        """Reasons why this engine cannot simulate the scene; () when it can."""
         return refusals(scene)
 
     def load(self, scene: Scene, state: State) -> None:
-        """Take a scene and a fresh state or a snapshot; a scene changed on the way is booked."""
+        """Take a scene and an initial state or a snapshot; enter a change of the scene in the account."""
         reasons = self.refuses(scene)
         if reasons:
             raise ValueError("; ".join(reasons))
@@ -167,7 +167,7 @@ class CpuEngine:
         return state
 
     def kinematics(self) -> tuple[Floats, Floats, Floats]:
-        """Centres [m], velocities [m/s] and what was taken from the water (model.fluid), by id."""
+        """Centres [m], velocities [m/s] and impulse from the fluid (model.fluid), by id."""
         n, ids = self._n, self._grains.ids[: self._n]
         x, v, impulse = np.empty((n, 3)), np.empty((n, 3)), np.empty(self._grains.impulse.shape)
         x[ids], v[ids] = self._grains.x[:n, :3], self._grains.v[:n, :3]
@@ -175,11 +175,11 @@ class CpuEngine:
         return x, v, impulse
 
     def set_fluid(self, sampled: Floats) -> None:
-        """Tell every grain its water for the steps to come, and begin to count its impulse anew.
+        """Set the water at every grain for the next steps, and count its impulse anew.
 
         Parameters
         ----------
-        seen : by id, columns of `model.fluid`, shape (n_grain, N_SEEN).
+        sampled : by id, columns of `model.fluid`, shape (n_grain, N_SAMPLED).
 
         Raises
         ------
@@ -205,7 +205,7 @@ class CpuEngine:
         return tally_of(t, self._accounts.stats, self._accounts.books)
 
     def events(self) -> np.ndarray:
-        """Contacts ended since last asked, in order of parting."""
+        """Contacts ended since the last call, in order of parting."""
         self._drain_records()
         rows = np.concatenate(self._records_drained) if self._records_drained else np.zeros((0, N_EVENT))
         self._records_drained = []
@@ -267,7 +267,7 @@ class CpuEngine:
         apart = float(self._pairs.start[-1]) - len(memory.i)  # from counts that a resumed run has too
         skin = best_skin(
             self._skin, 2.0 * self._travel / max(self._since, 1), _LIST + _LIST_GRAIN * self._n,
-            COST_LOOK * apart / _STEPS_A_CUT,
+            COST_TEST * apart / _STEPS_A_CUT,
         )  # fmt: skip
         # pairs in touch may have parted in the last step: their account is still to be closed
         parted = 2.001 * self._fastest_displacement()
@@ -334,7 +334,7 @@ class CpuEngine:
 
 
 def blocks_of(n: int) -> int:
-    """Into how many blocks the work on n grains is cut; never by the number of threads.
+    """Number of blocks for n grains; it does not depend on the number of threads.
 
     Thin blocks have many pairs with their neighbours, which cost more.
     """

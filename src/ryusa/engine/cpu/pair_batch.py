@@ -1,8 +1,8 @@
-"""The law of contact on a batch of pairs: laid out lane by lane, reckoned by vector instructions, handed out.
+"""The law of contact on a batch of pairs: gathered to lanes, computed by vector instructions, scattered.
 
 Every formula is a law. Choices are made by picking one of two numbers, never by leaving the lane, and arrays
-are read at places known beforehand: that lets the compiler turn the loop of `reckon` into vector
-instructions (engine/lanes.py).
+are read at places known at compile time: that lets the compiler turn the loops of `compute` into vector
+instructions (batch_layout.py).
 
 Books are kept by velocity interval: at x(n) the velocity v(n-1/2) and the forces of steps n-1 and n give the
 work u dt (f(n-1) + f(n))/2, exact for the scheme when kinetic energy is m v(n-1/2) v(n+1/2)/2. A spring met
@@ -40,14 +40,14 @@ def filter_pairs(
     i_of: Any, j_of: Any, touching: Any, points: Any, normals: Any, separation: Any, inside: Any,
     selected: Any,
 ) -> int:  # fmt: skip
-    """Let those of m <= LANES near pairs wait that touch or did in the last step; returns how many wait.
+    """Select those of m <= LANES candidates that touch or did in the last step; returns how many.
 
-    `which` gets their numbers; `glance` and `hit` are room to look at all.
+    `selected` gets their numbers; `separation` and `inside` are workspace.
     """
     for l in range(m):
         set_separation(l, i_of[first + l], j_of[first + l], n_solid, x, points, normals, separation)
     mark_within_cutoff(plane_case, reach_on, m, c, separation, inside)
-    for l in range(m):  # no branch: which pairs touch cannot be foretold
+    for l in range(m):  # no branch: which pairs touch is not predictable
         selected[waiting] = first + l
         waiting += int(inside[l] > 0.0) | int(touching[first + l])
     return waiting
@@ -58,7 +58,7 @@ def gather(
     rotation: int, m: int, selected: Any, n_solid: int, c: Any, mass: Any, inertia: Any, x: Any, v: Any,
     w: Any, points: Any, normals: Any, i_of: Any, j_of: Any, touching: Any, eta: Any, rows: Any, batch: Any,
 ) -> int:  # fmt: skip
-    """Lay the first m pairs that wait on as many lanes; returns the lanes to reckon.
+    """Copy the first m selected pairs to as many lanes; returns the number of lanes to compute.
 
     Those are whole vectors of eight: the lanes beyond m hold pairs far apart.
     """
@@ -105,7 +105,7 @@ def overlap_of_lane(l: int, c: Any, batch: Any) -> float:
 def _make_kinematics(plane: bool) -> Any:
     @inner(fastmath=FAST)
     def kinematics(m: int, most: float, c: Any, batch: Any) -> None:
-        """Geometry and velocities of every contact, and its normal force before it is cut."""
+        """Geometry and velocities of every contact, and its normal force before the limit."""
         dt, k_n, l_x, l_y = c[P.DT], c[P.K_N], c[P.PERIOD_X], c[P.PERIOD_Y]
         for l in range(min(m, B.LANES)):  # never more: the compiler has to know
             d_x, d_y, d_z = wrap(batch[B.SEPARATION + 4 * l], l_x), 0.0, batch[B.SEPARATION + 4 * l + 2]
@@ -202,7 +202,7 @@ def _make_tangential(plane: bool) -> Any:
     return tangential
 
 
-# Built once for a plane and once for space; not handed over as functions, which numba could not keep on disk.
+# Built once for a plane and once for space; not passed as functions, which numba could not keep on disk.
 _kinematics_plane, _kinematics_space = _make_kinematics(True), _make_kinematics(False)
 _tangential_plane, _tangential_space = _make_tangential(True), _make_tangential(False)
 
@@ -211,7 +211,7 @@ _tangential_plane, _tangential_space = _make_tangential(True), _make_tangential(
 def compute(flat: int | None, choice: LawChoice, m: int, hdt: float, most: float, c: Any, batch: Any) -> None:
     """Forces, torques and work of the first m lanes; their memory goes from the last step to this one.
 
-    Three loops, not one: each finds on the desk what it needs. One long loop has more numbers alive than
+    Three loops, not one: each reads what it needs from the batch. One long loop has more numbers alive than
     there are registers, and waits for its own divisions and roots. `most` is the largest overlap over
     diameter so far [-]. Spins of locked grains are zero.
     """
@@ -233,7 +233,7 @@ def scatter(
 ) -> bool:
     """Add the first m lanes to their grains, one by one in the order of the list, and keep their memory.
 
-    `which` are the near pairs on the lanes. Returns whether an overlap is larger than any before.
+    `selected` are the candidates on the lanes. Returns whether an overlap is larger than any before.
     """
     width, larger = rows.shape[1], False
     for l in range(m):

@@ -1,6 +1,6 @@
 """What only some pairs do: rolling friction, open records, films of water, a rebound fixed at first touch.
 
-Lane by lane, after (or, for the rebound, before) the law of contact has been reckoned for the whole batch.
+Lane by lane, after (or, for the rebound, before) the contact law has been computed for the whole batch.
 """
 # ruff: noqa: E741  (l is a lane)
 

@@ -15,7 +15,7 @@ from ryusa.engine.cpu.simd.vec4 import copy4
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.kernel import inner, kernel
 
-_SLACK = 2 * B.LANES  # pairs are listed by the batch, where a whole one would find room
+_SLACK = 2 * B.LANES  # pairs are listed by the batch, where a whole one must find room
 
 
 @kernel(nogil=True)
@@ -25,7 +25,7 @@ def prune_blocks(
     candidates: CandidateArrays, spare: CandidateArrays, work: Workspace,
     wanted: Any,
 ) -> None:  # fmt: skip
-    """Cut the lists of blocks first..last-1; `wanted` gets the room that each wants (see `cut`)."""
+    """Prune the lists of blocks first..last-1; `wanted` gets the room that each needs (see `prune`)."""
     for b in range(first, last):
         wanted[b] = prune(
             b, block_start[b], block_start[b + 1], n, n_solid, reach_on, ahead, plane_case, c, grains, walls,
@@ -41,7 +41,7 @@ def prune(
 ) -> tuple[int, int]:  # fmt: skip
     """List anew the pairs of block b, grains lo..hi-1, that come nearer than `reach_on` [m] beyond touch.
 
-    They do so within `ahead` seconds if each grain keeps its velocity, which is noted in `Grains.then`; or
+    They do so within `ahead` seconds if each grain keeps its velocity, stored in `GrainArrays.v_pruned`; or
     did within the last step, and have an account to close. `spare` has room for the pairs in touch of any
     block. Returns how much room is wanted where there was too little (the list then holds the pairs in touch
     alone), 0 where there was enough, -1 where a pair in touch is beyond reach, which should not be; and how
@@ -66,7 +66,7 @@ def prune(
             set_relative_velocity(l, i, partners[begin + l], n_solid, v, normals, velocity)
         mark_approaching(plane_case, reach_on, c[P.DT], ahead, m, c, separation, velocity, inside)
         full = full or new + m > room
-        for l in range(m):  # no branch: who is near cannot be foretold
+        for l in range(m):  # no branch: which pairs are near is not predictable
             if not full:
                 i_of[first + new], pair[first + new] = owner[l], begin + l
             new += int(inside[l] > 0.0)
@@ -90,7 +90,7 @@ def prune(
 
 @inner()
 def _link_partners(b: int, lo: int, hi: int, n: int, pairs: PairArrays, candidates: CandidateArrays) -> None:
-    """Tell the near pairs of block b their partners, and where the force on those goes."""
+    """Set the partners of the candidates of block b, and the rows where the forces on them go."""
     first, rows, crossing, wanted = (
         pairs.cross_start[b],
         n + len(candidates.count),
@@ -128,7 +128,7 @@ def _save_touching(b: int, candidates: CandidateArrays, spare: CandidateArrays) 
 
 @inner()
 def _restore_touching(b: int, n_touching: int, candidates: CandidateArrays, spare: CandidateArrays) -> None:
-    """Make the pairs put aside the whole list of block b."""
+    """Make the saved pairs the whole list of block b."""
     first = candidates.first[b]
     candidates.count[b] = n_touching
     for t in range(n_touching):
@@ -180,7 +180,7 @@ def copy_rows_in(
     eta: Any,
     rows: Any,
 ) -> int:
-    """Lay dashpots and memory into a new list; returns the first contact that has no place in it, or -1.
+    """Copy dashpots and memory into a new list; returns the first contact that is not in it, or -1.
 
     `index` turns the id of a free grain into its place, `block_of` the place into its block.
     """

@@ -21,7 +21,7 @@ from ryusa.engine.cpu.integration import integrate
 from ryusa.engine.cpu.pair_batch import compute, filter_pairs, gather, overlap_of_lane, scatter
 from ryusa.engine.cpu.pair_physics import immersed_dashpots, optional_physics
 from ryusa.engine.cpu.prune import prune
-from ryusa.engine.cpu.prune_schedule import COST_GRAIN, COST_LOOK, ROUNDED_UP, plan_prune, steps_ahead
+from ryusa.engine.cpu.prune_schedule import COST_GRAIN, COST_TEST, ROUNDED_UP, plan_prune, steps_ahead
 from ryusa.engine.cpu.simd.borrow import borrow
 from ryusa.engine.cpu.simd.prefetch import prefetch
 from ryusa.engine.cpu.simd.vec4 import fill4
@@ -43,7 +43,7 @@ from ryusa.engine.shared.variant import KernelVariant, LawChoice
 from ryusa.model.tally import Book
 
 Present = int | None  # 1, or None for what a variant goes without
-# the books a lane keeps, in the order of lanes.py
+# the terms of the account that a lane sums, in the order of batch_layout.py
 BOOKS = tuple(
     int(account)
     for account in (Book.DASH_N, Book.DASH_S, Book.SLIDE, Book.RELEASED_N, Book.RELEASED_S, Book.STEP)
@@ -52,33 +52,15 @@ BOOKS = tuple(
 
 @inner(fastmath=FAST, forceinline=True)
 def block_forces(
-    variant: KernelVariant,
-    flat: Present,
-    water: Present,
-    optional: Present,
-    choice: LawChoice,
-    b: int,
-    hi: int,
-    n: int,
-    n_solid: int,
-    step: int,
-    t: float,
-    hdt: float,
-    last: bool,
-    c: Any,
-    grains: GrainArrays,
-    walls: WallArrays,
-    pairs: PairArrays,
-    candidates: CandidateArrays,
-    work: Workspace,
-    ended: Any,
-    account: Any,
-    stats: Any,
-) -> None:
+    variant: KernelVariant, flat: Present, water: Present, optional: Present, choice: LawChoice, b: int,
+    hi: int, n: int, n_solid: int, step: int, t: float, hdt: float, last: bool, c: Any, grains: GrainArrays,
+    walls: WallArrays, pairs: PairArrays, candidates: CandidateArrays, work: Workspace, ended: Any,
+    account: Any, stats: Any,
+) -> None:  # fmt: skip
     """Forces of every pair that block b, grains up to hi-1, owns, batch by batch of those that touch."""
     batch, separation, inside, selected = work.batch, work.separation, work.inside, work.selected
     reach_on = c[P.FILM_REACH] if variant.film else 0.0
-    # arrays are handed over one by one: a tuple of them would have its references counted for every batch
+    # arrays are passed one by one: references to a tuple of them would be counted for every batch
     x, v, w, f = grains.x, grains.v, grains.w, pairs.f
     i_of, j_of, to, touching, eta, rows = (
         candidates.i,
@@ -90,7 +72,7 @@ def block_forces(
     )
     mass, inertia, points, normals = grains.m, grains.inertia, walls.points, walls.normals
     spring_r = 0.0
-    fill4(f, 8 * (n + b), 0.0)  # what fixed grains and planes would get
+    fill4(f, 8 * (n + b), 0.0)  # forces on fixed grains and planes, not used
     fill4(f, 8 * (n + b) + 4, 0.0)
     for place in range(B.WORK, B.WORK + B.N_WORK * B.PITCH):
         batch[place] = 0.0
@@ -114,25 +96,9 @@ def block_forces(
         if m == 0:
             break
         lanes = gather(
-            variant.rotation,
-            m,
-            selected,
-            n_solid,
-            c,
-            mass,
-            inertia,
-            x,
-            v,
-            w,
-            points,
-            normals,
-            i_of,
-            j_of,
-            touching,
-            eta,
-            rows,
-            batch,
-        )
+            variant.rotation, m, selected, n_solid, c, mass, inertia, x, v, w, points, normals, i_of, j_of,
+            touching, eta, rows, batch,
+        )  # fmt: skip
         if water is not None and choice.rebound:
             immersed_dashpots(choice, m, selected, c, grains, candidates, batch)
         compute(flat, choice, lanes, hdt, stats[S.OVERLAP_MAX], c, batch)
@@ -167,7 +133,7 @@ def track_overlap(
     batch: Any,
     stats: Any,
 ) -> None:
-    """Note the largest overlap among the first m lanes, and flag one beyond the limit."""
+    """Keep the largest overlap among the first m lanes, and flag one beyond the limit."""
     ids = grains.ids
     for l in range(m):
         smaller = 2.0 * min(batch[B.SPIN_I + 4 * l + 3], batch[B.SPIN_J + 4 * l + 3])
@@ -202,12 +168,13 @@ def spring_energy(b: int, c: Any, candidates: CandidateArrays) -> tuple[float, f
 def make_run(variant: KernelVariant) -> Any:
     """Build the stepping function of one variant; compiled when first called, then kept on disk.
 
-    What a variant goes without is handed on as None: the compiler then leaves it out before it types it.
+    What a variant lacks is passed as None: the compiler then removes it before type inference.
     """
     flat: Present = 1 if variant.plane_case else None
     water: Present = 1 if variant.water else None
     optional: Present = 1 if variant.rolling or variant.events or variant.film else None
 
+    # One function of more than 80 lines: every call between threads and steps would cost time at each step.
     @kernel(nogil=True, fastmath=FAST)
     def run(
         thread: int,
@@ -230,7 +197,7 @@ def make_run(variant: KernelVariant) -> Any:
         choice: LawChoice,
         schedule: Any,
     ) -> tuple[int, float, int]:
-        """March up to n_steps; all threads come back with the same (steps done, travel, stop)."""
+        """Do up to n_steps steps; all threads return the same (steps done, travel, stop)."""
         c, grains, walls, pairs, work = borrow(c), borrow(grains), borrow(walls), borrow(pairs), borrow(work)
         candidates, spare, accounts_of_blocks, block_start = (
             borrow(candidates),
@@ -245,7 +212,7 @@ def make_run(variant: KernelVariant) -> Any:
         own = work.schedule
         for k in range(K.N_SCHEDULE):
             own[k] = schedule[k]
-        listing_cost = COST_LOOK * pairs.start[n] + COST_GRAIN * n
+        listing_cost = COST_TEST * pairs.start[n] + COST_GRAIN * n
         target = done = 0
         stop = STOP_DONE
         while done < n_steps:

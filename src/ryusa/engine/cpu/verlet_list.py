@@ -93,7 +93,7 @@ class BlockLayout(Layout):
         Parameters
         ----------
         by_id : arrays in the order of ids; positions are brought inside the period.
-        starts : of the old list, which tells how much room the new one may need.
+        starts : of the old list, from which the room of the new one is estimated.
         skin : reach of the list beyond touch and films [m].
         share : distributes the blocks over threads.
 
@@ -110,23 +110,7 @@ class BlockLayout(Layout):
         size = self.largest + skin
         grid = grid_of(x, n, size, period)
         first, order = sort_by_cell(x, n, grid)
-        place = np.arange(len(self.r))
-        place[:n] = order
-        for array in (x, by_id.v, by_id.w):  # in place: there may be a million of them
-            array[:n] = array[order]
-        grains = by_id._replace(
-            m=self.m[place],
-            m_bare=scene.m[order],
-            m_weight=scene.m_weight[order],
-            inertia=self.inertia[place],
-            per_m=1.0 / self.m[order],
-            per_inertia=1.0 / self.inertia[order],
-            ids=place[: self.n_solid].copy(),
-            image=by_id.image[order],
-            n_touching=by_id.n_touching[order],
-            fluid=by_id.fluid[order[: len(by_id.fluid)]],
-            impulse=by_id.impulse[order[: len(by_id.fluid)]],
-        )
+        grains = self._in_cell_order(by_id, order)
         bed = np.ascontiguousarray(self.x_fixed[self.standing])
         bed_grid = grid_of(bed, len(bed), size, period)
         bed_first, bed_order = sort_by_cell(bed, len(bed), bed_grid)
@@ -168,6 +152,27 @@ class BlockLayout(Layout):
             listed,
             lost,
         )  # fmt: skip
+
+    def _in_cell_order(self, by_id: GrainArrays, order: np.ndarray) -> GrainArrays:
+        """Grain arrays sorted; the large ones that move are sorted in place."""
+        n, scene = self.n, self.scene
+        place = np.arange(len(self.r))
+        place[:n] = order
+        for array in (by_id.x, by_id.v, by_id.w):
+            array[:n] = array[order]
+        return by_id._replace(
+            m=self.m[place],
+            m_bare=scene.m[order],
+            m_weight=scene.m_weight[order],
+            inertia=self.inertia[place],
+            per_m=1.0 / self.m[order],
+            per_inertia=1.0 / self.inertia[order],
+            ids=place[: self.n_solid].copy(),
+            image=by_id.image[order],
+            n_touching=by_id.n_touching[order],
+            fluid=by_id.fluid[order[: len(by_id.fluid)]],
+            impulse=by_id.impulse[order[: len(by_id.fluid)]],
+        )
 
     def place_memory(self, grains: GrainArrays, candidates: CandidateArrays, memory: ContactMemory) -> int:
         """Put the memory of touching pairs into a list of candidates; returns the first not in it, or -1."""

@@ -1,1 +1,1 @@
-"""The CUDA engine: the same laws behind the same seam; loaded only when asked for (design/0009)."""
+"""The CUDA engine: the same laws behind the same protocol, imported only when it is created (design/0009)."""

@@ -1,7 +1,4 @@
-"""Arrays that lie on the device, and the numbers that a kernel leaves behind.
-
-Plain integers, since kernels read them as constants.
-"""
+"""Arrays on the device, and how kernels are launched on them."""
 
 from typing import Any, NamedTuple
 
@@ -11,8 +8,8 @@ from ryusa.engine.cuda import step_totals as T
 class DeviceGrainArrays(NamedTuple):
     """Grains by place: n free ones in cell order, fixed ones, planes. What moves has two halves.
 
-    A step reads half `flow[PARITY]` and writes the other, so that a grain may read its neighbours while they
-    move. Fixed grains and planes stand in both.
+    A step reads half `status[CURRENT]` and writes the other: a grain may read its neighbours while they move.
+    Fixed grains and planes stand in both.
     """
 
     x: Any  # centres [m], and the radius [m], (2, n_total, 4)
@@ -26,12 +23,12 @@ class DeviceGrainArrays(NamedTuple):
     image: Any  # periods crossed, int32, (n, 2)
     tracked: Any  # 1 where its contacts are recorded, by id, uint8, (n,)
     n_touching: Any  # contacts in the last step, int32, (2, n)
-    fluid: Any  # water at each grain, columns of model.fluid, (n, N_SEEN); (1, N_SEEN) without a column
-    impulse: Any  # impulse it took from the water [N s], and drag over slip, (n, N_TAKEN)
+    fluid: Any  # water at each grain, columns of model.fluid, (n, N_SAMPLED); (1, N_SAMPLED) without a column
+    impulse: Any  # impulse from the water [N s], and drag over slip, (n, N_IMPULSE)
 
 
 class RecordedGrains(NamedTuple):
-    """What engine/records.py reads of grains."""
+    """What the contact records read of grains."""
 
     x: Any
     v: Any
@@ -44,7 +41,7 @@ class RecordedGrains(NamedTuple):
 class DevicePairArrays(NamedTuple):
     """Neighbours of every grain, in ascending order of ids; a pair stands in it twice, once for each side.
 
-    Both sides keep the memory of the pair, seen from the grain with the lower id, and reckon it alike: the
+    Both sides keep the memory of the pair, seen from the grain with the lower id, and compute it alike: the
     two rows hold the same bits. Only that side's row keeps an open record.
     """
 
@@ -52,7 +49,7 @@ class DevicePairArrays(NamedTuple):
     partners: Any  # places, int32, (room,)
     touching: Any  # 1 where they touch and the row holds, uint8, (room,)
     eta: Any  # normal and tangential dashpot [N s/m], (room, 2)
-    rows: Any  # memory (engine/rows.py), (room, width); holds where they touch
+    rows: Any  # memory (shared/memory_rows.py), (room, width); holds where they touch
 
 
 class DeviceWallArrays(NamedTuple):
@@ -67,7 +64,7 @@ MOST_BLOCKS = 4096  # beyond, a thread takes several grains
 
 
 class LaunchShape(NamedTuple):
-    """How the work of a step is cut up; sums depend on it, so it is the same for every card."""
+    """How the work of a step is divided; sums depend on it, so it is the same for every card."""
 
     threads: int  # of a block
     group: int  # columns that a block adds up at once

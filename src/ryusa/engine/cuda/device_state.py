@@ -1,4 +1,4 @@
-"""Arrays on the device and how they are laid out: from a scene and a state, in cell order, and back."""
+"""Arrays on the device: filled from a scene and a state, sorted by cell, and read back."""
 
 import math
 from typing import Any
@@ -29,7 +29,7 @@ _MARGIN = 1.0 + 1e-9  # of a cell beyond reach: a grain on its edge may fall to 
 
 
 def shape() -> LaunchShape:
-    """How work is cut up here."""
+    """Launch shape on this machine."""
     return IN_SIMULATOR if simulated() else ON_CARD
 
 
@@ -54,8 +54,8 @@ class DeviceState:
     Parameters
     ----------
     scene, state : as loaded; positions are those the list is to be built from.
-    kind, choice : variant and laws.
-    numbers : scalars of the scene (engine/rows.py).
+    variant, choice : what kernels are compiled for, and the laws.
+    parameters : of the scene (shared/parameters.py).
     extent : lowest and highest corner of the grid [m], shape (2, 3); chosen from where grains stand if None.
     """
 
@@ -200,7 +200,7 @@ class DeviceState:
         self._sum_up(start, n + 1)
         self.n_pair = int(start[n : n + 1].copy_to_host()[0])
         if self.n_pair > self._next.partners.shape[0]:
-            self._next = self._room(0)  # lets go of the old arrays before the new ones are asked for
+            self._next = self._room(0)  # frees the old arrays before the new ones are allocated
             self._next = self._room(self.n_pair * 5 // 4)._replace(start=start)
         launch(kernels.find_neighbours, n, 1, *common, self._next.partners)
         launch(

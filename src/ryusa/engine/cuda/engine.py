@@ -1,4 +1,4 @@
-"""The CUDA engine: has the list made anew, launches steps in between, and tells what lies on the device."""
+"""The CUDA engine: rebuilds the list, launches steps in between, and reads back what lies on the device."""
 
 from dataclasses import replace
 from typing import Any
@@ -45,7 +45,7 @@ _RECORDS = 256  # room for ended contacts, beside one a grain
 # What a new list moves for a grain, and a step for a listed neighbour [B]: the skin follows from such counts,
 # never from a clock.
 _LIST_COST, _NEIGHBOUR_COST = 4000.0, 36.0
-_BATCH = 256  # steps launched before the host looks, at most
+_BATCH = 256  # largest number of steps launched before the host reads the status
 
 
 class CudaEngine:
@@ -65,11 +65,11 @@ class CudaEngine:
         self._records_drained: list[np.ndarray] = []
 
     def refuses(self, scene: Scene) -> tuple[str, ...]:
-        """Reasons why this engine cannot carry the scene; () when it can. Those of the CPU engine."""
+        """Reasons why this engine cannot simulate the scene; () when it can. Those of the CPU engine."""
         return refusals(scene)
 
     def load(self, scene: Scene, state: State) -> None:
-        """Take a scene and a fresh state or a snapshot; a scene changed on the way is booked."""
+        """Take a scene and an initial state or a snapshot; enter a change of the scene in the account."""
         reasons = self.refuses(scene)
         if reasons:
             raise ValueError("; ".join(reasons))
@@ -164,7 +164,7 @@ class CudaEngine:
         return state
 
     def kinematics(self) -> tuple[Floats, Floats, Floats]:
-        """Centres [m], velocities [m/s] and what was taken from the water (model.fluid), by id."""
+        """Centres [m], velocities [m/s] and impulse from the fluid (model.fluid), by id."""
         device, ids = self._device, self._device.ids()
         impulse = device.by_id("impulse", ids) if self._variant.column else np.zeros((0, 0))
         return (
@@ -174,11 +174,11 @@ class CudaEngine:
         )
 
     def set_fluid(self, sampled: Floats) -> None:
-        """Tell every grain its water for the steps to come, and begin to count its impulse anew.
+        """Set the water at every grain for the next steps, and count its impulse anew.
 
         Parameters
         ----------
-        seen : by id, columns of `model.fluid`, shape (n_grain, N_SEEN).
+        sampled : by id, columns of `model.fluid`, shape (n_grain, N_SAMPLED).
 
         Raises
         ------
@@ -205,7 +205,7 @@ class CudaEngine:
         return tally_of(t, self._d_stats.copy_to_host(), self._d_books.copy_to_host())
 
     def events(self) -> np.ndarray:
-        """Contacts ended since last asked, in order of parting."""
+        """Contacts ended since the last call, in order of parting."""
         self._drain_records()
         rows = np.concatenate(self._records_drained) if self._records_drained else np.zeros((0, N_EVENT))
         self._records_drained = []
@@ -252,7 +252,7 @@ class CudaEngine:
         return Flags()
 
     def _until_list(self) -> int:
-        """Steps to launch before looking: about as many as the list will hold for."""
+        """Steps to launch before the status is read: about as many as the list stays valid."""
         displacement = self._motion[F.FASTEST] * self._parameters[P.DT]
         left = 0.5 * self._skin - self._travel
         return _BATCH if displacement * _BATCH <= left else max(1, int(left / displacement) + 1)
@@ -306,7 +306,7 @@ class CudaEngine:
         return unsafe_of(self._grains_by_id(), self._n, self._parameters, self._smallest, self._step, self._t)
 
     def _grains_by_id(self) -> Any:
-        """What a fault tells of grains, by id."""
+        """Grains by id, for a fault message."""
         device, ids = self._device, self._device.ids()
         x, v, w = (device.by_id(name, ids) for name in ("x", "v", "w"))
         return RecordedGrains(x, v, w, np.arange(self._n), None, None)

@@ -39,6 +39,7 @@ def make_integrate(variant: KernelVariant, choice: LawChoice) -> Any:
     plane_case, rotation, column, film = variant.plane_case, variant.rotation, variant.column, variant.film
     drag, torque_law = choice.drag, choice.torque
 
+    # One function of more than 80 lines: forces and their work stay in registers.
     @device
     def integrate(
         i: int,

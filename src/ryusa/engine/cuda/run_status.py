@@ -1,7 +1,7 @@
 """Where a run stands, kept on the device: whole numbers and doubles, by the places named here."""
 
 # int64
-STOP = 0  # 0, or why steps are passed over (rows.py)
+STOP = 0  # 0, or why steps are skipped (shared/status.py)
 STEP = 1  # done since the start of the run
 CURRENT = 2  # half that holds now
 ENDED = 3  # records that wait to be fetched
@@ -9,7 +9,7 @@ OVERFLOWED = 4  # lowest id of a grain whose record found no room
 N_STATUS = 8
 
 # The same, doubles.
-TRAVEL = 0  # how far the fastest grain may have gone since the list was made [m]
+TRAVEL = 0  # bound of the displacement of any grain since the list was built [m]
 SKIN = 1  # reach of the list beyond touch [m]
 FASTEST = 2  # speed in the last step [m/s]
 N_MOTION = 3

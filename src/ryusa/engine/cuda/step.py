@@ -69,11 +69,10 @@ def make_step(variant: KernelVariant, choice: LawChoice, shape: LaunchShape) -> 
     record_at, threads, group, parts = variant.event_column, shape.threads, shape.group, shape.parts
     run = threads // parts
     n_total, n_stat = T.N_COLUMN, S.N_STATISTIC  # the size of a local array has to be a literal
-    both_ways = (
-        1.0 if "both alike" in Rolling(model).marks else -1.0
-    )  # Eq. (13) as printed turns both grains one way
+    both_ways = 1.0 if "both alike" in Rolling(model).marks else -1.0  # Eq. (13) as printed: one direction
     contact, integrate = make_contact(variant, choice), make_integrate(variant, choice)
 
+    # One function of more than 80 lines: the sums of a grain stay in registers from pair to pair.
     @cuda.jit
     def step(
         target: int,
@@ -305,7 +304,7 @@ def make_close(shape: LaunchShape) -> Any:
         books: Any,
         stats: Any,
     ) -> None:
-        """Close a step: books, extremes, faults, how far the fastest grain went, and whether to stop.
+        """Close a step: books, extremes, faults, displacement of the fastest grain, and whether to stop.
 
         `room` is that for records of ended contacts.
         """

@@ -2,7 +2,7 @@
 
 from ryusa.model.tally import N_BOOK
 
-PENDING_DRAG = N_BOOK  # second half of the work of water in the step under way
+PENDING_DRAG = N_BOOK  # second half of the work of water in the present step
 PENDING_TORQUE = N_BOOK + 1
 PENDING_LIFT = N_BOOK + 2
 PENDING_FLOW = N_BOOK + 3

@@ -1,4 +1,4 @@
-"""Who is near whom, all on the device: cells by counting, then neighbours, then the memory of those in touch.
+"""Neighbour search on the device: cells by counting, then neighbours, then the memory of pairs in touch.
 
 Order never depends on which thread comes first: grains stand by cell and by id within a cell, neighbours by
 id. Cells repeat along every axis, so that a grain far away falls into some cell and is passed over by its

@@ -3,7 +3,6 @@
 The energy account of a block, by model.tally.Book, is kept beside them.
 """
 
-# Per block: what holds at the last step of a call, and extremes (model.tally.Book is kept beside it).
 KINETIC = 0
 SPIN = 1
 POTENTIAL = 2
@@ -16,7 +15,7 @@ SPIN_MAX = 8
 OVERLAP_MAX = 9  # largest overlap over diameter so far, with grain and step
 OVERLAP_GRAIN = 10
 OVERLAP_STEP = 11
-PENDING_DRAG = 12  # second half of the work of water in the step under way
+PENDING_DRAG = 12  # second half of the work of water in the present step
 PENDING_TORQUE = 13
 FAULT = 14  # 0, or a Fault
 FAULT_GRAIN = 15
@@ -27,9 +26,9 @@ N_ENDED_POSTED = 19
 PENDING_LIFT = 20
 PENDING_FLOW = 21
 PENDING_FILM = 22
-ROOM_WANTED = 23  # pairs that found no room when the near list of the block was cut, all of them; else 0
-N_TOUCHING = 24  # pairs in touch when it was cut
-VELOCITY_CHANGE_MAX = 25  # largest difference of a velocity to what it was then [m/s]
+ROOM_WANTED = 23  # room that the candidates of the block need where they found too little; else 0
+N_TOUCHING = 24  # pairs in touch at the last pruning
+VELOCITY_CHANGE_MAX = 25  # largest difference of a velocity to that at the last pruning [m/s]
 N_STATISTIC = 32  # a whole number of cache lines: blocks of different threads share none
 PENDING = (
     PENDING_DRAG,
@@ -37,4 +36,4 @@ PENDING = (
     PENDING_LIFT,
     PENDING_FLOW,
     PENDING_FILM,
-)  # kept behind the books in a snapshot
+)  # booked with the next step

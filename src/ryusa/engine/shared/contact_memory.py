@@ -15,7 +15,7 @@ from ryusa.model.scene import Floats
 
 
 class ContactMemory(NamedTuple):
-    """Touching pairs by id, with their dashpots and rows (rows.py)."""
+    """Touching pairs by id, with their dashpots and memory rows (memory_rows.py)."""
 
     i: np.ndarray
     j: np.ndarray

@@ -46,7 +46,7 @@ def begin_record(
     """Open the record of a pair in its first step of touch; the moment of touch is interpolated."""
     x, v, w, ids, image, tracked = grains.x, grains.v, grains.w, grains.ids, grains.image, grains.tracked
     if rule == ONLY_TRACKED and not (tracked[ids[i]] or (j < n and tracked[ids[j]])):
-        record[R.PARTNER] = -1.0  # nobody asked for this one
+        record[R.PARTNER] = -1.0  # not recorded
         return
     record[R.GRAIN] = ids[i]
     record[R.PARTNER] = ids[j] if j < n else j
@@ -133,7 +133,7 @@ def end_record(
 
 
 def closed_records(state: State, places: np.ndarray) -> np.ndarray:
-    """Open records of contacts whose partner is taken away, closed now; what parting would tell stays nan."""
+    """Open records of contacts whose partner is taken away, closed now; values at parting stay nan."""
     rows = state.contacts.event[places].copy()
     rows = rows[(rows[:, R.PARTNER] >= 0.0) & (rows[:, R.OVERLAP_MAX] > 0.0)]
     rows[:, R.T_END] = rows[:, R.T_PART] = state.t

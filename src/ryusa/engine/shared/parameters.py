@@ -5,7 +5,6 @@ import numpy as np
 from ryusa.model import Scene
 from ryusa.model.scene import Damping, Floats
 
-# Scalars a kernel reads.
 DT = 0
 K_N = 1
 K_S = 2
@@ -15,7 +14,7 @@ ROLLING = 5
 ROLLING_STIFFNESS = 6
 ROLLING_ZETA = 7
 OVERLAP_LIMIT = 8
-DISPLACEMENT_LIMIT = 9  # longest way a grain may go in one step [m]
+DISPLACEMENT_LIMIT = 9  # largest displacement of a grain in one step [m]
 PERIOD_X = 10
 PERIOD_Y = 11
 G_X = 12
@@ -41,7 +40,7 @@ C_L = 31
 FILM_REACH = 32  # gap below which a film resists before touch [m]
 ASPERITY = 33
 ST_C = 34
-E_DRY = 35  # restitution asked for [-]
+E_DRY = 35  # restitution of the case, in air [-]
 E_LEAST = 36
 N_PARAMETER = E_LEAST + 1
 
@@ -51,7 +50,7 @@ LARGEST_DISPLACEMENT = 0.25
 
 
 def parameters_of(scene: Scene) -> Floats:
-    """The scalars of a scene, by the C_ names of rows.py; the skin is the engine's own."""
+    """Parameters of a scene; the engine itself sets SKIN and T_ZERO."""
     law, rolling, water = scene.contact, scene.rolling, scene.water
     asked = law.damping == Damping.RESTITUTION
     table = {

@@ -39,7 +39,7 @@ def refusals(scene: Scene) -> tuple[str, ...]:
 
 
 def check_state(scene: Scene, state: State) -> None:
-    """Refuse a state of another scene, one that is not finite, and lanes of a plane scene that would meet.
+    """Refuse a state of another scene, one that is not finite, and lanes of a plane scene that overlap.
 
     Raises
     ------

@@ -7,8 +7,8 @@ FAULT_OVERLAP = 2
 FAULT_EVENTS_FULL = 3
 # Why a kernel call came back.
 STOP_DONE = 0
-STOP_LIST = 1  # the list wants a rebuild
+STOP_LIST = 1  # the Verlet list has to be rebuilt
 STOP_EVENTS = 2  # event buffers want draining
 STOP_FAULT = 3
 STOP_UNSAFE = 4  # a grain went further in one step than the list allows
-STOP_ROOM = 5  # the near list wants more room
+STOP_ROOM = 5  # the candidate pairs need more room
