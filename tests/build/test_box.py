@@ -214,7 +214,7 @@ def test_water_begins_at_the_floor(floor: str, zero: float) -> None:
             "",
             {"planes": "[{ name = 'gate', point = ['9 cm', '0 m', '0 m'], normal = [-1, 0, 0] }]"},
             "planes.0.name",
-            "a name the builder uses",
+            "already used by the builder",
         ),
     ],
 )

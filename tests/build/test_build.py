@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ryusa.build import build, change, scene
-from ryusa.build.layout import Layout, Wall
 from ryusa.build.overlaps import refuse_overlaps
+from ryusa.build.placement import Placement, Wall
 from ryusa.casefile import Case, ChangeSection, derive, read_text
 from ryusa.casefile.builders.values import periodic
 from ryusa.casefile.water.values import drag_coefficient, water_speed
@@ -230,7 +230,9 @@ def test_changes_tilt_gravity_and_switch_friction_and_rotation() -> None:
 
 def test_first_grains_that_overlap_across_a_period_or_a_plane_are_named() -> None:
     x = np.array([[0.0005, 0.0, 0.01], [0.0995, 0.0, 0.01]])
-    two = Layout(d=np.full(2, 0.002), x=x, v=np.zeros((2, 3)), omega=np.zeros((2, 3)), period=(0.1, math.inf))
+    two = Placement(
+        d=np.full(2, 0.002), x=x, v=np.zeros((2, 3)), omega=np.zeros((2, 3)), period=(0.1, math.inf)
+    )
     with pytest.raises(CaseError, match=r"free grain 0 at .* and free grain 1 at .* by 0.5 d"):
         refuse_overlaps(two, "build")
     refuse_overlaps(replace(two, period=(math.inf, math.inf)), "build")

@@ -1,7 +1,7 @@
-"""Case to scene and first state: places the first grains and draws every random number of the start."""
+"""From a case to its scene and initial state: places the first grains and draws their random numbers."""
 
 from ryusa.build.case import Built, build
 from ryusa.build.change import change
-from ryusa.build.script import scene
+from ryusa.build.from_arrays import scene
 
 __all__ = ["Built", "build", "change", "scene"]

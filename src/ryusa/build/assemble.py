@@ -1,11 +1,11 @@
-"""Layout and laws to `Scene` and first `State`."""
+"""Assembles the scene and the initial state from placement and laws."""
 
 import math
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ryusa.build.layout import Layout, mask, unit
+from ryusa.build.placement import Placement, mask, unit_normal
 from ryusa.laws import drag, motion
 from ryusa.laws.families import Profile
 from ryusa.model import Column, ContactLaw, RollingLaw, Scene, State, Water
@@ -14,7 +14,7 @@ from ryusa.model.scene import EventRule, Floats
 
 @dataclass(frozen=True)
 class Laws:
-    """Everything a scene needs beside its layout, SI."""
+    """Parameters of a scene beyond the placement of its grains, SI."""
 
     density: float  # of grains [kg/m3]
     contact: ContactLaw
@@ -41,7 +41,7 @@ def gravity(g: float, slope: float) -> Floats:
 
 
 def masses(d: Floats, density: float, a_3: float, water: Water) -> tuple[Floats, Floats, Floats, Floats]:
-    """Mass, added mass, mass that gravity sees [kg], moment of inertia [kg m2]; diameters d [m]."""
+    """Mass, added mass, submerged mass [kg] and moment of inertia [kg m2] for diameters d [m]."""
     volume = np.array([drag.volume(one, a_3) for one in d.tolist()])
     m = density * volume
     inertia = np.array([motion.inertia_sphere(*one) for one in zip(m.tolist(), d.tolist(), strict=True)])
@@ -51,55 +51,63 @@ def masses(d: Floats, density: float, a_3: float, water: Water) -> tuple[Floats,
     return m, m_added, m - water.rho_w * volume, inertia
 
 
-def assemble(layout: Layout, laws: Laws) -> tuple[Scene, State]:
-    """Put layout and laws together; every array of the result is read-only."""
-    n = len(layout.d)
-    m, m_added, m_weight, inertia = masses(layout.d, laws.density, laws.a_3, laws.water)
-    low, high = layout.box()
-    walls = layout.walls
+def assemble(placement: Placement, laws: Laws) -> tuple[Scene, State]:
+    """Assemble scene and initial state from placement and laws; every array is read-only."""
+    n = len(placement.d)
+    m, m_added, m_weight, inertia = masses(placement.d, laws.density, laws.a_3, laws.water)
+    low, high = placement.box()
+    walls = placement.walls
     scene = Scene(
-        d=_kept(layout.d),
-        m=_kept(m),
-        m_added=_kept(m_added),
-        m_weight=_kept(m_weight),
-        inertia=_kept(inertia),
-        x_fixed=_kept(layout.x_fixed.reshape(-1, 3)),
-        d_fixed=_kept(layout.d_fixed),
-        fixed_active=_kept(np.ones(len(layout.d_fixed), dtype=np.bool_)),
-        plane_normal=_kept(np.array([unit(wall) for wall in walls], dtype=np.float64).reshape(-1, 3)),
-        plane_point=_kept(np.array([wall.point for wall in walls], dtype=np.float64).reshape(-1, 3)),
-        plane_active=_kept(np.ones(len(walls), dtype=np.bool_)),
+        d=_read_only(placement.d),
+        m=_read_only(m),
+        m_added=_read_only(m_added),
+        m_weight=_read_only(m_weight),
+        inertia=_read_only(inertia),
+        x_fixed=_read_only(placement.x_fixed.reshape(-1, 3)),
+        d_fixed=_read_only(placement.d_fixed),
+        fixed_active=_read_only(np.ones(len(placement.d_fixed), dtype=np.bool_)),
+        plane_normal=_read_only(
+            np.array([unit_normal(wall) for wall in walls], dtype=np.float64).reshape(-1, 3)
+        ),
+        plane_point=_read_only(np.array([wall.point for wall in walls], dtype=np.float64).reshape(-1, 3)),
+        plane_active=_read_only(np.ones(len(walls), dtype=np.bool_)),
         contact=laws.contact,
         dt=laws.dt,
-        gravity=_kept(gravity(laws.g, laws.slope)),
+        gravity=_read_only(gravity(laws.g, laws.slope)),
         rolling=laws.rolling,
         rotation=laws.rotation,
         water=laws.water,
         column=laws.column,
         plane_case=laws.plane_case,
-        period=layout.period,
+        period=placement.period,
         world_low=laws.low or low,
         world_high=laws.high or high,
         slab_width=laws.slab_width,
         overlap_limit=laws.overlap_limit,
         events=laws.events,
-        tracked=_kept(mask(n, laws.tracked)),
-        groups=layout.groups(),
+        tracked=_read_only(mask(n, laws.tracked)),
+        groups=placement.groups(),
     )
-    x = layout.x.astype(np.float64, copy=True)
+    x = placement.x.astype(np.float64, copy=True)
     image = np.zeros((n, 2), dtype=np.int32)
     for axis in (0, 1):
-        period = layout.period[axis]
+        period = placement.period[axis]
         if math.isfinite(period):
             turns = np.floor(x[:, axis] / period)
             x[:, axis] -= turns * period
             image[:, axis] = turns
     state = State.at_rest(x)
-    state = replace(state, x=_kept(state.x), v=_kept(layout.v), omega=_kept(layout.omega), image=_kept(image))
+    state = replace(
+        state,
+        x=_read_only(state.x),
+        v=_read_only(placement.v),
+        omega=_read_only(placement.omega),
+        image=_read_only(image),
+    )
     return scene, state
 
 
-def _kept(array: np.ndarray) -> np.ndarray:
+def _read_only(array: np.ndarray) -> np.ndarray:
     array = np.ascontiguousarray(array).copy()
     array.flags.writeable = False
     return array

@@ -1,8 +1,8 @@
-"""A box of floor, back wall and gate with a jittered lattice of free grains in it; a run settles them."""
+"""A box with floor, back wall and gate, filled with a jittered lattice of grains that settle in a run."""
 
 import numpy as np
 
-from ryusa.build.layout import Layout, Wall, still
+from ryusa.build.placement import Placement, Wall, at_rest
 from ryusa.build.sizes import draw
 from ryusa.casefile.builders.box import BoxPlan, box_plan, stands_on_floor
 from ryusa.casefile.builders.schema import BoxSection
@@ -13,7 +13,7 @@ from ryusa.model.scene import Floats
 ZERO = 0.25  # depth of the profile's zero below the crest of a floor of grains, in diameters
 
 
-def box(case: Case, derived: Derived) -> Layout:
+def box(case: Case, derived: Derived) -> Placement:
     """Free lattice between x = 0 and the gate, floor with its base at z = 0; periodic in y unless plane.
 
     Groups `floor`, `back` and `gate`, whether of grains or planes; `pit`, a plane, when there is a drop.
@@ -30,14 +30,14 @@ def box(case: Case, derived: Derived) -> Layout:
     x[:, 2] += top + keys.height
     parts = [(name, rows) for name, rows in (("floor", floor), ("back", back), ("gate", gate)) if len(rows)]
     firsts = np.cumsum([0, *(len(rows) for _, rows in parts)]).tolist()
-    x_fixed = np.concatenate([still(0), *(rows for _, rows in parts)])
+    x_fixed = np.concatenate([at_rest(0), *(rows for _, rows in parts)])
     crest = float(floor[:, 2].mean()) + d / 2.0 if len(floor) else 0.0
     inf = float("inf")
-    return Layout(
+    return Placement(
         d=draw(case, len(x), rng),
         x=x,
-        v=still(len(x)),
-        omega=still(len(x)),
+        v=at_rest(len(x)),
+        omega=at_rest(len(x)),
         d_fixed=np.full(len(x_fixed), d),
         x_fixed=x_fixed,
         fixed_groups=tuple((name, firsts[k], len(rows)) for k, (name, rows) in enumerate(parts)),
@@ -85,7 +85,7 @@ def _stacks(keys: BoxSection, plan: BoxPlan, floor: Floats, d: float, plane: boo
 def _sheet(plan: BoxPlan, n: int, d: float, plane: bool) -> Floats:
     """Square sheet of n touching grains along x, and a period of them along y, at z = 0 [m]."""
     grid = np.stack(np.meshgrid(np.arange(plan.n_deep), np.arange(n), indexing="ij"), -1).reshape(-1, 2)
-    x = still(len(grid))
+    x = at_rest(len(grid))
     x[:, 0] = (grid[:, 1] + 0.5) * d
     if not plane:
         x[:, 1] = (grid[:, 0] + 0.5) * d

@@ -1,4 +1,4 @@
-"""The door: a checked case to its scene, first state and the list of free choices."""
+"""Builds a checked case: scene, initial state and the choices that the case does not state."""
 
 import math
 from dataclasses import dataclass, replace
@@ -9,9 +9,9 @@ from ryusa.build.box import box
 from ryusa.build.column import column_of, zero_of
 from ryusa.build.drop import drop
 from ryusa.build.flume import flume
-from ryusa.build.layout import Layout, Wall
 from ryusa.build.overlaps import refuse_overlaps
 from ryusa.build.packing import packing
+from ryusa.build.placement import Placement, Wall
 from ryusa.build.saltation import saltation
 from ryusa.build.table import table
 from ryusa.casefile.case import Case
@@ -82,11 +82,11 @@ EVENTS = {"all": EventRule.ALL, "tracked": EventRule.TRACKED, "none": EventRule.
 
 @dataclass(frozen=True)
 class Built:
-    """What a run starts from."""
+    """Initial condition of a run."""
 
     scene: Scene
     state: State
-    notes: tuple[str, ...]  # choices the case left open and the builder made
+    notes: tuple[str, ...]  # choices that the case does not state
 
 
 def build(case: Case, derived: Derived | None = None) -> Built:
@@ -99,20 +99,20 @@ def build(case: Case, derived: Derived | None = None) -> Built:
 
     Raises
     ------
-    CaseError : first grains overlap or stand between lanes, or the timeline names a group that is not there.
+    CaseError : first grains overlap or lie between lanes, or the timeline names an unknown group.
     """
     found = derived or derive(case)
-    layout = BUILDERS[case.build.kind](case, found)
-    layout = _with_planes(layout, case)
-    refuse_overlaps(layout, "build.file" if case.build.kind == "table" else "build", case.motion.plane)
-    _refuse_unknown_groups(layout, case)
-    laws = replace(laws_of(case, found, layout.z_zero), column=column_of(case, found, layout))
-    scene, state = assemble(layout, laws)
-    return Built(scene, state, (*layout.notes, *notes_of(case)))
+    placement = BUILDERS[case.build.kind](case, found)
+    placement = _with_planes(placement, case)
+    refuse_overlaps(placement, "build.file" if case.build.kind == "table" else "build", case.motion.plane)
+    _refuse_unknown_groups(placement, case)
+    laws = replace(laws_of(case, found, placement.z_zero), column=column_of(case, found, placement))
+    scene, state = assemble(placement, laws)
+    return Built(scene, state, (*placement.notes, *notes_of(case)))
 
 
 def laws_of(case: Case, derived: Derived, z_zero: float) -> Laws:
-    """Laws of a case; `z_zero` [m] is where the water profile begins unless the case says so."""
+    """Laws of a case; `z_zero` [m] is the origin of the water profile if the case gives none."""
     return Laws(
         density=case.grains.density,
         a_3=case.grains.shape_volume,
@@ -200,7 +200,7 @@ def water_of(case: Case, derived: Derived, z_zero: float) -> Water:
 
 
 def column_laws_of(case: Case) -> dict[str, Any]:
-    """What only a column does to its grains, keys of `Water`."""
+    """Fields of `Water` that apply to a column only."""
     water = case.water
     assert water is not None
     return {
@@ -214,7 +214,7 @@ def column_laws_of(case: Case) -> dict[str, Any]:
 
 
 def notes_of(case: Case) -> tuple[str, ...]:
-    """Choices that the case left to defaults and that move the results."""
+    """Defaults that the case does not state and that influence the results."""
     notes: list[str] = []
     contact, water = case.contact, case.water
     if contact.shear_ratio is None and contact.shear_stiffness is None:
@@ -259,22 +259,24 @@ def _column_notes(case: Case) -> list[str]:
     return notes
 
 
-def _with_planes(layout: Layout, case: Case) -> Layout:
+def _with_planes(placement: Placement, case: Case) -> Placement:
     walls = tuple(Wall(plane.name, plane.point, plane.normal) for plane in case.planes)
     taken = {
-        *(wall.name for wall in layout.walls),
+        *(wall.name for wall in placement.walls),
         "grains",
         "bed",
-        *(name for name, _, _ in layout.fixed_groups),
+        *(name for name, _, _ in placement.fixed_groups),
     }
     for number, wall in enumerate(walls):
         if wall.name in taken:
-            raise CaseError(f"planes.{number}.name", wall.name, "is a name the builder uses itself")
-    return replace(layout, walls=(*layout.walls, *walls))
+            raise CaseError(
+                f"planes.{number}.name", wall.name, "is already used by the builder; choose another name"
+            )
+    return replace(placement, walls=(*placement.walls, *walls))
 
 
-def _refuse_unknown_groups(layout: Layout, case: Case) -> None:
-    known = [name for name, (first, _) in layout.groups().items() if first >= len(layout.d)]
+def _refuse_unknown_groups(placement: Placement, case: Case) -> None:
+    known = [name for name, (first, _) in placement.groups().items() if first >= len(placement.d)]
     for number, entry in enumerate(case.timeline):
         if entry.remove is not None and entry.remove not in known:
             allowed = f"must be a group of fixed grains or a plane: {', '.join(known) or 'there is none'}"

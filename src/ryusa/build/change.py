@@ -1,4 +1,4 @@
-"""The scene after an entry of the timeline."""
+"""Change of a scene by an entry of the timeline."""
 
 import math
 from dataclasses import replace
@@ -13,9 +13,9 @@ from ryusa.model import Scene
 
 
 def change(case: Case, scene: Scene, entry: ChangeSection) -> Scene:
-    """Scene after one entry of the timeline: a group gone, gravity tilted, friction or rotation switched.
+    """Scene after one entry of the timeline: a group removed, gravity tilted, friction or rotation changed.
 
-    A new slope drives a column of water, too.
+    A new slope also changes the driving force of a column of water.
     """
     if entry.remove is not None:
         return _without(scene, entry.remove)

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ryusa.build.layout import Layout
+from ryusa.build.placement import Placement
 from ryusa.casefile.builders.schema import FlumeSection
 from ryusa.casefile.case import Case
 from ryusa.casefile.column.bed import packed
@@ -23,7 +23,7 @@ MOST_CELLS = 100_000
 def zero_of(case: Case, z_zero: float) -> float:
     """Height of the zero of the water [m]; `z_zero` is the builder's.
 
-    A fixed bed is the bottom of a column, and whichever of the two the case gives is both.
+    A fixed bed is the bottom of a column, and whichever of the two the case gives sets both.
     """
     water = case.water
     if water is None or water.zero is not None:
@@ -34,7 +34,7 @@ def zero_of(case: Case, z_zero: float) -> float:
     return z_zero
 
 
-def column_of(case: Case, derived: Derived, layout: Layout) -> Column | None:
+def column_of(case: Case, derived: Derived, placement: Placement) -> Column | None:
     """Column of water of a case over its first grains; None for water that does not feel them.
 
     Raises
@@ -46,16 +46,16 @@ def column_of(case: Case, derived: Derived, layout: Layout) -> Column | None:
         return None
     assert water.depth is not None
     keys = column_keys(case)
-    z_bed = zero_of(case, layout.z_zero)
+    z_bed = zero_of(case, placement.z_zero)
     dz = keys.cell or CELL * found.d
-    z_low = keys.bottom if keys.bottom is not None else min(bottom_of(layout), z_bed)
+    z_low = keys.bottom if keys.bottom is not None else min(bottom_of(placement), z_bed)
     if keys.bed != "moving":
         z_low = z_bed
     if z_low > z_bed:
         allowed = f"the column begins at {z_low:g} m, above the bed at {z_bed:g} m (water.zero); "
         allowed += f"must be at most {z_bed:g} m, or left out"
         raise CaseError("water.column.bottom", keys.bottom, allowed)
-    z_high = max(z_bed + SPARE * water.depth, float(np.max(layout.x[:, 2] + 0.5 * layout.d)))
+    z_high = max(z_bed + SPARE * water.depth, float(np.max(placement.x[:, 2] + 0.5 * placement.d)))
     n = math.ceil((z_high - z_low) / dz - 1e-9)
     if n > MOST_CELLS:
         raise CaseError("water.column.cell", keys.cell, f"asks for {n:,} cells; at most {MOST_CELLS:,}")
@@ -64,7 +64,7 @@ def column_of(case: Case, derived: Derived, layout: Layout) -> Column | None:
         dz=dz,
         n=n,
         depth=water.depth,
-        area=area_of(case, layout),
+        area=area_of(case, placement),
         z_bed=z_bed,
         rho_w=water.density,
         nu=water.viscosity,
@@ -93,21 +93,21 @@ def column_of(case: Case, derived: Derived, layout: Layout) -> Column | None:
     return column
 
 
-def bottom_of(layout: Layout) -> float:
+def bottom_of(placement: Placement) -> float:
     """Lower edge of the lowest grain [m]; where no grain is fixed, the highest floor below the free ones."""
-    lowest = float(np.min(layout.x[:, 2] - 0.5 * layout.d))
-    if len(layout.x_fixed):
-        return min(lowest, float(np.min(layout.x_fixed[:, 2] - 0.5 * layout.d_fixed)))
-    floors = [wall.point[2] for wall in layout.walls if wall.normal[2] > 0.0 and not any(wall.normal[:2])]
-    below = [z for z in floors if z <= lowest + 1e-9 * layout.d_max]
+    lowest = float(np.min(placement.x[:, 2] - 0.5 * placement.d))
+    if len(placement.x_fixed):
+        return min(lowest, float(np.min(placement.x_fixed[:, 2] - 0.5 * placement.d_fixed)))
+    floors = [wall.point[2] for wall in placement.walls if wall.normal[2] > 0.0 and not any(wall.normal[:2])]
+    below = [z for z in floors if z <= lowest + 1e-9 * placement.d_max]
     return min(max(below), lowest) if below else lowest
 
 
-def area_of(case: Case, layout: Layout) -> float:
+def area_of(case: Case, placement: Placement) -> float:
     """Bed under the column [m2]: in a plane scene a slab for every lane."""
     if case.motion.plane:
-        lanes = len(np.unique(layout.x[:, 1]))
-        return layout.period[0] * slab_width(case) * lanes
+        lanes = len(np.unique(placement.x[:, 1]))
+        return placement.period[0] * slab_width(case) * lanes
     if isinstance(case.build, FlumeSection) and case.build.width is not None:
-        return layout.period[0] * case.build.width
-    return layout.period[0] * layout.period[1]
+        return placement.period[0] * case.build.width
+    return placement.period[0] * placement.period[1]

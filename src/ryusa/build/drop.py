@@ -1,10 +1,10 @@
-"""A grain dropped on a fixed grain, a free grain or a plane; copies side by side in lanes."""
+"""A grain dropped on a fixed grain, a free grain or a plane; copies lie side by side in lanes."""
 
 import math
 
 import numpy as np
 
-from ryusa.build.layout import LANE, Layout, Wall, still
+from ryusa.build.placement import LANE, Placement, Wall, at_rest
 from ryusa.casefile.builders.schema import DropSection
 from ryusa.casefile.case import Case
 from ryusa.casefile.derive import Derived
@@ -12,7 +12,7 @@ from ryusa.casefile.derive import Derived
 GAP = 0.1  # first gap when only a speed is given, in diameters
 
 
-def drop(case: Case, _derived: Derived) -> Layout:
+def drop(case: Case, _derived: Derived) -> Placement:
     """Struck grain at x = 0 with its base at z = 0, striking grain `height` above it; group `struck`."""
     keys = case.build
     assert isinstance(keys, DropSection)
@@ -20,27 +20,27 @@ def drop(case: Case, _derived: Derived) -> Layout:
     height = GAP * d if keys.height is None else keys.height
     lanes = np.arange(copies)
     gap = height + lanes * keys.height_step
-    x = still(copies)
+    x = at_rest(copies)
     x[:, 0] = keys.offset
     x[:, 1] = lanes * LANE * d
     centre = d / 2.0 if keys.partner == "plane" else d / 2.0 + math.sqrt(d * d - keys.offset * keys.offset)
     x[:, 2] = centre + gap
-    v, omega = still(copies), still(copies)
+    v, omega = at_rest(copies), at_rest(copies)
     v[:, 0], v[:, 2] = keys.speed_along, -keys.speed
     omega[:, 1] = keys.spin
-    struck = still(copies)
+    struck = at_rest(copies)
     struck[:, 1], struck[:, 2] = x[:, 1], d / 2.0
-    same, rest = np.full(copies, d), still(copies)
+    same, rest = np.full(copies, d), at_rest(copies)
     notes = (f"gap at the start {GAP:g} d (build.height not given)",) if keys.height is None else ()
     if keys.partner == "plane":
         floor = (Wall("floor", (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)),)
-        return Layout(d=same, x=x, v=v, omega=omega, walls=floor, notes=notes)
+        return Placement(d=same, x=x, v=v, omega=omega, walls=floor, notes=notes)
     if keys.partner == "fixed":
         groups = (("struck", 0, copies),)
-        return Layout(
+        return Placement(
             d=same, x=x, v=v, omega=omega, d_fixed=same, x_fixed=struck, fixed_groups=groups, notes=notes
         )
-    return Layout(
+    return Placement(
         d=np.concatenate([same, same]),
         x=np.concatenate([x, struck]),
         v=np.concatenate([v, rest]),

@@ -1,10 +1,10 @@
-"""A channel with a loose bed over fixed grains of random height; a run settles it."""
+"""A channel with a loose bed over fixed grains of random height; the bed settles in a run."""
 
 import math
 
 import numpy as np
 
-from ryusa.build.layout import Layout, Wall, still
+from ryusa.build.placement import Placement, Wall, at_rest
 from ryusa.build.sizes import draw
 from ryusa.casefile.builders.schema import FlumeSection
 from ryusa.casefile.builders.values import bed_counts, flume_count
@@ -17,7 +17,7 @@ from ryusa.model.scene import Floats
 SIDES = ("right", "left")  # looking downstream: y = 0 and y = width
 
 
-def flume(case: Case, derived: Derived) -> Layout:
+def flume(case: Case, derived: Derived) -> Placement:
     """Free lattice over a base whose centres lie at z = 0 on average; groups `bed`, `right`, `left`."""
     keys = case.build
     assert isinstance(keys, FlumeSection)
@@ -39,11 +39,11 @@ def flume(case: Case, derived: Derived) -> Layout:
         )
     z_zero, where = bed_level(case, 0.0, d / 2.0 if len(x_fixed) else None)
     notes = (f"zero of the water {where} (water.zero not given)",)
-    return Layout(
+    return Placement(
         d=draw(case, len(x), rng),
         x=x,
-        v=still(len(x)),
-        omega=still(len(x)),
+        v=at_rest(len(x)),
+        omega=at_rest(len(x)),
         d_fixed=np.full(len(x_fixed), d),
         x_fixed=x_fixed,
         walls=walls,
@@ -58,7 +58,7 @@ def bed_level(case: Case, base: float, crest: float | None) -> tuple[float, str]
 
     Parameters
     ----------
-    base : from where loose grains begin to fill [m].
+    base : height from which loose grains fill the bed [m].
     crest : mean top of the fixed grains [m]; None over a plane.
     """
     keys = column_keys(case)
@@ -76,7 +76,7 @@ def _base(case: Case, keys: FlumeSection, rng: np.random.Generator, wide: float)
     """Fixed grains of mean diameter, evenly spaced, at random or equal height around z = 0 [m]."""
     n_x, n_y = bed_counts(case)
     grid = np.stack(np.meshgrid(np.arange(n_y), np.arange(n_x), indexing="ij"), -1).reshape(-1, 2)
-    x = still(len(grid))
+    x = at_rest(len(grid))
     if not len(grid):
         return x
     x[:, 0] = (grid[:, 1] + 0.5) * keys.length / n_x
@@ -89,7 +89,7 @@ def _base(case: Case, keys: FlumeSection, rng: np.random.Generator, wide: float)
 
 
 def _lattice(case: Case, keys: FlumeSection, rng: np.random.Generator, wide: float, d_max: float) -> Floats:
-    """Jittered centres from z = 0 upwards, neighbours and walls kept clear [m]; the highest layer in part."""
+    """Jittered centres from z = 0 upwards, clear of neighbours and walls [m]; the top layer is incomplete."""
     free = d_max * (1.0 + keys.gap)
     n_x = max(int(keys.length / free), 1)
     n_y = 1 if case.motion.plane else max(int(wide / free), 1)

@@ -1,56 +1,56 @@
-"""First grains keep to their lanes and do not overlap: finds the worst pair and names both."""
+"""Check that first grains keep to lanes and do not overlap; names the pair with the largest overlap."""
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ryusa.build.layout import Layout, unit
+from ryusa.build.placement import Placement, unit_normal
 from ryusa.errors import CaseError
 
 TOLERANCE = 1.0e-9  # of the smaller diameter
 
 
-def lanes_of(layout: Layout, key: str) -> NDArray[np.intp]:
+def lanes_of(placement: Placement, key: str) -> NDArray[np.intp]:
     """Lane of each free, then each fixed grain of a plane scene, numbered from 0 along y.
 
-    Grains meet in their lane only: those whose y is exactly equal share one, and lanes stand at least the
+    Grains interact in their lane only: grains with exactly equal y share one, and lanes are at least the
     largest diameter apart.
 
     Raises
     ------
-    CaseError : two grains neither share a lane nor stand that far apart.
+    CaseError : two grains neither share a lane nor are that far apart.
     """
-    y = np.concatenate([layout.x[:, 1], layout.x_fixed[:, 1]])
+    y = np.concatenate([placement.x[:, 1], placement.x_fixed[:, 1]])
     places, lanes = np.unique(y, return_inverse=True)
     gaps = np.diff(places)
-    if np.any(near := gaps < layout.d_max * (1.0 - TOLERANCE)):
+    if np.any(near := gaps < placement.d_max * (1.0 - TOLERANCE)):
         k = int(np.argmax(near))
-        who, other = (name(layout, int(np.argmax(lanes == lane))) for lane in (k, k + 1))
+        who, other = (name(placement, int(np.argmax(lanes == lane))) for lane in (k, k + 1))
         raise CaseError(
             key,
             None,
             f"two lanes of a plane scene are {gaps[k]:.4g} m apart: {who} and {other}; y must be exactly "
-            f"equal, or differ by the largest diameter, {layout.d_max:.4g} m, or more",
+            f"equal, or differ by the largest diameter, {placement.d_max:.4g} m, or more",
         )
     return np.asarray(lanes, dtype=np.intp).reshape(-1)
 
 
-def refuse_overlaps(layout: Layout, key: str, plane: bool = False) -> None:
+def refuse_overlaps(placement: Placement, key: str, plane: bool = False) -> None:
     """Raise a `CaseError` that names two first grains, or a grain and a plane, that overlap.
 
     In a plane scene grains overlap in x-z and only with others of their lane.
     """
-    from scipy.spatial import KDTree  # a tenth of a second, and few need it
+    from scipy.spatial import KDTree  # the import takes a tenth of a second
 
-    lanes = lanes_of(layout, key) if plane else None
-    if layout.allow_overlap:
+    lanes = lanes_of(placement, key) if plane else None
+    if placement.allow_overlap:
         return
-    _against_walls(layout, key)
-    n = len(layout.d)
-    d = np.concatenate([layout.d, layout.d_fixed])
-    x = np.concatenate([layout.x, layout.x_fixed])
+    _against_walls(placement, key)
+    n = len(placement.d)
+    d = np.concatenate([placement.d, placement.d_fixed])
+    x = np.concatenate([placement.x, placement.x_fixed])
     if lanes is not None:
-        x[:, 1] = 2.0 * layout.d_max * lanes
-    sides = np.array([*(p if np.isfinite(p) else 0.0 for p in layout.period), 0.0])
+        x[:, 1] = 2.0 * placement.d_max * lanes
+    sides = np.array([*(p if np.isfinite(p) else 0.0 for p in placement.period), 0.0])
     for axis in (0, 1):
         if sides[axis] > 0.0:
             x[:, axis] = np.mod(x[:, axis], sides[axis])
@@ -69,31 +69,31 @@ def refuse_overlaps(layout: Layout, key: str, plane: bool = False) -> None:
     if relative[worst] > TOLERANCE:
         first, second = sorted((int(i[worst]), int(j[worst])))
         count = int((relative > TOLERANCE).sum())
-        who = name(layout, first)
+        who = name(placement, first)
         more = f"; {count} pairs overlap" if count > 1 else ""
         raise CaseError(
             key,
             None,
-            f"first grains overlap: {who} and {name(layout, second)} by {relative[worst]:.3g} d{more}",
+            f"first grains overlap: {who} and {name(placement, second)} by {relative[worst]:.3g} d{more}",
         )
 
 
-def _against_walls(layout: Layout, key: str) -> None:
-    for wall in layout.walls:
-        relative = 0.5 - (layout.x - np.array(wall.point)) @ unit(wall) / layout.d
+def _against_walls(placement: Placement, key: str) -> None:
+    for wall in placement.walls:
+        relative = 0.5 - (placement.x - np.array(wall.point)) @ unit_normal(wall) / placement.d
         worst = int(np.argmax(relative))
         if relative[worst] > TOLERANCE:
-            who = name(layout, worst)
+            who = name(placement, worst)
             raise CaseError(
                 key, None, f"first grains overlap: {who} and plane '{wall.name}' by {relative[worst]:.3g} d"
             )
 
 
-def name(layout: Layout, grain: int) -> str:
-    """Name a grain as the user knows it, with its position."""
-    n = len(layout.d)
-    x = layout.x[grain] if grain < n else layout.x_fixed[grain - n]
+def name(placement: Placement, grain: int) -> str:
+    """Name of a grain for the user, with its position."""
+    n = len(placement.d)
+    x = placement.x[grain] if grain < n else placement.x_fixed[grain - n]
     where = "(" + ", ".join(f"{100.0 * c:.4g}" for c in x) + ") cm"
-    if layout.names:
-        return f"the grain {layout.names[grain]} at {where}"
+    if placement.names:
+        return f"the grain {placement.names[grain]} at {where}"
     return f"{'free' if grain < n else 'fixed'} grain {grain} at {where}"

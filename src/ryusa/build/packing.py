@@ -1,9 +1,9 @@
-"""Layers of grains on a jittered lattice over a bed of random height; a run settles them."""
+"""Layers of grains on a jittered lattice over a bed of random height; they settle in a run."""
 
 import numpy as np
 
 from ryusa.build.flume import bed_level
-from ryusa.build.layout import Layout, Wall, still
+from ryusa.build.placement import Placement, Wall, at_rest
 from ryusa.build.sizes import draw
 from ryusa.casefile.builders.schema import PackingSection
 from ryusa.casefile.builders.values import bed_counts
@@ -12,7 +12,7 @@ from ryusa.casefile.derive import Derived
 from ryusa.model.scene import Floats
 
 
-def packing(case: Case, derived: Derived) -> Layout:
+def packing(case: Case, derived: Derived) -> Placement:
     """Free lattice above the bed, periodic in x (and in y in three dimensions) or open; group `bed`."""
     keys = case.build
     assert isinstance(keys, PackingSection)
@@ -22,7 +22,7 @@ def packing(case: Case, derived: Derived) -> Layout:
     wide, deep = keys.columns * pitch, keys.rows * pitch
     inf = float("inf")
     period = (wide, inf if plane else deep) if keys.periodic else (inf, inf)
-    x_fixed, top, walls = still(0), 0.0, (Wall("floor", (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)),)
+    x_fixed, top, walls = at_rest(0), 0.0, (Wall("floor", (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)),)
     if keys.bed != "plane":
         x_fixed, walls = _bed(case, keys, rng, wide, deep), ()
         top = float(x_fixed[:, 2].max()) + d / 2.0
@@ -31,12 +31,12 @@ def packing(case: Case, derived: Derived) -> Layout:
     )
     x = (cells.reshape(-1, 3)[:, ::-1] + 0.5) * pitch
     free = 0.5 * keys.jitter * keys.gap * d_max
-    x = x + rng.uniform(-free, free, x.shape)  # each axis keeps neighbours d_max apart
+    x = x + rng.uniform(-free, free, x.shape)  # neighbours stay d_max apart on each axis
     if plane:
         x[:, 1] = 0.0
     x[:, 2] += top
     n = len(x)
-    v = still(n)
+    v = at_rest(n)
     v[:, 0] = keys.speed
     crest = float(np.mean(x_fixed[:, 2])) + d / 2.0 if len(x_fixed) else 0.0
     sizes = draw(case, n, rng)
@@ -44,11 +44,11 @@ def packing(case: Case, derived: Derived) -> Layout:
     notes: list[str] = []
     if case.water is not None and case.water.zero is None:
         notes.append(f"zero of the water profile {where} (water.zero not given)")
-    return Layout(
+    return Placement(
         d=sizes,
         x=x,
         v=v,
-        omega=still(n),
+        omega=at_rest(n),
         d_fixed=np.full(len(x_fixed), d),
         x_fixed=x_fixed,
         walls=walls,
@@ -63,7 +63,7 @@ def _bed(case: Case, keys: PackingSection, rng: np.random.Generator, wide: float
     n_x, n_y = bed_counts(case)
     d = case.grains.diameter
     grid = np.stack(np.meshgrid(np.arange(n_y), np.arange(n_x), indexing="ij"), -1).reshape(-1, 2)
-    x = still(len(grid))
+    x = at_rest(len(grid))
     x[:, 0] = (grid[:, 1] + 0.5) * wide / n_x
     if not case.motion.plane:
         x[:, 1] = (grid[:, 0] + 0.5) * deep / n_y

@@ -10,7 +10,7 @@ from ryusa.model.scene import Floats
 
 
 def draw(case: Case, n: int, rng: np.random.Generator) -> Floats:
-    """Diameters [m] of n grains as `grains.spread` has them."""
+    """Diameters [m] of n grains, distributed as `grains.spread`."""
     d, (kind, ratio) = case.grains.diameter, spread_of(case.grains)
     if ratio == 0.0:
         return np.full(n, d)

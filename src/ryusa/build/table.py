@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ryusa.build.layout import Layout
+from ryusa.build.placement import Placement
 from ryusa.casefile.builders.schema import TableSection
 from ryusa.casefile.builders.table import table_of
 from ryusa.casefile.case import Case
@@ -11,8 +11,8 @@ from ryusa.errors import CaseError
 from ryusa.model.scene import Floats
 
 
-def table(case: Case, _derived: Derived) -> Layout:
-    """Grains as the table has them; ids follow its order, but rows of one group stand together."""
+def table(case: Case, _derived: Derived) -> Placement:
+    """Grains of the table; ids follow its order, with the rows of one group together."""
     keys, grid = case.build, table_of(case)
     assert isinstance(keys, TableSection)
     assert grid is not None
@@ -31,7 +31,7 @@ def table(case: Case, _derived: Derived) -> Layout:
     x, d = _columns(grid.column("x"), grid.column("y"), grid.column("z")), grid.column("d")
     labels = [f"of line {grid.lines[row]} of {grid.name}" for row in (*free, *fixed)]
     period = tuple(p if p is not None else float("inf") for p in (case.domain.period_x, case.domain.period_y))
-    return Layout(
+    return Placement(
         d=d[free],
         x=x[free],
         v=_columns(grid.column("vx"), grid.column("vy"), grid.column("vz"))[free],

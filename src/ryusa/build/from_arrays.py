@@ -1,4 +1,4 @@
-"""A scene grain by grain, without a file."""
+"""A scene from arrays, without a case file."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ryusa.build.assemble import Laws, assemble, masses
-from ryusa.build.layout import Layout, Wall
 from ryusa.build.overlaps import refuse_overlaps
+from ryusa.build.placement import Placement, Wall
 from ryusa.errors import CaseError
 from ryusa.laws import collision
 from ryusa.laws.families import Cap, Slip
@@ -46,7 +46,7 @@ def scene(
     events: EventRule = EventRule.ALL,
     allow_overlap: bool = False,
 ) -> tuple[Scene, State]:
-    """Build a scene grain by grain; everything SI and radians.
+    """Build a scene from arrays, in SI units and radians.
 
     Parameters
     ----------
@@ -56,9 +56,9 @@ def scene(
     x_fixed, d_fixed : fixed grains, as x and d; d_fixed is the mean of d when not given.
     planes : (name, point [m], normal) of each flat wall.
     stiffness, shear_ratio, restitution, restitution_shear, friction, slip, tension : the contact law;
-        friction is mu = tan(phi). `contact` gives a whole law instead.
+        friction is mu = tan(phi). `contact` replaces them by a complete law.
     gravity, slope : g [m/s2] and bed slope [rad], down towards +x.
-    plane_case : motion in x-z only; grains touch where their y is exactly equal, other lanes never.
+    plane_case : motion in x-z only; grains interact only if their y is exactly equal (a lane).
     period : periods in x and y [m]; inf where open, as y must be in a plane scene.
     dt : time step [s]; by default the shortest contact over `steps_per_contact`.
 
@@ -75,16 +75,54 @@ def scene(
     >>> fixed.n_grain, fixed.n_plane, first.n_grain
     (1, 1, 1)
     """
-    above_zero = {"density": density, "stiffness": stiffness, "steps_per_contact": steps_per_contact}
+    above_zero = {
+        "density": density,
+        "stiffness": stiffness,
+        "steps_per_contact": steps_per_contact,
+        "dt": dt,
+    }
     at_least_zero = {"shear_ratio": shear_ratio, "friction": friction, "gravity": gravity}
-    _refuse({**above_zero, "dt": dt}, lambda one: one > 0.0, "must be finite and greater than 0")
+    restitutions = {"restitution": restitution, "restitution_shear": restitution_shear}
+    _refuse_numbers(above_zero, at_least_zero, slope, restitutions)
+    placement = _placement(x, d, v, omega, x_fixed, d_fixed, planes, period, allow_overlap)
+    _refuse_walls(placement, plane_case)
+    refuse_overlaps(placement, "x", plane_case)
+    fluid = water or Water()
+    e_s = restitution if restitution_shear is None else restitution_shear
+    law = contact or _contact_law(stiffness, shear_ratio, friction, restitution, e_s, slip, tension)
+    step = _shortest_contact(placement.d, density, fluid, law) / steps_per_contact if dt is None else dt
+    slab_width = float(placement.d.mean()) if plane_case else math.nan
+    laws = Laws(
+        density=density, contact=law, dt=step, rolling=rolling or RollingLaw(), water=fluid, g=gravity,
+        slope=slope, rotation=rotation, plane_case=plane_case, slab_width=slab_width, events=events,
+    )  # fmt: skip
+    return assemble(placement, laws)
+
+
+def _refuse_numbers(
+    above_zero: Mapping[str, float | None],
+    at_least_zero: Mapping[str, float],
+    slope: float,
+    restitutions: Mapping[str, float | None],
+) -> None:
+    _refuse(above_zero, lambda one: one > 0.0, "must be finite and greater than 0")
     _refuse(at_least_zero, lambda one: one >= 0.0, "must be finite and at least 0")
     _refuse({"slope": slope}, lambda one: abs(one) < math.pi / 2, "must lie between -pi/2 and pi/2 rad")
-    _refuse(
-        {"restitution": restitution, "restitution_shear": restitution_shear},
-        lambda one: 0.0 < one <= 1.0,
-        "must be greater than 0 and at most 1",
-    )
+    _refuse(restitutions, lambda one: 0.0 < one <= 1.0, "must be greater than 0 and at most 1")
+
+
+def _placement(
+    x: ArrayLike,
+    d: ArrayLike,
+    v: ArrayLike | None,
+    omega: ArrayLike | None,
+    x_fixed: ArrayLike | None,
+    d_fixed: ArrayLike | None,
+    planes: Sequence[tuple[str, Sequence[float], Sequence[float]]],
+    period: tuple[float, float],
+    allow_overlap: bool,
+) -> Placement:
+    """First grains and walls from the arguments of `scene`, every shape checked."""
     if not all(one > 0.0 for one in period):
         raise CaseError("period", period, "must be greater than 0 in x and y, or inf where open")
     centres = _rows(x, "x", None)
@@ -93,54 +131,41 @@ def scene(
         raise CaseError("x", None, "needs at least one grain")
     sizes = _sizes(d, "d", n)
     bed = _rows(x_fixed, "x_fixed", None) if x_fixed is not None else np.zeros((0, 3))
-    bed_sizes = _sizes(float(sizes.mean()) if d_fixed is None else d_fixed, "d_fixed", len(bed))
-    layout = Layout(
+    return Placement(
         d=sizes,
         x=centres,
         v=_rows(v, "v", n) if v is not None else np.zeros((n, 3)),
         omega=_rows(omega, "omega", n) if omega is not None else np.zeros((n, 3)),
-        d_fixed=bed_sizes,
+        d_fixed=_sizes(float(sizes.mean()) if d_fixed is None else d_fixed, "d_fixed", len(bed)),
         x_fixed=bed,
         walls=tuple(Wall(name, _point(point), _point(normal)) for name, point, normal in planes),
         period=period,
         allow_overlap=allow_overlap,
     )
-    _refuse_walls(layout, plane_case)
-    refuse_overlaps(layout, "x", plane_case)
-    wet = water or Water()
-    if contact is None:
-        e_s = restitution if restitution_shear is None else restitution_shear
-        contact = ContactLaw(
-            k_n=stiffness,
-            k_s=shear_ratio * stiffness,
-            mu=friction,
-            e_n=restitution,
-            e_s=e_s,
-            zeta_n=collision.zeta_for_restitution(restitution, tension),
-            zeta_s=collision.zeta_tension(e_s),
-            slip=slip,
-            cap=Cap.TOTAL if "total" in slip.marks else Cap.SPRING,
-            tension=tension,
-        )
-    if dt is None:
-        m, m_added, _, _ = masses(sizes, density, math.pi / 6, wet)
-        lightest = float(np.min(m + m_added)) / (2.0 if n > 1 else 1.0)
-        dt = collision.shortest_contact(lightest, contact.k_n, contact.zeta_n, contact.tension)
-        dt /= steps_per_contact
-    laws = Laws(
-        density=density,
-        contact=contact,
-        dt=dt,
-        rolling=rolling or RollingLaw(),
-        water=wet,
-        g=gravity,
-        slope=slope,
-        rotation=rotation,
-        plane_case=plane_case,
-        slab_width=float(sizes.mean()) if plane_case else math.nan,
-        events=events,
+
+
+def _contact_law(
+    k_n: float, shear_ratio: float, mu: float, e_n: float, e_s: float, slip: Slip, tension: bool
+) -> ContactLaw:
+    return ContactLaw(
+        k_n=k_n,
+        k_s=shear_ratio * k_n,
+        mu=mu,
+        e_n=e_n,
+        e_s=e_s,
+        zeta_n=collision.zeta_for_restitution(e_n, tension),
+        zeta_s=collision.zeta_tension(e_s),
+        slip=slip,
+        cap=Cap.TOTAL if "total" in slip.marks else Cap.SPRING,
+        tension=tension,
     )
-    return assemble(layout, laws)
+
+
+def _shortest_contact(d: Floats, density: float, water: Water, contact: ContactLaw) -> float:
+    """Duration of the shortest contact that can occur [s]."""
+    m, m_added, _, _ = masses(d, density, math.pi / 6, water)
+    lightest = float(np.min(m + m_added)) / (2.0 if len(d) > 1 else 1.0)
+    return collision.shortest_contact(lightest, contact.k_n, contact.zeta_n, contact.tension)
 
 
 def _refuse(numbers: Mapping[str, float | None], fits: Callable[[float], bool], allowed: str) -> None:
@@ -149,16 +174,16 @@ def _refuse(numbers: Mapping[str, float | None], fits: Callable[[float], bool], 
             raise CaseError(name, one, allowed)
 
 
-def _refuse_walls(layout: Layout, plane_case: bool) -> None:
-    if plane_case and math.isfinite(layout.period[1]):
-        raise CaseError("period", layout.period, "has no meaning in y in a plane scene; leave it inf")
-    for wall in layout.walls:
+def _refuse_walls(placement: Placement, plane_case: bool) -> None:
+    if plane_case and math.isfinite(placement.period[1]):
+        raise CaseError("period", placement.period, "has no meaning in y in a plane scene; leave it inf")
+    for wall in placement.walls:
         if not (np.all(np.isfinite([wall.point, wall.normal])) and any(wall.normal)):
             raise CaseError("planes", wall.name, "needs a finite point and a finite normal other than zero")
         if plane_case and wall.normal[1] != 0.0:
             raise CaseError("planes", wall.name, "must have a normal with y = 0 in a plane scene")
         for axis, one in enumerate("xy"):
-            if math.isfinite(layout.period[axis]) and wall.normal[axis] != 0.0:
+            if math.isfinite(placement.period[axis]) and wall.normal[axis] != 0.0:
                 raise CaseError("planes", wall.name, f"must have a normal with {one} = 0: {one} is periodic")
 
 

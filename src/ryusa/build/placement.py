@@ -1,4 +1,4 @@
-"""Where the first grains are: what every builder hands to the assembly."""
+"""Placement of the first grains, the fixed grains and the walls, as every builder returns it."""
 
 from dataclasses import dataclass, field
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from ryusa.model.scene import Bools, Floats
 
-LANE = 3.0  # distance of lanes in a plane scene, in largest diameters
+LANE = 3.0  # distance between lanes in a plane scene, in largest diameters
 ROOM_ABOVE, ROOM_BELOW, ROOM_ASIDE = 1000.0, 10.0, 1000.0  # of the default world box, in largest diameters
 
 
@@ -20,8 +20,8 @@ class Wall:
 
 
 @dataclass(frozen=True)
-class Layout:
-    """First grains, bed and walls, before any law is known."""
+class Placement:
+    """First grains, fixed grains and walls, without their laws."""
 
     d: Floats  # free grains [m], (n,)
     x: Floats  # [m], (n, 3)
@@ -34,10 +34,10 @@ class Layout:
     walls: tuple[Wall, ...] = ()
     period: tuple[float, float] = (float("inf"), float("inf"))  # [m]
     z_zero: float = 0.0  # zero of the water profile when the case gives none [m]
-    notes: tuple[str, ...] = ()  # choices the case left open
-    endless: bool = False  # along x: on a plane a rolling grain goes far and is not lost
+    notes: tuple[str, ...] = ()  # choices that the case does not state
+    endless: bool = False  # no boundary along x: a grain may roll far along a plane
     allow_overlap: bool = False
-    names: tuple[str, ...] = ()  # how errors call the free, then the fixed grains; () numbers them
+    names: tuple[str, ...] = ()  # names of free, then fixed grains in errors; () numbers them
 
     @property
     def d_max(self) -> float:
@@ -56,7 +56,7 @@ class Layout:
         return found
 
     def box(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
-        """Give the default world: generous, a lost grain is seen; no end along periods and endless x [m]."""
+        """Default domain [m]: wide margins, and no bounds along periodic axes and an endless x."""
         every = np.concatenate(
             [self.x, self.x_fixed, np.array([wall.point for wall in self.walls]).reshape(-1, 3)]
         )
@@ -72,19 +72,19 @@ class Layout:
         return (below[0], below[1], floor), (above[0], above[1], roof)
 
 
-def still(n: int) -> Floats:
-    """Give n rows of zeros, for grains at rest."""
+def at_rest(n: int) -> Floats:
+    """Zeros of shape (n, 3), for grains at rest."""
     return np.zeros((n, 3))
 
 
-def unit(wall: Wall) -> Floats:
+def unit_normal(wall: Wall) -> Floats:
     """Unit normal of a wall."""
     normal = np.array(wall.normal, dtype=np.float64)
     return np.asarray(normal / np.linalg.norm(normal))
 
 
 def mask(n: int, ids: tuple[int, ...]) -> Bools:
-    """Give True at the ids; empty when there are none."""
+    """Mask that is True at the ids; empty if there are none."""
     found = np.zeros(n if ids else 0, dtype=np.bool_)
     found[list(ids)] = True
     return found
