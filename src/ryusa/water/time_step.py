@@ -268,6 +268,28 @@ def write_results(
 
 
 @kernel
+def gradient_of_discharge(p: ColumnParameters, m: int, content: Floats, work: StepWorkspace) -> float:
+    """Pressure gradient [Pa/m] with which the solution of the linear system has the prescribed discharge."""
+    without, per_gradient = 0.0, 0.0
+    for k in range(m + 1):
+        without += content[k] * work.r[k]
+        per_gradient += content[k] * work.y[k]
+    return (p.discharge - without) / per_gradient
+
+
+@kernel
+def largest_change(u: Floats, last: int, work: StepWorkspace) -> tuple[float, float]:
+    """Largest change of the speed and largest speed [m/s]; the latter is nan if a speed is not finite."""
+    change, scale = 0.0, 0.0
+    for k in range(last + 1):
+        change = max(change, abs(work.r[k] - u[k]))
+        scale = max(scale, abs(work.r[k]))
+        if not np.isfinite(work.r[k]):
+            return change, np.nan
+    return change, scale
+
+
+@kernel
 def time_step(
     p: ColumnParameters,
     given_rows: Floats,
@@ -331,19 +353,12 @@ def time_step(
         )
         tridiagonal(last + 1, solve_gradient, work)
         if solve_gradient:
-            has, gives = 0.0, 0.0
-            for k in range(m + 1):
-                has += content[k] * work.r[k]
-                gives += content[k] * work.y[k]
-            gradient = (p.discharge - has) / gives
+            gradient = gradient_of_discharge(p, m, content, work)
             for k in range(last + 1):
                 work.r[k] += gradient * work.y[k]
-        change, scale = 0.0, 0.0
-        for k in range(last + 1):
-            change = max(change, abs(work.r[k] - u[k]))
-            scale = max(scale, abs(work.r[k]))
-            if not np.isfinite(work.r[k]):
-                return NOT_A_NUMBER
+        change, scale = largest_change(u, last, work)
+        if not np.isfinite(scale):
+            return NOT_A_NUMBER
         stuck = change <= ROUND_OFF * scale and change >= 0.9 * change_before
         if change <= TOLERANCE * scale or stuck:
             status = DONE
