@@ -32,11 +32,11 @@ from numba import njit
 from ryusa.build import build
 from ryusa.casefile import read
 from ryusa.engine.cpu.engine import CpuEngine
+from ryusa.running.checkpoint_scheduler import CHECKPOINT_INTERVAL, CheckpointScheduler
 from ryusa.running.disk import free_bytes
 from ryusa.running.guards import energy_created
-from ryusa.running.keeper import EVERY, Keeper
 from ryusa.running.provenance import processor
-from ryusa.running.snapshot import kept_state
+from ryusa.running.snapshot import state_block
 
 SOONEST = 2.0  # s between two parts at least
 REPEATS = 7
@@ -73,10 +73,10 @@ def measure(events: str, columns: int, folder: Path) -> dict[str, Any]:
     engine.load(scene, built.state)
     engine.advance(15_000).raise_if_any()  # grains are in touch by then
     engine.events()
-    keeper = Keeper(folder, {}, scene)
+    scheduler = CheckpointScheduler(folder, {}, scene)
     step = median(lambda: engine.advance(STEPS)) / STEPS
     engine.events()
-    whole = median(lambda: keeper.write(kept_state(engine.state()), scene, {}))
+    whole = median(lambda: scheduler.write(state_block(engine.state()), scene, {}))
     state, tally = engine.state(), engine.tally()
     guard = median(lambda: energy_created(scene, state, tally))
     frame = round(case.record.frames / scene.dt)
@@ -86,7 +86,7 @@ def measure(events: str, columns: int, folder: Path) -> dict[str, Any]:
     inside = median(lambda: [checks(*seen) for _ in range(100)]) / 100
     room = median(lambda: free_bytes(folder), 100)
     shares = {
-        "share of checkpoints [%]": 100.0 * whole / (EVERY + whole),
+        "share of checkpoints [%]": 100.0 * whole / (CHECKPOINT_INTERVAL + whole),
         "share of guards at frames [%]": 100.0 * guard / (frame * step),
         "share of guards in a step, at most [%]": 100.0 * inside / step,
         "share of looks for room [%]": 100.0 * room / SOONEST,
@@ -97,7 +97,7 @@ def measure(events: str, columns: int, folder: Path) -> dict[str, Any]:
         "contacts": n_pair,
         "us a step": round(1e6 * step, 1),
         "checkpoint [ms]": round(1e3 * whole, 1),
-        "checkpoint [MB]": round(keeper.size / 1e6, 2),
+        "checkpoint [MB]": round(scheduler.size / 1e6, 2),
         "guard a frame [us]": round(1e6 * guard, 1),
         "steps a frame": frame,
         "guards in a step, at most [us]": round(1e6 * inside, 1),

@@ -1,8 +1,8 @@
-"""Named errors. Every one says what is wrong, where, and what to do about it."""
+"""Exceptions of ryusa. Each message states what is wrong, where, and how to correct it."""
 
 
 class RyusaError(Exception):
-    """Base of every error a user can meet; the CLI prints it in one block and exits with `exit_code`."""
+    """Base of all errors of ryusa; the command line prints the message and exits with `exit_code`."""
 
     exit_code = 2
 
@@ -10,7 +10,7 @@ class RyusaError(Exception):
 class CaseError(RyusaError):
     """A case that cannot be run: names the key path, the value, what is allowed and the nearest known key.
 
-    A file with several faults is told at once: `others` holds the errors after the first.
+    All faults of a file are reported together: `others` holds those after the first.
     """
 
     def __init__(
@@ -45,7 +45,7 @@ class CaseError(RyusaError):
 
     @classmethod
     def together(cls, faults: "list[CaseError]", source: str | None = None) -> "CaseError":
-        """One error that tells all faults of a file; `source` names the file."""
+        """One error for all faults of a file; `source` names the file."""
         first = faults[0]
         return cls(
             first.key, first.value, first.allowed, first.nearest, others=tuple(faults[1:]), source=source
@@ -57,17 +57,17 @@ class ResultsError(RyusaError):
 
 
 class DiskFull(ResultsError):
-    """No room left where the run writes."""
+    """The disk of the run folder is full."""
 
     exit_code = 3
 
 
 class CheckpointError(ResultsError):
-    """A checkpoint that cannot be gone on from: damaged, of another run, or not of this code."""
+    """A checkpoint from which the run cannot be resumed: damaged, of another run or of another version."""
 
 
 class RunError(RyusaError):
-    """A number that went wrong while stepping: names grain, partner, step and time, and what to try."""
+    """An invalid state while stepping: names grain, partner, step and time, and a remedy."""
 
     exit_code = 3
 
@@ -87,31 +87,31 @@ class RunError(RyusaError):
 
 
 class NotANumber(RunError):
-    """A force, position or velocity is no longer finite."""
+    """A force, position or velocity is not finite."""
 
 
 class GrainLost(RunError):
-    """A grain left the world."""
+    """A grain left the domain."""
 
 
 class OverlapTooLarge(RunError):
-    """Two partners reach into each other beyond the limit."""
+    """The overlap of two grains exceeds the limit."""
 
 
 class ListUnsafe(RunError):
-    """A grain moved further in one step than the neighbour list allows for."""
+    """A grain moved further in one step than the Verlet list allows."""
 
 
 class ContactSlotsFull(RunError):
-    """A fixed buffer of contacts is full and could not grow."""
+    """A fixed buffer of contacts is full and cannot grow."""
 
 
 class EnergyCreated(RunError):
-    """The energy account does not hold: the grains have what nobody gave."""
+    """The energy account does not close: the grains gained energy that no force supplied."""
 
 
 class WaterError(RyusaError):
-    """The column of water cannot go on: says why, at which of its steps, and what to try."""
+    """The column of water cannot be stepped further: states cause, step and remedy."""
 
     exit_code = 3
 

@@ -1,4 +1,4 @@
-"""Text with a unit to SI and back: `"100 N/cm"` is 1.0e4. The only place that knows non-SI units."""
+"""Quantities with units: `"100 N/cm"` to 1.0e4 in SI, and back. The only module that knows other units."""
 
 import math
 import re
@@ -7,10 +7,10 @@ from decimal import Decimal
 from functools import cache
 from typing import Any
 
-LONGEST = 64  # characters a quantity may have
+LONGEST = 64  # characters of a quantity at most
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3}(?![0-9]))?")
 _FACTOR = re.compile(r"([A-Za-zμΩÅ°%]+)(?:\s*(?:\^|\*\*)?\s*([+-]?[0-9]{1,2})(?![0-9]))?")
-_NAMES = {  # what an SI unit measures, for messages
+_NAMES = {  # quantity that an SI unit measures, for messages
     "m": "a length",
     "s": "a time",
     "kg": "a mass",
@@ -27,7 +27,7 @@ _NAMES = {  # what an SI unit measures, for messages
 }
 _METRE, _SECOND, _GRAM, _RADIAN = (("meter", 1),), (("second", 1),), (("gram", 1),), (("radian", 1),)
 _NEWTON, _PASCAL = (("gram", 1), ("meter", 1), ("second", -2)), (("gram", 1), ("meter", -1), ("second", -2))
-COMMON = {  # what most cases are written in: sooner than Pint reads its definitions, and held to it by a test
+COMMON = {  # the common units, faster than Pint reads its definitions; a test compares the two
     "%": (0.01, ()),
     "m": (1.0, _METRE),
     "km": (1e3, _METRE),
@@ -52,16 +52,16 @@ COMMON = {  # what most cases are written in: sooner than Pint reads its definit
 
 
 class UnitError(ValueError):
-    """A text that is no quantity of the kind asked for; the message says what is allowed."""
+    """A text that is not a quantity of the expected kind; the message says what is allowed."""
 
 
 def quantity(text: object, unit: str) -> float:
-    """Read a number with its unit and give it in SI.
+    """Convert a number with its unit to SI.
 
     Parameters
     ----------
-    text : what the user wrote, such as `"0.2 cm"`.
-    unit : the SI unit wanted, such as `"m"`; its dimension is checked (angles count as a dimension).
+    text : the text, such as `"0.2 cm"`.
+    unit : the SI unit of the result, such as `"m"`; the dimension is checked (angle is a dimension).
 
     Returns
     -------
@@ -101,7 +101,7 @@ def quantity(text: object, unit: str) -> float:
 
 
 def format_quantity(value: float, unit: str, digits: int = 4) -> str:
-    """Write an SI value in the unit asked for.
+    """Format an SI value in a given unit.
 
     >>> format_quantity(1.0e4, "N/cm")
     '100 N/cm'
@@ -131,7 +131,7 @@ def _example(unit: str) -> str:
 
 @cache
 def _factor(written: str, unit: str) -> float:
-    """Return how many `unit` one `written` is; both must have the same dimension."""
+    """Number of `unit` in one `written`; both must have the same dimension."""
     try:
         factor, dimension = _to_si(written)
     except UnitError as error:
@@ -145,7 +145,7 @@ def _factor(written: str, unit: str) -> float:
 
 
 def _tidy(factor: float) -> float:
-    """Drop the last bits that chained conversions leave in a round number."""
+    """Round off the last bits that chained conversions leave in a round number."""
     rounded = float(f"{factor:.14g}")
     return rounded if abs(rounded - factor) <= 4e-16 * abs(factor) else factor
 
@@ -194,10 +194,10 @@ def _atom(name: str) -> tuple[float, tuple[tuple[str, int], ...]]:
 
 
 def from_pint(name: str) -> tuple[float, tuple[tuple[str, int], ...]]:
-    """The same, asked of Pint, which reads some thousand definitions before it answers."""
+    """As `_atom`, from Pint, which first reads some thousand definitions."""
     registry, plain = _registry(), {"°": "degree"}.get(name, name)
     if plain in {"degC", "degF", "celsius", "fahrenheit", "°C", "°F"}:
-        raise UnitError(f"'{name}' has an offset and is no plain unit")
+        raise UnitError(f"'{name}' has an offset and cannot be used here")
     try:
         factor, root = registry.get_root_units(registry.parse_units(plain))
         pairs = [(str(base), float(power)) for base, power in root._units.items()]

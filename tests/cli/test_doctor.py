@@ -37,5 +37,5 @@ def test_the_doctor_says_when_numba_may_not_keep_what_it_compiled(
     (tmp_path / "file").write_text("no folder")
     monkeypatch.setattr(dashpots, "dashpots", type("Compiled", (), {"_cache": Kept})())
     found = dict(doctor.diagnosis())["cache"]
-    assert found.startswith("no writing to")
+    assert found.startswith("no permission to write to")
     assert "NUMBA_CACHE_DIR" in found

@@ -12,7 +12,7 @@ from ryusa.casefile import read
 from ryusa.cli import INTERRUPTED, app, main
 from ryusa.cli.run import _STOPPED
 from ryusa.errors import CaseError, DiskFull, RunError, WaterError
-from ryusa.running import keeper
+from ryusa.running import checkpoint_scheduler
 
 PAGE = (Path(__file__).parents[2] / "docs" / "interrupted-runs.md").read_text(encoding="utf-8")
 SHORT = {"stop.time": "0.02 s", "record.settle": "0 s", "build.columns": "8", "build.layers": "2"}
@@ -34,7 +34,7 @@ def test_its_exit_codes_are_those_of_the_code() -> None:
     found = [int(code) for code in re.findall(r"^\| (\d+) \|", PAGE, re.MULTILINE)]
     assert found == [0, CaseError.exit_code, RunError.exit_code, _STOPPED, INTERRUPTED]
     assert WaterError.exit_code == DiskFull.exit_code == RunError.exit_code
-    assert f"every {keeper.EVERY / 60:.0f} minutes" in PAGE
+    assert f"every {checkpoint_scheduler.CHECKPOINT_INTERVAL / 60:.0f} minutes" in PAGE
 
 
 def test_its_python_reads_a_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

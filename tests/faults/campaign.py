@@ -27,7 +27,7 @@ import ryusa
 from ryusa.casefile.read import read_text
 from ryusa.errors import RyusaError
 from ryusa.results import Results, schema
-from ryusa.running import keeper, loop, recorder, vtkhdf
+from ryusa.running import checkpoint_scheduler, loop, recorder, vtkhdf
 
 CHECKPOINT = 0.05  # s of wall time
 NOT_THE_SAME = {"wall", "particle_steps_per_second"}  # of a summary
@@ -97,8 +97,8 @@ def hurry(draw: random.Random) -> None:
     odd, apart = random.Random(draw.random()), draw.choice((0.0, 0.05, 0.5, 2.0))
     loop.Loop._chunk = lambda self: odd.randint(1, 700)  # type: ignore[method-assign]
     recorder.flush_after = lambda elapsed, n_part: apart
-    keeper._SHARE = 1.0
-    vtkhdf.SHELF = odd.choice((2, 5, 32))
+    checkpoint_scheduler._SHARE = 1.0
+    vtkhdf.SUBINDEX_PARTS = odd.choice((2, 5, 32))
 
 
 def killed(kind: str, folder: Path, after: float, draw: random.Random) -> bool:

@@ -38,7 +38,7 @@ def target(name: str, folder: Path) -> Callable[[bytes], None]:
     from ryusa.errors import RyusaError
     from ryusa.results import schema
     from ryusa.running import checkpoint
-    from ryusa.running.disk import image
+    from ryusa.running.disk import hdf5_image
     from ryusa.units import UnitError, quantity
 
     def one_case(data: bytes) -> None:
@@ -82,7 +82,7 @@ def target(name: str, folder: Path) -> Callable[[bytes], None]:
     def one_checkpoint(data: bytes) -> None:
         if not data:
             return
-        about = json.dumps({**kept.about, "arrays": arrays}).encode()
+        about = json.dumps({**kept.values, "arrays": arrays}).encode()
         changed = {key: kept.arrays[key] for key in arrays}
         if data[0] % 2:
             about = data[1:]
@@ -102,7 +102,7 @@ def target(name: str, folder: Path) -> Callable[[bytes], None]:
                 file[one] = array  # type: ignore[index]
 
         fresh()
-        body = image(fill)
+        body = hdf5_image(fill)
         head = checkpoint._MAGIC + f"{len(body)} {hashlib.sha256(body).hexdigest()}\n".encode()
         (work / schema.CHECKPOINT).write_bytes(head.ljust(checkpoint._HEAD, b"\0") + body)
         judged("rolling", work)
@@ -134,7 +134,7 @@ def prepare(folder: Path) -> None:
 
     def watched(self: loop.Loop, n_steps: int) -> None:
         advance(self, n_steps)
-        self._heard.by = "the fuzzer" if self._t > 0.6 * self.stop.time else self._heard.by
+        self._signal.stop = "the fuzzer" if self._t > 0.6 * self.stop.time else self._signal.stop
 
     loop.Loop._advance = watched  # type: ignore[method-assign]
     loop.Loop._chunk = lambda self: 101  # type: ignore[method-assign]
@@ -143,7 +143,7 @@ def prepare(folder: Path) -> None:
     contents = [bytes([k]) + one.read_bytes() for k, one in enumerate(names)]
     kept = read_checkpoint(folder / "run" / schema.CHECKPOINT, 10_000)
     arrays = sorted(kept.arrays)
-    signed = [b"\1" + json.dumps({**kept.about, "arrays": arrays}).encode()]
+    signed = [b"\1" + json.dumps({**kept.values, "arrays": arrays}).encode()]
     signed += [bytes([0, k]) + kept.arrays[one].tobytes() for k, one in enumerate(arrays)]
     seeds = {"schema": texts, "units": quantities, "results": contents, "resume": signed}
     for name, ones in seeds.items():

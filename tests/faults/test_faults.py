@@ -21,7 +21,7 @@ from kinds import KINDS
 
 from ryusa.errors import CheckpointError
 from ryusa.results import Results, schema
-from ryusa.running import disk, keeper, loop, recorder
+from ryusa.running import checkpoint_scheduler, disk, loop, recorder
 
 HERE = Path(__file__).parent
 
@@ -56,7 +56,7 @@ def test_a_disk_that_fills_up_again_and_again_loses_nothing(
 ) -> None:
     run(kind, tmp_path / "whole")
     draw, full = random.Random(seed), [0]
-    beside = disk.write_beside
+    beside = disk.write_temporary
 
     def narrow(path: Path, content: bytes) -> Path:
         if path.parent != tmp_path / "hurt" and path.parent.parent != tmp_path / "hurt":
@@ -73,13 +73,13 @@ def test_a_disk_that_fills_up_again_and_again_loses_nothing(
 
     monkeypatch.setattr(recorder, "flush_after", lambda elapsed, n_part: 0.02)
     monkeypatch.setattr(loop.time, "sleep", sleep)
-    monkeypatch.setattr(keeper, "_SHARE", 1.0)
+    monkeypatch.setattr(checkpoint_scheduler, "_SHARE", 1.0)
     begin = recorder.Recorder.flush
     begun: list[bool] = []
 
     def flush(self: Any) -> bool:
         if not begun:  # from the first frame on
-            monkeypatch.setattr(disk, "write_beside", narrow)
+            monkeypatch.setattr(disk, "write_temporary", narrow)
             begun.append(True)
         return begin(self)
 
@@ -95,7 +95,7 @@ def stopped_half_way(kind: str, folder: Path) -> bytes:
 
     def watched(self: Any, n_steps: int) -> None:
         advance(self, n_steps)
-        self._heard.by = "the test" if self._t > 0.03 else self._heard.by
+        self._signal.stop = "the test" if self._t > 0.03 else self._signal.stop
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(loop.Loop, "_advance", watched)
@@ -126,7 +126,7 @@ def test_truncated_flipped_and_foreign_checkpoints_are_refused_in_one_clear_line
         with pytest.raises(CheckpointError) as refused:
             run("rolling", folder, resume=True)
         assert "\n" not in str(refused.value)
-        assert "--overwrite begins anew" in str(refused.value)
+        assert "to discard it and start again, use --overwrite" in str(refused.value)
     (folder / schema.CHECKPOINT).write_bytes(good)
     assert run("rolling", folder, resume=True).complete
     run("rolling", tmp_path / "whole")
@@ -141,7 +141,7 @@ sys.path.insert(0, sys.argv[2])
 subprocess.run(["mount", "-t", "tmpfs", "-o", "size=30m", "none", disk], check=True)
 from campaign import differences, run
 from ryusa.running import loop
-loop._LOOK_FOR_ROOM = 0.05
+loop._RETRY_EVERY = 0.05
 filler = disk / "filler"
 filler.write_bytes(bytes(14 << 20))
 log = disk / "hurt" / "log.txt"

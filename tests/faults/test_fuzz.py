@@ -25,7 +25,7 @@ from ryusa.errors import RyusaError
 from ryusa.results import Results, schema
 from ryusa.running import loop
 from ryusa.running.checkpoint import _HEAD, _MAGIC, read_checkpoint
-from ryusa.running.disk import image
+from ryusa.running.disk import hdf5_image
 from ryusa.running.inspection import inspection
 
 SHORT = {"dry-2d": "0.01 s", "two-way": "0.004 s", "rolling": "0.01 s"}
@@ -51,7 +51,7 @@ def stopped(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFac
     def watched(self: Any, n_steps: int) -> None:
         advance(self, n_steps)
         if self._t > 0.6 * self.stop.time:
-            self._heard.by = "the test"
+            self._signal.stop = "the test"
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(loop.Loop, "_advance", watched)
@@ -135,7 +135,7 @@ def sign_another_checkpoint(kind: str, folder: Path, data: st.DataObject) -> Non
     """A checkpoint that a stranger changed, with the right digest."""
     n = Results.open(folder).scene.n_grain
     kept = read_checkpoint(folder / schema.CHECKPOINT, n)
-    about, arrays = kept.about, dict(kept.arrays)
+    about, arrays = kept.values, dict(kept.arrays)
     if data.draw(st.booleans(), "numbers"):
         put(about, data)
     else:
@@ -154,7 +154,7 @@ def sign(folder: Path, about: dict[str, Any], arrays: dict[str, np.ndarray]) -> 
         for name, array in arrays.items():
             file[name] = array
 
-    body = image(fill)
+    body = hdf5_image(fill)
     head = _MAGIC + f"{len(body)} {hashlib.sha256(body).hexdigest()}\n".encode()
     (folder / schema.CHECKPOINT).write_bytes(head.ljust(_HEAD, b"\0") + body)
 
@@ -186,8 +186,8 @@ def test_a_state_no_engine_takes_is_refused_and_the_run_can_still_go_on_from_a_g
     arrays = {name: array.copy() for name, array in kept.arrays.items()}
     assert not arrays["state/x"][:, 1].any()  # all these kinds are plane
     arrays["state/x"][0, 1] = value
-    sign(folder, dict(kept.about), arrays)
-    with pytest.raises(RyusaError, match=r"cannot be gone on from|not finite"):
+    sign(folder, dict(kept.values), arrays)
+    with pytest.raises(RyusaError, match=r"cannot be used|not finite"):
         go(kind, folder, resume=True)
     assert Results.open(folder).status in ("stopped", "failed")
     (folder / schema.CHECKPOINT).write_bytes(good)
@@ -209,7 +209,7 @@ def test_an_extreme_number_anywhere_in_a_checkpoint_is_gone_on_from_or_refused_b
             shutil.copytree(source, folder)
             arrays = {**kept.arrays, name: kept.arrays[name].copy()}
             arrays[name].flat[place] = value
-            sign(folder, dict(kept.about), arrays)
+            sign(folder, dict(kept.values), arrays)
             judged(kind, folder)
             shutil.rmtree(folder)
 
@@ -225,7 +225,7 @@ def test_an_eddy_viscosity_that_cannot_be_is_refused(stopped: tuple[str, Path], 
     for value, why in [(-1e-169, "less than nothing"), (sys.float_info.max, "at most 1e\\+100")]:
         arrays = {**kept.arrays, name: kept.arrays[name].copy()}
         arrays[name][0] = value
-        sign(folder, dict(kept.about), arrays)
+        sign(folder, dict(kept.values), arrays)
         with pytest.raises(RyusaError, match=why):
             go(kind, folder, resume=True)
 

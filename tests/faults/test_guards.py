@@ -33,8 +33,8 @@ from ryusa.errors import (
     WaterError,
 )
 from ryusa.results import Results, schema
+from ryusa.running import checkpoint_scheduler, loop, recorder
 from ryusa.running import folder as folder_module
-from ryusa.running import keeper, loop, recorder
 from ryusa.running.checkpoint import read_checkpoint
 from ryusa.running.runner import run_scene
 from ryusa.running.stops import Stop
@@ -47,7 +47,7 @@ Run = Callable[[Path, bool], Results]
 def often(monkeypatch: pytest.MonkeyPatch) -> None:
     """A checkpoint after every hundred steps, whatever it costs."""
     monkeypatch.setattr(loop.Loop, "_chunk", lambda self: 101)
-    monkeypatch.setattr(keeper, "_SHARE", math.inf)
+    monkeypatch.setattr(checkpoint_scheduler, "_SHARE", math.inf)
 
 
 def case(text: str, **settings: str) -> Run:
@@ -82,8 +82,8 @@ def stopped(go: Run, folder: Path, kind: type[RunError] | type[WaterError]) -> R
         assert f"grain {fault.grain}" in str(fault)
         assert fault.step - results.summary["steps"] in {-1, 0}
     kept = read_checkpoint(folder / schema.CHECKPOINT, results.scene.n_grain)
-    state = kept.part("state")
-    assert 0 < state.about["step"] <= results.summary["steps"]
+    state = kept.block("state")
+    assert 0 < state.values["step"] <= results.summary["steps"]
     assert np.isfinite(state.arrays["x"]).all()
     n_frame = len(results.frames)
     with pytest.raises(kind) as again:
@@ -130,7 +130,7 @@ def test_energy_from_nowhere_stops_the_run(tmp_path: Path) -> None:
     sides = [("left", (-D, 0, 0), (1, 0, 0)), ("right", (11.5 * D, 0, 0), (-1, 0, 0))]
     made = scene(x, D, x_fixed=bed, planes=sides, plane_case=True, steps_per_contact=2.1, restitution=0.9)
     fault = stopped(by_hand(made), tmp_path / "run", EnergyCreated)
-    assert "J came from nowhere" in fault.cause
+    assert "J that no force supplied" in fault.cause
     assert "time.steps_per_contact" in fault.hint
 
 
@@ -184,7 +184,7 @@ def test_a_disk_nearly_full_pauses_a_run_that_then_goes_on_with_the_same_bits(
     log = (results.folder / schema.LOG).read_text(encoding="utf-8")
     assert "paused: " in log
     assert "nearly no room is left" in log
-    assert "there is room again" in log
+    assert "free space is available again" in log
     assert differences(tmp_path / "whole", tmp_path / "hurt") == []
 
 
@@ -194,12 +194,12 @@ def test_more_grains_than_memory_holds_are_refused_in_a_moment(
 ) -> None:
     path = tmp_path / "huge.toml"
     path.write_text(KINDS[kind], encoding="utf-8")
-    monkeypatch.setattr(folder_module, "memory_there", lambda: 1e9)
+    monkeypatch.setattr(folder_module, "available_memory", lambda: 1e9)
     many = [word for key in ("columns", "layers") for word in ("--set", f"build.{key}=1000")]
     with pytest.raises(SystemExit) as left:
         main(["run", str(path), "-o", str(tmp_path / "run"), *many])
     assert left.value.code == CaseError.exit_code
     said = capsys.readouterr().err
-    assert "GB of memory; this machine has 1 GB to give" in said
+    assert "GB of memory; 1 GB are available" in said
     assert "Take fewer grains" in said
     assert not (tmp_path / "run").exists()

@@ -15,9 +15,9 @@ from ryusa.model import Contacts, EngineBlock, State, Tally
 from ryusa.model.contacts import N_EVENT
 from ryusa.model.tally import N_BOOK
 from ryusa.results import schema
-from ryusa.running.checkpoint import Kept, read_checkpoint, write_checkpoint
-from ryusa.running.disk import image
-from ryusa.running.snapshot import kept_state, state_of
+from ryusa.running.checkpoint import CheckpointBlock, read_checkpoint, write_checkpoint
+from ryusa.running.disk import hdf5_image
+from ryusa.running.snapshot import state_block, state_from_block
 
 N = 3
 
@@ -59,20 +59,20 @@ def with_tally(**changes: Any) -> State:
 
 @pytest.fixture
 def path(tmp_path: Path) -> Path:
-    write_checkpoint(tmp_path, Kept.together(state=kept_state(some_state())))
+    write_checkpoint(tmp_path, CheckpointBlock.merged(state=state_block(some_state())))
     return tmp_path / schema.CHECKPOINT
 
 
 def test_a_state_comes_back_with_the_same_bits(path: Path, scene: Any) -> None:
-    found = state_of(read_checkpoint(path, N).part("state"), scene)
+    found = state_from_block(read_checkpoint(path, N).block("state"), scene)
     assert bits(found) == bits(some_state())
 
 
 def test_the_checkpoint_before_stays_until_the_next_is_whole(tmp_path: Path) -> None:
     for k in range(4):
-        write_checkpoint(tmp_path, Kept({"k": k}))
-    assert read_checkpoint(tmp_path / schema.CHECKPOINT, N).about == {"k": 3}
-    assert read_checkpoint(tmp_path / schema.CHECKPOINT_BEFORE, N).about == {"k": 2}
+        write_checkpoint(tmp_path, CheckpointBlock({"k": k}))
+    assert read_checkpoint(tmp_path / schema.CHECKPOINT, N).values == {"k": 3}
+    assert read_checkpoint(tmp_path / schema.CHECKPOINT_BEFORE, N).values == {"k": 2}
     assert len(list(tmp_path.iterdir())) == 2
 
 
@@ -89,7 +89,7 @@ def test_a_checkpoint_cut_anywhere_is_refused(path: Path) -> None:
             read_checkpoint(path, N)
         assert "\n" not in str(caught.value)
     path.write_bytes(whole + b"x")
-    with pytest.raises(CheckpointError, match="cut short or added to"):
+    with pytest.raises(CheckpointError, match="wrong length"):
         read_checkpoint(path, N)
 
 
@@ -109,7 +109,7 @@ def test_any_flipped_bit_is_refused(path: Path) -> None:
 
 def signed(path: Path, fill: Any) -> None:
     """A file that a stranger made, with the right digest."""
-    body = image(fill)
+    body = hdf5_image(fill)
     head = f"ryusa checkpoint 2\n{len(body)} {hashlib.sha256(body).hexdigest()}\n".encode()
     path.write_bytes(head.ljust(512, b"\0") + body)
 
@@ -120,7 +120,7 @@ def put_json(file: h5py.File, text: bytes) -> None:
 
 def test_a_checkpoint_of_an_earlier_format_is_refused_with_both_formats(path: Path) -> None:
     path.write_bytes(path.read_bytes().replace(b"checkpoint 2", b"checkpoint 1", 1))
-    with pytest.raises(CheckpointError, match="format 1, this one reads format 2"):
+    with pytest.raises(CheckpointError, match="in format 1; this version of ryusa reads format 2"):
         read_checkpoint(path, N)
 
 
@@ -190,7 +190,7 @@ def change_contacts(**arrays: np.ndarray) -> State:
     ],
 )
 def test_a_state_that_no_engine_could_carry_is_refused(state: State, scene: Any, tmp_path: Path) -> None:
-    write_checkpoint(tmp_path, Kept.together(state=kept_state(state)))
+    write_checkpoint(tmp_path, CheckpointBlock.merged(state=state_block(state)))
     with pytest.raises(RyusaError) as caught:
-        state_of(read_checkpoint(tmp_path / schema.CHECKPOINT, N).part("state"), scene)
+        state_from_block(read_checkpoint(tmp_path / schema.CHECKPOINT, N).block("state"), scene)
     assert "\n" not in str(caught.value)

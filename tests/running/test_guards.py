@@ -8,7 +8,7 @@ from ryusa.model import Book, State, Tally
 from ryusa.model.tally import N_BOOK
 from ryusa.results import Results
 from ryusa.running import folder as folder_module
-from ryusa.running.folder import memory_there, refuse_if_too_large
+from ryusa.running.folder import available_memory, refuse_if_too_large
 from ryusa.running.guards import energy_created
 from ryusa.running.runner import run_scene
 from ryusa.running.stops import Stop
@@ -30,7 +30,7 @@ def test_energy_from_nowhere_names_the_fastest_grain_step_time_and_remedy(scene)
     fault = energy_created(scene, moving(), account(kinetic=1.0, start=0.2))
     assert isinstance(fault, EnergyCreated)
     assert (fault.grain, fault.step, fault.t) == (1, 40, 0.5)
-    assert "0.8 J came from nowhere" in str(fault)
+    assert "gained 0.8 J that no force supplied" in str(fault)
     assert "steps_per_contact" in fault.hint
 
 
@@ -42,7 +42,7 @@ def test_energy_that_the_step_gives_to_springs_comes_from_nowhere_too(scene):
     assert boiling.residual < 1e-9
     fault = energy_created(scene, moving(), boiling)
     assert fault is not None
-    assert "3 J came from nowhere" in str(fault)
+    assert "gained 3 J that no force supplied" in str(fault)
 
 
 @pytest.mark.parametrize("tally", [account(1.0, 1.0), account(1.0, 0.6), account(0.2, 1.0), account(1e-12)])
@@ -66,19 +66,19 @@ def test_a_run_that_creates_energy_stops_and_keeps_its_frames(scene, state, engi
 
 
 def test_more_memory_than_there_is_is_refused_before_the_first_grain(monkeypatch):
-    monkeypatch.setattr(folder_module, "memory_there", lambda: 1e9)
+    monkeypatch.setattr(folder_module, "available_memory", lambda: 1e9)
     refuse_if_too_large(0.9e9, 10)
-    with pytest.raises(CaseError, match=r"need 2 GB of memory; this machine has 1 GB to give"):
+    with pytest.raises(CaseError, match=r"need 2 GB of memory; 1 GB are available"):
         refuse_if_too_large(2e9, 10**6)
 
 
 def test_a_scene_made_by_hand_is_held_against_memory_too(scene, state, engine, tmp_path, monkeypatch):
-    monkeypatch.setattr(folder_module, "memory_there", lambda: 5e3)
+    monkeypatch.setattr(folder_module, "available_memory", lambda: 5e3)
     with pytest.raises(CaseError, match="Take fewer grains"):
         run_scene(scene, state, tmp_path / "run", frames=1e-3, stop=Stop(time=0.01), engine=engine)
     assert not (tmp_path / "run").exists()
 
 
 def test_memory_there_is_a_number_of_bytes_where_the_system_says():
-    there = memory_there()
+    there = available_memory()
     assert there is None or 1e6 < there < 1e15

@@ -28,7 +28,7 @@ def test_a_second_process_is_refused_and_told_who_writes(tmp_path: Path) -> None
         assert holder.stdout is not None
         assert holder.stdout.readline() == "held\n"
         with (
-            pytest.raises(ResultsError, match=f"process {holder.pid} on .* writes"),
+            pytest.raises(ResultsError, match=f"process {holder.pid} on .* is writing"),
             locked(tmp_path),
         ):
             raise AssertionError
@@ -43,7 +43,7 @@ def test_a_second_process_is_refused_and_told_who_writes(tmp_path: Path) -> None
 
 
 def test_a_second_run_in_the_same_process_is_refused(tmp_path: Path) -> None:
-    with locked(tmp_path), pytest.raises(ResultsError, match="writes into it"), locked(tmp_path):
+    with locked(tmp_path), pytest.raises(ResultsError, match="is writing to it"), locked(tmp_path):
         raise AssertionError
 
 

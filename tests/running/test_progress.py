@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from ryusa.running.progress import Moment, Progress
+from ryusa.running.progress import Progress, ProgressNumbers
 
 
 class Terminal(io.StringIO):
@@ -22,8 +22,8 @@ def make(path: Path, now: list[float], stream: io.StringIO, **more: Any) -> Prog
     return Progress(path / "log.txt", shown=more.get("shown", True), stream=stream, clock=lambda: now[0])
 
 
-def moment(share: float) -> Moment:
-    return Moment(share=share, t=share * 10, rate=3e6, overlap=0.004, residual=1e-5, hops=3)
+def moment(share: float) -> ProgressNumbers:
+    return ProgressNumbers(share=share, t=share * 10, rate=3e6, overlap=0.004, residual=1e-5, hops=3)
 
 
 def test_lines_come_every_tenth_of_the_way_at_most_every_five_seconds(
@@ -39,7 +39,7 @@ def test_lines_come_every_tenth_of_the_way_at_most_every_five_seconds(
     lines = stream.getvalue().splitlines()
     assert 8 <= len(lines) <= 11
     assert "3.00 M particle-steps/s" in lines[0]
-    assert "hops 3" in lines[0]
+    assert "saltations 3" in lines[0]
     assert "s left" in lines[0]
     assert (tmp_path / "log.txt").read_text().count("particle-steps/s") == len(lines)
 
@@ -50,7 +50,7 @@ def test_a_run_that_goes_on_reckons_what_is_left_from_where_it_began_again(
 ) -> None:
     progress = make(tmp_path, now, kind())
     now[0] = 1.0
-    progress.starts_at(0.5)
+    progress.start_at(0.5)
     now[0] = 7.0
     progress.update(moment(0.6))
     progress.close()
@@ -89,11 +89,11 @@ def test_a_terminal_gets_a_bar_and_lines_stay_above_it(tmp_path: Path, now: list
 def test_patience_speaks_only_when_a_block_is_slow(
     tmp_path: Path, now: list[float], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("ryusa.running.progress._PATIENCE", 0.05)
+    monkeypatch.setattr("ryusa.running.progress._SLOW_AFTER", 0.05)
     stream = io.StringIO()
     progress = make(tmp_path, now, stream)
-    with progress.patience("quick"):
+    with progress.explain_if_slow("quick"):
         pass
-    with progress.patience("compiling"):
+    with progress.explain_if_slow("compiling"):
         time.sleep(0.3)
     assert stream.getvalue() == "compiling\n"

@@ -26,7 +26,7 @@ from ryusa.model import State
 from ryusa.running import vtkhdf
 from ryusa.running.recorder import Recorder
 
-vtkhdf.SHELF = 3
+vtkhdf.SUBINDEX_PARTS = 3
 folder = Path(sys.argv[1])
 folder.mkdir()
 scene = make_scene(4)
@@ -259,12 +259,12 @@ def test_parts_are_written_by_the_clock(
 def test_an_index_with_shelves_shows_every_frame_and_names_few_files(
     recorder: Recorder, tally: Any, event: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(vtkhdf, "SHELF", 3)
+    monkeypatch.setattr(vtkhdf, "SUBINDEX_PARTS", 3)
     for k in range(11):
         recorder.frame(moment(k), tally(k))
         recorder.contacts(event(1, 5, k * 1e-3, k * 1e-3 + 1e-4))
         recorder.flush()
-    assert len(list((tmp_path / "parts").glob("shelf-*"))) == 3
+    assert len(list((tmp_path / "parts").glob("subindex-*"))) == 3
     with h5py.File(tmp_path / schema.GRAINS, "r") as file:
         sources = {one.file_name for one in file["VTKHDF/Points"].virtual_sources()}
         assert len(sources) == 3 + 2

@@ -1,4 +1,4 @@
-"""Going on: with the same bits, by the same case and code only, neither repeating nor dropping anything."""
+"""Resume: the same bits, the same case and code only, and nothing repeated or lost."""
 
 import json
 import os
@@ -15,7 +15,7 @@ import ryusa
 from ryusa.casefile.read import read_text
 from ryusa.errors import CheckpointError, ResultsError
 from ryusa.results import Results, schema
-from ryusa.running import keeper, loop, recorder
+from ryusa.running import checkpoint_scheduler, loop, recorder
 from ryusa.running.runner import run_scene
 from ryusa.running.stops import Stop
 
@@ -70,7 +70,7 @@ def test_a_stopped_run_goes_on_with_the_same_bits(stopped: Path, whole: Results)
     assert [one["step"] for one in results.provenance["resumed"]] == [
         results.provenance["resumed"][0]["step"]
     ]
-    assert "goes on from step" in (stopped / schema.LOG).read_text()
+    assert "resumed at step" in (stopped / schema.LOG).read_text()
 
 
 @pytest.mark.parametrize("steps", [(1, 20, 400), (5_000, 5_001, 17_323), (17_324, 17_325, 22_000)])
@@ -101,12 +101,16 @@ def test_sigusr1_asks_for_a_checkpoint_and_the_run_goes_on(
 ) -> None:
     seen: list[bool] = []
     stop_at(9_000, signal.SIGUSR1)
-    write = keeper.Keeper.write
+    write = checkpoint_scheduler.CheckpointScheduler.write
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(keeper.Keeper, "write", lambda *arguments: (seen.append(True), write(*arguments))[1])
+        patch.setattr(
+            checkpoint_scheduler.CheckpointScheduler,
+            "write",
+            lambda *arguments: (seen.append(True), write(*arguments))[1],
+        )
         assert run(tmp_path / "run").complete
     assert seen == [True]
-    assert "as asked" in (tmp_path / "run" / schema.LOG).read_text()
+    assert "on request" in (tmp_path / "run" / schema.LOG).read_text()
     assert differences(whole.folder, tmp_path / "run") == []
 
 
@@ -153,7 +157,7 @@ def test_a_damaged_checkpoint_gives_way_to_the_one_before(
 
 def test_without_a_good_checkpoint_a_run_is_refused_in_one_line(stopped: Path) -> None:
     (stopped / schema.CHECKPOINT).write_bytes(b"junk")
-    with pytest.raises(CheckpointError, match="not a checkpoint of this version") as caught:
+    with pytest.raises(CheckpointError, match="not a checkpoint of ryusa") as caught:
         run(stopped, resume=True)
     assert "\n" not in str(caught.value)
     assert Results.open(stopped).status == "stopped"
@@ -185,7 +189,7 @@ def test_a_checkpoint_of_another_run_is_refused(stopped: Path, tmp_path: Path, s
     stop_at(15_000)
     run(tmp_path / "other", {"seed": "2"})
     shutil.copy(tmp_path / "other" / schema.CHECKPOINT, stopped / schema.CHECKPOINT)
-    with pytest.raises(CheckpointError, match="that of another run"):
+    with pytest.raises(CheckpointError, match="belongs to another run"):
         run(stopped, resume=True)
 
 
@@ -211,9 +215,11 @@ def test_another_version_or_machine_is_told_and_goes_on_only_when_forced(
 ) -> None:
     from ryusa.running import resume
 
-    code = resume.code_of
-    monkeypatch.setattr(resume, "code_of", lambda origin: {**code(origin), name: "another"})
-    with pytest.raises(CheckpointError, match=f"elsewhere or by another version: {name} .* is now another"):
+    code = resume.code_versions
+    monkeypatch.setattr(resume, "code_versions", lambda origin: {**code(origin), name: "another"})
+    with pytest.raises(
+        CheckpointError, match=f"on another processor or by another version: {name} .* is now another"
+    ):
         run(stopped, resume=True)
     results = run(stopped, resume=True, force=True)
     assert results.complete
@@ -223,7 +229,7 @@ def test_another_version_or_machine_is_told_and_goes_on_only_when_forced(
 def test_with_nothing_to_go_on_from_a_run_begins_and_says_so(tmp_path: Path) -> None:
     results = run(tmp_path / "run", resume=True)
     assert results.complete
-    assert "nothing to go on from: the run begins" in (tmp_path / "run" / schema.LOG).read_text()
+    assert "no run to resume: starts from the beginning" in (tmp_path / "run" / schema.LOG).read_text()
     assert "resumed" not in results.provenance
 
 
@@ -238,7 +244,7 @@ def test_a_complete_run_is_opened_and_left_as_it_is(tmp_path: Path) -> None:
 
 def test_a_folder_that_is_no_run_is_left_alone(tmp_path: Path) -> None:
     (tmp_path / "thesis.tex").write_text("all of it")
-    with pytest.raises(ResultsError, match="no run of ryusa"):
+    with pytest.raises(ResultsError, match="not a run folder of ryusa"):
         run(tmp_path, resume=True)
     assert [one.name for one in tmp_path.iterdir()] == ["thesis.tex"]
 
@@ -257,7 +263,7 @@ def test_frames_that_come_out_otherwise_end_the_run_before_anything_is_written(
 
     monkeypatch.setattr(loop.Loop, "_steps", disturbed)
     before = Results.open(stopped)
-    with pytest.raises(CheckpointError, match="It is not the same run"):
+    with pytest.raises(CheckpointError, match="it is not the same run"):
         run(stopped, resume=True)
     after = Results.open(stopped)
     assert after.status == "failed"

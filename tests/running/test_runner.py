@@ -14,10 +14,10 @@ from ryusa.model import RollingLaw
 from ryusa.model.scene import EventRule
 from ryusa.results import Results
 from ryusa.running import folder as folder_module
-from ryusa.running.loop import Change
 from ryusa.running.recorder import bytes_per_frame
 from ryusa.running.runner import run, run_scene
 from ryusa.running.stops import Stop
+from ryusa.running.timeline import Change
 
 DROP = """
 [grains]
@@ -103,7 +103,7 @@ def test_saltations_of_the_laziest_grain_stop_a_run(go: Any, engine: Any, event:
             step = 100 * (k + 1) * (2 if i == 1 else 1) + i
             engine.events_at[step] = event(i, 3, 0.2 * k * (i + 1), 0.2 * k * (i + 1) + 1e-4)
     results = go(stop=Stop(time=1.0, saltations=5))
-    assert results.provenance["message"] == "every grain did 5 saltations"
+    assert results.provenance["message"] == "every tracked grain made 5 saltations"
     assert min(results.summary["saltations"]) == 5
     assert results.summary["steps"] == 1300
 
@@ -167,7 +167,7 @@ def test_a_folder_that_is_no_run_is_never_deleted(go: Any, tmp_path: Path, conte
     (tmp_path / "run" / "thesis.tex").write_text("all of it")
     for name, text in content.items():
         (tmp_path / "run" / name).write_text(text)
-    with pytest.raises(ResultsError, match="no run of ryusa"):
+    with pytest.raises(ResultsError, match="not a run folder of ryusa"):
         go(overwrite=True)
     assert (tmp_path / "run" / "thesis.tex").read_text() == "all of it"
 
@@ -207,7 +207,7 @@ def test_check_and_run_agree_on_what_fits_events_counted(
     frames, events = estimate.disk_needed(case, derived), estimate.disk_for_events(case, derived)
     assert frames == estimate.frames_expected(case) * bytes_per_frame(1) + estimate.BYTES_PER_RUN
     monkeypatch.setattr(folder_module, "free_bytes", lambda place: frames + events - 1)
-    with pytest.raises(CaseError, match="contact events about") as caught:
+    with pytest.raises(CaseError, match="contact records about") as caught:
         run(case, tmp_path / "run", progress=False)
     assert caught.value.key == key
     assert not (tmp_path / "run").exists()
@@ -227,7 +227,7 @@ def full(monkeypatch: pytest.MonkeyPatch) -> Any:
 
     monkeypatch.setattr(disk, "sync", refuses)
     monkeypatch.setattr(recorder, "flush_after", lambda elapsed, n_part: 0.0)
-    monkeypatch.setattr(loop, "_LOOK_FOR_ROOM", 0.01)
+    monkeypatch.setattr(loop, "_RETRY_EVERY", 0.01)
     return state
 
 
@@ -250,7 +250,7 @@ def test_a_full_disk_pauses_a_run_which_goes_on_when_there_is_room(
     assert results.frames.step.tolist() == list(range(0, 1001, 100))
     log = (results.folder / "log.txt").read_text()
     assert log.count("paused: ") == 1
-    assert log.count("there is room again") == 1
+    assert log.count("free space is available again") == 1
 
 
 def test_a_disk_that_stays_full_ends_the_run_with_what_was_written_and_a_final_status(
@@ -258,12 +258,12 @@ def test_a_disk_that_stays_full_ends_the_run_with_what_was_written_and_a_final_s
 ) -> None:
     from ryusa.running import disk, loop
 
-    monkeypatch.setattr(loop, "_DISK_PATIENCE", 0.05)
+    monkeypatch.setattr(loop, "_DISK_TIMEOUT", 0.05)
 
     def nothing_new(path: Path, content: bytes) -> Path:
         raise OSError(28, "No space left on device")
 
-    engine.on_advance = lambda step: step >= 500 and monkeypatch.setattr(disk, "write_beside", nothing_new)
+    engine.on_advance = lambda step: step >= 500 and monkeypatch.setattr(disk, "write_temporary", nothing_new)
     with pytest.raises(DiskFull, match="No space left"):
         go()
     results = Results.open(tmp_path / "run")
@@ -355,7 +355,7 @@ def test_empty_parts_behind_a_link_are_not_taken_for_ones_own(go: Any, tmp_path:
     (tmp_path / "elsewhere").mkdir()
     (tmp_path / "run").mkdir()
     (tmp_path / "run" / "parts").symlink_to(tmp_path / "elsewhere")
-    with pytest.raises(ResultsError, match="no run of ryusa"):
+    with pytest.raises(ResultsError, match="not a run folder of ryusa"):
         go()
     assert not any((tmp_path / "elsewhere").iterdir())
 
@@ -436,13 +436,13 @@ def test_slow_kernels_are_explained_once(
 ) -> None:
     import time
 
-    monkeypatch.setattr("ryusa.running.progress._PATIENCE", 0.02)
+    monkeypatch.setattr("ryusa.running.progress._SLOW_AFTER", 0.02)
     load = engine.load
     monkeypatch.setattr(engine, "load", lambda *arguments: (time.sleep(0.2), load(*arguments)))
     engine.on_advance = lambda step: time.sleep(0.2) if step == 1 else None
     log = (go(progress=True, stop=Stop(time=1e-3)).folder / "log.txt").read_text()
-    assert log.count("compiling kernels") == 1
-    assert capsys.readouterr().err.count("compiling kernels") == 1
+    assert log.count("compiling for this processor") == 1
+    assert capsys.readouterr().err.count("compiling for this processor") == 1
 
 
 def test_an_engine_is_chosen_by_name_or_refused_in_one_line(go: Any, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,4 +1,5 @@
 import math
+import re
 from dataclasses import replace
 from typing import Any
 
@@ -8,14 +9,15 @@ import pytest
 from ryusa.errors import CheckpointError
 from ryusa.laws.collision import collision_time, contact_time_no_tension, omega_natural
 from ryusa.model import State
-from ryusa.running.closing import closing_lines
-from ryusa.running.stops import HOP_RISE, Hops, Rest, Stop
-from ryusa.running.watch import Average, Watch, shortest_collision_time
+from ryusa.running.energy_terms import energy_lines
+from ryusa.running.stops import HOP_RISE, RestDetector, SaltationCounter, Stop
+from ryusa.running.summary import summary_lines
+from ryusa.running.watch import RunningMean, Watch, shortest_collision_time
 
 
 def test_an_average_taken_in_pieces_is_that_of_all_samples() -> None:
     samples = np.random.default_rng(3).normal(0.7, 0.1, 1000)
-    average = Average()
+    average = RunningMean()
     for piece in np.split(samples, [1, 1, 7, 400]):
         average.take(piece)
     found = average.as_dict()
@@ -25,7 +27,7 @@ def test_an_average_taken_in_pieces_is_that_of_all_samples() -> None:
 
 
 def test_one_sample_has_no_standard_error_and_none_has_no_mean() -> None:
-    average = Average()
+    average = RunningMean()
     assert average.as_dict() == {"n": 0, "mean": None, "standard_error": None}
     average.take(np.array([0.5]))
     assert average.as_dict() == {"n": 1, "mean": 0.5, "standard_error": None}
@@ -62,7 +64,7 @@ def test_restitution_is_split_by_partner_and_only_of_lonely_pairs(
             ]
         )
     )
-    found = watch.numbers(tally())["restitution"]
+    found = watch.summary(tally())["restitution"]
     assert found["asked"] == 0.7
     assert (found["fixed"]["n"], found["fixed"]["mean"]) == (2, pytest.approx(0.7))
     assert found["fixed"]["standard_error"] == pytest.approx(0.1)
@@ -74,7 +76,7 @@ def test_tangential_restitution_keeps_its_sign(scene: Any, state: Any, event: An
     watch.contacts(event(0, 3, 0, 1e-4, slip_begin=[0.5, 0, 0], slip_end=[-0.35, 0, 0]))
     watch.contacts(event(0, 3, 0, 1e-4, slip_begin=[0.5, 0, 0], slip_end=[0.2, 0, 0], t_slide=5e-5))
     watch.contacts(event(0, 3, 0, 1e-4, slip_begin=[0.01, 0, 0], slip_end=[0.2, 0, 0]))  # nearly central
-    found = watch.numbers(tally())["restitution_shear"]
+    found = watch.summary(tally())["restitution_shear"]
     assert (found["sticking"]["fixed"]["n"], found["sticking"]["fixed"]["mean"]) == (1, pytest.approx(0.7))
     assert (found["sliding"]["fixed"]["n"], found["sliding"]["fixed"]["mean"]) == (1, pytest.approx(-0.4))
 
@@ -83,7 +85,7 @@ def test_steps_per_contact_are_observed_within_a_bin(scene: Any, state: Any, eve
     watch = Watch(scene, state)
     steps = np.random.default_rng(1).uniform(40, 60, 5000)
     watch.contacts(np.concatenate([event(0, 3, 0.0, n * scene.dt) for n in steps]))
-    found = watch.numbers(tally())["steps_per_contact"]["observed"]
+    found = watch.summary(tally())["steps_per_contact"]["observed"]
     assert found["n"] == 5000
     assert found["least"] == pytest.approx(steps.min())
     assert found["most"] == pytest.approx(steps.max())
@@ -92,7 +94,7 @@ def test_steps_per_contact_are_observed_within_a_bin(scene: Any, state: Any, eve
 
 
 @pytest.mark.parametrize(
-    ("overlap", "word"), [(0.02, "too soft"), (0.0005, "stiffer"), (0.005, None), (0.001, None), (0.01, None)]
+    ("overlap", "word"), [(0.02, "so soft"), (0.0005, "stiffer"), (0.005, None), (0.001, None), (0.01, None)]
 )
 def test_the_stable_band_is_watched(
     scene: Any, state: Any, event: Any, tally: Any, overlap: float, word: str | None
@@ -127,29 +129,29 @@ def test_a_grain_that_rolls_or_rests_does_not_skim_the_bed(
 def test_too_few_steps_and_an_open_account_are_warned_of(scene_with: Any, state: Any, tally: Any) -> None:
     said = " ".join(Watch(scene_with(3, dt=1e-4), state).warnings(tally()))
     assert "steps in the shortest contact" in said
-    assert "unexplained" in said
+    assert "imbalance of the energy account" in said
 
 
 def test_the_energy_account_names_every_term(scene: Any, state: Any, tally: Any) -> None:
     from ryusa.model import Book
 
-    account = Watch(scene, state).numbers(tally())["energy"]
+    account = Watch(scene, state).summary(tally())["energy"]
     assert {book.name.lower() for book in Book} <= set(account)
     assert account["kinetic"] == 1.0
     assert account["imbalance"] == 21.0
 
 
-def test_closing_lines_speak_of_a_run_without_contacts_too(scene: Any, state: Any, tally: Any) -> None:
-    numbers = Watch(scene, state).numbers(tally())
+def test_summary_lines_speak_of_a_run_without_contacts_too(scene: Any, state: Any, tally: Any) -> None:
+    numbers = Watch(scene, state).summary(tally())
     more = {"steps": 1, "frames": 2, "contacts": 0, "wall": 1.0, "particle_steps_per_second": 5e6}
-    text = "\n".join(closing_lines({**numbers, **more}))
+    text = "\n".join(summary_lines({**numbers, **more}))
     assert "5.00 M particle-steps/s" in text
-    assert "none (no such contact of two grains alone)" in text
+    assert "none (no such contact between two isolated grains)" in text
 
 
 def test_a_flight_counts_as_a_hop_when_it_can_rise_a_tenth_of_d(scene: Any, event: Any) -> None:
     flight = 2 * math.sqrt(2 * HOP_RISE * 2e-3 / 9.8)
-    hops = Hops(scene, Stop(saltations=1, settle=1.0))
+    hops = SaltationCounter(scene, Stop(saltations=1, settle=1.0))
     hops.contacts(event(0, 3, 0.5, 0.6))
     hops.contacts(event(0, 3, 0.9, 1.0))  # began to fly before it settled
     hops.contacts(event(0, 3, 1.0 + 0.99 * flight, 1.02))  # too low
@@ -162,13 +164,13 @@ def test_a_flight_counts_as_a_hop_when_it_can_rise_a_tenth_of_d(scene: Any, even
 
 
 def test_only_tracked_grains_decide_when_saltations_are_enough(scene_with: Any, event: Any) -> None:
-    hops = Hops(scene_with(3, tracked=np.array([True, False, False])), Stop(saltations=1))
+    hops = SaltationCounter(scene_with(3, tracked=np.array([True, False, False])), Stop(saltations=1))
     hops.contacts(np.concatenate([event(0, 3, 0.0, 0.1), event(0, 3, 0.5, 0.6)]))
     assert hops.reached()
 
 
 def test_rest_begins_anew_whenever_a_grain_is_fast() -> None:
-    rest = Rest(Stop(rest_speed=0.1, rest_for=1.0))
+    rest = RestDetector(Stop(rest_speed=0.1, rest_for=1.0))
     assert [
         rest.reached(t, v)
         for t, v in [(0.0, 0.0), (0.9, 0.05), (0.95, 0.1), (1.5, 0.0), (2.4, 0.0), (2.5, 0.0)]
@@ -190,7 +192,7 @@ def test_a_contact_cut_by_the_timeline_counts_but_says_nothing_of_restitution(
     watch.contacts(cut)
     whole = event(0, 3, 0.0, 1e-4, slip_begin=[0.5, 0, 0], slip_end=[-0.3, 0, 0])
     watch.contacts(np.concatenate([cut, whole]))
-    found = watch.numbers(tally())
+    found = watch.summary(tally())
     assert watch.n_contact == 3
     assert found["restitution"]["fixed"] == {"n": 1, "mean": 0.7, "standard_error": None}
     assert found["restitution_shear"]["sticking"]["fixed"]["mean"] == pytest.approx(0.6)
@@ -230,7 +232,7 @@ def test_constant_dashpots_say_what_restitution_follows(scene_with: Any, state: 
 
     law = ContactLaw(1e4, 2857.0, 0.5, damping=Damping.CONSTANTS, eta_n=0.1, eta_s=0.05)
     scene = scene_with(3, rotation=False, contact=law)
-    numbers = Watch(scene, state).numbers(tally())
+    numbers = Watch(scene, state).summary(tally())
     m = float(scene.m[0])
     e_fixed = restitution_no_tension(0.05 / math.sqrt(1e4 * m))
     e_free = restitution_no_tension(0.05 / math.sqrt(1e4 * m / 2))
@@ -241,17 +243,26 @@ def test_constant_dashpots_say_what_restitution_follows(scene_with: Any, state: 
     e_s = restitution_tension(0.025 / math.sqrt(2857.0 * m))
     assert numbers["restitution_shear"]["follows"]["fixed"] == pytest.approx(e_s)
     more = {"steps": 1, "frames": 2, "contacts": 0, "wall": 1.0, "particle_steps_per_second": 5e6}
-    text = "\n".join(closing_lines({**numbers, **more}))
-    assert f"restitution of constant dashpots {e_fixed:.4f} on fixed, {e_free:.4f} on free, got" in text
-    assert "asked nothing" not in text
+    text = "\n".join(summary_lines({**numbers, **more}))
+    follows = f"{e_fixed:.4f} against fixed, {e_free:.4f} against free grains from constant dashpots"
+    assert f"restitution: {follows}" in text
+    assert "not set" not in text
 
 
-def test_closing_lines_name_every_book(scene: Any, state: Any, tally: Any) -> None:
+def test_energy_lines_name_every_term_that_is_not_zero() -> None:
     from ryusa.model import Book
+    from ryusa.model.tally import HELD
 
-    more = {"steps": 1, "frames": 2, "contacts": 0, "wall": 1.0, "particle_steps_per_second": 5e6}
-    text = "\n".join(closing_lines({**Watch(scene, state).numbers(tally()), **more}))
-    assert all(f"{book.name.lower()} " in text for book in Book)
+    names = [*HELD, *(book.name.lower() for book in Book)]
+    terms = {**dict.fromkeys(names, 1.0), "imbalance": 0.25, "residual": 0.5}
+    lines = dict(energy_lines(terms))
+    shown = [term for text in lines.values() for term in re.findall(r"[a-z -]+ 1(?=[,;]|$)", text)]
+    assert len(set(shown)) == len(names) - 1  # the energy at the start has a place of its own
+    assert "at the start 1 J" in lines["energy now"]
+    assert lines["imbalance"].startswith("0.25 J, 5.0e-01")
+    without = dict(energy_lines({**terms, "slide": 0.0}))
+    assert "sliding friction" not in without["dissipated"]
+    assert "sliding friction" in lines["dissipated"]
 
 
 @pytest.mark.parametrize(
@@ -264,8 +275,8 @@ def test_a_checkpoint_of_averages_that_cannot_be_is_refused(
 ) -> None:
     watch = Watch(scene, state)
     watch.contacts(event(0, 3, 0, 1e-4))
-    kept = watch.kept()
-    Watch(scene, state).go_on(kept)
-    kept.about["averages"][0] = {**kept.about["averages"][0], key: value}
-    with pytest.raises(CheckpointError, match="average"):
-        Watch(scene, state).go_on(kept)
+    kept = watch.to_block()
+    Watch(scene, state).restore(kept)
+    kept.values["averages"][0] = {**kept.values["averages"][0], key: value}
+    with pytest.raises(CheckpointError, match="impossible mean"):
+        Watch(scene, state).restore(kept)

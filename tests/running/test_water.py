@@ -58,7 +58,7 @@ def stepping(fixed, state) -> loop_module.Loop:
         CpuEngine(), fixed, 1.0, stop, [], nothing, nothing, nothing, {}, _step=state.step
     )
     loop.engine.load(fixed, state)
-    loop._begin_water(state)
+    loop._start_water(state)
     return loop
 
 

@@ -121,7 +121,7 @@ def test_a_run_stopped_on_the_way_goes_on_from_its_checkpoint(fakes, tmp_path, m
 
     def stopped(self, n_steps):
         advance(self, n_steps)
-        self._heard.by = "the test"
+        self._signal.stop = "the test"
 
     with monkeypatch.context() as patch:
         patch.setattr(loop.Loop, "_advance", stopped)

@@ -1,4 +1,4 @@
-"""The command line: thin, every command is a call that a script could make too."""
+"""The command line; every command is a thin layer over a call that a script can make."""
 
 import sys
 from collections.abc import Sequence
@@ -20,10 +20,10 @@ INTERRUPTED = 130  # exit code after Ctrl-C
 
 
 class Commands(TyperGroup):
-    """Commands that say in one block what is wrong; a bug keeps its traceback."""
+    """Commands that report an error of ryusa as one block of text; other exceptions keep their traceback."""
 
     def invoke(self, ctx: Any) -> Any:
-        """Run the command asked for."""
+        """Run the command that was given."""
         try:
             return super().invoke(ctx)
         except RyusaError as error:
@@ -34,13 +34,13 @@ class Commands(TyperGroup):
             raise typer.Exit(INTERRUPTED) from None
 
     def list_commands(self, ctx: Any) -> list[str]:
-        """Names of the commands in the order a newcomer meets them."""
+        """Names of the commands in the order of a typical workflow."""
         return list(self.commands)
 
 
 app = typer.Typer(
     cls=Commands,
-    help="Follows every grain of sand, gravel or debris through moving water.",
+    help="Simulates grains of sand, gravel or debris in flowing water by the distinct element method.",
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
@@ -57,10 +57,10 @@ def _version(wanted: bool) -> None:
 @app.callback()
 def _options(
     version: Annotated[
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version and leave.")
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version and exit.")
     ] = False,
 ) -> None:
-    """Follow every grain of sand, gravel or debris through moving water."""
+    """Simulate grains of sand, gravel or debris in flowing water by the distinct element method."""
 
 
 for _family in _FAMILIES:

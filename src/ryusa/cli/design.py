@@ -1,4 +1,4 @@
-"""`ryusa design`: which stiffness suits a grain, and what follows from it."""
+"""`ryusa design`: range of stable stiffness for a grain, and what follows from it."""
 
 import sys
 from pathlib import Path
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
     from ryusa.measure.stability import Grain, StiffnessChoice
 
-RATE = 5.0e6  # grain steps per second and core that the cost assumes
+RATE = 5.0e6  # grain steps per second and core, assumed for the cost
 
 
 def register(app: typer.Typer) -> None:
@@ -23,14 +23,16 @@ def design(
     diameter: Annotated[str, typer.Option(help="Grain diameter, such as 0.2cm.")],
     speed: Annotated[str, typer.Option(help="Impact speed, such as 0.6m/s.")],
     density: Annotated[str, typer.Option(help="Density of the grains.")] = "2650 kg/m3",
-    restitution: Annotated[float, typer.Option(help="Normal restitution e, without tension.")] = 0.7,
-    water: Annotated[bool, typer.Option("--water/--dry", help="Count added mass, C_M = 0.5.")] = False,
+    restitution: Annotated[
+        float, typer.Option(help="Normal restitution e of a contact without tension.")
+    ] = 0.7,
+    water: Annotated[bool, typer.Option("--water/--dry", help="Include added mass, C_M = 0.5.")] = False,
     steps_per_contact: Annotated[float, typer.Option(help="Steps in the shortest contact.")] = 50.0,
     output: Annotated[
         Path | None, typer.Option("--output", "-o", help="Folder for charts (PNG, SVG) and CSV.")
     ] = None,
 ) -> None:
-    """Say which stiffness keeps a grain in the stable band, and draw fig4, fig8, fig11 and fig12 for it."""
+    """Print the stiffness that keeps overlap/d in the stable range, and draw fig4, fig8, fig11 and fig12."""
     from rich.console import Console
 
     from ryusa.errors import CaseError
@@ -44,15 +46,15 @@ def design(
     soft, stiff = stable_range(grain)
     chosen = [choice(grain, k, steps_per_contact, RATE) for k in (soft, (soft * stiff) ** 0.5, stiff)]
     console = Console(width=None if sys.stdout.isatty() else 120)
-    place = "in water (added mass counted)" if water else "dry"
+    place = "in water (with added mass)" if water else "dry"
     console.print(
         f"grain d = {grain.d * 1e3:g} mm, {grain.rho_s:g} kg/m3, mass {grain.m:.4g} kg, {place}; "
         f"e = {restitution:g}, impact at {grain.speed:g} m/s"
     )
-    console.print(f"stable band 0.001 < overlap/d < 0.01: k_n = {soft:.4g} to {stiff:.4g} N/m")
+    console.print(f"stable range 0.001 < overlap/d < 0.01: k_n = {soft:.4g} to {stiff:.4g} N/m")
     console.print(_table(chosen, steps_per_contact))
     if chosen[0].travel > 0.3:
-        console.print("speed x contact time / d above 0.3: a grain skims crests before it can rebound")
+        console.print("speed x contact time / d is above 0.3: a grain passes over a crest before it rebounds")
     if output is not None:
         for path in _write(grain, chosen, output):
             console.print(f"wrote {path}", soft_wrap=True, highlight=False)
@@ -89,7 +91,7 @@ def _table(chosen: "list[StiffnessChoice]", steps_per_contact: float) -> "Table"
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column("")
-    for name in ("softest in band", "middle", "stiffest in band"):
+    for name in ("softest in range", "middle", "stiffest in range"):
         table.add_column(name, justify="right")
     lines: list[tuple[str, str]] = [
         ("normal stiffness k_n [N/m]", "k_n"),

@@ -1,4 +1,4 @@
-"""`ryusa doctor`: what this machine and installation are."""
+"""`ryusa doctor`: report on the machine and the installation."""
 
 import typer
 
@@ -11,7 +11,7 @@ def register(app: typer.Typer) -> None:
 
 
 def doctor() -> None:
-    """Say what runs depend on here: versions, processor, threads, numba's cache, engines that can step."""
+    """Report what runs depend on: versions, processor, threads, cache of compiled code, available engines."""
     from ryusa.running.doctor import diagnosis
 
     for name, finding in diagnosis():

@@ -1,4 +1,4 @@
-"""Words and quantities of the command line, checked; what commands on a run folder ask of it."""
+"""Checks of words and quantities on the command line, and of the run folder that a command reads."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -8,14 +8,14 @@ if TYPE_CHECKING:
 
 
 def open_run(folder: Path) -> "Results":
-    """A run folder, opened."""
+    """Open a run folder."""
     from ryusa.results import Results
 
     return Results.open(folder)
 
 
 def known(word: str, words: tuple[str, ...], key: str) -> str:
-    """`word`, or an error that names the nearest of `words`."""
+    """Return `word`, or raise an error that names the nearest of `words`."""
     if word in words:
         return word
     from difflib import get_close_matches
@@ -27,7 +27,7 @@ def known(word: str, words: tuple[str, ...], key: str) -> str:
 
 
 def grains_of(grains: list[int] | None, results: "Results") -> list[int] | None:
-    """Ids of free grains asked for; None where none was named."""
+    """Ids of the free grains given; None if none was given."""
     if not grains:
         return None
     from ryusa.errors import CaseError
@@ -39,7 +39,7 @@ def grains_of(grains: list[int] | None, results: "Results") -> list[int] | None:
 
 
 def within(key: str, value: float, low: float, high: float) -> None:
-    """Refuse an option outside its range."""
+    """Raise an error for an option outside its range."""
     if not low <= value <= high:
         from ryusa.errors import CaseError
 
@@ -67,15 +67,15 @@ def _quantity(text: str, unit: str) -> float:
 
 
 def need(there: bool, results: "Results", what: str) -> None:
-    """Refuse a run that does not hold what a measure needs."""
+    """Raise an error for a run without the data that a measure needs."""
     if not there:
         from ryusa.errors import ResultsError
 
-        raise ResultsError(f"{results.folder}: does not hold {what}")
+        raise ResultsError(f"{results.folder}: does not contain {what}")
 
 
 def need_settled(results: "Results", what_to_do: str) -> None:
-    """Refuse a run that ended before its settling time."""
+    """Raise an error for a run that ended before its settling time."""
     from ryusa.measure._run import settle_time
 
     settle, last = settle_time(results), end_of(results)
@@ -89,7 +89,7 @@ def need_settled(results: "Results", what_to_do: str) -> None:
 
 
 def end_of(results: "Results", end: float = float("inf")) -> float:
-    """End of a window [s]: `end`, or the last frame where that comes before."""
+    """End of a time window [s]: `end` or the last frame, whichever is earlier."""
     return min(end, float(results.frames.t[-1])) if len(results.frames) else 0.0
 
 

@@ -1,4 +1,4 @@
-"""`ryusa new`, `check`, `run`, `schema`: from a case file to a run folder."""
+"""`ryusa new`, `check`, `run`, `resume`, `inspect`, `schema`: from a case file to a run folder."""
 
 import gc
 from pathlib import Path
@@ -20,33 +20,36 @@ Settings = Annotated[
     typer.Option(
         "--set",
         metavar="KEY=VALUE",
-        help="Change a key of the case: --set 'contact.stiffness=10 N/cm'. Repeatable.",
+        help="Override a key of the case, such as --set 'contact.stiffness=10 N/cm'. May be repeated.",
     ),
 ]
-Seed = Annotated[int | None, typer.Option("--seed", help="Change the seed of the case.", show_default=False)]
+Seed = Annotated[
+    int | None, typer.Option("--seed", help="Override the random seed of the case.", show_default=False)
+]
 
 Threads = Annotated[
-    int, typer.Option("--threads", metavar="N", help="Threads; the numbers do not depend on it.")
+    int, typer.Option("--threads", metavar="N", help="Number of threads; the results do not depend on it.")
 ]
 Engine = Annotated[
     str,
     typer.Option("--engine", metavar="NAME", help=f"Engine that steps the grains: {registry.summary()}."),
 ]
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no closing lines.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print neither progress nor summary.")]
 Every = Annotated[
-    str, typer.Option("--checkpoint", metavar="TIME", help="Wall time between checkpoints; 'never' for none.")
+    str, typer.Option("--checkpoint", metavar="TIME", help="Wall time between checkpoints, or 'never'.")
 ]
 Force = Annotated[
     bool,
     typer.Option(
         "--force",
-        help="Go on by another version or processor, or with another stop rule: right, not the same.",
+        help="Resume even if the version of ryusa, the processor or the stop rule has changed. The results "
+        "are valid, but not bit for bit those of an uninterrupted run.",
     ),
 ]
 
-_STOPPED = 5  # exit code after Ctrl-C or SIGTERM: `ryusa resume` goes on
-_LAID_OUT = 100_000  # grains at most that `check` lays out, in half a second
-_WIDE = 160  # columns of a table that goes to a file or pipe
+_STOPPED = 5  # exit code after Ctrl-C or SIGTERM: `ryusa resume` continues the run
+_MOST_PLACED = 100_000  # grains that `check` places at most, in half a second
+_WIDE = 160  # columns of a table that is written to a file or pipe
 
 
 def register(app: typer.Typer) -> None:
@@ -58,7 +61,7 @@ def register(app: typer.Typer) -> None:
 def new(
     kind: Annotated[
         str | None,
-        typer.Argument(metavar="KIND", help="What to start from; without it, the kinds are listed."),
+        typer.Argument(metavar="KIND", help="Template to start from; without it, the templates are listed."),
     ] = None,
     path: Annotated[
         Path | None, typer.Argument(metavar="PATH", help="File to write; KIND.toml when not given.")
@@ -83,14 +86,14 @@ def new(
         with path.open("xb") as file:
             file.write(source.read_bytes())
     except FileExistsError:
-        raise RyusaError(f"{path}: is there already and is left alone. Give another path") from None
+        raise RyusaError(f"{path}: exists already and is not overwritten. Give another path") from None
     except OSError as error:
         raise RyusaError(f"{path}: cannot be written ({error.strerror or error})") from error
     typer.echo(f"{path} written. Next: ryusa check {path}; ryusa run {path}")
 
 
 def check(case: CaseFile, settings: Settings = None, seed: Seed = None) -> None:
-    """Explain a case back, with everything that follows from it, without running it."""
+    """Check a case without running it, and print its values with everything that follows from them."""
     found = _read(case, settings, seed)
     from rich.console import Console
     from rich.markup import escape
@@ -101,7 +104,7 @@ def check(case: CaseFile, settings: Settings = None, seed: Seed = None) -> None:
 
     derived = derive(found)
     n_grain = derived.n_grain + derived.n_fixed
-    built = build(found, derived) if n_grain <= _LAID_OUT else None
+    built = build(found, derived) if n_grain <= _MOST_PLACED else None
     console = Console()
     if not console.is_terminal:
         console = Console(width=_WIDE)
@@ -117,8 +120,10 @@ def check(case: CaseFile, settings: Settings = None, seed: Seed = None) -> None:
         mark = "warning: " if row.flag == "warning" else ""
         table.add_row(f"  {escape(row.name)}", escape(row.shown), escape(mark + row.origin), style=style)
     console.print(table)
-    console.print("[bold]chosen because the case leaves it open[/bold]")
-    notes = (f"not told for more than {_LAID_OUT} grains, which `ryusa run` lays out",)
+    console.print("[bold]choices made because the case does not state them[/bold]")
+    notes = (
+        f"not listed for cases of more than {_MOST_PLACED:,} grains; `ryusa run` writes them to log.txt",
+    )
     for note in built.notes if built is not None else notes:
         console.print(f"  {escape(note)}", highlight=False)
 
@@ -139,22 +144,23 @@ def run(
     quiet: Quiet = False,
     checkpoint: Every = "5min",
     resume: Annotated[
-        bool, typer.Option("--resume", help="Go on where this run stopped; begin where there is none.")
+        bool,
+        typer.Option("--resume", help="Continue this run where it was stopped; start it if there is none."),
     ] = False,
     force: Force = False,
 ) -> None:
-    """Run a case and write a run folder; Ctrl-C stops it with everything readable and a checkpoint.
+    """Run a case and write a run folder; Ctrl-C stops the run with a checkpoint and readable data.
 
-    SIGUSR1 asks for a checkpoint. A stopped run leaves with 5, and --resume or
-    `ryusa resume` goes on with the same bits.
+    SIGUSR1 requests a checkpoint. A stopped run exits with code 5; --resume or
+    `ryusa resume` continues it, bit for bit as if it had not been stopped.
     """
-    from ryusa.running.interrupt import listening
+    from ryusa.running.interrupt import catch_signals
 
-    with listening() as heard:  # before anything heavy is loaded
+    with catch_signals() as signal:  # before anything heavy is loaded
         found = _read(case, settings, seed)
         from ryusa.running.runner import run as run_case
 
-        heard.raise_if_asked("before the first step; no run folder was made")
+        signal.raise_if_stopped("before the first step; no run folder was created")
         results = run_case(
             found, out, threads=threads, progress=not quiet, overwrite=overwrite,
             checkpoint=_every(checkpoint), resume=resume, force=force, engine=engine,
@@ -163,32 +169,34 @@ def run(
 
 
 def resume(
-    folder: Annotated[Path, typer.Argument(metavar="RUN", help="A run folder.", show_default=False)],
+    folder: Annotated[Path, typer.Argument(metavar="RUN", help="Run folder.", show_default=False)],
     threads: Threads = 1,
     quiet: Quiet = False,
     checkpoint: Every = "5min",
     force: Force = False,
 ) -> None:
-    """Go on with a run that was stopped or killed, bit for bit as if it never had been."""
-    from ryusa.running.interrupt import listening
+    """Continue a run that was stopped or killed, bit for bit as if it had not been interrupted."""
+    from ryusa.running.interrupt import catch_signals
 
-    with listening() as heard:
+    with catch_signals() as signal:
         from ryusa.casefile.read import read
         from ryusa.errors import ResultsError
         from ryusa.results import schema
         from ryusa.results.read import read_json
 
         if not schema.is_run_folder(folder):
-            raise ResultsError(f"{folder}: no run folder of ryusa")
+            raise ResultsError(f"{folder}: not a run folder of ryusa")
         if not (folder / schema.CASE_TOML).is_file():
-            raise ResultsError(f"{folder}: holds no case; ryusa.run_scene(..., resume=True) goes on with it")
+            raise ResultsError(
+                f"{folder}: holds no case file; resume it in Python with ryusa.run_scene(..., resume=True)"
+            )
         origin = read_json(folder / schema.PROVENANCE)
         overrides, engine = origin.get("overrides"), origin.get("engine")
-        said = {str(key): str(one) for key, one in overrides.items()} if isinstance(overrides, dict) else {}
-        found = read(folder / schema.CASE_TOML, said)
+        given = {str(key): str(one) for key, one in overrides.items()} if isinstance(overrides, dict) else {}
+        found = read(folder / schema.CASE_TOML, given)
         from ryusa.running.runner import run as run_case
 
-        heard.raise_if_asked("before the first step; nothing was changed")
+        signal.raise_if_stopped("before the first step; nothing was changed")
         results = run_case(
             found, folder, threads=threads, progress=not quiet, checkpoint=_every(checkpoint), resume=True,
             force=force, engine=engine if engine in registry.names() else None,
@@ -197,9 +205,9 @@ def resume(
 
 
 def inspect(
-    folder: Annotated[Path, typer.Argument(metavar="RUN", help="A run folder.", show_default=False)],
+    folder: Annotated[Path, typer.Argument(metavar="RUN", help="Run folder.", show_default=False)],
 ) -> None:
-    """Say what ran, how far, its energy account, what to mind, and whether it is complete."""
+    """Report on a run: case, progress, energy account, warnings, checkpoints and the next command."""
     from ryusa.running.inspection import inspection
 
     for line in inspection(folder):
@@ -209,7 +217,7 @@ def inspect(
 def _close(results: "Results", quiet: bool) -> None:
     folder = results.folder
     if not quiet:
-        typer.echo(f"{folder}: {results.status}. Open {folder / 'grains.vtkhdf'} in ParaView")
+        typer.echo(f"{folder}: {results.status}. To view it, open {folder / 'grains.vtkhdf'} in ParaView")
         if results.complete:
             typer.echo(f"next: ryusa measure {folder} WHAT, ryusa draw {folder} WHAT")
         else:
@@ -246,7 +254,7 @@ def _read(path: Path, settings: list[str] | None, seed: int | None) -> "Case":
         overrides[key.strip()] = value.strip()
     if seed is not None:
         overrides["seed"] = str(seed)
-    gc.disable()  # modules are loaded here: collections free nothing and cost a quarter of an answer
+    gc.disable()  # modules are loaded here: a collection frees nothing and takes a quarter of the time
     try:
         from ryusa.casefile.read import read
 
@@ -257,7 +265,7 @@ def _read(path: Path, settings: list[str] | None, seed: int | None) -> "Case":
 
 
 def _kinds() -> dict[str, str]:
-    """Case files that come with ryusa: name (paper/fig19 for one of the paper's) and title."""
+    """Case files in the package: name (paper/fig19 for one of the paper's) and title."""
     import tomllib
 
     return {

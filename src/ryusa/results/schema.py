@@ -25,7 +25,9 @@ PARTS = "parts"  # folder of write-once HDF5 files
 
 PART_NAME = re.compile(r"part-(\d{6})\.h5")
 SCENE_NAME = re.compile(r"scene-(\d{6})\.h5")
-SHELF_NAME = re.compile(r"shelf-(\d{6})-\d+-\d+\.h5")  # index over some parts, for the index over all
+SUBINDEX_NAME = re.compile(
+    r"(?:subindex|shelf)-(\d{6})-\d+-\d+\.h5"
+)  # over some parts; "shelf" in older runs
 
 # status in provenance.json
 RUNNING, COMPLETE, STOPPED, FAILED = "running", "complete", "stopped", "failed"
@@ -82,9 +84,9 @@ def part_name(k: int) -> str:
     return f"part-{k:06d}.h5"
 
 
-def shelf_name(first: int, n_frame: int, n_contact: int) -> str:
-    """File name of the shelf that begins with part `first`: no two that differ share a name."""
-    return f"shelf-{first:06d}-{n_frame}-{n_contact}.h5"
+def subindex_name(first: int, n_frame: int, n_contact: int) -> str:
+    """File name of the sub-index that begins with part `first`; different ones never share a name."""
+    return f"subindex-{first:06d}-{n_frame}-{n_contact}.h5"
 
 
 def scene_name(k: int) -> str:

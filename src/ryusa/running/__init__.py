@@ -1,1 +1,1 @@
-"""The one loop: build, advance, record, watch, stop."""
+"""Runs: the time loop, the recorder, live numbers, checkpoints and resume."""

@@ -1,4 +1,4 @@
-"""Writing so that a file is either as before or whole, and a full disk is told from a broken one."""
+"""Atomic writes, and disk errors as exceptions of ryusa; a full disk has an exception of its own."""
 
 import errno
 import os
@@ -13,45 +13,47 @@ from ryusa.errors import DiskFull, ResultsError
 _FULL = {errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC)}
 
 
-def image(fill: Callable[[h5py.File], None]) -> bytes:
-    """An HDF5 file as its bytes, made in memory: the library never meets a full disk."""
+def hdf5_image(fill: Callable[[h5py.File], None]) -> bytes:
+    """Bytes of an HDF5 file, made in memory, so that the HDF5 library never writes to a full disk."""
     with h5py.File("image.h5", "w", driver="core", backing_store=False) as file:
         fill(file)
         file.flush()
         return file.id.get_file_image()
 
 
-def write_whole(path: Path, content: bytes) -> None:
-    """Write `path` beside and rename it, so that it is as before or whole, also after a power cut.
+def write_atomically(path: Path, content: bytes) -> None:
+    """Write to a temporary file and rename it, so that `path` is old or new but never partial.
+
+    This also holds after a power failure.
 
     Raises
     ------
-    OSError : nothing was changed.
+    OSError : `path` is unchanged.
     """
-    os.replace(write_beside(path, content), path)
+    os.replace(write_temporary(path, content), path)
     sync(path.parent)
 
 
-def write_beside(path: Path, content: bytes) -> Path:
-    """Write what shall become `path` under another name, and push it to the disk.
+def write_temporary(path: Path, content: bytes) -> Path:
+    """Write the future content of `path` to a temporary file beside it, and sync it to the disk.
 
     Raises
     ------
-    OSError : what was written is gone again.
+    OSError : the temporary file is removed.
     """
-    beside = path.with_name(f".{path.name}.new")
+    temporary = path.with_name(f".{path.name}.new")
     try:
-        with beside.open("wb") as file:
+        with temporary.open("wb") as file:
             file.write(content)
-        sync(beside)
+        sync(temporary)
     except OSError:
-        beside.unlink(missing_ok=True)
+        temporary.unlink(missing_ok=True)
         raise
-    return beside
+    return temporary
 
 
-def write_over(path: Path, content: bytes) -> None:
-    """Write over a file in its place, which takes no more room than it has; only where there is no other."""
+def overwrite(path: Path, content: bytes) -> None:
+    """Overwrite a file in place, which needs no free space; not atomic."""
     with path.open("r+b") as file:
         file.write(content)
         file.truncate()
@@ -60,7 +62,7 @@ def write_over(path: Path, content: bytes) -> None:
 
 
 def sync(path: Path) -> None:
-    """Push a file or folder to the disk."""
+    """Sync a file or folder to the disk."""
     handle = os.open(path, os.O_RDONLY)
     try:
         os.fsync(handle)
@@ -73,8 +75,8 @@ def free_bytes(place: Path) -> int:
     return shutil.disk_usage(place).free
 
 
-class disk:
-    """Within the block, what the disk says is a ResultsError that names the folder; DiskFull if it is."""
+class disk_errors:
+    """Raise an OSError of the block as a ResultsError that names the folder, or as DiskFull."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -85,7 +87,7 @@ class disk:
     def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
         if not isinstance(error, OSError):
             return
-        said = f"{self.folder}: cannot be written ({error.strerror or error})"
+        message = f"{self.folder}: cannot be written ({error.strerror or error})"
         if error.errno in _FULL:
-            raise DiskFull(f"{said}. What was written before stays readable") from error
-        raise ResultsError(f"{said}. What was written before stays readable") from error
+            raise DiskFull(f"{message}. Data written before remains readable") from error
+        raise ResultsError(f"{message}. Data written before remains readable") from error

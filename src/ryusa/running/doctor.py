@@ -1,4 +1,4 @@
-"""What this machine and installation are, as far as the speed and the bits of a run depend on it."""
+"""Report on the machine and the installation, as far as speed and bits of a run depend on them."""
 
 import os
 import platform
@@ -11,19 +11,19 @@ from ryusa import __version__
 from ryusa.engine import registry
 from ryusa.running.provenance import processor, versions
 
-# Of those the processor has, the widest that numbers of a run are reckoned with.
+# Widest first; the widest that the processor has is reported.
 _VECTORS = (("avx512f", "AVX-512"), ("avx2", "AVX2"), ("avx", "AVX"), ("neon", "NEON"), ("sse2", "SSE2"))
 
 
 def diagnosis() -> list[tuple[str, str]]:
-    """Name and finding of each line; a finding that wants something done begins with "no"."""
+    """Name and finding of each line; a finding that needs action begins with "no"."""
     packages = ", ".join(f"{name} {found}" for name, found in versions().items() if found)
     return [
         ("ryusa", f"{__version__}, Python {platform.python_version()}, {platform.system()}"),
         ("packages", packages),
         ("processor", processor()),
         ("vectors", _vectors()),
-        ("threads", f"{_cores()} at most; `ryusa run --threads N`, any number gives the same bits"),
+        ("threads", f"up to {_cores()} (ryusa run --threads N); the results do not depend on the number"),
         ("cache", _cache()),
         *((f"engine {name}", _engine(name)) for name in registry.names()),
     ]
@@ -37,7 +37,7 @@ def _cores() -> int:
 
 
 def _vectors() -> str:
-    """Vector instructions that compiled code may use."""
+    """Vector instructions available to compiled code."""
     from llvmlite import binding
 
     has: Any = binding.get_host_cpu_features()
@@ -47,22 +47,28 @@ def _vectors() -> str:
 
 
 def _cache() -> str:
-    """Where numba keeps compiled code, and whether it can."""
+    """Folder in which numba stores compiled code, and whether it can be written."""
     from ryusa.engine.shared import dashpots
 
-    kept: Any = dashpots.dashpots
-    place = getattr(getattr(kept, "_cache", None), "cache_path", None)
+    compiled: Any = dashpots.dashpots
+    place = getattr(getattr(compiled, "_cache", None), "cache_path", None)
     if place is None:
-        return "no folder found: every process compiles anew. Set NUMBA_CACHE_DIR to a folder of yours"
+        return (
+            "no folder found, so that every process compiles again. "
+            "Set NUMBA_CACHE_DIR to a folder that you can write"
+        )
     folder = Path(place)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
             pass
     except OSError as error:
-        return f"no writing to {folder} ({error.strerror}): every process compiles anew. Set NUMBA_CACHE_DIR"
+        return (
+            f"no permission to write to {folder} ({error.strerror}), so that every process compiles again. "
+            "Set NUMBA_CACHE_DIR to a folder that you can write"
+        )
     size = sum(file.stat().st_size for file in folder.iterdir() if file.is_file())
-    return f"{folder}, writable, holds {size / 2**20:.0f} MiB"
+    return f"{folder}, writable, {size / 2**20:.0f} MiB of compiled code"
 
 
 def _engine(name: str) -> str:

@@ -1,4 +1,4 @@
-"""A folder for a run: refused when taken, when it cannot be written, when the frames would not fit."""
+"""Creation of a run folder; refuses a folder in use, one that cannot be written, and a full disk."""
 
 import json
 import tempfile
@@ -9,7 +9,7 @@ from typing import Any
 
 from ryusa.errors import CaseError, DiskFull, ResultsError
 from ryusa.results import schema
-from ryusa.running.disk import disk, free_bytes, write_over, write_whole
+from ryusa.running.disk import disk_errors, free_bytes, overwrite, write_atomically
 from ryusa.running.vtkhdf import POINTS
 
 _FILES = (
@@ -19,34 +19,35 @@ _FILES = (
 
 
 def make_folder(folder: Path, *, overwrite: bool) -> None:
-    """Make `folder`, unless it holds what must not be touched.
+    """Create `folder`, unless it holds data that must not be overwritten.
 
     Raises
     ------
-    ResultsError : it exists (and `overwrite` is off, or it is no run of ryusa), or it cannot be written.
+    ResultsError : it exists and `overwrite` is off or it is not a run folder, or it cannot be written.
 
     Notes
     -----
-    A folder with an empty parts/ and nothing else was left by a run killed as it began; it is used.
+    A folder with nothing but an empty parts/ is left by a run that was killed at its start; it is reused.
     """
     with _writing(folder):
         if folder.is_symlink() or (folder.exists() and not folder.is_dir()):
-            raise ResultsError(f"{folder}: is there and is not a folder. Choose another with -o")
+            raise ResultsError(f"{folder}: exists and is not a folder. Choose another with -o")
         if folder.exists() and any(folder.iterdir()) and not _just_begun(folder):
             if not is_run(folder):
                 raise ResultsError(
-                    f"{folder}: is there, is no run of ryusa, and is left alone. Choose another with -o"
+                    f"{folder}: exists and is not a run folder of ryusa, so it is not changed. "
+                    "Choose another with -o"
                 )
             if not overwrite:
                 raise ResultsError(
-                    f"{folder}: holds a run already. Choose another folder with -o, go on with --resume, "
-                    "or say --overwrite"
+                    f"{folder}: already holds a run. Choose another folder with -o, continue that run with "
+                    "--resume, or replace it with --overwrite"
                 )
         folder.mkdir(parents=True, exist_ok=True)
 
 
 def prepare(folder: Path) -> None:
-    """Empty `folder`, which is locked, of an earlier run, and make parts/ in it."""
+    """Delete an earlier run from the locked `folder`, and create parts/ in it."""
     with _writing(folder):
         if is_run(folder):
             clear(folder)
@@ -64,7 +65,7 @@ def _writing(folder: Path) -> Generator[None]:
 
 
 def is_run(folder: Path) -> bool:
-    """True for a folder that ryusa wrote."""
+    """True for a folder written by ryusa."""
     if not schema.is_run_folder(folder):
         return False
     try:
@@ -75,7 +76,7 @@ def is_run(folder: Path) -> bool:
 
 
 def _just_begun(folder: Path) -> bool:
-    """True for a folder that holds what `prepare` makes and nothing a run wrote."""
+    """True for a folder with nothing but what `prepare` creates."""
     parts, unfinished = folder / schema.PARTS, folder / f".{schema.PROVENANCE}.new"
     return (
         set(folder.iterdir()) <= {parts, unfinished, folder / schema.LOCK}
@@ -86,11 +87,11 @@ def _just_begun(folder: Path) -> bool:
 
 
 def clear(folder: Path) -> None:
-    """Delete what a run wrote, provenance last; anything else in the folder stays."""
+    """Delete the files of a run, provenance last; other files in the folder are kept."""
     parts = folder / schema.PARTS
     for entry in list(parts.iterdir()):
         name = entry.name.removeprefix(".").removesuffix(".new")
-        ours = (schema.PART_NAME, schema.SCENE_NAME, schema.SHELF_NAME)
+        ours = (schema.PART_NAME, schema.SCENE_NAME, schema.SUBINDEX_NAME)
         if name == POINTS or any(one.fullmatch(name) for one in ours):
             entry.unlink()
     for name in _FILES:
@@ -99,27 +100,27 @@ def clear(folder: Path) -> None:
 
 
 def write_json(path: Path, content: Mapping[str, Any]) -> None:
-    """Write JSON so that `path` is either as before or whole; numbers that are not finite become null.
+    """Write JSON atomically; numbers that are not finite become null.
 
     Raises
     ------
-    ResultsError : the disk is full or the folder is gone.
+    ResultsError : the disk is full or the folder does not exist.
     """
-    with disk(path):
-        write_whole(path, _json(content))
+    with disk_errors(path):
+        write_atomically(path, _json(content))
 
 
-def write_last_words(path: Path, content: Mapping[str, Any]) -> None:
-    """As `write_json`; on a disk without room, over the old ones in their place."""
+def write_final_json(path: Path, content: Mapping[str, Any]) -> None:
+    """As `write_json`; on a full disk the file is overwritten in place."""
     try:
         write_json(path, content)
     except DiskFull:
-        with disk(path):
-            write_over(path, _json(content))
+        with disk_errors(path):
+            overwrite(path, _json(content))
 
 
-def as_written(content: Mapping[str, Any]) -> dict[str, Any]:
-    """Content as it will be read back from JSON."""
+def as_read_back(content: Mapping[str, Any]) -> dict[str, Any]:
+    """Content as JSON returns it."""
     return json.loads(_json(content))
 
 
@@ -141,14 +142,14 @@ def _plain(value: Any) -> Any:
 
 
 def refuse_if_not_writable(folder: Path) -> None:
-    """Try a nameless file where `folder` is or will be.
+    """Test with a temporary file that `folder` can be written.
 
     Raises
     ------
     ResultsError : nothing can be written there.
     """
     try:
-        with tempfile.TemporaryFile(dir=existing(folder)):
+        with tempfile.TemporaryFile(dir=nearest_existing(folder)):
             pass
     except OSError as error:
         raise ResultsError(
@@ -156,64 +157,64 @@ def refuse_if_not_writable(folder: Path) -> None:
         ) from error
 
 
-def existing(folder: Path) -> Path:
-    """`folder`, or the nearest folder above it that is there."""
+def nearest_existing(folder: Path) -> Path:
+    """`folder`, or the nearest parent folder that exists."""
     return next(place for place in (folder, *folder.absolute().parents) if place.is_dir())
 
 
 def refuse_if_too_big(
     folder: Path, *, n_frame: float, interval: float, for_frames: float, for_events: float = 0.0
 ) -> None:
-    """Compare the frames and contact events to come with the free space on the disk.
+    """Compare the expected size of frames and contact records with the free space on the disk.
 
     Parameters
     ----------
     folder : where the run goes.
     n_frame, interval : frames, and the time between them [s].
-    for_frames, for_events : what they take on the disk [B].
+    for_frames, for_events : their expected size on the disk [B].
 
     Raises
     ------
-    CaseError : they would not fit.
+    CaseError : the free space is not sufficient.
     """
-    place = existing(folder)
+    place = nearest_existing(folder)
     needed, free = for_frames + for_events, free_bytes(place)
     if needed <= free:
         return
-    events = f" and the contact events about {size(for_events)}" if for_events else ""
+    events = f" and the contact records about {format_bytes(for_events)}" if for_events else ""
     many = for_events > for_frames
     raise CaseError(
         "record.events" if many else "record.frames",
         None if many else f"{interval:g} s",
-        f"{n_frame:.3g} frames need {size(for_frames)}{events}, but only {size(free)} are free "
-        f"at {place}. Record fewer {'events' if many else 'frames'}, or stop earlier, "
-        "or choose another disk with -o",
+        f"{n_frame:.3g} frames need {format_bytes(for_frames)}{events}, but only {format_bytes(free)} are "
+        f"free at {place}. Record fewer {'contacts' if many else 'frames'}, stop earlier, or write to "
+        "another disk with -o",
     )
 
 
 def refuse_if_too_large(needed: float, n_grain: int) -> None:
-    """Compare the memory that a run takes with what this machine has to give.
+    """Compare the memory that a run needs with the memory available.
 
     Parameters
     ----------
-    needed : by the run's grains [B].
+    needed : memory for the grains of the run [B].
     n_grain : free grains.
 
     Raises
     ------
-    CaseError : it would not fit.
+    CaseError : the memory is not sufficient.
     """
-    there = memory_there()
+    there = available_memory()
     if there is not None and needed > there:
         raise CaseError(
             "build", None,
-            f"gives {n_grain} grains, which need {size(needed)} of memory; this machine has {size(there)} to "
-            "give. Take fewer grains, or record.events = 'none', which needs half",
+            f"gives {n_grain} grains, which need {format_bytes(needed)} of memory; {format_bytes(there)} are "
+            "available. Take fewer grains, or set record.events = 'none', which needs half",
         )  # fmt: skip
 
 
-def memory_there() -> float | None:
-    """Memory that this process could still have [B]; None where the system does not say."""
+def available_memory() -> float | None:
+    """Memory available to this process [B]; None where the system does not report it."""
     try:
         lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()
         free = next(int(line.split()[1]) * 1024 for line in lines if line.startswith("MemAvailable:"))
@@ -229,10 +230,10 @@ def memory_there() -> float | None:
     return float(free)
 
 
-def size(nbytes: float) -> str:
-    """Say a number of bytes.
+def format_bytes(nbytes: float) -> str:
+    """Format a number of bytes.
 
-    >>> size(2.5e9)
+    >>> format_bytes(2.5e9)
     '2.5 GB'
     """
     for unit in ("B", "kB", "MB", "GB", "TB"):

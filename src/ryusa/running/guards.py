@@ -1,4 +1,4 @@
-"""Guards of the loop: what no single step can see."""
+"""Check of the energy account during a run, which a single step cannot make."""
 
 import numpy as np
 
@@ -6,14 +6,14 @@ from ryusa.errors import EnergyCreated
 from ryusa.model import Book, Scene, State, Tally
 from ryusa.model.tally import HELD, residual_of
 
-# Of the largest term of the energy account. Where grains boil, nearly all of it was created. Healthy runs
-# stay below 1e-5; one contact just met, of two steps in all, has 0.5 for a moment.
+# Of the largest term of the energy account. In an unstable run nearly all energy is spurious. Sound runs stay
+# below 1e-5; a single contact that lasts two steps in all reaches 0.5 for one step.
 CREATED = 0.5
-_AT_REST = 1e-3  # of the weight of all grains times a diameter: less is round-off of grains that lie still
+_AT_REST = 1e-3  # of the weight of all grains times a diameter; less is round-off in a bed at rest
 
 
 def energy_created(scene: Scene, state: State, tally: Tally) -> EnergyCreated | None:
-    """Tell energy that came from nowhere, or from the step; None where the account holds.
+    """Return an error if the grains gained energy that no force supplied; None if the account closes.
 
     Parameters
     ----------
@@ -21,8 +21,8 @@ def energy_created(scene: Scene, state: State, tally: Tally) -> EnergyCreated | 
 
     Notes
     -----
-    `Book.STEP`, springs met within a step, counts as created: it explains what a step too long for the
-    springs gives, and nobody gave it.
+    `Book.STEP`, the energy of springs that begin within a step, counts as spurious: it is the error of a step
+    that is too long for the springs, not the work of a force.
     """
     created = tally.imbalance + tally.books[Book.STEP]
     if not created > 0.0:
@@ -36,8 +36,9 @@ def energy_created(scene: Scene, state: State, tally: Tally) -> EnergyCreated | 
         return None
     grain = int(np.argmax((scene.m + scene.m_added) * np.square(state.v).sum(axis=1)))
     return EnergyCreated(
-        f"{created:.3g} J came from nowhere, {share:.2g} of the largest term of the energy "
-        f"account (limit {CREATED:g}); the grain with most has {np.linalg.norm(state.v[grain]):.3g} m/s",
+        f"the grains gained {created:.3g} J that no force supplied, {share:.2g} of the largest term of the "
+        f"energy account (limit {CREATED:g}); the grain with the highest kinetic energy moves at "
+        f"{np.linalg.norm(state.v[grain]):.3g} m/s",
         grain=grain,
         step=state.step,
         t=state.t,

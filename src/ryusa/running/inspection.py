@@ -1,4 +1,4 @@
-"""What a run folder says of its run: what ran, how far, energy, what to mind, whether complete."""
+"""Report on a run folder: case, progress, energy account, warnings, checkpoints, next command."""
 
 import math
 from collections.abc import Mapping
@@ -6,19 +6,18 @@ from pathlib import Path
 from typing import Any
 
 from ryusa.errors import CheckpointError
-from ryusa.model import Book
-from ryusa.model.tally import GIFTS, HELD, LOSSES
 from ryusa.results import Results, schema
 from ryusa.running.checkpoint import read_checkpoint
-from ryusa.running.folder import size
+from ryusa.running.energy_terms import energy_lines
+from ryusa.running.folder import format_bytes
 from ryusa.running.lock import holder
 
 _WIDE = 14  # columns of the heading of a line
-_LONGEST = 300  # letters shown of a word that the folder gives
+_LONGEST = 300  # characters shown of a text from the folder
 
 
 def inspection(folder: Path) -> list[str]:
-    """Lines for a reader who has only the folder.
+    """Lines of the report on a run folder.
 
     Raises
     ------
@@ -29,10 +28,10 @@ def inspection(folder: Path) -> list[str]:
         ("run", _words(results.case.get("title") or results.folder.name)),
         ("status", _status(results)),
         ("case", _case(results)),
-        ("made by", _made_by(results.provenance)),
-        ("when", _when(results)),
-        *(("gone on", _gone_on(one)) for one in _resumed(results.provenance)),
-        ("how far", _how_far(results)),
+        ("computed by", _made_by(results.provenance)),
+        ("time", _when(results)),
+        *(("resumed", _resumption(one)) for one in _resumed(results.provenance)),
+        ("progress", _how_far(results)),
         ("recorded", _recorded(results)),
         *_energy(results),
         *(("warning", _words(one)) for one in _list(results.summary.get("warnings"))),
@@ -47,17 +46,17 @@ def _status(results: Results) -> str:
     if results.status != schema.RUNNING:
         return f"{_words(results.status)}: {message}" if message else _words(results.status)
     who = holder(results.folder)
-    return f"running: {who} writes" if who else "not complete: killed, it says running and no process writes"
+    return f"running: {who} is writing" if who else "killed: marked as running, but no process is writing"
 
 
 def _case(results: Results) -> str:
     scene, origin = results.scene, results.provenance
     water = "" if scene.column is None else f", a column of {scene.column.n} cells of water"
     overrides = origin.get("overrides")
-    said = "".join(f", {_words(k)} = {_words(v)}" for k, v in _table(overrides).items())
+    lines = "".join(f", {_words(k)} = {_words(v)}" for k, v in _table(overrides).items())
     return (
         f"{scene.n_grain} free and {scene.n_fixed} fixed grains, {scene.n_plane} planes{water}; "
-        f"step {scene.dt:.4g} s; seed {_words(origin.get('seed'))}{said}"
+        f"step {scene.dt:.4g} s; seed {_words(origin.get('seed'))}{lines}"
     )
 
 
@@ -66,24 +65,26 @@ def _made_by(origin: Mapping[str, Any]) -> str:
     commit = str(origin.get("commit") or "")[:12]
     return (
         f"ryusa {_words(origin.get('ryusa'))}{f' ({_words(commit)})' if commit else ''}, "
-        f"{_words(origin.get('engine'))}, {_words(origin.get('threads'))} threads, "
+        f"engine {_words(origin.get('engine'))}, threads {_words(origin.get('threads'))}, "
         f"{_words(machine.get('processor'))}"
     )
 
 
 def _when(results: Results) -> str:
     origin, wall = results.provenance, results.summary.get("wall")
-    spent = f", {_number(wall):.4g} s of computing" if _number(wall) >= 0.0 else ""
-    return f"{_words(origin.get('begin'))} to {_words(origin.get('end') or 'now or never')}{spent}"
+    spent = f", {_number(wall):.4g} s of wall time" if _number(wall) >= 0.0 else ""
+    end = origin.get("end")
+    until = f", ended {_words(end)}" if end else ""
+    return f"started {_words(origin.get('begin'))}{until}{spent}"
 
 
 def _resumed(origin: Mapping[str, Any]) -> list[Mapping[str, Any]]:
     return [one for one in _list(origin.get("resumed")) if isinstance(one, dict)]
 
 
-def _gone_on(one: Mapping[str, Any]) -> str:
-    said = "".join(f"; {_words(text)}" for text in _list(one.get("said")))
-    return f"from t = {_number(one.get('t')):.6g} s, {_words(one.get('begin'))}{said}"
+def _resumption(one: Mapping[str, Any]) -> str:
+    lines = "".join(f"; {_words(text)}" for text in _list(one.get("said")))
+    return f"from t = {_number(one.get('t')):.6g} s, {_words(one.get('begin'))}{lines}"
 
 
 def _how_far(results: Results) -> str:
@@ -91,7 +92,7 @@ def _how_far(results: Results) -> str:
         _number(results.summary.get("t"), 0.0), float(results.frames.t[-1]) if len(results.frames) else 0.0
     )
     end = _number(_table(results.case.get("stop")).get("time"))
-    share = f" of {end:g} s at most, {100 * min(t / end, 1.0):.0f} %" if end > 0.0 else ""
+    share = f" of at most {end:g} s ({100 * min(t / end, 1.0):.0f} %)" if end > 0.0 else ""
     return f"t = {t:.6g} s{share}"
 
 
@@ -99,42 +100,31 @@ def _recorded(results: Results) -> str:
     frames, contacts = len(results.frames), sum(part.n_contact for part in results._parts)
     files = [one for one in results.folder.rglob("*") if one.is_file() and not one.is_symlink()]
     till = f", the last at t = {results.frames.t[-1]:.6g} s" if frames else ""
-    return f"{frames} frames{till}; {contacts} contacts; {size(sum(one.stat().st_size for one in files))}"
+    nbytes = sum(one.stat().st_size for one in files)
+    return f"{frames} frames{till}; {contacts} contacts; {format_bytes(nbytes)}"
 
 
 def _energy(results: Results) -> list[tuple[str, str]]:
-    """The account at the last frame [J]."""
+    """Energy account at the last frame."""
     if not len(results.frames):
         return []
     last = {name: float(column[-1]) for name, column in results.tally.items()}
-    kinds = (
-        ("held", (*HELD, Book.START.name.lower())),
-        ("lost", tuple(book.name.lower() for book in LOSSES)),
-        ("given", tuple(book.name.lower() for book in GIFTS)),
-    )
-    rows = [
-        (f"energy {kind}", ", ".join(f"{name} {last[name]:.3g}" for name in names) + " J")
-        for kind, names in kinds
-    ]
-    overlap = f"largest overlap/d {last['overlap_max']:.3g}, grain {int(last['overlap_grain'])}"
-    return [
-        *rows,
-        ("not explained", f"{last['imbalance']:.2g} J, residual {last['residual']:.1e}; {overlap}"),
-    ]
+    overlap = f"{last['overlap_max']:.3g}, grain {int(last['overlap_grain'])}"
+    return [*energy_lines(last), ("max overlap/d", overlap)]
 
 
 def _checkpoint(results: Results) -> str:
-    said: list[str] = []
+    lines: list[str] = []
     for name in (schema.CHECKPOINT, schema.CHECKPOINT_BEFORE):
         path = results.folder / name
         if not path.is_file():
             continue
         try:
-            state = read_checkpoint(path, results.scene.n_grain).part("state").about
-            said.append(f"{name} at step {_words(state.get('step'))}, t = {_number(state.get('t')):.6g} s")
+            state = read_checkpoint(path, results.scene.n_grain).block("state").values
+            lines.append(f"{name} at step {_words(state.get('step'))}, t = {_number(state.get('t')):.6g} s")
         except CheckpointError as error:
-            said.append(str(error))
-    return "; ".join(said) or "none yet"
+            lines.append(str(error))
+    return "; ".join(lines) or "none yet"
 
 
 def _next(results: Results) -> str:
@@ -146,7 +136,7 @@ def _next(results: Results) -> str:
 
 
 def _words(value: object) -> str:
-    """What the folder says, on one line and not longer than can be read."""
+    """Text from the folder on one line, printable and shortened."""
     text = " ".join("".join(c if c.isprintable() else " " for c in str(value)).split())
     return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."
 

@@ -1,6 +1,6 @@
-"""Ctrl-C, SIGTERM and SIGUSR1 as flags that are looked at between pieces of work.
+"""Ctrl-C, SIGTERM and SIGUSR1 as flags, which the loop checks between calls of the engine.
 
-An exception can come up inside a callback of the compiler, which drops it; a flag waits to be looked at.
+An exception raised inside a callback of the compiler would be dropped; a flag stays set until it is checked.
 """
 
 import signal
@@ -10,55 +10,56 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 _NAMES = {signal.SIGINT: "Ctrl-C", signal.SIGTERM: "SIGTERM"}
-_KEEP = getattr(signal, "SIGUSR1", None)  # asks for a checkpoint; not every system has it
+_CHECKPOINT = getattr(signal, "SIGUSR1", None)  # requests a checkpoint; not every system has it
 
 
 @dataclass
-class Heard:
-    """Who said what."""
+class StopSignal:
+    """Signals received so far."""
 
-    by: str = ""  # "Ctrl-C", "SIGTERM", or "" while nobody did
-    keep: bool = False  # somebody asked for a checkpoint
+    stop: str = ""  # "Ctrl-C", "SIGTERM", or "" while none was received
+    checkpoint: bool = False  # a checkpoint was requested
 
-    def raise_if_asked(self, when: str) -> None:
-        """Raise KeyboardInterrupt if somebody said stop; `when` says what was not done."""
-        if self.by:
-            raise KeyboardInterrupt(f"{self.by} {when}")
+    def raise_if_stopped(self, when: str) -> None:
+        """Raise KeyboardInterrupt if a stop was requested; `when` names the stage of the run."""
+        if self.stop:
+            raise KeyboardInterrupt(f"{self.stop} {when}")
 
 
-_ears: list[Heard] = []  # the block that listens, if any; handlers belong to the whole process
+_active: list[
+    StopSignal
+] = []  # of the block that handles signals, if any; handlers belong to the whole process
 
 
 @contextmanager
-def listening() -> Generator[Heard]:
-    """Keep Ctrl-C and SIGTERM as a flag within the block; a second one raises KeyboardInterrupt at once.
+def catch_signals() -> Generator[StopSignal]:
+    """Turn Ctrl-C and SIGTERM into a flag within the block; a second one raises KeyboardInterrupt at once.
 
-    SIGUSR1 asks for a checkpoint.
-
-    A block within a listening block shares its flag. Only the main thread can listen.
+    SIGUSR1 requests a checkpoint. A nested block shares the flag of the outer one. Only the main thread can
+    handle signals.
     """
-    if _ears:
-        yield _ears[0]
+    if _active:
+        yield _active[0]
         return
-    heard = Heard()
+    received = StopSignal()
     if threading.current_thread() is not threading.main_thread():
-        yield heard
+        yield received
         return
 
-    def hear(number: int, _: object) -> None:
-        if number == _KEEP:
-            heard.keep = True
+    def handle(number: int, _: object) -> None:
+        if number == _CHECKPOINT:
+            received.checkpoint = True
             return
-        if heard.by:
-            raise KeyboardInterrupt(f"{heard.by}, twice")
-        heard.by = _NAMES[signal.Signals(number)]
+        if received.stop:
+            raise KeyboardInterrupt(f"{received.stop}, twice")
+        received.stop = _NAMES[signal.Signals(number)]
 
-    numbers = [*_NAMES, *([] if _KEEP is None else [_KEEP])]
-    before = {number: signal.signal(number, hear) for number in numbers}
-    _ears.append(heard)
+    numbers = [*_NAMES, *([] if _CHECKPOINT is None else [_CHECKPOINT])]
+    before = {number: signal.signal(number, handle) for number in numbers}
+    _active.append(received)
     try:
-        yield heard
+        yield received
     finally:
-        _ears.clear()
+        _active.clear()
         for number, handler in before.items():
             signal.signal(number, handler)

@@ -1,4 +1,4 @@
-"""One process writes a run folder: a lock that goes with its process, whatever ends it."""
+"""Lock of a run folder, so that one process writes to it; the system releases it when the process ends."""
 
 import json
 import os
@@ -13,19 +13,19 @@ from ryusa.results import schema
 
 try:
     import fcntl
-except ImportError:  # a system without it: the lock says who holds it, and no more
+except ImportError:  # a system without flock: the lock file only names its holder
     fcntl = None
 
-_LIMIT = 4096  # bytes that are read of who holds a lock
+_LIMIT = 4096  # bytes read from a lock file
 
 
 @contextmanager
 def locked(folder: Path) -> Generator[str]:
-    """Hold the lock of a run folder, which must exist; gives who left it behind, or "".
+    """Hold the lock of an existing run folder; yields the process that left a stale lock, or "".
 
     Raises
     ------
-    ResultsError : another process writes into the folder; says which.
+    ResultsError : another process writes to the folder; the message names it.
     """
     path = folder / schema.LOCK
     try:
@@ -41,7 +41,7 @@ def locked(folder: Path) -> Generator[str]:
 
 
 def holder(folder: Path) -> str:
-    """Who writes into a run folder now; "" where nobody does, as far as can be told."""
+    """Process that writes to a run folder now; "" if none is known."""
     path = folder / schema.LOCK
     flags = os.O_RDONLY | os.O_CLOEXEC | getattr(os, "O_NOFOLLOW", 0)
     try:
@@ -64,7 +64,7 @@ def _taken(path: Path) -> tuple[IO[bytes], str]:
         try:
             left = _who(file)
             _hold(file, path, left)
-            if not _is(file, path):  # its holder took it away meanwhile
+            if not _is(file, path):  # its holder has removed it meanwhile
                 file.close()
                 continue
             file.seek(0)
@@ -78,28 +78,28 @@ def _taken(path: Path) -> tuple[IO[bytes], str]:
 
 
 def _hold(file: IO[bytes], path: Path, left: dict[str, Any], *, shared: bool = False) -> None:
-    """Take the lock, or say who has it."""
+    """Acquire the lock, or raise an error that names its holder."""
     who = f"process {left['pid']} on {left['host']}" if left else "another process"
     if fcntl is None:
         if left and left["host"] == socket.gethostname() and _lives(left["pid"]):
-            raise ResultsError(f"{path.parent}: {who} writes into it")
+            raise ResultsError(f"{path.parent}: {who} is writing to it")
         return
     try:
         fcntl.flock(file, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
     except BlockingIOError:
         raise ResultsError(
-            f"{path.parent}: {who} writes into it. Wait for it, or choose another folder with -o"
+            f"{path.parent}: {who} is writing to it. Wait until it ends, or choose another folder with -o"
         ) from None
-    except OSError:  # a file system that cannot lock: go by what the file says
+    except OSError:  # a file system without locks: rely on the content of the file
         if left and (left["host"] != socket.gethostname() or _lives(left["pid"])):
             raise ResultsError(
-                f"{path.parent}: {who} writes into it, or was killed there, which this file system cannot "
-                f"tell. If it is over, remove {path}"
+                f"{path.parent}: {who} is writing to it, or was killed: this file system has no locks to "
+                f"tell which. If that process has ended, remove {path}"
             ) from None
 
 
 def _who(file: IO[bytes]) -> dict[str, Any]:
-    """Process and host that hold the lock or left it behind; {} where that is not said."""
+    """Process and host named in a lock file; {} if it names none."""
     try:
         found = json.loads(file.read(_LIMIT))
         return {"pid": int(found["pid"]), "host": str(found["host"])[:100]}

@@ -1,4 +1,4 @@
-"""What a run says meanwhile: a bar on a terminal, plain lines elsewhere, the same lines in log.txt."""
+"""Progress of a run: a bar on a terminal, plain lines elsewhere, and the same lines in log.txt."""
 
 import sys
 import threading
@@ -15,25 +15,25 @@ if TYPE_CHECKING:
 
 _BAR_EVERY = 0.2  # s
 _LINE_EVERY = 5.0  # s
-_LINE_SHARE = 0.1  # of the way, at most once per such step when that takes longer than _LINE_EVERY
-_PATIENCE = 1.5  # s before a slow first step is explained
+_LINE_SHARE = 0.1  # of the run; one line per such share if that takes longer than _LINE_EVERY
+_SLOW_AFTER = 1.5  # s after which a slow first step is explained
 
 
 @dataclass(frozen=True)
-class Moment:
-    """What is shown."""
+class ProgressNumbers:
+    """Live numbers shown during a run."""
 
-    share: float  # of the way, 0 to 1, by the stop rule that will come first as far as known
+    share: float  # of the run that is done, 0 to 1, by the stop rule that is nearest
     t: float  # simulated [s]
     rate: float  # particle-steps per second
     overlap: float  # largest overlap/d
     residual: float  # of the energy account
-    hops: int | None = None  # of the grain that has fewest
+    hops: int | None = None  # saltations of the tracked grain with the fewest
 
     def __str__(self) -> str:
-        hops = "" if self.hops is None else f"  hops {self.hops}"
+        hops = "" if self.hops is None else f"  saltations {self.hops}"
         return (
-            f"t {self.t:.4g} s  overlap/d {self.overlap:.2g}  residual {self.residual:.0e}  "
+            f"t {self.t:.4g} s  overlap/d {self.overlap:.2g}  energy residual {self.residual:.0e}  "
             f"{self.rate / 1e6:.2f} M particle-steps/s{hops}"
         )
 
@@ -53,7 +53,7 @@ class Progress:
         self._stream = sys.stderr if stream is None else stream
         self._log = log.open("a", encoding="utf-8", buffering=1)
         self._begun = self._last = self._last_log = clock()
-        self._share = self._share_log = 0.0  # of the way: at the start, at the last line
+        self._share = self._share_log = 0.0  # of the run that is done: at the start, at the last line
         self._bar: RichProgress | None = None
         self._task: TaskID | None = None
         self._explained: set[str] = set()
@@ -61,24 +61,24 @@ class Progress:
             self._bar, self._task = _bar(self._stream)
 
     def line(self, text: str, *, shown: bool = True) -> None:
-        """Say something worth a line of its own; not `shown`, it goes to the log alone."""
+        """Write a line to the log and, if `shown`, to stderr."""
         self._write_log(text)
         if shown:
             self._show(text)
 
     def due(self) -> bool:
-        """Is it time for new numbers? Ask before working them out."""
+        """True when new numbers are due; check before computing them."""
         return self._clock() - self._last >= (_BAR_EVERY if self._bar is not None else _LINE_EVERY)
 
-    def starts_at(self, share: float) -> None:
-        """Begin with a share of the way done; what is left is reckoned from here."""
+    def start_at(self, share: float) -> None:
+        """Set the share that is already done; the remaining time is estimated from here."""
         self._begun, self._share = self._clock(), share
         if self._bar is not None and self._task is not None:
             self._bar.reset(self._task, now="")
             self._bar.update(self._task, completed=share)
 
-    def update(self, moment: Moment) -> None:
-        """Show new numbers."""
+    def update(self, moment: ProgressNumbers) -> None:
+        """Show new numbers, if a line or a redraw of the bar is due."""
         now = self._clock()
         self._last = now
         if self._bar is not None and self._task is not None:
@@ -93,9 +93,9 @@ class Progress:
             self._show(text)
 
     @contextmanager
-    def patience(self, text: str) -> Generator[None]:
-        """Say `text` if the block takes long, once in a run."""
-        timer = threading.Timer(_PATIENCE, self._explain, [text])
+    def explain_if_slow(self, text: str) -> Generator[None]:
+        """Write `text` if the block takes long, once per run."""
+        timer = threading.Timer(_SLOW_AFTER, self._explain, [text])
         timer.daemon = True
         timer.start()
         try:
@@ -109,7 +109,7 @@ class Progress:
             self.line(text)
 
     def close(self) -> None:
-        """Take the bar away and close the log."""
+        """Remove the bar and close the log."""
         if self._bar is not None:
             self._bar.stop()
             self._bar = None
@@ -120,7 +120,7 @@ class Progress:
             return
         try:
             self._log.write(f"{time.strftime('%Y-%m-%d %H:%M:%S')}  {text}\n")
-        except OSError:  # a full disk is reported by the recorder, which matters more than a line of the log
+        except OSError:  # the recorder reports a full disk; a lost line of the log does not matter
             return
 
     def _show(self, text: str) -> None:

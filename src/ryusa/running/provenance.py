@@ -1,4 +1,4 @@
-"""Where a run came from: versions, commit, machine, threads, seed, command line. The host name stays out."""
+"""Origin of a run: versions, commit, machine, threads, seed, command line; without the host name."""
 
 import os
 import platform
@@ -18,7 +18,7 @@ _GIT_PATIENCE = 5.0  # s
 
 
 def begin(*, threads: int, seed: int | None, engine: str, overrides: dict[str, str]) -> dict[str, Any]:
-    """What is known when a run begins; `status` says running."""
+    """Provenance at the start of a run, with status running."""
     return {
         "format": schema.FORMAT,
         "status": schema.RUNNING,
@@ -40,18 +40,18 @@ def begin(*, threads: int, seed: int | None, engine: str, overrides: dict[str, s
 
 
 def versions() -> dict[str, str | None]:
-    """Versions of what the numbers of a run depend on."""
+    """Versions of the packages on which the numbers of a run depend."""
     return {name: _version(name) for name in _PACKAGES}
 
 
 def now() -> str:
-    """Time now, UTC, ISO 8601."""
+    """Present time, UTC, ISO 8601."""
     return datetime.now(UTC).isoformat(timespec="seconds")
 
 
 @cache
 def commit() -> str | None:
-    """Git commit of the checkout this package runs from, with "+" when files were changed; None elsewhere."""
+    """Git commit of the checkout that contains this package, with "+" if files differ; None otherwise."""
     here = Path(__file__).resolve().parent
     top = _git(here, "rev-parse", "--show-toplevel")
     if top is None or not (Path(top) / "src" / "ryusa").is_dir():
@@ -73,7 +73,7 @@ def processor() -> str:
 
 
 def _command() -> list[str]:
-    """Command line, the program by its name alone."""
+    """Command line, with the program name without its path."""
     return [Path(sys.argv[0]).name, *sys.argv[1:]] if sys.argv else []
 
 

@@ -1,4 +1,4 @@
-"""What there is to go on from in a run folder, and whether this process may."""
+"""Resume: finds the step from which a run can continue, and checks that this process may do so."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -14,110 +14,112 @@ from ryusa.results.hdf5 import OpenFiles
 from ryusa.results.lazy import Part
 from ryusa.results.read import numbered, read_json, read_part, read_scenes
 from ryusa.results.scene_file import scene_digest
-from ryusa.running.checkpoint import Kept, read_checkpoint
+from ryusa.running.checkpoint import CheckpointBlock, read_checkpoint
+from ryusa.running.checkpoint_scheduler import FREE_KEYS, case_digest, code_versions
 from ryusa.running.folder import is_run
-from ryusa.running.keeper import MAY_CHANGE, case_digest, code_of
-from ryusa.running.place import Place
-from ryusa.running.recorder import Left
-from ryusa.running.snapshot import state_of
+from ryusa.running.loop_state import LoopState
+from ryusa.running.recorder import RecordedSoFar
+from ryusa.running.snapshot import state_from_block
 from ryusa.running.vtkhdf import PartSize
 
-_ANEW = "--overwrite begins anew"
-_SAID = {"plan": "time between frames, or another timeline", "engine": "engine"}
-_DERIVED = "derived"  # follows from the rest
+_ANEW = "to discard it and start again, use --overwrite"
+_NAMES = {"plan": "frame interval or timeline", "engine": "engine"}
+_DERIVED = "derived"  # computed from the other sections
 
 
 @dataclass(frozen=True)
-class Going:
-    """Where a run goes on.
+class ResumePoint:
+    """Step from which a run continues, and the state there.
 
     Attributes
     ----------
     origin : its provenance so far.
-    said : what is odd about going on, for the log.
-    scene : as the run began.
-    left : for the recorder.
+    notes : differences and damage found, for the log.
+    scene : scene at the start of the run.
+    recorded : for the recorder.
     x_first : centres in the first frame [m], shape (n_grain, 3).
-    kept, state, now : the checkpoint, its state, and the scene that held there; None where there is none:
-        then the run begins at its first step, and makes again what is there.
-    complete : nothing is left to do.
+    checkpoint, state, now : the checkpoint, its state, and the scene that was valid there; None without one:
+        then the run starts at its first step and recomputes what is on the disk.
+    complete : the run is complete.
     """
 
     origin: dict[str, Any]
-    said: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
     scene: Scene | None = None
-    left: Left | None = None
+    recorded: RecordedSoFar | None = None
     x_first: np.ndarray | None = None
-    kept: Kept | None = None
+    checkpoint: CheckpointBlock | None = None
     state: State | None = None
     now: Scene | None = None
     complete: bool = False
 
 
-def look(
+def find_resume_point(
     folder: Path,
     resolved: Mapping[str, Any],
     identity: Mapping[str, Any],
     origin: Mapping[str, Any],
     *,
     force: bool,
-) -> Going | None:
-    """Find where a run goes on; None where nothing is left of it but its name.
+) -> ResumePoint | None:
+    """Find the step from which a run continues; None if the folder holds no usable data of it.
 
     Parameters
     ----------
     folder : the run folder.
-    resolved : the case now, as case.json holds it.
-    identity : of the checkpoint that this process would write (`keeper.identity_of`), scenes left out.
+    resolved : the present case, as case.json holds it.
+    identity : of this run without its scenes, see `checkpoint_scheduler.run_identity`.
     origin : provenance of this process.
-    force : go on where that gives right numbers, though not those of a run that was never stopped.
+    force : allow a resume written_by results are valid but not bitwise those of an uninterrupted run.
 
     Raises
     ------
-    CheckpointError, ResultsError : it must not go on, and why; one line.
+    CheckpointError, ResultsError : the run must not be continued; one line with the reason.
     """
     if not is_run(folder):
         return None
     before = read_json(folder / schema.PROVENANCE)
     if before.get("format") != schema.FORMAT:
-        raise CheckpointError(f"{folder}: format {before.get('format')!r}, this ryusa writes {schema.FORMAT}")
+        raise CheckpointError(
+            f"{folder}: written in format {before.get('format')!r}, but this ryusa writes {schema.FORMAT}"
+        )
     was = read_json(folder / schema.CASE_JSON, missing_ok=True)
     if not was or not numbered(folder, schema.SCENE_NAME):
-        return None  # killed while it began
+        return None  # killed at its start
     changed = changes_of(was, resolved)
     if before.get("status") == schema.COMPLETE:
         if changed:
             raise CheckpointError(
-                f"{folder}: is complete, and the case has changed since: {_some(changed)}. "
-                f"Choose another folder with -o, or {_ANEW}"
+                f"{folder}: the run is complete, and the case has changed since: {_some(changed)}. "
+                f"Choose another folder with -o; {_ANEW}"
             )
-        return Going(before, complete=True)
-    hard = [one for one in changed if one.split(".", 1)[0] not in MAY_CHANGE]
+        return ResumePoint(before, complete=True)
+    hard = [one for one in changed if one.split(".", 1)[0] not in FREE_KEYS]
     if hard:
         raise CheckpointError(
-            f"{folder}: the case has changed since: {_some(hard)}. That is another run: choose another "
-            f"folder with -o, or {_ANEW}"
+            f"{folder}: the case has changed since: {_some(hard)}. That makes it another run: choose another "
+            f"folder with -o; {_ANEW}"
         )
-    odd = [f"the case has changed: {_some(changed)}"] if changed else []
+    differences = [f"the case has changed: {_some(changed)}"] if changed else []
     scenes = read_scenes(folder)
-    kept, lost = _newest(folder, scenes[0][2].n_grain)
-    whose = {"code": code_of(before)} if kept is None else kept.part("identity").about
-    odd += _other_code(whose.get("code"), code_of(origin))
-    if not changed and whose.get("stop", identity["stop"]) != identity["stop"]:
-        odd.append("the stop rule has changed")
-    if odd and not force:
+    block, lost = _newest(folder, scenes[0][2].n_grain)
+    written_by = {"code": code_versions(before)} if block is None else block.block("identity").values
+    differences += _other_code(written_by.get("code"), code_versions(origin))
+    if not changed and written_by.get("stop", identity["stop"]) != identity["stop"]:
+        differences.append("the stop rule has changed")
+    if differences and not force:
         raise CheckpointError(
-            f"{folder}: {'; '.join(odd)}. With --force it goes on, with right numbers but not those of a run "
-            f"that was never stopped; {_ANEW}"
+            f"{folder}: {'; '.join(differences)}. With --force the run continues with valid results, but not "
+            f"bitwise those of an uninterrupted run; {_ANEW}"
         )
-    if kept is None:
-        return None if odd else _from_the_start(folder, before, scenes)
-    _refuse_foreign(folder, kept, was, identity, scenes)
-    return _from_checkpoint(folder, before, scenes, kept, [*lost, *odd], alike=not odd)
+    if block is None:
+        return None if differences else _from_the_start(folder, before, scenes)
+    _refuse_foreign(folder, block, was, identity, scenes)
+    return _from_checkpoint(folder, before, scenes, block, [*lost, *differences], alike=not differences)
 
 
-def _newest(folder: Path, n_grain: int) -> tuple[Kept | None, list[str]]:
-    """The newest checkpoint that is whole, and what was wrong with a newer one."""
+def _newest(folder: Path, n_grain: int) -> tuple[CheckpointBlock | None, list[str]]:
+    """The newest undamaged checkpoint, and the faults of a newer one."""
     faults: list[str] = []
     for name in (schema.CHECKPOINT, schema.CHECKPOINT_BEFORE):
         path = folder / name
@@ -128,73 +130,90 @@ def _newest(folder: Path, n_grain: int) -> tuple[Kept | None, list[str]]:
         except CheckpointError as error:
             faults.append(str(error))
     if faults:
-        raise CheckpointError(f"{'; '.join(faults)}. No checkpoint to go on from; {_ANEW}")
+        raise CheckpointError(f"{'; '.join(faults)}. No checkpoint is left to resume from; {_ANEW}")
     return None, []
 
 
 def _from_the_start(
     folder: Path, before: dict[str, Any], scenes: Sequence[tuple[int, float, Scene]]
-) -> Going | None:
+) -> ResumePoint | None:
     first = scenes[0][2]
     parts, _ = _parts(folder, first.n_grain, at_least=0)
     if not any(part.n_frame for part in parts):
         return None
-    left = Left(
-        [_size(part) for part in parts], [(scenes[0][1], first)], quiet_until=parts[-1].end, last=_last(parts)
+    recorded = RecordedSoFar(
+        [_size(part) for part in parts],
+        [(scenes[0][1], first)],
+        verify_until=parts[-1].end,
+        last=_last(parts),
     )
-    return Going(before, ("no checkpoint yet: begins again, and keeps what is there",), first, left)
+    return ResumePoint(
+        before,
+        ("no checkpoint yet: starts at the first step, and keeps the frames on the disk",),
+        first,
+        recorded,
+    )
 
 
 def _from_checkpoint(
     folder: Path,
     before: dict[str, Any],
     scenes: Sequence[tuple[int, float, Scene]],
-    kept: Kept,
-    odd: list[str],
+    block: CheckpointBlock,
+    differences: list[str],
     *,
     alike: bool,
-) -> Going:
-    place, stood = kept.part("loop"), kept.part("recorder")
-    where = Place.of(place, scenes[0][2])
-    if where.changed >= len(scenes):
-        raise CheckpointError(f"{folder}: a scene is missing in {schema.PARTS}/; {_ANEW}")
-    scene = scenes[where.changed][2]
-    state = state_of(kept.part("state"), scene)
+) -> ResumePoint:
+    loop, recorder = block.block("loop"), block.block("recorder")
+    state_of_loop = LoopState.from_block(loop, scenes[0][2])
+    if state_of_loop.changed >= len(scenes):
+        raise CheckpointError(f"{folder}: a scene is missing from {schema.PARTS}/; {_ANEW}")
+    scene = scenes[state_of_loop.changed][2]
+    state = state_from_block(block.block("state"), scene)
     try:
         n_part, parts_end, end, n_frame, n_contact = (
-            int(stood.about[name]) for name in ("n_part", "parts_end", "end", "n_frame", "n_contact")
+            int(recorder.values[name]) for name in ("n_part", "parts_end", "end", "n_frame", "n_contact")
         )
     except (KeyError, TypeError, ValueError, OverflowError) as error:
-        raise CheckpointError(f"{folder}: the checkpoint does not say what was recorded ({error})") from error
+        raise CheckpointError(
+            f"{folder}: the state of the recorder in the checkpoint is incomplete ({error})"
+        ) from error
     parts, damaged = _parts(folder, scene.n_grain, at_least=n_part)
     if damaged:
-        odd = [*odd, damaged]
+        differences = [*differences, damaged]
     if not alike:
-        odd += _set_aside(parts[n_part:])
+        differences += _delete(parts[n_part:])
         parts = parts[:n_part]
     reach = parts[-1].end if parts else -1
     assert reach is not None
-    waiting = {} if reach != parts_end else _waiting(stood, scene, folder)
-    recorded = sum(part.n_frame for part in parts) + len(waiting.get("t", ()))
-    contacts = sum(part.n_contact for part in parts) + len(waiting.get("contacts", ()))
+    buffered = {} if reach != parts_end else _buffered(recorder, scene, folder)
+    n_recorded = sum(part.n_frame for part in parts) + len(buffered.get("t", ()))
+    contacts = sum(part.n_contact for part in parts) + len(buffered.get("contacts", ()))
     further = reach > end
-    if not further and (recorded, contacts) != (n_frame, n_contact):
+    if not further and (n_recorded, contacts) != (n_frame, n_contact):
         raise CheckpointError(
             f"{folder}: the checkpoint counts {n_frame} frames and {n_contact} contacts, {schema.PARTS}/ "
-            f"holds {recorded} and {contacts}: they are not of one run; {_ANEW}"
+            f"holds {n_recorded} and {contacts}: they belong to different runs; {_ANEW}"
         )
-    left = Left(
-        [_size(part) for part in parts], [(t, one) for _, t, one in scenes[: where.changed + 1]],
-        n_frame=n_frame, n_contact=n_contact, end=end, waiting=waiting,
-        quiet_until=reach if further else None, last=_last(parts) if further else None,
+    recorded = RecordedSoFar(
+        [_size(part) for part in parts], [(t, one) for _, t, one in scenes[: state_of_loop.changed + 1]],
+        n_frame=n_frame, n_contact=n_contact, end=end, buffered=buffered,
+        verify_until=reach if further else None, last=_last(parts) if further else None,
     )  # fmt: skip
-    return Going(
-        before, tuple(odd), scenes[0][2], left, _first(parts, waiting), kept=kept, state=state, now=scene
+    return ResumePoint(
+        before,
+        tuple(differences),
+        scenes[0][2],
+        recorded,
+        _first(parts, buffered),
+        checkpoint=block,
+        state=state,
+        now=scene,
     )
 
 
 def _parts(folder: Path, n_grain: int, *, at_least: int) -> tuple[list[Part], str]:
-    """Whole parts in order, a tail left out, and what was found damaged among those after `at_least`."""
+    """Undamaged parts in order, without a tail, and the damage found after the first `at_least`."""
     found: list[Part] = []
     files, first = OpenFiles(), 0
     for number, path in enumerate(numbered(folder, schema.PART_NAME)):
@@ -205,16 +224,18 @@ def _parts(folder: Path, n_grain: int, *, at_least: int) -> tuple[list[Part], st
         except ResultsError as error:
             if number < at_least:
                 raise CheckpointError(f"{error}. It was written before the checkpoint; {_ANEW}") from error
-            return found, f"{error}: made again"
+            return found, f"{error}: recomputed"
         if part.tail:
             break
         if part.end is None:
-            raise CheckpointError(f"{path}: written by an earlier version; {_ANEW}")
+            raise CheckpointError(
+                f"{path}: written by an earlier version of ryusa that cannot be resumed; {_ANEW}"
+            )
         found.append(part)
         first += part.n_frame
     if len(found) < at_least:
         raise CheckpointError(
-            f"{folder}: {at_least} parts were there at the checkpoint, now {len(found)}; {_ANEW}"
+            f"{folder}: {at_least} parts existed at the checkpoint, now {len(found)}; {_ANEW}"
         )
     return found, ""
 
@@ -234,20 +255,20 @@ def _last(parts: Sequence[Part]) -> dict[str, np.ndarray] | None:
     return None
 
 
-def _first(parts: Sequence[Part], waiting: Mapping[str, np.ndarray]) -> np.ndarray:
+def _first(parts: Sequence[Part], buffered: Mapping[str, np.ndarray]) -> np.ndarray:
     for part in parts:
         if part.n_frame:
             return part.rows("x", 0, 1, slice(None))[0]
-    if "x" not in waiting or not len(waiting["x"]):
+    if "x" not in buffered or not len(buffered["x"]):
         raise CheckpointError(f"the first frame is missing; {_ANEW}")
-    return waiting["x"][0]
+    return buffered["x"][0]
 
 
-def _waiting(stood: Kept, scene: Scene, folder: Path) -> dict[str, np.ndarray]:
-    """What had gathered and was in no part, every shape checked."""
-    if not stood.arrays:
+def _buffered(recorder: CheckpointBlock, scene: Scene, folder: Path) -> dict[str, np.ndarray]:
+    """Data that was buffered and not in a part, every shape checked."""
+    if not recorder.arrays:
         return {}
-    rows, n = stood.arrays, scene.n_grain
+    rows, n = recorder.arrays, scene.n_grain
     try:
         k = len(rows["t"])
         shapes = {
@@ -267,29 +288,29 @@ def _waiting(stood: Kept, scene: Scene, folder: Path) -> dict[str, np.ndarray]:
                 raise ValueError(f"'{name}' is {rows[name].shape} of {rows[name].dtype}")
     except (KeyError, ValueError, TypeError) as error:
         raise CheckpointError(
-            f"{folder}: what waits in the checkpoint does not fit the run ({error})"
+            f"{folder}: the buffered frames in the checkpoint do not match the run ({error})"
         ) from error
     return dict(rows)
 
 
 def _refuse_foreign(
     folder: Path,
-    kept: Kept,
+    block: CheckpointBlock,
     was: Mapping[str, Any],
     identity: Mapping[str, Any],
     scenes: Sequence[tuple[int, float, Scene]],
 ) -> None:
-    """Hold the checkpoint against the folder it lies in, and the plan against the one now."""
-    whose = kept.part("identity").about
-    n = Place.of(kept.part("loop"), scenes[0][2]).changed
+    """Check that the checkpoint belongs to the run in the folder, and that the plan is unchanged."""
+    written_by = block.block("identity").values
+    n = LoopState.from_block(block.block("loop"), scenes[0][2]).changed
     now = scene_digest(scenes[min(n, len(scenes) - 1)][2])
-    if (whose.get("case"), whose.get("scene"), whose.get("scene_now")) != (
+    if (written_by.get("case"), written_by.get("scene"), written_by.get("scene_now")) != (
         case_digest(was), scene_digest(scenes[0][2]), now,
     ):  # fmt: skip
-        raise CheckpointError(f"{folder}: its checkpoint is that of another run; {_ANEW}")
+        raise CheckpointError(f"{folder}: its checkpoint belongs to another run; {_ANEW}")
     for name in ("plan", "engine"):
-        if whose.get(name) != identity[name]:
-            raise CheckpointError(f"{folder}: it was run with another {_SAID[name]}; {_ANEW}")
+        if written_by.get(name) != identity[name]:
+            raise CheckpointError(f"{folder}: the run was started with another {_NAMES[name]}; {_ANEW}")
 
 
 def _other_code(made_by: Any, mine: Mapping[str, str]) -> list[str]:
@@ -298,18 +319,18 @@ def _other_code(made_by: Any, mine: Mapping[str, str]) -> list[str]:
     if not differ:
         return []
     said = ", ".join(f"{name} {str(theirs.get(name))[:60]} is now {mine[name][:60]}" for name in differ)
-    return [f"it was run elsewhere or by another version: {said}"]
+    return [f"the run was made on another processor or by another version: {said}"]
 
 
-def _set_aside(parts: Sequence[Part]) -> list[str]:
-    """Take away parts written after the checkpoint, which are of other bits."""
+def _delete(parts: Sequence[Part]) -> list[str]:
+    """Delete parts written after the checkpoint, written_by bits will differ."""
     for part in parts:
         part.path.unlink(missing_ok=True)
-    return [f"{len(parts)} parts after the checkpoint set aside"] if parts else []
+    return [f"{len(parts)} parts written after the checkpoint deleted"] if parts else []
 
 
 def changes_of(was: Any, now: Any, key: str = "") -> list[str]:
-    """Keys of a case that changed, dotted, with both values.
+    """Keys of a case that changed, with both values.
 
     >>> changes_of({"stop": {"time": 1.0}, "seed": 1}, {"stop": {"time": 2.0}, "seed": 1})
     ['stop.time 1.0 is now 2.0']

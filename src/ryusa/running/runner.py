@@ -1,4 +1,4 @@
-"""The one loop: build, advance, record, watch, stop."""
+"""`run` and `run_scene`: build a scene, or find where a run was stopped, and step it into a run folder."""
 
 import math
 import os
@@ -18,10 +18,11 @@ from ryusa.model.scene import EventRule
 from ryusa.results import Results, schema
 from ryusa.results.scene_file import scene_digest
 from ryusa.running import provenance
-from ryusa.running.checkpoint import Kept
-from ryusa.running.disk import disk, write_whole
+from ryusa.running.checkpoint import CheckpointBlock
+from ryusa.running.checkpoint_scheduler import CHECKPOINT_INTERVAL, CheckpointScheduler, run_identity
+from ryusa.running.disk import disk_errors, write_atomically
 from ryusa.running.folder import (
-    as_written,
+    as_read_back,
     is_run,
     make_folder,
     prepare,
@@ -30,21 +31,21 @@ from ryusa.running.folder import (
     refuse_if_too_large,
     write_json,
 )
-from ryusa.running.interrupt import listening
-from ryusa.running.keeper import EVERY, Keeper, identity_of
+from ryusa.running.interrupt import catch_signals
 from ryusa.running.lock import locked
-from ryusa.running.loop import Change, Loop
+from ryusa.running.loop import Loop
 from ryusa.running.progress import Progress
-from ryusa.running.recorder import Left, Recorder, bytes_per_frame
-from ryusa.running.resume import Going, look
+from ryusa.running.recorder import RecordedSoFar, Recorder, bytes_per_frame
+from ryusa.running.resume import ResumePoint, find_resume_point
 from ryusa.running.stops import Stop
+from ryusa.running.timeline import Change
 from ryusa.running.watch import Watch
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
 
 _MOST_STEPS = 2**62
-_BEFORE = "before the first step; no run folder was made"
+_BEFORE = "before the first step; no run folder was created"
 
 
 def run(
@@ -55,26 +56,26 @@ def run(
     progress: bool = True,
     overwrite: bool = False,
     engine: Engine | str | None = None,
-    checkpoint: float = EVERY,
+    checkpoint: float = CHECKPOINT_INTERVAL,
     resume: bool = False,
     force: bool = False,
 ) -> Results:
-    """Run a case and open what it wrote.
+    """Run a case and open its run folder.
 
     Parameters
     ----------
     case : a checked case, from `ryusa.load`.
-    folder : where the run goes; runs/<name of the case> when not given.
-    threads : threads of the CPU engine; the numbers do not depend on it.
-    progress : show a bar (or lines, where stderr is no terminal).
-    overwrite : replace an earlier run in `folder`; anything but a run is never touched.
+    folder : the run folder; runs/<name of the case> when not given.
+    threads : threads of the CPU engine; the results do not depend on it.
+    progress : show a bar, or lines if stderr is not a terminal.
+    overwrite : replace an earlier run in `folder`; a folder that is not a run is never changed.
     engine : the engine that steps the grains, by its name in `ryusa.engine.registry` or as an object; "cpu"
         when not given.
-    checkpoint : wall time between two checkpoints [s]; inf for none but those asked for by a signal.
-    resume : go on where an earlier run of this case in `folder` stopped; a complete one is opened, and where
-        there is none the run begins. With `overwrite` it also begins where it cannot go on.
-    force : go on also where the numbers will not be those of a run never stopped: another version or
-        processor, another stop rule.
+    checkpoint : wall time between two checkpoints [s]; inf writes only those that a signal requests.
+    resume : continue an earlier run of this case in `folder`; a complete one is opened, and without one the
+        run starts. With `overwrite` the run also starts anew if the earlier one cannot be continued.
+    force : continue also if the version, the processor or the stop rule differs; the results are then valid,
+        but not bitwise those of an uninterrupted run.
 
     Returns
     -------
@@ -83,11 +84,11 @@ def run(
     Raises
     ------
     CaseError, ResultsError : the case cannot be run as it stands, or the folder cannot be used.
-    CheckpointError : there is a run to go on with, but not by this process, case or code.
-    RunError : a number went wrong while stepping; the frames before it are in the folder.
-    KeyboardInterrupt : Ctrl-C before the first step; no run folder was made. Later ones end the run in order.
+    CheckpointError : the earlier run cannot be continued with this case, version or processor.
+    RunError : an invalid state occurred while stepping; the frames before it are in the folder.
+    KeyboardInterrupt : Ctrl-C before the first step, without a run folder; later ones end the run in order.
     """
-    with listening() as heard:
+    with catch_signals() as signal:
         from ryusa.build import build, change
         from ryusa.casefile import derive, resolved
         from ryusa.casefile.estimate import disk_for_events, disk_needed, frames_expected, memory_needed
@@ -96,7 +97,7 @@ def run(
 
         def make() -> _Made:
             built = build(case, derived)
-            heard.raise_if_asked(_BEFORE)
+            signal.raise_if_stopped(_BEFORE)
             return built.scene, built.state, tuple(str(note) for note in built.notes)
 
         stop = Stop(
@@ -108,27 +109,27 @@ def run(
         )
         changes = [
             Change(entry.at, partial(change, case, entry=entry), words)
-            for entry, words in zip(case.timeline, _words(case), strict=True)
+            for entry, words in zip(case.timeline, _timeline_texts(case), strict=True)
         ]
         refuse_if_too_large(memory_needed(case, derived), derived.n_grain)
-        about = _About(
+        about = _CaseData(
             resolved=resolved(case, derived), text=case.text, seed=case.seed, overrides=case.overrides,
             disk=_Disk(frames_expected(case), disk_needed(case, derived), disk_for_events(case, derived)),
             table=_table(case),
         )  # fmt: skip
-        return _carry_out(
+        return _run_or_resume(
             make,
             Path(folder if folder is not None else Path("runs") / case.name),
             case.record.frames,
             stop,
             changes,
-            _How(threads, progress, overwrite, engine, checkpoint, resume, force),
+            _Options(threads, progress, overwrite, engine, checkpoint, resume, force),
             about,
         )
 
 
 def _table(case: "Case") -> Path | None:
-    """The table of first grains, where it can lie beside the case in the run folder as it does now."""
+    """Path of the table of first grains if it can be copied beside the case in the run folder."""
     from ryusa.casefile.builders.schema import TableSection
 
     if not isinstance(case.build, TableSection) or case.path is None:
@@ -138,19 +139,19 @@ def _table(case: "Case") -> Path | None:
     return case.path.resolve().parent / name if plain and not name.startswith(".") else None
 
 
-def _words(case: "Case") -> list[str]:
-    """Entries of the timeline as the case says them, with its units, overrides applied; for the log."""
+def _timeline_texts(case: "Case") -> list[str]:
+    """Entries of the timeline as written in the case, with overrides applied; for the log."""
     from ryusa.casefile.overrides import with_overrides
 
-    said = with_overrides(tomllib.loads(case.text), case.overrides).get("timeline", [])
-    if len(said) != len(case.timeline):  # a case made in Python has no text
-        said = [{key: getattr(entry, key) for key in entry.model_fields_set} for entry in case.timeline]
-    return [", ".join(f"{key} {one[key]}" for key in sorted(set(one) - {"at"})) for one in said]
+    entries = with_overrides(tomllib.loads(case.text), case.overrides).get("timeline", [])
+    if len(entries) != len(case.timeline):  # a case made in Python has no text
+        entries = [{key: getattr(entry, key) for key in entry.model_fields_set} for entry in case.timeline]
+    return [", ".join(f"{key} {one[key]}" for key in sorted(set(one) - {"at"})) for one in entries]
 
 
 @dataclass(frozen=True)
 class _Disk:
-    """What a run will write at most, or by guess; the numbers of `ryusa check`."""
+    """Expected size of a run, as `ryusa check` prints it."""
 
     n_frame: float
     for_frames: float  # [B]
@@ -158,20 +159,20 @@ class _Disk:
 
 
 @dataclass(frozen=True)
-class _About:
-    """What a case adds to a bare scene."""
+class _CaseData:
+    """Data of a case beyond its scene."""
 
     resolved: dict[str, Any]
     text: str | None = None
     seed: int | None = None
     overrides: dict[str, str] | None = None
-    disk: "_Disk | None" = None
-    table: Path | None = None  # of first grains, which the case names
+    disk: _Disk | None = None
+    table: Path | None = None  # of first grains, named in the case
 
 
 @dataclass(frozen=True)
-class _How:
-    """What a user says of a run beside the case."""
+class _Options:
+    """Options of a run beyond the case."""
 
     threads: int
     progress: bool
@@ -194,7 +195,7 @@ def run_scene(
     progress: bool = True,
     overwrite: bool = False,
     engine: Engine | str | None = None,
-    checkpoint: float = EVERY,
+    checkpoint: float = CHECKPOINT_INTERVAL,
     resume: bool = False,
     force: bool = False,
 ) -> Results:
@@ -202,13 +203,13 @@ def run_scene(
 
     Parameters
     ----------
-    scene, state : what holds still, and the first moment of what moves.
-    folder : where the run goes.
+    scene, state : the scene, and the initial state.
+    folder : the run folder.
     frames : time between frames [s]; frame k falls on step round(k frames/dt).
     stop : when to stop.
-    changes : changes of the scene on the way, in any order.
-    threads, progress, overwrite, engine, checkpoint, resume, force : as in `run`; to go on, everything else
-        must be given as it was.
+    changes : changes of the scene during the run, in any order.
+    threads, progress, overwrite, engine, checkpoint, resume, force : as in `run`; to resume, all other
+        arguments must be the same.
 
     Returns
     -------
@@ -222,54 +223,54 @@ def run_scene(
 
     each = MEMORY_PER_GRAIN if scene.events == EventRule.NONE else MEMORY_WITH_EVENTS
     refuse_if_too_large((scene.n_grain + scene.n_fixed) * each, scene.n_grain)
-    about = _About({"title": "", "record": {"frames": frames, "settle": stop.settle}})
-    how = _How(threads, progress, overwrite, engine, checkpoint, resume, force)
-    return _carry_out(lambda: (scene, state, ()), Path(folder), frames, stop, changes, how, about)
+    about = _CaseData({"title": "", "record": {"frames": frames, "settle": stop.settle}})
+    options = _Options(threads, progress, overwrite, engine, checkpoint, resume, force)
+    return _run_or_resume(lambda: (scene, state, ()), Path(folder), frames, stop, changes, options, about)
 
 
 _Made = tuple[Scene, State, Sequence[str]]  # and notes of the builder, for the log
 
 
-def _carry_out(
+def _run_or_resume(
     make: Callable[[], _Made],
     folder: Path,
     frames: float,
     stop: Stop,
     changes: Sequence[Change],
-    how: _How,
-    about: _About,
+    options: _Options,
+    about: _CaseData,
 ) -> Results:
-    """Run from the first step, or go on."""
-    with listening() as heard:
-        engine = _engine(how.engine, how.threads)
+    """Run from the first step, or resume."""
+    with catch_signals() as signal:
+        engine = _engine(options.engine, options.threads)
         origin = provenance.begin(
-            threads=how.threads, seed=about.seed, engine=engine.name,
+            threads=options.threads, seed=about.seed, engine=engine.name,
             overrides=about.overrides or {},
         )  # fmt: skip
-        resolved = as_written(about.resolved)
-        whose = identity_of(
+        resolved = as_read_back(about.resolved)
+        identity = run_identity(
             origin, resolved, frames=frames, stop=stop, changes=[(one.at, one.what) for one in changes]
         )
-        run = _Run(folder, frames, stop, changes, how, engine, origin, resolved, about, whose)
-        first: tuple[str, ...] = ("nothing to go on from: the run begins",) if how.resume else ()
-        if how.resume and is_run(folder):
+        run = _Run(folder, frames, stop, changes, options, engine, origin, resolved, about, identity)
+        first: tuple[str, ...] = ("no run to resume: starts from the beginning",) if options.resume else ()
+        if options.resume and is_run(folder):
             refuse_if_not_writable(folder)
             with locked(folder):
                 try:
-                    going = look(folder, resolved, whose, origin, force=how.force)
+                    going = find_resume_point(folder, resolved, identity, origin, force=options.force)
                 except CheckpointError as error:
-                    if not how.overwrite:
+                    if not options.overwrite:
                         raise
-                    going, first = None, (f"begins anew: {error}",)
+                    going, first = None, (f"starts from the beginning: {error}",)
                 if going is not None and going.complete:
-                    return _said_complete(folder, how)
+                    return _already_complete(folder, options)
                 if going is not None:
-                    return run.go_on(going, make)
+                    return run.resume_from(going, make)
         scene, state, notes = make()
         _refuse(scene, frames, stop)
         reasons = engine.refuses(scene)
         if reasons:
-            raise CaseError("engine", engine.name, f"cannot carry this case: {'; '.join(reasons)}")
+            raise CaseError("engine", engine.name, f"does not support this case: {'; '.join(reasons)}")
         refuse_if_not_writable(folder)
         n_frame = stop.time / frames + 1
         fits = about.disk or _Disk(n_frame, n_frame * bytes_per_frame(scene.n_grain))
@@ -278,18 +279,18 @@ def _carry_out(
                 folder, interval=frames, n_frame=fits.n_frame,
                 for_frames=fits.for_frames, for_events=fits.for_events,
             )  # fmt: skip
-        heard.raise_if_asked(_BEFORE)
-        make_folder(folder, overwrite=how.overwrite or how.resume)
+        signal.raise_if_stopped(_BEFORE)
+        make_folder(folder, overwrite=options.overwrite or options.resume)
         with locked(folder):
             prepare(folder)
             run.write_case()
             return run.begin(scene, state, (*first, *notes))
 
 
-def _said_complete(folder: Path, how: _How) -> Results:
+def _already_complete(folder: Path, options: _Options) -> Results:
     results = Results.open(folder)
-    if how.progress:
-        print(f"{folder}: is complete already ({results.provenance.get('message')})", file=sys.stderr)
+    if options.progress:
+        print(f"{folder}: the run is already complete ({results.provenance.get('message')})", file=sys.stderr)
     return results
 
 
@@ -301,42 +302,43 @@ class _Run:
     frames: float
     stop: Stop
     changes: Sequence[Change]
-    how: _How
+    options: _Options
     engine: Engine
     origin: dict[str, Any]
     resolved: dict[str, Any]
-    about: _About
+    about: _CaseData
     identity: dict[str, Any]  # of the checkpoints it writes
 
     def write_case(self) -> None:
-        """Write where the run came from, and its case."""
+        """Write the provenance of the run, and its case."""
         write_json(self.folder / schema.PROVENANCE, self.origin)
         write_json(self.folder / schema.CASE_JSON, self.resolved)
         if self.about.text is not None:
             _write_text(self.folder / schema.CASE_TOML, self.about.text)
         table = self.about.table
         if table is not None and table.parent != self.folder.resolve():
-            with disk(self.folder):
-                write_whole(self.folder / table.name, table.read_bytes())
+            with disk_errors(self.folder):
+                write_atomically(self.folder / table.name, table.read_bytes())
 
     def begin(self, scene: Scene, state: State, notes: Sequence[str]) -> Results:
-        """From the first step."""
+        """Run from the first step."""
         return self._loop(scene, scene, state, Watch(scene, state), notes, None, None)
 
-    def go_on(self, going: Going, make: Callable[[], _Made]) -> Results:
-        """From where an earlier process stood."""
-        notes = list(going.said)
-        if going.state is None or going.now is None or going.kept is None:
+    def resume_from(self, going: ResumePoint, make: Callable[[], _Made]) -> Results:
+        """Continue from the state of an earlier process."""
+        notes = list(going.notes)
+        if going.state is None or going.now is None or going.checkpoint is None:
             scene, state, _ = make()
             if going.scene is None or scene_digest(scene) != scene_digest(going.scene):
                 raise CheckpointError(
-                    f"{self.folder}: the case gives another scene now than it did; --overwrite begins anew"
+                    f"{self.folder}: the case now gives another scene than before; to discard it and start "
+                    "again, use --overwrite"
                 )
-            now, watch, kept = scene, Watch(scene, state), None
+            now, watch, block = scene, Watch(scene, state), None
         else:
-            scene, now, state, kept = going.scene or going.now, going.now, going.state, going.kept
+            scene, now, state, block = going.scene or going.now, going.now, going.state, going.checkpoint
             watch = Watch(scene, State.at_rest(going.x_first if going.x_first is not None else state.x))
-            watch.go_on(kept.part("watch"))
+            watch.restore(block.block("watch"))
             watch.scene = now
         resumed = {name: self.origin[name] for name in ("begin", "ryusa", "commit", "threads", "command")}
         resumed |= {"step": state.step, "t": state.t, "said": list(notes)}
@@ -347,8 +349,8 @@ class _Run:
             "end": None, "resumed": [*earlier, resumed],
         }  # fmt: skip
         self.write_case()
-        notes.insert(0, f"goes on from step {state.step}, t = {state.t:.6g} s")
-        return self._loop(scene, now, state, watch, notes, going.left, kept)
+        notes.insert(0, f"resumed at step {state.step}, t = {state.t:.6g} s")
+        return self._loop(scene, now, state, watch, notes, going.recorded, block)
 
     def _loop(
         self,
@@ -357,34 +359,37 @@ class _Run:
         state: State,
         watch: Watch,
         notes: Sequence[str],
-        left: Left | None,
-        kept: Kept | None,
+        recorded: RecordedSoFar | None,
+        block: CheckpointBlock | None,
     ) -> Results:
-        said = Progress(self.folder / schema.LOG, shown=self.how.progress)
+        reporter = Progress(self.folder / schema.LOG, shown=self.options.progress)
         try:
             for note in notes:
-                said.line(note)
-            done = 0 if left is None else len(left.scenes) - 1
+                reporter.line(note)
+            done = 0 if recorded is None else len(recorded.scenes) - 1
             changes = sorted((round(one.at / now.dt), k, one) for k, one in enumerate(self.changes))
             loop = Loop(
                 engine=self.engine, scene=now, frames=self.frames, stop=self.stop, changes=changes[done:],
-                recorder=Recorder(self.folder, now, left=left), watch=watch, progress=said,
-                origin=self.origin, keeper=Keeper(self.folder, self.identity, first, self.how.checkpoint),
+                recorder=Recorder(self.folder, now, earlier=recorded), watch=watch, progress=reporter,
+                origin=self.origin,
+                checkpoints=CheckpointScheduler(self.folder, self.identity, first, self.options.checkpoint),
             )  # fmt: skip
-            loop.run(state, None if kept is None else kept.part("loop"))
+            loop.run(state, None if block is None else block.block("loop"))
         finally:
-            said.close()
+            reporter.close()
         return Results.open(self.folder)
 
 
 def _refuse(scene: Scene, frames: float, stop: Stop) -> None:
     if stop.endless:
-        raise CaseError("stop", None, "needs a time, saltations or rest, else the run would never end")
+        raise CaseError(
+            "stop", None, "needs time, saltations or rest: without one of them the run would never end"
+        )
     if not frames >= scene.dt:
         raise CaseError("record.frames", f"{frames:g} s", f"must be at least one step, {scene.dt:g} s")
     if math.isfinite(stop.time) and stop.time / scene.dt > _MOST_STEPS:
         raise CaseError(
-            "stop.time", f"{stop.time:g} s", f"is more steps of {scene.dt:g} s than can be counted"
+            "stop.time", f"{stop.time:g} s", f"gives more steps of {scene.dt:g} s than can be counted"
         )
     if stop.saltations is not None and scene.events == EventRule.NONE:
         raise CaseError("record.events", "none", "must be 'all' or 'tracked' when saltations end the run")

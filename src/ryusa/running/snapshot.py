@@ -1,6 +1,6 @@
-"""A `State` as plain arrays and numbers for a checkpoint, and back, every shape and id checked on the way.
+"""Conversion of a `State` to the block of a checkpoint, and back with all shapes and ids checked.
 
-What comes back goes to compiled code that checks nothing: an id out of range would write where it must not.
+The restored arrays go to compiled code without bounds checks: an id out of range would corrupt memory.
 """
 
 from collections.abc import Mapping
@@ -17,24 +17,24 @@ from ryusa.model.contacts import N_EVENT
 from ryusa.model.eddies import Eddies
 from ryusa.model.fluid import N_IMPULSE, N_SAMPLED
 from ryusa.model.tally import N_BOOK, PENDING, Tally
-from ryusa.running.checkpoint import Kept
+from ryusa.running.checkpoint import CheckpointBlock
 
 _LATEST = 2**62  # step
 _NUMBERS = 64  # of an engine, at most
 _FLOAT, _INT, _INT32 = np.dtype(np.float64), np.dtype(np.int64), np.dtype(np.int32)
-_EDGE = 1e12  # m; beyond no grain is
-_LARGEST = 1e100  # in any unit: squares and products of a few such are still numbers
+_EDGE = 1e12  # m; larger coordinates are refused
+_LARGEST = 1e100  # in any unit: products of a few such values are still finite
 
 
-def kept_state(state: State) -> Kept:
-    """All of a state, nested parts under names with slashes."""
-    about: dict[str, Any] = {}
+def state_block(state: State) -> CheckpointBlock:
+    """A state as a block; nested parts have names with slashes."""
+    values: dict[str, Any] = {}
     arrays: dict[str, np.ndarray] = {}
-    _take("", state, about, arrays)
-    return Kept(about, arrays)
+    _flatten("", state, values, arrays)
+    return CheckpointBlock(values, arrays)
 
 
-def _take(before: str, value: Any, about: dict[str, Any], arrays: dict[str, np.ndarray]) -> None:
+def _flatten(before: str, value: Any, values: dict[str, Any], arrays: dict[str, np.ndarray]) -> None:
     for one in fields(value):
         inner, name = getattr(value, one.name), f"{before}{one.name}"
         if isinstance(inner, np.ndarray):
@@ -42,38 +42,38 @@ def _take(before: str, value: Any, about: dict[str, Any], arrays: dict[str, np.n
         elif isinstance(inner, Mapping) and all(isinstance(part, np.ndarray) for part in inner.values()):
             arrays.update({f"{name}/{key}": part for key, part in inner.items()})
         elif is_dataclass(inner):
-            about[name] = True
-            _take(f"{name}/", inner, about, arrays)
+            values[name] = True
+            _flatten(f"{name}/", inner, values, arrays)
         else:
-            about[name] = inner
+            values[name] = inner
 
 
-def state_of(kept: Kept, scene: Scene) -> State:
-    """The state that a checkpoint holds, for a scene.
+def state_from_block(block: CheckpointBlock, scene: Scene) -> State:
+    """State from a block of a checkpoint, for a scene.
 
     Raises
     ------
-    CheckpointError : it does not fit the scene, or holds what no state holds.
+    CheckpointError : it does not match the scene, or is not a valid state.
     """
     try:
-        return _Reader(kept, scene).state()
+        return _Reader(block, scene).state()
     except (KeyError, TypeError, ValueError, OverflowError) as error:
-        raise CheckpointError(f"the checkpoint's state is not one of ryusa ({error})") from error
+        raise CheckpointError(f"the state in the checkpoint is not valid ({error})") from error
 
 
 class _Reader:
-    def __init__(self, kept: Kept, scene: Scene) -> None:
-        self._about, self._arrays, self._scene = kept.about, kept.arrays, scene
+    def __init__(self, block: CheckpointBlock, scene: Scene) -> None:
+        self._values, self._arrays, self._scene = block.values, block.arrays, scene
         self._read: set[str] = set()
 
     def state(self) -> State:
-        n, about = self._scene.n_grain, self._about
-        step, t = int(about["step"]), float(about["t"])
+        n, values = self._scene.n_grain, self._values
+        step, t = int(values["step"]), float(values["t"])
         if not 0 <= step < _LATEST or not np.isfinite(t):
             raise ValueError(f"step {step}, t = {t}")
         image = self._arrays.get("image", np.zeros((0, 2), _INT32))
         state = State(
-            x=self._place("x", n),
+            x=self._positions("x", n),
             v=self._floats("v", (n, 3)),
             omega=self._floats("omega", (n, 3)),
             step=step,
@@ -81,12 +81,12 @@ class _Reader:
             image=self._array("image", (len(image) and n, 2), _INT32),
             contacts=self._contacts(),
             tally=self._tally(),
-            fluid=self._fluid(n) if about.get("fluid") else None,
-            coupling=self._coupling(n) if about.get("coupling") else None,
+            fluid=self._fluid(n) if values.get("fluid") else None,
+            coupling=self._coupling(n) if values.get("coupling") else None,
             engine=self._engine(),
         )
         if unknown := sorted(set(self._arrays) - self._read):
-            raise ValueError(f"'{unknown[0]}' belongs to no state that this version knows")
+            raise ValueError(f"'{unknown[0]}' is unknown to this version of ryusa")
         if self._scene.column is not None and (state.coupling is None) != (state.fluid is None):
             raise ValueError("a column of water without the water at its grains, or the reverse")
         return state
@@ -97,9 +97,9 @@ class _Reader:
         k = len(self._arrays["contacts/i"])
         i, j = (self._array(f"contacts/{name}", (k,), _INT) for name in "ij")
         if k and (i.min() < 0 or i.max() >= n or np.any(j <= i) or j.max() >= last):
-            raise ValueError("a contact of grains that are not there")
+            raise ValueError("a contact with an id out of range")
         if len(np.unique(i * np.int64(last) + j)) < k:
-            raise ValueError("a contact twice")
+            raise ValueError("a contact that occurs twice")
         rows = {name: (k, 3) for name in ("spring_s", "dash_s", "spring_r", "dash_r")}
         found = {name: self._floats(f"contacts/{name}", shape) for name, shape in rows.items()}
         found |= {name: self._floats(f"contacts/{name}", (k,)) for name in ("dash_n", "f_n", "eta_n")}
@@ -107,10 +107,10 @@ class _Reader:
         return Contacts(i=i, j=j, event=event, **found)
 
     def _tally(self) -> Tally | None:
-        about = self._about
-        if not about.get("tally"):
+        values = self._values
+        if not values.get("tally"):
             return None
-        given = {one.name: about[f"tally/{one.name}"] for one in fields(Tally)}
+        given = {one.name: values[f"tally/{one.name}"] for one in fields(Tally)}
         lengths = {"books": N_BOOK, "pending": len(PENDING)}
         found: dict[str, Any] = {}
         for name, value in given.items():
@@ -128,46 +128,46 @@ class _Reader:
         )
 
     def _coupling(self, n: int) -> CouplingState:
-        column, about = self._scene.column, self._about
+        column, values = self._scene.column, self._values
         if column is None:
-            raise ValueError("water, but the scene has no column of it")
+            raise ValueError("water, but the scene has no column")
         cells = {name: (column.n,) for name in ("u", "w", "content", "shear", "du_dt", "dtau_dz")}
         cells |= {name: (column.n + 1,) for name in ("tau", "nu_t")}
         profiles: dict[str, Any] = {
             name: self._floats(f"coupling/water/{name}", shape) for name, shape in cells.items()
         }
         if (profiles["nu_t"] < 0.0).any():
-            raise ValueError("an eddy viscosity of less than nothing")
+            raise ValueError("a negative eddy viscosity")
         eddies = None
-        if about.get("coupling/eddies"):
+        if values.get("coupling/eddies"):
             eddies = Eddies(
                 self._floats("coupling/eddies/r", (n, 3)),
                 self._floats("coupling/eddies/spent", (n,)),
                 self._array("coupling/eddies/count", (n,), _INT).copy(),
             )
             eddies = Eddies(eddies.r.copy(), eddies.spent.copy(), eddies.count)
-        steps, due, exchanges = (int(about[f"coupling/{name}"]) for name in ("steps", "due", "exchanges"))
-        if not 1 <= steps < _LATEST or not int(about["step"]) < due < _LATEST:
+        steps, due, exchanges = (int(values[f"coupling/{name}"]) for name in ("steps", "due", "exchanges"))
+        if not 1 <= steps < _LATEST or not int(values["step"]) < due < _LATEST:
             raise ValueError(f"{steps} steps between exchanges, the next at step {due}")
         return CouplingState(
             water=WaterState(
                 **profiles,
-                z_surface=float(about["coupling/water/z_surface"]),
-                volume=float(about["coupling/water/volume"]),
-                gradient=float(about["coupling/water/gradient"]),
-                t=float(about["coupling/water/t"]),
-                step=int(about["coupling/water/step"]),
+                z_surface=float(values["coupling/water/z_surface"]),
+                volume=float(values["coupling/water/volume"]),
+                gradient=float(values["coupling/water/gradient"]),
+                t=float(values["coupling/water/t"]),
+                step=int(values["coupling/water/step"]),
             ),
             z=self._floats("coupling/z", (n,)),
             force_z=self._floats("coupling/force_z", (column.n,)),
             steps=steps,
             due=due,
             exchanges=exchanges,
-            worst=float(about["coupling/worst"]),
+            worst=float(values["coupling/worst"]),
             eddies=eddies,
         )
 
-    def _place(self, name: str, n: int) -> NDArray[np.float64]:
+    def _positions(self, name: str, n: int) -> NDArray[np.float64]:
         x = self._floats(name, (n, 3))
         if n and np.abs(x).max() > _EDGE:
             raise ValueError(f"'{name}' has a grain beyond {_EDGE:g} m")
@@ -190,16 +190,16 @@ class _Reader:
 
     def _engine(self) -> EngineBlock | None:
         """The block of an engine, which alone knows what its arrays and numbers mean and checks them."""
-        about = self._about
-        if not about.get("engine"):
+        values = self._values
+        if not values.get("engine"):
             return None
-        numbers, start = about["engine/numbers"], "engine/arrays/"
+        numbers, start = values["engine/numbers"], "engine/arrays/"
         if not isinstance(numbers, Mapping) or len(numbers) > _NUMBERS:
-            raise TypeError("the numbers of an engine are no table")
+            raise TypeError("the numbers of an engine are not a table")
         names = [name for name in self._arrays if name.startswith(start)]
         return EngineBlock(
-            engine=str(about["engine/engine"]),
-            version=int(about["engine/version"]),
+            engine=str(values["engine/engine"]),
+            version=int(values["engine/version"]),
             arrays={name.removeprefix(start): self._floats(name, None) for name in names},
             numbers={str(name): float(value) for name, value in numbers.items()},
         )

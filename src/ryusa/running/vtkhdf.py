@@ -1,9 +1,9 @@
-"""VTKHDF PolyData files: points that ParaView (5.12 or later) and the vtk wheel open as they are.
+"""VTKHDF PolyData files of points, which ParaView (5.12 or later) and the vtk package can open directly.
 
-`grains.vtkhdf` holds no numbers of its own: each dataset is an HDF5 virtual dataset over the write-once
-parts, so that it can be written anew in a moment and put in place by a rename; a reader sees the old index or
-the new one, both whole. Every so many parts stand on a shelf, an index of their own that is written once:
-what the index of the run takes in time and memory does not grow with the run.
+`grains.vtkhdf` is an index without data: each dataset is an HDF5 virtual dataset over the write-once parts,
+so that the file can be rewritten quickly and replaced by a rename; a reader sees the old index or the new
+one, both complete. Every `SUBINDEX_PARTS` parts have a sub-index of their own that is written once, so
+that time and memory for the index of the run do not grow with the run.
 """
 
 from collections.abc import Callable
@@ -16,22 +16,22 @@ import numpy as np
 
 from ryusa.model import EVENT, Scene
 from ryusa.results import schema
-from ryusa.running.disk import image, write_whole
+from ryusa.running.disk import hdf5_image, write_atomically
 
-_VERSION = np.array([2, 0], dtype=np.int64)  # the first that knows steps of PolyData
+_VERSION = np.array([2, 0], dtype=np.int64)  # the first version with time steps of PolyData
 _CELLS = ("Vertices", "Lines", "Polygons", "Strips")
 _INT = np.dtype(np.int64)
 _FLOAT = np.dtype(np.float64)
-SHELF = 32  # parts; HDF5 takes 4 kB for each of a dataset, until the file is closed
-POINTS = "points.h5"  # in parts/: what is the same in every frame
-_PLANE_REACH = (
-    50.0  # half the side of the square drawn for a plane where nothing else bounds it, in largest d
+SUBINDEX_PARTS = (
+    32  # parts in a sub-index; HDF5 uses 4 kB for each source of a virtual dataset until the file is closed
 )
+POINTS = "points.h5"  # in parts/: data that all frames share
+_PLANE_REACH = 50.0  # half the side, in largest d, of the square that is drawn for an unbounded plane
 
 
 @dataclass(frozen=True)
 class PartSize:
-    """How much a part holds."""
+    """Number of frames and contacts in a part."""
 
     name: str
     n_frame: int
@@ -39,56 +39,65 @@ class PartSize:
     end: int = 0  # step up to which all that was recorded is in this part or an earlier one
 
 
-def write_atomic(path: Path, fill: Callable[[h5py.File], None]) -> None:
-    """Write an HDF5 file so that `path` is either as before or whole, also after a power cut."""
-    write_whole(path, image(fill))
+def write_hdf5(path: Path, fill: Callable[[h5py.File], None]) -> None:
+    """Write an HDF5 file atomically."""
+    write_atomically(path, hdf5_image(fill))
 
 
 def write_points(parts: Path, scene: Scene) -> None:
-    """Write what all frames share: diameter, id and one vertex cell per grain."""
+    """Write the data that all frames share: diameter, id and one vertex cell per grain."""
 
     def fill(file: h5py.File) -> None:
         file["diameter"] = scene.d
         file["id"] = np.arange(scene.n_grain, dtype=np.int64)
         file["offsets"] = np.arange(scene.n_grain + 1, dtype=np.int64)
 
-    write_atomic(parts / POINTS, fill)
+    write_hdf5(parts / POINTS, fill)
 
 
-def write_index(folder: Path, parts: list[PartSize], n_grain: int, shelved: int = 0) -> int:
+def write_index(folder: Path, parts: list[PartSize], n_grain: int, n_subindex: int = 0) -> int:
     """Write `grains.vtkhdf` over `parts`; at least one frame is needed.
 
     Parameters
     ----------
-    shelved : shelves that are there already and hold what they should.
+    n_subindex : number of sub-indices that this process has written.
 
     Returns
     -------
-    shelved : those that are there now.
+    n_subindex : number of sub-indices now.
 
     Notes
     -----
-    A shelf is never written over by another: until the new index is in place, the old one and whoever reads
-    by it need theirs.
+    A sub-index is never overwritten by a different one: until the new index is in place, readers of the old
+    one need theirs.
     """
-    shelves = [_shelf(k, parts[k * SHELF : (k + 1) * SHELF]) for k in range(len(parts) // SHELF)]
-    for k, shelf in enumerate(shelves[shelved:], shelved):
-        _write_shelf(folder / schema.PARTS / shelf.name, parts[k * SHELF : (k + 1) * SHELF], n_grain)
+    subindices = [
+        _subindex(k, parts[k * SUBINDEX_PARTS : (k + 1) * SUBINDEX_PARTS])
+        for k in range(len(parts) // SUBINDEX_PARTS)
+    ]
+    for k, subindex in enumerate(subindices[n_subindex:], n_subindex):
+        _write_subindex(
+            folder / schema.PARTS / subindex.name,
+            parts[k * SUBINDEX_PARTS : (k + 1) * SUBINDEX_PARTS],
+            n_grain,
+        )
 
     def fill(file: h5py.File) -> None:
-        _fill_index(file, [*shelves, *parts[len(shelves) * SHELF :]], n_grain)
+        _fill_index(file, [*subindices, *parts[len(subindices) * SUBINDEX_PARTS :]], n_grain)
 
-    write_atomic(folder / schema.GRAINS, fill)
-    return len(shelves)
+    write_hdf5(folder / schema.GRAINS, fill)
+    return len(subindices)
 
 
-def _shelf(k: int, parts: list[PartSize]) -> PartSize:
+def _subindex(k: int, parts: list[PartSize]) -> PartSize:
     frames, contacts = sum(one.n_frame for one in parts), sum(one.n_contact for one in parts)
-    return PartSize(schema.shelf_name(k * SHELF, frames, contacts), frames, contacts, parts[-1].end)
+    return PartSize(
+        schema.subindex_name(k * SUBINDEX_PARTS, frames, contacts), frames, contacts, parts[-1].end
+    )
 
 
-def _write_shelf(path: Path, parts: list[PartSize], n: int) -> None:
-    """Write an index that looks like one large part."""
+def _write_subindex(path: Path, parts: list[PartSize], n: int) -> None:
+    """Write an index that has the layout of one large part."""
     shapes = {
         name: ((n, *tail) if name in schema.PER_GRAIN else tail, dtype)
         for name, (dtype, tail) in schema.FRAME_DATASETS.items()
@@ -99,7 +108,7 @@ def _write_shelf(path: Path, parts: list[PartSize], n: int) -> None:
         for name, (tail, dtype) in shapes.items():
             _gather(file, name, parts, name, tail, dtype, folder="", flat=False)
 
-    write_atomic(path, fill)
+    write_hdf5(path, fill)
 
 
 def _fill_index(file: h5py.File, parts: list[PartSize], n: int) -> None:
@@ -132,7 +141,7 @@ def _fill_index(file: h5py.File, parts: list[PartSize], n: int) -> None:
     offsets = steps.create_group("PointDataOffsets")
     offsets["velocity"] = offsets["spin"] = steps["PointOffsets"]
     offsets["diameter"] = offsets["id"] = zeros
-    # for h5py: what ParaView has no use for
+    # for h5py: data that ParaView does not use
     more = file.create_group("ryusa")
     _gather(more, "step", parts, "step", (), _INT)
     _gather(more, "image", parts, "image", (n, 2), schema.FRAME_DATASETS["image"][0])
@@ -158,7 +167,7 @@ def _gather(
     folder: str = f"{schema.PARTS}/",
     flat: bool = True,
 ) -> None:
-    """Put the rows of all parts behind one another; flat, a part's (k, n, 3) becomes (k n, 3) rows."""
+    """Concatenate the rows of all parts as a virtual dataset; `flat` makes (k n, 3) of a part's (k, n, 3)."""
     counts = [part.n_contact if source == "contacts" else part.n_frame for part in parts]
     rows, rest = (tail[0], tail[1:]) if tail and flat else (1, tail)
     if sum(counts) * rows == 0:
@@ -184,13 +193,13 @@ def _share(group: h5py.Group, name: str, source: str, count: int, dtype: np.dtyp
 def write_bed(path: Path, scenes: list[tuple[float, Scene]]) -> None:
     """Write fixed grains (points with a diameter) and planes (squares whose corners have diameter 0).
 
-    One frame, or one per (time [s], scene) where the timeline took grains or planes away.
+    One frame per (time [s], scene); more than one if the timeline removed grains or planes.
     """
 
     def fill(file: h5py.File) -> None:
         _fill_bed(file, scenes)
 
-    write_atomic(path, fill)
+    write_hdf5(path, fill)
 
 
 def _fill_bed(file: h5py.File, scenes: list[tuple[float, Scene]]) -> None:
@@ -232,7 +241,7 @@ def _starts(counts: np.ndarray) -> np.ndarray:
 
 
 def _bed_points(scene: Scene) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
-    """Points, diameters and ids of what is there now, and how many of them are grains."""
+    """Points, diameters and ids of the present bed, and how many of the points are grains."""
     there = np.asarray(scene.fixed_active, dtype=bool)
     x, d = np.asarray(scene.x_fixed).reshape(-1, 3)[there], np.asarray(scene.d_fixed)[there]
     ids = scene.n_grain + np.flatnonzero(there)

@@ -1,4 +1,4 @@
-"""Live numbers of a run: overlap, steps per contact, restitution got, energy account, warnings."""
+"""Live numbers of a run: overlap, steps per contact, measured restitution, energy account, warnings."""
 
 import math
 from dataclasses import dataclass
@@ -22,23 +22,23 @@ from ryusa.laws.torque import reynolds_spin, torque_in_range
 from ryusa.model import Book, Scene, State, Tally
 from ryusa.model.scene import Damping
 from ryusa.model.tally import HELD
-from ryusa.running.checkpoint import Kept
+from ryusa.running.checkpoint import CheckpointBlock
 
-BAND = (0.001, 0.01)  # stable band of overlap/d, the paper's fig11
-TRAVEL_LIMIT = 0.3  # of d along the bed within one contact; beyond, contacts end by geometry, not by Eq. (8)
+BAND = (0.001, 0.01)  # stable range of overlap/d, fig11 of the paper
+TRAVEL_LIMIT = 0.3  # of d along the bed within one contact; beyond it geometry ends contacts, not Eq. (8)
 PASSED = 0.64  # overlap/d below which no grain passes through another (design/0008)
 STEPS_LEAST = 10  # per contact
 RESIDUAL_LIMIT = 1e-3  # of the energy account
 QUANTILES = (0.01, 0.1, 0.5, 0.9, 0.99)
-_CLOSING_LEAST = 20.0  # times g t_col: in slower contacts the weight takes part (5 % of the speed and more)
-_BOUNCE_LONGEST = 3.0  # times the shortest contact: what lasts longer rolls or rests
-_SLIP_LEAST = 0.1  # of the closing speed: less slip than this has no tangential restitution to speak of
-_MOST = np.iinfo(np.int64).max  # contacts a run can count
+_CLOSING_LEAST = 20.0  # times g t_col: in slower contacts the weight changes the speed by 5 % or more
+_BOUNCE_LONGEST = 3.0  # times the shortest contact: in longer contacts a grain rolls or rests
+_SLIP_LEAST = 0.1  # of the closing speed: with less slip tangential restitution is not measured
+_MOST = np.iinfo(np.int64).max  # upper limit of the number of contacts
 _DECADES, _BINS = (-1, 8), 100  # histogram of steps per contact: range of powers of ten, bins in each
 
 
 @dataclass
-class Average:
+class RunningMean:
     """Running mean and its standard error."""
 
     n: int = 0
@@ -56,18 +56,18 @@ class Average:
         self.mean += shift * n / total
         self.n = total
 
-    def possible(self, most: int) -> bool:
-        """Whether so many samples can have given these numbers."""
+    def is_valid(self, most: int) -> bool:
+        """True if at most `most` samples can have given these numbers."""
         return 0 <= self.n <= most and math.isfinite(self.mean) and 0.0 <= self.spread < math.inf
 
     def as_dict(self) -> dict[str, float | int | None]:
-        """Number, mean and standard error; None where there are too few samples."""
+        """Number, mean and standard error; None if there are too few samples."""
         error = math.sqrt(self.spread / (self.n - 1) / self.n) if self.n > 1 else None
         return {"n": self.n, "mean": self.mean if self.n else None, "standard_error": error}
 
 
 class Watch:
-    """Follows one run."""
+    """Live numbers of one run."""
 
     def __init__(self, scene: Scene, state: State) -> None:
         self.scene = scene
@@ -78,29 +78,29 @@ class Watch:
         self._edges = np.logspace(low, high, (high - low) * _BINS + 1)
         self._histogram = np.zeros(len(self._edges) - 1, dtype=np.int64)
         self._range = (math.inf, 0.0)  # of steps per contact
-        self._normal = {"fixed": Average(), "free": Average()}
-        self._stuck = {"fixed": Average(), "free": Average()}
-        self._slid = {"fixed": Average(), "free": Average()}
-        self._travel = Average()
+        self._normal = {"fixed": RunningMean(), "free": RunningMean()}
+        self._stuck = {"fixed": RunningMean(), "free": RunningMean()}
+        self._slid = {"fixed": RunningMean(), "free": RunningMean()}
+        self._travel = RunningMean()
         self._travel_most = 0.0
         self._re_spin = 0.0  # largest rotational Reynolds number beyond the range of the water's torque
         self._follows = _follows(scene, _free_pairs(scene, state))
 
     def contacts(self, events: NDArray[np.void]) -> None:
-        """Take contacts that ended, dtype model.EVENT."""
+        """Update with contacts that ended, dtype model.EVENT."""
         if len(events) == 0:
             return
         self.n_contact += len(events)
         sizes = self.scene.d[events["i"]]
         for name in ("omega_begin", "omega_end"):
             self._spins(np.linalg.norm(events[name], axis=1), sizes)
-        events = events[np.isfinite(events["closing_end"])]  # of the others the partner was taken away
+        events = events[np.isfinite(events["closing_end"])]  # in the others the partner was removed
         if len(events) == 0:
             return
         duration = events["t_end"] - events["t_begin"]
         self._steps(duration / self.scene.dt)
         bed = events["j"] >= self.scene.n_grain
-        # bounces on fixed grains; a grain that rolls or rests may stay in touch for long
+        # impacts on fixed grains; a grain that rolls or rests stays in contact for longer
         bounce = bed & (events["j"] < self.scene.n_grain + self.scene.n_fixed)
         bounce &= duration < _BOUNCE_LONGEST * self.t_col_shortest
         self._along_bed(events[bounce], duration[bounce])
@@ -109,8 +109,8 @@ class Watch:
             self._restitution(events[lonely & partner], name)
 
     def frame(self, tally: Tally) -> None:
-        """Take the account at a recorded frame."""
-        if self.scene.n_grain:  # which grain it is is not known; the largest errs to the safe side
+        """Update with the account at a recorded frame."""
+        if self.scene.n_grain:  # the grain is not known; the largest one gives an upper bound
             self._spins(np.array([tally.spin_max]), self.scene.d.max(keepdims=True))
 
     def _spins(self, spin: NDArray[np.float64], d: NDArray[np.float64]) -> None:
@@ -144,7 +144,7 @@ class Watch:
         self._stuck[name].take(got[~slid])
         self._slid[name].take(got[slid])
 
-    def numbers(self, tally: Tally) -> dict[str, Any]:
+    def summary(self, tally: Tally) -> dict[str, Any]:
         """All live numbers as plain data, for summary.json."""
         scene = self.scene
         return {
@@ -172,80 +172,85 @@ class Watch:
         }
 
     def warnings(self, tally: Tally) -> list[str]:
-        """Say where the run left the stable band."""
-        said: list[str] = []
+        """Warnings about the run, one sentence each."""
+        found: list[str] = []
         largest = tally.overlap_max
         if largest > PASSED:
-            said.append(
-                f"largest overlap/d {largest:.3g} is above {PASSED}: grains may have passed "
-                "through each other"
+            found.append(
+                f"largest overlap/d {largest:.3g} is above {PASSED}: grains may have passed through "
+                "each other; raise contact.stiffness"
             )
         touched = self.n_contact > 0 or tally.n_contact > 0
         if largest > BAND[1]:
-            said.append(
-                f"largest overlap/d {largest:.3g} is above {BAND[1]}: springs too soft, grains may tremble"
+            found.append(
+                f"largest overlap/d {largest:.3g} is above {BAND[1]}: springs so soft that grains at rest "
+                "may vibrate; raise contact.stiffness"
             )
         elif touched and largest < BAND[0]:
-            said.append(
-                f"largest overlap/d {largest:.3g} is below {BAND[0]}: stiffer and slower to run than needed"
+            found.append(
+                f"largest overlap/d {largest:.3g} is below {BAND[0]}: springs are stiffer than needed, which "
+                "costs computing time"
             )
         steps = self.t_col_shortest / self.scene.dt
         if steps < STEPS_LEAST:
-            said.append(
-                f"{steps:.1f} steps in the shortest contact, below {STEPS_LEAST}: do not trust the rebounds"
+            found.append(
+                f"{steps:.1f} steps in the shortest contact, below {STEPS_LEAST}: rebounds are inaccurate; "
+                "raise time.steps_per_contact"
             )
         if self._travel_most > TRAVEL_LIMIT:
-            said.append(
+            found.append(
                 f"a grain moved {self._travel_most:.2g} d along the bed within one contact "
-                f"(mean {self._travel.mean:.2g} d, limit {TRAVEL_LIMIT}): contacts end by geometry"
+                f"(mean {self._travel.mean:.2g} d, limit {TRAVEL_LIMIT}): geometry ends contacts before the "
+                "rebound; raise contact.stiffness"
             )
         if self._re_spin:
-            said.append(
-                f"a grain span at Re_r = d^2 omega/nu up to {self._re_spin:.3g}, beyond what "
-                "water.torque = 'Dennis' was fitted for: its torque is extrapolated"
+            found.append(
+                f"a grain rotated at Re_r = d^2 omega/nu up to {self._re_spin:.3g}, above the fitted range "
+                "of water.torque = 'Dennis': its torque is extrapolated"
             )
         if tally.residual > RESIDUAL_LIMIT:
-            said.append(
-                f"the energy account leaves {tally.residual:.1e} unexplained, above {RESIDUAL_LIMIT:g}"
+            found.append(
+                f"the imbalance of the energy account is {tally.residual:.1e} of its largest term, "
+                f"above {RESIDUAL_LIMIT:g}; raise time.steps_per_contact"
             )
-        return said
+        return found
 
-    def kept(self) -> Kept:
-        """All that was seen so far, for a checkpoint."""
-        about = {"n_contact": self.n_contact, "range": self._range, "re_spin": self._re_spin}
-        about |= {"travel_most": self._travel_most, "averages": [vars(one) for one in self._averages()]}
-        return Kept(about, {"histogram": self._histogram})
+    def to_block(self) -> CheckpointBlock:
+        """All numbers so far, for a checkpoint."""
+        values = {"n_contact": self.n_contact, "range": self._range, "re_spin": self._re_spin}
+        values |= {"travel_most": self._travel_most, "averages": [vars(one) for one in self._averages()]}
+        return CheckpointBlock(values, {"histogram": self._histogram})
 
-    def go_on(self, kept: Kept) -> None:
-        """Take what was seen up to a checkpoint.
+    def restore(self, block: CheckpointBlock) -> None:
+        """Take over the numbers of a checkpoint.
 
         Raises
         ------
-        CheckpointError : it is not what a watch keeps.
+        CheckpointError : the numbers are missing or not valid.
         """
         try:
-            about, histogram = kept.about, kept.arrays["histogram"]
-            low, high = (float(one) for one in about["range"])
+            values, histogram = block.values, block.arrays["histogram"]
+            low, high = (float(one) for one in values["range"])
             if histogram.shape != self._histogram.shape or histogram.dtype != np.int64 or histogram.min() < 0:
                 raise ValueError(f"a histogram of shape {histogram.shape}")
-            for one, seen in zip(self._averages(), about["averages"], strict=True):
+            for one, seen in zip(self._averages(), values["averages"], strict=True):
                 one.n, one.mean, one.spread = int(seen["n"]), float(seen["mean"]), float(seen["spread"])
-            self.n_contact, self._re_spin = int(about["n_contact"]), float(about["re_spin"])
-            self._travel_most = float(about["travel_most"])
+            self.n_contact, self._re_spin = int(values["n_contact"]), float(values["re_spin"])
+            self._travel_most = float(values["travel_most"])
             if not 0 <= self.n_contact <= _MOST:
-                raise ValueError("contacts that nobody can have counted")
-            if not all(one.possible(self.n_contact) for one in self._averages()):
-                raise ValueError("an average of less than nothing, or of more contacts than there were")
+                raise ValueError("an impossible number of contacts")
+            if not all(one.is_valid(self.n_contact) for one in self._averages()):
+                raise ValueError("an impossible mean or spread")
         except (KeyError, TypeError, ValueError, OverflowError) as error:
-            raise CheckpointError(f"the checkpoint's live numbers are not readable ({error})") from error
+            raise CheckpointError(f"the live numbers in the checkpoint are not valid ({error})") from error
         self._histogram, self._range = histogram, (low, high)
 
-    def _averages(self) -> list[Average]:
+    def _averages(self) -> list[RunningMean]:
         kinds = (self._normal, self._stuck, self._slid)
         return [*(one for kind in kinds for one in kind.values()), self._travel]
 
     def _observed(self) -> dict[str, float | int | None]:
-        """Steps per contact found: number, smallest, quantiles to 2.3 %, largest."""
+        """Observed steps per contact: number, minimum, quantiles to 2.3 %, maximum."""
         total = int(self._histogram.sum())
         if total == 0:
             return {"n": 0}
@@ -260,14 +265,14 @@ class Watch:
 
 
 def energy(tally: Tally) -> dict[str, float]:
-    """The energy account [J], each term summed by itself, and what it cannot explain."""
+    """The energy account [J], each term summed separately, with imbalance and residual."""
     account = {name: float(getattr(tally, name)) for name in HELD}
     account |= {book.name.lower(): float(tally.books[book]) for book in Book}
     return {**account, "imbalance": tally.imbalance, "residual": tally.residual}
 
 
 def shortest_collision_time(scene: Scene, state: State) -> float:
-    """Contact time of the lightest pair that can meet, damped or undamped [s]; inf without grains."""
+    """Contact time of the lightest pair that can collide, damped or undamped [s]; inf without grains."""
     if scene.n_grain == 0:
         return math.inf
     law = scene.contact
@@ -280,7 +285,7 @@ def shortest_collision_time(scene: Scene, state: State) -> float:
 def _follows(scene: Scene, free_pairs: bool) -> dict[str, tuple[float, float | None]]:
     """Normal and tangential restitution of the mean grain that constant dashpots give, by partner.
 
-    Empty where restitution is asked for; no tangential one without a tangential spring.
+    Empty if the case sets the restitution; no tangential one without a tangential spring.
     """
     law = scene.contact
     if law.damping == Damping.RESTITUTION or scene.n_grain == 0:
@@ -299,7 +304,7 @@ def _follows(scene: Scene, free_pairs: bool) -> dict[str, tuple[float, float | N
 
 
 def _speed_of_weight(scene: Scene) -> float:
-    """Speed that its weight gives the heaviest grain within one contact [m/s]."""
+    """Speed that the heaviest grain gains by its weight within one contact [m/s]."""
     if scene.n_grain == 0:
         return 0.0
     k = int(np.argmax(scene.m))
@@ -309,7 +314,7 @@ def _speed_of_weight(scene: Scene) -> float:
 
 
 def _free_pairs(scene: Scene, state: State) -> bool:
-    """Can two free grains meet? Not when each has a lane of its own in a plane scene."""
+    """True if two free grains can collide; false if each has its own lane in a plane scene."""
     if scene.n_grain < 2:
         return False
     if not scene.plane_case:

@@ -9,7 +9,7 @@ from typing import Any
 from ryusa import __version__
 from ryusa.errors import CaseError
 from ryusa.running import provenance
-from ryusa.running.folder import existing, free_bytes, size
+from ryusa.running.folder import format_bytes, free_bytes, nearest_existing
 from ryusa.study.task import Task
 
 
@@ -49,7 +49,8 @@ class CostEstimate:
         at_once = "one at a time" if self.jobs == 1 else f"{self.jobs} at a time"
         return (
             f"{_runs(len(self.costs))} to make{there}: about {duration(self.seconds)} {at_once} "
-            f"({self.core_seconds / 60:.0f} core minutes by rule of thumb), {size(self.disk)} on the disk"
+            f"({self.core_seconds / 60:.0f} core minutes by rule of thumb), "
+            f"{format_bytes(self.disk)} on the disk"
             f"{self._old()}"
         )
 
@@ -121,13 +122,14 @@ def refuse_if_too_big(ahead: CostEstimate, folder: Path) -> None:
     ------
     CaseError : they would not fit.
     """
-    place = existing(folder)
+    place = nearest_existing(folder)
     free = free_bytes(place)
     if ahead.disk > free:
         raise CaseError(
             "disk",
             None,
-            f"{len(ahead.costs)} runs need {size(ahead.disk)}, but only {size(free)} are free at {place}. "
+            f"{len(ahead.costs)} runs need {format_bytes(ahead.disk)}, but only {format_bytes(free)} are "
+            f"free at {place}. "
             "Choose another disk with -o, or run fewer parts at a time",
         )
 

@@ -9,7 +9,7 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
 from PIL import Image
 
-from ryusa.running.disk import write_whole
+from ryusa.running.disk import write_atomically
 from ryusa.study.cost import code_in_words
 
 COLOURS = 256  # of an embedded picture
@@ -59,6 +59,6 @@ def number(value: object) -> str:
 def write_log(log: Path, traces: Mapping[str, str]) -> None:
     """Keep the tracebacks of errors in the program, and none of an earlier time."""
     if traces:
-        write_whole(log, "\n".join(f"{what}\n{trace}" for what, trace in traces.items()).encode())
+        write_atomically(log, "\n".join(f"{what}\n{trace}" for what, trace in traces.items()).encode())
     else:
         log.unlink(missing_ok=True)

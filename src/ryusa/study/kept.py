@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ryusa.errors import ResultsError
-from ryusa.running.disk import write_whole
+from ryusa.running.disk import write_atomically
 from ryusa.study.ledger import FORMAT
 
 COMPRESSED = ".xz"
@@ -36,7 +36,7 @@ def write_ledger(path: Path, plain: Mapping[str, Any]) -> Path:
         data = lzma.compress(short.encode(), preset=9 | lzma.PRESET_EXTREME)
     else:
         data = (json.dumps(plain, indent=2, ensure_ascii=False, allow_nan=False) + "\n").encode()
-    write_whole(path, data)
+    write_atomically(path, data)
     return path
 
 

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from ryusa.running.disk import write_whole
+from ryusa.running.disk import write_atomically
 from ryusa.study.html import embedded, is_wide, template, write_log
 from ryusa.study.interval import short
 from ryusa.study.kept import write_ledger
@@ -32,7 +32,7 @@ def write(ledger: Ledger, copy: Path | None = None) -> tuple[Path, ...]:
     for path in files:  # first: whatever becomes of the page, the numbers are kept
         write_ledger(path, plain)
     write_log(ledger.folder / f"{ledger.stem}-errors.log", ledger.traces)
-    write_whole(page, render(ledger.study, plain, ledger.tables, ledger.folder).encode())
+    write_atomically(page, render(ledger.study, plain, ledger.tables, ledger.folder).encode())
     return (page, *files)
 
 

@@ -1,4 +1,4 @@
-"""When a checkpoint is written, and whose it is."""
+"""When checkpoints are written, and the identity of the run that they belong to."""
 
 import hashlib
 import json
@@ -11,29 +11,27 @@ from typing import Any
 from ryusa.model import Scene
 from ryusa.results import schema
 from ryusa.results.scene_file import scene_digest
-from ryusa.running.checkpoint import Kept, write_checkpoint
-from ryusa.running.disk import disk
+from ryusa.running.checkpoint import CheckpointBlock, write_checkpoint
+from ryusa.running.disk import disk_errors
 from ryusa.running.stops import Stop
 
-EVERY = 300.0  # s of wall time between two checkpoints
-_SHARE = 0.01  # of the time of a run that checkpoints may take: dear ones are written less often
-MAY_CHANGE = (
-    "stop",
-    "title",
-)  # of a case, for who insists: no number that was written depends on it
-# what a version of the numbers is made of; the rest of the environment cannot change a bit of them
+CHECKPOINT_INTERVAL = 300.0  # s of wall time between two checkpoints
+_SHARE = 0.01  # of the run time that checkpoints may take: the interval grows if writing one takes long
+# sections of a case that may differ on a resume with --force: no recorded number depends on them
+FREE_KEYS = ("stop", "title")
+# packages whose version can change the bits of a run
 _PACKAGES = ("numpy", "numba", "llvmlite")
 
 
-class Keeper:
+class CheckpointScheduler:
     """Writes the checkpoints of one run.
 
     Parameters
     ----------
     folder : the run folder.
-    identity : whose checkpoint it is, see `identity_of`.
+    identity : identity of the run, see `run_identity`.
     scene : as the run began.
-    every : wall time between two [s]; inf for none but those asked for.
+    every : wall time between two checkpoints [s]; inf writes only those that a signal requests.
     """
 
     def __init__(
@@ -41,48 +39,48 @@ class Keeper:
         folder: Path,
         identity: Mapping[str, Any],
         scene: Scene,
-        every: float = EVERY,
+        every: float = CHECKPOINT_INTERVAL,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self._folder, self._identity, self._clock = folder, dict(identity), clock
         self._every = every
         self._wait, self._last = every, clock()
         self._first, self._scene = scene, (scene, "")
-        self.size = 0  # of the last one [B]
+        self.size = 0  # of the last checkpoint [B]
 
     def due(self) -> bool:
-        """Whether it is time for one."""
+        """True when the next checkpoint is due."""
         return self._clock() - self._last >= self._wait
 
-    def write(self, state: Kept, scene: Scene, parts: Mapping[str, Kept]) -> None:
-        """Write one; the one before stays.
+    def write(self, state: CheckpointBlock, scene: Scene, parts: Mapping[str, CheckpointBlock]) -> None:
+        """Write a checkpoint; the previous one is kept.
 
         Raises
         ------
-        DiskFull, ResultsError : it was not written; the one before is the last good one.
+        DiskFull, ResultsError : it was not written; the previous one remains valid.
         """
         begun = self._clock()
         if "scene" not in self._identity:
             self._identity["scene"] = scene_digest(self._first)
         if self._scene[0] is not scene or not self._scene[1]:
             self._scene = (scene, scene_digest(scene))
-        identity = Kept({**self._identity, "scene_now": self._scene[1]})
+        identity = CheckpointBlock({**self._identity, "scene_now": self._scene[1]})
         try:
-            with disk(self._folder):
+            with disk_errors(self._folder):
                 self.size = write_checkpoint(
-                    self._folder, Kept.together(identity=identity, state=state, **parts)
+                    self._folder, CheckpointBlock.merged(identity=identity, state=state, **parts)
                 )
         finally:
             self._last = self._clock()
             self._wait = max(self._every, (self._last - begun) / _SHARE)
 
     def remove(self) -> None:
-        """Take the checkpoints away: the run is complete."""
+        """Delete the checkpoints of a complete run."""
         for name in (schema.CHECKPOINT, schema.CHECKPOINT_BEFORE):
             (self._folder / name).unlink(missing_ok=True)
 
 
-def identity_of(
+def run_identity(
     origin: Mapping[str, Any],
     resolved: Mapping[str, Any],
     *,
@@ -90,27 +88,27 @@ def identity_of(
     stop: Stop,
     changes: Sequence[tuple[float, str]],
 ) -> dict[str, Any]:
-    """Whose checkpoint it is, beside the scene.
+    """Identity of a run, without its scene.
 
     Parameters
     ----------
-    origin : provenance of the process that writes.
+    origin : provenance of the writing process.
     resolved : the case as case.json holds it.
     frames : time between frames [s].
     stop : when the run ends.
-    changes : time [s] and words of each entry of the timeline.
+    changes : time [s] and text of each entry of the timeline.
     """
     return {
         "case": case_digest(resolved),
         "plan": {"frames": frames, "changes": [list(one) for one in changes]},
         "stop": asdict(stop),
-        "code": code_of(origin),
+        "code": code_versions(origin),
         "engine": origin["engine"],
     }
 
 
-def code_of(origin: Mapping[str, Any]) -> dict[str, str]:
-    """Versions and processor that the bits of a run depend on, by the names a user knows."""
+def code_versions(origin: Mapping[str, Any]) -> dict[str, str]:
+    """Versions and processor on which the bits of a run depend, by readable names."""
     packages, machine = _table(origin.get("packages")), _table(origin.get("machine"))
     found = {"ryusa": origin.get("ryusa"), "commit": origin.get("commit")}
     found |= {name: packages.get(name) for name in _PACKAGES}
@@ -123,6 +121,6 @@ def _table(value: Any) -> Mapping[str, Any]:
 
 
 def case_digest(resolved: Mapping[str, Any]) -> str:
-    """Digest of a case as case.json holds it, less what may change without changing what was written."""
-    kept = {name: one for name, one in resolved.items() if name not in MAY_CHANGE}
-    return hashlib.sha256(json.dumps(kept, sort_keys=True).encode()).hexdigest()
+    """Digest of a case as case.json holds it, without the keys of `FREE_KEYS`."""
+    fixed = {name: one for name, one in resolved.items() if name not in FREE_KEYS}
+    return hashlib.sha256(json.dumps(fixed, sort_keys=True).encode()).hexdigest()

@@ -1,0 +1,61 @@
+"""Energy account of a run as lines of text, every term with its full name (docs/glossary.md)."""
+
+from collections.abc import Mapping
+
+from ryusa.model import Book
+from ryusa.model.tally import GIFTS, HELD, LOSSES
+
+_HELD = dict(
+    zip(
+        HELD,
+        ("translation", "rotation", "potential", "normal springs", "tangential springs", "rolling springs"),
+        strict=True,
+    )
+)
+_WORK = {
+    Book.DASH_N: "normal dashpots",
+    Book.DASH_S: "tangential dashpots",
+    Book.SLIDE: "sliding friction",
+    Book.ROLL: "rolling friction",
+    Book.RELEASED_N: "normal springs at separation",
+    Book.RELEASED_S: "tangential springs at separation",
+    Book.RELEASED_R: "rolling springs at separation",
+    Book.FILM: "liquid films",
+    Book.DRAG: "drag",
+    Book.TORQUE: "torque of the water",
+    Book.LIFT: "lift",
+    Book.FLOW: "pressure gradient and acceleration of the water",
+    Book.SWITCH: "changes of the timeline",
+    Book.STEP: "error of the time step",
+}
+
+
+def energy_lines(terms: Mapping[str, float]) -> list[tuple[str, str]]:
+    """Headings and texts of the account; terms that are exactly zero are left out.
+
+    Parameters
+    ----------
+    terms : energies by the names of summary.json [J], and `residual` [-].
+
+    >>> energy_lines({"kinetic": 1.0, "start": 2.5, "slide": 1.5, "imbalance": 0.0, "residual": 0.0})[1]
+    ('dissipated', '1.5 J: sliding friction 1.5')
+    """
+    held = {name: terms.get(key, 0.0) for key, name in _HELD.items()}
+    lost = {_WORK[book]: terms.get(book.name.lower(), 0.0) for book in LOSSES}
+    given = {_WORK[book]: terms.get(book.name.lower(), 0.0) for book in GIFTS}
+    start = terms.get(Book.START.name.lower(), 0.0)
+    return [
+        ("energy now", f"{_sum(held)}; at the start {start:.3g} J"),
+        ("dissipated", _sum(lost)),
+        ("work done", f"on the grains {_sum(given)}"),
+        (
+            "imbalance",
+            f"{terms['imbalance']:.2g} J, {terms['residual']:.1e} of the largest term of the energy account",
+        ),
+    ]
+
+
+def _sum(terms: Mapping[str, float]) -> str:
+    """Sum of the terms [J], and each that is not zero."""
+    shown = ", ".join(f"{name} {value:.3g}" for name, value in terms.items() if value != 0.0)
+    return f"{sum(terms.values()):.3g} J{f': {shown}' if shown else ''}"

@@ -1,0 +1,78 @@
+"""Summary of a run in a few lines, from the content of summary.json."""
+
+from typing import Any
+
+from ryusa.running.energy_terms import energy_lines
+
+
+def summary_lines(summary: dict[str, Any]) -> list[str]:
+    """Largest overlap, steps per contact, restitution, energy account, warnings."""
+    recorded = summary.get("events") != "none"
+    contacts = f"{summary['contacts']} contacts" if recorded else "contacts not recorded,"
+    lines = [
+        f"{summary['steps']} steps, {summary['frames']} frames, {contacts} "
+        f"in {summary['wall']:.1f} s ({summary['particle_steps_per_second'] / 1e6:.2f} M particle-steps/s "
+        "without compilation)",
+        f"largest overlap/d {summary['overlap']['largest_over_d']:.3g} (stable range {_band(summary)})",
+        _steps(summary["steps_per_contact"]),
+        *(_contacts(summary) if recorded else ()),
+    ]
+    headings = {"dissipated": "energy dissipated", "imbalance": "energy imbalance"}
+    lines += [f"{headings.get(name, name)}: {text}" for name, text in energy_lines(summary["energy"])]
+    if "water" in summary:
+        lines.append(_water(summary["water"]))
+    return lines + [f"warning: {warning}" for warning in summary["warnings"]]
+
+
+def _contacts(summary: dict[str, Any]) -> list[str]:
+    """Lines that need recorded contacts."""
+    shear = summary["restitution_shear"]
+    return [
+        f"restitution: {_set(summary['restitution'])}; measured {_measured(summary['restitution'])} "
+        "(an oblique impact rotates the normal, which changes it by a few per cent, design/0006)",
+        f"tangential restitution: {_set(shear)}; measured without sliding {_measured(shear['sticking'])}; "
+        f"with sliding {_measured(shear['sliding'])}",
+    ]
+
+
+def _water(found: dict[str, Any]) -> str:
+    return (
+        f"water: {found['exchanges']} exchanges with grains, the last after {found['steps_between']} steps; "
+        f"discharge {found['discharge']:.3g} m2/s; stress at the bottom of the column "
+        f"{found['bed_stress']:.3g} Pa; momentum imbalance {found['momentum_residual']:.1e} "
+        "of the largest term"
+    )
+
+
+def _band(summary: dict[str, Any]) -> str:
+    low, high = summary["overlap"]["band"]
+    return f"{low:g} to {high:g}"
+
+
+def _steps(steps: dict[str, Any]) -> str:
+    seen = steps["observed"]
+    text = f"steps per contact: {steps['shortest']:.1f} in the shortest possible contact"
+    if not seen["n"]:
+        return text
+    return (
+        f"{text}; observed minimum {seen['least']:.1f}, 1 % quantile {seen['q01']:.1f}, "
+        f"median {seen['q50']:.1f}, 99 % quantile {seen['q99']:.3g}, maximum {seen['most']:.3g}"
+    )
+
+
+def _measured(averages: dict[str, Any]) -> str:
+    parts: list[str] = []
+    for partner in ("fixed", "free"):
+        one = averages[partner]
+        if one["n"]:
+            error = "" if one["standard_error"] is None else f" +- {one['standard_error']:.1g}"
+            parts.append(f"{one['mean']:.4f}{error} against {partner} grains ({one['n']} contacts)")
+    return ", ".join(parts) or "none (no such contact between two isolated grains)"
+
+
+def _set(restitution: dict[str, Any]) -> str:
+    """Value set by the case, or the one that its constant dashpots give for the mean grain."""
+    if restitution["asked"] is not None:
+        return f"{restitution['asked']:g} set"
+    follows = [f"{e:.4f} against {name}" for name, e in restitution["follows"].items() if e is not None]
+    return f"{', '.join(follows)} grains from constant dashpots" if follows else "not set"

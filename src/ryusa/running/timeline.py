@@ -1,0 +1,26 @@
+"""Changes of the scene during a run, and the order of contacts recorded between them."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ryusa.model import EVENT, Scene
+
+
+@dataclass(frozen=True)
+class Change:
+    """One change of the timeline."""
+
+    at: float  # [s]; falls on the nearest step
+    apply: Callable[[Scene], Scene]
+    what: str = "scene changed"  # for the log
+
+
+def in_order(contacts: Sequence[NDArray[np.void]]) -> NDArray[np.void]:
+    """Contacts that ended in a stretch, in an order independent of its division into calls of the engine."""
+    if not contacts:
+        return np.zeros(0, dtype=EVENT)
+    rows = np.concatenate(contacts)
+    return rows[np.lexsort((rows["t_begin"], rows["j"], rows["i"], rows["t_part"]))]
