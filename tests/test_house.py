@@ -77,6 +77,16 @@ def test_every_module_and_public_function_says_what_it_is() -> None:
     assert not silent
 
 
+def test_no_public_class_name_has_two_meanings() -> None:
+    homes: dict[str, list[str]] = {}
+    for path in SOURCE.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+                homes.setdefault(node.name, []).append(str(path.relative_to(ROOT)))
+    assert len(homes) > 100
+    assert not {name: paths for name, paths in homes.items() if len(paths) > 1}
+
+
 def test_no_tracked_file_names_a_path_of_one_machine() -> None:
     found: list[str] = []
     for path in tracked():
