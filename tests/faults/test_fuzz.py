@@ -222,7 +222,7 @@ def test_an_eddy_viscosity_that_cannot_be_is_refused(stopped: tuple[str, Path], 
     assert (name in kept.arrays) == (kind == "two-way")
     if kind != "two-way":
         return
-    for value, why in [(-1e-169, "less than nothing"), (sys.float_info.max, "at most 1e\\+100")]:
+    for value, why in [(-1e-169, "negative eddy viscosity"), (sys.float_info.max, "at most 1e\\+100")]:
         arrays = {**kept.arrays, name: kept.arrays[name].copy()}
         arrays[name][0] = value
         sign(folder, dict(kept.values), arrays)

@@ -183,7 +183,7 @@ def test_a_disk_nearly_full_pauses_a_run_that_then_goes_on_with_the_same_bits(
     results = run("rolling", tmp_path / "hurt")
     log = (results.folder / schema.LOG).read_text(encoding="utf-8")
     assert "paused: " in log
-    assert "nearly no room is left" in log
+    assert "the disk is almost full" in log
     assert "free space is available again" in log
     assert differences(tmp_path / "whole", tmp_path / "hurt") == []
 

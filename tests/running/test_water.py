@@ -163,7 +163,7 @@ def test_a_run_that_records_no_contacts_does_not_say_that_there_were_none(tmp_pa
     log = (tmp_path / "run" / "log.txt").read_text(encoding="utf-8")
     assert "contacts not recorded" in log
     assert "restitution" not in log
-    assert "momentum not explained" in log
+    assert "momentum imbalance" in log
 
 
 def test_a_bed_that_never_packs_is_warned_of(tmp_path: Path) -> None:

@@ -47,7 +47,7 @@ def energy_lines(terms: Mapping[str, float]) -> list[tuple[str, str]]:
     return [
         ("energy now", f"{_sum(held)}; at the start {start:.3g} J"),
         ("dissipated", _sum(lost)),
-        ("work done", f"on the grains {_sum(given)}"),
+        ("work received", _sum(given)),
         (
             "imbalance",
             f"{terms['imbalance']:.2g} J, {terms['residual']:.1e} of the largest term of the energy account",
