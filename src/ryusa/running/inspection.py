@@ -109,7 +109,8 @@ def _energy(results: Results) -> list[tuple[str, str]]:
     if not len(results.frames):
         return []
     last = {name: float(column[-1]) for name, column in results.tally.items()}
-    overlap = f"{last['overlap_max']:.3g}, grain {int(last['overlap_grain'])}"
+    grain = int(last["overlap_grain"])
+    overlap = f"{last['overlap_max']:.3g}, grain {grain}" if grain >= 0 else "0, no contact so far"
     return [*energy_lines(last), ("max overlap/d", overlap)]
 
 

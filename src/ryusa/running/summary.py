@@ -28,8 +28,9 @@ def _contacts(summary: dict[str, Any]) -> list[str]:
     """Lines that need recorded contacts."""
     shear = summary["restitution_shear"]
     return [
-        f"restitution: {_set(summary['restitution'])}; measured {_measured(summary['restitution'])} "
-        "(an oblique impact rotates the normal, which changes it by a few per cent, design/0006)",
+        f"restitution: {_set(summary['restitution'])}; measured "
+        f"{_measured(summary['restitution'])}; an oblique impact rotates the normal, which changes it by a "
+        "few per cent (design/0006)",
         f"tangential restitution: {_set(shear)}; measured without sliding {_measured(shear['sticking'])}; "
         f"with sliding {_measured(shear['sliding'])}",
     ]
@@ -67,7 +68,7 @@ def _measured(averages: dict[str, Any]) -> str:
         if one["n"]:
             error = "" if one["standard_error"] is None else f" +- {one['standard_error']:.1g}"
             parts.append(f"{one['mean']:.4f}{error} against {partner} grains ({one['n']} contacts)")
-    return ", ".join(parts) or "none (no such contact between two isolated grains)"
+    return ", ".join(parts) or "none (no contact between two isolated grains)"
 
 
 def _set(restitution: dict[str, Any]) -> str:
