@@ -268,6 +268,7 @@ class Calculation(Task):
 def calculation(function: Any, *, seconds: float = 0.1, **arguments: Any) -> Calculation:
     """Name one call of a function of a module.
 
+    >>> from ryusa.cases import case_path
     >>> calculation(case_path, name="drop.toml").label
     'cases-case-path drop.toml'
     """
