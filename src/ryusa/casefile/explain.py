@@ -8,6 +8,7 @@ from ryusa.casefile.derive import Derived, derive
 from ryusa.casefile.estimate import cost_rows
 from ryusa.casefile.films import film_rows
 from ryusa.casefile.grains import grain_rows
+from ryusa.casefile.laws import law_rows
 from ryusa.casefile.rows import ExplainRow
 from ryusa.casefile.time import time_rows
 from ryusa.casefile.water.rows import rotation_rows, water_rows
@@ -32,5 +33,6 @@ def explain(case: Case, derived: Derived | None = None) -> list[ExplainRow]:
         *film_rows(case, found),
         *column_rows(case, found),
         *rotation_rows(case, found),
+        *law_rows(case, found),
         *cost_rows(case, found),
     ]

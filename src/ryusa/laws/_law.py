@@ -11,10 +11,10 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 def edition(*texts: Path) -> str:
-    """Digest of the text of files, and of all Python files in folders."""
+    """Digest of the text of files, and of all Python files in folders and in those below them."""
     digest = hashlib.sha256()
     for text in texts:
-        for file in sorted(text.glob("*.py")) if text.is_dir() else [text]:
+        for file in sorted(text.rglob("*.py")) if text.is_dir() else [text]:
             digest.update(file.read_bytes())
     return digest.hexdigest()
 

@@ -1,8 +1,8 @@
 """The choices of physics, each declared once: its word, its number, its law, what it says, its source.
 
 From this table follow the words of the case file and its JSON Schema, the numbers in scenes and kernels, the
-way from a word to its law, what `ryusa check` prints, and docs/laws.md. A further law is one function in its
-own file and one line here.
+way from a word to its law, what `ryusa check` prints, and the table of laws in the documentation. A further
+law is one function in its own file and one line here.
 
 A choice reads: number, word, function, what it says, source, keys of the case file that it takes, marks.
 Numbers are kept in scenes and checkpoints: a new choice takes a new one, and none is used again. A choice

@@ -47,7 +47,7 @@ def without_profile(monkeypatch):
 @pytest.mark.parametrize("plan", [QUICK, STANDARD])
 def test_rods_of_locked_grains_and_fast_spin_of_free_ones_are_what_the_paper_says(plan):
     found = judged(plan, as_told)
-    assert {claim: one.word for claim, one in found.items()} == dict.fromkeys(fig22.CLAIMS, Outcome.HOLDS)
+    assert {claim: one.outcome for claim, one in found.items()} == dict.fromkeys(fig22.CLAIMS, Outcome.HOLDS)
 
 
 def test_rods_that_free_grains_make_as_well_are_not_the_paper_s():
