@@ -22,7 +22,7 @@ def law_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     for family in FAMILIES:
         *sections, leaf = family.key.split(".")
         section = _section(data, sections)
-        if section.get(leaf) is None or section.get(_ONLY_WITH.get(family.key, leaf)) is None:
+        if section.get(leaf) is None or section.get(_ONLY_WITH.get(str(family.key), leaf)) is None:
             continue
         if family.key == "rolling.arm" and "arm" not in Rolling.of(section["model"]).takes:
             continue

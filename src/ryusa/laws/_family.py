@@ -5,7 +5,7 @@ import math
 from collections.abc import Callable
 from enum import IntEnum
 from functools import cache
-from typing import Any, ClassVar, Self, TypeVar
+from typing import Any, Self, TypeVar
 
 from ryusa.laws._law import compiled
 
@@ -36,7 +36,7 @@ class Family(IntEnum):
     takes: tuple[str, ...]
     marks: tuple[str, ...]
 
-    key: ClassVar[str]  # of the case file
+    key: str  # of the case file; the same for all choices
 
     def __new__(
         cls,
