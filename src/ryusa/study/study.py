@@ -1,5 +1,6 @@
 """What a study is: parts, each with its tasks, its measure and its judgement, and the words of its page."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Protocol
@@ -53,7 +54,7 @@ class StudyPart(Protocol):
         ...
 
 
-class Study:
+class Study(ABC):
     """A study as the framework sees it; those of the package and that of a user's folder derive from it.
 
     Attributes
@@ -77,9 +78,9 @@ class Study:
     words: Mapping[Outcome, str] = {one: str(one) for one in Outcome}
     template = Path(__file__).with_name("page.html")
 
+    @abstractmethod
     def part(self, name: str) -> StudyPart:
         """Return the part of that name, in any process."""
-        raise NotImplementedError
 
     def claims(self, name: str) -> tuple[str, ...]:
         """Ids of the claims that a part judges; empty where its findings name themselves."""
