@@ -11,7 +11,7 @@ from ryusa.engine.shared.refusals import refusals
 from ryusa.laws import dispatch
 from ryusa.laws._family import Family, evaluate, marked
 from ryusa.laws._family import dispatch as build_dispatch
-from ryusa.laws.families import FAMILIES, Cap, Drag, Rolling, Slip
+from ryusa.laws.families import FAMILIES, Drag
 from ryusa.model import Water
 
 PROBES = {  # of each generated dispatch: what its laws are asked, in the order of their family
@@ -103,11 +103,6 @@ def test_a_key_that_a_choice_takes_is_a_key_of_its_section(family):
         assert {f"{section}.{key}", f"water.{key}"} & set(all_keys()), key
 
 
-def test_rules_without_a_law_differ_by_their_marks():
-    for family in (Slip, Cap):
-        assert len({choice.marks for choice in family}) == len(family)
-
-
 def test_a_scene_with_a_number_of_no_choice_is_refused_by_name():
     made, _ = scene([[0.0, 0.0, 0.01]], 0.002, water=Water(drag=99))  # type: ignore[arg-type]
     assert any(reason.startswith("water.drag: number 99 is none of 0 (none)") for reason in refusals(made))
@@ -117,9 +112,3 @@ def test_from_python_a_law_takes_what_its_parameters_name():
     assert evaluate(Drag.CONSTANT, re=10.0, c_d=0.7) == 0.7
     with pytest.raises(TypeError, match="asks for 'c_d'"):
         evaluate(Drag.CONSTANT, re=10.0)
-
-
-def test_every_rolling_model_has_its_branch():
-    from ryusa.engine.shared.rolling import MODELS
-
-    assert set(MODELS) == set(Rolling) - {Rolling.NONE}

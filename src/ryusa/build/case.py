@@ -16,6 +16,7 @@ from ryusa.build.saltation import saltation
 from ryusa.build.table import table
 from ryusa.casefile.case import Case
 from ryusa.casefile.column.schema import column_keys
+from ryusa.casefile.contact.values import may_pull
 from ryusa.casefile.derive import Derived, derive
 from ryusa.casefile.films import film_reach
 from ryusa.casefile.motion import slab_width
@@ -59,25 +60,6 @@ _WATER_DEFAULTS = {  # key of [water]: how `ryusa check` calls it, and its unit
     "lift": ("lift", ""),
     "magnus": ("Magnus lift", ""),
 }
-TORQUES = {"none": WaterTorque.NONE, "Stokes": WaterTorque.STOKES, "Dennis": WaterTorque.DENNIS}
-REBOUNDS = {"dry": Rebound.DRY, "exponential": Rebound.EXPONENTIAL, "Davis": Rebound.DAVIS}
-BUOYANCIES = {"weight": Buoyancy.WEIGHT, "stress": Buoyancy.STRESS, "pressure": Buoyancy.PRESSURE}
-HINDRANCES = {
-    "none": Hindrance.NONE,
-    "Richardson-Zaki": Hindrance.RICHARDSON_ZAKI,
-    "power": Hindrance.POWER,
-    "Wen-Yu": Hindrance.WEN_YU,
-    "Gidaspow": Hindrance.GIDASPOW,
-    "Di Felice": Hindrance.DI_FELICE,
-}
-LIFTS = {"none": Lift.NONE, "Wiberg-Smith": Lift.WIBERG_SMITH, "Saffman-Mei": Lift.SAFFMAN_MEI}
-MAGNUSES = {
-    "none": Magnus.NONE,
-    "Rubinow-Keller": Magnus.RUBINOW_KELLER,
-    "Loth": Magnus.LOTH,
-    "Oesterle-Dinh": Magnus.OESTERLE_DINH,
-}
-EVENTS = {"all": EventRule.ALL, "tracked": EventRule.TRACKED, "none": EventRule.NONE}
 
 
 @dataclass(frozen=True)
@@ -151,7 +133,7 @@ def contact_of(case: Case, derived: Derived) -> ContactLaw:
         eta_s=found.fixed.eta_s if constants else 0.0,
         slip=Slip.of(contact.slip),
         cap=Cap.of(contact.cap or ("total" if "total" in Slip.of(contact.slip).marks else "spring")),
-        tension=contact.parting == "tension",
+        tension=may_pull(case),
     )
 
 

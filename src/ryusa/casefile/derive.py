@@ -10,6 +10,7 @@ from ryusa.casefile.column.values import column_u_star
 from ryusa.casefile.contact.values import (
     PairValues,
     friction,
+    may_pull,
     pair_values,
     restitution,
     step_limit,
@@ -64,8 +65,7 @@ def derive(case: Case) -> Derived:
     e_n, e_s, _, _ = restitution(case)
     n_grain, n_fixed, meet = counts(case)
     lightest, limits = pair_values(case, d_min, meet), step_limit(case, d_min, meet)
-    tension = case.contact.parting == "tension"
-    shortest = collision.shortest_contact(lightest.m, k_n, lightest.zeta_n, tension)
+    shortest = collision.shortest_contact(lightest.m, k_n, lightest.zeta_n, may_pull(case))
     if case.time.step is not None:
         dt = case.time.step
     else:

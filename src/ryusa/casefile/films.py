@@ -4,24 +4,27 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from ryusa.casefile.contact.values import restitution
+from ryusa.casefile.contact.values import may_pull, restitution
 from ryusa.casefile.rows import ExplainRow, number
 from ryusa.casefile.water.schema import WaterSection
 from ryusa.casefile.water.values import terminal_velocity
 from ryusa.errors import CaseError
 from ryusa.laws import collision, immersed
+from ryusa.laws._family import evaluate, numbers
+from ryusa.laws.families import Film, Rebound
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
     from ryusa.casefile.derive import Derived
 
+numbers(__name__, Film.NONE, Film.LUBRICATION)  # engines know a film by its reach
 REACH = 0.25  # of a film when the case gives none, in mean diameters
 
 
 def film_reach(case: "Case") -> float:
     """Gap below which the film force acts [m]; 0 without film force."""
     wet = case.water
-    if wet is None or wet.film == "none":
+    if wet is None or Film.of(wet.film) is Film.NONE:
         return 0.0
     return wet.film_reach if wet.film_reach is not None else REACH * case.grains.diameter
 
@@ -79,7 +82,7 @@ def check_film_step(case: "Case", derived: "Derived") -> Iterator[CaseError]:
         return
     lightest = _lightest(derived)
     if wet.rebound != "dry":
-        zeta = collision.zeta_for_restitution(wet.rebound_least, case.contact.parting == "tension")
+        zeta = collision.zeta_for_restitution(wet.rebound_least, may_pull(case))
         m = 0.5 * lightest if derived.meet else lightest
         most = collision.step_limit(zeta, collision.omega_natural(derived.k_n, m))
         if derived.dt > most:
@@ -125,10 +128,10 @@ def film_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
         )
         if wet.rebound != "dry":
             e = restitution(case)[0]
-            if wet.rebound == "exponential":
-                e = immersed.restitution_exponential(e, st, wet.rebound_stokes)
-            else:
-                e = immersed.restitution_davis(e, st, wet.asperity or math.nan, derived.d)
+            e = evaluate(
+                Rebound.of(wet.rebound), e_dry=e, st=st, st_c=wet.rebound_stokes,
+                roughness=wet.asperity or math.nan, d=derived.d,
+            )  # fmt: skip
             origin = f"rebound {wet.rebound} at this Stokes number, not below {wet.rebound_least:g}"
             e = max(e, wet.rebound_least)
             rows.append(number("water", "restitution under water", e, "-", origin))

@@ -142,6 +142,42 @@ def marked(family: type[Family], mark: str) -> Any:
     return carries
 
 
+def rules(family: type[Family], *marks: str) -> tuple[Any, ...]:
+    """Build the compiled functions of `marked` for a family whose choices differ by these marks alone.
+
+    Raises
+    ------
+    TypeError : a choice is marked as another is, has a mark that is not among these, or has a law of its own.
+    """
+    first = next(iter(family))
+    for choice in family:
+        twins = [one for one in family if one < choice and set(one.marks) == set(choice.marks)]
+        if twins or not set(choice.marks) <= set(marks) or choice.function is not first.function:
+            raise TypeError(
+                f"{_name(choice)} must differ from the choices before it by marks alone, and by none but "
+                f"{', '.join(map(repr, marks))}"
+            )
+    return tuple(marked(family, mark) for mark in marks)
+
+
+def numbers(where: str, *choices: Family) -> tuple[int, ...]:
+    """Numbers of all choices of a family, for a module that tells them apart by comparisons of its own.
+
+    Parameters
+    ----------
+    where : name of the module.
+    choices : every choice of the family; their numbers come back in this order.
+
+    Raises
+    ------
+    TypeError : the family has a choice that is not listed.
+    """
+    for choice in type(choices[0]):
+        if choice not in choices:
+            raise TypeError(f"{_name(choice)} has no branch in {where}")
+    return tuple(map(int, choices))
+
+
 def evaluate(choice: Family, **given: Any) -> Any:
     """What the law of a choice answers, from Python; it takes what it asks for from `given`.
 
@@ -156,7 +192,7 @@ def evaluate(choice: Family, **given: Any) -> Any:
 
 def _asked_by(choice: Family, arguments: tuple[str, ...]) -> tuple[str, ...]:
     """Names of the parameters of a choice's law."""
-    who = f"{type(choice).__name__}.{choice.name} ('{choice.word}')"
+    who = _name(choice)
     if choice.function is None:
         raise TypeError(f"{who} has no function in laws/families.py, and its dispatch asks for one")
     names = tuple(inspect.signature(getattr(choice.function, "py_func", choice.function)).parameters)
@@ -164,6 +200,11 @@ def _asked_by(choice: Family, arguments: tuple[str, ...]) -> tuple[str, ...]:
         if name not in arguments:
             raise TypeError(f"{who} asks for '{name}'; its family is given {', '.join(arguments)}")
     return names
+
+
+def _name(choice: Family) -> str:
+    """A choice as messages name it: family, name and word."""
+    return f"{type(choice).__name__}.{choice.name} ('{choice.word}')"
 
 
 def _uncached(fastmath: Any) -> Callable[[F], F]:

@@ -7,7 +7,7 @@ parameters name. A number that is none of the family answers nan.
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-from ryusa.laws._family import dispatch, marked
+from ryusa.laws._family import dispatch, marked, rules
 from ryusa.laws._law import EDITION, compiled
 from ryusa.laws.drag import drag_factor, reynolds
 from ryusa.laws.families import (
@@ -56,16 +56,17 @@ rolling_length = dispatch(Arm, ("r_i", "r_j", "overlap"))
 mixing_length = dispatch(
     Mixing, ("z", "face", "depth", "u_star", "nu", "kappa"), unasked=(Mixing.LAMINAR, Mixing.LI_SAWAMOTO)
 )
+# Whether the mixing length depends on the stress of a wall, with which the water then iterates.
+length_of_wall = marked(Mixing, "wall")
 # Stress of the bed over density [m2/s2], and its slope [m/s].
 wall_stress = dispatch(BedKind, ("u_x", "z", "nu", "k_rough", "square"), answers=2)
 # Friction factor of turbulent water at the side walls [-].
 side_friction = dispatch(SideWalls, ("re",), unasked=(SideWalls.NONE,))
 
 # What enters `contact.slide`: whether the dashpot falls away while sliding, and whether the cap holds it too.
-slip_drops = marked(Slip, "drop")
-slip_total = marked(Slip, "total")
+slip_drops, slip_total = rules(Slip, "drop", "total")
 # Whether the whole normal force feeds the Coulomb cap.
-cap_total = marked(Cap, "total")
+(cap_total,) = rules(Cap, "total")
 # Whether rolling friction turns both grains the same way; else the torque on j is opposite to that on i.
 rolling_alike = marked(Rolling, "both alike")
 

@@ -7,7 +7,8 @@ law is one function in its own file and one line here.
 A choice reads: number, word, function, what it says, source, keys of the case file that it takes, marks.
 Numbers are kept in scenes and checkpoints: a new choice takes a new one, and none is used again. A choice
 without a word cannot be asked for in a case file. The functions of one family take their arguments by name
-from those that `laws.dispatch` gives to the family.
+from those that `laws.dispatch` gives to the family. Code that tells choices apart by itself lists all that it
+knows (`_family.numbers`, `_family.rules`); a choice that it lacks is an error at import.
 """
 # fmt: off
 
@@ -92,7 +93,7 @@ class Arm(Family, key="rolling.arm"):
     """Rolling friction: the length that turns its coefficient into the arm f."""
 
     CONTACT_WIDTH = (0, "contact width", rolling_arm_width,
-        "f = f' b, b the width of the contact", "Eq. (13)")
+        "f = f' b, b the width of the contact", "Eq. (13)", (), ("varies",))
     REDUCED_RADIUS = (1, "reduced radius", reduced_radius,
         "f = mu_r R*, R* = R_i R_j/(R_i + R_j)", "Ai et al. 2011")
 
@@ -118,8 +119,8 @@ class Above(Family, key="water.above"):
     """What is above the depth of the water."""
 
     CONTINUE = (0, "continue", None, "the profile goes on")
-    HOLD = (1, "hold", None, "the speed of the surface goes on", "", (), ("hold",))
-    DRY = (2, "dry", None, "neither drag nor torque; the weight stays that under water", "", (), ("dry",))
+    HOLD = (1, "hold", None, "the speed of the surface goes on")
+    DRY = (2, "dry", None, "neither drag nor torque; the weight stays that under water")
 
 
 # ------------------------------------------------------------------------------------------- water on a grain
@@ -162,7 +163,7 @@ class Buoyancy(Family, key="water.buoyancy"):
 
     WEIGHT = (0, "weight", None, "V (-rho_w g - dp/dx): that of its volume of water", "Eqs. (10)-(11)")
     STRESS = (1, "stress", None, "V (-grad p + d tau/dz): pressure and shear stress of the mixture",
-        "design/0007", (), ("stress",))
+        "design/0007")
     PRESSURE = (2, "pressure", None, "rho_w V g cos(slope), normal to the bed alone", "design/0007")
 
 
@@ -261,7 +262,7 @@ class Mixing(Family, key="water.column.mixing_length"):
     PARABOLIC = (2, "parabolic", length_parabolic_between, "kappa z sqrt(1 - z/depth)",
         "Nezu & Nakagawa 1993; YADE", ("kappa",))
     VAN_DRIEST = (3, "van Driest", length_van_driest, "kappa z (1 - exp(-z+/26))", "van Driest 1956",
-        ("kappa",))
+        ("kappa",), ("wall",))
     LI_SAWAMOTO = (4, "Li-Sawamoto", None, "kappa times the integral of (packed - phi)/packed",
         "Li & Sawamoto 1995", ("kappa", "packed"))
 

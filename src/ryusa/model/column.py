@@ -102,8 +102,8 @@ class Column:
                     f"dz = {self.dz:g} m: Eq. (9) is zero below k_rough/30 = {self.k_rough / 30.0:.3g} m, "
                     f"and the middle of the lowest cell must lie above; ten times as much is a good choice"
                 )
-        if self.bed is BedKind.MOVING and self.mixing is Mixing.VAN_DRIEST:
-            faults.append("van Driest's length needs a wall: choose another mixing length over a moving bed")
+        if self.bed is BedKind.MOVING and "wall" in self.mixing.marks:
+            faults.append(f"mixing length {self.mixing.word} needs a wall: choose another over a moving bed")
         if self.top is Top.LID and self.surface is SurfaceRule.VOLUME:
             faults.append("a lid holds the surface in its place: keep the depth, not the volume")
         if self.side is not SideWalls.NONE and not self.width > 0.0:

@@ -2,6 +2,7 @@
 
 import math
 
+from ryusa.laws._family import numbers
 from ryusa.laws.dispatch import mixing_length, side_friction, wall_stress
 from ryusa.laws.families import BedKind, Mixing
 from ryusa.laws.turbulence import (
@@ -14,8 +15,10 @@ from ryusa.laws.turbulence import (
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import ColumnParameters, kernel
 
-ROUGH, SMOOTH, MOVING = int(BedKind.ROUGH), int(BedKind.SMOOTH), int(BedKind.MOVING)
-LAMINAR, VAN_DRIEST, LI_SAWAMOTO = int(Mixing.LAMINAR), int(Mixing.VAN_DRIEST), int(Mixing.LI_SAWAMOTO)
+NO_SLIP, SMOOTH, ROUGH, MOVING = numbers(
+    __name__, BedKind.NO_SLIP, BedKind.SMOOTH, BedKind.ROUGH, BedKind.MOVING
+)
+LAMINAR, LI_SAWAMOTO = int(Mixing.LAMINAR), int(Mixing.LI_SAWAMOTO)  # all others have their law
 RE_SLOW = 1500.0  # below it the flow between the side walls is laminar; both turbulent laws give less there
 
 

@@ -10,7 +10,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ryusa.errors import WaterError
-from ryusa.laws.families import BedKind, Buoyancy, Mixing, Start
+from ryusa.laws._family import numbers
+from ryusa.laws.families import BedKind, Buoyancy, Fluctuations, Mixing, Start
 from ryusa.model import CouplingState, Scene
 from ryusa.model.column import STIFF, Budget, Column, WaterState
 from ryusa.model.eddies import Eddies
@@ -23,6 +24,10 @@ from ryusa.water.exchange import Cells, Slices, slices, to_cells, to_grains, wei
 from ryusa.water.fixed_grains import DENSEST, FixedGrainForces, FixedGrains, steady_start
 from ryusa.water.free_surface import submerged_part
 from ryusa.water.solve import advance
+
+numbers(__name__, Buoyancy.WEIGHT, Buoyancy.STRESS, Buoyancy.PRESSURE)
+numbers(__name__, Start.REST, Start.STEADY)
+numbers(__name__, Fluctuations.NONE, Fluctuations.RANDOM_WALK)
 
 
 @dataclass
@@ -95,7 +100,8 @@ class Coupling:
             cut, submerged_part(cut, x[:, 2], scene.d, now.z_surface), bed, solid, np.zeros(column.n),
             np.array(x[:, 2]),
         )  # fmt: skip
-        coupling.eddies = eddies.begin(column.seed, scene.n_grain) if column.fluctuations else None
+        if column.fluctuations is Fluctuations.RANDOM_WALK:
+            coupling.eddies = eddies.begin(column.seed, scene.n_grain)
         coupling.sampled = coupling._fluid_at_grains()
         return coupling
 

@@ -2,12 +2,15 @@
 
 import math
 
+from ryusa.laws._family import numbers
 from ryusa.laws.families import Drive
 from ryusa.model.column import Column, WaterState
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import ColumnParameters, kernel
 
-GRADIENT, TAU, DISCHARGE = int(Drive.GRADIENT), int(Drive.TAU), int(Drive.DISCHARGE)
+GRAVITY, GRADIENT, TAU, DISCHARGE = numbers(
+    __name__, Drive.GRAVITY, Drive.GRADIENT, Drive.TAU, Drive.DISCHARGE
+)
 
 
 @kernel

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ryusa.errors import WaterError
+from ryusa.laws._family import numbers
 from ryusa.laws.dispatch import hindered
 from ryusa.laws.drag import volume
 from ryusa.laws.families import BedKind, Buoyancy, Drag
@@ -17,6 +18,7 @@ from ryusa.water.exchange import Cells, Slices, concentration, slices, to_cells,
 from ryusa.water.free_surface import submerged_part
 from ryusa.water.steady import steady
 
+numbers(__name__, Buoyancy.WEIGHT, Buoyancy.STRESS, Buoyancy.PRESSURE)
 DENSEST = 0.99  # concentrations are limited to this value, so that every cell keeps some water
 DRAG_STEP = 1.0e-4  # relative change of the slip speed in the numerical derivative of the drag
 TOLERANCE, MAX_ITERATIONS = (

@@ -4,15 +4,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ryusa.laws.families import Drive, SideWalls, SurfaceRule
+from ryusa.laws._family import numbers
+from ryusa.laws.dispatch import length_of_wall
+from ryusa.laws.families import SideWalls, SurfaceRule
 from ryusa.laws.turbulence import eddy_viscosity
 from ryusa.model.column import Top
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import ColumnParameters, kernel
-from ryusa.water.closures import VAN_DRIEST, bed_shear, bed_stress, mixing_lengths, side_drag
-from ryusa.water.drive import imposed_gradient
+from ryusa.water.closures import bed_shear, bed_stress, mixing_lengths, side_drag
+from ryusa.water.drive import DISCHARGE, imposed_gradient
 
-LID, VOLUME, DISCHARGE = int(Top.LID), int(SurfaceRule.VOLUME), int(Drive.DISCHARGE)
+LID = int(Top.LID)
+DEPTH, VOLUME = numbers(__name__, SurfaceRule.DEPTH, SurfaceRule.VOLUME)
 NO_WALLS = int(SideWalls.NONE)
 TOLERANCE = 1.0e-13  # relative change of the speed at which Newton's method stops
 ROUND_OFF = 1.0e-9  # relative change accepted where the next is no smaller: limit of round-off
@@ -332,7 +335,7 @@ def time_step(
     status = NOT_CONVERGED
     change_before = np.inf
     for iteration in range(MAX_ITERATIONS):
-        if p.mixing == VAN_DRIEST and iteration > 0:
+        if length_of_wall(p.mixing) and iteration > 0:
             stress, _ = bed_stress(p, u[0], wall, work.square[0])
             part = 1.0 if iteration < DAMPED_AFTER else 0.5
             u_star += part * (np.sqrt(abs(stress)) - u_star)

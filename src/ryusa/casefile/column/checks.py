@@ -13,6 +13,7 @@ from ryusa.casefile.section import given
 from ryusa.casefile.water.schema import WaterSection
 from ryusa.casefile.water.values import u_star_given
 from ryusa.errors import CaseError
+from ryusa.laws.families import Mixing
 from ryusa.model.column import AGREE, refuse
 
 if TYPE_CHECKING:
@@ -94,7 +95,7 @@ def _laws(water: WaterSection) -> Iterator[CaseError]:
 def _boundaries(case: "Case", water: WaterSection, keys: ColumnSection) -> Iterator[CaseError]:
     if water.roughness is not None and keys.bed != "rough":
         yield CaseError("water.roughness", water.roughness, f"has no effect over a {keys.bed} bed")
-    if keys.mixing == "van Driest" and keys.bed == "moving":
+    if "wall" in Mixing.of(keys.mixing).marks and keys.bed == "moving":
         yield CaseError(
             "water.column.mixing_length", keys.mixing, "needs a wall: water.column.bed 'smooth' or 'rough'"
         )

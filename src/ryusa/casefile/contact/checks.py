@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from ryusa.casefile.motion import may_rotate
 from ryusa.errors import CaseError
-from ryusa.laws.families import Rolling, Slip
+from ryusa.laws.families import Arm, Rolling, Slip
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
@@ -38,7 +38,8 @@ def check_rolling(case: "Case") -> Iterator[CaseError]:
             yield CaseError("rolling.coefficient", None, f"missing or zero; model '{rolling.model}' needs it")
     elif rolling.coefficient > 0.0:
         yield CaseError("rolling.coefficient", rolling.coefficient, "has no effect with rolling.model 'none'")
-    if "spring" in Rolling.of(rolling.model).marks and rolling.arm == "contact width":
+    arm = rolling.arm and Arm.of(rolling.arm)
+    if arm and "spring" in Rolling.of(rolling.model).marks and "varies" in arm.marks:
         yield CaseError(
             "rolling.arm", rolling.arm, "must be 'reduced radius' (or left out) with spring-dashpot-slider"
         )

@@ -10,10 +10,13 @@ from ryusa.casefile.grains import mass
 from ryusa.casefile.motion import may_rotate
 from ryusa.laws import collision
 from ryusa.laws import contact as contact_law
+from ryusa.laws._family import numbers
+from ryusa.laws.families import Parting
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
 
+numbers(__name__, Parting.NO_TENSION, Parting.TENSION)
 SHEAR_RATIO = 2.0 / 7.0  # k_s over k_n when the case gives neither
 
 
@@ -32,6 +35,11 @@ class PairValues:
     t_undamped: float  # Eq. (8) with this mass [s]
     t_col: float  # time the normal force lasts [s]
     t_shear: float  # half period of the tangential oscillator [s]; inf without spring
+
+
+def may_pull(case: "Case") -> bool:
+    """Whether the normal dashpot may pull before the overlap ends."""
+    return Parting.of(case.contact.parting) is Parting.TENSION
 
 
 def friction(case: "Case") -> float:
@@ -62,7 +70,7 @@ def restitution(case: "Case") -> tuple[float, float, float, float]:
         return math.nan, math.nan, math.nan, math.nan
     e_n = contact.restitution
     e_s = contact.restitution_shear if contact.restitution_shear is not None else e_n
-    tension = contact.parting == "tension"
+    tension = may_pull(case)
     return (
         e_n,
         e_s,
@@ -119,7 +127,7 @@ def pair_values(case: "Case", d: float, free: bool, rotates: bool | None = None)
     else:
         eta_n, eta_s = contact_law.damping(zeta_n, k_n, m_eff), contact_law.damping(zeta_s, k_s, m_t)
     omega = collision.omega_natural(k_n, m_eff)
-    tension = contact.parting == "tension"
+    tension = may_pull(case)
     return PairValues(
         m=m_eff,
         m_t=m_t,

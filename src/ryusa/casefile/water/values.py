@@ -8,7 +8,7 @@ from ryusa.casefile.column.bed import water_over
 from ryusa.casefile.grains import mass
 from ryusa.laws import drag, hindrance, water
 from ryusa.laws._family import evaluate
-from ryusa.laws.families import Drag
+from ryusa.laws.families import Drag, Profile
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
@@ -37,11 +37,10 @@ def water_speed(case: "Case", derived: "Derived", z: float) -> float:
         if wet.above == "dry":
             return 0.0
         z = wet.depth if wet.above == "hold" else z
-    if wet.profile == "log rough":
-        return water.log_law_rough(z, derived.u_star, derived.k_rough)
-    if wet.profile == "log smooth":
-        return water.log_law_smooth(z, derived.u_star, wet.viscosity)
-    return water.uniform(z, wet.speed) if wet.speed is not None else 0.0
+    return evaluate(
+        Profile.of(wet.profile), z=z, u_star=derived.u_star, k_rough=derived.k_rough, nu=wet.viscosity,
+        speed=wet.speed or 0.0,
+    )  # fmt: skip
 
 
 def _steady_speed(case: "Case", derived: "Derived", z: float) -> float:

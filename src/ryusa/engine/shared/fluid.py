@@ -7,13 +7,16 @@ from ryusa.engine.shared import block_statistics as S
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.kernel import FAST, inner
 from ryusa.engine.shared.variant import LawChoice
+from ryusa.laws._family import numbers
 from ryusa.laws.dispatch import drag_of, hindered, magnus, profile_speed, shear_lift, water_torque
-from ryusa.laws.families import Above, Buoyancy
+from ryusa.laws.families import Above, Buoyancy, Profile
 from ryusa.model.fluid import PHI, SHEAR, SUBMERGED, U, V, W
 from ryusa.model.tally import Book
 
-HOLD, DRY = int(Above.HOLD), int(Above.DRY)
-STRESS = int(Buoyancy.STRESS)
+NO_WATER = int(Profile.NONE)
+CONTINUE, HOLD, DRY = numbers(__name__, Above.CONTINUE, Above.HOLD, Above.DRY)
+# the column adds what is beyond the weight of the displaced water; only the drag asks for its form
+WEIGHT, STRESS, PRESSURE = numbers(__name__, Buoyancy.WEIGHT, Buoyancy.STRESS, Buoyancy.PRESSURE)
 B_DRAG, B_TORQUE, B_LIFT, B_FLOW = int(Book.DRAG), int(Book.TORQUE), int(Book.LIFT), int(Book.FLOW)
 B_FILM = int(Book.FILM)
 
@@ -64,7 +67,7 @@ def profile_drag(
 ) -> tuple[bool, float, float, float]:
     """Whether a grain at height z is out of the water of a given profile, and the drag on it [N]."""
     z = z - c[P.Z_ZERO]
-    dry = choice.profile == 0 or (choice.above == DRY and z > c[P.DEPTH])
+    dry = choice.profile == NO_WATER or (choice.above == DRY and z > c[P.DEPTH])
     d_x = d_y = d_z = 0.0
     if choice.drag and not dry:
         u_x, u_y, u_z = water_speed(choice.profile, choice.above, z, c) - v_x, -v_y, -v_z

@@ -4,10 +4,9 @@ from typing import get_type_hints
 
 import numpy as np
 
-from ryusa.engine.shared.rolling import MODELS
 from ryusa.errors import NotANumber
 from ryusa.laws._family import Family
-from ryusa.laws.families import Arm, Rebound, Rolling
+from ryusa.laws.families import Rebound
 from ryusa.model import Scene, State
 from ryusa.model.scene import Damping
 
@@ -19,10 +18,7 @@ def refusals(scene: Scene) -> tuple[str, ...]:
     reasons = unknown_choices(scene)
     if reasons:
         return tuple(reasons)
-    if scene.rolling.model != Rolling.NONE and scene.rolling.model not in MODELS:
-        word = scene.rolling.model.word
-        reasons.append(f"rolling.model '{word}' has no branch in engine/shared/rolling.py")
-    if scene.rolling.model == Rolling.EPSD and scene.rolling.arm == Arm.CONTACT_WIDTH:
+    if "spring" in scene.rolling.model.marks and "varies" in scene.rolling.arm.marks:
         reasons.append(
             "the spring-dashpot-slider needs rolling.arm = 'reduced radius': its stiffness may not change"
         )

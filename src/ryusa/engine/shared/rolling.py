@@ -6,6 +6,7 @@ from typing import Any
 from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.kernel import FAST, kernel
+from ryusa.laws._family import numbers
 from ryusa.laws.dispatch import rolling_alike, rolling_length
 from ryusa.laws.families import Rolling
 from ryusa.laws.geometry import turn
@@ -27,8 +28,9 @@ Body = tuple[
     float, float, float, float
 ]  # radius, mass with added mass, inertia, contacts that share the inertia
 
-MODELS = (Rolling.PRINTED, Rolling.CONSTANT, Rolling.EPSD)  # a branch of `rolling_friction` for each
-PRINTED, CONSTANT, EPSD = (int(model) for model in MODELS)
+NONE, PRINTED, CONSTANT, EPSD = numbers(
+    __name__, Rolling.NONE, Rolling.PRINTED, Rolling.CONSTANT, Rolling.EPSD
+)
 B_ROLL, B_RELEASED_R = int(Book.ROLL), int(Book.RELEASED_R)
 
 
