@@ -12,6 +12,8 @@ import pytest
 ROOT = Path(__file__).parents[1]
 SOURCE = ROOT / "src" / "ryusa"
 LONGEST = 420  # lines; past that a file is two files
+LONGEST_FUNCTION = 80  # lines; past that a function says why it is one
+REASON = "# One function: "
 HEAVY = {"numba", "llvmlite", "h5py", "pint", "pydantic", "matplotlib", "scipy", "vtk", "rich", "typer"}
 MACHINE = re.compile(r"file:/|/(?:home|root|Users|work|opt|mnt|tmp)/[A-Za-z0-9_.-]")
 
@@ -62,6 +64,33 @@ def test_no_file_of_the_source_is_too_long() -> None:
         if (count := len(path.read_text(encoding="utf-8").splitlines())) > LONGEST
     }
     assert not long
+
+
+def own_lines(node: ast.FunctionDef, lines: list[str]) -> list[str]:
+    """Lines of a function, without those of functions defined in it."""
+    assert node.end_lineno is not None
+    inner = {
+        number
+        for one in ast.walk(node)
+        if isinstance(one, ast.FunctionDef) and one is not node and one.end_lineno
+        for number in range(one.lineno, one.end_lineno + 1)
+    }
+    return [lines[k - 1] for k in range(node.lineno, node.end_lineno + 1) if k not in inner]
+
+
+def test_a_function_of_more_than_80_lines_says_why_it_is_one() -> None:
+    checked, silent = 0, list[str]()
+    for path in SOURCE.rglob("*.py"):
+        text = path.read_text(encoding="utf-8")
+        for node in ast.walk(ast.parse(text)):
+            if not isinstance(node, ast.FunctionDef):
+                continue
+            own = own_lines(node, text.splitlines())
+            checked += 1
+            if len(own) > LONGEST_FUNCTION and not any(line.strip().startswith(REASON) for line in own):
+                silent.append(f"{path.relative_to(ROOT)}: {node.name}, {len(own)} lines")
+    assert checked > 1000
+    assert not silent
 
 
 def test_every_module_and_public_function_says_what_it_is() -> None:

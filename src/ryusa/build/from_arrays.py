@@ -75,15 +75,12 @@ def scene(
     >>> fixed.n_grain, fixed.n_plane, first.n_grain
     (1, 1, 1)
     """
-    above_zero = {
-        "density": density,
-        "stiffness": stiffness,
-        "steps_per_contact": steps_per_contact,
-        "dt": dt,
-    }
-    at_least_zero = {"shear_ratio": shear_ratio, "friction": friction, "gravity": gravity}
-    restitutions = {"restitution": restitution, "restitution_shear": restitution_shear}
-    _refuse_numbers(above_zero, at_least_zero, slope, restitutions)
+    _refuse_numbers(
+        {"density": density, "stiffness": stiffness, "steps_per_contact": steps_per_contact, "dt": dt},
+        {"shear_ratio": shear_ratio, "friction": friction, "gravity": gravity},
+        slope,
+        {"restitution": restitution, "restitution_shear": restitution_shear},
+    )
     placement = _placement(x, d, v, omega, x_fixed, d_fixed, planes, period, allow_overlap)
     _refuse_walls(placement, plane_case)
     refuse_overlaps(placement, "x", plane_case)

@@ -185,35 +185,9 @@ def tangential_step(
     Source: the paper, Eqs. (2)-(4). In plane motion components y and z are handed through. Sliding takes the
     energy that leaves the spring less what the interval puts into it.
 
-    >>> spring = tangential_step(
-    ...     True,
-    ...     False,
-    ...     False,
-    ...     False,
-    ...     0.0,
-    ...     0.0,
-    ...     1.0,
-    ...     0.0,
-    ...     1.0,
-    ...     1.0,
-    ...     1.0,
-    ...     -0.1,
-    ...     0.0,
-    ...     0.0,
-    ...     0.5,
-    ...     0.0,
-    ...     0.0,
-    ...     0.0,
-    ...     0.0,
-    ...     0.0,
-    ...     1.0,
-    ...     1.0,
-    ...     0.0,
-    ...     0.0,
-    ...     0.5,
-    ...     0.1,
-    ...     0.05,
-    ... )
+    >>> flags, normal, slip = (True, False, False, False), (0.0, 0.0, 1.0, 0.0), (-0.1, 0.0, 0.0)
+    >>> before, law = (0.5, 0.0, 0.0, 0.0, 0.0, 0.0), (1.0, 1.0, 0.0, 0.0, 0.5)
+    >>> spring = tangential_step(*flags, *normal, 1.0, 1.0, 1.0, *slip, *before, *law, 0.1, 0.05)
     >>> spring[0], round(spring[6], 3), round(spring[8], 12)
     (0.5, 0.98, 0.005)
     """

@@ -341,19 +341,8 @@ def time_step(
             u_star += part * (np.sqrt(abs(stress)) - u_star)
             mixing_lengths(p, m, given.phi, work.z, z_surface, u_star, work.square)
         linearise(p, m, u, content, work)
-        assemble(
-            p,
-            m,
-            last,
-            u_old,
-            content,
-            content_old,
-            given,
-            0.0 if solve_gradient else gradient,
-            lost,
-            per_dt,
-            work,
-        )
+        known = 0.0 if solve_gradient else gradient
+        assemble(p, m, last, u_old, content, content_old, given, known, lost, per_dt, work)
         tridiagonal(last + 1, solve_gradient, work)
         if solve_gradient:
             gradient = gradient_of_discharge(p, m, content, work)

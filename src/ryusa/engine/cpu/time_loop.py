@@ -174,7 +174,6 @@ def make_run(variant: KernelVariant) -> Any:
     water: Present = 1 if variant.water else None
     optional: Present = 1 if variant.rolling or variant.events or variant.film else None
 
-    # One function of more than 80 lines: every call between threads and steps would cost time at each step.
     @kernel(nogil=True, fastmath=FAST)
     def run(
         thread: int,
@@ -198,6 +197,7 @@ def make_run(variant: KernelVariant) -> Any:
         schedule: Any,
     ) -> tuple[int, float, int]:
         """Do up to n_steps steps; all threads return the same (steps done, travel, stop)."""
+        # One function: every array handed on has its references counted, atomically (design/0005)
         c, grains, walls, pairs, work = borrow(c), borrow(grains), borrow(walls), borrow(pairs), borrow(work)
         candidates, spare, accounts_of_blocks, block_start = (
             borrow(candidates),

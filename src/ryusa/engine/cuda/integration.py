@@ -39,7 +39,6 @@ def make_integrate(variant: KernelVariant, choice: LawChoice) -> Any:
     plane_case, rotation, column, film = variant.plane_case, variant.rotation, variant.column, variant.film
     drag, torque_law = choice.drag, choice.torque
 
-    # One function of more than 80 lines: forces and their work stay in registers.
     @device
     def integrate(
         i: int,
@@ -61,6 +60,7 @@ def make_integrate(variant: KernelVariant, choice: LawChoice) -> Any:
         force, torque : of its contacts [N], [N m].
         from_film : force of films of water [N].
         """
+        # One function: forces stay in the 209 to 255 registers of `step` (design/0009) until booked
         other = 1 - half
         x, v, w, image, fluid, impulse = (
             bodies.x[half], bodies.v[half], bodies.w[half], bodies.image, bodies.fluid, bodies.impulse,

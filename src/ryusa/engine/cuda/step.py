@@ -72,7 +72,6 @@ def make_step(variant: KernelVariant, choice: LawChoice, shape: LaunchShape) -> 
     both_ways = 1.0 if "both alike" in Rolling(model).marks else -1.0  # Eq. (13) as printed: one direction
     contact, integrate = make_contact(variant, choice), make_integrate(variant, choice)
 
-    # One function of more than 80 lines: the sums of a grain stay in registers from pair to pair.
     @cuda.jit
     def step(
         target: int,
@@ -87,6 +86,7 @@ def make_step(variant: KernelVariant, choice: LawChoice, shape: LaunchShape) -> 
         partial: Any,
     ) -> None:
         """Do one step, unless something waits for the host; step `target` - 1 is the last of a call."""
+        # One function: sums of a grain stay in its 209 to 255 registers (design/0009) from pair to pair
         if status[F.STOP] != STOP_DONE:
             return
         totals = cuda.local.array(n_total, float64)
