@@ -109,11 +109,11 @@ def test_richardson_and_zakis_exponent_comes_from_a_lone_grain(case: CaseOf) -> 
 @pytest.mark.parametrize(
     ("keys", "column", "others", "key", "part"),
     [
-        ("above = 'hold'", "", {}, "water.above", "above the surface of a column"),
+        ("above = 'hold'", "", {}, "water.above", "has no effect with profile 'column'"),
         ("depth = '-2 cm'", "", {}, "water.depth", "greater than 0"),
         ("speed = '1 m/s'", "", {}, "water.speed", "no effect with profile 'column'"),
-        ("roughness = '1 mm'", "", {}, "water.roughness", "over a moving bed"),
-        ("roughness = '1 mm'", "bed = 'smooth'", {}, "water.roughness", "over a smooth bed"),
+        ("roughness = '1 mm'", "", {}, "water.roughness", "has no effect with bed 'moving'"),
+        ("roughness = '1 mm'", "bed = 'smooth'", {}, "water.roughness", "has no effect with bed 'smooth'"),
         ("hindrance = 'power'", "", {}, "water.hindrance_exponent", "missing"),
         ("hindrance_exponent = 3.0", "", {}, "water.hindrance_exponent", "with hindrance 'Di Felice'"),
         ("hindrance = 'Wen-Yu', drag = 'none'", "", {}, "water.hindrance", "with drag 'none'"),

@@ -15,6 +15,7 @@ from ryusa.build.placement import Placement, Wall
 from ryusa.build.saltation import saltation
 from ryusa.build.table import table
 from ryusa.casefile.case import Case
+from ryusa.casefile.choices import chosen
 from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.contact.values import may_pull
 from ryusa.casefile.derive import Derived, derive
@@ -132,7 +133,7 @@ def contact_of(case: Case, derived: Derived) -> ContactLaw:
         eta_n=found.fixed.eta_n if constants else 0.0,
         eta_s=found.fixed.eta_s if constants else 0.0,
         slip=Slip.of(contact.slip),
-        cap=Cap.of(contact.cap or ("total" if "total" in Slip.of(contact.slip).marks else "spring")),
+        cap=chosen(case, Cap),
         tension=may_pull(case),
     )
 
@@ -140,12 +141,9 @@ def contact_of(case: Case, derived: Derived) -> ContactLaw:
 def rolling_of(case: Case) -> RollingLaw:
     """Rolling friction of a case."""
     rolling = case.rolling
-    arm = rolling.arm or (
-        "reduced radius" if "spring" in Rolling.of(rolling.model).marks else "contact width"
-    )
     return RollingLaw(
         model=Rolling.of(rolling.model),
-        arm=Arm.of(arm),
+        arm=chosen(case, Arm),
         coefficient=rolling.coefficient,
         stiffness_factor=rolling.stiffness_factor,
         zeta_r=rolling.damping_ratio,

@@ -7,6 +7,7 @@ import numpy as np
 from ryusa.build.placement import Placement
 from ryusa.casefile.builders.schema import FlumeSection
 from ryusa.casefile.case import Case
+from ryusa.casefile.choices import chosen
 from ryusa.casefile.column.bed import packed
 from ryusa.casefile.column.checks import SPARE
 from ryusa.casefile.column.schema import CELL, column_keys
@@ -86,7 +87,7 @@ def column_of(case: Case, derived: Derived, placement: Placement) -> Column | No
         fluctuations=Fluctuations.of(keys.fluctuations),
         seed=case.seed,
         interval=keys.interval,
-        start=Start.of(keys.start or ("rest" if water.drag == "none" else "steady")),
+        start=chosen(case, Start),
     )
     if faults := column.refuses():
         raise CaseError("water.column", None, "; ".join(faults))

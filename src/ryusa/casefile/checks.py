@@ -6,6 +6,7 @@ from typing import Any
 
 from ryusa.casefile.builders.checks import check_builder
 from ryusa.casefile.case import Case
+from ryusa.casefile.choices import check_choices
 from ryusa.casefile.column.checks import check_column
 from ryusa.casefile.contact.checks import check_contact, check_rolling
 from ryusa.casefile.contact.schema import RIVALS as CONTACT_RIVALS
@@ -38,6 +39,7 @@ def check(case: Case, data: dict[str, Any]) -> list[CaseError]:
     """
     found = [
         *_rivals(case),
+        *check_choices(case),
         *check_contact(case),
         *check_stop(case),
         *check_water(case),

@@ -33,6 +33,6 @@ def explain(case: Case, derived: Derived | None = None) -> list[ExplainRow]:
         *film_rows(case, found),
         *column_rows(case, found),
         *rotation_rows(case, found),
-        *law_rows(case, found),
+        *law_rows(case),
         *cost_rows(case, found),
     ]

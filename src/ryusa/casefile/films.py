@@ -30,11 +30,11 @@ def film_reach(case: "Case") -> float:
 
 
 def check_films(case: "Case") -> Iterator[CaseError]:
-    """Find keys of films that are missing, have no meaning or contradict each other."""
+    """Find keys of films that are missing or contradict each other."""
     wet = case.water
     if wet is None:
         return
-    given, film = wet.model_fields_set, wet.film != "none"
+    film = wet.film != "none"
     if wet.rebound != "dry" and film:
         text = f"contradicts rebound '{wet.rebound}', which includes the film; take one of the two"
         yield CaseError("water.film", wet.film, text)
@@ -44,20 +44,12 @@ def check_films(case: "Case") -> Iterator[CaseError]:
     elif wet.rebound != "dry" and wet.rebound_least > (case.contact.restitution or 1.0):
         text = f"must not be above contact.restitution = {case.contact.restitution:g}"
         yield CaseError("water.rebound_least", wet.rebound_least, text)
-    for key, needed in (
-        ("rebound_stokes", wet.rebound == "exponential"),
-        ("rebound_least", wet.rebound != "dry"),
-    ):
-        if key in given and not needed:
-            text = f"has no effect with rebound '{wet.rebound}'"
-            yield CaseError(f"water.{key}", getattr(wet, key), text)
-    if wet.film_reach is not None and not film:
-        yield CaseError("water.film_reach", wet.film_reach, f"has no effect with film '{wet.film}'")
     yield from _lengths(case, wet, film)
 
 
 def _lengths(case: "Case", wet: WaterSection, film: bool) -> Iterator[CaseError]:
-    d, needed = case.grains.diameter, film or wet.rebound == "Davis"
+    d = case.grains.diameter
+    needed = "asperity" in (*Film.of(wet.film).takes, *Rebound.of(wet.rebound).takes)
     if wet.asperity is None:
         if needed:
             who = f"film '{wet.film}'" if film else f"rebound '{wet.rebound}'"
@@ -65,10 +57,7 @@ def _lengths(case: "Case", wet: WaterSection, film: bool) -> Iterator[CaseError]
                 "water.asperity", None, f"missing; {who} needs the film thickness at which grains touch"
             )
         return
-    if not needed:
-        text = f"has no effect with rebound '{wet.rebound}' and film '{wet.film}'"
-        yield CaseError("water.asperity", wet.asperity, text)
-    elif wet.asperity >= 0.5 * d:
+    if needed and wet.asperity >= 0.5 * d:
         text = f"must be below the mean radius, {0.5 * d:g} m"
         yield CaseError("water.asperity", wet.asperity, text)
     if film and wet.film_reach is not None and wet.film_reach > d:

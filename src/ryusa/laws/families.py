@@ -106,13 +106,13 @@ class Profile(Family, key="water.profile"):
 
     NONE = (0, "", None, "no water")
     LOG_ROUGH = (1, "log rough", log_law_rough, "logarithmic over a rough bed", "Eq. (9)",
-        ("tau_star", "u_star", "roughness"))
+        ("tau_star", "u_star", "roughness", "above"))
     LOG_SMOOTH = (2, "log smooth", log_law_smooth, "two-layer law over a smooth bed",
-        "law of the wall, u+ = z+ up to 11.3", ("tau_star", "u_star"))
-    UNIFORM = (3, "uniform", uniform, "one speed above the zero", "", ("speed",))
-    STILL = (4, "still", still, "water at rest")
+        "law of the wall, u+ = z+ up to 11.3", ("tau_star", "u_star", "above"))
+    UNIFORM = (3, "uniform", uniform, "one speed above the zero", "", ("speed", "above"))
+    STILL = (4, "still", still, "water at rest", "", ("above",))
     COLUMN = (5, "column", None, "a column of water that grains slow down and stir", "design/0007",
-        ("tau_star", "u_star", "roughness"))
+        ("tau_star", "u_star", "roughness", "buoyancy", "hindrance", "lift", "magnus", "column"))
 
 
 class Above(Family, key="water.above"):
@@ -240,7 +240,7 @@ class SurfaceRule(Family, key="water.column.surface"):
 class Drive(Family, key="water.column.drive"):
     """What drives the water beside gravity along the slope."""
 
-    GRAVITY = (0, "slope", None, "nothing else")
+    GRAVITY = (0, "slope", None, "nothing else", "", ("tau_star", "u_star"))
     GRADIENT = (1, "pressure gradient", None, "the pressure gradient given", "", ("pressure_gradient",))
     TAU = (2, "tau_star", None, "the pressure gradient that gives the stress asked for at water.zero", "",
         ("tau_star", "u_star"))

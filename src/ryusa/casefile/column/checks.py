@@ -1,4 +1,4 @@
-"""Checks of a column of water: keys that are missing or without effect, and contradictions."""
+"""Checks of a column of water: keys that are missing, and contradictions."""
 
 import math
 from collections.abc import Iterator
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from ryusa.casefile.builders.schema import FlumeSection
 from ryusa.casefile.builders.values import periodic, sizes
 from ryusa.casefile.column.bed import bed_top, packed, water_over
-from ryusa.casefile.column.schema import CELL, ONLY_IN_A_COLUMN, ColumnSection, column_keys
+from ryusa.casefile.column.schema import CELL, ColumnSection, column_keys
 from ryusa.casefile.motion import slope_at_last
 from ryusa.casefile.section import given
 from ryusa.casefile.water.schema import WaterSection
@@ -25,15 +25,9 @@ SPARE = 1.2  # height of the column over the depth
 
 
 def check_column(case: "Case") -> Iterator[CaseError]:
-    """Find faults of the column of water, and keys that have an effect only with a column."""
+    """Find faults of the column of water."""
     water = case.water
-    if water is None:
-        return
-    if water.profile != "column":
-        for key in ONLY_IN_A_COLUMN:
-            if given(water, key):
-                value = None if key == "column" else getattr(water, key)
-                yield CaseError(f"water.{key}", value, f"has no effect with profile '{water.profile}'")
+    if water is None or water.profile != "column":
         return
     keys = column_keys(case)
     yield from _place(case, water)
@@ -70,31 +64,13 @@ def _place(case: "Case", water: WaterSection) -> Iterator[CaseError]:
 
 
 def _laws(water: WaterSection) -> Iterator[CaseError]:
-    if given(water, "above"):
-        yield CaseError(
-            "water.above",
-            water.above,
-            "has no effect with profile 'column': no water is above the surface of a column",
-        )
     if water.hindrance == "power" and water.hindrance_exponent is None:
         yield CaseError("water.hindrance_exponent", None, "missing; hindrance 'power' needs it")
-    if water.hindrance not in {"power", "Richardson-Zaki"} and water.hindrance_exponent is not None:
-        yield CaseError(
-            "water.hindrance_exponent",
-            water.hindrance_exponent,
-            f"has no effect with hindrance '{water.hindrance}'",
-        )
     if given(water, "hindrance") and water.hindrance != "none" and water.drag == "none":
         yield CaseError("water.hindrance", water.hindrance, "has no effect with drag 'none'")
-    if given(water, "lift_coefficient") and water.lift != "Wiberg-Smith":
-        yield CaseError(
-            "water.lift_coefficient", water.lift_coefficient, f"has no effect with lift '{water.lift}'"
-        )
 
 
 def _boundaries(case: "Case", water: WaterSection, keys: ColumnSection) -> Iterator[CaseError]:
-    if water.roughness is not None and keys.bed != "rough":
-        yield CaseError("water.roughness", water.roughness, f"has no effect over a {keys.bed} bed")
     if "wall" in Mixing.of(keys.mixing).marks and keys.bed == "moving":
         yield CaseError(
             "water.column.mixing_length", keys.mixing, "needs a wall: water.column.bed 'smooth' or 'rough'"
@@ -107,12 +83,6 @@ def _boundaries(case: "Case", water: WaterSection, keys: ColumnSection) -> Itera
         )
     if keys.side_walls is not None:
         yield from _side_walls(case, keys.side_walls)
-    if given(keys, "packed") and keys.mixing != "Li-Sawamoto":
-        yield CaseError(
-            "water.column.packed", keys.packed, f"has no effect with mixing_length '{keys.mixing}'"
-        )
-    if given(keys, "kappa") and keys.mixing == "none":
-        yield CaseError("water.column.kappa", keys.kappa, "has no effect with mixing_length 'none'")
     if keys.fluctuations != "none" and keys.mixing == "none" and keys.pore_eddies == 0.0:
         yield CaseError(
             "water.column.fluctuations", keys.fluctuations, "has no effect with mixing_length 'none'"
@@ -153,8 +123,6 @@ def _driver(case: "Case", water: WaterSection, keys: ColumnSection) -> Iterator[
         value = getattr(keys, key)
         if keys.drive == drive and value is None:
             yield CaseError(f"water.column.{key}", None, f"missing; drive '{drive}' needs it")
-        if keys.drive != drive and value is not None:
-            yield CaseError(f"water.column.{key}", value, f"has no effect with drive '{keys.drive}'")
     key = "u_star" if water.u_star is not None else "tau_star"
     stress = getattr(water, key)
     level = case.motion.gravity * slope_at_last(case) == 0.0
@@ -168,8 +136,6 @@ def _driver(case: "Case", water: WaterSection, keys: ColumnSection) -> Iterator[
         )
     if keys.drive == "tau_star" and stress is None:
         yield CaseError("water.tau_star", None, "missing; drive 'tau_star' needs tau_star or u_star")
-    elif keys.drive in {"pressure gradient", "discharge"} and stress is not None:
-        yield CaseError(f"water.{key}", stress, f"has no effect with drive '{keys.drive}'")
     elif keys.drive == "slope" and stress is not None and level:
         yield CaseError(
             f"water.{key}",

@@ -29,15 +29,13 @@ def check_contact(case: "Case") -> Iterator[CaseError]:
 
 
 def check_rolling(case: "Case") -> Iterator[CaseError]:
-    """Find keys of rolling resistance that are missing, have no effect or contradict each other."""
+    """Find keys of rolling resistance that are missing or contradict each other."""
     rolling = case.rolling
     if rolling.model != "none":
         if not may_rotate(case):
             yield CaseError("rolling.model", rolling.model, "needs motion.rotation = 'free'")
         if rolling.coefficient == 0.0:
             yield CaseError("rolling.coefficient", None, f"missing or zero; model '{rolling.model}' needs it")
-    elif rolling.coefficient > 0.0:
-        yield CaseError("rolling.coefficient", rolling.coefficient, "has no effect with rolling.model 'none'")
     arm = rolling.arm and Arm.of(rolling.arm)
     if arm and "spring" in Rolling.of(rolling.model).marks and "varies" in arm.marks:
         yield CaseError(

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 from ryusa.casefile.builders.values import sizes
 from ryusa.casefile.grains import mass
 from ryusa.casefile.motion import may_rotate
-from ryusa.casefile.section import given
 from ryusa.casefile.water.values import drag_coefficient, terminal_velocity
 from ryusa.errors import CaseError
 from ryusa.laws import drag
+from ryusa.laws.families import Profile
 from ryusa.model.column import STIFF
 
 if TYPE_CHECKING:
@@ -19,31 +19,20 @@ if TYPE_CHECKING:
 
 
 def check_water(case: "Case") -> Iterator[CaseError]:
-    """Find keys of the water that are missing, have no effect or contradict each other."""
+    """Find keys of the water that are missing or contradict each other."""
     water = case.water
     if water is None:
         return
-    profile = f"profile '{water.profile}'"
+    takes = Profile.of(water.profile).takes
     shear = water.tau_star is not None or water.u_star is not None
-    logarithmic = water.profile.startswith("log")
-    if logarithmic and not shear:
-        yield CaseError("water.tau_star", None, f"missing; {profile} needs tau_star or u_star")
-    if not (logarithmic or water.profile == "column") and shear:
-        key = "tau_star" if water.tau_star is not None else "u_star"
-        yield CaseError(f"water.{key}", getattr(water, key), f"has no effect with {profile}")
-    if water.speed is None and water.profile == "uniform":
-        yield CaseError("water.speed", None, f"missing; {profile} needs it")
-    if water.speed is not None and water.profile != "uniform":
-        yield CaseError("water.speed", water.speed, f"has no effect with {profile}")
-    if water.roughness is not None and water.profile not in {"log rough", "column"}:
-        yield CaseError("water.roughness", water.roughness, f"has no effect with {profile}")
+    if "u_star" in takes and not shear and water.profile != "column":
+        text = f"missing; profile '{water.profile}' needs tau_star or u_star"
+        yield CaseError("water.tau_star", None, text)
+    if "speed" in takes and water.speed is None:
+        yield CaseError("water.speed", None, f"missing; profile '{water.profile}' needs it")
     if water.tau_star is not None and case.grains.density <= water.density:
         yield CaseError(
             "water.tau_star", water.tau_star, "needs grains denser than water; give u_star instead"
-        )
-    if given(water, "drag_coefficient") and water.drag != "constant":
-        yield CaseError(
-            "water.drag_coefficient", water.drag_coefficient, f"has no effect with drag '{water.drag}'"
         )
     if water.above != "continue" and water.depth is None and water.profile != "column":
         yield CaseError("water.depth", None, f"missing; above = '{water.above}' needs it")
