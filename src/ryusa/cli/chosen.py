@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import typer
 
 from ryusa.catalogue import OPTION_NAMES, MeasureEntry, PictureEntry, option
-from ryusa.cli.options import known, metres, need_settled, seconds, within
+from ryusa.cli.options import in_unit, known, need_settled, within
 from ryusa.errors import CaseError
 
 if TYPE_CHECKING:
@@ -101,11 +101,11 @@ def one_of(words: tuple[str, ...]) -> Check:
     return lambda name, value, _results: known(value, words, name)
 
 
-def time(_name: str, value: Any, _results: "Results") -> float | None:
+def time(name: str, value: Any, _results: "Results") -> float:
     """A time with its unit [s]."""
-    return seconds(value)
+    return in_unit(value, "s", name)
 
 
-def length(_name: str, value: Any, _results: "Results") -> float | None:
+def length(name: str, value: Any, _results: "Results") -> float:
     """A length with its unit [m]."""
-    return metres(value)
+    return in_unit(value, "m", name)

@@ -8,7 +8,7 @@ import typer
 from ryusa.catalogue import MEASURES, PICTURES, PictureEntry, load
 from ryusa.cli import chosen
 from ryusa.cli.chosen import SIDES, entry_of, keywords, listed, taking
-from ryusa.cli.options import grains_of, metres, open_run, within, write_rows
+from ryusa.cli.options import grains_of, in_unit, open_run, within, write_rows
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def _length(name: str, value: str, results: "Results") -> float:
-    found = metres(value) or 0.0
+    found = in_unit(value, "m", name)
     within(name, found, float(results.scene.d[0]), 1.0e6)
     return found
 

@@ -8,7 +8,7 @@ import typer
 from ryusa.catalogue import MEASURES, load
 from ryusa.cli import chosen
 from ryusa.cli.chosen import SIDES, entry_of, keywords, listed, taking
-from ryusa.cli.options import open_run, seconds, within, write_rows
+from ryusa.cli.options import in_unit, open_run, within, write_rows
 
 CHECKS: dict[str, chosen.Check] = {
     "--at": chosen.time,
@@ -101,6 +101,6 @@ def measure(
 
 
 def _window(name: str, value: str) -> float:
-    found = seconds(value) or 0.0
+    found = in_unit(value, "s", name)
     within(name, found, 1.0e-9, 1.0e9)
     return found

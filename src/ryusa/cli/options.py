@@ -46,24 +46,15 @@ def within(key: str, value: float, low: float, high: float) -> None:
         raise CaseError(key, value, f"must be {low:g} to {high:g}")
 
 
-def seconds(text: str | None) -> float | None:
-    """A time with its unit [s]."""
-    return None if text is None else _quantity(text, "s")
-
-
-def metres(text: str | None) -> float | None:
-    """A length with its unit [m]."""
-    return None if text is None else _quantity(text, "m")
-
-
-def _quantity(text: str, unit: str) -> float:
+def in_unit(text: str, unit: str, key: str) -> float:
+    """The number of an option that is a quantity, in an SI unit; an error names the option `key`."""
     from ryusa.errors import CaseError
     from ryusa.units import UnitError, quantity
 
     try:
         return quantity(text, unit)
     except UnitError as error:
-        raise CaseError("option", text, str(error)) from None
+        raise CaseError(key, text, str(error)) from None
 
 
 def need(there: bool, results: "Results", what: str) -> None:

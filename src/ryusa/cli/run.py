@@ -230,9 +230,9 @@ def _every(text: str) -> float:
     """Wall time between two checkpoints [s]."""
     if text == "never":
         return float("inf")
-    from ryusa.cli.options import seconds
+    from ryusa.cli.options import in_unit
 
-    found = seconds(text) or 0.0
+    found = in_unit(text, "s", "--checkpoint")
     if not found > 0.0:
         raise CaseError("--checkpoint", text, "must be longer than 0 s, or 'never'")
     return found

@@ -18,6 +18,7 @@ SUMMARY = "summary.json"
 LOG = "log.txt"
 GRAINS = "grains.vtkhdf"  # the file to open in ParaView
 BED = "bed.vtkhdf"
+VIEW = "view.html"  # the grains in motion, written by `ryusa view`
 CHECKPOINT = "checkpoint.h5"  # to go on from; gone once the run is complete
 CHECKPOINT_BEFORE = "checkpoint-before.h5"  # the one before
 LOCK = ".lock"  # held by the process that writes

@@ -1,0 +1,86 @@
+// Vectors of three numbers, matrices of 16 by columns, and the camera.
+
+const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+const minus = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+const plus = (a, b, k = 1) => [a[0] + k * b[0], a[1] + k * b[1], a[2] + k * b[2]];
+const unit = (a) => { const l = Math.hypot(...a); return [a[0] / l, a[1] / l, a[2] / l]; };
+
+// Looks at a target; z is up. `half` is half the height of the picture at the target [m].
+class Camera {
+  constructor() { this.target = [0, 0, 0]; this.azimuth = -1.2; this.elevation = 0.35; this.half = 1; this.flat = false; }
+
+  get axes() {  // right, up and backwards, in the scene's frame
+    const [ca, sa, ce, se] = [Math.cos(this.azimuth), Math.sin(this.azimuth), Math.cos(this.elevation), Math.sin(this.elevation)];
+    return [[-sa, ca, 0], [-se * ca, -se * sa, ce], [ce * ca, ce * sa, se]];
+  }
+
+  get distance() { return this.half / Math.tan(Camera.ANGLE / 2); }
+
+  // Turn and shift so that a box fills the picture.
+  fit(low, high, aspect, azimuth = this.azimuth, elevation = this.elevation) {
+    Object.assign(this, { azimuth, elevation, target: low.map((l, k) => (l + high[k]) / 2) });
+    const [right, up, back] = this.axes, near = Math.tan(Camera.ANGLE / 2);
+    this.half = 1e-9;
+    for (let corner = 0; corner < 8; corner++) {
+      const at = minus([0, 1, 2].map((k) => (corner >> k & 1 ? high : low)[k]), this.target);
+      const depth = this.flat ? 0 : near * dot(at, back);
+      this.half = Math.max(this.half, 1.06 * (Math.abs(dot(at, right)) / aspect + depth), 1.06 * (Math.abs(dot(at, up)) + depth));
+    }
+  }
+
+  // View and projection for a scene within a sphere.
+  matrices(aspect, centre, radius) {
+    const [right, up, back] = this.axes, eye = plus(this.target, back, this.distance);
+    const view = new Float32Array([
+      right[0], up[0], back[0], 0, right[1], up[1], back[1], 0, right[2], up[2], back[2], 0,
+      -dot(right, eye), -dot(up, eye), -dot(back, eye), 1,
+    ]);
+    const middle = dot(back, minus(eye, centre));
+    const far = middle + 1.01 * radius;
+    const near = this.flat ? middle - 1.01 * radius : Math.max(middle - 1.01 * radius, 0.02 * this.distance);
+    const d = Math.max(far, near * 1.001) - near, projection = new Float32Array(16);
+    projection[0] = this.flat ? 1 / (this.half * aspect) : 1 / (Math.tan(Camera.ANGLE / 2) * aspect);
+    projection[5] = projection[0] * aspect;
+    projection[10] = this.flat ? -2 / d : -(far + near) / d;
+    projection[11] = this.flat ? 0 : -1;
+    projection[14] = this.flat ? -(far + near) / d : -2 * far * near / d;
+    projection[15] = this.flat ? 1 : 0;
+    return { view, projection };
+  }
+
+  // Origin and direction of the line of sight through a point of the picture, -1 .. 1 to the right and up.
+  ray(x, y, aspect) {
+    const [right, up, back] = this.axes;
+    const across = plus(plus([0, 0, 0], right, x * aspect * this.half), up, y * this.half);
+    if (this.flat) return [plus(plus(this.target, across), back, 1e3 * this.half), back.map((b) => -b)];
+    const eye = plus(this.target, back, this.distance);
+    return [eye, unit(minus(plus(this.target, across), eye))];
+  }
+
+  // Where a point of the scene lies in the picture, -1 .. 1 to the right and up.
+  project(point, aspect) {
+    const [right, up, back] = this.axes, at = minus(point, this.target);
+    const shrink = this.flat ? 1 : this.distance / (this.distance - dot(at, back));
+    return [shrink * dot(at, right) / (this.half * aspect), shrink * dot(at, up) / this.half];
+  }
+}
+Camera.ANGLE = 0.6;  // of the picture's height as seen from the camera [rad]
+
+// Corners of a plane within a box.
+function planeInBox(point, normal, low, high) {
+  const side = unit(cross(normal, Math.abs(normal[0]) < 0.9 ? [1, 0, 0] : [0, 1, 0])), other = cross(normal, side);
+  const reach = 4 * Math.hypot(...minus(high, low)) + Math.hypot(...minus(point, low));
+  let corners = [[1, 1], [-1, 1], [-1, -1], [1, -1]].map(([a, b]) => plus(plus(point, side, a * reach), other, b * reach));
+  for (let k = 0; k < 6 && corners.length; k++) {
+    const axis = k >> 1, inside = (p) => (k & 1 ? high[axis] - p[axis] : p[axis] - low[axis]) + 1e-9 * reach;
+    const kept = [];
+    corners.forEach((a, i) => {
+      const b = corners[(i + 1) % corners.length], ia = inside(a), ib = inside(b);
+      if (ia >= 0) kept.push(a);
+      if ((ia >= 0) !== (ib >= 0)) kept.push(plus(a, minus(b, a), ia / (ia - ib)));
+    });
+    corners = kept;
+  }
+  return corners;
+}

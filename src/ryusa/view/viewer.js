@@ -1,0 +1,354 @@
+// A viewer: state, what is shown at a moment, and the hands on it.
+
+const SECONDS = 12;  // that a whole run takes at first
+const HELP = [
+  ["space", "play, pause"], ["\u2190 \u2192", "one frame back, on"], ["Home End", "first, last frame"], ["\u2191 \u2193", "faster, slower"],
+  ["drag", "turn"], ["shift + drag, right button", "shift"], ["wheel, + \u2212", "zoom"], ["1 2 3", "oblique view, from the side, from above"],
+  ["o", "perspective on, off"], ["c", "next colouring"], ["click a grain", "choose it, show its track"], ["f", "follow it"], ["Esc", "let it go"],
+  ["b", "fixed grains on, off"], ["w", "walls and water on, off"], ["p", "save a picture (PNG)"], ["h ?", "this list"],
+];
+const VIEWS = { oblique: [-1.15, 0.38], side: [-Math.PI / 2, 0], top: [-Math.PI / 2, Math.PI / 2 - 1e-4] };
+
+class Viewer {
+  constructor(holder, data, base64) {
+    Object.assign(this, { holder, data, time: data.t[0], playing: false, picked: -1, following: false, fixedShown: true, wallsShown: true, colouring: 0, loaded: -1, scene: -1 });
+    this.period = data.period.map((one) => one ?? 0);
+    this.camera = new Camera();
+    this.build();
+    this.painter = new Painter(this.canvas);
+    this.ready = decode(data, base64).then((arrays) => { this.arrays = arrays; this.start(); });
+  }
+
+  get frames() { return this.data.t.length; }
+  get grains() { return this.arrays.radius.length; }
+  get aspect() { return this.canvas.width / this.canvas.height; }
+
+  build() {
+    const { holder, data } = this;
+    holder.classList.add("ryusa-view");
+    holder.tabIndex = 0;
+    this.canvas = element("canvas", holder, { className: "grains" });
+    const head = element("div", holder, { className: "head" });
+    element("strong", head, {}, data.title);
+    element("div", head, { className: "about" }, this.about());
+    this.chosen = element("div", head, { className: "chosen", hidden: true });
+    this.scale = element("div", holder, { className: "scale" });
+    this.profile = element("canvas", holder, { className: "profile", hidden: !data.flow });
+    this.axes = element("canvas", holder, { className: "axes" });
+    this.help = element("table", holder, { className: "help", hidden: true });
+    for (const [key, doc] of HELP) element("tr", this.help, {}, element("td", null, {}, key), element("td", null, {}, doc));
+    const bar = element("div", holder, { className: "bar" });
+    const button = (text, title, act) => element("button", bar, { type: "button", title, onclick: act }, text);
+    this.play = button("\u25b6", "play, pause (space)", () => this.toggle());
+    this.slider = element("input", bar, { type: "range", min: 0, max: Math.max(this.frames - 1, 1), step: "any", value: 0, ariaLabel: "frame", oninput: () => this.seek(+this.slider.value) });
+    this.clock = element("output", bar, { className: "clock" });
+    this.speed = element("select", bar, { title: "speed of the film", onchange: () => { this.rate = +this.speed.value; } });
+    this.colours = element("select", bar, { title: "colour of the grains (c)", onchange: () => this.colourBy(this.colours.value) });
+    for (const one of data.colourings) element("option", this.colours, { value: one.word }, one.word);
+    for (const name of Object.keys(VIEWS)) button(name, `${name} view`, () => this.look(name));
+    button("?", "keys and mouse (h)", () => { this.help.hidden = !this.help.hidden; });
+    this.hands();
+  }
+
+  about() {
+    const { data } = this, parts = [data.folder, data.status];
+    const shown = data.arrays.radius.shape[0];
+    parts.push(shown < data.grains ? `${shown} of ${data.grains} grains, drawn by lot` : `${data.grains} grains`);
+    parts.push(this.frames < data.frames ? `${this.frames} of ${data.frames} frames` : `${data.frames} frames`);
+    return parts.join(" \u00b7 ");
+  }
+
+  start() {
+    const { data, arrays, painter } = this;
+    painter.put("free", { radius: arrays.radius });
+    [this.low, this.high] = data.box;
+    this.centre = this.low.map((one, k) => (one + this.high[k]) / 2);
+    this.radius = Math.hypot(...minus(this.high, this.low)) / 2 + 2 * Math.max(...arrays.radius.subarray(0, 1000), 0);
+    this.camera.flat = data.plane;
+    const whole = data.t[this.frames - 1] - data.t[0];
+    this.speeds(whole > 0 ? whole / SECONDS : 1);
+    if (data.flow) this.fastest = arrays.u.reduce((most, one) => (one > most ? one : most), 1e-6);
+    this.levels = new Uint8Array(this.grains);
+    this.resize();
+    new ResizeObserver(() => this.resize()).observe(this.holder);
+    this.colourBy(data.colourings[0].word);
+    this.look(data.plane ? "side" : "oblique");
+    this.draw();
+    this.holder.dataset.firstPicture = performance.now().toFixed(0);
+  }
+
+  speeds(usual) {
+    const power = 10 ** Math.floor(Math.log10(usual)), near = [1, 2, 5].map((k) => k * power).filter((one) => one <= usual).pop();
+    const every = [0.01, 0.1, 1, 10].flatMap((k) => [1, 2, 5].map((m) => k * m * near / (near / power)));
+    for (const one of every) element("option", this.speed, { value: one, selected: one === near }, `${one >= 1 ? one.toFixed(0) : one.toPrecision(1)} \u00d7 real time`);
+    this.rate = near; this.speed.value = near;
+  }
+
+  // ------------------------------------------------------------------------------------------------- the moment
+
+  frameAt(time) {  // frames begun, and the share of the way to the next
+    const { t } = this.data;
+    let low = 0, high = t.length - 1;
+    while (high - low > 1) { const middle = (low + high) >> 1; if (t[middle] <= time) low = middle; else high = middle; }
+    return t.length < 2 ? [0, 0] : [low, Math.min(Math.max((time - t[low]) / (t[high] - t[low]), 0), 1)];
+  }
+
+  seek(frame) {
+    const { t } = this.data, k = Math.min(Math.max(Math.floor(frame), 0), Math.max(t.length - 2, 0));
+    this.time = t.length < 2 ? t[0] : t[k] + Math.min(Math.max(frame - k, 0), 1) * (t[k + 1] - t[k]);
+    this.changed();
+  }
+
+  step(count) {
+    const [k, share] = this.frameAt(this.time), now = share > 1 - 1e-6 ? k + 1 : k;
+    this.pause();
+    this.seek(Math.min(Math.max(count < 0 && share > 1e-6 && share < 1 - 1e-6 ? k : now + count, 0), this.frames - 1));
+  }
+
+  toggle() { this.playing ? this.pause() : this.begin(); }
+
+  pause() { this.playing = false; this.play.textContent = "\u25b6"; }
+
+  begin() {
+    if (this.frames < 2) return;
+    if (this.time >= this.data.t[this.frames - 1]) this.time = this.data.t[0];
+    this.playing = true; this.play.textContent = "\u23f8"; this.before = null;
+    const tick = (now) => {
+      if (!this.playing) return;
+      if (this.before !== null) this.time += this.rate * Math.min(now - this.before, 250) / 1000;
+      this.before = now;
+      if (this.time >= this.data.t[this.frames - 1]) { this.time = this.data.t[this.frames - 1]; this.pause(); }
+      this.draw();
+      requestAnimationFrame(tick);
+    };
+    requestAnimationFrame(tick);
+  }
+
+  // Unwrapped centre of a grain at a frame [m].
+  centreOf(grain, frame) {
+    const at = 3 * (frame * this.grains + grain), { quantum } = this.data;
+    return [0, 1, 2].map((k) => this.arrays.x[at + k] * quantum[k]);
+  }
+
+  // A point taken back into the periods.
+  inside(point) { return point.map((one, k) => (this.period[k] ? one - this.period[k] * Math.floor(one / this.period[k]) : one)); }
+
+  placeOf(grain) {
+    const [k, share] = this.frameAt(this.time), from = this.centreOf(grain, k);
+    return this.inside(share ? plus(from, minus(this.centreOf(grain, k + 1), from), share) : from);
+  }
+
+  load(k) {  // frames k and k + 1 onto the card
+    const n = this.grains, { x } = this.arrays, { quantum } = this.data, next = Math.min(k + 1, this.frames - 1);
+    const from = new Float32Array(3 * n), to = new Float32Array(3 * n);
+    const cells = [0, 1, 2].map((axis) => (this.period[axis] ? Math.round(this.period[axis] / quantum[axis]) : 0));
+    for (let i = 0, a = 3 * k * n, b = 3 * next * n; i < 3 * n; i++) {
+      const axis = i % 3, cell = cells[axis];
+      const here = cell ? ((x[a + i] % cell) + cell) % cell : x[a + i];
+      from[i] = here * quantum[axis];
+      to[i] = (here + x[b + i] - x[a + i]) * quantum[axis];
+    }
+    this.painter.put("free", { from, to });
+    this.loaded = k; this.coloured = null;
+  }
+
+  level(frame) {  // of every grain on the scale of colours
+    const one = this.data.colourings[this.colouring], n = this.grains, kept = this.arrays[one.word];
+    if (kept) {
+      const row = this.data.arrays[one.word].shape[0] > 1 ? frame : 0;
+      this.levels.set(kept.subarray(row * n, (row + 1) * n));
+    } else {  // height
+      const { x } = this.arrays, scale = 63 / (one.high - one.low), cm = 100 * this.data.quantum[2];
+      for (let g = 0; g < n; g++) this.levels[g] = Math.min(Math.max(Math.round((x[3 * (frame * n + g) + 2] * cm - one.low) * scale), 0), 63);
+    }
+    this.painter.put("free", { level: this.levels });
+  }
+
+  walls(index) {  // fixed grains that are there from a scene on
+    const { fixed } = this.arrays, gone = new Set(this.data.scenes[index].fixed), place = [], radius = [];
+    for (let k = 0; k < fixed.length / 4; k++) if (!gone.has(k)) { place.push(fixed[4 * k], fixed[4 * k + 1], fixed[4 * k + 2]); radius.push(fixed[4 * k + 3]); }
+    const from = new Float32Array(place);
+    this.painter.put("fixed", { from, to: from, radius: new Float32Array(radius), level: new Uint8Array(radius.length) });
+    this.scene = index;
+  }
+
+  // ---------------------------------------------------------------------------------------------------- drawing
+
+  changed() { if (!this.playing) this.draw(); }
+
+  draw() {
+    if (!this.arrays) return;
+    const { data, camera, painter } = this, [k, share] = this.frameAt(this.time), nearest = share < 0.5 ? k : k + 1;
+    const scene = data.scenes.reduce((found, one, i) => (one.t <= this.time + 1e-12 ? i : found), 0);
+    if (k !== this.loaded) this.load(k);
+    if (scene !== this.scene) this.walls(scene);
+    const coloured = `${this.colouring} ${nearest}`;
+    if (coloured !== this.coloured) { this.level(nearest); this.coloured = coloured; }
+    if (this.following && this.picked >= 0) camera.target = this.placeOf(this.picked);
+    painter.begin(camera.matrices(this.aspect, this.centre, this.radius + Math.hypot(...minus(camera.target, this.centre)) * 0), camera.flat);
+    painter.drawSpheres("free", { share, period: this.period, picked: this.picked });
+    if (this.fixedShown) painter.drawSpheres("fixed", { plain: [0.66, 0.64, 0.6] });
+    if (this.picked >= 0) painter.drawPlain(this.track(nearest), [0.9, 0.3, 0, 1], "lines");
+    painter.drawPlain(this.frame(), [0.55, 0.58, 0.62, 1], "lines");
+    if (this.wallsShown) this.drawWalls(data.scenes[scene], nearest);
+    this.words(k, share, nearest, scene);
+  }
+
+  drawWalls(scene, nearest) {
+    const { painter } = this, room = 0.02 * this.radius;
+    const low = this.low.map((one, k) => one - (this.period[k] ? 0 : room)), high = this.high.map((one, k) => one + (this.period[k] ? 0 : room));
+    for (const { point, normal } of scene.planes) painter.drawPlain(planeInBox(point, normal, low, high), [0.5, 0.47, 0.42, 0.25], "face");
+    const surface = this.surface(nearest);
+    if (surface !== undefined) painter.drawPlain([[low[0], low[1], surface], [high[0], low[1], surface], [high[0], high[1], surface], [low[0], high[1], surface]], [0.15, 0.5, 0.8, 0.22], "face");
+  }
+
+  surface(frame) {
+    const kept = this.arrays.surface;
+    return kept && (kept.length > 1 ? kept[frame] : kept[0]);
+  }
+
+  frame() {  // edges of the box: the periods, where there are some
+    const corner = (k) => [0, 1, 2].map((axis) => (k >> axis & 1 ? this.high : this.low)[axis]), lines = [];
+    for (let k = 0; k < 8; k++) for (const axis of [1, 2, 4]) if (!(k & axis)) lines.push(corner(k), corner(k | axis));
+    return lines;
+  }
+
+  track() {  // path of the chosen grain, cut where it leaves one side and enters the other
+    const lines = [];
+    for (let k = 0; k + 1 < this.frames; k++) {
+      const from = this.centreOf(this.picked, k), way = minus(this.centreOf(this.picked, k + 1), from), a = this.inside(from), b = plus(a, way);
+      if (this.period.every((one, axis) => !one || (b[axis] >= 0 && b[axis] < one))) lines.push(a, b);
+      else { const c = this.inside(plus(from, way)); lines.push(a, this.cut(a, way), this.cut(c, way.map((one) => -one)), c); }
+    }
+    return lines;
+  }
+
+  cut(from, way) {  // where a straight way leaves the period
+    const share = Math.min(1, ...[0, 1].map((k) => (!this.period[k] || !way[k] ? 1 : ((way[k] > 0 ? this.period[k] : 0) - from[k]) / way[k])));
+    return plus(from, way, share);
+  }
+
+  words(k, share, nearest, scene) {
+    const { data } = this;
+    this.slider.value = k + share;
+    this.clock.textContent = `t = ${this.time.toFixed(this.digits ??= Math.min(Math.max(0, Math.ceil(-Math.log10((data.t[data.t.length - 1] - data.t[0]) / data.t.length || 1)) + 1), 6))} s`;
+    if (data.flow) {
+      const n = data.flow.z.length, row = data.arrays.u.shape[0] > 1 ? nearest : 0;
+      drawProfile(this.profile, data.flow.z, this.arrays.u.subarray(row * n, (row + 1) * n), this.fastest, this.surface(nearest));
+    }
+    drawAxes(this.axes, this.camera, data.scenes[scene].gravity);
+    this.chosen.hidden = this.picked < 0;
+    if (this.picked >= 0) {
+      const at = this.placeOf(this.picked), next = Math.min(k + 1, this.frames - 1), before = Math.max(next - 1, 0);
+      const speed = next > before ? Math.hypot(...minus(this.centreOf(this.picked, next), this.centreOf(this.picked, before))) / (data.t[next] - data.t[before]) : 0;
+      const id = this.arrays.id ? this.arrays.id[this.picked] : this.picked;
+      this.chosen.textContent = `grain ${id}: d ${(2000 * this.arrays.radius[this.picked]).toPrecision(3)} mm, x ${(100 * at[0]).toFixed(2)}, y ${(100 * at[1]).toFixed(2)}, z ${(100 * at[2]).toFixed(2)} cm, ${speed.toPrecision(2)} m/s between two frames${this.following ? ", followed" : ""}`;
+    }
+  }
+
+  // ------------------------------------------------------------------------------------------------------ hands
+
+  colourBy(word) {
+    this.colouring = this.data.colourings.findIndex((one) => one.word === word);
+    this.colours.value = word; this.coloured = null;
+    const one = this.data.colourings[this.colouring];
+    this.painter.colours(one.colours);
+    drawScale(this.scale, one);
+    this.changed();
+  }
+
+  look(name) {
+    this.following = false;
+    this.camera.fit(this.low, this.high, this.aspect, ...VIEWS[name]);
+    this.changed();
+  }
+
+  resize() {
+    const ratio = window.devicePixelRatio || 1;
+    this.canvas.width = Math.max(Math.round(this.canvas.clientWidth * ratio), 1);
+    this.canvas.height = Math.max(Math.round(this.canvas.clientHeight * ratio), 1);
+    this.changed();
+  }
+
+  zoom(factor, x = 0, y = 0) {
+    const [right, up] = this.camera.axes, shift = this.following ? 0 : this.camera.half * (1 - factor);
+    this.camera.target = plus(plus(this.camera.target, right, x * this.aspect * shift), up, y * shift);
+    this.camera.half = Math.min(Math.max(this.camera.half * factor, 1e-3 * this.radius), 20 * this.radius);
+    this.changed();
+  }
+
+  pick(x, y) {
+    const [origin, sight] = this.camera.ray(x, y, this.aspect), { radius } = this.arrays;
+    let best = Infinity, found = -1;
+    for (let g = 0; g < this.grains; g++) {
+      const out = minus(origin, this.placeOf(g)), b = dot(out, sight), h = b * b - dot(out, out) + radius[g] ** 2;
+      if (h >= 0 && -b - Math.sqrt(h) < best) { best = -b - Math.sqrt(h); found = g; }
+    }
+    this.picked = found; this.following &&= found >= 0;
+    this.changed();
+  }
+
+  save() {
+    this.draw();
+    this.canvas.toBlob((blob) => {
+      const address = URL.createObjectURL(blob);
+      element("a", null, { href: address, download: `${this.data.folder}-${this.time.toFixed(4)}s.png` }).click();
+      setTimeout(() => URL.revokeObjectURL(address), 1000);
+    });
+  }
+
+  faster(step) { this.speed.selectedIndex = Math.min(Math.max(this.speed.selectedIndex + step, 0), this.speed.length - 1); this.rate = +this.speed.value; }
+
+  hands() {
+    const { canvas, holder } = this;
+    const place = (event) => { const box = canvas.getBoundingClientRect(); return [2 * (event.clientX - box.left) / box.width - 1, 1 - 2 * (event.clientY - box.top) / box.height]; };
+    let last = null, moved = 0;
+    canvas.addEventListener("pointerdown", (event) => { canvas.setPointerCapture(event.pointerId); last = [event.clientX, event.clientY]; moved = 0; holder.focus({ preventScroll: true }); });
+    canvas.addEventListener("pointermove", (event) => {
+      if (!last) return;
+      const [dx, dy] = [event.clientX - last[0], event.clientY - last[1]], metre = 2 * this.camera.half / canvas.clientHeight;
+      last = [event.clientX, event.clientY]; moved += Math.abs(dx) + Math.abs(dy);
+      if (moved < 4) return;
+      if (event.shiftKey || event.buttons === 2) {
+        const [right, up] = this.camera.axes;
+        this.following = false;
+        this.camera.target = plus(plus(this.camera.target, right, -dx * metre), up, dy * metre);
+      } else {
+        this.camera.azimuth -= 0.006 * dx;
+        this.camera.elevation = Math.min(Math.max(this.camera.elevation + 0.006 * dy, -1.55), Math.PI / 2 - 1e-4);
+      }
+      this.changed();
+    });
+    canvas.addEventListener("pointerup", (event) => { last = null; if (moved < 4 && event.button === 0) this.pick(...place(event)); });
+    canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+    canvas.addEventListener("wheel", (event) => { event.preventDefault(); this.zoom(Math.exp(0.0015 * event.deltaY), ...place(event)); }, { passive: false });
+    const keys = {
+      " ": () => this.toggle(), ArrowLeft: () => this.step(-1), ArrowRight: () => this.step(1), Home: () => this.seek(0), End: () => this.seek(this.frames - 1),
+      ArrowUp: () => this.faster(1), ArrowDown: () => this.faster(-1), "+": () => this.zoom(0.8), "=": () => this.zoom(0.8), "-": () => this.zoom(1.25),
+      1: () => this.look("oblique"), 2: () => this.look("side"), 3: () => this.look("top"), o: () => { this.camera.flat = !this.camera.flat; },
+      c: () => this.colourBy(this.data.colourings[(this.colouring + 1) % this.data.colourings.length].word), f: () => { this.following = !this.following && this.picked >= 0; },
+      Escape: () => { this.picked = -1; this.following = false; this.help.hidden = true; }, b: () => { this.fixedShown = !this.fixedShown; }, w: () => { this.wallsShown = !this.wallsShown; },
+      p: () => this.save(), h: () => { this.help.hidden = !this.help.hidden; }, "?": () => { this.help.hidden = !this.help.hidden; },
+    };
+    holder.addEventListener("keydown", (event) => {
+      if (!(event.key in keys) || event.ctrlKey || event.metaKey || event.altKey || event.target.tagName === "SELECT" || !this.arrays) return;
+      event.preventDefault();
+      keys[event.key]();
+      this.changed();
+    });
+  }
+}
+
+const viewers = [];
+for (const holder of document.querySelectorAll("[data-run]")) {
+  const run = holder.dataset.run, text = (kind) => document.getElementById(`ryusa-${kind}-${run}`).textContent;
+  try {
+    const viewer = new Viewer(holder, JSON.parse(text("data")), text("arrays"));
+    viewer.ready.catch((error) => { element("p", holder, { className: "fault" }, `The run cannot be shown: ${error.message}`); throw error; });
+    viewers.push(viewer);
+  } catch (error) {
+    element("p", holder, { className: "fault" }, error.message);
+  }
+}
+viewers[0]?.holder.focus({ preventScroll: true });
+window.ryusaViewers = viewers;

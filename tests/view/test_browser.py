@@ -1,0 +1,183 @@
+"""The page in a browser, opened from the disk as by a double click."""
+
+import io
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from ryusa.view.page import view_page
+
+WIDE, HIGH = 1000, 640
+BAR = 44  # pixels of the controls beneath the picture
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("pages")
+
+
+@pytest.fixture
+def opened(browser, folder):
+    """Opens the page of a run; at the end no message of the browser may be left."""
+    said, pages = [], []
+
+    def open_page(results, name):
+        path = folder / name
+        path.write_text(view_page(results), encoding="utf-8")
+        page = browser.new_page(viewport={"width": WIDE, "height": HIGH})
+        page.on("console", lambda message: said.append(message.text))
+        page.on("pageerror", lambda error: said.append(str(error)))
+        page.goto(path.as_uri())
+        page.wait_for_selector("[data-first-picture]", timeout=30_000)
+        pages.append(page)
+        return page
+
+    yield open_page
+    for page in pages:
+        page.close()
+    assert said == []
+
+
+def pixels(page):
+    return np.asarray(Image.open(io.BytesIO(page.screenshot())).convert("RGB")).astype(int)
+
+
+def looked_at(page, k):
+    """The side view of frame k, without perspective, bed, walls, box and words, and metres per pixel."""
+    page.evaluate(
+        """k => { const v = ryusaViewers[0]; v.camera.flat = true; v.fixedShown = v.wallsShown = false;
+        v.frame = () => [];
+        for (const one of v.holder.children) if (one !== v.canvas) one.style.visibility = 'hidden';
+        v.look('side'); v.seek(k); }""",
+        k,
+    )
+    return pixels(page)[: HIGH - BAR], page.evaluate("2 * ryusaViewers[0].camera.half") / (HIGH - BAR)
+
+
+def discs(seen):
+    """Centre x, centre z (upwards) and radius of each patch that is not background, in pixels."""
+    from scipy.ndimage import label
+
+    patches, count = label(np.abs(seen - seen[0, 0]).sum(axis=2) > 30)
+    found = []
+    for k in range(1, count + 1):
+        rows, columns = np.nonzero(patches == k)
+        found.append((columns.mean(), -rows.mean(), np.sqrt(len(rows) / np.pi)))
+    return sorted(found)
+
+
+@pytest.mark.parametrize("k", [0, 3, 10])
+def test_grains_are_where_they_were_and_as_large_as_they_are(opened, three, flight, k):
+    seen, metre = looked_at(opened(three, f"three-{k}.html"), k)
+    x = flight.x + flight.v * three.frames.t[k]
+    x[:, :2] %= flight.period
+    order = np.argsort(x[:, 0])
+    found = np.array(discs(seen)) * metre
+    assert len(found) == 3
+    for axis, place in ((0, x[order, 0]), (1, x[order, 2])):
+        assert np.diff(found[:, axis]) == pytest.approx(np.diff(place), abs=1.5 * metre)
+    assert found[:, 2] == pytest.approx(0.5 * flight.d[order], abs=1.0 * metre)
+
+
+def test_between_two_frames_a_grain_that_crosses_a_side_leaves_no_streak(opened, three, flight):
+    page = opened(three, "side.html")
+    crossing = next(
+        k for k in range(11) if (flight.x[1, 0] + flight.v[1, 0] * three.frames.t[k + 1]) > flight.period
+    )
+    for share in (0.1, 0.5, 0.9):
+        seen, metre = looked_at(page, crossing + share)
+        t = three.frames.t[crossing] + share * (three.frames.t[crossing + 1] - three.frames.t[crossing])
+        found = np.array(discs(seen)) * metre
+        x = (flight.x[:, 0] + flight.v[:, 0] * t) % flight.period
+        assert np.diff(found[:, 0]) == pytest.approx(np.diff(np.sort(x)), abs=1.5 * metre)
+
+
+def test_colour_follows_the_quantity_and_its_scale_is_shown(opened, three, flight):
+    page = opened(three, "colour.html")
+    seen = {}
+    for word in ("speed", "size", "spin"):
+        page.select_option("select[title^=colour]", word)
+        one = page.evaluate("ryusaViewers[0].data.colourings[ryusaViewers[0].colouring]")
+        assert one["label"] in page.inner_text(".scale")
+        assert f"({one['unit']})" in page.inner_text(".scale")
+        page.evaluate("document.querySelector('[data-run]').focus()")
+        picture, _ = looked_at(page, 5)
+        seen[word] = [picture[int(-z), int(x)] for x, z, _ in discs(picture)]
+        page.evaluate("for (const one of ryusaViewers[0].holder.children) one.style.visibility = ''")
+    # by speed: 0.1, 0.2, 0.1 m/s; by size: 4, 2, 4 mm; none spins
+    order = np.argsort((flight.x[:, 0] + flight.v[:, 0] * three.frames.t[5]) % flight.period)
+    fast, small = list(order).index(1), list(order).index(1)
+    others = [k for k in range(3) if k != fast]
+    for word, odd in (("speed", fast), ("size", small)):
+        alike = np.abs(seen[word][others[0]] - seen[word][others[1]]).sum()
+        apart = np.abs(seen[word][odd] - seen[word][others[0]]).sum()
+        assert alike < 12
+        assert apart > 100
+    assert np.abs(seen["spin"][0] - seen["spin"][1]).sum() < 30
+
+
+def test_slider_keys_and_play_move_the_time(opened, three):
+    page = opened(three, "time.html")
+    time = "ryusaViewers[0].time"
+    page.locator("input[type=range]").fill("4")
+    assert page.evaluate(time) == pytest.approx(three.frames.t[4])
+    page.keyboard.press("ArrowRight")
+    assert page.evaluate(time) == pytest.approx(three.frames.t[5])
+    page.locator("[data-run]").focus()
+    page.keyboard.press("Home")
+    assert page.evaluate(time) == pytest.approx(three.frames.t[0])
+    page.keyboard.press("ArrowDown")
+    page.keyboard.press("Space")
+    for _ in range(200):  # the page allows no script made of text, which wait_for_function would need
+        page.wait_for_timeout(50)
+        if page.evaluate(time) > 0.01:
+            break
+    assert page.evaluate(time) > 0.01
+    page.keyboard.press("Space")
+    assert not page.evaluate("ryusaViewers[0].playing")
+    assert f"{page.evaluate(time):.3f}"[:4] in page.inner_text(".clock")
+
+
+def test_a_chosen_grain_is_named_and_followed(opened, three, flight):
+    page = opened(three, "chosen.html")
+    page.evaluate("ryusaViewers[0].look('side')")
+    x, y = page.evaluate("ryusaViewers[0].camera.project(ryusaViewers[0].placeOf(2), ryusaViewers[0].aspect)")
+    page.mouse.click((x + 1) / 2 * WIDE, (1 - y) / 2 * (HIGH - BAR))
+    assert page.evaluate("ryusaViewers[0].picked") == 2
+    assert page.inner_text(".chosen").startswith("grain 2: d 4.00 mm")
+    page.keyboard.press("f")
+    page.keyboard.press("End")
+    middle = page.evaluate("ryusaViewers[0].camera.target")
+    assert middle == pytest.approx(list((flight.x + flight.v * three.frames.t[-1])[2]), abs=1e-4)
+    page.keyboard.press("Escape")
+    assert page.evaluate("ryusaViewers[0].picked") == -1
+
+
+def test_a_page_without_webgl2_says_what_is_missing(browser, folder, three):
+    path = folder / "without.html"
+    path.write_text(view_page(three), encoding="utf-8")
+    page = browser.new_page()
+    page.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
+    page.goto(path.as_uri())
+    assert "WebGL2" in page.inner_text(".fault")
+    page.close()
+
+
+def test_a_title_made_of_script_is_shown_and_not_run(opened, three, monkeypatch):
+    monkeypatch.setitem(three.case, "title", "</script><img src=x onerror='document.title=1'><b>bold")
+    page = opened(three, "script.html")
+    assert page.inner_text(".head strong").endswith("<b>bold")
+    assert page.evaluate("document.title").startswith("</script>")
+
+
+def test_water_over_height_is_drawn(opened, saltation):
+    page = opened(saltation, "water.html")
+    assert page.is_visible(".profile")
+    drawn = page.evaluate(
+        """(() => { const c = document.querySelector('.profile'); let n = 0;
+        const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
+        for (let i = 0; i < d.length; i += 4) if (d[i + 2] > d[i] + 80 && d[i + 3] > 200) n++;
+        return n; })()"""
+    )
+    assert drawn > 100  # blue pixels of the curve
