@@ -1,4 +1,4 @@
-"""A family of named choices, and the compiled function that calls the law of a number."""
+"""A family of named choices, and the compiled function that calls a law by its number."""
 
 import inspect
 import math
@@ -15,17 +15,17 @@ F = TypeVar("F", bound=Callable[..., Any])
 class Family(IntEnum):
     """A closed set of choices, one per line; base of the tables in `ryusa.laws.families`.
 
-    A member is written as a tuple of the attributes below. Its number is what scenes, checkpoints and kernels
-    hold and never changes; its word is what a case file says.
+    A member is written as a tuple of its number and the attributes below. Scenes, checkpoints and kernels
+    hold the number, which never changes; case files use the word.
 
     Attributes
     ----------
-    word : in a case file; empty where a case file cannot ask for it.
-    function : the law; None where there is nothing to evaluate, or where the choice is a rule.
-    about : what it says, in one line.
-    source : where it comes from.
-    takes : keys of the case file, in the section of the family, that only some of its choices take.
-    marks : what sets a rule apart from the others of its family; read by `marked`.
+    word : value in a case file; empty if a case file cannot select it.
+    function : the law; None if there is nothing to evaluate, or if the choice is a rule.
+    about : its meaning, in one line.
+    source : publication or equation.
+    takes : case keys, in the section of the family, that apply to this choice but not to all choices.
+    marks : properties that distinguish a rule from the others of its family; read by `marked`.
     """
 
     _value_: int
@@ -36,7 +36,7 @@ class Family(IntEnum):
     takes: tuple[str, ...]
     marks: tuple[str, ...]
 
-    key: str  # of the case file; the same for all choices
+    key: str  # case key of the family
 
     def __new__(
         cls,
@@ -62,12 +62,12 @@ class Family(IntEnum):
 
     @classmethod
     def words(cls) -> tuple[str, ...]:
-        """Words that a case file may use, in order of their numbers."""
+        """Words that a case file may use, in the order of their numbers."""
         return tuple(choice.word for choice in cls if choice.word)
 
     @classmethod
     def of(cls, word: str) -> Self:
-        """The choice that a word of a case file names.
+        """Return the choice with a given word.
 
         Raises
         ------
@@ -82,7 +82,7 @@ class Family(IntEnum):
 
     @classmethod
     def all_takes(cls) -> tuple[str, ...]:
-        """Keys that some choice of the family takes."""
+        """Case keys that apply to at least one choice of the family."""
         return tuple(dict.fromkeys(key for choice in cls for key in choice.takes))
 
 
@@ -94,25 +94,24 @@ def dispatch(
     unasked: tuple[Family, ...] = (),
     fastmath: bool | set[str] = False,
 ) -> Any:
-    """Build the compiled function that evaluates the law of a number: f(number, *arguments).
+    """Build the compiled function that evaluates the law with a given number: f(number, *arguments).
 
     Parameters
     ----------
-    family : its choices.
-    arguments : names of what every law of the family may ask for, in the order in which callers give it. A
-        law takes those that its parameters name.
-    answers : how many numbers each law answers; a tuple if more than one.
-    unasked : choices that callers treat themselves and never ask for.
-    fastmath : as Numba takes it.
+    family : the choices.
+    arguments : names of the arguments of f, in order. A law receives those that its parameters name.
+    answers : number of values that each law returns; a tuple if more than one.
+    unasked : choices that callers handle themselves, without calling f.
+    fastmath : passed to Numba.
 
     Notes
     -----
-    A number that is none of the family answers nan, on which every engine stops. The function is compiled
-    into its callers, on the CPU and for CUDA; from Python see `evaluate`.
+    For a number outside the family f returns nan, on which every engine stops. The function is compiled
+    into its callers, on the CPU and for CUDA; from Python use `evaluate`.
 
     Raises
     ------
-    TypeError : a choice has no function, or its function has a parameter that the family does not give.
+    TypeError : a choice has no function, or its function has a parameter that is not among `arguments`.
     """
     flags = frozenset(fastmath) if isinstance(fastmath, set) else fastmath
     chain = _nothing_known(answers, flags)
@@ -125,11 +124,11 @@ def dispatch(
 
 
 def marked(family: type[Family], mark: str) -> Any:
-    """Build the compiled function that tells whether the choice of a number carries a mark: f(number).
+    """Build the compiled function that returns whether the choice with a given number has a mark: f(number).
 
     Raises
     ------
-    TypeError : no choice of the family carries it.
+    TypeError : no choice of the family has this mark.
     """
     bits = sum(1 << int(choice) for choice in family if mark in choice.marks)
     if not bits:
@@ -143,11 +142,11 @@ def marked(family: type[Family], mark: str) -> Any:
 
 
 def rules(family: type[Family], *marks: str) -> tuple[Any, ...]:
-    """Build the compiled functions of `marked` for a family whose choices differ by these marks alone.
+    """Build the compiled functions of `marked` for a family whose choices differ only in these marks.
 
     Raises
     ------
-    TypeError : a choice is marked as another is, has a mark that is not among these, or has a law of its own.
+    TypeError : two choices have the same marks, or a choice has another mark or another function.
     """
     first = next(iter(family))
     for choice in family:
@@ -161,16 +160,16 @@ def rules(family: type[Family], *marks: str) -> tuple[Any, ...]:
 
 
 def numbers(where: str, *choices: Family) -> tuple[int, ...]:
-    """Numbers of all choices of a family, for a module that tells them apart by comparisons of its own.
+    """Numbers of all choices of a family, for a module that distinguishes them by comparisons.
 
     Parameters
     ----------
     where : name of the module.
-    choices : every choice of the family; their numbers come back in this order.
+    choices : all choices of the family; their numbers are returned in this order.
 
     Raises
     ------
-    TypeError : the family has a choice that is not listed.
+    TypeError : a choice of the family is not listed.
     """
     for choice in type(choices[0]):
         if choice not in choices:
@@ -179,11 +178,11 @@ def numbers(where: str, *choices: Family) -> tuple[int, ...]:
 
 
 def evaluate(choice: Family, **given: Any) -> Any:
-    """What the law of a choice answers, from Python; it takes what it asks for from `given`.
+    """Evaluate the law of a choice from Python, with those of the `given` values that its parameters name.
 
     Raises
     ------
-    TypeError : the choice has no function, or asks for what is not given.
+    TypeError : the choice has no function, or one of its parameters is not given.
     """
     names = _asked_by(choice, tuple(given))
     assert choice.function is not None
@@ -191,7 +190,7 @@ def evaluate(choice: Family, **given: Any) -> Any:
 
 
 def _asked_by(choice: Family, arguments: tuple[str, ...]) -> tuple[str, ...]:
-    """Names of the parameters of a choice's law."""
+    """Names of the parameters of the law of a choice."""
     who = _name(choice)
     if choice.function is None:
         raise TypeError(f"{who} has no function in laws/families.py, and its dispatch asks for one")
@@ -208,14 +207,14 @@ def _name(choice: Family) -> str:
 
 
 def _uncached(fastmath: Any) -> Callable[[F], F]:
-    """Compile, without keeping it on disk by itself: its laws are in its closure."""
+    """Compile without a cache on disk, because the laws are in the closure of the function."""
     fast = set(fastmath) if isinstance(fastmath, frozenset) else fastmath
     return compiled(None, fastmath=fast)
 
 
 @cache
 def _picker(places: tuple[int, ...], fastmath: Any) -> Any:
-    """Function that picks the arguments of a law, by their places, from all that its family is given."""
+    """Function that selects the arguments of a law, by their positions, from all arguments of its family."""
     if not places:
 
         @_uncached(fastmath)
@@ -233,7 +232,7 @@ def _picker(places: tuple[int, ...], fastmath: Any) -> Any:
 
 
 def _link(number: int, law: Any, pick: Any, rest: Any, fastmath: Any) -> Any:
-    """One question of a dispatch: is it this law, or one of the rest."""
+    """One branch of a dispatch: this law if the number matches, else the remaining branches."""
 
     @_uncached(fastmath)
     def link(chosen: Any, *given: Any) -> Any:
@@ -245,7 +244,7 @@ def _link(number: int, law: Any, pick: Any, rest: Any, fastmath: Any) -> Any:
 
 
 def _nothing_known(answers: int, fastmath: Any) -> Any:
-    """Last of a dispatch: a number that is none of the family."""
+    """Last branch of a dispatch: a number outside the family."""
     lost = math.nan if answers == 1 else (math.nan,) * answers
 
     @_uncached(fastmath)

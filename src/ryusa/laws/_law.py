@@ -1,4 +1,4 @@
-"""The decorator every law carries: one text for the CPU engine, for CUDA kernels and for plain Python."""
+"""The decorator of all laws: one text for the CPU engine, for CUDA kernels and for plain Python."""
 
 import hashlib
 from collections.abc import Callable
@@ -11,7 +11,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 def edition(*texts: Path) -> str:
-    """Digest of the text of files, and of all Python files in folders and in those below them."""
+    """Digest of the text of files, and of all Python files in and below folders."""
     digest = hashlib.sha256()
     for text in texts:
         for file in sorted(text.rglob("*.py")) if text.is_dir() else [text]:
@@ -20,18 +20,20 @@ def edition(*texts: Path) -> str:
 
 
 LAWS = Path(__file__).parent
-FAST = {"contract", "nsz"}  # fused multiply-add and no care for the sign of zero; nothing that hides a NaN
+FAST = {"contract", "nsz"}  # fused multiply-add, sign of zero ignored; no flag that hides a NaN
 EDITION = edition(LAWS)
 
 
 def compiled(edition: str | None, **options: Any) -> Callable[[F], F]:
-    """Compile a function when it is first called, and keep it on disk as long as its edition is the same.
+    """Compile a function at its first call, and cache it on disk as long as its edition is the same.
 
-    Without an edition it is not kept: Numba cannot keep what was built from other compiled functions.
+    Without an edition there is no cache: Numba cannot cache a function whose closure holds compiled
+    functions.
 
-    Typed as identity, so that the signature survives. Numba's cache looks at the function's own file alone
-    and would go on calling an old law from another file: the edition becomes a part of the version that it
-    compares before it reads what it kept. That is private to Numba, so tests/laws/test_cache.py watches it.
+    Typed as identity, so that the signature survives. Numba checks its cache against the file of the function
+    alone, and would keep calling an outdated law from another file. The edition is therefore added to
+    the version that Numba compares before it reads the cache. This relies on private parts of Numba, which
+    tests/laws/test_cache.py tests.
     """
 
     def decorate(function: F) -> F:
@@ -45,19 +47,19 @@ def compiled(edition: str | None, **options: Any) -> Callable[[F], F]:
 
 
 def law(function: F) -> F:
-    """Compile a scalar law when it is first called.
+    """Compile a scalar law at its first call.
 
-    `error_model="numpy"` makes a division by zero give inf or nan instead of raising: laws never raise, and
-    the engine stops on a number that is not finite. `fastmath=False` is said aloud because Numba would
-    otherwise take it from whichever kernel calls the law first, and keep that in the cache for everybody.
+    With `error_model="numpy"` a division by zero gives inf or nan: laws never raise, and the engine stops on
+    a number that is not finite. `fastmath=False` is explicit because Numba would otherwise take the flags of
+    the kernel that calls the law first, and cache the result for all callers.
     """
     return compiled(EDITION, fastmath=False)(function)
 
 
 def step_law(function: F) -> F:
-    """Compile the step of a contact or of a grain, one text that the kernels of every engine call.
+    """Compile a part of the step of a contact or of a grain, called by the kernels of every engine.
 
-    Inlined and with fused multiply-adds, as the kernels themselves are, so that a loop over pairs becomes
-    vector instructions. The laws it calls are compiled as `law` says.
+    Inlined and with fused multiply-adds, as in the kernels themselves, so that a loop over pairs becomes
+    vector instructions. The laws that it calls are compiled by `law`.
     """
     return compiled(EDITION, fastmath=FAST, forceinline=True)(function)

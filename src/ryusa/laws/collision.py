@@ -1,8 +1,8 @@
-"""Two grains in a linear spring and dashpot: Eq. (8), contact time, restitution and damping, largest overlap.
+"""Two grains joined by a linear spring and dashpot: Eq. (8), contact time, restitution, largest overlap.
 
-omega_0 = sqrt(k_n/m) [rad/s] and zeta = eta_n/(2 sqrt(k_n m)) [-], m the effective mass of the pair: a fixed
-partner counts as infinite, added mass counts. *Tension*: the dashpot may pull until the overlap ends. *No
-tension*: the force ends when it would turn to pulling.
+omega_0 = sqrt(k_n/m) [rad/s] and zeta = eta_n/(2 sqrt(k_n m)) [-], where m is the effective mass of the pair:
+a fixed partner has infinite mass, and added mass is included. *Tension*: the dashpot may pull until the
+overlap ends. *No tension*: the force ends when it would become attractive.
 """
 
 import math
@@ -13,7 +13,7 @@ from ryusa.laws.reduced import reduced
 
 @law
 def collision_time(m: float, k_n: float) -> float:
-    """Time a grain stays in touch when nothing is lost [s], pi sqrt(m/k_n). Eq. (8); m [kg], k_n [N/m].
+    """Duration of a contact without damping [s], pi sqrt(m/k_n). Eq. (8); m [kg], k_n [N/m].
 
     Examples
     --------
@@ -50,11 +50,11 @@ def effective_mass_tangential(
     m_i, m_j : masses [kg], added mass included; inf for a fixed partner.
     r_i, r_j : radii [m]; inf for a plane.
     inertia_i, inertia_j : moments of inertia [kg m2], without added mass; inf for a fixed partner.
-    rotates : False when rotation is locked; R**2/I is left out then.
+    rotates : False if rotation is locked; R**2/I is then omitted.
 
     Notes
     -----
-    Source: readings of the paper (tangential restitution). Equal dry spheres give 2/7 of the normal one.
+    Source: derived; the paper does not state it. For equal dry spheres it is 2/7 of the normal one.
 
     Examples
     --------
@@ -102,8 +102,8 @@ def phase_to_largest(zeta: float) -> float:
 
     Notes
     -----
-    Source: damped oscillator; acos(zeta)/sqrt(1 - zeta**2), 1 at zeta = 1, and beyond
-    acosh(zeta)/sqrt(zeta**2 - 1). Without tension the force ends at exactly twice this phase.
+    Source: damped oscillator; acos(zeta)/sqrt(1 - zeta**2), 1 at zeta = 1, and acosh(zeta)/sqrt(zeta**2 - 1)
+    above. Without tension the force ends at exactly twice this phase.
 
     Examples
     --------
@@ -121,7 +121,7 @@ def phase_to_largest(zeta: float) -> float:
 
 @law
 def contact_time_tension(zeta: float, omega_0: float) -> float:
-    """Contact time [s] when the dashpot may pull, pi/(omega_0 sqrt(1 - zeta**2)); inf from zeta = 1 on.
+    """Contact time [s] when the dashpot may pull, pi/(omega_0 sqrt(1 - zeta**2)); inf for zeta >= 1.
 
     Examples
     --------
@@ -140,8 +140,8 @@ def contact_time_no_tension(zeta: float, omega_0: float) -> float:
     Notes
     -----
     Source: Schwager & Poeschel 2007, Eq. (21): omega_0 T = atan2(2 zeta w, 2 zeta**2 - 1)/w with
-    w = sqrt(1 - zeta**2); 2 at zeta = 1; beyond, 2 ln(zeta + s)/s with s = sqrt(zeta**2 - 1). All three are
-    twice `phase_to_largest`.
+    w = sqrt(1 - zeta**2); 2 at zeta = 1; 2 ln(zeta + s)/s with s = sqrt(zeta**2 - 1) above. All three
+    expressions are twice `phase_to_largest`.
 
     Examples
     --------
@@ -171,19 +171,19 @@ def contact_time(zeta: float, omega_0: float, tension: bool) -> float:
 
 @law
 def shortest_contact(m: float, k_n: float, zeta: float, tension: bool) -> float:
-    """Shortest contact that a pair can have [s], damped or undamped; the time step is a part of it.
+    """Shortest contact that a pair can have [s], damped or undamped; the time step is a fraction of it.
 
     Parameters
     ----------
-    m : effective mass of the lightest pair that can meet [kg].
+    m : effective mass of the lightest possible pair [kg].
     k_n : normal stiffness [N/m].
     zeta : damping ratio [-].
     tension : whether the dashpot may pull.
 
     Notes
     -----
-    Source: the smaller of Eq. (8) and the damped time. Damping shortens a contact without tension and
-    lengthens one with it.
+    Source: the smaller of Eq. (8) and the damped contact time. Damping shortens a contact without tension and
+    lengthens one with tension.
 
     Examples
     --------
@@ -198,7 +198,7 @@ def shortest_contact(m: float, k_n: float, zeta: float, tension: bool) -> float:
 
 @law
 def restitution_tension(zeta: float) -> float:
-    """Restitution e = exp(-pi zeta/sqrt(1 - zeta**2)) [-] when the dashpot may pull; 0 from zeta = 1 on.
+    """Restitution e = exp(-pi zeta/sqrt(1 - zeta**2)) [-] when the dashpot may pull; 0 for zeta >= 1.
 
     Examples
     --------
@@ -228,7 +228,7 @@ def restitution_no_tension(zeta: float) -> float:
 
 @law
 def restitution_for_zeta(zeta: float, tension: bool) -> float:
-    """Restitution [-] that a damping ratio zeta [-] gives; `tension`: whether the dashpot may pull.
+    """Restitution [-] for a damping ratio zeta [-]; `tension`: whether the dashpot may pull.
 
     Examples
     --------
@@ -259,8 +259,8 @@ def zeta_no_tension(e: float) -> float:
 
     Notes
     -----
-    Inverse of `restitution_no_tension`: Newton on 2 zeta phase_to_largest(zeta) = -ln e, kept inside the
-    bracket [0, 1/sqrt(e)] by halving it whenever a step would leave it.
+    Inverse of `restitution_no_tension`: Newton's method on 2 zeta phase_to_largest(zeta) = -ln e within the
+    bracket [0, 1/sqrt(e)], with a bisection where a step would leave the bracket.
 
     Examples
     --------
@@ -327,7 +327,7 @@ def overlap_max(speed: float, m: float, k_n: float, zeta: float) -> float:
 
 @law
 def stiffness_for_overlap(overlap: float, speed: float, m: float, zeta: float) -> float:
-    """Stiffness [N/m] that gives this largest overlap; inverse of `overlap_max`.
+    """Stiffness [N/m] that gives the largest overlap `overlap`; inverse of `overlap_max`.
 
     Parameters
     ----------
@@ -347,7 +347,7 @@ def stiffness_for_overlap(overlap: float, speed: float, m: float, zeta: float) -
 
 @law
 def stiffness_for_time(t_col: float, m: float, zeta: float, tension: bool) -> float:
-    """Stiffness [N/m] that gives this contact time; inverse of the two contact times above.
+    """Stiffness [N/m] that gives the contact time `t_col`; inverse of `contact_time`.
 
     Parameters
     ----------
@@ -358,7 +358,7 @@ def stiffness_for_time(t_col: float, m: float, zeta: float, tension: bool) -> fl
 
     Notes
     -----
-    With zeta = 0 the inverse of Eq. (8). With tension and zeta >= 1 no stiffness does (inf).
+    With zeta = 0 the inverse of Eq. (8). With tension and zeta >= 1 no stiffness gives it (inf).
 
     Examples
     --------
@@ -380,7 +380,7 @@ def step_limit(zeta: float, omega_0: float) -> float:
 
     Notes
     -----
-    Source: omega_0 dt <= 2 (sqrt(1 + zeta**2) - zeta). Grains with several contacts need less.
+    Source: omega_0 dt <= 2 (sqrt(1 + zeta**2) - zeta). Grains with several contacts need a smaller step.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Normal and tangential contact forces, Eqs. (1)-(4), and the named ways to slide."""
+"""Normal and tangential contact forces, Eqs. (1)-(4), and the variants of sliding."""
 
 import math
 
@@ -11,7 +11,7 @@ def normal_force(overlap: float, closing: float, k_n: float, eta_n: float) -> fl
 
     Parameters
     ----------
-    overlap : how far the two grains reach into each other [m]; positive in touch.
+    overlap : overlap of the two grains [m], Eq. (12); positive in touch.
     closing : speed at which the two surfaces approach along the normal [m/s]; positive when approaching.
     k_n, eta_n : normal stiffness [N/m] and dashpot [N s/m], both >= 0.
 
@@ -21,7 +21,7 @@ def normal_force(overlap: float, closing: float, k_n: float, eta_n: float) -> fl
 
     Notes
     -----
-    Source: the paper, Eq. (1), read from overlap. Holds while in touch.
+    Source: the paper, Eq. (1), with the overlap as displacement. Valid while the grains touch.
 
     >>> round(normal_force(1.0e-5, 0.1, 1.0e4, 0.1), 12)
     0.11
@@ -39,7 +39,7 @@ def normal_force_no_tension(overlap: float, closing: float, k_n: float, eta_n: f
 
     Notes
     -----
-    Source: the paper, Eq. (1), cut at zero after Schwager & Poeschel 2007, Granular Matter 9, 465.
+    Source: the paper, Eq. (1), limited to f_n >= 0 as in Schwager & Poeschel 2007, Granular Matter 9, 465.
 
     >>> normal_force_no_tension(1.0e-5, -10.0, 1.0e4, 0.1)
     0.0
@@ -49,11 +49,11 @@ def normal_force_no_tension(overlap: float, closing: float, k_n: float, eta_n: f
 
 @law
 def shear_strength(push: float, cohesion: float, mu: float) -> float:
-    """Largest tangential force a contact bears before it slides [N]. Eq. (4), tau_c.
+    """Largest tangential force of a contact before it slides [N]. Eq. (4), tau_c.
 
     Parameters
     ----------
-    push : normal force that feeds friction [N]: the spring e_n as printed, or the whole f_n.
+    push : normal force in Eq. (4) [N]: the spring e_n as printed, or the whole f_n.
     cohesion : grain-level cohesion c [N].
     mu : tan(friction angle) [-].
 
@@ -65,7 +65,7 @@ def shear_strength(push: float, cohesion: float, mu: float) -> float:
 
 @law
 def slip_spring(spring_s: float, spring_n: float, cohesion: float, mu: float) -> float:
-    """Tangential spring capped at tau_c, sign kept [N]. Eqs. (3)-(4) along one tangent.
+    """Tangential spring limited to tau_c, with its sign [N]. Eqs. (3)-(4) along one tangent.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ def slip_spring(spring_s: float, spring_n: float, cohesion: float, mu: float) ->
 
 @law
 def slip_scale(size: float, tau_c: float) -> float:
-    """Factor that shortens a tangential vector of length `size` to tau_c; 1 while it sticks [-]. Eq. (3).
+    """Factor that shortens a tangential vector of length `size` to tau_c [-]; 1 without sliding. Eq. (3).
 
     Parameters
     ----------
@@ -98,22 +98,22 @@ def slip_scale(size: float, tau_c: float) -> float:
 
 @law
 def slide(size: float, tau_c: float, drop: bool, total: bool) -> tuple[float, float, float]:
-    """Cap what resists sliding, in one of three named ways.
+    """Cap the tangential force in one of three variants.
 
     Parameters
     ----------
-    size : length of the force before the cap [N]: of the spring, abs(e), or with `total` of spring and
-        dashpot, abs(e + d).
+    size : length of the force before the cap [N]: of the spring, abs(e), or with `total` of the sum of spring
+        and dashpot, abs(e + d).
     tau_c : shear strength [N].
-    drop : the dashpot falls away while sliding.
-    total : spring and dashpot are capped together, as LAMMPS does: the dashpot keeps its value and
-        the spring takes what is left, so that the sum has length tau_c. With neither the spring is capped and
-        the dashpot kept: Eq. (3) as printed.
+    drop : the dashpot is set to zero while sliding.
+    total : spring and dashpot are capped together, as in LAMMPS: the dashpot keeps its value, and the spring
+        is adjusted so that the sum has length tau_c. With neither, the spring is capped and the dashpot
+        kept: Eq. (3) as printed.
 
     Returns
     -------
-    a, b, c : e becomes a e + b d and d becomes c d, for spring force e and dashpot force d, vectors in 3D or
-        components along the one tangent of a plane scene; a < 1 means sliding [-].
+    a, b, c : e becomes a e + b d and d becomes c d, where e is the spring force and d the dashpot force:
+        vectors in 3D, components along the only tangent in a plane scene; a < 1 means sliding [-].
 
     >>> slide(2.0, 1.0, False, False), slide(2.0, 1.0, True, False), slide(2.0, 1.0, False, True)
     ((0.5, 0.0, 1.0), (0.5, 0.0, 0.0), (0.5, -0.5, 1.0))
@@ -130,7 +130,7 @@ def damping(zeta: float, k: float, m_eff: float) -> float:
     ----------
     zeta : damping ratio [-].
     k : stiffness [N/m].
-    m_eff : effective mass of the pair [kg], added mass counted, a fixed grain infinite.
+    m_eff : effective mass of the pair [kg], added mass included; a fixed grain has infinite mass.
 
     >>> round(damping(0.1, 1.0e4, 1.0e-5), 9)
     0.063245553
@@ -140,7 +140,7 @@ def damping(zeta: float, k: float, m_eff: float) -> float:
 
 @law
 def damping_in_steps(eta: float, m_eff: float, dt: float) -> float:
-    """Dashpot that damps like `eta` although it acts on a velocity half a step old [N s/m].
+    """Dashpot that damps like `eta` although it acts on the velocity of half a step before [N s/m].
 
     Parameters
     ----------
@@ -150,10 +150,11 @@ def damping_in_steps(eta: float, m_eff: float, dt: float) -> float:
 
     Notes
     -----
-    Source: derived. In the semi-implicit scheme the dashpot sees v(t - dt/2) = v + (k x + eta v) dt/(2 m), so
-    both stiffness and dashpot grow by 1 + eps/2 with eps = eta dt/m, and the damping ratio by the root of
-    that. The factor y solves y**2 (1 + eps y/2) = 1 to second order. At 50 steps per contact and e = 0.3 it
-    takes the mean error of restitution from 3e-3 to below 1e-3; it goes with the step.
+    Source: derived. In the semi-implicit scheme the dashpot acts on v(t - dt/2) = v + (k x + eta v) dt/(2 m),
+    which increases both stiffness and dashpot by the factor 1 + eps/2, eps = eta dt/m, and the damping ratio
+    by its square root. The factor y solves y**2 (1 + eps y/2) = 1 to second order. At 50 steps per contact
+    and e = 0.3 it reduces the mean error of restitution from 3e-3 to below 1e-3; it tends to 1 for small
+    steps.
 
     >>> damping_in_steps(0.1, 1.0e-5, 0.0)
     0.1

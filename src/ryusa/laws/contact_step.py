@@ -1,11 +1,11 @@
-"""One contact, one time step: how two grains meet, the forces between them, and the work these forces do.
+"""One contact, one time step: kinematics of a pair, forces between the grains, and the work of the forces.
 
-Every engine calls these functions: it gathers the numbers of a pair, and scatters what comes back. Work is
-accounted by velocity interval. Over the interval from x(n-1) to x(n), with the velocity v(n-1/2), a force
-does the work v dt (f(n-1) + f(n))/2, which is exact for the scheme when kinetic energy is taken as
-m v(n-1/2).v(n+1/2)/2. Vectors are along x, y and z. A plane scene keeps one tangential component, along
-(n_z, 0, -n_x), as the first of the three: it needs no rotation of the contact frame, and no square root for
-the length.
+Every engine calls these functions: it gathers the numbers of a pair and scatters the results. Work is
+accounted by velocity interval. Over the interval from x(n-1) to x(n), with the velocity v(n-1/2), the work of
+a force is v dt (f(n-1) + f(n))/2, which is exact for the scheme with the kinetic energy
+m v(n-1/2).v(n+1/2)/2. Vectors have components along x, y and z. A plane scene has one tangential component,
+along (n_z, 0, -n_x), stored as the first of the three: it needs no rotation of the contact frame and no
+square root for the length.
 """
 
 import math
@@ -21,15 +21,15 @@ def contact_kinematics(
     plane: bool, d_x: float, d_y: float, d_z: float, reach: float, r_i: float, u_x: float, u_y: float,
     u_z: float, w_ix: float, w_iy: float, w_iz: float, w_jx: float, w_jy: float, w_jz: float, dt: float,
 ) -> tuple[float, float, float, float, float, float, float, float, float, float, float]:  # fmt: skip
-    """How grain i meets grain j.
+    """Kinematics of the contact of grains i and j.
 
     Parameters
     ----------
-    plane : the grains move in the x-z plane; y components, and spins but that about y, are not used.
-    d_x, d_y, d_z : from the centre of i to that of j, the nearest periodic image [m].
+    plane : the grains move in the x-z plane; y components, and spins other than that about y, are not used.
+    d_x, d_y, d_z : vector from the centre of i to the nearest periodic image of the centre of j [m].
     reach : sum of the two radii [m].
     r_i : radius of i [m].
-    u_x, u_y, u_z : velocity of i less that of j [m/s].
+    u_x, u_y, u_z : velocity of i minus that of j [m/s].
     w_ix, w_iy, w_iz, w_jx, w_jy, w_jz : spins [rad/s].
     dt : time step [s].
 
@@ -39,13 +39,13 @@ def contact_kinematics(
     overlap : positive in touch [m].
     a_i, a_j : arms from the centres to the contact point [m].
     closing : speed at which the surfaces approach [m/s].
-    s_x, s_y, s_z : slip velocity of i against j at the contact point [m/s].
-    twist : angle the pair turned about its normal within the step [rad].
+    s_x, s_y, s_z : slip velocity of i relative to j at the contact point [m/s].
+    twist : angle by which the pair turned about its normal during the step [rad].
 
     Notes
     -----
     Source: the paper, Eqs. (2) and (12), with unit normals instead of angles, and with arms to the middle of
-    the overlap (`geometry.arm`). Two equal spheres that roll on each other do not slip:
+    the overlap (`geometry.arm`). Two equal spheres that roll on each other have no slip:
 
     >>> spins = 0.0, 3.0, 0.0, 0.0, -3.0, 0.0
     >>> met = contact_kinematics(True, 1.5, 0.0, 0.0, 2.0, 1.0, 0.5, 0.0, 0.0, *spins, 0.1)
@@ -82,29 +82,30 @@ def contact_kinematics(
 def normal_step(
     overlap: float, closing: float, raw: float, was_touching: bool, least: float, k_n: float, hdt: float
 ) -> tuple[float, float, float, float, float, float, float]:
-    """Normal force of a step, and its work over the half interval before it.
+    """Normal force at a step, and its work over the half interval before it.
 
     Parameters
     ----------
     overlap, closing : as `contact_kinematics` gives them [m], [m/s].
-    raw : normal force before it is cut (`contact.normal_force`) [N].
-    was_touching : the pair touched in the last step.
-    least : least normal force a contact may have [N]: 0, or -inf where the dashpot may pull.
+    raw : normal force before the limit is applied (`contact.normal_force`) [N].
+    was_touching : whether the pair touched at the previous step.
+    least : smallest normal force that a contact may have [N]: 0, or -inf if the dashpot may pull.
     k_n : normal stiffness [N/m].
     hdt : half the time step [s]; 0 in the first step of a run.
 
     Returns
     -------
     f_n : normal force [N]; positive pushes apart.
-    e_n : that of the spring alone [N].
-    held, touching : 1 where the contact resists, and where the grains touch; else 0 [-].
-    dashpot, released : work that the dashpot took, and that a cut force left out [J].
-    step : energy that the step gave because the spring began within it [J].
+    e_n : force of the spring alone [N].
+    held, touching : 1 if the contact exerts a force, and if the grains touch; else 0 [-].
+    dashpot, released : energy dissipated by the dashpot, and lost because the force was limited [J].
+    step : energy added because the contact began between two steps [J].
 
     Notes
     -----
-    Source: the paper, Eq. (1), read from overlap. A spring that begins within a step holds k_n overlap**2/2,
-    and the half interval takes e_n closing hdt for it: `step` is the difference.
+    Source: the paper, Eq. (1), with the overlap as displacement. A spring whose contact begins between two
+    steps holds k_n overlap**2/2, while the work of the half interval is e_n closing hdt: `step` is the
+    difference.
 
     >>> [round(x, 9) for x in normal_step(1.0e-5, 0.1, 0.11, True, 0.0, 1.0e4, 1.0e-6)]
     [0.11, 0.1, 1.0, 1.0, 1e-09, 0.0, 0.0]
@@ -124,22 +125,22 @@ def normal_step(
 def normal_work_of_last_force(
     closing: float, f_old: float, d_old: float, ends: bool, least: float, soft_n: float, hdt: float
 ) -> tuple[float, float, float]:
-    """Work of the normal force of the last step over the half interval after it [J].
+    """Work of the normal force of the previous step over the half interval after it [J].
 
     Parameters
     ----------
-    closing : closing speed now, which is that of the interval [m/s].
-    f_old : normal force in the last step [N].
-    d_old : that force less its spring [N].
-    ends : the pair touched in the last step and does no more.
+    closing : present closing speed, which is that of the interval [m/s].
+    f_old : normal force at the previous step [N].
+    d_old : that force without its spring [N].
+    ends : whether the pair touched at the previous step and no longer touches.
     least : as in `normal_step` [N].
-    soft_n : one over the normal stiffness [m/N]; 0 without a spring.
+    soft_n : inverse of the normal stiffness [m/N]; 0 without a spring.
     hdt : half the time step [s].
 
     Returns
     -------
-    dashpot, released : work that the dashpot took, and that a cut force left out [J].
-    step : energy that the step gave because the spring ended within it [J].
+    dashpot, released : energy dissipated by the dashpot, and lost because the force was limited [J].
+    step : energy added because the contact ended between two steps [J].
 
     >>> [round(x, 12) for x in normal_work_of_last_force(-0.1, 0.11, 0.01, False, 0.0, 1.0e-4, 1.0e-6)]
     [-1e-09, 0.0, 0.0]
@@ -156,19 +157,19 @@ def tangential_step(
     p_z: float, q_x: float, q_y: float, q_z: float, k_s: float, soft_s: float, eta_s: float, cohesion: float,
     mu: float, dt: float, hdt: float,
 ) -> tuple[float, float, float, float, float, float, float, float, float, float]:  # fmt: skip
-    """Tangential spring and dashpot on grain i after a step, and the work of the whole interval.
+    """Tangential spring and dashpot force on grain i after a step, and the work of the whole interval.
 
     Parameters
     ----------
     plane : as in `contact_kinematics`.
-    total, drop : how sliding is capped, as in `contact.slide`.
-    cap_total : friction is fed by the whole normal force; else by its spring, Eq. (4) as printed.
+    total, drop : variant of sliding, as in `contact.slide`.
+    cap_total : the whole normal force enters Eq. (4); else only its spring, as printed.
     n_x, n_y, n_z, twist, s_x, s_y, s_z : as `contact_kinematics` gives them [-], [rad], [m/s].
     f_n, e_n, held : as `normal_step` gives them [N], [N], [-].
-    p_x, p_y, p_z : spring force on i in the last step [N].
-    q_x, q_y, q_z : dashpot force on i in the last step [N].
+    p_x, p_y, p_z : spring force on i at the previous step [N].
+    q_x, q_y, q_z : dashpot force on i at the previous step [N].
     k_s, eta_s : tangential stiffness [N/m] and dashpot [N s/m].
-    soft_s : one over the stiffness [m/N]; 0 without a spring.
+    soft_s : inverse of the stiffness [m/N]; 0 without a spring.
     cohesion, mu : of the shear strength, as in `contact.shear_strength` [N], [-].
     dt, hdt : time step and half of it [s]; `hdt` is 0 in the first step of a run.
 
@@ -176,14 +177,14 @@ def tangential_step(
     -------
     e_x, e_y, e_z : spring force on i [N].
     b_x, b_y, b_z : dashpot force on i [N].
-    share : part of the spring that is left; less than 1 where the contact slides [-].
-    dashpot, sliding, released : work that the dashpot took, that sliding took, and that was left out because
-        the contact does not hold [J].
+    share : fraction of the spring force that remains after the cap [-]; less than 1 if the contact slides.
+    dashpot, sliding, released : energy dissipated by the dashpot, dissipated by sliding, and lost because the
+        contact exerts no force [J].
 
     Notes
     -----
-    Source: the paper, Eqs. (2)-(4). In plane motion components y and z are handed through. Sliding takes the
-    energy that leaves the spring less what the interval puts into it.
+    Source: the paper, Eqs. (2)-(4). In plane motion components y and z are returned unchanged. Sliding
+    dissipates the work of the interval on the spring minus the increase of the spring's energy.
 
     >>> flags, normal, slip = (True, False, False, False), (0.0, 0.0, 1.0, 0.0), (-0.1, 0.0, 0.0)
     >>> before, law = (0.5, 0.0, 0.0, 0.0, 0.0, 0.0), (1.0, 1.0, 0.0, 0.0, 0.5)
@@ -222,7 +223,7 @@ def tangential_step(
 def contact_force(
     plane: bool, n_x: float, n_y: float, n_z: float, f_n: float, h_x: float, h_y: float, h_z: float
 ) -> tuple[float, float, float, float, float, float]:
-    """Force on grain i of a contact, and what an arm makes the torque on either grain.
+    """Force of a contact on grain i, and the vector that times an arm is the torque on either grain.
 
     Parameters
     ----------
@@ -233,8 +234,9 @@ def contact_force(
 
     Returns
     -------
-    f_x, f_y, f_z : force on i [N]; that on j is its opposite.
-    t_x, t_y, t_z : normal times tangential force [N]; an arm times it is the torque on that grain, for both.
+    f_x, f_y, f_z : force on i [N]; that on j is opposite.
+    t_x, t_y, t_z : cross product of normal and tangential force [N]; times its arm it is the torque on each
+        of the two grains.
 
     Notes
     -----

@@ -1,4 +1,4 @@
-"""Debris flow: concentration at rest with its slope, and the stresses of Egashira, Miyamoto and Itoh."""
+"""Debris flow: equilibrium concentration on a slope, and the stresses of Egashira, Miyamoto and Itoh."""
 
 import math
 
@@ -12,15 +12,16 @@ def equilibrium_concentration(slope: float, friction_angle: float, rho_s: float,
     Parameters
     ----------
     slope : bed angle [rad].
-    friction_angle : of the grains [rad]; internal (Takahashi) or static between grains (Egashira).
+    friction_angle : friction angle [rad]; internal of the bed (Takahashi) or static between grains
+        (Egashira).
     rho_s, rho_w : density of grain and water [kg/m3].
 
     Notes
     -----
-    Source: Takahashi 1978 and Egashira, Miyamoto & Itoh 1997 alike: the bed's friction (sigma - rho) c g h
-    cos(slope) tan(friction_angle) carries the mixture's weight along the slope, hence c = rho
-    tan(slope)/((sigma - rho) (tan(friction_angle) - tan(slope))). Not capped, see `equilibrium_takahashi`;
-    infinite where the slope is as steep as the friction angle.
+    Source: Takahashi 1978 and, equally, Egashira, Miyamoto & Itoh 1997: the friction (sigma - rho) c g h
+    cos(slope) tan(friction_angle) at the bed balances the weight of the mixture along the slope, hence c =
+    rho tan(slope)/((sigma - rho) (tan(friction_angle) - tan(slope))). Without upper limit, see
+    `equilibrium_takahashi`; infinite if the slope is as steep as the friction angle or steeper.
 
     Examples
     --------
@@ -37,7 +38,7 @@ def equilibrium_concentration(slope: float, friction_angle: float, rho_s: float,
 def equilibrium_takahashi(
     slope: float, friction_angle: float, rho_s: float, rho_w: float, c_star: float
 ) -> float:
-    """Equilibrium concentration [-], at most 0.9 of that of the bed.
+    """Equilibrium concentration [-], at most 0.9 times that of the bed.
 
     Parameters
     ----------
@@ -48,7 +49,7 @@ def equilibrium_takahashi(
 
     Notes
     -----
-    Source: Takahashi 1978; the cap 0.9 c_star as public codes of debris flow keep it.
+    Source: Takahashi 1978; the limit 0.9 c_star as in public codes for debris flows.
 
     Examples
     --------
@@ -64,7 +65,7 @@ def equilibrium_takahashi(
 
 @law
 def collision_factor(c: float, e: float, k_d: float, rho_s: float, rho_w: float) -> float:
-    """Stress of collisions without dimension [-], f_d = tau_d/(rho d**2 (dU/dz)**2).
+    """Dimensionless stress of collisions [-], f_d = tau_d/(rho d**2 (dU/dz)**2).
 
     Parameters
     ----------
@@ -87,7 +88,7 @@ def collision_factor(c: float, e: float, k_d: float, rho_s: float, rho_w: float)
 
 @law
 def pore_factor(c: float, k_f: float) -> float:
-    """Stress of the water in the pores without dimension [-], f_f = tau_f/(rho d**2 (dU/dz)**2).
+    """Dimensionless stress of the water in the pores [-], f_f = tau_f/(rho d**2 (dU/dz)**2).
 
     Parameters
     ----------
@@ -96,8 +97,9 @@ def pore_factor(c: float, k_f: float) -> float:
 
     Notes
     -----
-    Source: Egashira, Miyamoto & Itoh 1997, k_f (1 - c)**(5/3) c**(-2/3), read in public code. It is a mixing
-    length as long as a pore: l/d = sqrt(k_f) ((1 - c)/c)**(1/3), with (1 - c) of the area left to water.
+    Source: Egashira, Miyamoto & Itoh 1997, k_f (1 - c)**(5/3) c**(-2/3), read in public code. It corresponds
+    to a mixing length of the size of a pore, l/d = sqrt(k_f) ((1 - c)/c)**(1/3), with water in the share (1 -
+    c) of the area.
 
     Examples
     --------
@@ -109,7 +111,7 @@ def pore_factor(c: float, k_f: float) -> float:
 
 @law
 def static_share(c: float, c_star: float) -> float:
-    """Part of the pressure between grains that lasting contacts carry [-].
+    """Share of the pressure between grains that is carried by enduring contacts [-].
 
     Parameters
     ----------
@@ -142,7 +144,7 @@ def velocity_egashira(
     g: float,
     d: float,
 ) -> float:
-    """Speed along the bed [m/s] in a steady flow of one concentration, after Egashira, Miyamoto and Itoh.
+    """Speed along the bed [m/s] in a steady flow of uniform concentration, after Egashira, Miyamoto and Itoh.
 
     Parameters
     ----------
@@ -160,11 +162,11 @@ def velocity_egashira(
     Notes
     -----
     Source: tau = p_s tan(phi_s) + rho f d**2 (dU/dz)**2 of Egashira, Miyamoto & Itoh 1997, integrated here:
-    all stresses fall linearly to the surface, hence U = (2/3) K (h**1.5 - (h - z)**1.5) with
+    all stresses decrease linearly to the surface, hence U = (2/3) K (h**1.5 - (h - z)**1.5) with
     K**2 = g s/(rho f d**2),
     s = ((sigma - rho) c + rho) sin(slope) - (sigma - rho) c (c/c_star)**(1/5) cos(slope) tan(phi_s).
-    At rest where friction alone carries the weight (s <= 0); the surface's speed above h. The mean speed
-    is 3/5 of the surface's, which makes the friction factor 6.25 f (d/h)**2 of depth-averaged models.
+    Zero if friction alone balances the weight (s <= 0); above h the speed of the surface. The mean speed is
+    3/5 of that of the surface, which gives the friction factor 6.25 f (d/h)**2 of depth-averaged models.
 
     Examples
     --------

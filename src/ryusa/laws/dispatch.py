@@ -1,7 +1,7 @@
-"""The law of a number: compiled functions that engines and the water call, built from the table of families.
+"""Laws by number: compiled functions for the engines and the water, built from the table of families.
 
-Each takes a number of its family and, in this order, all that its laws may ask for; a law takes what its
-parameters name. A number that is none of the family answers nan.
+Each takes a number of its family and then, in the order given below, the arguments of all its laws; a law
+receives those that its parameters name. For a number outside the family the result is nan.
 """
 
 from collections.abc import Callable
@@ -29,9 +29,9 @@ from ryusa.laws.families import (
 
 F = TypeVar("F", bound=Callable[..., Any])
 
-# C_D [-] of a lone grain.
+# C_D [-] of an isolated grain.
 drag_coefficient = dispatch(Drag, ("re", "c_d"), unasked=(Drag.NONE,))
-# Slip at which a lone grain is taken [m/s], and the factor of its drag [-].
+# Slip [m/s] at which the drag of an isolated grain is evaluated, and its factor [-].
 hindrance = dispatch(Hindrance, ("slip", "eps", "exponent", "d", "nu", "stress"), answers=2)
 # Force along z [N], and factor k [N s/m] of the force k (w x e_y), w = water - grain.
 shear_lift = dispatch(
@@ -56,34 +56,34 @@ rolling_length = dispatch(Arm, ("r_i", "r_j", "overlap"))
 mixing_length = dispatch(
     Mixing, ("z", "face", "depth", "u_star", "nu", "kappa"), unasked=(Mixing.LAMINAR, Mixing.LI_SAWAMOTO)
 )
-# Whether the mixing length depends on the stress of a wall, with which the water then iterates.
+# Whether the mixing length depends on the shear stress of a wall, so that the solver must iterate.
 length_of_wall = marked(Mixing, "wall")
-# Stress of the bed over density [m2/s2], and its slope [m/s].
+# Shear stress on the bed over density [m2/s2], and its derivative with respect to u_x [m/s].
 wall_stress = dispatch(BedKind, ("u_x", "z", "nu", "k_rough", "square"), answers=2)
-# Friction factor of turbulent water at the side walls [-].
+# Friction factor of the side walls in turbulent flow [-].
 side_friction = dispatch(SideWalls, ("re",), unasked=(SideWalls.NONE,))
 
-# What enters `contact.slide`: whether the dashpot falls away while sliding, and whether the cap holds it too.
+# Arguments of `contact.slide`: whether the dashpot is zero while sliding, and whether the cap includes it.
 slip_drops, slip_total = rules(Slip, "drop", "total")
-# Whether the whole normal force feeds the Coulomb cap.
+# Whether the whole normal force enters the Coulomb cap.
 (cap_total,) = rules(Cap, "total")
-# Whether rolling friction turns both grains the same way; else the torque on j is opposite to that on i.
+# Whether rolling friction exerts the same torque on both grains; else that on j is opposite to that on i.
 rolling_alike = marked(Rolling, "both alike")
 
 
 def _inlined(function: F) -> F:
-    """Compile into whoever calls."""
+    """Compile a function that is inlined into its callers."""
     return compiled(EDITION, fastmath=False, forceinline=True)(function)
 
 
 @_inlined
 def drag_of(law: int, speed: float, d: float, nu: float, rho_w: float, a_2: float, c_d: float) -> float:
-    """Drag of a lone grain over relative velocity [N s/m].
+    """Drag of an isolated grain over relative velocity [N s/m].
 
     Parameters
     ----------
-    law : of `Drag`, not NONE.
-    speed : relative [m/s].
+    law : number of `Drag`, not NONE.
+    speed : relative speed of water and grain [m/s].
     d : diameter [m].
     nu, rho_w : kinematic viscosity and density of the water [m2/s], [kg/m3].
     a_2, c_d : area coefficient of Eq. (10), and drag coefficient where it is constant [-].
@@ -98,15 +98,15 @@ def hindered(
     law: int, among: int, stress: bool, exponent: float, slip: float, phi: float,
     d: float, nu: float, rho_w: float, a_2: float, c_d: float,
 ) -> float:  # fmt: skip
-    """Drag among neighbours over relative velocity [N s/m].
+    """Hindered drag of a grain among neighbours over relative velocity [N s/m].
 
     Parameters
     ----------
-    law, among : of `Drag`, not NONE, and `Hindrance`.
-    stress : True where pressure and stress of the mixture act beside the drag (model A).
-    exponent : of the hindrance, where it takes one [-].
-    slip : relative speed [m/s].
-    phi : concentration of grains around it [-], below 1.
+    law, among : numbers of `Drag`, not NONE, and of `Hindrance`.
+    stress : True if pressure gradient and stress of the mixture act in addition to the drag (model A).
+    exponent : exponent of the hindrance, if it has one [-].
+    slip : relative speed of water and grain [m/s].
+    phi : concentration around the grain [-], below 1.
     d, nu, rho_w, a_2, c_d : as in `drag_of`.
     """
     if slip == 0.0:

@@ -19,7 +19,7 @@ def reynolds(speed: float, d: float, nu: float) -> float:
 
 @law
 def c_d_constant(c_d: float) -> float:
-    """Drag coefficient that is the same at every Re [-], as given.
+    """Drag coefficient independent of Re [-].
 
     Examples
     --------
@@ -35,7 +35,8 @@ def c_d_re_04(re: float) -> float:
 
     Notes
     -----
-    Source: usual in Japanese bed-load work for spheres. Infinite at Re = 0, where `drag_factor` gives zero.
+    Source: customary for spheres in Japanese bed-load studies. Infinite at Re = 0, where `drag_factor` is
+    zero.
 
     Examples
     --------
@@ -131,11 +132,11 @@ def c_d_ferguson_church_sand(re: float) -> float:
 
 @law
 def drag_factor(speed: float, c_d: float, rho_w: float, a_2: float, d: float) -> float:
-    """Drag force per relative velocity [N s/m]: multiply by U - u, by V - v for the components.
+    """Drag force over relative velocity [N s/m]; times U - u and V - v it gives the components.
 
     Parameters
     ----------
-    speed : size of the relative velocity of water and grain [m/s], >= 0.
+    speed : magnitude of the relative velocity of water and grain [m/s], >= 0.
     c_d : drag coefficient at that speed [-].
     rho_w : density of water [kg/m3].
     a_2 : area coefficient [-]; pi/4 for a sphere.
@@ -144,7 +145,7 @@ def drag_factor(speed: float, c_d: float, rho_w: float, a_2: float, d: float) ->
     Notes
     -----
     Source: the paper, Eqs. (10)-(11), (1/2) rho C_D A_2 d**2 abs(w). Zero at speed 0, where C_D may be
-    infinite and the force vanishes whatever the factor.
+    infinite and the force vanishes.
 
     Examples
     --------
@@ -172,11 +173,11 @@ def volume(d: float, a_3: float) -> float:
 
 @law
 def added_mass(rho_w: float, c_m: float, volume: float) -> float:
-    """Mass of water that a grain carries along [kg], rho C_M V. Eqs. (10)-(11), C_M = 0.5.
+    """Mass of water that is accelerated with a grain [kg], rho C_M V. Eqs. (10)-(11), C_M = 0.5.
 
     Notes
     -----
-    It belongs to the inertia of translation only: not to the weight, not to the moment of inertia.
+    It adds to the inertia of translation only, not to the weight or the moment of inertia.
 
     Examples
     --------
@@ -188,7 +189,7 @@ def added_mass(rho_w: float, c_m: float, volume: float) -> float:
 
 @law
 def submerged_mass(m: float, rho_w: float, volume: float) -> float:
-    """Mass that gravity sees under water [kg], (sigma - rho) V; Eqs. (10)-(11) without added mass.
+    """Submerged mass of a grain [kg], (sigma - rho) V; times gravity it is the weight in Eqs. (10)-(11).
 
     Examples
     --------
@@ -260,8 +261,8 @@ def terminal_velocity_soulsby(ratio: float, g: float, d: float, nu: float) -> fl
 
     Notes
     -----
-    Source: Soulsby 1997, eq. 102, nu/d (sqrt(10.36**2 + 1.049 D_*) - 10.36), D_* = R g d**3/nu**2; read in
-    codes that quote it.
+    Source: Soulsby 1997, Eq. 102, nu/d (sqrt(10.36**2 + 1.049 D) - 10.36), D = R g d**3/nu**2; taken
+    from codes that quote it.
 
     Examples
     --------
@@ -286,7 +287,7 @@ def terminal_velocity_dietrich(ratio: float, g: float, d: float, nu: float) -> f
     Notes
     -----
     Source: Dietrich 1982 as a polynomial in L = ln(sqrt(R g d) d/nu) after Parker, w = R_f sqrt(R g d); its
-    five numbers agree in several codes that quote it. A fit for R_ep of about 3 to 10**4.
+    five constants agree in several codes that quote it. Fitted for sqrt(R g d) d/nu from about 3 to 10**4.
 
     Examples
     --------

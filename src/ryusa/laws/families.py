@@ -1,14 +1,14 @@
-"""The choices of physics, each declared once: its word, its number, its law, what it says, its source.
+"""The choices of physics, each declared once: its word, number, law, meaning and source.
 
 From this table follow the words of the case file and its JSON Schema, the numbers in scenes and kernels, the
-way from a word to its law, what `ryusa check` prints, and the table of laws in the documentation. A further
-law is one function in its own file and one line here.
+dispatch from a word to its law, the lines of `ryusa check`, and the table of laws in the documentation. To
+add a law, write one function in the file of its subject and one line here.
 
-A choice reads: number, word, function, what it says, source, keys of the case file that it takes, marks.
-Numbers are kept in scenes and checkpoints: a new choice takes a new one, and none is used again. A choice
-without a word cannot be asked for in a case file. The functions of one family take their arguments by name
-from those that `laws.dispatch` gives to the family. Code that tells choices apart by itself lists all that it
-knows (`_family.numbers`, `_family.rules`); a choice that it lacks is an error at import.
+Each line lists number, word, function, meaning, source, case keys that the choice takes, and marks. Numbers
+are stored in scenes and checkpoints: a new choice takes the next one, and none is reused. A choice without a
+word cannot be selected in a case file. The functions of a family take their arguments by name from those
+that `laws.dispatch` gives to the family. Modules that distinguish choices without a dispatch list all choices
+(`_family.numbers`, `_family.rules`); a missing one is an error at import.
 """
 # fmt: off
 
@@ -49,7 +49,7 @@ from ryusa.laws.water import log_law_rough, log_law_smooth, still, uniform
 
 
 class Parting(Family, key="contact.parting"):
-    """Normal contact: whether the dashpot may pull before the overlap ends."""
+    """End of a contact: whether the dashpot may pull before the overlap ends."""
 
     NO_TENSION = (0, "no tension", normal_force_no_tension,
         "the normal force ends where it would pull", "Eq. (1); Schwager & Poeschel 2007")
@@ -58,7 +58,7 @@ class Parting(Family, key="contact.parting"):
 
 
 class Slip(Family, key="contact.slip"):
-    """Tangential contact: what the Coulomb cap holds. Marks: what enters `contact.slide`."""
+    """Tangential contact: the forces that the Coulomb cap limits. Marks: arguments of `contact.slide`."""
 
     SPRING = (0, "spring", slide, "the spring is capped, the dashpot kept", "Eqs. (2)-(4) as printed")
     SPRING_DROP = (1, "spring-drop", slide,
@@ -68,7 +68,7 @@ class Slip(Family, key="contact.slip"):
 
 
 class Cap(Family, key="contact.cap"):
-    """Coulomb cap: the normal force that feeds Eq. (4)."""
+    """Coulomb cap: the normal force in Eq. (4)."""
 
     SPRING = (0, "spring", None, "the spring e_n alone", "Eq. (4) as printed")
     TOTAL = (1, "total", None, "the whole normal force f_n", "LAMMPS", (), ("total",))
@@ -102,36 +102,36 @@ class Arm(Family, key="rolling.arm"):
 
 
 class Profile(Family, key="water.profile"):
-    """Speed of the water over height."""
+    """Velocity profile of the water."""
 
     NONE = (0, "", None, "no water")
     LOG_ROUGH = (1, "log rough", log_law_rough, "logarithmic over a rough bed", "Eq. (9)",
         ("tau_star", "u_star", "roughness", "above"))
-    LOG_SMOOTH = (2, "log smooth", log_law_smooth, "two-layer law over a smooth bed",
+    LOG_SMOOTH = (2, "log smooth", log_law_smooth, "logarithmic over a smooth bed, with a viscous layer",
         "law of the wall, u+ = z+ up to 11.3", ("tau_star", "u_star", "above"))
-    UNIFORM = (3, "uniform", uniform, "one speed above the zero", "", ("speed", "above"))
+    UNIFORM = (3, "uniform", uniform, "one speed at every height above `water.zero`", "", ("speed", "above"))
     STILL = (4, "still", still, "water at rest", "", ("above",))
-    COLUMN = (5, "column", None, "a column of water that grains slow down and stir", "design/0007",
+    COLUMN = (5, "column", None, "a water column, coupled both ways with the grains", "design/0007",
         ("tau_star", "u_star", "roughness", "buoyancy", "hindrance", "lift", "magnus", "column"))
 
 
 class Above(Family, key="water.above"):
-    """What is above the depth of the water."""
+    """Flow above the depth of the water."""
 
-    CONTINUE = (0, "continue", None, "the profile goes on")
-    HOLD = (1, "hold", None, "the speed of the surface goes on")
-    DRY = (2, "dry", None, "neither drag nor torque; the weight stays that under water")
+    CONTINUE = (0, "continue", None, "the profile continues")
+    HOLD = (1, "hold", None, "the speed is that of the surface")
+    DRY = (2, "dry", None, "neither drag nor torque; the weight remains that under water")
 
 
 # ------------------------------------------------------------------------------------------- water on a grain
 
 
 class Drag(Family, key="water.drag"):
-    """Drag coefficient C_D of a lone grain; Re is the slip times d/nu."""
+    """Drag coefficient C_D of an isolated grain; Re is the slip times d/nu."""
 
     NONE = (0, "none", None, "no drag")
-    CONSTANT = (1, "constant", c_d_constant, "one number for every Re", "", ("drag_coefficient",))
-    RE_04 = (2, "24/Re+0.4", c_d_re_04, "24/Re + 0.4: spheres", "usual in Japanese bed-load work")
+    CONSTANT = (1, "constant", c_d_constant, "the same at every Re", "", ("drag_coefficient",))
+    RE_04 = (2, "24/Re+0.4", c_d_re_04, "24/Re + 0.4: spheres", "customary in Japanese bed-load studies")
     RE_2 = (3, "24/Re+2", c_d_re_2, "24/Re + 2: angular natural grains", "Rubey's form")
     SCHILLER_NAUMANN = (4, "Schiller-Naumann", c_d_schiller_naumann,
         "24/Re (1 + 0.15 Re^0.687), 0.44 above Re = 1000: smooth spheres", "Schiller & Naumann 1933")
@@ -142,33 +142,34 @@ class Drag(Family, key="water.drag"):
 
 
 class Hindrance(Family, key="water.hindrance"):
-    """How neighbours change the drag of a grain; n is the exponent of settling, after Stokes and Newton."""
+    """Effect of neighbours on drag; n is the exponent of settling for Stokes and for Newton drag."""
 
-    NONE = (0, "none", unhindered, "the drag of a lone grain; n = 2 and 1.5 with buoyancy `stress`")
+    NONE = (0, "none", unhindered, "the drag of an isolated grain; n = 2 and 1.5 with buoyancy `stress`")
     RICHARDSON_ZAKI = (1, "Richardson-Zaki", richardson_zaki,
         "a suspension settles with (1 - phi)^n exactly", "Richardson & Zaki 1954; n of Rowe 1987",
         ("hindrance_exponent",))
-    POWER = (2, "power", power, "(1 - phi)^-m times the lone drag; n = 2 + m and (3 + m)/2 with `stress`",
+    POWER = (2, "power", power, "(1 - phi)^-m times the isolated drag; n = 2 + m and (3 + m)/2 with `stress`",
         "YADE, m = 3.1", ("hindrance_exponent",))
     WEN_YU = (3, "Wen-Yu", wen_yu, "(1 - phi)^-3.65 F_0((1 - phi) slip); n = 4.65 and 2.33",
         "Wen & Yu 1966")
-    GIDASPOW = (4, "Gidaspow", gidaspow, "Wen & Yu up to phi = 0.2, Ergun's packed bed beyond",
+    GIDASPOW = (4, "Gidaspow", gidaspow, "Wen & Yu up to phi = 0.2, Ergun's packed bed above",
         "Gidaspow 1994")
     DI_FELICE = (5, "Di Felice", di_felice, "(1 - phi)^-chi(Re) F_0((1 - phi) slip); n = 4.7 and 2.35",
         "Di Felice 1994")
 
 
 class Buoyancy(Family, key="water.buoyancy"):
-    """Force of the water on a grain beside drag, lift and added mass."""
+    """Force of the water on a grain apart from drag, lift and added mass."""
 
-    WEIGHT = (0, "weight", None, "V (-rho_w g - dp/dx): that of its volume of water", "Eqs. (10)-(11)")
+    WEIGHT = (0, "weight", None, "V (-rho_w g - dp/dx): weight of the displaced water, pressure gradient",
+        "Eqs. (10)-(11)")
     STRESS = (1, "stress", None, "V (-grad p + d tau/dz): pressure and shear stress of the mixture",
         "design/0007")
-    PRESSURE = (2, "pressure", None, "rho_w V g cos(slope), normal to the bed alone", "design/0007")
+    PRESSURE = (2, "pressure", None, "rho_w V g cos(slope), only normal to the bed", "design/0007")
 
 
 class Lift(Family, key="water.lift"):
-    """Lift by the shear of the water."""
+    """Lift by shear of the water."""
 
     NONE = (0, "none", None, "no shear lift")
     WIBERG_SMITH = (1, "Wiberg-Smith", shear_lift_wiberg_smith,
@@ -178,7 +179,7 @@ class Lift(Family, key="water.lift"):
 
 
 class Magnus(Family, key="water.magnus"):
-    """Lift by the spin of a grain against that of the water, k (Omega x slip)."""
+    """Lift by the spin of a grain relative to the water (Magnus force), k (Omega x slip)."""
 
     NONE = (0, "none", None, "no lift by spin")
     RUBINOW_KELLER = (1, "Rubinow-Keller", magnus_rubinow_keller, "k = pi rho_w R^3: Re << 1",
@@ -193,7 +194,7 @@ class WaterTorque(Family, key="water.torque"):
 
     NONE = (0, "none", None, "no torque")
     STOKES = (1, "Stokes", torque_stokes, "pi rho_w nu d^3 omega: slow spin", "Stokes")
-    DENNIS = (2, "Dennis", torque_dennis, "Stokes up to Re_r = 32, 12.9/sqrt(Re_r) + 128.4/Re_r beyond",
+    DENNIS = (2, "Dennis", torque_dennis, "Stokes up to Re_r = 32, 12.9/sqrt(Re_r) + 128.4/Re_r above",
         "Dennis, Singh & Ingham 1980")
 
 
@@ -201,9 +202,9 @@ class WaterTorque(Family, key="water.torque"):
 
 
 class Rebound(Family, key="water.rebound"):
-    """Restitution of a contact in water, by the Stokes number St of its first touch."""
+    """Restitution of a contact in water, as a function of the Stokes number St at first touch."""
 
-    DRY = (0, "dry", None, "that of [contact]")
+    DRY = (0, "dry", None, "that of [contact], at every St")
     EXPONENTIAL = (1, "exponential", restitution_exponential, "e exp(-St_c/St)", "Legendre et al. 2005, 2006",
         ("rebound_stokes", "rebound_least"))
     DAVIS = (2, "Davis", restitution_davis, "e (1 + ln(2 asperity/d)/St)", "Davis, Serayssol & Hinch 1986",
@@ -211,10 +212,10 @@ class Rebound(Family, key="water.rebound"):
 
 
 class Film(Family, key="water.film"):
-    """Force of the film of water between grains that do not touch."""
+    """Force of the water film between grains that do not touch."""
 
-    NONE = (0, "none", None, "no force before touch")
-    LUBRICATION = (1, "lubrication", lubrication_force, "6 pi mu R*^2 v/(gap + asperity), none in touch",
+    NONE = (0, "none", None, "no force before the grains touch")
+    LUBRICATION = (1, "lubrication", lubrication_force, "6 pi mu R*^2 v/(gap + asperity), zero in touch",
         "Izard, Bonometti & Lacaze 2014; YADE", ("film_reach", "asperity"))
 
 
@@ -222,42 +223,45 @@ class Film(Family, key="water.film"):
 
 
 class BedKind(Family, key="water.column.bed"):
-    """What the water meets at the bottom of the column."""
+    """Boundary at the bottom of the column."""
 
-    NO_SLIP = (0, "", wall_no_slip, "smooth wall, molecular stress in the lowest half cell")
-    SMOOTH = (1, "smooth", wall_smooth, "smooth wall, two-layer law", "law of the wall")
-    ROUGH = (2, "rough", wall_rough, "rough bed, at the middle of the lowest cell", "Eq. (9)", ("roughness",))
-    MOVING = (3, "moving", wall_no_slip, "grains, whose drag stops the water; no wall for the eddies")
+    NO_SLIP = (0, "", wall_no_slip, "smooth wall, viscous stress in the lowest half cell")
+    SMOOTH = (1, "smooth", wall_smooth, "smooth wall: logarithmic law with a viscous layer",
+        "law of the wall")
+    ROUGH = (2, "rough", wall_rough, "rough bed: logarithmic law at the middle of the lowest cell", "Eq. (9)",
+        ("roughness",))
+    MOVING = (3, "moving", wall_no_slip, "a bed of grains, whose drag stops the water; eddies may enter it")
 
 
 class SurfaceRule(Family, key="water.column.surface"):
-    """What stays when grains come and go."""
+    """What is kept constant when grains enter or leave the water."""
 
-    DEPTH = (0, "depth", None, "the height of the surface; water passes through it")
-    VOLUME = (1, "volume", None, "the volume of the water; the surface moves")
+    DEPTH = (0, "depth", None, "the height of the surface; the volume of water changes")
+    VOLUME = (1, "volume", None, "the volume of water; the surface moves")
 
 
 class Drive(Family, key="water.column.drive"):
-    """What drives the water beside gravity along the slope."""
+    """What drives the water in addition to gravity along the slope."""
 
-    GRAVITY = (0, "slope", None, "nothing else", "", ("tau_star", "u_star"))
-    GRADIENT = (1, "pressure gradient", None, "the pressure gradient given", "", ("pressure_gradient",))
-    TAU = (2, "tau_star", None, "the pressure gradient that gives the stress asked for at water.zero", "",
+    GRAVITY = (0, "slope", None, "nothing", "", ("tau_star", "u_star"))
+    GRADIENT = (1, "pressure gradient", None, "the given pressure gradient", "", ("pressure_gradient",))
+    TAU = (2, "tau_star", None, "the pressure gradient that gives the required stress at `water.zero`", "",
         ("tau_star", "u_star"))
-    DISCHARGE = (3, "discharge", None, "the pressure gradient that keeps the discharge", "", ("discharge",))
+    DISCHARGE = (3, "discharge", None, "the pressure gradient that keeps the discharge constant", "",
+        ("discharge",))
 
 
 class Start(Family, key="water.column.start"):
-    """How the water begins."""
+    """Initial velocity of the water."""
 
     REST = (0, "rest", None, "at rest")
-    STEADY = (1, "steady", None, "flowing steadily past grains at rest")
+    STEADY = (1, "steady", None, "steady flow past the grains at rest")
 
 
 class Mixing(Family, key="water.column.mixing_length"):
-    """Mixing length of the eddies."""
+    """Mixing length of turbulence."""
 
-    LAMINAR = (0, "none", None, "no eddies")
+    LAMINAR = (0, "none", None, "no turbulence")
     PRANDTL = (1, "Prandtl", length_prandtl, "kappa z", "Prandtl 1925", ("kappa",))
     PARABOLIC = (2, "parabolic", length_parabolic_between, "kappa z sqrt(1 - z/depth)",
         "Nezu & Nakagawa 1993; YADE", ("kappa",))
@@ -268,7 +272,7 @@ class Mixing(Family, key="water.column.mixing_length"):
 
 
 class SideWalls(Family, key="water.column.side_friction"):
-    """Friction of turbulent water at two smooth side walls; slow water follows plane Poiseuille flow."""
+    """Friction of turbulent flow at two smooth side walls; laminar flow follows plane Poiseuille flow."""
 
     NONE = (0, "", None, "no side walls")
     BLASIUS = (1, "Blasius", friction_blasius, "f = 0.3164 Re^-0.25", "Blasius 1913")
@@ -277,10 +281,11 @@ class SideWalls(Family, key="water.column.side_friction"):
 
 
 class Fluctuations(Family, key="water.column.fluctuations"):
-    """Turbulent speeds that grains meet beside the mean."""
+    """Turbulent fluctuations of the water at the grains."""
 
-    NONE = (0, "none", None, "the mean flow alone")
-    RANDOM_WALK = (1, "random walk", None, "each grain walks from eddy to eddy", "YADE; Maurin et al. 2015")
+    NONE = (0, "none", None, "only the mean flow")
+    RANDOM_WALK = (1, "random walk", None, "each grain meets a random sequence of eddies",
+        "YADE; Maurin et al. 2015")
 
 
 FAMILIES: tuple[type[Family], ...] = (

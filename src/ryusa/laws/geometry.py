@@ -1,4 +1,4 @@
-"""Where two grains touch: Eq. (12), contact arms, the contact frame, the periodic wrap."""
+"""Geometry of a contact: overlap (Eq. (12)), arms, rotation of the contact frame, periodic images."""
 
 import math
 
@@ -7,7 +7,7 @@ from ryusa.laws._law import law
 
 @law
 def overlap(r_i: float, r_j: float, distance: float) -> float:
-    """How far two grains reach into each other [m]; positive in touch. Eq. (12), RS_ij.
+    """Overlap of two grains [m]; positive in touch. Eq. (12), RS_ij.
 
     Parameters
     ----------
@@ -26,7 +26,7 @@ def overlap(r_i: float, r_j: float, distance: float) -> float:
 
 @law
 def arm(r: float, overlap: float) -> float:
-    """Arm from a grain's centre to the contact point, which sits in the middle of the overlap [m].
+    """Arm from the centre of a grain to the contact point, which is in the middle of the overlap [m].
 
     Parameters
     ----------
@@ -35,8 +35,8 @@ def arm(r: float, overlap: float) -> float:
 
     Notes
     -----
-    The two arms of a pair add up to the distance of the centres, so the forces of a pair at this one point
-    keep angular momentum to round-off. The d/2 of Eq. (7) is the limit of zero overlap.
+    The two arms of a pair add up to the distance of the centres. Both forces of the pair act at this point,
+    which conserves angular momentum to round-off. The d/2 of Eq. (7) is the limit of zero overlap.
 
     >>> arm(1.0e-3, 2.0e-5)
     0.00099
@@ -46,12 +46,12 @@ def arm(r: float, overlap: float) -> float:
 
 @law
 def wrap(step: float, period: float) -> float:
-    """Shortest of the periodic images of a coordinate difference [m]; an infinite period leaves it as it is.
+    """Shortest periodic image of a coordinate difference [m]; unchanged if the period is infinite.
 
     Parameters
     ----------
-    step : difference of two coordinates [m], at most one period and a half in size.
-    period : period [m], inf where the direction is open.
+    step : difference of two coordinates [m], at most one and a half periods in magnitude.
+    period : period [m], inf if the direction is not periodic.
 
     >>> wrap(0.9, 1.0), wrap(-0.9, 1.0), wrap(0.9, float("inf"))
     (-0.09999999999999998, 0.09999999999999998, 0.9)
@@ -68,23 +68,24 @@ def wrap(step: float, period: float) -> float:
 def turn(
     s_x: float, s_y: float, s_z: float, n_x: float, n_y: float, n_z: float, twist: float
 ) -> tuple[float, float, float]:
-    """Carry a tangential vector along as the contact frame turns; its length is kept.
+    """Rotate a tangential vector with the contact frame, keeping its length.
 
     Parameters
     ----------
-    s_x, s_y, s_z : tangential vector of the last step (spring force [N] or torque [N m]).
-    n_x, n_y, n_z : unit normal now [-].
-    twist : angle the pair turned about its normal within the step [rad], the mean spin of the two along n.
+    s_x, s_y, s_z : tangential vector of the previous step (spring force [N] or torque [N m]).
+    n_x, n_y, n_z : present unit normal [-].
+    twist : rotation of the pair about its normal during the step [rad]: mean spin of the two along n, times
+        dt.
 
     Returns
     -------
-    The vector, turned about n by `twist` and laid into the plane normal to n, with its old length.
+    The vector, rotated about n by `twist` and projected onto the plane normal to n, with its old length.
 
     Notes
     -----
-    Second order in the angle turned within a step. Source: Luding 2008, Granular Matter 10, 235, section 2.3
-    (project and rescale), with the turn about the normal that keeps the law objective for a pair spinning as
-    a whole.
+    Second order in the angle of rotation per step. Source: Luding 2008, Granular Matter 10, 235, section 2.3
+    (projection and rescaling), with the rotation about the normal, without which the law would not be
+    objective for a pair that spins as a whole.
 
     >>> turn(1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
     (1.0, 0.0, 0.0)

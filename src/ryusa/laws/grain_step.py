@@ -1,8 +1,8 @@
-"""One grain, one time step: the scheme, and the work and impulse that forces on the grain leave behind.
+"""One grain, one time step: the scheme, and the work and the impulse of the forces on the grain.
 
-Every engine calls these functions. Those of the scheme are written for one component; an engine may hand
-over all components at once, as one vector. At x(n) the velocity is v(n-1/2), and the step ends with v(n+1/2):
-a force acts over the second half of one velocity interval and the first half of the next.
+Every engine calls these functions. Those of the scheme are written for one component; an engine may pass all
+components as one vector. At x(n) the velocity is v(n-1/2), and the step ends with v(n+1/2): a force acts over
+the second half of one velocity interval and the first half of the next.
 """
 
 from ryusa.laws._law import step_law
@@ -13,16 +13,16 @@ from ryusa.laws.motion import acceleration, acceleration_spin, semi_implicit
 def translation_step(
     x: float, v: float, force: float, drag: float, weight: float, inverse_m: float, dt: float
 ) -> tuple[float, float]:
-    """One component of position and velocity, a step later.
+    """Advance one component of position and velocity by a step.
 
     Parameters
     ----------
     x : position at step n [m].
     v : velocity at n - 1/2 [m/s].
-    force : of contacts, lift, flow and films [N].
-    drag : of the water [N].
+    force : sum of the forces of contacts, lift, flow and films [N].
+    drag : drag of the water [N].
     weight : submerged weight [N].
-    inverse_m : one over mass and added mass [1/kg].
+    inverse_m : inverse of the sum of mass and added mass [1/kg].
     dt : time step [s].
 
     Returns
@@ -31,7 +31,7 @@ def translation_step(
 
     Notes
     -----
-    Source: the paper, Eqs. (5)-(6) when dry and (10)-(11) in water, by the scheme of `motion.semi_implicit`.
+    Source: the paper, Eqs. (5)-(6) in air and (10)-(11) in water, with the scheme of `motion.semi_implicit`.
 
     >>> translation_step(0.0, 1.0, 3.0, 1.0, -2.0, 0.5, 0.5)
     (0.75, 1.5)
@@ -41,13 +41,13 @@ def translation_step(
 
 @step_law
 def rotation_step(w: float, torque: float, inverse_inertia: float, dt: float) -> float:
-    """One component of the spin, a step later [rad/s]. Eq. (7).
+    """Advance one component of the spin by a step [rad/s]. Eq. (7).
 
     Parameters
     ----------
     w : spin at n - 1/2 [rad/s].
-    torque : of contacts and of the water [N m].
-    inverse_inertia : one over the moment of inertia [1/(kg m2)].
+    torque : sum of the torques of contacts and of the water [N m].
+    inverse_inertia : inverse of the moment of inertia [1/(kg m2)].
     dt : time step [s].
 
     >>> rotation_step(1.0, 3.0, 0.5, 0.5)
@@ -58,13 +58,13 @@ def rotation_step(w: float, torque: float, inverse_inertia: float, dt: float) ->
 
 @step_law
 def resisted_torque(torque: float, k_t: float, w: float) -> float:
-    """One component of the torque on a grain, less that of the water [N m].
+    """One component of the torque on a grain with the resistance of the water [N m].
 
     Parameters
     ----------
-    torque : of contacts [N m].
+    torque : torque of contacts [N m].
     k_t : torque of the water over spin (`torque.torque_stokes`) [N m s].
-    w : spin of the grain less that of the water [rad/s].
+    w : spin of the grain minus that of the water [rad/s].
 
     >>> resisted_torque(3.0, 0.5, 2.0)
     2.0
@@ -74,12 +74,12 @@ def resisted_torque(torque: float, k_t: float, w: float) -> float:
 
 @step_law
 def flow_force(extra: float, added: float, a_water: float) -> float:
-    """One component of the force of an accelerating flow on a grain that may be at rest [N].
+    """One component of the force of an accelerating flow on a grain, free or fixed [N].
 
     Parameters
     ----------
-    extra : of pressure and stress, beyond those of still water [N].
-    added : added mass in the water [kg].
+    extra : force of pressure gradient and stress, beyond the buoyancy of still water [N].
+    added : added mass of the grain [kg].
     a_water : acceleration of the water [m/s2].
 
     >>> flow_force(1.0, 0.5, 2.0)
@@ -92,12 +92,12 @@ def flow_force(extra: float, added: float, a_water: float) -> float:
 def impulse_from_fluid(
     drag: float, lift: float, added: float, a_water: float, v: float, v_new: float, dt: float
 ) -> float:
-    """One component of the impulse that a grain took from the water in a step [N s].
+    """One component of the impulse that a grain received from the water in a step [N s].
 
     Parameters
     ----------
     drag, lift : forces of the water [N].
-    added : added mass in the water [kg]: what accelerates with the grain is water that the fluid loses.
+    added : added mass of the grain [kg]; its momentum is part of the momentum of the grain, not of the water.
     a_water : acceleration of the water [m/s2].
     v, v_new : velocity of the grain before and after the step [m/s].
     dt : time step [s].
@@ -113,11 +113,11 @@ def work_of_force(
     before: float, after: float, f_x: float, f_y: float, f_z: float, v_x: float, v_y: float, v_z: float,
     u_x: float, u_y: float, u_z: float,
 ) -> tuple[float, float]:  # fmt: skip
-    """Work of a force over the half interval before x(n), and over that after it [J].
+    """Work of a force over the half interval before x(n), and over the one after it [J].
 
     Parameters
     ----------
-    before, after : lengths of the two half intervals [s]; the first is 0 in the first step of a run.
+    before, after : durations of the two half intervals [s]; the first is 0 in the first step of a run.
     f_x, f_y, f_z : force [N].
     v_x, v_y, v_z, u_x, u_y, u_z : velocity before and after the step [m/s].
 
@@ -131,11 +131,11 @@ def work_of_force(
 def work_of_force_in_plane(
     before: float, after: float, f_x: float, f_z: float, v_x: float, v_z: float, u_x: float, u_z: float
 ) -> tuple[float, float]:
-    """Work of a force in the x-z plane, as `work_of_force` [J].
+    """Work of a force in the x-z plane [J], as in `work_of_force`.
 
     Parameters
     ----------
-    before, after : lengths of the two half intervals [s].
+    before, after : durations of the two half intervals [s].
     f_x, f_z : force [N].
     v_x, v_z, u_x, u_z : velocity before and after the step [m/s].
 
@@ -147,11 +147,11 @@ def work_of_force_in_plane(
 
 @step_law
 def kinetic_energy(m: float, v_x: float, v_y: float, v_z: float, u_x: float, u_y: float, u_z: float) -> float:
-    """Kinetic energy at x(n) that fits the account of work by velocity interval [J].
+    """Kinetic energy at x(n) that is consistent with the work by velocity interval [J].
 
     Parameters
     ----------
-    m : mass and added mass [kg]; for the energy of spin the moment of inertia [kg m2], with spins.
+    m : mass and added mass [kg]; for the energy of rotation the moment of inertia [kg m2], with spins.
     v_x, v_y, v_z, u_x, u_y, u_z : velocity before and after the step [m/s].
 
     >>> kinetic_energy(2.0, 1.0, 0.0, 1.0, 3.0, 0.0, 1.0)
@@ -162,13 +162,13 @@ def kinetic_energy(m: float, v_x: float, v_y: float, v_z: float, u_x: float, u_y
 
 @step_law
 def unwrapped(x: float, image: float, period: float) -> float:
-    """Coordinate of a grain with the periods counted that it crossed [m].
+    """Coordinate of a grain without periodic wrapping [m].
 
     Parameters
     ----------
     x : coordinate within the period [m].
-    image : periods crossed [-].
-    period : [m]; inf where the direction is open, and `image` 0.
+    image : number of periods crossed [-].
+    period : period [m]; inf, with `image` 0, if the direction is not periodic.
 
     >>> unwrapped(0.5, 2.0, 1.0), unwrapped(0.5, 0.0, float("inf"))
     (2.5, 0.5)
@@ -182,7 +182,7 @@ def potential_energy(m: float, g_x: float, g_y: float, g_z: float, x: float, y: 
 
     Parameters
     ----------
-    m : mass that gravity sees [kg].
+    m : submerged mass [kg].
     g_x, g_y, g_z : gravity [m/s2].
     x, y, z : centre of the grain, `unwrapped` [m].
 

@@ -1,15 +1,15 @@
-"""How neighbours hinder a grain in the water: from the drag of a lone grain to the drag in a crowd.
+"""Hindrance: the change of the drag on a grain by its neighbours.
 
-Each law answers (speed, factor): the drag is `factor` times that of a lone grain which slips at `speed`. Two
-readings of "drag" are in use. Under model A the gradient of pressure and stress of the mixture acts on the
-grain beside the drag (buoyancy `stress`); under model B the drag is all that holds a settling grain up
-(buoyancy `weight` and `pressure`). For the same fluidised bed drag B is drag A divided by the void fraction
-eps = 1 - phi; the argument `stress` says which one is wanted.
+Each law returns (speed, factor): the drag is `factor` times that of an isolated grain with the slip `speed`.
+Two definitions of drag are in use. In model A the gradients of pressure and stress of the mixture act on the
+grain in addition to the drag (buoyancy `stress`); in model B the drag alone balances the submerged weight of
+a settling grain (buoyancy `weight` and `pressure`). For the same fluidised bed the drag of model B is that of
+model A divided by the void fraction eps = 1 - phi; the argument `stress` selects model A.
 
-In a closed column water returns past the grains, so one that settles at w_p slips at w_p/eps. With lone drag
-F_0 ~ w**a (a = 1 after Stokes, 2 after Newton) the settling velocity follows eps**n:
+In a closed column water returns past the grains, so that a grain which settles at w_p has the slip w_p/eps.
+With the isolated drag F_0 ~ w**a (a = 1 for Stokes, 2 for Newton) the settling velocity follows eps**n:
 
-| hindrance | written for | speed | factor, model A | factor, model B | n Stokes, Newton |
+| hindrance | written for | speed | factor, model A | factor, model B | n for Stokes, Newton |
 |---|---|---|---|---|---|
 | none | - | slip | 1 | 1 | A 2, 1.5; B 1, 1 |
 | `richardson_zaki` | n itself | slip eps**(1 - n) | eps | 1 | n, n |
@@ -18,8 +18,9 @@ F_0 ~ w**a (a = 1 after Stokes, 2 after Newton) the settling velocity follows ep
 | `di_felice` | A | slip eps | eps**-chi | eps**-(chi + 1) | 4.7, 2.35 |
 | `power` | as given | slip | eps**-m | eps**-m | A 2 + m, (3 + m)/2; B 1 + m, (2 + m)/2 |
 
-`exponent_settling` is the formula behind the last column. `richardson_zaki`, `wen_yu` and `power` are linear
-in the slip: asked with slip 1 they give two numbers that hold as long as eps does.
+`exponent_settling` gives the last column. In `richardson_zaki`, `wen_yu` and `power` the speed is
+proportional to the slip and the factor independent of it: evaluated for a slip of 1, they hold for every slip
+at the same eps.
 """
 
 import math
@@ -30,12 +31,12 @@ from ryusa.laws.drag import reynolds
 
 @law
 def exponent_rowe(re: float) -> float:
-    """Exponent n of Richardson and Zaki [-] after Rowe; Re is that of the lone settling grain [-].
+    """Exponent n of Richardson and Zaki [-] after Rowe; Re is that of the isolated settling grain [-].
 
     Notes
     -----
-    Source: Rowe 1987, n = (4.7 + 0.41 Re**0.75)/(1 + 0.175 Re**0.75); 4.7 after Stokes, 2.34 after Newton.
-    The formula was read in public code of a lahar model, not in the article.
+    Source: Rowe 1987, n = (4.7 + 0.41 Re**0.75)/(1 + 0.175 Re**0.75); 4.7 for Stokes, 2.34 for Newton.
+    The formula was taken from public code of a lahar model, not from the article.
 
     Examples
     --------
@@ -48,7 +49,7 @@ def exponent_rowe(re: float) -> float:
 
 @law
 def exponent_garside(re: float) -> float:
-    """Exponent n of Richardson and Zaki [-] after Garside; Re is that of the lone settling grain [-].
+    """Exponent n of Richardson and Zaki [-] after Garside; Re is that of the isolated settling grain [-].
 
     Notes
     -----
@@ -66,18 +67,19 @@ def exponent_garside(re: float) -> float:
 
 @law
 def exponent_settling(a: float, p: float, q: float, stress: bool) -> float:
-    """Exponent n [-] with which a suspension settles, w_p = w_0 eps**n, for a hindrance of the form below.
+    """Exponent n [-] of the settling velocity of a suspension, w_p = w_0 eps**n, for a given hindrance.
 
     Parameters
     ----------
-    a : lone drag goes with speed**a [-]; 1 after Stokes, 2 after Newton.
-    p, q : the hindered drag is eps**-q F_0(eps**p slip) [-].
+    a : exponent of speed in the isolated drag [-]; 1 for Stokes, 2 for Newton.
+    p, q : exponents in the hindered drag eps**-q F_0(eps**p slip) [-].
     stress : whether buoyancy is that of the mixture (model A).
 
     Notes
     -----
-    Source: slip = w_p/eps and eps**-q F_0(eps**p slip) = (sigma - rho) V g, times eps on the right under
-    model A. For drag that is no power of speed, a is the mean slope of log F_0 between the two speeds.
+    Source: slip = w_p/eps and eps**-q F_0(eps**p slip) = (sigma - rho) V g, times eps on the right in model
+    A. If the drag is no power of speed, a is the mean slope of log F_0 against log speed between the two
+    speeds.
 
     Examples
     --------
@@ -92,7 +94,7 @@ def exponent_settling(a: float, p: float, q: float, stress: bool) -> float:
 
 @law
 def unhindered(slip: float) -> tuple[float, float]:
-    """Drag of a lone grain, as if there were no neighbours; answers the slip [m/s] and the factor 1 [-].
+    """No hindrance: the slip itself [m/s] and the factor 1 [-].
 
     Examples
     --------
@@ -108,20 +110,20 @@ def richardson_zaki(slip: float, eps: float, exponent: float, stress: bool) -> t
 
     Parameters
     ----------
-    slip : speed of the water against the grain [m/s], >= 0.
+    slip : speed of the water relative to the grain [m/s], >= 0.
     eps : void fraction 1 - phi [-], > 0.
-    exponent : n [-]; `exponent_rowe`, `exponent_garside` or one's own.
+    exponent : n [-]; `exponent_rowe`, `exponent_garside` or a value of the case.
     stress : whether buoyancy is that of the mixture (model A).
 
     Returns
     -------
-    speed : slip at which a lone grain is taken [m/s].
-    factor : times the drag of the lone grain [-].
+    speed : slip at which the drag of an isolated grain is evaluated [m/s].
+    factor : factor of that drag [-].
 
     Notes
     -----
-    Source: Richardson & Zaki 1954 for w_p = w_0 eps**n; the construction is F = F_0(slip eps**(1 - n)), times
-    eps under model A. It is a law of settling; along a bed it is an assumption.
+    Source: Richardson & Zaki 1954 for w_p = w_0 eps**n; from it F = F_0(slip eps**(1 - n)), times eps in
+    model A. The law was found for settling; its use for flow along a bed is an assumption.
 
     Examples
     --------
@@ -137,20 +139,20 @@ def wen_yu(slip: float, eps: float, stress: bool) -> tuple[float, float]:
 
     Parameters
     ----------
-    slip : speed of the water against the grain [m/s], >= 0.
+    slip : speed of the water relative to the grain [m/s], >= 0.
     eps : void fraction 1 - phi [-], > 0.
     stress : whether buoyancy is that of the mixture (model A).
 
     Returns
     -------
-    speed : slip at which a lone grain is taken [m/s].
-    factor : times the drag of the lone grain [-].
+    speed : slip at which the drag of an isolated grain is evaluated [m/s].
+    factor : factor of that drag [-].
 
     Notes
     -----
     Source: Wen & Yu 1966 in the form of Gidaspow 1994 (model A), beta = (3/4) C_D eps phi rho slip/d
     eps**-2.65 with C_D at Re = eps slip d/nu. Per grain, beta slip V/phi is eps**-3.65 F_0(eps slip); model B
-    divides by eps. Settles with n = 4.65 after Stokes and 2.325 after Newton.
+    divides by eps. The exponent of settling is 4.65 for Stokes and 2.325 for Newton.
 
     Examples
     --------
@@ -163,7 +165,7 @@ def wen_yu(slip: float, eps: float, stress: bool) -> tuple[float, float]:
 
 @law
 def stokes_multiple(re: float) -> float:
-    """Drag of a smooth sphere as a multiple of Stokes' [-], C_D Re/24 after Schiller and Naumann.
+    """Drag of a smooth sphere over its Stokes drag [-], C_D Re/24 after Schiller and Naumann.
 
     Notes
     -----
@@ -185,7 +187,7 @@ def gidaspow(slip: float, eps: float, d: float, nu: float, stress: bool) -> tupl
 
     Parameters
     ----------
-    slip : speed of the water against the grain [m/s], >= 0.
+    slip : speed of the water relative to the grain [m/s], >= 0.
     eps : void fraction 1 - phi [-], > 0.
     d : diameter [m].
     nu : kinematic viscosity [m2/s].
@@ -193,17 +195,17 @@ def gidaspow(slip: float, eps: float, d: float, nu: float, stress: bool) -> tupl
 
     Returns
     -------
-    speed : slip at which a lone grain is taken [m/s].
-    factor : times the drag of the lone grain [-].
+    speed : slip at which the drag of an isolated grain is evaluated [m/s].
+    factor : factor of that drag [-].
 
     Notes
     -----
     Source: Gidaspow 1994 (model A), beta = 150 phi**2 mu/(eps d**2) + 1.75 phi rho slip/d below eps = 0.8
     (Ergun 1952). Written as a multiple of the drag of a smooth sphere (Schiller and Naumann, for which it was
-    published): with that drag law it is Ergun to the letter, with another one it keeps that law's ratio to
-    the smooth sphere. No power of eps below 0.8: w_p/w_0 = 0.12 eps**3/phi after Stokes, sqrt(0.33/1.75)
-    eps**1.5 after Newton, the same for both forms of buoyancy. The drag jumps at 0.8, by 15 % after Stokes
-    and to 3.7 times after Newton.
+    published): with that drag law it is exactly Ergun's, with another it keeps the ratio of that law to the
+    smooth sphere. Settling does not follow a power of eps below 0.8: w_p/w_0 = 0.12 eps**3/phi for Stokes and
+    sqrt(0.33/1.75) eps**1.5 for Newton, the same for both models. The drag is discontinuous at 0.8: it
+    changes by 15 % for Stokes and by a factor of 3.7 for Newton.
 
     Examples
     --------
@@ -244,7 +246,7 @@ def di_felice(slip: float, eps: float, d: float, nu: float, stress: bool) -> tup
 
     Parameters
     ----------
-    slip : speed of the water against the grain [m/s], >= 0.
+    slip : speed of the water relative to the grain [m/s], >= 0.
     eps : void fraction 1 - phi [-], > 0.
     d : diameter [m].
     nu : kinematic viscosity [m2/s].
@@ -252,15 +254,15 @@ def di_felice(slip: float, eps: float, d: float, nu: float, stress: bool) -> tup
 
     Returns
     -------
-    speed : slip at which a lone grain is taken [m/s].
-    factor : times the drag of the lone grain [-].
+    speed : slip at which the drag of an isolated grain is evaluated [m/s].
+    factor : factor of that drag [-].
 
     Notes
     -----
-    Source: Di Felice 1994, F = F_0(eps slip) eps**-chi with chi from `chi_di_felice`; F_0 is the lone grain
-    at the same flow per area. Model A: only so does it settle with 4.7 after Stokes and 2.35 after Newton, as
-    observed. In between w_p/w_0 is no exact power of eps, because chi changes with Re. Published with C_D =
-    (0.63 + 4.8/sqrt(Re))**2.
+    Source: Di Felice 1994, F = F_0(eps slip) eps**-chi with chi from `chi_di_felice`; F_0 is the drag of an
+    isolated grain at the same superficial velocity. Read as model A, because only then are the exponents of
+    settling 4.7 for Stokes and 2.35 for Newton, as observed. In between, w_p/w_0 is not an exact power of
+    eps, because chi varies with Re. Published with C_D = (0.63 + 4.8/sqrt(Re))**2.
 
     Examples
     --------
@@ -275,23 +277,23 @@ def di_felice(slip: float, eps: float, d: float, nu: float, stress: bool) -> tup
 
 @law
 def power(slip: float, eps: float, exponent: float) -> tuple[float, float]:
-    """Hindered drag, eps**-m times that of a lone grain at the same slip.
+    """Hindered drag, eps**-m times that of an isolated grain at the same slip.
 
     Parameters
     ----------
-    slip : speed of the water against the grain [m/s], >= 0.
+    slip : speed of the water relative to the grain [m/s], >= 0.
     eps : void fraction 1 - phi [-], > 0.
     exponent : m [-].
 
     Returns
     -------
-    speed : slip at which a lone grain is taken [m/s]; the slip itself.
-    factor : times the drag of the lone grain [-].
+    speed : slip at which the drag of an isolated grain is evaluated [m/s]; the slip itself.
+    factor : factor of that drag [-].
 
     Notes
     -----
-    Source: the form of YADE's water (m = 3.1, used there with the weight of clear water displaced: model B).
-    Taken as given under both models; it settles with n = (a + m)/a under B and (a + 1 + m)/a under A.
+    Source: the form used in YADE (m = 3.1, there with the weight of the displaced clear water: model B).
+    Used unchanged in both models; the exponent of settling is (a + m)/a in B and (a + 1 + m)/a in A.
 
     Examples
     --------

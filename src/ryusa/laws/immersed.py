@@ -1,4 +1,4 @@
-"""Collisions under water: what the film between two grains takes before they touch."""
+"""Collisions under water: the effect of the water film between two grains."""
 
 import math
 
@@ -7,21 +7,21 @@ from ryusa.laws._law import law
 
 @law
 def stokes_number(speed: float, m: float, r: float, rho_w: float, nu: float) -> float:
-    """Stokes number of a collision [-]: inertia of the approach against the film between the two.
+    """Stokes number of a collision [-]: inertia of the approach over the resistance of the film.
 
     Parameters
     ----------
-    speed : speed of approach before the film is felt [m/s].
-    m : reduced mass of the pair [kg]; the grain's own against a wall. With added mass St is Legendre's.
-    r : reduced radius of the pair [m]; the grain's own against a wall.
+    speed : speed of approach before the film has an effect [m/s].
+    m : reduced mass of the pair [kg]; that of the grain at a wall. Legendre's St includes added mass.
+    r : reduced radius of the pair [m]; that of the grain at a wall.
     rho_w : density of water [kg/m3].
     nu : kinematic viscosity [m2/s].
 
     Notes
     -----
-    Source: m speed/(6 pi mu r**2). Against a wall it is (1/9) (sigma/rho) Re = sigma d speed/(9 mu), between
-    two equal grains twice that. In a film of thickness h the speed falls by speed ln(h_1/h_2)/St between h_1
-    and h_2.
+    Source: m speed/(6 pi mu r**2). At a wall it is (1/9) (sigma/rho) Re = sigma d speed/(9 mu), between two
+    equal grains twice that. While the film thins from h_1 to h_2, the speed decreases by speed
+    ln(h_1/h_2)/St.
 
     Examples
     --------
@@ -45,9 +45,8 @@ def stokes_number_yade(speed: float, d: float, rho_s: float, rho_w: float, nu: f
 
     Notes
     -----
-    Source: YADE's check of its lubrication, sigma d speed/mu: 9 times `stokes_number` against a wall, 4.5
-    times between two equal grains. `restitution_davis` with this number takes that much too little from the
-    approach.
+    Source: the test of lubrication in YADE, sigma d speed/mu: 9 times `stokes_number` at a wall, 4.5 times
+    between two equal grains. With this number `restitution_davis` underestimates the loss by that factor.
 
     Examples
     --------
@@ -65,14 +64,14 @@ def restitution_exponential(e_dry: float, st: float, st_c: float) -> float:
     ----------
     e_dry : restitution in air [-].
     st : Stokes number of the collision [-], `stokes_number`.
-    st_c : Stokes number that sets the fall [-]; 35.
+    st_c : Stokes number at which the restitution is e_dry/e [-]; 35.
 
     Notes
     -----
     Source: Legendre, Daniel & Guiraud 2005 (drops) and Legendre et al. 2006 (also solid grains), St_c = 35,
-    with added mass in St; drawn through the data of Gondret, Lance & Petit 2002 for spheres on a wall, whose
-    rebound ends at St about 10. The fit and its 35 were read in public code (TrioCFD, LIGGGHTS), not in the
-    articles. Never zero: 0.03 e_dry at St = 10.
+    with added mass in St; fitted to the data of Gondret, Lance & Petit 2002 for spheres on a wall, whose
+    rebound ends at St of about 10. The fit and its 35 were taken from public code (TrioCFD, LIGGGHTS), not
+    from the articles. Never zero: 0.03 e_dry at St = 10.
 
     Examples
     --------
@@ -88,20 +87,20 @@ def restitution_exponential(e_dry: float, st: float, st_c: float) -> float:
 
 @law
 def restitution_davis(e_dry: float, st: float, roughness: float, d: float) -> float:
-    """Restitution of an immersed collision [-]: what the film takes between d/2 and the roughness.
+    """Restitution of an immersed collision [-] after the loss in the film from d/2 to the roughness.
 
     Parameters
     ----------
     e_dry : restitution in air [-].
-    st : Stokes number of the collision [-]; `stokes_number`, or `stokes_number_yade` to have YADE's law.
+    st : Stokes number of the collision [-]: `stokes_number`, or `stokes_number_yade` for the law of YADE.
     roughness : thickness of the film at which the grains touch [m].
     d : diameter [m].
 
     Notes
     -----
     Source: e_dry (1 + ln(2 roughness/d)/St), the lubrication of Davis, Serayssol & Hinch 1986 and Barnocky &
-    Davis 1988 for rough spheres, in the form YADE uses; those two articles were not consulted. Only the
-    approach is counted. Between 0 (YADE keeps 0.001, because a dashpot for 0 is infinite) and e_dry.
+    Davis 1988 for rough spheres, in the form used by YADE; the two articles were not consulted. Only the loss
+    of the approach is included. Limited to 0 (in YADE 0.001, because a dashpot for 0 is infinite) to e_dry.
 
     Examples
     --------
@@ -126,18 +125,18 @@ def lubrication_force(
     ----------
     gap : distance of the two surfaces [m]; negative in touch.
     closing : speed at which the two centres approach [m/s]; positive when approaching.
-    r : reduced radius of the pair [m]; the grain's own against a plane.
-    roughness : added to the gap, so that the force stays finite in touch [m].
-    reach : gap from which on there is no force [m].
+    r : reduced radius of the pair [m]; that of the grain at a plane.
+    roughness : length added to the gap, so that the force remains finite in touch [m].
+    reach : gap above which there is no force [m].
     rho_w : density of water [kg/m3].
     nu : kinematic viscosity [m2/s].
 
     Notes
     -----
-    Source: 6 pi mu r**2 closing/h for a thin film, with h = gap + roughness as YADE and Izard, Bonometti &
-    Lacaze 2014 have it, less its value at `reach`, so that it begins without a jump (after Nguyen & Ladd
-    2002, from memory). None in touch, where the contact takes over. It also holds back grains that part;
-    who wants the approach alone hands in max(closing, 0).
+    Source: 6 pi mu r**2 closing/h for a thin film, with h = gap + roughness as in YADE and in Izard,
+    Bonometti & Lacaze 2014, minus its value at `reach`, so that it begins continuously (after Nguyen & Ladd
+    2002, from memory). Zero in touch, where the contact force acts. It also resists separation; to resist the
+    approach alone, pass max(closing, 0).
 
     Examples
     --------

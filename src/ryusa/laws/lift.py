@@ -1,4 +1,4 @@
-"""Forces of the water across its flow: shear lift and the Magnus force of a spinning grain."""
+"""Forces of the water across the relative flow: shear lift, and the Magnus force on a spinning grain."""
 
 import math
 
@@ -12,7 +12,7 @@ def lift_wiberg_smith(top: float, bottom: float, c_l: float, rho_w: float, a_2: 
 
     Parameters
     ----------
-    top, bottom : speed of the water along the bed against the grain, at its top and bottom [m/s].
+    top, bottom : speed of the water along the bed relative to the grain, at its top and bottom [m/s].
     c_l : lift coefficient [-]; 0.2.
     rho_w : density of water [kg/m3].
     a_2 : area coefficient [-]; pi/4 for a sphere.
@@ -20,8 +20,8 @@ def lift_wiberg_smith(top: float, bottom: float, c_l: float, rho_w: float, a_2: 
 
     Notes
     -----
-    Source: Wiberg & Smith 1985, (1/2) rho C_L A (u_top**2 - u_bottom**2), C_L = 0.2; read as YADE states it.
-    A grain that outruns the water is pushed down.
+    Source: Wiberg & Smith 1985, (1/2) rho C_L A (u_top**2 - u_bottom**2), C_L = 0.2, as given by YADE. The
+    force on a grain faster than the water points to the bed.
 
     Examples
     --------
@@ -35,7 +35,7 @@ def lift_wiberg_smith(top: float, bottom: float, c_l: float, rho_w: float, a_2: 
 def shear_lift_wiberg_smith(
     top: float, bottom: float, c_l: float, rho_w: float, a_2: float, d: float
 ) -> tuple[float, float]:
-    """Shear lift after Wiberg and Smith, as every law of shear lift answers.
+    """Shear lift after Wiberg and Smith, in the form common to all laws of shear lift.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def shear_lift_wiberg_smith(
     Returns
     -------
     normal : force along z, away from the bed [N].
-    across : factor k [N s/m] of a force k (w x e_y), w = water - grain; none here.
+    across : factor k [N s/m] of a force k (w x e_y), w = water - grain; zero here.
 
     Examples
     --------
@@ -56,7 +56,7 @@ def shear_lift_wiberg_smith(
 
 @law
 def saffman_mei(re: float, beta: float) -> float:
-    """Shear lift as a part of Saffman's [-], after Mei.
+    """Ratio of the shear lift to Saffman's [-] after Mei.
 
     Parameters
     ----------
@@ -66,8 +66,8 @@ def saffman_mei(re: float, beta: float) -> float:
     Notes
     -----
     Source: Mei 1992, (1 - 0.3314 sqrt(beta)) exp(-Re/10) + 0.3314 sqrt(beta) up to Re = 40 and
-    0.0524 sqrt(beta Re) beyond, read in OpenFOAM; a fit for 0.1 <= Re <= 100 and 0.005 < beta < 0.4 (range
-    from memory). At Re = 40 it steps down, by 7 % of the second branch at beta = 0.4 and by 76 % at 0.005.
+    0.0524 sqrt(beta Re) above, as given in OpenFOAM; a fit for 0.1 <= Re <= 100 and 0.005 < beta < 0.4 (range
+    from memory). At Re = 40 it drops, by 7 % of the second branch at beta = 0.4 and by 76 % at 0.005.
 
     Examples
     --------
@@ -86,8 +86,8 @@ def lift_saffman_mei(slip: float, shear: float, d: float, nu: float, rho_w: floa
 
     Parameters
     ----------
-    slip : size of the relative velocity of water and grain [m/s], >= 0.
-    shear : dU/dz of the water along the bed [1/s]; its sign is that of the factor.
+    slip : magnitude of the relative velocity of water and grain [m/s], >= 0.
+    shear : dU/dz of the water along the bed [1/s]; the factor has its sign.
     d : diameter [m].
     nu : kinematic viscosity [m2/s].
     rho_w : density of water [kg/m3].
@@ -95,8 +95,8 @@ def lift_saffman_mei(slip: float, shear: float, d: float, nu: float, rho_w: floa
     Notes
     -----
     Source: Saffman 1965 with Mei's 1992 factor, 1.615 rho sqrt(nu) d**2 sqrt(abs(shear)) sign(shear). The
-    force is k (w x e_y): F_z = k w_x, F_x = -k w_z with w = water - grain. Without slip k is Saffman's, the
-    limit of Mei's.
+    force is k (w x e_y): F_z = k w_x, F_x = -k w_z with w = water - grain. Without slip k is Saffman's, which
+    is the limit of Mei's.
 
     Examples
     --------
@@ -115,7 +115,7 @@ def lift_saffman_mei(slip: float, shear: float, d: float, nu: float, rho_w: floa
 def shear_lift_saffman_mei(
     slip: float, shear: float, d: float, nu: float, rho_w: float
 ) -> tuple[float, float]:
-    """Shear lift after Saffman and Mei, as every law of shear lift answers.
+    """Shear lift after Saffman and Mei, in the form common to all laws of shear lift.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ def shear_lift_saffman_mei(
 
     Returns
     -------
-    normal : force along z, away from the bed [N]; none here.
+    normal : force along z, away from the bed [N]; zero here.
     across : factor k [N s/m] of the force k (w x e_y), w = water - grain.
 
     Examples
@@ -145,9 +145,9 @@ def magnus_rubinow_keller(d: float, rho_w: float) -> float:
 
     Notes
     -----
-    Source: Rubinow & Keller 1961, pi rho R**3. Omega = half the curl of the water - omega of the grain and w
-    = water - grain: a grain that rolls downstream in faster water is lifted. Holds for Re << 1; beyond, it is
-    far too large, see `magnus_loth` and `magnus_oesterle_dinh`.
+    Source: Rubinow & Keller 1961, pi rho R**3. Omega is half the curl of the water velocity minus the spin of
+    the grain, and w = water - grain: a grain that rolls downstream in faster water is lifted. Valid for
+    Re << 1; above, the force is far too large, see `magnus_loth` and `magnus_oesterle_dinh`.
 
     Examples
     --------
@@ -163,15 +163,15 @@ def magnus_loth(slip: float, spin: float, d: float, nu: float, rho_w: float) -> 
 
     Parameters
     ----------
-    slip : size of the relative velocity of water and grain [m/s], >= 0.
-    spin : size of the spin against half the curl of the water [rad/s], >= 0.
+    slip : magnitude of the relative velocity of water and grain [m/s], >= 0.
+    spin : magnitude of Omega, the spin relative to the water [rad/s], >= 0.
     d : diameter [m].
     nu : kinematic viscosity [m2/s].
     rho_w : density of water [kg/m3].
 
     Notes
     -----
-    Source: Loth 2008, Eq. 16, as the saltation code of Kok states it: Rubinow and Keller times
+    Source: Loth 2008, Eq. 16, as given in the saltation code of Kok: Rubinow and Keller times
     1 - (0.675 + 0.15 (1 + tanh(0.28 (s - 2)))) tanh(0.18 sqrt(Re)) with s = spin d/slip.
 
     Examples
@@ -193,8 +193,8 @@ def magnus_oesterle_dinh(slip: float, spin: float, d: float, nu: float, rho_w: f
 
     Parameters
     ----------
-    slip : size of the relative velocity of water and grain [m/s], >= 0.
-    spin : size of the spin against half the curl of the water [rad/s], >= 0.
+    slip : magnitude of the relative velocity of water and grain [m/s], >= 0.
+    spin : magnitude of Omega, the spin relative to the water [rad/s], >= 0.
     d : diameter [m].
     nu : kinematic viscosity [m2/s].
     rho_w : density of water [kg/m3].
@@ -203,8 +203,8 @@ def magnus_oesterle_dinh(slip: float, spin: float, d: float, nu: float, rho_w: f
     -----
     Source: Oesterle & Bui Dinh 1998, C_L = 0.45 + (Re_r/Re - 0.45) exp(-0.05684 Re_r**0.4 Re**0.3) with Re_r
     = spin d**2/nu; measured for 10 < Re < 140 and 2 < Re_r/Re < 12. Rubinow and Keller have C_L = Re_r/Re,
-    which is also taken without slip or spin; at very small spin k exceeds theirs, while the force still
-    vanishes.
+    which is also used if slip or spin is zero. At very small spin k exceeds theirs, but the force still
+    vanishes with the spin.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""One grain, one step. Eqs. (5)-(7), (10)-(11)."""
+"""Equations of motion of one grain, Eqs. (5)-(7) and (10)-(11), and their time integration."""
 
 from ryusa.laws._law import law
 
@@ -17,19 +17,19 @@ def inertia_sphere(m: float, d: float) -> float:
 
 @law
 def acceleration(contact: float, drag: float, weight: float, inverse_m: float) -> float:
-    """One component of a grain's acceleration [m/s2].
+    """One component of the acceleration of a grain [m/s2].
 
     Parameters
     ----------
     contact : sum of contact forces on the grain [N]; Eqs. (5)-(6).
-    drag : drag force [N], zero when dry; Eqs. (10)-(11).
-    weight : submerged weight, mass that gravity sees times the component of gravity [N].
-    inverse_m : one over mass and added mass [1/kg]; it changes less often than forces, and a division is
-        what a step would wait for.
+    drag : drag force [N], zero in air; Eqs. (10)-(11).
+    weight : submerged weight, submerged mass times the component of gravity [N].
+    inverse_m : inverse of the sum of mass and added mass [1/kg]; stored, because a division in every step is
+        slow.
 
     Notes
     -----
-    Source: the paper, Eqs. (5)-(6) when dry and (10)-(11) in water, where
+    Source: the paper, Eqs. (5)-(6) in air and (10)-(11) in water, where
     rho (sigma/rho + C_M) A_3 d**3 is m + m_added.
 
     Examples
@@ -42,9 +42,12 @@ def acceleration(contact: float, drag: float, weight: float, inverse_m: float) -
 
 @law
 def acceleration_spin(torque: float, inverse_inertia: float) -> float:
-    """One component of a grain's angular acceleration [rad/s2]. Eq. (7).
+    """One component of the angular acceleration of a grain [rad/s2]. Eq. (7).
 
-    Torque [N m] and one over the moment of inertia [1/(kg m2)].
+    Parameters
+    ----------
+    torque : torque on the grain [N m].
+    inverse_inertia : inverse of the moment of inertia [1/(kg m2)].
 
     Examples
     --------
@@ -56,7 +59,7 @@ def acceleration_spin(torque: float, inverse_inertia: float) -> float:
 
 @law
 def semi_implicit(x: float, v: float, a: float, dt: float) -> tuple[float, float]:
-    """One step of the scheme ryusa uses: velocity first, then position with the new velocity.
+    """One step of the scheme of ryusa: first the velocity, then the position with the new velocity.
 
     Parameters
     ----------
@@ -67,7 +70,7 @@ def semi_implicit(x: float, v: float, a: float, dt: float) -> tuple[float, float
 
     Returns
     -------
-    x, v : both a step later.
+    x, v : position and velocity one step later [m], [m/s].
 
     Notes
     -----
@@ -85,7 +88,7 @@ def semi_implicit(x: float, v: float, a: float, dt: float) -> tuple[float, float
 
 @law
 def forward_euler(x: float, v: float, a: float, dt: float) -> tuple[float, float]:
-    """One step of true forward Euler, kept only for the study that shows why not.
+    """One step of forward Euler, kept only for the study of the time step.
 
     Parameters
     ----------
@@ -93,7 +96,8 @@ def forward_euler(x: float, v: float, a: float, dt: float) -> tuple[float, float
 
     Notes
     -----
-    It pumps energy into every contact: asked e = 0.7, it gives more than 1 at ten steps per contact.
+    It adds energy to every contact: with e = 0.7 in the case, the restitution exceeds 1 at ten steps per
+    contact.
 
     Examples
     --------

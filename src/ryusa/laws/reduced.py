@@ -1,19 +1,19 @@
-"""What two partners share: the reduced mass, radius or inertia of a pair."""
+"""The reduced mass, radius or inertia of a pair."""
 
 from ryusa.laws._law import law
 
 
 @law
 def reduced(a: float, b: float) -> float:
-    """Reduced value of two of a kind, 1/(1/a + 1/b), in their own unit ([kg], [m], [kg m2]).
+    """Reduced value of a pair, 1/(1/a + 1/b), in the unit of a and b ([kg], [m], [kg m2]).
 
     Parameters
     ----------
-    a, b : positive; one of them may be inf, which leaves the other.
+    a, b : values of the two grains, positive; one of them may be inf, and the result is then the other.
 
     Notes
     -----
-    Source: two bodies on one spring. Bitwise the same with a and b exchanged; not a number if either is not.
+    Source: two bodies on one spring. Bitwise the same with a and b exchanged; nan if either is nan.
 
     Examples
     --------

@@ -1,13 +1,13 @@
-"""Rolling friction: Eq. (13) as printed, and the variants the field uses.
+"""Rolling friction: Eq. (13) as printed, and the variants in common use.
 
-All laws are scalar. An engine that works with vectors takes the size of the torque or spin, asks the law for
-a size or a scale, and multiplies the direction by it:
+All laws are scalar. For vectors an engine passes the magnitude of torque or spin to the law and multiplies
+the direction by the result:
 
 - printed: torque = -rolling_printed(f_n, f) * m_t / |m_t|, m_t the torque that drives the grain.
 - constant: torque = -rolling_constant(cap, |w|, inertia, dt) * w / |w|, w the relative spin.
-- spring-dashpot-slider: each component of the spring goes through `epsd_spring`; then
-  `slider_scale(|spring|, cap)` multiplies all components, and a scale below 1 means sliding, where
-  `epsd_torque` leaves the dashpot out.
+- spring-dashpot-slider: `epsd_spring` advances each component of the spring; all components are then
+  multiplied by `slider_scale(|spring|, cap)`. A scale below 1 means sliding, and `epsd_torque` then omits the
+  dashpot.
 """
 
 import math
@@ -18,17 +18,17 @@ from ryusa.laws.reduced import reduced
 
 @law
 def rolling_arm_width(r_i: float, r_j: float, overlap: float) -> float:
-    """Contact width b of Eq. (13) [m]: diameter of the circle where two spheres cut each other.
+    """Contact width b of Eq. (13) [m]: diameter of the circle in which two spheres intersect.
 
     Parameters
     ----------
     r_i, r_j : radii [m]; inf for a plane.
-    overlap : [m]; no touch, no width.
+    overlap : overlap [m]; the width is zero without overlap.
 
     Notes
     -----
-    Source: the paper, Eq. (13), b = 2 sqrt(R**2 - (R - overlap/2)**2) for equal spheres. For others the
-    circle of the lens, with D the distance of the centres,
+    Source: the paper, Eq. (13), b = 2 sqrt(R**2 - (R - overlap/2)**2) for equal spheres. For unequal spheres
+    the circle of intersection, with D the distance of the centres,
     (b/2)**2 = overlap (2 r_i - overlap) (2 r_j - overlap) (2 r_i + 2 r_j - overlap) / (2 D)**2;
     on a plane (b/2)**2 = overlap (2 r - overlap). Bitwise the same with i and j exchanged.
 
@@ -64,16 +64,17 @@ def reduced_radius(r_i: float, r_j: float) -> float:
 
 @law
 def rolling_printed(f_n: float, f: float) -> float:
-    """Size of the rolling friction [N m] of Eq. (13), f N; its sign is -sign(M_t).
+    """Magnitude of the rolling friction torque of Eq. (13), f N [N m]; its sign is -sign(M_t).
 
     Parameters
     ----------
-    f_n : normal force [N]; a pulling one counts as zero.
-    f : rolling friction arm [m], f' b or mu_r R*.
+    f_n : normal force [N]; an attractive force counts as zero.
+    f : rolling arm [m], f' b or mu_r R*.
 
     Notes
     -----
-    As printed it cannot brake a grain whose driving torque is near zero, and shakes a resting one for ever.
+    In the printed form a grain at rest oscillates without end, because the torque changes sign with the
+    driving torque at full magnitude.
 
     Examples
     --------
@@ -85,13 +86,13 @@ def rolling_printed(f_n: float, f: float) -> float:
 
 @law
 def rolling_constant(cap: float, spin: float, inertia: float, dt: float) -> float:
-    """Size of a rolling friction against the relative spin that cannot reverse it in a step [N m].
+    """Magnitude of a rolling friction torque that opposes the relative spin and cannot reverse it [N m].
 
     Parameters
     ----------
-    cap : f N [N m], >= 0, from `rolling_printed`.
-    spin : size of the relative spin [rad/s].
-    inertia : effective inertia of the relative spin [kg m2], from `inertia_spin`.
+    cap : largest torque f N [N m], >= 0, from `rolling_printed`.
+    spin : magnitude of the relative spin [rad/s].
+    inertia : effective moment of inertia of the relative spin [kg m2], from `inertia_spin`.
     dt : time step [s].
 
     Notes
@@ -108,7 +109,11 @@ def rolling_constant(cap: float, spin: float, inertia: float, dt: float) -> floa
 
 @law
 def inertia_spin(inertia_i: float, inertia_j: float) -> float:
-    """Effective inertia of the relative spin of two grains [kg m2]: 1/I = 1/I_i + 1/I_j; inf for a fixed one.
+    """Effective moment of inertia of the relative spin of two grains [kg m2]: 1/I = 1/I_i + 1/I_j.
+
+    Parameters
+    ----------
+    inertia_i, inertia_j : moments of inertia [kg m2]; inf for a fixed grain.
 
     Examples
     --------
@@ -122,7 +127,7 @@ def inertia_spin(inertia_i: float, inertia_j: float) -> float:
 def inertia_rolling(
     m_i: float, r_i: float, inertia_i: float, m_j: float, r_j: float, inertia_j: float
 ) -> float:
-    """Effective inertia about the contact point [kg m2]: 1/I_r = sum of 1/(I + m R**2).
+    """Effective moment of inertia about the contact point [kg m2]: 1/I_r = sum of 1/(I + m R**2).
 
     Parameters
     ----------
@@ -148,7 +153,7 @@ def epsd_stiffness(k_n: float, f: float, factor: float) -> float:
 
     Notes
     -----
-    Source: Ai et al. 2011, type C (EPSD); factor 2.25 in 3D as LIGGGHTS has it.
+    Source: Ai et al. 2011, type C (EPSD); the factor is 2.25 in 3D, as in LIGGGHTS.
 
     Examples
     --------
@@ -160,7 +165,7 @@ def epsd_stiffness(k_n: float, f: float, factor: float) -> float:
 
 @law
 def epsd_damping(k_r: float, inertia: float, zeta: float) -> float:
-    """Dashpot 2 zeta sqrt(I_r k_r) [N m s] beside the rolling spring; I_r from `inertia_rolling` [kg m2].
+    """Rolling dashpot 2 zeta sqrt(I_r k_r) [N m s]; I_r from `inertia_rolling` [kg m2].
 
     Examples
     --------
@@ -172,11 +177,11 @@ def epsd_damping(k_r: float, inertia: float, zeta: float) -> float:
 
 @law
 def epsd_spring(spring: float, spin: float, k_r: float, dt: float) -> float:
-    """One component of the rolling spring's torque on grain i [N m] after a step, before the slider.
+    """One component of the torque of the rolling spring on grain i [N m] after a step, before the slider.
 
     Parameters
     ----------
-    spring : its value a step before [N m].
+    spring : its value one step before [N m].
     spin : the same component of the relative spin omega_i - omega_j [rad/s].
     k_r : rolling stiffness [N m/rad].
     dt : time step [s].
@@ -191,7 +196,7 @@ def epsd_spring(spring: float, spin: float, k_r: float, dt: float) -> float:
 
 @law
 def slider_scale(size: float, cap: float) -> float:
-    """Factor <= 1 [-] that brings a spring of this size down to the cap (both in the same unit); 1 within it.
+    """Factor <= 1 [-] that limits a spring of magnitude `size` to `cap` (both in the same unit).
 
     Examples
     --------
@@ -205,14 +210,14 @@ def slider_scale(size: float, cap: float) -> float:
 
 @law
 def epsd_torque(spring: float, spin: float, eta_r: float, scale: float) -> float:
-    """One component of the rolling torque on grain i [N m]: spring plus dashpot, which is off while sliding.
+    """One component of the rolling torque on grain i [N m]: spring plus dashpot; no dashpot while sliding.
 
     Parameters
     ----------
-    spring : the capped rolling spring [N m].
+    spring : rolling spring after the cap [N m].
     spin : relative spin omega_i - omega_j [rad/s].
     eta_r : rolling dashpot [N m s].
-    scale : what `slider_scale` gave [-]; below 1 the slider moves.
+    scale : result of `slider_scale` [-]; sliding if below 1.
 
     Examples
     --------

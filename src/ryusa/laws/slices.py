@@ -1,4 +1,4 @@
-"""How much of a grain lies between two levels: what a concentration over height is made of."""
+"""Volume or area of a grain between two levels, for profiles of concentration."""
 
 import math
 
@@ -7,17 +7,17 @@ from ryusa.laws._law import law
 
 @law
 def sphere_slice(r: float, low: float, high: float) -> float:
-    """Volume of a sphere between two horizontal planes [m3]; heights are taken from its centre.
+    """Volume of a sphere between two horizontal planes [m3].
 
     Parameters
     ----------
     r : radius [m].
-    low, high : heights of the planes above the centre [m]; beyond the sphere they count as its pole.
+    low, high : heights of the planes above the centre [m]; limited to -r and r.
 
     Notes
     -----
-    The integral of pi (r**2 - z**2), written as one product so that thin slices lose no digits. Slices that
-    follow one another add up to the sphere; where `high` is below `low` the volume is negative.
+    The integral of pi (r**2 - z**2), written as one product so that thin slices keep their digits. Adjoining
+    slices add up to the sphere; the volume is negative if `high` is below `low`.
 
     >>> round(sphere_slice(1.0, -1.0, 1.0) / math.pi, 12)
     1.333333333333
@@ -31,16 +31,16 @@ def sphere_slice(r: float, low: float, high: float) -> float:
 
 @law
 def circle_slice(r: float, low: float, high: float) -> float:
-    """Area of a circle between two parallel lines [m2]; heights are taken from its centre.
+    """Area of a circle between two parallel lines [m2].
 
     Parameters
     ----------
     r : radius [m].
-    low, high : heights of the lines above the centre [m]; beyond the circle they count as its pole.
+    low, high : heights of the lines above the centre [m]; limited to -r and r.
 
     Notes
     -----
-    The integral of 2 sqrt(r**2 - z**2): a plane scene seen from the side.
+    The integral of 2 sqrt(r**2 - z**2), for profiles of a plane scene.
 
     >>> round(circle_slice(1.0, -2.0, 2.0) / math.pi, 12)
     1.0

@@ -1,4 +1,4 @@
-"""Torque of the water on a spinning grain: the paper's open problem (iii)."""
+"""Torque of the water on a spinning grain, open problem (iii) of the paper."""
 
 import math
 
@@ -19,18 +19,19 @@ def reynolds_spin(spin: float, d: float, nu: float) -> float:
 
 @law
 def torque_stokes(spin: float, d: float, nu: float, rho_w: float) -> float:
-    """Factor k [N m s] of the water's torque T = -k omega on a slowly spinning sphere.
+    """Factor k [N m s] of the torque T = -k omega of the water on a slowly spinning sphere.
 
     Parameters
     ----------
-    spin : size of the spin against the water [rad/s]; the Stokes factor does not depend on it.
+    spin : magnitude of the spin relative to the water [rad/s]; the Stokes factor does not depend on it.
     d : diameter [m].
     nu : kinematic viscosity [m2/s].
     rho_w : density of water [kg/m3].
 
     Notes
     -----
-    Source: Stokes limit, 8 pi mu R**3 = pi rho nu d**3. Spin decays with time constant rho_s R**2/(15 mu).
+    Source: Stokes limit, 8 pi mu R**3 = pi rho nu d**3. The spin decays with time constant rho_s R**2/(15
+    mu).
 
     Examples
     --------
@@ -42,11 +43,11 @@ def torque_stokes(spin: float, d: float, nu: float, rho_w: float) -> float:
 
 @law
 def torque_dennis(spin: float, d: float, nu: float, rho_w: float) -> float:
-    """Factor k [N m s] of the water's torque T = -k omega on a spinning sphere, inertia of the water counted.
+    """Factor k [N m s] of the torque T = -k omega of the water on a spinning sphere, with fluid inertia.
 
     Parameters
     ----------
-    spin : size of the spin against the water [rad/s].
+    spin : magnitude of the spin relative to the water [rad/s].
     d : diameter [m].
     nu : kinematic viscosity [m2/s].
     rho_w : density of water [kg/m3].
@@ -54,8 +55,8 @@ def torque_dennis(spin: float, d: float, nu: float, rho_w: float) -> float:
     Notes
     -----
     Source: Dennis, Singh & Ingham 1980, T = (1/2) rho R**5 C_R abs(spin) spin with
-    C_R = 12.9/sqrt(Re_r) + 128.4/Re_r above Re_r = 32 and the Stokes limit 64 pi/Re_r up
-    to there (the two meet within 0.2 %). Fitted up to R**2 spin/nu = 1000: see `torque_in_range`.
+    C_R = 12.9/sqrt(Re_r) + 128.4/Re_r above Re_r = 32, and the Stokes limit 64 pi/Re_r below (the two agree
+    within 0.2 % at 32). Fitted up to R**2 spin/nu = 1000: see `torque_in_range`.
 
     Examples
     --------
@@ -72,7 +73,13 @@ def torque_dennis(spin: float, d: float, nu: float, rho_w: float) -> float:
 
 @law
 def torque_in_range(spin: float, d: float, nu: float) -> bool:
-    """Whether `torque_dennis` is in its fitted range, R**2 abs(spin)/nu <= 1000; [rad/s], [m], [m2/s].
+    """Whether the spin is in the fitted range of `torque_dennis`, R**2 abs(spin)/nu <= 1000.
+
+    Parameters
+    ----------
+    spin : spin relative to the water [rad/s].
+    d : diameter [m].
+    nu : kinematic viscosity [m2/s].
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Sediment transport without dimension: q_star, tau_star, thresholds and the classical formulae."""
+"""Dimensionless sediment transport: q_star, tau_star, thresholds and the classical formulae."""
 
 import math
 
@@ -18,7 +18,7 @@ def tau_star_from_stress(tau: float, rho_s: float, rho_w: float, g: float, d: fl
 
     Notes
     -----
-    Source: definition (Shields), tau/((sigma - rho) g d). Some authors put g cos(slope).
+    Source: definition (Shields), tau/((sigma - rho) g d). Some authors use g cos(slope).
 
     Examples
     --------
@@ -30,18 +30,18 @@ def tau_star_from_stress(tau: float, rho_s: float, rho_w: float, g: float, d: fl
 
 @law
 def q_star_from_q(q: float, ratio: float, g: float, d: float) -> float:
-    """Dimensionless transport rate [-] from the volume of grains per time and width of the bed.
+    """Dimensionless transport rate [-] from the volume of grains per time and width.
 
     Parameters
     ----------
-    q : volume of grains that passes per time and width, without the voids [m2/s].
+    q : volume of grains, without voids, that passes a section per time and width [m2/s].
     ratio : R = rho_s/rho_w - 1 [-].
     g : gravity [m/s2].
     d : diameter [m].
 
     Notes
     -----
-    Source: definition (Einstein), q/sqrt(R g d**3). Some authors put g cos(slope).
+    Source: definition (Einstein), q/sqrt(R g d**3). Some authors use g cos(slope).
 
     Examples
     --------
@@ -104,18 +104,18 @@ def tau_star_critical(d_star: float) -> float:
 
 @law
 def rouse_number(w_s: float, u_star: float, kappa: float) -> float:
-    """Rouse number [-]: settling against turbulence, w_s/(kappa u_star).
+    """Rouse number [-], settling velocity over the velocity scale of turbulence, w_s/(kappa u_star).
 
     Parameters
     ----------
     w_s : settling velocity [m/s].
     u_star : friction velocity [m/s].
-    kappa : constant of von Karman [-]; 0.41.
+    kappa : von Karman's constant [-]; 0.41.
 
     Notes
     -----
-    Source: Rouse 1937, turbulence mixing grains as it mixes momentum. Above about 2.5 grains stay near the
-    bed, below about 0.8 they fill the depth.
+    Source: Rouse 1937, with equal turbulent diffusivities of grains and momentum. Above about 2.5 grains
+    remain near the bed, below about 0.8 they are distributed over the depth.
 
     Examples
     --------
@@ -164,7 +164,7 @@ def q_star_wong_parker_steep(tau_star: float) -> float:
 
     Notes
     -----
-    Source: Wong & Parker 2006, the same data with the exponent left free: 4.93 (tau_star - 0.047)**1.6.
+    Source: Wong & Parker 2006, the same data with a fitted exponent: 4.93 (tau_star - 0.047)**1.6.
 
     Examples
     --------
@@ -181,14 +181,14 @@ def q_star_ashida_michiue(tau_star: float, tau_star_e: float, tau_star_c: float)
     Parameters
     ----------
     tau_star : dimensionless shear stress [-].
-    tau_star_e : the part of it that the grains feel [-], `tau_star_effective`; tau_star without bed forms.
-    tau_star_c : at the threshold [-]; 0.05.
+    tau_star_e : part of it that acts on the grains [-], `tau_star_effective`; tau_star without bed forms.
+    tau_star_c : value at the threshold of motion [-]; 0.05.
 
     Notes
     -----
     Source: Ashida & Michiue 1972, 17 tau_e**1.5 (1 - tau_c/tau) (1 - sqrt(tau_c/tau)). Without bed forms it
-    is 17 (tau - tau_c) (sqrt(tau) - sqrt(tau_c)). Read in public code, the threshold 0.05 too, there
-    after Parker's e-book, chapter 7. Zero below the threshold.
+    is 17 (tau - tau_c) (sqrt(tau) - sqrt(tau_c)). Formula and threshold 0.05 were taken from public code,
+    which cites Parker's e-book, chapter 7. Zero below the threshold.
 
     Examples
     --------
@@ -205,7 +205,7 @@ def q_star_ashida_michiue(tau_star: float, tau_star_e: float, tau_star_c: float)
 def tau_star_effective(
     speed: float, depth: float, tau_star: float, ratio: float, g: float, d: float
 ) -> float:
-    """Dimensionless shear stress that the grains feel beside bed forms [-], after Ashida and Michiue.
+    """Dimensionless shear stress on the grains in the presence of bed forms [-], after Ashida and Michiue.
 
     Parameters
     ----------
@@ -232,7 +232,7 @@ def tau_star_effective(
 
 @law
 def bedload_layer(tau_star: float, slope: float, friction_angle: float, c_s: float, alpha: float) -> float:
-    """Thickness of the moving layer in grains [-], h_s/d, after Egashira, Miyamoto and Itoh.
+    """Thickness of the moving layer over the diameter [-], h_s/d, after Egashira, Miyamoto and Itoh.
 
     Parameters
     ----------
@@ -240,12 +240,12 @@ def bedload_layer(tau_star: float, slope: float, friction_angle: float, c_s: flo
     slope : bed angle [rad].
     friction_angle : static friction angle between grains, phi_s [rad].
     c_s : concentration in the layer [-]; half that of the bed, 0.3.
-    alpha : pressure of collisions per static pressure [-]; 0.25.
+    alpha : ratio of the pressure of collisions to the static pressure [-]; 0.25.
 
     Notes
     -----
     Source: Egashira, Miyamoto & Itoh 1997, tau_star/(c_s cos(slope) (tan(phi_s)/(1 + alpha) - tan(slope))),
-    read in public code. Infinite where the slope is too steep for a layer.
+    taken from public code. Infinite if the slope is too steep for a layer.
 
     Examples
     --------
@@ -270,16 +270,16 @@ def q_star_egashira(
     slope : bed angle [rad].
     friction_angle : static friction angle between grains, phi_s [rad].
     c_s : concentration in the moving layer [-]; half that of the bed, 0.3.
-    alpha : pressure of collisions per static pressure [-]; 0.25.
+    alpha : ratio of the pressure of collisions to the static pressure [-]; 0.25.
     f : f_d + f_f at c_s [-]; `debris.collision_factor` + `debris.pore_factor`.
-    depth : depth of the flow in grains [-].
+    depth : depth of the flow over the diameter [-].
 
     Notes
     -----
     Source: Egashira, Miyamoto & Itoh 1997, (4/15) K_1**2 K_2 tau_star**2.5/sqrt(f_d + f_f) with K_1 =
-    1/(cos(slope) (tan(phi_s)/(1 + alpha) - tan(slope))) and K_2 = sqrt(1 - h_s/h)/c_s; put together from
-    layer thickness and mean speed as public code has them. There is no threshold. Not a number where the
-    layer fills the depth: that is a debris flow.
+    1/(cos(slope) (tan(phi_s)/(1 + alpha) - tan(slope))) and K_2 = sqrt(1 - h_s/h)/c_s; composed of the layer
+    thickness and the mean speed in public code. There is no threshold. nan if the layer fills the depth: the
+    flow is then a debris flow.
 
     Examples
     --------

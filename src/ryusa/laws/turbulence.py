@@ -1,4 +1,4 @@
-"""Turbulence of a column of water: mixing lengths, eddy viscosity, stress of bed and side walls."""
+"""Turbulence in the water column: mixing lengths, eddy viscosity, shear stress of bed and side walls."""
 
 import math
 
@@ -8,7 +8,7 @@ from ryusa.laws.debris import pore_factor
 
 @law
 def length_prandtl(z: float, kappa: float) -> float:
-    """Mixing length over a wall [m], kappa z; zero at and below z = 0 [m].
+    """Mixing length above a wall [m], kappa z; zero for z <= 0 [m].
 
     Notes
     -----
@@ -30,16 +30,16 @@ def length_parabolic(z: float, depth: float, kappa: float) -> float:
 
     Parameters
     ----------
-    z : height above the bed [m]; zero at and below 0 and at and above the surface.
-    depth : of the water [m], > 0.
+    z : height above the bed [m]; the length is zero for z <= 0 and z >= depth.
+    depth : depth of the water [m], > 0.
     kappa : von Karman's constant [-].
 
     Notes
     -----
-    Source: the free-surface option of YADE's HydroForceEngine (Maurin et al. 2015), there after Nezu &
-    Nakagawa 1993, Turbulence in Open-Channel Flows, which was not opened. Under a stress that falls linearly
-    to the surface it gives the eddy viscosity kappa u_star z (1 - z/depth) and the log law over the whole
-    depth.
+    Source: the free-surface option of YADE's HydroForceEngine (Maurin et al. 2015), which cites Nezu &
+    Nakagawa 1993, Turbulence in Open-Channel Flows (not consulted). With a stress that decreases linearly to
+    the surface it gives the eddy viscosity kappa u_star z (1 - z/depth) and the logarithmic law over the
+    whole depth.
 
     Examples
     --------
@@ -57,15 +57,15 @@ def length_parabolic_between(z: float, face: float, depth: float, kappa: float) 
 
     Parameters
     ----------
-    z : height at which the log law has the slope of its chord between the middles of the two cells [m],
-        `height_between`; the face itself over a moving bed.
-    face : height of the face [m]; zero at and below 0.
+    z : height at which the gradient of the logarithmic law equals its mean gradient between the centres of
+        the two cells [m], `height_between`; the height of the face over a moving bed.
+    face : height of the face [m]; the length is zero for face <= 0.
     depth, kappa : as in `length_parabolic`.
 
     Notes
     -----
-    Source: derived. sqrt(1 - z/depth) is taken at the face, where the stress is, and kappa z at `z`, so that
-    cells follow the log law from the wall on.
+    Source: derived. sqrt(1 - z/depth) is evaluated at the face, as is the stress, and kappa z at `z`, so that
+    the cells follow the logarithmic law from the wall upwards.
 
     Examples
     --------
@@ -79,7 +79,7 @@ def length_parabolic_between(z: float, face: float, depth: float, kappa: float) 
 
 @law
 def length_van_driest(z: float, u_star: float, nu: float, kappa: float) -> float:
-    """Mixing length over a smooth wall [m], kappa z (1 - exp(-z+/26)), z+ = z u_star/nu.
+    """Mixing length above a smooth wall [m], kappa z (1 - exp(-z+/26)), z+ = z u_star/nu.
 
     Parameters
     ----------
@@ -104,20 +104,20 @@ def length_van_driest(z: float, u_star: float, nu: float, kappa: float) -> float
 
 @law
 def length_growth_li_sawamoto(phi: float, phi_max: float, dz: float, kappa: float) -> float:
-    """What a layer of thickness dz adds to the mixing length above it [m], kappa (phi_max - phi)/phi_max dz.
+    """Mixing length contributed by a layer of thickness dz [m], kappa (phi_max - phi)/phi_max dz.
 
     Parameters
     ----------
-    phi : concentration of grains in the layer [-]; from phi_max on nothing is added.
-    phi_max : concentration at which eddies have no room [-], > 0.
+    phi : concentration of grains in the layer [-]; no contribution if phi >= phi_max.
+    phi_max : concentration above which there is no turbulence [-], > 0.
     dz : thickness [m].
     kappa : von Karman's constant [-].
 
     Notes
     -----
     Source: Li & Sawamoto 1995, Coastal Eng. Japan 38, as used by Revil-Baudard & Chauchat 2013 and by Maurin
-    et al. 2015; read in YADE's code, the articles were not opened. The length is the sum over all layers
-    below. In clear water it becomes kappa z.
+    et al. 2015; taken from the code of YADE, not from the articles. The mixing length is the sum over all
+    layers below. In clear water it is kappa z.
 
     Examples
     --------
@@ -129,18 +129,18 @@ def length_growth_li_sawamoto(phi: float, phi_max: float, dz: float, kappa: floa
 
 @law
 def length_pore_egashira(phi: float, d: float, k_f: float) -> float:
-    """Length of the eddies in the pores of a debris flow [m]: its square is k_f (1-c)**(5/3) c**(-2/3) d**2.
+    """Mixing length in the pores of a debris flow [m]; its square is k_f (1-c)**(5/3) c**(-2/3) d**2.
 
     Parameters
     ----------
-    phi : concentration of grains, c in the source [-], > 0; infinite at 0.
+    phi : concentration of grains, c in the source [-], > 0; the length is infinite at 0.
     d : diameter of the grains [m].
     k_f : coefficient [-], 0.16 in the source.
 
     Notes
     -----
     Source: Egashira, Miyamoto & Itoh 1997; the stress of the water in the pores, rho f_f d**2 |dU/dz| dU/dz
-    with f_f of `debris.pore_factor`, written as a mixing length. The factor 1 - c is already in it.
+    with f_f of `debris.pore_factor`, expressed as a mixing length. It includes the factor 1 - c.
 
     Examples
     --------
@@ -155,18 +155,18 @@ def length_pore_egashira(phi: float, d: float, k_f: float) -> float:
 
 @law
 def eddy_viscosity(length: float, shear: float, eps: float) -> float:
-    """Kinematic eddy viscosity [m2/s] of water that fills the share eps of the mixture, eps l**2 |dU/dz|.
+    """Kinematic eddy viscosity [m2/s] of a mixture with the share eps of water, eps l**2 |dU/dz|.
 
     Parameters
     ----------
     length : mixing length [m].
     shear : velocity gradient of the water [1/s].
-    eps : share of the water, 1 - phi [-].
+    eps : volume fraction of the water, 1 - phi [-].
 
     Notes
     -----
     Source: Prandtl 1925 for clear water; the factor eps as in Revil-Baudard & Chauchat 2013 and Maurin et al.
-    2015, read in YADE's code.
+    2015, taken from the code of YADE.
 
     Examples
     --------
@@ -178,12 +178,12 @@ def eddy_viscosity(length: float, shear: float, eps: float) -> float:
 
 @law
 def height_between(z_low: float, z_high: float) -> float:
-    """Height [m] at which the log law has the slope of its chord between two heights [m], both > 0.
+    """Height [m] at which the gradient of the logarithmic law is its mean between two heights [m], both > 0.
 
     Notes
     -----
-    The logarithmic mean (z_high - z_low)/ln(z_high/z_low). A mixing length taken there makes a column of
-    cells follow the log law exactly, from the wall on.
+    The logarithmic mean (z_high - z_low)/ln(z_high/z_low). With mixing lengths evaluated there, the cells of
+    a column follow the logarithmic law exactly, from the wall upwards.
 
     Examples
     --------
@@ -198,7 +198,7 @@ def height_between(z_low: float, z_high: float) -> float:
 
 @law
 def u_star_smooth(u_x: float, z: float, nu: float) -> float:
-    """Friction velocity [m/s] under which a smooth wall has the water speed |u_x| at height z.
+    """Friction velocity [m/s] at a smooth wall from the water speed |u_x| at height z.
 
     Parameters
     ----------
@@ -208,7 +208,7 @@ def u_star_smooth(u_x: float, z: float, nu: float) -> float:
 
     Notes
     -----
-    Inverse of `water.log_law_smooth`: closed below z+ = 11.3, Newton's method above, where the law is convex.
+    Inverse of `water.log_law_smooth`: explicit below z+ = 11.3, by Newton's method above, where it is convex.
 
     Examples
     --------
@@ -232,7 +232,7 @@ def u_star_smooth(u_x: float, z: float, nu: float) -> float:
 
 @law
 def wall_smooth(u_x: float, z: float, nu: float) -> tuple[float, float]:
-    """Stress of a smooth wall over density [m2/s2], with the sign of u_x, and its slope with u_x [m/s].
+    """Stress on a smooth wall over density [m2/s2], with the sign of u_x, and its derivative by u_x [m/s].
 
     Parameters
     ----------
@@ -242,7 +242,7 @@ def wall_smooth(u_x: float, z: float, nu: float) -> tuple[float, float]:
 
     Notes
     -----
-    Source: the two-layer law of `water.log_law_smooth`; without slip and linear as long as z+ <= 11.3.
+    Source: the two-layer law of `water.log_law_smooth`; linear in u_x for z+ <= 11.3.
 
     Examples
     --------
@@ -258,14 +258,14 @@ def wall_smooth(u_x: float, z: float, nu: float) -> tuple[float, float]:
 
 @law
 def wall_no_slip(u_x: float, z: float, nu: float, square: float) -> tuple[float, float]:
-    """Stress of a wall without slip over density [m2/s2], with the sign of u_x, and its slope with u_x [m/s].
+    """Stress on a no-slip wall over density [m2/s2], with the sign of u_x, and its derivative by u_x [m/s].
 
     Parameters
     ----------
     u_x : water speed at height z [m/s].
     z : height above the wall [m], > 0.
     nu : kinematic viscosity [m2/s].
-    square : square of the mixing length at the wall, times the share of the water [m2]; 0 without eddies.
+    square : square of the mixing length at the wall, times the volume fraction of water [m2]; 0 if laminar.
 
     Notes
     -----
@@ -283,7 +283,7 @@ def wall_no_slip(u_x: float, z: float, nu: float, square: float) -> tuple[float,
 
 @law
 def wall_rough(u_x: float, z: float, k_rough: float) -> tuple[float, float]:
-    """Stress of a rough wall over density [m2/s2], signed as u_x, and its slope with u_x [m/s]. Eq. (9).
+    """Stress on a rough wall over density [m2/s2], with the sign of u_x, and its derivative [m/s]. Eq. (9).
 
     Parameters
     ----------
@@ -312,13 +312,13 @@ def speed_mean_rough(depth: float, u_star: float, k_rough: float) -> float:
 
     Parameters
     ----------
-    depth : of the water above the zero of the profile [m].
+    depth : depth of the water above the zero of the profile [m].
     u_star : friction velocity [m/s].
     k_rough : equivalent roughness [m], > 0.
 
     Notes
     -----
-    Source: integral of the paper's Eq. (9) from the height where it turns positive, about k_rough/30.
+    Source: integral of Eq. (9) of the paper from the height where it becomes positive, about k_rough/30.
 
     Examples
     --------
@@ -333,7 +333,7 @@ def speed_mean_rough(depth: float, u_star: float, k_rough: float) -> float:
 
 @law
 def friction_gap_laminar(re: float) -> float:
-    """Friction factor of slow water between two walls [-], 96/Re, Re built with the hydraulic diameter.
+    """Friction factor of laminar flow between two walls [-], 96/Re, Re with the hydraulic diameter.
 
     Notes
     -----
@@ -354,7 +354,7 @@ def friction_blasius(re: float) -> float:
     Notes
     -----
     Source: Blasius 1913, for Re = u D/nu between about 4e3 and 1e5, D the hydraulic diameter; one of the two
-    side-wall options of YADE's HydroForceEngine, which builds Re with the width instead of twice the width.
+    side-wall options of YADE's HydroForceEngine, where Re contains the width instead of twice the width.
 
     Examples
     --------
@@ -378,7 +378,7 @@ def friction_karman_prandtl(re: float) -> float:
     >>> round(friction_karman_prandtl(4000.0), 4), round(friction_karman_prandtl(1.0e5), 4)
     (0.0399, 0.018)
     """
-    x = re / (2.0 + re) * 6.0  # near Re/2.51 at small Re, of order 5 to 15 beyond
+    x = re / (2.0 + re) * 6.0  # first guess: near Re/2.51 at small Re, 5 to 15 at large Re
     for _ in range(40):
         change = (2.0 * math.log10(re / x) - 0.8 - x) / (1.0 + 2.0 / (math.log(10.0) * x))
         x = max(x + change, 0.1 * x)
@@ -389,17 +389,17 @@ def friction_karman_prandtl(re: float) -> float:
 
 @law
 def side_wall_drag(u_x: float, friction: float, width: float) -> float:
-    """How the two side walls of a flume slow the water down [m/s2], f |u| u/(4 width); opposite to u_x.
+    """Deceleration of the water by the two side walls of a flume [m/s2], f |u| u/(4 width), opposite to u_x.
 
     Parameters
     ----------
     u_x : water speed [m/s].
     friction : Darcy-Weisbach friction factor f [-].
-    width : between the walls [m], > 0.
+    width : distance of the walls [m], > 0.
 
     Notes
     -----
-    Source: two walls of stress f rho u**2/8 on water of the given width; the sink of Maurin et al. 2015.
+    Source: the stress f rho u**2/8 on two walls, per mass of water between them; as in Maurin et al. 2015.
 
     Examples
     --------

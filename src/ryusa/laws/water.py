@@ -1,4 +1,4 @@
-"""Water over a bed: velocity profiles and friction velocity. Eq. (9) and its relatives."""
+"""Water over a bed: velocity profiles (Eq. (9) and others) and friction velocity."""
 
 import math
 
@@ -21,8 +21,8 @@ def log_law_rough(z: float, u_star: float, k_rough: float) -> float:
 
     Notes
     -----
-    Source: the paper, Eq. (9); log is base 10. The printed law turns negative below about k_rough/30; it is
-    clipped at zero there, and zero at and below z = 0.
+    Source: the paper, Eq. (9); log is base 10. The printed law is negative below about k_rough/30, where zero
+    is used instead; zero for z <= 0.
 
     Examples
     --------
@@ -52,8 +52,8 @@ def log_law_smooth(z: float, u_star: float, nu: float) -> float:
 
     Notes
     -----
-    Source: the two-layer law of the wall, u+ = z+ up to z+ = 11.3 and u+ = ln(z+/11.3)/0.41 + 11.3 beyond
-    (the classical u+ = ln(z+)/0.41 + 5.4 written so that both meet). Zero at and below z = 0.
+    Source: the two-layer law of the wall, u+ = z+ up to z+ = 11.3 and u+ = ln(z+/11.3)/0.41 + 11.3 above
+    (the classical u+ = ln(z+)/0.41 + 5.4 in a form that is continuous). Zero for z <= 0.
 
     Examples
     --------
@@ -72,7 +72,7 @@ def log_law_smooth(z: float, u_star: float, nu: float) -> float:
 
 @law
 def uniform(z: float, speed: float) -> float:
-    """Water speed of a plug flow [m/s]: `speed` above z = 0 [m], nothing at and below it.
+    """Water speed of a plug flow [m/s]: `speed` for z > 0 [m], else zero.
 
     Examples
     --------
@@ -86,7 +86,7 @@ def uniform(z: float, speed: float) -> float:
 
 @law
 def still(z: float) -> float:
-    """Water at rest [m/s], whatever the height z [m].
+    """Water at rest: zero speed [m/s] at every height z [m].
 
     Examples
     --------
@@ -133,7 +133,7 @@ def tau_star_from_u_star(u_star: float, rho_s: float, rho_w: float, g: float, d:
 
 @law
 def u_star_from_slope(depth: float, slope: float, g: float) -> float:
-    """Friction velocity of steady uniform flow [m/s]: the bed carries the water's weight along the slope.
+    """Friction velocity of steady uniform flow [m/s]: bed stress balances the weight along the slope.
 
     Parameters
     ----------
