@@ -1,8 +1,8 @@
-"""The measures and the pictures of a run, one line each; from here follow commands, help, docs and names.
+"""The measures and pictures of a run, one line each.
 
-A line names its function as "module:function", and `load` imports it, so that the tables cost nothing.
-`ryusa measure` and `ryusa draw`, their `--help`, the tables of the command reference and the functions of
-`ryusa.measure` are made from them: a new measure or picture needs one line here beside its own file.
+From these tables follow `ryusa measure` and `ryusa draw`, their `--help`, the command reference, and the
+functions of `ryusa.measure`: a new measure or picture needs one line here in addition to its own file.
+Functions are given as "module:function" and imported by `load` when they are used.
 """
 
 from collections.abc import Callable
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
 
-OPTION_NAMES = {"t": "--at", "grains": "--grain"}  # where an option is not called as the keyword it sets
+OPTION_NAMES = {"t": "--at", "grains": "--grain"}  # options whose name differs from the keyword
 
 
 @dataclass(frozen=True)
@@ -19,13 +19,13 @@ class MeasureEntry:
 
     Attributes
     ----------
-    name : word on the command line.
-    function : "module:function"; called with the results of a run and the options. The record it returns has
-        `rows()` for the CSV; it is printed as its `averages` where it has them, else as a table of rows.
+    name : name on the command line.
+    function : "module:function"; called with the results of a run and the options. It returns a record with
+        `rows()` for the CSV, which is printed as its `averages` if it has them, else as a table of rows.
     doc : one line for help and docs.
-    options : keywords of the function that can be given on the command line.
-    settled : whether it covers what follows `record.settle` unless told otherwise; --settle shifts that.
-    printing : options that only change what is printed.
+    options : keywords of the function that are options of the command.
+    settled : whether the measure ignores the time up to `record.settle` by default; --settle changes it.
+    printing : options that affect only the printed text.
     """
 
     name: str
@@ -37,7 +37,7 @@ class MeasureEntry:
 
     @property
     def given_as(self) -> tuple[str, ...]:
-        """Options of the command line that it takes, such as "--begin"."""
+        """Options of the command, such as "--begin"."""
         settle = ("settle",) if self.settled and "settle" not in self.options else ()
         return tuple(option(keyword) for keyword in (*settle, *self.options, *self.printing))
 
@@ -48,13 +48,13 @@ class PictureEntry:
 
     Attributes
     ----------
-    name : word on the command line.
-    function : "module:function". With a `measure`, it draws the record which that measure returns; without,
+    name : name on the command line.
+    function : "module:function". With a `measure`, it draws the record returned by that measure; without one,
         it is called with the results of a run and the options, and returns the figure and the rows for CSV.
     doc : one line for help and docs.
-    options : keywords that can be given on the command line, of the measure where there is one.
-    settled : whether it covers what follows `record.settle` unless told otherwise.
-    measure : name of the measure it draws, or "".
+    options : keywords, of the measure if there is one, that are options of the command.
+    settled : whether the picture ignores the time up to `record.settle` by default.
+    measure : name of the measure that it draws, or "".
     """
 
     name: str
@@ -66,7 +66,7 @@ class PictureEntry:
 
     @property
     def given_as(self) -> tuple[str, ...]:
-        """Options of the command line that it takes, such as "--begin"."""
+        """Options of the command, such as "--begin"."""
         return tuple(option(keyword) for keyword in self.options)
 
 
@@ -132,7 +132,7 @@ PICTURES = (
 
 
 def option(keyword: str) -> str:
-    """The option of the command line that sets a keyword.
+    """Return the option of the command line that sets a keyword.
 
     >>> option("begin"), option("t")
     ('--begin', '--at')
@@ -141,7 +141,7 @@ def option(keyword: str) -> str:
 
 
 def load(function: str) -> Callable[..., Any]:
-    """The function that a line names.
+    """Import a function given as "module:function".
 
     >>> load("math:sqrt")(4.0)
     2.0

@@ -1,4 +1,4 @@
-"""Quantities with units: `"100 N/cm"` to 1.0e4 in SI, and back. The only module that knows other units."""
+"""Quantities with units: `"100 N/cm"` to 1.0e4 in SI, and back. All other modules use SI units only."""
 
 import math
 import re
@@ -7,7 +7,7 @@ from decimal import Decimal
 from functools import cache
 from typing import Any
 
-LONGEST = 64  # characters of a quantity at most
+LONGEST = 64  # largest number of characters of a quantity
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3}(?![0-9]))?")
 _FACTOR = re.compile(r"([A-Za-zμΩÅ°%]+)(?:\s*(?:\^|\*\*)?\s*([+-]?[0-9]{1,2})(?![0-9]))?")
 _NAMES = {  # quantity that an SI unit measures, for messages
@@ -27,7 +27,7 @@ _NAMES = {  # quantity that an SI unit measures, for messages
 }
 _METRE, _SECOND, _GRAM, _RADIAN = (("meter", 1),), (("second", 1),), (("gram", 1),), (("radian", 1),)
 _NEWTON, _PASCAL = (("gram", 1), ("meter", 1), ("second", -2)), (("gram", 1), ("meter", -1), ("second", -2))
-COMMON = {  # the common units, faster than Pint reads its definitions; a test compares the two
+COMMON = {  # common units, because Pint takes long to read its definitions; a test compares the two
     "%": (0.01, ()),
     "m": (1.0, _METRE),
     "km": (1e3, _METRE),
@@ -52,7 +52,7 @@ COMMON = {  # the common units, faster than Pint reads its definitions; a test c
 
 
 class UnitError(ValueError):
-    """A text that is not a quantity of the expected kind; the message says what is allowed."""
+    """A text that is not a quantity of the expected dimension; the message says what is allowed."""
 
 
 def quantity(text: object, unit: str) -> float:
@@ -61,7 +61,7 @@ def quantity(text: object, unit: str) -> float:
     Parameters
     ----------
     text : the text, such as `"0.2 cm"`.
-    unit : the SI unit of the result, such as `"m"`; the dimension is checked (angle is a dimension).
+    unit : SI unit of the result, such as `"m"`; the dimension is checked, and angle counts as a dimension.
 
     Returns
     -------
@@ -131,7 +131,7 @@ def _example(unit: str) -> str:
 
 @cache
 def _factor(written: str, unit: str) -> float:
-    """Number of `unit` in one `written`; both must have the same dimension."""
+    """Factor from the unit `written` to `unit`; both must have the same dimension."""
     try:
         factor, dimension = _to_si(written)
     except UnitError as error:
@@ -145,14 +145,14 @@ def _factor(written: str, unit: str) -> float:
 
 
 def _tidy(factor: float) -> float:
-    """Round off the last bits that chained conversions leave in a round number."""
+    """Remove the round-off that chained conversions leave in a round number."""
     rounded = float(f"{factor:.14g}")
     return rounded if abs(rounded - factor) <= 4e-16 * abs(factor) else factor
 
 
 @cache
 def _to_si(written: str) -> tuple[float, tuple[tuple[str, int], ...]]:
-    """Factor and dimension of a unit such as `N s/cm`, `kg/m3`, `m s^-2`."""
+    """Factor to SI and dimension of a unit such as `N s/cm`, `kg/m3`, `m s^-2`."""
     text = unicodedata.normalize("NFKC", written).translate(
         {ord("⋅"): "*", ord("·"): "*", ord("−"): "-", 0xB5: "μ"}
     )
@@ -194,7 +194,7 @@ def _atom(name: str) -> tuple[float, tuple[tuple[str, int], ...]]:
 
 
 def from_pint(name: str) -> tuple[float, tuple[tuple[str, int], ...]]:
-    """As `_atom`, from Pint, which first reads some thousand definitions."""
+    """As `_atom`, but from Pint, which first reads some thousand definitions."""
     registry, plain = _registry(), {"°": "degree"}.get(name, name)
     if plain in {"degC", "degF", "celsius", "fahrenheit", "°C", "°F"}:
         raise UnitError(f"'{name}' has an offset and cannot be used here")

@@ -24,13 +24,13 @@ def overlaps(found: Chart, grain: Grain) -> Figure:
 
 
 def _length(value: float) -> str:
-    """A diameter in the unit one would say it in."""
+    """A diameter in a suitable unit."""
     if value < 0.01:
         return f"{1e3 * value:g} mm"
     return f"{1e2 * value:g} cm" if value < 1.0 else f"{value:g} m"
 
 
 def _note(grain: Grain, speed: bool = True) -> str:
-    """The line of inputs in the corner of a chart."""
+    """The line of input values in the corner of a chart."""
     inside = f"{grain.rho_s:g} kg/m³"
     return f"{inside}, e = {grain.e:g}, impact at {grain.speed:g} m/s" if speed else inside

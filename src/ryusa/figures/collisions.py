@@ -38,7 +38,7 @@ def collision_times(found: Collisions, scene: Scene) -> Figure:
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.set_xlim(edges[0], edges[-1])
-    axes.set_ylim(0.8, None)  # single contacts stand on the axis
+    axes.set_ylim(0.8, None)  # single contacts remain visible
     axes.set_xlabel("contact time  $t$  (s)")
     axes.set_ylabel("number of contacts")
     axes.legend(

@@ -1,4 +1,4 @@
-"""Our curves on reference curves."""
+"""Our curves together with reference curves."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -28,7 +28,7 @@ class Axis:
 
 @dataclass(frozen=True)
 class Curve:
-    """One curve; what is not finite is left out."""
+    """One curve; values that are not finite are omitted."""
 
     name: str
     x: Floats
@@ -39,9 +39,9 @@ class Curve:
 def compared(
     x: Axis, y: Axis, ours: Sequence[Curve], references: Sequence[Curve], beside: Sequence[Curve] = ()
 ) -> Figure:
-    """Draw ours as coloured signs, or lines where they are many, references as black ones, others faint.
+    """Draw our curves as coloured symbols (many points: lines), references in black, others grey.
 
-    A reference of the same name as one of ours shares its colour.
+    A reference with the name of one of our curves has its colour.
     """
     figure, (axes,) = new(height=2.9)
     colours = {one.name: COLOURS[k % (len(COLOURS) - 1)] for k, one in enumerate(ours)}

@@ -26,7 +26,7 @@ _AXIS = {
 
 @dataclass(frozen=True)
 class QuotedPoint:
-    """A number that the paper gives, at its place in a chart; y as drawn, k_n [N/m]; `of` names the grain."""
+    """A number given by the paper, as a point in a chart: y as drawn, k_n [N/m]; `of` names the grain."""
 
     k_n: float
     y: float
@@ -61,11 +61,11 @@ def drop_chart(
     ----------
     quantity : what y is; "ratio" has a linear axis, the others a logarithmic one.
     lines, runs : closed forms and measured values, k_n in N/m; the k-th of each share colour and label.
-    quoted : what the paper says of single points.
+    quoted : points given by the paper.
     band : shaded region between two lines over k_n.
     levels : two values of y between which the whole width is shaded.
-    words : how the legend calls the lines, and a note (speed, restitution) above the frame.
-    legend : where the legend stands.
+    words : name of the lines in the legend, and a note (speed, restitution) above the frame.
+    legend : position of the legend.
     """
     figure, (axes,) = style.new(height=2.9)
     axes.set_xscale("log")
@@ -159,9 +159,9 @@ def rebounds(
 
     Parameters
     ----------
-    schemes : name in the legend -> what came out.
-    asked, off : restitution asked for, and how far from it still counts as normal (shaded) [-].
-    least : steps per contact that the paper asks for (dashed).
+    schemes : name in the legend -> restitution found.
+    asked, off : restitution of the case, and the deviation still considered normal (shaded) [-].
+    least : steps per contact required by the paper (dashed).
     note : above the frame.
     """
     figure, (axes,) = style.new(height=3.2)

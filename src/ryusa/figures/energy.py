@@ -62,7 +62,7 @@ def _alive(terms: dict[str, np.ndarray]) -> list[tuple[str, np.ndarray]]:
 
 
 def _prefix(found: Energy) -> tuple[float, str]:
-    """The unit that keeps the ticks between 1 and 1000."""
+    """Unit for which the ticks are between 1 and 1000."""
     terms = [v for group in (found.lost, found.given) for v in group.values()]
     terms += [v - v[0] for name, v in found.held.items() if name == "potential" and len(v)]
     terms += [v for name, v in found.held.items() if name != "potential"]

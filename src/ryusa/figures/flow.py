@@ -17,13 +17,13 @@ SpeedCurves = Mapping[str, tuple[Floats, Floats]]
 def speeds(
     panels: Mapping[str, SpeedCurves], d: float, flows: float, g: float = 9.8, note: str = ""
 ) -> Figure:
-    """Draw the mean speed of the free grains along the bed over time, one panel per way to start.
+    """Draw the mean speed of the free grains along the bed over time, one panel per initial state.
 
     Parameters
     ----------
     panels : title -> name of a run -> time [s] and mean speed along the bed [m/s].
     d : mean diameter [m].
-    flows : speed over sqrt(g d) from which on the bed counts as flowing, drawn as a line.
+    flows : speed over sqrt(g d) above which the bed counts as flowing, drawn as a line.
     g : acceleration of gravity [m/s2].
     note : a line of text above.
     """

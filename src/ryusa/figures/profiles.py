@@ -11,7 +11,7 @@ from ryusa.figures import style
 from ryusa.measure import Layers, Profiles
 
 CM = 100.0  # centimetres in a metre
-LEAST = 0.01  # of the largest concentration; where there is less, few grains make the mean speed
+LEAST = 0.01  # share of the largest concentration; below, the mean speed is that of few grains
 
 Height = Literal["cm", "d"]
 Shown = Literal["phi", "area_fraction", "v_x", "v_z", "spin", "temperature_x", "temperature_z", "flux"]
@@ -87,7 +87,7 @@ def _line(axes: Axes, one: Profiles, layers: Layers, z: np.ndarray, s: int, name
 
 
 def _bed(axes: Axes, one: Profiles, z: np.ndarray, *, first: bool) -> None:
-    """Fill the concentration of the fixed grains, where it was measured; runs share one bed."""
+    """Shade the concentration of the fixed grains, if it was measured; all runs have the same bed."""
     if first and np.isfinite(one.bed).any():
         axes.fill_betweenx(z, 0.0, one.bed, step="mid", color=style.BED, alpha=0.6, lw=0.0, zorder=0)
         axes.annotate("shaded: fixed grains", (1, 0), (-3, 4), "axes fraction", textcoords="offset points",
@@ -101,7 +101,7 @@ def _foot(one: Profiles) -> float:
 
 
 def _letter(axes: Axes, text: str) -> None:
-    """Put a panel's letter into its upper right corner, which a profile leaves free."""
+    """Write the letter of a panel into its upper right corner, which is empty in a profile."""
     axes.annotate(
         text, (1, 1), xytext=(-3, -3), xycoords="axes fraction", textcoords="offset points", va="top",
         ha="right", weight="bold",

@@ -9,7 +9,7 @@ from ryusa.figures import style
 from ryusa.figures.snapshot import CM, PLAIN, grains, panel
 from ryusa.measure import HeapSurface, Snapshot
 
-AWAY = "#f4f2ee"  # grains that are no part of the heap
+AWAY = "#f4f2ee"  # grains that do not belong to the heap
 FITTED, OTHER = "#D55E00", "#0072B2"
 
 

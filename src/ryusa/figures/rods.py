@@ -10,8 +10,8 @@ from ryusa.figures.snapshot import CM, PLAIN, circles, grains
 from ryusa.measure import Rods, Snapshot
 
 MARKED = "#20262c"
-OWN = 2  # rods from so many grains on
-MORE = 9  # rods of so many grains and more share a bar
+OWN = 2  # smallest number of grains of a rod
+MORE = 9  # rods of this many grains or more share a bar
 
 
 @style.house
@@ -48,7 +48,7 @@ def rods(seen: Sequence[Snapshot], marked: Sequence[int]) -> Figure:
 
 @style.house
 def rod_lengths(found: Mapping[str, Rods]) -> Figure:
-    """Draw the share of moving grains in rods of n grains, and beside it the null model, run by run."""
+    """Draw the share of moving grains in rods of n grains, with the null model, for each run."""
     figure, (bars, shares) = style.new(1, 2, width=style.PAGE, height=2.4)
     n = np.arange(OWN, MORE + 1)
     wide = 0.8 / len(found)

@@ -53,7 +53,7 @@ def tracks(
 
 
 def spin(results: Results, grains: Sequence[int] | None = None, length: float | None = None) -> Drawn:
-    """Spin of grains over the distance they went, up to `length` [m]."""
+    """Spin of grains over the distance travelled, up to `length` [m]."""
     found = measure.spin(results)
     _need(len(found.t) > 1, results, "two frames")
     return figures.spin(found, grains, length), found.samples()
@@ -67,7 +67,7 @@ def energy(results: Results) -> Drawn:
 
 
 def contacts(results: Results) -> Drawn:
-    """Contact times with the bed where lone grains hop over it, else of all contacts by kind of partner."""
+    """Contact times with the bed of single grains over a bed, else of all contacts by kind of partner."""
     hopping = measure.saltation(results) if _lone(results) else None
     if hopping is not None and len(hopping.hops):
         return figures.contact_times(hopping), [{"contact_time_s": float(t)} for t in hopping.contact_time]
@@ -109,17 +109,17 @@ def vibration(
     begin: float = -math.inf,
     end: float = math.inf,
 ) -> Drawn:
-    """Motion of grains within short windows; by default of the two that move most."""
+    """Motion of grains within short time windows; by default of the two that move most."""
     found = measure.vibration(results, begin=begin, end=end)
     return figures.vibration(found, grains or found.most_restless(2)), found.rows()
 
 
 def _lone(results: Results) -> bool:
-    """Whether the case has lone grains, which do not lie on each other."""
+    """Whether the case has single grains that do not form a bed."""
     return results.case.get("build", {}).get("kind") in {"saltation", "drop"}
 
 
 def _need(there: bool, results: Results, what: str) -> None:
-    """Refuse a run that does not hold what a picture needs."""
+    """Refuse a run without the data that a picture needs."""
     if not there:
         raise ResultsError(f"{results.folder}: does not hold {what}")

@@ -1,4 +1,4 @@
-"""Saltation in the paper's form: over stiffness in N/cm, spin over the way in cm with clockwise negative."""
+"""Saltation in the form of the paper: over stiffness in N/cm, spin (clockwise negative) over cm."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -42,7 +42,7 @@ class StiffnessSeries:
 
 @dataclass(frozen=True)
 class SpinPath:
-    """Spin of one grain along its way.
+    """Spin of one grain over distance.
 
     Attributes
     ----------
@@ -96,7 +96,7 @@ def over_stiffness_in_cm(
     skim: float = 0.0,
     one: bool = False,
 ) -> Figure:
-    """Draw values over stiffness, one panel each, with what counts as no change.
+    """Draw values over stiffness, one panel each, with the range that counts as no change.
 
     Parameters
     ----------
@@ -130,7 +130,7 @@ def over_stiffness_in_cm(
 
 
 def _shade(axes: Axes, skim: float) -> None:
-    """Hatch what is softer than the softest run that does not skim."""
+    """Hatch the stiffnesses below that of the softest run without skimming."""
     low, _ = axes.get_xlim()
     if skim * _PER_CM <= 2.0 * low:
         return
@@ -144,7 +144,7 @@ def _shade(axes: Axes, skim: float) -> None:
         "color": "#555555",
     }
     plain = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}
-    # Below what was measured: a point may lie where the words are.
+    # Below the measured values, so that no point is hidden.
     axes.annotate("skims the crests,\n$u t/d > 0.3$", (0, 0), (4, 4), bbox=plain, zorder=1, **how)
 
 
@@ -154,8 +154,8 @@ def spin_over_way(ways: Sequence[SpinPath], quoted: float, until: float) -> Figu
 
     Parameters
     ----------
-    ways : one grain each.
-    quoted : size of the spin that the paper gives [rad/s].
+    ways : paths, one per grain.
+    quoted : magnitude of the spin given by the paper [rad/s].
     until : distance shown [m].
     """
     figure, (axes,) = style.new(height=2.9)

@@ -1,4 +1,4 @@
-"""How much results depend on choices: one row per choice, one panel per result."""
+"""Sensitivity of results to choices: one row per choice, one panel per result."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from ryusa.measure import Average
 
 @dataclass(frozen=True)
 class SensitivityRow:
-    """One row: what was chosen, and what came out, by series (such as rotation locked and free)."""
+    """One row: a choice and its results, by series (such as rotation locked and free)."""
 
     label: str
     results: Mapping[str, Sequence[Average]]  # series -> one average per panel
@@ -20,13 +20,13 @@ class SensitivityRow:
 
 @style.house
 def sensitivity(rows: Sequence[SensitivityRow], titles: Sequence[str], scales: Sequence[float]) -> Figure:
-    """Draw every result with its standard error; the first row is the base, its values run down as lines.
+    """Draw every result with its standard error; vertical lines mark the values of the first row, the base.
 
     Parameters
     ----------
     rows : base first.
     titles : axis label of each panel.
-    scales : what each panel's averages are multiplied by (such as 1/d).
+    scales : factor of the averages of each panel (such as 1/d).
     """
     n = len(titles)
     figure, axes = style.new(1, n, width=style.PAGE, height=0.75 + 0.145 * len(rows), sharey=True)

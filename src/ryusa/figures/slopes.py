@@ -1,4 +1,4 @@
-"""Slope of heaps against a friction angle or coefficient, beside what the paper reports."""
+"""Slope of heaps over a friction angle or coefficient, with the slopes reported by the paper."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,22 +11,22 @@ from ryusa.figures import style
 
 @dataclass(frozen=True)
 class Slope:
-    """One series: slopes of all seeds over what is changed, and what the paper reports [deg]."""
+    """One series: slopes of all seeds over the varied quantity, and the slope reported by the paper [deg]."""
 
     label: str
     paper: tuple[float, ...]
-    points: Sequence[tuple[float, Sequence[float]]]  # abscissa, slopes; nan stands like a wall
+    points: Sequence[tuple[float, Sequence[float]]]  # abscissa, slopes; nan for a heap that stands as a wall
 
 
 @style.house
 def slopes(
     series: Sequence[Slope], text: str = "friction angle  $\\phi$  (deg)", log: bool = False
 ) -> Figure:
-    """Draw every seed as a faint dot and the mean as a mark; heaps that stand like a wall at the top edge.
+    """Draw every seed as a faint dot and the mean as a symbol; heaps that stand as a wall at the top edge.
 
     Parameters
     ----------
-    series : what is drawn.
+    series : slopes, one colour each.
     text : label of the abscissa.
     log : abscissa on a logarithmic scale.
     """
@@ -35,7 +35,7 @@ def slopes(
     top = max([45.0, *(value + 8.0 for value in known)])
     for number, one in enumerate(series):
         colour, mark = style.COLOURS[number % len(style.COLOURS)], style.MARKERS[number % len(style.MARKERS)]
-        aside = number - 0.5 * (len(series) - 1)  # or marks of several series hide each other
+        aside = number - 0.5 * (len(series) - 1)  # so that symbols of several series do not overlap
         means: list[tuple[float, float]] = []
         for place, values in sorted(one.points, key=lambda point: point[0]):
             x = place * 1.03**aside if log else place + 0.35 * aside

@@ -1,4 +1,4 @@
-"""Grains at one moment in the x-z plane, true to scale: fixed ones grey, planes as edges of a solid."""
+"""Grains at one moment in the x-z plane, to scale: fixed grains grey, planes as edges of a solid."""
 
 import math
 from typing import Any, Literal
@@ -19,10 +19,10 @@ from ryusa.measure.repose import STILL, G
 CM = 100.0  # centimetres in a metre
 WET, SURFACE = "#e8f1f8", "#0072B2"  # water, and its surface
 PLAIN, RIM, SOLID = "#cfdce8", "#3c4a57", "#d8d4cc"
-WIDE = 2.2  # from this ratio of the sides on a picture is two columns wide
+WIDE = 2.2  # ratio of the sides above which a picture is two columns wide
 SLIM, LOW = 0.75, 9.0  # smallest and largest width over height
 BAR = 0.065  # height of the colour bar [inch]
-AROUND, ABOVE = 0.62, 0.16  # height of what is beside the panel, and of a colour bar with its ticks [inch]
+AROUND, ABOVE = 0.62, 0.16  # height of labels around the panel, and of a colour bar with its ticks [inch]
 
 Colour = Literal["speed", "spin", "none"]
 Box = tuple[float, float, float, float]  # left, right, bottom, top [m]
@@ -44,7 +44,9 @@ def snapshot(seen: Snapshot, colour: Colour = "speed") -> Figure:
     if colour == "speed":
         values, text, hue = seen.speed, "speed  (m/s)", "YlGnBu"
         still = STILL * math.sqrt(G * float(seen.d.mean())) if len(seen.d) else 1.0
-        scale = Normalize(0.0, max(_most(values), still))  # or the noise of grains at rest fills the scale
+        scale = Normalize(
+            0.0, max(_most(values), still)
+        )  # so that noise of grains at rest does not fill the scale
     else:
         values, text, hue = seen.spin, "spin  $\\omega_y$  (rad/s)", "RdBu_r"
         most = max(_most(np.abs(values)), 1.0)
@@ -56,7 +58,7 @@ def snapshot(seen: Snapshot, colour: Colour = "speed") -> Figure:
 
 
 def panel(seen: Snapshot, above: float = 0.0) -> tuple[Figure, Axes]:
-    """An axes in cm with bed and planes, the time and `above` [inch] over it, as large as the grains want."""
+    """Axes in cm with bed, planes and time; `above` [inch] of free height above; sized to fit the grains."""
     box = _box(seen)
     wide, high = box[1] - box[0], box[3] - box[2]
     width = style.PAGE if wide / high >= WIDE else style.COLUMN
@@ -82,17 +84,17 @@ def grains(axes: Axes, seen: Snapshot, colours: Any, zorder: float = 2.0) -> Non
 
 
 def _water(axes: Axes, surface: float, box: Box) -> None:
-    """Tint what is below the surface of the water, and mark it as surveyors do."""
+    """Shade the water, and mark its surface with the usual triangle."""
     low, high, x = box[2] * CM, surface * CM, 0.97 * box[1] * CM + 0.03 * box[0] * CM
     axes.axhspan(low, high, color=WET, lw=0.0, zorder=0.2)
     axes.axhline(high, color=SURFACE, lw=0.8, zorder=0.4)
-    axes.plot([x], [high], marker=7, ms=4.5, color=SURFACE, mew=0.0, zorder=3.0)  # stands on the line
+    axes.plot([x], [high], marker=7, ms=4.5, color=SURFACE, mew=0.0, zorder=3.0)  # with its tip on the line
 
 
 def circles(
     axes: Axes, x: Any, d: Any, face: Any, rim: str, *, period: float = math.inf, zorder: float = 1.0
 ) -> None:
-    """Circles true to scale at x [m], the farthest (largest y) first, repeated where they stick out."""
+    """Circles to scale at x [m], the farthest (largest y) first, repeated across periodic limits."""
     which, shift = np.arange(len(d)), np.zeros(len(d))
     if math.isfinite(period):
         low, high = np.flatnonzero(x[:, 0] < 0.5 * d), np.flatnonzero(x[:, 0] > period - 0.5 * d)
@@ -111,7 +113,7 @@ def circles(
 
 
 def planes(axes: Axes, point: Any, normal: Any, box: Box, unit: float) -> None:
-    """Shade what lies behind each plane, within a box [m]; `unit` of the axes in a metre."""
+    """Shade the solid behind each plane within a box [m]; `unit` is the number of axis units per metre."""
     left, right, bottom, top = box
     corners = np.array([(left, bottom), (right, bottom), (right, top), (left, top)])
     for p, n in zip(np.asarray(point)[:, [0, 2]], np.asarray(normal)[:, [0, 2]], strict=True):
@@ -134,7 +136,7 @@ def planes(axes: Axes, point: Any, normal: Any, box: Box, unit: float) -> None:
 
 
 def _box(seen: Snapshot) -> Box:
-    """What to show [m]: the free grains, the period, and the bed beneath and beside them."""
+    """Box to be shown [m]: the free grains, the period, and the bed near them."""
     x, d = np.concatenate([seen.x, seen.bed_x]), np.concatenate([seen.d, seen.bed_d])
     own, own_d = (seen.x, seen.d) if len(seen.x) else (x, d)
     if len(own) == 0:
@@ -151,21 +153,21 @@ def _box(seen: Snapshot) -> Box:
         top = max(top, seen.surface)
     bottom, top = bottom - 0.3 * room, top + 0.5 * room
     ratio = (right - left) / (top - bottom)
-    if ratio < SLIM:  # a slim column gets room at its sides
+    if ratio < SLIM:  # a narrow column gets margins at its sides
         more = 0.5 * (SLIM * (top - bottom) - (right - left))
         left, right = left - more, right + more
-    elif ratio > LOW:  # a long bed gets room above
+    elif ratio > LOW:  # a long bed gets a margin above
         top = bottom + (right - left) / LOW
     return left, right, bottom, top
 
 
 def _most(values: Any) -> float:
-    """Top of a scale: what all but 1 % of the grains stay below."""
+    """Upper end of the scale: the value that 99 % of the grains do not exceed."""
     return float(np.quantile(values, 0.99)) if len(values) else 0.0
 
 
 def _bar(figure: Figure, axes: Axes, shown: ScalarMappable, text: str, over: bool) -> None:
-    """A slim colour bar above the right half of the panel."""
+    """A narrow colour bar above the right half of the panel."""
     width, height = figure.get_size_inches()
     inner = height - AROUND - ABOVE
     beside = axes.inset_axes((0.62, 1.0 + 0.05 / inner, 0.38, BAR / inner))

@@ -37,7 +37,7 @@ def spin(found: Spin, grains: Sequence[int] | None = None, until: float | None =
     axes.set_xlabel(f"distance along the bed  $x$  ({unit})")
     axes.set_ylabel("spin  $\\omega_y$  (rad/s)")
     axes.margins(x=0.0)
-    if not found.omega.any():  # rotation is locked: any scale would be that of round-off
+    if not found.omega.any():  # rotation is locked: an automatic scale would show round-off
         axes.set_ylim(-1.0, 1.0)
     axes.tick_params(right=False, which="both")
     right = axes.secondary_yaxis("right", functions=(_turns, _spin))

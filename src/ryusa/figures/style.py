@@ -1,4 +1,4 @@
-"""The house style: column width, thin frame, colours that survive colour blindness and grey print."""
+"""Style of all figures: column width, thin frame, colours distinct without colour vision or in grey."""
 
 from collections.abc import Callable
 from functools import wraps
@@ -61,7 +61,7 @@ HOUSE: Any = {
 
 
 def house(draw: Drawing) -> Drawing:
-    """Draw in the house style; every function that makes a figure carries this."""
+    """Decorator of all functions that make a figure: apply the common style."""
 
     @wraps(draw)
     def styled(*args: Any, **how: Any) -> Any:
@@ -89,7 +89,7 @@ def new(
 
 
 def save(figure: Figure, path: Path | str) -> Path:
-    """Write a figure; the kind follows from the suffix (.png at 300 dpi, .svg, .pdf)."""
+    """Write a figure; the format follows from the suffix (.png at 300 dpi, .svg, .pdf)."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     still = {"Date": None} if path.suffix in {".svg"} else None  # the same picture gives the same bytes
@@ -99,7 +99,7 @@ def save(figure: Figure, path: Path | str) -> Path:
 
 
 def label_panel(axes: Axes, text: str) -> None:
-    """Put a panel's letter into its upper left corner."""
+    """Write the letter of a panel into its upper left corner."""
     axes.annotate(
         text,
         (0, 1),

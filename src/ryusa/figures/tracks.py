@@ -28,19 +28,19 @@ def tracks(
     length: float | None = None,
     around: Snapshot | None = None,
 ) -> Figure:
-    """Draw the paths of the chosen grains' centres, with bed grains and some outlines of the moving grain.
+    """Draw the paths of the centres of the chosen grains, with bed grains and some outlines of the grain.
 
     Parameters
     ----------
     found : paths (`measure.tracks`).
-    panels : rows the path is cut into; default what makes a row about 40 diameters long.
-    exaggeration : vertical over horizontal scale; 1 keeps grains round. Stated in the figure when not 1.
+    panels : number of rows into which the path is cut; by default a row is about 40 diameters long.
+    exaggeration : vertical over horizontal scale; with 1 grains are round. Stated in the figure if not 1.
     length : distance shown [m]; default all.
-    around : its planes are drawn.
+    around : scene whose planes are drawn.
 
     Notes
     -----
-    A path that is high for its length gets more room at its sides, so that the picture fits on a page.
+    A path that is high for its length gets wider margins, so that the picture fits on a page.
     """
     d = float(found.d[0]) if len(found.d) else 1.0
     x0 = float(np.nanmin(found.x)) - d
@@ -48,8 +48,12 @@ def tracks(
     inside = found.x <= x0 + total
     top = float(found.z[inside].max()) + 0.8 * d
     bottom = float(found.bed_z.min()) - 0.1 * d if len(found.bed_z) else float(found.z.min()) - d
-    each = (top - bottom) * exaggeration * (style.PAGE - 0.6) / TALLEST  # least span for every row there is
-    fit = max(math.floor(math.sqrt(total / each)), 1)  # more rows would be wider than the path is long
+    each = (
+        (top - bottom) * exaggeration * (style.PAGE - 0.6) / TALLEST
+    )  # smallest length of a row for each row drawn
+    fit = max(
+        math.floor(math.sqrt(total / each)), 1
+    )  # with more rows, a row would be longer than its part of the path
     rows = panels or min(max(math.ceil(total / (40.0 * d)), 1), fit, 8)
     span, tall = total / rows, each * rows
     if span < tall:
@@ -76,7 +80,7 @@ def tracks(
 
 
 def _caption(found: Tracks) -> str:
-    """Which grains, and when."""
+    """The grains and the time shown, in words."""
     many = len(found.grains) > 8
     names = ", ".join(str(g) for g in found.grains[:8]) + (
         f", ... ({len(found.grains)} in all)" if many else ""
@@ -106,7 +110,9 @@ def tracks_side_by_side(
     row = (style.PAGE - 0.6) * (top - bottom) / length
     figure, axes = style.new(len(runs), width=style.PAGE, height=0.42 + len(runs) * (row + 0.1), sharex=True)
     for panel, (name, one) in zip(axes, found.items(), strict=True):
-        start = math.floor(float(one.x[0, 0]) / d) * d  # whole grains, so that the bed looks the same
+        start = (
+            math.floor(float(one.x[0, 0]) / d) * d
+        )  # a multiple of the diameter, so that all beds are drawn alike
         moved = replace(one, x=one.x - start, bed_x=one.bed_x - start)
         _bed(panel, moved, 0.0, length, scale)
         for c in range(moved.x.shape[1]):
@@ -159,7 +165,7 @@ def tracks_from_start(found: Mapping[str, Tracks], marks: float = 0.1, length: f
 
 
 def _apart(z: Floats, advance: Floats) -> Floats:
-    """Heights (n_frame, n_grain) moved so that no two overlap, least advance lowest."""
+    """Heights (n_frame, n_grain), shifted so that paths do not overlap; the shortest path is the lowest."""
     z, level = z.copy(), 0.0
     for c in np.argsort(advance):
         z[:, c] += level - z[:, c].min()
@@ -168,7 +174,7 @@ def _apart(z: Floats, advance: Floats) -> Floats:
 
 
 def _bed(axes: Axes, found: Tracks, low: float, high: float, scale: float = MM) -> None:
-    """Bed grains that fall into the panel, repeated over periods."""
+    """Bed grains within the panel, repeated periodically."""
     circles: list[Circle] = []
     for x, z, d in zip(found.bed_x, found.bed_z, found.bed_d, strict=True):
         for at in _copies(float(x), low - d, high + d, found.period):
@@ -190,7 +196,7 @@ def _path(axes: Axes, found: Tracks, column: int, low: float, high: float, scale
     if not near.any():
         return
     colour = style.COLOURS[column % len(style.COLOURS)]
-    # a break wherever the grain is outside the panel, beyond the first frame there
+    # a gap while the grain is outside the panel, after the first frame outside
     drawn = near.copy()
     drawn[1:] |= near[:-1]
     drawn[:-1] |= near[1:]

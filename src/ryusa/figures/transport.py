@@ -1,4 +1,4 @@
-"""Transport rate over bed shear stress, with formulae behind: the chart every bed-load study shows."""
+"""Transport rate over bed shear stress, with bed-load formulae."""
 
 import math
 from collections.abc import Sequence
@@ -21,13 +21,13 @@ DASHES = (*style.LINES, (0, (7, 1.2, 1, 1.2, 1, 1.2)), (0, (9, 3)), (0, (1, 3)))
 
 @dataclass(frozen=True)
 class Formula:
-    """A line behind the points.
+    """A transport formula, drawn as a line.
 
     Attributes
     ----------
     label : author and year.
-    tau_star, q_star : dimensionless shear stress and transport rate [-], shape (n,); not drawn where q_star
-        is not above zero.
+    tau_star, q_star : dimensionless shear stress and transport rate [-], shape (n,); drawn only where q_star
+        is positive.
     """
 
     label: str
@@ -41,10 +41,10 @@ class Rates:
 
     Attributes
     ----------
-    label : what they are.
+    label : name in the legend.
     tau_star, q_star : dimensionless shear stress and transport rate [-], shape (n,).
     error : standard error of q_star [-], the same shape; nan where unknown.
-    tau_error : standard error of tau_star [-], the same shape; None where it is set, not measured.
+    tau_error : standard error of tau_star [-], the same shape; None if tau_star is prescribed.
     """
 
     label: str
@@ -60,8 +60,8 @@ def transport(rates: Sequence[Rates], formulae: Sequence[Formula] = (), note: st
 
     Parameters
     ----------
-    rates : points with one standard error; one that is not above zero hangs as an arrow on the lower edge.
-    formulae : grey lines behind, told apart by their dashes.
+    rates : points with one standard error; a rate that is not positive is an arrow at the lower edge.
+    formulae : grey lines, distinguished by their dashes.
     note : a line of text in the lower right corner.
     """
     figure, (axes,) = style.new(height=3.0)
@@ -81,8 +81,8 @@ def transport_of_run(found: Transport, formulae: Sequence[Formula] = (), name: s
 
     Notes
     -----
-    Frames are averaged over a hundredth of the time, or the line is lost in single grains; the band is the
-    mean with one standard error. A run without a tau_star has no second panel.
+    Frames are averaged over a hundredth of the time, because the passage of single grains dominates shorter
+    times; the band is the mean with one standard error. A run without a tau_star has no second panel.
     """
     chart = found.tau_star > 0.0
     width, ratios = (style.PAGE, [1.15, 1.0]) if chart else (style.COLUMN, [1.0])
@@ -150,7 +150,7 @@ def _chart(axes: Axes, rates: Sequence[Rates], formulae: Sequence[Formula], note
 def _points(axes: Axes, one: Rates, k: int) -> None:
     colour, marker = style.COLOURS[k % len(style.COLOURS)], style.MARKERS[k % len(style.MARKERS)]
     seen = one.q_star > 0.0
-    low = np.minimum(np.nan_to_num(one.error), 0.999 * np.abs(one.q_star))  # stays above zero
+    low = np.minimum(np.nan_to_num(one.error), 0.999 * np.abs(one.q_star))  # lower end above zero
     high = np.nan_to_num(one.error)
     across = None if one.tau_error is None else np.nan_to_num(one.tau_error)[seen]
     axes.errorbar(

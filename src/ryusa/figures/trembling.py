@@ -19,9 +19,9 @@ def over_threshold(
 
     Parameters
     ----------
-    moved : name of a group -> name of a curve -> how far each grain moved in the window [mean diameters].
-    level : shares between which the paper's number lies, shaded.
-    words : what the shaded shares are.
+    moved : name of a group -> name of a curve -> displacement of each grain in the window [mean diameters].
+    level : range of shares that corresponds to the statement of the paper, shaded.
+    words : label of the shaded range.
     note : a line of text above.
     """
     figure, (axes,) = style.new(height=2.9)

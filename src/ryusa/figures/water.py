@@ -1,4 +1,4 @@
-"""A column of water over height: speeds of water and grains, concentration, shear stress."""
+"""Profiles over height with water: speeds of water and grains, concentration, shear stress."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -83,7 +83,7 @@ def _band(
 
 
 def _name(axes: Axes, text: str, z: float, colour: str, off: float) -> None:
-    """Put a word beside a level, at the right edge."""
+    """Label a level at the right edge."""
     axes.annotate(
         text, (1, z), (-3, off), xycoords=("axes fraction", "data"), textcoords="offset points", ha="right",
         va="bottom" if off > 0.0 else "top", fontsize=6.5, color=colour,

@@ -1,4 +1,4 @@
-"""Scene (fixed), State (moving), Contacts (memory of a pair), Tally (the energy account), Column (water)."""
+"""Data of a run: Scene (fixed), State (moving), Contacts (history), Tally (energy account), Column."""
 
 from ryusa.model.column import Budget, Column, WaterState
 from ryusa.model.contacts import EVENT, Contacts

@@ -1,4 +1,4 @@
-"""Names of the arrays that the model is made of."""
+"""Array types of the model."""
 
 import numpy as np
 from numpy.typing import NDArray

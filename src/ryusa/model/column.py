@@ -1,4 +1,4 @@
-"""The column of water over a bed: what holds still, what moves, and what a step gained."""
+"""The water column over a bed: its fixed properties, its state, and its momentum budget."""
 
 import math
 from dataclasses import dataclass
@@ -10,27 +10,27 @@ from ryusa.laws.families import BedKind, Drive, Fluctuations, Mixing, SideWalls,
 from ryusa.model.arrays import Floats
 
 NAN = float("nan")
-AGREE = 0.02  # relative; numbers that say the same thing twice may differ by so much (rounded input)
-STIFF = 0.25  # of the time in which drag equalises water and grains: longest interval between two exchanges
+AGREE = 0.02  # permitted relative difference of two inputs for the same quantity, because of rounding
+STIFF = 0.25  # longest coupling interval over the relaxation time of drag
 
 
 class Top(IntEnum):
-    """What is above the water."""
+    """Boundary at the top of the water."""
 
     FREE = 0  # a surface without stress
-    LID = 1  # a plate that moves at u_lid, molecular stress in the highest half cell
+    LID = 1  # a plate that moves at u_lid, viscous stress in the highest half cell
 
 
 @dataclass(frozen=True)
 class Column:
-    """A column of n equal cells over a piece of bed, averaged over x and y; all that is fixed."""
+    """Fixed properties of a column of n equal cells, averaged along and across the bed."""
 
     z_low: float  # bottom [m]
     dz: float  # thickness of a cell [m]
     n: int  # number of cells
-    depth: float  # surface above z_bed [m]; at the start where the volume is kept
+    depth: float  # height of the surface above z_bed [m]; the initial one if the volume is constant
     area: float = 1.0  # area of bed [m2]
-    z_bed: float = NAN  # zero of the log law, where tau is asked for [m]; nan: z_low
+    z_bed: float = NAN  # zero of the logarithmic law, where tau is prescribed [m]; nan: z_low
     rho_w: float = 1000.0  # density [kg/m3]
     nu: float = 1.0e-6  # kinematic viscosity [m2/s]
     # boundaries
@@ -40,7 +40,7 @@ class Column:
     u_lid: float = 0.0  # speed of the lid [m/s]
     surface: SurfaceRule = SurfaceRule.DEPTH
     side: SideWalls = SideWalls.NONE
-    width: float = NAN  # between the side walls [m]
+    width: float = NAN  # distance of the side walls [m]
     # driver
     g_x: float = 0.0  # gravity along the bed, g sin(slope) [m/s2]
     drive: Drive = Drive.GRAVITY
@@ -51,17 +51,19 @@ class Column:
     mixing: Mixing = Mixing.LAMINAR
     kappa: float = 0.41  # von Karman's constant [-]; ln(10)/5.75 = 0.40045 goes with Eq. (9)
     phi_max: float = 0.61  # of LI_SAWAMOTO [-]
-    k_f: float = 0.0  # of the eddies in the pores of a debris flow [-]; 0: none, 0.16 in the source
-    d: float = NAN  # diameter of the grains, for k_f and to average phi for LI_SAWAMOTO [m]
+    k_f: float = (
+        0.0  # coefficient of turbulence in the pores of a debris flow [-]; 0: none, 0.16 in the source
+    )
+    d: float = NAN  # diameter of the grains [m], for k_f and for averaging phi in LI_SAWAMOTO
     fluctuations: Fluctuations = Fluctuations.NONE
     seed: int = 0  # of the random walk
     # exchange with the grains
-    interval: int = 50  # steps between two exchanges, at most
+    interval: int = 50  # largest coupling interval [steps]
     start: Start = Start.REST
 
     @property
     def origin(self) -> float:
-        """Height of the bed [m]: z_bed, or z_low where none is given."""
+        """Height of the bed [m]: z_bed, or z_low if it is not given."""
         return self.z_low if math.isnan(self.z_bed) else self.z_bed
 
     @property
@@ -71,21 +73,21 @@ class Column:
 
     @property
     def z_surface(self) -> float:
-        """Height of the water surface at the start [m]."""
+        """Initial height of the water surface [m]."""
         return self.origin + self.depth
 
     @property
     def z(self) -> Floats:
-        """Middles of the cells [m], shape (n,)."""
+        """Heights of the cell centres [m], shape (n,)."""
         return self.z_low + (np.arange(self.n, dtype=np.float64) + 0.5) * self.dz
 
     @property
     def faces(self) -> Floats:
-        """Faces of the cells [m], shape (n + 1,)."""
+        """Heights of the cell faces [m], shape (n + 1,)."""
         return self.z_low + np.arange(self.n + 1, dtype=np.float64) * self.dz
 
     def refuses(self) -> tuple[str, ...]:
-        """Why this column cannot be run, in sentences; () when it can."""
+        """Reasons why this column cannot be solved, one sentence each; () if there are none."""
         faults = list(refuse(depth=self.depth, dz=self.dz, n=self.n, z_low=self.z_low, z_bed=self.origin))
         for name in ("area", "rho_w", "nu", "kappa", "phi_max"):
             if not getattr(self, name) > 0.0:
@@ -119,21 +121,21 @@ class Column:
 
 @dataclass(frozen=True)
 class WaterState:
-    """One moment of the water; cells above the surface carry the surface's speed. Arrays are read-only.
+    """The water at one moment; cells above the surface have the speed of the surface. Arrays are read-only.
 
-    What the grains read during the next interval is kept, so that a resume is exact.
+    It includes the values that the grains use during the next coupling interval, so that a resume is exact.
     """
 
-    u: Floats  # speed along the bed [m/s], shape (n,)
-    w: Floats  # vertical speed of the water, eps w + phi w_p = 0 [m/s], shape (n,)
+    u: Floats  # velocity along the bed [m/s], shape (n,)
+    w: Floats  # vertical velocity of the water from eps w + phi w_p = 0 [m/s], shape (n,)
     content: Floats  # water per area of bed in each cell [m], shape (n,)
-    shear: Floats  # dU/dz at the middles [1/s], shape (n,)
+    shear: Floats  # dU/dz at the cell centres [1/s], shape (n,)
     du_dt: Floats  # acceleration of the water, DU/Dt [m/s2], shape (n,)
     dtau_dz: Floats  # gradient of the shear stress of the water [N/m3], shape (n,)
-    tau: Floats  # shear stress of the water at the faces [Pa], shape (n + 1,); the bed's is the first
+    tau: Floats  # shear stress of the water at the faces [Pa], shape (n + 1,); the first is that at the bed
     nu_t: Floats  # eddy viscosity at the faces [m2/s], shape (n + 1,)
     z_surface: float  # height of the surface [m]
-    volume: float  # water per area of bed [m], kept where SurfaceRule.VOLUME is chosen
+    volume: float  # water per area of bed [m], constant with SurfaceRule.VOLUME
     gradient: float = 0.0  # -dp/dx of the driver [Pa/m]
     t: float = 0.0  # [s]
     step: int = 0  # steps of the water done
@@ -163,29 +165,29 @@ class WaterState:
 
 @dataclass(frozen=True)
 class Budget:
-    """Momentum of the water along the bed over one step, per area of bed; forces on the water [Pa]."""
+    """Momentum budget of the water along the bed over one step: forces on the water per area of bed [Pa]."""
 
-    change: float  # momentum after less before, over the step
+    change: float  # change of momentum over the step
     gravity: float  # weight along the slope
-    driver: float  # pressure gradient times wet height
-    bed: float  # stress of the bed; negative slows the water
+    driver: float  # pressure gradient times depth of water
+    bed: float  # stress of the bed; negative if it slows the water
     lid: float  # stress of the lid
     side: float  # stress of the side walls
-    grains: float  # what the grains took
-    carried: float  # the part of the stress's gradient that the grains carry, where asked for
-    surface: float  # brought by water that passed through the surface
+    grains: float  # force of the free grains
+    carried: float  # part of the stress gradient that acts on the grains, with buoyancy `stress`
+    surface: float  # momentum of water that passed through the surface
     iterations: int  # of Newton's method
-    fixed: float = 0.0  # what fixed grains took
+    fixed: float = 0.0  # force of the fixed grains
 
     @property
     def residual(self) -> float:
-        """What is not accounted for [Pa]: round-off."""
+        """Difference between the change and the sum of the forces [Pa]; round-off."""
         gains = self.gravity + self.driver + self.bed + self.lid + self.side
         return self.change - (gains + self.grains + self.fixed + self.carried + self.surface)
 
     @property
     def relative(self) -> float:
-        """Residual over the largest term [-]; 0 where nothing moves."""
+        """Residual over the largest term [-]; 0 if all terms are zero."""
         terms = (self.change, self.gravity, self.driver, self.bed, self.lid, self.side, self.grains)
         largest = max(abs(one) for one in (*terms, self.fixed, self.carried, self.surface))
         return abs(self.residual) / largest if largest > 0.0 else 0.0
@@ -206,22 +208,22 @@ def refuse(
     rho_w: float = 1000.0,
     g: float = 9.80665,
 ) -> tuple[str, ...]:
-    """Sentences about water that cannot be, () when it can; None stands for what is not given.
+    """Contradictions between the properties of a column, one sentence each; () if there are none.
 
     Parameters
     ----------
-    depth : surface above z_bed [m].
-    dz, n, z_low : cells of the column [m], [-], [m].
+    depth : height of the surface above z_bed [m].
+    dz, n, z_low : thickness [m] and number of the cells, and bottom of the column [m]; None if not given.
     z_bed : height of the bed [m].
-    slope : angle of the bed [rad]; 0 or None asks for another driver, and then nothing can contradict it.
-    tau_star, u_star : stress at the bed [-] or friction velocity [m/s].
-    d : mean diameter of the grains, which tau_star needs [m].
+    slope : angle of the bed [rad]; with 0 or None the water has another driver, which is not checked.
+    tau_star, u_star : Shields number [-], friction velocity [m/s]; None if not given.
+    d : mean diameter of the grains [m], needed with tau_star.
     rho_s, rho_w : densities [kg/m3].
     g : gravity [m/s2].
 
     Notes
     -----
-    Steady uniform water carries u_star**2 = g depth sin(slope) = tau_star (rho_s/rho_w - 1) g d to its bed.
+    In steady uniform flow u_star**2 = g depth sin(slope) = tau_star (rho_s/rho_w - 1) g d.
 
     >>> refuse(depth=0.02, slope=math.atan(1 / 20), tau_star=0.3, d=0.002)  # the paper's saltation
     ()
@@ -268,8 +270,8 @@ def _contradictions(
     rho_w: float,
     g: float,
 ) -> tuple[str, ...]:
-    """Sentences about stress, slope and depth that do not fit together."""
-    says: list[tuple[str, float]] = []  # who says it, and u_star**2 [m2/s2]
+    """Contradictions between stress, slope and depth, one sentence each."""
+    says: list[tuple[str, float]] = []  # input, and the u_star**2 that follows from it [m2/s2]
     weight = (rho_s / rho_w - 1.0) * g * d if d is not None else NAN
     if tau_star is not None and d is not None:
         says.append((f"tau_star = {tau_star:g}", tau_star * weight))

@@ -1,4 +1,4 @@
-"""Memory of touching pairs, and the record a pair leaves when it parts."""
+"""History of touching pairs, and the record written when a contact ends."""
 
 from dataclasses import dataclass
 
@@ -12,17 +12,17 @@ EVENT = np.dtype(
         ("i", np.int64),  # id of the free grain
         ("j", np.int64),  # id of its partner: free grain, fixed grain or plane (Scene)
         ("t_begin", np.float64),  # first touch, interpolated [s]
-        ("t_end", np.float64),  # the normal force ends for good, interpolated [s]
+        ("t_end", np.float64),  # last end of the normal force, interpolated [s]
         ("t_part", np.float64),  # the overlap ends [s]
         ("overlap_max", np.float64),  # [m]
         ("closing_begin", np.float64),  # closing speed at first touch [m/s], positive when approaching
-        ("closing_end", np.float64),  # at parting [m/s], negative; nan where the partner was taken away
-        ("slip_begin", np.float64, (3,)),  # slip velocity of i against j at the contact point [m/s]
+        ("closing_end", np.float64),  # at parting [m/s], negative; nan if the partner was removed
+        ("slip_begin", np.float64, (3,)),  # slip velocity of i relative to j at the contact point [m/s]
         ("slip_end", np.float64, (3,)),
         ("impulse_n", np.float64),  # integral of f_n [N s]
         ("impulse", np.float64, (3,)),  # integral of the contact force on grain i [N s]
         ("t_slide", np.float64),  # time spent sliding [s]
-        ("alone", np.float64),  # 1 while neither partner touched anything else, else 0
+        ("alone", np.float64),  # 1 if neither partner touched anything else during the contact, else 0
         ("x_begin", np.float64, (3,)),  # centre of grain i at first touch, unwrapped [m]
         ("v_begin", np.float64, (3,)),  # velocity of grain i at first touch [m/s]
         ("v_end", np.float64, (3,)),  # and at parting [m/s]
@@ -35,27 +35,27 @@ N_EVENT = EVENT.itemsize // 8
 
 @dataclass(frozen=True)
 class Contacts:
-    """Pairs in touch now. Memory belongs to the pair and dies with the contact.
+    """History of the pairs that touch at present; it begins and ends with a contact.
 
-    All arrays have n_contact rows; i is always a free grain, j > i may be free, fixed or a plane. In a plane
-    scene column 0 of the tangential vectors holds the component along the tangent (n_z, 0, -n_x); the others
-    are zero.
+    All arrays have n_contact rows; i is always a free grain, j > i a free grain, a fixed grain or a plane. In
+    a plane scene column 0 of the tangential vectors is the component along the tangent (n_z, 0, -n_x), and
+    the others are zero.
     """
 
     i: np.ndarray  # ids, int64
     j: np.ndarray
     spring_s: Floats  # tangential spring force on grain i [N], shape (n_contact, 3)
     dash_s: Floats  # tangential dashpot force on i in the last step [N], shape (n_contact, 3)
-    dash_n: Floats  # normal force less normal spring in the last step [N], shape (n_contact,)
+    dash_n: Floats  # normal force without its spring in the last step [N], shape (n_contact,)
     f_n: Floats  # normal force in the last step [N], shape (n_contact,)
     spring_r: Floats  # rolling spring torque on i [N m], shape (n_contact, 3)
-    dash_r: Floats  # rolling torque on i in the last step, less its spring [N m], shape (n_contact, 3)
-    eta_n: Floats  # normal dashpot, which a film of water fixes at first touch [N s/m], shape (n_contact,)
-    event: np.ndarray  # the open record of each contact as it stands, shape (n_contact, N_EVENT), float64
+    dash_r: Floats  # rolling torque on i without its spring in the last step [N m], shape (n_contact, 3)
+    eta_n: Floats  # normal dashpot, set at first touch if films reduce rebound [N s/m], shape (n_contact,)
+    event: np.ndarray  # incomplete record of each contact, shape (n_contact, N_EVENT), float64
 
     @staticmethod
     def none() -> "Contacts":
-        """No pair in touch."""
+        """Contacts of a state without touching pairs."""
         ids = np.zeros(0, dtype=np.int64)
         v3 = np.zeros((0, 3))
         none, event = np.zeros(0), np.zeros((0, N_EVENT))

@@ -1,4 +1,4 @@
-"""The eddy that each grain is in."""
+"""State of the random walk of the grains through turbulence."""
 
 from dataclasses import dataclass
 
@@ -9,14 +9,14 @@ from ryusa.model.arrays import Floats
 
 @dataclass(frozen=True)
 class Eddies:
-    """The eddy that each free grain is in now; all that a walk through turbulence needs to go on.
+    """The present eddy of each free grain: the complete state of the random walk.
 
     Attributes
     ----------
-    r : normal numbers of the eddy along x, y and z, which times the strength of the turbulence give its speed
-        [-], shape (n_grain, 3).
-    spent : share of its life that is over [-], shape (n_grain,).
-    count : eddies the grain has left, which number the next one, shape (n_grain,), int64.
+    r : normal random numbers along x, y and z [-]; velocity of the eddy over the strength of the turbulence,
+        shape (n_grain, 3).
+    spent : age of the eddy over its lifetime [-], shape (n_grain,).
+    count : number of eddies that the grain has left, the index of the present one, shape (n_grain,), int64.
     """
 
     r: Floats

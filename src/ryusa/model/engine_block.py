@@ -1,4 +1,4 @@
-"""What one engine needs to continue exactly: a block of arrays and numbers that only this engine reads."""
+"""Arrays and numbers that an engine needs for an exact resume, and that only this engine reads."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -10,13 +10,13 @@ from ryusa.model.arrays import Floats
 
 @dataclass(frozen=True)
 class EngineBlock:
-    """Arrays and numbers of one engine, opaque to everything else; a snapshot and a checkpoint carry it.
+    """Internal data of one engine, part of snapshots and checkpoints.
 
     Attributes
     ----------
     engine : name of the engine that wrote it.
-    version : of its content, counted by that engine.
-    arrays, numbers : by name.
+    version : version of its content.
+    arrays, numbers : data by name.
     """
 
     engine: str
@@ -29,7 +29,7 @@ class EngineBlock:
 
         Raises
         ------
-        ValueError : says both versions.
+        ValueError : the versions differ.
         """
         if self.version != version:
             raise ValueError(
@@ -37,11 +37,13 @@ class EngineBlock:
             )
 
     def array(self, name: str, shape: tuple[int, ...], most: float) -> Floats:
-        """One array of doubles, checked.
+        """Return one array of doubles after checking it.
 
         Parameters
         ----------
-        most : largest absolute value.
+        name : name of the array.
+        shape : required shape.
+        most : largest permitted absolute value.
 
         Raises
         ------
@@ -56,7 +58,7 @@ class EngineBlock:
         return found
 
     def number(self, name: str, least: float, most: float) -> float:
-        """One number, checked.
+        """Return one number after checking that it is within `least` to `most`.
 
         Raises
         ------

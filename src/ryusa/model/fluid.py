@@ -1,4 +1,4 @@
-"""Fluid at the grains: what an engine is given of the water, and the impulse that it gives back."""
+"""Exchange between water and grains: the water at every grain, and the impulse on it."""
 
 from dataclasses import dataclass
 
@@ -13,8 +13,8 @@ U, V, W = 0, 1, 2  # velocity of the water along x, y and z, fluctuations includ
 SHEAR = 3  # dU/dz [1/s]
 PHI = 4  # concentration of grains [-]
 A_X = 5  # acceleration of the water along x, DU/Dt [m/s2]
-EXTRA_X, EXTRA_Z = 6, 7  # force of pressure and stress beyond that of still water, -rho V g [N]
-SUBMERGED = 8  # share of the volume below the water surface [-]: of drag, added mass, lift and torque too
+EXTRA_X, EXTRA_Z = 6, 7  # force of pressure and stress in excess of that of still water, -rho V g [N]
+SUBMERGED = 8  # share of the volume below the water surface [-]; scales drag, added mass, lift and torque too
 N_SAMPLED = 9
 DRAG = 3  # column of `impulse`: drag over slip [N s/m]
 N_IMPULSE = 4
@@ -22,13 +22,13 @@ N_IMPULSE = 4
 
 @dataclass(frozen=True)
 class FluidAtGrains:
-    """Water sampled at every free grain, held while the engine steps, and the impulse on each meanwhile.
+    """Water at every free grain during a coupling interval, and the impulse on it since then.
 
     Attributes
     ----------
-    sampled : by grain, columns as above, shape (n_grain, N_SAMPLED).
-    impulse : of drag, lift, Magnus force and added mass on each grain since `sampled` was set [N s], which
-        the water loses; then drag over slip in the last step [N s/m]; shape (n_grain, N_IMPULSE).
+    sampled : water at each grain, columns as above, shape (n_grain, N_SAMPLED).
+    impulse : impulse of drag, lift, Magnus force and added mass on each grain since `sampled` was set [N s],
+        taken from the water; then drag over slip in the last step [N s/m]; shape (n_grain, N_IMPULSE).
     """
 
     sampled: Floats
@@ -44,18 +44,18 @@ class FluidAtGrains:
 
 @dataclass(frozen=True)
 class CouplingState:
-    """The column of water between two exchanges with its grains: with `FluidAtGrains` all a resume needs.
+    """State of the coupling between two exchanges; with `FluidAtGrains` complete for a resume.
 
     Attributes
     ----------
-    water : the water since the last exchange.
-    z : heights of the free grains at the last exchange, by which they are cut [m], shape (n_grain,).
-    force_z : of the water on grains along z, by volume of cells [N/m3], shape (n,).
-    steps : of the engine in the present coupling interval.
+    water : water since the last exchange.
+    z : heights of the free grains at the last exchange [m], for their volumes in the cells, shape (n_grain,).
+    force_z : force of the water on the grains along z per volume of the cell [N/m3], shape (n,).
+    steps : steps of the engine in the present coupling interval.
     due : step of the next exchange.
-    exchanges : done so far.
-    worst : largest residual of the water's momentum over its largest term so far [-].
-    eddies : those the grains are in; None without fluctuations.
+    exchanges : number of exchanges so far.
+    worst : largest residual of the momentum of the water over its largest term so far [-].
+    eddies : present eddies of the grains; None without fluctuations.
     """
 
     water: WaterState

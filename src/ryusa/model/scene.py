@@ -1,4 +1,4 @@
-"""What holds still during a run: grains' sizes and masses, bed, planes, laws, water, step."""
+"""Fixed data of a run: sizes and masses of grains, bed, planes, laws, water, time step."""
 
 from dataclasses import dataclass, field
 from enum import IntEnum
@@ -27,9 +27,9 @@ _INF = float("inf")
 
 
 class Damping(IntEnum):
-    """Where the dashpots come from."""
+    """How the dashpots are determined."""
 
-    RESTITUTION = 0  # from the restitution asked for and the pair's effective mass
+    RESTITUTION = 0  # from the restitution of the case and the effective mass of the pair
     CONSTANTS = 1  # eta_n, eta_s given in N s/m
 
 
@@ -50,15 +50,15 @@ class ContactLaw:
     mu: float  # tan(friction angle) [-]
     cohesion: float = 0.0  # grain-level cohesion c [N]
     damping: Damping = Damping.RESTITUTION
-    e_n: float = float("nan")  # restitution asked for [-]; nan where dashpots are constants
+    e_n: float = float("nan")  # restitution of the case [-]; nan if the dashpots are constants
     e_s: float = float("nan")
     zeta_n: float = 0.0  # damping ratio that gives e_n under `tension` [-]
     zeta_s: float = 0.0
-    eta_n: float = 0.0  # dashpots [N s/m], used when damping is CONSTANTS
+    eta_n: float = 0.0  # dashpots [N s/m], used if damping is CONSTANTS
     eta_s: float = 0.0
     slip: Slip = Slip.SPRING
     cap: Cap = Cap.SPRING
-    tension: bool = False  # may the dashpot pull before the overlap ends
+    tension: bool = False  # whether the dashpot may pull before the overlap ends
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,7 @@ class Water:
     profile: Profile = Profile.NONE
     u_star: float = 0.0  # friction velocity [m/s]
     k_rough: float = 0.0  # equivalent roughness of Eq. (9) [m]
-    z_zero: float = 0.0  # height where the profile's z is zero [m]
+    z_zero: float = 0.0  # height of z = 0 in the profile [m]
     u_uniform: float = 0.0  # speed of the uniform profile [m/s]
     depth: float = float("inf")  # depth above z_zero [m]
     above: Above = Above.CONTINUE
@@ -93,10 +93,10 @@ class Water:
     # the film between two grains, and between a grain and a wall
     rebound: Rebound = Rebound.DRY
     st_c: float = 35.0  # Stokes number of EXPONENTIAL [-]
-    e_least: float = 0.01  # least restitution that a film leaves: a dashpot for none is infinite [-]
+    e_least: float = 0.01  # smallest restitution with a film [-]; a dashpot for 0 is infinite
     asperity: float = 0.0  # thickness of the film at which grains touch [m]
-    film_reach: float = 0.0  # gap below which the film resists before touch [m]; 0: it does not
-    # only where the profile is COLUMN
+    film_reach: float = 0.0  # gap below which the film exerts a force before touch [m]; 0: no force
+    # only with profile COLUMN
     buoyancy: Buoyancy = Buoyancy.WEIGHT
     hindrance: Hindrance = Hindrance.NONE
     hindrance_exponent: float = 3.1  # n of Richardson-Zaki, m of POWER [-]
@@ -107,17 +107,17 @@ class Water:
 
 @dataclass(frozen=True)
 class Scene:
-    """Everything fixed during a run (or between two changes of its timeline).
+    """All data that are fixed during a run, or between two changes of its timeline.
 
-    Free grains have ids 0..n_grain-1, fixed grains n_grain..n_grain+n_fixed-1, planes follow.
+    Free grains have ids 0 to n_grain - 1, fixed grains n_grain to n_grain + n_fixed - 1; planes follow.
     """
 
     # free grains, each of shape (n_grain,)
     d: Floats  # diameter [m]
     m: Floats  # mass [kg], without added mass
     m_added: Floats  # added mass [kg]; 0 when dry
-    m_weight: Floats  # mass that gravity sees, (rho_s - rho_w) V [kg]
-    inertia: Floats  # moment of inertia [kg m2], never with added mass
+    m_weight: Floats  # submerged mass, (rho_s - rho_w) V [kg]
+    inertia: Floats  # moment of inertia [kg m2], without added mass
     # bed and walls
     x_fixed: Floats  # centres of fixed grains [m], shape (n_fixed, 3)
     d_fixed: Floats  # their diameters [m], shape (n_fixed,)
@@ -132,11 +132,11 @@ class Scene:
     rolling: RollingLaw = field(default_factory=RollingLaw)
     rotation: bool = True  # False: spin locked at zero
     water: Water = field(default_factory=Water)
-    column: Column | None = None  # where the profile is COLUMN
+    column: Column | None = None  # with profile COLUMN
     # space
-    plane_case: bool = False  # motion in x-z only; y, v_y, omega_x, omega_z stay as they are
-    period: tuple[float, float] = (float("inf"), float("inf"))  # period in x and y [m]; inf where open
-    world_low: tuple[float, float, float] = (-_INF, -_INF, -_INF)  # a grain beyond is lost [m]
+    plane_case: bool = False  # motion in x-z only; y, v_y, omega_x, omega_z are constant
+    period: tuple[float, float] = (float("inf"), float("inf"))  # period in x and y [m]; inf if not periodic
+    world_low: tuple[float, float, float] = (-_INF, -_INF, -_INF)  # limits of the domain [m]
     world_high: tuple[float, float, float] = (_INF, _INF, _INF)
     slab_width: float = float("nan")  # width of a plane scene, for concentrations [m]
     # guards and records
@@ -153,10 +153,10 @@ class Scene:
 
     @property
     def n_fixed(self) -> int:
-        """Number of fixed grains, removed ones counted."""
+        """Number of fixed grains, including removed ones."""
         return len(self.d_fixed)
 
     @property
     def n_plane(self) -> int:
-        """Number of planes, removed ones counted."""
+        """Number of planes, including removed ones."""
         return len(self.plane_normal)

@@ -1,4 +1,4 @@
-"""What moves: positions, velocities, spins, and the memory that an exact resume needs."""
+"""State of a run: positions, velocities, spins, and all other data that an exact resume needs."""
 
 from dataclasses import dataclass, field
 
@@ -13,7 +13,7 @@ from ryusa.model.tally import Tally
 
 @dataclass(frozen=True)
 class State:
-    """One moment of a run; arrays that cross a border are read-only.
+    """One moment of a run (a snapshot); arrays returned by an engine are read-only.
 
     The scheme is semi-implicit: `v` and `omega` belong to half a step before `x`.
     """
@@ -28,9 +28,9 @@ class State:
     )  # periods crossed in x, y
     contacts: Contacts = field(default_factory=Contacts.none)
     tally: Tally | None = None  # energy account and extremes so far; None before the first step
-    fluid: FluidAtGrains | None = None  # water at every grain, where a column of water is solved
-    coupling: CouplingState | None = None  # the column itself, which no engine knows
-    engine: EngineBlock | None = None  # what the engine that wrote this needs besides
+    fluid: FluidAtGrains | None = None  # water at every grain, if there is a water column
+    coupling: CouplingState | None = None  # state of the column, not used by engines
+    engine: EngineBlock | None = None  # internal data of the engine that wrote this
 
     @staticmethod
     def at_rest(x: Floats) -> "State":
@@ -47,7 +47,7 @@ class State:
 
 
 def make_read_only(state: State) -> None:
-    """Protect every array of a snapshot from being written to."""
+    """Make all arrays of a snapshot read-only."""
     parts = [state, state.contacts, *(one for one in (state.fluid,) if one is not None)]
     arrays = [one for part in parts for one in vars(part).values() if isinstance(one, np.ndarray)]
     for array in (*arrays, *(state.engine.arrays.values() if state.engine else ())):

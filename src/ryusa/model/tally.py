@@ -1,4 +1,4 @@
-"""The energy account: every term summed by itself, none by difference."""
+"""The energy account; every term is summed separately, none is found as a difference."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ import numpy as np
 
 
 class Book(IntEnum):
-    """Terms of the energy account, summed while stepping [J]; losses and gifts are positive as such."""
+    """Terms of the energy account, summed while stepping [J]; energy lost and energy given are positive."""
 
     DASH_N = 0  # lost to normal dashpots
     DASH_S = 1  # lost to tangential dashpots
@@ -19,7 +19,7 @@ class Book(IntEnum):
     RELEASED_S = 5  # lost: left in tangential springs when a contact ended
     RELEASED_R = 6  # lost: left in rolling springs when a contact ended
     DRAG = 7  # given by drag
-    TORQUE = 8  # given by the water's torque
+    TORQUE = 8  # given by the water torque
     LIFT = 9  # given by lift and the Magnus force
     SWITCH = 10  # given by a change of the timeline (gravity, friction, rotation, a gate)
     STEP = 11  # given by the finite step where contacts begin and end, (1/2) k overlap (closing dt - overlap)
@@ -29,13 +29,19 @@ class Book(IntEnum):
 
 
 N_BOOK = len(Book)
-PENDING = (Book.DRAG, Book.TORQUE, Book.LIFT, Book.FLOW, Book.FILM)  # terms with half a step still to book
+PENDING = (
+    Book.DRAG,
+    Book.TORQUE,
+    Book.LIFT,
+    Book.FLOW,
+    Book.FILM,
+)  # terms whose work of the second half step is still to be added
 LOSSES = (
     Book.DASH_N, Book.DASH_S, Book.SLIDE, Book.ROLL, Book.RELEASED_N, Book.RELEASED_S, Book.RELEASED_R,
     Book.FILM,
 )  # fmt: skip
 GIFTS = (Book.DRAG, Book.TORQUE, Book.LIFT, Book.FLOW, Book.SWITCH, Book.STEP)
-# Terms that say how large the account is. START and SWITCH are heights from an origin that is free to choose.
+# Terms for the size of the account; START and SWITCH depend on the origin of heights.
 SIZES = tuple(b for b in Book if b not in {Book.START, Book.SWITCH})
 HELD = ("kinetic", "spin", "potential", "spring_n", "spring_s", "spring_r")
 
@@ -43,14 +49,14 @@ HELD = ("kinetic", "spin", "potential", "spring_n", "spring_s", "spring_r")
 def residual_of(imbalance: Any, held: Mapping[str, Any], books: Mapping[Book, Any]) -> float:
     """Largest imbalance over the largest term of an account [-], at one moment or over arrays of moments.
 
-    Terms are energies of motion and springs, each book of `SIZES`, and the change of held energy less what
-    the timeline gave: the same wherever heights are measured from.
+    The terms are the energies of motion and springs, the terms of `SIZES`, and the change of held energy
+    without the energy given by the timeline; none depends on the origin of heights.
 
     Parameters
     ----------
-    imbalance : what the account cannot explain [J].
+    imbalance : energy that the terms do not explain [J].
     held : energies by name, those of `HELD` [J].
-    books : work by book [J]; one that is missing counts as nothing.
+    books : summed terms [J]; a missing one counts as zero.
     """
     change = sum(held.values()) - books.get(Book.START, 0.0) - books.get(Book.SWITCH, 0.0)
     terms = [change, *(one for name, one in held.items() if name != "potential")]
@@ -61,7 +67,7 @@ def residual_of(imbalance: Any, held: Mapping[str, Any], books: Mapping[Book, An
 
 @dataclass(frozen=True)
 class Tally:
-    """Energy account [J] and extremes at the moment of the last force evaluation."""
+    """Energy account [J] and extremes at the time of the last force evaluation."""
 
     t: float  # [s]
     kinetic: float  # translation, added mass included
@@ -72,27 +78,27 @@ class Tally:
     spring_r: float
     books: tuple[float, ...]  # indexed by Book
     overlap_max: float  # largest overlap over the smaller diameter so far [-]
-    overlap_grain: int  # grain that had it
-    overlap_step: int
+    overlap_grain: int  # grain with that overlap
+    overlap_step: int  # step of that overlap
     speed_max: float  # largest grain speed in the last step [m/s]
     spin_max: float  # largest spin in the last step [rad/s]
-    n_contact: int  # pairs in touch now
-    pending: tuple[float, ...] = (0.0,) * len(PENDING)  # second half of the work of the step under way [J]
+    n_contact: int  # number of touching pairs
+    pending: tuple[float, ...] = (0.0,) * len(PENDING)  # work of the second half of the present step [J]
 
     @property
     def held(self) -> float:
-        """Energy in motion, height and springs now [J]."""
+        """Present energy of motion, height and springs [J]."""
         return self.kinetic + self.spin + self.potential + self.spring_n + self.spring_s + self.spring_r
 
     @property
     def imbalance(self) -> float:
-        """What the account cannot explain [J]: held - start - gifts + losses."""
+        """Energy that the terms do not explain [J]: held - start - given + lost."""
         gifts = sum(self.books[b] for b in GIFTS)
         losses = sum(self.books[b] for b in LOSSES)
         return self.held - self.books[Book.START] - gifts + losses
 
     @property
     def residual(self) -> float:
-        """Imbalance over the largest term of the account [-], see `residual_of`."""
+        """Imbalance over the largest term of the account [-], as in `residual_of`."""
         held = {name: getattr(self, name) for name in HELD}
         return residual_of(self.imbalance, held, dict(zip(Book, self.books, strict=True)))

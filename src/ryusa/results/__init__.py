@@ -1,4 +1,4 @@
-"""A run folder as read-only arrays; anything after the recorder only reads."""
+"""A run folder as read-only arrays."""
 
 from ryusa.results.lazy import LazyFrames
 from ryusa.results.read import Bed, Frame, Frames, Grains, Planes, Results

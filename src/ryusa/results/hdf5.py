@@ -1,4 +1,4 @@
-"""HDF5 files that may have been tampered with: plain datasets only, sizes checked against the disk."""
+"""HDF5 files that may be damaged or manipulated: only plain datasets are read, with their sizes checked."""
 
 from collections import OrderedDict
 from collections.abc import Generator
@@ -10,16 +10,16 @@ import numpy as np
 
 from ryusa.errors import ResultsError
 
-# what h5py makes of a file with wrong bytes in it
+# errors that h5py raises on a damaged file
 DAMAGE = (OSError, KeyError, RuntimeError, ValueError, TypeError, AttributeError)
 
 
 def open_file(path: Path) -> h5py.File:
-    """An HDF5 file of a run folder, open for reading.
+    """Open an HDF5 file of a run folder for reading.
 
     Raises
     ------
-    ResultsError : missing, a link to somewhere else, or not HDF5.
+    ResultsError : the file is missing, is a link, or is not HDF5.
     """
     if path.is_symlink() or not path.is_file():
         raise ResultsError(f"{path}: no such file in the run folder (links are not followed)")
@@ -31,7 +31,7 @@ def open_file(path: Path) -> h5py.File:
 
 @contextmanager
 def opened(path: Path) -> Generator[h5py.File]:
-    """As `open_file`, closed at the end of the block."""
+    """Open a file as `open_file` does, and close it at the end of the block."""
     with open_file(path) as file:
         try:
             yield file
@@ -40,14 +40,14 @@ def opened(path: Path) -> Generator[h5py.File]:
 
 
 class OpenFiles:
-    """The few HDF5 files last read from, kept open with their checked datasets."""
+    """The HDF5 files read most recently, kept open with their checked datasets."""
 
     def __init__(self, most: int = 8) -> None:
         self._most = most
         self._files: OrderedDict[Path, tuple[h5py.File, dict[str, h5py.Dataset]]] = OrderedDict()
 
     def dataset(self, path: Path, name: str) -> h5py.Dataset:
-        """A plain dataset, checked when first asked for."""
+        """Return a plain dataset, checked at its first use."""
         if path not in self._files:
             self._files[path] = (open_file(path), {})
             while len(self._files) > self._most:
@@ -60,11 +60,11 @@ class OpenFiles:
 
 
 def plain_dataset(file: h5py.File, name: str, path: Path) -> h5py.Dataset:
-    """A dataset whose bytes lie in this very file, as many as its shape says.
+    """Return a dataset after checking that its data are in this file and have the size of its shape.
 
     Raises
     ------
-    ResultsError : missing, or it points outside the file, or its size is not what the file holds.
+    ResultsError : it is missing, refers to another file, or its stored size does not match its shape.
     """
     link = file.get(name, getlink=True)
     if not isinstance(link, h5py.HardLink):
@@ -90,15 +90,15 @@ def plain_dataset(file: h5py.File, name: str, path: Path) -> h5py.Dataset:
 
 
 def read_dataset(file: h5py.File, name: str, path: Path) -> np.ndarray:
-    """The whole of a plain dataset."""
+    """Read a whole plain dataset."""
     return plain_dataset(file, name, path)[()]
 
 
 def read_integer(file: h5py.File, name: str, path: Path) -> int | None:
-    """A whole number kept as an attribute of the file; None where there is none."""
+    """Read an integer attribute of the file; None if there is none."""
     if name not in file.attrs:
         return None
     kept = file.attrs.get_id(name)
     if kept.shape != () or kept.dtype.kind not in "iu":
-        raise ResultsError(f"{path}: its '{name}' is no whole number")
+        raise ResultsError(f"{path}: its '{name}' is not an integer")
     return int(np.asarray(file.attrs[name]))

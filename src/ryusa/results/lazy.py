@@ -1,4 +1,4 @@
-"""Frames of one quantity over all parts of a run, read from the disk only where they are asked for."""
+"""Frames of one quantity over all parts of a run, read from the disk when they are indexed."""
 
 from bisect import bisect_right
 from collections.abc import Iterator
@@ -17,7 +17,7 @@ from ryusa.results.hdf5 import DAMAGE, OpenFiles, opened, read_dataset
 
 @dataclass(frozen=True)
 class Part:
-    """One write-once file: frames first .. first + n_frame - 1."""
+    """One write-once file with the frames first to first + n_frame - 1."""
 
     path: Path
     first: int
@@ -25,37 +25,37 @@ class Part:
     step: NDArray[np.int64]
     n_contact: int
     files: OpenFiles  # shared by all parts of a run
-    end: int | None = None  # step up to which all is in here or in a part before; None in old folders
-    tail: bool = False  # contacts of an unfinished stretch, which going on writes again
+    end: int | None = None  # step up to which this and earlier parts are complete; None in old folders
+    tail: bool = False  # holds contacts of an incomplete part, which a resumed run writes again
 
     @property
     def n_frame(self) -> int:
-        """Frames in this part."""
+        """Number of frames in this part."""
         return len(self.t)
 
     def rows(self, name: str, begin: int, end: int, grains: Any) -> NDArray[Any]:
-        """Frames begin .. end - 1 of this part, its own count, for one grain or a slice of grains."""
+        """Read frames begin to end - 1, counted within this part, of one grain or a slice of grains."""
         try:
             return self.files.dataset(self.path, name)[begin:end, grains]
         except DAMAGE as error:
             raise ResultsError(f"{self.path}: '{name}' cannot be read ({error})") from error
 
     def contacts(self) -> NDArray[np.void]:
-        """All contacts of this part, dtype model.EVENT."""
+        """Read all contacts of this part, dtype model.EVENT."""
         with opened(self.path) as file:
             return read_dataset(file, "contacts", self.path).astype(EVENT, copy=False)
 
     def tally(self) -> NDArray[np.void]:
-        """The energy account at each frame of this part."""
+        """Read the energy account at each frame of this part."""
         with opened(self.path) as file:
             return schema.whole(read_dataset(file, "tally", self.path))
 
 
 class LazyFrames:
-    """An array (n_frame, n_grain, n) that stays on the disk until indexed; what comes back is read-only.
+    """An array of shape (n_frame, n_grain, n) that is read from the disk when indexed; results are read-only.
 
     The first index may be a number, a slice or a list of frames, the second a number or a slice of grains:
-    only those are read. `numpy.asarray` reads all.
+    only these are read. `numpy.asarray` reads all.
     """
 
     def __init__(
@@ -100,7 +100,7 @@ class LazyFrames:
         return found
 
     def _grains(self, rest: tuple[Any, ...]) -> tuple[Any, tuple[Any, ...]]:
-        """What of the grain axis to read from the disk, and what is left to do in memory."""
+        """Part of the grain index to apply while reading, and the part to apply in memory."""
         if not rest:
             return slice(None), ()
         grains = rest[0]
@@ -130,14 +130,12 @@ class LazyFrames:
         if len(chosen) == 0:
             return self._read(0, 0, grains)
         low, high = int(chosen.min()), int(chosen.max()) + 1
-        if high - low <= 2 * len(
-            chosen
-        ):  # nearly all of the span: one sweep is quicker than many small reads
+        if high - low <= 2 * len(chosen):  # most of the range: one read is faster than many small ones
             return self._read(low, high - low, grains)[chosen - low]
         return np.concatenate([self._read(int(k), 1, grains) for k in chosen])
 
     def _read(self, begin: int, count: int, grains: Any) -> NDArray[Any]:
-        """Frames begin .. begin + count - 1, part by part."""
+        """Read frames begin to begin + count - 1, part by part."""
         pieces: list[NDArray[Any]] = []
         end = begin + count
         at = bisect_right(self._starts, begin) - 1

@@ -1,8 +1,7 @@
-"""A run folder opened for reading: while the run writes, after its end, or after it was killed.
+"""A run folder opened for reading, during the run, after its end, or after it was killed.
 
-Nothing in the folder is trusted: links are not followed, sizes are checked against the disk, no pickle is
-read. Frames come from the write-once files in parts/, so every frame that was flushed is found, whatever came
-after.
+Nothing in the folder is trusted: links are not followed, stored sizes are checked, no pickle is read. Frames
+come from the write-once files in parts/, so every frame that was written is found, however the run ended.
 """
 
 import json
@@ -100,7 +99,7 @@ class Frames:
 
 
 class Results:
-    """Everything a run left behind, read-only. Open it again to see what was written since."""
+    """The results of a run, read-only. Open the folder again to see what was written since."""
 
     def __init__(self, folder: Path) -> None:
         """Use `Results.open`."""
@@ -117,7 +116,7 @@ class Results:
         self.scenes = read_scenes(
             folder
         )  # (step, t [s], Scene) at the start and after every change of the timeline
-        self.scene: Scene = self.scenes[0][2]  # as the run began
+        self.scene: Scene = self.scenes[0][2]  # at the start of the run
         self._parts = read_parts(folder, self.scene.n_grain)
         self.frames = Frames(self._parts, self.scene.n_grain, self.scene.period)
 
@@ -140,12 +139,12 @@ class Results:
 
     @property
     def status(self) -> str:
-        """One of running, complete, stopped, interrupted, failed; a killed run still says running."""
+        """One of running, complete, stopped, interrupted, failed; that of a killed run remains running."""
         return str(self.provenance.get("status"))
 
     @property
     def complete(self) -> bool:
-        """True once a stop rule of the case was met."""
+        """Whether the run ended by a stop rule of its case."""
         return self.status == schema.COMPLETE
 
     @cached_property
@@ -165,7 +164,7 @@ class Results:
 
     @cached_property
     def water(self) -> WaterFrames | None:
-        """Profiles of the water at every frame; None where no column of it was solved."""
+        """Profiles of the water at every frame; None if the run has no water column."""
         column = self.scene.column
         return None if column is None else read_water(self._parts, self.frames.t, column.z, column.faces)
 
@@ -185,7 +184,7 @@ class Results:
         return Planes(self.scene.plane_normal, self.scene.plane_point, self.scene.plane_active)
 
     def scene_at(self, t: float) -> Scene:
-        """The scene that held at time `t` [s]; it changes only with the timeline."""
+        """Return the scene at time `t` [s]; it changes only with the timeline."""
         return self.scenes[max(bisect_right([begin for _, begin, _ in self.scenes], t) - 1, 0)][2]
 
     def __repr__(self) -> str:
@@ -202,7 +201,7 @@ def _joined(arrays: list[NDArray[Any]], dtype: np.dtype[Any]) -> NDArray[Any]:
 
 
 def read_json(path: Path, *, missing_ok: bool = False) -> dict[str, Any]:
-    """A table of keys from a file of a run folder."""
+    """Read a JSON object from a file of a run folder."""
     if missing_ok and not path.exists() and not path.is_symlink():
         return {}
     if path.is_symlink() or not path.is_file():
@@ -219,7 +218,7 @@ def read_json(path: Path, *, missing_ok: bool = False) -> dict[str, Any]:
 
 
 def numbered(folder: Path, pattern: "Any") -> list[Path]:
-    """Files in parts/ that are named so, in order."""
+    """Files in parts/ whose names match the pattern, in order."""
     parts = folder / schema.PARTS
     if parts.is_symlink():
         raise ResultsError(f"{parts}: is a link; links are not followed")
@@ -230,7 +229,7 @@ def numbered(folder: Path, pattern: "Any") -> list[Path]:
 
 
 def read_scenes(folder: Path) -> list[tuple[int, float, Scene]]:
-    """Step and time [s] from which each scene of a run holds, and the scene."""
+    """Read the scenes of a run, each with the step and the time [s] from which it is valid."""
     scenes = [read_scene(path) for path in numbered(folder, schema.SCENE_NAME)]
     if not scenes:
         raise ResultsError(f"{folder}: the run was stopped before its first scene was written")
@@ -240,7 +239,7 @@ def read_scenes(folder: Path) -> list[tuple[int, float, Scene]]:
 
 
 def read_parts(folder: Path, n_grain: int) -> list[Part]:
-    """Every part of a run, in order."""
+    """Open all parts of a run, in order."""
     parts: list[Part] = []
     files = OpenFiles()
     first = 0
@@ -254,7 +253,7 @@ def read_parts(folder: Path, n_grain: int) -> list[Part]:
 
 
 def read_part(path: Path, first: int, n_grain: int, files: OpenFiles) -> Part:
-    """Open a part whose first frame is number `first`, every shape checked."""
+    """Open a part whose first frame has number `first`; every shape is checked."""
     with opened(path) as file:
         t, step = read_dataset(file, "t", path), read_dataset(file, "step", path)
         k = len(t) if t.ndim == 1 else -1

@@ -1,4 +1,4 @@
-"""A Scene as a small HDF5 file in parts/, and back: measures need its sizes, masses, laws and water."""
+"""Scenes as small HDF5 files in parts/; measures need their sizes, masses, laws and water."""
 
 import hashlib
 import json
@@ -20,7 +20,7 @@ _LIMIT = 1 << 20  # bytes of JSON read from a scene file
 
 
 def write_scene(file: h5py.File, scene: Scene, step: int, t: float) -> None:
-    """Write `scene`, valid from `step` and time `t` [s] on, into an open HDF5 file."""
+    """Write a scene that is valid from `step` and time `t` [s] into an open HDF5 file."""
     for name in _ARRAYS:
         file.create_dataset(name, data=np.asarray(getattr(scene, name)))
     scalars = _scalars(scene) | {"step": step, "t": t}
@@ -39,7 +39,7 @@ def _scalars(scene: Scene) -> dict[str, Any]:
 
 
 def scene_digest(scene: Scene) -> str:
-    """Digest of every number of a scene; the same before it is written and after it is read."""
+    """Digest of all numbers of a scene; the same before writing and after reading."""
     digest = hashlib.sha256()
     for name in _ARRAYS:
         array = np.ascontiguousarray(getattr(scene, name))
@@ -50,7 +50,7 @@ def scene_digest(scene: Scene) -> str:
 
 
 def _even(value: Any) -> Any:
-    """Numbers of any kind as floats, so that 0 and 0.0 are one."""
+    """Convert all numbers to floats, so that 0 and 0.0 are equal."""
     if isinstance(value, dict):
         return {str(key): _even(one) for key, one in value.items()}
     if isinstance(value, list | tuple):
@@ -59,7 +59,7 @@ def _even(value: Any) -> Any:
 
 
 def read_scene(path: Path) -> tuple[int, float, Scene]:
-    """Step and time [s] from which a scene holds, and the scene.
+    """Read a scene, with the step and the time [s] from which it is valid.
 
     Raises
     ------

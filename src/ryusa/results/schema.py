@@ -1,4 +1,4 @@
-"""Names in a run folder: files, datasets, columns. The recorder writes them, `read` reads them."""
+"""Names of files, datasets and columns in a run folder, shared by the recorder and the reader."""
 
 import re
 from pathlib import Path
@@ -19,8 +19,8 @@ LOG = "log.txt"
 GRAINS = "grains.vtkhdf"  # the file to open in ParaView
 BED = "bed.vtkhdf"
 VIEW = "view.html"  # the grains in motion, written by `ryusa view`
-CHECKPOINT = "checkpoint.h5"  # to go on from; gone once the run is complete
-CHECKPOINT_BEFORE = "checkpoint-before.h5"  # the one before
+CHECKPOINT = "checkpoint.h5"  # for resuming; removed when the run is complete
+CHECKPOINT_BEFORE = "checkpoint-before.h5"  # the previous one
 LOCK = ".lock"  # held by the process that writes
 PARTS = "parts"  # folder of write-once HDF5 files
 
@@ -32,11 +32,11 @@ SUBINDEX_NAME = re.compile(
 
 # status in provenance.json
 RUNNING, COMPLETE, STOPPED, FAILED = "running", "complete", "stopped", "failed"
-INTERRUPTED = "interrupted"  # at once, by a second Ctrl-C: no checkpoint of that moment
+INTERRUPTED = "interrupted"  # by a second Ctrl-C: at once, without a checkpoint of that step
 
 # attributes of a part
-END_STEP = "end_step"  # all that ended up to this step is in this part or an earlier one
-TAIL = "tail"  # 1 where contacts of an unfinished stretch follow; the next part takes its place
+END_STEP = "end_step"  # contacts that ended up to this step are in this part or an earlier one
+TAIL = "tail"  # 1 if contacts of an incomplete part follow; the next part replaces them
 
 # datasets of a part: k frames of n grains
 FRAME_DATASETS = {
@@ -47,7 +47,7 @@ FRAME_DATASETS = {
     "omega": (np.dtype(np.float64), (3,)),  # [rad/s]
     "image": (np.dtype(np.int32), (2,)),  # periods crossed in x and y
 }
-# in a group of a part, where a column of water is solved: k frames of n cells, or of n + 1 faces
+# in a group of a part, if the run has a water column: k frames of n cells, or of n + 1 faces
 WATER = "water"
 WATER_CELLS = ("u", "w", "phi", "content")  # [m/s], [m/s], [-], [m]
 WATER_FACES = ("tau", "nu_t")  # [Pa], [m2/s]
@@ -59,7 +59,7 @@ _INTEGER = {"overlap_grain", "overlap_step", "n_contact"}
 _NOW = ("t", *HELD)
 _EXTREME = ("overlap_max", "overlap_grain", "overlap_step", "speed_max", "spin_max", "n_contact")
 _CHECK = ("imbalance", "residual")
-# one row per frame: terms of Tally, then Book in lower case, then what the account cannot explain
+# one row per frame: terms of Tally, then those of Book in lower case, then imbalance and residual
 TALLY = np.dtype(
     [
         (name, np.int64 if name in _INTEGER else np.float64)
@@ -71,7 +71,7 @@ BEFORE_FILMS = np.dtype([(name, TALLY[name]) for name in TALLY.names or () if na
 
 
 def whole(tally: NDArray[np.void]) -> NDArray[np.void]:
-    """Rows of dtype TALLY; a folder from before films has no book for them, and nothing in it."""
+    """Convert rows to dtype TALLY; in folders older than the films of water their term is set to zero."""
     if tally.dtype == TALLY:
         return tally
     rows = np.zeros(tally.shape, TALLY)
@@ -86,7 +86,7 @@ def part_name(k: int) -> str:
 
 
 def subindex_name(first: int, n_frame: int, n_contact: int) -> str:
-    """File name of the sub-index that begins with part `first`; different ones never share a name."""
+    """File name of the sub-index that begins with part `first`, unique by its frames and contacts."""
     return f"subindex-{first:06d}-{n_frame}-{n_contact}.h5"
 
 
@@ -102,6 +102,6 @@ def tally_row(tally: Tally) -> tuple[float, ...]:
 
 
 def is_run_folder(folder: Path) -> bool:
-    """True where `folder` is recognisably a run of ryusa; links are not followed."""
+    """Whether `folder` is a run folder of ryusa; links are not followed."""
     parts = folder / PARTS
     return (folder / PROVENANCE).is_file() and parts.is_dir() and not parts.is_symlink()

@@ -1,4 +1,4 @@
-"""The column of water of a run, frame by frame."""
+"""Profiles of the water column of a run at every frame."""
 
 from dataclasses import dataclass
 
@@ -21,14 +21,14 @@ class WaterFrames:
     Attributes
     ----------
     t : times of the frames [s], shape (n_frame,).
-    z, faces : heights of the middles and the faces of the cells [m], shapes (n,) and (n + 1,).
-    u, w : speed along the bed and upwards [m/s].
+    z, faces : heights of the centres and the faces of the cells [m], shapes (n,) and (n + 1,).
+    u, w : velocity along the bed and upwards [m/s].
     phi : concentration of grains, fixed ones included [-].
     content : water in a cell per area of bed [m].
     tau : shear stress of the water at the faces [Pa]; the bed's is the first.
     nu_t : eddy viscosity at the faces [m2/s].
     z_surface : height of the surface [m], shape (n_frame,).
-    gradient : driving -dp/dx beside gravity [Pa/m], shape (n_frame,).
+    gradient : pressure gradient -dp/dx that drives the water in addition to gravity [Pa/m], shape (n_frame,).
     """
 
     t: Floats
@@ -49,7 +49,7 @@ def read_water(parts: list[Part], t: Floats, z: Floats, faces: Floats) -> WaterF
 
     Raises
     ------
-    ResultsError : a part has none, or of another shape.
+    ResultsError : a part has no profiles, or profiles of another shape.
     """
     names = {
         **{name: (len(z),) for name in schema.WATER_CELLS},

@@ -1,7 +1,8 @@
-"""Studies: what is run, what is measured in each run, what follows from it, and the page that says so.
+"""Studies: a plan of runs, measures on them, judgements, and a page with the results.
 
-A study has parts (`StudyPart`). Each names its tasks, measures every run, and judges what was measured. The
-framework carries out every task once, keeps it, opens it again the next time, and writes ledger and page.
+A study has parts (`StudyPart`). Each part lists its tasks, measures every run, and judges the measurements.
+The framework carries out every task once, keeps the results for later calls, and writes the ledger and the
+page.
 """
 
 from ryusa.study.compare import comparison, misfit, relative

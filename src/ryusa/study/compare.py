@@ -1,4 +1,4 @@
-"""Ours beside a reference: errors as numbers, curves on curves, one finding."""
+"""Comparison of results with a reference: errors, curves, and one finding."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -13,14 +13,14 @@ from ryusa.study.judge import Band, Finding, ReferenceChart, Source, Trial
 
 
 def misfit(name: str, value: float, unit: str = "-", tolerance: Band | None = None) -> Trial:
-    """Give one number that says how far ours is from a reference; without a tolerance it decides nothing.
+    """Return the trial for one error with respect to a reference; without a tolerance it is not judged.
 
     Parameters
     ----------
-    name : of the number, such as "largest relative difference".
-    value : the number; one that is not finite lies outside every tolerance.
-    unit : of the number.
-    tolerance : what is asked of it, with the reason.
+    name : name of the error, such as "largest relative difference".
+    value : its value; one that is not finite lies outside every tolerance.
+    unit : its unit.
+    tolerance : permitted range, with the reason.
 
     >>> misfit("largest difference", 0.01, "m/s", Band(0.0, 0.02, "m/s", "half a cell")).holds
     True
@@ -44,26 +44,26 @@ def comparison(
     said: str = "",
     beside: Sequence[Curve] = (),
 ) -> Finding:
-    """Give the finding of a comparison with one reference.
+    """Return the finding of a comparison with one reference.
 
     Parameters
     ----------
-    id : short, of lower-case words and hyphens; unique within its part.
+    id : short identifier of lower-case words and hyphens, unique within its part.
     title : what is compared.
-    source : of the reference.
+    source : source of the reference.
     x, y : axes of the chart.
-    ours, references : curves that the errors compare; a reference named as one of ours belongs to it.
-    errors : numbers (`misfit`), the most telling first.
-    settings : what ours was made with, in words.
-    said : what decides it, in one or two sentences; where it misses, why.
-    beside : further curves, shown and not compared.
+    ours, references : curves that are compared; a reference is matched to our curve of the same name.
+    errors : errors (`misfit`), the most important first.
+    settings : settings of our runs, in words.
+    said : what decides the verdict, in one or two sentences; the reason if a tolerance is missed.
+    beside : further curves, shown but not compared.
     """
     chart = ReferenceChart(x, y, ours, references, beside)
     return Finding(id, tuple(errors), said, settings or {}, title=title, source=source, chart=chart)
 
 
 def relative(ours: Any, reference: Any) -> float:
-    """Largest difference over the largest reference [-]; nan where there is none.
+    """Largest difference over the largest value of the reference [-]; nan without a reference.
 
     >>> relative([1.0, 2.2], [1.0, 2.0])
     0.1

@@ -15,15 +15,15 @@ from ryusa.study.task import Task
 
 @dataclass(frozen=True)
 class CostEstimate:
-    """What the runs of a study will cost.
+    """Estimated cost of the runs of a study.
 
     Attributes
     ----------
-    costs : runs to be made, with the core seconds of each by rule of thumb.
-    there : finished runs of the very same case that will be opened.
-    disk : bytes that the runs to be made will take.
-    jobs : runs at a time.
-    others : of the finished runs, how many each other state of the code made.
+    costs : runs to be made, with the estimated core seconds of each.
+    there : finished runs of the same case, which will be opened.
+    disk : size of the runs to be made [bytes].
+    jobs : number of runs at a time.
+    others : number of finished runs made by other states of the code, by state.
     """
 
     costs: Mapping[Task, float]
@@ -34,12 +34,12 @@ class CostEstimate:
 
     @property
     def core_seconds(self) -> float:
-        """All runs one after the other [s]."""
+        """Time for all runs one after the other [s]."""
         return sum(self.costs.values())
 
     @property
     def seconds(self) -> float:
-        """Wall time [s]: no shorter than the longest run."""
+        """Wall time [s]; at least that of the longest run."""
         return max(self.core_seconds / self.jobs, max(self.costs.values(), default=0.0))
 
     def __str__(self) -> str:
@@ -71,7 +71,7 @@ def _runs(n: int, how: str = "") -> str:
 
 
 def code_of(origin: Mapping[str, Any]) -> str:
-    """State of the code that made a run, from its provenance: the commit, else the version."""
+    """State of the code that made a run, from its provenance: the commit if known, else the version."""
     return str(origin.get("commit") or f"ryusa {origin.get('ryusa') or 'of unknown version'}")
 
 
@@ -81,15 +81,15 @@ def present() -> str:
 
 
 def is_other(code: str, opened: bool) -> bool:
-    """Whether a run was made, or may have been made, by another state of the code than the present one.
+    """Whether a run was made, or may have been made, by a state of the code other than the present one.
 
-    A commit with changes on top names no one state: of an opened run it cannot be told.
+    A commit with uncommitted changes does not identify one state, so an opened run may be of another.
     """
     return code != present() or (opened and code.endswith("+"))
 
 
 def code_in_words(code: str) -> str:
-    """Give a state of the code in short.
+    """State of the code in short form.
 
     >>> code_in_words("0123456789abcdef+"), code_in_words("ryusa 0.1.0")
     ('0123456789ab with changes', 'ryusa 0.1.0')
@@ -100,7 +100,7 @@ def code_in_words(code: str) -> str:
 
 
 def estimate_cost(wanted: Iterable[Task], folder: Path, *, jobs: int, again: bool = False) -> CostEstimate:
-    """Estimate what it takes to have these runs in `folder`; every case is read, and so checked.
+    """Estimate the cost of the runs that are not yet in `folder`; every case is read and checked.
 
     Raises
     ------
@@ -116,11 +116,11 @@ def estimate_cost(wanted: Iterable[Task], folder: Path, *, jobs: int, again: boo
 
 
 def refuse_if_too_big(ahead: CostEstimate, folder: Path) -> None:
-    """Compare what the runs will take with the free space on the disk.
+    """Compare the size of the runs with the free space on the disk.
 
     Raises
     ------
-    CaseError : they would not fit.
+    CaseError : the runs would not fit.
     """
     place = nearest_existing(folder)
     free = free_bytes(place)
@@ -135,7 +135,7 @@ def refuse_if_too_big(ahead: CostEstimate, folder: Path) -> None:
 
 
 def duration(seconds: float) -> str:
-    """Give a time with as many digits as an estimate has.
+    """A time in words, with the digits of an estimate.
 
     >>> duration(42.0), duration(600.0), duration(9000.0)
     ('42 s', '10 min', '2.5 h')

@@ -1,4 +1,4 @@
-"""One line of a ledger: what was found about one claim or reference, as the JSON file holds it."""
+"""One entry of a ledger: the finding about one claim or reference, as written to the JSON file."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,19 +10,19 @@ from ryusa.study.judge import Finding, Outcome, Trial
 from ryusa.study.origin import json_number
 from ryusa.study.study import Study
 
-DIGITS = 6  # of a curve in the JSON file
-MOST = 200  # points of a curve in the JSON file
+DIGITS = 6  # significant digits of curves in the JSON file
+MOST = 200  # largest number of points of a curve in the JSON file
 
 
 @dataclass(frozen=True)
 class LedgerEntry:
-    """What was found, its pictures, and what went wrong."""
+    """A finding with its pictures and its problems."""
 
     id: str
     part: str
-    finding: Finding | None  # None where nothing could be run or judged
+    finding: Finding | None  # None if it could not be run or judged
     pictures: tuple[Path, ...] = ()
-    problem: str = ""  # why it could not be judged, or what is missing beside the verdict
+    problem: str = ""  # why it could not be judged, or what is missing
 
     @property
     def outcome(self) -> Outcome:
@@ -31,7 +31,7 @@ class LedgerEntry:
 
 
 def plain_entry(study: Study, entry: LedgerEntry, folder: Path) -> dict[str, Any]:
-    """Give an entry as the JSON file holds it; pictures relative to `folder`."""
+    """Return an entry as written to the JSON file; picture paths are relative to `folder`."""
     found = entry.finding if entry.finding is not None else Finding(entry.id, ())
     settings = {**found.settings, **(found.base[0].choices if found.base else {})}
     return {
@@ -58,7 +58,7 @@ def plain_entry(study: Study, entry: LedgerEntry, folder: Path) -> dict[str, Any
 
 
 def ours_in_words(finding: Finding) -> str:
-    """Say the numbers of the case file as it ships."""
+    """Numbers of the case file as it ships, in words."""
     return "; ".join(f"{one.part}: {one.note or one.found}" for one in finding.base)
 
 
@@ -93,7 +93,7 @@ def _chart(found: Finding) -> dict[str, Any] | None:
 
 
 def _curve(one: Curve) -> dict[str, Any]:
-    """A curve with as many points and digits as a reader of the file needs."""
+    """A curve with a limited number of points and digits."""
     step = max(1, -(-len(one.x) // MOST))
     return {
         "name": one.name,

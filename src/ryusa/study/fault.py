@@ -1,4 +1,4 @@
-"""What went wrong in one run or in judging one experiment: a line for its row, a traceback for the log."""
+"""Errors in a run or in the judgement of a part: one line for the page, a traceback for the log."""
 
 import sysconfig
 import traceback
@@ -15,12 +15,12 @@ _FOREIGN = tuple(sysconfig.get_path(name) for name in ("stdlib", "platstdlib", "
 
 @dataclass(frozen=True)
 class Fault:
-    """Why something has no numbers.
+    """The reason why a run or a part has no results.
 
     Attributes
     ----------
-    words : one line, without a path of the machine.
-    trace : traceback where it is an error in the program, empty where `words` say all.
+    words : one line, without absolute paths.
+    trace : traceback of an error in the program; empty for errors that ryusa raises itself.
     """
 
     words: str
@@ -28,7 +28,7 @@ class Fault:
 
 
 def fault_of(error: BaseException) -> Fault:
-    """Put an error into words; anything but a named error of ours is a fault of the program.
+    """Describe an error; any exception other than `RyusaError` is an error in the program.
 
     >>> fault_of(RyusaError("no hop at all"))
     Fault(words='no hop at all', trace='')
@@ -44,7 +44,7 @@ def fault_of(error: BaseException) -> Fault:
 
 
 def _place(error: BaseException) -> str:
-    """The innermost line that is ours, not that of a library which was called from it."""
+    """The innermost line of ryusa or of a study, rather than that of a library called from it."""
     frames = traceback.extract_tb(error.__traceback__)
     ours = [one for one in frames if not _foreign(one.filename)]
     if not frames:
@@ -64,17 +64,17 @@ def _foreign(file: str) -> bool:
 def noted(
     faults: MutableMapping[str, Fault], what: str, passing: tuple[type[Exception], ...] = ()
 ) -> Generator[None]:
-    """Within the block an error is noted under `what` and ends the block alone; an interrupt ends all.
+    """Record an error raised in the block under `what`, and leave the block; interrupts are not caught.
 
     Parameters
     ----------
-    faults : takes what went wrong.
-    what : the key it is noted under.
-    passing : errors that are not caught, such as OSError where a full disk would spoil all that follows.
+    faults : receives the error.
+    what : its key.
+    passing : errors that are not caught, such as OSError if a full disk would affect everything after it.
     """
     try:
         yield
     except passing:
         raise
-    except Exception as error:  # the point of it: one experiment must not cost the others their hours
+    except Exception as error:  # one part must not end the others
         faults[what] = fault_of(error)

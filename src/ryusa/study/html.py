@@ -1,4 +1,4 @@
-"""What all pages share: templates, and pictures that a page holds itself."""
+"""Shared parts of all pages: templates, and pictures embedded in the page."""
 
 import base64
 import io
@@ -13,11 +13,11 @@ from ryusa.running.disk import write_atomically
 from ryusa.study.cost import code_in_words
 
 COLOURS = 256  # of an embedded picture
-ONE_COLUMN = 1600  # pixels; a wider picture is shown over the whole page, or its letters would be too small
+ONE_COLUMN = 1600  # pixels; a wider picture is shown at full page width, so that its text remains legible
 
 
 def template(path: Path, **filters: Callable[..., Any]) -> Template:
-    """Give the template of a study, which may include those of this room; an unknown name is an error."""
+    """Load the template of a study, which may include those of this package; an unknown name is an error."""
     folders = [path.parent, Path(__file__).parent]
     page = Environment(
         loader=FileSystemLoader(folders), autoescape=True, undefined=StrictUndefined,
@@ -28,9 +28,9 @@ def template(path: Path, **filters: Callable[..., Any]) -> Template:
 
 
 def embedded(picture: Path) -> str:
-    """Give a PNG as an address that holds the picture itself, pixel by pixel, in at most COLOURS colours.
+    """Return a PNG as a data URL with at most COLOURS colours.
 
-    A third of the bytes of the file it is made from, which stays as it is.
+    It has about a third of the bytes of the file, which is not changed.
     """
     held = io.BytesIO()
     with Image.open(picture) as image:
@@ -40,13 +40,13 @@ def embedded(picture: Path) -> str:
 
 
 def is_wide(picture: Path) -> bool:
-    """Whether its letters need the whole width of the page: a picture of two columns."""
+    """Whether a picture spans two columns and needs the full page width."""
     with Image.open(picture) as image:
         return image.width > ONE_COLUMN
 
 
 def number(value: object) -> str:
-    """Give a value of a table as text, floats to four digits.
+    """Return a value of a table as text, floats with four digits.
 
     >>> number(0.123456), number(None), number("30 deg")
     ('0.1235', '', '30 deg')
@@ -57,7 +57,7 @@ def number(value: object) -> str:
 
 
 def write_log(log: Path, traces: Mapping[str, str]) -> None:
-    """Keep the tracebacks of errors in the program, and none of an earlier time."""
+    """Write the tracebacks of errors in the program; without errors, remove an earlier log."""
     if traces:
         write_atomically(log, "\n".join(f"{what}\n{trace}" for what, trace in traces.items()).encode())
     else:

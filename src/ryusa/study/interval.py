@@ -1,4 +1,4 @@
-"""Numbers with their intervals: means over seeds, ranges, and the spread that a sweep has in common."""
+"""Numbers with intervals: means over seeds, ranges, and the pooled spread of a sweep."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -14,13 +14,13 @@ Item = TypeVar("Item")
 
 @dataclass(frozen=True)
 class Interval:
-    """A number with the interval in which it is known."""
+    """A number with its interval of uncertainty."""
 
     value: float
     low: float
     high: float
     unit: str
-    n: int  # seeds, or whatever `how` says
+    n: int  # number of seeds, or of the items named in `how`
     how: str
 
     def __str__(self) -> str:
@@ -32,7 +32,7 @@ class Interval:
 
 
 def short(value: float) -> str:
-    """Give three digits, and no power of ten where plain digits do.
+    """Return a number with three significant digits, without an exponent from 1000 to 1e6.
 
     >>> short(1042.0), short(0.01049), short(2.0e-6)
     ('1042', '0.0105', '2e-06')
@@ -41,7 +41,7 @@ def short(value: float) -> str:
 
 
 def exact(value: float, unit: str) -> Interval:
-    """Give a number that has no interval, such as the largest difference between two curves.
+    """Return a number without an interval, such as the largest difference between two curves.
 
     >>> str(exact(0.02, "m/s"))
     '0.02 m/s'
@@ -55,15 +55,15 @@ def over_seeds(values: Sequence[float], unit: str, pooled: "Pooled | None" = Non
     Parameters
     ----------
     values : one number per seed.
-    unit : of the numbers.
-    pooled : spread of all settings of a sweep, and its degrees of freedom; counts where the own standard
-        deviation is no larger. Few seeds alone give an interval far too wide (n = 3: 2.5 standard deviations)
-        or, by luck, far too narrow. A setting that scatters more than the others keeps its own.
+    unit : unit of the numbers.
+    pooled : spread of all settings of a sweep, with its degrees of freedom; used unless the standard
+        deviation of `values` is larger. With few seeds alone the interval is far too wide (n = 3: 2.5
+        standard deviations) or, by chance, far too narrow.
 
     Notes
     -----
-    One seed has no interval: low, value and high are the same and the row is indicative. A value that is not
-    finite makes all three nan.
+    One seed has no interval: low, value and high are equal, and the result is indicative. If a value is not
+    finite, all three are nan.
 
     >>> str(over_seeds([1.0, 2.0, 3.0], "m"))
     '2 m (-0.484 to 4.48)'
@@ -85,10 +85,10 @@ def over_seeds(values: Sequence[float], unit: str, pooled: "Pooled | None" = Non
 
 
 def pseudo_values(value: Callable[[Sequence[Item]], float], items: Sequence[Item]) -> list[float]:
-    """Jackknife: one number per item for a value that all items have together.
+    """Jackknife pseudo-values: one number per item for a statistic of all items.
 
-    Their mean is the value freed of its bias of order 1/n (Quenouille 1956, Biometrika 43, 353), their
-    scatter gives its error (Tukey 1958, Ann. Math. Stat. 29, 614). For a plain mean they are the items.
+    Their mean is the statistic without its bias of order 1/n (Quenouille 1956, Biometrika 43, 353), and their
+    scatter gives its error (Tukey 1958, Ann. Math. Stat. 29, 614). For a mean they are the items themselves.
 
     >>> pseudo_values(lambda x: sum(x) / len(x), [1.0, 2.0, 6.0])
     [1.0, 2.0, 6.0]
@@ -108,7 +108,7 @@ class Pooled:
 
 
 def pool(groups: Sequence[Sequence[float]]) -> Pooled | None:
-    """Pool the spread between seeds over settings; None where no setting has two finite numbers.
+    """Pool the spread between seeds over settings; None if no setting has two finite numbers.
 
     >>> pool([[1.0, 3.0], [5.0, 7.0]])
     Pooled(spread=1.4142135623730951, freedom=2)
@@ -122,7 +122,7 @@ def pool(groups: Sequence[Sequence[float]]) -> Pooled | None:
 
 
 def over_range(values: Sequence[float], unit: str, of_what: str) -> Interval:
-    """Middle and range of numbers without chance in them; `of_what` such as "12 impact speeds".
+    """Median and range of deterministic numbers; `of_what` names them, such as "12 impact speeds".
 
     >>> str(over_range([1.0, 2.0, 4.0], "s", "3 speeds"))
     '2 s (1 to 4)'

@@ -1,4 +1,4 @@
-"""From numbers to a verdict: the band that is asked for, the settings tried, and one rule for all studies."""
+"""From numbers to a verdict: permitted ranges, settings, and one rule for all studies."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -8,11 +8,11 @@ from enum import StrEnum
 from ryusa.figures.comparison import Axis, Curve
 from ryusa.study.interval import Interval
 
-_NAMED = 3  # sets of choices named in a condition, at most
+_NAMED = 3  # largest number of sets of choices named in a condition
 
 
 class Outcome(StrEnum):
-    """What became of a finding. Each study has its own words for these."""
+    """Outcome of a finding. Each study has its own words for these."""
 
     HOLDS = "holds"
     ONLY_IF = "holds only if"
@@ -23,17 +23,17 @@ class Outcome(StrEnum):
 
 
 class Known(StrEnum):
-    """How a reference is known."""
+    """Origin of a reference."""
 
-    CLOSED = "closed form"  # derived; the reader can check it against the equation of the source
+    CLOSED = "closed form"  # derived; can be checked against the equation of the source
     READ = "read in the source"
     QUOTED = "read where it is quoted"
-    MEMORY = "from memory"  # shown, and never decides
+    MEMORY = "from memory"  # shown, never judged
 
 
 @dataclass(frozen=True)
 class Source:
-    """Where a reference comes from."""
+    """Source of a reference."""
 
     words: str  # author, year, equation or table
     known: Known = Known.CLOSED
@@ -41,13 +41,13 @@ class Source:
 
 @dataclass(frozen=True)
 class ReferenceChart:
-    """Our curves on reference curves; a reference named as one of ours belongs to it.
+    """Our curves and reference curves; a reference is matched to our curve of the same name.
 
     Attributes
     ----------
-    x, y : the axes.
-    ours, references : the curves compared.
-    beside : further curves, shown and not compared.
+    x, y : axes.
+    ours, references : curves that are compared.
+    beside : further curves, shown but not compared.
     """
 
     x: Axis
@@ -59,15 +59,15 @@ class ReferenceChart:
 
 @dataclass(frozen=True)
 class Band:
-    """What is asked of a number, as an inequality; either end may be infinite."""
+    """Permitted range of a number; either end may be infinite."""
 
     low: float
     high: float
     unit: str
-    says: str  # why these limits: how words became numbers, or how accurate the method can be
+    says: str  # reason of the limits: how a statement was turned into numbers, or the accuracy of the method
 
     def holds(self, found: Interval) -> bool | None:
-        """True with the whole interval inside, False with all of it outside, None where it straddles."""
+        """True if the interval is inside, False if it is outside, None if it includes a limit."""
         if not (math.isfinite(found.low) and math.isfinite(found.high)):
             return None
         if self.low <= found.low and found.high <= self.high:
@@ -78,7 +78,7 @@ class Band:
 
 
 def at_most(high: float, says: str, unit: str = "-") -> Band:
-    """Give the band of an error that cannot be negative.
+    """Return the band of an error that cannot be negative.
 
     >>> at_most(0.02, "half a cell")
     Band(low=0.0, high=0.02, unit='-', says='half a cell')
@@ -88,15 +88,16 @@ def at_most(high: float, says: str, unit: str = "-") -> Band:
 
 @dataclass(frozen=True)
 class Trial:
-    """One number of a finding, under one set of free choices.
+    """One number of a finding, for one set of free choices.
 
     Attributes
     ----------
-    part : what was measured, such as "slope of the heap at rest".
-    choices : every free choice that is varied, by name; the same names in every trial of a finding.
+    part : quantity, such as "slope of the heap at rest".
+    choices : value of every free choice that is varied, by name; the same names in all trials of a finding.
     found : the number.
-    band : what is asked of it; None where the number is shown and decides nothing.
-    decided : verdict where no number can carry it, such as a heap that stands as a wall; `note` says why.
+    band : its permitted range; None if the number is shown but not judged.
+    decided : verdict if it cannot be based on a number, such as a heap that stands as a wall; `note` says
+        why.
     """
 
     part: str
@@ -108,12 +109,12 @@ class Trial:
 
     @property
     def judged(self) -> bool:
-        """Whether anything is asked of it."""
+        """Whether the number enters the verdict."""
         return self.band is not None or self.decided is not None
 
     @property
     def holds(self) -> bool | None:
-        """Whether this part holds; None where it cannot be decided."""
+        """Whether this part holds; None if it cannot be decided."""
         if self.decided is not None or self.band is None:
             return self.decided
         return self.band.holds(self.found)
@@ -124,24 +125,24 @@ Key = tuple[tuple[str, str], ...]
 
 @dataclass(frozen=True)
 class Finding:
-    """What was found about one claim or one reference.
+    """The result for one claim or one reference.
 
     Attributes
     ----------
-    id : of the claim; of a comparison, short lower-case words with hyphens, unique within its part.
-    trials : every number and setting tried; those of the case file as it ships come first.
-    decided_by : one or two sentences on the physics that decides it.
-    settings : what all trials share, in words.
-    contradiction : set where the source's own equations exclude the claim; says how, with the numbers found.
-    also : further numbers, which decide nothing.
-    beside : trials of something else than what the finding is about, such as other forms of a law.
-    title : what is compared; empty where the part's own title says it.
-    source : of the reference.
-    chart : our curves on those of the reference.
+    id : identifier of the claim; of a comparison, lower-case words with hyphens, unique within its part.
+    trials : all numbers, for all settings; those of the case file as it ships come first.
+    decided_by : one or two sentences on the physics that decides the verdict.
+    settings : settings common to all trials, in words.
+    contradiction : if the equations of the source exclude the claim, an explanation with the numbers found.
+    also : further numbers, not judged.
+    beside : trials of something other than the subject of the finding, such as other forms of a law.
+    title : what is compared; empty if the title of the part is sufficient.
+    source : source of the reference.
+    chart : our curves and those of the reference.
 
     Raises
     ------
-    ValueError : a reference known from memory would decide; it may only be shown.
+    ValueError : a reference known only from memory is judged; it may only be shown.
     """
 
     id: str
@@ -156,14 +157,14 @@ class Finding:
     chart: ReferenceChart | None = None
 
     def __post_init__(self) -> None:
-        """Let nothing that is known from memory alone decide."""
+        """Refuse a judgement that is based on a reference known only from memory."""
         from_memory = self.source is not None and self.source.known is Known.MEMORY
         if from_memory and any(one.judged for one in self.trials):
             raise ValueError(f"{self.id}: a reference from memory may be shown, but must not decide")
 
     @property
     def by_choice(self) -> dict[Key, bool | None]:
-        """Whether it holds under each set of choices: every part that is judged must."""
+        """Whether the finding holds for each set of choices, that is, all of its judged parts hold."""
         parts: dict[Key, list[bool | None]] = {}
         for one in self.trials:
             if one.judged:
@@ -176,10 +177,12 @@ class Finding:
     def outcome(self) -> Outcome:
         """The verdict: one rule for every finding of every study.
 
-        It holds under some sets of choices and fails under others: holds only if. It fails under none and
-        holds as the case file ships: holds. It holds under none and fails as the case ships: fails. Otherwise
-        the intervals straddle a limit: undecided. A claim that the equations of its own source exclude is
-        excluded, whatever the runs say. Numbers of which nothing is asked are shown.
+        - excluded: the equations of its own source exclude the claim, whatever the runs show;
+        - shown: no number has a permitted range;
+        - holds only if: it holds for some sets of choices and fails for others;
+        - holds: it fails for none, and holds for the case file as it ships;
+        - fails: it holds for none, and fails for the case file as it ships;
+        - undecided: otherwise; intervals include a limit.
         """
         if self.contradiction:
             return Outcome.EXCLUDED
@@ -194,16 +197,16 @@ class Finding:
 
     @property
     def counts(self) -> dict[str, int]:
-        """Sets of choices under which it holds, fails, and stays open."""
+        """Number of sets of choices for which it holds, fails, and is undecided."""
         held = list(self.by_choice.values())
         return {"holds": held.count(True), "fails": held.count(False), "undecided": held.count(None)}
 
     @property
     def condition(self) -> str:
-        """Where it holds, in words, when it fails elsewhere.
+        """Choices for which it holds, in words, if it fails for others.
 
-        Choices are named one by one where every combination of their values that was tried holds; else the
-        sets under which it holds are named, by what they change in the case as it ships.
+        Choices are listed one by one if every combination of their values holds; else the sets for which it
+        holds are listed, by their differences from the case as it ships.
         """
         held = self.by_choice
         good = [dict(key) for key, one in held.items() if one]
@@ -233,7 +236,7 @@ class Finding:
 
 
 def _listed(fits: Sequence[str], tried: Sequence[str]) -> str:
-    """Values in words; neighbours of a sweep of numbers become a range.
+    """Values in words; adjacent values of a numerical sweep are joined to a range.
 
     >>> _listed(["20 deg", "30 deg", "40 deg"], ["10 deg", "20 deg", "30 deg", "40 deg"])
     '20 deg to 40 deg'

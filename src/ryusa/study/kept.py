@@ -1,4 +1,4 @@
-"""Ledger files: written whole, compressed where their name ends in .xz; older formats are read too."""
+"""Reading and writing of ledger files, compressed if their name ends in .xz; older formats are read too."""
 
 import json
 import lzma
@@ -11,7 +11,7 @@ from ryusa.running.disk import write_atomically
 from ryusa.study.ledger import FORMAT
 
 COMPRESSED = ".xz"
-# Verdicts of format 1 and their outcome.
+# Verdicts of format 1 and their outcomes.
 _OUTCOMES = {
     "reproduced": "holds",
     "within": "holds",
@@ -24,7 +24,7 @@ _OUTCOMES = {
 
 
 def write_ledger(path: Path, plain: Mapping[str, Any]) -> Path:
-    """Write what the JSON file holds; the file appears whole or not at all.
+    """Write a ledger; the file appears complete or not at all.
 
     Raises
     ------
@@ -41,11 +41,11 @@ def write_ledger(path: Path, plain: Mapping[str, Any]) -> Path:
 
 
 def read_ledger(path: Path) -> dict[str, Any]:
-    """Read a ledger of any study, as JSON or compressed, in format 2.
+    """Read a ledger of any study, as JSON or compressed, and return it in format 2.
 
     Raises
     ------
-    ResultsError : it is no ledger, is damaged, or is of a later format.
+    ResultsError : the file is not a ledger, is damaged, or has a later format.
     """
     try:
         data = path.read_bytes()
@@ -61,7 +61,7 @@ def read_ledger(path: Path) -> dict[str, Any]:
 
 
 def _of_claims(old: Mapping[str, Any]) -> dict[str, Any]:
-    """Format 1 of the paper's ledger."""
+    """Convert format 1 of the ledger of the paper."""
     findings = [
         {
             **{key: value for key, value in one.items() if key not in {"sweep", "experiment", "spread"}},
@@ -80,7 +80,7 @@ def _of_claims(old: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _of_comparisons(old: Mapping[str, Any]) -> dict[str, Any]:
-    """Format 1 of the validation's ledger."""
+    """Convert format 1 of the ledger of the validation."""
     findings = [
         {
             **{key: one[key] for key in ("id", "verdict", "title", "source", "known", "settings", "problem")},

@@ -1,4 +1,4 @@
-"""The ledger of a study: carry out its tasks, judge every part, keep what was found."""
+"""The ledger of a study: carry out its tasks, judge every part, keep the findings."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -29,7 +29,7 @@ FORMAT = 2  # of the JSON file; `kept.read` reads format 1 too
 
 @dataclass(frozen=True)
 class Ledger:
-    """What a study found, how it was made, and where.
+    """The findings of a study, with their plan and provenance.
 
     Attributes
     ----------
@@ -37,8 +37,8 @@ class Ledger:
     problems : runs that could not be carried out or measured, with the reason.
     counts : runs made, runs opened, wall time [s], processes.
     tables : lines of the CSV table, by part.
-    stem : of its files; another level, or a part of the study, never replaces the whole.
-    faults : what went wrong after the runs.
+    stem : stem of its file names; other levels and single parts have their own and never replace the whole.
+    faults : errors after the runs.
     traces : tracebacks of errors in the program, for the log.
     """
 
@@ -55,11 +55,11 @@ class Ledger:
 
     @property
     def log(self) -> str:
-        """Name of the file that holds the tracebacks; empty where there are none."""
+        """Name of the file with the tracebacks; empty if there are none."""
         return f"{self.stem}-errors.log" if self.traces else ""
 
     def plain(self) -> dict[str, Any]:
-        """Give the ledger as the JSON file holds it."""
+        """Return the ledger as written to the JSON file."""
         findings = [one.finding for one in self.entries if one.finding is not None]
         return {
             "format": FORMAT,
@@ -87,24 +87,24 @@ def make(
     again: bool = False,
     progress: StudyProgress | None = None,
 ) -> Ledger:
-    """Carry out what is needed, judge every part, and write tables and pictures.
+    """Carry out the tasks, judge every part, and write tables and pictures.
 
     Parameters
     ----------
-    study : what is to be run.
-    names : parts of it; None takes all.
+    study : the study.
+    names : names of its parts; None for all.
     plan : level and seeds.
     folder : runs go into `folder/runs`, tables and pictures of each part into `folder/<part>`.
     jobs, again, progress : as in `carry_out`.
 
     Raises
     ------
-    KeyboardInterrupt : Ctrl-C; finished runs stay and are opened next time.
-    RyusaError : a case cannot be run; or the only part asked for cannot name its tasks.
+    KeyboardInterrupt : Ctrl-C; finished runs are kept and opened by the next call.
+    RyusaError : a case cannot be run; or the only part requested cannot list its tasks.
     """
     chosen = study.parts if names is None else tuple(dict.fromkeys(names))
     refuse_if_not_writable(folder)
-    provenance.commit()  # read now: code that changes meanwhile is not what is running
+    provenance.commit()  # read now: later changes of the files are not part of the running code
     faults: dict[str, Fault] = {}
     tasks: dict[str, Sequence[Task]] = {name: () for name in chosen}
     for name in chosen:
@@ -137,10 +137,11 @@ def _judged(
     tables: dict[str, list[dict[str, object]]],
     faults: dict[str, Fault],
 ) -> list[LedgerEntry]:
-    """Entries of one part; its table and pictures are written on the way.
+    """Entries of one part; its table and pictures are written too.
 
-    Where a run of it failed, or judging it ends in an error, nothing of it is judged: its entries say why,
-    and the other parts stand. Without its table or pictures it keeps its verdict, and its entries say so.
+    If one of its runs failed, or its judgement raises an error, the part is not judged and its entries give
+    the reason; other parts are not affected. If only its table or pictures fail, it keeps its verdict, and
+    its entries mention the error.
     """
     if _naming(name) in faults:
         return _unjudged(study, name, f"its tasks could not be named: {faults[_naming(name)].words}")
@@ -154,7 +155,7 @@ def _judged(
     with noted(faults, judging):
         for finding in _findings(study, name, found, plan):
             one = LedgerEntry(study.entry_id(name, finding), name, finding)
-            plain_entry(study, one, folder)  # an error in a condition shows here, not while writing
+            plain_entry(study, one, folder)  # an error in a condition is raised here, not while writing
             entries.append(one)
     if judging in faults:
         entries = _unjudged(study, name, f"it could not be judged: {faults[judging].words}")
@@ -173,7 +174,7 @@ def _judged(
 
 
 def _findings(study: Study, name: str, found: Mapping[Any, Any], plan: Plan) -> list[Finding]:
-    """What the part itself finds, or the means of what it measures."""
+    """Findings of the part, or the means of its measurements if it does not judge."""
     part: Any = study.part(name)
     if getattr(part, "judge", None) is None:
         return means(found, part.TITLE)
@@ -194,7 +195,7 @@ def _drawn(
     tables: dict[str, list[dict[str, object]]],
     faults: dict[str, Fault],
 ) -> list[Path]:
-    """Write the table of a part and draw its pictures; a full disk ends the study."""
+    """Write the table of a part and draw its pictures; a write error ends the study."""
     table, drawing = f"{name}: its table", f"{name}: its pictures"
     rows: list[dict[str, object]] = []
     with noted(faults, table):
@@ -218,7 +219,7 @@ def _drawn(
 
 
 def _charted(one: LedgerEntry, folder: Path, faults: dict[str, Fault]) -> tuple[Path, ...]:
-    """Draw the curves of a finding on those of its reference."""
+    """Draw the curves of a finding with those of its reference."""
     if one.finding is None or one.finding.chart is None:
         return ()
     chart = one.finding.chart
@@ -230,7 +231,7 @@ def _charted(one: LedgerEntry, folder: Path, faults: dict[str, Fault]) -> tuple[
 
 
 def _saved(figure: Figure, path: Path) -> Path:
-    """Save a picture as SVG and PNG; a name may hold dots."""
+    """Save a picture as SVG and PNG; its name may contain dots."""
     save(figure, path.with_name(f"{path.name}.svg"))
     return save(figure, path.with_name(f"{path.name}.png"))
 
@@ -241,7 +242,7 @@ def _unjudged(study: Study, name: str, problem: str) -> list[LedgerEntry]:
 
 
 def share_out(pictures: Sequence[Path], entries: Sequence[str]) -> dict[str, tuple[Path, ...]]:
-    """Give each picture to the entry that its name begins with, else to the first entry."""
+    """Assign each picture to the entry whose id begins its name, else to the first entry."""
     shared: dict[str, list[Path]] = {one: [] for one in entries}
     for picture in pictures:
         fits = [one for one in entries if picture.stem == one or picture.stem.startswith(f"{one}-")]

@@ -1,4 +1,4 @@
-"""What a study says that only measures: the mean of every number over its seeds, by setting."""
+"""Findings of a study without judgement: the mean of every number over the seeds, by setting."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -22,15 +22,15 @@ def means(found: Mapping[CaseRun, Mapping[str, float]], title: str) -> list[Find
     Parameters
     ----------
     found : numbers by name for each run. A name may end in a unit: "hop length [m]".
-    title : of the study, for its page.
+    title : title of the study, for its page.
 
     Notes
     -----
-    Nothing is asked of these numbers: they are shown. The spread between seeds is pooled over the settings.
+    These numbers are shown, not judged. The spread between seeds is pooled over the settings.
 
     Raises
     ------
-    ResultsError : `measure` gave something else than numbers by name.
+    ResultsError : `measure` did not return numbers by name.
     """
     rows = [(task, _checked(task, numbers)) for task, numbers in found.items()]
     names = list(dict.fromkeys(name for _, numbers in rows for name in numbers))
@@ -58,7 +58,7 @@ def means(found: Mapping[CaseRun, Mapping[str, float]], title: str) -> list[Find
 
 
 def rows_of(found: Mapping[CaseRun, Mapping[str, float]]) -> list[dict[str, object]]:
-    """One line per run: what was changed in its case, and what was measured."""
+    """One line per run: changes of its case, and the numbers measured."""
     return [{"case": task.case, **dict(task.overrides), **numbers} for task, numbers in found.items()]
 
 
@@ -89,7 +89,7 @@ def _keys(task: CaseRun) -> dict[str, str]:
 
 
 def _varied(tasks: Sequence[CaseRun]) -> list[str]:
-    """Keys of the cases whose value is not the same in all runs."""
+    """Case keys whose values differ between the runs."""
     keys = list(dict.fromkeys(key for task in tasks for key in _keys(task)))
     return [key for key in keys if len({_keys(task).get(key) for task in tasks}) > 1]
 
@@ -103,7 +103,7 @@ def _fixed(tasks: Sequence[CaseRun], varied: Sequence[str]) -> dict[str, str]:
 
 
 def _chart(label: str, unit: str, trials: Sequence[Trial]) -> ReferenceChart | None:
-    """Mean and interval over the one key that is varied, where its values are numbers in one unit."""
+    """Mean and interval over the varied key, if there is only one and its values are numbers in one unit."""
     keys = list(trials[0].choices) if trials else []
     if len(keys) != 1 or len(trials) < 2:
         return None

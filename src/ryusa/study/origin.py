@@ -1,4 +1,4 @@
-"""Where the numbers of a page came from: code, machine, runs, and what went wrong."""
+"""Provenance of a page: code, machine, runs, and errors."""
 
 import math
 import platform
@@ -9,11 +9,11 @@ from ryusa.engine import registry
 from ryusa.running import provenance
 from ryusa.study import Fault, Task, TaskResults
 
-_NAMED = 3  # runs that failed, named in a row
+_NAMED = 3  # largest number of failed runs that are listed
 
 
 def counted(results: TaskResults, jobs: int) -> dict[str, Any]:
-    """Runs made and opened, by which code, in how much time."""
+    """Number of runs made and opened, the code that made them, and wall time."""
     return {
         "runs_made": results.n_run,
         "runs_opened": results.n_opened,
@@ -25,14 +25,14 @@ def counted(results: TaskResults, jobs: int) -> dict[str, Any]:
 
 
 def missing_runs(missing: Mapping[Task, Fault], n: int) -> str:
-    """Which runs failed, and why; the first few of many."""
+    """The failed runs with their reasons; only the first few of many."""
     told = [f"{one.label}: {fault.words}" for one, fault in list(missing.items())[:_NAMED]]
     more = f"; and {len(missing) - _NAMED} more" if len(missing) > _NAMED else ""
     return f"{len(missing)} of {n} runs failed, so it was not judged; {'; '.join(told)}{more}"
 
 
 def traces_of(results: TaskResults, faults: Mapping[str, Fault]) -> dict[str, str]:
-    """Tracebacks of errors in the program, each once, under what they spoiled."""
+    """Tracebacks of errors in the program, by the run or part concerned."""
     every = [
         (f"{name}: run {one.label}", fault)
         for name, found in results.missing.items()
@@ -42,7 +42,7 @@ def traces_of(results: TaskResults, faults: Mapping[str, Fault]) -> dict[str, st
 
 
 def json_number(value: float) -> float | None:
-    """JSON knows no infinity and no nan."""
+    """The value, or None if it is infinite or nan, which JSON cannot represent."""
     return value if math.isfinite(value) else None
 
 

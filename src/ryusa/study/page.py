@@ -1,4 +1,4 @@
-"""The page of a study: its ledger as one HTML file that needs nothing but itself."""
+"""The page of a study: its ledger as one self-contained HTML file."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -12,15 +12,15 @@ from ryusa.study.kept import write_ledger
 from ryusa.study.ledger import Ledger
 from ryusa.study.study import LOOKS, Study, limits_in_words
 
-WHOLE_TABLE = 60  # rows; of a longer table the page holds the first HEAD
+WHOLE_TABLE = 60  # rows; of a longer table the page shows the first HEAD
 HEAD = 20
 OPEN_SWEEP = 12  # rows; a longer sweep is folded
 
 
 def write(ledger: Ledger, copy: Path | None = None) -> tuple[Path, ...]:
-    """Write page and JSON into the folder of the ledger, and a copy of the JSON where asked.
+    """Write page and JSON into the folder of the ledger, and a copy of the JSON to `copy`.
 
-    Each file is written beside its place and moved there whole.
+    Each file appears complete or not at all.
 
     Raises
     ------
@@ -29,7 +29,7 @@ def write(ledger: Ledger, copy: Path | None = None) -> tuple[Path, ...]:
     plain = ledger.plain()
     page = ledger.folder / f"{ledger.stem}.html"
     files = [ledger.folder / f"{ledger.stem}.json", *([] if copy is None else [copy])]
-    for path in files:  # first: whatever becomes of the page, the numbers are kept
+    for path in files:  # first, so that the numbers are kept if the page fails
         write_ledger(path, plain)
     write_log(ledger.folder / f"{ledger.stem}-errors.log", ledger.traces)
     write_atomically(page, render(ledger.study, plain, ledger.tables, ledger.folder).encode())
@@ -42,14 +42,14 @@ def render(
     tables: Mapping[str, Sequence[Mapping[str, object]]],
     folder: Path,
 ) -> str:
-    """Make the page.
+    """Return the page as HTML.
 
     Parameters
     ----------
-    study : whose ledger it is.
-    plain : the ledger as the JSON file holds it.
+    study : the study.
+    plain : its ledger as in the JSON file.
     tables : lines of the CSV table, by part.
-    folder : what the pictures' paths start from.
+    folder : folder that the paths of pictures are relative to.
     """
     findings: list[dict[str, Any]] = plain["findings"]
     first: dict[str, str] = {}  # part -> entry whose section holds its table
@@ -83,7 +83,7 @@ def _section(
     tables: Mapping[str, Sequence[Mapping[str, object]]],
     folder: Path,
 ) -> dict[str, Any]:
-    """What the section of one entry shows beside the entry itself."""
+    """An entry with the additional content of its section."""
     name = entry["part"]
     holder = first[name]
     rows = tables.get(name, ()) if holder == entry["id"] else ()
@@ -105,7 +105,7 @@ def _section(
 
 
 def interval(found: Mapping[str, Any]) -> str:
-    """Say a number and its interval in words.
+    """A number and its interval as text.
 
     >>> interval({"value": 2.0, "low": 1.0, "high": 3.0, "unit": "m"})
     '2 m (1 to 3)'
@@ -119,9 +119,9 @@ def interval(found: Mapping[str, Any]) -> str:
 
 
 def summary(study: Study, plain: Mapping[str, Any]) -> str:
-    """Give one line per number as a Markdown table, for a reader of the repository and for `git diff`.
+    """Return a Markdown table with one line per number, readable in the repository and in `git diff`.
 
-    A finding with a sweep has the line of the case file as it ships; the sweep is in the ledger itself.
+    For a finding with a sweep it lists the case file as it ships; the sweep is in the ledger itself.
     """
     lines = ["| finding | number | value and interval | asked | verdict |", "|---|---|---|---|---|"]
     for one in plain["findings"]:

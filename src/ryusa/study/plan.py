@@ -1,4 +1,4 @@
-"""How much a study covers."""
+"""Level and seeds of a study."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -8,9 +8,9 @@ Value = TypeVar("Value")
 
 
 class Level(StrEnum):
-    """How much is run."""
+    """Extent of a study."""
 
-    QUICK = "quick"  # the case files as they are, one seed: indicative
+    QUICK = "quick"  # the case files as they ship, one seed: indicative
     STANDARD = "standard"  # three seeds and the sweeps that decide a verdict
     FULL = "full"  # every sweep
 
@@ -23,7 +23,7 @@ class Plan:
     seeds: tuple[int, ...] = (1, 2, 3)
 
     def pick(self, quick: Value, standard: Value, full: Value | None = None) -> Value:
-        """Give the value of this level; the full one takes the standard one where it has none."""
+        """Return the value for this level; the full level uses that of the standard level if it has none."""
         if self.level is Level.QUICK:
             return quick
         return full if self.level is Level.FULL and full is not None else standard

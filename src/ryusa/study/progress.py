@@ -12,25 +12,25 @@ class StudyProgress:
     """Receives the progress of a study; shows nothing."""
 
     def begin(self, ahead: CostEstimate) -> None:
-        """All runs, with what each costs."""
+        """Called before the first run, with the estimated cost of all runs."""
 
     def started(self, one: Task) -> None:
-        """A run begins."""
+        """Called when a run begins."""
 
     def done(self, one: Task, seconds: float, opened: bool, problem: str) -> None:
-        """A run is over."""
+        """Called when a run has ended."""
 
     def tick(self) -> None:
-        """Time went by."""
+        """Called several times a second."""
 
     def end(self) -> None:
-        """All runs are over, or the study was interrupted."""
+        """Called when all runs have ended, or the study was interrupted."""
 
 
 class ProgressLines(StudyProgress):
     """Shows a bar on a terminal, a line every ten seconds elsewhere; on stderr."""
 
-    EVERY = 10.0  # s between two lines where stderr is no terminal
+    EVERY = 10.0  # s between two lines if stderr is not a terminal
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         from rich.console import Console
@@ -70,7 +70,7 @@ class ProgressLines(StudyProgress):
         self.tick()
 
     def done(self, one: Task, seconds: float, opened: bool, problem: str) -> None:
-        """Count it, and correct the estimate of the time left."""
+        """Count the run, and correct the estimate of the remaining time."""
         self._finished += 1
         self._now.pop(one, None)
         cost = self._costs.pop(one, 0.0)
@@ -100,7 +100,7 @@ class ProgressLines(StudyProgress):
             self._task = None
 
     def left(self) -> float:
-        """Wall time left [s]: the estimate, corrected by its error over the runs made so far."""
+        """Remaining wall time [s]: the estimate, corrected by its error in the runs made so far."""
         wrong = self._run_seconds / self._run_cost if self._run_cost > 0.0 else 1.0
         now = self._clock()
         rest = [

@@ -1,4 +1,4 @@
-"""Carry out tasks: each once, several at a time; finished ones are opened."""
+"""Carry out tasks, each once and several at a time; finished ones are opened."""
 
 import os
 import signal
@@ -22,7 +22,7 @@ from ryusa.study.progress import StudyProgress
 from ryusa.study.task import Calculation, Task
 
 _WAIT = 0.2  # s between two checks for finished runs
-_PATIENCE = 5.0  # s that a run has to close its folder before its process is killed
+_PATIENCE = 5.0  # s until the process of a run that does not close its folder is killed
 Load = Callable[[str], Any]
 
 _ONE_THREAD = {name: "1" for name in ("NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")}
@@ -30,19 +30,19 @@ _ONE_THREAD = {name: "1" for name in ("NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "O
 
 @dataclass(frozen=True)
 class TaskResult:
-    """One run, measured."""
+    """One run with its measurements."""
 
     one: Task
-    measured: Mapping[str, Any]  # by experiment
-    opened: bool  # it was there already
+    measured: Mapping[str, Any]  # by part
+    opened: bool  # the run was finished before
     seconds: float
-    faults: Mapping[str, Fault] = field(default_factory=dict[str, Fault])  # by experiment that has no numbers
+    faults: Mapping[str, Fault] = field(default_factory=dict[str, Fault])  # by part without measurements
     commit: str = ""  # of the code that made the run, or its version
-    broken: bool = False  # the run itself failed, whoever wants it
+    broken: bool = False  # the run itself failed
 
     @property
     def problem(self) -> str:
-        """Why it could not be run to its end, or measured."""
+        """Why it could not be completed or measured."""
         if self.broken:
             return next(iter(self.faults.values())).words if self.faults else ""
         return "; ".join(f"{name}: {one.words}" for name, one in self.faults.items())
@@ -50,17 +50,17 @@ class TaskResult:
 
 @dataclass
 class TaskResults:
-    """What the tasks of a study gave.
+    """Results of the tasks of a study.
 
     Attributes
     ----------
-    found : measured numbers by experiment, then by run.
-    n_run, n_opened : runs made, and finished runs of the very same case opened again.
-    seconds : wall time.
-    problems : runs that could not be carried out or measured, with the reason.
-    missing : by experiment, its runs without numbers.
-    commits : how many runs each state of the code made.
-    others : the same, of those states that are not, or may not be, the one that is running.
+    found : measurements by part, then by run.
+    n_run, n_opened : number of runs made, and of finished runs of the same case that were opened.
+    seconds : wall time [s].
+    problems : runs that could not be completed or measured, with the reason.
+    missing : by part, its runs without measurements.
+    commits : number of runs by the state of the code that made them.
+    others : the same, only for states that are not, or may not be, the present one.
     """
 
     found: dict[str, dict[Any, Any]]
@@ -87,19 +87,19 @@ def carry_out(
     Parameters
     ----------
     tasks : runs and calculations, by the part that needs them.
-    load : returns the part of that name, in any process. Its `measure(results, task)` gives numbers of a run,
-        small enough to be sent between processes; those of a calculation are passed on unchanged. A run that
-        breaks down is an answer where the part has a `failed(error)` that gives one.
-    folder : runs go into `folder/<case>/<variant>`; finished runs of the very same case are opened.
-    jobs : runs at a time, each in its own process on one thread; the numbers do not depend on it.
-    again : run even what is there.
-    progress : shows how far it is.
+    load : returns a part by its name, in any process. Its `measure(results, task)` returns the numbers of a
+        run, small enough to be sent between processes; those of a calculation are passed on unchanged. If a
+        run fails, `failed(error)` of the part, where it exists, may return a result instead.
+    folder : runs are written to `folder/<case>/<variant>`; finished runs of the same case are opened.
+    jobs : number of runs at a time, each in its own process on one thread; results do not depend on it.
+    again : repeat finished runs.
+    progress : receives the progress.
 
     Raises
     ------
-    CaseError : a case cannot be run, or all runs together do not fit on the disk; nothing was run.
-    ResultsError : a process was ended from outside; what was finished stays.
-    KeyboardInterrupt : Ctrl-C or SIGTERM; what was finished stays and is opened next time.
+    CaseError : a case cannot be run, or the runs do not fit on the disk; nothing was run.
+    ResultsError : a process was killed from outside; finished runs are kept.
+    KeyboardInterrupt : Ctrl-C or SIGTERM; finished runs are kept and opened by the next call.
     """
     begun, progress = time.monotonic(), progress or StudyProgress()
     wanted = _wanted(tasks)
@@ -123,14 +123,14 @@ def carry_out(
                 progress.done(done.one, done.seconds, done.opened, done.problem)
     finally:
         progress.end()
-    for name, measured in found.items():  # in the order asked for, whoever finished first
+    for name, measured in found.items():  # in the requested order, not in that of completion
         found[name] = {one: measured[one] for one in tasks[name] if one in measured}
     results.seconds = time.monotonic() - begun
     return results
 
 
 def _wanted(tasks: Mapping[str, Sequence[Task]]) -> dict[Task, list[str]]:
-    """Every piece of work, with those who want it."""
+    """Every task, with the names of the parts that need it."""
     wanted: dict[Task, list[str]] = {}
     for name, every in tasks.items():
         for one in every:
@@ -141,7 +141,7 @@ def _wanted(tasks: Mapping[str, Sequence[Task]]) -> dict[Task, list[str]]:
 
 
 def _order(ahead: CostEstimate) -> list[Task]:
-    """What is there first, then the longest first: no core idles at the end."""
+    """Finished tasks first, then the longest first, so that no core is idle at the end."""
     return [*ahead.there, *sorted(ahead.costs, key=lambda one: -ahead.costs[one])]
 
 
@@ -192,7 +192,7 @@ def _done(
                     done = future.result()
                 except BrokenProcessPool:
                     raise
-                except Exception as error:  # what was measured cannot be sent from process to process
+                except Exception as error:  # the measurements cannot be sent between processes
                     faults = dict.fromkeys(wanted[one], fault_of(error))
                     done = TaskResult(one, {}, False, 0.0, faults, broken=True)
                 del running[future]
@@ -212,7 +212,7 @@ def _done(
 
 
 def _end(pool: ProcessPoolExecutor) -> None:
-    """Stop what is running: on SIGTERM a run closes its folder in order; whoever does not is killed."""
+    """Stop all runs: on SIGTERM a run closes its folder; a process that does not end is killed."""
     processes = list((pool._processes or {}).values())
     pool.shutdown(wait=False, cancel_futures=True)
     for process in processes:
@@ -227,7 +227,7 @@ def _end(pool: ProcessPoolExecutor) -> None:
 
 @contextmanager
 def _for_a_child() -> Generator[None]:
-    """Start processes with one thread for numerics, and deaf to Ctrl-C from their first moment on."""
+    """Within the block processes start with one numerical thread and with Ctrl-C blocked."""
     before = {name: os.environ.get(name) for name in _ONE_THREAD}
     os.environ.update(_ONE_THREAD)
     can_hold = hasattr(signal, "pthread_sigmask")
@@ -246,10 +246,10 @@ def _for_a_child() -> Generator[None]:
 
 
 def _settle_in() -> None:
-    """Leave Ctrl-C to the parent, which ends the runs with SIGTERM, and do not outlive it."""
+    """Ignore Ctrl-C, because the parent ends the runs by SIGTERM, and end with the parent."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if hasattr(signal, "pthread_sigmask"):
-        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # a run would listen to it again
+        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # a run installs its own handler
     threading.Thread(target=_leave_with_parent, daemon=True).start()
 
 
@@ -264,7 +264,7 @@ def _leave_with_parent() -> None:
 
 @contextmanager
 def _stopped_by_sigterm() -> Generator[None]:
-    """Within the block SIGTERM is what Ctrl-C is."""
+    """Within the block SIGTERM has the effect of Ctrl-C."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -280,18 +280,20 @@ def _stopped_by_sigterm() -> Generator[None]:
 
 
 def _one(one: Task, names: Sequence[str], *, folder: Path, again: bool, load: Load) -> TaskResult:
-    """Run, or open, and measure; what goes wrong in one run comes back as words and spares the others."""
+    """Run or open a task, and measure it; errors are returned in words and do not affect other runs."""
     begun = time.monotonic()
     measured: dict[str, Any] = {}
     faults: dict[str, Fault] = {}
     place = folder / one.folder
-    parts = {name: load(name) for name in names}  # first: a calculation may be a function of theirs
+    parts = {name: load(name) for name in names}  # first: a calculation may be a function of a part
     try:
         answer = None if again else one.open(place)
         opened = answer is not None
         if not opened:
             answer = one.make(place, anew=again)
-    except RunError as error:  # for some experiments that is an answer: a law that makes energy ends so
+    except (
+        RunError
+    ) as error:  # for some parts a failed run is a result, for example of a scheme that creates energy
         for name in names:
             faults[name] = fault_of(error)
             with noted(faults, name):

@@ -1,4 +1,4 @@
-"""What a study is: parts, each with its tasks, its measure and its judgement, and the words of its page."""
+"""Definition of a study: parts, each with tasks, measure and judgement, and the words of its page."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
@@ -10,9 +10,9 @@ from ryusa.study.judge import Finding, Outcome
 from ryusa.study.plan import Level, Plan
 from ryusa.study.task import CaseRun, Task
 
-Found = Mapping[Any, Any]  # task -> what `measure` gave for it, or the arrays of a calculation
+Found = Mapping[Any, Any]  # task -> result of `measure`, or the arrays of a calculation
 
-# Outcome -> class of its colour on the page, and a sign that can be told apart without colour.
+# Outcome -> class of its colour on the page, and a sign that is distinct without colour.
 LOOKS = {
     Outcome.HOLDS: ("yes", "●"),
     Outcome.ONLY_IF: ("partly", "◐"),
@@ -26,47 +26,48 @@ LOOKS = {
 class StudyPart(Protocol):
     """One part of a study: a module, or any object with these names.
 
-    `measure` is not needed where all tasks are calculations. Three more functions are optional:
+    `measure` is not needed if all tasks are calculations. Three more functions are optional:
 
-    - `rows(found, plan)` gives the lines of the part's CSV table;
-    - `draw(found, plan)` gives pictures by name;
-    - `failed(error)` gives what is measured where a run that breaks down is an answer (a law that creates
-      energy), or None where this error is no answer. Without an answer the part is not judged.
+    - `rows(found, plan)` returns the lines of the CSV table of the part;
+    - `draw(found, plan)` returns pictures by name;
+    - `failed(error)` returns the measurement of a failed run if the failure is a result (a scheme that
+    creates
+      energy), else None. A part with a failed run and no such result is not judged.
 
-    A part that judges claims names them in `CLAIMS`; `judge` then gives one finding for each.
+    A part that judges claims lists them in `CLAIMS`; `judge` then returns one finding for each.
     """
 
     TITLE: str
 
     def tasks(self, plan: Plan) -> Sequence[Task]:
-        """Runs of case files (`case_run`) and calculations (`calculation`) that this part needs.
+        """Return the runs of case files (`case_run`) and the calculations (`calculation`) of this part.
 
-        No calculation takes longer than seconds, so that an interrupt costs little; longer ones are runs.
+        Calculations should take seconds at most, because they cannot be resumed.
         """
         ...
 
     def measure(self, results: Results, task: CaseRun) -> Any:
-        """Numbers of one run, small enough to be sent between processes."""
+        """Return the numbers of one run, small enough to be sent between processes."""
         ...
 
     def judge(self, found: Found, plan: Plan) -> Sequence[Finding]:
-        """Compare what was measured with what is claimed or known."""
+        """Compare the measurements with claims or references."""
         ...
 
 
 class Study(ABC):
-    """A study as the framework sees it; those of the package and that of a user's folder derive from it.
+    """Base class of studies: those of the package, and that of a folder of the user.
 
     Attributes
     ----------
-    name : of the study, in the ledger.
+    name : name of the study in the ledger.
     title : heading of the page.
-    command : what the user types to run it.
+    command : command that runs it.
     stem : first part of the names of its ledger files.
     parts : names of the parts, in the order of the page.
-    level : the level whose files carry no level in their name.
-    words : verdict in words, by outcome.
-    template : the page; it extends `page.html` of this room.
+    level : level whose files have no level in their names.
+    words : words for the verdicts, by outcome.
+    template : template of the page; it extends `page.html` of this package.
     """
 
     name = ""
@@ -83,15 +84,15 @@ class Study(ABC):
         """Return the part of that name, in any process."""
 
     def claims(self, name: str) -> tuple[str, ...]:
-        """Ids of the claims that a part judges; empty where its findings name themselves."""
+        """Ids of the claims that a part judges; empty for a part without declared claims."""
         return tuple(getattr(self.part(name), "CLAIMS", ()))
 
     def entry_id(self, part: str, finding: Finding | None) -> str:
-        """Name of an entry on the page; without a finding, that of a part that was not judged."""
+        """Id of an entry on the page; without a finding, that of a part that was not judged."""
         return part.replace("_", "-") if finding is None else finding.id
 
     def about(self, entry: str) -> dict[str, Any]:
-        """Give what the ledger holds of an entry beside the finding itself."""
+        """Additional content of an entry in the ledger."""
         del entry
         return {}
 
@@ -100,28 +101,28 @@ class Study(ABC):
         return entries
 
     def head(self, findings: Sequence[Finding]) -> dict[str, Any]:
-        """Give what the ledger holds for all findings together."""
+        """Additional content of the ledger, for all findings together."""
         del findings
         return {}
 
     def facts(self, entry: Mapping[str, Any]) -> list[tuple[str, str]]:
-        """Lines that the section of an entry begins with: a label and its text."""
+        """First lines in the section of an entry: labels and texts."""
         if not entry["source"]:
             return []
         return [("reference", f"{entry['source']} ({entry['known']})")]
 
     def asked(self, trial: Mapping[str, Any]) -> str:
-        """Say what was asked of a number, in the words of this study."""
+        """Permitted range of a number, in the words of this study."""
         return asked_in_words(trial)
 
     def context(self, ledger: Mapping[str, Any]) -> dict[str, Any]:
-        """Give what the template of this study needs beside the common things."""
+        """Additional variables for the template of this study."""
         del ledger
         return {}
 
 
 def asked_in_words(trial: Mapping[str, Any]) -> str:
-    """Say which limits a number has.
+    """Limits of a number with their reason, in words.
 
     >>> asked_in_words({"asked": {"low": 0.0, "high": 0.02, "unit": "-", "says": "half a cell"}})
     'at most 0.02: half a cell'
@@ -135,7 +136,7 @@ def asked_in_words(trial: Mapping[str, Any]) -> str:
 
 
 def limits_in_words(trial: Mapping[str, Any]) -> str:
-    """Say the limits alone.
+    """Limits of a number, in words.
 
     >>> limits_in_words({"asked": {"low": 1.9, "high": 2.1, "unit": "-", "says": "central differences"}})
     '1.9 to 2.1'

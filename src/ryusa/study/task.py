@@ -1,4 +1,4 @@
-"""What a study carries out: runs of case files, and calculations; each kept in a folder of its own."""
+"""Tasks of a study: runs of case files, and calculations; each is kept in its own folder."""
 
 import hashlib
 import json
@@ -22,25 +22,25 @@ from ryusa.running.folder import write_json
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
 
-# What the rule of thumb for a single run cannot know. Counted in the 639 runs of the standard level of the
-# paper's ledger, seeds 1 to 3, two at a time on two cores of an AMD EPYC: 43 core minutes in all, of which
-# this rule says 46; of one set-up it is right within a factor of 1.6. The shares are of steps, and so do not
-# depend on the machine.
-_TO_REST = 0.63  # share of the longest time allowed that a run takes which may end at rest
-_TO_HOPS = 0.80  # the same where a number of hops may end it
-_ROLLING = 1.8  # a law of rolling resistance, over none in the same heap; 1.5 to 2.1
-_BEGIN = 0.14  # s to begin, to open and to measure a short run in a process that is warm
+# Corrections to the estimate for a single run, from the 639 runs of the standard level of the paper's ledger,
+# seeds 1 to 3, two at a time on two cores of an AMD EPYC: 43 core minutes in all, estimated as 46; for one
+# set-up the estimate is right within a factor of 1.6. The shares are shares of steps and do not depend on the
+# machine.
+_TO_REST = 0.63  # share of the maximum time that a run takes which may end at rest
+_TO_HOPS = 0.80  # the same for a run which may end after a number of hops
+_ROLLING = 1.8  # cost with rolling friction over that without, in the same heap; 1.5 to 2.1
+_BEGIN = 0.14  # s to start, open and measure a short run in a process that has compiled its code
 
 _NUMBERS = "numbers.npz"  # of a calculation
 
 
 @runtime_checkable
 class Task(Protocol):
-    """One piece of work, small enough to be sent between processes; equal ones are done once."""
+    """One run or calculation, small enough to be sent between processes; equal tasks are carried out once."""
 
     @property
     def folder(self) -> str:
-        """Folder of it below that of all work."""
+        """Its folder, relative to that of all tasks."""
         ...
 
     @property
@@ -49,38 +49,38 @@ class Task(Protocol):
         ...
 
     def cost(self) -> float:
-        """Core seconds by rule of thumb."""
+        """Estimated core seconds."""
         ...
 
     def disk(self) -> int:
-        """Bytes that it will take."""
+        """Estimated size [bytes]."""
         ...
 
     def origin(self, folder: Path) -> dict[str, Any] | None:
-        """Provenance of the very same work, finished in `folder`; None where there is none."""
+        """Provenance of the same task, finished in `folder`; None if there is none."""
         ...
 
     def open(self, folder: Path) -> Any | None:
-        """What was finished in `folder`; None where it is not there, of another kind, or damaged."""
+        """Return the result finished in `folder`; None if it is missing, of another task, or damaged."""
         ...
 
     def make(self, folder: Path, *, anew: bool = False) -> Any:
-        """Do it, keep it in `folder`, and give what `open` would. An interrupt is a KeyboardInterrupt.
+        """Carry out the task, keep it in `folder`, and return the result.
 
-        An interrupted task continues where it stopped, unless it is to be made `anew`.
+        An interrupt raises KeyboardInterrupt. An interrupted task is continued, or started again if `anew`.
         """
         ...
 
 
 def _folder(name: str, said: str, changed: object) -> str:
-    """Give a readable name, different for different settings."""
+    """Return a readable folder name, different for different settings."""
     words = re.sub(r"[^A-Za-z0-9.+-]+", "", said)[:60] or "as-shipped"
     return f"{name}/{words}-{hashlib.sha256(repr(changed).encode()).hexdigest()[:8]}"
 
 
 @dataclass(frozen=True)
 class CaseRun(Task):
-    """One run: a case file that ships with the package and what is changed in it. Equal ones are one run."""
+    """One run: a case file and the changes to it. Equal tasks are one run."""
 
     case: str  # "fig19" is fig19.toml in the folder `cases`
     overrides: tuple[tuple[str, str], ...] = ()  # sorted; keys and values as `ryusa run --set` takes them
@@ -88,7 +88,7 @@ class CaseRun(Task):
 
     @property
     def folder(self) -> str:
-        """Folder of the run below that of all runs: readable, and different for different overrides."""
+        """Folder of the run, relative to that of all runs; different for different overrides."""
         said = "-".join(re.sub(r"[^A-Za-z0-9.+]+", "", value) for _, value in self.overrides)
         return _folder(self.case, said, self.overrides)
 
@@ -98,7 +98,7 @@ class CaseRun(Task):
         return " ".join((self.case, *(value for _, value in self.overrides)))
 
     def read(self) -> "Case":
-        """Give the checked case."""
+        """Read and check the case."""
         return _read(self)
 
     def get(self, key: str, default: str = "") -> str:
@@ -106,7 +106,7 @@ class CaseRun(Task):
         return dict(self.overrides).get(key, default)
 
     def cost(self) -> float:
-        """Core seconds of the run by rule of thumb."""
+        """Estimated core seconds of the run."""
         from ryusa.casefile.derive import derive
         from ryusa.casefile.estimate import SECONDS_PER_RUN, seconds_needed
 
@@ -118,7 +118,7 @@ class CaseRun(Task):
         return _BEGIN + share * law * (seconds_needed(case, derive(case)) - SECONDS_PER_RUN)
 
     def disk(self) -> int:
-        """Bytes that the run will take."""
+        """Estimated size of the run [bytes]."""
         from ryusa.casefile.derive import derive
         from ryusa.casefile.estimate import disk_in_all
 
@@ -126,7 +126,7 @@ class CaseRun(Task):
         return disk_in_all(case, derive(case))
 
     def origin(self, folder: Path) -> dict[str, Any] | None:
-        """Provenance of a finished run of the very same case; None where there is none."""
+        """Provenance of a finished run of the same case; None if there is none."""
         found = _origin(folder)
         try:
             case = json.loads((folder / schema.CASE_JSON).read_text(encoding="utf-8"))
@@ -135,7 +135,7 @@ class CaseRun(Task):
         return found if found is not None and self._is(case) else None
 
     def open(self, folder: Path) -> Results | None:
-        """Open a finished run of the very same case; one of another version, or damaged, counts as none."""
+        """Open a finished run of the same case; None if it is missing, damaged, or of another version."""
         if not (folder / schema.CASE_JSON).is_file():
             return None
         try:
@@ -145,34 +145,34 @@ class CaseRun(Task):
         return old if old.complete and self._is(old.case) else None
 
     def make(self, folder: Path, *, anew: bool = False) -> Results:
-        """Run it, or continue it; a run that was stopped is no basis for a verdict, and interrupts."""
+        """Run or continue it; a run stopped before its end raises KeyboardInterrupt."""
         from ryusa.running.runner import run
 
-        resume = not anew and _origin(folder) is None  # one that is complete was not fit to be opened
+        resume = not anew and _origin(folder) is None  # a complete one could not be opened
         done = run(self.read(), folder, threads=1, progress=False, overwrite=True, resume=resume)
         if not done.complete:
             raise KeyboardInterrupt
         return done
 
     def _is(self, case: Mapping[str, Any]) -> bool:
-        """Whether the case that a run folder holds is the very case of this run."""
+        """Whether the case in a run folder is the case of this run."""
         from ryusa.casefile.resolved import resolved
 
         return case == json.loads(json.dumps(resolved(self.read())))
 
 
 def case_run(path: Path, overrides: Mapping[str, str] | None = None, *, seed: int | None = None) -> CaseRun:
-    """Name one run of a case file.
+    """Return the task for one run of a case file.
 
     Parameters
     ----------
-    path : of the case file: `case_path("saltation.toml")` for one of the package, or a file of your own.
-    overrides : keys of the case and values as text with units, as `ryusa run --set` takes them.
-    seed : the one seed of all its randomness; None leaves that of the case file.
+    path : case file: `case_path("saltation.toml")` for one of the package, or a file of your own.
+    overrides : case keys and their values as text with units, as for `ryusa run --set`.
+    seed : seed of all random numbers; None for that of the case file.
 
     Raises
     ------
-    CaseError : there is no such file; names those beside it.
+    CaseError : there is no such file; the message lists those in its folder.
     """
     if not path.is_file():
         beside = [one.name for one in sorted(path.parent.glob("*.toml"))]
@@ -195,7 +195,7 @@ Numbers = Mapping[str, Any]  # names to arrays and numbers
 
 @dataclass(frozen=True)
 class Calculation(Task):
-    """One call of a function of the package that needs no case file; its arrays are kept.
+    """One call of a function that needs no case file; the arrays that it returns are kept.
 
     The function takes the arguments by name and returns a mapping from names to arrays or numbers.
     """
@@ -203,11 +203,11 @@ class Calculation(Task):
     module: str  # such as "ryusa.studies.validation.suspension"
     function: str
     arguments: tuple[tuple[str, Any], ...] = ()  # sorted; numbers, words, tuples of them
-    seconds: float = 0.1  # of one core, by rule of thumb
+    seconds: float = 0.1  # estimated core seconds
 
     @property
     def _module(self) -> str:
-        """Module as the kept folders name it: results made before the studies had a room stay valid."""
+        """Module name in kept folders, without `studies`, so that results of earlier versions stay valid."""
         return self.module.replace("ryusa.studies.", "ryusa.", 1)
 
     @property
@@ -216,7 +216,7 @@ class Calculation(Task):
 
     @property
     def folder(self) -> str:
-        """Folder of the numbers: readable, and different for different arguments."""
+        """Folder of the arrays; readable, and different for different arguments."""
         said = "-".join(f"{value}" for _, value in self.arguments)
         return _folder(self._name, said, (self._module, self.function, self.arguments))
 
@@ -226,20 +226,20 @@ class Calculation(Task):
         return " ".join((self._name, *(str(value) for _, value in self.arguments)))
 
     def cost(self) -> float:
-        """Core seconds as the module thinks."""
+        """Estimated core seconds."""
         return self.seconds
 
     def disk(self) -> int:
-        """Bytes: small beside any run."""
+        """Size [bytes], small compared with any run."""
         return 20_000
 
     def origin(self, folder: Path) -> dict[str, Any] | None:
-        """Provenance of the very same calculation, finished; None where there is none."""
+        """Provenance of the same calculation, finished; None if there is none."""
         found = _origin(folder)
         return found if found is not None and found.get("overrides") == self._said() else None
 
     def open(self, folder: Path) -> Numbers | None:
-        """Open the numbers kept."""
+        """Open the kept arrays."""
         if self.origin(folder) is None:
             return None
         try:
@@ -261,12 +261,12 @@ class Calculation(Task):
         return found
 
     def _said(self) -> dict[str, str]:
-        """Arguments as the provenance holds them."""
+        """Function and arguments as stored in the provenance."""
         return {"function": f"{self._module}.{self.function}", **{k: repr(v) for k, v in self.arguments}}
 
 
 def calculation(function: Any, *, seconds: float = 0.1, **arguments: Any) -> Calculation:
-    """Name one call of a function of a module.
+    """Return the task for one call of a function of a module.
 
     >>> from ryusa.cases import case_path
     >>> calculation(case_path, name="drop.toml").label
@@ -276,7 +276,7 @@ def calculation(function: Any, *, seconds: float = 0.1, **arguments: Any) -> Cal
 
 
 def _origin(folder: Path) -> dict[str, Any] | None:
-    """Provenance of something finished; None where there is none."""
+    """Provenance of a finished task; None if there is none."""
     try:
         origin = json.loads((folder / schema.PROVENANCE).read_text(encoding="utf-8"))
     except (OSError, ValueError):

@@ -1,4 +1,4 @@
-"""A study in a folder of the user's own: FOLDER/study.py, with its case files beside it."""
+"""A study in a folder of the user: FOLDER/study.py, with its case files in the same folder."""
 
 import hashlib
 import sys
@@ -21,7 +21,7 @@ HELP = (
 
 
 class UserStudy(Study):
-    """The study of one folder: a single part, named after the folder."""
+    """The study of one folder, with a single part named after the folder."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -56,11 +56,11 @@ def open_study(folder: Path) -> UserStudy:
 
 
 def load_module(path: Path) -> ModuleType:
-    """Import a study's file under a name of its own, so that every process finds its functions again.
+    """Import the file of a study under a unique module name, the same in every process.
 
     Raises
     ------
-    ResultsError : it cannot be imported, or lacks what a study needs.
+    ResultsError : it cannot be imported, or lacks a function that a study needs.
     """
     name = f"ryusa_study_{hashlib.sha256(str(path).encode()).hexdigest()[:12]}"
     if name in sys.modules:
@@ -82,7 +82,7 @@ def load_module(path: Path) -> ModuleType:
 
 
 def _check(path: Path, module: Any) -> None:
-    """Refuse a file that lacks what every study has."""
+    """Refuse a file without the functions that every study needs."""
     for function, how in NEEDED.items():
         if callable(getattr(module, function, None)):
             continue
