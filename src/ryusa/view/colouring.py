@@ -66,11 +66,11 @@ def _contacts(results: Results, k: int) -> Floats:
 
 
 COLOURINGS = (
-    Colouring("speed", "speed", "m/s", 1.0, "viridis", _speed),
-    Colouring("height", "height z", "cm", 100.0, "cividis", _height),
+    Colouring("speed", "speed", "m/s", 1.0, "YlGnBu", _speed),
+    Colouring("height", "height z", "cm", 100.0, "viridis", _height),
     Colouring("spin", "spin about y, positive rolls towards +x", "rad/s", 1.0, "RdBu_r", _spin, signed=True),
     Colouring("size", "diameter", "mm", 1000.0, "plasma", _size, steady=True),
-    Colouring("contacts", "grains, fixed grains and planes in contact", "", 1.0, "magma", _contacts),
+    Colouring("contacts", "grains, fixed grains and planes in contact", "", 1.0, "YlOrBr", _contacts),
 )  # fmt: skip
 
 

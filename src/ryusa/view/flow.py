@@ -43,6 +43,14 @@ def flow_of(results: Results, frames: NDArray[np.int64], blob: Blob) -> dict[str
     return {"z": z.tolist(), "solved": False}
 
 
+def highest_surface(results: Results) -> float:
+    """Highest surface of the water in a run [m]; inf or -inf where there is none."""
+    if results.water is not None:
+        return float(results.water.z_surface.max(initial=-math.inf))
+    water = results.scene.water
+    return -math.inf if water.profile == Profile.NONE else water.z_zero + water.depth
+
+
 def heights(scene: Scene) -> NDArray[np.float64]:
     """Heights at which a given profile is shown [m]: from its zero to the surface, or ten diameters up."""
     water = scene.water

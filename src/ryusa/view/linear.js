@@ -25,7 +25,7 @@ class Camera {
     for (let corner = 0; corner < 8; corner++) {
       const at = minus([0, 1, 2].map((k) => (corner >> k & 1 ? high : low)[k]), this.target);
       const depth = this.flat ? 0 : near * dot(at, back);
-      this.half = Math.max(this.half, 1.06 * (Math.abs(dot(at, right)) / aspect + depth), 1.06 * (Math.abs(dot(at, up)) + depth));
+      this.half = Math.max(this.half, 1.06 * (Math.abs(dot(at, right)) / aspect + depth), 1.2 * (Math.abs(dot(at, up)) + depth));
     }
   }
 

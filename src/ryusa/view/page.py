@@ -19,13 +19,14 @@ from ryusa.errors import ResultsError
 from ryusa.model import Scene
 from ryusa.results import Results
 from ryusa.view.encode import Blob, add_colours, add_positions, positions
-from ryusa.view.flow import flow_of
+from ryusa.view.flow import flow_of, highest_surface
 
 HERE = Path(__file__).parent
 SCRIPTS = ("decode.js", "linear.js", "draw.js", "overlay.js", "viewer.js")
 SIZE = 10.0e6  # of a page, unless asked otherwise [B]
 LEAST_SIZE = 2.0e5  # page without grains: script, style, walls [B]
 FEW_FRAMES = 60  # frames are thinned down to these before grains are left out
+FAR = 3.0  # heights of what the grains take up, above which the surface of the water is not shown
 _GUESS = 3.2  # bytes of a page per grain and frame, at first
 _TRIES = 5
 
@@ -149,7 +150,10 @@ def _encode(
 def box_of(
     results: Results, whole: NDArray[np.int32], quantum: NDArray[np.float64], grains: NDArray[np.int64]
 ) -> list[list[float]]:
-    """Lowest and highest corner of what is shown [m]: free grains at all times, fixed ones, periods."""
+    """Lowest and highest corner of what is shown [m]: free grains at all times, fixed ones, periods, water.
+
+    A surface far above the grains is left out: they would be dots.
+    """
     scene = results.scene
     x = whole * quantum
     for axis, period in enumerate(scene.period):
@@ -164,6 +168,9 @@ def box_of(
     for axis, period in enumerate(scene.period):
         if math.isfinite(period):
             low[axis], high[axis] = 0.0, period
+    surface = highest_surface(results)
+    if high[2] < surface < low[2] + FAR * (high[2] - low[2]):
+        high[2] = surface
     return [low.tolist(), high.tolist()]
 
 

@@ -1,5 +1,6 @@
 // A viewer: state, what is shown at a moment, and the hands on it.
 
+const SIDE = 205;  // pixels of the water's profile
 const SECONDS = 12;  // that a whole run takes at first
 const HELP = [
   ["space", "play, pause"], ["\u2190 \u2192", "one frame back, on"], ["Home End", "first, last frame"], ["\u2191 \u2193", "faster, slower"],
@@ -174,9 +175,12 @@ class Viewer {
 
   // ---------------------------------------------------------------------------------------------------- drawing
 
-  changed() { if (!this.playing) this.draw(); }
+  changed() {  // drawn once, however much changed since the last picture
+    if (!this.playing) this.due ??= requestAnimationFrame(() => this.draw());
+  }
 
   draw() {
+    this.due = null;
     if (!this.arrays) return;
     const { data, camera, painter } = this, [k, share] = this.frameAt(this.time), nearest = share < 0.5 ? k : k + 1;
     const scene = data.scenes.reduce((found, one, i) => (one.t <= this.time + 1e-12 ? i : found), 0);
@@ -185,7 +189,7 @@ class Viewer {
     const coloured = `${this.colouring} ${nearest}`;
     if (coloured !== this.coloured) { this.level(nearest); this.coloured = coloured; }
     if (this.following && this.picked >= 0) camera.target = this.placeOf(this.picked);
-    painter.begin(camera.matrices(this.aspect, this.centre, this.radius + Math.hypot(...minus(camera.target, this.centre)) * 0), camera.flat);
+    painter.begin(camera.matrices(this.aspect, this.centre, this.radius), camera.flat);
     painter.drawSpheres("free", { share, period: this.period, picked: this.picked });
     if (this.fixedShown) painter.drawSpheres("fixed", { plain: [0.66, 0.64, 0.6] });
     if (this.picked >= 0) painter.drawPlain(this.track(nearest), [0.9, 0.3, 0, 1], "lines");
@@ -199,7 +203,11 @@ class Viewer {
     const low = this.low.map((one, k) => one - (this.period[k] ? 0 : room)), high = this.high.map((one, k) => one + (this.period[k] ? 0 : room));
     for (const { point, normal } of scene.planes) painter.drawPlain(planeInBox(point, normal, low, high), [0.5, 0.47, 0.42, 0.25], "face");
     const surface = this.surface(nearest);
-    if (surface !== undefined) painter.drawPlain([[low[0], low[1], surface], [high[0], low[1], surface], [high[0], high[1], surface], [low[0], high[1], surface]], [0.15, 0.5, 0.8, 0.22], "face");
+    if (surface !== undefined) {
+      const corners = [[low[0], low[1], surface], [high[0], low[1], surface], [high[0], high[1], surface], [low[0], high[1], surface]];
+      painter.drawPlain(corners.flatMap((one, k) => [one, corners[(k + 1) % 4]]), [0.1, 0.45, 0.75, 1], "lines");  // seen from the side, too
+      painter.drawPlain(corners, [0.15, 0.5, 0.8, 0.22], "face");
+    }
   }
 
   surface(frame) {
@@ -231,7 +239,7 @@ class Viewer {
   words(k, share, nearest, scene) {
     const { data } = this;
     this.slider.value = k + share;
-    this.clock.textContent = `t = ${this.time.toFixed(this.digits ??= Math.min(Math.max(0, Math.ceil(-Math.log10((data.t[data.t.length - 1] - data.t[0]) / data.t.length || 1)) + 1), 6))} s`;
+    this.clock.textContent = `t = ${this.time.toFixed(this.digits ??= Math.min(Math.max(0, Math.ceil(-Math.log10((data.t[data.t.length - 1] - data.t[0]) / data.t.length || 1) - 0.1) + 1), 6))} s`;
     if (data.flow) {
       const n = data.flow.z.length, row = data.arrays.u.shape[0] > 1 ? nearest : 0;
       drawProfile(this.profile, data.flow.z, this.arrays.u.subarray(row * n, (row + 1) * n), this.fastest, this.surface(nearest));
@@ -259,7 +267,9 @@ class Viewer {
 
   look(name) {
     this.following = false;
-    this.camera.fit(this.low, this.high, this.aspect, ...VIEWS[name]);
+    const covered = this.data.flow ? 2 * SIDE / this.canvas.clientWidth : 0;  // by the profile, of a width of 2
+    this.camera.fit(this.low, this.high, this.aspect * (1 - covered / 2), ...VIEWS[name]);
+    this.camera.target = plus(this.camera.target, this.camera.axes[0], covered / 2 * this.aspect * this.camera.half);
     this.changed();
   }
 
