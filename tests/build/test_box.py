@@ -137,7 +137,7 @@ def test_the_box_of_the_paper_has_42_grains_over_a_floor_without_holes() -> None
     assert back[:, 2] == pytest.approx((np.arange(end - first) + 0.5) * D)
 
 
-def test_a_run_out_goes_on_beneath_the_gate_and_without_one_the_floor_ends_there() -> None:
+def test_the_run_out_continues_beneath_the_gate_and_without_one_the_floor_ends_there() -> None:
     for run_out, beyond, lowest in (("0 cm", 0, D / 2), ("1.1 cm", 6, 1.5 * D)):
         scene = build(case(f"walls = 'grains', run_out = '{run_out}'")).scene
         n = scene.n_grain
@@ -147,7 +147,7 @@ def test_a_run_out_goes_on_beneath_the_gate_and_without_one_the_floor_ends_there
         assert scene.x_fixed[first:end, 2].min() == pytest.approx(lowest)
 
 
-def test_the_world_holds_the_pit_and_the_run_out() -> None:
+def test_the_domain_contains_the_pit_and_the_run_out() -> None:
     assert 3.0 < build(case("run_out = '3 m'")).scene.world_high[0] < math.inf
     for endless in ("floor = 'plane'", "run_out = '3 m', drop = '2 m'"):  # rolling grains go far
         assert build(case(endless)).scene.world_high[0] == math.inf
@@ -165,7 +165,7 @@ def test_an_uneven_floor_stays_within_its_height() -> None:
     assert heights.min() >= 0.0
 
 
-def test_the_notes_say_what_the_case_left_open() -> None:
+def test_the_notes_list_the_free_choices_of_a_box() -> None:
     notes = " ".join(build(case("drop = '1 cm'", timeline=GATE, water=WATER)).notes)
     for part in ("build.floor", "build.walls", "build.run_out", "grains.spread", "zero of the water profile"):
         assert part in notes, part
@@ -227,7 +227,7 @@ def test_a_box_that_cannot_be_is_refused(keys: str, others: dict[str, str], key:
 
 @pytest.mark.parametrize("walls", ["grains", "planes"])
 @pytest.mark.parametrize("water", ["", "{ profile = 'still' }"])
-def test_grains_stay_until_the_gate_goes_and_then_leave(walls: str, water: str) -> None:
+def test_grains_leave_only_after_the_gate_is_removed(walls: str, water: str) -> None:
     one = read_text(
         BASE,
         {
@@ -249,7 +249,7 @@ def test_grains_stay_until_the_gate_goes_and_then_leave(walls: str, water: str) 
     assert engine.state().x[:, 0].max() > inside + D
 
 
-def test_the_pit_catches_what_falls_off_the_end() -> None:
+def test_the_pit_catches_grains_that_fall_off_the_end() -> None:
     one = read_text(
         BASE,
         {

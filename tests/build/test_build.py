@@ -164,7 +164,7 @@ def test_a_packing_never_overlaps(
             assert built.state.x[:, axis].max() < built.scene.period[axis]
 
 
-def test_laws_arrive_in_the_scene_as_the_case_says_them() -> None:
+def test_the_laws_of_the_case_are_those_of_the_scene() -> None:
     s = build(
         case(
             "{ kind = 'drop', height = '1 cm' }",
@@ -271,7 +271,7 @@ def test_a_script_builds_a_scene_grain_by_grain() -> None:
         {"x": [[0.0, 0.0, 0.0]], "d": 0.002, "v": [[0.0, 0.0, 0.0]] * 2},
     ],
 )
-def test_a_script_with_bad_arrays_is_told(keys: dict[str, object]) -> None:
+def test_bad_arrays_of_a_script_are_refused_by_name(keys: dict[str, object]) -> None:
     with pytest.raises(CaseError):
         scene(**keys)  # type: ignore[arg-type]
 
@@ -285,7 +285,7 @@ def test_a_script_with_bad_arrays_is_told(keys: dict[str, object]) -> None:
         ("slope", 1.6), ("dt", 0.0), ("steps_per_contact", 0.0), ("period", (0.0, math.inf)),
     ],
 )  # fmt: skip
-def test_a_script_with_a_number_out_of_range_is_told_which(key: str, value: object) -> None:
+def test_a_number_of_a_script_out_of_range_is_refused_by_name(key: str, value: object) -> None:
     with pytest.raises(CaseError, match=f"^{key} = .*must") as caught:
         scene(x=[[0.0, 0.0, 0.0]], d=0.002, **{key: value})  # type: ignore[arg-type]
     assert caught.value.key == key

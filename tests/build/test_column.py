@@ -85,7 +85,7 @@ def test_water_of_a_column_carries_its_laws() -> None:
     assert build(case()).scene.water.buoyancy == Buoyancy.STRESS
 
 
-def test_fluctuations_walk_by_the_seed_of_the_case() -> None:
+def test_the_random_walk_uses_the_seed_of_the_case() -> None:
     assert column().fluctuations is Fluctuations.NONE
     stirred = column(water__column__fluctuations="random walk", seed="42")
     assert (stirred.fluctuations, stirred.seed) == (Fluctuations.RANDOM_WALK, 42)
@@ -124,7 +124,7 @@ def test_three_dimensions_cover_both_periods() -> None:
 
 
 @pytest.mark.parametrize("packed", [0.5, 0.61])
-def test_a_packing_flows_over_where_its_grains_will_end(packed: float) -> None:
+def test_the_bed_of_a_packing_is_where_its_settled_grains_will_end(packed: float) -> None:
     built = build(case(build=FLAT, water__column=f"{{ packed = {packed} }}"))
     scene, found = built.scene, built.scene.column
     assert found is not None
@@ -154,7 +154,7 @@ def test_a_floor_is_the_bottom_and_a_bottom_given_is_taken() -> None:
     assert caught.value.key == "water.column.bottom"
 
 
-def test_every_word_of_the_case_reaches_the_column() -> None:
+def test_every_key_of_the_case_reaches_the_column() -> None:
     keys = "surface = 'volume', drive = 'discharge', discharge = '200 cm2/s', mixing_length = 'Prandtl',"
     keys += " kappa = 0.4, pore_eddies = 0.16, side_walls = '10 cm', side_friction = 'Karman-Prandtl',"
     keys += " interval = 10, cell = '1 mm'"
@@ -183,7 +183,7 @@ def test_a_new_slope_drives_the_water_too() -> None:
     assert before.column.g_x < tilted.column.g_x
 
 
-def test_the_notes_say_what_a_column_leaves_open() -> None:
+def test_the_notes_list_the_free_choices_of_a_column() -> None:
     notes = " ".join(build(case()).notes)
     for part in ("water.buoyancy", "water.hindrance", "water.column.bed", "mixing length", "water.zero"):
         assert part in notes, part
@@ -193,7 +193,7 @@ def test_the_notes_say_what_a_column_leaves_open() -> None:
 
 
 @pytest.mark.parametrize("name", ["settling_column", "movable_bed"])
-def test_the_shipped_columns_hold_their_grains(name: str, shipped: Path) -> None:
+def test_the_packaged_columns_contain_their_grains(name: str, shipped: Path) -> None:
     built = build(read(shipped / f"{name}.toml"))
     found = built.scene.column
     assert found is not None
@@ -202,7 +202,7 @@ def test_the_shipped_columns_hold_their_grains(name: str, shipped: Path) -> None
     assert (built.state.x[:, 2] + built.scene.d / 2 <= found.z_high).all()
 
 
-def test_the_shipped_suspension_settles_as_richardson_and_zaki_say(shipped: Path, tmp_path: Path) -> None:
+def test_the_packaged_suspension_settles_after_richardson_and_zaki(shipped: Path, tmp_path: Path) -> None:
     small = {"build.columns": "4", "build.rows": "4", "build.layers": "20", "water.depth": "2 cm"}
     one = read(shipped / "settling_column.toml", {**small, "stop.time": "0.12 s", "record.frames": "20 ms"})
     results = run(one, tmp_path / "run", progress=False)

@@ -41,7 +41,7 @@ def case(build: str = "", **others: str) -> Case:
     return read_text(BASE, {**keys, **{key.replace("__", "."): value for key, value in others.items()}})
 
 
-def test_a_flume_one_grain_wide_holds_its_layers_times_length_over_d() -> None:
+def test_a_flume_one_grain_wide_contains_layers_times_length_over_d_grains() -> None:
     built = build(case())
     assert built.scene.n_grain == round(7.08 * 50)
     assert built.scene.n_fixed == 50
@@ -68,7 +68,7 @@ def test_the_base_lies_at_zero_on_average_over_eleven_twelfths_of_a_grain() -> N
     assert np.ptp(build(case("bed='flat'")).scene.x_fixed[:, 2]) == 0.0
 
 
-def test_the_zero_of_the_water_is_where_the_loose_bed_ends_when_packed() -> None:
+def test_the_zero_of_the_water_is_the_top_of_the_loose_bed_once_packed() -> None:
     one = case(water=WATER)
     built = build(one)
     height = derive(one).n_grain * math.pi / 6 * D**3 / (0.3 * 0.0065 * 0.61)

@@ -147,12 +147,12 @@ def test_a_step_beyond_the_stable_one_is_refused(
         ("restitution_shear = 0.7", "contact.friction_angle: missing"),
     ],
 )
-def test_two_ways_of_one_thing_and_what_is_missing_are_told(text: str, line: str, part: str) -> None:
+def test_contradicting_and_missing_keys_are_reported(text: str, line: str, part: str) -> None:
     with pytest.raises(CaseError, match=part):
         read_text(text.replace('friction_angle = "30 deg"', line))
 
 
-def test_every_missing_needed_key_is_told_at_once() -> None:
+def test_all_missing_required_keys_are_reported_together() -> None:
     with pytest.raises(CaseError) as caught:
         read_text("")
     message = str(caught.value)
@@ -161,7 +161,7 @@ def test_every_missing_needed_key_is_told_at_once() -> None:
     assert len(caught.value.others) == 4
 
 
-def test_several_faults_of_a_file_are_told_together(text: str) -> None:
+def test_several_errors_of_a_file_are_reported_together(text: str) -> None:
     broken = text.replace('"0.2 cm"', '"0.2 kg"').replace("0.7", "7").replace("rotation", "rotaton")
     with pytest.raises(CaseError) as caught:
         read_text(broken)
@@ -172,12 +172,12 @@ def test_several_faults_of_a_file_are_told_together(text: str) -> None:
     assert "Did you mean 'motion.rotation'" in message
 
 
-def test_broken_toml_is_told_with_its_line(text: str) -> None:
+def test_invalid_toml_is_reported_with_its_line(text: str) -> None:
     with pytest.raises(CaseError, match="line 3"):
         read_text(text.replace('diameter = "0.2 cm"', "diameter = 0.2 cm"))
 
 
-def test_a_missing_file_a_folder_and_a_binary_file_are_told(tmp_path: Path) -> None:
+def test_a_missing_file_a_folder_and_a_binary_file_are_refused(tmp_path: Path) -> None:
     with pytest.raises(CaseError, match="file not found"):
         read(tmp_path / "none.toml")
     with pytest.raises(CaseError, match="is a folder"):
@@ -196,7 +196,7 @@ def test_too_many_grains_are_refused_before_they_are_placed(case: Callable[..., 
 
 
 @pytest.mark.parametrize("key", ["", ".", "a..b", "seed.x", "grains.diameter.deep", "a.b.c.d.e.f.g.h.i.j"])
-def test_a_set_key_that_leads_nowhere_is_told(case: Callable[..., Case], key: str) -> None:
+def test_an_unknown_key_in_set_is_refused(case: Callable[..., Case], key: str) -> None:
     with pytest.raises(CaseError):
         case(**({"seed": "1"} if key == "seed.x" else {}), **{key: "1"})
 

@@ -38,7 +38,7 @@ def test_a_sheet_of_grains_has_holes_and_a_line_has_none() -> None:
     assert hole(keys(floor="plane"), plane=False) == 0.0
 
 
-def test_a_box_is_judged_by_the_fall_of_its_top_layer(case: CaseOf) -> None:
+def test_the_impact_speed_of_a_box_is_that_of_its_top_layer(case: CaseOf) -> None:
     low = case(build="{ kind = 'box', columns = 4, layers = 3 }")
     assert expected_speed(low, derive(low))[1].startswith("fall through one diameter")
     high = case(build="{ kind = 'box', columns = 4, layers = 3, height = '1 cm' }")

@@ -41,7 +41,7 @@ def test_a_column_needs_no_table_of_its_own(case: CaseOf) -> None:
     assert kept["u_star"] == pytest.approx(U_STAR)
 
 
-def test_water_that_is_given_says_nothing_of_a_column(case: CaseOf) -> None:
+def test_a_given_flow_has_no_column(case: CaseOf) -> None:
     kept = resolved(case(water="{ profile = 'still' }"))["water"]
     assert not {"column", "buoyancy", "hindrance", "lift", "magnus"} & set(kept)
 
@@ -88,7 +88,7 @@ def test_a_slope_of_the_timeline_drives_the_water(case: CaseOf) -> None:
     wet(case, "tau_star = 0.3", **keys)
 
 
-def test_the_speed_to_expect_is_that_of_the_log_law_up_to_the_surface(case: CaseOf) -> None:
+def test_the_expected_speed_is_that_of_the_log_law_at_the_surface(case: CaseOf) -> None:
     rough, smooth = wet(case, column="bed = 'rough'"), wet(case, column="bed = 'smooth'")
     at = derive(rough)
     assert water_speed(rough, at, 0.02) == pytest.approx(U_STAR * (8.5 + 5.75))
@@ -96,7 +96,7 @@ def test_the_speed_to_expect_is_that_of_the_log_law_up_to_the_surface(case: Case
     assert water_speed(smooth, derive(smooth), 0.02) > water_speed(rough, at, 0.02)
 
 
-def test_richardson_and_zakis_exponent_comes_from_a_lone_grain(case: CaseOf) -> None:
+def test_the_exponent_of_richardson_and_zaki_is_that_of_a_single_grain(case: CaseOf) -> None:
     one = wet(case, "hindrance = 'Richardson-Zaki'")
     re = drag.reynolds(terminal_velocity(one), D, 1e-6)
     assert hindrance_exponent(one) == hindrance.exponent_rowe(re)
@@ -182,7 +182,7 @@ def test_a_column_that_cannot_be_is_refused(
     assert not caught.value.others
 
 
-def test_a_column_without_a_depth_is_told(case: CaseOf) -> None:
+def test_a_column_without_a_depth_is_refused(case: CaseOf) -> None:
     with pytest.raises(CaseError, match=r"water\.depth: missing"):
         case(build=PACKING, water="{ profile = 'column' }")
 

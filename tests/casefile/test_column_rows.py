@@ -75,7 +75,7 @@ def test_a_slope_that_comes_later_is_the_one_explained(case: CaseOf) -> None:
         (1.2, 0.5, "sheet flow with suspension throughout the depth", "below 0.8"),
     ],
 )
-def test_the_motion_to_expect_follows_from_stress_and_settling(
+def test_the_expected_motion_follows_from_stress_and_settling(
     tau_star: float, rouse: float, words: str, why: str
 ) -> None:
     said, because = regime(tau_star, D_STAR, rouse)
@@ -102,13 +102,13 @@ def test_where_the_moving_layer_fills_the_depth_it_is_a_debris_flow() -> None:
         ("paper/fig22", "debris flow"),  # friction is that of the timeline's end, not of the settling
     ],
 )
-def test_the_shipped_flows_are_told_by_their_names(name, words) -> None:
+def test_the_packaged_flows_are_classified(name, words) -> None:
     assert rows(read(case_path(f"{name}.toml")))["expected motion"].value == words
 
 
 @pytest.mark.parametrize("drag", ["none", "24/Re+0.4"])
 @pytest.mark.parametrize("density", ["1000 kg/m3", "3000 kg/m3", "2650 kg/m3"])
-def test_grains_that_float_or_feel_nothing_are_explained(case: CaseOf, drag: str, density: str) -> None:
+def test_floating_grains_and_grains_without_drag_are_explained(case: CaseOf, drag: str, density: str) -> None:
     water = WATER.replace(" }", f", drag = '{drag}', density = '{density}' }}")
     assert ("expected motion" in flowing(case, water)) == (drag != "none" and density == "1000 kg/m3")
 
@@ -138,7 +138,7 @@ def test_the_friction_velocity_is_that_of_the_water_over_a_loose_bed(case: CaseO
     assert from_top["water over the bed"].value == 0.02
 
 
-def test_a_stress_asked_for_below_the_top_of_the_bed_leaves_less_on_it(case: CaseOf) -> None:
+def test_a_stress_prescribed_below_the_top_of_the_bed_is_smaller_at_the_top(case: CaseOf) -> None:
     thick = 6 * 300 * math.pi / 6 * 0.002**3 / (0.06 * 0.02 * 0.6)
     column = "column = { packed = 0.6, drive = 'tau_star' } }"
     asked = WATER.replace("2 cm", "3 cm").replace(" }", f", zero = '0 cm', tau_star = 0.5, {column}")
@@ -178,7 +178,7 @@ def test_still_water_may_end_in_the_bed(case: CaseOf) -> None:
     ("name", "tau_star", "n"),
     [("bedload_3d", 0.2, 600), ("sheet_flow", 1.0, 650), ("debris_equilibrium", 0.4, 630)],
 )
-def test_shipped_flows_in_three_dimensions_say_what_they_ask_for(name, tau_star, n) -> None:
+def test_packaged_flows_in_three_dimensions_state_their_stress(name, tau_star, n) -> None:
     found = read(case_path(f"{name}.toml"))
     assert derive(found).n_grain == n
     assert rows(found)["tau_star"].value == pytest.approx(tau_star, rel=0.06)

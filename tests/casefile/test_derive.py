@@ -51,7 +51,7 @@ def test_the_contact_time_of_the_paper_comes_out(case: CaseOf) -> None:
 
 @pytest.mark.parametrize("parting", ["tension", "no tension"])
 @pytest.mark.parametrize("e", ["0.1", "0.7", "1.0"])
-def test_asked_restitution_is_that_of_both_pairs(case: CaseOf, parting: str, e: str) -> None:
+def test_the_restitution_of_the_case_is_that_of_both_pairs(case: CaseOf, parting: str, e: str) -> None:
     found = derive(case(**{"contact.parting": parting, "contact.restitution": e}))
     assert found.fixed.e == pytest.approx(float(e), rel=1e-9)
     assert found.free.e == pytest.approx(float(e), rel=1e-9)
@@ -67,18 +67,18 @@ def test_a_constant_dashpot_gives_two_restitutions(case: CaseOf) -> None:
     assert found.free.t_col == pytest.approx(6.0e-5, rel=5e-3)
 
 
-def test_stiffness_asked_for_by_overlap_gives_that_overlap(case: CaseOf) -> None:
+def test_a_stiffness_given_by_overlap_gives_that_overlap(case: CaseOf) -> None:
     found = derive(case(**{"contact.stiffness": "{ overlap = 0.01, speed = '0.6 m/s' }"}))
     deepest = collision.overlap_max(0.6, found.fixed.m, found.k_n, found.fixed.zeta_n)
     assert deepest == pytest.approx(0.01 * 0.002, rel=1e-12)
 
 
-def test_stiffness_asked_for_by_time_gives_eq_8(case: CaseOf) -> None:
+def test_a_stiffness_given_by_time_gives_eq_8(case: CaseOf) -> None:
     found = derive(case(water=WATER, **{"contact.stiffness": "{ collision_time = '1e-4 s' }"}))
     assert found.fixed.t_undamped == pytest.approx(1e-4, rel=1e-12)
 
 
-def test_k_s_is_two_sevenths_unless_said_otherwise(case: CaseOf) -> None:
+def test_k_s_is_two_sevenths_of_k_n_by_default(case: CaseOf) -> None:
     assert derive(case()).k_s == pytest.approx(1e4 * 2 / 7)
     assert derive(case(**{"contact.shear_ratio": "0.075"})).k_s == pytest.approx(750.0)
     assert derive(case(**{"contact.shear_stiffness": "15 N/cm"})).k_s == pytest.approx(1500.0)
@@ -93,7 +93,7 @@ def test_the_step_follows_the_lightest_pair_that_can_meet(case: CaseOf) -> None:
     assert mixed.dt == pytest.approx(meeting.dt * 0.9**1.5, rel=1e-12)
 
 
-def test_many_starts_do_not_meet_each_other(case: CaseOf) -> None:
+def test_many_starts_do_not_touch_each_other(case: CaseOf) -> None:
     found = derive(case(build="{ kind = 'saltation', starts = 5 }", water=WATER))
     assert (found.n_grain, found.n_fixed, found.meet) == (5, 100, False)
     assert found.dt == pytest.approx(found.fixed.t_col / 50)

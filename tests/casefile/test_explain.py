@@ -18,7 +18,7 @@ def warnings(case: Case) -> list[str]:
     return [f"{row.name} = {row.shown}: {row.origin}" for row in explain(case) if row.flag == "warning"]
 
 
-def test_every_number_the_issue_asks_for_is_explained(case: CaseOf) -> None:
+def test_every_derived_number_is_explained(case: CaseOf) -> None:
     found = rows(case(**SALTATION))
     for name in (
         "mass m",
@@ -49,7 +49,7 @@ def test_every_number_the_issue_asks_for_is_explained(case: CaseOf) -> None:
         assert found[name].shown
 
 
-def test_values_are_si_and_what_is_shown_has_the_users_unit(case: CaseOf) -> None:
+def test_values_are_in_si_and_printed_in_the_unit_of_the_case(case: CaseOf) -> None:
     row = rows(case())["normal stiffness k_n"]
     assert (row.value, row.unit, row.shown) == (1.0e4, "N/m", "100 N/cm")
 
@@ -64,7 +64,7 @@ def test_the_stable_band_has_a_verdict(case: CaseOf, stiffness: str, word: str, 
     assert row.flag == flag
 
 
-def test_a_grain_that_skims_the_crests_is_warned_of(case: CaseOf) -> None:
+def test_skimming_gives_a_warning(case: CaseOf) -> None:
     assert any(
         text.startswith("travel per contact u t/d")
         for text in warnings(case(**SALTATION, **{"contact.stiffness": "1 N/cm"}))
@@ -72,7 +72,7 @@ def test_a_grain_that_skims_the_crests_is_warned_of(case: CaseOf) -> None:
     assert not warnings(case(**SALTATION))
 
 
-def test_tangential_restitution_is_said_to_be_undefined_where_periods_differ(case: CaseOf) -> None:
+def test_tangential_restitution_is_undefined_if_the_periods_differ(case: CaseOf) -> None:
     soft = rows(case(**{"contact.shear_ratio": "0.075"}))["tangential half period on a fixed grain"]
     assert "too different" in soft.origin
     matched = rows(case(**{"motion.rotation": "free"}))["tangential half period on a fixed grain"]
@@ -80,12 +80,12 @@ def test_tangential_restitution_is_said_to_be_undefined_where_periods_differ(cas
     assert "1 times the collision time" in matched.origin
 
 
-def test_few_steps_in_a_contact_are_warned_of(case: CaseOf) -> None:
+def test_few_steps_per_contact_give_a_warning(case: CaseOf) -> None:
     step = derive(case()).shortest / 7
     assert any("ten" in text for text in warnings(case(**{"time.step": f"{step} s"})))
 
 
-def test_a_step_near_the_largest_stable_one_is_warned_of(case: CaseOf) -> None:
+def test_a_step_near_the_largest_stable_one_gives_a_warning(case: CaseOf) -> None:
     keys = {"contact.shear_ratio": "10", "motion.rotation": "free"}
     assert not warnings(case(**keys))
     coarse = case(**keys, **{"time.steps_per_contact": "12"})
@@ -96,7 +96,7 @@ def test_a_step_near_the_largest_stable_one_is_warned_of(case: CaseOf) -> None:
 
 
 @pytest.mark.parametrize(("torque", "spin", "flag"), [("Dennis", 900, ""), ("Dennis", 1100, "warning")])
-def test_a_first_spin_beyond_the_range_of_dennis_is_warned_of(
+def test_an_initial_spin_beyond_the_range_of_dennis_gives_a_warning(
     case: CaseOf, torque: str, spin: int, flag: str
 ) -> None:
     one = case(
@@ -109,7 +109,7 @@ def test_a_first_spin_beyond_the_range_of_dennis_is_warned_of(
     assert row.flag == flag
 
 
-def test_the_choice_of_contacts_to_record_is_said(case: CaseOf) -> None:
+def test_the_choice_of_contacts_to_record_is_printed(case: CaseOf) -> None:
     free = rows(case())["contacts recorded"]
     assert (free.value, free.flag) == ("all", "note")
     assert "not given" in free.origin
@@ -118,7 +118,7 @@ def test_the_choice_of_contacts_to_record_is_said(case: CaseOf) -> None:
     assert "disk for events" not in asked
 
 
-def test_a_run_that_does_not_fit_on_the_disk_is_warned_of(
+def test_a_run_that_does_not_fit_on_the_disk_gives_a_warning(
     case: CaseOf, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     one = case()

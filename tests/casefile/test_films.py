@@ -71,7 +71,7 @@ def test_keys_of_films_reach_the_scene(case: CaseOf) -> None:
     assert (water.rebound, water.film_reach) == (Rebound.DRY, pytest.approx(0.25 * 2e-3))
 
 
-def test_a_check_says_how_much_a_settling_grain_rebounds(case: CaseOf) -> None:
+def test_check_prints_the_rebound_of_a_settling_grain(case: CaseOf) -> None:
     rows = {row.name: row.value for row in explain(wet(case, "rebound = 'exponential'"))}
     st = rows["Stokes number"]
     assert rows["restitution under water"] == pytest.approx(immersed.restitution_exponential(0.7, st, 35.0))

@@ -43,7 +43,7 @@ def test_an_override_takes_toml_values_and_plain_text(case: CaseOf) -> None:
     assert case(**{"title": "1\nseed = 5"}).seed == 1
 
 
-def test_an_override_displaces_its_rival(case: CaseOf) -> None:
+def test_an_override_replaces_its_alternative(case: CaseOf) -> None:
     assert derive(case(**{"contact.friction": "0.5"})).mu == 0.5
     assert case(**{"contact.damping": "0.001 N s/cm"}).contact.restitution is None
     assert case(**{"motion.slope_angle": "40 deg"}).motion.slope is None
@@ -54,7 +54,7 @@ def test_an_override_reaches_into_lists(text: str) -> None:
     assert read_text(more, {"timeline.0.at": "0.02 s"}).timeline[0].at == 0.02
 
 
-def test_ways_to_say_slope_and_sizes_agree(case: CaseOf) -> None:
+def test_alternative_keys_for_slope_and_sizes_agree(case: CaseOf) -> None:
     slopes = [case(**{"motion.slope": value}).motion.slope for value in ("'1/20'", "0.05", "'5 %'")]
     assert slopes == [0.05, 0.05, 0.05]
 
@@ -94,7 +94,7 @@ def test_shipped_cases_use_only_known_keys_and_no_path_of_a_machine(packaged: li
         ("grains.spread", "0.1", 0.1),
     ],
 )
-def test_every_way_to_say_a_thing_is_written_again_without_a_warning(
+def test_every_alternative_key_is_serialised_without_a_warning(
     case: CaseOf, key: str, value: str, kept: object
 ) -> None:
     build = "{ kind = 'packing', columns = 5, layers = 2 }"
@@ -108,7 +108,7 @@ def test_every_way_to_say_a_thing_is_written_again_without_a_warning(
         assert resolved(found)["contact"]["stiffness"] == derive(found).k_n
 
 
-def test_every_shipped_case_is_written_again_without_a_warning(packaged: list[Path]) -> None:
+def test_every_packaged_case_is_serialised_without_a_warning(packaged: list[Path]) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         for path in packaged:

@@ -55,7 +55,7 @@ def test_a_misspelt_key_is_recognised(written: str, meant: str) -> None:
 
 
 @pytest.mark.parametrize("written", FAR)
-def test_a_word_that_is_no_misspelling_gets_no_hint(written: str) -> None:
+def test_a_word_unlike_any_key_gets_no_hint(written: str) -> None:
     assert nearest_word(written, WORDS) is None
 
 

@@ -24,7 +24,7 @@ def write(folder: Path, text: str, table: str, name: str = "grains.csv") -> Path
     return path
 
 
-def test_a_table_gives_grains_in_si_and_groups_stand_together(text: str, tmp_path: Path) -> None:
+def test_a_table_gives_grains_in_si_with_groups_contiguous(text: str, tmp_path: Path) -> None:
     case = read(write(tmp_path, text, CSV))
     assert (derive(case).n_grain, derive(case).n_fixed, derive(case).meet) == (1, 3, False)
     built = build(case)
@@ -85,7 +85,7 @@ def test_a_link_out_of_the_cases_folder_is_refused(text: str, tmp_path: Path) ->
         read(path)
 
 
-def test_a_missing_table_is_told(text: str, tmp_path: Path) -> None:
+def test_a_missing_table_is_refused(text: str, tmp_path: Path) -> None:
     with pytest.raises(CaseError, match="no such file"):
         read(write(tmp_path, text, CSV, "none.csv"))
 
@@ -97,7 +97,7 @@ def test_the_step_follows_the_smallest_free_grain_of_a_table(text: str, tmp_path
     assert found.dt == pytest.approx(found.free.t_col * 0.5**1.5 / 50, rel=1e-12)
 
 
-def test_a_plane_table_keeps_to_its_lanes(text: str, tmp_path: Path) -> None:
+def test_grains_of_a_plane_table_stay_in_their_lanes(text: str, tmp_path: Path) -> None:
     table = "x [cm],y [cm],z [cm],d [cm]\n0,0,1,0.2\n0,{y},1,0.2\n"
     with pytest.raises(CaseError, match="two lanes") as caught:
         build(read(write(tmp_path, text, table.format(y=0.15))))
@@ -119,7 +119,7 @@ def test_a_wall_may_not_cross_the_period_of_a_table(text: str, tmp_path: Path) -
         read(path, {"planes": gate, "domain.period_x": "10 cm"})
 
 
-def test_a_fast_spin_in_a_table_is_warned_of(text: str, tmp_path: Path) -> None:
+def test_a_fast_spin_in_a_table_gives_a_warning(text: str, tmp_path: Path) -> None:
     table = "x [cm],z [cm],d [cm],wy [rad/s]\n0,1,0.2,-1100\n1,1,0.1,2000\n"
     keys = {"water": "{ profile = 'still', torque = 'Dennis' }", "motion.rotation": "free"}
     rows = {row.name: row for row in explain(read(write(tmp_path, text, table), keys))}

@@ -31,7 +31,7 @@ def test_water_above_its_depth_does_what_the_case_says(case: CaseOf) -> None:
         assert (higher > surface) - (higher < surface) == expected
 
 
-def test_a_step_in_which_drag_turns_a_slip_round_is_refused(case: CaseOf) -> None:
+def test_a_step_in_which_drag_reverses_the_slip_is_refused(case: CaseOf) -> None:
     # Stokes: (sigma + rho/2) d^2/(18 rho nu) = 3150 * 4e-6/(18 * 1000 * nu); dt of 50 steps is 2e-6 s or so
     keys = {"time.step": "2e-6 s", "contact.friction_angle": "30 deg"}
     slowest = 3150.0 * 4e-6 / 18.0e3 / 2e-6
@@ -43,7 +43,7 @@ def test_a_step_in_which_drag_turns_a_slip_round_is_refused(case: CaseOf) -> Non
         case(water=thin.replace(f"{0.99 * slowest:g}", f"{1.01 * slowest:g}"), **keys)
 
 
-def test_a_column_wants_a_step_below_a_quarter_of_the_drag_time() -> None:
+def test_a_column_needs_a_step_below_a_quarter_of_the_drag_time() -> None:
     path = case_path("settling_column.toml")
     most = 0.25 * 3150.0 * 0.25e-6 / 18.0e3 / derive(read(path)).dt  # viscosity whose drag asks for this dt
     read(path, {"water.viscosity": f"{0.99 * most:g} m2/s"})

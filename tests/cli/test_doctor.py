@@ -26,7 +26,7 @@ def test_the_doctor_says_why_cuda_cannot_be_used_or_what_card_there_is(
     assert dict(doctor.diagnosis())["engine cuda"] == "available: A card"
 
 
-def test_the_doctor_says_when_numba_may_not_keep_what_it_compiled(
+def test_the_doctor_says_when_numba_cannot_write_its_cache(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Any
 ) -> None:
     from ryusa.engine.shared import dashpots

@@ -98,7 +98,7 @@ def test_every_picture_is_drawn_with_its_numbers_beside_it(folder, tmp_path, wha
         ),
     ],
 )
-def test_a_wrong_word_gives_one_message_and_exit_code_two(folder, words, message):
+def test_an_unknown_name_gives_one_message_and_exit_code_two(folder, words, message):
     result = call(*(word.format(folder) for word in words))
     assert result.exit_code == 2, result.output
     assert message in result.output

@@ -25,7 +25,7 @@ def test_the_list_names_every_experiment_with_its_claims_and_costs():
 
 
 @pytest.mark.parametrize("word", ["fig20", "Fig. 20", "FIG20", "20", "figure 20", "fig20-shear"])
-def test_the_papers_own_way_of_writing_a_figure_is_understood(word):
+def test_figure_names_as_in_the_paper_are_accepted(word):
     result = call(word, "--list")
     assert result.exit_code == 0, result.output
     assert "fig20-shear" in result.output
@@ -41,7 +41,7 @@ def test_an_unknown_name_stops_everything_before_it_starts(word, near, tmp_path)
 
 
 @pytest.mark.parametrize("seeds", ["0", "-1", "1,1", "a", "", "1.5"])
-def test_seeds_that_are_none_are_refused(seeds, tmp_path):
+def test_invalid_seeds_are_refused(seeds, tmp_path):
     result = call("fig20", "--seeds", seeds, "-o", tmp_path)
     assert result.exit_code == 2
     assert "--seeds" in result.output
@@ -51,7 +51,7 @@ def test_quick_and_full_exclude_each_other():
     assert call("--quick", "--full").exit_code == 2
 
 
-def test_the_list_says_how_long_it_takes_and_how_much_disk(tmp_path):
+def test_the_list_gives_time_and_disk_space(tmp_path):
     result = call("--full", "--list", "-j", 2, "-o", tmp_path)
     assert result.exit_code == 0, result.output
     last = result.stdout.strip().splitlines()[-1]
@@ -70,7 +70,7 @@ def broken(folder, **more):
     return Ledger(PAPER, entries, Plan(Level.QUICK, (1,)), folder, problems, {}, {}, **more)
 
 
-def test_a_failed_run_is_told_at_the_end_and_by_the_exit_code(tmp_path, monkeypatch):
+def test_a_failed_run_is_reported_at_the_end_and_by_the_exit_code(tmp_path, monkeypatch):
     monkeypatch.setattr(ledger, "make", lambda *_, **__: broken(tmp_path))
     monkeypatch.setattr(page, "write", lambda *_: (tmp_path / "ledger.html",))
     result = call("--quick", "-o", tmp_path)

@@ -43,7 +43,7 @@ def drop(here: Path, ryusa_: Any) -> str:
     return "drop.toml"
 
 
-def test_a_newcomer_gets_from_new_to_a_run_folder(ryusa_: Any, drop: str, here: Path) -> None:
+def test_new_check_and_run_lead_to_a_run_folder(ryusa_: Any, drop: str, here: Path) -> None:
     assert "contact time on a fixed grain" in ryusa_("check", drop).out
     done = ryusa_("run", drop, "--set", "stop.time=20 ms", "--seed", "5")
     assert done.code == 0, done.err
@@ -67,7 +67,7 @@ def test_new_lists_kinds_and_every_kind_reads(ryusa_: Any) -> None:
         ryusa.load(f"{number}.toml")
 
 
-def test_new_leaves_a_file_alone_that_is_there(ryusa_: Any, drop: str, here: Path) -> None:
+def test_new_does_not_overwrite_a_file(ryusa_: Any, drop: str, here: Path) -> None:
     (here / drop).write_text("mine")
     done = ryusa_("new", "drop")
     assert done.code == 2
@@ -76,7 +76,7 @@ def test_new_leaves_a_file_alone_that_is_there(ryusa_: Any, drop: str, here: Pat
 
 
 @pytest.mark.parametrize("kind", ["dorp", "../drop", "/etc/passwd", "paper/../drop", ""])
-def test_new_knows_its_kinds_only(ryusa_: Any, kind: str) -> None:
+def test_new_refuses_an_unknown_kind(ryusa_: Any, kind: str) -> None:
     done = ryusa_("new", kind)
     assert done.code == 2
     assert "must be one of" in done.err
@@ -158,7 +158,7 @@ def test_an_existing_run_is_refused_unless_overwritten(ryusa_: Any, drop: str) -
     assert ryusa_("run", drop, *short, "--overwrite").code == 0
 
 
-def test_quiet_says_nothing(ryusa_: Any, drop: str) -> None:
+def test_quiet_prints_nothing(ryusa_: Any, drop: str) -> None:
     done = ryusa_("run", drop, "-q", "-o", "out", "--set", "stop.time=2 ms")
     assert (done.code, done.out, done.err) == (0, "", "")
 
@@ -264,7 +264,7 @@ def test_help_loads_nothing_heavy() -> None:
     assert done.stdout.strip().splitlines()[-1] == "HEAVY"
 
 
-def test_a_run_stopped_goes_on_by_either_command_and_inspect_tells_all_the_way(
+def test_a_stopped_run_is_resumed_by_either_command_and_inspect_shows_its_state(
     ryusa_: Any, drop: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from ryusa.running import loop

@@ -40,7 +40,7 @@ def test_a_check_is_computed_written_and_a_second_time_opened(tmp_path):
     assert {one["verdict"] for one in kept["findings"]} == {"within"}
 
 
-def test_a_miss_has_its_own_exit_code_and_is_named(tmp_path, monkeypatch):
+def test_a_missed_comparison_has_its_own_exit_code_and_is_named(tmp_path, monkeypatch):
     monkeypatch.setattr(water_alone, "U_STAR", 0.2)  # of the reference alone, once the columns are kept
     call("water_alone", "--quick", "-o", tmp_path, "-q", "-j", 1)
     monkeypatch.setattr(water_alone, "U_STAR", 0.1)

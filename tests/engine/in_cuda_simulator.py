@@ -50,7 +50,7 @@ def test_grains_may_outnumber_threads(monkeypatch):
     alike(second, first, 1e-14)
 
 
-def test_a_run_chosen_by_name_goes_on_from_its_checkpoint_with_the_same_bits(tmp_path):
+def test_an_engine_chosen_by_name_resumes_with_the_same_bits(tmp_path):
     fixed, first = heap(stir=0.5)
 
     def go(name, steps, **more):

@@ -63,7 +63,7 @@ def test_the_engine_does_in_the_simulator_what_every_engine_does(file: str, part
     assert done.returncode == 0, done.stdout[-6000:] + done.stderr[-2000:]
 
 
-def test_the_program_for_a_card_runs_in_the_simulator() -> None:
+def test_the_cuda_engine_runs_in_the_simulator() -> None:
     done = in_simulator("benchmarks/card.py", "--simulated")
     assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-2000:]
     assert '"same bits twice": true, "both sides alike": true' in done.stdout
@@ -149,7 +149,7 @@ def test_every_other_kernel_becomes_ptx() -> None:
     entry(verlet_list.collect_touching, COUNT, I4, pairs, I1, I1, I1, F2, F2)
 
 
-def test_without_a_card_one_line_says_what_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_a_gpu_one_line_says_what_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
     from ryusa.engine.cuda import availability
 
     if availability.unavailable() == "":

@@ -86,7 +86,7 @@ def test_one_frozen_state_and_a_short_run_agree_with_the_cpu(create, kind):
 
 
 @pytest.mark.parametrize("events", [EventRule.NONE, EventRule.ALL])
-def test_two_grains_rebound_as_asked_and_as_on_the_cpu(create, events):
+def test_two_grains_rebound_with_e_and_as_on_the_cpu(create, events):
     made = scene(
         [[0.0, 0.0, 0.0], [1.0005 * D, 0.0, 0.0]], D, v=[[0.1, 0.0, 0.0], [-0.1, 0.0, 0.0]], gravity=0.0,
         restitution=0.7, events=events,
@@ -182,7 +182,7 @@ def test_faults_name_grain_step_and_remedy_as_on_the_cpu(create):
             assert mine.step == theirs.step
 
 
-def test_a_gate_that_goes_is_booked_and_its_record_closed_as_on_the_cpu(create):
+def test_the_removal_of_a_gate_is_accounted_for_as_on_the_cpu(create):
     gate, back = ("gate", (0.499 * D, 0, 0), (-1, 0, 0)), ("back", (-0.5 * D, 0, 0), (1, 0, 0))
     walls = [("floor", (0, 0, 0), (0, 0, 1)), gate, back]
     fixed, first = scene([[0.0, 0.0, 0.499 * D]], D, planes=walls, allow_overlap=True)
@@ -216,7 +216,7 @@ def test_what_it_cannot_simulate_is_refused_with_its_reason(create):
 
 
 @pytest.mark.parametrize("kind", ["3D", "3D, records"])
-def test_a_snapshot_of_the_cpu_is_continued_and_goes_back_with_its_account(create, kind):
+def test_a_snapshot_of_the_cpu_is_continued_and_returned_with_its_account(create, kind):
     made = heap(**KINDS[kind])
     needs(create(), made[0])
     cpu = loaded(registry.create(), made)
@@ -245,7 +245,7 @@ def test_a_snapshot_is_a_frame_with_contacts_and_cannot_be_written_to(create):
             array[:] = 0.0
 
 
-def test_its_block_is_refused_by_version_and_range_and_that_of_another_engine_is_left(create):
+def test_its_block_is_refused_by_version_and_range_and_that_of_another_engine_ignored(create):
     made = heap(**KINDS["3D"])
     engine = loaded(create(), made)
     engine.advance(5).raise_if_any()

@@ -63,7 +63,7 @@ def rebound(st, partner, water, per_contact=300.0, **more):
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("st", [5.0, 15.0, 50.0, 200.0, 1000.0])
 @pytest.mark.parametrize("partner", PARTNERS)
-def test_a_grain_rebounds_as_its_law_says_at_its_stokes_number(law, st, partner):
+def test_a_grain_rebounds_with_the_restitution_of_its_stokes_number(law, st, partner):
     expected = max(LAWS[law](st), 0.01)
     got, engine = rebound(st, partner, replace(STILL, rebound=law))
     assert got == pytest.approx(expected, rel=0.02, abs=1e-3)
@@ -88,7 +88,7 @@ def test_a_step_of_fifty_to_a_contact_resolves_the_rebound():
 
 @pytest.mark.parametrize("st", [20.0, 100.0])
 @pytest.mark.parametrize("partner", PARTNERS)
-def test_a_film_takes_from_the_approach_what_its_closed_form_says(st, partner):
+def test_a_film_slows_the_approach_by_its_closed_form(st, partner):
     reach = 0.2 * D
     water = replace(STILL, film_reach=reach)
     made, speed = meet(st, partner, water, per_contact=1000.0, gap=1.2 * reach, stiffness=1.0e5, e_dry=0.99)
@@ -107,7 +107,7 @@ def test_a_film_takes_from_the_approach_what_its_closed_form_says(st, partner):
     assert account.residual < 1e-3
 
 
-def test_a_film_holds_back_grains_that_part_as_much_as_those_that_meet():
+def test_a_film_resists_separation_as_much_as_approach():
     reach = 0.2 * D
     water = replace(STILL, film_reach=reach)
     made, speed = meet(-100.0, "free", water, gap=0.0)

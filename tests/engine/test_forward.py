@@ -25,7 +25,7 @@ def scene(gap, **how):
 
 
 @pytest.mark.parametrize("summed", [True, False])
-def test_forward_differences_fall_freely_and_rebound_as_asked_with_a_fine_step(summed):
+def test_forward_differences_fall_freely_and_rebound_with_e_at_a_fine_step(summed):
     low, start = scene(0.001)
     dt = step(low, 1000.0)
     t, x = march(low, start, dt, 0.035, 2e-5, summed=summed)
@@ -36,7 +36,7 @@ def test_forward_differences_fall_freely_and_rebound_as_asked_with_a_fine_step(s
     assert math.sqrt(gap[after].max() / 0.001) == pytest.approx(0.7, abs=0.02)
 
 
-def test_forward_differences_feed_a_resting_grain_below_the_stable_number_of_steps():
+def test_forward_differences_add_energy_to_a_resting_grain_with_too_few_steps():
     low, start = scene(-1e-6)
     zeta = zeta_no_tension(0.7)
     stable = 0.929 * math.pi / (2.0 * zeta)

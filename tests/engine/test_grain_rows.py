@@ -22,7 +22,7 @@ def move_rows(x, v, f, drag, weight, w, torque, inverse, dt, out):
         write4(out, 12 * i + 8, rotation_step(read4(w, 4 * i), read4(torque, 4 * i), inverse[i], dt))
 
 
-def test_rows_of_four_and_single_components_take_the_same_step_bit_by_bit():
+def test_vec4_and_single_components_give_the_same_bits():
     rng = np.random.default_rng(11)
     x, v, f, drag, weight, w, torque = rng.normal(size=(7, STATES, 4))
     inverse, dt, out = rng.uniform(0.1, 10.0, STATES), 1.0e-3, np.zeros((STATES, 3, 4))

@@ -57,7 +57,7 @@ def test_a_state_that_is_not_finite_is_refused_before_any_step(what):
         CpuEngine().load(fixed, replace(first, **{what: bad}))
 
 
-def test_a_grain_outside_the_world_is_lost_and_named():
+def test_a_grain_outside_the_domain_is_a_fault_that_names_it():
     fixed, first = scene(
         [[0.0, 0.0, 0.0], [3 * D, 0.0, 0.0]], D, v=[[0.0, 0.0, 0.0], [0.0, 0.0, 1.0]], gravity=0.0
     )
@@ -75,7 +75,7 @@ def test_a_step_too_long_for_the_list_stops_the_run():
     assert flags.fault.grain == 0
 
 
-def test_a_grain_thrown_far_away_does_not_hang_the_search():
+def test_a_grain_far_away_does_not_slow_down_the_search():
     fixed, first = scene(
         [[0.0, 0.0, 0.0], [1e9, 0.0, 0.0], [0.0, 0.0, -1e7]], D, v=[[1.0, 0, 0]] * 3, gravity=0.0
     )
@@ -97,7 +97,7 @@ def test_a_full_record_of_ended_contacts_is_a_fault_and_not_a_loss(monkeypatch):
     assert isinstance(flags.fault, ContactSlotsFull)
 
 
-def test_drained_records_lose_nothing_however_small_the_buffer(monkeypatch):
+def test_no_contact_record_is_lost_however_small_the_buffer(monkeypatch):
     made = pile(n=200, plane_case=True, events=EventRule.ALL)  # one block, whatever the buffer
     engine, _ = advance(made, 6000)
     whole = engine.events()
@@ -109,7 +109,7 @@ def test_drained_records_lose_nothing_however_small_the_buffer(monkeypatch):
     assert small.events().tobytes() == whole.tobytes()
 
 
-def test_an_engine_says_what_it_cannot_carry():
+def test_an_engine_lists_the_laws_it_lacks():
     fixed, first = scene([[0.0, 0.0, 0.0]], D, contact=contact_law(), gravity=0.0, period=(2.5 * D, np.inf))
     assert "period in x" in CpuEngine().refuses(fixed)[0]
     rolling = RollingLaw(Rolling.EPSD, Arm.CONTACT_WIDTH, 0.1)

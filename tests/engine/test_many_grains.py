@@ -57,7 +57,7 @@ def test_split_calls_and_a_resumed_snapshot_give_the_same_bits(kind):
     assert np.sort(np.concatenate([early, resumed.events()])).tobytes() == np.sort(records).tobytes()
 
 
-def test_an_account_without_those_of_the_blocks_is_continued_as_their_sum():
+def test_an_account_without_block_accounts_is_continued_from_its_sum():
     made = pile(n=400)
     state = run(made, 700).state()
     assert len(state.engine.arrays["work"]) > 1
@@ -142,7 +142,7 @@ def test_momentum_of_a_periodic_cloud_without_walls_is_kept_to_round_off():
     )
 
 
-def test_of_three_mutual_contacts_the_one_that_parts_is_forgotten_alone():
+def test_of_three_mutual_contacts_only_the_one_that_ends_loses_its_history():
     # three touching grains; the third is pulled away: the memory of the two that stay goes on
     law = contact_law(mu=0.5, zeta_n=0.05, zeta_s=0.05)
     side = D * (1.0 - 2e-3)
@@ -180,7 +180,7 @@ def test_of_three_mutual_contacts_the_one_that_parts_is_forgotten_alone():
 
 
 @pytest.mark.parametrize("per_contact", [10.0, 20.0, 50.0])
-def test_the_account_closes_at_coarse_steps_and_shows_what_the_step_gave(per_contact):
+def test_the_account_closes_at_coarse_steps_with_the_step_term(per_contact):
     made = pile(n=300, plane_case=True, stir=0.1, steps_per_contact=per_contact)
     account = run(made, int(0.1 / made[0].dt)).tally()
     lost = account.books[Book.DASH_N]
@@ -237,7 +237,7 @@ def test_a_bed_at_rest_comes_to_rest():
     assert engine.tally().residual < 1e-3
 
 
-def test_removing_a_gate_drops_its_contacts_books_their_springs_and_closes_their_records():
+def test_removing_a_gate_ends_its_contacts_and_accounts_for_their_springs():
     law = contact_law(mu=0.5, zeta_n=0.2, zeta_s=0.2)
     squeeze = 1e-3 * D
     walls = [
@@ -262,7 +262,7 @@ def test_removing_a_gate_drops_its_contacts_books_their_springs_and_closes_their
 
 
 @pytest.mark.parametrize("model", [Rolling.PRINTED, Rolling.CONSTANT, Rolling.EPSD])
-def test_rotation_may_be_locked_and_freed_on_the_way_with_any_rolling_friction(model):
+def test_rotation_may_be_locked_and_freed_during_a_run_with_any_rolling_friction(model):
     fixed, first = pile(n=60, rolling=RollingLaw(model, Arm.REDUCED_RADIUS, 0.1), stir=0.1)
     engine = run((fixed, first), 8000)
     engine.load(replace(fixed, rotation=False), engine.state())
@@ -274,7 +274,7 @@ def test_rotation_may_be_locked_and_freed_on_the_way_with_any_rolling_friction(m
     assert engine.tally().residual < 1e-3
 
 
-def test_locking_rotation_on_the_way_takes_the_spin_out_of_the_account():
+def test_locking_rotation_during_a_run_removes_the_spin_from_the_account():
     fixed, first = scene([[0.0, 0.0, 0.0]], D, omega=[[0.0, 50.0, 0.0]], gravity=0.0)
     engine = run((fixed, first), 10)
     engine.load(replace(fixed, rotation=False), engine.state())
@@ -284,7 +284,7 @@ def test_locking_rotation_on_the_way_takes_the_spin_out_of_the_account():
     assert account.books[Book.SWITCH] == pytest.approx(-account.books[Book.START], rel=1e-12)
 
 
-def test_lanes_of_a_plane_scene_do_not_meet_however_far_the_list_reaches():
+def test_lanes_of_a_plane_scene_do_not_interact_whatever_the_range_of_the_list():
     def two(y):
         x = [[0.0, 0.0, 2.0 * D], [0.0, y, 2.0 * D], [0.0, 0.0, 3.5 * D]]
         bed = [[0.0, 0.0, 0.0], [0.0, y, 0.0]]

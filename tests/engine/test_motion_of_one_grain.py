@@ -101,7 +101,7 @@ def test_eq_13_as_printed_brakes_a_rolling_sphere_and_then_drives_it_back():
 
 
 @pytest.mark.parametrize("name", MODELS)
-def test_an_incline_holds_below_the_rolling_friction_and_not_above(name):
+def test_a_grain_rests_on_an_incline_below_the_rolling_friction_and_not_above(name):
     law = contact_law(k_n=1e3, mu=0.5, zeta_n=0.3, zeta_s=0.3)
     steep, flat = math.atan(1.5 * MU_R), math.atan(0.5 * MU_R)
     t = 0.1
@@ -115,7 +115,7 @@ def test_an_incline_holds_below_the_rolling_friction_and_not_above(name):
     assert abs(last.v[0, 0]) < 5e-3 * free
 
 
-def test_a_spring_dashpot_slider_holds_still_and_a_constant_torque_creeps_with_the_step():
+def test_a_spring_dashpot_slider_rests_and_a_constant_torque_creeps_with_the_step():
     # what the field says of types A and C (Ai et al. 2011): type A first lets the spin grow for a step
     flat = math.atan(0.5 * MU_R)
 
@@ -204,7 +204,7 @@ def test_added_mass_slows_the_start_and_not_the_weight():
     assert last.v[0, 2] == pytest.approx(-(2650.0 - 1000.0) / (2650.0 + 500.0) * G * 0.01, rel=1e-9)
 
 
-def test_water_brakes_a_slow_spin_as_stokes_says():
+def test_a_slow_spin_decays_after_stokes():
     d, spin = 2.0e-4, 5.0
     tau = 2650.0 * (0.5 * d) ** 2 / (15.0 * 1e-3)
     water = Water(profile=Profile.STILL, drag=Drag.NONE, torque=WaterTorque.STOKES)
@@ -218,7 +218,7 @@ def test_water_brakes_a_slow_spin_as_stokes_says():
     assert engine.tally().residual < 1e-9
 
 
-def test_a_fast_spin_is_braked_harder_than_stokes_by_the_dennis_ratio():
+def test_a_fast_spin_decays_faster_than_stokes_by_the_ratio_of_dennis():
     spin, torques = 900.0, {}
     for law in (WaterTorque.STOKES, WaterTorque.DENNIS):
         water = Water(profile=Profile.STILL, drag=Drag.NONE, torque=law)
@@ -263,7 +263,7 @@ def test_a_grain_leaves_a_bed_pocket_at_30_degrees_or_30_plus_phi(rotation):
     assert gone(leaves + 0.2)
 
 
-def test_a_dropped_grain_keeps_its_account():
+def test_the_account_of_a_dropped_grain_closes():
     law = contact_law(zeta_n=collision.zeta_no_tension(0.7))
     made = scene([[0.0, 0.0, 3.0 * D]], D, x_fixed=[[0.0, 0.0, 0.0]], d_fixed=D, contact=law, gravity=G)
     engine = run(made, int(0.08 / made[0].dt))

@@ -45,7 +45,9 @@ def first_touch(made, n_steps=60):
     ratio=st.floats(1.0, 20.0), way=st.floats(1e-3, 2 * LARGEST_DISPLACEMENT), depth=st.floats(0.0, 1.0),
     phase=st.floats(0.0, 1.0),
 )  # fmt: skip
-def test_what_two_steps_can_hide_is_a_thirtieth_of_the_smallest_grain(ratio, way, depth, phase):
+def test_an_overlap_missed_between_two_steps_is_at_most_a_thirtieth_of_the_smallest_grain(
+    ratio, way, depth, phase
+):
     # lengths in smallest diameters: R = ratio, a straight way that passes the centre at R - depth
     miss = max(ratio - depth, 0.0)
     before, after = -phase * way, (1.0 - phase) * way
@@ -58,7 +60,7 @@ def test_what_two_steps_can_hide_is_a_thirtieth_of_the_smallest_grain(ratio, way
     p=st.tuples(*[st.floats(-1.0, 1.0)] * 3), q=st.tuples(*[st.floats(-1.0, 1.0)] * 3),
     ratio=st.floats(1.0, 20.0), smaller=st.floats(1.0, 20.0),
 )  # fmt: skip
-def test_two_grains_that_change_sides_within_a_step_overlap_by_more_than_the_limit(p, q, ratio, smaller):
+def test_two_grains_that_pass_each_other_within_a_step_exceed_the_overlap_limit(p, q, ratio, smaller):
     p, q, smaller = np.array(p), np.array(q), min(smaller, ratio)  # d_small <= R
     step = np.linalg.norm(q - p)
     if step > 2 * LARGEST_DISPLACEMENT:
@@ -72,7 +74,7 @@ PHASES = np.linspace(0.0, 1.0, 17)
 
 
 @pytest.mark.parametrize("phase", PHASES)
-def test_two_grains_that_meet_head_on_just_below_the_limit_are_seen_in_touch(phase):
+def test_a_head_on_impact_just_below_the_limit_is_detected(phase):
     gap = (2.0 + phase) * LARGEST_DISPLACEMENT * D
     made = shot([[0, 0, 0], [D + gap, 0, 0]], [[1, 0, 0], [-1, 0, 0]], D)
     step, fault = first_touch(made)
@@ -86,7 +88,7 @@ def test_two_grains_that_meet_head_on_just_below_the_limit_are_seen_in_touch(pha
     assert x[0, 0] < x[1, 0] + 0.5 * D
 
 
-def test_a_way_just_above_the_limit_stops_the_run_and_names_grain_and_remedy():
+def test_a_displacement_just_above_the_limit_stops_the_run_with_grain_and_remedy():
     made = shot([[0, 0, 0], [5 * D, 0, 0]], [[0, 0, 0], [-1, 0, 0]], D, ABOVE)
     step, fault = first_touch(made)
     assert step == 0
@@ -97,14 +99,14 @@ def test_a_way_just_above_the_limit_stops_the_run_and_names_grain_and_remedy():
 
 
 @pytest.mark.parametrize("phase", PHASES)
-def test_a_grazing_pair_deeper_than_what_two_steps_can_hide_is_seen(phase):
+def test_a_grazing_contact_deeper_than_two_steps_can_miss_is_detected(phase):
     miss = D * (1.0 - 1.01 * HIDDEN)
     ahead = (3.0 + phase) * LARGEST_DISPLACEMENT * D
     made = shot([[0, 0, 0], [2 * ahead, 0, miss]], [[1, 0, 0], [-1, 0, 0]], D)
     assert first_touch(made)[0] is not None
 
 
-def test_a_grazing_pair_shallower_than_that_can_be_hidden_which_is_why_it_has_a_number():
+def test_a_shallower_grazing_contact_can_be_missed():
     miss = D * (1.0 - 0.95 * HIDDEN)
     made = shot(
         [[0, 0, 0], [2 * 3.5 * LARGEST_DISPLACEMENT * D * BELOW, 0, miss]], [[1, 0, 0], [-1, 0, 0]], D
@@ -114,7 +116,7 @@ def test_a_grazing_pair_shallower_than_that_can_be_hidden_which_is_why_it_has_a_
 
 @pytest.mark.parametrize("phase", PHASES)
 @pytest.mark.parametrize(("free", "fixed"), [(1.0, 0.2), (0.2, 1.0), (1.0, 1.0)])
-def test_a_grain_shot_at_a_bed_grain_of_any_size_is_seen_in_touch(phase, free, fixed):
+def test_the_impact_on_a_bed_grain_of_any_size_is_detected(phase, free, fixed):
     smallest = min(free, fixed) * D
     touch, ahead = (free + fixed) * D / 2, (1.0 + phase) * LARGEST_DISPLACEMENT * smallest
     bed = {"x_fixed": [[0, 0, 0], [3 * D, 0, 0]], "d_fixed": [fixed * D, D]}
@@ -126,7 +128,7 @@ def test_a_grain_shot_at_a_bed_grain_of_any_size_is_seen_in_touch(phase, free, f
 
 
 @pytest.mark.parametrize("phase", PHASES)
-def test_two_grains_that_meet_across_a_periodic_side_are_seen_in_touch(phase):
+def test_a_contact_across_a_periodic_side_is_detected(phase):
     gap, length = (2.0 + phase) * LARGEST_DISPLACEMENT * D, 6 * D
     x = [[0.5 * D, 0, 0], [length + 0.5 * D - D - gap, 0, 0]]  # they touch through x = 0
     step, fault = first_touch(shot(x, [[-1, 0, 0], [1, 0, 0]], D, period=(length, math.inf)))
@@ -135,7 +137,7 @@ def test_two_grains_that_meet_across_a_periodic_side_are_seen_in_touch(phase):
 
 
 @pytest.mark.parametrize("phase", PHASES)
-def test_a_grain_shot_at_a_wall_is_seen_in_touch_and_does_not_leave_it_behind(phase):
+def test_the_impact_on_a_wall_is_detected_and_the_grain_does_not_pass_it(phase):
     wall = {"planes": [("floor", (0, 0, 0), (0, 0, 1))]}
     z = 0.5 * D + (1.0 + phase) * LARGEST_DISPLACEMENT * D
     made = shot([[0, 0, z], [0, 0, 9 * D]], [[0, 0, -1], [0, 0, 0]], D, **wall)
@@ -152,7 +154,7 @@ def test_a_grain_shot_at_a_wall_is_seen_in_touch_and_does_not_leave_it_behind(ph
 
 @pytest.mark.parametrize("aside", [0.0, 0.1, 0.25, 0.4, 0.5])
 @pytest.mark.parametrize("stiffness", [10.0, 100.0, 1e4])
-def test_a_grain_shot_through_a_closed_row_of_bed_grains_does_not_go_unnoticed(aside, stiffness):
+def test_a_grain_shot_through_a_closed_row_of_bed_grains_is_detected(aside, stiffness):
     row = np.column_stack([np.arange(-5, 6) * D, np.zeros(11), np.zeros(11)])
     fixed, first = scene(
         [[aside * D, 0, 3 * D]], D, v=[[0, 0, -8.0]], x_fixed=row, plane_case=True, stiffness=stiffness

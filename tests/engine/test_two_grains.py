@@ -49,7 +49,7 @@ STILL = Water(profile=Profile.STILL, drag=Drag.NONE)
 @pytest.mark.parametrize("partner", ["fixed", "free"])
 @pytest.mark.parametrize("water", [None, STILL], ids=["dry", "added mass"])
 @pytest.mark.parametrize("e", [0.3, 0.7, 0.9])
-def test_restitution_asked_is_restitution_got(e, partner, tension, water):
+def test_the_measured_restitution_is_that_of_the_case(e, partner, tension, water):
     got, times = [], []
     for phase in np.arange(20) / 20.0:
         event, t_col, _ = head_on(e, partner, tension, water, phase)
@@ -138,7 +138,7 @@ def test_gross_sliding_follows_the_sliding_law(slip):
     assert event["t_slide"] > 0.95 * (event["t_end"] - event["t_begin"])
 
 
-def test_gross_sliding_without_tension_capped_on_the_spring_pushes_less():
+def test_gross_sliding_without_tension_has_a_smaller_impulse_if_the_spring_is_capped():
     # only the spring feeds the cap: (1 + e) becomes (1 + e) - 4 zeta**2 e (validation.md, a)
     e, mu, angle = 0.7, 0.1, math.radians(60.0)
     zeta = collision.zeta_no_tension(e)
@@ -150,7 +150,7 @@ def test_gross_sliding_without_tension_capped_on_the_spring_pushes_less():
 
 
 @pytest.mark.parametrize("rotation", [True, False])
-def test_sticking_impact_turns_tangential_speed_as_the_springs_say(rotation):
+def test_a_sticking_impact_changes_the_tangential_speed_as_derived(rotation):
     ratio, angle = 2.0 / 7.0 if rotation else 0.6, math.radians(30.0)
     law = contact_law(ratio=ratio, mu=1.0e3, zeta_n=0.0)
     event, _ = oblique(angle, law, rotation=rotation, per_contact=1000.0, speed=0.05)
@@ -161,7 +161,7 @@ def test_sticking_impact_turns_tangential_speed_as_the_springs_say(rotation):
 
 @pytest.mark.parametrize("rotation", [True, False])
 @pytest.mark.parametrize("ratio", [0.1, 2.0 / 7.0, 0.6])
-def test_damped_sticking_returns_what_the_tangential_oscillator_says(rotation, ratio):
+def test_damped_sticking_gives_the_restitution_of_the_tangential_oscillator(rotation, ratio):
     # x'' + 2 zeta w x' + w**2 x = 0 from x = 0: what is left of the slip when the normal force ends
     e, zeta_s = 0.7, collision.zeta_tension(0.7)
     law = contact_law(ratio=ratio, mu=1.0e3, zeta_n=collision.zeta_no_tension(e), zeta_s=zeta_s)
@@ -252,7 +252,7 @@ def test_angular_momentum_of_a_free_pair_is_kept_to_round_off(plane_case):
 
 
 @pytest.mark.parametrize(("spin", "angle"), [((900.0, 0.0, 0.0), 1.2), ((0.0, 60.0, -20.0), 0.02)])
-def test_a_touching_pair_that_turns_as_a_whole_takes_its_spring_along(spin, angle):
+def test_the_spring_of_a_pair_that_rotates_as_a_whole_rotates_with_it(spin, angle):
     # turned about its normal the positions stay; turned about another axis straight steps slip by k_s
     # d angle**3 only
     law = contact_law(mu=1e3, zeta_n=0.0)

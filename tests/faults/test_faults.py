@@ -35,7 +35,9 @@ def kill(folder: Path, kind: str, kills: int, seed: int) -> None:
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
 @pytest.mark.parametrize("kind", KINDS)
-def test_runs_killed_at_random_moments_lose_nothing_and_end_the_same(tmp_path: Path, kind: str) -> None:
+def test_runs_killed_at_random_moments_lose_nothing_and_end_with_the_same_results(
+    tmp_path: Path, kind: str
+) -> None:
     kill(tmp_path, kind, 2, seed=1)
 
 

@@ -175,7 +175,7 @@ def changed(array: np.ndarray, data: st.DataObject) -> np.ndarray:
 
 
 @pytest.mark.parametrize("value", [math.nan, 2e-3])  # no number; in a plane another lane, much too close
-def test_a_state_no_engine_takes_is_refused_and_the_run_can_still_go_on_from_a_good_one(
+def test_a_state_no_engine_accepts_is_refused_and_a_good_one_still_resumes(
     value: float, stopped: tuple[str, Path], tmp_path: Path
 ) -> None:
     kind, source = stopped
@@ -196,7 +196,7 @@ def test_a_state_no_engine_takes_is_refused_and_the_run_can_still_go_on_from_a_g
 
 @pytest.mark.slow
 @pytest.mark.parametrize("value", [-sys.float_info.max, sys.float_info.max, 1e99, -1e99, 1e9, -1.0, -1e-169])
-def test_an_extreme_number_anywhere_in_a_checkpoint_is_gone_on_from_or_refused_by_name(
+def test_an_extreme_number_anywhere_in_a_checkpoint_is_accepted_or_refused_by_name(
     value: float, stopped: tuple[str, Path], tmp_path: Path
 ) -> None:
     kind, source = stopped
@@ -214,7 +214,7 @@ def test_an_extreme_number_anywhere_in_a_checkpoint_is_gone_on_from_or_refused_b
             shutil.rmtree(folder)
 
 
-def test_an_eddy_viscosity_that_cannot_be_is_refused(stopped: tuple[str, Path], tmp_path: Path) -> None:
+def test_an_impossible_eddy_viscosity_is_refused(stopped: tuple[str, Path], tmp_path: Path) -> None:
     kind, source = stopped
     shutil.copytree(source, folder := tmp_path / "run")
     kept = read_checkpoint(folder / schema.CHECKPOINT, Results.open(folder).scene.n_grain)
@@ -245,7 +245,7 @@ def fuzzed(trick: Trick, stopped: tuple[str, Path], tmp_path: Path, data: st.Dat
 @pytest.mark.parametrize("trick", TRICKS)
 @FAST
 @given(data=st.data())
-def test_a_folder_of_a_stranger_is_used_or_refused_by_name(
+def test_a_manipulated_folder_is_used_or_refused_by_name(
     trick: Trick, stopped: tuple[str, Path], tmp_path: Path, data: st.DataObject
 ) -> None:
     fuzzed(trick, stopped, tmp_path, data)
@@ -255,7 +255,7 @@ def test_a_folder_of_a_stranger_is_used_or_refused_by_name(
 @pytest.mark.parametrize("trick", TRICKS)
 @SLOW
 @given(data=st.data())
-def test_thousands_of_folders_of_strangers_are_used_or_refused_by_name(
+def test_thousands_of_manipulated_folders_are_used_or_refused_by_name(
     trick: Trick, stopped: tuple[str, Path], tmp_path: Path, data: st.DataObject
 ) -> None:
     fuzzed(trick, stopped, tmp_path, data)

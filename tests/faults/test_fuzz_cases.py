@@ -25,7 +25,7 @@ MANY = settings(max_examples=400, deadline=None, suppress_health_check=list(Heal
 
 @MANY
 @given(text=strange_cases(), table=strange_tables())
-def test_a_strange_case_file_is_used_or_refused_by_name(
+def test_a_manipulated_case_file_is_used_or_refused_by_name(
     tmp_path_factory: pytest.TempPathFactory, text: str, table: str
 ) -> None:
     tally = Tally()
@@ -33,7 +33,7 @@ def test_a_strange_case_file_is_used_or_refused_by_name(
     assert tally.outcomes["wrong"] == 0, tally.wrong[0]
 
 
-def test_strange_case_files_get_an_answer_from_the_command_line(tmp_path: Path) -> None:
+def test_manipulated_case_files_get_an_answer_from_the_command_line(tmp_path: Path) -> None:
     tally = cli(tmp_path, 4, 5)
     assert tally.outcomes["wrong"] == 0, tally.wrong[0]
     assert sum(tally.outcomes.values()) == 4
@@ -43,24 +43,24 @@ def test_strange_case_files_get_an_answer_from_the_command_line(tmp_path: Path) 
 
 
 @pytest.mark.parametrize("key", ["<", "'<number>'", "'<table>'"])
-def test_an_unknown_key_that_looks_like_one_of_ours_is_refused_by_name(key: str) -> None:
+def test_an_unknown_key_that_resembles_a_known_one_is_refused_by_name(key: str) -> None:
     name = key.strip("'")
     with pytest.raises(CaseError, match=f"{name}: unknown key"):
         read_text(f'"{name}" = 1\n')
 
 
-def test_a_unit_beyond_all_numbers_is_refused() -> None:
+def test_a_unit_too_large_for_a_number_is_refused() -> None:
     with pytest.raises(UnitError, match="too large a unit"):
         quantity("1 Ylightyear^9", "m")
 
 
-def test_a_number_that_would_become_nothing_is_refused() -> None:
+def test_a_number_that_would_underflow_is_refused() -> None:
     with pytest.raises(UnitError, match="too small"):
         quantity("1e-400 m", "m")
     assert quantity("0e-400 m", "m") == 0.0
 
 
-def test_less_than_nothing_of_nothing_is_nothing() -> None:
+def test_minus_zero_is_read_as_zero() -> None:
     text = toml_of(next(base for base in bases() if base["build"]["kind"] == "packing"))
     for gap in ("-0.0", "0.0"):
         case = read_text(text, {"build.gap": gap})
@@ -69,6 +69,6 @@ def test_less_than_nothing_of_nothing_is_nothing() -> None:
     assert math.copysign(1.0, quantity("-0 m", "m")) == 1.0
 
 
-def test_a_whole_number_too_long_to_be_shown_is_refused() -> None:
+def test_an_integer_too_long_to_be_printed_is_refused() -> None:
     with pytest.raises(CaseError, match=r"grains\.spread"):
         read_text(f"[grains]\nspread = 0x{'f' * 9_000}\n")

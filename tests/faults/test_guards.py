@@ -93,7 +93,7 @@ def stopped(go: Run, folder: Path, kind: type[RunError] | type[WaterError]) -> R
     return fault
 
 
-def test_a_number_that_is_none_stops_the_run(tmp_path: Path) -> None:
+def test_a_nan_stops_the_run(tmp_path: Path) -> None:
     fixed, first = scene([[0, 0, 5 * D], [0, 0, 9 * D]], D, v=[[0, 0, 0], [0, 0, -0.5]], gravity=0.0)
     stiff = replace(fixed, contact=replace(fixed.contact, k_n=math.inf), overlap_limit=math.inf)
     fault = stopped(by_hand((stiff, first)), tmp_path / "run", NotANumber)
@@ -107,19 +107,19 @@ def test_an_overlap_beyond_the_limit_stops_the_run(tmp_path: Path) -> None:
     assert "contact.stiffness" in fault.hint
 
 
-def test_a_grain_that_leaves_the_world_stops_the_run(tmp_path: Path) -> None:
+def test_a_grain_that_leaves_the_domain_stops_the_run(tmp_path: Path) -> None:
     box = {"domain__low": '["-1 m", "-1 m", "-1 m"]', "domain__high": '["2.3 cm", "1 m", "1 m"]'}
     fault = stopped(case(KINDS["dry-2d"], **box), tmp_path / "run", GrainLost)
     assert "domain.low" in fault.hint
 
 
-def test_a_speed_beyond_reason_stops_the_run(tmp_path: Path) -> None:
+def test_an_excessive_speed_stops_the_run(tmp_path: Path) -> None:
     fast = drop(motion__gravity="10000 m/s2", build__height="4 m", record__frames="0.1 ms")
     fault = stopped(fast, tmp_path / "run", ListUnsafe)
     assert "time.steps_per_contact" in fault.hint
 
 
-def test_energy_from_nowhere_stops_the_run(tmp_path: Path) -> None:
+def test_created_energy_stops_the_run(tmp_path: Path) -> None:
     """Grains that boil because the step is too long, and would do so for ever."""
     n, draw = 60, np.random.default_rng(1)
     a, c = np.meshgrid(np.arange(10), np.arange(6))
@@ -134,7 +134,7 @@ def test_energy_from_nowhere_stops_the_run(tmp_path: Path) -> None:
     assert "time.steps_per_contact" in fault.hint
 
 
-def test_more_contacts_ended_than_the_record_holds_stop_the_run(
+def test_more_contact_records_than_the_buffer_holds_stop_the_run(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(cpu, "_RECORDS", 9)
@@ -147,7 +147,7 @@ def test_more_contacts_ended_than_the_record_holds_stop_the_run(
     assert "record.events" in fault.hint
 
 
-def test_a_tiny_grain_in_the_bed_bounds_how_fast_a_large_one_may_come(tmp_path: Path) -> None:
+def test_a_small_grain_in_the_bed_limits_the_speed_of_a_large_one(tmp_path: Path) -> None:
     """So that neither passes through the other, or through the bed, within a step."""
     bed = np.column_stack([np.arange(-4, 5) * D, np.zeros((9, 2))])
     sizes = np.where(np.arange(9) == 4, 0.1 * D, D)
@@ -161,7 +161,7 @@ def test_a_tiny_grain_in_the_bed_bounds_how_fast_a_large_one_may_come(tmp_path: 
     assert 5.0 + 1e4 * fault.t == pytest.approx(way / made[0].dt, rel=1e-2)
 
 
-def test_a_column_of_water_that_cannot_go_on_stops_the_run(tmp_path: Path) -> None:
+def test_a_column_without_solution_stops_the_run(tmp_path: Path) -> None:
     """Soft grains under a huge weight are pressed so close that drag outruns the step."""
     settings = {
         "contact__stiffness": "1 N/cm",
@@ -172,7 +172,7 @@ def test_a_column_of_water_that_cannot_go_on_stops_the_run(tmp_path: Path) -> No
     assert "step" in fault.hint
 
 
-def test_a_disk_nearly_full_pauses_a_run_that_then_goes_on_with_the_same_bits(
+def test_a_disk_nearly_full_pauses_a_run_that_then_continues_with_the_same_bits(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     run("rolling", tmp_path / "whole")

@@ -8,7 +8,7 @@ SAND = Grain(d=0.002, rho_s=2650.0, e=0.7, speed=0.6)
 
 
 @pytest.mark.parametrize("large", [False, True])
-def test_diameters_stand_in_the_unit_one_would_say_them_in(large):
+def test_diameters_are_printed_in_a_suitable_unit(large):
     found = chart_around(SAND, np.array([0.002, 0.05]) * (100.0 if large else 1.0))
     for figure in (charts.times(found, SAND, band=True), charts.overlaps(found, SAND)):
         words = [text.get_text() for text in figure.axes[0].texts]

@@ -42,20 +42,20 @@ def test_a_long_track_is_cut_into_panels_with_round_grains_and_a_bed_without_gap
         assert len(bed.get_paths()) >= (high - low) / (1e3 * D)
 
 
-def test_a_way_that_is_high_for_its_length_leaves_no_panel_empty():
+def test_a_path_high_for_its_length_leaves_no_panel_empty():
     high = replace(path(), z=20.0 * path().z)
     for axes in figures.tracks(high).axes:
         assert any(np.isfinite(line.get_xdata()).any() for line in axes.lines)
 
 
-def test_a_way_is_drawn_up_to_the_edge_of_its_panel_however_few_its_frames():
+def test_a_path_is_drawn_to_the_edge_of_its_panel_however_few_its_frames():
     few = path(n=12)
     for axes in figures.tracks(few).axes[:-1]:
         drawn = [x for line in axes.lines for x in line.get_xdata() if np.isfinite(x)]
         assert max(drawn) >= axes.get_xlim()[1]
 
 
-def test_exaggerated_heights_are_said_to_be_so():
+def test_an_exaggeration_of_heights_is_stated():
     figure = figures.tracks(path(), panels=2, exaggeration=2.0)
     assert "2 times" in figure.axes[0].get_title(loc="right")
 
@@ -147,7 +147,7 @@ def test_a_snapshot_is_true_to_scale_in_centimetres(colour):
     assert len(axes.child_axes) == (0 if colour == "none" else 1)
 
 
-def test_grains_that_stick_out_of_a_period_show_at_both_ends():
+def test_grains_across_a_periodic_side_are_drawn_at_both_ends():
     figure = figures.snapshot(moment(period=10 * D), "none")
     assert figure.axes[0].get_xlim() == pytest.approx((0.0, 100 * 10 * D))
     assert len(circles(figure)[1].get_offsets()) == 4
@@ -213,7 +213,7 @@ def test_a_heap_without_a_slope_says_so():
     assert any("stands like a wall" in one.get_text() for one in figure.axes[0].texts)
 
 
-def test_trembling_is_drawn_per_window_and_as_a_share_at_each_threshold():
+def test_vibration_is_drawn_per_window_and_as_a_share_at_each_threshold():
     n = 20
     end = 0.01 * np.arange(1, n + 1)
     moved = np.outer(np.exp(-np.arange(n)), [1e-4, 2e-4])
@@ -239,7 +239,7 @@ def test_trembling_is_drawn_per_window_and_as_a_share_at_each_threshold():
     assert "2 µm" in " ".join(text.get_text() for text in below.get_legend().get_texts())
 
 
-def test_a_high_path_fits_on_a_page_and_says_whose_it_is():
+def test_a_high_path_fits_on_a_page_with_the_id_of_its_grain():
     z = np.linspace(0.1, 0.0, 50)[:, None]
     bed = np.array([0.0])
     drop = Tracks((4,), np.linspace(0, 0.3, 50), 0 * z, z, np.array([D]), bed, bed, bed + D, float("inf"))

@@ -50,7 +50,7 @@ def test_heights_may_be_in_diameters_and_panels_as_many_as_asked(found):
     assert 9 < figure.axes[0].get_ylim()[1] < 12
 
 
-def test_ways_start_at_zero_to_scale_and_do_not_cross():
+def test_paths_start_at_zero_to_scale_and_do_not_cross():
     t = np.linspace(0.0, 1.0, 101)
     x = 5 * D + 0.02 * np.outer(t, [1.0, 2.0, 3.0])
     z = 2 * D + D * np.sin(20 * np.outer(t, [1.0, 2.0, 3.0]))

@@ -43,7 +43,7 @@ def test_a_number_that_moved_beyond_the_tolerance_is_named() -> None:
     assert not goldens.moved(kept, found, 1.0e-6)
 
 
-def test_a_contact_more_is_named_whatever_the_tolerance() -> None:
+def test_an_additional_contact_is_named_whatever_the_tolerance() -> None:
     kept = goldens.read("heap").values
     found = {**kept, "counts": {**kept["counts"], "contacts_ended": kept["counts"]["contacts_ended"] + 1}}
     assert [line for line in goldens.moved(kept, found, 1.0e-6) if line.startswith("contacts_ended")]

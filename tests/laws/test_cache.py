@@ -46,7 +46,7 @@ def test_a_law_that_calls_a_changed_law_in_another_file_is_compiled_anew(tmp_pat
     assert ask() == ["10.0", "0"]
 
 
-def test_what_another_edition_kept_is_not_read(tmp_path):
+def test_the_cache_of_another_edition_is_not_read(tmp_path):
     dispatcher = collision.effective_mass
     dispatcher.compile("float64(float64, float64)")
     kept = dispatcher._cache._cache_file

@@ -49,7 +49,7 @@ def test_the_constants_of_fig17_bracket_the_time_and_restitution_the_paper_quote
 
 
 @given(e=restitutions)
-def test_restitution_asked_for_is_restitution_got(e):
+def test_the_damping_of_a_restitution_gives_that_restitution(e):
     assert collision.restitution_tension(collision.zeta_tension(e)) == pytest.approx(e, rel=1e-12)
     assert collision.restitution_no_tension(collision.zeta_no_tension(e)) == pytest.approx(e, rel=1e-12)
 
@@ -65,18 +65,18 @@ def test_the_three_branches_are_the_printed_ones(zeta):
 
 
 @given(gap=st.floats(1.0e-15, 1.0e-3))
-def test_nothing_jumps_at_critical_damping(gap):
+def test_all_functions_are_continuous_at_critical_damping(gap):
     for law in (collision.phase_to_largest, collision.restitution_no_tension):
         assert law(1.0 - gap) == pytest.approx(law(1.0), rel=2.0 * gap + 1e-14)
         assert law(1.0 + gap) == pytest.approx(law(1.0), rel=2.0 * gap + 1e-14)
 
 
-def test_heavy_damping_leaves_one_over_four_zeta_squared():
+def test_restitution_of_heavy_damping_is_one_over_four_zeta_squared():
     assert collision.restitution_no_tension(100.0) == pytest.approx(1.0 / 4.0e4, rel=1e-2)
 
 
 @given(a=ratios, b=ratios)
-def test_more_damping_never_bounces_higher(a, b):
+def test_restitution_decreases_with_damping(a, b):
     low, high = sorted((a, b))
     assert collision.restitution_no_tension(high) <= collision.restitution_no_tension(low)
     assert collision.restitution_tension(high) <= collision.restitution_tension(low)
@@ -126,13 +126,13 @@ def test_effective_masses_of_equal_spheres_and_of_a_fixed_partner():
 
 
 @given(a=st.floats(1e-9, 1e3), b=st.floats(1e-9, 1e3))
-def test_the_effective_mass_does_not_know_who_is_first(a, b):
+def test_the_effective_mass_is_symmetric(a, b):
     assert collision.effective_mass(a, b) == collision.effective_mass(b, a)
     assert collision.effective_mass(a, b) == pytest.approx(a * b / (a + b), rel=1e-14)
 
 
 @given(zeta=st.floats(0.0, 5.0), k=st.floats(1.0, 1e6), m=st.floats(1e-9, 1.0))
-def test_damping_ratio_and_dashpot_undo_each_other(zeta, k, m):
+def test_damping_ratio_and_dashpot_are_inverse(zeta, k, m):
     assert collision.damping_ratio(damping(zeta, k, m), k, m) == pytest.approx(zeta, rel=1e-12, abs=1e-300)
 
 

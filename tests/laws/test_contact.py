@@ -59,7 +59,7 @@ def test_the_cap_along_one_tangent_and_the_scale_in_3d_are_one_law(spring, tau_c
 
 
 @given(spring=forces, dash=forces, tau_c=sizes)
-def test_each_way_to_slide_caps_what_its_name_says(spring, dash, tau_c):
+def test_each_slip_rule_caps_the_forces_in_its_name(spring, dash, tau_c):
     def after(size, drop=False, total=False):
         a, b, c = contact.slide(size, tau_c, drop, total)
         return a * spring + b * dash, c * dash

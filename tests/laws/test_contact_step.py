@@ -42,7 +42,7 @@ def tangential(plane, n, twist, f_n, e_n, held, s, p, q, total=False, drop=False
     return np.array(found[:3]), np.array(found[3:6]), *found[6:]
 
 
-def test_seen_from_the_other_grain_normal_and_slip_are_opposite_and_the_rest_is_the_same():
+def test_with_grains_exchanged_normal_and_slip_are_opposite_and_the_rest_is_the_same():
     for _ in range(STATES):
         d, r_i, r_j, u, w_i, w_j = pair()
         n, overlap, a_i, a_j, closing, s, twist = meet(False, d, r_i, r_j, u, w_i, w_j)
@@ -54,7 +54,7 @@ def test_seen_from_the_other_grain_normal_and_slip_are_opposite_and_the_rest_is_
         assert a_i + a_j == pytest.approx(np.linalg.norm(d), rel=1e-14)
 
 
-def test_a_pair_that_turns_as_one_body_neither_slips_nor_closes():
+def test_a_pair_that_rotates_as_one_body_has_no_slip_and_no_closing_speed():
     for _ in range(STATES):
         d, r_i, r_j, _, w, _ = pair()
         found = meet(False, d, r_i, r_j, np.cross(w, -d), w, w)
@@ -64,7 +64,7 @@ def test_a_pair_that_turns_as_one_body_neither_slips_nor_closes():
 
 
 @pytest.mark.parametrize("rule", [{}, {"total": True}, {"drop": True}])
-def test_the_plane_text_and_the_text_in_space_agree_on_every_plane_state(rule):
+def test_the_plane_and_the_3d_branch_agree_on_every_plane_state(rule):
     for _ in range(STATES):
         d, r_i, r_j, u, w_i, w_j = pair(plane=True)
         flat, deep = (meet(plane, d, r_i, r_j, u, w_i, w_j) for plane in (True, False))
@@ -87,7 +87,7 @@ def test_the_plane_text_and_the_text_in_space_agree_on_every_plane_state(rule):
 
 
 @pytest.mark.parametrize("rule", [{}, {"total": True}, {"drop": True}])
-def test_what_resists_sliding_is_capped_and_the_work_of_sliding_is_what_leaves_the_spring(rule):
+def test_the_tangential_force_is_capped_and_the_work_of_sliding_is_the_energy_lost_by_the_spring(rule):
     slid = 0
     for _ in range(STATES):
         d, r_i, r_j, u, w_i, w_j = pair()
@@ -112,7 +112,7 @@ def test_what_resists_sliding_is_capped_and_the_work_of_sliding_is_what_leaves_t
     assert 0.1 * STATES < slid < 0.9 * STATES
 
 
-def test_a_contact_that_does_not_hold_keeps_no_tangential_force():
+def test_a_contact_without_normal_force_has_no_tangential_force():
     e, b, share, _, sliding, released = tangential(
         False, (0.0, 0.0, 1.0), 0.0, 0.0, 0.1, 0.0, (0.1, 0.0, 0.0), (0.01, 0.0, 0.0), np.zeros(3)
     )
@@ -122,7 +122,7 @@ def test_a_contact_that_does_not_hold_keeps_no_tangential_force():
 
 @pytest.mark.parametrize("least", [0.0, -math.inf])
 @pytest.mark.parametrize("zeta", [0.0, 0.05, 0.3])
-def test_one_collision_returns_what_the_oscillator_does_and_its_account_closes(least, zeta):
+def test_one_collision_agrees_with_the_oscillator_and_its_account_closes(least, zeta):
     m = 1.0e-5
     eta = contact.damping_in_steps(contact.damping(zeta, K_N, m), m, DT)
     x, v = 1.3e-9, -1.0  # the gap, and the speed at which it grows

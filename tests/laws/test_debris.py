@@ -35,7 +35,7 @@ def test_at_equilibrium_the_friction_of_the_grains_carries_the_weight_along_the_
     assert friction == pytest.approx(((SIGMA - RHO) * c + RHO) * math.sin(slope), rel=1e-9)
 
 
-def test_takahashi_s_concentration_stops_at_nine_tenths_of_the_bed_s():
+def test_the_concentration_of_takahashi_is_at_most_nine_tenths_of_the_bed():
     for slope in (5, 10, 15):
         angle = math.radians(slope)
         assert debris.equilibrium_takahashi(angle, PHI, SIGMA, RHO, 0.6) == debris.equilibrium_concentration(
@@ -53,12 +53,12 @@ def test_factors_of_collisions_and_pores_return_the_reference_table(c):
     assert debris.pore_factor(c, 0.16) == pytest.approx(f_f, abs=5e-4)
 
 
-def test_elastic_grains_lose_nothing_and_grains_without_pores_leave_no_water():
+def test_the_collision_factor_of_elastic_grains_and_the_pore_factor_without_pores_are_zero():
     assert debris.collision_factor(0.3, 1.0, 0.0828, SIGMA, RHO) == 0.0
     assert debris.pore_factor(1.0, 0.16) == 0.0
 
 
-def test_lasting_contacts_carry_everything_in_the_bed():
+def test_enduring_contacts_carry_all_pressure_in_the_bed():
     assert debris.static_share(C_STAR, C_STAR) == 1.0
     assert debris.static_share(0.3, 0.6) == pytest.approx(0.8706, abs=1e-4)
 

@@ -80,7 +80,7 @@ def test_schiller_and_naumann_step_by_less_than_half_a_percent_at_1000():
 
 
 @given(u=speeds, name=st.sampled_from(sorted(C_D)))
-def test_faster_water_never_drags_less(u, name):
+def test_drag_never_decreases_with_speed(u, name):
     def force(w):
         return drag.drag_factor(w, C_D[name](drag.reynolds(w, 0.002, NU)), RHO, math.pi / 4, 0.002) * w
 
@@ -88,7 +88,7 @@ def test_faster_water_never_drags_less(u, name):
 
 
 @pytest.mark.parametrize("c_d", [*C_D.values(), lambda re: 0.4])
-def test_no_relative_velocity_no_drag(c_d):
+def test_drag_is_zero_without_relative_velocity(c_d):
     assert drag.drag_factor(0.0, c_d(0.0), RHO, math.pi / 4, 0.002) == 0.0
 
 

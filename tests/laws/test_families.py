@@ -47,7 +47,7 @@ def answers(name: str) -> dict[str, tuple[float, ...]]:
 
 
 @pytest.mark.parametrize("name", PROBES)
-def test_every_choice_with_a_law_is_dispatched_and_no_two_answer_alike(name):
+def test_every_choice_with_a_law_is_dispatched_and_no_two_give_the_same_result(name):
     family = next(one for one in FAMILIES if one.__name__ == FAMILY_OF[name])
     found = answers(name)
     for choice in family:
@@ -58,7 +58,7 @@ def test_every_choice_with_a_law_is_dispatched_and_no_two_answer_alike(name):
 
 
 @pytest.mark.parametrize("name", PROBES)
-def test_a_number_of_no_choice_answers_nan(name):
+def test_a_number_without_a_choice_gives_nan(name):
     answer = getattr(dispatch, name)(99, *PROBES[name])
     assert all(map(math.isnan, answer if isinstance(answer, tuple) else (answer,)))
 
@@ -76,7 +76,7 @@ def test_a_choice_without_a_function_is_an_error_by_its_name():
         marked(Forgetful, "total")
 
 
-def test_a_number_is_given_once():
+def test_no_two_choices_have_the_same_number():
     with pytest.raises(ValueError, match="number 0 is given twice"):
 
         class Twice(Family):
@@ -103,7 +103,7 @@ def test_a_key_that_a_choice_takes_is_a_key_of_its_section(family):
         assert {f"{section}.{key}", f"water.{key}"} & set(all_keys()), key
 
 
-def test_a_scene_with_a_number_of_no_choice_is_refused_by_name():
+def test_a_scene_with_an_unknown_number_is_refused_by_name():
     made, _ = scene([[0.0, 0.0, 0.01]], 0.002, water=Water(drag=99))  # type: ignore[arg-type]
     assert any(reason.startswith("water.drag: number 99 is none of 0 (none)") for reason in refusals(made))
 

@@ -60,7 +60,7 @@ def errors() -> dict[str, str]:
     return json.loads(done.stdout)
 
 
-def test_the_families_as_they_are_import_without_an_error(errors):
+def test_all_families_import_without_an_error(errors):
     assert errors[""] == ""
 
 

@@ -34,7 +34,7 @@ def turned(a, axis, angle):
 
 
 @given(r_i=st.floats(1e-3, 1.0), r_j=st.floats(1e-3, 1.0), gap=st.floats(1e-6, 1.0))
-def test_grains_apart_do_not_overlap_and_arms_meet_at_one_point(r_i, r_j, gap):
+def test_separate_grains_do_not_overlap_and_arms_end_at_one_point(r_i, r_j, gap):
     assert geometry.overlap(r_i, r_j, r_i + r_j + gap) < 0.0
     distance = (r_i + r_j) * 0.98
     overlap = geometry.overlap(r_i, r_j, distance)
@@ -43,7 +43,7 @@ def test_grains_apart_do_not_overlap_and_arms_meet_at_one_point(r_i, r_j, gap):
 
 
 @given(step=st.floats(-1.5, 1.5), period=st.floats(0.5, 3.0))
-def test_the_wrap_is_a_shortest_image(step, period):
+def test_the_wrap_is_the_shortest_image(step, period):
     assume(abs(step) <= 1.5 * period)
     short = geometry.wrap(step, period)
     assert abs(short) <= 0.5 * period * (1.0 + 1e-12)
@@ -67,7 +67,7 @@ def test_a_turned_spring_lies_in_the_tangent_plane_and_keeps_its_length(s, n, tw
 
 
 @given(s=vectors, n=vectors, twist=st.floats(-0.1, 0.1))
-def test_the_partner_sees_the_opposite_spring_bit_by_bit(s, n, twist):
+def test_the_spring_on_the_partner_is_opposite_with_the_same_bits(s, n, twist):
     n = unit(n)
     assume(dot(s, s) > 1e-6)
     mine = geometry.turn(*s, *n, twist)
@@ -77,7 +77,7 @@ def test_the_partner_sees_the_opposite_spring_bit_by_bit(s, n, twist):
 
 
 @given(s=vectors, n=vectors, axis=vectors, angle=st.floats(-0.01, 0.01))
-def test_a_pair_that_turns_as_a_whole_carries_its_spring_along(s, n, axis, angle):
+def test_the_spring_rotates_with_a_pair_that_rotates_as_a_whole(s, n, axis, angle):
     n, axis = unit(n), unit(axis)
     s = unit(cross(n, s))
     rolled, spring = turned(n, axis, angle), turned(s, axis, angle)

@@ -157,7 +157,7 @@ def test_di_felice_settles_as_observed_at_both_ends(drag_law, n, buoyancy):
 
 
 @pytest.mark.parametrize(("name", "newton", "stokes"), [("wen_yu", 2.325, 4.65), ("di_felice", 2.025, 4.7)])
-def test_published_laws_lead_from_stokes_to_newton_as_grains_grow(name, newton, stokes):
+def test_exponents_of_published_laws_go_from_stokes_to_newton_with_grain_size(name, newton, stokes):
     for phi in CROWDS:
         exponents = []
         for d in SIZES:
@@ -205,7 +205,7 @@ def test_wen_and_yu_are_the_exchange_coefficient_of_gidaspow_per_grain(name, sli
     assert force == pytest.approx(beta * slip / (1.0 - eps) * math.pi / 6.0 * d**3, rel=1e-12)
 
 
-def test_gidaspow_jumps_at_eps_0_8_by_as_much_as_said():
+def test_gidaspow_is_discontinuous_at_eps_0_8_as_documented():
     def jump(slip):
         below, above = (
             factor * lone(speed, 0.002, drag.c_d_schiller_naumann)
@@ -218,7 +218,7 @@ def test_gidaspow_jumps_at_eps_0_8_by_as_much_as_said():
 
 
 @pytest.mark.parametrize("name", ["wen_yu", "di_felice"])
-def test_slow_water_through_a_packed_bed_is_held_about_as_ergun_says(name):
+def test_slow_flow_through_a_packed_bed_has_about_the_drag_of_ergun(name):
     d, slip, eps = 1e-4, 1e-6, 0.4
 
     def force(law):
@@ -229,13 +229,13 @@ def test_slow_water_through_a_packed_bed_is_held_about_as_ergun_says(name):
 
 
 @given(slip=st.floats(1e-9, 10.0), d=st.floats(1e-5, 0.1), stress=st.booleans())
-def test_clear_water_hinders_nobody(slip, d, stress):
+def test_there_is_no_hindrance_in_clear_water(slip, d, stress):
     for name in ("none", *FORM, "gidaspow", "di_felice"):
         assert hindered(name, slip, 1.0, d, stress) == (slip, 1.0)
 
 
 @given(slip=st.floats(1e-6, 10.0), phi=st.floats(0.0, 0.6), stress=st.booleans())
-def test_more_neighbours_never_drag_less(slip, phi, stress):
+def test_drag_never_decreases_with_concentration(slip, phi, stress):
     d = 0.002
     for name in ("wen_yu", "gidaspow", "di_felice", "power"):
         few, many = (
@@ -252,7 +252,7 @@ def test_three_laws_are_linear_in_the_slip(slip, eps, stress):
         assert hindered(name, slip, eps, 0.002, stress) == (pytest.approx(slip * one, rel=1e-14), factor)
 
 
-def test_water_at_rest_drags_nobody_and_no_law_stumbles_over_it():
+def test_every_law_is_finite_and_zero_in_water_at_rest():
     for name in ("richardson_zaki", "wen_yu", "gidaspow", "di_felice", "power"):
         for eps in (0.4, 0.9):
             speed, factor = hindered(name, 0.0, eps, 0.002, True)

@@ -36,7 +36,7 @@ def test_the_stokes_number_is_that_of_the_field(wall):
 
 
 @pytest.mark.parametrize("wall", [True, False])
-def test_the_film_takes_from_the_approach_what_davis_says_with_the_stokes_number_here(wall):
+def test_the_film_slows_the_approach_as_in_davis_with_this_stokes_number(wall):
     m, r = pair(wall)
     speed, roughness, far = 0.5, 1e-5, 0.5 * D
     v, n = speed, 40_000
@@ -49,7 +49,7 @@ def test_the_film_takes_from_the_approach_what_davis_says_with_the_stokes_number
     assert immersed.restitution_davis(1.0, st_number, roughness, D) == pytest.approx(v / speed, rel=1e-3)
 
 
-def test_with_yade_s_stokes_number_davis_takes_too_little():
+def test_with_the_stokes_number_of_yade_davis_underestimates_the_loss():
     m, r = pair(wall=False)
     st_number = immersed.stokes_number(0.2, m, r, RHO, NU)
     yade = immersed.stokes_number_yade(0.2, D, SIGMA, RHO, NU)
@@ -58,9 +58,7 @@ def test_with_yade_s_stokes_number_davis_takes_too_little():
 
 
 @given(st_number=st.floats(0.0, 1e6), more=st.floats(1.0, 10.0), e_dry=st.floats(0.0, 1.0))
-def test_restitution_lies_between_nothing_and_dry_and_never_falls_with_the_stokes_number(
-    st_number, more, e_dry
-):
+def test_restitution_is_between_zero_and_dry_and_never_decreases_with_stokes_number(st_number, more, e_dry):
     for law in (
         lambda x: immersed.restitution_exponential(e_dry, x, 35.0),
         lambda x: immersed.restitution_davis(e_dry, x, 1e-5, D),
@@ -68,7 +66,7 @@ def test_restitution_lies_between_nothing_and_dry_and_never_falls_with_the_stoke
         assert 0.0 <= law(st_number) <= law(st_number * more) <= e_dry
 
 
-def test_restitution_is_dry_at_large_stokes_numbers_and_gone_at_small_ones():
+def test_restitution_is_dry_at_large_stokes_numbers_and_zero_at_small_ones():
     assert immersed.restitution_exponential(0.9, 1e5, 35.0) == pytest.approx(0.9, rel=1e-3)
     assert immersed.restitution_exponential(0.9, 10.0, 35.0) < 0.03
     assert immersed.restitution_davis(0.9, 1e5, 1e-5, D) == pytest.approx(0.9, rel=1e-3)

@@ -40,7 +40,7 @@ def hits(e, tension, n_steps, correct=True):
 
 @pytest.mark.parametrize("tension", [True, False])
 @pytest.mark.parametrize("e", ASKED)
-def test_fifty_steps_per_contact_give_the_restitution_and_the_time_asked_for(e, tension):
+def test_fifty_steps_per_contact_give_the_restitution_and_the_contact_time(e, tension):
     got, duration = hits(e, tension, 50)
     assert abs(got.mean() - e) < 2e-3
     assert np.abs(got - e).max() < 1.5e-2
@@ -60,7 +60,7 @@ def test_heavily_damped_contacts_are_shorter_by_the_stiffness_that_the_lag_adds(
 
 @pytest.mark.parametrize("tension", [True, False])
 @pytest.mark.parametrize("e", [0.3, 0.5])
-def test_uncorrected_heavy_damping_is_short_of_restitution_by_the_half_step_the_dashpot_lags(e, tension):
+def test_without_correction_heavy_damping_lowers_restitution_by_the_lag_of_half_a_step(e, tension):
     # The dashpot sees the velocity of half a step before: the pair acts as if lighter by eta dt/2, which
     # shortens the contact and strengthens the decay; in all ln(e) grows by a factor 1 + zeta omega_0 dt/2.
     zeta = collision.zeta_for_restitution(e, tension)
@@ -86,7 +86,7 @@ def test_ten_steps_per_contact_keep_restitution_within_a_few_hundredths():
     assert abs(got.mean() - 0.7) < 0.03
 
 
-def test_forward_euler_pumps_energy_into_every_contact():
+def test_forward_euler_adds_energy_to_every_contact():
     zeta = collision.zeta_tension(0.7)
     euler = [hit(zeta, True, 10, phase, motion.forward_euler, correct=False)[0] for phase in PHASES]
     assert np.mean(euler) > 1.0
@@ -107,7 +107,7 @@ def test_the_largest_overlap_is_that_of_the_damped_oscillator(e):
 
 
 @pytest.mark.parametrize("zeta", [0.0, 0.1, 0.5, 1.0])
-def test_the_step_limit_is_where_a_contact_that_never_parts_starts_to_grow(zeta):
+def test_a_permanent_contact_becomes_unstable_at_the_step_limit(zeta):
     def grows(factor):
         dt = factor * collision.step_limit(zeta, 1.0)
         x, v = 1.0, 0.0

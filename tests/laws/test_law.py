@@ -19,7 +19,7 @@ assert shear_strength(*case) == shear_strength.py_func(*case)
 """
 
 
-def test_a_fast_kernel_that_calls_first_leaves_its_rounding_to_nobody(tmp_path: Path) -> None:
+def test_fastmath_of_the_first_caller_does_not_affect_other_callers(tmp_path: Path) -> None:
     clean = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
     for _ in range(2):  # compiled, then from the cache
         subprocess.run([sys.executable, "-c", FAST_CALLER_FIRST], check=True, env=clean)

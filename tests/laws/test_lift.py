@@ -36,7 +36,7 @@ def test_shear_lift_turns_with_the_shear_and_points_to_the_faster_water_for_a_gr
 
 
 @pytest.mark.parametrize(("beta", "step"), [(0.4, 0.07), (0.005, 0.76)])
-def test_mei_s_branches_step_at_40_by_as_much_as_said(beta, step):
+def test_the_branches_of_mei_differ_at_40_as_documented(beta, step):
     below, above = lift.saffman_mei(40.0, beta), lift.saffman_mei(40.0 * (1 + 1e-12), beta)
     assert below / above - 1.0 == pytest.approx(step, abs=0.005)
 
@@ -55,14 +55,14 @@ def test_rubinow_and_keller_have_a_lift_coefficient_of_spin_d_over_slip():
 
 
 @pytest.mark.parametrize("magnus", [lift.magnus_loth, lift.magnus_oesterle_dinh])
-def test_slow_water_leaves_rubinow_and_keller(magnus):
+def test_loth_is_rubinow_and_keller_in_slow_water(magnus):
     d = 1e-6
     assert magnus(1e-3, 2e4, d, NU, RHO) == pytest.approx(lift.magnus_rubinow_keller(d, RHO), rel=0.02)
     assert magnus(0.0, 10.0, D, NU, RHO) == lift.magnus_rubinow_keller(D, RHO)
 
 
 @given(slip=speeds, spin=spins)
-def test_loth_takes_between_nothing_and_98_percent(slip, spin):
+def test_loth_reduces_the_force_by_at_most_98_percent(slip, spin):
     part = lift.magnus_loth(slip, spin, D, NU, RHO) / lift.magnus_rubinow_keller(D, RHO)
     assert 0.02 < part <= 1.0
 

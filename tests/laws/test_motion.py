@@ -28,7 +28,7 @@ def test_without_force_both_schemes_move_straight_on(x, v, dt):
 
 
 @given(x=st.floats(-1.0, 1.0), v=st.floats(-1.0, 1.0), k=st.floats(0.01, 1.0), dt=st.floats(0.01, 1.0))
-def test_on_a_spring_the_scheme_keeps_its_shadow_energy_and_forward_euler_gains(x, v, k, dt):
+def test_on_a_spring_the_scheme_conserves_its_shadow_energy_and_forward_euler_gains(x, v, k, dt):
     def shadow(x, v):
         return k * x * x + v * v - k * dt * x * v
 

@@ -41,13 +41,13 @@ def test_a_plane_is_the_limit_of_a_large_partner(r, part):
 
 
 @pytest.mark.parametrize("overlap", [0.0, -1e-6])
-def test_no_touch_no_contact_width(overlap):
+def test_the_contact_width_is_zero_without_overlap(overlap):
     assert rolling.rolling_arm_width(0.001, 0.001, overlap) == 0.0
     assert rolling.rolling_arm_width(0.001, math.inf, overlap) == 0.0
 
 
 @given(a=radii, b=radii)
-def test_reduced_values_are_symmetric_and_keep_a_lone_partner(a, b):
+def test_reduced_values_are_symmetric_and_equal_the_finite_one_if_the_other_is_infinite(a, b):
     assert reduced(a, b) == reduced(b, a) == rolling.reduced_radius(a, b)
     assert reduced(a, b) == pytest.approx(a * b / (a + b), rel=1e-14)
     assert reduced(a, math.inf) == reduced(math.inf, a) == a
@@ -67,7 +67,7 @@ def test_the_constant_torque_stops_a_spin_but_never_reverses_it(cap, spin, inert
 
 
 @given(spring=signed, cap=sizes)
-def test_the_slider_holds_the_rolling_spring_at_its_cap(spring, cap):
+def test_the_slider_limits_the_rolling_spring_to_its_cap(spring, cap):
     scale = rolling.slider_scale(abs(spring), cap)
     assert 0.0 <= scale <= 1.0
     assert abs(scale * spring) <= cap * (1.0 + 1e-12)
@@ -86,7 +86,7 @@ def test_the_rolling_stiffness_is_that_of_ai_2011():
     assert rolling.epsd_stiffness(k_n, mu_r * r, 2.25) == pytest.approx(2.25 * k_n * mu_r**2 * r**2)
 
 
-def test_the_rolling_spring_and_dashpot_bring_a_rocking_grain_to_rest():
+def test_the_rolling_spring_and_dashpot_damp_a_rocking_grain():
     inertia, k_r, cap, dt = 1.0, 1.0, 1e9, 0.01
     eta_r = rolling.epsd_damping(k_r, inertia, 0.3)
     spin, spring, swing = 1.0, 0.0, []

@@ -19,7 +19,7 @@ def test_half_a_sphere_and_half_a_circle_are_known():
     assert slices.circle_slice(2.0, -9.0, 0.0) == pytest.approx(2.0 * math.pi, rel=1e-15)
 
 
-def test_planes_that_miss_the_grain_cut_off_nothing():
+def test_planes_outside_the_grain_give_a_slice_of_zero():
     assert slices.sphere_slice(1.0, 1.0, 2.0) == 0.0
     assert slices.circle_slice(1.0, -3.0, -1.0) == 0.0
 
@@ -36,7 +36,7 @@ def test_a_slice_is_the_integral_of_its_sections(r, low, high):
 
 
 @given(r=radius, cuts=st.lists(height, min_size=1, max_size=20))
-def test_slices_that_follow_one_another_add_up_to_the_whole(r, cuts):
+def test_adjoining_slices_add_up_to_the_whole(r, cuts):
     edges = [-2.0 * r, *(z * r for z in sorted(cuts)), 2.0 * r]
     pairs = list(itertools.pairwise(edges))
     assert sum(slices.sphere_slice(r, *pair) for pair in pairs) == pytest.approx(

@@ -18,7 +18,7 @@ def at(re_r):
 
 
 @given(spin=st.floats(0.0, 7.9))
-def test_slow_spin_is_braked_as_stokes_says(spin):
+def test_slow_spin_has_the_torque_of_stokes(spin):
     stokes = 8.0 * math.pi * RHO * NU * (D / 2) ** 3
     assert torque.torque_stokes(spin, D, NU, RHO) == pytest.approx(stokes)
     assert torque.torque_dennis(spin, D, NU, RHO) == pytest.approx(stokes)

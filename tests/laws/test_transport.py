@@ -39,7 +39,7 @@ def test_the_formulae_return_the_reference_table(tau_star):
 
 
 @pytest.mark.parametrize("formula", FORMULAE)
-def test_nothing_moves_below_the_threshold_and_more_with_more_shear(formula):
+def test_transport_is_zero_below_the_threshold_and_increases_with_shear(formula):
     assert formula(0.0469) == 0.0
     rates = [formula(0.05 + 0.05 * k) for k in range(40)]
     assert rates == sorted(rates)
@@ -51,7 +51,7 @@ def test_ashida_and_michiue_without_bed_forms_is_the_short_form():
         assert transport.q_star_ashida_michiue(tau_star, tau_star, 0.05) == pytest.approx(short, rel=1e-12)
 
 
-def test_grains_feel_all_of_the_stress_where_the_mean_speed_is_that_of_their_own_roughness():
+def test_the_effective_stress_is_the_whole_stress_without_bed_forms():
     ratio, g, d, depth, tau_star = 1.65, 9.81, 0.002, 0.05, 0.1
     u_star = math.sqrt(tau_star * ratio * g * d)
     speed = u_star * (6.0 + 2.5 * math.log(depth / (d * 1.2)))
@@ -66,7 +66,7 @@ def test_frey_s_two_flume_runs_have_the_rates_of_the_reference_page():
 
 
 @given(q_star=st.floats(1e-4, 10.0), d=st.floats(1e-5, 1.0))
-def test_q_and_q_star_undo_each_other(q_star, d):
+def test_q_and_q_star_are_inverse(q_star, d):
     q = transport.q_from_q_star(q_star, 1.65, 9.81, d)
     assert transport.q_star_from_q(q, 1.65, 9.81, d) == pytest.approx(q_star, rel=1e-13)
 
@@ -79,7 +79,7 @@ def test_stress_and_friction_velocity_give_the_same_tau_star():
 
 
 @pytest.mark.parametrize(("d", "tau_star"), [(0.0002, 0.0477), (0.001, 0.0315), (0.01, 0.0556)])
-def test_the_threshold_has_its_dip_near_a_millimetre(d, tau_star):
+def test_the_threshold_has_its_minimum_near_a_millimetre(d, tau_star):
     number = transport.d_star(1.65, 9.81, d, 1e-6)
     assert transport.tau_star_critical(number) == pytest.approx(tau_star, abs=1e-4)
 
@@ -99,7 +99,7 @@ def test_egashira_s_rate_is_his_closed_form():
     )
 
 
-def test_egashira_s_rate_is_the_flux_through_a_layer_whose_friction_fades_towards_its_top():
+def test_the_rate_of_egashira_is_the_flux_of_a_layer_with_friction_decreasing_to_its_top():
     # yield falls from the whole stress at the bed to nothing at h_s, while the stress falls to nothing at h
     tau_star, slope, depth, n = 0.3, math.atan(0.05), 40.0, 20_000
     layer = transport.bedload_layer(tau_star, slope, *SAND.values())

@@ -23,20 +23,20 @@ def test_the_parabolic_length_gives_the_log_law_under_a_linear_stress(z):
 
 
 @pytest.mark.parametrize("z", [0.0, -0.01])
-def test_there_are_no_eddies_at_and_below_a_wall(z):
+def test_the_mixing_length_is_zero_at_and_below_a_wall(z):
     assert turbulence.length_prandtl(z, KAPPA) == 0.0
     assert turbulence.length_parabolic(z, 0.1, KAPPA) == 0.0
     assert turbulence.length_van_driest(z, 0.05, 1e-6, KAPPA) == 0.0
 
 
-def test_there_are_no_eddies_above_the_surface():
+def test_the_mixing_length_is_zero_above_the_surface():
     assert turbulence.length_parabolic(0.1, 0.1, KAPPA) == 0.0
     assert turbulence.length_parabolic(0.2, 0.1, KAPPA) == 0.0
 
 
 @unhurried
 @given(z=heights, u_star=st.floats(1e-3, 0.5))
-def test_van_driest_lies_below_prandtl_and_meets_it_far_from_the_wall(z, u_star):
+def test_van_driest_is_below_prandtl_and_approaches_it_far_from_the_wall(z, u_star):
     damped = turbulence.length_van_driest(z, u_star, 1e-6, KAPPA)
     free = turbulence.length_prandtl(z, KAPPA)
     assert 0.0 <= damped <= free
@@ -44,7 +44,7 @@ def test_van_driest_lies_below_prandtl_and_meets_it_far_from_the_wall(z, u_star)
         assert damped == pytest.approx(free, rel=1e-15)
 
 
-def test_the_length_of_li_and_sawamoto_is_that_of_prandtl_in_clear_water_and_stands_still_in_a_bed():
+def test_the_length_of_li_and_sawamoto_is_prandtls_in_clear_water_and_constant_in_a_bed():
     layers = [turbulence.length_growth_li_sawamoto(0.0, 0.6, 0.001, KAPPA) for _ in range(10)]
     assert sum(layers) == pytest.approx(turbulence.length_prandtl(0.01, KAPPA))
     assert turbulence.length_growth_li_sawamoto(0.6, 0.6, 0.001, KAPPA) == 0.0
@@ -52,13 +52,13 @@ def test_the_length_of_li_and_sawamoto_is_that_of_prandtl_in_clear_water_and_sta
 
 
 @pytest.mark.parametrize(("c", "f_f"), [(0.1, 0.623), (0.3, 0.197), (0.5, 0.080)])
-def test_the_pores_of_a_debris_flow_carry_the_stress_of_egashira(c, f_f):
+def test_the_pore_length_gives_the_stress_of_egashira(c, f_f):
     assert turbulence.length_pore_egashira(c, 1.0, 0.16) ** 2 == pytest.approx(f_f, abs=6e-4)
 
 
 @unhurried
 @given(z=st.floats(1e-5, 0.1), u_star=st.floats(1e-3, 1.0))
-def test_the_friction_velocity_of_a_smooth_wall_undoes_the_two_layer_law(z, u_star):
+def test_the_friction_velocity_of_a_smooth_wall_inverts_the_two_layer_law(z, u_star):
     speed = water.log_law_smooth(z, u_star, 1e-6)
     assert turbulence.u_star_smooth(speed, z, 1e-6) == pytest.approx(u_star, rel=1e-12)
     assert turbulence.u_star_smooth(-speed, z, 1e-6) == turbulence.u_star_smooth(speed, z, 1e-6)
@@ -66,14 +66,14 @@ def test_the_friction_velocity_of_a_smooth_wall_undoes_the_two_layer_law(z, u_st
 
 @unhurried
 @given(z=st.floats(1e-3, 0.1), u_star=st.floats(1e-3, 1.0))
-def test_the_stress_of_a_rough_wall_undoes_eq_9(z, u_star):
+def test_the_stress_of_a_rough_wall_inverts_eq_9(z, u_star):
     speed = water.log_law_rough(z, u_star, 0.002)
     assert turbulence.wall_rough(speed, z, 0.002)[0] == pytest.approx(u_star**2, rel=1e-12)
 
 
 @unhurried
 @given(u=st.floats(-2.0, 2.0).filter(lambda u: abs(u) > 1e-3), z=st.floats(1e-3, 1e-2))
-def test_a_wall_holds_the_water_back_and_its_slope_is_a_derivative(u, z):
+def test_wall_stress_has_the_sign_of_the_speed_and_its_slope_is_the_derivative(u, z):
     for wall in (
         lambda v: turbulence.wall_smooth(v, z, 1e-6),
         lambda v: turbulence.wall_rough(v, z, 0.002),
@@ -97,14 +97,14 @@ def test_the_mean_of_eq_9_over_the_depth_is_its_integral():
 
 @unhurried
 @given(low=st.floats(1e-6, 1.0), ratio=st.floats(1.0, 10.0))
-def test_a_chord_of_the_log_law_has_its_slope_between_its_ends(low, ratio):
+def test_the_gradient_of_the_log_law_equals_its_mean_between_two_heights(low, ratio):
     at = turbulence.height_between(low, low * ratio)
     assert low * (1.0 - 1e-12) <= at <= low * ratio * (1.0 + 1e-12)
 
 
 @unhurried
 @given(re=st.floats(3e3, 1e7))
-def test_karman_and_prandtl_hold_as_they_are_written_and_stay_near_blasius(re):
+def test_karman_prandtl_satisfies_its_equation_and_is_near_blasius(re):
     f = turbulence.friction_karman_prandtl(re)
     assert 1.0 / math.sqrt(f) == pytest.approx(2.0 * math.log10(re * math.sqrt(f)) - 0.8, rel=1e-12)
     if re < 1e5:

@@ -18,7 +18,7 @@ def test_the_rough_law_is_eq_9_where_that_is_positive_and_zero_elsewhere(z, u_st
     assert water.log_law_rough(z, u_star, k) == pytest.approx(max(printed, 0.0), rel=1e-12, abs=1e-15)
 
 
-def test_the_rough_law_turns_on_at_a_thirtieth_of_the_roughness():
+def test_the_rough_law_is_zero_below_a_thirtieth_of_the_roughness():
     zero = 10.0 ** (-8.5 / 5.75)
     assert 1.0 / zero == pytest.approx(30.07, abs=0.01)
     assert water.log_law_rough(0.999 * zero, 1.0, 1.0) == 0.0
@@ -33,7 +33,7 @@ def test_there_is_no_water_at_and_below_the_zero_of_a_profile(z):
 
 
 @given(a=heights, b=heights, u_star=speeds)
-def test_water_is_never_slower_higher_up(a, b, u_star):
+def test_water_speed_never_decreases_with_height(a, b, u_star):
     low, high = sorted((a, b))
     assert water.log_law_rough(low, u_star, 0.002) <= water.log_law_rough(high, u_star, 0.002)
     assert water.log_law_smooth(low, u_star, 1e-6) <= water.log_law_smooth(high, u_star, 1e-6) * (1 + 1e-12)
@@ -57,6 +57,6 @@ def test_the_saltation_of_the_paper_has_a_friction_velocity_of_0_0985_and_its_sl
 
 
 @given(tau_star=st.floats(1e-3, 10.0), d=st.floats(1e-4, 1.0))
-def test_tau_star_and_u_star_undo_each_other(tau_star, d):
+def test_tau_star_and_u_star_are_inverse(tau_star, d):
     u_star = water.u_star_from_tau_star(tau_star, 2650.0, 1000.0, 9.81, d)
     assert water.tau_star_from_u_star(u_star, 2650.0, 1000.0, 9.81, d) == pytest.approx(tau_star, rel=1e-13)

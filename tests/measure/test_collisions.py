@@ -80,7 +80,7 @@ def test_an_oblique_impact_gives_the_restitution_that_its_turning_normal_leaves(
     assert (lost > 0.0) == (more is SMOOTH)  # shear takes speed along the bed; without it the turning adds
 
 
-def test_what_turning_changes_halves_with_four_times_the_stiffness(tmp_path):
+def test_the_effect_of_rotation_of_the_normal_halves_at_four_times_the_stiffness(tmp_path):
     for more in ({}, SMOOTH):
         off = []
         for k in (100, 400, 1600):
@@ -99,7 +99,7 @@ def test_a_smooth_elastic_oblique_impact_lasts_as_long_as_its_closed_form_says(t
         assert found.restitution[0] == pytest.approx(1.0, abs=2e-3)
 
 
-def test_turning_is_known_for_fixed_partners_only(tmp_path):
+def test_the_rotation_of_the_normal_is_known_only_for_fixed_partners(tmp_path):
     overrides = {
         "build.partner": "free",
         "build.speed": "0.3 m/s",

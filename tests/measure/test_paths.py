@@ -36,7 +36,7 @@ def test_tracks_show_only_the_bed_of_their_own_lane(make):
     assert len(found.rows()) == len(found.t)
 
 
-def test_the_grain_that_goes_farthest_is_told_within_the_window(make):
+def test_the_grain_that_goes_farthest_is_found_within_the_window(make):
     t, x, _, events = make.hopping([2.0e-3] * 3, grain=1, n_grain=2)
     still = np.broadcast_to(x[:1], x.shape)
     run = make.run_of(t, np.stack([still, x], axis=1), np.stack([x, x], axis=1), events)
@@ -58,7 +58,7 @@ def test_the_energy_account_closes_where_its_terms_say_so():
     assert found.rows()[2]["given_drag_J"] == 0.2
 
 
-def test_grains_that_begin_on_their_way_do_not_open_the_account():
+def test_the_frame_before_the_first_step_is_not_part_of_the_account():
     tally = {name: np.zeros(3) for name in TALLY.names}
     tally["t"] = np.arange(3.0)
     tally["kinetic"] = np.array([1.3, 1.0, 0.7])  # before the first step nothing is booked

@@ -30,7 +30,7 @@ def moved(make, *ways, speed=0.1, events=None):
     return make.run_of(T, x, 0.0 * x, np.zeros(0, EVENT) if events is None else events)
 
 
-def test_a_sawtooth_has_its_count_of_turns_and_its_vertical_way(make):
+def test_a_sawtooth_has_its_number_of_reversals_and_its_vertical_path(make):
     run = moved(make, 3 * D + sawtooth(5, 0.4 * D), 3 * D + sawtooth(20, 0.1 * D))
     found = paths(run, begin=0.0)
     assert found.begin == pytest.approx([0.0, 1.0])
@@ -42,14 +42,14 @@ def test_a_sawtooth_has_its_count_of_turns_and_its_vertical_way(make):
     assert found.averages["jaggedness"].value == pytest.approx(40 * D)
 
 
-def test_a_straight_way_has_no_turn_and_a_level_one_no_jaggedness(make):
+def test_a_straight_path_has_no_reversal_and_a_level_one_no_jaggedness(make):
     found = paths(moved(make, 3 * D + 0 * T, 3 * D + 0.5 * D * T, 3 * D - 0.5 * D * T), begin=0.0)
     assert not found.reversals.any()
     assert not found.way_z[:, 0].any()
     assert found.way_z[0, 1:] == pytest.approx(0.5 * D)
 
 
-def test_wiggles_below_the_threshold_are_no_turns(make):
+def test_motion_below_the_threshold_is_no_reversal(make):
     noise = np.random.default_rng(1).uniform(-0.5, 0.5, len(T)) * 0.019 * D
     run = moved(make, 3 * D + noise, 3 * D + sawtooth(4, D) + noise)
     found = paths(run, begin=0.0)
@@ -60,7 +60,7 @@ def test_wiggles_below_the_threshold_are_no_turns(make):
 
 
 @given(z=st.lists(st.floats(-1.0, 1.0), min_size=2, max_size=30), threshold=st.floats(0.01, 1.0))
-def test_ways_between_turns_are_longer_than_the_threshold_and_no_longer_than_the_path(z, threshold):
+def test_paths_between_reversals_are_longer_than_the_threshold_and_no_longer_than_the_whole(z, threshold):
     turns, way = np.zeros(1), np.zeros(1)
     _zigzag(np.array(z)[:, None], np.array([threshold]), turns, way)
     assert way[0] <= np.abs(np.diff(z)).sum() + 1e-12
@@ -70,7 +70,7 @@ def test_ways_between_turns_are_longer_than_the_threshold_and_no_longer_than_the
     assert again[0] == turns[0]
 
 
-def test_time_at_the_bed_is_told_by_the_height_of_the_centre(make):
+def test_time_at_the_bed_follows_from_the_height_of_the_centre(make):
     low = np.where(T % 1.0 < 0.25, 1.4 * D, 3 * D)
     found = paths(moved(make, low), begin=0.0)
     assert found.near[0, 0] == pytest.approx(0.25, abs=0.002)
@@ -86,7 +86,7 @@ def test_a_window_that_the_run_does_not_hold_is_refused(make):
         paths(run, begin=0.0, window=0.005)
 
 
-def test_turns_between_bed_and_movers_are_counted_from_contacts(make):
+def test_alternations_between_bed_and_movers_are_counted_from_contacts(make):
     bed, other = 4, 1  # ids of a fixed grain and a free one; four grains are free
     order = [(0, bed), (0, other), (0, bed), (2, bed), (2, bed), (2, 3)]
     rows = [make.event(i, j, 0.1 * (k + 1), (0, 0), (0, 0), (0, 0)) for k, (i, j) in enumerate(order)]
@@ -98,7 +98,7 @@ def test_turns_between_bed_and_movers_are_counted_from_contacts(make):
     assert alternating(run, begin=0.25, turns=1).grains.tolist() == [2]
 
 
-def test_without_contacts_heights_tell_who_comes_and_goes(make):
+def test_without_contacts_alternations_follow_from_heights(make):
     goes = 1.3 * D + sawtooth(3, D)
     hovers = 1.6 * D + sawtooth(3, 0.3 * D)  # never clear of the bed
     run = moved(make, hovers, goes)

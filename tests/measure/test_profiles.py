@@ -87,7 +87,7 @@ def test_a_random_gas_has_its_mean_concentration_and_temperature_within_the_erro
     assert np.sqrt(np.mean(off**2)) < 1.6
 
 
-def test_one_grain_cut_in_half_by_hand(flow):
+def test_one_grain_cut_in_half_agrees_with_hand_calculation(flow):
     run = flow(n=1, n_frame=1)
     scene = replace(run.scene, d=np.array([D]))
     run.scene, run.frames.x = scene, np.array([[[0.0, 0.0, 3 * D]]])
@@ -105,7 +105,7 @@ def test_lanes_are_averaged(flow):
     np.testing.assert_allclose(two.v_x.value, one.v_x.value, rtol=1e-13)
 
 
-def test_heights_count_from_the_crest_of_the_bed_or_from_where_one_says(flow):
+def test_heights_are_from_the_crest_of_the_bed_or_a_given_origin(flow):
     run = flow()
     assert profiles(run).origin == pytest.approx(D)
     assert profiles(run, origin="mean crest").origin == pytest.approx(D)
@@ -123,7 +123,7 @@ def test_the_bed_is_counted_only_on_request_and_apart(flow):
     assert found.phi.value.sum() == pytest.approx(without.phi.value.sum(), rel=1e-13)
 
 
-def test_a_stretch_of_bed_counts_the_grains_over_it(flow):
+def test_a_section_of_bed_counts_the_grains_over_it(flow):
     run = flow(n_frame=200)
     run.frames.x[:, :, 0] += 3 * LENGTH  # unwrapped
     parts = [profiles(run, between=(a, a + LENGTH / 4)) for a in np.arange(4) * LENGTH / 4]
@@ -131,7 +131,7 @@ def test_a_stretch_of_bed_counts_the_grains_over_it(flow):
     assert np.mean([one.q for one in parts], axis=0) == pytest.approx(whole.q, rel=1e-12)
 
 
-def test_frames_are_read_in_chunks_without_a_seam(flow, monkeypatch):
+def test_results_do_not_depend_on_the_chunks_in_which_frames_are_read(flow, monkeypatch):
     whole = profiles(flow())
     monkeypatch.setattr(importlib.import_module("ryusa.measure.profiles"), "CHUNK", 350)
     found = profiles(flow())

@@ -85,7 +85,7 @@ def test_a_wall_of_grains_is_flagged_and_given_no_angle_of_repose(make):
     assert not found.angle < STEEP
 
 
-def test_a_carpet_of_grains_has_too_few_bins(make):
+def test_a_thin_layer_of_grains_has_too_few_bins(make):
     found = surface(standing(make, np.array([(i * D, 0.0, 0.5 * D) for i in range(30)])))
     assert math.isnan(found.angle)
     assert "too few bins" in found.flags[0]

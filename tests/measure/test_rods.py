@@ -55,13 +55,13 @@ def test_three_grains_in_touch_that_translate_are_one_rod_in_every_window(made):
     assert found.longest.grains == (0, 1, 2)
 
 
-def test_a_chain_is_one_rod_and_goes_on_across_the_period(made):
+def test_a_chain_is_one_rod_also_across_the_period(made):
     n = 5
     found = rods(made(towed([(18.5 + k, 5) for k in range(n)])), window=0.02)
     assert found.lengths.tolist() == [0] * n + [10]
 
 
-def test_grains_that_part_are_no_rod(made):
+def test_grains_that_separate_are_not_a_rod(made):
     paths = towed([(0, 5), (1, 5)])
     paths[:, 1, 0] += 0.05 * SPEED * FRAME * np.arange(len(paths))  # 0.1 d in a window
     found = rods(made(paths), window=0.02)
@@ -89,7 +89,7 @@ def test_the_window_is_five_times_the_time_of_a_grain_to_fall_through_itself(mad
     assert abs(rods(run).window - expected) <= 0.5 * FRAME
 
 
-def test_shuffled_ways_leave_a_rod_only_where_the_layer_moves_alike(made):
+def test_shuffled_paths_leave_a_rod_only_if_the_layer_moves_as_one(made):
     rigid = rods(made(towed([(0, 5), (1, 5), (3, 5), (4, 5)])), window=0.02)
     assert rigid.null_share == pytest.approx(1.0)
     paths = towed([(0, 5), (1, 5), (3, 5), (4, 5)])
@@ -105,7 +105,7 @@ def test_a_run_shorter_than_a_window_is_refused(made):
         rods(made(towed([(0, 5), (1, 5)], n_frame=4)), window=0.02)
 
 
-def test_companions_tells_together_from_apart(made):
+def test_companions_distinguishes_joint_from_separate_motion(made):
     paths = towed([(0, 5), (1, 5), (3, 5), (4, 5)])
     v = np.zeros((*paths.shape[:2], 3))
     v[:, :, 0] = [0.3, 0.3, 0.1, 0.1]

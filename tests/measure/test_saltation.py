@@ -37,7 +37,7 @@ def test_length_is_from_landing_to_landing(make):
     assert found["speed"].value == pytest.approx(0.25, rel=1e-9)
 
 
-def test_flight_times_are_those_of_a_thrown_stone(make):
+def test_flight_times_are_ballistic(make):
     found = saltation(one(make))
     expected = flight_time(found.hops["rise"], found.hops["z_takeoff"] - 1.9e-3, make.g)
     np.testing.assert_allclose(found.hops["flight_time"], expected, rtol=1e-9)

@@ -24,7 +24,7 @@ def test_white_noise_gets_the_textbook_error():
     assert found.error == pytest.approx(2.0 / math.sqrt(4096), rel=0.2)
 
 
-def test_white_noise_covers_the_truth_as_often_as_it_should():
+def test_the_interval_of_white_noise_has_its_nominal_coverage():
     one, two = coverage(lambda rng: [rng.normal(1.0, 1.0, 64) for _ in range(8)], 1.0)
     assert one == pytest.approx(0.68, abs=0.09)
     assert two == pytest.approx(0.95, abs=0.05)
@@ -48,7 +48,7 @@ def test_correlated_noise_gets_a_larger_error_than_the_naive_one():
     assert true > 3 * naive
 
 
-def test_starts_that_differ_from_one_another_count_as_few_samples():
+def test_initial_states_that_differ_count_as_few_samples():
     rng = np.random.default_rng(2)
     starts = [rng.normal(offset, 0.01, 256) for offset in (-1.0, 0.0, 1.0, 2.0)]
     naive = np.concatenate(starts).std() / 32

@@ -69,7 +69,7 @@ def test_the_rate_is_the_volume_that_crosses_any_line(ride):
     assert len(found.rows()) == 49
 
 
-def test_q_star_knows_water_gravity_and_diameter(ride):
+def test_q_star_depends_on_water_gravity_and_diameter(ride):
     x, v = steady([0.5])
     g, q = math.hypot(0.6, 9.8), BALL * 0.5 / AREA
     dry = transport(ride(x, v))
@@ -132,7 +132,7 @@ def test_the_level_of_a_layer_has_the_scatter_of_its_record(ride):
     assert np.mean([one.error for one in levels]) == pytest.approx(spread, rel=0.5)
 
 
-def test_grains_that_swim_upstream_leave_the_layer_to_the_others(ride):
+def test_grains_that_move_upstream_do_not_count_in_the_layer(ride):
     x, v = steady([0.5, -0.1])
     x[:, 1, 2] = 8 * D
     found = transport(ride(x, v), layer=0.05)
@@ -176,14 +176,14 @@ def test_starts_and_stops_are_counted_when_they_begin(ride):
     assert len(found.rows()) == 9
 
 
-def test_a_stretch_as_short_as_one_frame_counts_where_that_is_asked_for(ride):
+def test_motion_during_a_single_frame_counts_on_request(ride):
     plan = [[0, 1, 0, 1, 1, 0, 0, 1]]
     found = entrainment(ride(paced(plan)), speed=0.05, duration=0.0)
     np.testing.assert_array_equal(found.started, [1, 0, 1, 0, 0, 0, 1])
     np.testing.assert_array_equal(found.stopped, [0, 1, 0, 0, 1, 0, 0])
 
 
-def test_trembling_in_place_is_no_motion(ride):
+def test_vibration_in_place_is_not_motion(ride):
     x, _ = steady([0.0, 0.0], n_frame=200)
     v = np.random.default_rng(0).normal(0.0, 1.0, x.shape)
     found = entrainment(ride(x, v))
@@ -256,7 +256,7 @@ def test_a_plane_scene_has_two_directions(ride):
     np.testing.assert_allclose(found.temperature.value, both, rtol=1e-9, atol=1e-14)
 
 
-def test_chunks_of_frames_leave_no_seam(ride, monkeypatch):
+def test_stress_does_not_depend_on_the_chunks_of_frames(ride, monkeypatch):
     import importlib
 
     rng = np.random.default_rng(6)

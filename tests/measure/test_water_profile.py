@@ -51,7 +51,7 @@ def run_of(make, phi_bed=0.6, kind="moving", n_frame=6):
     )  # fmt: skip
 
 
-def test_the_stress_of_clear_water_is_carried_on_to_the_bed(make):
+def test_the_stress_of_clear_water_is_extrapolated_to_the_bed(make):
     found = water(run_of(make))
     assert found.bed == pytest.approx(BED, abs=0.2 * DZ)
     assert found.averages["depth"].value == pytest.approx(SURFACE - BED, abs=DZ)

@@ -39,7 +39,7 @@ def test_a_good_column_is_not_refused():
         ({"nu": 0.0}, "nu"),
     ],
 )
-def test_a_bad_column_says_why(change, says):
+def test_a_bad_column_is_refused_with_the_reason(change, says):
     faults = replace(GOOD, **change).refuses()
     assert any(says in fault for fault in faults), faults
 
@@ -51,7 +51,7 @@ def test_the_papers_saltation_agrees_with_itself():
     assert refuse(depth=0.02, slope=SLOPE, tau_star=0.3, d=0.002) == ()
 
 
-def test_stress_slope_and_depth_that_contradict_each_other_are_refused_with_a_way_out():
+def test_contradicting_stress_slope_and_depth_are_refused_with_a_remedy():
     (fault,) = refuse(depth=0.05, slope=SLOPE, tau_star=0.3, d=0.002)
     assert "tau_star = 0.3 and slope = 0.05 and depth = 0.05 m contradict each other" in fault
     assert "a depth of 0.01982 m" in fault

@@ -93,7 +93,7 @@ def test_an_index_out_of_range_is_an_index_error(folder: Path, key: object) -> N
         Results.open(folder).frames.x[key]
 
 
-def test_everything_handed_out_is_read_only(folder: Path) -> None:
+def test_all_returned_arrays_are_read_only(folder: Path) -> None:
     results = Results.open(folder)
     arrays = [
         results.frames.t,
@@ -126,7 +126,7 @@ def test_the_account_has_a_row_per_frame_and_every_book(folder: Path) -> None:
     assert tally["overlap_step"].tolist() == [7] * N
 
 
-def test_a_folder_from_before_films_reads_on_and_lost_nothing_to_them(folder: Path) -> None:
+def test_a_folder_older_than_the_film_term_is_read_with_that_term_zero(folder: Path) -> None:
     before = Results.open(folder).tally
     for path in (folder / "parts").glob("part-*.h5"):
         with h5py.File(path, "r+") as file:

@@ -68,7 +68,7 @@ def test_a_state_comes_back_with_the_same_bits(path: Path, scene: Any) -> None:
     assert bits(found) == bits(some_state())
 
 
-def test_the_checkpoint_before_stays_until_the_next_is_whole(tmp_path: Path) -> None:
+def test_the_previous_checkpoint_is_kept_until_the_next_is_complete(tmp_path: Path) -> None:
     for k in range(4):
         write_checkpoint(tmp_path, CheckpointBlock({"k": k}))
     assert read_checkpoint(tmp_path / schema.CHECKPOINT, N).values == {"k": 3}
@@ -139,7 +139,7 @@ def test_a_checkpoint_of_an_earlier_format_is_refused_with_both_formats(path: Pa
         lambda file: file.__setitem__("about", h5py.ExternalLink("/etc/hostname", "x")),
     ],
 )
-def test_what_a_stranger_signed_is_refused_without_filling_memory(tmp_path: Path, fill: Any) -> None:
+def test_a_forged_checkpoint_is_refused_without_filling_memory(tmp_path: Path, fill: Any) -> None:
     path = tmp_path / schema.CHECKPOINT
     signed(path, fill)
     with pytest.raises(CheckpointError):
@@ -189,7 +189,7 @@ def change_contacts(**arrays: np.ndarray) -> State:
         replace(some_state(), image=np.zeros((2, 2), np.int32)),
     ],
 )
-def test_a_state_that_no_engine_could_carry_is_refused(state: State, scene: Any, tmp_path: Path) -> None:
+def test_a_state_that_no_engine_accepts_is_refused(state: State, scene: Any, tmp_path: Path) -> None:
     write_checkpoint(tmp_path, CheckpointBlock.merged(state=state_block(state)))
     with pytest.raises(RyusaError) as caught:
         state_from_block(read_checkpoint(tmp_path / schema.CHECKPOINT, N).block("state"), scene)

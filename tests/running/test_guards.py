@@ -26,7 +26,7 @@ def moving(n=3):
     return State(x=np.zeros((n, 3)), v=v, omega=np.zeros((n, 3)), step=40, t=0.5)
 
 
-def test_energy_from_nowhere_names_the_fastest_grain_step_time_and_remedy(scene):
+def test_created_energy_names_the_fastest_grain_step_time_and_remedy(scene):
     fault = energy_created(scene, moving(), account(kinetic=1.0, start=0.2))
     assert isinstance(fault, EnergyCreated)
     assert (fault.grain, fault.step, fault.t) == (1, 40, 0.5)
@@ -34,7 +34,7 @@ def test_energy_from_nowhere_names_the_fastest_grain_step_time_and_remedy(scene)
     assert "steps_per_contact" in fault.hint
 
 
-def test_energy_that_the_step_gives_to_springs_comes_from_nowhere_too(scene):
+def test_energy_given_by_the_step_counts_as_created_too(scene):
     boiling = account(kinetic=1.0, start=0.2)
     books = list(boiling.books)
     books[Book.STEP], books[Book.SLIDE] = 3.0, 2.2
@@ -46,7 +46,7 @@ def test_energy_that_the_step_gives_to_springs_comes_from_nowhere_too(scene):
 
 
 @pytest.mark.parametrize("tally", [account(1.0, 1.0), account(1.0, 0.6), account(0.2, 1.0), account(1e-12)])
-def test_energy_kept_lost_or_round_off_of_grains_at_rest_is_no_fault(scene, tally):
+def test_constant_or_decreasing_energy_and_round_off_at_rest_are_no_fault(scene, tally):
     assert energy_created(scene, moving(), tally) is None
 
 
@@ -72,13 +72,13 @@ def test_more_memory_than_there_is_is_refused_before_the_first_grain(monkeypatch
         refuse_if_too_large(2e9, 10**6)
 
 
-def test_a_scene_made_by_hand_is_held_against_memory_too(scene, state, engine, tmp_path, monkeypatch):
+def test_the_memory_of_a_scene_made_by_hand_is_checked_too(scene, state, engine, tmp_path, monkeypatch):
     monkeypatch.setattr(folder_module, "available_memory", lambda: 5e3)
     with pytest.raises(CaseError, match="Take fewer grains"):
         run_scene(scene, state, tmp_path / "run", frames=1e-3, stop=Stop(time=0.01), engine=engine)
     assert not (tmp_path / "run").exists()
 
 
-def test_memory_there_is_a_number_of_bytes_where_the_system_says():
+def test_free_memory_is_a_number_of_bytes_if_the_system_reports_it():
     there = available_memory()
     assert there is None or 1e6 < there < 1e15

@@ -45,7 +45,7 @@ def test_lines_come_every_tenth_of_the_way_at_most_every_five_seconds(
 
 
 @pytest.mark.parametrize("kind", [io.StringIO, Terminal])
-def test_a_run_that_goes_on_reckons_what_is_left_from_where_it_began_again(
+def test_a_resumed_run_estimates_the_remaining_time_from_its_own_start(
     tmp_path: Path, now: list[float], kind: type[io.StringIO]
 ) -> None:
     progress = make(tmp_path, now, kind())
@@ -86,7 +86,7 @@ def test_a_terminal_gets_a_bar_and_lines_stay_above_it(tmp_path: Path, now: list
     assert "t 5 s" not in (tmp_path / "log.txt").read_text().splitlines()[0]
 
 
-def test_patience_speaks_only_when_a_block_is_slow(
+def test_the_waiting_message_is_printed_only_if_a_block_is_slow(
     tmp_path: Path, now: list[float], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("ryusa.running.progress._SLOW_AFTER", 0.05)

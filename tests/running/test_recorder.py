@@ -256,7 +256,7 @@ def test_parts_are_written_by_the_clock(
     assert np.all(np.diff(at[at > 400]) >= 5)
 
 
-def test_an_index_with_shelves_shows_every_frame_and_names_few_files(
+def test_an_index_with_subindices_shows_every_frame_and_names_few_files(
     recorder: Recorder, tally: Any, event: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(vtkhdf, "SUBINDEX_PARTS", 3)

@@ -62,7 +62,7 @@ def stopped(tmp_path: Path, stop_at: Any) -> Path:
     return tmp_path / "run"
 
 
-def test_a_stopped_run_goes_on_with_the_same_bits(stopped: Path, whole: Results) -> None:
+def test_a_stopped_run_resumes_with_the_same_bits(stopped: Path, whole: Results) -> None:
     assert (stopped / schema.CHECKPOINT).is_file()
     results = run(stopped, resume=True)
     assert differences(whole.folder, stopped) == []
@@ -74,7 +74,7 @@ def test_a_stopped_run_goes_on_with_the_same_bits(stopped: Path, whole: Results)
 
 
 @pytest.mark.parametrize("steps", [(1, 20, 400), (5_000, 5_001, 17_323), (17_324, 17_325, 22_000)])
-def test_a_run_stopped_over_and_over_goes_on_with_the_same_bits(
+def test_a_run_stopped_many_times_resumes_with_the_same_bits(
     tmp_path: Path, stop_at: Any, whole: Results, steps: tuple[int, ...]
 ) -> None:
     for step in steps:
@@ -84,7 +84,7 @@ def test_a_run_stopped_over_and_over_goes_on_with_the_same_bits(
     assert differences(whole.folder, tmp_path / "run") == []
 
 
-def test_contacts_of_an_unfinished_stretch_are_readable_and_not_counted_twice(
+def test_contacts_of_an_incomplete_part_are_readable_and_not_counted_twice(
     stopped: Path, whole: Results
 ) -> None:
     before = Results.open(stopped)
@@ -96,7 +96,7 @@ def test_contacts_of_an_unfinished_stretch_are_readable_and_not_counted_twice(
     assert len(parts) >= 1
 
 
-def test_sigusr1_asks_for_a_checkpoint_and_the_run_goes_on(
+def test_sigusr1_writes_a_checkpoint_and_the_run_continues(
     tmp_path: Path, stop_at: Any, whole: Results
 ) -> None:
     seen: list[bool] = []
@@ -140,7 +140,7 @@ def test_a_run_killed_before_its_first_checkpoint_keeps_its_frames(stopped: Path
     assert differences(whole.folder, stopped) == []
 
 
-def test_a_damaged_checkpoint_gives_way_to_the_one_before(
+def test_a_damaged_checkpoint_is_replaced_by_the_previous_one(
     tmp_path: Path, stop_at: Any, whole: Results
 ) -> None:
     folder = tmp_path / "run"
@@ -163,7 +163,7 @@ def test_without_a_good_checkpoint_a_run_is_refused_in_one_line(stopped: Path) -
     assert Results.open(stopped).status == "stopped"
 
 
-def test_a_damaged_part_after_the_checkpoint_is_made_again(
+def test_a_damaged_part_after_the_checkpoint_is_written_again(
     tmp_path: Path, stop_at: Any, whole: Results, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(recorder, "flush_after", lambda elapsed, n_part: 0.0)
@@ -179,7 +179,7 @@ def test_a_damaged_part_after_the_checkpoint_is_made_again(
     assert differences(whole.folder, folder) == []
 
 
-def test_a_part_missing_before_the_checkpoint_is_told(stopped: Path) -> None:
+def test_a_part_missing_before_the_checkpoint_is_reported(stopped: Path) -> None:
     sorted((stopped / "parts").glob("part-*"))[0].unlink()
     with pytest.raises(CheckpointError, match=r"part-000000\.h5 is missing.*before the checkpoint"):
         run(stopped, resume=True)
@@ -193,7 +193,7 @@ def test_a_checkpoint_of_another_run_is_refused(stopped: Path, tmp_path: Path, s
         run(stopped, resume=True)
 
 
-def test_a_changed_case_is_told_by_key_and_refused(stopped: Path) -> None:
+def test_a_changed_case_is_refused_with_the_key(stopped: Path) -> None:
     for how in ({}, {"force": True}):
         with pytest.raises(
             CheckpointError, match=r"the case has changed since: contact.restitution 0.3 is now"
@@ -201,7 +201,7 @@ def test_a_changed_case_is_told_by_key_and_refused(stopped: Path) -> None:
             run(stopped, {"contact.restitution": "0.4"}, resume=True, **how)
 
 
-def test_a_longer_run_is_told_and_goes_on_when_forced(stopped: Path, tmp_path: Path) -> None:
+def test_a_longer_run_is_reported_and_resumed_with_force(stopped: Path, tmp_path: Path) -> None:
     longer = {"stop.time": "0.14 s"}
     with pytest.raises(CheckpointError, match=r"stop.time 0.13 is now 0.14.*With --force"):
         run(stopped, longer, resume=True)
@@ -210,7 +210,7 @@ def test_a_longer_run_is_told_and_goes_on_when_forced(stopped: Path, tmp_path: P
 
 
 @pytest.mark.parametrize("name", ["commit", "processor", "numba"])
-def test_another_version_or_machine_is_told_and_goes_on_only_when_forced(
+def test_another_version_or_machine_is_reported_and_resumed_only_with_force(
     stopped: Path, name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from ryusa.running import resume
@@ -226,14 +226,14 @@ def test_another_version_or_machine_is_told_and_goes_on_only_when_forced(
     assert any("another version" in one for one in results.provenance["resumed"][0]["said"])
 
 
-def test_with_nothing_to_go_on_from_a_run_begins_and_says_so(tmp_path: Path) -> None:
+def test_without_a_checkpoint_a_run_starts_anew_and_says_so(tmp_path: Path) -> None:
     results = run(tmp_path / "run", resume=True)
     assert results.complete
     assert "no run to resume: starts from the beginning" in (tmp_path / "run" / schema.LOG).read_text()
     assert "resumed" not in results.provenance
 
 
-def test_a_complete_run_is_opened_and_left_as_it_is(tmp_path: Path) -> None:
+def test_a_complete_run_is_opened_unchanged(tmp_path: Path) -> None:
     run(tmp_path / "run")
     stamps = {one: one.stat().st_mtime_ns for one in tmp_path.rglob("*") if one.is_file()}
     assert run(tmp_path / "run", resume=True).complete
@@ -242,14 +242,14 @@ def test_a_complete_run_is_opened_and_left_as_it_is(tmp_path: Path) -> None:
         run(tmp_path / "run", {"seed": "2"}, resume=True)
 
 
-def test_a_folder_that_is_no_run_is_left_alone(tmp_path: Path) -> None:
+def test_a_folder_that_is_not_a_run_is_not_touched(tmp_path: Path) -> None:
     (tmp_path / "thesis.tex").write_text("all of it")
     with pytest.raises(ResultsError, match="not a run folder of ryusa"):
         run(tmp_path, resume=True)
     assert [one.name for one in tmp_path.iterdir()] == ["thesis.tex"]
 
 
-def test_frames_that_come_out_otherwise_end_the_run_before_anything_is_written(
+def test_frames_that_differ_on_resume_end_the_run_before_anything_is_written(
     stopped: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (stopped / schema.CHECKPOINT).unlink()
@@ -271,7 +271,7 @@ def test_frames_that_come_out_otherwise_end_the_run_before_anything_is_written(
     assert state is loop.Loop.state
 
 
-def test_a_scene_built_grain_by_grain_goes_on_too(
+def test_a_scene_built_grain_by_grain_is_resumed_too(
     scene: Any, state: Any, engine: Any, tmp_path: Path, stop_at: Any
 ) -> None:
     from ryusa.engine.cpu.engine import CpuEngine
@@ -288,7 +288,7 @@ def test_a_scene_built_grain_by_grain_goes_on_too(
         run_scene(scene, first, tmp_path / "hurt", **{**how, "frames": 2e-3})
 
 
-def test_provenance_of_a_run_that_went_on_is_that_of_its_begin(stopped: Path) -> None:
+def test_provenance_of_a_resumed_run_is_that_of_its_start(stopped: Path) -> None:
     before = json.loads((stopped / schema.PROVENANCE).read_text())
     after = run(stopped, resume=True).provenance
     assert after["begin"] == before["begin"]
@@ -296,7 +296,7 @@ def test_provenance_of_a_run_that_went_on_is_that_of_its_begin(stopped: Path) ->
     assert after["status"] == "complete"
 
 
-def test_a_case_with_a_table_goes_on_from_its_run_folder_alone(tmp_path: Path, stop_at: Any) -> None:
+def test_a_case_with_a_table_is_resumed_from_its_run_folder_alone(tmp_path: Path, stop_at: Any) -> None:
     from ryusa.casefile.read import read
 
     rows = "".join(f"{0.3 * k},{1.0 + 0.1 * k},0.2\n" for k in range(3))

@@ -97,7 +97,7 @@ def test_rest_before_the_last_change_of_the_timeline_does_not_stop_a_run(go: Any
     assert 600 <= results.summary["steps"] <= 625
 
 
-def test_saltations_of_the_laziest_grain_stop_a_run(go: Any, engine: Any, event: Any) -> None:
+def test_saltations_of_the_slowest_grain_stop_a_run(go: Any, engine: Any, event: Any) -> None:
     for k in range(20):
         for i in range(3):
             step = 100 * (k + 1) * (2 if i == 1 else 1) + i
@@ -121,7 +121,7 @@ def test_a_change_of_the_timeline_lands_on_its_step(go: Any, engine: Any, scene:
     assert len(results.frames) == 11
 
 
-def test_a_fault_leaves_everything_before_it_and_names_itself(go: Any, engine: Any, tmp_path: Path) -> None:
+def test_a_fault_is_named_and_everything_before_it_is_kept(go: Any, engine: Any, tmp_path: Path) -> None:
     engine.fault_at = 555
     with pytest.raises(RunError, match="made to fail: grain 1"):
         go()
@@ -351,7 +351,7 @@ def test_a_folder_left_by_a_run_killed_as_it_began_is_used(go: Any, tmp_path: Pa
     assert go(overwrite=True).complete
 
 
-def test_empty_parts_behind_a_link_are_not_taken_for_ones_own(go: Any, tmp_path: Path) -> None:
+def test_an_empty_parts_folder_behind_a_link_is_not_used(go: Any, tmp_path: Path) -> None:
     (tmp_path / "elsewhere").mkdir()
     (tmp_path / "run").mkdir()
     (tmp_path / "run" / "parts").symlink_to(tmp_path / "elsewhere")
@@ -360,7 +360,7 @@ def test_empty_parts_behind_a_link_are_not_taken_for_ones_own(go: Any, tmp_path:
     assert not any((tmp_path / "elsewhere").iterdir())
 
 
-def test_a_place_that_cannot_be_written_is_not_said_to_be_full(
+def test_a_folder_without_write_permission_is_not_reported_as_full(
     go: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def refused(**_: Any) -> None:

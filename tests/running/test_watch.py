@@ -49,7 +49,7 @@ def test_lanes_of_a_plane_scene_never_meet(scene_with: Any) -> None:
     assert apart == pytest.approx(math.sqrt(2) * shortest_collision_time(scene, State.at_rest(one)))
 
 
-def test_restitution_is_split_by_partner_and_only_of_lonely_pairs(
+def test_restitution_is_split_by_partner_and_only_of_isolated_pairs(
     scene: Any, state: Any, event: Any, tally: Any
 ) -> None:
     watch = Watch(scene, state)
@@ -106,7 +106,7 @@ def test_the_stable_band_is_watched(
     assert word is None or word in said[0]
 
 
-def test_a_grain_that_skims_the_bed_is_warned_of(scene: Any, state: Any, event: Any, tally: Any) -> None:
+def test_a_grain_that_skims_the_bed_gives_a_warning(scene: Any, state: Any, event: Any, tally: Any) -> None:
     watch = Watch(scene, state)
     t, d = watch.t_col_shortest, float(scene.d[0])
     watch.contacts(event(0, 3, 0.0, t, v_begin=[0.25 * d / t, 0.0, -0.2]))
@@ -126,7 +126,9 @@ def test_a_grain_that_rolls_or_rests_does_not_skim_the_bed(
     assert not any("along the bed" in one for one in watch.warnings(tally()))
 
 
-def test_too_few_steps_and_an_open_account_are_warned_of(scene_with: Any, state: Any, tally: Any) -> None:
+def test_too_few_steps_and_an_unbalanced_account_give_warnings(
+    scene_with: Any, state: Any, tally: Any
+) -> None:
     said = " ".join(Watch(scene_with(3, dt=1e-4), state).warnings(tally()))
     assert "steps in the shortest contact" in said
     assert "imbalance of the energy account" in said
@@ -141,7 +143,7 @@ def test_the_energy_account_names_every_term(scene: Any, state: Any, tally: Any)
     assert account["imbalance"] == 21.0
 
 
-def test_summary_lines_speak_of_a_run_without_contacts_too(scene: Any, state: Any, tally: Any) -> None:
+def test_summary_lines_exist_for_a_run_without_contacts(scene: Any, state: Any, tally: Any) -> None:
     numbers = Watch(scene, state).summary(tally())
     more = {"steps": 1, "frames": 2, "contacts": 0, "wall": 1.0, "particle_steps_per_second": 5e6}
     text = "\n".join(summary_lines({**numbers, **more}))
@@ -184,7 +186,7 @@ def test_rest_begins_anew_whenever_a_grain_is_fast() -> None:
     ]
 
 
-def test_a_contact_cut_by_the_timeline_counts_but_says_nothing_of_restitution(
+def test_a_contact_ended_by_the_timeline_counts_but_not_in_the_restitution(
     scene: Any, state: Any, event: Any, tally: Any
 ) -> None:
     watch = Watch(scene, state)
@@ -207,7 +209,7 @@ def _dennis(scene_with: Any, **changes: Any) -> Any:
     return scene_with(3, **{"water": water, "rotation": True, **changes})
 
 
-def test_spin_beyond_the_range_of_the_waters_torque_is_warned_of(
+def test_spin_beyond_the_range_of_the_water_torque_gives_a_warning(
     scene_with: Any, state: Any, event: Any, tally: Any
 ) -> None:
     def said(scene: Any, spin: float, frame: bool) -> list[str]:
@@ -225,7 +227,9 @@ def test_spin_beyond_the_range_of_the_waters_torque_is_warned_of(
         assert not said(scene_with(3, rotation=True), 1010.0, frame)
 
 
-def test_constant_dashpots_say_what_restitution_follows(scene_with: Any, state: Any, tally: Any) -> None:
+def test_constant_dashpots_print_the_restitution_that_follows(
+    scene_with: Any, state: Any, tally: Any
+) -> None:
     from ryusa.laws.collision import restitution_no_tension, restitution_tension
     from ryusa.model import ContactLaw
     from ryusa.model.scene import Damping
@@ -270,7 +274,7 @@ def test_energy_lines_name_every_term_that_is_not_zero() -> None:
     [("n", 2), ("n", 10**400), ("n", -1), ("mean", math.nan), ("spread", math.inf)],
     ids=["more", "huge", "negative", "nan", "inf"],
 )
-def test_a_checkpoint_of_averages_that_cannot_be_is_refused(
+def test_a_checkpoint_with_impossible_averages_is_refused(
     scene: Any, state: Any, event: Any, key: str, value: float
 ) -> None:
     watch = Watch(scene, state)

@@ -96,7 +96,7 @@ def test_water_and_grains_do_not_depend_on_how_the_run_is_cut(tmp_path: Path, mo
 
 
 @pytest.mark.parametrize("k", [0, 1, 5, 95, 101, 104, 163])
-def test_a_snapshot_at_any_step_goes_on_with_the_same_bits(k: int) -> None:
+def test_a_snapshot_at_any_step_resumes_with_the_same_bits(k: int) -> None:
     fixed, first = over_fixed_grains()
     whole = stepping(fixed, first)
     whole._steps(200)
@@ -110,7 +110,7 @@ def test_a_snapshot_at_any_step_goes_on_with_the_same_bits(k: int) -> None:
 
 
 @pytest.mark.parametrize("k", [1, 45, 501])
-def test_a_snapshot_among_eddies_and_films_goes_on_with_the_same_bits(k: int) -> None:
+def test_a_snapshot_with_eddies_and_films_resumes_with_the_same_bits(k: int) -> None:
     fixed, first = over_fixed_grains()
     column = replace(
         fixed.column, fluctuations=Fluctuations.RANDOM_WALK, seed=112
@@ -135,7 +135,7 @@ def test_a_snapshot_of_another_column_is_refused() -> None:
         stepping(replace(fixed, column=replace(fixed.column, n=49)), state)
 
 
-def test_grains_that_the_timeline_takes_away_fill_the_column_no_more() -> None:
+def test_grains_removed_by_the_timeline_no_longer_fill_the_column() -> None:
     fixed, first = over_fixed_grains()
     loop = stepping(fixed, first)
     loop._steps(50)
@@ -166,7 +166,7 @@ def test_a_run_that_records_no_contacts_does_not_say_that_there_were_none(tmp_pa
     assert "momentum imbalance" in log
 
 
-def test_a_bed_that_never_packs_is_warned_of(tmp_path: Path) -> None:
+def test_a_bed_that_never_packs_gives_a_warning(tmp_path: Path) -> None:
     fixed, first = over_fixed_grains()
     assert fixed.column is not None
     for phi_max, said in ((0.61, True), (0.05, False)):

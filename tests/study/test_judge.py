@@ -48,20 +48,20 @@ def test_a_setting_of_a_sweep_is_covered_even_where_it_scatters_three_times_as_m
     assert np.mean(hits) > 0.92
 
 
-def test_intervals_hold_the_true_mean_as_often_as_they_say():
+def test_intervals_have_their_nominal_coverage():
     rng = np.random.default_rng(4)
     hits = [over_seeds(list(rng.normal(3.0, 1.0, 3)), "m") for _ in range(2000)]
     share = np.mean([one.low <= 3.0 <= one.high for one in hits])
     assert 0.935 < share < 0.965
 
 
-def test_one_seed_has_no_interval_and_a_number_that_is_none_decides_nothing():
+def test_one_seed_has_no_interval_and_nan_is_undecided():
     one = over_seeds([1.5], "m")
     assert one.low == one.value == one.high
     assert BAND.holds(over_seeds([1.5, math.nan], "m")) is None
 
 
-def test_a_band_wants_the_whole_interval_inside_or_outside():
+def test_a_band_needs_the_whole_interval_inside_or_outside():
     assert trial(1.5, 1.2, 1.8).holds is True
     assert trial(3.0, 2.5, 3.5).holds is False
     assert trial(1.9, 1.7, 2.1).holds is None
@@ -84,7 +84,7 @@ def test_one_rule_turns_trials_into_a_verdict(trials, word):
     assert finding(*trials).outcome is word
 
 
-def test_what_the_equations_exclude_contradicts_them_whatever_was_run():
+def test_a_claim_excluded_by_its_equations_is_excluded_whatever_the_runs():
     assert finding(trial(1.5), contradiction="a band of 10 cannot hold 100").outcome is Outcome.EXCLUDED
 
 

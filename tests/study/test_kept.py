@@ -41,7 +41,7 @@ def test_a_ledger_of_comparisons_of_format_1_is_read(tmp_path):
 
 
 @pytest.mark.parametrize("text", ["{", "[]", '{"format": 99}', '{"findings": []}'])
-def test_what_is_no_ledger_is_refused(tmp_path, text):
+def test_a_file_that_is_not_a_ledger_is_refused(tmp_path, text):
     path = tmp_path / "ledger.json"
     path.write_text(text, encoding="utf-8")
     with pytest.raises(ResultsError, match="ledger"):

@@ -52,7 +52,7 @@ def carry_out(known, names, plan, folder, **how):
     )
 
 
-def test_an_interrupted_campaign_goes_on_where_it_stopped(fakes, tmp_path):
+def test_an_interrupted_study_continues_where_it_stopped(fakes, tmp_path):
     fakes["one"] = Fake(KeyboardInterrupt())
     with pytest.raises(KeyboardInterrupt):
         carry_out(fakes, ("one",), Plan(), tmp_path)
@@ -74,7 +74,7 @@ def test_a_damaged_or_unfinished_run_is_made_anew(fakes, tmp_path):
     assert carry_out(fakes, ("one",), Plan(), tmp_path).n_run == 2
 
 
-def test_what_fails_in_one_experiment_spares_the_others(fakes, tmp_path):
+def test_an_error_in_one_part_does_not_affect_the_others(fakes, tmp_path):
     fakes["good"], fakes["bad"] = Fake(), Fake(ResultsError("no hop at all"))
     found = carry_out(fakes, ("good", "bad"), Plan(), tmp_path)
     assert found.n_run == 2
@@ -83,7 +83,7 @@ def test_what_fails_in_one_experiment_spares_the_others(fakes, tmp_path):
     assert list(found.problems.values()) == ["bad: no hop at all"]
 
 
-def test_an_error_in_the_program_costs_its_experiment_and_no_other(fakes, tmp_path):
+def test_an_error_in_the_program_affects_only_its_part(fakes, tmp_path):
     fakes["good"], fakes["bad"] = Fake(), Fake(IndexError("list index out of range"))
     found = carry_out(fakes, ("good", "bad"), Plan(), tmp_path)
     assert len(found.found["good"]) == 2
@@ -97,7 +97,7 @@ def test_an_error_in_the_program_costs_its_experiment_and_no_other(fakes, tmp_pa
     assert carry_out(fakes, ("good", "bad"), Plan(), tmp_path).n_opened == 2  # repaired: nothing is run again
 
 
-def test_a_worker_whose_answer_cannot_be_sent_spares_the_others(fakes, tmp_path, monkeypatch):
+def test_a_result_that_cannot_be_sent_does_not_affect_the_others(fakes, tmp_path, monkeypatch):
     fakes["one"] = Fake()
 
     def answer(one, *_, **__):
@@ -113,7 +113,7 @@ def test_a_worker_whose_answer_cannot_be_sent_spares_the_others(fakes, tmp_path,
     assert "cannot pickle" in next(iter(found.problems.values()))
 
 
-def test_a_run_stopped_on_the_way_goes_on_from_its_checkpoint(fakes, tmp_path, monkeypatch):
+def test_a_run_stopped_before_its_end_continues_from_its_checkpoint(fakes, tmp_path, monkeypatch):
     from ryusa.running import loop
 
     fakes["one"] = Fake(seeds=(1,))
@@ -134,7 +134,7 @@ def test_a_run_stopped_on_the_way_goes_on_from_its_checkpoint(fakes, tmp_path, m
     assert "resumed" not in json.loads(about.read_text())
 
 
-def test_a_run_that_failed_is_tried_again_and_it_alone(fakes, tmp_path, monkeypatch):
+def test_only_a_failed_run_is_repeated(fakes, tmp_path, monkeypatch):
     fakes["both"], fakes["first"] = Fake(), Fake(seeds=(1,))
     real = runner.run
 
@@ -156,7 +156,7 @@ def test_a_run_that_failed_is_tried_again_and_it_alone(fakes, tmp_path, monkeypa
     assert not second.problems
 
 
-def test_a_run_that_breaks_down_while_stepping_is_no_finished_run(fakes, tmp_path):
+def test_a_run_that_fails_while_stepping_is_not_finished(fakes, tmp_path):
     limit = {**SHORT, "domain.overlap_limit": "1e-9", "stop.time": "0.3 s"}
     fakes["one"] = Fake(seeds=())
     fakes["one"].tasks = lambda _: [paper_run("saltation", SHORT), paper_run("saltation", limit)]
@@ -167,7 +167,7 @@ def test_a_run_that_breaks_down_while_stepping_is_no_finished_run(fakes, tmp_pat
         assert "overlap" in next(iter(found.problems.values()))
 
 
-def test_an_answer_to_a_breakdown_that_goes_wrong_itself_is_told(fakes, tmp_path, monkeypatch):
+def test_an_error_in_the_handling_of_a_failed_run_is_reported(fakes, tmp_path, monkeypatch):
     def breaks(*_, **__):
         raise NotANumber("force is no number", grain=3, step=7, t=0.1, hint="Take shorter steps")
 
@@ -191,7 +191,7 @@ def test_runs_that_do_not_fit_on_the_disk_are_refused_before_the_first(fakes, tm
     assert not list(tmp_path.iterdir())
 
 
-def test_the_outlook_counts_what_is_there_and_never_ends_before_the_longest_run(tmp_path):
+def test_the_estimate_counts_finished_runs_and_is_no_shorter_than_the_longest_run(tmp_path):
     runs = [paper_run("saltation", SHORT, seed) for seed in range(1, 4)]
     carry_out({}, (), Plan(), tmp_path)
     ahead = estimate_cost([*runs, runs[0]], tmp_path, jobs=2)
@@ -223,7 +223,7 @@ def test_a_folder_that_holds_another_case_is_run_again(tmp_path):
     assert estimate_cost(runs, tmp_path, jobs=1).there == (runs[1],)
 
 
-def test_the_outlook_says_which_runs_another_state_of_the_code_made(tmp_path, monkeypatch):
+def test_the_estimate_lists_runs_of_other_states_of_the_code(tmp_path, monkeypatch):
     monkeypatch.setattr(cost_module.provenance, "commit", lambda: "c" * 40)
     runs = [paper_run("saltation", SHORT, seed) for seed in range(1, 7)]
     for one, commit in zip(runs, ["c" * 40, "a" * 40, "a" * 40, "c" * 40 + "+", None], strict=False):
@@ -240,7 +240,7 @@ def test_the_outlook_says_which_runs_another_state_of_the_code_made(tmp_path, mo
     )  # nothing of other code, nothing to say
 
 
-def test_a_campaign_counts_the_runs_of_other_code(fakes, tmp_path, monkeypatch):
+def test_a_study_counts_the_runs_of_other_states_of_the_code(fakes, tmp_path, monkeypatch):
     fakes["one"] = Fake()
     carry_out(fakes, ("one",), Plan(), tmp_path)
     about = next(tmp_path.glob("*/*/provenance.json"))
@@ -253,12 +253,12 @@ def test_a_campaign_counts_the_runs_of_other_code(fakes, tmp_path, monkeypatch):
     assert found.commits["a" * 40] == 1
 
 
-def test_a_law_of_rolling_resistance_costs_time():
+def test_rolling_friction_is_included_in_the_cost():
     rolls = {"rolling.model": "constant", "rolling.coefficient": "0.1"}
     assert paper_run("fig19", rolls).cost() > 1.5 * paper_run("fig19").cost()
 
 
-def test_the_time_left_follows_from_how_long_the_finished_runs_took(capsys):
+def test_the_remaining_time_follows_from_the_finished_runs(capsys):
     now = [0.0]
     runs = [paper_run("saltation", SHORT, seed) for seed in range(1, 5)]
     say = ProgressLines(clock=lambda: now[0])
@@ -280,7 +280,7 @@ def test_the_time_left_follows_from_how_long_the_finished_runs_took(capsys):
     assert "grain 7 lost" in said.err
 
 
-def test_who_says_nothing_needs_no_more(fakes, tmp_path):
+def test_without_progress_output_nothing_else_is_needed(fakes, tmp_path):
     fakes["one"] = Fake(seeds=(1,))
     assert carry_out(fakes, ("one",), Plan(), tmp_path, progress=StudyProgress()).n_run == 1
 
@@ -336,7 +336,7 @@ needs_proc = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="re
 
 @needs_proc
 @pytest.mark.parametrize("how", ["ctrl-c", "term"])
-def test_an_interrupt_ends_every_process_and_says_how_to_go_on(campaign, how):
+def test_an_interrupt_ends_every_process_and_says_how_to_continue(campaign, how):
     if how == "ctrl-c":
         os.killpg(campaign.pid, signal.SIGINT)  # a terminal tells the whole group
     else:
@@ -349,7 +349,7 @@ def test_an_interrupt_ends_every_process_and_says_how_to_go_on(campaign, how):
 
 
 @needs_proc
-def test_a_killed_process_is_told_and_nothing_hangs(campaign):
+def test_a_killed_process_is_reported_and_nothing_hangs(campaign):
     workers = [one for one, words in family(campaign.pid).items() if "spawn_main" in words]
     os.kill(workers[0], signal.SIGKILL)
     _, said = campaign.communicate(timeout=30)
@@ -361,7 +361,7 @@ def test_a_killed_process_is_told_and_nothing_hangs(campaign):
 
 
 @needs_proc
-def test_no_process_outlives_a_killed_campaign(campaign):
+def test_no_process_outlives_a_killed_study(campaign):
     campaign.kill()
     campaign.wait(timeout=30)
     for _ in range(300):

@@ -97,7 +97,7 @@ def test_a_draw_depends_on_seed_grain_and_number_alone():
     assert all(0.0 < one < 1.0 for one in numbers)
 
 
-def test_still_water_has_no_eddies_that_end():
+def test_in_still_water_eddies_have_infinite_lifetimes():
     *_, last = walk(5, 1.0, shear=0.0, n=10)
     assert not last.count.any()
 
@@ -107,7 +107,7 @@ def _stirred(area, **more):
 
 
 @pytest.mark.parametrize("form", list(Buoyancy))
-def test_with_fluctuations_grains_and_water_still_gain_what_weight_and_bed_give(form):
+def test_momentum_is_conserved_with_fluctuations(form):
     from ryusa.water import steady
 
     made, area = cloud(form)

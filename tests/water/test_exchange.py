@@ -69,7 +69,7 @@ def test_concentration_holds_the_submerged_volume_of_all_grains(packing):
 
 @settings(deadline=None)
 @given(packings(), st.sampled_from(["whole", "submerged"]), st.sampled_from([(), (3,)]))
-def test_what_grains_give_is_what_cells_get_and_what_is_left_over(packing, share, columns):
+def test_the_momentum_given_by_grains_is_that_received_by_the_cells(packing, share, columns):
     z, d, cells, rng = packing
     found = exchange.slices(z, d, cells)
     amounts = rng.normal(size=(len(z), *columns))
@@ -86,7 +86,7 @@ def test_what_grains_give_is_what_cells_get_and_what_is_left_over(packing, share
 
 @settings(deadline=None)
 @given(packings(), st.sampled_from(["whole", "submerged"]))
-def test_giving_and_taking_carry_the_same_work(packing, share):
+def test_gather_and_scatter_conserve_work(packing, share):
     z, d, cells, rng = packing
     found = exchange.slices(z, d, cells)
     force, speed = rng.normal(size=len(z)), rng.normal(size=cells.n)
@@ -97,7 +97,7 @@ def test_giving_and_taking_carry_the_same_work(packing, share):
 
 @settings(deadline=None)
 @given(packings())
-def test_the_stress_that_grains_feel_is_what_cells_give_up(packing):
+def test_the_stress_on_grains_is_that_removed_from_the_cells(packing):
     z, d, cells, rng = packing
     found = exchange.slices(z, d, cells)
     tau = rng.normal(size=cells.n + 1)
@@ -108,7 +108,7 @@ def test_the_stress_that_grains_feel_is_what_cells_give_up(packing):
 
 @settings(deadline=None)
 @given(packings())
-def test_a_uniform_flow_is_seen_as_it_is(packing):
+def test_a_uniform_flow_is_sampled_exactly(packing):
     z, d, cells, _ = packing
     found = exchange.slices(z, d, cells)
     u = np.full((cells.n, 2), [0.7, -3.0])
@@ -156,7 +156,7 @@ def test_reused_memory_gives_the_same_bits():
     np.testing.assert_array_equal(reused.submerged, fresh.submerged)
 
 
-def test_a_grain_half_out_of_the_water_by_hand():
+def test_a_grain_half_out_of_the_water_agrees_with_hand_calculation():
     cells = Cells(z_low=0.0, dz=D, n=3, area=AREA)
     found = exchange.slices(np.array([3 * D, 1.5 * D, -D]), np.full(3, D), cells)
     np.testing.assert_allclose(found.share, [0.5, 1.0, 0.0])
@@ -183,7 +183,7 @@ def test_the_flux_of_a_cell_is_concentration_times_speed():
 
 
 @pytest.mark.parametrize("share", [0.4, 0.2, 0.1])
-def test_a_linear_flow_is_seen_at_the_centre_as_cells_get_thin(share):
+def test_a_linear_flow_is_sampled_at_the_centre_in_the_limit_of_thin_cells(share):
     cells = Cells(z_low=0.0, dz=share * D, n=int(12 / share), area=AREA)
     z = np.random.default_rng(0).uniform(2 * D, 10 * D, 300)
     found = exchange.slices(z, np.full(300, D), cells)

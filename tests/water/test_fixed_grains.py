@@ -43,7 +43,7 @@ def alone(made, column, **more):
 
 
 @pytest.mark.parametrize("form", FORMS)
-def test_fixed_grains_take_the_weight_of_the_water_that_the_bed_does_not(form):
+def test_fixed_grains_carry_the_rest_of_the_weight_of_the_water(form):
     made, column = bed(form)
     coupling = alone((replace(made[0], dt=1e-3), made[1]), column)
     none = np.zeros((0, 3)), np.zeros((0, 3)), np.zeros((0, 4))
@@ -82,7 +82,7 @@ def test_fixed_grains_under_a_rough_wall_take_no_force():
 
 
 @pytest.mark.parametrize("form", FORMS)
-def test_water_begins_as_it_flows_over_the_bed(form):
+def test_a_steady_start_is_the_steady_flow_over_the_bed(form):
     made, column = bed(form)
     column = replace(column, start=Start.STEADY)
     coupling = Coupling.begin(made[0], column, 50, made[1].x)
@@ -120,7 +120,7 @@ def test_settled_grains_have_the_packed_concentration_and_none_is_lost():
 
 
 @pytest.mark.parametrize("form", FORMS)
-def test_water_among_fixed_grains_nowhere_runs_backwards(form):
+def test_water_among_fixed_grains_never_flows_backwards(form):
     made, column = bed(form)
     coupling = alone((replace(made[0], dt=1e-3), made[1]), column)
     for _ in range(60):

@@ -109,7 +109,7 @@ def test_momentum_closes_where_grains_pass_the_surface(form, surface):
     assert (float(np.ptp(levels)) > 0.1 * column.dz) == (surface is SurfaceRule.VOLUME)
 
 
-def test_the_energy_of_water_that_a_grain_takes_along_is_booked():
+def test_the_energy_of_added_mass_is_accounted_for():
     made, area = made_of([SURFACE + 1.0 * D, SURFACE + 0.3 * D])
     begin = replace(made[1], v=np.tile([0.0, 0.0, -0.5], (2, 1)))
     *_, (_, engine, *_) = stepped((made[0], begin), column_of(area), 200, 5)

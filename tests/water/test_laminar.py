@@ -74,14 +74,14 @@ def test_a_surface_inside_a_cell_costs_no_order(laminar):
     assert orders(found) == pytest.approx([2.0, 2.0], abs=0.25)
 
 
-def test_deep_water_between_side_walls_is_poiseuilles_across_the_gap():
+def test_deep_slow_water_between_side_walls_is_poiseuille_flow():
     c = Column(z_low=0.0, dz=0.01, n=20, depth=0.2, g_x=0.01, side=SideWalls.BLASIUS, width=0.004)
     u = steady(c)[0].u
     assert u[-1] == pytest.approx(c.g_x * c.width**2 / (12.0 * c.nu), rel=1e-9)
 
 
 @pytest.mark.parametrize(("side", "f"), [(SideWalls.BLASIUS, 0.3164), (SideWalls.KARMAN_PRANDTL, None)])
-def test_fast_water_between_side_walls_carries_its_weight_to_them(side, f):
+def test_the_weight_of_fast_water_is_balanced_by_the_side_walls(side, f):
     c = Column(z_low=0.0, dz=0.01, n=20, depth=0.2, g_x=1.0, side=side, width=0.0065, mixing=Mixing.LAMINAR)
     u = steady(c)[0].u[-1]
     re = 2.0 * u * c.width / c.nu

@@ -32,7 +32,7 @@ COLUMNS = {
 
 
 @pytest.mark.parametrize("name", COLUMNS)
-def test_what_the_water_gains_is_what_was_given_to_it_to_round_off(bedload, phi, name):
+def test_the_momentum_budget_of_the_water_closes_to_round_off(bedload, phi, name):
     c = replace(bedload, **COLUMNS[name])
     rng = np.random.default_rng(5)
     state = WaterState.at_rest(c, phi)
@@ -47,7 +47,7 @@ def test_what_the_water_gains_is_what_was_given_to_it_to_round_off(bedload, phi,
         assert budget.change == pytest.approx((momentum(c, state) - before) / dt, rel=1e-9, abs=1e-9)
 
 
-def test_the_share_that_grains_carry_is_booked(bedload, phi):
+def test_the_share_of_stress_on_grains_is_in_the_budget(bedload, phi):
     state, budget = steady(bedload, phi, np.zeros(bedload.n), slope=2000.0 * phi, carried=phi)
     assert budget.carried == pytest.approx(-float(phi @ np.diff(state.tau)), rel=1e-9)
     assert abs(budget.residual) < 1e-12 * budget.gravity
@@ -102,7 +102,7 @@ def test_the_share_of_the_stress_on_grains_may_lag_a_step_behind(bedload, phi_be
     assert state.u == pytest.approx(rest.u, rel=1e-6, abs=1e-9)
 
 
-def test_the_discharge_is_met_every_step(bedload, phi):
+def test_the_discharge_is_kept_in_every_step(bedload, phi):
     c = replace(bedload, drive=Drive.DISCHARGE, discharge=0.013, g_x=0.0)
     state = WaterState.at_rest(c, phi)
     for k in range(30):
@@ -145,7 +145,7 @@ def test_a_plug_of_water_keeps_its_speed_while_grains_and_surface_move(bedload):
         assert state.u == pytest.approx(np.full(c.n, 0.7), rel=1e-9)
 
 
-def test_settling_grains_drive_the_water_up():
+def test_settling_grains_displace_the_water_upwards():
     c = Column(z_low=0.0, dz=1e-3, n=20, depth=0.02)
     phi = np.full(c.n, 0.2)
     state, _ = advance(c, WaterState.at_rest(c, phi), phi, None, 1e-3, phi_w=-0.2 * 0.01 * np.ones(c.n))

@@ -21,7 +21,7 @@ def rough(z, k):
 
 
 @pytest.mark.parametrize("n", [10, 20, 40, 80])
-def test_a_river_follows_eq_9_on_any_grid(river, n):
+def test_an_open_channel_follows_eq_9_on_any_grid(river, n):
     c = replace(river, n=n, dz=river.depth / n, nu=1e-12)
     state, _ = steady(c)
     assert state.u == pytest.approx(rough(c.z, c.k_rough), rel=1e-7)
@@ -169,7 +169,7 @@ def test_a_bed_that_is_nowhere_packed_lets_eddies_grow_in_it(bedload, phi):
     assert (steady(bedload, phi)[0].nu_t[wet] > 0.0).all()
 
 
-def test_layers_of_a_bed_leave_no_trace_in_the_mean_over_a_grain():
+def test_the_layering_of_a_bed_vanishes_in_the_mean_over_a_grain():
     k = np.arange(200)
     layers = 0.5 + 0.2 * np.cos(2.0 * np.pi * k / 10.0)
     mean = averaged(0.1, 1.0, 199, layers)

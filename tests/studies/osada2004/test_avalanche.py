@@ -138,7 +138,7 @@ def test_pairs_that_creep_or_stick_to_the_bed_are_told_from_those_that_move():
     assert RunPair(flow(4.0), flow(0.05)).kind == "creeps"
 
 
-def test_fig15_asks_for_about_a_metre_a_second():
+def test_fig15_requires_about_a_metre_per_second():
     assert words(fig15, flow_at(5.0), flow_at(4.0))["fig15"] is Outcome.HOLDS
     assert words(fig15, flow_at(4.1), flow_at(4.0))["fig15"] is Outcome.FAILS
     assert words(fig15, flow_at(7.0), flow_at(4.0))["fig15"] is Outcome.FAILS
@@ -157,14 +157,14 @@ def test_fig15_fails_where_a_layer_is_slower():
     ("soft", "word"),
     [(flow_at(5.0), Outcome.HOLDS), (flow_at(4.2), Outcome.FAILS), (flow_at(5.0, phi=0.7), Outcome.FAILS)],
 )
-def test_fig15_flux_asks_for_more_transport_at_equal_concentration(soft, word):
+def test_fig15_flux_requires_more_transport_at_equal_concentration(soft, word):
     assert words(fig15, soft, flow_at(4.0))["fig15-flux"] is word
 
 
 JAGGED = {"reversals": 20.0, "advance": 1.0, "jaggedness": 0.3}
 
 
-def test_fig16_holds_where_short_contacts_rattle_and_go_less_far():
+def test_fig16_holds_if_short_contacts_give_jagged_and_shorter_paths():
     assert words(fig16, flow_at(4.0), flow_at(4.0, **JAGGED))["fig16"] is Outcome.HOLDS
 
 

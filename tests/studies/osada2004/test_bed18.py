@@ -38,16 +38,16 @@ def judged(plan, speed):
 
 
 @pytest.mark.parametrize("plan", [QUICK, STANDARD])
-def test_a_bed_that_flows_at_every_slope_is_what_the_paper_says(plan):
+def test_a_bed_that_flows_at_every_slope_agrees_with_the_paper(plan):
     assert judged(plan, lambda slope, start: lambda t: 0.5).outcome is Outcome.HOLDS
 
 
 @pytest.mark.parametrize("speed", [0.0, 0.001])
-def test_a_bed_that_stands_or_creeps_is_not(speed):
+def test_a_bed_that_stands_or_creeps_disagrees_with_the_paper(speed):
     assert judged(STANDARD, lambda slope, start: lambda t: speed).outcome is Outcome.FAILS
 
 
-def test_a_bed_that_still_moves_but_dies_out_is_not():
+def test_a_bed_whose_motion_decays_disagrees_with_the_paper():
     assert (
         judged(STANDARD, lambda slope, start: lambda t: math.exp(-(t - 0.3) / 0.3)).outcome is Outcome.FAILS
     )
@@ -64,7 +64,7 @@ def test_a_bed_that_flows_from_some_slope_on_gives_that_slope():
     assert bed18.flattest(found, STANDARD, MOVING) == 23.0
 
 
-def test_speed_comes_from_the_way_gone_in_the_last_of_the_run():
+def test_speed_is_the_displacement_at_the_end_of_the_run_over_time():
     one = flow(lambda t: 1.0 if t > 1.2 else 0.5, seed=0)
     assert one.speed() == pytest.approx(1.0, rel=0.02)
     assert one.keeps == pytest.approx(2.0, rel=0.05)

@@ -40,13 +40,13 @@ def test_what_is_missing_is_named():
     ]  # fmt: skip
 
 
-def test_a_number_that_is_none_needs_a_note():
+def test_a_nan_needs_a_note():
     ledger = whole()
     row(ledger, "fig7")["trials"][0] |= {"value": None, "note": "stands as a wall"}
     assert faults(ledger) == []
 
 
-def test_an_error_in_the_program_is_a_fault_whatever_the_rows_say():
+def test_an_error_in_the_program_is_a_fault_even_with_complete_rows():
     ledger = whole() | {"errors_in": ["fig5: run drop 1"], "log": "ledger-errors.log"}
     assert faults(ledger) == ["fig5: run drop 1: error in the program, see ledger-errors.log"]
     assert faults(whole() | {"faults": {"fig5: its table": "KeyError"}}) == ["fig5: its table: KeyError"]

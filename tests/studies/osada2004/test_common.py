@@ -67,7 +67,7 @@ def test_claims_that_need_different_friction_do_not_hold_together():
     assert [one.untried for one in sets] == [("fig5",), ("fig4",)]
 
 
-def test_what_was_run_with_one_slip_rule_says_nothing_of_another():
+def test_runs_with_one_slip_rule_do_not_count_for_another():
     varied = found("fig4", {("10", "spring"): True, ("10", "total"): True}, SLIP)
     fixed = replace(found("fig5", {("10", ""): True}), settings={SLIP: "spring"})
     sets = {one.choices[SLIP]: one for one in common([varied, fixed])}

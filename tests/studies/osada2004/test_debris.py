@@ -55,12 +55,12 @@ def is_free(one):
 
 
 @pytest.mark.parametrize("plan", [QUICK, STANDARD])
-def test_a_flow_as_the_paper_tells_it_is_reproduced(plan):
+def test_a_flow_as_described_in_the_paper_is_reproduced(plan):
     found = verdicts(fig17, plan, lambda one: flow())
     assert {claim: one.outcome for claim, one in found.items()} == dict.fromkeys(fig17.CLAIMS, Outcome.HOLDS)
 
 
-def test_how_many_grains_are_put_in_can_decide():
+def test_the_number_of_grains_can_decide():
     found = verdicts(
         fig17, STANDARD, lambda one: flow(near_surface=0.15 if one.get("build.layers") == "3" else 0.3)
     )
@@ -68,7 +68,7 @@ def test_how_many_grains_are_put_in_can_decide():
     assert found["fig17"].condition.startswith(f"{AMOUNT} 4 to 6")
 
 
-def test_a_contact_time_of_which_no_kind_of_pair_has_that_digit_is_not_the_paper_s():
+def test_a_contact_time_that_no_kind_of_pair_has_is_not_reproduced():
     apart = {
         "all contacts": DebrisContacts(100, 6.3e-5, 6.3e-5, 0.7),
         "two free grains": DebrisContacts(50, 6e-5, 6e-5, 0.7),
@@ -79,7 +79,7 @@ def test_a_contact_time_of_which_no_kind_of_pair_has_that_digit_is_not_the_paper
     assert found["fig17-e"].outcome is Outcome.HOLDS
 
 
-def test_grains_in_parallel_layers_are_not_what_the_paper_simulated():
+def test_grains_in_parallel_layers_disagree_with_the_paper():
     assert verdicts(fig17, STANDARD, lambda one: flow(thrown=0.5))["fig17"].outcome is Outcome.FAILS
 
 
@@ -99,7 +99,7 @@ def test_free_grains_must_be_much_faster_near_the_bed_and_carry_more():
     assert verdicts(fig17_free, STANDARD, lambda one: flow())["fig17-free"].outcome is Outcome.FAILS
 
 
-def test_long_contacts_must_carry_along_and_damp():
+def test_long_contacts_must_correlate_speeds_and_damp_vertical_motion():
     def of(one):
         long = one.case == "fig18"
         return flow(companions=0.6, rms_z=0.06, steep=0.05) if long else flow()

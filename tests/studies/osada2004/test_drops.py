@@ -46,7 +46,7 @@ def test_the_case_ships_as_the_base_drop_of_the_experiments():
             assert section == resolved(shipped)[name], name
 
 
-def test_a_setup_asks_for_the_steps_and_stiffness_it_names():
+def test_a_setup_has_the_steps_and_stiffness_of_its_name():
     assert derive(Setup(steps=7.0).task.read()).steps_per_contact == pytest.approx(7.0)
     assert derive(Setup(steps=5.0, parting="tension").task.read()).steps_per_contact == pytest.approx(5.0)
     assert derive(Setup(d="20 cm", time="0.01 s").task.read()).fixed.t_undamped == pytest.approx(0.01)
@@ -130,7 +130,7 @@ def test_fig12_would_hold_if_overlaps_were_alike():
     assert word("fig12", alike) is Outcome.HOLDS
 
 
-def test_the_rule_of_ten_steps_wants_both_sides_of_ten():
+def test_the_rule_of_ten_steps_is_tested_on_both_sides_of_ten():
     always_right = every(steps)
     (found,) = steps.judge(always_right, QUICK)
     assert [one.holds for one in found.base] == [True, False]
@@ -144,7 +144,7 @@ def test_the_rule_of_ten_steps_wants_both_sides_of_ten():
 
 @pytest.mark.parametrize("parting", ["no tension", "tension"])
 @pytest.mark.parametrize("summed", [False, True])
-def test_forward_differences_reach_the_restitution_asked_for_in_small_steps(parting, summed):
+def test_forward_differences_approach_the_restitution_with_small_steps(parting, summed):
     errors = [np.abs(steps.forward(n, parting, summed) - 0.7).max() for n in (200, 400, 800)]
     assert errors[2] < 0.01
     assert errors[0] > 1.5 * errors[1] > 2.25 * errors[2]

@@ -47,7 +47,7 @@ def test_variants_with_the_same_overrides_are_one_run_whatever_their_order():
     assert CaseRun("saltation").folder.startswith("saltation/")
 
 
-def test_nothing_to_run_is_a_campaign_too(tmp_path):
+def test_a_study_without_runs_is_valid(tmp_path):
     found = carry_out({name: load(name).tasks(Plan()) for name in ()}, load, tmp_path)
     assert found.found == {}
     assert found.n_run == 0

@@ -43,19 +43,19 @@ def words(found, plan):
 
 
 @pytest.mark.parametrize("plan", [QUICK, STANDARD])
-def test_half_that_tremble_and_stiff_grains_at_rest_are_what_the_paper_says(plan):
+def test_half_of_the_soft_grains_vibrating_and_stiff_grains_at_rest_agree_with_the_paper(plan):
     said = words(synthetic(plan, motion(20), motion(GRAINS, 0.1)), plan)
     assert set(said.values()) == {Outcome.HOLDS}
 
 
 @pytest.mark.parametrize(("moving", "until"), [(0, 0.5), (GRAINS, 0.5), (20, 0.4)])
-def test_soft_grains_that_rest_or_that_all_tremble_are_not(moving, until):
+def test_soft_grains_all_at_rest_or_all_vibrating_disagree_with_the_paper(moving, until):
     said = words(synthetic(STANDARD, motion(moving, until), motion(0)), STANDARD)
     assert said["fig10-soft"] is Outcome.FAILS
 
 
 @pytest.mark.parametrize("until", [0.2, 0.5])
-def test_one_stiff_grain_that_moves_too_long_is_enough_against_it(until):
+def test_one_stiff_grain_that_moves_too_long_contradicts_the_paper(until):
     said = words(synthetic(STANDARD, motion(20), motion(1, until)), STANDARD)
     assert said["fig10-stiff"] is Outcome.FAILS
 
@@ -67,7 +67,7 @@ def test_motion_between_two_thresholds_makes_the_verdict_depend_on_the_threshold
     assert "0.00001 d to 0.0001 d" in soft.condition
 
 
-def test_the_rule_fails_if_a_grain_trembles_below_it_and_not_if_above():
+def test_the_rule_fails_if_a_grain_vibrates_below_the_limit_and_not_above():
     below = synthetic(STANDARD, motion(20), motion(0), lambda overlap: motion(int(overlap < 0.006)))
     above = synthetic(STANDARD, motion(20), motion(0), lambda overlap: motion(int(overlap > 0.02)))
     assert words(below, STANDARD)["fig10-rule"] is Outcome.FAILS

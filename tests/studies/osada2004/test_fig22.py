@@ -45,16 +45,16 @@ def without_profile(monkeypatch):
 
 
 @pytest.mark.parametrize("plan", [QUICK, STANDARD])
-def test_rods_of_locked_grains_and_fast_spin_of_free_ones_are_what_the_paper_says(plan):
+def test_rods_of_locked_grains_and_fast_spin_of_free_ones_agree_with_the_paper(plan):
     found = judged(plan, as_told)
     assert {claim: one.outcome for claim, one in found.items()} == dict.fromkeys(fig22.CLAIMS, Outcome.HOLDS)
 
 
-def test_rods_that_free_grains_make_as_well_are_not_the_paper_s():
+def test_rods_that_free_grains_form_too_disagree_with_the_paper():
     assert judged(STANDARD, lambda one: bed(0.6))["fig22"].outcome is Outcome.FAILS
 
 
-def test_rods_that_shuffled_ways_make_as_well_are_none():
+def test_rods_that_shuffled_paths_form_too_do_not_count():
     def of(one):
         return bed(0.6, null=0.58) if rotation(one) == LOCKED else bed(0.03)
 
@@ -72,7 +72,7 @@ def test_a_bed_that_stands_has_no_rods_and_says_so():
     assert {one.note for one in finding.trials if one.choices[SLOPE].startswith("1/10")} == {fig22.STANDS}
 
 
-def test_free_grains_that_do_not_spin_or_go_as_locked_ones_are_not_what_the_paper_says():
+def test_free_grains_that_do_not_spin_or_move_like_locked_ones_disagree_with_the_paper():
     slow = judged(STANDARD, lambda one: bed(0.6) if rotation(one) == LOCKED else bed(0.0, q=1e-3, speed=0.5))
     same = judged(STANDARD, lambda one: bed(0.6) if rotation(one) == LOCKED else bed(0.0, spin=300.0))
     assert slow["fig22-free"].outcome is Outcome.FAILS

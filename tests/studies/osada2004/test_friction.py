@@ -9,7 +9,7 @@ def claim(outcomes, settings=None, setup="", names=(PHI, "slip rule")):
     return {"id": "fig19", "trials": sweep, "settings": settings or {}, "setup": setup, "statement": ""}
 
 
-def test_a_cell_tells_what_holds_as_shipped_and_what_elsewhere():
+def test_a_cell_shows_the_shipped_setting_and_the_others():
     outcomes = {
         ("30 deg", "a"): "holds", ("5 deg", "a"): "fails",
         ("10 deg", "a"): "undecided", ("10 deg", "b"): "fails",

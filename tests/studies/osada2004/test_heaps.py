@@ -45,7 +45,7 @@ def test_a_slope_as_reported_under_every_choice_is_reproduced():
     assert locked.outcome is free.outcome is Outcome.HOLDS
 
 
-def test_a_slope_that_hangs_on_friction_is_reproduced_only_there():
+def test_a_slope_that_depends_on_friction_is_reproduced_only_there():
     def slope(rotation, chosen):
         return 18.0 if rotation == "free" else 10.0 + float(chosen["friction angle"].split()[0])
 
@@ -56,7 +56,7 @@ def test_a_slope_that_hangs_on_friction_is_reproduced_only_there():
     assert "friction angle 20 deg" in locked.condition
 
 
-def test_a_heap_that_stands_like_a_wall_or_still_moves_is_no_final_slope():
+def test_a_heap_that_stands_as_a_wall_or_still_moves_has_no_final_slope():
     walls = of(lambda rotation, _: math.nan if rotation == "locked" else 18.0)
     locked, free = fig19.judge(walls, STANDARD)
     assert locked.outcome is Outcome.FAILS
@@ -71,7 +71,7 @@ def test_starts_of_different_seeds_are_different_heaps():
     assert _heap.starts(QUICK) == [1]
 
 
-def test_more_heaps_are_made_where_a_verdict_hangs_on_them():
+def test_more_heaps_are_made_if_the_verdict_depends_on_them():
     def heaps(plan, rotation, chosen):
         return len(fig19.starts(plan, rotation, chosen))
 
@@ -137,7 +137,7 @@ def test_the_form_that_gives_the_slope_of_gravel_is_named():
     assert stands == {eq13.SPRING}
 
 
-def test_only_a_law_that_makes_energy_is_an_answer_when_a_run_breaks_down():
+def test_a_failed_run_is_a_result_only_for_a_law_that_creates_energy():
     how = {"grain": 1, "step": 2, "t": 0.1, "hint": "Use"}
     assert "0.52" in eq13.failed(OverlapTooLarge("overlap is 0.52", **how)).message
     assert "100 m/s" in eq13.failed(ListUnsafe("a grain moves 0.26 diameters (100 m/s)", **how)).message
@@ -166,7 +166,7 @@ def test_the_coefficient_is_read_off_between_those_tried():
     )  # 37 deg at the smallest coefficient already: no crossing between those tried
 
 
-def test_a_law_that_breaks_the_run_down_fails_and_says_so():
+def test_a_law_that_ends_the_run_fails_with_a_note():
     def slopes(chosen, seed):
         broken = chosen[eq13.MODEL] == eq13.PRINTED
         return (
@@ -179,7 +179,7 @@ def test_a_law_that_breaks_the_run_down_fails_and_says_so():
     assert not any("Eq. (13) as printed at" in line for line in finding.also)  # no heap, no energy to tell
 
 
-def test_energy_that_the_printed_law_makes_is_told():
+def test_energy_created_by_the_printed_law_is_reported():
     def slopes(chosen, seed):
         return replace(heap(18.0 + 0.1 * seed), rolled=-0.05 if chosen[eq13.MODEL] == eq13.PRINTED else 0.05)
 

@@ -69,7 +69,7 @@ def make(known, names, plan, folder):
     return make_study(Fakes(known), names, plan, folder)
 
 
-def test_a_run_that_fails_costs_its_experiment_its_verdict_and_no_other(fakes, tmp_path: Path):
+def test_a_failed_run_leaves_only_its_part_unjudged(fakes, tmp_path: Path):
     made = make(fakes, None, Plan(Level.QUICK, (1,)), tmp_path)
     by_id = {row.id: row for row in made.entries}
     assert set(by_id) == {"fig4", "fig5", "fig20", "fig20-shear"}
@@ -83,7 +83,7 @@ def test_a_run_that_fails_costs_its_experiment_its_verdict_and_no_other(fakes, t
 
 
 @pytest.mark.parametrize("step", ["judge", "rows", "draw", "measure"])
-def test_an_error_in_the_program_is_told_kept_in_a_log_and_costs_no_other_claim(fakes, tmp_path: Path, step):
+def test_an_error_in_the_program_is_reported_logged_and_affects_no_other_claim(fakes, tmp_path: Path, step):
     def wrong(*words):
         return words[7]
 
@@ -114,7 +114,7 @@ def test_an_error_in_the_program_is_told_kept_in_a_log_and_costs_no_other_claim(
     assert not (tmp_path / "ledger-quick-errors.log").exists()
 
 
-def test_a_finding_that_cannot_be_told_or_is_of_another_claim_is_an_error(fakes, tmp_path: Path):
+def test_a_finding_without_words_or_of_another_claim_is_an_error(fakes, tmp_path: Path):
     fakes["bad"] = Fake(("fig4", "fig5"))
     fakes["bad"].judge = lambda *_: [Finding("fig4", (), "physics")]
     fakes["good"].judge = lambda *_: [

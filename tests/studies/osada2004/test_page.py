@@ -51,7 +51,7 @@ def read(ledger):
     return reader, text
 
 
-def test_the_json_holds_every_key_and_no_number_that_is_none(every_word):
+def test_the_json_has_every_key_and_no_nan(every_word):
     files = write(every_word, every_word.folder / "copies" / "copy.json")
     assert [one.name for one in files] == ["ledger.html", "ledger.json", "copy.json"]
 
@@ -74,7 +74,7 @@ def test_the_json_holds_every_key_and_no_number_that_is_none(every_word):
     assert by_id["fig20"]["pictures"] == ["fig20/fig20.png"]
 
 
-def test_the_page_is_whole_alone_and_safe(every_word):
+def test_the_page_is_complete_self_contained_and_escaped(every_word):
     write(every_word)
     reader, text = read(every_word)
     assert "script" not in reader.tags
@@ -178,7 +178,7 @@ def test_a_file_that_cannot_be_written_leaves_the_old_one_whole(every_word, monk
     assert (every_word.folder / "ledger.html").read_bytes() == before
 
 
-def test_an_open_question_is_answered_by_what_was_told_of_it(every_word):
+def test_an_open_question_is_answered_by_the_findings_about_it(every_word):
     rows = tuple(
         replace(row, finding=replace(row.finding, also=("torque takes half the spin", "something else")))
         if row.id == "fig20"
@@ -193,7 +193,7 @@ def test_an_open_question_is_answered_by_what_was_told_of_it(every_word):
     assert "stands as a wall" not in answer
 
 
-def test_a_question_that_no_run_answers_says_so(every_word):
+def test_a_question_without_runs_is_marked_unanswered(every_word):
     write(every_word)
     _, text = read(every_word)
     assert "holds no run that answers it" in text[text.index('id="water-torque"') :]

@@ -23,7 +23,7 @@ def test_an_equation_points_at_a_law_that_names_it(number):
     assert "Eq" in getattr(importlib.import_module(module), name).__doc__
 
 
-def test_claims_and_readings_have_one_id_each_and_say_something():
+def test_claims_and_readings_have_unique_ids_and_texts():
     assert len(paper.CLAIMS) == len(paper._CLAIMS) == 32
     assert len(paper.READINGS) == len(paper._READINGS)
     assert all(claim.setup and claim.says for claim in paper.CLAIMS.values())

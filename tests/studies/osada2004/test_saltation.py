@@ -63,7 +63,7 @@ def test_fig7_fails_where_no_contact_time_is_that_of_eq_8():
 
 
 @pytest.mark.parametrize(("change", "word"), [(0.99, Outcome.HOLDS), (0.9, Outcome.FAILS)])
-def test_spin_time_asks_for_the_same_time_locked_and_free(change, word):
+def test_spin_time_requires_the_same_time_locked_and_free(change, word):
     def make(one):
         share = change if one.get("motion.rotation") == "free" else 1.0
         return made_up(contact_time=1e-4 * share * scatter(one))
@@ -105,7 +105,7 @@ def test_fig20_compares_free_with_locked_under_the_same_choices():
     assert {trial.choices[PHI] for trial in found["fig20"].trials} >= {"10 deg", "30 deg"}
 
 
-def test_full_fig20_sweeps_what_is_left_open_one_at_a_time_and_the_rule_for_a_hop():
+def test_full_fig20_varies_each_free_choice_and_the_definition_of_a_hop():
     made = {one.get("motion.rotation"): made_up() for one in fig20.tasks(FULL)}
     labels = {name: made_up().found.averages for name in fig20.RISES}
     found = judged(fig20, lambda one: fig20.Both(made[one.get("motion.rotation")], labels), FULL)
@@ -139,7 +139,7 @@ def test_fig21_fails_at_another_level_even_where_spin_grows():
     assert found["fig21"].outcome is Outcome.FAILS
 
 
-def test_the_water_removes_a_share_of_the_spin_beyond_its_own_turn():
+def test_the_water_removes_a_share_of_the_spin_in_excess_of_its_rotation():
     made = {one: spun(220.0 if one.get("water.torque") else 1020.0, AT_ONCE) for one in fig21.tasks(STANDARD)}
     assert fig21.removed(made, STANDARD, "Dennis") == pytest.approx([0.8, 0.8, 0.8])
     rows = fig21.rows(made, STANDARD)

@@ -25,13 +25,13 @@ def test_a_check_names_its_runs_and_what_they_cost(name):
             assert check.measure
 
 
-def test_quick_is_quick():
+def test_the_quick_level_takes_seconds():
     works = {one for name in NAMES for one in load(name).tasks(Plan(Level.QUICK, ()))}
     assert sum(one.cost() for one in works) < 240.0  # core seconds, by rule of thumb
 
 
 @pytest.mark.slow
-def test_every_check_of_the_quick_level_is_within(tmp_path):
+def test_every_comparison_of_the_quick_level_is_within_tolerance(tmp_path):
     made = make(VALIDATION, None, Plan(Level.QUICK, ()), tmp_path, jobs=2)
     assert {
         one.id: one.outcome for one in made.entries if one.outcome not in (Outcome.HOLDS, Outcome.SHOWN)
@@ -66,6 +66,6 @@ def test_a_bed_of_ergun_settles_the_same_under_both_forms():
     )
 
 
-def test_no_reference_gives_no_number():
+def test_without_a_reference_there_is_no_error():
     assert np.isnan(relative([], []))
     assert np.isnan(relative([1.0], [0.0]))

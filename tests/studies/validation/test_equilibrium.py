@@ -50,7 +50,7 @@ def test_friction_is_what_stops_the_grains_that_move(run):
     assert found["friction"] == pytest.approx(friction, rel=1e-6)
 
 
-def test_a_flow_holds_what_lies_between_bed_and_surface(run):
+def test_the_concentration_of_a_flow_is_that_between_bed_and_surface(run):
     z = (np.arange(200) + 0.5) * 0.1 * D
     speed = np.maximum(np.arange(LAYERS) - 4.0, 0.0)  # the bed ends in the fifth layer
     surface, u_top = 12.0 * D, 10.0
@@ -72,7 +72,7 @@ def test_a_flow_holds_what_lies_between_bed_and_surface(run):
 
 
 @pytest.mark.parametrize(("factor", "word"), [(1.0, Outcome.HOLDS), (2.0, Outcome.FAILS)])
-def test_concentrations_are_held_against_the_friction_of_the_dry_flow(factor, word):
+def test_concentrations_are_compared_with_the_friction_of_the_dry_flow(factor, word):
     friction = 0.55
     *wet, dry = equilibrium.tasks(Plan(Level.FULL, ()))
     found: dict = {dry: {"friction": friction, "time": 0.5}}

@@ -9,7 +9,7 @@ from ryusa.studies.validation import frey
 from ryusa.study import Level, Outcome, Plan
 
 
-def test_the_measured_profiles_carry_what_the_flume_carried() -> None:
+def test_the_flux_of_the_measured_profiles_is_that_of_the_flume() -> None:
     flume = frey.measured()
     # the two rates that the literature quotes for runs 6 and 20, with g cos(slope)
     assert frey.rate(*flume[6]) == pytest.approx(0.066, abs=0.001)

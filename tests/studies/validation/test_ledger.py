@@ -105,7 +105,7 @@ def test_a_second_call_opens_what_was_computed_and_gives_the_same(checks, tmp_pa
     assert CALLS == [5, 17, 5, 17]
 
 
-def test_an_interrupted_validation_goes_on_where_it_stopped(checks, tmp_path, monkeypatch):
+def test_an_interrupted_validation_continues_where_it_stopped(checks, tmp_path, monkeypatch):
     checks["one"] = Fake()
     real = ledger_module.carry_out
 
@@ -144,7 +144,7 @@ def test_a_curve_that_is_too_far_off_is_missed(checks, tmp_path):
     assert not made.problems and not made.faults  # computed in order: the number is the answer
 
 
-def test_an_error_in_one_check_costs_no_other(checks, tmp_path):
+def test_an_error_in_one_comparison_affects_no_other(checks, tmp_path):
     checks["bad"], checks["good"] = Fake(trouble=IndexError("no such row")), Fake()
     checks["told"] = Fake(trouble=ResultsError("no steady state"))
     made = make(checks, None, Level.QUICK, tmp_path)
@@ -191,7 +191,7 @@ def test_a_part_never_replaces_the_whole(checks, tmp_path):
     assert make(checks, None, Level.FULL, tmp_path).stem == "validation"
 
 
-def test_what_is_no_number_is_missed():
+def test_nan_is_missed():
     assert misfit("e", math.nan, "-", at_most(1.0, "why")).holds is False
     assert misfit("e", 3.0, "-", Band(1.0, math.inf, "-", "why")).holds is True
 

@@ -10,7 +10,7 @@ from ryusa.studies.validation import rebound
 ST = np.array(rebound.ASKED)
 
 
-def test_the_laws_written_out_once_more_are_those_of_the_package():
+def test_the_laws_repeated_in_the_study_are_those_of_the_package():
     exponential = [immersed.restitution_exponential(rebound.E_DRY, st, rebound.ST_C) for st in ST]
     davis = [immersed.restitution_davis(rebound.E_DRY, st, rebound.ROUGH, rebound.D) for st in ST]
     assert rebound.asked("exponential", ST) == pytest.approx(np.maximum(exponential, rebound.LEAST))
@@ -29,7 +29,7 @@ def test_a_speed_gives_the_stokes_number_it_was_chosen_for(partner, mass, size):
     assert st == pytest.approx(35.0)
 
 
-def test_a_film_takes_the_integral_of_its_force():
+def test_a_film_dissipates_the_integral_of_its_force():
     r, gap = 0.5 * rebound.D, np.linspace(0.0, rebound.REACH, 20001)
     force = [
         immersed.lubrication_force(h, 1.0, r, rebound.ROUGH, rebound.REACH, rebound.RHO, rebound.NU)

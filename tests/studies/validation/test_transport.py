@@ -35,7 +35,7 @@ def test_rates_far_above_all_formulae_are_missed():
     assert found.outcome is Outcome.FAILS
 
 
-def test_a_bed_that_lies_still_above_the_threshold_is_missed():
+def test_a_bed_at_rest_above_the_threshold_is_missed():
     (found,) = transport.judge(made(0.0, Level.QUICK), Plan(Level.QUICK, ()))
     assert found.trials[0].found.value == math.inf
     assert found.outcome is Outcome.FAILS
