@@ -91,7 +91,7 @@ def test_fig8_needs_a_harder_hit_than_a_saltating_grain_gives():
     soft = hits(QUICK, 0.3, 0.0042)
     (found,) = fig08.judge(every(fig08) | soft, QUICK)
     assert found.outcome is Outcome.FAILS
-    assert "asks for 0.72 m/s" in found.decided_by
+    assert "requires 0.72 m/s" in found.decided_by
     assert word("fig08", every(fig08, overlap=2.4) | soft) is Outcome.ONLY_IF
     assert word("fig08", every(fig08, overlap=2.4) | hits(QUICK, 0.72, 0.01)) is Outcome.HOLDS
     (swept,) = fig08.judge(every(fig08, STANDARD) | hits(STANDARD, 0.3, 0.0042), STANDARD)

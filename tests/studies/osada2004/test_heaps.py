@@ -16,7 +16,7 @@ FULL = Plan(Level.FULL, (1,))
 
 
 def heap(slope, moving=0.0, rolled=0.0):
-    """A heap of that slope in degrees, nan for one that stands like a wall."""
+    """A heap of that slope in degrees, nan for one that stands as a wall."""
     angle = math.radians(slope)
     found = SimpleNamespace(
         angle=angle,
@@ -60,7 +60,7 @@ def test_a_heap_that_stands_as_a_wall_or_still_moves_has_no_final_slope():
     walls = of(lambda rotation, _: math.nan if rotation == "locked" else 18.0)
     locked, free = fig19.judge(walls, STANDARD)
     assert locked.outcome is Outcome.FAILS
-    assert locked.base[0].note == "stands like a wall"
+    assert locked.base[0].note == "stands as a wall"
     assert free.outcome is Outcome.HOLDS
     creeping = {one: heap(fig19.PAPER["locked"], moving=0.2) for one in of(lambda *_: 33.0)}
     assert fig19.judge(creeping, STANDARD)[0].outcome is Outcome.FAILS

@@ -32,7 +32,7 @@ SIZES = ("0.05 cm", "0.1 cm", "0.2 cm", "0.5 cm", "1 cm")  # of fig4, fig8, fig1
 LARGE = ("5 cm", "10 cm", "20 cm", "50 cm", "100 cm")  # of fig12
 A_3 = math.pi / 6.0
 LATE = 4.0  # contact times after which a grain that still touches counts as one that stays
-ABOUT = "10 % either way: what can be read off a chart whose axes span decades"
+ABOUT = "within 10 %, the accuracy of reading a chart whose axes span decades"
 
 _SHIPPED = {  # what the case file says already
     "grains.diameter": DIAMETER,

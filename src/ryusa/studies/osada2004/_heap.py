@@ -95,9 +95,9 @@ def slope_interval(heaps: Sequence[Heap], spread: Pooled | None) -> tuple[Interv
     standing, n = sum(one.wall for one in heaps), len(heaps)
     found = over_seeds(slopes([one for one in heaps if not one.wall]), "deg", spread)
     if standing == n:
-        return found, False, "stands like a wall"
+        return found, False, "stands as a wall"
     if standing:
-        note = f"{standing} of {n} stand like a wall, the others {found.value:.3g} deg"
+        note = f"{standing} of {n} stand as a wall, the others {found.value:.3g} deg"
         most = stats.binomtest(standing, n).proportion_ci(CONFIDENCE).low > 0.5
         none = Interval(math.nan, math.nan, math.nan, "deg", n, found.how)
         return none, False if most else None, note

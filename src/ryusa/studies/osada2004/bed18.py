@@ -16,7 +16,7 @@ from ryusa.studies.osada2004._experiment import PHI, RATIO, SLIP, CaseRun, Found
 from ryusa.study import Band, Finding, Trial, over_range, short
 
 FIGURE = "fig19"
-TITLE = "A dry bed is tilted"
+TITLE = "Flow of a tilted dry bed"
 CLAIMS = ("bed18",)
 SLOPE, START, BED = "slope (bed18)", "start (bed18)", "bed (bed18)"
 REST, MOVING = "from rest", "once moving"
@@ -36,9 +36,10 @@ MOVES = Band(
     FLOWS,
     math.inf,
     "-",
-    "flows: mean speed of the free grains over the last 0.3 s above 0.02 sqrt(g d), a diameter in 0.7 s; a "
-    "bed that creeps is slower, one layer of ten that rolls with sqrt(g d) gives 0.1. And not dying: at "
-    "least half the speed of the 0.3 s before. Asked of every seed and of every slope from 21 deg on",
+    "flows: mean speed of the free grains over the last 0.3 s above 0.02 sqrt(g d), a diameter in 0.7 s; "
+    "a creeping bed is slower, and one layer of ten that rolls with sqrt(g d) gives 0.1. And not "
+    "decaying: at least half the speed of the 0.3 s before. Required of every seed and every slope from "
+    "21 deg",
 )
 KEEPS = 0.5  # of the speed 0.3 s before; a bed one degree too flat loses 0.4 sqrt(g d) in that time
 
@@ -183,7 +184,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         angle = flattest(found, plan, start)
         words = f"{angle:g} deg" if math.isfinite(angle) else "none of those tried"
         also.append(
-            f"flattest slope that flows {start}, friction angle {SHIPPED[PHI]}, all seeds: {words}; the "
+            f"lowest slope that flows {start}, friction angle {SHIPPED[PHI]}, all seeds: {words}; the "
             f"paper's heap with rotation free ends at {HEAP:g} deg"
         )
     for name in plan.pick((), tuple(CONTROLS)):
@@ -196,9 +197,9 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         Finding(
             "bed18",
             tuple(trials),
-            "Two angles, not one: a bed at rest, here as dense as grains without friction settle, must "
-            "first break its packing, while one that moves rattles on at a flatter slope. A heap that "
-            f"collapses stops near the second. {_told(found, plan)}",
+            "There are two angles: a bed at rest, here as dense as grains settle without friction, must "
+            "first break its packing, while a moving bed continues to flow at a lower slope. A collapsing "
+            f"heap stops near the second angle. {_told(found, plan)}",
             {
                 "bed": "200 grains, 10 layers, sizes +-20 %, dry",
                 "k_n": "100 N/cm",
@@ -214,9 +215,9 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
 def _told(found: Found, plan: Plan) -> str:
     """Both angles, where slopes were tried for them."""
     if plan.level == "quick":
-        return "One slope from rest says nothing of either."
-    words = [f"{start} from {flattest(found, plan, start):g} deg on" for start in (REST, MOVING)]
-    return f"Of the slopes tried every seed flows {' and '.join(words)}."
+        return "From one slope tried from rest neither angle follows."
+    words = [f"{start} from {flattest(found, plan, start):g} deg" for start in (REST, MOVING)]
+    return f"Of the slopes tried, all seeds flow {' and '.join(words)}."
 
 
 def rows(found: Found, plan: Plan) -> list[dict[str, object]]:

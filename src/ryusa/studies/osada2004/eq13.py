@@ -166,9 +166,9 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         trials.append(Trial("final slope", chosen, slope, GRAVEL, decided, note))
         trials.append(Trial("standing", chosen, _heap.moving(group), STILL))
     decided_by = (
-        "Eq. (13) sets M_f against M_t, the torque of the shear force, not against the spin. On a grain that "
-        "rolls M_f itself calls up the shear that makes the next M_t: it brakes and drives in turn, "
-        f"and can make energy. {_verdict_of(others)}"
+        "In Eq. (13) M_f opposes M_t, the torque of the shear force, not the spin. On a rolling grain M_f "
+        "itself causes the shear force of the next M_t: it brakes and drives alternately, and can create "
+        f"energy. {_verdict_of(others)}"
     )
     common = {
         "wanted": "33 to 38 deg with rotation free, standing at the end",

@@ -92,10 +92,10 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         Finding(
             "fig4",
             tuple(trials),
-            "A mass on a spring: the time grows as the root of mass over stiffness, so as d to the power "
-            "3/2. The quoted 0.01 s follows for quartz; it is a number of the formula rather than of a "
-            "grain, for on so soft a spring a grain reaches deep into its partner and its weight lengthens "
-            "the contact.",
+            "For a mass on a spring the contact time is proportional to the square root of mass over "
+            "stiffness, and so to d^(3/2). The quoted 0.01 s follows for quartz. It is a value of the "
+            "formula rather than of a real contact: on so soft a spring the overlap is large, and the "
+            "weight of the grain lengthens the contact.",
             {"restitution": "1", "weight": "none, as in Eq. (8)", "steps per contact": "50"},
             also=tuple(also),
         ),

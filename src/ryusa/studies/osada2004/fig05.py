@@ -86,13 +86,14 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         Finding(
             "fig5",
             tuple(trials),
-            f"The dashpot shifts the time little: without weight to {no_pull:.3f} of Eq. (8) if it may not "
-            f"pull, to {pull:.4f} if it may. Weight does more: with g/(v omega_0) near 1, soft springs and "
-            "slow impacts, the grain leans on its partner, touches longer, and at last does not come off.",
+            f"The dashpot changes the contact time little: without weight to {no_pull:.3f} of Eq. (8) if "
+            f"it may not pull, to {pull:.4f} if it may. Weight has a larger effect: as g/(v omega_0) "
+            "approaches 1, with soft springs and slow impacts, contacts become longer, and in the end the "
+            "grain does not rebound.",
             {"restitution": "0.7", "d": _drops.DIAMETER, "weight": "yes"},
             also=(
-                f"weight eats restitution too: e = {least[1]:.2f} instead of 0.7 "
-                f"at g/(v omega_0) = {least[0]:.2f}",
+                f"weight reduces the restitution too: e = {least[1]:.2f} instead of 0.7 at g/(v omega_0) = "
+                f"{least[0]:.2f}",
                 f"within 10 % in every run with g/(v omega_0) up to {most:.2g}",
             ),
         ),

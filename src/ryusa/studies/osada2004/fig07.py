@@ -22,7 +22,7 @@ AGREES = Band(
     0.9,
     1.1,
     "-",
-    "broadly agrees: mean contact time over Eq. (8) 0.9 to 1.1, finer than a logarithmic plot shows",
+    "broadly agrees: mean contact time over Eq. (8) 0.9 to 1.1, finer than can be seen in a logarithmic plot",
 )
 PART = "mean contact time over Eq. (8)"
 PATH = {**SHIPPED, K_N: "1 N/cm"}  # Fig. 6
@@ -73,15 +73,15 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         Finding(
             "fig7",
             trials,
-            f"Two things that Eq. (8) leaves out nearly cancel: added mass makes a contact "
-            f"{100 * (times.added / times.eq_8 - 1):.0f} % longer, the dashpot ends its force "
-            f"{100 * (1 - times.damped / times.added):.0f} % sooner. What is left is that the line of "
-            "centres turns while the grain passes over: it shortens long contacts, so softness "
-            f"decides{below}.",
+            f"Two effects that Eq. (8) omits nearly cancel: added mass makes a contact "
+            f"{100 * (times.added / times.eq_8 - 1):.0f} % longer, and with the dashpot the force ends "
+            f"{100 * (1 - times.damped / times.added):.0f} % earlier. What remains is that the line of "
+            "centres turns while the grain passes over its partner. This shortens long contacts, so the "
+            f"stiffness decides{below}.",
             settings={"rotation": "locked", "starts": f"{_saltation.WIDE['build.starts']} of 30 hops a seed"},
             also=(
                 f"u t/d: {_saltation.listed({k: one.travel for k, one in sweep.items()})}",
-                "lone contacts over Eq. (8) with added mass and dashpot: "
+                "contacts with a single partner over Eq. (8) with added mass and dashpot: "
                 + _saltation.listed({k: float(one.shortened.mean()) for k, one in sweep.items()}),
                 "mean largest overlap/d: "
                 + _saltation.listed({k: one.overlap for k, one in sweep.items()}, ".2g"),

@@ -106,13 +106,13 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         Finding(
             "fig8",
             tuple(trials),
-            "Overlap grows with impact speed and with the root of mass over stiffness. At 100 N/cm it is "
-            f"{base:.4f} for {_drops.SPEED}, so 0.01 asks for {wanted:.2f} m/s, a fall of "
-            f"{100.0 * wanted**2 / 19.6:.1f} cm in air; a grain that saltates hits with {speed.mean():.2f} "
-            f"m/s along the normal in the mean and {speed.max():.2f} m/s at most.",
+            "The overlap is proportional to impact speed and to the square root of mass over stiffness. "
+            f"At 100 N/cm it is {base:.4f} for {_drops.SPEED}, so 0.01 requires {wanted:.2f} m/s, a fall "
+            f"of {100.0 * wanted**2 / 19.6:.1f} cm in air; a saltating grain hits the bed with "
+            f"{speed.mean():.2f} m/s along the normal on average and {speed.max():.2f} m/s at most.",
             {"d": _drops.DIAMETER, "k_n": "100 N/cm", "parting": _drops.NO_TENSION},
             also=(
-                f"at {_drops.SPEED} an overlap of 0.01 d comes with {K_N * (base / 0.01) ** 2:.0f} N/cm",
+                f"at {_drops.SPEED} an overlap of 0.01 d requires {K_N * (base / 0.01) ** 2:.0f} N/cm",
                 f"{100.0 * np.mean(speed >= wanted):.0f} % of the {len(speed)} hits of the saltating grain "
                 f"are at {wanted:.2f} m/s or more",
             ),

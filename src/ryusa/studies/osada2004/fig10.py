@@ -1,4 +1,4 @@
-"""Fig. 10: 42 grains fall into a box; who still trembles with a soft spring, a stiff one, other sizes."""
+"""Fig. 10: 42 grains fall into a box; which of them still vibrate, by stiffness and diameter."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -21,7 +21,7 @@ from ryusa.studies.osada2004._experiment import PHI, RATIO, ROTATION, SLIP, Case
 from ryusa.study import Band, Finding, Interval, Trial, over_range, over_seeds, pool, short
 
 FIGURE = "fig10"
-TITLE = "Grains in a box: which spring lets them come to rest"
+TITLE = "Grains in a box: stiffness and coming to rest"
 CLAIMS = ("fig10-soft", "fig10-stiff", "fig10-rule")
 SOFT, STIFF = "1 N/cm", "100 N/cm"
 STIFFEST = 1.0e4  # the same as STIFF [N/m]
@@ -50,9 +50,9 @@ AT, D = 0.125, 0.002  # when the paper looks at the stiff grains [s]; its diamet
 MARKED = (20, 39)  # one amid the pile, one in its top layer; the text does not say where No. 1 and No. 2 lay
 HALF = Band(0.3, 0.6, "-", "nearly half of the 42 in the window that ends at 0.5 s: a share of 0.3 to 0.6")
 REST = Band(
-    -math.inf, 0.13, "s", "at rest by 0.125 s, told to one window of 0.01 s: from 0.13 s on none moves"
+    -math.inf, 0.13, "s", "at rest by 0.125 s, resolved to one window of 0.01 s: no grain moves after 0.13 s"
 )
-NONE = Band(0.0, 0.0, "-", "no trembling: not one grain in the last window")
+NONE = Band(0.0, 0.0, "-", "no vibration: not a single grain in the last window")
 LIMIT = 0.01  # of overlap/d, the paper's rule
 SIZES = ("0.05 cm", "1 cm", "0.1 cm", "0.5 cm")
 OVERLAPS = ("0.005", "0.03", "0.002", "0.01", "0.1")
@@ -165,7 +165,7 @@ def again(run: Results, dt: float, *, summed: bool) -> Vibration:
 
 
 def share(moved: Vibration, threshold: str, way: str) -> float:
-    """Share that trembles in the last window [-]."""
+    """Share of grains that vibrate in the last window [-]."""
     return float(trembling_share(moved, moved.diameters(THRESHOLDS[threshold]), WAYS[way])[-1])
 
 
@@ -194,9 +194,13 @@ def _both(plan: Plan, found: Found) -> tuple[list[Trial], list[Trial]]:
             for one, some, late in zip(settings(plan), shares, times, strict=True):
                 chosen = {**one, THRESHOLD: threshold, MOVED: way}
                 soft.append(
-                    Trial("share that trembles at 0.5 s", chosen, over_seeds(some, "-", spread), HALF)
+                    Trial(
+                        "share of grains that vibrate at 0.5 s", chosen, over_seeds(some, "-", spread), HALF
+                    )
                 )
-                stiff.append(Trial("no grain moves from (0.5 s: never)", chosen, over_seeds(late, "s"), REST))
+                stiff.append(
+                    Trial("no grain moves after (0.5 s: never)", chosen, over_seeds(late, "s"), REST)
+                )
     return soft, stiff
 
 
@@ -211,7 +215,7 @@ def _some(runs: Sequence[Fall], threshold: str) -> int:
 
 
 def _rule(plan: Plan, found: Found) -> Finding:
-    """No run with overlap/d below 0.01 trembles at its end."""
+    """No run with overlap/d below 0.01 has vibrating grains at its end."""
     trials: list[Trial] = []
     also: list[str] = []
     for rotation in plan.pick(("locked",), ("locked", "free")):
@@ -223,7 +227,10 @@ def _rule(plan: Plan, found: Found) -> Finding:
                 chosen = {ROTATION: rotation, THRESHOLD: threshold, MOVED: way}
                 trials.append(
                     Trial(
-                        "largest share that trembles at the end", chosen, _worst(below, threshold, way), NONE
+                        "largest share of grains that vibrate at the end",
+                        chosen,
+                        _worst(below, threshold, way),
+                        NONE,
                     )
                 )
         words = [
@@ -237,14 +244,14 @@ def _rule(plan: Plan, found: Found) -> Finding:
     runs = [found[one] for one in others(plan, "locked")]
     above = [one for one in runs if one.overlap >= LIMIT]
     above_all = (
-        f"of {len(above)} locked runs above it {_some(above, '0.001 d')} tremble by 0.001 d at the end"
+        f"of {len(above)} locked runs above it {_some(above, '0.001 d')} vibrate by 0.001 d at the end"
     )
     return Finding(
         "fig10-rule",
         tuple(trials),
-        "Dry boxes with equal overlap/d are the same box at any diameter, times counted in sqrt(d/g), "
-        "so the rule carries over by similarity. Nothing happens at 0.01 itself: the lower overlap/d, the "
-        f"smaller and the shorter-lived what is left of the fall; {above_all}.",
+        "Dry boxes with equal overlap/d are similar at all diameters, with times in units of sqrt(d/g), "
+        "so the rule holds for all diameters or for none. There is no threshold at 0.01: the lower "
+        f"overlap/d, the smaller and the shorter the motion left by the fall; {above_all}.",
         {
             "d": ", ".join(SIZES),
             "overlap/d asked for": ", ".join(plan.pick(OVERLAPS[:2], OVERLAPS)),
@@ -261,7 +268,7 @@ def _left(runs: Sequence[Fall], t: float, scheme: str = OURS) -> float:
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
-    """Soft: nearly half tremble; stiff: all rest; and the rule for other diameters."""
+    """Soft: nearly half of the grains vibrate; stiff: all are at rest; and the rule for other diameters."""
     soft, stiff = _both(plan, found)
     runs: list[Fall] = [found[_run(SHIPPED, SOFT, seed)] for seed in starts(plan)]
     stiffs: list[Fall] = [found[_run(SHIPPED, STIFF, seed)] for seed in starts(plan)]
@@ -270,8 +277,8 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     net = float(np.median([np.abs(one.moved.net[-1]) / one.moved.d_mean for one in runs]))
     also = [
         f"largest overlap/d {short(overlap[0])} at {SOFT}, {short(overlap[1])} at {STIFF}",
-        f"half of the soft grains tremble at 0.5 s if the threshold is {short(net)} d net, or "
-        f"{short(_left(runs, 0.5))} d to and fro: under a ten-thousandth of a millimetre",
+        f"half of the grains on soft springs vibrate at 0.5 s if the threshold is {short(net)} d net, or "
+        f"{short(_left(runs, 0.5))} d to and fro: less than a ten-thousandth of a millimetre",
     ]
     for name in (OURS, SUMMED, EULER, ONE_STEP):
         net, wide = (
@@ -287,20 +294,22 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         Finding(
             "fig10-soft",
             tuple(soft),
-            "What the fall leaves dies out with the dashpots, at a rate that goes with sqrt(k_n), ten times "
-            f"slower in the soft box: the median grain moves to and fro by {short(_left(runs, 0.3))} d at "
-            f"0.3 s and {short(_left(runs, 0.5))} d at 0.5 s. It is not kept up, so the threshold decides. "
-            "Forward differences keep it up if the spring is read from the overlap and a contact has ten "
-            f"steps ({short(_left(runs, 0.5, EULER))} d at 0.5 s, but the stiff box then trembles too, "
-            f"{short(_left(stiffs, 0.5, EULER))} d); with the spring summed as printed they do not.",
+            "The motion left by the fall is damped by the dashpots at a rate proportional to sqrt(k_n), "
+            "ten times more slowly in the soft box: the median grain oscillates by "
+            f"{short(_left(runs, 0.3))} d at 0.3 s and {short(_left(runs, 0.5))} d at 0.5 s. It is not "
+            "sustained, so the threshold decides. Forward differences sustain it if the spring force is "
+            f"calculated from the overlap and a contact has ten steps ({short(_left(runs, 0.5, EULER))} d "
+            f"at 0.5 s, but then the stiff box vibrates too, {short(_left(stiffs, 0.5, EULER))} d); with "
+            "the spring force summed as printed they do not.",
             {**shared, SLIP: "spring", RATIO: "2/7", "k_n": SOFT},
             also=tuple(also),
         ),
         Finding(
             "fig10-stiff",
             tuple(stiff),
-            "A stiff pile loses its oscillation in hundredths of a second; how long grains still shift "
-            "depends on how far they fell and, with rotation free, on rolling, which little brakes.",
+            "A stiff pile loses its oscillation within hundredths of a second. How long grains go on "
+            "moving depends on the height of the fall and, with rotation free, on rolling, which is "
+            "hardly resisted.",
             {**shared, SLIP: "spring", RATIO: "2/7", "k_n": STIFF},
         ),
         _rule(plan, found),
@@ -329,7 +338,7 @@ def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
 
 
 def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
-    """Fig. 9 and fig. 10 as printed, and how many tremble over the threshold."""
+    """Fig. 9 and fig. 10 as printed, and the share of vibrating grains over the threshold."""
     runs: dict[str, Fall] = {k: found[_run(SHIPPED, k, plan.seeds[0])] for k in (SOFT, STIFF)}
     pictures = {"fig09-start": draw_snapshot(runs[SOFT].start, "none")}
     for letter, (k, fall) in zip("ab", runs.items(), strict=True):

@@ -19,7 +19,7 @@ TITLE = "The stable band over the contact times"
 CLAIMS = ("fig11",)
 SPEED = "impact speed (fig11)"
 TIME = "0.0001 s"  # the paper's contact time
-INSIDE = Band(*BAND, "-", f"{BAND[0]:g} < overlap/d < {BAND[1]:g}, the paper's own band")
+INSIDE = Band(*BAND, "-", f"{BAND[0]:g} < overlap/d < {BAND[1]:g}, the band given by the paper")
 
 
 def speeds(plan: Plan) -> tuple[str, ...]:
@@ -55,13 +55,13 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         Finding(
             "fig11",
             tuple(trials),
-            "Overlap/d is impact speed times contact time over d, times a constant: at one speed the band "
-            f"holds contact times of its own width, a factor {BAND[1] / BAND[0]:g}. For 0.2 cm and "
+            "Overlap/d is proportional to impact speed times contact time over d, so at a given speed "
+            f"the band spans the same factor of {BAND[1] / BAND[0]:g} in contact time. For 0.2 cm and "
             f"{_drops.SPEED} these are {edges[0]:.2g} to {edges[1]:.2g} s; {TIME} lies in it for impacts at "
             f"{v * BAND[0] / base:.2g} to {v * BAND[1] / base:.2g} m/s.",
             {"restitution": "0.7", "d": _drops.DIAMETER, "parting": _drops.NO_TENSION},
             also=(
-                f"at the speed that fig8 asks for, overlap/d 0.01 at 100 N/cm, it is {at_fig8:.4f}, "
+                f"at the speed that fig8 requires, with overlap/d 0.01 at 100 N/cm, it is {at_fig8:.4f}, "
                 f"{'inside' if BAND[0] < at_fig8 < BAND[1] else 'outside'} the band",
             ),
         ),

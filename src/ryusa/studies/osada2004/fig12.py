@@ -80,13 +80,14 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         Finding(
             "fig12",
             tuple(trials),
-            "At one impact speed the largest overlap is proportional to the contact time. Each time alone "
-            f"lies in the band, but for impacts a hundred times apart in speed: {' and '.join(alone)}.",
+            "At one impact speed the largest overlap is proportional to the contact time. Each contact "
+            "time lies in the band by itself, but at impact speeds that differ by a factor of 100: "
+            f"{' and '.join(alone)}.",
             {"restitution": "0.7", "d": D, "parting": _drops.NO_TENSION},
             contradiction=(
-                "Eq. (8) and a spring make overlap/d proportional to contact time: the two times differ by "
-                f"{asked:.0f}, so do the overlaps (runs, weight included: {spread}), and a band a factor "
-                f"{width:g} wide cannot hold both"
+                "By Eq. (8), overlap/d is proportional to the contact time: the two times differ by a factor "
+                f"of {asked:.0f}, and so do the overlaps (runs, with weight: {spread}), so a band that "
+                f"spans a factor of {width:g} cannot contain both"
                 if min(ratios) > width
                 else ""
             ),

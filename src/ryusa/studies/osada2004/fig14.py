@@ -32,10 +32,10 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         Finding(
             "fig14",
             (*alike, *_avalanche.flows(found, plan)),
-            f"Equal grains on equal bed: only dilation can differ. {short(100 * volume)} cm of solid "
-            f"volume fill {short(100 * depth[0])} cm ({SOFT}) and {short(100 * depth[1])} cm ({STIFF}) as "
-            "shipped. Where one of the two does not flow it stays the packing that settled, and the profiles "
-            "differ.",
+            f"With equal grains on equal beds only the dilation can differ. {short(100 * volume)} cm of "
+            f"solid volume occupy {short(100 * depth[0])} cm ({SOFT}) and {short(100 * depth[1])} cm "
+            f"({STIFF}) as shipped. If one of the two does not flow, it keeps the packing in which it "
+            "settled, and the profiles differ.",
             _avalanche.SETTLED,
             also=_scatter(base),
         ),
@@ -51,7 +51,7 @@ def _scatter(base: Sequence[RunPair]) -> tuple[str, ...]:
         f"{short(float(np.mean([unlike([RunPair(a, b)]) for a, b in combinations(runs, 2)])))} with {time}"
         for time, runs in halves.items()
     ]
-    return (f"single runs that differ in the seed alone are unlike by {', '.join(told)}",)
+    return (f"single runs that differ only in the seed differ by {', '.join(told)}",)
 
 
 def rows(found: Found, plan: Plan) -> list[dict[str, object]]:

@@ -31,8 +31,13 @@ FIGURE = "fig15"
 TITLE = "Grain speed and flux of a dry avalanche"
 CLAIMS = ("fig15", "fig15-flux")
 CM = 100.0  # centimetres in a metre
-FASTER = f"speed of {SOFT} less that of {STIFF}"
-ABOUT = Band(50.0, 150.0, "cm/s", "about 100 cm/s larger: 50 to 150 cm/s, one digit without a unit place")
+FASTER = f"speed of {SOFT} minus that of {STIFF}"
+ABOUT = Band(
+    50.0,
+    150.0,
+    "cm/s",
+    "about 100 cm/s larger: 50 to 150 cm/s, because the paper gives one significant digit",
+)
 WHOLE = Band(0.0, float("inf"), "cm/s", "over the whole depth: larger in every layer")
 MORE = Band(
     1.1,
@@ -92,11 +97,11 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         )
     )
     why = (
-        "Two things make the collision time matter. Under Eq. (3) a sliding contact keeps its dashpot, "
-        "which grows like the root of k_n and has no cap: where contacts last, it drags like a liquid, "
-        f"and locked grains creep at {slow} m/s with {STIFF} (closed form; {fast} m/s with {SOFT} is no "
-        f"bound). And long contacts run into one another: {rate} contacts a second, {touching} partners "
-        "touched at a time, so that one is not over when the next begins."
+        "The collision time matters for two reasons. In Eq. (3) a sliding contact keeps its dashpot, "
+        "which is proportional to the square root of k_n and has no cap: in enduring contacts it acts "
+        f"like viscosity, and locked grains creep at {slow} m/s with {STIFF} (closed form; {fast} m/s with "
+        f"{SOFT} is not a limit). And long contacts overlap in time: {rate} contacts a second, {touching} "
+        "partners at a time, so that a contact has not ended when the next begins."
     )
     tops = [one for one in tried_sets if one[SLIP] != "spring"]
     left = "; ".join(f"{_avalanche.label(one)}: {told(depth_mean, one)} cm/s" for one in tops)
@@ -109,7 +114,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
                 *tried(f"{FASTER}, least of all layers", least, WHOLE),
                 *flow,
             ),
-            f"{why} The flow never becomes steady, so the difference depends on the window: "
+            f"{why} The flow does not become steady, so the difference depends on the time window: "
             f"{told(depth_mean, SHIPPED)} cm/s at {windows} as shipped.",
             _avalanche.SETTLED,
             also=(
@@ -128,8 +133,8 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
                 *tried(ALIKE_PART, alike, ALIKE),
                 *flow,
             ),
-            f"Flux is concentration times speed: where the profiles of concentration are alike, it "
-            f"differs as speed does, by a factor {told(flux_ratio, SHIPPED)} at {windows} as shipped. {why}",
+            "Flux is concentration times speed: with like profiles of concentration it differs as the "
+            f"speed does, by a factor of {told(flux_ratio, SHIPPED)} at {windows} as shipped. {why}",
             _avalanche.SETTLED,
             also=tuple(
                 f"flux ratio, {_avalanche.label(one)}: {told(flux_ratio, one)} at {windows}"

@@ -24,19 +24,19 @@ from ryusa.studies.osada2004._experiment import Found, Plan
 from ryusa.study import Band, Finding, Trial, short
 
 FIGURE = "fig16"
-TITLE = "Ways of grains in a dry avalanche"
+TITLE = "Paths of grains in a dry avalanche"
 CLAIMS = ("fig16",)
 GRAINS = "grains"
 MORE, LESS = float("inf"), 1.0
 # part of the claim -> what it is of each run, and what is asked of 0.0001 s over 0.01 s
 PARTS: dict[str, tuple[str, Band]] = {
-    "turns of the vertical motion per second, 0.0001 s over 0.01 s": (
-        "reversals", Band(1.0, MORE, "-", "very jagged: more turns, ratio above 1"),
+    "reversals of the vertical motion per second, 0.0001 s over 0.01 s": (
+        "reversals", Band(1.0, MORE, "-", "very jagged: more reversals, ratio above 1"),
     ),
-    "way along the bed in 1 s, 0.0001 s over 0.01 s": (
+    "advance along the bed in 1 s, 0.0001 s over 0.01 s": (
         "advance", Band(0.0, LESS, "-", "shorter: ratio below 1"),
     ),
-    "vertical way over advance, 0.0001 s over 0.01 s": (
+    "vertical path over advance, 0.0001 s over 0.01 s": (
         "jaggedness", Band(1.0, MORE, "-", "0.01 s nearer to parallel layers: ratio above 1"),
     ),
 }  # fmt: skip
@@ -71,8 +71,8 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
 
     def said(grains: str) -> str:
         return (
-            f"{words['reversals', grains]} vertical turns a second, {words['advance', grains]} m of way, "
-            f"{words['jaggedness', grains]} m up and down per metre of way"
+            f"{words['reversals', grains]} vertical reversals per second, {words['advance', grains]} m of "
+            f"advance, {words['jaggedness', grains]} m of vertical path per metre of advance"
         )
 
     shape = "; ".join(
@@ -85,15 +85,15 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         Finding(
             "fig16",
             tuple(tried),
-            "A grain of the lowest layer goes up and down once over every bed grain that it passes, whatever "
-            f"the collision time: who goes farther turns more often. {SOFT} against {STIFF}, as shipped: "
-            f"{said(BETWEEN)}.",
+            "A grain of the lowest layer rises and falls once over every bed grain that it passes, "
+            "whatever the collision time: a grain that travels farther reverses its vertical motion more "
+            f"often. {SOFT} against {STIFF}, as shipped: {said(BETWEEN)}.",
             {**_avalanche.SETTLED, "turns counted from": "0.02 d, frames of 10 ms"},
             also=(
-                f"grains of the lowest layer that meet bed and movers in turn, of {_avalanche.LOWEST}: "
-                f"{words['n', BETWEEN]}",
+                "grains of the lowest layer that touch the bed and moving grains alternately, of "
+                f"{_avalanche.LOWEST}: {words['n', BETWEEN]}",
                 f"all grains: {said(ALL)}",
-                f"vertical turns per metre of way, all grains, {STIFF} over {SOFT}: {shape}",
+                f"vertical reversals per metre of advance, all grains, {STIFF} over {SOFT}: {shape}",
                 f"vertical turns a second counted from {_avalanche.FINE:g} d, lowest layer: "
                 f"{words['fine', BETWEEN]}; all grains: {words['fine', ALL]}",
             ),

@@ -12,15 +12,15 @@ from ryusa.studies.osada2004._experiment import CaseRun, Found, Plan
 from ryusa.study import Band, Finding, Trial, over_seeds, short
 
 FIGURE = "fig17"
-TITLE = "Ito's debris flow over a rigid bed: concentration, ways, contacts"
+TITLE = "Ito's debris flow over a rigid bed: concentration, paths, contacts"
 CLAIMS = ("fig17", "fig17-time", "fig17-e")
 PAIR = "which pair"
 SURFACE = Band(
     0.25,
     0.35,
     "-",
-    "about 0.3 near the surface, where grains of the upper layer go: 0.25 to 0.35 in the upper third of the "
-    "depth, 2.2 diameters",
+    "about 0.3 near the surface, where grains of the upper layer move: 0.25 to 0.35 in the upper third of "
+    "the depth, 2.2 diameters",
 )
 UP_AND_DOWN = Band(
     1.0,
@@ -33,7 +33,7 @@ BOUNCE = Band(0.65, 0.75, "-", "about 0.7: one digit, 0.65 to 0.75")
 # claim -> what is read of contacts, which of the closed forms it is held against, what is asked
 OF_CONTACTS = {
     "fig17-time": ("mean contact time", "time", 0, SEVEN),
-    "fig17-e": ("mean restitution of contacts that were alone", "e", 1, BOUNCE),
+    "fig17-e": ("mean restitution of contacts with a single partner", "e", 1, BOUNCE),
 }
 
 measure = _debris.measure
@@ -70,12 +70,12 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         Finding(
             "fig17",
             tuple(tried),
-            "How many grains are put in decides the concentration: over a rigid bed they have nowhere else "
-            "to go. Contacts of less than 0.1 ms throw every grain up and down, at "
+            "The number of grains decides the concentration, because over a rigid bed none is deposited "
+            "or eroded. Contacts of less than 0.1 ms throw every grain up and down, at "
             f"{told('rms_z', 100.0)} cm/s on average, {told('steep')} of its speed along the bed.",
             SETTLED,
             also=(
-                f"effect of how many grains are put in: {amounts}",
+                f"effect of the number of grains: {amounts}",
                 f"as shipped, in the uppermost diameter of the depth alone: {told('topmost')}",
                 f"as shipped: mean speed of the grains {told('speed')} m/s ({told('near_bed')} m/s near the "
                 f"bed), flux {told('q', 1e4)} cm2/s; speed of the second half second over that of the first "
@@ -103,11 +103,14 @@ def _of_contacts(found: Found, plan: Plan, claim: str) -> Finding:
     return Finding(
         claim,
         tuple(Trial(part, {PAIR: pair}, over_seeds(values[pair], band.unit), band) for pair in PARTNERS),
-        "One dashpot and one spring cannot give one contact time and one restitution: on a fixed grain the "
-        f"whole mass swings, between two free ones half of it. Closed forms, added mass counted: {closed}; "
-        "the paper's number lies between them.",
+        "One spring and one dashpot cannot give the same contact time and restitution for all pairs: the "
+        "effective mass is that of the grain on a fixed partner, and half of it between two free grains. "
+        f"Closed forms, with added mass: {closed}; the paper's number lies between them.",
         {**SETTLED, **SHIPPED},
-        also=(f"contacts in a run: {counts}", f"mean contact time of contacts that were alone: {alone}"),
+        also=(
+            f"contacts in a run: {counts}",
+            f"mean contact time of contacts with a single partner: {alone}",
+        ),
     )
 
 

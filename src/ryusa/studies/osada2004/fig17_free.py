@@ -17,8 +17,10 @@ CLAIMS = ("fig17-lock", "fig17-free")
 NOTHING = float("-inf")  # the interval about a share of nothing reaches below it
 APART = Band(NOTHING, 0.05, "-", "no harm: no rigid clusters; at most 5 % of the movers in rods")
 NO_DEPOSIT = Band(NOTHING, 0.01, "-", "without a deposit: at most 1 % of grains and moments at rest")
-TOO_FAST = Band(1.5, float("inf"), "-", "far too large near the bed: half as fast again as locked, or more")
-OFF = Band(1.1, float("inf"), "-", "cannot be met: a flux at least 10 % beyond that of locked grains")
+TOO_FAST = Band(
+    1.5, float("inf"), "-", "far too large near the bed: at least 1.5 times the speed of locked grains"
+)
+OFF = Band(1.1, float("inf"), "-", "cannot be met: a flux at least 10 % above that of locked grains")
 CURES: dict[str, dict[str, str]] = {
     "water torque, Dennis": {"water.torque": "Dennis"},
     "rolling friction, mu_r 0.2": {
@@ -107,21 +109,22 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         Finding(
             "fig17-lock",
             tuple(tried),
-            "Harm would be grains that go as one rigid body because they cannot roll past each other, as in "
-            "fig22. In a flow without deposit contacts last less than 0.1 ms: no two grains stay together.",
+            "Harm would be grains that move as a rigid body because they cannot roll past each other, as "
+            "in fig22. In a flow without a deposit contacts last less than 0.1 ms, and no two grains stay "
+            "together.",
             {**SETTLED, "rotation": LOCKED, "rods": "gap below 0.05 d and bearing within 15 deg for 0.075 s"},
             also=(
-                f"movers in rods, as shipped: {told(LOCKED, 'rods')}; with shuffled ways "
+                f"movers in rods, as shipped: {told(LOCKED, 'rods')}; with shuffled paths "
                 f"{told(LOCKED, 'null')}",
-                "the measured profiles that the paper fitted are not in its text; what is judged here is "
+                "the measured profiles that the paper fitted are not in its text; the judgement is "
                 "whether locking binds grains together",
             ),
         ),
         Finding(
             "fig17-free",
             tuple(faster),
-            "A grain that turns rolls over the fixed ones instead of sliding: the bed takes less momentum "
-            f"from it, and the flow gains speed. As shipped: {both('near_bed', 'm/s')} near the bed, "
+            "A grain that rotates rolls over the fixed grains instead of sliding: it loses less momentum "
+            f"to the bed, and the flow is faster. As shipped: {both('near_bed', 'm/s')} near the bed, "
             f"{both('speed', 'm/s')} on average.",
             {
                 **SETTLED,

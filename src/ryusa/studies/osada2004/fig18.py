@@ -11,20 +11,23 @@ from ryusa.studies.osada2004._experiment import PHI, SLIP, CaseRun, Found, Plan,
 from ryusa.study import Band, Finding, Trial, over_seeds, pool, short
 
 FIGURE = "fig18"
-TITLE = "What long and short contacts do to the ways of grains"
+TITLE = "Effect of long and short contacts on the paths of grains"
 CLAIMS = ("fig18",)
 LONGER = "contacts longer by"
 SHIPPED = {LONGER: "30", PHI: "30 deg", SLIP: "spring"}
 K_N, K_S, ETA_N, ETA_S = 200.0, 15.0, 1.0e-3, 1.0e-4  # of fig17 [N/cm], [N s/cm]
 KEYS = {PHI: "contact.friction_angle", SLIP: "contact.slip"}
 TOGETHER = Band(
-    0.1, float("inf"), "-", "carried along together: grains that touch move more alike, 0.1 or more"
+    0.1,
+    float("inf"),
+    "-",
+    "carried along together: the correlation of touching grains is larger by at least 0.1",
 )
 DAMPED = Band(0.0, 0.95, "-", "vertical motion damped: at most 0.95 of that with short contacts")
-FLATTER = Band(0.0, 0.95, "-", "nearer to parallel layers: ways at most 0.95 times as steep")
+FLATTER = Band(0.0, 0.95, "-", "nearer to parallel layers: paths at most 0.95 times as steep")
 PARTS: tuple[tuple[str, Callable[[Debris, Debris], float], Band], ...] = (
     (
-        "correlation of the speeds of grains that touch, long less short",
+        "correlation of the speeds of grains that touch, long minus short",
         lambda long, short: long.companions - short.companions,
         TOGETHER,
     ),
@@ -112,8 +115,8 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         Finding(
             "fig18",
             tuple(trials),
-            "A contact that lasts as long as a grain needs to pass its neighbour still pushes when the next "
-            f"begins: grains lean on one another and share what one gains. {series}.",
+            "A contact that lasts as long as a grain needs to pass its neighbour has not ended when the "
+            f"next begins: grains stay in touch and share the momentum that one of them gains. {series}.",
             {
                 **{
                     name: value for name, value in SETTLED.items() if name not in {"k_n, k_s", "eta_n, eta_s"}
@@ -123,8 +126,8 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
                 "rotation": "locked",
             },
             also=(
-                "contacts 100 times as long (0.009 s on a fixed grain, what the paper takes for real) let "
-                "such grains overlap by three quarters of their diameter at these speeds",
+                "contacts 100 times as long (0.009 s on a fixed grain, the time that the paper takes as "
+                "realistic) would have overlaps of three quarters of the diameter at these speeds",
             ),
         ),
     )

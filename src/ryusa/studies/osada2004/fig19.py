@@ -13,7 +13,7 @@ from ryusa.studies.osada2004._experiment import PHI, RATIO, ROTATION, SLIP, Case
 from ryusa.study import Band, Finding, Trial, pool
 
 FIGURE = "fig19"
-TITLE = "Slope of a heap whose wall is taken away"
+TITLE = "Slope of a heap after the removal of its wall"
 CLAIMS = ("fig19-locked", "fig19-free")
 GROUND = "heap"  # the choice of size, spread, packing and floor
 OTHERS: dict[str, dict[str, str]] = {
@@ -25,17 +25,19 @@ OTHERS: dict[str, dict[str, str]] = {
     "settled with friction": {"contact.friction_angle": "30 deg"},
 }
 BANDS = {
-    "locked": Band(30.0, 36.0, "deg", "about 33 deg: 30 to 36 deg, what can be told from a drawn slope"),
-    "free": Band(15.0, 21.0, "deg", "about 18 deg: 15 to 21 deg, what can be told from a drawn slope"),
+    "locked": Band(30.0, 36.0, "deg", "about 33 deg: 30 to 36 deg, the accuracy of a slope in a drawing"),
+    "free": Band(15.0, 21.0, "deg", "about 18 deg: 15 to 21 deg, the accuracy of a slope in a drawing"),
 }
 STILL = Band(0.0, _heap.MOVING, "-", "the final slope: at most 1 % of the grains still move")
 PAPER = {"locked": 33.0, "free": 18.0}  # deg
 DECIDED = {
-    "locked": "A locked grain leaves a pocket only where the slope reaches 30 deg + phi, and rows of locked "
-    "grains move as towers, so the friction angle sets the slope. With the dashpot kept while sliding, as "
-    "Eqs. (2) and (3) are printed, a viscous force comes on top of the cap: the heap oozes at m g/eta_s.",
-    "free": "A grain that may turn rolls out of a pocket at 30 deg whatever phi is, so friction has little "
-    "say once grains roll rather than slide: packing and the run-out of the collapse set the slope.",
+    "locked": "A locked grain leaves its pocket only if the slope reaches 30 deg + phi, and columns of "
+    "locked grains move as rigid bodies, so the friction angle decides the slope. With the "
+    "dashpot kept while sliding, as in Eqs. (2) and (3) as printed, a viscous force adds to the "
+    "cap, and the heap creeps at m g/eta_s.",
+    "free": "A grain that may rotate rolls out of its pocket at 30 deg whatever phi is, so friction "
+    "matters little once grains roll rather than slide: packing and the run-out of the collapse "
+    "determine the slope.",
 }
 
 
@@ -118,8 +120,9 @@ def _judged(found: Found, plan: Plan, rotation: str) -> Finding:
     ranges = [math.degrees(one.found.spread) for group in heaps for one in group if not one.wall]
     ends = [one.t_end - one.t_gate for group in heaps for one in group]
     also = (
-        f"with the height range of the fit one slope moves by up to {max(ranges, default=math.nan):.0f} deg",
-        f"followed for {min(ends):.1f} to {max(ends):.1f} s after the gate goes",
+        f"one slope changes with the height range of the fit by up to {max(ranges, default=math.nan):.0f} "
+        "deg",
+        f"observed for {min(ends):.1f} to {max(ends):.1f} s after the removal of the gate",
     )
     common = {
         ROTATION: rotation,

@@ -150,8 +150,8 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         Finding(
             "fig20",
             tuple(jumps),
-            "A locked grain rubs at every hit and leaves slowly; a free one that has spun up rolls off, "
-            "keeps its speed and meets the next crest harder.",
+            "A locked grain is slowed by friction at every hit and leaves the bed slowly; a free grain, "
+            "once it spins, rolls off, keeps its speed and hits the next crest faster.",
             settings={"k_n": "100 N/cm"},
             also=tuple(
                 f"{words}, rotation {rot}: {one.value(name) / one.d:.3g} d"
@@ -162,10 +162,11 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         Finding(
             "fig20-shear",
             tuple(shears),
-            f"The mean normal force on the bed hardly changes (free over locked {normal:.2f}), so the shear "
-            "decides. As printed (cap on the spring, dashpot kept) nothing bounds the shear of a locked "
-            "grain; a small friction angle, a dashpot capped or dropped while sliding, or a softer shear "
-            "spring weaken it and bring free and locked closer. A grain that turns hardly rubs.",
+            f"The mean normal force on the bed is nearly the same (free over locked {normal:.2f}), so the "
+            "shear force decides. As printed (cap on the spring, dashpot kept) the shear force on a "
+            "locked grain has no limit. A small friction angle, a dashpot that is capped or set to zero "
+            "while sliding, or a softer shear spring reduce it and bring free and locked closer. A "
+            "rotating grain has little slip.",
             settings={"k_n": "100 N/cm"},
             also=tuple(
                 f"shear over normal impulse, rotation {rot}: {one.value('shear_ratio'):.2f}"

@@ -21,7 +21,7 @@ TITLE = "Spin of a saltating grain"
 CLAIMS = ("fig21",)
 QUOTED = 900.0  # [rad/s]
 LEVEL = Band(0.75 * QUOTED, 1.25 * QUOTED, "rad/s", "about 900 rad/s: within a quarter, 675 to 1125 rad/s")
-GROWS = Band(0.9, float("inf"), "-", "with every hit: at least nine hits in ten add spin")
+GROWS = Band(0.9, float("inf"), "-", "with every hit: at least nine hits in ten increase the spin")
 EARLY = 3  # hits of each start that count as spinning up
 WAY = 1.5  # shown [m]
 STARTS = "start"  # the choice: how the grain begins, of which the paper says nothing
@@ -122,7 +122,12 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             key = {**chosen, READING: reading}
             trials += [
                 Trial("mean spin", key, over_seeds(levels[k], "rad/s", pool(levels)), LEVEL),
-                Trial("share of hits that add spin", key, over_seeds(groups[k], "-", pool(groups)), GROWS),
+                Trial(
+                    "share of hits that increase the spin",
+                    key,
+                    over_seeds(groups[k], "-", pool(groups)),
+                    GROWS,
+                ),
             ]
     base = [found[_run(sets[0], seed)] for seed in plan.seeds]
     rolling = float(np.mean([one.against["rolling"] for one in base]))
@@ -131,9 +136,9 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         Finding(
             "fig21",
             tuple(trials),
-            f"A hit turns the grain until its underside stands still: spin times radius is {rolling:.2f} of "
-            "the speed along the bed, so the level follows from that speed. There is nothing to gain beyond "
-            "it: once spun up, hits add and take alike.",
+            "A hit accelerates the spin until the point of contact is at rest: spin times radius is "
+            f"{rolling:.2f} of the speed along the bed, so the spin follows from that speed. Beyond it "
+            "there is no gain: later hits increase and decrease the spin alike.",
             settings={"rotation": "free", "k_n": "100 N/cm"},
             also=(
                 f"spin after 1, 2 and 3 hits, mean of all starts: {after[0]:.0f}, {after[1]:.0f}, "

@@ -30,15 +30,15 @@ SLOPES = {
 DEPTHS = {"5 layers": "5", "8 layers": "8"}
 SHIPPED = {PHI: "30 deg", SLIP: "spring", SLOPE: "1/4 (1.5)", DEPTH: "5 layers"}
 MOVERS = 10  # of all windows, below which nothing is said about rods
-RODS = Band(0.1, math.inf, "-", "like rods: at least a tenth of the movers beyond what shuffled ways leave")
+RODS = Band(0.1, math.inf, "-", "like rods: at least a tenth of the movers more than with shuffled paths")
 MORE = Band(
     math.log10(2.0),
     math.inf,
     "-",
-    "unable to climb: at least twice as many in rods, 0.301 decades, as where grains may turn",
+    "unable to climb: at least twice as many in rods, 0.301 decades, as with rotation free",
 )
 SPINS = Band(
-    100.0, math.inf, "rad/s", "spin fast: a twentieth of the movers beyond 100 rad/s, 16 turns a second"
+    100.0, math.inf, "rad/s", "spin fast: a twentieth of the movers above 100 rad/s, 16 turns a second"
 )
 CHANGED = Band(
     math.log10(1.1),
@@ -47,9 +47,9 @@ CHANGED = Band(
     "changes speed and flux: at least 10 % more, 0.041 decades, than locked grains",
 )
 STANDS = "nothing moves"
-PART_RODS = "movers in rods less those with shuffled ways"
+PART_RODS = "movers in rods minus those with shuffled paths"
 PART_MORE = "movers in rods, locked over free, in decades"
-PART_SPIN = "spin that a twentieth of the movers exceeds"
+PART_SPIN = "spin exceeded by a twentieth of the movers"
 PART_Q = "flux, free over locked, in decades"
 PART_SPEED = "speed of the movers, free over locked, in decades"
 MOMENTS = 3  # drawn of a rod
@@ -205,20 +205,20 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         Finding(
             "fig22",
             tuple(tried["fig22"]),
-            "A locked grain cannot roll out of the pocket between two others; it goes when its row goes. So "
-            f"neighbours that touch stay as they are and creep on together. {_told(found, plan)}",
+            "A locked grain cannot roll out of the pocket between two others; it moves only with its row. "
+            f"Touching neighbours therefore keep their arrangement and creep together. {_told(found, plan)}",
             _settings(),
             also=_lengths(found, plan),
         ),
         Finding(
             "fig22-free",
             tuple(tried["fig22-free"]),
-            "A grain that may turn leaves its pocket at 30 deg whatever friction does, rolls, and the bed "
-            f"under it gives way. {_spins(found, plan)}",
+            "A grain that may rotate leaves its pocket at 30 deg whatever the friction, rolls, and the "
+            f"bed below it yields. {_spins(found, plan)}",
             _settings(),
             also=(
-                "no rolling friction, and no torque of the water: what slows spin is contact alone",
-                "locked grains that stand still count with a flux of 1e-7 m2/s, a speed of 1 mm/s",
+                "without rolling friction and water torque only contacts reduce the spin",
+                "locked grains at rest count with a flux of 1e-7 m2/s, a speed of 1 mm/s",
             ),
         ),
     )

@@ -17,7 +17,11 @@ TITLE = "Jumps with the same restitution and other contact times"
 CLAIMS = ("hops",)
 AGAINST = "other k_n"  # the choice; a name of its own, for it is a pair of stiffnesses
 SAME = Band(
-    0.9, 1.1, "-", f"do not change: 0.9 to 1.1 of the value at {STIFF}; 30 hops of one start leave 10 %"
+    0.9,
+    1.1,
+    "-",
+    f"do not change: 0.9 to 1.1 of the value at {STIFF}; the uncertainty of 30 hops from "
+    "one initial state is 10 %",
 )
 PARTS = {
     f"mean jump height over that at {STIFF}": "jump_height",
@@ -93,10 +97,10 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         Finding(
             "hops",
             tuple(trials),
-            "A stiff contact is over before the grain has moved along the bed, and then only e and the shear "
-            f"law count. In a soft one it goes on {soft.travel:.2g} d within a contact (u t/d at {softest}; "
-            f"{base.travel:.2g} at {STIFF}), so it is turned over the crest instead of thrown back, and its "
-            "mean jump sinks.",
+            "A stiff contact ends before the grain has moved along the bed, so only e and the law of "
+            f"shear matter. During a soft contact it travels {soft.travel:.2g} d within a contact (u t/d "
+            f"at {softest}; {base.travel:.2g} at {STIFF}), so it is deflected over the crest instead of "
+            "thrown back, and its mean jump height decreases.",
             settings={"rotation": "locked", "starts": f"{WIDE['build.starts']} of 30 hops a seed"},
             also=(
                 f"u t/d: {_saltation.listed({k: one.travel for k, one in first.items()}, '.2g')}",

@@ -85,8 +85,9 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         Finding(
             "pair",
             tuple(trials),
-            "Two free grains swing about their common centre: half the mass, so by Eq. (8) a factor "
-            f"{0.5**0.5:.3f} in time, whatever the dashpot; a fixed partner feels weight besides.",
+            "Two free grains oscillate about their common centre with half the mass, so Eq. (8) gives a "
+            f"factor of {0.5**0.5:.3f} in time, whatever the dashpot. With a fixed partner weight acts in "
+            "addition.",
             {"restitution": "0.7", "d": _drops.DIAMETER},
             also=tuple(also),
         ),

@@ -131,8 +131,8 @@ _SALTATION = (
     "tau_star 0.3, slope 1/20, depth 2 cm; 1 s to settle, then 30 saltations"
 )
 _SALTATION_FREE = (
-    "k_rough, zero of z, C_D law, nu, A_2, A_3, k_s, friction angle, water above 2 cm, "
-    "what counts as one saltation"
+    "k_rough, zero of z, C_D law, nu, A_2, A_3, k_s, friction angle, water above 2 cm, definition of one "
+    "saltation"
 )
 _AVALANCHE = "dry avalanche of 20 cm grains on 40 deg, e = 0.7, collision time 0.01 s or 0.0001 s"
 _ITO = (
@@ -155,7 +155,7 @@ _CLAIMS = (
         "5",
         "grain dropped on a fixed grain, e = 0.7, d = 0.2 cm",
         "collision time hardly differs from Eq. (8)",
-        "impact speed; may the dashpot pull at parting",
+        "impact speed; whether the dashpot may pull",
     ),
     Claim(
         "pair",
@@ -163,7 +163,7 @@ _CLAIMS = (
         "as fig5, with the struck grain free to move",
         "should not differ much from the fixed case",
         "",
-        "Eq. (8) with half the mass says a factor 0.71",
+        "Eq. (8) with half the mass gives a factor of 0.71",
     ),
     Claim(
         "fig7",
@@ -171,7 +171,7 @@ _CLAIMS = (
         f"{_SALTATION}; rotation locked; k_n swept (fig6 is 1 N/cm)",
         "mean collision time at the bed agrees with Eq. (8)",
         _SALTATION_FREE,
-        "skims the crests where it travels more than about 0.3 d within a contact",
+        "the grain skims the crests if it travels more than about 0.3 d during a contact",
     ),
     Claim("spin-time", "", f"{_SALTATION}; rotation free", "rotation does not change the collision time"),
     Claim("fig8", "8", "largest overlap/d against k_n", "d = 0.2 cm: 0.01 at about 100 N/cm", "impact speed"),
@@ -179,7 +179,7 @@ _CLAIMS = (
         "fig10-soft",
         "9, 10a",
         f"{_BOX}, k_n = 1 N/cm; z displacement of marked grains per 0.01 s",
-        "nearly half of the 42 still tremble at 0.5 s",
+        "nearly half of the 42 grains still vibrate at 0.5 s",
         "packing, drop height, rotation, threshold",
     ),
     Claim(
@@ -189,16 +189,16 @@ _CLAIMS = (
         "fig10-rule",
         "",
         "as fig10, other diameters",
-        "no trembling wherever overlap/d is below 0.01",
+        "no vibration wherever overlap/d is below 0.01",
         "diameters",
     ),
     Claim(
         "steps",
         "",
         "collision time over dt",
-        "at least 10 steps per contact, or grains rebound abnormally",
+        "at least 10 steps per contact; with fewer, grains rebound abnormally",
         "scheme",
-        "the ten-step rule belongs to forward differences in time",
+        "the ten-step rule applies to forward differences in time",
     ),
     Claim(
         "fig11",
@@ -213,7 +213,8 @@ _CLAIMS = (
         "the same for large grains",
         "d = 20 cm: both 0.01 s and 0.0001 s lie in the band",
         "impact speed",
-        "the two times differ by a factor 100, the band is a factor 10 wide: both cannot hold at one speed",
+        "the two times differ by a factor of 100, the band spans a factor of 10: both cannot be in it at "
+        "one speed",
     ),
     Claim(
         "hops",
@@ -228,7 +229,7 @@ _CLAIMS = (
         _AVALANCHE,
         "concentration profiles alike",
         "number of grains, bed, length, friction angle, rotation",
-        "never steady while rotation is free: compare equal time windows",
+        "the flow is never steady with rotation free: equal time windows are compared",
     ),
     Claim(
         "fig15",
@@ -278,7 +279,7 @@ _CLAIMS = (
         f"{_HEAP}; rotation locked",
         "final slope about 33 deg (natural gravel about 38)",
         "spread of d, heap size, friction angle, floor",
-        "the friction angle decides: a locked pocket holds up to 30 deg + phi",
+        "the friction angle decides: a locked grain stays in its pocket up to a slope of 30 deg + phi",
     ),
     Claim("fig19-free", "19c", f"{_HEAP}; rotation free", "final slope about 18 deg", "as fig19-locked"),
     Claim("bed18", "", "bed of grains steeper than 18 deg, rotation free", "flows with no water force"),
@@ -295,7 +296,7 @@ _CLAIMS = (
         "20",
         f"{_SALTATION}; k_n = 100 N/cm, rotation locked or free",
         "free: bed shear resistance about half",
-        "which impulse",
+        "definition of shear resistance",
     ),
     Claim(
         "fig21",
@@ -319,7 +320,7 @@ _CLAIMS = (
         "tau_star, bed depth",
     ),
     Claim(
-        "eq13", "23", "rolling friction, Eq. (13)", "principle only; f' to be identified against experiments"
+        "eq13", "23", "rolling friction, Eq. (13)", "principle only; f' is to be identified from experiments"
     ),
 )
 CLAIMS = {claim.id: claim for claim in _CLAIMS}

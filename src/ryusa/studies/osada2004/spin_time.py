@@ -15,9 +15,7 @@ from ryusa.study import Band, Finding, Trial, over_seeds
 FIGURE = "spin-time"
 TITLE = "Contact time with rotation locked and free"
 CLAIMS = ("spin-time",)
-SAME = Band(
-    0.95, 1.05, "-", "does not change: free over locked 0.95 to 1.05, half of what counts as agreeing in fig7"
-)
+SAME = Band(0.95, 1.05, "-", "does not change: free over locked 0.95 to 1.05, half the tolerance of fig7")
 PART = "mean contact time, free over locked"
 
 
@@ -69,10 +67,10 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         Finding(
             "spin-time",
             trials,
-            f"A free grain is faster along the bed ({speeds[1]:.2f} against {speeds[0]:.2f} m/s), so the "
-            f"line of centres turns more during a contact (u^2 t/(d v), median {turning[1]:.2g} against "
-            f"{turning[0]:.2g}) and opens it sooner. Turning within a contact falls with the contact time, "
-            "so the difference fades with stiffness.",
+            f"A free grain is faster along the bed ({speeds[1]:.2f} against {speeds[0]:.2f} m/s), so that "
+            f"the line of centres turns more during a contact (u^2 t/(d v), median {turning[1]:.2g} "
+            f"against {turning[0]:.2g}) and the contact ends earlier. This rotation decreases with the "
+            "contact time, so the difference vanishes with increasing stiffness.",
             also=(
                 "u t/d of the free grain: "
                 + _saltation.listed({k: one.travel for k, one in _sweep(found, plan).items()}),

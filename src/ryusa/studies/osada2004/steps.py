@@ -25,7 +25,7 @@ E, LEAST = 0.7, 10.0
 OFF = (
     0.05  # restitution off by more is abnormal: half of what the paper's 0.6 to 0.8 for sand leaves about 0.7
 )
-NORMAL = Band(0.0, OFF, "-", f"no abnormal rebound: e off by at most {OFF:g} from the 0.7 asked for")
+NORMAL = Band(0.0, OFF, "-", f"no abnormal rebound: e off by at most {OFF:g} from the 0.7 of the case")
 ABNORMAL = Band(OFF, math.inf, "-", f"abnormal rebound: e off by more than {OFF:g} in some contact")
 
 
@@ -110,10 +110,11 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         Finding(
             "steps",
             tuple(trials),
-            "Forward differences feed energy into an oscillator in every step and the dashpot must eat it: "
-            f"below pi/(2 zeta) steps, {stable:.0f} with tension, grains come off faster than they came. "
-            "Velocity first, then position, feeds in none; nor does a spring summed as in Eq. (1), one step "
-            f"ahead of the overlap, unless the dashpot may pull. At ten steps e is: {', '.join(words)}.",
+            "Forward differences add energy to an oscillator in every step, which the dashpot must "
+            f"dissipate: with fewer than pi/(2 zeta) steps, {stable:.0f} with tension, grains separate "
+            "faster than they approached. The semi-implicit scheme, velocity first and then position, adds "
+            "none; nor does a spring force summed as in Eq. (1), which is one step ahead of the overlap, "
+            f"unless the dashpot may pull. At ten steps e is: {', '.join(words)}.",
             {"restitution": "0.7", "k_n": "100 N/cm", "fewest steps": "5; the case reader refuses fewer"},
             also=tuple(_needed(scheme, name) for scheme in (EULER, SUMMED) for name in (NO_TENSION, TENSION)),
         ),
@@ -132,7 +133,7 @@ def _needed(scheme: str, parting: str) -> str:
     tried = (*range(3, 40), *range(40, 200, 5))
     good = [bool(np.abs(forward(n, parting, scheme == SUMMED) - E).max() <= OFF) for n in tried]
     last = max((k for k, one in enumerate(good) if not one), default=-1)
-    return f"{scheme}, {parting}: keeps e within {OFF:g} from {tried[last + 1]} steps on"
+    return f"{scheme}, {parting}: e is within {OFF:g} from {tried[last + 1]} steps on"
 
 
 def rows(found: Found, plan: Plan) -> list[dict[str, object]]:

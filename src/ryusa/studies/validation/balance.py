@@ -141,23 +141,23 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         weight, contacts, water, gain = np.cumsum(found[_call(form, plan.level)]["parts"], axis=0).T
         ratio = -(contacts + water) / weight
         ours.append(Curve(f"buoyancy {form}", time, ratio))
-        why = "momentum that comes and goes within the time"
+        why = "momentum stored and released during the averaging time"
         errors.append(
             misfit(f"{form}: bed over weight, less 1", abs(float(ratio[-1]) - 1.0), "-", at_most(0.01, why))
         )
         off = np.abs(weight + contacts + water - gain) / weight
         closes = max(closes, float(off.max()))
     errors.append(
-        misfit("largest momentum not accounted for, over weight", closes, "-", at_most(1e-9, "round-off"))
+        misfit("largest residual of momentum, over weight", closes, "-", at_most(1e-9, "round-off"))
     )
     return [
         comparison(
-            "bed-stress", "Stress of the bed over the downslope weight of the mixture",
+            "bed-stress", "Bed stress over the downslope weight of the mixture",
             Source("steady uniform flow: bed stress = integral of (rho (1 - phi) + sigma phi) g sin(slope)"),
             Axis("averaged over", "s"), Axis("bed stress over weight"), ours,
             [Curve("1", time, np.ones(PARTS))], errors,
             {"slope": "0.1", "grains": "32 on a rough row", "depth": "4 d"},
-            "Grains give what their contacts say, the water what its stress on the bed and its drag on fixed "
-            "grains say; neither knows of the other.",
+            "The contribution of the grains is from their contacts, that of the water from its stress on "
+            "the bed and its drag on fixed grains; the two are measured independently.",
         )
     ]  # fmt: skip

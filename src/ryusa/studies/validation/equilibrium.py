@@ -36,7 +36,7 @@ from ryusa.study import (
     misfit,
 )
 
-TITLE = "Debris flow in equilibrium with its slope"
+TITLE = "Equilibrium of a debris flow with its slope"
 # slope -> depth of water over the bed at first: flows about as deep as each other once the bed is eroded
 SLOPES = {"8 deg": "2.2 cm", "10 deg": "1.6 cm", "11 deg": "1.2 cm", "12 deg": "0.8 cm"}
 SLOW = 0.05  # of the surface's speed: there begins the bed
@@ -139,10 +139,10 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     fine = np.linspace(8.0, 20.0, 49)
     closed = np.array([equilibrium_concentration(one, phi, RHO_S, RHO_W) for one in slope])
     said = "; ".join(
-        f"{math.degrees(one['slope']):.0f} deg: c {one['c']:.3f} +- {one['error']:.3f} "
-        f"(from a tenth of the speed on {one['c_tenth']:.3f}), depth "
-        f"{one['depth']:.1f} d, mean grain speed of the second half {100.0 * one['faster']:+.0f} %, stress "
-        f"of grains over their weight {one['mu']:.2f}, water's share {one['water']:.2f}"
+        f"{math.degrees(one['slope']):.0f} deg: c {one['c']:.3f} +- {one['error']:.3f} (from a tenth of "
+        f"the speed {one['c_tenth']:.3f}), depth {one['depth']:.1f} d, mean grain speed of the second half "
+        f"{100.0 * one['faster']:+.0f} %, stress of grains over their weight {one['mu']:.2f}, share of the "
+        f"water {one['water']:.2f}"
         for one in wet
     )
     settings = {"grains": "spheres of 4 mm +- 10 %, free to spin, mu = 0.577, e = 0.7"}
@@ -151,20 +151,21 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             "concentration", "Concentration against slope",
             Source(
                 "Takahashi 1978; Egashira, Miyamoto & Itoh 1997: c = rho tan(slope)/((sigma - rho) "
-                "(tan(phi) - tan(slope))); Takahashi at most 0.9 of the bed's"
+                "(tan(phi) - tan(slope))); after Takahashi at most 0.9 of that of the bed"
             ),
             Axis("slope", "deg"), Axis("concentration"), [Curve("grains", np.degrees(slope), c)],
             [Curve(f"phi = {math.degrees(phi):.1f} deg, of the dry flow", fine, _curve(fine, phi, wet))],
             [
                 misfit(
                     "largest relative difference", float(np.abs(c / closed - 1.0).max()), "-",
-                    at_most(0.25, "1 deg of friction and half a grain of bed are a tenth of c each"),
+                    at_most(0.25, "1 deg of friction angle and half a diameter of bed height change c by "
+                                  "a tenth each"),
                 ),
             ],
             settings,
-            "Mean from the bed, where grains have a twentieth of the surface's speed, to the surface; three "
-            f"dimensions, for a plane packs to 0.55 only. Dry flow: tan(phi) = {dry['friction']:.3f}. "
-            f"{said}.",
+            "Mean from the bed, where the speed is a twentieth of that at the surface, to the surface. In "
+            "three dimensions, because a plane scene packs only to 0.55. Dry flow: tan(phi) = "
+            f"{dry['friction']:.3f}. {said}.",
             [Curve("phi = 38 deg", fine, _curve(fine, SAND, wet))],
         ),
         _velocity(wet, phi, settings),
@@ -197,12 +198,12 @@ def _velocity(wet: Sequence[dict[str, Any]], phi: float, settings: dict[str, str
         ),
         Axis("speed of the water", "m/s"), Axis("height above the bed over d"), ours, theirs,
         [
-            misfit(f"surface's speed over theirs, {line.name}", ratio)
+            misfit(f"surface speed over that of the law, {line.name}", ratio)
             for line, ratio in zip(ours, ratios, strict=True)
         ],
         settings,
-        "Shown beside each other: the flow thins out upwards, the law has the concentration of the formula "
-        "over the whole depth.",
+        "Shown for comparison only: the concentration of the flow decreases upwards, while the law has "
+        "that of the formula over the whole depth.",
     )  # fmt: skip
 
 

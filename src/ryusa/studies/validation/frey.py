@@ -64,18 +64,19 @@ class Choice:
 # 0.0048 and Blasius with the hydraulic diameter 0.0039. Walls 28 mm apart give the same by Blasius.
 SAID = {
     "published": (
-        "Water between smooth walls 6.5 mm apart by Blasius is too slow for the transport measured: bed load "
-        "nearly stands. The source's code gives its walls a sixth of that friction, see the next set."
+        "With Blasius friction on smooth walls 6.5 mm apart the water is too slow for the measured "
+        "transport: bed load nearly stops. In the code of the source the wall friction is a sixth of "
+        "that, see the next set."
     ),
     "peer": (
-        "The source's code, YADE 2023.02, takes at the side walls about a sixth of what the law it cites "
-        "says, by its own momentum balance; Blasius between walls 28 mm apart takes as much."
+        "By its own momentum balance, the code of the source (YADE 2023.02) has about a sixth of the wall "
+        "friction of the law that it cites; Blasius friction on walls 28 mm apart gives the same."
     ),
 }
 CHOICES = {
     "published": Choice("as published", {}, (6, 14, 20)),
     "peer": Choice(
-        "as published, side walls slowing the water as little as in the source's code",
+        "as published, with the reduced wall friction of the source's code",
         {"water.column.side_walls": "28 mm"},
         (6, 14, 20),
     ),
@@ -170,16 +171,17 @@ def _compare(
             [
                 misfit(
                     "q_star over that of the flume", q_star / q_flume, "-",
-                    Band(0.7, 1.3, "-", "the peer that was fitted to this flume keeps within 30 %"),
+                    Band(0.7, 1.3, "-", "the code that was fitted to this flume agrees within 30 %"),
                 ),
-                misfit("rms of phi", rms(phi_ours, phi), "-", at_most(0.05, "a tenth of a packed bed")),
+                misfit("rms of phi", rms(phi_ours, phi), "-", at_most(0.05, "a tenth of the concentration "
+                                                                            "of a packed bed")),
             ],
             settings, SAID[name],
         ),
         comparison(
             f"{name}-{run}-u", f"Run {run}, {choice.words}: speed", SOURCE, height, Axis("speed", "m/s"),
             [Curve("beads", z_ours[window], u_ours[window])], [Curve(f"Frey, run {run}", z, u)],
-            [misfit("rms of u", rms(u_ours, u), "m/s", at_most(0.05, "a tenth of the water's speed"))],
+            [misfit("rms of u", rms(u_ours, u), "m/s", at_most(0.05, "a tenth of the speed of the water"))],
             settings, SAID[name],
             [Curve("water", np.asarray(ours["z_water"]), np.asarray(ours["u_water"]))],
         ),

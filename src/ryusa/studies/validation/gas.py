@@ -86,8 +86,8 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         comparison(
             "haff", "Temperature of a freely cooling gas",
             Source(
-                "Haff 1983, T = T_0/(1 + t/tau_0)^2; rate of Enskog's theory (van Noije & Ernst 1998) with "
-                "Carnahan & Starling's chi, and what floor and lid take"
+                "Haff 1983, T = T_0/(1 + t/tau_0)^2; rate of Enskog's theory (van Noije & Ernst 1998) "
+                "with Carnahan & Starling's chi, and the loss at floor and lid"
             ),
             Axis("time over tau_0"), Axis("T/T_0"), [Curve("2450 grains", ours["t"], ours["T"])],
             [Curve("Haff", ours["t"], (1.0 + ours["t"]) ** -2.0)],
@@ -96,7 +96,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
                     "tau_0 over that of theory, less 1", abs(1.0 / rate - 1.0), "-",
                     at_most(
                         0.03 if plan.level is Level.FULL else 0.15,
-                        "number of collisions, and contacts that take time",
+                        "statistics of collisions, and finite contact times",
                     ),
                 )
             ],

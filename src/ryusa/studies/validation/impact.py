@@ -1,4 +1,4 @@
-"""Two grains, or a grain and a wall: restitution, contact time, and what a sliding impact leaves."""
+"""Two grains, or a grain and a wall: restitution, contact time, and the result of a sliding impact."""
 
 import math
 from collections.abc import Sequence
@@ -25,7 +25,7 @@ from ryusa.study import (
     misfit,
 )
 
-TITLE = "A grain hits"
+TITLE = "Impact of a grain"
 ASKED = (0.1, 0.3, 0.5, 0.7, 0.9, 0.98)
 PHASES = 20  # of the step at which the grains first touch
 SPEED, D = 0.5, 2.0e-3  # [m/s], [m]
@@ -35,7 +35,7 @@ RADIUS, FAST, DENSITY = 2.5e-3, 3.9, 4000.0  # [m], [m/s], [kg/m3]
 E, MU = 0.98, 0.092
 LIMIT = math.degrees(math.atan(3.5 * MU * (1.0 + E)))  # sliding throughout beyond it: 32.5 deg
 ANGLES = (35.0, 40.0, 50.0, 60.0, 70.0, 80.0, 85.0)  # from the normal [deg]
-# e_t [-], spin after it [rad/s], angle of the touching point [deg]
+# e_t [-], spin after it [rad/s], rebound angle of the contact point [deg]
 TEST_4 = {
     35.0: (0.737, -582.0, 3.4),
     40.0: (0.781, -545.0, 11.6),
@@ -73,7 +73,7 @@ def bounce(e: float, tension: bool, per_contact: float) -> dict[str, Floats]:
 def oblique(per_contact: float) -> dict[str, Floats]:
     """Test 4 of Chung & Ooi with a linear spring, spring and dashpot capped together.
 
-    For each of ANGLES: e_t [-], spin [rad/s], angle at which the touching point leaves [deg].
+    For each of ANGLES: e_t [-], spin [rad/s], rebound angle of the contact point [deg].
     """
     law = ContactLaw(
         k_n=1e7, k_s=2e7 / 7.0, mu=MU, zeta_n=collision.zeta_no_tension(E), slip=Slip.TOTAL, cap=Cap.TOTAL
@@ -99,7 +99,7 @@ def oblique(per_contact: float) -> dict[str, Floats]:
 
 
 def sliding(angle: Floats) -> tuple[Floats, Floats, Floats]:
-    """e_t, spin and angle of the touching point after gross sliding; angles from the normal [deg]."""
+    """e_t, spin and rebound angle of the contact point after gross sliding; angles from the normal [deg]."""
     tan = np.tan(np.radians(angle))
     spin = -2.5 * MU * (1.0 + E) * FAST * np.cos(np.radians(angle)) / RADIUS
     return 1.0 - MU * (1.0 + E) / tan, spin, np.degrees(np.arctan((tan - 3.5 * MU * (1.0 + E)) / E))
@@ -135,7 +135,7 @@ def _restitution(found: Found) -> Finding:
 
     asked = np.array(ASKED)
     return comparison(
-        "restitution", "Restitution asked and got",
+        "restitution", "Restitution of the case and of the runs",
         Source(
             "damped oscillator, exp(-pi zeta/sqrt(1 - zeta^2)); without tension Schwager & Poeschel 2007, "
             "eq. 21"
@@ -149,13 +149,16 @@ def _restitution(found: Found) -> Finding:
         [
             misfit(
                 "mean over 20 phases of first touch, 50 steps", worst(50.0, True), "-",
-                at_most(2e-3, "1/50^2, and more where it is strongly damped"),
+                at_most(2e-3, "1/50^2, and more with strong damping"),
             ),
             misfit(
                 "worst phase, 50 steps", worst(50.0, False), "-",
-                at_most(1.5e-2, "the dashpot jumps at touch: first order"),
+                at_most(1.5e-2, "the dashpot force is discontinuous at first touch: first order"),
             ),
-            misfit("worst phase, 500 steps", worst(500.0, False), "-", at_most(1.5e-3, "a tenth of that")),
+            misfit(
+                "worst phase, 500 steps", worst(500.0, False), "-",
+                at_most(1.5e-3, "a tenth of the value at 50 steps"),
+            ),
         ],
         {"d": "2 mm", "k_n": "1e4 N/m", "speed": "0.5 m/s"},
     )  # fmt: skip
@@ -178,10 +181,11 @@ def _duration(found: Found) -> Finding:
         [
             misfit(
                 "largest relative difference, 50 steps", worst[50.0], "-",
-                at_most(0.05, "the dashpot sees a speed half a step old: zeta omega_0 dt"),
+                at_most(0.05, "the dashpot acts on the velocity of half a step before: zeta omega_0 dt"),
             ),
             misfit(
-                "largest relative difference, 500 steps", worst[500.0], "-", at_most(0.005, "a tenth of that")
+                "largest relative difference, 500 steps", worst[500.0], "-",
+                at_most(0.005, "a tenth of the value at 50 steps"),
             ),
         ],
         {"d": "2 mm", "k_n": "1e4 N/m"},
@@ -196,7 +200,7 @@ def _test_4(found: Found) -> Sequence[Finding]:
     kinds = (
         ("e_t", "tangential restitution e_t", "-", 0.02),
         ("spin", "spin", "rad/s", 0.02),
-        ("leaves", "angle of the touching point", "deg", 2.0),
+        ("leaves", "rebound angle of the contact point", "deg", 2.0),
     )
     made: list[Finding] = []
     for k, (key, words, unit, read) in enumerate(kinds):
@@ -217,11 +221,12 @@ def _test_4(found: Found) -> Sequence[Finding]:
             [
                 misfit(
                     f"{told}, closed form", float(off), said,
-                    at_most(0.2 if key == "leaves" else 5e-3, "1/400 and the first step"),
+                    at_most(0.2 if key == "leaves" else 5e-3, "1/400, and the error of the first step"),
                 ),
-                misfit(f"{told}, test 4", float(far), said, at_most(read, "digitised curve")),
+                misfit(f"{told}, test 4", float(far), said, at_most(read, "accuracy of a digitised curve")),
             ],
             {"radius": "2.5 mm", "speed": "3.9 m/s", "e": "0.98", "mu": "0.092", "slip": "total"},
-            "Below 32.5 deg the table is Hertz and Mindlin's, no target for a linear spring.",
+            "Below 32.5 deg the table holds for a contact after Hertz and Mindlin, which a linear spring "
+            "does not reproduce.",
         ))  # fmt: skip
     return made

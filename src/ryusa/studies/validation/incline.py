@@ -96,7 +96,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         "mean speed of the second half over the first, less 1",
         abs(float(ours["drift"])),
         "-",
-        at_most(0.05, "it is to be steady"),
+        at_most(0.05, "the flow must be steady"),
     )
     return [
         comparison(
@@ -107,11 +107,11 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             [
                 misfit(
                     "exponent of s, core", exponent(s[core], u[core]), "-",
-                    Band(1.4, 1.6, "-", "3/2, and a flow of some ten grains"),
+                    Band(1.4, 1.6, "-", "3/2, and a depth of some ten grains"),
                 ),
                 steady,
             ],
-            settings, "The core is 0.2 to 0.8 of the depth; bed and surface have their own layers.",
+            settings, "The core is 0.2 to 0.8 of the depth, without the layers at the bed and the surface.",
         ),
         comparison(
             "inertial-number", "Inertial number over height",
@@ -124,6 +124,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
                 ),
                 misfit("phi, largest relative difference, core", even, "-", at_most(0.05, "phi follows I")),
             ],
-            settings, "Layers of half a grain would see how grains lie over the bed.",
+            settings,
+            "With layers of half a diameter the layering of grains over the bed would be visible.",
         ),
     ]  # fmt: skip

@@ -26,7 +26,7 @@ from ryusa.study import (
     misfit,
 )
 
-TITLE = "A grain hits under water"
+TITLE = "Impact of a grain under water"
 D, DENSITY, NU, RHO, C_M = 2.0e-3, 2650.0, 1.0e-6, 1000.0, 0.5  # [m], [kg/m3], [m2/s], [kg/m3], [-]
 E_DRY, LEAST, ST_C, ROUGH = 0.9, 0.01, 35.0, 2.0e-5  # [-], [-], [-], [m]
 REACH, GAP = 0.2 * D, 1.0e-6  # of a film, and between grains about to touch [m]
@@ -138,15 +138,13 @@ DENSE = np.geomspace(4.5, 1200.0, 120)
 STOKES = Axis("Stokes number of the approach", log=True)
 SOURCES = {
     "exponential": Source(
-        "Legendre et al. 2005, 2006: e = e_dry exp(-35/St), as TrioCFD and LIGGGHTS have it", Known.QUOTED
+        "Legendre et al. 2005, 2006: e = e_dry exp(-35/St), as in TrioCFD and LIGGGHTS", Known.QUOTED
     ),
-    "Davis": Source(
-        "Barnocky & Davis 1988, as YADE has it: e = e_dry (1 + ln(2 roughness/d)/St)", Known.QUOTED
-    ),
+    "Davis": Source("Barnocky & Davis 1988, as in YADE: e = e_dry (1 + ln(2 roughness/d)/St)", Known.QUOTED),
 }
 SETTINGS = {
     "e_dry": f"{E_DRY:g}", "d": "2 mm", "k_n": "1e4 N/m", "least": f"{LEAST:g}",
-    "St": "m speed/(6 pi mu r^2), reduced mass and radius, added mass counted",
+    "St": "m speed/(6 pi mu r^2), reduced mass and radius, with added mass",
 }  # fmt: skip
 ROUGHNESS = {"roughness": f"{1e6 * ROUGH:g} um"}
 
@@ -157,21 +155,23 @@ def _law(found: Found, name: str) -> Finding:
     off = {n: np.array([found[_bounce(name, one, n)]["e"] - law for one in PARTNERS]) for n in (COARSE, FINE)}
     worst = {n: float(np.abs(each / law)[:, law >= MUCH].max()) for n, each in off.items()}
     return comparison(
-        name.lower(), f"Rebound '{name}': restitution asked and got", SOURCES[name],
+        name.lower(), f"Rebound '{name}': restitution of the law and of the runs", SOURCES[name],
         STOKES, Axis("restitution"),
         [Curve(f"{one}, {FINE:g} steps", st, found[_bounce(name, one, FINE)]["e"]) for one in PARTNERS],
         [Curve("as asked", DENSE, asked(name, DENSE))],
         [
             misfit(
-                "largest difference, 300 steps a dry contact", float(np.abs(off[FINE]).max()), "-",
-                at_most(2e-3, "the dashpot jumps at touch: first order in the step"),
+                "largest difference, 300 steps per dry contact", float(np.abs(off[FINE]).max()), "-",
+                at_most(2e-3, "the dashpot force is discontinuous at first touch: first order in the step"),
             ),
             misfit(
-                "the same, relative, where 0.1 or more is left", worst[FINE], "-",
-                at_most(0.02, "a stronger dashpot than a dry contact has, and so fewer steps to its time"),
+                "the same, relative, where it is 0.1 or more", worst[FINE], "-",
+                at_most(
+                    0.02, "a dashpot stronger than that of a dry contact, and so fewer steps per contact"
+                ),
             ),
             misfit(
-                "the same at 50 steps", worst[COARSE], "-", at_most(0.08, "a step six times as long")
+                "the same at 50 steps", worst[COARSE], "-", at_most(0.08, "a time step six times as long")
             ),
         ],
         SETTINGS | (ROUGHNESS if name == "Davis" else {}),
@@ -182,7 +182,7 @@ def _films(found: Found) -> Finding:
     st = np.array(ASKED)
     got = {one: found[_film(one)]["e"] for one in PARTNERS}
     return comparison(
-        "film", "Film 'lubrication': speed out of it over speed into it",
+        "film", "Film 'lubrication': speed after over speed before the film",
         Source(
             "6 pi mu r^2 closing (1/(gap + roughness) - 1/(reach + roughness)) integrated over the gap, in "
             "and out, with e_dry between"
@@ -195,7 +195,7 @@ def _films(found: Found) -> Finding:
                 at_most(2e-3, "that of a dry contact at 300 steps"),
             )
         ],
-        SETTINGS | ROUGHNESS | {"reach": "0.2 d", "steps": "300 a dry contact"},
+        SETTINGS | ROUGHNESS | {"reach": "0.2 d", "steps": "300 per dry contact"},
     )  # fmt: skip
 
 
@@ -216,10 +216,14 @@ def _trend(found: Found) -> Finding:
             Curve("that in air", np.array([500.0, st[-1]]), np.ones(2)),
         ],
         [
-            misfit(f"{name}, left at St = {ends:g}", float(np.interp(math.log(ends), np.log(st), e / E_DRY)))
+            misfit(
+                f"{name}, restitution over that in air at St = {ends:g}",
+                float(np.interp(math.log(ends), np.log(st), e / E_DRY)),
+            )
             for name, e in got.items()
         ],
         SETTINGS | ROUGHNESS,
-        "The law through the measurements is the exponential one. Davis counts the approach alone and leaves "
-        "more; a film takes on the way out too, but ends at its roughness.",
+        "The exponential law was fitted to the measurements. The law of Davis includes only the loss "
+        "during approach and gives a higher restitution; a film dissipates during separation too, but is "
+        "limited by the roughness.",
     )  # fmt: skip

@@ -90,7 +90,7 @@ def _slides(found: Found) -> Finding:
     t = ours["t"]
     law = np.maximum(FAST - MU * G * t, 5.0 / 7.0 * FAST)
     return comparison(
-        "slide-to-roll", "It slides until it rolls at 5/7 of its speed",
+        "slide-to-roll", "Sliding until the grain rolls at 5/7 of its speed",
         Source("v = v_0 - mu g t until 2 v_0/(7 mu g), then (5/7) v_0"),
         Axis("time", "s"), Axis("speed", "m/s"),
         [Curve("speed", t, ours["v"]), Curve("spin times radius", t, 0.5 * D * ours["omega"])],
@@ -101,11 +101,11 @@ def _slides(found: Found) -> Finding:
         [
             misfit(
                 "largest difference over the first speed", relative(ours["v"], law), "-",
-                at_most(2e-3, "a spring holds a little before it slips"),
+                at_most(2e-3, "the tangential spring stores energy before the contact slides"),
             ),
             misfit(
                 "last speed over (5/7) v_0, less 1", abs(float(ours["v"][-1] / law[-1]) - 1.0), "-",
-                at_most(2e-3, "what the tangential spring holds"),
+                at_most(2e-3, "energy in the tangential spring"),
             ),
         ],
         {"d": "2 mm", "mu": "0.3", "v_0": "0.2 m/s"},
@@ -119,17 +119,17 @@ def _stops(found: Found, model: str) -> Finding:
     law = SLOW * until - 0.5 * brake * until**2
     stop = 0.5 * SLOW**2 / brake
     return comparison(
-        f"stops-{model}", f"Rolling friction stops it: {model}",
-        Source("x = v_0 t - a t^2/2, a = (5/7) mu_r g, up to v_0^2/(2 a); Ai et al. 2011 name the types"),
+        f"stops-{model}", f"A grain stopped by rolling friction: {model}",
+        Source("x = v_0 t - a t^2/2, a = (5/7) mu_r g, up to v_0^2/(2 a); types after Ai et al. 2011"),
         Axis("time", "s"), Axis("way", "mm"),
         [Curve("way", t, 1e3 * ours["x"])], [Curve("way", t, 1e3 * law)],
         [
             misfit(
-                "largest difference over the way", relative(ours["x"], law), "-",
-                at_most(5e-3, "the spring of the slider winds up first"),
+                "largest difference over the distance", relative(ours["x"], law), "-",
+                at_most(5e-3, "the rolling spring is loaded first"),
             ),
             misfit(
-                "way until it stops over v_0^2/(2 a), less 1", abs(float(ours["x"][-1]) / stop - 1.0), "-",
+                "stopping distance over v_0^2/(2 a), less 1", abs(float(ours["x"][-1]) / stop - 1.0), "-",
                 at_most(5e-3, "the same"),
             ),
         ],

@@ -56,8 +56,8 @@ class Range:
 
 
 RANGES = {
-    "stokes": Range("Stokes' range, Re = 1e-4", 1.0, 1.0e-4, 1.0e-4, Drag.RE_04),
-    "newton": Range("Newton's range, C_D = 0.44", 2.0, 2.0e-3, 1.0e-9, Drag.CONSTANT),
+    "stokes": Range("Stokes drag, Re = 1e-4", 1.0, 1.0e-4, 1.0e-4, Drag.RE_04),
+    "newton": Range("Newton drag, C_D = 0.44", 2.0, 2.0e-3, 1.0e-9, Drag.CONSTANT),
 }
 # hindrance -> p and q of eps**-q F_0(eps**p slip), as published for model A, and whether it is one
 LAWS: Mapping[str, tuple[Hindrance, float, float]] = {
@@ -174,12 +174,14 @@ def _compare(found: Found, where: str, form: str) -> Finding:
         f"{where}-{form}", f"{RANGES[where].words}, buoyancy {form}",
         Source(
             "w = w_0 (1 - phi)^n, n = 1 - p + (q + A)/a of drag eps^-q F_0(eps^p w/eps), F_0 ~ w^a, A = 1 "
-            "where buoyancy is that of the mixture"
+            "with the buoyancy of the mixture"
         ),
         Axis("concentration phi"), Axis("w/w_0", log=True), ours, references, errors,
         {"suspension": "lattice of 128 grains in a closed column"},
-        "Water returns past the grains: even without hindrance w falls with phi.",
+        "Water returns past the grains, so w decreases with phi even without hindrance.",
     )  # fmt: skip
 
 
-CLOSE = at_most(0.002, "the last exchange is up to 5 steps old, and 10 response times leave exp(-10)")
+CLOSE = at_most(
+    0.002, "the last exchange was up to 5 steps before, and exp(-10) remains after 10 response times"
+)

@@ -92,7 +92,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     ours = {law: found[_call(law)]["w"] for law in LAWS}
     mm = 1e3 * np.array(SIZES)
     roots = comparison(
-        "drag-laws", "Terminal velocity under every drag law",
+        "drag-laws", "Terminal velocity with every drag law",
         Source("root of C_D(Re) w^2 = (4/3) (rho_s/rho - 1) g d"), D, W,
         [Curve(law, mm, w) for law, w in ours.items()],
         [Curve(law, 1e3 * FINE, np.array([root(LAWS[law][1], float(d)) for d in FINE])) for law in LAWS],
@@ -100,17 +100,17 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             misfit(
                 f"{law}: largest relative difference",
                 max(abs(w / root(LAWS[law][1], d) - 1.0) for d, w in zip(SIZES, speeds, strict=True)), "-",
-                at_most(1e-7, "20 response times from rest: exp(-20), and round-off"),
+                at_most(1e-7, "20 response times after rest: exp(-20), and round-off"),
             )
             for law, speeds in ours.items()
         ],
         {"density": "2650 kg/m3", "nu": "1e-6 m2/s", "g": "9.81 m/s2"},
-        "The engine's step has the balance as its fixed point, whatever the step.",
+        "The balance of forces is a fixed point of the scheme, whatever the time step.",
     )  # fmt: skip
     shown = ("Schiller-Naumann", "Ferguson-Church sphere", "Ferguson-Church sand")
     law_of = {"Soulsby 1997, natural sand": shown[2], "Dietrich 1982, nearly round": shown[0]}
     field = comparison(
-        "field", "Our drag laws beside the field's settling formulae",
+        "field", "Drag laws and settling formulae for natural sand",
         Source(
             "Soulsby 1997; Dietrich 1982 without shape; Ferguson & Church 2004: fits to measured sand",
             Known.QUOTED,
@@ -125,7 +125,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             for name, law in law_of.items()
         ],
         {"density": "2650 kg/m3", "nu": "1e-6 m2/s", "g": "9.81 m/s2"},
-        "Grains of the field are no spheres, and its formulae differ from each other by as much; the choice "
-        "of a drag law for sand is a choice of shape.",
+        "Natural grains are not spheres, and the formulae for them differ from each other by as much; to "
+        "choose a drag law for sand is to choose a shape.",
     )  # fmt: skip
     return [roots, field]

@@ -29,7 +29,7 @@ from ryusa.study import (
     misfit,
 )
 
-TITLE = "Transport of sediment against the stress on the bed"
+TITLE = "Sediment transport rate over bed shear stress"
 SLOPES = {"bedload_3d": (0.005, 0.00825, 0.0132, 0.0248), "sheet_flow": (0.0275, 0.0468, 0.07)}
 DEEP = {0.07: {"build.layers": "14", "build.length": "4.5 cm"}}  # fewer would move down to the last one
 QUICK = {"motion.slope": "0.0248", "stop.time": "2 s", "record.settle": "1 s"}
@@ -114,20 +114,24 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             "rate", "Transport rate from the threshold to sheet flow",
             Source(
                 "8 (tau_star - 0.047)^1.5; 3.97 (tau_star - 0.0495)^1.5; 17 (tau_star - 0.05) "
-                "(tau_star^0.5 - 0.05^0.5): fits to flumes, as public codes have them", Known.QUOTED,
+                "(tau_star^0.5 - 0.05^0.5): fits to flume data, as in public codes", Known.QUOTED,
             ),
             Axis("tau_star at the bed", log=True), Axis("q_star", log=True), [Curve("grains", tau, q)],
             [Curve(name, FINE, one) for name, one in formulae(FINE).items()],
             [
                 misfit(
                     "largest factor outside the formulae", worst, "-",
-                    at_most(2.0, "the formulae differ by 3, measurements scatter about each by 2"),
+                    at_most(
+                        2.0,
+                        "the formulae differ by a factor of 3, and measurements scatter about each by "
+                        "a factor of 2",
+                    ),
                 ),
                 misfit(
-                    "geometric mean of rate over the formulae's", float(np.exp(off.mean())), "-",
+                    "geometric mean of the rate over that of the formulae", float(np.exp(off.mean())), "-",
                     Band(0.5, 2.0, "-", "the same"),
                 ),
-                misfit("scatter about that, a factor", float(np.exp(off.std())), "-"),
+                misfit("scatter about that mean, as a factor", float(np.exp(off.std())), "-"),
             ],
             {
                 "grains": "spheres of 4 mm +- 10 %, free to spin, mu = 0.577, e = 0.5, no dashpot "
@@ -135,8 +139,9 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
                 "slopes": ", ".join(f"{math.tan(one):.3g}" for one in slope),
                 "depth": ", ".join(f"{one:.0f} d" for one in depth),
             },
-            "tau_star is that of the clear water, carried on to where the bed is half as dense as at "
-            f"rest (docs/theory.md); judged from {JUDGED} on. {moved}.",
+            "tau_star is the stress of the clear water, extrapolated to the height where the "
+            f"concentration is half that of the bed at rest (docs/theory.md); judged from {JUDGED} "
+            f"upwards. {moved}.",
             [Curve("Egashira, Miyamoto & Itoh 1997, level bed", FINE, egashira(FINE, 0.0, 1.0e9))],
         )
     ]  # fmt: skip

@@ -77,11 +77,11 @@ def _couette_exact(c: Column) -> Floats:
 
 
 LAMINAR: Mapping[str, tuple[Callable[[int], Column], Callable[[Column], Floats], str, str]] = {
-    "film": (film, _film_exact, "A film on a slope", "Nusselt 1916: U = g_x z (2 h - z)/(2 nu)"),
-    "poiseuille": (gap, _gap_exact, "Poiseuille's flow between plates", "U = -dp/dx z (h - z)/(2 rho nu)"),
-    "couette": (sheared, _couette_exact, "Couette's flow under a lid", "U = U_lid z/h"),
+    "film": (film, _film_exact, "Laminar film on a slope", "Nusselt 1916: U = g_x z (2 h - z)/(2 nu)"),
+    "poiseuille": (gap, _gap_exact, "Poiseuille flow between plates", "U = -dp/dx z (h - z)/(2 rho nu)"),
+    "couette": (sheared, _couette_exact, "Couette flow under a moving lid", "U = U_lid z/h"),
     "couette-poiseuille": (
-        sheared_back, _couette_exact, "A lid against a pressure gradient",
+        sheared_back, _couette_exact, "Moving lid with an opposing pressure gradient",
         "U = U_lid z/h - dp/dx z (h - z)/(2 rho nu)",
     ),
 }  # fmt: skip
@@ -147,10 +147,10 @@ def _laminar_flow(found: Found, which: str) -> Finding:
     fine = make(200)
     if which == "couette":  # linear: there is nothing to converge
         last = misfit(FAR, errors[-1], "-", at_most(1e-12, "linear in z: round-off"))
-        said, kept = "A linear profile is met without error.", [last]
+        said, kept = "A linear profile is reproduced without error.", [last]
     else:
         order = float(np.log2(errors[-2] / errors[-1]))
-        last = misfit(FAR, errors[-1], "-", at_most(3e-4, "1/n^2 for n cells, and twice as much"))
+        last = misfit(FAR, errors[-1], "-", at_most(3e-4, "1/n^2 for n cells, with a margin of 2"))
         said = "The order is log2 of the errors on 40 and 80 cells."
         kept = [last, misfit("order of convergence in space", order, "-", SECOND)]
     return comparison(
@@ -165,7 +165,7 @@ def _rough(found: Found) -> Finding:
     law = np.array([log_law_rough(float(z), U_STAR, ROUGH) for z in ours["z"]])
     every = [_rough_error(found, n) for n in GRIDS]
     return comparison(
-        "log-rough", "The log law over a rough bed",
+        "log-rough", "Logarithmic law over a rough bed",
         Source("the paper, Eq. (9): U/u_star = 8.5 + 5.75 log10(z/k_s)"),
         Axis("height", "m", log=True), U, [Curve("parabolic mixing length, 40 cells", ours["z"], ours["u"])],
         [Curve("Eq. (9)", ours["z"], law)],
@@ -179,7 +179,7 @@ def _rough(found: Found) -> Finding:
             ),
         ],
         {"u_star": "0.0985 m/s", "depth": "2 cm", "k_s": "2 mm"},
-        "With kappa = ln(10)/5.75 and no viscosity the column is Eq. (9) on any grid.",
+        "With kappa = ln(10)/5.75 and without viscosity the column reproduces Eq. (9) on any grid.",
     )  # fmt: skip
 
 
@@ -196,15 +196,21 @@ def _rough_discharge(found: Found) -> Finding:
     grids = np.array(GRIDS, dtype=np.float64)
     order = float(np.log2(error[0] / error[-1]) / 3.0)
     return comparison(
-        "log-discharge", "Discharge of the log law",
+        "log-discharge", "Discharge of the logarithmic law",
         Source("Eq. (9) over depth: q = u_star h (8.5 - 5.75/ln(10) + 5.75 log10(h/k_s)), from k_s/30 up"),
         Axis("cells", log=True), Axis("discharge", "m2/s"), [Curve("column", grids, ours)],
         [Curve("integral of Eq. (9)", grids, np.full(len(grids), exact))],
         [
-            misfit("relative difference, 40 cells", float(error[2]), "-", at_most(1.2e-3, "a log by cells")),
+            misfit(
+                "relative difference, 40 cells", float(error[2]), "-",
+                at_most(1.2e-3, "a logarithm, resolved by cells"),
+            ),
             misfit(
                 "order of convergence in space, 10 to 80 cells", order, "-",
-                Band(0.9, math.inf, "-", "the log is singular at the bed: its lowest cell is of first order"),
+                Band(
+                    0.9, math.inf, "-",
+                    "the logarithm is singular at the bed: the lowest cell is of first order",
+                ),
             ),
         ],
         {"u_star": "0.0985 m/s", "depth": "2 cm", "k_s": "2 mm"},
@@ -215,14 +221,14 @@ def _smooth(found: Found) -> Finding:
     ours = found[_call("coarse", 20)]
     law = np.array([log_law_smooth(float(z), 0.05, 1e-6) for z in ours["z"]])
     return comparison(
-        "log-smooth", "The log law over a smooth bed, coarse grid",
+        "log-smooth", "Logarithmic law over a smooth bed, coarse grid",
         Source("two layers: u+ = z+ up to 11.3, then ln(z+/11.3)/0.41 + 11.3"),
         Axis("height", "m", log=True), U, [Curve("parabolic mixing length, 20 cells", ours["z"], ours["u"])],
         [Curve("two-layer law", ours["z"], law)],
         [
             misfit(
                 "largest relative difference", float(np.abs(ours["u"] / law - 1.0).max()), "-",
-                at_most(0.01, "the law leaves out viscosity above z+ = 11.3"),
+                at_most(0.01, "the law neglects viscosity above z+ = 11.3"),
             )
         ],
         {"u_star depth/nu": "1000"},
@@ -239,14 +245,14 @@ def _van_driest(found: Found) -> Finding:
     wall = Axis("z+", log=True)
     return comparison(
         "van-driest", "Viscous layer and log layer over a smooth bed, fine grid",
-        Source("law of the wall: u+ = z+; u+ = ln(z+)/0.41 + 5.25, where van Driest's length leads"),
+        Source("law of the wall: u+ = z+; u+ = ln(z+)/0.41 + 5.25, the limit of van Driest's mixing length"),
         wall, Axis("u+"), [Curve("van Driest's mixing length, 1000 cells", z_plus, u_plus)],
         [Curve("u+ = z+", steps, steps), Curve("log law", z_plus[log], law)],
         [
-            misfit("z+ below 3, relative", viscous, "-", at_most(5e-3, "eddies begin")),
+            misfit("z+ below 3, relative", viscous, "-", at_most(5e-3, "onset of turbulence")),
             misfit(
                 "z+ 50 to 100, relative", float(np.abs(u_plus[log] / law - 1.0).max()), "-",
-                at_most(0.015, "stress falls by z/h = 0.1 over the layer"),
+                at_most(0.015, "the stress decreases by z/h = 0.1 over the layer"),
             ),
         ],
         {"u_star depth/nu": "1000"},
