@@ -93,8 +93,8 @@ def twice(n: int, steps: int) -> dict[str, Any]:
         engine.load(*made)
         engine.advance(steps).raise_if_any()
         state = engine.state()
-        books = np.array(state.tally.books)
-        kept = (state.x, state.v, state.omega, books, state.contacts.spring_s, state.contacts.j)
+        terms = np.array(state.tally.terms)
+        kept = (state.x, state.v, state.omega, terms, state.contacts.spring_s, state.contacts.j)
         found.append(b"".join(np.ascontiguousarray(array).tobytes() for array in kept))
     return {"same bits twice": found[0] == found[1], "both sides alike": sides(engine), "steps": steps}
 

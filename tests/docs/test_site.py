@@ -74,17 +74,17 @@ def test_docstrings_are_rewritten_as_numpydoc_reads_them() -> None:
 
 
 def test_comments_beside_fields_become_their_description() -> None:
-    from ryusa.model.tally import Book, Tally
+    from ryusa.model.tally import Tally, Term
 
     docstrings = site("docstrings")
-    assert docstrings.fields_of(Book)["DASH_N"] == "lost to normal dashpots"
+    assert docstrings.fields_of(Term)["DASH_N"] == "lost to normal dashpots"
     assert docstrings.fields_of(Tally)["overlap_max"].startswith("largest overlap over the smaller diameter")
 
 
 def test_the_glossary_explains_every_term_of_the_energy_account() -> None:
-    from ryusa.model.tally import HELD, Book
+    from ryusa.model.tally import HELD, Term
 
-    terms = {*HELD, *(book.name.lower() for book in Book)}
+    terms = {*HELD, *(term.name.lower() for term in Term)}
     table = (DOCS / "glossary.md").read_text(encoding="utf-8").split("## Terms of the energy account")[1]
     explained = {
         name for row in re.findall(r"^\| (`.*?) \|", table, re.M) for name in re.findall(r"`(\w+)`", row)

@@ -114,7 +114,7 @@ def alike(mine, theirs, share):
     assert [getattr(mine, name) for name in held] == pytest.approx(
         [getattr(theirs, name) for name in held], rel=1e-9, abs=share * size
     )
-    assert mine.books == pytest.approx(theirs.books, rel=1e-9, abs=share * max(map(abs, theirs.books)))
+    assert mine.terms == pytest.approx(theirs.terms, rel=1e-9, abs=share * max(map(abs, theirs.terms)))
     for name in ("overlap_max", "speed_max", "spin_max", "t"):
         assert getattr(mine, name) == pytest.approx(getattr(theirs, name), rel=1e-9)
     assert (mine.n_contact, mine.overlap_grain) == (theirs.n_contact, theirs.overlap_grain)

@@ -17,7 +17,7 @@ from tests.engine.reference import touching_pairs
 from ryusa.build import scene
 from ryusa.engine import registry
 from ryusa.errors import GrainLost, ListUnsafe, NotANumber, OverlapTooLarge
-from ryusa.model import Book, EngineBlock
+from ryusa.model import EngineBlock, Term
 from ryusa.model.fluid import N_SAMPLED
 from ryusa.model.scene import EventRule
 
@@ -194,7 +194,7 @@ def test_the_removal_of_a_gate_is_accounted_for_as_on_the_cpu(create):
         engine.load(replace(fixed, plane_active=np.array([True, False, True])), engine.state())
         engine.advance(20).raise_if_any()
     mine, theirs = engines
-    assert theirs.tally().books[Book.SWITCH] < 0.0
+    assert theirs.tally().terms[Term.SWITCH] < 0.0
     alike(mine.tally(), theirs.tally(), 1e-11)
     records = [engine.events()[["i", "j"]].tolist() for engine in engines]
     assert records[0] == records[1]

@@ -12,7 +12,7 @@ from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.laws import immersed
 from ryusa.laws.families import Drag, Profile, Rebound
 from ryusa.laws.reduced import reduced
-from ryusa.model import Book, ContactLaw, Water
+from ryusa.model import ContactLaw, Term, Water
 from ryusa.model.scene import Damping, EventRule
 
 NU, RHO, E_DRY, ROUGH = 1.0e-6, 1000.0, 0.9, 2.0e-5
@@ -103,7 +103,7 @@ def test_a_film_slows_the_approach_by_its_closed_form(st, partner):
     assert first[0] / speed == pytest.approx(1.0 - taken, rel=0.01)
     engine.advance(2000).raise_if_any()
     account = engine.tally()
-    assert account.books[Book.FILM] > 0.0
+    assert account.terms[Term.FILM] > 0.0
     assert account.residual < 1e-3
 
 

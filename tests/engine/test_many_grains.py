@@ -11,7 +11,7 @@ from tests.engine.reference import accelerations, touching_pairs
 from ryusa.build import scene
 from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.laws.families import Arm, Drag, Profile, Rolling, Slip, WaterTorque
-from ryusa.model import Book, RollingLaw, Water
+from ryusa.model import RollingLaw, Term, Water
 from ryusa.model.scene import EventRule
 
 WET = Water(
@@ -64,7 +64,7 @@ def test_an_account_without_block_accounts_is_continued_from_its_sum():
     engine, same = CpuEngine(), CpuEngine()
     engine.load(made[0], replace(state, engine=None))
     same.load(made[0], state)
-    assert engine.tally().books == pytest.approx(same.tally().books, rel=1e-12)
+    assert engine.tally().terms == pytest.approx(same.tally().terms, rel=1e-12)
     assert engine.tally().residual == pytest.approx(same.tally().residual, abs=1e-12)
 
 
@@ -122,7 +122,7 @@ def test_an_elastic_gas_keeps_its_energy_over_1e5_steps():
         for _ in range(20):
             engine.advance(5000).raise_if_any()
             account = engine.tally()
-            held.append(account.held / account.books[Book.START] - 1.0)
+            held.append(account.held / account.terms[Term.START] - 1.0)
             assert account.residual < 1e-5
         assert engine.state().step == 100_000
         assert np.max(np.abs(held)) < 3e-4
@@ -136,7 +136,7 @@ def test_momentum_of_a_periodic_cloud_without_walls_is_kept_to_round_off():
     engine = run((fixed, first), 5000)
     before = (fixed.m[:, None] * first.v).sum(axis=0)
     after = (fixed.m[:, None] * engine.state().v).sum(axis=0)
-    assert engine.tally().books[Book.DASH_N] == 0.0
+    assert engine.tally().terms[Term.DASH_N] == 0.0
     assert after == pytest.approx(
         before, rel=0.0, abs=1e-12 * float(np.abs(fixed.m[:, None] * first.v).sum())
     )
@@ -183,10 +183,10 @@ def test_of_three_mutual_contacts_only_the_one_that_ends_loses_its_history():
 def test_the_account_closes_at_coarse_steps_with_the_step_term(per_contact):
     made = pile(n=300, plane_case=True, stir=0.1, steps_per_contact=per_contact)
     account = run(made, int(0.1 / made[0].dt)).tally()
-    lost = account.books[Book.DASH_N]
+    lost = account.terms[Term.DASH_N]
     assert account.residual < 1e-3
     # each touch takes about (omega dt)**2/6 of its energy, each parting gives e**2 of that back
-    assert abs(account.books[Book.STEP]) < (math.pi / per_contact) ** 2 / 6.0 * lost / (1.0 - 0.49)
+    assert abs(account.terms[Term.STEP]) < (math.pi / per_contact) ** 2 / 6.0 * lost / (1.0 - 0.49)
 
 
 def test_the_residual_does_not_depend_on_where_the_origin_is():
@@ -205,7 +205,7 @@ def test_the_residual_does_not_depend_on_where_the_origin_is():
         engine.load(tilted, engine.state())
         engine.advance(3000).raise_if_any()
         account = engine.tally()
-        assert abs(account.books[Book.SWITCH]) > (0.0 if shift == 0.0 else shift * 1e-6)
+        assert abs(account.terms[Term.SWITCH]) > (0.0 if shift == 0.0 else shift * 1e-6)
         residuals.append(account.residual)
     assert residuals == pytest.approx([residuals[0]] * 3, rel=1e-2, abs=1e-9)
     assert residuals[0] < 1e-3
@@ -218,12 +218,12 @@ def test_the_energy_account_closes(kind):
     account = engine.tally()
     assert account.overlap_max > 0.0
     assert account.residual < 1e-4
-    for book in (Book.DASH_N, Book.DASH_S, Book.SLIDE, Book.RELEASED_N, Book.RELEASED_S):
-        assert account.books[book] > 0.0
+    for term in (Term.DASH_N, Term.DASH_S, Term.SLIDE, Term.RELEASED_N, Term.RELEASED_S):
+        assert account.terms[term] > 0.0
     if "wet" in kind:
-        assert account.books[Book.ROLL] > 0.0
-        assert account.books[Book.TORQUE] < 0.0
-        assert account.books[Book.DRAG] != 0.0
+        assert account.terms[Term.ROLL] > 0.0
+        assert account.terms[Term.TORQUE] < 0.0
+        assert account.terms[Term.DRAG] != 0.0
 
 
 def test_a_bed_at_rest_comes_to_rest():
@@ -252,7 +252,7 @@ def test_removing_a_gate_ends_its_contacts_and_accounts_for_their_springs():
     engine.load(replace(fixed, plane_active=np.array([True, False, True])), engine.state())
     engine.advance(2000).raise_if_any()
     account = engine.tally()
-    assert account.books[Book.SWITCH] < 0.0
+    assert account.terms[Term.SWITCH] < 0.0
     assert engine.state().v[0, 0] > 0.0
     assert account.residual < 1e-3
     (record,) = [r for r in engine.events() if r["j"] == 2]
@@ -281,7 +281,7 @@ def test_locking_rotation_during_a_run_removes_the_spin_from_the_account():
     engine.advance(10).raise_if_any()
     account = engine.tally()
     assert account.spin == 0.0
-    assert account.books[Book.SWITCH] == pytest.approx(-account.books[Book.START], rel=1e-12)
+    assert account.terms[Term.SWITCH] == pytest.approx(-account.terms[Term.START], rel=1e-12)
 
 
 def test_lanes_of_a_plane_scene_do_not_interact_whatever_the_range_of_the_list():

@@ -11,7 +11,7 @@ from ryusa.build import scene
 from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.laws import collision, drag
 from ryusa.laws.families import Arm, Drag, Profile, Rolling, Slip, WaterTorque
-from ryusa.model import Book, RollingLaw, Water
+from ryusa.model import RollingLaw, Term, Water
 
 G = 9.80665
 FLOOR = [("floor", (0, 0, 0), (0, 0, 1))]
@@ -72,7 +72,7 @@ def test_a_rolling_sphere_stops_where_rolling_friction_says(rolling):
     last = engine.state()
     assert last.x[0, 0] == pytest.approx(0.5 * v * v / brake, rel=2e-2)
     assert abs(last.v[0, 0]) < 5e-2 * v  # an undamped rolling spring swings on
-    lost = engine.tally().books[Book.ROLL]
+    lost = engine.tally().terms[Term.ROLL]
     energy = 0.5 * float(made[0].m[0]) * v**2 * 1.4
     assert lost == pytest.approx(energy, rel=3e-2)
 
@@ -93,11 +93,11 @@ def test_eq_13_as_printed_brakes_a_rolling_sphere_and_then_drives_it_back():
     made = resting(law, v=v, omega=v / (0.5 * D), rolling=rolling)
     stop = v / (5.0 / 7.0 * MU_R * G)
     engine = run(made, int(1.0 * stop / made[0].dt))
-    lost = engine.tally().books[Book.ROLL]
+    lost = engine.tally().terms[Term.ROLL]
     assert abs(engine.state().v[0, 0]) < 0.02 * v
     engine.advance(int(0.5 * stop / made[0].dt)).raise_if_any()
     assert engine.state().v[0, 0] == pytest.approx(-0.5 * v, rel=0.03)
-    assert engine.tally().books[Book.ROLL] < lost
+    assert engine.tally().terms[Term.ROLL] < lost
 
 
 @pytest.mark.parametrize("name", MODELS)
@@ -189,7 +189,7 @@ def test_a_grain_settles_at_the_terminal_velocity_of_its_drag_law(law, d):
     last = engine.state()
     assert -last.v[0, 2] == pytest.approx(low, rel=1e-8)
     account = engine.tally()
-    assert account.books[Book.DRAG] < 0.0
+    assert account.terms[Term.DRAG] < 0.0
     assert account.residual < 1e-6
     if law == Drag.FERGUSON_CHURCH_SAND:
         assert low == pytest.approx(
@@ -214,7 +214,7 @@ def test_a_slow_spin_decays_after_stokes():
     engine = run((fixed, first), 4000)
     assert engine.state().omega[0, 1] == pytest.approx(spin * math.exp(-2.0), rel=1e-3)
     lost = 0.5 * float(fixed.inertia[0]) * spin**2 * (1.0 - math.exp(-4.0))
-    assert -engine.tally().books[Book.TORQUE] == pytest.approx(lost, rel=2e-3)
+    assert -engine.tally().terms[Term.TORQUE] == pytest.approx(lost, rel=2e-3)
     assert engine.tally().residual < 1e-9
 
 

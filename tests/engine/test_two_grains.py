@@ -10,7 +10,7 @@ from tests.engine.conftest import D, contact_law, run
 from ryusa.build import scene
 from ryusa.laws import collision
 from ryusa.laws.families import Drag, Profile, Slip
-from ryusa.model import Book, Water
+from ryusa.model import Term, Water
 
 SPEED = 0.5  # [m/s]
 
@@ -82,16 +82,16 @@ def test_largest_overlap_follows_from_speed_mass_and_damping():
 
 def test_spring_energy_released_without_tension_is_the_known_share():
     _, _, engine = head_on(0.7, per_contact=1000.0)
-    books, law, m = engine.tally().books, engine._scene.contact, float(engine._scene.m[0])
+    terms, law, m = engine.tally().terms, engine._scene.contact, float(engine._scene.m[0])
     impact = 0.5 * m * SPEED**2
     # overlap left when the force ends: k x = -eta v, with v = -e v0 (Schwager & Poeschel 2007)
     eta = 2.0 * law.zeta_n * math.sqrt(law.k_n * m)
     left = eta * 0.7 * SPEED / law.k_n
-    assert books[Book.RELEASED_N] / impact == pytest.approx(
+    assert terms[Term.RELEASED_N] / impact == pytest.approx(
         0.5 * law.k_n * left**2 / impact, rel=1.5e-2
     )  # left within a step
-    assert books[Book.RELEASED_N] / impact == pytest.approx(0.029, abs=1e-3)  # paper.md, readings
-    assert books[Book.DASH_N] / impact == pytest.approx(1.0 - 0.49 - 0.0293, abs=2e-3)
+    assert terms[Term.RELEASED_N] / impact == pytest.approx(0.029, abs=1e-3)  # paper.md, readings
+    assert terms[Term.DASH_N] / impact == pytest.approx(1.0 - 0.49 - 0.0293, abs=2e-3)
     assert engine.tally().residual < 1e-4
 
 

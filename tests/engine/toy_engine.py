@@ -11,7 +11,7 @@ from ryusa.errors import GrainLost, ListUnsafe, NotANumber, OverlapTooLarge
 from ryusa.laws.collision import effective_mass, effective_mass_tangential
 from ryusa.laws.contact import damping, damping_in_steps, normal_force, shear_strength, slide
 from ryusa.laws.geometry import arm, turn, wrap
-from ryusa.model import EVENT, Book, Contacts, Scene, State, Tally
+from ryusa.model import EVENT, Contacts, Scene, State, Tally, Term
 from ryusa.model.state import make_read_only
 
 
@@ -28,7 +28,7 @@ class ToyEngine:
         if reasons := self.refuses(scene):
             raise ValueError("; ".join(reasons))
         check_state(scene, state)
-        none = Tally(state.t, *(0.0,) * 6, (0.0,) * len(Book), 0.0, -1, 0, 0.0, 0.0, 0)
+        none = Tally(state.t, *(0.0,) * 6, (0.0,) * len(Term), 0.0, -1, 0, 0.0, 0.0, 0)
         self.scene, self._state = scene, replace(state, engine=None, tally=state.tally or none)
         still, inf = np.zeros((scene.n_fixed, 3)), np.full(scene.n_fixed, np.inf)
         self._x = np.vstack([state.x, scene.x_fixed])
@@ -50,7 +50,7 @@ class ToyEngine:
 
     def _step(self) -> Flags:
         scene, n, dt, old = self.scene, self.scene.n_grain, self.scene.dt, self._state
-        self._work, self._springs, self._partner, was = np.array(old.tally.books), [0.0, 0.0], -1, self._pairs
+        self._work, self._springs, self._partner, was = np.array(old.tally.terms), [0.0, 0.0], -1, self._pairs
         self._worst = old.tally.overlap_max, old.tally.overlap_grain, old.tally.overlap_step
         self._force, self._torque, self._pairs = scene.m_weight[:, None] * scene.gravity, np.zeros((n, 3)), {}
         for i in range(n):
@@ -64,7 +64,7 @@ class ToyEngine:
         moving = 0.5 * float(np.sum(scene.m[:, None] * v * self._v[:n]))
         held = (moving, 0.5 * float(np.sum(scene.inertia[:, None] * w * self._w[:n])), potential)
         if old.step == 0:
-            self._work[Book.START] = sum(held) + sum(self._springs)
+            self._work[Term.START] = sum(held) + sum(self._springs)
         speed, spin = (np.linalg.norm(one[:n], axis=1) for one in (self._v, self._w))
         most = float(speed.max()), float(spin.max())
         work, n_pair = tuple(self._work), len(self._pairs)
@@ -100,21 +100,21 @@ class ToyEngine:
         touching, e_n, work = overlap > 0.0, law.k_n * max(overlap, 0.0), self._work
         f_n = max(normal_force(overlap, closing, law.k_n, eta_n), 0.0) if touching else 0.0
         spring, dash, f_old, d_old, _ = was or (np.zeros(3), np.zeros(3), 0.0, 0.0, 0.0)
-        work[Book.DASH_N if f_n > 0.0 else Book.RELEASED_N] += hdt * closing * (f_n - e_n)
-        work[Book.DASH_N if f_old > 0.0 else Book.RELEASED_N] += hdt * closing * d_old
+        work[Term.DASH_N if f_n > 0.0 else Term.RELEASED_N] += hdt * closing * (f_n - e_n)
+        work[Term.DASH_N if f_old > 0.0 else Term.RELEASED_N] += hdt * closing * d_old
         if touching and was is None and hdt > 0.0:  # the spring began within the step
-            work[Book.STEP] -= 0.5 * e_n * (2.0 * hdt * closing - overlap)
+            work[Term.STEP] -= 0.5 * e_n * (2.0 * hdt * closing - overlap)
         if not touching:
-            work[Book.STEP] -= 0.5 * (f_old - d_old) * (2.0 * hdt * closing + (f_old - d_old) / law.k_n)
+            work[Term.STEP] -= 0.5 * (f_old - d_old) * (2.0 * hdt * closing + (f_old - d_old) / law.k_n)
         old = np.array(turn(*spring, *normal, 0.5 * dt * float((w_i + w_j) @ normal)))
         spring, drag = old - law.k_s * slip * dt, -eta_s * slip * (f_n > 0.0)
         tau_c = shear_strength(e_n, law.cohesion, law.mu)
         share = slide(float(np.linalg.norm(spring)), tau_c, False, False)[0] * (f_n > 0.0)
         spring *= share
-        work[Book.DASH_S] -= hdt * float(slip @ (dash + drag))
+        work[Term.DASH_S] -= hdt * float(slip @ (dash + drag))
         if share < 1.0:
             lost = 0.5 * float(old @ old - spring @ spring) / law.k_s - hdt * float(slip @ (old + spring))
-            work[Book.SLIDE if f_n > 0.0 else Book.RELEASED_S] += lost
+            work[Term.SLIDE if f_n > 0.0 else Term.RELEASED_S] += lost
         force, torque = spring + drag - f_n * normal, np.cross(normal, spring + drag)
         for grain, sign, lever in ((i, 1.0, a_i), (j, -1.0, a_j))[: 2 if j < scene.n_grain else 1]:
             self._force[grain] += sign * force

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ryusa.measure import energy, farthest, rows_of, spin, tracks, write_csv
-from ryusa.model import Book, Tally
+from ryusa.model import Tally, Term
 from ryusa.model.tally import HELD
 from ryusa.results.schema import TALLY, tally_row
 
@@ -48,7 +48,7 @@ def test_the_energy_account_closes_where_its_terms_say_so():
     tally = {name: np.zeros(3) for name in TALLY.names}
     tally["t"] = np.arange(3.0)
     tally["kinetic"] = np.array([1.0, 0.7, 0.9])
-    tally[Book.START.name.lower()] = np.ones(3)
+    tally[Term.START.name.lower()] = np.ones(3)
     tally["dash_n"] = np.array([0.0, 0.3, 0.3])
     tally["drag"] = np.array([0.0, 0.0, 0.2])
     found = energy(SimpleNamespace(tally=tally))
@@ -62,7 +62,7 @@ def test_the_frame_before_the_first_step_is_not_part_of_the_account():
     tally = {name: np.zeros(3) for name in TALLY.names}
     tally["t"] = np.arange(3.0)
     tally["kinetic"] = np.array([1.3, 1.0, 0.7])  # before the first step nothing is booked
-    tally[Book.START.name.lower()] = np.array([0.0, 1.0, 1.0])
+    tally[Term.START.name.lower()] = np.array([0.0, 1.0, 1.0])
     tally["dash_n"] = np.array([0.0, 0.0, 0.3])
     found = energy(SimpleNamespace(tally=tally))
     assert found.t.tolist() == [1.0, 2.0]
@@ -75,7 +75,7 @@ def test_the_residual_is_that_of_the_tally_wherever_heights_begin():
         lifted = {**values, "potential": values["potential"] + height, "start": values["start"] + height}
         one = Tally(
             t=0.0, **{name: lifted.get(name, 0.0) for name in HELD},
-            books=tuple(lifted.get(book.name.lower(), 0.0) for book in Book),
+            terms=tuple(lifted.get(term.name.lower(), 0.0) for term in Term),
             overlap_max=0.0, overlap_grain=0, overlap_step=0, speed_max=0.0, spin_max=0.0, n_contact=0,
         )  # fmt: skip
         rows = np.array([tally_row(one)], dtype=TALLY)

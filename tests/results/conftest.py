@@ -8,7 +8,7 @@ import pytest
 
 from ryusa.build import scene as build_scene
 from ryusa.model import EVENT, State, Tally
-from ryusa.model.tally import N_BOOK
+from ryusa.model.tally import N_TERM
 from ryusa.running.recorder import Recorder
 
 PERIOD = 0.04
@@ -40,7 +40,7 @@ def folder(tmp_path: Path) -> Path:
         image = np.array([[k // 10, 0], [0, 0]], dtype=np.int32)
         state = State(x=x, v=x * 2, omega=-x, step=10 * k, t=0.1 * k, image=image)
         recorder.frame(
-            state, Tally(0.1 * k, float(k), 0, 0, 0, 0, 0, (0.0,) * N_BOOK, 0.004, 1, 7, 1.0, 2.0, 3)
+            state, Tally(0.1 * k, float(k), 0, 0, 0, 0, 0, (0.0,) * N_TERM, 0.004, 1, 7, 1.0, 2.0, 3)
         )
         if k in {0, 1, 12}:
             event = np.zeros(1, dtype=EVENT)

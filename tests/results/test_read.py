@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from ryusa.errors import ResultsError
-from ryusa.model import EVENT, Book
+from ryusa.model import EVENT, Term
 from ryusa.results import Results
 from ryusa.results.schema import BEFORE_FILMS, TALLY
 
@@ -121,7 +121,7 @@ def test_contacts_come_sorted_by_parting(folder: Path) -> None:
 def test_the_account_has_a_row_per_frame_and_every_book(folder: Path) -> None:
     tally = Results.open(folder).tally
     assert set(tally) == set(TALLY.names)
-    assert {book.name.lower() for book in Book} <= set(tally)
+    assert {term.name.lower() for term in Term} <= set(tally)
     assert tally["kinetic"].tolist() == list(range(N))
     assert tally["overlap_step"].tolist() == [7] * N
 

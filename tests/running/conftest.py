@@ -9,8 +9,8 @@ import pytest
 
 from ryusa.engine.protocol import Flags
 from ryusa.errors import RunError
-from ryusa.model import EVENT, Book, ContactLaw, Scene, State, Tally
-from ryusa.model.tally import N_BOOK
+from ryusa.model import EVENT, ContactLaw, Scene, State, Tally, Term
+from ryusa.model.tally import N_TERM
 
 
 def make_scene(n: int = 3, **changes: object) -> Scene:
@@ -37,7 +37,7 @@ def make_scene(n: int = 3, **changes: object) -> Scene:
 
 
 def make_tally(t: float = 0.0, overlap_max: float = 0.004, speed_max: float = 1.0) -> Tally:
-    return Tally(t, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, (0.0,) * N_BOOK, overlap_max, 0, 0, speed_max, 1.0, 1)
+    return Tally(t, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, (0.0,) * N_TERM, overlap_max, 0, 0, speed_max, 1.0, 1)
 
 
 def make_event(i: int, j: int, t_begin: float, t_part: float, **columns: object) -> np.ndarray:
@@ -92,9 +92,9 @@ class FallingGrains:
 
     def tally(self) -> Tally:
         tally = make_tally(self._state.t, speed_max=self.speed(self._state.step))
-        books = [0.0] * N_BOOK
-        books[Book.START] = tally.held
-        return replace(tally, books=tuple(books))
+        terms = [0.0] * N_TERM
+        terms[Term.START] = tally.held
+        return replace(tally, terms=tuple(terms))
 
     def events(self) -> np.ndarray:
         due = [self.events_at.pop(k) for k in sorted(self.events_at) if k <= self._state.step]

@@ -13,7 +13,7 @@ import pytest
 from ryusa.errors import CheckpointError, RyusaError
 from ryusa.model import Contacts, EngineBlock, State, Tally
 from ryusa.model.contacts import N_EVENT
-from ryusa.model.tally import N_BOOK
+from ryusa.model.tally import N_TERM
 from ryusa.results import schema
 from ryusa.running.checkpoint import CheckpointBlock, read_checkpoint, write_checkpoint
 from ryusa.running.disk import hdf5_image
@@ -44,7 +44,7 @@ def some_state() -> State:
         x=x, v=draw.random((N, 3)), omega=draw.random((N, 3)), step=7, t=0.1 + 0.2,
         image=np.ones((N, 2), np.int32), contacts=contacts,
         tally=Tally(
-            0.3, *draw.random(6).tolist(), tuple(draw.random(N_BOOK).tolist()), 0.01, 2, 5, 1.5, 30.0, 2,
+            0.3, *draw.random(6).tolist(), tuple(draw.random(N_TERM).tolist()), 0.01, 2, 5, 1.5, 30.0, 2,
             tuple(draw.random(5).tolist()),
         ),
         engine=EngineBlock("cpu", 1, {"x_listed": x + 1e-9}, {"skin": 1 / 3e4, "since": 5.0}),
@@ -66,6 +66,13 @@ def path(tmp_path: Path) -> Path:
 def test_a_state_comes_back_with_the_same_bits(path: Path, scene: Any) -> None:
     found = state_from_block(read_checkpoint(path, N).block("state"), scene)
     assert bits(found) == bits(some_state())
+
+
+def test_the_energy_account_of_an_earlier_version_is_read(scene: Any) -> None:
+    block = state_block(some_state())
+    older = {"tally/books" if key == "tally/terms" else key: value for key, value in block.values.items()}
+    assert "tally/books" in older
+    assert bits(state_from_block(CheckpointBlock(older, block.arrays), scene)) == bits(some_state())
 
 
 def test_the_previous_checkpoint_is_kept_until_the_next_is_complete(tmp_path: Path) -> None:
@@ -180,8 +187,8 @@ def change_contacts(**arrays: np.ndarray) -> State:
         replace(some_state(), v=np.full((3, 3), np.inf)),
         replace(some_state(), step=-1),
         replace(some_state(), t=float("nan")),
-        with_tally(books=(0.0,) * 3),
-        with_tally(books=(float("nan"),) * N_BOOK),
+        with_tally(terms=(0.0,) * 3),
+        with_tally(terms=(float("nan"),) * N_TERM),
         with_tally(pending=(1e300,) * 5),
         with_tally(overlap_step="x"),
         replace(some_state(), engine=EngineBlock("cpu", 1, {"x_listed": np.full((N, 3), np.inf)}, {})),

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from ryusa.errors import CaseError, EnergyCreated
-from ryusa.model import Book, State, Tally
-from ryusa.model.tally import N_BOOK
+from ryusa.model import State, Tally, Term
+from ryusa.model.tally import N_TERM
 from ryusa.results import Results
 from ryusa.running import folder as folder_module
 from ryusa.running.folder import available_memory, refuse_if_too_large
@@ -15,9 +15,9 @@ from ryusa.running.stops import Stop
 
 
 def account(kinetic, start=0.0):
-    books = [0.0] * N_BOOK
-    books[Book.START] = start
-    return Tally(0.0, kinetic, 0.0, 0.0, 0.0, 0.0, 0.0, tuple(books), 0.004, 0, 0, 1.0, 1.0, 0)
+    terms = [0.0] * N_TERM
+    terms[Term.START] = start
+    return Tally(0.0, kinetic, 0.0, 0.0, 0.0, 0.0, 0.0, tuple(terms), 0.004, 0, 0, 1.0, 1.0, 0)
 
 
 def moving(n=3):
@@ -36,9 +36,9 @@ def test_created_energy_names_the_fastest_grain_step_time_and_remedy(scene):
 
 def test_energy_given_by_the_step_counts_as_created_too(scene):
     boiling = account(kinetic=1.0, start=0.2)
-    books = list(boiling.books)
-    books[Book.STEP], books[Book.SLIDE] = 3.0, 2.2
-    boiling = replace(boiling, books=tuple(books))
+    terms = list(boiling.terms)
+    terms[Term.STEP], terms[Term.SLIDE] = 3.0, 2.2
+    boiling = replace(boiling, terms=tuple(terms))
     assert boiling.residual < 1e-9
     fault = energy_created(scene, moving(), boiling)
     assert fault is not None

@@ -135,10 +135,10 @@ def test_too_few_steps_and_an_unbalanced_account_give_warnings(
 
 
 def test_the_energy_account_names_every_term(scene: Any, state: Any, tally: Any) -> None:
-    from ryusa.model import Book
+    from ryusa.model import Term
 
     account = Watch(scene, state).summary(tally())["energy"]
-    assert {book.name.lower() for book in Book} <= set(account)
+    assert {term.name.lower() for term in Term} <= set(account)
     assert account["kinetic"] == 1.0
     assert account["imbalance"] == 21.0
 
@@ -254,10 +254,10 @@ def test_constant_dashpots_print_the_restitution_that_follows(
 
 
 def test_energy_lines_name_every_term_that_is_not_zero() -> None:
-    from ryusa.model import Book
+    from ryusa.model import Term
     from ryusa.model.tally import HELD
 
-    names = [*HELD, *(book.name.lower() for book in Book)]
+    names = [*HELD, *(term.name.lower() for term in Term)]
     terms = {**dict.fromkeys(names, 1.0), "imbalance": 0.25, "residual": 0.5}
     lines = dict(energy_lines(terms))
     shown = [term for text in lines.values() for term in re.findall(r"[a-z -]+ 1(?=[,;]|$)", text)]

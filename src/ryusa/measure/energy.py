@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ryusa.measure._run import Floats, Run
-from ryusa.model import Book
+from ryusa.model import Term
 from ryusa.model.tally import GIFTS, HELD, LOSSES, residual_of
 
 TERMS = {
@@ -56,8 +56,8 @@ class Energy:
     @property
     def residual(self) -> float:
         """Largest imbalance over the largest term of the account [-], both over all frames."""
-        books = {Book[name.upper()]: one for name, one in {**self.lost, **self.given}.items()}
-        return residual_of(self.imbalance, self.held, {**books, Book.START: self.start})
+        terms = {Term[name.upper()]: one for name, one in {**self.lost, **self.given}.items()}
+        return residual_of(self.imbalance, self.held, {**terms, Term.START: self.start})
 
     def rows(self) -> list[dict[str, object]]:
         """One dictionary per frame."""
@@ -81,8 +81,8 @@ def energy(run: Run) -> Energy:
     if unbooked or (len(tally["t"]) > 1 and not any(tally[name][0] for name in (*HELD, "start"))):
         tally = {name: values[1:] for name, values in tally.items()}
     held = {name: np.asarray(tally[name], dtype=np.float64) for name in HELD}
-    lost = {book.name.lower(): np.asarray(tally[book.name.lower()], dtype=np.float64) for book in LOSSES}
-    given = {book.name.lower(): np.asarray(tally[book.name.lower()], dtype=np.float64) for book in GIFTS}
+    lost = {term.name.lower(): np.asarray(tally[term.name.lower()], dtype=np.float64) for term in LOSSES}
+    given = {term.name.lower(): np.asarray(tally[term.name.lower()], dtype=np.float64) for term in GIFTS}
     begin = np.asarray(tally["start"], dtype=np.float64)
     start = float(begin[-1]) if len(begin) else 0.0
     imbalance = sum(held.values()) - start - sum(given.values()) + sum(lost.values())

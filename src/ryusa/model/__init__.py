@@ -6,11 +6,10 @@ from ryusa.model.engine_block import EngineBlock
 from ryusa.model.fluid import CouplingState, FluidAtGrains
 from ryusa.model.scene import ContactLaw, RollingLaw, Scene, Water
 from ryusa.model.state import State
-from ryusa.model.tally import Book, Tally
+from ryusa.model.tally import Tally, Term
 
 __all__ = [
     "EVENT",
-    "Book",
     "Budget",
     "Column",
     "ContactLaw",
@@ -22,6 +21,7 @@ __all__ = [
     "Scene",
     "State",
     "Tally",
+    "Term",
     "Water",
     "WaterState",
 ]

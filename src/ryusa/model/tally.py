@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 
-class Book(IntEnum):
+class Term(IntEnum):
     """Terms of the energy account, summed while stepping [J]; energy lost and energy given are positive."""
 
     DASH_N = 0  # lost to normal dashpots
@@ -28,25 +28,20 @@ class Book(IntEnum):
     FILM = 14  # lost to films of water between grains that do not touch
 
 
-N_BOOK = len(Book)
-PENDING = (
-    Book.DRAG,
-    Book.TORQUE,
-    Book.LIFT,
-    Book.FLOW,
-    Book.FILM,
-)  # terms whose work of the second half step is still to be added
+N_TERM = len(Term)
+# Terms whose work of the second half step is still to be added.
+PENDING = (Term.DRAG, Term.TORQUE, Term.LIFT, Term.FLOW, Term.FILM)
 LOSSES = (
-    Book.DASH_N, Book.DASH_S, Book.SLIDE, Book.ROLL, Book.RELEASED_N, Book.RELEASED_S, Book.RELEASED_R,
-    Book.FILM,
+    Term.DASH_N, Term.DASH_S, Term.SLIDE, Term.ROLL, Term.RELEASED_N, Term.RELEASED_S, Term.RELEASED_R,
+    Term.FILM,
 )  # fmt: skip
-GIFTS = (Book.DRAG, Book.TORQUE, Book.LIFT, Book.FLOW, Book.SWITCH, Book.STEP)
+GIFTS = (Term.DRAG, Term.TORQUE, Term.LIFT, Term.FLOW, Term.SWITCH, Term.STEP)
 # Terms for the size of the account; START and SWITCH depend on the origin of heights.
-SIZES = tuple(b for b in Book if b not in {Book.START, Book.SWITCH})
+SIZES = tuple(term for term in Term if term not in {Term.START, Term.SWITCH})
 HELD = ("kinetic", "spin", "potential", "spring_n", "spring_s", "spring_r")
 
 
-def residual_of(imbalance: Any, held: Mapping[str, Any], books: Mapping[Book, Any]) -> float:
+def residual_of(imbalance: Any, held: Mapping[str, Any], work: Mapping[Term, Any]) -> float:
     """Largest imbalance over the largest term of an account [-], at one moment or over arrays of moments.
 
     The terms are the energies of motion and springs, the terms of `SIZES`, and the change of held energy
@@ -56,12 +51,12 @@ def residual_of(imbalance: Any, held: Mapping[str, Any], books: Mapping[Book, An
     ----------
     imbalance : energy that the terms do not explain [J].
     held : energies by name, those of `HELD` [J].
-    books : summed terms [J]; a missing one counts as zero.
+    work : summed terms [J]; a missing one counts as zero.
     """
-    change = sum(held.values()) - books.get(Book.START, 0.0) - books.get(Book.SWITCH, 0.0)
-    terms = [change, *(one for name, one in held.items() if name != "potential")]
-    terms += [books[book] for book in SIZES if book in books]
-    largest = max(float(np.abs(one).max(initial=0.0)) for one in map(np.asarray, terms))
+    change = sum(held.values()) - work.get(Term.START, 0.0) - work.get(Term.SWITCH, 0.0)
+    sizes = [change, *(one for name, one in held.items() if name != "potential")]
+    sizes += [work[term] for term in SIZES if term in work]
+    largest = max(float(np.abs(one).max(initial=0.0)) for one in map(np.asarray, sizes))
     return float(np.abs(np.asarray(imbalance)).max(initial=0.0)) / largest if largest > 0.0 else 0.0
 
 
@@ -76,7 +71,7 @@ class Tally:
     spring_n: float
     spring_s: float
     spring_r: float
-    books: tuple[float, ...]  # indexed by Book
+    terms: tuple[float, ...]  # indexed by Term
     overlap_max: float  # largest overlap over the smaller diameter so far [-]
     overlap_grain: int  # grain with that overlap
     overlap_step: int  # step of that overlap
@@ -93,12 +88,12 @@ class Tally:
     @property
     def imbalance(self) -> float:
         """Energy that the terms do not explain [J]: held - start - given + lost."""
-        gifts = sum(self.books[b] for b in GIFTS)
-        losses = sum(self.books[b] for b in LOSSES)
-        return self.held - self.books[Book.START] - gifts + losses
+        gifts = sum(self.terms[term] for term in GIFTS)
+        losses = sum(self.terms[term] for term in LOSSES)
+        return self.held - self.terms[Term.START] - gifts + losses
 
     @property
     def residual(self) -> float:
         """Imbalance over the largest term of the account [-], as in `residual_of`."""
         held = {name: getattr(self, name) for name in HELD}
-        return residual_of(self.imbalance, held, dict(zip(Book, self.books, strict=True)))
+        return residual_of(self.imbalance, held, dict(zip(Term, self.terms, strict=True)))

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ryusa.model import Book, Tally
+from ryusa.model import Tally, Term
 from ryusa.model.tally import HELD
 
 FORMAT = 2  # raised when an older reader could misread a folder
@@ -59,15 +59,15 @@ _INTEGER = {"overlap_grain", "overlap_step", "n_contact"}
 _NOW = ("t", *HELD)
 _EXTREME = ("overlap_max", "overlap_grain", "overlap_step", "speed_max", "spin_max", "n_contact")
 _CHECK = ("imbalance", "residual")
-# one row per frame: terms of Tally, then those of Book in lower case, then imbalance and residual
+# one row per frame: terms of Tally, then those of Term in lower case, then imbalance and residual
 TALLY = np.dtype(
     [
         (name, np.int64 if name in _INTEGER else np.float64)
-        for name in (*_NOW, *_EXTREME, *(book.name.lower() for book in Book), *_CHECK)
+        for name in (*_NOW, *_EXTREME, *(term.name.lower() for term in Term), *_CHECK)
     ]
 )
 
-BEFORE_FILMS = np.dtype([(name, TALLY[name]) for name in TALLY.names or () if name != Book.FILM.name.lower()])
+BEFORE_FILMS = np.dtype([(name, TALLY[name]) for name in TALLY.names or () if name != Term.FILM.name.lower()])
 
 
 def whole(tally: NDArray[np.void]) -> NDArray[np.void]:
@@ -98,7 +98,7 @@ def scene_name(k: int) -> str:
 def tally_row(tally: Tally) -> tuple[float, ...]:
     """One row of dtype TALLY; energies in J."""
     now = tuple(getattr(tally, name) for name in (*_NOW, *_EXTREME))
-    return (*now, *tally.books, tally.imbalance, tally.residual)
+    return (*now, *tally.terms, tally.imbalance, tally.residual)
 
 
 def is_run_folder(folder: Path) -> bool:

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from ryusa.model import Book
+from ryusa.model import Term
 from ryusa.model.tally import GIFTS, HELD, LOSSES
 
 _HELD = dict(
@@ -13,20 +13,20 @@ _HELD = dict(
     )
 )
 _WORK = {
-    Book.DASH_N: "normal dashpots",
-    Book.DASH_S: "tangential dashpots",
-    Book.SLIDE: "sliding friction",
-    Book.ROLL: "rolling friction",
-    Book.RELEASED_N: "normal springs at separation",
-    Book.RELEASED_S: "tangential springs at separation",
-    Book.RELEASED_R: "rolling springs at separation",
-    Book.FILM: "liquid films",
-    Book.DRAG: "drag",
-    Book.TORQUE: "torque of the water",
-    Book.LIFT: "lift",
-    Book.FLOW: "pressure gradient and acceleration of the water",
-    Book.SWITCH: "changes of the timeline",
-    Book.STEP: "error of the time step",
+    Term.DASH_N: "normal dashpots",
+    Term.DASH_S: "tangential dashpots",
+    Term.SLIDE: "sliding friction",
+    Term.ROLL: "rolling friction",
+    Term.RELEASED_N: "normal springs at separation",
+    Term.RELEASED_S: "tangential springs at separation",
+    Term.RELEASED_R: "rolling springs at separation",
+    Term.FILM: "liquid films",
+    Term.DRAG: "drag",
+    Term.TORQUE: "torque of the water",
+    Term.LIFT: "lift",
+    Term.FLOW: "pressure gradient and acceleration of the water",
+    Term.SWITCH: "changes of the timeline",
+    Term.STEP: "error of the time step",
 }
 
 
@@ -41,9 +41,9 @@ def energy_lines(terms: Mapping[str, float]) -> list[tuple[str, str]]:
     ('dissipated', '1.5 J: sliding friction 1.5')
     """
     held = {name: terms.get(key, 0.0) for key, name in _HELD.items()}
-    lost = {_WORK[book]: terms.get(book.name.lower(), 0.0) for book in LOSSES}
-    given = {_WORK[book]: terms.get(book.name.lower(), 0.0) for book in GIFTS}
-    start = terms.get(Book.START.name.lower(), 0.0)
+    lost = {_WORK[term]: terms.get(term.name.lower(), 0.0) for term in LOSSES}
+    given = {_WORK[term]: terms.get(term.name.lower(), 0.0) for term in GIFTS}
+    start = terms.get(Term.START.name.lower(), 0.0)
     return [
         ("energy now", f"{_sum(held)}; at the start {start:.3g} J"),
         ("dissipated", _sum(lost)),

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ryusa.errors import EnergyCreated
-from ryusa.model import Book, Scene, State, Tally
+from ryusa.model import Scene, State, Tally, Term
 from ryusa.model.tally import HELD, residual_of
 
 # Of the largest term of the energy account. In an unstable run nearly all energy is spurious. Sound runs stay
@@ -21,14 +21,14 @@ def energy_created(scene: Scene, state: State, tally: Tally) -> EnergyCreated | 
 
     Notes
     -----
-    `Book.STEP`, the energy of springs that begin within a step, counts as spurious: it is the error of a step
+    `Term.STEP`, the energy of springs that begin within a step, counts as spurious: it is the error of a step
     that is too long for the springs, not the work of a force.
     """
-    created = tally.imbalance + tally.books[Book.STEP]
+    created = tally.imbalance + tally.terms[Term.STEP]
     if not created > 0.0:
         return None
     held = {name: getattr(tally, name) for name in HELD}
-    share = residual_of(created, held, dict(zip(Book, tally.books, strict=True)))
+    share = residual_of(created, held, dict(zip(Term, tally.terms, strict=True)))
     if not share > CREATED:
         return None
     weight = float(np.linalg.norm(scene.gravity)) * float((np.abs(scene.m_weight) * scene.d).sum())

@@ -16,7 +16,7 @@ from ryusa.model.column import WaterState
 from ryusa.model.contacts import N_EVENT
 from ryusa.model.eddies import Eddies
 from ryusa.model.fluid import N_IMPULSE, N_SAMPLED
-from ryusa.model.tally import N_BOOK, PENDING, Tally
+from ryusa.model.tally import N_TERM, PENDING, Tally
 from ryusa.running.checkpoint import CheckpointBlock
 
 _LATEST = 2**62  # step
@@ -110,8 +110,11 @@ class _Reader:
         values = self._values
         if not values.get("tally"):
             return None
-        given = {one.name: values[f"tally/{one.name}"] for one in fields(Tally)}
-        lengths = {"books": N_BOOK, "pending": len(PENDING)}
+        names = {one.name: f"tally/{one.name}" for one in fields(Tally)}
+        if "tally/books" in values:  # the name of the terms in checkpoints of earlier versions
+            names["terms"] = "tally/books"
+        given = {name: values[key] for name, key in names.items()}
+        lengths = {"terms": N_TERM, "pending": len(PENDING)}
         found: dict[str, Any] = {}
         for name, value in given.items():
             values = [float(one) for one in (value if name in lengths else [value])]

@@ -19,7 +19,7 @@ from ryusa.laws.collision import (
 )
 from ryusa.laws.families import WaterTorque
 from ryusa.laws.torque import reynolds_spin, torque_in_range
-from ryusa.model import Book, Scene, State, Tally
+from ryusa.model import Scene, State, Tally, Term
 from ryusa.model.scene import Damping
 from ryusa.model.tally import HELD
 from ryusa.running.checkpoint import CheckpointBlock
@@ -267,7 +267,7 @@ class Watch:
 def energy(tally: Tally) -> dict[str, float]:
     """The energy account [J], each term summed separately, with imbalance and residual."""
     account = {name: float(getattr(tally, name)) for name in HELD}
-    account |= {book.name.lower(): float(tally.books[book]) for book in Book}
+    account |= {term.name.lower(): float(tally.terms[term]) for term in Term}
     return {**account, "imbalance": tally.imbalance, "residual": tally.residual}
 
 

@@ -83,7 +83,7 @@ class AccountArrays(NamedTuple):
     """What each block records."""
 
     ended: Any  # records of contacts that parted, (n_block, slots, N_EVENT)
-    books: Any  # energy account [J], (n_block, N_ACCOUNT), columns of model.tally.Book
+    terms: Any  # energy account [J], (n_block, N_ACCOUNT), columns of model.tally.Term
     stats: Any  # statistics, (n_block, N_STATISTIC), columns of shared/block_statistics.py
 
 

@@ -34,7 +34,7 @@ from ryusa.engine.shared.skin import best_skin
 from ryusa.engine.shared.status import STOP_EVENTS, STOP_LIST, STOP_ROOM, STOP_UNSAFE
 from ryusa.engine.shared.variant import choice_of, variant_of
 from ryusa.errors import RunError
-from ryusa.model import Book, EngineBlock, FluidAtGrains, Scene, State, Tally
+from ryusa.model import EngineBlock, FluidAtGrains, Scene, State, Tally, Term
 from ryusa.model.contacts import N_EVENT
 from ryusa.model.fluid import SUBMERGED
 from ryusa.model.scene import EventRule, Floats
@@ -104,7 +104,7 @@ class CpuEngine:
         contacts, dropped = remaining_contacts(scene, state.contacts)
         self._records_drained = self._records_drained if changed else []
         if before is not None and changed:
-            self._accounts.books[0, Book.SWITCH] += energy_of_change(before, scene, state, dropped)
+            self._accounts.terms[0, Term.SWITCH] += energy_of_change(before, scene, state, dropped)
             self._records_drained.append(closed_records(state, dropped))
         memory = memory_of(contacts, self._variant, self._choice, self._parameters, self._layout)
         by_id = self._layout.grains_by_id(state)
@@ -124,20 +124,20 @@ class CpuEngine:
         self._candidates = CandidatePairs(self._layout, self._threads, self._smallest)
         self._prune(memory)
         if state.step == 0:
-            begin_account(scene, state, self._accounts.stats, self._accounts.books)
+            begin_account(scene, state, self._accounts.stats, self._accounts.terms)
 
     def advance(self, n_steps: int) -> Flags:
         """Do n_steps steps, fewer if a fault stops the run."""
         if n_steps > 0 and self._step == 0:
             flags = self._advance(1)
-            enter_start(self._accounts.stats, self._accounts.books)
+            enter_start(self._accounts.stats, self._accounts.terms)
             if flags:
                 return flags
             n_steps -= 1
         return self._advance(n_steps)
 
     def grains(self) -> State:
-        """Where grains are and how they move, without contacts and books: a frame."""
+        """Where grains are and how they move, without contacts and energy account: a frame."""
         n, grains = self._n, self._grains
         back = np.argsort(grains.ids[:n])
         return State(
@@ -202,7 +202,7 @@ class CpuEngine:
     def tally(self) -> Tally:
         """Energy account and extremes at the moment of the last force evaluation."""
         t = float(self._t - self._parameters[P.DT]) if self._step else self._t
-        return tally_of(t, self._accounts.stats, self._accounts.books)
+        return tally_of(t, self._accounts.stats, self._accounts.terms)
 
     def events(self) -> np.ndarray:
         """Contacts ended since the last call, in order of parting."""
@@ -311,7 +311,7 @@ class CpuEngine:
         """What an exact resume needs beside the state."""
         arrays = {
             "x_listed": self._x_listed.copy(),
-            **account_arrays(self._accounts.stats, self._accounts.books),
+            **account_arrays(self._accounts.stats, self._accounts.terms),
         }
         numbers = {"skin": self._skin, "travel": self._travel, "since": float(self._since)}
         return EngineBlock(self.name, VERSION, arrays, numbers)
@@ -329,7 +329,7 @@ class CpuEngine:
             own.check(VERSION)
             self._skin = own.number("skin", 0.0, self._layout.largest)
             self._since = int(own.number("since", 0.0, state.step))
-        read_account(state, self._accounts.stats, self._accounts.books, own)
+        read_account(state, self._accounts.stats, self._accounts.terms, own)
         return own
 
 

@@ -40,13 +40,13 @@ from ryusa.engine.shared.status import (
     STOP_UNSAFE,
 )
 from ryusa.engine.shared.variant import KernelVariant, LawChoice
-from ryusa.model.tally import Book
+from ryusa.model.tally import Term
 
 Present = int | None  # 1, or None for what a variant goes without
 # the terms of the account that a lane sums, in the order of batch_layout.py
 BOOKS = tuple(
     int(account)
-    for account in (Book.DASH_N, Book.DASH_S, Book.SLIDE, Book.RELEASED_N, Book.RELEASED_S, Book.STEP)
+    for account in (Term.DASH_N, Term.DASH_S, Term.SLIDE, Term.RELEASED_N, Term.RELEASED_S, Term.STEP)
 )
 
 
@@ -205,7 +205,7 @@ def make_run(variant: KernelVariant) -> Any:
             borrow(accounts_of_blocks),
             borrow(block_start),
         )
-        ended, books, stats = accounts_of_blocks.ended, accounts_of_blocks.books, accounts_of_blocks.stats
+        ended, terms, stats = accounts_of_blocks.ended, accounts_of_blocks.terms, accounts_of_blocks.stats
         n_block = len(block_start) - 1
         b_0, b_1 = thread * n_block // n_threads, (thread + 1) * n_block // n_threads
         dt, t_zero, skin, step_limit = c[P.DT], c[P.T_ZERO], c[P.SKIN], c[P.DISPLACEMENT_LIMIT]
@@ -247,13 +247,13 @@ def make_run(variant: KernelVariant) -> Any:
             for b in range(b_0, b_1):
                 block_forces(
                     variant, flat, water, optional, choice, b, block_start[b + 1], n, n_solid, step, t, hdt,
-                    last, c, grains, walls, pairs, candidates, work, ended[b], books[b], stats[b],
+                    last, c, grains, walls, pairs, candidates, work, ended[b], terms[b], stats[b],
                 )  # fmt: skip
             target = wait(count, n_threads, target)
             for b in range(b_0, b_1):
                 integrate(
                     variant, water, choice, block_start[b], block_start[b + 1], step == 0, last, c, grains,
-                    pairs, work.table, books[b], stats[b],
+                    pairs, work.table, terms[b], stats[b],
                 )  # fmt: skip
             target = wait(count, n_threads, target)
             fastest = velocity_change = 0.0

@@ -33,7 +33,7 @@ from ryusa.engine.shared.skin import best_skin
 from ryusa.engine.shared.status import STOP_DONE, STOP_EVENTS, STOP_LIST, STOP_UNSAFE
 from ryusa.engine.shared.variant import choice_of, variant_of
 from ryusa.errors import RunError
-from ryusa.model import Book, EngineBlock, FluidAtGrains, Scene, State, Tally
+from ryusa.model import EngineBlock, FluidAtGrains, Scene, State, Tally, Term
 from ryusa.model.contacts import N_EVENT
 from ryusa.model.fluid import SUBMERGED
 from ryusa.model.scene import EventRule, Floats
@@ -85,14 +85,14 @@ class CudaEngine:
         self._parameters[P.T_ZERO] = state.t - state.step * scene.dt
         self._room = n + _RECORDS if scene.events != EventRule.NONE else 1
         self._n_list = 0
-        stats, books = np.zeros((1, S.N_STATISTIC)), np.zeros((1, N_ACCOUNT))
-        read_account(state, stats, books, None)  # its one row is the sum
+        stats, terms = np.zeros((1, S.N_STATISTIC)), np.zeros((1, N_ACCOUNT))
+        read_account(state, stats, terms, None)  # its one row is the sum
         own = self._read_block(state)
 
         contacts, dropped = remaining_contacts(scene, state.contacts)
         self._records_drained = self._records_drained if changed else []
         if before is not None and changed:
-            books[0, Book.SWITCH] += energy_of_change(before, scene, state, dropped)
+            terms[0, Term.SWITCH] += energy_of_change(before, scene, state, dropped)
             self._records_drained.append(closed_records(state, dropped))
         resumed = own is not None and not changed and not len(dropped)
         self._travel, x, extent = 0.0, state.x, None
@@ -111,11 +111,11 @@ class CudaEngine:
         self._status = np.zeros(F.N_STATUS, np.int64)
         self._status[F.STEP], self._status[F.OVERFLOWED] = state.step, NO_GRAIN
         if state.step == 0:
-            begin_account(scene, state, stats, books)
+            begin_account(scene, state, stats, terms)
         self._motion = np.zeros(F.N_MOTION)
         self._motion[F.FASTEST] = stats[0, S.SPEED_MAX]
         self._d_status, self._d_motion = cuda.to_device(self._status), cuda.to_device(self._motion)
-        self._d_stats, self._d_books = cuda.to_device(stats), cuda.to_device(books)
+        self._d_stats, self._d_terms = cuda.to_device(stats), cuda.to_device(terms)
         self._d_ended = cuda.to_device(np.zeros((self._room, N_EVENT)))
         self._d_partial = cuda.to_device(np.zeros(blocks(n) * T.N_COLUMN))
         self._list_pairs()
@@ -126,16 +126,16 @@ class CudaEngine:
         """Do n_steps steps, fewer if a fault stops the run."""
         if n_steps > 0 and self._step == 0:
             flags = self._advance(1)
-            stats, books = self._d_stats.copy_to_host(), self._d_books.copy_to_host()
-            enter_start(stats, books)
-            self._d_books.copy_to_device(books)
+            stats, terms = self._d_stats.copy_to_host(), self._d_terms.copy_to_host()
+            enter_start(stats, terms)
+            self._d_terms.copy_to_device(terms)
             if flags:
                 return flags
             n_steps -= 1
         return self._advance(n_steps)
 
     def grains(self) -> State:
-        """Where grains are and how they move, without contacts and books: a frame."""
+        """Where grains are and how they move, without contacts and energy account: a frame."""
         device, ids = self._device, self._device.ids()
         return State(
             x=np.ascontiguousarray(device.by_id("x", ids)[:, :3]),
@@ -202,7 +202,7 @@ class CudaEngine:
     def tally(self) -> Tally:
         """Energy account and extremes at the moment of the last force evaluation."""
         t = float(self._t - self._parameters[P.DT]) if self._step else self._t
-        return tally_of(t, self._d_stats.copy_to_host(), self._d_books.copy_to_host())
+        return tally_of(t, self._d_stats.copy_to_host(), self._d_terms.copy_to_host())
 
     def events(self) -> np.ndarray:
         """Contacts ended since the last call, in order of parting."""
@@ -238,7 +238,7 @@ class CudaEngine:
                 )  # fmt: skip
                 close(
                     target, n_block, self._room, device.c, self._d_partial, self._d_status, self._d_motion,
-                    self._d_books, self._d_stats,
+                    self._d_terms, self._d_stats,
                 )  # fmt: skip
             self._download_status()
             self._since += self._step - was

@@ -23,10 +23,10 @@ from ryusa.laws.grain_step import (
     work_of_force_in_plane,
 )
 from ryusa.model.fluid import A_X, DRAG, EXTRA_X, EXTRA_Z, SHEAR, SUBMERGED
-from ryusa.model.tally import Book
+from ryusa.model.tally import Term
 
-B_DRAG, B_TORQUE, B_LIFT, B_FLOW = int(Book.DRAG), int(Book.TORQUE), int(Book.LIFT), int(Book.FLOW)
-B_FILM = int(Book.FILM)
+B_DRAG, B_TORQUE, B_LIFT, B_FLOW = int(Term.DRAG), int(Term.TORQUE), int(Term.LIFT), int(Term.FLOW)
+B_FILM = int(Term.FILM)
 
 Vector = tuple[float, float, float]
 _column_forces, _profile_drag = on_device(column_forces), on_device(profile_drag)

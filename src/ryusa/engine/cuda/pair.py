@@ -16,10 +16,10 @@ from ryusa.engine.shared.variant import KernelVariant, LawChoice
 from ryusa.laws.contact import normal_force
 from ryusa.laws.contact_step import contact_force, normal_step, normal_work_of_last_force, tangential_step
 from ryusa.laws.families import Cap, Slip
-from ryusa.model.tally import Book
+from ryusa.model.tally import Term
 
-B_DASH_N, B_DASH_S, B_SLIDE = int(Book.DASH_N), int(Book.DASH_S), int(Book.SLIDE)
-B_RELEASED_N, B_RELEASED_S, B_STEP = int(Book.RELEASED_N), int(Book.RELEASED_S), int(Book.STEP)
+B_DASH_N, B_DASH_S, B_SLIDE = int(Term.DASH_N), int(Term.DASH_S), int(Term.SLIDE)
+B_RELEASED_N, B_RELEASED_S, B_STEP = int(Term.RELEASED_N), int(Term.RELEASED_S), int(Term.STEP)
 
 Vector = tuple[float, float, float]
 _dashpot_immersed = on_device(dashpot_immersed)

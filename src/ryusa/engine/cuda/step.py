@@ -44,9 +44,9 @@ from ryusa.laws.geometry import wrap
 from ryusa.laws.immersed import lubrication_force
 from ryusa.laws.rolling import reduced_radius
 from ryusa.model.contacts import N_EVENT
-from ryusa.model.tally import N_BOOK, Book
+from ryusa.model.tally import N_TERM, Term
 
-B_ROLL, B_RELEASED_R = int(Book.ROLL), int(Book.RELEASED_R)
+B_ROLL, B_RELEASED_R = int(Term.ROLL), int(Term.RELEASED_R)
 
 _rolling_friction, _end_rolling, _close_fluid_interval = (
     on_device(rolling_friction),
@@ -94,7 +94,7 @@ def make_step(variant: KernelVariant, choice: LawChoice, shape: LaunchShape) -> 
             totals[k] = 0.0
         totals[T.OVERLAP], totals[T.OVERLAP_GRAIN] = -1.0, NO_GRAIN
         totals[T.OVERLAP_PARTNER], totals[T.NOT_FINITE] = NO_GRAIN, NO_GRAIN
-        work = cuda.local.array(N_BOOK, float64)
+        work = cuda.local.array(N_TERM, float64)
         record_stats = cuda.local.array(n_stat, float64)
         half, at = status[F.CURRENT], status[F.STEP]
         first, last = at == 0, at == target - 1
@@ -121,7 +121,7 @@ def make_step(variant: KernelVariant, choice: LawChoice, shape: LaunchShape) -> 
             for k in range(start[i], start[i + 1]):
                 j = partners[k]
                 plane = j >= n_solid
-                own = j >= n or ids[j] > id_i  # this side keeps books and records
+                own = j >= n or ids[j] > id_i  # this side keeps account and records
                 sign = 1.0 if own else -1.0
                 r_j = r_i
                 if plane:  # met as a grain of the same size that touches it from behind
@@ -177,7 +177,7 @@ def make_step(variant: KernelVariant, choice: LawChoice, shape: LaunchShape) -> 
                                 totals,
                             )
                     if rolling:
-                        for term in range(N_BOOK):
+                        for term in range(N_TERM):
                             work[term] = 0.0
                         r_wall = math.inf if plane else r_j  # of a plane
                         if live:
@@ -301,10 +301,10 @@ def make_close(shape: LaunchShape) -> Any:
         partial: Any,
         status: Any,
         motion: Any,
-        books: Any,
+        terms: Any,
         stats: Any,
     ) -> None:
-        """Close a step: books, extremes, faults, displacement of the fastest grain, and whether to stop.
+        """Close a step: account, extremes, faults, displacement of the fastest grain, and whether to stop.
 
         `room` is that for records of ended contacts.
         """
@@ -320,7 +320,7 @@ def make_close(shape: LaunchShape) -> Any:
             _reduce(column, 0, 0, segments, 1, shared_sums, shared_sums)
         cuda.syncthreads()
         if me == 0:
-            _enter_totals(target, shared_sums, status, books[0], stats[0])
+            _enter_totals(target, shared_sums, status, terms[0], stats[0])
             _decide_stop(room, c, shared_sums, status, motion, stats[0])
 
     return close
@@ -356,11 +356,11 @@ def _reduce(column: int, to: int, begin: int, end: int, every: int, rows: Any, s
 
 
 @device
-def _enter_totals(target: int, sums: Any, status: Any, books: Any, stats: Any) -> None:
+def _enter_totals(target: int, sums: Any, status: Any, terms: Any, stats: Any) -> None:
     """Enter what a step did: the half interval of water that waited, then its own works; and extremes."""
-    _close_fluid_interval(books, stats)
-    for k in range(N_BOOK):
-        books[k] += sums[k]
+    _close_fluid_interval(terms, stats)
+    for k in range(N_TERM):
+        terms[k] += sums[k]
     stats[S.PENDING_DRAG], stats[S.PENDING_TORQUE] = sums[T.PENDING_DRAG], sums[T.PENDING_TORQUE]
     stats[S.PENDING_LIFT], stats[S.PENDING_FLOW], stats[S.PENDING_FILM] = (
         sums[T.PENDING_LIFT], sums[T.PENDING_FLOW], sums[T.PENDING_FILM],

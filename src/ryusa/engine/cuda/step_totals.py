@@ -1,19 +1,19 @@
-"""What one step adds up over grains: work by model.tally.Book, then energies, then extremes."""
+"""What one step adds up over grains: work by model.tally.Term, then energies, then extremes."""
 
-from ryusa.model.tally import N_BOOK
+from ryusa.model.tally import N_TERM
 
-PENDING_DRAG = N_BOOK  # second half of the work of water in the present step
-PENDING_TORQUE = N_BOOK + 1
-PENDING_LIFT = N_BOOK + 2
-PENDING_FLOW = N_BOOK + 3
-PENDING_FILM = N_BOOK + 4
-KINETIC = N_BOOK + 5  # what grains and springs hold, in the last step of a call
-SPIN = N_BOOK + 6
-POTENTIAL = N_BOOK + 7
-SPRING_N = N_BOOK + 8
-SPRING_S = N_BOOK + 9
-SPRING_R = N_BOOK + 10
-N_CONTACT = N_BOOK + 11
+PENDING_DRAG = N_TERM  # second half of the work of water in the present step
+PENDING_TORQUE = N_TERM + 1
+PENDING_LIFT = N_TERM + 2
+PENDING_FLOW = N_TERM + 3
+PENDING_FILM = N_TERM + 4
+KINETIC = N_TERM + 5  # what grains and springs hold, in the last step of a call
+SPIN = N_TERM + 6
+POTENTIAL = N_TERM + 7
+SPRING_N = N_TERM + 8
+SPRING_S = N_TERM + 9
+SPRING_R = N_TERM + 10
+N_CONTACT = N_TERM + 11
 N_SUM = 32
 SPEED_2 = 32  # largest speed and spin, squared
 SPIN_2 = 33

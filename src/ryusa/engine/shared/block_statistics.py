@@ -1,6 +1,6 @@
 """Statistics of a block of grains: energies at the last step of a call, extremes, and the first fault.
 
-The energy account of a block, by model.tally.Book, is kept beside them.
+The energy account of a block, by model.tally.Term, is kept beside them.
 """
 
 KINETIC = 0

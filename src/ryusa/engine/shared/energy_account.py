@@ -1,6 +1,6 @@
 """The energy account and the extremes of an engine: opened, read back from a state, summed.
 
-`stats` and `books` have a row for each block (columns of block_statistics.py and of model.tally.Book).
+`stats` and `terms` have a row for each block (columns of block_statistics.py and of model.tally.Term).
 """
 
 import numpy as np
@@ -9,14 +9,14 @@ from ryusa.engine.shared import block_statistics as S
 from ryusa.laws.rolling import epsd_stiffness, reduced_radius
 from ryusa.model import EngineBlock, Scene, State, Tally
 from ryusa.model.scene import Floats
-from ryusa.model.tally import HELD, N_BOOK, Book
+from ryusa.model.tally import HELD, N_TERM, Term
 
 N_ACCOUNT = 24  # doubles of the account of a block: whole cache lines
 _LARGEST = 1e100  # [J]
 _SUMS = (S.KINETIC, S.SPIN, S.POTENTIAL, S.SPRING_N, S.SPRING_S, S.SPRING_R, S.N_CONTACT)
 
 
-def begin_account(scene: Scene, state: State, stats: Floats, books: Floats) -> None:
+def begin_account(scene: Scene, state: State, stats: Floats, terms: Floats) -> None:
     """Write what grains hold before the first step, which adds springs of pairs that begin in touch."""
     spin = state.omega if scene.rotation else np.zeros_like(state.omega)
     stats[0, S.KINETIC] = 0.5 * np.sum((scene.m + scene.m_added)[:, None] * state.v**2)
@@ -24,20 +24,20 @@ def begin_account(scene: Scene, state: State, stats: Floats, books: Floats) -> N
     stats[0, S.POTENTIAL] = potential_energy(scene, state)
     stats[0, S.SPEED_MAX] = np.sqrt(np.sum(state.v**2, axis=1).max(initial=0.0))
     stats[0, S.SPIN_MAX] = np.sqrt(np.sum(spin**2, axis=1).max(initial=0.0))
-    books[0, Book.START] = stats[0, [S.KINETIC, S.SPIN, S.POTENTIAL]].sum()
+    terms[0, Term.START] = stats[0, [S.KINETIC, S.SPIN, S.POTENTIAL]].sum()
 
 
-def enter_start(stats: Floats, books: Floats) -> None:
-    """Book as given at the start what is held after the first step, springs included."""
-    books[0, Book.START] = float(sum(stats[:, column].sum() for column in _SUMS[:-1]))
+def enter_start(stats: Floats, terms: Floats) -> None:
+    """Term as given at the start what is held after the first step, springs included."""
+    terms[0, Term.START] = float(sum(stats[:, column].sum() for column in _SUMS[:-1]))
 
 
-def read_account(state: State, stats: Floats, books: Floats, block: EngineBlock | None) -> None:
+def read_account(state: State, stats: Floats, terms: Floats, block: EngineBlock | None) -> None:
     """Continue the account and the extremes of a snapshot.
 
     Parameters
     ----------
-    stats, books : of this engine, a row for each of its blocks; filled.
+    stats, terms : of this engine, a row for each of its blocks; filled.
     block : of the engine itself, with the account of each of its blocks; without one the sums of the
         snapshot go to the first block, which agrees to round-off.
 
@@ -59,29 +59,29 @@ def read_account(state: State, stats: Floats, books: Floats, block: EngineBlock 
         if not least <= value <= most:
             raise ValueError(f"{name} = {value} in the snapshot: must be {least} to {most}")
     if block is None:
-        books[0, :N_BOOK], stats[0, S.PENDING] = tally.books, tally.pending
+        terms[0, :N_TERM], stats[0, S.PENDING] = tally.terms, tally.pending
     else:
-        books[:, :N_BOOK] = block.array("work", (len(books), N_BOOK), _LARGEST)
-        stats[:, S.PENDING] = block.array("pending", (len(books), len(S.PENDING)), _LARGEST)
+        terms[:, :N_TERM] = block.array("work", (len(terms), N_TERM), _LARGEST)
+        stats[:, S.PENDING] = block.array("pending", (len(terms), len(S.PENDING)), _LARGEST)
     stats[:, S.OVERLAP_MAX] = tally.overlap_max
     stats[:, S.OVERLAP_GRAIN], stats[:, S.OVERLAP_STEP] = tally.overlap_grain, tally.overlap_step
     stats[:, S.SPEED_MAX], stats[:, S.SPIN_MAX] = tally.speed_max, tally.spin_max
     stats[0, _SUMS] = (*(getattr(tally, name) for name in HELD), tally.n_contact)
 
 
-def account_arrays(stats: Floats, books: Floats) -> dict[str, Floats]:
+def account_arrays(stats: Floats, terms: Floats) -> dict[str, Floats]:
     """The account of each block, for the block of an engine (`read_account`)."""
-    return {"work": books[:, :N_BOOK].copy(), "pending": stats[:, S.PENDING].copy()}
+    return {"work": terms[:, :N_TERM].copy(), "pending": stats[:, S.PENDING].copy()}
 
 
-def tally_of(t: float, stats: Floats, books: Floats) -> Tally:
+def tally_of(t: float, stats: Floats, terms: Floats) -> Tally:
     """Energy account and extremes at time t [s]."""
     block = stats[int(stats[:, S.OVERLAP_MAX].argmax())]
     held = dict(zip(HELD, (float(stats[:, column].sum()) for column in _SUMS), strict=False))
     return Tally(
         t=t,
         **held,
-        books=tuple(float(b) for b in books[:, :N_BOOK].sum(axis=0)),
+        terms=tuple(float(b) for b in terms[:, :N_TERM].sum(axis=0)),
         overlap_max=float(block[S.OVERLAP_MAX]),
         overlap_grain=int(block[S.OVERLAP_GRAIN]),
         overlap_step=int(block[S.OVERLAP_STEP]),

@@ -11,14 +11,14 @@ from ryusa.laws._family import numbers
 from ryusa.laws.dispatch import drag_of, hindered, magnus, profile_speed, shear_lift, water_torque
 from ryusa.laws.families import Above, Buoyancy, Profile
 from ryusa.model.fluid import PHI, SHEAR, SUBMERGED, U, V, W
-from ryusa.model.tally import Book
+from ryusa.model.tally import Term
 
 NO_WATER = int(Profile.NONE)
 CONTINUE, HOLD, DRY = numbers(__name__, Above.CONTINUE, Above.HOLD, Above.DRY)
 # the column adds what is beyond the weight of the displaced water; only the drag asks for its form
 WEIGHT, STRESS, PRESSURE = numbers(__name__, Buoyancy.WEIGHT, Buoyancy.STRESS, Buoyancy.PRESSURE)
-B_DRAG, B_TORQUE, B_LIFT, B_FLOW = int(Book.DRAG), int(Book.TORQUE), int(Book.LIFT), int(Book.FLOW)
-B_FILM = int(Book.FILM)
+B_DRAG, B_TORQUE, B_LIFT, B_FLOW = int(Term.DRAG), int(Term.TORQUE), int(Term.LIFT), int(Term.FLOW)
+B_FILM = int(Term.FILM)
 
 
 @inner(forceinline=True)
@@ -34,7 +34,7 @@ def column_forces(
     choice: LawChoice, c: Any, r: float, fluid: Any, v: Any, w: Any
 ) -> tuple[float, float, float, float, float, float, float]:
     """Drag over slip [N s/m] of a column of water on one grain, then drag, then lift and Magnus force [N]."""
-    d, nu, rho_w, tangential = 2.0 * r, c[P.NU], c[P.RHO_W], fluid[SHEAR]
+    d, nu, rho_w, shear = 2.0 * r, c[P.NU], c[P.RHO_W], fluid[SHEAR]
     u_x, u_y, u_z = fluid[U] - v[0], fluid[V] - v[1], fluid[W] - v[2]
     slip = math.sqrt(u_x * u_x + u_y * u_y + u_z * u_z)
     share = fluid[SUBMERGED]
@@ -46,13 +46,13 @@ def column_forces(
         )  # fmt: skip
     l_x = l_y = l_z = 0.0
     if choice.lift:
-        half = 0.5 * tangential * d
+        half = 0.5 * shear * d
         normal, k = shear_lift(
-            choice.lift, u_x + half, u_x - half, slip, tangential, d, nu, rho_w, c[P.A_2], c[P.C_L]
+            choice.lift, u_x + half, u_x - half, slip, shear, d, nu, rho_w, c[P.A_2], c[P.C_L]
         )
         l_x, l_z = -k * u_z, normal + k * u_x
     if choice.magnus:
-        o_x, o_y, o_z = -w[0], 0.5 * tangential - w[1], -w[2]
+        o_x, o_y, o_z = -w[0], 0.5 * shear - w[1], -w[2]
         spin = math.sqrt(o_x * o_x + o_y * o_y + o_z * o_z)
         k = magnus(choice.magnus, slip, spin, d, nu, rho_w)
         l_x += k * (o_y * u_z - o_z * u_y)

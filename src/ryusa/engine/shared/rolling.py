@@ -21,7 +21,7 @@ from ryusa.laws.rolling import (
     rolling_printed,
     slider_scale,
 )
-from ryusa.model.tally import Book
+from ryusa.model.tally import Term
 
 Vector = tuple[float, float, float]
 Body = tuple[
@@ -31,7 +31,7 @@ Body = tuple[
 NONE, PRINTED, CONSTANT, EPSD = numbers(
     __name__, Rolling.NONE, Rolling.PRINTED, Rolling.CONSTANT, Rolling.EPSD
 )
-B_ROLL, B_RELEASED_R = int(Book.ROLL), int(Book.RELEASED_R)
+B_ROLL, B_RELEASED_R = int(Term.ROLL), int(Term.RELEASED_R)
 
 
 @kernel(fastmath=FAST)
