@@ -141,10 +141,10 @@ def _factor(written: str, unit: str) -> float:
         raise UnitError(
             f"wrong unit: '{written}' does not measure {_kind(unit)}; write it as {_example(unit)}"
         )
-    return _tidy(factor / wanted)
+    return _rounded(factor / wanted)
 
 
-def _tidy(factor: float) -> float:
+def _rounded(factor: float) -> float:
     """Remove the round-off that chained conversions leave in a round number."""
     rounded = float(f"{factor:.14g}")
     return rounded if abs(rounded - factor) <= 4e-16 * abs(factor) else factor
@@ -207,7 +207,7 @@ def from_pint(name: str) -> tuple[float, tuple[tuple[str, int], ...]]:
     if any(power != int(power) for _, power in pairs) or not math.isfinite(factor) or factor <= 0.0:
         raise UnitError(f"unknown unit '{name}'")
     grams = sum(int(power) for base, power in pairs if base == "gram")
-    return _tidy(factor * 1000.0**-grams), tuple((base, int(power)) for base, power in pairs)
+    return _rounded(factor * 1000.0**-grams), tuple((base, int(power)) for base, power in pairs)
 
 
 @cache

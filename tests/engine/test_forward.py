@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from ryusa.engine.forward_euler import march, step
+from ryusa.engine.forward_euler import integrate, step
 from ryusa.laws.collision import zeta_no_tension
 from ryusa.model import Scene
 from ryusa.model.scene import ContactLaw
@@ -28,7 +28,7 @@ def scene(gap, **how):
 def test_forward_differences_fall_freely_and_rebound_with_e_at_a_fine_step(summed):
     low, start = scene(0.001)
     dt = step(low, 1000.0)
-    t, x = march(low, start, dt, 0.035, 2e-5, summed=summed)
+    t, x = integrate(low, start, dt, 0.035, 2e-5, summed=summed)
     gap = x[:, 0, 2] - D
     falling = t < 0.012
     np.testing.assert_allclose(gap[falling], 0.001 - 4.9 * t[falling] ** 2, atol=2e-7)
@@ -43,7 +43,7 @@ def test_forward_differences_add_energy_to_a_resting_grain_with_too_few_steps():
     moved = []
     for steps in (0.8 * stable / math.sqrt(2.0), 4.0 * stable):  # the step is a part of a free pair's contact
         dt = step(low, steps)
-        _, x = march(low, start, dt, 0.3, 1e-4, summed=False)
+        _, x = integrate(low, start, dt, 0.3, 1e-4, summed=False)
         moved.append(np.ptp(x[-200:, 0, 2]))
     assert moved[0] > 1e-7
     assert moved[1] < 1e-10

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ryusa.errors import ResultsError
-from ryusa.measure import rest_time, trembling, trembling_share, vibration
+from ryusa.measure import rest_time, vibrating_grains, vibrating_share, vibration
 from ryusa.model import EVENT
 
 A = 2.0e-6  # amplitude [m]
@@ -30,11 +30,11 @@ def test_a_vibration_that_the_paper_s_window_cannot_see_shows_in_the_span(make):
     assert found.span_z[:, 0] == pytest.approx(2 * A, rel=0.01)
     assert found.span[:, 0] == pytest.approx(2 * A, rel=0.01)
     assert found.span[:, 1].max() < 1e-15
-    busy = trembling(found, 0.05, 1.0e-6)
+    busy = vibrating_grains(found, 0.05, 1.0e-6)
     assert busy.grains.tolist() == [0]
     assert busy.share == 0.5
     assert (busy.begin, busy.end) == pytest.approx((0.04, 0.05))
-    assert trembling(found, 0.05, 1.0e-6, by="net").share == 0.0
+    assert vibrating_grains(found, 0.05, 1.0e-6, by="net").share == 0.0
 
 
 def test_a_grain_that_sinks_steadily_moves_by_its_speed_times_the_window(make):
@@ -54,7 +54,7 @@ def test_grains_rest_from_the_end_of_the_last_window_in_which_one_moved(make):
     found = vibration(shaking(make, t, [calmed, lambda t: 0 * t]))
     assert rest_time(found, A) == pytest.approx(0.07)
     assert rest_time(found, 3 * A) == 0.0
-    assert trembling_share(found, A).tolist() == [0.5] * 7 + [0.0] * 3
+    assert vibrating_share(found, A).tolist() == [0.5] * 7 + [0.0] * 3
     restless = vibration(shaking(make, t, [lambda t: A * np.sin(2 * np.pi * 730 * t)]))
     assert math.isnan(rest_time(restless, A))
 
@@ -89,4 +89,4 @@ def test_windows_can_be_chosen_and_thresholds_are_given_in_diameters(make):
 def test_windows_too_short_for_their_frames_are_refused(make, window, message):
     run = shaking(make, np.linspace(0.0, 0.1, 101), [lambda t: t])
     with pytest.raises(ResultsError, match=message):
-        trembling(vibration(run, window=window), 0.001, A)
+        vibrating_grains(vibration(run, window=window), 0.001, A)

@@ -13,7 +13,7 @@ import pytest
 from ryusa.casefile import resolved
 from ryusa.errors import CaseError, NotANumber, ResultsError
 from ryusa.running import runner
-from ryusa.studies.osada2004._experiment import paper_run
+from ryusa.studies.osada2004._parts import paper_run
 from ryusa.study import CostEstimate, Plan, ProgressLines, StudyProgress, estimate_cost
 from ryusa.study import carry_out as carry_out_tasks
 from ryusa.study import cost as cost_module

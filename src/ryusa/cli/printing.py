@@ -95,7 +95,7 @@ def _print_energy(found: "Energy") -> None:
 
 def _print_vibration(found: "Vibration", threshold: float | None = None) -> None:
     """Print the share of grains that vibrate over time, and when the last one rests; threshold in m."""
-    from ryusa.measure import rest_time, trembling_share
+    from ryusa.measure import rest_time, vibrating_share
     from ryusa.units import format_quantity
 
     limit = found.diameters(DIAMETERS) if threshold is None else threshold
@@ -103,7 +103,7 @@ def _print_vibration(found: "Vibration", threshold: float | None = None) -> None
     table = _table(
         ("end of window [s]", "share that vibrates", "largest range of z [µm]", "largest change of z [µm]")
     )
-    share = trembling_share(found, limit)
+    share = vibrating_share(found, limit)
     n = len(found.end)
     for k in sorted({round((j + 1) * n / min(n, LINES)) - 1 for j in range(min(n, LINES))}):
         spans = found.span_z[k].max() * 1e6, abs(found.net[k]).max() * 1e6

@@ -34,7 +34,7 @@ def step(scene: Scene, steps: float, k_n: float = math.nan) -> float:
     return shortest_contact(float(scene.m[0]) / 2.0, stiffness, _zeta(scene), law.tension) / steps
 
 
-def march(
+def integrate(
     scene: Scene, x: Floats, dt: float, end: float, every: float, *, summed: bool
 ) -> tuple[Floats, Floats]:
     """Times of frames [s], shape (n_frame,), and centres [m], shape (n_frame, n_grain, 3).

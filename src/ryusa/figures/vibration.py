@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter
 
 from ryusa.figures import style
-from ryusa.measure import Vibration, trembling_share
+from ryusa.measure import Vibration, vibrating_share
 
 CM = 100.0  # centimetres in a metre
 THRESHOLDS = (1.0e-4, 1.0e-3, 1.0e-2)  # mean diameters
@@ -54,7 +54,7 @@ def vibration(
         title_fontsize=7.0, alignment="left",
     )  # fmt: skip
     for k, threshold in enumerate(thresholds):
-        share = trembling_share(found, found.diameters(threshold))
+        share = vibrating_share(found, found.diameters(threshold))
         size = found.diameters(threshold) * 1.0e6
         below.step(
             np.append(found.begin, found.end[-1]), np.append(share, share[-1]), where="post",

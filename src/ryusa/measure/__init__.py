@@ -17,11 +17,11 @@ from ryusa.measure.table import Averages, rows_of, write_csv
 from ryusa.measure.tracks import Tracks, farthest, tracks
 from ryusa.measure.transport import KineticStress, Transport, kinetic_stress, transport
 from ryusa.measure.vibration import (
-    Trembling,
+    VibratingGrains,
     Vibration,
     rest_time,
-    trembling,
-    trembling_share,
+    vibrating_grains,
+    vibrating_share,
     vibration,
 )
 from ryusa.measure.water import WaterProfile, water
@@ -47,7 +47,7 @@ __all__ = [
     "Spin",
     "Tracks",
     "Transport",
-    "Trembling",
+    "VibratingGrains",
     "Vibration",
     "WaterProfile",
     "alternating",
@@ -74,9 +74,9 @@ __all__ = [
     "surface",
     "tracks",
     "transport",
-    "trembling",
-    "trembling_share",
     "turned_time",
+    "vibrating_grains",
+    "vibrating_share",
     "vibration",
     "water",
     "write_csv",

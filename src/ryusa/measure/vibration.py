@@ -75,7 +75,7 @@ class Vibration:
 
 
 @dataclass(frozen=True)
-class Trembling:
+class VibratingGrains:
     """Grains that moved by more than a threshold within one window.
 
     Attributes
@@ -162,7 +162,7 @@ def vibration(
     )
 
 
-def trembling(found: Vibration, t: float, threshold: float, by: ExtentRule = "z") -> Trembling:
+def vibrating_grains(found: Vibration, t: float, threshold: float, by: ExtentRule = "z") -> VibratingGrains:
     """Grains that move by more than `threshold` within the window that ends at time t, or last before it.
 
     Parameters
@@ -177,10 +177,10 @@ def trembling(found: Vibration, t: float, threshold: float, by: ExtentRule = "z"
         raise ResultsError(f"no window ends by t = {t:g} s; the first ends at {found.end[0]:g} s")
     over = found.extent(by)[k] > threshold
     share = float(over.mean()) if len(over) else 0.0
-    return Trembling(found.grains[over], share, float(found.begin[k]), float(found.end[k]), threshold)
+    return VibratingGrains(found.grains[over], share, float(found.begin[k]), float(found.end[k]), threshold)
 
 
-def trembling_share(found: Vibration, threshold: float, by: ExtentRule = "z") -> Floats:
+def vibrating_share(found: Vibration, threshold: float, by: ExtentRule = "z") -> Floats:
     """Share of grains that move by more than `threshold` [m] in each window [-], shape (n_window,)."""
     over = found.extent(by) > threshold
     return over.mean(axis=1) if over.shape[1] else np.zeros(len(over))

@@ -26,9 +26,9 @@ def counted(results: TaskResults, jobs: int) -> dict[str, Any]:
 
 def missing_runs(missing: Mapping[Task, Fault], n: int) -> str:
     """The failed runs with their reasons; only the first few of many."""
-    told = [f"{one.label}: {fault.words}" for one, fault in list(missing.items())[:_NAMED]]
+    lines = [f"{one.label}: {fault.words}" for one, fault in list(missing.items())[:_NAMED]]
     more = f"; and {len(missing) - _NAMED} more" if len(missing) > _NAMED else ""
-    return f"{len(missing)} of {n} runs failed, so it was not judged; {'; '.join(told)}{more}"
+    return f"{len(missing)} of {n} runs failed, so it was not judged; {'; '.join(lines)}{more}"
 
 
 def traces_of(results: TaskResults, faults: Mapping[str, Fault]) -> dict[str, str]:

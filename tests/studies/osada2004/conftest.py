@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 
 from ryusa.figures.style import new, save
-from ryusa.studies.osada2004._experiment import PHI, ROTATION
+from ryusa.studies.osada2004._parts import PHI, ROTATION
 from ryusa.studies.osada2004.paper import CLAIMS
 from ryusa.studies.osada2004.study import PAPER
 from ryusa.study import Band, Finding, Interval, Level, Plan, Trial

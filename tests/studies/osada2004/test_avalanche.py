@@ -18,7 +18,7 @@ from ryusa.studies.osada2004._avalanche import (
     Ways,
     Window,
 )
-from ryusa.studies.osada2004._experiment import PHI, ROTATION, SLIP
+from ryusa.studies.osada2004._parts import PHI, ROTATION, SLIP
 from ryusa.studies.osada2004.study import load
 from ryusa.study import Level, Outcome, Plan, carry_out
 

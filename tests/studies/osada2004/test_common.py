@@ -1,6 +1,6 @@
 from dataclasses import replace
 
-from ryusa.studies.osada2004._experiment import PHI, SLIP
+from ryusa.studies.osada2004._parts import PHI, SLIP
 from ryusa.studies.osada2004.common import common
 from ryusa.study import Band, Finding, Trial, over_seeds
 

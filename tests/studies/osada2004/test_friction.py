@@ -1,4 +1,4 @@
-from ryusa.studies.osada2004._experiment import PHI, ROTATION
+from ryusa.studies.osada2004._parts import PHI, ROTATION
 from ryusa.studies.osada2004.friction import FAILS, HOLDS, NONE, OPEN, SOME, by_angle, ranges
 
 

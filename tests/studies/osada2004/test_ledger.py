@@ -5,7 +5,7 @@ import pytest
 
 from ryusa.errors import ResultsError
 from ryusa.figures.style import new
-from ryusa.studies.osada2004._experiment import paper_run
+from ryusa.studies.osada2004._parts import paper_run
 from ryusa.studies.osada2004.study import PaperStudy
 from ryusa.study import Band, Finding, Level, Outcome, Plan, Trial, ledger, over_seeds
 from ryusa.study.ledger import make as make_study

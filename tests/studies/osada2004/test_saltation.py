@@ -9,7 +9,7 @@ from ryusa.figures.saltation import SpinPath
 from ryusa.measure import ContactTimes, Saltation, Tracks, average
 from ryusa.measure.table import Averages
 from ryusa.studies.osada2004 import _saltation, fig07, fig20, fig21, hops, spin_time
-from ryusa.studies.osada2004._experiment import PHI, SLIP
+from ryusa.studies.osada2004._parts import PHI, SLIP
 from ryusa.studies.osada2004._saltation import K_N, SHIPPED, SaltationRun
 from ryusa.studies.osada2004.study import load
 from ryusa.study import Level, Outcome, Plan, carry_out

@@ -28,7 +28,7 @@ B_FILM = int(Term.FILM)
 def fluid_forces(
     variant: KernelVariant, choice: LawChoice, i: int, c: Any, grains: GrainArrays, table: Any
 ) -> None:
-    """Lay forces and torques of the water on grain i beside those of contacts."""
+    """Store forces and torques of the water on grain i beside those of contacts."""
     x, v, w, fluid, impulse, film = grains.x, grains.v, grains.w, grains.fluid, grains.impulse, grains.film
     d_x = d_y = d_z = l_x = l_y = l_z = e_x = e_z = turn = 0.0
     submerged = 1.0

@@ -10,7 +10,7 @@ import numpy as np
 from ryusa.measure import Profiles, Tracks, alternating, paths, profiles, tracks
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
-from ryusa.studies.osada2004._experiment import PHI, ROTATION, SLIP, CaseRun, Found, Plan, paper_run
+from ryusa.studies.osada2004._parts import PHI, ROTATION, SLIP, CaseRun, Found, Plan, paper_run
 from ryusa.study import Band, Trial, over_seeds, pool, pseudo_values
 
 CASE = "avalanche"

@@ -13,7 +13,7 @@ from ryusa.measure.collisions import Partner
 from ryusa.measure.entrainment import SPEED as MOVES
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
-from ryusa.studies.osada2004._experiment import PHI, SLIP, CaseRun, Found, Plan, paper_run
+from ryusa.studies.osada2004._parts import PHI, SLIP, CaseRun, Found, Plan, paper_run
 from ryusa.study import Band, Trial, over_seeds, pool
 
 CASE = "fig17"

@@ -20,7 +20,7 @@ from ryusa.laws.drag import volume
 from ryusa.measure import collisions, contact_times
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
-from ryusa.studies.osada2004._experiment import CaseRun, Found, paper_run
+from ryusa.studies.osada2004._parts import CaseRun, Found, paper_run
 from ryusa.study import Band, Interval, over_range
 from ryusa.units import quantity
 

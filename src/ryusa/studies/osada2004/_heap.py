@@ -9,7 +9,7 @@ from scipy import stats
 
 from ryusa.measure import HeapSurface, Snapshot, snapshot, surface
 from ryusa.results import Results
-from ryusa.studies.osada2004._experiment import PHI, SLIP, CaseRun, Plan, paper_run
+from ryusa.studies.osada2004._parts import PHI, SLIP, CaseRun, Plan, paper_run
 from ryusa.study import CONFIDENCE, Interval, Pooled, over_seeds
 
 CASE = "fig19"

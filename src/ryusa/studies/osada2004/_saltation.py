@@ -10,7 +10,7 @@ import numpy as np
 from ryusa.measure import Saltation, Tracks, collisions, saltation, tracks
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
-from ryusa.studies.osada2004._experiment import PHI, RATIO, SLIP, CaseRun, Plan, paper_run
+from ryusa.studies.osada2004._parts import PHI, RATIO, SLIP, CaseRun, Plan, paper_run
 from ryusa.study import Pooled, pool
 
 CASE = "saltation"

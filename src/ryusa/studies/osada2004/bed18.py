@@ -12,7 +12,7 @@ from ryusa.figures.snapshot import snapshot as draw_snapshot
 from ryusa.measure import Snapshot, snapshot
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
-from ryusa.studies.osada2004._experiment import PHI, RATIO, SLIP, CaseRun, Found, Plan, paper_run
+from ryusa.studies.osada2004._parts import PHI, RATIO, SLIP, CaseRun, Found, Plan, paper_run
 from ryusa.study import Band, Finding, Trial, over_range, short
 
 FIGURE = "fig19"
@@ -199,7 +199,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             tuple(trials),
             "There are two angles: a bed at rest, here as dense as grains settle without friction, must "
             "first break its packing, while a moving bed continues to flow at a lower slope. A collapsing "
-            f"heap stops near the second angle. {_told(found, plan)}",
+            f"heap stops near the second angle. {_words(found, plan)}",
             {
                 "bed": "200 grains, 10 layers, sizes +-20 %, dry",
                 "k_n": "100 N/cm",
@@ -212,7 +212,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     )
 
 
-def _told(found: Found, plan: Plan) -> str:
+def _words(found: Found, plan: Plan) -> str:
     """Both angles, where slopes were tried for them."""
     if plan.level == "quick":
         return "From one slope tried from rest neither angle follows."

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from itertools import product
 from typing import Any
 
-from ryusa.studies.osada2004._experiment import PHI, RATIO, ROTATION, SLIP
+from ryusa.studies.osada2004._parts import PHI, RATIO, ROTATION, SLIP
 from ryusa.study import Finding
 
 SHARED = (PHI, SLIP, RATIO, ROTATION)  # choices of the model itself; others belong to one set-up

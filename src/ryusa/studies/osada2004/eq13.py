@@ -16,7 +16,7 @@ from ryusa.laws.rolling import rolling_arm_width
 from ryusa.measure import spin
 from ryusa.results import Results
 from ryusa.studies.osada2004 import _heap, _saltation
-from ryusa.studies.osada2004._experiment import PHI, RATIO, SLIP, CaseRun, Found, Plan
+from ryusa.studies.osada2004._parts import PHI, RATIO, SLIP, CaseRun, Found, Plan
 from ryusa.study import Band, Finding, Interval, Level, Trial, over_seeds, pool
 
 FIGURE = "fig23"
@@ -93,7 +93,7 @@ def _group(found: Found, plan: Plan, chosen: Mapping[str, str]) -> list[Any]:
 
 
 def _starts(plan: Plan, chosen: Mapping[str, str]) -> list[int]:
-    """Seeds of the heaps: one for each of the plan's; at the full level several where `_told` compares."""
+    """Seeds of the heaps: one for each of the plan's; at the full level several where `_words` compares."""
     compared = chosen in settings(Plan(Level.STANDARD, plan.seeds))
     return _heap.starts(plan, plan.pick(1, 1, _heap.STARTS if compared else 1))
 
@@ -176,7 +176,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         SLIP: "spring",
         RATIO: "2/7",
     }
-    also = (*_identified(found, plan), *_told(found, plan), *_arms())
+    also = (*_identified(found, plan), *_words(found, plan), *_arms())
     return [Finding("eq13", tuple(printed), decided_by, common, also=also, beside=tuple(others))]
 
 
@@ -202,7 +202,7 @@ def _verdict_of(others: Sequence[Trial]) -> str:
 
 def _identified(found: Found, plan: Plan) -> list[str]:
     """Coefficient at which each form first reaches the lower edge of gravel's slope, between those tried."""
-    told: list[str] = []
+    lines: list[str] = []
     sets = settings(plan)
     for key in dict.fromkeys(tuple((k, v) for k, v in one.items() if k != COEFFICIENT) for one in sets):
         fixed = dict(key)
@@ -216,11 +216,11 @@ def _identified(found: Found, plan: Plan) -> list[str]:
                 crossings.append(_crossing(tried, _heap.slopes(heaps), GRAVEL.low))
         reached = [one for one in crossings if math.isfinite(one)]
         words = f"{min(reached):.2g} to {max(reached):.2g}" if reached else f"not reached up to {tried[-1]:g}"
-        told.append(
+        lines.append(
             f"{fixed[MODEL]}, phi {fixed[PHI]}, k_n {fixed[K_N]}, d {fixed[SIZE]}, sizes {fixed[SPREAD]}: "
             f"coefficient for {GRAVEL.low:g} deg {words} ({len(reached)} of {len(crossings)} seeds reach it)"
         )
-    return told
+    return lines
 
 
 def _crossing(f: Sequence[float], slopes_: Sequence[float], wanted: float) -> float:
@@ -236,18 +236,18 @@ def _crossing(f: Sequence[float], slopes_: Sequence[float], wanted: float) -> fl
     return math.nan
 
 
-def _told(found: Found, plan: Plan) -> list[str]:
+def _words(found: Found, plan: Plan) -> list[str]:
     """What decides nothing but belongs to the story: no rolling friction, energy made, spin, f' over k_n."""
-    told: list[str] = []
+    lines: list[str] = []
     for phi in _angles(plan):
         plain = _heap.slopes([found[_heap.run({PHI: phi}, "free", seed)] for seed in plan.seeds])
-        told.append(f"without rolling friction the heap at phi {phi} has {np.nanmean(plain):.3g} deg")
+        lines.append(f"without rolling friction the heap at phi {phi} has {np.nanmean(plain):.3g} deg")
     for chosen in settings(plan):
         heaps = _group(found, plan, chosen)
         lost = [one.rolled for one in heaps if isinstance(one, _heap.Heap)]
         if chosen[MODEL] == PRINTED and lost:
             word = "takes" if np.mean(lost) > 0.0 else "makes"
-            told.append(
+            lines.append(
                 f"Eq. (13) as printed at f' = {chosen[COEFFICIENT]} {word} "
                 f"{abs(100.0 * np.mean(lost)):.2g} % of the energy the heap falls through"
             )
@@ -260,7 +260,7 @@ def _told(found: Found, plan: Plan) -> list[str]:
             else str(over_seeds(spun, "rad/s", spread))
         )
         name = "without rolling friction" if model == "none" else f"{model}, {SPIN_AT[model]}"
-        told.append(f"mean spin of a saltating grain, {name}: {words}")
+        lines.append(f"mean spin of a saltating grain, {name}: {words}")
     pair = [
         {**BASE, MODEL: CONSTANT, COEFFICIENT: f, K_N: k} for f, k in (("20", "100 N/cm"), ("10", "25 N/cm"))
     ]
@@ -268,11 +268,11 @@ def _told(found: Found, plan: Plan) -> list[str]:
         stiff, soft = (
             float(np.nanmean(_heap.slopes(_whole(_group(found, plan, chosen))))) for chosen in pair
         )
-        told.append(
+        lines.append(
             f"half the f' on a spring a quarter as stiff, the same arm f' b, gives {soft:.3g} beside "
             f"{stiff:.3g} deg; were f' a property of the grain, f' = 20 would do so on both springs"
         )
-    return told
+    return lines
 
 
 def _arms() -> list[str]:

@@ -10,7 +10,7 @@ from ryusa import figures
 from ryusa.laws.collision import collision_time
 from ryusa.studies.osada2004 import _drops
 from ryusa.studies.osada2004._drops import DropRun, Setup
-from ryusa.studies.osada2004._experiment import CaseRun, Found, Plan
+from ryusa.studies.osada2004._parts import CaseRun, Found, Plan
 from ryusa.study import Band, Finding, Trial, over_range
 
 FIGURE = "fig4"

@@ -11,7 +11,7 @@ from ryusa.figures.saltation import contact_times_over_stiffness
 from ryusa.measure import Tracks, turned_time
 from ryusa.results import Results
 from ryusa.studies.osada2004 import _saltation
-from ryusa.studies.osada2004._experiment import CaseRun, Found, Plan
+from ryusa.studies.osada2004._parts import CaseRun, Found, Plan
 from ryusa.studies.osada2004._saltation import K_N, SHIPPED, SKIM, SaltationRun, sweep_run
 from ryusa.study import Band, Finding, Interval, Trial, over_seeds
 

@@ -14,7 +14,7 @@ from ryusa.measure.statistics import Floats
 from ryusa.results import Results
 from ryusa.studies.osada2004 import _drops, _saltation
 from ryusa.studies.osada2004._drops import DropRun, Setup
-from ryusa.studies.osada2004._experiment import CaseRun, Found, Plan
+from ryusa.studies.osada2004._parts import CaseRun, Found, Plan
 from ryusa.study import Finding, Trial, over_seeds
 from ryusa.units import quantity
 

@@ -9,15 +9,15 @@ from typing import Any, cast
 import numpy as np
 from matplotlib.figure import Figure
 
-from ryusa.engine.forward_euler import march, step
+from ryusa.engine.forward_euler import integrate, step
 from ryusa.figures.snapshot import snapshot as draw_snapshot
-from ryusa.figures.trembling import over_threshold
 from ryusa.figures.vibration import vibration as draw_vibration
-from ryusa.measure import Snapshot, Vibration, rest_time, snapshot, trembling_share, vibration
+from ryusa.figures.vibration_threshold import over_threshold
+from ryusa.measure import Snapshot, Vibration, rest_time, snapshot, vibrating_share, vibration
 from ryusa.measure.statistics import Floats
 from ryusa.measure.vibration import WINDOW, ExtentRule
 from ryusa.results import Results
-from ryusa.studies.osada2004._experiment import PHI, RATIO, ROTATION, SLIP, CaseRun, Found, Plan, paper_run
+from ryusa.studies.osada2004._parts import PHI, RATIO, ROTATION, SLIP, CaseRun, Found, Plan, paper_run
 from ryusa.study import Band, Finding, Interval, Trial, over_range, over_seeds, pool, short
 
 FIGURE = "fig10"
@@ -159,14 +159,14 @@ def again(run: Results, dt: float, *, summed: bool) -> Vibration:
     """
     scene, frames = run.scene, run.frames
     every, end = float(np.median(np.diff(frames.t))), float(frames.t[-1])
-    t, x = march(scene, np.asarray(frames.x[0]), dt, end, every, summed=summed)
+    t, x = integrate(scene, np.asarray(frames.x[0]), dt, end, every, summed=summed)
     moved = SimpleNamespace(t=t, x=x, omega=np.zeros_like(x))
     return vibration(cast(Any, SimpleNamespace(scene=scene, frames=moved)))
 
 
 def share(moved: Vibration, threshold: str, way: str) -> float:
     """Share of grains that vibrate in the last window [-]."""
-    return float(trembling_share(moved, moved.diameters(THRESHOLDS[threshold]), WAYS[way])[-1])
+    return float(vibrating_share(moved, moved.diameters(THRESHOLDS[threshold]), WAYS[way])[-1])
 
 
 def rests(moved: Vibration, threshold: str, way: str) -> float:

@@ -9,7 +9,7 @@ from ryusa import figures
 from ryusa.measure.stability import BAND
 from ryusa.studies.osada2004 import _drops, fig11
 from ryusa.studies.osada2004._drops import DropRun, Setup
-from ryusa.studies.osada2004._experiment import CaseRun, Found, Plan
+from ryusa.studies.osada2004._parts import CaseRun, Found, Plan
 from ryusa.study import Finding, Trial, over_range
 from ryusa.units import quantity
 

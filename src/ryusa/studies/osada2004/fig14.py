@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from ryusa import figures
 from ryusa.studies.osada2004 import _avalanche
 from ryusa.studies.osada2004._avalanche import FIRST, SHIPPED, SOFT, STIFF, RunPair, together, unlike
-from ryusa.studies.osada2004._experiment import Found, Plan
+from ryusa.studies.osada2004._parts import Found, Plan
 from ryusa.study import Band, Finding, short
 
 FIGURE = "fig14"
@@ -47,11 +47,11 @@ def _scatter(base: Sequence[RunPair]) -> tuple[str, ...]:
     if len(base) < 2:
         return ()
     halves = {SOFT: [one.soft for one in base], STIFF: [one.stiff for one in base]}
-    told = [
+    lines = [
         f"{short(float(np.mean([unlike([RunPair(a, b)]) for a, b in combinations(runs, 2)])))} with {time}"
         for time, runs in halves.items()
     ]
-    return (f"single runs that differ only in the seed differ by {', '.join(told)}",)
+    return (f"single runs that differ only in the seed differ by {', '.join(lines)}",)
 
 
 def rows(found: Found, plan: Plan) -> list[dict[str, object]]:

@@ -22,7 +22,7 @@ from ryusa.studies.osada2004._avalanche import (
     together,
     unlike,
 )  # fmt: skip
-from ryusa.studies.osada2004._experiment import PHI, ROTATION, SLIP, Found, Plan
+from ryusa.studies.osada2004._parts import PHI, ROTATION, SLIP, Found, Plan
 from ryusa.studies.osada2004.fig14 import ALIKE
 from ryusa.studies.osada2004.fig14 import PART as ALIKE_PART
 from ryusa.study import Band, Finding, short
@@ -83,7 +83,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     tried = partial(_avalanche.trials, found, plan)
     tried_sets = _avalanche.settings(plan)
 
-    def told(value: Numbers, chosen: Mapping[str, str]) -> str:
+    def text(value: Numbers, chosen: Mapping[str, str]) -> str:
         """Value in all windows."""
         return " and ".join(short(_avalanche.mean(found, plan, chosen, one, value)) for one in WINDOWS)
 
@@ -104,7 +104,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         "partners at a time, so that a contact has not ended when the next begins."
     )
     tops = [one for one in tried_sets if one[SLIP] != "spring"]
-    left = "; ".join(f"{_avalanche.label(one)}: {told(depth_mean, one)} cm/s" for one in tops)
+    left = "; ".join(f"{_avalanche.label(one)}: {text(depth_mean, one)} cm/s" for one in tops)
     windows = " and ".join(WINDOWS)
     return (
         Finding(
@@ -115,12 +115,12 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
                 *flow,
             ),
             f"{why} The flow does not become steady, so the difference depends on the time window: "
-            f"{told(depth_mean, SHIPPED)} cm/s at {windows} as shipped.",
+            f"{text(depth_mean, SHIPPED)} cm/s at {windows} as shipped.",
             _avalanche.SETTLED,
             also=(
                 *(
-                    f"speed, {_avalanche.label(one)}: {told(soft_speed, one)} m/s with {SOFT}, "
-                    f"{told(stiff_speed, one)} m/s with {STIFF}, at {windows}"
+                    f"speed, {_avalanche.label(one)}: {text(soft_speed, one)} m/s with {SOFT}, "
+                    f"{text(stiff_speed, one)} m/s with {STIFF}, at {windows}"
                     for one in tried_sets
                 ),
                 *((f"faster by, without the uncapped dashpot: {left}",) if left else ()),
@@ -134,10 +134,10 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
                 *flow,
             ),
             "Flux is concentration times speed: with like profiles of concentration it differs as the "
-            f"speed does, by a factor of {told(flux_ratio, SHIPPED)} at {windows} as shipped. {why}",
+            f"speed does, by a factor of {text(flux_ratio, SHIPPED)} at {windows} as shipped. {why}",
             _avalanche.SETTLED,
             also=tuple(
-                f"flux ratio, {_avalanche.label(one)}: {told(flux_ratio, one)} at {windows}"
+                f"flux ratio, {_avalanche.label(one)}: {text(flux_ratio, one)} at {windows}"
                 for one in tried_sets
             ),
         ),

@@ -20,7 +20,7 @@ from ryusa.studies.osada2004._avalanche import (
     RunPair,
     together,
 )
-from ryusa.studies.osada2004._experiment import Found, Plan
+from ryusa.studies.osada2004._parts import Found, Plan
 from ryusa.study import Band, Finding, Trial, short
 
 FIGURE = "fig16"

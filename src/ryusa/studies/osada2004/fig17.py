@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from ryusa import figures
 from ryusa.studies.osada2004 import _debris
 from ryusa.studies.osada2004._debris import AMOUNT, PARTNERS, SETTLED, SHIPPED, Debris, each
-from ryusa.studies.osada2004._experiment import CaseRun, Found, Plan
+from ryusa.studies.osada2004._parts import CaseRun, Found, Plan
 from ryusa.study import Band, Finding, Trial, over_seeds, short
 
 FIGURE = "fig17"
@@ -57,7 +57,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         ),
     ]  # fmt: skip
 
-    def told(value: str, scale: float = 1.0) -> str:
+    def text(value: str, scale: float = 1.0) -> str:
         return short(scale * _debris.mean(found, plan, lambda one: float(getattr(one, value)), SHIPPED))
 
     amounts = "; ".join(
@@ -72,14 +72,14 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             tuple(tried),
             "The number of grains decides the concentration, because over a rigid bed none is deposited "
             "or eroded. Contacts of less than 0.1 ms throw every grain up and down, at "
-            f"{told('rms_z', 100.0)} cm/s on average, {told('steep')} of its speed along the bed.",
+            f"{text('rms_z', 100.0)} cm/s on average, {text('steep')} of its speed along the bed.",
             SETTLED,
             also=(
                 f"effect of the number of grains: {amounts}",
-                f"as shipped, in the uppermost diameter of the depth alone: {told('topmost')}",
-                f"as shipped: mean speed of the grains {told('speed')} m/s ({told('near_bed')} m/s near the "
-                f"bed), flux {told('q', 1e4)} cm2/s; speed of the second half second over that of the first "
-                f"{told('drift')}",
+                f"as shipped, in the uppermost diameter of the depth alone: {text('topmost')}",
+                f"as shipped: mean speed of the grains {text('speed')} m/s ({text('near_bed')} m/s near the "
+                f"bed), flux {text('q', 1e4)} cm2/s; speed of the second half second over that of the first "
+                f"{text('drift')}",
                 "the experiment's nearly parallel layers are no number of ours; the band asks whether the "
                 "simulated ways are not parallel",
             ),

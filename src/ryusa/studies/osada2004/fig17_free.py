@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from ryusa import figures
 from ryusa.studies.osada2004 import _debris
 from ryusa.studies.osada2004._debris import AMOUNT, FREE, LOCKED, SETTLED, SHIPPED, START, Debris, each
-from ryusa.studies.osada2004._experiment import PHI, SLIP, CaseRun, Found, Plan
+from ryusa.studies.osada2004._parts import PHI, SLIP, CaseRun, Found, Plan
 from ryusa.study import Band, Finding, Trial, over_seeds, pool, short
 
 FIGURE = "fig17"
@@ -99,12 +99,12 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             for cure in _cures(plan)
         ]
 
-    def told(rotation: str, name: str) -> str:
+    def text(rotation: str, name: str) -> str:
         pick = _free if rotation == FREE else _debris.run
         values = [float(getattr(found[pick(SHIPPED, seed)], name)) for seed in plan.seeds]
         return short(sum(values) / len(values))
 
-    both = partial(_both, told)
+    both = partial(_both, text)
     return (
         Finding(
             "fig17-lock",
@@ -114,8 +114,8 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             "together.",
             {**SETTLED, "rotation": LOCKED, "rods": "gap below 0.05 d and bearing within 15 deg for 0.075 s"},
             also=(
-                f"movers in rods, as shipped: {told(LOCKED, 'rods')}; with shuffled paths "
-                f"{told(LOCKED, 'null')}",
+                f"movers in rods, as shipped: {text(LOCKED, 'rods')}; with shuffled paths "
+                f"{text(LOCKED, 'null')}",
                 "the measured profiles that the paper fitted are not in its text; the judgement is "
                 "whether locking binds grains together",
             ),
@@ -141,8 +141,8 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     )
 
 
-def _both(told: Callable[[str, str], str], name: str, unit: str) -> str:
-    return f"{told(FREE, name)} against {told(LOCKED, name)} {unit}".strip()
+def _both(text: Callable[[str, str], str], name: str, unit: str) -> str:
+    return f"{text(FREE, name)} against {text(LOCKED, name)} {unit}".strip()
 
 
 def rows(found: Found, plan: Plan) -> list[dict[str, object]]:

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from ryusa import figures
 from ryusa.studies.osada2004 import _debris
 from ryusa.studies.osada2004._debris import SETTLED, Debris
-from ryusa.studies.osada2004._experiment import PHI, SLIP, CaseRun, Found, Plan, paper_run
+from ryusa.studies.osada2004._parts import PHI, SLIP, CaseRun, Found, Plan, paper_run
 from ryusa.study import Band, Finding, Trial, over_seeds, pool, short
 
 FIGURE = "fig18"
@@ -99,16 +99,16 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             for one, values in zip(settings(plan), groups, strict=True)
         ]
 
-    def told(value: Callable[[Debris], float], chosen: Mapping[str, str]) -> str:
+    def text(value: Callable[[Debris], float], chosen: Mapping[str, str]) -> str:
         values = [value(found[_run(chosen, seed)]) for seed in plan.seeds]
         return short(sum(values) / len(values))
 
     times = [one for one in settings(plan) if one == SHIPPED | {LONGER: one[LONGER]}]
     series = "; ".join(
-        f"{one[LONGER]} times: contact {told(lambda run: run.contacts['all contacts'].time, one)} s, "
-        f"correlation {told(lambda run: run.companions, one)}, "
-        f"{told(lambda run: 100.0 * run.rms_z, one)} cm/s up and down, "
-        f"{told(lambda run: run.speed, one)} m/s along"
+        f"{one[LONGER]} times: contact {text(lambda run: run.contacts['all contacts'].time, one)} s, "
+        f"correlation {text(lambda run: run.companions, one)}, "
+        f"{text(lambda run: 100.0 * run.rms_z, one)} cm/s up and down, "
+        f"{text(lambda run: run.speed, one)} m/s along"
         for one in sorted([SHIPPED | {LONGER: "1"}, *times], key=lambda one: float(one[LONGER]))
     )
     return (

@@ -9,7 +9,7 @@ from ryusa.figures.repose import surface as draw_surface
 from ryusa.figures.slopes import Slope, slopes
 from ryusa.results import Results
 from ryusa.studies.osada2004 import _heap
-from ryusa.studies.osada2004._experiment import PHI, RATIO, ROTATION, SLIP, CaseRun, Found, Plan
+from ryusa.studies.osada2004._parts import PHI, RATIO, ROTATION, SLIP, CaseRun, Found, Plan
 from ryusa.study import Band, Finding, Trial, pool
 
 FIGURE = "fig19"

@@ -9,7 +9,7 @@ from ryusa import figures
 from ryusa.measure import Average, saltation
 from ryusa.results import Results
 from ryusa.studies.osada2004 import _saltation
-from ryusa.studies.osada2004._experiment import PHI, SLIP, CaseRun, Found, Plan
+from ryusa.studies.osada2004._parts import PHI, SLIP, CaseRun, Found, Plan
 from ryusa.studies.osada2004._saltation import SHIPPED, SaltationRun
 from ryusa.study import Band, Finding, Trial, over_seeds, pool
 

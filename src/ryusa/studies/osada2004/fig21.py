@@ -12,7 +12,7 @@ from ryusa.measure.spin import spin_against
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
 from ryusa.studies.osada2004 import _saltation
-from ryusa.studies.osada2004._experiment import CaseRun, Found, Plan
+from ryusa.studies.osada2004._parts import CaseRun, Found, Plan
 from ryusa.studies.osada2004._saltation import PHI, SHIPPED, SLIP, SaltationRun
 from ryusa.study import Band, Finding, Trial, over_seeds, pool
 
@@ -145,7 +145,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
                 f"{after[2]:.0f} rad/s; "
                 f"largest after settling {max(one.largest for one in base):.0f} rad/s",
                 *(_after_rest(found, plan) if len(sets) > 1 else ()),
-                *(_told(found, plan, name) for name in TORQUES[1:]),
+                *(_words(found, plan, name) for name in TORQUES[1:]),
             ),
         ),
     )
@@ -170,7 +170,7 @@ def removed(found: Found, plan: Plan, name: str) -> list[float]:
     return shares
 
 
-def _told(found: Found, plan: Plan, name: str) -> str:
+def _words(found: Found, plan: Plan, name: str) -> str:
     dry, wet = ([found[_torque(one, seed)] for seed in plan.seeds] for one in ("none", name))
     locked = [found[_locked(seed)] for seed in plan.seeds]
     turn = float(np.mean([one.against["water_turn"] for one in wet]))

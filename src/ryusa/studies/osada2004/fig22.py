@@ -11,7 +11,7 @@ from ryusa import figures
 from ryusa.measure import Profiles, Rods, Snapshot, profiles, rods, snapshot, transport
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
-from ryusa.studies.osada2004._experiment import PHI, RATIO, SLIP, CaseRun, Found, Plan, paper_run
+from ryusa.studies.osada2004._parts import PHI, RATIO, SLIP, CaseRun, Found, Plan, paper_run
 from ryusa.study import Band, Finding, Trial, over_seeds, pool, short
 
 FIGURE = "fig22"
@@ -206,7 +206,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             "fig22",
             tuple(tried["fig22"]),
             "A locked grain cannot roll out of the pocket between two others; it moves only with its row. "
-            f"Touching neighbours therefore keep their arrangement and creep together. {_told(found, plan)}",
+            f"Touching neighbours therefore keep their arrangement and creep together. {_words(found, plan)}",
             _settings(),
             also=_lengths(found, plan),
         ),
@@ -256,7 +256,7 @@ def _by_rotation(found: Found, plan: Plan, chosen: Mapping[str, str]) -> dict[st
     return {LOCKED: [locked for locked, _ in runs], FREE: [free for _, free in runs]}
 
 
-def _told(found: Found, plan: Plan) -> str:
+def _words(found: Found, plan: Plan) -> str:
     words: list[str] = []
     for rotation, runs in _by_rotation(found, plan, SHIPPED).items():
         share, null = (_mean([getattr(one.rods, name) for one in runs]) for name in ("share", "null_share"))

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ryusa.studies.osada2004._experiment import PHI, ROTATION
+from ryusa.studies.osada2004._parts import PHI, ROTATION
 
 HOLDS, SOME, FAILS, OPEN, NONE = "holds", "holds elsewhere", "fails", "undecided", "not run"
 MARKS = {HOLDS: "●", SOME: "◐", FAILS: "○", OPEN: "?", NONE: "·"}  # told apart without colour

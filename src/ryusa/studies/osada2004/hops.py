@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from ryusa.figures.saltation import StiffnessSeries, over_stiffness_in_cm
 from ryusa.results import Results
 from ryusa.studies.osada2004 import _saltation
-from ryusa.studies.osada2004._experiment import CaseRun, Found, Plan
+from ryusa.studies.osada2004._parts import CaseRun, Found, Plan
 from ryusa.studies.osada2004._saltation import K_N, SHIPPED, SKIM, STIFF, STIFFNESSES, WIDE, SaltationRun
 from ryusa.study import Band, Finding, Interval, Trial, over_seeds
 

@@ -11,7 +11,7 @@ from ryusa.engine.forward_euler import restitution
 from ryusa.measure.statistics import Floats
 from ryusa.studies.osada2004 import _drops
 from ryusa.studies.osada2004._drops import COPIES, NO_TENSION, TENSION, DropRun, Setup
-from ryusa.studies.osada2004._experiment import CaseRun, Found, Plan
+from ryusa.studies.osada2004._parts import CaseRun, Found, Plan
 from ryusa.study import Band, Finding, Interval, Trial, over_range
 
 FIGURE = "steps"

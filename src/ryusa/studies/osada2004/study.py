@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from ryusa.errors import CaseError
-from ryusa.studies.osada2004._experiment import NAMES
+from ryusa.studies.osada2004._parts import NAMES
 from ryusa.studies.osada2004.common import common
 from ryusa.studies.osada2004.friction import MARKS, by_angle
 from ryusa.studies.osada2004.paper import CITATION, CLAIMS

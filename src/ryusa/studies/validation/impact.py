@@ -207,7 +207,7 @@ def _test_4(found: Found) -> Sequence[Finding]:
         table = np.array([TEST_4[one][k] for one in ANGLES])
         off = np.abs(ours[key] - law[k]).max() / (1.0 if key == "leaves" else np.abs(law[k]).max())
         far = np.abs(ours[key] - table).max() / (1.0 if key == "leaves" else np.abs(table).max())
-        told = "largest difference" if key == "leaves" else "largest difference over the largest value"
+        what = "largest difference" if key == "leaves" else "largest difference over the largest value"
         said = unit if key == "leaves" else "-"
         made.append(comparison(
             f"oblique-{key.replace('_', '-')}", f"Oblique impact, sliding branch: {words}",
@@ -220,10 +220,10 @@ def _test_4(found: Found) -> Sequence[Finding]:
             [Curve("gross sliding", fine, sliding(fine)[k]), Curve("Chung & Ooi, test 4", angle, table)],
             [
                 misfit(
-                    f"{told}, closed form", float(off), said,
+                    f"{what}, closed form", float(off), said,
                     at_most(0.2 if key == "leaves" else 5e-3, "1/400, and the error of the first step"),
                 ),
-                misfit(f"{told}, test 4", float(far), said, at_most(read, "accuracy of a digitised curve")),
+                misfit(f"{what}, test 4", float(far), said, at_most(read, "accuracy of a digitised curve")),
             ],
             {"radius": "2.5 mm", "speed": "3.9 m/s", "e": "0.98", "mu": "0.092", "slip": "total"},
             "Below 32.5 deg the table holds for a contact after Hertz and Mindlin, which a linear spring "

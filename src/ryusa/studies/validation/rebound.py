@@ -66,7 +66,7 @@ def bounce(law: str, partner: str, per_contact: float) -> dict[str, Floats]:
     got: list[float] = []
     for st in ASKED:
         speed = speed_of(st, partner)
-        engine, dt = _meet(speed, partner, replace(STILL, rebound=LAWS[law]), per_contact, GAP)
+        engine, dt = _pair(speed, partner, replace(STILL, rebound=LAWS[law]), per_contact, GAP)
         engine.advance(int(GAP / (speed * dt)) + 2).raise_if_any()
         while not len(ended := engine.events()):
             engine.advance(int(2.0 * per_contact)).raise_if_any()
@@ -79,7 +79,7 @@ def film(partner: str) -> dict[str, Floats]:
     got: list[float] = []
     for st in ASKED:
         speed = speed_of(st, partner)
-        engine, dt = _meet(speed, partner, replace(STILL, film_reach=REACH), FINE, 1.1 * REACH)
+        engine, dt = _pair(speed, partner, replace(STILL, film_reach=REACH), FINE, 1.1 * REACH)
         gap, leaves = 0.0, 0.0
         while leaves <= 0.0 or gap < 1.1 * REACH:
             engine.advance(int(0.1 * REACH / (speed * dt)) + 1).raise_if_any()
@@ -88,7 +88,7 @@ def film(partner: str) -> dict[str, Floats]:
     return {"e": np.array(got)}
 
 
-def _meet(speed: float, partner: str, water: Water, per_contact: float, gap: float) -> tuple[Engine, float]:
+def _pair(speed: float, partner: str, water: Water, per_contact: float, gap: float) -> tuple[Engine, float]:
     """A grain on its way down to its partner, and the time step."""
     x, v = [[0.0, 0.0, (0.5 * D if partner == "wall" else D) + gap]], [[0.0, 0.0, -speed]]
     if partner == "free grain":

@@ -73,11 +73,11 @@ def table(plain: Mapping[str, Any]) -> str:
     """
     lines = ["| comparison | reference | error | may be | verdict |", "|---|---|---|---|---|"]
     for row in plain["findings"]:
-        told = telling(row["trials"])
-        more = len(row["trials"]) - len(told)
-        errors = [f"{each['part']}: {interval(each)}" for each in told]
+        shown = telling(row["trials"])
+        more = len(row["trials"]) - len(shown)
+        errors = [f"{each['part']}: {interval(each)}" for each in shown]
         errors += [f"and {more} more"] if more else []
-        asked = [limits_in_words(each) for each in told]
+        asked = [limits_in_words(each) for each in shown]
         cells = [f"{row['id']}: {row['title']}", row["source"], "<br>".join(errors), "<br>".join(asked)]
         cells.append(row["verdict"])
         lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")

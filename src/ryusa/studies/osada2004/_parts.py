@@ -1,4 +1,4 @@
-"""Names of the experiments, the free choices that several of them share, and a run of one of their cases."""
+"""Names of the parts of the study, the free choices that several share, and a run of one of their cases."""
 
 from collections.abc import Mapping
 
@@ -33,7 +33,7 @@ NAMES = (
     "eq13",
 )
 
-# Free choices that several experiments share; one set of them is sought that fits most claims together.
+# Free choices that several parts share; one set of them is sought that fits most claims together.
 PHI = "friction angle"
 SLIP = "slip rule"
 RATIO = "k_s/k_n"
