@@ -98,7 +98,7 @@ MEASURES = (
     MeasureEntry("transport", "ryusa.measure.transport:transport",
                  "sediment transport rate and the layer that carries it", WINDOW, settled=True),
     MeasureEntry("entrainment", "ryusa.measure.entrainment:entrainment",
-                 "grains that start and stop to move, per area and time", WINDOW, settled=True),
+                 "grains that start and stop moving, per area and time", WINDOW, settled=True),
     MeasureEntry("stress", "ryusa.measure.transport:kinetic_stress",
                  "granular temperature and kinetic stress over height", (*WINDOW, "layer"), settled=True),
     MeasureEntry("vibration", "ryusa.measure.vibration:vibration",

@@ -57,6 +57,19 @@ def test_a_resumed_run_estimates_the_remaining_time_from_its_own_start(
     assert "about 24 s left" in (tmp_path / "log.txt").read_text()
 
 
+def test_the_remaining_time_is_not_estimated_before_a_thousandth_of_the_run(
+    tmp_path: Path, now: list[float]
+) -> None:
+    progress = make(tmp_path, now, io.StringIO())
+    for at, share in ((100.0, 2e-6), (300.0, 0.5)):
+        now[0] = at
+        progress.update(moment(share))
+    progress.close()
+    first, second = (tmp_path / "log.txt").read_text().splitlines()[-2:]
+    assert "left" not in first
+    assert "about 300 s left" in second
+
+
 def test_a_slow_run_says_a_line_a_minute(tmp_path: Path, now: list[float]) -> None:
     stream = io.StringIO()
     progress = make(tmp_path, now, stream)

@@ -51,7 +51,7 @@ def validate(
     ] = False,
     quiet: Quiet = False,
 ) -> None:
-    """Compare ours with closed forms and measurements, and write one page with every error as a number.
+    """Compare ryusa with closed forms and measurements, and write one page with every error as a number.
 
     An interrupted validation continues where it stopped when the same command
     is given again. Exits with 4 where something lies outside its tolerance.

@@ -1,4 +1,4 @@
-"""Grains that start and stop to move: entrainment and deposition per area of bed and time."""
+"""Grains that start and stop moving: entrainment and deposition per area of bed and time."""
 
 import math
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ DURATION = 1.0  # time for which it must, over sqrt(d/g)
 
 @dataclass(frozen=True)
 class Entrainment:
-    """Grains that start and stop to move.
+    """Grains that start and stop moving.
 
     Attributes
     ----------
@@ -66,7 +66,7 @@ def entrainment(
     speed: float | None = None,
     duration: float | None = None,
 ) -> Entrainment:
-    """Grains that start and stop to move, per area of bed and time.
+    """Grains that start and stop moving, per area of bed and time.
 
     Parameters
     ----------

@@ -50,7 +50,8 @@ def energy_lines(terms: Mapping[str, float]) -> list[tuple[str, str]]:
         ("work received", _sum(given)),
         (
             "imbalance",
-            f"{terms['imbalance']:.2g} J, {terms['residual']:.1e} of the largest term of the energy account",
+            f"{terms['imbalance']:.2g} J, {terms['residual']:.1e} of the largest term of the energy account "
+            "(terms: docs/glossary.md)",
         ),
     ]
 

@@ -41,7 +41,7 @@ def make_folder(folder: Path, *, overwrite: bool) -> None:
             if not overwrite:
                 raise ResultsError(
                     f"{folder}: already holds a run. Choose another folder with -o, continue that run with "
-                    "--resume, or replace it with --overwrite"
+                    f"`ryusa resume {folder}`, or replace it with --overwrite"
                 )
         folder.mkdir(parents=True, exist_ok=True)
 

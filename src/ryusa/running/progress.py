@@ -17,6 +17,7 @@ _BAR_EVERY = 0.2  # s
 _LINE_EVERY = 5.0  # s
 _LINE_SHARE = 0.1  # of the run; one line per such share if that takes longer than _LINE_EVERY
 _SLOW_AFTER = 1.5  # s after which a slow first step is explained
+_ESTIMATED = 1e-3  # share of the run above which the remaining time is estimated
 
 
 @dataclass(frozen=True)
@@ -133,7 +134,7 @@ class Progress:
 
 
 def _left(elapsed: float, begun: float, share: float) -> str:
-    if share <= begun or share >= 1.0:
+    if share - begun < _ESTIMATED or share >= 1.0:
         return ""
     return f"  about {elapsed * (1.0 - share) / (share - begun):.0f} s left"
 

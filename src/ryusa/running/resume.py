@@ -70,7 +70,7 @@ def find_resume_point(
     resolved : the present case, as case.json holds it.
     identity : of this run without its scenes, see `checkpoint_scheduler.run_identity`.
     origin : provenance of this process.
-    force : allow a resume written_by results are valid but not bitwise those of an uninterrupted run.
+    force : allow a resume whose results are valid but not bitwise those of an uninterrupted run.
 
     Raises
     ------
@@ -91,14 +91,14 @@ def find_resume_point(
         if changed:
             raise CheckpointError(
                 f"{folder}: the run is complete, and the case has changed since: {_some(changed)}. "
-                f"Choose another folder with -o; {_ANEW}"
+                f"For the changed case choose another folder with -o; {_ANEW}"
             )
         return ResumePoint(before, complete=True)
     hard = [one for one in changed if one.split(".", 1)[0] not in FREE_KEYS]
     if hard:
         raise CheckpointError(
-            f"{folder}: the case has changed since: {_some(hard)}. That makes it another run: choose another "
-            f"folder with -o; {_ANEW}"
+            f"{folder}: the case has changed since: {_some(hard)}. `ryusa resume {folder}` continues the run "
+            f"with its own case; for the changed case choose another folder with -o; {_ANEW}"
         )
     differences = [f"the case has changed: {_some(changed)}"] if changed else []
     scenes = read_scenes(folder)
