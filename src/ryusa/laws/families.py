@@ -243,7 +243,7 @@ class SurfaceRule(Family, key="water.column.surface"):
 class Drive(Family, key="water.column.drive"):
     """What drives the water in addition to gravity along the slope."""
 
-    GRAVITY = (0, "slope", None, "nothing", "", ("tau_star", "u_star"))
+    GRAVITY = (0, "slope", None, "gravity along the slope alone", "", ("tau_star", "u_star"))
     GRADIENT = (1, "pressure gradient", None, "the given pressure gradient", "", ("pressure_gradient",))
     TAU = (2, "tau_star", None, "the pressure gradient that gives the required stress at `water.zero`", "",
         ("tau_star", "u_star"))
