@@ -1,5 +1,5 @@
 # ryusa needs only python3 (3.11 or later) and make; everything else goes into .venv.
-#   make demo     install, run the saltation case, measure it, draw it
+#   make demo     install, run the saltation case, measure it, draw it, write its page
 #   make test     the same, the paper's claims and the validation in short, then every check and test
 # `make` alone lists the rest.
 
@@ -58,15 +58,17 @@ $(HAS_DOCS): pyproject.toml constraints.txt | $(HAS_TESTS)
 
 # ---------------------------------------------------------------------------------------------------------- demo
 
-demo: $(HAS_RYUSA) ## install, run the saltation case, measure it, draw it
+demo: $(HAS_RYUSA) ## install, run the saltation case, measure it, draw it, write its page
 	$(BIN)/ryusa run src/ryusa/cases/saltation.toml -o $(RUN) --overwrite
 	$(BIN)/ryusa measure $(RUN) saltation --csv $(SHOW)/saltation.csv
 	$(BIN)/ryusa draw $(RUN) tracks -o $(SHOW)/tracks.png
 	$(BIN)/ryusa draw $(RUN) hops -o $(SHOW)/hops.png
 	$(BIN)/ryusa draw $(RUN) contacts -o $(SHOW)/contacts.png
+	$(BIN)/ryusa report $(RUN) --quiet
 	@echo
 	@echo "Pictures, with their numbers beside them: $(SHOW)/"
 	@echo "For ParaView: $(RUN)/grains.vtkhdf and $(RUN)/bed.vtkhdf"
+	@echo "The run in one page, its grains in motion: open $(RUN)/report.html in a browser"
 
 # ---------------------------------------------------------------------------------------------------------- test
 

@@ -26,6 +26,8 @@ class MeasureEntry:
     options : keywords of the function that are options of the command.
     settled : whether the measure ignores the time up to `record.settle` by default; --settle changes it.
     printing : options that affect only the printed text.
+    builders : kinds of `[build]` whose runs have it in their report.
+    builders : kinds of `[build]` whose runs have it in their report.
     """
 
     name: str
@@ -34,6 +36,7 @@ class MeasureEntry:
     options: tuple[str, ...] = ()
     settled: bool = False
     printing: tuple[str, ...] = ()
+    builders: tuple[str, ...] = ()
 
     @property
     def given_as(self) -> tuple[str, ...]:
@@ -55,6 +58,8 @@ class PictureEntry:
     options : keywords, of the measure if there is one, that are options of the command.
     settled : whether the picture ignores the time up to `record.settle` by default.
     measure : name of the measure that it draws, or "".
+    builders : kinds of `[build]` whose runs have it in their report.
+    builders : kinds of `[build]` whose runs have it in their report.
     """
 
     name: str
@@ -63,6 +68,7 @@ class PictureEntry:
     options: tuple[str, ...] = ()
     settled: bool = False
     measure: str = ""
+    builders: tuple[str, ...] = ()
 
     @property
     def given_as(self) -> tuple[str, ...]:
@@ -71,21 +77,26 @@ class PictureEntry:
 
 
 WINDOW = ("begin", "end")
+EVERY_BUILDER = ("drop", "saltation", "table", "packing", "flume", "box")
 
 MEASURES = (
     MeasureEntry("saltation", "ryusa.measure.saltation:saltation",
                  "hops over fixed grains: height, length, speed, contact time",
-                 ("settle", "rise"), settled=True),
+                 ("settle", "rise"), settled=True,
+                 builders=("saltation",)),
     MeasureEntry("collisions", "ryusa.measure.collisions:collisions",
                  "single contacts: duration, overlap, restitution",
-                 ("settle", "end"), settled=True),
+                 ("settle", "end"), settled=True,
+                 builders=("saltation", "drop")),
     MeasureEntry("spin", "ryusa.measure.spin:spin", "spin about the axis across the flow",
-                 ("settle",), settled=True),
+                 ("settle",), settled=True,
+                 builders=("saltation",)),
     MeasureEntry("energy", "ryusa.measure.energy:energy", "every term of the energy account"),
     MeasureEntry("tracks", "ryusa.measure.tracks:tracks", "paths of the grains in the x-z plane", WINDOW),
     MeasureEntry("profile", "ryusa.measure.profiles:profiles",
                  "concentration, velocity, spin and flux over height",
-                 (*WINDOW, "layer"), settled=True),
+                 (*WINDOW, "layer"), settled=True,
+                 builders=("flume", "packing")),
     MeasureEntry("paths", "ryusa.measure.paths:paths",
                  "shape of grain paths: advance, vertical range, reversals",
                  (*WINDOW, "window"), settled=True),
@@ -94,38 +105,51 @@ MEASURES = (
                  (*WINDOW, "window"), settled=True),
     MeasureEntry("water", "ryusa.measure.water:water",
                  "water over height, and its shear stress at the bed",
-                 WINDOW, settled=True),
+                 WINDOW, settled=True,
+                 builders=("flume",)),
     MeasureEntry("transport", "ryusa.measure.transport:transport",
-                 "sediment transport rate and the layer that carries it", WINDOW, settled=True),
+                 "sediment transport rate and the layer that carries it", WINDOW, settled=True,
+                 builders=("flume",)),
     MeasureEntry("entrainment", "ryusa.measure.entrainment:entrainment",
-                 "grains that start and stop moving, per area and time", WINDOW, settled=True),
+                 "grains that start and stop moving, per area and time", WINDOW, settled=True,
+                 builders=("flume",)),
     MeasureEntry("stress", "ryusa.measure.transport:kinetic_stress",
                  "granular temperature and kinetic stress over height", (*WINDOW, "layer"), settled=True),
     MeasureEntry("vibration", "ryusa.measure.vibration:vibration",
                  "grains that do not come to rest",
                  (*WINDOW, "window"), printing=("threshold",)),
     MeasureEntry("surface", "ryusa.measure.repose:surface",
-                 "free surface of a heap: slope, height, run-out", ("t", "side")),
+                 "free surface of a heap: slope, height, run-out", ("t", "side"),
+                 builders=("box",)),
 )  # fmt: skip
 
 PICTURES = (
     PictureEntry("grains", "ryusa.figures.runs:grains", "grains at one moment, to scale",
-                 ("t", "colour", "lane")),
+                 ("t", "colour", "lane"),
+                 builders=EVERY_BUILDER),
     PictureEntry("tracks", "ryusa.figures.runs:tracks", "paths of grains over the bed, to scale",
-                 ("grains", *WINDOW, "length", "exaggeration"), settled=True),
+                 ("grains", *WINDOW, "length", "exaggeration"), settled=True,
+                 builders=("saltation", "drop", "flume")),
     PictureEntry("spin", "ryusa.figures.runs:spin", "spin over distance", ("grains", "length")),
-    PictureEntry("energy", "ryusa.figures.runs:energy", "the energy account over time"),
-    PictureEntry("contacts", "ryusa.figures.runs:contacts", "distribution of contact times", settled=True),
-    PictureEntry("hops", "ryusa.figures.runs:hops", "distribution of jump heights and lengths", settled=True),
+    PictureEntry("energy", "ryusa.figures.runs:energy", "the energy account over time",
+                 builders=EVERY_BUILDER),
+    PictureEntry("contacts", "ryusa.figures.runs:contacts", "distribution of contact times", settled=True,
+                 builders=("saltation", "drop")),
+    PictureEntry("hops", "ryusa.figures.runs:hops", "distribution of jump heights and lengths", settled=True,
+                 builders=("saltation",)),
     PictureEntry("profile", "ryusa.figures.runs:profile", "concentration and grain speed over height",
-                 WINDOW, settled=True),
+                 WINDOW, settled=True,
+                 builders=("flume", "packing")),
     PictureEntry("water", "ryusa.figures.water:water",
                  "velocity, concentration and shear stress over height",
-                 WINDOW, settled=True, measure="water"),
+                 WINDOW, settled=True, measure="water",
+                 builders=("flume",)),
     PictureEntry("transport", "ryusa.figures.runs:transport",
-                 "transport rate over time, and beside bed-load formulae", WINDOW, settled=True),
+                 "transport rate over time, and beside bed-load formulae", WINDOW, settled=True,
+                 builders=("flume",)),
     PictureEntry("surface", "ryusa.figures.runs:surface", "a heap with its free surface and fitted slope",
-                 ("t", "side", "lane")),
+                 ("t", "side", "lane"),
+                 builders=("box",)),
     PictureEntry("vibration", "ryusa.figures.runs:vibration", "grains that do not come to rest",
                  ("grains", *WINDOW)),
 )  # fmt: skip

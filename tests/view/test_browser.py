@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from ryusa.report.page import report_page
 from ryusa.view.page import view_page
 
 WIDE, HIGH = 1000, 640
@@ -22,9 +23,9 @@ def opened(browser, folder):
     """Opens the page of a run; at the end no message of the browser may be left."""
     said, pages = [], []
 
-    def open_page(results, name):
+    def open_page(results, name, written=view_page):
         path = folder / name
-        path.write_text(view_page(results), encoding="utf-8")
+        path.write_text(written(results), encoding="utf-8")
         page = browser.new_page(viewport={"width": WIDE, "height": HIGH})
         page.on("console", lambda message: said.append(message.text))
         page.on("pageerror", lambda error: said.append(str(error)))
@@ -189,3 +190,15 @@ def test_water_over_height_is_drawn(opened, saltation):
         return n; })()"""
     )
     assert drawn > 100  # blue pixels of the curve
+
+
+def test_a_report_of_two_runs_plays_both(opened, three, saltation):
+    page = opened([three, saltation], "report.html", lambda runs: report_page(runs, size=5.0e6))
+    assert page.locator(".grains").count() == 2
+    for k in range(2):
+        page.locator(".bar button[title^=play]").nth(k).click()
+        page.wait_for_timeout(500)
+        assert page.evaluate(f"ryusaViewers[{k}].time > ryusaViewers[{k}].data.t[0]")
+    assert page.locator("figure img").count() >= 4
+    broken = "[...document.querySelectorAll('figure img')].filter((one) => !one.naturalWidth).length"
+    assert page.evaluate(broken) == 0

@@ -137,17 +137,9 @@ def _print_stress(found: "KineticStress") -> None:
 def _print_surface(found: "HeapSurface") -> None:
     """Print slope, height and run-out of a heap, angles in degrees."""
     table = _table(("quantity", "value", "unit"), left=("quantity", "unit"))
-    low, high = found.fit
-    table.add_row(f"slope, fitted from {low:g} to {high:g} of the height", _degrees(found.angle), "deg")
-    table.add_row("± s.e. of the fit", _degrees(found.error), "deg")
-    for name, angle in found.angles.items():
-        table.add_row(f"slope, {name}", _degrees(angle), "deg")
-    table.add_row("range of these slopes", _degrees(found.spread), "deg")
-    rows = (("crest above the floor", found.crest - found.floor), ("toe at x", found.toe))
-    for name, value in (*rows, ("run-out", found.run_out)):
-        table.add_row(name, f"{100.0 * value:.4g}", "cm")
-    table.add_row("largest speed", f"{found.speed:.3g}", "m/s")
-    table.add_row("largest surface speed by spin, |omega| d/2", f"{found.surface_speed:.3g}", "m/s")
+    for name, value, unit in found.quantities():
+        shown = f"{value:.1f}" if unit == "deg" else f"{value:.4g}"
+        table.add_row(name, shown if math.isfinite(value) else "-", unit)
     state = (
         "at rest: no grain exceeds"
         if found.at_rest
@@ -161,10 +153,6 @@ def _print_surface(found: "HeapSurface") -> None:
         f"{len(found.grains)} grains in the heap, {found.away} away from it",
         *(f"warning: {flag}" for flag in found.flags),
     )
-
-
-def _degrees(angle: float) -> str:
-    return f"{math.degrees(angle):.1f}" if math.isfinite(angle) else "-"
 
 
 def _table(names: tuple[str, ...], left: tuple[str, ...] = ("unit",)) -> Table:

@@ -81,6 +81,27 @@ class HeapSurface:
         """True where no grain of the heap moves."""
         return self.moving == 0.0
 
+    def quantities(self) -> list[tuple[str, float, str]]:
+        """Slope, height and run-out: name, value, and unit of the value; nan where there is none."""
+        low, high = self.fit
+        angles = {
+            f"slope, fitted from {low:g} to {high:g} of the height": self.angle,
+            "± s.e. of the fit": self.error,
+            **{f"slope, {name}": angle for name, angle in self.angles.items()},
+            "range of these slopes": self.spread,
+        }
+        lengths = {
+            "crest above the floor": self.crest - self.floor,
+            "toe at x": self.toe,
+            "run-out": self.run_out,
+        }
+        return [
+            *((name, math.degrees(angle), "deg") for name, angle in angles.items()),
+            *((name, 100.0 * length, "cm") for name, length in lengths.items()),
+            ("largest speed", self.speed, "m/s"),
+            ("largest surface speed by spin, |omega| d/2", self.surface_speed, "m/s"),
+        ]
+
     def rows(self) -> list[dict[str, object]]:
         """One dictionary per quantity."""
         values: list[tuple[str, str, float]] = [

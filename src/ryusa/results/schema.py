@@ -18,6 +18,7 @@ SUMMARY = "summary.json"
 LOG = "log.txt"
 GRAINS = "grains.vtkhdf"  # the file to open in ParaView
 BED = "bed.vtkhdf"
+REPORT = "report.html"  # what ran and what it found, written by `ryusa report`
 VIEW = "view.html"  # the grains in motion, written by `ryusa view`
 CHECKPOINT = "checkpoint.h5"  # for resuming; removed when the run is complete
 CHECKPOINT_BEFORE = "checkpoint-before.h5"  # the previous one

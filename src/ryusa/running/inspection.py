@@ -23,7 +23,12 @@ def inspection(folder: Path) -> list[str]:
     ------
     ResultsError : not a run folder, damaged, or written in another format.
     """
-    results = Results.open(folder)
+    rows = inspection_rows(Results.open(folder))
+    return [f"{heading:<{_WIDE}}{text}" for heading, text in rows]
+
+
+def inspection_rows(results: Results) -> list[tuple[str, str]]:
+    """Headings and texts of the report on a run."""
     rows = [
         ("run", _words(results.case.get("title") or results.folder.name)),
         ("status", _status(results)),
@@ -38,7 +43,7 @@ def inspection(folder: Path) -> list[str]:
         *(() if results.complete else [("checkpoint", _checkpoint(results))]),
         ("next", _next(results)),
     ]
-    return [f"{heading:<{_WIDE}}{text}" for heading, text in rows if text]
+    return [(heading, text) for heading, text in rows if text]
 
 
 def _status(results: Results) -> str:

@@ -4,7 +4,7 @@ import base64
 import io
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
 from PIL import Image
@@ -27,7 +27,7 @@ def template(path: Path, **filters: Callable[..., Any]) -> Template:
     return page.get_template(path.name)
 
 
-def embedded(picture: Path) -> str:
+def embedded(picture: Path | BinaryIO) -> str:
     """Return a PNG as a data URL with at most COLOURS colours.
 
     It has about a third of the bytes of the file, which is not changed.

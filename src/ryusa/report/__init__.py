@@ -1,0 +1,1 @@
+"""One page about one run or several: what ran, what it found, its pictures, its grains in motion."""

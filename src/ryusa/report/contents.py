@@ -1,0 +1,185 @@
+"""What the report says of one run: what ran, its measures, its pictures; each that fails gives its reason."""
+
+import io
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from ryusa.catalogue import MEASURES, PICTURES, MeasureEntry, PictureEntry, load
+from ryusa.errors import RyusaError
+from ryusa.measure._run import settle_time
+from ryusa.results import Results, schema
+from ryusa.running.inspection import inspection_rows
+from ryusa.study.html import embedded
+from ryusa.view.page import encoded
+
+DPI = 200  # of a picture in the page
+_ONE_COLUMN = 5.0  # inch; a wider picture takes the whole width of the page
+_OWN = ("run", "next")  # rows that a page has no use for: its title, and a command with the path of a machine
+_LINES = 400  # of the case file that are shown
+
+
+@dataclass(frozen=True)
+class ExplainedValue:
+    """A value of the case or one that follows from it, as `ryusa check` prints it."""
+
+    section: str
+    name: str
+    shown: str
+    origin: str
+    flag: str
+
+
+@dataclass(frozen=True)
+class MeasureTable:
+    """What a measure found: a table, and notes beneath it."""
+
+    name: str
+    doc: str
+    heads: tuple[str, ...]
+    rows: list[tuple[str, ...]]
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A picture as an address that holds it."""
+
+    name: str
+    doc: str
+    address: str
+    wide: bool  # its letters need the whole width of the page
+
+
+@dataclass
+class RunContents:
+    """All that the report says of one run."""
+
+    title: str
+    folder: str
+    status: str
+    complete: bool
+    rows: list[tuple[str, str]]
+    values: list[ExplainedValue] = field(default_factory=list[ExplainedValue])
+    measures: list[MeasureTable] = field(default_factory=list[MeasureTable])
+    averages: dict[str, Any] = field(default_factory=dict[str, Any])  # quantity -> measure.statistics.Average
+    drawings: list[Drawing] = field(default_factory=list[Drawing])
+    missing: list[tuple[str, str]] = field(default_factory=list[tuple[str, str]])
+    case_text: str = ""
+    viewer: tuple[dict[str, Any], str] | None = None
+
+
+def contents_of(results: Results, *, size: float, progress: Callable[[float], None]) -> RunContents:
+    """Collect what the report says of a run; what cannot be had is listed with its reason."""
+    found = RunContents(
+        title=str(results.case.get("title") or results.folder.resolve().name),
+        folder=results.folder.resolve().name,
+        status=results.status,
+        complete=results.complete,
+        rows=[row for row in inspection_rows(results) if row[0] not in _OWN],
+    )
+    _explain(found, results)
+    kind = str((results.case.get("build") or {}).get("kind", ""))
+    for entry in MEASURES:
+        if kind in entry.builders:
+            _attempt(found, f"measure {entry.name}", lambda one=entry: _measure(found, results, one))
+    progress(0.2)
+    for entry in PICTURES:
+        if kind in entry.builders or (not kind and not entry.settled and not entry.measure):
+            _attempt(found, f"picture {entry.name}", lambda one=entry: _draw(found, results, one))
+    progress(0.5)
+
+    def view() -> None:
+        found.viewer = encoded(results, size=size, progress=lambda share: progress(0.5 + 0.5 * share))
+
+    _attempt(found, "grains in motion", view)
+    progress(1.0)
+    return found
+
+
+def _attempt(found: RunContents, what: str, act: Callable[[], None]) -> None:
+    try:
+        act()
+    except RyusaError as error:
+        found.missing.append((what, str(error)))
+
+
+def _explain(found: RunContents, results: Results) -> None:
+    path = results.folder / schema.CASE_TOML
+    if path.is_symlink() or not path.is_file():
+        found.missing.append(("case", "the run was made from a script and holds no case file"))
+        return
+    lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    found.case_text = "\n".join(lines[:_LINES])
+
+    def explain_case() -> None:
+        from ryusa.casefile import explain
+        from ryusa.casefile.read import read
+
+        overrides = results.provenance.get("overrides")
+        given = {str(key): str(one) for key, one in overrides.items()} if isinstance(overrides, dict) else {}
+        found.values = [
+            ExplainedValue(row.section, row.name, row.shown, row.origin, row.flag)
+            for row in explain(read(path, given))
+        ]
+
+    _attempt(found, "values of the case", explain_case)
+
+
+def _need_settled(results: Results) -> None:
+    settle = settle_time(results)
+    last = float(results.frames.t[-1]) if len(results.frames) else 0.0
+    if settle > 0.0 and last <= settle:
+        raise RyusaError(f"the run ends at t = {last:.3g} s, while it still settles (until {settle:g} s)")
+
+
+def _measure(found: RunContents, results: Results, entry: MeasureEntry) -> None:
+    if entry.settled:
+        _need_settled(results)
+    record = load(entry.function)(results)
+    averages = getattr(record, "averages", None)
+    if averages is None:
+        rows = [(name, f"{value:.4g}", unit) for name, value, unit in record.quantities()]
+        found.measures.append(MeasureTable(entry.name, entry.doc, ("quantity", "value", "unit"), rows))
+        return
+    sampled = [one for one in averages.items if one.n]
+    found.averages.update({f"{entry.name}: {one.name}": one for one in sampled})
+    heads = ("quantity", "value", "± s.e.", "unit", "samples", "window (s)", "steady")
+    rows = [
+        (
+            one.name, f"{one.value:.4g}", written_error(one), one.unit, str(one.n),
+            f"{one.window[0]:.3g} to {one.window[1]:.4g}", steadiness(one),
+        )
+        for one in sampled
+    ]  # fmt: skip
+    notes = tuple(averages.notes)
+    if not rows:
+        notes = (*notes, "no samples in the window")
+    found.measures.append(MeasureTable(entry.name, entry.doc, heads, rows, notes))
+
+
+def written_error(one: Any) -> str:
+    """Standard error of an average as text; "–" where there is none."""
+    return f"{one.error:.2g}" if one.error == one.error else "–"
+
+
+def steadiness(one: Any) -> str:
+    """Whether an average is that of a steady record; "–" where the record is too short to tell."""
+    return "–" if one.drift != one.drift else "yes" if one.steady else "no"
+
+
+def _draw(found: RunContents, results: Results, entry: PictureEntry) -> None:
+    if entry.settled:
+        _need_settled(results)
+    if entry.measure:
+        source = next(one for one in MEASURES if one.name == entry.measure)
+        figure: Figure = load(entry.function)(load(source.function)(results))
+    else:
+        figure, _ = load(entry.function)(results)
+    held = io.BytesIO()
+    figure.savefig(held, format="png", dpi=DPI)
+    held.seek(0)
+    wide = float(figure.get_size_inches()[0]) > _ONE_COLUMN
+    found.drawings.append(Drawing(entry.name, entry.doc, embedded(held), wide))
