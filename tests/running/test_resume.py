@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import ryusa
+from ryusa.build import scene as scene_of
 from ryusa.casefile.read import read_text
 from ryusa.errors import CheckpointError, ResultsError
 from ryusa.results import Results, schema
@@ -66,7 +67,7 @@ def test_a_stopped_run_resumes_with_the_same_bits(stopped: Path, whole: Results)
     assert (stopped / schema.CHECKPOINT).is_file()
     results = run(stopped, resume=True)
     assert differences(whole.folder, stopped) == []
-    assert not (stopped / schema.CHECKPOINT).exists()
+    assert not (stopped / schema.CHECKPOINT_BEFORE).exists()
     assert [one["step"] for one in results.provenance["resumed"]] == [
         results.provenance["resumed"][0]["step"]
     ]
@@ -109,7 +110,7 @@ def test_sigusr1_writes_a_checkpoint_and_the_run_continues(
             lambda *arguments: (seen.append(True), write(*arguments))[1],
         )
         assert run(tmp_path / "run").complete
-    assert seen == [True]
+    assert seen == [True, True]  # on request, and at the end
     assert "on request" in (tmp_path / "run" / schema.LOG).read_text()
     assert differences(whole.folder, tmp_path / "run") == []
 
@@ -201,12 +202,17 @@ def test_a_changed_case_is_refused_with_the_key(stopped: Path) -> None:
             run(stopped, {"contact.restitution": "0.4"}, resume=True, **how)
 
 
-def test_a_longer_run_is_reported_and_resumed_with_force(stopped: Path, tmp_path: Path) -> None:
+def test_a_stopped_run_goes_on_to_a_later_end(stopped: Path, tmp_path: Path) -> None:
     longer = {"stop.time": "0.14 s"}
-    with pytest.raises(CheckpointError, match=r"stop.time 0.13 is now 0.14.*With --force"):
-        run(stopped, longer, resume=True)
-    run(stopped, longer, resume=True, force=True)
+    run(stopped, longer, resume=True)
     assert differences(run(tmp_path / "longer", longer).folder, stopped) == []
+
+
+def test_a_new_rule_of_stopping_is_reported_and_resumed_with_force(stopped: Path) -> None:
+    ruled = {"stop.rest": '{ speed = "1 mm/s", for = "5 ms" }'}
+    with pytest.raises(CheckpointError, match=r"stop.rest.* is now .*With --force"):
+        run(stopped, ruled, resume=True)
+    assert run(stopped, ruled, resume=True, force=True).complete
 
 
 @pytest.mark.parametrize("name", ["commit", "processor", "numba"])
@@ -312,3 +318,55 @@ def test_a_case_with_a_table_is_resumed_from_its_run_folder_alone(tmp_path: Path
     case = read(tmp_path / "hurt" / "case.toml")
     ryusa.run(case, tmp_path / "hurt", progress=False, resume=True)
     assert differences(tmp_path / "whole", tmp_path / "hurt") == []
+
+
+@pytest.mark.parametrize("kind", ["dry-3d", "two-way", "saltation"])
+@pytest.mark.parametrize("first", ["0.05 s", "0.0717 s"])
+def test_a_complete_run_is_lengthened_to_the_bits_of_a_longer_one(
+    kind: str, first: str, tmp_path: Path
+) -> None:
+    def made(folder: Path, end: str, **how: Any) -> Results:
+        case = read_text(KINDS[kind], {"stop.time": end, "record.settle": "0 s"})
+        return ryusa.run(case, folder, progress=False, **how)
+
+    longer = made(tmp_path / "long", "0.12 s")
+    made(tmp_path / "run", first)
+    lengthened = made(tmp_path / "run", "0.12 s", resume=True)
+    assert lengthened.complete
+    assert lengthened.case["stop"]["time"] == pytest.approx(0.12)
+    # its mean is summed in two stretches instead of one
+    assert set(differences(tmp_path / "long", tmp_path / "run")) <= {"summary.travel_over_d"}
+    mean, other = (one.summary["travel_over_d"]["mean"] or 0.0 for one in (lengthened, longer))
+    assert mean == pytest.approx(other, rel=1e-12)
+
+
+def test_an_end_that_the_run_has_passed_is_refused(whole: Results, tmp_path: Path) -> None:
+    shutil.copytree(whole.folder, tmp_path / "run")
+    with pytest.raises(CheckpointError, match=r"stop.time 0.13 is now 0.12; the run has reached t = 0.1"):
+        run(tmp_path / "run", {"stop.time": "0.12 s"}, resume=True)
+    assert Results.open(tmp_path / "run").complete
+
+
+def test_a_run_that_came_to_rest_goes_on_only_without_that_rule(tmp_path: Path) -> None:
+    floor = [("floor", (0.0, 0.0, 0.0), (0.0, 0.0, 1.0))]
+    ball, state = scene_of([[0.0, 0.0, 0.0012]], 0.002, planes=floor, restitution=0.3)
+    ends = Stop(time=1.0, rest_speed=0.01, rest_for=0.02)
+
+    def made(stop: Stop, **how: Any) -> Results:
+        return run_scene(ball, state, tmp_path / "run", frames=0.01, stop=stop, progress=False, **how)
+
+    first = made(ends)
+    assert first.complete
+    assert first.summary["t"] < 0.5
+    again = made(Stop(time=2.0, rest_speed=0.01, rest_for=0.02), resume=True)
+    assert again.summary["t"] == first.summary["t"]
+    with pytest.raises(CheckpointError, match="the end has changed"):
+        made(Stop(time=2.0, rest_speed=0.01, rest_for=0.001), resume=True)
+    assert made(Stop(time=0.5), resume=True).summary["t"] == pytest.approx(0.5, abs=1e-3)
+
+
+def test_a_complete_run_without_a_checkpoint_of_its_end_says_so(whole: Results, tmp_path: Path) -> None:
+    shutil.copytree(whole.folder, tmp_path / "run")
+    (tmp_path / "run" / schema.CHECKPOINT).unlink()
+    with pytest.raises(CheckpointError, match="cannot be lengthened"):
+        run(tmp_path / "run", {"stop.time": "0.2 s"}, resume=True)

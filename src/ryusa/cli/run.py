@@ -170,12 +170,20 @@ def run(
 
 def resume(
     folder: Annotated[Path, typer.Argument(metavar="RUN", help="Run folder.", show_default=False)],
+    settings: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="Lengthen the run, such as --set 'stop.time=10 s'."),
+    ] = None,
     threads: Threads = 1,
     quiet: Quiet = False,
     checkpoint: Every = "5min",
     force: Force = False,
 ) -> None:
-    """Continue a run that was stopped or killed, bit for bit as if it had not been interrupted."""
+    """Continue a run that was stopped or killed, bit for bit as if it had not been interrupted.
+
+    A complete run is lengthened with a later end: --set 'stop.time=10 s'. It becomes the same, bit for bit,
+    as a run that had this end from the start.
+    """
     from ryusa.running.interrupt import catch_signals
 
     with catch_signals() as signal:
@@ -193,7 +201,7 @@ def resume(
         origin = read_json(folder / schema.PROVENANCE)
         overrides, engine = origin.get("overrides"), origin.get("engine")
         given = {str(key): str(one) for key, one in overrides.items()} if isinstance(overrides, dict) else {}
-        found = read(folder / schema.CASE_TOML, given)
+        found = read(folder / schema.CASE_TOML, given | _overrides(settings))
         from ryusa.running.runner import run as run_case
 
         signal.raise_if_stopped("before the first step; nothing was changed")
@@ -245,13 +253,18 @@ def schema() -> None:
     typer.echo(json_schema_text(), nl=False)
 
 
-def _read(path: Path, settings: list[str] | None, seed: int | None) -> "Case":
+def _overrides(settings: list[str] | None) -> dict[str, str]:
     overrides: dict[str, str] = {}
     for setting in settings or []:
         key, equals, value = setting.partition("=")
         if not equals or not key.strip():
             raise CaseError("--set", setting, "needs KEY=VALUE, such as --set 'contact.stiffness=10 N/cm'")
         overrides[key.strip()] = value.strip()
+    return overrides
+
+
+def _read(path: Path, settings: list[str] | None, seed: int | None) -> "Case":
+    overrides = _overrides(settings)
     if seed is not None:
         overrides["seed"] = str(seed)
     gc.disable()  # modules are loaded here: a collection frees nothing and takes a quarter of the time

@@ -74,10 +74,9 @@ class CheckpointScheduler:
             self._last = self._clock()
             self._wait = max(self._every, (self._last - begun) / _SHARE)
 
-    def remove(self) -> None:
-        """Delete the checkpoints of a complete run."""
-        for name in (schema.CHECKPOINT, schema.CHECKPOINT_BEFORE):
-            (self._folder / name).unlink(missing_ok=True)
+    def remove_earlier(self) -> None:
+        """Delete the checkpoint before the last one, as when the run is complete."""
+        (self._folder / schema.CHECKPOINT_BEFORE).unlink(missing_ok=True)
 
 
 def run_identity(

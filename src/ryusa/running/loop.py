@@ -85,8 +85,8 @@ class Loop:
             with catch_signals() as self._signal:
                 self._run(state, block)
                 self._retry_when_full(self.recorder.flush)
+                self._write_checkpoint()  # a complete run keeps it too: it can be lengthened
                 if self.status == schema.STOPPED:
-                    self._write_checkpoint()
                     self._write_tail()
         except BaseException as error:
             self.status, self.message = schema.FAILED, str(error) or type(error).__name__
@@ -104,7 +104,7 @@ class Loop:
         for line in summary_lines(self._close()):
             self.progress.line(line)
         if self.checkpoints is not None and self.status == schema.COMPLETE:
-            self.checkpoints.remove()
+            self.checkpoints.remove_earlier()
 
     def _final_actions(self) -> tuple[Callable[[], Any], ...]:
         """Final writes of a run that ends early; only the provenance if the engine took no state."""
@@ -156,9 +156,11 @@ class Loop:
         self._saltations = SaltationCounter(self.recorder.first_scene, self.stop)
         saved = LoopState.from_block(block, self.scene)
         self._t_zero, self._first, self._frame = saved.t_zero, saved.first, saved.frame
-        self._at_rest, self._saltations_done = saved.resting, saved.hopped
         self._rest.since = saved.since
         self._saltations.parted[:], self._saltations.count[:] = saved.parted, saved.hops
+        # a rule that was met may have been removed, or asks for more now
+        self._at_rest = saved.resting and math.isfinite(self.stop.rest_for)
+        self._saltations_done = saved.hopped and self._saltations.reached()
         self._gathered = [saved.gathered] if len(saved.gathered) else []
         self._begun -= saved.wall
         self._n_changed = saved.changed

@@ -1,5 +1,6 @@
 """Resume: finds the step from which a run can continue, and checks that this process may do so."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -87,26 +88,35 @@ def find_resume_point(
     if not was or not numbered(folder, schema.SCENE_NAME):
         return None  # killed at its start
     changed = changes_of(was, resolved)
-    if before.get("status") == schema.COMPLETE:
-        if changed:
-            raise CheckpointError(
-                f"{folder}: the run is complete, and the case has changed since: {_some(changed)}. "
-                f"For the changed case choose another folder with -o; {_ANEW}"
-            )
-        return ResumePoint(before, complete=True)
+    complete = before.get("status") == schema.COMPLETE
     hard = [one for one in changed if one.split(".", 1)[0] not in FREE_KEYS]
+    if hard and complete:
+        raise CheckpointError(
+            f"{folder}: the run is complete, and the case has changed since: {_some(hard)}. "
+            f"For the changed case choose another folder with -o; {_ANEW}"
+        )
     if hard:
         raise CheckpointError(
             f"{folder}: the case has changed since: {_some(hard)}. `ryusa resume {folder}` continues the run "
             f"with its own case; for the changed case choose another folder with -o; {_ANEW}"
         )
-    differences = [f"the case has changed: {_some(changed)}"] if changed else []
     scenes = read_scenes(folder)
     block, lost = _newest(folder, scenes[0][2].n_grain)
     written_by = {"code": code_versions(before)} if block is None else block.block("identity").values
+    stop_changed = any(one.split(".", 1)[0] == "stop" for one in changed) or (
+        "stop" in written_by and written_by["stop"] != identity["stop"]
+    )
+    if complete and not stop_changed:
+        return ResumePoint(before, complete=True)
+    if complete and block is None:
+        raise CheckpointError(
+            f"{folder}: the run is complete and holds no checkpoint of its end (an earlier version "
+            f"removed it), so it cannot be lengthened; {_ANEW}"
+        )
+    differences: list[str] = []
+    if stop_changed:
+        differences += _other_stop(written_by.get("stop"), identity["stop"], block, changed)
     differences += _other_code(written_by.get("code"), code_versions(origin))
-    if not changed and written_by.get("stop", identity["stop"]) != identity["stop"]:
-        differences.append("the stop rule has changed")
     if differences and not force:
         raise CheckpointError(
             f"{folder}: {'; '.join(differences)}. With --force the run continues with valid results, but not "
@@ -311,6 +321,28 @@ def _refuse_foreign(
     for name in ("plan", "engine"):
         if written_by.get(name) != identity[name]:
             raise CheckpointError(f"{folder}: the run was started with another {_NAMES[name]}; {_ANEW}")
+
+
+def _other_stop(
+    was: Any, now: Mapping[str, Any], block: CheckpointBlock | None, changed: list[str]
+) -> list[str]:
+    """Why a run to the new end differs from one that had it from the start; empty if it does not.
+
+    A later time, more saltations, or a rule removed only add steps. Every other rule could have ended the
+    run at a step that it has passed.
+    """
+    said = _some([one for one in changed if one.startswith("stop.")]) or "the rule differs"
+    if block is None:
+        return [f"the end has changed: {said}; no checkpoint has been written yet"]
+    t = float(block.block("state").values["t"])
+    if not now["time"] > t:
+        return [f"the end has changed: {said}; the run has reached t = {t:.6g} s already"]
+    before = was if isinstance(was, Mapping) else {}
+    rest = (now["rest_speed"], now["rest_for"])
+    same_rest = rest == (before.get("rest_speed"), before.get("rest_for")) or math.isinf(now["rest_for"])
+    hops, earlier = now["saltations"], before.get("saltations")
+    more_hops = hops is None or (earlier is not None and hops >= earlier)
+    return [] if same_rest and more_hops else [f"the end has changed: {said}"]
 
 
 def _other_code(made_by: Any, mine: Mapping[str, str]) -> list[str]:
