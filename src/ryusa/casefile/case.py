@@ -15,6 +15,8 @@ from ryusa.casefile.record import ChangeSection, RecordSection, StopSection
 from ryusa.casefile.section import Section
 from ryusa.casefile.time import TimeSection
 from ryusa.casefile.water.schema import WaterSection
+from ryusa.catalogue import load
+from ryusa.notebook import html_table
 
 
 class Case(Section):
@@ -64,3 +66,10 @@ class Case(Section):
     def name(self) -> str:
         """Name for folders: that of the file without its ending."""
         return self._path.stem if self._path is not None else "case"
+
+    def _repr_html_(self) -> str:
+        rows = load("ryusa.casefile.explain:explain")(self)
+        return html_table(
+            ("name", "value", "where it comes from"),
+            [(f"{one.section}: {one.name}", one.shown, one.origin) for one in rows],
+        )

@@ -1,5 +1,6 @@
 """Style of all figures: column width, thin frame, colours distinct without colour vision or in grey."""
 
+import io
 from collections.abc import Callable
 from functools import wraps
 from pathlib import Path
@@ -16,6 +17,7 @@ Drawing = TypeVar("Drawing", bound=Callable[..., Figure])
 COLUMN = 3.46  # one column of a journal page, 88 mm [inch]
 PAGE = 7.09  # two columns, 180 mm [inch]
 DPI = 300
+SCREEN_DPI = 150  # in a notebook
 
 # Okabe & Ito 2008, ordered so that neighbours differ in lightness too
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
@@ -71,6 +73,16 @@ def house(draw: Drawing) -> Drawing:
     return cast(Drawing, styled)
 
 
+class ShownFigure(Figure):
+    """A figure that a notebook shows by itself, without pyplot."""
+
+    def _repr_png_(self) -> bytes:
+        held = io.BytesIO()
+        with mpl.rc_context(HOUSE):
+            self.savefig(held, format="png", dpi=SCREEN_DPI)
+        return held.getvalue()
+
+
 def new(
     rows: int = 1, columns: int = 1, *, width: float = COLUMN, height: float = 2.6, **how: Any
 ) -> tuple[Figure, list[Axes]]:
@@ -82,7 +94,7 @@ def new(
     width, height : of the figure [inch].
     how : passed to `Figure.subplots` (sharex, sharey, ...).
     """
-    figure = Figure(figsize=(width, height), layout="constrained")
+    figure = ShownFigure(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.subplots(rows, columns, squeeze=False, **how)
     return figure, list(axes.flat)

@@ -15,7 +15,7 @@ from ryusa.laws.collision import (
 )
 from ryusa.measure._run import Floats, Run, settle_time
 from ryusa.measure.statistics import Average, average
-from ryusa.measure.table import Averages
+from ryusa.measure.table import Averaged, Averages
 from ryusa.model import Scene
 from ryusa.model.scene import Damping
 
@@ -39,7 +39,7 @@ class ContactTimes:
 
 
 @dataclass(frozen=True)
-class Collisions:
+class Collisions(Averaged):
     """Contacts that ended within the window, one entry per contact in every array.
 
     Attributes

@@ -9,7 +9,7 @@ import numpy as np
 from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run
 from ryusa.measure.statistics import Average, average, ratio
-from ryusa.measure.table import Averages
+from ryusa.measure.table import Averaged, Averages
 from ryusa.measure.transport import places_of, window_of
 from ryusa.model import Scene
 
@@ -18,7 +18,7 @@ DURATION = 1.0  # time for which it must, over sqrt(d/g)
 
 
 @dataclass(frozen=True)
-class Entrainment:
+class Entrainment(Averaged):
     """Grains that start and stop moving.
 
     Attributes

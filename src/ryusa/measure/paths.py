@@ -13,7 +13,7 @@ from ryusa.laws._law import law
 from ryusa.measure._run import Floats, Run, crest_of, settle_time
 from ryusa.measure.snapshot import scene_at
 from ryusa.measure.statistics import average, ratio
-from ryusa.measure.table import Averages
+from ryusa.measure.table import Averaged, Averages
 from ryusa.model import Scene
 from ryusa.model.scene import EventRule
 
@@ -29,7 +29,7 @@ TurnRule = Literal["contacts", "heights"]
 
 
 @dataclass(frozen=True)
-class Paths:
+class Paths(Averaged):
     """Paths of grains within consecutive windows; arrays are (n_window, n_grain).
 
     Attributes

@@ -12,7 +12,7 @@ from ryusa.laws.slices import circle_slice, sphere_slice
 from ryusa.measure._run import Floats, Run, crest_of, settle_time
 from ryusa.measure.snapshot import lanes_of, scene_at
 from ryusa.measure.statistics import average, block_errors
-from ryusa.measure.table import Averages
+from ryusa.measure.table import Averaged, Averages
 from ryusa.model import Scene
 from ryusa.model.scene import Bools
 
@@ -41,7 +41,7 @@ class Layers:
 
 
 @dataclass(frozen=True)
-class Profiles:
+class Profiles(Averaged):
     """Means over a time window in layers parallel to the bed.
 
     Attributes

@@ -13,7 +13,7 @@ from scipy.spatial import KDTree
 from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run
 from ryusa.measure.statistics import Average, ratio
-from ryusa.measure.table import Averages
+from ryusa.measure.table import Averaged, Averages
 from ryusa.measure.transport import window_of
 from ryusa.model import Scene
 from ryusa.model.scene import Bools
@@ -55,7 +55,7 @@ class _Seen:
 
 
 @dataclass(frozen=True)
-class Rods:
+class Rods(Averaged):
     """Moving grains that keep contact and bearing throughout a window of time.
 
     Attributes

@@ -12,14 +12,14 @@ from ryusa.measure._hops import BOUNCE, HOP, Bounces, bounces_of
 from ryusa.measure._run import Floats, Run, crest_of, settle_time
 from ryusa.measure.collisions import ContactTimes, contact_times
 from ryusa.measure.statistics import Average, average, ratio
-from ryusa.measure.table import Averages
+from ryusa.measure.table import Averaged, Averages
 
 RISE = 0.1  # flights that rise less, in diameters, do not part two bounces
 RISES = (0.0, 0.02, 0.05, 0.1, 0.2, 0.5)
 
 
 @dataclass(frozen=True)
-class Saltation:
+class Saltation(Averaged):
     """Everything about the hops of a run.
 
     Attributes
@@ -38,9 +38,6 @@ class Saltation:
     times: ContactTimes
     rise: float
     averages: Averages
-
-    def __getitem__(self, name: str) -> Average:
-        return self.averages[name]
 
     def rows(self) -> list[dict[str, object]]:
         """One dictionary per average."""

@@ -10,13 +10,13 @@ from ryusa.laws.torque import torque_in_range
 from ryusa.laws.water import log_law_rough
 from ryusa.measure._run import Floats, Run, settle_time
 from ryusa.measure.statistics import average, ratio
-from ryusa.measure.table import Averages
+from ryusa.measure.table import Averaged, Averages
 
 TURN = 2.0 * math.pi
 
 
 @dataclass(frozen=True)
-class Spin:
+class Spin(Averaged):
     """Spin about y of every free grain; positive rolls downstream.
 
     Attributes

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.measure.statistics import Average
+from ryusa.notebook import html_table
 
 
 @dataclass(frozen=True)
@@ -26,9 +27,33 @@ class Averages:
                 return one
         raise KeyError(f"{name!r}; there are: {', '.join(one.name for one in self.items)}")
 
+    def _repr_html_(self) -> str:
+        heads = ("quantity", "value", "± s.e.", "unit", "n", "window (s)", "steady")
+        cells = [
+            (
+                one.name, f"{one.value:.4g}", f"{one.error:.2g}", one.unit, str(one.n),
+                f"{one.window[0]:.3g} to {one.window[1]:.4g}", "yes" if one.steady else "no",
+            )
+            for one in self.items
+            if one.n
+        ]  # fmt: skip
+        return html_table(heads, cells)
+
     def rows(self) -> list[dict[str, object]]:
         """One dictionary per average."""
         return [one.row() for one in self.items]
+
+
+class Averaged:
+    """A record with averages: each is had by its name, and a notebook shows them as a table."""
+
+    averages: Averages
+
+    def __getitem__(self, name: str) -> Average:
+        return self.averages[name]
+
+    def _repr_html_(self) -> str:
+        return self.averages._repr_html_()
 
 
 def rows_of(records: NDArray[Any]) -> list[dict[str, object]]:

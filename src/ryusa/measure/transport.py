@@ -25,7 +25,7 @@ from ryusa.measure.profiles import (
 )
 from ryusa.measure.snapshot import lanes_of, scene_at
 from ryusa.measure.statistics import Average, average, block_errors, ratio
-from ryusa.measure.table import Averages
+from ryusa.measure.table import Averaged, Averages
 from ryusa.measure.water import water
 from ryusa.model import Scene
 
@@ -33,7 +33,7 @@ MIDDLE = 0.9  # share of the flux between the levels of the transport layer
 
 
 @dataclass(frozen=True)
-class Transport:
+class Transport(Averaged):
     """Sediment transport rate, and the layer that carries it.
 
     Attributes

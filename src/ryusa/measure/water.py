@@ -13,7 +13,7 @@ from ryusa.measure._run import Floats, Run, settle_time
 from ryusa.measure.profiles import Layers, Profiles, profiles
 from ryusa.measure.snapshot import scene_at
 from ryusa.measure.statistics import average, block_errors
-from ryusa.measure.table import Averages
+from ryusa.measure.table import Averaged, Averages
 from ryusa.model import Scene
 
 CLEAR = 0.01  # concentration up to which water counts as clear
@@ -23,7 +23,7 @@ LAYER = 0.25  # thickness of the layers of grain speed, in mean diameters
 
 
 @dataclass(frozen=True)
-class WaterProfile:
+class WaterProfile(Averaged):
     """Means over the frames in a window.
 
     Attributes

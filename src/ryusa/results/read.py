@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import h5py
 import numpy as np
@@ -23,7 +23,22 @@ from ryusa.results import schema
 from ryusa.results.hdf5 import OpenFiles, opened, plain_dataset, read_dataset, read_integer
 from ryusa.results.lazy import LazyFrames, Part
 from ryusa.results.scene_file import read_scene
+from ryusa.results.shown import (
+    Page,
+    drawn,
+    measured,
+    pandas_of,
+    report_of,
+    summary_table,
+    view_of,
+    xarray_of,
+)
 from ryusa.results.water import WaterFrames, read_water
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from pandas import DataFrame
+    from xarray import Dataset
 
 Floats = NDArray[np.float64]
 _JSON_LIMIT = 64 << 20  # bytes
@@ -186,6 +201,73 @@ class Results:
     def scene_at(self, t: float) -> Scene:
         """Return the scene at time `t` [s]; it changes only with the timeline."""
         return self.scenes[max(bisect_right([begin for _, begin, _ in self.scenes], t) - 1, 0)][2]
+
+    def measure(self, name: str, **options: Any) -> Any:
+        """Measure the run, as `ryusa measure RUN name` does.
+
+        Parameters
+        ----------
+        name : of a measure, such as "transport"; `ryusa measure --help` lists them.
+        options : keywords of `ryusa.measure.<name>`, such as begin [s].
+
+        Raises
+        ------
+        ResultsError : no such measure, or the run does not hold what it needs.
+        """
+        return measured(self, name, options)
+
+    def draw(self, name: str, **options: Any) -> "Figure":
+        """Draw a picture of the run, as `ryusa draw RUN name` does; a notebook shows the figure.
+
+        Parameters
+        ----------
+        name : of a picture, such as "tracks"; `ryusa draw --help` lists them.
+        options : keywords of the picture, or of the measure that it draws.
+
+        Raises
+        ------
+        ResultsError : no such picture, or the run does not hold what it needs.
+        """
+        return drawn(self, name, options)
+
+    def view(self, **options: Any) -> Page:
+        """Give the page with the grains in motion that `ryusa view` writes; a notebook shows it.
+
+        Parameters
+        ----------
+        options : begin and end of the window [s], and the largest size of the page [B].
+        """
+        return view_of(self, options)
+
+    def report(self, *others: "Results", size: float = 1.0e7) -> Page:
+        """Give the page that `ryusa report` writes, with other runs beside this one; size in bytes."""
+        return report_of((self, *others), size)
+
+    def to_xarray(self, frames: slice = slice(None)) -> "Dataset":
+        """Give frames as an xarray Dataset in SI: x, v, omega over t, grain and axis; d and m over grain.
+
+        Raises
+        ------
+        ResultsError : xarray is not installed.
+        """
+        return xarray_of(self, frames)
+
+    def to_pandas(self, what: str = "contacts", **options: Any) -> "DataFrame":
+        """Give a table as a pandas DataFrame in SI.
+
+        Parameters
+        ----------
+        what : "contacts", or a measure: its averages where it has some, else its rows.
+        options : of the measure.
+
+        Raises
+        ------
+        ResultsError : pandas is not installed, or there is no such measure.
+        """
+        return pandas_of(self, what, options)
+
+    def _repr_html_(self) -> str:
+        return summary_table(self)
 
     def __repr__(self) -> str:
         return (

@@ -49,7 +49,7 @@ _BEFORE = "before the first step; no run folder was created"
 
 
 def run(
-    case: "Case",
+    case: "Case | str | os.PathLike[str]",
     folder: str | os.PathLike[str] | None = None,
     *,
     threads: int = 1,
@@ -64,7 +64,7 @@ def run(
 
     Parameters
     ----------
-    case : a checked case, from `ryusa.load`.
+    case : a checked case, from `ryusa.load`, or the path of a case file.
     folder : the run folder; runs/<name of the case> when not given.
     threads : threads of the CPU engine; the results do not depend on it.
     progress : show a bar, or lines if stderr is not a terminal.
@@ -89,6 +89,10 @@ def run(
     KeyboardInterrupt : Ctrl-C before the first step, without a run folder; later ones end the run in order.
     """
     with catch_signals() as signal:
+        if isinstance(case, str | os.PathLike):
+            from ryusa.casefile.read import read
+
+            case = read(Path(case))
         from ryusa.build import build, change
         from ryusa.casefile import derive, resolved
         from ryusa.casefile.estimate import disk_for_events, disk_needed, frames_expected, memory_needed

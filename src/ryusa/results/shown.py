@@ -1,0 +1,142 @@
+"""What a run shows in a notebook or a script: measures, pictures, pages and tables, made when asked for."""
+
+import html
+from collections.abc import Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ryusa.catalogue import MEASURES, PICTURES, MeasureEntry, PictureEntry, load
+from ryusa.errors import ResultsError
+from ryusa.notebook import html_table
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from pandas import DataFrame
+    from xarray import Dataset
+
+    from ryusa.results.read import Results
+
+_HEIGHT = 560  # pixels of a page within a notebook
+
+
+@dataclass(frozen=True)
+class Page:
+    """An HTML page that holds everything itself; a notebook shows it.
+
+    Attributes
+    ----------
+    text : the page.
+    height : pixels that a notebook gives it.
+    """
+
+    text: str
+    height: int = _HEIGHT
+
+    def save(self, path: str | Path) -> Path:
+        """Write the page to a file and return its path."""
+        path = Path(path)
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(self.text, encoding="utf-8")
+        except OSError as error:
+            raise ResultsError(f"{path}: cannot be written ({error.strerror or error})") from None
+        return path
+
+    def __repr__(self) -> str:
+        return f"Page({len(self.text) / 1e6:.1f} MB; .save('run.html') writes it)"
+
+    def _repr_html_(self) -> str:
+        inside = html.escape(self.text, quote=True)
+        return (
+            f'<iframe srcdoc="{inside}" style="width: 100%; height: {self.height}px; border: 0" '
+            'sandbox="allow-scripts allow-downloads"></iframe>'
+        )
+
+
+def measured(results: "Results", name: str, options: dict[str, Any]) -> Any:
+    """Give what a measure finds in a run."""
+    return load(_entry(name, MEASURES, "measure").function)(results, **options)
+
+
+def drawn(results: "Results", name: str, options: dict[str, Any]) -> "Figure":
+    """Give a picture of a run; the options are its own, or of the measure that it draws."""
+    entry = _entry(name, PICTURES, "picture")
+    if not entry.measure:
+        return load(entry.function)(results, **options)[0]
+    return load(entry.function)(measured(results, entry.measure, options))
+
+
+def view_of(results: "Results", options: dict[str, Any]) -> Page:
+    """Give the page with the grains in motion."""
+    return Page(load("ryusa.view.page:view_page")(results, **options))
+
+
+def report_of(runs: Sequence["Results"], size: float) -> Page:
+    """Give the page about some runs."""
+    return Page(load("ryusa.report.page:report_page")(runs, size=size), 2 * _HEIGHT)
+
+
+def xarray_of(results: "Results", frames: slice) -> "Dataset":
+    """Give frames as an xarray Dataset."""
+    xarray = _needed("xarray")
+    units = {"x": "m", "v": "m/s", "omega": "rad/s"}
+    held = {
+        name: (("t", "grain", "axis"), getattr(results.frames, name)[frames], {"units": unit})
+        for name, unit in units.items()
+    }
+    held |= {
+        name: ("grain", getattr(results.grains, name), {"units": unit})
+        for name, unit in (("d", "m"), ("m", "kg"))
+    }
+    places = {"t": results.frames.t[frames], "grain": np.arange(results.scene.n_grain), "axis": list("xyz")}
+    about = {
+        "title": str(results.case.get("title", "")),
+        "folder": str(results.folder),
+        "status": results.status,
+    }
+    return xarray.Dataset(held, coords=places, attrs=about)
+
+
+def pandas_of(results: "Results", what: str, options: dict[str, Any]) -> "DataFrame":
+    """Give contacts, energy account or a measure as a pandas DataFrame."""
+    pandas = _needed("pandas")
+    if what == "contacts":
+        rows = results.contacts
+        columns: dict[str, Any] = {}
+        for name in rows.dtype.names or ():
+            if rows[name].ndim == 1:
+                columns[name] = rows[name]
+            else:
+                columns |= {f"{name}_{axis}": rows[name][:, k] for k, axis in enumerate("xyz")}
+        return pandas.DataFrame(columns)
+    found = measured(results, what, options)
+    averages = getattr(found, "averages", None)
+    return pandas.DataFrame(found.rows() if averages is None else averages.rows())
+
+
+def summary_table(results: "Results") -> str:
+    """Give what `ryusa inspect` prints as HTML."""
+    rows = load("ryusa.running.inspection:inspection_rows")(results)
+    return html_table((), [(heading, text) for heading, text in rows if heading != "next"])
+
+
+def _entry(name: str, entries: Sequence[Any], kind: str) -> Any:
+    known: dict[str, MeasureEntry | PictureEntry] = {one.name: one for one in entries}
+    if name not in known:
+        near = get_close_matches(name, known, 1)
+        meant = f"; did you mean '{near[0]}'?" if near else ""
+        raise ResultsError(f"no {kind} '{name}': there are {', '.join(known)}{meant}")
+    return known[name]
+
+
+def _needed(package: str) -> Any:
+    from importlib import import_module
+
+    try:
+        return import_module(package)
+    except ImportError:
+        raise ResultsError(f"{package} is not installed; pip install 'ryusa[notebook]' adds it") from None

@@ -1,0 +1,102 @@
+"""What a notebook shows, and the tables that a run gives."""
+
+import builtins
+import io
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import ryusa
+from ryusa.cases import case_path
+from ryusa.errors import ResultsError
+from ryusa.results import Results
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Results:
+    changes = {"build.starts": "3", "stop.time": "0.5 s", "record.settle": "0 s"}
+    case = ryusa.load(case_path("saltation.toml"), changes)
+    return ryusa.run(case, tmp_path_factory.mktemp("notebook") / "run", progress=False)
+
+
+def test_a_case_is_shown_as_ryusa_check_prints_it():
+    shown = ryusa.load(case_path("saltation.toml"))._repr_html_()
+    assert "0.2 cm" in shown
+    assert "where it comes from" in shown
+
+
+def test_a_run_is_shown_by_its_state(run):
+    assert "complete: reached 0.5 s" in run._repr_html_()
+    run.case["title"] = "<b>bold"
+    assert "<b>" not in run._repr_html_()
+
+
+def test_averages_have_one_grammar_and_are_shown_as_a_table(run):
+    for name, quantity in (("saltation", "jump_height"), ("spin", "turns"), ("transport", "q_star")):
+        one = run.measure(name)[quantity]
+        assert np.isfinite(one.value)
+        assert one.error >= 0.0
+        assert one.unit
+        assert one.steady in (True, False)
+        assert f"{one.value:.4g}" in run.measure(name)._repr_html_()
+    with pytest.raises(KeyError, match="there are"):
+        run.measure("saltation")["jump"]
+
+
+def test_a_figure_is_shown_as_a_picture(run):
+    picture = Image.open(io.BytesIO(run.draw("tracks")._repr_png_()))
+    assert picture.format == "PNG"
+    assert picture.width > 400
+    assert np.asarray(picture.convert("L")).std() > 5.0
+
+
+def test_pages_are_shown_within_a_frame_and_saved(run, tmp_path):
+    page = run.view()
+    assert page._repr_html_().startswith("<iframe srcdoc=")
+    assert "<script" not in page._repr_html_()  # escaped, for the frame
+    assert page.save(tmp_path / "new" / "view.html").read_text() == page.text
+    assert "2 runs side by side" in run.report(run).text
+
+
+def test_a_name_that_is_none_is_refused_with_the_nearest(run):
+    with pytest.raises(ResultsError, match="did you mean 'transport'"):
+        run.measure("trasport")
+    with pytest.raises(ResultsError, match="no picture 'tracs'"):
+        run.draw("tracs")
+
+
+def test_contacts_and_averages_are_data_frames(run):
+    contacts = run.to_pandas()
+    assert len(contacts) == len(run.contacts)
+    assert (contacts["overlap_max"].to_numpy() == run.contacts["overlap_max"]).all()
+    averages = run.to_pandas("saltation").set_index("quantity")
+    assert averages.loc["jump_height", "value"] == run.measure("saltation")["jump_height"].value
+
+
+def test_frames_are_a_dataset_with_units(run):
+    found = run.to_xarray(slice(0, 10))
+    assert found["x"].dims == ("t", "grain", "axis")
+    assert found["v"].attrs["units"] == "m/s"
+    assert (found["x"].to_numpy() == run.frames.x[0:10]).all()
+    assert float(found["x"].sel(axis="z").isel(t=3, grain=1)) == run.frames.x[3][1, 2]
+
+
+def test_without_pandas_the_error_says_what_to_install(run, monkeypatch):
+    def refuse(name, *rest, **how):
+        if name.startswith("pandas"):
+            raise ImportError(name)
+        return real(name, *rest, **how)
+
+    real = builtins.__import__
+    monkeypatch.setattr("importlib.import_module", refuse)
+    with pytest.raises(ResultsError, match=r"pip install 'ryusa\[notebook\]'"):
+        run.to_pandas()
+
+
+def test_a_case_is_run_by_its_path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    text = case_path("saltation.toml").read_text().replace('time = "20 s"', 'time = "10 ms"')
+    (tmp_path / "short.toml").write_text(text.replace('settle = "', 'settle = "0 s" # "'))
+    monkeypatch.chdir(tmp_path)
+    assert ryusa.run("short.toml", progress=False).folder == Path("runs/short")
