@@ -73,7 +73,7 @@ def house(draw: Drawing) -> Drawing:
     return cast(Drawing, styled)
 
 
-class ShownFigure(Figure):
+class _ShownFigure(Figure):
     """A figure that a notebook shows by itself, without pyplot."""
 
     def _repr_png_(self) -> bytes:
@@ -94,7 +94,7 @@ def new(
     width, height : of the figure [inch].
     how : passed to `Figure.subplots` (sharex, sharey, ...).
     """
-    figure = ShownFigure(figsize=(width, height), layout="constrained")
+    figure = _ShownFigure(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.subplots(rows, columns, squeeze=False, **how)
     return figure, list(axes.flat)

@@ -31,8 +31,7 @@ class StudyPart(Protocol):
     - `rows(found, plan)` returns the lines of the CSV table of the part;
     - `draw(found, plan)` returns pictures by name;
     - `failed(error)` returns the measurement of a failed run if the failure is a result (a scheme that
-    creates
-      energy), else None. A part with a failed run and no such result is not judged.
+      creates energy), else None. A part with a failed run and no such result is not judged.
 
     A part that judges claims lists them in `CLAIMS`; `judge` then returns one finding for each.
     """
