@@ -1,10 +1,14 @@
 """Transport rate over shear stress."""
 
+import math
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from ryusa.figures import style
-from ryusa.figures.transport import Formula, Rates, transport
+from ryusa.figures.transport import Formula, Rates, transport, transport_of_run
+from ryusa.measure import Averages, average
 
 TAU = np.geomspace(0.03, 1.0, 60)
 POWER = Formula("8 (tau - 0.047)^1.5", TAU, 8.0 * np.maximum(TAU - 0.047, 0.0) ** 1.5)
@@ -52,3 +56,19 @@ def test_errors_larger_than_the_value_and_unknown_ones_can_be_drawn():
 @pytest.mark.parametrize("suffix", [".png", ".svg"])
 def test_it_can_be_saved_without_any_point(tmp_path, suffix):
     assert style.save(transport([], [POWER]), tmp_path / f"q{suffix}").stat().st_size > 0
+
+
+@pytest.mark.parametrize(
+    ("n", "fall", "said"), [(400, 0.0, "yes"), (12, 0.0, "too short"), (400, 2.0, "no, drift -")]
+)
+def test_the_picture_of_a_run_says_whether_its_rate_is_steady(n, fall, said):
+    q = np.random.default_rng(2).normal(1.0, 0.1, n) - np.linspace(0.0, fall, n)
+    mean = average("q_star", "-", [q])
+    found = SimpleNamespace(
+        t=np.arange(n) + 0.5, dt=np.ones(n), q_star=q, tau_star=math.nan, tau_error=math.nan,
+        averages=Averages("transport", (mean,)),
+    )  # fmt: skip
+    figure = transport_of_run(found)
+    first, second = figure.axes[0].texts[0].get_text().split("\n")
+    assert first.endswith("*") == mean.short
+    assert second.startswith(f"steady: {said}")

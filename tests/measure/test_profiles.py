@@ -10,7 +10,7 @@ import pytest
 
 from ryusa.errors import ResultsError
 from ryusa.measure import profiles
-from ryusa.measure.statistics import block_error, block_errors
+from ryusa.measure.statistics import standard_error, standard_errors
 from ryusa.model import EVENT
 
 D = 0.002
@@ -163,5 +163,5 @@ def test_errors_of_many_columns_are_those_of_each(flow):
     for n in (1, 2, 5, 64, 333):
         columns = np.cumsum(rng.normal(size=(n, 7)), axis=0) * 0.1 + rng.normal(size=(n, 7)) * np.arange(7)
         columns[:, 6] = 4.0
-        expected = [block_error([column]).error for column in columns.T]
-        np.testing.assert_allclose(block_errors(columns), expected, rtol=1e-10, atol=1e-15)
+        expected = [standard_error([column]).error for column in columns.T]
+        np.testing.assert_allclose(standard_errors(columns), expected, rtol=1e-10, atol=1e-15)

@@ -100,6 +100,29 @@ def test_a_rate_that_scatters_has_the_error_of_its_mean(ride):
     assert found.steady
 
 
+def test_the_begin_suggested_comes_from_the_whole_run_and_leaves_the_window_alone(ride):
+    """Grains slow down from ten times their speed within 0.2 s of 4 s."""
+    rng = np.random.default_rng(1)
+    t = np.arange(400) * 0.01
+    speeds = (0.1 + np.exp(-t / 0.2))[:, None] * rng.normal(1.0, 0.2, (400, 3))
+    x = np.zeros((400, 3, 3))
+    x[1:, :, 0] = np.cumsum(speeds[:-1] * 0.01, axis=0)
+    x[:, :, 2] = 3 * D
+    run = ride(x, speeds[:, :, None] * [1.0, 0.0, 0.0])
+    run.case["record"]["settle"] = 0.1
+    for begin, words in ((None, "settles until 0.1 s"), (0.5, "0.1 s, the window begins at 0.5 s")):
+        found = transport(run, begin)
+        (note,) = (one for one in found.averages.notes if "MSER" in one)
+        assert note.endswith(words)
+        assert 0.6 < float(note.split("t = ")[1].split(" s")[0]) < 2.0
+    assert not transport(run).averages["q"].steady
+    assert transport(run).averages["q"].window[0] == pytest.approx(0.1)
+    assert transport(run, 1.6).averages["q"].steady
+    few = transport(run, end=0.25).averages.notes
+    assert any("not steady from any time" in one for one in few)
+    assert any("too few frames" in one for one in transport(run, end=0.15).averages.notes)
+
+
 def test_a_frame_at_the_end_that_comes_early_weighs_less(ride):
     x, v = steady([0.5, 0.1])
     run = ride(x, v)

@@ -43,19 +43,13 @@ def _print_averages(averages: "Averages") -> None:
     """Print each average with standard error, number of samples, window and steadiness; then the notes."""
     names = ("quantity", "value", "± s.e.", "unit", "n", "window \\[s]", "steady?")
     table = _table(names, left=("quantity", "unit", "steady?"))
-    short = False
     for one in averages.items:
         if one.n == 0:
             table.add_row(one.name, "-", "-", one.unit, "0", "-", "-")
             continue
-        steady = "-" if math.isnan(one.drift) else "yes" if one.steady else f"no, drift {one.drift:.1f} s.e."
-        mark = "" if one.plateau or math.isnan(one.error) else "*"
-        short = short or bool(mark)
         window = f"{one.window[0]:.3g} .. {one.window[1]:.4g}"
-        error = f"{one.error:.2g}{mark}"
-        table.add_row(one.name, f"{one.value:.5g}", error, one.unit, str(one.n), window, steady)
-    warning = ("* the record is too short for this error to have converged: it may be larger",) * short
-    _show(table, *warning, *averages.notes)
+        table.add_row(one.name, f"{one.value:.5g}", one.error_text, one.unit, str(one.n), window, one.verdict)
+    _show(table, *averages.remarks)
 
 
 def _print_rows(rows: list[dict[str, object]]) -> None:

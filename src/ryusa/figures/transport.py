@@ -82,7 +82,8 @@ def transport_of_run(found: Transport, formulae: Sequence[Formula] = (), name: s
     Notes
     -----
     Frames are averaged over a hundredth of the time, because the passage of single grains dominates shorter
-    times; the band is the mean with one standard error. A run without a tau_star has no second panel.
+    times; the band is the mean with one standard error, with a star where the record is too short for it,
+    and beside it stands whether the record is steady. A run without a tau_star has no second panel.
     """
     chart = found.tau_star > 0.0
     width, ratios = (style.PAGE, [1.15, 1.0]) if chart else (style.COLUMN, [1.0])
@@ -114,11 +115,12 @@ def _over_time(axes: Axes, found: Transport) -> None:
         low, high = mean.value - mean.error, mean.value + mean.error
         axes.axhspan(low, high, color=style.COLOURS[1], alpha=0.2, lw=0.0)
     axes.annotate(
-        rf"mean {mean.value:.3g} $\pm$ {mean.error:.2g}", (1, 1), (-4, -4), "axes fraction",
-        textcoords="offset points", ha="right", va="top", fontsize=6.5, color=style.COLOURS[1],
+        rf"mean {mean.value:.3g} $\pm$ {mean.error_text}" + f"\nsteady: {mean.verdict}",
+        (1, 1), (-4, -4), "axes fraction", textcoords="offset points", ha="right", va="top", fontsize=6.5,
+        color=style.COLOURS[1],
     )  # fmt: skip
     low, high = min(*q, 0.0), max(*q, 0.0)
-    axes.set_ylim(low, high + 0.15 * (high - low) if high > low else 1.0)
+    axes.set_ylim(low, high + 0.25 * (high - low) if high > low else 1.0)
     axes.set_xlim(float(found.t[0] - 0.5 * found.dt[0]), float(found.t[-1] + 0.5 * found.dt[-1]))
     axes.set_xlabel("time  $t$  (s)")
     axes.set_ylabel(r"transport rate  $q_*$  (–)")

@@ -12,7 +12,7 @@ from ryusa.measure.rods import Rod, Rods, companions, rods
 from ryusa.measure.saltation import Saltation, grouping, saltation
 from ryusa.measure.snapshot import Snapshot, snapshot
 from ryusa.measure.spin import Spin, spin
-from ryusa.measure.statistics import Average, average, block_error, ratio
+from ryusa.measure.statistics import Average, average, ratio, standard_error
 from ryusa.measure.table import Averages, rows_of, write_csv
 from ryusa.measure.tracks import Tracks, farthest, tracks
 from ryusa.measure.transport import KineticStress, Transport, kinetic_stress, transport
@@ -52,7 +52,6 @@ __all__ = [
     "WaterProfile",
     "alternating",
     "average",
-    "block_error",
     "classical",
     "collisions",
     "companions",
@@ -71,6 +70,7 @@ __all__ = [
     "saltation",
     "snapshot",
     "spin",
+    "standard_error",
     "surface",
     "tracks",
     "transport",

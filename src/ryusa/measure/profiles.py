@@ -11,7 +11,7 @@ from ryusa.laws._law import law
 from ryusa.laws.slices import circle_slice, sphere_slice
 from ryusa.measure._run import Floats, Run, crest_of, settle_time
 from ryusa.measure.snapshot import lanes_of, scene_at
-from ryusa.measure.statistics import average, block_errors
+from ryusa.measure.statistics import average, standard_errors
 from ryusa.measure.table import Averaged, Averages
 from ryusa.model import Scene
 from ryusa.model.scene import Bools
@@ -349,14 +349,14 @@ def _width(scene: Scene, lanes: int) -> float:
 
 
 def _mean(name: str, unit: str, series: Floats) -> Layers:
-    return Layers(name, unit, series.mean(axis=0), block_errors(series))
+    return Layers(name, unit, series.mean(axis=0), standard_errors(series))
 
 
 def _quotient(name: str, unit: str, above: Floats, below: Floats) -> Layers:
     """Sum over sum; to first order its error is that of the mean of above - value below over mean below."""
     with np.errstate(invalid="ignore", divide="ignore"):
         value = above.sum(axis=0) / below.sum(axis=0)
-        error = block_errors((above - value * below) / below.mean(axis=0))
+        error = standard_errors((above - value * below) / below.mean(axis=0))
     return Layers(name, unit, value, error)
 
 
@@ -366,7 +366,7 @@ def _variance(name: str, square: Floats, once: Floats, below: Floats) -> Layers:
         mean = once.sum(axis=0) / below.sum(axis=0)
         value = np.maximum(square.sum(axis=0) / below.sum(axis=0) - mean**2, 0.0)
         rest = square - 2.0 * mean * once + (mean**2 - value) * below
-        error = block_errors(rest / below.mean(axis=0))
+        error = standard_errors(rest / below.mean(axis=0))
     return Layers(name, "m2/s2", value, error)
 
 

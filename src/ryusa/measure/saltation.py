@@ -29,7 +29,7 @@ class Saltation(Averaged):
     contact_time : touch-to-end-of-force of every bed contact in the window [s].
     times : what Eq. (8) says for this grain, without and with added mass and dashpot.
     rise : threshold that separates two bounces, in diameters.
-    averages : means with standard errors over starts and blocks.
+    averages : means over all starts, with standard errors.
     """
 
     hops: NDArray[Any]
@@ -66,7 +66,7 @@ def saltation(
     Height is given twice: above the take-off, and above the centre of a grain that stands on a crest of the
     bed. Length is the distance between successive landings. Speed is total length over total time. Bed
     shear is the impulse against the flow that the bed gave, over time; the shear ratio is that over the
-    normal impulse. Averages weigh hops alike; each grain is one series for the block errors.
+    normal impulse. Averages weigh hops alike; each grain is one series for the standard errors.
     """
     scene = run.scene
     begin = settle_time(run) if settle is None else settle

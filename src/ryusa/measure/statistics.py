@@ -1,4 +1,4 @@
-"""Averages with a standard error from block averages and a check that the record is steady."""
+"""Averages of correlated records, with a standard error and a test whether the record is steady."""
 
 import math
 from collections.abc import Sequence
@@ -6,10 +6,23 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.fft import dct
+from scipy.special import fdtri, stdtrit
+
+from ryusa.measure.steadiness import LIMIT, PARTS, WAVES, block_means, compare_quarters, merged, truncation
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
-STEADY_LIMIT = 3.0  # |drift| up to which a record counts as steady, in units of its own standard error
+ENOUGH = 20.0  # independent samples below which a record is too short for its error and its steadiness
+STAR = f"* worth fewer than {ENOUGH:g} independent samples: the error may be larger"
+START = 8  # frequencies of the first estimate of the noise
+FEWEST = 4  # frequencies at least
+SHARE = 0.25  # frequencies for each independent sample
+ROUNDS = 3  # estimates of the number of independent samples, each from the one before
+ONE_SIGMA = 0.5 * (1.0 + math.erf(math.sqrt(0.5)))  # normal distribution at one standard deviation [-]
+DRIFTS = 2.0  # drift that is named where a record changes, in its standard errors
+APART = 0.95  # starts differ where chance explains less than the rest
 
 
 @dataclass(frozen=True)
@@ -20,14 +33,14 @@ class Average:
     ----------
     name, unit : what it is, and its SI unit ("-" when it has none).
     value : mean over all samples of all series.
-    error : standard error of the mean from block averages; nan when fewer than two blocks exist.
+    error : standard error of the mean, see `standard_error`; nan with fewer than two samples.
     n : number of samples.
     n_series : number of independent series (starts) they come from.
-    block : block length chosen [samples].
-    n_blocks : number of blocks of that length.
-    plateau : False when the series is too short for the block error to have stopped growing.
+    independent : number of independent samples they are worth, as far as blocks resolve it: at most 128 [-].
     window : begin and end of the record averaged over [s].
-    drift : (mean of second halves - mean of first halves) over its standard error [-].
+    variation, drift : of the record, see `steadiness.compare_quarters` [-]; nan where it is too short.
+    steady_from : begin of the part of the window that is steady, see `steadiness.truncation` [s]; nan where
+        there is none, or no window. Samples count as evenly spread over the window.
     """
 
     name: str
@@ -36,16 +49,42 @@ class Average:
     error: float
     n: int
     n_series: int
-    block: int
-    n_blocks: int
-    plateau: bool
+    independent: float
     window: tuple[float, float]
+    variation: float
     drift: float
+    steady_from: float
+
+    @property
+    def short(self) -> bool:
+        """True where the record is too short for its error, and for a verdict that it is steady."""
+        return self.independent < ENOUGH
+
+    @property
+    def changes(self) -> bool:
+        """True where four quarters of the record differ by more than chance explains."""
+        return self.variation > LIMIT
 
     @property
     def steady(self) -> bool:
-        """True where first and second half differ by no more than chance explains."""
-        return math.isfinite(self.drift) and abs(self.drift) <= STEADY_LIMIT
+        """True where a record that is long enough shows no change."""
+        return not self.short and self.variation <= LIMIT
+
+    @property
+    def error_text(self) -> str:
+        """The error by two digits, with a star where the record is too short for it; "–" where it is nan."""
+        if math.isnan(self.error):
+            return "–"
+        return f"{self.error:.2g}" + "*" * (self.short and self.error > 0.0)
+
+    @property
+    def verdict(self) -> str:
+        """What is said of steadiness: "yes", "no" with the drift, "too short", or "-" without samples."""
+        if self.n == 0:
+            return "-"
+        if self.changes:
+            return f"no, drift {self.drift:+.1f} s.e." if abs(self.drift) >= DRIFTS else "no, it varies"
+        return "too short" if self.short else "yes"
 
     def row(self) -> dict[str, object]:
         """One line of a CSV table."""
@@ -56,102 +95,89 @@ class Average:
             "standard_error": self.error,
             "n": self.n,
             "n_series": self.n_series,
-            "block": self.block,
-            "n_blocks": self.n_blocks,
-            "plateau": self.plateau,
+            "independent": self.independent,
+            "short": self.short,
             "window_begin_s": self.window[0],
             "window_end_s": self.window[1],
+            "variation": self.variation,
             "drift": self.drift,
             "steady": self.steady,
+            "steady_from_s": self.steady_from,
         }
 
 
 @dataclass(frozen=True)
-class BlockError:
-    """Standard error of a mean at the block length where it stopped growing."""
+class StandardError:
+    """Standard error of a mean.
+
+    Attributes
+    ----------
+    error : half of the interval that holds the true mean with 68.3 %, in the unit of the samples.
+    independent : number of independent samples, at most 128 [-].
+    freedom : degrees of freedom of the estimate [-].
+    """
 
     error: float
-    block: int
-    n_blocks: int
-    plateau: bool
+    independent: float
+    freedom: int
 
 
-def block_error(series: Sequence[ArrayLike], least: int = 4) -> BlockError:
+def standard_error(series: Sequence[ArrayLike]) -> StandardError:
     """Standard error of the mean of one or several series that may be correlated in themselves.
 
     Parameters
     ----------
     series : one array per independent start, in order of time; any unit, lengths may differ.
-    least : fewest blocks, over all series, from which an error is taken.
 
     Notes
     -----
-    Blocks of 1, 2, 4, ... neighbouring samples are averaged; the variance of those means, pooled over the
-    series about the one grand mean, gives an error per block length. Taken is the shortest block b with
-    b**3 > 2 n (s_b/s_1)**4 (Lee et al. 2011, Phys. Rev. E 83, 066706), which for uncorrelated samples is
-    close to n**(1/3) and for correlated ones lies beyond the correlation length. Where no length fulfils
-    this, the largest error found is returned and `plateau` is False.
+    The variance of the mean of n samples is S/n, where S is the spectrum at frequency zero. It is estimated
+    by the mean square of the K lowest cosine coefficients of the record, which gives Student's t with K
+    degrees of freedom (Mueller and Watson 2017; Lazarus et al. 2018); K is a quarter of the number of
+    independent samples n var/S, at least 4. The error is widened by Student's t, so that it covers 68.3 %
+    however small K is. Starts are merged (`steadiness.merged`). Where they differ by more than chance
+    explains (F test, 5 %), or hold one sample each, the error is that of the means of the starts.
 
-    >>> block_error([[1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]]).error
+    >>> standard_error([[1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]]).error
     0.0
     """
     arrays = [np.asarray(one, dtype=np.float64) for one in series]
-    n = sum(len(one) for one in arrays)
+    arrays = [one for one in arrays if len(one)]
+    n, n_series = sum(len(one) for one in arrays), len(arrays)
     if n < 2:
-        return BlockError(math.nan, 1, n, plateau=False)
-    found: list[BlockError] = []
-    block = 1
-    while True:
-        means = np.concatenate([_block_means(one, block) for one in arrays])
-        if len(means) < max(least, 2) and found:
-            break
-        error = float(means.std(ddof=1) / math.sqrt(len(means))) if len(means) > 1 else math.nan
-        found.append(BlockError(error, block, len(means), plateau=True))
-        if found[0].error == 0.0 or not math.isfinite(error):
-            return found[0]
-        if block**3 > 2 * n * (error / found[0].error) ** 4:
-            return found[-1]
-        block *= 2
-    worst = max(found, key=lambda one: one.error)
-    return BlockError(worst.error, worst.block, worst.n_blocks, plateau=False)
+        return StandardError(math.nan, float(n), 0)
+    between = _between(arrays)
+    if n == n_series:
+        return _widened(between / n, float(n), n - 1)
+    blocks = block_means(merged(arrays))
+    noise, independent, freedom = _noise(blocks[:, None])
+    within, degrees = float(noise[0]) * n / len(blocks), int(freedom[0])
+    if n_series > 1 and between > within * fdtri(n_series - 1, degrees, APART):
+        return _widened(between / n, float(n_series), n_series - 1)
+    return _widened(within / n, float(independent[0]), degrees)
 
 
-def block_errors(columns: ArrayLike, least: int = 4) -> Floats:
-    """Standard error of the mean of many quantities at once, each by the rule of `block_error`.
+def standard_errors(columns: ArrayLike) -> Floats:
+    """Standard error of the mean of many quantities at once, each as `standard_error` gives it.
 
     Parameters
     ----------
     columns : one quantity per column, in order of time, shape (n, n_column).
-    least : fewest blocks from which an error is taken.
 
     Returns
     -------
     Standard errors, shape (n_column,); nan where there are fewer than two rows.
 
-    >>> block_errors([[1.0, 0.0], [1.0, 1.0]]).round(3)
-    array([0. , 0.5])
+    >>> standard_errors([[1.0, 0.0], [1.0, 1.0]]).round(3)
+    array([0.   , 0.919])
     """
     rows = np.asarray(columns, dtype=np.float64)
     n, n_column = rows.shape
-    taken = np.full(n_column, math.nan)
     if n < 2 or n_column == 0:
-        return taken
-    open_still = np.ones(n_column, dtype=np.bool_)
-    worst, first, block = np.zeros(n_column), np.zeros(n_column), 1
-    while block == 1 or n // block >= max(least, 2):
-        count = n // block
-        means = rows[n - count * block :].reshape(count, block, n_column).mean(axis=1)
-        error = means.std(axis=0, ddof=1) / math.sqrt(count)
-        if block == 1:
-            first = error
-        worst = np.maximum(worst, error)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            done = open_still & ((block**3 > 2 * n * (error / first) ** 4) | (first == 0.0))
-        taken[done] = error[done]
-        open_still &= ~done
-        block *= 2
-    taken[open_still] = worst[open_still]
-    return taken
+        return np.full(n_column, math.nan)
+    blocks = block_means(rows - rows[0])
+    noise, _, freedom = _noise(blocks)
+    return np.sqrt(noise / len(blocks)) * stdtrit(freedom, ONE_SIGMA)
 
 
 def average(
@@ -164,32 +190,8 @@ def average(
     name, unit : what the numbers are.
     series : one array per independent start, in order of time; nan entries are left out.
     window : begin and end of the record they come from [s].
-
-    Notes
-    -----
-    The halves are those of each series by count, so that every start puts as many samples into the first as
-    into the second (an odd one in the middle is left out). Their difference is set against the block errors
-    of both.
     """
-    arrays = [np.asarray(one, dtype=np.float64) for one in series]
-    arrays = [one[np.isfinite(one)] for one in arrays]
-    arrays = [one for one in arrays if len(one)]
-    if not arrays:
-        return Average(name, unit, math.nan, math.nan, 0, 0, 1, 0, False, window, math.nan)
-    error = block_error(arrays)
-    return Average(
-        name=name,
-        unit=unit,
-        value=float(np.concatenate(arrays).mean()),
-        error=error.error,
-        n=sum(len(one) for one in arrays),
-        n_series=len(arrays),
-        block=error.block,
-        n_blocks=error.n_blocks,
-        plateau=error.plateau,
-        window=window,
-        drift=drift(arrays),
-    )
+    return _average(name, unit, series, window, 0.0)
 
 
 def ratio(
@@ -218,25 +220,96 @@ def ratio(
         return average(name, unit, [], window)
     value = sum(float(one.sum()) for one in a) / total
     mean = total / sum(len(one) for one in b)
-    rest = average(name, unit, [(p - value * q) / mean for p, q in zip(a, b, strict=True)], window)
-    return replace(rest, value=value)
+    rest = [(p - value * q) / mean for p, q in zip(a, b, strict=True)]
+    return replace(_average(name, unit, rest, window, value), value=value)
 
 
-def drift(series: Sequence[ArrayLike]) -> float:
-    """Mean of the second halves less that of the first, over its standard error [-]; nan if too short."""
+def begin_in_words(name: str, t: ArrayLike, record: ArrayLike, settle: float, begin: float | None) -> str:
+    """From when on a record is steady by MSER, beside the begin of the window that was taken.
+
+    Parameters
+    ----------
+    name : of the quantity.
+    t, record : times [s] and samples from the begin of the run on, shape (n,).
+    settle : `record.settle` of the case [s].
+    begin : of the window where another was asked for [s], else None.
+
+    >>> begin_in_words("q_star", [0.0, 1.0], [1.0, 1.0], 1.0, None)
+    'too few frames to suggest a begin for q_star; the case settles until 1 s'
+    """
+    times, samples = np.asarray(t, dtype=np.float64), np.asarray(record, dtype=np.float64)
+    share = truncation(samples)
+    taken = f"the case settles until {settle:g} s"
+    if begin is not None:
+        taken += f", the window begins at {begin:g} s"
+    if len(samples) < PARTS * (WAVES + 1):
+        return f"too few frames to suggest a begin for {name}; {taken}"
+    if math.isnan(share):
+        return f"{name} is not steady from any time on by MSER; {taken}"
+    return f"{name} is steady from t = {times[math.ceil(share * len(times))]:.3g} s on by MSER; {taken}"
+
+
+def _average(
+    name: str, unit: str, series: Sequence[ArrayLike], window: tuple[float, float], scale: float
+) -> Average:
+    """Average of series whose samples are differences of numbers of size `scale`, if that is not 0."""
     arrays = [np.asarray(one, dtype=np.float64) for one in series]
-    first = [one[: len(one) // 2] for one in arrays if len(one) > 1]
-    second = [one[len(one) - len(one) // 2 :] for one in arrays if len(one) > 1]
-    if sum(len(one) for one in first) < 2:
-        return math.nan
-    difference = float(np.concatenate(second).mean() - np.concatenate(first).mean())
-    spread = math.hypot(block_error(first).error, block_error(second).error)
-    if spread == 0.0:
-        return 0.0 if difference == 0.0 else math.copysign(math.inf, difference)
-    return difference / spread
+    arrays = [one[np.isfinite(one)] for one in arrays]
+    arrays = [one for one in arrays if len(one)]
+    if not arrays:
+        return Average(name, unit, math.nan, math.nan, 0, 0, 0.0, window, math.nan, math.nan, math.nan)
+    value = float(np.concatenate(arrays).mean())
+    error = standard_error(arrays)
+    record = merged(arrays)
+    variation, drift = compare_quarters(record, scale or value)
+    return Average(
+        name=name,
+        unit=unit,
+        value=value,
+        error=error.error,
+        n=sum(len(one) for one in arrays),
+        n_series=len(arrays),
+        independent=error.independent,
+        window=window,
+        variation=variation,
+        drift=drift,
+        steady_from=window[0] + truncation(record) * (window[1] - window[0]),
+    )
 
 
-def _block_means(series: Floats, block: int) -> Floats:
-    """Means of whole blocks; what is left over at the beginning (nearest the transient) is dropped."""
-    count = len(series) // block
-    return series[len(series) - count * block :].reshape(count, block).mean(axis=1) if count else np.zeros(0)
+def _noise(blocks: Floats) -> tuple[Floats, Floats, Ints]:
+    """Spectrum at frequency zero, number of independent samples and degrees of freedom, per column.
+
+    Parameters
+    ----------
+    blocks : samples or block means in order of time, shape (n, n_column), n >= 2.
+    """
+    n, n_column = blocks.shape
+    waves: Floats = np.asarray(dct(blocks - blocks.mean(axis=0), axis=0, norm="ortho"))[1:]
+    summed, column = np.cumsum(waves**2, axis=0), np.arange(n_column)
+    spread = summed[-1] / (n - 1)
+    k = np.full(n_column, min(START, n - 1))
+    for _ in range(ROUNDS):
+        independent = _count(n, spread, summed[k - 1, column] / k)
+        k = np.clip((SHARE * independent).astype(np.int64), min(FEWEST, n - 1), n - 1)
+    noise = summed[k - 1, column] / k
+    return noise, _count(n, spread, noise), k
+
+
+def _count(n: int, spread: Floats, noise: Floats) -> Floats:
+    """Number of independent samples, from the variance of n blocks and their spectrum at frequency zero."""
+    known = np.isfinite(noise) & (noise > 0.0)
+    return np.minimum(np.divide(n * spread, noise, np.full(len(noise), float(n)), where=known), n)
+
+
+def _between(arrays: list[Floats]) -> float:
+    """Spectrum at frequency zero by the spread of the means of several starts; 0 for one start."""
+    if len(arrays) == 1:
+        return 0.0
+    means, n = np.array([one.mean() for one in arrays]), np.array([len(one) for one in arrays])
+    return float((n * (means - (n @ means) / n.sum()) ** 2).sum() / (len(arrays) - 1))
+
+
+def _widened(square: float, independent: float, freedom: int) -> StandardError:
+    """From the square of a standard error with so many degrees of freedom."""
+    return StandardError(math.sqrt(square) * float(stdtrit(freedom, ONE_SIGMA)), independent, freedom)

@@ -1,6 +1,7 @@
 """One writer of CSV for everything that is measured."""
 
 import csv
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ryusa.measure.statistics import Average
+from ryusa.measure.statistics import STAR, Average
 from ryusa.notebook import html_table
 
 
@@ -31,13 +32,28 @@ class Averages:
         heads = ("quantity", "value", "± s.e.", "unit", "n", "window (s)", "steady")
         cells = [
             (
-                one.name, f"{one.value:.4g}", f"{one.error:.2g}", one.unit, str(one.n),
-                f"{one.window[0]:.3g} to {one.window[1]:.4g}", "yes" if one.steady else "no",
+                one.name, f"{one.value:.4g}", one.error_text, one.unit, str(one.n),
+                f"{one.window[0]:.3g} to {one.window[1]:.4g}", one.verdict,
             )
             for one in self.items
             if one.n
         ]  # fmt: skip
         return html_table(heads, cells)
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What is printed below the averages: errors to be doubted, records that change, and the notes."""
+        found: list[str] = []
+        if any(one.error_text.endswith("*") for one in self.items):
+            found.append(STAR)
+        begins = [
+            f"{one.name} {'never' if math.isnan(one.steady_from) else f'{one.steady_from:.3g} s'}"
+            for one in self.items
+            if one.changes
+        ]
+        if begins:
+            found.append(f"not steady over the window; steady from, by MSER: {', '.join(begins)}")
+        return (*found, *self.notes)
 
     def rows(self) -> list[dict[str, object]]:
         """One dictionary per average."""

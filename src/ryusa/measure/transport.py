@@ -24,7 +24,7 @@ from ryusa.measure.profiles import (
     profiles,
 )
 from ryusa.measure.snapshot import lanes_of, scene_at
-from ryusa.measure.statistics import Average, average, block_errors, ratio
+from ryusa.measure.statistics import Average, average, begin_in_words, ratio, standard_errors
 from ryusa.measure.table import Averaged, Averages
 from ryusa.measure.water import water
 from ryusa.model import Scene
@@ -149,8 +149,9 @@ def transport(
     since, z_0, thickness = float(t[0]), _origin(scene, origin), layer * float(scene.d.mean())
     ball = np.pi / 6.0 * scene.d**3
     dt = np.diff(t)
-    ways = [np.diff(x[:, :, 0], axis=0) * ball for x in places_of(run, first, last)]
-    moved = np.concatenate([one.sum(axis=1) for one in ways]) / area
+    ways = (np.diff(x[:, :, 0], axis=0) * ball for x in places_of(run, 0, last))
+    ever = np.concatenate([one.sum(axis=1) for one in ways]) / area
+    moved, times = ever[first:], np.asarray(run.frames.t[:last], dtype=np.float64)
     sums, edge = _sums(run, first, last, scene, z_0, thickness, None, False)
     carried = sums[:, :, U_X] / area
     d, g = float(scene.d.mean()), float(np.linalg.norm(scene.gravity))
@@ -188,6 +189,7 @@ def transport(
             (
                 _of_stress(tau_star, bed),
                 f"q_star = q/sqrt(R g d^3), R = {excess:.4g}, g = {g:.4g} m/s2, d = {d:.4g} m",
+                begin_in_words("q_star", times[1:], ever / np.diff(times), settle_time(run), begin),
                 f"transport layer: the middle {MIDDLE:.0%} of the flux, heights above z = {z_0:.4g} m",
             ),
         ),
@@ -243,7 +245,7 @@ def kinetic_stress(
     trace = terms["xx"] + terms["yy"] + terms["zz"]
     unit = found.density / (found.area * thickness)
     stress = {
-        name: Layers(name, "Pa", unit * one.mean(axis=0), block_errors(unit * one))
+        name: Layers(name, "Pa", unit * one.mean(axis=0), standard_errors(unit * one))
         for name, one in terms.items()
     }
     return KineticStress(

@@ -12,7 +12,7 @@ from ryusa.laws.transport import tau_star_from_stress
 from ryusa.measure._run import Floats, Run, settle_time
 from ryusa.measure.profiles import Layers, Profiles, profiles
 from ryusa.measure.snapshot import scene_at
-from ryusa.measure.statistics import average, block_errors
+from ryusa.measure.statistics import average, begin_in_words, standard_errors
 from ryusa.measure.table import Averaged, Averages
 from ryusa.model import Scene
 
@@ -112,7 +112,9 @@ def water(run: Run, begin: float | None = None, end: float = math.inf) -> WaterP
     bed = float(found.faces[0]) if rigid else _top(found.z, even, HALF * packed)
     clear = _clear(found.faces, even, bed, float(surfaces.min()))
     tau = _stress_at_bed(found.tau[span], found.faces, surfaces, clear, bed)
-    averages = _averages(found, span, scene, bed, tau, packed)
+    discharge = (found.content[: span.stop] * found.u[: span.stop]).sum(axis=1)
+    suggested = begin_in_words("discharge", found.t[: span.stop], discharge, settle_time(run), begin)
+    averages = _averages(found, span, scene, bed, tau, packed, suggested)
     return WaterProfile(
         t=found.t[span],
         z=found.z,
@@ -165,7 +167,9 @@ def _stress_at_bed(
     return np.broadcast_to(per_depth * (surfaces - bed), surfaces.shape)
 
 
-def _averages(found: Any, span: slice, scene: Scene, bed: float, tau: Floats, packed: float) -> Averages:
+def _averages(
+    found: Any, span: slice, scene: Scene, bed: float, tau: Floats, packed: float, suggested: str
+) -> Averages:
     """Averages over the frames of what is known in each; tau is the stress at the bed [Pa]."""
     window = (float(found.t[span][0]), float(found.t[span][-1]))
     surfaces, content, u = found.z_surface[span], found.content[span], found.u[span]
@@ -194,12 +198,13 @@ def _averages(found: Any, span: slice, scene: Scene, bed: float, tau: Floats, pa
             "the bed to the surface; speed: mean of the water above the bed",
             "tau_bed: shear stress of the clear water, extrapolated to the bed along a straight line; "
             f"tau_star = tau_bed/((rho_s - rho_w) g d), d = {d:.4g} m",
+            suggested,
         ),
     )
 
 
 def _mean(name: str, unit: str, frames: Floats) -> Layers:
-    return Layers(name, unit, frames.mean(axis=0), block_errors(frames))
+    return Layers(name, unit, frames.mean(axis=0), standard_errors(frames))
 
 
 def _averaged(phi: Floats, cells: float) -> Floats:

@@ -149,25 +149,15 @@ def _measure(found: RunContents, results: Results, entry: MeasureEntry) -> None:
     heads = ("quantity", "value", "± s.e.", "unit", "samples", "window (s)", "steady")
     rows = [
         (
-            one.name, f"{one.value:.4g}", written_error(one), one.unit, str(one.n),
-            f"{one.window[0]:.3g} to {one.window[1]:.4g}", steadiness(one),
+            one.name, f"{one.value:.4g}", one.error_text, one.unit, str(one.n),
+            f"{one.window[0]:.3g} to {one.window[1]:.4g}", one.verdict,
         )
         for one in sampled
     ]  # fmt: skip
-    notes = tuple(averages.notes)
+    notes = averages.remarks
     if not rows:
         notes = (*notes, "no samples in the window")
     found.measures.append(MeasureTable(entry.name, entry.doc, heads, rows, notes))
-
-
-def written_error(one: Any) -> str:
-    """Standard error of an average as text; "–" where there is none."""
-    return f"{one.error:.2g}" if one.error == one.error else "–"
-
-
-def steadiness(one: Any) -> str:
-    """Whether an average is that of a steady record; "–" where the record is too short to tell."""
-    return "–" if one.drift != one.drift else "yes" if one.steady else "no"
 
 
 def _draw(found: RunContents, results: Results, entry: PictureEntry) -> None:

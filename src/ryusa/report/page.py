@@ -6,7 +6,7 @@ from typing import Any
 
 from ryusa import __version__
 from ryusa.errors import ResultsError
-from ryusa.report.contents import RunContents, contents_of, steadiness, written_error
+from ryusa.report.contents import RunContents, contents_of
 from ryusa.results import Results
 from ryusa.study.html import template
 from ryusa.view.page import component, policy
@@ -73,4 +73,4 @@ def side_by_side(runs: Sequence[RunContents]) -> list[tuple[str, str, list[dict[
 def _cell(one: Any) -> dict[str, Any]:
     if one is None:
         return {"text": "–", "steady": True}
-    return {"text": f"{one.value:.4g} ± {written_error(one)}", "steady": steadiness(one) != "no"}
+    return {"text": f"{one.value:.4g} ± {one.error_text}", "steady": not one.changes}
