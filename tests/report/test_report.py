@@ -50,7 +50,9 @@ def test_a_run_has_its_measures_with_errors_its_pictures_and_its_values(runs):
     height = found.averages["saltation: jump_height"]
     row = next(row for table in found.measures for row in table.rows if row[0] == "jump_height")
     assert row[1] == f"{height.value:.4g}"
-    assert row[2] == f"{height.error:.2g}"
+    assert row[2].rstrip("*") == f"{height.error:.2g}"
+    assert row[2].endswith("*") == height.short
+    assert row[6] == height.verdict
     assert any(one.name == "diameter" and one.shown == "0.2 cm" for one in found.values)
     assert 'title = "Saltation' in found.case_text
 
