@@ -1,6 +1,7 @@
 """What a notebook shows, and the tables that a run gives."""
 
 import builtins
+import html
 import io
 from pathlib import Path
 
@@ -41,6 +42,10 @@ def test_averages_have_one_grammar_and_are_shown_as_a_table(run):
         assert one.unit
         assert one.steady in (True, False)
         assert f"{one.value:.4g}" in run.measure(name)._repr_html_()
+        assert all(
+            html.escape(text) in run.measure(name)._repr_html_()
+            for text in run.measure(name).averages.remarks
+        )
     with pytest.raises(KeyError, match="there are"):
         run.measure("saltation")["jump"]
 

@@ -1,6 +1,7 @@
 """One writer of CSV for everything that is measured."""
 
 import csv
+import html
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -38,7 +39,8 @@ class Averages:
             for one in self.items
             if one.n
         ]  # fmt: skip
-        return html_table(heads, cells)
+        below = "".join(f"<p>{html.escape(one)}</p>" for one in self.remarks)
+        return html_table(heads, cells) + below
 
     @property
     def remarks(self) -> tuple[str, ...]:

@@ -149,8 +149,7 @@ def transport(
     since, z_0, thickness = float(t[0]), _origin(scene, origin), layer * float(scene.d.mean())
     ball = np.pi / 6.0 * scene.d**3
     dt = np.diff(t)
-    ways = (np.diff(x[:, :, 0], axis=0) * ball for x in places_of(run, 0, last))
-    ever = np.concatenate([one.sum(axis=1) for one in ways]) / area
+    ever = _moved(run, last, ball) / area
     moved, times = ever[first:], np.asarray(run.frames.t[:last], dtype=np.float64)
     sums, edge = _sums(run, first, last, scene, z_0, thickness, None, False)
     carried = sums[:, :, U_X] / area
@@ -275,6 +274,12 @@ def places_of(run: Run, first: int, last: int) -> Iterator[Floats]:
     step = max(CHUNK // run.scene.n_grain, 1)
     for a in range(first, last - 1, step):
         yield np.asarray(run.frames.x[a : min(a + step, last - 1) + 1], dtype=np.float64)
+
+
+def _moved(run: Run, last: int, ball: Floats) -> Floats:
+    """Volume times displacement along x between frames, summed over all grains [m4], shape (last - 1,)."""
+    ways = (np.diff(x[:, :, 0], axis=0) * ball for x in places_of(run, 0, last))
+    return np.concatenate([one.sum(axis=1) for one in ways])
 
 
 def _layer(carried: Floats, bottom: float, thickness: float, window: tuple[float, float]) -> list[Average]:
