@@ -29,7 +29,7 @@ def table(case: Case, _derived: Derived) -> Placement:
     order = np.argsort(places, kind="stable")
     free, fixed = order[~grid.fixed[order]], order[grid.fixed[order]]
     x, d = _columns(grid.column("x"), grid.column("y"), grid.column("z")), grid.column("d")
-    labels = [f"of line {grid.lines[row]} of {grid.name}" for row in (*free, *fixed)]
+    labels = [grid.labels[row] for row in (*free, *fixed)]
     period = tuple(p if p is not None else float("inf") for p in (case.domain.period_x, case.domain.period_y))
     return Placement(
         d=d[free],

@@ -1,7 +1,6 @@
 """A CSV table of first grains: one row per grain, units in the header."""
 
 import csv
-from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,7 +9,7 @@ import numpy as np
 
 from ryusa.casefile.builders.schema import TableSection
 from ryusa.errors import CaseError
-from ryusa.model.scene import Bools, Floats
+from ryusa.formats.grains import GrainTable
 from ryusa.units import UnitError, quantity
 
 if TYPE_CHECKING:
@@ -24,26 +23,6 @@ UNITS = {
 NEEDED = ("x", "z", "d")
 LARGEST_FILE = 1 << 30  # bytes
 _YES, _NO = {"1", "true", "yes", "fixed"}, {"0", "false", "no", "free", ""}
-
-
-@dataclass(frozen=True)
-class GrainTable:
-    """Rows of a table in SI."""
-
-    name: str
-    columns: dict[str, Floats]  # each of shape (n,)
-    fixed: Bools  # (n,)
-    group: tuple[str, ...]  # name of each row's group, "" where none
-    lines: tuple[int, ...]  # line of each row in the file
-
-    @property
-    def n(self) -> int:
-        """Number of rows."""
-        return len(self.fixed)
-
-    def column(self, name: str) -> Floats:
-        """Values of a column in SI; zeros where the table has none."""
-        return self.columns.get(name, np.zeros(self.n))
 
 
 def table_of(case: "Case") -> GrainTable | None:
@@ -109,7 +88,11 @@ def _read(path: Path, name: str, _changed: int, _size: int) -> GrainTable:
         raise CaseError("build.file", name, "has no free grain")
     arrays = {one: np.array(values, dtype=np.float64) for one, values in columns.items()}
     return GrainTable(
-        name, arrays, np.array(fixed, dtype=np.bool_), tuple(group), tuple(line for line, _ in rows[1:])
+        name=name,
+        columns=arrays,
+        fixed=np.array(fixed, dtype=np.bool_),
+        group=tuple(group),
+        labels=tuple(f"of line {line} of {name}" for line, _ in rows[1:]),
     )
 
 

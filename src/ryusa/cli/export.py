@@ -1,0 +1,69 @@
+"""`ryusa export`: frames of a run as files of other programs."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ryusa.cli.options import in_unit, known, open_run
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command()(export)
+
+
+def export(
+    run: Annotated[Path, typer.Argument(help="A run folder.")],
+    to: Annotated[
+        str,
+        typer.Option(metavar="FORMAT", help="One of lammps-dump, extxyz, vtu, csv, parquet."),
+    ],
+    output: Annotated[
+        Path,
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="FILE",
+            help="The file to write. vtu writes a .pvd, with one .vtu a frame in a folder of the same name.",
+        ),
+    ],
+    at: Annotated[
+        str | None, typer.Option(metavar="TIME", help="Only the frame nearest to this time, such as 0.5s.")
+    ] = None,
+    begin: Annotated[
+        str | None, typer.Option(metavar="TIME", help="First time written; default the first frame.")
+    ] = None,
+    end: Annotated[
+        str | None, typer.Option(metavar="TIME", help="Last time written; default the last frame.")
+    ] = None,
+    every: Annotated[int, typer.Option(min=1, metavar="N", help="Write every Nth frame.")] = 1,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Show no progress.")] = False,
+) -> None:
+    """Write the grains of a run for another program: LAMMPS, OVITO, ASE, ParaView, a table.
+
+    Free and fixed grains, with position, velocity, spin, diameter and mass, in SI; a case can start from any
+    of these files but parquet.
+    """
+    from ryusa.errors import CaseError
+    from ryusa.formats.export import FORMATS
+    from ryusa.formats.export import export as write
+
+    known(to, FORMATS, "--to")
+    if to == "vtu" and output.suffix != ".pvd":
+        raise CaseError("--output", str(output), "must end in .pvd: it lists the .vtu files, one a frame")
+    if at is not None and (begin is not None or end is not None or every != 1):
+        raise CaseError("--at", at, "excludes --begin, --end and --every")
+    window = {
+        name: in_unit(text, "s", f"--{name}")
+        for name, text in (("at", at), ("begin", begin), ("end", end))
+        if text is not None
+    }
+    results = open_run(run)
+    from ryusa.cli.progress import shown_progress
+
+    with shown_progress("frames", quiet=quiet) as progress:
+        paths = write(results, output, to, every=every, progress=progress, **window)
+    size = sum(one.stat().st_size for one in paths)
+    more = f", with {len(paths) - 1} frames in {output.with_suffix('')}" if len(paths) > 1 else ""
+    typer.echo(f"wrote {paths[0]}{more} ({size / 1e6:.1f} MB)")

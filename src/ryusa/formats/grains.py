@@ -1,0 +1,142 @@
+"""The grains of one moment as columns, between a run and a file of any format."""
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ryusa.model import Scene
+from ryusa.model.arrays import Bools, Floats
+from ryusa.results import Results
+
+UNITS = {
+    **dict.fromkeys(("x", "y", "z", "d"), "m"),
+    **dict.fromkeys(("vx", "vy", "vz"), "m/s"),
+    **dict.fromkeys(("wx", "wy", "wz"), "rad/s"),
+    "m": "kg",
+}
+
+
+@dataclass(frozen=True)
+class PlaneWall:
+    """A plane that a file states beside its grains."""
+
+    name: str
+    point: tuple[float, float, float]  # [m]
+    normal: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class GrainTable:
+    """Grains of one moment in SI, one row per grain.
+
+    Attributes
+    ----------
+    name : the file or folder, for messages.
+    columns : x, y, z, d [m], vx, vy, vz [m/s], wx, wy, wz [rad/s], m [kg], each of shape (n,).
+    fixed : whether a grain never moves, (n,).
+    group : name of the group of each row, "" where none.
+    labels : what messages call each row, such as "of line 7 of grains.csv".
+    ids : as in the run, (n,).
+    image : periods crossed in x and y, (n, 2).
+    t, step : of the frame [s].
+    period : in x and y [m], inf where open; None where the file does not say.
+    planes : walls beside the grains.
+    z_zero : zero of the water profile [m]; None where the file does not say.
+    """
+
+    name: str
+    columns: dict[str, Floats]
+    fixed: Bools
+    group: tuple[str, ...]
+    labels: tuple[str, ...] = ()
+    ids: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
+    image: NDArray[np.int64] = field(default_factory=lambda: np.zeros((0, 2), np.int64))
+    t: float = 0.0
+    step: int = 0
+    period: tuple[float, float] | None = None
+    planes: tuple[PlaneWall, ...] = ()
+    z_zero: float | None = None
+
+    @property
+    def n(self) -> int:
+        """Number of rows."""
+        return len(self.fixed)
+
+    def column(self, name: str) -> Floats:
+        """Values of a column in SI; zeros where the table has none."""
+        return self.columns.get(name, np.zeros(self.n))
+
+    def vectors(self, *names: str) -> Floats:
+        """Columns side by side, shape (n, 3)."""
+        return np.stack([self.column(name) for name in names], axis=1)
+
+
+def table_of_frame(run: Results, k: int) -> GrainTable:
+    """Free and fixed grains of frame k of a run, inside the period.
+
+    Notes
+    -----
+    A fixed grain has the mass that a free grain of its size would have. Groups are those of fixed grains.
+    """
+    frames, t = run.frames, float(run.frames.t[k])
+    scene = run.scene_at(t)
+    there = np.flatnonzero(scene.fixed_active)
+    n, n_fixed = scene.n_grain, len(there)
+    x = np.concatenate([frames.x_wrapped[k], scene.x_fixed[there].reshape(-1, 3)])
+    image = np.zeros((n + n_fixed, 2), dtype=np.int64)
+    image[:n] = frames.image[k]
+    for axis, period in enumerate(scene.period):
+        if math.isfinite(period):  # engines wrap now and then, so a grain may be a little outside
+            turns = np.floor(x[:, axis] / period)
+            x[:, axis] -= turns * period
+            image[:, axis] += turns.astype(np.int64)
+    d = np.concatenate([scene.d, scene.d_fixed[there]])
+    m = np.concatenate([scene.m, scene.m[0] / scene.d[0] ** 3 * scene.d_fixed[there] ** 3])
+    still = np.zeros((n_fixed, 3))
+    v, omega = (np.concatenate([part[k], still]) for part in (frames.v, frames.omega))
+    names = ("x", "y", "z", "d", "vx", "vy", "vz", "wx", "wy", "wz", "m")
+    ids = np.concatenate([np.arange(n), n + there]).astype(np.int64)
+    return GrainTable(
+        name=run.folder.name,
+        columns=dict(zip(names, [*x.T, d, *v.T, *omega.T, m], strict=True)),
+        fixed=ids >= n,
+        group=_groups(scene.groups, ids),
+        labels=tuple(f"{one} of {run.folder.name}" for one in ids.tolist()),
+        ids=ids,
+        image=image,
+        t=t,
+        step=int(frames.step[k]),
+        period=scene.period,
+        planes=_planes(scene),
+        z_zero=scene.water.z_zero,
+    )
+
+
+def _groups(groups: dict[str, tuple[int, int]], ids: NDArray[np.int64]) -> tuple[str, ...]:
+    """Name of the group of each grain: of the smallest that it is in, beside `grains` and `bed`."""
+    found = np.full(len(ids), "", dtype=object)
+    for name, (first, end) in sorted(groups.items(), key=lambda one: one[1][0] - one[1][1]):
+        if name not in {"grains", "bed"}:
+            found[(ids >= first) & (ids < end)] = name
+    return tuple(found.tolist())
+
+
+def _planes(scene: Scene) -> tuple[PlaneWall, ...]:
+    """Planes that are there, under the names of their groups."""
+    first = scene.n_grain + scene.n_fixed
+    names = {begin - first: name for name, (begin, _) in scene.groups.items() if begin >= first}
+    return tuple(
+        PlaneWall(
+            names.get(k, f"plane {k}"),
+            _triple(scene.plane_point[k]),
+            _triple(scene.plane_normal[k]),
+        )
+        for k in np.flatnonzero(scene.plane_active).tolist()
+    )
+
+
+def _triple(values: Floats) -> tuple[float, float, float]:
+    x, y, z = values.tolist()
+    return x, y, z
