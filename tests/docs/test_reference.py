@@ -77,7 +77,8 @@ def test_the_readme_names_every_choice_of_contact_and_water() -> None:
         SideWalls,
     )
     words = {word for family in (*families, Rebound, Film) for word in family.words()} - {"none", "dry"}
-    assert not [word for word in sorted(words) if f"`{word}`" not in laws]
+    missing = [word for word in sorted(words) if f"`{word}`" not in laws]
+    assert not missing, f"README.md, table of '## Laws': add {missing}"
 
 
 def test_every_dataset_of_a_contact_is_documented() -> None:

@@ -77,7 +77,7 @@ def test_a_choice_without_a_function_is_an_error_by_its_name():
 
 
 def test_no_two_choices_have_the_same_number():
-    with pytest.raises(ValueError, match="number 0 is given twice"):
+    with pytest.raises(ValueError, match="Twice: 'two' = 0, the number of ONE; take one above all others"):
 
         class Twice(Family):
             ONE = (0, "one", None, "first")

@@ -212,7 +212,8 @@ def test_units_are_declared_for_laws_that_exist(name, laws):
 @settings(max_examples=15, deadline=None)
 @given(data=st.data())
 def test_other_units_of_mass_length_and_time_rescale_the_answer(law, data):
-    assert law.name in UNITS, "declare the units of its arguments and answers above"
+    takes = ", ".join(law.arguments)
+    assert law.name in UNITS, f'add to UNITS above: "{law.name}": units of {takes} -> units of its answers'
     units, answers = (side.split(", ") for side in UNITS[law.name].split(" -> "))
     factors = [4.0 ** data.draw(st.integers(-3, 3)) for _ in range(3)]  # kg, m, s
 

@@ -49,7 +49,10 @@ class Family(IntEnum):
         marks: tuple[str, ...] = (),
     ) -> Self:
         if number in cls._value2member_map_:
-            raise ValueError(f"{cls.__name__}: number {number} is given twice, also to '{word}'")
+            taken = cls._value2member_map_[number].name
+            raise ValueError(
+                f"{cls.__name__}: '{word}' = {number}, the number of {taken}; take one above all others"
+            )
         member = int.__new__(cls, number)
         member._value_ = number
         member.word, member.function, member.about, member.source = word, function, about, source
