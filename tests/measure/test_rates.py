@@ -73,6 +73,13 @@ def test_the_record_of_a_transient_begins_where_it_has_decayed():
     assert math.isnan(truncation(record[:19]))
 
 
+def test_a_linear_trend_without_noise_hardly_raises_the_noise_it_is_held_against():
+    """Variance of the means 0.104, noise 1/768, of the square of the trend times the samples of a quarter."""
+    variation, drift = compare_quarters(np.arange(1000.0))
+    assert variation == pytest.approx(math.sqrt(80.0), rel=0.02)
+    assert drift > 10.0
+
+
 def test_block_means_use_every_sample_once():
     for n in (5, 128, 129, 1000):
         rows = np.arange(n, dtype=np.float64)

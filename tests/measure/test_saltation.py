@@ -149,3 +149,19 @@ def test_restitution_leaves_out_contacts_whose_partner_was_taken_away(make):
     assert np.isnan(found.duration[1])
     assert np.isfinite(np.delete(found.restitution, 1)).all()
     assert found.averages["duration"].n == len(events) - 1
+
+
+def test_the_begin_of_steady_hops_is_told_from_all_hops_beside_the_settling_of_the_case(make):
+    """Jumps rise from 0.5 to 2.5 mm within some ten of sixty hops."""
+    rises = 2.5e-3 - 2.0e-3 * np.exp(-np.arange(60) / 4.0) + 1.0e-4 * np.sin(np.arange(60) ** 2)
+    t, x, v, events = make.hopping(rises, n_grain=4)  # the first of four, over a bed that is long enough
+    run = make.run_of(t, x[:, None].repeat(4, 1), v[:, None].repeat(4, 1), events, settle=0.05)
+    note = saltation(run, grains=[0]).averages.notes[0]
+    assert note.startswith("jump_height is steady from t = ")
+    assert note.endswith("the case settles until 0.05 s")
+    began = float(note.split("t = ")[1].split(" s")[0])
+    hops = saltation(run, settle=0.0, grains=[0]).hops
+    assert len(hops) == 60
+    assert 4 < np.searchsorted(hops["t_begin"], began) < 40
+    assert "the window begins at 0.2 s" in saltation(run, settle=0.2, grains=[0]).averages.notes[0]
+    assert "too few samples" in saltation(one(make)).averages.notes[0]

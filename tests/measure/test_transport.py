@@ -120,7 +120,7 @@ def test_the_begin_suggested_comes_from_the_whole_run_and_leaves_the_window_alon
     assert transport(run, 1.6).averages["q"].steady
     few = transport(run, end=0.25).averages.notes
     assert any("not steady from any time" in one for one in few)
-    assert any("too few frames" in one for one in transport(run, end=0.15).averages.notes)
+    assert any("too few samples" in one for one in transport(run, end=0.15).averages.notes)
 
 
 def test_a_frame_at_the_end_that_comes_early_weighs_less(ride):

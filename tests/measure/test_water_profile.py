@@ -60,7 +60,7 @@ def test_the_stress_of_clear_water_is_extrapolated_to_the_bed(make):
     assert found.averages["tau_star"].value == pytest.approx(star)
     assert found.averages["u_star"].value == pytest.approx(math.sqrt(found.tau_bed / 1000.0))
     assert found.averages["speed"].value == pytest.approx(0.5, rel=1e-2)
-    assert "too few frames to suggest a begin for discharge" in found.averages.notes[-1]
+    assert "too few samples to suggest a begin for discharge" in found.averages.notes[-1]
     assert found.faces[found.clear].min() > BED  # no face among the grains
     row = found.rows()[-20]
     assert row["in_water"] and row["phi"] == 0.0

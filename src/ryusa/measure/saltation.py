@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ryusa.measure._hops import BOUNCE, HOP, Bounces, bounces_of
 from ryusa.measure._run import Floats, Run, crest_of, settle_time
 from ryusa.measure.collisions import ContactTimes, contact_times
-from ryusa.measure.statistics import Average, average, ratio
+from ryusa.measure.statistics import Average, average, begin_in_words, ratio
 from ryusa.measure.table import Averaged, Averages
 
 RISE = 0.1  # flights that rise less, in diameters, do not part two bounces
@@ -79,7 +79,7 @@ def saltation(
         contact_time=np.concatenate([one.contact_time for one in found]) if found else np.zeros(0),
         times=times,
         rise=rise,
-        averages=_averages(found, times, begin, rise, crest_of(scene)),
+        averages=_averages(found, times, begin, rise, crest_of(scene), _begin(run, ids, rise, settle)),
     )
 
 
@@ -88,7 +88,16 @@ def grouping(run: Run, rises: Sequence[float] = RISES, settle: float | None = No
     return [saltation(run, settle=settle, rise=rise) for rise in rises]
 
 
-def _averages(found: list[Bounces], times: ContactTimes, begin: float, rise: float, crest: float) -> Averages:
+def _begin(run: Run, ids: Sequence[int], rise: float, settle: float | None) -> str:
+    """From when on the jump height is steady, in words, by all hops since the begin of the run."""
+    every = [bounces_of(run, grain, 0.0, rise, None).hops for grain in ids]
+    hops = np.sort(np.concatenate(every), order="t_begin") if every else np.zeros(0, HOP)
+    return begin_in_words("jump_height", hops["t_begin"], hops["rise"], settle_time(run), settle)
+
+
+def _averages(
+    found: list[Bounces], times: ContactTimes, begin: float, rise: float, crest: float, suggested: str
+) -> Averages:
     end = max((float(one.hops["t_end"][-1]) for one in found if len(one.hops)), default=math.nan)
     window = (begin, end)
 
@@ -129,6 +138,7 @@ def _averages(found: list[Bounces], times: ContactTimes, begin: float, rise: flo
     count = sum(len(one.hops) for one in found)
     highest = max((float(one.hops["rise"].max()) for one in found if len(one.hops)), default=math.nan)
     notes = (
+        suggested,
         f"{count} hops of {sum(1 for one in found if len(one.hops))} starts after {begin:g} s; "
         f"a flight that rises less than {rise:g} d counts as part of one bounce",
         f"highest jump {highest:.4g} m above take-off; crest of the bed at z = {crest:.4g} m",

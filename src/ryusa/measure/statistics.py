@@ -235,7 +235,7 @@ def begin_in_words(name: str, t: ArrayLike, record: ArrayLike, settle: float, be
     begin : of the window where another was asked for [s], else None.
 
     >>> begin_in_words("q_star", [0.0, 1.0], [1.0, 1.0], 1.0, None)
-    'too few frames to suggest a begin for q_star; the case settles until 1 s'
+    'too few samples to suggest a begin for q_star; the case settles until 1 s'
     """
     times, samples = np.asarray(t, dtype=np.float64), np.asarray(record, dtype=np.float64)
     share = truncation(samples)
@@ -243,7 +243,7 @@ def begin_in_words(name: str, t: ArrayLike, record: ArrayLike, settle: float, be
     if begin is not None:
         taken += f", the window begins at {begin:g} s"
     if len(samples) < PARTS * (WAVES + 1):
-        return f"too few frames to suggest a begin for {name}; {taken}"
+        return f"too few samples to suggest a begin for {name}; {taken}"
     if math.isnan(share):
         return f"{name} is not steady from any time on by MSER; {taken}"
     return f"{name} is steady from t = {times[math.ceil(share * len(times))]:.3g} s on by MSER; {taken}"

@@ -80,8 +80,8 @@ def compare_quarters(record: ArrayLike, scale: float = 0.0) -> tuple[float, floa
     Analysis of variance: q times the variance of the means of quarters of q samples, over the noise at the
     lowest frequencies, the mean square of the first four cosine coefficients of each quarter (Mueller and
     Watson 2017), both of which are the spectrum at frequency zero where the record is steady. A transient or
-    a step enlarges the noise of the quarter in which it happens, so the noisiest quarter is left out; a trend
-    over the whole record adds 1/256 of its own power to the noise.
+    a step enlarges the noise of the quarter in which it happens, so the noisiest quarter is left out. A
+    linear trend adds to the noise 1/80 of what it adds to the variance of the means.
     """
     samples = np.asarray(record, dtype=np.float64)
     if len(samples) < PARTS * (WAVES + 1):
