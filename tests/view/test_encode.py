@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from ryusa.errors import ResultsError
-from ryusa.view.colouring import COLOURINGS, touching, value_range
+from ryusa.results.touching import contacts_per_grain
+from ryusa.view.colouring import COLOURINGS, value_range
 from ryusa.view.encode import LEVELS, Blob, add_positions
 from ryusa.view.page import LEAST_SIZE, encoded, thinned, view_page
 
@@ -98,9 +99,9 @@ def test_contacts_are_those_of_all_pairs(three, saltation):
                 gap[..., axis] -= period * np.round(gap[..., axis] / period)
         near = np.linalg.norm(gap, axis=2) < 0.5 * (d[None] + scene.d[:, None])
         near[np.arange(len(x)), np.arange(len(x))] = False
-        assert (touching(x, scene) == near.sum(axis=1)).all()
+        assert (contacts_per_grain(x, scene) == near.sum(axis=1)).all()
     on_the_floor = np.array([[0.01, 0.01, 0.0019], [0.03, 0.01, 0.0011], [0.02, 0.03, 0.02]])
-    assert touching(on_the_floor, three.scene).tolist() == [1, 0, 0]
+    assert contacts_per_grain(on_the_floor, three.scene).tolist() == [1, 0, 0]
 
 
 def test_frames_are_thinned_before_grains_and_evenly():

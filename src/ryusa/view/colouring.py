@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import KDTree
 
 from ryusa.model import Scene
 from ryusa.results import Results
+from ryusa.results.touching import contacts_per_grain
 
 Floats = NDArray[np.float64]
 
@@ -60,9 +60,8 @@ def _size(results: Results, _k: int) -> Floats:
 
 
 def _contacts(results: Results, k: int) -> Floats:
-    return touching(results.frames.x_wrapped[k], results.scene_at(float(results.frames.t[k]))).astype(
-        np.float64
-    )
+    scene = results.scene_at(float(results.frames.t[k]))
+    return contacts_per_grain(results.frames.x_wrapped[k], scene).astype(np.float64)
 
 
 COLOURINGS = (
@@ -102,31 +101,3 @@ def value_range(one: Colouring, values: Floats, scene: Scene) -> tuple[float, fl
         return low, high
     room = 0.05 * abs(low) or 1.0  # all alike: the middle of a scale around them
     return low - room, high + room
-
-
-def touching(x: Floats, scene: Scene) -> NDArray[np.int64]:
-    """Number of grains, fixed grains and planes that each free grain overlaps, shape (n_grain,).
-
-    Parameters
-    ----------
-    x : centres of the free grains inside the periods [m], shape (n_grain, 3).
-    scene : the scene that holds then.
-    """
-    n, there = scene.n_grain, np.flatnonzero(scene.fixed_active)
-    every = np.concatenate([x, scene.x_fixed[there].reshape(-1, 3)])
-    d = np.concatenate([scene.d, scene.d_fixed[there]])
-    if n == 0:
-        return np.zeros(0, dtype=np.int64)
-    box = np.array([*(p if math.isfinite(p) else 0.0 for p in scene.period), 0.0])  # 0: open
-    for axis in np.flatnonzero(box):
-        every[:, axis] %= box[axis]
-        every[every[:, axis] >= box[axis], axis] = 0.0  # round-off of the line above
-    pairs = KDTree(every, boxsize=box).query_pairs(float(d.max()), output_type="ndarray")
-    i, j = pairs[(pairs < n).any(axis=1)].T  # at least one of the two is free
-    gap = every[j] - every[i]
-    gap -= np.where(box > 0.0, box * np.round(gap / np.where(box > 0.0, box, 1.0)), 0.0)
-    near = (gap**2).sum(axis=1) < (0.5 * (d[i] + d[j])) ** 2
-    count = np.bincount(np.concatenate([i[near], j[near]]), minlength=len(every))[:n]
-    for k in np.flatnonzero(scene.plane_active):
-        count += (x - scene.plane_point[k]) @ scene.plane_normal[k] < 0.5 * scene.d
-    return count

@@ -1,0 +1,58 @@
+"""Pairs in touch at a frame, from positions alone."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import KDTree
+
+from ryusa.model import Scene
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+def touching_pairs(x: Floats, scene: Scene) -> tuple[Ints, Ints]:
+    """Ids i, j of the pairs that overlap, shape (n_pair,) each, every pair once.
+
+    Parameters
+    ----------
+    x : centres of the free grains [m], shape (n_grain, 3).
+    scene : the scene that holds then.
+
+    Returns
+    -------
+    i, j : i is a free grain; j is a free grain, a fixed grain or a plane, with the ids of the scene.
+    """
+    n, there = scene.n_grain, np.flatnonzero(scene.fixed_active)
+    if n == 0:
+        return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
+    every = np.concatenate([x, scene.x_fixed[there].reshape(-1, 3)])
+    d = np.concatenate([scene.d, scene.d_fixed[there]])
+    box = np.array([*(p if math.isfinite(p) else 0.0 for p in scene.period), 0.0])  # 0: open
+    for axis in np.flatnonzero(box):
+        every[:, axis] %= box[axis]
+        every[every[:, axis] >= box[axis], axis] = 0.0  # round-off of the line above
+    pairs = KDTree(every, boxsize=box).query_pairs(float(d.max()), output_type="ndarray")
+    i, j = pairs[(pairs < n).any(axis=1)].T  # at least one of the two is free, and i < j
+    gap = every[j] - every[i]
+    gap -= np.where(box > 0.0, box * np.round(gap / np.where(box > 0.0, box, 1.0)), 0.0)
+    near = (gap**2).sum(axis=1) < (0.5 * (d[i] + d[j])) ** 2
+    firsts, partners = [i[near]], [np.concatenate([np.arange(n), n + there])[j[near]]]
+    for k in np.flatnonzero(scene.plane_active):
+        at = np.flatnonzero((x - scene.plane_point[k]) @ scene.plane_normal[k] < 0.5 * scene.d)
+        firsts.append(at)
+        partners.append(np.full(len(at), n + scene.n_fixed + k))
+    return np.concatenate(firsts).astype(np.int64), np.concatenate(partners).astype(np.int64)
+
+
+def contacts_per_grain(x: Floats, scene: Scene) -> Ints:
+    """Number of grains, fixed grains and planes that each free grain overlaps, shape (n_grain,).
+
+    Parameters
+    ----------
+    x, scene : as in `touching_pairs`.
+    """
+    i, j = touching_pairs(x, scene)
+    n = scene.n_grain
+    return np.bincount(i, minlength=n) + np.bincount(j[j < n], minlength=n)
