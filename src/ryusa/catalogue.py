@@ -27,7 +27,6 @@ class MeasureEntry:
     settled : whether the measure ignores the time up to `record.settle` by default; --settle changes it.
     printing : options that affect only the printed text.
     builders : kinds of `[build]` whose runs have it in their report.
-    builders : kinds of `[build]` whose runs have it in their report.
     """
 
     name: str
@@ -58,7 +57,6 @@ class PictureEntry:
     options : keywords, of the measure if there is one, that are options of the command.
     settled : whether the picture ignores the time up to `record.settle` by default.
     measure : name of the measure that it draws, or "".
-    builders : kinds of `[build]` whose runs have it in their report.
     builders : kinds of `[build]` whose runs have it in their report.
     """
 
