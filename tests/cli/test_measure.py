@@ -47,11 +47,11 @@ def test_every_measure_prints_something_and_writes_csv(folder, tmp_path, what):
 
 def test_a_flow_has_a_profile_and_paths_within_a_window(folder, tmp_path):
     table = tmp_path / "profile.csv"
-    result = call("measure", folder, "profile", "--begin", "0.1 s", "--layer", "1", "--csv", table)
+    result = call("measure", folder, "profile", "--begin", "0.1 s", "--layer", "1", "--layers", table)
     assert result.exit_code == 0, result.output
     assert "m2/s" in result.output
     assert table.read_text().startswith("z_m,z_over_d,phi,")
-    result = call("measure", folder, "paths", "--window", "0.1 s", "--end", "0.3 s", "--csv", table)
+    result = call("measure", folder, "paths", "--window", "0.1 s", "--end", "0.3 s", "--series", table)
     assert result.exit_code == 0, result.output
     assert "reversals" in result.output
     assert len(table.read_text().splitlines()) == 1 + 3 * 2  # windows, grains

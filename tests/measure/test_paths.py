@@ -23,7 +23,7 @@ def test_spin_is_averaged_after_settling_and_set_against_distance(make):
     assert found.averages["spin"].value == pytest.approx(-100.0)
     assert found.largest == pytest.approx(300.0)
     assert found.distance[-1, 0] == pytest.approx(0.5)
-    assert found.samples()[0]["x_m"] == 0.0
+    assert found.series()[0]["x_m"] == 0.0
 
 
 def test_tracks_show_only_the_bed_of_their_own_lane(make):

@@ -17,7 +17,16 @@ if TYPE_CHECKING:
 Check = Callable[[str, Any, "Results"], Any]  # option, value as typed and the run -> value in SI units
 Entry = TypeVar("Entry", MeasureEntry, PictureEntry)
 
-ALWAYS = {"run", "what", "csv", "output"}  # arguments, and options that every measure or every picture takes
+ALWAYS = {
+    "run",
+    "runs",
+    "what",
+    "csv",
+    "series",
+    "layers",
+    "json",
+    "output",
+}  # arguments, and options that every measure or every picture takes
 SIDES = ("right", "left")
 
 

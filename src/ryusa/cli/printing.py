@@ -28,7 +28,7 @@ def print_found(name: str, found: Any, results: "Results", **printing: Any) -> N
     if name in _OWN_FORM:
         _OWN_FORM[name](found, **printing)
     elif hasattr(found, "averages"):
-        _print_averages(found.averages)
+        print_averages(found.averages)
     else:
         _print_rows(found.rows())
 
@@ -39,7 +39,7 @@ def _need_hops(found: "Saltation", results: "Results") -> None:
         raise ResultsError(f"{results.folder}: does not hold hops over fixed grains after t = {since:g} s")
 
 
-def _print_averages(averages: "Averages") -> None:
+def print_averages(averages: "Averages") -> None:
     """Print each average with standard error, number of samples, window and steadiness; then the notes."""
     names = ("quantity", "value", "± s.e.", "unit", "n", "window \\[s]", "steady?")
     table = _table(names, left=("quantity", "unit", "steady?"))

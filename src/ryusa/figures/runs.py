@@ -56,7 +56,7 @@ def spin(results: Results, grains: Sequence[int] | None = None, length: float | 
     """Spin of grains over the distance travelled, up to `length` [m]."""
     found = measure.spin(results)
     _need(len(found.t) > 1, results, "two frames")
-    return figures.spin(found, grains, length), found.samples()
+    return figures.spin(found, grains, length), found.series()
 
 
 def energy(results: Results) -> Drawn:

@@ -15,7 +15,7 @@ from ryusa.laws.collision import (
 )
 from ryusa.measure._run import Floats, Run, settle_time
 from ryusa.measure.statistics import Average, average
-from ryusa.measure.table import Averaged, Averages
+from ryusa.measure.table import Averaged, Averages, rows_of
 from ryusa.model import Scene
 from ryusa.model.scene import Damping
 
@@ -67,6 +67,10 @@ class Collisions(Averaged):
     expected: Floats
     turning: Floats
     averages: Averages
+
+    def series(self) -> list[dict[str, object]]:
+        """One dictionary per contact."""
+        return rows_of(self.events)
 
     def rows(self) -> list[dict[str, object]]:
         """One dictionary per average."""

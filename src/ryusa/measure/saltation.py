@@ -12,9 +12,9 @@ from ryusa.measure._hops import BOUNCE, HOP, Bounces, bounces_of
 from ryusa.measure._run import Floats, Run, crest_of, settle_time
 from ryusa.measure.collisions import ContactTimes, contact_times
 from ryusa.measure.statistics import Average, average, begin_in_words, ratio
-from ryusa.measure.table import Averaged, Averages
+from ryusa.measure.table import Averaged, Averages, rows_of
 
-RISE = 0.1  # flights that rise less, in diameters, do not part two bounces
+RISE = 0.1  # in diameters: a flight that rises less belongs to one bounce
 RISES = (0.0, 0.02, 0.05, 0.1, 0.2, 0.5)
 
 
@@ -38,6 +38,10 @@ class Saltation(Averaged):
     times: ContactTimes
     rise: float
     averages: Averages
+
+    def series(self) -> list[dict[str, object]]:
+        """One dictionary per hop."""
+        return rows_of(self.hops)
 
     def rows(self) -> list[dict[str, object]]:
         """One dictionary per average."""

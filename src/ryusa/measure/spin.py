@@ -38,7 +38,7 @@ class Spin(Averaged):
         """One dictionary per average."""
         return self.averages.rows()
 
-    def samples(self) -> list[dict[str, object]]:
+    def series(self) -> list[dict[str, object]]:
         """One dictionary per frame and grain."""
         return [
             {"grain": g, "t_s": float(t), "x_m": float(x), "omega_y_rad_per_s": float(omega)}

@@ -70,6 +70,15 @@ class Averaged:
     def __getitem__(self, name: str) -> Average:
         return self.averages[name]
 
+    def series(self) -> list[dict[str, object]]:
+        """Rows of what was averaged: a time series, or single events."""
+        rows: list[dict[str, object]] = self.rows()
+        return rows
+
+    def rows(self) -> list[dict[str, object]]:
+        """Rows of the record."""
+        return self.averages.rows()
+
     def _repr_html_(self) -> str:
         return self.averages._repr_html_()
 

@@ -58,6 +58,10 @@ class WaterProfile(Averaged):
     d: float
     averages: Averages
 
+    def series(self) -> list[dict[str, object]]:
+        """No series is kept: empty."""
+        return []
+
     def rows(self) -> list[dict[str, object]]:
         """One dictionary per cell, from below; stress and eddy viscosity are the mean of its two faces."""
         tau, nu_t = (0.5 * (one.value[1:] + one.value[:-1]) for one in (self.tau, self.nu_t))
