@@ -45,6 +45,7 @@ extensions = [
 myst_enable_extensions = ["colon_fence", "deflist", "attrs_inline"]
 myst_heading_anchors = 4
 default_role = "code"
+smartquotes = False  # options such as --set, and quotes in commands, must be copied as they are typed
 nitpicky = True
 # Only names of ryusa have pages here; types of Python, NumPy and other packages are shown without a link.
 nitpick_ignore_regex = [(r"py:.*", r"(?!ryusa\.).*")]
