@@ -42,6 +42,7 @@ FAR = [
     "temperature",
     "hertz",
     "x",
+    "dt",
     "",
     "porosity",
     "boundary",
@@ -81,7 +82,7 @@ def test_an_unknown_boundary_gets_no_hint(case: CaseOf) -> None:
     assert caught.value.nearest is None
 
 
-@pytest.mark.parametrize("key", ["young", "youngs_modulus", "poisson_ratio", "law"])
+@pytest.mark.parametrize("key", ["young", "youngs_modulus", "poisson_ratio", "law", "model"])
 def test_a_key_of_another_contact_law_is_answered_by_the_only_one_there_is(case: CaseOf, key: str) -> None:
     with pytest.raises(CaseError, match="linear spring and dashpot") as caught:
         case(**{f"contact.{key}": "1"})

@@ -22,11 +22,13 @@ def nearest_word(value: object, words: Sequence[str]) -> str | None:
 
 def is_near(written: str, word: str) -> bool:
     """Whether one word may be a misspelling of the other."""
+    if len(written) <= 2:  # one edit turns most words of two letters into one another
+        return written == word
     if abs(len(written) - len(word)) <= 2 and edits(written, word) <= max(
         1, max(len(written), len(word)) // 4
     ):
         return True
-    return len(written) > 2 and written in word.replace("-", "_").replace(" ", "_").split("_")
+    return written in word.replace("-", "_").replace(" ", "_").split("_")
 
 
 def edits(one: str, other: str) -> int:
