@@ -175,7 +175,7 @@ def command_reference() -> str:
         lines += ["", f"## ryusa {name}", "", text.strip()]
         rows = [row for parameter in command.params if (row := _parameter(parameter))]
         if rows:
-            lines += ["", "| | | default |", "|---|---|---|", *rows]
+            lines += ["", "| argument or option | meaning | default |", "|---|---|---|", *rows]
         if name in CATALOGUE:
             lines += ["", "| `WHAT` | | options |", "|---|---|---|"]
             for one in CATALOGUE[name]:

@@ -101,7 +101,7 @@ def test_the_stress_on_grains_is_that_removed_from_the_cells(packing):
     z, d, cells, rng = packing
     found = exchange.slices(z, d, cells)
     tau = rng.normal(size=cells.n + 1)
-    felt = found.whole * exchange.slope_to_grains(found, tau)
+    felt = found.whole * exchange.to_grains(found, np.diff(tau) / cells.dz)
     given_up = exchange.concentration(found) * np.diff(tau) / cells.dz * cells.volume
     assert felt.sum() == pytest.approx(given_up.sum(), abs=1e-12 * np.abs(felt).sum() + 1e-30)
 
@@ -122,7 +122,9 @@ def test_a_uniform_flow_is_sampled_exactly(packing):
         exchange.faces_to_grains(found, np.full(cells.n + 1, 0.7)), 0.7 * found.share, rtol=1e-12
     )
     linear = 5.0 * (cells.faces - cells.z_low)
-    np.testing.assert_allclose(exchange.slope_to_grains(found, linear), 5.0 * found.share, rtol=1e-10)
+    np.testing.assert_allclose(
+        exchange.to_grains(found, np.diff(linear) / cells.dz), 5.0 * found.share, rtol=1e-10
+    )
 
 
 @settings(deadline=None)
@@ -214,6 +216,6 @@ def test_invalid_input_is_refused():
     with pytest.raises(ValueError, match="one row per grain"):
         exchange.to_cells(one, np.zeros(2))
     with pytest.raises(ValueError, match="one row per face"):
-        exchange.slope_to_grains(one, np.zeros(4))
+        exchange.faces_to_grains(one, np.zeros(4))
     with pytest.raises(ValueError, match="the same cells"):
         exchange.concentration(one, bed=exchange.slices(np.zeros(1), np.full(1, D), Cells(0.0, D, 5, AREA)))

@@ -35,7 +35,7 @@ _LINEAR = (
 )
 _OTHER_CONTACT_LAWS = {
     *("young", "youngs_modulus", "young_modulus", "elastic_modulus", "shear_modulus"),
-    *("poisson", "poisson_ratio", "poissons_ratio", "law", "model", "hertz"),
+    *("poisson", "poisson_ratio", "poissons_ratio", "law", "model", "hertz", "normal", "tangential"),
 }
 
 

@@ -32,7 +32,7 @@ from ryusa.water.coupling import Coupling
 
 _CHUNK = 0.25  # s of wall time between two checks of clock and signals
 _CHUNK_FIRST = (1, 16)  # steps of the first calls, while the speed is unknown
-_COMPILING = "compiling for this processor, about ten seconds; later runs use the compiled code"
+_COMPILING = "compiling for this processor, 10 to 30 seconds; later runs use the compiled code"
 _NEVER = 2**62  # steps
 _DELIVER_EVERY = (
     65_536  # steps after which contacts are passed to the recorder if nothing else is due earlier

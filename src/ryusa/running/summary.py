@@ -68,7 +68,7 @@ def _measured(averages: dict[str, Any]) -> str:
         if one["n"]:
             error = "" if one["standard_error"] is None else f" +- {one['standard_error']:.1g}"
             parts.append(f"{one['mean']:.4f}{error} against {partner} grains ({one['n']} contacts)")
-    return ", ".join(parts) or "none (no contact between two isolated grains)"
+    return ", ".join(parts) or "not at all (no contact between two isolated grains)"
 
 
 def _set(restitution: dict[str, Any]) -> str:

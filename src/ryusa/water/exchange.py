@@ -244,23 +244,6 @@ def to_grains(grains: Slices, values: Floats, share: Share = "whole") -> Floats:
     return out[:, 0] if flat else out
 
 
-def slope_to_grains(grains: Slices, faces: Floats, share: Share = "whole") -> Floats:
-    """Mean over each grain of the z derivative of face values.
-
-    Parameters
-    ----------
-    grains : slices.
-    faces : at each face (a stress [Pa]), shape (n + 1,) or (n + 1, m).
-    share : as in `to_grains`.
-
-    Returns
-    -------
-    Unit of `faces` over metre. Times V_i it equals the loss of the cells: with the stress tau, V d tau/dz.
-    """
-    table = _at_faces(grains, faces)
-    return to_grains(grains, np.diff(table, axis=0) / grains.cells.dz, share)
-
-
 def faces_to_grains(grains: Slices, faces: Floats, share: Share = "whole") -> Floats:
     """Mean over each grain of face values (such as dU/dz [1/s]); a cell has the mean of its two faces.
 

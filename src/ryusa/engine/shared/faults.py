@@ -53,11 +53,11 @@ def unsafe_of(grains: Any, n: int, parameters: Floats, smallest: float, step: in
 
 
 def lost_of(grains: Any, grain: int, step: int, t: float) -> GrainLost:
-    """A grain outside the world."""
+    """Error of a grain that has left the domain."""
     place = int(np.flatnonzero(grains.ids == grain)[0])
     where = ", ".join(f"{a:.4g}" for a in grains.x[place, :3])
     hint = (
-        "It flew, rolled or fell out, through a gap or a bed too soft to hold it: close the gap, take a "
-        "larger contact.stiffness, or widen domain.low and domain.high."
+        "It flew, rolled or fell out, through a gap or a bed too soft to hold it: close the gap, increase "
+        "contact.stiffness, or widen domain.low and domain.high."
     )
     return GrainLost(f"a grain left the world at ({where}) m", grain=grain, step=step, t=t, hint=hint)

@@ -37,7 +37,7 @@ class PaperStudy(Study):
     """Every experiment that answers the paper, with the words of its page."""
 
     name = "paper"
-    title = "What holds of the paper's claims, and what decides it"
+    title = "Verdicts on the claims of the paper, and the choices that decide them"
     command = "ryusa paper"
     parts = NAMES
     words: Mapping[Outcome, str] = {

@@ -30,7 +30,7 @@ class ValidationStudy(Study):
     """Every check of the package, with the words of its page."""
 
     name = "validation"
-    title = "Our curve beside each reference, and how far off it is"
+    title = "Comparison with references, and the error of each"
     command = "ryusa validate"
     stem = "validation"
     parts = NAMES
@@ -71,7 +71,7 @@ def table(plain: Mapping[str, Any]) -> str:
 
     Of several errors it shows those that miss, or the one that uses most of its tolerance.
     """
-    lines = ["| comparison | reference | error | may be | verdict |", "|---|---|---|---|---|"]
+    lines = ["| comparison | reference | error | allowed | verdict |", "|---|---|---|---|---|"]
     for row in plain["findings"]:
         shown = telling(row["trials"])
         more = len(row["trials"]) - len(shown)
