@@ -30,6 +30,7 @@ class Laws:
     slab_width: float = math.nan  # [m]
     overlap_limit: float = 0.5
     events: EventRule = EventRule.ALL
+    forces: bool = False
     tracked: tuple[int, ...] = ()
     low: tuple[float, float, float] | None = None  # [m]; None takes the default box
     high: tuple[float, float, float] | None = None
@@ -85,6 +86,7 @@ def assemble(placement: Placement, laws: Laws) -> tuple[Scene, State]:
         slab_width=laws.slab_width,
         overlap_limit=laws.overlap_limit,
         events=laws.events,
+        forces=laws.forces,
         tracked=_read_only(mask(n, laws.tracked)),
         groups=placement.groups(),
     )

@@ -110,6 +110,7 @@ def laws_of(case: Case, derived: Derived, z_zero: float) -> Laws:
         slab_width=slab_width(case) if case.motion.plane else math.nan,
         overlap_limit=case.domain.overlap_limit,
         events=EventRule[events_of(case).upper()],
+        forces=case.record.forces,
         tracked=case.record.tracked,
         low=case.domain.low,
         high=case.domain.high,

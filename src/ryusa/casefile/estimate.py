@@ -11,6 +11,7 @@ from ryusa.casefile.rows import ExplainRow, Flag, count, number, word
 from ryusa.model.contacts import N_EVENT
 
 BYTES_PER_GRAIN = 80  # of a frame: x, v, omega, image
+BYTES_OF_FORCES = 120  # per grain and frame where forces are recorded: three contacts of 40 bytes
 BYTES_PER_FRAME = 264  # t, step, offset for ParaView and tally
 BYTES_PER_RUN = 100_000  # headers of the parts, log, summary, bed
 MEMORY_PER_RUN = 250_000_000  # bytes of any process that runs
@@ -55,9 +56,14 @@ def frames_expected(case: Case) -> int:
     return math.floor(time_expected(case)[0] / case.record.frames) + 2
 
 
+def bytes_per_grain(case: Case) -> int:
+    """Bytes of one grain in a frame."""
+    return BYTES_PER_GRAIN + BYTES_OF_FORCES * case.record.forces
+
+
 def disk_needed(case: Case, derived: Derived) -> int:
     """Bytes that the frames of a run will take; contacts recorded come on top."""
-    frame = derived.n_grain * BYTES_PER_GRAIN + BYTES_PER_FRAME
+    frame = derived.n_grain * bytes_per_grain(case) + BYTES_PER_FRAME
     return frames_expected(case) * frame + BYTES_PER_RUN
 
 
@@ -94,7 +100,7 @@ def memory_per_grain(case: Case) -> int:
 
 def memory_needed(case: Case, derived: Derived) -> int:
     """Bytes of memory a run will take, frames that wait to be written with it."""
-    frame = derived.n_grain * BYTES_PER_GRAIN
+    frame = derived.n_grain * bytes_per_grain(case)
     held = max(frame, min(FRAMES_HELD, frames_expected(case) * frame))
     grains = (derived.n_grain + derived.n_fixed) * memory_per_grain(case)
     return MEMORY_PER_RUN + grains + COPIES * held

@@ -77,6 +77,8 @@ class RecordSection(Section):
     grains or where saltations end the run, else none."""
     tracked: tuple[Annotated[Count, Field(ge=0)], ...] = ()
     """Numbers of the tracked grains, from 0."""
+    forces: bool = False
+    """Whether every frame holds the contact forces, which `ryusa measure RUN contact_stress` needs."""
     settle: Moment = 0.0
     """Simulated time before which measures ignore the run."""
 

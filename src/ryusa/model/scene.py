@@ -142,6 +142,7 @@ class Scene:
     # guards and records
     overlap_limit: float = 0.5  # overlap over smaller diameter that stops the run [-]
     events: EventRule = EventRule.ALL
+    forces: bool = False  # contact forces are recorded with every frame
     tracked: Bools = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))  # (n_grain,) or empty
     # names of groups, for timeline and measures: slices of the ids above
     groups: dict[str, tuple[int, int]] = field(default_factory=lambda: {})

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ryusa.errors import ResultsError
 from ryusa.model import EVENT
 from ryusa.results import schema
-from ryusa.results.hdf5 import DAMAGE, OpenFiles, opened, read_dataset
+from ryusa.results.hdf5 import DAMAGE, OpenFiles, opened, plain_dataset, read_dataset
 
 
 @dataclass(frozen=True)
@@ -39,6 +39,20 @@ class Part:
             return self.files.dataset(self.path, name)[begin:end, grains]
         except DAMAGE as error:
             raise ResultsError(f"{self.path}: '{name}' cannot be read ({error})") from error
+
+    def forces(self, k: int) -> NDArray[np.void] | None:
+        """Read the contact forces of frame k, counted within this part; None where they were not recorded."""
+        with opened(self.path) as file:
+            if schema.N_FORCE not in file:
+                return None
+            ends = np.cumsum(read_dataset(file, schema.N_FORCE, self.path))
+            rows = plain_dataset(file, schema.FORCES, self.path)
+            if ends.shape != (self.n_frame,) or rows.shape != (ends[-1],) or rows.dtype != schema.FORCE:
+                raise ResultsError(f"{self.path}: '{schema.FORCES}' does not match its frames")
+            try:
+                return rows[ends[k - 1] if k else 0 : ends[k]]
+            except DAMAGE as error:
+                raise ResultsError(f"{self.path}: '{schema.FORCES}' cannot be read ({error})") from error
 
     def contacts(self) -> NDArray[np.void]:
         """Read all contacts of this part, dtype model.EVENT."""

@@ -171,6 +171,22 @@ class Results:
         joined.flags.writeable = False
         return joined
 
+    def contact_forces(self, k: int) -> NDArray[np.void]:
+        """Contact forces at frame k: structured array of dtype schema.FORCE, of the step before the frame.
+
+        Raises
+        ------
+        ResultsError : the case did not record them (`record.forces`).
+        """
+        k = range(len(self.frames))[k]
+        part = self._parts[bisect_right([one.first for one in self._parts], k) - 1]
+        found = part.forces(k - part.first)
+        if found is None:
+            raise ResultsError(
+                f"{self.folder}: holds no contact forces; run the case with --set record.forces=true"
+            )
+        return found
+
     @cached_property
     def tally(self) -> dict[str, NDArray[Any]]:
         """The energy account [J] and extremes at each frame, shape (n_frame,) each; keys of schema.TALLY."""

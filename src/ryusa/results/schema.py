@@ -54,6 +54,16 @@ WATER_CELLS = ("u", "w", "phi", "content")  # [m/s], [m/s], [-], [m]
 WATER_FACES = ("tau", "nu_t")  # [Pa], [m2/s]
 WATER_NUMBERS = ("z_surface", "gradient")  # [m], [Pa/m]
 
+# contact forces, if the case records them: those of all frames in one dataset, and the number of each frame
+FORCES, N_FORCE = "forces", "n_force"
+FORCE = np.dtype(
+    [
+        ("i", np.int64),  # id of the free grain
+        ("j", np.int64),  # id of its partner: free grain, fixed grain or plane (Scene)
+        ("force", np.float64, (3,)),  # on grain i [N]
+    ]
+)
+
 PER_GRAIN = ("x", "v", "omega", "image")
 
 _INTEGER = {"overlap_grain", "overlap_step", "n_contact"}

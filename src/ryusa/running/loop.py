@@ -332,7 +332,7 @@ class Loop:
             self.progress.line(f"t = {self._t:.6g} s: {change.what}")
 
     def _record(self) -> None:
-        state, tally = self.engine.grains(), self.engine.tally()
+        state, tally = self.engine.state() if self.scene.forces else self.engine.grains(), self.engine.tally()
         self.recorder.frame(state, tally, self._water)
         self.watch.frame(tally)
         if fault := energy_created(self.scene, state, tally):

@@ -21,6 +21,7 @@ from ryusa.model import EVENT, Scene, State, Tally
 from ryusa.results import schema
 from ryusa.results.scene_file import write_scene
 from ryusa.running.checkpoint import CheckpointBlock
+from ryusa.running.contact_forces import contact_forces
 from ryusa.running.disk import disk_errors, free_bytes
 from ryusa.running.vtkhdf import PartSize, write_bed, write_hdf5, write_index, write_points
 from ryusa.water.coupling import Coupling
@@ -112,6 +113,9 @@ class Recorder:
         self._tally: list[tuple[float, ...]] = []
         self._contacts: list[NDArray[np.void]] = []
         self._n_buffered_contacts = 0  # contacts in the buffer
+        self._forces: list[NDArray[np.void]] | None = (
+            [] if scene.forces else None
+        )  # of each frame in the buffer
         self._water: dict[str, list[NDArray[np.float64]]] = {}
         self._verify_until: int | None = None
         self._earlier: RecordedSoFar | None = None
@@ -154,6 +158,8 @@ class Recorder:
         row["x"][k], row["v"][k], row["omega"][k] = state.x, state.v, state.omega
         if len(state.image):
             row["image"][k] = state.image
+        if self._forces is not None:
+            self._forces.append(contact_forces(state, self.first_scene))
         self._tally.append(schema.tally_row(tally))
         self._count += 1
 
@@ -201,7 +207,9 @@ class Recorder:
     @property
     def buffered(self) -> int:
         """Size of the data that is not yet in a part [B]."""
-        return self._count * bytes_per_frame(self.n_grain) + self._n_buffered_contacts * EVENT.itemsize
+        forces = sum(one.nbytes for one in self._forces or ())
+        frames = self._count * bytes_per_frame(self.n_grain)
+        return frames + forces + self._n_buffered_contacts * EVENT.itemsize
 
     def flush(self) -> bool:
         """Write the buffer as one part, then the index.
@@ -216,6 +224,7 @@ class Recorder:
             self._write_part()
             self._count, self._n_buffered_contacts = 0, 0
             self._tally, self._contacts, self._water = [], [], {}
+            self._forces = None if self._forces is None else []
         elif not self._index_is_old:
             return False
         self._write_index()
@@ -265,6 +274,9 @@ class Recorder:
         rows: dict[str, NDArray[Any]] = {name: self._buffer[name][: self._count] for name in self._buffer}
         rows["tally"] = np.array(self._tally, dtype=schema.TALLY)
         rows["contacts"] = np.concatenate(self._contacts) if self._contacts else np.zeros(0, dtype=EVENT)
+        if self._forces is not None:
+            rows[schema.N_FORCE] = np.array([len(one) for one in self._forces], dtype=np.int64)
+            rows[schema.FORCES] = np.concatenate([np.zeros(0, dtype=schema.FORCE), *self._forces])
         return rows | {f"{schema.WATER}/{name}": np.array(one) for name, one in self._water.items()}
 
     def _continue_from(self, earlier: RecordedSoFar) -> None:
@@ -289,6 +301,9 @@ class Recorder:
             rows[: self._count] = buffered[name]
         self._tally = buffered["tally"].tolist()
         self._contacts, self._n_buffered_contacts = [buffered["contacts"]], len(buffered["contacts"])
+        if self._forces is not None:
+            ends = np.cumsum(buffered[schema.N_FORCE])
+            self._forces = np.split(buffered[schema.FORCES], ends[:-1]) if self._count else []
         begin = f"{schema.WATER}/"
         for name, rows in buffered.items():
             if name.startswith(begin):

@@ -291,6 +291,9 @@ def _buffered(recorder: CheckpointBlock, scene: Scene, folder: Path) -> dict[str
             cells, faces = (schema.WATER_CELLS, (n_cell,)), (schema.WATER_FACES, (n_cell + 1,))
             for names, tail in (cells, faces, (schema.WATER_NUMBERS, ())):
                 shapes |= {f"{schema.WATER}/{name}": ((k, *tail), float_) for name in names}
+        if scene.forces:
+            n_force = rows[schema.N_FORCE].sum() if schema.N_FORCE in rows else 0
+            shapes |= {schema.N_FORCE: ((k,), np.dtype(np.int64)), schema.FORCES: ((n_force,), schema.FORCE)}
         if set(shapes) != set(rows):
             raise ValueError(f"datasets {', '.join(sorted(rows))}")
         for name, (shape, dtype) in shapes.items():
