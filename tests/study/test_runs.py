@@ -262,7 +262,7 @@ def test_the_remaining_time_follows_from_the_finished_runs(capsys):
     now = [0.0]
     runs = [paper_run("saltation", SHORT, seed) for seed in range(1, 5)]
     say = ProgressLines(clock=lambda: now[0])
-    say.begin(CostEstimate(dict.fromkeys(runs, 10.0), (), 10**6, 2))
+    say.begin(CostEstimate(dict.fromkeys(runs, 10.0), (), 10**6, 2), Path())
     assert say.left() == pytest.approx(20.0)
     say.started(runs[0])
     say.started(runs[1])
@@ -369,3 +369,32 @@ def test_no_process_outlives_a_killed_study(campaign):
             break
         time.sleep(0.1)
     assert not family(campaign.pid)
+
+
+def test_the_remaining_time_weighs_runs_by_their_cost_and_by_what_is_still_running(tmp_path):
+    now = [0.0]
+    long, *short = (paper_run("saltation", SHORT, seed) for seed in range(1, 22))
+    say = ProgressLines(clock=lambda: now[0])
+    say.begin(CostEstimate({long: 100.0, **dict.fromkeys(short, 1.0)}, (), 10**6, 2), tmp_path)
+    say.started(long)
+    for one in short:
+        say.started(one)
+        now[0] += 1.0
+        say.done(one, 1.0, opened=False, problem="")
+    assert say.left() == pytest.approx(80.0)  # not the 100/20 of its neighbours
+    now[0] = 120.0  # late, and it does not tell how far it is: never nearly done
+    assert say.left() > 10.0
+    (tmp_path / long.folder).mkdir(parents=True)
+    end = long.read().stop.time
+    (tmp_path / long.folder / "summary.json").write_text(json.dumps({"t": 0.25 * end, "saltations": [0]}))
+    say.tick()
+    assert say.left() == pytest.approx(360.0)  # a quarter took 120 s
+
+
+def test_a_run_that_goes_on_tells_its_share(tmp_path):
+    one = paper_run("saltation", SHORT, 1)
+    assert one.share(tmp_path) is None
+    (tmp_path / "summary.json").write_text("{")
+    assert one.share(tmp_path) is None
+    (tmp_path / "summary.json").write_text(json.dumps({"t": one.read().stop.time / 2, "saltations": [0]}))
+    assert one.share(tmp_path) == pytest.approx(0.5)

@@ -3,6 +3,7 @@
 import sys
 import time
 from collections.abc import Callable
+from pathlib import Path
 
 from ryusa.study.cost import CostEstimate, duration
 from ryusa.study.task import Task
@@ -11,8 +12,8 @@ from ryusa.study.task import Task
 class StudyProgress:
     """Receives the progress of a study; shows nothing."""
 
-    def begin(self, ahead: CostEstimate) -> None:
-        """Called before the first run, with the estimated cost of all runs."""
+    def begin(self, ahead: CostEstimate, folder: Path) -> None:
+        """Called before the first run, with the estimated cost of all runs and the folder that holds them."""
 
     def started(self, one: Task) -> None:
         """Called when a run begins."""
@@ -31,6 +32,7 @@ class ProgressLines(StudyProgress):
     """Shows a bar on a terminal, a line every ten seconds elsewhere; on stderr."""
 
     EVERY = 10.0  # s between two lines if stderr is not a terminal
+    LOOK = 2.0  # s between two readings of how far the runs are
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         from rich.console import Console
@@ -44,7 +46,9 @@ class ProgressLines(StudyProgress):
         self._run_cost = self._run_seconds = 0.0  # estimated and measured, of the runs made
         self._finished = self._total = 0
         self._jobs = 1
-        self._last = clock()
+        self._folder = Path()
+        self._shares: dict[Task, float] = {}  # that are done, of the runs that go on
+        self._last = self._looked = clock()
         self._bar = Progress(
             TextColumn("{task.completed:.0f}/{task.total:.0f} runs", table_column=Column(no_wrap=True)),
             BarColumn(bar_width=20),
@@ -53,9 +57,9 @@ class ProgressLines(StudyProgress):
         )  # fmt: skip
         self._task = None
 
-    def begin(self, ahead: CostEstimate) -> None:
+    def begin(self, ahead: CostEstimate, folder: Path) -> None:
         """Print the estimated cost and open the bar."""
-        self._costs, self._jobs = dict(ahead.costs), ahead.jobs
+        self._costs, self._jobs, self._folder = dict(ahead.costs), ahead.jobs, folder
         self._total = len(ahead.costs) + len(ahead.there)
         if not self._total:
             return
@@ -73,6 +77,7 @@ class ProgressLines(StudyProgress):
         """Count the run, and correct the estimate of the remaining time."""
         self._finished += 1
         self._now.pop(one, None)
+        self._shares.pop(one, None)
         cost = self._costs.pop(one, 0.0)
         if not opened:
             self._run_cost += cost
@@ -84,6 +89,10 @@ class ProgressLines(StudyProgress):
     def tick(self) -> None:
         """Show the progress, at most every ten seconds."""
         now = self._clock()
+        if now - self._looked > self.LOOK:
+            self._looked = now
+            shares = {one: one.share(self._folder / one.folder) for one in self._now}
+            self._shares = {one: share for one, share in shares.items() if share is not None and share > 0.0}
         left = self.left()
         words = f"about {duration(left)} left, " if left > 0.0 else ""
         words += f"now: {', '.join(one.label for one in self._now)}"
@@ -100,11 +109,23 @@ class ProgressLines(StudyProgress):
             self._task = None
 
     def left(self) -> float:
-        """Remaining wall time [s]: the estimate, corrected by its error in the runs made so far."""
-        wrong = self._run_seconds / self._run_cost if self._run_cost > 0.0 else 1.0
+        """Remaining wall time [s].
+
+        A run that goes on takes what its share of simulated time says; one that does not tell its share takes
+        its estimated cost, and at least a tenth of that longer, however late it is. Costs are corrected by
+        what the runs made so far, and those that tell their share, take more than was estimated.
+        """
         now = self._clock()
-        rest = [
-            max(0.0, cost * wrong - (now - self._now[one] if one in self._now else 0.0))
-            for one, cost in self._costs.items()
-        ]
+        expected = {
+            one: (now - self._now[one]) / share for one, share in self._shares.items() if one in self._now
+        }
+        cost = self._run_cost + sum(self._costs.get(one, 0.0) for one in expected)
+        wrong = (self._run_seconds + sum(expected.values())) / cost if cost > 0.0 else 1.0
+        rest: list[float] = []
+        for one, estimate in self._costs.items():
+            if one not in self._now:
+                rest.append(estimate * wrong)
+                continue
+            spent, whole = now - self._now[one], expected.get(one, estimate * wrong)
+            rest.append(whole - spent if one in expected else max(whole - spent, 0.1 * max(whole, spent)))
         return max(sum(rest) / self._jobs, max(rest, default=0.0))

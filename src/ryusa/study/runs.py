@@ -107,7 +107,7 @@ def carry_out(
     refuse_if_too_big(ahead, folder)
     found: dict[str, dict[Any, Any]] = {name: {} for name in tasks}
     results = TaskResults(found)
-    progress.begin(ahead)
+    progress.begin(ahead, folder)
     try:
         runs = _done(
             _order(ahead),

@@ -56,6 +56,10 @@ class Task(Protocol):
         """Estimated size [bytes]."""
         ...
 
+    def share(self, folder: Path) -> float | None:
+        """Return the share that is done of a task carried out in `folder`; None if it does not tell."""
+        ...
+
     def origin(self, folder: Path) -> dict[str, Any] | None:
         """Provenance of the same task, finished in `folder`; None if there is none."""
         ...
@@ -124,6 +128,18 @@ class CaseRun(Task):
 
         case = self.read()
         return disk_in_all(case, derive(case))
+
+    def share(self, folder: Path) -> float | None:
+        """Return the share of the simulated time, or of the hops, that is recorded; None if nothing is."""
+        stop = self.read().stop
+        try:
+            summary = json.loads((folder / schema.SUMMARY).read_text(encoding="utf-8"))
+            share = float(summary["t"]) / stop.time if stop.time is not None else 0.0
+            if stop.saltations:
+                share = max(share, min(summary["saltations"]) / stop.saltations)
+        except (OSError, ValueError, KeyError, TypeError):
+            return None
+        return min(share, 1.0)
 
     def origin(self, folder: Path) -> dict[str, Any] | None:
         """Provenance of a finished run of the same case; None if there is none."""
@@ -232,6 +248,10 @@ class Calculation(Task):
     def disk(self) -> int:
         """Size [bytes], small compared with any run."""
         return 20_000
+
+    def share(self, folder: Path) -> float | None:
+        """Return None: a calculation does not tell."""
+        return None
 
     def origin(self, folder: Path) -> dict[str, Any] | None:
         """Provenance of the same calculation, finished; None if there is none."""
