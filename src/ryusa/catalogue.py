@@ -75,7 +75,7 @@ class PictureEntry:
 
 
 WINDOW = ("begin", "end")
-EVERY_BUILDER = ("drop", "saltation", "table", "packing", "flume", "box")
+EVERY_BUILDER = ("drop", "saltation", "table", "run", "packing", "flume", "box")
 
 MEASURES = (
     MeasureEntry("saltation", "ryusa.measure.saltation:saltation",

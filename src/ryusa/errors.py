@@ -52,6 +52,14 @@ class CaseError(RyusaError):
         )
 
 
+class ParseError(RyusaError):
+    """A file that cannot be read as what it should be: names file, line, column and what was expected."""
+
+    def __init__(self, name: str, line: int, column: int, expected: str) -> None:
+        self.name, self.line, self.column, self.expected = name, line, column, expected
+        super().__init__(f"{name}:{line}:{column}: {expected}")
+
+
 class ResultsError(RyusaError):
     """A run folder that cannot be read or written."""
 

@@ -43,8 +43,11 @@ def test_a_table_gives_grains_in_si_with_groups_contiguous(text: str, tmp_path: 
         ("x [cm],z [mm]\n0,1\n", "column 'd"),
         ("x [cm],z [mm],d [cm],q [m]\n0,1,0.2,1\n", "unknown column 'q'"),
         ("x [cm],z [mm],d [cm]\n0,1\n", "line 2 has 2 cells"),
-        ("x [cm],z [mm],d [cm]\n0,nan,0.2\n", "line 2, column z"),
-        ("x [cm],z [mm],d [cm]\n0,1,-0.2\n", "d must be greater than 0"),
+        ("x [cm],z [mm],d [cm]\n0,nan,0.2\n", "grains.csv:2:3: expected column 'z'"),
+        (
+            "x [cm],z [mm],d [cm]\n0,1,-0.2\n",
+            "grains.csv:2:5: expected a diameter from 1e-07 to 1000 m, found -0.002",
+        ),
         ("x [cm],z [mm],d [cm],fixed\n0,1,0.2,maybe\n", "fixed must be 0 or 1"),
         ("x [cm],z [mm],d [cm],fixed\n0,1,0.2,1\n", "no free grain"),
         ("x [cm],z [mm],d [cm]\n", "at least one grain"),

@@ -14,6 +14,8 @@ from ryusa.build.packing import packing
 from ryusa.build.placement import Placement, Wall
 from ryusa.build.saltation import saltation
 from ryusa.build.table import table
+from ryusa.casefile.builders.schema import FromFile
+from ryusa.casefile.builders.table import key_of
 from ryusa.casefile.case import Case
 from ryusa.casefile.choices import chosen
 from ryusa.casefile.column.schema import column_keys
@@ -46,6 +48,7 @@ BUILDERS = {
     "drop": drop,
     "saltation": saltation,
     "table": table,
+    "run": table,
     "packing": packing,
     "flume": flume,
     "box": box,
@@ -87,7 +90,8 @@ def build(case: Case, derived: Derived | None = None) -> Built:
     found = derived or derive(case)
     placement = BUILDERS[case.build.kind](case, found)
     placement = _with_planes(placement, case)
-    refuse_overlaps(placement, "build.file" if case.build.kind == "table" else "build", case.motion.plane)
+    key = key_of(case.build) if isinstance(case.build, FromFile) else "build"
+    refuse_overlaps(placement, key, case.motion.plane)
     _refuse_unknown_groups(placement, case)
     laws = replace(laws_of(case, found, placement.z_zero), column=column_of(case, found, placement))
     scene, state = assemble(placement, laws)

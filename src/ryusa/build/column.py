@@ -6,6 +6,7 @@ import numpy as np
 
 from ryusa.build.placement import Placement
 from ryusa.casefile.builders.schema import FlumeSection
+from ryusa.casefile.builders.table import area_of_file
 from ryusa.casefile.case import Case
 from ryusa.casefile.choices import chosen
 from ryusa.casefile.column.bed import packed
@@ -111,4 +112,4 @@ def area_of(case: Case, placement: Placement) -> float:
         return placement.period[0] * slab_width(case) * lanes
     if isinstance(case.build, FlumeSection) and case.build.width is not None:
         return placement.period[0] * case.build.width
-    return placement.period[0] * placement.period[1]
+    return area_of_file(case) or placement.period[0] * placement.period[1]

@@ -1,27 +1,32 @@
-"""First grains from a CSV table."""
+"""First grains from a table, a file of another program or a frame of another run."""
 
 import numpy as np
 
-from ryusa.build.placement import Placement
-from ryusa.casefile.builders.schema import TableSection
-from ryusa.casefile.builders.table import table_of
+from ryusa.build.placement import Placement, Wall
+from ryusa.casefile.builders.schema import FromFile, RunSection
+from ryusa.casefile.builders.table import key_of, period_of, table_of
 from ryusa.casefile.case import Case
 from ryusa.casefile.derive import Derived
 from ryusa.errors import CaseError
+from ryusa.formats.grains import GrainTable
 from ryusa.model.scene import Floats
 
 
 def table(case: Case, _derived: Derived) -> Placement:
-    """Grains of the table; ids follow its order, with the rows of one group together."""
+    """Grains of the table; ids follow its order, with the rows of one group together.
+
+    Its planes are walls of the scene, but for those that the case names itself.
+    """
     keys, grid = case.build, table_of(case)
-    assert isinstance(keys, TableSection)
+    assert isinstance(keys, FromFile)
     assert grid is not None
+    key = key_of(keys)
     if case.motion.plane:
         for name in ("vy", "wx", "wz"):
             if np.any(grid.column(name)):
-                raise CaseError("build.file", keys.file, f"column '{name}' must be zero in a plane scene")
+                raise CaseError(key, grid.name, f"column '{name}' must be zero in a plane scene")
     if case.motion.rotation == "locked" and np.any(grid.column("wy")):
-        raise CaseError("build.file", keys.file, "column 'wy' must be zero while rotation is locked")
+        raise CaseError(key, grid.name, "column 'wy' must be zero while rotation is locked")
     firsts: dict[tuple[bool, str], int] = {}
     for fixed, group in zip(grid.fixed.tolist(), grid.group, strict=True):
         firsts.setdefault((fixed, group), len(firsts))
@@ -30,7 +35,7 @@ def table(case: Case, _derived: Derived) -> Placement:
     free, fixed = order[~grid.fixed[order]], order[grid.fixed[order]]
     x, d = _columns(grid.column("x"), grid.column("y"), grid.column("z")), grid.column("d")
     labels = [grid.labels[row] for row in (*free, *fixed)]
-    period = tuple(p if p is not None else float("inf") for p in (case.domain.period_x, case.domain.period_y))
+    own = {plane.name for plane in case.planes}
     return Placement(
         d=d[free],
         x=x[free],
@@ -40,13 +45,23 @@ def table(case: Case, _derived: Derived) -> Placement:
         x_fixed=x[fixed],
         fixed_groups=_groups([grid.group[row] for row in fixed]),
         free_groups=_groups([grid.group[row] for row in free]),
-        period=(period[0], period[1]),
+        walls=tuple(Wall(one.name, one.point, one.normal) for one in grid.planes if one.name not in own),
+        period=period_of(case),
+        z_zero=grid.z_zero or 0.0,
         allow_overlap=keys.allow_overlap,
         names=tuple(labels),
-        notes=("zero of the water profile at z = 0 (water.zero not given)",)
-        if case.water is not None and case.water.zero is None
-        else (),
+        notes=_notes(case, keys, grid),
     )
+
+
+def _notes(case: Case, keys: FromFile, grid: GrainTable) -> tuple[str, ...]:
+    notes: list[str] = []
+    if isinstance(keys, RunSection):
+        notes.append(f"grains as in {keys.folder} at {grid.t:g} s; their contacts begin anew")
+    if case.water is not None and case.water.zero is None:
+        where = f"at z = {grid.z_zero:g} m, as in {grid.name}" if grid.z_zero is not None else "at z = 0"
+        notes.append(f"zero of the water profile {where} (water.zero not given)")
+    return tuple(notes)
 
 
 def _columns(*columns: Floats) -> Floats:

@@ -1,11 +1,13 @@
 """[domain] and [[planes]]: periods, boundaries of the scene and flat walls."""
 
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field
 
-from ryusa.casefile.builders.schema import PackingSection, TableSection
+from ryusa.casefile.builders.schema import FromFile, PackingSection
+from ryusa.casefile.builders.table import key_of, period_of, table_of
 from ryusa.casefile.builders.values import FEWEST_PERIODS, periodic
 from ryusa.casefile.quantities import Number, Point, PositiveLength
 from ryusa.casefile.section import Section
@@ -20,9 +22,9 @@ class DomainSection(Section):
     """Periods, outer box and the overlap that stops a run."""
 
     period_x: PositiveLength | None = None
-    """Period in x, for builder "table"; every other builder sets its own."""
+    """Period in x, for builders "table" and "run" where the file states none; others set their own."""
     period_y: PositiveLength | None = None
-    """Period in y, for builder "table"; every other builder sets its own."""
+    """Period in y, for builders "table" and "run" where the file states none; others set their own."""
     low: Point | None = None
     """Lower corner of the outer box; a grain that leaves the box is lost and stops the run. By default a box
     far larger than the first grains need."""
@@ -65,20 +67,40 @@ def check_planes(case: "Case") -> Iterator[CaseError]:
 def check_domain(case: "Case", derived: "Derived") -> Iterator[CaseError]:
     """Find periods that are too short or set by the builder, and corners in the wrong order."""
     least = FEWEST_PERIODS * derived.d_max
-    for key in ("period_x", "period_y"):
-        period = getattr(case.domain, key)
+    from_file = isinstance(case.build, FromFile)
+    periods = period_of(case) if from_file else (case.domain.period_x, case.domain.period_y)
+    for key, period in zip(("period_x", "period_y"), periods, strict=True):
+        given = getattr(case.domain, key)
         if period is not None and period < least:
             yield CaseError(
                 f"domain.{key}", period, f"must be at least {FEWEST_PERIODS} largest diameters, {least:.4g} m"
             )
-        if period is not None and not isinstance(case.build, TableSection):
+        if given is not None and not from_file:
             yield CaseError(
                 f"domain.{key}",
-                period,
-                f"is set by builder '{case.build.kind}' itself; give it with builder 'table' only",
+                given,
+                f"is set by builder '{case.build.kind}' itself; give it with builders 'table' and 'run' only",
             )
+    if isinstance(case.build, FromFile):
+        yield from _against_file(case, case.build)
     if case.motion.plane and case.domain.period_y is not None:
         yield CaseError("domain.period_y", case.domain.period_y, "has no effect in a plane scene")
     low, high = case.domain.low, case.domain.high
     if low is not None and high is not None and any(a >= b for a, b in zip(low, high, strict=True)):
         yield CaseError("domain.low", list(low), "must lie below domain.high in every direction")
+
+
+def _against_file(case: "Case", build: FromFile) -> Iterator[CaseError]:
+    """Find periods that contradict those of the file."""
+    table = table_of(case)
+    if table is None or table.period is None:
+        return
+    for key, stated in zip(("period_x", "period_y"), table.period, strict=True):
+        given = getattr(case.domain, key)
+        if given is not None and not math.isclose(given, stated, rel_tol=1e-12):
+            there = f"{stated:.12g} m" if math.isfinite(stated) else "open"
+            yield CaseError(
+                f"domain.{key}", given, f"differs from {table.name}, which is {there}; leave it out"
+            )
+    if case.motion.plane and math.isfinite(table.period[1]):
+        yield CaseError(key_of(build), table.name, "is periodic in y, which a plane scene cannot be")

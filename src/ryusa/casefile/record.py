@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field
 
-from ryusa.casefile.builders.schema import SaltationSection, TableSection
+from ryusa.casefile.builders.schema import FromFile, SaltationSection
 from ryusa.casefile.builders.values import counts
 from ryusa.casefile.quantities import (
     Count,
@@ -95,9 +95,11 @@ def check_stop(case: "Case") -> Iterator[CaseError]:
     stop = case.stop
     if stop.time is None and stop.saltations is None and stop.rest is None:
         yield CaseError("stop", None, "needs at least one of time, saltations, rest")
-    if stop.saltations is not None and not isinstance(case.build, (SaltationSection, TableSection)):
+    if stop.saltations is not None and not isinstance(case.build, SaltationSection | FromFile):
         yield CaseError(
-            "stop.saltations", stop.saltations, "needs a bed to saltate over: builder 'saltation' or 'table'"
+            "stop.saltations",
+            stop.saltations,
+            "needs a bed to saltate over: builder 'saltation', 'table' or 'run'",
         )
 
 

@@ -65,5 +65,5 @@ def export(
     with shown_progress("frames", quiet=quiet) as progress:
         paths = write(results, output, to, every=every, progress=progress, **window)
     size = sum(one.stat().st_size for one in paths)
-    more = f", with {len(paths) - 1} frames in {output.with_suffix('')}" if len(paths) > 1 else ""
+    more = f", its frames in {output.with_suffix('')}" if len(paths) > 1 else ""
     typer.echo(f"wrote {paths[0]}{more} ({size / 1e6:.1f} MB)")

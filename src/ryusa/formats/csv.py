@@ -1,9 +1,19 @@
 """The table of grains that ryusa writes and reads: units in the header, one row per grain and frame."""
 
+import csv
 import json
 import math
+from pathlib import Path
+from typing import Any
 
-from ryusa.formats.grains import UNITS, GrainTable
+import numpy as np
+from numpy.typing import NDArray
+
+from ryusa.errors import ParseError
+from ryusa.formats.grains import UNITS, GrainTable, PlaneWall
+from ryusa.formats.text import LARGEST, Lines, Rows, checked, opened
+from ryusa.model.arrays import Floats
+from ryusa.units import UnitError, quantity
 
 MARK = "# ryusa "  # before the JSON object that states periods and planes
 NUMBERS = ("x", "y", "z", "d", "vx", "vy", "vz", "wx", "wy", "wz", "m")
@@ -18,6 +28,7 @@ def csv_head(table: GrainTable) -> bytes:
         "period": [length if math.isfinite(length) else None for length in period],
         "planes": [[one.name, one.point, one.normal] for one in table.planes],
         "water_zero": table.z_zero,
+        "bed_area": table.bed_area,
     }
     return f"{MARK}{json.dumps(about)}\n{','.join(HEAD)}\n".encode()
 
@@ -42,3 +53,189 @@ def csv_frame(table: GrainTable) -> bytes:
 def _quoted(name: str) -> str:
     name = " ".join(name.split())
     return '"' + name.replace('"', '""') + '"' if set(name) & set(',"#') else name
+
+
+NEEDED = ("x", "z", "d")
+_WORDS = ("fixed", "group", "t", "step", "id", "ix", "iy")  # columns that are no numbers of a grain
+_YES, _NO = {"1", "true", "yes", "fixed"}, {"0", "false", "no", "free", ""}
+
+
+def read_csv(path: Path, name: str, frame: int | None = None) -> GrainTable:
+    """Read the grains of a table; of several frames the last, or the one of that number.
+
+    Rows of one frame stand together and have the same `t`; a table without `t` is one frame.
+    """
+    with opened(path, name) as lines:
+        about, heads = _head(lines)
+        names = [one for one, _ in heads]
+        when = names.index("t") if "t" in names else None
+        rows: list[tuple[int, str]] = []
+        now, n_frame = "", 0
+        while lines.advance():
+            if not lines.text.strip(" ,\t") or lines.text.lstrip().startswith("#"):
+                continue
+            cells = split_cells(lines.text)
+            if len(cells) != len(heads):
+                raise lines.error(f"line {lines.number} has {len(cells)} cells, the header has {len(heads)}")
+            t = cells[when] if when is not None else ""
+            if n_frame == 0 or t != now:
+                if n_frame - 1 == frame:
+                    break
+                now, n_frame, rows = t, n_frame + 1, []
+            rows.append((lines.number, lines.text))
+        if not rows:
+            raise lines.error("expected at least one grain below the header")
+        if frame is not None and frame >= n_frame:
+            raise lines.error(f"build.frame = {frame}: the file has frames 0 to {n_frame - 1}")
+    return _table(Rows(name, rows, cell_column, split_cells), heads, about)
+
+
+def split_cells(text: str) -> list[str]:
+    """Cells of one line."""
+    return next(csv.reader([text])) if '"' in text else text.split(",")
+
+
+def cell_column(text: str, k: int) -> int:
+    """Column of the first character of cell k, from 1.
+
+    >>> cell_column("a,bc,d", 2)
+    6
+    """
+    at, quoted = 0, False
+    for place, sign in enumerate(text):
+        if at == k:
+            return place + 1 + len(text[place:]) - len(text[place:].lstrip(" "))
+        quoted = quoted != (sign == '"')
+        at += sign == "," and not quoted
+    return len(text) + 1
+
+
+def _head(lines: Lines) -> tuple[dict[str, Any], list[tuple[str, float]]]:
+    """What a comment states for all rows, and name and factor of each column."""
+    about: dict[str, Any] = {}
+    while lines.advance():
+        if lines.text.startswith(MARK):
+            about = _about(lines)
+        elif lines.text.strip() and not lines.text.lstrip().startswith("#"):
+            break
+    else:
+        raise lines.error("expected a header and at least one grain")
+    header = Rows(lines.name, [(lines.number, lines.text)], cell_column, split_cells)
+    heads: list[tuple[str, float]] = []
+    for k, cell in enumerate(split_cells(lines.text)):
+        try:
+            heads.append(_column(cell))
+        except ValueError as error:
+            raise header.error(0, k, str(error)) from None
+    names = [one for one, _ in heads]
+    for needed in NEEDED:
+        if needed not in names:
+            raise header.error(0, len(names), f"column '{needed} [cm]' is missing")
+    if len(set(names)) < len(names):
+        raise header.error(
+            0, next(k for k, one in enumerate(names) if one in names[:k]), "a column appears twice"
+        )
+    return about, heads
+
+
+def _about(lines: Lines) -> dict[str, Any]:
+    """Periods, planes and zero of the water, from the comment that `csv_head` writes."""
+    try:
+        given = json.loads(lines.text.removeprefix(MARK))
+        period = tuple(math.inf if one is None else _finite(one) for one in given["period"])
+        if len(period) != 2 or not all(one > 0.0 for one in period):
+            raise ValueError("period")
+        planes = [
+            PlaneWall(str(name)[:64], _point(point), _point(normal))
+            for name, point, normal in given["planes"]
+        ]
+        if not all(any(one.normal) for one in planes):
+            raise ValueError("planes")
+        zero, area = (
+            None if given[key] is None else _finite(given[key]) for key in ("water_zero", "bed_area")
+        )
+        if area is not None and area <= 0.0:
+            raise ValueError("bed_area")
+        return {
+            "period": period,
+            "planes": tuple(planes),
+            "z_zero": zero,
+            "bed_area": area,
+        }
+    except (ValueError, KeyError, TypeError, RecursionError, OverflowError):
+        raise ParseError(
+            lines.name,
+            lines.number,
+            len(MARK) + 1,
+            "expected the JSON that ryusa export writes: period, planes, water_zero, bed_area",
+        ) from None
+
+
+def _finite(value: Any) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= LARGEST:
+        raise ValueError("not a number")
+    return float(value)
+
+
+def _point(values: Any) -> tuple[float, float, float]:
+    x, y, z = (_finite(one) for one in values)
+    return x, y, z
+
+
+def _column(cell: str) -> tuple[str, float]:
+    """Name of a column and the factor to SI.
+
+    Raises
+    ------
+    ValueError : an unknown column, or one without a unit that fits.
+    """
+    column, _, rest = cell.partition("[")
+    column, unit = column.strip(), rest.rstrip().removesuffix("]").strip()
+    if column in _WORDS:
+        return column, 1.0
+    if column not in UNITS:
+        raise ValueError(f"unknown column {column[:40]!r}; known are {', '.join([*UNITS, *_WORDS])}")
+    if not unit:
+        raise ValueError(
+            f"column {column!r} needs its unit in the header, such as '{column} [{UNITS[column]}]'"
+        )
+    try:
+        return column, quantity(f"1 {unit}", UNITS[column])
+    except UnitError as error:
+        raise ValueError(f"column {column!r}: {error}") from None
+
+
+def _table(rows: Rows, heads: list[tuple[str, float]], about: dict[str, Any]) -> GrainTable:
+    words = {name: k for k, (name, _) in enumerate(heads)}
+    numbers = [name for name in words if name in UNITS]
+    values = rows.columns([words[name] for name in numbers], [f"column '{name}'" for name in numbers])
+    columns: dict[str, Floats] = {
+        name: one * heads[words[name]][1] for name, one in zip(numbers, values, strict=True)
+    }
+    fixed: list[bool] = []
+    group: list[str] = []
+    for row, (_, text) in enumerate(rows.where):
+        cells = split_cells(text)
+        word = cells[words["fixed"]].strip().lower() if "fixed" in words else ""
+        if word not in _YES | _NO:
+            raise rows.error(row, words["fixed"], f"fixed must be 0 or 1, not {word[:40]!r}")
+        fixed.append(word in _YES)
+        group.append(cells[words["group"]].strip() if "group" in words else "")
+    table = GrainTable(
+        name=rows.name,
+        columns=columns,
+        fixed=np.array(fixed, dtype=np.bool_),
+        group=tuple(group),
+        labels=tuple(f"of line {line} of {rows.name}" for line, _ in rows.where),
+        ids=rows.integers(words["id"], "an id") if "id" in words else np.arange(len(fixed)),
+        image=np.stack([_integers(rows, words, name) for name in ("ix", "iy")], axis=1),
+        t=float(rows.columns([words["t"]], ["a time"])[0][0]) if "t" in words else 0.0,
+        step=int(_integers(rows, words, "step")[0]),
+        **about,
+    )
+    return checked(table, rows, words)
+
+
+def _integers(rows: Rows, words: dict[str, int], name: str) -> NDArray[np.int64]:
+    """A column of whole numbers; zeros where the table has none."""
+    return rows.integers(words[name], name) if name in words else np.zeros(len(rows.where), np.int64)

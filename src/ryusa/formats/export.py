@@ -9,8 +9,8 @@ import numpy as np
 from ryusa.errors import CaseError, ResultsError
 from ryusa.formats.csv import csv_frame, csv_head
 from ryusa.formats.extxyz import xyz_frame
-from ryusa.formats.grains import GrainTable, table_of_frame
-from ryusa.formats.lammps import dump_frame
+from ryusa.formats.grains import GrainTable, nearest_frame, table_of_frame
+from ryusa.formats.lammps_dump import dump_frame
 from ryusa.formats.parquet import need_pyarrow, write_parquet
 from ryusa.formats.vtu import pvd_file, vtu_file
 from ryusa.formats.writing import written
@@ -79,24 +79,6 @@ def export(
                     file.write(csv_head(table))
                 file.write(_FRAMES[to](table))
     return [path]
-
-
-def nearest_frame(run: Results, t: float) -> int:
-    """Number of the frame nearest to a time [s].
-
-    Raises
-    ------
-    ResultsError : the run has no frame, or ends before that time.
-    """
-    times = run.frames.t
-    if not len(times):
-        raise ResultsError(f"{run.folder}: has no frame yet")
-    slack = float(np.diff(times).max()) if len(times) > 1 else 1e-9 * abs(float(times[0]))
-    if not times[0] - slack <= t <= times[-1] + slack:
-        raise ResultsError(
-            f"{run.folder}: has no frame at {t:g} s; its frames are from {times[0]:g} to {times[-1]:g} s"
-        )
-    return int(np.abs(times - t).argmin())
 
 
 def _window(run: Results, begin: float, end: float, every: int) -> list[int]:

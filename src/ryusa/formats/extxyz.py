@@ -1,8 +1,16 @@
-"""Extended XYZ, which OVITO and ASE open: a line that names the columns, then one line per grain, in SI."""
+"""XYZ and extended XYZ, as OVITO and ASE open it: written in SI and read in any unit."""
 
 import math
+import re
+from collections.abc import Callable, Mapping
+from pathlib import Path
 
+import numpy as np
+
+from ryusa.errors import ParseError
 from ryusa.formats.grains import GrainTable
+from ryusa.formats.text import ReadOptions, Rows, checked, opened, shown
+from ryusa.model.arrays import Floats
 
 PROPERTIES = "species:S:1:pos:R:3:id:I:1:fixed:I:1:image:I:3:velo:R:3:omega:R:3:radius:R:1:mass:R:1"
 SPECIES = "X"  # neither program knows gravel; X is what ASE calls an unknown element
@@ -43,3 +51,117 @@ def xyz_frame(table: GrainTable) -> bytes:
         strict=True,
     )
     return "\n".join([str(table.n), " ".join(about), *(_ROW % row for row in rows), ""]).encode("ascii")
+
+
+_KEY = re.compile(r"""([A-Za-z_][A-Za-z0-9_-]*)\s*=\s*(?:"([^"]*)"|'([^']*)'|(\S+))""")
+_PLAIN = "species:S:1:pos:R:3"  # a file without Properties
+_READ = {  # property: columns of a table
+    "pos": ("x", "y", "z"),
+    **dict.fromkeys(("velo", "vel", "velocity", "velocities"), ("vx", "vy", "vz")),
+    **dict.fromkeys(("omega", "angular_velocity"), ("wx", "wy", "wz")),
+    **dict.fromkeys(("radius", "radii", "diameter"), ("d",)),
+}
+_RADII = {"radius", "radii"}
+_PERIODIC = {"t": True, "true": True, "1": True, "f": False, "false": False, "0": False}
+
+
+def read_xyz(path: Path, name: str, options: ReadOptions) -> GrainTable:
+    """Read one frame."""
+    n_frame, kept = 0, None
+    with opened(path, name) as lines:
+        while lines.advance():
+            if not lines.text.strip():
+                continue
+            n = lines.integer(0, "the number of grains", 1)
+            if len(lines.text.split()) > 1:
+                raise lines.error("expected the number of grains alone on its line", 1)
+            lines.need("the line that describes the columns")
+            if options.frame in {None, n_frame}:
+                kept = lines.number, lines.text, lines.block(n)
+            else:
+                lines.skip(n)
+            n_frame += 1
+            if n_frame - 1 == options.frame:
+                break
+        if kept is None:
+            raise options.no_such_frame(name, lines.number, n_frame)
+    return _table(*kept, options)
+
+
+def _table(line: int, about: str, rows: Rows, options: ReadOptions) -> GrainTable:
+    keys = {found[1].lower(): found for found in _KEY.finditer(about)}
+
+    def value(key: str) -> str:
+        found = keys[key]
+        return found[2] or found[3] or found[4] or ""
+
+    def wrong(key: str, message: str) -> ParseError:
+        return ParseError(rows.name, line, keys[key].start() + 1, message)
+
+    words: dict[str, int] = {}
+    radii = False
+    width = 0
+    text = value("properties") if "properties" in keys else _PLAIN
+    parts = text.split(":")
+    for k in range(0, len(parts), 3):
+        known, kind, count = (*parts[k : k + 3], "", "")[:3]
+        if kind not in {"S", "I", "R", "L"} or not count.isdecimal() or not 1 <= int(count[:4]) <= 100:
+            raise wrong("properties", f"expected Properties as name:type:count:..., found {shown(text)}")
+        columns = _READ.get(known, ("id",) if known == "id" else ("fixed",) if known == "fixed" else ())
+        if columns and len(columns) != int(count):
+            raise wrong("properties", f"expected {len(columns)} columns of '{known}', found {int(count)}")
+        for j, column in enumerate(columns):
+            words.setdefault(column, width + j)
+        radii = radii or known in _RADII
+        width += int(count)
+    if "x" not in words:
+        raise wrong("properties", "expected a property pos:R:3, the positions")
+    for row, (_, one) in enumerate(rows.where):
+        if (got := len(one.split())) != width:
+            raise rows.error(row, min(got, width), f"expected {width} words, found {got}")
+    names = [one for one in words if one not in {"id", "fixed"}]
+    values = rows.columns([words[one] for one in names], [f"'{one}'" for one in names])
+    found: dict[str, Floats] = dict(zip(names, values, strict=True))
+    if radii:
+        found["d"] = 2.0 * found["d"]
+    n, still, at = len(rows.where), words.get("fixed"), words.get("id")
+    table = GrainTable(
+        name=rows.name,
+        columns=options.in_si(found),
+        fixed=rows.integers(still, "fixed, 0 or 1") != 0 if still is not None else np.zeros(n, np.bool_),
+        group=("",) * n,
+        labels=tuple(f"of line {number} of {rows.name}" for number, _ in rows.where),
+        ids=rows.integers(at, "an id") if at is not None else np.zeros(0, np.int64),
+        period=_period(keys, value, wrong, options.length),
+    )
+    return checked(table, rows, words)
+
+
+def _period(
+    keys: Mapping[str, object],
+    value: Callable[[str], str],
+    wrong: Callable[[str, str], ParseError],
+    unit: float,
+) -> tuple[float, float] | None:
+    """Periods in x and y; None where the file does not state both its sides and which are periodic."""
+    if "pbc" not in keys:
+        return None
+    flags = [_PERIODIC.get(one.lower()) for one in value("pbc").split()]
+    if len(flags) != 3 or None in flags:
+        raise wrong("pbc", "expected three of T and F")
+    if flags[2]:
+        raise wrong("pbc", "expected a box that is open in z; ryusa has periods in x and y only")
+    if not any(flags):
+        return math.inf, math.inf
+    if "lattice" not in keys:
+        raise wrong("pbc", "expected Lattice beside pbc")
+    try:
+        sides = np.array([float(one) for one in value("lattice").split()]).reshape(3, 3)
+    except ValueError:
+        raise wrong("lattice", "expected nine numbers") from None
+    if not np.array_equal(sides, np.diag(np.diag(sides))):
+        raise wrong("lattice", "expected a box that is not skewed")
+    lengths = [float(sides[k, k]) if flags[k] else math.inf for k in (0, 1)]
+    if not all(length > 0.0 for length in lengths):
+        raise wrong("lattice", "expected sides above 0")
+    return lengths[0] * unit, lengths[1] * unit

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from ryusa.errors import ResultsError
 from ryusa.model import Scene
 from ryusa.model.arrays import Bools, Floats
 from ryusa.results import Results
@@ -44,6 +45,7 @@ class GrainTable:
     period : in x and y [m], inf where open; None where the file does not say.
     planes : walls beside the grains.
     z_zero : zero of the water profile [m]; None where the file does not say.
+    bed_area : area of bed under a column of water [m2]; None where the file does not say.
     """
 
     name: str
@@ -58,6 +60,7 @@ class GrainTable:
     period: tuple[float, float] | None = None
     planes: tuple[PlaneWall, ...] = ()
     z_zero: float | None = None
+    bed_area: float | None = None
 
     @property
     def n(self) -> int:
@@ -71,6 +74,24 @@ class GrainTable:
     def vectors(self, *names: str) -> Floats:
         """Columns side by side, shape (n, 3)."""
         return np.stack([self.column(name) for name in names], axis=1)
+
+
+def nearest_frame(run: Results, t: float) -> int:
+    """Number of the frame nearest to a time [s].
+
+    Raises
+    ------
+    ResultsError : the run has no frame, or ends before that time.
+    """
+    times = run.frames.t
+    if not len(times):
+        raise ResultsError(f"{run.folder}: has no frame yet")
+    slack = float(np.diff(times).max()) if len(times) > 1 else 1e-9 * abs(float(times[0]))
+    if not times[0] - slack <= t <= times[-1] + slack:
+        raise ResultsError(
+            f"{run.folder}: has no frame at {t:g} s; its frames are from {times[0]:g} to {times[-1]:g} s"
+        )
+    return int(np.abs(times - t).argmin())
 
 
 def table_of_frame(run: Results, k: int) -> GrainTable:
@@ -111,6 +132,7 @@ def table_of_frame(run: Results, k: int) -> GrainTable:
         period=scene.period,
         planes=_planes(scene),
         z_zero=scene.water.z_zero,
+        bed_area=scene.column.area if scene.column is not None else None,
     )
 
 

@@ -12,6 +12,7 @@ from ryusa.model.tally import HELD
 FORMAT = 2  # raised when an older reader could misread a folder
 
 CASE_TOML = "case.toml"  # the case as read, byte for byte
+START = "start.csv"  # grains of another run, where the case starts from its frame
 CASE_JSON = "case.json"  # the same, resolved, in SI
 PROVENANCE = "provenance.json"
 SUMMARY = "summary.json"

@@ -3,7 +3,6 @@
 import math
 import os
 import sys
-import tomllib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -18,6 +17,7 @@ from ryusa.model.scene import EventRule
 from ryusa.results import Results, schema
 from ryusa.results.scene_file import scene_digest
 from ryusa.running import provenance
+from ryusa.running.case_files import start_of, table_beside, timeline_texts
 from ryusa.running.checkpoint import CheckpointBlock
 from ryusa.running.checkpoint_scheduler import CHECKPOINT_INTERVAL, CheckpointScheduler, run_identity
 from ryusa.running.disk import disk_errors, write_atomically
@@ -113,13 +113,13 @@ def run(
         )
         changes = [
             Change(entry.at, partial(change, case, entry=entry), words)
-            for entry, words in zip(case.timeline, _timeline_texts(case), strict=True)
+            for entry, words in zip(case.timeline, timeline_texts(case), strict=True)
         ]
         refuse_if_too_large(memory_needed(case, derived), derived.n_grain)
         about = _CaseData(
             resolved=resolved(case, derived), text=case.text, seed=case.seed, overrides=case.overrides,
             disk=_Disk(frames_expected(case), disk_needed(case, derived), disk_for_events(case, derived)),
-            table=_table(case),
+            table=table_beside(case), start=start_of(case),
         )  # fmt: skip
         return _run_or_resume(
             make,
@@ -130,27 +130,6 @@ def run(
             _Options(threads, progress, overwrite, engine, checkpoint, resume, force),
             about,
         )
-
-
-def _table(case: "Case") -> Path | None:
-    """Path of the table of first grains if it can be copied beside the case in the run folder."""
-    from ryusa.casefile.builders.schema import TableSection
-
-    if not isinstance(case.build, TableSection) or case.path is None:
-        return None
-    name = case.build.file
-    plain = Path(name).name == name and Path(name).suffix not in {".json", ".toml", ".vtkhdf", ".h5", ".txt"}
-    return case.path.resolve().parent / name if plain and not name.startswith(".") else None
-
-
-def _timeline_texts(case: "Case") -> list[str]:
-    """Entries of the timeline as written in the case, with overrides applied; for the log."""
-    from ryusa.casefile.overrides import with_overrides
-
-    entries = with_overrides(tomllib.loads(case.text), case.overrides).get("timeline", [])
-    if len(entries) != len(case.timeline):  # a case made in Python has no text
-        entries = [{key: getattr(entry, key) for key in entry.model_fields_set} for entry in case.timeline]
-    return [", ".join(f"{key} {one[key]}" for key in sorted(set(one) - {"at"})) for one in entries]
 
 
 @dataclass(frozen=True)
@@ -172,6 +151,7 @@ class _CaseData:
     overrides: dict[str, str] | None = None
     disk: _Disk | None = None
     table: Path | None = None  # of first grains, named in the case
+    start: Callable[[], bytes] | None = None  # first grains as a table, if they are those of another run
 
 
 @dataclass(frozen=True)
@@ -323,6 +303,9 @@ class _Run:
         if table is not None and table.parent != self.folder.resolve():
             with disk_errors(self.folder):
                 write_atomically(self.folder / table.name, table.read_bytes())
+        if self.about.start is not None:
+            with disk_errors(self.folder):
+                write_atomically(self.folder / schema.START, self.about.start())
 
     def begin(self, scene: Scene, state: State, notes: Sequence[str]) -> Results:
         """Run from the first step."""

@@ -10,14 +10,24 @@ from ryusa.casefile.builders.schema import (
     FlumeSection,
     PackingSection,
     SaltationSection,
+    TableSection,
 )
 from ryusa.casefile.builders.values import FEWEST_PERIODS, flume_count, periodic, sizes
 from ryusa.casefile.grains import spread_of
 from ryusa.casefile.motion import may_rotate
+from ryusa.casefile.section import given
 from ryusa.errors import CaseError
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
+
+_FOREIGN = ("lammps-dump", "lammps-data", "xyz")
+_HAS = {  # key of a table: formats in which it has an effect
+    "frame": ("csv", "lammps-dump", "xyz"),
+    "length_unit": _FOREIGN,
+    "time_unit": _FOREIGN,
+    "fixed_types": ("lammps-dump", "lammps-data"),
+}
 
 
 def check_builder(case: "Case") -> Iterator[CaseError]:
@@ -48,6 +58,11 @@ def check_builder(case: "Case") -> Iterator[CaseError]:
         yield CaseError("build.rows", build.rows, "must be 1 in a plane scene")
     if isinstance(build, PackingSection | BoxSection) and periodic(case)[1] and build.rows < FEWEST_PERIODS:
         yield CaseError("build.rows", build.rows, f"must be at least {FEWEST_PERIODS}, because y is periodic")
+    if isinstance(build, TableSection):
+        for key, formats in _HAS.items():
+            if given(build, key) and build.format not in formats:
+                allowed = f"has no effect with format '{build.format}', only with {', '.join(formats)}"
+                yield CaseError(f"build.{key}", getattr(build, key), allowed)
     if isinstance(build, FlumeSection):
         yield from _flume(case, build)
     if isinstance(build, BoxSection):

@@ -5,8 +5,9 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field
 
-from ryusa.casefile.quantities import Count, Length, Number, PositiveLength, Speed, Spin
+from ryusa.casefile.quantities import Count, Length, Moment, Number, PositiveLength, Speed, Spin
 from ryusa.casefile.section import Section
+from ryusa.units import quantity
 
 
 class DropSection(Section):
@@ -54,16 +55,51 @@ def _relative(path: str) -> str:
     return str(parts)
 
 
+def _unit_of(dimension: str) -> AfterValidator:
+    def check(unit: str) -> str:
+        quantity(f"1 {unit}", dimension)
+        return unit
+
+    return AfterValidator(check)
+
+
 class TableSection(Section):
-    """Grains read from a CSV table."""
+    """Grains read from a file: a table, or what `ryusa export`, LAMMPS, OVITO or ASE write."""
 
     kind: Literal["table"]
     """Name of the builder."""
     file: Annotated[str, Field(min_length=1, max_length=400), AfterValidator(_relative)]
-    """CSV file in the folder of the case. Columns x, y, z, d, vx, vy, vz, wx, wy, wz with their units in the
-    header, such as x [cm]; fixed (0 or 1) and group (a name). x, z and d are required."""
+    """File in the folder of the case. A CSV file has columns x, y, z, d, vx, vy, vz, wx, wy, wz with their
+    units in the header, such as x [cm]; fixed (0 or 1) and group (a name). x, z and d are required."""
+    format: Literal["csv", "lammps-dump", "lammps-data", "xyz", "vtu"] = "csv"
+    """Format of the file: "lammps-data" with atom_style sphere, "xyz" plain or extended, "vtu" of ryusa
+    alone. Where it states no diameters, grains have grains.diameter."""
+    frame: Annotated[Count, Field(ge=0)] | None = None
+    """Number of the frame, from 0; the last when not given."""
+    length_unit: Annotated[str, _unit_of("m")] = "m"
+    """Unit of the lengths in a LAMMPS or xyz file."""
+    time_unit: Annotated[str, _unit_of("s")] = "s"
+    """Unit of the times in the velocities and spins of a LAMMPS or xyz file."""
+    fixed_types: tuple[Annotated[Count, Field(ge=0)], ...] = ()
+    """Atom types of a LAMMPS file whose grains never move; 2 in the dumps of ryusa."""
     allow_overlap: bool = False
     """Whether grains may overlap at the start."""
+
+
+class RunSection(Section):
+    """Grains of a frame of another run, free and fixed, with its periods and planes."""
+
+    kind: Literal["run"]
+    """Name of the builder."""
+    folder: Annotated[str, Field(min_length=1, max_length=400), AfterValidator(_relative)]
+    """Run folder, within the folder of the case."""
+    at: Moment | None = None
+    """Time of the frame, the nearest; the last frame when not given."""
+    allow_overlap: bool = True
+    """Whether grains may overlap at the start, as grains in contact do."""
+
+
+FromFile = TableSection | RunSection  # builders whose grains exist before the case is read
 
 
 class PackingSection(Section):
@@ -151,6 +187,6 @@ class BoxSection(Section):
 
 
 BuildSection = Annotated[
-    DropSection | SaltationSection | TableSection | PackingSection | FlumeSection | BoxSection,
+    DropSection | SaltationSection | TableSection | RunSection | PackingSection | FlumeSection | BoxSection,
     Field(discriminator="kind"),
 ]

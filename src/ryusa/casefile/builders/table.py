@@ -1,129 +1,120 @@
-"""A CSV table of first grains: one row per grain, units in the header."""
+"""First grains that a file holds: a table, a file of another program, or a frame of another run."""
 
-import csv
+import math
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ryusa.casefile.builders.schema import TableSection
-from ryusa.errors import CaseError
+from ryusa.casefile.builders.schema import FromFile, RunSection, TableSection
+from ryusa.casefile.section import given
+from ryusa.errors import CaseError, ParseError, ResultsError
 from ryusa.formats.grains import GrainTable
-from ryusa.units import UnitError, quantity
+from ryusa.formats.read import read_grains
+from ryusa.formats.text import ReadOptions
+from ryusa.units import quantity
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
 
-UNITS = {
-    **dict.fromkeys(("x", "y", "z", "d"), "m"),
-    **dict.fromkeys(("vx", "vy", "vz"), "m/s"),
-    **dict.fromkeys(("wx", "wy", "wz"), "rad/s"),
-}
-NEEDED = ("x", "z", "d")
-LARGEST_FILE = 1 << 30  # bytes
-_YES, _NO = {"1", "true", "yes", "fixed"}, {"0", "false", "no", "free", ""}
-
 
 def table_of(case: "Case") -> GrainTable | None:
-    """Read the table that a case names; None for other builders."""
-    if not isinstance(case.build, TableSection):
-        return None
+    """Read the grains that a case names; None for other builders."""
+    if isinstance(case.build, TableSection):
+        return _table_of_file(case, case.build)
+    return _table_of_run(case, case.build) if isinstance(case.build, RunSection) else None
+
+
+def key_of(build: FromFile) -> str:
+    """Key that names the file or folder."""
+    return "build.file" if isinstance(build, TableSection) else "build.folder"
+
+
+def period_of(case: "Case") -> tuple[float, float]:
+    """Periods in x and y where grains come from a file [m], inf where open: the case's, or the file's."""
+    table = table_of(case)
+    stated = table.period if table is not None else None
+    x, y = (case.domain.period_x, case.domain.period_y)
+    file_x, file_y = stated or (math.inf, math.inf)
+    return (file_x if x is None else x, file_y if y is None else y)
+
+
+def area_of_file(case: "Case") -> float | None:
+    """Area of bed under a column of water [m2], where the file states it: that of a channel between walls."""
+    table = table_of(case)
+    return table.bed_area if table is not None else None
+
+
+def _inside(case: "Case", key: str, name: str) -> tuple[Path, Path]:
+    """Folder of the case, and the path of what lies in it."""
     folder = (case.path.parent if case.path is not None else Path()).resolve()
-    path = (folder / case.build.file).resolve()
+    path = (folder / name).resolve()
     if not path.is_relative_to(folder):
-        raise CaseError("build.file", case.build.file, "points outside the folder of the case file")
+        raise CaseError(key, name, "points outside the folder of the case file")
+    return folder, path
+
+
+def _table_of_file(case: "Case", build: TableSection) -> GrainTable:
+    folder, path = _inside(case, "build.file", build.file)
+    if not path.is_file():
+        allowed = f"no such file in the folder of the case, {folder}"
+        raise CaseError("build.file", build.file, allowed)
+    options = ReadOptions(
+        frame=build.frame,
+        length=quantity(f"1 {build.length_unit}", "m"),
+        time=quantity(f"1 {build.time_unit}", "s"),
+        stated=given(build, "length_unit") and given(build, "time_unit"),
+        fixed_types=build.fixed_types,
+    )
+    table = _read_now(path, "build.file", build.file, build.format, options)
+    if "d" in table.columns:
+        return table
+    return replace(table, columns={**table.columns, "d": np.full(table.n, case.grains.diameter)})
+
+
+def _read_now(path: Path, key: str, name: str, kind: str, options: ReadOptions) -> GrainTable:
     try:
         stamp = path.stat()
-    except OSError:
-        raise CaseError(
-            "build.file", case.build.file, f"no such file in the folder of the case, {folder}"
-        ) from None
-    if stamp.st_size > LARGEST_FILE:
-        raise CaseError("build.file", case.build.file, "is larger than 1 GiB, the limit for a table")
-    return _read(path, case.build.file, stamp.st_mtime_ns, stamp.st_size)
+        return _read(path, name, kind, options, stamp.st_mtime_ns, stamp.st_size)
+    except OSError as error:
+        raise CaseError(key, name, f"cannot be read: {error.strerror or error}") from None
+    except ParseError as error:
+        raise CaseError(key, None, str(error)) from error
 
 
 @lru_cache(maxsize=4)
-def _read(path: Path, name: str, _changed: int, _size: int) -> GrainTable:
+def _read(path: Path, name: str, kind: str, options: ReadOptions, _changed: int, _size: int) -> GrainTable:
+    return read_grains(path, name, kind, options)
+
+
+def _table_of_run(case: "Case", build: RunSection) -> GrainTable:
+    """Read the frame; a run folder holds the grains that its own run started from."""
+    from ryusa.results import schema
+
+    folder, path = _inside(case, "build.folder", build.folder)
+    start = folder / schema.START
+    if schema.is_run_folder(folder) and start.is_file() and not start.is_symlink():
+        return _read_now(start, "build.folder", schema.START, "csv", ReadOptions())
     try:
-        with path.open(newline="", encoding="utf-8-sig") as file:
-            rows = [
-                (number, row)
-                for number, row in enumerate(csv.reader(file), 1)
-                if any(cell.strip() for cell in row)
-            ]
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise CaseError("build.file", name, f"cannot be read: {error}") from None
-    rows = [(number, row) for number, row in rows if not row[0].lstrip().startswith("#")]
-    if len(rows) < 2:
-        raise CaseError("build.file", name, "needs a header and at least one grain")
-    heads = [_head(cell, name) for cell in rows[0][1]]
-    names = [one for one, _ in heads]
-    for needed in NEEDED:
-        if needed not in names:
-            raise CaseError("build.file", name, f"column '{needed} [cm]' is missing")
-    if len(set(names)) < len(names):
-        raise CaseError("build.file", name, "a column appears twice")
-    columns: dict[str, list[float]] = {one: [] for one in names if one in UNITS}
-    fixed: list[bool] = []
-    group: list[str] = []
-    for line, row in rows[1:]:
-        if len(row) != len(heads):
-            raise CaseError(
-                "build.file", name, f"line {line} has {len(row)} cells, the header has {len(heads)}"
-            )
-        cells = dict(zip(names, row, strict=True))
-        for (column, factor), cell in zip(heads, row, strict=True):
-            if column in UNITS:
-                columns[column].append(_number(cell, factor, f"line {line}, column {column}", name))
-        if columns["d"][-1] <= 0.0:
-            raise CaseError("build.file", name, f"line {line}: d must be greater than 0")
-        word = cells.get("fixed", "").strip().lower()
-        if word not in _YES | _NO:
-            raise CaseError("build.file", name, f"line {line}: fixed must be 0 or 1, not {word!r}")
-        fixed.append(word in _YES)
-        group.append(cells.get("group", "").strip())
-    if all(fixed):
-        raise CaseError("build.file", name, "has no free grain")
-    arrays = {one: np.array(values, dtype=np.float64) for one, values in columns.items()}
-    return GrainTable(
-        name=name,
-        columns=arrays,
-        fixed=np.array(fixed, dtype=np.bool_),
-        group=tuple(group),
-        labels=tuple(f"of line {line} of {name}" for line, _ in rows[1:]),
-    )
-
-
-def _head(cell: str, name: str) -> tuple[str, float]:
-    column, _, rest = cell.partition("[")
-    column, unit = column.strip(), rest.rstrip().removesuffix("]").strip()
-    if column in {"fixed", "group"}:
-        return column, 1.0
-    if column not in UNITS:
+        changed = (path / schema.PARTS).stat().st_mtime_ns
+    except OSError:
         raise CaseError(
-            "build.file",
-            name,
-            f"unknown column {column!r}; known are {', '.join([*UNITS, 'fixed', 'group'])}",
-        )
-    if not unit:
-        raise CaseError(
-            "build.file",
-            name,
-            f"column {column!r} needs its unit in the header, such as '{column} [{UNITS[column]}]'",
-        )
-    try:
-        return column, quantity(f"1 {unit}", UNITS[column])
-    except UnitError as error:
-        raise CaseError("build.file", name, f"column {column!r}: {error}") from None
+            "build.folder", build.folder, f"no such run folder in the folder of the case, {folder}"
+        ) from None
+    return _frame(path, build.folder, build.at, changed)
 
 
-def _number(cell: str, factor: float, where: str, name: str) -> float:
+@lru_cache(maxsize=4)
+def _frame(path: Path, name: str, at: float | None, _changed: int) -> GrainTable:
+    from ryusa.formats.grains import nearest_frame, table_of_frame
+    from ryusa.results import Results
+
     try:
-        value = float(cell) * factor
-    except ValueError:
-        value = float("nan")
-    if not np.isfinite(value):
-        raise CaseError("build.file", name, f"{where}: {cell.strip()!r} is not a finite number")
-    return value
+        run = Results.open(path)
+        if not len(run.frames):
+            raise ResultsError(f"{path}: has no frame yet")
+        return table_of_frame(run, len(run.frames) - 1 if at is None else nearest_frame(run, at))
+    except ResultsError as error:
+        raise CaseError("build.folder", name, str(error)) from None

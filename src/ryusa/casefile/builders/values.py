@@ -10,11 +10,11 @@ from ryusa.casefile.builders.schema import (
     BoxSection,
     DropSection,
     FlumeSection,
+    FromFile,
     PackingSection,
     SaltationSection,
-    TableSection,
 )
-from ryusa.casefile.builders.table import table_of
+from ryusa.casefile.builders.table import period_of, table_of
 from ryusa.casefile.grains import CUT, spread_of
 from ryusa.casefile.motion import slab_width
 
@@ -115,6 +115,7 @@ def periodic(case: "Case") -> tuple[bool, bool]:
         return build.periodic, build.periodic and not case.motion.plane
     if isinstance(build, BoxSection):
         return False, not case.motion.plane
-    if isinstance(build, TableSection):
-        return case.domain.period_x is not None, case.domain.period_y is not None
+    if isinstance(build, FromFile):
+        x, y = period_of(case)
+        return math.isfinite(x), math.isfinite(y)
     return isinstance(build, SaltationSection), False

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from ryusa.casefile.builders.schema import FlumeSection
+from ryusa.casefile.builders.table import area_of_file
 from ryusa.casefile.builders.values import periodic, sizes
 from ryusa.casefile.column.bed import bed_top, packed, water_over
 from ryusa.casefile.column.schema import CELL, ColumnSection, column_keys
@@ -48,14 +49,15 @@ def _place(case: "Case", water: WaterSection) -> Iterator[CaseError]:
     along, across = periodic(case)
     kind = case.build.kind
     if not along:
-        ways = {"packing": "; give build.periodic = true", "table": "; give domain.period_x"}
+        ways = {"packing": "; give build.periodic = true"}
+        ways |= dict.fromkeys(("table", "run"), "; give domain.period_x")
         yield CaseError(
             "water.profile",
             water.profile,
             f"needs a bed periodic in x, and that of builder '{kind}' is not{ways.get(kind, '')}",
         )
-    elif not (across or case.motion.plane or kind == "flume"):
-        way = "domain.period_y" if kind == "table" else "motion.plane = true"
+    elif not (across or case.motion.plane or kind == "flume" or area_of_file(case) is not None):
+        way = "domain.period_y" if kind in {"table", "run"} else "motion.plane = true"
         yield CaseError(
             "water.profile",
             water.profile,
