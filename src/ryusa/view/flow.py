@@ -31,24 +31,26 @@ def flow_of(results: Results, frames: NDArray[np.int64], blob: Blob) -> dict[str
         wet = column.content[frames] / ((1.0 - column.phi[frames]) * np.diff(column.faces))
         u[wet < _HALF] = math.nan
         blob.add("u", u.astype(np.float32))
-        blob.add("surface", column.z_surface[frames].astype(np.float32))
+        blob.add("surface", surfaces(results)[frames].astype(np.float32))
         return {"z": column.z.tolist(), "solved": True}
     water = results.scene.water
     if water.profile == Profile.NONE:
         return None
     z = heights(results.scene)
     blob.add("u", profile_at(results.scene, z).astype(np.float32)[None])
-    if math.isfinite(water.depth):
-        blob.add("surface", np.array([water.z_zero + water.depth], dtype=np.float32))
+    if len(surface := surfaces(results)[:1]):
+        blob.add("surface", surface.astype(np.float32))
     return {"z": z.tolist(), "solved": False}
 
 
-def highest_surface(results: Results) -> float:
-    """Highest surface of the water in a run [m]; inf or -inf where there is none."""
-    if results.water is not None:
-        return float(results.water.z_surface.max(initial=-math.inf))
-    water = results.scene.water
-    return -math.inf if water.profile == Profile.NONE else water.z_zero + water.depth
+def surfaces(results: Results) -> NDArray[np.float64]:
+    """Height of the water's surface at every frame [m], shape (n_frame,); empty where there is none."""
+    water, column = results.scene.water, results.water
+    if column is not None:
+        return np.asarray(column.z_surface)
+    if water.profile == Profile.NONE or not math.isfinite(water.depth):
+        return np.zeros(0)
+    return np.full(len(results.frames), water.z_zero + water.depth)
 
 
 def heights(scene: Scene) -> NDArray[np.float64]:

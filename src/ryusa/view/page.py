@@ -18,15 +18,15 @@ from ryusa import __version__
 from ryusa.errors import ResultsError
 from ryusa.model import Scene
 from ryusa.results import Results
+from ryusa.view.box import box_of
 from ryusa.view.encode import Blob, add_colours, add_positions, positions
-from ryusa.view.flow import flow_of, highest_surface
+from ryusa.view.flow import flow_of
 
 HERE = Path(__file__).parent
 SCRIPTS = ("decode.js", "linear.js", "draw.js", "overlay.js", "viewer.js")
 SIZE = 10.0e6  # of a page, unless asked otherwise [B]
 LEAST_SIZE = 2.0e5  # page without grains: script, style, walls [B]
 FEW_FRAMES = 60  # frames are thinned down to these before grains are left out
-FAR = 3.0  # heights of what the grains take up, above which the surface of the water is not shown
 _GUESS = 3.2  # bytes of a page per grain and frame, at first
 _TRIES = 5
 
@@ -125,6 +125,7 @@ def _encode(
     if len(grains) < scene.n_grain:
         blob.add("id", grains.astype(np.uint32))
     blob.add("fixed", np.column_stack([scene.x_fixed.reshape(-1, 3), 0.5 * scene.d_fixed]).astype(np.float32))
+    box = box_of(results, scene.d[grains], (each * quantum for each in whole))
     title = str(results.case.get("title") or results.folder.resolve().name)
     times = results.frames.t[frames]
     data: dict[str, Any] = {
@@ -137,7 +138,7 @@ def _encode(
         "grains": scene.n_grain,
         "quantum": quantum.tolist(),
         "period": [p if math.isfinite(p) else None for p in scene.period],
-        "box": box_of(results, whole, quantum, grains),
+        "box": [corner.tolist() for corner in box],
         "plane": scene.plane_case,
         "colourings": colourings,
         "scenes": [_walls(one, t) for _, t, one in results.scenes],
@@ -145,33 +146,6 @@ def _encode(
     }
     data["arrays"] = blob.contents
     return data
-
-
-def box_of(
-    results: Results, whole: NDArray[np.int32], quantum: NDArray[np.float64], grains: NDArray[np.int64]
-) -> list[list[float]]:
-    """Lowest and highest corner of what is shown [m]: free grains at all times, fixed ones, periods, water.
-
-    A surface far above the grains is left out: they would be dots.
-    """
-    scene = results.scene
-    x = whole * quantum
-    for axis, period in enumerate(scene.period):
-        if math.isfinite(period):
-            x[..., axis] %= period
-    r = 0.5 * scene.d[grains][:, None]
-    low, high = (x - r).min(axis=(0, 1)), (x + r).max(axis=(0, 1))
-    r_fixed = 0.5 * scene.d_fixed[:, None]
-    if scene.n_fixed:
-        low = np.minimum(low, (scene.x_fixed - r_fixed).min(axis=0))
-        high = np.maximum(high, (scene.x_fixed + r_fixed).max(axis=0))
-    for axis, period in enumerate(scene.period):
-        if math.isfinite(period):
-            low[axis], high[axis] = 0.0, period
-    surface = highest_surface(results)
-    if high[2] < surface < low[2] + FAR * (high[2] - low[2]):
-        high[2] = surface
-    return [low.tolist(), high.tolist()]
 
 
 def _walls(scene: Scene, t: float) -> dict[str, Any]:

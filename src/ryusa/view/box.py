@@ -1,0 +1,88 @@
+"""The box that holds what is shown of a run, its edges, and planes within it."""
+
+import math
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ryusa.results import Results
+from ryusa.view.flow import surfaces
+
+Floats = NDArray[np.float64]
+
+FAR = 3.0  # heights of what the grains take up, above which the surface of the water is not shown
+
+
+def box_of(results: Results, d: Floats, centres: Iterable[Floats]) -> tuple[Floats, Floats]:
+    """Lowest and highest corner of what is shown [m]: free grains at all times, fixed ones, periods, water.
+
+    A surface far above the grains is left out: they would be dots.
+
+    Parameters
+    ----------
+    d : diameters of the free grains shown [m], shape (n,).
+    centres : of these grains, frame by frame, unwrapped or not [m], shape (n, 3) each.
+
+    Returns
+    -------
+    low, high : shape (3,) each.
+    """
+    scene = results.scene
+    r, r_fixed = 0.5 * d[:, None], 0.5 * scene.d_fixed[:, None]
+    x_fixed = scene.x_fixed.reshape(-1, 3)
+    low = (x_fixed - r_fixed).min(axis=0, initial=math.inf)
+    high = (x_fixed + r_fixed).max(axis=0, initial=-math.inf)
+    for x in centres:
+        inside = x.copy()
+        for axis, period in enumerate(scene.period):
+            if math.isfinite(period):
+                inside[:, axis] %= period
+        low = np.minimum(low, (inside - r).min(axis=0, initial=math.inf))
+        high = np.maximum(high, (inside + r).max(axis=0, initial=-math.inf))
+    for axis, period in enumerate(scene.period):
+        if math.isfinite(period):
+            low[axis], high[axis] = 0.0, period
+    surface = surfaces(results).max(initial=-math.inf)
+    if high[2] < surface < low[2] + FAR * (high[2] - low[2]):
+        high[2] = surface
+    return low, high
+
+
+def corners_of(low: Floats, high: Floats) -> Floats:
+    """Corners of a box, shape (8, 3): corner k has the high side of axis a where bit a of k is set."""
+    return np.array([[(high if k >> a & 1 else low)[a] for a in range(3)] for k in range(8)])
+
+
+def edges_of(low: Floats, high: Floats) -> Floats:
+    """Edges of a box: both ends of each, shape (12, 2, 3)."""
+    corner = corners_of(low, high)
+    return np.array([(corner[k], corner[k | bit]) for k in range(8) for bit in (1, 2, 4) if not k & bit])
+
+
+def plane_in_box(point: Floats, normal: Floats, low: Floats, high: Floats) -> Floats:
+    """Corners of the part of a plane that lies in a box, in order around it, shape (n, 3); n = 0: none.
+
+    >>> low, high = np.zeros(3), np.ones(3)
+    >>> len(plane_in_box(np.full(3, 0.5), np.array([0.0, 0.0, 1.0]), low, high))
+    4
+    >>> len(plane_in_box(np.full(3, 0.5), np.full(3, 3.0**-0.5), low, high))
+    6
+    """
+    side = np.cross(normal, [1.0, 0.0, 0.0] if abs(normal[0]) < 0.9 else [0.0, 1.0, 0.0])
+    side /= np.linalg.norm(side)
+    other = np.cross(normal, side)
+    reach = 4.0 * float(np.linalg.norm(high - low)) + float(np.linalg.norm(point - low))
+    shape = [point + reach * (a * side + b * other) for a, b in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
+    for axis in range(3):
+        for sign, end in ((1.0, low[axis]), (-1.0, high[axis])):
+            room = [sign * (corner[axis] - end) + 1.0e-9 * reach for corner in shape]
+            kept: list[Floats] = []
+            for k, corner in enumerate(shape):
+                after = (k + 1) % len(shape)
+                if room[k] >= 0.0:
+                    kept.append(corner)
+                if (room[k] >= 0.0) != (room[after] >= 0.0):
+                    kept.append(corner + (shape[after] - corner) * room[k] / (room[k] - room[after]))
+            shape = kept
+    return np.array(shape).reshape(-1, 3)
