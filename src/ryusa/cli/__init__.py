@@ -13,8 +13,8 @@ from ryusa.errors import RyusaError
 
 # one module per family of commands; each puts its commands on the app with `register(app)`
 _FAMILIES = (
-    "ryusa.cli.run", "ryusa.cli.measure", "ryusa.cli.draw", "ryusa.cli.view", "ryusa.cli.report",
-    "ryusa.cli.export",
+    "ryusa.cli.run", "ryusa.cli.measure", "ryusa.cli.draw", "ryusa.cli.view", "ryusa.cli.film",
+    "ryusa.cli.report", "ryusa.cli.export",
     "ryusa.cli.design", "ryusa.cli.paper", "ryusa.cli.validate", "ryusa.cli.study", "ryusa.cli.doctor",
 )  # fmt: skip
 INTERRUPTED = 130  # exit code after Ctrl-C

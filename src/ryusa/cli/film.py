@@ -1,0 +1,95 @@
+"""`ryusa film`: the grains of a run in motion, as a file for a browser, a player or slides."""
+
+import re
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ryusa.cli.options import in_unit, open_run
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command()(film)
+
+
+def film(
+    run: Annotated[Path, typer.Argument(help="A run folder.")],
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output", "-o", metavar="FILE",
+            help="A .webp, .avif, .gif or .mp4 file (MP4 needs `pip install 'ryusa[film]'`); default "
+            "RUN/film.webp.",
+        ),
+    ] = None,
+    view: Annotated[
+        str | None,
+        typer.Option(metavar="VIEW", help="oblique, side or top; default oblique, for a plane scene side."),
+    ] = None,
+    colour: Annotated[
+        str, typer.Option(metavar="WORD", help="Colour grains by speed, height, spin, size or contacts.")
+    ] = "speed",
+    begin: Annotated[
+        str | None,
+        typer.Option(metavar="TIME", help="Begin of what is shown, such as 0.5s; default the first frame."),
+    ] = None,
+    end: Annotated[
+        str | None, typer.Option(metavar="TIME", help="End of what is shown; default the last frame.")
+    ] = None,
+    speed: Annotated[
+        float | None,
+        typer.Option(
+            metavar="FACTOR",
+            help="Time of the run over that of the film: 0.1 is ten times slower than it was. Default a "
+            "round number at which the film lasts about 10 s.",
+        ),
+    ] = None,
+    frames: Annotated[
+        int | None,
+        typer.Option(metavar="N", help="Number of pictures, evenly spaced in time; instead of --speed."),
+    ] = None,
+    fps: Annotated[float, typer.Option(metavar="N", help="Pictures a second, 1 to 60.")] = 25.0,
+    size: Annotated[
+        str, typer.Option(metavar="WxH", help="Width and height in pixels; even numbers for MP4.")
+    ] = "1280x720",
+    follow: Annotated[
+        int | None, typer.Option(metavar="GRAIN", help="Keep this free grain in the middle, in a ring.")
+    ] = None,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Show no progress.")] = False,
+) -> None:  # fmt: skip
+    """Write a film of the grains of a run; needs no display and no graphics card.
+
+    Scale, box and colours are the same in all pictures; the time and the speed of the film are written in
+    each. Between two recorded frames grains are drawn on straight lines. A run that is still being written is
+    shown as far as it has come.
+    """
+    from ryusa.errors import CaseError
+    from ryusa.results import schema
+
+    path = run / schema.FILM if output is None else output
+    numbers = re.fullmatch(r"(\d{1,5})x(\d{1,5})", size.strip())
+    if numbers is None:
+        raise CaseError("--size", size, "must be width and height in pixels, such as 1280x720")
+    window = {
+        name: in_unit(text, "s", f"--{name}")
+        for name, text in (("begin", begin), ("end", end))
+        if text is not None
+    }
+    results = open_run(run)
+    from ryusa.cli.progress import shown_progress
+    from ryusa.view.film import film as write_film
+
+    try:
+        with shown_progress("pictures", quiet=quiet) as progress:
+            made = write_film(
+                results, path, view=view, colour=colour, frames=frames, speed=speed, fps=fps,
+                size=(int(numbers[1]), int(numbers[2])), follow=follow, progress=progress, **window,
+            )  # fmt: skip
+    except CaseError as error:  # of a parameter, which is the option of the same name
+        raise CaseError(f"--{error.key}", error.value, error.allowed, error.nearest) from None
+    typer.echo(
+        f"wrote {path} ({path.stat().st_size / 1e6:.1f} MB): {len(made.times)} pictures of {made.frames} "
+        f"recorded frames, {made.seconds:.3g} s, {made.speed:.3g} x real time"
+    )

@@ -1,0 +1,163 @@
+"""The grains, walls and water of a run at a moment, as pixels."""
+
+import math
+from dataclasses import dataclass
+
+import matplotlib as mpl
+import numpy as np
+
+from ryusa.results import Results
+from ryusa.view.box import Floats, edges_of, plane_in_box
+from ryusa.view.camera import Camera
+from ryusa.view.colouring import Colouring
+from ryusa.view.flow import surfaces
+from ryusa.view.raster import CHOSEN, LEAST, SAMPLES, Bytes, Canvas, Face, Line, Spheres
+
+SHADES = 256  # of a colour scale
+FIXED = (168, 163, 153)  # as in the page, and so the other colours
+EDGE, WALL, WATER, LEVEL = (140, 148, 158), (128, 120, 107), (38, 128, 204), (0, 114, 178)
+WALL_ALPHA, WATER_ALPHA, DEEP_ALPHA = 0.25, 0.22, 0.1
+RING = 1.35  # radius of the ring around a grain that is followed, in its own
+_ABOVE = 1.0e9  # towards the eye, in samples: before everything
+
+
+@dataclass(frozen=True)
+class Look:
+    """How the pictures of a film are drawn, alike in all of them.
+
+    Attributes
+    ----------
+    view : a word of `camera.VIEWS`.
+    colouring, low, high : of the grains, and the ends of its scale in SI.
+    camera : where it looks is that of the first picture; it moves with the grain that is followed.
+    box : lowest and highest corner of what is shown [m].
+    follow : free grain in the middle of the picture; None: the camera stands still.
+    """
+
+    view: str
+    colouring: Colouring
+    low: float
+    high: float
+    camera: Camera
+    box: tuple[Floats, Floats]
+    follow: int | None = None
+
+
+class Painter:
+    """Draws a run at any time between its first and last frame.
+
+    Between two frames grains are on straight lines, with the colours of the nearer frame. A grain that leaves
+    a period on one side enters it on the other; where a grain is followed, the period around it is shown.
+    """
+
+    def __init__(self, results: Results, look: Look, width: int, height: int) -> None:
+        self.results, self.look = results, look
+        self.canvas = Canvas(width, height)
+        self._frames: dict[int, Floats] = {}
+        self._shades: tuple[int, Bytes] | None = None
+        self._palette = np.rint(
+            255.0 * mpl.colormaps[look.colouring.colours](np.linspace(0.0, 1.0, SHADES))[:, :3]
+        ).astype(np.uint8)
+        self._surfaces = surfaces(results)
+        self._period = np.array([*results.scene.period, math.inf])
+
+    def at(self, t: float) -> Bytes:
+        """The picture at time `t` [s], shape (height, width, 3)."""
+        k, share = self._between(t)
+        nearer = k + round(share)
+        x = self._frame(k)
+        if share > 0.0:
+            x = x + share * (self._frame(k + 1) - x)
+        low, high, camera = self._seen(x)
+        scene = self.results.scene_at(t)
+        fixed = np.flatnonzero(scene.fixed_active)
+        centres = np.concatenate([x, scene.x_fixed[fixed].reshape(-1, 3)])
+        d = np.concatenate([scene.d, scene.d_fixed[fixed]])
+        for axis in np.flatnonzero(np.isfinite(self._period)):
+            row = centres[:, axis]
+            row -= self._period[axis] * np.floor((row - low[axis]) / self._period[axis])
+        wide, high_up = SAMPLES * self.canvas.width, SAMPLES * self.canvas.height
+        scale = 0.5 * high_up / camera.half
+        colour = np.concatenate([self._colours(nearer), np.full((len(fixed), 3), FIXED, dtype=np.uint8)])
+        spheres = Spheres(
+            camera.project(centres, wide, high_up),
+            np.maximum(0.5 * d * scale, LEAST).astype(np.float32),
+            colour,
+            -1 if self.look.follow is None else self.look.follow,
+        )
+        lines: list[Line] = []
+        faces: list[Face] = []
+
+        def line(ends: Floats, own: tuple[int, int, int]) -> None:
+            lines.append(Line(camera.project(ends, wide, high_up), own))
+
+        def face(
+            corners: Floats, own: tuple[int, int, int], alpha: float, rim: tuple[int, int, int] | None
+        ) -> None:
+            faces.append(Face(camera.project(corners, wide, high_up), own, alpha))
+            if rim is not None:
+                for k in range(len(corners)):
+                    line(corners[[k, (k + 1) % len(corners)]], rim)
+
+        for ends in edges_of(low, high):
+            line(ends, EDGE)
+        for k in np.flatnonzero(scene.plane_active):
+            corners = plane_in_box(scene.plane_point[k], scene.plane_normal[k], low, high)
+            if len(corners):
+                face(corners, WALL, WALL_ALPHA, WALL)
+        if len(self._surfaces) and low[2] < (z := float(self._surfaces[nearer])) <= high[2]:
+            level = [(low[0], low[1]), (high[0], low[1]), (high[0], high[1]), (low[0], high[1])]
+            face(np.array([(*place, z) for place in level]), WATER, WATER_ALPHA, LEVEL)
+            if self.look.view == "side":  # the surface is a line there: the water behind the grains is tinted
+                behind = [(low[0], z), (high[0], z), (high[0], low[2]), (low[0], low[2])]
+                face(np.array([(a, high[1], b) for a, b in behind]), WATER, DEEP_ALPHA, None)
+        if self.look.follow is not None:
+            lines += self._ring(spheres, self.look.follow)
+        return self.canvas.draw(spheres, lines, faces)
+
+    def _between(self, t: float) -> tuple[int, float]:
+        """The frame before a time, and the share of the way to the next."""
+        times = self.results.frames.t
+        k = int(np.clip(np.searchsorted(times, t, side="right") - 1, 0, len(times) - 1))
+        if k == len(times) - 1 or t <= times[k]:
+            return k, 0.0
+        return k, float((t - times[k]) / (times[k + 1] - times[k]))
+
+    def _frame(self, k: int) -> Floats:
+        """Unwrapped centres at a frame; the last two asked for are kept."""
+        if k not in self._frames:
+            if len(self._frames) > 1:
+                del self._frames[min(self._frames)]
+            self._frames[k] = self.results.frames.x[k]
+        return self._frames[k]
+
+    def _colours(self, k: int) -> Bytes:
+        """Red, green, blue of the free grains at a frame."""
+        if self._shades is None or (self._shades[0] != k and not self.look.colouring.steady):
+            low, high = self.look.low, self.look.high
+            share = (self.look.colouring.values(self.results, k) - low) / (high - low)
+            shade = np.clip(np.rint(share * (SHADES - 1)), 0, SHADES - 1).astype(np.int64)
+            self._shades = k, self._palette[shade]
+        return self._shades[1]
+
+    def _seen(self, x: Floats) -> tuple[Floats, Floats, Camera]:
+        """The box shown and the camera: as they are, or around the grain that is followed."""
+        low, high = self.look.box
+        if self.look.follow is None:
+            return low, high, self.look.camera
+        target = x[self.look.follow].copy()
+        periodic = np.isfinite(self._period)
+        shift = np.where(periodic, target - 0.5 * (low + high), 0.0)
+        return low + shift, high + shift, self.look.camera.at(target)
+
+    def _ring(self, spheres: Spheres, grain: int) -> list[Line]:
+        """A ring around a grain, over everything that hides it."""
+        x, y, _ = spheres.place[grain]
+        turn = np.linspace(0.0, 2.0 * math.pi, 97)
+        lines: list[Line] = []
+        for wider in range(4):  # two samples each
+            r = RING * float(spheres.radius[grain]) + 4.0 + wider
+            points = np.column_stack([x + r * np.cos(turn), y + r * np.sin(turn), np.full(len(turn), _ABOVE)])
+            ends = points.astype(np.float32)
+            lines += [Line(ends[k : k + 2], CHOSEN) for k in range(len(turn) - 1)]
+        return lines
