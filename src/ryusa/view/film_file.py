@@ -112,7 +112,7 @@ def _pillow(file: IO[bytes], suffix: str, draw: Draw, pictures: int, fps: float)
     else:
         how |= {"quality": QUALITY[suffix]}
     if suffix == ".webp":
-        how |= {"loop": 0, "method": 2}
+        how |= {"loop": 0, "method": 2, "kmin": 0, "kmax": 1}  # each whole: differences leave faint ghosts
     elif suffix == ".avif":
         how |= {"speed": 8}
     _Pictures(draw, pictures).save(file, suffix[1:].upper(), save_all=True, **how)

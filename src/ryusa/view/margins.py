@@ -135,8 +135,8 @@ def _foot(
     down = gravity / (np.linalg.norm(gravity) or 1.0)
     for (name, colour), way in zip((*ARROWS, ("g", INK)), (*np.eye(3), 0.8 * down), strict=True):
         seen = 0.34 * high * (camera.axes @ way)[:2]
-        if np.linalg.norm(seen) < 0.04 * high:
-            continue
+        if np.linalg.norm(seen) < (0.17 if name == "g" else 0.04) * high:
+            continue  # towards the eye, or nearly
         axes.annotate(
             "", (*(middle + seen),), (*middle,), arrowprops={
                 "arrowstyle": "-|>", "color": colour, "lw": 1.4 * factor,
@@ -166,7 +166,8 @@ def _colour_scale(
     extend = {(False, False): "neither", (True, False): "min", (False, True): "max", (True, True): "both"}
     shown = figure.colorbar(
         ScalarMappable(Normalize(low * one.scale, high * one.scale), mpl.colormaps[one.colours]),
-        cax=bar, orientation="horizontal", extend=extend[beyond], ticks=MaxNLocator(5),
+        cax=bar, orientation="horizontal", extend=extend[beyond],
+        ticks=MaxNLocator(5, steps=[1, 2, 5, 10], integer=not one.unit),  # what has no unit is counted
     )  # fmt: skip
     shown.outline.set_linewidth(0.6 * factor)  # pyright: ignore[reportCallIssue]
     bar.tick_params(
