@@ -13,8 +13,10 @@ import pytest
 from ryusa.build import scene as scene_of
 from ryusa.errors import ResultsError
 from ryusa.model import Scene, State
+from ryusa.model.contacts import Contacts
 from ryusa.results import Results
 from ryusa.running import loop
+from ryusa.running.recorder import RecordedSoFar, Recorder
 from ryusa.running.runner import run_scene
 from ryusa.running.stops import Stop
 
@@ -87,6 +89,31 @@ def test_forces_survive_a_stop_and_are_the_same_as_without_it(tmp_path: Path, mo
     assert len(again.frames) == len(whole.frames)
     for k in range(len(whole.frames)):
         np.testing.assert_array_equal(again.contact_forces(k), whole.contact_forces(k))
+
+
+def test_forces_that_wait_in_the_buffer_are_kept_by_a_checkpoint(tmp_path: Path, tally: Any) -> None:
+    scene, state = heap(False)
+    held = Contacts.none()
+    pair = {"i": np.array([0, 1]), "j": np.array([5, 13]), "f_n": np.array([2.0, 3.0])}
+    shapes = {name: np.zeros((2, *one.shape[1:])) for name, one in vars(held).items()}
+    pressed = replace(state, contacts=replace(held, **shapes | pair))
+    folder = tmp_path / "run"
+    folder.mkdir()
+    (folder / "provenance.json").write_text('{"format": 2, "ryusa": "0", "status": "running"}')
+    first = Recorder(folder, scene)
+    for k, one in enumerate((pressed, state, pressed)):
+        first.frame(replace(one, step=k, t=k * 1e-3), tally(k * 1e-3))
+    block = first.to_block()
+    earlier = RecordedSoFar([], [(0.0, scene)], n_frame=3, buffered=block.arrays)
+    again = Recorder(folder, scene, earlier=earlier)
+    again.frame(replace(pressed, step=3, t=3e-3), tally(3e-3))
+    again.flush()
+    results = Results.open(folder)
+    assert [len(results.contact_forces(k)) for k in range(4)] == [2, 0, 2, 2]
+    for k in (0, 2, 3):
+        f = results.contact_forces(k)
+        assert f["j"].tolist() == [5, 13]
+        np.testing.assert_allclose(np.linalg.norm(f["force"], axis=1), [2.0, 3.0])
 
 
 def test_a_run_without_forces_names_the_key_that_records_them(tmp_path: Path) -> None:
