@@ -58,6 +58,7 @@ BAD = [
     ("record.tracked", "[7]", "must be below 1"),
     ("record.events", "'tracked'", "needs the numbers of grains"),
     ("record.settle", "'1 s'", "shorter than stop.time"),
+    ("record.settle", "'1 s'", "--set record.settle="),
     ("timeline", "[{ at = '0.01 s' }]", "exactly one of"),
     ("timeline", "[{ at = '0.05 s', friction = 1 }, { at = '0.01 s', friction = 0 }]", "in order of time"),
     ("timeline", "[{ at = '5 s', friction = 1 }]", "timeline.0.at = '5 s': comes after stop.time, 0.1 s"),

@@ -163,3 +163,10 @@ def test_a_snapshot_shows_the_lane_asked_for(make):
     assert (one.x[:, 0] < run.scene.period[0]).all()
     with pytest.raises(ResultsError, match="no lane 5"):
         snapshot(run, lane=5)
+
+
+def test_a_bed_that_is_periodic_along_the_flow_is_refused(make):
+    run = standing(make, triangle(0.5))
+    run.scene = replace(run.scene, period=(0.2, math.inf))
+    with pytest.raises(ResultsError, match="periodic along x"):
+        surface(run)

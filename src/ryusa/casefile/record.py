@@ -131,7 +131,12 @@ def check_record(case: "Case", derived: "Derived") -> Iterator[CaseError]:
     if record.events == "tracked" and not record.tracked:
         yield CaseError("record.tracked", None, "missing; events = 'tracked' needs the numbers of grains")
     if case.stop.time is not None and record.settle >= case.stop.time:
-        yield CaseError("record.settle", record.settle, "must be shorter than stop.time")
+        yield CaseError(
+            "record.settle",
+            record.settle,
+            f"must be shorter than stop.time, {case.stop.time:g} s: the case lets so much time pass before "
+            "measures begin; give a shorter one in [record] or with --set record.settle=...",
+        )
 
 
 def check_frames(case: "Case", derived: "Derived", data: dict[str, Any]) -> Iterator[CaseError]:

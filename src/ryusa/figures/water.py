@@ -24,7 +24,9 @@ def water(found: WaterProfile) -> Figure:
     """
     figure, axes = style.new(1, 3, width=style.PAGE, height=2.9, sharey=True)
     z, faces, top = found.z * CM, found.faces * CM, found.surface * CM
-    wet, through = found.z < found.surface, found.faces < found.surface
+    base = _base(found)
+    wet = (found.z < found.surface) & (found.z > base)
+    through = (found.faces < found.surface) & (found.faces > base)
     speeds, amount, stress = axes
     _band(speeds, found.u, z, CM, wet, WATER, "water", "-")
     at, thin = (found.grains.z + found.grains.origin) * CM, found.grains.phi.value < STRAY
@@ -56,6 +58,11 @@ def water(found: WaterProfile) -> Figure:
             weight="bold",
         )  # fmt: skip
         panel.locator_params(axis="x", nbins=5)
+    if np.isfinite(base):
+        figure.supxlabel(
+            f"Not shown: water below z = {base * CM:.3g} cm, in empty pores among the fixed grains under the "
+            "packed bed.", fontsize=6.3,
+        )  # fmt: skip
     place = {"loc": "upper left", "bbox_to_anchor": (0.0, 1.0 / 1.06)} if flows else {"loc": "best"}
     speeds.legend(**place)
     if np.isfinite(found.tau_bed):
@@ -64,6 +71,18 @@ def water(found: WaterProfile) -> Figure:
     if np.isfinite(found.bed):
         _name(amount, "bed", found.bed * CM, SAND, 3)
     return figure
+
+
+def _base(found: WaterProfile) -> float:
+    """Height below which the water is not drawn [m]; -inf where it is drawn down to the bottom.
+
+    Under a packed bed, where phi falls below half of its largest value, the water runs in empty pores.
+    """
+    half = 0.5 * float(np.nanmax(found.phi.value, initial=0.0))
+    dense = (
+        np.flatnonzero((found.phi.value >= half) & (found.z < found.bed)) if half > 0.0 else np.zeros(0, int)
+    )
+    return float(found.z[dense[0]]) if len(dense) and dense[0] > 0 else -np.inf
 
 
 def _band(

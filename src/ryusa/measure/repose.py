@@ -166,7 +166,7 @@ def surface(
     if not 0.0 <= fit[0] < fit[1] <= 1.0:
         raise ResultsError(f"fit {fit[0]:g} .. {fit[1]:g}: must be two shares of the height, 0 to 1, rising")
     seen = snapshot(run, t, lane)
-    scene = scene_at(run, seen.t)
+    scene = _open_scene(run, seen.t)
     d = float(scene.d.mean())
     level = _floor(scene, seen) if floor is None else floor
     chosen = _heap(seen, scene, level, link * d)
@@ -209,6 +209,16 @@ def surface(
         still=limit,
         moving=float((seen.speed[chosen] + around > limit).mean()),
     )
+
+
+def _open_scene(run: Run, t: float) -> Scene:
+    """The scene at time t [s]; an error where it is periodic along x."""
+    scene = scene_at(run, t)
+    if math.isfinite(scene.period[0]):
+        raise ResultsError(
+            "the scene is periodic along x: it holds no heap with a foot to measure a slope of"
+        )
+    return scene
 
 
 def _other_slopes(s: Floats, top: Floats, level: float, fit: tuple[float, float]) -> dict[str, float]:
