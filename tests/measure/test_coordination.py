@@ -85,6 +85,7 @@ def test_the_mean_over_frames_has_an_error_and_counts_every_frame_alike(still):
     assert found["coordination"].value == 0.25
     assert 0.0 < found["coordination"].error < 0.05
     assert len(found.rows()) == 1
+    assert [row["coordination"] for row in found.series()[:5]] == [1.0, 0.0, 0.0, 0.0, 1.0]
 
 
 def test_a_window_without_a_frame_is_refused(still):

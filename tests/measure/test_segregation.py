@@ -40,6 +40,8 @@ def test_mixed_grains_give_zero_and_their_centres_are_weighted_by_volume(make):
     assert found["large_over_all"].value == pytest.approx((4.0 - 33 / 9) * D, rel=1e-12)
     assert found["small_over_all"].value == pytest.approx((1.0 - 33 / 9) * D, rel=1e-12)
     assert found.share == pytest.approx(8 / 9)
+    assert found.series()[0]["z_all_m"] == found.z[0]
+    assert "z_m" not in found.rows()[0]  # a series, no layers
 
 
 def test_grains_that_fill_a_depth_evenly_are_half_of_it_apart_when_parted():

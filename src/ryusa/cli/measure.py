@@ -52,7 +52,9 @@ SeriesFile = Annotated[
 LayersFile = Annotated[
     Path | None,
     typer.Option(
-        "--layers", metavar="FILE", help="profile, water, stress: write the layers over height as CSV."
+        "--layers",
+        metavar="FILE",
+        help="profile, water, stress, contact_stress, coordination: write the layers over height as CSV.",
     ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print the numbers as JSON instead of a table.")]
@@ -202,7 +204,9 @@ def _series(name: str, found: Any) -> list[dict[str, object]]:
 def _layers(name: str, found: Any) -> list[dict[str, object]]:
     rows = found.rows()
     if not rows or "z_m" not in rows[0]:
-        raise ResultsError(f"{name} has no layers over height; profile, water and stress have")
+        raise ResultsError(
+            f"{name} has no layers over height; profile, water, stress, contact_stress and coordination have"
+        )
     return rows
 
 

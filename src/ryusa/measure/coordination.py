@@ -54,6 +54,13 @@ class Coordination(Averaged):
             for k, z in enumerate(self.z)
         ]
 
+    def series(self) -> list[dict[str, object]]:
+        """One dictionary per frame."""
+        return [
+            {"t_s": float(t), "coordination": float(self.contacts[k]), "rattlers": float(self.rattlers[k])}
+            for k, t in enumerate(self.t)
+        ]
+
 
 def coordination(
     run: Run,

@@ -46,7 +46,7 @@ class Segregation(Averaged):
         return [
             {
                 "t_s": float(t),
-                "z_m": float(self.z[k]),
+                "z_all_m": float(self.z[k]),
                 "z_small_m": float(self.z_small[k]),
                 "z_large_m": float(self.z_large[k]),
                 "segregation_index": float(self.index[k]),
