@@ -159,7 +159,7 @@ PICTURES = (
                  builders=("flume",)),
     PictureEntry("contact_stress", "ryusa.figures.contact_stress:contact_stress",
                  "stress over height beside the weight above, and mu over I",
-                 (*WINDOW, "layer"), settled=True, measure="contact_stress"),
+                 WINDOW, settled=True, measure="contact_stress"),
     PictureEntry("surface", "ryusa.figures.runs:surface", "a heap with its free surface and fitted slope",
                  ("t", "side", "lane"),
                  builders=("box",)),

@@ -139,7 +139,7 @@ def test_a_short_run_of_the_real_scene_can_be_measured_and_drawn(tmp_path, monke
         cut = {"stop.time": "0.3 s", "record.settle": "0.1 s"}
         return plain(case, {**(overrides or {}), **cut}, seed)
 
-    plain = _debris.task
+    plain = _debris.paper_run
     monkeypatch.setattr(_debris, "paper_run", short)
     monkeypatch.setattr(fig18, "paper_run", short)
     names = ("fig17", "fig17_free", "fig18")
