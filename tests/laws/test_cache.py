@@ -11,7 +11,7 @@ import numba
 from numba.core.caching import IndexDataCacheFile
 
 import ryusa.laws
-from ryusa.laws import collision
+from ryusa.laws import collision, dispatch
 from ryusa.laws._law import EDITION
 
 ASK = """
@@ -58,3 +58,28 @@ def test_the_cache_of_another_edition_is_not_read(tmp_path):
     )
     other._version = kept._version
     assert other._load_index() == {}
+
+
+def _closures(function, found):
+    """Every compiled function that a dispatcher holds in its closure, itself included."""
+    text = getattr(function, "py_func", None)
+    if text is None or id(function) in found:
+        return
+    found[id(function)] = function
+    for cell in text.__closure__ or ():
+        _closures(cell.cell_contents, found)
+
+
+def test_functions_of_different_closures_have_names_of_their_own():
+    """Else a cached caller may bring one along under the symbol of another, which the linker then keeps."""
+    found = {}
+    for one in vars(dispatch).values():
+        _closures(one, found)
+    assert len(found) > 60
+    held = {}
+    for function in found.values():
+        text = function.py_func
+        inside = [cell.cell_contents for cell in text.__closure__ or ()]
+        meaning = [one.py_func.__qualname__ if hasattr(one, "py_func") else repr(one) for one in inside]
+        name = (text.__module__, text.__qualname__)
+        assert held.setdefault(name, meaning) == meaning, name

@@ -122,7 +122,8 @@ def dispatch(
         if choice in unasked:
             continue
         places = tuple(map(arguments.index, _asked_by(choice, arguments)))
-        chain = _link(int(choice), choice.function, _picker(places, flags), chain, flags)
+        name = f"{family.__name__}.{choice.name}.{'_'.join(arguments)}"
+        chain = _link(int(choice), choice.function, _picker(places, flags), chain, flags, name)
     return chain
 
 
@@ -137,7 +138,7 @@ def marked(family: type[Family], mark: str) -> Any:
     if not bits:
         raise TypeError(f"no choice of {family.__name__} is marked '{mark}' in laws/families.py")
 
-    @_uncached(False)
+    @_uncached(False, f"{family.__name__}.{mark}")
     def carries(chosen: Any) -> Any:
         return (bits >> chosen) & 1 != 0
 
@@ -209,10 +210,25 @@ def _name(choice: Family) -> str:
     return f"{type(choice).__name__}.{choice.name} ('{choice.word}')"
 
 
-def _uncached(fastmath: Any) -> Callable[[F], F]:
-    """Compile without a cache on disk, because the laws are in the closure of the function."""
+def _uncached(fastmath: Any, name: str) -> Callable[[F], F]:
+    """Compile without a cache on disk, because the laws are in the closure of the function.
+
+    Notes
+    -----
+    `name` must tell apart what the closures hold. Numba names a compiled function by its module, its
+    qualified name, its types and a number that counts functions in the order in which the process defined
+    them. A cached caller carries such functions along under the names that they had in the process that
+    compiled it. If two functions of different closures had one qualified name, they could meet under one
+    symbol, and the linker keeps the first: the wrong law would be called.
+    """
     fast = set(fastmath) if isinstance(fastmath, frozenset) else fastmath
-    return compiled(None, fastmath=fast)
+    flags = "fused" if fast else "plain"
+
+    def decorate(function: F) -> F:
+        function.__qualname__ = f"{function.__qualname__}.{name}.{flags}"
+        return compiled(None, fastmath=fast)(function)
+
+    return decorate
 
 
 @cache
@@ -220,24 +236,24 @@ def _picker(places: tuple[int, ...], fastmath: Any) -> Any:
     """Function that selects the arguments of a law, by their positions, from all arguments of its family."""
     if not places:
 
-        @_uncached(fastmath)
+        @_uncached(fastmath, "none")
         def none(given: Any) -> Any:
             return ()
 
         return none
     first, rest = places[0], _picker(places[1:], fastmath)
 
-    @_uncached(fastmath)
+    @_uncached(fastmath, "_".join(map(str, places)))
     def pick(given: Any) -> Any:
         return (given[first], *rest(given))
 
     return pick
 
 
-def _link(number: int, law: Any, pick: Any, rest: Any, fastmath: Any) -> Any:
+def _link(number: int, law: Any, pick: Any, rest: Any, fastmath: Any, name: str) -> Any:
     """One branch of a dispatch: this law if the number matches, else the remaining branches."""
 
-    @_uncached(fastmath)
+    @_uncached(fastmath, name)
     def link(chosen: Any, *given: Any) -> Any:
         if chosen == number:
             return law(*pick(given))
@@ -250,7 +266,7 @@ def _nothing_known(answers: int, fastmath: Any) -> Any:
     """Last branch of a dispatch: a number outside the family."""
     lost = math.nan if answers == 1 else (math.nan,) * answers
 
-    @_uncached(fastmath)
+    @_uncached(fastmath, str(answers))
     def unknown(chosen: Any, *given: Any) -> Any:
         return lost
 
