@@ -158,6 +158,16 @@ def test_an_existing_run_is_refused_unless_overwritten(ryusa_: Any, drop: str) -
     assert ryusa_("run", drop, *short, "--overwrite").code == 0
 
 
+def test_quiet_hides_no_warning_of_the_physics(ryusa_: Any, drop: str) -> None:
+    soft = ("--set", "contact.stiffness=0.5 N/cm", "--set", "stop.time=0.2 s")
+    said = ryusa_("run", drop, *soft, "-o", "loud")
+    done = ryusa_("run", drop, *soft, "-q", "-o", "out")
+    warnings = [line for line in said.err.splitlines() if line.startswith("warning: ")]
+    assert warnings
+    assert done.err.splitlines() == warnings
+    assert done.out == ""
+
+
 def test_quiet_prints_nothing(ryusa_: Any, drop: str) -> None:
     done = ryusa_("run", drop, "-q", "-o", "out", "--set", "stop.time=2 ms")
     assert (done.code, done.out, done.err) == (0, "", "")

@@ -148,7 +148,7 @@ def test_summary_lines_exist_for_a_run_without_contacts(scene: Any, state: Any, 
     more = {"steps": 1, "frames": 2, "contacts": 0, "wall": 1.0, "particle_steps_per_second": 5e6}
     text = "\n".join(summary_lines({**numbers, **more}))
     assert "5.00 M particle-steps/s" in text
-    assert "none (no contact between two isolated grains)" in text
+    assert "not at all (no contact between two isolated grains)" in text
 
 
 def test_a_flight_counts_as_a_hop_when_it_can_rise_a_tenth_of_d(scene: Any, event: Any) -> None:

@@ -34,7 +34,9 @@ Engine = Annotated[
     str,
     typer.Option("--engine", metavar="NAME", help=f"Engine that steps the grains: {registry.summary()}."),
 ]
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print neither progress nor summary.")]
+Quiet = Annotated[
+    bool, typer.Option("--quiet", "-q", help="Print neither progress nor summary; warnings go to stderr.")
+]
 Every = Annotated[
     str, typer.Option("--checkpoint", metavar="TIME", help="Wall time between checkpoints, or 'never'.")
 ]
@@ -230,6 +232,9 @@ def _close(results: "Results", quiet: bool) -> None:
             typer.echo(f"next: ryusa measure {folder} WHAT, ryusa draw {folder} WHAT")
         else:
             typer.echo(f"next: ryusa resume {folder}")
+    else:
+        for warning in results.summary.get("warnings", ()):  # of the physics: nothing hides them
+            typer.echo(f"warning: {warning}", err=True)
     if not results.complete:
         raise typer.Exit(_STOPPED)
 

@@ -52,8 +52,11 @@ def contact_times(found: Saltation) -> Figure:
         axes.hist(ratio, 60, color=style.COLOURS[0], alpha=0.75, lw=0)
         axes.axvline(float(ratio.mean()), color=style.COLOURS[1], label=f"mean {ratio.mean():.3f}")
     added, damped = found.times.added / found.times.eq_8, found.times.damped / found.times.eq_8
-    axes.axvline(added, color="black", lw=0.8, ls="--", label=f"Eq. (8) with added mass {added:.3f}")
-    axes.axvline(damped, color="black", lw=0.8, ls=":", label=f"and with dashpot {damped:.3f}")
+    wet = added != 1.0  # a dry grain has no added mass
+    if wet:
+        axes.axvline(added, color="black", lw=0.8, ls="--", label=f"Eq. (8) with added mass {added:.3f}")
+    text = "and with dashpot" if wet else "Eq. (8) with dashpot"
+    axes.axvline(damped, color="black", lw=0.8, ls=":", label=f"{text} {damped:.3f}")
     axes.set_xlabel("contact time over Eq. (8) of the dry grain  (–)")
     axes.set_ylabel("number of bed contacts")
     axes.legend(loc="best", fontsize=6.5)

@@ -174,7 +174,10 @@ def profiles(
     length = float(scene.period[0]) if between is None else between[1] - between[0]
     width = _width(scene, lanes)
     if not (math.isfinite(length) and length > 0.0):
-        raise ResultsError("the scene is open along x: `between` must say from which x to which")
+        raise ResultsError(
+            "the scene is open along x: a profile is a mean along a period, and there is none. In Python, "
+            "ryusa.measure.profiles(run, between=(x_0, x_1)) takes a stretch"
+        )
     sums, edge = _sums(run, first, last, scene, z_0, thickness, between, bed)
     n_layer, area = sums.shape[1], length * width
     space = area * thickness
