@@ -33,6 +33,7 @@ class ProgressLines(StudyProgress):
 
     EVERY = 10.0  # s between two lines if stderr is not a terminal
     LOOK = 2.0  # s between two readings of how far the runs are
+    LEAST = 0.05  # share from which it is used: before, compilation and the first part weigh too much
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         from rich.console import Console
@@ -92,7 +93,9 @@ class ProgressLines(StudyProgress):
         if now - self._looked > self.LOOK:
             self._looked = now
             shares = {one: one.share(self._folder / one.folder) for one in self._now}
-            self._shares = {one: share for one, share in shares.items() if share is not None and share > 0.0}
+            self._shares = {
+                one: share for one, share in shares.items() if share is not None and share > self.LEAST
+            }
         left = self.left()
         words = f"about {duration(left)} left, " if left > 0.0 else ""
         words += f"now: {', '.join(one.label for one in self._now)}"
