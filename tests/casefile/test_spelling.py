@@ -5,8 +5,8 @@ from collections.abc import Callable
 import pytest
 
 from ryusa.casefile import Case, all_keys
-from ryusa.casefile.spelling import nearest_word
 from ryusa.errors import CaseError
+from ryusa.spelling import nearest_word
 
 CaseOf = Callable[..., Case]
 WORDS = sorted({part for key in all_keys() for part in key.split(".")})
@@ -58,6 +58,13 @@ def test_a_misspelt_key_is_recognised(written: str, meant: str) -> None:
 @pytest.mark.parametrize("written", FAR)
 def test_a_word_unlike_any_key_gets_no_hint(written: str) -> None:
     assert nearest_word(written, WORDS) is None
+
+
+def test_a_word_of_three_letters_with_another_letter_is_another_word() -> None:
+    assert nearest_word("gpu", ["cpu", "cuda"]) is None
+    assert nearest_word("pcu", ["cpu", "cuda"]) == "cpu"
+    assert nearest_word("cp", ["cpu", "cuda"]) is None
+    assert nearest_word("cpus", ["cpu", "cuda"]) == "cpu"
 
 
 def test_every_key_is_found_again_with_a_letter_left_out_or_two_swapped() -> None:

@@ -6,8 +6,8 @@ from typing import Any
 from pydantic import ValidationError
 
 from ryusa.casefile.keys import builders, builders_with, description_at, dotted, item, keys_at, nearest_key
-from ryusa.casefile.spelling import nearest_word
 from ryusa.errors import CaseError
+from ryusa.spelling import nearest_word
 
 _LONGEST_VALUE = 80
 _MESSAGES = {

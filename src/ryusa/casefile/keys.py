@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from pydantic import BaseModel
 
 from ryusa.casefile.case import Case
-from ryusa.casefile.spelling import nearest_word
+from ryusa.spelling import nearest_word
 
 
 def dotted(path: Sequence[str | int]) -> str:

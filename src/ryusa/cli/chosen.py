@@ -1,7 +1,6 @@
 """Options of `ryusa measure` and `ryusa draw`: those that were typed, checked, as keywords of a function."""
 
 from collections.abc import Callable, Mapping
-from difflib import get_close_matches
 from inspect import cleandoc
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -10,6 +9,7 @@ import typer
 from ryusa.catalogue import OPTION_NAMES, MeasureEntry, PictureEntry, option
 from ryusa.cli.options import in_unit, known, need_settled, within
 from ryusa.errors import CaseError
+from ryusa.spelling import nearest_word
 
 if TYPE_CHECKING:
     from ryusa.results import Results
@@ -65,7 +65,7 @@ def keywords(
     }
     for name, value in typed.items():
         if name not in entry.given_as:
-            raise CaseError(name, value, _taken(entry), _nearest(name, entry))
+            raise CaseError(name, value, _taken(entry), nearest_word(name, entry.given_as))
     given = {name: checks[name](name, value, results) for name, value in typed.items()}
     settle = given.get("--settle")
     if settle is not None and "settle" not in entry.options:
@@ -88,11 +88,6 @@ def _taken(entry: MeasureEntry | PictureEntry) -> str:
     return (
         f"{entry.name} does not take it; it takes {options}" if options else f"{entry.name} takes no options"
     )
-
-
-def _nearest(name: str, entry: MeasureEntry | PictureEntry) -> str | None:
-    near = get_close_matches(name, entry.given_as, 1, cutoff=0.8)
-    return near[0] if near else None
 
 
 def in_range(low: float, high: float) -> Check:

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from ryusa.cli.options import in_unit, known, open_run
+from ryusa.cli.options import Begin, End, Quiet, RunFolder, known, open_run, times_of
 
 
 def register(app: typer.Typer) -> None:
@@ -14,7 +14,7 @@ def register(app: typer.Typer) -> None:
 
 
 def export(
-    run: Annotated[Path, typer.Argument(help="A run folder.")],
+    run: RunFolder,
     to: Annotated[
         str,
         typer.Option(metavar="FORMAT", help="One of lammps-dump, extxyz, vtu, csv, parquet."),
@@ -31,14 +31,10 @@ def export(
     at: Annotated[
         str | None, typer.Option(metavar="TIME", help="Only the frame nearest to this time, such as 0.5s.")
     ] = None,
-    begin: Annotated[
-        str | None, typer.Option(metavar="TIME", help="First time written; default the first frame.")
-    ] = None,
-    end: Annotated[
-        str | None, typer.Option(metavar="TIME", help="Last time written; default the last frame.")
-    ] = None,
+    begin: Begin = None,
+    end: End = None,
     every: Annotated[int, typer.Option(min=1, metavar="N", help="Write every Nth frame.")] = 1,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Show no progress.")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Write the grains of a run for another program: LAMMPS, OVITO, ASE, ParaView, a table.
 
@@ -54,11 +50,7 @@ def export(
         raise CaseError("--output", str(output), "must end in .pvd: it lists the .vtu files, one a frame")
     if at is not None and (begin is not None or end is not None or every != 1):
         raise CaseError("--at", at, "excludes --begin, --end and --every")
-    window = {
-        name: in_unit(text, "s", f"--{name}")
-        for name, text in (("at", at), ("begin", begin), ("end", end))
-        if text is not None
-    }
+    window = times_of(at=at, begin=begin, end=end)
     results = open_run(run)
     from ryusa.cli.progress import shown_progress
 

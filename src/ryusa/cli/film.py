@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from ryusa.cli.options import in_unit, open_run
+from ryusa.cli.options import Begin, End, Quiet, RunFolder, open_run, times_of
 
 
 def register(app: typer.Typer) -> None:
@@ -15,7 +15,7 @@ def register(app: typer.Typer) -> None:
 
 
 def film(
-    run: Annotated[Path, typer.Argument(help="A run folder.")],
+    run: RunFolder,
     output: Annotated[
         Path | None,
         typer.Option(
@@ -31,13 +31,8 @@ def film(
     colour: Annotated[
         str, typer.Option(metavar="WORD", help="Colour grains by speed, height, spin, size or contacts.")
     ] = "speed",
-    begin: Annotated[
-        str | None,
-        typer.Option(metavar="TIME", help="Begin of what is shown, such as 0.5s; default the first frame."),
-    ] = None,
-    end: Annotated[
-        str | None, typer.Option(metavar="TIME", help="End of what is shown; default the last frame.")
-    ] = None,
+    begin: Begin = None,
+    end: End = None,
     speed: Annotated[
         float | None,
         typer.Option(
@@ -57,7 +52,7 @@ def film(
     follow: Annotated[
         int | None, typer.Option(metavar="GRAIN", help="Keep this free grain in the middle, in a ring.")
     ] = None,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Show no progress.")] = False,
+    quiet: Quiet = False,
 ) -> None:  # fmt: skip
     """Write a film of the grains of a run; needs no display and no graphics card.
 
@@ -72,11 +67,7 @@ def film(
     numbers = re.fullmatch(r"(\d{1,5})x(\d{1,5})", size.strip())
     if numbers is None:
         raise CaseError("--size", size, "must be width and height in pixels, such as 1280x720")
-    window = {
-        name: in_unit(text, "s", f"--{name}")
-        for name, text in (("begin", begin), ("end", end))
-        if text is not None
-    }
+    window = times_of(begin=begin, end=end)
     results = open_run(run)
     from ryusa.cli.progress import shown_progress
     from ryusa.view.film import film as write_film

@@ -1,10 +1,23 @@
-"""Checks of words and quantities on the command line, and of the run folder that a command reads."""
+"""Options that several commands take, and checks of words, quantities and run folders on the command line."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
+
+import typer
 
 if TYPE_CHECKING:
     from ryusa.results import Results
+
+RunFolder = Annotated[Path, typer.Argument(metavar="RUN", help="A run folder.")]
+Begin = Annotated[
+    str | None,
+    typer.Option(metavar="TIME", help="Begin of the time shown, such as 0.5s; default the first frame."),
+]
+End = Annotated[
+    str | None, typer.Option(metavar="TIME", help="End of the time shown; default the last frame.")
+]
+Browser = Annotated[bool, typer.Option("--open", help="Open the page in the browser.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Show no progress.")]
 
 
 def open_run(folder: Path) -> "Results":
@@ -18,12 +31,10 @@ def known(word: str, words: tuple[str, ...], key: str) -> str:
     """Return `word`, or raise an error that names the nearest of `words`."""
     if word in words:
         return word
-    from difflib import get_close_matches
-
     from ryusa.errors import CaseError
+    from ryusa.spelling import nearest_word
 
-    near = get_close_matches(word, words, 1)
-    raise CaseError(key, word, f"must be one of {', '.join(words)}", near[0] if near else None)
+    raise CaseError(key, word, f"must be one of {', '.join(words)}", nearest_word(word, words))
 
 
 def grains_of(grains: list[int] | None, results: "Results") -> list[int] | None:
@@ -55,6 +66,39 @@ def in_unit(text: str, unit: str, key: str) -> float:
         return quantity(text, unit)
     except UnitError as error:
         raise CaseError(key, text, str(error)) from None
+
+
+def times_of(**typed: str | None) -> dict[str, float]:
+    """Times [s] of those options that were typed, by the name of the option."""
+    return {name: in_unit(text, "s", f"--{name}") for name, text in typed.items() if text is not None}
+
+
+def page_file(path: Path) -> Path:
+    """Return the path of a page, or raise an error where it is no HTML file."""
+    if path.suffix not in {".html", ".htm"}:
+        from ryusa.errors import CaseError
+
+        raise CaseError("--output", str(path), "must end in .html")
+    return path
+
+
+def page_size(size: str, runs: int = 1) -> float:
+    """Largest size of the grains in motion of some runs on one page [B]."""
+    from ryusa.view.page import LEAST_SIZE
+
+    largest = in_unit(size, "byte", "--size")
+    within("--size", largest, 2.0 * LEAST_SIZE * runs, 2.0e9)
+    return largest
+
+
+def write_page(text: str, path: Path, browser: bool) -> None:
+    """Write a page, name its file, and open it if asked to."""
+    from ryusa.results.shown import Page
+
+    Page(text).save(path)
+    typer.echo(f"wrote {path} ({path.stat().st_size / 1e6:.1f} MB): open it in a browser")
+    if browser:
+        typer.launch(str(path.resolve()))
 
 
 def need(there: bool, results: "Results", what: str) -> None:

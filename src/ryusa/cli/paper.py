@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ryusa.cli.options import Quiet
 from ryusa.cli.study import (
     Again,
     Jobs,
     Json,
-    Quiet,
     Seeds,
     carried_out,
     console,
@@ -75,8 +75,8 @@ def paper(
 
 def _known(word: str) -> list[str]:
     """Experiments that a word means: their name, the paper's way of writing a figure, or a claim."""
-    from ryusa.casefile.spelling import nearest_word
     from ryusa.errors import CaseError
+    from ryusa.spelling import nearest_word
     from ryusa.studies.osada2004.study import NAMES, PAPER
 
     plain = re.sub(r"[\s.]+", "", word.lower())

@@ -76,7 +76,7 @@ def new(
             typer.echo(f"{name:<24}{title}")
         return
     if kind not in kinds:
-        from ryusa.casefile.spelling import nearest_word
+        from ryusa.spelling import nearest_word
 
         raise CaseError("kind", kind, f"must be one of {', '.join(kinds)}", nearest_word(kind, list(kinds)))
     if path is None:

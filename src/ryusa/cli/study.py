@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
+from ryusa.cli.options import Quiet
+
 if TYPE_CHECKING:
     from ryusa.study import Plan, Study
     from ryusa.study.ledger import Ledger
@@ -35,7 +37,6 @@ Json = Annotated[
     Path | None,
     typer.Option("--json", metavar="FILE", help="Write the ledger here too; compressed if FILE ends in .xz."),
 ]
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Show no progress.")]
 
 
 def register(app: typer.Typer) -> None:

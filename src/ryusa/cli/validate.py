@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ryusa.cli.options import Quiet
 from ryusa.cli.study import (
     Again,
     Jobs,
     Json,
-    Quiet,
     carried_out,
     console,
     cores,

@@ -11,11 +11,11 @@ an engine of its own the same way:
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from difflib import get_close_matches
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from ryusa.errors import CaseError
+from ryusa.spelling import nearest_word
 
 if TYPE_CHECKING:
     from ryusa.engine.protocol import Engine
@@ -95,14 +95,13 @@ def entry(name: str) -> EngineEntry:
 
     Examples
     --------
-    >>> entry("cuad")
+    >>> entry("cuad")  # doctest: +ELLIPSIS
     Traceback (most recent call last):
         ...
-    ryusa.errors.CaseError: engine = 'cuad': must be one of cpu, cuda. Did you mean 'cuda'?
+    ryusa.errors.CaseError: engine = 'cuad': must be cpu (...) or cuda (an NVIDIA card). Did you mean 'cuda'?
     """
     if name not in _ENGINES:
-        near = get_close_matches(name, names(), 1)
-        raise CaseError("engine", name, f"must be one of {', '.join(names())}", near[0] if near else None)
+        raise CaseError("engine", name, f"must be {summary()}", nearest_word(name, names()))
     return _ENGINES[name]
 
 

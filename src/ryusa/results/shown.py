@@ -3,7 +3,6 @@
 import html
 from collections.abc import Sequence
 from dataclasses import dataclass
-from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +11,7 @@ import numpy as np
 from ryusa.catalogue import MEASURES, PICTURES, MeasureEntry, PictureEntry, load
 from ryusa.errors import ResultsError
 from ryusa.notebook import html_table
+from ryusa.spelling import nearest_word
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -127,8 +127,8 @@ def summary_table(results: "Results") -> str:
 def _entry(name: str, entries: Sequence[Any], kind: str) -> Any:
     known: dict[str, MeasureEntry | PictureEntry] = {one.name: one for one in entries}
     if name not in known:
-        near = get_close_matches(name, known, 1)
-        meant = f"; did you mean '{near[0]}'?" if near else ""
+        near = nearest_word(name, list(known))
+        meant = f"; did you mean '{near}'?" if near else ""
         raise ResultsError(f"no {kind} '{name}': there are {', '.join(known)}{meant}")
     return known[name]
 

@@ -5,7 +5,6 @@ import json
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from difflib import get_close_matches
 from functools import lru_cache
 from importlib import import_module
 from pathlib import Path
@@ -18,6 +17,7 @@ from ryusa.errors import CaseError, ResultsError, RyusaError
 from ryusa.results import Results, schema
 from ryusa.running import provenance
 from ryusa.running.folder import write_json
+from ryusa.spelling import nearest_word
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
@@ -193,8 +193,7 @@ def case_run(path: Path, overrides: Mapping[str, str] | None = None, *, seed: in
     if not path.is_file():
         beside = [one.name for one in sorted(path.parent.glob("*.toml"))]
         allowed = f"there is no such file. {path.parent} holds {', '.join(beside) or 'no case file'}"
-        near = get_close_matches(path.name, beside, 1)
-        raise CaseError("case file", str(path), allowed, near[0] if near else None)
+        raise CaseError("case file", str(path), allowed, nearest_word(path.name, beside))
     changed = {**(overrides or {}), **({} if seed is None else {"seed": str(seed)})}
     return CaseRun(path.stem, tuple(sorted(changed.items())), path.parent)
 

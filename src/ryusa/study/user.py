@@ -3,13 +3,13 @@
 import hashlib
 import sys
 import traceback
-from difflib import get_close_matches
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 from ryusa.errors import ResultsError
+from ryusa.spelling import nearest_word
 from ryusa.study.study import Study, StudyPart
 
 FILE = "study.py"
@@ -87,8 +87,8 @@ def _check(path: Path, module: Any) -> None:
         if callable(getattr(module, function, None)):
             continue
         own = [one for one, value in vars(module).items() if callable(value) and not one.startswith("_")]
-        near = get_close_matches(function, own, 1)
-        hint = f" Did you mean '{near[0]}' to be '{function}'?" if near else ""
+        near = nearest_word(function, own)
+        hint = f" Did you mean '{near}' to be '{function}'?" if near else ""
         raise ResultsError(f"{path}: has no function {how}.{hint} {HELP}")
     words = (module.__doc__ or "").strip()
     if not words:

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ryusa.casefile.spelling import nearest_word
 from ryusa.errors import CaseError, ResultsError
 from ryusa.results import Results
+from ryusa.spelling import nearest_word
 from ryusa.view.box import Floats, box_of
 from ryusa.view.camera import VIEWS, Camera
 from ryusa.view.colouring import COLOURINGS, Colouring, value_range

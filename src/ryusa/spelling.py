@@ -24,6 +24,8 @@ def is_near(written: str, word: str) -> bool:
     """Whether one word may be a misspelling of the other."""
     if len(written) <= 2:  # one edit turns most words of two letters into one another
         return written == word
+    if len(written) == len(word) <= 3:  # as one letter does to a word of three: "gpu" is not "cpu"
+        return sorted(written) == sorted(word)
     if abs(len(written) - len(word)) <= 2 and edits(written, word) <= max(
         1, max(len(written), len(word)) // 4
     ):
