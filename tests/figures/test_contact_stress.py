@@ -22,7 +22,7 @@ def found():
     some = {name: layers(name, line) for name in ("xx", "yy", "zz", "contact_zz", "p")}
     shear = {name: layers(name, -0.4 * line) for name in ("xz", "zx", "contact_xz")}
     return ContactStress(
-        z=Z, length=1e-3, origin=0.0, phi=layers("phi", 0.6 * (Z < 6e-3)), v_x=layers("v_x", 10.0 * Z),
+        z=Z, length=1e-3, crest=2e-3, phi=layers("phi", 0.6 * (Z < 6e-3)), v_x=layers("v_x", 10.0 * Z),
         mu=layers("mu", 0.3 + 20.0 * Z), shear_rate=np.full(len(Z), 10.0), inertial_number=0.01 + 10.0 * Z,
         weight=line, weight_along=0.4 * line, deviation=0.01, deviation_along=0.01,
         averages=Averages("contact_stress", ()), **some, **shear,
@@ -37,7 +37,7 @@ def test_stress_and_weight_above_lie_on_each_other_and_mu_stands_over_i():
     np.testing.assert_allclose(shear, 0.4 * one.weight)
     np.testing.assert_allclose(shear, along)
     inertial, mu = right.get_lines()[0].get_data()
-    dense = (Z > 0.0) & (Z < 6e-3)
+    dense = (one.crest < Z) & (Z < 6e-3)
     np.testing.assert_allclose(inertial, one.inertial_number[dense])
     np.testing.assert_allclose(mu, one.mu.value[dense])
 
@@ -47,4 +47,14 @@ def test_under_water_no_weight_is_drawn():
     assert [text.get_text() for text in left.get_legend().get_texts()] == [
         r"$\sigma_{zz}$",
         r"$-\sigma_{xz}$",
+        "crest of the bed",
     ]
+
+
+def test_the_crest_of_the_bed_is_marked_on_heights_above_datum():
+    left, _ = contact_stress(found()).axes
+    assert left.get_ylabel() == "height above datum  $z$  (cm)"
+    crest = next(line for line in left.get_lines() if line.get_label() == "crest of the bed")
+    np.testing.assert_allclose(crest.get_ydata(), 0.2)
+    bare, _ = contact_stress(replace(found(), crest=math.nan)).axes
+    assert "crest of the bed" not in bare.get_legend_handles_labels()[1]

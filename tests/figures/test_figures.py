@@ -35,6 +35,7 @@ def test_a_long_track_is_cut_into_panels_with_round_grains_and_a_bed_without_gap
     figure = figures.tracks(path())
     figure.canvas.draw()
     assert len(figure.axes) == 4
+    assert figure.get_supylabel() == "height above datum  $z$  (mm)"
     for axes in figure.axes:
         assert axes.get_aspect() == 1.0
         bed = next(one for one in axes.collections if isinstance(one, PatchCollection))
@@ -141,6 +142,7 @@ def test_a_snapshot_is_true_to_scale_in_centimetres(colour):
     axes = figure.axes[0]
     assert axes.get_aspect() == 1.0
     assert axes.get_xlabel().endswith("(cm)")
+    assert axes.get_ylabel() == "$z$ above datum  (cm)"
     assert [len(one.get_offsets()) for one in circles(figure)] == [10, 3]
     assert circles(figure)[1].get_widths() == pytest.approx([100 * D] * 3)
     assert len(axes.patches) == 1

@@ -1,5 +1,6 @@
 """Profiles and ways from a start: drawn in the paper's units, with errors, for several runs."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -34,12 +35,17 @@ def test_runs_share_panels_with_an_error_band_and_a_line_each(found):
     figure.canvas.draw()
     assert len(figure.axes) == 2
     assert figure.axes[1].get_xlabel().endswith("(cm/s)")
-    assert figure.axes[0].get_ylabel().endswith("(cm)")
+    assert figure.axes[0].get_ylabel() == "height above datum  $z$  (cm)"
     speed = figure.axes[1].lines[0].get_xdata()
     assert np.nanmax(np.asarray(speed, dtype=float)) == pytest.approx(50.0)
     bands = [one for one in figure.axes[0].collections if isinstance(one, PolyCollection)]
     assert len(bands) == 3  # and the bed
     assert len({line.get_linestyle() for line in figure.axes[1].lines[:2]}) == 2
+
+
+def test_the_axis_names_another_zero_than_the_datum(found):
+    crest = figures.profiles({"one": replace(found, above="bed crest")})
+    assert crest.axes[0].get_ylabel() == "height above bed crest  $z$  (cm)"
 
 
 def test_heights_may_be_in_diameters_and_panels_as_many_as_asked(found):

@@ -20,7 +20,7 @@ def profile(phi):
     """Water 2 cm deep in 20 cells over a bed of 1 cm, 9 cm/s in the lowest two cells and 1 cm/s above."""
     u = np.where(Z < 0.002, 0.09, 0.01)
     still = layers("v_x", np.zeros(2))
-    grains = SimpleNamespace(z=np.array([0.0, 0.01]), origin=0.0, v_x=still, phi=layers("phi", np.ones(2)))
+    grains = SimpleNamespace(z=np.array([0.0, 0.01]), v_x=still, phi=layers("phi", np.ones(2)))
     return SimpleNamespace(
         z=Z, faces=FACES, u=layers("u", u), phi=layers("phi", phi), tau=layers("tau", np.ones(21)),
         grains=grains, bed=0.01, surface=0.02, tau_bed=np.nan,
@@ -40,3 +40,4 @@ def test_water_down_to_the_bottom_of_a_packed_column_is_drawn():
     figure = water(profile(np.where(Z < 0.01, 0.6, 0.0)))
     assert np.isfinite(np.asarray(figure.axes[0].lines[0].get_xdata())).all()
     assert figure.get_supxlabel() == ""
+    assert figure.axes[0].get_ylabel() == "height above datum  $z$  (cm)"

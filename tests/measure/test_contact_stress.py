@@ -51,7 +51,7 @@ def pile(n=6, lean=0.3):
 
 def test_a_pile_at_rest_carries_the_weight_above_at_every_height(resting):
     for layer in (0.1, 0.5, 2.0):
-        found = contact_stress(resting(*pile()), layer=layer, origin=0.0)
+        found = contact_stress(resting(*pile()), layer=layer)
         assert found.deviation < 1e-9
         assert found.deviation_along < 1e-9
         middle = np.abs(found.z - 3 * D).argmin()
@@ -71,7 +71,7 @@ def test_a_grain_held_too_weakly_is_found_by_the_balance(resting):
 def test_a_fixed_grain_carries_from_the_point_of_contact_on(resting):
     x = np.array([[D, D, 1.5 * D]])
     run = resting(x, [(0, 1, -M * GRAVITY)], fixed=(D, D, 0.6 * D))  # overlap 0.1 D: they touch at 1.05 D
-    found = contact_stress(run, layer=0.01, origin=0.0)
+    found = contact_stress(run, layer=0.01)
     assert found.deviation < 1e-6
     within = (found.z > 1.1 * D) & (found.z < 1.45 * D)
     np.testing.assert_allclose(found.zz.value[within], M * 9.0 / AREA, rtol=1e-3)
@@ -123,7 +123,7 @@ def test_shear_rate_and_inertial_number_of_a_linear_profile(resting):
     v = np.zeros((5, n, 3))
     v[:, :, 0] = rate * z
     squeeze = [(k, k + 60, (0.0, 0.0, -1e-3)) for k in range(0, n - 60)]
-    found = contact_stress(resting(x, squeeze, v=v), layer=0.5, origin=0.0)
+    found = contact_stress(resting(x, squeeze, v=v), layer=0.5)
     inside = (found.z > 5 * D) & (found.z < 15 * D)
     np.testing.assert_allclose(found.shear_rate[inside], rate, rtol=1e-3)
     density = M / (math.pi / 6 * D**3)
@@ -145,7 +145,7 @@ def test_water_has_no_balance_and_weight_is_that_above(resting):
     found = contact_stress(resting(*pile(), water={"profile": "log"}))
     assert math.isnan(found.deviation)
     assert "water" in found.averages.notes[1]
-    one = contact_stress(resting([[0.0, 0.0, 4 * D]], []), layer=0.2, origin=0.0)
+    one = contact_stress(resting([[0.0, 0.0, 4 * D]], []), layer=0.2)
     np.testing.assert_allclose(
         one.weight, M * 9.0 / AREA * ndtr((4 * D - one.z) / one.length), rtol=1e-9, atol=1e-12
     )

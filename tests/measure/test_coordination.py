@@ -39,9 +39,8 @@ def cubes(n, spacing):
 
 def test_every_grain_of_a_periodic_cubic_array_has_six_neighbours_but_top_and_bottom(still):
     n, spacing = 5, 0.99 * D
-    found = coordination(
-        still(cubes(n, spacing), period=(n * spacing, n * spacing)), layer=0.99, origin=-0.5 * D
-    )
+    x = cubes(n, spacing) + np.array([0.0, 0.0, 0.5 * D])  # a grain in the middle of each layer
+    found = coordination(still(x, period=(n * spacing, n * spacing)), layer=0.99)
     np.testing.assert_allclose(found.over_height.value, [5, 6, 6, 6, 5], rtol=1e-14)
     assert found["coordination"].value == pytest.approx(5.6, rel=1e-14)
     assert found["rattlers"].value == 0.0

@@ -74,7 +74,7 @@ def test_time_at_the_bed_follows_from_the_height_of_the_centre(make):
     low = np.where(T % 1.0 < 0.25, 1.4 * D, 3 * D)
     found = paths(moved(make, low), begin=0.0)
     assert found.near[0, 0] == pytest.approx(0.25, abs=0.002)
-    assert found.height[0, 0] == pytest.approx(0.25 * 0.4 * D + 0.75 * 2 * D, rel=0.01)
+    assert found.above_crest[0, 0] == pytest.approx(0.25 * 0.4 * D + 0.75 * 2 * D, rel=0.01)
     assert found.rows()[0]["grain"] == 0
 
 

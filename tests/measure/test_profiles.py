@@ -76,7 +76,7 @@ def test_a_rigid_body_has_one_speed_and_no_temperature(flow):
 
 def test_a_random_gas_has_its_mean_concentration_and_temperature_within_the_error(flow):
     run = flow(n=200, n_frame=400, depth=20 * D)
-    found = profiles(run, layer=0.5, origin=0.0)
+    found = profiles(run, layer=0.5)
     inside = (found.z > 4 * D) & (found.z < 20 * D)
     expected = (np.pi / 6 * run.scene.d**3).sum() / (LENGTH * WIDTH * 20 * D)
     off = (found.phi.value[inside] - expected) / found.phi.error[inside]
@@ -91,7 +91,7 @@ def test_one_grain_cut_in_half_agrees_with_hand_calculation(flow):
     run = flow(n=1, n_frame=1)
     scene = replace(run.scene, d=np.array([D]))
     run.scene, run.frames.x = scene, np.array([[[0.0, 0.0, 3 * D]]])
-    found = profiles(run, layer=0.5, origin=0.0)
+    found = profiles(run, layer=0.5)
     half = np.pi / 12 * D**3 / (LENGTH * WIDTH * 0.5 * D)
     assert found.phi.value[found.phi.value > 0] == pytest.approx([half, half], rel=1e-13)
     assert found.z[found.phi.value > 0] == pytest.approx([2.75 * D, 3.25 * D])
@@ -105,13 +105,16 @@ def test_lanes_are_averaged(flow):
     np.testing.assert_allclose(two.v_x.value, one.v_x.value, rtol=1e-13)
 
 
-def test_heights_are_from_the_crest_of_the_bed_or_a_given_origin(flow):
+def test_heights_are_counted_from_the_datum_or_from_a_crest_that_is_named(flow):
     run = flow()
-    assert profiles(run).origin == pytest.approx(D)
-    assert profiles(run, origin="mean crest").origin == pytest.approx(D)
-    plain = profiles(run, origin=0.0)
-    lifted = profiles(run, origin=4 * plain.thickness)
-    np.testing.assert_allclose(lifted.z, plain.z - 4 * plain.thickness, atol=1e-15)
+    low = run.scene.x_fixed - [0.0, 0.0, 0.5 * D]
+    low[0, 2] += 0.5 * D  # one grain stands out
+    run.scene = replace(run.scene, x_fixed=low)
+    datum, crest, mean = (profiles(run, layer=0.1, above=one) for one in ("datum", "bed crest", "mean crest"))
+    assert (datum.origin, crest.origin) == pytest.approx((0.0, D))
+    assert mean.origin == pytest.approx((0.5 + 0.5 / len(low)) * D)
+    for found in (crest, mean):
+        assert found.top(0.5) + found.origin == pytest.approx(datum.top(0.5), abs=0.02 * D)
 
 
 def test_the_bed_is_counted_only_on_request_and_apart(flow):

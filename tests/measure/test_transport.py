@@ -137,8 +137,8 @@ def test_the_layer_of_one_rolling_grain_is_the_middle_of_its_sphere(ride):
     u = np.roots([-2.0, 3.0, 0.0, -0.05])  # share of a sphere below the height u d: 3 u**2 - 2 u**3
     u = next(one.real for one in u if 0.0 < one.real < 0.5)
     low, high, thick = (found.averages[name] for name in ("layer_low", "layer_high", "layer_thickness"))
-    assert low.value == pytest.approx((3 - 1 - 0.5 + u) * D, abs=1e-4 * D)  # the crest of the bed is at D
-    assert high.value == pytest.approx((3 - 1 + 0.5 - u) * D, abs=1e-4 * D)
+    assert low.value == pytest.approx((3 - 0.5 + u) * D, abs=1e-4 * D)
+    assert high.value == pytest.approx((3 + 0.5 - u) * D, abs=1e-4 * D)
     assert thick.value == pytest.approx((1 - 2 * u) * D, abs=3e-4 * D)
     assert thick.error < 1e-9 * D
 
@@ -236,7 +236,7 @@ def test_a_gas_has_the_stress_of_its_fluctuations(ride):
     x = rng.uniform(0.0, 1.0, (n_frame, n, 3)) * [LENGTH, WIDTH, 10 * D] + [0.0, 0.0, 2 * D]
     root = np.linalg.cholesky([[0.04, 0.0, -0.01], [0.0, 0.02, 0.0], [-0.01, 0.0, 0.03]])
     v = rng.normal(size=x.shape) @ root.T + [0.3, 0.0, 0.0]
-    found = kinetic_stress(ride(x, v), origin=0.0)
+    found = kinetic_stress(ride(x, v))
     inside = (found.profiles.z > 3.5 * D) & (found.profiles.z < 10.5 * D)
     phi = n * BALL / (AREA * 10 * D)
     for layers, expected in (
@@ -262,7 +262,7 @@ def test_the_shear_across_a_grain_counts_as_motion_by_a_twentieth(ride):
     n, shear = 400, 50.0
     x = rng.uniform(0.0, 1.0, (200, n, 3)) * [LENGTH, WIDTH, 8 * D] + [0.0, 0.0, 2 * D]
     v = shear * x[:, :, 2:] * [1.0, 0.0, 0.0]
-    found = kinetic_stress(ride(x, v), layer=0.1, origin=0.0)
+    found = kinetic_stress(ride(x, v), layer=0.1)
     inside = (found.profiles.z > 4 * D) & (found.profiles.z < 8 * D)
     per_mass = found.xx.value / (RHO * found.profiles.phi.value)
     assert per_mass[inside].mean() == pytest.approx((shear * D) ** 2 / 20, rel=0.02)

@@ -123,7 +123,7 @@ def _print_stress(found: "KineticStress") -> None:
             table.add_row(*(f"{cell:.3g}" for cell in cells))
     _show(
         table,
-        "kinetic stress rho_s phi <v'v'>, over height above the crest of the bed",
+        "kinetic stress rho_s phi <v'v'>, over height above datum, z = 0 of the case",
         "the CSV has the standard errors",
     )
 

@@ -26,11 +26,12 @@ def contact_stress(found: ContactStress) -> Figure:
         if dry:
             left.plot(above, z, color=colour, ls=":", lw=1.6, label="weight above" + (", along" if k else ""))
     left.axvline(0.0, color=style.FAINT, lw=0.5, zorder=0)
-    left.axhline(0.0, color=style.FAINT, lw=0.5, zorder=0)
+    if np.isfinite(found.crest):
+        left.axhline(found.crest * CM, color=style.FAINT, lw=0.7, ls="--", zorder=0, label="crest of the bed")
     left.set_xlabel("stress  (Pa)")
-    left.set_ylabel("height above the bed  $z$  (cm)")
+    left.set_ylabel(style.height("cm"))
     left.legend()
-    dense = (found.phi.value > LEAST * np.nanmax(found.phi.value)) & (found.z > 0.0)
+    dense = (found.phi.value > LEAST * np.nanmax(found.phi.value)) & ~(found.z <= found.crest)
     right.errorbar(
         found.inertial_number[dense], found.mu.value[dense], found.mu.error[dense], fmt="o",
         ms=3.0, lw=0.7, color=style.COLOURS[0],

@@ -63,9 +63,7 @@ def profiles(
         panel.locator_params(axis="x", nbins=5)
         if len(shown) > 1:
             _letter(panel, f"({'abcdefgh'[k]})")
-    axes[0].set_ylabel(
-        "height above the bed  $z/d$  (–)" if height == "d" else "height above the bed  $z$  (cm)"
-    )
+    axes[0].set_ylabel(style.height(height, next(iter(found.values())).above))
     tops = [one.top(0.999) / one.d if height == "d" else one.top(0.999) * CM for one in found.values()]
     feet = [_foot(one) / one.d if height == "d" else _foot(one) * CM for one in found.values()]
     axes[0].set_ylim(min(*feet, 0.0), 1.12 * max(tops))

@@ -42,7 +42,7 @@ def rods(seen: Sequence[Snapshot], marked: Sequence[int]) -> Figure:
         panel.locator_params(axis="y", nbins=4)
         panel.set_title(f"$t$ = {one.t:.4g} s", loc="left", fontsize=6.5, pad=2.0)
     axes[-1].set_xlabel("distance along the bed  $x$  (cm), flow to the right")
-    figure.supylabel("height  $z$  (cm)", fontsize=8.0)
+    figure.supylabel(style.height("cm"), fontsize=8.0)
     return figure
 
 

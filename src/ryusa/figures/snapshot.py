@@ -67,7 +67,7 @@ def panel(seen: Snapshot, above: float = 0.0) -> tuple[Figure, Axes]:
     axes.set_ylim(box[2] * CM, box[3] * CM)
     axes.set_aspect("equal")
     axes.set_xlabel("$x$  (cm)")
-    axes.set_ylabel("$z$  (cm)")
+    axes.set_ylabel("$z$ above datum  (cm)")
     axes.tick_params(top=False, right=False)
     text = f"$t$ = {seen.t:.4g} s" + (f", lane {seen.lane} of {seen.lanes}" if seen.lanes > 1 else "")
     axes.annotate(text, (0, 1), (0, 4), xycoords="axes fraction", textcoords="offset points", fontsize=7.0)

@@ -110,6 +110,14 @@ def save(figure: Figure, path: Path | str) -> Path:
     return path
 
 
+def height(unit: str, above: str = "datum") -> str:
+    """Label of an axis of heights: "height above datum  $z$  (cm)"; `unit` "d" is diameters.
+
+    The datum is z = 0 of the case.
+    """
+    return f"height above {above}  " + ("$z/d$  (–)" if unit == "d" else f"$z$  ({unit})")
+
+
 def label_panel(axes: Axes, text: str) -> None:
     """Write the letter of a panel into its upper left corner."""
     axes.annotate(

@@ -72,7 +72,7 @@ def tracks(
         panel.set_aspect(exaggeration)
         panel.locator_params(axis="y", nbins=3 if row < 1.5 else 8, integer=True)
     axes[-1].set_xlabel("distance along the bed  $x$  (mm)")
-    figure.supylabel("height  $z$  (mm)", fontsize=8.0)
+    figure.supylabel(style.height("mm"), fontsize=8.0)
     axes[0].set_title(_caption(found), loc="left", fontsize=6.5)
     if exaggeration != 1.0:
         axes[0].set_title(f"vertical scale exaggerated {exaggeration:g} times", loc="right", fontsize=6.5)
@@ -123,7 +123,7 @@ def tracks_side_by_side(
         panel.locator_params(axis="y", nbins=4, integer=True)
         style.label_panel(panel, name)
     axes[-1].set_xlabel(f"distance along the bed  $x$  ({unit})")
-    figure.supylabel(f"height  $z$  ({unit})", fontsize=8.0)
+    figure.supylabel(style.height(unit), fontsize=8.0)
     return figure
 
 

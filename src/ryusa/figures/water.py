@@ -29,7 +29,7 @@ def water(found: WaterProfile) -> Figure:
     through = (found.faces < found.surface) & (found.faces > base)
     speeds, amount, stress = axes
     _band(speeds, found.u, z, CM, wet, WATER, "water", "-")
-    at, thin = (found.grains.z + found.grains.origin) * CM, found.grains.phi.value < STRAY
+    at, thin = found.grains.z * CM, found.grains.phi.value < STRAY
     _band(speeds, found.grains.v_x, at, CM, ~thin, GRAINS, "grains", "--")
     speeds.set_xlabel("speed along the bed  $U, v_x$  (cm/s)")
     _band(amount, found.phi, z, 1.0, z > -np.inf, SAND, "", "-")
@@ -42,7 +42,7 @@ def water(found: WaterProfile) -> Figure:
         )  # fmt: skip
         stress.plot([found.tau_bed], [found.bed * CM], "o", ms=3.2, mfc="white", color="#444444")
     stress.set_xlabel(r"shear stress  $\tau$  (Pa)")
-    axes[0].set_ylabel("height  $z$  (cm)")
+    axes[0].set_ylabel(style.height("cm"))
     lowest = float(min(faces[0], top))
     axes[0].set_ylim(lowest, top + 0.06 * (top - lowest))
     flows = np.nanmin(found.u.value[wet]) >= 0.0  # swift below the surface, and without stress at the bottom

@@ -1,6 +1,6 @@
 """What a measure needs of a run folder; `results.Results` provides it, and so may a stand-in in a test."""
 
-from typing import Any, Protocol
+from typing import Any, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from ryusa.model import Scene
 
 Floats = NDArray[np.float64]
+Above = Literal["datum", "bed crest", "mean crest"]
 
 
 class FrameArrays(Protocol):
@@ -51,3 +52,19 @@ def path_of(run: Run, grain: int) -> tuple[Floats, Floats, Floats, Floats]:
 def crest_of(scene: Scene) -> float:
     """Top of the highest fixed grain [m]; 0 where there is none."""
     return float((scene.x_fixed[:, 2] + 0.5 * scene.d_fixed).max()) if scene.n_fixed else 0.0
+
+
+def level_of(scene: Scene, above: Above) -> float:
+    """Height in the scene of what heights are counted from [m].
+
+    Parameters
+    ----------
+    scene : its fixed grains count.
+    above : "datum", z = 0 of the case; "bed crest", the top of the highest fixed grain; "mean crest", the
+        mean of all their tops. 0 in a scene without fixed grains.
+    """
+    if above == "bed crest":
+        return crest_of(scene)
+    if above == "mean crest" and scene.n_fixed:
+        return float((scene.x_fixed[:, 2] + 0.5 * scene.d_fixed).mean())
+    return 0.0

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import ndtr
 
-from ryusa.measure._run import Floats, Run
-from ryusa.measure.profiles import Layers, Origin, _mean, _origin, _quotient
+from ryusa.measure._run import Floats, Run, crest_of
+from ryusa.measure.profiles import Layers, _mean, _quotient
 from ryusa.measure.snapshot import scene_at
 from ryusa.measure.statistics import average
 from ryusa.measure.table import Averaged, Averages
@@ -28,9 +28,9 @@ class ContactStress(Averaged):
 
     Attributes
     ----------
-    z : heights above `origin` [m], shape (n_layer,), one length of coarse graining apart.
+    z : heights above the datum [m], shape (n_layer,), one length of coarse graining apart.
     length : of the coarse graining, the standard deviation of its Gaussian [m].
-    origin : where z = 0 lies in the scene [m].
+    crest : height of the top of the highest fixed grain above the datum [m]; nan where there is none.
     phi : concentration [-].
     v_x : velocity along the bed, weighted with mass [m/s].
     xx, yy, zz, xz, zx : stress of contacts and motion together [Pa]; xz is the force along x on a plane
@@ -48,7 +48,7 @@ class ContactStress(Averaged):
 
     z: Floats
     length: float
-    origin: float
+    crest: float
     phi: Layers
     v_x: Layers
     xx: Layers
@@ -94,7 +94,6 @@ def contact_stress(
     begin: float | None = None,
     end: float = math.inf,
     layer: float = 0.5,
-    origin: float | Origin = "bed crest",
 ) -> ContactStress:
     """Stress of contacts and motion over height, with pressure, mu and I, and the balance of momentum.
 
@@ -104,7 +103,6 @@ def contact_stress(
     begin, end : window [s]; `begin` defaults to the case's `record.settle`.
     layer : length of the coarse graining in mean diameters: standard deviation of its Gaussian and distance
         of the heights.
-    origin : as in `profiles`.
 
     Raises
     ------
@@ -121,9 +119,9 @@ def contact_stress(
     flow is steady and dry. Forces are those of the step before the frame.
     """
     t, first, last, scene, area = window_of(run, begin, end, least=1)
-    z_0, length = _origin(scene, origin), layer * float(scene.d.mean())
-    z = _heights(run, first, last, scene, z_0, length)
-    frames = [_frame(run, k, z + z_0, length) for k in range(first, last)]
+    length = layer * float(scene.d.mean())
+    z = _heights(run, first, last, scene, length)
+    frames = [_frame(run, k, z, length) for k in range(first, last)]
     contact, moved, weights, bed = (np.array(one) / area for one in zip(*frames, strict=True))
     mass, (mean, kinetic) = moved[:, 0], _kinetic(moved)
     whole = contact + kinetic
@@ -142,7 +140,7 @@ def contact_stress(
     return ContactStress(
         z=z,
         length=length,
-        origin=z_0,
+        crest=crest_of(scene) if scene.n_fixed else math.nan,
         phi=_mean("phi", "-", mass / density),
         v_x=_quotient("v_x", "m/s", moved[:, 1], mass),
         **stress,
@@ -170,9 +168,9 @@ def contact_stress(
     )
 
 
-def _heights(run: Run, first: int, last: int, scene: Scene, z_0: float, length: float) -> Floats:
-    """Heights above z_0 from below the lowest contact to above the highest grain [m], one length apart."""
-    ends = np.array([(z.min(), z.max()) for z in (run.frames.x[k][:, 2] for k in range(first, last))]) - z_0
+def _heights(run: Run, first: int, last: int, scene: Scene, length: float) -> Floats:
+    """Heights from below the lowest contact to above the highest grain [m], one length apart."""
+    ends = np.array([(z.min(), z.max()) for z in (run.frames.x[k][:, 2] for k in range(first, last))])
     radius = 0.5 * float(scene.d.max())  # the lowest point of contact is as far below the lowest centre
     low = math.floor((float(ends[:, 0].min()) - radius) / length - REACH)
     high = math.ceil(float(ends[:, 1].max()) / length + REACH)

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ryusa.measure._run import Floats, Run, settle_time
-from ryusa.measure.profiles import Layers, Origin, _frames, _origin, _quotient
+from ryusa.measure._run import Floats, Run
+from ryusa.measure.profiles import Layers, _frames, _quotient
 from ryusa.measure.snapshot import scene_at
 from ryusa.measure.statistics import average, ratio
 from ryusa.measure.table import Averaged, Averages
@@ -23,8 +23,8 @@ class Coordination(Averaged):
     contacts : mean number of contacts per free grain [-], shape (n_frame,).
     rattlers : share of the grains with fewer than `least` contacts [-], shape (n_frame,).
     least : contacts that a grain which is no rattler has at least: 2 in a plane scene, 4 in 3D.
-    z : height of the middle of each layer above `origin` [m], shape (n_layer,).
-    thickness, origin : of a layer [m]; where z = 0 lies in the scene [m].
+    z : height of the middle of each layer above the datum [m], shape (n_layer,).
+    thickness : of a layer [m].
     over_height, without_rattlers : mean number of contacts of all grains, and of those that are no
         rattlers, whose centres lie in the layer [-].
     averages : coordination, coordination without rattlers, share of rattlers.
@@ -36,7 +36,6 @@ class Coordination(Averaged):
     least: int
     z: Floats
     thickness: float
-    origin: float
     over_height: Layers
     without_rattlers: Layers
     averages: Averages
@@ -67,7 +66,6 @@ def coordination(
     begin: float | None = None,
     end: float = math.inf,
     layer: float = 0.5,
-    origin: float | Origin = "bed crest",
 ) -> Coordination:
     """Mean number of contacts per grain, averaged over the frames in a window.
 
@@ -76,7 +74,6 @@ def coordination(
     run : a run folder.
     begin, end : window [s]; `begin` defaults to the case's `record.settle`.
     layer : thickness of a layer in mean diameters.
-    origin : as in `profiles`.
 
     Raises
     ------
@@ -90,18 +87,15 @@ def coordination(
     the mean is that of all contacts of the other grains (z* of Agnolin and Roux 2007, Phys. Rev. E 76,
     061302, who tell rattlers by the forces). The number depends on the stiffness: softer grains touch more.
     """
-    since = settle_time(run) if begin is None else begin
-    first, last = _frames(run, since, end)
-    t = np.asarray(run.frames.t, dtype=np.float64)[first:last]
-    scene = scene_at(run, since)
-    z_0, thickness = _origin(scene, origin), layer * float(scene.d.mean())
+    t, first, last, scene, since = _frames(run, begin, end)
+    thickness = layer * float(scene.d.mean())
     least = 2 if scene.plane_case else 4
     counts: list[Floats] = []
     levels: list[Floats] = []
     for k in range(first, last):
         x = np.asarray(run.frames.x[k], dtype=np.float64)
         counts.append(contacts_per_grain(x, scene_at(run, float(t[k - first]))).astype(np.float64))
-        levels.append(np.floor((x[:, 2] - z_0) / thickness))
+        levels.append(np.floor(x[:, 2] / thickness))
     low = min(int(one.min()) for one in levels)
     n_layer = max(int(one.max()) for one in levels) - low + 1
     sums = np.zeros((len(t), n_layer, 4))  # grains, their contacts, grains that are no rattlers, theirs
@@ -118,7 +112,6 @@ def coordination(
         least=least,
         z=np.asarray((low + np.arange(n_layer) + 0.5) * thickness, dtype=np.float64),
         thickness=thickness,
-        origin=z_0,
         over_height=_quotient("coordination", "-", sums[:, :, 1], sums[:, :, 0]),
         without_rattlers=_quotient("without_rattlers", "-", sums[:, :, 3], sums[:, :, 2]),
         averages=Averages(

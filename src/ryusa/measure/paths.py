@@ -38,12 +38,12 @@ class Paths(Averaged):
     d : their diameters [m], shape (n_grain,).
     begin, end : edges of the windows [s], shape (n_window,).
     threshold : vertical excursion from which a turn counts, in diameters of the grain [-].
-    crest : height of the bed's crest [m].
+    crest : height of the top of the highest fixed grain above the datum [m].
     advance : displacement along the bed from begin to end [m].
     range_z : highest less lowest centre [m].
     reversals : turns of the vertical motion per second [1/s].
     way_z : sum of the heights gained and lost between those turns [m].
-    height : mean height of the centre above the crest [m].
+    above_crest : mean height of the centre above that crest [m].
     near : share of time in which the centre is lower than crest + 0.5 d [-].
     averages : means over grains and windows.
     """
@@ -58,7 +58,7 @@ class Paths(Averaged):
     range_z: Floats
     reversals: Floats
     way_z: Floats
-    height: Floats
+    above_crest: Floats
     near: Floats
     averages: Averages
 
@@ -84,7 +84,7 @@ class Paths(Averaged):
                 reversals_per_s=float(self.reversals[k, c]),
                 way_z_m=float(self.way_z[k, c]),
                 jaggedness=float(jaggedness[k, c]),
-                height_m=float(self.height[k, c]),
+                above_crest_m=float(self.above_crest[k, c]),
                 near=float(self.near[k, c]),
             )
             for k in range(len(self.end))
@@ -169,7 +169,7 @@ def paths(
         range_z=range_z,
         reversals=reversals,
         way_z=way,
-        height=height,
+        above_crest=height,
         near=near,
         averages=_averages(
             advance, range_z, reversals, way, height, near, (float(edges[0]), float(edges[-1]))
@@ -254,7 +254,7 @@ def _averages(
         ("advance", "m", advance),
         ("range_z", "m", range_z),
         ("reversals", "1/s", reversals),
-        ("height", "m", height),
+        ("above_crest", "m", height),
         ("near_bed", "-", near),
     )
     items = [average(name, unit, list(values.T), window) for name, unit, values in named]

@@ -2,14 +2,13 @@
 
 import math
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
 from ryusa.errors import ResultsError
 from ryusa.laws._law import law
 from ryusa.laws.slices import circle_slice, sphere_slice
-from ryusa.measure._run import Floats, Run, crest_of, settle_time
+from ryusa.measure._run import Above, Floats, Run, level_of, settle_time
 from ryusa.measure.snapshot import lanes_of, scene_at
 from ryusa.measure.statistics import average, standard_errors
 from ryusa.measure.table import Averaged, Averages
@@ -19,8 +18,6 @@ from ryusa.model.scene import Bools
 CHUNK = 400_000  # places of grains held in memory at once
 MOST = 100_000  # layers; more come from a grain that was thrown away
 V, A, U_X, U_Z, SPIN, U_XX, U_ZZ = range(7)  # what is summed over the slices in a layer
-
-Origin = Literal["bed crest", "mean crest"]
 
 
 @dataclass(frozen=True)
@@ -46,9 +43,10 @@ class Profiles(Averaged):
 
     Attributes
     ----------
-    z : height of the middle of each layer above `origin` [m], shape (n_layer,).
+    z : height of the middle of each layer [m], shape (n_layer,).
     thickness : of a layer [m].
-    origin : where z = 0 lies in the scene [m].
+    above : what the heights are counted from.
+    origin : its height above the datum [m].
     d : mean diameter of the free grains [m].
     phi : concentration, volume of sphere slices over volume of the layer [-].
     area_fraction : area of circle slices over area of the layer seen from the side [-]; nan in 3D.
@@ -69,6 +67,7 @@ class Profiles(Averaged):
 
     z: Floats
     thickness: float
+    above: Above
     origin: float
     d: float
     phi: Layers
@@ -103,7 +102,7 @@ class Profiles(Averaged):
         return self.density * self.flux.value
 
     def top(self, share: float = 0.99) -> float:
-        """Height above the origin below which so large a share of all grain volume lies [m]."""
+        """Height below which so large a share of all grain volume lies [m]."""
         below = np.cumsum(self.phi.value)
         edges = self.z + 0.5 * self.thickness
         if below[-1] <= 0.0:
@@ -135,7 +134,7 @@ def profiles(
     begin: float | None = None,
     end: float = math.inf,
     layer: float = 0.5,
-    origin: float | Origin = "bed crest",
+    above: Above = "datum",
     between: tuple[float, float] | None = None,
     bed: bool = False,
 ) -> Profiles:
@@ -146,8 +145,8 @@ def profiles(
     run : a run folder.
     begin, end : window [s]; `begin` defaults to the case's `record.settle`.
     layer : thickness of a layer in mean diameters.
-    origin : height that becomes z = 0 [m], or "bed crest", the top of the highest fixed grain, or "mean
-        crest", the mean of all their tops; 0 in a scene without fixed grains.
+    above : what heights are counted from, and where a layer begins: "datum", z = 0 of the case; "bed crest",
+        the top of the highest fixed grain; "mean crest", the mean of all their tops.
     between : count only grains whose centre lies in this range of x [m], inside the period; default the
         whole period. A scene that is open along x needs it.
     bed : give the concentration of the fixed grains too; they never count as moving ones.
@@ -165,11 +164,8 @@ def profiles(
     frames, temperatures variances about that mean, over grains and time. Frames hold `v` half a step behind
     `x`, which no profile can tell. In a plane scene the width is `slab_width`, and lanes are averaged.
     """
-    since = settle_time(run) if begin is None else begin
-    first, last = _frames(run, since, end)
-    t = np.asarray(run.frames.t, dtype=np.float64)[first:last]
-    scene = scene_at(run, since)
-    z_0, thickness = _origin(scene, origin), layer * float(scene.d.mean())
+    t, first, last, scene, since = _frames(run, begin, end)
+    z_0, thickness = level_of(scene, above), layer * float(scene.d.mean())
     _, lanes = lanes_of(np.asarray(run.frames.x[first], dtype=np.float64)[:, 1], scene)
     length = float(scene.period[0]) if between is None else between[1] - between[0]
     width = _width(scene, lanes)
@@ -190,6 +186,7 @@ def profiles(
     return Profiles(
         z=(edge + np.arange(n_layer) + 0.5) * thickness,
         thickness=thickness,
+        above=above,
         origin=z_0,
         d=float(scene.d.mean()),
         phi=_mean("phi", "-", volume / space),
@@ -212,13 +209,14 @@ def profiles(
     )
 
 
-def _frames(run: Run, begin: float, end: float) -> tuple[int, int]:
-    """First frame within a window [s], and one beyond the last."""
-    t = np.asarray(run.frames.t, dtype=np.float64)
-    first, last = int(np.searchsorted(t, begin, "left")), int(np.searchsorted(t, end, "right"))
-    if last <= first or scene_at(run, begin).n_grain == 0:
-        raise ResultsError(f"no frame of free grains from t = {begin:g} s to {end:g} s")
-    return first, last
+def _frames(run: Run, begin: float | None, end: float) -> tuple[Floats, int, int, Scene, float]:
+    """Times of the frames in a window [s], the first and one beyond the last, scene and begin [s]."""
+    since = settle_time(run) if begin is None else begin
+    t, scene = np.asarray(run.frames.t, dtype=np.float64), scene_at(run, since)
+    first, last = int(np.searchsorted(t, since, "left")), int(np.searchsorted(t, end, "right"))
+    if last <= first or scene.n_grain == 0:
+        raise ResultsError(f"no frame of free grains from t = {since:g} s to {end:g} s")
+    return t[first:last], first, last, scene, since
 
 
 def _averages(
@@ -326,14 +324,6 @@ def _inside(x: Floats, scene: Scene, between: tuple[float, float] | None) -> Boo
     if math.isfinite(period):
         x = np.mod(x, period)
     return (x >= 0.0) & (x < between[1] - between[0])
-
-
-def _origin(scene: Scene, origin: float | Origin) -> float:
-    if origin == "bed crest":
-        return crest_of(scene)
-    if origin == "mean crest":
-        return float((scene.x_fixed[:, 2] + 0.5 * scene.d_fixed).mean()) if scene.n_fixed else 0.0
-    return float(origin)
 
 
 def _width(scene: Scene, lanes: int) -> float:

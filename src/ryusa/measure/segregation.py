@@ -6,9 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ryusa.errors import ResultsError
-from ryusa.measure._run import Floats, Run, settle_time
+from ryusa.measure._run import Floats, Run
 from ryusa.measure.profiles import _frames
-from ryusa.measure.snapshot import scene_at
 from ryusa.measure.statistics import average
 from ryusa.measure.table import Averaged, Averages
 from ryusa.model.scene import Bools
@@ -77,10 +76,8 @@ def segregation(
     for grains that fill a depth h evenly the scale is h/2. Centres are weighted with volume. The height is
     that along z, normal to a bed.
     """
-    since = settle_time(run) if begin is None else begin
-    first, last = _frames(run, since, end)
-    t = np.asarray(run.frames.t, dtype=np.float64)[first:last]
-    d = scene_at(run, since).d
+    t, first, last, scene, since = _frames(run, begin, end)
+    d = scene.d
     low, high = float(d.min()), float(d.max())
     cut = 0.5 * (low + high) if cut is None else cut
     large = d > cut

@@ -8,16 +8,14 @@ import numpy as np
 
 from ryusa.errors import ResultsError
 from ryusa.laws.water import tau_star_from_u_star
-from ryusa.measure._run import Floats, Run, settle_time
+from ryusa.measure._run import Floats, Run, crest_of, settle_time
 from ryusa.measure.profiles import (
     CHUNK,
     U_X,
     Layers,
-    Origin,
     Profiles,
     _cut,
     _mean,
-    _origin,
     _quotient,
     _sums,
     _width,
@@ -41,15 +39,15 @@ class Transport(Averaged):
     t, dt : middle and length of the time between two frames [s], shape (n,).
     q : volume of grains that crosses a unit of width in a second [m2/s], shape (n,).
     q_star : q/scale [-], shape (n,).
-    z : height of the middle of each layer above `origin` [m], shape (n_layer,).
-    thickness, origin : of a layer [m]; where z = 0 lies in the scene [m].
+    z : height of the middle of each layer above the datum [m], shape (n_layer,).
+    thickness : of a layer [m].
     flux : volume of grains that crosses a unit of area in a second, over height [m/s].
     scale : sqrt(R g d**3) that makes q dimensionless [m2/s].
     excess : R, density of grains over water less 1; 1 in a dry flow, nan where grains do not sink [-].
     tau_star : dimensionless shear stress at the bed [-]: of the water of the run where it solved a column
         (`measure.water`), else the one the case asks for, or the one handed in; nan where there is none.
     tau_error : its standard error [-]; nan where it is not measured.
-    bed : height of the bed at which it is measured [m]; nan where it is not.
+    bed : height of the bed above the datum at which it is measured [m]; nan where it is not.
     d, g : mean diameter of the free grains [m] and length of the gravity vector [m/s2].
     averages : q, q_star, layer_low, layer_high, layer_thickness, with errors and steadiness.
     """
@@ -60,7 +58,6 @@ class Transport(Averaged):
     q_star: Floats
     z: Floats
     thickness: float
-    origin: float
     flux: Layers
     scale: float
     excess: float
@@ -118,7 +115,6 @@ def transport(
     begin: float | None = None,
     end: float = math.inf,
     layer: float = 0.25,
-    origin: float | Origin = "bed crest",
     rho_w: float | None = None,
     tau_star: float | None = None,
 ) -> Transport:
@@ -128,7 +124,7 @@ def transport(
     ----------
     run : a run folder, periodic along x.
     begin, end : window [s]; `begin` defaults to the case's `record.settle`.
-    layer, origin : layers of the flux, as in `profiles`; thickness in mean diameters.
+    layer : thickness of the layers of the flux, in mean diameters.
     rho_w : density of water in q_star [kg/m3]; default that of the case; 0 for a dry flow.
     tau_star : what to put beside q_star [-]; default that of the run's water at the bed (`measure.water`), or
         where no column was solved from the friction velocity of the case.
@@ -146,12 +142,12 @@ def transport(
     is backwards are left out. Errors of the levels are to first order in the flux of the frames.
     """
     t, first, last, scene, area = window_of(run, begin, end, least=2)
-    since, z_0, thickness = float(t[0]), _origin(scene, origin), layer * float(scene.d.mean())
+    since, thickness = float(t[0]), layer * float(scene.d.mean())
     ball = np.pi / 6.0 * scene.d**3
     dt = np.diff(t)
     ever = _moved(run, last, ball) / area
     moved, times = ever[first:], np.asarray(run.frames.t[:last], dtype=np.float64)
-    sums, edge = _sums(run, first, last, scene, z_0, thickness, None, False)
+    sums, edge = _sums(run, first, last, scene, 0.0, thickness, None, False)
     carried = sums[:, :, U_X] / area
     d, g = float(scene.d.mean()), float(np.linalg.norm(scene.gravity))
     excess = _excess(run, scene, float(scene.m.sum() / ball.sum()), rho_w)
@@ -168,7 +164,6 @@ def transport(
         q_star=moved / dt / scale,
         z=(edge + np.arange(sums.shape[1]) + 0.5) * thickness,
         thickness=thickness,
-        origin=z_0,
         flux=_mean("flux", "m/s", carried / thickness),
         scale=scale,
         excess=excess,
@@ -189,7 +184,8 @@ def transport(
                 _of_stress(tau_star, bed),
                 f"q_star = q/sqrt(R g d^3), R = {excess:.4g}, g = {g:.4g} m/s2, d = {d:.4g} m",
                 begin_in_words("q_star", times[1:], ever / np.diff(times), settle_time(run), begin),
-                f"transport layer: the middle {MIDDLE:.0%} of the flux, heights above z = {z_0:.4g} m",
+                f"transport layer: the middle {MIDDLE:.0%} of the flux; heights above datum, z = 0 of the "
+                f"case{_crest(scene)}",
             ),
         ),
     )
@@ -200,13 +196,12 @@ def kinetic_stress(
     begin: float | None = None,
     end: float = math.inf,
     layer: float = 0.5,
-    origin: float | Origin = "bed crest",
 ) -> KineticStress:
     """Granular temperature and the stress sigma phi <v'v'> over height.
 
     Parameters
     ----------
-    run, begin, end, layer, origin : as in `profiles`.
+    run, begin, end, layer : as in `profiles`.
 
     Notes
     -----
@@ -214,7 +209,7 @@ def kinetic_stress(
     flow count as motion, and so does the shear across a grain, of the order of (d dv_x/dz)**2/20 in xx.
     Stresses are volume averages with sphere slices. Contacts carry the rest of the grains' stress.
     """
-    found = profiles(run, begin, end, layer, origin)
+    found = profiles(run, begin, end, layer)
     t, first, last, scene, _ = window_of(run, begin, end, least=1)
     n_layer, thickness = len(found.z), found.thickness
     bottom, r = round(float(found.z[0]) / thickness - 0.5), 0.5 * scene.d
@@ -222,7 +217,7 @@ def kinetic_stress(
     step = max(CHUNK // scene.n_grain, 1)
     for a in range(first, last, step):
         span = slice(a, min(a + step, last))
-        z = np.ascontiguousarray(np.asarray(run.frames.x[span], dtype=np.float64)[:, :, 2] - found.origin)
+        z = np.ascontiguousarray(np.asarray(run.frames.x[span], dtype=np.float64)[:, :, 2])
         v = np.asarray(run.frames.v[span], dtype=np.float64)
         carried = np.concatenate([v, v**2, v[:, :, :1] * v[:, :, 2:]], axis=2)
         part = sums[a - first : span.stop - first]
@@ -335,6 +330,11 @@ def _of_stress(tau_star: float, bed: float) -> str:
     if math.isnan(bed):
         return f"tau_star = {tau_star:.4g}, as the case asks for"
     return f"tau_star: shear stress of the clear water, extrapolated to the bed at z = {bed:.4g} m"
+
+
+def _crest(scene: Scene) -> str:
+    """Where the fixed bed ends, if there is one."""
+    return f"; crest of the fixed bed at z = {crest_of(scene):.4g} m" if scene.n_fixed else ""
 
 
 def _tau_star(scene: Scene, excess: float, d: float, g: float) -> float:

@@ -29,12 +29,12 @@ class WaterProfile(Averaged):
     Attributes
     ----------
     t : times of the frames [s], shape (n_frame,).
-    z, faces : heights of the middles and the faces of the cells [m], shapes (n,) and (n + 1,).
+    z, faces : heights of the middles and the faces of the cells above the datum [m], shapes (n,), (n + 1,).
     u : speed of the water along the bed [m/s], shape (n,).
     phi : concentration of grains, fixed ones included [-], shape (n,).
     tau : shear stress of the water, viscous and turbulent [Pa], at the faces, shape (n + 1,).
     nu_t : eddy viscosity [m2/s], at the faces.
-    grains : speed of the free grains and the rest of their profile, heights as in the scene.
+    grains : speed of the free grains and the rest of their profile.
     bed : height of the bed [m]; nan where no grains lie as dense.
     surface : mean height of the surface [m].
     clear : faces whose stress is carried on to the bed, shape (n + 1,).
@@ -65,8 +65,7 @@ class WaterProfile(Averaged):
     def rows(self) -> list[dict[str, object]]:
         """One dictionary per cell, from below; stress and eddy viscosity are the mean of its two faces."""
         tau, nu_t = (0.5 * (one.value[1:] + one.value[:-1]) for one in (self.tau, self.nu_t))
-        at = self.grains.z + self.grains.origin
-        v = np.interp(self.z, at, self.grains.v_x.value, math.nan, math.nan) if len(at) else 0.0 * self.z
+        v = np.interp(self.z, self.grains.z, self.grains.v_x.value, math.nan, math.nan)
         return [
             {
                 "z_m": float(self.z[k]),

@@ -40,7 +40,8 @@ def flow(speed=4.0, phi=0.5, lowest=0, **ways):
     full = np.full(N, phi)
     none = np.full(N, math.nan)
     profile = Profiles(
-        z=(lowest + at + 0.5) * 0.1, thickness=0.1, origin=0.2, d=0.2, phi=layers("phi", full),
+        z=(lowest + at + 0.5) * 0.1, thickness=0.1, above="bed crest", origin=0.2, d=0.2,
+        phi=layers("phi", full),
         area_fraction=layers("area_fraction", 1.5 * full), v_x=layers("v_x", v), v_z=layers("v_z", none),
         spin=layers("spin", none), temperature_x=layers("temperature_x", none),
         temperature_z=layers("temperature_z", none), flux=layers("flux", full * v), bed=none,

@@ -239,7 +239,7 @@ def _window(results: Results, begin: float, end: float) -> Window:
     turning = [int(g) for g in alternating(results, begin, end).grains]
     middle = max(len(turning) // 2 - 1, 0)  # neither the most nor the least restless ones are shown
     return Window(
-        profiles(results, begin, end, bed=True),
+        profiles(results, begin, end, above="bed crest", bed=True),
         {
             BETWEEN: _ways(results, begin, end, turning),
             ALL: _ways(results, begin, end, range(results.scene.n_grain)),

@@ -213,7 +213,7 @@ def mean(found: Found, plan: Plan, value: Callable[[Debris], float], chosen: Map
 def measure(results: Results, one: CaseRun) -> Debris:
     """Everything the three experiments ask of one run."""
     del one
-    profile = profiles(results, layer=LAYER, origin="mean crest", bed=True)
+    profile = profiles(results, layer=LAYER, above="mean crest", bed=True)
     begin, end = float(profile.t[0]), float(profile.t[-1])
     rows = np.searchsorted(np.asarray(results.frames.t), (begin, end))
     x = np.asarray(results.frames.x[rows[0] : rows[1] + 1], dtype=np.float64)

@@ -144,7 +144,7 @@ def measure(run: Results, one: CaseRun) -> MovableBedRun:
     """Rods, flux, speeds and spins of the movers, and the longest rod on its way."""
     del one
     found = rods(run)
-    profile = profiles(run, origin="mean crest", bed=True)
+    profile = profiles(run, above="mean crest", bed=True)
     rows = np.searchsorted(np.asarray(run.frames.t), (float(profile.t[0]), float(profile.t[-1])))
     v = np.asarray(run.frames.v[rows[0] : rows[1] + 1], dtype=np.float64)[:, :, 0]
     spin = np.asarray(run.frames.omega[rows[0] : rows[1] + 1], dtype=np.float64)[:, :, 1]

@@ -73,7 +73,7 @@ def stopping(run: Results) -> dict[str, float]:
     t, begin = np.asarray(run.frames.t), float(run.case["record"]["settle"])
     speed, times, share, first = [], [], [], math.nan
     for k in range(int(np.searchsorted(t, begin)), len(t) - 4, 4):
-        found = profiles(run, begin=float(t[k]), end=float(t[k + 4]), layer=1.0)
+        found = profiles(run, begin=float(t[k]), end=float(t[k + 4]), layer=1.0, above="bed crest")
         u, phi = found.v_x.value, found.phi.value
         there = phi > THIN
         top = float(u[there][-1])
@@ -92,7 +92,7 @@ def stopping(run: Results) -> dict[str, float]:
 
 def flowing(run: Results) -> dict[str, Any]:
     """Mean concentration between bed and surface, where those are, and how both moved."""
-    found = profiles(run, layer=0.5)
+    found = profiles(run, layer=0.5, above="bed crest")
     half = float(found.t[0] + found.t[-1]) / 2.0
     parts = [_layer(run, found.t[0], half)["c"], _layer(run, half, math.inf)["c"]]
     middle = len(found.t) // 2
@@ -106,7 +106,7 @@ def flowing(run: Results) -> dict[str, Any]:
 
 def _layer(run: Results, begin: float, end: float, slow: float = SLOW) -> dict[str, Any]:
     """Concentration of the flow in a window, its depth in grains, and the friction of grains on the bed."""
-    found, water = profiles(run, begin, end, layer=0.5), run.water
+    found, water = profiles(run, begin, end, layer=0.5, above="bed crest"), run.water
     assert water is not None
     span = (water.t >= begin) & (water.t <= end)
     u, surface = water.u[span].mean(axis=0), float(water.z_surface[span].mean())

@@ -113,8 +113,8 @@ def rate(z: Floats, phi: Floats, u: Floats) -> float:
 def measure(run: Results, one: CaseRun) -> dict[str, Floats | float]:
     """Profiles of beads and water over the window, and the transport rate with its error."""
     del one
-    found = profiles(run, layer=LAYER, origin=0.0)
-    carried = transport(run, origin=0.0, tau_star=math.nan)
+    found = profiles(run, layer=LAYER)
+    carried = transport(run, tau_star=math.nan)
     water = run.water
     assert water is not None
     since = np.asarray(water.t) >= found.t[0]

@@ -39,7 +39,7 @@ def tasks(plan: Plan) -> Sequence[Task]:
 def measure(run: Results, one: CaseRun) -> dict[str, Floats | float]:
     """Profiles after settling, and how the mean speed moved."""
     del one
-    found = profiles(run, layer=LAYER)
+    found = profiles(run, layer=LAYER, above="bed crest")
     keep = np.isfinite(found.v_x.value) & (found.phi.value > 0.02)
     half = len(found.speed) // 2
     drift = found.speed[half:].mean() / found.speed[:half].mean() - 1.0
