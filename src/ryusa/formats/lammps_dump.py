@@ -12,6 +12,8 @@ from ryusa.model.arrays import Floats
 
 FREE_TYPE, FIXED_TYPE = 1, 2
 COLUMNS = "id type x y z ix iy iz vx vy vz omegax omegay omegaz diameter mass"  # names of LAMMPS
+# Once in a file, as LAMMPS writes it: OVITO reads one frame of a dump that repeats it.
+DUMP_HEAD = b"ITEM: UNITS\nsi\n"
 _ROW = "%d %d %r %r %r %d %d 0 %r %r %r %r %r %r %r %r"
 
 
@@ -30,7 +32,7 @@ def dump_frame(table: GrainTable) -> bytes:
         sides.append("pp" if shut else "ss")
         bounds.append(f"{low!r} {high!r}")
     head = [
-        "ITEM: UNITS", "si", "ITEM: TIME", repr(table.t), "ITEM: TIMESTEP", str(table.step),
+        "ITEM: TIME", repr(table.t), "ITEM: TIMESTEP", str(table.step),
         "ITEM: NUMBER OF ATOMS", str(table.n), f"ITEM: BOX BOUNDS {' '.join(sides)}", *bounds,
         f"ITEM: ATOMS {COLUMNS}",
     ]  # fmt: skip
