@@ -83,7 +83,10 @@ def draw(
     ] = "speed",
     lane: Annotated[
         int | None,
-        typer.Option(help=f"{taking('lane', PICTURES)}: lane of a plane scene; default that of grain 0."),
+        typer.Option(
+            help=f"{taking('lane', PICTURES)}: lane of a plane scene, default that of grain 0; forces in 3D: "
+            "slice across y, default the middle one."
+        ),
     ] = None,
     side: Annotated[
         str, typer.Option(help=f"{taking('side', PICTURES)}: slope of a heap, {' or '.join(SIDES)}.")

@@ -4,6 +4,7 @@ from ryusa.figures.collisions import collision_times
 from ryusa.figures.contact import StiffnessBand, StiffnessCurve, StiffnessPoints, over_stiffness, turning
 from ryusa.figures.drops import QuotedPoint, ReboundCurve, drop_chart, over_speed, rebounds
 from ryusa.figures.energy import energy
+from ryusa.figures.forces import forces
 from ryusa.figures.hops import contact_times, hops
 from ryusa.figures.profiles import profiles
 from ryusa.figures.repose import surface
@@ -30,6 +31,7 @@ __all__ = [
     "contact_times",
     "drop_chart",
     "energy",
+    "forces",
     "hops",
     "over_speed",
     "over_stiffness",

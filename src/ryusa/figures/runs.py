@@ -19,9 +19,19 @@ Side = Literal["right", "left"]
 def grains(
     results: Results, t: float | None = None, colour: Colour = "speed", lane: int | None = None
 ) -> Drawn:
-    """Grains at time t [s], default the last frame, by speed, by spin or all alike."""
+    """Grains at time t [s], default the last frame, by speed, by spin or all alike.
+
+    Limits of axes and colours are those of all frames, so that pictures of two moments can be compared.
+    """
     seen = measure.snapshot(results, t, lane)
-    return figures.snapshot(seen, colour), seen.rows()
+    return figures.snapshot(seen, colour, measure.bounds(results, lane)), seen.rows()
+
+
+def forces(results: Results, t: float | None = None, lane: int | None = None) -> Drawn:
+    """Contact forces over the grains at time t [s], default the last frame."""
+    found = measure.contact_network(results, t, lane)
+    bounds = measure.bounds(results, lane if results.scene.plane_case else None)
+    return figures.forces(found, bounds), found.rows()
 
 
 def tracks(

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
 from ryusa.figures import style
-from ryusa.measure import Snapshot
+from ryusa.measure import Bounds, Snapshot
 from ryusa.measure.repose import STILL, G
 
 CM = 100.0  # centimetres in a metre
@@ -29,15 +29,17 @@ Box = tuple[float, float, float, float]  # left, right, bottom, top [m]
 
 
 @style.house
-def snapshot(seen: Snapshot, colour: Colour = "speed") -> Figure:
+def snapshot(seen: Snapshot, colour: Colour = "speed", bounds: Bounds | None = None) -> Figure:
     """Draw grains as circles, coloured by their speed or spin or all alike.
 
     Parameters
     ----------
     seen : `measure.snapshot`. Rows in y are drawn one before the other, the nearest (smallest y) last.
     colour : "speed", "spin" (about y, positive rolls towards +x) or "none".
+    bounds : box and colour scale, such as `measure.bounds` gives for a run; default those of the moment.
     """
-    figure, axes = panel(seen, 0.0 if colour == "none" else ABOVE)
+    bounds = bounds or seen.bounds
+    figure, axes = panel(seen, 0.0 if colour == "none" else ABOVE, bounds)
     if colour == "none":
         grains(axes, seen, PLAIN)
         return figure
@@ -45,21 +47,21 @@ def snapshot(seen: Snapshot, colour: Colour = "speed") -> Figure:
         values, text, hue = seen.speed, "speed  (m/s)", "YlGnBu"
         still = STILL * math.sqrt(G * float(seen.d.mean())) if len(seen.d) else 1.0
         scale = Normalize(
-            0.0, max(_most(values), still)
+            0.0, max(bounds.speed, still)
         )  # so that noise of grains at rest does not fill the scale
     else:
         values, text, hue = seen.spin, "spin  $\\omega_y$  (rad/s)", "RdBu_r"
-        most = max(_most(np.abs(values)), 1.0)
+        most = max(bounds.spin, 1.0)
         scale = Normalize(-most, most)
     shown = ScalarMappable(scale, mpl.colormaps[hue])
     grains(axes, seen, shown.to_rgba(values))
-    _bar(figure, axes, shown, text, over=bool(len(values) and np.abs(values).max() > shown.get_clim()[1]))
+    _bar(figure, axes, shown, text)
     return figure
 
 
-def panel(seen: Snapshot, above: float = 0.0) -> tuple[Figure, Axes]:
-    """Axes in cm with bed, planes and time; `above` [inch] of free height above; sized to fit the grains."""
-    box = _box(seen)
+def panel(seen: Snapshot, above: float = 0.0, bounds: Bounds | None = None) -> tuple[Figure, Axes]:
+    """Axes in cm with bed, planes and time; `above` [inch] of free height above; sized to fit the bounds."""
+    box = _box(bounds or seen.bounds, seen.period)
     wide, high = box[1] - box[0], box[3] - box[2]
     width = style.PAGE if wide / high >= WIDE else style.COLUMN
     figure, (axes,) = style.new(width=width, height=(width - 0.55) * high / wide + AROUND + above)
@@ -135,22 +137,12 @@ def planes(axes: Axes, point: Any, normal: Any, box: Box, unit: float) -> None:
             axes.plot(ends[:, 0], ends[:, 1], color="#6f695f", lw=0.9, zorder=0.6)
 
 
-def _box(seen: Snapshot) -> Box:
-    """Box to be shown [m]: the free grains, the period, and the bed near them."""
-    x, d = np.concatenate([seen.x, seen.bed_x]), np.concatenate([seen.d, seen.bed_d])
-    own, own_d = (seen.x, seen.d) if len(seen.x) else (x, d)
-    if len(own) == 0:
-        return -0.01, 0.01, 0.0, 0.01
-    room = 1.6 * float(d.max())
-    left, right = float((own[:, 0] - 0.5 * own_d).min()) - room, float((own[:, 0] + 0.5 * own_d).max()) + room
-    if math.isfinite(seen.period):
-        left, right = 0.0, seen.period
-    bottom, top = float((own[:, 2] - 0.5 * own_d).min()), float((own[:, 2] + 0.5 * own_d).max())
-    near = (seen.bed_x[:, 0] > left) & (seen.bed_x[:, 0] < right) & (seen.bed_x[:, 2] < top + room)
-    if near.any():
-        bottom = min(bottom, float((seen.bed_x[near, 2] - 0.5 * seen.bed_d[near]).min()))
-    if math.isfinite(seen.surface):
-        top = max(top, seen.surface)
+def _box(bounds: Bounds, period: float) -> Box:
+    """Box to be shown [m]: the bounds with a margin."""
+    left, right, bottom, top = bounds.left, bounds.right, bounds.bottom, bounds.top
+    room = 1.6 * bounds.d_max
+    if not math.isfinite(period):
+        left, right = left - room, right + room
     bottom, top = bottom - 0.3 * room, top + 0.5 * room
     ratio = (right - left) / (top - bottom)
     if ratio < SLIM:  # a narrow column gets margins at its sides
@@ -161,18 +153,12 @@ def _box(seen: Snapshot) -> Box:
     return left, right, bottom, top
 
 
-def _most(values: Any) -> float:
-    """Upper end of the scale: the value that 99 % of the grains do not exceed."""
-    return float(np.quantile(values, 0.99)) if len(values) else 0.0
-
-
-def _bar(figure: Figure, axes: Axes, shown: ScalarMappable, text: str, over: bool) -> None:
-    """A narrow colour bar above the right half of the panel."""
+def _bar(figure: Figure, axes: Axes, shown: ScalarMappable, text: str) -> None:
+    """A narrow colour bar above the right half of the panel; arrows stand for the values beyond its ends."""
     width, height = figure.get_size_inches()
     inner = height - AROUND - ABOVE
     beside = axes.inset_axes((0.62, 1.0 + 0.05 / inner, 0.38, BAR / inner))
-    both = shown.get_clim()[0] < 0.0
-    extend = "neither" if not over else "both" if both else "max"
+    extend = "both" if shown.get_clim()[0] < 0.0 else "max"
     bar = figure.colorbar(shown, cax=beside, orientation="horizontal", extend=extend)
     bar.ax.xaxis.set_ticks_position("top")
     bar.ax.tick_params(labelsize=6.0, size=2.0, width=0.5, pad=1.5)

@@ -2,6 +2,7 @@
 
 from ryusa.catalogue import MEASURES, load
 from ryusa.measure.collisions import Collisions, ContactTimes, collisions, contact_times, turned_time
+from ryusa.measure.contact_network import ContactNetwork, contact_network
 from ryusa.measure.energy import Energy, energy
 from ryusa.measure.entrainment import Entrainment, entrainment
 from ryusa.measure.formulae import FormulaCurve, classical
@@ -10,7 +11,7 @@ from ryusa.measure.profiles import Layers, Profiles, profiles
 from ryusa.measure.repose import HeapSurface, surface
 from ryusa.measure.rods import Rod, Rods, companions, rods
 from ryusa.measure.saltation import Saltation, grouping, saltation
-from ryusa.measure.snapshot import Snapshot, snapshot
+from ryusa.measure.snapshot import Bounds, Snapshot, bounds, snapshot
 from ryusa.measure.spin import Spin, spin
 from ryusa.measure.statistics import Average, average, ratio, standard_error
 from ryusa.measure.table import Averages, rows_of, write_csv
@@ -30,7 +31,9 @@ __all__ = [
     "Alternating",
     "Average",
     "Averages",
+    "Bounds",
     "Collisions",
+    "ContactNetwork",
     "ContactTimes",
     "Energy",
     "Entrainment",
@@ -52,9 +55,11 @@ __all__ = [
     "WaterProfile",
     "alternating",
     "average",
+    "bounds",
     "classical",
     "collisions",
     "companions",
+    "contact_network",
     "contact_times",
     "energy",
     "entrainment",

@@ -11,6 +11,30 @@ from ryusa.measure._run import Floats, Run
 from ryusa.model import Scene
 
 UPRIGHT = 1.0e-6  # component along y up to which a plane shows as a line in the x-z plane
+SHARE = (
+    0.99  # of the values that a colour scale covers: a few fast grains would leave the others in one colour
+)
+_PLACES, _FRAMES = 20_000_000, 60  # grains and frames from which bounds are taken, of not fewer frames
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """Box that holds the grains of a lane, and the ends of their colour scales.
+
+    Attributes
+    ----------
+    left, right, bottom, top : of grains, of fixed grains near them, and of the water [m].
+    d_max : largest diameter of free and fixed grains [m].
+    speed, spin : that 99 % of the grains do not exceed [m/s], [rad/s]; spin about y, without its sign.
+    """
+
+    left: float
+    right: float
+    bottom: float
+    top: float
+    d_max: float
+    speed: float
+    spin: float
 
 
 @dataclass(frozen=True)
@@ -47,6 +71,14 @@ class Snapshot:
     lanes: int = 1
     surface: float = math.nan
 
+    @property
+    def bounds(self) -> Bounds:
+        """Of this moment."""
+        ends = np.array([_ends(self.x, self.d)])
+        highest = self.surface if math.isfinite(self.surface) else -math.inf
+        d_max = float(self.d.max(initial=0.0))
+        return _bounds(ends, self.speed, self.spin, (self.bed_x, self.bed_d), self.period, highest, d_max)
+
     def rows(self) -> list[dict[str, object]]:
         """One dictionary per free grain."""
         columns = {f"{name}_m": self.x[:, axis] for axis, name in enumerate("xyz")}
@@ -74,7 +106,7 @@ def snapshot(run: Run, t: float | None = None, lane: int | None = None) -> Snaps
     k = frame_at(run, t)
     now = float(run.frames.t[k])
     scene = scene_at(run, now)
-    x = _inside(np.asarray(run.frames.x[k], dtype=np.float64), scene)
+    x = inside_periods(np.asarray(run.frames.x[k], dtype=np.float64), scene)
     v, omega = np.asarray(run.frames.v[k]), np.asarray(run.frames.omega[k])
     places, lanes = lanes_of(x[:, 1], scene)
     chosen = (int(places[0]) if len(places) else 0) if lane is None else lane
@@ -106,6 +138,64 @@ def snapshot(run: Run, t: float | None = None, lane: int | None = None) -> Snaps
     )
 
 
+def bounds(run: Run, lane: int | None = None) -> Bounds:
+    """Box and colour scales that suit every frame of a run, so that pictures of two moments compare.
+
+    Parameters
+    ----------
+    run : a run folder; of a very large one some frames are read, evenly spaced.
+    lane : as in `snapshot`.
+    """
+    seen, scene = snapshot(run, lane=lane), run.scene
+    bed = np.ones(scene.n_fixed, dtype=np.bool_)
+    if seen.lanes > 1 and len(seen.x):
+        bed = np.abs(scene.x_fixed[:, 1] - seen.x[0, 1]) < 0.5 * float(scene.d.max())
+    n_frame = len(run.frames.t)
+    count = min(max(_PLACES // max(scene.n_grain, 1), _FRAMES), n_frame)
+    ends: list[tuple[float, ...]] = []
+    speed: list[Floats] = []
+    spin: list[Floats] = []
+    for k in np.unique(np.linspace(0, n_frame - 1, count).round().astype(np.int64)):
+        ends.append(_ends(inside_periods(np.asarray(run.frames.x[k])[seen.grains], scene), seen.d))
+        speed.append(np.linalg.norm(np.asarray(run.frames.v[k])[seen.grains], axis=1))
+        spin.append(np.asarray(run.frames.omega[k])[seen.grains, 1])
+    water = getattr(run, "water", None)
+    highest = -math.inf if water is None else float(np.max(water.z_surface))
+    return _bounds(
+        np.array(ends), np.concatenate(speed), np.concatenate(spin),
+        (scene.x_fixed[bed].reshape(-1, 3), scene.d_fixed[bed]), seen.period, highest,
+        float(seen.d.max(initial=0.0)),
+    )  # fmt: skip
+
+
+def _ends(x: Floats, d: Floats) -> tuple[float, ...]:
+    """Left, right, bottom and top of some grains [m]."""
+    low, high = (x - 0.5 * d[:, None]), (x + 0.5 * d[:, None])
+    return (
+        float(low[:, 0].min(initial=math.inf)), float(high[:, 0].max(initial=-math.inf)),
+        float(low[:, 2].min(initial=math.inf)), float(high[:, 2].max(initial=-math.inf)),
+    )  # fmt: skip
+
+
+def _bounds(
+    ends: Floats, speed: Floats, spin: Floats, bed: tuple[Floats, Floats], period: float, highest: float,
+    d_max: float,
+) -> Bounds:  # fmt: skip
+    """Bounds of some frames, whose ends are (n_frame, 4); `highest` of the water's surface [m]."""
+    left, right = float(ends[:, 0].min()), float(ends[:, 1].max())
+    bottom, top = float(ends[:, 2].min()), float(ends[:, 3].max())
+    x, d = bed
+    if not math.isfinite(right):  # no free grains
+        left, right, bottom, top = _ends(x, d) if len(x) else (-0.01, 0.01, 0.0, 0.01)
+    d_max = max(d_max, float(d.max(initial=0.0)))
+    if math.isfinite(period):
+        left, right = 0.0, period
+    near = (x[:, 0] > left - d_max) & (x[:, 0] < right + d_max) & (x[:, 2] < top + d_max)
+    bottom = min(bottom, float((x[near, 2] - 0.5 * d[near]).min(initial=math.inf)))
+    most = [float(np.quantile(one, SHARE)) if len(one) else 0.0 for one in (speed, np.abs(spin))]
+    return Bounds(left, right, bottom, max(top, highest), d_max, *most)
+
+
 def frame_at(run: Run, t: float | None = None) -> int:
     """Number of the frame nearest to time t [s]; of the last one for None."""
     times = np.asarray(run.frames.t, dtype=np.float64)
@@ -134,7 +224,7 @@ def lanes_of(y: Floats, scene: Scene) -> tuple[NDArray[np.int64], int]:
     return np.searchsorted(edges, y, side="right").astype(np.int64), len(edges) + 1
 
 
-def _inside(x: Floats, scene: Scene) -> Floats:
+def inside_periods(x: Floats, scene: Scene) -> Floats:
     """Centres taken back into the periods [m]."""
     x = x.copy()
     for axis, period in enumerate(scene.period):
