@@ -1,0 +1,50 @@
+"""Pictures of two moments of one run have the same axes and the same scale of colours."""
+
+import pytest
+
+from ryusa.build import scene as scene_of
+from ryusa.running.runner import run_scene
+from ryusa.running.stops import Stop
+
+D = 0.002
+
+
+@pytest.fixture(scope="module")
+def falling(tmp_path_factory: pytest.TempPathFactory):
+    """Two grains that fall on a floor and roll apart on it."""
+    scene, state = scene_of(
+        x=[(0.0, 0.0, 0.52 * D), (0.2 * D, 0.0, 6 * D)], d=D, v=[(0.0, 0.0, 0.0), (0.3, 0.0, 0.0)],
+        planes=[("floor", (0, 0, 0), (0, 0, 1))], plane_case=True,
+    )  # fmt: skip
+    folder = tmp_path_factory.mktemp("runs") / "falling"
+    return run_scene(scene, state, folder, frames=5e-3, stop=Stop(time=0.1), progress=False)
+
+
+@pytest.mark.parametrize("colour", ["speed", "spin"])
+def test_two_moments_can_be_laid_over_each_other(falling, colour):
+    first, last = (falling.draw("grains", t=t, colour=colour) for t in (0.0, 0.1))
+    for figure in (first, last):
+        figure.canvas.draw()
+    (one, bar), (other, other_bar) = (
+        (figure.axes[0], figure.axes[0].child_axes[0]) for figure in (first, last)
+    )
+    assert one.get_xlim() == other.get_xlim()
+    assert one.get_ylim() == other.get_ylim()
+    assert bar.get_xlim() == other_bar.get_xlim()
+    assert tuple(first.get_size_inches()) == tuple(last.get_size_inches())
+    unit = {"speed": "(m/s)", "spin": "(rad/s)"}[colour]
+    assert any(unit in text.get_text() for text in bar.texts)
+
+
+def test_the_axes_hold_the_grains_at_all_times(falling):
+    axes = falling.draw("grains", t=0.0).axes[0]
+    x = falling.frames.x[:]
+    assert axes.get_xlim()[0] < 100 * (x[..., 0].min() - 0.5 * D)
+    assert 100 * (x[..., 0].max() + 0.5 * D) < axes.get_xlim()[1]
+    assert axes.get_ylim()[1] > 100 * 6.5 * D  # where the upper grain began
+
+
+def test_forces_are_drawn_in_the_axes_of_the_grains(falling):
+    grains, forces = falling.draw("grains", t=0.0).axes[0], falling.draw("forces", t=0.1).axes[0]
+    assert grains.get_xlim() == forces.get_xlim()
+    assert grains.get_ylim() == forces.get_ylim()
