@@ -1,11 +1,12 @@
 """Pictures are looked at by people; here: that they are drawn, show what they are given and are written."""
 
+import math
 from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from matplotlib.collections import EllipseCollection, PatchCollection
+from matplotlib.collections import EllipseCollection
 
 from ryusa import figures
 from ryusa.measure import Energy, HeapSurface, Snapshot, Spin, Tracks, Vibration, average
@@ -27,6 +28,9 @@ def path(n=200, length=0.3):
         bed_x=bed,
         bed_z=np.full(20, D / 2),
         bed_d=np.full(20, D),
+        loose_x=bed[:3],
+        loose_z=np.full(3, 1.4 * D),
+        loose_d=np.full(3, D),
         period=20 * D,
     )
 
@@ -38,9 +42,13 @@ def test_a_long_track_is_cut_into_panels_with_round_grains_and_a_bed_without_gap
     assert figure.get_supylabel() == "height above datum  $z$  (mm)"
     for axes in figure.axes:
         assert axes.get_aspect() == 1.0
-        bed = next(one for one in axes.collections if isinstance(one, PatchCollection))
+        loose, bed = (one for one in axes.collections if isinstance(one, EllipseCollection))
         low, high = axes.get_xlim()
-        assert len(bed.get_paths()) >= (high - low) / (1e3 * D)
+        assert len(bed.get_offsets()) >= (high - low) / (1e3 * D)
+        assert np.diff(np.sort(bed.get_offsets()[:, 0])) == pytest.approx(1e3 * D)
+        assert bed.get_widths() == pytest.approx(1e3 * D)
+        assert len(loose.get_offsets()) >= 3 * math.floor((high - low) / (20e3 * D))
+        assert loose.get_offsets()[:, 1] == pytest.approx(1.4e3 * D)
 
 
 def test_a_path_high_for_its_length_leaves_no_panel_empty():
@@ -54,6 +62,31 @@ def test_a_path_is_drawn_to_the_edge_of_its_panel_however_few_its_frames():
     for axes in figures.tracks(few).axes[:-1]:
         drawn = [x for line in axes.lines for x in line.get_xdata() if np.isfinite(x)]
         assert max(drawn) >= axes.get_xlim()[1]
+
+
+def test_steps_longer_than_a_diameter_are_dashed_between_dots_and_the_caption_says_so():
+    whole = path()
+    assert "dashed" not in figures.tracks(whole).axes[0].get_title(loc="left")
+    keep = np.r_[0:80, 90:200]  # ten frames are missing: a gap of 8 D
+    gap = replace(whole, t=whole.t[keep], x=whole.x[keep], z=whole.z[keep])
+    figure = figures.tracks(gap, panels=1)
+    solid, dashed, dots = figure.axes[0].lines
+    apart = [1e3 * gap.x[79, 0], 1e3 * gap.x[80, 0]]
+    assert list(dashed.get_xdata()[:2]) == pytest.approx(apart)
+    assert dashed.get_linestyle() == "--"
+    assert list(dots.get_xdata()) == pytest.approx(apart)
+    steps = np.diff(np.asarray(solid.get_xdata(), dtype=float))
+    assert np.nanmax(steps) <= 1e3 * D
+    assert np.isnan(steps).sum() == 2  # the solid line is broken there, and only there
+    assert "frames (dots) more than a diameter apart" in figure.axes[0].get_title(loc="left")
+    pair = figures.tracks_side_by_side({"fine": whole, "coarse": gap}, 0.3)
+    assert "frames (dots) more than a diameter apart" in pair.axes[0].get_title(loc="right")
+
+
+def test_the_caption_says_which_free_grains_are_drawn():
+    alone = replace(path(), **{f"loose_{name}": np.zeros(0) for name in "xzd"})
+    assert "blue grains: free" in figures.tracks(path()).axes[0].get_title(loc="left")
+    assert "blue grains" not in figures.tracks(alone).axes[0].get_title(loc="left")
 
 
 def test_an_exaggeration_of_heights_is_stated():
@@ -242,9 +275,11 @@ def test_vibration_is_drawn_per_window_and_as_a_share_at_each_threshold():
 
 
 def test_a_high_path_fits_on_a_page_with_the_id_of_its_grain():
-    z = np.linspace(0.1, 0.0, 50)[:, None]
-    bed = np.array([0.0])
-    drop = Tracks((4,), np.linspace(0, 0.3, 50), 0 * z, z, np.array([D]), bed, bed, bed + D, float("inf"))
+    z = np.linspace(0.1, 0.0, 80)[:, None]
+    bed, none = np.array([0.0]), np.zeros(0)
+    drop = Tracks(
+        (4,), np.linspace(0, 0.3, 80), 0 * z, z, np.array([D]), bed, bed, bed + D, none, none, none, math.inf
+    )
     figure = figures.tracks(drop, around=moment())
     figure.canvas.draw()
     assert figure.get_size_inches()[1] < 6.0

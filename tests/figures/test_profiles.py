@@ -60,7 +60,7 @@ def test_paths_start_at_zero_to_scale_and_do_not_cross():
     t = np.linspace(0.0, 1.0, 101)
     x = 5 * D + 0.02 * np.outer(t, [1.0, 2.0, 3.0])
     z = 2 * D + D * np.sin(20 * np.outer(t, [1.0, 2.0, 3.0]))
-    way = Tracks((0, 1, 2), t, x, z, np.full(3, D), np.zeros(0), np.zeros(0), np.zeros(0), np.inf)
+    way = Tracks((0, 1, 2), t, x, z, np.full(3, D), *6 * [np.zeros(0)], np.inf)
     figure = figures.tracks_from_start({"soft": way, "stiff": way})
     figure.canvas.draw()
     assert len(figure.axes) == 2

@@ -1,3 +1,4 @@
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -34,6 +35,29 @@ def test_tracks_show_only_the_bed_of_their_own_lane(make):
     assert found.t.min() >= 0.01
     assert found.t.max() <= 0.03
     assert len(found.rows()) == len(found.t)
+
+
+def test_tracks_show_the_free_grains_of_the_lane_that_lie_still(make):
+    x = np.zeros((30, 5, 3))
+    x[:, :, 0] = 4 * make.d * np.arange(5)
+    x[:, 0, 0] += np.linspace(0.0, 9 * make.d, 30)  # the grain to follow
+    x[:, 1, 0] += np.linspace(0.0, 0.9 * make.d, 30)
+    x[:, 2, 0] += np.linspace(0.0, 1.1 * make.d, 30)  # moves
+    x[:, 3, 1] = 4 * make.d  # in another lane
+    run = make.run_of(np.arange(30.0), x, 0 * x, make.hopping([2.0e-3])[3])
+    found = tracks(run, grains=[0])
+    assert found.loose_x == pytest.approx([4.9 * make.d, 16 * make.d])
+    assert found.loose_d == pytest.approx(make.d)
+    run.scene = replace(run.scene, plane_case=False)
+    assert found.loose_x[0] in tracks(run, grains=[0]).loose_x
+    assert len(tracks(run, grains=[0]).loose_x) == 3
+
+
+def test_tracks_leave_out_fixed_grains_that_were_taken_away(make):
+    t, x, v, events = make.hopping([2.0e-3] * 3)
+    run = make.run_of(t, x[:, None], v[:, None], events)
+    run.scene = replace(run.scene, fixed_active=np.arange(20) < 12)
+    assert len(tracks(run).bed_x) == 12
 
 
 def test_the_grain_that_goes_farthest_is_found_within_the_window(make):

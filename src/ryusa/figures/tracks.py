@@ -7,17 +7,20 @@ from typing import Literal
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import PatchCollection
+from matplotlib.collections import EllipseCollection, PatchCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from ryusa.figures import style
-from ryusa.figures.snapshot import planes
+from ryusa.figures.snapshot import PLAIN, planes
 from ryusa.measure import Snapshot, Tracks
-from ryusa.model.scene import Floats
+from ryusa.model.scene import Bools, Floats
 
 MM, CM = 1.0e3, 1.0e2  # millimetres and centimetres in a metre
 TALLEST = 4.5  # height of all panels together [inch]
+STEP = 1.0  # diameters between two frames above which the path between them is not known
+DASHED = "dashed: between frames (dots) more than a diameter apart"
+LOOSE = "blue grains: free, moving less than a diameter; other free grains are not drawn"
 
 
 @style.house
@@ -28,7 +31,7 @@ def tracks(
     length: float | None = None,
     around: Snapshot | None = None,
 ) -> Figure:
-    """Draw the paths of the centres of the chosen grains, with bed grains and some outlines of the grain.
+    """Draw the paths of the centres of the chosen grains over the fixed and the loose bed.
 
     Parameters
     ----------
@@ -40,14 +43,17 @@ def tracks(
 
     Notes
     -----
-    A path that is high for its length gets wider margins, so that the picture fits on a page.
+    A path that is high for its length gets wider margins, so that the picture fits on a page. The loose bed
+    is of the grains that lie still. Where a grain moves by more than a diameter between two frames, the path
+    between them is not known: dots mark the frames, joined by a dashed line.
     """
     d = float(found.d[0]) if len(found.d) else 1.0
     x0 = float(np.nanmin(found.x)) - d
     total = (float(np.nanmax(found.x)) + d - x0) if length is None else length
     inside = found.x <= x0 + total
     top = float(found.z[inside].max()) + 0.8 * d
-    bottom = float(found.bed_z.min()) - 0.1 * d if len(found.bed_z) else float(found.z.min()) - d
+    under = [found.bed_z - 0.1 * d, found.loose_z - 0.6 * found.loose_d]
+    bottom = float(np.concatenate(under).min()) if len(found.bed_z) else float(found.z.min()) - d
     each = (
         (top - bottom) * exaggeration * (style.PAGE - 0.6) / TALLEST
     )  # smallest length of a row for each row drawn
@@ -59,7 +65,7 @@ def tracks(
     if span < tall:
         x0, span = x0 - 0.5 * (tall - span), tall
     row = (style.PAGE - 0.6) * (top - bottom) / span * exaggeration
-    figure, axes = style.new(rows, width=style.PAGE, height=0.57 + rows * (row + 0.27))
+    figure, axes = style.new(rows, width=style.PAGE, height=0.67 + rows * (row + 0.27))
     for k, panel in enumerate(axes):
         low = x0 + k * span
         if around is not None:
@@ -80,14 +86,21 @@ def tracks(
 
 
 def _caption(found: Tracks) -> str:
-    """The grains and the time shown, in words."""
+    """The grains and the time shown, and what the picture leaves out, in words."""
     many = len(found.grains) > 8
     names = ", ".join(str(g) for g in found.grains[:8]) + (
         f", ... ({len(found.grains)} in all)" if many else ""
     )
     when = f", $t$ = {found.t[0]:.4g} to {found.t[-1]:.4g} s" if len(found.t) else ""
-    outlines = ", its outline at equal distances along the path" if len(found.grains) == 1 else ""
-    return f"grain{'s' if len(found.grains) > 1 else ''} {names}{when}{outlines}"
+    text = f"grain{'s' if len(found.grains) > 1 else ''} {names}{when}"
+    text += ", its outline at equal distances along the path" if len(found.grains) == 1 else ""
+    notes = [LOOSE] * bool(len(found.loose_x)) + [DASHED] * bool(_far(found).any())
+    return "\n".join([text, *(["; ".join(notes)] if notes else [])])
+
+
+def _far(found: Tracks) -> Bools:
+    """Steps between two frames that are longer than a diameter, (n_frame - 1, n_grain)."""
+    return np.hypot(np.diff(found.x, axis=0), np.diff(found.z, axis=0)) > STEP * found.d
 
 
 @style.house
@@ -122,6 +135,8 @@ def tracks_side_by_side(
         panel.set_aspect("equal")
         panel.locator_params(axis="y", nbins=4, integer=True)
         style.label_panel(panel, name)
+    if any(_far(one).any() for one in runs):
+        axes[0].set_title(DASHED, loc="right", fontsize=6.5)
     axes[-1].set_xlabel(f"distance along the bed  $x$  ({unit})")
     figure.supylabel(style.height(unit), fontsize=8.0)
     return figure
@@ -174,20 +189,24 @@ def _apart(z: Floats, advance: Floats) -> Floats:
 
 
 def _bed(axes: Axes, found: Tracks, low: float, high: float, scale: float = MM) -> None:
-    """Bed grains within the panel, repeated periodically."""
-    circles: list[Circle] = []
-    for x, z, d in zip(found.bed_x, found.bed_z, found.bed_d, strict=True):
-        for at in _copies(float(x), low - d, high + d, found.period):
-            circles.append(Circle((at * scale, z * scale), 0.5 * d * scale))
-    axes.add_collection(PatchCollection(circles, facecolor=style.BED, edgecolor="#8c8578", linewidth=0.4))
-
-
-def _copies(x: float, low: float, high: float, period: float) -> list[float]:
-    if not math.isfinite(period):
-        return [x] if low <= x <= high else []
-    first = math.ceil((low - x) / period)
-    last = math.floor((high - x) / period)
-    return [x + n * period for n in range(first, last + 1)]
+    """Grains of the fixed and the loose bed within the panel, repeated periodically."""
+    for x, z, d, face, rim in (
+        (found.loose_x, found.loose_z, found.loose_d, PLAIN, "#8fa3b5"),
+        (found.bed_x, found.bed_z, found.bed_d, style.BED, "#8c8578"),
+    ):
+        copies = np.zeros(1)
+        if math.isfinite(found.period) and len(x):
+            first, last = (low - x.max()) / found.period, (high - x.min()) / found.period
+            copies = found.period * np.arange(math.floor(first), math.ceil(last) + 1)
+        at = x[:, None] + copies
+        which, copy = np.nonzero((at > low - d[:, None]) & (at < high + d[:, None]))
+        size, centres = d[which] * scale, np.column_stack([at[which, copy], z[which]]) * scale
+        axes.add_collection(
+            EllipseCollection(
+                size, size, np.zeros(len(size)), units="xy", offsets=centres, offset_transform=axes.transData,
+                facecolor=face, edgecolor=rim, linewidth=0.3, zorder=1.0,
+            )
+        )  # fmt: skip
 
 
 def _path(axes: Axes, found: Tracks, column: int, low: float, high: float, scale: float = MM) -> None:
@@ -200,7 +219,17 @@ def _path(axes: Axes, found: Tracks, column: int, low: float, high: float, scale
     drawn = near.copy()
     drawn[1:] |= near[:-1]
     drawn[:-1] |= near[1:]
-    axes.plot(np.where(drawn, x, np.nan) * scale, z * scale, color=colour, lw=0.9, solid_joinstyle="round")
+    far = np.flatnonzero(_far(found)[:, column])
+    x_shown = np.where(drawn, x, np.nan) * scale
+    x_known, z_known = (np.insert(one, far + 1, np.nan) for one in (x_shown, z * scale))
+    axes.plot(x_known, z_known, color=colour, lw=0.9, solid_joinstyle="round")
+    if len(far):
+        ends = np.stack([far, far + 1], axis=1)
+        gaps = np.full((2, len(far), 3), np.nan)
+        gaps[:, :, :2] = x_shown[ends], z[ends] * scale
+        axes.plot(*gaps.reshape(2, -1), color=colour, lw=0.6, ls=(0, (2.5, 2.5)), alpha=0.7)
+        seen = np.unique(ends)
+        axes.plot(x_shown[seen], z[seen] * scale, ".", color=colour, ms=3.2, mew=0.0)
     # the grain's outline at equal distances along its path, so that its size can be seen
     if found.x.shape[1] == 1:
         ways = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(z)))])

@@ -25,7 +25,7 @@ from ryusa.study import Level, Outcome, Plan, carry_out
 STANDARD = Plan(Level.STANDARD, (1, 2, 3))
 QUICK = Plan(Level.QUICK, (1,))
 EMPTY = np.zeros(0)
-PATH = Tracks((0,), EMPTY, EMPTY, EMPTY, EMPTY, EMPTY, EMPTY, EMPTY, 4.4)
+PATH = Tracks((0,), *10 * [EMPTY], 4.4)
 N = 20  # layers
 
 

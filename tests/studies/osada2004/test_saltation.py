@@ -17,7 +17,7 @@ from ryusa.study import Level, Outcome, Plan, carry_out
 STANDARD = Plan(Level.STANDARD, (1, 2, 3))
 FULL = Plan(Level.FULL, (1, 2, 3))
 EMPTY = np.zeros(0)
-PATH = Tracks((0,), EMPTY, EMPTY, EMPTY, EMPTY, EMPTY, EMPTY, EMPTY, 0.04)
+PATH = Tracks((0,), *10 * [EMPTY], 0.04)
 BASE = {
     "contact_time": 1e-4, "contact_time_over_eq8": 1.0, "jump_height": 0.003, "jump_length": 0.04,
     "speed": 0.6, "bed_shear": 1.0, "impulse_shear": 1.0, "shear_ratio": 1.0, "bed_normal": 1.0,
