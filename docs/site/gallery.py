@@ -24,8 +24,8 @@ def page() -> str:
     lines = [
         "# Gallery",
         "",
-        "Every picture here was drawn by ryusa, with the commands shown beneath it. Each `ryusa draw` also "
-        "writes the numbers in the picture as CSV.",
+        "Every picture here was drawn by ryusa, with the commands shown beneath it. `ryusa draw` also writes "
+        "the numbers in the picture as CSV.",
     ]
     for one in entries():
         lines += [

@@ -188,10 +188,11 @@ def test_a_packing_is_measured_with_its_threshold_and_doubts_stated(heap, tmp_pa
     ],
 )
 def test_a_packing_is_drawn(heap, tmp_path, words):
-    result = call("draw", heap, *words, "-o", tmp_path / "picture.svg")
+    table = tmp_path / "picture.csv"
+    result = call("draw", heap, *words, "-o", tmp_path / "picture.svg", "--csv", table)
     assert result.exit_code == 0, result.output
     assert (tmp_path / "picture.svg").read_text().startswith("<?xml")
-    assert len((tmp_path / "picture.csv").read_text().splitlines()) > 1
+    assert len(table.read_text().splitlines()) > 1
 
 
 def test_rods_are_measured_over_a_time_asked_for(folder, tmp_path):

@@ -1,5 +1,6 @@
 """`ryusa draw`: pictures of a run folder, their numbers beside them."""
 
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -9,6 +10,7 @@ from ryusa.catalogue import MEASURES, PICTURES, PictureEntry, load
 from ryusa.cli import chosen
 from ryusa.cli.chosen import SIDES, entry_of, keywords, listed, taking
 from ryusa.cli.options import grains_of, in_unit, open_run, within, write_rows
+from ryusa.errors import CaseError, ResultsError
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -22,6 +24,8 @@ def _length(name: str, value: str, results: "Results") -> float:
     return found
 
 
+MOST = 1.0e6  # bytes of a CSV that is written unasked
+SAMPLE = 500  # rows from which its size is estimated
 COLOURS = ("speed", "spin", "none")
 CHECKS: dict[str, chosen.Check] = {
     "--at": chosen.time,
@@ -47,7 +51,17 @@ def draw(
     what: Annotated[str, typer.Argument(help=f"One of {', '.join(one.name for one in PICTURES)}.")],
     output: Annotated[
         Path | None,
-        typer.Option("--output", "-o", help="PNG, SVG or PDF; default WHAT.png here, with SVG and CSV."),
+        typer.Option(
+            "--output", "-o", metavar="FILE", help="PNG, SVG or PDF; default RUN/pictures/WHAT.png."
+        ),
+    ] = None,
+    csv: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="Write the numbers in the picture, whatever their size; default beside the picture, if they "
+            "take less than 1 MB.",
+        ),
     ] = None,
     grain: Annotated[
         list[int] | None,
@@ -99,19 +113,44 @@ def draw(
     results = open_run(run)
     entry = entry_of(what, PICTURES, "draw")
     figure, rows = _drawn(entry, results, keywords(context, entry, results, CHECKS))
-    from ryusa.errors import CaseError, ResultsError
+    path = _beside(run, what) if output is None else output
+    if path.suffix not in {".png", ".svg", ".pdf"}:
+        raise CaseError("--output", str(path), "must end in .png, .svg or .pdf")
+    _write(figure, rows, path, csv)
+
+
+def _write(figure: "Figure", rows: list[dict[str, object]], path: Path, csv: Path | None) -> None:
+    """Write a picture, and its numbers if a file was given for them or they are few."""
     from ryusa.figures import save
 
-    targets = [Path(f"{what}.png"), Path(f"{what}.svg")] if output is None else [output]
-    for path in targets:
-        if path.suffix not in {".png", ".svg", ".pdf"}:
-            raise CaseError("--output", str(path), "must end in .png, .svg or .pdf")
     try:
-        for path in targets:
-            typer.echo(f"wrote {save(figure, path)}")
+        typer.echo(f"wrote {save(figure, path)}")
     except OSError as error:
-        raise ResultsError(f"{targets[0]}: cannot be written ({error.strerror or error})") from None
-    typer.echo(f"wrote {write_rows(targets[0].with_suffix('.csv'), rows)}")
+        raise ResultsError(
+            f"{path}: cannot be written ({error.strerror or error}); choose another with -o"
+        ) from None
+    size = _csv_size(rows)
+    if csv is None and size > MOST:
+        typer.echo(f"the numbers in it take about {size / 1e6:.2g} MB: --csv FILE writes them")
+    else:
+        typer.echo(f"wrote {write_rows(csv or path.with_suffix('.csv'), rows)}")
+
+
+def _beside(run: Path, what: str) -> Path:
+    """Where the picture goes within the run folder; one from a stranger may hold links to other places."""
+    from ryusa.results import schema
+
+    path = run / schema.PICTURES / f"{what}.png"
+    for one in (path.parent, path, path.with_suffix(".csv")):
+        if one.is_symlink():
+            raise ResultsError(f"{one}: is a link; links are not followed. Choose another file with -o")
+    return path
+
+
+def _csv_size(rows: list[dict[str, object]]) -> float:
+    """Bytes that a table takes as CSV, from its first rows."""
+    lengths = [sum(len(str(value)) + 1 for value in row.values()) for row in islice(rows, SAMPLE)]
+    return sum(lengths) / max(len(lengths), 1) * len(rows)
 
 
 def _drawn(

@@ -22,6 +22,7 @@ BED = "bed.vtkhdf"
 REPORT = "report.html"  # what ran and what it found, written by `ryusa report`
 VIEW = "view.html"  # the grains in motion, written by `ryusa view`
 FILM = "film.webp"  # the same as a film, written by `ryusa film`
+PICTURES = "pictures"  # folder of what `ryusa draw` wrote
 CHECKPOINT = "checkpoint.h5"  # for resuming, and for lengthening a complete run
 CHECKPOINT_BEFORE = "checkpoint-before.h5"  # the previous one
 LOCK = ".lock"  # held by the process that writes

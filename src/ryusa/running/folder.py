@@ -7,6 +7,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
+from ryusa.catalogue import PICTURES
 from ryusa.errors import CaseError, DiskFull, ResultsError
 from ryusa.results import schema
 from ryusa.running.disk import disk_errors, free_bytes, overwrite, write_atomically
@@ -95,9 +96,21 @@ def clear(folder: Path) -> None:
         ours = (schema.PART_NAME, schema.SCENE_NAME, schema.SUBINDEX_NAME)
         if name == POINTS or any(one.fullmatch(name) for one in ours):
             entry.unlink()
+    _clear_pictures(folder / schema.PICTURES)
     for name in _FILES:
         (folder / f".{name}.new").unlink(missing_ok=True)
         (folder / name).unlink(missing_ok=True)
+
+
+def _clear_pictures(pictures: Path) -> None:
+    """Delete what `ryusa draw` wrote beside the run."""
+    if pictures.is_symlink() or not pictures.is_dir():
+        return
+    for entry in PICTURES:
+        for suffix in (".png", ".csv"):
+            (pictures / f"{entry.name}{suffix}").unlink(missing_ok=True)
+    if not any(pictures.iterdir()):
+        pictures.rmdir()
 
 
 def write_json(path: Path, content: Mapping[str, Any]) -> None:
