@@ -67,7 +67,8 @@ def draw(
         list[int] | None,
         typer.Option(
             help=f"{taking('grains', PICTURES)}: only this grain; may be repeated. Default for tracks the "
-            "first grain, in a bed the one that goes farthest; for spin all; for vibration the two that move "
+            "first grain, in a bed the one that goes farthest; for spin the three that "
+            "travelled farthest; for vibration the two that move "
             "most."
         ),
     ] = None,

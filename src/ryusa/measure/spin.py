@@ -34,6 +34,15 @@ class Spin(Averaged):
     largest: float
     averages: Averages
 
+    @property
+    def settled(self) -> float:
+        """Time from which on the averages are taken [s]."""
+        return self.averages["spin"].window[0]
+
+    def farthest(self, count: int) -> list[int]:
+        """Ids of so many grains that travelled farthest along x up to the last frame, in that order."""
+        return [int(g) for g in np.argsort(-np.abs(self.distance[-1]), kind="stable")[:count]]
+
     def rows(self) -> list[dict[str, object]]:
         """One dictionary per average."""
         return self.averages.rows()
