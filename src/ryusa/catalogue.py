@@ -27,6 +27,7 @@ class MeasureEntry:
     settled : whether the measure ignores the time up to `record.settle` by default; --settle changes it.
     printing : options that affect only the printed text.
     builders : kinds of `[build]` whose runs have it in their report.
+    precision : its averages whose standard error can end a run; each is a key of `stop.precision`.
     """
 
     name: str
@@ -36,6 +37,7 @@ class MeasureEntry:
     settled: bool = False
     printing: tuple[str, ...] = ()
     builders: tuple[str, ...] = ()
+    precision: tuple[str, ...] = ()
 
     @property
     def given_as(self) -> tuple[str, ...]:
@@ -104,13 +106,13 @@ MEASURES = (
     MeasureEntry("water", "ryusa.measure.water:water",
                  "water over height, and its shear stress at the bed",
                  WINDOW, settled=True,
-                 builders=("flume",)),
+                 builders=("flume",), precision=("tau_star", "discharge")),
     MeasureEntry("transport", "ryusa.measure.transport:transport",
                  "sediment transport rate and the layer that carries it", WINDOW, settled=True,
-                 builders=("flume",)),
+                 builders=("flume",), precision=("q", "q_star", "layer_thickness")),
     MeasureEntry("entrainment", "ryusa.measure.entrainment:entrainment",
                  "grains that start and stop moving, per area and time", WINDOW, settled=True,
-                 builders=("flume",)),
+                 builders=("flume",), precision=("entrainment", "deposition", "moving", "moving_speed")),
     MeasureEntry("stress", "ryusa.measure.transport:kinetic_stress",
                  "granular temperature and kinetic stress over height", (*WINDOW, "layer"), settled=True),
     MeasureEntry("coordination", "ryusa.measure.coordination:coordination",

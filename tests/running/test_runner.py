@@ -216,7 +216,7 @@ def test_check_and_run_agree_on_what_fits_events_counted(
 @pytest.fixture
 def full(monkeypatch: pytest.MonkeyPatch) -> Any:
     """A disk that has no room from a step on, and has again later."""
-    from ryusa.running import disk, loop, recorder
+    from ryusa.running import disk, recorder
 
     sync, state = disk.sync, {"full": False}
 
@@ -227,14 +227,14 @@ def full(monkeypatch: pytest.MonkeyPatch) -> Any:
 
     monkeypatch.setattr(disk, "sync", refuses)
     monkeypatch.setattr(recorder, "flush_after", lambda elapsed, n_part: 0.0)
-    monkeypatch.setattr(loop, "_RETRY_EVERY", 0.01)
+    monkeypatch.setattr(disk, "_RETRY_EVERY", 0.01)
     return state
 
 
 def test_a_full_disk_pauses_a_run_which_goes_on_when_there_is_room(
     go: Any, engine: Any, full: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from ryusa.running import loop
+    from ryusa.running import disk
 
     looks: list[float] = []
 
@@ -242,7 +242,7 @@ def test_a_full_disk_pauses_a_run_which_goes_on_when_there_is_room(
         looks.append(seconds)
         full["full"] = len(looks) < 5
 
-    monkeypatch.setattr(loop.time, "sleep", sleep)
+    monkeypatch.setattr(disk.time, "sleep", sleep)
     engine.on_advance = lambda step: full.update(full=step == 500)
     results = go()
     assert results.complete
@@ -256,9 +256,9 @@ def test_a_full_disk_pauses_a_run_which_goes_on_when_there_is_room(
 def test_a_disk_that_stays_full_ends_the_run_with_what_was_written_and_a_final_status(
     go: Any, engine: Any, full: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from ryusa.running import disk, loop
+    from ryusa.running import disk
 
-    monkeypatch.setattr(loop, "_DISK_TIMEOUT", 0.05)
+    monkeypatch.setattr(disk, "_DISK_TIMEOUT", 0.05)
 
     def nothing_new(path: Path, content: bytes) -> Path:
         raise OSError(28, "No space left on device")

@@ -15,6 +15,7 @@ from ryusa.casefile.domain import check_domain, check_planes
 from ryusa.casefile.films import check_film_step, check_films
 from ryusa.casefile.motion import RIVALS as MOTION_RIVALS
 from ryusa.casefile.motion import check_motion
+from ryusa.casefile.precision import check_precision
 from ryusa.casefile.record import check_frames, check_record, check_stop, check_timeline
 from ryusa.casefile.section import Section, given
 from ryusa.casefile.time import RIVALS as TIME_RIVALS
@@ -50,6 +51,7 @@ def check(case: Case, data: dict[str, Any]) -> list[CaseError]:
         *check_planes(case),
         *check_builder(case),
         *check_timeline(case, data),
+        *check_precision(case),
     ]
     if found:
         return found

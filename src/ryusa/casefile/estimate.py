@@ -37,7 +37,8 @@ def time_expected(case: Case) -> tuple[float, str]:
     """Simulated time at most [s], and where that number comes from."""
     found: list[tuple[float, str]] = []
     if case.stop.time is not None:
-        found.append((case.stop.time, "stop.time"))
+        sooner = ", or sooner: when stop.precision is reached" if case.stop.precision else ""
+        found.append((case.stop.time, f"stop.time{sooner}"))
     if case.stop.saltations is not None:
         guess = case.record.settle + case.stop.saltations * SECONDS_PER_SALTATION
         found.append((guess, f"guess: settle + {SECONDS_PER_SALTATION} s per saltation"))

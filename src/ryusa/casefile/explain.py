@@ -9,6 +9,7 @@ from ryusa.casefile.estimate import cost_rows
 from ryusa.casefile.films import film_rows
 from ryusa.casefile.grains import grain_rows
 from ryusa.casefile.laws import law_rows
+from ryusa.casefile.precision import precision_rows
 from ryusa.casefile.rows import ExplainRow
 from ryusa.casefile.time import time_rows
 from ryusa.casefile.water.rows import rotation_rows, water_rows
@@ -34,5 +35,6 @@ def explain(case: Case, derived: Derived | None = None) -> list[ExplainRow]:
         *column_rows(case, found),
         *rotation_rows(case, found),
         *law_rows(case),
+        *precision_rows(case),
         *cost_rows(case, found),
     ]

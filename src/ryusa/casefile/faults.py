@@ -33,6 +33,7 @@ _LINEAR = (
     "unknown key; the only contact law is a linear spring and dashpot so far: give contact.stiffness "
     "(a value, { overlap, speed } or { collision_time }), see 'Normal force' in docs/theory.md"
 )
+_AVERAGES = ("stop", "precision")  # the table whose keys are names of averages
 _OTHER_CONTACT_LAWS = {
     *("young", "youngs_modulus", "young_modulus", "elastic_modulus", "shear_modulus"),
     *("poisson", "poisson_ratio", "poissons_ratio", "law", "model", "hertz", "normal", "tangential"),
@@ -79,7 +80,8 @@ def _unknown_key(path: tuple[str | int, ...], data: dict[str, Any]) -> CaseError
         kind = _value(data, ("build", "kind"))
         words = " and ".join(f"'{other}'" for other in others)
         return CaseError(dotted(path), None, f"unknown key; builder '{kind}' has none, {words} has")
-    return CaseError(dotted(path), None, "unknown key", nearest_key(path, data))
+    allowed = f"; must be one of {', '.join(keys_at(path[:-1], data))}" if path[:-1] == _AVERAGES else ""
+    return CaseError(dotted(path), None, f"unknown key{allowed}", nearest_key(path, data))
 
 
 def _plain(loc: Sequence[str | int]) -> tuple[str | int, ...]:

@@ -7,6 +7,7 @@ from pydantic import Field
 
 from ryusa.casefile.builders.schema import FromFile, SaltationSection
 from ryusa.casefile.builders.values import counts
+from ryusa.casefile.precision import PrecisionSection
 from ryusa.casefile.quantities import (
     Count,
     Duration,
@@ -46,6 +47,8 @@ class StopSection(Section):
     """Number of saltations that every start has completed after record.settle."""
     rest: RestSection | None = None
     """All grains at rest."""
+    precision: PrecisionSection | None = None
+    """Averages known to these standard errors; needs stop.time, the latest end."""
 
 
 class ChangeSection(Section):

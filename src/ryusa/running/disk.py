@@ -3,13 +3,17 @@
 import errno
 import os
 import shutil
+import time
 from collections.abc import Callable
 from pathlib import Path
 
 import h5py
 
 from ryusa.errors import DiskFull, ResultsError
+from ryusa.running.interrupt import StopSignal
 
+_RETRY_EVERY = 1.0  # s between two attempts to write to a full disk
+_DISK_TIMEOUT = 86_400.0  # s
 _FULL = {errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC)}
 
 
@@ -91,3 +95,33 @@ class disk_errors:
         if error.errno in _FULL:
             raise DiskFull(f"{message}. Data written before remains readable") from error
         raise ResultsError(f"{message}. Data written before remains readable") from error
+
+
+def retry_when_full(action: Callable[[], bool], signal: StopSignal, say: Callable[[str], None]) -> bool:
+    """Call a function that writes; while the disk is full, retry until a signal stops the run.
+
+    Parameters
+    ----------
+    action : writes, and returns whether it wrote anything.
+    signal : signals received so far.
+    say : writes a line about the pause, and one when it is over.
+
+    Raises
+    ------
+    DiskFull : the disk stayed full until a signal came, or for a day.
+    """
+    begun, reported = time.monotonic(), False
+    while True:
+        try:
+            done = action()
+        except DiskFull as error:
+            if signal.stop or time.monotonic() - begun > _DISK_TIMEOUT:
+                raise
+            if not reported:
+                say(f"paused: {error}. The run continues when there is free space; Ctrl-C stops it")
+            reported = True
+            time.sleep(_RETRY_EVERY)
+            continue
+        if reported:
+            say("free space is available again: the run continues")
+        return done

@@ -38,6 +38,7 @@ def inspection_rows(results: Results) -> list[tuple[str, str]]:
         *(("resumed", _resumption(one)) for one in _resumed(results.provenance)),
         ("progress", _how_far(results)),
         ("recorded", _recorded(results)),
+        ("precision", _words(_table(results.summary.get("precision")).get("text") or "")),
         *_energy(results),
         *(("warning", _words(one)) for one in _list(results.summary.get("warnings"))),
         *(() if results.complete else [("checkpoint", _checkpoint(results))]),

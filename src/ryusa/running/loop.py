@@ -17,10 +17,12 @@ from ryusa.results import schema
 from ryusa.running import provenance
 from ryusa.running.checkpoint import CheckpointBlock
 from ryusa.running.checkpoint_scheduler import CheckpointScheduler
+from ryusa.running.disk import retry_when_full
 from ryusa.running.folder import write_final_json, write_json
 from ryusa.running.guards import energy_created
 from ryusa.running.interrupt import StopSignal, catch_signals
 from ryusa.running.loop_state import LoopState
+from ryusa.running.precision import PrecisionRule
 from ryusa.running.progress import Progress, ProgressNumbers
 from ryusa.running.recorder import Recorder
 from ryusa.running.snapshot import state_block
@@ -37,8 +39,6 @@ _NEVER = 2**62  # steps
 _DELIVER_EVERY = (
     65_536  # steps after which contacts are passed to the recorder if nothing else is due earlier
 )
-_RETRY_EVERY = 1.0  # s between two attempts to write to a full disk
-_DISK_TIMEOUT = 86_400.0  # s
 
 
 @dataclass
@@ -54,6 +54,7 @@ class Loop:
     watch: Watch
     progress: Progress
     origin: dict[str, Any]  # provenance of the run
+    precision: PrecisionRule
     checkpoints: CheckpointScheduler | None = None  # writes checkpoints
     status: str = schema.RUNNING
     message: str = ""
@@ -116,7 +117,7 @@ class Loop:
             self._begin(state)
         else:
             self._continue_from(state, block)
-        last, check_steps = self._last_step(), self._rest_check_steps()
+        last, check_steps = self._last_step(), self._rest.check_steps(self.scene.dt) or _NEVER
         while not self._done(last):
             next_frame = self._first + round(self._frame * self.frames / self.scene.dt)
             next_change = self.changes[0][0] if self.changes else _NEVER
@@ -132,9 +133,12 @@ class Loop:
             if self._step == due:
                 self._saltations_done = self._saltations.reached()
             if self._step == next_check and not self.changes:
-                self._at_rest = self._rest.reached(self._t, self._fastest())
+                fastest = self._rest.fastest(self.engine, self.scene)
+                self._at_rest = self._rest.reached(self._t, fastest)
             self._change_if_due()
             self._end_stretch()
+            if self._step == next_frame and self.precision.due(self._frame - 1, self._t_first):
+                self._measure_precision()
 
     def _begin(self, state: State) -> None:
         self._step, self._t_zero = state.step, state.t - state.step * self.scene.dt
@@ -169,6 +173,9 @@ class Loop:
                 self.engine.load(self.scene, state)
             self._start_water(state)
             self._loaded = True
+            if self.precision.asked:
+                self._retry_when_full(self.recorder.flush)
+                self.precision.restore(self._frame - 1, self._t_first)
             self.progress.start_at(self._progress_numbers().share)
         except (ValueError, ArithmeticError, AssertionError) as error:
             raise CheckpointError(f"the state in the checkpoint cannot be used ({error})") from error
@@ -243,24 +250,7 @@ class Loop:
         self.recorder.tail(in_order(self._gathered))
 
     def _retry_when_full(self, action: Callable[[], bool]) -> bool:
-        """Call a function that writes; while the disk is full, retry until a signal stops the run."""
-        begun, reported = time.monotonic(), False
-        while True:
-            try:
-                done = action()
-            except DiskFull as error:
-                if self._signal.stop or time.monotonic() - begun > _DISK_TIMEOUT:
-                    raise
-                if not reported:
-                    self.progress.line(
-                        f"paused: {error}. The run continues when there is free space; Ctrl-C stops it"
-                    )
-                reported = True
-                time.sleep(_RETRY_EVERY)
-                continue
-            if reported:
-                self.progress.line("free space is available again: the run continues")
-            return done
+        return retry_when_full(action, self._signal, self.progress.line)
 
     def _advance(self, n_steps: int) -> None:
         begun = time.monotonic()
@@ -339,34 +329,34 @@ class Loop:
             self.recorder.reached(self._step)  # the frame of the failure is recorded
             raise fault
 
-    def _fastest(self) -> float:
-        """Largest present speed of a grain [m/s], at its centre or, if it spins in saved, at its surface."""
-        fastest = self.engine.tally().speed_max
-        if fastest >= self.stop.rest_speed or not self.scene.rotation:
-            return fastest
-        spin = np.linalg.norm(self.engine.grains().omega, axis=1)
-        return max(fastest, float((spin * self.scene.d / 2).max(initial=0.0)))
+    def _measure_precision(self) -> None:
+        self._retry_when_full(self.recorder.flush)
+        self.precision.measure(self._frame - 1)
+        self.progress.line(f"t = {self._t:.6g} s: {self.precision}", shown=False)
 
     @property
     def _t(self) -> float:
         return self._t_zero + self._step * self.scene.dt
+
+    @property
+    def _t_first(self) -> float:
+        return self._t_zero + self._first * self.scene.dt
 
     def _last_step(self) -> int:
         if math.isinf(self.stop.time):
             return _NEVER
         return round((self.stop.time - self._t_zero) / self.scene.dt)
 
-    def _rest_check_steps(self) -> int:
-        """Steps between two checks of the largest speed: four within the time that counts as rest."""
-        if math.isinf(self.stop.rest_for):
-            return _NEVER
-        return max(1, round(self.stop.rest_for / 4 / self.scene.dt))
-
     def _done(self, last: int) -> bool:
         if self._signal.stop:
             self.status, self.message = schema.STOPPED, f"{self._signal.stop} at t = {self._t:.6g} s"
+        elif self.precision.met:
+            self.status, self.message = schema.COMPLETE, f"known well enough: {self.precision}"
         elif self._step >= last:
-            self.status, self.message = schema.COMPLETE, f"reached {self.stop.time:g} s"
+            if self.precision.asked:
+                self._measure_precision()
+            self.status = schema.COMPLETE
+            self.message = f"reached {self.stop.time:g} s{self.precision.missed()}"
         elif self._saltations_done:
             self.status, self.message = (
                 schema.COMPLETE,
@@ -388,8 +378,9 @@ class Loop:
         if self.stop.saltations is not None:
             hops = self._saltations.least
             share = max(share, hops / self.stop.saltations)
-        share, rate = min(share, 1.0), self._rate()
-        return ProgressNumbers(share, self._t, rate, tally.overlap_max, tally.residual, hops)
+        share, rate = min(max(share, self.precision.share(self._t)), 1.0), self._rate()
+        known = str(self.precision) if self.precision.asked else ""
+        return ProgressNumbers(share, self._t, rate, tally.overlap_max, tally.residual, hops, known)
 
     def _summary(self) -> dict[str, Any]:
         numbers = self.watch.summary(self.engine.tally())
@@ -407,6 +398,7 @@ class Loop:
             "wall": time.monotonic() - self._begun,
             "particle_steps_per_second": self._rate(),
             **numbers,
+            **({"precision": self.precision.summary()} if self.precision.asked else {}),
         }
 
     def _close(self) -> dict[str, Any]:

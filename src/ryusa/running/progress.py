@@ -30,11 +30,13 @@ class ProgressNumbers:
     overlap: float  # largest overlap/d
     residual: float  # of the energy account
     hops: int | None = None  # saltations of the tracked grain with the fewest
+    precision: str = ""  # of the averages that end the run
 
     def __str__(self) -> str:
         hops = "" if self.hops is None else f"  saltations {self.hops}"
+        known = f"{self.precision}  " if self.precision else ""
         return (
-            f"t {self.t:.4g} s  overlap/d {self.overlap:.2g}  energy residual {self.residual:.0e}  "
+            f"t {self.t:.4g} s  {known}overlap/d {self.overlap:.2g}  energy residual {self.residual:.0e}  "
             f"{self.rate / 1e6:.2f} M particle-steps/s{hops}"
         )
 

@@ -103,8 +103,11 @@ def find_resume_point(
     scenes = read_scenes(folder)
     block, lost = _newest(folder, scenes[0][2].n_grain)
     written_by = {"code": code_versions(before)} if block is None else block.block("identity").values
+    was_stop = written_by.get("stop")
+    if isinstance(was_stop, Mapping):
+        was_stop = {"precision": {}, **was_stop}  # earlier versions had none
     stop_changed = any(one.split(".", 1)[0] == "stop" for one in changed) or (
-        "stop" in written_by and written_by["stop"] != identity["stop"]
+        was_stop is not None and was_stop != identity["stop"]
     )
     if complete and not stop_changed:
         return ResumePoint(before, complete=True)
@@ -115,7 +118,7 @@ def find_resume_point(
         )
     differences: list[str] = []
     if stop_changed:
-        differences += _other_stop(written_by.get("stop"), identity["stop"], block, changed)
+        differences += _other_stop(was_stop, identity["stop"], block, changed)
     differences += _other_code(written_by.get("code"), code_versions(origin))
     if differences and not force:
         raise CheckpointError(
@@ -331,8 +334,8 @@ def _other_stop(
 ) -> list[str]:
     """Why a run to the new end differs from one that had it from the start; empty if it does not.
 
-    A later time, more saltations, or a rule removed only add steps. Every other rule could have ended the
-    run at a step that it has passed.
+    A later time, more saltations, a smaller error, or a rule removed only add steps. Every other rule could
+    have ended the run at a step that it has passed.
     """
     said = _some([one for one in changed if one.startswith("stop.")]) or "the rule differs"
     if block is None:
@@ -345,7 +348,22 @@ def _other_stop(
     same_rest = rest == (before.get("rest_speed"), before.get("rest_for")) or math.isinf(now["rest_for"])
     hops, earlier = now["saltations"], before.get("saltations")
     more_hops = hops is None or (earlier is not None and hops >= earlier)
-    return [] if same_rest and more_hops else [f"the end has changed: {said}"]
+    stricter = _stricter(now["precision"], before.get("precision"))
+    return [] if same_rest and more_hops and stricter else [f"the end has changed: {said}"]
+
+
+def _stricter(now: Mapping[str, Any], before: Any) -> bool:
+    """Whether averages known as well as `now` asks for are known as well as was asked `before`."""
+    if not now:
+        return True
+    earlier = before if isinstance(before, Mapping) and before else {"": None}
+    return all(
+        isinstance(one, Mapping)
+        and name in now
+        and now[name]["unit"] == one.get("unit")
+        and now[name]["amount"] <= one.get("amount", 0.0)
+        for name, one in earlier.items()
+    )
 
 
 def _other_code(made_by: Any, mine: Mapping[str, str]) -> list[str]:

@@ -34,6 +34,7 @@ from ryusa.running.folder import (
 from ryusa.running.interrupt import catch_signals
 from ryusa.running.lock import locked
 from ryusa.running.loop import Loop
+from ryusa.running.precision import PrecisionRule
 from ryusa.running.progress import Progress
 from ryusa.running.recorder import RecordedSoFar, Recorder, bytes_per_frame
 from ryusa.running.resume import ResumePoint, find_resume_point
@@ -110,6 +111,7 @@ def run(
             rest_for=case.stop.rest.duration if case.stop.rest else math.inf,
             saltations=case.stop.saltations,
             settle=case.record.settle,
+            precision=case.stop.precision.limits() if case.stop.precision else {},
         )
         changes = [
             Change(entry.at, partial(change, case, entry=entry), words)
@@ -359,6 +361,10 @@ class _Run:
                 engine=self.engine, scene=now, frames=self.frames, stop=self.stop, changes=changes[done:],
                 recorder=Recorder(self.folder, now, earlier=recorded), watch=watch, progress=reporter,
                 origin=self.origin,
+                precision=PrecisionRule(
+                    self.folder, self.stop.precision,
+                    max([self.stop.settle, *(one.at for one in self.changes)]), self.frames,
+                ),
                 checkpoints=CheckpointScheduler(self.folder, self.identity, first, self.options.checkpoint),
             )  # fmt: skip
             loop.run(state, None if block is None else block.block("loop"))

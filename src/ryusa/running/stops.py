@@ -1,11 +1,14 @@
 """Stop rules: simulated time, all grains at rest, or a number of saltations of every grain."""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ryusa.casefile.precision import ErrorLimit
+from ryusa.engine.protocol import Engine
 from ryusa.model import Scene
 
 HOP_RISE = (
@@ -21,7 +24,8 @@ class Stop:
     rest_speed: float = 0.0  # all grains slower than this [m/s], at their centre and surface ...
     rest_for: float = math.inf  # ... for this long [s]
     saltations: int | None = None  # saltations that every tracked grain must have made
-    settle: float = 0.0  # saltations that begin before this time do not count [s]
+    settle: float = 0.0  # saltations that begin before this time, and averages of it, do not count [s]
+    precision: Mapping[str, ErrorLimit] = field(default_factory=dict[str, ErrorLimit])  # of averages
 
     @property
     def endless(self) -> bool:
@@ -35,6 +39,20 @@ class RestDetector:
     def __init__(self, stop: Stop) -> None:
         self._stop = stop
         self.since: float | None = None  # time since which all grains are slow [s]
+
+    def check_steps(self, dt: float) -> int | None:
+        """Steps of dt [s] between two checks, four within the time that counts as rest; None: never."""
+        if math.isinf(self._stop.rest_for):
+            return None
+        return max(1, round(self._stop.rest_for / 4 / dt))
+
+    def fastest(self, engine: Engine, scene: Scene) -> float:
+        """Largest present speed of a grain [m/s], at its centre or, if it spins in place, at its surface."""
+        fastest = engine.tally().speed_max
+        if fastest >= self._stop.rest_speed or not scene.rotation:
+            return fastest
+        spin = np.linalg.norm(engine.grains().omega, axis=1)
+        return max(fastest, float((spin * scene.d / 2).max(initial=0.0)))
 
     def reached(self, t: float, speed_max: float) -> bool:
         """Update with the largest speed of a centre or a spinning surface [m/s] at time t [s]."""

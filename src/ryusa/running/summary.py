@@ -21,6 +21,8 @@ def summary_lines(summary: dict[str, Any]) -> list[str]:
     lines += [f"{headings.get(name, name)}: {text}" for name, text in energy_lines(summary["energy"])]
     if "water" in summary:
         lines.append(_water(summary["water"]))
+    if "precision" in summary:
+        lines.append(f"precision: {summary['precision']['text']}")
     return lines + [f"warning: {warning}" for warning in summary["warnings"]]
 
 
