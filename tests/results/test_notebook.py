@@ -1,17 +1,20 @@
 """What a notebook shows, and the tables that a run gives."""
 
+import base64
 import builtins
 import html
 import io
+import re
 from pathlib import Path
 
+import av
 import numpy as np
 import pytest
-from PIL import Image
+from PIL import Image, ImageSequence
 
 import ryusa
 from ryusa.cases import case_path
-from ryusa.errors import ResultsError
+from ryusa.errors import CaseError, ResultsError
 from ryusa.results import Results
 
 
@@ -63,6 +66,31 @@ def test_pages_are_shown_within_a_frame_and_saved(run, tmp_path):
     assert "<script" not in page._repr_html_()  # escaped, for the frame
     assert page.save(tmp_path / "new" / "view.html").read_text() == page.text
     assert "2 runs side by side" in run.report(run).text
+
+
+@pytest.mark.parametrize(("kind", "tag"), [("webp", "<img src"), ("gif", "<img src"), ("mp4", "<video src")])
+def test_a_film_is_shown_by_its_kind_and_saved(run, tmp_path, kind, tag):
+    film = run.film(kind, size=(480, 270), frames=3)
+    shown = film._repr_html_()
+    assert shown.startswith(tag)
+    held = base64.b64decode(re.search('base64,([^"]+)"', shown)[1])
+    assert film.save(tmp_path / "new" / f"film.{kind}").read_bytes() == held
+    if kind == "mp4":
+        with av.open(io.BytesIO(held)) as file:
+            pictures = [one.to_image() for one in file.decode(video=0)]
+    else:
+        pictures = [one.convert("RGB") for one in ImageSequence.Iterator(Image.open(io.BytesIO(held)))]
+    assert [one.size for one in pictures] == [(480, 270)] * 3
+    assert np.abs(np.asarray(pictures[0], dtype=float) - np.asarray(pictures[2])).max() > 50.0  # it moves
+    with pytest.raises(CaseError, match=f"must end in .{kind}"):
+        film.save(tmp_path / "film.png")
+
+
+def test_a_kind_of_film_that_is_none_is_refused(run):
+    with pytest.raises(CaseError, match=r"kind = 'mpg': must end in .webp"):
+        run.film("mpg")
+    with pytest.raises(CaseError, match="view"):
+        run.film(view="sideways")
 
 
 def test_a_name_that_is_none_is_refused_with_the_nearest(run):

@@ -24,8 +24,10 @@ from ryusa.results.hdf5 import OpenFiles, opened, plain_dataset, read_dataset, r
 from ryusa.results.lazy import LazyFrames, Part
 from ryusa.results.scene_file import read_scene
 from ryusa.results.shown import (
+    FilmFile,
     Page,
     drawn,
+    film_of,
     measured,
     pandas_of,
     report_of,
@@ -254,6 +256,21 @@ class Results:
         options : begin and end of the window [s], and the largest size of the page [B].
         """
         return view_of(self, options)
+
+    def film(self, kind: str = "webp", **options: Any) -> FilmFile:
+        """Give the film of the grains that `ryusa film` writes; a notebook shows it.
+
+        Parameters
+        ----------
+        kind : "webp", "avif", "gif" or "mp4".
+        options : view, colour, begin and end of the window [s], speed or frames, fps, size (width, height)
+            in pixels, and the grain to follow, as of `ryusa film`.
+
+        Raises
+        ------
+        CaseError : an option out of its range, or a kind that cannot be written here.
+        """
+        return film_of(self, kind, options)
 
     def report(self, *others: "Results", size: float = 1.0e7) -> Page:
         """Give the page that `ryusa report` writes, with other runs beside this one; size in bytes."""

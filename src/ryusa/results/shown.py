@@ -1,6 +1,8 @@
 """What a run shows in a notebook or a script: measures, pictures, pages and tables, made when asked for."""
 
+import base64
 import html
+import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ryusa.catalogue import MEASURES, PICTURES, MeasureEntry, PictureEntry, load
-from ryusa.errors import ResultsError
+from ryusa.errors import CaseError, ResultsError
 from ryusa.notebook import html_table
 from ryusa.spelling import nearest_word
 
@@ -38,13 +40,7 @@ class Page:
 
     def save(self, path: str | Path) -> Path:
         """Write the page to a file and return its path."""
-        path = Path(path)
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(self.text, encoding="utf-8")
-        except OSError as error:
-            raise ResultsError(f"{path}: cannot be written ({error.strerror or error})") from None
-        return path
+        return _saved(self.text.encode("utf-8"), Path(path))
 
     def __repr__(self) -> str:
         return f"Page({len(self.text) / 1e6:.1f} MB; .save('run.html') writes it)"
@@ -55,6 +51,45 @@ class Page:
             f'<iframe srcdoc="{inside}" style="width: 100%; height: {self.height}px; border: 0" '
             'sandbox="allow-scripts allow-downloads"></iframe>'
         )
+
+
+@dataclass(frozen=True)
+class FilmFile:
+    """A film of the grains; a notebook shows it.
+
+    Attributes
+    ----------
+    data : the file.
+    kind : "webp", "avif", "gif" or "mp4".
+    """
+
+    data: bytes
+    kind: str
+
+    def save(self, path: str | Path) -> Path:
+        """Write the film to a file that ends in its kind, and return its path."""
+        path = Path(path)
+        if path.suffix.lower() != f".{self.kind}":
+            raise CaseError("path", str(path), f"must end in .{self.kind}; film(kind=...) makes another kind")
+        return _saved(self.data, path)
+
+    def __repr__(self) -> str:
+        return f"FilmFile({self.kind}, {len(self.data) / 1e6:.1f} MB; .save('film.{self.kind}') writes it)"
+
+    def _repr_html_(self) -> str:
+        held = base64.b64encode(self.data).decode("ascii")
+        if self.kind == "mp4":
+            return f'<video src="data:video/mp4;base64,{held}" style="max-width: 100%" controls loop></video>'
+        return f'<img src="data:image/{self.kind};base64,{held}" style="max-width: 100%">'
+
+
+def _saved(data: bytes, path: Path) -> Path:
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(data)
+    except OSError as error:
+        raise ResultsError(f"{path}: cannot be written ({error.strerror or error})") from None
+    return path
 
 
 def measured(results: "Results", name: str, options: dict[str, Any]) -> Any:
@@ -73,6 +108,19 @@ def drawn(results: "Results", name: str, options: dict[str, Any]) -> "Figure":
 def view_of(results: "Results", options: dict[str, Any]) -> Page:
     """Give the page with the grains in motion."""
     return Page(load("ryusa.view.page:view_page")(results, **options))
+
+
+def film_of(results: "Results", kind: str, options: dict[str, Any]) -> FilmFile:
+    """Give a film of the grains."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / f"film.{kind}"
+        try:
+            load("ryusa.view.film:film")(results, path, **options)
+        except CaseError as error:
+            if error.key != "output":
+                raise
+            raise CaseError("kind", kind, error.allowed) from None
+        return FilmFile(path.read_bytes(), kind)
 
 
 def report_of(runs: Sequence["Results"], size: float) -> Page:
