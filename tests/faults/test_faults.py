@@ -9,16 +9,19 @@ import random
 import shutil
 import subprocess
 import sys
+import time
 from pathlib import Path
 from typing import Any
 
 import pytest
+from typer.testing import CliRunner
 
 sys.path.insert(0, str(Path(__file__).parent))
 
 from campaign import differences, run
 from kinds import KINDS
 
+from ryusa.cli import app
 from ryusa.errors import CheckpointError
 from ryusa.results import Results, schema
 from ryusa.running import checkpoint_scheduler, disk, loop, recorder
@@ -192,3 +195,52 @@ def test_a_folder_is_read_while_it_is_written(tmp_path: Path) -> None:
         writer.wait()
     assert sorted(seen) == seen
     assert len(set(seen)) > 3
+
+
+LOOKED_AT = """
+import sys, time
+from pathlib import Path
+sys.path.insert(0, sys.argv[1])
+from campaign import loop, recorder, run
+folder, looked = Path(sys.argv[2]), Path(sys.argv[3])
+chunk = loop.Loop._chunk
+
+def wait(self):
+    while (folder / "parts" / "part-000005.h5").exists() and not looked.exists():
+        time.sleep(0.02)
+    return min(chunk(self), 200)
+
+recorder.flush_after = lambda elapsed, n: 0.0
+loop.Loop._chunk = wait
+run("two-way", folder)
+"""
+
+
+def test_a_run_is_viewed_filmed_drawn_and_measured_while_it_goes_on(tmp_path: Path) -> None:
+    folder, looked = tmp_path / "run", tmp_path / "looked"
+    writer = subprocess.Popen([sys.executable, "-c", LOOKED_AT, str(HERE), str(folder), str(looked)])
+    try:
+        while not (folder / "parts" / "part-000005.h5").exists():
+            assert writer.poll() is None
+            time.sleep(0.02)
+        so_far = len(Results.open(folder).frames)
+        said: dict[str, str] = {}
+        for words in (
+            ("view", "-q"), ("film", "-q", "--frames", "4", "--size", "480x270"), ("draw", "grains"),
+            ("draw", "forces"), ("measure", "profile", "--begin", "0s"), ("inspect",),
+        ):  # fmt: skip
+            result = CliRunner().invoke(app, [words[0], str(folder), *words[1:]])
+            assert result.exit_code == 0, result.output
+            said[words[0]] = result.output
+        assert writer.poll() is None, "the run ended before it was looked at"
+        assert f"4 pictures of {so_far} recorded frames" in " ".join(said["film"].split())
+        assert "running" in said["inspect"]
+        looked.touch()
+        assert writer.wait(timeout=120) == 0
+    finally:
+        writer.kill()
+        writer.wait()
+    assert {one.name for one in folder.iterdir()} >= {"view.html", "film.webp", "pictures"}
+    assert len(Results.open(folder).frames) > so_far
+    run("two-way", tmp_path / "alone")
+    assert differences(folder, tmp_path / "alone") == []
