@@ -11,6 +11,7 @@ from ryusa.casefile.rows import ExplainRow
 from ryusa.cases import case_path
 from ryusa.errors import CaseError
 from ryusa.laws import transport
+from ryusa.laws.turbulence import speed_mean_rough
 
 CaseOf = Callable[..., Case]
 PACKING = "{ kind = 'packing', columns = 5, layers = 3 }"
@@ -54,6 +55,29 @@ def test_the_driver_is_named(case: CaseOf) -> None:
     still = flowing(case, **{"motion.slope": "0"})
     assert still["driver"].value == "none"
     assert "Rouse number" not in still
+
+
+def test_the_time_to_come_up_to_speed_is_held_against_the_settling_time(case: CaseOf) -> None:
+    at_rest = WATER.replace(" }", ", column = { start = 'rest' } }")
+    speed = speed_mean_rough(0.02, float(flowing(case)["u_star"].value), 0.002)
+    whole = speed / (9.80665 * math.sin(math.atan(0.05)))  # U/(g S)
+    found = flowing(case, at_rest)["time to come up to speed"]
+    assert found.value == pytest.approx(math.atanh(0.95) * whole)
+    assert found.flag == "warning" and "record.settle, 0 s, is shorter" in found.origin
+    longer = {"record.settle": f"{1.01 * float(found.value)} s", "stop.time": "20 s"}
+    assert flowing(case, at_rest, **longer)["time to come up to speed"].flag == ""
+    tilted = {"timeline": "[{ at = '1 s', slope = '1/20' }]", "motion.slope": "0"}
+    assert flowing(case, at_rest, **longer, **tilted)["time to come up to speed"].flag == "warning"
+    begun = flowing(case)
+    assert "time to come up to speed" not in begun
+    assert begun["time to adapt"].value == pytest.approx(0.5 * whole)
+    assert begun["time to adapt"].flag == "note"
+    given = at_rest.replace("'rest'", "'rest', drive = 'discharge', discharge = '0.02 m2/s'")
+    assert "time to come up to speed" not in flowing(case, given)
+    viscous = at_rest.replace("'rest'", "'rest', mixing_length = 'none'")
+    slowest = 4.0 * 0.02**2 / (math.pi**2 * 1e-6)
+    found = flowing(case, viscous)["time to come up to speed"]
+    assert found.value == pytest.approx(math.log(96.0 / math.pi**4 / 0.05) * slowest)
 
 
 def test_a_slope_that_comes_later_is_the_one_explained(case: CaseOf) -> None:

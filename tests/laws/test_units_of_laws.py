@@ -177,6 +177,8 @@ UNITS = {
     "transport.tau_star_effective": "m/s, m, -, -, m/s2, m -> -",
     "transport.bedload_layer": "-, -, -, -, - -> -",
     "transport.q_star_egashira": "-, -, -, -, -, -, - -> -",
+    "spin_up.spin_up_laminar": "m, m2/s -> s",
+    "spin_up.spin_up_turbulent": "m/s, m, m/s -> s",
     "turbulence.length_prandtl": "m, - -> m",
     "turbulence.length_parabolic": "m, m, - -> m",
     "turbulence.length_parabolic_between": "m, m, m, - -> m",

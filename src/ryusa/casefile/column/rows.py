@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 from ryusa.casefile.column.bed import bed_thickness, bed_top, packed, water_over
 from ryusa.casefile.column.schema import CELL, ColumnSection, column_keys
+from ryusa.casefile.column.spin_up import spin_up_rows
 from ryusa.casefile.contact.values import friction_at_last
 from ryusa.casefile.motion import slope_at_last
 from ryusa.casefile.rows import ExplainRow, Flag, number, word
@@ -101,6 +102,7 @@ def column_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     rows += _bed(case, keys)
     if not still:
         rows += _flow(case, derived, keys)
+        rows += spin_up_rows(case, derived, keys)
     elif keys.drive != "discharge":
         rows.append(word("water", "driver", "none", "no slope and no pressure gradient: still water"))
     if wet.hindrance == "Richardson-Zaki":
