@@ -9,8 +9,7 @@ import pytest
 from matplotlib.collections import EllipseCollection
 
 from ryusa import figures
-from ryusa.measure import Energy, HeapSurface, Snapshot, Spin, Tracks, Vibration, average
-from ryusa.measure.table import Averages
+from ryusa.measure import ContactTimes, HeapSurface, Snapshot, Tracks, Vibration
 from ryusa.model import EVENT, ContactLaw, Scene
 
 D = 0.002
@@ -111,63 +110,6 @@ def test_measured_points_carry_error_bars_and_the_axes_their_units():
     low, high = axes.get_xlim()
     assert low < k[0]
     assert high > k[-1]
-
-
-def test_spin_is_shown_in_turns_per_second_too():
-    t = np.linspace(0, 1, 50)
-    omega = np.full((50, 1), 2 * np.pi)
-    found = Spin(
-        t, t[:, None], omega, 2 * np.pi, Averages("spin", (average("spin", "rad/s", [omega[:, 0]]),))
-    )
-    figure = figures.spin(found)
-    figure.canvas.draw()
-    right = figure.axes[0].child_axes[0]
-    assert right.get_ylim()[0] == pytest.approx(figure.axes[0].get_ylim()[0] / (2 * np.pi))
-
-
-def spinning(n, settle=0.0):
-    """Grain k turns at k rad/s, in the end at 10 k, and travels k/10 m, the last of them back."""
-    t = np.linspace(0.0, 1.0, 50)
-    omega = np.where(t[:, None] < 0.5, 1.0, 10.0) * np.arange(n)
-    way = 0.1 * t[:, None] * np.arange(n) * np.where(np.arange(n) == n - 1, -1.0, 1.0)
-    late = [omega[t >= settle, g] for g in range(n)]
-    mean = average("spin", "rad/s", late, (settle, 1.0))
-    return Spin(t, way, omega, 10.0 * n, Averages("spin", (mean,)))
-
-
-def test_of_many_grains_the_three_that_travelled_farthest_are_drawn_beside_the_spin_of_all():
-    found = spinning(8, settle=0.6)
-    figure = figures.spin(found)
-    figure.canvas.draw()
-    ways, density = figure.axes
-    lines = [line for line in ways.lines if line.get_label().startswith("grain")]
-    assert [line.get_label() for line in lines] == ["grain 7", "grain 6", "grain 5"]
-    assert lines[1].get_ydata() == pytest.approx(found.omega[:, 6])
-    assert "3 of 8 grains that travelled farthest" in ways.get_legend().get_title().get_text()
-    bars = density.patches
-    assert sum(bar.get_width() * bar.get_height() for bar in bars) == pytest.approx(1.0)
-    assert sum(bar.get_width() > 0.0 for bar in bars) == 8  # settled: 0, 10, .. 70 rad/s, and nothing else
-    assert "mean 35 rad/s" in density.get_legend().get_texts()[0].get_text()
-
-
-def test_of_few_grains_all_are_drawn_and_of_many_those_asked_for():
-    assert len(figures.spin(spinning(3)).axes) == 1
-    still = spinning(8)
-    assert len(figures.spin(replace(still, omega=0.0 * still.omega)).axes) == 1
-    chosen = figures.spin(spinning(8), [2]).axes[0]
-    assert [line.get_label() for line in chosen.lines if line.get_label()[0] == "g"] == ["grain 2"]
-    assert chosen.get_legend() is None
-
-
-def test_energy_terms_that_stay_zero_are_left_out():
-    t = np.linspace(0, 1, 10)
-    zero = np.zeros(10)
-    found = Energy(t, {"kinetic": t, "spin": zero}, {"dash_n": zero}, {"drag": t}, 0.0, zero)
-    figure = figures.energy(found)
-    labels = [line.get_label() for axes in figure.axes for line in axes.lines]
-    assert any("kinetic" in one for one in labels)
-    assert any("drag" in one for one in labels)
-    assert not any("spin" in one or "dashpot" in one for one in labels)
 
 
 @pytest.mark.parametrize("kind", [".png", ".svg"])
@@ -322,6 +264,31 @@ def test_a_high_path_fits_on_a_page_with_the_id_of_its_grain():
         == "grain 4, $t$ = 0 to 0.3 s, its outline at equal distances along the path"
     )
     assert len(figure.axes[0].patches) == 1
+
+
+@pytest.mark.parametrize("name", ["rise", "length"])
+def test_the_dashed_line_of_hops_is_the_mean_and_the_legend_says_so(name):
+    rows = np.zeros(4, [("rise", "f8"), ("length", "f8")])
+    rows["rise"], rows["length"] = D * np.array([1, 2, 3, 6]), D * np.array([10, 20, 30, 60])
+    figure = figures.hops({"run": SimpleNamespace(hops=rows)}, D)
+    panel = figure.axes[["rise", "length"].index(name)]
+    (mean,) = (line for line in panel.lines if line.get_linestyle() == "--")
+    assert mean.get_xdata()[0] == pytest.approx(rows[name].mean() / D)
+    assert [text.get_text() for text in figure.axes[0].get_legend().get_texts()] == [
+        "run (4 hops, dashed: mean)"
+    ]
+
+
+@pytest.mark.parametrize(("added", "named"), [(1.0, False), (1.09, True)])
+def test_contact_times_name_added_mass_only_under_water(added, named):
+    times = ContactTimes(eq_8=1e-4, added=added * 1e-4, damped=1.02e-4)
+    found = SimpleNamespace(contact_time=np.array([0.9e-4, 1.0e-4]), times=times)
+    figure = figures.contact_times(found)
+    words = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
+    assert any("added mass" in one for one in words) is named
+    assert any("dashpot" in one for one in words)
+    if not named:
+        assert "Eq. (8) with dashpot 1.020" in words
 
 
 def test_contact_times_are_drawn_by_partner():

@@ -1,5 +1,6 @@
 """Transport rate over shear stress."""
 
+import itertools
 import math
 from types import SimpleNamespace
 
@@ -35,6 +36,23 @@ def test_points_lie_over_named_lines_on_logarithmic_axes():
     low, high = axes.get_ylim()
     assert low < 0.01
     assert high > 5.0
+
+
+@pytest.mark.parametrize(
+    ("low", "high"), [(0.05, 0.4), (0.03, 0.5), (0.2, 2.5), (0.2, 0.25), (0.03, 1.0), (0.01, 30.0)]
+)
+def test_numbers_on_the_axis_of_shear_stress_do_not_overlap(low, high):
+    tau = np.geomspace(low, high, 60)
+    figure = transport([], [Formula("line", tau, tau)])
+    figure.canvas.draw()
+    axis = figure.axes[0].xaxis
+    low, high = axis.get_view_interval()
+    ticks = [*axis.get_major_ticks(), *axis.get_minor_ticks()]
+    shown = [one.label1 for one in ticks if one.label1.get_text() and low <= one.get_loc() <= high]
+    boxes = sorted((one.get_window_extent() for one in shown), key=lambda one: one.x0)
+    assert len(boxes) >= 3
+    assert all(left.x1 < right.x0 for left, right in itertools.pairwise(boxes))
+    assert all(float(one.get_text()) > 0.0 for one in shown)  # plain numbers
 
 
 def test_a_run_without_transport_is_shown_at_the_lower_edge():

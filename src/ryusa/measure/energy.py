@@ -9,7 +9,7 @@ from ryusa.model import Term
 from ryusa.model.tally import GIFTS, HELD, LOSSES, residual_of
 
 TERMS = {
-    "kinetic": "kinetic, added mass included",
+    "kinetic": "kinetic",
     "spin": "rotational",
     "potential": "potential, weight less buoyancy",
     "spring_n": "normal springs",

@@ -141,12 +141,12 @@ def _averages(
     )
     count = sum(len(one.hops) for one in found)
     highest = max((float(one.hops["rise"].max()) for one in found if len(one.hops)), default=math.nan)
+    added = f"; with added mass {times.added:.4g} s; and" if times.added != times.eq_8 else ";"
     notes = (
         suggested,
         f"{count} hops of {sum(1 for one in found if len(one.hops))} starts after {begin:g} s; "
         f"a flight that rises less than {rise:g} d counts as part of one bounce",
         f"highest jump {highest:.4g} m above take-off; crest of the bed at z = {crest:.4g} m",
-        f"Eq. (8): {times.eq_8:.4g} s; with added mass {times.added:.4g} s; and with dashpot "
-        f"{times.damped:.4g} s",
+        f"Eq. (8): {times.eq_8:.4g} s{added} with dashpot {times.damped:.4g} s",
     )
     return Averages("saltation", items, notes)
