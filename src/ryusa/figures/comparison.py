@@ -5,13 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
-from ryusa.figures.style import COLOURS, FAINT, LINES, MARKERS, house, new
+from ryusa.figures.style import COLOURS, FAINT, LINES, MARKERS, house, log_ticks, new
 from ryusa.model.scene import Floats
 
 _FEW = 25  # points of a curve that are shown one by one
-SHORT = 20.0  # a logarithmic axis that spans less names 1, 2 and 5 in plain digits
 
 
 @dataclass(frozen=True)
@@ -23,7 +21,7 @@ class Axis:
     log: bool = False
 
     def __str__(self) -> str:
-        return self.label if self.unit == "-" else f"{self.label} [{self.unit}]"
+        return f"{self.label}  ({'–' if self.unit == '-' else self.unit})"
 
 
 @dataclass(frozen=True)
@@ -68,12 +66,7 @@ def compared(
             low, _ = axes.get_xlim() if name == "x" else axes.get_ylim()
             # a formula that ends at its threshold would stretch the axis without end
             axes.set(**{f"{name}lim": (max(low, float(shown.min()) / 10.0), None)})
-            low, high = axes.get_xlim() if name == "x" else axes.get_ylim()
-            if high < SHORT * low:
-                ticks = axes.xaxis if name == "x" else axes.yaxis
-                ticks.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-                ticks.set_major_formatter(StrMethodFormatter("{x:g}"))
-                ticks.set_minor_formatter(NullFormatter())
+            log_ticks(axes.xaxis if name == "x" else axes.yaxis)
     axes.set_xlabel(str(x))
     axes.set_ylabel(str(y))
     axes.legend(fontsize=6.0)

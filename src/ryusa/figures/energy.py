@@ -1,7 +1,5 @@
 """The energy account of a run over time."""
 
-from typing import Any
-
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -40,7 +38,14 @@ def energy(found: Energy) -> Figure:
         for term, values in _alive(terms):
             label = f"{word} {TERMS[term]}"
             flow.plot(found.t, sign * values / unit, ls=line, color=WORK[term], label=label)
-    flow.plot(found.t, found.imbalance / unit, color="black", lw=0.8, ls=":", label="imbalance")
+    flow.plot(
+        found.t,
+        found.imbalance / unit,
+        color="black",
+        lw=0.8,
+        ls=":",
+        label=f"imbalance, at most {found.residual:.1e} of the largest term",
+    )
     for axes, text in ((held, f"held  ({name})"), (flow, f"supplied (+), lost (–)  ({name})")):
         axes.axhline(0.0, color=style.FAINT, lw=0.4, zorder=0)
         axes.set_ylabel(text)
@@ -51,9 +56,6 @@ def energy(found: Energy) -> Figure:
             labelspacing=0.3, columnspacing=1.0,
         )  # fmt: skip
     flow.set_xlabel("time  $t$  (s)")
-    at: Any = {"xycoords": "axes fraction", "textcoords": "offset points", "fontsize": 6.3}
-    at["bbox"] = {"facecolor": "white", "alpha": 0.8, "lw": 0.0, "pad": 0.5}
-    flow.annotate(f"largest imbalance over largest term: {found.residual:.1e}", (0, 0), (4, 4), **at)
     return figure
 
 

@@ -9,8 +9,10 @@ from typing import Any, TypeVar, cast
 import matplotlib as mpl
 from cycler import cycler
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, StrMethodFormatter
 
 Drawing = TypeVar("Drawing", bound=Callable[..., Figure])
 
@@ -26,6 +28,7 @@ LINES = ("-", "--", "-.", ":")
 BED = "#b8b2a7"
 BAND = "#dfe7d8"
 FAINT = "#8a8a8a"
+SHORT, SHORTEST = 200.0, 4.0  # ratios of the ends of a logarithmic axis, see `log_ticks`
 
 HOUSE: Any = {
     "font.family": "sans-serif",
@@ -116,6 +119,19 @@ def height(unit: str, above: str = "datum") -> str:
     The datum is z = 0 of the case.
     """
     return f"height above {above}  " + ("$z/d$  (–)" if unit == "d" else f"$z$  ({unit})")
+
+
+def log_ticks(axis: Axis) -> None:
+    """Name plain numbers on a logarithmic axis that spans few decades: 1, 2, 5; even steps on a short one.
+
+    By default such an axis names minor ticks too, and its numbers overlap.
+    """
+    low, high = axis.get_view_interval()
+    if high >= SHORT * low:
+        return
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)) if high > SHORTEST * low else MaxNLocator(4))
+    axis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    axis.set_minor_formatter(NullFormatter())
 
 
 def label_panel(axes: Axes, text: str) -> None:

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 from numpy.typing import NDArray
 
 from ryusa.figures import style
@@ -137,7 +136,7 @@ def _chart(axes: Axes, rates: Sequence[Rates], formulae: Sequence[Formula], note
             one.tau_star[there], one.q_star[there], ls=dashes, color=INK, lw=0.9, label=one.label, zorder=2
         )
     _limits(axes, rates, formulae)
-    _ticks(axes)
+    style.log_ticks(axes.xaxis)
     for k, one in enumerate(rates):
         _points(axes, one, k)
     axes.set_xlabel(r"shear stress  $\tau_* = \tau_b/((\sigma-\rho)\,g\,d)$  (–)")
@@ -167,17 +166,6 @@ def _points(axes: Axes, one: Rates, k: int) -> None:
             "", (float(tau), 0.0), (0, 11), axes.get_xaxis_transform(), textcoords="offset points",
             arrowprops={"arrowstyle": "->", "color": colour, "lw": 0.9},
         )  # fmt: skip
-
-
-def _ticks(axes: Axes) -> None:
-    """Label the axis of shear stress with few plain numbers, as it may span less than a decade or several."""
-    low, high = axes.get_xlim()
-    if high < 4.0 * low:
-        axes.xaxis.set_major_locator(MaxNLocator(4))
-    else:
-        axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high < 200.0 * low else (1.0,)))
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _place: f"{value:g}"))
-    axes.xaxis.set_minor_formatter(NullFormatter())
 
 
 def _limits(axes: Axes, rates: Sequence[Rates], formulae: Sequence[Formula]) -> None:
