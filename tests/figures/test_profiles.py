@@ -39,8 +39,18 @@ def test_runs_share_panels_with_an_error_band_and_a_line_each(found):
     speed = figure.axes[1].lines[0].get_xdata()
     assert np.nanmax(np.asarray(speed, dtype=float)) == pytest.approx(50.0)
     bands = [one for one in figure.axes[0].collections if isinstance(one, PolyCollection)]
-    assert len(bands) == 3  # and the bed
+    assert len(bands) == 2
     assert len({line.get_linestyle() for line in figure.axes[1].lines[:2]}) == 2
+
+
+def test_the_bed_is_shaded_over_whole_layers_and_does_not_stretch_the_axis_of_few_grains(found):
+    (bed,) = figures.profiles({"one": found}).axes[0].patches
+    values, edges, _ = bed.get_data()
+    assert values == pytest.approx(found.bed)
+    assert edges[:-1] == pytest.approx(100.0 * (found.z - 0.5 * found.thickness))
+    few = replace(found, phi=replace(found.phi, value=1e-3 * found.phi.value, error=1e-3 * found.phi.error))
+    panel = figures.profiles({"one": few}).axes[0]
+    assert panel.get_xlim()[1] < 1.3 * few.phi.value.max() < found.bed.max()
 
 
 def test_the_axis_names_another_zero_than_the_datum(found):

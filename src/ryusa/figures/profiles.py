@@ -49,8 +49,6 @@ def profiles(
     for k, (panel, what) in enumerate(zip(axes, shown, strict=True)):
         for s, (name, one) in enumerate(found.items()):
             z = one.z / one.d if height == "d" else one.z * CM
-            if what == "phi":
-                _bed(panel, one, z, first=s == 0)
             _line(panel, one, getattr(one, what), z, s, name)
             if what == "phi" and area:
                 colour = style.COLOURS[s % len(style.COLOURS)]
@@ -61,6 +59,9 @@ def profiles(
         if np.nanmin(values) >= 0.0 or panel.get_xlim()[0] > 0.0:
             panel.set_xlim(left=0.0)
         panel.locator_params(axis="x", nbins=5)
+        if what == "phi":
+            first = next(iter(found.values()))
+            _bed(panel, first, 1.0 / first.d if height == "d" else CM)
         if len(shown) > 1:
             _letter(panel, f"({'abcdefgh'[k]})")
     axes[0].set_ylabel(style.height(height, next(iter(found.values())).above))
@@ -84,10 +85,16 @@ def _line(axes: Axes, one: Profiles, layers: Layers, z: np.ndarray, s: int, name
     axes.plot(value * scale, z, color=colour, ls=line, label=name)
 
 
-def _bed(axes: Axes, one: Profiles, z: np.ndarray, *, first: bool) -> None:
-    """Shade the concentration of the fixed grains, if it was measured; all runs have the same bed."""
-    if first and np.isfinite(one.bed).any():
-        axes.fill_betweenx(z, 0.0, one.bed, step="mid", color=style.BED, alpha=0.6, lw=0.0, zorder=0)
+def _bed(axes: Axes, one: Profiles, scale: float) -> None:
+    """Shade the concentration of the fixed grains, if it was measured; all runs have the same bed.
+
+    The axis stays that of the moving grains, which may be few: the bed then ends at its right edge.
+    """
+    if np.isfinite(one.bed).any():
+        right = axes.get_xlim()[1]
+        edges = np.append(one.z - 0.5 * one.thickness, one.z[-1] + 0.5 * one.thickness) * scale
+        axes.stairs(one.bed, edges, orientation="horizontal", fill=True, color=style.BED, alpha=0.6, zorder=0)
+        axes.set_xlim(right=right)
         axes.annotate("shaded: fixed grains", (1, 0), (-3, 4), "axes fraction", textcoords="offset points",
                       ha="right", fontsize=6.0, color="#444444")  # fmt: skip
 
@@ -101,6 +108,6 @@ def _foot(one: Profiles) -> float:
 def _letter(axes: Axes, text: str) -> None:
     """Write the letter of a panel into its upper right corner, which is empty in a profile."""
     axes.annotate(
-        text, (1, 1), xytext=(-3, -3), xycoords="axes fraction", textcoords="offset points", va="top",
+        text, (1, 1), xytext=(-5, -4), xycoords="axes fraction", textcoords="offset points", va="top",
         ha="right", weight="bold",
     )  # fmt: skip
