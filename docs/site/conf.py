@@ -87,7 +87,7 @@ html_theme_options = {
     "pygments_light_style": "tango",
     "pygments_dark_style": "monokai",
 }
-html_sidebars = {"index": [], "getting-started": [], "gallery": [], "glossary": []}
+html_sidebars = {"index": [], "getting-started": [], "gallery": [], "glossary": [], "theory": []}
 
 
 def setup(app):

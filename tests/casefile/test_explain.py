@@ -18,6 +18,11 @@ def warnings(case: Case) -> list[str]:
     return [f"{row.name} = {row.shown}: {row.origin}" for row in explain(case) if row.flag == "warning"]
 
 
+def test_cohesion_is_shown_where_the_case_has_it(case: CaseOf) -> None:
+    assert rows(case(**{"contact.cohesion": "'2 mN'"}))["cohesion c"].shown == "0.002 N"
+    assert "cohesion c" not in rows(case())
+
+
 def test_every_derived_number_is_explained(case: CaseOf) -> None:
     found = rows(case(**SALTATION))
     for name in (

@@ -21,9 +21,25 @@ from ryusa.casefile import (
     read_text,
     resolved,
 )
+from ryusa.errors import CaseError
 
 CaseOf = Callable[..., Case]
 DOCS = Path(__file__).parents[2] / "docs"
+
+
+@pytest.mark.parametrize(
+    ("path", "named"),
+    [
+        ("dense_3d", "dense_3d"),
+        ("dense_3d.toml", "dense_3d"),
+        ("paper/fig19", "paper/fig19"),
+        ("none", "saltation"),
+        ("runs/dense_3d", "saltation"),
+    ],
+)
+def test_a_missing_file_that_is_a_packaged_case_is_answered_by_how_to_write_it(path: str, named: str) -> None:
+    with pytest.raises(CaseError, match=f"file not found; 'ryusa new {named}' writes"):
+        read(path)
 
 
 def test_a_case_is_frozen_and_remembers_where_it_came_from(text: str, tmp_path: Path) -> None:

@@ -83,6 +83,12 @@ def test_a_key_of_another_table_is_pointed_to(case: CaseOf) -> None:
         case(**{"contact.diameter": "'1 mm'"})
 
 
+@pytest.mark.parametrize("key", ["dt", "timestep", "time_step"])
+def test_the_time_step_is_found_by_the_names_of_other_programs(case: CaseOf, key: str) -> None:
+    with pytest.raises(CaseError, match=rf"time\.{key}: unknown key\. Did you mean 'time\.step'"):
+        case(**{f"time.{key}": "'1 us'"})
+
+
 def test_an_unknown_boundary_gets_no_hint(case: CaseOf) -> None:
     with pytest.raises(CaseError) as caught:
         case(**{"domain.inflow": "1"})

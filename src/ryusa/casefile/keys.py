@@ -44,9 +44,15 @@ def description_at(path: Sequence[str | int], data: dict[str, Any]) -> str:
     return about
 
 
+# Names that other programs give to a key, too unlike it to be misspellings.
+_OTHER_NAMES = dict.fromkeys(("dt", "timestep", "time_step"), "time.step")
+
+
 def nearest_key(path: Sequence[str | int], data: dict[str, Any]) -> str | None:
     """Find the known key nearest to an unknown one: of the same name elsewhere, then of a like name."""
     name, every = str(path[-1]), all_keys()
+    if name in _OTHER_NAMES:
+        return _OTHER_NAMES[name]
     last = {key: key.rsplit(".", 1)[-1] for key in every}
     same = [key for key in every if last[key] == name and key != dotted(path)]
     if same:

@@ -11,6 +11,7 @@ from ryusa.casefile.case import Case
 from ryusa.casefile.checks import check
 from ryusa.casefile.faults import faults
 from ryusa.casefile.overrides import parsed, with_overrides
+from ryusa.cases import FOLDERS, case_files
 from ryusa.errors import CaseError
 
 LARGEST_FILE = 4 << 20  # bytes; a table of many grains belongs in a CSV file
@@ -39,14 +40,21 @@ def read(path: str | Path, overrides: Mapping[str, str] | None = None) -> Case:
             )
         text = path.read_bytes().decode("utf-8")
     except FileNotFoundError:
-        raise CaseError(
-            str(path), None, "file not found; 'ryusa new saltation' writes a case to start from"
-        ) from None
+        raise CaseError(str(path), None, _not_found(path)) from None
     except UnicodeDecodeError as error:
         raise CaseError(str(path), None, f"is not UTF-8 text (byte {error.start})") from None
     except (OSError, ValueError) as error:
         raise CaseError(str(path), None, f"cannot be read: {error}") from None
     return read_text(text, overrides, path=path)
+
+
+def _not_found(path: Path) -> str:
+    """Name the command that writes the packaged case of that name, or one to start from."""
+    name = path.as_posix().removesuffix(".toml")
+    folder = name.rpartition("/")[0]
+    if folder in FOLDERS and name in case_files(folder):
+        return f"file not found; 'ryusa new {name}' writes the packaged case of that name"
+    return "file not found; 'ryusa new saltation' writes a case to start from"
 
 
 def read_text(text: str, overrides: Mapping[str, str] | None = None, *, path: Path | None = None) -> Case:

@@ -26,11 +26,14 @@ def contact_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     if contact.shear_stiffness is None:
         shear = f"{derived.k_s / derived.k_n:.4g} k_n (contact.shear_ratio)"
     angle = math.degrees(math.atan(derived.mu))
-    return [
+    rows = [
         number("contact", "normal stiffness k_n", derived.k_n, "N/cm", origin),
         number("contact", "tangential stiffness k_s", derived.k_s, "N/cm", shear),
         number("contact", "friction mu", derived.mu, "-", f"tan(phi), phi = {angle:.3g} deg"),
     ]
+    if contact.cohesion:
+        rows.append(number("contact", "cohesion c", contact.cohesion, "N", "contact.cohesion, Eq. (4)"))
+    return rows
 
 
 def damping_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
