@@ -86,6 +86,10 @@ def test_the_caption_says_which_free_grains_are_drawn():
     alone = replace(path(), **{f"loose_{name}": np.zeros(0) for name in "xzd"})
     assert "blue grains: free" in figures.tracks(path()).axes[0].get_title(loc="left")
     assert "blue grains" not in figures.tracks(alone).axes[0].get_title(loc="left")
+    hidden = figures.tracks(alone, around=moment()).axes[0].get_title(loc="left")  # two more grains
+    assert "other free grains are not drawn" in hidden
+    seen = figures.tracks(alone, around=moment(grains=np.arange(1))).axes[0].get_title(loc="left")
+    assert "not drawn" not in seen
 
 
 def test_an_exaggeration_of_heights_is_stated():
@@ -256,7 +260,7 @@ def test_a_high_path_fits_on_a_page_with_the_id_of_its_grain():
     drop = Tracks(
         (4,), np.linspace(0, 0.3, 80), 0 * z, z, np.array([D]), bed, bed, bed + D, none, none, none, math.inf
     )
-    figure = figures.tracks(drop, around=moment())
+    figure = figures.tracks(drop, around=moment(grains=np.array([4])))
     figure.canvas.draw()
     assert figure.get_size_inches()[1] < 6.0
     assert (

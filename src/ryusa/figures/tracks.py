@@ -20,7 +20,8 @@ MM, CM = 1.0e3, 1.0e2  # millimetres and centimetres in a metre
 TALLEST = 4.5  # height of all panels together [inch]
 STEP = 1.0  # diameters between two frames above which the path between them is not known
 DASHED = "dashed: between frames (dots) more than a diameter apart"
-LOOSE = "blue grains: free, moving less than a diameter; other free grains are not drawn"
+LOOSE = "blue grains: free, moving less than a diameter"
+HIDDEN = "other free grains are not drawn"
 
 
 @style.house
@@ -39,7 +40,7 @@ def tracks(
     panels : number of rows into which the path is cut; by default a row is about 40 diameters long.
     exaggeration : vertical over horizontal scale; with 1 grains are round. Stated in the figure if not 1.
     length : distance shown [m]; default all.
-    around : scene whose planes are drawn.
+    around : scene whose planes are drawn; the caption says whether it holds grains that are not.
 
     Notes
     -----
@@ -79,13 +80,13 @@ def tracks(
         panel.locator_params(axis="y", nbins=3 if row < 1.5 else 8, integer=True)
     axes[-1].set_xlabel("distance along the bed  $x$  (mm)")
     figure.supylabel(style.height("mm"), fontsize=8.0)
-    axes[0].set_title(_caption(found), loc="left", fontsize=6.5)
+    axes[0].set_title(_caption(found, around), loc="left", fontsize=6.5)
     if exaggeration != 1.0:
         axes[0].set_title(f"vertical scale exaggerated {exaggeration:g} times", loc="right", fontsize=6.5)
     return figure
 
 
-def _caption(found: Tracks) -> str:
+def _caption(found: Tracks, around: Snapshot | None) -> str:
     """The grains and the time shown, and what the picture leaves out, in words."""
     many = len(found.grains) > 8
     names = ", ".join(str(g) for g in found.grains[:8]) + (
@@ -94,7 +95,10 @@ def _caption(found: Tracks) -> str:
     when = f", $t$ = {found.t[0]:.4g} to {found.t[-1]:.4g} s" if len(found.t) else ""
     text = f"grain{'s' if len(found.grains) > 1 else ''} {names}{when}"
     text += ", its outline at equal distances along the path" if len(found.grains) == 1 else ""
-    notes = [LOOSE] * bool(len(found.loose_x)) + [DASHED] * bool(_far(found).any())
+    drawn = len(found.grains) + len(found.loose_x)
+    notes = [LOOSE] * bool(len(found.loose_x))
+    notes += [HIDDEN] * (around is not None and len(around.grains) > drawn)
+    notes += [DASHED] * bool(_far(found).any())
     return "\n".join([text, *(["; ".join(notes)] if notes else [])])
 
 
