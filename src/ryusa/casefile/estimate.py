@@ -14,11 +14,20 @@ BYTES_PER_GRAIN = 80  # of a frame: x, v, omega, image
 BYTES_OF_FORCES = 120  # per grain and frame where forces are recorded: three contacts of 40 bytes
 BYTES_PER_FRAME = 264  # t, step, offset for ParaView and tally
 BYTES_PER_RUN = 100_000  # headers of the parts, log, summary, bed
-MEMORY_PER_RUN = 250_000_000  # bytes of any process that runs
-MEMORY_PER_GRAIN = 800  # bytes while running without records of contacts
-MEMORY_WITH_EVENTS = 1600  # bytes a grain where contacts are recorded
-FRAMES_HELD = 64 << 20  # bytes of frames that wait to be written, and at least one frame ...
-COPIES = 3  # ... and what it takes to write them
+# Memory, measured (design/lab/0008-memory-of-a-run.md) [B]:
+MEMORY_PER_RUN = 218_000_000  # Python, its packages and the compiled code
+MEMORY_PER_GRAIN = 680  # free or fixed: scene, state, Verlet list
+MEMORY_IN_COLUMN = 700  # of a grain on top, in a column of water
+MEMORY_PER_CONTACT = 200
+CHECKPOINT_PER_GRAIN = 130
+CHECKPOINT_IN_COLUMN = 150  # of a grain on top
+CHECKPOINT_PER_CONTACT = 410
+WRITING = 2.1  # copies of a part or checkpoint while it is written: HDF5 in memory, and its bytes
+HELD_MOST = 64 << 20  # frames and contacts that wait to be written
+FASTER = 3.0  # than the rule of thumb: so much sooner may frames come
+HELD_SHORTEST, HELD_SHARE, HELD_LONGEST = 2.0, 0.01, 60.0  # s, of the time so far, s: as the recorder flushes
+SETTLED, SETTLED_PLANE, IN_FLOW, APART = 2.1, 1.6, 1.5, 0.1  # contacts per free grain, the most in a run
+CHECKPOINT_INTERVAL = 300.0  # s of wall time, before which no checkpoint holds frames
 BYTES_PER_EVENT = 8 * N_EVENT
 EVENTS_ALONE = 20.0  # contacts that end per second, of a saltating or dropped grain
 EVENTS_DENSE = 20.0  # of a grain among others, per sqrt(d/g); between 3 and 50 where counted
@@ -94,17 +103,54 @@ def free_here() -> int:
     return shutil.disk_usage(".").free
 
 
-def memory_per_grain(case: Case) -> int:
-    """Bytes of memory a grain takes while running."""
-    return MEMORY_PER_GRAIN if events_of(case) == "none" else MEMORY_WITH_EVENTS
+def contacts_expected(case: Case, derived: Derived) -> float:
+    """Contacts per free grain at most, by counts in packaged cases."""
+    if not derived.meet:
+        return APART
+    if case.motion.plane:
+        return SETTLED_PLANE
+    return SETTLED if case.water is None else IN_FLOW
+
+
+def memory_of_grains(n_grain: int, n_fixed: int, contacts: float, column: bool) -> tuple[float, float]:
+    """Bytes that grains take while running, and bytes of their checkpoint.
+
+    Parameters
+    ----------
+    n_grain, n_fixed : free and fixed grains.
+    contacts : per free grain [-].
+    column : in a column of water.
+    """
+    each, kept = MEMORY_PER_GRAIN, CHECKPOINT_PER_GRAIN
+    if column:
+        each, kept = each + MEMORY_IN_COLUMN, kept + CHECKPOINT_IN_COLUMN
+    running = (n_grain + n_fixed) * each + n_grain * contacts * MEMORY_PER_CONTACT
+    return running, n_grain * (kept + contacts * CHECKPOINT_PER_CONTACT)
+
+
+def held_back(case: Case, derived: Derived) -> float:
+    """Bytes of frames and contacts that wait to be written, one frame at least."""
+    seconds = seconds_needed(case, derived)
+    interval = min(max(HELD_SHORTEST, HELD_SHARE * seconds), HELD_LONGEST)
+    frame = derived.n_grain * bytes_per_grain(case)
+    whole = frames_expected(case) * frame + disk_for_events(case, derived)
+    return max(frame, min(whole * min(FASTER * interval / seconds, 1.0), HELD_MOST))
 
 
 def memory_needed(case: Case, derived: Derived) -> int:
-    """Bytes of memory a run will take, frames that wait to be written with it."""
-    frame = derived.n_grain * bytes_per_grain(case)
-    held = max(frame, min(FRAMES_HELD, frames_expected(case) * frame))
-    grains = (derived.n_grain + derived.n_fixed) * memory_per_grain(case)
-    return MEMORY_PER_RUN + grains + COPIES * held
+    """Bytes of memory that a run will take at most, on any number of threads.
+
+    Notes
+    -----
+    Beside program, grains and contacts it holds frames that wait to be written, and twice what is being
+    written: a part or a checkpoint, which in a long run contains these frames too.
+    """
+    column = case.water is not None and case.water.profile == "column"
+    contacts, held = contacts_expected(case, derived), held_back(case, derived)
+    running, checkpoint = memory_of_grains(derived.n_grain, derived.n_fixed, contacts, column)
+    long = seconds_needed(case, derived) > CHECKPOINT_INTERVAL
+    written = checkpoint + held if long else max(checkpoint, held)
+    return round(MEMORY_PER_RUN + running + held + WRITING * written)
 
 
 def seconds_needed(case: Case, derived: Derived) -> float:
@@ -119,10 +165,12 @@ def cost_rows(case: Case, derived: Derived) -> list[ExplainRow]:
     """Steps, frames, disk, memory and wall time."""
     simulated, origin = time_expected(case)
     disk, seconds = disk_needed(case, derived), seconds_needed(case, derived)
-    memory, each = memory_needed(case, derived), memory_per_grain(case)
+    memory, contacts = memory_needed(case, derived), contacts_expected(case, derived)
     wall = f"{seconds / HOUR:.3g} h" if seconds > HOUR else f"{seconds:.3g} s"
     held = (
-        f"{human(MEMORY_PER_RUN)} for the program, {each} B per grain (events {events_of(case)}), and frames"
+        f"at most, on any number of threads: {human(MEMORY_PER_RUN)} for the program, grains with "
+        f"{contacts:g} contacts each, {human(held_back(case, derived))} not yet written, and what is being "
+        "written; a first run compiles its laws and takes up to 0.4 GB more"
     )
     return [
         number("cost", "simulated time", simulated, "s", origin),
@@ -131,7 +179,7 @@ def cost_rows(case: Case, derived: Derived) -> list[ExplainRow]:
         _size("disk for frames", disk, "positions, velocities and spins of the free grains"),
         *_events(case, derived),
         *_disk(case, derived),
-        _size("memory", memory, f"{held} waiting to be written"),
+        _size("memory", memory, held),
         ExplainRow("cost", "wall time", seconds, "s", wall, "rule of thumb for one core"),
     ]
 

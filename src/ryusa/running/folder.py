@@ -223,7 +223,7 @@ def refuse_if_too_large(needed: float, n_grain: int) -> None:
         raise CaseError(
             "build", None,
             f"gives {n_grain} grains, which need {format_bytes(needed)} of memory; {format_bytes(there)} are "
-            "available. Take fewer grains, or set record.events = 'none', which needs half",
+            "available. Take fewer grains",
         )  # fmt: skip
 
 

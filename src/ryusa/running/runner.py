@@ -205,10 +205,10 @@ def run_scene(
     ------
     CaseError, ResultsError, CheckpointError, RunError : as in `run`.
     """
-    from ryusa.casefile.estimate import MEMORY_PER_GRAIN, MEMORY_WITH_EVENTS
+    from ryusa.casefile.estimate import SETTLED, memory_of_grains
 
-    each = MEMORY_PER_GRAIN if scene.events == EventRule.NONE else MEMORY_WITH_EVENTS
-    refuse_if_too_large((scene.n_grain + scene.n_fixed) * each, scene.n_grain)
+    needed = memory_of_grains(scene.n_grain, scene.n_fixed, SETTLED, scene.column is not None)
+    refuse_if_too_large(sum(needed), scene.n_grain)
     about = _CaseData({"title": "", "record": {"frames": frames, "settle": stop.settle}})
     options = _Options(threads, progress, overwrite, engine, checkpoint, resume, force)
     return _run_or_resume(lambda: (scene, state, ()), Path(folder), frames, stop, changes, options, about)
