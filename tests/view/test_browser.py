@@ -124,6 +124,22 @@ def test_colour_follows_the_quantity_and_its_scale_is_shown(opened, three, fligh
     assert np.ptp(seen["spin"], axis=1).max() < 12  # grey: the middle of a scale from blue to red
 
 
+def test_a_scale_of_numbers_of_contacts_is_marked_at_whole_numbers(opened, three):
+    page = opened(three, "contacts.html")
+    page.evaluate("ryusaViewers[0].colourBy('contacts')")
+    assert page.locator(".scale span").all_inner_texts() == ["0", "1"]
+
+
+def test_a_plane_is_seen_from_its_side(opened, three):
+    page = opened(three, "plane.html")
+    without, _ = looked_at(page, 0)
+    page.evaluate("ryusaViewers[0].wallsShown = true; ryusaViewers[0].changed()")
+    settled(page)
+    line = np.abs(pixels(page)[: HIGH - BAR] - without).sum(axis=2) > 60
+    assert line.sum(axis=1).max() > 0.5 * WIDE  # the floor, along the whole period
+    assert np.count_nonzero(line.any(axis=1)) < 10
+
+
 def test_slider_keys_and_play_move_the_time(opened, three):
     page = opened(three, "time.html")
     time = "ryusaViewers[0].time"

@@ -69,7 +69,7 @@ COLOURINGS = (
     Colouring("height", "height z", "cm", 100.0, "viridis", _height),
     Colouring("spin", "spin about y, positive rolls towards +x", "rad/s", 1.0, "RdBu_r", _spin, signed=True),
     Colouring("size", "diameter", "mm", 1000.0, "plasma", _size, steady=True),
-    Colouring("contacts", "grains, fixed grains and planes in contact", "", 1.0, "YlOrBr", _contacts),
+    Colouring("contacts", "contacts with grains and planes", "", 1.0, "YlOrBr", _contacts),
 )  # fmt: skip
 
 

@@ -8,9 +8,9 @@ function element(kind, parent, properties = {}, ...content) {
   return made;
 }
 
-// A few round numbers from low to high, and the digits they need.
-function ticks(low, high, count) {
-  const raw = (high - low) / count, power = 10 ** Math.floor(Math.log10(raw));
+// A few round numbers from low to high, at least `least` apart, and the digits they need.
+function ticks(low, high, count, least = 0) {
+  const raw = Math.max((high - low) / count, least), power = 10 ** Math.floor(Math.log10(raw));
   const step = [1, 2, 5, 10].find((k) => k * power >= raw) * power, found = [];
   for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k++) found.push(k * step);
   return { found, digits: Math.max(0, -Math.floor(Math.log10(step) + 1e-9)) };
@@ -34,7 +34,7 @@ function drawScale(holder, one) {
   element("div", holder, { className: "label" }, one.unit ? `${one.label}  (${one.unit})` : one.label);
   const bar = element("div", holder, { className: "colours" });
   bar.style.background = `linear-gradient(to right, ${one.colours.join(",")})`;
-  const { found, digits } = ticks(one.low, one.high, 4);
+  const { found, digits } = ticks(one.low, one.high, 4, one.unit ? 0 : 1);  // what has no unit is counted
   for (const value of found) {
     const mark = element("span", bar, {}, written(value, digits));
     mark.style.left = `${100 * (value - one.low) / (one.high - one.low)}%`;

@@ -201,11 +201,16 @@ class Viewer {
   drawWalls(scene, nearest) {
     const { painter } = this, room = 0.02 * this.radius;
     const low = this.low.map((one, k) => one - (this.period[k] ? 0 : room)), high = this.high.map((one, k) => one + (this.period[k] ? 0 : room));
-    for (const { point, normal } of scene.planes) painter.drawPlain(planeInBox(point, normal, low, high), [0.5, 0.47, 0.42, 0.25], "face");
+    const rim = (corners) => corners.flatMap((one, k) => [one, corners[(k + 1) % corners.length]]);  // seen edge-on, too
+    for (const { point, normal } of scene.planes) {
+      const corners = planeInBox(point, normal, low, high);
+      painter.drawPlain(rim(corners), [0.5, 0.47, 0.42, 1], "lines");
+      painter.drawPlain(corners, [0.5, 0.47, 0.42, 0.25], "face");
+    }
     const surface = this.surface(nearest);
     if (surface !== undefined) {
       const corners = [[low[0], low[1], surface], [high[0], low[1], surface], [high[0], high[1], surface], [low[0], high[1], surface]];
-      painter.drawPlain(corners.flatMap((one, k) => [one, corners[(k + 1) % 4]]), [0.1, 0.45, 0.75, 1], "lines");  // seen from the side, too
+      painter.drawPlain(rim(corners), [0.1, 0.45, 0.75, 1], "lines");
       painter.drawPlain(corners, [0.15, 0.5, 0.8, 0.22], "face");
     }
   }
