@@ -1,6 +1,5 @@
 """Settings of the documentation site; `make site` builds it (see `make.py` beside this file)."""
 
-import os
 import sys
 from pathlib import Path
 
@@ -24,7 +23,7 @@ def _plain(*args, **_options):
 
 
 numba.njit = _plain
-os.environ["NUMBA_DISABLE_JIT"] = "1"
+numba.config.DISABLE_JIT = 1  # here alone: the kernels of the notebooks compile
 
 import ryusa
 
@@ -36,7 +35,7 @@ copyright = "2026, the ryusa developers"
 version = release = ryusa.__version__
 root_doc = "index"
 extensions = [
-    "myst_parser",
+    "myst_nb",
     "sphinx.ext.autodoc",
     "numpydoc",
     "sphinx.ext.viewcode",
@@ -44,6 +43,11 @@ extensions = [
 ]
 myst_enable_extensions = ["colon_fence", "deflist", "attrs_inline"]
 myst_heading_anchors = 4
+nb_execution_mode = "force"  # what a notebook shows is what this ryusa gives
+nb_execution_in_temp = True
+nb_execution_raise_on_error = True
+nb_execution_timeout = 300
+nb_merge_streams = True
 default_role = "code"
 smartquotes = False  # options such as --set, and quotes in commands, must be copied as they are typed
 nitpicky = True
