@@ -99,8 +99,8 @@ def test_how_much_longer_a_run_must_be_follows_from_the_square_of_the_error() ->
     one.take([average("q_star", "-", [series], (10.0, 50.0))])
     assert one.known[0].longer == pytest.approx(4.0, rel=0.4)
     more = (one.known[0].longer - 1.0) * 40.0
-    assert "precision not reached: q_star = 0.999" in one.missed()
-    assert f"about {more:.2g} s more are needed" in one.missed()
+    assert one.missed().startswith(f"; precision not reached, about {more:.2g} s more are needed")
+    assert "q_star = 0.999" in one.missed()
     assert one.share(50.0) == pytest.approx(50.0 / (50.0 + more))
 
 
@@ -110,6 +110,23 @@ def test_an_error_in_units_does_not_depend_on_the_average() -> None:
         one = rule(limit)
         one.take([average("q_star", "m", [series], (0.0, 1.0))])
         assert one.known[0].enough is enough
+
+
+def test_a_record_that_changes_is_named_with_what_may_help() -> None:
+    series = np.concatenate([np.full(100, 3.0), np.ones(400)]) + 0.1 * red_noise(
+        500, 0.0, np.random.default_rng(2)
+    )
+    one = rule(ErrorLimit(0.9))
+    one.take([average("q_star", "-", [series], (0.0, 1.0))])
+    assert "steady: no" in str(one)
+    assert "q_star not steady (a later record.settle leaves out the start): q_star = 1.39" in one.missed()
+
+
+def test_how_much_longer_is_not_said_of_an_average_of_zero() -> None:
+    one = rule(ErrorLimit(0.1))
+    one.take([average("q_star", "-", [np.zeros(200)], (0.0, 1.0))])
+    assert one.missed().startswith("; precision not reached: q_star = 0 ")
+    assert one.share(1.0) == 0.0
 
 
 def test_averages_are_measured_ever_less_often() -> None:
@@ -189,7 +206,7 @@ def test_a_run_ends_when_its_average_is_known_well_enough(whole: Results) -> Non
     assert kept["averages"][0]["value"] == found.value
     assert kept["averages"][0]["standard_error"] == found.error
     assert kept["averages"][0]["asked_for"] == "2 %"
-    assert whole.provenance["message"] == f"known well enough: {kept['text']}"
+    assert whole.provenance["message"] == f"known well enough: {kept['text'].removeprefix('reached: ')}"
     assert "(2 % asked for)" in kept["text"]
     log = (whole.folder / schema.LOG).read_text()
     assert log.count("q_star = ") >= 5  # while it went
@@ -266,8 +283,8 @@ def test_a_run_that_reaches_its_last_time_first_says_how_much_longer_it_would_ta
     early = {"stop.time": "0.5 s", "stop.precision.q_star": "0.5 %"}
     results = run(tmp_path / "run", early)
     message = str(results.provenance["message"])
-    assert message.startswith("reached 0.5 s; precision not reached: q_star = ")
+    assert message.startswith("reached 0.5 s; precision not reached, about ")
+    assert " s more are needed (error ~ 1/sqrt(T))" in message
     assert "(0.5 % asked for" in message
-    assert "s more are needed" in message
     assert results.summary["precision"]["reached"] is False
     assert results.summary["precision"]["averages"][0]["window"][1] == pytest.approx(0.5, abs=1e-5)

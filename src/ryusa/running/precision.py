@@ -45,9 +45,9 @@ class KnownAverage:
 
     @property
     def enough(self) -> bool:
-        """True where a long record is steady and its error as small as asked for."""
-        one = self.average
-        small = one.error <= self.limit.of(one.value)
+        """True where a long record is steady and its error as small as asked for; no share of 0 is known."""
+        one, allowed = self.average, self.limit.of(self.average.value)
+        small = allowed > 0.0 and one.error <= allowed
         return small and one.steady and one.independent >= INDEPENDENT
 
     @property
@@ -62,9 +62,9 @@ class KnownAverage:
         one = self.average
         unit = "" if one.unit == "-" else f" {one.unit}"
         error = f"{one.error:.2g}{unit}"
-        if not self.limit.unit:
-            error = f"{100.0 * one.error / abs(one.value):.2g} %" if one.value else "unknown"
-        doubts = f", worth {one.independent:.0f} independent samples of {INDEPENDENT}"
+        if one.value and not self.limit.unit:
+            error = f"{100.0 * one.error / abs(one.value):.2g} %"
+        doubts = f", worth {one.independent:.0f} of {INDEPENDENT} independent samples"
         doubt = doubts if one.independent < INDEPENDENT else ""
         doubt += f", steady: {one.verdict}" if one.changes else ""
         return f"{one.name} = {one.value:.4g}{unit} ± {error} ({self.limit} asked for{doubt})"
@@ -133,26 +133,30 @@ class PrecisionRule:
         if not self.known:
             return 0.0
         begin, end = self.known[0].average.window
-        needed = begin + (end - begin) * max(one.longer for one in self.known)
+        needed = begin + (end - begin) * self._longer()
         return t / needed if needed > 0.0 else 0.0
 
     def missed(self) -> str:
         """What is said of the precision at the end of a run that reached its last time."""
-        if not self.asked:
-            return ""
-        if self.known and all(one.enough for one in self.known):
-            return f"; precision reached: {self}"
-        return f"; precision not reached: {self}{self._more()}"
+        return f"; precision {self._verdict()}: {self}" if self.asked else ""
 
-    def _more(self) -> str:
-        """How much longer the run would have to be."""
-        longer = [one.longer for one in self.known]
-        if not longer or not math.isfinite(sum(longer)):
-            return ""
-        begin, end = self.known[0].average.window
-        if max(longer) > 1.0:
-            return f"; about {(end - begin) * (max(longer) - 1.0):.2g} s more are needed (error ~ 1/sqrt(T))"
-        return "; the error is small enough, but the record is not steady"
+    def _verdict(self) -> str:
+        """Whether the precision is reached; else how much longer the run would have to be."""
+        if self.known and all(one.enough for one in self.known):
+            return "reached"
+        said, longer = "not reached", self._longer()
+        if longer > 1.0:
+            begin, end = self.known[0].average.window
+            said += f", about {(end - begin) * (longer - 1.0):.2g} s more are needed (error ~ 1/sqrt(T))"
+        changing = [one.average.name for one in self.known if one.average.changes]
+        if changing:
+            said += f", {' and '.join(changing)} not steady (a later record.settle leaves out the start)"
+        return said
+
+    def _longer(self) -> float:
+        """Window that the slowest average needs over the present one [-]; nan where one is unknown."""
+        every = [one.longer for one in self.known]
+        return max(every) if every and math.isfinite(sum(every)) else math.nan
 
     def __str__(self) -> str:
         return ", ".join(str(one) for one in self.known) or self._why
@@ -161,7 +165,7 @@ class PrecisionRule:
         """The last measurement as plain data, for summary.json."""
         return {
             "reached": bool(self.known) and all(one.enough for one in self.known),
-            "text": f"{self}",
+            "text": f"{self._verdict()}: {self}",
             "averages": [
                 {
                     "name": one.average.name,
