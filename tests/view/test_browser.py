@@ -196,6 +196,17 @@ def test_a_title_made_of_script_is_shown_and_not_run(opened, three, monkeypatch)
     assert page.evaluate("document.title").startswith("</script>")
 
 
+@pytest.mark.parametrize("written", [view_page, lambda run: report_page([run], size=1.0e6)])
+def test_a_very_long_title_is_cut_and_covers_no_grain(opened, three, monkeypatch, written):
+    monkeypatch.setitem(three.case, "title", "W" * 2000)
+    page = opened(three, "long.html", written)
+    assert page.evaluate("document.documentElement.scrollWidth") <= WIDE
+    for words, most in ((".head", 90), ("h1", 200)):
+        for box in (one.bounding_box() for one in page.locator(words).all()):
+            assert box["height"] < most
+            assert box["x"] + box["width"] < WIDE
+
+
 def test_water_over_height_is_drawn(opened, saltation):
     page = opened(saltation, "water.html")
     assert page.is_visible(".profile")

@@ -9,7 +9,7 @@ from ryusa.errors import ResultsError
 from ryusa.report.contents import RunContents, contents_of
 from ryusa.results import Results
 from ryusa.study.html import template
-from ryusa.view.page import component, policy
+from ryusa.view.page import component
 
 HERE = Path(__file__).parent
 
@@ -44,7 +44,6 @@ def report_page(
         differences=differing(found),
         averages=side_by_side(found),
         parts=component(viewers),
-        policy=policy(),
         version=__version__,
     )
 

@@ -61,9 +61,7 @@ def view_page(
     ResultsError : no frame in the window.
     """
     data, blob = encoded(results, begin=begin, end=end, size=size, progress=progress)
-    return _template("page.html").render(
-        title=data["title"], parts=component([(data, blob)]), policy=policy(), version=__version__
-    )
+    return _template("page.html").render(title=data["title"], parts=component([(data, blob)]))
 
 
 def encoded(
@@ -175,16 +173,17 @@ def policy() -> str:
     )
 
 
-def component(runs: list[tuple[dict[str, Any], str]]) -> dict[str, Any]:
-    """Style, script and data of the viewers of a page, safe to be written into HTML as they are."""
+def component(runs: list[tuple[dict[str, Any], str]]) -> dict[str, Markup]:
+    """Head and style of a page with viewers, and their data and script; safe to be written as they are."""
     # "<" never occurs in the data: neither "</script>" nor "<!--" of a title can end its element
+    shown = [
+        {"data": Markup(json.dumps(data).replace("<", "\\u003c")), "blob": Markup(blob)}
+        for data, blob in runs
+    ]
     return {
+        "head": Markup(_template("head.html").render(policy=policy(), version=__version__)),
         "style": Markup((HERE / "viewer.css").read_text(encoding="utf-8")),
-        "script": Markup(script()),
-        "runs": [
-            {"data": Markup(json.dumps(data).replace("<", "\\u003c")), "blob": Markup(blob)}
-            for data, blob in runs
-        ],
+        "data": Markup(_template("data.html").render(runs=shown, script=Markup(script()))),
     }
 
 

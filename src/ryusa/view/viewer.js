@@ -52,10 +52,11 @@ class Viewer {
   }
 
   about() {
-    const { data } = this, parts = [data.folder, data.status];
+    const { data } = this, parts = [data.status];
     const shown = data.arrays.radius.shape[0];
     parts.push(shown < data.grains ? `${shown} of ${data.grains} grains, drawn by lot` : `${data.grains} grains`);
     parts.push(this.frames < data.frames ? `${this.frames} of ${data.frames} frames` : `${data.frames} frames`);
+    parts.push(data.folder);  // last: a long name is cut
     return parts.join(" \u00b7 ");
   }
 
