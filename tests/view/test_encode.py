@@ -118,6 +118,13 @@ def test_frames_are_thinned_before_grains_and_evenly():
     assert (np.diff(fewer.grains) > 0).all()
 
 
+def test_a_few_frames_less_are_better_than_grains_that_are_missing():
+    window = np.arange(31)
+    for room, frames, grains in ((30.5, 30, 1000), (24.0, 24, 1000), (20.0, 31, 20_000 // 31)):
+        found = thinned(window, 1000, room * 1000)
+        assert (len(found.frames), len(found.grains)) == (frames, grains)
+
+
 def test_a_page_is_no_larger_than_asked_and_says_what_it_left_out(saltation):
     _, every = encoded(saltation)
     assert len(view_page(saltation)) - len(every) < LEAST_SIZE  # script, style and words

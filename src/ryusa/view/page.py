@@ -26,7 +26,8 @@ HERE = Path(__file__).parent
 SCRIPTS = ("decode.js", "linear.js", "draw.js", "overlay.js", "viewer.js")
 SIZE = 10.0e6  # of a page, unless asked otherwise [B]
 LEAST_SIZE = 2.0e5  # page without grains: script, style, walls [B]
-FEW_FRAMES = 60  # frames are thinned down to these before grains are left out
+FEW_FRAMES = 60  # frames are thinned down to these before grains are left out,
+_FEWEST_FRAMES = 0.75  # or to this share of them, where every grain then has its place
 _GUESS = 3.2  # bytes of a page per grain and frame, at first
 _TRIES = 5
 
@@ -96,7 +97,9 @@ def thinned(window: NDArray[np.int64], n_grain: int, cells: float) -> Thinned:
     Frames are evenly spaced, the first and last among them; grains are drawn by lot, the same each time.
     """
     every = np.arange(n_grain)
-    most = max(int(cells // max(n_grain, 1)), min(FEW_FRAMES, len(window)), 1)
+    most, few = max(int(cells // max(n_grain, 1)), 1), min(FEW_FRAMES, len(window))
+    if most < _FEWEST_FRAMES * few:
+        most = few
     frames = window
     if len(window) > most:
         frames = window[np.unique(np.rint(np.linspace(0, len(window) - 1, most)).astype(np.int64))]
