@@ -55,7 +55,7 @@ def stepping(fixed, state) -> loop_module.Loop:
     nothing: Any = None
     stop = Stop(time=1.0)
     loop = loop_module.Loop(
-        CpuEngine(), fixed, 1.0, stop, [], nothing, nothing, nothing, {}, _step=state.step
+        CpuEngine(), fixed, 1.0, stop, [], nothing, nothing, nothing, {}, nothing, _step=state.step
     )
     loop.engine.load(fixed, state)
     loop._start_water(state)
