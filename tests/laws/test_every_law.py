@@ -19,11 +19,14 @@ BLIND = {
     ("contact.slide", "size"),
     ("contact.slide", "tau_c"),
     # the step of a contact: not used in a plane
+    ("contact_map.time_of_release", "q"),  # of a pair whose stiffness is no number: then its force is none
     *(("contact_step.contact_force", name) for name in ("n_y", "h_y", "h_z")),
     *(("contact_step.contact_kinematics", name) for name in ("d_y", "u_y", "w_ix", "w_iz", "w_jx", "w_jz")),
     ("contact_step.contact_kinematics", "dt"),
     *(("contact_step.tangential_step", name) for name in ("n_x", "n_y", "n_z", "twist", "s_y", "s_z")),
     *(("contact_step.tangential_step", name) for name in ("f_n", "e_n", "cohesion", "mu")),  # of tau_c
+    # of tau_c; the normal force, which is no number either, comes from begin_in_step and end_in_step
+    *(("slip_within_step.slip_within_step", name) for name in ("y", "rate", "a", "q", "m", "cohesion", "mu")),
     ("contact_step.tangential_step", "soft_s"),  # used while sliding
     ("contact_step.normal_step", "overlap"),  # comes from positions, which the grain step looks at
     ("contact_step.normal_step", "least"),  # 0 or -inf

@@ -32,6 +32,7 @@ EXPONENTS = {  # exponents of kg, m, s
     "N s/m": (1, 0, -1),
     "N m": (1, 2, -2),
     "N m s": (1, 2, -1),
+    "1/s2": (0, 0, -2),
     "rad/s": (0, 0, -1),
     "rad/s2": (0, 0, -2),
 }
@@ -67,6 +68,18 @@ UNITS = {
     "contact.slide": "N, N, -, - -> -, -, -",
     "contact.damping_in_steps": "N s/m, kg, s -> N s/m",
     "contact.damping": "-, N/m, kg -> N s/m",
+    "contact_map.decay_rate": "N s/m, kg -> 1/s",
+    "contact_map.frequency_squared": "N/m, N s/m, kg -> 1/s2",
+    "contact_map.half_sine_squared": "1/s2, s -> -",
+    "contact_map.spring_of_map": "N/m, N s/m, kg, s -> N/m",
+    "contact_map.dashpot_of_map": "N s/m, kg, s -> N s/m",
+    "contact_map.decay_of_map": "N s/m, kg, s -> 1/s",
+    "contact_map.frequency_of_map": "N/m, N s/m, kg, s -> 1/s2",
+    "contact_map.free_response": "s, 1/s, 1/s2 -> s, -",
+    "contact_map.velocity_of_map": "m, m/s, s, 1/s, 1/s2 -> m/s",
+    "contact_map.time_of_release": "m, m/s, 1/s, 1/s2, bool -> s",
+    "contact_map.begin_in_step": "m, m/s, s, 1/s, 1/s2 -> s, m, m/s, m/s",
+    "contact_map.end_in_step": "m, m/s, s, s, 1/s, 1/s2 -> m/s, m/s",
     "contact_step.contact_kinematics": (
         "bool, m, m, m, m, m, m/s, m/s, m/s, rad/s, rad/s, rad/s, rad/s, rad/s, rad/s, s"
         " -> -, -, -, m, m, m, m/s, m/s, m/s, m/s, -"
@@ -100,6 +113,10 @@ UNITS = {
     "drag.terminal_velocity_ferguson_church": "-, m/s2, m, m2/s, -, - -> m/s",
     "drag.terminal_velocity_soulsby": "-, m/s2, m, m2/s -> m/s",
     "drag.terminal_velocity_dietrich": "-, m/s2, m, m2/s -> m/s",
+    "slip_within_step.slip_within_step": (
+        "s, m, m/s, 1/s, 1/s2, kg, N, N, N, m/s, m/s, m/s, N/m, N s/m, kg, N, -, bool, bool, bool"
+        " -> N, N, N, m/s, m/s, m/s, m, m, m, bool"
+    ),
     "geometry.overlap": "m, m, m -> m",
     "geometry.arm": "m, m -> m",
     "geometry.wrap": "m, m -> m",

@@ -31,6 +31,7 @@ from ryusa.laws.families import (
     Arm,
     Buoyancy,
     Cap,
+    ContactTiming,
     Drag,
     Hindrance,
     Lift,
@@ -140,6 +141,7 @@ def contact_of(case: Case, derived: Derived) -> ContactLaw:
         slip=Slip.of(contact.slip),
         cap=chosen(case, Cap),
         tension=may_pull(case),
+        timing=ContactTiming.of(contact.timing),
     )
 
 

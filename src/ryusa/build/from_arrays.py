@@ -11,7 +11,7 @@ from ryusa.build.overlaps import refuse_overlaps
 from ryusa.build.placement import Placement, Wall
 from ryusa.errors import CaseError
 from ryusa.laws import collision
-from ryusa.laws.families import Cap, Slip
+from ryusa.laws.families import Cap, ContactTiming, Slip
 from ryusa.model import ContactLaw, RollingLaw, Scene, State, Water
 from ryusa.model.scene import EventRule, Floats
 
@@ -33,6 +33,7 @@ def scene(
     friction: float = math.tan(math.radians(30.0)),
     slip: Slip = Slip.SPRING,
     tension: bool = False,
+    timing: ContactTiming = ContactTiming.AT_STEPS,
     contact: ContactLaw | None = None,
     rolling: RollingLaw | None = None,
     water: Water | None = None,
@@ -55,8 +56,8 @@ def scene(
     v, omega : velocities [m/s] and spins [rad/s], shape (n, 3); at rest when not given.
     x_fixed, d_fixed : fixed grains, as x and d; d_fixed is the mean of d when not given.
     planes : (name, point [m], normal) of each flat wall.
-    stiffness, shear_ratio, restitution, restitution_shear, friction, slip, tension : the contact law;
-        friction is mu = tan(phi). `contact` replaces them by a complete law.
+    stiffness, shear_ratio, restitution, restitution_shear, friction, slip, tension,
+        timing : the contact law; friction is mu = tan(phi). `contact` replaces them by a complete law.
     gravity, slope : g [m/s2] and bed slope [rad], down towards +x.
     plane_case : motion in x-z only; grains interact only if their y is exactly equal (a lane).
     period : periods in x and y [m]; inf where open, as y must be in a plane scene.
@@ -86,7 +87,7 @@ def scene(
     refuse_overlaps(placement, "x", plane_case)
     fluid = water or Water()
     e_s = restitution if restitution_shear is None else restitution_shear
-    law = contact or _contact_law(stiffness, shear_ratio, friction, restitution, e_s, slip, tension)
+    law = contact or _contact_law(stiffness, shear_ratio, friction, restitution, e_s, slip, tension, timing)
     step = _shortest_contact(placement.d, density, fluid, law) / steps_per_contact if dt is None else dt
     slab_width = float(placement.d.mean()) if plane_case else math.nan
     laws = Laws(
@@ -142,7 +143,14 @@ def _placement(
 
 
 def _contact_law(
-    k_n: float, shear_ratio: float, mu: float, e_n: float, e_s: float, slip: Slip, tension: bool
+    k_n: float,
+    shear_ratio: float,
+    mu: float,
+    e_n: float,
+    e_s: float,
+    slip: Slip,
+    tension: bool,
+    timing: ContactTiming,
 ) -> ContactLaw:
     return ContactLaw(
         k_n=k_n,
@@ -155,6 +163,7 @@ def _contact_law(
         slip=slip,
         cap=Cap.TOTAL if "total" in slip.marks else Cap.SPRING,
         tension=tension,
+        timing=timing,
     )
 
 

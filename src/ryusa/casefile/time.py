@@ -9,6 +9,7 @@ from ryusa.casefile.quantities import Duration, Number
 from ryusa.casefile.rows import ExplainRow, number
 from ryusa.casefile.section import Section
 from ryusa.errors import CaseError
+from ryusa.laws.families import ContactTiming
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
@@ -17,14 +18,14 @@ if TYPE_CHECKING:
 RIVALS = (("steps_per_contact", "step"),)
 STEPS_PER_CONTACT = 50.0  # when the case gives no step
 COARSEST, FINEST = 5.0, 1.0e4  # steps per contact that a given step must lie between
-FEWEST_STEPS = 10.0  # per contact, below which the restitution is off: the paper
+FEWEST_STEPS = 10.0  # per contact that begins at steps, below which the restitution is off: the paper
 CLOSE = 0.5  # fraction of the largest stable step beyond which grains in several contacts may be unstable
 
 
 class TimeSection(Section):
     """The time step."""
 
-    steps_per_contact: Annotated[Number, Field(ge=10, le=10_000)] | None = None
+    steps_per_contact: Annotated[Number, Field(ge=5, le=10_000)] | None = None
     """Number of steps in the shortest contact that can occur; 50 when no step is given."""
     step: Duration | None = None
     """Time step dt, instead of steps_per_contact."""
@@ -33,6 +34,14 @@ class TimeSection(Section):
 def check_time(case: "Case", derived: "Derived", data: dict[str, Any]) -> Iterator[CaseError]:
     """Find a time step beyond the stability limit of a contact, too coarse or needlessly fine."""
     written = data.get("time", {})
+    steps, timing = case.time.steps_per_contact, case.contact.timing
+    if steps is not None and steps < FEWEST_STEPS and not _exact(case):
+        yield CaseError(
+            "time.steps_per_contact",
+            steps,
+            f"must be at least {FEWEST_STEPS:g} with contact.timing '{timing}'; "
+            f"'{ContactTiming.EXACT.word}' allows {COARSEST:g}",
+        )
     if derived.dt > derived.step_limit:
         key = "steps_per_contact" if case.time.step is None else "step"
         yield CaseError(f"time.{key}", written.get(key), _unstable(derived, key))
@@ -51,6 +60,11 @@ def check_time(case: "Case", derived: "Derived", data: dict[str, Any]) -> Iterat
             written.get("step"),
             f"must be above {t_col / FINEST:.3g} s, 1e-4 of the shortest contact, {t_col:.3g} s",
         )
+
+
+def _exact(case: "Case") -> bool:
+    """Whether contacts begin and end within steps."""
+    return ContactTiming.of(case.contact.timing) is ContactTiming.EXACT
 
 
 def _unstable(derived: "Derived", key: str) -> str:
@@ -77,7 +91,7 @@ def time_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     partners = "two free grains" if derived.meet else "a grain on a fixed one"
     size = ", both of the smallest diameter" if derived.meet else ", of the smallest diameter"
     partners += size if derived.d_max > derived.d_min else ""
-    few = derived.steps_per_contact < FEWEST_STEPS
+    few = derived.steps_per_contact < FEWEST_STEPS and not _exact(case)
     ratio = "shortest contact over dt"
     ratio += "; the paper asks for at least ten: with fewer the restitution is not reached" if few else ""
     step = "time.step"

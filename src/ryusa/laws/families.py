@@ -57,6 +57,15 @@ class Parting(Family, key="contact.parting"):
         "the dashpot may pull until the overlap ends", "Eq. (1) as printed")
 
 
+class ContactTiming(Family, key="contact.timing"):
+    """Begin and end of a contact in time."""
+
+    AT_STEPS = (0, "at steps", None,
+        "a contact begins and ends at time steps, with errors of one step", "LAMMPS and others")
+    EXACT = (1, "exact", None,
+        "a contact begins and ends at its true instants within a step", "design/0014")
+
+
 class Slip(Family, key="contact.slip"):
     """Tangential contact: the forces that the Coulomb cap limits. Marks: arguments of `contact.slide`."""
 

@@ -10,6 +10,7 @@ from ryusa.laws.families import (
     Arm,
     Buoyancy,
     Cap,
+    ContactTiming,
     Drag,
     Hindrance,
     Lift,
@@ -59,6 +60,7 @@ class ContactLaw:
     slip: Slip = Slip.SPRING
     cap: Cap = Cap.SPRING
     tension: bool = False  # whether the dashpot may pull before the overlap ends
+    timing: ContactTiming = ContactTiming.AT_STEPS
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ryusa.errors import CheckpointError
 from ryusa.model import Contacts, CouplingState, EngineBlock, FluidAtGrains, Scene, State
 from ryusa.model.column import WaterState
-from ryusa.model.contacts import N_EVENT
+from ryusa.model.contacts import N_EVENT, N_STATE
 from ryusa.model.eddies import Eddies
 from ryusa.model.fluid import N_IMPULSE, N_SAMPLED
 from ryusa.model.tally import N_TERM, PENDING, Tally
@@ -104,7 +104,15 @@ class _Reader:
         found = {name: self._floats(f"contacts/{name}", shape) for name, shape in rows.items()}
         found |= {name: self._floats(f"contacts/{name}", (k,)) for name in ("dash_n", "f_n", "eta_n")}
         event = self._array("contacts/event", (k, N_EVENT), _FLOAT)
-        return Contacts(i=i, j=j, event=event, **found)
+        state = np.ones(k, _INT)
+        if "contacts/state" in self._arrays:  # checkpoints of earlier versions have no states
+            state = self._array("contacts/state", (k,), _INT)
+            found |= {name: self._floats(f"contacts/{name}", (k,)) for name in ("k_n", "rest_of_closing")}
+        else:
+            found |= {name: np.zeros(k) for name in ("k_n", "rest_of_closing")}
+        if k and not (state.min() >= 1 and state.max() <= N_STATE):
+            raise ValueError(f"the state of a contact is not 1 to {N_STATE}")
+        return Contacts(i=i, j=j, event=event, state=state, **found)
 
     def _tally(self) -> Tally | None:
         values = self._values

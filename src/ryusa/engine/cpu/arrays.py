@@ -67,8 +67,8 @@ class CandidateArrays(NamedTuple):
     j: Any  # place of its partner
     target: Any  # row of `PairArrays.f` for the partner
     index: Any  # number in the Verlet list
-    touching: Any  # 1 where they touch and the row holds
-    eta: Any  # normal and tangential dashpot [N s/m], (n_near, 2); (1, 2) where all are alike
+    touching: Any  # state of the pair (shared/contact_instants.py), 0 where the row holds nothing
+    eta: Any  # dashpots and stiffnesses (shared/memory_rows.py); one row for all where they are alike
     rows: Any  # memory (shared/memory_rows.py), (n_near, width); it and `eta` hold where they touch
 
 

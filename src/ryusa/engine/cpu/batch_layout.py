@@ -43,5 +43,16 @@ F_N = 58 * PITCH  # normal force, and that of the spring alone [N]
 E_N = 59 * PITCH
 HELD = 60 * PITCH  # 1 where they push, or pull if they may
 TOUCHING = 61 * PITCH  # 1 where they touch
-SIZE = 62 * PITCH
+# Only with exact timing:
+K_N = 62 * PITCH  # stiffnesses of the map [N/m]
+K_S = 63 * PITCH
+STATE = 64 * PITCH  # of the pair after this step (shared/contact_instants.py)
+WATCHED = 65 * PITCH  # 1 where the contact begins or ends, or may end
+GIVEN = 66 * PITCH  # 1 where the tangential force is in the next six rows: spring, and the rest [N]
+GIVEN_SPRING = 67 * PITCH
+GIVEN_REST = 70 * PITCH
+GIVEN_SLID = 73 * PITCH  # 1 where it slid
+UNTIL = 74 * PITCH  # time to the end of the force [s]; inf where it goes on, -inf where it ended before
+REST = 75 * PITCH  # correction of the closing speed that the next step makes [m/s]
+SIZE = 76 * PITCH
 FAR = 1.0e9  # [m] where a lane without a pair puts its partner

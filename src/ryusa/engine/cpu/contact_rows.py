@@ -1,10 +1,9 @@
-"""Memory rows and dashpots of candidate pairs: emptied at first touch, copied from list to list."""
+"""Memory rows and springs of candidate pairs: emptied at first touch, copied from list to list."""
 
 from typing import Any
 
 from ryusa.engine.cpu.simd.vec4 import copy4
-from ryusa.engine.shared import memory_rows as M
-from ryusa.engine.shared.dashpots import dashpots
+from ryusa.engine.shared.dashpots import set_springs
 from ryusa.engine.shared.kernel import inner
 
 
@@ -16,16 +15,25 @@ def dashpot_row(k: int, eta: Any) -> int:
 
 @inner()
 def begin_row(
-    k: int, i: int, j: int, rotation: int, c: Any, m: Any, x: Any, inertia: Any, eta: Any, rows: Any
+    k: int,
+    i: int,
+    j: int,
+    rotation: int,
+    exact: int,
+    c: Any,
+    m: Any,
+    x: Any,
+    inertia: Any,
+    eta: Any,
+    rows: Any,
 ) -> None:
-    """Clear the row of candidate k, which may touch now and did not before, and set its dashpots.
+    """Clear the row of candidate k, which may touch now and did not before, and set its springs.
 
     Where all are alike every thread writes the same numbers to the same place.
     """
     for a in range(rows.shape[1]):
         rows[k, a] = 0.0
-    e = dashpot_row(k, eta)
-    eta[e, M.ETA_N], eta[e, M.ETA_S] = dashpots(i, j, rotation, c, m, x, inertia)
+    set_springs(dashpot_row(k, eta), i, j, rotation, exact, c, m, x, inertia, eta)
 
 
 @inner(forceinline=True)
@@ -33,7 +41,8 @@ def copy_row(at: int, to_eta: Any, to_rows: Any, of: int, eta: Any, rows: Any) -
     """Copy dashpots and memory of pair `of` of one list to pair `at` of another, by whole vectors."""
     width = rows.shape[1]
     a, e = dashpot_row(at, to_eta), dashpot_row(of, eta)
-    to_eta[a, 0], to_eta[a, 1] = eta[e, 0], eta[e, 1]
+    for k in range(eta.shape[1]):
+        to_eta[a, k] = eta[e, k]
     for k in range(0, width - 3, 4):
         copy4(to_rows, width * at + k, rows, width * of + k)
     for k in range(width // 4 * 4, width):

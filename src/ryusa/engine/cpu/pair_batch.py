@@ -49,14 +49,15 @@ def filter_pairs(
     mark_within_cutoff(plane_case, reach_on, m, c, separation, inside)
     for l in range(m):  # no branch: which pairs touch is not predictable
         selected[waiting] = first + l
-        waiting += int(inside[l] > 0.0) | int(touching[first + l])
+        waiting += int(inside[l] > 0.0) | int(touching[first + l] != 0)
     return waiting
 
 
 @inner(fastmath=FAST, forceinline=True)
 def gather(
-    rotation: int, m: int, selected: Any, n_solid: int, c: Any, mass: Any, inertia: Any, x: Any, v: Any,
-    w: Any, points: Any, normals: Any, i_of: Any, j_of: Any, touching: Any, eta: Any, rows: Any, batch: Any,
+    rotation: int, exact: int, m: int, selected: Any, n_solid: int, c: Any, mass: Any, inertia: Any, x: Any,
+    v: Any, w: Any, points: Any, normals: Any, i_of: Any, j_of: Any, touching: Any, eta: Any, rows: Any,
+    batch: Any,
 ) -> int:  # fmt: skip
     """Copy the first m selected pairs to as many lanes; returns the number of lanes to compute.
 
@@ -67,7 +68,7 @@ def gather(
         k = selected[l]
         i, j = i_of[k], j_of[k]
         if not touching[k]:
-            begin_row(k, i, j, rotation, c, mass, x, inertia, eta, rows)
+            begin_row(k, i, j, rotation, exact, c, mass, x, inertia, eta, rows)
         set_separation(B.SEPARATION // 4 + l, i, j, n_solid, x, points, normals, batch)
         e = dashpot_row(k, eta)
         write4(
@@ -82,6 +83,8 @@ def gather(
         copy4(batch, B.SPRING + 4 * l, rows, width * k)
         copy4(batch, B.DASH + 4 * l, rows, width * k + M.DASH_S)
         batch[B.ETA_S + l], batch[B.WAS_TOUCHING + l] = eta[e, M.ETA_S], touching[k]
+        if exact:
+            batch[B.K_N + l], batch[B.K_S + l] = eta[e, M.K_N], eta[e, M.K_S]
     whole = (m + 7) // 8 * 8
     for l in range(m, whole):
         for a in range(4):
@@ -89,6 +92,7 @@ def gather(
             batch[B.SPIN_I + 4 * l + a] = batch[B.SPIN_J + 4 * l + a] = 0.0
             batch[B.SPRING + 4 * l + a] = batch[B.DASH + 4 * l + a] = 0.0
         batch[B.ETA_S + l] = batch[B.WAS_TOUCHING + l] = 0.0
+        batch[B.K_N + l] = batch[B.K_S + l] = 1.0
         batch[B.SEPARATION + 4 * l] = B.FAR
     return whole
 
@@ -229,8 +233,9 @@ def compute(flat: int | None, choice: LawChoice, m: int, hdt: float, most: float
 
 @inner(fastmath=FAST, forceinline=True)
 def scatter(
-    m: int, selected: Any, i_of: Any, target: Any, touching: Any, rows: Any, batch: Any, f: Any
-) -> bool:
+    exact: int | None, m: int, selected: Any, i_of: Any, target: Any, touching: Any, rows: Any, batch: Any,
+    f: Any,
+) -> bool:  # fmt: skip
     """Add the first m lanes to their grains, one by one in the order of the list, and keep their memory.
 
     `selected` are the candidates on the lanes. Returns whether an overlap is larger than any before.
@@ -245,6 +250,7 @@ def scatter(
         add4(f, 8 * j + 4, batch, B.TORQUE_J + 4 * l)
         copy4(rows, width * k, batch, B.SPRING + 4 * l)
         copy4(rows, width * k + M.DASH_S, batch, B.DASH + 4 * l)
-        touching[k] = batch[B.TORQUE_I + 4 * l + 3] > 0.0
+        if exact is None:
+            touching[k] = batch[B.TORQUE_I + 4 * l + 3] > 0.0
         larger = larger or batch[B.EXCESS + l] > 0.0
     return larger

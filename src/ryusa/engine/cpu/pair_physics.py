@@ -4,6 +4,7 @@ Lane by lane, after (or, for the rebound, before) the contact law has been compu
 """
 # ruff: noqa: E741  (l is a lane)
 
+import math
 from typing import Any
 
 from ryusa.engine.cpu import batch_layout as B
@@ -13,7 +14,7 @@ from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared import record_fields as R
 from ryusa.engine.shared.contact_records import begin_record, end_record, keep_record
-from ryusa.engine.shared.dashpots import dashpot_immersed
+from ryusa.engine.shared.dashpots import dashpot_immersed, spring_immersed
 from ryusa.engine.shared.kernel import FAST, inner, kernel
 from ryusa.engine.shared.rolling import end_rolling, rolling_friction
 from ryusa.engine.shared.variant import KernelVariant, LawChoice
@@ -26,6 +27,7 @@ from ryusa.model.contacts import N_EVENT
 
 @kernel(fastmath=FAST)
 def immersed_dashpots(
+    exact: int | None,
     choice: LawChoice,
     m: int,
     selected: Any,
@@ -49,8 +51,46 @@ def immersed_dashpots(
             batch[B.RELATIVE_VELOCITY + 4 * l + 2],
         )
         closing = (u_x * d_x + u_y * d_y + u_z * d_z) / distance
-        eta_n = dashpot_immersed(choice, closing, candidates.i[k], candidates.j[k], c, grains.m, grains.w)
+        i, j = candidates.i[k], candidates.j[k]
+        if exact is None:
+            eta_n = dashpot_immersed(choice, closing, i, j, c, grains.m, grains.w)
+        else:
+            eta_n, k_n = spring_immersed(choice, closing, i, j, c, grains.m, grains.w)
+            batch[B.K_N + l] = candidates.eta[k, M.K_N] = k_n
         batch[B.RELATIVE_VELOCITY + 4 * l + 3] = candidates.eta[k, M.ETA_N] = eta_n
+
+
+@inner(fastmath=FAST)
+def record_of_lane(
+    variant: KernelVariant, choice: LawChoice, l: int, i: int, j: int, n: int, t: float, was: bool,
+    touching: bool, normal: Any, slip: Any, force: Any, c: Any, grains: GrainArrays, record: Any, batch: Any,
+    ended: Any, stats: Any,
+) -> None:  # fmt: skip
+    """Begin, keep or end the record of the pair on lane l."""
+    dt, overlap, closing, n_touching = c[P.DT], batch[B.OVERLAP + l], batch[B.CLOSING + l], grains.n_touching
+    if touching and not was:
+        record[:] = 0.0
+        begin_record(
+            variant.plane_case, choice.events, record, t, dt, overlap, closing, slip, normal, i, j, n, grains,
+            c[P.PERIOD_X], c[P.PERIOD_Y],
+        )  # fmt: skip
+    goes_on, tension, f_last, until = touching, choice.tension, record[R.T_PART], math.inf
+    if variant.exact:  # a record ends after the last force, which may act after the grains parted
+        goes_on, until = batch[B.STATE + l] > 0.0, batch[B.UNTIL + l]
+        tension, f_last = 0, 1.0 if until == 0.0 else 0.0
+    if goes_on:
+        t_end = record[R.T_END]
+        keep_record(
+            record, t, dt, overlap, batch[B.SPRING + 4 * l + 3], batch[B.RAW + l], force,
+            batch[B.SLIDES + l] > 0.0, n_touching[i] > 1 or (j < n and n_touching[j] > 1),
+        )  # fmt: skip
+        if variant.exact and until < math.inf:
+            record[R.T_END] = t + until if until >= 0.0 else t_end
+    elif was and record[R.PARTNER] >= 0.0:
+        end_record(
+            variant.plane_case, tension, record, f_last, t, overlap, closing, slip, normal, i, grains.v,
+            grains.w, ended, stats,
+        )  # fmt: skip
 
 
 @inner(fastmath=FAST)
@@ -71,8 +111,8 @@ def optional_physics(
     stats: Any,
 ) -> float:
     """Rolling friction, records and films of the first m lanes; returns the energy in rolling springs [J]."""
-    v, w, n_touching = grains.v, grains.w, grains.n_touching
-    rows, dt, width = candidates.rows, c[P.DT], candidates.rows.shape[1]
+    w, n_touching = grains.w, grains.n_touching
+    rows, width = candidates.rows, candidates.rows.shape[1]
     held = 0.0
     for l in range(m):
         was, touching = batch[B.WAS_TOUCHING + l] > 0.0, batch[B.TORQUE_I + 4 * l + 3] > 0.0
@@ -108,23 +148,10 @@ def optional_physics(
                 radius = reduced_radius(w[i, 3], w[j, 3])
                 end_rolling(choice.rolling, row, c, hdt, spin_i, spin_j, radius, account)
         if variant.events:
-            record = row[width - N_EVENT :]
-            if touching and not was:
-                record[:] = 0.0
-                begin_record(
-                    variant.plane_case, choice.events, record, t, dt, overlap, closing, slip, normal, i, j, n,
-                    grains, c[P.PERIOD_X], c[P.PERIOD_Y],
-                )  # fmt: skip
-            if touching:
-                keep_record(
-                    record, t, dt, overlap, f_n, batch[B.RAW + l], force,
-                    batch[B.SLIDES + l] > 0.0, n_touching[i] > 1 or (j < n and n_touching[j] > 1),
-                )  # fmt: skip
-            elif was and record[R.PARTNER] >= 0.0:
-                end_record(
-                    variant.plane_case, choice.tension, record, record[R.T_PART], t, overlap, closing, slip,
-                    normal, i, v, w, ended, stats,
-                )  # fmt: skip
+            record_of_lane(
+                variant, choice, l, i, j, n, t, was, touching, normal, slip, force, c, grains,
+                row[width - N_EVENT :], batch, ended, stats,
+            )  # fmt: skip
         if variant.film and not touching and overlap > -c[P.FILM_REACH]:
             radius = reduced_radius(w[i, 3], w[j, 3])
             f = lubrication_force(

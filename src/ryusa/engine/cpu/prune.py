@@ -87,7 +87,7 @@ def prune(
             k += 1
         if k == first + new or pair[k] != spare.index[t]:
             return -1, n_touching
-        touching[k] = 1
+        touching[k] = spare.touching[t]
         copy_row(k, candidates.eta, candidates.rows, t, spare.eta, spare.rows)
     return 0, n_touching
 
@@ -125,6 +125,7 @@ def _save_touching(b: int, candidates: CandidateArrays, spare: CandidateArrays) 
         if candidates.touching[k]:
             spare.i[t], spare.j[t] = candidates.i[k], candidates.j[k]
             spare.target[t], spare.index[t] = candidates.target[k], candidates.index[k]
+            spare.touching[t] = candidates.touching[k]
             copy_row(t, spare.eta, spare.rows, k, candidates.eta, candidates.rows)
             t += 1
     return t
@@ -143,7 +144,7 @@ def _restore_touching(b: int, n_touching: int, candidates: CandidateArrays, spar
             spare.target[t],
             spare.index[t],
         )
-        candidates.touching[k] = 1
+        candidates.touching[k] = spare.touching[t]
         copy_row(k, candidates.eta, candidates.rows, t, spare.eta, spare.rows)
 
 
@@ -153,15 +154,16 @@ def count_touching(candidates: CandidateArrays) -> int:
     total = 0
     for b in range(len(candidates.count)):
         for k in range(candidates.first[b], candidates.first[b] + candidates.count[b]):
-            total += candidates.touching[k]
+            total += int(candidates.touching[k] != 0)
     return total
 
 
 @kernel()
 def copy_rows_out(
-    n: int, candidates: CandidateArrays, ids: Any, out_i: Any, out_j: Any, eta: Any, rows: Any
-) -> None:
-    """Copy ids, dashpots and memory of all pairs in touch, in the order of the list."""
+    n: int, candidates: CandidateArrays, ids: Any, out_i: Any, out_j: Any, states: Any, eta: Any,
+    rows: Any,
+) -> None:  # fmt: skip
+    """Copy ids, states, springs and memory of all pairs in touch, in the order of the list."""
     t = 0
     for b in range(len(candidates.count)):
         for k in range(candidates.first[b], candidates.first[b] + candidates.count[b]):
@@ -169,6 +171,7 @@ def copy_rows_out(
                 i, j = candidates.i[k], candidates.j[k]
                 out_i[t] = ids[i]
                 out_j[t] = ids[j] if j < n else j
+                states[t] = candidates.touching[k]
                 copy_row(t, eta, rows, k, candidates.eta, candidates.rows)
                 t += 1
 
@@ -181,10 +184,11 @@ def copy_rows_in(
     index: Any,
     i_ids: Any,
     j_ids: Any,
+    states: Any,
     eta: Any,
     rows: Any,
 ) -> int:
-    """Copy dashpots and memory into a new list; returns the first contact that is not in it, or -1.
+    """Copy states, springs and memory into a new list; returns the first contact that is not in it, or -1.
 
     `index` turns the id of a free grain into its place, `block_of` the place into its block.
     """
@@ -205,5 +209,5 @@ def copy_rows_in(
         if low == end or candidates.i[low] != i:
             return t
         copy_row(low, candidates.eta, candidates.rows, t, eta, rows)
-        candidates.touching[low] = 1
+        candidates.touching[low] = states[t]
     return -1

@@ -17,6 +17,7 @@ from ryusa.engine.cpu.arrays import (
     Workspace,
 )
 from ryusa.engine.cpu.barrier import wait
+from ryusa.engine.cpu.exact_contact import compute_exactly, keep_states, spring_energy_of_maps
 from ryusa.engine.cpu.integration import integrate
 from ryusa.engine.cpu.pair_batch import compute, filter_pairs, gather, overlap_of_lane, scatter
 from ryusa.engine.cpu.pair_physics import immersed_dashpots, optional_physics
@@ -52,10 +53,10 @@ TERMS = tuple(
 
 @inner(fastmath=FAST, forceinline=True)
 def block_forces(
-    variant: KernelVariant, flat: Present, water: Present, optional: Present, choice: LawChoice, b: int,
-    hi: int, n: int, n_solid: int, step: int, t: float, hdt: float, last: bool, c: Any, grains: GrainArrays,
-    walls: WallArrays, pairs: PairArrays, candidates: CandidateArrays, work: Workspace, ended: Any,
-    account: Any, stats: Any,
+    variant: KernelVariant, flat: Present, water: Present, optional: Present, exact: Present,
+    choice: LawChoice, b: int, hi: int, n: int, n_solid: int, step: int, t: float, hdt: float, last: bool,
+    c: Any, grains: GrainArrays, walls: WallArrays, pairs: PairArrays, candidates: CandidateArrays,
+    work: Workspace, ended: Any, account: Any, stats: Any,
 ) -> None:  # fmt: skip
     """Forces of every pair that block b, grains up to hi-1, owns, batch by batch of those that touch."""
     batch, separation, inside, selected = work.batch, work.separation, work.inside, work.selected
@@ -96,17 +97,25 @@ def block_forces(
         if m == 0:
             break
         lanes = gather(
-            variant.rotation, m, selected, n_solid, c, mass, inertia, x, v, w, points, normals, i_of, j_of,
-            touching, eta, rows, batch,
+            variant.rotation, variant.exact, m, selected, n_solid, c, mass, inertia, x, v, w, points, normals,
+            i_of, j_of, touching, eta, rows, batch,
         )  # fmt: skip
         if water is not None and choice.rebound:
-            immersed_dashpots(choice, m, selected, c, grains, candidates, batch)
-        compute(flat, choice, lanes, hdt, stats[S.OVERLAP_MAX], c, batch)
+            immersed_dashpots(exact, choice, m, selected, c, grains, candidates, batch)
+        if exact is None:
+            compute(flat, choice, lanes, hdt, stats[S.OVERLAP_MAX], c, batch)
+        else:
+            compute_exactly(
+                flat, variant.rotation, choice, m, lanes, hdt, stats[S.OVERLAP_MAX], selected, i_of, j_of,
+                mass, inertia, c, batch,
+            )  # fmt: skip
         if optional is not None:
             spring_r += optional_physics(
                 variant, choice, m, n, t, hdt, selected, c, grains, candidates, batch, ended, account, stats
             )
-        if scatter(m, selected, i_of, to, touching, rows, batch, f):
+        if exact is not None:
+            keep_states(m, selected, touching, batch)
+        if scatter(exact, m, selected, i_of, to, touching, rows, batch, f):
             track_overlap(m, selected, n, step, c, grains, candidates, batch, stats)
         waiting -= m
         for l in range(waiting):
@@ -117,7 +126,10 @@ def block_forces(
             total += batch[B.WORK + row * B.PITCH + l]
         account[TERMS[row]] += total
     if last:
-        stats[S.SPRING_N], stats[S.SPRING_S], stats[S.N_CONTACT] = spring_energy(b, c, candidates)
+        if exact is None:
+            stats[S.SPRING_N], stats[S.SPRING_S], stats[S.N_CONTACT] = spring_energy(b, c, candidates)
+        else:
+            stats[S.SPRING_N], stats[S.SPRING_S], stats[S.N_CONTACT] = spring_energy_of_maps(b, candidates)
         stats[S.SPRING_R] = spring_r
 
 
@@ -172,6 +184,7 @@ def make_run(variant: KernelVariant) -> Any:
     """
     flat: Present = 1 if variant.plane_case else None
     water: Present = 1 if variant.water else None
+    exact: Present = 1 if variant.exact else None
     optional: Present = 1 if variant.rolling or variant.events or variant.film else None
 
     @kernel(nogil=True, fastmath=FAST)
@@ -246,8 +259,8 @@ def make_run(variant: KernelVariant) -> Any:
             hdt = 0.0 if step == 0 else 0.5 * dt
             for b in range(b_0, b_1):
                 block_forces(
-                    variant, flat, water, optional, choice, b, block_start[b + 1], n, n_solid, step, t, hdt,
-                    last, c, grains, walls, pairs, candidates, work, ended[b], terms[b], stats[b],
+                    variant, flat, water, optional, exact, choice, b, block_start[b + 1], n, n_solid, step, t,
+                    hdt, last, c, grains, walls, pairs, candidates, work, ended[b], terms[b], stats[b],
                 )  # fmt: skip
             target = wait(count, n_threads, target)
             for b in range(b_0, b_1):

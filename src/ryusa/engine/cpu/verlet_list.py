@@ -44,7 +44,7 @@ class BlockLayout(Layout):
         total = int(first[-1])
         i, j, target, index = (np.zeros(total, np.uint32) for _ in range(4))
         touching, rows = np.zeros(total, np.uint8), aligned(total, self.variant.row_width)
-        eta = np.zeros((total if self.many_dashpots else 1, 2))
+        eta = np.zeros((total if self.many_dashpots else 1, self.variant.springs))
         return CandidateArrays(
             first, np.zeros(len(pairs), np.int64), i, j, target, index, touching, eta, rows
         )
@@ -187,6 +187,8 @@ def collect_memory(n: int, grains: GrainArrays, candidates: CandidateArrays) -> 
     count = count_touching(candidates)
     width = candidates.rows.shape[1]
     i, j = np.empty(count, np.int64), np.empty(count, np.int64)
-    memory = ContactMemory(i, j, np.empty((count, 2)), np.empty((count, width)))
+    memory = ContactMemory(
+        i, j, np.empty(count, np.uint8), np.empty((count, candidates.eta.shape[1])), np.empty((count, width))
+    )
     copy_rows_out(n, candidates, grains.ids, *memory)
     return memory

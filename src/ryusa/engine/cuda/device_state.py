@@ -287,4 +287,5 @@ class DeviceState:
         i_ids, j_ids = i.copy_to_host()[:total], j.copy_to_host()[:total]
         order = np.lexsort((j_ids, i_ids))
         eta, rows = eta.copy_to_host()[:total], rows.copy_to_host()[:total]
-        return ContactMemory(i_ids[order], j_ids[order], eta[order], rows[order])
+        touching = np.ones(total, np.uint8)
+        return ContactMemory(i_ids[order], j_ids[order], touching, eta[order], rows[order])

@@ -33,6 +33,7 @@ from ryusa.engine.shared.skin import best_skin
 from ryusa.engine.shared.status import STOP_DONE, STOP_EVENTS, STOP_LIST, STOP_UNSAFE
 from ryusa.engine.shared.variant import choice_of, variant_of
 from ryusa.errors import RunError
+from ryusa.laws.families import ContactTiming
 from ryusa.model import EngineBlock, FluidAtGrains, Scene, State, Tally, Term
 from ryusa.model.contacts import N_EVENT
 from ryusa.model.fluid import SUBMERGED
@@ -66,7 +67,11 @@ class CudaEngine:
 
     def refuses(self, scene: Scene) -> tuple[str, ...]:
         """Reasons why this engine cannot simulate the scene; () when it can. Those of the CPU engine."""
-        return refusals(scene)
+        exact = scene.contact.timing == ContactTiming.EXACT
+        return (
+            *refusals(scene),
+            *(("contact.timing = 'exact' runs on the cpu engine only",) if exact else ()),
+        )
 
     def load(self, scene: Scene, state: State) -> None:
         """Take a scene and an initial state or a snapshot; enter a change of the scene in the account."""

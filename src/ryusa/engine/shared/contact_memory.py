@@ -6,7 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ryusa.engine.shared import memory_rows as M
-from ryusa.engine.shared.dashpots import dashpots_of
+from ryusa.engine.shared.contact_instants import ENDING
+from ryusa.engine.shared.dashpots import springs_of
 from ryusa.engine.shared.layout import Layout
 from ryusa.engine.shared.variant import KernelVariant, LawChoice
 from ryusa.model import Contacts, Scene
@@ -15,28 +16,35 @@ from ryusa.model.scene import Floats
 
 
 class ContactMemory(NamedTuple):
-    """Touching pairs by id, with their dashpots and memory rows (memory_rows.py)."""
+    """Touching pairs by id: states (contact_instants.py), springs and memory rows (memory_rows.py)."""
 
     i: np.ndarray
     j: np.ndarray
+    states: np.ndarray
     eta: Floats
     rows: Floats
 
 
 def contacts_of(memory: ContactMemory, variant: KernelVariant) -> Contacts:
     """Contacts of a snapshot."""
-    i, j, eta, rows = memory
+    i, j, states, eta, rows = memory
     none = np.zeros((len(i), 3))
+    ending = states == ENDING
+    rest = np.where(ending, rows[:, M.REST_OF_CLOSING], 0.0)
+    spring_s = np.where(ending[:, None], 0.0, rows[:, M.SPRING_S : M.SPRING_S + 3])
     return Contacts(
         i=i,
         j=j,
-        spring_s=rows[:, M.SPRING_S : M.SPRING_S + 3].copy(),
+        spring_s=spring_s,
         dash_s=rows[:, M.DASH_S : M.DASH_S + 3].copy(),
         dash_n=rows[:, M.DASH_N].copy(),
         f_n=rows[:, M.F_N].copy(),
         spring_r=rows[:, M.SPRING_R : M.SPRING_R + 3].copy() if variant.rolling else none,
         dash_r=rows[:, M.DASH_R : M.DASH_R + 3].copy() if variant.rolling else none,
         eta_n=eta[:, M.ETA_N].copy(),
+        k_n=eta[:, M.K_N].copy() if variant.exact else np.zeros(len(i)),
+        state=states.astype(np.int64),
+        rest_of_closing=rest,
         event=rows[:, variant.event_column :].copy() if variant.events else np.zeros((len(i), N_EVENT)),
     )
 
@@ -46,11 +54,15 @@ def memory_of(
 ) -> ContactMemory:
     """Rows from a snapshot; dashpots follow from masses anew, but one that a film has fixed stays."""
     rows = np.zeros((len(contacts), variant.row_width))
-    eta, x = np.zeros((len(contacts), 2)), np.zeros((len(layout.r), 4))
+    eta, x = np.zeros((len(contacts), variant.springs)), np.zeros((len(layout.r), 4))
     x[:, 3] = layout.r
-    dashpots_of(contacts.i, contacts.j, variant.rotation, numbers, layout.m, x, layout.inertia, eta)
+    springs_of(
+        contacts.i, contacts.j, variant.rotation, variant.exact, numbers, layout.m, x, layout.inertia, eta
+    )
     if choice.rebound:
         eta[:, M.ETA_N] = contacts.eta_n
+        if variant.exact:
+            eta[:, M.K_N] = contacts.k_n
     rows[:, M.SPRING_S : M.SPRING_S + 3], rows[:, M.DASH_S : M.DASH_S + 3] = (
         contacts.spring_s,
         contacts.dash_s,
@@ -63,7 +75,10 @@ def memory_of(
         )
     if variant.events:
         rows[:, variant.event_column :] = contacts.event
-    return ContactMemory(contacts.i, contacts.j, eta, rows)
+    states = contacts.state.astype(np.uint8) if variant.exact else np.ones(len(contacts), np.uint8)
+    ending = states == ENDING
+    rows[ending, M.REST_OF_CLOSING] = contacts.rest_of_closing[ending]
+    return ContactMemory(contacts.i, contacts.j, states, eta, rows)
 
 
 def remaining_contacts(scene: Scene, contacts: Contacts) -> tuple[Contacts, np.ndarray]:

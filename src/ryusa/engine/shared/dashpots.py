@@ -1,4 +1,4 @@
-"""Dashpots of one pair: from the damping ratio, and from the immersed rebound at first touch."""
+"""Dashpots and stiffnesses of one pair: from the damping ratio, and from the immersed rebound at touch."""
 
 from typing import Any
 
@@ -8,6 +8,7 @@ from ryusa.engine.shared.kernel import inner, kernel
 from ryusa.engine.shared.variant import LawChoice
 from ryusa.laws.collision import effective_mass, effective_mass_tangential, zeta_for_restitution
 from ryusa.laws.contact import damping, damping_in_steps
+from ryusa.laws.contact_map import dashpot_of_map, spring_of_map
 from ryusa.laws.dispatch import wet_restitution
 from ryusa.laws.immersed import stokes_number
 from ryusa.laws.rolling import reduced_radius
@@ -24,19 +25,70 @@ def dashpots(i: int, j: int, rotation: int, c: Any, m: Any, x: Any, inertia: Any
     )
 
 
+@inner()
+def springs_of_maps(
+    i: int, j: int, rotation: int, c: Any, m: Any, x: Any, inertia: Any
+) -> tuple[float, float, float, float]:
+    """Dashpots [N s/m] and stiffnesses [N/m] of the normal and tangential map of a pair (contact_map.py)."""
+    m_t = effective_mass_tangential(m[i], x[i, 3], inertia[i], m[j], x[j, 3], inertia[j], rotation != 0)
+    m_n = effective_mass(m[i], m[j])
+    eta_n = c[P.ETA_N] + damping(c[P.ZETA_N], c[P.K_N], m_n)
+    eta_s = c[P.ETA_S] + damping(c[P.ZETA_S], c[P.K_S], m_t)
+    dt = c[P.DT]
+    return (
+        dashpot_of_map(eta_n, m_n, dt),
+        dashpot_of_map(eta_s, m_t, dt),
+        spring_of_map(c[P.K_N], eta_n, m_n, dt),
+        spring_of_map(c[P.K_S], eta_s, m_t, dt),
+    )
+
+
+@inner()
+def set_springs(
+    at: int, i: int, j: int, rotation: int, exact: int, c: Any, m: Any, x: Any, inertia: Any, out: Any
+) -> None:
+    """Fill row `at` of `out` with the dashpots, and with exact timing the stiffnesses, of pair i, j."""
+    if exact:
+        out[at, M.ETA_N], out[at, M.ETA_S], out[at, M.K_N], out[at, M.K_S] = springs_of_maps(
+            i, j, rotation, c, m, x, inertia
+        )
+    else:
+        out[at, M.ETA_N], out[at, M.ETA_S] = dashpots(i, j, rotation, c, m, x, inertia)
+
+
 @kernel()
-def dashpots_of(i: Any, j: Any, rotation: int, c: Any, m: Any, x: Any, inertia: Any, out: Any) -> None:
-    """Fill `out`, (n, 2), with the dashpots of pairs i, j."""
+def springs_of(
+    i: Any, j: Any, rotation: int, exact: int, c: Any, m: Any, x: Any, inertia: Any, out: Any
+) -> None:
+    """Fill `out`, (n, KernelVariant.springs), with those of pairs i, j."""
     for k in range(len(i)):
-        out[k, M.ETA_N], out[k, M.ETA_S] = dashpots(i[k], j[k], rotation, c, m, x, inertia)
+        set_springs(k, i[k], j[k], rotation, exact, c, m, x, inertia, out)
 
 
-@kernel()
-def dashpot_immersed(choice: LawChoice, closing: float, i: int, j: int, c: Any, m: Any, w: Any) -> float:
-    """Normal dashpot [N s/m] of a pair that just touched under water at this closing speed."""
+@inner()
+def damping_immersed(
+    choice: LawChoice, closing: float, i: int, j: int, c: Any, m: Any, w: Any
+) -> tuple[float, float]:
+    """Effective mass [kg] and dashpot [N s/m] of a pair that just touched under water at a closing speed."""
     m_n = effective_mass(m[i], m[j])
     st = stokes_number(closing, m_n, reduced_radius(w[i, 3], w[j, 3]), c[P.RHO_W], c[P.NU])
     smaller = 2.0 * min(w[i, 3], w[j, 3])
     e = wet_restitution(choice.rebound, c[P.E_DRY], st, c[P.ST_C], c[P.ASPERITY], smaller)
     zeta = zeta_for_restitution(max(e, c[P.E_LEAST]), choice.tension != 0)
-    return damping_in_steps(damping(zeta, c[P.K_N], m_n), m_n, c[P.DT])
+    return m_n, damping(zeta, c[P.K_N], m_n)
+
+
+@kernel()
+def dashpot_immersed(choice: LawChoice, closing: float, i: int, j: int, c: Any, m: Any, w: Any) -> float:
+    """Normal dashpot [N s/m] of a pair that just touched under water at this closing speed."""
+    m_n, eta = damping_immersed(choice, closing, i, j, c, m, w)
+    return damping_in_steps(eta, m_n, c[P.DT])
+
+
+@inner()
+def spring_immersed(
+    choice: LawChoice, closing: float, i: int, j: int, c: Any, m: Any, w: Any
+) -> tuple[float, float]:
+    """Normal dashpot [N s/m] and stiffness [N/m] of its map, as in `dashpot_immersed`."""
+    m_n, eta = damping_immersed(choice, closing, i, j, c, m, w)
+    return dashpot_of_map(eta, m_n, c[P.DT]), spring_of_map(c[P.K_N], eta, m_n, c[P.DT])

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ryusa.engine.shared.variant import KernelVariant
-from ryusa.laws.families import Profile, Rebound
+from ryusa.laws.families import ContactTiming, Profile, Rebound
 from ryusa.model import FluidAtGrains, Scene, State
 from ryusa.model.scene import Damping, Floats
 
@@ -44,7 +44,8 @@ class Layout:
         self.inertia = np.concatenate([scene.inertia, inf])
         self.tracked = scene.tracked if len(scene.tracked) == n else np.zeros(n, np.bool_)
         law, water = scene.contact, scene.water
-        self.many_dashpots = law.damping != Damping.CONSTANTS or water.rebound != Rebound.DRY
+        constant = law.damping == Damping.CONSTANTS and law.timing == ContactTiming.AT_STEPS
+        self.many_dashpots = not constant or water.rebound != Rebound.DRY
         self.period, self.scene = np.array(scene.period), scene
         self.low, self.high = np.array(scene.world_low), np.array(scene.world_high)
         self.plane_normals = np.ascontiguousarray(scene.plane_normal, dtype=np.float64).reshape(-1, 3)

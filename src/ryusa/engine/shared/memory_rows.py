@@ -5,6 +5,7 @@ Vectors take three columns. A plane scene keeps the component along its one tang
 
 # Row of a pair: vectors take three columns. A plane scene keeps the component along its one tangent.
 SPRING_S = 0  # tangential spring force on grain i [N]
+REST_OF_CLOSING = 0  # in their place, once the force has ended: correction of the closing speed [m/s]
 F_N = 3  # normal force in the last step [N]
 DASH_S = 4  # tangential dashpot force on i in the last step [N]
 DASH_N = 7  # normal force less normal spring in the last step [N]
@@ -13,5 +14,6 @@ DASH_R = 11  # rolling torque on i in the last step, less its spring [N m]
 END_ROLLING = 14
 WIDTH, WIDTH_ROLLING = 8, 16  # doubles of a row without and with rolling friction: whole cache lines
 
-# Dashpots of a pair [N s/m], kept beside its row.
-ETA_N, ETA_S = 0, 1
+# Dashpots [N s/m] and stiffnesses [N/m] of a pair, kept beside its row; those of its map with exact timing.
+ETA_N, ETA_S, K_N, K_S = 0, 1, 2, 3
+N_SPRING = 4

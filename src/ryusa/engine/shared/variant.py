@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from ryusa.engine.shared import memory_rows as M
-from ryusa.laws.families import Profile, Rolling
+from ryusa.laws.families import ContactTiming, Profile, Rolling
 from ryusa.model import Scene
 from ryusa.model.contacts import N_EVENT
 from ryusa.model.scene import EventRule
@@ -19,11 +19,17 @@ class KernelVariant(NamedTuple):
     column: int
     film: int  # films resist before touch
     water: int  # there is any
+    exact: int  # contacts begin and end within steps
 
     @property
     def row_width(self) -> int:
         """Doubles per contact row."""
         return self.event_column + (N_EVENT if self.events else 0)
+
+    @property
+    def springs(self) -> int:
+        """Dashpots and stiffnesses kept for each pair."""
+        return M.N_SPRING if self.exact else M.K_N
 
     @property
     def event_column(self) -> int:
@@ -61,6 +67,7 @@ def variant_of(scene: Scene) -> KernelVariant:
         column=int(scene.water.profile == Profile.COLUMN),
         film=int(scene.water.profile != Profile.NONE and scene.water.film_reach > 0.0),
         water=int(scene.water.profile != Profile.NONE),
+        exact=int(scene.contact.timing == ContactTiming.EXACT),
     )
 
 

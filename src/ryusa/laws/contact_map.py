@@ -1,0 +1,295 @@
+"""The exact map of a linear contact over one time step, and its true instants of touch and release.
+
+A contact of linear spring and dashpot, alone, is a damped oscillator y'' + 2 a y' + (a**2 + q) y = 0 with
+decay rate a [1/s] and square of the angular frequency q [1/s2], negative when it is overdamped. The scheme of
+`motion.semi_implicit` with constant coefficients is a linear map too: `spring_of_map` and `dashpot_of_map`
+make it the map of the oscillator sampled at the steps (design/0014). What is left of the error of a
+restitution then comes from the steps in which a contact begins and ends; `begin_in_step` and `end_in_step`
+let it begin and end within them.
+"""
+
+import math
+
+from ryusa.laws._law import law
+
+INSTANT = 1.0e-9  # phase over a step below which sine and its limit are the same in double precision
+
+
+@law
+def decay_rate(eta: float, m: float) -> float:
+    """Decay rate a of a contact [1/s]: eta/(2 m).
+
+    Parameters
+    ----------
+    eta : dashpot [N s/m].
+    m : effective mass [kg].
+
+    >>> decay_rate(4.0, 2.0)
+    1.0
+    """
+    return 0.5 * eta / m
+
+
+@law
+def frequency_squared(k: float, eta: float, m: float) -> float:
+    """Square q of the angular frequency of a damped contact [1/s2]: k/m - a**2; negative when overdamped.
+
+    Parameters
+    ----------
+    k : stiffness [N/m].
+    eta : dashpot [N s/m].
+    m : effective mass [kg].
+
+    >>> frequency_squared(10.0, 4.0, 2.0)
+    4.0
+    """
+    a = decay_rate(eta, m)
+    return k / m - a * a
+
+
+@law
+def half_sine_squared(q: float, t: float) -> float:
+    """sin(w t/2)**2 with w**2 = q [-]; -sinh(|w| t/2)**2 for negative q.
+
+    Parameters
+    ----------
+    q : square of the angular frequency [1/s2].
+    t : time [s].
+
+    >>> round(half_sine_squared(math.pi**2, 1.0), 12)
+    1.0
+    """
+    half = 0.5 * math.sqrt(math.fabs(q)) * t
+    if q >= 0.0:
+        return math.sin(half) ** 2
+    return -(math.sinh(half) ** 2)
+
+
+@law
+def spring_of_map(k: float, eta: float, m: float, dt: float) -> float:
+    """Stiffness whose discrete map is the oscillator of stiffness k [N/m].
+
+    Parameters
+    ----------
+    k : stiffness [N/m].
+    eta : dashpot [N s/m].
+    m : effective mass [kg].
+    dt : time step [s].
+
+    Returns
+    -------
+    m (1 - 2 E cos(w dt) + E**2)/dt**2 with E = exp(-a dt), w**2 = q: trace and determinant of the map
+    are those of the oscillator. Tends to k for small steps.
+
+    Notes
+    -----
+    Source: derived, design/0014.
+
+    >>> round(spring_of_map(1.0, 0.0, 1.0, math.pi / 3.0) * (math.pi / 3.0) ** 2, 12)
+    1.0
+    """
+    e = math.exp(-decay_rate(eta, m) * dt)
+    return m * ((1.0 - e) ** 2 + 4.0 * e * half_sine_squared(frequency_squared(k, eta, m), dt)) / (dt * dt)
+
+
+@law
+def dashpot_of_map(eta: float, m: float, dt: float) -> float:
+    """Dashpot whose discrete map is the oscillator with dashpot eta [N s/m]: m (1 - exp(-2 a dt))/dt.
+
+    Parameters
+    ----------
+    eta : dashpot [N s/m].
+    m : effective mass [kg].
+    dt : time step [s].
+
+    Notes
+    -----
+    Source: derived, design/0014. Tends to eta for small steps.
+
+    >>> round(dashpot_of_map(2.0 * math.log(2.0), 2.0, 1.0), 12)
+    1.0
+    """
+    return -m * math.expm1(-2.0 * decay_rate(eta, m) * dt) / dt
+
+
+@law
+def decay_of_map(eta_d: float, m: float, dt: float) -> float:
+    """Decay rate a [1/s] of the oscillator of a map; inverse of `dashpot_of_map`.
+
+    Parameters
+    ----------
+    eta_d : dashpot of the map [N s/m].
+    m : effective mass [kg].
+    dt : time step [s].
+
+    >>> round(decay_of_map(dashpot_of_map(0.5, 2.0, 0.1), 2.0, 0.1), 12)
+    0.125
+    """
+    return -0.5 * math.log1p(-eta_d * dt / m) / dt
+
+
+@law
+def frequency_of_map(k_d: float, eta_d: float, m: float, dt: float) -> float:
+    """Square q of the angular frequency [1/s2] of the oscillator of a map; inverse of `spring_of_map`.
+
+    Parameters
+    ----------
+    k_d, eta_d : stiffness [N/m] and dashpot [N s/m] of the map.
+    m : effective mass [kg].
+    dt : time step [s].
+
+    >>> round(
+    ...     frequency_of_map(spring_of_map(3.0, 0.5, 2.0, 0.1), dashpot_of_map(0.5, 2.0, 0.1), 2.0, 0.1), 12
+    ... )
+    1.484375
+    """
+    e = math.sqrt(1.0 - eta_d * dt / m)
+    square = (k_d * dt * dt / m - (1.0 - e) ** 2) / (4.0 * e)
+    if square >= 0.0:
+        return (2.0 * math.asin(math.sqrt(min(square, 1.0))) / dt) ** 2
+    return -((2.0 * math.asinh(math.sqrt(-square)) / dt) ** 2)
+
+
+@law
+def free_response(t: float, a: float, q: float) -> tuple[float, float]:
+    """Displacement [s] and velocity [-] of the oscillator at time t for a unit velocity at time 0.
+
+    Parameters
+    ----------
+    t : time [s], of either sign.
+    a : decay rate [1/s].
+    q : square of the angular frequency [1/s2].
+
+    Returns
+    -------
+    g : exp(-a t) sin(w t)/w.
+    h : dg/dt. From displacement x and velocity v at time 0, the displacement at t is x (h + 2 a g) + v g,
+        and the velocity v h - (a**2 + q) x g.
+
+    >>> free_response(0.5, 0.0, 0.0)
+    (0.5, 1.0)
+    """
+    w = math.sqrt(math.fabs(q))
+    phase = w * t
+    if math.fabs(phase) < INSTANT:
+        sine, cosine = t, 1.0
+    elif q > 0.0:
+        sine, cosine = math.sin(phase) / w, math.cos(phase)
+    else:
+        sine, cosine = math.sinh(phase) / w, math.cosh(phase)
+    decay = math.exp(-a * t)
+    return decay * sine, decay * (cosine - a * sine)
+
+
+@law
+def velocity_of_map(x: float, v: float, dt: float, a: float, q: float) -> float:
+    """Velocity at a step [m/s] of an oscillator at x that was at x - v dt one step before.
+
+    Parameters
+    ----------
+    x : displacement at the step [m].
+    v : mean velocity over the step before [m/s].
+    dt : time step [s].
+    a : decay rate [1/s].
+    q : square of the angular frequency [1/s2].
+
+    >>> round(velocity_of_map(1.0, 1.0, 1.0, 0.0, 0.0), 12)
+    1.0
+    """
+    g, h = free_response(-dt, a, q)
+    return (x - v * dt - x * (h + 2.0 * a * g)) / g
+
+
+@law
+def time_of_release(x: float, v: float, a: float, q: float, tension: bool) -> float:
+    """Time until the force of a contact ends [s]; inf if it does not, 0 if it has ended.
+
+    Parameters
+    ----------
+    x : overlap [m].
+    v : its rate [m/s], the closing speed.
+    a : decay rate [1/s].
+    q : square of the angular frequency [1/s2].
+    tension : the force ends with the overlap; else where it would pull.
+
+    Notes
+    -----
+    Source: derived, design/0014. Overlap, rate and force are all exp(-a t) (A cos(w t) + B sin(w t)/w).
+
+    >>> round(time_of_release(0.0, 1.0, 0.0, 4.0, True), 9)
+    1.570796327
+    """
+    cosine, sine = x, v + a * x
+    if not tension:
+        for _ in range(2):  # twice the derivative: the force is minus m y''
+            cosine, sine = sine - a * cosine, -a * sine - q * cosine
+        cosine, sine = -cosine, -sine
+    if cosine < 0.0:
+        return 0.0
+    w = math.sqrt(math.fabs(q))
+    if q > 0.0:
+        phase = math.atan2(cosine * w, -sine)
+        return (phase if phase > 0.0 else phase + math.pi) / w
+    if sine >= 0.0:
+        return math.inf
+    ratio = -cosine / sine
+    if w == 0.0:
+        return ratio
+    return math.atanh(ratio * w) / w if ratio * w < 1.0 else math.inf
+
+
+@law
+def begin_in_step(x: float, v: float, dt: float, a: float, q: float) -> tuple[float, float, float, float]:
+    """Let a contact that began within the last step be the oscillator from its true instant of touch.
+
+    Parameters
+    ----------
+    x : overlap at the first step that finds the grains in touch [m], > 0.
+    v : closing speed of that step [m/s], > 0.
+    dt : time step [s].
+    a : decay rate [1/s].
+    q : square of the angular frequency [1/s2].
+
+    Returns
+    -------
+    since : time since touch [s].
+    y : overlap that the oscillator has now [m]; less than x, since its force has braked the pair.
+    rate : its rate now [m/s].
+    v_new : mean closing speed over the coming step [m/s] that brings the overlap from x to where the
+        oscillator will be. The step after has to take the closing speed (y_new - y)/dt into its map.
+
+    >>> since, y, rate, v_new = begin_in_step(0.5, 1.0, 1.0, 0.0, 0.0)
+    >>> since, y, rate, v_new
+    (0.5, 0.5, 1.0, 1.0)
+    """
+    since = min(x / v, dt)
+    now, rate = free_response(since, a, q)
+    then, _ = free_response(since + dt, a, q)
+    return since, v * now, v * rate, (v * then - x) / dt
+
+
+@law
+def end_in_step(x: float, v: float, until: float, dt: float, a: float, q: float) -> tuple[float, float]:
+    """Let a contact that ends within the coming step leave the oscillator at its true instant of release.
+
+    Parameters
+    ----------
+    x : overlap [m].
+    v : its rate at the step [m/s].
+    until : time to the end of the force [s], at most dt.
+    dt : time step [s].
+    a : decay rate [1/s].
+    q : square of the angular frequency [1/s2].
+
+    Returns
+    -------
+    v_mean : mean closing speed over the coming step [m/s], with free flight after the release.
+    v_end : closing speed of that flight [m/s].
+
+    >>> end_in_step(0.0, -1.0, 0.0, 1.0, 0.0, 4.0)
+    (-1.0, -1.0)
+    """
+    g, h = free_response(until, a, q)
+    there = x * (h + 2.0 * a * g) + v * g
+    v_end = v * h - (a * a + q) * x * g
+    return (there + v_end * (dt - until) - x) / dt, v_end

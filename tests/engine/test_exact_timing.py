@@ -1,0 +1,131 @@
+"""Contacts that begin and end within steps (contact.timing = "exact") against closed forms and fine steps."""
+
+import math
+
+import numpy as np
+import pytest
+from tests.engine.conftest import D, pile, run
+
+from ryusa.build import scene
+from ryusa.laws import collision
+from ryusa.laws.families import ContactTiming, Drag, Profile, Rebound, Slip
+from ryusa.laws.immersed import restitution_exponential, stokes_number
+from ryusa.laws.rolling import reduced_radius
+from ryusa.model import Water
+from ryusa.model.scene import EventRule
+
+SPEED, K_N, PHASES = 0.1, 1.0e4, 40
+
+
+def impacts(e, partner, steps, plane=False, tension=False, timing=ContactTiming.EXACT, aslant=0.0, **more):
+    """Impacts at `PHASES` phases of the first step of touch, far apart from each other: scene and engine."""
+    common = {
+        "stiffness": K_N, "restitution": e, "tension": tension, "timing": timing, "plane_case": plane,
+        "gravity": 0.0, "steps_per_contact": steps, **more,
+    }  # fmt: skip
+    still = np.zeros((PHASES, 3))
+    still[:, 1] = 10.0 * D * np.arange(PHASES)
+    twice = np.vstack([still, still + np.array([0.0, 0.0, 5.0 * D])])
+    dt = scene(twice if partner == "free" else still, D, **common)[0].dt
+    gap = (3.0 + (np.arange(PHASES) + 0.5) / PHASES) * SPEED * dt
+    x, v = still.copy(), np.zeros((PHASES, 3))
+    x[:, 2] = gap + (0.5 * D if partner == "wall" else D)
+    v[:, 0], v[:, 2] = aslant * SPEED, -SPEED
+    if partner == "free":
+        x, v = np.vstack([x, still]), 0.5 * np.vstack([v, -v])
+    elif partner == "fixed":
+        common["x_fixed"] = still
+    else:
+        common["planes"] = [("floor", (0.0, 0.0, 0.0), (0.0, 0.0, 1.0))]
+    made = scene(x, D, v=v, events=EventRule.ALL, **common)
+    return made[0], run(made, int(4 * steps) + 10)
+
+
+@pytest.mark.parametrize("plane", [False, True])
+@pytest.mark.parametrize("partner", ["fixed", "wall", "free"])
+@pytest.mark.parametrize("tension", [False, True])
+@pytest.mark.parametrize("e", [0.1, 0.5, 0.9, 0.98])
+def test_restitution_and_contact_time_are_exact_at_every_phase_of_touch(e, tension, partner, plane):
+    for steps in (6, 8, 15):
+        fixed, engine = impacts(e, partner, steps, plane, tension)
+        found = engine.events()
+        m = fixed.m[0] * (0.5 if partner == "free" else 1.0)
+        zeta = collision.zeta_for_restitution(e, tension)
+        t_col = collision.contact_time(zeta, math.sqrt(K_N / m), tension)
+        assert len(found) == PHASES
+        assert found["closing_begin"] == pytest.approx(SPEED, rel=1e-11)
+        assert -found["closing_end"] == pytest.approx(e * SPEED, rel=1e-11)
+        assert found["t_end"] - found["t_begin"] == pytest.approx(t_col, rel=1e-11)
+        assert found["impulse_n"] == pytest.approx(m * (1.0 + e) * SPEED, rel=1e-11)
+        tally = engine.tally()
+        assert tally.residual < 1e-11
+        assert tally.spring_n == tally.spring_s == 0.0
+
+
+@pytest.mark.parametrize("e", [0.5, 0.9])
+@pytest.mark.parametrize("slip", [Slip.SPRING, Slip.TOTAL])
+@pytest.mark.parametrize("aslant", [0.1, 0.5, 1.0, 2.0, 5.0])
+def test_at_eight_steps_an_oblique_impact_is_as_exact_as_at_fifty_that_begin_at_steps(aslant, slip, e):
+    """Worst error of the slip after the impact on a wall, over that before; sticking, sliding and both."""
+    kind = {"slip": slip, "friction": 0.4, "aslant": aslant}
+    fine = impacts(e, "wall", 4000, timing=ContactTiming.AT_STEPS, **kind)[1].events()
+    right = np.mean(fine["slip_end"][:, 0] / fine["slip_begin"][:, 0])
+    worst = {}
+    for timing, steps in ((ContactTiming.EXACT, 8), (ContactTiming.AT_STEPS, 50)):
+        found = impacts(e, "wall", steps, timing=timing, **kind)[1].events()
+        worst[timing] = float(np.abs(found["slip_end"][:, 0] / found["slip_begin"][:, 0] - right).max())
+    assert worst[ContactTiming.EXACT] < max(1.1 * worst[ContactTiming.AT_STEPS], 7.5e-3)
+
+
+def test_the_immersed_rebound_is_exact_with_the_restitution_of_its_stokes_number():
+    water = Water(profile=Profile.STILL, drag=Drag.NONE, rebound=Rebound.EXPONENTIAL, st_c=30.0)
+    fixed, engine = impacts(0.9, "fixed", 8, water=water)
+    found, m = engine.events(), float(fixed.m[0] + fixed.m_added[0])
+    st = stokes_number(SPEED, m, reduced_radius(0.5 * D, 0.5 * D), water.rho_w, water.nu)
+    e = restitution_exponential(0.9, st, water.st_c)
+    assert 0.05 < e < 0.85
+    assert -found["closing_end"] == pytest.approx(e * SPEED, rel=1e-9)
+
+
+@pytest.mark.parametrize("plane", [False, True])
+@pytest.mark.parametrize("steps", [5, 8])
+def test_a_pile_comes_to_rest_as_quietly_as_with_many_steps(steps, plane):
+    quiet = {}
+    for timing, per_contact in ((ContactTiming.EXACT, steps), (ContactTiming.AT_STEPS, 50)):
+        made = pile(n=200, plane_case=plane, timing=timing, steps_per_contact=per_contact)
+        engine = run(made, int(0.6 / made[0].dt))
+        tally = engine.tally()
+        quiet[timing] = (tally.kinetic + tally.spin) / (made[0].m.sum() * 9.81 * D)
+        assert tally.residual < 5e-3
+    assert quiet[ContactTiming.EXACT] < max(10.0 * quiet[ContactTiming.AT_STEPS], 1e-6)
+
+
+def test_a_column_of_grains_at_rest_carries_its_weight():
+    """Contacts that last are on the map: forces are the weights above, whatever the step."""
+    n = 5
+    x = [[0.0, 0.0, (k + 0.5) * D * 0.9999] for k in range(n)]
+    floor = [("floor", (0.0, 0.0, 0.0), (0.0, 0.0, 1.0))]
+    made = scene(
+        x, D, planes=floor, timing=ContactTiming.EXACT, steps_per_contact=8.0, stiffness=1e3, restitution=0.5,
+        allow_overlap=True, plane_case=True,
+    )  # fmt: skip
+    state = run(made, 20_000).state()
+    weight = made[0].m[0] * 9.80665
+    assert sorted(state.contacts.f_n) == pytest.approx([weight * k for k in range(1, 6)], rel=1e-9)
+
+
+def test_static_friction_holds_up_to_the_coefficient_and_not_beyond():
+    """A sphere without rotation on a slope: at rest below the angle of friction, sliding above it."""
+    for excess in (0.99, 1.01):
+        slope = math.atan(0.4 * excess)
+        made = scene(
+            [[0.0, 0.0, 0.5 * D]], D, planes=[("floor", (0.0, 0.0, 0.0), (0.0, 0.0, 1.0))], friction=0.4,
+            slip=Slip.TOTAL, slope=slope, rotation=False, timing=ContactTiming.EXACT, steps_per_contact=8.0,
+            stiffness=1e3,
+        )  # fmt: skip
+        engine = run(made, 4000)
+        before = float(engine.state().v[0, 0])
+        engine.advance(4000).raise_if_any()
+        gained = float(engine.state().v[0, 0]) - before
+        wanted = 9.80665 * (math.sin(slope) - 0.4 * math.cos(slope)) * 4000 * made[0].dt
+        assert gained == pytest.approx(max(wanted, 0.0), abs=1e-6)
