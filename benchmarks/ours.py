@@ -68,7 +68,9 @@ def scene_of(job: dict[str, Any], load: Workload, folder: Path) -> tuple[Scene, 
     """Scene and first state: from arrays, or under water from a case file and its table."""
     grains = Grains.load(job["grains"])
     if not load.column:
-        return free_scene(grains, job["slip"], load.slope, plane=load.plane)
+        return free_scene(
+            grains, job["slip"], load.slope, plane=load.plane, dt=job["dt"], timing=job["timing"]
+        )
     rows = [
         np.hstack([grains.x, grains.d[:, None], grains.v, grains.omega, np.zeros((len(grains.x), 1))]),
         np.hstack(
@@ -91,7 +93,14 @@ def scene_of(job: dict[str, Any], load: Workload, folder: Path) -> tuple[Scene, 
     )
     built = build(
         read_text(
-            CASE.format(w=workloads, slip=job["slip"], slope=load.slope, period=grains.period),
+            CASE.format(
+                w=workloads,
+                dt=job["dt"],
+                slip=job["slip"],
+                slope=load.slope,
+                period=grains.period,
+                timing=job["timing"],
+            ),
             path=folder / "case.toml",
         )
     )
@@ -110,6 +119,7 @@ shear_damping = "{w.ETA_S} N s/m"
 friction = {w.MU}
 slip = "{slip}"
 cap = "total"
+timing = "{timing}"
 [motion]
 rotation = "free"
 plane = false
@@ -128,7 +138,7 @@ depth = "4 cm"
 hindrance = "Di Felice"
 zero = "1 mm"
 [time]
-step = "{w.DT} s"
+step = "{dt} s"
 [stop]
 time = "1 s"
 [record]

@@ -23,11 +23,12 @@ class Job:
     steps: int  # steps timed
     skin: float = 0.2  # reach of the neighbour list beyond touch, in diameters; ryusa finds its own
     final: Path | None = None  # where the last frame goes, as ryusa's arrays
+    dt: float = DT  # [s]
 
     @property
     def frame(self) -> int:
         """Steps between two frames; at least one falls in the time that is taken."""
-        return min(FRAME, self.steps)
+        return min(round(FRAME * DT / self.dt), self.steps)
 
     def times(self, share: float) -> "Job":
         """Return the same with fewer steps, for a code that needs longer for each."""
@@ -37,7 +38,7 @@ class Job:
     def plain(self) -> dict[str, Any]:
         """Return everything as JSON holds it."""
         return {
-            **asdict(self), "frame": self.frame, "dt": DT,
+            **asdict(self), "frame": self.frame,
             "grains": str(self.grains), "final": None if self.final is None else str(self.final),
         }  # fmt: skip
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import workloads
 from peer import Job, keep, threads_of_one
-from workloads import DROP, DT, GRAVITY, TOTAL, Grains, Workload
+from workloads import DROP, GRAVITY, TOTAL, Grains, Workload
 
 SKINS = {"W1": (0.1, 0.2, 0.3), "W2": (0.025, 0.05, 0.1), "W3": (0.1, 0.2, 0.3)}
 _COLUMNS = "id x y z vx vy vz omegax omegay omegaz"
@@ -151,7 +151,7 @@ neigh_modify delay 0 every 1 check yes exclude group bed bed
 pair_style gran/hooke/history {workloads.K_N} {workloads.K_S} {dashpot(workloads.ETA_N):.17g} &
     {dashpot(workloads.ETA_S):.17g} {workloads.MU} 1 limit_damping
 pair_coeff * *
-timestep {DT}
+timestep {job.dt:.17g}
 fix move free nve/sphere
 fix weight free gravity {GRAVITY} vector {down[0]:.17g} {down[1]:.17g} {down[2]:.17g}
 {"fix flat all enforce2d" if plane else ""}
@@ -227,7 +227,7 @@ neighbor {job.skin * workloads.D:g} bin
 neigh_modify delay 0 every 1 check yes exclude group bed bed
 {constants}pair_style gran model hooke/stiffness tangential history absolute_damping on limitForce on
 pair_coeff * *
-timestep {DT}
+timestep {job.dt:.17g}
 fix move free nve/sphere
 fix weight free gravity {GRAVITY} vector {np.sin(slope):.17g} 0 {-np.cos(slope):.17g}
 compute spin free erotate/sphere

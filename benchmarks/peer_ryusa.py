@@ -14,6 +14,7 @@ from peer import Job
 from workloads import TOTAL
 
 ALONE = ", one thread"
+AT_STEPS, EXACT = "at steps", "exact"
 
 
 ROOMS = ("laws", "model", "engine", "water", "running", "results")  # what a timed run runs through
@@ -33,6 +34,7 @@ class Ryusa:
     """ryusa with the slip rule of a peer; finds its own skin."""
 
     slip: str = TOTAL
+    timing: str = AT_STEPS  # when contacts begin and end
     cache: Path | None = None  # where compiled kernels are kept; numba's own place when not given
     alone: bool = False  # on one thread beside others of more, for the efficiency
     label: str = ""
@@ -41,7 +43,8 @@ class Ryusa:
 
     @property
     def name(self) -> str:
-        return f"ryusa ({self.slip}){ALONE if self.alone else ''}"
+        exact = "" if self.timing == AT_STEPS else f", {self.timing}"
+        return f"ryusa ({self.slip}{exact}){ALONE if self.alone else ''}"
 
     def version(self) -> str:
         from ryusa.running.provenance import commit
@@ -53,7 +56,11 @@ class Ryusa:
         if self.cache is not None:
             environment["NUMBA_CACHE_DIR"] = str(self.cache)
         ours = Path(__file__).resolve().parent / "ours.py"
-        return [sys.executable, str(ours), json.dumps(job.plain() | {"slip": self.slip})], environment
+        return [
+            sys.executable,
+            str(ours),
+            json.dumps(job.plain() | {"slip": self.slip, "timing": self.timing}),
+        ], environment
 
     def read(self, job: Job, folder: Path, said: str) -> tuple[float, dict[str, Any]]:
         found = json.loads(said.splitlines()[-1])

@@ -151,10 +151,12 @@ def _kept(scene: Any, state: State, without: str | None = None) -> Grains:
     )
 
 
-def free_scene(grains: Grains, slip: str, slope: float, *, plane: bool) -> tuple[Any, State]:
+def free_scene(
+    grains: Grains, slip: str, slope: float, *, plane: bool, dt: float = DT, timing: str = "at steps"
+) -> tuple[Any, State]:
     """Scene and first state of given grains, by the front door for scripts."""
     from ryusa.build import scene
-    from ryusa.laws.families import Cap, Slip
+    from ryusa.laws.families import Cap, ContactTiming, Slip
     from ryusa.model import ContactLaw
     from ryusa.model.scene import Damping, EventRule
 
@@ -162,11 +164,12 @@ def free_scene(grains: Grains, slip: str, slope: float, *, plane: bool) -> tuple
         k_n=workloads.K_N, k_s=workloads.K_S, mu=workloads.MU, damping=Damping.CONSTANTS,
         eta_n=workloads.ETA_N, eta_s=workloads.ETA_S,
         slip={workloads.TOTAL: Slip.TOTAL, workloads.DROP: Slip.SPRING_DROP}[slip], cap=Cap.TOTAL,
+        timing=ContactTiming.of(timing),
     )  # fmt: skip
     return scene(
         grains.x, grains.d, density=workloads.DENSITY, v=grains.v, omega=grains.omega,
         x_fixed=grains.x_fixed, d_fixed=grains.d_fixed, contact=law, gravity=workloads.GRAVITY, slope=slope,
-        plane_case=plane, period=grains.period, dt=DT, events=EventRule.NONE, allow_overlap=True,
+        plane_case=plane, period=grains.period, dt=dt, events=EventRule.NONE, allow_overlap=True,
     )  # fmt: skip
 
 
