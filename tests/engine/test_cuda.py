@@ -23,20 +23,21 @@ CC = (8, 0)  # compute capability compiled for
 DRY = LawChoice(*[0] * len(LawChoice._fields))
 # every branch that a kernel may take, at least once
 KINDS = {
-    "dry, 3D": (KernelVariant(0, 1, 0, 0, 0, 0, 0), DRY),
+    "dry, 3D": (KernelVariant(0, 1, 0, 0, 0, 0, 0, 0), DRY),
     "dry, plane, records of some, may pull": (
-        KernelVariant(1, 1, 0, 1, 0, 0, 0), DRY._replace(events=1, tension=1, slip=1),
+        KernelVariant(1, 1, 0, 1, 0, 0, 0, 0), DRY._replace(events=1, tension=1, slip=1),
     ),
-    "no rotation": (KernelVariant(0, 0, 0, 0, 0, 0, 0), DRY._replace(slip=2, cap=1)),
+    "no rotation": (KernelVariant(0, 0, 0, 0, 0, 0, 0, 0), DRY._replace(slip=2, cap=1)),
     "flow, rolling spring": (
-        KernelVariant(0, 1, 1, 1, 0, 0, 1),
+        KernelVariant(0, 1, 1, 1, 0, 0, 1, 0),
         DRY._replace(rolling=3, arm=1, events=2, profile=1, above=2, drag=2, torque=2),
     ),
     "rolling as printed, film": (
-        KernelVariant(0, 1, 1, 0, 0, 1, 1), DRY._replace(rolling=1, profile=4, drag=4, torque=1, rebound=2),
+        KernelVariant(0, 1, 1, 0, 0, 1, 1, 0),
+        DRY._replace(rolling=1, profile=4, drag=4, torque=1, rebound=2),
     ),
     "column, rolling constant": (
-        KernelVariant(0, 1, 1, 1, 1, 1, 1),
+        KernelVariant(0, 1, 1, 1, 1, 1, 1, 0),
         DRY._replace(
             rolling=2, events=2, profile=5, drag=4, torque=2, buoyancy=1, hindrance=5, lift=2, magnus=2,
             rebound=1,

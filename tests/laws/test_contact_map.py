@@ -133,9 +133,9 @@ SLIP = {"spring": (False, False, False), "dropped": (False, True, False), "toget
 @pytest.mark.parametrize("rules", SLIP.values(), ids=SLIP)
 @pytest.mark.parametrize("s_0", [0.05, 0.4, 2.0])
 def test_slip_within_a_step_converges_on_many_short_steps(rules, s_0):
-    """From touch through a quarter of a contact: sticking, or sliding that stops, or sliding throughout."""
+    """From touch through an eighth of a contact: sticking, or sliding that stops, or sliding throughout."""
     _, a, q = oscillator(0.12)
-    span, m_t, k_s, eta_s, mu = 0.25 * math.pi / math.sqrt(K / M), 2.0 * M / 7.0, 2.0 * K / 7.0, 20.0, 0.4
+    span, m_t, k_s, eta_s, mu = 0.125 * math.pi / math.sqrt(K / M), 2.0 * M / 7.0, 2.0 * K / 7.0, 20.0, 0.4
 
     def integrate(parts):
         answer, y, rate, way = (0.0, 0.0, 0.0, s_0, 0.0, 0.0), 0.0, 1.0, 0.0

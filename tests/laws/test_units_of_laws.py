@@ -115,7 +115,7 @@ UNITS = {
     "drag.terminal_velocity_dietrich": "-, m/s2, m, m2/s -> m/s",
     "slip_within_step.slip_within_step": (
         "s, m, m/s, 1/s, 1/s2, kg, N, N, N, m/s, m/s, m/s, N/m, N s/m, kg, N, -, bool, bool, bool"
-        " -> N, N, N, m/s, m/s, m/s, m, m, m, bool"
+        " -> N, N, N, m/s, m/s, m/s, m, m, m, -"
     ),
     "geometry.overlap": "m, m, m -> m",
     "geometry.arm": "m, m -> m",

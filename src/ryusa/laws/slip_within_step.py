@@ -10,7 +10,7 @@ from ryusa.laws._law import law
 from ryusa.laws.contact import shear_strength, slide
 from ryusa.laws.contact_map import free_response
 
-PARTS = 4  # into which the span is cut: 32 and more to a contact of 8 steps (design/0014)
+PARTS = 2  # into which the span is cut (design/0014)
 
 
 @law
@@ -18,7 +18,7 @@ def slip_within_step(
     span: float, y: float, rate: float, a: float, q: float, m: float, p_x: float, p_y: float, p_z: float,
     s_x: float, s_y: float, s_z: float, k_s: float, eta_s: float, m_t: float, cohesion: float, mu: float,
     total: bool, drop: bool, cap_total: bool,
-) -> tuple[float, float, float, float, float, float, float, float, float, bool]:  # fmt: skip
+) -> tuple[float, float, float, float, float, float, float, float, float, float]:  # fmt: skip
     """Integrate spring and slip velocity of a contact over a span of time within a step.
 
     Parameters
@@ -39,7 +39,7 @@ def slip_within_step(
     -------
     p_x, p_y, p_z, s_x, s_y, s_z : spring force [N] and slip velocity [m/s] at the end.
     way_x, way_y, way_z : displacement of i relative to j at the contact point [m].
-    slid : whether the contact slid.
+    slid : 1 if the contact slid, else 0 [-].
 
     Notes
     -----
@@ -49,7 +49,7 @@ def slip_within_step(
     >>> normal, rules = (1.0, 1.0, 0.0, 0.0, 1.0, 1.0), (False, False, False)
     >>> spring, slip = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0)
     >>> slip_within_step(*normal, *spring, *slip, 0.0, 0.0, 1.0, 0.0, 0.5, *rules)[3:]
-    (1.0, 0.0, 0.0, 1.0, 0.0, 0.0, False)
+    (1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
     """
     # One function: half of its lines are the three components
     part = span / PARTS
@@ -60,13 +60,14 @@ def slip_within_step(
     y_half, rate_half = y * (h + 2.0 * a * g) + rate * g, rate * h - (a * a + q) * y * g
     e_n, f_n = k_n * y_half, k_n * y_half + eta_n * rate_half
     way_x = way_y = way_z = 0.0
-    slid = False
-    soft = 1.0 / (1.0 + 0.5 * part * (0.5 * part * k_s + eta_s) / m_t)
+    slid = 0.0
+    kick = part / m_t  # impulse over mass of a force of 1 N in a part
+    soft = 1.0 / (1.0 + 0.5 * kick * (0.5 * part * k_s + eta_s))
     for _ in range(PARTS):
         tau_c = shear_strength(f_n if cap_total else e_n, cohesion, mu)
-        u_x = soft * (s_x + 0.5 * part * p_x / m_t)
-        u_y = soft * (s_y + 0.5 * part * p_y / m_t)
-        u_z = soft * (s_z + 0.5 * part * p_z / m_t)
+        u_x = soft * (s_x + 0.5 * kick * p_x)
+        u_y = soft * (s_y + 0.5 * kick * p_y)
+        u_z = soft * (s_z + 0.5 * kick * p_z)
         e_x, e_y, e_z = (
             p_x - 0.5 * part * k_s * u_x,
             p_y - 0.5 * part * k_s * u_y,
@@ -79,16 +80,16 @@ def slip_within_step(
         share, swap, keep = slide(math.sqrt(w_x * w_x + w_y * w_y + w_z * w_z), tau_c, drop, total)
         e_x, e_y, e_z = share * e_x + swap * b_x, share * e_y + swap * b_y, share * e_z + swap * b_z
         slides = share < 1.0
-        slid = slid or slides
+        slid = 1.0 if slides else slid
         step_x, step_y, step_z = (
-            part * (s_x + 0.5 * part * (e_x + keep * b_x) / m_t),
-            part * (s_y + 0.5 * part * (e_y + keep * b_y) / m_t),
-            part * (s_z + 0.5 * part * (e_z + keep * b_z) / m_t),
+            part * (s_x + 0.5 * kick * (e_x + keep * b_x)),
+            part * (s_y + 0.5 * kick * (e_y + keep * b_y)),
+            part * (s_z + 0.5 * kick * (e_z + keep * b_z)),
         )
         way_x, way_y, way_z = way_x + step_x, way_y + step_y, way_z + step_z
-        s_x += part * (e_x + keep * b_x) / m_t
-        s_y += part * (e_y + keep * b_y) / m_t
-        s_z += part * (e_z + keep * b_z) / m_t
+        s_x += kick * (e_x + keep * b_x)
+        s_y += kick * (e_y + keep * b_y)
+        s_z += kick * (e_z + keep * b_z)
         e_old, e_n = e_n, trace * e_n - determinant * e_old  # at the end of the part
         f_old, f_n = f_n, trace * f_n - determinant * f_old
         tau_c = shear_strength(f_n if cap_total else e_n, cohesion, mu)
@@ -101,7 +102,7 @@ def slip_within_step(
         if total:
             w_x, w_y, w_z = w_x + b_x, w_y + b_y, w_z + b_z
         share, swap, _ = slide(math.sqrt(w_x * w_x + w_y * w_y + w_z * w_z), tau_c, drop, total)
-        slid = slid or share < 1.0
+        slid = 1.0 if share < 1.0 else slid
         p_x, p_y, p_z = share * p_x + swap * b_x, share * p_y + swap * b_y, share * p_z + swap * b_z
         e_old, e_n = e_n, trace * e_n - determinant * e_old  # in the middle of the next
         f_old, f_n = f_n, trace * f_n - determinant * f_old

@@ -21,8 +21,6 @@ from ryusa.laws.contact_step import contact_force, contact_kinematics, tangentia
 from ryusa.laws.dispatch import cap_total, slip_drops, slip_total
 from ryusa.laws.geometry import turn, wrap
 
-NEAR_THE_END = 3.0  # steps of the present speed; at 5 steps per contact the force may end within 2 of them
-
 
 def _make_kinematics(plane: bool) -> Any:
     @inner(fastmath=FAST)
@@ -54,8 +52,7 @@ def _make_kinematics(plane: bool) -> Any:
             batch[B.EXCESS + l] = overlap - 2.0 * most * min(r_i, r_j)
             k_n, state = batch[B.K_N + l], batch[B.WAS_TOUCHING + l]
             f_n = normal_force(overlap, closing, k_n, batch[B.RELATIVE_VELOCITY + 4 * l + 3])
-            # the force can only end within the step if it is below what the spring loses in it
-            fading = f_n < -NEAR_THE_END * k_n * closing * dt
+            fading = closing < 0.0 and c[P.FADING] * f_n < batch[B.SPRING + 4 * l + 3]
             plain = state == 1.0 and overlap > 0.0 and not fading
             apart = state == 0.0 and overlap <= 0.0
             batch[B.RAW + l] = batch[B.F_N + l] = 0.0 if apart else f_n

@@ -31,7 +31,7 @@ ENDING = 3  # the force ended within the last step: the closing speed is still t
 ENDED = 4  # without force, until the overlap ends or the force comes back
 
 _LATE = 2.0  # steps of approach within which a first overlap is that of a touch; a larger one was put there
-_FAR_FROM_ZERO = 0.5  # of the present force: a next force above it does not end within the step
+_FAR_FROM_ZERO = 0.25  # of the present force: a next force above it does not end within the step
 
 
 @inner()
@@ -68,7 +68,7 @@ def _begin(
         m_t * (way_y / dt - s[1]) / dt - e[1],
         m_t * (way_z / dt - s[2]) / dt - e[2],
     )
-    return m * (closing - v_new) / dt, k_d * y, e, b, slid or slid_too
+    return m * (closing - v_new) / dt, k_d * y, e, b, slid + slid_too > 0.0
 
 
 @inner()
@@ -96,7 +96,7 @@ def _slip_to_the_end(
         cap_total,
     )  # fmt: skip
     force = (m_t * (s_x - s[0]) / dt, m_t * (s_y - s[1]) / dt, m_t * (s_z - s[2]) / dt)
-    return force, slid or share < 1.0
+    return force, slid > 0.0 or share < 1.0
 
 
 @inner()

@@ -2,6 +2,10 @@
 
 import numpy as np
 
+from ryusa.laws.collision import zeta_for_restitution
+from ryusa.laws.contact import damping
+from ryusa.laws.contact_map import dashpot_of_map, spring_of_map
+from ryusa.laws.families import ContactTiming, Rebound
 from ryusa.model import Scene
 from ryusa.model.scene import Damping, Floats
 
@@ -42,11 +46,34 @@ ASPERITY = 33
 ST_C = 34
 E_DRY = 35  # restitution of the case, in air [-]
 E_LEAST = 36
-N_PARAMETER = E_LEAST + 1
+FADING = 37  # least ratio of the force before to the present one of a contact that may end within a step
+N_PARAMETER = FADING + 1
 
 # Largest displacement of a grain in one step, over the smallest diameter: two grains that approach each other
 # by twice that cannot pass through each other unseen (design/0008).
 LARGEST_DISPLACEMENT = 0.25
+
+
+# The next force over the present one up to which a contact may end within the step: alone, it can only where
+# it is below zero; the rest is for the steps that are not on the map.
+_NEXT = 0.25
+
+
+def least_decline(scene: Scene) -> float:
+    """Least ratio of the last force of a contact to the present one at which it may end within a step [-].
+
+    Forces at three steps of a contact that is alone are f'' = t f' - d f, with trace t and determinant d <= 1
+    of its map: f'' is above `_NEXT` f' where f is below (t - `_NEXT`) f'. The least t is that of the lightest
+    pair with the largest dashpot.
+    """
+    law, lightest = scene.contact, 0.5 * float((scene.m + scene.m_added).min(initial=np.inf))
+    if law.timing != ContactTiming.EXACT or not np.isfinite(lightest):
+        return 0.0
+    e = scene.water.e_least if scene.water.rebound != Rebound.DRY else law.e_n
+    zeta = zeta_for_restitution(e, law.tension) if law.damping == Damping.RESTITUTION else 0.0
+    eta = law.eta_n + damping(zeta, law.k_n, lightest)
+    dt, eta_d = scene.dt, dashpot_of_map(eta, lightest, scene.dt)
+    return 2.0 - (eta_d + spring_of_map(law.k_n, eta, lightest, dt) * dt) * dt / lightest - _NEXT
 
 
 def parameters_of(scene: Scene) -> Floats:
@@ -92,6 +119,7 @@ def parameters_of(scene: Scene) -> Floats:
         ST_C: water.st_c,
         E_DRY: law.e_n,
         E_LEAST: water.e_least,
+        FADING: least_decline(scene),
     }
     parameters = np.zeros(len(table))
     for place, value in table.items():
