@@ -40,7 +40,8 @@ class Viewer {
     for (const [key, doc] of HELP) element("tr", this.help, {}, element("td", null, {}, key), element("td", null, {}, doc));
     const bar = element("div", holder, { className: "bar" });
     const button = (text, title, act) => element("button", bar, { type: "button", title, onclick: act }, text);
-    this.play = button("\u25b6", "play, pause (space)", () => this.toggle());
+    this.play = button("", "play, pause (space)", () => this.toggle());
+    this.play.ariaLabel = "play, pause";
     this.slider = element("input", bar, { type: "range", min: 0, max: Math.max(this.frames - 1, 1), step: "any", value: 0, ariaLabel: "frame", oninput: () => this.seek(+this.slider.value) });
     this.clock = element("output", bar, { className: "clock" });
     this.speed = element("select", bar, { title: "speed of the film", onchange: () => { this.rate = +this.speed.value; } });
@@ -109,12 +110,12 @@ class Viewer {
 
   toggle() { this.playing ? this.pause() : this.begin(); }
 
-  pause() { this.playing = false; this.play.textContent = "\u25b6"; }
+  pause() { this.playing = false; this.play.className = ""; }
 
   begin() {
     if (this.frames < 2) return;
     if (this.time >= this.data.t[this.frames - 1]) this.time = this.data.t[0];
-    this.playing = true; this.play.textContent = "\u23f8"; this.before = null;
+    this.playing = true; this.play.className = "playing"; this.before = null;
     const tick = (now) => {
       if (!this.playing) return;
       if (this.before !== null) this.time += this.rate * Math.min(now - this.before, 250) / 1000;
