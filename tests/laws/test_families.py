@@ -8,7 +8,7 @@ from ryusa.build import scene
 from ryusa.casefile.keys import all_keys
 from ryusa.casefile.read import json_schema_text
 from ryusa.engine.shared.refusals import refusals
-from ryusa.laws import dispatch
+from ryusa.laws import dispatch, families
 from ryusa.laws._family import Family, evaluate, marked
 from ryusa.laws._family import dispatch as build_dispatch
 from ryusa.laws.families import FAMILIES, Drag
@@ -82,6 +82,11 @@ def test_no_two_choices_have_the_same_number():
         class Twice(Family):
             ONE = (0, "one", None, "first")
             TWO = (0, "two", None, "second")
+
+
+def test_every_family_is_in_the_table():
+    made = [one for one in vars(families).values() if isinstance(one, type) and issubclass(one, Family)]
+    assert set(FAMILIES) == {one for one in made if one is not Family}
 
 
 @pytest.mark.parametrize("family", FAMILIES, ids=lambda family: family.__name__)

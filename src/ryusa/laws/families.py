@@ -298,6 +298,6 @@ class Fluctuations(Family, key="water.column.fluctuations"):
 
 
 FAMILIES: tuple[type[Family], ...] = (
-    Parting, Slip, Cap, Rolling, Arm, Profile, Above, Drag, Hindrance, Buoyancy, Lift, Magnus, WaterTorque,
-    Rebound, Film, BedKind, SurfaceRule, Drive, Start, Mixing, SideWalls, Fluctuations,
+    Parting, ContactTiming, Slip, Cap, Rolling, Arm, Profile, Above, Drag, Hindrance, Buoyancy, Lift, Magnus,
+    WaterTorque, Rebound, Film, BedKind, SurfaceRule, Drive, Start, Mixing, SideWalls, Fluctuations,
 )

@@ -3,10 +3,13 @@
 from typing import NamedTuple
 
 from ryusa.engine.shared import memory_rows as M
+from ryusa.laws._family import numbers
 from ryusa.laws.families import ContactTiming, Profile, Rolling
 from ryusa.model import Scene
 from ryusa.model.contacts import N_EVENT
 from ryusa.model.scene import EventRule
+
+_, EXACT = numbers(__name__, ContactTiming.AT_STEPS, ContactTiming.EXACT)
 
 
 class KernelVariant(NamedTuple):
@@ -67,7 +70,7 @@ def variant_of(scene: Scene) -> KernelVariant:
         column=int(scene.water.profile == Profile.COLUMN),
         film=int(scene.water.profile != Profile.NONE and scene.water.film_reach > 0.0),
         water=int(scene.water.profile != Profile.NONE),
-        exact=int(scene.contact.timing == ContactTiming.EXACT),
+        exact=int(int(scene.contact.timing) == EXACT),
     )
 
 
