@@ -57,9 +57,9 @@ def law(function: F) -> F:
 
 
 def step_law(function: F) -> F:
-    """Compile a part of the step of a contact or of a grain, called by the kernels of every engine.
+    """Compile a law that the kernels of every engine evaluate for each contact or grain in each step.
 
-    Inlined and with fused multiply-adds, as in the kernels themselves, so that a loop over pairs becomes
-    vector instructions. The laws that it calls are compiled by `law`.
+    Inlined and with fused multiply-adds, as in the kernels themselves, so that a loop over pairs or grains
+    becomes vector instructions. The laws that it calls may be compiled by `law`.
     """
     return compiled(EDITION, fastmath=FAST, forceinline=True)(function)
