@@ -11,6 +11,7 @@ from ryusa.laws.families import (
     Above,
     Arm,
     Buoyancy,
+    ContactTiming,
     Drag,
     Hindrance,
     Lift,
@@ -37,6 +38,7 @@ COLUMN = Water(
     profile=Profile.COLUMN, drag=Drag.SCHILLER_NAUMANN, hindrance=Hindrance.DI_FELICE,
     buoyancy=Buoyancy.STRESS, lift=Lift.SAFFMAN_MEI, magnus=Magnus.LOTH, torque=WaterTorque.DENNIS,
 )  # fmt: skip
+EXACT = {"timing": ContactTiming.EXACT, "steps_per_contact": 8.0, "stir": 0.3, "walls": True}
 KINDS = {
     "3D": {"events": EventRule.NONE},
     "3D, records": {},
@@ -55,6 +57,17 @@ KINDS = {
     },
     "films": {"water": FILM},
     "column": {"water": COLUMN, "events": EventRule.NONE},
+    "exact timing": {**EXACT, "events": EventRule.NONE},
+    "exact timing, records": EXACT,
+    "exact timing, plane, may pull": {**EXACT, "plane_case": True, "tension": True},
+    "exact timing, dashpot dropped, no rotation": {
+        **EXACT, "slip": Slip.SPRING_DROP, "rotation": False, "tension": True,
+    },
+    "exact timing, capped together, rolling spring": {
+        **EXACT, "slip": Slip.TOTAL, "rolling": RollingLaw(Rolling.EPSD, Arm.REDUCED_RADIUS, 0.1),
+    },
+    "exact timing, films": {**EXACT, "water": FILM},
+    "exact timing, column": {**EXACT, "water": COLUMN, "events": EventRule.NONE},
 }  # fmt: skip
 
 

@@ -43,6 +43,17 @@ KINDS = {
             rebound=1,
         ),
     ),
+    "exact timing, 3D": (KernelVariant(0, 1, 0, 0, 0, 0, 0, 1), DRY),
+    "exact timing, plane, records, may pull": (
+        KernelVariant(1, 1, 0, 1, 0, 0, 0, 1), DRY._replace(events=2, tension=1, slip=1),
+    ),
+    "exact timing, column, films, rolling, records": (
+        KernelVariant(0, 1, 1, 1, 1, 1, 1, 1),
+        DRY._replace(
+            rolling=3, arm=1, events=2, profile=5, drag=4, torque=2, buoyancy=1, hindrance=5, lift=2,
+            magnus=2, rebound=1, slip=2, cap=1,
+        ),
+    ),
 }  # fmt: skip
 
 
@@ -145,9 +156,10 @@ def test_every_other_kernel_becomes_ptx() -> None:
     entry(verlet_list.reorder, COUNT, COUNT, I4, bodies, bodies, bodies)
     entry(verlet_list.copy_radii, COUNT, COUNT, bodies)
     entry(verlet_list.find_neighbours, COUNT, COUNT, COUNT, COUNT, F2, I4, walls, F1, I1, I1, I1, I4, I1, I4)
-    entry(verlet_list.transfer_memory, COUNT, COUNT, COUNT, COUNT, F1, I4, bodies, I4, pairs, pairs, I1)
+    counts = [COUNT] * 5
+    entry(verlet_list.transfer_memory, *counts, F1, I4, bodies, I4, pairs, pairs, I1)
     entry(verlet_list.count_touching, COUNT, I4, pairs, I1)
-    entry(verlet_list.collect_touching, COUNT, I4, pairs, I1, I1, I1, F2, F2)
+    entry(verlet_list.collect_touching, COUNT, I4, pairs, I1, I1, I1, U1, F2, F2)
 
 
 def test_without_a_gpu_one_line_says_what_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:

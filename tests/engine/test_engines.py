@@ -17,6 +17,7 @@ from tests.engine.reference import touching_pairs
 from ryusa.build import scene
 from ryusa.engine import registry
 from ryusa.errors import GrainLost, ListUnsafe, NotANumber, OverlapTooLarge
+from ryusa.laws.families import ContactTiming
 from ryusa.model import EngineBlock, Term
 from ryusa.model.fluid import N_SAMPLED
 from ryusa.model.scene import EventRule
@@ -85,11 +86,13 @@ def test_one_frozen_state_and_a_short_run_agree_with_the_cpu(create, kind):
         assert a.fluid.impulse == pytest.approx(b.fluid.impulse, rel=1e-9, abs=1e-20)
 
 
+@pytest.mark.parametrize("timing", ContactTiming)
 @pytest.mark.parametrize("events", [EventRule.NONE, EventRule.ALL])
-def test_two_grains_rebound_with_e_and_as_on_the_cpu(create, events):
+def test_two_grains_rebound_with_e_and_as_on_the_cpu(create, events, timing):
+    exact = timing == ContactTiming.EXACT
     made = scene(
         [[0.0, 0.0, 0.0], [1.0005 * D, 0.0, 0.0]], D, v=[[0.1, 0.0, 0.0], [-0.1, 0.0, 0.0]], gravity=0.0,
-        restitution=0.7, events=events,
+        restitution=0.7, events=events, timing=timing, steps_per_contact=8.0 if exact else 50.0,
     )  # fmt: skip
     needs(create(), made[0])
     records = []
@@ -97,17 +100,20 @@ def test_two_grains_rebound_with_e_and_as_on_the_cpu(create, events):
         engine.load(*made)
         engine.advance(75).raise_if_any()
         v = engine.state().v[:, 0]
-        assert v[1] - v[0] == pytest.approx(0.7 * 0.2, rel=2.8e-3)
-        assert engine.tally().residual < 1e-4
+        assert v[1] - v[0] == pytest.approx(0.7 * 0.2, rel=1e-11 if exact else 2.8e-3)
+        assert engine.tally().residual < (1e-11 if exact else 1e-4)
         found = engine.events()
         assert len(found) == (1 if events else 0)
         records.append([float(part) for one in found for field in one.tolist() for part in np.ravel(field)])
     assert records[0] == pytest.approx(records[1], rel=1e-9, abs=1e-15)
 
 
-@pytest.mark.parametrize("kind", ["3D", "3D, records", "column"])
+@pytest.mark.parametrize(
+    "kind",
+    ["3D", "3D, records", "column", "exact timing, records", "exact timing, capped together, rolling spring"],
+)
 def test_run_again_split_or_resumed_it_gives_the_same_bits(create, kind):
-    made = heap(stir=0.5, **KINDS[kind])
+    made = heap(**KINDS[kind] | {"stir": 0.5})
     needs(create(), made[0])
 
     def marched(parts, resume=False):
@@ -182,10 +188,11 @@ def test_faults_name_grain_step_and_remedy_as_on_the_cpu(create):
             assert mine.step == theirs.step
 
 
-def test_the_removal_of_a_gate_is_accounted_for_as_on_the_cpu(create):
+@pytest.mark.parametrize("timing", ContactTiming)
+def test_the_removal_of_a_gate_is_accounted_for_as_on_the_cpu(create, timing):
     gate, back = ("gate", (0.499 * D, 0, 0), (-1, 0, 0)), ("back", (-0.5 * D, 0, 0), (1, 0, 0))
     walls = [("floor", (0, 0, 0), (0, 0, 1)), gate, back]
-    fixed, first = scene([[0.0, 0.0, 0.499 * D]], D, planes=walls, allow_overlap=True)
+    fixed, first = scene([[0.0, 0.0, 0.499 * D]], D, planes=walls, allow_overlap=True, timing=timing)
     engines = create(), registry.create()
     needs(engines[0], fixed)
     for engine in engines:
@@ -215,7 +222,7 @@ def test_what_it_cannot_simulate_is_refused_with_its_reason(create):
         )
 
 
-@pytest.mark.parametrize("kind", ["3D", "3D, records"])
+@pytest.mark.parametrize("kind", ["3D", "3D, records", "exact timing, records"])
 def test_a_snapshot_of_the_cpu_is_continued_and_returned_with_its_account(create, kind):
     made = heap(**KINDS[kind])
     needs(create(), made[0])

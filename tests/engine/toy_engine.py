@@ -21,7 +21,7 @@ class ToyEngine:
     def refuses(self, scene: Scene) -> tuple[str, ...]:
         law = scene.contact
         odd = scene.water.profile or scene.events or scene.rolling.model or scene.plane_case or scene.n_plane
-        odd = odd or law.tension or law.slip or law.cap or law.damping or not scene.rotation
+        odd = odd or law.tension or law.slip or law.cap or law.damping or law.timing or not scene.rotation
         return (*refusals(scene), *(["a toy has dry spheres that slip by the rule 'spring'"] if odd else []))
 
     def load(self, scene: Scene, state: State) -> None:

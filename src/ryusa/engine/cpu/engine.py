@@ -269,8 +269,9 @@ class CpuEngine:
             self._skin, 2.0 * self._travel / max(self._since, 1), _LIST + _LIST_GRAIN * self._n,
             COST_TEST * apart / _STEPS_A_CUT,
         )  # fmt: skip
-        # pairs in touch may have parted in the last step: their account is still to be closed
-        parted = 2.001 * self._fastest_displacement()
+        # pairs in touch may have parted in the last step, with exact timing in the one before: their account
+        # is still to be closed
+        parted = 2.001 * (1 + self._variant.exact) * self._fastest_displacement()
         self._skin = max(min(max(skin, 0.02 * self._smallest), self._smallest), parted)
         self._since, self._travel, self._n_list = 0, 0.0, self._n_list + 1
         starts, self._pairs = self._pairs.start, self._layout.empty_pairs()  # frees the old list

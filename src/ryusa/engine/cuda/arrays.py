@@ -47,8 +47,8 @@ class DevicePairArrays(NamedTuple):
 
     start: Any  # neighbours of grain i are partners[start[i]:start[i + 1]], int64, (n + 1,)
     partners: Any  # places, int32, (room,)
-    touching: Any  # 1 where they touch and the row holds, uint8, (room,)
-    eta: Any  # normal and tangential dashpot [N s/m], (room, 2)
+    touching: Any  # state (shared/contact_instants.py); where it is not 0 the row holds, uint8, (room,)
+    eta: Any  # dashpots and stiffnesses (shared/memory_rows.py), (room, springs)
     rows: Any  # memory (shared/memory_rows.py), (room, width); holds where they touch
 
 

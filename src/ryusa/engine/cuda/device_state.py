@@ -141,7 +141,7 @@ class DeviceState:
             cuda.to_device(np.zeros(self.n + 1, np.int64)),
             cuda.device_array(room, np.int32),
             cuda.device_array(room, np.uint8),
-            cuda.device_array((room, 2), np.float64),
+            cuda.device_array((room, self.variant.springs), np.float64),
             cuda.device_array((room, self.variant.row_width), np.float64),
         )
 
@@ -154,13 +154,14 @@ class DeviceState:
         order = np.lexsort((partner, owner))
         start = np.concatenate([[0], np.cumsum(np.bincount(owner, minlength=self.n))])
         which, partners = which[order], partner[order]
-        eta, rows = memory.eta[which], memory.rows[which]
+        states, eta, rows = memory.states[which], memory.eta[which], memory.rows[which]
         if not len(order):  # no array on a device is empty
-            partners, eta, rows = np.zeros(1), np.zeros((1, 2)), np.zeros((1, self.variant.row_width))
+            partners, states = np.zeros(1), np.zeros(1)
+            eta, rows = np.zeros((1, self.variant.springs)), np.zeros((1, self.variant.row_width))
         return DevicePairArrays(
             cuda.to_device(start.astype(np.int64)),
             cuda.to_device(partners.astype(np.int32)),
-            cuda.to_device(np.full(len(partners), 1 if len(order) else 0, np.uint8)),
+            cuda.to_device(states.astype(np.uint8)),
             cuda.to_device(np.ascontiguousarray(eta)),
             cuda.to_device(np.ascontiguousarray(rows)),
         )
@@ -204,8 +205,8 @@ class DeviceState:
             self._next = self._room(self.n_pair * 5 // 4)._replace(start=start)
         launch(kernels.find_neighbours, n, 1, *common, self._next.partners)
         launch(
-            kernels.transfer_memory, n, n, self.n_solid, self.variant.rotation, half, self.c, self._order,
-            new, old.ids, self.pairs, self._next, missing,
+            kernels.transfer_memory, n, n, self.n_solid, self.variant.rotation, self.variant.exact, half,
+            self.c, self._order, new, old.ids, self.pairs, self._next, missing,
         )  # fmt: skip
         self.pairs, self._next = self._next, self.pairs
         grain = int(missing.copy_to_host()[0])
@@ -282,10 +283,14 @@ class DeviceState:
         total = int(count[n : n + 1].copy_to_host()[0])
         room = max(total, 1)
         i, j = (cuda.to_device(np.zeros(room, np.int64)) for _ in range(2))
-        eta, rows = (cuda.to_device(np.zeros((room, width))) for width in (2, self.variant.row_width))
-        launch(kernels.collect_touching, n, n, self.bodies.ids, self.pairs, count, i, j, eta, rows)
+        states = cuda.to_device(np.zeros(room, np.uint8))
+        eta, rows = (
+            cuda.to_device(np.zeros((room, width)))
+            for width in (self.variant.springs, self.variant.row_width)
+        )
+        launch(kernels.collect_touching, n, n, self.bodies.ids, self.pairs, count, i, j, states, eta, rows)
         i_ids, j_ids = i.copy_to_host()[:total], j.copy_to_host()[:total]
         order = np.lexsort((j_ids, i_ids))
         eta, rows = eta.copy_to_host()[:total], rows.copy_to_host()[:total]
-        touching = np.ones(total, np.uint8)
-        return ContactMemory(i_ids[order], j_ids[order], touching, eta[order], rows[order])
+        states = states.copy_to_host()[:total]
+        return ContactMemory(i_ids[order], j_ids[order], states[order], eta[order], rows[order])

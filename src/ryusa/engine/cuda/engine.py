@@ -33,7 +33,6 @@ from ryusa.engine.shared.skin import best_skin
 from ryusa.engine.shared.status import STOP_DONE, STOP_EVENTS, STOP_LIST, STOP_UNSAFE
 from ryusa.engine.shared.variant import choice_of, variant_of
 from ryusa.errors import RunError
-from ryusa.laws.families import ContactTiming
 from ryusa.model import EngineBlock, FluidAtGrains, Scene, State, Tally, Term
 from ryusa.model.contacts import N_EVENT
 from ryusa.model.fluid import SUBMERGED
@@ -67,11 +66,7 @@ class CudaEngine:
 
     def refuses(self, scene: Scene) -> tuple[str, ...]:
         """Reasons why this engine cannot simulate the scene; () when it can. Those of the CPU engine."""
-        exact = scene.contact.timing == ContactTiming.EXACT
-        return (
-            *refusals(scene),
-            *(("contact.timing = 'exact' runs on the cpu engine only",) if exact else ()),
-        )
+        return refusals(scene)
 
     def load(self, scene: Scene, state: State) -> None:
         """Take a scene and an initial state or a snapshot; enter a change of the scene in the account."""
@@ -283,8 +278,9 @@ class CudaEngine:
             _NEIGHBOUR_COST * self._device.n_pair,
         )  # fmt: skip
         self._skin = min(max(skin, 0.02 * self._smallest), self._smallest)
-        # a pair that parted in the last step still has an account to close
-        self._skin = max(self._skin, 2.001 * float(self._motion[F.FASTEST] * self._parameters[P.DT]))
+        # a pair that parted in the last step, with exact timing in the one before, has an account to close
+        parted = 2.001 * (1 + self._variant.exact) * float(self._motion[F.FASTEST] * self._parameters[P.DT])
+        self._skin = max(self._skin, parted)
         self._since, self._travel, self._n_list = 0, 0.0, self._n_list + 1
         lost = self._list_pairs()
         return self._lost_grain(lost) if lost >= 0 else None

@@ -9,8 +9,10 @@ from typing import Any
 
 from ryusa.engine.cuda import step_totals as T
 from ryusa.engine.cuda.device import device, on_device
+from ryusa.engine.cuda.exact_pair import make_exact_contact
 from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
+from ryusa.engine.shared.contact_instants import BEGAN, HELD
 from ryusa.engine.shared.dashpots import dashpot_immersed
 from ryusa.engine.shared.variant import KernelVariant, LawChoice
 from ryusa.laws.contact import normal_force
@@ -28,6 +30,8 @@ _dashpot_immersed = on_device(dashpot_immersed)
 @cache
 def make_contact(variant: KernelVariant, choice: LawChoice) -> Any:
     """Build the contact of one pair for one variant."""
+    if variant.exact:
+        return make_exact_contact(variant, choice)
     plane_case = variant.plane_case != 0
     least = -math.inf if choice.tension else 0.0  # a contact that may pull has no least force
     total, drop = "total" in Slip(choice.slip).marks, "drop" in Slip(choice.slip).marks
@@ -38,10 +42,11 @@ def make_contact(variant: KernelVariant, choice: LawChoice) -> Any:
         a: int,
         b: int,
         weight: float,
-        was_touching: bool,
+        was: int,
         hdt: float,
         c: Any,
         m: Any,
+        inertia: Any,
         w: Any,
         normal: Vector,
         overlap: float,
@@ -51,28 +56,29 @@ def make_contact(variant: KernelVariant, choice: LawChoice) -> Any:
         eta: Any,
         row: Any,
         totals: Any,
-    ) -> tuple[bool, float, float, bool, Vector, Vector]:
-        """Forces of a pair that touches or did so in the last step; its row goes on by one step.
+    ) -> tuple[int, float, float, bool, float, Vector, Vector]:
+        """Forces of a pair in contact, now or in the last step; its row goes on by one step.
 
         Parameters
         ----------
         a, b : places; b may be fixed or a plane.
         weight : of its work in `totals`: 1 for the side that accounts for the pair, 0 for the other.
-        was_touching : whether they touched in the last step; else the row holds nothing.
+        was : state after the last step (shared/contact_instants.py); if 0 the row holds nothing.
         hdt : half a step, 0 in the first [s].
         normal, overlap, closing, slip, twist : from `contact_kinematics` [-], [m], [m/s], [m/s], [rad].
         eta, row : dashpots and memory of the pair.
 
         Returns
         -------
-        Whether they touch, normal force [N] and what it was before it was cut, whether they slide, force on
-        a [N], and normal times tangential force [N].
+        State after this step, normal force [N] and what it was before it was cut or corrected, whether they
+        slide, time to the end of the force [s], force on a [N], and normal times tangential force [N].
         """
         dt, k_n, k_s = c[P.DT], c[P.K_N], c[P.K_S]
         soft_n, soft_s = 1.0 / k_n if k_n > 0.0 else 0.0, 1.0 / k_s if k_s > 0.0 else 0.0
         n_x, n_y, n_z = normal
         s_x, s_y, s_z = slip
         p_x = p_y = p_z = q_x = q_y = q_z = f_old = d_old = 0.0
+        was_touching = was != 0
         if was_touching:
             p_x, p_y, p_z = row[M.SPRING_S], row[M.SPRING_S + 1], row[M.SPRING_S + 2]
             q_x, q_y, q_z = row[M.DASH_S], row[M.DASH_S + 1], row[M.DASH_S + 2]
@@ -103,9 +109,31 @@ def make_contact(variant: KernelVariant, choice: LawChoice) -> Any:
         totals[B_RELEASED_S] += weight * released_s
         row[M.SPRING_S], row[M.SPRING_S + 1], row[M.SPRING_S + 2], row[M.F_N] = e_x, e_y, e_z, f_n
         row[M.DASH_S], row[M.DASH_S + 1], row[M.DASH_S + 2], row[M.DASH_N] = b_x, b_y, b_z, f_n - e_n
-        return touching > 0.0, f_n, raw, share < 1.0, (f_x, f_y, f_z), (t_x, t_y, t_z)
+        return int(touching), f_n, raw, share < 1.0, math.inf, (f_x, f_y, f_z), (t_x, t_y, t_z)
 
     return contact
+
+
+@cache
+def make_spring_energy(variant: KernelVariant) -> Any:
+    """Build what adds up the energy in the springs of a pair in contact, and counts it."""
+    exact = variant.exact != 0
+
+    @device
+    def add_spring_energy(now: int, c: Any, eta: Any, row: Any, totals: Any) -> None:
+        """Add what the springs of a pair in state `now` hold [J]."""
+        k_n, k_s, e_n = c[P.K_N], c[P.K_S], row[M.F_N] - row[M.DASH_N]
+        if exact:
+            k_n, k_s = eta[M.K_N], eta[M.K_S]
+        if k_n > 0.0:
+            totals[T.SPRING_N] += 0.5 * e_n * e_n / k_n
+        if now in (HELD, BEGAN):
+            if k_s > 0.0:
+                for s in range(3):
+                    totals[T.SPRING_S] += 0.5 * row[M.SPRING_S + s] ** 2 / k_s
+            totals[T.N_CONTACT] += 1.0
+
+    return add_spring_energy
 
 
 @device

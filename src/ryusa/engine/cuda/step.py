@@ -17,13 +17,11 @@ from ryusa.engine.cuda.arrays import (
 )
 from ryusa.engine.cuda.device import cuda, device, on_device
 from ryusa.engine.cuda.integration import make_integrate
-from ryusa.engine.cuda.pair import make_contact, track_overlap
+from ryusa.engine.cuda.pair import make_contact, make_spring_energy, track_overlap
+from ryusa.engine.cuda.pair_records import make_record
 from ryusa.engine.cuda.step_totals import NO_GRAIN
 from ryusa.engine.shared import block_statistics as S
-from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
-from ryusa.engine.shared import record_fields as R
-from ryusa.engine.shared.contact_records import begin_record, end_record, keep_record
 from ryusa.engine.shared.fluid import close_fluid_interval
 from ryusa.engine.shared.rolling import end_rolling, rolling_friction
 from ryusa.engine.shared.status import (
@@ -43,7 +41,6 @@ from ryusa.laws.families import Rolling
 from ryusa.laws.geometry import wrap
 from ryusa.laws.immersed import lubrication_force
 from ryusa.laws.rolling import reduced_radius
-from ryusa.model.contacts import N_EVENT
 from ryusa.model.tally import N_TERM, Term
 
 B_ROLL, B_RELEASED_R = int(Term.ROLL), int(Term.RELEASED_R)
@@ -53,11 +50,6 @@ _rolling_friction, _end_rolling, _close_fluid_interval = (
     on_device(end_rolling),
     on_device(close_fluid_interval),
 )
-_begin_record, _keep_record, _end_record = (
-    on_device(begin_record),
-    on_device(keep_record),
-    on_device(end_record),
-)
 
 
 @cache
@@ -65,12 +57,13 @@ def make_step(variant: KernelVariant, choice: LawChoice, shape: LaunchShape) -> 
     """Build the kernel of one variant, for blocks of one shape."""
     plane_case = variant.plane_case != 0
     rolling, events, film = variant.rolling, variant.events, variant.film
-    model, arms, tension, rule = choice.rolling, choice.arm, choice.tension, choice.events
+    model, arms = choice.rolling, choice.arm
     record_at, threads, group, parts = variant.event_column, shape.threads, shape.group, shape.parts
     run = threads // parts
-    n_total, n_stat = T.N_COLUMN, S.N_STATISTIC  # the size of a local array has to be a literal
+    n_total = T.N_COLUMN  # the size of a local array has to be a literal
     both_ways = 1.0 if "both alike" in Rolling(model).marks else -1.0  # Eq. (13) as printed: one direction
     contact, integrate = make_contact(variant, choice), make_integrate(variant, choice)
+    record_pair, add_spring_energy = make_record(variant, choice), make_spring_energy(variant)
 
     @cuda.jit
     def step(
@@ -95,10 +88,9 @@ def make_step(variant: KernelVariant, choice: LawChoice, shape: LaunchShape) -> 
         totals[T.OVERLAP], totals[T.OVERLAP_GRAIN] = -1.0, NO_GRAIN
         totals[T.OVERLAP_PARTNER], totals[T.NOT_FINITE] = NO_GRAIN, NO_GRAIN
         work = cuda.local.array(N_TERM, float64)
-        record_stats = cuda.local.array(n_stat, float64)
         half, at = status[F.CURRENT], status[F.STEP]
         first, last = at == 0, at == target - 1
-        dt, k_n, k_s = c[P.DT], c[P.K_N], c[P.K_S]
+        dt = c[P.DT]
         l_x, l_y = c[P.PERIOD_X], c[P.PERIOD_Y]
         t, hdt = c[P.T_ZERO] + at * dt, 0.0 if first else 0.5 * dt
         film_reach = c[P.FILM_REACH] if film else 0.0
@@ -140,8 +132,8 @@ def make_step(variant: KernelVariant, choice: LawChoice, shape: LaunchShape) -> 
                 if not plane_case:
                     square += d_y * d_y
                 reach = r_i + r_j + film_reach
-                was = lives[k] != 0
-                if not (was or square < reach * reach):
+                was = lives[k]
+                if not (was != 0 or square < reach * reach):
                     continue
 
                 # seen from the grain with the lower id, whichever side this is: both get the same bits
@@ -158,13 +150,13 @@ def make_step(variant: KernelVariant, choice: LawChoice, shape: LaunchShape) -> 
                 normal, slip = (n_x, n_y, n_z), (s_x, s_y, s_z)
                 arm_i = arm_a if own else arm_b
                 weight = 1.0 if own else 0.0
-                if was or overlap > 0.0:
-                    row = rows[k]
-                    live, f_n, raw, slides, (p_x, p_y, p_z), turned = contact(
-                        a, b, weight, was, hdt, c, m, w, normal, overlap, closing, slip, twist, pairs.eta[k],
-                        row, totals,
+                if was != 0 or overlap > 0.0:
+                    row, live = rows[k], overlap > 0.0
+                    now, f_n, raw, slides, until, (p_x, p_y, p_z), turned = contact(
+                        a, b, weight, was, hdt, c, m, inertia, w, normal, overlap, closing, slip, twist,
+                        pairs.eta[k], row, totals,
                     )  # fmt: skip
-                    lives[k] = 1 if live else 0
+                    lives[k] = now
                     f_x, f_y, f_z = f_x + sign * p_x, f_y + sign * p_y, f_z + sign * p_z
                     t_x, t_y, t_z = t_x + arm_i * turned[0], t_y + arm_i * turned[1], t_z + arm_i * turned[2]
                     if live:
@@ -199,41 +191,20 @@ def make_step(variant: KernelVariant, choice: LawChoice, shape: LaunchShape) -> 
                             t_x, t_y, t_z = t_x + turn_i * q_x, t_y + turn_i * q_y, t_z + turn_i * q_z
                             if last:
                                 totals[T.SPRING_R] += weight * held
-                        elif was:
+                        elif was != 0:
                             _end_rolling(model, row, c, hdt, w_a, w_b, reduced_radius(r_i, r_wall), work)
                         totals[B_ROLL] += weight * work[B_ROLL]
                         totals[B_RELEASED_R] += weight * work[B_RELEASED_R]
                     if events and own:
-                        record = row[record_at:]
-                        if live and not was:
-                            for e in range(N_EVENT):
-                                record[e] = 0.0
-                            fluid: Any = RecordedGrains(x, v, w, ids, bodies.image, bodies.tracked)
-                            _begin_record(
-                                plane_case, rule, record, t, dt, overlap, closing, slip, normal, i, j, n,
-                                fluid, l_x, l_y,
-                            )  # fmt: skip
-                        if live:
-                            others = n_touching[i] > 1 or (j < n and n_touching[j] > 1)
-                            _keep_record(record, t, dt, overlap, f_n, raw, (p_x, p_y, p_z), slides, others)
-                        elif was and record[R.PARTNER] >= 0.0:
-                            slot = cuda.atomic.add(status, F.ENDED, 1)  # they are put in order later
-                            if slot < ended.shape[0]:
-                                record_stats[S.N_ENDED] = record_stats[S.FAULT] = 0.0
-                                _end_record(
-                                    plane_case, tension, record, record[R.T_PART], t, overlap, closing, slip,
-                                    normal, i, v, w, ended[slot : slot + 1], record_stats,
-                                )  # fmt: skip
-                            else:
-                                cuda.atomic.min(status, F.OVERFLOWED, id_i)
-                    if last and live and own:
-                        e_n = f_n - row[M.DASH_N]
-                        if k_n > 0.0:
-                            totals[T.SPRING_N] += 0.5 * e_n * e_n / k_n
-                        if k_s > 0.0:
-                            for s in range(3):
-                                totals[T.SPRING_S] += 0.5 * row[M.SPRING_S + s] ** 2 / k_s
-                        totals[T.N_CONTACT] += 1.0
+                        others = n_touching[i] > 1 or (j < n and n_touching[j] > 1)
+                        record_pair(
+                            i, j, n, was, now, until, t, dt, overlap, closing, f_n, raw, slides, others,
+                            normal, slip, (p_x, p_y, p_z),
+                            RecordedGrains(x, v, w, ids, bodies.image, bodies.tracked), l_x, l_y,
+                            row[record_at:], status, ended,
+                        )  # fmt: skip
+                    if last and now != 0 and own:
+                        add_spring_energy(now, c, pairs.eta[k], row, totals)
                 if film and overlap <= 0.0 and overlap > -film_reach:
                     radius = reduced_radius(r_i, math.inf if plane else r_j)
                     push = sign * lubrication_force(

@@ -11,7 +11,7 @@ from typing import Any
 from ryusa.engine.cuda.arrays import DeviceGrainArrays, DevicePairArrays, DeviceWallArrays
 from ryusa.engine.cuda.device import cuda, device, on_device
 from ryusa.engine.shared import memory_rows as M
-from ryusa.engine.shared.dashpots import dashpots
+from ryusa.engine.shared.dashpots import set_springs
 from ryusa.laws.geometry import wrap
 
 CHUNK = 64  # numbers that one thread adds up in a row
@@ -25,7 +25,7 @@ G_WIDTH = 11
 G_REACH = 14
 N_GRID = 15
 
-_dashpots = on_device(dashpots)
+_set_springs = on_device(set_springs)
 
 
 @device
@@ -216,7 +216,7 @@ def find_neighbours(
 
 @cuda.jit
 def transfer_memory(
-    n: int, n_solid: int, rotation: int, half: int, c: Any, order: Any, bodies: DeviceGrainArrays,
+    n: int, n_solid: int, rotation: int, exact: int, half: int, c: Any, order: Any, bodies: DeviceGrainArrays,
     ids_before: Any, before: DevicePairArrays, pairs: DevicePairArrays, missing: Any,
 ) -> None:  # fmt: skip
     """Give every neighbour its dashpots, and what touches its memory from the list before.
@@ -225,7 +225,7 @@ def transfer_memory(
     in the new list.
     """
     x = bodies.x[half]
-    width = pairs.rows.shape[1]
+    width, springs = pairs.rows.shape[1], pairs.eta.shape[1]
     for i in range(cuda.grid(1), n, cuda.gridsize(1)):
         old, end = before.start[order[i]], before.start[order[i] + 1]
         for k in range(pairs.start[i], pairs.start[i + 1]):
@@ -244,11 +244,9 @@ def transfer_memory(
                         cuda.atomic.min(missing, 0, bodies.ids[i])
                     old += 1
             if known:
-                pairs.touching[k] = 1
-                pairs.eta[k, M.ETA_N], pairs.eta[k, M.ETA_S] = (
-                    before.eta[old, M.ETA_N],
-                    before.eta[old, M.ETA_S],
-                )
+                pairs.touching[k] = before.touching[old]
+                for e in range(springs):
+                    pairs.eta[k, e] = before.eta[old, e]
                 for e in range(width):
                     pairs.rows[k, e] = before.rows[old, e]
                 old += 1
@@ -257,8 +255,7 @@ def transfer_memory(
                 a, b = (i, j) if own else (j, i)
                 for e in range(min(width, M.END_ROLLING)):
                     pairs.rows[k, e] = 0.0
-                eta_n, eta_s = _dashpots(a, b, rotation, c, bodies.m, x, bodies.inertia)
-                pairs.eta[k, M.ETA_N], pairs.eta[k, M.ETA_S] = eta_n, eta_s
+                _set_springs(k, a, b, rotation, exact, c, bodies.m, x, bodies.inertia, pairs.eta)
         while old < end:
             if before.touching[old] != 0:
                 cuda.atomic.min(missing, 0, bodies.ids[i])
@@ -279,9 +276,10 @@ def count_touching(n: int, ids: Any, pairs: DevicePairArrays, count: Any) -> Non
 
 @cuda.jit
 def collect_touching(
-    n: int, ids: Any, pairs: DevicePairArrays, start: Any, i_ids: Any, j_ids: Any, eta: Any, rows: Any
-) -> None:
-    """Copy ids and memory of the pairs in touch."""
+    n: int, ids: Any, pairs: DevicePairArrays, start: Any, i_ids: Any, j_ids: Any, states: Any, eta: Any,
+    rows: Any,
+) -> None:  # fmt: skip
+    """Copy ids, states and memory of the pairs in touch."""
     for i in range(cuda.grid(1), n, cuda.gridsize(1)):
         at = start[i]
         for k in range(pairs.start[i], pairs.start[i + 1]):
@@ -289,7 +287,9 @@ def collect_touching(
             if pairs.touching[k] != 0 and (j >= n or ids[j] > ids[i]):
                 i_ids[at] = ids[i]
                 j_ids[at] = ids[j] if j < n else j
-                eta[at, M.ETA_N], eta[at, M.ETA_S] = pairs.eta[k, M.ETA_N], pairs.eta[k, M.ETA_S]
+                states[at] = pairs.touching[k]
+                for e in range(pairs.eta.shape[1]):
+                    eta[at, e] = pairs.eta[k, e]
                 for e in range(pairs.rows.shape[1]):
                     rows[at, e] = pairs.rows[k, e]
                 at += 1
