@@ -1,8 +1,11 @@
 """A small scene, and an engine that only lets grains fall, for tests of recorder, loop and stops."""
 
 import math
+import os
+import signal
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,6 +14,7 @@ from ryusa.engine.protocol import Flags
 from ryusa.errors import RunError
 from ryusa.model import EVENT, ContactLaw, Scene, State, Tally, Term
 from ryusa.model.tally import N_TERM
+from ryusa.running import loop
 
 
 def make_scene(n: int = 3, **changes: object) -> Scene:
@@ -129,3 +133,19 @@ def tally() -> Callable[..., Tally]:
 @pytest.fixture
 def scene_with() -> Callable[..., Scene]:
     return make_scene
+
+
+@pytest.fixture
+def stop_at(monkeypatch: pytest.MonkeyPatch) -> Any:
+    """Send a signal once the loop has passed a step, in calls of 37 steps."""
+    asked: list[tuple[int, signal.Signals]] = []
+    advance = loop.Loop._advance
+
+    def watched(self: Any, n_steps: int) -> None:
+        advance(self, n_steps)
+        while asked and self._step >= asked[0][0]:
+            os.kill(os.getpid(), asked.pop(0)[1])
+
+    monkeypatch.setattr(loop.Loop, "_advance", watched)
+    monkeypatch.setattr(loop.Loop, "_chunk", lambda self: 37)
+    return lambda step, number=signal.SIGTERM: asked.append((step, number))

@@ -1,7 +1,6 @@
 """A run ends when its averages are known well enough, at the same step however it was interrupted."""
 
 import math
-import os
 import signal
 import sys
 from itertools import islice, takewhile
@@ -178,22 +177,6 @@ def test_a_stricter_precision_only_adds_steps() -> None:
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory: pytest.TempPathFactory) -> Results:
     return run(tmp_path_factory.mktemp("whole") / "run")
-
-
-@pytest.fixture
-def stop_at(monkeypatch: pytest.MonkeyPatch) -> Any:
-    """Send a signal once the loop has passed a step, in calls of 37 steps."""
-    asked: list[tuple[int, signal.Signals]] = []
-    advance = loop.Loop._advance
-
-    def watched(self: Any, n_steps: int) -> None:
-        advance(self, n_steps)
-        while asked and self._step >= asked[0][0]:
-            os.kill(os.getpid(), asked.pop(0)[1])
-
-    monkeypatch.setattr(loop.Loop, "_advance", watched)
-    monkeypatch.setattr(loop.Loop, "_chunk", lambda self: 37)
-    return lambda step, number=signal.SIGTERM: asked.append((step, number))
 
 
 def test_a_run_ends_when_its_average_is_known_well_enough(whole: Results) -> None:

@@ -1,7 +1,6 @@
 """Resume: the same bits, the same case and code only, and nothing repeated or lost."""
 
 import json
-import os
 import shutil
 import signal
 import sys
@@ -35,22 +34,6 @@ def run(folder: Path, overrides: dict[str, str] | None = None, **how: Any) -> Re
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory: pytest.TempPathFactory) -> Results:
     return run(tmp_path_factory.mktemp("whole") / "run")
-
-
-@pytest.fixture
-def stop_at(monkeypatch: pytest.MonkeyPatch) -> Any:
-    """Say SIGTERM (or SIGUSR1) once the loop has passed a step, in calls of 37 steps."""
-    asked: list[tuple[int, signal.Signals]] = []
-    advance = loop.Loop._advance
-
-    def watched(self: Any, n_steps: int) -> None:
-        advance(self, n_steps)
-        while asked and self._step >= asked[0][0]:
-            os.kill(os.getpid(), asked.pop(0)[1])
-
-    monkeypatch.setattr(loop.Loop, "_advance", watched)
-    monkeypatch.setattr(loop.Loop, "_chunk", lambda self: 37)
-    return lambda step, number=signal.SIGTERM: asked.append((step, number))
 
 
 @pytest.fixture

@@ -48,7 +48,8 @@ class StopSection(Section):
     rest: RestSection | None = None
     """All grains at rest."""
     precision: PrecisionSection | None = None
-    """Averages known to these standard errors; needs stop.time, the latest end."""
+    """Averages known to these standard errors, each worth 60 independent samples; needs stop.time, the latest
+    end."""
 
 
 class ChangeSection(Section):

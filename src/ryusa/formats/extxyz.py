@@ -3,13 +3,14 @@
 import math
 import re
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from ryusa.errors import ParseError
 from ryusa.formats.grains import GrainTable
-from ryusa.formats.text import ReadOptions, Rows, checked, opened, shown
+from ryusa.formats.text import Lines, ReadOptions, Rows, checked, frame_asked_for, opened, shown
 from ryusa.model.arrays import Floats
 
 PROPERTIES = "species:S:1:pos:R:3:id:I:1:fixed:I:1:image:I:3:velo:R:3:omega:R:3:radius:R:1:mass:R:1"
@@ -67,28 +68,34 @@ _PERIODIC = {"t": True, "true": True, "1": True, "f": False, "false": False, "0"
 
 def read_xyz(path: Path, name: str, options: ReadOptions) -> GrainTable:
     """Read one frame."""
-    n_frame, kept = 0, None
     with opened(path, name) as lines:
-        while lines.advance():
-            if not lines.text.strip():
-                continue
-            n = lines.integer(0, "the number of grains", 1)
-            if len(lines.text.split()) > 1:
-                raise lines.error("expected the number of grains alone on its line", 1)
-            lines.need("the line that describes the columns")
-            if options.frame in {None, n_frame}:
-                kept = lines.number, lines.text, lines.block(n)
-            else:
-                lines.skip(n)
-            n_frame += 1
-            if n_frame - 1 == options.frame:
-                break
-        if kept is None:
-            raise options.no_such_frame(name, lines.number, n_frame)
-    return _table(*kept, options)
+        return _table(*frame_asked_for(lines, options, lambda: _head(lines)), options)
 
 
-def _table(line: int, about: str, rows: Rows, options: ReadOptions) -> GrainTable:
+@dataclass(frozen=True)
+class _Head:
+    """What stands before the grains of a frame."""
+
+    n: int
+    line: int  # that describes the columns
+    text: str
+
+
+def _head(lines: Lines) -> _Head | None:
+    """Head of the next frame; None at the end of the file."""
+    while lines.advance():
+        if not lines.text.strip():
+            continue
+        n = lines.integer(0, "the number of grains", 1)
+        if len(lines.text.split()) > 1:
+            raise lines.error("expected the number of grains alone on its line", 1)
+        lines.need("the line that describes the columns")
+        return _Head(n, lines.number, lines.text)
+    return None
+
+
+def _table(head: _Head, rows: Rows, options: ReadOptions) -> GrainTable:
+    line, about = head.line, head.text
     keys = {found[1].lower(): found for found in _KEY.finditer(about)}
 
     def value(key: str) -> str:

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ryusa.formats.grains import GrainTable
-from ryusa.formats.text import Lines, ReadOptions, Rows, checked, opened, shown
+from ryusa.formats.text import Lines, ReadOptions, Rows, checked, frame_asked_for, opened, shown
 from ryusa.model.arrays import Floats
 
 FREE_TYPE, FIXED_TYPE = 1, 2
@@ -73,19 +73,8 @@ class _Head:
 
 def read_dump(path: Path, name: str, options: ReadOptions) -> GrainTable:
     """Read one frame of a dump."""
-    n_frame, kept = 0, None
     with opened(path, name) as lines:
-        while (head := _head(lines, options)) is not None:
-            if options.frame in {None, n_frame}:
-                kept = head, lines.block(head.n)
-            else:
-                lines.skip(head.n)
-            n_frame += 1
-            if n_frame - 1 == options.frame:
-                break
-        if kept is None:
-            raise options.no_such_frame(name, lines.number, n_frame)
-    return _table(*kept, options)
+        return _table(*frame_asked_for(lines, options, lambda: _head(lines, options)), options)
 
 
 def _head(lines: Lines, options: ReadOptions) -> _Head | None:

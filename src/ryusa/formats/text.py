@@ -6,7 +6,7 @@ from collections.abc import Callable, Generator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TextIO
+from typing import Protocol, TextIO, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,7 @@ LARGEST = 1.0e12  # of any number in SI
 D_LOW, D_HIGH = 1.0e-7, 1.0e3  # diameters [m], as for `grains.diameter`
 _INTEGER = re.compile(r"[+-]?[0-9]{1,18}")
 _SHOWN = 40  # characters of a word in a message
+Head = TypeVar("Head", bound="FrameHead")
 
 
 def word_column(text: str, k: int) -> int:
@@ -258,3 +259,36 @@ def checked(table: GrainTable, rows: Rows, words: dict[str, int]) -> GrainTable:
         ids=table.ids[order],
         image=table.image[order] if len(table.image) else table.image,
     )
+
+
+class FrameHead(Protocol):
+    """What stands before the grains of a frame."""
+
+    @property
+    def n(self) -> int:
+        """Number of grains."""
+        ...
+
+
+def frame_asked_for(
+    lines: Lines, options: ReadOptions, next_head: Callable[[], Head | None]
+) -> tuple[Head, Rows]:
+    """Head and rows of the frame that the case asks for, the last one where it asks for none.
+
+    Parameters
+    ----------
+    lines : the file.
+    next_head : reads the head of the next frame; None at the end of the file.
+    """
+    n_frame, kept = 0, None
+    while (head := next_head()) is not None:
+        if options.frame in {None, n_frame}:
+            kept = head, lines.block(head.n)
+        else:
+            lines.skip(head.n)
+        n_frame += 1
+        if n_frame - 1 == options.frame:
+            break
+    if kept is None:
+        raise options.no_such_frame(lines.name, lines.number, n_frame)
+    return kept
