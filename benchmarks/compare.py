@@ -1,12 +1,12 @@
 """Two trees of ryusa stepping the same grains in turn: did a change cost speed?
 
-    python benchmarks/compare.py OLD [NEW] [--only W1-2k W2-20k] [--threads 1 2] [--rounds 14]
+    python benchmarks/compare.py OLD [NEW] [--only W1-2k W2-20k] [--threads 1 2] [--rounds 14] [--exact 5]
 
 OLD and NEW are checkouts (`git worktree add --detach ../old COMMIT`); NEW is this one unless given. Each is
 stepped by a process of its own, both are kept alive, and in every round each does the same steps, the order
 turning round. The ratio is taken within a round: a machine that slows down slows both. One thread is timed
 by the processor's time on a core of its own, several by the clock. A ratio of 1.00 is as fast as before,
-1.03 takes 3 % longer.
+1.03 takes 3 % longer. With --exact contacts begin and end within steps, as many to a contact as it says.
 """
 
 import argparse
@@ -16,6 +16,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import machine
 import workloads
@@ -35,6 +36,7 @@ def main() -> None:
     parser.add_argument("--only", nargs="+", type=_workload, default=[_workload(key) for key in ONLY])
     parser.add_argument("--threads", nargs="+", type=int, default=[1])
     parser.add_argument("--rounds", type=int, default=14)
+    parser.add_argument("--exact", type=float, default=0.0, help="steps per contact")
     parser.add_argument("--work", type=Path, default=Path("build/benchmarks"))
     options = parser.parse_args()
     from prepare import grains
@@ -49,8 +51,8 @@ def main() -> None:
             watch = machine.Watch()
             watch.begin()
             with (
-                _stepper(options.old, load, path, threads, cores[:threads], options.work) as old,
-                _stepper(options.new, load, path, threads, cores[:threads], options.work) as new,
+                _stepper(options.old, load, path, threads, cores[:threads], options) as old,
+                _stepper(options.new, load, path, threads, cores[:threads], options) as new,
             ):
                 rounds = _rounds(old, new, STEPS[load.size], options.rounds)
             seen = watch.end()
@@ -96,14 +98,14 @@ def _line(child: subprocess.Popen[str]) -> str:
 
 
 def _stepper(
-    tree: Path, load: workloads.Workload, path: Path, threads: int, cores: list[int], work: Path
+    tree: Path, load: workloads.Workload, path: Path, threads: int, cores: list[int], options: Any
 ) -> subprocess.Popen[str]:
     """Process that steps the grains of a workload with the sources of a tree."""
-    cache = (work / "compiled" / tree.name).resolve()
+    cache = (options.work / "compiled" / tree.name).resolve()
     return subprocess.Popen(
         [
             *("taskset", "-c", ",".join(str(core) for core in cores), sys.executable, __file__),
-            *(CHILD, str(tree), load.key, str(path), str(threads)),
+            *(CHILD, str(tree), load.key, str(path), str(threads), str(options.exact)),
         ],
         env={**os.environ, "PYTHONPATH": str(tree / "src"), "NUMBA_CACHE_DIR": str(cache)},
         stdin=subprocess.PIPE,
@@ -112,9 +114,10 @@ def _stepper(
     )
 
 
-def child(tree: str, key: str, path: str, threads: int) -> None:
+def child(tree: str, key: str, path: str, threads: int, exact: float) -> None:
     """Step as often as each line of the input says, and answer with ns a particle-step."""
     sys.path.insert(0, str(Path(tree) / "benchmarks"))  # each tree builds the scene and makes its engine
+    import accuracy
     import prepare
 
     import ryusa
@@ -122,8 +125,9 @@ def child(tree: str, key: str, path: str, threads: int) -> None:
     if not Path(ryusa.__file__).is_relative_to(tree):
         raise SystemExit(f"{ryusa.__file__} was imported, which is not of {tree}")
     load = workloads.named(key)
+    more = {"dt": accuracy.contact()[0] / exact, "timing": "exact"} if exact else {}
     scene, state = prepare.free_scene(
-        workloads.Grains.load(path), workloads.TOTAL, load.slope, plane=load.plane
+        workloads.Grains.load(path), workloads.TOTAL, load.slope, plane=load.plane, **more
     )
     engine = prepare.CpuEngine(threads=threads)
     engine.load(scene, state)
@@ -155,7 +159,7 @@ def _workload(key: str) -> workloads.Workload:
 
 if __name__ == "__main__":
     if sys.argv[1:2] == [CHILD]:
-        _, _, its_tree, its_key, its_path, its_threads = sys.argv
-        child(its_tree, its_key, its_path, int(its_threads))
+        _, _, its_tree, its_key, its_path, its_threads, its_exact = sys.argv
+        child(its_tree, its_key, its_path, int(its_threads), float(its_exact))
     else:
         main()

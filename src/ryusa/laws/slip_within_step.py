@@ -6,14 +6,14 @@ part of a step only and its limit changes from or to zero.
 
 import math
 
-from ryusa.laws._law import law
+from ryusa.laws._law import step_law
 from ryusa.laws.contact import shear_strength, slide
 from ryusa.laws.contact_map import free_response
 
 PARTS = 2  # into which the span is cut (design/0014)
 
 
-@law
+@step_law
 def slip_within_step(
     span: float, y: float, rate: float, a: float, q: float, m: float, p_x: float, p_y: float, p_z: float,
     s_x: float, s_y: float, s_z: float, k_s: float, eta_s: float, m_t: float, cohesion: float, mu: float,

@@ -22,37 +22,53 @@ FORCE = 24 * PITCH  # force on i [N], and nothing
 TORQUE_I = 28 * PITCH  # torque on i [N m], and 1 where they touch
 TORQUE_J = 32 * PITCH
 # Rows:
-ETA_S = 36 * PITCH  # tangential dashpot [N s/m]
-RAW = 37 * PITCH  # normal force before the limit [N]
-WAS_TOUCHING = 38 * PITCH  # 1 where they touched in the last step
-EXCESS = 39 * PITCH  # overlap less the largest so far for its size [m]
+WAS_TOUCHING = 36 * PITCH  # state of the pair: 1 where they touched in the last step
+EXCESS = 37 * PITCH  # overlap less the largest so far for its size [m]
 # Books [J], summed lane by lane until the block is done:
-WORK = 40 * PITCH
+WORK = 38 * PITCH
 DASH_N, DASH_S, SLIDE, RELEASED_N, RELEASED_S, STEP = (WORK + k * PITCH for k in range(6))
 N_WORK = 6
 # Rows that one loop leaves for the next, and for rolling friction, films and records:
-OVERLAP = 46 * PITCH  # [m], negative where they do not touch
-CLOSING = 47 * PITCH  # [m/s]
-NORMAL = 48 * PITCH  # three rows [-]
-SLIP = 51 * PITCH  # slip velocity at the contact point, three rows [m/s]
-SLIDES = 54 * PITCH  # 1 where it slides
-ARM_I = 55 * PITCH  # [m]
-ARM_J = 56 * PITCH
+SLIDES = 44 * PITCH  # 1 where it slides
+ARM_I = 45 * PITCH  # [m]
+ARM_J = 46 * PITCH
+HELD = 47 * PITCH  # 1 where they push, or pull if they may
+TOUCHING = 48 * PITCH  # 1 where they touch
+# These are also the first rows of an event:
+OVERLAP = 49 * PITCH  # [m], negative where they do not touch
+CLOSING = 50 * PITCH  # [m/s]
+NORMAL = 51 * PITCH  # three rows [-]
+SLIP = 54 * PITCH  # slip velocity at the contact point, three rows [m/s]
 TWIST = 57 * PITCH  # angle the pair turned about its normal [rad]
-F_N = 58 * PITCH  # normal force, and that of the spring alone [N]
-E_N = 59 * PITCH
-HELD = 60 * PITCH  # 1 where they push, or pull if they may
-TOUCHING = 61 * PITCH  # 1 where they touch
+ETA_S = 58 * PITCH  # tangential dashpot [N s/m]
+K_N = 59 * PITCH  # stiffnesses of the map [N/m], only with exact timing
+K_S = 60 * PITCH
+# What an event comes to, and what the law does without one:
+F_N = 61 * PITCH  # normal force, and that of the spring alone [N]
+E_N = 62 * PITCH
+RAW = 63 * PITCH  # normal force before the limit, without corrections [N]
 # Only with exact timing:
-K_N = 62 * PITCH  # stiffnesses of the map [N/m]
-K_S = 63 * PITCH
 STATE = 64 * PITCH  # of the pair after this step (shared/contact_instants.py)
-WATCHED = 65 * PITCH  # 1 where the contact begins or ends, or may end
-GIVEN = 66 * PITCH  # 1 where the tangential force is in the next six rows: spring, and the rest [N]
-GIVEN_SPRING = 67 * PITCH
-GIVEN_REST = 70 * PITCH
-GIVEN_SLID = 73 * PITCH  # 1 where it slid
-UNTIL = 74 * PITCH  # time to the end of the force [s]; inf where it goes on, -inf where it ended before
-REST = 75 * PITCH  # correction of the closing speed that the next step makes [m/s]
-SIZE = 76 * PITCH
+GIVEN = 65 * PITCH  # 1 where the tangential force is in the next six rows: spring, and the rest [N]
+GIVEN_SPRING = 66 * PITCH
+GIVEN_REST = 69 * PITCH
+GIVEN_SLID = 72 * PITCH  # 1 where it slid
+UNTIL = 73 * PITCH  # time to the end of the force [s]; inf where it goes on, -inf where it ended before
+REST = 74 * PITCH  # correction of the closing speed that the next step makes [m/s]
+KIND = 75 * PITCH  # what the step does with the pair (shared/contact_instants.py)
+BEGINS, MAY_END = 76 * PITCH, 77 * PITCH  # lanes where contacts begin, and may end, one after the other
+
+# Events: contacts that begin or may end, packed into lanes of their own (contact_events.py)
+EVENT = 78 * PITCH  # twelve rows as from OVERLAP on
+N_INPUT = 12
+ETA_N_OF_EVENT = 90 * PITCH
+STATE_OF_EVENT = 91 * PITCH
+SPRING_OF_EVENT = 92 * PITCH  # memory, four rows
+DASH_OF_EVENT = 96 * PITCH  # memory, four rows
+MASS_OF_EVENT = 100 * PITCH  # of i and of j, two rows each [kg], [kg m2], [m]
+INERTIA_OF_EVENT = 102 * PITCH
+RADIUS_OF_EVENT = 104 * PITCH
+ANSWER = 106 * PITCH  # fourteen rows as from F_N on
+N_ANSWER = 14
+SIZE = 120 * PITCH
 FAR = 1.0e9  # [m] where a lane without a pair puts its partner

@@ -1,8 +1,8 @@
 """The law of contact on a batch of pairs, with contacts that begin and end within steps (design/0014).
 
-As `pair_batch.compute`, but every pair has the stiffness of its map, and the lanes whose contact begins or
-ends, or may end, are done one by one between the two loops. Energy that is not in a spring is dissipated:
-there is none that a contact gains from beginning or ending between two steps.
+As `pair_batch.compute`, but every pair has the stiffness of its map, and contacts that begin, or may end, are
+done between the two loops (contact_events.py). Energy that is not in a spring is dissipated: there is none
+that a contact gains from beginning or ending between two steps.
 """
 # ruff: noqa: E741  (l is a lane)
 
@@ -10,12 +10,22 @@ import math
 from typing import Any
 
 from ryusa.engine.cpu import batch_layout as B
+from ryusa.engine.cpu.contact_events import begin_and_end
 from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
-from ryusa.engine.shared.contact_instants import BEGAN, ENDING, HELD, instant_step
+from ryusa.engine.shared.contact_instants import (
+    APART,
+    BEGAN,
+    CORRECTS,
+    ENDED,
+    ENDING,
+    FREE,
+    HELD,
+    ON_MAP,
+    kind_of_step,
+)
 from ryusa.engine.shared.kernel import FAST, inner
 from ryusa.engine.shared.variant import LawChoice
-from ryusa.laws.collision import effective_mass, effective_mass_tangential
 from ryusa.laws.contact import normal_force
 from ryusa.laws.contact_step import contact_force, contact_kinematics, tangential_step
 from ryusa.laws.dispatch import cap_total, slip_drops, slip_total
@@ -24,8 +34,8 @@ from ryusa.laws.geometry import turn, wrap
 
 def _make_kinematics(plane: bool) -> Any:
     @inner(fastmath=FAST)
-    def kinematics_of_maps(m: int, most: float, c: Any, batch: Any) -> None:
-        """Geometry and velocities of every contact, its normal force, and the lanes to be watched."""
+    def kinematics_of_maps(m: int, most: float, tension: bool, c: Any, batch: Any) -> None:
+        """Geometry and velocities of every contact, its normal force, and what the step does with it."""
         dt, l_x, l_y = c[P.DT], c[P.PERIOD_X], c[P.PERIOD_Y]
         for l in range(min(m, B.LANES)):  # never more: the compiler has to know
             d_x, d_y, d_z = wrap(batch[B.SEPARATION + 4 * l], l_x), 0.0, batch[B.SEPARATION + 4 * l + 2]
@@ -52,72 +62,20 @@ def _make_kinematics(plane: bool) -> Any:
             batch[B.EXCESS + l] = overlap - 2.0 * most * min(r_i, r_j)
             k_n, state = batch[B.K_N + l], batch[B.WAS_TOUCHING + l]
             f_n = normal_force(overlap, closing, k_n, batch[B.RELATIVE_VELOCITY + 4 * l + 3])
-            fading = closing < 0.0 and c[P.FADING] * f_n < batch[B.SPRING + 4 * l + 3]
-            plain = state == 1.0 and overlap > 0.0 and not fading
-            apart = state == 0.0 and overlap <= 0.0
-            batch[B.RAW + l] = batch[B.F_N + l] = 0.0 if apart else f_n
-            batch[B.E_N + l] = 0.0 if apart else k_n * overlap
-            batch[B.WATCHED + l] = 0.0 if plain or apart else 1.0
-            batch[B.STATE + l] = state
-            batch[B.HELD + l] = 0.0 if apart else 1.0
-            batch[B.TOUCHING + l] = 1.0 if overlap > 0.0 else 0.0
+            fades = closing < 0.0 and c[P.FADING] * f_n < batch[B.SPRING + 4 * l + 3]
+            kind = kind_of_step(state, overlap, closing, f_n, fades, tension, dt)
+            touching, held = overlap > 0.0, kind == ON_MAP
+            batch[B.F_N + l] = batch[B.RAW + l] = f_n if held else 0.0
+            batch[B.E_N + l] = k_n * overlap if held else 0.0
+            now = ENDED if touching or kind == CORRECTS else APART
+            batch[B.STATE + l] = HELD if held else now
+            until = -math.inf if state == ENDED or kind == CORRECTS else 0.0
+            batch[B.UNTIL + l] = math.inf if held else until
+            batch[B.KIND + l] = kind
+            batch[B.TOUCHING + l] = 1.0 if touching else 0.0
             batch[B.GIVEN + l] = batch[B.GIVEN_SLID + l] = batch[B.REST + l] = 0.0
-            batch[B.UNTIL + l] = math.inf
 
     return kinematics_of_maps
-
-
-@inner(fastmath=FAST)
-def instants(
-    plane: bool, rotation: int, choice: LawChoice, m: int, selected: Any, i_of: Any, j_of: Any, mass: Any,
-    inertia: Any, c: Any, batch: Any,
-) -> None:  # fmt: skip
-    """Do the watched lanes among the first m."""
-    rules = (slip_total(choice.slip), slip_drops(choice.slip), cap_total(choice.cap))
-    dt, tension = c[P.DT], choice.tension != 0
-    for l in range(m):
-        if batch[B.WATCHED + l] == 0.0:
-            continue
-        i, j = i_of[selected[l]], j_of[selected[l]]
-        r_i, r_j = batch[B.SPIN_I + 4 * l + 3], batch[B.SPIN_J + 4 * l + 3]
-        m_n = effective_mass(mass[i], mass[j])
-        m_t = effective_mass_tangential(mass[i], r_i, inertia[i], mass[j], r_j, inertia[j], rotation != 0)
-        state = int(batch[B.WAS_TOUCHING + l])
-        overlap, closing, k_n = batch[B.OVERLAP + l], batch[B.CLOSING + l], batch[B.K_N + l]
-        p = (batch[B.SPRING + 4 * l], batch[B.SPRING + 4 * l + 1], batch[B.SPRING + 4 * l + 2])
-        rest = 0.0
-        if state == ENDING:
-            rest, p = p[M.REST_OF_CLOSING], (0.0, 0.0, 0.0)
-            batch[B.SPRING + 4 * l] = 0.0
-        elif state == BEGAN:  # the overlap that the oscillator had is in its spring
-            e_old = batch[B.SPRING + 4 * l + 3] - batch[B.DASH + 4 * l + 3]
-            rest = (overlap - e_old / k_n) / dt - closing
-        n_y = s_y = s_z = 0.0
-        if not plane:
-            n_y = batch[B.NORMAL + B.PITCH + l]
-            s_y, s_z = batch[B.SLIP + B.PITCH + l], batch[B.SLIP + 2 * B.PITCH + l]
-            p = turn(
-                p[0], p[1], p[2], batch[B.NORMAL + l], n_y, batch[B.NORMAL + 2 * B.PITCH + l],
-                batch[B.TWIST + l],
-            )  # fmt: skip
-        f_t = (
-            p[0] + batch[B.DASH + 4 * l],
-            p[1] + batch[B.DASH + 4 * l + 1],
-            p[2] + batch[B.DASH + 4 * l + 2],
-        )
-        now, rest, f_n, e_n, push, given, e, b, slid, until = instant_step(
-            state, rest, overlap, closing, m_n, k_n, batch[B.RELATIVE_VELOCITY + 4 * l + 3], m_t,
-            batch[B.K_S + l], batch[B.ETA_S + l], p, f_t, (batch[B.SLIP + l], s_y, s_z), tension, rules, c,
-        )  # fmt: skip
-        batch[B.F_N + l], batch[B.E_N + l] = f_n, e_n
-        batch[B.STATE + l] = now
-        batch[B.GIVEN + l], batch[B.GIVEN_SLID + l] = 1.0 if given else 0.0, 1.0 if slid else 0.0
-        for k in range(3):
-            batch[B.GIVEN_SPRING + k * B.PITCH + l] = e[k]
-            batch[B.GIVEN_REST + k * B.PITCH + l] = b[k]
-        batch[B.UNTIL + l] = until
-        batch[B.WATCHED + l] = 2.0 if now == ENDING else 1.0
-        batch[B.RAW + l], batch[B.REST + l] = push, rest
 
 
 def _make_tangential(plane: bool) -> Any:
@@ -130,8 +88,10 @@ def _make_tangential(plane: bool) -> Any:
         for l in range(min(m, B.LANES)):
             n_x, n_y, n_z = batch[B.NORMAL + l], 0.0, batch[B.NORMAL + 2 * B.PITCH + l]
             f_n, e_n = batch[B.F_N + l], batch[B.E_N + l]
-            held, touching = batch[B.HELD + l], batch[B.TOUCHING + l]
+            touching = batch[B.TOUCHING + l]
+            kind, was = batch[B.KIND + l], batch[B.WAS_TOUCHING + l]
             p_x, p_y, p_z = batch[B.SPRING + 4 * l], batch[B.SPRING + 4 * l + 1], batch[B.SPRING + 4 * l + 2]
+            p_x = 0.0 if was == ENDING else p_x  # where the correction was
             f_old = batch[B.SPRING + 4 * l + 3]
             q_x, q_y, q_z = batch[B.DASH + 4 * l], batch[B.DASH + 4 * l + 1], batch[B.DASH + 4 * l + 2]
             e_old = f_old - batch[B.DASH + 4 * l + 3]
@@ -141,20 +101,23 @@ def _make_tangential(plane: bool) -> Any:
                 s_y, s_z = batch[B.SLIP + B.PITCH + l], batch[B.SLIP + 2 * B.PITCH + l]
             k_n, k_s = batch[B.K_N + l], batch[B.K_S + l]
             soft_s = 1.0 / k_s if k_s > 0.0 else 0.0
+            without = kind == FREE or kind == CORRECTS  # noqa: PLR1714 (lanes)
+            held = 0.0 if without else 1.0
             e_x, e_y, e_z, b_x, b_y, b_z, share, dashpot_s, sliding, _ = tangential_step(
                 plane, total, drop, cap_total, n_x, n_y, n_z, twist, batch[B.RAW + l], e_n, held, s_x, s_y,
                 s_z, p_x, p_y, p_z, q_x, q_y, q_z, k_s, soft_s, batch[B.ETA_S + l], cohesion, mu, dt, hdt,
             )  # fmt: skip
-            given, slid = batch[B.GIVEN + l] > 0.0, batch[B.GIVEN_SLID + l] > 0.0
+            shaped, slid = batch[B.GIVEN + l] > 0.0, batch[B.GIVEN_SLID + l] > 0.0
+            given = without or shaped
             g_x, h_x = batch[B.GIVEN_SPRING + l], batch[B.GIVEN_REST + l]
-            e_x, b_x = g_x if given else e_x, h_x if given else b_x
+            e_x, b_x = g_x if shaped else e_x, h_x if shaped else b_x
             t_x, t_y, t_z = p_x, p_y, p_z
             if not plane:
                 t_x, t_y, t_z = turn(p_x, p_y, p_z, n_x, n_y, n_z, twist)
                 g_y, h_y = batch[B.GIVEN_SPRING + B.PITCH + l], batch[B.GIVEN_REST + B.PITCH + l]
                 g_z, h_z = batch[B.GIVEN_SPRING + 2 * B.PITCH + l], batch[B.GIVEN_REST + 2 * B.PITCH + l]
-                e_y, b_y = g_y if given else e_y, h_y if given else b_y
-                e_z, b_z = g_z if given else e_z, h_z if given else b_z
+                e_y, b_y = g_y if shaped else e_y, h_y if shaped else b_y
+                e_z, b_z = g_z if shaped else e_z, h_z if shaped else b_z
             work, stored = s_x * (t_x + q_x + e_x + b_x), e_x * e_x - t_x * t_x
             if not plane:
                 work += s_y * (t_y + q_y + e_y + b_y) + s_z * (t_z + q_z + e_z + b_z)
@@ -168,15 +131,15 @@ def _make_tangential(plane: bool) -> Any:
             )
             # between two steps on the map the spring takes and gives what it holds; where a contact begins or
             # ends, what its force does beyond that is dissipated
-            closing, was, now = batch[B.CLOSING + l], batch[B.WAS_TOUCHING + l], batch[B.STATE + l]
+            closing, now = batch[B.CLOSING + l], batch[B.STATE + l]
             on_map = was == HELD and (now == HELD or now == ENDING)  # noqa: PLR1714, SIM109 (lanes)
             beyond = hdt * closing * (e_old + e_n) - 0.5 * (e_n * e_n - e_old * e_old) / k_n
             batch[B.DASH_N + l] += hdt * closing * (f_old - e_old + f_n - e_n) + (0.0 if on_map else beyond)
             batch[B.DASH_S + l] += dashpot_s
             batch[B.SLIDE + l] += sliding
             batch[B.SLIDES + l] = 1.0 if share < 1.0 else 0.0
-            ending = batch[B.WATCHED + l] > 1.0
-            batch[B.SPRING + 4 * l], batch[B.SPRING + 4 * l + 1] = batch[B.REST + l] if ending else e_x, e_y
+            batch[B.SPRING + 4 * l] = batch[B.REST + l] if now == ENDING else e_x
+            batch[B.SPRING + 4 * l + 1] = e_y
             batch[B.SPRING + 4 * l + 2], batch[B.SPRING + 4 * l + 3] = e_z, f_n
             batch[B.DASH + 4 * l], batch[B.DASH + 4 * l + 1] = b_x, b_y
             batch[B.DASH + 4 * l + 2], batch[B.DASH + 4 * l + 3] = b_z, f_n - e_n
@@ -204,12 +167,13 @@ def compute_exactly(
     """Forces, torques and work of the first m lanes, as `pair_batch.compute`; `lanes` in whole vectors."""
     total, drop, whole = slip_total(choice.slip), slip_drops(choice.slip), cap_total(choice.cap)
     if flat is not None:
-        _kinematics_plane(lanes, most, c, batch)
-        instants(True, rotation, choice, m, selected, i_of, j_of, mass, inertia, c, batch)
+        _kinematics_plane(lanes, most, choice.tension != 0, c, batch)
+    else:
+        _kinematics_space(lanes, most, choice.tension != 0, c, batch)
+    begin_and_end(flat, rotation, choice, m, selected, i_of, j_of, mass, inertia, c, batch)
+    if flat is not None:
         _tangential_plane(total, drop, whole, lanes, hdt, c, batch)
     else:
-        _kinematics_space(lanes, most, c, batch)
-        instants(False, rotation, choice, m, selected, i_of, j_of, mass, inertia, c, batch)
         _tangential_space(total, drop, whole, lanes, hdt, c, batch)
 
 

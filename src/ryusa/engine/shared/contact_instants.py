@@ -1,20 +1,20 @@
 """A contact in the steps in which it begins or ends: exact touch and release (design/0014).
 
 The states of a pair tell what its next step has to do. Between the first and the last step of a contact the
-force is that of the map (laws/contact_map.py), and nothing here is called.
+force is that of the map (laws/contact_map.py). Nothing here branches but `instant_step`: an engine that works
+on many pairs at once calls its parts in loops that become vector instructions.
 """
 
 import math
 from typing import Any
 
 from ryusa.engine.shared import parameters as P
-from ryusa.engine.shared.kernel import inner
+from ryusa.engine.shared.kernel import FAST, inner
 from ryusa.laws.contact import shear_strength, slide
 from ryusa.laws.contact_map import (
     begin_in_step,
     decay_of_map,
     end_in_step,
-    frequency_of_map,
     time_of_release,
     velocity_of_map,
 )
@@ -30,28 +30,53 @@ BEGAN = 2  # touched within the last step: the closing speed is still to be corr
 ENDING = 3  # the force ended within the last step: the closing speed is still to be corrected
 ENDED = 4  # without force, until the overlap ends or the force comes back
 
+# What a step does with a pair
+FREE = 0.0  # no force
+ON_MAP = 1.0  # the force of the map
+BEGINS = 2.0
+MAY_END = 3.0  # `end_contact` tells
+CORRECTS = 4.0  # the closing speed after the end
+
 _LATE = 2.0  # steps of approach within which a first overlap is that of a touch; a larger one was put there
 _FAR_FROM_ZERO = 0.25  # of the present force: a next force above it does not end within the step
 
 
-@inner()
-def _tangential_oscillator(m_t: float, k_sd: float, eta_sd: float, dt: float) -> tuple[float, float, float]:
-    """Stiffness [N/m] and dashpot [N s/m] of a tangential map, and that stiffness over the one of the map."""
-    a, q = decay_of_map(eta_sd, m_t, dt), frequency_of_map(k_sd, eta_sd, m_t, dt)
-    k_s = m_t * (a * a + q)
-    return k_s, 2.0 * a * m_t, k_s / k_sd if k_sd > 0.0 else 0.0
+@inner(fastmath=FAST, forceinline=True)
+def kind_of_step(
+    state: float, overlap: float, closing: float, raw: float, fades: bool, tension: bool, dt: float
+) -> float:
+    """What a step does with a pair; `raw` is the force of the map [N], `fades` whether it may end."""
+    apart, ended = state == APART, state == ENDED
+    free = overlap <= 0.0 or ((apart or ended) and raw <= 0.0 and not tension)
+    begins = apart and overlap <= _LATE * closing * dt
+    ends = state == BEGAN or (state == HELD and fades)
+    kind = BEGINS if begins else MAY_END if ends else ON_MAP
+    kind = FREE if free else kind
+    return CORRECTS if state == ENDING else kind
 
 
-@inner()
-def _begin(
+@inner(fastmath=FAST, forceinline=True)
+def oscillators(
+    m: float, eta_d: float, m_t: float, eta_sd: float, c: Any
+) -> tuple[float, float, float, float]:
+    """Oscillators of the normal and the tangential map of a pair.
+
+    Returns decay rate [1/s] and squared frequency [1/s2] of the first, decay rate and dashpot [N s/m] of
+    the second.
+    """
+    a, a_t = decay_of_map(eta_d, m, c[P.DT]), decay_of_map(eta_sd, m_t, c[P.DT])
+    return a, c[P.K_N] / m - a * a, a_t, 2.0 * a_t * m_t
+
+
+@inner(fastmath=FAST, forceinline=True)
+def begin_contact(
     overlap: float, closing: float, m: float, k_d: float, eta_d: float, m_t: float, k_sd: float,
     eta_sd: float, s: Vector, rules: Rules, c: Any,
 ) -> tuple[float, float, Vector, Vector, bool]:  # fmt: skip
     """Normal force and that of its spring [N], tangential force as in `instant_step`, and whether it slid."""
-    dt, cohesion, mu = c[P.DT], c[P.COHESION], c[P.MU]
+    dt, k_s, cohesion, mu = c[P.DT], c[P.K_S], c[P.COHESION], c[P.MU]
     total, drop, cap_total = rules
-    a, q = decay_of_map(eta_d, m, dt), frequency_of_map(k_d, eta_d, m, dt)
-    k_s, eta_s, stiffer = _tangential_oscillator(m_t, k_sd, eta_sd, dt)
+    a, q, _, eta_s = oscillators(m, eta_d, m_t, eta_sd, c)
     since, y, rate, v_new = begin_in_step(overlap, closing, dt, a, q)
     p_x, p_y, p_z, s_x, s_y, s_z, _, _, _, slid = slip_within_step(
         since, 0.0, closing, a, q, m, 0.0, 0.0, 0.0, s[0], s[1], s[2], k_s, eta_s, m_t, cohesion, mu, total,
@@ -61,7 +86,7 @@ def _begin(
         dt, y, rate, a, q, m, p_x, p_y, p_z, s_x, s_y, s_z, k_s, eta_s, m_t, cohesion, mu, total, drop,
         cap_total,
     )  # fmt: skip
-    softer = 1.0 / stiffer if stiffer > 0.0 else 0.0
+    softer = k_sd / k_s if k_s > 0.0 else 0.0
     e = (p_x * softer, p_y * softer, p_z * softer)
     b = (
         m_t * (way_x / dt - s[0]) / dt - e[0],
@@ -71,15 +96,16 @@ def _begin(
     return m * (closing - v_new) / dt, k_d * y, e, b, slid + slid_too > 0.0
 
 
-@inner()
+@inner(fastmath=FAST, forceinline=True)
 def _slip_to_the_end(
     until: float, overlap: float, v: float, a: float, q: float, m: float, push: float, e_n: float,
-    m_t: float, k_sd: float, eta_sd: float, p: Vector, f_t: Vector, s: Vector, rules: Rules, c: Any,
+    m_t: float, k_sd: float, eta_sd: float, eta_s: float, p: Vector, f_t: Vector, s: Vector, rules: Rules,
+    c: Any,
 ) -> tuple[Vector, bool]:  # fmt: skip
     """Tangential force on i [N] in the step in which the normal force ends, and whether the contact slid."""
-    dt, cohesion, mu = c[P.DT], c[P.COHESION], c[P.MU]
+    dt, k_s, cohesion, mu = c[P.DT], c[P.K_S], c[P.COHESION], c[P.MU]
     total, drop, cap_total = rules
-    k_s, eta_s, stiffer = _tangential_oscillator(m_t, k_sd, eta_sd, dt)
+    stiffer = k_s / k_sd if k_sd > 0.0 else 0.0
     e_x, e_y, e_z = p[0] - k_sd * s[0] * dt, p[1] - k_sd * s[1] * dt, p[2] - k_sd * s[2] * dt
     b_x, b_y, b_z = -eta_sd * s[0], -eta_sd * s[1], -eta_sd * s[2]
     w_x, w_y, w_z = e_x, e_y, e_z
@@ -97,6 +123,34 @@ def _slip_to_the_end(
     )  # fmt: skip
     force = (m_t * (s_x - s[0]) / dt, m_t * (s_y - s[1]) / dt, m_t * (s_z - s[2]) / dt)
     return force, slid > 0.0 or share < 1.0
+
+
+@inner(fastmath=FAST, forceinline=True)
+def end_contact(
+    rest: float, overlap: float, closing: float, m: float, k_d: float, eta_d: float, m_t: float, k_sd: float,
+    eta_sd: float, p: Vector, f_t: Vector, s: Vector, tension: bool, rules: Rules, c: Any,
+) -> tuple[bool, float, float, float, Vector, bool, float]:  # fmt: skip
+    """Forces of a contact on its map that may end within the coming step.
+
+    Parameters as in `instant_step`, the rest zero but in the second step of a contact. Returns whether it
+    ends, and then `rest`, `f_n`, `push`, `b`, `slid` and `until` as in `instant_step`.
+    """
+    dt, e_n = c[P.DT], k_d * overlap
+    closing += rest
+    raw = e_n + eta_d * closing
+    onward = closing - dt * raw / m
+    fades = closing < 0.0 and k_d * (overlap + dt * onward) + eta_d * onward <= _FAR_FROM_ZERO * raw
+    a, q, _, eta_s = oscillators(m, eta_d, m_t, eta_sd, c)
+    v = velocity_of_map(overlap, closing, dt, a, q)
+    until = time_of_release(overlap, v, a, q, tension)
+    ends = fades and until <= dt
+    until = until if ends else 0.0
+    v_mean, v_end = end_in_step(overlap, v, until, dt, a, q)
+    b, slid = _slip_to_the_end(
+        until, overlap, v, a, q, m, raw, e_n, m_t, k_sd, eta_sd, eta_s, p, f_t, s, rules, c
+    )
+    f_n = (m * (closing - v_mean) / dt if ends else raw) - m * rest / dt
+    return ends, v_end - v_mean, f_n, raw, b, slid, until if ends else math.inf
 
 
 @inner()
@@ -129,32 +183,23 @@ def instant_step(
     slid : whether the contact slid.
     until : time from this step to the end of the force [s]; inf if it goes on, -inf if it ended before.
     """
-    dt, e_n, none = c[P.DT], k_d * overlap, (0.0, 0.0, 0.0)
+    e_n, none = k_d * overlap, (0.0, 0.0, 0.0)
     raw = e_n + eta_d * closing
-    if state == ENDING:
-        return ENDED, 0.0, -m * rest / dt, 0.0, 0.0, True, none, none, False, -math.inf
-    if overlap <= 0.0 or (state in (APART, ENDED) and raw <= 0.0 and not tension):
+    kind = kind_of_step(state, overlap, closing, raw, True, tension, c[P.DT])
+    if kind == CORRECTS:
+        return ENDED, 0.0, -m * rest / c[P.DT], 0.0, 0.0, True, none, none, False, -math.inf
+    if kind == FREE:
         now, until = ENDED if overlap > 0.0 else APART, -math.inf if state == ENDED else 0.0
         return now, 0.0, 0.0, 0.0, 0.0, True, none, none, False, until
-    if state == ENDED or (state == APART and overlap > _LATE * closing * dt):
-        return HELD, 0.0, raw, e_n, raw, False, none, none, False, math.inf
-    if state == APART:
-        f_n, e_n, e, b, slid = _begin(overlap, closing, m, k_d, eta_d, m_t, k_sd, eta_sd, s, rules, c)
+    if kind == BEGINS:
+        f_n, e_n, e, b, slid = begin_contact(overlap, closing, m, k_d, eta_d, m_t, k_sd, eta_sd, s, rules, c)
         return BEGAN, 0.0, f_n, e_n, f_n, True, e, b, slid, math.inf
-    correction = 0.0
-    if state == BEGAN:
-        closing += rest
-        correction = -m * rest / dt
-        raw = e_n + eta_d * closing
-    onward = closing - dt * raw / m
-    if closing >= 0.0 or k_d * (overlap + dt * onward) + eta_d * onward > _FAR_FROM_ZERO * raw:
-        return HELD, 0.0, raw + correction, e_n, raw, False, none, none, False, math.inf
-    a, q = decay_of_map(eta_d, m, dt), frequency_of_map(k_d, eta_d, m, dt)
-    v = velocity_of_map(overlap, closing, dt, a, q)
-    until = time_of_release(overlap, v, a, q, tension)
-    if until > dt:
-        return HELD, 0.0, raw + correction, e_n, raw, False, none, none, False, math.inf
-    v_mean, v_end = end_in_step(overlap, v, until, dt, a, q)
-    b, slid = _slip_to_the_end(until, overlap, v, a, q, m, raw, e_n, m_t, k_sd, eta_sd, p, f_t, s, rules, c)
-    f_n = m * (closing - v_mean) / dt + correction
-    return ENDING, v_end - v_mean, f_n, e_n, raw, True, none, b, slid, until
+    if kind == MAY_END:
+        rest = rest if state == BEGAN else 0.0
+        ends, rest, f_n, raw, b, slid, until = end_contact(
+            rest, overlap, closing, m, k_d, eta_d, m_t, k_sd, eta_sd, p, f_t, s, tension, rules, c
+        )
+        if ends:
+            return ENDING, rest, f_n, e_n, raw, True, none, b, slid, until
+        return HELD, 0.0, f_n, e_n, raw, False, none, none, False, math.inf
+    return HELD, 0.0, raw, e_n, raw, False, none, none, False, math.inf
