@@ -89,29 +89,32 @@ class DeviceState:
             if variant.column
             else FluidAtGrains(np.zeros((1, N_SAMPLED)), np.zeros((1, N_IMPULSE)))
         )
-        # both orders share what has two halves
+        # both orders share what has two halves, and masses, which `reorder` reads by id
         shared: dict[str, Any] = {
             "x": cuda.to_device(np.stack([x, x])),
             "v": cuda.to_device(np.stack([by_id.v, by_id.v])),
             "w": cuda.to_device(np.stack([by_id.w, by_id.w])),
             "tracked": cuda.to_device(layout.tracked.astype(np.uint8)),
             "n_touching": cuda.to_device(n_touching),
+            "m": cuda.to_device(layout.m),
+            "inertia": cuda.to_device(layout.inertia),
+            "m_bare": cuda.to_device(np.asarray(scene.m, np.float64)),
+            "m_weight": cuda.to_device(np.asarray(scene.m_weight, np.float64)),
         }
+        self._masses = cuda.to_device(
+            np.column_stack([layout.m[: self.n], layout.inertia[: self.n], scene.m, scene.m_weight])
+        )
 
         def own() -> DeviceGrainArrays:
             return DeviceGrainArrays(
                 **shared,
-                m=cuda.to_device(layout.m),
-                inertia=cuda.to_device(layout.inertia),
-                m_bare=cuda.to_device(np.asarray(scene.m, np.float64)),
-                m_weight=cuda.to_device(np.asarray(scene.m_weight, np.float64)),
                 ids=cuda.to_device(np.arange(self.n_solid, dtype=np.int32)),
                 image=cuda.to_device(np.ascontiguousarray(by_id.image)),
                 fluid=cuda.to_device(fluid.sampled),
                 impulse=cuda.to_device(fluid.impulse),
             )
 
-        self.bodies, self._spare, self._of = own(), own(), own()
+        self.bodies, self._spare = own(), own()
         self.half = 0
         self.walls = DeviceWallArrays(
             cuda.to_device(layout.plane_normals),
@@ -120,10 +123,10 @@ class DeviceState:
         )
         self.c = cuda.to_device(parameters)
         self.listed = cuda.to_device(np.zeros((self.n, 3)))
-        self._most_cells = 4 * (self.n + len(still)) + 64
-        self._cell = cuda.to_device(np.zeros(max(self.n, len(still), 1), np.int64))
+        self._most_cells = 2 * (self.n + len(still)) + 64
+        self._cell = cuda.to_device(np.zeros(max(self.n, len(still), 1), np.int32))
         self._taken, self._first, self._first_fixed = (
-            cuda.to_device(np.zeros(self._most_cells + 1, np.int64)) for _ in range(3)
+            cuda.to_device(np.zeros(self._most_cells + 1, np.int32)) for _ in range(3)
         )
         self._order, self._places = (
             cuda.to_device(np.arange(max(self.n, 1), dtype=np.int32)) for _ in range(2)
@@ -131,14 +134,14 @@ class DeviceState:
         self._fixed = cuda.to_device(np.zeros(max(len(still), 1), np.int32))
         self._still = cuda.to_device(self.standing)
         self.pairs = self._by_id(memory)
-        self._next = self._room(0)
+        self._held = self._room(0, cuda.to_device(np.zeros(self.n + 1, np.int64)))
         self.n_pair = 0
 
-    def _room(self, pairs: int) -> DevicePairArrays:
-        """An empty list with room for so many neighbours."""
-        room = max(pairs, 1)
+    def _room(self, pairs: int, start: Any) -> DevicePairArrays:
+        """A list with room for so many neighbours and an eighth more, undefined beyond `start`."""
+        room = max(pairs * 9 // 8, 1)
         return DevicePairArrays(
-            cuda.to_device(np.zeros(self.n + 1, np.int64)),
+            start,
             cuda.device_array(room, np.int32),
             cuda.device_array(room, np.uint8),
             cuda.device_array((room, self.variant.springs), np.float64),
@@ -177,6 +180,7 @@ class DeviceState:
         grid, dims = self._grid(skin + film_reach)
         n_cell = int(np.prod(dims))
         grid, dims = cuda.to_device(grid), cuda.to_device(dims)
+        self._hold_contacts()
         old, new, ids = self.bodies, self._spare, self.bodies.ids
         lost, missing = one(NO_GRAIN), one(NO_GRAIN)
         launch(kernels.wrap_grains, n, n, old.x[half], old.image, ids, grid, self.listed, lost)
@@ -186,37 +190,48 @@ class DeviceState:
             self._sort(
                 self._still, still, n_cell, old.x[half], ids, grid, dims, self._first_fixed, self._fixed
             )
-        launch(kernels.reorder, n, n, half, self._order, old, new, self._of)
+        launch(kernels.reorder, n, n, half, self._order, self._masses, old, new)
         self.bodies, self._spare = new, old
         half = self.half = 1 - half
         launch(kernels.copy_radii, n, n, half, new)
 
-        start = self._next.start
+        start = self.pairs.start
         common = (
             n, self.n_solid, self.variant.plane_case, new.x[half], new.ids, self.walls, grid, dims,
             self._first, self._first_fixed, self._fixed, start,
         )  # fmt: skip
         launch(kernels.fill, n + 1, start, 0)
-        launch(kernels.find_neighbours, n, 0, *common, self._next.partners)
+        launch(kernels.find_neighbours, n, 0, *common, self.pairs.partners)
         self._sum_up(start, n + 1)
         self.n_pair = int(start[n : n + 1].copy_to_host()[0])
-        if self.n_pair > self._next.partners.shape[0]:
-            self._next = self._room(0)  # frees the old arrays before the new ones are allocated
-            self._next = self._room(self.n_pair * 5 // 4)._replace(start=start)
-        launch(kernels.find_neighbours, n, 1, *common, self._next.partners)
+        if self.n_pair > self.pairs.partners.shape[0]:
+            self.pairs = self._room(0, start)  # frees the old arrays before the new ones are allocated
+            self.pairs = self._room(self.n_pair, start)
+        launch(kernels.find_neighbours, n, 1, *common, self.pairs.partners)
         launch(
             kernels.transfer_memory, n, n, self.n_solid, self.variant.rotation, self.variant.exact, half,
-            self.c, self._order, new, old.ids, self.pairs, self._next, missing,
+            self.c, self._order, new, old.ids, self._held, self.pairs, missing,
         )  # fmt: skip
-        self.pairs, self._next = self._next, self.pairs
         grain = int(missing.copy_to_host()[0])
         if grain != NO_GRAIN:
             raise AssertionError(f"a pair of grain {grain} is in touch and not in the list")
         grain = int(lost.copy_to_host()[0])
         return -1 if grain == NO_GRAIN else grain
 
+    def _hold_contacts(self) -> None:
+        """Copy the pairs in contact out of the list, which is then written anew."""
+        n, start = self.n, self._held.start
+        launch(kernels.fill, n + 1, start, 0)
+        launch(kernels.count_touching, n, 1, n, self.bodies.ids, self.pairs, start)
+        self._sum_up(start, n + 1)
+        total = int(start[n : n + 1].copy_to_host()[0])
+        if total > self._held.partners.shape[0]:
+            self._held = self._room(0, start)
+            self._held = self._room(total, start)
+        launch(kernels.hold_touching, n, n, self.pairs, self._held)
+
     def _grid(self, reach: float) -> tuple[Floats, np.ndarray]:
-        """Cells wide enough for a reach beyond touch [m], and no more than about four a grain."""
+        """Cells wide enough for a reach beyond touch [m], and no more than about two a grain."""
         scene = self.scene
         size = (2.0 * float(self.layout.r[: self.n_solid].max(initial=0.0)) + reach) * _MARGIN
         span = np.array([*scene.period, np.inf])
@@ -278,7 +293,7 @@ class DeviceState:
     def memory(self) -> ContactMemory:
         """Pairs in touch with their rows, in the order of ids."""
         n, count = self.n, cuda.to_device(np.zeros(self.n + 1, np.int64))
-        launch(kernels.count_touching, n, n, self.bodies.ids, self.pairs, count)
+        launch(kernels.count_touching, n, 0, n, self.bodies.ids, self.pairs, count)
         self._sum_up(count, n + 1)
         total = int(count[n : n + 1].copy_to_host()[0])
         room = max(total, 1)

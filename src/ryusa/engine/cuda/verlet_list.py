@@ -114,9 +114,12 @@ def scan_chunks(n: int, values: Any, before: Any) -> None:
 
 @cuda.jit
 def reorder(
-    n: int, half: int, order: Any, old: DeviceGrainArrays, new: DeviceGrainArrays, of: DeviceGrainArrays
+    n: int, half: int, order: Any, masses: Any, old: DeviceGrainArrays, new: DeviceGrainArrays
 ) -> None:
-    """Lay free grains out anew: place s gets what stood at place order[s]; `of` holds what stays, by id."""
+    """Lay free grains out anew: place s gets what stood at place order[s].
+
+    `masses` holds mass, inertia, bare mass and mass of the weight by id.
+    """
     for s in range(cuda.grid(1), n, cuda.gridsize(1)):
         o = order[s]
         name = old.ids[o]
@@ -126,8 +129,8 @@ def reorder(
             new.w[1 - half, s, k] = old.w[half, o, k]
         new.n_touching[1 - half, s] = old.n_touching[half, o]
         new.ids[s] = name
-        new.m[s], new.inertia[s] = of.m[name], of.inertia[name]
-        new.m_bare[s], new.m_weight[s] = of.m_bare[name], of.m_weight[name]
+        new.m[s], new.inertia[s] = masses[name, 0], masses[name, 1]
+        new.m_bare[s], new.m_weight[s] = masses[name, 2], masses[name, 3]
         for k in range(2):
             new.image[s, k] = old.image[o, k]
         if old.fluid.shape[0] == n:
@@ -219,10 +222,10 @@ def transfer_memory(
     n: int, n_solid: int, rotation: int, exact: int, half: int, c: Any, order: Any, bodies: DeviceGrainArrays,
     ids_before: Any, before: DevicePairArrays, pairs: DevicePairArrays, missing: Any,
 ) -> None:  # fmt: skip
-    """Give every neighbour its dashpots, and what touches its memory from the list before.
+    """Give every neighbour its dashpots, and the pairs in contact their memory from those before.
 
-    Both lists are in the order of ids. `missing` gets the lowest id of a grain whose partner in touch is not
-    in the new list.
+    Both are in the order of ids. `missing` gets the lowest id of a grain whose partner in contact is not in
+    the new list.
     """
     x = bodies.x[half]
     width, springs = pairs.rows.shape[1], pairs.eta.shape[1]
@@ -232,18 +235,14 @@ def transfer_memory(
             j = pairs.partners[k]
             mine = bodies.ids[j] if j < n_solid else j
             pairs.touching[k] = 0
-            known = False
-            while old < end and not known:
+            theirs = -1
+            while old < end and theirs < mine:
                 q = before.partners[old]
                 theirs = ids_before[q] if q < n_solid else q
-                if theirs > mine:
-                    break
-                known = theirs == mine and before.touching[old] != 0
-                if not known:
-                    if before.touching[old] != 0:
-                        cuda.atomic.min(missing, 0, bodies.ids[i])
+                if theirs < mine:
+                    cuda.atomic.min(missing, 0, bodies.ids[i])
                     old += 1
-            if known:
+            if theirs == mine:
                 pairs.touching[k] = before.touching[old]
                 for e in range(springs):
                     pairs.eta[k, e] = before.eta[old, e]
@@ -256,22 +255,35 @@ def transfer_memory(
                 for e in range(min(width, M.END_ROLLING)):
                     pairs.rows[k, e] = 0.0
                 _set_springs(k, a, b, rotation, exact, c, bodies.m, x, bodies.inertia, pairs.eta)
-        while old < end:
-            if before.touching[old] != 0:
-                cuda.atomic.min(missing, 0, bodies.ids[i])
-            old += 1
+        if old < end:
+            cuda.atomic.min(missing, 0, bodies.ids[i])
 
 
 @cuda.jit
-def count_touching(n: int, ids: Any, pairs: DevicePairArrays, count: Any) -> None:
-    """Pairs in touch that each grain keeps."""
+def count_touching(both: int, n: int, ids: Any, pairs: DevicePairArrays, count: Any) -> None:
+    """Pairs in contact of each grain: all, or those it has the lower id of."""
     for i in range(cuda.grid(1), n, cuda.gridsize(1)):
         total = 0
         for k in range(pairs.start[i], pairs.start[i + 1]):
             j = pairs.partners[k]
-            if pairs.touching[k] != 0 and (j >= n or ids[j] > ids[i]):
+            if pairs.touching[k] != 0 and (both or j >= n or ids[j] > ids[i]):
                 total += 1
         count[i] = total
+
+
+@cuda.jit
+def hold_touching(n: int, pairs: DevicePairArrays, held: DevicePairArrays) -> None:
+    """Copy all pairs in contact to `held`, whose `start` is known."""
+    for i in range(cuda.grid(1), n, cuda.gridsize(1)):
+        at = held.start[i]
+        for k in range(pairs.start[i], pairs.start[i + 1]):
+            if pairs.touching[k] != 0:
+                held.partners[at], held.touching[at] = pairs.partners[k], pairs.touching[k]
+                for e in range(pairs.eta.shape[1]):
+                    held.eta[at, e] = pairs.eta[k, e]
+                for e in range(pairs.rows.shape[1]):
+                    held.rows[at, e] = pairs.rows[k, e]
+                at += 1
 
 
 @cuda.jit
