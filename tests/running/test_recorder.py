@@ -14,7 +14,8 @@ from ryusa.model import State
 from ryusa.results import Results, schema
 from ryusa.running import recorder as recorder_module
 from ryusa.running import vtkhdf
-from ryusa.running.recorder import Recorder, buffer_limit, bytes_per_frame, flush_after
+from ryusa.running.record_buffer import bytes_per_frame
+from ryusa.running.recorder import Recorder, buffer_limit, flush_after
 
 WRITER = """
 import json, os, sys
@@ -236,6 +237,7 @@ def test_a_part_is_written_when_enough_has_gathered(
     for k in range(9):
         recorder.frame(moment(k), tally())
         written.append(recorder.flush_if_due())
+    recorder.settle()
     assert written == [False, False, True] * 3
     assert len(list((tmp_path / "parts").glob("part-*"))) == 3
 

@@ -1,6 +1,7 @@
 """Atomic writes, and disk errors as exceptions of ryusa; a full disk has an exception of its own."""
 
 import errno
+import itertools
 import os
 import shutil
 import time
@@ -14,12 +15,14 @@ from ryusa.running.interrupt import StopSignal
 
 _RETRY_EVERY = 1.0  # s between two attempts to write to a full disk
 _DISK_TIMEOUT = 86_400.0  # s
+_images = itertools.count()
 _FULL = {errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC)}
 
 
 def hdf5_image(fill: Callable[[h5py.File], None]) -> bytes:
     """Bytes of an HDF5 file, made in memory, so that the HDF5 library never writes to a full disk."""
-    with h5py.File("image.h5", "w", driver="core", backing_store=False) as file:
+    name = f"image-{next(_images)}.h5"  # HDF5 refuses two open files of one name, of several threads too
+    with h5py.File(name, "w", driver="core", backing_store=False) as file:
         fill(file)
         file.flush()
         return file.id.get_file_image()

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ryusa.engine.protocol import Engine, Flags
 from ryusa.errors import CheckpointError, DiskFull, RyusaError
-from ryusa.model import EVENT, Scene, State
+from ryusa.model import Scene, State
 from ryusa.results import schema
 from ryusa.running import provenance
 from ryusa.running.checkpoint import CheckpointBlock
@@ -181,6 +181,7 @@ class Loop:
             raise CheckpointError(f"the state in the checkpoint cannot be used ({error})") from error
 
     def _loop_state(self) -> LoopState:
+        self._collect_contacts()
         return LoopState(
             t_zero=self._t_zero, first=self._first, frame=self._frame, changed=self._n_changed,
             resting=self._at_rest, hopped=self._saltations_done, since=self._rest.since,
@@ -191,9 +192,7 @@ class Loop:
     def _end_stretch(self) -> None:
         """Complete a stretch: all up to this step is done and recorded."""
         self.recorder.reached(self._step)
-        if self._retry_when_full(self.recorder.flush_if_due):
-            with suppress(DiskFull):
-                write_json(self.recorder.folder / schema.SUMMARY, self._summary())
+        self._retry_when_full(lambda: self.recorder.flush_if_due(self._summary))
         self._checkpoint_if_due()
 
     def _advance_to(self, target: int) -> bool:
@@ -234,11 +233,11 @@ class Loop:
             self.progress.line(f"checkpoint written at step {self._step}, t = {self._t:.6g} s, on request")
 
     def _collect_contacts(self) -> None:
-        events = self.engine.events()
-        if len(events):
-            self._gathered.append(np.array(events, dtype=EVENT))
+        if len(events := self.engine.events()):
+            self._gathered.append(events)
 
     def _deliver_contacts(self) -> None:
+        self._collect_contacts()
         events, self._gathered = in_order(self._gathered), []
         self.recorder.contacts(events)
         self.watch.contacts(events)
@@ -247,6 +246,7 @@ class Loop:
 
     def _write_tail(self) -> None:
         """Write contacts of the unfinished stretch, so that a reader of the stopped run finds them."""
+        self._collect_contacts()
         self.recorder.tail(in_order(self._gathered))
 
     def _retry_when_full(self, action: Callable[[], bool]) -> bool:
@@ -256,7 +256,6 @@ class Loop:
         begun = time.monotonic()
         with self.progress.explain_if_slow(_COMPILING) if self._calls == 0 else nullcontext():
             flags = self._steps(n_steps)
-        self._collect_contacts()
         if flags:
             self._step = self.engine.grains().step
             flags.raise_if_any()

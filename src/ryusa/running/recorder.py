@@ -1,10 +1,12 @@
 """Recorder of a run: frames and contact records in write-once files (parts), and the index for ParaView.
 
 A part is renamed into place once it is complete on the disk; then the index over all parts is replaced in the
-same way. If the run is killed at any time, every part stays readable, and at most the data of the last
-`flush_after` seconds is lost.
+same way. A thread of their own does both while the run goes on, one part at a time, so that memory stays
+bounded. If the run is killed at any time, every part stays readable, and what was recorded since the last one
+is lost.
 """
 
+import threading
 import time
 from collections.abc import Callable, Mapping
 from contextlib import suppress
@@ -17,12 +19,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.errors import CheckpointError, DiskFull
-from ryusa.model import EVENT, Scene, State, Tally
+from ryusa.model import Scene, State, Tally
 from ryusa.results import schema
 from ryusa.results.scene_file import write_scene
 from ryusa.running.checkpoint import CheckpointBlock
-from ryusa.running.contact_forces import contact_forces
 from ryusa.running.disk import disk_errors, free_bytes
+from ryusa.running.folder import write_json
+from ryusa.running.record_buffer import RecordBuffer
 from ryusa.running.vtkhdf import PartSize, write_bed, write_hdf5, write_index, write_points
 from ryusa.water.coupling import Coupling
 
@@ -47,16 +50,6 @@ def buffer_limit(n_part: int) -> float:
 
 def _thinning(n_part: int) -> float:
     return 2.0 ** (max(n_part - _FEW, 0) / 100)
-
-
-def bytes_per_frame(n_grain: int) -> int:
-    """Disk space of one frame [B]."""
-    per_grain = sum(dtype.itemsize * tail[0] for dtype, tail in _shapes() if tail)
-    return n_grain * per_grain + schema.TALLY.itemsize + 24
-
-
-def _shapes() -> list[tuple[np.dtype[Any], tuple[int, ...]]]:
-    return list(schema.FRAME_DATASETS.values())
 
 
 @dataclass(frozen=True)
@@ -96,7 +89,7 @@ class Recorder:
         clock: Callable[[], float] = time.monotonic,
         earlier: RecordedSoFar | None = None,
     ) -> None:
-        self.folder, self.n_grain = folder, scene.n_grain
+        self.folder = folder
         self.n_frame = 0  # frames recorded so far
         self.n_contact = 0
         self._clock, self._begun = clock, clock()
@@ -108,15 +101,9 @@ class Recorder:
         self._end = 0  # step up to which all is buffered or written
         self._n_scene = 0
         self._scenes: list[tuple[float, Scene]] = []  # scenes that differ in the visible bed
-        self._count = 0  # frames in the buffer
-        self._buffer = self._room(16)
-        self._tally: list[tuple[float, ...]] = []
-        self._contacts: list[NDArray[np.void]] = []
-        self._n_buffered_contacts = 0  # contacts in the buffer
-        self._forces: list[NDArray[np.void]] | None = (
-            [] if scene.forces else None
-        )  # of each frame in the buffer
-        self._water: dict[str, list[NDArray[np.float64]]] = {}
+        self._buffer = RecordBuffer(self.first_scene)
+        self._writing: _PartBeingWritten | None = None
+        self._failed = False  # the last attempt to write
         self._verify_until: int | None = None
         self._earlier: RecordedSoFar | None = None
         (folder / schema.PARTS).mkdir(exist_ok=True)
@@ -147,28 +134,13 @@ class Recorder:
         if self._verify_until is not None:
             self._compare(state)
             return
-        if water is not None:
-            profiles = {**vars(water.state), "phi": water.phi}
-            for name in (*schema.WATER_CELLS, *schema.WATER_FACES, *schema.WATER_NUMBERS):
-                self._water.setdefault(name, []).append(np.array(profiles[name]))
-        while self._count == len(self._buffer["t"]):
-            self._grow()
-        row, k = self._buffer, self._count
-        row["t"][k], row["step"][k] = state.t, state.step
-        row["x"][k], row["v"][k], row["omega"][k] = state.x, state.v, state.omega
-        if len(state.image):
-            row["image"][k] = state.image
-        if self._forces is not None:
-            self._forces.append(contact_forces(state, self.first_scene))
-        self._tally.append(schema.tally_row(tally))
-        self._count += 1
+        self._buffer.frame(state, tally, water)
 
     def contacts(self, events: NDArray[np.void]) -> None:
-        """Add contacts that ended to the buffer, dtype model.EVENT."""
+        """Add contacts that ended to the buffer, dtype model.EVENT; the array is kept."""
         self.n_contact += len(events)
-        if len(events) and self._verify_until is None:
-            self._contacts.append(np.array(events, dtype=EVENT))
-            self._n_buffered_contacts += len(events)
+        if self._verify_until is None:
+            self._buffer.contacts(events)
 
     def reached(self, step: int) -> None:
         """Note that all frames and contacts up to `step` have been added.
@@ -190,74 +162,124 @@ class Recorder:
             )
         self._verify_until = None
 
-    def flush_if_due(self) -> bool:
-        """Write a part if the time since the last one or the size of the buffer requires it."""
+    def flush_if_due(self, summary: Callable[[], Mapping[str, Any]] | None = None) -> bool:
+        """Begin to write a part if the time since the last one or the size of the buffer requires it.
+
+        Parameters
+        ----------
+        summary : numbers of the run so far, written as summary.json after the part.
+
+        Returns
+        -------
+        begun : whether there was anything to write. After a failure it is written on return.
+
+        Raises
+        ------
+        DiskFull, ResultsError : the part begun before could not be written; the buffer has its content again.
+        """
+        if self._failed:
+            return self.flush()
+        if self._writing is not None and not self._writing.is_alive():
+            self.settle()
         now = self._clock()
         due = now - self._flushed >= flush_after(now - self._begun, len(self._parts))
-        if due or self.buffered >= buffer_limit(len(self._parts)):
-            return self.flush()
-        return False
+        if not due and self.buffered < buffer_limit(len(self._parts)):
+            return False
+        self.settle()
+        self._flushed = now
+        if not self._buffer:
+            return False
+        self._writing = self._part(None if summary is None else summary())
+        self._writing.start()
+        return True
 
     def flush_if_large(self) -> None:
-        """Write a part if the buffer is too large to be stored in a checkpoint."""
-        if self.buffered >= _BUFFER:
-            with suppress(DiskFull):
+        """Wait for the part being written; write another if the buffer is too large for a checkpoint."""
+        with suppress(DiskFull):
+            self.settle()
+            if self.buffered >= _BUFFER:
                 self.flush()
 
     @property
     def buffered(self) -> int:
-        """Size of the data that is not yet in a part [B]."""
-        forces = sum(one.nbytes for one in self._forces or ())
-        frames = self._count * bytes_per_frame(self.n_grain)
-        return frames + forces + self._n_buffered_contacts * EVENT.itemsize
+        """Size of the data of which no part has been begun [B]."""
+        return self._buffer.nbytes
 
     def flush(self) -> bool:
-        """Write the buffer as one part, then the index.
+        """Write the buffer as one part, then the index; returns when both are on the disk.
 
         Raises
         ------
         DiskFull, ResultsError : the disk is full or the folder does not exist. Earlier parts stay readable,
             and the buffer is kept for another attempt.
         """
+        self.settle()
         self._flushed = self._clock()
-        if self._count or self._n_buffered_contacts:
-            self._write_part()
-            self._count, self._n_buffered_contacts = 0, 0
-            self._tally, self._contacts, self._water = [], [], {}
-            self._forces = None if self._forces is None else []
-        elif not self._index_is_old:
+        if self._buffer:
+            self._writing = self._part()
+            self._writing.run()
+            self.settle()
+        elif self._index_is_old:
+            self.write_index()
+            self._failed = False
+        else:
             return False
-        self._write_index()
-        self._index_is_old = False
         return True
+
+    def settle(self) -> None:
+        """Wait until the part being written is on the disk.
+
+        Raises
+        ------
+        DiskFull, ResultsError : it could not be written; the buffer has its content again.
+        """
+        writing, self._writing = self._writing, None
+        if writing is None:
+            return
+        if writing.is_alive():
+            writing.join()
+        self._failed = writing.error is not None
+        if writing.error is not None:
+            if not writing.complete:
+                writing.content.extend(self._buffer.rows())
+                self._buffer = writing.content
+            raise writing.error
 
     def tail(self, events: NDArray[np.void]) -> None:
         """Write contacts of an unfinished stretch as a tail, to be replaced when the run is resumed."""
         if len(events) and self._verify_until is None:
+            self.settle()
             self.contacts(events)
-            self._write_part(tail=True)
-            self._write_index()
+            self.write_part(self._buffer, self._end, tail=True)
+            self.write_index()
 
     def to_block(self) -> CheckpointBlock:
         """State and buffer of the recorder, for a checkpoint."""
         about = {"n_frame": self.n_frame, "n_contact": self.n_contact, "end": self._end}
         about |= {"n_part": len(self._parts), "parts_end": self._parts[-1].end if self._parts else -1}
-        return CheckpointBlock(about, self._rows() if self.buffered else {})
+        return CheckpointBlock(about, self._buffer.rows() if self._buffer else {})
 
-    def _write_part(self, *, tail: bool = False) -> None:
-        part = PartSize(schema.part_name(len(self._parts)), self._count, self._n_buffered_contacts, self._end)
+    def _part(self, summary: Mapping[str, Any] | None = None) -> "_PartBeingWritten":
+        """Take the buffer out, to be written."""
+        content, self._buffer = self._buffer, RecordBuffer(self.first_scene)
+        return _PartBeingWritten(self, content, self._end, summary)
+
+    def write_part(self, content: RecordBuffer, end: int, *, tail: bool = False) -> None:
+        """Write one part; `end` is the step up to which all has been recorded."""
+        part = PartSize(schema.part_name(len(self._parts)), content.n_frame, content.n_contact, end)
+        n = self.first_scene.n_grain
 
         def fill(file: h5py.File) -> None:
             first = sum(one.n_frame for one in self._parts)
             file.attrs["format"], file.attrs["first_frame"] = schema.FORMAT, first
-            file.attrs[schema.END_STEP], file.attrs[schema.TAIL] = self._end, int(tail)
-            offsets = np.arange(first, first + part.n_frame, dtype=np.int64) * self.n_grain
+            file.attrs[schema.END_STEP], file.attrs[schema.TAIL] = end, int(tail)
+            offsets = np.arange(first, first + part.n_frame, dtype=np.int64) * n
             file.create_dataset("point_offset", data=offsets)
-            for name, rows in self._rows().items():
+            for name, rows in content.rows().items():
                 file.create_dataset(name, data=rows)
 
         with disk_errors(self.folder):
-            if free_bytes(self.folder) < self.buffered + _RESERVE and not tail:
+            if free_bytes(self.folder) < content.nbytes + _RESERVE and not tail:
                 raise DiskFull(
                     f"{self.folder}: the disk is almost full. Data written before remains readable"
                 )
@@ -265,19 +287,12 @@ class Recorder:
         self._parts.append(part)
         self._index_is_old = True
 
-    def _write_index(self) -> None:
+    def write_index(self) -> None:
+        """Write the index over all parts."""
         with disk_errors(self.folder):
-            self._n_subindex = write_index(self.folder, self._parts, self.n_grain, self._n_subindex)
-
-    def _rows(self) -> dict[str, NDArray[Any]]:
-        """Content of the buffer, by dataset of a part."""
-        rows: dict[str, NDArray[Any]] = {name: self._buffer[name][: self._count] for name in self._buffer}
-        rows["tally"] = np.array(self._tally, dtype=schema.TALLY)
-        rows["contacts"] = np.concatenate(self._contacts) if self._contacts else np.zeros(0, dtype=EVENT)
-        if self._forces is not None:
-            rows[schema.N_FORCE] = np.array([len(one) for one in self._forces], dtype=np.int64)
-            rows[schema.FORCES] = np.concatenate([np.zeros(0, dtype=schema.FORCE), *self._forces])
-        return rows | {f"{schema.WATER}/{name}": np.array(one) for name, one in self._water.items()}
+            n = self.first_scene.n_grain
+            self._n_subindex = write_index(self.folder, self._parts, n, self._n_subindex)
+        self._index_is_old = False
 
     def _continue_from(self, earlier: RecordedSoFar) -> None:
         """Take over the state of an earlier process."""
@@ -289,25 +304,9 @@ class Recorder:
             self._scenes = self._shown(t, scene)
         write_bed(self.folder / schema.BED, self._scenes)
         if earlier.buffered:
-            self._take_rows(earlier.buffered)
+            self._buffer.extend(earlier.buffered)
         if self._parts:
-            self._write_index()
-
-    def _take_rows(self, buffered: Mapping[str, NDArray[Any]]) -> None:
-        self._count = len(buffered["t"])
-        while self._count > len(self._buffer["t"]):
-            self._grow()
-        for name, rows in self._buffer.items():
-            rows[: self._count] = buffered[name]
-        self._tally = buffered["tally"].tolist()
-        self._contacts, self._n_buffered_contacts = [buffered["contacts"]], len(buffered["contacts"])
-        if self._forces is not None:
-            ends = np.cumsum(buffered[schema.N_FORCE])
-            self._forces = np.split(buffered[schema.FORCES], ends[:-1]) if self._count else []
-        begin = f"{schema.WATER}/"
-        for name, rows in buffered.items():
-            if name.startswith(begin):
-                self._water[name.removeprefix(begin)] = list(rows)
+            self.write_index()
 
     def _compare(self, state: State) -> None:
         """Compare the last frame on the disk with the recomputed one."""
@@ -327,17 +326,28 @@ class Recorder:
             return self._scenes
         return [*self._scenes, (t, scene)]
 
-    def _room(self, k: int) -> dict[str, NDArray[Any]]:
-        return {
-            name: np.zeros((k, self.n_grain, *tail) if name in schema.PER_GRAIN else (k,), dtype=dtype)
-            for name, (dtype, tail) in schema.FRAME_DATASETS.items()
-        }
 
-    def _grow(self) -> None:
-        wider = self._room(2 * len(self._buffer["t"]))
-        for name, rows in self._buffer.items():
-            wider[name][: len(rows)] = rows
-        self._buffer = wider
+class _PartBeingWritten(threading.Thread):
+    """Writes a part, then the index, then the summary; what goes wrong is kept for the recorder."""
+
+    def __init__(
+        self, recorder: Recorder, content: RecordBuffer, end: int, summary: Mapping[str, Any] | None
+    ) -> None:
+        super().__init__(name="ryusa-recorder")
+        self.content, self.error, self.complete = content, None, False
+        self._recorder, self._end, self._summary = recorder, end, summary
+
+    def run(self) -> None:
+        """Write; called by `start` in a thread of its own."""
+        try:
+            self._recorder.write_part(self.content, self._end)
+            self.complete = True
+            self._recorder.write_index()
+            if self._summary is not None:
+                with suppress(DiskFull):
+                    write_json(self._recorder.folder / schema.SUMMARY, self._summary)
+        except BaseException as error:
+            self.error = error
 
 
 def _same_bed(a: Scene, b: Scene) -> bool:

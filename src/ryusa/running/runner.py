@@ -36,7 +36,8 @@ from ryusa.running.lock import locked
 from ryusa.running.loop import Loop
 from ryusa.running.precision import PrecisionRule
 from ryusa.running.progress import Progress
-from ryusa.running.recorder import RecordedSoFar, Recorder, bytes_per_frame
+from ryusa.running.record_buffer import bytes_per_frame
+from ryusa.running.recorder import RecordedSoFar, Recorder
 from ryusa.running.resume import ResumePoint, find_resume_point
 from ryusa.running.stops import Stop
 from ryusa.running.timeline import Change

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ryusa.model import EVENT, Scene
+from ryusa.model import Scene
+from ryusa.model.contacts import in_order_of_parting, joined
 
 
 @dataclass(frozen=True)
@@ -20,7 +21,4 @@ class Change:
 
 def in_order(contacts: Sequence[NDArray[np.void]]) -> NDArray[np.void]:
     """Contacts that ended in a stretch, in an order independent of its division into calls of the engine."""
-    if not contacts:
-        return np.zeros(0, dtype=EVENT)
-    rows = np.concatenate(contacts)
-    return rows[np.lexsort((rows["t_begin"], rows["j"], rows["i"], rows["t_part"]))]
+    return in_order_of_parting(contacts[0] if len(contacts) == 1 else joined(contacts))

@@ -91,10 +91,12 @@ class Watch:
         if len(events) == 0:
             return
         self.n_contact += len(events)
-        sizes = self.scene.d[events["i"]]
-        for name in ("omega_begin", "omega_end"):
-            self._spins(np.linalg.norm(events[name], axis=1), sizes)
-        events = events[np.isfinite(events["closing_end"])]  # in the others the partner was removed
+        if self._turned_by_water:
+            sizes = self.scene.d[events["i"]]
+            for name in ("omega_begin", "omega_end"):
+                self._spins(np.linalg.norm(events[name], axis=1), sizes)
+        whole = np.isfinite(events["closing_end"])  # in the others the partner was removed
+        events = events if whole.all() else events[whole]
         if len(events) == 0:
             return
         duration = events["t_end"] - events["t_begin"]
@@ -108,15 +110,19 @@ class Watch:
         for name, partner in (("fixed", bed), ("free", ~bed)):
             self._restitution(events[lonely & partner], name)
 
+    @property
+    def _turned_by_water(self) -> bool:
+        """Whether water turns grains by a law that holds up to some rotational Reynolds number."""
+        return bool(self.scene.rotation) and self.scene.water.torque == WaterTorque.DENNIS
+
     def frame(self, tally: Tally) -> None:
         """Update with the account at a recorded frame."""
-        if self.scene.n_grain:  # the grain is not known; the largest one gives an upper bound
+        if self.scene.n_grain and self._turned_by_water:
+            # the grain is not known; the largest one gives an upper bound
             self._spins(np.array([tally.spin_max]), self.scene.d.max(keepdims=True))
 
     def _spins(self, spin: NDArray[np.float64], d: NDArray[np.float64]) -> None:
         water = self.scene.water
-        if water.torque != WaterTorque.DENNIS or not self.scene.rotation:
-            return
         k = int(np.argmax(d * d * spin))
         if not torque_in_range(float(spin[k]), float(d[k]), water.nu):
             self._re_spin = max(self._re_spin, reynolds_spin(float(spin[k]), float(d[k]), water.nu))

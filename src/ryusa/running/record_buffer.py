@@ -1,0 +1,113 @@
+"""What a run has recorded and not yet written: frames, contacts that ended, forces, water."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ryusa.model import EVENT, Scene, State, Tally
+from ryusa.model.contacts import joined
+from ryusa.results import schema
+from ryusa.running.contact_forces import contact_forces
+from ryusa.water.coupling import Coupling
+
+_FIRST_ROOM = 16  # frames
+
+
+def bytes_per_frame(n_grain: int) -> int:
+    """Disk space of one frame [B]."""
+    per_grain = sum(dtype.itemsize * tail[0] for dtype, tail in schema.FRAME_DATASETS.values() if tail)
+    return n_grain * per_grain + schema.TALLY.itemsize + 24
+
+
+class RecordBuffer:
+    """Frames and contacts in memory, by dataset of a part.
+
+    Attributes
+    ----------
+    n_frame, n_contact : in the buffer.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        self.n_frame = self.n_contact = 0
+        self._scene = scene
+        self._frames = self._room(_FIRST_ROOM)
+        self._tally: list[tuple[float, ...]] = []
+        self._contacts: list[NDArray[np.void]] = []
+        self._forces: list[NDArray[np.void]] | None = [] if scene.forces else None  # of each frame
+        self._water: dict[str, list[NDArray[np.float64]]] = {}
+
+    def __bool__(self) -> bool:
+        return self.n_frame > 0 or self.n_contact > 0
+
+    @property
+    def nbytes(self) -> int:
+        """Size of the content [B]."""
+        forces = sum(one.nbytes for one in self._forces or ())
+        frames = self.n_frame * bytes_per_frame(self._scene.n_grain)
+        return frames + forces + self.n_contact * EVENT.itemsize
+
+    def frame(self, state: State, tally: Tally, water: Coupling | None) -> None:
+        """Add a frame, as copies of its arrays; with `water` where a column is solved."""
+        if water is not None:
+            profiles = {**vars(water.state), "phi": water.phi}
+            for name in (*schema.WATER_CELLS, *schema.WATER_FACES, *schema.WATER_NUMBERS):
+                self._water.setdefault(name, []).append(np.array(profiles[name]))
+        self._make_room(1)
+        row, k = self._frames, self.n_frame
+        row["t"][k], row["step"][k] = state.t, state.step
+        row["x"][k], row["v"][k], row["omega"][k] = state.x, state.v, state.omega
+        row["image"][k] = state.image if len(state.image) else 0
+        if self._forces is not None:
+            self._forces.append(contact_forces(state, self._scene))
+        self._tally.append(schema.tally_row(tally))
+        self.n_frame += 1
+
+    def contacts(self, events: NDArray[np.void]) -> None:
+        """Add contacts that ended, dtype model.EVENT; the array is kept, not copied."""
+        if len(events):
+            self._contacts.append(events)
+            self.n_contact += len(events)
+
+    def rows(self) -> dict[str, NDArray[Any]]:
+        """Content by dataset of a part."""
+        rows: dict[str, NDArray[Any]] = {name: rows[: self.n_frame] for name, rows in self._frames.items()}
+        rows["tally"] = np.array(self._tally, dtype=schema.TALLY)
+        rows["contacts"] = joined(self._contacts)
+        if self._forces is not None:
+            rows[schema.N_FORCE] = np.array([len(one) for one in self._forces], dtype=np.int64)
+            rows[schema.FORCES] = np.concatenate([np.zeros(0, dtype=schema.FORCE), *self._forces])
+        return rows | {f"{schema.WATER}/{name}": np.array(one) for name, one in self._water.items()}
+
+    def extend(self, rows: Mapping[str, NDArray[Any]]) -> None:
+        """Add the content of another buffer, as its `rows` give it."""
+        count = len(rows["t"])
+        self._make_room(count)
+        for name, mine in self._frames.items():
+            mine[self.n_frame : self.n_frame + count] = rows[name]
+        self.n_frame += count
+        self._tally += rows["tally"].tolist()
+        self.contacts(rows["contacts"])
+        if self._forces is not None and count:
+            self._forces += np.split(rows[schema.FORCES], np.cumsum(rows[schema.N_FORCE])[:-1])
+        begin = f"{schema.WATER}/"
+        for name, profiles in rows.items():
+            if name.startswith(begin):
+                self._water.setdefault(name.removeprefix(begin), []).extend(profiles)
+
+    def _room(self, k: int) -> dict[str, NDArray[Any]]:
+        n = self._scene.n_grain
+        return {
+            name: np.zeros((k, n, *tail) if name in schema.PER_GRAIN else (k,), dtype=dtype)
+            for name, (dtype, tail) in schema.FRAME_DATASETS.items()
+        }
+
+    def _make_room(self, count: int) -> None:
+        room = len(self._frames["t"])
+        if self.n_frame + count <= room:
+            return
+        wider = self._room(max(2 * room, self.n_frame + count))
+        for name, rows in self._frames.items():
+            wider[name][: self.n_frame] = rows[: self.n_frame]
+        self._frames = wider
