@@ -84,6 +84,29 @@ def test_the_previous_checkpoint_is_kept_until_the_next_is_complete(tmp_path: Pa
     assert len(list(tmp_path.iterdir())) == 2
 
 
+def test_a_checkpoint_for_which_there_is_no_room_leaves_the_last_one(tmp_path: Path) -> None:
+    resource = pytest.importorskip("resource", reason="the size of files is limited on Unix alone")
+    write_checkpoint(tmp_path, CheckpointBlock({"k": 0}))
+    limit = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (300_000, limit[1]))
+    try:
+        with pytest.raises(OSError, match="large"):
+            write_checkpoint(
+                tmp_path, CheckpointBlock({"k": 1}, {"many": np.ones(100_000), "few": np.ones(3)})
+            )
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limit)
+    assert [path.name for path in tmp_path.iterdir()] == [schema.CHECKPOINT]
+    assert read_checkpoint(tmp_path / schema.CHECKPOINT, N).values == {"k": 0}
+
+
+def test_what_a_run_does_not_use_is_left_out_and_comes_back_as_zeros(scene: Any) -> None:
+    plain = change_contacts(event=np.zeros((2, N_EVENT)), spring_r=np.zeros((2, 3)), dash_r=np.zeros((2, 3)))
+    block = state_block(plain)
+    assert not {"contacts/event", "contacts/spring_r", "contacts/dash_r"} & set(block.arrays)
+    assert bits(state_from_block(block, scene)) == bits(plain)
+
+
 def test_h5py_opens_a_checkpoint_as_it_is(path: Path) -> None:
     with h5py.File(path, "r") as file:
         assert np.array_equal(file["state/x"][:], some_state().x)
@@ -180,7 +203,7 @@ def change_contacts(**arrays: np.ndarray) -> State:
         change_contacts(i=np.array([0, 0]), j=np.array([2, 2])),
         change_contacts(spring_s=np.zeros((3, 3))),
         change_contacts(f_n=np.array([1.0, np.inf])),
-        change_contacts(event=np.zeros((2, 3))),
+        change_contacts(event=np.ones((2, 3))),
         replace(some_state(), x=np.zeros((4, 3))),
         replace(some_state(), x=np.full((3, 3), np.nan)),
         replace(some_state(), x=np.full((3, 3), 1e300)),

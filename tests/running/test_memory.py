@@ -11,11 +11,11 @@ import pytest
 import ryusa
 from ryusa.casefile import derive
 from ryusa.casefile.estimate import (
-    CHECKPOINT_INTERVAL,
     HELD_LONGEST,
     HELD_MOST,
     HELD_SHARE,
     HELD_SHORTEST,
+    checkpoint_of_grains,
     contacts_expected,
     held_back,
     memory_needed,
@@ -24,7 +24,7 @@ from ryusa.casefile.estimate import (
 from ryusa.casefile.read import read
 from ryusa.cases import case_path
 from ryusa.results import schema
-from ryusa.running import checkpoint_scheduler, recorder
+from ryusa.running import recorder
 
 
 @pytest.mark.parametrize(
@@ -38,13 +38,14 @@ from ryusa.running import checkpoint_scheduler, recorder
 def test_a_checkpoint_has_the_size_that_its_grains_and_contacts_give(
     tmp_path: Path, name: str, keys: dict[str, str]
 ) -> None:
-    results = ryusa.run(read(case_path(f"{name}.toml"), keys), tmp_path / "run", progress=False)
+    case = read(case_path(f"{name}.toml"), keys)
+    results = ryusa.run(case, tmp_path / "run", progress=False)
     scene = results.scene
     contacts = int(results.tally["n_contact"][-1]) / scene.n_grain
     assert contacts > 0.1
-    _, expected = memory_of_grains(scene.n_grain, scene.n_fixed, contacts, scene.column is not None)
+    expected = checkpoint_of_grains(case, scene.n_grain, contacts)
     size = (tmp_path / "run" / schema.CHECKPOINT).stat().st_size
-    overhead = 40_000 + (0 if scene.column is None else 100 * scene.column.n)  # headers, names, the column
+    overhead = 20_000 + (0 if scene.column is None else 100 * scene.column.n)  # headers, names, the column
     assert expected == pytest.approx(size - overhead, rel=0.15)
 
 
@@ -52,7 +53,6 @@ def test_frames_wait_as_long_as_the_recorder_keeps_them() -> None:
     for age in (1.0, 1000.0, 1e5):  # seconds that a run has lasted, made up: no clock is read
         assert recorder.flush_after(age, 0) == min(max(HELD_SHORTEST, HELD_SHARE * age), HELD_LONGEST)
     assert recorder.buffer_limit(0) == HELD_MOST
-    assert checkpoint_scheduler.CHECKPOINT_INTERVAL == CHECKPOINT_INTERVAL
 
 
 def test_contacts_frames_and_water_take_memory() -> None:
@@ -63,8 +63,9 @@ def test_contacts_frames_and_water_take_memory() -> None:
     assert memory_of_grains(1000, 0, 1.5, True) > memory_of_grains(1000, 0, 1.5, False)
     many = read(case_path("dense_3d.toml"), {"record.frames": "1 ms"})
     assert held_back(many, derive(many)) > held_back(dense, derive(dense)) >= 80 * derive(dense).n_grain
+    held = held_back(many, derive(many)) - held_back(dense, derive(dense))
     more = memory_needed(many, derive(many)) - memory_needed(dense, derive(dense))
-    assert more == pytest.approx(3.1 * (held_back(many, derive(many)) - held_back(dense, derive(dense))))
+    assert held <= more <= 3.1 * held + 1  # twice in memory while written, unless a snapshot takes more
 
 
 WATCH = """

@@ -19,15 +19,19 @@ MEMORY_PER_RUN = 218_000_000  # Python, its packages and the compiled code
 MEMORY_PER_GRAIN = 680  # free or fixed: scene, state, Verlet list
 MEMORY_IN_COLUMN = 700  # of a grain on top, in a column of water
 MEMORY_PER_CONTACT = 200
+SNAPSHOT_PER_GRAIN = 60  # while a checkpoint is written
+SNAPSHOT_PER_CONTACT = 75
+WRITING = 2.1  # copies of a part while it is written: HDF5 in memory, and its bytes
+# A checkpoint on the disk [B]:
 CHECKPOINT_PER_GRAIN = 130
-CHECKPOINT_IN_COLUMN = 150  # of a grain on top
-CHECKPOINT_PER_CONTACT = 410
-WRITING = 2.1  # copies of a part or checkpoint while it is written: HDF5 in memory, and its bytes
+CHECKPOINT_IN_COLUMN = 150  # of a grain on top, and in memory while it is written
+CHECKPOINT_PER_CONTACT = 96
+CHECKPOINT_WITH_ROLLING = 48  # of a contact on top, where there is rolling friction
+CHECKPOINT_WITH_TIMING = 16  # where contacts begin and end within steps
 HELD_MOST = 64 << 20  # frames and contacts that wait to be written
 FASTER = 3.0  # than the rule of thumb: so much sooner may frames come
 HELD_SHORTEST, HELD_SHARE, HELD_LONGEST = 2.0, 0.01, 60.0  # s, of the time so far, s: as the recorder flushes
 SETTLED, SETTLED_PLANE, IN_FLOW, APART = 2.1, 1.6, 1.5, 0.1  # contacts per free grain, the most in a run
-CHECKPOINT_INTERVAL = 300.0  # s of wall time, before which no checkpoint holds frames
 BYTES_PER_EVENT = 8 * N_EVENT
 EVENTS_ALONE = 20.0  # contacts that end per second, of a saltating or dropped grain
 EVENTS_DENSE = 20.0  # of a grain among others, per sqrt(d/g); between 3 and 50 where counted
@@ -113,7 +117,7 @@ def contacts_expected(case: Case, derived: Derived) -> float:
 
 
 def memory_of_grains(n_grain: int, n_fixed: int, contacts: float, column: bool) -> tuple[float, float]:
-    """Bytes that grains take while running, and bytes of their checkpoint.
+    """Bytes that grains take while running, and on top while their checkpoint is written.
 
     Parameters
     ----------
@@ -121,11 +125,22 @@ def memory_of_grains(n_grain: int, n_fixed: int, contacts: float, column: bool) 
     contacts : per free grain [-].
     column : in a column of water.
     """
-    each, kept = MEMORY_PER_GRAIN, CHECKPOINT_PER_GRAIN
+    each, snapshot = MEMORY_PER_GRAIN, SNAPSHOT_PER_GRAIN
     if column:
-        each, kept = each + MEMORY_IN_COLUMN, kept + CHECKPOINT_IN_COLUMN
+        each, snapshot = each + MEMORY_IN_COLUMN, snapshot + CHECKPOINT_IN_COLUMN
     running = (n_grain + n_fixed) * each + n_grain * contacts * MEMORY_PER_CONTACT
-    return running, n_grain * (kept + contacts * CHECKPOINT_PER_CONTACT)
+    return running, n_grain * (snapshot + contacts * SNAPSHOT_PER_CONTACT)
+
+
+def checkpoint_of_grains(case: Case, n_grain: int, contacts: float) -> float:
+    """Bytes of a checkpoint of free grains with so many contacts each."""
+    column = case.water is not None and case.water.profile == "column"
+    each = CHECKPOINT_PER_GRAIN + (CHECKPOINT_IN_COLUMN if column else 0)
+    contact = CHECKPOINT_PER_CONTACT
+    contact += BYTES_PER_EVENT if events_of(case) != "none" else 0
+    contact += CHECKPOINT_WITH_ROLLING if case.rolling.model != "none" else 0
+    contact += CHECKPOINT_WITH_TIMING if case.contact.timing == "exact" else 0
+    return n_grain * (each + contacts * contact)
 
 
 def held_back(case: Case, derived: Derived) -> float:
@@ -142,15 +157,13 @@ def memory_needed(case: Case, derived: Derived) -> int:
 
     Notes
     -----
-    Beside program, grains and contacts it holds frames that wait to be written, and twice what is being
-    written: a part or a checkpoint, which in a long run contains these frames too.
+    Beside program, grains and contacts it holds frames that wait to be written; and twice the part that is
+    being written, or the snapshot that goes to a checkpoint, which is written array by array.
     """
     column = case.water is not None and case.water.profile == "column"
     contacts, held = contacts_expected(case, derived), held_back(case, derived)
-    running, checkpoint = memory_of_grains(derived.n_grain, derived.n_fixed, contacts, column)
-    long = seconds_needed(case, derived) > CHECKPOINT_INTERVAL
-    written = checkpoint + held if long else max(checkpoint, held)
-    return round(MEMORY_PER_RUN + running + held + WRITING * written)
+    running, snapshot = memory_of_grains(derived.n_grain, derived.n_fixed, contacts, column)
+    return round(MEMORY_PER_RUN + running + held + max(WRITING * held, snapshot))
 
 
 def seconds_needed(case: Case, derived: Derived) -> float:

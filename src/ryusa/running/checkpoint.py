@@ -18,7 +18,7 @@ import numpy as np
 from ryusa.errors import CheckpointError, ResultsError
 from ryusa.results import schema
 from ryusa.results.hdf5 import DAMAGE, read_dataset
-from ryusa.running.disk import hdf5_image, sync, write_temporary
+from ryusa.running.disk import sync, write_hdf5_behind_header
 
 _NAME, _FORMAT = b"ryusa checkpoint ", 2  # the format is raised when older checkpoints cannot be read
 _MAGIC = _NAME + f"{_FORMAT}\n".encode()
@@ -76,15 +76,16 @@ def write_checkpoint(folder: Path, block: CheckpointBlock) -> int:
         for name, array in block.arrays.items():
             file.create_dataset(name, data=array)
 
-    body = hdf5_image(fill)
-    head = _MAGIC + f"{len(body)} {hashlib.sha256(body).hexdigest()}\n".encode()
+    def head(length: int, digest: str) -> bytes:
+        return _MAGIC + f"{length} {digest}\n".encode()
+
     path, before = folder / schema.CHECKPOINT, folder / schema.CHECKPOINT_BEFORE
-    temporary = write_temporary(path, head.ljust(_HEAD, b"\0") + body)
+    temporary, length = write_hdf5_behind_header(path, fill, _HEAD, head)
     if path.is_file():
         os.replace(path, before)
     os.replace(temporary, path)
     sync(folder)
-    return _HEAD + len(body)
+    return length
 
 
 def read_checkpoint(path: Path, n_grain: int) -> CheckpointBlock:

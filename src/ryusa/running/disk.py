@@ -1,20 +1,24 @@
 """Atomic writes, and disk errors as exceptions of ryusa; a full disk has an exception of its own."""
 
 import errno
+import hashlib
 import itertools
 import os
 import shutil
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any, BinaryIO, TypeVar
 
 import h5py
 
 from ryusa.errors import DiskFull, ResultsError
 from ryusa.running.interrupt import StopSignal
 
+T = TypeVar("T")
 _RETRY_EVERY = 1.0  # s between two attempts to write to a full disk
 _DISK_TIMEOUT = 86_400.0  # s
+_AT_ONCE = 1 << 20  # bytes
 _images = itertools.count()
 _FULL = {errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC)}
 
@@ -57,6 +61,94 @@ def write_temporary(path: Path, content: bytes) -> Path:
         temporary.unlink(missing_ok=True)
         raise
     return temporary
+
+
+class _BehindHeader:
+    """File that HDF5 writes to, behind a header; the first error of the disk is kept in `error`.
+
+    HDF5 does not recover from a write that fails. It is told that nothing failed, and the caller raises the
+    error when HDF5 has closed the file.
+    """
+
+    def __init__(self, file: BinaryIO, header: int) -> None:
+        self.error: OSError | None = None
+        self._file, self._header = file, header
+        self._file.write(bytes(header))
+
+    def write(self, data: Any) -> int:
+        """Write; after an error, nothing."""
+        return self._unless_failed(lambda: self._file.write(data), len(data))
+
+    def read(self, size: int) -> bytes:
+        """Read what was written before; after an error, zeros."""
+        return self._unless_failed(lambda: self._file.read(size), bytes(size))
+
+    def seek(self, place: int, whence: int = os.SEEK_SET) -> int:
+        """Move to a place of the HDF5 file."""
+        shift = self._header if whence == os.SEEK_SET else 0
+        return self._unless_failed(lambda: self._file.seek(place + shift, whence) - self._header, 0)
+
+    def tell(self) -> int:
+        """Place in the HDF5 file."""
+        return self._file.tell() - self._header
+
+    def truncate(self, size: int) -> int:
+        """Set the length of the HDF5 file."""
+        return self._unless_failed(lambda: self._file.truncate(size + self._header) - self._header, size)
+
+    def flush(self) -> None:
+        """Write what is buffered."""
+        self._unless_failed(lambda: self._file.flush() or 0, 0)
+
+    def _unless_failed(self, action: Callable[[], T], otherwise: T) -> T:
+        try:
+            return otherwise if self.error else action()
+        except OSError as error:
+            self.error = error
+            return otherwise
+
+
+def write_hdf5_behind_header(
+    path: Path, fill: Callable[[h5py.File], None], size: int, header: Callable[[int, str], bytes]
+) -> tuple[Path, int]:
+    """Write an HDF5 file behind a header to a temporary file beside `path`, and sync it to the disk.
+
+    The arrays go to the disk one by one: the file is never whole in memory.
+
+    Parameters
+    ----------
+    fill : creates the datasets.
+    size : of the header [B].
+    header : makes the header, of at most `size` bytes, from the length and the SHA-256 of the HDF5 file.
+
+    Returns
+    -------
+    The temporary file and its length [B].
+
+    Raises
+    ------
+    OSError : the temporary file is removed.
+    """
+    temporary = path.with_name(f".{path.name}.new")
+    try:
+        with temporary.open("w+b") as file:
+            behind = _BehindHeader(file, size)
+            with h5py.File(behind, "w") as image:
+                fill(image)
+            if behind.error is not None:
+                raise behind.error
+            file.seek(size)
+            digest = hashlib.sha256()
+            while piece := file.read(_AT_ONCE):
+                digest.update(piece)
+            length = file.tell()
+            file.seek(0)
+            file.write(header(length - size, digest.hexdigest()))
+        sync(temporary)
+    except OSError:
+        temporary.unlink(missing_ok=True)
+        raise
+    return temporary, length
 
 
 def overwrite(path: Path, content: bytes) -> None:

@@ -22,6 +22,9 @@ from ryusa.running.checkpoint import CheckpointBlock
 _LATEST = 2**62  # step
 _NUMBERS = 64  # of an engine, at most
 _FLOAT, _INT, _INT32 = np.dtype(np.float64), np.dtype(np.int64), np.dtype(np.int32)
+# arrays left out where all their numbers are zero: those of rolling friction, exact timing and records
+_ZERO_UNLESS_USED = {f"contacts/{name}" for name in ("spring_r", "dash_r", "k_n", "rest_of_closing", "event")}
+_AT_ONCE = 1 << 14  # contacts
 _EDGE = 1e12  # m; larger coordinates are refused
 _LARGEST = 1e100  # in any unit: products of a few such values are still finite
 
@@ -37,6 +40,8 @@ def state_block(state: State) -> CheckpointBlock:
 def _flatten(before: str, value: Any, values: dict[str, Any], arrays: dict[str, np.ndarray]) -> None:
     for one in fields(value):
         inner, name = getattr(value, one.name), f"{before}{one.name}"
+        if name in _ZERO_UNLESS_USED and _only_zeros(inner):
+            continue
         if isinstance(inner, np.ndarray):
             arrays[name] = inner
         elif isinstance(inner, Mapping) and all(isinstance(part, np.ndarray) for part in inner.values()):
@@ -46,6 +51,12 @@ def _flatten(before: str, value: Any, values: dict[str, Any], arrays: dict[str, 
             _flatten(f"{name}/", inner, values, arrays)
         else:
             values[name] = inner
+
+
+def _only_zeros(array: np.ndarray) -> bool:
+    """Whether all numbers are zero, and none is minus zero."""
+    pieces = (array[k : k + _AT_ONCE] for k in range(0, len(array), _AT_ONCE))
+    return not any(piece.any() or np.signbit(piece).any() for piece in pieces)
 
 
 def state_from_block(block: CheckpointBlock, scene: Scene) -> State:
@@ -101,15 +112,14 @@ class _Reader:
         if len(np.unique(i * np.int64(last) + j)) < k:
             raise ValueError("a contact that occurs twice")
         rows = {name: (k, 3) for name in ("spring_s", "dash_s", "spring_r", "dash_r")}
+        rows |= {name: (k,) for name in ("dash_n", "f_n", "eta_n", "k_n", "rest_of_closing")}
         found = {name: self._floats(f"contacts/{name}", shape) for name, shape in rows.items()}
-        found |= {name: self._floats(f"contacts/{name}", (k,)) for name in ("dash_n", "f_n", "eta_n")}
-        event = self._array("contacts/event", (k, N_EVENT), _FLOAT)
+        event = np.zeros((k, N_EVENT))
+        if "contacts/event" in self._arrays:
+            event = self._array("contacts/event", (k, N_EVENT), _FLOAT)
         state = np.ones(k, _INT)
         if "contacts/state" in self._arrays:  # checkpoints of earlier versions have no states
             state = self._array("contacts/state", (k,), _INT)
-            found |= {name: self._floats(f"contacts/{name}", (k,)) for name in ("k_n", "rest_of_closing")}
-        else:
-            found |= {name: np.zeros(k) for name in ("k_n", "rest_of_closing")}
         if k and not (state.min() >= 1 and state.max() <= N_STATE):
             raise ValueError(f"the state of a contact is not 1 to {N_STATE}")
         return Contacts(i=i, j=j, event=event, state=state, **found)
@@ -185,6 +195,8 @@ class _Reader:
         return x
 
     def _floats(self, name: str, shape: tuple[int, ...] | None) -> NDArray[np.float64]:
+        if shape is not None and name in _ZERO_UNLESS_USED and name not in self._arrays:
+            return np.zeros(shape)
         array = self._array(name, shape, _FLOAT)
         if not np.isfinite(array).all():
             raise ValueError(f"'{name}' holds a number that is not finite")

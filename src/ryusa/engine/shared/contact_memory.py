@@ -16,7 +16,10 @@ from ryusa.model.scene import Floats
 
 
 class ContactMemory(NamedTuple):
-    """Touching pairs by id: states (contact_instants.py), springs and memory rows (memory_rows.py)."""
+    """Touching pairs by id: states (contact_instants.py), springs and memory rows (memory_rows.py).
+
+    `eta` has one row where the springs of all pairs are alike.
+    """
 
     i: np.ndarray
     j: np.ndarray
@@ -26,26 +29,29 @@ class ContactMemory(NamedTuple):
 
 
 def contacts_of(memory: ContactMemory, variant: KernelVariant) -> Contacts:
-    """Contacts of a snapshot."""
+    """Contacts of a snapshot; the arrays are views of the memory where they can be."""
     i, j, states, eta, rows = memory
-    none = np.zeros((len(i), 3))
+    n = len(i)
+    eta = np.broadcast_to(eta, (n, eta.shape[1]))
+    spring_s, rest = rows[:, M.SPRING_S : M.SPRING_S + 3], np.zeros(n)
     ending = states == ENDING
-    rest = np.where(ending, rows[:, M.REST_OF_CLOSING], 0.0)
-    spring_s = np.where(ending[:, None], 0.0, rows[:, M.SPRING_S : M.SPRING_S + 3])
+    if ending.any():
+        rest[ending] = rows[ending, M.REST_OF_CLOSING]
+        spring_s = np.where(ending[:, None], 0.0, spring_s)
     return Contacts(
         i=i,
         j=j,
         spring_s=spring_s,
-        dash_s=rows[:, M.DASH_S : M.DASH_S + 3].copy(),
-        dash_n=rows[:, M.DASH_N].copy(),
-        f_n=rows[:, M.F_N].copy(),
-        spring_r=rows[:, M.SPRING_R : M.SPRING_R + 3].copy() if variant.rolling else none,
-        dash_r=rows[:, M.DASH_R : M.DASH_R + 3].copy() if variant.rolling else none,
-        eta_n=eta[:, M.ETA_N].copy(),
-        k_n=eta[:, M.K_N].copy() if variant.exact else np.zeros(len(i)),
+        dash_s=rows[:, M.DASH_S : M.DASH_S + 3],
+        dash_n=rows[:, M.DASH_N],
+        f_n=rows[:, M.F_N],
+        spring_r=rows[:, M.SPRING_R : M.SPRING_R + 3] if variant.rolling else np.zeros((n, 3)),
+        dash_r=rows[:, M.DASH_R : M.DASH_R + 3] if variant.rolling else np.zeros((n, 3)),
+        eta_n=eta[:, M.ETA_N],
+        k_n=eta[:, M.K_N] if variant.exact else np.zeros(n),
         state=states.astype(np.int64),
         rest_of_closing=rest,
-        event=rows[:, variant.event_column :].copy() if variant.events else np.zeros((len(i), N_EVENT)),
+        event=rows[:, variant.event_column :] if variant.events else np.zeros((n, N_EVENT)),
     )
 
 
