@@ -1,5 +1,6 @@
 """Crossing pairs: rows where one block leaves forces for grains of another, added there after the barrier."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -11,44 +12,62 @@ Whole = NDArray[np.int64]
 
 
 def number_crossing_pairs(
-    n: int, block_start: Whole, start: Whole, partners: np.ndarray
+    n: int,
+    block_start: Whole,
+    start: Whole,
+    partners: np.ndarray,
+    share: Callable[[Callable[[int, int], Any]], Any],
 ) -> tuple[Whole, np.ndarray, Whole, Whole]:
     """Number the rows of `Pairs.f` for pairs whose partner belongs to another block.
 
     Returns the first of them in each block (n_block + 1); their numbers in the Verlet list; and, for each
     grain, the rows of the pairs that others own and it is partner of:
-    incoming[incoming_start[j]:incoming_start[j + 1]], in list order.
+    incoming[incoming_start[j]:incoming_start[j + 1]], in list order. `share` distributes blocks over threads.
     """
-    first, incoming_start = np.zeros(len(block_start), np.int64), np.zeros(n + 1, np.int64)
-    _count(n, block_start, start, partners, first, incoming_start)
+    first = np.zeros(len(block_start), np.int64)
+    none = np.empty(0, np.uint32)
+    share(lambda a, b: _list_crossing(a, b, n, block_start, start, partners, first, none))
     np.cumsum(first, out=first)
-    np.cumsum(incoming_start, out=incoming_start)
-    incoming, crossing = np.empty(first[-1], np.int64), np.empty(first[-1], np.uint32)
-    _number(n, block_start, start, partners, incoming_start[:-1].copy(), incoming, crossing)
+    crossing = np.empty(first[-1], np.uint32)
+    share(lambda a, b: _list_crossing(a, b, n, block_start, start, partners, first, crossing))
+    incoming_start, incoming = np.zeros(n + 1, np.int64), np.empty(first[-1], np.int64)
+    _list_incoming(n, n + len(block_start) - 1, partners, crossing, incoming_start, incoming)
     return first, crossing, incoming_start, incoming
 
 
-@kernel()
-def _count(n: int, block_start: Any, start: Any, partners: Any, first: Any, incoming_start: Any) -> None:
-    for b in range(len(block_start) - 1):
-        lo, hi = block_start[b], block_start[b + 1]
-        for p in range(start[lo], start[hi]):
-            j = partners[p]
-            if j < n and (j < lo or j >= hi):
-                first[b + 1] += 1
-                incoming_start[j + 1] += 1
-
-
-@kernel()
-def _number(
-    n: int, block_start: Any, start: Any, partners: Any, fill: Any, incoming: Any, crossing: Any
+@kernel(nogil=True)
+def _list_crossing(
+    b_0: int, b_1: int, n: int, block_start: Any, start: Any, partners: Any, first: Any, crossing: Any
 ) -> None:
-    q, row = 0, n + len(block_start) - 1
-    for b in range(len(block_start) - 1):
+    """Write the crossing pairs of blocks b_0..b_1-1 from crossing[first[b]] on; count them if it is empty."""
+    counting = len(crossing) == 0
+    for b in range(b_0, b_1):
         lo, hi = block_start[b], block_start[b + 1]
+        q = 0 if counting else first[b]
         for p in range(start[lo], start[hi]):
             j = partners[p]
             if j < n and (j < lo or j >= hi):
-                incoming[fill[j]], crossing[q] = row + q, p
-                fill[j] += 1
+                if not counting:
+                    crossing[q] = p
                 q += 1
+        if counting:
+            first[b + 1] = q
+
+
+@kernel()
+def _list_incoming(
+    n: int, row: int, partners: Any, crossing: Any, incoming_start: Any, incoming: Any
+) -> None:
+    """List the rows for each grain; `row` is that of the first crossing pair."""
+    for q in range(len(crossing)):
+        incoming_start[partners[crossing[q]] + 1] += 1
+    for j in range(n):
+        incoming_start[j + 1] += incoming_start[j]
+    for q in range(len(crossing)):
+        j = partners[crossing[q]]
+        incoming[incoming_start[j]] = row + q
+        incoming_start[j] += 1
+    for j in range(n - 1, 0, -1):
+        incoming_start[j] = incoming_start[j - 1]
+    if n > 0:
+        incoming_start[0] = 0

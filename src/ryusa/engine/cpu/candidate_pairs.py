@@ -45,12 +45,14 @@ class CandidatePairs:
         displacement: float,
         parameters: Floats,
         memory: ContactMemory,
+        place_of: np.ndarray,
         share: Share,
     ) -> None:
         """Prune a new Verlet list, and copy the memory of pairs in touch into it.
 
         Parameters
         ----------
+        place_of : place of each grain that the memory names.
         skin : reach of the Verlet list beyond touch [m].
         displacement : of the fastest grain in the last step [m].
         share : distributes the blocks over threads.
@@ -82,13 +84,13 @@ class CandidatePairs:
             while wanted.any():
                 self.make_room(wanted)
                 share(prune_some)
-            missing = layout.place_memory(grains, self.pairs, memory)
+            missing = layout.place_memory(place_of, self.pairs, memory, share)
             if missing < 0:
                 break
             if reach_on > skin + film_reach(layout.scene):
-                raise AssertionError(
-                    f"pair {memory.i[missing]}, {memory.j[missing]} is in touch and not in the list"
-                )
+                i, j = memory.i[missing], memory.j[missing]
+                names = [int(grains.ids[place_of[k]]) if k < layout.n else int(k) for k in (i, j)]
+                raise AssertionError(f"pair {names[0]}, {names[1]} is in touch and not in the list")
             reach_on *= 2.0  # somebody moved grains apart that a snapshot has in touch
         schedule[K.CANDIDATES], schedule[K.TOUCHING] = float(self.pairs.count.sum()), float(len(memory.i))
 

@@ -16,15 +16,13 @@ from ryusa.model.scene import Floats
 Grid = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
-def grid_of(x: Floats, n: int, size: float, period: Floats) -> Grid:
-    """Bounds of a grid over x[:n]; cells are at least `size` wide and no more than about four a grain.
+def grid_of(low: Floats, high: Floats, n: int, size: float, period: Floats) -> Grid:
+    """A grid for n grains between `low` and `high` [m]; cells are at least `size` wide, at most about 4 n.
 
     Returns low (3), width (3), dims (3), as float64, float64 and int64 arrays.
     """
     round_about = period < math.inf
-    low, high = np.zeros(3), np.zeros(3)
-    if n:
-        low, high = x[:n, :3].min(axis=0), x[:n, :3].max(axis=0)
+    low, high = low.copy(), high.copy()
     low[:2][round_about], high[:2][round_about] = 0.0, period[round_about]
     more = np.array([*np.where(round_about, 0.0, 1.0), 1.0])  # a period is filled, a length has a rest
     cell = size
@@ -36,11 +34,19 @@ def grid_of(x: Floats, n: int, size: float, period: Floats) -> Grid:
     return low, width, dims.astype(np.int64)
 
 
-def sort_by_cell(x: Floats, n: int, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
-    """Sort x[:n] by cell; returns the first slot of each cell (n_cell + 1), and the numbers in that order."""
+def bounds_of(x: Floats) -> tuple[Floats, Floats]:
+    """Lowest and highest coordinates [m]; zeros without grains."""
+    return (x.min(axis=0), x.max(axis=0)) if len(x) else (np.zeros(3), np.zeros(3))
+
+
+def sort_by_cell(x: Floats, n: int, ids: np.ndarray, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
+    """Sort x[:n] by cell, and by id within a cell.
+
+    Returns the first slot of each cell (n_cell + 1), and the numbers in that order.
+    """
     cells = int(np.prod(grid[2]))
     first, fill, where, order = (np.zeros(k, np.int64) for k in (cells + 1, cells, n, n))
-    _sort(x, n, *grid, first, fill, where, order)
+    _sort(x, n, ids, *grid, first, fill, where, order)
     return first, order
 
 
@@ -52,9 +58,9 @@ def _cell(x: float, low: float, width: float) -> int:
 
 @kernel()
 def _sort(
-    x: Any, n: int, low: Any, width: Any, dims: Any, first: Any, fill: Any, where: Any, order: Any
+    x: Any, n: int, ids: Any, low: Any, width: Any, dims: Any, first: Any, fill: Any, where: Any, order: Any
 ) -> None:
-    # a counting sort; `fill` and `where` are room for it
+    # a counting sort, then one by insertion in each cell, of a few grains; `fill` and `where` are room for it
     for i in range(n):
         a = min(max(_cell(x[i, 0], low[0], width[0]), 0), dims[0] - 1)
         b = min(max(_cell(x[i, 1], low[1], width[1]), 0), dims[1] - 1)
@@ -67,6 +73,13 @@ def _sort(
     for i in range(n):
         order[fill[where[i]]] = i
         fill[where[i]] += 1
+    for c in range(len(fill)):
+        for slot in range(first[c] + 1, first[c + 1]):
+            i, free = order[slot], slot
+            while free > first[c] and ids[order[free - 1]] > ids[i]:
+                order[free] = order[free - 1]
+                free -= 1
+            order[free] = i
 
 
 @inner(forceinline=True)
@@ -180,23 +193,3 @@ def build_list(
                 partners[used] = n_solid + k
                 used += 1
     return used
-
-
-@kernel()
-def wrap_grains(x: Any, image: Any, period: Any, low: Any, high: Any) -> int:
-    """Bring grains back into the period, count it, and return the first one outside the world, or -1."""
-    lost = -1
-    for i in range(len(x)):
-        for k in range(2):
-            length = period[k]
-            if length < np.inf:
-                shift = math.floor(x[i, k] / length)
-                if shift != 0.0:
-                    x[i, k] -= shift * length
-                    image[i, k] += int(shift)
-        inside = True
-        for k in range(3):
-            inside = inside and low[k] <= x[i, k] <= high[k]
-        if not inside and lost < 0:
-            lost = i
-    return lost

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ryusa.engine.cpu.arrays import AccountArrays, workspace_of_thread
+from ryusa.engine.cpu.arrays import AccountArrays, GrainArrays, workspace_of_thread
 from ryusa.engine.cpu.candidate_pairs import CandidatePairs
 from ryusa.engine.cpu.prune_schedule import COST_TEST
 from ryusa.engine.cpu.time_loop import make_run
@@ -115,14 +115,12 @@ class CpuEngine:
         if own is not None and resumed:
             by_id.x[:n, :3] = own.array("x_listed", (n, 3), _FARTHEST)
             self._travel = own.number("travel", 0.0, np.inf)
-        self._grains, self._pairs, self._x_listed, _ = self._layout.list_pairs(
-            by_id, self._layout.empty_pairs().start, self._skin, self._share
-        )
+        place_of, _ = self._list_pairs(by_id, self._layout.empty_pairs().start)
         if resumed:
             self._grains.x[:n, :3] = state.x[self._grains.ids[:n]]
         self._parameters[P.SKIN] = self._skin
         self._candidates = CandidatePairs(self._layout, self._threads, self._smallest)
-        self._prune(memory)
+        self._prune(memory, place_of)
         if state.step == 0:
             begin_account(scene, state, self._accounts.stats, self._accounts.terms)
 
@@ -153,7 +151,9 @@ class CpuEngine:
         """Read-only snapshot: all that an exact resume needs."""
         n, grains = self._n, self._grains
         back = np.argsort(grains.ids[:n])
-        contacts = contacts_of(collect_memory(n, grains, self._candidates.pairs), self._variant)
+        contacts = contacts_of(
+            collect_memory(n, grains.ids, self._candidates.pairs, self._share), self._variant
+        )
         block = self._block()
         fluid = FluidAtGrains(grains.fluid[back], grains.impulse[back]) if self._variant.column else None
         state = replace(
@@ -263,7 +263,7 @@ class CpuEngine:
 
     def _rebuild_list(self) -> RunError | None:
         """Choose a skin from counted work, bring grains back into the period, and list pairs anew."""
-        memory = collect_memory(self._n, self._grains, self._candidates.pairs)
+        memory = collect_memory(self._n, np.zeros(0, np.int64), self._candidates.pairs, self._share)
         apart = float(self._pairs.start[-1]) - len(memory.i)  # from counts that a resumed run has too
         skin = best_skin(
             self._skin, 2.0 * self._travel / max(self._since, 1), _LIST + _LIST_GRAIN * self._n,
@@ -275,18 +275,22 @@ class CpuEngine:
         self._skin = max(min(max(skin, 0.02 * self._smallest), self._smallest), parted)
         self._since, self._travel, self._n_list = 0, 0.0, self._n_list + 1
         starts, self._pairs = self._pairs.start, self._layout.empty_pairs()  # frees the old list
-        by_id = self._layout.unsorted(self._grains)
-        self._grains, self._pairs, self._x_listed, lost = self._layout.list_pairs(
-            by_id, starts, self._skin, self._share
-        )
-        self._prune(memory)
+        place_of, lost = self._list_pairs(self._grains, starts)
+        self._prune(memory, place_of)
         self._parameters[P.SKIN] = self._skin
         return lost_of(self._grains, lost, self._step, self._t) if lost >= 0 else None
 
-    def _prune(self, memory: ContactMemory) -> None:
+    def _list_pairs(self, grains: GrainArrays, starts: np.ndarray) -> tuple[np.ndarray, int]:
+        """Sort the grains and list their pairs; returns the new place of each, and a lost grain or -1."""
+        self._grains, self._pairs, self._x_listed, place_of, lost = self._layout.list_pairs(
+            grains, starts, self._skin, self._share
+        )
+        return place_of, lost
+
+    def _prune(self, memory: ContactMemory, place_of: np.ndarray) -> None:
         self._candidates.begin(
             self._grains, self._pairs, self._skin, self._fastest_displacement(), self._parameters, memory,
-            self._share,
+            place_of, self._share,
         )  # fmt: skip
 
     def _share(self, task: Callable[[int, int], Any]) -> list[Any]:
@@ -311,7 +315,7 @@ class CpuEngine:
     def _block(self) -> EngineBlock:
         """What an exact resume needs beside the state."""
         arrays = {
-            "x_listed": self._x_listed.copy(),
+            "x_listed": self._x_listed[np.argsort(self._grains.ids[: self._n])],
             **account_arrays(self._accounts.stats, self._accounts.terms),
         }
         numbers = {"skin": self._skin, "travel": self._travel, "since": float(self._since)}

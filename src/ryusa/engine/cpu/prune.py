@@ -148,54 +148,59 @@ def _restore_touching(b: int, n_touching: int, candidates: CandidateArrays, spar
         copy_row(k, candidates.eta, candidates.rows, t, spare.eta, spare.rows)
 
 
-@kernel()
-def count_touching(candidates: CandidateArrays) -> int:
-    """Pairs in touch."""
-    total = 0
-    for b in range(len(candidates.count)):
+@kernel(nogil=True)
+def count_touching(b_0: int, b_1: int, candidates: CandidateArrays, count: Any) -> None:
+    """Set count[b + 1] to the pairs in touch of each block b in b_0..b_1-1."""
+    for b in range(b_0, b_1):
+        total = 0
         for k in range(candidates.first[b], candidates.first[b] + candidates.count[b]):
             total += int(candidates.touching[k] != 0)
-    return total
+        count[b + 1] = total
 
 
-@kernel()
+@kernel(nogil=True)
 def copy_rows_out(
-    n: int, candidates: CandidateArrays, ids: Any, out_i: Any, out_j: Any, states: Any, eta: Any,
-    rows: Any,
+    b_0: int, b_1: int, n: int, first: Any, candidates: CandidateArrays, ids: Any, out_i: Any, out_j: Any,
+    states: Any, eta: Any, rows: Any,
 ) -> None:  # fmt: skip
-    """Copy ids, states, springs and memory of all pairs in touch, in the order of the list."""
-    t = 0
-    for b in range(len(candidates.count)):
+    """Copy names, states, springs and memory of the pairs in touch of blocks b_0..b_1-1, in list order.
+
+    Those of block b begin at first[b]. A grain's name is its id, or its place where `ids` is empty.
+    """
+    candidates, out_i, out_j, states = borrow(candidates), borrow(out_i), borrow(out_j), borrow(states)
+    ids, eta, rows = borrow(ids), borrow(eta), borrow(rows)
+    by_id = len(ids) > 0
+    for b in range(b_0, b_1):
+        t = first[b]
         for k in range(candidates.first[b], candidates.first[b] + candidates.count[b]):
             if candidates.touching[k]:
                 i, j = candidates.i[k], candidates.j[k]
-                out_i[t] = ids[i]
-                out_j[t] = ids[j] if j < n else j
+                out_i[t] = ids[i] if by_id else i
+                out_j[t] = ids[j] if by_id and j < n else j
                 states[t] = candidates.touching[k]
                 copy_row(t, eta, rows, k, candidates.eta, candidates.rows)
                 t += 1
 
 
-@kernel()
+@kernel(nogil=True)
 def copy_rows_in(
-    n: int,
-    candidates: CandidateArrays,
-    block_of: Any,
-    index: Any,
-    i_ids: Any,
-    j_ids: Any,
-    states: Any,
-    eta: Any,
-    rows: Any,
-) -> int:
-    """Copy states, springs and memory into a new list; returns the first contact that is not in it, or -1.
+    t_0: int, t_1: int, n: int, block_start: Any, candidates: CandidateArrays, place_of: Any, i_of: Any,
+    j_of: Any, states: Any, eta: Any, rows: Any,
+) -> int:  # fmt: skip
+    """Copy contacts t_0..t_1-1 into a new list; returns the first one that is not in it, or -1.
 
-    `index` turns the id of a free grain into its place, `block_of` the place into its block.
+    `place_of` turns the name of a free grain into its place.
     """
-    for t in range(len(i_ids)):
-        i = index[i_ids[t]]
-        j = index[j_ids[t]] if j_ids[t] < n else j_ids[t]
-        b = block_of[i]
+    candidates, place_of, i_of, j_of = borrow(candidates), borrow(place_of), borrow(i_of), borrow(j_of)
+    states, eta, rows = borrow(states), borrow(eta), borrow(rows)
+    b = 0
+    for t in range(t_0, t_1):
+        i = place_of[i_of[t]]
+        j = place_of[j_of[t]] if j_of[t] < n else j_of[t]
+        while i < block_start[b]:
+            b -= 1
+        while i >= block_start[b + 1]:
+            b += 1
         low, high = candidates.first[b], candidates.first[b] + candidates.count[b]
         end = high
         while low < high:  # the first pair of grain i

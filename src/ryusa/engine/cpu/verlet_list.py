@@ -1,15 +1,16 @@
 """The Verlet list of the CPU engine: grains in cell order, and the pairs that may touch before the next."""
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ryusa.engine.cpu import batch_layout as B
 from ryusa.engine.cpu.arrays import CandidateArrays, GrainArrays, PairArrays, WallArrays
 from ryusa.engine.cpu.block_exchange import number_crossing_pairs
-from ryusa.engine.cpu.cell_list import build_list, grid_of, sort_by_cell, wrap_grains
+from ryusa.engine.cpu.cell_list import bounds_of, build_list, grid_of, sort_by_cell
 from ryusa.engine.cpu.prune import copy_rows_in, copy_rows_out, count_touching
+from ryusa.engine.cpu.reorder import like, move_grains, wrap_grains
 from ryusa.engine.shared.contact_memory import ContactMemory
 from ryusa.engine.shared.layout import Layout, aligned, film_reach
 from ryusa.engine.shared.variant import KernelVariant
@@ -20,6 +21,16 @@ from ryusa.model.scene import Floats
 Share = Callable[[Callable[[int, int], Any]], list[Any]]
 
 _CACHED = 8192  # grains that a cache holds: more have to be prefetched
+
+
+class ListedPairs(NamedTuple):
+    """Grains in cell order, and their pairs."""
+
+    grains: GrainArrays
+    pairs: PairArrays
+    x: Floats  # positions the list was built from [m], by place, (n, 3)
+    place_of: np.ndarray  # place of each grain, by the one it had before, (n,)
+    lost: int  # lowest id outside the world, or -1
 
 
 class BlockLayout(Layout):
@@ -56,8 +67,8 @@ class BlockLayout(Layout):
             **self.by_id(state)._asdict(),
             v_pruned=aligned(n, 4),
             m=self.m,
-            m_bare=scene.m,
-            m_weight=scene.m_weight,
+            m_bare=np.array(scene.m),  # no longer read-only, which would be another type to a kernel
+            m_weight=np.array(scene.m_weight),
             inertia=self.inertia,
             per_m=1.0 / self.m[:n],
             per_inertia=1.0 / self.inertia[:n],
@@ -67,57 +78,36 @@ class BlockLayout(Layout):
             film=np.zeros((0, 0)),
         )
 
-    def unsorted(self, grains: GrainArrays) -> GrainArrays:
-        """The arrays that move, back in the order of ids."""
-        n = self.n
-        back = np.argsort(grains.ids[:n])
-        moved: dict[str, Any] = {}
-        for name in ("x", "v", "w"):
-            moved[name] = getattr(grains, name)
-            moved[name][:n] = moved[name][:n][back]
-        with_fluid = back[: len(grains.fluid)]
-        return grains._replace(
-            **moved,
-            image=grains.image[back],
-            n_touching=grains.n_touching[back],
-            ids=np.arange(self.n_solid),
-            fluid=grains.fluid[with_fluid],
-            impulse=grains.impulse[with_fluid],
-        )
-
-    def list_pairs(
-        self, by_id: GrainArrays, starts: np.ndarray, skin: float, share: Share
-    ) -> tuple[GrainArrays, PairArrays, Floats, int]:
+    def list_pairs(self, old: GrainArrays, starts: np.ndarray, skin: float, share: Share) -> ListedPairs:
         """Bring grains into the period, sort them by cell, and list their pairs.
 
         Parameters
         ----------
-        by_id : arrays in the order of ids; positions are brought inside the period.
+        old : grains in any order; positions are brought inside the period.
         starts : of the old list, from which the room of the new one is estimated.
         skin : reach of the list beyond touch and films [m].
         share : distributes the blocks over threads.
-
-        Returns
-        -------
-        Grains in cell order, the new list, the positions it was built from [m] (by id), and the first
-        grain outside the world or -1.
         """
-        n, scene, period = self.n, self.scene, self.period
-        x = by_id.x
-        lost = int(wrap_grains(x[:n], by_id.image, period, self.low, self.high))
-        listed = x[:n, :3].copy()
+        n, scene, period, blocks = self.n, self.scene, self.period, self.block_start
+        bounds = np.full((len(blocks) - 1, 2, 3), [[[np.inf] * 3, [-np.inf] * 3]])
+        outside = share(
+            lambda a, b: wrap_grains(
+                blocks[a], blocks[b], old.x, old.image, old.ids, period, self.low, self.high, bounds[a]
+            )
+        )
+        low, high = (bounds[:, 0].min(axis=0), bounds[:, 1].max(axis=0)) if n else bounds_of(old.x[:0, :3])
         skin = skin + film_reach(scene)
         size = self.largest + skin
-        grid = grid_of(x, n, size, period)
-        first, order = sort_by_cell(x, n, grid)
-        grains = self._in_cell_order(by_id, order)
+        grid = grid_of(low, high, n, size, period)
+        first, order = sort_by_cell(old.x, n, old.ids, grid)
+        grains, listed, place_of = like(n, old), np.empty((n, 3)), np.empty(n, np.int64)
+        share(lambda a, b: move_grains(blocks[a], blocks[b], order, old, grains, place_of, listed))
         bed = np.ascontiguousarray(self.x_fixed[self.standing])
-        bed_grid = grid_of(bed, len(bed), size, period)
-        bed_first, bed_order = sort_by_cell(bed, len(bed), bed_grid)
+        bed_grid = grid_of(*bounds_of(bed), len(bed), size, period)
+        bed_first, bed_order = sort_by_cell(bed, len(bed), self.standing, bed_grid)
         free = (*grid, first, np.arange(n))
         fixed = (*bed_grid, bed_first, self.standing[bed_order])
         start = np.zeros(n + 1, np.int64)
-        blocks = self.block_start
 
         def list_some(first: int, last: int) -> tuple[int, np.ndarray]:
             lo, hi = blocks[first], blocks[last]
@@ -138,57 +128,44 @@ class BlockLayout(Layout):
         partners = np.concatenate([some for _, some in found])
         start[n] = len(partners)
         cross_start, crossing, incoming_start, incoming = number_crossing_pairs(
-            n, self.block_start, start, partners
+            n, blocks, start, partners, share
         )
-        rows = n + len(self.block_start) - 1 + len(crossing)
+        rows = n + len(blocks) - 1 + len(crossing)
         slab = int(1.1 * n / grid[2][0]) + B.LANES if n > _CACHED else n
-        grains = grains._replace(film=np.zeros((rows, 4) if self.variant.film else (0, 0)))
-        return (
-            grains,
-            PairArrays(
-                slab, start, partners, cross_start, crossing, np.zeros(rows, np.uint8), incoming_start,
-                incoming, aligned(rows, 8),
-            ),
-            listed,
-            lost,
+        pairs = PairArrays(
+            slab, start, partners, cross_start, crossing, np.zeros(rows, np.uint8), incoming_start,
+            incoming, aligned(rows, 8),
         )  # fmt: skip
+        grains = grains._replace(film=np.zeros((rows, 4) if self.variant.film else (0, 0)))
+        return ListedPairs(grains, pairs, listed, place_of, min((i for i in outside if i >= 0), default=-1))
 
-    def _in_cell_order(self, by_id: GrainArrays, order: np.ndarray) -> GrainArrays:
-        """Grain arrays sorted; the large ones that move are sorted in place."""
-        n, scene = self.n, self.scene
-        place = np.arange(len(self.r))
-        place[:n] = order
-        for array in (by_id.x, by_id.v, by_id.w):
-            array[:n] = array[order]
-        return by_id._replace(
-            m=self.m[place],
-            m_bare=scene.m[order],
-            m_weight=scene.m_weight[order],
-            inertia=self.inertia[place],
-            per_m=1.0 / self.m[order],
-            per_inertia=1.0 / self.inertia[order],
-            ids=place[: self.n_solid].copy(),
-            image=by_id.image[order],
-            n_touching=by_id.n_touching[order],
-            fluid=by_id.fluid[order[: len(by_id.fluid)]],
-            impulse=by_id.impulse[order[: len(by_id.fluid)]],
+    def place_memory(
+        self, place_of: np.ndarray, candidates: CandidateArrays, memory: ContactMemory, share: Share
+    ) -> int:
+        """Put the memory of touching pairs into a list of candidates; returns the first not in it, or -1.
+
+        `place_of` gives the places now of the grains that the memory names.
+        """
+        count, blocks = len(memory.i), self.block_start
+        ends = [k * count // (len(blocks) - 1) for k in range(len(blocks))]
+        missing = share(
+            lambda a, b: copy_rows_in(ends[a], ends[b], self.n, blocks, candidates, place_of, *memory)
         )
-
-    def place_memory(self, grains: GrainArrays, candidates: CandidateArrays, memory: ContactMemory) -> int:
-        """Put the memory of touching pairs into a list of candidates; returns the first not in it, or -1."""
-        index = np.empty(self.n, np.int64)
-        index[grains.ids[: self.n]] = np.arange(self.n)
-        block_of = np.repeat(np.arange(len(candidates.count)), np.diff(self.block_start))
-        return int(copy_rows_in(self.n, candidates, block_of, index, *memory))
+        return min((k for k in missing if k >= 0), default=-1)
 
 
-def collect_memory(n: int, grains: GrainArrays, candidates: CandidateArrays) -> ContactMemory:
-    """Copy ids and rows of all pairs in touch, in list order."""
-    count = count_touching(candidates)
-    width = candidates.rows.shape[1]
-    i, j = np.empty(count, np.int64), np.empty(count, np.int64)
+def collect_memory(n: int, ids: np.ndarray, candidates: CandidateArrays, share: Share) -> ContactMemory:
+    """Copy the names and rows of all pairs in touch, in list order.
+
+    Grains are named by `ids`, or by their places where it is empty.
+    """
+    count = np.zeros(len(candidates.count) + 1, np.int64)
+    share(lambda a, b: count_touching(a, b, candidates, count))
+    np.cumsum(count, out=count)
+    total, eta, rows = count[-1], candidates.eta, candidates.rows
     memory = ContactMemory(
-        i, j, np.empty(count, np.uint8), np.empty((count, candidates.eta.shape[1])), np.empty((count, width))
-    )
-    copy_rows_out(n, candidates, grains.ids, *memory)
+        np.empty(total, np.int64), np.empty(total, np.int64), np.empty(total, np.uint8),
+        eta.copy() if len(eta) == 1 else np.empty((total, eta.shape[1])), np.empty((total, rows.shape[1])),
+    )  # fmt: skip
+    share(lambda a, b: copy_rows_out(a, b, n, count, candidates, ids, *memory))
     return memory
