@@ -11,6 +11,8 @@ import signal
 import sys
 
 import numpy as np
+import pytest
+from benchmarks import card_cost
 from tests.engine.heaps import KINDS, alike, heap, loaded
 
 from ryusa.engine.cuda import device_state as store
@@ -36,6 +38,25 @@ def test_both_sides_of_every_pair_hold_the_same_bits():
                 )
     assert all(len(sides) == 2 and sides[0] == sides[1] for sides in found.values() if sides[0][0])
     assert sum(bool(sides[0][0]) for sides in found.values()) > 20
+
+
+@pytest.mark.parametrize("kind", ["3D", "plane, records", "column", "exact timing, records"])
+def test_the_count_of_bytes_is_that_of_the_arrays_on_the_device(kind):
+    fixed, first = heap(**KINDS[kind])
+    engine = loaded(CudaEngine(), (fixed, first))
+    engine.advance(12).raise_if_any()
+    device, variant = engine._device, engine._variant
+    small = (
+        engine._d_status, engine._d_motion, engine._d_stats, engine._d_terms, engine._d_partial, device.c,
+        *device.walls,
+    )  # fmt: skip
+    counted = card_cost.memory(
+        fixed.n_grain, fixed.n_fixed, fixed.n_plane, variant, device.pairs.partners.shape[0],
+        device._held.partners.shape[0], engine._room,
+    )  # fmt: skip
+    assert card_cost.allocated(engine) == counted + sum(one.size * one.dtype.itemsize for one in small)
+    assert device.pairs.partners.shape[0] >= device.n_pair > 0
+    assert device.pairs.rows.nbytes > device._held.rows.nbytes > 0
 
 
 def test_grains_may_outnumber_threads(monkeypatch):

@@ -1,6 +1,7 @@
 """The CUDA engine: its tests run in numba's simulator, in their own process; its kernels become PTX here."""
 
 import importlib
+import json
 import os
 import subprocess
 import sys
@@ -46,10 +47,28 @@ def test_the_engine_does_in_the_simulator_what_every_engine_does(file: str, part
     assert done.returncode == 0, done.stdout[-6000:] + done.stderr[-2000:]
 
 
-def test_the_cuda_engine_runs_in_the_simulator() -> None:
-    done = in_simulator("benchmarks/card.py", "--simulated")
-    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-2000:]
-    assert '"same bits twice": true, "both sides alike": true' in done.stdout
+def test_the_program_for_a_card_fills_its_table_in_parts_and_does_no_row_twice(tmp_path: Path) -> None:
+    program = (
+        "benchmarks/card.py",
+        "--simulated",
+        "--kinds",
+        "dry",
+        "column",
+        "--save",
+        str(tmp_path / "card.json"),
+    )
+    none = in_simulator(*program, "--limit", "0")
+    assert "left for the same command again: agreement, dry, twice, dry, agreement, column" in none.stdout
+    first = in_simulator(*program, "--parts", "agreement", "twice")
+    assert first.returncode == 0, first.stdout[-3000:] + first.stderr[-2000:]
+    assert first.stdout.count('"same bits twice": true, "both sides alike": true') == 2
+    assert first.stdout.count('"force agrees": true') == 2
+    second = in_simulator(*program)
+    assert second.returncode == 0, second.stdout[-3000:] + second.stderr[-2000:]
+    assert "agrees" not in second.stdout
+    rows = json.loads((tmp_path / "card.json").read_text())["rows"]
+    assert rows["speed, column, 8"]["launches a step"] == rows["speed, dry, 8"]["launches a step"] == 2.0
+    assert rows["speed, column, 8"]["ms an exchange"] > 0.0
 
 
 @pytest.fixture
