@@ -61,8 +61,8 @@ def memory(
 
     Parameters
     ----------
-    room, held : neighbours that the list has room for, and pairs in contact, both sides of each, that are
-        kept while it is written anew.
+    room, held : neighbours that the list has room for, and pairs in contact that are kept while it is
+        written anew.
     records : of ended contacts.
     """
     pairs = a_pair(variant) * (room + held)
@@ -102,7 +102,7 @@ def estimate(kind: str, listed: float, touching: float) -> dict[str, Any]:
     """What memory and bandwidth come to for one kind of scene, of many grains."""
     variant, many = VARIANTS[kind], 1_000_000
     bytes_a_grain = memory(
-        many, 0, 0, variant, room_of(round(listed * many)), room_of(round(touching * many))
+        many, 0, 0, variant, room_of(round(listed * many)), room_of(round(0.5 * touching * many))
     )
     moved = traffic(variant, listed, touching)
     row: dict[str, Any] = {

@@ -163,9 +163,9 @@ def other_kernels() -> Iterator[Kernel]:
             "find_neighbours",
             (COUNT, COUNT, COUNT, COUNT, F2, I4, walls, F1, I1, I4, I4, I4, I1, I4),
         ),
-        ("transfer_memory", (*[COUNT] * 5, F1, I4, bodies, I4, pairs, pairs, I1)),
-        ("count_touching", (COUNT, COUNT, I4, pairs, I1)),
-        ("hold_touching", (COUNT, pairs, pairs)),
+        ("transfer_memory", (*[COUNT] * 5, F1, I4, bodies, pairs, pairs, I1)),
+        ("count_touching", (COUNT, I4, pairs, I1)),
+        ("hold_touching", (COUNT, I4, pairs, pairs)),
         ("collect_touching", (COUNT, I4, pairs, I1, I1, I1, U1, F2, F2)),
     ):
         yield Kernel(name, getattr(verlet_list, name), arguments, ON_CARD.threads, 0)

@@ -210,7 +210,7 @@ class DeviceState:
         launch(kernels.find_neighbours, n, 1, *common, self.pairs.partners)
         launch(
             kernels.transfer_memory, n, n, self.n_solid, self.variant.rotation, self.variant.exact, half,
-            self.c, self._order, new, old.ids, self._held, self.pairs, missing,
+            self.c, self._order, new, self._held, self.pairs, missing,
         )  # fmt: skip
         grain = int(missing.copy_to_host()[0])
         if grain != NO_GRAIN:
@@ -219,16 +219,16 @@ class DeviceState:
         return -1 if grain == NO_GRAIN else grain
 
     def _hold_contacts(self) -> None:
-        """Copy the pairs in contact out of the list, which is then written anew."""
+        """Copy the pairs in contact, once, out of the list, which is then written anew."""
         n, start = self.n, self._held.start
         launch(kernels.fill, n + 1, start, 0)
-        launch(kernels.count_touching, n, 1, n, self.bodies.ids, self.pairs, start)
+        launch(kernels.count_touching, n, n, self.bodies.ids, self.pairs, start)
         self._sum_up(start, n + 1)
         total = int(start[n : n + 1].copy_to_host()[0])
         if total > self._held.partners.shape[0]:
             self._held = self._room(0, start)
             self._held = self._room(total, start)
-        launch(kernels.hold_touching, n, n, self.pairs, self._held)
+        launch(kernels.hold_touching, n, n, self.bodies.ids, self.pairs, self._held)
 
     def _grid(self, reach: float) -> tuple[Floats, np.ndarray]:
         """Cells wide enough for a reach beyond touch [m], and no more than about two a grain."""
@@ -293,7 +293,7 @@ class DeviceState:
     def memory(self) -> ContactMemory:
         """Pairs in touch with their rows, in the order of ids."""
         n, count = self.n, cuda.to_device(np.zeros(self.n + 1, np.int64))
-        launch(kernels.count_touching, n, 0, n, self.bodies.ids, self.pairs, count)
+        launch(kernels.count_touching, n, n, self.bodies.ids, self.pairs, count)
         self._sum_up(count, n + 1)
         total = int(count[n : n + 1].copy_to_host()[0])
         room = max(total, 1)

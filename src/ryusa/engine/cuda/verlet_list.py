@@ -220,65 +220,62 @@ def find_neighbours(
 @cuda.jit
 def transfer_memory(
     n: int, n_solid: int, rotation: int, exact: int, half: int, c: Any, order: Any, bodies: DeviceGrainArrays,
-    ids_before: Any, before: DevicePairArrays, pairs: DevicePairArrays, missing: Any,
+    held: DevicePairArrays, pairs: DevicePairArrays, missing: Any,
 ) -> None:  # fmt: skip
-    """Give every neighbour its dashpots, and the pairs in contact their memory from those before.
+    """Give every neighbour its dashpots, and the pairs in contact their memory, to both sides.
 
-    Both are in the order of ids. `missing` gets the lowest id of a grain whose partner in contact is not in
-    the new list.
+    `held` has them once, with the grain of the lower id, by the places before. `missing` gets the lowest id
+    of such a grain whose partner in contact is not in the new list.
     """
     x = bodies.x[half]
     width, springs = pairs.rows.shape[1], pairs.eta.shape[1]
     for i in range(cuda.grid(1), n, cuda.gridsize(1)):
-        old, end = before.start[order[i]], before.start[order[i] + 1]
+        found = 0
         for k in range(pairs.start[i], pairs.start[i + 1]):
             j = pairs.partners[k]
-            mine = bodies.ids[j] if j < n_solid else j
-            pairs.touching[k] = 0
-            theirs = -1
-            while old < end and theirs < mine:
-                q = before.partners[old]
-                theirs = ids_before[q] if q < n_solid else q
-                if theirs < mine:
-                    cuda.atomic.min(missing, 0, bodies.ids[i])
-                    old += 1
-            if theirs == mine:
-                pairs.touching[k] = before.touching[old]
+            own = j >= n or bodies.ids[j] > bodies.ids[i]
+            a, b = (i, j) if own else (j, i)
+            was_a, was_b = order[a], order[b] if b < n else b
+            at, end = held.start[was_a], held.start[was_a + 1]
+            while at < end and held.partners[at] != was_b:
+                at += 1
+            if at < end:
+                pairs.touching[k] = held.touching[at]
                 for e in range(springs):
-                    pairs.eta[k, e] = before.eta[old, e]
+                    pairs.eta[k, e] = held.eta[at, e]
                 for e in range(width):
-                    pairs.rows[k, e] = before.rows[old, e]
-                old += 1
+                    pairs.rows[k, e] = held.rows[at, e]
+                found += 1 if own else 0
             else:
-                own = j >= n or mine > bodies.ids[i]
-                a, b = (i, j) if own else (j, i)
+                pairs.touching[k] = 0
                 for e in range(min(width, M.END_ROLLING)):
                     pairs.rows[k, e] = 0.0
                 _set_springs(k, a, b, rotation, exact, c, bodies.m, x, bodies.inertia, pairs.eta)
-        if old < end:
+        if found < held.start[order[i] + 1] - held.start[order[i]]:
             cuda.atomic.min(missing, 0, bodies.ids[i])
 
 
 @cuda.jit
-def count_touching(both: int, n: int, ids: Any, pairs: DevicePairArrays, count: Any) -> None:
-    """Pairs in contact of each grain: all, or those it has the lower id of."""
+def count_touching(n: int, ids: Any, pairs: DevicePairArrays, count: Any) -> None:
+    """Pairs in contact of which each grain has the lower id."""
     for i in range(cuda.grid(1), n, cuda.gridsize(1)):
         total = 0
         for k in range(pairs.start[i], pairs.start[i + 1]):
             j = pairs.partners[k]
-            if pairs.touching[k] != 0 and (both or j >= n or ids[j] > ids[i]):
+            if pairs.touching[k] != 0 and (j >= n or ids[j] > ids[i]):
                 total += 1
         count[i] = total
 
 
 @cuda.jit
-def hold_touching(n: int, pairs: DevicePairArrays, held: DevicePairArrays) -> None:
-    """Copy all pairs in contact to `held`, whose `start` is known."""
+def hold_touching(n: int, ids: Any, pairs: DevicePairArrays, held: DevicePairArrays) -> None:
+    """Copy the pairs in contact to `held`, whose `start` is known, from the side with the lower id."""
     for i in range(cuda.grid(1), n, cuda.gridsize(1)):
         at = held.start[i]
         for k in range(pairs.start[i], pairs.start[i + 1]):
-            if pairs.touching[k] != 0:
-                held.partners[at], held.touching[at] = pairs.partners[k], pairs.touching[k]
+            j = pairs.partners[k]
+            if pairs.touching[k] != 0 and (j >= n or ids[j] > ids[i]):
+                held.partners[at], held.touching[at] = j, pairs.touching[k]
                 for e in range(pairs.eta.shape[1]):
                     held.eta[at, e] = pairs.eta[k, e]
                 for e in range(pairs.rows.shape[1]):
