@@ -23,6 +23,7 @@ from ryusa.engine.shared.contact_instants import (
     HELD,
     ON_MAP,
     kind_of_step,
+    may_end,
 )
 from ryusa.engine.shared.kernel import FAST, inner
 from ryusa.engine.shared.variant import LawChoice
@@ -62,7 +63,7 @@ def _make_kinematics(plane: bool) -> Any:
             batch[B.EXCESS + l] = overlap - 2.0 * most * min(r_i, r_j)
             k_n, state = batch[B.K_N + l], batch[B.WAS_TOUCHING + l]
             f_n = normal_force(overlap, closing, k_n, batch[B.RELATIVE_VELOCITY + 4 * l + 3])
-            fades = closing < 0.0 and c[P.FADING] * f_n < batch[B.SPRING + 4 * l + 3]
+            fades = may_end(closing, f_n, k_n, c)
             kind = kind_of_step(state, overlap, closing, f_n, fades, tension, dt)
             touching, held = overlap > 0.0, kind == ON_MAP
             batch[B.F_N + l] = batch[B.RAW + l] = f_n if held else 0.0

@@ -7,7 +7,7 @@ from typing import Any
 from ryusa.engine.cuda.device import device, on_device
 from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
-from ryusa.engine.shared.contact_instants import APART, BEGAN, ENDING, HELD, instant_step
+from ryusa.engine.shared.contact_instants import APART, BEGAN, ENDING, HELD, instant_step, may_end
 from ryusa.engine.shared.dashpots import spring_immersed
 from ryusa.engine.shared.variant import KernelVariant, LawChoice
 from ryusa.laws.collision import effective_mass, effective_mass_tangential
@@ -21,6 +21,7 @@ B_DASH_N, B_DASH_S, B_SLIDE = int(Term.DASH_N), int(Term.DASH_S), int(Term.SLIDE
 
 Vector = tuple[float, float, float]
 _spring_immersed, _instant_step = on_device(spring_immersed), on_device(instant_step)
+_may_end = on_device(may_end)
 
 
 @device
@@ -71,8 +72,7 @@ def make_exact_contact(variant: KernelVariant, choice: LawChoice) -> Any:
         now, f_n, e_n, until = HELD, normal_force(overlap, closing, k_n, eta_n), k_n * overlap, math.inf
         push, given, slid = f_n, False, False
         g_x = g_y = g_z = h_x = h_y = h_z = 0.0
-        fading = closing < 0.0 and c[P.FADING] * f_n < f_old
-        if was != HELD or overlap <= 0.0 or fading:
+        if was != HELD or overlap <= 0.0 or _may_end(closing, f_n, k_n, c):
             m_n = effective_mass(m[a], m[b])
             m_t = effective_mass_tangential(m[a], w[a, 3], inertia[a], m[b], w[b, 3], inertia[b], rotation)
             if was == BEGAN:  # the overlap that the oscillator had is in its spring

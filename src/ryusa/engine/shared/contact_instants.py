@@ -38,14 +38,20 @@ MAY_END = 3.0  # `end_contact` tells
 CORRECTS = 4.0  # the closing speed after the end
 
 _LATE = 2.0  # steps of approach within which a first overlap is that of a touch; a larger one was put there
-_FAR_FROM_ZERO = 0.25  # of the present force: a next force above it does not end within the step
+
+
+@inner(fastmath=FAST, forceinline=True)
+def may_end(closing: float, raw: float, k_d: float, c: Any) -> bool:
+    """Whether the force `raw` of a map [N] may end within the coming step, whatever the masses."""
+    falls = c[P.FADING] * raw <= -k_d * closing * c[P.DT]
+    return (closing < 0.0) & (falls | (raw <= 0.0))  # no branch, for a loop over pairs
 
 
 @inner(fastmath=FAST, forceinline=True)
 def kind_of_step(
     state: float, overlap: float, closing: float, raw: float, fades: bool, tension: bool, dt: float
 ) -> float:
-    """What a step does with a pair; `raw` is the force of the map [N], `fades` whether it may end."""
+    """What a step does with a pair; `raw` is the force of the map [N], `fades` whether it `may_end`."""
     apart, ended = state == APART, state == ENDED
     free = overlap <= 0.0 or ((apart or ended) and raw <= 0.0 and not tension)
     begins = apart and overlap <= _LATE * closing * dt
@@ -139,7 +145,7 @@ def end_contact(
     closing += rest
     raw = e_n + eta_d * closing
     onward = closing - dt * raw / m
-    fades = closing < 0.0 and k_d * (overlap + dt * onward) + eta_d * onward <= _FAR_FROM_ZERO * raw
+    fades = closing < 0.0 and k_d * (overlap + dt * onward) + eta_d * onward <= P.LEAST_NEXT * raw
     a, q, _, eta_s = oscillators(m, eta_d, m_t, eta_sd, c)
     v = velocity_of_map(overlap, closing, dt, a, q)
     until = time_of_release(overlap, v, a, q, tension)
