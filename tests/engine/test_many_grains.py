@@ -9,6 +9,8 @@ from tests.engine.conftest import D, bits, contact_law, pile, run
 from tests.engine.reference import accelerations, touching_pairs
 
 from ryusa.build import scene
+from ryusa.engine.cpu import engine as cpu_engine
+from ryusa.engine.cpu.block_exchange import number_crossing_pairs
 from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.laws.families import Arm, ContactTiming, Drag, Profile, Rolling, Slip, WaterTorque
 from ryusa.model import RollingLaw, Term, Water
@@ -60,6 +62,27 @@ def test_split_calls_and_a_resumed_snapshot_give_the_same_bits(kind):
     records = whole.events()
     assert split.events().tobytes() == records.tobytes()
     assert np.sort(np.concatenate([early, resumed.events()])).tobytes() == np.sort(records).tobytes()
+
+
+def test_blocks_that_move_early_give_the_bits_of_blocks_that_wait(monkeypatch):
+    monkeypatch.setattr(cpu_engine, "blocks_of", lambda n, plane_case: 8)
+    made = pile(n=600, plane_case=True)
+    outcome = []
+    for threads in (1, 2, 8):  # of 8 threads each has one block, which waits for its neighbours
+        engine = run(made, 600, threads)
+        assert engine._pairs.span == 1
+        outcome.append((bits(engine.state()), engine.tally()))
+    assert all(o == outcome[0] for o in outcome)
+
+
+def test_blocks_that_share_pairs_are_found_on_either_side():
+    block_start, start = np.arange(0, 13, 2), np.arange(13)
+    for pairs, span in (((0, 1), 0), ((0, 2), 1), ((0, 11), 1), ((0, 5), 2), ((3, 9), 3), ((2, 10), 2)):
+        partners = np.arange(12, dtype=np.uint32)
+        partners[pairs[0]] = pairs[1]
+        found = number_crossing_pairs(12, block_start, start, partners, lambda task: [task(0, 6)])
+        assert found[-1] == span
+        assert len(found[1]) == (span > 0)
 
 
 def test_an_account_without_block_accounts_is_continued_from_its_sum():

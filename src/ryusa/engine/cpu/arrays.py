@@ -44,6 +44,7 @@ class PairArrays(NamedTuple):
     """
 
     slab: int  # places between two layers of cells: so much later come partners not met before
+    span: int  # blocks that share pairs are at most so many blocks apart, the last one beside the first
     start: Any  # (n + 1,)
     partners: Any  # places, (n_pair,)
     cross_start: Any  # first crossing pair of each block, (n_block + 1,)

@@ -16,31 +16,35 @@ def number_crossing_pairs(
     block_start: Whole,
     start: Whole,
     partners: np.ndarray,
-    share: Callable[[Callable[[int, int], Any]], Any],
-) -> tuple[Whole, np.ndarray, Whole, Whole]:
+    share: Callable[[Callable[[int, int], Any]], list[Any]],
+) -> tuple[Whole, np.ndarray, Whole, Whole, int]:
     """Number the rows of `Pairs.f` for pairs whose partner belongs to another block.
 
-    Returns the first of them in each block (n_block + 1); their numbers in the Verlet list; and, for each
-    grain, the rows of the pairs that others own and it is partner of:
-    incoming[incoming_start[j]:incoming_start[j + 1]], in list order. `share` distributes blocks over threads.
+    Returns the first of them in each block (n_block + 1); their numbers in the Verlet list; for each grain,
+    the rows of the pairs that others own and it is partner of:
+    incoming[incoming_start[j]:incoming_start[j + 1]], in list order; and how many blocks apart the two
+    blocks of a pair are at most, the last block beside the first. `share` distributes blocks over threads.
     """
     first = np.zeros(len(block_start), np.int64)
     none = np.empty(0, np.uint32)
-    share(lambda a, b: _list_crossing(a, b, n, block_start, start, partners, first, none))
+    spans = share(lambda a, b: _list_crossing(a, b, n, block_start, start, partners, first, none))
     np.cumsum(first, out=first)
     crossing = np.empty(first[-1], np.uint32)
     share(lambda a, b: _list_crossing(a, b, n, block_start, start, partners, first, crossing))
     incoming_start, incoming = np.zeros(n + 1, np.int64), np.empty(first[-1], np.int64)
     _list_incoming(n, n + len(block_start) - 1, partners, crossing, incoming_start, incoming)
-    return first, crossing, incoming_start, incoming
+    return first, crossing, incoming_start, incoming, max(spans)
 
 
 @kernel(nogil=True)
 def _list_crossing(
     b_0: int, b_1: int, n: int, block_start: Any, start: Any, partners: Any, first: Any, crossing: Any
-) -> None:
-    """Write the crossing pairs of blocks b_0..b_1-1 from crossing[first[b]] on; count them if it is empty."""
-    counting = len(crossing) == 0
+) -> int:
+    """Write the crossing pairs of blocks b_0..b_1-1 from crossing[first[b]] on; count them if it is empty.
+
+    Returns how many blocks apart the two blocks of a pair are at most.
+    """
+    counting, n_block, span = len(crossing) == 0, len(block_start) - 1, 0
     for b in range(b_0, b_1):
         lo, hi = block_start[b], block_start[b + 1]
         q = 0 if counting else first[b]
@@ -50,8 +54,13 @@ def _list_crossing(
                 if not counting:
                     crossing[q] = p
                 q += 1
+                apart = 1
+                while not block_start[(b + apart) % n_block] <= j < block_start[(b + apart) % n_block + 1]:
+                    apart = 1 - apart if apart <= 0 else -apart  # 1, -1, 2, -2, ...
+                span = max(span, abs(apart))
         if counting:
             first[b + 1] = q
+    return span
 
 
 @kernel()

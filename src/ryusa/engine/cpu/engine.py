@@ -43,7 +43,7 @@ from ryusa.model.state import make_read_only
 VERSION = 1  # of the block in a snapshot
 _FARTHEST = 1e12  # [m]; beyond there is no grain
 _MANY = 256  # grains from which work is divided into blocks
-_BLOCKS = 4, 32  # at least and at most; in between one for 2048 grains, a power of two
+_BLOCKS = 4, 32  # at least and at most; in between one for 2048 grains (`blocks_of`), a power of two
 _RECORDS = 256  # room for ended contacts in a block, beside one a grain
 # Measured, and fixed so that a run never depends on a clock: cost of a Verlet list [ns], and steps
 # between two prunings.
@@ -89,7 +89,7 @@ class CpuEngine:
         self._variant = variant_of(scene)
         self._choice = choice_of(scene)
         self._run = make_run(self._variant)
-        blocks = blocks_of(n)
+        blocks = blocks_of(n, scene.plane_case)
         self._layout = BlockLayout(scene, blocks, self._variant)
         self._parameters = parameters_of(scene)
         self._smallest = float(np.concatenate([scene.d, scene.d_fixed]).min(initial=np.inf))
@@ -338,10 +338,14 @@ class CpuEngine:
         return own
 
 
-def blocks_of(n: int) -> int:
+def blocks_of(n: int, plane_case: bool) -> int:
     """Number of blocks for n grains; it does not depend on the number of threads.
 
-    Thin blocks have many pairs with their neighbours, which cost more.
+    Thin blocks have many pairs with their neighbours, which cost more: in space, where blocks are slabs,
+    there are more than 16 only if each has 8192 grains.
     """
     least, most = _BLOCKS
-    return 1 if n < _MANY else int(min(max(2.0 ** round(np.log2(n / 2048)), least), most))
+    if n < _MANY:
+        return 1
+    blocks = int(min(max(2.0 ** round(np.log2(n / 2048)), least), most))
+    return blocks if plane_case else min(blocks, max(16, int(2.0 ** round(np.log2(n / 8192)))))

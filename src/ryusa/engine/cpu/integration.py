@@ -127,6 +127,16 @@ def integrate(
             stats[S.FAULT], stats[S.FAULT_GRAIN], stats[S.FAULT_PARTNER] = FAULT_NOT_A_NUMBER, ids[i], -1
         speed_2, spin_2 = max(speed_2, fast), max(spin_2, fast_spin)
         velocity_change_2 = max(velocity_change_2, square_length(after - read4(v_pruned, 4 * i)))
-    stats[S.SPEED_MAX], stats[S.SPIN_MAX] = math.sqrt(speed_2), math.sqrt(spin_2)
-    stats[S.VELOCITY_CHANGE_MAX] = math.sqrt(velocity_change_2)
+    stats[S.SPEED_MOVED], stats[S.SPIN_MAX] = math.sqrt(speed_2), math.sqrt(spin_2)
+    stats[S.VELOCITY_CHANGE_MOVED] = math.sqrt(velocity_change_2)
+
+
+@inner(forceinline=True)
+def post(stats: Any) -> None:
+    """Copy to where other threads read it what they need to know of a block that has moved.
+
+    Between the two barriers of a step: a thread that is ahead may move its blocks before the first one, while
+    another still reads what was posted in the step before.
+    """
+    stats[S.SPEED_MAX], stats[S.VELOCITY_CHANGE_MAX] = stats[S.SPEED_MOVED], stats[S.VELOCITY_CHANGE_MOVED]
     stats[S.FAULT_POSTED], stats[S.N_ENDED_POSTED] = stats[S.FAULT], stats[S.N_ENDED]

@@ -18,7 +18,7 @@ from ryusa.engine.cpu.arrays import (
 )
 from ryusa.engine.cpu.barrier import wait
 from ryusa.engine.cpu.exact_contact import compute_exactly, keep_states, spring_energy_of_maps
-from ryusa.engine.cpu.integration import integrate
+from ryusa.engine.cpu.integration import integrate, post
 from ryusa.engine.cpu.pair_batch import compute, filter_pairs, gather, overlap_of_lane, scatter
 from ryusa.engine.cpu.pair_physics import immersed_dashpots, optional_physics
 from ryusa.engine.cpu.prune import prune
@@ -222,7 +222,7 @@ def make_run(variant: KernelVariant) -> Any:
         n_block = len(block_start) - 1
         b_0, b_1 = thread * n_block // n_threads, (thread + 1) * n_block // n_threads
         dt, t_zero, skin, step_limit = c[P.DT], c[P.T_ZERO], c[P.SKIN], c[P.DISPLACEMENT_LIMIT]
-        own = work.schedule
+        own, span = work.schedule, pairs.span
         for k in range(K.N_SCHEDULE):
             own[k] = schedule[k]
         listing_cost = COST_TEST * pairs.start[n] + COST_GRAIN * n
@@ -257,18 +257,26 @@ def make_run(variant: KernelVariant) -> Any:
             last = done == n_steps - 1
             t = t_zero + step * dt
             hdt = 0.0 if step == 0 else 0.5 * dt
-            for b in range(b_0, b_1):
-                block_forces(
-                    variant, flat, water, optional, exact, choice, b, block_start[b + 1], n, n_solid, step, t,
-                    hdt, last, c, grains, walls, pairs, candidates, work, ended[b], terms[b], stats[b],
-                )  # fmt: skip
-            target = wait(count, n_threads, target)
-            for b in range(b_0, b_1):
-                integrate(
-                    variant, water, choice, block_start[b], block_start[b + 1], step == 0, last, c, grains,
-                    pairs, work.table, terms[b], stats[b],
-                )  # fmt: skip
-            target = wait(count, n_threads, target)
+            # A block moves as soon as the blocks within `span` have their forces, while its grains are still
+            # in the cache. Those that share pairs with blocks of other threads move after the barrier.
+            for after in range(2):
+                for b in range(b_0, b_1):
+                    if not after:
+                        block_forces(
+                            variant, flat, water, optional, exact, choice, b, block_start[b + 1], n, n_solid,
+                            step, t, hdt, last, c, grains, walls, pairs, candidates, work, ended[b], terms[b],
+                            stats[b],
+                        )  # fmt: skip
+                    q = b if after else b - span
+                    soon = b_0 + span <= q < b_1 - span
+                    if soon != (after == 1):
+                        integrate(
+                            variant, water, choice, block_start[q], block_start[q + 1], step == 0, last, c,
+                            grains, pairs, work.table, terms[q], stats[q],
+                        )  # fmt: skip
+                    if after:
+                        post(stats[b])
+                target = wait(count, n_threads, target)
             fastest = velocity_change = 0.0
             full = False
             for b in range(n_block):

@@ -45,7 +45,7 @@ class BlockLayout(Layout):
         """A Verlet list without pairs."""
         none = np.zeros(0, np.int64)
         return PairArrays(
-            0, np.zeros(self.n + 1, np.int64), np.zeros(0, np.uint32), none, np.zeros(0, np.uint32),
+            0, 0, np.zeros(self.n + 1, np.int64), np.zeros(0, np.uint32), none, np.zeros(0, np.uint32),
             np.zeros(0, np.uint8), none, none, aligned(0, 8),
         )  # fmt: skip
 
@@ -127,13 +127,13 @@ class BlockLayout(Layout):
             start[hi:n] += len(some)
         partners = np.concatenate([some for _, some in found])
         start[n] = len(partners)
-        cross_start, crossing, incoming_start, incoming = number_crossing_pairs(
+        cross_start, crossing, incoming_start, incoming, span = number_crossing_pairs(
             n, blocks, start, partners, share
         )
         rows = n + len(blocks) - 1 + len(crossing)
         slab = int(1.1 * n / grid[2][0]) + B.LANES if n > _CACHED else n
         pairs = PairArrays(
-            slab, start, partners, cross_start, crossing, np.zeros(rows, np.uint8), incoming_start,
+            slab, span, start, partners, cross_start, crossing, np.zeros(rows, np.uint8), incoming_start,
             incoming, aligned(rows, 8),
         )  # fmt: skip
         grains = grains._replace(film=np.zeros((rows, 4) if self.variant.film else (0, 0)))
