@@ -22,6 +22,8 @@ WET = Water(
 EPSD = RollingLaw(Rolling.EPSD, Arm.REDUCED_RADIUS, 0.1)
 KINDS = {
     "3D": {},
+    "plane": {"plane_case": True},
+    "plane, exact": {"timing": ContactTiming.EXACT, "plane_case": True},
     "plane, records": {"plane_case": True, "events": EventRule.ALL},
     "3D, wet, rolling friction, records": {"water": WET, "rolling": EPSD, "events": EventRule.ALL},
     "3D, exact": {"timing": ContactTiming.EXACT, "events": EventRule.ALL},

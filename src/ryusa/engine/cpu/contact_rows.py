@@ -1,10 +1,77 @@
-"""Memory rows and springs of candidate pairs: emptied at first touch, copied from list to list."""
+"""Memory rows and springs of candidate pairs: emptied at first touch, copied from list to list.
+
+In a plane the tangential vectors have one component, and without rolling friction and records the memory of a
+pair is four numbers: a short row of SHORT columns, half a cache line.
+"""
+# ruff: noqa: E741  (l is a lane)
 
 from typing import Any
 
-from ryusa.engine.cpu.simd.vec4 import copy4
+import numpy as np
+
+from ryusa.engine.cpu import batch_layout as B
+from ryusa.engine.cpu.simd.vec4 import component, copy4, read4, vec4_of, write4
+from ryusa.engine.shared import memory_rows as M
+from ryusa.engine.shared.contact_memory import ContactMemory
 from ryusa.engine.shared.dashpots import set_springs
 from ryusa.engine.shared.kernel import inner
+from ryusa.engine.shared.variant import KernelVariant
+
+SHORT = (M.SPRING_S, M.DASH_S, M.DASH_N, M.F_N)  # columns of a whole row that a short one has
+
+
+def has_short_rows(variant: KernelVariant) -> bool:
+    """Whether the memory of a pair fits into a short row."""
+    return bool(variant.plane_case) and not variant.rolling and not variant.events
+
+
+def shortened(memory: ContactMemory) -> ContactMemory:
+    """The same memory in short rows."""
+    return memory._replace(rows=memory.rows[:, SHORT].copy())
+
+
+def lengthened(memory: ContactMemory) -> ContactMemory:
+    """The same memory in whole rows."""
+    rows = np.zeros((len(memory.i), M.WIDTH))
+    rows[:, SHORT] = memory.rows
+    return memory._replace(rows=rows)
+
+
+@inner(forceinline=True)
+def row_to_lane(short: int | None, l: int, k: int, rows: Any, batch: Any) -> None:
+    """Copy the memory of candidate k to lane l of a batch."""
+    if short is not None:
+        row = read4(rows, 4 * k)
+        write4(batch, B.SPRING + 4 * l, vec4_of(component(row, 0), 0.0, 0.0, component(row, 3)))
+        write4(batch, B.DASH + 4 * l, vec4_of(component(row, 1), 0.0, 0.0, component(row, 2)))
+    else:
+        width = rows.shape[1]
+        copy4(batch, B.SPRING + 4 * l, rows, width * k)
+        copy4(batch, B.DASH + 4 * l, rows, width * k + M.DASH_S)
+
+
+@inner(forceinline=True)
+def lane_to_row(short: int | None, l: int, k: int, rows: Any, batch: Any) -> None:
+    """Copy the memory of lane l of a batch back to candidate k."""
+    if short is not None:
+        spring, dash = read4(batch, B.SPRING + 4 * l), read4(batch, B.DASH + 4 * l)
+        write4(
+            rows, 4 * k,
+            vec4_of(component(spring, 0), component(dash, 0), component(dash, 3), component(spring, 3)),
+        )  # fmt: skip
+    else:
+        width = rows.shape[1]
+        copy4(rows, width * k, batch, B.SPRING + 4 * l)
+        copy4(rows, width * k + M.DASH_S, batch, B.DASH + 4 * l)
+
+
+@inner(forceinline=True)
+def springs_of_row(k: int, rows: Any) -> tuple[float, float, float, float]:
+    """Force of the normal spring, and of the tangential one, of candidate k [N]."""
+    if rows.shape[1] == len(SHORT):
+        return rows[k, 3] - rows[k, 2], rows[k, 0], 0.0, 0.0
+    s = M.SPRING_S
+    return rows[k, M.F_N] - rows[k, M.DASH_N], rows[k, s], rows[k, s + 1], rows[k, s + 2]
 
 
 @inner(forceinline=True)

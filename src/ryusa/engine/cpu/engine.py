@@ -10,6 +10,7 @@ import numpy as np
 
 from ryusa.engine.cpu.arrays import AccountArrays, GrainArrays, workspace_of_thread
 from ryusa.engine.cpu.candidate_pairs import CandidatePairs
+from ryusa.engine.cpu.contact_rows import has_short_rows, lengthened, shortened
 from ryusa.engine.cpu.prune_schedule import COST_TEST
 from ryusa.engine.cpu.time_loop import make_run
 from ryusa.engine.cpu.verlet_list import BlockLayout, collect_memory
@@ -107,6 +108,7 @@ class CpuEngine:
             self._accounts.terms[0, Term.SWITCH] += energy_of_change(before, scene, state, dropped)
             self._records_drained.append(closed_records(state, dropped))
         memory = memory_of(contacts, self._variant, self._choice, self._parameters, self._layout)
+        memory = shortened(memory) if has_short_rows(self._variant) else memory
         by_id = self._layout.grains_by_id(state)
         for touching in (contacts.i, contacts.j[contacts.j < n]):
             np.add.at(by_id.n_touching, touching, 1)
@@ -151,9 +153,9 @@ class CpuEngine:
         """Read-only snapshot: all that an exact resume needs."""
         n, grains = self._n, self._grains
         back = np.argsort(grains.ids[:n])
-        contacts = contacts_of(
-            collect_memory(n, grains.ids, self._candidates.pairs, self._share), self._variant
-        )
+        memory = collect_memory(n, grains.ids, self._candidates.pairs, self._share)
+        memory = lengthened(memory) if has_short_rows(self._variant) else memory
+        contacts = contacts_of(memory, self._variant)
         block = self._block()
         fluid = FluidAtGrains(grains.fluid[back], grains.impulse[back]) if self._variant.column else None
         state = replace(

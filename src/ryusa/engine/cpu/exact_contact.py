@@ -11,6 +11,7 @@ from typing import Any
 
 from ryusa.engine.cpu import batch_layout as B
 from ryusa.engine.cpu.contact_events import begin_and_end
+from ryusa.engine.cpu.contact_rows import springs_of_row
 from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.contact_instants import (
@@ -195,10 +196,10 @@ def spring_energy_of_maps(b: int, candidates: Any) -> tuple[float, float, int]:
         state = candidates.touching[k]
         if state == 0:
             continue
-        e_n = rows[k, M.F_N] - rows[k, M.DASH_N]
+        e_n, s_x, s_y, s_z = springs_of_row(k, rows)
         normal += 0.5 * e_n * e_n / eta[k, M.K_N]
         if eta[k, M.K_S] > 0.0 and state in (HELD, BEGAN):
-            for a in range(3):
-                tangential += 0.5 * rows[k, M.SPRING_S + a] ** 2 / eta[k, M.K_S]
+            for force in (s_x, s_y, s_z):
+                tangential += 0.5 * force**2 / eta[k, M.K_S]
         count += int(state in (HELD, BEGAN))
     return normal, tangential, count

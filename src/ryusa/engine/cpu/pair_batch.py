@@ -14,7 +14,7 @@ import math
 from typing import Any
 
 from ryusa.engine.cpu import batch_layout as B
-from ryusa.engine.cpu.contact_rows import begin_row, dashpot_row
+from ryusa.engine.cpu.contact_rows import begin_row, dashpot_row, lane_to_row, row_to_lane
 from ryusa.engine.cpu.cutoff import mark_within_cutoff, set_separation
 from ryusa.engine.cpu.simd.vec4 import add4, copy4, read4, subtract4, with_fourth, write4
 from ryusa.engine.shared import memory_rows as M
@@ -55,15 +55,14 @@ def filter_pairs(
 
 @inner(fastmath=FAST, forceinline=True)
 def gather(
-    rotation: int, exact: int, m: int, selected: Any, n_solid: int, c: Any, mass: Any, inertia: Any, x: Any,
-    v: Any, w: Any, points: Any, normals: Any, i_of: Any, j_of: Any, touching: Any, eta: Any, rows: Any,
-    batch: Any,
+    rotation: int, exact: int, short: int | None, m: int, selected: Any, n_solid: int, c: Any, mass: Any,
+    inertia: Any, x: Any, v: Any, w: Any, points: Any, normals: Any, i_of: Any, j_of: Any, touching: Any,
+    eta: Any, rows: Any, batch: Any,
 ) -> int:  # fmt: skip
     """Copy the first m selected pairs to as many lanes; returns the number of lanes to compute.
 
     Those are whole vectors of eight: the lanes beyond m hold pairs far apart.
     """
-    width = rows.shape[1]
     for l in range(m):
         k = selected[l]
         i, j = i_of[k], j_of[k]
@@ -80,8 +79,7 @@ def gather(
         copy4(batch, B.SPIN_J + 4 * l, w, 8 * j)
         if j >= n_solid:
             batch[B.SPIN_J + 4 * l + 3] = w[i, 3]
-        copy4(batch, B.SPRING + 4 * l, rows, width * k)
-        copy4(batch, B.DASH + 4 * l, rows, width * k + M.DASH_S)
+        row_to_lane(short, l, k, rows, batch)
         batch[B.ETA_S + l], batch[B.WAS_TOUCHING + l] = eta[e, M.ETA_S], touching[k]
         if exact:
             batch[B.K_N + l], batch[B.K_S + l] = eta[e, M.K_N], eta[e, M.K_S]
@@ -233,14 +231,14 @@ def compute(flat: int | None, choice: LawChoice, m: int, hdt: float, most: float
 
 @inner(fastmath=FAST, forceinline=True)
 def scatter(
-    exact: int | None, m: int, selected: Any, i_of: Any, target: Any, touching: Any, rows: Any, batch: Any,
-    f: Any,
+    exact: int | None, short: int | None, m: int, selected: Any, i_of: Any, target: Any, touching: Any,
+    rows: Any, batch: Any, f: Any,
 ) -> bool:  # fmt: skip
     """Add the first m lanes to their grains, one by one in the order of the list, and keep their memory.
 
     `selected` are the candidates on the lanes. Returns whether an overlap is larger than any before.
     """
-    width, larger = rows.shape[1], False
+    larger = False
     for l in range(m):
         k = selected[l]
         i, j = i_of[k], target[k]
@@ -248,8 +246,7 @@ def scatter(
         add4(f, 8 * i + 4, batch, B.TORQUE_I + 4 * l)
         subtract4(f, 8 * j, batch, B.FORCE + 4 * l)
         add4(f, 8 * j + 4, batch, B.TORQUE_J + 4 * l)
-        copy4(rows, width * k, batch, B.SPRING + 4 * l)
-        copy4(rows, width * k + M.DASH_S, batch, B.DASH + 4 * l)
+        lane_to_row(short, l, k, rows, batch)
         if exact is None:
             touching[k] = batch[B.TORQUE_I + 4 * l + 3] > 0.0
         larger = larger or batch[B.EXCESS + l] > 0.0

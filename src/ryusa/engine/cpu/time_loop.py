@@ -17,6 +17,7 @@ from ryusa.engine.cpu.arrays import (
     Workspace,
 )
 from ryusa.engine.cpu.barrier import wait
+from ryusa.engine.cpu.contact_rows import has_short_rows, springs_of_row
 from ryusa.engine.cpu.exact_contact import compute_exactly, keep_states, spring_energy_of_maps
 from ryusa.engine.cpu.integration import integrate, post
 from ryusa.engine.cpu.pair_batch import compute, filter_pairs, gather, overlap_of_lane, scatter
@@ -27,7 +28,6 @@ from ryusa.engine.cpu.simd.borrow import borrow
 from ryusa.engine.cpu.simd.prefetch import prefetch
 from ryusa.engine.cpu.simd.vec4 import fill4
 from ryusa.engine.shared import block_statistics as S
-from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.kernel import FAST, inner, kernel
 from ryusa.engine.shared.status import (
@@ -53,7 +53,7 @@ TERMS = tuple(
 
 @inner(fastmath=FAST, forceinline=True)
 def block_forces(
-    variant: KernelVariant, flat: Present, water: Present, optional: Present, exact: Present,
+    variant: KernelVariant, flat: Present, water: Present, optional: Present, exact: Present, short: Present,
     choice: LawChoice, b: int, hi: int, n: int, n_solid: int, step: int, t: float, hdt: float, last: bool,
     c: Any, grains: GrainArrays, walls: WallArrays, pairs: PairArrays, candidates: CandidateArrays,
     work: Workspace, ended: Any, account: Any, stats: Any,
@@ -97,8 +97,8 @@ def block_forces(
         if m == 0:
             break
         lanes = gather(
-            variant.rotation, variant.exact, m, selected, n_solid, c, mass, inertia, x, v, w, points, normals,
-            i_of, j_of, touching, eta, rows, batch,
+            variant.rotation, variant.exact, short, m, selected, n_solid, c, mass, inertia, x, v, w, points,
+            normals, i_of, j_of, touching, eta, rows, batch,
         )  # fmt: skip
         if water is not None and choice.rebound:
             immersed_dashpots(exact, choice, m, selected, c, grains, candidates, batch)
@@ -115,7 +115,7 @@ def block_forces(
             )
         if exact is not None:
             keep_states(m, selected, touching, batch)
-        if scatter(exact, m, selected, i_of, to, touching, rows, batch, f):
+        if scatter(exact, short, m, selected, i_of, to, touching, rows, batch, f):
             track_overlap(m, selected, n, step, c, grains, candidates, batch, stats)
         waiting -= m
         for l in range(waiting):
@@ -166,12 +166,12 @@ def spring_energy(b: int, c: Any, candidates: CandidateArrays) -> tuple[float, f
     count = 0
     for k in range(candidates.first[b], candidates.first[b] + candidates.count[b]):
         if candidates.touching[k]:
-            e_n = rows[k, M.F_N] - rows[k, M.DASH_N]
+            e_n, s_x, s_y, s_z = springs_of_row(k, rows)
             if k_n > 0.0:
                 normal += 0.5 * e_n * e_n / k_n
             if k_s > 0.0:
-                for a in range(3):
-                    tangential += 0.5 * rows[k, M.SPRING_S + a] ** 2 / k_s
+                for force in (s_x, s_y, s_z):
+                    tangential += 0.5 * force**2 / k_s
             count += 1
     return normal, tangential, count
 
@@ -185,6 +185,7 @@ def make_run(variant: KernelVariant) -> Any:
     flat: Present = 1 if variant.plane_case else None
     water: Present = 1 if variant.water else None
     exact: Present = 1 if variant.exact else None
+    short: Present = 1 if has_short_rows(variant) else None
     optional: Present = 1 if variant.rolling or variant.events or variant.film else None
 
     @kernel(nogil=True, fastmath=FAST)
@@ -263,9 +264,9 @@ def make_run(variant: KernelVariant) -> Any:
                 for b in range(b_0, b_1):
                     if not after:
                         block_forces(
-                            variant, flat, water, optional, exact, choice, b, block_start[b + 1], n, n_solid,
-                            step, t, hdt, last, c, grains, walls, pairs, candidates, work, ended[b], terms[b],
-                            stats[b],
+                            variant, flat, water, optional, exact, short, choice, b, block_start[b + 1], n,
+                            n_solid, step, t, hdt, last, c, grains, walls, pairs, candidates, work, ended[b],
+                            terms[b], stats[b],
                         )  # fmt: skip
                     q = b if after else b - span
                     soon = b_0 + span <= q < b_1 - span

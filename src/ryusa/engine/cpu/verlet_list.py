@@ -9,6 +9,7 @@ from ryusa.engine.cpu import batch_layout as B
 from ryusa.engine.cpu.arrays import CandidateArrays, GrainArrays, PairArrays, WallArrays
 from ryusa.engine.cpu.block_exchange import number_crossing_pairs
 from ryusa.engine.cpu.cell_list import bounds_of, build_list, grid_of, sort_by_cell
+from ryusa.engine.cpu.contact_rows import SHORT, has_short_rows
 from ryusa.engine.cpu.prune import copy_rows_in, copy_rows_out, count_touching
 from ryusa.engine.cpu.reorder import like, move_grains, wrap_grains
 from ryusa.engine.shared.contact_memory import ContactMemory
@@ -54,7 +55,8 @@ class BlockLayout(Layout):
         first = np.concatenate([[0], np.cumsum(pairs)])
         total = int(first[-1])
         i, j, target, index = (np.zeros(total, np.uint32) for _ in range(4))
-        touching, rows = np.zeros(total, np.uint8), aligned(total, self.variant.row_width)
+        width = len(SHORT) if has_short_rows(self.variant) else self.variant.row_width
+        touching, rows = np.zeros(total, np.uint8), aligned(total, width)
         eta = np.zeros((total if self.many_dashpots else 1, self.variant.springs))
         return CandidateArrays(
             first, np.zeros(len(pairs), np.int64), i, j, target, index, touching, eta, rows
