@@ -1,3 +1,4 @@
+import io
 import os
 import subprocess
 import sys
@@ -12,8 +13,8 @@ import pytest
 from ryusa.errors import ResultsError
 from ryusa.model import State
 from ryusa.results import Results, schema
+from ryusa.running import disk, vtkhdf
 from ryusa.running import recorder as recorder_module
-from ryusa.running import vtkhdf
 from ryusa.running.record_buffer import bytes_per_frame
 from ryusa.running.recorder import Recorder, buffer_limit, flush_after
 
@@ -294,8 +295,6 @@ def test_parts_stay_few_however_long_a_run_takes() -> None:
 def test_a_full_disk_is_one_clear_error_and_spares_what_is_there(
     recorder: Recorder, tally: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from ryusa.running import disk
-
     recorder.frame(moment(0), tally())
     recorder.flush()
     recorder.frame(moment(1), tally())
@@ -310,3 +309,36 @@ def test_a_full_disk_is_one_clear_error_and_spares_what_is_there(
     monkeypatch.undo()
     recorder.flush()
     assert len(Results.open(tmp_path).frames) == 2
+
+
+def test_large_deliveries_of_contacts_are_written_as_they_came(
+    recorder: Recorder, tally: Any, event: Any, tmp_path: Path
+) -> None:
+    one = event(0, 4, 0.0, 0.1)
+    pieces = [np.repeat(one, n) for n in (3000, 2000, 1)]
+    for k, piece in enumerate(pieces):
+        piece["t_part"] = k + np.arange(len(piece)) / len(piece)
+        recorder.contacts(piece)
+    recorder.frame(moment(0), tally())
+    recorder.flush()
+    with h5py.File(tmp_path / "parts" / "part-000000.h5") as file:
+        assert np.array_equal(file["contacts"][:], np.concatenate(pieces))
+
+
+def test_a_disk_that_fills_up_within_a_part_is_an_error_after_hdf5_has_closed_it() -> None:
+    class Narrow(io.BytesIO):
+        def write(self, data: Any) -> int:
+            if self.tell() + len(data) > 100_000:
+                raise OSError(28, "No space left on device")
+            return super().write(data)
+
+    def fill(file: h5py.File) -> None:
+        for name in "abc":
+            file.create_dataset(name, data=np.arange(10_000.0))
+
+    with pytest.raises(OSError, match="No space left"):
+        disk.hdf5_file(fill)(Narrow())
+    wide = io.BytesIO()
+    disk.hdf5_file(fill)(wide)
+    with h5py.File(wide) as file:
+        assert all(np.array_equal(file[name][:], np.arange(10_000.0)) for name in "abc")

@@ -19,6 +19,7 @@ T = TypeVar("T")
 _RETRY_EVERY = 1.0  # s between two attempts to write to a full disk
 _DISK_TIMEOUT = 86_400.0  # s
 _AT_ONCE = 1 << 20  # bytes
+Content = bytes | Callable[[BinaryIO], None]  # of a file; large ones are written piece by piece
 _images = itertools.count()
 _FULL = {errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC)}
 
@@ -32,7 +33,26 @@ def hdf5_image(fill: Callable[[h5py.File], None]) -> bytes:
         return file.id.get_file_image()
 
 
-def write_atomically(path: Path, content: bytes) -> None:
+def hdf5_file(fill: Callable[[h5py.File], None], header: int = 0) -> Callable[[BinaryIO], None]:
+    """Content of a large HDF5 file, for `write_temporary`: the arrays go to the disk one by one.
+
+    Parameters
+    ----------
+    fill : creates the datasets.
+    header : bytes left free before the HDF5 file.
+    """
+
+    def write(file: BinaryIO) -> None:
+        behind = _BehindHeader(file, header)
+        with h5py.File(behind, "w") as image:
+            fill(image)
+        if behind.error is not None:
+            raise behind.error
+
+    return write
+
+
+def write_atomically(path: Path, content: Content) -> None:
     """Write to a temporary file and rename it, so that `path` is old or new but never partial.
 
     This also holds after a power failure.
@@ -45,7 +65,7 @@ def write_atomically(path: Path, content: bytes) -> None:
     sync(path.parent)
 
 
-def write_temporary(path: Path, content: bytes) -> Path:
+def write_temporary(path: Path, content: Content) -> Path:
     """Write the future content of `path` to a temporary file beside it, and sync it to the disk.
 
     Raises
@@ -54,8 +74,11 @@ def write_temporary(path: Path, content: bytes) -> Path:
     """
     temporary = path.with_name(f".{path.name}.new")
     try:
-        with temporary.open("wb") as file:
-            file.write(content)
+        with temporary.open("w+b") as file:
+            if isinstance(content, bytes):
+                file.write(content)
+            else:
+                content(file)
         sync(temporary)
     except OSError:
         temporary.unlink(missing_ok=True)
@@ -113,8 +136,6 @@ def write_hdf5_behind_header(
 ) -> tuple[Path, int]:
     """Write an HDF5 file behind a header to a temporary file beside `path`, and sync it to the disk.
 
-    The arrays go to the disk one by one: the file is never whole in memory.
-
     Parameters
     ----------
     fill : creates the datasets.
@@ -129,26 +150,20 @@ def write_hdf5_behind_header(
     ------
     OSError : the temporary file is removed.
     """
-    temporary = path.with_name(f".{path.name}.new")
-    try:
-        with temporary.open("w+b") as file:
-            behind = _BehindHeader(file, size)
-            with h5py.File(behind, "w") as image:
-                fill(image)
-            if behind.error is not None:
-                raise behind.error
-            file.seek(size)
-            digest = hashlib.sha256()
-            while piece := file.read(_AT_ONCE):
-                digest.update(piece)
-            length = file.tell()
-            file.seek(0)
-            file.write(header(length - size, digest.hexdigest()))
-        sync(temporary)
-    except OSError:
-        temporary.unlink(missing_ok=True)
-        raise
-    return temporary, length
+    write, length = hdf5_file(fill, size), 0
+
+    def content(file: BinaryIO) -> None:
+        nonlocal length
+        write(file)
+        file.seek(size)
+        digest = hashlib.sha256()
+        while piece := file.read(_AT_ONCE):
+            digest.update(piece)
+        length = file.tell()
+        file.seek(0)
+        file.write(header(length - size, digest.hexdigest()))
+
+    return write_temporary(path, content), length
 
 
 def overwrite(path: Path, content: bytes) -> None:

@@ -1,8 +1,9 @@
 """What a run has recorded and not yet written: frames, contacts that ended, forces, water."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
+import h5py
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,6 +14,9 @@ from ryusa.running.contact_forces import contact_forces
 from ryusa.water.coupling import Coupling
 
 _FIRST_ROOM = 16  # frames
+_MANY_CONTACTS = (
+    1000  # in a delivery, from which it is written as it is; a call of HDF5 takes as long as to copy these
+)
 
 
 def bytes_per_frame(n_grain: int) -> int:
@@ -72,13 +76,28 @@ class RecordBuffer:
 
     def rows(self) -> dict[str, NDArray[Any]]:
         """Content by dataset of a part."""
+        return self._rows(self._contacts)
+
+    def _rows(self, contacts: Sequence[NDArray[np.void]]) -> dict[str, NDArray[Any]]:
         rows: dict[str, NDArray[Any]] = {name: rows[: self.n_frame] for name, rows in self._frames.items()}
         rows["tally"] = np.array(self._tally, dtype=schema.TALLY)
-        rows["contacts"] = joined(self._contacts)
+        rows["contacts"] = joined(contacts)
         if self._forces is not None:
             rows[schema.N_FORCE] = np.array([len(one) for one in self._forces], dtype=np.int64)
             rows[schema.FORCES] = np.concatenate([np.zeros(0, dtype=schema.FORCE), *self._forces])
         return rows | {f"{schema.WATER}/{name}": np.array(one) for name, one in self._water.items()}
+
+    def write(self, file: h5py.File) -> None:
+        """Write the datasets of a part; many contacts as they were delivered, without a copy."""
+        in_pieces = self.n_contact > _MANY_CONTACTS * len(self._contacts)
+        for name, rows in self._rows(() if in_pieces else self._contacts).items():
+            if name != "contacts" or not in_pieces:
+                file.create_dataset(name, data=rows)
+        if in_pieces:
+            contacts, begin = file.create_dataset("contacts", (self.n_contact,), EVENT), 0
+            for piece in self._contacts:
+                contacts[begin : begin + len(piece)] = piece
+                begin += len(piece)
 
     def extend(self, rows: Mapping[str, NDArray[Any]]) -> None:
         """Add the content of another buffer, as its `rows` give it."""

@@ -23,7 +23,7 @@ from ryusa.model import Scene, State, Tally
 from ryusa.results import schema
 from ryusa.results.scene_file import write_scene
 from ryusa.running.checkpoint import CheckpointBlock
-from ryusa.running.disk import disk_errors, free_bytes
+from ryusa.running.disk import disk_errors, free_bytes, hdf5_file, write_atomically
 from ryusa.running.folder import write_json
 from ryusa.running.record_buffer import RecordBuffer
 from ryusa.running.vtkhdf import PartSize, write_bed, write_hdf5, write_index, write_points
@@ -275,15 +275,14 @@ class Recorder:
             file.attrs[schema.END_STEP], file.attrs[schema.TAIL] = end, int(tail)
             offsets = np.arange(first, first + part.n_frame, dtype=np.int64) * n
             file.create_dataset("point_offset", data=offsets)
-            for name, rows in content.rows().items():
-                file.create_dataset(name, data=rows)
+            content.write(file)
 
         with disk_errors(self.folder):
             if free_bytes(self.folder) < content.nbytes + _RESERVE and not tail:
                 raise DiskFull(
                     f"{self.folder}: the disk is almost full. Data written before remains readable"
                 )
-            write_hdf5(self.folder / schema.PARTS / part.name, fill)
+            write_atomically(self.folder / schema.PARTS / part.name, hdf5_file(fill))
         self._parts.append(part)
         self._index_is_old = True
 

@@ -40,7 +40,7 @@ class PartSize:
 
 
 def write_hdf5(path: Path, fill: Callable[[h5py.File], None]) -> None:
-    """Write an HDF5 file atomically."""
+    """Write a small HDF5 file atomically."""
     write_atomically(path, hdf5_image(fill))
 
 
