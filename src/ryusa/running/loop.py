@@ -2,8 +2,8 @@
 
 import math
 import time
-from collections.abc import Callable
-from contextlib import nullcontext, suppress
+from collections.abc import Callable, Generator
+from contextlib import contextmanager, nullcontext, suppress
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.engine.protocol import Engine, Flags
+from ryusa.engine.shared.kernel import collecting_rarely
 from ryusa.errors import CheckpointError, DiskFull, RyusaError
 from ryusa.model import Scene, State
 from ryusa.results import schema
@@ -144,7 +145,7 @@ class Loop:
         self._step, self._t_zero = state.step, state.t - state.step * self.scene.dt
         self._first = state.step
         self._rest, self._saltations = RestDetector(self.stop), SaltationCounter(self.scene, self.stop)
-        with self.progress.explain_if_slow(_COMPILING):
+        with self._compiling():
             self.engine.load(self.scene, state)
         self._loaded = True
         self._start_water(state)
@@ -169,7 +170,7 @@ class Loop:
         self._begun -= saved.wall
         self._n_changed = saved.changed
         try:
-            with self.progress.explain_if_slow(_COMPILING):
+            with self._compiling():
                 self.engine.load(self.scene, state)
             self._start_water(state)
             self._loaded = True
@@ -254,7 +255,7 @@ class Loop:
 
     def _advance(self, n_steps: int) -> None:
         begun = time.monotonic()
-        with self.progress.explain_if_slow(_COMPILING) if self._calls == 0 else nullcontext():
+        with self._compiling() if self._calls == 0 else nullcontext():
             flags = self._steps(n_steps)
         if flags:
             self._step = self.engine.grains().step
@@ -266,6 +267,11 @@ class Loop:
         else:
             self._speed += 0.3 * (speed - self._speed)
         self._calls += 1
+
+    @contextmanager
+    def _compiling(self) -> Generator[None]:
+        with self.progress.explain_if_slow(_COMPILING), collecting_rarely():
+            yield
 
     def _steps(self, n_steps: int) -> Flags:
         """Step the engine, with an exchange between water and grains at each coupling interval."""
