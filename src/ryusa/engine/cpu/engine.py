@@ -17,7 +17,13 @@ from ryusa.engine.cpu.verlet_list import BlockLayout, collect_memory
 from ryusa.engine.protocol import Flags
 from ryusa.engine.shared import block_statistics as S
 from ryusa.engine.shared import parameters as P
-from ryusa.engine.shared.contact_memory import ContactMemory, contacts_of, memory_of, remaining_contacts
+from ryusa.engine.shared.contact_memory import (
+    ContactMemory,
+    contacts_of,
+    contacts_of_grains,
+    memory_of,
+    remaining_contacts,
+)
 from ryusa.engine.shared.contact_records import closed_records, sorted_events
 from ryusa.engine.shared.energy_account import (
     N_ACCOUNT,
@@ -110,8 +116,7 @@ class CpuEngine:
         memory = memory_of(contacts, self._variant, self._choice, self._parameters, self._layout)
         memory = shortened(memory) if has_short_rows(self._variant) else memory
         by_id = self._layout.grains_by_id(state)
-        for touching in (contacts.i, contacts.j[contacts.j < n]):
-            np.add.at(by_id.n_touching, touching, 1)
+        by_id.n_touching[:] = contacts_of_grains(memory, n)
         resumed = own is not None and not changed and not len(dropped)
         self._travel = 0.0
         if own is not None and resumed:

@@ -23,6 +23,7 @@ from ryusa.engine.shared.contact_instants import (
     FREE,
     HELD,
     ON_MAP,
+    PARTED,
     kind_of_step,
     may_end,
 )
@@ -69,9 +70,10 @@ def _make_kinematics(plane: bool) -> Any:
             touching, held = overlap > 0.0, kind == ON_MAP
             batch[B.F_N + l] = batch[B.RAW + l] = f_n if held else 0.0
             batch[B.E_N + l] = k_n * overlap if held else 0.0
-            now = ENDED if touching or kind == CORRECTS else APART
+            apart = PARTED if kind == CORRECTS else APART
+            now = ENDED if touching else apart
             batch[B.STATE + l] = HELD if held else now
-            until = -math.inf if state == ENDED or kind == CORRECTS else 0.0
+            until = -math.inf if state >= ENDED or kind == CORRECTS else 0.0
             batch[B.UNTIL + l] = math.inf if held else until
             batch[B.KIND + l] = kind
             batch[B.TOUCHING + l] = 1.0 if touching else 0.0

@@ -18,7 +18,7 @@ from ryusa.engine.cuda.arrays import (
 from ryusa.engine.cuda.availability import simulated
 from ryusa.engine.cuda.device import cuda
 from ryusa.engine.cuda.step_totals import NO_GRAIN
-from ryusa.engine.shared.contact_memory import ContactMemory, memory_of
+from ryusa.engine.shared.contact_memory import ContactMemory, contacts_of_grains, memory_of
 from ryusa.engine.shared.layout import Layout
 from ryusa.engine.shared.variant import KernelVariant, LawChoice
 from ryusa.model import Scene, State
@@ -81,9 +81,7 @@ class DeviceState:
             where = np.vstack([x[: self.n, :3], still])
             extent = np.stack([where.min(axis=0, initial=np.inf), where.max(axis=0, initial=-np.inf)])
         self.extent = extent
-        n_touching = np.zeros((2, self.n), np.int32)
-        for touching in (memory.i, memory.j[memory.j < self.n]):
-            np.add.at(n_touching[0], touching, 1)
+        n_touching = np.stack([contacts_of_grains(memory, self.n)] * 2)
         fluid = (
             FluidAtGrains(by_id.fluid, by_id.impulse)
             if variant.column

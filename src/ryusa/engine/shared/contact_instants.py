@@ -29,6 +29,7 @@ HELD = 1  # on the map
 BEGAN = 2  # touched within the last step: the closing speed is still to be corrected
 ENDING = 3  # the force ended within the last step: the closing speed is still to be corrected
 ENDED = 4  # without force, until the overlap ends or the force comes back
+PARTED = 5  # without overlap, in the one step after its end in which the closing speed was corrected
 
 # What a step does with a pair
 FREE = 0.0  # no force
@@ -52,7 +53,7 @@ def kind_of_step(
     state: float, overlap: float, closing: float, raw: float, fades: bool, tension: bool, dt: float
 ) -> float:
     """What a step does with a pair; `raw` is the force of the map [N], `fades` whether it `may_end`."""
-    apart, ended = state == APART, state == ENDED
+    apart, ended = state == APART, state >= ENDED
     free = overlap <= 0.0 or ((apart or ended) and raw <= 0.0 and not tension)
     begins = apart and overlap <= _LATE * closing * dt
     ends = state == BEGAN or (state == HELD and fades)
@@ -193,9 +194,10 @@ def instant_step(
     raw = e_n + eta_d * closing
     kind = kind_of_step(state, overlap, closing, raw, True, tension, c[P.DT])
     if kind == CORRECTS:
-        return ENDED, 0.0, -m * rest / c[P.DT], 0.0, 0.0, True, none, none, False, -math.inf
+        now = ENDED if overlap > 0.0 else PARTED
+        return now, 0.0, -m * rest / c[P.DT], 0.0, 0.0, True, none, none, False, -math.inf
     if kind == FREE:
-        now, until = ENDED if overlap > 0.0 else APART, -math.inf if state == ENDED else 0.0
+        now, until = ENDED if overlap > 0.0 else APART, -math.inf if state >= ENDED else 0.0
         return now, 0.0, 0.0, 0.0, 0.0, True, none, none, False, until
     if kind == BEGINS:
         f_n, e_n, e, b, slid = begin_contact(overlap, closing, m, k_d, eta_d, m_t, k_sd, eta_sd, s, rules, c)

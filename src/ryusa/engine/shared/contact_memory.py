@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ryusa.engine.shared import memory_rows as M
-from ryusa.engine.shared.contact_instants import ENDING
+from ryusa.engine.shared.contact_instants import ENDING, PARTED
 from ryusa.engine.shared.dashpots import springs_of
 from ryusa.engine.shared.layout import Layout
 from ryusa.engine.shared.variant import KernelVariant, LawChoice
@@ -85,6 +85,13 @@ def memory_of(
     ending = states == ENDING
     rows[ending, M.REST_OF_CLOSING] = contacts.rest_of_closing[ending]
     return ContactMemory(contacts.i, contacts.j, states, eta, rows)
+
+
+def contacts_of_grains(memory: ContactMemory, n: int) -> np.ndarray:
+    """Partners that each of n free grains touched in the last step, int32."""
+    touches = memory.states != PARTED
+    i, j = memory.i[touches], memory.j[touches]
+    return np.bincount(np.concatenate([i, j[j < n]]), minlength=n).astype(np.int32)
 
 
 def remaining_contacts(scene: Scene, contacts: Contacts) -> tuple[Contacts, np.ndarray]:
