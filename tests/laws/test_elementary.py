@@ -1,7 +1,9 @@
 """exp, log and power from polynomials: errors against 80-bit numbers, limits, and vector instructions."""
 
+import ast
 import math
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -106,3 +108,11 @@ def test_a_loop_becomes_vector_instructions_without_a_call(name):
     (code,) = loop.inspect_llvm().values()
     assert re.search(r"= fmul contract (nsz )?<\d+ x double>|= fmul (nsz )?contract <\d+ x double>", code)
     assert not re.search(r"call .*@\w*(exp|log|pow|tanh)\w*\(", code.replace("llvm.", ""))
+
+
+@pytest.mark.parametrize("module", ["drag", "hindrance", "immersed", "lift", "torque", "water"])
+def test_force_laws_take_exp_log_and_powers_from_here(module):
+    text = Path(elementary.__file__).with_name(f"{module}.py").read_text(encoding="utf-8")
+    called = {ast.unparse(node.func) for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Call)}
+    assert not called & {f"math.{name}" for name in ("exp", "expm1", "log", "log10", "log1p", "pow", "tanh")}
+    assert not any(isinstance(node, ast.Pow) for node in ast.walk(ast.parse(text)))

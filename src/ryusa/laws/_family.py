@@ -127,6 +127,40 @@ def dispatch(
     return chain
 
 
+def dispatch_lanes(
+    family: type[Family],
+    arguments: tuple[str, ...],
+    read: Any,
+    write: Any,
+    lanes: int,
+    *,
+    answers: int = 1,
+    unasked: tuple[Family, ...] = (),
+) -> Any:
+    """Build the compiled loop of the law with a given number over lanes: f(number, m, batch, shared).
+
+    As `dispatch`, with the choice outside the loop, which becomes vector instructions.
+
+    Parameters
+    ----------
+    family, arguments, answers, unasked : as in `dispatch`.
+    read : compiled; read(lane, batch, shared) returns all arguments, in order.
+    write : compiled; write(lane, batch, answer) keeps what the law answers.
+    lanes : the most there are; the loop is over the first m.
+    """
+    names = f"{family.__name__}.{'_'.join(arguments)}"
+    chain = _no_lanes(_nothing_known(answers, False), read, write, lanes, names)
+    for choice in reversed(family):
+        if choice in unasked:
+            continue
+        places = tuple(map(arguments.index, _asked_by(choice, arguments)))
+        chain = _lanes(
+            int(choice), choice.function, _picker(places, False), read, write, lanes, chain,
+            f"{choice.name}.{names}",
+        )  # fmt: skip
+    return chain
+
+
 def marked(family: type[Family], mark: str) -> Any:
     """Build the compiled function that returns whether the choice with a given number has a mark: f(number).
 
@@ -260,6 +294,31 @@ def _link(number: int, law: Any, pick: Any, rest: Any, fastmath: Any, name: str)
         return rest(chosen, *given)
 
     return link
+
+
+def _lanes(number: int, law: Any, pick: Any, read: Any, write: Any, lanes: int, rest: Any, name: str) -> Any:
+    """One branch of a dispatch over lanes."""
+
+    @_uncached(False, name)
+    def loop(chosen: Any, m: Any, batch: Any, shared: Any) -> None:
+        if chosen == number:
+            for lane in range(min(m, lanes)):  # never more: the compiler has to know
+                write(lane, batch, law(*pick(read(lane, batch, shared))))
+        else:
+            rest(chosen, m, batch, shared)
+
+    return loop
+
+
+def _no_lanes(unknown: Any, read: Any, write: Any, lanes: int, name: str) -> Any:
+    """Last branch of a dispatch over lanes: a number outside the family."""
+
+    @_uncached(False, name)
+    def nothing(chosen: Any, m: Any, batch: Any, shared: Any) -> None:
+        for lane in range(min(m, lanes)):
+            write(lane, batch, unknown(chosen))
+
+    return nothing
 
 
 def _nothing_known(answers: int, fastmath: Any) -> Any:

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 from ryusa.laws._family import dispatch, marked, rules
 from ryusa.laws._law import EDITION, compiled
-from ryusa.laws.drag import drag_factor, reynolds
+from ryusa.laws.drag import drag_among_neighbours, drag_factor, reynolds
 from ryusa.laws.families import (
     Arm,
     BedKind,
@@ -109,7 +109,7 @@ def hindered(
     phi : concentration around the grain [-], below 1.
     d, nu, rho_w, a_2, c_d : as in `drag_of`.
     """
-    if slip == 0.0:
-        return 0.0
     speed, factor = hindrance(among, slip, 1.0 - phi, exponent, d, nu, stress)
-    return factor * drag_of(law, speed, d, nu, rho_w, a_2, c_d) * speed / slip
+    return drag_among_neighbours(
+        slip, speed, factor, drag_coefficient(law, reynolds(speed, d, nu), c_d), rho_w, a_2, d
+    )

@@ -109,40 +109,19 @@ def impulse_from_fluid(
 
 
 @step_law
-def work_of_force(
-    before: float, after: float, f_x: float, f_y: float, f_z: float, v_x: float, v_y: float, v_z: float,
-    u_x: float, u_y: float, u_z: float,
-) -> tuple[float, float]:  # fmt: skip
-    """Work of a force over the half interval before x(n), and over the one after it [J].
+def work_of_force(before: float, after: float, f: float, v: float, v_new: float) -> tuple[float, float]:
+    """Work of one component of a force over the half interval before x(n), and over the one after it [J].
 
     Parameters
     ----------
     before, after : durations of the two half intervals [s]; the first is 0 in the first step of a run.
-    f_x, f_y, f_z : force [N].
-    v_x, v_y, v_z, u_x, u_y, u_z : velocity before and after the step [m/s].
+    f : force [N].
+    v, v_new : velocity before and after the step [m/s].
 
-    >>> work_of_force(0.5, 0.25, 1.0, 2.0, 3.0, 1.0, 1.0, 1.0, 2.0, 0.0, 0.0)
-    (3.0, 0.5)
+    >>> work_of_force(0.5, 0.25, 3.0, 2.0, 4.0)
+    (3.0, 3.0)
     """
-    return before * (f_x * v_x + f_y * v_y + f_z * v_z), after * (f_x * u_x + f_y * u_y + f_z * u_z)
-
-
-@step_law
-def work_of_force_in_plane(
-    before: float, after: float, f_x: float, f_z: float, v_x: float, v_z: float, u_x: float, u_z: float
-) -> tuple[float, float]:
-    """Work of a force in the x-z plane [J], as in `work_of_force`.
-
-    Parameters
-    ----------
-    before, after : durations of the two half intervals [s].
-    f_x, f_z : force [N].
-    v_x, v_z, u_x, u_z : velocity before and after the step [m/s].
-
-    >>> work_of_force_in_plane(0.5, 0.25, 1.0, 3.0, 1.0, 1.0, 2.0, 0.0)
-    (2.0, 0.5)
-    """
-    return before * (f_x * v_x + f_z * v_z), after * (f_x * u_x + f_z * u_z)
+    return before * (f * v), after * (f * v_new)
 
 
 @step_law

@@ -23,9 +23,8 @@ proportional to the slip and the factor independent of it: evaluated for a slip 
 at the same eps.
 """
 
-import math
-
-from ryusa.laws._law import law
+from ryusa.laws import elementary
+from ryusa.laws._law import law, step_law
 from ryusa.laws.drag import reynolds
 
 
@@ -43,7 +42,7 @@ def exponent_rowe(re: float) -> float:
     >>> exponent_rowe(0.0), round(exponent_rowe(16.0), 9)  # 16**0.75 = 8: 7.98/2.4
     (4.7, 3.325)
     """
-    grown = re**0.75
+    grown = elementary.power(re, 0.75)
     return (4.7 + 0.41 * grown) / (1.0 + 0.175 * grown)
 
 
@@ -61,7 +60,7 @@ def exponent_garside(re: float) -> float:
     >>> exponent_garside(0.0), round(exponent_garside(10.0 ** (1.0 / 0.9)), 9)  # Re**0.9 = 10: halfway
     (5.1, 3.9)
     """
-    grown = 0.1 * re**0.9
+    grown = 0.1 * elementary.power(re, 0.9)
     return (5.1 + 2.7 * grown) / (1.0 + grown)
 
 
@@ -92,7 +91,7 @@ def exponent_settling(a: float, p: float, q: float, stress: bool) -> float:
     return 1.0 - p + (q + model_a) / a
 
 
-@law
+@step_law
 def unhindered(slip: float) -> tuple[float, float]:
     """No hindrance: the slip itself [m/s] and the factor 1 [-].
 
@@ -104,7 +103,7 @@ def unhindered(slip: float) -> tuple[float, float]:
     return slip, 1.0
 
 
-@law
+@step_law
 def richardson_zaki(slip: float, eps: float, exponent: float, stress: bool) -> tuple[float, float]:
     """Hindered drag that makes a suspension settle with eps**n exactly, whatever the drag law.
 
@@ -130,10 +129,10 @@ def richardson_zaki(slip: float, eps: float, exponent: float, stress: bool) -> t
     >>> richardson_zaki(0.1, 0.5, 3.0, False), richardson_zaki(0.1, 0.5, 3.0, True)
     ((0.4, 1.0), (0.4, 0.5))
     """
-    return slip * eps ** (1.0 - exponent), eps if stress else 1.0
+    return slip * elementary.power(eps, 1.0 - exponent), eps if stress else 1.0
 
 
-@law
+@step_law
 def wen_yu(slip: float, eps: float, stress: bool) -> tuple[float, float]:
     """Hindered drag after Wen and Yu.
 
@@ -160,10 +159,10 @@ def wen_yu(slip: float, eps: float, stress: bool) -> tuple[float, float]:
     >>> speed, round(factor, 4)  # 2**3.65
     (0.05, 12.5533)
     """
-    return eps * slip, eps ** (-3.65 if stress else -4.65)
+    return eps * slip, elementary.power(eps, -3.65 if stress else -4.65)
 
 
-@law
+@step_law
 def stokes_multiple(re: float) -> float:
     """Drag of a smooth sphere over its Stokes drag [-], C_D Re/24 after Schiller and Naumann.
 
@@ -178,10 +177,10 @@ def stokes_multiple(re: float) -> float:
     """
     if re > 1000.0:
         return 0.44 * re / 24.0
-    return 1.0 + 0.15 * re**0.687
+    return 1.0 + 0.15 * elementary.power(re, 0.687)
 
 
-@law
+@step_law
 def gidaspow(slip: float, eps: float, d: float, nu: float, stress: bool) -> tuple[float, float]:
     """Hindered drag after Gidaspow: Wen and Yu for eps >= 0.8, Ergun's packed bed below.
 
@@ -220,7 +219,7 @@ def gidaspow(slip: float, eps: float, d: float, nu: float, stress: bool) -> tupl
     return slip, ergun if stress else ergun / eps
 
 
-@law
+@step_law
 def chi_di_felice(re: float) -> float:
     """Exponent chi of the void fraction [-] after Di Felice; Re is taken with eps slip [-].
 
@@ -236,11 +235,11 @@ def chi_di_felice(re: float) -> float:
     """
     if re <= 0.0:
         return 3.7
-    away = 1.5 - math.log10(re)
-    return 3.7 - 0.65 * math.exp(-0.5 * away * away)
+    away = 1.5 - elementary.log10(re)
+    return 3.7 - 0.65 * elementary.exp(-0.5 * away * away)
 
 
-@law
+@step_law
 def di_felice(slip: float, eps: float, d: float, nu: float, stress: bool) -> tuple[float, float]:
     """Hindered drag after Di Felice.
 
@@ -272,10 +271,10 @@ def di_felice(slip: float, eps: float, d: float, nu: float, stress: bool) -> tup
     """
     speed = eps * slip
     chi = chi_di_felice(reynolds(speed, d, nu))
-    return speed, eps ** (-chi if stress else -chi - 1.0)
+    return speed, elementary.power(eps, -chi if stress else -chi - 1.0)
 
 
-@law
+@step_law
 def power(slip: float, eps: float, exponent: float) -> tuple[float, float]:
     """Hindered drag, eps**-m times that of an isolated grain at the same slip.
 
@@ -300,4 +299,4 @@ def power(slip: float, eps: float, exponent: float) -> tuple[float, float]:
     >>> power(0.1, 0.5, 3.0)
     (0.1, 8.0)
     """
-    return slip, eps**-exponent
+    return slip, elementary.power(eps, -exponent)

@@ -3,6 +3,7 @@
 import math
 
 from ryusa.laws._law import law
+from ryusa.laws.elementary import exp, log
 
 
 @law
@@ -82,7 +83,7 @@ def restitution_exponential(e_dry: float, st: float, st_c: float) -> float:
     """
     if st <= 0.0:
         return 0.0
-    return e_dry * math.exp(-st_c / st)
+    return e_dry * exp(-st_c / st)
 
 
 @law
@@ -111,7 +112,7 @@ def restitution_davis(e_dry: float, st: float, roughness: float, d: float) -> fl
     """
     if st <= 0.0:
         return 0.0
-    left = 1.0 + math.log(2.0 * roughness / d) / st
+    left = 1.0 + log(2.0 * roughness / d) / st
     return e_dry * min(max(left, 0.0), 1.0)
 
 

@@ -2,11 +2,12 @@
 
 import math
 
-from ryusa.laws._law import law
+from ryusa.laws._law import step_law
 from ryusa.laws.drag import reynolds
+from ryusa.laws.elementary import exp, power, tanh
 
 
-@law
+@step_law
 def lift_wiberg_smith(top: float, bottom: float, c_l: float, rho_w: float, a_2: float, d: float) -> float:
     """Shear lift away from the bed [N] from the speeds of the water at the top and the bottom of a grain.
 
@@ -31,7 +32,7 @@ def lift_wiberg_smith(top: float, bottom: float, c_l: float, rho_w: float, a_2: 
     return 0.5 * rho_w * c_l * a_2 * d * d * (top - bottom) * (top + bottom)
 
 
-@law
+@step_law
 def shear_lift_wiberg_smith(
     top: float, bottom: float, c_l: float, rho_w: float, a_2: float, d: float
 ) -> tuple[float, float]:
@@ -54,7 +55,7 @@ def shear_lift_wiberg_smith(
     return lift_wiberg_smith(top, bottom, c_l, rho_w, a_2, d), 0.0
 
 
-@law
+@step_law
 def saffman_mei(re: float, beta: float) -> float:
     """Ratio of the shear lift to Saffman's [-] after Mei.
 
@@ -77,10 +78,10 @@ def saffman_mei(re: float, beta: float) -> float:
     if re > 40.0:
         return 0.0524 * math.sqrt(beta * re)
     alpha = 0.3314 * math.sqrt(beta)
-    return (1.0 - alpha) * math.exp(-0.1 * re) + alpha
+    return (1.0 - alpha) * exp(-0.1 * re) + alpha
 
 
-@law
+@step_law
 def lift_saffman_mei(slip: float, shear: float, d: float, nu: float, rho_w: float) -> float:
     """Factor k [N s/m] of the shear lift after Saffman and Mei.
 
@@ -111,7 +112,7 @@ def lift_saffman_mei(slip: float, shear: float, d: float, nu: float, rho_w: floa
     return k * saffman_mei(reynolds(slip, d, nu), 0.5 * rate * d / slip)
 
 
-@law
+@step_law
 def shear_lift_saffman_mei(
     slip: float, shear: float, d: float, nu: float, rho_w: float
 ) -> tuple[float, float]:
@@ -134,7 +135,7 @@ def shear_lift_saffman_mei(
     return 0.0, lift_saffman_mei(slip, shear, d, nu, rho_w)
 
 
-@law
+@step_law
 def magnus_rubinow_keller(d: float, rho_w: float) -> float:
     """Factor k [kg] of the Magnus force k (Omega x w) on a slowly spinning sphere.
 
@@ -157,7 +158,7 @@ def magnus_rubinow_keller(d: float, rho_w: float) -> float:
     return 0.125 * math.pi * rho_w * d * d * d
 
 
-@law
+@step_law
 def magnus_loth(slip: float, spin: float, d: float, nu: float, rho_w: float) -> float:
     """Factor k [kg] of the Magnus force k (Omega x w), with the inertia of the water after Loth.
 
@@ -183,11 +184,11 @@ def magnus_loth(slip: float, spin: float, d: float, nu: float, rho_w: float) -> 
     k = magnus_rubinow_keller(d, rho_w)
     if slip == 0.0:
         return k
-    bend = 0.675 + 0.15 * (1.0 + math.tanh(0.28 * (spin * d / slip - 2.0)))
-    return k * (1.0 - bend * math.tanh(0.18 * math.sqrt(reynolds(slip, d, nu))))
+    bend = 0.675 + 0.15 * (1.0 + tanh(0.28 * (spin * d / slip - 2.0)))
+    return k * (1.0 - bend * tanh(0.18 * math.sqrt(reynolds(slip, d, nu))))
 
 
-@law
+@step_law
 def magnus_oesterle_dinh(slip: float, spin: float, d: float, nu: float, rho_w: float) -> float:
     """Factor k [kg] of the Magnus force k (Omega x w), with the inertia of the water after Oesterle and Dinh.
 
@@ -217,5 +218,46 @@ def magnus_oesterle_dinh(slip: float, spin: float, d: float, nu: float, rho_w: f
         return k
     re, re_r = reynolds(slip, d, nu), reynolds(spin * d, d, nu)
     lone = re_r / re
-    c_l = 0.45 + (lone - 0.45) * math.exp(-0.05684 * re_r**0.4 * re**0.3)
+    c_l = 0.45 + (lone - 0.45) * exp(-0.05684 * power(re_r, 0.4) * power(re, 0.3))
     return k * c_l / lone
+
+
+@step_law
+def shear_lift_force(normal: float, across: float, u_x: float, u_z: float) -> tuple[float, float]:
+    """Force of a shear lift along x and z [N].
+
+    Parameters
+    ----------
+    normal, across : what a law of shear lift answers [N], [N s/m].
+    u_x, u_z : velocity of the water relative to the grain [m/s].
+
+    Notes
+    -----
+    Source: `normal` along z and across (u x e_y).
+
+    Examples
+    --------
+    >>> shear_lift_force(1.0, 2.0, 3.0, 4.0)
+    (-8.0, 7.0)
+    """
+    return -across * u_z, normal + across * u_x
+
+
+@step_law
+def magnus_force(
+    k: float, o_x: float, o_y: float, o_z: float, u_x: float, u_y: float, u_z: float
+) -> tuple[float, float, float]:
+    """Magnus force [N], k (Omega x u).
+
+    Parameters
+    ----------
+    k : factor of a Magnus law [kg].
+    o_x, o_y, o_z : Omega, half the curl of the velocity of the water minus the spin of the grain [rad/s].
+    u_x, u_y, u_z : velocity of the water relative to the grain [m/s].
+
+    Examples
+    --------
+    >>> magnus_force(2.0, 0.0, 1.0, 0.0, 3.0, 0.0, 4.0)
+    (8.0, 0.0, -6.0)
+    """
+    return k * (o_y * u_z - o_z * u_y), k * (o_z * u_x - o_x * u_z), k * (o_x * u_y - o_y * u_x)

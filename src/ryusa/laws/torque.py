@@ -2,10 +2,10 @@
 
 import math
 
-from ryusa.laws._law import law
+from ryusa.laws._law import law, step_law
 
 
-@law
+@step_law
 def reynolds_spin(spin: float, d: float, nu: float) -> float:
     """Rotational Reynolds number Re_r = 4 R**2 abs(spin)/nu = d**2 abs(spin)/nu [-].
 
@@ -17,7 +17,7 @@ def reynolds_spin(spin: float, d: float, nu: float) -> float:
     return d * d * abs(spin) / nu
 
 
-@law
+@step_law
 def torque_stokes(spin: float, d: float, nu: float, rho_w: float) -> float:
     """Factor k [N m s] of the torque T = -k omega of the water on a slowly spinning sphere.
 
@@ -41,7 +41,7 @@ def torque_stokes(spin: float, d: float, nu: float, rho_w: float) -> float:
     return math.pi * rho_w * nu * d * d * d
 
 
-@law
+@step_law
 def torque_dennis(spin: float, d: float, nu: float, rho_w: float) -> float:
     """Factor k [N m s] of the torque T = -k omega of the water on a spinning sphere, with fluid inertia.
 

@@ -2,10 +2,11 @@
 
 import math
 
-from ryusa.laws._law import law
+from ryusa.laws._law import law, step_law
+from ryusa.laws.elementary import log, log10
 
 
-@law
+@step_law
 def log_law_rough(z: float, u_star: float, k_rough: float) -> float:
     """Water speed at height z over a hydraulically rough bed. Eq. (9).
 
@@ -33,10 +34,10 @@ def log_law_rough(z: float, u_star: float, k_rough: float) -> float:
     """
     if z <= 0.0:
         return 0.0
-    return max(u_star * (8.5 + 5.75 * math.log10(z / k_rough)), 0.0)
+    return max(u_star * (8.5 + 5.75 * log10(z / k_rough)), 0.0)
 
 
-@law
+@step_law
 def log_law_smooth(z: float, u_star: float, nu: float) -> float:
     """Water speed at height z over a hydraulically smooth bed.
 
@@ -67,10 +68,10 @@ def log_law_smooth(z: float, u_star: float, nu: float) -> float:
     z_plus = z * u_star / nu
     if z_plus <= 11.3:
         return u_star * z_plus
-    return u_star * (math.log(z_plus / 11.3) / 0.41 + 11.3)
+    return u_star * (log(z_plus / 11.3) / 0.41 + 11.3)
 
 
-@law
+@step_law
 def uniform(z: float, speed: float) -> float:
     """Water speed of a plug flow [m/s]: `speed` for z > 0 [m], else zero.
 
@@ -84,7 +85,7 @@ def uniform(z: float, speed: float) -> float:
     return speed
 
 
-@law
+@step_law
 def still(z: float) -> float:
     """Water at rest: zero speed [m/s] at every height z [m].
 

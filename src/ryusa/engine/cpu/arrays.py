@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ryusa.engine.cpu import batch_layout as B
-from ryusa.engine.cpu import grain_layout as G
+from ryusa.engine.cpu import fluid_layout as W
 from ryusa.engine.cpu import prune_schedule as K
 from ryusa.engine.shared.layout import aligned
 
@@ -92,7 +92,7 @@ class Workspace(NamedTuple):
     """Workspace of one thread (`workspace_of_thread`)."""
 
     batch: Any  # a batch of touching pairs (batch_layout.py)
-    table: Any  # a grain in the water (grain_layout.py)
+    water: Any  # a batch of grains in water (fluid_layout.py)
     separation: Any  # separation from i to j and sum of radii [m] of candidates, four each, (4 * LANES,)
     velocity: Any  # velocity of j against i [m/s], and 0, of candidates, (4 * LANES,)
     inside: Any  # 1 where a candidate touches, (LANES,)
@@ -103,6 +103,6 @@ class Workspace(NamedTuple):
 def workspace_of_thread() -> Workspace:
     """Room for one thread."""
     return Workspace(
-        aligned(B.SIZE), aligned(G.SIZE), aligned(4 * B.LANES), aligned(4 * B.LANES), aligned(B.LANES),
+        aligned(B.SIZE), aligned(W.SIZE), aligned(4 * B.LANES), aligned(4 * B.LANES), aligned(B.LANES),
         np.zeros(2 * B.LANES, np.uint32), aligned(K.N_SCHEDULE),
     )  # fmt: skip

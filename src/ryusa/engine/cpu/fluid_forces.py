@@ -1,111 +1,271 @@
-"""Forces of the water on the grains of a block, their work, and the impulse that the water owes."""
+"""Forces of the water on a batch of grains: gathered to lanes, computed by vector instructions.
+
+As for pairs (pair_batch.py), every formula is a law, and loops are short: first what the grains need is
+copied to the batch (fluid_layout.py), then each law runs over all lanes.
+"""
+# ruff: noqa: E741  (l is a lane)
 
 from typing import Any
 
-from ryusa.engine.cpu import grain_layout as G
-from ryusa.engine.cpu.arrays import GrainArrays
-from ryusa.engine.cpu.simd.vec4 import fill4
-from ryusa.engine.shared import block_statistics as S
+from ryusa.engine.cpu import fluid_layout as W
+from ryusa.engine.cpu.simd.vec4 import copy4, read4, vec4_of, write4
 from ryusa.engine.shared import parameters as P
-from ryusa.engine.shared.fluid import column_forces, profile_drag, torque_over_spin
+from ryusa.engine.shared.fluid import STRESS, height_in_profile, length
 from ryusa.engine.shared.kernel import FAST, inner
-from ryusa.engine.shared.variant import KernelVariant, LawChoice
-from ryusa.laws.grain_step import (
-    flow_force,
-    impulse_from_fluid,
-    resisted_torque,
-    work_of_force,
-    work_of_force_in_plane,
-)
-from ryusa.model.fluid import A_X, DRAG, EXTRA_X, EXTRA_Z, SHEAR, SUBMERGED
-from ryusa.model.tally import Term
+from ryusa.engine.shared.variant import LawChoice
+from ryusa.laws._family import dispatch_lanes
+from ryusa.laws.drag import drag_among_neighbours, drag_factor, reynolds
+from ryusa.laws.families import Drag, Hindrance, Lift, Magnus, Profile, WaterTorque
+from ryusa.laws.grain_step import flow_force
+from ryusa.laws.lift import magnus_force, shear_lift_force
+from ryusa.model.fluid import N_SAMPLED, SUBMERGED
 
-B_DRAG, B_TORQUE, B_LIFT, B_FLOW = int(Term.DRAG), int(Term.TORQUE), int(Term.LIFT), int(Term.FLOW)
-B_FILM = int(Term.FILM)
+
+@inner()
+def _profile_arguments(l: int, batch: Any, shared: Any) -> Any:
+    u_star, k_rough, nu, speed = shared
+    return batch[W.HEIGHT + l], u_star, k_rough, nu, speed
+
+
+@inner()
+def _to_speed(l: int, batch: Any, u_x: float) -> None:
+    batch[W.PROFILE + l] = u_x
+
+
+@inner()
+def _hindrance_arguments(l: int, batch: Any, shared: Any) -> Any:
+    exponent, nu, stress = shared
+    return batch[W.SPEED + l], 1.0 - batch[W.PHI + l], exponent, batch[W.D + l], nu, stress
+
+
+@inner()
+def _to_hindrance(l: int, batch: Any, answer: Any) -> None:
+    batch[W.ALONE + l], batch[W.FACTOR + l] = answer
+
+
+@inner()
+def _drag_arguments(l: int, batch: Any, shared: Any) -> Any:
+    nu, c_d = shared
+    return reynolds(batch[W.ALONE + l], batch[W.D + l], nu), c_d
+
+
+@inner()
+def _to_drag(l: int, batch: Any, c_d: float) -> None:
+    batch[W.C_D + l] = c_d
+
+
+@inner()
+def _lift_arguments(l: int, batch: Any, shared: Any) -> Any:
+    nu, rho_w, a_2, c_l = shared
+    u_x, shear, d = batch[W.U_X + l], batch[W.SHEAR + l], batch[W.D + l]
+    half = 0.5 * shear * d
+    return u_x + half, u_x - half, batch[W.SPEED + l], shear, d, nu, rho_w, a_2, c_l
+
+
+@inner()
+def _to_lift(l: int, batch: Any, answer: Any) -> None:
+    batch[W.NORMAL + l], batch[W.ACROSS + l] = answer
+
+
+@inner()
+def _magnus_arguments(l: int, batch: Any, shared: Any) -> Any:
+    nu, rho_w = shared
+    return batch[W.SPEED + l], batch[W.WHIRL + l], batch[W.D + l], nu, rho_w
+
+
+@inner()
+def _to_magnus(l: int, batch: Any, k: float) -> None:
+    batch[W.K_M + l] = k
+
+
+@inner()
+def _torque_arguments(l: int, batch: Any, shared: Any) -> Any:
+    nu, rho_w = shared
+    return batch[W.WHIRL + l], batch[W.D + l], nu, rho_w
+
+
+@inner()
+def _to_torque(l: int, batch: Any, k: float) -> None:
+    batch[W.K_T + l] = k
+
+
+_profile_lanes = dispatch_lanes(
+    Profile, ("z", "u_star", "k_rough", "nu", "speed"), _profile_arguments, _to_speed, W.LANES,
+    unasked=(Profile.NONE, Profile.COLUMN),
+)  # fmt: skip
+_hindrance_lanes = dispatch_lanes(
+    Hindrance, ("slip", "eps", "exponent", "d", "nu", "stress"), _hindrance_arguments, _to_hindrance, W.LANES,
+    answers=2,
+)  # fmt: skip
+_drag_lanes = dispatch_lanes(Drag, ("re", "c_d"), _drag_arguments, _to_drag, W.LANES, unasked=(Drag.NONE,))
+_lift_lanes = dispatch_lanes(
+    Lift, ("top", "bottom", "slip", "shear", "d", "nu", "rho_w", "a_2", "c_l"), _lift_arguments, _to_lift,
+    W.LANES, answers=2, unasked=(Lift.NONE,),
+)  # fmt: skip
+_magnus_lanes = dispatch_lanes(
+    Magnus, ("slip", "spin", "d", "nu", "rho_w"), _magnus_arguments, _to_magnus, W.LANES,
+    unasked=(Magnus.NONE,),
+)  # fmt: skip
+_torque_lanes = dispatch_lanes(
+    WaterTorque, ("spin", "d", "nu", "rho_w"), _torque_arguments, _to_torque, W.LANES,
+    unasked=(WaterTorque.NONE,),
+)  # fmt: skip
 
 
 @inner(fastmath=FAST)
-def fluid_forces(
-    variant: KernelVariant, choice: LawChoice, i: int, c: Any, grains: GrainArrays, table: Any
-) -> None:
-    """Store forces and torques of the water on grain i beside those of contacts."""
-    x, v, w, fluid, impulse, film = grains.x, grains.v, grains.w, grains.fluid, grains.impulse, grains.film
-    d_x = d_y = d_z = l_x = l_y = l_z = e_x = e_z = turn = 0.0
-    submerged = 1.0
-    if variant.column:
-        submerged = fluid[i, SUBMERGED]
-        dry = submerged == 0.0
-        added = table[G.ADDED] * submerged  # water moves along with what of a grain is in it
-        fill4(table, G.ADDED, added)
-        e_x, e_z = flow_force(fluid[i, EXTRA_X], added, fluid[i, A_X]), fluid[i, EXTRA_Z]
-        turn = 0.5 * fluid[i, SHEAR]
-        if not dry:
-            k_d, d_x, d_y, d_z, l_x, l_y, l_z = column_forces(choice, c, x[i, 3], fluid[i], v[i], w[i])
-            impulse[i, DRAG] = k_d
-    else:
-        dry, d_x, d_y, d_z = profile_drag(choice, c, x[i, 3], x[i, 2], v[i, 0], v[i, 1], v[i, 2])
-    k_t = 0.0
-    if variant.rotation and choice.torque and not dry:
-        o_x, o_y, o_z = w[i, 0], w[i, 1] - turn, w[i, 2]
-        k_t = torque_over_spin(choice, c, submerged, x[i, 3], o_x, o_y, o_z)
-        table[G.TORQUE] = resisted_torque(table[G.TORQUE], k_t, o_x)
-        table[G.TORQUE + 1] = resisted_torque(table[G.TORQUE + 1], k_t, o_y)
-        table[G.TORQUE + 2] = resisted_torque(table[G.TORQUE + 2], k_t, o_z)
-    if variant.plane_case:
-        d_y = l_y = 0.0
-    for k, along in enumerate((l_x + e_x, l_y, l_z + e_z)):
-        table[G.FORCE + k] += along
-        if variant.film:
-            table[G.FORCE + k] += film[i, k]
-    for k, along in enumerate((d_x, d_y, d_z)):
-        table[G.DRAG + k] = along
-    for k, along in enumerate((l_x, l_y, l_z)):
-        table[G.LIFT + k] = along
-    table[G.FLOW], table[G.FLOW + 1], table[G.FLOW + 2] = e_x, turn, e_z
-    table[G.LIFT + 3], table[G.FLOW + 3] = k_t, 0.0 if dry else 1.0
+def _fill_spin(m: int, turns: bool, batch: Any) -> None:
+    """Spin relative to the water, of which half the shear is the spin where `turns`."""
+    for l in range(min(m, W.LANES)):
+        o_x, o_y, o_z = batch[W.SPIN + 4 * l], batch[W.SPIN + 4 * l + 1], batch[W.SPIN + 4 * l + 2]
+        batch[W.D + l] = 2.0 * batch[W.SPIN + 4 * l + 3]
+        o_y -= 0.5 * batch[W.SHEAR + l] if turns else 0.0
+        batch[W.O_X + l], batch[W.O_Y + l], batch[W.O_Z + l] = o_x, o_y, o_z
+        batch[W.WHIRL + l] = length(o_x, o_y, o_z)
+        batch[W.SPIN + 4 * l], batch[W.SPIN + 4 * l + 1] = o_x, o_y
+        batch[W.SPIN + 4 * l + 2], batch[W.SPIN + 4 * l + 3] = o_z, 0.0
 
 
 @inner(fastmath=FAST)
-def fluid_work(
-    variant: KernelVariant, choice: LawChoice, i: int, half: float, c: Any, grains: GrainArrays, table: Any,
-    account: Any, stats: Any,
+def _fill_column(m: int, batch: Any) -> None:
+    """Slip in a column of water, and the force of its accelerating flow."""
+    for l in range(min(m, W.LANES)):
+        u_x, u_y, u_z = batch[W.SLIP + 4 * l], batch[W.SLIP + 4 * l + 1], batch[W.SLIP + 4 * l + 2]
+        batch[W.SHEAR + l] = batch[W.SLIP + 4 * l + 3]
+        batch[W.U_X + l], batch[W.U_Y + l], batch[W.U_Z + l] = u_x, u_y, u_z
+        batch[W.SPEED + l] = length(u_x, u_y, u_z)
+        batch[W.PHI + l], a_x = batch[W.FLUID + 4 * l], batch[W.FLUID + 4 * l + 1]
+        extra_x, extra_z = batch[W.FLUID + 4 * l + 2], batch[W.FLUID + 4 * l + 3]
+        batch[W.A_X + l] = a_x
+        batch[W.FLOW + 4 * l] = flow_force(extra_x, batch[W.ADDED + l], a_x)
+        batch[W.FLOW + 4 * l + 1], batch[W.FLOW + 4 * l + 2], batch[W.FLOW + 4 * l + 3] = 0.0, extra_z, 0.0
+
+
+@inner(fastmath=FAST)
+def _fill_heights(m: int, above: int, z_zero: float, depth: float, batch: Any) -> None:
+    """Where grains are in water of a given profile; the first two of a centre are read to read all four."""
+    for l in range(min(m, W.LANES)):
+        x, y = batch[W.FLUID + 4 * l], batch[W.FLUID + 4 * l + 1]
+        z, r = batch[W.FLUID + 4 * l + 2], batch[W.FLUID + 4 * l + 3]
+        batch[W.HEIGHT + l], batch[W.SHARE + l] = height_in_profile(above, z, z_zero, depth)
+        batch[W.D + l], batch[W.U_X + l], batch[W.U_Y + l] = 2.0 * r, x, y
+
+
+@inner(fastmath=FAST)
+def _fill_profile(m: int, batch: Any) -> None:
+    """Slip in water of a given speed."""
+    for l in range(min(m, W.LANES)):
+        u_x, u_y, u_z = batch[W.SLIP + 4 * l], batch[W.SLIP + 4 * l + 1], batch[W.SLIP + 4 * l + 2]
+        u_x += batch[W.PROFILE + l]
+        batch[W.SPEED + l] = batch[W.ALONE + l] = length(u_x, u_y, u_z)
+        batch[W.SLIP + 4 * l], batch[W.SLIP + 4 * l + 1] = u_x, u_y
+        batch[W.SLIP + 4 * l + 2], batch[W.SLIP + 4 * l + 3] = u_z, 0.0
+
+
+@inner(fastmath=FAST)
+def _drag_over_slip(m: int, rho_w: float, a_2: float, batch: Any) -> None:
+    for l in range(min(m, W.LANES)):
+        batch[W.K_D + l] = batch[W.SHARE + l] * drag_among_neighbours(
+            batch[W.SPEED + l], batch[W.ALONE + l], batch[W.FACTOR + l], batch[W.C_D + l], rho_w, a_2,
+            batch[W.D + l],
+        )  # fmt: skip
+
+
+@inner(fastmath=FAST)
+def _drag_of_isolated(m: int, rho_w: float, a_2: float, batch: Any) -> None:
+    for l in range(min(m, W.LANES)):
+        k_d = drag_factor(batch[W.SPEED + l], batch[W.C_D + l], rho_w, a_2, batch[W.D + l])
+        batch[W.K_D + l] = batch[W.SHARE + l] * k_d
+
+
+@inner(fastmath=FAST)
+def _lift_and_magnus(m: int, batch: Any) -> None:
+    for l in range(min(m, W.LANES)):
+        u_x, u_y, u_z, share = batch[W.U_X + l], batch[W.U_Y + l], batch[W.U_Z + l], batch[W.SHARE + l]
+        s_x, s_z = shear_lift_force(batch[W.NORMAL + l], batch[W.ACROSS + l], u_x, u_z)
+        m_x, m_y, m_z = magnus_force(
+            batch[W.K_M + l], -batch[W.O_X + l], -batch[W.O_Y + l], -batch[W.O_Z + l], u_x, u_y, u_z
+        )
+        batch[W.LIFT + 4 * l], batch[W.LIFT + 4 * l + 1] = share * (s_x + m_x), share * m_y
+        batch[W.LIFT + 4 * l + 2], batch[W.LIFT + 4 * l + 3] = share * (s_z + m_z), 0.0
+
+
+@inner(fastmath=FAST)
+def _torque_in_water(m: int, batch: Any) -> None:
+    for l in range(min(m, W.LANES)):
+        batch[W.K_T + l] *= batch[W.SHARE + l]
+
+
+@inner(fastmath=FAST, forceinline=True)
+def _clear(first: int, rows: int, batch: Any) -> None:
+    """Rows of what the scene goes without."""
+    for l in range(rows * W.PITCH):
+        batch[first + l] = 0.0
+
+
+@inner(fastmath=FAST)
+def forces_in_column(
+    choice: LawChoice, rotation: int, lo: int, hi: int, c: Any, v: Any, w: Any, m_all: Any, m_bare: Any,
+    fluid: Any, batch: Any,
 ) -> None:  # fmt: skip
-    """Book the work of the water on grain i in the step, and what they took from it.
+    """Coefficients and forces of the column of water on grains lo..hi-1, at most LANES, on as many lanes."""
+    nu, rho_w, a_2 = c[P.NU], c[P.RHO_W], c[P.A_2]
+    for i in range(lo, hi):
+        l = i - lo
+        write4(batch, W.SLIP + 4 * l, read4(fluid, N_SAMPLED * i) - read4(v, 8 * i))
+        copy4(batch, W.FLUID + 4 * l, fluid, N_SAMPLED * i + 4)
+        copy4(batch, W.SPIN + 4 * l, w, 8 * i)
+        share = fluid[i, SUBMERGED]
+        batch[W.SHARE + l] = share
+        batch[W.ADDED + l] = (m_all[i] - m_bare[i]) * share  # water moves along with what of a grain is in it
+    m = (hi - lo + 7) // 8 * 8
+    _fill_column(m, batch)
+    _fill_spin(m, True, batch)
+    if choice.drag == 0:
+        _clear(W.K_D, 1, batch)
+    else:
+        _hindrance_lanes(choice.hindrance, m, batch, (c[P.HINDRANCE], nu, choice.buoyancy == STRESS))
+        _drag_lanes(choice.drag, m, batch, (nu, c[P.C_D]))
+        _drag_over_slip(m, rho_w, a_2, batch)
+    if choice.lift == 0 and choice.magnus == 0:
+        _clear(W.LIFT, 4, batch)
+    else:
+        if choice.lift == 0:
+            _clear(W.NORMAL, 2, batch)
+        else:
+            _lift_lanes(choice.lift, m, batch, (nu, rho_w, a_2, c[P.C_L]))
+        if choice.magnus == 0:
+            _clear(W.K_M, 1, batch)
+        else:
+            _magnus_lanes(choice.magnus, m, batch, (nu, rho_w))
+        _lift_and_magnus(m, batch)
+    if rotation and choice.torque:
+        _torque_lanes(choice.torque, m, batch, (nu, rho_w))
+        _torque_in_water(m, batch)
 
-    `half` is half a step [s], or nothing in the first. Films are emptied.
-    """
-    dt, fluid, impulse, film = c[P.DT], grains.fluid, grains.impulse, grains.film
-    v_x, v_y, v_z = table[G.V], table[G.V + 1], table[G.V + 2]
-    a_x, a_y, a_z = table[G.V_NEW], table[G.V_NEW + 1], table[G.V_NEW + 2]
-    d_x, d_y, d_z = table[G.DRAG], table[G.DRAG + 1], table[G.DRAG + 2]
-    after = 0.5 * dt
-    done, pending = work_of_force(half, after, d_x, d_y, d_z, v_x, v_y, v_z, a_x, a_y, a_z)
-    account[B_DRAG] += done
-    stats[S.PENDING_DRAG] += pending
-    if variant.column:
-        l_x, l_y, l_z = table[G.LIFT], table[G.LIFT + 1], table[G.LIFT + 2]
-        e_x, e_z, added = table[G.FLOW], table[G.FLOW + 2], table[G.ADDED]
-        if table[G.FLOW + 3] > 0.0:
-            impulse[i, 0] += impulse_from_fluid(d_x, l_x, added, fluid[i, A_X], v_x, a_x, dt)
-            impulse[i, 1] += impulse_from_fluid(d_y, l_y, added, 0.0, v_y, a_y, dt)
-            impulse[i, 2] += impulse_from_fluid(d_z, l_z, added, 0.0, v_z, a_z, dt)
-        done, pending = work_of_force(half, after, l_x, l_y, l_z, v_x, v_y, v_z, a_x, a_y, a_z)
-        account[B_LIFT] += done
-        stats[S.PENDING_LIFT] += pending
-        done, pending = work_of_force_in_plane(half, after, e_x, e_z, v_x, v_z, a_x, a_z)
-        account[B_FLOW] += done
-        stats[S.PENDING_FLOW] += pending
-    if variant.film:
-        h_x, h_y, h_z = film[i, 0], film[i, 1], film[i, 2]
-        done, pending = work_of_force(half, after, h_x, h_y, h_z, v_x, v_y, v_z, a_x, a_y, a_z)
-        account[B_FILM] -= done
-        stats[S.PENDING_FILM] += pending
-        fill4(film, 4 * i, 0.0)
-    k_t = table[G.LIFT + 3]
-    if variant.rotation and k_t > 0.0:  # the torque is k_t times the spin against the water
-        o_x, o_y, o_z = table[G.W], table[G.W + 1], table[G.W + 2]
-        b_x, b_y, b_z = table[G.W_NEW], table[G.W_NEW + 1], table[G.W_NEW + 2]
-        o_rel = o_y - table[G.FLOW + 1]
-        done, pending = work_of_force(half * k_t, after * k_t, o_x, o_rel, o_z, o_x, o_y, o_z, b_x, b_y, b_z)
-        account[B_TORQUE] -= done
-        stats[S.PENDING_TORQUE] -= pending
+
+@inner(fastmath=FAST)
+def forces_in_profile(
+    choice: LawChoice, rotation: int, lo: int, hi: int, c: Any, x: Any, v: Any, w: Any, batch: Any
+) -> None:
+    """As `forces_in_column`, in water of a given profile, which neither lifts nor accelerates."""
+    nu, rho_w, a_2 = c[P.NU], c[P.RHO_W], c[P.A_2]
+    still = vec4_of(0.0, 0.0, 0.0, 0.0)
+    for i in range(lo, hi):
+        l = i - lo
+        write4(batch, W.SLIP + 4 * l, still - read4(v, 8 * i))
+        copy4(batch, W.FLUID + 4 * l, x, 4 * i)
+        if rotation and choice.torque:
+            copy4(batch, W.SPIN + 4 * l, w, 8 * i)
+    m = (hi - lo + 7) // 8 * 8
+    _fill_heights(m, choice.above, c[P.Z_ZERO], c[P.DEPTH], batch)
+    if choice.drag == 0:
+        _clear(W.K_D, 1, batch)
+    else:
+        _profile_lanes(choice.profile, m, batch, (c[P.U_STAR], c[P.K_ROUGH], nu, c[P.U_UNIFORM]))
+        _fill_profile(m, batch)
+        _drag_lanes(choice.drag, m, batch, (nu, c[P.C_D]))
+        _drag_of_isolated(m, rho_w, a_2, batch)
+    if rotation and choice.torque:
+        _fill_spin(m, False, batch)
+        _torque_lanes(choice.torque, m, batch, (nu, rho_w))
+        _torque_in_water(m, batch)

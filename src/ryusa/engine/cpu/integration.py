@@ -2,13 +2,15 @@
 
 What is fourth in a row stays what it is: the radius behind a position or a spin.
 """
+# ruff: noqa: E741  (l is a lane)
 
 import math
 from typing import Any
 
-from ryusa.engine.cpu import grain_layout as G
+from ryusa.engine.cpu import fluid_layout as W
 from ryusa.engine.cpu.arrays import GrainArrays, PairArrays
-from ryusa.engine.cpu.fluid_forces import fluid_forces, fluid_work
+from ryusa.engine.cpu.fluid_forces import forces_in_column, forces_in_profile
+from ryusa.engine.cpu.fluid_work import add_fluid, begin_fluid_work, book_fluid_work, end_fluid_work
 from ryusa.engine.cpu.simd.vec4 import add4, component, fill4, read4, vec4_of, with_fourth, write4
 from ryusa.engine.shared import block_statistics as S
 from ryusa.engine.shared import parameters as P
@@ -60,6 +62,7 @@ def gather_incoming(i: int, active: Any, incoming: Any, incoming_start: Any, f: 
 def integrate(
     variant: KernelVariant,
     water: int | None,
+    column: int | None,
     choice: LawChoice,
     lo: int,
     hi: int,
@@ -68,13 +71,13 @@ def integrate(
     c: Any,
     grains: GrainArrays,
     pairs: PairArrays,
-    table: Any,
+    batch: Any,
     account: Any,
     stats: Any,
 ) -> None:
     """Gather what other blocks stored, add water and weight, and move grains lo..hi-1 by one step."""
     x, v, w, v_pruned, ids, image = grains.x, grains.v, grains.w, grains.v_pruned, grains.ids, grains.image
-    m_all, m_bare, m_weight, inertia = grains.m, grains.m_bare, grains.m_weight, grains.inertia
+    m_bare, m_weight, inertia = grains.m_bare, grains.m_weight, grains.inertia
     per_m, per_inertia = grains.per_m, grains.per_inertia
     f, active, incoming, incoming_start = pairs.f, pairs.active, pairs.incoming, pairs.incoming_start
     dt, film, n_touching = c[P.DT], grains.film, grains.n_touching
@@ -84,7 +87,19 @@ def integrate(
     close_fluid_interval(account, stats)
     if last:
         stats[S.KINETIC] = stats[S.SPIN] = stats[S.POTENTIAL] = 0.0
+    torque = bool(variant.rotation) and choice.torque != 0
+    if water is not None:
+        begin_fluid_work(batch)
     for i in range(lo, hi):
+        l = (i - lo) % W.LANES
+        if water is not None and l == 0:
+            end = min(i + W.LANES, hi)
+            if column is not None:
+                forces_in_column(
+                    choice, variant.rotation, i, end, c, v, w, grains.m, m_bare, grains.fluid, batch
+                )
+            else:
+                forces_in_profile(choice, variant.rotation, i, end, c, x, v, w, batch)
         gather_incoming(i, active, incoming, incoming_start, f, film)
         push, turn = read4(f, 8 * i), read4(f, 8 * i + 4)
         fill4(f, 8 * i, 0.0)
@@ -94,22 +109,18 @@ def integrate(
         x_new, before, spin = read4(x, 4 * i), read4(v, 8 * i), read4(w, 8 * i)
         drag, inverse = vec4_of(0.0, 0.0, 0.0, 0.0), per_m[i]
         if water is not None:
-            write4(table, G.FORCE, push)
-            write4(table, G.TORQUE, turn)
-            table[G.ADDED] = m_all[i] - m_bare[i]
-            fluid_forces(variant, choice, i, c, grains, table)
-            push, turn, drag = read4(table, G.FORCE), read4(table, G.TORQUE), read4(table, G.DRAG)
-            inverse = 1.0 / (m_bare[i] + table[G.ADDED])
+            push, turn, drag = add_fluid(variant, column, torque, i, l, push, turn, film, batch)
+            if column is not None:
+                inverse = 1.0 / (m_bare[i] + batch[W.ADDED + l])
         x_new, after = translation_step(x_new, before, push, drag, m_weight[i] * gravity, inverse, dt)
         whirl = spin
         if variant.rotation:  # the count of contacts, fourth, turns nothing
             whirl = rotation_step(spin, with_fourth(turn, 0.0), per_inertia[i], dt)
         if water is not None:
-            write4(table, G.V, before)
-            write4(table, G.V_NEW, after)
-            write4(table, G.W, spin)
-            write4(table, G.W_NEW, whirl)
-            fluid_work(variant, choice, i, half, c, grains, table, account, stats)
+            book_fluid_work(
+                variant, column, torque, i, l, half, dt, before, after, spin, whirl, grains.impulse, film,
+                batch,
+            )  # fmt: skip
         if last:
             stats[S.KINETIC] += kinetic_energy_of_row(1.0 / inverse, before, after)
             stats[S.SPIN] += kinetic_energy_of_row(inertia[i], spin, whirl) if variant.rotation else 0.0
@@ -127,6 +138,8 @@ def integrate(
             stats[S.FAULT], stats[S.FAULT_GRAIN], stats[S.FAULT_PARTNER] = FAULT_NOT_A_NUMBER, ids[i], -1
         speed_2, spin_2 = max(speed_2, fast), max(spin_2, fast_spin)
         velocity_change_2 = max(velocity_change_2, square_length(after - read4(v_pruned, 4 * i)))
+    if water is not None:
+        end_fluid_work(batch, account, stats)
     stats[S.SPEED_MOVED], stats[S.SPIN_MAX] = math.sqrt(speed_2), math.sqrt(spin_2)
     stats[S.VELOCITY_CHANGE_MOVED] = math.sqrt(velocity_change_2)
 

@@ -184,6 +184,7 @@ def make_run(variant: KernelVariant) -> Any:
     """
     flat: Present = 1 if variant.plane_case else None
     water: Present = 1 if variant.water else None
+    column: Present = 1 if variant.column else None
     exact: Present = 1 if variant.exact else None
     short: Present = 1 if has_short_rows(variant) else None
     optional: Present = 1 if variant.rolling or variant.events or variant.film else None
@@ -272,8 +273,8 @@ def make_run(variant: KernelVariant) -> Any:
                     soon = b_0 + span <= q < b_1 - span
                     if soon != (after == 1):
                         integrate(
-                            variant, water, choice, block_start[q], block_start[q + 1], step == 0, last, c,
-                            grains, pairs, work.table, terms[q], stats[q],
+                            variant, water, column, choice, block_start[q], block_start[q + 1], step == 0,
+                            last, c, grains, pairs, work.water, terms[q], stats[q],
                         )  # fmt: skip
                     if after:
                         post(stats[b])

@@ -20,7 +20,6 @@ from ryusa.laws.grain_step import (
     translation_step,
     unwrapped,
     work_of_force,
-    work_of_force_in_plane,
 )
 from ryusa.model.fluid import A_X, DRAG, EXTRA_X, EXTRA_Z, SHEAR, SUBMERGED
 from ryusa.model.tally import Term
@@ -31,6 +30,15 @@ B_FILM = int(Term.FILM)
 Vector = tuple[float, float, float]
 _column_forces, _profile_drag = on_device(column_forces), on_device(profile_drag)
 _torque_over_spin = on_device(torque_over_spin)
+
+
+@device
+def _work(before: float, after: float, f: Vector, v: Vector, v_new: Vector) -> tuple[float, float]:
+    """Work of a force over both half intervals [J], `work_of_force` of all components."""
+    x, x_next = work_of_force(before, after, f[0], v[0], v_new[0])
+    y, y_next = work_of_force(before, after, f[1], v[1], v_new[1])
+    z, z_next = work_of_force(before, after, f[2], v[2], v_new[2])
+    return x + y + z, x_next + y_next + z_next
 
 
 @cache
@@ -110,7 +118,7 @@ def make_integrate(variant: KernelVariant, choice: LawChoice) -> Any:
         totals[T.SPEED_2] = max(totals[T.SPEED_2], square)
 
         if drag:
-            done, pending = work_of_force(before, after, d_x, d_y, d_z, v_x, v_y, v_z, u_x, u_y, u_z)
+            done, pending = _work(before, after, (d_x, d_y, d_z), (v_x, v_y, v_z), (u_x, u_y, u_z))
             totals[B_DRAG] += done
             totals[T.PENDING_DRAG] += pending
         if column:
@@ -118,14 +126,14 @@ def make_integrate(variant: KernelVariant, choice: LawChoice) -> Any:
                 impulse[i, 0] += impulse_from_fluid(d_x, l_x, added, fluid[i, A_X], v_x, u_x, dt)
                 impulse[i, 1] += impulse_from_fluid(d_y, l_y, added, 0.0, v_y, u_y, dt)
                 impulse[i, 2] += impulse_from_fluid(d_z, l_z, added, 0.0, v_z, u_z, dt)
-            done, pending = work_of_force(before, after, l_x, l_y, l_z, v_x, v_y, v_z, u_x, u_y, u_z)
+            done, pending = _work(before, after, (l_x, l_y, l_z), (v_x, v_y, v_z), (u_x, u_y, u_z))
             totals[B_LIFT] += done
             totals[T.PENDING_LIFT] += pending
-            done, pending = work_of_force_in_plane(before, after, e_x, e_z, v_x, v_z, u_x, u_z)
+            done, pending = _work(before, after, (e_x, 0.0, e_z), (v_x, v_y, v_z), (u_x, u_y, u_z))
             totals[B_FLOW] += done
             totals[T.PENDING_FLOW] += pending
         if film:
-            done, pending = work_of_force(before, after, h_x, h_y, h_z, v_x, v_y, v_z, u_x, u_y, u_z)
+            done, pending = _work(before, after, (h_x, h_y, h_z), (v_x, v_y, v_z), (u_x, u_y, u_z))
             totals[B_FILM] -= done
             totals[T.PENDING_FILM] += pending
 
@@ -147,8 +155,8 @@ def make_integrate(variant: KernelVariant, choice: LawChoice) -> Any:
             bad = bad or not spin_2 < math.inf
             totals[T.SPIN_2] = max(totals[T.SPIN_2], spin_2)
             if torque_law and not dry:  # the torque is k_t times the spin against the water
-                done, pending = work_of_force(
-                    before * k_t, after * k_t, o_x, o_rel, o_z, o_x, o_y, o_z, b_x, b_y, b_z
+                done, pending = _work(
+                    before * k_t, after * k_t, (o_x, o_rel, o_z), (o_x, o_y, o_z), (b_x, b_y, b_z)
                 )
                 totals[B_TORQUE] -= done
                 totals[T.PENDING_TORQUE] -= pending

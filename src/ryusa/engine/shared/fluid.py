@@ -10,6 +10,7 @@ from ryusa.engine.shared.variant import LawChoice
 from ryusa.laws._family import numbers
 from ryusa.laws.dispatch import drag_of, hindered, magnus, profile_speed, shear_lift, water_torque
 from ryusa.laws.families import Above, Buoyancy, Profile
+from ryusa.laws.lift import magnus_force, shear_lift_force
 from ryusa.model.fluid import PHI, SHEAR, SUBMERGED, U, V, W
 from ryusa.model.tally import Term
 
@@ -21,12 +22,21 @@ B_DRAG, B_TORQUE, B_LIFT, B_FLOW = int(Term.DRAG), int(Term.TORQUE), int(Term.LI
 B_FILM = int(Term.FILM)
 
 
-@inner(forceinline=True)
-def water_speed(profile: int, above: int, z: float, c: Any) -> float:
-    """Speed of the water along x at height z over the zero of the profile [m/s]."""
-    if above == HOLD:
-        z = min(z, c[P.DEPTH])
-    return profile_speed(profile, z, c[P.U_STAR], c[P.K_ROUGH], c[P.NU], c[P.U_UNIFORM])
+@inner(fastmath=FAST, forceinline=True)
+def height_in_profile(above: int, z: float, z_zero: float, depth: float) -> tuple[float, float]:
+    """Height over the zero of a given profile at which its speed is taken [m], and 0 above the water, else 1.
+
+    `z` is the height of the grain [m], `depth` that of the water over `z_zero` [m].
+    """
+    height = z - z_zero
+    there = 0.0 if above == DRY and height > depth else 1.0
+    return min(height, depth) if above == HOLD else height, there
+
+
+@inner(fastmath=FAST, forceinline=True)
+def length(x: float, y: float, z: float) -> float:
+    """Length of a vector."""
+    return math.sqrt(x * x + y * y + z * z)
 
 
 @inner(forceinline=True)
@@ -36,7 +46,7 @@ def column_forces(
     """Drag over slip [N s/m] of a column of water on one grain, then drag, then lift and Magnus force [N]."""
     d, nu, rho_w, shear = 2.0 * r, c[P.NU], c[P.RHO_W], fluid[SHEAR]
     u_x, u_y, u_z = fluid[U] - v[0], fluid[V] - v[1], fluid[W] - v[2]
-    slip = math.sqrt(u_x * u_x + u_y * u_y + u_z * u_z)
+    slip = length(u_x, u_y, u_z)
     share = fluid[SUBMERGED]
     k_d = 0.0
     if choice.drag:
@@ -50,14 +60,12 @@ def column_forces(
         normal, k = shear_lift(
             choice.lift, u_x + half, u_x - half, slip, shear, d, nu, rho_w, c[P.A_2], c[P.C_L]
         )
-        l_x, l_z = -k * u_z, normal + k * u_x
+        l_x, l_z = shear_lift_force(normal, k, u_x, u_z)
     if choice.magnus:
         o_x, o_y, o_z = -w[0], 0.5 * shear - w[1], -w[2]
-        spin = math.sqrt(o_x * o_x + o_y * o_y + o_z * o_z)
-        k = magnus(choice.magnus, slip, spin, d, nu, rho_w)
-        l_x += k * (o_y * u_z - o_z * u_y)
-        l_y += k * (o_z * u_x - o_x * u_z)
-        l_z += k * (o_x * u_y - o_y * u_x)
+        k = magnus(choice.magnus, slip, length(o_x, o_y, o_z), d, nu, rho_w)
+        m_x, m_y, m_z = magnus_force(k, o_x, o_y, o_z, u_x, u_y, u_z)
+        l_x, l_y, l_z = l_x + m_x, l_y + m_y, l_z + m_z
     return k_d, k_d * u_x, k_d * u_y, k_d * u_z, share * l_x, share * l_y, share * l_z
 
 
@@ -66,12 +74,13 @@ def profile_drag(
     choice: LawChoice, c: Any, r: float, z: float, v_x: float, v_y: float, v_z: float
 ) -> tuple[bool, float, float, float]:
     """Whether a grain at height z is out of the water of a given profile, and the drag on it [N]."""
-    z = z - c[P.Z_ZERO]
-    dry = choice.profile == NO_WATER or (choice.above == DRY and z > c[P.DEPTH])
+    height, there = height_in_profile(choice.above, z, c[P.Z_ZERO], c[P.DEPTH])
+    dry = choice.profile == NO_WATER or there == 0.0
     d_x = d_y = d_z = 0.0
     if choice.drag and not dry:
-        u_x, u_y, u_z = water_speed(choice.profile, choice.above, z, c) - v_x, -v_y, -v_z
-        slip = math.sqrt(u_x * u_x + u_y * u_y + u_z * u_z)
+        speed = profile_speed(choice.profile, height, c[P.U_STAR], c[P.K_ROUGH], c[P.NU], c[P.U_UNIFORM])
+        u_x, u_y, u_z = speed - v_x, -v_y, -v_z
+        slip = length(u_x, u_y, u_z)
         k_d = drag_of(choice.drag, slip, 2.0 * r, c[P.NU], c[P.RHO_W], c[P.A_2], c[P.C_D])
         d_x, d_y, d_z = k_d * u_x, k_d * u_y, k_d * u_z
     return dry, d_x, d_y, d_z
@@ -82,7 +91,7 @@ def torque_over_spin(
     choice: LawChoice, c: Any, submerged: float, r: float, o_x: float, o_y: float, o_z: float
 ) -> float:
     """Torque of the water on a grain over its spin o against the water [N m s]."""
-    spin = math.sqrt(o_x * o_x + o_y * o_y + o_z * o_z)
+    spin = length(o_x, o_y, o_z)
     return submerged * water_torque(choice.torque, spin, 2.0 * r, c[P.NU], c[P.RHO_W])
 
 
