@@ -15,17 +15,17 @@ from ryusa.laws.families import BedKind, Buoyancy, Fluctuations, Mixing, Start
 from ryusa.model import CouplingState, Scene
 from ryusa.model.column import STIFF, Budget, Column, WaterState
 from ryusa.model.eddies import Eddies
-from ryusa.model.fluid import A_X, DRAG, EXTRA_X, EXTRA_Z, N_SAMPLED, PHI, SHEAR, SUBMERGED, U, V, W
+from ryusa.model.fluid import DRAG, N_SAMPLED, SHEAR
 from ryusa.model.scene import Floats
 from ryusa.water import eddies
+from ryusa.water.at_grains import DENSEST, given_by_grains, sample
 from ryusa.water.closures import averaged
 from ryusa.water.drive import discharge
 from ryusa.water.exchange import Cells, Slices, slices, to_cells, to_grains, weighted_concentration
-from ryusa.water.fixed_grains import DENSEST, FixedGrainForces, FixedGrains, steady_start
+from ryusa.water.fixed_grains import FixedGrainForces, FixedGrains, steady_start
 from ryusa.water.free_surface import submerged_part
 from ryusa.water.solve import advance
 
-numbers(__name__, Buoyancy.WEIGHT, Buoyancy.STRESS, Buoyancy.PRESSURE)
 numbers(__name__, Start.REST, Start.STEADY)
 numbers(__name__, Fluctuations.NONE, Fluctuations.RANDOM_WALK)
 
@@ -160,8 +160,9 @@ class Coupling:
         force = self.force(impulse, dt)
         self._z = np.ascontiguousarray(x[:, 2])
         self._slices = slices(self._z, self.scene.d, self._slices.cells, reuse=self._slices)
-        self.phi = _phi(self._slices, self._volume) + self._bed.phi
-        phi_w = weighted_concentration(self._slices, v[:, 2] * self._volume / self._slices.whole)
+        solid = self._volume / self._slices.whole
+        both = weighted_concentration(self._slices, np.column_stack([solid, v[:, 2] * solid]))
+        self.phi, phi_w = both[:, 0] + self._bed.phi, both[:, 1]
         fixed = self._bed.forces(self.scene.water, self.column.rho_w * self.column.g_x, before, self.phi)
         self._force_z += fixed.force_z
         self.state, budget = advance(
@@ -183,16 +184,13 @@ class Coupling:
 
         Each slice acts on the water with the slip in its cell; the sum over slices is the force on the grain.
         """
-        scene, cut, u, k_d = self.scene, self._submerged, self.state.u, impulse[:, DRAG]
+        scene, cut, u = self.scene, self._submerged, self.state.u
         archimedes = (scene.m_weight - scene.m) * scene.gravity[0]
-        mean = impulse[:, 0] / dt
-        both = (
-            to_cells(cut, np.column_stack([mean, impulse[:, 2] / dt]), "submerged").cells / cut.cells.volume
-        )
-        rest = to_cells(cut, archimedes + self.sampled[:, EXTRA_X], "submerged").cells / cut.cells.volume
-        slip = to_cells(cut, np.column_stack([k_d, k_d * to_grains(cut, u, "submerged")]), "submerged").cells
-        self._force_z = both[:, 1]
-        return both[:, 0] + rest + (slip[:, 0] * u - slip[:, 1]) / cut.cells.volume
+        met = to_grains(cut, u, "submerged")
+        amounts = given_by_grains(impulse, met, archimedes, self.sampled, 1.0 / dt)
+        sums = to_cells(cut, amounts, "submerged").cells / cut.cells.volume
+        self._force_z = sums[:, 1].copy()
+        return sums[:, 0] + (sums[:, 2] * u - sums[:, 3])
 
     def numbers(self) -> dict[str, float | int]:
         """State of the water for the summary of a run; SI."""
@@ -256,33 +254,19 @@ class Coupling:
         scene, state, cut = self.scene, self.state, self._submerged
         eps = 1.0 - self.phi
         water = scene.water
-        along = np.column_stack([state.u, state.w, state.shear, self.phi, state.du_dt, state.dtau_dz])
-        at = to_grains(cut, along, "submerged")
-        share = cut.share
-        sampled = np.zeros((scene.n_grain, N_SAMPLED))
-        sampled[:, U], sampled[:, W], sampled[:, SHEAR] = at[:, 0], at[:, 1], at[:, 2]
-        sampled[:, PHI], sampled[:, A_X], sampled[:, SUBMERGED] = (
-            np.minimum(at[:, 3], DENSEST),
-            at[:, 4],
-            share,
-        )
+        along = [state.u, state.w, state.shear, self.phi, state.du_dt]
+        if water.buoyancy == Buoyancy.STRESS:
+            along += [state.dtau_dz, self._force_z / np.maximum(eps, 1.0 - DENSEST)]
+        at = to_grains(cut, np.column_stack(along), "submerged")
+        both = np.zeros((0, 3))
         if self.eddies is not None:
             u_tau, drift = eddies.turbulence(self.column, state, self.phi, cut)
-            sampled[:, [U, V, W]] += eddies.speeds(self.eddies, scene.plane_case, u_tau, drift, at[:, 2])
-        solid = self._volume * share
-        g_x, g_z = scene.gravity[0], scene.gravity[2]
-        # no buoyancy on the part above the water
-        out = (1.0 - share) * self._volume * water.rho_w
-        sampled[:, EXTRA_X], sampled[:, EXTRA_Z] = out * g_x, out * g_z
-        if water.buoyancy == Buoyancy.STRESS:
-            sampled[:, EXTRA_X] += solid * (at[:, 5] + state.gradient + water.rho_w * g_x)
-            sampled[:, EXTRA_Z] += solid * to_grains(
-                cut, self._force_z / np.maximum(eps, 1.0 - DENSEST), "submerged"
-            )
-        elif water.buoyancy == Buoyancy.WEIGHT:
-            sampled[:, EXTRA_X] += solid * state.gradient
-        else:
-            sampled[:, EXTRA_X] += solid * water.rho_w * g_x
+            both = eddies.speeds(self.eddies, scene.plane_case, u_tau, drift, at[:, 2])
+        sampled = np.empty((scene.n_grain, N_SAMPLED))
+        sample(
+            at, cut.share, self._volume, both, int(water.buoyancy), state.gradient, water.rho_w,
+            scene.gravity[0], scene.gravity[2], sampled,
+        )  # fmt: skip
         return sampled
 
 

@@ -18,7 +18,7 @@ from ryusa.model.column import Column, WaterState
 from ryusa.model.eddies import Eddies
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import kernel
-from ryusa.water.exchange import Slices, faces_to_grains, to_grains
+from ryusa.water.exchange import Slices, to_grains
 
 LEAST = 0.01  # lower limit of the volume fraction of water in a cell
 GOLDEN, MIX_1, MIX_2 = 0x9E3779B97F4A7C15, 0xBF58476D1CE4E5B9, 0x94D049BB133111EB
@@ -149,4 +149,5 @@ def turbulence(column: Column, state: WaterState, phi: Floats, cut: Slices) -> t
         square[0] = square[1]
     drift = np.empty(column.n)
     _drift(column.dz, np.sqrt(square), viscosity, drift)
-    return np.sqrt(faces_to_grains(cut, square, "submerged")), to_grains(cut, drift, "submerged")
+    at = to_grains(cut, np.column_stack([0.5 * (square[:-1] + square[1:]), drift]), "submerged")
+    return np.sqrt(at[:, 0]), at[:, 1]

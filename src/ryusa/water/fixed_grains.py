@@ -14,12 +14,12 @@ from ryusa.laws.families import BedKind, Buoyancy, Drag
 from ryusa.model.column import Column, WaterState
 from ryusa.model.scene import Floats, Water
 from ryusa.water._kernel import kernel
+from ryusa.water.at_grains import DENSEST
 from ryusa.water.exchange import Cells, Slices, concentration, slices, to_cells, to_grains
 from ryusa.water.free_surface import submerged_part
 from ryusa.water.steady import steady
 
 numbers(__name__, Buoyancy.WEIGHT, Buoyancy.STRESS, Buoyancy.PRESSURE)
-DENSEST = 0.99  # concentrations are limited to this value, so that every cell keeps some water
 DRAG_STEP = 1.0e-4  # relative change of the slip speed in the numerical derivative of the drag
 TOLERANCE, MAX_ITERATIONS = (
     1.0e-9,

@@ -7,6 +7,7 @@ import numpy as np
 from ryusa.engine.cpu import batch_layout as B
 from ryusa.engine.cpu import fluid_layout as W
 from ryusa.engine.cpu import prune_schedule as K
+from ryusa.engine.shared.kernel import kernel
 from ryusa.engine.shared.layout import aligned
 
 
@@ -106,3 +107,19 @@ def workspace_of_thread() -> Workspace:
         aligned(B.SIZE), aligned(W.SIZE), aligned(4 * B.LANES), aligned(4 * B.LANES), aligned(B.LANES),
         np.zeros(2 * B.LANES, np.uint32), aligned(K.N_SCHEDULE),
     )  # fmt: skip
+
+
+@kernel()
+def rows_by_id(ids: Any, rows: Any, out: Any) -> None:
+    """Put rows that lie by place in the order of ids; of each as many numbers as `out` has columns."""
+    for i in range(len(ids)):
+        for k in range(out.shape[1]):
+            out[ids[i], k] = rows[i, k]
+
+
+@kernel()
+def rows_by_place(ids: Any, rows: Any, out: Any) -> None:
+    """Put rows that lie by id in the order of places."""
+    for i in range(len(ids)):
+        for k in range(out.shape[1]):
+            out[i, k] = rows[ids[i], k]

@@ -8,7 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from ryusa.engine.cpu.arrays import AccountArrays, GrainArrays, workspace_of_thread
+from ryusa.engine.cpu.arrays import (
+    AccountArrays,
+    GrainArrays,
+    rows_by_id,
+    rows_by_place,
+    workspace_of_thread,
+)
 from ryusa.engine.cpu.candidate_pairs import CandidatePairs
 from ryusa.engine.cpu.contact_rows import has_short_rows, lengthened, shortened
 from ryusa.engine.cpu.prune_schedule import COST_TEST
@@ -175,10 +181,11 @@ class CpuEngine:
 
     def kinematics(self) -> tuple[Floats, Floats, Floats]:
         """Centres [m], velocities [m/s] and impulse from the fluid (model.fluid), by id."""
-        n, ids = self._n, self._grains.ids[: self._n]
-        x, v, impulse = np.empty((n, 3)), np.empty((n, 3)), np.empty(self._grains.impulse.shape)
-        x[ids], v[ids] = self._grains.x[:n, :3], self._grains.v[:n, :3]
-        impulse[ids[: len(impulse)]] = self._grains.impulse
+        grains, n = self._grains, self._n
+        x, v, impulse = np.empty((n, 3)), np.empty((n, 3)), np.empty(grains.impulse.shape)
+        rows_by_id(grains.ids[:n], grains.x, x)
+        rows_by_id(grains.ids[:n], grains.v, v)
+        rows_by_id(grains.ids[: len(impulse)], grains.impulse, impulse)
         return x, v, impulse
 
     def set_fluid(self, sampled: Floats) -> None:
@@ -197,13 +204,14 @@ class CpuEngine:
         if sampled.shape != self._grains.fluid.shape:
             raise ValueError(f"sampled has shape {sampled.shape}, not {self._grains.fluid.shape}")
         grains, ids = self._grains, self._grains.ids[: self._n]
-        more = sampled[ids, SUBMERGED] - grains.fluid[:, SUBMERGED]
-        if self._step and more.any():  # energy of the water that moves along with a grain, or no longer does
+        if self._step and not np.array_equal(sampled[ids, SUBMERGED], grains.fluid[:, SUBMERGED]):
+            # energy of the water that moves along with a grain, or no longer does
+            more = sampled[ids, SUBMERGED] - grains.fluid[:, SUBMERGED]
             added = grains.m[: self._n] - grains.m_bare[: self._n]
             gain = np.zeros(self._n)
             gain[ids] = 0.5 * added * more * np.sum(grains.v[: self._n, :3] ** 2, axis=1)
             self._accounts.stats[0, S.PENDING_FLOW] += float(gain.sum())
-        grains.fluid[:] = sampled[ids]
+        rows_by_place(ids, sampled, grains.fluid)
         grains.impulse[:] = 0.0
 
     def tally(self) -> Tally:
