@@ -296,7 +296,8 @@ def power(slip: float, eps: float, exponent: float) -> tuple[float, float]:
 
     Examples
     --------
-    >>> power(0.1, 0.5, 3.0)
+    >>> speed, factor = power(0.1, 0.5, 3.0)
+    >>> speed, round(factor, 12)
     (0.1, 8.0)
     """
     return slip, elementary.power(eps, -exponent)
