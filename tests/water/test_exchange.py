@@ -118,9 +118,6 @@ def test_a_uniform_flow_is_sampled_exactly(packing):
         exchange.to_grains(found, u, "submerged")[wet], u[:1].repeat(wet.sum(), 0), rtol=1e-12
     )
     assert not exchange.to_grains(found, u, "submerged")[~wet].any()
-    np.testing.assert_allclose(
-        exchange.faces_to_grains(found, np.full(cells.n + 1, 0.7)), 0.7 * found.share, rtol=1e-12
-    )
     linear = 5.0 * (cells.faces - cells.z_low)
     np.testing.assert_allclose(
         exchange.to_grains(found, np.diff(linear) / cells.dz), 5.0 * found.share, rtol=1e-10
@@ -215,7 +212,7 @@ def test_invalid_input_is_refused():
         exchange.slices(np.zeros(2), np.full(2, D), cells, ids=np.array([1, 1]))
     with pytest.raises(ValueError, match="one row per grain"):
         exchange.to_cells(one, np.zeros(2))
-    with pytest.raises(ValueError, match="one row per face"):
-        exchange.faces_to_grains(one, np.zeros(4))
+    with pytest.raises(ValueError, match="one row per cell"):
+        exchange.to_grains(one, np.zeros(5))
     with pytest.raises(ValueError, match="the same cells"):
         exchange.concentration(one, bed=exchange.slices(np.zeros(1), np.full(1, D), Cells(0.0, D, 5, AREA)))

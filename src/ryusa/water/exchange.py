@@ -262,19 +262,6 @@ def to_grains(grains: Slices, values: Floats, share: Share = "whole") -> Floats:
     return out[:, 0] if flat else out[:, : table.shape[1]]
 
 
-def faces_to_grains(grains: Slices, faces: Floats, share: Share = "whole") -> Floats:
-    """Mean over each grain of face values (such as dU/dz [1/s]); a cell has the mean of its two faces.
-
-    Parameters
-    ----------
-    grains : slices.
-    faces : at each face, shape (n + 1,) or (n + 1, m).
-    share : as in `to_grains`.
-    """
-    table = _at_faces(grains, faces)
-    return to_grains(grains, 0.5 * (table[:-1] + table[1:]), share)
-
-
 def _give(grains: Slices, table: Floats, per: Floats, outer: Floats) -> tuple[Floats, Floats]:
     """Sums in cells (m, n) and outside (m, 2)."""
     sums, outside = np.zeros((table.shape[1], grains.cells.n)), np.zeros((table.shape[1], 2))
@@ -314,13 +301,6 @@ def _table(values: Floats, n: int, what: str) -> tuple[Floats, bool]:
     if table.ndim not in (1, 2) or len(table) != n:
         raise ValueError(f"values of shape {table.shape}: one row per {what}, {n} in all")
     return (table[:, None], True) if table.ndim == 1 else (table, False)
-
-
-def _at_faces(grains: Slices, faces: Floats) -> Floats:
-    table = np.asarray(faces, dtype=np.float64)
-    if table.ndim not in (1, 2) or len(table) != grains.cells.n + 1:
-        raise ValueError(f"values of shape {table.shape}: one row per face, {grains.cells.n + 1} in all")
-    return table
 
 
 @law  # compiled as a law is, like the two below: a loop over arrays that calls laws
