@@ -8,6 +8,7 @@ copied to the batch (fluid_layout.py), then each law runs over all lanes.
 from typing import Any
 
 from ryusa.engine.cpu import fluid_layout as W
+from ryusa.engine.cpu.arrays import GrainArrays
 from ryusa.engine.cpu.simd.vec4 import copy4, read4, vec4_of, write4
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.fluid import STRESS, height_in_profile, length
@@ -269,3 +270,16 @@ def forces_in_profile(
         _fill_spin(m, False, batch)
         _torque_lanes(choice.torque, m, batch, (nu, rho_w))
         _torque_in_water(m, batch)
+
+
+@inner(fastmath=FAST, forceinline=True)
+def forces_of_water(
+    column: int | None, choice: LawChoice, rotation: int, lo: int, hi: int, c: Any, grains: GrainArrays,
+    batch: Any,
+) -> None:  # fmt: skip
+    """Coefficients and forces on grains lo..hi-1, at most LANES, in the water that the scene has."""
+    x, v, w, m, m_bare = grains.x, grains.v, grains.w, grains.m, grains.m_bare
+    if column is not None:
+        forces_in_column(choice, rotation, lo, hi, c, v, w, m, m_bare, grains.fluid, batch)
+    else:
+        forces_in_profile(choice, rotation, lo, hi, c, x, v, w, batch)

@@ -9,7 +9,7 @@ from typing import Any
 
 from ryusa.engine.cpu import fluid_layout as W
 from ryusa.engine.cpu.arrays import GrainArrays, PairArrays
-from ryusa.engine.cpu.fluid_forces import forces_in_column, forces_in_profile
+from ryusa.engine.cpu.fluid_forces import forces_of_water
 from ryusa.engine.cpu.fluid_work import add_fluid, begin_fluid_work, book_fluid_work, end_fluid_work
 from ryusa.engine.cpu.simd.vec4 import add4, component, fill4, read4, vec4_of, with_fourth, write4
 from ryusa.engine.shared import block_statistics as S
@@ -93,13 +93,7 @@ def integrate(
     for i in range(lo, hi):
         l = (i - lo) % W.LANES
         if water is not None and l == 0:
-            end = min(i + W.LANES, hi)
-            if column is not None:
-                forces_in_column(
-                    choice, variant.rotation, i, end, c, v, w, grains.m, m_bare, grains.fluid, batch
-                )
-            else:
-                forces_in_profile(choice, variant.rotation, i, end, c, x, v, w, batch)
+            forces_of_water(column, choice, variant.rotation, i, min(i + W.LANES, hi), c, grains, batch)
         gather_incoming(i, active, incoming, incoming_start, f, film)
         push, turn = read4(f, 8 * i), read4(f, 8 * i + 4)
         fill4(f, 8 * i, 0.0)
