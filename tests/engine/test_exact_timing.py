@@ -13,7 +13,7 @@ from ryusa.laws import collision
 from ryusa.laws.families import Arm, ContactTiming, Drag, Profile, Rebound, Rolling, Slip
 from ryusa.laws.immersed import restitution_exponential, stokes_number
 from ryusa.laws.rolling import reduced_radius
-from ryusa.model import RollingLaw, Water
+from ryusa.model import ContactLaw, RollingLaw, Water
 from ryusa.model.scene import EventRule
 
 SPEED, K_N, PHASES = 0.1, 1.0e4, 40
@@ -62,6 +62,15 @@ def test_restitution_and_contact_time_are_exact_at_every_phase_of_touch(e, tensi
         tally = engine.tally()
         assert tally.residual < 1e-11
         assert tally.spring_n == tally.spring_s == 0.0
+
+
+def test_a_law_given_by_its_damping_ratio_alone_is_as_exact():
+    law = ContactLaw(
+        k_n=K_N, k_s=0.0, mu=0.0, zeta_n=collision.zeta_no_tension(0.7), timing=ContactTiming.EXACT
+    )
+    assert math.isnan(law.e_n)
+    found = impacts(0.7, "fixed", 8, contact=law)[1].events()
+    assert -found["closing_end"] == pytest.approx(0.7 * SPEED, rel=1e-11)
 
 
 @pytest.mark.parametrize("e", [0.5, 0.9])

@@ -69,8 +69,9 @@ def fading(scene: Scene) -> float:
     law, lightest = scene.contact, 0.5 * float((scene.m + scene.m_added).min(initial=np.inf))
     if law.timing != ContactTiming.EXACT or not np.isfinite(lightest):
         return 0.0
-    e = scene.water.e_least if scene.water.rebound != Rebound.DRY else law.e_n
-    zeta = zeta_for_restitution(e, law.tension) if law.damping == Damping.RESTITUTION else 0.0
+    zeta = law.zeta_n if law.damping == Damping.RESTITUTION else 0.0
+    if scene.water.rebound != Rebound.DRY:
+        zeta = max(zeta, zeta_for_restitution(scene.water.e_least, law.tension))
     eta = law.eta_n + damping(zeta, law.k_n, lightest)
     dt, eta_d = scene.dt, dashpot_of_map(eta, lightest, scene.dt)
     return 2.0 - (eta_d + spring_of_map(law.k_n, eta, lightest, dt) * dt) * dt / lightest - 1.0 - LEAST_NEXT
