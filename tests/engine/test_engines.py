@@ -130,9 +130,10 @@ def test_run_again_split_or_resumed_it_gives_the_same_bits(create, kind):
         early.append(engine.events())
         return bits(engine.state()), np.sort(np.concatenate(early)).tobytes(), engine.tally()
 
-    whole = marched([26])
-    assert marched([1, 14, 2, 9]) == whole
-    assert marched([15, 11], resume=True) == whole
+    more = 20 if kind.startswith("exact") else 0  # lists reach farther there, and last longer
+    whole = marched([26 + more])
+    assert marched([1, 14, 2, 9 + more]) == whole
+    assert marched([15, 11 + more], resume=True) == whole
 
 
 @pytest.mark.parametrize("seed", range(4))

@@ -228,7 +228,10 @@ def test_a_run_is_viewed_filmed_drawn_and_measured_while_it_goes_on(tmp_path: Pa
         while not (folder / "parts" / "part-000005.h5").exists():
             assert writer.poll() is None
             time.sleep(0.02)
-        so_far = len(Results.open(folder).frames)
+        before, so_far = -1, 0  # a part may still be on its way to the disk beside the run, which waits
+        while so_far > before:
+            time.sleep(0.5)
+            before, so_far = so_far, len(Results.open(folder).frames)
         said: dict[str, str] = {}
         for words in (
             ("view", "-q"), ("film", "-q", "--frames", "4", "--size", "480x270"), ("draw", "grains"),

@@ -207,12 +207,12 @@ class disk_errors:
         raise ResultsError(f"{message}. Data written before remains readable") from error
 
 
-def retry_when_full(action: Callable[[], bool], signal: StopSignal, say: Callable[[str], None]) -> bool:
+def retry_when_full(action: Callable[[], T], signal: StopSignal, say: Callable[[str], None]) -> T:
     """Call a function that writes; while the disk is full, retry until a signal stops the run.
 
     Parameters
     ----------
-    action : writes, and returns whether it wrote anything.
+    action : writes; what it returns is returned.
     signal : signals received so far.
     say : writes a line about the pause, and one when it is over.
 

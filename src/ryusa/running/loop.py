@@ -5,7 +5,7 @@ import time
 from collections.abc import Callable, Generator
 from contextlib import contextmanager, nullcontext, suppress
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +33,7 @@ from ryusa.running.timeline import Change, in_order
 from ryusa.running.watch import Watch
 from ryusa.water.coupling import Coupling
 
+Done = TypeVar("Done")
 _CHUNK = 0.25  # s of wall time between two checks of clock and signals
 _CHUNK_FIRST = (1, 16)  # steps of the first calls, while the speed is unknown
 _COMPILING = "compiling for this processor, 10 to 30 seconds; later runs use the compiled code"
@@ -103,7 +104,7 @@ class Loop:
                     action()
             raise
         self.progress.line(f"{self.status}: {self.message}")
-        for line in summary_lines(self._close()):
+        for line in summary_lines(self._retry_when_full(self._close)):
             self.progress.line(line)
         if self.checkpoints is not None and self.status == schema.COMPLETE:
             self.checkpoints.remove_earlier()
@@ -250,7 +251,7 @@ class Loop:
         self._collect_contacts()
         self.recorder.tail(in_order(self._gathered))
 
-    def _retry_when_full(self, action: Callable[[], bool]) -> bool:
+    def _retry_when_full(self, action: Callable[[], Done]) -> Done:
         return retry_when_full(action, self._signal, self.progress.line)
 
     def _advance(self, n_steps: int) -> None:
