@@ -1,6 +1,6 @@
 """What a simulated second costs at equal accuracy: of the restitution, at the worst phase of the first step.
 
-    python benchmarks/accuracy.py [--only W1-2k W2-2k] [--threads 1] [--rounds 5] [--out FILE]
+    python benchmarks/accuracy.py [--only W1-2k W2-2k] [--errors 0.01] [--threads 1] [--rounds 5] [--out FILE]
 
 How large a step may be is decided by the scatter of a restitution with the instant of first touch within a
 step. First every code lets forty pairs of grains collide head-on, each at another phase, with more and more
@@ -168,6 +168,7 @@ def main() -> None:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--only", nargs="+", default=list(ONLY))
+    parser.add_argument("--errors", nargs="+", type=float, choices=ASKED, default=list(ASKED))
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--peers", nargs="+", help="names of codes, all that are found when not given")
@@ -193,7 +194,7 @@ def main() -> None:
     for name, builds in codes.items():
         steps[name] = fewest_steps(builds[0], options.work)
         print(f"    {name}: {steps[name]}", flush=True)
-    rows = [row(load, asked, steps, codes, options) for asked in ASKED for load in loads]
+    rows = [row(load, asked, steps, codes, options) for asked in options.errors for load in loads]
     versions = {name: builds[0].version() for name, builds in codes.items()}
     report = {
         "machine": machine.describe(), "versions": versions, "restitution": e, "steps": steps, "rows": rows
