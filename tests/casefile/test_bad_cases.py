@@ -42,7 +42,7 @@ BAD = [
     ("motion.slope", "'1/0'", "finite ratio"),
     ("motion.slope", "'steep'", "ratio such as '1/20'"),
     ("motion.slope", "nan", "must be finite"),
-    ("time.steps_per_contact", "5", "must be at least 10"),
+    ("time.steps_per_contact", "4", "must be at least 5"),
     ("time.step", "'1 ms'", "must be below"),
     ("time.step", "'1e-12 s'", "must be above"),
     ("time.step", "'0 s'", "must be greater than 0"),

@@ -10,6 +10,7 @@ import pytest
 from ryusa.casefile import Case, derive, disk_needed, explain, frames_expected, read, resolved, steps_expected
 from ryusa.casefile.estimate import BYTES_PER_GRAIN, disk_for_events, events_expected, memory_needed
 from ryusa.casefile.record import events_of
+from ryusa.errors import CaseError
 from ryusa.laws import collision
 from ryusa.model.contacts import N_EVENT
 
@@ -86,17 +87,32 @@ def test_k_s_is_two_sevenths_of_k_n_by_default(case: CaseOf) -> None:
 
 def test_the_step_follows_the_lightest_pair_that_can_meet(case: CaseOf) -> None:
     fixed = derive(case())
-    assert fixed.dt == pytest.approx(fixed.fixed.t_col / 50, rel=1e-12)
+    assert fixed.dt == pytest.approx(fixed.fixed.t_col / 10, rel=1e-12)
     meeting = derive(case(build="{ kind = 'drop', partner = 'free', height = '1 cm' }"))
     assert meeting.dt == pytest.approx(fixed.dt / math.sqrt(2), rel=1e-12)
     mixed = derive(case(build=PACKING, **{"grains.spread": "0.1"}))
     assert mixed.dt == pytest.approx(meeting.dt * 0.9**1.5, rel=1e-12)
 
 
+def test_the_step_resolves_a_tangential_oscillation_that_is_faster_than_the_contact(case: CaseOf) -> None:
+    stiff = {"contact.shear_ratio": "1", "motion.rotation": "free"}
+    found = derive(case(**stiff))
+    assert found.steps_per_contact > 15.0
+    assert found.dt == pytest.approx(0.2 * found.step_limit_shear)
+    assert derive(case(**stiff, **{"time.steps_per_contact": "10"})).steps_per_contact == pytest.approx(10.0)
+
+
+def test_contacts_at_steps_take_fifty_and_refuse_less_than_ten(case: CaseOf) -> None:
+    at_steps = {"contact.timing": "at steps"}
+    assert derive(case(**at_steps)).steps_per_contact == pytest.approx(50.0)
+    with pytest.raises(CaseError, match=r"must be at least 10 .*; 'exact' allows 5"):
+        case(**at_steps, **{"time.steps_per_contact": "7"})
+
+
 def test_many_starts_do_not_touch_each_other(case: CaseOf) -> None:
     found = derive(case(build="{ kind = 'saltation', starts = 5 }", water=WATER))
     assert (found.n_grain, found.n_fixed, found.meet) == (5, 100, False)
-    assert found.dt == pytest.approx(found.fixed.t_col / 50)
+    assert found.dt == pytest.approx(found.fixed.t_col / 10)
 
 
 def test_a_resolved_case_is_plain_json_in_si(case: CaseOf) -> None:

@@ -87,7 +87,9 @@ def test_tangential_restitution_is_undefined_if_the_periods_differ(case: CaseOf)
 
 def test_few_steps_per_contact_give_a_warning(case: CaseOf) -> None:
     step = derive(case()).shortest / 7
-    assert any("ten" in text for text in warnings(case(**{"time.step": f"{step} s"})))
+    at_steps = {"contact.timing": "at steps", "time.step": f"{step} s"}
+    assert any("ten" in text for text in warnings(case(**at_steps)))
+    assert not any("ten" in text for text in warnings(case(**{"time.step": f"{step} s"})))
 
 
 def test_a_step_near_the_largest_stable_one_gives_a_warning(case: CaseOf) -> None:

@@ -97,7 +97,7 @@ def test_the_step_follows_the_smallest_free_grain_of_a_table(text: str, tmp_path
     table = "x [cm],z [cm],d [cm],fixed\n0,0.1,0.05,1\n1,1,0.1,0\n2,1,0.2,0\n"
     found = derive(read(write(tmp_path, text, table)))
     assert (found.d, found.d_min, found.d_max) == (0.002, 0.001, 0.002)
-    assert found.dt == pytest.approx(found.free.t_col * 0.5**1.5 / 50, rel=1e-12)
+    assert found.dt == pytest.approx(found.free.t_col * 0.5**1.5 / 10, rel=1e-12)
 
 
 def test_grains_of_a_plane_table_stay_in_their_lanes(text: str, tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from ryusa.build.assemble import Laws, assemble, masses
 from ryusa.build.overlaps import refuse_overlaps
 from ryusa.build.placement import Placement, Wall
+from ryusa.casefile.time import STEPS_PER_CONTACT
 from ryusa.errors import CaseError
 from ryusa.laws import collision
 from ryusa.laws.families import Cap, ContactTiming, Slip
@@ -33,7 +34,7 @@ def scene(
     friction: float = math.tan(math.radians(30.0)),
     slip: Slip = Slip.SPRING,
     tension: bool = False,
-    timing: ContactTiming = ContactTiming.AT_STEPS,
+    timing: ContactTiming = ContactTiming.EXACT,
     contact: ContactLaw | None = None,
     rolling: RollingLaw | None = None,
     water: Water | None = None,
@@ -43,7 +44,7 @@ def scene(
     plane_case: bool = False,
     period: tuple[float, float] = (math.inf, math.inf),
     dt: float | None = None,
-    steps_per_contact: float = 50.0,
+    steps_per_contact: float | None = None,
     events: EventRule = EventRule.ALL,
     allow_overlap: bool = False,
 ) -> tuple[Scene, State]:
@@ -61,7 +62,8 @@ def scene(
     gravity, slope : g [m/s2] and bed slope [rad], down towards +x.
     plane_case : motion in x-z only; grains interact only if their y is exactly equal (a lane).
     period : periods in x and y [m]; inf where open, as y must be in a plane scene.
-    dt : time step [s]; by default the shortest contact over `steps_per_contact`.
+    dt : time step [s]; by default the shortest contact over `steps_per_contact`, which is 10 with exact timing
+        and 50 with contacts that begin and end at steps.
 
     Returns
     -------
@@ -88,7 +90,10 @@ def scene(
     fluid = water or Water()
     e_s = restitution if restitution_shear is None else restitution_shear
     law = contact or _contact_law(stiffness, shear_ratio, friction, restitution, e_s, slip, tension, timing)
-    step = _shortest_contact(placement.d, density, fluid, law) / steps_per_contact if dt is None else dt
+    step = dt
+    if step is None:
+        fewest = STEPS_PER_CONTACT[ContactTiming(law.timing)] if steps_per_contact is None else steps_per_contact
+        step = _shortest_contact(placement.d, density, fluid, law) / fewest
     slab_width = float(placement.d.mean()) if plane_case else math.nan
     laws = Laws(
         density=density, contact=law, dt=step, rolling=rolling or RollingLaw(), water=fluid, g=gravity,

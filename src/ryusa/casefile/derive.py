@@ -16,11 +16,13 @@ from ryusa.casefile.contact.values import (
     step_limit,
     stiffness,
 )
+from ryusa.casefile.films import step_limits
 from ryusa.casefile.grains import mass
 from ryusa.casefile.motion import slope
-from ryusa.casefile.time import STEPS_PER_CONTACT
+from ryusa.casefile.time import MOST_STEPS, STEPS_PER_CONTACT, STEPS_PER_FILM, TANGENTIAL_SHARE
 from ryusa.casefile.water.values import u_star_given
 from ryusa.laws import collision, drag, water
+from ryusa.laws.families import ContactTiming
 
 
 @dataclass(frozen=True)
@@ -68,8 +70,10 @@ def derive(case: Case) -> Derived:
     shortest = collision.shortest_contact(lightest.m, k_n, lightest.zeta_n, may_pull(case))
     if case.time.step is not None:
         dt = case.time.step
+    elif case.time.steps_per_contact is not None:
+        dt = shortest / case.time.steps_per_contact
     else:
-        dt = shortest / (case.time.steps_per_contact or STEPS_PER_CONTACT)
+        dt = _default_step(case, shortest, limits[1], step_limits(case, k_n, d_min, meet))
     u_star, tau_star, k_rough, g = math.nan, math.nan, math.nan, case.motion.gravity
     if case.water is not None:
         wet, rho_s = case.water, case.grains.density
@@ -112,3 +116,18 @@ def derive(case: Case) -> Derived:
         tau_star=tau_star,
         k_rough=k_rough,
     )
+
+
+def _default_step(case: Case, shortest: float, tangential: float, wet: tuple[float, float]) -> float:
+    """Time step when the case gives none [s].
+
+    Parameters
+    ----------
+    shortest : duration of the shortest contact [s].
+    tangential : largest stable step of the tangential motion of a pair [s].
+    wet : largest steps for the most damped wet contact and for the thinnest film [s].
+    """
+    rebound, film = wet
+    in_contact = shortest / STEPS_PER_CONTACT[ContactTiming.of(case.contact.timing)]
+    wanted = min(in_contact, TANGENTIAL_SHARE * tangential, rebound, film / STEPS_PER_FILM)
+    return max(wanted, shortest / MOST_STEPS)

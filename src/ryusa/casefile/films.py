@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from ryusa.casefile.contact.values import may_pull, restitution
+from ryusa.casefile.grains import mass
 from ryusa.casefile.rows import ExplainRow, number
 from ryusa.casefile.water.schema import WaterSection
 from ryusa.casefile.water.values import terminal_velocity
@@ -69,37 +70,41 @@ def check_film_step(case: "Case", derived: "Derived") -> Iterator[CaseError]:
     wet = case.water
     if wet is None:
         return
-    lightest = _lightest(derived)
+    rebound, film = step_limits(case, derived.k_n, derived.d_min, derived.meet)
+    if derived.dt > rebound:
+        text = (
+            f"a contact damped to this restitution needs a step below {rebound:.3g} s, and dt = "
+            f"{derived.dt:.3g} s; take a shorter step or a larger water.rebound_least"
+        )
+        yield CaseError("water.rebound_least", wet.rebound_least, text)
+    if derived.dt > film:
+        text = (
+            f"a film of {wet.asperity:.3g} m stops a grain within {film:.3g} s, which dt = "
+            f"{derived.dt:.3g} s does not resolve; take a shorter step or a larger asperity"
+        )
+        yield CaseError("water.asperity", wet.asperity, text)
+
+
+def step_limits(case: "Case", k_n: float, d_min: float, meet: bool) -> tuple[float, float]:
+    """Largest steps [s] for the most damped wet contact, and for the thinnest film; inf without them.
+
+    Parameters
+    ----------
+    k_n : stiffness [N/m].
+    d_min : smallest diameter [m].
+    meet : whether two free grains can meet.
+    """
+    wet = case.water
+    if wet is None:
+        return math.inf, math.inf
+    m = sum(mass(case, d_min)[:2])
+    rebound = film = math.inf
     if wet.rebound != "dry":
         zeta = collision.zeta_for_restitution(wet.rebound_least, may_pull(case))
-        m = 0.5 * lightest if derived.meet else lightest
-        most = collision.step_limit(zeta, collision.omega_natural(derived.k_n, m))
-        if derived.dt > most:
-            text = (
-                f"a contact damped to this restitution needs a step below {most:.3g} s, and dt = "
-                f"{derived.dt:.3g} s; take a shorter step or a larger water.rebound_least"
-            )
-            yield CaseError("water.rebound_least", wet.rebound_least, text)
+        rebound = collision.step_limit(zeta, collision.omega_natural(k_n, 0.5 * m if meet else m))
     if wet.film != "none" and wet.asperity is not None:
-        rate = _film_rate(derived.d_min, lightest, wet)
-        if derived.dt * rate > 1.0:
-            text = (
-                f"a film of {wet.asperity:.3g} m stops a grain within {1.0 / rate:.3g} s, which dt = "
-                f"{derived.dt:.3g} s does not resolve; take a shorter step or a larger asperity"
-            )
-            yield CaseError("water.asperity", wet.asperity, text)
-
-
-def _lightest(derived: "Derived") -> float:
-    """Mass of the smallest grain with its added mass [kg]."""
-    return (derived.m + derived.m_added) * (derived.d_min / derived.d) ** 3
-
-
-def _film_rate(d: float, m: float, wet: WaterSection) -> float:
-    """Rate at which the thinnest film slows a grain of mass m [kg] against a wall [1/s]."""
-    return 1.0 / (
-        immersed.stokes_number(1.0, m, 0.5 * d, wet.density, wet.viscosity) * (wet.asperity or math.nan)
-    )
+        film = wet.asperity * immersed.stokes_number(1.0, m, 0.5 * d_min, wet.density, wet.viscosity)
+    return rebound, film
 
 
 def film_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:

@@ -16,7 +16,10 @@ if TYPE_CHECKING:
     from ryusa.casefile.derive import Derived
 
 RIVALS = (("steps_per_contact", "step"),)
-STEPS_PER_CONTACT = 50.0  # when the case gives no step
+STEPS_PER_CONTACT = {ContactTiming.EXACT: 10.0, ContactTiming.AT_STEPS: 50.0}  # when the case gives no step
+TANGENTIAL_SHARE = 0.2  # of the largest stable step of the tangential motion, when the case gives no step
+MOST_STEPS = 500.0  # per contact when the case gives no step; a case that needs more has to say so
+STEPS_PER_FILM = 5.0  # in the time in which the thinnest film stops a grain, when the case gives no step
 COARSEST, FINEST = 5.0, 1.0e4  # steps per contact that a given step must lie between
 FEWEST_STEPS = 10.0  # per contact that begins at steps, below which the restitution is off: the paper
 CLOSE = 0.5  # fraction of the largest stable step beyond which grains in several contacts may be unstable
@@ -26,7 +29,8 @@ class TimeSection(Section):
     """The time step."""
 
     steps_per_contact: Annotated[Number, Field(ge=5, le=10_000)] | None = None
-    """Number of steps in the shortest contact that can occur; 50 when no step is given."""
+    """Number of steps in the shortest contact that can occur. When no step is given, 10 with contact.timing
+    "exact" and 50 with "at steps", or more where a tangential oscillation or a film of water needs them."""
     step: Duration | None = None
     """Time step dt, instead of steps_per_contact."""
 

@@ -189,6 +189,7 @@ def resume(
     from ryusa.running.interrupt import catch_signals
 
     with catch_signals() as signal:
+        from ryusa.casefile.earlier import kept_choices
         from ryusa.casefile.read import read
         from ryusa.errors import ResultsError
         from ryusa.results import schema
@@ -203,7 +204,8 @@ def resume(
         origin = read_json(folder / schema.PROVENANCE)
         overrides, engine = origin.get("overrides"), origin.get("engine")
         given = {str(key): str(one) for key, one in overrides.items()} if isinstance(overrides, dict) else {}
-        found = read(folder / schema.CASE_TOML, given | _overrides(settings))
+        kept = kept_choices(read_json(folder / schema.CASE_JSON, missing_ok=True))
+        found = read(folder / schema.CASE_TOML, kept | given | _overrides(settings))
         from ryusa.running.runner import run as run_case
 
         signal.raise_if_stopped("before the first step; nothing was changed")

@@ -60,7 +60,7 @@ class ContactLaw:
     slip: Slip = Slip.SPRING
     cap: Cap = Cap.SPRING
     tension: bool = False  # whether the dashpot may pull before the overlap ends
-    timing: ContactTiming = ContactTiming.AT_STEPS
+    timing: ContactTiming = ContactTiming.EXACT
 
 
 @dataclass(frozen=True)

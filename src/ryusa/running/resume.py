@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ryusa.casefile.earlier import completed
 from ryusa.errors import CheckpointError, ResultsError
 from ryusa.model import EVENT, Scene, State
 from ryusa.results import schema
@@ -84,7 +85,7 @@ def find_resume_point(
         raise CheckpointError(
             f"{folder}: written in format {before.get('format')!r}, but this ryusa writes {schema.FORMAT}"
         )
-    was = read_json(folder / schema.CASE_JSON, missing_ok=True)
+    was = completed(read_json(folder / schema.CASE_JSON, missing_ok=True))
     if not was or not numbered(folder, schema.SCENE_NAME):
         return None  # killed at its start
     changed = changes_of(was, resolved)

@@ -89,7 +89,7 @@ class ContactSection(Section):
     cap: Annotated[str, WordOf(families.Cap)] | None = None
     """Normal force in the Coulomb limit: that of the spring, e_n, or the total, f_n; "total" when not given
     with slip = "total", else "spring"."""
-    timing: Annotated[str, WordOf(families.ContactTiming)] = "at steps"
+    timing: Annotated[str, WordOf(families.ContactTiming)] = "exact"
     """Whether a contact begins and ends at time steps, or at its true instants within a step, which needs far
     fewer steps per contact for the same restitution."""
     parting: Annotated[str, WordOf(families.Parting)] = "no tension"

@@ -28,6 +28,8 @@ CASE = "drop"
 COPIES = 20  # phases of first touch
 DIAMETER, SPEED, DENSITY = "0.2 cm", "0.3 m/s", "2650 kg/m3"  # as the case ships
 NO_TENSION, TENSION = "no tension", "tension"
+EXACT, AT_STEPS = "exact", "at steps"
+STEPS = 10.0  # of the case file
 SIZES = ("0.05 cm", "0.1 cm", "0.2 cm", "0.5 cm", "1 cm")  # of fig4, fig8, fig11
 LARGE = ("5 cm", "10 cm", "20 cm", "50 cm", "100 cm")  # of fig12
 A_3 = math.pi / 6.0
@@ -39,6 +41,7 @@ _SHIPPED = {  # what the case file says already
     "grains.density": DENSITY,
     "contact.restitution": "0.7",
     "contact.parting": NO_TENSION,
+    "contact.timing": EXACT,
     "motion.gravity": "9.8 m/s2",
     "build.partner": "fixed",
     "build.speed": SPEED,
@@ -77,6 +80,7 @@ class Setup:
     k_n : stiffness [N/cm]; nan where `time` is given.
     time : asked of Eq. (8) with the dry mass, instead of a stiffness.
     steps : steps in the shortest contact of this case.
+    timing : when a contact begins and ends.
     one_dashpot : a free partner keeps the dashpot that gives e on a fixed one.
     """
 
@@ -89,7 +93,8 @@ class Setup:
     partner: str = "fixed"
     weight: bool = True
     density: str = DENSITY
-    steps: float = 50.0
+    steps: float = STEPS
+    timing: str = EXACT
     one_dashpot: bool = False
 
     @property
@@ -143,6 +148,7 @@ class Setup:
             else f"{self.k_n:g} N/cm",
             "contact.restitution": f"{self.e:g}",
             "contact.parting": self.parting,
+            "contact.timing": self.timing,
             "motion.gravity": "9.8 m/s2" if self.weight else "0 m/s2",
             "build.partner": self.partner,
             "build.speed": self.speed,
@@ -155,7 +161,7 @@ class Setup:
         if self.one_dashpot:
             changed.pop("contact.restitution", None)
             changed["contact.damping"] = f"{damping(self.zeta, self.stiffness, self.m):.9g} N s/m"
-        if self.steps != 50.0:
+        if self.steps != STEPS:
             changed["time.step"] = f"{dt:.12g} s"
         return paper_run(CASE, changed)
 

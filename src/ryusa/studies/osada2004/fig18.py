@@ -71,7 +71,7 @@ def _run(chosen: Mapping[str, str], seed: int) -> CaseRun:
             "contact.shear_damping": f"{ETA_S / s:.5g} N s/cm",
         }
         if s > float(SHIPPED[LONGER]):  # so long a step would carry a grain a quarter of its diameter
-            keys["time.steps_per_contact"] = f"{15.0 * s / float(SHIPPED[LONGER]):g}"
+            keys["time.steps_per_contact"] = f"{10.0 * s / float(SHIPPED[LONGER]):g}"
     return paper_run("fig18", keys, seed)
 
 

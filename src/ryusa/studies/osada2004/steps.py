@@ -10,7 +10,7 @@ from ryusa import figures
 from ryusa.engine.forward_euler import restitution
 from ryusa.measure.statistics import Floats
 from ryusa.studies.osada2004 import _drops
-from ryusa.studies.osada2004._drops import COPIES, NO_TENSION, TENSION, DropRun, Setup
+from ryusa.studies.osada2004._drops import AT_STEPS, COPIES, NO_TENSION, TENSION, DropRun, Setup
 from ryusa.studies.osada2004._parts import CaseRun, Found, Plan
 from ryusa.study import Band, Finding, Interval, Trial, over_range
 
@@ -41,7 +41,11 @@ def partings(plan: Plan) -> tuple[str, ...]:
 
 def setups(plan: Plan) -> list[Setup]:
     """One drop per number of steps and way to part."""
-    return [Setup(parting=parting, steps=steps) for parting in partings(plan) for steps in counts(plan)]
+    return [
+        Setup(parting=parting, steps=steps, timing=AT_STEPS)
+        for parting in partings(plan)
+        for steps in counts(plan)
+    ]
 
 
 def tasks(plan: Plan) -> Sequence[CaseRun]:
@@ -76,7 +80,7 @@ def rebound(found: Found, scheme: str, parting: str, steps: float) -> Floats:
     """Restitution by phase [-]; nan for a copy that never comes off."""
     if scheme != OURS:
         return forward(steps, parting, scheme == SUMMED)
-    drop: DropRun = found[Setup(parting=parting, steps=steps).task]
+    drop: DropRun = found[Setup(parting=parting, steps=steps, timing=AT_STEPS).task]
     return np.concatenate([drop.e, np.full(drop.copies - len(drop.e), np.nan)])
 
 
