@@ -5,7 +5,7 @@ import pytest
 
 from ryusa.build import scene
 from ryusa.engine.cpu.engine import CpuEngine
-from ryusa.laws.families import Cap, Slip
+from ryusa.laws.families import Cap, ContactTiming, Slip
 from ryusa.model import ContactLaw, Scene, State
 from ryusa.model.scene import EventRule
 
@@ -42,7 +42,15 @@ def bits(state: State) -> tuple[bytes, ...]:
 
 
 def pile(
-    n=400, plane_case=False, seed=3, spread=0.15, friction=0.5, events=EventRule.NONE, stir=0.4, **more
+    n=400,
+    plane_case=False,
+    seed=3,
+    spread=0.15,
+    friction=0.5,
+    events=EventRule.NONE,
+    stir=0.4,
+    timing=ContactTiming.AT_STEPS,
+    **more,
 ) -> tuple[Scene, State]:
     """A loose block of mixed grains over a rough bed, periodic downslope, stirred and about to fall."""
     rng = np.random.default_rng(seed)
@@ -78,6 +86,7 @@ def pile(
         period=(l_x, math.inf if plane_case else l_y),
         allow_overlap=True,
         events=events,
+        timing=timing,
         **more,
     )
 
@@ -92,6 +101,7 @@ def contact_law(
     cap=None,
     tension=False,
     cohesion=0.0,
+    timing=ContactTiming.AT_STEPS,
 ):
     cap = (Cap.TOTAL if slip == Slip.TOTAL else Cap.SPRING) if cap is None else cap
     return ContactLaw(
@@ -104,6 +114,7 @@ def contact_law(
         cap=cap,
         tension=tension,
         cohesion=cohesion,
+        timing=timing,
     )
 
 

@@ -9,7 +9,7 @@ from tests.engine.conftest import D, contact_law, run
 
 from ryusa.build import scene
 from ryusa.laws import collision
-from ryusa.laws.families import Drag, Profile, Slip
+from ryusa.laws.families import ContactTiming, Drag, Profile, Slip
 from ryusa.model import Term, Water
 
 SPEED = 0.5  # [m/s]
@@ -201,8 +201,9 @@ def test_an_oblique_impact_in_3d_is_the_plane_one_turned():
     assert event["v_end"][2] == pytest.approx(flat["v_end"][2], rel=1e-12)
 
 
-def test_the_plane_kernel_agrees_with_the_3d_kernel():
-    law = contact_law(mu=0.3, zeta_n=0.1, zeta_s=0.1)
+@pytest.mark.parametrize("timing", list(ContactTiming))
+def test_the_plane_kernel_agrees_with_the_3d_kernel(timing):
+    law = contact_law(mu=0.3, zeta_n=0.1, zeta_s=0.1, timing=timing)
     ends = []
     for plane_case in (True, False):
         made = scene(

@@ -10,6 +10,7 @@ from ryusa.laws.families import Cap
 from ryusa.measure._run import Floats, Run
 from ryusa.measure.snapshot import Snapshot, frame_at, inside_periods, lanes_of, scene_at, snapshot
 from ryusa.model import Scene
+from ryusa.model.pair_springs import pair_springs
 from ryusa.model.scene import Bools
 from ryusa.results.touching import touching_pairs
 
@@ -32,7 +33,7 @@ class ContactNetwork:
     f_s : size of the tangential force [N]; nan where forces were not recorded.
     sliding : whether f_s has reached the shear strength tau_c; False where forces were not recorded.
     recorded : whether the forces are those that the engine applied, in the step before the frame; else they
-        are k_n times the overlap at the frame.
+        are the overlap at the frame times the stiffness of the pair (`model.pair_springs`).
     slice_y : of the slice that holds the points of touch [m], low and high; None in a plane scene.
     slice, slices : number of the slice, in order of y, and of all; 0 and 1 in a plane scene.
     """
@@ -79,7 +80,7 @@ def contact_network(run: Run, t: float | None = None, lane: int | None = None) -
     Notes
     -----
     A contact is that of the step before the frame, at x - v dt, where forces were recorded. It slides where
-    f_s has reached tau_c = max(c + mu p, 0) of Eq. (4), where p is k_n times the overlap or, with
+    f_s has reached tau_c = max(c + mu p, 0) of Eq. (4), where p is the force of the spring or, with
     `contact.cap = "total"`, f_n. In 3D a contact belongs to the slice that holds its point of touch.
     """
     k = frame_at(run, t)
@@ -90,12 +91,13 @@ def contact_network(run: Run, t: float | None = None, lane: int | None = None) -
         held: np.ndarray = run.contact_forces(k)  # type: ignore[attr-defined]
         i, j = held["i"], held["j"]
         gap, normal, overlap = _geometry(x, i, j, scene)
-        f_n, f_s, sliding = _parts(np.asarray(held["force"], dtype=np.float64), normal, overlap, scene)
+        spring = pair_springs(scene, i, j)[0] * overlap
+        f_n, f_s, sliding = _parts(np.asarray(held["force"], dtype=np.float64), normal, spring, scene)
     else:
         x = inside_periods(x, scene)
         i, j = touching_pairs(x, scene)
         gap, normal, overlap = _geometry(x, i, j, scene)
-        f_n, f_s = scene.contact.k_n * overlap, np.full(len(i), np.nan)
+        f_n, f_s = pair_springs(scene, i, j)[0] * overlap, np.full(len(i), np.nan)
         sliding = np.zeros(len(i), dtype=np.bool_)
     chosen, slices, slice_y = 0, 1, None
     if scene.plane_case:
@@ -117,14 +119,14 @@ def contact_network(run: Run, t: float | None = None, lane: int | None = None) -
     )  # fmt: skip
 
 
-def _parts(force: Floats, normal: Floats, overlap: Floats, scene: Scene) -> tuple[Floats, Floats, Bools]:
+def _parts(force: Floats, normal: Floats, spring: Floats, scene: Scene) -> tuple[Floats, Floats, Bools]:
     """Normal force, size of the tangential force [N], and whether that has reached the shear strength."""
     f_n = -(force * normal).sum(axis=1)
     f_s = np.linalg.norm(force + f_n[:, None] * normal, axis=1)
     law = scene.contact
-    push = f_n if law.cap == Cap.TOTAL else law.k_n * overlap
+    push = f_n if law.cap == Cap.TOTAL else spring
     tau_c = np.maximum(law.cohesion + law.mu * push, 0.0)
-    return f_n, f_s, (overlap > 0.0) & (f_s >= (1.0 - AT_LIMIT) * tau_c)
+    return f_n, f_s, (spring > 0.0) & (f_s >= (1.0 - AT_LIMIT) * tau_c)
 
 
 def _geometry(x: Floats, i: Ints, j: Ints, scene: Scene) -> tuple[Floats, Floats, Floats]:

@@ -144,12 +144,12 @@ def _make_end(plane: bool) -> Any:
             q_x, q_y, q_z = batch[B.DASH_OF_EVENT + e], 0.0, 0.0
             e_old = batch[B.SPRING_OF_EVENT + 3 * NEXT + e] - batch[B.DASH_OF_EVENT + 3 * NEXT + e]
             if not plane:
-                p_x, p_y, p_z = turn(
-                    p_x, batch[B.SPRING_OF_EVENT + NEXT + e], batch[B.SPRING_OF_EVENT + 2 * NEXT + e],
-                    batch[at + B.NORMAL], batch[at + B.NORMAL + NEXT], batch[at + B.NORMAL + 2 * NEXT],
-                    batch[at + B.TWIST],
-                )  # fmt: skip
+                n_x, n_y = batch[at + B.NORMAL], batch[at + B.NORMAL + NEXT]
+                n_z, twist = batch[at + B.NORMAL + 2 * NEXT], batch[at + B.TWIST]
+                p_y, p_z = batch[B.SPRING_OF_EVENT + NEXT + e], batch[B.SPRING_OF_EVENT + 2 * NEXT + e]
                 q_y, q_z = batch[B.DASH_OF_EVENT + NEXT + e], batch[B.DASH_OF_EVENT + 2 * NEXT + e]
+                p_x, p_y, p_z = turn(p_x, p_y, p_z, n_x, n_y, n_z, twist)
+                q_x, q_y, q_z = turn(q_x, q_y, q_z, n_x, n_y, n_z, twist)
             # the overlap that the oscillator had when it began is in its spring
             late = (overlap - e_old / k_n) / c[P.DT] - closing
             ends, correction, f_n, push, rest, slid, until = end_contact(

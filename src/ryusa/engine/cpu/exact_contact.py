@@ -126,7 +126,8 @@ def _make_tangential(plane: bool) -> Any:
             if not plane:
                 work += s_y * (t_y + q_y + e_y + b_y) + s_z * (t_z + q_z + e_z + b_z)
                 stored += e_y * e_y - t_y * t_y + (e_z * e_z - t_z * t_z)
-            lost = -hdt * work - 0.5 * soft_s * stored
+            # springs held in the first step belong to the start: no interval lies before it
+            lost = -hdt * work - (0.5 * soft_s * stored if hdt > 0.0 else 0.0)
             dashpot_s = (0.0 if slid else lost) if given else dashpot_s
             sliding = (lost if slid else 0.0) if given else sliding
             share = (0.5 if slid else 1.0) if given else share
@@ -138,7 +139,9 @@ def _make_tangential(plane: bool) -> Any:
             closing, now = batch[B.CLOSING + l], batch[B.STATE + l]
             on_map = was == HELD and (now == HELD or now == ENDING)  # noqa: PLR1714, SIM109 (lanes)
             beyond = hdt * closing * (e_old + e_n) - 0.5 * (e_n * e_n - e_old * e_old) / k_n
-            batch[B.DASH_N + l] += hdt * closing * (f_old - e_old + f_n - e_n) + (0.0 if on_map else beyond)
+            batch[B.DASH_N + l] += hdt * closing * (f_old - e_old + f_n - e_n) + (
+                0.0 if on_map or hdt == 0.0 else beyond
+            )
             batch[B.DASH_S + l] += dashpot_s
             batch[B.SLIDE + l] += sliding
             batch[B.SLIDES + l] = 1.0 if share < 1.0 else 0.0

@@ -34,7 +34,7 @@ def _lost_in_slip(hdt: float, soft_s: float, s: Vector, t: Vector, q: Vector, e:
     for k in range(3):
         work += s[k] * (t[k] + q[k] + e[k] + b[k])
         stored += e[k] * e[k] - t[k] * t[k]
-    return -hdt * work - 0.5 * soft_s * stored
+    return -hdt * work - (0.5 * soft_s * stored if hdt > 0.0 else 0.0)
 
 
 @cache
@@ -65,9 +65,10 @@ def make_exact_contact(variant: KernelVariant, choice: LawChoice) -> Any:
         elif rebound:
             eta[M.ETA_N], eta[M.K_N] = _spring_immersed(choice, closing, a, b, c, m, w)
         k_n, k_s, eta_n, eta_s = eta[M.K_N], eta[M.K_S], eta[M.ETA_N], eta[M.ETA_S]
-        t_x, t_y, t_z = p_x, p_y, p_z
+        t_x, t_y, t_z, r_x, r_y, r_z = p_x, p_y, p_z, q_x, q_y, q_z
         if not plane_case:
             t_x, t_y, t_z = turn(p_x, p_y, p_z, n_x, n_y, n_z, twist)
+            r_x, r_y, r_z = turn(q_x, q_y, q_z, n_x, n_y, n_z, twist)
 
         now, f_n, e_n, until = HELD, normal_force(overlap, closing, k_n, eta_n), k_n * overlap, math.inf
         push, given, slid = f_n, False, False
@@ -79,7 +80,7 @@ def make_exact_contact(variant: KernelVariant, choice: LawChoice) -> Any:
                 rest = (overlap - e_old / k_n) / dt - closing
             now, rest, f_n, e_n, push, given, (g_x, g_y, g_z), (h_x, h_y, h_z), slid, until = _instant_step(
                 was, rest, overlap, closing, m_n, k_n, eta_n, m_t, k_s, eta_s, (t_x, t_y, t_z),
-                (t_x + q_x, t_y + q_y, t_z + q_z), slip, tension, (total, drop, cap_total), c,
+                (t_x + r_x, t_y + r_y, t_z + r_z), slip, tension, (total, drop, cap_total), c,
             )  # fmt: skip
         soft_s = 1.0 / k_s if k_s > 0.0 else 0.0
         if given:
@@ -98,9 +99,10 @@ def make_exact_contact(variant: KernelVariant, choice: LawChoice) -> Any:
             plane_case, n_x, n_y, n_z, f_n, e_x + b_x, e_y + b_y, e_z + b_z
         )
 
+        # springs held in the first step, before which no interval lies, belong to the start;
         # between two steps on the map the spring takes and gives what it holds; where a contact begins or
         # ends, what its force does beyond that is dissipated
-        on_map = was == HELD and now in (HELD, ENDING)
+        on_map = hdt == 0.0 or (was == HELD and now in (HELD, ENDING))
         beyond = hdt * closing * (e_old + e_n) - 0.5 * (e_n * e_n - e_old * e_old) / k_n
         dashpot_n = hdt * closing * (f_old - e_old + f_n - e_n) + (0.0 if on_map else beyond)
         totals[B_DASH_N] += weight * dashpot_n

@@ -8,6 +8,7 @@ import numpy as np
 from ryusa.engine.shared import block_statistics as S
 from ryusa.laws.rolling import epsd_stiffness, reduced_radius
 from ryusa.model import EngineBlock, Scene, State, Tally
+from ryusa.model.pair_springs import pair_springs
 from ryusa.model.scene import Floats
 from ryusa.model.tally import HELD, N_TERM, Term
 
@@ -127,9 +128,10 @@ def energy_of_change(before: Scene, scene: Scene, state: State, dropped: np.ndar
     elif len(dropped):
         given -= rolling_energy(before, state, dropped)
     if len(dropped):
-        law, gone = before.contact, state.contacts
+        gone = state.contacts
+        k_n, k_s = pair_springs(before, gone.i[dropped], gone.j[dropped])
         e_n = gone.f_n[dropped] - gone.dash_n[dropped]
-        given -= float(np.sum(0.5 * e_n**2 / law.k_n))
-        if law.k_s > 0.0:
-            given -= float(np.sum(0.5 * gone.spring_s[dropped] ** 2 / law.k_s))
+        given -= float(np.sum(0.5 * e_n**2 / np.where(gone.k_n[dropped] > 0.0, gone.k_n[dropped], k_n)))
+        if before.contact.k_s > 0.0:
+            given -= float(np.sum(0.5 * gone.spring_s[dropped] ** 2 / k_s[:, None]))
     return given

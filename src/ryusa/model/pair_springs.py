@@ -1,0 +1,54 @@
+"""Stiffness of the springs of single pairs, as the steps of a scene use them."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ryusa.laws.collision import effective_mass, effective_mass_tangential
+from ryusa.laws.contact import damping
+from ryusa.laws.contact_map import spring_of_map
+from ryusa.laws.families import ContactTiming
+from ryusa.model.scene import Floats, Scene
+
+Ints = NDArray[np.int64]
+
+
+def pair_springs(scene: Scene, i: Ints, j: Ints) -> tuple[Floats, Floats]:
+    """Normal and tangential stiffness of each pair [N/m], both of shape (n,).
+
+    Parameters
+    ----------
+    scene : law, masses and time step.
+    i, j : ids of each pair, shape (n,); i is a free grain, j a free grain, a fixed grain or a plane.
+
+    Notes
+    -----
+    They are those of the law, or with exact timing those of the map that goes through the points of its
+    oscillator (design/0014), which depend on the masses and the step. A dashpot that water chose at the touch
+    of a pair is not known here: its map has that of the dry restitution.
+    """
+    law, n = scene.contact, len(i)
+    k_n, k_s = np.full(n, law.k_n), np.full(n, law.k_s)
+    if law.timing != ContactTiming.EXACT or n == 0:
+        return k_n, k_s
+    beyond = np.full(scene.n_fixed + scene.n_plane, math.inf)
+    m = np.concatenate([scene.m + scene.m_added, beyond])
+    inertia = np.concatenate([scene.inertia, beyond])
+    r = 0.5 * np.concatenate([scene.d, scene.d_fixed, np.full(scene.n_plane, math.inf)])
+    both = np.column_stack([m[i], r[i], inertia[i], m[j], r[j], inertia[j]])
+    kinds, place = np.unique(both, axis=0, return_inverse=True)
+    found = np.array([_springs_of_map(scene, *(float(one) for one in kind)) for kind in kinds])[place.ravel()]
+    return found[:, 0], found[:, 1]
+
+
+def _springs_of_map(
+    scene: Scene, m_i: float, r_i: float, inertia_i: float, m_j: float, r_j: float, inertia_j: float
+) -> tuple[float, float]:
+    law = scene.contact
+    m_n = effective_mass(m_i, m_j)
+    m_t = effective_mass_tangential(m_i, r_i, inertia_i, m_j, r_j, inertia_j, bool(scene.rotation))
+    eta_n = law.eta_n + damping(law.zeta_n, law.k_n, m_n)
+    eta_s = law.eta_s + damping(law.zeta_s, law.k_s, m_t)
+    k_s = spring_of_map(law.k_s, eta_s, m_t, scene.dt) if law.k_s > 0.0 else 0.0
+    return spring_of_map(law.k_n, eta_n, m_n, scene.dt), k_s
