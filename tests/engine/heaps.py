@@ -82,7 +82,8 @@ def heap(plane_case=False, walls=False, seed=5, stir=0.1, **more):
     x = np.column_stack([a * pitch, b * pitch, (c + 0.97) * 0.985 * D])
     x += rng.uniform(-0.01, 0.01, x.shape) * D * [1.0, not plane_case, 1.0]
     bed = np.column_stack([a * pitch, b * pitch, rng.uniform(-0.02, 0.02, len(a)) * D])[c == 0]
-    kind = {"events": EventRule.ALL, "friction": 0.3, "stiffness": 2e3} | more
+    at_steps = {"timing": ContactTiming.AT_STEPS}
+    kind = {"events": EventRule.ALL, "friction": 0.3, "stiffness": 2e3} | at_steps | more
     planes = [("lid", (0.0, 0.0, (high + 0.45) * D), (0.0, 0.0, -1.0))] if walls else []
     return scene(
         x, D * (1.0 + rng.uniform(-0.01, 0.005, len(x))), x_fixed=bed, d_fixed=D, planes=planes,

@@ -167,6 +167,7 @@ def test_it_finds_every_pair_that_a_search_of_all_pairs_finds(create, seed):
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")  # inf - inf, which numpy's scalars tell of
 def test_faults_name_grain_step_and_remedy_as_on_the_cpu(create):
     near, quiet = [[0.0, 0.0, 0.0], [0.0, 0.0, 1.01 * D]], {"gravity": 0.0, "events": EventRule.NONE}
+    quiet["timing"] = ContactTiming.AT_STEPS
     soft, first = scene(near, D, v=[[0, 0, 0], [0, 0, -2.0]], stiffness=100.0, **quiet)
     stiff, still = scene(near, D, v=[[0, 0, 0], [0, 0, -0.5]], **quiet)
     fast, thrown = scene([[0.0, 0.0, 0.0]], D, v=[[0.0, 0.0, -500.0]], **quiet)

@@ -13,6 +13,7 @@ from ryusa.build import scene
 from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.engine.shared.parameters import LARGEST_DISPLACEMENT
 from ryusa.errors import GrainLost, ListUnsafe, OverlapTooLarge
+from ryusa.laws.families import ContactTiming
 
 HIDDEN = 0.032  # of the smallest diameter: what two grains may overlap between two steps
 DT = 1e-6  # s
@@ -25,7 +26,7 @@ def shot(x, v, d, share=BELOW, **more):
     speed = share * LARGEST_DISPLACEMENT * min(sizes) / DT
     fixed, first = scene(
         x, d, v=speed * np.asarray(v, dtype=float), gravity=0.0, rotation=False, dt=DT,
-        stiffness=1e4, friction=0.0, **more,
+        stiffness=1e4, friction=0.0, timing=ContactTiming.AT_STEPS, **more,
     )  # fmt: skip
     return replace(fixed, world_low=(-1.0,) * 3, world_high=(1.0,) * 3), first
 
@@ -157,7 +158,13 @@ def test_the_impact_on_a_wall_is_detected_and_the_grain_does_not_pass_it(phase):
 def test_a_grain_shot_through_a_closed_row_of_bed_grains_is_detected(aside, stiffness):
     row = np.column_stack([np.arange(-5, 6) * D, np.zeros(11), np.zeros(11)])
     fixed, first = scene(
-        [[aside * D, 0, 3 * D]], D, v=[[0, 0, -8.0]], x_fixed=row, plane_case=True, stiffness=stiffness
+        [[aside * D, 0, 3 * D]],
+        D,
+        v=[[0, 0, -8.0]],
+        x_fixed=row,
+        plane_case=True,
+        stiffness=stiffness,
+        timing=ContactTiming.AT_STEPS,
     )
     engine = CpuEngine()
     engine.load(fixed, first)

@@ -32,6 +32,7 @@ from ryusa.errors import (
     RunError,
     WaterError,
 )
+from ryusa.laws.families import ContactTiming
 from ryusa.results import Results, schema
 from ryusa.running import checkpoint_scheduler, loop, recorder
 from ryusa.running import folder as folder_module
@@ -128,7 +129,16 @@ def test_created_energy_stops_the_run(tmp_path: Path) -> None:
     )
     bed = np.column_stack([np.arange(-1, 12) * D, np.zeros((13, 2))])
     sides = [("left", (-D, 0, 0), (1, 0, 0)), ("right", (11.5 * D, 0, 0), (-1, 0, 0))]
-    made = scene(x, D, x_fixed=bed, planes=sides, plane_case=True, steps_per_contact=2.1, restitution=0.9)
+    made = scene(
+        x,
+        D,
+        x_fixed=bed,
+        planes=sides,
+        plane_case=True,
+        steps_per_contact=2.1,
+        restitution=0.9,
+        timing=ContactTiming.AT_STEPS,
+    )
     fault = stopped(by_hand(made), tmp_path / "run", EnergyCreated)
     assert "J that no force supplied" in fault.cause
     assert "time.steps_per_contact" in fault.hint
@@ -152,7 +162,14 @@ def test_a_small_grain_in_the_bed_limits_the_speed_of_a_large_one(tmp_path: Path
     bed = np.column_stack([np.arange(-4, 5) * D, np.zeros((9, 2))])
     sizes = np.where(np.arange(9) == 4, 0.1 * D, D)
     made = scene(
-        [[0, 0, 40 * D]], D, v=[[0, 0, -5.0]], x_fixed=bed, d_fixed=sizes, gravity=1e4, stiffness=1e4
+        [[0, 0, 40 * D]],
+        D,
+        v=[[0, 0, -5.0]],
+        x_fixed=bed,
+        d_fixed=sizes,
+        gravity=1e4,
+        stiffness=1e4,
+        steps_per_contact=50.0,
     )
     fault = stopped(by_hand(made, frames=1e-4), tmp_path / "run", ListUnsafe)
     assert fault.grain == 0

@@ -33,6 +33,7 @@ SHORT = {
     "record.frames": "5 ms",
     "record.events": "none",
     "record.settle": "0.1 s",
+    "contact.timing": "at steps",
     "time.steps_per_contact": "20",
 }
 

@@ -303,6 +303,9 @@ def test_a_case_with_a_table_is_resumed_from_its_run_folder_alone(tmp_path: Path
     assert differences(tmp_path / "whole", tmp_path / "hurt") == []
 
 
+MEANS = ("travel_over_d", "restitution", "restitution_shear")
+
+
 @pytest.mark.parametrize("kind", ["dry-3d", "two-way", "saltation"])
 @pytest.mark.parametrize("first", ["0.05 s", "0.0717 s"])
 def test_a_complete_run_is_lengthened_to_the_bits_of_a_longer_one(
@@ -317,10 +320,18 @@ def test_a_complete_run_is_lengthened_to_the_bits_of_a_longer_one(
     lengthened = made(tmp_path / "run", "0.12 s", resume=True)
     assert lengthened.complete
     assert lengthened.case["stop"]["time"] == pytest.approx(0.12)
-    # its mean is summed in two stretches instead of one
-    assert set(differences(tmp_path / "long", tmp_path / "run")) <= {"summary.travel_over_d"}
-    mean, other = (one.summary["travel_over_d"]["mean"] or 0.0 for one in (lengthened, longer))
-    assert mean == pytest.approx(other, rel=1e-12)
+    summed = {f"summary.{name}" for name in MEANS}  # in two stretches instead of one
+    assert set(differences(tmp_path / "long", tmp_path / "run")) <= summed
+    for name in MEANS:
+        found, other = (numbers_in(one.summary[name]) for one in (lengthened, longer))
+        assert found == pytest.approx(other, rel=1e-12)
+
+
+def numbers_in(one: Any) -> list[float]:
+    """All numbers of nested plain data, in order."""
+    if isinstance(one, dict):
+        return [number for part in one.values() for number in numbers_in(part)]
+    return [float(one)] if isinstance(one, int | float) else []
 
 
 def test_an_end_that_the_run_has_passed_is_refused(whole: Results, tmp_path: Path) -> None:

@@ -62,8 +62,7 @@ def scene(
     gravity, slope : g [m/s2] and bed slope [rad], down towards +x.
     plane_case : motion in x-z only; grains interact only if their y is exactly equal (a lane).
     period : periods in x and y [m]; inf where open, as y must be in a plane scene.
-    dt : time step [s]; by default the shortest contact over `steps_per_contact`, which is 10 with exact timing
-        and 50 with contacts that begin and end at steps.
+    dt : time step [s]; by default the shortest contact over `steps_per_contact`: 10 if exact, else 50.
 
     Returns
     -------
@@ -90,10 +89,7 @@ def scene(
     fluid = water or Water()
     e_s = restitution if restitution_shear is None else restitution_shear
     law = contact or _contact_law(stiffness, shear_ratio, friction, restitution, e_s, slip, tension, timing)
-    step = dt
-    if step is None:
-        fewest = STEPS_PER_CONTACT[ContactTiming(law.timing)] if steps_per_contact is None else steps_per_contact
-        step = _shortest_contact(placement.d, density, fluid, law) / fewest
+    step = _step(placement.d, density, fluid, law, steps_per_contact) if dt is None else dt
     slab_width = float(placement.d.mean()) if plane_case else math.nan
     laws = Laws(
         density=density, contact=law, dt=step, rolling=rolling or RollingLaw(), water=fluid, g=gravity,
@@ -172,11 +168,14 @@ def _contact_law(
     )
 
 
-def _shortest_contact(d: Floats, density: float, water: Water, contact: ContactLaw) -> float:
-    """Duration of the shortest contact that can occur [s]."""
+def _step(
+    d: Floats, density: float, water: Water, contact: ContactLaw, steps_per_contact: float | None
+) -> float:
+    """Time step [s]: the shortest contact that can occur over its number of steps."""
     m, m_added, _, _ = masses(d, density, math.pi / 6, water)
     lightest = float(np.min(m + m_added)) / (2.0 if len(d) > 1 else 1.0)
-    return collision.shortest_contact(lightest, contact.k_n, contact.zeta_n, contact.tension)
+    shortest = collision.shortest_contact(lightest, contact.k_n, contact.zeta_n, contact.tension)
+    return shortest / (steps_per_contact or STEPS_PER_CONTACT[ContactTiming(contact.timing)])
 
 
 def _refuse(numbers: Mapping[str, float | None], fits: Callable[[float], bool], allowed: str) -> None:

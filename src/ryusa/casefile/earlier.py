@@ -14,16 +14,17 @@ from ryusa.casefile.case import Case
 BEFORE = {"contact.timing": "at steps"}  # of keys whose default is not what was done before there was the key
 
 
-def completed(was: Mapping[str, Any]) -> dict[str, Any]:
-    """Give a resolved case with the keys that it lacks.
+def completed(was: Mapping[str, Any], now: Mapping[str, Any]) -> dict[str, Any]:
+    """Give a resolved case with the keys of the present one that it lacks.
 
     Parameters
     ----------
     was : a case as case.json holds it, written by this version or an earlier one.
+    now : the present case in the same form.
 
-    >>> completed({"contact": {"stiffness": 1.0e4}})["contact"]["timing"]
+    >>> completed({"contact": {"stiffness": 1.0e4}}, {"contact": {"timing": "exact"}})["contact"]["timing"]
     'at steps'
-    >>> completed({"record": {"frames": 0.01}})["record"]["forces"]
+    >>> completed({"record": {"frames": 0.01}}, {"record": {"forces": True}})["record"]["forces"]
     False
     """
     found = dict(was)
@@ -31,7 +32,9 @@ def completed(was: Mapping[str, Any]) -> dict[str, Any]:
         field = Case.model_fields.get(section)
         kind = field.annotation if field is not None else None
         if isinstance(given, Mapping) and isinstance(kind, type) and issubclass(kind, BaseModel):
-            found[section] = _defaults(section, kind) | dict(given)
+            known = now.get(section) or {}
+            lacking = {key: one for key, one in _defaults(section, kind).items() if key in known}
+            found[section] = lacking | dict(given)
     return found
 
 
@@ -49,6 +52,9 @@ def kept_choices(was: Mapping[str, Any]) -> dict[str, str]:
     >>> kept_choices({"contact": {"timing": "exact"}}), kept_choices({"contact": {}})
     ({'contact.timing': 'exact'}, {'contact.timing': 'at steps'})
     """
-    whole = completed(was)
     split = {key: key.split(".") for key in BEFORE}
-    return {key: str(whole[section][name]) for key, (section, name) in split.items() if section in whole}
+    return {
+        key: str(was[section].get(name, BEFORE[key]))
+        for key, (section, name) in split.items()
+        if section in was
+    }

@@ -85,10 +85,10 @@ def find_resume_point(
         raise CheckpointError(
             f"{folder}: written in format {before.get('format')!r}, but this ryusa writes {schema.FORMAT}"
         )
-    was = completed(read_json(folder / schema.CASE_JSON, missing_ok=True))
+    was = read_json(folder / schema.CASE_JSON, missing_ok=True)
     if not was or not numbered(folder, schema.SCENE_NAME):
         return None  # killed at its start
-    changed = changes_of(was, resolved)
+    changed = changes_of(completed(was, resolved), resolved)
     complete = before.get("status") == schema.COMPLETE
     hard = [one for one in changed if one.split(".", 1)[0] not in FREE_KEYS]
     if hard and complete:
