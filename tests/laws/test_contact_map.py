@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from ryusa.laws import collision
@@ -17,6 +17,7 @@ from ryusa.laws.contact_map import (
     end_in_step,
     free_response,
     frequency_squared,
+    passing,
     spring_of_map,
     time_of_release,
     velocity_of_map,
@@ -108,10 +109,12 @@ def test_a_force_that_has_ended_ends_at_once_and_one_that_never_ends_is_not_ende
 def test_a_contact_that_began_within_a_step_is_then_the_oscillator_from_its_touch(zeta, phase, since, v):
     _, a, q = oscillator(zeta)
     dt = phase / math.sqrt(K / M)
-    found, y, rate, v_new = begin_in_step(v * since * dt, v, dt, a, q)
+    found, touch, y, rate, brake = begin_in_step(v * since * dt, v, 0.0, dt, a, q)
+    assert touch == v
     assert found == pytest.approx(since * dt)
     assert (y, rate) == pytest.approx(flow(0.0, v, since * dt, a, q), rel=1e-12)
-    assert v * since * dt + dt * v_new == pytest.approx(flow(0.0, v, (1.0 + since) * dt, a, q)[0], rel=1e-10)
+    after = v * since * dt + dt * (v - brake)
+    assert after == pytest.approx(flow(0.0, v, (1.0 + since) * dt, a, q)[0], rel=1e-10)
 
 
 @settings(deadline=None)
@@ -158,3 +161,18 @@ def test_slip_that_sticks_in_space_is_that_in_a_plane_turned():
     turned = slip_within_step(1e-3, 1e-3, 0.0, a, q, M, 0.3, 0.0, 0.4, 0.12, 0.0, 0.16, *rest)
     assert turned[0:9:3] == pytest.approx([0.6 * x for x in flat[0:9:3]])
     assert turned[2:9:3] == pytest.approx([0.8 * x for x in flat[0:9:3]])
+
+
+@settings(deadline=None)
+@given(v=st.floats(0.1, 10.0), along=st.floats(0.0, 10.0), since=st.floats(0.0, 0.01))
+def test_free_grains_that_pass_each_other_touch_where_their_straight_ways_meet(v, along, since):
+    reach = 1.0  # it touched `since` before, at this closing speed and speed along the surface
+    x, z = along * since, reach - v * since
+    distance = math.hypot(x, z)
+    overlap, closing = reach - distance, (v * z - along * x) / distance
+    assume(overlap > 1e-12 and closing > 0.05)
+    curve = passing(v * v + along * along, closing, distance)
+    found, touch, *_ = begin_in_step(overlap, closing, curve, 0.01, 0.0, 0.0)
+    third_order = 2.0 * (v + along) ** 3 * since**3
+    assert found == pytest.approx(since, abs=third_order / closing + 1e-8)
+    assert touch == pytest.approx(v, abs=third_order / max(since, 1e-3) + 1e-8)

@@ -77,7 +77,8 @@ UNITS = {
     "contact_map.free_response": "s, 1/s, 1/s2 -> s, -",
     "contact_map.velocity_of_map": "m, m/s, s, 1/s, 1/s2 -> m/s",
     "contact_map.time_of_release": "m, m/s, 1/s, 1/s2, bool -> s",
-    "contact_map.begin_in_step": "m, m/s, s, 1/s, 1/s2 -> s, m, m/s, m/s",
+    "contact_map.begin_in_step": "m, m/s, m/s2, s, 1/s, 1/s2 -> s, m/s, m, m/s, m/s",
+    "contact_map.passing": "m2/s2, m/s, m -> m/s2",
     "contact_map.end_in_step": "m, m/s, s, s, 1/s, 1/s2 -> m/s, m/s",
     "contact_step.contact_kinematics": (
         "bool, m, m, m, m, m, m/s, m/s, m/s, rad/s, rad/s, rad/s, rad/s, rad/s, rad/s, s"

@@ -227,13 +227,17 @@ def time_of_release(x: float, v: float, a: float, q: float, tension: bool) -> fl
 
 
 @step_law
-def begin_in_step(x: float, v: float, dt: float, a: float, q: float) -> tuple[float, float, float, float]:
+def begin_in_step(
+    x: float, v: float, curve: float, dt: float, a: float, q: float
+) -> tuple[float, float, float, float, float]:
     """Let a contact that began within the last step be the oscillator from its true instant of touch.
 
     Parameters
     ----------
     x : overlap at the first step that finds the grains in touch [m], > 0.
     v : closing speed of that step [m/s], > 0.
+    curve : rate at which the closing speed of free grains falls as they pass each other [m/s2], as in
+        `passing`.
     dt : time step [s].
     a : decay rate [1/s].
     q : square of the angular frequency [1/s2].
@@ -241,19 +245,49 @@ def begin_in_step(x: float, v: float, dt: float, a: float, q: float) -> tuple[fl
     Returns
     -------
     since : time since touch [s].
+    v_touch : closing speed at touch [m/s].
     y : overlap that the oscillator has now [m]; less than x, since its force has braked the pair.
     rate : its rate now [m/s].
-    v_new : mean closing speed over the coming step [m/s] that brings the overlap from x to where the
-        oscillator will be. The step after has to take the closing speed (y_new - y)/dt into its map.
+    brake : closing speed that its force takes within the coming step [m/s], so that the overlap comes to
+        where the oscillator will be. The step after has to take the closing speed (y_new - y)/dt into its
+        map.
 
-    >>> since, y, rate, v_new = begin_in_step(0.5, 1.0, 1.0, 0.0, 0.0)
-    >>> since, y, rate, v_new
-    (0.5, 0.5, 1.0, 1.0)
+    Notes
+    -----
+    Source: derived, design/0014: x = v since + curve since**2/2 of a free flight, v_touch = v + curve since.
+
+    >>> begin_in_step(0.5, 1.0, 0.0, 1.0, 0.0, 0.0)
+    (0.5, 1.0, 0.5, 1.0, 0.0)
+    >>> begin_in_step(1.5, 1.0, 1.0, 2.0, 0.0, 0.0)
+    (1.0, 2.0, 1.5, 2.0, 0.0)
     """
-    since = min(x / v, dt)
+    v_touch = math.sqrt(v * v + 2.0 * curve * x)
+    since = min(2.0 * x / (v + v_touch), dt)
     now, rate = free_response(since, a, q)
     then, _ = free_response(since + dt, a, q)
-    return since, v * now, v * rate, (v * then - x) / dt
+    bent = 0.5 * curve * since * since
+    brake = (v_touch * (dt - then) + x + bent) / dt
+    return since, v_touch, v_touch * now - bent, v_touch * rate, brake
+
+
+@step_law
+def passing(u_square: float, v: float, distance: float) -> float:
+    """Rate at which the closing speed of two free grains falls as they pass each other [m/s2].
+
+    Parameters
+    ----------
+    u_square : square of their relative velocity [m2/s2].
+    v : closing speed [m/s].
+    distance : of their centres [m]; inf of a grain and a plane.
+
+    Notes
+    -----
+    Source: the second derivative of the distance of two points in uniform motion, (u**2 - v**2)/distance.
+
+    >>> passing(5.0, 1.0, 2.0), passing(5.0, 1.0, math.inf)
+    (2.0, 0.0)
+    """
+    return (u_square - v * v) / distance
 
 
 @step_law

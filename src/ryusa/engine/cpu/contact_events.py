@@ -23,6 +23,7 @@ from ryusa.engine.shared.contact_instants import (
 from ryusa.engine.shared.kernel import FAST, inner
 from ryusa.engine.shared.variant import LawChoice
 from ryusa.laws.collision import effective_mass, effective_mass_tangential
+from ryusa.laws.contact_map import passing
 from ryusa.laws.dispatch import cap_total, slip_drops, slip_total
 from ryusa.laws.geometry import turn
 
@@ -55,6 +56,8 @@ def _pack(
     for e in range(n):
         l = int(batch[lanes + e])
         i, j = i_of[selected[l]], j_of[selected[l]]
+        u_x, u_z = batch[B.RELATIVE_VELOCITY + 4 * l], batch[B.RELATIVE_VELOCITY + 4 * l + 2]
+        u_y = batch[B.RELATIVE_VELOCITY + 4 * l + 1]  # 0 in a plane
         for row in range(B.N_INPUT):
             batch[B.EVENT + row * NEXT + e] = batch[B.OVERLAP + row * NEXT + l]
         for a in range(4):
@@ -66,6 +69,10 @@ def _pack(
         batch[B.INERTIA_OF_EVENT + e], batch[B.INERTIA_OF_EVENT + NEXT + e] = inertia[i], inertia[j]
         batch[B.RADIUS_OF_EVENT + e] = batch[B.SPIN_I + 4 * l + 3]
         batch[B.RADIUS_OF_EVENT + NEXT + e] = batch[B.SPIN_J + 4 * l + 3]
+        batch[B.CURVE_OF_EVENT + e] = passing(
+            u_x * u_x + u_y * u_y + u_z * u_z, batch[B.CLOSING + l],
+            batch[B.SPIN_I + 4 * l + 3] + batch[B.SPIN_J + 4 * l + 3] - batch[B.OVERLAP + l],
+        )  # fmt: skip
     return (n + 7) // 8 * 8
 
 
@@ -123,8 +130,8 @@ def _make_begin(plane: bool) -> Any:
             m_n, m_t = _masses(e, rotates, batch)
             at = B.EVENT - B.OVERLAP + e
             f_n, e_n, spring, rest, slid = begin_contact(
-                batch[at + B.OVERLAP], batch[at + B.CLOSING], m_n, batch[at + B.K_N],
-                batch[B.ETA_N_OF_EVENT + e], m_t, batch[at + B.K_S], batch[at + B.ETA_S],
+                batch[at + B.OVERLAP], batch[at + B.CLOSING], batch[B.CURVE_OF_EVENT + e], m_n,
+                batch[at + B.K_N], batch[B.ETA_N_OF_EVENT + e], m_t, batch[at + B.K_S], batch[at + B.ETA_S],
                 _slip(e, plane, batch), rules, c,
             )  # fmt: skip
             _answer(e, f_n, e_n, f_n, BEGAN, 1.0, spring, rest, 1.0 if slid else 0.0, math.inf, 0.0, batch)
@@ -151,7 +158,7 @@ def _make_end(plane: bool) -> Any:
                 p_x, p_y, p_z = turn(p_x, p_y, p_z, n_x, n_y, n_z, twist)
                 q_x, q_y, q_z = turn(q_x, q_y, q_z, n_x, n_y, n_z, twist)
             # the overlap that the oscillator had when it began is in its spring
-            late = (overlap - e_old / k_n) / c[P.DT] - closing
+            late = (overlap - e_old / k_n) / c[P.DT] - closing - 0.5 * c[P.DT] * batch[B.CURVE_OF_EVENT + e]
             ends, correction, f_n, push, rest, slid, until = end_contact(
                 late if batch[B.STATE_OF_EVENT + e] == BEGAN else 0.0, overlap, closing, m_n, k_n,
                 batch[B.ETA_N_OF_EVENT + e], m_t, batch[at + B.K_S], batch[at + B.ETA_S], (p_x, p_y, p_z),

@@ -47,8 +47,8 @@ def make_exact_contact(variant: KernelVariant, choice: LawChoice) -> Any:
     @device
     def contact(
         a: int, b: int, weight: float, was: int, hdt: float, c: Any, m: Any, inertia: Any, w: Any,
-        normal: Vector, overlap: float, closing: float, slip: Vector, twist: float, eta: Any, row: Any,
-        totals: Any,
+        normal: Vector, overlap: float, closing: float, curve: float, slip: Vector, twist: float,
+        eta: Any, row: Any, totals: Any,
     ) -> tuple[int, float, float, bool, float, Vector, Vector]:  # fmt: skip
         """Forces of a pair in contact; parameters and results as those of `pair.make_contact`."""
         dt = c[P.DT]
@@ -77,9 +77,9 @@ def make_exact_contact(variant: KernelVariant, choice: LawChoice) -> Any:
             m_n = effective_mass(m[a], m[b])
             m_t = effective_mass_tangential(m[a], w[a, 3], inertia[a], m[b], w[b, 3], inertia[b], rotation)
             if was == BEGAN:  # the overlap that the oscillator had is in its spring
-                rest = (overlap - e_old / k_n) / dt - closing
+                rest = (overlap - e_old / k_n) / dt - closing - 0.5 * dt * curve
             now, rest, f_n, e_n, push, given, (g_x, g_y, g_z), (h_x, h_y, h_z), slid, until = _instant_step(
-                was, rest, overlap, closing, m_n, k_n, eta_n, m_t, k_s, eta_s, (t_x, t_y, t_z),
+                was, rest, overlap, closing, curve, m_n, k_n, eta_n, m_t, k_s, eta_s, (t_x, t_y, t_z),
                 (t_x + r_x, t_y + r_y, t_z + r_z), slip, tension, (total, drop, cap_total), c,
             )  # fmt: skip
         soft_s = 1.0 / k_s if k_s > 0.0 else 0.0

@@ -51,6 +51,7 @@ def make_contact(variant: KernelVariant, choice: LawChoice) -> Any:
         normal: Vector,
         overlap: float,
         closing: float,
+        curve: float,
         slip: Vector,
         twist: float,
         eta: Any,
@@ -66,6 +67,7 @@ def make_contact(variant: KernelVariant, choice: LawChoice) -> Any:
         was : state after the last step (shared/contact_instants.py); if 0 the row holds nothing.
         hdt : half a step, 0 in the first [s].
         normal, overlap, closing, slip, twist : from `contact_kinematics` [-], [m], [m/s], [m/s], [rad].
+        curve : from `contact_map.passing` [m/s2]; only exact timing takes it.
         eta, row : dashpots and memory of the pair.
 
         Returns

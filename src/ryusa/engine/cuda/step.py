@@ -36,6 +36,7 @@ from ryusa.engine.shared.status import (
     STOP_UNSAFE,
 )
 from ryusa.engine.shared.variant import KernelVariant, LawChoice
+from ryusa.laws.contact_map import passing
 from ryusa.laws.contact_step import contact_kinematics
 from ryusa.laws.families import Rolling
 from ryusa.laws.geometry import wrap
@@ -152,9 +153,10 @@ def make_step(variant: KernelVariant, choice: LawChoice, shape: LaunchShape) -> 
                 weight = 1.0 if own else 0.0
                 if was != 0 or overlap > 0.0:
                     row, live = rows[k], overlap > 0.0
+                    curve = passing(u_x * u_x + u_y * u_y + u_z * u_z, closing, w[a, 3] + w[b, 3] - overlap)
                     now, f_n, raw, slides, until, (p_x, p_y, p_z), turned = contact(
-                        a, b, weight, was, hdt, c, m, inertia, w, normal, overlap, closing, slip, twist,
-                        pairs.eta[k], row, totals,
+                        a, b, weight, was, hdt, c, m, inertia, w, normal, overlap, closing, curve, slip,
+                        twist, pairs.eta[k], row, totals,
                     )  # fmt: skip
                     lives[k] = now
                     f_x, f_y, f_z = f_x + sign * p_x, f_y + sign * p_y, f_z + sign * p_z

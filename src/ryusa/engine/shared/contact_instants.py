@@ -77,16 +77,16 @@ def oscillators(
 
 @inner(fastmath=FAST, forceinline=True)
 def begin_contact(
-    overlap: float, closing: float, m: float, k_d: float, eta_d: float, m_t: float, k_sd: float,
+    overlap: float, closing: float, curve: float, m: float, k_d: float, eta_d: float, m_t: float, k_sd: float,
     eta_sd: float, s: Vector, rules: Rules, c: Any,
 ) -> tuple[float, float, Vector, Vector, bool]:  # fmt: skip
     """Normal force and that of its spring [N], tangential force as in `instant_step`, and whether it slid."""
     dt, k_s, cohesion, mu = c[P.DT], c[P.K_S], c[P.COHESION], c[P.MU]
     total, drop, cap_total = rules
     a, q, _, eta_s = oscillators(m, eta_d, m_t, eta_sd, c)
-    since, y, rate, v_new = begin_in_step(overlap, closing, dt, a, q)
+    since, v_touch, y, rate, brake = begin_in_step(overlap, closing, curve, dt, a, q)
     p_x, p_y, p_z, s_x, s_y, s_z, _, _, _, slid = slip_within_step(
-        since, 0.0, closing, a, q, m, 0.0, 0.0, 0.0, s[0], s[1], s[2], k_s, eta_s, m_t, cohesion, mu, total,
+        since, 0.0, v_touch, a, q, m, 0.0, 0.0, 0.0, s[0], s[1], s[2], k_s, eta_s, m_t, cohesion, mu, total,
         drop, cap_total,
     )  # fmt: skip
     _, _, _, _, _, _, way_x, way_y, way_z, slid_too = slip_within_step(
@@ -100,7 +100,7 @@ def begin_contact(
         m_t * (way_y / dt - s[1]) / dt - e[1],
         m_t * (way_z / dt - s[2]) / dt - e[2],
     )
-    return m * (closing - v_new) / dt, k_d * y, e, b, slid + slid_too > 0.0
+    return m * brake / dt, k_d * y, e, b, slid + slid_too > 0.0
 
 
 @inner(fastmath=FAST, forceinline=True)
@@ -162,8 +162,9 @@ def end_contact(
 
 @inner()
 def instant_step(
-    state: int, rest: float, overlap: float, closing: float, m: float, k_d: float, eta_d: float, m_t: float,
-    k_sd: float, eta_sd: float, p: Vector, f_t: Vector, s: Vector, tension: bool, rules: Rules, c: Any,
+    state: int, rest: float, overlap: float, closing: float, curve: float, m: float, k_d: float, eta_d: float,
+    m_t: float, k_sd: float, eta_sd: float, p: Vector, f_t: Vector, s: Vector, tension: bool, rules: Rules,
+    c: Any,
 ) -> tuple[int, float, float, float, float, bool, Vector, Vector, bool, float]:  # fmt: skip
     """Forces of a pair in a step that begins or ends its contact, or may end it.
 
@@ -172,6 +173,7 @@ def instant_step(
     state : of the pair after the last step.
     rest : correction of the closing speed that the last step left [m/s].
     overlap, closing : as `contact_kinematics` gives them [m], [m/s].
+    curve : as `contact_map.passing` gives it [m/s2].
     m, m_t : effective masses in the normal and the tangential direction [kg].
     k_d, eta_d, k_sd, eta_sd : stiffness [N/m] and dashpots [N s/m] of the map.
     p, f_t : tangential spring force, and whole tangential force, on i in the last step [N].
@@ -200,7 +202,9 @@ def instant_step(
         now, until = ENDED if overlap > 0.0 else APART, -math.inf if state >= ENDED else 0.0
         return now, 0.0, 0.0, 0.0, 0.0, True, none, none, False, until
     if kind == BEGINS:
-        f_n, e_n, e, b, slid = begin_contact(overlap, closing, m, k_d, eta_d, m_t, k_sd, eta_sd, s, rules, c)
+        f_n, e_n, e, b, slid = begin_contact(
+            overlap, closing, curve, m, k_d, eta_d, m_t, k_sd, eta_sd, s, rules, c
+        )
         return BEGAN, 0.0, f_n, e_n, f_n, True, e, b, slid, math.inf
     if kind == MAY_END:
         rest = rest if state == BEGAN else 0.0
