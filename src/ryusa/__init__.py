@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from ryusa.model import Scene, State
     from ryusa.results import Results
     from ryusa.running.runner import run, run_scene
+    from ryusa.studies.soften import soften
 
 __version__ = "0.1.0"
 
@@ -29,9 +30,21 @@ _LAZY = {
     "measure": ("ryusa.measure", ""),
     "run": ("ryusa.running.runner", "run"),
     "run_scene": ("ryusa.running.runner", "run_scene"),
+    "soften": ("ryusa.studies.soften", "soften"),
 }
 
-__all__ = ["Case", "Results", "Scene", "State", "__version__", "load", "measure", "run", "run_scene"]
+__all__ = [
+    "Case",
+    "Results",
+    "Scene",
+    "State",
+    "__version__",
+    "load",
+    "measure",
+    "run",
+    "run_scene",
+    "soften",
+]
 
 
 def __getattr__(name: str) -> Any:

@@ -45,8 +45,12 @@ class ErrorLimit:
         return f"{self.amount:g} {self.unit}" if self.unit else f"{100.0 * self.amount:g} %"
 
 
-def _reader(unit: str) -> Callable[[object], ErrorLimit | None]:
-    """Reader of "2 %", or where there is a unit also of an error in it."""
+def limit_reader(unit: str) -> Callable[[object], ErrorLimit | None]:
+    """Return a reader of "2 %", and where there is a unit also of an error in it.
+
+    >>> limit_reader("m")("2 %"), limit_reader("m")("1 mm")
+    (ErrorLimit(amount=0.02, unit=''), ErrorLimit(amount=0.001, unit='m'))
+    """
     needed = "needs a share of the average such as '2 %'"
     needed += f", or an error in {unit} such as '1e-6 {unit}'" if unit else ""
 
@@ -82,10 +86,16 @@ def _schema(*examples: str) -> WithJsonSchema:
 
 
 _PLAIN = PlainSerializer(_data)
-Share = Annotated[ErrorLimit | None, PlainValidator(_reader("")), _PLAIN, _schema("2 %")]
-ErrorOfLength = Annotated[ErrorLimit | None, PlainValidator(_reader("m")), _PLAIN, _schema("2 %", "0.1 mm")]
-ErrorOfSpeed = Annotated[ErrorLimit | None, PlainValidator(_reader("m/s")), _PLAIN, _schema("2 %", "1 mm/s")]
-ErrorOfFlux = Annotated[ErrorLimit | None, PlainValidator(_reader("m2/s")), _PLAIN, _schema("2 %", "1 mm2/s")]
+Share = Annotated[ErrorLimit | None, PlainValidator(limit_reader("")), _PLAIN, _schema("2 %")]
+ErrorOfLength = Annotated[
+    ErrorLimit | None, PlainValidator(limit_reader("m")), _PLAIN, _schema("2 %", "0.1 mm")
+]
+ErrorOfSpeed = Annotated[
+    ErrorLimit | None, PlainValidator(limit_reader("m/s")), _PLAIN, _schema("2 %", "1 mm/s")
+]
+ErrorOfFlux = Annotated[
+    ErrorLimit | None, PlainValidator(limit_reader("m2/s")), _PLAIN, _schema("2 %", "1 mm2/s")
+]
 
 
 class PrecisionSection(Section):

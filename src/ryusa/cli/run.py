@@ -205,7 +205,7 @@ def resume(
         overrides, engine = origin.get("overrides"), origin.get("engine")
         given = {str(key): str(one) for key, one in overrides.items()} if isinstance(overrides, dict) else {}
         kept = kept_choices(read_json(folder / schema.CASE_JSON, missing_ok=True))
-        found = read(folder / schema.CASE_TOML, kept | given | _overrides(settings))
+        found = read(folder / schema.CASE_TOML, kept | given | overrides_of(settings))
         from ryusa.running.runner import run as run_case
 
         signal.raise_if_stopped("before the first step; nothing was changed")
@@ -260,7 +260,8 @@ def schema() -> None:
     typer.echo(json_schema_text(), nl=False)
 
 
-def _overrides(settings: list[str] | None) -> dict[str, str]:
+def overrides_of(settings: list[str] | None) -> dict[str, str]:
+    """Keys and values of --set."""
     overrides: dict[str, str] = {}
     for setting in settings or []:
         key, equals, value = setting.partition("=")
@@ -271,7 +272,7 @@ def _overrides(settings: list[str] | None) -> dict[str, str]:
 
 
 def _read(path: Path, settings: list[str] | None, seed: int | None) -> "Case":
-    overrides = _overrides(settings)
+    overrides = overrides_of(settings)
     if seed is not None:
         overrides["seed"] = str(seed)
     gc.disable()  # modules are loaded here: a collection frees nothing and takes a quarter of the time

@@ -75,7 +75,7 @@ def study(
     mine = open_study(folder)
     out = Path("runs") / mine.name if out is None else out
     if show:
-        _list(mine, plan, out, jobs, again)
+        list_runs(mine, plan, out, jobs, again)
         return
     ledger, files = carried_out(mine, None, plan, out, json, jobs, again, quiet)
     _print(ledger)
@@ -158,8 +158,8 @@ def listing(columns: Sequence[str]) -> Generator[Any]:
     console().print(table)
 
 
-def _list(mine: "Study", plan: "Plan", out: Path, jobs: int | None, again: bool) -> None:
-    """Every run of a user's study, and what all of them cost."""
+def list_runs(mine: "Study", plan: "Plan", out: Path, jobs: int | None, again: bool) -> None:
+    """Print every run of a study with one part, and what all of them cost."""
     from ryusa.study import estimate_cost
 
     (name,) = mine.parts
