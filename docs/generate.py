@@ -221,11 +221,16 @@ def _parameter(parameter: Any) -> str:
 
 
 def validation_table() -> str:
-    """Table of every comparison, from the kept ledger of a full `ryusa validate`."""
-    from ryusa.studies.validation.study import table
+    """Every comparison of the kept ledger of `ryusa validate`, changed verdicts, runs of each comparison."""
+    from ryusa.studies.validation.sampling import CLOSED, sampling_table
+    from ryusa.studies.validation.study import changes, table
     from ryusa.study.kept import read_ledger
 
-    return table(read_ledger(LEDGERS / "validation.json.xz")) + "\n"
+    kept = read_ledger(LEDGERS / "validation.json.xz")
+    closed = ", ".join(f"{name} ({why})" for name, why in CLOSED.items())
+    parts = [table(kept), *changes(kept), "## Runs of each comparison", sampling_table()]
+    parts.append(f"Nothing is drawn at random, so that results repeat to the last bit: {closed}.")
+    return "\n\n".join(parts) + "\n"
 
 
 def ledger_summaries() -> dict[Path, str]:

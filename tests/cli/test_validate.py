@@ -12,7 +12,7 @@ def call(*words):
     return CliRunner().invoke(app, ["validate", *(str(word) for word in words)])
 
 
-@pytest.mark.parametrize("level", ["--quick", ""])
+@pytest.mark.parametrize("level", ["--quick", "", "--full"])
 def test_the_list_names_every_check_and_what_it_costs(level):
     result = call("--list", *([level] if level else []))
     assert result.exit_code == 0, result.output
@@ -58,3 +58,41 @@ def test_an_error_in_the_program_leaves_with_1_and_a_repaired_one_needs_no_run(t
     monkeypatch.undo()
     assert call("water_alone", "--quick", "-o", tmp_path, "-q", "-j", 1).exit_code == 0
     assert not (tmp_path / "validation-quick-part-errors.log").exists()
+
+
+def test_seeds_set_the_runs_and_need_not_be_those_of_the_table():
+    runs = {}
+    for seeds in ("1,2,3", "4,5,6", "1"):
+        shown = call("--list", "gas", "--seeds", seeds).output
+        runs[seeds] = next(line.split()[-2] for line in shown.splitlines() if line.strip().startswith("gas"))
+    assert runs["1,2,3"] == runs["4,5,6"]
+    assert int(runs["1,2,3"]) == 3 * int(runs["1"])
+    assert call("--list", "gas", "--seeds", "4,4").exit_code == 2
+    assert call("--list", "--quick", "--full").exit_code == 2
+
+
+def test_changed_verdicts_are_listed_against_an_earlier_ledger(tmp_path, monkeypatch):
+    kept = tmp_path / "kept.json"
+    first = call("water_alone", "--quick", "-o", tmp_path, "-q", "-j", 1, "--json", kept)
+    assert first.exit_code == 0
+    same = call("water_alone", "--quick", "-o", tmp_path, "-q", "-j", 1, "--against", kept)
+    assert "0 verdicts differ" in same.stdout
+    monkeypatch.setattr(water_alone, "U_STAR", 0.1)  # of the reference alone, once the columns are kept
+    more = ("--against", kept, "--json", kept)  # the earlier one is read before it is replaced
+    result = call("water_alone", "--quick", "-o", tmp_path, "-q", "-j", 1, *more)
+    assert result.exit_code == 4
+    assert "water-alone/log-rough: within, now missed" in result.stdout
+    assert "contrary: water-alone/log-rough" in result.stderr
+    page = (tmp_path / "validation-quick-part.html").read_text(encoding="utf-8")
+    assert "<li>water-alone/log-rough: within, now missed</li>" in page
+    against = json.loads(kept.read_text(encoding="utf-8"))["against"]
+    assert {"id": "water-alone/log-rough", "old": "within", "new": "missed"} in against["changed"]
+
+
+def test_a_ledger_of_another_study_is_refused(tmp_path):
+    other = tmp_path / "paper.json"
+    other.write_text('{"format": 2, "study": "paper", "findings": [], "provenance": {}}', encoding="utf-8")
+    result = call("water_alone", "--quick", "-o", tmp_path / "out", "-q", "-j", 1, "--against", other)
+    assert result.exit_code == 2
+    assert "of 'paper', not of 'validation'" in result.output
+    assert not (tmp_path / "out").exists()  # before any run

@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Generator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
@@ -91,8 +92,12 @@ def carried_out(
     jobs: int | None,
     again: bool,
     quiet: bool,
+    earlier: Mapping[str, Any] | None = None,
 ) -> "tuple[Ledger, tuple[Path, ...]]":
-    """Run a study and write its ledger and page; an interrupt leaves with its own exit code."""
+    """Run a study and write its ledger and page; an interrupt leaves with its own exit code.
+
+    With an earlier ledger, the new one says which verdicts changed since.
+    """
     from ryusa.errors import ResultsError
     from ryusa.study import ProgressLines
     from ryusa.study.ledger import make
@@ -100,7 +105,8 @@ def carried_out(
 
     try:
         progress = None if quiet else ProgressLines()
-        ledger = make(chosen, names, plan, out, jobs=jobs or cores(), again=again, progress=progress)
+        made = make(chosen, names, plan, out, jobs=jobs or cores(), again=again, progress=progress)
+        ledger = replace(made, earlier=earlier)
         return ledger, write(ledger, json)
     except KeyboardInterrupt:
         interrupted(out)

@@ -11,12 +11,14 @@ from ryusa.cli.study import (
     Again,
     Jobs,
     Json,
+    Seeds,
     carried_out,
     console,
     cores,
     finish,
     listing,
     numbers_table,
+    plan_of,
     print_counts,
 )
 
@@ -41,8 +43,18 @@ def validate(
         Path, typer.Option("-o", "--out", metavar="FOLDER", help="Page, pictures and runs.")
     ] = Path("runs/validation"),
     quick: Annotated[
-        bool, typer.Option("--quick", help="Only what takes seconds; for every change.")
+        bool, typer.Option("--quick", help="Only what takes seconds, one seed; for every change.")
     ] = False,
+    full: Annotated[
+        bool, typer.Option("--full", help="More and longer runs: hours; see --list. May be interrupted.")
+    ] = False,
+    seeds: Seeds = None,
+    against: Annotated[
+        Path | None,
+        typer.Option(
+            "--against", metavar="LEDGER", help="Earlier ledger: list the verdicts that changed since."
+        ),
+    ] = None,
     json: Json = None,
     jobs: Jobs = None,
     again: Again = False,
@@ -53,18 +65,25 @@ def validate(
 ) -> None:
     """Compare ryusa with closed forms and measurements, and write one page with every error as a number.
 
+    A number from random draws is the mean over independent runs with its 95 %
+    interval; where the interval includes a limit, the comparison is undecided.
     An interrupted validation continues where it stopped when the same command
     is given again. Exits with 4 where something lies outside its tolerance.
     """
     from ryusa.studies.validation.study import VALIDATION
-    from ryusa.study import Level, Outcome, Plan
+    from ryusa.study import Outcome
+    from ryusa.study.kept import read_ledger
+    from ryusa.study.verdicts import refuse_other_study
 
-    plan = Plan(Level.QUICK if quick else Level.FULL, ())
+    plan = plan_of(quick, full, seeds)
     chosen = None if not names else [_known(name) for name in names]
     if show:
         _list(plan, chosen, out, jobs, again)
         return
-    ledger, files = carried_out(VALIDATION, chosen, plan, out, json, jobs, again, quiet)
+    earlier = None if against is None else read_ledger(against)  # first: --json may write the same file
+    if earlier is not None:
+        refuse_other_study(earlier, VALIDATION.name)
+    ledger, files = carried_out(VALIDATION, chosen, plan, out, json, jobs, again, quiet, earlier)
     _print(ledger)
     finish(ledger, files, out)
     missed = [one.id for one in ledger.entries if one.outcome is Outcome.FAILS]
@@ -111,3 +130,15 @@ def _print(ledger: "Ledger") -> None:
         table.add_row(entry.id, plain["verdict"], escape(said or "see below"))
     console().print(table)
     print_counts(ledger)
+    if ledger.earlier is not None:
+        _print_changes(ledger)
+
+
+def _print_changes(ledger: "Ledger") -> None:
+    """Verdicts that differ from those of an earlier ledger."""
+    found = ledger.plain()["against"]
+    typer.echo(f"{len(found['changed'])} verdicts differ from those of {found['made'][:16]}:")
+    for one in found["changed"]:
+        typer.echo(f"  {one['id']}: {one['old']}, now {one['new']}")
+    if found["contradictions"]:
+        typer.echo(f"decided in both, and contrary: {', '.join(found['contradictions'])}", err=True)

@@ -8,16 +8,21 @@ page.
 from ryusa.study.compare import comparison, misfit, relative
 from ryusa.study.cost import CostEstimate, code_in_words, duration, estimate_cost
 from ryusa.study.fault import Fault, noted
+from ryusa.study.intermittent import correlation_time, rate_with_rests, share_over_runs
 from ryusa.study.interval import (
     CONFIDENCE,
     Interval,
     Pooled,
     exact,
+    largest_mean,
+    not_negative,
     over_range,
     over_seeds,
     pool,
+    pool_alike,
     pseudo_values,
     short,
+    transformed,
 )
 from ryusa.study.judge import (
     Band,
@@ -65,15 +70,22 @@ __all__ = [
     "case_run",
     "code_in_words",
     "comparison",
+    "correlation_time",
     "duration",
     "estimate_cost",
     "exact",
+    "largest_mean",
     "misfit",
+    "not_negative",
     "noted",
     "over_range",
     "over_seeds",
     "pool",
+    "pool_alike",
     "pseudo_values",
+    "rate_with_rests",
     "relative",
+    "share_over_runs",
     "short",
+    "transformed",
 ]

@@ -8,23 +8,27 @@ from typing import Any
 import numpy as np
 
 from ryusa.figures.comparison import Axis, Curve
-from ryusa.study.interval import exact
+from ryusa.study.interval import Interval, exact
 from ryusa.study.judge import Band, Finding, ReferenceChart, Source, Trial
 
 
-def misfit(name: str, value: float, unit: str = "-", tolerance: Band | None = None) -> Trial:
+def misfit(name: str, value: float | Interval, unit: str = "-", tolerance: Band | None = None) -> Trial:
     """Return the trial for one error with respect to a reference; without a tolerance it is not judged.
 
     Parameters
     ----------
     name : name of the error, such as "largest relative difference".
-    value : its value; one that is not finite lies outside every tolerance.
+    value : its value, or its interval over seeds; a value that is not finite lies outside every tolerance,
+        an interval without a number decides nothing.
     unit : its unit.
     tolerance : permitted range, with the reason.
 
     >>> misfit("largest difference", 0.01, "m/s", Band(0.0, 0.02, "m/s", "half a cell")).holds
     True
     """
+    if isinstance(value, Interval):
+        band = None if tolerance is None else replace(tolerance, unit=value.unit)
+        return Trial(name, {}, value, band, False if band and math.isinf(value.value) else None)
     if tolerance is None:
         return Trial(name, {}, exact(value, unit), None)
     outside = None if math.isfinite(value) else False

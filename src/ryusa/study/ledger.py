@@ -23,6 +23,7 @@ from ryusa.study.progress import StudyProgress
 from ryusa.study.runs import TaskResults, carry_out
 from ryusa.study.study import Study
 from ryusa.study.task import Task
+from ryusa.study.verdicts import against
 
 FORMAT = 2  # of the JSON file; `kept.read` reads format 1 too
 
@@ -40,6 +41,7 @@ class Ledger:
     stem : stem of its file names; other levels and single parts have their own and never replace the whole.
     faults : errors after the runs.
     traces : tracebacks of errors in the program, for the log.
+    earlier : ledger of the same study to compare the verdicts with.
     """
 
     study: Study
@@ -52,6 +54,7 @@ class Ledger:
     stem: str = "ledger"
     faults: Mapping[str, str] = field(default_factory=dict[str, str])
     traces: Mapping[str, str] = field(default_factory=dict[str, str])
+    earlier: Mapping[str, Any] | None = None
 
     @property
     def log(self) -> str:
@@ -61,7 +64,7 @@ class Ledger:
     def plain(self) -> dict[str, Any]:
         """Return the ledger as written to the JSON file."""
         findings = [one.finding for one in self.entries if one.finding is not None]
-        return {
+        plain = {
             "format": FORMAT,
             "study": self.study.name,
             "level": str(self.plan.level),
@@ -75,6 +78,7 @@ class Ledger:
             "log": self.log,
             "provenance": origin(self.counts),
         }
+        return plain if self.earlier is None else {**plain, "against": against(self.earlier, plain)}
 
 
 def make(

@@ -9,7 +9,7 @@ from ryusa.studies.validation.suspension import expected, exponent
 from ryusa.study import CaseRun, Level, Outcome, Plan, Task, relative
 from ryusa.study.ledger import make
 
-LEVELS = (Level.QUICK, Level.FULL)
+LEVELS = tuple(Level)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -17,7 +17,7 @@ def test_a_check_names_its_runs_and_what_they_cost(name):
     check = load(name)
     assert check.TITLE
     for level in LEVELS:
-        runs = check.tasks(Plan(level, ()))
+        runs = check.tasks(Plan(level, (1, 2)))
         assert all(isinstance(one, Task) for one in runs)
         assert len({one.folder for one in runs}) == len(set(runs))
         assert all(one.cost() > 0.0 for one in runs)
@@ -26,13 +26,18 @@ def test_a_check_names_its_runs_and_what_they_cost(name):
 
 
 def test_the_quick_level_takes_seconds():
-    works = {one for name in NAMES for one in load(name).tasks(Plan(Level.QUICK, ()))}
+    works = {one for name in NAMES for one in load(name).tasks(Plan(Level.QUICK, (1,)))}
     assert sum(one.cost() for one in works) < 240.0  # core seconds, by rule of thumb
+
+
+def test_the_standard_level_fits_into_an_hour_on_two_cores():
+    works = {one for name in NAMES for one in load(name).tasks(Plan(Level.STANDARD, (1, 2, 3)))}
+    assert sum(one.cost() for one in works) < 2 * 3600.0  # core seconds, by rule of thumb
 
 
 @pytest.mark.slow
 def test_every_comparison_of_the_quick_level_is_within_tolerance(tmp_path):
-    made = make(VALIDATION, None, Plan(Level.QUICK, ()), tmp_path, jobs=2)
+    made = make(VALIDATION, None, Plan(Level.QUICK, (1,)), tmp_path, jobs=2)
     assert {
         one.id: one.outcome for one in made.entries if one.outcome not in (Outcome.HOLDS, Outcome.SHOWN)
     } == {}

@@ -15,6 +15,7 @@ from ryusa.study import Level, Outcome, Plan
 
 D, RHO = 4.0e-3, 2650.0
 COLUMNS, LAYERS = 4, 10
+PLAN = Plan(Level.STANDARD, (1, 2, 3))
 
 
 @pytest.fixture
@@ -74,9 +75,11 @@ def test_the_concentration_of_a_flow_is_that_between_bed_and_surface(run):
 @pytest.mark.parametrize(("factor", "word"), [(1.0, Outcome.HOLDS), (2.0, Outcome.FAILS)])
 def test_concentrations_are_compared_with_the_friction_of_the_dry_flow(factor, word):
     friction = 0.55
-    *wet, dry = equilibrium.tasks(Plan(Level.FULL, ()))
-    found: dict = {dry: {"friction": friction, "time": 0.5}}
-    for one in wet:
+    found: dict = {}
+    for one in equilibrium.tasks(PLAN):
+        if one.case == "friction_angle":
+            found[one] = {"friction": friction, "time": 0.5}
+            continue
         slope = math.radians(float(one.get("motion.slope_angle").split()[0]))
         c = factor * equilibrium_concentration(slope, math.atan(friction), RHO, 1000.0)
         found[one] = {
@@ -84,12 +87,40 @@ def test_concentrations_are_compared_with_the_friction_of_the_dry_flow(factor, w
             "water": 0.01, "mu": friction, "densest": 0.6, "bed": 5.0,
             "z": np.arange(1.0, 10.0), "u": np.ones(9),
         }  # fmt: skip
-    made, velocity = equilibrium.judge(found, Plan(Level.FULL, ()))
+    made, velocity = equilibrium.judge(found, PLAN)
     assert made.trials[0].found.value == pytest.approx(factor - 1.0, abs=1e-9)
     assert made.outcome is word
     assert velocity.outcome is Outcome.SHOWN
 
 
+def judged(scatter, bias=0.0):
+    """The finding for flows whose concentrations scatter, and whose dry flows scatter, about the formula."""
+    rng = np.random.default_rng(7)
+    found: dict = {}
+    for one in equilibrium.tasks(PLAN):
+        if one.case == "friction_angle":
+            found[one] = {"friction": 0.55 + 0.1 * scatter * rng.normal(), "time": 0.5}
+            continue
+        slope = math.radians(float(one.get("motion.slope_angle").split()[0]))
+        c = equilibrium_concentration(slope, math.atan(0.55), RHO, 1000.0)
+        c *= 1.0 + bias + scatter * rng.normal()
+        found[one] = {
+            "slope": slope, "c": c, "error": 0.01, "c_tenth": c, "faster": 0.0, "depth": 10.0, "speed": 1.0,
+            "water": 0.01, "mu": 0.55, "densest": 0.6, "bed": 5.0,
+            "z": np.arange(1.0, 10.0 + rng.integers(2)), "u": np.ones(9),
+        }  # fmt: skip
+        found[one]["u"] = np.ones(len(found[one]["z"]))
+    return equilibrium.judge(found, PLAN)[0]
+
+
+@pytest.mark.parametrize(
+    ("scatter", "bias", "word"),
+    [(0.03, 0.1, Outcome.HOLDS), (0.03, 0.25, Outcome.UNDECIDED), (0.3, 0.1, Outcome.UNDECIDED)],
+)
+def test_a_limit_within_the_scatter_between_runs_decides_nothing(scatter, bias, word):
+    assert judged(scatter, bias).outcome is word
+
+
 def test_nothing_is_run_at_the_quick_level():
-    assert not equilibrium.tasks(Plan(Level.QUICK, ()))
-    assert not equilibrium.judge({}, Plan(Level.QUICK, ()))
+    assert not equilibrium.tasks(Plan(Level.QUICK, (1,)))
+    assert not equilibrium.judge({}, Plan(Level.QUICK, (1,)))

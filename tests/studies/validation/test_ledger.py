@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,7 +10,8 @@ import pytest
 from ryusa.cases import case_path
 from ryusa.errors import ResultsError
 from ryusa.figures.comparison import Axis, Curve
-from ryusa.studies.validation.study import ValidationStudy, table
+from ryusa.studies.validation.sampling import CLOSED, SAMPLING
+from ryusa.studies.validation.study import ValidationStudy, changes, table
 from ryusa.study import (
     Band,
     Known,
@@ -23,6 +25,7 @@ from ryusa.study import (
     case_run,
     comparison,
     misfit,
+    over_seeds,
 )
 from ryusa.study import ledger as ledger_module
 from ryusa.study.ledger import make as make_study
@@ -64,6 +67,16 @@ class Fake:
         ]  # fmt: skip
 
 
+class Scattered(Fake):
+    """A check whose number scatters about its limit, beside one that is within."""
+
+    def judge(self, found, plan):
+        (made,) = super().judge(found, plan)
+        rate = misfit("rate", over_seeds([0.5, 0.5, 2.0], "-"), "-", at_most(1.5, "why"))
+        small = misfit("small", over_seeds([0.1, 0.1, 0.1], "-"), "-", at_most(1.0, "why"))
+        return [replace(made, trials=(small, rate))]
+
+
 class Checks(ValidationStudy):
     """The validation with checks of our own."""
 
@@ -96,12 +109,12 @@ def make(checks, names, level, folder, **how):
 
 def test_a_second_call_opens_what_was_computed_and_gives_the_same(checks, tmp_path):
     checks["one"] = Fake()
-    first = make(checks, None, Level.FULL, tmp_path)
-    second = make(checks, None, Level.FULL, tmp_path)
+    first = make(checks, None, Level.STANDARD, tmp_path)
+    second = make(checks, None, Level.STANDARD, tmp_path)
     assert CALLS == [5, 17]
     assert second.counts["runs_opened"] == 2
     assert second.plain()["findings"] == first.plain()["findings"]
-    make(checks, None, Level.FULL, tmp_path, again=True)
+    make(checks, None, Level.STANDARD, tmp_path, again=True)
     assert CALLS == [5, 17, 5, 17]
 
 
@@ -118,19 +131,19 @@ def test_an_interrupted_validation_continues_where_it_stopped(checks, tmp_path, 
 
     monkeypatch.setattr(ledger_module, "carry_out", stops)
     with pytest.raises(KeyboardInterrupt):
-        make(checks, None, Level.FULL, tmp_path)
+        make(checks, None, Level.STANDARD, tmp_path)
     assert CALLS == [5]
     monkeypatch.setattr(ledger_module, "carry_out", real)
-    made = make(checks, None, Level.FULL, tmp_path)
+    made = make(checks, None, Level.STANDARD, tmp_path)
     assert CALLS == [5, 17]
     assert made.entries[0].outcome is Outcome.HOLDS
 
 
 def test_damaged_numbers_are_computed_anew(checks, tmp_path):
     checks["one"] = Fake()
-    make(checks, None, Level.FULL, tmp_path)
+    make(checks, None, Level.STANDARD, tmp_path)
     next(tmp_path.glob("runs/*/*5*/numbers.npz")).write_bytes(b"PK half")
-    assert make(checks, None, Level.FULL, tmp_path).entries[0].outcome is Outcome.HOLDS
+    assert make(checks, None, Level.STANDARD, tmp_path).entries[0].outcome is Outcome.HOLDS
     assert len(CALLS) == 3
 
 
@@ -185,10 +198,38 @@ def test_the_page_holds_its_pictures_and_escapes_words(checks, tmp_path):
     assert table(kept).splitlines()[2].startswith("| one/square: Square")
 
 
+def test_the_page_of_the_standard_level_says_how_often_each_comparison_was_run(checks, tmp_path):
+    checks["one"] = Fake()
+    (page, *_) = write(make(checks, None, Level.STANDARD, tmp_path))
+    text = page.read_text(encoding="utf-8")
+    assert all(f"<td>{name}</td>" in text for name in SAMPLING if name != "frey/walls")
+    assert all(f"{name} ({why})" in text for name, why in CLOSED.items())
+
+
+def test_the_table_shows_what_is_undecided(checks, tmp_path):
+    checks["one"] = Scattered()
+    made = make(checks, None, Level.STANDARD, tmp_path)
+    assert made.entries[0].outcome is Outcome.UNDECIDED
+    (line,) = table(made.plain()).splitlines()[2:]
+    assert "rate: 1 (-1.15 to 3.15)" in line
+    assert "small" not in line
+    assert line.endswith("| undecided |")
+
+
+def test_changed_verdicts_are_paragraphs_of_the_documentation(checks, tmp_path):
+    checks["one"] = Fake()
+    first = make(checks, None, Level.STANDARD, tmp_path)
+    assert changes(first.plain()) == []
+    checks["one"] = Fake(factor=1.5)
+    second = replace(make(checks, None, Level.STANDARD, tmp_path), earlier=first.plain())
+    assert changes(second.plain())[-1] == "- one/square: within, now missed"
+    write(second)
+
+
 def test_a_part_never_replaces_the_whole(checks, tmp_path):
     checks["one"], checks["two"] = Fake(), Fake()
-    assert make(checks, ["one"], Level.FULL, tmp_path).stem == "validation-part"
-    assert make(checks, None, Level.FULL, tmp_path).stem == "validation"
+    assert make(checks, ["one"], Level.STANDARD, tmp_path).stem == "validation-part"
+    assert make(checks, None, Level.STANDARD, tmp_path).stem == "validation"
 
 
 def test_nan_is_missed():
@@ -238,7 +279,7 @@ def test_runs_of_case_files_are_kept_and_opened(checks, tmp_path):
     checks["runs"] = OfRuns()
     quick = make(checks, None, Level.QUICK, tmp_path)
     assert (quick.counts["runs_made"], quick.counts["runs_opened"]) == (1, 0)
-    full = make(checks, None, Level.FULL, tmp_path)
+    full = make(checks, None, Level.STANDARD, tmp_path)
     assert (full.counts["runs_made"], full.counts["runs_opened"]) == (1, 1)
     assert full.entries[0].outcome is Outcome.HOLDS
     assert len(list((tmp_path / "runs" / "saltation").glob("*/grains.vtkhdf"))) == 2

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from ryusa.errors import CaseError
+from ryusa.studies.validation.sampling import CLOSED, sampling_lines
 from ryusa.study import Finding, Level, Outcome, Study, StudyPart
 from ryusa.study.page import interval
 from ryusa.study.study import limits_in_words
@@ -34,16 +35,19 @@ class ValidationStudy(Study):
     command = "ryusa validate"
     stem = "validation"
     parts = NAMES
-    level = Level.FULL
     words: Mapping[Outcome, str] = {
         Outcome.HOLDS: "within",
         Outcome.ONLY_IF: "within only if",
         Outcome.FAILS: "missed",
         Outcome.EXCLUDED: "missed",
         Outcome.SHOWN: "shown",
-        Outcome.UNDECIDED: "not judged",
+        Outcome.UNDECIDED: "undecided",
     }
     template = Path(__file__).with_name("validation.html")
+
+    def context(self, ledger: Mapping[str, Any]) -> dict[str, Any]:
+        """Add the runs of each comparison."""
+        return {"sampling": sampling_lines(Level(ledger["level"])), "closed": CLOSED}
 
     def part(self, name: str) -> StudyPart:
         """Return the check of that name (see NAMES)."""
@@ -69,7 +73,7 @@ VALIDATION = ValidationStudy()
 def table(plain: Mapping[str, Any]) -> str:
     """Give the lines of the table of docs/validation.md, from what the ledger holds.
 
-    Of several errors it shows those that miss, or the one that uses most of its tolerance.
+    Of several errors it shows those that miss or are undecided, or the one that uses most of its tolerance.
     """
     lines = ["| comparison | reference | error | allowed | verdict |", "|---|---|---|---|---|"]
     for row in plain["findings"]:
@@ -84,15 +88,26 @@ def table(plain: Mapping[str, Any]) -> str:
     return "\n".join(lines)
 
 
+def changes(plain: Mapping[str, Any]) -> list[str]:
+    """Give the paragraphs about verdicts that changed since an earlier ledger; none if none was compared."""
+    against = plain.get("against")
+    if against is None:
+        return []
+    lines = [f"- {one['id']}: {one['old']}, now {one['new']}" for one in against["changed"]]
+    seeds = ", ".join(str(one) for one in against["seeds"]) or "single runs"
+    made = f"Against the table of {against['made'][:10]} (commit {against['commit'][:12]}, {seeds}):"
+    return ["## Verdicts that changed", made, "\n".join(lines) or "none."]
+
+
 def telling(errors: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Give the errors that miss; otherwise the one that uses most of its tolerance, or the first.
+    """Give the errors that miss or are undecided; else the one that uses most of its tolerance, or the first.
 
     >>> asked = {"low": 0.0, "high": 1.0, "unit": "-", "says": ""}
     >>> small = {"part": "a", "value": 0.1, "asked": asked, "outcome": "holds"}
     >>> [one["part"] for one in telling([small, {**small, "part": "b", "value": 0.2}])]
     ['b']
     """
-    missed = [one for one in errors if one["outcome"] == "fails"]
+    missed = [one for one in errors if one["outcome"] in ("fails", "undecided")]
     judged = [one for one in errors if one["outcome"] == "holds"]
     return missed or sorted(judged, key=_used)[-1:] or errors[:1]
 
