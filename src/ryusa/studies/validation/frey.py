@@ -168,7 +168,7 @@ Measured = Mapping[str, Floats | float]
 
 
 @dataclass(frozen=True)
-class Rates:
+class FlumeRates:
     """Transport rate of one set of parameters over that of the flume.
 
     Attributes
@@ -189,7 +189,7 @@ class Rates:
     time: float
 
 
-def rates_of(runs: Sequence[Measured], q_flume: float) -> Rates:
+def rates_of(runs: Sequence[Measured], q_flume: float) -> FlumeRates:
     """Set the rates of independent runs against that of the flume [-]."""
     single = [float(one["q_star"]) / q_flume for one in runs]
     series = [np.asarray(one["rates"]) / q_flume for one in runs]
@@ -200,7 +200,7 @@ def rates_of(runs: Sequence[Measured], q_flume: float) -> Rates:
         gone = [float(one[one >= REST].mean()) for one in series if np.any(one >= REST)]
         flow = not_negative(over_seeds(gone, "-"))
     shortest = min(len(one) for one in series)
-    return Rates(
+    return FlumeRates(
         single, rate_with_rests(single, moving, "-"), share_over_runs(rest), flow,
         correlation_time([one[:shortest] for one in series], SECOND), float(runs[0]["time"]),
     )  # fmt: skip
@@ -221,8 +221,9 @@ def pooled_profile(runs: Sequence[Measured]) -> tuple[Floats, Floats, Floats]:
 def rms(runs: Sequence[Measured], flume: tuple[Floats, Floats, Floats], column: int) -> Interval:
     """Root mean square difference of the profile over all runs from that of the flume.
 
-    Its square is a polynomial of means over runs, so the jackknife removes the part that is noise between the
-    runs, and gives the interval. A column of 1 is the concentration [-], 2 the speed [m/s].
+    Its square is a smooth function of means over runs (a polynomial for the concentration), so the jackknife
+    removes the part that is noise between the runs, and gives the interval. A column of 1 is the
+    concentration [-], 2 the speed [m/s].
     """
     z, phi, _ = flume
     at = np.arange(LOW, float(z[(z >= LOW) & (phi >= LEAST)].max()) + 1e-9, STEP)
@@ -263,7 +264,7 @@ def _compare(
     run: int,
     flume: tuple[Floats, Floats, Floats],
     runs: Sequence[Measured],
-    rates: Rates,
+    rates: FlumeRates,
 ) -> list[Finding]:
     z, phi, u = flume
     z_ours, phi_ours, u_ours = pooled_profile(runs)
@@ -313,7 +314,7 @@ def _compare(
     ]  # fmt: skip
 
 
-def _correlated(rates: Rates) -> str:
+def _correlated(rates: FlumeRates) -> str:
     if math.isnan(rates.correlation):
         return "not known"
     if rates.correlation >= 0.49 * rates.time:
@@ -321,7 +322,7 @@ def _correlated(rates: Rates) -> str:
     return f"{rates.correlation:.1f} s"
 
 
-def _side_walls(choices: Mapping[str, Choice], rates: Mapping[tuple[str, int], Rates]) -> Finding:
+def _side_walls(choices: Mapping[str, Choice], rates: Mapping[tuple[str, int], FlumeRates]) -> Finding:
     """Distance between the side walls at which the rate is that of the flume."""
     widths = np.array([one.walls for one in choices.values()])
     each = {run: [rates[name, run].mean for name in choices] for run in FLUME}
