@@ -23,7 +23,9 @@ CHECKS: dict[str, chosen.Check] = {
     "--at": chosen.time,
     "--begin": chosen.time,
     "--end": chosen.time,
+    "--fps": chosen.in_range(1.0, 1.0e6),
     "--layer": chosen.in_range(0.01, 100.0),
+    "--resolution": chosen.in_range(0.001, 1.0),
     "--rise": chosen.in_range(0.0, 100.0),
     "--settle": chosen.time,
     "--side": chosen.one_of(SIDES),
@@ -86,6 +88,19 @@ End = Annotated[
 Layer = Annotated[
     float, typer.Option(help=f"{taking('layer', MEASURES)}: thickness of a layer, in mean diameters.")
 ]
+Fps = Annotated[
+    float,
+    typer.Option(
+        help=f"{taking('fps', MEASURES)}: frames of the film per second; the run needs four times as many."
+    ),
+]
+Resolution = Annotated[
+    float,
+    typer.Option(
+        help=f"{taking('resolution', MEASURES)}: gap below which grains look as if they touched, in mean "
+        "diameters."
+    ),
+]
 Window = Annotated[
     str | None,
     typer.Option(
@@ -126,6 +141,8 @@ def measure(
     begin: Begin = None,
     end: End = None,
     layer: Layer = 0.5,
+    fps: Fps = 250.0,
+    resolution: Resolution = 0.05,
     window: Window = None,
     threshold: Threshold = None,
     at: At = None,

@@ -1,6 +1,7 @@
 """Numbers from a run folder: every function reads results and returns a frozen record; none steps a grain."""
 
 from ryusa.catalogue import MEASURES, load
+from ryusa.measure.apparent_contact import ApparentContact, apparent_contact
 from ryusa.measure.collisions import Collisions, ContactTimes, collisions, contact_times, turned_time
 from ryusa.measure.contact_network import ContactNetwork, contact_network
 from ryusa.measure.energy import Energy, energy
@@ -29,6 +30,7 @@ from ryusa.measure.water import WaterProfile, water
 
 __all__ = [
     "Alternating",
+    "ApparentContact",
     "Average",
     "Averages",
     "Bounds",
@@ -54,6 +56,7 @@ __all__ = [
     "Vibration",
     "WaterProfile",
     "alternating",
+    "apparent_contact",
     "average",
     "bounds",
     "classical",

@@ -1,4 +1,4 @@
-"""Pairs in touch at a frame, from positions alone."""
+"""Pairs in touch or nearly so at a frame, from positions alone."""
 
 import math
 
@@ -12,13 +12,15 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
-def touching_pairs(x: Floats, scene: Scene) -> tuple[Ints, Ints]:
+def touching_pairs(x: Floats, scene: Scene, gap: float = 0.0) -> tuple[Ints, Ints]:
     """Ids i, j of the pairs that overlap, shape (n_pair,) each, every pair once.
 
     Parameters
     ----------
     x : centres of the free grains [m], shape (n_grain, 3).
     scene : the scene that holds then.
+    gap : pairs that are nearer than this count too, over the mean of both diameters; at a plane over that of
+        the grain [-].
 
     Returns
     -------
@@ -33,14 +35,14 @@ def touching_pairs(x: Floats, scene: Scene) -> tuple[Ints, Ints]:
     for axis in np.flatnonzero(box):
         every[:, axis] %= box[axis]
         every[every[:, axis] >= box[axis], axis] = 0.0  # round-off of the line above
-    pairs = KDTree(every, boxsize=box).query_pairs(float(d.max()), output_type="ndarray")
+    pairs = KDTree(every, boxsize=box).query_pairs((1.0 + gap) * float(d.max()), output_type="ndarray")
     i, j = pairs[(pairs < n).any(axis=1)].T  # at least one of the two is free, and i < j
-    gap = every[j] - every[i]
-    gap -= np.where(box > 0.0, box * np.round(gap / np.where(box > 0.0, box, 1.0)), 0.0)
-    near = (gap**2).sum(axis=1) < (0.5 * (d[i] + d[j])) ** 2
+    way = every[j] - every[i]
+    way -= np.where(box > 0.0, box * np.round(way / np.where(box > 0.0, box, 1.0)), 0.0)
+    near = (way**2).sum(axis=1) < (0.5 * (1.0 + gap) * (d[i] + d[j])) ** 2
     firsts, partners = [i[near]], [np.concatenate([np.arange(n), n + there])[j[near]]]
     for k in np.flatnonzero(scene.plane_active):
-        at = np.flatnonzero((x - scene.plane_point[k]) @ scene.plane_normal[k] < 0.5 * scene.d)
+        at = np.flatnonzero((x - scene.plane_point[k]) @ scene.plane_normal[k] < (0.5 + gap) * scene.d)
         firsts.append(at)
         partners.append(np.full(len(at), n + scene.n_fixed + k))
     return np.concatenate(firsts).astype(np.int64), np.concatenate(partners).astype(np.int64)
