@@ -22,10 +22,10 @@ V = 0.1  # m/s
 def filmed(make):
     """A run of free grains whose centres are x (n_frame, n_grain, 3) [m], beside `bed` (n, 3) and a floor."""
 
-    def build(x, bed=(), period=(math.inf, math.inf), floor=False, frame=FRAME, contacts=(), plane=False):
+    def build(x, bed=(), period=(math.inf, math.inf), floor=False, frame=FRAME, contacts=(), step=1.0e-9):
         bed = np.reshape(np.array(bed, dtype=float), (-1, 3))
         scene = replace(
-            make.scene(x.shape[1]), plane_case=plane, period=period, x_fixed=bed,
+            make.scene(x.shape[1]), period=period, dt=step, x_fixed=bed,
             d_fixed=np.full(len(bed), D), fixed_active=np.ones(len(bed), dtype=bool),
             plane_normal=np.array([[0.0, 0.0, 1.0]]), plane_point=np.zeros((1, 3)),
             plane_active=np.array([floor]),
@@ -116,6 +116,15 @@ def test_a_film_needs_denser_frames_and_says_how_dense(filmed):
     apparent_contact(run, fps=2500.0)
     with pytest.raises(CaseError, match=r'fps = .2600.: .*record\.frames = "9\.615e-05 s".*at most 2500 fr'):
         apparent_contact(run, fps=2600.0)
+
+
+def test_frames_that_come_late_by_a_step_are_dense_enough(filmed):
+    run = filmed(pair(pass_by(D)), step=0.1 * FRAME)
+    run.frames.t[1::2] += 0.1 * FRAME
+    apparent_contact(run, fps=2500.0)
+    run.frames.t[1::2] += 0.01 * FRAME
+    with pytest.raises(CaseError, match="fps"):
+        apparent_contact(run, fps=2500.0)
 
 
 def test_a_window_without_two_frames_is_refused(filmed):

@@ -18,7 +18,6 @@ from ryusa.results.touching import touching_pairs
 FPS = 250.0  # frames of a film per second
 RESOLUTION = 0.05  # gap from which two grains look apart, over the mean of their diameters
 DENSER = 4  # frames of the run for each frame of the film, at least
-LATE = 0.01  # share of the interval by which a frame may come late, with the first step after its time
 HALF = 0.5  # a stay cut after n frames lasts n or more; it counts as cut this much before n
 
 Ints = NDArray[np.int64]
@@ -33,6 +32,7 @@ class NearPairs:
     t : times of the frames [s], shape (n_frame,).
     resolution : largest gap over the mean of both diameters, at a plane over that of the grain [-].
     n_id : number of ids: free grains, fixed grains and planes.
+    step : time step [s]; a frame comes with the first step after its time, so at most this late.
     frame, pair : index of the frame, and i n_id + j of the pair with ids i, j; one entry per frame and pair.
     contacts : contacts that began meanwhile, dtype model.EVENT; None where the run did not record all.
     """
@@ -40,6 +40,7 @@ class NearPairs:
     t: Floats
     resolution: float
     n_id: int
+    step: float
     frame: Ints
     pair: Ints
     contacts: NDArray[np.void] | None
@@ -201,21 +202,15 @@ def near_pairs(run: Run, begin: float | None, end: float, resolution: float) -> 
     if scene.events == EventRule.ALL:
         began = run.contacts["t_begin"]
         contacts = run.contacts[(began >= t[first]) & (began <= t[last - 1])]
-    return NearPairs(
-        t[first:last],
-        resolution,
-        n_id,
-        np.repeat(np.arange(last - first), counts),
-        np.concatenate(pairs),
-        contacts,
-    )
+    which = np.repeat(np.arange(last - first), counts)
+    return NearPairs(t[first:last], resolution, n_id, scene.dt, which, np.concatenate(pairs), contacts)
 
 
 def on_film(near: NearPairs, fps: float) -> ApparentContact:
     """Apparent contacts on a film of `fps` frames per second; see `apparent_contact`."""
     t = near.t
-    longest = float(np.diff(t).max())
-    if longest > (1.0 + LATE) / (DENSER * fps):
+    longest = float(np.diff(t).max()) - near.step
+    if longest > (1.0 + 1.0e-9) / (DENSER * fps):
         raise CaseError(
             "fps",
             f"{fps:g}",

@@ -22,7 +22,6 @@ SEEN = Band(0.003, 0.03, "s", "of the order of 0.01 s: one order of magnitude ce
 # must lie below the band, or the claim would hold whatever the grains do.
 FPS = 1000.0
 SLOWER = (250.0, 100.0)  # shown beside it, not judged: 4 and 10 ms from one frame to the next
-DENSER = 4  # frames of the run for each frame of the film that is judged
 COLLISION = "collision time"
 COLLISIONS = ("1e-4 s", "1e-5 s")  # that of the paper; by Hertz that of 2 mm quartz at 0.05 to 0.5 m/s
 FILM = "water film"
@@ -51,7 +50,10 @@ class FilmedFlow:
     changed: dict[str, str]
 
 
-_FRAMES = {"record.frames": "0.25 ms", "record.events": "all"}
+_FRAMES = {
+    "record.frames": "0.25 ms",
+    "record.events": "all",
+}  # four to each frame of the film that is judged
 FLOWS = {
     "film-saltation": FilmedFlow(
         "saltation",

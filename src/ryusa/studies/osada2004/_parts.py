@@ -13,6 +13,7 @@ NAMES = (
     "pair",
     "fig07",
     "spin_time",
+    "film",
     "fig08",
     "fig10",
     "steps",

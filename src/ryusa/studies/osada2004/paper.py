@@ -7,6 +7,8 @@ the paper's units.
 
 from dataclasses import dataclass
 
+from ryusa.studies.osada2004._film import FLOWS
+
 CITATION = (
     "Osada K., Shimizu Y., Wakai A. (2004): Study on some problems in applying the distinct element method "
     "to the analysis of sediment-mixture flows."
@@ -141,6 +143,11 @@ _ITO = (
 )
 _HEAP = "heap between walls, mean d 0.2 cm, e = 0.7, one side wall removed at once"
 _BOX = "42 grains of 0.2 cm fall into a box of fixed grains, e = 0.7"
+_FILMS = (
+    "films of experiments show collisions of about 0.01 s",
+    "speed and resolution of the film",
+    "grains that a film shows in contact may only be nearer to each other than it resolves",
+)
 
 _CLAIMS = (
     Claim(
@@ -174,6 +181,7 @@ _CLAIMS = (
         "the grain skims the crests if it travels more than about 0.3 d during a contact",
     ),
     Claim("spin-time", "", f"{_SALTATION}; rotation free", "rotation does not change the collision time"),
+    *(Claim(claim, "", flow.setup, *_FILMS) for claim, flow in FLOWS.items()),
     Claim("fig8", "8", "largest overlap/d against k_n", "d = 0.2 cm: 0.01 at about 100 N/cm", "impact speed"),
     Claim(
         "fig10-soft",
