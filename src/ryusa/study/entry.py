@@ -42,6 +42,11 @@ def plain_entry(study: Study, entry: LedgerEntry, folder: Path) -> dict[str, Any
         "verdict": study.words[entry.outcome],
         "condition": found.condition,
         "counts": found.counts,
+        "base_verdict": study.words[found.base_outcome],
+        "robustness": {
+            name: getattr(found.robustness, name) for name in ("holds", "of", "undecided", "low", "high")
+        },
+        "deciding_factor": _deciding(found),
         **study.about(entry.id),
         "source": "" if found.source is None else found.source.words,
         "known": "" if found.source is None else str(found.source.known),
@@ -60,6 +65,12 @@ def plain_entry(study: Study, entry: LedgerEntry, folder: Path) -> dict[str, Any
 def ours_in_words(finding: Finding) -> str:
     """Numbers of the case file as it ships, in words."""
     return "; ".join(f"{one.part}: {one.note or one.found}" for one in finding.base)
+
+
+def _deciding(found: Finding) -> dict[str, Any] | None:
+    """The free choice that decides a finding, at which values it holds, and how sure that is."""
+    one = found.deciding
+    return None if one is None else {"choice": one.choice, "holds_at": list(one.levels), "p": one.p}
 
 
 def _trial(one: Trial) -> dict[str, Any]:

@@ -7,6 +7,7 @@ from enum import StrEnum
 
 from ryusa.figures.comparison import Axis, Curve
 from ryusa.study.interval import Interval
+from ryusa.study.verdict import Effect, Key, Robustness, effects, robustness
 
 _NAMED = 3  # largest number of sets of choices named in a condition
 
@@ -120,9 +121,6 @@ class Trial:
         return self.band.holds(self.found)
 
 
-Key = tuple[tuple[str, str], ...]
-
-
 @dataclass(frozen=True)
 class Finding:
     """The result for one claim or one reference.
@@ -194,6 +192,27 @@ class Finding:
         if held[0] is None:
             return Outcome.UNDECIDED
         return Outcome.HOLDS if held[0] else Outcome.FAILS
+
+    @property
+    def base_outcome(self) -> Outcome:
+        """The verdict for the case file as it ships, whatever other settings show."""
+        held = list(self.by_choice.values())
+        if self.contradiction:
+            return Outcome.EXCLUDED
+        if not held:
+            return Outcome.SHOWN if self.trials else Outcome.UNDECIDED
+        return {True: Outcome.HOLDS, False: Outcome.FAILS, None: Outcome.UNDECIDED}[held[0]]
+
+    @property
+    def robustness(self) -> Robustness:
+        """Share of the settings in which it holds."""
+        return robustness(list(self.by_choice.values()))
+
+    @property
+    def deciding(self) -> Effect | None:
+        """The free choice that decides whether it holds; None if no effect is more than chance."""
+        found = effects(self.by_choice)
+        return found[0] if found and found[0].significant else None
 
     @property
     def counts(self) -> dict[str, int]:

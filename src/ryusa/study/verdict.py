@@ -1,0 +1,124 @@
+"""A verdict in three parts: the base case, how many settings it holds in, and the choice that decides it."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy import stats
+
+from ryusa.study.interval import CONFIDENCE
+
+SIGNIFICANT = 1.0 - CONFIDENCE
+RESAMPLES = 1999  # of a table with more than two rows
+
+Key = tuple[tuple[str, str], ...]  # a setting: each free choice and its value
+
+
+@dataclass(frozen=True)
+class Robustness:
+    """Share of the settings in which a finding holds.
+
+    Attributes
+    ----------
+    holds, of : settings in which it holds, of those that are decided.
+    undecided : settings whose interval includes a limit; they are in neither number.
+    low, high : 95 % interval of the share by Wilson's score; 0 and 1 if none is decided.
+    """
+
+    holds: int
+    of: int
+    undecided: int
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class Effect:
+    """Whether a free choice decides if a finding holds.
+
+    Attributes
+    ----------
+    choice : its name.
+    p : probability of a table as uneven as this one if the choice had no effect, after correction.
+    levels : values at which it holds more often than it fails.
+    """
+
+    choice: str
+    p: float
+    levels: tuple[str, ...]
+
+    @property
+    def significant(self) -> bool:
+        """Whether the effect is more than chance, at 95 % for all choices together."""
+        return self.p < SIGNIFICANT
+
+
+def robustness(held: Sequence[bool | None]) -> Robustness:
+    """Count settings.
+
+    Parameters
+    ----------
+    held : for each setting whether the finding holds; None if undecided.
+
+    Notes
+    -----
+    Source: E. B. Wilson (1927), J. Am. Stat. Assoc. 22, 209.
+
+    >>> found = robustness([True, True, False, None])
+    >>> found.holds, found.of, found.undecided, round(found.low, 2), round(found.high, 2)
+    (2, 3, 1, 0.21, 0.94)
+    """
+    holds, of = held.count(True), len(held) - held.count(None)
+    if of == 0:
+        return Robustness(0, 0, len(held), 0.0, 1.0)
+    share = stats.binomtest(holds, of).proportion_ci(CONFIDENCE, method="wilson")
+    return Robustness(holds, of, held.count(None), float(share.low), float(share.high))
+
+
+def effects(held: Mapping[Key, bool | None]) -> list[Effect]:
+    """Effect of each free choice on whether a finding holds, the strongest first.
+
+    Parameters
+    ----------
+    held : by setting whether the finding holds; every setting names the same choices.
+
+    Notes
+    -----
+    Undecided settings are left out. A choice that does not vary among the others has no effect to show. The
+    table of its values against holds and fails is tested exactly, by permutation where it has more than two
+    rows, which needs no number of settings to be large; the probabilities are corrected for the number of
+    choices (Holm 1979, Scand. J. Stat. 6, 65).
+    """
+    decided = {key: one for key, one in held.items() if one is not None}
+    if not decided:
+        return []
+    names = [name for name, _ in next(iter(decided))]
+    found: list[Effect] = []
+    for name in names:
+        values = list(dict.fromkeys(dict(key)[name] for key in decided))
+        counts = np.zeros((len(values), 2), dtype=np.int64)
+        for key, held_here in decided.items():
+            counts[values.index(dict(key)[name]), 0 if held_here else 1] += 1
+        if len(values) < 2 or not counts.sum(axis=0).all():
+            continue
+        holding = tuple(value for value, (yes, no) in zip(values, counts, strict=True) if yes > no)
+        found.append(Effect(name, _probability(counts), holding))
+    return _corrected(found)
+
+
+def _probability(counts: np.ndarray) -> float:
+    """Probability of a table of values against holds and fails at least as uneven, both margins kept."""
+    chance = stats.PermutationMethod(n_resamples=RESAMPLES, rng=np.random.default_rng(1))
+    tested: Any = stats.fisher_exact(counts, method=None if len(counts) == 2 else chance)
+    return float(tested.pvalue)
+
+
+def _corrected(found: list[Effect]) -> list[Effect]:
+    """Correct the probabilities for the number of effects, after Holm."""
+    ordered = sorted(found, key=lambda one: one.p)
+    p, corrected = 0.0, []
+    for rank, one in enumerate(ordered):
+        p = max(p, min(1.0, one.p * (len(ordered) - rank)))
+        corrected.append(Effect(one.choice, p, one.levels))
+    return corrected

@@ -1,0 +1,73 @@
+"""Verdicts in three parts: the base case, the share of settings, and the choice that decides."""
+
+import itertools
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ryusa.study import Band, Finding, Outcome, Trial, exact
+from ryusa.study.verdict import effects, robustness
+
+FACTORS = {"phi": ("20", "25", "30"), "slip": ("spring", "total"), "c_d": ("a", "b", "c")}
+SETTINGS = [tuple(zip(FACTORS, values, strict=True)) for values in itertools.product(*FACTORS.values())]
+
+
+def test_the_interval_of_a_share_is_that_of_wilson():
+    found = robustness([True] * 8 + [False] * 2 + [None] * 3)
+    assert (found.holds, found.of, found.undecided) == (8, 10, 3)
+    z, n, p = 1.959963984540054, 10, 0.8
+    middle, half = (p + z * z / (2 * n)), z * np.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
+    assert (found.low, found.high) == pytest.approx(
+        ((middle - half) / (1 + z * z / n), (middle + half) / (1 + z * z / n))
+    )
+
+
+@given(st.lists(st.sampled_from([True, False, None]), max_size=30))
+def test_the_interval_of_a_share_lies_within_0_and_1_and_holds_the_share(held):
+    found = robustness(held)
+    assert 0.0 <= found.low <= found.high <= 1.0
+    if found.of:
+        assert found.low - 1e-12 <= found.holds / found.of <= found.high + 1e-12
+
+
+def test_the_choice_that_decides_is_found_with_the_values_at_which_the_finding_holds():
+    first, *others = effects({one: dict(one)["slip"] == "total" for one in SETTINGS})
+    assert (first.choice, first.levels, first.significant) == ("slip", ("total",), True)
+    assert not any(one.significant for one in others)
+    three = effects({one: dict(one)["phi"] != "20" for one in SETTINGS})
+    assert (three[0].choice, three[0].levels, three[0].significant) == ("phi", ("25", "30"), True)
+
+
+def test_one_success_among_many_settings_decides_nothing():
+    held = dict.fromkeys(SETTINGS, False)
+    held[SETTINGS[7]] = True
+    assert not any(one.significant for one in effects(held))
+
+
+def test_chance_is_called_an_effect_in_at_most_one_study_in_twenty():
+    draw = np.random.default_rng(3)
+    pairs = [one for one in SETTINGS if dict(one)["phi"] != "30" and dict(one)["c_d"] != "c"]
+    named = [
+        any(one.significant for one in effects({s: bool(draw.integers(2)) for s in [*pairs]}))
+        for _ in range(300)
+    ]
+    assert np.mean(named) <= 0.05 + 2.0 * np.sqrt(0.05 * 0.95 / 300)
+
+
+def test_a_choice_that_does_not_vary_among_decided_settings_has_no_effect():
+    held = {one: (None if dict(one)["slip"] == "total" else dict(one)["phi"] == "20") for one in SETTINGS}
+    assert "slip" not in {one.choice for one in effects(held)}
+    assert effects(dict.fromkeys(SETTINGS)) == []
+
+
+def test_the_base_verdict_is_that_of_the_case_as_it_ships_alone():
+    band = Band(0.0, 1.0, "-", "")
+    trials = tuple(
+        Trial("n", {"phi": phi}, exact(value, "-"), band) for phi, value in (("30", 2.0), ("20", 0.5))
+    )
+    found = Finding("a", trials)
+    assert (found.outcome, found.base_outcome) == (Outcome.ONLY_IF, Outcome.FAILS)
+    assert (found.robustness.holds, found.robustness.of) == (1, 2)
+    assert found.deciding is None
