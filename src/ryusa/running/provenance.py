@@ -61,6 +61,14 @@ def commit() -> str | None:
     return None if found is None else found + ("+" if changed else "")
 
 
+def last_commit(path: Path) -> str | None:
+    """Git commit that last changed a file, with "+" if the file differs from it; None outside a checkout."""
+    found = _git(path.parent, "log", "-n", "1", "--format=%H", "--", str(path))
+    if not found:
+        return None
+    return found + ("+" if _git(path.parent, "status", "--porcelain", "--", str(path)) else "")
+
+
 def processor() -> str:
     """Name of the processor."""
     try:

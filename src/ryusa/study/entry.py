@@ -47,6 +47,7 @@ def plain_entry(study: Study, entry: LedgerEntry, folder: Path) -> dict[str, Any
             name: getattr(found.robustness, name) for name in ("holds", "of", "undecided", "low", "high")
         },
         "deciding_factor": _deciding(found),
+        "registered": _registered(study, entry),
         **study.about(entry.id),
         "source": "" if found.source is None else found.source.words,
         "known": "" if found.source is None else str(found.source.known),
@@ -71,6 +72,13 @@ def _deciding(found: Finding) -> dict[str, Any] | None:
     """The free choice that decides a finding, at which values it holds, and how sure that is."""
     one = found.deciding
     return None if one is None else {"choice": one.choice, "holds_at": list(one.levels), "p": one.p}
+
+
+def _registered(study: Study, entry: LedgerEntry) -> dict[str, Any] | None:
+    """What was written down beforehand; None in a study without registration."""
+    if study.registration is None or entry.finding is None:
+        return None
+    return study.registration.plain(entry.finding)
 
 
 def _trial(one: Trial) -> dict[str, Any]:

@@ -187,6 +187,9 @@ def _findings(study: Study, name: str, found: Mapping[Any, Any], plan: Plan) -> 
     ids = [one.id for one in findings]
     if claims and set(ids) != set(claims):
         raise ValueError(f"{name} judged {', '.join(ids)}, not {', '.join(claims)}")
+    if study.registration is not None:
+        for one in findings:
+            study.registration.check(one)
     return findings
 
 

@@ -8,6 +8,7 @@ from typing import Any, Protocol
 from ryusa.results import Results
 from ryusa.study.judge import Finding, Outcome
 from ryusa.study.plan import Level, Plan
+from ryusa.study.registration import Registration
 from ryusa.study.task import CaseRun, Task
 
 Found = Mapping[Any, Any]  # task -> result of `measure`, or the arrays of a calculation
@@ -66,6 +67,7 @@ class Study(ABC):
     parts : names of the parts, in the order of the page.
     level : level whose files have no level in their names.
     words : words for the verdicts, by outcome.
+    registration : claims with the bands that judge them; without it a part states its bands itself.
     template : template of the page; it extends `page.html` of this package.
     """
 
@@ -76,6 +78,7 @@ class Study(ABC):
     parts: tuple[str, ...] = ()
     level = Level.STANDARD
     words: Mapping[Outcome, str] = {one: str(one) for one in Outcome}
+    registration: Registration | None = None
     template = Path(__file__).with_name("page.html")
 
     @abstractmethod
