@@ -21,8 +21,9 @@ from ryusa.model.scene import EventRule
 SPEED, K_N, PHASES = 0.1, 1.0e4, 40
 
 
-def impacts(e, partner, steps, plane=False, tension=False, timing=ContactTiming.EXACT, aslant=0.0, **more):
+def impacts(e, partner, steps, plane=False, tension=False, timing=ContactTiming.EXACT, aslant=0.0, phase=None, **more):
     """Impacts at `PHASES` phases of the first step of touch, far apart from each other: scene and engine."""
+    phase = (np.arange(PHASES) + 0.5) / PHASES if phase is None else phase
     common = {
         "stiffness": K_N, "restitution": e, "tension": tension, "timing": timing, "plane_case": plane,
         "gravity": 0.0, "steps_per_contact": steps, **more,
@@ -31,7 +32,7 @@ def impacts(e, partner, steps, plane=False, tension=False, timing=ContactTiming.
     still[:, 1] = 10.0 * D * np.arange(PHASES)
     twice = np.vstack([still, still + np.array([0.0, 0.0, 5.0 * D])])
     dt = scene(twice if partner == "free" else still, D, **common)[0].dt
-    gap = (3.0 + (np.arange(PHASES) + 0.5) / PHASES) * SPEED * dt
+    gap = (3.0 + phase) * SPEED * dt
     x, v = still.copy(), np.zeros((PHASES, 3))
     x[:, 2] = gap + (0.5 * D if partner == "wall" else D)
     v[:, 0], v[:, 2] = aslant * SPEED, -SPEED
@@ -64,6 +65,18 @@ def test_restitution_and_contact_time_are_exact_at_every_phase_of_touch(e, tensi
         tally = engine.tally()
         assert tally.residual < 1e-11
         assert tally.spring_n == tally.spring_s == 0.0
+
+
+@pytest.mark.parametrize("tension", [False, True])
+@pytest.mark.parametrize("e", [0.1, 0.5, 0.9])
+def test_a_contact_that_touches_and_leaves_at_steps_but_for_round_off_is_as_exact(e, tension):
+    m = scene(np.zeros((1, 3)), D)[0].m[0]
+    t_col = collision.contact_time(collision.zeta_for_restitution(e, tension), math.sqrt(K_N / m), tension)
+    phase = np.concatenate([way * 10.0 ** np.linspace(-16, -6, PHASES // 2) for way in (-1.0, 1.0)])
+    found = impacts(e, "fixed", 8, tension=tension, phase=phase, dt=t_col / 8)[1].events()
+    assert len(found) == PHASES
+    assert -found["closing_end"] == pytest.approx(e * SPEED, rel=1e-8)
+    assert found["t_end"] - found["t_begin"] == pytest.approx(t_col, rel=1e-8)
 
 
 def test_a_law_given_by_its_damping_ratio_alone_is_as_exact():

@@ -38,6 +38,7 @@ BEGINS = 2.0
 MAY_END = 3.0  # `end_contact` tells
 CORRECTS = 4.0  # the closing speed after the end
 
+_ROUND_OFF = 1e-9  # steps by which a release may lie beyond the next step and still be looked upon as at it
 _LATE = 2.0  # steps of approach within which a first overlap is that of a touch; a larger one was put there
 
 
@@ -150,7 +151,7 @@ def end_contact(
     a, q, _, eta_s = oscillators(m, eta_d, m_t, eta_sd, c)
     v = velocity_of_map(overlap, closing, dt, a, q)
     until = time_of_release(overlap, v, a, q, tension)
-    ends = fades and until <= dt
+    ends = fades and until <= (1.0 + _ROUND_OFF) * dt
     until = until if ends else 0.0
     v_mean, v_end = end_in_step(overlap, v, until, dt, a, q)
     b, slid = _slip_to_the_end(
