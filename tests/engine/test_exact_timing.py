@@ -21,7 +21,9 @@ from ryusa.model.scene import EventRule
 SPEED, K_N, PHASES = 0.1, 1.0e4, 40
 
 
-def impacts(e, partner, steps, plane=False, tension=False, timing=ContactTiming.EXACT, aslant=0.0, phase=None, **more):
+def impacts(
+    e, partner, steps, plane=False, tension=False, timing=ContactTiming.EXACT, aslant=0.0, phase=None, **more
+):
     """Impacts at `PHASES` phases of the first step of touch, far apart from each other: scene and engine."""
     phase = (np.arange(PHASES) + 0.5) / PHASES if phase is None else phase
     common = {
