@@ -81,6 +81,16 @@ def test_a_contact_that_touches_and_leaves_at_steps_but_for_round_off_is_as_exac
     assert found["t_end"] - found["t_begin"] == pytest.approx(t_col, rel=1e-8)
 
 
+@pytest.mark.parametrize("plane", [False, True])
+@pytest.mark.parametrize("aslant", [0.5, 5.0])
+def test_the_normal_motion_of_an_oblique_impact_on_a_wall_is_that_of_a_head_on_one(aslant, plane):
+    fixed, engine = impacts(0.7, "wall", 8, plane=plane, aslant=aslant, friction=0.4)
+    found = engine.events()
+    assert found["closing_begin"] == pytest.approx(SPEED, rel=1e-11)
+    assert -found["closing_end"] == pytest.approx(0.7 * SPEED, rel=1e-11)
+    assert found["impulse_n"] == pytest.approx(fixed.m[0] * 1.7 * SPEED, rel=1e-11)
+
+
 def test_a_law_given_by_its_damping_ratio_alone_is_as_exact():
     law = ContactLaw(
         k_n=K_N, k_s=0.0, mu=0.0, zeta_n=collision.zeta_no_tension(0.7), timing=ContactTiming.EXACT

@@ -47,7 +47,7 @@ def _find(m: int, selected: Any, i_of: Any, j_of: Any, mass: Any, dt: float, bat
 
 @inner(fastmath=FAST)
 def _pack(
-    n: int, lanes: int, selected: Any, i_of: Any, j_of: Any, mass: Any, inertia: Any, batch: Any
+    n: int, lanes: int, selected: Any, i_of: Any, j_of: Any, mass: Any, inertia: Any, w: Any, batch: Any
 ) -> int:
     """Copy n events, of the lanes listed from `lanes` on, to event lanes; returns these in whole vectors.
 
@@ -71,7 +71,7 @@ def _pack(
         batch[B.RADIUS_OF_EVENT + NEXT + e] = batch[B.SPIN_J + 4 * l + 3]
         batch[B.CURVE_OF_EVENT + e] = passing(
             u_x * u_x + u_y * u_y + u_z * u_z, batch[B.CLOSING + l],
-            batch[B.SPIN_I + 4 * l + 3] + batch[B.SPIN_J + 4 * l + 3] - batch[B.OVERLAP + l],
+            w[i, 3] + w[j, 3] - batch[B.OVERLAP + l],  # inf of a plane, whose radius on its lane is that of i
         )  # fmt: skip
     return (n + 7) // 8 * 8
 
@@ -179,20 +179,20 @@ _end_plane, _end_space = _make_end(True), _make_end(False)
 @inner(fastmath=FAST, forceinline=True)
 def begin_and_end(
     flat: int | None, rotation: int, choice: LawChoice, m: int, selected: Any, i_of: Any, j_of: Any,
-    mass: Any, inertia: Any, c: Any, batch: Any,
+    mass: Any, inertia: Any, w: Any, c: Any, batch: Any,
 ) -> None:  # fmt: skip
     """Do the events among the first m lanes."""
     rules = (slip_total(choice.slip), slip_drops(choice.slip), cap_total(choice.cap))
     begin, end = _find(m, selected, i_of, j_of, mass, c[P.DT], batch)
     if begin > 0:
-        n = _pack(begin, B.BEGINS, selected, i_of, j_of, mass, inertia, batch)
+        n = _pack(begin, B.BEGINS, selected, i_of, j_of, mass, inertia, w, batch)
         if flat is not None:
             _begin_plane(n, rotation != 0, rules, c, batch)
         else:
             _begin_space(n, rotation != 0, rules, c, batch)
         _put_back(begin, B.BEGINS, batch)
     if end > 0:
-        n = _pack(end, B.MAY_END, selected, i_of, j_of, mass, inertia, batch)
+        n = _pack(end, B.MAY_END, selected, i_of, j_of, mass, inertia, w, batch)
         if flat is not None:
             _end_plane(n, rotation != 0, rules, choice.tension != 0, c, batch)
         else:

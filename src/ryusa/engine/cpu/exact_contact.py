@@ -169,7 +169,7 @@ _tangential_plane, _tangential_space = _make_tangential(True), _make_tangential(
 @inner(fastmath=FAST, forceinline=True)
 def compute_exactly(
     flat: int | None, rotation: int, choice: LawChoice, m: int, lanes: int, hdt: float, most: float,
-    selected: Any, i_of: Any, j_of: Any, mass: Any, inertia: Any, c: Any, batch: Any,
+    selected: Any, i_of: Any, j_of: Any, mass: Any, inertia: Any, w: Any, c: Any, batch: Any,
 ) -> None:  # fmt: skip
     """Forces, torques and work of the first m lanes, as `pair_batch.compute`; `lanes` in whole vectors."""
     total, drop, whole = slip_total(choice.slip), slip_drops(choice.slip), cap_total(choice.cap)
@@ -177,7 +177,7 @@ def compute_exactly(
         _kinematics_plane(lanes, most, choice.tension != 0, c, batch)
     else:
         _kinematics_space(lanes, most, choice.tension != 0, c, batch)
-    begin_and_end(flat, rotation, choice, m, selected, i_of, j_of, mass, inertia, c, batch)
+    begin_and_end(flat, rotation, choice, m, selected, i_of, j_of, mass, inertia, w, c, batch)
     if flat is not None:
         _tangential_plane(total, drop, whole, lanes, hdt, c, batch)
     else:

@@ -107,7 +107,7 @@ def block_forces(
         else:
             compute_exactly(
                 flat, variant.rotation, choice, m, lanes, hdt, stats[S.OVERLAP_MAX], selected, i_of, j_of,
-                mass, inertia, c, batch,
+                mass, inertia, w, c, batch,
             )  # fmt: skip
         if optional is not None:
             spring_r += optional_physics(
