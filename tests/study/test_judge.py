@@ -1,10 +1,11 @@
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy import stats
 
-from ryusa.study import Band, Finding, Outcome, Trial, over_range, over_seeds, pool
+from ryusa.study import Band, Finding, Outcome, Trial, over_range, over_seeds, pool, seeds_trial
 
 BAND = Band(1.0, 2.0, "m", "1 to 2 m")
 
@@ -71,8 +72,8 @@ def test_a_band_needs_the_whole_interval_inside_or_outside():
     ("trials", "word"),
     [
         ([trial(1.5, phi="10 deg"), trial(1.6, phi="20 deg")], Outcome.HOLDS),
-        ([trial(1.5, phi="10 deg"), trial(3.0, phi="20 deg")], Outcome.ONLY_IF),
-        ([trial(3.0, phi="10 deg"), trial(1.5, phi="20 deg")], Outcome.ONLY_IF),
+        ([trial(1.5, phi="10 deg"), trial(3.0, phi="20 deg")], Outcome.HOLDS),
+        ([trial(3.0, phi="10 deg"), trial(1.5, phi="20 deg")], Outcome.FAILS),
         ([trial(3.0, phi="10 deg"), trial(4.0, phi="20 deg")], Outcome.FAILS),
         ([trial(1.9, 1.7, 2.1, phi="10 deg"), trial(4.0, phi="20 deg")], Outcome.UNDECIDED),
         ([trial(1.5, phi="10 deg"), trial(1.9, 1.7, 2.1, phi="20 deg")], Outcome.HOLDS),
@@ -88,23 +89,46 @@ def test_a_claim_excluded_by_its_equations_is_excluded_whatever_the_runs():
     assert finding(trial(1.5), contradiction="a band of 10 cannot hold 100").outcome is Outcome.EXCLUDED
 
 
-def test_the_condition_names_the_choices_under_which_a_claim_holds():
-    values = {"10 deg": 3.0, "20 deg": 1.2, "30 deg": 1.5, "40 deg": 3.0}
-    found = finding(*(trial(value, phi=phi, slip="spring") for phi, value in values.items()))
-    assert found.condition == "phi 20 deg to 30 deg (2 of 4 settings)"
+def swept(holds, phis=("10 deg", "20 deg", "30 deg", "40 deg")):
+    """A finding over friction angles and four other choices, that holds where the function says so."""
+    others = [{"slip": slip, "start": start} for slip in ("spring", "total") for start in ("rest", "moving")]
+    return finding(*(trial(1.5 if holds(phi) else 3.0, phi=phi, **one) for phi in phis for one in others))
+
+
+def test_a_finding_holds_only_if_one_choice_decides_beyond_chance():
+    found = swept(lambda phi: phi in ("20 deg", "30 deg"))
+    assert found.outcome is Outcome.ONLY_IF
+    assert found.condition == "phi 20 deg to 30 deg (8 of 8 settings, none of 8 others)"
+
+
+def test_one_setting_that_holds_among_many_makes_no_condition():
+    found = finding(*(trial(1.5 if k == 7 else 3.0, phi=str(k % 4), slip=str(k // 4)) for k in range(16)))
+    assert (found.outcome, found.condition, found.deciding) == (Outcome.FAILS, "", None)
+    assert (found.robustness.holds, found.robustness.of) == (1, 16)
+
+
+def test_a_condition_that_the_other_half_of_the_seeds_does_not_confirm_is_none():
+    def tried(phi, second):
+        return Trial("n", {"phi": str(phi), "k": str(second)}, over_seeds([1.5], "m"), BAND)
+
+    def of(phi, k, confirmed):
+        first = phi < 2
+        return replace(
+            tried(phi, k), decided=first, halves=(first, first if confirmed else (phi + k) % 2 == 0)
+        )
+
+    for confirmed in (True, False):
+        found = finding(*(of(phi, k, confirmed) for phi in range(4) for k in range(4)))
+        assert (found.deciding is not None) is confirmed
+
+
+def test_halves_of_the_seeds_are_judged_by_their_means():
+    one = seeds_trial("length", {}, [1.2, 3.0, 1.4, 3.2], BAND)
+    assert one.found == over_seeds([1.2, 3.0, 1.4, 3.2], "m")
+    assert one.halves == (True, False)
+    assert seeds_trial("length", {}, [1.5], BAND).halves == (True, None)
 
 
 def test_a_decided_trial_needs_no_number():
     wall = Trial("slope", {}, over_seeds([math.nan], "deg"), BAND, decided=False, note="stands as a wall")
     assert wall.holds is False
-
-
-def test_a_condition_names_no_combination_that_fails():
-    held = {
-        ("10 deg", "total"): 1.5,
-        ("20 deg", "spring"): 1.5,
-        ("10 deg", "spring"): 3.0,
-        ("20 deg", "total"): 3.0,
-    }
-    found = finding(*(trial(value, phi=phi, slip=slip) for (phi, slip), value in held.items()))
-    assert found.condition == "as it ships or phi 20 deg, slip spring (2 of 4 settings)"

@@ -65,7 +65,7 @@ def test_a_band_that_is_registered_may_judge_and_no_other(tmp_path: Path) -> Non
         both.check(finding("flow", "speed, slope 21 deg", Band(0.02, 1.0, "-", "")))
     with pytest.raises(ValueError, match=r'"largest contact time" is judged by .* which is not registered'):
         both.check(finding("contact", "largest contact time", Band(6e-5, 8e-5, "s", "")))
-    with pytest.raises(ValueError, match=r"heap is not registered in registration.toml"):
+    with pytest.raises(ValueError, match=r"heap is not registered, so it is not judged"):
         both.check(finding("heap", "slope", Band(30.0, 36.0, "deg", "")))
 
 
@@ -108,14 +108,14 @@ def test_the_commit_is_named_and_says_when_the_file_is_not_committed(tmp_path: P
             ["git", "-C", str(tmp_path), *who, *words], check=True, capture_output=True, text=True
         ).stdout.strip()
 
-    assert registered(tmp_path).commit is None
+    assert registered(tmp_path).commits["contact"] is None
     git("init", "-q")
     git("add", ".")
     git("commit", "-qm", "Register")
     first = git("rev-parse", "HEAD")
-    assert registered(tmp_path).commit == first
+    assert registered(tmp_path).commits["contact"] == first
     (tmp_path / "other").write_text("1")
     git("add", ".")
     git("commit", "-qm", "Something else")
-    assert registered(tmp_path).commit == first
-    assert registered(tmp_path, TEXT + "\n").commit == first + "+"
+    assert registered(tmp_path).commits["contact"] == first
+    assert registered(tmp_path, TEXT + "\n").commits["contact"] == first + "+"

@@ -68,6 +68,6 @@ def test_the_base_verdict_is_that_of_the_case_as_it_ships_alone():
         Trial("n", {"phi": phi}, exact(value, "-"), band) for phi, value in (("30", 2.0), ("20", 0.5))
     )
     found = Finding("a", trials)
-    assert (found.outcome, found.base_outcome) == (Outcome.ONLY_IF, Outcome.FAILS)
+    assert (found.outcome, found.base_outcome) == (Outcome.FAILS, Outcome.FAILS)
     assert (found.robustness.holds, found.robustness.of) == (1, 2)
     assert found.deciding is None

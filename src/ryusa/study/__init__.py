@@ -7,6 +7,7 @@ page.
 
 from ryusa.study.compare import comparison, misfit, relative
 from ryusa.study.cost import CostEstimate, code_in_words, duration, estimate_cost
+from ryusa.study.design import Design, Factor
 from ryusa.study.fault import Fault, noted
 from ryusa.study.intermittent import correlation_time, rate_with_rests, share_over_runs
 from ryusa.study.interval import (
@@ -33,6 +34,7 @@ from ryusa.study.judge import (
     Source,
     Trial,
     at_most,
+    seeds_trial,
 )
 from ryusa.study.plan import Level, Plan
 from ryusa.study.progress import ProgressLines, StudyProgress
@@ -46,6 +48,8 @@ __all__ = [
     "Calculation",
     "CaseRun",
     "CostEstimate",
+    "Design",
+    "Factor",
     "Fault",
     "Finding",
     "Found",
@@ -85,6 +89,7 @@ __all__ = [
     "pseudo_values",
     "rate_with_rests",
     "relative",
+    "seeds_trial",
     "share_over_runs",
     "short",
     "transformed",

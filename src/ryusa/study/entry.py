@@ -39,10 +39,10 @@ def plain_entry(study: Study, entry: LedgerEntry, folder: Path) -> dict[str, Any
         "part": entry.part,
         "title": found.title or study.part(entry.part).TITLE,
         "outcome": str(entry.outcome),
-        "verdict": study.words[entry.outcome],
+        "verdict": study.verdict(entry.id, entry.outcome),
         "condition": found.condition,
         "counts": found.counts,
-        "base_verdict": study.words[found.base_outcome],
+        "base_verdict": study.verdict(entry.id, found.base_outcome),
         "robustness": {
             name: getattr(found.robustness, name) for name in ("holds", "of", "undecided", "low", "high")
         },
@@ -71,7 +71,12 @@ def ours_in_words(finding: Finding) -> str:
 def _deciding(found: Finding) -> dict[str, Any] | None:
     """The free choice that decides a finding, at which values it holds, and how sure that is."""
     one = found.deciding
-    return None if one is None else {"choice": one.choice, "holds_at": list(one.levels), "p": one.p}
+    if one is None:
+        return None
+    return {
+        "choice": one.choice, "holds_at": list(one.levels), "p": one.p, "confirmed": one.confirmed,
+        "there": list(one.inside), "elsewhere": list(one.outside),
+    }  # fmt: skip
 
 
 def _registered(study: Study, entry: LedgerEntry) -> dict[str, Any] | None:

@@ -4,12 +4,11 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
+from functools import cached_property
 
 from ryusa.figures.comparison import Axis, Curve
-from ryusa.study.interval import Interval
-from ryusa.study.verdict import Effect, Key, Robustness, effects, robustness
-
-_NAMED = 3  # largest number of sets of choices named in a condition
+from ryusa.study.interval import Interval, Pooled, exact, over_seeds
+from ryusa.study.verdict import Effect, Key, Robustness, deciding, robustness
 
 
 class Outcome(StrEnum):
@@ -99,6 +98,7 @@ class Trial:
     band : its permitted range; None if the number is shown but not judged.
     decided : verdict if it cannot be based on a number, such as a heap that stands as a wall; `note` says
         why.
+    halves : whether it holds by the mean of each half of the seeds; None where no seed enters it.
     """
 
     part: str
@@ -107,6 +107,7 @@ class Trial:
     band: Band | None
     decided: bool | None = None
     note: str = ""
+    halves: tuple[bool | None, bool | None] | None = None
 
     @property
     def judged(self) -> bool:
@@ -119,6 +120,30 @@ class Trial:
         if self.decided is not None or self.band is None:
             return self.decided
         return self.band.holds(self.found)
+
+
+def seeds_trial(
+    part: str,
+    choices: Mapping[str, str],
+    values: Sequence[float],
+    band: Band,
+    pooled: Pooled | None = None,
+) -> Trial:
+    """Return the trial of a mean over seeds.
+
+    Parameters
+    ----------
+    part, choices, band : as in `Trial`.
+    values : one number per seed, in the order of the seeds. Those at even and at odd places are the halves of
+        the seeds on which a condition is predicted and confirmed.
+    pooled : spread of all settings of a sweep, as in `over_seeds`.
+    """
+    one, other = (_by_mean(values[half::2], band) for half in (0, 1))
+    return Trial(part, choices, over_seeds(values, band.unit, pooled), band, halves=(one, other))
+
+
+def _by_mean(values: Sequence[float], band: Band) -> bool | None:
+    return band.holds(exact(math.fsum(values) / len(values), band.unit)) if values else None
 
 
 @dataclass(frozen=True)
@@ -163,10 +188,19 @@ class Finding:
     @property
     def by_choice(self) -> dict[Key, bool | None]:
         """Whether the finding holds for each set of choices, that is, all of its judged parts hold."""
+        return self._by_choice([(one, one.holds) for one in self.trials])
+
+    def by_half(self, half: int) -> dict[Key, bool | None]:
+        """`by_choice` from the first (0) or the second (1) half of the seeds."""
+        return self._by_choice(
+            [(one, one.holds if one.halves is None else one.halves[half]) for one in self.trials]
+        )
+
+    def _by_choice(self, trials: Sequence[tuple[Trial, bool | None]]) -> dict[Key, bool | None]:
         parts: dict[Key, list[bool | None]] = {}
-        for one in self.trials:
+        for one, holds in trials:
             if one.judged:
-                parts.setdefault(tuple(one.choices.items()), []).append(one.holds)
+                parts.setdefault(tuple(one.choices.items()), []).append(holds)
         return {
             key: False if False in held else None if None in held else True for key, held in parts.items()
         }
@@ -177,21 +211,13 @@ class Finding:
 
         - excluded: the equations of its own source exclude the claim, whatever the runs show;
         - shown: no number has a permitted range;
-        - holds only if: it holds for some sets of choices and fails for others;
-        - holds: it fails for none, and holds for the case file as it ships;
-        - fails: it holds for none, and fails for the case file as it ships;
-        - undecided: otherwise; intervals include a limit.
+        - holds only if: one choice decides (`deciding`): it holds in most settings with the levels named, and
+          in none without;
+        - holds, fails, undecided: otherwise, for the case file as it ships. `robustness` says in how many
+          settings it holds.
         """
-        if self.contradiction:
-            return Outcome.EXCLUDED
-        held = list(self.by_choice.values())
-        if not held:
-            return Outcome.SHOWN if self.trials else Outcome.UNDECIDED
-        if True in held and False in held:
-            return Outcome.ONLY_IF
-        if held[0] is None:
-            return Outcome.UNDECIDED
-        return Outcome.HOLDS if held[0] else Outcome.FAILS
+        decides = self.deciding is not None and self.deciding.decides and not self.contradiction
+        return Outcome.ONLY_IF if decides else self.base_outcome
 
     @property
     def base_outcome(self) -> Outcome:
@@ -208,11 +234,10 @@ class Finding:
         """Share of the settings in which it holds."""
         return robustness(list(self.by_choice.values()))
 
-    @property
+    @cached_property
     def deciding(self) -> Effect | None:
-        """The free choice that decides whether it holds; None if no effect is more than chance."""
-        found = effects(self.by_choice)
-        return found[0] if found and found[0].significant else None
+        """The free choice that decides whether it holds; None if there is none beyond chance."""
+        return deciding(self.by_choice, self.by_half(0), self.by_half(1))
 
     @property
     def counts(self) -> dict[str, int]:
@@ -222,30 +247,15 @@ class Finding:
 
     @property
     def condition(self) -> str:
-        """Choices for which it holds, in words, if it fails for others.
-
-        Choices are listed one by one if every combination of their values holds; else the sets for which it
-        holds are listed, by their differences from the case as it ships.
-        """
-        held = self.by_choice
-        good = [dict(key) for key, one in held.items() if one]
-        if self.outcome is not Outcome.ONLY_IF:
+        """Levels of the deciding choice at which it holds, in words, if it holds at no other."""
+        one = self.deciding
+        if self.outcome is not Outcome.ONLY_IF or one is None:
             return ""
-        tried = {name: list(dict.fromkeys(dict(key)[name] for key in held)) for name in good[0]}
-        fits = {
-            name: [v for v in values if any(one[name] == v for one in good)] for name, values in tried.items()
-        }
-        inside = [one for key, one in held.items() if all(value in fits[name] for name, value in key)]
-        if False not in inside:
-            said = [
-                f"{name} {_listed(fits[name], tried[name])}" for name in tried if fits[name] != tried[name]
-            ]
-        else:
-            first = dict(next(iter(held)))
-            sets = [", ".join(f"{k} {v}" for k, v in one.items() if v != first[k]) for one in good]
-            said = [" or ".join(one or "as it ships" for one in sets[:_NAMED])]
-            said += [f"or {len(sets) - _NAMED} more"] if len(sets) > _NAMED else []
-        return f"{'; '.join(said)} ({len(good)} of {len(held)} settings)"
+        tried = list(dict.fromkeys(dict(key)[one.choice] for key in self.by_choice))
+        return (
+            f"{one.choice} {_listed(one.levels, tried)} ({one.inside[0]} of {one.inside[1]} settings, "
+            f"none of {one.outside[1]} others)"
+        )
 
     @property
     def base(self) -> tuple[Trial, ...]:

@@ -1,6 +1,6 @@
 """Registration of claims: what stands for each and the band asked, written down before any run of it.
 
-A study keeps it in a TOML file that is committed before the runs; the page names the commit. A band is never
+A study keeps it in TOML files that are committed before the runs; the page names the commits. A band is never
 replaced: a later one is a further entry with its date and reason, and the page shows the verdict by both.
 """
 
@@ -79,31 +79,38 @@ class RegisteredClaim:
 
 @dataclass(frozen=True)
 class Registration:
-    """All claims of a study, by id, and the file they are in."""
+    """All claims of a study, and the file that each is in, by id."""
 
     claims: Mapping[str, RegisteredClaim]
-    path: Path
+    paths: Mapping[str, Path]
 
     @classmethod
     def read(cls, path: Path) -> "Registration":
         """Read a registration.
+
+        Parameters
+        ----------
+        path : a TOML file, or a folder of such files.
 
         Raises
         ------
         ValueError : a key, a kind or a limit that is not allowed, or an id that occurs twice.
         """
         found: dict[str, RegisteredClaim] = {}
-        for one in tomllib.loads(path.read_text(encoding="utf-8")).get("claim", []):
-            claim = _claim(one, path.name)
-            if claim.id in found:
-                raise ValueError(f"{path.name}: {claim.id} occurs twice")
-            found[claim.id] = claim
-        return cls(found, path)
+        paths: dict[str, Path] = {}
+        for file in sorted(path.glob("*.toml")) if path.is_dir() else [path]:
+            for one in tomllib.loads(file.read_text(encoding="utf-8")).get("claim", []):
+                claim = _claim(one, file.name)
+                if claim.id in found:
+                    raise ValueError(f"{file.name}: {claim.id} occurs twice, also in {paths[claim.id].name}")
+                found[claim.id], paths[claim.id] = claim, file
+        return cls(found, paths)
 
     @cached_property
-    def commit(self) -> str | None:
-        """Commit that last changed the file, with "+" if it differs from that; None outside a checkout."""
-        return last_commit(self.path)
+    def commits(self) -> Mapping[str, str | None]:
+        """Commit that last changed the file of each claim, with "+" if it differs; None outside a checkout."""
+        files = {path: last_commit(path) for path in set(self.paths.values())}
+        return {claim: files[path] for claim, path in self.paths.items()}
 
     def check(self, finding: Finding) -> None:
         """Refuse a finding that is judged by a band that is not in force.
@@ -114,7 +121,7 @@ class Registration:
         """
         claim = self.claims.get(finding.id)
         if claim is None:
-            raise ValueError(f"{finding.id} is not registered in {self.path.name}, so it is not judged")
+            raise ValueError(f"{finding.id} is not registered, so it is not judged")
         for one in finding.trials:
             if one.band is not None and one.judged:
                 self._check(claim, one, one.band)
@@ -122,7 +129,7 @@ class Registration:
     def _check(self, claim: RegisteredClaim, trial: Trial, band: Band) -> None:
         entries = claim.entries(trial.part)
         said = f'{claim.id}: "{trial.part}" is judged by {_limits(band)}, '
-        rule = f"a band is registered in {self.path.name}, and committed, before a run is judged by it"
+        rule = f"a band is registered in {self.paths[claim.id].name}, and committed, before it judges a run"
         if not entries:
             raise ValueError(f"{said}which is not registered; {rule}")
         if not any(_same(one.band, band) for one in _in_force(entries)):
@@ -144,7 +151,7 @@ class Registration:
                     }
                 )  # fmt: skip
         return {
-            "commit": self.commit, "kind": claim.kind, "original": claim.original,
+            "commit": self.commits[finding.id], "kind": claim.kind, "original": claim.original,
             "translation": claim.translation, "measured": claim.measured, "base": claim.base,
             "factors": list(claim.factors), "missing": list(claim.missing), "sample": claim.sample,
             "test": claim.test, "earlier": earlier,

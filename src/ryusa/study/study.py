@@ -98,6 +98,11 @@ class Study(ABC):
         del entry
         return {}
 
+    def verdict(self, entry: str, outcome: Outcome) -> str:
+        """Words for the verdict on an entry."""
+        del entry
+        return self.words[outcome]
+
     def order(self, entries: Sequence[str]) -> Sequence[str]:
         """Order the ids of the entries."""
         return entries

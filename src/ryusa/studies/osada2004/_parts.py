@@ -5,7 +5,10 @@ from collections.abc import Mapping
 from ryusa.cases import case_path
 from ryusa.study import CaseRun, Found, Plan, case_run
 
-__all__ = ["NAMES", "PHI", "RATIO", "ROTATION", "SLIP", "CaseRun", "Found", "Plan", "paper_run"]
+__all__ = [
+    "CLOSURE", "DRAG", "NAMES", "PACKING", "PARTING", "PHI", "RATIO", "ROTATION", "SLIP", "START", "CaseRun",
+    "Found", "Plan", "paper_run",
+]  # fmt: skip
 
 NAMES = (
     "fig04",
@@ -34,11 +37,16 @@ NAMES = (
     "eq13",
 )
 
-# Free choices that several parts share; one set of them is sought that fits most claims together.
+# Free choices that several parts share: one name each, so that the page can lay them side by side.
 PHI = "friction angle"
 SLIP = "slip rule"
 RATIO = "k_s/k_n"
 ROTATION = "rotation"  # only where the paper does not say it
+PARTING = "parting"  # whether the dashpot may pull
+DRAG = "C_D"
+CLOSURE = "water"  # what Eq. (9) or the column leaves open
+PACKING = "packing"  # sizes, bed, depth, and how the grains were laid down
+START = "start"  # how grains begin
 
 
 def paper_run(case: str, overrides: Mapping[str, str] | None = None, seed: int = 1) -> CaseRun:
