@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-from ryusa.studies.osada2004.paper import CLAIMS
+from ryusa.studies.osada2004.claims import CLAIMS
 from ryusa.studies.osada2004.study import PAPER
 from ryusa.study.kept import read_ledger
 

@@ -108,7 +108,7 @@ class Registration:
 
     @cached_property
     def commits(self) -> Mapping[str, str | None]:
-        """Commit that last changed the file of each claim, with "+" if it differs; None outside a checkout."""
+        """Commit that last changed the file of each claim, "+" if it differs; None outside a checkout."""
         files = {path: last_commit(path) for path in set(self.paths.values())}
         return {claim: files[path] for claim, path in self.paths.items()}
 

@@ -5,7 +5,7 @@ import pytest
 
 from ryusa.figures.style import new, save
 from ryusa.studies.osada2004._parts import PHI, ROTATION
-from ryusa.studies.osada2004.paper import CLAIMS
+from ryusa.studies.osada2004.claims import CLAIMS
 from ryusa.studies.osada2004.study import PAPER
 from ryusa.study import Band, Finding, Interval, Level, Plan, Trial
 from ryusa.study.entry import LedgerEntry

@@ -1,7 +1,7 @@
 import runpy
 from pathlib import Path
 
-from ryusa.studies.osada2004.paper import CLAIMS
+from ryusa.studies.osada2004.claims import CLAIMS
 
 faults = runpy.run_path(str(Path(__file__).with_name("check_ledger.py")))["faults"]
 

@@ -9,7 +9,7 @@ from PIL import Image, ImageChops
 
 from ryusa.errors import ResultsError
 from ryusa.running import disk
-from ryusa.studies.osada2004.paper import CLAIMS
+from ryusa.studies.osada2004.claims import CLAIMS
 from ryusa.studies.osada2004.study import PAPER
 from ryusa.study import Level, Plan, html, page
 from ryusa.study.page import write

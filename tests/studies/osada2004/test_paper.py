@@ -6,7 +6,7 @@ import importlib.util
 import pytest
 
 from ryusa.laws.collision import collision_time
-from ryusa.studies.osada2004 import paper
+from ryusa.studies.osada2004 import claims, paper
 
 
 def test_all_thirteen_equations_are_there():
@@ -24,20 +24,20 @@ def test_an_equation_points_at_a_law_that_names_it(number):
 
 
 def test_claims_and_readings_have_unique_ids_and_texts():
-    assert len(paper.CLAIMS) == len(paper._CLAIMS) == 35
+    assert len(claims.CLAIMS) == len(claims._CLAIMS) == 35
     assert len(paper.READINGS) == len(paper._READINGS)
-    assert all(claim.setup and claim.says for claim in paper.CLAIMS.values())
+    assert all(claim.setup and claim.says for claim in claims.CLAIMS.values())
     assert all(reading.choice and reading.why for reading in paper.READINGS.values())
 
 
 @pytest.mark.parametrize("figure", range(4, 24))
 def test_every_figure_from_4_on_is_named_by_a_claim(figure):
-    named = " ".join(claim.figure for claim in paper.CLAIMS.values()).replace(",", " ")
+    named = " ".join(claim.figure for claim in claims.CLAIMS.values()).replace(",", " ")
     assert any(word.rstrip("abc") == str(figure) for word in named.split())
 
 
 def test_a_claim_with_rotation_free_does_not_say_locked():
-    assert "locked" not in paper.CLAIMS["fig17-free"].setup
+    assert "locked" not in claims.CLAIMS["fig17-free"].setup
 
 
 def test_the_time_of_fig4_is_that_of_eq_8():

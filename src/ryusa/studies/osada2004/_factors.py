@@ -1,4 +1,4 @@
-"""Free choices that the paper leaves open, with their levels; each part takes those that can touch its claims."""
+"""Free choices that the paper leaves open, with their levels; a part takes those that touch its claims."""
 
 from ryusa.studies.osada2004._parts import CLOSURE, DRAG, PARTING, PHI, RATIO, ROTATION, SLIP
 from ryusa.study import Factor, Plan

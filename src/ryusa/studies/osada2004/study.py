@@ -7,9 +7,10 @@ from typing import Any
 
 from ryusa.errors import CaseError
 from ryusa.studies.osada2004._parts import NAMES
+from ryusa.studies.osada2004.claims import CLAIMS
 from ryusa.studies.osada2004.common import common
 from ryusa.studies.osada2004.friction import MARKS, by_angle
-from ryusa.studies.osada2004.paper import CITATION, CLAIMS
+from ryusa.studies.osada2004.paper import CITATION
 from ryusa.study import Finding, Outcome, Study, StudyPart
 from ryusa.study.page import interval
 

@@ -1,0 +1,223 @@
+"""What the paper reports: statements in our wording of the Japanese text, numbers in the paper's units."""
+
+from dataclasses import dataclass
+
+from ryusa.studies.osada2004._film import FLOWS
+
+
+@dataclass(frozen=True)
+class Claim:
+    """One thing the paper reports, under an id of ours."""
+
+    id: str
+    figure: str  # of the paper; "" where the text alone says it
+    setup: str
+    says: str
+    free: str = ""  # what the text does not fix
+    caution: str = ""  # what we found about the claim itself
+
+
+_SALTATION = (
+    "one 0.2 cm grain over a line of fixed, touching 0.2 cm grains; e = 0.7 normal and tangential, "
+    "tau_star 0.3, slope 1/20, depth 2 cm; 1 s to settle, then 30 saltations"
+)
+_SALTATION_FREE = (
+    "k_rough, zero of z, C_D law, nu, A_2, A_3, k_s, friction angle, water above 2 cm, definition of one "
+    "saltation"
+)
+_AVALANCHE = "dry avalanche of 20 cm grains on 40 deg, e = 0.7, collision time 0.01 s or 0.0001 s"
+_ITO = (
+    "Ito's case 1999-004: d = 0.218 cm, tau_star 1.08, depth 1.48 cm, rigid bed; k_n 200, k_s 15 N/cm, "
+    "eta_n 0.001, eta_s 0.0001 N s/cm; rotation locked; water and grains coupled both ways"
+)
+_HEAP = "heap between walls, mean d 0.2 cm, e = 0.7, one side wall removed at once"
+_BOX = "42 grains of 0.2 cm fall into a box of fixed grains, e = 0.7"
+_FILMS = (
+    "films of experiments show collisions of about 0.01 s",
+    "speed and resolution of the film",
+    "grains that a film shows in contact may only be nearer to each other than it resolves",
+)
+
+_CLAIMS = (
+    Claim(
+        "fig4",
+        "4",
+        "Eq. (8), d = 0.05 to 1 cm",
+        "shorter for small d and stiff springs; d = 0.2 cm, k_n = 0.01 N/cm: about 0.01 s",
+        "density (2650 kg/m3 gives the quoted number), range of k_n",
+    ),
+    Claim(
+        "fig5",
+        "5",
+        "grain dropped on a fixed grain, e = 0.7, d = 0.2 cm",
+        "collision time hardly differs from Eq. (8)",
+        "impact speed; whether the dashpot may pull",
+    ),
+    Claim(
+        "pair",
+        "",
+        "as fig5, with the struck grain free to move",
+        "should not differ much from the fixed case",
+        "",
+        "Eq. (8) with half the mass gives a factor of 0.71",
+    ),
+    Claim(
+        "fig7",
+        "6, 7",
+        f"{_SALTATION}; rotation locked; k_n swept (fig6 is 1 N/cm)",
+        "mean collision time at the bed agrees with Eq. (8)",
+        _SALTATION_FREE,
+        "the grain skims the crests if it travels more than about 0.3 d during a contact",
+    ),
+    Claim("spin-time", "", f"{_SALTATION}; rotation free", "rotation does not change the collision time"),
+    *(Claim(claim, "", flow.setup, *_FILMS) for claim, flow in FLOWS.items()),
+    Claim("fig8", "8", "largest overlap/d against k_n", "d = 0.2 cm: 0.01 at about 100 N/cm", "impact speed"),
+    Claim(
+        "fig10-soft",
+        "9, 10a",
+        f"{_BOX}, k_n = 1 N/cm; z displacement of marked grains per 0.01 s",
+        "nearly half of the 42 grains still vibrate at 0.5 s",
+        "packing, drop height, rotation, threshold",
+    ),
+    Claim(
+        "fig10-stiff", "9, 10b", f"{_BOX}, k_n = 100 N/cm", "every grain at rest by 0.125 s", "as fig10-soft"
+    ),
+    Claim(
+        "fig10-rule",
+        "",
+        "as fig10, other diameters",
+        "no vibration wherever overlap/d is below 0.01",
+        "diameters",
+    ),
+    Claim(
+        "steps",
+        "",
+        "collision time over dt",
+        "at least 10 steps per contact; with fewer, grains rebound abnormally",
+        "scheme",
+        "the ten-step rule applies to forward differences in time",
+    ),
+    Claim(
+        "fig11",
+        "11",
+        "band 0.001 < overlap/d < 0.01 laid over fig4",
+        "d = 0.2 cm: collision time about 0.0001 s",
+        "impact speed",
+    ),
+    Claim(
+        "fig12",
+        "12",
+        "the same for large grains",
+        "d = 20 cm: both 0.01 s and 0.0001 s lie in the band",
+        "impact speed",
+        "the two times differ by a factor of 100, the band spans a factor of 10: both cannot be in it at "
+        "one speed",
+    ),
+    Claim(
+        "hops",
+        "",
+        f"{_SALTATION}; same e, different collision time",
+        "mean and largest jump height and mean length do not change",
+        _SALTATION_FREE,
+    ),
+    Claim(
+        "fig14",
+        "13, 14",
+        _AVALANCHE,
+        "concentration profiles alike",
+        "number of grains, bed, length, friction angle, rotation",
+        "the flow is never steady with rotation free: equal time windows are compared",
+    ),
+    Claim(
+        "fig15",
+        "15",
+        _AVALANCHE,
+        "grain speed about 100 cm/s larger over the whole depth for 0.01 s",
+        "time window",
+    ),
+    Claim(
+        "fig15-flux",
+        "15",
+        _AVALANCHE,
+        "so, at equal concentration, the transport rate depends on the collision time",
+    ),
+    Claim(
+        "fig16",
+        "16",
+        f"{_AVALANCHE}; tracks over 1 s of grains that alternate between fixed bed and movers",
+        "0.0001 s: very jagged, shorter travel; 0.01 s: nearer to parallel layers",
+    ),
+    Claim(
+        "fig17",
+        "17",
+        _ITO,
+        "concentration about 0.3 near the surface; even surface grains are thrown up and down, where "
+        "the experiment shows nearly parallel layers",
+        "water model, slope (about 15 deg is implied), friction angle, number of grains",
+    ),
+    Claim("fig17-time", "17", _ITO, "collision time about 0.00007 s", "which pair: fixed or free partner"),
+    Claim("fig17-e", "17", _ITO, "restitution about 0.7", "which pair: fixed or free partner"),
+    Claim("fig17-lock", "", _ITO, "without a deposit layer, locking rotation does no harm"),
+    Claim(
+        "fig17-free",
+        "",
+        _ITO.replace("rotation locked", "rotation free"),
+        "grain speed near the bed far too large; the measurements cannot be met",
+    ),
+    Claim(
+        "fig18",
+        "18",
+        "sketch",
+        "long contacts carry grains along together and damp the vertical motion; short ones scatter them",
+    ),
+    Claim(
+        "fig19-locked",
+        "19b",
+        f"{_HEAP}; rotation locked",
+        "final slope about 33 deg (natural gravel about 38)",
+        "spread of d, heap size, friction angle, floor",
+        "the friction angle decides: a locked grain stays in its pocket up to a slope of 30 deg + phi",
+    ),
+    Claim("fig19-free", "19c", f"{_HEAP}; rotation free", "final slope about 18 deg", "as fig19-locked"),
+    Claim("bed18", "", "bed of grains steeper than 18 deg, rotation free", "flows with no water force"),
+    Claim(
+        "fig20",
+        "20",
+        f"{_SALTATION}; k_n = 100 N/cm, rotation locked or free",
+        "free: higher jumps and, with them, longer ones",
+        _SALTATION_FREE,
+        "slip rule and k_s/k_n change jump heights by tens of per cent",
+    ),
+    Claim(
+        "fig20-shear",
+        "20",
+        f"{_SALTATION}; k_n = 100 N/cm, rotation locked or free",
+        "free: bed shear resistance about half",
+        "definition of shear resistance",
+    ),
+    Claim(
+        "fig21",
+        "21",
+        f"{_SALTATION}; k_n = 100 N/cm, rotation free",
+        "spin grows with every bed hit and reaches about 900 rad/s (about 140 turns a second)",
+        _SALTATION_FREE,
+    ),
+    Claim(
+        "fig22",
+        "22",
+        "movable bed, rotation locked",
+        "neighbouring grains move downstream like rods, unable to climb over one another",
+        "tau_star, bed depth",
+    ),
+    Claim(
+        "fig22-free",
+        "",
+        "movable bed, rotation free, no rolling friction",
+        "grains rolling over the bed spin fast, which changes speed and flux",
+        "tau_star, bed depth",
+    ),
+    Claim(
+        "eq13", "23", "rolling friction, Eq. (13)", "principle only; f' is to be identified from experiments"
+    ),
+)
+CLAIMS = {claim.id: claim for claim in _CLAIMS}
