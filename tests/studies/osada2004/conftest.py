@@ -41,7 +41,15 @@ def every_word(tmp_path: Path, picture: Path) -> Ledger:
     nan = Interval(math.nan, math.nan, math.nan, "m", 3, "mean of 3 seeds")
     found = {
         "fig20": finding("fig20", trial(1.5, phi="10 deg"), trial(1.6, phi="20 deg"), also=(NASTY, "b")),
-        "fig7": finding("fig7", trial(1.5, phi="10 deg"), trial(3.0, phi="20 deg")),
+        "fig7": finding(
+            "fig7",
+            *(
+                trial(1.5 if phi == "10 deg" else 3.0, phi=phi, slip=slip, start=start)
+                for phi in ("10 deg", "20 deg")
+                for slip in ("spring", "total")
+                for start in ("rest", "moving", "poured")
+            ),
+        ),
         "fig8": finding("fig8", trial(3.0, phi="10 deg"), trial(4.0, phi="20 deg", part=NASTY)),
         "fig12": finding("fig12", trial(1.5), contradiction="a band of 10 cannot hold 100"),
         "fig14": finding("fig14", Trial("speed", {"x" * 90: "y" * 90}, nan, BAND)),

@@ -92,20 +92,17 @@ def test_fig8_needs_a_harder_hit_than_a_saltating_grain_gives():
     (found,) = fig08.judge(every(fig08) | soft, QUICK)
     assert found.outcome is Outcome.FAILS
     assert "requires 0.72 m/s" in found.decided_by
-    assert word("fig08", every(fig08, overlap=2.4) | soft) is Outcome.ONLY_IF
+    assert word("fig08", every(fig08, overlap=2.4) | soft) is Outcome.HOLDS
     assert word("fig08", every(fig08, overlap=2.4) | hits(QUICK, 0.72, 0.01)) is Outcome.HOLDS
     (swept,) = fig08.judge(every(fig08, STANDARD) | hits(STANDARD, 0.3, 0.0042), STANDARD)
-    assert swept.outcome is Outcome.ONLY_IF
-    assert swept.condition.startswith(
-        "impact speed (fig8) 0.7 m/s or impact speed (fig8) 0.6 m/s, restitution"
-    )
+    assert 0 < swept.robustness.holds < swept.robustness.of
 
 
 def test_fig11_holds_between_a_soft_and_a_hard_hit():
     assert word("fig11", every(fig11)) is Outcome.HOLDS
     assert word("fig11", every(fig11, overlap=5.0)) is Outcome.FAILS
     (swept,) = fig11.judge(every(fig11, STANDARD), STANDARD)
-    assert swept.condition.startswith("impact speed (fig11) 0.1 m/s to 0.7 m/s")
+    assert 0 < swept.robustness.holds < swept.robustness.of
 
 
 def test_the_band_of_the_runs_is_that_of_the_closed_form():

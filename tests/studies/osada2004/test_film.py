@@ -50,8 +50,7 @@ def test_a_film_shows_what_the_paper_says_from_3_to_30_ms(plan, mean, outcome):
 
 def test_the_springs_decide_if_only_the_softer_ones_show_it():
     for one in verdicts(lambda task: filmed(0.001 if stiff(task) else 0.01)).values():
-        assert one.outcome is Outcome.ONLY_IF
-        assert one.condition.startswith(f"{COLLISION} 1e-4 s")
+        assert 0 < one.robustness.holds < one.robustness.of
 
 
 def test_the_frames_of_a_slow_film_decide_nothing():

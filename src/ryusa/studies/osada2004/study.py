@@ -7,14 +7,12 @@ from typing import Any
 
 from ryusa.errors import CaseError
 from ryusa.studies.osada2004._parts import NAMES
+from ryusa.studies.osada2004.by_level import tables
 from ryusa.studies.osada2004.claims import CLAIMS
-from ryusa.studies.osada2004.common import common
-from ryusa.studies.osada2004.friction import MARKS, by_angle
 from ryusa.studies.osada2004.paper import CITATION
 from ryusa.study import Finding, Outcome, Study, StudyPart
 from ryusa.study.page import interval
 
-BEST = 5  # sets of common choices shown
 # What the paper left open, the claims whose runs answer it, and a word in what they say of it ("" is all).
 QUESTIONS = (
     (
@@ -76,8 +74,9 @@ class PaperStudy(Study):
         return [one for one in CLAIMS if one in entries]
 
     def head(self, findings: Sequence[Finding]) -> dict[str, Any]:
-        """The paper, and the sets of free choices, best first."""
-        return {"paper": CITATION, "common_choices": [one.plain() for one in common(findings)]}
+        """The paper."""
+        del findings
+        return {"paper": CITATION}
 
     def facts(self, entry: Mapping[str, Any]) -> list[tuple[str, str]]:
         """Set-up, what is left open, and the statement."""
@@ -92,17 +91,13 @@ class PaperStudy(Study):
         return "shown only" if trial["asked"] is None else trial["asked"]["says"]
 
     def context(self, ledger: Mapping[str, Any]) -> dict[str, Any]:
-        """Common choices, the friction angle, and the open questions."""
+        """Free choices level by level, and the open questions."""
         findings: list[dict[str, Any]] = [{**one, "ours": _ours(one)} for one in ledger["findings"]]
         here = {one["id"] for one in findings}
-        angles, lines = by_angle(findings)
         return {
             "findings": findings,
             "n_claims": len(CLAIMS),
-            "common": [one for one in ledger["common_choices"] if one["choices"]][:BEST],
-            "angles": angles,
-            "lines": lines,
-            "marks": MARKS,
+            "choices": tables(findings),
             "questions": [
                 (title, anchor, about, answers(findings, ids, word))
                 for title, anchor, about, ids, word in QUESTIONS

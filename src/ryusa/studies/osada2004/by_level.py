@@ -1,0 +1,97 @@
+"""In how many settings each claim holds, by the level of the free choices that several claims share."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from ryusa.studies.osada2004._parts import DRAG, PARTING, PHI, RATIO, ROTATION, SLIP
+
+SHARED = (PHI, SLIP, PARTING, RATIO, ROTATION, DRAG)  # levels of the others differ between parts
+
+Key = tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True)
+class LevelCell:
+    """One claim at one level.
+
+    Attributes
+    ----------
+    holds, of : settings in which it holds, of those that are decided.
+    undecided : settings whose interval includes a limit.
+    """
+
+    holds: int = 0
+    of: int = 0
+    undecided: int = 0
+
+    @property
+    def look(self) -> str:
+        """Class of its colour on the page."""
+        if self.of == 0:
+            return "open" if self.undecided else "waits"
+        return "yes" if self.holds == self.of else "partly" if self.holds else "no"
+
+
+@dataclass(frozen=True)
+class LevelRow:
+    """One claim at every level; `decides` if this choice decides it beyond chance."""
+
+    claim: str
+    cells: tuple[LevelCell, ...]
+    decides: bool
+
+
+@dataclass(frozen=True)
+class ChoiceTable:
+    """One free choice, its levels, the one as shipped first, and every claim that it was varied for."""
+
+    choice: str
+    levels: tuple[str, ...]
+    rows: tuple[LevelRow, ...]
+
+
+def tables(findings: Sequence[Mapping[str, Any]]) -> list[ChoiceTable]:
+    """Return a table for each shared choice that was varied.
+
+    Parameters
+    ----------
+    findings : entries as the JSON file holds them.
+    """
+    held = {one["id"]: outcomes(one["trials"]) for one in findings}
+    found: list[ChoiceTable] = []
+    for choice in SHARED:
+        values = {
+            claim: list(dict.fromkeys(value for key in sets if (value := dict(key).get(choice)) is not None))
+            for claim, sets in held.items()
+        }
+        varied = {claim: levels for claim, levels in values.items() if len(levels) > 1}
+        if not varied:
+            continue
+        levels = tuple(dict.fromkeys(value for tried in varied.values() for value in tried))
+        rows = [
+            LevelRow(
+                one["id"],
+                tuple(_cell(held[one["id"]], choice, level) for level in levels),
+                bool(one["deciding_factor"]) and one["deciding_factor"]["choice"] == choice,
+            )
+            for one in findings
+            if one["id"] in varied
+        ]
+        found.append(ChoiceTable(choice, levels, tuple(rows)))
+    return found
+
+
+def outcomes(trials: Sequence[Mapping[str, Any]]) -> dict[Key, str]:
+    """What became of a claim in each setting: every part of it that is judged must hold."""
+    parts: dict[Key, list[str]] = {}
+    for one in trials:
+        if one["outcome"] != "shown":
+            parts.setdefault(tuple(one["choices"].items()), []).append(one["outcome"])
+    worst = ("fails", "undecided", "holds")
+    return {key: next(word for word in worst if word in got) for key, got in parts.items()}
+
+
+def _cell(held: Mapping[Key, str], choice: str, level: str) -> LevelCell:
+    here = [word for key, word in held.items() if dict(key).get(choice) == level]
+    return LevelCell(here.count("holds"), len(here) - here.count("undecided"), here.count("undecided"))
