@@ -29,11 +29,13 @@ NAMES = (
     "fig17",
     "fig17_free",
     "fig18",
+    "long_contacts",
     "fig19",
     "bed18",
     "fig20",
     "fig21",
     "fig22",
+    "fig22_free",
     "eq13",
 )
 

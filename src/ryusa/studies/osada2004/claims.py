@@ -171,6 +171,14 @@ _CLAIMS = (
         "long contacts carry grains along together and damp the vertical motion; short ones scatter them",
     ),
     Claim(
+        "long-contacts",
+        "13-18",
+        "flows of fig13 and fig17 with contacts of several lengths, restitution kept",
+        "the short collision time is thought to affect that paths are not like parallel layers",
+        "closure of the water",
+        "with linear springs long contacts and deep overlaps come together",
+    ),
+    Claim(
         "fig19-locked",
         "19b",
         f"{_HEAP}; rotation locked",

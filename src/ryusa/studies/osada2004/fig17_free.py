@@ -1,26 +1,38 @@
 """The sentences after fig. 17: without a deposit locking does no harm, free grains run away."""
 
+import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 
+import numpy as np
 from matplotlib.figure import Figure
 
 from ryusa import figures
-from ryusa.studies.osada2004 import _debris
-from ryusa.studies.osada2004._debris import AMOUNT, FREE, LOCKED, SETTLED, SHIPPED, START, Debris, each
-from ryusa.studies.osada2004._parts import PHI, SLIP, CaseRun, Found, Plan
-from ryusa.study import Band, Finding, Trial, over_seeds, pool, short
+from ryusa.studies.osada2004 import _debris, _debris_run
+from ryusa.studies.osada2004._bands import band
+from ryusa.studies.osada2004._debris import FREE, LOCKED, SETTLED, SHIPPED, Value
+from ryusa.studies.osada2004._debris_run import Debris
+from ryusa.studies.osada2004._parts import PHI, START, CaseRun, Found, Plan
+from ryusa.study import Finding, Interval, Trial, exact, largest_mean, seeds_trial, short, transformed
 
 FIGURE = "fig17"
 TITLE = "Ito's debris flow with rotation locked and free"
 CLAIMS = ("fig17-lock", "fig17-free")
-NOTHING = float("-inf")  # the interval about a share of nothing reaches below it
-APART = Band(NOTHING, 0.05, "-", "no harm: no rigid clusters; at most 5 % of the movers in rods")
-NO_DEPOSIT = Band(NOTHING, 0.01, "-", "without a deposit: at most 1 % of grains and moments at rest")
-TOO_FAST = Band(
-    1.5, float("inf"), "-", "far too large near the bed: at least 1.5 times the speed of locked grains"
-)
-OFF = Band(1.1, float("inf"), "-", "cannot be met: a flux at least 10 % above that of locked grains")
+# Of locked grains: part -> number.
+LOCK: Mapping[str, Value] = {
+    "grains in contact at a moment": lambda one: one.touching,
+    "movers in rods": lambda one: one.rods,
+    "grains at rest": lambda one: one.rest,
+}
+# Of free over locked: part -> number.
+RATIOS: Mapping[str, Value] = {
+    "grain speed near the bed, free over locked": lambda one: one.near_bed,
+    "flux, free over locked": lambda one: one.q,
+}
+PROFILE = "concentration in a third of the depth, free over locked, change by a factor of"
+LEAST_PHI = 1.0e-3  # concentration of a third without grains, so that its change is a number
+STAND = "locked grains lie at rest: no flow to compare with"
 CURES: dict[str, dict[str, str]] = {
     "water torque, Dennis": {"water.torque": "Dennis"},
     "rolling friction, mu_r 0.2": {
@@ -28,23 +40,10 @@ CURES: dict[str, dict[str, str]] = {
     },
 }  # fmt: skip
 WITH = "rotation free, with"
+# Started at rest: a series beside the design, for what locking does to grains that lie on the bed.
+AT_REST = [{**SHIPPED, START: "at rest", PHI: phi} for phi in ("30 deg", "20 deg")]
 
-measure = _debris.measure
-
-
-def locked_settings(plan: Plan) -> list[dict[str, str]]:
-    """Sets of choices for locked grains that make a flow: begun at rest they lie down as a deposit."""
-    return [one for one in _debris.settings(plan) if one[START] == SHIPPED[START]]
-
-
-def free_settings(plan: Plan) -> list[dict[str, str]]:
-    """Sets of choices under which grains that turn are held against locked ones."""
-    changes = plan.pick(
-        (),
-        ((AMOUNT, ("4",)), (SLIP, ("total",))),
-        ((AMOUNT, ("3", "4", "6")), (PHI, ("20 deg", "40 deg")), (SLIP, ("total", "spring-drop"))),
-    )
-    return [SHIPPED, *({**SHIPPED, name: value} for name, values in changes for value in values)]
+measure = _debris_run.measure
 
 
 def _free(chosen: Mapping[str, str], seed: int, cure: str = "") -> CaseRun:
@@ -55,69 +54,99 @@ def _cures(plan: Plan) -> Sequence[str]:
     return plan.pick((), tuple(CURES))
 
 
+def _from_rest(plan: Plan) -> list[dict[str, str]]:
+    return plan.pick([], AT_REST)
+
+
 def tasks(plan: Plan) -> Sequence[CaseRun]:
-    """Locked grains under every setting, free ones under some."""
-    return [
-        *(_debris.run(one, seed) for one in locked_settings(plan) for seed in plan.seeds),
-        *(_free(one, seed) for one in free_settings(plan) for seed in plan.seeds),
-        *(_free(SHIPPED, seed, cure) for cure in _cures(plan) for seed in plan.seeds),
-    ]
+    """Locked and free grains under every setting, and what judges nothing."""
+    sets = [*_debris.settings(plan), *_from_rest(plan)]
+    runs = [which(one, seed) for one in sets for which in (_debris.run, _free) for seed in plan.seeds]
+    runs += [_free(SHIPPED, seed, cure) for cure in _cures(plan) for seed in plan.seeds]
+    return list(dict.fromkeys(runs))
 
 
-def _ratios(
-    found: Found, plan: Plan, value: Callable[[Debris], float], chosen: Mapping[str, str], cure: str = ""
-) -> list[float]:
-    """Free over locked, seed by seed."""
-    return [
-        value(found[_free(chosen, seed, cure)]) / value(found[_debris.run(chosen, seed)])
-        for seed in plan.seeds
-    ]
+def _locked_runs(found: Found, plan: Plan, chosen: Mapping[str, str]) -> list[Debris]:
+    return [found[_debris.run(chosen, seed)] for seed in plan.seeds]
+
+
+def _free_runs(found: Found, plan: Plan, chosen: Mapping[str, str], cure: str = "") -> list[Debris]:
+    return [found[_free(chosen, seed, cure)] for seed in plan.seeds]
+
+
+def _ratio(part: str, chosen: Mapping[str, str], free: Sequence[Debris], locked: Sequence[Debris]) -> Trial:
+    """Free over locked: geometric mean over seeds."""
+    limits = band("fig17-free", part)
+    if not _debris.flows(locked):
+        return Trial(part, chosen, exact(math.nan, limits.unit), limits, note=STAND)
+    logs = [math.log(RATIOS[part](a) / RATIOS[part](b)) for a, b in zip(free, locked, strict=True)]
+    of_logs = seeds_trial(part, chosen, logs, replace(limits, low=math.log(limits.low)))
+    return replace(of_logs, found=_factor(of_logs.found), band=limits)
+
+
+def _factor(logarithm: Interval) -> Interval:
+    return transformed(logarithm, math.exp, logarithm.unit, "geometric")
+
+
+def _profile(chosen: Mapping[str, str], free: Sequence[Debris], locked: Sequence[Debris]) -> Trial:
+    """Change of concentration, free over locked, in the third of the depth in which it changes most."""
+    limits = band("fig17-free", PROFILE)
+    if not _debris.flows(locked):
+        return Trial(PROFILE, chosen, exact(math.nan, limits.unit), limits, note=STAND)
+    both = [(np.log(_thirds(a)), np.log(_thirds(b))) for a, b in zip(free, locked, strict=True)]
+    logs = np.array([a - b for a, b in both])  # (seed, third)
+
+    def change(rows: np.ndarray) -> Interval:
+        return _factor(largest_mean([list(third) for third in rows.T], limits.unit, absolute=True))
+
+    one, other = (
+        limits.holds(exact(change(logs[half::2]).value, limits.unit)) if len(logs) > half else None
+        for half in (0, 1)
+    )
+    return Trial(PROFILE, chosen, change(logs), limits, halves=(one, other))
+
+
+def _thirds(one: Debris) -> np.ndarray:
+    return np.maximum(one.thirds, LEAST_PHI)
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """Locked grains move apart from one another; free ones lose the grip on the bed."""
-    sets, turning = locked_settings(plan), free_settings(plan)
-    tried = [
-        *_debris.trials(found, plan, "movers in rods", each(lambda one: one.rods), APART, sets),
-        *_debris.trials(found, plan, "grains at rest", each(lambda one: one.rest), NO_DEPOSIT, sets),
-    ]
-    parts: tuple[tuple[str, Callable[[Debris], float], Band], ...] = (
-        ("grain speed near the bed, free over locked", lambda one: one.near_bed, TOO_FAST),
-        ("flux, free over locked", lambda one: one.q, OFF),
-    )
+    sets = _debris.settings(plan)
+    lock = [
+        _debris.as_share(seeds_trial(part, one, [value(run) for run in _locked_runs(found, plan, one)],
+                                     band("fig17-lock", part)))
+        for part, value in LOCK.items()
+        for one in sets
+    ]  # fmt: skip
     faster: list[Trial] = []
-    beside: list[Trial] = []
-    for part, value, band in parts:
-        groups = [_ratios(found, plan, value, one) for one in turning]
-        spread = pool(groups)
-        faster += [
-            Trial(part, dict(one), over_seeds(values, band.unit, spread), band)
-            for one, values in zip(turning, groups, strict=True)
-        ]
-        beside += [
-            Trial(part, {WITH: cure}, over_seeds(_ratios(found, plan, value, SHIPPED, cure), band.unit), band)
-            for cure in _cures(plan)
-        ]
+    for one in sets:
+        free, locked = _free_runs(found, plan, one), _locked_runs(found, plan, one)
+        faster += [*(_ratio(part, one, free, locked) for part in RATIOS), _profile(one, free, locked)]
+    locked = _locked_runs(found, plan, SHIPPED)
+    beside = [
+        _ratio(part, {WITH: cure}, _free_runs(found, plan, SHIPPED, cure), locked)
+        for part in RATIOS
+        for cure in _cures(plan)
+    ]
 
     def text(rotation: str, name: str) -> str:
-        pick = _free if rotation == FREE else _debris.run
-        values = [float(getattr(found[pick(SHIPPED, seed)], name)) for seed in plan.seeds]
-        return short(sum(values) / len(values))
+        runs = _free_runs(found, plan, SHIPPED) if rotation == FREE else locked
+        return short(float(np.mean([getattr(one, name) for one in runs])))
 
     both = partial(_both, text)
     return (
         Finding(
             "fig17-lock",
-            tuple(tried),
-            "Harm would be grains that move as a rigid body because they cannot roll past each other, as "
-            "in fig22. In a flow without a deposit contacts last less than 0.1 ms, and no two grains stay "
-            "together.",
-            {**SETTLED, "rotation": LOCKED, "rods": "gap below 0.05 d and bearing within 15 deg for 0.075 s"},
+            tuple(lock),
+            "A flow that has begun stays a flow: contacts last less than 0.1 ms, and no two locked grains "
+            "stay together. But locked grains that lie on the bed may never leave it where free ones flow.",
+            {**SETTLED, "rods": "gap below 0.05 d and bearing within 15 deg for 0.075 s"},
             also=(
+                *_rest(found, plan),
                 f"movers in rods, as shipped: {text(LOCKED, 'rods')}; with shuffled paths "
-                f"{text(LOCKED, 'null')}",
-                "the measured profiles that the paper fitted are not in its text; the judgement is "
-                "whether locking binds grains together",
+                f"{text(LOCKED, 'null')}; the same measure gives fig22 its rods",
+                "the measured profiles that the paper fitted are not in its text",
             ),
         ),
         Finding(
@@ -132,9 +161,10 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
                 "held against": "the same with rotation locked, which the paper fitted",
             },
             also=(
-                "the free flow is not steady: speed of the second half second over that of the first "
-                f"{both('drift', '')}",
-                f"concentration near the surface: {both('near_surface', '')}",
+                f"speed of the second half second over that of the first {both('drift', '')}",
+                "concentration in the lower, middle and upper third: "
+                f"{_three(_free_runs(found, plan, SHIPPED))} against {_three(locked)}",
+                f"a twentieth of the free grains spin faster than {text(FREE, 'spin')} rad/s",
             ),
             beside=tuple(beside),
         ),
@@ -145,19 +175,40 @@ def _both(text: Callable[[str, str], str], name: str, unit: str) -> str:
     return f"{text(FREE, name)} against {text(LOCKED, name)} {unit}".strip()
 
 
+def _three(runs: Sequence[Debris]) -> str:
+    return ", ".join(short(one) for one in np.mean([run.thirds for run in runs], axis=0))
+
+
+def _rest(found: Found, plan: Plan) -> list[str]:
+    """What becomes of grains that begin at rest on the bed, locked and free."""
+    return [
+        f"started at rest, friction angle {one[PHI]}: locked {_speeds(_locked_runs(found, plan, one))}, free "
+        f"{_speeds(_free_runs(found, plan, one))} m/s"
+        for one in _from_rest(plan)
+    ]
+
+
+def _speeds(runs: Sequence[Debris]) -> str:
+    low, high = (short(end(one.speed for one in runs)) for end in (min, max))
+    return f"{low} to {high}"
+
+
 def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
     """One line per run."""
+    sets = [*_debris.settings(plan), *_from_rest(plan)]
     named = [
-        (one, LOCKED, seed, _debris.run(one, seed)) for one in locked_settings(plan) for seed in plan.seeds
+        (one, rotation, seed, which(one, seed))
+        for one in list({tuple(one.items()): one for one in sets}.values())
+        for rotation, which in ((LOCKED, _debris.run), (FREE, _free))
+        for seed in plan.seeds
     ]
-    named += [(one, FREE, seed, _free(one, seed)) for one in free_settings(plan) for seed in plan.seeds]
     named += [
         (SHIPPED, f"{FREE}, {cure}", seed, _free(SHIPPED, seed, cure))
         for cure in _cures(plan)
         for seed in plan.seeds
     ]
     return [
-        {**one, "rotation": rotation, "seed": seed, **_debris.row(found[which])}
+        {**one, "rotation": rotation, "seed": seed, **_debris_run.row(found[which])}
         for one, rotation, seed, which in named
     ]
 

@@ -1,133 +1,91 @@
-"""Fig. 22: a movable bed under water: locked grains move like rods; and the same with rotation."""
+"""Fig. 22: a movable bed under water, rotation locked: whether its grains move like rods."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 
-import numpy as np
 from matplotlib.figure import Figure
 
 from ryusa import figures
-from ryusa.measure import Profiles, Rods, Snapshot, profiles, rods, snapshot, transport
-from ryusa.measure.statistics import Floats
-from ryusa.results import Results
-from ryusa.studies.osada2004._parts import PHI, RATIO, SLIP, CaseRun, Found, Plan, paper_run
-from ryusa.study import Band, Finding, Trial, over_seeds, pool, short
+from ryusa.studies.osada2004 import _movable_bed
+from ryusa.studies.osada2004._bands import band
+from ryusa.studies.osada2004._factors import (
+    DRAG_LAW,
+    PARTING_RULE,
+    SLIP_RULE,
+    STIFFNESS_RATIO,
+    friction_angle,
+    n_settings,
+)
+from ryusa.studies.osada2004._movable_bed import MovableBedRun, mean, water_of_a_bed
+from ryusa.studies.osada2004._parts import PACKING, CaseRun, Found, Plan, paper_run
+from ryusa.study import Design, Factor, Finding, Trial, exact, over_seeds, pseudo_values
 
 FIGURE = "fig22"
 TITLE = "Movable bed under water, rotation locked and free"
-CLAIMS = ("fig22", "fig22-free")
+CLAIMS = ("fig22",)
 CASE = "fig22"
 LOCKED, FREE = "locked", "free"
-SLOPE, DEPTH = "slope (tau_star)", "bed depth"
-SLOPES = {
-    "1/20 (0.3)": "1/20",
-    "1/10 (0.6)": "1/10",
-    "3/20 (0.9)": "3/20",
-    "1/5 (1.2)": "1/5",
-    "1/4 (1.5)": "1/4",
-}
-DEPTHS = {"5 layers": "5", "8 layers": "8"}
-SHIPPED = {PHI: "30 deg", SLIP: "spring", SLOPE: "1/4 (1.5)", DEPTH: "5 layers"}
-MOVERS = 10  # of all windows, below which nothing is said about rods
-RODS = Band(0.1, math.inf, "-", "like rods: at least a tenth of the movers more than with shuffled paths")
-MORE = Band(
-    math.log10(2.0),
-    math.inf,
-    "-",
-    "unable to climb: at least twice as many in rods, 0.301 decades, as with rotation free",
+SLOPE = "slope (tau_star)"
+DESIGN = Design(
+    (
+        friction_angle("timeline.0.friction_angle"),
+        SLIP_RULE,
+        PARTING_RULE,
+        STIFFNESS_RATIO,
+        DRAG_LAW,
+        water_of_a_bed("rest"),
+        Factor(
+            PACKING,
+            {
+                "5 layers, settled without friction": {},
+                "8 layers": {"build.layers": "8"},
+                "settled with friction": {"contact.friction_angle": "30 deg"},
+                "sizes within 30 %": {"grains.spread": "0.3"},
+            },
+        ),
+        Factor(
+            SLOPE,
+            {
+                "1/4 (1.5)": {},
+                "1/5 (1.2)": {"timeline.2.slope": "1/5"},
+                "3/20 (0.9)": {"timeline.2.slope": "3/20"},
+                "1/10 (0.6)": {"timeline.2.slope": "1/10"},
+            },
+        ),
+    )
 )
-SPINS = Band(
-    100.0, math.inf, "rad/s", "spin fast: a twentieth of the movers above 100 rad/s, 16 turns a second"
-)
-CHANGED = Band(
-    math.log10(1.1),
-    math.inf,
-    "-",
-    "changes speed and flux: at least 10 % more, 0.041 decades, than locked grains",
-)
+SHIPPED = DESIGN.base
+MOVERS = 10  # locked, of all seeds and windows, below which nothing is said about rods
 STANDS = "nothing moves"
 PART_RODS = "movers in rods minus those with shuffled paths"
 PART_MORE = "movers in rods, locked over free, in decades"
-PART_SPIN = "spin exceeded by a twentieth of the movers"
-PART_Q = "flux, free over locked, in decades"
-PART_SPEED = "speed of the movers, free over locked, in decades"
-MOMENTS = 3  # drawn of a rod
+LEAST = 0.01  # share in rods that counts as least in a ratio
+SETTLED = {
+    "d": "0.2 cm",
+    "k_n": "100 N/cm",
+    "restitution": "0.7",
+    "bed": "20 columns of grains over fixed ones of random height",
+    "water": "column, 2 cm deep",
+    "window": "1 to 2 s",
+    "rod": "movers that touch (gap below 0.05 d) throughout 0.07 s = 5 sqrt(d/g), in which they go 1 d "
+    "or more and turn about each other by less than 15 deg",
+    "null model": "every mover goes the way of one picked from its layer and any window",
+}
+Runs = Sequence[tuple[MovableBedRun, MovableBedRun]]  # locked and free, by seed
 
-
-@dataclass(frozen=True)
-class MovableBedRun:
-    """One run, after it has settled.
-
-    Attributes
-    ----------
-    rods : rods, and the null model.
-    q : flux of grains per width [m2/s].
-    v, spin : speeds along the bed [m/s] and spins [rad/s] of grains that move, all frames together.
-    profile : means over height from the mean crest of the fixed grains.
-    followed : the longest rod at `MOMENTS` moments of its window; none where there is no rod.
-    """
-
-    rods: Rods
-    q: float
-    v: Floats
-    spin: Floats
-    profile: Profiles
-    followed: tuple[Snapshot, ...]
-
-    @property
-    def stands(self) -> bool:
-        """Whether too few move to say anything of rods."""
-        return int(self.rods.movers.sum()) < MOVERS
-
-    @property
-    def excess(self) -> float:
-        """Movers in rods less those with shuffled ways [-]; 0 where nothing moves."""
-        return 0.0 if self.stands else self.rods.share - self.rods.null_share
-
-    @property
-    def speed(self) -> float:
-        """Mean speed of grains that move [m/s]; 0 where none does."""
-        return float(self.v.mean()) if len(self.v) else 0.0
-
-    @property
-    def fast_spin(self) -> float:
-        """What a twentieth of the spins of movers exceeds [rad/s]."""
-        return float(np.quantile(np.abs(self.spin), 0.95)) if len(self.spin) else 0.0
-
-    @property
-    def rolling(self) -> float:
-        """Spin times radius over speed, means of the movers [-]; 1 for grains that roll."""
-        return 0.5 * self.profile.d * float(self.spin.mean()) / self.speed if self.speed > 0.0 else math.nan
+measure = _movable_bed.measure
 
 
 def settings(plan: Plan) -> list[dict[str, str]]:
-    """Sets of free choices, the shipped one first; one choice is changed at a time."""
-    changes = plan.pick(
-        (),
-        ((SLOPE, ("1/10 (0.6)", "1/5 (1.2)")), (PHI, ("20 deg",)), (SLIP, ("total",))),
-        (
-            (SLOPE, ("1/20 (0.3)", "1/10 (0.6)", "3/20 (0.9)", "1/5 (1.2)")),
-            (PHI, ("10 deg", "20 deg", "40 deg")),
-            (SLIP, ("total", "spring-drop")),
-            (DEPTH, ("8 layers",)),
-        ),
-    )
-    return [SHIPPED, *({**SHIPPED, name: value} for name, values in changes for value in values)]
+    """Sets of free choices, the shipped one first."""
+    return DESIGN.settings(n_settings(plan))
 
 
 def _run(chosen: Mapping[str, str], rotation: str, seed: int) -> CaseRun:
     """One run of the case; what is as shipped is not said."""
-    changed = {
-        "timeline.0.friction_angle": (chosen[PHI], SHIPPED[PHI]),
-        "timeline.1.rotation": (rotation, LOCKED),
-        "contact.slip": (chosen[SLIP], SHIPPED[SLIP]),
-        "timeline.2.slope": (SLOPES[chosen[SLOPE]], SLOPES[SHIPPED[SLOPE]]),
-        "build.layers": (DEPTHS[chosen[DEPTH]], DEPTHS[SHIPPED[DEPTH]]),
-    }
-    return paper_run(
-        CASE, {key: value for key, (value, shipped) in changed.items() if value != shipped}, seed
-    )
+    free = {} if rotation == LOCKED else {"timeline.1.rotation": rotation}
+    return paper_run(CASE, {**DESIGN.overrides(chosen), **free}, seed)
 
 
 def tasks(plan: Plan) -> Sequence[CaseRun]:
@@ -140,174 +98,98 @@ def tasks(plan: Plan) -> Sequence[CaseRun]:
     ]
 
 
-def measure(run: Results, one: CaseRun) -> MovableBedRun:
-    """Rods, flux, speeds and spins of the movers, and the longest rod on its way."""
-    del one
-    found = rods(run)
-    profile = profiles(run, above="mean crest", bed=True)
-    rows = np.searchsorted(np.asarray(run.frames.t), (float(profile.t[0]), float(profile.t[-1])))
-    v = np.asarray(run.frames.v[rows[0] : rows[1] + 1], dtype=np.float64)[:, :, 0]
-    spin = np.asarray(run.frames.omega[rows[0] : rows[1] + 1], dtype=np.float64)[:, :, 1]
-    moves = v > profile.d / found.window  # the speed of a mover in rods
-    longest = found.longest
-    moments = [] if longest is None else longest.begin + found.window * np.linspace(0.0, 1.0, MOMENTS)
-    return MovableBedRun(
-        rods=found,
-        q=transport(run).averages["q"].value,
-        v=v[moves],
-        spin=spin[moves],
-        profile=profile,
-        followed=tuple(snapshot(run, float(t)) for t in moments),
-    )
-
-
-def _both(found: Found, plan: Plan, chosen: Mapping[str, str]) -> list[tuple[MovableBedRun, MovableBedRun]]:
+def _both(found: Found, plan: Plan, chosen: Mapping[str, str]) -> Runs:
     """Locked and free run of every seed."""
     return [(found[_run(chosen, LOCKED, seed)], found[_run(chosen, FREE, seed)]) for seed in plan.seeds]
 
 
-def _decades(above: float, below: float, least: float) -> float:
-    """Logarithm of a ratio: fluxes of locked beds differ by factors from seed to seed."""
-    return math.log10(max(above, least) / max(below, least))
+def _movers(runs: Sequence[MovableBedRun]) -> int:
+    return sum(int(one.rods.movers.sum()) for one in runs)
 
 
-def _more(locked: MovableBedRun, free: MovableBedRun) -> float:
-    """Share in rods, locked over free; 0 where locked grains stand, and one in a hundred counts as least."""
-    if locked.stands:
-        return 0.0
-    return _decades(locked.rods.share, 0.0 if free.stands else free.rods.share, 0.01)
+def _share(runs: Sequence[MovableBedRun]) -> float:
+    """Movers in rods over all movers of these runs; nan where nothing moves [-]."""
+    movers = _movers(runs)
+    return sum(float(one.rods.bound.sum()) for one in runs) / movers if movers else math.nan
 
 
-PARTS: dict[str, tuple[tuple[str, Callable[[MovableBedRun, MovableBedRun], float], Band], ...]] = {
-    "fig22": (
-        (PART_RODS, lambda locked, free: locked.excess, RODS),
-        (PART_MORE, _more, MORE),
-    ),
-    "fig22-free": (
-        (PART_SPIN, lambda locked, free: free.fast_spin, SPINS),
-        (PART_SPEED, lambda locked, free: _decades(free.speed, locked.speed, 1.0e-3), CHANGED),
-        (PART_Q, lambda locked, free: _decades(free.q, locked.q, 1.0e-7), CHANGED),
-    ),
+def _excess(pairs: Runs) -> float:
+    """Movers in rods less those with shuffled paths [-]."""
+    locked = [one for one, _ in pairs]
+    movers = _movers(locked)
+    return _share(locked) - sum(float(one.rods.null.sum()) for one in locked) / movers if movers else math.nan
+
+
+def _more(pairs: Runs) -> float:
+    """Share in rods, locked over free, in decades; one in a hundred counts as least."""
+    locked, free = (_share([pair[k] for pair in pairs]) for k in (0, 1))
+    free = LEAST if math.isnan(free) else max(free, LEAST)
+    return math.nan if math.isnan(locked) else math.log10(max(locked, LEAST) / free)
+
+
+# part -> number of the runs of all seeds together, and the largest magnitude that it can have
+PARTS: Mapping[str, tuple[Callable[[Runs], float], float]] = {
+    PART_RODS: (_excess, 1.0),
+    PART_MORE: (_more, -math.log10(LEAST)),
 }
 
 
+def _trial(part: str, chosen: Mapping[str, str], pairs: Runs) -> Trial:
+    """One part under one setting, all seeds together, with its jackknife over seeds."""
+    value, most = PARTS[part]
+    limits = band("fig22", part)
+    if _movers([locked for locked, _ in pairs]) < MOVERS:
+        return Trial(part, chosen, exact(math.nan, limits.unit), limits, note=STANDS)
+    spread = over_seeds(pseudo_values(value, pairs), limits.unit)
+    found = replace(
+        spread, low=max(-most, spread.low), high=min(most, spread.high), how=f"jackknife, {spread.how}"
+    )
+    one, other = (
+        limits.holds(exact(value(pairs[half::2]), limits.unit)) if len(pairs) > half else None
+        for half in (0, 1)
+    )
+    return Trial(part, chosen, found, limits, halves=(one, other))
+
+
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
-    """Rods where grains are locked, spin and flux where they are free."""
-    tried: dict[str, list[Trial]] = {}
-    for claim, parts in PARTS.items():
-        for part, value, band in parts:
-            groups = [[value(*pair) for pair in _both(found, plan, one)] for one in settings(plan)]
-            spread = pool(groups) if part in {PART_RODS, PART_SPIN} else None
-            for one, values in zip(settings(plan), groups, strict=True):
-                trial = Trial(part, dict(one), over_seeds(values, band.unit, spread), band)
-                tried.setdefault(claim, []).append(_standing(trial, claim, _both(found, plan, one)))
+    """Rods where grains are locked, and fewer where they are free."""
+    tried = [_trial(part, one, _both(found, plan, one)) for part in PARTS for one in settings(plan)]
     return (
         Finding(
             "fig22",
-            tuple(tried["fig22"]),
+            tuple(tried),
             "A locked grain cannot roll out of the pocket between two others; it moves only with its row. "
-            f"Touching neighbours therefore keep their arrangement and creep together. {_words(found, plan)}",
-            _settings(),
-            also=_lengths(found, plan),
-        ),
-        Finding(
-            "fig22-free",
-            tuple(tried["fig22-free"]),
-            "A grain that may rotate leaves its pocket at 30 deg whatever the friction, rolls, and the "
-            f"bed below it yields. {_spins(found, plan)}",
-            _settings(),
-            also=(
-                "without rolling friction and water torque only contacts reduce the spin",
-                "locked grains at rest count with a flux of 1e-7 m2/s, a speed of 1 mm/s",
-            ),
+            "Touching neighbours therefore keep their arrangement and creep together.",
+            SETTLED,
+            also=tuple(_words(found, plan, one) for one in settings(plan)),
         ),
     )
 
 
-def _standing(trial: Trial, claim: str, runs: Sequence[tuple[MovableBedRun, MovableBedRun]]) -> Trial:
-    """Say so where locked grains do not move at all: then there is no rod."""
-    if claim != "fig22" or not all(locked.stands for locked, _ in runs):
-        return trial
-    return Trial(trial.part, trial.choices, trial.found, trial.band, False, STANDS)
-
-
-def _settings() -> dict[str, str]:
-    return {
-        "d": "0.2 cm, sizes +-10 %",
-        "k_n": "100 N/cm",
-        RATIO: "2/7",
-        "restitution": "0.7",
-        "bed": "100 grains over fixed ones of random height, settled without friction",
-        "water": "column, 2 cm deep, Li-Sawamoto",
-        "window": "1 to 2 s",
-        "rod": "movers that touch (gap below 0.05 d) throughout 0.07 s = 5 sqrt(d/g), in which they go 1 d "
-        "or more and turn about each other by less than 15 deg",
-        "null model": "every mover goes the way of one picked from its layer and any window",
-    }
-
-
-def _mean(values: Sequence[float]) -> str:
-    kept = [value for value in values if math.isfinite(value)]
-    return short(float(np.mean(kept))) if kept else "none"
-
-
-def _by_rotation(found: Found, plan: Plan, chosen: Mapping[str, str]) -> dict[str, list[MovableBedRun]]:
-    runs = _both(found, plan, chosen)
-    return {LOCKED: [locked for locked, _ in runs], FREE: [free for _, free in runs]}
-
-
-def _words(found: Found, plan: Plan) -> str:
-    words: list[str] = []
-    for rotation, runs in _by_rotation(found, plan, SHIPPED).items():
-        share, null = (_mean([getattr(one.rods, name) for one in runs]) for name in ("share", "null_share"))
-        movers = _mean([float(one.rods.movers.mean()) for one in runs])
-        words.append(f"{rotation} {share} of {movers} movers (shuffled {null})")
-    return f"In rods, as shipped: {'; '.join(words)}."
-
-
-def _spins(found: Found, plan: Plan) -> str:
-    runs = _by_rotation(found, plan, SHIPPED)[FREE]
-    largest = max((float(np.abs(one.spin).max()) for one in runs if len(one.spin)), default=math.nan)
-    return (
-        f"As shipped: spin times radius is {_mean([one.rolling for one in runs])} of the speed, the largest "
-        f"spin {short(largest)} rad/s; mean speed of the movers {_mean([one.speed for one in runs])} against "
-        f"{_mean([one.speed for one in _by_rotation(found, plan, SHIPPED)[LOCKED]])} m/s."
-    )
-
-
-def _lengths(found: Found, plan: Plan) -> tuple[str, ...]:
-    """How long rods are, and how the shares go with the choices."""
-    lines: list[str] = []
-    for one in settings(plan):
-        name = ", ".join(value for key, value in one.items() if value != SHIPPED[key]) or "as shipped"
-        parts: list[str] = []
-        for rotation, runs in _by_rotation(found, plan, one).items():
-            share, null, length = (
-                _mean([getattr(bed.rods, what) for bed in runs])
-                for what in ("share", "null_share", "mean_length")
-            )
-            parts.append(f"{rotation} {share} in rods, {null} shuffled, {length} grains a rod")
-        lines.append(f"{name}: {'; '.join(parts)}")
-    return tuple(lines)
+def _words(found: Found, plan: Plan, chosen: Mapping[str, str]) -> str:
+    """Movers, shares in rods and lengths under one setting."""
+    name = ", ".join(value for key, value in chosen.items() if value != SHIPPED[key]) or "as shipped"
+    pairs = _both(found, plan, chosen)
+    parts: list[str] = []
+    for k, rotation in enumerate((LOCKED, FREE)):
+        runs = [pair[k] for pair in pairs]
+        nulls = [one.rods.null_share for one in runs]
+        parts.append(
+            f"{rotation} {mean([_share(runs)])} of {_movers(runs)} movers in rods, {mean(nulls)} shuffled, "
+            f"{mean([one.rods.mean_length for one in runs])} grains a rod, flux "
+            f"{mean([1e4 * one.q for one in runs])} cm2/s"
+        )
+    return f"{name}: {'; '.join(parts)}"
 
 
 def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
     """One line per run."""
-    lines: list[dict[str, object]] = []
-    for one in settings(plan):
-        for rotation in (LOCKED, FREE):
-            for seed in plan.seeds:
-                bed: MovableBedRun = found[_run(one, rotation, seed)]
-                lines.append(
-                    {
-                        **one, "rotation": rotation, "seed": seed, "movers": int(bed.rods.movers.sum()),
-                        "windows": len(bed.rods.begin), "in_rods": bed.rods.share,
-                        "shuffled": bed.rods.null_share, "kept": bed.rods.kept,
-                        "grains_in_a_rod": bed.rods.mean_length, "q_m2_per_s": bed.q,
-                        "speed_of_movers_m_per_s": bed.speed, "spin_95_rad_per_s": bed.fast_spin,
-                    }
-                )  # fmt: skip
-    return lines
+    return [
+        {**one, "rotation": rotation, "seed": seed, **_movable_bed.row(found[_run(one, rotation, seed)])}
+        for one in settings(plan)
+        for rotation in (LOCKED, FREE)
+        for seed in plan.seeds
+    ]
 
 
 def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
@@ -317,7 +199,9 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
     free: MovableBedRun = found[_run(SHIPPED, FREE, seed)]
     pictures = {
         "fig22-lengths": figures.rod_lengths({LOCKED: locked.rods, FREE: free.rods}),
-        "fig22-free": figures.profiles({LOCKED: locked.profile, FREE: free.profile}, ("phi", "v_x", "spin")),
+        "fig22-profiles": figures.profiles(
+            {LOCKED: locked.profile, FREE: free.profile}, ("phi", "v_x", "spin")
+        ),
     }
     longest = locked.rods.longest
     if longest is not None:
