@@ -151,24 +151,35 @@ _CLAIMS = (
         "fig17",
         "17",
         _ITO,
-        "concentration about 0.3 near the surface; even surface grains are thrown up and down, where "
-        "the experiment shows nearly parallel layers",
-        "water model, slope (about 15 deg is implied), friction angle, number of grains",
+        "concentration about 0.3 even near the surface; grains of the upper layer collide frequently, and "
+        "their collisions throw them up and down, where the experiment rather shows parallel layers",
+        "water model, slope (about 15 deg is implied), friction angle, number of grains, what is near the "
+        "surface",
     ),
     Claim("fig17-time", "17", _ITO, "collision time about 0.00007 s", "which pair: fixed or free partner"),
     Claim("fig17-e", "17", _ITO, "restitution about 0.7", "which pair: fixed or free partner"),
-    Claim("fig17-lock", "", _ITO, "without a deposit layer, locking rotation does no harm"),
+    Claim(
+        "fig17-lock",
+        "",
+        _ITO,
+        "without a deposit layer grains move separately, and locking rotation caused no problem",
+    ),
     Claim(
         "fig17-free",
         "",
         _ITO.replace("rotation locked", "rotation free"),
-        "grain speed near the bed far too large; the measurements cannot be met",
+        "grain speed near the bed extremely large, which affects concentration and flux; no solution near "
+        "the measurements",
+        "as fig17; the measurements are not in the text",
     ),
     Claim(
         "fig18",
         "18",
-        "sketch",
-        "long contacts carry grains along together and damp the vertical motion; short ones scatter them",
+        "sketch; fig17 with contacts 30 times as long, restitution kept",
+        "short contacts end as they begin and shake the paths; during long ones grains are thought to flow "
+        "down together, with less motion up and down and paths like parallel layers",
+        "as fig17; how long",
+        "with linear springs long contacts of small grains are deep overlaps",
     ),
     Claim(
         "long-contacts",
@@ -214,15 +225,15 @@ _CLAIMS = (
         "fig22",
         "22",
         "movable bed, rotation locked",
-        "neighbouring grains move downstream like rods, unable to climb over one another",
-        "tau_star, bed depth",
+        "three neighbours move downstream like a rod, as they can hardly climb over the grain in front",
+        "tau_star, bed depth, how the bed was laid down, friction angle",
     ),
     Claim(
         "fig22-free",
         "",
         "movable bed, rotation free, no rolling friction",
-        "grains rolling over the bed spin fast, which changes speed and flux",
-        "tau_star, bed depth",
+        "for lack of resistance some grains that roll over the bed spin fast, which affects speed and flux",
+        "tau_star, bed depth, which resistance",
     ),
     Claim(
         "eq13", "23", "rolling friction, Eq. (13)", "principle only; f' is to be identified from experiments"
