@@ -173,6 +173,6 @@ def test_free_grains_that_pass_each_other_touch_where_their_straight_ways_meet(v
     assume(overlap > 1e-12 and closing > 0.05)
     curve = passing(v * v + along * along, closing, distance)
     found, touch, *_ = begin_in_step(overlap, closing, curve, 0.01, 0.0, 0.0)
-    third_order = 2.0 * (v + along) ** 3 * since**3
-    assert found == pytest.approx(since, abs=third_order / closing + 1e-8)
-    assert touch == pytest.approx(v, abs=third_order / max(since, 1e-3) + 1e-8)
+    second_order = 2.0 * (v + along) ** 3 * since**2
+    assert found == pytest.approx(since, abs=second_order * since / closing + 1e-8)
+    assert touch == pytest.approx(v, abs=second_order + 1e-8)
