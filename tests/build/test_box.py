@@ -65,7 +65,7 @@ def test_floor_back_and_gate_are_groups_that_can_be_removed(floor: str, walls: s
     assert groups["floor"][1] - groups["floor"][0] == 1 or floor == "grains"
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(
     columns=st.integers(1, 7),
     rows=st.integers(3, 5),

@@ -122,7 +122,7 @@ def test_starts_are_random_by_the_seed_alone() -> None:
     assert xs(1, 4) != xs(2, 4)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(
     columns=st.integers(3, 8),
     rows=st.integers(3, 6),
@@ -310,7 +310,7 @@ def test_a_plane_script_has_lanes_that_are_equal_or_a_diameter_apart() -> None:
 
 
 @given(st.lists(st.tuples(*[st.floats(0.0, 0.02)] * 2, st.integers(0, 2)), min_size=2, max_size=6))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_first_grains_of_a_plane_scene_overlap_in_their_lane_only(places: list[tuple[float, ...]]) -> None:
     x = np.array([(a, 0.002 * lane, b) for a, b, lane in places])
     apart = np.hypot(*(x[:, None, k] - x[None, :, k] for k in (0, 2)))

@@ -202,7 +202,7 @@ def test_an_unknown_key_in_set_is_refused(case: Callable[..., Case], key: str) -
         case(**({"seed": "1"} if key == "seed.x" else {}), **{key: "1"})
 
 
-@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
     key=st.sampled_from(all_keys()),
     value=st.one_of(
@@ -241,7 +241,7 @@ def test_any_value_of_any_key_is_read_or_refused_with_a_case_error(
     assert explain(found)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(st.text(max_size=60))
 def test_any_text_is_refused_with_a_case_error(text: str) -> None:
     with pytest.raises(CaseError):

@@ -212,7 +212,7 @@ def test_three_dimensions_need_a_period_across(case: CaseOf, tmp_path) -> None:
     wet(case, build=build)
 
 
-@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
     key=st.sampled_from([key for key in all_keys() if key.startswith(("water.", "motion.", "grains."))]),
     value=st.one_of(

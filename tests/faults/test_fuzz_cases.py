@@ -20,7 +20,7 @@ from ryusa.casefile.read import read_text
 from ryusa.errors import CaseError
 from ryusa.units import UnitError, quantity
 
-MANY = settings(max_examples=400, deadline=None, suppress_health_check=list(HealthCheck))
+MANY = settings(max_examples=400, suppress_health_check=list(HealthCheck))
 
 
 @MANY

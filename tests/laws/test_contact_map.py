@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from ryusa.laws import collision
@@ -41,7 +41,6 @@ def flow(x, v, t, a, q):
     return x * (h + 2.0 * a * g) + v * g, v * h - (a * a + q) * x * g
 
 
-@settings(deadline=None)
 @given(zeta=ZETA, t=st.floats(0.0, 0.05))
 def test_the_free_response_solves_the_equation_of_motion(zeta, t):
     eta, a, q = oscillator(zeta)
@@ -53,7 +52,6 @@ def test_the_free_response_solves_the_equation_of_motion(zeta, t):
     )
 
 
-@settings(deadline=None)
 @given(zeta=ZETA, phase=PHASE, x=st.floats(-1.0, 1.0), v=st.floats(-1.0, 1.0))
 def test_the_map_goes_through_the_points_of_the_oscillator(zeta, phase, x, v):
     eta, a, q = oscillator(zeta)
@@ -71,7 +69,6 @@ def test_the_map_goes_through_the_points_of_the_oscillator(zeta, phase, x, v):
     )
 
 
-@settings(deadline=None)
 @given(zeta=ZETA, phase=PHASE)
 def test_the_oscillator_of_a_map_is_the_one_it_was_made_of(zeta, phase):
     eta, a, q = oscillator(zeta)
@@ -104,7 +101,6 @@ def test_a_force_that_has_ended_ends_at_once_and_one_that_never_ends_is_not_ende
     assert time_of_release(1.0, 0.0, a, q, True) == math.inf
 
 
-@settings(deadline=None)
 @given(zeta=ZETA, phase=PHASE, since=st.floats(0.01, 1.0), v=st.floats(0.1, 10.0))
 def test_a_contact_that_began_within_a_step_is_then_the_oscillator_from_its_touch(zeta, phase, since, v):
     _, a, q = oscillator(zeta)
@@ -117,7 +113,6 @@ def test_a_contact_that_began_within_a_step_is_then_the_oscillator_from_its_touc
     assert after == pytest.approx(flow(0.0, v, (1.0 + since) * dt, a, q)[0], rel=1e-10)
 
 
-@settings(deadline=None)
 @given(zeta=ZETA, phase=PHASE, until=st.floats(0.0, 1.0))
 def test_after_its_release_a_contact_flies_on_with_its_last_velocity(zeta, phase, until):
     _, a, q = oscillator(zeta)
@@ -163,7 +158,6 @@ def test_slip_that_sticks_in_space_is_that_in_a_plane_turned():
     assert turned[2:9:3] == pytest.approx([0.8 * x for x in flat[0:9:3]])
 
 
-@settings(deadline=None)
 @given(v=st.floats(0.1, 10.0), along=st.floats(0.0, 10.0), since=st.floats(0.0, 0.01))
 def test_free_grains_that_pass_each_other_touch_where_their_straight_ways_meet(v, along, since):
     reach = 1.0  # it touched `since` before, at this closing speed and speed along the surface

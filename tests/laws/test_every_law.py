@@ -70,7 +70,7 @@ def test_a_law_names_its_units_and_shows_an_example(law):
     assert inspect.signature(law.plain).return_annotation is not inspect.Signature.empty
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(data=st.data())
 def test_compiled_and_plain_python_agree(law, data):
     args = data.draw(law.draw())

@@ -3,17 +3,15 @@
 import math
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from ryusa.laws import turbulence, water
 
 KAPPA = 0.41
 heights = st.floats(1e-6, 0.1)
-unhurried = settings(deadline=None)  # the first call compiles
 
 
-@unhurried
 @given(z=heights)
 def test_the_parabolic_length_gives_the_log_law_under_a_linear_stress(z):
     depth, u_star = 0.1, 0.05
@@ -34,7 +32,6 @@ def test_the_mixing_length_is_zero_above_the_surface():
     assert turbulence.length_parabolic(0.2, 0.1, KAPPA) == 0.0
 
 
-@unhurried
 @given(z=heights, u_star=st.floats(1e-3, 0.5))
 def test_van_driest_is_below_prandtl_and_approaches_it_far_from_the_wall(z, u_star):
     damped = turbulence.length_van_driest(z, u_star, 1e-6, KAPPA)
@@ -56,7 +53,6 @@ def test_the_pore_length_gives_the_stress_of_egashira(c, f_f):
     assert turbulence.length_pore_egashira(c, 1.0, 0.16) ** 2 == pytest.approx(f_f, abs=6e-4)
 
 
-@unhurried
 @given(z=st.floats(1e-5, 0.1), u_star=st.floats(1e-3, 1.0))
 def test_the_friction_velocity_of_a_smooth_wall_inverts_the_two_layer_law(z, u_star):
     speed = water.log_law_smooth(z, u_star, 1e-6)
@@ -64,14 +60,12 @@ def test_the_friction_velocity_of_a_smooth_wall_inverts_the_two_layer_law(z, u_s
     assert turbulence.u_star_smooth(-speed, z, 1e-6) == turbulence.u_star_smooth(speed, z, 1e-6)
 
 
-@unhurried
 @given(z=st.floats(1e-3, 0.1), u_star=st.floats(1e-3, 1.0))
 def test_the_stress_of_a_rough_wall_inverts_eq_9(z, u_star):
     speed = water.log_law_rough(z, u_star, 0.002)
     assert turbulence.wall_rough(speed, z, 0.002)[0] == pytest.approx(u_star**2, rel=1e-12)
 
 
-@unhurried
 @given(u=st.floats(-2.0, 2.0).filter(lambda u: abs(u) > 1e-3), z=st.floats(1e-3, 1e-2))
 def test_wall_stress_has_the_sign_of_the_speed_and_its_slope_is_the_derivative(u, z):
     for wall in (
@@ -95,14 +89,12 @@ def test_the_mean_of_eq_9_over_the_depth_is_its_integral():
     assert turbulence.speed_mean_rough(0.00005, u_star, k) == 0.0
 
 
-@unhurried
 @given(low=st.floats(1e-6, 1.0), ratio=st.floats(1.0, 10.0))
 def test_the_gradient_of_the_log_law_equals_its_mean_between_two_heights(low, ratio):
     at = turbulence.height_between(low, low * ratio)
     assert low * (1.0 - 1e-12) <= at <= low * ratio * (1.0 + 1e-12)
 
 
-@unhurried
 @given(re=st.floats(3e3, 1e7))
 def test_karman_prandtl_satisfies_its_equation_and_is_near_blasius(re):
     f = turbulence.friction_karman_prandtl(re)
@@ -117,7 +109,6 @@ def test_the_friction_factors_are_those_of_the_table():
         assert turbulence.friction_karman_prandtl(re) == pytest.approx(f, abs=6e-5)
 
 
-@unhurried
 @given(u=st.floats(-2.0, 2.0))
 def test_side_walls_slow_the_water_down(u):
     assert turbulence.side_wall_drag(u, 0.03, 0.0065) * u <= 0.0

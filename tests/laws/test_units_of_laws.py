@@ -241,7 +241,7 @@ def test_units_are_declared_for_laws_that_exist(name, laws):
     assert name in laws
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(data=st.data())
 def test_other_units_of_mass_length_and_time_rescale_the_answer(law, data):
     takes = ", ".join(law.arguments)

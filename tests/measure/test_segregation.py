@@ -52,7 +52,7 @@ def test_grains_that_fill_a_depth_evenly_are_half_of_it_apart_when_parted():
         assert _largest(z, volume, large) == pytest.approx(0.5 * depth, rel=1e-3)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.integers(0, 2**32 - 1), st.floats(1.1, 4.0), st.integers(1, 19))
 def test_the_index_is_never_beyond_one(seed, size, n_large):
     rng = np.random.default_rng(seed)

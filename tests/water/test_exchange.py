@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from ryusa.laws.slices import sphere_slice
@@ -41,7 +41,6 @@ def dense(grains):
     return table
 
 
-@settings(deadline=None)
 @given(packings())
 def test_slices_are_those_of_the_law_and_add_up_to_the_grain(packing):
     z, d, cells, _ = packing
@@ -55,7 +54,6 @@ def test_slices_are_those_of_the_law_and_add_up_to_the_grain(packing):
     np.testing.assert_allclose((found.submerged + found.below + found.above) / whole, 1.0, rtol=1e-12)
 
 
-@settings(deadline=None)
 @given(packings())
 def test_concentration_holds_the_submerged_volume_of_all_grains(packing):
     z, d, cells, _ = packing
@@ -67,7 +65,6 @@ def test_concentration_holds_the_submerged_volume_of_all_grains(packing):
     np.testing.assert_array_equal(twice, 2.0 * phi)
 
 
-@settings(deadline=None)
 @given(packings(), st.sampled_from(["whole", "submerged"]), st.sampled_from([(), (3,)]))
 def test_the_momentum_given_by_grains_is_that_received_by_the_cells(packing, share, columns):
     z, d, cells, rng = packing
@@ -84,7 +81,6 @@ def test_the_momentum_given_by_grains_is_that_received_by_the_cells(packing, sha
         assert got.cells.sum() == pytest.approx(part.sum(), abs=1e-12 * size)
 
 
-@settings(deadline=None)
 @given(packings(), st.sampled_from(["whole", "submerged"]))
 def test_gather_and_scatter_conserve_work(packing, share):
     z, d, cells, rng = packing
@@ -95,7 +91,6 @@ def test_gather_and_scatter_conserve_work(packing, share):
     assert by_grains.sum() == pytest.approx(by_cells.sum(), abs=1e-12 * np.abs(force).sum())
 
 
-@settings(deadline=None)
 @given(packings())
 def test_the_stress_on_grains_is_that_removed_from_the_cells(packing):
     z, d, cells, rng = packing
@@ -106,7 +101,6 @@ def test_the_stress_on_grains_is_that_removed_from_the_cells(packing):
     assert felt.sum() == pytest.approx(given_up.sum(), abs=1e-12 * np.abs(felt).sum() + 1e-30)
 
 
-@settings(deadline=None)
 @given(packings())
 def test_a_uniform_flow_is_sampled_exactly(packing):
     z, d, cells, _ = packing
@@ -124,7 +118,6 @@ def test_a_uniform_flow_is_sampled_exactly(packing):
     )
 
 
-@settings(deadline=None)
 @given(packings(), st.integers(0, 2**32 - 1))
 def test_bits_do_not_depend_on_where_grains_lie_in_memory(packing, seed):
     z, d, cells, rng = packing
