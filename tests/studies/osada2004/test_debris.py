@@ -219,13 +219,26 @@ def test_the_water_can_decide_whether_long_contacts_do_what_the_sketch_says():
     assert shown == set(fig18.SHOWN)
 
 
-def test_the_spread_is_pooled_over_settings_that_flow_alone():
-    sets = [{"a": str(k)} for k in range(3)]
-    values = [[1.0, 1.1, 0.9, 1.0], [0.0, 0.0, 0.0, 0.0], [1.0, 1.2, 0.8, 1.0]]
-    limits = band("fig18", "vertical speed (rms), long over short")
-    one, still, _ = _debris.trials("x", limits, sets, values, [True, False, True])
-    assert "6 degrees of freedom" in one.found.how
-    assert still.found.low == still.found.high == 0.0
+def test_one_run_that_comes_to_rest_is_harm():
+    found = verdicts(
+        fig17_free,
+        STANDARD,
+        lambda one: flow(rest=1.0) if at_rest(one) and one.get("seed") == "3" else flow(),
+    )
+    still = [one for one in found["fig17-lock"].trials if one.note]
+    assert {one.note for one in still} == {"1 of 4 runs come to rest"}
+    assert {one.holds for one in still} == {False}
+    assert {one.halves for one in still} == {(False, True)}
+    assert {one.choices[START] for one in still} == {"at rest"}
+
+
+def test_settings_near_their_stop_do_not_widen_the_intervals_of_others():
+    def of(one):
+        wild = {name: DebrisContacts(9, 1e-4 * int(one.get("seed")), 1e-4, 0.7) for name in flow().contacts}
+        return flow(contacts=wild) if at_rest(one) else flow()
+
+    base = verdicts(fig17, STANDARD, of)["fig17-time"].base
+    assert all(one.found.low == one.found.high for one in base)
 
 
 def test_longer_contacts_keep_the_restitution_of_the_paper_s_constants():

@@ -22,7 +22,7 @@ from ryusa.studies.osada2004._parts import (
     Plan,
     paper_run,
 )
-from ryusa.study import Band, Design, Factor, Trial, pool, seeds_trial
+from ryusa.study import Design, Factor, Trial
 
 CASE = "fig17"
 Value = Callable[[Debris], float]
@@ -126,27 +126,6 @@ def run(chosen: Mapping[str, str], seed: int, changed: Mapping[str, str] | None 
 def flows(runs: Sequence[Debris]) -> bool:
     """Whether no run of a setting has come to rest."""
     return all(one.rest < STANDS for one in runs)
-
-
-def trials(
-    part: str,
-    band: Band,
-    sets: Sequence[Mapping[str, str]],
-    values: Sequence[Sequence[float]],
-    flowing: Sequence[bool],
-) -> list[Trial]:
-    """One part of a claim under every setting; the spread between seeds is pooled over those that flow.
-
-    Parameters
-    ----------
-    values : by setting, one number per seed.
-    flowing : by setting, whether its grains flow; where they come to rest numbers scatter otherwise.
-    """
-    spread = pool([one for one, flow in zip(values, flowing, strict=True) if flow])
-    return [
-        seeds_trial(part, dict(chosen), one, band, spread if flow else None)
-        for chosen, one, flow in zip(sets, values, flowing, strict=True)
-    ]
 
 
 def as_share(trial: Trial) -> Trial:

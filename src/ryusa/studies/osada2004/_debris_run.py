@@ -46,7 +46,7 @@ class NearSurface:
     ----------
     phi : concentration [-].
     thrown : highest less lowest centre of a grain that begins there, mean, in diameters; nan without any.
-    between : mean time between two collisions of a grain there [s]; infinite without any.
+    between : mean time between two collisions of a grain there [s]; without any, the length of the window.
     """
 
     phi: float
@@ -204,7 +204,7 @@ def _near_surface(
     return NearSurface(
         phi=concentration(profile, bound, depth),
         thrown=float(np.ptp(heights[:, first], axis=0).mean()) / profile.d if first.any() else math.nan,
-        between=float(there.mean(axis=0).sum()) * span / collided if collided else math.inf,
+        between=float(there.mean(axis=0).sum()) * span / collided if collided else span,
     )
 
 

@@ -11,7 +11,7 @@ from ryusa.studies.osada2004._bands import band
 from ryusa.studies.osada2004._debris import AMOUNT, SETTLED, SHIPPED
 from ryusa.studies.osada2004._debris_run import NEAR_SURFACE, PARTNERS, Debris
 from ryusa.studies.osada2004._parts import CaseRun, Found, Plan
-from ryusa.study import Finding, Trial, short
+from ryusa.study import Finding, Trial, seeds_trial, short
 
 FIGURE = "fig17"
 TITLE = "Ito's debris flow over a rigid bed: concentration, paths, contacts"
@@ -92,12 +92,13 @@ def _trials(
     found: Found, plan: Plan, claim: str, part: str, reading: Mapping[str, str], value: _debris.Value
 ) -> list[Trial]:
     """One part of a claim by one reading of the same runs, under every setting."""
-    sets = _debris.settings(plan)
-    runs = [[found[_debris.run(one, seed)] for seed in plan.seeds] for one in sets]
-    return _debris.trials(
-        part, band(claim, part), [{**one, **reading} for one in sets],
-        [[value(one) for one in here] for here in runs], [_debris.flows(here) for here in runs],
-    )  # fmt: skip
+    limits = band(claim, part)
+    return [
+        seeds_trial(
+            part, {**one, **reading}, [value(found[_debris.run(one, seed)]) for seed in plan.seeds], limits
+        )
+        for one in _debris.settings(plan)
+    ]
 
 
 def _of_contacts(found: Found, plan: Plan, claim: str) -> Finding:

@@ -19,11 +19,12 @@ from ryusa.study import Finding, Interval, Trial, exact, largest_mean, seeds_tri
 FIGURE = "fig17"
 TITLE = "Ito's debris flow with rotation locked and free"
 CLAIMS = ("fig17-lock", "fig17-free")
+REST = "grains at rest"
 # Of locked grains: part -> number.
 LOCK: Mapping[str, Value] = {
     "grains in contact at a moment": lambda one: one.touching,
     "movers in rods": lambda one: one.rods,
-    "grains at rest": lambda one: one.rest,
+    REST: lambda one: one.rest,
 }
 # Of free over locked: part -> number.
 RATIOS: Mapping[str, Value] = {
@@ -110,15 +111,26 @@ def _thirds(one: Debris) -> np.ndarray:
     return np.maximum(one.thirds, LEAST_PHI)
 
 
+def _lock(part: str, chosen: Mapping[str, str], runs: Sequence[Debris]) -> Trial:
+    """One part of what is asked of locked grains; a single run that comes to rest is harm."""
+    trial = _debris.as_share(
+        seeds_trial(part, chosen, [LOCK[part](one) for one in runs], band("fig17-lock", part))
+    )
+    still = sum(not _debris.flows([one]) for one in runs)
+    if part != REST or still == 0:
+        return trial
+    one, other = (
+        trial.halves[half] if trial.halves and _debris.flows(runs[half::2]) else False for half in (0, 1)
+    )
+    return replace(
+        trial, decided=False, note=f"{still} of {len(runs)} runs come to rest", halves=(one, other)
+    )
+
+
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """Locked grains move apart from one another; free ones lose the grip on the bed."""
     sets = _debris.settings(plan)
-    lock = [
-        _debris.as_share(seeds_trial(part, one, [value(run) for run in _locked_runs(found, plan, one)],
-                                     band("fig17-lock", part)))
-        for part, value in LOCK.items()
-        for one in sets
-    ]  # fmt: skip
+    lock = [_lock(part, one, _locked_runs(found, plan, one)) for part in LOCK for one in sets]
     faster: list[Trial] = []
     for one in sets:
         free, locked = _free_runs(found, plan, one), _locked_runs(found, plan, one)

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -12,7 +13,7 @@ from ryusa.studies.osada2004._bands import band
 from ryusa.studies.osada2004._debris import DESIGN, LONGER, SETTLED
 from ryusa.studies.osada2004._debris_run import Debris
 from ryusa.studies.osada2004._parts import CaseRun, Found, Plan, paper_run
-from ryusa.study import Finding, Trial, over_seeds, short
+from ryusa.study import Finding, Trial, over_seeds, seeds_trial, short
 
 FIGURE = "fig18"
 TITLE = "Effect of long and short contacts on the paths of grains"
@@ -60,13 +61,16 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     sets = _debris.long_settings(plan)
     pairs = [[(found[run(one, seed)], found[_debris.run(one, seed)]) for seed in plan.seeds] for one in sets]
     flowing = [_debris.flows([one for pair in here for one in pair]) for here in pairs]
-    tried: list[Trial] = []
-    for part, value in PARTS:
-        values = [
-            [value(*pair) if flow else math.nan for pair in here]
-            for here, flow in zip(pairs, flowing, strict=True)
-        ]
-        tried += _debris.trials(part, band("fig18", part), sets, values, flowing)
+    tried = [
+        replace(
+            seeds_trial(
+                part, one, [value(*pair) if flow else math.nan for pair in here], band("fig18", part)
+            ),
+            note="" if flow else STAND,
+        )
+        for part, value in PARTS
+        for one, here, flow in zip(sets, pairs, flowing, strict=True)
+    ]
     tried += [
         Trial(part, one, over_seeds([value(long) for long, _ in here], "-"), None, note="" if flow else STAND)
         for part, value in SHOWN.items()
