@@ -299,7 +299,7 @@ def test_removing_a_gate_ends_its_contacts_and_accounts_for_their_springs(timing
     assert math.isnan(record["closing_end"])
 
 
-@pytest.mark.parametrize("model", [Rolling.PRINTED, Rolling.CONSTANT, Rolling.EPSD])
+@pytest.mark.parametrize("model", [Rolling.PRINTED, Rolling.LIMITED, Rolling.CONSTANT, Rolling.EPSD])
 def test_rotation_may_be_locked_and_freed_during_a_run_with_any_rolling_friction(model):
     fixed, first = pile(n=60, rolling=RollingLaw(model, Arm.REDUCED_RADIUS, 0.1), stir=0.1)
     engine = run((fixed, first), 8000)

@@ -100,6 +100,26 @@ def test_eq_13_as_printed_brakes_a_rolling_sphere_and_then_drives_it_back():
     assert engine.tally().terms[Term.ROLL] < lost
 
 
+def test_eq_13_limited_to_the_torque_it_opposes_slows_the_spinning_up_and_lets_a_rolling_sphere_roll_on():
+    mu, v = 0.3, 0.2
+    law = contact_law(k_n=1e3, mu=mu, zeta_n=0.3, zeta_s=0.3, slip=Slip.SPRING_DROP)
+    rolling = RollingLaw(Rolling.LIMITED, Arm.REDUCED_RADIUS, MU_R)
+    turning = 2.5 * (mu - MU_R)  # of the underside against the sphere's own slowing down, mu
+    until = v / ((mu + turning) * G)
+    made = resting(law, v=v, rolling=rolling)
+    engine = run(made, int(1.5 * until / made[0].dt))
+    rolls = v * turning / (mu + turning)
+    assert engine.state().v[0, 0] == pytest.approx(rolls, rel=3e-3)
+    assert engine.state().omega[0, 1] * 0.5 * D == pytest.approx(rolls, rel=3e-3)
+    engine.advance(int(3.0 * until / made[0].dt)).raise_if_any()
+    assert engine.state().v[0, 0] == pytest.approx(rolls, rel=3e-3)
+    # where f N exceeds the torque of the shear force the sphere slides and does not turn at all
+    made = resting(law, v=v, rolling=replace(rolling, coefficient=2.0 * mu))
+    engine = run(made, int(0.5 * v / (mu * G) / made[0].dt))
+    assert abs(engine.state().omega[0, 1]) * 0.5 * D < 1e-3 * v
+    assert engine.state().v[0, 0] == pytest.approx(0.5 * v, rel=2e-2)
+
+
 @pytest.mark.parametrize("name", MODELS)
 def test_a_grain_rests_on_an_incline_below_the_rolling_friction_and_not_above(name):
     law = contact_law(k_n=1e3, mu=0.5, zeta_n=0.3, zeta_s=0.3)

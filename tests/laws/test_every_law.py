@@ -45,6 +45,7 @@ BLIND = {
     ("rolling.epsd_torque", "eta_r"),
     ("rolling.epsd_torque", "scale"),
     ("rolling.rolling_constant", "cap"),  # comes from the normal force
+    ("rolling.rolling_limited", "cap"),  # likewise
     ("torque.torque_in_range", "spin"),  # yes or no
     ("torque.torque_in_range", "d"),
     ("torque.torque_in_range", "nu"),

@@ -179,6 +179,7 @@ UNITS = {
     "rolling.rolling_arm_width": "m, m, m -> m",
     "rolling.reduced_radius": "m, m -> m",
     "rolling.rolling_printed": "N, m -> N m",
+    "rolling.rolling_limited": "N m, N m -> N m",
     "rolling.rolling_constant": "N m, rad/s, kg m2, s -> N m",
     "rolling.inertia_spin": "kg m2, kg m2 -> kg m2",
     "rolling.inertia_rolling": "kg, m, kg m2, kg, m, kg m2 -> kg m2",

@@ -96,6 +96,9 @@ class Rolling(Family, key="rolling.model"):
     EPSD = (3, "spring-dashpot-slider", None,
         "elastic-plastic spring with a dashpot, capped at f N", "Ai et al. 2011, type C",
         ("arm", "coefficient", "stiffness_factor", "damping_ratio"), ("spring",))
+    LIMITED = (4, "printed-limited", None,
+        "as printed, but at most the torque of the shear force that it opposes", "Eq. (13), limited to |M_t|",
+        ("arm", "coefficient"), ("both alike",))
 
 
 class Arm(Family, key="rolling.arm"):

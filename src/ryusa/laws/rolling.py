@@ -4,6 +4,7 @@ All laws are scalar. For vectors an engine passes the magnitude of torque or spi
 the direction by the result:
 
 - printed: torque = -rolling_printed(f_n, f) * m_t / |m_t|, m_t the torque that drives the grain.
+- printed-limited: the same with `rolling_limited` for its magnitude.
 - constant: torque = -rolling_constant(cap, |w|, inertia, dt) * w / |w|, w the relative spin.
 - spring-dashpot-slider: `epsd_spring` advances each component of the spring; all components are then
   multiplied by `slider_scale(|spring|, cap)`. A scale below 1 means sliding, and `epsd_torque` then omits the
@@ -82,6 +83,28 @@ def rolling_printed(f_n: float, f: float) -> float:
     (0.5, 0.0)
     """
     return f * max(f_n, 0.0)
+
+
+@law
+def rolling_limited(cap: float, driving: float) -> float:
+    """Magnitude of the rolling friction torque of Eq. (13), limited to the torque it opposes [N m].
+
+    Parameters
+    ----------
+    cap : f N [N m], >= 0, from `rolling_printed`.
+    driving : magnitude of M_t, the torque of the shear force [N m].
+
+    Notes
+    -----
+    Eq. (13) with abs(M_f) <= abs(M_t): M_f can cancel the torque of the shear force, not reverse it. Where
+    f N is larger the shear force turns the grain no more, and a grain that turns already goes on turning.
+
+    Examples
+    --------
+    >>> rolling_limited(0.5, 2.0), rolling_limited(0.5, 0.25)
+    (0.5, 0.25)
+    """
+    return min(driving, cap)
 
 
 @law

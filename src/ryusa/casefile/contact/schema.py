@@ -100,7 +100,8 @@ class RollingSection(Section):
     """Rolling resistance, Eq. (13) and its variants."""
 
     model: Annotated[str, WordOf(families.Rolling)] = "none"
-    """None, Eq. (13) as printed, a constant torque against the relative rotation, or a spring that slides."""
+    """None, Eq. (13) as printed or limited to the torque it opposes, a constant torque against the relative
+    rotation, or a spring that slides."""
     arm: Annotated[str, WordOf(families.Arm)] | None = None
     """Length that the coefficient multiplies; "contact width", as in Eq. (13), when not given. The
     spring-dashpot-slider always takes "reduced radius"."""

@@ -18,6 +18,7 @@ from ryusa.laws.rolling import (
     inertia_rolling,
     inertia_spin,
     rolling_constant,
+    rolling_limited,
     rolling_printed,
     slider_scale,
 )
@@ -28,8 +29,8 @@ Body = tuple[
     float, float, float, float
 ]  # radius, mass with added mass, inertia, contacts that share the inertia
 
-NONE, PRINTED, CONSTANT, EPSD = numbers(
-    __name__, Rolling.NONE, Rolling.PRINTED, Rolling.CONSTANT, Rolling.EPSD
+NONE, PRINTED, CONSTANT, EPSD, LIMITED = numbers(
+    __name__, Rolling.NONE, Rolling.PRINTED, Rolling.CONSTANT, Rolling.EPSD, Rolling.LIMITED
 )
 B_ROLL, B_RELEASED_R = int(Term.ROLL), int(Term.RELEASED_R)
 
@@ -53,9 +54,9 @@ def rolling_friction(
 ) -> tuple[float, float, float, float]:
     """Rolling friction of one contact: torque on grain i [N m] and the energy in its spring [J].
 
-    `t` is n x F, the direction in which the tangential force turns both grains; Eq. (13) as printed
-    opposes it on each of the two. The other models oppose the relative spin and give the opposite torque
-    to j.
+    `t` is n x F, the direction in which the tangential force turns both grains; Eq. (13), as printed or
+    limited, opposes it on each of the two. The other models oppose the relative spin and give the
+    opposite torque to j.
     """
     r_i, m_i, inertia_i, share_i = body_i
     r_j, m_j, inertia_j, share_j = body_j
@@ -70,8 +71,10 @@ def rolling_friction(
     q_x = q_y = q_z = 0.0  # the rest
     energy = stored = 0.0
     p_x, p_y, p_z = row[M.SPRING_R], row[M.SPRING_R + 1], row[M.SPRING_R + 2]
-    if model == PRINTED:
+    if rolling_alike(model):  # PRINTED or LIMITED
         size = math.sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2])
+        if model == LIMITED:  # the same torque on both grains, so not beyond that of the shorter arm
+            cap = rolling_limited(cap, size * min(r_i, r_j))
         if size > 0.0:
             q_x, q_y, q_z = -cap * t[0] / size, -cap * t[1] / size, -cap * t[2] / size
     elif model == CONSTANT:
