@@ -1,10 +1,12 @@
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from ryusa.engine.forward_euler import integrate, step
 from ryusa.laws.collision import zeta_no_tension
+from ryusa.laws.families import Cap, Slip
 from ryusa.model import Scene
 from ryusa.model.scene import ContactLaw
 
@@ -52,3 +54,20 @@ def test_forward_differences_add_energy_to_a_resting_grain_with_too_few_steps():
 def test_the_step_of_the_stiff_box_is_a_tenth_of_that_of_the_soft_one():
     low, _ = scene(0.0)
     assert step(low, 10.0, 1.0e4) == pytest.approx(0.1 * step(low, 10.0))
+
+
+def test_forward_differences_slide_as_the_rule_says():
+    def slipped(slip):
+        """A grain that settles on two others, one of which it slides down on."""
+        low, _ = scene(0.0)
+        cap = Cap.TOTAL if slip is Slip.TOTAL else Cap.SPRING
+        low = replace(
+            low, contact=replace(low.contact, slip=slip, cap=cap, mu=0.2), d_fixed=D * np.ones(2),
+            x_fixed=np.array([[0.0, 0.0, 0.0], [1.2 * D, 0.0, 0.0]]), fixed_active=np.ones(2, dtype=bool),
+        )  # fmt: skip
+        _, x = integrate(low, np.array([[0.3 * D, 0.0, 1.2 * D]]), step(low, 100.0), 0.02, 1e-4, summed=False)
+        return x[-1, 0, 2]
+
+    heights = {slip: slipped(slip) for slip in Slip}
+    assert len(set(heights.values())) == len(Slip)  # each rule takes its own energy
+    assert max(heights.values()) < 1.1 * D

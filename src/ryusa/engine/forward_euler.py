@@ -13,7 +13,8 @@ from ryusa.laws.collision import (
     shortest_contact,
     zeta_for_restitution,
 )
-from ryusa.laws.contact import damping, slip_spring
+from ryusa.laws.contact import damping, shear_strength, slide
+from ryusa.laws.dispatch import cap_total, slip_drops, slip_total
 from ryusa.laws.motion import acceleration, acceleration_spin, forward_euler, inertia_sphere
 from ryusa.model import Scene
 
@@ -41,7 +42,7 @@ def integrate(
 
     Parameters
     ----------
-    scene : equal grains in a plane among fixed ones of the same size; dry, slip rule "spring", no cohesion.
+    scene : equal grains in a plane among fixed ones of the same size; dry, no cohesion.
     x : first centres [m], shape (n_grain, 3); the grains start at rest.
     dt, end, every : time step, time of the last frame, and between frames [s].
     summed : the spring is the sum of k_n v dt, Eq. (1) as printed; else it is read from the overlap.
@@ -59,6 +60,7 @@ def integrate(
     _fill(
         frames, places, d, m, law.k_n, law.k_s, _zeta(scene), law.zeta_s, law.mu, weight, dt, skip, summed,
         law.tension, scene.rotation,
+        (slip_total(int(law.slip)), slip_drops(int(law.slip)), cap_total(int(law.cap))),
     )  # fmt: skip
     return skip * dt * np.arange(len(frames), dtype=np.float64), frames
 
@@ -113,8 +115,10 @@ def _fill(
     summed: bool,
     tension: bool,
     free: bool,
+    rules: tuple[bool, bool, bool],
 ) -> None:
     """Fill the frames, shape (n_frame, n, 3); the first n rows of x, shape (n + n_fixed, 2), are free."""
+    total, drop, whole = rules
     n, inertia, r = frames.shape[1], inertia_sphere(m, d), 0.5 * d
     spring_n, spring_s = np.zeros((n, len(x))), np.zeros((n, len(x)))
     v, force = np.zeros((len(x), 2)), np.zeros((len(x), 2))
@@ -142,9 +146,12 @@ def _fill(
                     closing = u * a + w * b
                     slip = u * b - w * a + r * (omega[i] + omega[j])
                     spring_n[i, j] = spring_n[i, j] + k_n * closing * dt if summed else k_n * (d - distance)
-                    spring_s[i, j] = slip_spring(spring_s[i, j] + k_s * slip * dt, spring_n[i, j], 0.0, mu)
                     f_n = spring_n[i, j] + eta_n * closing
-                    f_s = spring_s[i, j] + eta_s * slip
+                    spring, dash = spring_s[i, j] + k_s * slip * dt, eta_s * slip
+                    tau_c = shear_strength(f_n if whole else spring_n[i, j], 0.0, mu)
+                    keep, give, rest = slide(abs(spring + dash) if total else abs(spring), tau_c, drop, total)
+                    spring_s[i, j] = keep * spring + give * dash
+                    f_s = spring_s[i, j] + rest * dash
                     if f_n <= 0.0 and not tension:
                         f_n, f_s = 0.0, 0.0
                     f_x, f_z = f_n * a + f_s * b, f_n * b - f_s * a
