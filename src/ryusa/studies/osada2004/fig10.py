@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -17,24 +18,29 @@ from ryusa.measure import Snapshot, Vibration, rest_time, snapshot, vibrating_sh
 from ryusa.measure.statistics import Floats
 from ryusa.measure.vibration import WINDOW, ExtentRule
 from ryusa.results import Results
-from ryusa.studies.osada2004._parts import PHI, RATIO, ROTATION, SLIP, CaseRun, Found, Plan, paper_run
-from ryusa.study import Band, Finding, Interval, Trial, over_range, over_seeds, pool, short
+from ryusa.studies.osada2004._bands import band
+from ryusa.studies.osada2004._factors import (
+    FULL,
+    PARTING_RULE,
+    SLIP_RULE,
+    STIFFNESS_RATIO,
+    friction_angle,
+    n_settings,
+)
+from ryusa.studies.osada2004._parts import ROTATION, CaseRun, Found, Plan, paper_run
+from ryusa.studies.osada2004._shares import share_interval, share_trial
+from ryusa.study import Design, Factor, Finding, Interval, Trial, not_negative, seeds_trial, short
 
 FIGURE = "fig10"
 TITLE = "Grains in a box: stiffness and coming to rest"
 CLAIMS = ("fig10-soft", "fig10-stiff", "fig10-rule")
 SOFT, STIFF = "1 N/cm", "100 N/cm"
 STIFFEST = 1.0e4  # the same as STIFF [N/m]
+STIFFNESS = "contact.stiffness"
 THRESHOLD, MOVED, HEIGHT, SCHEME = "threshold (fig10)", "moved (fig10)", "fall (fig10)", "time scheme (fig10)"
+SIZE, OVERLAP = "d (fig10)", "overlap/d (fig10)"
 # in diameters per window; what a chart with an axis in cm just shows is 0.001 d, that is 0.0002 cm
-THRESHOLDS = {
-    "0.001 d": 1.0e-3,
-    "0.00001 d": 1.0e-5,
-    "0.00003 d": 3.0e-5,
-    "0.0001 d": 1.0e-4,
-    "0.0003 d": 3.0e-4,
-    "0.01 d": 1.0e-2,
-}
+THRESHOLDS = {"0.001 d": 1.0e-3, "0.00001 d": 1.0e-5, "0.0001 d": 1.0e-4, "0.01 d": 1.0e-2}
 WAYS: dict[str, ExtentRule] = {
     "net": "net",
     "to and fro": "z",
@@ -43,20 +49,42 @@ OURS = "semi-implicit"
 SUMMED = "forward differences, spring summed, 10 steps"
 EULER = "forward differences, spring from overlap, 10 steps"
 ONE_STEP = "forward differences, spring from overlap, one step for both (10 and 100 steps)"
+FORWARD = (SUMMED, EULER, ONE_STEP)
 STEPS = 10.0  # the paper's own limit
-SHIPPED = {ROTATION: "locked", HEIGHT: "1 cm", PHI: "30 deg", SCHEME: OURS}
-KEYS = {ROTATION: "motion.rotation", HEIGHT: "build.height", PHI: "contact.friction_angle"}
+# the paper does not say whether grains turn in this box; its other dense runs are locked
+TURNING = Factor(ROTATION, {"locked": {}, "free": {"motion.rotation": "free"}})
+READ = (Factor(THRESHOLD, {one: {} for one in THRESHOLDS}), Factor(MOVED, {one: {} for one in WAYS}))
+COMMON = (friction_angle(), SLIP_RULE, PARTING_RULE, STIFFNESS_RATIO, TURNING)
+DESIGN = Design(
+    (
+        *COMMON,
+        Factor(HEIGHT, {"1 cm": {}, "0 cm": {"build.height": "0 cm"}, "2 cm": {"build.height": "2 cm"}}),
+        Factor(SCHEME, {one: {} for one in (OURS, *FORWARD)}),
+        *READ,
+    )
+)
+SIZES = ("0.05 cm", "0.1 cm", "0.5 cm", "1 cm")
+BELOW, ABOVE = ("0.005", "0.002"), ("0.03", "0.1")  # overlap/d asked for
+OTHERS = Design(
+    (
+        *COMMON,
+        Factor(SIZE, {one: {} for one in SIZES}),
+        Factor(OVERLAP, {one: {} for one in BELOW}),
+        Factor(SCHEME, {one: {} for one in (OURS, SUMMED, EULER)}),
+        *READ,
+    )
+)
 AT, D = 0.125, 0.002  # when the paper looks at the stiff grains [s]; its diameter [m]
 MARKED = (20, 39)  # one amid the pile, one in its top layer; the text does not say where No. 1 and No. 2 lay
-HALF = Band(0.3, 0.6, "-", "nearly half of the 42 in the window that ends at 0.5 s: a share of 0.3 to 0.6")
-REST = Band(
-    -math.inf, 0.13, "s", "at rest by 0.125 s, resolved to one window of 0.01 s: no grain moves after 0.13 s"
+GRAINS = 42
+SOFT_PART, STIFF_PART = "share of grains that vibrate at 0.5 s", "no grain moves after (0.5 s: never)"
+RULE_PART = "share of grains that vibrate at the end"
+HALF, REST, NONE = (
+    band("fig10-soft", SOFT_PART),
+    band("fig10-stiff", STIFF_PART),
+    band("fig10-rule", RULE_PART),
 )
-NONE = Band(0.0, 0.0, "-", "no vibration: not a single grain in the last window")
 LIMIT = 0.01  # of overlap/d, the paper's rule
-SIZES = ("0.05 cm", "1 cm", "0.1 cm", "0.5 cm")
-OVERLAPS = ("0.005", "0.03", "0.002", "0.01", "0.1")
-SECOND = 1000  # from one seed to the next start
 FALL = 5.0  # diameters, as the shipped 1 cm
 
 
@@ -77,68 +105,65 @@ class Fall:
 
 def settings(plan: Plan) -> list[dict[str, str]]:
     """What the text leaves open about the box, the shipped ones first."""
-    schemes = [SHIPPED | {SCHEME: name} for name in (OURS, SUMMED, EULER, ONE_STEP)]
-    free = [SHIPPED | {ROTATION: "free"}]
-    lower = [SHIPPED | {ROTATION: one, HEIGHT: "0 cm"} for one in ("locked", "free")]
-    angles = [SHIPPED | {PHI: one} for one in ("20 deg", "40 deg")]
-    more = [SHIPPED | {ROTATION: "free", PHI: one} for one in ("20 deg", "40 deg")]
-    higher = [SHIPPED | {ROTATION: one, HEIGHT: "2 cm"} for one in ("locked", "free")]
-    others = plan.pick([], [*free, *lower, *angles], [*free, *lower, *angles, *more, *higher])
-    return [*schemes, *others]
-
-
-def starts(plan: Plan, chosen: Mapping[str, str] = SHIPPED) -> list[int]:
-    """Seeds of the paper's own box: several for each of the plan, for no two falls are alike."""
-    changed = [name for name in KEYS if chosen[name] != SHIPPED[name]]
-    count = plan.pick(1, 4 if not changed else 1 if PHI in changed else 2, 8)
-    return [seed + SECOND * one for seed in plan.seeds for one in range(count)]
+    return DESIGN.settings(n_settings(plan))
 
 
 def _run(chosen: Mapping[str, str], k_n: str, seed: int) -> CaseRun:
-    changed = {KEYS[name]: chosen[name] for name in KEYS if chosen[name] != SHIPPED[name]}
-    return paper_run("fig10", changed | ({} if k_n == SOFT else {"contact.stiffness": k_n}), seed)
+    return paper_run("fig10", DESIGN.overrides(chosen) | ({} if k_n == SOFT else {STIFFNESS: k_n}), seed)
 
 
-def _other(size: str, overlap: str, rotation: str, seed: int) -> CaseRun:
+def other_settings(plan: Plan) -> list[dict[str, str]]:
+    """What the text leaves open about boxes of other grains."""
+    return OTHERS.settings(n_settings(plan))
+
+
+def _other(chosen: Mapping[str, str], seed: int) -> CaseRun:
     """A box of other grains, times stretched as sqrt(d/g), stiffness from what overlap the fall may make."""
-    d = float(size.split(maxsplit=1)[0]) / 100.0
+    d = float(chosen[SIZE].split(maxsplit=1)[0]) / 100.0
     speed = math.sqrt(2.0 * 9.8 * FALL * d)
     stretch = math.sqrt(d / D)
     changed = {
-        "grains.diameter": size,
-        "contact.stiffness": f'{{ overlap = {overlap}, speed = "{speed:.4g} m/s" }}',
+        "grains.diameter": chosen[SIZE],
+        STIFFNESS: f'{{ overlap = {chosen[OVERLAP]}, speed = "{speed:.4g} m/s" }}',
         "build.height": f"{FALL * d:g} m",
         "stop.time": f"{0.5001 * stretch:.9g} s",
         "record.frames": f"{0.0002 * stretch:.9g} s",
     }
-    return paper_run("fig10", changed | ({} if rotation == "locked" else {KEYS[ROTATION]: rotation}), seed)
+    given = {name: level for name, level in chosen.items() if name != OVERLAP}
+    return paper_run("fig10", OTHERS.overrides(given) | changed, seed)
 
 
-def others(plan: Plan, rotation: str) -> list[CaseRun]:
-    """Runs with other diameters; with free rotation fewer of them."""
-    sizes, overlaps = plan.pick(SIZES[:2], SIZES), plan.pick(OVERLAPS[:2], OVERLAPS)
-    if rotation == "free":
-        overlaps = plan.pick((), OVERLAPS[:1], OVERLAPS)
-    seeds = plan.pick(plan.seeds[:1], plan.seeds[:1], plan.seeds)
-    return [_other(size, one, rotation, seed) for size in sizes for one in overlaps for seed in seeds]
+def _above(plan: Plan) -> list[dict[str, str]]:
+    """Boxes beyond the limit of the rule, as shipped otherwise; they judge nothing."""
+    return [OTHERS.base | {OVERLAP: one} for one in plan.pick((), ABOVE)]
 
 
 def tasks(plan: Plan) -> Sequence[CaseRun]:
     """Soft and stiff under every setting, then other diameters."""
-    runs = [_run(one, k, seed) for one in settings(plan) for k in (SOFT, STIFF) for seed in starts(plan, one)]
-    return list(dict.fromkeys([*runs, *others(plan, "locked"), *others(plan, "free")]))
+    runs = [_run(one, k, seed) for one in settings(plan) for k in (SOFT, STIFF) for seed in plan.seeds]
+    others = [_other(one, seed) for one in (*other_settings(plan), *_above(plan)) for seed in plan.seeds]
+    return list(dict.fromkeys([*runs, *others]))
+
+
+@lru_cache(maxsize=1)
+def _schemes() -> Mapping[CaseRun, set[str]]:
+    """Forward schemes that a setting asks for, by its run with seed 1; all of them as shipped."""
+    wanted: dict[CaseRun, set[str]] = {_run(DESIGN.base, k, 1): set(FORWARD) for k in (SOFT, STIFF)}
+    pairs = [(_run(one, k, 1), one) for one in DESIGN.settings(FULL) for k in (SOFT, STIFF)]
+    for run, one in [*pairs, *((_other(one, 1), one) for one in OTHERS.settings(FULL))]:
+        wanted.setdefault(run, set()).update({one[SCHEME]} - {OURS})
+    return wanted
 
 
 def measure(run: Results, one: CaseRun) -> Fall:
-    """Motion in windows of 0.01 s, or in proportion to sqrt(d/g); forward differences in the shipped box."""
+    """Motion in windows of 0.01 s, or in proportion to sqrt(d/g); the same by forward differences."""
     d = float(run.scene.d.mean())
     window = WINDOW * math.sqrt(d / D)
+    first = paper_run("fig10", {key: value for key, value in one.overrides if key != "seed"}, 1)
     forward: dict[str, Vibration] = {}
-    if {key for key, _ in one.overrides} <= {"seed", "contact.stiffness"}:
-        own, stiff = step(run.scene, STEPS), step(run.scene, STEPS, STIFFEST)
-        forward = {name: again(run, own, summed=name == SUMMED) for name in (SUMMED, EULER)}
-        alike = math.isclose(own, stiff)
-        forward[ONE_STEP] = forward[EULER] if alike else again(run, stiff, summed=False)
+    for scheme in sorted(_schemes().get(first, ())):
+        dt = step(run.scene, STEPS, STIFFEST if scheme == ONE_STEP else math.nan)
+        forward[scheme] = again(run, dt, window, summed=scheme == SUMMED)
     return Fall(
         moved=vibration(run, window),
         overlap=float(np.max(run.tally["overlap_max"])),
@@ -148,20 +173,20 @@ def measure(run: Results, one: CaseRun) -> Fall:
     )
 
 
-def again(run: Results, dt: float, *, summed: bool) -> Vibration:
-    """Motion within windows of 0.01 s of the grains of a run by forward differences, from its first places.
+def again(run: Results, dt: float, window: float, *, summed: bool) -> Vibration:
+    """Motion within windows of the grains of a run by forward differences, from its first places.
 
     Parameters
     ----------
-    run : equal grains in a plane among fixed ones of the same size; dry, slip rule "spring", no cohesion.
-    dt : time step [s].
+    run : equal grains in a plane among fixed ones of the same size; dry, no cohesion.
+    dt, window : time step, and length of a window [s].
     summed : the spring is the sum of k_n v dt, Eq. (1) as printed; else it is read from the overlap.
     """
     scene, frames = run.scene, run.frames
     every, end = float(np.median(np.diff(frames.t))), float(frames.t[-1])
     t, x = integrate(scene, np.asarray(frames.x[0]), dt, end, every, summed=summed)
     moved = SimpleNamespace(t=t, x=x, omega=np.zeros_like(x))
-    return vibration(cast(Any, SimpleNamespace(scene=scene, frames=moved)))
+    return vibration(cast(Any, SimpleNamespace(scene=scene, frames=moved)), window)
 
 
 def share(moved: Vibration, threshold: str, way: str) -> float:
@@ -175,89 +200,56 @@ def rests(moved: Vibration, threshold: str, way: str) -> float:
     return float(moved.end[-1]) if math.isnan(found) else found
 
 
+def _vibrating(runs: Sequence[Fall], chosen: Mapping[str, str]) -> list[float]:
+    """Number of grains that vibrate in the last window, by seed."""
+    return [GRAINS * share(one.by(chosen[SCHEME]), chosen[THRESHOLD], chosen[MOVED]) for one in runs]
+
+
 def _both(plan: Plan, found: Found) -> tuple[list[Trial], list[Trial]]:
-    """Trials of the soft and the stiff box; thresholds are the same for both."""
+    """Trials of the soft and the stiff box."""
     soft: list[Trial] = []
     stiff: list[Trial] = []
-    for threshold in THRESHOLDS:
-        for way in WAYS:
-            shares: list[list[float]] = []
-            times: list[list[float]] = []
-            for one in settings(plan):
-                moved = [
-                    [found[_run(one, k, seed)].by(one[SCHEME]) for seed in starts(plan, one)]
-                    for k in (SOFT, STIFF)
-                ]
-                shares.append([share(run, threshold, way) for run in moved[0]])
-                times.append([rests(run, threshold, way) for run in moved[1]])
-            spread = pool(shares)
-            for one, some, late in zip(settings(plan), shares, times, strict=True):
-                chosen = {**one, THRESHOLD: threshold, MOVED: way}
-                soft.append(
-                    Trial(
-                        "share of grains that vibrate at 0.5 s", chosen, over_seeds(some, "-", spread), HALF
-                    )
-                )
-                stiff.append(
-                    Trial("no grain moves after (0.5 s: never)", chosen, over_seeds(late, "s"), REST)
-                )
+    for one in settings(plan):
+        runs, stiffs = ([found[_run(one, k, seed)] for seed in plan.seeds] for k in (SOFT, STIFF))
+        soft.append(share_trial(SOFT_PART, one, _vibrating(runs, one), GRAINS, HALF))
+        late = [rests(run.by(one[SCHEME]), one[THRESHOLD], one[MOVED]) for run in stiffs]
+        trial = seeds_trial(STIFF_PART, one, late, REST)
+        stiff.append(Trial(trial.part, one, not_negative(trial.found), REST, halves=trial.halves))
     return soft, stiff
 
 
-def _worst(runs: Sequence[Fall], threshold: str, way: str) -> Interval:
-    values = [share(one.moved, threshold, way) for one in runs]
-    return over_range([max(values, default=math.nan)], "-", f"worst of {len(runs)} runs")
-
-
-def _some(runs: Sequence[Fall], threshold: str) -> int:
-    """How many runs have a grain that moves to and fro at the end."""
-    return sum(share(one.moved, threshold, "to and fro") > 0.0 for one in runs)
-
-
 def _rule(plan: Plan, found: Found) -> Finding:
-    """No run with overlap/d below 0.01 has vibrating grains at its end."""
+    """Boxes with overlap/d below 0.01 have no vibrating grains at their end."""
     trials: list[Trial] = []
-    also: list[str] = []
-    for rotation in plan.pick(("locked",), ("locked", "free")):
-        runs: list[Fall] = [found[one] for one in others(plan, rotation)]
-        below = [one for one in runs if one.overlap < LIMIT]
-        above = [one for one in runs if one.overlap >= LIMIT]
+    for one in other_settings(plan):
+        runs: list[Fall] = [found[_other(one, seed)] for seed in plan.seeds]
+        trial = share_trial(RULE_PART, one, _vibrating(runs, one), GRAINS, NONE)
+        beyond = sum(run.overlap >= LIMIT for run in runs)
+        if beyond:
+            note = f"overlap/d reaches {LIMIT} in {beyond} of {len(runs)} runs: they do not test the rule"
+            nan = math.nan
+            trial = Trial(RULE_PART, one, Interval(nan, nan, nan, "-", len(runs), note), NONE, note=note)
+        trials.append(trial)
+    beside: list[Trial] = []
+    for one in _above(plan):
+        runs = [found[_other(one, seed)] for seed in plan.seeds]
         for threshold in THRESHOLDS:
-            for way in WAYS:
-                chosen = {ROTATION: rotation, THRESHOLD: threshold, MOVED: way}
-                trials.append(
-                    Trial(
-                        "largest share of grains that vibrate at the end",
-                        chosen,
-                        _worst(below, threshold, way),
-                        NONE,
-                    )
-                )
-        words = [
-            f"{name}: {_some(below, name)} of {len(below)} below, {_some(above, name)} of {len(above)} above"
-            for name in sorted(THRESHOLDS, key=lambda name: THRESHOLDS[name])
-        ]
-        also.append(
-            f"rotation {rotation}, runs with a grain that moves to and fro at the end by more than a "
-            f"threshold, overlap/d below 0.01 and above: {'; '.join(words)}"
-        )
-    runs = [found[one] for one in others(plan, "locked")]
-    above = [one for one in runs if one.overlap >= LIMIT]
-    above_all = (
-        f"of {len(above)} locked runs above it {_some(above, '0.001 d')} vibrate by 0.001 d at the end"
-    )
+            key = {OVERLAP: one[OVERLAP], THRESHOLD: threshold, MOVED: "to and fro"}
+            hits = _vibrating(runs, one | key)
+            beside.append(Trial(RULE_PART, key, share_interval(hits, GRAINS), None))
     return Finding(
         "fig10-rule",
         tuple(trials),
         "Dry boxes with equal overlap/d are similar at all diameters, with times in units of sqrt(d/g), "
         "so the rule holds for all diameters or for none. There is no threshold at 0.01: the lower "
-        f"overlap/d, the smaller and the shorter the motion left by the fall; {above_all}.",
-        {
-            "d": ", ".join(SIZES),
-            "overlap/d asked for": ", ".join(plan.pick(OVERLAPS[:2], OVERLAPS)),
-            "window and run": "0.01 s and 0.5 s at 0.2 cm, in proportion to sqrt(d/g)",
-        },
-        also=tuple(also),
+        "overlap/d, the smaller and the shorter the motion left by the fall.",
+        {"window and run": "0.01 s and 0.5 s at 0.2 cm, in proportion to sqrt(d/g)"},
+        also=(
+            "overlap/d reached: "
+            + short(max(found[_other(one, s)].overlap for one in other_settings(plan) for s in plan.seeds))
+            + " at most",
+        ),
+        beside=tuple(beside),
     )
 
 
@@ -270,8 +262,8 @@ def _left(runs: Sequence[Fall], t: float, scheme: str = OURS) -> float:
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """Soft: nearly half of the grains vibrate; stiff: all are at rest; and the rule for other diameters."""
     soft, stiff = _both(plan, found)
-    runs: list[Fall] = [found[_run(SHIPPED, SOFT, seed)] for seed in starts(plan)]
-    stiffs: list[Fall] = [found[_run(SHIPPED, STIFF, seed)] for seed in starts(plan)]
+    runs: list[Fall] = [found[_run(DESIGN.base, SOFT, seed)] for seed in plan.seeds]
+    stiffs: list[Fall] = [found[_run(DESIGN.base, STIFF, seed)] for seed in plan.seeds]
     shared = {"d": "0.2 cm", "grains": "42, all alike", "window": "0.01 s"}
     overlap = [float(np.median([one.overlap for one in some])) for some in (runs, stiffs)]
     net = float(np.median([np.abs(one.moved.net[-1]) / one.moved.d_mean for one in runs]))
@@ -280,7 +272,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         f"half of the grains on soft springs vibrate at 0.5 s if the threshold is {short(net)} d net, or "
         f"{short(_left(runs, 0.5))} d to and fro: less than a ten-thousandth of a millimetre",
     ]
-    for name in (OURS, SUMMED, EULER, ONE_STEP):
+    for name in (OURS, *FORWARD):
         net, wide = (
             [_mean(some, name, *how) for some in (runs, stiffs)]
             for how in (("0.001 d", "net"), ("0.0001 d", "to and fro"))
@@ -301,7 +293,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             f"calculated from the overlap and a contact has ten steps ({short(_left(runs, 0.5, EULER))} d "
             f"at 0.5 s, but then the stiff box vibrates too, {short(_left(stiffs, 0.5, EULER))} d); with "
             "the spring force summed as printed they do not.",
-            {**shared, SLIP: "spring", RATIO: "2/7", "k_n": SOFT},
+            {**shared, "k_n": SOFT},
             also=tuple(also),
         ),
         Finding(
@@ -310,7 +302,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             "A stiff pile loses its oscillation within hundredths of a second. How long grains go on "
             "moving depends on the height of the fall and, with rotation free, on rolling, which is "
             "hardly resisted.",
-            {**shared, SLIP: "spring", RATIO: "2/7", "k_n": STIFF},
+            {**shared, "k_n": STIFF},
         ),
         _rule(plan, found),
     )
@@ -321,25 +313,33 @@ def _mean(runs: Sequence[Fall], scheme: str, threshold: str, way: str) -> float:
 
 
 def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
-    """One line per run, time scheme, threshold and way to count."""
+    """One line per setting and seed, of the soft, the stiff and the other boxes."""
     lines: list[dict[str, object]] = []
-    for one, fall in found.items():
-        d = fall.moved.d_mean
-        for scheme in (OURS, *fall.forward):
-            moved = fall.by(scheme)
-            for threshold in THRESHOLDS:
-                for way in WAYS:
-                    row: dict[str, object] = {"d_m": d, "k_n": one.get("contact.stiffness", SOFT)}
-                    row |= {name: one.get(key, SHIPPED[name]) for name, key in KEYS.items()}
-                    row |= {"seed": one.get("seed"), SCHEME: scheme, THRESHOLD: threshold, MOVED: way}
-                    row |= {"overlap_over_d": fall.overlap, "share_at_end": share(moved, threshold, way)}
-                    lines.append({**row, "rests_from_s": rests(moved, threshold, way)})
+
+    def add(one: Mapping[str, str], k_n: str, run: CaseRun) -> None:
+        fall: Fall = found[run]
+        moved, how = fall.by(one[SCHEME]), (one[THRESHOLD], one[MOVED])
+        lines.append(
+            {
+                SIZE: "0.2 cm", OVERLAP: "", HEIGHT: "5 d", **one, "k_n": k_n, "seed": run.get("seed"),
+                "overlap_over_d": fall.overlap, "share_at_end": share(moved, *how),
+                "rests_from_s": rests(moved, *how),
+            }
+        )  # fmt: skip
+
+    for one in settings(plan):
+        for seed in plan.seeds:
+            add(one, SOFT, _run(one, SOFT, seed))
+            add(one, STIFF, _run(one, STIFF, seed))
+    for one in (*other_settings(plan), *_above(plan)):
+        for seed in plan.seeds:
+            add(one, "by overlap", _other(one, seed))
     return lines
 
 
 def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
     """Fig. 9 and fig. 10 as printed, and the share of vibrating grains over the threshold."""
-    runs: dict[str, Fall] = {k: found[_run(SHIPPED, k, plan.seeds[0])] for k in (SOFT, STIFF)}
+    runs: dict[str, Fall] = {k: found[_run(DESIGN.base, k, plan.seeds[0])] for k in (SOFT, STIFF)}
     pictures = {"fig09-start": draw_snapshot(runs[SOFT].start, "none")}
     for letter, (k, fall) in zip("ab", runs.items(), strict=True):
         pictures[f"fig10{letter}"] = draw_vibration(fall.moved, MARKED, title=f"$k_n$ = {k}")
