@@ -12,36 +12,50 @@ from ryusa.figures.snapshot import snapshot as draw_snapshot
 from ryusa.measure import Snapshot, snapshot
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
-from ryusa.studies.osada2004._parts import PHI, RATIO, SLIP, CaseRun, Found, Plan, paper_run
-from ryusa.study import Band, Finding, Trial, over_range, short
+from ryusa.studies.osada2004._bands import band
+from ryusa.studies.osada2004._factors import (
+    PARTING_RULE,
+    SLIP_RULE,
+    STIFFNESS_RATIO,
+    friction_angle,
+    n_settings,
+)
+from ryusa.studies.osada2004._parts import PHI, START, CaseRun, Found, Plan, paper_run
+from ryusa.studies.osada2004._shares import share_interval, share_trial
+from ryusa.study import Design, Factor, Finding, Trial, short
 
 FIGURE = "fig19"
 TITLE = "Flow of a tilted dry bed"
 CLAIMS = ("bed18",)
-SLOPE, START, BED = "slope (bed18)", "start (bed18)", "bed (bed18)"
+SLOPE, SETTLED, BED, COUNTS = "slope (bed18)", "settled (bed18)", "bed (bed18)", "speed that counts (bed18)"
 REST, MOVING = "from rest", "once moving"
+WITHOUT, WITH = "without friction", "with friction"  # its angle is that of the setting
 PUSH = "30 deg"  # slope of the first 0.15 s of a bed that is set moving
-SHIPPED = {SLOPE: "21 deg", START: REST, PHI: "30 deg", BED: "random"}
-SLOPES = {REST: ("21 deg", "23 deg", "25 deg", "28 deg"), MOVING: ("19 deg", "21 deg", "23 deg", "25 deg")}
+SLOPES = ("21 deg", "23 deg", "25 deg", "28 deg")  # 18 deg is told to 3 deg in Fig. 19
+FLATTER = "19 deg"
+DESIGN = Design(
+    (
+        Factor(SLOPE, {one: {} for one in SLOPES}),
+        Factor(START, {REST: {}, MOVING: {}}),
+        Factor(SETTLED, {WITHOUT: {}, WITH: {}}),
+        Factor(BED, {"random": {}, "flat": {"build.bed": "flat"}}),
+        Factor(COUNTS, {"0.02 sqrt(g d)": {}, "0.1 sqrt(g d)": {}}),
+        friction_angle("timeline.0.friction_angle"),
+        SLIP_RULE,
+        PARTING_RULE,
+        STIFFNESS_RATIO,
+    )
+)
+TILT = 0.3  # when the bed is tilted [s]
+LAST = 0.3  # judged over the last so many seconds, beside as many before
+FLOWS = 0.02  # of sqrt(g d), a diameter in 0.7 s
+KEEPS = 0.5  # of the speed 0.3 s before; a bed one degree too flat loses 0.4 sqrt(g d) in that time
+PART = "share of runs that flow"
+MOST = band("bed18", PART)
 CONTROLS = {  # slope, rotation of a bed that should stop or stay, both pushed
     "16 deg, rotation free": ("16 deg", "free"),
     "21 deg, rotation locked": ("21 deg", "locked"),
 }
-HEAP = 18.0  # the paper's final slope of fig19 with rotation free [deg]
-TOLD = 3.0  # "about 18 deg", as in fig19: a bed that is to flow is steeper by at least that [deg]
-TILT = 0.3  # when the bed is tilted [s]
-LAST = 0.3  # judged over the last so many seconds, beside as many before
-FLOWS = 0.02  # of sqrt(g d)
-MOVES = Band(
-    FLOWS,
-    math.inf,
-    "-",
-    "flows: mean speed of the free grains over the last 0.3 s above 0.02 sqrt(g d), a diameter in 0.7 s; "
-    "a creeping bed is slower, and one layer of ten that rolls with sqrt(g d) gives 0.1. And not "
-    "decaying: at least half the speed of the 0.3 s before. Required of every seed and every slope from "
-    "21 deg",
-)
-KEEPS = 0.5  # of the speed 0.3 s before; a bed one degree too flat loses 0.4 sqrt(g d) in that time
 
 
 @dataclass(frozen=True)
@@ -75,59 +89,43 @@ class TiltedBedRun:
         """Largest mean speed after the tilt over sqrt(g d) [-]."""
         return float(self.v[self.t > TILT].max()) / math.sqrt(self.g * self.d)
 
-    @property
-    def keeps(self) -> float:
-        """Speed of the last 0.3 s over that of the 0.3 s before [-]; 0 where it stood."""
-        before = self.speed(LAST)
-        return self.speed() / before if before > FLOWS else 0.0 if self.speed() < FLOWS else math.inf
+    def flows(self, limit: float = FLOWS) -> bool:
+        """Whether it moves faster than a limit [sqrt(g d)], and not half as fast as 0.3 s before."""
+        return self.speed() > limit and self.speed() > KEEPS * self.speed(LAST)
 
 
 def settings(plan: Plan) -> list[dict[str, str]]:
-    """Slopes and starts; other friction angles and beds at two slopes."""
-
-    def bed(start: str, slope: str, phi: str = "30 deg", bed: str = "random") -> dict[str, str]:
-        return {SLOPE: slope, START: start, PHI: phi, BED: bed}
-
-    both = [bed(start, one) for start in (REST, MOVING) for one in SLOPES[start]]
-    angles = [bed(MOVING, one, phi) for phi in ("20 deg", "40 deg") for one in ("21 deg", "25 deg")]
-    finer = [
-        bed(REST, "19 deg"),
-        bed(REST, "26 deg"),
-        bed(REST, "27 deg"),
-        bed(MOVING, "20 deg"),
-        bed(MOVING, "28 deg"),
-    ]
-    more = [
-        bed(start, one, phi, kind)
-        for start in (REST, MOVING)
-        for phi, kind in (("30 deg", "flat"), ("20 deg", "random"), ("40 deg", "random"))
-        for one in SLOPES[start]
-    ]
-    every = plan.pick([SHIPPED], [*both, *angles], [*both, *angles, *finer, *more])
-    return list({tuple(one.items()): one for one in every}.values())
+    """Free choices tried, the shipped ones first."""
+    return DESIGN.settings(n_settings(plan))
 
 
 def _run(chosen: Mapping[str, str], seed: int, rotation: str = "free") -> CaseRun:
-    changed = {
-        "timeline.0.friction_angle": chosen[PHI],
-        "timeline.1.rotation": rotation,
-        "timeline.2.slope_angle": PUSH if chosen[START] == MOVING else chosen[SLOPE],
-        "timeline.3.slope_angle": chosen[SLOPE],
-        "build.bed": chosen[BED],
-    }
-    shipped = ("30 deg", "free", "21 deg", "21 deg", "random")
-    kept = {key: text for (key, text), old in zip(changed.items(), shipped, strict=True) if text != old}
-    return paper_run("bed18", kept, seed)
+    changed = DESIGN.overrides({name: level for name, level in chosen.items() if name != SLOPE})
+    if chosen[SETTLED] == WITH:
+        changed |= {"contact.friction_angle": chosen[PHI]}
+    if rotation != "free":
+        changed |= {"timeline.1.rotation": rotation}
+    slopes = (PUSH if chosen[START] == MOVING else chosen[SLOPE], chosen[SLOPE])
+    for k, slope in enumerate(slopes):
+        if slope != SLOPES[0]:
+            changed |= {f"timeline.{2 + k}.slope_angle": slope}
+    return paper_run("bed18", changed, seed)
+
+
+def _beside(plan: Plan) -> list[dict[str, str]]:
+    """Beds from rest, settled without friction and with: a series over the slope, which judges nothing."""
+    slopes = plan.pick((), (FLATTER, *SLOPES[:3]))
+    return [DESIGN.base | {SETTLED: settled, SLOPE: slope} for settled in (WITHOUT, WITH) for slope in slopes]
 
 
 def _control(name: str, seed: int) -> CaseRun:
     slope, rotation = CONTROLS[name]
-    return _run(SHIPPED | {SLOPE: slope, START: MOVING}, seed, rotation)
+    return _run(DESIGN.base | {SLOPE: slope, START: MOVING}, seed, rotation)
 
 
 def tasks(plan: Plan) -> Sequence[CaseRun]:
-    """Every setting and seed, and the controls with one seed."""
-    runs = [_run(one, seed) for one in settings(plan) for seed in plan.seeds]
+    """Every setting and seed, the series over the slope, and the controls with one seed."""
+    runs = [_run(one, seed) for one in (*settings(plan), *_beside(plan)) for seed in plan.seeds]
     controls = [_control(name, plan.seeds[0]) for name in plan.pick((), tuple(CONTROLS))]
     return list(dict.fromkeys([*runs, *controls]))
 
@@ -145,48 +143,25 @@ def measure(run: Results, one: CaseRun) -> TiltedBedRun:
     )
 
 
-def flattest(found: Found, plan: Plan, start: str) -> float:
-    """Flattest slope on which every seed flows, as shipped otherwise [deg]; inf if none does."""
-    good = [
-        _degrees(one[SLOPE])
-        for one in settings(plan)
-        if one == SHIPPED | {SLOPE: one[SLOPE], START: start}
-        and all(_flows(found[_run(one, seed)]) for seed in plan.seeds)
-    ]
-    return min(good, default=math.inf)
-
-
-def _degrees(text: str) -> float:
-    return float(text.split(maxsplit=1)[0])
-
-
-def _flows(flow: TiltedBedRun) -> bool:
-    return flow.speed() > FLOWS and flow.keeps > KEEPS
+def _flowing(found: Found, plan: Plan, chosen: Mapping[str, str]) -> list[float]:
+    """Whether the bed flows, 1 or 0 for each seed."""
+    limit = float(chosen[COUNTS].split(maxsplit=1)[0])
+    return [float(found[_run(chosen, seed)].flows(limit)) for seed in plan.seeds]
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
-    """It flows: fast enough, and not dying."""
-    trials: list[Trial] = []
-    for one in settings(plan):
-        slope = one[SLOPE]
-        if _degrees(slope) < HEAP + TOLD:
-            continue
-        runs: list[TiltedBedRun] = [found[_run(one, seed)] for seed in plan.seeds]
-        flowing = sum(_flows(run) for run in runs)
-        decided = True if flowing == len(runs) else None if flowing else False
-        chosen = {name: value for name, value in one.items() if name != SLOPE}
-        speed = over_range([run.speed() for run in runs], "-", f"{len(runs)} seeds")
-        note = "" if flowing in (0, len(runs)) else f"flows with {flowing} of {len(runs)} seeds"
-        part = f"mean speed over sqrt(g d), last 0.3 s, slope {slope}"
-        trials.append(Trial(part, chosen, speed, MOVES, decided, note))
-    also: list[str] = []
-    for start in plan.pick((), (REST, MOVING)):
-        angle = flattest(found, plan, start)
-        words = f"{angle:g} deg" if math.isfinite(angle) else "none of those tried"
-        also.append(
-            f"lowest slope that flows {start}, friction angle {SHIPPED[PHI]}, all seeds: {words}; the "
-            f"paper's heap with rotation free ends at {HEAP:g} deg"
+    """It flows: fast enough, and not dying, in most runs."""
+    trials = [share_trial(PART, one, _flowing(found, plan, one), 1, MOST) for one in settings(plan)]
+    beside = [
+        Trial(
+            PART,
+            {SETTLED: one[SETTLED], SLOPE: one[SLOPE]},
+            share_interval(_flowing(found, plan, one), 1),
+            None,
         )
+        for one in _beside(plan)
+    ]
+    also: list[str] = []
     for name in plan.pick((), tuple(CONTROLS)):
         flow: TiltedBedRun = found[_control(name, plan.seeds[0])]
         also.append(
@@ -197,37 +172,27 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         Finding(
             "bed18",
             tuple(trials),
-            "There are two angles: a bed at rest, here as dense as grains settle without friction, must "
-            "first break its packing, while a moving bed continues to flow at a lower slope. A collapsing "
-            f"heap stops near the second angle. {_words(found, plan)}",
-            {
-                "bed": "200 grains, 10 layers, sizes +-20 %, dry",
-                "k_n": "100 N/cm",
-                "rotation": "free",
-                SLIP: "spring",
-                RATIO: "2/7",
-            },
+            "There are two angles: a bed at rest must first break its packing, and the denser it was laid "
+            "down the steeper it must be, while a moving bed continues to flow at a lower slope. A "
+            "collapsing heap stops near the second angle.",
+            {"bed": "200 grains, 10 layers, sizes +-20 %, dry", "k_n": "100 N/cm", "rotation": "free"},
             also=tuple(also),
+            beside=tuple(beside),
         ),
     )
 
 
-def _words(found: Found, plan: Plan) -> str:
-    """Both angles, where slopes were tried for them."""
-    if plan.level == "quick":
-        return "From one slope tried from rest neither angle follows."
-    words = [f"{start} from {flattest(found, plan, start):g} deg" for start in (REST, MOVING)]
-    return f"Of the slopes tried, all seeds flow {' and '.join(words)}."
-
-
 def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
     """One line per run."""
-    named = [(one, "free", seed, _run(one, seed)) for one in settings(plan) for seed in plan.seeds]
+    named = [
+        (one, "free", seed, _run(one, seed))
+        for one in (*settings(plan), *_beside(plan))
+        for seed in plan.seeds
+    ]
     for name in plan.pick((), tuple(CONTROLS)):
         slope, rotation = CONTROLS[name]
-        named.append(
-            (SHIPPED | {SLOPE: slope, START: MOVING}, rotation, plan.seeds[0], _control(name, plan.seeds[0]))
-        )
+        chosen = DESIGN.base | {SLOPE: slope, START: MOVING}
+        named.append((chosen, rotation, plan.seeds[0], _control(name, plan.seeds[0])))
     return [
         {
             **one,
@@ -235,26 +200,21 @@ def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
             "seed": seed,
             "speed": found[run].speed(),
             "speed_before": found[run].speed(LAST),
-            "keeps": found[run].keeps,
         }
         for one, rotation, seed, run in named
     ]
 
 
 def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
-    """Speed over time for each slope, by start, and the bed at the end of the fastest run."""
+    """Speed over time for each slope, by packing, and the bed at the end of the fastest run."""
     panels: dict[str, dict[str, tuple[Floats, Floats]]] = {}
     seed = plan.seeds[0]
-    shown = [one for one in settings(plan) if one == SHIPPED | {SLOPE: one[SLOPE], START: one[START]}]
-    for one in sorted(shown, key=lambda one: one[SLOPE]):
+    shown = _beside(plan) or [DESIGN.base]
+    for one in shown:
         flow: TiltedBedRun = found[_run(one, seed)]
-        panels.setdefault(one[START], {})[one[SLOPE]] = (flow.t, flow.v)
-    if plan.pick(False, True):
-        for name in CONTROLS:
-            flow = found[_control(name, seed)]
-            panels[MOVING][name] = (flow.t, flow.v)
+        panels.setdefault(f"settled {one[SETTLED]}", {})[one[SLOPE]] = (flow.t, flow.v)
     fastest: TiltedBedRun = max((found[_run(one, seed)] for one in shown), key=lambda flow: flow.speed())
-    note = f"friction angle {SHIPPED[PHI]}, tilted at 0.3 s (once moving: {PUSH} until 0.45 s)"
+    note = "from rest, friction angle 30 deg, tilted at 0.3 s"
     return {
         "bed18": speeds(panels, fastest.d, FLOWS, fastest.g, note),
         "bed18-snapshot": draw_snapshot(fastest.last, "speed"),
