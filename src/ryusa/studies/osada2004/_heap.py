@@ -1,24 +1,24 @@
-"""What the heap experiments (fig19, eq13) share: the case, its choices, and the slope that is left."""
+"""What the heap experiments (fig19, eq13, rolling_friction) share: runs, and the slope that is left."""
 
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
 
 from ryusa.measure import HeapSurface, Snapshot, snapshot, surface
 from ryusa.results import Results
-from ryusa.studies.osada2004._parts import PHI, SLIP, CaseRun, Plan, paper_run
-from ryusa.study import CONFIDENCE, Interval, Pooled, over_seeds
+from ryusa.studies.osada2004._parts import CaseRun, paper_run
+from ryusa.studies.osada2004._shares import share_interval, share_trial
+from ryusa.study import Band, Interval, Pooled, Trial, exact, over_seeds
 
 CASE = "fig19"
-SHIPPED = {PHI: "30 deg", SLIP: "spring"}
-KEYS = {PHI: "timeline.0.friction_angle", SLIP: "contact.slip"}
+PHI_KEY = "timeline.0.friction_angle"
 FITS = ("0.1 to 0.9", "0.2 to 0.8", "0.25 to 0.75")  # beside the shipped 0.15 to 0.85 of the heap's height
+MEAN = "mean of four"
+RANGES = (MEAN, "0.1 to 0.9", "0.25 to 0.75")  # of height, from which the slope is read
 MOVING = 0.01  # share of grains that may still move in a heap that is called at rest
-STARTS = 3  # heaps per seed where a verdict hangs on them: slopes of single heaps scatter by several degrees
-SECOND = 100_000  # from one seed to the next start
+MOST = 0.5  # of the heaps of a setting
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,6 @@ class Heap:
 
     seen: Snapshot
     found: HeapSurface
-    start: Snapshot | None  # as the gate goes; None where it was not kept
     t_gate: float  # [s]
     t_end: float  # [s]
     residual: float  # of the energy account [-]
@@ -35,13 +34,15 @@ class Heap:
         float  # lost to rolling friction since the gate went, over the height lost [-]; < 0: it made energy
     )
 
-    @property
-    def slope(self) -> float:
-        """Mean of the slopes over four ranges of height [rad]; nan where it stands like a wall."""
-        if not math.isfinite(self.found.angle):
+    def slope(self, fit: str = MEAN) -> float:
+        """Slope over a range of height, or mean of four [deg]; nan where it stands as a wall."""
+        if self.wall:
             return math.nan
-        angles = [self.found.angle, *(self.found.angles[name] for name in FITS)]
-        return float(np.nanmean(angles))
+        if fit != MEAN:
+            return math.degrees(self.found.angles[fit])
+        return math.degrees(
+            float(np.nanmean([self.found.angle, *(self.found.angles[name] for name in FITS)]))
+        )
 
     @property
     def wall(self) -> bool:
@@ -49,18 +50,11 @@ class Heap:
         return not math.isfinite(self.found.angle)
 
 
-def run(
-    chosen: Mapping[str, str], rotation: str, seed: int, more: Mapping[str, str] | None = None
-) -> CaseRun:
+def run(rotation: str, seed: int, changed: Mapping[str, str]) -> CaseRun:
     """One heap; the shipped one turns freely."""
-    changed = {KEYS[name]: value for name, value in chosen.items() if name in KEYS and SHIPPED[name] != value}
-    changed |= {} if rotation == "free" else {"timeline.1.rotation": rotation}
-    return paper_run(CASE, changed | dict(more or {}), seed)
-
-
-def starts(plan: Plan, n: int = STARTS) -> list[int]:
-    """Seeds of `n` heaps for each of the plan's; quick: of one."""
-    return [seed + SECOND * k for seed in plan.seeds for k in range(plan.pick(1, n))]
+    return paper_run(
+        CASE, dict(changed) | ({} if rotation == "free" else {"timeline.1.rotation": rotation}), seed
+    )
 
 
 def heap(results: Results) -> Heap:
@@ -72,7 +66,6 @@ def heap(results: Results) -> Heap:
     return Heap(
         seen=snapshot(results),
         found=surface(results),
-        start=snapshot(results, gate),
         t_gate=gate,
         t_end=float(results.frames.t[-1]),
         residual=float(results.summary.get("residual", math.nan)),
@@ -80,42 +73,60 @@ def heap(results: Results) -> Heap:
     )
 
 
-def slopes(heaps: Sequence[Heap]) -> list[float]:
-    """Slopes in degrees, one per seed."""
-    return [math.degrees(one.slope) for one in heaps]
+def slopes(heaps: Sequence[Heap], fit: str = MEAN) -> list[float]:
+    """Slopes of the heaps that have one [deg], in the order of the seeds."""
+    return [one.slope(fit) for one in heaps if not one.wall]
 
 
-def slope_interval(heaps: Sequence[Heap], spread: Pooled | None) -> tuple[Interval, bool | None, str]:
-    """Slope over seeds; a verdict and a note where heaps stand like walls.
+def slope_trial(
+    part: str, chosen: Mapping[str, str], heaps: Sequence[Heap], fit: str, band: Band, spread: Pooled | None
+) -> Trial:
+    """Return the trial of the mean slope over seeds.
 
-    Heaps that all stand like a wall have no slope, and fail whatever was asked; so does a setting under which
-    most heaps do, at 95 % (Clopper & Pearson 1934, Biometrika 26, 404). Where only some do, the mean of the
-    others is given but decides nothing.
+    Notes
+    -----
+    Heaps that stand as walls have no slope. A setting in which most of them do, by Wilson's interval, fails
+    whatever was asked; with fewer it is undecided, and a note gives the mean of the others.
     """
-    standing, n = sum(one.wall for one in heaps), len(heaps)
-    found = over_seeds(slopes([one for one in heaps if not one.wall]), "deg", spread)
-    if standing == n:
-        return found, False, "stands as a wall"
-    if standing:
-        note = f"{standing} of {n} stand as a wall, the others {found.value:.3g} deg"
-        most = stats.binomtest(standing, n).proportion_ci(CONFIDENCE).low > 0.5
-        none = Interval(math.nan, math.nan, math.nan, "deg", n, found.how)
-        return none, False if most else None, note
-    return found, None, ""
+    halves = (_held(heaps[0::2], fit, band), _held(heaps[1::2], fit, band))
+    walls, n = [float(one.wall) for one in heaps], len(heaps)
+    found = over_seeds(slopes(heaps, fit), "deg", spread)
+    if not any(walls):
+        return Trial(part, chosen, found, band, halves=halves)
+    others = "" if all(walls) else f", the others have {found.value:.3g} deg"
+    note = f"{sum(walls):.0f} of {n} stand as a wall{others}"
+    none = Interval(math.nan, math.nan, math.nan, "deg", n, found.how)
+    failed = False if all(walls) or share_interval(walls, 1).low > MOST else None
+    return Trial(part, chosen, none, band, failed, note, halves)
 
 
-def moving(heaps: Sequence[Heap]) -> Interval:
-    """Largest share of grains that still move at the end, over seeds."""
-    shares = [one.found.moving for one in heaps]
-    return Interval(
-        max(shares), min(shares), max(shares), "-", len(shares), f"range over {len(shares)} seeds"
-    )
+def _held(heaps: Sequence[Heap], fit: str, band: Band) -> bool | None:
+    """Whether the mean slope of these heaps is inside; no where more of them stand than not."""
+    found = slopes(heaps, fit)
+    if not heaps or 2 * len(found) == len(heaps):
+        return None
+    return band.holds(exact(math.fsum(found) / len(found), "deg")) if 2 * len(found) > len(heaps) else False
+
+
+def moving_trial(part: str, chosen: Mapping[str, str], heaps: Sequence[Heap], band: Band) -> Trial:
+    """Return the trial of the share of grains that still move at the end."""
+    grains = round(float(np.mean([len(one.found.grains) for one in heaps])))
+    return share_trial(part, chosen, [one.found.moving * grains for one in heaps], grains, band)
+
+
+def typical(heaps: Sequence[Heap]) -> Heap:
+    """Heap whose slope is nearest to the mean; the first one where most stand as walls."""
+    found = slopes(heaps)
+    if 2 * len(found) <= len(heaps):
+        return heaps[0]
+    mean = sum(found) / len(found)
+    return min((one for one in heaps if not one.wall), key=lambda one: abs(one.slope() - mean))
 
 
 def line(one: Heap) -> dict[str, object]:
     """Numbers of one heap."""
     return {
-        "slope_deg": math.degrees(one.slope),
+        "slope_deg": one.slope(),
         "fit_error_deg": math.degrees(one.found.error),
         "fit_spread_deg": math.degrees(one.found.spread),
         "stands_like_a_wall": one.wall,
