@@ -37,6 +37,7 @@ NAMES = (
     "fig22",
     "fig22_free",
     "eq13",
+    "rolling_friction",
 )
 
 # Free choices that several parts share: one name each, so that the page can lay them side by side.

@@ -76,7 +76,7 @@ _CLAIMS = (
         "fig10-soft",
         "9, 10a",
         f"{_BOX}, k_n = 1 N/cm; z displacement of marked grains per 0.01 s",
-        "nearly half of the 42 grains still vibrate at 0.5 s",
+        "small vibrations of nearly half of the 42 grains continue until the run ends at 0.5 s",
         "packing, drop height, rotation, threshold",
     ),
     Claim(
@@ -236,7 +236,19 @@ _CLAIMS = (
         "tau_star, bed depth, which resistance",
     ),
     Claim(
-        "eq13", "23", "rolling friction, Eq. (13)", "principle only; f' is to be identified from experiments"
+        "eq13",
+        "23",
+        "rolling friction, Eq. (13)",
+        "proposal: a moment M_f opposite to M_t, the moment of the shear force, resists rotation",
+        "f', width of the contact",
+        "M_t is not the spin: on a rolling grain M_f brakes and drives by turns",
+    ),
+    Claim(
+        "rolling-friction",
+        "23",
+        "a coefficient of rolling friction, fitted on the heap and the saltating grain",
+        "to be done: the best value of f' is to be derived by comparison with basic experiments",
+        "form of the law, coefficient, friction angle",
     ),
 )
 CLAIMS = {claim.id: claim for claim in _CLAIMS}

@@ -19,7 +19,7 @@ QUESTIONS = (
         "Rolling friction",
         "rolling-friction",
         "The paper's open question ii: Eq. (13) as a model of rolling friction, its coefficient to be found.",
-        ("eq13",),
+        ("eq13", "rolling-friction"),
         "",
     ),
     (
