@@ -90,7 +90,7 @@ MEASURES = (
                  numbers=(("jump_height", "m"), ("jump_height_crest", "m"), ("jump_length", "m"),
                           ("flight_length", "m"), ("flight_time", "s"), ("speed", "m/s"),
                           ("spin_before", "rad/s"), ("spin_after", "rad/s"), ("bed_normal", "N"),
-                          ("bed_shear", "N"), ("shear_ratio", "-"))),
+                          ("bed_shear", "N"), ("bed_friction", "N"), ("shear_ratio", "-"))),
     MeasureEntry("collisions", "ryusa.measure.collisions:collisions",
                  "single contacts: duration, overlap, restitution",
                  ("settle", "end"), settled=True,

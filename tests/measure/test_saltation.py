@@ -165,3 +165,27 @@ def test_the_begin_of_steady_hops_is_told_from_all_hops_beside_the_settling_of_t
     assert 4 < np.searchsorted(hops["t_begin"], began) < 40
     assert "the window begins at 0.2 s" in saltation(run, settle=0.2, grains=[0]).averages.notes[0]
     assert "too few samples" in saltation(one(make)).averages.notes[0]
+
+
+def oblique(make, *, force, friction):
+    """Hops of a grain that hits the upstream side of a crest with a normal and a tangential impulse [N s]."""
+    t, x, v, events = make.hopping(RISES)
+    normal = np.array([-0.6, 0.0, 0.8])
+    scene = make.scene()
+    events["impulse_n"] = force
+    events["impulse"] = force * normal - friction * np.array([0.8, 0.0, 0.6])
+    moved = 0.5 * make.t_col * (0.75 * events["v_begin"] + 0.25 * events["v_end"])
+    events["x_begin"] = scene.x_fixed[events["j"] - 1] + make.d * normal - moved
+    events["x_begin"][:, 0] += 3.0 * scene.period[0]  # after three rounds of the periodic bed
+    return saltation(make.run_of(t, x[:, None], v[:, None], events))
+
+
+def test_friction_is_what_the_normal_force_leaves_of_the_shear_on_the_bed(make):
+    smooth = oblique(make, force=1.0e-6, friction=0.0)
+    np.testing.assert_allclose(smooth.hops["impulse_shear"], 0.6e-6, rtol=1e-9)
+    np.testing.assert_allclose(smooth.hops["impulse_friction"], 0.0, atol=1e-15)
+    rough = oblique(make, force=1.0e-6, friction=0.5e-6)
+    np.testing.assert_allclose(rough.hops["impulse_shear"], 1.0e-6, rtol=1e-9)
+    np.testing.assert_allclose(rough.hops["impulse_friction"], 0.4e-6, rtol=1e-9)
+    time = rough.hops["period"].sum()
+    assert rough["bed_friction"].value == pytest.approx(rough.hops["impulse_friction"].sum() / time)

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 
 from ryusa.measure._run import Floats, Run, crest_of, path_of
+from ryusa.model import Scene
 
 # One row per hop: from the landing that begins one bounce to the landing that begins the next.
 HOP = np.dtype(
@@ -30,6 +31,7 @@ HOP = np.dtype(
         ("v_z_landing", np.float64),
         ("impulse_normal", np.float64),  # upward impulse of the bed in the bounce it leaves [N s]
         ("impulse_shear", np.float64),  # impulse of the bed against x in that bounce [N s]
+        ("impulse_friction", np.float64),  # the part of it that tangential forces give [N s]
     ]
 )
 # One row per bounce: bed contacts without a flight between them that rises more than the threshold.
@@ -97,7 +99,8 @@ def bounces_of(run: Run, grain: int, begin: float, rise: float, most: int | None
     bounces = np.zeros(len(flights), BOUNCE)
     for k, flight in enumerate(flights):
         bounces[k] = _bounce(grain, groups[k])
-        hops[k] = _hop(grain, groups[k], groups[k + 1][0], flight, standing)
+        friction = float(-_tangential(scene, groups[k])[:, 0].sum())
+        hops[k] = (*_hop(groups[k], groups[k + 1][0], flight, standing), friction)
     kept = np.flatnonzero(bounces["t_begin"] >= begin)[:most]
     inside = np.concatenate([groups[k] for k in kept]) if len(kept) else events[:0]
     inside = inside[np.isfinite(inside["closing_end"])]  # of the others the bed grain was taken away
@@ -175,14 +178,29 @@ def _bounce(grain: int, group: NDArray[Any]) -> tuple[float, ...]:
     )
 
 
-def _hop(
-    grain: int, group: NDArray[Any], landing: Any, flight: _Flight, standing: float
-) -> tuple[float, ...]:
+def _tangential(scene: Scene, events: NDArray[Any]) -> Floats:
+    """Impulse of the tangential forces of contacts with fixed grains [N s], shape (n, 3).
+
+    It is the whole impulse without that of the normal force along the line of centres in the middle of the
+    contact. The line turns by u t/d during a contact; what is left out is of the square of that.
+    """
+    middle = 0.5 * (events["t_end"] - events["t_begin"])[:, None]
+    # speed falls evenly from first touch to parting, so that half-way three quarters of it are the first
+    x = events["x_begin"] + middle * (0.75 * events["v_begin"] + 0.25 * events["v_end"])
+    arm = x - scene.x_fixed[events["j"] - scene.n_grain]
+    for axis, period in enumerate(scene.period):
+        if np.isfinite(period):
+            arm[:, axis] -= period * np.round(arm[:, axis] / period)
+    normal = arm / np.linalg.norm(arm, axis=1, keepdims=True)
+    return np.asarray(events["impulse"] - events["impulse_n"][:, None] * normal, dtype=np.float64)
+
+
+def _hop(group: NDArray[Any], landing: Any, flight: _Flight, standing: float) -> tuple[float, ...]:
     last = group[int(np.argmax(group["t_part"]))]
     t_begin, t_end = float(group["t_begin"][0]), float(landing["t_begin"])
     x_begin, x_end = float(group["x_begin"][0, 0]), float(landing["x_begin"][0])
     return (
-        grain,
+        int(last["i"]),
         t_begin,
         flight.t_takeoff,
         t_end,

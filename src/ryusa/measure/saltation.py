@@ -70,7 +70,8 @@ def saltation(
     Height is given twice: above the take-off, and above the centre of a grain that stands on a crest of the
     bed. Length is the distance between successive landings. Speed is total length over total time. Bed
     shear is the impulse against the flow that the bed gave, over time; the shear ratio is that over the
-    normal impulse. Averages weigh hops alike; each grain is one series for the standard errors.
+    normal impulse; bed friction is the part of the bed shear that tangential forces give. Averages weigh
+    hops alike; each grain is one series for the standard errors.
     """
     scene = run.scene
     begin = settle_time(run) if settle is None else settle
@@ -135,8 +136,10 @@ def _averages(
         bounce("spin_after", "rad/s", "omega_after"),
         hop("impulse_normal", "N s", "impulse_normal"),
         hop("impulse_shear", "N s", "impulse_shear"),
+        hop("impulse_friction", "N s", "impulse_friction"),
         quotient("bed_normal", "N", "impulse_normal", "period"),
         quotient("bed_shear", "N", "impulse_shear", "period"),
+        quotient("bed_friction", "N", "impulse_friction", "period"),
         quotient("shear_ratio", "-", "impulse_shear", "impulse_normal"),
     )
     count = sum(len(one.hops) for one in found)
