@@ -38,6 +38,7 @@ NAMES = (
     "fig22_free",
     "eq13",
     "rolling_friction",
+    "water_torque",
 )
 
 # Free choices that several parts share: one name each, so that the page can lay them side by side.

@@ -69,6 +69,13 @@ _CLAIMS = (
         _SALTATION_FREE,
         "the grain skims the crests if it travels more than about 0.3 d during a contact",
     ),
+    Claim(
+        "spin-e",
+        "",
+        f"{_SALTATION}; rotation locked or free",
+        "rotation is locked because restitution is no longer uniquely determined with it",
+        "which restitution; what counts as unique",
+    ),
     Claim("spin-time", "", f"{_SALTATION}; rotation free", "rotation does not change the collision time"),
     *(Claim(claim, "", flow.setup, *_FILMS) for claim, flow in FLOWS.items()),
     Claim("fig8", "8", "largest overlap/d against k_n", "d = 0.2 cm: 0.01 at about 100 N/cm", "impact speed"),
@@ -119,6 +126,13 @@ _CLAIMS = (
         f"{_SALTATION}; same e, different collision time",
         "mean and largest jump height and mean length do not change",
         _SALTATION_FREE,
+    ),
+    Claim(
+        "hops-impulse",
+        "",
+        f"{_SALTATION}; same e, different collision time",
+        "the reason: the impulse of a collision does not change with the collision time",
+        "which impulse: of one contact, or of a bounce",
     ),
     Claim(
         "fig14",
@@ -249,6 +263,30 @@ _CLAIMS = (
         "a coefficient of rolling friction, fitted on the heap and the saltating grain",
         "to be done: the best value of f' is to be derived by comparison with basic experiments",
         "form of the law, coefficient, friction angle",
+    ),
+    Claim(
+        "water-torque",
+        "21",
+        f"{_SALTATION}; rotation free, with the torque of the water",
+        "that the torque of the water is not considered is thought to be one cause of the fast spin",
+        "law of the torque, Reynolds number; what spin is too much",
+        "an open question of the paper; the number asked is ours",
+    ),
+    Claim(
+        "water-torque-half",
+        "21",
+        f"{_SALTATION}; rotation free, with the torque of the water",
+        "the torque is to be modelled in future; ours: it removes at least half of the excess spin",
+        "law of the torque, Reynolds number; what spin is too much",
+        "an open question of the paper; the number asked is ours",
+    ),
+    Claim(
+        "water-torque-shear",
+        "20",
+        f"{_SALTATION}; rotation free with the torque of the water, or locked",
+        "ours: with the torque the bed shear resistance is the half that Fig. 20 reports",
+        "law of the torque, Reynolds number; definition of shear resistance",
+        "the paper reports the half without the torque",
     ),
 )
 CLAIMS = {claim.id: claim for claim in _CLAIMS}

@@ -1,58 +1,35 @@
 """Fig. 20: saltation with rotation locked and free, k_n = 100 N/cm; jumps and the shear on the bed."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 from matplotlib.figure import Figure
 
 from ryusa import figures
-from ryusa.measure import Average, saltation
 from ryusa.results import Results
 from ryusa.studies.osada2004 import _saltation
-from ryusa.studies.osada2004._parts import PHI, SLIP, CaseRun, Found, Plan
-from ryusa.studies.osada2004._saltation import SHIPPED, SaltationRun
-from ryusa.study import Band, Finding, Trial, over_seeds, pool
+from ryusa.studies.osada2004._parts import CaseRun, Found, Plan
+from ryusa.studies.osada2004._saltation import FREE, HOPS, LOCKED, MANY, SHIPPED, STIFF, Group, SaltationRun
+from ryusa.study import Finding
 
 FIGURE = "fig20"
 TITLE = "Saltation with and without rotation"
 CLAIMS = ("fig20", "fig20-shear")
 WAY = 0.3  # shown of each path [m]
-LARGER = Band(1.0, float("inf"), "-", "free over locked above 1")
-HALF = Band(0.35, 0.65, "-", "about half: free over locked 0.35 to 0.65")
 # part of the claim -> average
 JUMPS = {
     "mean jump height, free over locked": "jump_height",
     "mean jump length, free over locked": "jump_length",
 }
-IMPULSE = "impulse"  # the choice that fig20-shear leaves open
-SHEARS = {"per time": "bed_shear", "per bounce": "impulse_shear", "over the normal impulse": "shear_ratio"}
-OTHER = "other"  # whatever else the paper leaves open, one at a time
-AS_SHIPPED = "as shipped"
-OTHERS: dict[str, dict[str, str]] = {
-    "k_rough = d/2": {"water.roughness": "0.1 cm"},
-    "k_rough = 2 d": {"water.roughness": "0.4 cm"},
-    "z = 0 at the crest": {"water.zero": "0.2 cm"},
-    "z = 0 at the centres": {"water.zero": "0.1 cm"},
-    "C_D = 24/Re + 2": {"water.drag": "24/Re+2"},
-    "C_D Schiller-Naumann": {"water.drag": "Schiller-Naumann"},
-    "C_D Ferguson-Church sphere": {"water.drag": "Ferguson-Church sphere"},
-    "C_D Ferguson-Church sand": {"water.drag": "Ferguson-Church sand"},
-    "viscosity at 10 °C": {"water.viscosity": "1.3e-6 m2/s"},
-    "k_s/k_n = 0.8": {"contact.shear_ratio": "0.8"},
-    "dashpot may pull": {"contact.parting": "tension"},
-    "e_s = 0.5": {"contact.restitution_shear": "0.5"},
-    "e_s = 0.9": {"contact.restitution_shear": "0.9"},
-    "e_s = 1 (no shear dashpot)": {"contact.restitution_shear": "1.0"},
-    "A_2 = 1.2 pi/4": {"water.shape_area": "0.94248"},
-    "A_3 = 0.8 pi/6": {"grains.shape_volume": "0.41888"},
-    "above 2 cm surface speed": {"water.above": "hold"},
-    "above 2 cm no drag": {"water.above": "dry"},
-    "started 1 cm above the bed": {"build.start_height": "1 cm"},
-    "20 steps per contact": {"time.steps_per_contact": "20"},
-    "200 steps per contact": {"time.steps_per_contact": "200"},
+PART_SHEAR = "bed shear, free over locked"
+SHEAR = "shear resistance"  # the choice of what is meant by it
+SHEARS = {
+    "impulse against the flow, per time": "bed_shear",
+    "impulse against the flow, per bounce": "impulse_shear",
+    "impulse against the flow over the normal one": "shear_ratio",
+    "friction force alone, per time": "bed_friction",
+    "friction force alone, per bounce": "impulse_friction",
 }
-RISES = {"hops rise above 0.02 d": 0.02, "hops rise above 0.5 d": 0.5}  # read from the shipped runs
-# averages drawn of every choice, with their axis
+# averages drawn of every setting, with their axis
 PANELS = {
     "jump_height": "height / d",
     "jump_length": "length / d",
@@ -60,117 +37,86 @@ PANELS = {
     "spin_before": "spin (rad/s)",
     "shear_ratio": "shear / normal",
 }
-Setting = tuple[dict[str, str], str]  # set of shared choices, label of the other one
-
-
-@dataclass(frozen=True)
-class Both:
-    """Hops of one run; `regrouped` has the averages with other thresholds, by label, of the shipped runs."""
-
-    hops: SaltationRun
-    regrouped: Mapping[str, Mapping[str, Average]]
-
-    def average(self, label: str, name: str) -> Average:
-        """One average, with the threshold of that label where it names one."""
-        return self.regrouped[label][name] if label in RISES else self.hops.found[name]
-
-
-def settings(plan: Plan) -> list[Setting]:
-    """Sets of choices; full: every other choice alone too."""
-    others = plan.pick((), (), (*OTHERS, *RISES))
-    return [*((one, AS_SHIPPED) for one in _saltation.choices(plan)), *((SHIPPED, label) for label in others)]
 
 
 def tasks(plan: Plan) -> Sequence[CaseRun]:
     """Locked and free for every setting and seed."""
-    runs = [
-        _run(one, rotation, seed)
-        for one in settings(plan)
-        for rotation in ("locked", "free")
+    return [
+        _saltation.run(one, rotation, seed)
+        for one in _saltation.settings(plan)
+        for rotation in (LOCKED, FREE)
         for seed in plan.seeds
     ]
-    return list(dict.fromkeys(runs))
 
 
-def _run(setting: Setting, rotation: str, seed: int) -> CaseRun:
-    chosen, label = setting
-    return _saltation.run(chosen, rotation, seed, OTHERS.get(label))
-
-
-def measure(run: Results, one: CaseRun) -> Both:
+def measure(run: Results, one: CaseRun) -> SaltationRun:
     """Hops of all starts."""
-    names = [*JUMPS.values(), *SHEARS.values(), *PANELS]
-    regrouped: dict[str, dict[str, Average]] = {}
-    if {key for key, _ in one.overrides} == {"motion.rotation", "seed"}:
-        for label, rise in RISES.items():
-            found = saltation(run, rise=rise, hops=_saltation.HOPS)
-            regrouped[label] = {name: found[name] for name in names}
-    return Both(_saltation.hops(run), regrouped)
+    del one
+    return _saltation.hops(run)
 
 
-def ratios(found: Found, plan: Plan, name: str) -> list[list[float]]:
-    """Free over locked of one average, by setting, then seed."""
-    values: list[list[float]] = []
-    for one in settings(plan):
-        pairs = [
-            [found[_run(one, rot, seed)].average(one[1], name).value for rot in ("free", "locked")]
-            for seed in plan.seeds
-        ]
-        values.append([free / locked for free, locked in pairs])
-    return values
+def _pair(found: Found, plan: Plan, chosen: Mapping[str, str]) -> tuple[Group, Group]:
+    """Free runs and locked ones of a setting."""
+    free, locked = (
+        [found[_saltation.run(chosen, rotation, seed)] for seed in plan.seeds] for rotation in (FREE, LOCKED)
+    )
+    return free, locked
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """Free: higher and longer jumps, about half the shear on the bed."""
-    sets = [{**chosen, OTHER: label} for chosen, label in settings(plan)]
-    jumps: list[Trial] = []
-    for part, name in JUMPS.items():
-        groups = ratios(found, plan, name)
-        spread = pool(groups)
-        jumps += [
-            Trial(part, chosen, over_seeds(values, "-", spread), LARGER)
-            for chosen, values in zip(sets, groups, strict=True)
-        ]
-    shears: list[Trial] = []
-    for impulse, name in SHEARS.items():
-        groups = ratios(found, plan, name)
-        spread = pool(groups)
-        shears += [
-            Trial(
-                "bed shear, free over locked",
-                {**chosen, IMPULSE: impulse},
-                over_seeds(values, "-", spread),
-                HALF,
-            )
-            for chosen, values in zip(sets, groups, strict=True)
-        ]
-    locked, free = (found[_run((SHIPPED, AS_SHIPPED), rot, plan.seeds[0])].hops for rot in ("locked", "free"))
-    normal = free.value("bed_normal") / locked.value("bed_normal")
+    sets = _saltation.settings(plan)
+    pairs = [_pair(found, plan, one) for one in sets]
+    jumps = [
+        trial
+        for part, name in JUMPS.items()
+        for trial in _saltation.trials(
+            "fig20", part, sets, [_saltation.ratios(*pair, name) for pair in pairs]
+        )
+    ]
+    shears = [
+        trial
+        for way, name in SHEARS.items()
+        for trial in _saltation.trials(
+            "fig20-shear",
+            PART_SHEAR,
+            [{**one, SHEAR: way} for one in sets],
+            [_saltation.ratios(*pair, name) for pair in pairs],
+        )
+    ]
+    free, locked = pairs[0]
+    normal = _saltation.ratio(free, locked, "bed_normal")
+    done = {"k_n": STIFF, "starts": f"{MANY['build.starts']} of {HOPS} hops a seed"}
     return (
         Finding(
             "fig20",
             tuple(jumps),
             "A locked grain is slowed by friction at every hit and leaves the bed slowly; a free grain, "
             "once it spins, rolls off, keeps its speed and hits the next crest faster.",
-            settings={"k_n": "100 N/cm"},
+            settings=done,
             also=tuple(
-                f"{words}, rotation {rot}: {one.value(name) / one.d:.3g} d"
-                for rot, one in (("locked", locked), ("free", free))
+                f"{words}, rotation {rot}: {_saltation.mean(here, name, 'm')}"
+                for rot, here in ((LOCKED, locked), (FREE, free))
                 for words, name in (("mean jump height", "jump_height"), ("mean jump length", "jump_length"))
             ),
         ),
         Finding(
             "fig20-shear",
             tuple(shears),
-            f"The mean normal force on the bed is nearly the same (free over locked {normal:.2f}), so the "
+            f"The mean normal force on the bed is nearly the same (free over locked {normal}), so the "
             "shear force decides. As printed (cap on the spring, dashpot kept) the shear force on a "
-            "locked grain has no limit. A small friction angle, a dashpot that is capped or set to zero "
-            "while sliding, or a softer shear spring reduce it and bring free and locked closer. A "
-            "rotating grain has little slip.",
-            settings={"k_n": "100 N/cm"},
+            "locked grain has no limit. A rotating grain has little slip, so the friction force is small; "
+            "what slows it is the part of the normal force along the bed, as it hits the upstream side of "
+            "the crests.",
+            settings=done,
             also=tuple(
-                f"shear over normal impulse, rotation {rot}: {one.value('shear_ratio'):.2f}"
-                for rot, one in (("locked", locked), ("free", free))
+                f"{words}, rotation {rot}: {_saltation.mean(here, name, unit)}"
+                for rot, here in ((LOCKED, locked), (FREE, free))
+                for words, name, unit in (
+                    ("shear over normal impulse", "shear_ratio", "-"),
+                    ("impulse against the flow per time", "bed_shear", "N"),
+                    ("of it friction force alone", "bed_friction", "N"),
+                )
             ),
         ),
     )
@@ -179,60 +125,36 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
 def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
     """One line per average, run and setting."""
     return [
-        {**one[0], OTHER: one[1], "rotation": rotation, "seed": seed, **row}
-        for one in settings(plan)
-        if one[1] not in RISES
-        for rotation in ("locked", "free")
+        {**one, "rotation": rotation, "seed": seed, **row}
+        for one in _saltation.settings(plan)
+        for rotation in (LOCKED, FREE)
         for seed in plan.seeds
-        for row in found[_run(one, rotation, seed)].hops.found.rows()
+        for row in found[_saltation.run(one, rotation, seed)].found.rows()
     ]
 
 
 def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
-    """Paths of both, how their jumps are distributed, and what every choice does."""
-    base = {
-        f"rotation {rot}": found[_run((SHIPPED, AS_SHIPPED), rot, plan.seeds[0])].hops
-        for rot in ("locked", "free")
-    }
-    paths = {name: one.path for name, one in base.items()}
-    d = next(iter(base.values())).d
+    """Paths of both, how their jumps are distributed, and what the settings do."""
+    free, locked = (one[0] for one in _pair(found, plan, SHIPPED))
+    base: dict[str, SaltationRun] = {"rotation locked": locked, "rotation free": free}
     pictures = {
-        "fig20": figures.tracks_side_by_side(paths, WAY),
-        "fig20-hops": figures.hops({name: one.found for name, one in base.items()}, d),
+        "fig20": figures.tracks_side_by_side({name: one.path for name, one in base.items()}, WAY),
+        "fig20-hops": figures.hops({name: one.found for name, one in base.items()}, free.d),
     }
-    if len(settings(plan)) > 1:
+    sets = _saltation.settings(plan)
+    if len(sets) > 1:
         lines = [
             figures.SensitivityRow(
-                _label(one),
+                "as shipped" if k == 0 else f"setting {k}",
                 {
                     f"rotation {rot}": [
-                        found[_run(one, rot, plan.seeds[0])].average(one[1], name) for name in PANELS
+                        found[_saltation.run(one, rot, plan.seeds[0])].found[name] for name in PANELS
                     ]
-                    for rot in ("locked", "free")
+                    for rot in (LOCKED, FREE)
                 },
             )
-            for one in settings(plan)
-            if one[1] != AS_SHIPPED or _few(one[0])
+            for k, one in enumerate(sets)
         ]
-        scales = (1 / d, 1 / d, 1.0, 1.0, 1.0)
+        scales = (1 / free.d, 1 / free.d, 1.0, 1.0, 1.0)
         pictures["free-choices"] = figures.sensitivity(lines, tuple(PANELS.values()), scales)
     return pictures
-
-
-def _few(chosen: Mapping[str, str]) -> bool:
-    """Whether one choice is changed at most, or shear is weak for two reasons; the table has them all."""
-    changed = [name for name in SHIPPED if chosen[name] != SHIPPED[name]]
-    return len(changed) <= 1 or (chosen[PHI] == "10 deg" and changed == [PHI, SLIP])
-
-
-def _label(setting: Setting) -> str:
-    """What a setting changes, in few words."""
-    chosen, label = setting
-    if label != AS_SHIPPED:
-        return label
-    changed = [
-        value if name == SLIP else f"{'phi' if name == PHI else name} = {value}"
-        for name, value in chosen.items()
-        if value != SHIPPED[name]
-    ]
-    return ", ".join(changed) or AS_SHIPPED

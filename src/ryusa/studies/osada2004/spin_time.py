@@ -1,4 +1,4 @@
-"""The sentence on rotation and contact time: locked since e is then unique, not since it would matter."""
+"""Why the paper locks rotation: restitution is not unique with it, and contact time does not change."""
 
 from collections.abc import Mapping, Sequence
 
@@ -9,32 +9,48 @@ from ryusa.figures.saltation import StiffnessSeries, over_stiffness_in_cm
 from ryusa.results import Results
 from ryusa.studies.osada2004 import _saltation
 from ryusa.studies.osada2004._parts import CaseRun, Found, Plan
-from ryusa.studies.osada2004._saltation import K_N, SHIPPED, SKIM, SaltationRun, sweep_run
-from ryusa.study import Band, Finding, Trial, over_seeds
+from ryusa.studies.osada2004._saltation import (
+    FREE,
+    HOPS,
+    K_N,
+    LOCKED,
+    MANY,
+    NORMAL,
+    SHIPPED,
+    TANGENTIAL,
+    Group,
+    SaltationRun,
+)
+from ryusa.study import Finding, over_seeds, short
 
 FIGURE = "spin-time"
-TITLE = "Contact time with rotation locked and free"
-CLAIMS = ("spin-time",)
-SAME = Band(0.95, 1.05, "-", "does not change: free over locked 0.95 to 1.05, half the tolerance of fig7")
+TITLE = "Contact time and restitution with rotation locked and free"
+CLAIMS = ("spin-time", "spin-e")
 PART = "mean contact time, free over locked"
-
-
-SOFTEST = 100.0  # [N/m]; free grains on softer beds skim for whole seconds
+WHICH = "which restitution"
+SPREADS = {rotation: f"spread of restitution, rotation {rotation}" for rotation in (LOCKED, FREE)}
 
 
 def settings(plan: Plan) -> list[dict[str, str]]:
-    """Sets of choices with the stiffness."""
-    sets = _saltation.with_stiffness(plan)
-    return [one for one in sets if _saltation.stiffness(one[K_N]) >= SOFTEST]
+    """Sets of choices, each with a stiffness."""
+    return _saltation.settings(plan, K_N)
 
 
 def tasks(plan: Plan) -> Sequence[CaseRun]:
-    """Locked and free for every stiffness and set of choices."""
-    return [make(one, seed) for one in settings(plan) for seed in plan.seeds for make in (sweep_run, _free)]
+    """Locked and free for every set of choices, and for the series over stiffness."""
+    both = [(one, rotation) for one in settings(plan) for rotation in (LOCKED, FREE)]
+    runs = [_saltation.run(*one, seed) for one in both for seed in plan.seeds]
+    runs += [
+        _series(keys, rotation, seed)
+        for keys in _saltation.series(plan).values()
+        for rotation in (LOCKED, FREE)
+        for seed in plan.seeds
+    ]
+    return list(dict.fromkeys(runs))
 
 
-def _free(chosen: Mapping[str, str], seed: int) -> CaseRun:
-    return _saltation.run(chosen, "free", seed)
+def _series(keys: Mapping[str, str], rotation: str, seed: int) -> CaseRun:
+    return _saltation.run(SHIPPED, rotation, seed, keys)
 
 
 def measure(run: Results, one: CaseRun) -> SaltationRun:
@@ -43,45 +59,75 @@ def measure(run: Results, one: CaseRun) -> SaltationRun:
     return _saltation.hops(run)
 
 
-def _ratios(found: Found, plan: Plan, chosen: Mapping[str, str]) -> list[float]:
-    name = "contact_time"
-    return [
-        found[_free(chosen, seed)].value(name) / found[sweep_run(chosen, seed)].value(name)
-        for seed in plan.seeds
-    ]
+def _group(found: Found, plan: Plan, chosen: Mapping[str, str], rotation: str) -> Group:
+    return [found[_saltation.run(chosen, rotation, seed)] for seed in plan.seeds]
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
-    """Free over locked, by stiffness and choices."""
+    """Contact time free over locked; spread of restitution of either."""
     sets = settings(plan)
-    groups = [_ratios(found, plan, one) for one in sets]
-    skims = [found[_free(one, plan.seeds[0])].travel > SKIM for one in sets]
-    trials = tuple(
-        Trial(PART, one, over_seeds(values, "-", spread), SAME)
-        for one, values, spread in zip(sets, groups, _saltation.pooled(groups, skims), strict=True)
-    )
-    locked, free = (found[make(sets[0], plan.seeds[0])] for make in (sweep_run, _free))
-    speeds = [one.value("speed") for one in (locked, free)]
-    turning = [float(np.median(one.turning)) for one in (locked, free)]
+    runs = {rot: [_group(found, plan, one, rot) for one in sets] for rot in (LOCKED, FREE)}
+    skims = [_saltation.skimming(here) for here in runs[FREE]]
+    ratios = [
+        _saltation.ratios(free, locked, "contact_time")
+        for free, locked in zip(runs[FREE], runs[LOCKED], strict=True)
+    ]
+    ways = (TANGENTIAL, NORMAL)
+    spreads = [
+        trial
+        for rotation, part in SPREADS.items()
+        for way in ways
+        for trial in _saltation.trials(
+            "spin-e",
+            part,
+            [{**one, WHICH: way} for one in sets],
+            [[one.spreads[way] for one in here] for here in runs[rotation]],
+            [_saltation.skimming(here) for here in runs[rotation]],
+        )
+    ]
+    locked, free = runs[LOCKED][0], runs[FREE][0]
+    speeds = [np.mean([one.value("speed") for one in here]) for here in (locked, free)]
+    turning = [np.mean([np.median(one.turning) for one in here]) for here in (locked, free)]
+    starts = {"starts": f"{MANY['build.starts']} of {HOPS} hops a seed"}
+    sweep = _sweep(found, plan)
     return (
         Finding(
             "spin-time",
-            trials,
+            tuple(_saltation.trials("spin-time", PART, sets, ratios, skims)),
             f"A free grain is faster along the bed ({speeds[1]:.2f} against {speeds[0]:.2f} m/s), so that "
             f"the line of centres turns more during a contact (u^2 t/(d v), median {turning[1]:.2g} "
             f"against {turning[0]:.2g}) and the contact ends earlier. This rotation decreases with the "
             "contact time, so the difference vanishes with increasing stiffness.",
-            also=(
-                "u t/d of the free grain: "
-                + _saltation.listed({k: one.travel for k, one in _sweep(found, plan).items()}),
+            settings=starts,
+            also=tuple(
+                f"as shipped, rotation {rot}, {words}: "
+                + _saltation.listed(
+                    {k: short(float(np.mean([value(one) for one in here[rot]]))) for k, here in sweep.items()}
+                )
+                for rot in (LOCKED, FREE)
+                for words, value in (
+                    ("contact time over Eq. (8)", lambda one: one.value("contact_time_over_eq8")),
+                    ("u t/d", lambda one: one.travel),
+                )
             ),
+        ),
+        Finding(
+            "spin-e",
+            tuple(spreads),
+            "The normal spring and dashpot do not feel the spin. The tangential restitution follows from "
+            "slip, friction limit and, for a free grain, from the moment of inertia: what a contact returns "
+            "depends on the spin and angle with which it begins.",
+            settings=starts,
         ),
     )
 
 
-def _sweep(found: Found, plan: Plan) -> dict[str, SaltationRun]:
-    """Free runs of the first seed, soft to stiff."""
-    return {k: found[_free({**SHIPPED, K_N: k}, plan.seeds[0])] for k in _saltation.softest(settings(plan))}
+def _sweep(found: Found, plan: Plan) -> dict[str, dict[str, list[SaltationRun]]]:
+    """Runs of the series by stiffness, soft to stiff, and rotation."""
+    return {
+        k: {rot: [found[_series(keys, rot, seed)] for seed in plan.seeds] for rot in (LOCKED, FREE)}
+        for k, keys in _saltation.series(plan).items()
+    }
 
 
 def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
@@ -91,11 +137,11 @@ def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
             **one, "rotation": rotation, "seed": seed, "contact_time_s": run.value("contact_time"),
             "over_eq8": run.value("contact_time_over_eq8"), "speed_m_per_s": run.value("speed"),
             "travel": run.travel,
+            **{f"spread_of_{way}_restitution": value for way, value in run.spreads.items()},
         }
         for one in settings(plan)
-        for rotation, make in (("locked", sweep_run), ("free", _free))
-        for seed in plan.seeds
-        if (run := found[make(one, seed)])
+        for rotation in (LOCKED, FREE)
+        for seed, run in zip(plan.seeds, _group(found, plan, one, rotation), strict=True)
     ]  # fmt: skip
 
 
@@ -104,20 +150,14 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
     sweep = _sweep(found, plan)
     k = np.array([_saltation.stiffness(one) for one in sweep])
     lines: list[StiffnessSeries] = []
-    for name, make in (("locked", sweep_run), ("free", _free)):
+    for rotation in (LOCKED, FREE):
         means = [
-            over_seeds(
-                [
-                    found[make({**SHIPPED, K_N: one}, seed)].value("contact_time_over_eq8")
-                    for seed in plan.seeds
-                ],
-                "-",
-            )
-            for one in sweep
+            over_seeds([one.value("contact_time_over_eq8") for one in here[rotation]], "-")
+            for here in sweep.values()
         ]
         half = np.array([0.5 * (one.high - one.low) for one in means])
-        lines.append(StiffnessSeries(f"rotation {name}", k, np.array([one.value for one in means]), half))
-    skim = min((_saltation.stiffness(one) for one, run in sweep.items() if run.travel < SKIM), default=0.0)
+        lines.append(StiffnessSeries(f"rotation {rotation}", k, np.array([one.value for one in means]), half))
+    skim = _saltation.skims_below({one: here[FREE] for one, here in sweep.items()})
     return {
         "spin-time": over_stiffness_in_cm({"mean contact time over Eq. (8)  (–)": lines}, skim=skim, one=True)
     }
