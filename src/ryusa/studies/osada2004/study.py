@@ -26,8 +26,8 @@ QUESTIONS = (
         "Water torque",
         "water-torque",
         "The paper's open question iii: the torque of the water on a spinning grain.",
-        ("fig21", "fig20"),
-        "torque",
+        ("water-torque", "water-torque-half", "water-torque-shear"),
+        "",
     ),
 )
 
