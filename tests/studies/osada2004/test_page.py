@@ -187,7 +187,7 @@ def test_an_open_question_is_answered_by_the_findings_about_it(every_word):
     )
     write(replace(every_word, entries=rows))
     _, text = read(every_word)
-    answer = text[text.index('id="water-torque"') : text.index('id="claims"')]
+    answer = text[text.index('id="question-water-torque"') : text.index('id="claims"')]
     assert "torque takes half the spin" in answer
     assert "something else" not in answer
     assert "stands as a wall" not in answer
@@ -196,4 +196,4 @@ def test_an_open_question_is_answered_by_the_findings_about_it(every_word):
 def test_a_question_without_runs_is_marked_unanswered(every_word):
     write(every_word)
     _, text = read(every_word)
-    assert "holds no run that answers it" in text[text.index('id="water-torque"') :]
+    assert "holds no run that answers it" in text[text.index('id="question-water-torque"') :]

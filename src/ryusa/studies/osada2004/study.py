@@ -24,10 +24,10 @@ QUESTIONS = (
     ),
     (
         "Water torque",
-        "water-torque",
+        "question-water-torque",
         "The paper's open question iii: the torque of the water on a spinning grain.",
-        ("water-torque", "water-torque-half", "water-torque-shear"),
-        "",
+        ("water-torque", "water-torque-half", "water-torque-shear", "fig20"),
+        "torque",
     ),
 )
 

@@ -128,16 +128,33 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             physics,
             settings=done,
             also=(
-                f"share of the time outside the range that the law of Dennis et al. was fitted to: {beyond}",
-                *(_words(found, plan, law) for law in LAWS),
+                f"share of the time beyond the range of the torque of Dennis et al.: {beyond}",
+                *(_spins(found, plan, law) for law in LAWS),
             ),
         ),
-        Finding("water-torque-half", tuple(shares["water-torque-half"]), physics, settings=done),
+        Finding(
+            "water-torque-half",
+            tuple(shares["water-torque-half"]),
+            physics,
+            settings=done,
+            also=tuple(
+                f"torque of {law}, as shipped, of the spin {way}: "
+                f"{over_seeds(_removed(found, plan, one, way), '-')} removed"
+                for law, one in _laws().items()
+                for way in (VORTICITY, ALL)
+            ),
+        ),
         Finding(
             "water-torque-shear",
             tuple(shears),
             "A grain that the water has slowed slips again at its next hit, and is braked by friction.",
             settings={**done, "against": "rotation locked"},
+            also=tuple(
+                f"torque of {law}, as shipped: {way} {over_seeds(_shear(found, plan, one, name), '-')} of "
+                "that of locked grains"
+                for law, one in _laws().items()
+                for way, name in SHEARS.items()
+            ),
         ),
     )
 
@@ -157,17 +174,14 @@ def _shear(found: Found, plan: Plan, chosen: Mapping[str, str], name: str) -> li
     ]
 
 
-def _words(found: Found, plan: Plan, law: str) -> str:
+def _spins(found: Found, plan: Plan, law: str) -> str:
     """What one law does to the case as it ships otherwise."""
-    chosen = _laws()[law]
-    runs: list[Turned] = [found[_wet(chosen, seed)] for seed in plan.seeds]
-    spun = over_seeds([one.spun.mean for one in runs], "rad/s")
-    removed = over_seeds(_removed(found, plan, chosen, VORTICITY), "-")
-    shear = over_seeds(_shear(found, plan, chosen, "bed_shear"), "-")
+    runs: list[Turned] = [found[_wet(_laws()[law], seed)] for seed in plan.seeds]
+    landing = mean([one.hops for one in runs], "spin_before", "rad/s")
     high = mean([one.hops for one in runs], "jump_height", "m")
     return (
-        f"as shipped, {law}: mean spin {spun}; share of the excess removed {removed}; mean jump height "
-        f"{high}; bed shear over that of locked grains {shear}"
+        f"torque of {law}, as shipped: mean spin {over_seeds([one.spun.mean for one in runs], 'rad/s')}, on "
+        f"landing {landing}; mean jump height {high}"
     )
 
 
