@@ -202,8 +202,8 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
         "along": ("way during a contact over d, u t/d", lambda one: one.along),
     }
     up = {
-        "steep": ("steepness of paths over that with the shortest contacts", lambda one: one.steep),
-        "speed": ("speed over that with the shortest contacts", lambda one: one.speed),
+        "steep": ("steepness of paths, shortest contacts = 1", lambda one: one.steep),
+        "speed": ("speed, shortest contacts = 1", lambda one: one.speed),
     }
     pictures: dict[str, Figure] = {}
     for name, (y_label, y) in up.items():
