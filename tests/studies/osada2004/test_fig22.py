@@ -1,13 +1,14 @@
 """The movable bed: rods of locked grains, spin of free ones."""
 
 import math
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from ryusa.measure import Averages, Rods
-from ryusa.studies.osada2004 import fig22, fig22_free
+from ryusa.studies.osada2004 import _debris, fig22, fig22_free
 from ryusa.studies.osada2004._movable_bed import MovableBedRun
 from ryusa.studies.osada2004.fig22 import FREE, LOCKED, SLOPE
 from ryusa.studies.osada2004.study import load
@@ -80,6 +81,14 @@ def test_nothing_is_judged_by_a_band_that_is_not_registered(module, of):
     assert set(finding.trials[0].choices) == set(registered.claims[finding.id].factors)
 
 
+@pytest.mark.parametrize("design", [_debris.DESIGN, fig22.DESIGN, fig22_free.DESIGN])
+def test_no_choice_goes_along_with_another_throughout_the_settings(design):
+    sets = design.settings(16)[1:]
+    for (one, a), (other, b) in combinations(design.levels.items(), 2):
+        cells = {(chosen[one], chosen[other]) for chosen in sets}
+        assert len(cells) > max(len(a), len(b)), (one, other)
+
+
 def test_rods_that_free_grains_form_too_disagree_with_the_paper():
     assert judged(fig22, STANDARD, lambda one: bed(0.6)).outcome is Outcome.FAILS
 
@@ -128,6 +137,12 @@ def test_a_change_counts_whichever_way_it_goes_and_a_bed_that_stands_decides_not
         return bed(0.0, q=2e-4, speed=0.15) if resisted(one) else bed(0.0, spin=300.0)
 
     assert judged(fig22_free, STANDARD, slower).outcome is Outcome.HOLDS
+    stopped = judged(
+        fig22_free,
+        STANDARD,
+        lambda one: bed(0.0, q=0.0, movers=0) if resisted(one) else bed(0.0, spin=300.0),
+    )
+    assert stopped.outcome is Outcome.HOLDS
     finding = judged(fig22_free, STANDARD, lambda one: bed(0.0, q=0.0, movers=0))
     assert finding.robustness.undecided == 17
     assert math.isnan(finding.trials[0].found.value)

@@ -50,12 +50,12 @@ def longer_by(times: str) -> dict[str, str]:
 
 
 # The free choices of fig17, fig17-lock, fig17-free and fig18: one design, so that they share their runs.
+# Their order decides which pairs the 16 settings fill evenly.
 DESIGN = Design(
     (
-        friction_angle(),
-        SLIP_RULE,
+        Factor(AMOUNT, {"5": {}, **{one: {"build.layers": one} for one in ("3", "4", "6")}}),
         PARTING_RULE,
-        DRAG_LAW,
+        Factor(START, {"on their way": {}, "at rest": {"build.speed": "0 m/s"}}),
         Factor(
             CLOSURE,
             {
@@ -75,7 +75,6 @@ DESIGN = Design(
                 "hindrance Richardson-Zaki": {"water.hindrance": "Richardson-Zaki"},
             },
         ),
-        Factor(AMOUNT, {"5": {}, **{one: {"build.layers": one} for one in ("3", "4", "6")}}),
         Factor(
             PACKING,
             {
@@ -84,7 +83,9 @@ DESIGN = Design(
                 "sizes within 10 %": {"grains.spread": "0.1"},
             },
         ),
-        Factor(START, {"on their way": {}, "at rest": {"build.speed": "0 m/s"}}),
+        friction_angle(),
+        DRAG_LAW,
+        SLIP_RULE,
         Factor(LONGER, {LONG: {}, **{one: longer_by(one) for one in ("3", "10")}}),
     )
 )

@@ -33,14 +33,9 @@ RESISTANCES: dict[str, dict[str, str]] = {
     "rolling friction, mu_r 0.5": {**ROLLING, "rolling.coefficient": "0.5"},
     "water torque, Dennis": {"water.torque": "Dennis"},
 }
+# The order of the choices decides which pairs the 16 settings fill evenly.
 DESIGN = Design(
     (
-        friction_angle(),
-        SLIP_RULE,
-        PARTING_RULE,
-        STIFFNESS_RATIO,
-        DRAG_LAW,
-        water_of_a_bed("steady"),
         Factor(
             PACKING,
             {
@@ -50,6 +45,8 @@ DESIGN = Design(
                 "sizes within 30 %": {"grains.spread": "0.3"},
             },
         ),
+        PARTING_RULE,
+        friction_angle(),
         Factor(
             TAU_STAR,
             {
@@ -59,7 +56,11 @@ DESIGN = Design(
                 "0.5": {"motion.slope": "1/12"},
             },
         ),
+        water_of_a_bed("steady"),
+        DRAG_LAW,
         Factor(RESISTANCE, {one: {} for one in RESISTANCES}),
+        SLIP_RULE,
+        STIFFNESS_RATIO,
     )
 )
 SHIPPED = DESIGN.base
@@ -93,11 +94,12 @@ def _runs(found: Found, plan: Plan, chosen: Mapping[str, str], resisted: bool) -
     return [found[_run(chosen, seed, resisted)] for seed in plan.seeds]
 
 
+STANDS = "nothing moves, with or without the resistance"
 PART_SPIN = "spin exceeded by a twentieth of the movers"
-# part -> number of one run
-RATIOS: Mapping[str, Callable[[MovableBedRun], float]] = {
-    "speed of the movers, without resistance over with, in decades": lambda one: one.speed,
-    "flux, without resistance over with, in decades": lambda one: one.q,
+# part -> number of one run, and with how much a bed that stands counts [m/s], [m2/s]
+RATIOS: Mapping[str, tuple[Callable[[MovableBedRun], float], float]] = {
+    "speed of the movers, without resistance over with, in decades": (lambda one: one.speed, 1.0e-3),
+    "flux, without resistance over with, in decades": (lambda one: one.q, 1.0e-7),
 }
 
 
@@ -105,8 +107,8 @@ def _changed(
     part: str, chosen: Mapping[str, str], bare: Sequence[MovableBedRun], resisted: Sequence[MovableBedRun]
 ) -> Trial:
     """Magnitude of the logarithm of a ratio: the text says that it changes, not which way."""
-    limits, value = band("fig22-free", part), RATIOS[part]
-    logs = [_decades(value(a), value(b)) for a, b in zip(bare, resisted, strict=True)]
+    limits, (value, least) = band("fig22-free", part), RATIOS[part]
+    logs = [_decades(value(a), value(b), least) for a, b in zip(bare, resisted, strict=True)]
     found = magnitude(over_seeds(logs, limits.unit))
     one, other = (
         limits.holds(exact(abs(sum(logs[half::2])) / len(logs[half::2]), limits.unit))
@@ -117,13 +119,15 @@ def _changed(
     return Trial(part, chosen, found, limits, halves=(one, other), note=_direction(logs))
 
 
-def _decades(above: float, below: float) -> float:
-    return math.log10(above / below) if above > 0.0 and below > 0.0 else math.nan
+def _decades(above: float, below: float, least: float) -> float:
+    """Logarithm of a ratio; a bed that stands counts with the least value, two that stand have none."""
+    above, below = (least if math.isnan(one) else max(one, least) for one in (above, below))
+    return math.log10(above / below) if max(above, below) > least else math.nan
 
 
 def _direction(logs: Sequence[float]) -> str:
     mean_log = sum(logs) / len(logs)
-    return f"a factor of {10.0**mean_log:.3g}" if math.isfinite(mean_log) else "nothing moves"
+    return f"a factor of {10.0**mean_log:.3g}" if math.isfinite(mean_log) else STANDS
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
