@@ -88,18 +88,23 @@ def test_a_heap_that_stands_as_a_wall_or_still_moves_has_no_final_slope():
     assert fig19.judge(creeping, STANDARD)[0].outcome is Outcome.FAILS
 
 
-def test_walls_give_no_spread_to_heaps_that_slope():
-    def slope(rotation, chosen):
-        return math.nan if chosen[SLIP] == "spring" else 33.0
+def test_heaps_of_other_settings_do_not_change_an_interval():
+    def scatter(found, chosen, much):
+        for one, rotation in (
+            (one, rotation) for one in fig19.settings(STANDARD) for rotation in fig19.BANDS
+        ):
+            for seed in STANDARD.seeds:
+                wide = much * (seed - 2.5) if one[SLIP] == chosen else 0.0
+                found[fig19.run(one, rotation, seed)] = heap(33.0 + wide + 0.2 * (seed - 2.5))
+        return fig19.judge(found, STANDARD)[0].base[0].found
 
-    locked, _ = fig19.judge(of(slope), STANDARD)
-    sloping = [one.found for one in locked.trials if one.part == "final slope" and not one.note]
-    assert {round(one.high - one.low, 9) for one in sloping} == {round(sloping[0].high - sloping[0].low, 9)}
-    assert "pooled" in sloping[0].how
+    alone, beside = scatter({}, "none", 0.0), scatter({}, "total", 10.0)
+    assert (alone.low, alone.high) == (beside.low, beside.high)
+    assert alone.high - alone.low == pytest.approx(2 * 3.182 * 0.2582 / 2, rel=1e-3)
 
 
 def trial(heaps):
-    return _heap.slope_trial("slope", {}, heaps, _heap.MEAN, Band(30.0, 36.0, "deg", ""), None)
+    return _heap.slope_trial("slope", {}, heaps, _heap.MEAN, Band(30.0, 36.0, "deg", ""))
 
 
 def test_some_heaps_that_stand_leave_it_undecided():
@@ -138,7 +143,7 @@ def test_the_heap_shown_is_a_typical_one():
 def test_every_heap_of_the_full_level_can_be_read():
     for one in {*fig19.tasks(FULL), *eq13.tasks(FULL)}:
         grains = derive(one.read()).n_grain
-        assert grains > 100 if one.case == _heap.CASE else grains == 4, one.label
+        assert grains > 100 if one.case == _heap.CASE else grains == 2, one.label
 
 
 def spun(plan, spin, taken=0.05):

@@ -10,7 +10,7 @@ from ryusa.measure import HeapSurface, Snapshot, snapshot, surface
 from ryusa.results import Results
 from ryusa.studies.osada2004._parts import CaseRun, paper_run
 from ryusa.studies.osada2004._shares import share_interval, share_trial
-from ryusa.study import Band, Interval, Pooled, Trial, exact, over_seeds
+from ryusa.study import Band, Interval, Trial, exact, over_seeds
 
 CASE = "fig19"
 PHI_KEY = "timeline.0.friction_angle"
@@ -78,9 +78,7 @@ def slopes(heaps: Sequence[Heap], fit: str = MEAN) -> list[float]:
     return [one.slope(fit) for one in heaps if not one.wall]
 
 
-def slope_trial(
-    part: str, chosen: Mapping[str, str], heaps: Sequence[Heap], fit: str, band: Band, spread: Pooled | None
-) -> Trial:
+def slope_trial(part: str, chosen: Mapping[str, str], heaps: Sequence[Heap], fit: str, band: Band) -> Trial:
     """Return the trial of the mean slope over seeds.
 
     Notes
@@ -90,7 +88,7 @@ def slope_trial(
     """
     halves = (_held(heaps[0::2], fit, band), _held(heaps[1::2], fit, band))
     walls, n = [float(one.wall) for one in heaps], len(heaps)
-    found = over_seeds(slopes(heaps, fit), "deg", spread)
+    found = over_seeds(slopes(heaps, fit), "deg")
     if not any(walls):
         return Trial(part, chosen, found, band, halves=halves)
     others = "" if all(walls) else f", the others have {found.value:.3g} deg"

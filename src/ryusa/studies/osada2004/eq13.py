@@ -46,7 +46,7 @@ DESIGN = Design(
         ),
     )
 )
-TURNING = {"motion.rotation": "free", "build.starts": "4"}  # half the starts: a spin scatters by 2 %
+TURNING = {"motion.rotation": "free", "build.starts": "2"}  # of eight: the spin of one scatters by 2 %
 SPIN, ENERGY = "mean spin with Eq. (13) over without", "energy taken by M_f over all losses in contacts"
 BANDS = {part: band("eq13", part) for part in (SPIN, ENERGY)}
 

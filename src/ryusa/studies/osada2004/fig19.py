@@ -18,7 +18,7 @@ from ryusa.studies.osada2004._factors import (
     n_settings,
 )
 from ryusa.studies.osada2004._parts import PACKING, PHI, ROTATION, SLIP, CaseRun, Found, Plan
-from ryusa.study import Design, Factor, Finding, Trial, pool
+from ryusa.study import Design, Factor, Finding, Trial
 
 FIGURE = "fig19"
 TITLE = "Slope of a heap after the removal of its wall"
@@ -97,18 +97,11 @@ def _group(found: Found, plan: Plan, chosen: Mapping[str, str], rotation: str) -
 def _judged(found: Found, plan: Plan, rotation: str) -> Finding:
     sets = settings(plan)
     heaps = [_group(found, plan, chosen, rotation) for chosen in sets]
-    spread = pool(
-        [
-            _heap.slopes(group, chosen[FIT])
-            for chosen, group in zip(sets, heaps, strict=True)
-            if not any(one.wall for one in group)
-        ]
-    )
     trials: list[Trial] = []
     still = band(f"fig19-{rotation}", MOVING_PART)
     for chosen, group in zip(sets, heaps, strict=True):
         trials += [
-            _heap.slope_trial(SLOPE_PART, chosen, group, chosen[FIT], BANDS[rotation], spread),
+            _heap.slope_trial(SLOPE_PART, chosen, group, chosen[FIT], BANDS[rotation]),
             _heap.moving_trial(MOVING_PART, chosen, group, still),
         ]
     ranges = [math.degrees(one.found.spread) for group in heaps for one in group if not one.wall]

@@ -166,7 +166,7 @@ def _slope(found: Found, plan: Plan, chosen: Mapping[str, str]) -> Trial:
     """Slope at the pair by the fit to all heaps; without a fit that of the heaps at the pair."""
     if not _fitted(plan):
         heaps = [found[heap_run(*PAIR, seed)] for seed in plan.seeds]
-        return _heap.slope_trial(HEAP, chosen, heaps, _heap.MEAN, BANDS[HEAP], None)
+        return _heap.slope_trial(HEAP, chosen, heaps, _heap.MEAN, BANDS[HEAP])
     slope = fits(found, plan)[0]
     low, high = limits([one.at(*_key(*PAIR)) for one in slope.resamples()])
     n = sum(len(one) for one in slope.runs.values())
