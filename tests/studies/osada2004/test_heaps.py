@@ -133,6 +133,16 @@ def test_the_slope_is_read_over_the_range_of_height_of_the_setting():
     assert one.slope() == pytest.approx(29.0)
 
 
+def test_a_heap_that_stands_over_the_range_of_its_setting_has_no_slope_there():
+    one = heap(30.0)
+    one.found.angles["0.25 to 0.75"] = math.nan
+    limits = Band(25.0, 36.0, "deg", "")
+    found = _heap.slope_trial("slope", {}, [one, *[heap(30.0)] * 3], "0.25 to 0.75", limits)
+    assert found.holds is None
+    assert found.note == "1 of 4 stand as a wall, the others have 30 deg"
+    assert _heap.slope_trial("slope", {}, [one] * 4, "0.1 to 0.9", limits).holds
+
+
 def test_the_heap_shown_is_a_typical_one():
     slopes = [30.0, 47.0, 31.0, 35.0, math.nan]
     assert _heap.typical([heap(one) for one in slopes]).slope() == pytest.approx(35.0)

@@ -35,7 +35,7 @@ class Heap:
     )
 
     def slope(self, fit: str = MEAN) -> float:
-        """Slope over a range of height, or mean of four [deg]; nan where it stands as a wall."""
+        """Slope over a range of height, or mean of four [deg]; nan where it stands as a wall there."""
         if self.wall:
             return math.nan
         if fit != MEAN:
@@ -75,7 +75,7 @@ def heap(results: Results) -> Heap:
 
 def slopes(heaps: Sequence[Heap], fit: str = MEAN) -> list[float]:
     """Slopes of the heaps that have one [deg], in the order of the seeds."""
-    return [one.slope(fit) for one in heaps if not one.wall]
+    return [found for one in heaps if math.isfinite(found := one.slope(fit))]
 
 
 def slope_trial(part: str, chosen: Mapping[str, str], heaps: Sequence[Heap], fit: str, band: Band) -> Trial:
@@ -87,7 +87,7 @@ def slope_trial(part: str, chosen: Mapping[str, str], heaps: Sequence[Heap], fit
     whatever was asked; with fewer it is undecided, and a note gives the mean of the others.
     """
     halves = (_held(heaps[0::2], fit, band), _held(heaps[1::2], fit, band))
-    walls, n = [float(one.wall) for one in heaps], len(heaps)
+    walls, n = [float(math.isnan(one.slope(fit))) for one in heaps], len(heaps)
     found = over_seeds(slopes(heaps, fit), "deg")
     if not any(walls):
         return Trial(part, chosen, found, band, halves=halves)

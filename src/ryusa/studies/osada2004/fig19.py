@@ -55,8 +55,8 @@ DECIDED = {
     "dashpot kept while sliding, as in Eqs. (2) and (3) as printed, a viscous force adds to the "
     "cap, and the heap creeps at m g/eta_s.",
     "free": "A grain that may rotate rolls out of its pocket at 30 deg whatever phi is, so friction "
-    "matters little once grains roll rather than slide: packing and the run-out of the collapse "
-    "determine the slope.",
+    "matters little once grains roll rather than slide. Packing and floor determine the slope: on a "
+    "smooth floor the whole heap spreads.",
 }
 
 
