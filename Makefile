@@ -137,11 +137,10 @@ site: $(HAS_DOCS) ## the documentation as a site: build/site/index.html; every w
 	$(BIN)/python docs/site/make.py build/site
 
 pictures: $(HAS_RYUSA) ## draw docs/pictures anew from the runs in runs/paper; makes those that are missing
-	$(BIN)/ryusa paper fig20 --full -o $(PAPER) --jobs $(JOBS)
-	cp $(PAPER)/fig20/free-choices.png $(DRAWN)
-	$(BIN)/ryusa paper fig07 spin_time hops fig20 fig21 -o $(PAPER) --jobs $(JOBS)
+	$(BIN)/ryusa paper fig07 spin_time hops fig20 fig21 water_torque -o $(PAPER) --jobs $(JOBS)
 	cp $(addprefix $(PAPER)/,fig07/fig06.png fig07/fig07.png fig07/fig07-turning.png spin_time/spin-time.png \
-	    hops/hops.png fig20/fig20.png fig20/fig20-hops.png fig21/fig21.png) $(DRAWN)
+	    hops/hops.png fig20/fig20.png fig20/fig20-hops.png fig20/free-choices.png \
+	    fig21/fig21.png water_torque/water-torque.png) $(DRAWN)
 
 gallery: $(HAS_RYUSA) ## run the packaged cases of the gallery and draw their pictures (minutes)
 	rm -rf build/gallery
