@@ -6,34 +6,66 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ryusa.measure import Profiles, Tracks, alternating, paths, profiles, tracks
+from ryusa.measure.stability import BAND
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
-from ryusa.studies.osada2004._parts import PHI, ROTATION, SLIP, CaseRun, Found, Plan, paper_run
-from ryusa.study import Band, Trial, over_seeds, pool, pseudo_values
+from ryusa.studies.osada2004._bands import band
+from ryusa.studies.osada2004._factors import (
+    PARTING_RULE,
+    ROTATION_FREE,
+    SLIP_RULE,
+    STIFFNESS_RATIO,
+    friction_angle,
+    n_settings,
+)
+from ryusa.studies.osada2004._parts import (
+    PACKING,
+    PARTING,
+    PHI,
+    RATIO,
+    ROTATION,
+    CaseRun,
+    Found,
+    Plan,
+    paper_run,
+)
+from ryusa.study import Band, Design, Factor, Trial, exact, over_seeds, pseudo_values, seeds_trial
 
 CASE = "avalanche"
 TILT = 1.0  # of the case's timeline [s]
 FRAME = 0.01  # between the case's frames [s]
 GRAVITY = 9.8  # [m/s2]
 SLOPE = math.radians(40.0)
-LAYERS, LOWEST = 10, 20  # layers of grains, and grains in the lowest one
+LAYERS = 10  # of grains
 BELOW = 2  # neighbours that a grain rests on
 SOFT, STIFF = "0.01 s", "0.0001 s"  # collision times, Eq. (8)
 TIMES = (SOFT, STIFF)
 WINDOW = "time after tilting"
 WINDOWS = {"1 to 2 s": (1.0, 2.0), "2 to 3 s": (2.0, 3.0)}
 FIRST = "1 to 2 s"
-PACKING = "packing"  # the choice of sizes, bed and depth
 AS_SHIPPED = "as shipped"
-OTHERS: dict[str, dict[str, str]] = {
-    "sizes within 10 %": {"grains.spread": "0.1"},
-    "random bed": {"build.bed": "random"},
-    "twice as deep": {"build.layers": "20"},
-}
-SHIPPED = {ROTATION: "free", PHI: "30 deg", SLIP: "spring", PACKING: AS_SHIPPED}
-KEYS = {ROTATION: "motion.rotation", PHI: "contact.friction_angle", SLIP: "contact.slip"}
+DESIGN = Design(
+    (
+        ROTATION_FREE,
+        friction_angle(),
+        SLIP_RULE,
+        PARTING_RULE,
+        STIFFNESS_RATIO,
+        Factor(
+            PACKING,
+            {
+                AS_SHIPPED: {},
+                "sizes within 10 %": {"grains.spread": "0.1"},
+                "random bed": {"build.bed": "random"},
+                "twice as deep": {"build.layers": "20"},
+            },
+        ),
+    )
+)
+SHIPPED = DESIGN.base
 SETTLED = {
     "d": "20 cm",
     "slope": "40 deg",
@@ -45,15 +77,12 @@ FINE = 0.001  # vertical excursion, in diameters, from which the finest turns co
 UNITS = {
     "fine": "fine_reversals_per_s",
     "reversals": "reversals_per_s",
+    "per_metre": "reversals_per_m",
     "advance": "advance_m",
     "jaggedness": "jaggedness",
 }
-FLOWS = Band(0.1, math.inf, "-", "both are avalanches: speed over sqrt(g d) above 0.1 in the slower one")
 FLOW_PART = "mean speed over sqrt(g d), the slower of the two"
-KINDS = ("creeps", "stuck", "moves")  # of pairs of runs; a setting is of the first kind that a pair of it is
-STARTS = 6  # runs of the shipped setting per seed: 18 leave 25 of the 100 cm/s of fig15, 9 leave 40
-SECOND = 100_000  # from one seed to the next start
-MANY = 9  # seeds from which on a spread is not pooled
+FLOWS = band("fig14", FLOW_PART)
 SPARSE, THIN = 0.05, 0.1  # concentrations: a layer of the flow; a layer whose mean speed is worth comparing
 
 
@@ -65,6 +94,7 @@ class Ways:
     ----------
     n : grains.
     reversals, fine : turns of the vertical motion per second, from 0.02 d and from 0.001 d on [1/s].
+    per_metre : turns from 0.02 d on of all of them over the sum of their advances [1/m].
     advance : way along the bed [m].
     jaggedness : sum of their vertical ways over that of their advances [-].
     """
@@ -72,6 +102,7 @@ class Ways:
     n: int
     reversals: float
     fine: float
+    per_metre: float
     advance: float
     jaggedness: float
 
@@ -85,8 +116,10 @@ class Window:
     profile : means over height; z from the crest of the bed.
     ways : how grains went, by GRAINS.
     path : ways of two grains that meet bed and movers in turn.
-    rate : contacts of a grain of the lowest layer per second [1/s].
+    rate : contacts of a grain per second [1/s].
     touching : how many partners it touches, mean over time [-].
+    bed_in_band, in_band : share of the contacts with the bed, and of all, whose largest overlap is in the
+        stable band [-].
     """
 
     profile: Profiles
@@ -94,6 +127,8 @@ class Window:
     path: Tracks
     rate: float
     touching: float
+    bed_in_band: float
+    in_band: float
 
     @property
     def speed(self) -> float:
@@ -122,31 +157,17 @@ class RunPair:
         return min(self.soft.speed, self.stiff.speed) / math.sqrt(GRAVITY * self.soft.profile.d)
 
     @property
-    def kind(self) -> str:
-        """How it scatters: a pair that creeps, one with a lowest layer stuck in the bed, one that moves."""
-        soft, stiff = self.soft.profile, self.stiff.profile
-        least = FLOWS.low * math.sqrt(GRAVITY * soft.d)
-        lowest = min(float(one.v_x.value[one.z > 0.0][0]) for one in (soft, stiff))
-        if min(self.soft.speed, self.stiff.speed) < least:
-            return "creeps"
-        return "stuck" if lowest < least else "moves"
+    def flows(self) -> bool:
+        """Whether both are avalanches."""
+        return self.slower > FLOWS.low
 
 
-Numbers = Callable[[Sequence[RunPair]], list[float]]  # of the pairs of one setting and window: one per seed
+Numbers = Callable[[Sequence[RunPair]], float]  # of the pairs of one setting and window together
 
 
 def each(value: Callable[[RunPair], float]) -> Numbers:
-    """Take a number from every pair by itself."""
-    return lambda found: [value(pair) for pair in found]
-
-
-def together(value: Callable[[Sequence[RunPair]], float]) -> Numbers:
-    """Take a number from what all pairs give together, such as the difference of their mean profiles.
-
-    Profiles of single runs differ by 5 to 10 % from seed to seed alone; the mean of such differences, or the
-    mean of the least of many layers, measures that scatter rather than what the collision time does.
-    """
-    return lambda found: pseudo_values(value, found)
+    """Mean of a number of every pair by itself."""
+    return lambda found: float(np.mean([value(pair) for pair in found]))
 
 
 def layers(found: Sequence[RunPair]) -> tuple[tuple[Floats, Floats], tuple[Floats, Floats]]:
@@ -155,13 +176,12 @@ def layers(found: Sequence[RunPair]) -> tuple[tuple[Floats, Floats], tuple[Float
     Means over pairs; the speed is weighted with concentration [m/s].
     """
     runs = [[pair.soft.profile for pair in found], [pair.stiff.profile for pair in found]]
-    numbers = [[np.rint(one.z / one.thickness - 0.5).astype(np.int64) for one in half] for half in runs]
-    low = min(int(n[0]) for half in numbers for n in half)
-    high = max(int(n[-1]) for half in numbers for n in half)
+    low, size = _places([one for half in runs for one in half])
     means: list[tuple[Floats, Floats]] = []
-    for half, places in zip(runs, numbers, strict=True):
-        phi, flux = np.zeros((2, high - low + 1))
-        for one, n in zip(half, places, strict=True):
+    for half in runs:
+        phi, flux = np.zeros((2, size))
+        for one in half:
+            n = _numbers(one)
             phi[n - low] += np.nan_to_num(one.phi.value) / len(half)
             flux[n - low] += np.nan_to_num(one.phi.value * one.v_x.value) / len(half)
         means.append((phi, np.divide(flux, phi, out=np.zeros_like(flux), where=phi > 0.0)))
@@ -181,37 +201,39 @@ def faster(found: Sequence[RunPair]) -> Floats:
     return (soft - stiff)[np.minimum(phi_soft, phi_stiff) > THIN]
 
 
+def faster_by_layer(found: Sequence[RunPair]) -> Floats:
+    """Return `faster` of each pair in the layers that all of them fill, shape (pair, layer) [m/s]."""
+    low, n = _places([half.profile for pair in found for half in (pair.soft, pair.stiff)])
+    rows, filled = np.zeros((len(found), n)), np.full(n, fill_value=True)
+    for row, pair in zip(rows, found, strict=True):
+        phi, v = np.zeros((2, 2, n))
+        for k, one in enumerate((pair.soft.profile, pair.stiff.profile)):
+            at = _numbers(one) - low
+            phi[k, at], v[k, at] = np.nan_to_num(one.phi.value), np.nan_to_num(one.v_x.value)
+        row[:] = v[0] - v[1]
+        filled &= phi.min(axis=0) > THIN
+    return rows[:, filled]
+
+
+def _numbers(one: Profiles) -> NDArray[np.int64]:
+    """Numbers of its layers, counted from the crest of the bed."""
+    return np.rint(one.z / one.thickness - 0.5).astype(np.int64)
+
+
+def _places(runs: Sequence[Profiles]) -> tuple[int, int]:
+    """Lowest layer of all runs, and how many there are up to the highest."""
+    low = min(int(_numbers(one)[0]) for one in runs)
+    return low, max(int(_numbers(one)[-1]) for one in runs) - low + 1
+
+
 def settings(plan: Plan) -> list[dict[str, str]]:
     """Sets of free choices, the shipped one first."""
-    if plan.level == "full":
-        sets = [
-            {**SHIPPED, ROTATION: rotation, PHI: phi, SLIP: slip}
-            for rotation in ("free", "locked")
-            for slip in ("spring", "spring-drop", "total")
-            for phi in ("10 deg", "20 deg", "30 deg", "40 deg")
-        ]
-        sets += [{**SHIPPED, PACKING: one} for one in OTHERS]
-    else:
-        sets = [
-            {**SHIPPED, ROTATION: rotation, PHI: phi, SLIP: slip}
-            for rotation, phi, slip in plan.pick(
-                (),
-                (
-                    ("free", "20 deg", "spring"),
-                    ("free", "30 deg", "total"),
-                    ("locked", "20 deg", "spring"),
-                    ("locked", "10 deg", "total"),
-                    ("locked", "20 deg", "total"),
-                ),
-            )
-        ]
-    return [SHIPPED, *(one for one in sets if one != SHIPPED)]
+    return DESIGN.settings(n_settings(plan))
 
 
 def run(chosen: Mapping[str, str], time: str, seed: int) -> CaseRun:
-    """One run of the case; what is as shipped is not said."""
-    changed = {KEYS[name]: value for name, value in chosen.items() if name in KEYS and SHIPPED[name] != value}
-    changed |= OTHERS.get(chosen[PACKING], {})
+    """One run of the case, with the contacts of all grains; what is as shipped is not said."""
+    changed = {**DESIGN.overrides(chosen), "record.events": "all"}
     if time != SOFT:
         changed["contact.stiffness"] = f'{{ collision_time = "{time}" }}'
     return paper_run(CASE, changed, seed)
@@ -219,13 +241,7 @@ def run(chosen: Mapping[str, str], time: str, seed: int) -> CaseRun:
 
 def tasks(plan: Plan) -> Sequence[CaseRun]:
     """Both collision times for every setting and seed."""
-    return [run(one, time, seed) for one in settings(plan) for seed in seeds(plan, one) for time in TIMES]
-
-
-def seeds(plan: Plan, chosen: Mapping[str, str]) -> list[int]:
-    """Seeds of a setting; the shipped one gets several for each of the plan, for 200 grains scatter much."""
-    many = plan.pick(1, STARTS) if chosen == SHIPPED else 1
-    return [seed + SECOND * k for k in range(many) for seed in plan.seeds]
+    return [run(one, time, seed) for one in settings(plan) for seed in plan.seeds for time in TIMES]
 
 
 @lru_cache(maxsize=2)
@@ -249,14 +265,27 @@ def _window(results: Results, begin: float, end: float) -> Window:
     )
 
 
-def _contacts(results: Results, begin: float, end: float) -> tuple[float, float]:
-    """Contacts per second, and partners touched at a time, of a grain of the lowest layer."""
+def _contacts(results: Results, begin: float, end: float) -> tuple[float, float, float, float]:
+    """Contacts per second and partners touched at a time of a grain; shares in the band, bed and all."""
     found = results.contacts
     found = found[(found["t_part"] > begin) & (found["t_begin"] < end)]
-    grains = (found["i"] < LOWEST).astype(np.int64) + (found["j"] < LOWEST)
+    n = results.scene.n_grain  # fixed grains follow the free ones
+    bed = np.maximum(found["i"], found["j"]) >= n
+    grains = np.where(bed, 1, 2)
     time = np.minimum(found["t_part"], end) - np.maximum(found["t_begin"], begin)
-    whole = LOWEST * (end - begin)
-    return float(grains.sum()) / whole, float((grains * time).sum()) / whole
+    whole = n * (end - begin)
+    overlap = found["overlap_max"] / results.scene.d.mean()
+    inside = (overlap > BAND[0]) & (overlap < BAND[1])
+    return (
+        float(grains.sum()) / whole,
+        float((grains * time).sum()) / whole,
+        _share(inside[bed]),
+        _share(inside),
+    )
+
+
+def _share(inside: NDArray[np.bool_]) -> float:
+    return float(inside.mean()) if len(inside) else math.nan
 
 
 def _ways(results: Results, begin: float, end: float, grains: Sequence[int]) -> Ways:
@@ -264,12 +293,13 @@ def _ways(results: Results, begin: float, end: float, grains: Sequence[int]) -> 
     found = paths(results, early, end, end - begin, grains=grains)
     advance = float(found.advance.sum())
     if not len(grains) or advance <= 0.0:
-        return Ways(len(grains), math.nan, math.nan, math.nan, math.nan)
+        return Ways(len(grains), *5 * [math.nan])
     fine = paths(results, early, end, end - begin, grains=grains, threshold=FINE)
     return Ways(
         len(grains),
         float(found.reversals.mean()),
         float(fine.reversals.mean()),
+        float(found.reversals.sum()) * (end - begin) / advance,
         float(found.advance.mean()),
         float(found.way_z.sum()) / advance,
     )
@@ -282,9 +312,7 @@ def _together(path: Tracks) -> Tracks:
 
 def pairs(found: Found, plan: Plan, chosen: Mapping[str, str], window: str) -> list[RunPair]:
     """Pairs of runs of one setting, by seed."""
-    return [
-        RunPair(*(found[run(chosen, time, seed)][window] for time in TIMES)) for seed in seeds(plan, chosen)
-    ]
+    return [RunPair(*(found[run(chosen, time, seed)][window] for time in TIMES)) for seed in plan.seeds]
 
 
 def sets(plan: Plan) -> list[tuple[dict[str, str], str]]:
@@ -292,50 +320,57 @@ def sets(plan: Plan) -> list[tuple[dict[str, str], str]]:
     return [(one, window) for window in WINDOWS for one in settings(plan)]
 
 
-def trials(found: Found, plan: Plan, part: str, numbers: Numbers, band: Band) -> list[Trial]:
+Judged = Callable[[str, Mapping[str, str], Sequence[RunPair], Band], Trial]  # part, choices, pairs, band
+
+
+def apart(value: Callable[[RunPair], float]) -> Judged:
+    """Judge the mean over seeds of a number that every pair has by itself."""
+    return lambda part, chosen, found, limits: seeds_trial(
+        part, chosen, [value(pair) for pair in found], limits
+    )
+
+
+def together(value: Numbers) -> Judged:
+    """Judge what all pairs give together, such as the difference of their mean profiles, by its jackknife.
+
+    Profiles of single runs differ by 5 to 10 % from seed to seed alone; the mean of such differences measures
+    that scatter rather than what the collision time does. A seed without a number (no grain advances in one
+    run) is left out where most have one.
+    """
+
+    def judged(part: str, chosen: Mapping[str, str], found: Sequence[RunPair], limits: Band) -> Trial:
+        kept = [pair for pair in found if math.isfinite(value([pair]))]
+        kept = kept if 2 * len(kept) > len(found) else found
+        one, other = (
+            limits.holds(exact(value(kept[half::2]), limits.unit)) if len(kept) > half else None
+            for half in (0, 1)
+        )
+        spread = over_seeds(pseudo_values(value, kept), limits.unit)
+        how = f"jackknife, {spread.how}" if spread.n > 1 else spread.how
+        return Trial(part, chosen, replace(spread, how=how), limits, halves=(one, other))
+
+    return judged
+
+
+def trials(found: Found, plan: Plan, part: str, judged: Judged, limits: Band) -> list[Trial]:
     """One part of a claim under every setting and in every window.
 
-    The spread between seeds is pooled over the settings of the same rotation and window, apart for those in
-    which a run creeps (ratios of almost nothing) and those in which the lowest layer of a run stays in the
-    pockets of the bed: whether it does is chance, and shifts the speed of all layers above. A setting of
-    many seeds speaks for itself. A seed without a number is left out where most have one.
+    No spread is pooled: settings in which a run creeps or sticks to the bed scatter unlike those that flow.
     """
-    every = {(tuple(one.values()), w): pairs(found, plan, one, w) for one, w in sets(plan)}
-    groups = {key: _numbers(numbers(of_key)) for key, of_key in every.items()}
-    kinds = {
-        key: (key[0][0], key[1], min((pair.kind for pair in of_key), key=KINDS.index))
-        for key, of_key in every.items()
-    }
-    spread = {
-        kind: pool([groups[key] for key, other in kinds.items() if other == kind])
-        for kind in set(kinds.values())
-    }
     return [
-        Trial(
-            part,
-            {**one, WINDOW: window},
-            over_seeds(groups[key], band.unit, spread[kinds[key]] if len(groups[key]) < MANY else None),
-            band,
-        )
+        judged(part, {**one, WINDOW: window}, pairs(found, plan, one, window), limits)
         for one, window in sets(plan)
-        for key in [(tuple(one.values()), window)]
     ]
-
-
-def _numbers(values: list[float]) -> list[float]:
-    """Leave out seeds without a number (no grain advances in one run), where most seeds have one."""
-    kept = [value for value in values if math.isfinite(value)]
-    return kept if 2 * len(kept) > len(values) else values
 
 
 def flows(found: Found, plan: Plan) -> list[Trial]:
     """Both runs must be avalanches: two heaps at rest have the same profile and prove nothing."""
-    return trials(found, plan, FLOW_PART, each(lambda pair: pair.slower), FLOWS)
+    return trials(found, plan, FLOW_PART, apart(lambda pair: pair.slower), FLOWS)
 
 
 def mean(found: Found, plan: Plan, chosen: Mapping[str, str], window: str, numbers: Numbers) -> float:
-    """Mean over seeds of a number that decides nothing."""
-    return float(np.mean(numbers(pairs(found, plan, chosen, window))))
+    """Number of all seeds that decides nothing."""
+    return numbers(pairs(found, plan, chosen, window))
 
 
 def creep(chosen: Mapping[str, str], time: str) -> float:
@@ -360,6 +395,7 @@ def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
             "speed_m_per_s": one.speed, "q_m2_per_s": one.q, "top_m": one.profile.top(),
             "contacts_per_s": one.rate,
             "touching": one.touching,
+            "bed_in_band": one.bed_in_band, "in_band": one.in_band,
             "grains between bed and movers": one.ways[BETWEEN].n,
             **{
                 f"{what}, {grains}": getattr(ways, name)
@@ -368,7 +404,7 @@ def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
             },
         }
         for chosen, window in sets(plan)
-        for seed in seeds(plan, chosen)
+        for seed in plan.seeds
         for time in TIMES
         for one in [found[run(chosen, time, seed)][window]]
     ]  # fmt: skip
@@ -376,6 +412,9 @@ def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
 
 def label(chosen: Mapping[str, str]) -> str:
     """Words for a set of choices."""
-    slip = "" if chosen[SLIP] == "spring" else f", {chosen[SLIP]}"
-    packing = "" if chosen[PACKING] == AS_SHIPPED else f", {chosen[PACKING]}"
-    return f"{chosen[ROTATION]}, phi = {chosen[PHI]}{slip}{packing}"
+    changed = [
+        f"{name} {value}" if name in (PHI, ROTATION, PARTING, RATIO) else value
+        for name, value in chosen.items()
+        if value != SHIPPED[name]
+    ]
+    return ", ".join(changed) or "as shipped"

@@ -22,6 +22,7 @@ NAMES = (
     "steps",
     "fig11",
     "fig12",
+    "fig12_avalanche",
     "hops",
     "fig14",
     "fig15",

@@ -121,6 +121,13 @@ _CLAIMS = (
         "one speed",
     ),
     Claim(
+        "fig12-avalanche",
+        "12",
+        "grains of the size of debris flows, here d = 20 cm in the avalanche of fig13",
+        "even in the stable region collisions of large grains are long enough, here 0.01 s",
+        "impact speeds in the flow",
+    ),
+    Claim(
         "hops",
         "",
         f"{_SALTATION}; same e, different collision time",
@@ -159,7 +166,7 @@ _CLAIMS = (
         "fig16",
         "16",
         f"{_AVALANCHE}; tracks over 1 s of grains that alternate between fixed bed and movers",
-        "0.0001 s: very jagged, shorter travel; 0.01 s: nearer to parallel layers",
+        "0.0001 s: far more jagged path, shorter travel; 0.01 s: nearer to parallel layers",
     ),
     Claim(
         "fig17",

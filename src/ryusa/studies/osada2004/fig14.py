@@ -1,6 +1,5 @@
 """Fig. 14: concentration over height of a dry avalanche, collision time 0.01 s and 0.0001 s."""
 
-import math
 from collections.abc import Mapping, Sequence
 from itertools import combinations
 
@@ -10,14 +9,15 @@ from matplotlib.figure import Figure
 from ryusa import figures
 from ryusa.studies.osada2004 import _avalanche
 from ryusa.studies.osada2004._avalanche import FIRST, SHIPPED, SOFT, STIFF, RunPair, together, unlike
+from ryusa.studies.osada2004._bands import band
 from ryusa.studies.osada2004._parts import Found, Plan
-from ryusa.study import Band, Finding, short
+from ryusa.study import Finding, short
 
 FIGURE = "fig14"
 TITLE = "Concentration of a dry avalanche"
 CLAIMS = ("fig14",)
 PART = "difference of the two profiles of concentration, means over seeds, over their mean"
-ALIKE = Band(-math.inf, 0.10, "-", "alike: mean difference over all layers at most 10 % of the mean")
+ALIKE = band("fig14", PART)
 
 tasks, measure = _avalanche.tasks, _avalanche.measure
 

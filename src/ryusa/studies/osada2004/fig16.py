@@ -20,26 +20,20 @@ from ryusa.studies.osada2004._avalanche import (
     RunPair,
     together,
 )
+from ryusa.studies.osada2004._bands import band
 from ryusa.studies.osada2004._parts import Found, Plan
-from ryusa.study import Band, Finding, Trial, short
+from ryusa.study import Finding, Trial, short
 
 FIGURE = "fig16"
 TITLE = "Paths of grains in a dry avalanche"
 CLAIMS = ("fig16",)
 GRAINS = "grains"
-MORE, LESS = float("inf"), 1.0
-# part of the claim -> what it is of each run, and what is asked of 0.0001 s over 0.01 s
-PARTS: dict[str, tuple[str, Band]] = {
-    "reversals of the vertical motion per second, 0.0001 s over 0.01 s": (
-        "reversals", Band(1.0, MORE, "-", "very jagged: more reversals, ratio above 1"),
-    ),
-    "advance along the bed in 1 s, 0.0001 s over 0.01 s": (
-        "advance", Band(0.0, LESS, "-", "shorter: ratio below 1"),
-    ),
-    "vertical path over advance, 0.0001 s over 0.01 s": (
-        "jaggedness", Band(1.0, MORE, "-", "0.01 s nearer to parallel layers: ratio above 1"),
-    ),
-}  # fmt: skip
+# part of the claim -> what it is of each run
+PARTS = {
+    "reversals of the vertical motion per metre of advance, 0.0001 s over 0.01 s": "per_metre",
+    "advance along the bed in 1 s, 0.0001 s over 0.01 s": "advance",
+    "vertical path over advance, 0.0001 s over 0.01 s": "jaggedness",
+}
 NONE = "no grain meets bed and movers in turn, or none advances, in one of the runs"
 
 tasks, measure = _avalanche.tasks, _avalanche.measure
@@ -50,9 +44,9 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     tried = [
         replace(one, choices={**one.choices, GRAINS: grains})
         for grains in (BETWEEN, ALL)
-        for part, (name, band) in PARTS.items()
+        for part, name in PARTS.items()
         for ratio in [together(partial(_ratio, name=name, grains=grains))]
-        for one in map(_without, _avalanche.trials(found, plan, part, ratio, band))
+        for one in map(_without, _avalanche.trials(found, plan, part, ratio, band("fig16", part)))
     ]
     tried += [
         replace(one, choices={**one.choices, GRAINS: grains})
@@ -65,36 +59,37 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             short(_mean([getattr(one.ways[grains], name) for one in runs]))
             for runs in ([pair.soft for pair in base], [pair.stiff for pair in base])
         )
-        for name in ("n", "reversals", "fine", "advance", "jaggedness")
+        for name in ("n", "reversals", "fine", "per_metre", "advance", "jaggedness")
         for grains in (BETWEEN, ALL)
     }
 
     def said(grains: str) -> str:
         return (
-            f"{words['reversals', grains]} vertical reversals per second, {words['advance', grains]} m of "
-            f"advance, {words['jaggedness', grains]} m of vertical path per metre of advance"
+            f"{words['per_metre', grains]} vertical reversals per metre of advance "
+            f"({words['reversals', grains]} per second), {words['advance', grains]} m of advance, "
+            f"{words['jaggedness', grains]} m of vertical path per metre of advance"
         )
 
-    shape = "; ".join(
+    seconds = "; ".join(
         f"{_avalanche.label(one)}, {window}: "
-        f"{short(_avalanche.mean(found, plan, one, window, together(_per_metre)))}"
+        f"{short(_avalanche.mean(found, plan, one, window, partial(_ratio, name='reversals', grains=ALL)))}"
         for one, window in _avalanche.sets(plan)
-        if all(pair.kind != "creeps" for pair in _avalanche.pairs(found, plan, one, window))
+        if all(pair.flows for pair in _avalanche.pairs(found, plan, one, window))
     )
     return (
         Finding(
             "fig16",
             tuple(tried),
-            "A grain of the lowest layer rises and falls once over every bed grain that it passes, "
-            "whatever the collision time: a grain that travels farther reverses its vertical motion more "
-            f"often. {SOFT} against {STIFF}, as shipped: {said(BETWEEN)}.",
+            "A grain near the bed rises and falls once over every bed grain that it passes, whatever the "
+            "collision time: that sets how often its path reverses on a given way. "
+            f"{SOFT} against {STIFF}, as shipped: {said(BETWEEN)}.",
             {**_avalanche.SETTLED, "turns counted from": "0.02 d, frames of 10 ms"},
             also=(
-                "grains of the lowest layer that touch the bed and moving grains alternately, of "
-                f"{_avalanche.LOWEST}: {words['n', BETWEEN]}",
+                "grains that touch the bed and moving grains alternately, wherever they began: "
+                f"{words['n', BETWEEN]}",
                 f"all grains: {said(ALL)}",
-                f"vertical reversals per metre of advance, all grains, {STIFF} over {SOFT}: {shape}",
-                f"vertical turns a second counted from {_avalanche.FINE:g} d, lowest layer: "
+                f"not judged, vertical reversals per second, all grains, {STIFF} over {SOFT}: {seconds}",
+                f"vertical turns a second counted from {_avalanche.FINE:g} d, grains between bed and movers: "
                 f"{words['fine', BETWEEN]}; all grains: {words['fine', ALL]}",
             ),
         ),
@@ -116,11 +111,6 @@ def _mean(values: Sequence[float]) -> float:
     """Mean of the seeds that have a number."""
     kept = [value for value in values if math.isfinite(value)]
     return float(np.mean(kept)) if kept else math.nan
-
-
-def _per_metre(found: Sequence[RunPair]) -> float:
-    """Turns per way of all grains, stiff over soft [-]."""
-    return _ratio(found, "reversals", ALL) / _ratio(found, "advance", ALL)
 
 
 def _without(one: Trial) -> Trial:
