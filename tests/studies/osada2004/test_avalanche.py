@@ -1,13 +1,16 @@
 """The avalanche claims, judged on made-up flows: some under which each holds, some under which it fails."""
 
 import math
+from functools import partial
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from ryusa.measure import Layers, Profiles, Tracks
 from ryusa.measure.table import Averages
-from ryusa.studies.osada2004 import _avalanche, fig14, fig15, fig16
+from ryusa.studies import osada2004
+from ryusa.studies.osada2004 import _avalanche, fig12_avalanche, fig14, fig15, fig16
 from ryusa.studies.osada2004._avalanche import (
     ALL,
     BETWEEN,
@@ -20,9 +23,10 @@ from ryusa.studies.osada2004._avalanche import (
 )
 from ryusa.studies.osada2004._parts import PHI, ROTATION, SLIP
 from ryusa.studies.osada2004.study import load
-from ryusa.study import Level, Outcome, Plan, carry_out
+from ryusa.study import Band, Level, Outcome, Plan, carry_out
+from ryusa.study.registration import Registration
 
-STANDARD = Plan(Level.STANDARD, (1, 2, 3))
+STANDARD = Plan(Level.STANDARD, (1, 2, 3, 4))
 QUICK = Plan(Level.QUICK, (1,))
 EMPTY = np.zeros(0)
 PATH = Tracks((0,), *10 * [EMPTY], 4.4)
@@ -33,7 +37,7 @@ def layers(name, value):
     return Layers(name, "-", value, np.zeros(len(value)))
 
 
-def flow(speed=4.0, phi=0.5, lowest=0, **ways):
+def flow(speed=4.0, phi=0.5, lowest=0, in_band=0.8, **ways):
     """A flow whose speed grows with height by half, with a uniform concentration."""
     at = np.arange(N, dtype=float)
     v = speed * (0.75 + 0.5 * at / (N - 1))
@@ -48,15 +52,25 @@ def flow(speed=4.0, phi=0.5, lowest=0, **ways):
         t=np.arange(2.0), q=np.full(2, 0.1 * float((full * v).sum())), speed=np.full(2, speed),
         volume=np.full(2, 1.0), density=2650.0, area=1.0, lanes=1, averages=Averages("profile", (), ()),
     )  # fmt: skip
-    way = Ways(**{"n": 9, "reversals": 10.0, "fine": 20.0, "advance": 2.0, "jaggedness": 0.1, **ways})
-    return Window(profile, {BETWEEN: way, ALL: way}, PATH, 100.0, 1.0)
+    way = Ways(
+        **{
+            "n": 9,
+            "reversals": 10.0,
+            "fine": 20.0,
+            "per_metre": 5.0,
+            "advance": 2.0,
+            "jaggedness": 0.1,
+            **ways,
+        }
+    )
+    return Window(profile, {BETWEEN: way, ALL: way}, PATH, 100.0, 1.0, in_band, in_band)
 
 
 def made(soft, stiff, plan=STANDARD):
     """What the runs would give; soft and stiff make a flow from a factor near 1, different for every seed."""
     return {
         one: dict.fromkeys(WINDOWS, (stiff if "contact.stiffness" in dict(one.overrides) else soft)(
-            1.0 + 0.002 * (int(one.get("seed")) % 1000 - 2)
+            1.0 + 0.002 * (int(one.get("seed")) - 2)
         ))
         for one in _avalanche.tasks(plan)
     }  # fmt: skip
@@ -81,11 +95,37 @@ def test_the_first_setting_of_every_level_is_the_shipped_one():
         assert _avalanche.settings(Plan(level, (1,)))[0] == SHIPPED
 
 
-def test_every_other_packing_can_be_read_and_keeps_a_lowest_layer_to_follow():
-    for one in _avalanche.OTHERS:
-        case = _avalanche.run({**SHIPPED, _avalanche.PACKING: one}, SOFT, 1).read()
-        assert case.record.tracked == tuple(range(_avalanche.LOWEST))
-        assert case.build.columns == _avalanche.LOWEST
+def test_every_setting_can_be_read_and_records_the_contacts_of_all_grains():
+    for one in _avalanche.settings(STANDARD):
+        case = _avalanche.run(one, SOFT, 1).read()
+        assert case.record.events == "all"
+        assert case.build.columns == 20
+
+
+def test_every_setting_has_the_seeds_of_the_plan_and_no_others():
+    runs = [(one.overrides, one.get("seed")) for one in _avalanche.tasks(STANDARD)]
+    assert len(runs) == len(set(map(str, runs))) == 17 * 4 * 2
+    assert len(_avalanche.settings(STANDARD)) == 17
+    assert len(_avalanche.settings(QUICK)) == 1
+
+
+def test_trials_have_equal_samples_and_registered_bands_and_factors():
+    registered = Registration.read(Path(osada2004.__file__).parent / "registration")
+    found = made(flow_at(5.0), flow_at(4.0))
+    for experiment in (fig12_avalanche, fig14, fig15, fig16):
+        for one in experiment.judge(found, STANDARD):
+            registered.check(one)
+            assert set(registered.claims[one.id].factors) == set(one.trials[0].choices)
+            assert {trial.found.n for trial in one.trials} == {4}
+            assert all(None not in (trial.halves or (None,)) for trial in one.trials)
+
+
+@pytest.mark.parametrize(("share", "word"), [(0.8, Outcome.HOLDS), (0.3, Outcome.FAILS)])
+def test_large_grains_are_in_the_band_if_most_of_their_contacts_are(share, word):
+    made_up = made(flow_at(4.0, in_band=share), flow_at(4.0))
+    (found,) = fig12_avalanche.judge(made_up, STANDARD)
+    assert found.outcome is word
+    assert all(0.0 <= one.found.low <= one.found.high <= 1.0 for one in found.trials)
 
 
 def test_equal_profiles_are_alike_and_half_as_dense_ones_are_not():
@@ -120,7 +160,10 @@ def test_scatter_of_single_runs_is_no_difference_of_what_they_have_in_common():
     found = [RunPair(scattered(1), scattered(-1)), RunPair(scattered(-1), scattered(1))]
     assert _avalanche.unlike(found[:1]) == pytest.approx(0.2)
     assert _avalanche.unlike(found) == pytest.approx(0.0, abs=1e-12)
-    assert _avalanche.together(_avalanche.unlike)(found[:1]) == pytest.approx([0.2])
+    limits = Band(-math.inf, 0.1, "-", "alike")
+    trial = _avalanche.together(_avalanche.unlike)("profiles", {}, found[:1], limits)
+    assert trial.found.value == pytest.approx(0.2)
+    assert trial.halves == (False, None)
 
 
 def test_speeds_of_a_layer_are_weighted_with_what_is_there():
@@ -131,12 +174,35 @@ def test_speeds_of_a_layer_are_weighted_with_what_is_there():
     assert speed[0] == pytest.approx(0.75 * (0.5 * 4.0 + 0.25 * 2.0) / 0.75)
 
 
-def test_pairs_that_creep_or_stick_to_the_bed_are_told_from_those_that_move():
-    stuck = flow(4.0)
-    stuck.profile.v_x.value[0] = 0.01
-    assert RunPair(flow(4.0), flow(4.0)).kind == "moves"
-    assert RunPair(flow(4.0), stuck).kind == "stuck"
-    assert RunPair(flow(4.0), flow(0.05)).kind == "creeps"
+def test_a_pair_flows_where_both_runs_do():
+    assert RunPair(flow(4.0), flow(4.0)).flows
+    assert not RunPair(flow(4.0), flow(0.05)).flows
+
+
+def test_the_least_lead_is_that_of_one_layer_with_its_own_interval():
+    ahead = [5.0, 5.1, 4.9, 5.0]
+    pairs = [RunPair(flow(one), flow(4.0)) for one in ahead]
+    limits = Band(0.0, math.inf, "cm/s", "larger in every layer")
+    found = fig15.least("least", {}, pairs, limits)
+    lowest = [75.0 * (one - 4.0) for one in ahead]  # the lowest layer moves at 0.75 of the mean speed
+    half = 3.182 * np.std(lowest, ddof=1) / 2.0
+    assert found.found.value == pytest.approx(np.mean(lowest))
+    assert found.found.low == pytest.approx(np.mean(lowest) - half, rel=1e-3)
+    assert found.found.high > np.mean(lowest) + half
+    assert found.halves == (True, True)
+
+
+def test_one_slow_layer_among_many_is_no_chance_only_beyond_the_joint_interval():
+    def pair(chance):
+        one = flow(5.0)
+        one.profile.v_x.value[0] = 3.0 - 0.05 + chance
+        return RunPair(one, flow(4.0))
+
+    limits = Band(0.0, math.inf, "cm/s", "larger in every layer")
+    close = fig15.least("least", {}, [pair(x) for x in (-0.05, 0.03, -0.02, 0.04)], limits)
+    assert close.holds is None
+    clear = fig15.least("least", {}, [pair(x - 0.9) for x in (-0.05, 0.03, -0.02, 0.04)], limits)
+    assert clear.holds is False
 
 
 def test_fig15_requires_about_a_metre_per_second():
@@ -162,16 +228,21 @@ def test_fig15_flux_requires_more_transport_at_equal_concentration(soft, word):
     assert words(fig15, soft, flow_at(4.0))["fig15-flux"] is word
 
 
-JAGGED = {"reversals": 20.0, "advance": 1.0, "jaggedness": 0.3}
+JAGGED = {"per_metre": 20.0, "advance": 1.0, "jaggedness": 0.3}
 
 
 def test_fig16_holds_if_short_contacts_give_jagged_and_shorter_paths():
     assert words(fig16, flow_at(4.0), flow_at(4.0, **JAGGED))["fig16"] is Outcome.HOLDS
 
 
-@pytest.mark.parametrize(("name", "value"), [("reversals", 5.0), ("advance", 3.0), ("jaggedness", 0.05)])
+@pytest.mark.parametrize(("name", "value"), [("per_metre", 4.0), ("advance", 3.0), ("jaggedness", 0.05)])
 def test_fig16_fails_if_one_of_its_three_parts_does(name, value):
     assert words(fig16, flow_at(4.0), flow_at(4.0, **{**JAGGED, name: value}))["fig16"] is Outcome.FAILS
+
+
+def test_more_reversals_per_second_alone_do_not_make_a_path_jagged():
+    faster = {**JAGGED, "per_metre": 4.0, "reversals": 40.0}
+    assert words(fig16, flow_at(4.0), flow_at(4.0, **faster))["fig16"] is Outcome.FAILS
 
 
 def test_one_run_whose_grains_hardly_advance_does_not_outweigh_the_others():
@@ -189,23 +260,26 @@ def test_fig16_fails_where_one_of_the_two_only_creeps():
 
 
 def test_fig16_fails_where_no_grain_alternates():
-    nothing = {"n": 0, "reversals": math.nan, "advance": math.nan, "jaggedness": math.nan}
+    nothing = {
+        "n": 0,
+        "reversals": math.nan,
+        "per_metre": math.nan,
+        "advance": math.nan,
+        "jaggedness": math.nan,
+    }
     (found,) = fig16.judge(made(flow_at(4.0), flow_at(4.0, **nothing)), STANDARD)
     assert found.outcome is Outcome.FAILS
     assert all(one.note for one in found.trials if "over sqrt(g d)" not in one.part)
 
 
 def test_a_seed_without_a_number_is_left_out_where_most_have_one():
-    nan = math.nan
-    assert _avalanche._numbers([1.0, nan, 2.0]) == [1.0, 2.0]
-    assert len(_avalanche._numbers([1.0, nan, nan])) == 3
+    def trial(*advances):
+        pairs = [RunPair(flow(4.0, advance=one), flow(4.0, advance=one)) for one in advances]
+        value = partial(fig16._ratio, name="advance", grains=ALL)
+        return _avalanche.together(value)("advance", {}, pairs, Band(0.0, 1.0, "-", "shorter")).found
 
-
-def test_more_seeds_of_the_shipped_setting_keep_those_of_the_plan_and_differ():
-    seeds = _avalanche.seeds(STANDARD, SHIPPED)
-    assert seeds[:3] == [1, 2, 3]
-    assert len(set(seeds)) == 3 * _avalanche.STARTS
-    assert _avalanche.seeds(QUICK, SHIPPED) == [1]
+    assert trial(1.0, math.nan, 2.0).n == 2
+    assert math.isnan(trial(1.0, math.nan, math.nan).value)
 
 
 def test_choices_are_those_that_experiments_share():
@@ -218,10 +292,10 @@ def test_choices_are_those_that_experiments_share():
 
 @pytest.mark.slow
 def test_the_shipped_pair_flows_and_is_drawn(tmp_path):
-    names = ("fig14", "fig15", "fig16")
+    names = ("fig12_avalanche", "fig14", "fig15", "fig16")
     campaign = carry_out({name: load(name).tasks(QUICK) for name in names}, load, tmp_path)
     assert not campaign.problems
-    for name, experiment in zip(names, (fig14, fig15, fig16), strict=True):
+    for name, experiment in zip(names, (fig12_avalanche, fig14, fig15, fig16), strict=True):
         found = campaign.found[name]
         assert experiment.draw(found, QUICK)
         assert experiment.rows(found, QUICK)
