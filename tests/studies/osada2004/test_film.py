@@ -2,18 +2,21 @@
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from ryusa.studies import osada2004
 from ryusa.studies.osada2004 import _film, film
-from ryusa.studies.osada2004._film import COLLISION, CUT, FILM, FLOWS, FPS, RESOLUTION, SEEN, SLOWER
+from ryusa.studies.osada2004._film import COLLISION, CUT, DESIGNS, FLOWS, FPS, RESOLUTION, SEEN, SLOWER
 from ryusa.studies.osada2004.film import Filmed, FilmNumbers
 from ryusa.studies.osada2004.study import load
 from ryusa.study import Level, Outcome, Plan, carry_out
+from ryusa.study.registration import Registration
 
 QUICK = Plan(Level.QUICK, (1,))
-STANDARD = Plan(Level.STANDARD, (1, 2, 3))
+STANDARD = Plan(Level.STANDARD, (1, 2, 3, 4))
 EPS = [float(one.removesuffix(" d")) for one in _film.RESOLUTIONS]
 
 
@@ -73,8 +76,8 @@ def test_nothing_is_judged_where_too_many_contacts_are_cut_off():
 
 @pytest.mark.parametrize("claim", FLOWS)
 def test_springs_are_100_times_as_stiff_and_nothing_else_differs(claim):
-    sets = [one for one in film.settings(claim, STANDARD) if one[FILM] == "none"]
-    soft, hard = (film.run(claim, one, 1).read() for one in sets)
+    base = DESIGNS[claim].base
+    soft, hard = (film.run(claim, {**base, COLLISION: time}, 1).read() for time in _film.COLLISIONS)
     assert hard.contact.restitution == soft.contact.restitution == film.E
 
     def k_n(case):
@@ -87,19 +90,25 @@ def test_springs_are_100_times_as_stiff_and_nothing_else_differs(claim):
 
 
 def test_every_flow_is_filmed_at_every_level_of_its_factors_with_equal_samples():
-    for claim, flow in FLOWS.items():
+    registered = Registration.read(Path(osada2004.__file__).parent / "registration")
+    found = {one.id: one for one in film.judge({t: filmed() for t in film.tasks(STANDARD)}, STANDARD)}
+    for claim in FLOWS:
         sets = film.settings(claim, STANDARD)
-        assert {one[FILM] for one in sets} == set(flow.films)
-        assert {one[COLLISION] for one in sets} == set(_film.COLLISIONS)
-        assert len(sets) == 2 * len(flow.films)
-        (found,) = [
-            one
-            for one in film.judge({t: filmed() for t in film.tasks(STANDARD)}, STANDARD)
-            if one.id == claim
-        ]
-        judged = [one for one in found.trials if one.judged]
+        assert sets[0] == DESIGNS[claim].base
+        assert len(sets) == 9
+        for name, levels in DESIGNS[claim].levels.items():
+            assert {one[name] for one in sets} == set(levels)
+        registered.check(found[claim])
+        judged = [one for one in found[claim].trials if one.judged]
+        assert set(judged[0].choices) == set(registered.claims[claim].factors)
         assert {one.choices[RESOLUTION] for one in judged} == set(_film.RESOLUTIONS)
-        assert {one.found.n for one in judged} == {3}
+        assert {one.found.n for one in judged} == {4}
+
+
+def test_every_setting_of_every_flow_can_be_read():
+    for claim in FLOWS:
+        for one in film.settings(claim, STANDARD):
+            assert film.run(claim, one, 1).read().record.events == "all"
 
 
 def test_numbers_and_the_picture_follow_from_the_runs():

@@ -1,8 +1,17 @@
-"""Contacts as a film shows them: wording, bands, settings and factors, decided before any run."""
+"""Contacts as a film shows them: wording, settings and factors; the bands are in the registration."""
 
 from dataclasses import dataclass
 
-from ryusa.study import Band
+from ryusa.studies.osada2004._bands import band
+from ryusa.studies.osada2004._factors import (
+    DRAG_LAW,
+    PARTING_RULE,
+    SLIP_RULE,
+    STIFFNESS_RATIO,
+    friction_angle,
+)
+from ryusa.studies.osada2004._parts import ROTATION
+from ryusa.study import Design, Factor
 
 SECTION = "section 3, after Fig. 7"
 JAPANESE = (
@@ -17,19 +26,56 @@ TRANSLATION = (
 # fixed grain; each stay within the resolution counts once (`ryusa.measure.apparent_contact`). Stays that
 # the end of the film cuts off are completed after Kaplan and Meier.
 CUT = 0.2  # share of the stays cut off from which on the mean is not known, and nothing is judged
-SEEN = Band(0.003, 0.03, "s", "of the order of 0.01 s: one order of magnitude centred on it, 0.003 to 0.03 s")
 # The film that is judged. A contact that is seen at all lasts at least from one frame to the next. That time
 # must lie below the band, or the claim would hold whatever the grains do.
 FPS = 1000.0
+PART = f"mean time in contact on a film of {FPS:g} frames per second"
+SEEN = band("film-saltation", PART)  # the same for all flows
 SLOWER = (250.0, 100.0)  # shown beside it, not judged: 4 and 10 ms from one frame to the next
 COLLISION = "collision time"
 COLLISIONS = ("1e-4 s", "1e-5 s")  # that of the paper; by Hertz that of 2 mm quartz at 0.05 to 0.5 m/s
 FILM = "water film"
-FILMS = ("none", "lubrication", "rebound by Stokes number")
 RESOLUTION = "resolution"
 RESOLUTIONS = ("0.05 d", "0.02 d", "0.1 d")  # gap from which two grains look apart: d is 20, 50 or 10 pixels
-# Base settings: the first level of every factor. Sample: the seeds of the plan, three at the standard level,
-# for every setting alike. Test: the 95 % interval of the mean over seeds lies in the band.
+# Keys of the case for each collision time, by flow; the first is that of the figure.
+SPRINGS: dict[str, tuple[dict[str, str], dict[str, str]]] = {
+    "film-saltation": ({}, {"contact.stiffness": "10000 N/cm"}),
+    "film-avalanche": (
+        {"contact.stiffness": '{ collision_time = "0.0001 s" }'},
+        {"contact.stiffness": '{ collision_time = "0.00001 s" }'},
+    ),
+    "film-debris": ({}, {"contact.stiffness": "20000 N/cm", "contact.shear_stiffness": "1500 N/cm"}),
+}
+WATERS: dict[str, dict[str, str]] = {
+    "none": {},
+    "lubrication": {"water.film": "lubrication", "water.asperity": "0.01 mm"},
+    "rebound by Stokes number": {"water.rebound": "exponential", "water.rebound_least": "0.1"},
+}
+
+
+def _design(claim: str, *more: Factor, wet: bool = True) -> Design:
+    """Factors of one flow: springs, water film, friction, and what else is open in it."""
+    springs = Factor(COLLISION, dict(zip(COLLISIONS, SPRINGS[claim], strict=True)))
+    film = (Factor(FILM, WATERS),) if wet else ()
+    return Design((springs, *film, friction_angle(), SLIP_RULE, PARTING_RULE, *more))
+
+
+# The resolution is a way of looking at the same run: a factor as well, without runs of its own.
+DESIGNS = {
+    "film-saltation": _design(
+        "film-saltation",
+        STIFFNESS_RATIO,
+        Factor(ROTATION, {"locked": {}, "free": {"motion.rotation": "free"}}),
+        DRAG_LAW,
+    ),
+    "film-avalanche": _design(
+        "film-avalanche",
+        STIFFNESS_RATIO,
+        Factor(ROTATION, {"free": {}, "locked": {"motion.rotation": "locked"}}),
+        wet=False,
+    ),
+    "film-debris": _design("film-debris"),
+}
 
 
 @dataclass(frozen=True)
@@ -40,13 +86,11 @@ class FilmedFlow:
     ----------
     case : case file of the figure that it is taken from.
     setup : in words.
-    films : levels of the water film.
     changed : keys of the case that are set, and their values.
     """
 
     case: str
     setup: str
-    films: tuple[str, ...]
     changed: dict[str, str]
 
 
@@ -58,14 +102,12 @@ FLOWS = {
     "film-saltation": FilmedFlow(
         "saltation",
         "16 saltating grains of 0.2 cm over fixed ones, as in fig7, rotation locked; filmed for 0.5 s",
-        FILMS,
         {"build.starts": "16", "record.settle": "0.5 s", "stop.time": "1 s", **_FRAMES},
     ),
     "film-avalanche": FilmedFlow(
         "avalanche",
         "dry avalanche on 40 deg, as in fig14, of 100 grains of 0.2 cm, the size of laboratory films: "
         "lengths over 100, times over 10 by Froude; filmed from 0.1 to 0.3 s after tilting",
-        FILMS[:1],
         {
             "grains.diameter": "0.2 cm",
             "build.columns": "10",
@@ -79,7 +121,6 @@ FLOWS = {
         "fig17",
         "Ito's debris flow, as in fig17, rotation locked; its dashpots given as restitution 0.7, tangential "
         "0.9; filmed for 0.25 s",
-        FILMS,
         {
             "contact.restitution": "0.7",
             "contact.restitution_shear": "0.9",

@@ -2,9 +2,8 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import partial
-from itertools import product
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -14,14 +13,15 @@ from ryusa.measure import collisions
 from ryusa.measure.apparent_contact import near_pairs, on_film
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
+from ryusa.studies.osada2004._factors import n_settings
 from ryusa.studies.osada2004._film import (
     COLLISION,
-    COLLISIONS,
     CUT,
-    FILM,
+    DESIGNS,
     FLOWS,
     FPS,
     JAPANESE,
+    PART,
     RESOLUTION,
     RESOLUTIONS,
     SECTION,
@@ -29,28 +29,13 @@ from ryusa.studies.osada2004._film import (
     SLOWER,
     TRANSLATION,
 )
-from ryusa.studies.osada2004._parts import PHI, CaseRun, Found, Plan, paper_run
-from ryusa.study import Finding, Trial, over_seeds, pool, short
+from ryusa.studies.osada2004._parts import CaseRun, Found, Plan, paper_run
+from ryusa.study import Finding, Trial, over_seeds, seeds_trial, short
 
 FIGURE = "film"
 TITLE = "Contact as a film shows it"
 CLAIMS = tuple(FLOWS)
 E = 0.7  # restitution of all three flows
-# Keys of the case for each collision time, by flow; the first is that of the figure.
-SPRINGS: dict[str, tuple[dict[str, str], dict[str, str]]] = {
-    "film-saltation": ({}, {"contact.stiffness": "10000 N/cm"}),
-    "film-avalanche": (
-        {"contact.stiffness": '{ collision_time = "0.0001 s" }'},
-        {"contact.stiffness": '{ collision_time = "0.00001 s" }'},
-    ),
-    "film-debris": ({}, {"contact.stiffness": "20000 N/cm", "contact.shear_stiffness": "1500 N/cm"}),
-}
-WATERS: dict[str, dict[str, str]] = {
-    "none": {},
-    "lubrication": {"water.film": "lubrication", "water.asperity": "0.01 mm"},
-    "rebound by Stokes number": {"water.rebound": "exponential", "water.rebound_least": "0.1"},
-}
-PART = f"mean time in contact on a film of {FPS:g} frames per second"
 MEDIAN = "median of it"
 STAY = "mean time within the resolution"
 TOUCH = "mean collision time"
@@ -107,15 +92,15 @@ class Filmed:
 
 
 def settings(claim: str, plan: Plan) -> list[dict[str, str]]:
-    """Sets of choices that need runs of their own, the base first."""
-    sets = [{COLLISION: time, FILM: film} for time, film in product(COLLISIONS, FLOWS[claim].films)]
-    return plan.pick(sets[:1], sets)
+    """Sets of choices that need runs of their own, the base first; half as many as other parts have."""
+    return DESIGNS[claim].settings(n_settings(plan) // 2)
 
 
 def run(claim: str, chosen: Mapping[str, str], seed: int) -> CaseRun:
     """One run of a flow."""
-    flow, springs = FLOWS[claim], SPRINGS[claim][COLLISIONS.index(chosen[COLLISION])]
-    return paper_run(flow.case, {**flow.changed, **springs, **WATERS[chosen[FILM]]}, seed)
+    design = DESIGNS[claim]
+    chosen = {**design.base, **chosen}  # also the springs of the base have their keys
+    return paper_run(FLOWS[claim].case, {**FLOWS[claim].changed, **design.overrides(chosen)}, seed)
 
 
 def tasks(plan: Plan) -> Sequence[CaseRun]:
@@ -178,8 +163,9 @@ def _finding(found: Found, plan: Plan, claim: str) -> Finding:
     eps = _resolutions()[0]
     stays = "; ".join(
         f"{ms(lambda one: one.film().stay, k)} for collisions of {ms(lambda one: one.collision, k)}"
-        + (f", {one[FILM]}" if one[FILM] != FLOWS[claim].films[0] else "")
+        + (f" ({others})" if others else "")
         for k, one in enumerate(sets)
+        for others in [", ".join(v for name, v in one.items() if v != sets[0][name] and name != COLLISION)]
     )
     slower = " and ".join(f"{one:g}" for one in SLOWER)
     return Finding(
@@ -191,7 +177,6 @@ def _finding(found: Found, plan: Plan, claim: str) -> Finding:
             "flow": FLOWS[claim].setup,
             "restitution": f"{E:g}",
             "springs": "those of the figure; 100 times as stiff for 1e-5 s",
-            PHI: "30 deg",
         },
         also=(
             f"the paper, {SECTION}: {JAPANESE} {TRANSLATION}",
@@ -217,13 +202,11 @@ def _judged(sets: Sequence[Mapping[str, str]], runs: Sequence[Sequence[Filmed]])
     for words, eps in zip(RESOLUTIONS, _resolutions(), strict=True):
         films = [[one.film(eps) for one in group] for group in runs]
         means = [[one.mean if one.cut <= CUT else math.nan for one in group] for group in films]
-        spread = pool(means)
         for one, values, group in zip(sets, means, films, strict=True):
             lost = max(film.cut for film in group)
             note = f"{100.0 * lost:.0f} % are cut off by the end of the film" if lost > CUT else ""
-            trials.append(
-                Trial(PART, {**one, RESOLUTION: words}, over_seeds(values, "s", spread), SEEN, note=note)
-            )
+            trial = seeds_trial(PART, {**one, RESOLUTION: words}, values, SEEN)
+            trials.append(replace(trial, note=note))
     return trials
 
 
@@ -272,12 +255,11 @@ def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
 def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
     """Share of the apparent contacts that last longer than a time, for each flow and collision time."""
     curves: list[Curve] = []
-    for claim, flow in FLOWS.items():
-        for time in COLLISIONS if len(settings(claim, plan)) > 1 else COLLISIONS[:1]:
-            chosen = {COLLISION: time, FILM: flow.films[0]}
-            lasting = np.sort(
-                np.concatenate([found[run(claim, chosen, seed)].durations for seed in plan.seeds])
-            )
+    for claim in FLOWS:
+        sets = settings(claim, plan)
+        for time in dict.fromkeys(one[COLLISION] for one in sets):
+            runs = [run(claim, one, seed) for one in sets if one[COLLISION] == time for seed in plan.seeds]
+            lasting = np.sort(np.concatenate([found[one].durations for one in runs]))
             longer = 1.0 - np.arange(1, len(lasting) + 1) / max(len(lasting), 1)
             curves.append(Curve(f"{claim.removeprefix('film-')}, collisions of {time}", lasting, longer))
     edges = [Curve(f"{one:g} s", np.full(2, one), np.array([0.0, 1.0])) for one in (SEEN.low, SEEN.high)]
