@@ -1,3 +1,6 @@
+from collections import Counter
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -5,8 +8,10 @@ from ryusa.casefile import derive, resolved
 from ryusa.laws.collision import collision_time, overlap_max
 from ryusa.studies.osada2004 import _drops, fig04, fig05, fig08, fig11, fig12, pair, steps
 from ryusa.studies.osada2004._drops import DropRun, Setup
+from ryusa.studies.osada2004._factors import n_settings
 from ryusa.studies.osada2004.study import load
 from ryusa.study import Level, Outcome, Plan, carry_out
+from ryusa.study.registration import Registration
 from ryusa.units import quantity
 
 QUICK = Plan(Level.QUICK, (1,))
@@ -65,6 +70,42 @@ def test_fig4_holds_for_eq_8_and_for_nothing_else():
     assert word("fig04", stiff_is_slow) is Outcome.FAILS
 
 
+def test_fig4_fails_where_the_weight_keeps_a_grain_on_its_partner():
+    found = every(fig04)
+    found[fig04.setup(fig04.DESIGN.base, "0.2 cm", fig04.SOFT).task] = ideal(
+        fig04.lossless("0.2 cm", 0.01), ended=3
+    )
+    assert word("fig04", found) is Outcome.FAILS
+
+
+def test_a_grain_passes_where_its_spring_cannot_stop_it_within_a_diameter():
+    _, slow = fig08.judge(every(fig08) | hits(QUICK, 0.3, 0.0042), QUICK)
+    _, limit = slow.base
+    assert (limit.found.low, limit.found.high) == (0.001, 0.002)  # 0.0016 N/cm by the closed form
+    assert slow.outcome is Outcome.FAILS
+    _, deep = fig08.judge(every(fig08, overlap=10.0) | hits(QUICK, 0.3, 0.0042), QUICK)
+    assert (deep.base[1].found.low, deep.base[1].found.high) == (0.1, 0.2)
+    assert deep.outcome is Outcome.HOLDS
+    _, never = fig08.judge(every(fig08, overlap=0.1) | hits(QUICK, 0.3, 0.0042), QUICK)
+    assert never.base[1].holds is False
+
+
+REGISTRATION = Registration.read(Path(fig04.__file__).parent / "registration")
+
+
+@pytest.mark.parametrize("part", [fig04, fig05, pair, fig08, steps])
+@pytest.mark.parametrize("plan", [QUICK, STANDARD])
+def test_every_setting_is_judged_by_the_same_registered_bands(part, plan):
+    found = every(part, plan) | (hits(plan, 0.3, 0.0042) if part is fig08 else {})
+    for finding in part.judge(found, plan):
+        REGISTRATION.check(finding)
+        claim = REGISTRATION.claims[finding.id]
+        assert sorted(claim.factors) == sorted(part.DESIGN.base)
+        per_setting = Counter(tuple(one.choices.items()) for one in finding.trials)
+        assert len(set(per_setting.values())) == 1
+        assert len(per_setting) == len(part.DESIGN.settings(n_settings(plan)))
+
+
 def test_fig5_fails_where_the_time_differs_or_the_grain_stays():
     assert word("fig05", every(fig05, time=0.93)) is Outcome.HOLDS
     assert word("fig05", every(fig05, time=1.3)) is Outcome.FAILS
@@ -89,12 +130,12 @@ def hits(plan, speed, overlap):
 
 def test_fig8_needs_a_harder_hit_than_a_saltating_grain_gives():
     soft = hits(QUICK, 0.3, 0.0042)
-    (found,) = fig08.judge(every(fig08) | soft, QUICK)
+    found, _ = fig08.judge(every(fig08) | soft, QUICK)
     assert found.outcome is Outcome.FAILS
     assert "requires 0.72 m/s" in found.decided_by
     assert word("fig08", every(fig08, overlap=2.4) | soft) is Outcome.HOLDS
     assert word("fig08", every(fig08, overlap=2.4) | hits(QUICK, 0.72, 0.01)) is Outcome.HOLDS
-    (swept,) = fig08.judge(every(fig08, STANDARD) | hits(STANDARD, 0.3, 0.0042), STANDARD)
+    swept, _ = fig08.judge(every(fig08, STANDARD) | hits(STANDARD, 0.3, 0.0042), STANDARD)
     assert 0 < swept.robustness.holds < swept.robustness.of
 
 

@@ -21,7 +21,7 @@ from ryusa.measure import collisions, contact_times
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
 from ryusa.studies.osada2004._parts import CaseRun, Found, paper_run
-from ryusa.study import Band, Interval, over_range
+from ryusa.study import Band, Factor, Interval, over_range
 from ryusa.units import quantity
 
 CASE = "drop"
@@ -186,6 +186,11 @@ def measure(run: Results, one: CaseRun) -> DropRun:
         speed=found.speed[first],
         e=found.restitution[first],
     )
+
+
+def choice(name: str, *levels: str) -> Factor:
+    """Return a factor whose levels a `Setup` takes by name, the first as shipped."""
+    return Factor(name, {one: {} for one in levels})
 
 
 def near(value: float, unit: str, says: str) -> Band:

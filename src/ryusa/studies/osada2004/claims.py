@@ -80,6 +80,13 @@ _CLAIMS = (
     *(Claim(claim, "", flow.setup, *_FILMS) for claim, flow in FLOWS.items()),
     Claim("fig8", "8", "largest overlap/d against k_n", "d = 0.2 cm: 0.01 at about 100 N/cm", "impact speed"),
     Claim(
+        "fig8-through",
+        "",
+        "two grains of 0.2 cm, soft springs",
+        "at 0.01 N/cm grains overlap greatly; on weak springs they pass through others",
+        "impact speed",
+    ),
+    Claim(
         "fig10-soft",
         "9, 10a",
         f"{_BOX}, k_n = 1 N/cm; z displacement of marked grains per 0.01 s",

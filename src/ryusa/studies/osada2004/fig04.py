@@ -1,5 +1,6 @@
 """Fig. 4: contact time against stiffness for grains of 0.05 to 1 cm, run without loss, beside Eq. (8)."""
 
+import math
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
@@ -9,19 +10,31 @@ from matplotlib.figure import Figure
 from ryusa import figures
 from ryusa.laws.collision import collision_time
 from ryusa.studies.osada2004 import _drops
-from ryusa.studies.osada2004._drops import DropRun, Setup
+from ryusa.studies.osada2004._drops import AT_STEPS, EXACT, DropRun, Setup
+from ryusa.studies.osada2004._factors import n_settings
 from ryusa.studies.osada2004._parts import CaseRun, Found, Plan
-from ryusa.study import Band, Finding, Trial, over_range
+from ryusa.study import Band, Design, Finding, Interval, Trial, over_range
 
 FIGURE = "fig4"
 TITLE = "Contact time against stiffness, Eq. (8)"
 CLAIMS = ("fig4",)
-DENSITY = "density (fig4)"
+DENSITY, WEIGHT, SPEED, TIMING = "density (fig4)", "weight (fig4)", "impact speed (fig4)", "timing (fig4)"
+NONE = "none, as in Eq. (8)"
 SOFT = 0.01  # the paper's spring [N/cm]
+FIRM = 100.0  # of the ratios of diameters [N/cm]
+SPRINGS = (0.01, 1.0, 100.0)  # of the ratios of springs [N/cm]
 SLOW = "0.01 m/s"  # keeps overlaps small; without weight the contact time does not depend on it
+DESIGN = Design(
+    (
+        _drops.choice(DENSITY, _drops.DENSITY, "2500 kg/m3", "2800 kg/m3"),
+        _drops.choice(WEIGHT, NONE, "yes"),
+        _drops.choice(SPEED, SLOW, "0.1 m/s", "0.3 m/s"),
+        _drops.choice(TIMING, EXACT, AT_STEPS),
+    )
+)
 QUOTED = _drops.near(0.01, "s", "about 0.01 s")
 SHORTER = Band(0.0, 1.0, "-", "shorter: the ratio is below 1")
-HEAVY = ("0.1 m/s", "0.2 m/s", "0.5 m/s")
+STAYS = "stays on its partner: weight against a soft spring"
 
 
 def stiffnesses(plan: Plan) -> tuple[float, ...]:
@@ -29,26 +42,30 @@ def stiffnesses(plan: Plan) -> tuple[float, ...]:
     return plan.pick((0.01, 1.0, 100.0), (0.01, 0.1, 1.0, 10.0, 100.0, 1000.0, 1.0e4))
 
 
-def lossless(d: str, k_n: float, density: str = _drops.DENSITY) -> Setup:
+def lossless(d: str, k_n: float) -> Setup:
     """The drop of Eq. (8): e = 1, no weight."""
-    return Setup(d=d, k_n=k_n, e=1.0, speed=SLOW, weight=False, density=density)
+    return setup(DESIGN.base, d, k_n)
 
 
-def densities(plan: Plan) -> tuple[str, ...]:
-    """Natural sands and gravels."""
-    return (_drops.DENSITY, *plan.pick((), ("2500 kg/m3", "2800 kg/m3")))
+def setup(chosen: Mapping[str, str], d: str, k_n: float) -> Setup:
+    """One drop in a setting."""
+    return Setup(
+        d=d, k_n=k_n, e=1.0, speed=chosen[SPEED], weight=chosen[WEIGHT] != NONE, density=chosen[DENSITY],
+        timing=chosen[TIMING],
+    )  # fmt: skip
 
 
-def weighted(plan: Plan) -> list[Setup]:
-    """The paper's spring with the weight that Eq. (8) leaves out, at several speeds."""
-    return [Setup(k_n=SOFT, e=1.0, speed=speed) for speed in plan.pick((), HEAVY)]
+def compared(chosen: Mapping[str, str]) -> tuple[list[Setup], list[Setup]]:
+    """Drops by diameter, and by spring from the softest on, each shorter or longer than the one before."""
+    sizes = [setup(chosen, d, FIRM) for d in _drops.SIZES]
+    return sizes, [setup(chosen, _drops.DIAMETER, k_n) for k_n in SPRINGS]
 
 
 def setups(plan: Plan) -> list[Setup]:
-    """Chart, densities, weight."""
+    """The chart, and what each setting compares."""
     chart = [lossless(d, k_n) for d in _drops.SIZES for k_n in stiffnesses(plan)]
-    others = [lossless(_drops.DIAMETER, SOFT, density) for density in densities(plan)[1:]]
-    return chart + others + weighted(plan)
+    sets = [compared(chosen) for chosen in DESIGN.settings(n_settings(plan))]
+    return list(dict.fromkeys([*chart, *(one for sizes, springs in sets for one in (*sizes, *springs))]))
 
 
 def tasks(plan: Plan) -> Sequence[CaseRun]:
@@ -69,25 +86,18 @@ def times(found: Found, plan: Plan) -> np.ndarray:
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """About 0.01 s for the soft spring; shorter for small and for stiff."""
     trials: list[Trial] = []
-    for density in densities(plan):
-        drop: DropRun = found[lossless(_drops.DIAMETER, SOFT, density).task]
-        part = "contact time, d = 0.2 cm, k_n = 0.01 N/cm"
-        trials.append(Trial(part, {DENSITY: density}, drop.over_phases(drop.time, "s"), QUOTED))
+    for chosen in DESIGN.settings(n_settings(plan)):
+        sizes, springs = ([found[one.task] for one in each] for each in compared(chosen))
+        soft: DropRun = springs[0]
+        quoted = "contact time, d = 0.2 cm, k_n = 0.01 N/cm"
+        trials += [
+            _trial(quoted, chosen, [soft], soft.over_phases(soft.time, "s"), QUOTED),
+            _shorter("contact time, next smaller over larger d", chosen, sizes[::-1], "diameters"),
+            _shorter("contact time, next stiffer over softer spring", chosen, springs, "springs"),
+        ]
     grid = times(found, plan)
-    smaller = [float(r) for small, large in pairwise(grid) for r in small / large]
-    stiffer = [float(r) for soft, stiff in pairwise(grid.T) for r in stiff / soft]
-    base = {DENSITY: _drops.DENSITY}
-    trials[1:1] = [
-        Trial("contact time, next smaller over larger d", base, _ratios(smaller, "diameters"), SHORTER),
-        Trial("contact time, next stiffer over softer spring", base, _ratios(stiffer, "springs"), SHORTER),
-    ]
     law = np.array([[drop.eq_8 for drop in row] for row in _grid(found, plan)])
-    heavy = [(one.speed, found[one.task]) for one in weighted(plan)]
     also = [f"runs over Eq. (8): {np.min(grid / law):.4f} to {np.max(grid / law):.4f}"]
-    also += [
-        f"with its weight, dropped at {speed}: {_over(drop)} of Eq. (8), overlap/d {_deep(drop)}"
-        for speed, drop in heavy
-    ]
     return (
         Finding(
             "fig4",
@@ -96,7 +106,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             "stiffness, and so to d^(3/2). The quoted 0.01 s follows for quartz. It is a value of the "
             "formula rather than of a real contact: on so soft a spring the overlap is large, and the "
             "weight of the grain lengthens the contact.",
-            {"restitution": "1", "weight": "none, as in Eq. (8)", "steps per contact": "50"},
+            {"restitution": "1", "weight": "none, as in Eq. (8)", "steps per contact": "10"},
             also=tuple(also),
         ),
     )
@@ -106,16 +116,20 @@ def _grid(found: Found, plan: Plan) -> list[list[DropRun]]:
     return [[found[lossless(d, k_n).task] for k_n in stiffnesses(plan)] for d in _drops.SIZES]
 
 
-def _ratios(values: Sequence[float], of_what: str):
-    return over_range(values, "-", f"{len(values)} pairs of {of_what}")
+def _shorter(part: str, chosen: Mapping[str, str], drops: Sequence[DropRun], of_what: str) -> Trial:
+    """Contact times, each over the one before."""
+    times = [float(np.median(one.time)) if one.parts else math.nan for one in drops]
+    ratios = over_range([b / a for a, b in pairwise(times)], "-", f"{len(drops) - 1} pairs of {of_what}")
+    return _trial(part, chosen, drops, ratios, SHORTER)
 
 
-def _over(drop: DropRun) -> str:
-    return f"{np.median(drop.time) / drop.eq_8:.3g}" if drop.parts else "stays, no number"
-
-
-def _deep(drop: DropRun) -> str:
-    return f"{np.median(drop.overlap):.2g}" if drop.parts else "none"
+def _trial(
+    part: str, chosen: Mapping[str, str], drops: Sequence[DropRun], value: Interval, band: Band
+) -> Trial:
+    """A trial that fails where a grain stays and has no contact time."""
+    if all(one.parts for one in drops):
+        return Trial(part, chosen, value, band)
+    return Trial(part, chosen, value, band, False, STAYS)
 
 
 def rows(found: Found, plan: Plan) -> list[dict[str, object]]:

@@ -9,14 +9,19 @@ from matplotlib.figure import Figure
 from ryusa import figures
 from ryusa.laws.collision import collision_time, contact_time_no_tension, contact_time_tension
 from ryusa.studies.osada2004 import _drops
-from ryusa.studies.osada2004._drops import DropRun, Setup
-from ryusa.studies.osada2004._parts import CaseRun, Found, Plan
-from ryusa.study import Band, Finding, Trial, over_range
+from ryusa.studies.osada2004._drops import AT_STEPS, EXACT, NO_TENSION, TENSION, DropRun, Setup
+from ryusa.studies.osada2004._factors import PARTING_RULE, n_settings
+from ryusa.studies.osada2004._parts import PARTING, CaseRun, Found, Plan
+from ryusa.study import Band, Design, Finding, Trial, over_range
 
 FIGURE = "fig5"
 TITLE = "Contact time with e = 0.7 beside Eq. (8)"
 CLAIMS = ("fig5",)
-SPEED, PARTING = "impact speed (fig5)", "parting (fig5)"
+SPEED, TIMING = "impact speed (fig5)", "timing (fig5)"
+SPEEDS = ("0.01 m/s", "0.02 m/s", "0.03 m/s", "0.05 m/s", "0.1 m/s", "0.5 m/s", "1 m/s")
+DESIGN = Design(
+    (_drops.choice(SPEED, _drops.SPEED, *SPEEDS), PARTING_RULE, _drops.choice(TIMING, EXACT, AT_STEPS))
+)
 HARDLY = Band(0.9, 1.1, "-", f"hardly differs: 0.9 to 1.1 of Eq. (8), {_drops.ABOUT}")
 STAYS = "stays on its partner: weight against a soft spring"
 
@@ -27,19 +32,13 @@ def stiffnesses(plan: Plan) -> tuple[float, ...]:
 
 
 def choices(plan: Plan) -> list[dict[str, str]]:
-    """Impact speeds and partings tried, the shipped ones first."""
-    speeds = plan.pick(
-        (_drops.SPEED,),
-        (_drops.SPEED, "0.01 m/s", "0.03 m/s", "0.1 m/s", "1 m/s"),
-        (_drops.SPEED, "0.01 m/s", "0.02 m/s", "0.03 m/s", "0.05 m/s", "0.1 m/s", "0.5 m/s", "1 m/s"),
-    )
-    partings = plan.pick((_drops.NO_TENSION,), (_drops.NO_TENSION, _drops.TENSION))
-    return [{SPEED: speed, PARTING: parting} for parting in partings for speed in speeds]
+    """Settings, the one as shipped first."""
+    return DESIGN.settings(n_settings(plan))
 
 
 def setup(chosen: Mapping[str, str], k_n: float) -> Setup:
     """One drop under a set of choices."""
-    return Setup(k_n=k_n, speed=chosen[SPEED], parting=chosen[PARTING])
+    return Setup(k_n=k_n, speed=chosen[SPEED], parting=chosen[PARTING], timing=chosen[TIMING])
 
 
 def setups(plan: Plan) -> list[Setup]:
@@ -74,9 +73,9 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             continue
         worst = max(drops, key=lambda one: abs(ratio(one) - 1.0))
         trials.append(Trial(part, chosen, worst.over_phases(worst.time / worst.eq_8, "-"), HARDLY))
-    zeta = {name: Setup(parting=name).zeta for name in (_drops.NO_TENSION, _drops.TENSION)}
-    no_pull = contact_time_no_tension(zeta[_drops.NO_TENSION], 1.0) / math.pi
-    pull = contact_time_tension(zeta[_drops.TENSION], 1.0) / math.pi
+    zeta = {name: Setup(parting=name).zeta for name in (NO_TENSION, TENSION)}
+    no_pull = contact_time_no_tension(zeta[NO_TENSION], 1.0) / math.pi
+    pull = contact_time_tension(zeta[TENSION], 1.0) / math.pi
     every = [(one, found[one.task]) for one in setups(plan)]
     slack = [(one.heaviness, float(np.median(drop.e))) for one, drop in every if drop.parts]
     light = sorted((one.heaviness, HARDLY.low <= ratio(drop) <= HARDLY.high) for one, drop in every)
@@ -120,15 +119,19 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
         for chosen in choices(plan)
     }
     runs = [
-        figures.StiffnessPoints(f"run, e = 0.7, {parting}", k, values * law.y, nothing)
-        for (speed, parting), values in ratios.items()
+        figures.StiffnessPoints(f"run, e = 0.7, {parting}, {timing}", k, values * law.y, nothing)
+        for (speed, parting, timing), values in ratios.items()
         if speed == _drops.SPEED
     ]
-    speeds = sorted(
-        (key for key in ratios if key[1] == _drops.NO_TENSION), key=lambda one: float(one[0].split()[0])
-    )
+    alike = [key for key in ratios if key[2] == EXACT or len(ratios) == 1]
     by_speed = [
-        figures.StiffnessPoints(_named(key[0], ratios[key]), k, ratios[key], nothing) for key in speeds
+        figures.StiffnessPoints(
+            _named(f"{speed}, {parting}", ratios[speed, parting, timing]),
+            k,
+            ratios[speed, parting, timing],
+            nothing,
+        )
+        for speed, parting, timing in sorted(alike, key=lambda one: float(one[0].split()[0]))
     ]
     one = figures.StiffnessCurve("Eq. (8)", k, np.ones(len(k)))
     words = f"d = 0.2 cm, impact at {_drops.SPEED}"
@@ -136,6 +139,6 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
         "fig05": figures.drop_chart("time", [law], runs, words=("Eq. (8)", words)),
         "fig05-speed": figures.drop_chart(
             "ratio", [one], by_speed, levels=(HARDLY.low, HARDLY.high), legend="upper right",
-            words=("Eq. (8)", "e = 0.7, no tension, with weight; shaded: 10 %"),
+            words=("Eq. (8)", "e = 0.7, with weight, exact timing; shaded: 10 %"),
         ),
     }  # fmt: skip

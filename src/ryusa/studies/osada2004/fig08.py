@@ -13,19 +13,36 @@ from ryusa.measure.stability import BAND
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
 from ryusa.studies.osada2004 import _drops, _saltation
-from ryusa.studies.osada2004._drops import DropRun, Setup
-from ryusa.studies.osada2004._parts import CaseRun, Found, Plan
-from ryusa.study import Finding, Trial, over_seeds
+from ryusa.studies.osada2004._drops import AT_STEPS, EXACT, DropRun, Setup
+from ryusa.studies.osada2004._factors import PARTING_RULE, n_settings
+from ryusa.studies.osada2004._parts import PARTING, CaseRun, Found, Plan
+from ryusa.study import Band, Design, Finding, Trial, over_range, over_seeds
 from ryusa.units import quantity
 
 FIGURE = "fig8"
 TITLE = "Largest overlap against stiffness"
-CLAIMS = ("fig8",)
-SPEED, E = "impact speed (fig8)", "restitution (fig8)"
+CLAIMS = ("fig8", "fig8-through")
+SPEED, E, TIMING = "impact speed (fig8)", "restitution (fig8)", "timing (fig8)"
+FASTER = ("0.1 m/s", "0.2 m/s", "0.5 m/s", "0.6 m/s", "0.7 m/s", "0.8 m/s", "1 m/s", "2 m/s")
+DESIGN = Design(
+    (
+        _drops.choice(SPEED, _drops.SPEED, *FASTER),
+        _drops.choice(E, "0.7", "1"),
+        PARTING_RULE,
+        _drops.choice(TIMING, EXACT, AT_STEPS),
+    )
+)
 K_N = 100.0  # the paper's spring [N/cm]
 MEAN, HARDEST = "of a saltating grain, mean", "of a saltating grain, hardest"
 QUOTED = _drops.near(0.01, "-", "0.01 at about 100 N/cm")
 PART = "largest overlap/d, d = 0.2 cm, k_n = 100 N/cm"
+WEAK = 0.01  # the spring that the paper calls weak [N/cm]
+LADDER = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 100.0)  # [N/cm]
+PASSED = 0.95  # overlap/d; a step takes a grain 0.1 d at most, so one that passes is seen within half of it
+GREATLY = Band(0.1, np.inf, "-", "overlap greatly: ten times the 0.01 that the paper finds safe, or more")
+WEAK_ONES = Band(
+    WEAK, K_N, "N/cm", f"weak springs: {WEAK:g} N/cm, which the paper calls weak, to its stable {K_N:g} N/cm"
+)
 
 
 @dataclass(frozen=True)
@@ -47,28 +64,21 @@ def chart(plan: Plan) -> list[Setup]:
 
 
 def choices(plan: Plan) -> list[dict[str, str]]:
-    """Impact speeds with and without loss, the shipped one first, and what a saltating grain does."""
-    speeds = plan.pick(
-        (_drops.SPEED,),
-        (_drops.SPEED, "0.1 m/s", "0.2 m/s", "0.5 m/s", "0.6 m/s", "0.7 m/s", "0.8 m/s", "1 m/s", "2 m/s"),
+    """Settings, the one as shipped first."""
+    return DESIGN.settings(n_settings(plan))
+
+
+def setup(chosen: Mapping[str, str], k_n: float = K_N) -> Setup:
+    """The drop of a setting, at the paper's spring or another."""
+    return Setup(
+        k_n=k_n, speed=chosen[SPEED], e=float(chosen[E]), parting=chosen[PARTING], timing=chosen[TIMING]
     )
-    sets = [{SPEED: speed, E: e} for e in plan.pick(("0.7",), ("0.7", "1")) for speed in speeds]
-    return [*sets, {SPEED: MEAN, E: "0.7"}, {SPEED: HARDEST, E: "0.7"}]
-
-
-def setup(chosen: Mapping[str, str]) -> Setup:
-    """The drop at the paper's spring."""
-    return Setup(k_n=K_N, speed=chosen[SPEED], e=float(chosen[E]))
-
-
-def dropped(plan: Plan) -> list[dict[str, str]]:
-    """Choices that are drops."""
-    return [one for one in choices(plan) if one[SPEED] not in (MEAN, HARDEST)]
 
 
 def setups(plan: Plan) -> list[Setup]:
     """Every drop."""
-    return list(dict.fromkeys([setup(one) for one in dropped(plan)] + chart(plan)))
+    ladders = [setup(chosen, k_n) for chosen in choices(plan) for k_n in LADDER]
+    return list(dict.fromkeys([*ladders, *chart(plan)]))
 
 
 def saltating(plan: Plan) -> list[CaseRun]:
@@ -92,13 +102,14 @@ def measure(run: Results, one: CaseRun) -> DropRun | Hits:
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """0.01 at 100 N/cm, by impact speed."""
     trials: list[Trial] = []
-    for chosen in dropped(plan):
+    for chosen in choices(plan):
         drop: DropRun = found[setup(chosen).task]
         trials.append(Trial(PART, chosen, drop.over_phases(drop.overlap, "-"), QUOTED))
     hits: list[Hits] = [found[one] for one in saltating(plan)]
+    beside: list[Trial] = []
     for word, pick in ((MEAN, np.mean), (HARDEST, np.max)):
         values = over_seeds([float(pick(one.overlap)) for one in hits], "-")
-        trials.append(Trial(PART, {SPEED: word, E: "0.7"}, values, QUOTED))
+        beside.append(Trial(PART, {**DESIGN.base, SPEED: word}, values, QUOTED))
     base = trials[0].found.value
     wanted = quantity(_drops.SPEED, "m/s") * 0.01 / base
     speed = np.concatenate([one.speed for one in hits])
@@ -110,14 +121,46 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             f"At 100 N/cm it is {base:.4f} for {_drops.SPEED}, so 0.01 requires {wanted:.2f} m/s, a fall "
             f"of {100.0 * wanted**2 / 19.6:.1f} cm in air; a saltating grain hits the bed with "
             f"{speed.mean():.2f} m/s along the normal on average and {speed.max():.2f} m/s at most.",
-            {"d": _drops.DIAMETER, "k_n": "100 N/cm", "parting": _drops.NO_TENSION},
+            {"d": _drops.DIAMETER, "k_n": "100 N/cm"},
             also=(
                 f"at {_drops.SPEED} an overlap of 0.01 d requires {K_N * (base / 0.01) ** 2:.0f} N/cm",
                 f"{100.0 * np.mean(speed >= wanted):.0f} % of the {len(speed)} hits of the saltating grain "
                 f"are at {wanted:.2f} m/s or more",
             ),
+            beside=tuple(beside),
         ),
+        _through(found, plan),
     )
+
+
+def _through(found: Found, plan: Plan) -> Finding:
+    """Deep overlap on the weak spring, and the stiffest spring on which a grain passes."""
+    trials: list[Trial] = []
+    for chosen in choices(plan):
+        ladder: list[DropRun] = [found[setup(chosen, k_n).task] for k_n in LADDER]
+        weak = ladder[LADDER.index(WEAK)]
+        deep = over_range(list(weak.overlap), "-", f"{len(weak.overlap)} phases of first touch")
+        trials.append(Trial("largest overlap/d, d = 0.2 cm, k_n = 0.01 N/cm", chosen, deep, GREATLY))
+        trials.append(_limit(chosen, [bool((one.overlap >= PASSED).any()) for one in ladder]))
+    return Finding(
+        "fig8-through",
+        tuple(trials),
+        "A grain passes where the spring cannot stop it within a diameter. The overlap grows with impact "
+        "speed over the root of the stiffness, so the limit goes with the square of the speed; on the "
+        "softest springs its weight adds to it.",
+        {"d": _drops.DIAMETER, "partner": "fixed, hit head-on"},
+    )
+
+
+def _limit(chosen: Mapping[str, str], passes: Sequence[bool]) -> Trial:
+    """The stiffest spring of the ladder on which a grain passes, up to the next stiffer one."""
+    part = "stiffest spring on which a grain passes"
+    last = max((k for k, one in enumerate(passes) if one), default=-1)
+    if last < 0:
+        none = over_range([np.nan], "N/cm", f"ladder of {len(LADDER)} springs")
+        return Trial(part, chosen, none, WEAK_ONES, False, f"passes on none, down to {LADDER[0]:g} N/cm")
+    ends = LADDER[last : last + 2]
+    return Trial(part, chosen, over_range(list(ends), "N/cm", "a spring and the next stiffer"), WEAK_ONES)
 
 
 def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
@@ -140,10 +183,9 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
             )
         )
     by_speed = []
-    for e in dict.fromkeys(one[E] for one in dropped(plan)):
-        at = sorted(
-            (found[setup(one).task] for one in dropped(plan) if one[E] == e), key=lambda r: r.speed[0]
-        )
+    for e in dict.fromkeys(one[E] for one in choices(plan)):
+        drops = (found[setup(one).task] for one in choices(plan) if one[E] == e)
+        at = sorted((one for one in drops if one.parts), key=lambda r: r.speed[0])
         speeds, overlaps = (
             np.array([np.median(getattr(r, name)) for r in at]) for name in ("speed", "overlap")
         )

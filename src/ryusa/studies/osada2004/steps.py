@@ -11,21 +11,29 @@ from ryusa.engine.forward_euler import restitution
 from ryusa.measure.statistics import Floats
 from ryusa.studies.osada2004 import _drops
 from ryusa.studies.osada2004._drops import AT_STEPS, COPIES, NO_TENSION, TENSION, DropRun, Setup
-from ryusa.studies.osada2004._parts import CaseRun, Found, Plan
-from ryusa.study import Band, Finding, Interval, Trial, over_range
+from ryusa.studies.osada2004._factors import PARTING_RULE, n_settings
+from ryusa.studies.osada2004._parts import PARTING, CaseRun, Found, Plan
+from ryusa.study import Band, Design, Finding, Interval, Trial, over_range
 
 FIGURE = "steps"
 TITLE = "Steps per contact against abnormal rebound"
 CLAIMS = ("steps",)
-SCHEME, PARTING = "time scheme (steps)", "parting (steps)"
+SCHEME, RESTITUTION = "time scheme (steps)", "restitution (steps)"
 OURS = "semi-implicit"
 EULER = "forward differences, spring from overlap"
 SUMMED = "forward differences, spring summed as in Eq. (1)"
 E, LEAST = 0.7, 10.0
+DESIGN = Design(
+    (
+        _drops.choice(SCHEME, OURS, EULER, SUMMED),
+        PARTING_RULE,
+        _drops.choice(RESTITUTION, "0.7", "0.6", "0.8"),
+    )
+)
 OFF = (
     0.05  # restitution off by more is abnormal: half of what the paper's 0.6 to 0.8 for sand leaves about 0.7
 )
-NORMAL = Band(0.0, OFF, "-", f"no abnormal rebound: e off by at most {OFF:g} from the 0.7 of the case")
+NORMAL = Band(0.0, OFF, "-", f"no abnormal rebound: e off by at most {OFF:g} from that of the case")
 ABNORMAL = Band(OFF, math.inf, "-", f"abnormal rebound: e off by more than {OFF:g} in some contact")
 
 
@@ -40,10 +48,12 @@ def partings(plan: Plan) -> tuple[str, ...]:
 
 
 def setups(plan: Plan) -> list[Setup]:
-    """One drop per number of steps and way to part."""
+    """One drop per number of steps, way to part and restitution that our scheme is run with."""
+    ours = {(one[PARTING], float(one[RESTITUTION])) for one in choices(plan) if one[SCHEME] == OURS}
+    drawn = {(parting, E) for parting in partings(plan)}
     return [
-        Setup(parting=parting, steps=steps, timing=AT_STEPS)
-        for parting in partings(plan)
+        Setup(parting=parting, e=e, steps=steps, timing=AT_STEPS)
+        for parting, e in sorted(ours | drawn)
         for steps in counts(plan)
     ]
 
@@ -56,44 +66,44 @@ def tasks(plan: Plan) -> Sequence[CaseRun]:
 measure = _drops.measure
 
 
-def forward(steps: float, parting: str, summed: bool) -> Floats:
+def forward(steps: float, parting: str, summed: bool, e: float = E) -> Floats:
     """Restitution of one drop by forward differences, by phase of first touch [-].
 
     Parameters
     ----------
     steps : steps in the shortest contact, as for the runs.
     parting : whether the dashpot may pull.
+    e : restitution in the limit of small steps.
     summed : True adds k_n v dt in every step in touch, Eq. (1) as printed; False reads the overlap.
 
     Notes
     -----
     Mass, natural frequency and impact speed are 1.
     """
-    drop = Setup(parting=parting)
+    drop = Setup(parting=parting, e=e)
     dt = drop.shortest * math.sqrt(drop.stiffness / drop.m) / steps
     starts = -(np.arange(COPIES) + 0.5) / COPIES * dt
     n_steps, tension = int(20.0 * steps) + 20, parting == TENSION
     return np.array([restitution(x, drop.zeta, dt, n_steps, summed, tension) for x in starts])
 
 
-def rebound(found: Found, scheme: str, parting: str, steps: float) -> Floats:
+def rebound(found: Found, scheme: str, parting: str, steps: float, e: float = E) -> Floats:
     """Restitution by phase [-]; nan for a copy that never comes off."""
     if scheme != OURS:
-        return forward(steps, parting, scheme == SUMMED)
-    drop: DropRun = found[Setup(parting=parting, steps=steps, timing=AT_STEPS).task]
+        return forward(steps, parting, scheme == SUMMED, e)
+    drop: DropRun = found[Setup(parting=parting, steps=steps, e=e, timing=AT_STEPS).task]
     return np.concatenate([drop.e, np.full(drop.copies - len(drop.e), np.nan)])
 
 
 def choices(plan: Plan) -> list[dict[str, str]]:
-    """Schemes and ways to part; ours without tension first."""
-    return [
-        {SCHEME: scheme, PARTING: parting} for scheme in (OURS, EULER, SUMMED) for parting in partings(plan)
-    ]
+    """Settings, the one as shipped first."""
+    return DESIGN.settings(n_settings(plan))
 
 
 def farthest(found: Found, chosen: Mapping[str, str], steps: Sequence[float]) -> Interval:
     """How far e is off at worst over phases, and over these numbers of steps."""
-    worst = [np.abs(rebound(found, chosen[SCHEME], chosen[PARTING], one) - E).max() for one in steps]
+    e = float(chosen[RESTITUTION])
+    worst = [np.abs(rebound(found, chosen[SCHEME], chosen[PARTING], one, e) - e).max() for one in steps]
     return over_range([float(np.max(worst))], "-", f"worst of {COPIES} phases of first touch")
 
 
@@ -119,7 +129,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             "faster than they approached. The semi-implicit scheme, velocity first and then position, adds "
             "none; nor does a spring force summed as in Eq. (1), which is one step ahead of the overlap, "
             f"unless the dashpot may pull. At ten steps e is: {', '.join(words)}.",
-            {"restitution": "0.7", "k_n": "100 N/cm", "fewest steps": "5; the case reader refuses fewer"},
+            {"k_n": "100 N/cm", "fewest steps": "5; the case reader refuses fewer"},
             also=tuple(_needed(scheme, name) for scheme in (EULER, SUMMED) for name in (NO_TENSION, TENSION)),
         ),
     )
@@ -146,7 +156,7 @@ def rows(found: Found, plan: Plan) -> list[dict[str, object]]:
         {**chosen, "steps_per_contact": steps, "e_lowest": e.min(), "e_mean": e.mean(), "e_highest": e.max()}
         for chosen in choices(plan)
         for steps in counts(plan)
-        for e in [rebound(found, chosen[SCHEME], chosen[PARTING], steps)]
+        for e in [rebound(found, chosen[SCHEME], chosen[PARTING], steps, float(chosen[RESTITUTION]))]
     ]
 
 
