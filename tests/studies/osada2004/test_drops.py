@@ -27,7 +27,7 @@ def ideal(one, time=1.0, overlap=1.0, e=None, copies=20, ended=20):
     return DropRun(
         d=quantity(one.d, "m"), k_n=one.stiffness, eq_8=eq_8, copies=copies, time=time * eq_8 * each,
         overlap=overlap * deep * each, speed=quantity(one.speed, "m/s") * each,
-        e=(one.e if e is None else e) * each,
+        e=(one.e if e is None else e) * each, passed=copies if overlap * deep > 1.0 else 0,
     )  # fmt: skip
 
 
@@ -206,3 +206,15 @@ def test_the_runs_of_steps_keep_restitution_at_ten_and_lose_it_at_five(tmp_path)
     assert np.ptp(at[50.0].e) > 0.0  # the copies touch at different phases
     for picture in steps.draw(found, QUICK).values():
         picture.canvas.draw()
+
+
+def test_a_run_on_a_very_weak_spring_passes_and_one_on_a_firm_spring_does_not(tmp_path):
+    drops = [
+        Setup(k_n=0.001),
+        Setup(k_n=0.02),
+        Setup(k_n=0.02, speed="2 m/s"),
+        Setup(k_n=100.0, speed="2 m/s"),
+    ]
+    campaign = carry_out({"fig08": [one.task for one in drops]}, load, tmp_path)
+    assert not campaign.problems
+    assert [campaign.found["fig08"][one.task].passed for one in drops] == [20, 0, 20, 0]

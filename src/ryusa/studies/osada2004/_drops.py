@@ -34,6 +34,7 @@ FARTHEST = 0.1  # diameters that a grain may move in a step, on springs so soft 
 SIZES = ("0.05 cm", "0.1 cm", "0.2 cm", "0.5 cm", "1 cm")  # of fig4, fig8, fig11
 LARGE = ("5 cm", "10 cm", "20 cm", "50 cm", "100 cm")  # of fig12
 A_3 = math.pi / 6.0
+FALL = 8.0  # diameters that a grain which passes may fall on; the world ends ten below
 LATE = 4.0  # contact times after which a grain that still touches counts as one that stays
 ABOUT = "within 10 %, the accuracy of reading a chart whose axes span decades"
 
@@ -61,6 +62,7 @@ class DropRun:
     overlap: Floats  # largest overlap over d [-]
     speed: Floats  # closing speed at first touch [m/s]
     e: Floats  # parting over closing speed [-]
+    passed: int = 0  # copies whose centre ends below that of a fixed partner
 
     @property
     def parts(self) -> bool:
@@ -136,13 +138,27 @@ class Setup:
         return 9.8 / (quantity(self.speed, "m/s") * omega_natural(self.stiffness, self.m))
 
     @property
+    def stop(self) -> float:
+        """End of the run [s]: late for a contact, but a grain that passes is still in the world."""
+        d, speed = quantity(self.d, "m"), quantity(self.speed, "m/s")
+        g = 9.8 if self.weight else 0.0
+        late = LATE * collision_time(self.m, self.stiffness) + 2.0 * self.step
+        if self.deepest + 2.0 * g * self.m / (self.stiffness * d) < 0.5:
+            return late
+        way = FALL * d
+        return min(late, 2.0 * way / (speed + math.sqrt(speed**2 + 2.0 * g * way)))
+
+    @property
+    def step(self) -> float:
+        """Time step [s]."""
+        in_contact = self.shortest / self.steps * (1.0 - 1.0e-9)  # the case reader compares with its own
+        return min(in_contact, FARTHEST * quantity(self.d, "m") / quantity(self.speed, "m/s"))
+
+    @property
     def task(self) -> CaseRun:
         """The run."""
-        eq_8 = collision_time(self.m, self.stiffness)
-        d, speed = quantity(self.d, "m"), quantity(self.speed, "m/s")
-        in_contact = self.shortest / self.steps * (1.0 - 1.0e-9)  # the case reader compares with its own
-        dt = min(in_contact, FARTHEST * d / speed)
-        way = speed * dt
+        dt = self.step
+        way = quantity(self.speed, "m/s") * dt
         asked = {
             "grains.diameter": self.d,
             "grains.density": self.density,
@@ -157,14 +173,14 @@ class Setup:
             "build.speed": self.speed,
             "build.height": f"{way:.6g} m",
             "build.height_step": f"{way / COPIES:.6g} m",
-            "stop.time": f"{LATE * eq_8 + 2.0 * dt:.6g} s",
-            "record.frames": f"{LATE * eq_8 + 2.0 * dt:.6g} s",
+            "stop.time": f"{self.stop:.6g} s",
+            "record.frames": f"{self.stop:.6g} s",
         }
         changed = {key: text for key, text in asked.items() if _SHIPPED.get(key) != text}
         if self.one_dashpot:
             changed.pop("contact.restitution", None)
             changed["contact.damping"] = f"{damping(self.zeta, self.stiffness, self.m):.9g} N s/m"
-        if self.steps != STEPS or dt < in_contact:
+        if self.steps != STEPS or dt < self.shortest / STEPS * (1.0 - 2.0e-9):
             changed["time.step"] = f"{dt:.12g} s"
         return paper_run(CASE, changed)
 
@@ -185,7 +201,13 @@ def measure(run: Results, one: CaseRun) -> DropRun:
         overlap=found.overlap[first],
         speed=found.speed[first],
         e=found.restitution[first],
+        passed=0 if partner is not None else _passed(run, copies),
     )
+
+
+def _passed(run: Results, copies: int) -> int:
+    """Copies that end below the centres of the fixed grains."""
+    return int(np.sum(run.frames[-1].x[:copies, 2] < 0.5 * run.scene.d[:copies]))
 
 
 def choice(name: str, *levels: str) -> Factor:

@@ -38,7 +38,6 @@ QUOTED = _drops.near(0.01, "-", "0.01 at about 100 N/cm")
 PART = "largest overlap/d, d = 0.2 cm, k_n = 100 N/cm"
 WEAK = 0.01  # the spring that the paper calls weak [N/cm]
 LADDER = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 100.0)  # [N/cm]
-PASSED = 0.95  # overlap/d; a step takes a grain 0.1 d at most, so one that passes is seen within half of it
 GREATLY = Band(0.1, np.inf, "-", "overlap greatly: ten times the 0.01 that the paper finds safe, or more")
 WEAK_ONES = Band(
     WEAK, K_N, "N/cm", f"weak springs: {WEAK:g} N/cm, which the paper calls weak, to its stable {K_N:g} N/cm"
@@ -141,7 +140,7 @@ def _through(found: Found, plan: Plan) -> Finding:
         weak = ladder[LADDER.index(WEAK)]
         deep = over_range(list(weak.overlap), "-", f"{len(weak.overlap)} phases of first touch")
         trials.append(Trial("largest overlap/d, d = 0.2 cm, k_n = 0.01 N/cm", chosen, deep, GREATLY))
-        trials.append(_limit(chosen, [bool((one.overlap >= PASSED).any()) for one in ladder]))
+        trials.append(_limit(chosen, [one.passed > 0 for one in ladder]))
     return Finding(
         "fig8-through",
         tuple(trials),
