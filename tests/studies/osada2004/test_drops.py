@@ -215,6 +215,7 @@ def test_a_run_on_a_very_weak_spring_passes_and_one_on_a_firm_spring_does_not(tm
         Setup(k_n=0.02, speed="2 m/s"),
         Setup(k_n=100.0, speed="2 m/s"),
     ]
-    campaign = carry_out({"fig08": [one.task for one in drops]}, load, tmp_path)
+    slow = Setup(k_n=0.001, speed="0.1 m/s")  # falls on faster than it hits
+    campaign = carry_out({"fig08": [one.task for one in [*drops, slow]]}, load, tmp_path)
     assert not campaign.problems
     assert [campaign.found["fig08"][one.task].passed for one in drops] == [20, 0, 20, 0]

@@ -138,21 +138,29 @@ class Setup:
         return 9.8 / (quantity(self.speed, "m/s") * omega_natural(self.stiffness, self.m))
 
     @property
+    def may_pass(self) -> bool:
+        """Whether the spring alone lets the grain half a diameter into its partner, or more."""
+        d, g = quantity(self.d, "m"), 9.8 if self.weight else 0.0
+        return self.deepest + 2.0 * g * self.m / (self.stiffness * d) >= 0.5
+
+    @property
+    def fastest(self) -> float:
+        """Speed that the step must follow [m/s]: of the impact, or after the fall of a grain that passes."""
+        speed, g = quantity(self.speed, "m/s"), 9.8 if self.weight else 0.0
+        return math.sqrt(speed**2 + 2.0 * g * FALL * quantity(self.d, "m")) if self.may_pass else speed
+
+    @property
     def stop(self) -> float:
         """End of the run [s]: late for a contact, but a grain that passes is still in the world."""
-        d, speed = quantity(self.d, "m"), quantity(self.speed, "m/s")
-        g = 9.8 if self.weight else 0.0
         late = LATE * collision_time(self.m, self.stiffness) + 2.0 * self.step
-        if self.deepest + 2.0 * g * self.m / (self.stiffness * d) < 0.5:
-            return late
-        way = FALL * d
-        return min(late, 2.0 * way / (speed + math.sqrt(speed**2 + 2.0 * g * way)))
+        fall = 2.0 * FALL * quantity(self.d, "m") / (quantity(self.speed, "m/s") + self.fastest)
+        return min(late, fall) if self.may_pass else late
 
     @property
     def step(self) -> float:
         """Time step [s]."""
         in_contact = self.shortest / self.steps * (1.0 - 1.0e-9)  # the case reader compares with its own
-        return min(in_contact, FARTHEST * quantity(self.d, "m") / quantity(self.speed, "m/s"))
+        return min(in_contact, FARTHEST * quantity(self.d, "m") / self.fastest)
 
     @property
     def task(self) -> CaseRun:
