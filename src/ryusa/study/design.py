@@ -3,11 +3,12 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from itertools import product
 
 from scipy.stats import qmc
 
-SEED = 1  # of the scrambled sequence, so that a larger design contains a smaller one
+BLOCK = 16  # points of a hypercube
 
 
 @dataclass(frozen=True)
@@ -60,40 +61,37 @@ class Design:
 
         Parameters
         ----------
-        n : 0, or a power of two.
+        n : 0, or a multiple of `BLOCK`.
 
         Returns
         -------
-        Settings without repetition: fewer than n + 1 if points of the sequence fall on the same levels, and
-        every combination if there are at most n + 1.
+        Settings without repetition: fewer than n + 1 if points fall on the same levels, and every combination
+        if there are at most n + 1.
 
         Raises
         ------
-        ValueError : n is not a power of two.
+        ValueError : n is no such number.
 
         Notes
         -----
-        Points of a scrambled Sobol sequence (Sobol 1967, USSR Comput. Math. Math. Phys. 7, 86; Owen 1998, ACM
-        Trans. Model. Comput. Simul. 8, 71), each coordinate cut into as many equal parts as its factor has
-        levels. The first n points of a power of two put the levels of each factor to use equally often (but
-        for one), and those of most pairs of factors. A larger design contains a smaller one.
+        Latin hypercubes of `BLOCK` points (McKay, Beckman & Conover 1979, Technometrics 21, 239), each of the
+        least centred discrepancy found by exchanges of coordinates. A coordinate is cut into as many equal
+        parts as its factor has levels. So each level of a factor is used equally often, but for one, in every
+        block, and pairs of levels nearly so. A larger design contains a smaller one.
 
         >>> design = Design((Factor("slip", {"spring": {}, "total": {"contact.slip": "total"}}),))
-        >>> design.settings(4)
+        >>> design.settings(16)
         [{'slip': 'spring'}, {'slip': 'total'}]
         """
-        if n == 0:
-            return [self.base]
-        power = round(math.log2(n))
-        if n != 2**power:
-            raise ValueError(f"n = {n} must be 0 or a power of two")
+        if n % BLOCK != 0 or n < 0:
+            raise ValueError(f"n = {n} must be 0 or a multiple of {BLOCK}")
         names, levels = zip(*self.levels.items(), strict=True)
-        if math.prod(map(len, levels)) <= n + 1:
+        if n > 0 and math.prod(map(len, levels)) <= n + 1:
             return [dict(zip(names, chosen, strict=True)) for chosen in product(*levels)]
-        points = qmc.Sobol(len(levels), rng=SEED).random_base2(power)
         sets = [
             {name: values[int(u * len(values))] for name, values, u in zip(names, levels, point, strict=True)}
-            for point in points
+            for block in range(n // BLOCK)
+            for point in _points(len(levels), block)
         ]
         return _distinct([self.base, *sets])
 
@@ -105,6 +103,15 @@ class Design:
             if one.name in chosen
             for key, value in one.levels[chosen[one.name]].items()
         }
+
+
+@cache
+def _points(factors: int, block: int) -> tuple[tuple[float, ...], ...]:
+    """Points of one block in the unit cube."""
+    points = qmc.LatinHypercube(factors, rng=block + 1, scramble=False, optimization="random-cd").random(
+        BLOCK
+    )
+    return tuple(tuple(float(u) for u in one) for one in points)
 
 
 def _distinct(sets: Sequence[dict[str, str]]) -> list[dict[str, str]]:
