@@ -93,7 +93,7 @@ walls: $(HAS_TESTS) ## import-linter: which room may see which
 unit: $(HAS_TESTS) ## pytest: doctests in src, tests in tests
 	$(BIN)/python -m pytest -q -n $(JOBS)
 
-paper: $(HAS_RYUSA) ## every claim of the paper, judged over three seeds: runs/paper/ledger.html
+paper: $(HAS_RYUSA) ## every claim of the paper, judged over four seeds: runs/paper/ledger.html
 	$(BIN)/ryusa paper --jobs $(JOBS)
 
 paper-quick: $(HAS_TESTS) ## every claim of the paper in minutes, indicative; refuses a ledger with a gap

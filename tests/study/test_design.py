@@ -43,10 +43,11 @@ def test_few_combinations_are_all_tried_the_one_as_shipped_first():
     assert sets[0] == {"a": "0", "b": "0"}
 
 
-def test_a_number_of_settings_that_is_not_whole_blocks_is_refused():
-    with pytest.raises(ValueError, match="n = 12 must be 0 or a multiple of 16"):
-        MANY.settings(12)
+def test_a_number_of_settings_that_is_neither_one_block_nor_whole_blocks_is_refused():
+    with pytest.raises(ValueError, match="n = 24 must be at most 16 or a multiple of it"):
+        MANY.settings(24)
     assert MANY.settings(0) == [MANY.base]
+    assert len(MANY.settings(8)) == 9
 
 
 def test_a_setting_changes_the_keys_of_its_levels_alone():

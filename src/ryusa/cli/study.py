@@ -121,15 +121,15 @@ def finish(ledger: "Ledger", files: Sequence[Path], out: Path) -> None:
     report_failures(ledger.problems, ledger.faults, ledger.traces, out / ledger.log)
 
 
-def plan_of(quick: bool, full: bool, seeds: str | None) -> "Plan":
-    """Level and seeds from the options."""
+def plan_of(quick: bool, full: bool, seeds: str | None, count: int = 3) -> "Plan":
+    """Level and seeds from the options; `count` seeds if none are given."""
     from ryusa.errors import CaseError
     from ryusa.study import Level, Plan
 
     if quick and full:
         raise CaseError("--quick", None, "cannot be combined with --full")
     level = Level.QUICK if quick else Level.FULL if full else Level.STANDARD
-    return Plan(level, tuple(range(1, 2 if quick else 4)) if seeds is None else _seeds(seeds))
+    return Plan(level, tuple(range(1, 2 if quick else count + 1)) if seeds is None else _seeds(seeds))
 
 
 def _seeds(text: str) -> tuple[int, ...]:

@@ -61,7 +61,7 @@ class Design:
 
         Parameters
         ----------
-        n : 0, or a multiple of `BLOCK`.
+        n : at most `BLOCK`, or a multiple of it.
 
         Returns
         -------
@@ -77,21 +77,22 @@ class Design:
         Latin hypercubes of `BLOCK` points (McKay, Beckman & Conover 1979, Technometrics 21, 239), each of the
         least centred discrepancy found by exchanges of coordinates. A coordinate is cut into as many equal
         parts as its factor has levels. So each level of a factor is used equally often, but for one, in every
-        block, and pairs of levels nearly so. A larger design contains a smaller one.
+        block, and pairs of levels nearly so. A larger design of whole
+        blocks contains a smaller one.
 
         >>> design = Design((Factor("slip", {"spring": {}, "total": {"contact.slip": "total"}}),))
         >>> design.settings(16)
         [{'slip': 'spring'}, {'slip': 'total'}]
         """
-        if n % BLOCK != 0 or n < 0:
-            raise ValueError(f"n = {n} must be 0 or a multiple of {BLOCK}")
+        if n < 0 or (n > BLOCK and n % BLOCK != 0):
+            raise ValueError(f"n = {n} must be at most {BLOCK} or a multiple of it")
         names, levels = zip(*self.levels.items(), strict=True)
         if n > 0 and math.prod(map(len, levels)) <= n + 1:
             return [dict(zip(names, chosen, strict=True)) for chosen in product(*levels)]
         sets = [
             {name: values[int(u * len(values))] for name, values, u in zip(names, levels, point, strict=True)}
-            for block in range(n // BLOCK)
-            for point in _points(len(levels), block)
+            for block in range(-(-n // BLOCK))
+            for point in _points(len(levels), min(n, BLOCK), block)
         ]
         return _distinct([self.base, *sets])
 
@@ -106,12 +107,10 @@ class Design:
 
 
 @cache
-def _points(factors: int, block: int) -> tuple[tuple[float, ...], ...]:
-    """Points of one block in the unit cube."""
-    points = qmc.LatinHypercube(factors, rng=block + 1, scramble=False, optimization="random-cd").random(
-        BLOCK
-    )
-    return tuple(tuple(float(u) for u in one) for one in points)
+def _points(factors: int, n: int, block: int) -> tuple[tuple[float, ...], ...]:
+    """Points of one block of n in the unit cube."""
+    cube = qmc.LatinHypercube(factors, rng=block + 1, scramble=False, optimization="random-cd")
+    return tuple(tuple(float(u) for u in one) for one in cube.random(n))
 
 
 def _distinct(sets: Sequence[dict[str, str]]) -> list[dict[str, str]]:

@@ -11,8 +11,8 @@ class Level(StrEnum):
     """Extent of a study."""
 
     QUICK = "quick"  # the case files as they ship, one seed: indicative
-    STANDARD = "standard"  # three seeds and the sweeps that decide a verdict
-    FULL = "full"  # every sweep
+    STANDARD = "standard"  # several seeds, and the settings that decide a verdict
+    FULL = "full"  # more settings
 
 
 @dataclass(frozen=True)
