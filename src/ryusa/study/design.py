@@ -77,8 +77,8 @@ class Design:
         Latin hypercubes of `BLOCK` points (McKay, Beckman & Conover 1979, Technometrics 21, 239), each of the
         least centred discrepancy found by exchanges of coordinates. A coordinate is cut into as many equal
         parts as its factor has levels. So each level of a factor is used equally often, but for one, in every
-        block, and pairs of levels nearly so. A larger design of whole
-        blocks contains a smaller one.
+        block, and pairs of levels nearly so. A larger design
+        contains a smaller one; one of less than a block has its first points.
 
         >>> design = Design((Factor("slip", {"spring": {}, "total": {"contact.slip": "total"}}),))
         >>> design.settings(16)
@@ -92,7 +92,7 @@ class Design:
         sets = [
             {name: values[int(u * len(values))] for name, values, u in zip(names, levels, point, strict=True)}
             for block in range(-(-n // BLOCK))
-            for point in _points(len(levels), min(n, BLOCK), block)
+            for point in _points(len(levels), block)[: min(n, BLOCK)]
         ]
         return _distinct([self.base, *sets])
 
@@ -107,10 +107,10 @@ class Design:
 
 
 @cache
-def _points(factors: int, n: int, block: int) -> tuple[tuple[float, ...], ...]:
-    """Points of one block of n in the unit cube."""
+def _points(factors: int, block: int) -> tuple[tuple[float, ...], ...]:
+    """Points of one block in the unit cube."""
     cube = qmc.LatinHypercube(factors, rng=block + 1, scramble=False, optimization="random-cd")
-    return tuple(tuple(float(u) for u in one) for one in cube.random(n))
+    return tuple(tuple(float(u) for u in one) for one in cube.random(BLOCK))
 
 
 def _distinct(sets: Sequence[dict[str, str]]) -> list[dict[str, str]]:
