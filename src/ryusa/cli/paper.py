@@ -131,7 +131,7 @@ def _print(ledger: "Ledger") -> None:
         more = f" (and {len(parts) - 1} more on the page)" if len(parts) > 1 else ""
         ours = parts[0] + more if parts and parts[0] else "not judged, see below" if entry.problem else "-"
         condition = "" if finding is None else finding.condition
-        verdict = ledger.study.words[entry.outcome]
+        verdict = ledger.study.verdict(entry.id, entry.outcome)
         table.add_row(entry.id, "verdict", f"{verdict} {escape(condition)}".strip())
         table.add_row("", "paper", escape(ledger.study.about(entry.id)["statement"]))
         table.add_row("", "ours", escape(ours))

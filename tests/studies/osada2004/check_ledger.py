@@ -5,6 +5,7 @@ from pathlib import Path
 
 from ryusa.studies.osada2004.claims import CLAIMS
 from ryusa.studies.osada2004.study import PAPER
+from ryusa.study import Outcome
 from ryusa.study.kept import read_ledger
 
 
@@ -23,8 +24,10 @@ def faults(ledger):
 
 
 def _of_row(row):
-    if row["verdict"] not in set(PAPER.words.values()):
+    if row["verdict"] != PAPER.verdict(row["id"], Outcome(row["outcome"])):
         yield f"verdict {row['verdict']!r} is none of ours"
+    if row["registered"] is None:
+        yield "is judged without a registration"
     if not row["trials"]:
         yield "has no number"
     for one in row["trials"]:

@@ -12,6 +12,7 @@ from ryusa.studies.osada2004.claims import CLAIMS
 from ryusa.studies.osada2004.paper import CITATION
 from ryusa.study import Finding, Outcome, Study, StudyPart
 from ryusa.study.page import interval
+from ryusa.study.registration import Registration
 
 # What the paper left open, the claims whose runs answer it, and a word in what they say of it ("" is all).
 QUESTIONS = (
@@ -32,6 +33,13 @@ QUESTIONS = (
 )
 
 
+# Words for what is no claim: the paper supposes it, or proposes it.
+OF_KIND: Mapping[str, Mapping[Outcome, str]] = {
+    "conjecture": {Outcome.HOLDS: "conjecture holds", Outcome.FAILS: "conjecture does not hold"},
+    "proposal": {Outcome.HOLDS: "proposal works", Outcome.FAILS: "proposal falls short"},
+}
+
+
 class PaperStudy(Study):
     """Every experiment that answers the paper, with the words of its page."""
 
@@ -47,6 +55,7 @@ class PaperStudy(Study):
         Outcome.UNDECIDED: "undecided (spread)",
         Outcome.SHOWN: "shown",
     }
+    registration = Registration.read(Path(__file__).with_name("registration"))
     template = Path(__file__).with_name("paper.html")
 
     def part(self, name: str) -> StudyPart:
@@ -68,6 +77,11 @@ class PaperStudy(Study):
             "left_open": claim.free,
             "caution": claim.caution,
         }
+
+    def verdict(self, entry: str, outcome: Outcome) -> str:
+        """Words for the verdict, which differ for what the paper supposes or proposes."""
+        kind = self.registration.claims[entry].kind
+        return OF_KIND.get(kind, {}).get(outcome, self.words[outcome])
 
     def order(self, entries: Sequence[str]) -> Sequence[str]:
         """The order of the claims in the paper."""
@@ -98,6 +112,7 @@ class PaperStudy(Study):
             "findings": findings,
             "n_claims": len(CLAIMS),
             "choices": tables(findings),
+            "unjudged": [one for one in self.registration.claims.values() if one.why_not],
             "questions": [
                 (title, anchor, about, answers(findings, ids, word))
                 for title, anchor, about, ids, word in QUESTIONS
