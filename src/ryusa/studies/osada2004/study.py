@@ -40,6 +40,9 @@ OF_KIND: Mapping[str, Mapping[Outcome, str]] = {
 }
 
 
+REGISTRATION = Registration.read(Path(__file__).with_name("registration"))
+
+
 class PaperStudy(Study):
     """Every experiment that answers the paper, with the words of its page."""
 
@@ -55,7 +58,7 @@ class PaperStudy(Study):
         Outcome.UNDECIDED: "undecided (spread)",
         Outcome.SHOWN: "shown",
     }
-    registration = Registration.read(Path(__file__).with_name("registration"))
+    registration = REGISTRATION
     template = Path(__file__).with_name("paper.html")
 
     def part(self, name: str) -> StudyPart:
@@ -80,7 +83,7 @@ class PaperStudy(Study):
 
     def verdict(self, entry: str, outcome: Outcome) -> str:
         """Words for the verdict, which differ for what the paper supposes or proposes."""
-        kind = self.registration.claims[entry].kind
+        kind = REGISTRATION.claims[entry].kind
         return OF_KIND.get(kind, {}).get(outcome, self.words[outcome])
 
     def order(self, entries: Sequence[str]) -> Sequence[str]:
@@ -112,7 +115,7 @@ class PaperStudy(Study):
             "findings": findings,
             "n_claims": len(CLAIMS),
             "choices": tables(findings),
-            "unjudged": [one for one in self.registration.claims.values() if one.why_not],
+            "unjudged": [one for one in REGISTRATION.claims.values() if one.why_not],
             "questions": [
                 (title, anchor, about, answers(findings, ids, word))
                 for title, anchor, about, ids, word in QUESTIONS
