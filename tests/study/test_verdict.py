@@ -62,6 +62,44 @@ def test_a_choice_that_does_not_vary_among_decided_settings_has_no_effect():
     assert effects(dict.fromkeys(SETTINGS)) == []
 
 
+def read_twice(window):
+    """Settings whose runs are read in two windows of time."""
+    return {(*one, ("window", w)): window(one, w) for one in SETTINGS for w in ("early", "late")}
+
+
+def test_another_reading_of_the_same_runs_is_no_further_setting():
+    alike = read_twice(lambda one, _: dict(one)["slip"] == "total")
+    trials = [Trial("n", dict(key), exact(0.0, "-"), None, decided=held) for key, held in alike.items()]
+    found = Finding("a", tuple(trials), readings=("window",))
+    assert (found.robustness.holds, found.robustness.of) == (9, 18)
+    assert Finding("a", tuple(trials)).robustness.of == 36
+    once = {one.choice: one.p for one in effects({key: dict(key)["slip"] == "total" for key in SETTINGS})}
+    read = {one.choice: one.p for one in effects(alike, ("window",))}
+    assert read["slip"] == pytest.approx(once["slip"] * 4 / 3)  # corrected for four choices, not three
+    assert effects(alike)[0].p < 1e-3 * read["slip"]  # what counting each run twice would claim
+
+
+def test_a_reading_that_decides_is_found_among_all_readings():
+    by_window = read_twice(lambda _, window: window == "late")
+    first, *others = effects(by_window, ("window",))
+    assert (first.choice, first.levels, first.significant) == ("window", ("late",), True)
+    assert others == []  # by the first reading nothing holds, so no other choice has an effect to show
+
+
+def test_where_no_seed_enters_every_other_setting_confirms_the_condition():
+    def found(held):
+        trials = [Trial("n", dict(key), exact(0.0, "-"), None, decided=yes) for key, yes in held.items()]
+        return Finding("a", tuple(trials))
+
+    one = found({key: dict(key)["slip"] == "total" for key in sorted(SETTINGS, key=lambda key: key[0][1])})
+    assert not one.has_seeds
+    halves = one.by_half(0), one.by_half(1)
+    assert [len(half) for half in halves] == [9, 9]
+    assert not set(halves[0]) & set(halves[1])
+    by_chance = {key: k % 2 == 0 and dict(key)["slip"] == "total" for k, key in enumerate(one.by_choice)}
+    assert found(by_chance).deciding is None  # it holds in one half alone
+
+
 def test_the_base_verdict_is_that_of_the_case_as_it_ships_alone():
     band = Band(0.0, 1.0, "-", "")
     trials = tuple(

@@ -46,6 +46,7 @@ def plain_entry(study: Study, entry: LedgerEntry, folder: Path) -> dict[str, Any
         "robustness": {
             name: getattr(found.robustness, name) for name in ("holds", "of", "undecided", "low", "high")
         },
+        "readings": list(found.readings),
         "deciding_factor": _deciding(found),
         "registered": _registered(study, entry),
         **study.about(entry.id),
@@ -75,6 +76,7 @@ def _deciding(found: Finding) -> dict[str, Any] | None:
         return None
     return {
         "choice": one.choice, "holds_at": list(one.levels), "p": one.p, "confirmed": one.confirmed,
+        "halves_of": "seeds" if found.has_seeds else "settings",
         "there": list(one.inside), "elsewhere": list(one.outside),
     }  # fmt: skip
 

@@ -8,7 +8,7 @@ from functools import cached_property
 
 from ryusa.figures.comparison import Axis, Curve
 from ryusa.study.interval import Interval, Pooled, exact, over_seeds
-from ryusa.study.verdict import Effect, Key, Robustness, deciding, robustness
+from ryusa.study.verdict import Effect, Key, Robustness, deciding, first_reading, robustness
 
 
 class Outcome(StrEnum):
@@ -162,6 +162,8 @@ class Finding:
     title : what is compared; empty if the title of the part is sufficient.
     source : source of the reference.
     chart : our curves and those of the reference.
+    readings : names of the choices that are readings of the same runs (a window of time, a definition); their
+        values are no further settings.
 
     Raises
     ------
@@ -178,6 +180,7 @@ class Finding:
     title: str = ""
     source: Source | None = None
     chart: ReferenceChart | None = None
+    readings: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         """Refuse a judgement that is based on a reference known only from memory."""
@@ -190,11 +193,31 @@ class Finding:
         """Whether the finding holds for each set of choices, that is, all of its judged parts hold."""
         return self._by_choice([(one, one.holds) for one in self.trials])
 
+    @property
+    def by_setting(self) -> dict[Key, bool | None]:
+        """`by_choice` by the first reading of the runs."""
+        return first_reading(self.by_choice, self.readings)
+
+    @property
+    def has_seeds(self) -> bool:
+        """Whether seeds enter a judged number; else nothing in it is drawn at random."""
+        return any(one.judged and one.halves is not None for one in self.trials)
+
     def by_half(self, half: int) -> dict[Key, bool | None]:
-        """`by_choice` from the first (0) or the second (1) half of the seeds."""
-        return self._by_choice(
-            [(one, one.holds if one.halves is None else one.halves[half]) for one in self.trials]
-        )
+        """`by_choice` from one half of the data: the first (0) or the second (1).
+
+        Halves of the seeds; where no seed enters, every other setting, with all readings of its runs.
+        """
+        if self.has_seeds:
+            return self._by_choice(
+                [(one, one.holds if one.halves is None else one.halves[half]) for one in self.trials]
+            )
+        held = self.by_choice
+        settings = list(dict.fromkeys(self._setting(key) for key in held))
+        return {key: one for key, one in held.items() if settings.index(self._setting(key)) % 2 == half}
+
+    def _setting(self, key: Key) -> Key:
+        return tuple(one for one in key if one[0] not in self.readings)
 
     def _by_choice(self, trials: Sequence[tuple[Trial, bool | None]]) -> dict[Key, bool | None]:
         parts: dict[Key, list[bool | None]] = {}
@@ -231,17 +254,17 @@ class Finding:
 
     @property
     def robustness(self) -> Robustness:
-        """Share of the settings in which it holds."""
-        return robustness(list(self.by_choice.values()))
+        """Share of the settings in which it holds, by the first reading of their runs."""
+        return robustness(list(self.by_setting.values()))
 
     @cached_property
     def deciding(self) -> Effect | None:
         """The free choice that decides whether it holds; None if there is none beyond chance."""
-        return deciding(self.by_choice, self.by_half(0), self.by_half(1))
+        return deciding(self.by_choice, self.by_half(0), self.by_half(1), self.readings)
 
     @property
     def counts(self) -> dict[str, int]:
-        """Number of sets of choices for which it holds, fails, and is undecided."""
+        """Number of settings and readings for which it holds, fails, and is undecided."""
         held = list(self.by_choice.values())
         return {"holds": held.count(True), "fails": held.count(False), "undecided": held.count(None)}
 

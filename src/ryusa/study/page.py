@@ -95,6 +95,7 @@ def _section(
         "wide": [(one, embedded(folder / one)) for one in entry["pictures"] if is_wide(folder / one)],
         "hows": list(dict.fromkeys(one["how"] for one in base if one["n"] > 1 or one["choices"])),
         "base": base,
+        "read_otherwise": read_otherwise(entry),
         "varied": list(dict.fromkeys(key for one in entry["trials"] for key in one["choices"])),
         "columns": list(dict.fromkeys(key for row in rows for key in row)),
         "rows": list(rows) if len(rows) < WHOLE_TABLE else list(rows[:HEAD]),
@@ -102,6 +103,20 @@ def _section(
         "file": f"{name}/{name}.csv",
         "holder": holder,
     }
+
+
+def read_otherwise(entry: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """Judged trials of the case file as it ships, by other readings of its runs than the first."""
+    if not entry["trials"]:
+        return []
+    readings, first = entry["readings"], entry["trials"][0]["choices"]
+    return [
+        {**one, "choices": {name: one["choices"][name] for name in readings}}
+        for one in entry["trials"]
+        if one["choices"] != first
+        and one["outcome"] != "shown"
+        and all(one["choices"][name] == value for name, value in first.items() if name not in readings)
+    ]
 
 
 def interval(found: Mapping[str, Any]) -> str:

@@ -1,9 +1,9 @@
 """A verdict in three parts: the base case, how many settings it holds in, and the choice that decides it."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from scipy import stats
@@ -14,6 +14,7 @@ SIGNIFICANT = 1.0 - CONFIDENCE
 RESAMPLES = 1999  # of a table with more than two rows
 
 Key = tuple[tuple[str, str], ...]  # a setting: each free choice and its value
+Held = TypeVar("Held")
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,7 @@ class Effect:
     p : probability of a table as uneven as this one if the choice had no effect, after correction.
     levels : values at which it holds more often than on average.
     inside, outside : settings in which it holds, and those that are decided, with these levels and without.
-    confirmed : probability on the second half of the seeds, for the levels predicted from the first half.
+    confirmed : probability on the second half of the data, for the levels predicted from the first half.
     """
 
     choice: str
@@ -87,12 +88,26 @@ def robustness(held: Sequence[bool | None]) -> Robustness:
     return Robustness(holds, of, held.count(None), float(share.low), float(share.high))
 
 
-def effects(held: Mapping[Key, bool | None]) -> list[Effect]:
+def first_reading(held: Mapping[Key, Held], readings: Collection[str]) -> dict[Key, Held]:
+    """Settings by the first reading of their runs: another reading of the same runs is no further sample.
+
+    Parameters
+    ----------
+    held : by setting what became of a finding, the case as it ships first.
+    readings : names of the choices that are readings of the same runs.
+    """
+    chosen = {name: value for name, value in next(iter(held), ()) if name in readings}
+    return {key: one for key, one in held.items() if chosen.items() <= dict(key).items()}
+
+
+def effects(held: Mapping[Key, bool | None], readings: Collection[str] = ()) -> list[Effect]:
     """Effect of each free choice on whether a finding holds, the strongest first.
 
     Parameters
     ----------
     held : by setting whether the finding holds; every setting names the same choices.
+    readings : names of the choices that are readings of the same runs. The other choices are tested by the
+        first reading alone, whose settings are independent; a reading, by all.
 
     Notes
     -----
@@ -101,12 +116,11 @@ def effects(held: Mapping[Key, bool | None]) -> list[Effect]:
     rows, which needs no number of settings to be large; the probabilities are corrected for the number of
     choices (Holm 1979, Scand. J. Stat. 6, 65).
     """
-    decided = {key: one for key, one in held.items() if one is not None}
-    if not decided:
-        return []
-    names = [name for name, _ in next(iter(decided))]
     found: list[Effect] = []
-    for name in names:
+    for name, _ in next(iter(held), ()):
+        decided = {key: one for key, one in _tested(held, name, readings).items() if one is not None}
+        if not decided:
+            continue
         values = list(dict.fromkeys(dict(key)[name] for key in decided))
         counts = _counted(decided, name, values)
         if len(values) < 2 or not counts.sum(axis=0).all():
@@ -116,34 +130,46 @@ def effects(held: Mapping[Key, bool | None]) -> list[Effect]:
     return _corrected(found)
 
 
+def _tested(
+    held: Mapping[Key, bool | None], name: str, readings: Collection[str]
+) -> Mapping[Key, bool | None]:
+    """Settings on which a choice is tested."""
+    return held if name in readings else first_reading(held, readings)
+
+
 def deciding(
-    held: Mapping[Key, bool | None], first: Mapping[Key, bool | None], second: Mapping[Key, bool | None]
+    held: Mapping[Key, bool | None],
+    first: Mapping[Key, bool | None],
+    second: Mapping[Key, bool | None],
+    readings: Collection[str] = (),
 ) -> Effect | None:
     """Return the choice that decides whether a finding holds; None if there is none beyond chance.
 
     Parameters
     ----------
-    held : by setting whether the finding holds, from all seeds.
-    first, second : the same from each half of the seeds.
+    held : by setting whether the finding holds, from all data.
+    first, second : the same from each half of the data.
+    readings : as in `effects`.
 
     Notes
     -----
-    Its effect is significant from all seeds after correction for the number of choices; the levels at which
+    Its effect is significant from all data after correction for the number of choices; the levels at which
     the finding holds are predicted from the first half alone, and the second half confirms them: it holds
     there more often than elsewhere by Fisher's test, one-sided, at 5 %.
     """
-    for one in effects(held):
+    for one in effects(held, readings):
         if not one.significant:
             return None
-        values = list(dict.fromkeys(dict(key)[one.choice] for key in first))
-        levels = _favourable(_counted(first, one.choice, values), values)
-        inside, outside = _within(second, one.choice, levels)
+        here, there, whole = (_tested(each, one.choice, readings) for each in (first, second, held))
+        values = list(dict.fromkeys(dict(key)[one.choice] for key in whole))
+        levels = _favourable(_counted(here, one.choice, values), values)
+        inside, outside = _within(there, one.choice, levels)
         table = [[inside[0], inside[1] - inside[0]], [outside[0], outside[1] - outside[0]]]
         confirmed: Any = stats.fisher_exact(table, alternative="greater")
         if float(confirmed.pvalue) < SIGNIFICANT:
-            there, elsewhere = _within(held, one.choice, levels)
+            inside, outside = _within(whole, one.choice, levels)
             return replace(
-                one, levels=levels, inside=there, outside=elsewhere, confirmed=float(confirmed.pvalue)
+                one, levels=levels, inside=inside, outside=outside, confirmed=float(confirmed.pvalue)
             )
     return None
 

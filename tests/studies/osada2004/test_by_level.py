@@ -6,7 +6,7 @@ def claim(name, outcomes, names=(PHI, SLIP), decides=None):
     trials = [
         {"choices": dict(zip(names, key, strict=True)), "outcome": word} for key, word in outcomes.items()
     ]
-    return {"id": name, "trials": trials, "deciding_factor": decides and {"choice": decides}}
+    return {"id": name, "trials": trials, "readings": [], "deciding_factor": decides and {"choice": decides}}
 
 
 def test_a_cell_counts_the_settings_of_one_level():
@@ -30,6 +30,13 @@ def test_every_part_of_a_claim_that_is_judged_must_hold():
     ]
     (phi,) = tables([one])
     assert phi.rows[0].cells == (LevelCell(0, 1), LevelCell(1, 1))
+
+
+def test_a_second_reading_of_the_same_runs_is_not_counted():
+    held = {("30 deg", "early"): "holds", ("30 deg", "late"): "fails", ("20 deg", "early"): "holds"}
+    one = claim("flow", held, names=(PHI, "window")) | {"readings": ["window"]}
+    (phi,) = tables([one])
+    assert phi.rows[0].cells == (LevelCell(1, 1), LevelCell(1, 1))
 
 
 def test_a_claim_for_which_a_choice_was_not_varied_is_left_out():

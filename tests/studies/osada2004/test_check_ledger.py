@@ -2,6 +2,8 @@ import runpy
 from pathlib import Path
 
 from ryusa.studies.osada2004.claims import CLAIMS
+from ryusa.studies.osada2004.study import PAPER
+from ryusa.study import Outcome
 
 faults = runpy.run_path(str(Path(__file__).with_name("check_ledger.py")))["faults"]
 
@@ -10,7 +12,8 @@ def whole():
     trial = {"part": "length", "value": 1.0, "note": "", "choices": {}}
     rows = [
         {
-            "id": one, "verdict": "not reproduced", "trials": [dict(trial)],
+            "id": one, "outcome": "fails", "verdict": PAPER.verdict(one, Outcome.FAILS),
+            "registered": {"commit": "0" * 40}, "trials": [dict(trial)],
             "decided_by": "physics", "problem": "",
         }
         for one in CLAIMS
@@ -35,8 +38,9 @@ def test_what_is_missing_is_named():
     row(ledger, "fig11")["problem"] = "2 of 3 runs failed"
     row(ledger, "fig12")["decided_by"] = ""
     row(ledger, "fig14")["verdict"] = "fine"
+    row(ledger, "fig16")["registered"] = None
     assert [one.split(":")[0] for one in faults(ledger)] == [
-        "fig5", "fig4", "fig7", "fig8", "fig11", "fig12", "fig14",
+        "fig5", "fig4", "fig7", "fig8", "fig11", "fig12", "fig14", "fig16",
     ]  # fmt: skip
 
 

@@ -50,7 +50,6 @@ def longer_by(times: str) -> dict[str, str]:
 
 
 # The free choices of fig17, fig17-lock, fig17-free and fig18: one design, so that they share their runs.
-# Their order decides which pairs the 16 settings fill evenly.
 DESIGN = Design(
     (
         Factor(AMOUNT, {"5": {}, **{one: {"build.layers": one} for one in ("3", "4", "6")}}),

@@ -5,10 +5,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from ryusa.studies.osada2004._parts import DRAG, PARTING, PHI, RATIO, ROTATION, SLIP
+from ryusa.study.verdict import Key, first_reading
 
 SHARED = (PHI, SLIP, PARTING, RATIO, ROTATION, DRAG)  # levels of the others differ between parts
-
-Key = tuple[tuple[str, str], ...]
 
 
 @dataclass(frozen=True)
@@ -58,7 +57,7 @@ def tables(findings: Sequence[Mapping[str, Any]]) -> list[ChoiceTable]:
     ----------
     findings : entries as the JSON file holds them.
     """
-    held = {one["id"]: outcomes(one["trials"]) for one in findings}
+    held = {one["id"]: first_reading(outcomes(one["trials"]), one["readings"]) for one in findings}
     found: list[ChoiceTable] = []
     for choice in SHARED:
         values = {

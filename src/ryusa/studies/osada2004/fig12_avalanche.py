@@ -51,6 +51,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             f"grains flow at {speed} m/s.",
             _avalanche.SETTLED,
             beside=tuple(beside),
+            readings=(WINDOW,),
         ),
     )
 

@@ -38,6 +38,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             "settled, and the profiles differ.",
             _avalanche.SETTLED,
             also=_scatter(base),
+            readings=(_avalanche.WINDOW,),
         ),
     )
 

@@ -140,6 +140,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             f"{why} The flow does not become steady, so the difference depends on the time window: "
             f"{text(depth_mean, SHIPPED)} cm/s at {windows} as shipped.",
             _avalanche.SETTLED,
+            readings=(_avalanche.WINDOW,),
             also=(
                 *(
                     f"speed, {_avalanche.label(one)}: {text(soft_speed, one)} m/s with {SOFT}, "
@@ -159,6 +160,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             "Flux is concentration times speed: with like profiles of concentration it differs as the "
             f"speed does, by a factor of {text(flux_ratio, SHIPPED)} at {windows} as shipped. {why}",
             _avalanche.SETTLED,
+            readings=(_avalanche.WINDOW,),
             also=tuple(
                 f"flux ratio, {_avalanche.label(one)}: {text(flux_ratio, one)} at {windows}"
                 for one in tried_sets

@@ -84,6 +84,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             "collision time: that sets how often its path reverses on a given way. "
             f"{SOFT} against {STIFF}, as shipped: {said(BETWEEN)}.",
             {**_avalanche.SETTLED, "turns counted from": "0.02 d, frames of 10 ms"},
+            readings=(_avalanche.WINDOW, GRAINS),
             also=(
                 "grains that touch the bed and moving grains alternately, wherever they began: "
                 f"{words['n', BETWEEN]}",

@@ -71,6 +71,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             "Contacts of less than 0.1 ms throw every grain up and down, at "
             f"{text('rms_z', 100.0)} cm/s on average, {text('steep')} of its speed along the bed.",
             SETTLED,
+            readings=(LAYER,),
             also=(
                 f"effect of the number of grains, all else as shipped: {amounts}",
                 f"as shipped: mean speed of the grains {text('speed')} m/s ({text('near_bed')} m/s near the "
@@ -127,6 +128,7 @@ def _of_contacts(found: Found, plan: Plan, claim: str) -> Finding:
         "effective mass is that of the grain on a fixed partner, and half of it between two free grains. "
         f"Closed forms as shipped, with added mass: {closed}.",
         SETTLED,
+        readings=(PAIR,),
         also=(
             f"contacts in a run as shipped: {counts}",
             f"mean contact time of contacts with a single partner, as shipped: {alone}",

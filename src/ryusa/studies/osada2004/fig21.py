@@ -110,6 +110,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
                 "k_n": STIFF,
                 "starts": f"{MANY['build.starts']} of {HOPS} hops a seed",
             },
+            readings=(READING,),
             also=(
                 f"largest spin after settling {max(one.largest for one in base):.0f} rad/s",
                 *(

@@ -27,7 +27,6 @@ CLAIMS = ("fig22",)
 CASE = "fig22"
 LOCKED, FREE = "locked", "free"
 SLOPE = "slope (tau_star)"
-# The order of the choices decides which pairs the 16 settings fill evenly.
 DESIGN = Design(
     (
         friction_angle("timeline.0.friction_angle"),

@@ -33,7 +33,6 @@ RESISTANCES: dict[str, dict[str, str]] = {
     "rolling friction, mu_r 0.5": {**ROLLING, "rolling.coefficient": "0.5"},
     "water torque, Dennis": {"water.torque": "Dennis"},
 }
-# The order of the choices decides which pairs the 16 settings fill evenly.
 DESIGN = Design(
     (
         Factor(

@@ -178,6 +178,7 @@ def _finding(found: Found, plan: Plan, claim: str) -> Finding:
             "restitution": f"{E:g}",
             "springs": "those of the figure; 100 times as stiff for 1e-5 s",
         },
+        readings=(RESOLUTION,),
         also=(
             f"the paper, {SECTION}: {JAPANESE} {TRANSLATION}",
             f"in closed form, at the mean speeds of first touch: straight rebound within {eps:g} d "

@@ -125,6 +125,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             "keeps its direction. The impulse of a bounce follows from how high and how long the grain jumps "
             "as well: the bed carries its weight in any case, in fewer bounces if they are higher.",
             settings=done,
+            readings=(IMPULSE,),
             also=(
                 "as shipped, impulse over mass and closing speed: "
                 + _saltation.listed({k: mean(here, "impact", "-") for k, here in sweep.items()}),

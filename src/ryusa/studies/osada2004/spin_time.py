@@ -99,6 +99,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             f"against {turning[0]:.2g}) and the contact ends earlier. This rotation decreases with the "
             "contact time, so the difference vanishes with increasing stiffness.",
             settings=starts,
+            readings=(WHICH,),
             also=tuple(
                 f"as shipped, rotation {rot}, {words}: "
                 + _saltation.listed(

@@ -14,31 +14,27 @@ from ryusa.study import Finding, Outcome, Study, StudyPart
 from ryusa.study.page import interval
 from ryusa.study.registration import Registration
 
-# What the paper left open, the claims whose runs answer it, and a word in what they say of it ("" is all).
+# What the paper left open, and the claims whose runs answer it.
 QUESTIONS = (
     (
         "Rolling friction",
-        "rolling-friction",
+        "question-rolling-friction",
         "The paper's open question ii: Eq. (13) as a model of rolling friction, its coefficient to be found.",
         ("eq13", "rolling-friction"),
-        "",
     ),
     (
         "Water torque",
         "question-water-torque",
         "The paper's open question iii: the torque of the water on a spinning grain.",
-        ("water-torque", "water-torque-half", "water-torque-shear", "fig20"),
-        "torque",
+        ("water-torque", "water-torque-half", "water-torque-shear"),
     ),
 )
-
 
 # Words for what is no claim: the paper supposes it, or proposes it.
 OF_KIND: Mapping[str, Mapping[Outcome, str]] = {
     "conjecture": {Outcome.HOLDS: "conjecture holds", Outcome.FAILS: "conjecture does not hold"},
     "proposal": {Outcome.HOLDS: "proposal works", Outcome.FAILS: "proposal falls short"},
 }
-
 
 REGISTRATION = Registration.read(Path(__file__).with_name("registration"))
 
@@ -110,16 +106,16 @@ class PaperStudy(Study):
     def context(self, ledger: Mapping[str, Any]) -> dict[str, Any]:
         """Free choices level by level, and the open questions."""
         findings: list[dict[str, Any]] = [{**one, "ours": _ours(one)} for one in ledger["findings"]]
-        here = {one["id"] for one in findings}
+        here = {one["id"]: one for one in findings}
         return {
             "findings": findings,
             "n_claims": len(CLAIMS),
             "choices": tables(findings),
             "unjudged": [one for one in REGISTRATION.claims.values() if one.why_not],
             "questions": [
-                (title, anchor, about, answers(findings, ids, word))
-                for title, anchor, about, ids, word in QUESTIONS
-                if any(one in here for one in ids)
+                (title, anchor, about, answers)
+                for title, anchor, about, ids in QUESTIONS
+                if (answers := [here[one] for one in ids if one in here])
             ],
         }
 
@@ -130,12 +126,6 @@ def load(name: str) -> StudyPart:
         raise CaseError("experiment", name, f"must be one of {', '.join(NAMES)}")
     module: Any = import_module(f"ryusa.studies.osada2004.{name}")
     return module
-
-
-def answers(findings: Sequence[Mapping[str, Any]], ids: Sequence[str], word: str) -> list[dict[str, Any]]:
-    """Entries of these claims, with what they say of a question; without those that say nothing of it."""
-    rows = {one["id"]: {**one, "told": [said for said in one["also"] if word in said]} for one in findings}
-    return [rows[one] for one in ids if one in rows and (not word or rows[one]["told"])]
 
 
 def _ours(entry: Mapping[str, Any]) -> str:

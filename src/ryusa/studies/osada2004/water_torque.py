@@ -127,6 +127,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             tuple(shares["water-torque"]),
             physics,
             settings=done,
+            readings=(EXCESS,),
             also=(
                 f"share of the time beyond the range of the torque of Dennis et al.: {beyond}",
                 *(_spins(found, plan, law) for law in LAWS),
@@ -137,6 +138,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             tuple(shares["water-torque-half"]),
             physics,
             settings=done,
+            readings=(EXCESS,),
             also=tuple(
                 f"torque of {law}, as shipped, of the spin {way}: "
                 f"{over_seeds(_removed(found, plan, one, way), '-')} removed"
@@ -149,6 +151,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             tuple(shears),
             "A grain that the water has slowed slips again at its next hit, and is braked by friction.",
             settings={**done, "against": "rotation locked"},
+            readings=(SHEAR,),
             also=tuple(
                 f"torque of {law}, as shipped: {way} {over_seeds(_shear(found, plan, one, name), '-')} of "
                 "that of locked grains"
