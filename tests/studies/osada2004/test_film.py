@@ -95,7 +95,7 @@ def test_every_flow_is_filmed_at_every_level_of_its_factors_with_equal_samples()
     for claim in FLOWS:
         sets = film.settings(claim, STANDARD)
         assert sets[0] == DESIGNS[claim].base
-        assert len(sets) == 9
+        assert len(sets) == (16 if claim == "film-debris" else 17)  # two points fall on the same levels
         for name, levels in DESIGNS[claim].levels.items():
             assert {one[name] for one in sets} == set(levels)
         registered.check(found[claim])

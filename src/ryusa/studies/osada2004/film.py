@@ -92,8 +92,8 @@ class Filmed:
 
 
 def settings(claim: str, plan: Plan) -> list[dict[str, str]]:
-    """Sets of choices that need runs of their own, the base first; half as many as other parts have."""
-    return DESIGNS[claim].settings(n_settings(plan) // 2)
+    """Sets of choices that need runs of their own, the base first."""
+    return DESIGNS[claim].settings(n_settings(plan))
 
 
 def run(claim: str, chosen: Mapping[str, str], seed: int) -> CaseRun:
