@@ -20,6 +20,9 @@ def faults(ledger):
             found.append(f"{name}: {row['problem']}")
         else:
             found += [f"{name}: {fault}" for fault in _of_row(row)]
+        count = row["robustness"]["of"] + row["robustness"]["undecided"]
+        if ledger["level"] == "quick" and count > 1:
+            found.append(f"{name}: counts readings of the case as it ships as {count} settings")
     return found
 
 

@@ -14,11 +14,11 @@ def whole():
         {
             "id": one, "outcome": "fails", "verdict": PAPER.verdict(one, Outcome.FAILS),
             "registered": {"commit": "0" * 40}, "trials": [dict(trial)],
-            "decided_by": "physics", "problem": "",
+            "decided_by": "physics", "problem": "", "robustness": {"of": 1, "undecided": 0},
         }
         for one in CLAIMS
     ]  # fmt: skip
-    return {"findings": rows, "errors_in": [], "faults": {}, "log": ""}
+    return {"level": "quick", "findings": rows, "errors_in": [], "faults": {}, "log": ""}
 
 
 def row(ledger, claim):
@@ -42,6 +42,13 @@ def test_what_is_missing_is_named():
     assert [one.split(":")[0] for one in faults(ledger)] == [
         "fig5", "fig4", "fig7", "fig8", "fig11", "fig12", "fig14", "fig16",
     ]  # fmt: skip
+
+
+def test_a_second_reading_is_no_setting():
+    ledger = whole()
+    row(ledger, "fig20-shear")["robustness"] = {"of": 4, "undecided": 1}
+    assert faults(ledger) == ["fig20-shear: counts readings of the case as it ships as 5 settings"]
+    assert faults(ledger | {"level": "standard"}) == []
 
 
 def test_a_nan_needs_a_note():

@@ -200,6 +200,7 @@ def test_the_page_names_what_the_paper_says_without_a_row(every_word):
     write(every_word)
     _, text = read(every_word)
     listed = text[text.index('id="unjudged"') : text.index('id="terms"')]
-    silent = [one for one in PAPER.registration.claims.values() if one.why_not]
-    assert silent
+    silent = [one for name, one in PAPER.registration.claims.items() if name not in CLAIMS]
+    assert len(silent) > 20
+    assert all(one.why_not for one in silent)
     assert all(one.translation in html_unescape(listed) for one in silent)

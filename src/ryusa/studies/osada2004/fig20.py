@@ -94,7 +94,6 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             "A locked grain is slowed by friction at every hit and leaves the bed slowly; a free grain, "
             "once it spins, rolls off, keeps its speed and hits the next crest faster.",
             settings=done,
-            readings=(SHEAR,),
             also=tuple(
                 f"{words}, rotation {rot}: {_saltation.mean(here, name, 'm')}"
                 for rot, here in ((LOCKED, locked), (FREE, free))
@@ -110,6 +109,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             "what slows it is the part of the normal force along the bed, as it hits the upstream side of "
             "the crests.",
             settings=done,
+            readings=(SHEAR,),
             also=tuple(
                 f"{words}, rotation {rot}: {_saltation.mean(here, name, unit)}"
                 for rot, here in ((LOCKED, locked), (FREE, free))

@@ -99,7 +99,6 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             f"against {turning[0]:.2g}) and the contact ends earlier. This rotation decreases with the "
             "contact time, so the difference vanishes with increasing stiffness.",
             settings=starts,
-            readings=(WHICH,),
             also=tuple(
                 f"as shipped, rotation {rot}, {words}: "
                 + _saltation.listed(
@@ -119,6 +118,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             "slip, friction limit and, for a free grain, from the moment of inertia: what a contact returns "
             "depends on the spin and angle with which it begins.",
             settings=starts,
+            readings=(WHICH,),
         ),
     )
 

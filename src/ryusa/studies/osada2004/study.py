@@ -111,7 +111,7 @@ class PaperStudy(Study):
             "findings": findings,
             "n_claims": len(CLAIMS),
             "choices": tables(findings),
-            "unjudged": [one for one in REGISTRATION.claims.values() if one.why_not],
+            "unjudged": [one for name, one in REGISTRATION.claims.items() if name not in CLAIMS],
             "questions": [
                 (title, anchor, about, answers)
                 for title, anchor, about, ids in QUESTIONS
