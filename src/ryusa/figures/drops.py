@@ -53,7 +53,7 @@ def drop_chart(
     band: StiffnessBand | None = None,
     levels: tuple[float, float] | None = None,
     words: tuple[str, str] = ("", ""),
-    legend: Literal["lower left", "upper right"] = "lower left",
+    legend: Literal["inside", "above"] = "inside",
 ) -> Figure:
     """Draw runs as points and closed forms as lines over k_n in N/cm.
 
@@ -65,7 +65,7 @@ def drop_chart(
     band : shaded region between two lines over k_n.
     levels : two values of y between which the whole width is shaded.
     words : name of the lines in the legend, and a note (speed, restitution) above the frame.
-    legend : position of the legend.
+    legend : inside the frame at the lower left, or above it where points fill the frame.
     """
     figure, (axes,) = style.new(height=2.9)
     axes.set_xscale("log")
@@ -97,7 +97,11 @@ def drop_chart(
     axes.set_xlabel("normal stiffness  $k_n$  (N/cm)")
     axes.set_ylabel(_AXIS[quantity])
     axes.margins(x=0.03)
-    axes.legend(loc=legend, fontsize=6.3, labelspacing=0.3, handlelength=1.4)
+    look = {"fontsize": 6.3, "labelspacing": 0.3, "handlelength": 1.4}
+    if legend == "above":
+        figure.legend(loc="outside upper left", ncols=2, **look)
+    else:
+        axes.legend(loc="lower left", **look)
     if words[1]:
         axes.set_title(words[1], loc="right", fontsize=6.5, color="#444444", pad=3.0)
     return figure

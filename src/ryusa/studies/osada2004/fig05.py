@@ -138,7 +138,7 @@ def draw(found: Found, plan: Plan) -> Mapping[str, Figure]:
     return {
         "fig05": figures.drop_chart("time", [law], runs, words=("Eq. (8)", words)),
         "fig05-speed": figures.drop_chart(
-            "ratio", [one], by_speed, levels=(HARDLY.low, HARDLY.high), legend="upper right",
+            "ratio", [one], by_speed, levels=(HARDLY.low, HARDLY.high), legend="above",
             words=("Eq. (8)", "e = 0.7, with weight, exact timing; shaded: 10 %"),
         ),
     }  # fmt: skip
