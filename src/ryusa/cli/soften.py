@@ -8,7 +8,18 @@ import typer
 from ryusa.catalogue import MEASURES
 from ryusa.cli.options import Quiet
 from ryusa.cli.run import CaseFile, Settings, overrides_of
-from ryusa.cli.study import FAILED, Again, Jobs, Json, carried_out, console, finish, list_runs, plan_of
+from ryusa.cli.study import (
+    FAILED,
+    Again,
+    Jobs,
+    Json,
+    Show,
+    carried_out,
+    console,
+    finish,
+    list_runs,
+    plan_of,
+)
 from ryusa.errors import CaseError
 
 if TYPE_CHECKING:
@@ -69,9 +80,7 @@ def soften(
     json: Json = None,
     jobs: Jobs = None,
     again: Again = False,
-    show: Annotated[
-        bool, typer.Option("--list", help="List the runs, with time and disk; run nothing.")
-    ] = False,
+    show: Show = False,
     quiet: Quiet = False,
 ) -> None:
     """Find out which stiffness is soft enough to be cheap and still right for a case and a measure.

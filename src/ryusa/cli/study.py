@@ -27,6 +27,7 @@ MOST_SEEDS = 1000
 Jobs = Annotated[
     int | None, typer.Option("--jobs", "-j", metavar="N", min=1, help="Runs at a time; default: all cores.")
 ]
+Show = Annotated[bool, typer.Option("--list", help="List the runs, with time and disk; run nothing.")]
 Again = Annotated[
     bool, typer.Option("--again", help="Make every run anew; otherwise finished runs are opened.")
 ]
@@ -59,9 +60,7 @@ def study(
     json: Json = None,
     jobs: Jobs = None,
     again: Again = False,
-    show: Annotated[
-        bool, typer.Option("--list", help="List the runs, with time and disk; run nothing.")
-    ] = False,
+    show: Show = False,
     quiet: Quiet = False,
 ) -> None:
     """Run a study of your own, and write one page with its numbers, intervals and pictures.
