@@ -123,6 +123,14 @@ def _ratio(low, value, high):
     return Interval(value, low, high, "-", 3, "")
 
 
+def test_water_whose_levels_begin_elsewhere_is_averaged_at_the_same_heights():
+    low, high = np.arange(-1.0, 4.0, 0.5), np.arange(-0.8, 4.6, 0.5)
+    runs = [{"z_water": low, "u_water": 2.0 * low}, {"z_water": high, "u_water": 4.0 * high}]
+    z, u = frey.pooled_water(runs)
+    assert z == pytest.approx(np.arange(-0.5, 4.0, 0.5))
+    assert u == pytest.approx(3.0 * z)
+
+
 def test_the_walls_that_fit_lie_between_those_that_surely_do_not():
     widths = np.array([6.5, 16.0, 22.0, 28.0, 45.0])
     ratios = [
@@ -154,5 +162,8 @@ def test_every_run_is_of_the_published_flume() -> None:
     for work in frey.tasks(PLAN):
         case = read(case_path("validation/frey.toml"), dict(work.overrides))
         assert case.stop.time is not None
-        assert case.stop.time - case.record.settle >= 20.0
+        assert case.water is not None and case.water.column is not None
+        # Walls 6.5 mm apart nearly stop the flow: 10 s are enough to tell its rate from that of the flume.
+        least = 10.0 if case.water.column.side_walls == pytest.approx(6.5e-3) else 20.0
+        assert case.stop.time - case.record.settle >= least
         assert derive(case).n_grain in {354, 365, 368}

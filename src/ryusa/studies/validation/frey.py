@@ -218,6 +218,18 @@ def pooled_profile(runs: Sequence[Measured]) -> tuple[Floats, Floats, Floats]:
     return z, phi, np.divide(flux, phi, out=np.zeros_like(flux), where=phi > 0.0)
 
 
+def pooled_water(runs: Sequence[Measured]) -> tuple[Floats, Floats]:
+    """Heights [d] and mean speed of the water [m/s] over all runs, at the heights that all of them have.
+
+    The levels of the column are counted from the deepest fixed bead, which lies elsewhere for every seed.
+    """
+    low = max(float(np.min(one["z_water"])) for one in runs)
+    high = min(float(np.max(one["z_water"])) for one in runs)
+    z = np.asarray(runs[0]["z_water"])
+    z = z[(z >= low) & (z <= high)]
+    return z, np.mean([np.interp(z, one["z_water"], one["u_water"]) for one in runs], axis=0)
+
+
 def rms(runs: Sequence[Measured], flume: tuple[Floats, Floats, Floats], column: int) -> Interval:
     """Root mean square difference of the profile over all runs from that of the flume.
 
@@ -269,7 +281,7 @@ def _compare(
     z, phi, u = flume
     z_ours, phi_ours, u_ours = pooled_profile(runs)
     q_flume = rate(z, phi, u)
-    u_water = np.mean([np.asarray(one["u_water"]) for one in runs], axis=0)
+    z_water, u_water = pooled_water(runs)
     settings = {
         "set": choice.words,
         "runs": f"{len(runs)}, each averaged over {rates.time:.0f} s",
@@ -285,7 +297,7 @@ def _compare(
         said += " " + RESTS.format(times=1000.0 * 70.0 / (BEADS * rates.time * len(runs)))
     window = (z_ours >= LOW - 1.0) & (z_ours <= float(z.max()))
     height = Axis("height over the base over d")
-    water = [Curve("water", np.asarray(runs[0]["z_water"]), u_water)]
+    water = [Curve("water", z_water, u_water)]
     return [
         comparison(
             f"{name}-{run}-phi", f"Run {run}, {choice.words}: concentration", SOURCE, height, Axis("phi"),
