@@ -46,7 +46,10 @@ def paper(
         bool, typer.Option("--quick", help="One seed, the cases as they ship: indicative, 3 minutes.")
     ] = False,
     full: Annotated[
-        bool, typer.Option("--full", help="65 settings instead of 17: hours; see --list. May be interrupted.")
+        bool,
+        typer.Option(
+            "--full", help="33 settings instead of 17: about two hours; see --list. May be interrupted."
+        ),
     ] = False,
     seeds: Annotated[
         str | None,

@@ -89,7 +89,7 @@ def test_every_setting_has_the_same_number_of_runs_and_the_design_holds_the_ship
     sets = _debris.settings(STANDARD)
     assert sets[0] == SHIPPED
     assert len(sets) == 17
-    assert len(_debris.settings(Plan(Level.FULL, (1,)))) == 65
+    assert len(_debris.settings(Plan(Level.FULL, (1,)))) == 33
 
 
 @pytest.mark.parametrize("module", [fig17, fig17_free, fig18])

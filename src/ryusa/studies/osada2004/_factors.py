@@ -3,7 +3,7 @@
 from ryusa.studies.osada2004._parts import CLOSURE, DRAG, PARTING, PHI, RATIO, ROTATION, SLIP
 from ryusa.study import Factor, Plan
 
-STANDARD, FULL = 16, 64  # settings beside the one as shipped: whole blocks of the design
+STANDARD, FULL = 16, 32  # settings beside the one as shipped: whole blocks of the design
 
 
 def n_settings(plan: Plan) -> int:
