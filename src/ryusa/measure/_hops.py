@@ -1,11 +1,11 @@
 """Divide the path of one grain over a fixed bed into bounces and hops."""
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicHermiteSpline
 
 from ryusa.measure._run import Floats, Run, crest_of, path_of
 from ryusa.model import Scene
@@ -73,16 +73,36 @@ class _Flight:
     z_top: float
 
 
-def bounces_of(run: Run, grain: int, begin: float, rise: float, most: int | None = None) -> Bounces:
-    """Hops of one grain.
+@dataclass(frozen=True)
+class PathOverBed:
+    """All hops and bounces of one grain, with the bed contacts of each bounce that a hop leaves."""
+
+    hops: NDArray[Any]  # dtype HOP
+    bounces: NDArray[Any]  # dtype BOUNCE
+    contacts: list[NDArray[Any]]
+
+    def since(self, begin: float, most: int | None = None) -> Bounces:
+        """Leave out bounces that began before `begin` [s]; of the others keep the first `most`."""
+        kept = np.flatnonzero(self.bounces["t_begin"] >= begin)[:most]
+        inside = [self.contacts[k] for k in kept]
+        # of some the bed grain was taken away
+        inside = [one[np.isfinite(one["closing_end"])] for one in inside]
+        touch, alone = [np.zeros(0)], [np.zeros(0)]
+        for one in inside:
+            time = one["t_end"] - one["t_begin"]
+            touch.append(time)
+            alone.append(time[one["alone"] > 0.0])
+        return Bounces(self.hops[kept], self.bounces[kept], np.concatenate(touch), np.concatenate(alone))
+
+
+def path_over_bed(run: Run, grain: int, rise: float) -> PathOverBed:
+    """Bounces and hops of one grain.
 
     Parameters
     ----------
     run : a run folder with contact events.
     grain : id of a free grain.
-    begin : bounces that began before are left out [s].
     rise : flights that rise less than this many diameters join their bounces.
-    most : keep only the first so many hops.
     """
     scene = run.scene
     events = run.contacts
@@ -90,7 +110,7 @@ def bounces_of(run: Run, grain: int, begin: float, rise: float, most: int | None
     events = events[(events["i"] == grain) & (events["j"] >= first) & (events["j"] < end)]
     events = events[np.argsort(events["t_begin"], kind="stable")]
     if len(events) == 0:
-        return Bounces(np.zeros(0, HOP), np.zeros(0, BOUNCE), np.zeros(0), np.zeros(0))
+        return PathOverBed(np.zeros(0, HOP), np.zeros(0, BOUNCE), [])
     path = path_of(run, grain)
     d = float(scene.d[grain])
     groups, flights = _group(events, path, rise * d)
@@ -101,11 +121,7 @@ def bounces_of(run: Run, grain: int, begin: float, rise: float, most: int | None
         bounces[k] = _bounce(grain, groups[k])
         friction = float(-_tangential(scene, groups[k])[:, 0].sum())
         hops[k] = (*_hop(groups[k], groups[k + 1][0], flight, standing), friction)
-    kept = np.flatnonzero(bounces["t_begin"] >= begin)[:most]
-    inside = np.concatenate([groups[k] for k in kept]) if len(kept) else events[:0]
-    inside = inside[np.isfinite(inside["closing_end"])]  # of the others the bed grain was taken away
-    touch = inside["t_end"] - inside["t_begin"]
-    return Bounces(hops[kept], bounces[kept], touch, touch[inside["alone"] > 0.0])
+    return PathOverBed(hops, bounces, groups[:-1])
 
 
 def _group(
@@ -149,14 +165,26 @@ def _flight(leaving: Any, landing: Any, path: tuple[Floats, Floats, Floats, Floa
 def _top(t: Floats, z: Floats, w: Floats) -> float:
     """Highest value of the piecewise cubic through heights z [m] with slopes w [m/s] at times t [s]."""
     k = int(np.argmax(z))
-    low, high = max(k - 1, 0), min(k + 2, len(t))
-    keep = np.concatenate([[True], np.diff(t[low:high]) > 0.0])
-    if int(keep.sum()) < 2:
-        return float(z[k])
-    spline = CubicHermiteSpline(t[low:high][keep], z[low:high][keep], w[low:high][keep])
-    turns = spline.derivative().roots(extrapolate=False)
-    turns = turns[np.isfinite(turns)]
-    return max(float(z[k]), float(np.max(spline(turns), initial=-np.inf)))
+    top = float(z[k])
+    for a in range(max(k - 1, 0), min(k + 1, len(t) - 1)):  # the two pieces beside the highest point
+        piece = (t[a + 1] - t[a], z[a], z[a + 1], w[a], w[a + 1])
+        top = max(top, _top_of_piece(*(float(one) for one in piece)))
+    return top
+
+
+def _top_of_piece(h: float, z_0: float, z_1: float, w_0: float, w_1: float) -> float:
+    """Highest turning point of the cubic with heights z and slopes w at both ends of a time h, or -inf."""
+    if h <= 0.0:
+        return -math.inf
+    rise = (z_1 - z_0) / h
+    b, c = (3.0 * rise - 2.0 * w_0 - w_1) / h, (w_0 + w_1 - 2.0 * rise) / h**2
+    # slope w_0 + 2 b s + 3 c s^2 = 0, in the form that does not cancel
+    inside = b * b - 3.0 * c * w_0
+    if inside < 0.0:
+        return -math.inf
+    q = -(b + math.copysign(math.sqrt(inside), b))
+    turns = (q / (3.0 * c) if c != 0.0 else math.nan, w_0 / q if q != 0.0 else math.nan)
+    return max((z_0 + s * (w_0 + s * (b + s * c)) for s in turns if 0.0 <= s <= h), default=-math.inf)
 
 
 def _bounce(grain: int, group: NDArray[Any]) -> tuple[float, ...]:

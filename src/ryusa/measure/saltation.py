@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ryusa.measure._hops import BOUNCE, HOP, Bounces, bounces_of
+from ryusa.measure._hops import BOUNCE, HOP, Bounces, PathOverBed, path_over_bed
 from ryusa.measure._run import Floats, Run, crest_of, settle_time
 from ryusa.measure.collisions import ContactTimes, contact_times
 from ryusa.measure.statistics import Average, average, begin_in_words, ratio
@@ -76,7 +76,8 @@ def saltation(
     scene = run.scene
     begin = settle_time(run) if settle is None else settle
     ids = range(scene.n_grain) if grains is None else grains
-    found = [bounces_of(run, grain, begin, rise, hops) for grain in ids]
+    paths = [path_over_bed(run, grain, rise) for grain in ids]
+    found = [one.since(begin, hops) for one in paths]
     times = contact_times(scene, int(ids[0])) if len(ids) else ContactTimes(math.nan, math.nan, math.nan)
     return Saltation(
         hops=np.concatenate([one.hops for one in found]) if found else np.zeros(0, HOP),
@@ -84,7 +85,7 @@ def saltation(
         contact_time=np.concatenate([one.contact_time for one in found]) if found else np.zeros(0),
         times=times,
         rise=rise,
-        averages=_averages(found, times, begin, rise, crest_of(scene), _begin(run, ids, rise, settle)),
+        averages=_averages(found, times, begin, rise, crest_of(scene), _begin(run, paths, settle)),
     )
 
 
@@ -93,9 +94,9 @@ def grouping(run: Run, rises: Sequence[float] = RISES, settle: float | None = No
     return [saltation(run, settle=settle, rise=rise) for rise in rises]
 
 
-def _begin(run: Run, ids: Sequence[int], rise: float, settle: float | None) -> str:
+def _begin(run: Run, paths: Sequence[PathOverBed], settle: float | None) -> str:
     """From when on the jump height is steady, in words, by all hops since the begin of the run."""
-    every = [bounces_of(run, grain, 0.0, rise, None).hops for grain in ids]
+    every = [one.hops for one in paths]
     hops = np.sort(np.concatenate(every), order="t_begin") if every else np.zeros(0, HOP)
     return begin_in_words("jump_height", hops["t_begin"], hops["rise"], settle_time(run), settle)
 

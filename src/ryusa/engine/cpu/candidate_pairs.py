@@ -4,7 +4,7 @@ import numpy as np
 
 from ryusa.engine.cpu import batch_layout as B
 from ryusa.engine.cpu import prune_schedule as K
-from ryusa.engine.cpu.arrays import CandidateArrays, GrainArrays, PairArrays, workspace_of_thread
+from ryusa.engine.cpu.arrays import CandidateArrays, GrainArrays, PairArrays, Workspace, workspace_of_thread
 from ryusa.engine.cpu.prune import prune_blocks
 from ryusa.engine.cpu.prune_schedule import ROUNDED_UP, steps_ahead
 from ryusa.engine.cpu.verlet_list import BlockLayout, Share
@@ -33,6 +33,7 @@ class CandidatePairs:
         self._layout, self._threads, self._smallest = layout, min(threads, blocks), smallest
         self.pairs = layout.empty_candidates(np.zeros(blocks, np.int64))
         self.spares: list[CandidateArrays] = []
+        self._work: dict[int, Workspace] = {}  # by the first block of a thread
         self.schedule = np.zeros(K.N_SCHEDULE)
         self.schedule[K.SKIN], self.schedule[K.AHEAD] = _SKIN * smallest, _AHEAD
         self.make_room(np.full(blocks, layout.n // blocks))
@@ -72,10 +73,11 @@ class CandidatePairs:
         wanted = np.zeros(len(layout.block_start) - 1, np.int64)
 
         def prune_some(first: int, last: int) -> None:
+            work = self._work.get(first) or self._work.setdefault(first, workspace_of_thread())
             prune_blocks(
                 first, last, layout.block_start, layout.n, layout.n_solid, reach_on, ahead,
                 variant.plane_case, parameters, grains, layout.walls, pairs, self.pairs, self.spares[0],
-                workspace_of_thread(), wanted,
+                work, wanted,
             )  # fmt: skip
 
         while True:

@@ -61,6 +61,7 @@ _RECORDS = 256  # room for ended contacts in a block, beside one a grain
 # Measured, and fixed so that a run never depends on a clock: cost of a Verlet list [ns], and steps
 # between two prunings.
 _LIST, _LIST_GRAIN, _STEPS_A_CUT = 300_000.0, 600.0, 16.0
+_FEW = 50  # grains up to which making a list costs far more than keeping its pairs
 
 
 class CpuEngine:
@@ -287,7 +288,7 @@ class CpuEngine:
         # pairs in touch may have parted in the last step, with exact timing in the one before: their account
         # is still to be closed
         parted = 2.001 * (1 + self._variant.exact) * self._fastest_displacement()
-        self._skin = max(min(max(skin, 0.02 * self._smallest), self._smallest), parted)
+        self._skin = max(min(max(skin, 0.02 * self._smallest), self._most_skin()), parted)
         self._since, self._travel, self._n_list = 0, 0.0, self._n_list + 1
         starts, self._pairs = self._pairs.start, self._layout.empty_pairs()  # frees the old list
         place_of, lost = self._list_pairs(self._grains, starts)
@@ -315,6 +316,10 @@ class CpuEngine:
         parts = [(a, b) for a, b in pairwise(ends) if b > a]
         others = [self._pool.submit(task, *part) for part in parts[1:]] if self._pool else []
         return [task(*parts[0]), *(other.result() for other in others)]
+
+    def _most_skin(self) -> float:
+        """Largest reach of a list beyond touch [m]: a few grains that hop over a bed go far."""
+        return (8.0 if self._n <= _FEW else 1.0) * self._smallest
 
     def _fastest_displacement(self) -> float:
         """How far the fastest grain went in the last step [m]."""
@@ -347,7 +352,7 @@ class CpuEngine:
         self._skin, self._since = self._skin_first * self._smallest, 0
         if own is not None:
             own.check(VERSION)
-            self._skin = own.number("skin", 0.0, self._layout.largest)
+            self._skin = own.number("skin", 0.0, max(self._most_skin(), self._layout.largest))
             self._since = int(own.number("since", 0.0, state.step))
         read_account(state, self._accounts.stats, self._accounts.terms, own)
         return own

@@ -1,5 +1,6 @@
 """Arrays of a scene and a state by id, in rows of four doubles: what engines start from."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -14,7 +15,7 @@ _CACHE_LINE = 64  # [B]
 
 def aligned(*shape: int) -> Floats:
     """Zeros that begin at a cache line: rows of eight doubles then take one line each, not two."""
-    size = 8 * int(np.prod(shape))
+    size = 8 * math.prod(shape)
     raw = np.zeros(size + _CACHE_LINE, np.uint8)
     first = -raw.ctypes.data % _CACHE_LINE
     return raw[first : first + size].view(np.float64).reshape(shape)

@@ -44,7 +44,7 @@ def longer_by(times: str) -> dict[str, str]:
         "contact.shear_stiffness": f"{K_S / s**2:.5g} N/cm",
         "contact.damping": f"{ETA_N / s:.5g} N s/cm",
         "contact.shear_damping": f"{ETA_S / s:.5g} N s/cm",
-        "time.steps_per_contact": "15",  # which resolve the drag too, as contacts are shorter than in fig18
+        "time.steps_per_contact": "30",  # which resolve the drag too, as contacts are shorter than in fig18
     }
     return {} if times == LONG else keys
 
