@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 from tests.engine.conftest import D, bits, pile, run
 from tests.engine.heaps import EXACT, heap
 
-from ryusa.build import scene
+from ryusa.build import build, scene
 from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.laws import collision
 from ryusa.laws.families import Arm, ContactTiming, Drag, Profile, Rebound, Rolling, Slip
@@ -17,6 +17,7 @@ from ryusa.laws.immersed import restitution_exponential, stokes_number
 from ryusa.laws.rolling import reduced_radius
 from ryusa.model import ContactLaw, RollingLaw, Water
 from ryusa.model.scene import EventRule
+from ryusa.studies.osada2004._parts import paper_run
 
 SPEED, K_N, PHASES = 0.1, 1.0e4, 40
 
@@ -239,3 +240,17 @@ def test_a_contact_that_turns_as_the_grains_pass_is_as_good_at_ten_steps_as_at_f
     assert worst[ContactTiming.EXACT] < allowed
     if e == 0.7:  # nearly without damping a first touch at a step does no harm
         assert worst[ContactTiming.EXACT] < worst[ContactTiming.AT_STEPS]
+
+
+def test_a_grain_that_leaves_faster_than_the_list_reaches_has_its_contact_closed():
+    # The contact ends within a step and is closed in the next: by then the pair is 0.01 d apart.
+    soft = {
+        "build.height": "0.000192593 m", "build.height_step": "9.62964e-06 m", "build.speed": "2 m/s",
+        "contact.parting": "tension", "contact.stiffness": "0.01 N/cm", "stop.time": "0.00784906 s",
+        "record.frames": "0.00784906 s", "time.step": "9.62964019714e-05 s",
+    }  # fmt: skip
+    built = build(paper_run("drop", soft, 1).read())
+    engine = CpuEngine()
+    engine.load(built.scene, built.state)
+    assert not engine.advance(round(0.00784906 / built.scene.dt))
+    assert len(engine.state().contacts.i) == 0

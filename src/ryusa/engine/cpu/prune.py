@@ -43,7 +43,8 @@ def prune(
     """List anew the pairs of block b, grains lo..hi-1, that come nearer than `reach_on` [m] beyond touch.
 
     They do so within `ahead` seconds if each grain keeps its velocity, stored in `GrainArrays.v_pruned`; or
-    did within the last step, and have an account to close. `spare` has room for the pairs in touch of any
+    did within the last two steps, and have an account to close: a contact that ends within a step is closed in
+    the next. `spare` has room for the pairs in touch of any
     block. Returns how much room is wanted where there was too little (the list then holds the pairs in touch
     alone), 0 where there was enough, -1 where a pair in touch is beyond reach, which should not be; and how
     many are in touch.
@@ -68,7 +69,7 @@ def prune(
             owner[l] = i
             set_separation(l, i, partners[begin + l], n_solid, x, points, normals, separation)
             set_relative_velocity(l, i, partners[begin + l], n_solid, v, normals, velocity)
-        mark_approaching(plane_case, reach_on, c[P.DT], ahead, m, c, separation, velocity, inside)
+        mark_approaching(plane_case, reach_on, 2.0 * c[P.DT], ahead, m, c, separation, velocity, inside)
         full = full or new + m > room
         for l in range(m):  # no branch: which pairs are near is not predictable
             if not full:
