@@ -43,9 +43,9 @@ def prune(
     """List anew the pairs of block b, grains lo..hi-1, that come nearer than `reach_on` [m] beyond touch.
 
     They do so within `ahead` seconds if each grain keeps its velocity, stored in `GrainArrays.v_pruned`; or
-    did within the last two steps, and have an account to close: a contact that ends within a step is closed in
-    the next. `spare` has room for the pairs in touch of any
-    block. Returns how much room is wanted where there was too little (the list then holds the pairs in touch
+    did within the last two steps, and have an account to close: a contact that ends within a step is closed
+    in the next. `spare` has room for the pairs in touch of any block. Returns how much room is wanted where
+    there was too little (the list then holds the pairs in touch
     alone), 0 where there was enough, -1 where a pair in touch is beyond reach, which should not be; and how
     many are in touch.
     """
