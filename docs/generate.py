@@ -217,7 +217,7 @@ def _parameter(parameter: Any) -> str:
     return f"| {shown} | {_escape(getattr(parameter, 'help', None) or '')} | {default} |"
 
 
-# ------------------------------------------------------------------------------------------------ validation
+# --------------------------------------------------------------------------------------------------- ledgers
 
 
 def validation_table() -> str:
@@ -231,6 +231,14 @@ def validation_table() -> str:
     parts = [table(kept), *changes(kept), "## Runs of each comparison", sampling_table()]
     parts.append(f"Nothing is drawn at random, so that results repeat to the last bit: {closed}.")
     return "\n\n".join(parts) + "\n"
+
+
+def paper_table() -> str:
+    """Every claim of the kept ledger of `ryusa paper`."""
+    from ryusa.studies.osada2004.study import table
+    from ryusa.study.kept import read_ledger
+
+    return table(read_ledger(LEDGERS / "paper.json.xz")) + "\n"
 
 
 def ledger_summaries() -> dict[Path, str]:
@@ -259,6 +267,7 @@ def pages() -> dict[Path, str]:
         HERE / "case-file.md": _between_markers(HERE / "case-file.md", case_reference()),
         HERE / "commands.md": _between_markers(HERE / "commands.md", command_reference()),
         HERE / "measuring.md": _between_markers(HERE / "measuring.md", measures_table()),
+        HERE / "paper.md": _between_markers(HERE / "paper.md", paper_table()),
         HERE / "validation.md": _between_markers(HERE / "validation.md", validation_table()),
         HERE / "case.schema.json": json_schema_text(),
         **ledger_summaries(),

@@ -134,3 +134,26 @@ def _ours(entry: Mapping[str, Any]) -> str:
 
 
 PAPER = PaperStudy()
+
+
+def table(plain: Mapping[str, Any]) -> str:
+    """Give the lines of the table of docs/paper.md, from what the ledger holds: judged numbers as shipped."""
+    lines = ["| claim | the paper | ours, as shipped | verdict | holds in | decided by |", "|" + "---|" * 6]
+    for row in plain["findings"]:
+        judged = [
+            one
+            for one in row["trials"]
+            if one["choices"] == row["trials"][0]["choices"] and one["outcome"] != "shown"
+        ]
+        share, why = row["robustness"], row["deciding_factor"]
+        unsure = f", {share['undecided']} undecided" if share["undecided"] else ""
+        cells = [
+            row["id"],
+            row["statement"],
+            "<br>".join(f"{one['part']}: {one['note'] or interval(one)}" for one in judged),
+            f"{row['verdict']} {row['condition']}".strip(),
+            f"{share['holds']} of {share['of']}{unsure}" if judged else "",
+            f"{why['choice']}: {', '.join(why['holds_at'])}" if why else "",
+        ]
+        lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
+    return "\n".join(lines)
