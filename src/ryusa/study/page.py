@@ -87,7 +87,7 @@ def _section(
     name = entry["part"]
     holder = first[name]
     rows = tables.get(name, ()) if holder == entry["id"] else ()
-    base = [one for one in entry["trials"] if one["choices"] == entry["trials"][0]["choices"]]
+    base = as_shipped(entry)
     return {
         **entry,
         "facts": study.facts(entry),
@@ -103,6 +103,11 @@ def _section(
         "file": f"{name}/{name}.csv",
         "holder": holder,
     }
+
+
+def as_shipped(entry: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """Trials of the case file as it ships, by the first reading of its runs."""
+    return [one for one in entry["trials"] if one["choices"] == entry["trials"][0]["choices"]]
 
 
 def read_otherwise(entry: Mapping[str, Any]) -> list[Mapping[str, Any]]:

@@ -11,7 +11,7 @@ from ryusa.studies.osada2004.by_level import tables
 from ryusa.studies.osada2004.claims import CLAIMS
 from ryusa.studies.osada2004.paper import CITATION
 from ryusa.study import Finding, Outcome, Study, StudyPart
-from ryusa.study.page import interval
+from ryusa.study.page import as_shipped, interval
 from ryusa.study.registration import Registration
 
 # What the paper left open, and the claims whose runs answer it.
@@ -130,30 +130,30 @@ def load(name: str) -> StudyPart:
 
 def _ours(entry: Mapping[str, Any]) -> str:
     """Numbers of the case file as it ships."""
-    return "; ".join(f"{one['part']}: {one['note'] or interval(one)}" for one in entry["base"])
+    return "; ".join(map(_number, entry["base"]))
 
 
-PAPER = PaperStudy()
+def _number(trial: Mapping[str, Any]) -> str:
+    return f"{trial['part']}: {trial['note'] or interval(trial)}"
 
 
 def table(plain: Mapping[str, Any]) -> str:
     """Give the lines of the table of docs/paper.md, from what the ledger holds: judged numbers as shipped."""
     lines = ["| claim | the paper | ours, as shipped | verdict | holds in | decided by |", "|" + "---|" * 6]
     for row in plain["findings"]:
-        judged = [
-            one
-            for one in row["trials"]
-            if one["choices"] == row["trials"][0]["choices"] and one["outcome"] != "shown"
-        ]
+        judged = [one for one in as_shipped(row) if one["outcome"] != "shown"]
         share, why = row["robustness"], row["deciding_factor"]
         unsure = f", {share['undecided']} undecided" if share["undecided"] else ""
         cells = [
             row["id"],
             row["statement"],
-            "<br>".join(f"{one['part']}: {one['note'] or interval(one)}" for one in judged),
+            "<br>".join(map(_number, judged)),
             f"{row['verdict']} {row['condition']}".strip(),
             f"{share['holds']} of {share['of']}{unsure}" if judged else "",
             f"{why['choice']}: {', '.join(why['holds_at'])}" if why else "",
         ]
         lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
     return "\n".join(lines)
+
+
+PAPER = PaperStudy()
