@@ -209,9 +209,10 @@ def _print(ledger: "Ledger") -> None:
 
 def print_counts(ledger: "Ledger") -> None:
     """How many findings have each verdict."""
-    words = ledger.study.words
-    counts = Counter(words[one.outcome] for one in ledger.entries)
-    typer.echo("; ".join(f"{counts[word]} {word}" for word in dict.fromkeys(words.values()) if counts[word]))
+    words, name = ledger.study.words, ledger.study.verdict
+    counts = Counter((one.outcome, name(one.id, one.outcome)) for one in ledger.entries)
+    lines = [f"{n} {verdict}" for word in words for (outcome, verdict), n in counts.items() if outcome == word]
+    typer.echo("; ".join(lines))
 
 
 def cores() -> int:

@@ -56,7 +56,7 @@ def render(
     for one in findings:
         first.setdefault(one["part"], one["id"])
     sections = [_section(study, one, first, tables, folder) for one in findings]
-    outcomes = Counter(one["outcome"] for one in findings)
+    counts = Counter((one["outcome"], one["verdict"]) for one in findings)
     page = template(study.template, interval=interval, limits=limits_in_words, asked=study.asked)
     context = {
         "ledger": plain,
@@ -66,7 +66,10 @@ def render(
             (study.part(name).TITLE, [one for one in sections if one["part"] == name]) for name in first
         ],
         "counts": [
-            (study.words[one], outcomes[str(one)], *LOOKS[one]) for one in LOOKS if outcomes[str(one)]
+            (verdict, n, *LOOKS[one])
+            for one in LOOKS
+            for (outcome, verdict), n in counts.items()
+            if outcome == str(one)
         ],
         "looks": {str(one): look for one, look in LOOKS.items()},
         "words": {str(one): word for one, word in study.words.items()},

@@ -8,11 +8,12 @@ from html.parser import HTMLParser
 import pytest
 from PIL import Image, ImageChops
 
+from ryusa.cli.study import print_counts
 from ryusa.errors import ResultsError
 from ryusa.running import disk
 from ryusa.studies.osada2004.claims import CLAIMS
 from ryusa.studies.osada2004.study import PAPER
-from ryusa.study import Level, Plan, html, page
+from ryusa.study import Level, Outcome, Plan, html, page
 from ryusa.study.page import write
 
 KEYS = {
@@ -105,6 +106,20 @@ def test_every_claim_has_a_section_its_verdict_in_words_and_its_statement(every_
     assert "2 of the 3 runs were made by other states of the code" in reader.text
     assert "2 by bbbbbbbbbbbb with changes." in reader.text
     assert "could not be carried out" in reader.text
+
+
+def test_what_the_paper_proposes_is_not_counted_among_what_it_claims(every_word, capsys):
+    outcomes = [row.outcome for row in every_word.entries]
+    assert outcomes.count(Outcome.FAILS) == 2  # a claim, and the proposal eq13
+    print_counts(every_word)
+    counted = capsys.readouterr().out.strip().split("; ")
+    assert {"1 not reproduced", "1 proposal falls short"} <= set(counted)
+    assert sum(int(one.split()[0]) for one in counted) == len(outcomes)
+    write(every_word)
+    reader, _ = read(every_word)
+    chips = reader.text.split("contradicts", 1)[0]
+    assert "1○ not reproduced" in chips
+    assert "1○ proposal falls short" in chips
 
 
 def test_a_picture_keeps_its_pixels_in_fewer_bytes(every_word):

@@ -32,8 +32,16 @@ QUESTIONS = (
 
 # Words for what is no claim: the paper supposes it, or proposes it.
 OF_KIND: Mapping[str, Mapping[Outcome, str]] = {
-    "conjecture": {Outcome.HOLDS: "conjecture holds", Outcome.FAILS: "conjecture does not hold"},
-    "proposal": {Outcome.HOLDS: "proposal works", Outcome.FAILS: "proposal falls short"},
+    "conjecture": {
+        Outcome.HOLDS: "conjecture holds",
+        Outcome.ONLY_IF: "conjecture holds only if",
+        Outcome.FAILS: "conjecture does not hold",
+    },
+    "proposal": {
+        Outcome.HOLDS: "proposal works",
+        Outcome.ONLY_IF: "proposal works only if",
+        Outcome.FAILS: "proposal falls short",
+    },
 }
 
 REGISTRATION = Registration.read(Path(__file__).with_name("registration"))
