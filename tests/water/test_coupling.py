@@ -14,6 +14,7 @@ from ryusa.laws.hindrance import exponent_settling
 from ryusa.model import Column, Water
 from ryusa.model.scene import EventRule
 from ryusa.water.coupling import Coupling
+from ryusa.water.exchange_step import force_on_water
 
 D, G = 2.0e-3, 9.80665
 FORMS = list(Buoyancy)
@@ -163,7 +164,9 @@ def test_every_slice_of_a_grain_drags_the_water_by_its_own_slip():
     k_d, dt = 2.0e-5, 1e-3
     taken = np.zeros((6, 4))
     taken[:, 0], taken[:, 3] = k_d * coupling.sampled[:, 0] * dt, k_d  # drag on grains at rest
-    force = coupling.force(taken, dt)
+    arrays = coupling._arrays
+    given = taken, coupling.sampled, arrays.grains, arrays.cut
+    force = force_on_water(arrays.p, area, sheared.u, *given, 1.0 / dt, arrays.force_z)
     volume = column.dz * area
     assert (force * volume).sum() == pytest.approx(taken[:, 0].sum() / dt, rel=1e-12)
     # of a sphere: every cell gives k_d U_k times the part of the sphere in it

@@ -157,7 +157,7 @@ def test_a_grain_astride_the_crest_of_a_bed_drifts_no_faster_than_its_eddies():
         state, _ = advance(column, state, phi, none, 0.05, slope=drag)
     z = np.arange(2.0 * D, 24.0 * D, 0.13 * D)
     cut = slices(z, np.full(len(z), D), Cells(column.z_low, column.dz, column.n, 1.0))
-    u_tau, drift = eddies.turbulence(column, state, phi, cut)
+    u_tau, drift, _ = eddies.turbulence(column, state, phi, cut)
     assert u_tau.max() > 0.05
     assert u_tau[z < 7.0 * D].max() == 0.0
     near = (z > 6.0 * D) & (z < 12.0 * D)

@@ -211,7 +211,9 @@ def print_counts(ledger: "Ledger") -> None:
     """How many findings have each verdict."""
     words, name = ledger.study.words, ledger.study.verdict
     counts = Counter((one.outcome, name(one.id, one.outcome)) for one in ledger.entries)
-    lines = [f"{n} {verdict}" for word in words for (outcome, verdict), n in counts.items() if outcome == word]
+    lines = [
+        f"{n} {verdict}" for word in words for (outcome, verdict), n in counts.items() if outcome == word
+    ]
     typer.echo("; ".join(lines))
 
 

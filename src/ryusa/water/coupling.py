@@ -5,26 +5,28 @@ received is taken from the cells with the same slices, so that momentum is conse
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from ryusa.errors import WaterError
 from ryusa.laws._family import numbers
-from ryusa.laws.families import BedKind, Buoyancy, Fluctuations, Mixing, Start
+from ryusa.laws.families import BedKind, Fluctuations, Mixing, Start
 from ryusa.model import CouplingState, Scene
 from ryusa.model.column import STIFF, Budget, Column, WaterState
 from ryusa.model.eddies import Eddies
-from ryusa.model.fluid import DRAG, N_SAMPLED, SHEAR
+from ryusa.model.fluid import N_SAMPLED, SHEAR
 from ryusa.model.scene import Floats
 from ryusa.water import eddies
-from ryusa.water.at_grains import DENSEST, given_by_grains, sample
+from ryusa.water import exchange_step as step
+from ryusa.water._kernel import parameters_of
 from ryusa.water.closures import averaged
 from ryusa.water.drive import discharge
-from ryusa.water.exchange import Cells, Slices, slices, to_cells, to_grains, weighted_concentration
-from ryusa.water.fixed_grains import FixedGrainForces, FixedGrains, steady_start
+from ryusa.water.exchange import Cells, Slices, concentration, slices, weighted_concentration
+from ryusa.water.fixed_grains import steady_start
 from ryusa.water.free_surface import submerged_part
-from ryusa.water.solve import advance
+from ryusa.water.solve import budget_of, fault_of, profiles_of, water_of
+from ryusa.water.time_step import DONE, GRADIENT
 
 numbers(__name__, Start.REST, Start.STEADY)
 numbers(__name__, Fluctuations.NONE, Fluctuations.RANDOM_WALK)
@@ -40,9 +42,7 @@ class Coupling:
     column : cells, boundaries, driver, closures.
     longest : largest number of engine steps in an interval.
     steps : steps in the present interval; 1 in the first, where no drag is known yet.
-    state : present state of the water.
     phi : present concentration of grains in the cells, fixed ones included [-], shape (n,).
-    budget : momentum budget of the water over the last interval; None before the first.
     sampled : water at the grains as given last, columns of `model.fluid`.
     due : step of the engine at which the next exchange is due.
     exchanges : number of exchanges so far.
@@ -54,19 +54,16 @@ class Coupling:
     column: Column
     longest: int
     steps: int
-    state: WaterState
     phi: Floats
-    budget: Budget | None
     sampled: Floats
     due: int
     exchanges: int
     worst: float
-    _slices: Slices  # of whole grains: volume in the cells
-    _submerged: Slices  # of the parts below the surface: exchange of forces
-    _bed: FixedGrains  # fixed grains
-    _volume: Floats  # of each grain, A_3 d**3 [m3]
-    _force_z: Floats  # of the water on grains along z, per volume of cells [N/m3]
-    _z: Floats  # heights at which the grains are cut [m]
+    _arrays: "_Arrays"
+    _rows: Floats  # profiles of the water in cells, those of `time_step`
+    _faces: Floats  # and at faces
+    _out: Floats  # scalars of the last exchange
+    _about: tuple[float, float, int]  # water per area of bed [m], t [s] and steps of the water
     eddies: Eddies | None = None
 
     @staticmethod
@@ -85,24 +82,28 @@ class Coupling:
             raise ValueError("; ".join(faults) or f"an interval of {longest} steps: at least 1")
         cells = Cells(column.z_low, column.dz, column.n, column.area)
         cut = slices(x[:, 2], scene.d, cells)
+        bed = _bed(scene, cells)
+        phi_bed = concentration(bed)
         solid = (scene.m - scene.m_weight) / scene.water.rho_w
-        bed = _bed(scene, cells, column.bed)
-        free = _phi(cut, solid)
-        phi = free + bed.phi
+        free = weighted_concentration(cut, solid / cut.whole)
+        phi = free + phi_bed
         if state is None and column.start is Start.STEADY:
-            every = np.concatenate([scene.d, bed.d])
+            d_bed = scene.d_fixed[scene.fixed_active]
+            every = np.concatenate([scene.d, d_bed])
             state = steady_start(
-                column, scene.water, bed.phi, free, float((every**3).sum() / (every**2).sum())
+                column, scene.water, phi_bed, free, float((every**3).sum() / (every**2).sum())
             )
         now = WaterState.at_rest(column, phi) if state is None else state
+        wet = submerged_part(cut, x[:, 2], scene.d, now.z_surface)
+        rows, faces, out = profiles_of(now)
         coupling = Coupling(
-            scene, column, longest, 1, now, phi, None, np.zeros((scene.n_grain, N_SAMPLED)), step + 1, 0, 0.0,
-            cut, submerged_part(cut, x[:, 2], scene.d, now.z_surface), bed, solid, np.zeros(column.n),
-            np.array(x[:, 2]),
+            scene, column, longest, 1, phi, np.zeros((scene.n_grain, N_SAMPLED)), step + 1, 0, 0.0,
+            _Arrays.of(scene, column, cut, wet, bed, phi_bed, np.array(x[:, 2]), solid), rows, faces, out,
+            (now.volume, now.t, now.step),
         )  # fmt: skip
         if column.fluctuations is Fluctuations.RANDOM_WALK:
             coupling.eddies = eddies.begin(column.seed, scene.n_grain)
-        coupling.sampled = coupling._fluid_at_grains()
+        coupling.sampled = coupling._water_at_grains()
         return coupling
 
     @staticmethod
@@ -125,24 +126,44 @@ class Coupling:
         coupling = Coupling.begin(scene, column, longest, x, found.water)
         coupling.steps, coupling.due = found.steps, found.due
         coupling.exchanges, coupling.worst = found.exchanges, found.worst
-        coupling.sampled, coupling._force_z = sampled, found.force_z
+        coupling.sampled = np.array(sampled)  # one that may be written: read-only arrays would compile anew
+        coupling._arrays.force_z[:] = found.force_z
         coupling.eddies = found.eddies
         return coupling
 
     def snapshot(self) -> CouplingState:
         """All that `resume` needs, beside the water at the grains."""
-        z, force_z = self._z.copy(), self._force_z.copy()
+        z, force_z = self._arrays.z.copy(), self._arrays.force_z.copy()
         z.flags.writeable = force_z.flags.writeable = False
         return CouplingState(
             self.state, z, force_z, self.steps, self.due, self.exchanges, self.worst, self.eddies
         )
 
+    @property
+    def state(self) -> WaterState:
+        """Present state of the water."""
+        return water_of(self._rows.view(), self._faces.view(), self._out, *self._about)
+
+    @property
+    def budget(self) -> Budget | None:
+        """Momentum budget of the water over the last interval; None before the first, and after a resume."""
+        return budget_of(self._out) if len(self._out) == step.N_SCALAR else None
+
     def change(self, scene: Scene, column: Column) -> None:
         """Take over a scene that the timeline changed: its slope, or removed fixed grains."""
-        if not np.array_equal(scene.fixed_active, self.scene.fixed_active):
-            self._bed = _bed(scene, self._slices.cells, column.bed)
-            self.phi = _phi(self._slices, self._volume) + self._bed.phi  # the same bits as after a resume
+        arrays, before = self._arrays, self.scene
+        cut, wet = arrays.slices(column, arrays.cut), arrays.slices(column, arrays.wet)
+        bed = _bed(scene, cut.cells)
+        phi_bed, solid = concentration(bed), arrays.grains.solid
+        if not np.array_equal(scene.fixed_active, before.fixed_active):
+            # the same bits as after a resume
+            self.phi = weighted_concentration(cut, solid / cut.whole) + phi_bed
+        force_z = arrays.force_z
         self.scene, self.column = scene, column
+        self._arrays = _Arrays.of(
+            scene, column, cut, wet if arrays.reaches else cut, bed, phi_bed, arrays.z, solid
+        )
+        self._arrays.force_z[:] = force_z
 
     def exchange(self, x: Floats, v: Floats, impulse: Floats) -> Floats:
         """Give the water what the grains took in the interval, move it on, and tell the grains anew.
@@ -155,42 +176,34 @@ class Coupling:
         Returns
         -------
         sampled : columns of `model.fluid`, shape (n_grain, N_SAMPLED); for the engine.
+
+        Raises
+        ------
+        WaterError : the water cannot be moved on, or drag acts faster than a step resolves.
         """
-        dt, before = self.steps * self.scene.dt, self.state
-        force = self.force(impulse, dt)
-        self._z = np.ascontiguousarray(x[:, 2])
-        self._slices = slices(self._z, self.scene.d, self._slices.cells, reuse=self._slices)
-        solid = self._volume / self._slices.whole
-        both = weighted_concentration(self._slices, np.column_stack([solid, v[:, 2] * solid]))
-        self.phi, phi_w = both[:, 0] + self._bed.phi, both[:, 1]
-        fixed = self._bed.forces(self.scene.water, self.column.rho_w * self.column.g_x, before, self.phi)
-        self._force_z += fixed.force_z
-        self.state, budget = advance(
-            self.column, before, self.phi, force + fixed.force, dt, slope=fixed.slope, carried=fixed.carried,
-            phi_w=phi_w,
+        dt, arrays = self.steps * self.scene.dt, self._arrays
+        volume, t, count = self._about
+        rows, faces = np.empty_like(self._rows), np.empty_like(self._faces)
+        out = np.zeros(step.N_SCALAR)
+        status = step.exchange_step(
+            arrays.p, arrays.area, arrays.laws, arrays.grains, arrays.bed, arrays.cut, arrays.wet,
+            arrays.bed_cut, arrays.bed_wet, arrays.reaches, x, v, impulse, self.sampled, dt, volume,
+            self._out, self._rows, arrays.z, self.phi, arrays.force_z, rows, faces, out,
         )  # fmt: skip
-        self._submerged = submerged_part(self._slices, self._z, self.scene.d, self.state.z_surface)
-        self.budget = _with_fixed(budget, fixed, self.state, before, self.column.dz)
-        self.exchanges, self.worst = self.exchanges + 1, max(self.worst, self.budget.relative)
-        self.steps = min(self.longest, self._resolved(impulse[:, DRAG]))
+        if status == step.NOT_FINITE:
+            i = int(out[step.BAD])
+            raise ValueError(f"grain in row {i}: z = {x[i, 2]:g} m, d = {self.scene.d[i]:g} m")
+        if status != DONE:
+            raise fault_of(status, count, t)
+        self._rows, self._faces, self._out, self._about = rows, faces, out, (volume, t + dt, count + 1)
+        arrays.reaches = bool(out[step.REACHES])
+        self.exchanges, self.worst = self.exchanges + 1, max(self.worst, float(out[step.RESIDUAL]))
+        self.steps = min(self.longest, self._resolved(float(out[step.FASTEST])))
         self.due += self.steps
         if self.eddies is not None:
             self.eddies = eddies.renew(self.eddies, self.column.seed, dt, self.sampled[:, SHEAR])
-        self.sampled = self._fluid_at_grains()
+        self.sampled = self._water_at_grains()
         return self.sampled
-
-    def force(self, impulse: Floats, dt: float) -> Floats:
-        """Force of the water on grains along the bed, averaged over an interval, per volume of cells [N/m3].
-
-        Each slice acts on the water with the slip in its cell; the sum over slices is the force on the grain.
-        """
-        scene, cut, u = self.scene, self._submerged, self.state.u
-        archimedes = (scene.m_weight - scene.m) * scene.gravity[0]
-        met = to_grains(cut, u, "submerged")
-        amounts = given_by_grains(impulse, met, archimedes, self.sampled, 1.0 / dt)
-        sums = to_cells(cut, amounts, "submerged").cells / cut.cells.volume
-        self._force_z = sums[:, 1].copy()
-        return sums[:, 0] + (sums[:, 2] * u - sums[:, 3])
 
     def numbers(self) -> dict[str, float | int]:
         """State of the water for the summary of a run; SI."""
@@ -227,64 +240,98 @@ class Coupling:
             "is at rest, set water.column.packed to its concentration"
         ]
 
-    def _resolved(self, drag: Floats) -> int:
-        """Steps for which an interval resolves the drag, with coefficients [N s/m], shape (n_grain,)."""
-        scene, cut = self.scene, self._submerged
-        per = to_cells(cut, drag, "submerged").cells / cut.cells.volume
-        water = scene.water.rho_w * np.maximum(1.0 - self.phi, 1.0 - DENSEST)
-        fastest = max(
-            float(np.max(per / water, initial=0.0)),
-            float(np.max(drag / (scene.m + scene.m_added), initial=0.0)),
-        )
-        if fastest * scene.dt * self.longest <= STIFF:
+    def _resolved(self, fastest: float) -> int:
+        """Steps for which an interval resolves the drag, at its largest rate of relaxation [1/s]."""
+        dt = self.scene.dt
+        if fastest * dt * self.longest <= STIFF:
             return self.longest
-        most = math.floor(STIFF / (fastest * scene.dt))
+        most = math.floor(STIFF / (fastest * dt))
         if most < 1:
             raise WaterError(
                 f"Drag brings grains to the speed of the water within {1.0 / fastest:.3g} s, which a step of "
-                f"{scene.dt:.3g} s does not resolve",
-                step=self.state.step,
-                t=self.state.t,
+                f"{dt:.3g} s does not resolve",
+                step=self._about[2],
+                t=self._about[1],
                 hint="Take a shorter step (time.step), larger grains or a less viscous fluid.",
             )
         return most
 
-    def _fluid_at_grains(self) -> Floats:
+    def _water_at_grains(self) -> Floats:
         """State of the water at every grain."""
-        scene, state, cut = self.scene, self.state, self._submerged
-        eps = 1.0 - self.phi
-        water = scene.water
-        along = [state.u, state.w, state.shear, self.phi, state.du_dt]
-        if water.buoyancy == Buoyancy.STRESS:
-            along += [state.dtau_dz, self._force_z / np.maximum(eps, 1.0 - DENSEST)]
-        at = to_grains(cut, np.column_stack(along), "submerged")
-        both = np.zeros((0, 3))
+        arrays = self._arrays
+        wet = arrays.wet if arrays.reaches else arrays.cut
+        speeds = np.zeros((0, 3))
         if self.eddies is not None:
-            u_tau, drift = eddies.turbulence(self.column, state, self.phi, cut)
-            both = eddies.speeds(self.eddies, scene.plane_case, u_tau, drift, at[:, 2])
-        sampled = np.empty((scene.n_grain, N_SAMPLED))
-        sample(
-            at, cut.share, self._volume, both, int(water.buoyancy), state.gradient, water.rho_w,
-            scene.gravity[0], scene.gravity[2], sampled,
+            cut, water = arrays.slices(self.column, wet), self.state
+            u_tau, drift, shear = eddies.turbulence(self.column, water, self.phi, cut)
+            speeds = eddies.speeds(self.eddies, self.scene.plane_case, u_tau, drift, shear)
+        sampled = np.empty((self.scene.n_grain, N_SAMPLED))
+        step.water_at_grains(
+            arrays.p, arrays.laws, arrays.grains, wet, self._rows, float(self._out[GRADIENT]), self.phi,
+            arrays.force_z, speeds, sampled,
         )  # fmt: skip
         return sampled
 
 
-def _phi(cut: Slices, solid: Floats) -> Floats:
-    """Concentration of grains of volume `solid` [m3], with the slices of their spheres."""
-    return weighted_concentration(cut, solid / cut.whole)
+@dataclass
+class _Arrays:
+    """What the compiled exchange works with; constant but for the slices, z, force_z and `reaches`."""
+
+    p: step.ColumnParameters
+    area: float
+    laws: step.WaterLaws
+    grains: step.GrainNumbers
+    bed: step.BedNumbers
+    cut: step.SliceArrays  # of whole grains: volume in the cells
+    wet: step.SliceArrays  # of the parts below the surface, where a grain reaches it: exchange of forces
+    bed_cut: step.SliceArrays
+    bed_wet: step.SliceArrays
+    z: Floats  # heights at which the grains are cut [m]
+    force_z: Floats  # of the water on grains along z, per volume of cells [N/m3]
+    reaches: bool = field(default=False)  # whether a grain reaches the surface
+
+    @staticmethod
+    def of(
+        scene: Scene, column: Column, cut: Slices, wet: Slices, bed: Slices, phi_bed: Floats, z: Floats,
+        solid: Floats,
+    ) -> "_Arrays":  # fmt: skip
+        """For slices of the free grains, of their parts below the surface, and of the fixed grains."""
+        water, there = scene.water, scene.fixed_active
+        z_bed = np.ascontiguousarray(scene.x_fixed[there, 2])
+        whole, bed_cut = step.SliceArrays.of(cut), step.SliceArrays.of(bed)
+        reaches = wet is not cut
+        return _Arrays(
+            parameters_of(column),
+            float(column.area),
+            step.WaterLaws(
+                int(water.drag), int(water.hindrance), int(water.buoyancy), float(water.hindrance_exponent),
+                float(water.nu), float(water.rho_w), float(water.a_2), float(water.c_d),
+                float(scene.gravity[0]), float(scene.gravity[2]),
+            ),
+            step.GrainNumbers(
+                np.arange(scene.n_grain), np.array(scene.d), solid,
+                (scene.m_weight - scene.m) * scene.gravity[0], scene.m + scene.m_added,
+            ),
+            step.BedNumbers(
+                np.arange(len(z_bed)), z_bed, np.array(scene.d_fixed[there]), phi_bed,
+                column.bed is BedKind.ROUGH,
+            ),
+            whole,
+            step.SliceArrays.of(wet) if reaches else whole.copy(),
+            bed_cut,
+            bed_cut.copy(),
+            z,
+            np.zeros(column.n),
+            reaches,
+        )  # fmt: skip
+
+    def slices(self, column: Column, arrays: step.SliceArrays) -> Slices:
+        """The arrays as slices of grains."""
+        cells = Cells(column.z_low, column.dz, column.n, column.area)
+        return Slices(cells, *arrays, self.grains.order)
 
 
-def _bed(scene: Scene, cells: Cells, bed: BedKind) -> FixedGrains:
-    """The fixed grains that are still there."""
+def _bed(scene: Scene, cells: Cells) -> Slices:
+    """Slices of the fixed grains that are still there."""
     there = scene.fixed_active
-    return FixedGrains.at(scene.x_fixed[there, 2], scene.d_fixed[there], cells, bed)
-
-
-def _with_fixed(
-    budget: Budget, fixed: FixedGrainForces, now: WaterState, before: WaterState, dz: float
-) -> Budget:
-    """The budget, with the force on fixed grains separated from that on free grains."""
-    wet = now.content > 0.0
-    taken = float(fixed.force.sum() + (fixed.slope * (now.u - before.u))[wet].sum()) * dz
-    return replace(budget, grains=budget.grains + taken, fixed=budget.carried - taken, carried=0.0)
+    return slices(scene.x_fixed[there, 2], scene.d_fixed[there], cells)

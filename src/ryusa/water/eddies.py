@@ -127,8 +127,8 @@ def speeds(eddies: Eddies, plane: bool, u_tau: Floats, drift: Floats, shear: Flo
     return u
 
 
-def turbulence(column: Column, state: WaterState, phi: Floats, cut: Slices) -> tuple[Floats, Floats]:
-    """Intensity u_tau of the turbulence at each grain, and drift velocity along z [m/s], shape (n_grain,).
+def turbulence(column: Column, state: WaterState, phi: Floats, cut: Slices) -> tuple[Floats, Floats, Floats]:
+    """Turbulence at each grain: intensity u_tau, drift velocity along z [m/s], shear of the water [1/s].
 
     Parameters
     ----------
@@ -149,5 +149,6 @@ def turbulence(column: Column, state: WaterState, phi: Floats, cut: Slices) -> t
         square[0] = square[1]
     drift = np.empty(column.n)
     _drift(column.dz, np.sqrt(square), viscosity, drift)
-    at = to_grains(cut, np.column_stack([0.5 * (square[:-1] + square[1:]), drift]), "submerged")
-    return np.sqrt(at[:, 0]), at[:, 1]
+    both = np.column_stack([0.5 * (square[:-1] + square[1:]), drift, state.shear])
+    at = to_grains(cut, both, "submerged")
+    return np.sqrt(at[:, 0]), at[:, 1], at[:, 2]

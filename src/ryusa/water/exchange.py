@@ -183,7 +183,9 @@ def slices(
     else:
         first, count, volume = np.empty(n, np.int64), np.empty(n, np.int64), np.empty((n, width))
         whole, submerged, below, above = (np.empty(n) for _ in range(4))
-    _cut(z, 0.5 * d, cells.z_low, cells.dz, cells.n, first, count, volume, whole, submerged, below, above)
+    cut_grains(
+        z, 0.5 * d, cells.z_low, cells.dz, cells.n, first, count, volume, whole, submerged, below, above
+    )
     return Slices(cells, first, count, volume, whole, submerged, below, above, _order(ids, n))
 
 
@@ -258,14 +260,14 @@ def to_grains(grains: Slices, values: Floats, share: Share = "whole") -> Floats:
     table, flat = _table(values, grains.cells.n, "cell")
     fours = _fours(table)
     out = np.empty((grains.n_grain, fours.shape[1]))
-    _take(grains.first, grains.count, grains.volume, grains.factors(share)[0], fours, out)
+    mean_over_grains(grains.first, grains.count, grains.volume, grains.factors(share)[0], fours, out)
     return out[:, 0] if flat else out[:, : table.shape[1]]
 
 
 def _give(grains: Slices, table: Floats, per: Floats, outer: Floats) -> tuple[Floats, Floats]:
     """Sums in cells (m, n) and outside (m, 2)."""
     sums, outside = np.zeros((table.shape[1], grains.cells.n)), np.zeros((table.shape[1], 2))
-    _add(
+    add_to_cells(
         grains.order, grains.first, grains.count, grains.volume, grains.below, grains.above, per, outer,
         table, sums, outside,
     )  # fmt: skip
@@ -304,7 +306,7 @@ def _table(values: Floats, n: int, what: str) -> tuple[Floats, bool]:
 
 
 @law  # compiled as a law is, like the two below: a loop over arrays that calls laws
-def _cut(
+def cut_grains(
     z: Floats, r: Floats, z_low: float, dz: float, n: int,
     first: Ints, count: Ints, volume: Floats, whole: Floats, submerged: Floats, below: Floats, above: Floats,
 ) -> None:  # fmt: skip
@@ -329,7 +331,7 @@ def _cut(
 
 
 @law
-def _add(
+def add_to_cells(
     order: Ints, first: Ints, count: Ints, volume: Floats, below: Floats, above: Floats,
     per: Floats, outer: Floats, amounts: Floats, sums: Floats, outside: Floats,
 ) -> None:  # fmt: skip
@@ -348,7 +350,9 @@ def _add(
 
 
 @law
-def _take(first: Ints, count: Ints, volume: Floats, per: Floats, table: Floats, out: Floats) -> None:
+def mean_over_grains(
+    first: Ints, count: Ints, volume: Floats, per: Floats, table: Floats, out: Floats
+) -> None:
     """Means over each grain, out (n_grain, m), of cell values, table (n, m)."""
     for i in range(first.shape[0]):
         for c in range(0, table.shape[1], FOUR):

@@ -1,7 +1,7 @@
 """Forces of the water on fixed grains, and steady flow over a bed at rest as an initial state."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -14,9 +14,6 @@ from ryusa.laws.families import BedKind, Buoyancy, Drag
 from ryusa.model.column import Column, WaterState
 from ryusa.model.scene import Floats, Water
 from ryusa.water._kernel import kernel
-from ryusa.water.at_grains import DENSEST
-from ryusa.water.exchange import Cells, Slices, concentration, slices, to_cells, to_grains
-from ryusa.water.free_surface import submerged_part
 from ryusa.water.steady import steady
 
 numbers(__name__, Buoyancy.WEIGHT, Buoyancy.STRESS, Buoyancy.PRESSURE)
@@ -34,64 +31,6 @@ class FixedGrainForces(NamedTuple):
     slope: Floats  # derivative with respect to the speed of the water [N s/m4]
     carried: Floats  # share of d tau/dz that they take in addition [-]
     force_z: Floats  # drag upwards [N/m3]
-
-
-@dataclass(frozen=True)
-class FixedGrains:
-    """Fixed grains in a column of water.
-
-    Attributes
-    ----------
-    cut : their slices.
-    z : heights of their centres [m], shape (n_grain,).
-    d : diameters [m], shape (n_grain,).
-    phi : concentration [-], shape (n,).
-    covered_by_wall_law : the law of a rough wall stands for their drag: they fill cells but take no force.
-    """
-
-    cut: Slices
-    z: Floats
-    d: Floats
-    phi: Floats
-    covered_by_wall_law: bool
-
-    @staticmethod
-    def at(z: Floats, d: Floats, cells: Cells, bed: BedKind) -> "FixedGrains":
-        """Spheres at heights z [m] with diameters d [m] in a column with the bed condition `bed`."""
-        cut = slices(z, d, cells)
-        return FixedGrains(
-            cut, np.ascontiguousarray(z), np.ascontiguousarray(d), concentration(cut), bed is BedKind.ROUGH
-        )
-
-    def forces(self, water: Water, rho_g_x: float, state: WaterState, phi: Floats) -> FixedGrainForces:
-        """Forces of the water, by the laws and the form of buoyancy that apply to free grains.
-
-        Parameters
-        ----------
-        water : laws of drag, hindrance and buoyancy.
-        rho_g_x : weight of the water along the bed [N/m3].
-        state, phi : water, and concentration of all grains [-], shape (n,).
-
-        Notes
-        -----
-        The drag coefficient of a grain follows from the mean speed over its volume; each slice then acts on
-        the water of its cell with the speed in that cell, as for free grains. The derivative of the drag is
-        taken in each cell as if the grain lay there alone. The sum is therefore exact in steady flow, and a
-        step of any length is stable.
-        """
-        n = len(phi)
-        given = np.zeros((n, 3))
-        if self.covered_by_wall_law:
-            return FixedGrainForces(*np.zeros((4, n)))
-        cells = self.cut.cells
-        if len(self.d):
-            cut = submerged_part(self.cut, self.z, self.d, state.z_surface)
-            at = to_grains(cut, np.column_stack([state.u, state.w, np.minimum(phi, DENSEST)]), "submerged")
-            out = _drags(water, at, cut.share, self.d)
-            given = to_cells(cut, out, "submerged").cells / cells.volume
-            given[:, 0] *= state.u
-        submerged = np.clip((state.z_surface - cells.faces[:-1]) / cells.dz, 0.0, 1.0)
-        return _forces_per_volume(given, water, self.phi, submerged, state.gradient, rho_g_x)
 
 
 def settled_concentration(column: Column, fixed: Floats, free: Floats, d: float) -> Floats:
@@ -177,7 +116,7 @@ def _drags(water: Water, at: Floats, share: Floats, d: Floats) -> Floats:
     """Drag over slip, derivative of drag [N s/m], drag along z [N] of grains at rest, (n_grain, 3)."""
     out = np.zeros((len(d), 3))
     if water.drag != Drag.NONE:
-        _resist(
+        drag_on_fixed(
             int(water.drag), int(water.hindrance), water.buoyancy == Buoyancy.STRESS,
             float(water.hindrance_exponent), at, share, d, float(water.nu), float(water.rho_w),
             float(water.a_2), float(water.c_d), out,
@@ -186,7 +125,7 @@ def _drags(water: Water, at: Floats, share: Floats, d: Floats) -> Floats:
 
 
 @kernel
-def _resist(
+def drag_on_fixed(
     law: int, hindrance: int, stress: bool, exponent: float, at: Floats, share: Floats, d: Floats, nu: float,
     rho_w: float, a_2: float, c_d: float, out: Floats,
 ) -> None:  # fmt: skip

@@ -39,12 +39,14 @@ def submerged_part(cut: Slices, z: Floats, d: Floats, surface: float) -> Slices:
         cut.above.copy(),
     )
     cells = cut.cells
-    _trim(out, z, 0.5 * d, cells.z_low, cells.dz, surface, cut.first, count, volume, submerged, above)
+    cut_at_surface(
+        out, z, 0.5 * d, cells.z_low, cells.dz, surface, cut.first, count, volume, submerged, above
+    )
     return replace(cut, count=count, volume=volume, submerged=submerged, above=above)
 
 
 @law  # compiled as a law is: a loop over arrays that calls laws
-def _trim(
+def cut_at_surface(
     out: Ints, z: Floats, r: Floats, z_low: float, dz: float, surface: float,
     first: Ints, count: Ints, volume: Floats, submerged: Floats, above: Floats,
 ) -> None:  # fmt: skip

@@ -72,14 +72,20 @@ def solve_step(
     for row, values in enumerate((state.u, state.content, guess, phi, force, slope, carried, phi_w)):
         if values is not None:
             given[row] = values
-    rows, faces, out = np.empty((6, n)), np.empty((2, n + 1)), np.empty(kernels.N_OUT)
+    rows, faces, out = np.empty((6, n)), np.empty((2, n + 1)), np.zeros(kernels.N_OUT)
     status = kernels.time_step(
         parameters_of(column), given, float(state.volume), float(per_dt), rows, faces, out
     )
     if status != kernels.DONE:
-        raise _error(status, state)
+        raise fault_of(status, state.step, state.t)
+    now = water_of(rows, faces, out, state.volume, state.t + dt, state.step + 1)
+    return now, budget_of(out)
+
+
+def water_of(rows: Floats, faces: Floats, out: Floats, volume: float, t: float, step: int) -> WaterState:
+    """State of the water from what `time_step` wrote; its arrays become read-only."""
     rows.flags.writeable = faces.flags.writeable = False
-    now = WaterState(
+    return WaterState(
         u=rows[0],
         w=rows[1],
         content=rows[2],
@@ -89,12 +95,24 @@ def solve_step(
         tau=faces[0],
         nu_t=faces[1],
         z_surface=float(out[kernels.SURFACE]),
-        volume=state.volume,
+        volume=volume,
         gradient=float(out[kernels.GRADIENT]),
-        t=state.t + dt,
-        step=state.step + 1,
+        t=t,
+        step=step,
     )
-    budget = Budget(
+
+
+def profiles_of(state: WaterState) -> tuple[Floats, Floats, Floats]:
+    """The inverse of `water_of`: profiles in cells and at faces, and scalars."""
+    rows = np.stack([state.u, state.w, state.content, state.shear, state.du_dt, state.dtau_dz])
+    out = np.zeros(kernels.N_OUT)
+    out[kernels.SURFACE], out[kernels.GRADIENT] = state.z_surface, state.gradient
+    return rows, np.stack([state.tau, state.nu_t]), out
+
+
+def budget_of(out: Floats) -> Budget:
+    """Momentum budget from the scalars that `time_step` wrote."""
+    return Budget(
         change=float(out[kernels.B_CHANGE]),
         gravity=float(out[kernels.B_GRAVITY]),
         driver=float(out[kernels.B_DRIVER]),
@@ -105,8 +123,8 @@ def solve_step(
         carried=float(out[kernels.B_SHARED]),
         surface=float(out[kernels.B_SURFACE]),
         iterations=int(out[kernels.ITERATIONS]),
+        fixed=float(out[kernels.B_FIXED]),
     )
-    return now, budget
 
 
 FAULTS = {
@@ -130,6 +148,7 @@ FAULTS = {
 }
 
 
-def _error(status: int, state: WaterState) -> WaterError:
+def fault_of(status: int, step: int, t: float) -> WaterError:
+    """The error for a status of `time_step`, at a step of the water and its time [s]."""
     cause, hint = FAULTS[status]
-    return WaterError(cause, step=state.step, t=state.t, hint=hint)
+    return WaterError(cause, step=step, t=t, hint=hint)

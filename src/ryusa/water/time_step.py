@@ -27,7 +27,8 @@ DONE, TOO_SHORT, NO_ROOM, NOT_A_NUMBER, NOT_CONVERGED = range(5)
 # scalars that a step writes, beside its profiles
 SURFACE, GRADIENT, ITERATIONS = range(3)
 B_GRAVITY, B_DRIVER, B_BED, B_LID, B_SIDE, B_GRAINS, B_SHARED, B_SURFACE, B_CHANGE = range(3, 12)
-N_OUT = 12
+B_FIXED = 12  # written by an exchange, which tells fixed grains from free ones
+N_OUT = 13
 
 
 class Sources(NamedTuple):

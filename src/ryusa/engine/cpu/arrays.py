@@ -118,6 +118,15 @@ def rows_by_id(ids: Any, rows: Any, out: Any) -> None:
 
 
 @kernel()
+def same_column(ids: Any, rows: Any, placed: Any, k: int) -> bool:
+    """Whether column k of rows that lie by id is that of rows in the order of places."""
+    same = True
+    for i in range(len(ids)):
+        same = same and rows[ids[i], k] == placed[i, k]
+    return same
+
+
+@kernel()
 def rows_by_place(ids: Any, rows: Any, out: Any) -> None:
     """Put rows that lie by id in the order of places."""
     for i in range(len(ids)):

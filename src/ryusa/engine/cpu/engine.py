@@ -13,6 +13,7 @@ from ryusa.engine.cpu.arrays import (
     GrainArrays,
     rows_by_id,
     rows_by_place,
+    same_column,
     workspace_of_thread,
 )
 from ryusa.engine.cpu.candidate_pairs import CandidatePairs
@@ -205,7 +206,7 @@ class CpuEngine:
         if sampled.shape != self._grains.fluid.shape:
             raise ValueError(f"sampled has shape {sampled.shape}, not {self._grains.fluid.shape}")
         grains, ids = self._grains, self._grains.ids[: self._n]
-        if self._step and not np.array_equal(sampled[ids, SUBMERGED], grains.fluid[:, SUBMERGED]):
+        if self._step and not same_column(ids, sampled, grains.fluid, SUBMERGED):
             # energy of the water that moves along with a grain, or no longer does
             more = sampled[ids, SUBMERGED] - grains.fluid[:, SUBMERGED]
             added = grains.m[: self._n] - grains.m_bare[: self._n]
