@@ -99,7 +99,10 @@ def _value(about: dict[str, Any], definitions: dict[str, Any]) -> str:
     if about.get("format") == "quantity":
         return f"{about['title']}, such as {_examples(about)}"
     if about.get("type") == "array":
-        inner = about.get("items") or about["prefixItems"][0]
+        several = about.get("prefixItems", [])
+        if any(one != several[0] for one in several):
+            return f"[{', '.join(_value(one, definitions) for one in several)}]"
+        inner = about.get("items") or several[0]
         count = f"{about['maxItems']} of: " if "maxItems" in about else "list of: "
         return f"[{count}{_value(inner, definitions)}]"
     words = {"string": "text", "number": "number", "integer": "whole number", "boolean": "`true` or `false`"}

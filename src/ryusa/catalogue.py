@@ -145,6 +145,8 @@ MEASURES = (
     MeasureEntry("segregation", "ryusa.measure.segregation:segregation",
                  "heights of large and small grains over time", WINDOW, settled=True,
                  numbers=(("segregation_index", "-"), ("small_over_all", "m"), ("large_over_all", "m"))),
+    MeasureEntry("sizes", "ryusa.measure.sizes:sizes",
+                 "sizes laid by mass, D10 to D90 and sorting, beside the sieve curve asked for"),
     MeasureEntry("dispersion", "ryusa.measure.dispersion:dispersion",
                  "mean squared displacement about the mean motion, and diffusivities",
                  (*WINDOW, "layer"), settled=True,
@@ -200,6 +202,8 @@ PICTURES = (
     PictureEntry("surface", "ryusa.figures.runs:surface", "a heap with its free surface and fitted slope",
                  ("t", "side", "lane"),
                  builders=("box",)),
+    PictureEntry("sizes", "ryusa.figures.runs:sizes",
+                 "percent finer by mass over diameter, asked for and laid"),
     PictureEntry("vibration", "ryusa.figures.runs:vibration", "grains that do not come to rest",
                  ("grains", *WINDOW)),
 )  # fmt: skip

@@ -2,12 +2,14 @@
 
 import numpy as np
 
+from ryusa.build.nested_lattice import Cells, nested_lattice
 from ryusa.build.placement import Placement, Wall, at_rest
 from ryusa.build.sizes import draw
 from ryusa.casefile.builders.box import BoxPlan, box_plan, stands_on_floor
 from ryusa.casefile.builders.schema import BoxSection
 from ryusa.casefile.case import Case
 from ryusa.casefile.derive import Derived
+from ryusa.casefile.grading import grading_of
 from ryusa.model.scene import Floats
 
 ZERO = 0.25  # depth of the profile's zero below the crest of a floor of grains, in diameters
@@ -26,7 +28,13 @@ def box(case: Case, derived: Derived) -> Placement:
     floor = _floor(keys, plan, rng, d, plane)
     back, gate = _stacks(keys, plan, floor, d, plane)
     top = float(floor[:, 2].max()) + d / 2.0 if len(floor) else 0.0
-    x = _lattice(keys, plan, rng, derived.d_max, plane)
+    sized: Floats | None = None
+    if grading_of(case) is None:
+        x = _lattice(keys, plan, rng, derived.d_max, plane)
+    else:
+        sized = draw(case, keys.columns * keys.rows * keys.layers, rng)
+        cells = Cells(plan.pitch, keys.columns, keys.rows)
+        x = nested_lattice(sized, cells, keys.gap, keys.jitter, plane, rng)
     x[:, 2] += top + keys.height
     parts = [(name, rows) for name, rows in (("floor", floor), ("back", back), ("gate", gate)) if len(rows)]
     firsts = np.cumsum([0, *(len(rows) for _, rows in parts)]).tolist()
@@ -34,7 +42,7 @@ def box(case: Case, derived: Derived) -> Placement:
     crest = float(floor[:, 2].mean()) + d / 2.0 if len(floor) else 0.0
     inf = float("inf")
     return Placement(
-        d=draw(case, len(x), rng),
+        d=draw(case, len(x), rng) if sized is None else sized,
         x=x,
         v=at_rest(len(x)),
         omega=at_rest(len(x)),
@@ -110,7 +118,7 @@ def _notes(case: Case, keys: BoxSection) -> tuple[str, ...]:
     for key in ("floor", "walls"):
         if key not in keys.model_fields_set:
             notes.append(f"{key} of the box: {getattr(keys, key)} (build.{key} not given)")
-    if "spread" not in case.grains.model_fields_set:
+    if "spread" not in case.grains.model_fields_set and grading_of(case) is None:
         notes.append("grains of one size, which settle into rows (grains.spread not given)")
     opened = any(entry.remove == "gate" for entry in case.timeline)
     if opened and keys.floor == "grains":

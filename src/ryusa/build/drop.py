@@ -8,6 +8,7 @@ from ryusa.build.placement import LANE, Placement, Wall, at_rest
 from ryusa.casefile.builders.schema import DropSection
 from ryusa.casefile.case import Case
 from ryusa.casefile.derive import Derived
+from ryusa.casefile.grading import reference_diameter
 
 GAP = 0.1  # first gap when only a speed is given, in diameters
 
@@ -16,7 +17,7 @@ def drop(case: Case, _derived: Derived) -> Placement:
     """Struck grain at x = 0 with its base at z = 0, striking grain `height` above it; group `struck`."""
     keys = case.build
     assert isinstance(keys, DropSection)
-    d, copies = case.grains.diameter, keys.copies
+    d, copies = reference_diameter(case), keys.copies
     height = GAP * d if keys.height is None else keys.height
     lanes = np.arange(copies)
     gap = height + lanes * keys.height_step

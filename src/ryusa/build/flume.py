@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from ryusa.build.nested_lattice import Cells, nested_lattice
 from ryusa.build.placement import Placement, Wall, at_rest
 from ryusa.build.sizes import draw
 from ryusa.casefile.builders.schema import FlumeSection
@@ -12,6 +13,7 @@ from ryusa.casefile.case import Case
 from ryusa.casefile.column.bed import bed_thickness, packed
 from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.derive import Derived
+from ryusa.casefile.grading import grading_of, reference_diameter
 from ryusa.model.scene import Floats
 
 SIDES = ("right", "left")  # looking downstream: y = 0 and y = width
@@ -26,7 +28,13 @@ def flume(case: Case, derived: Derived) -> Placement:
     wide = d if plane or keys.width is None else keys.width
     x_fixed = _base(case, keys, rng, wide)
     top = float(x_fixed[:, 2].max()) + d / 2.0 if len(x_fixed) else 0.0
-    x = _lattice(case, keys, rng, wide, derived.d_max)
+    sized: Floats | None = None
+    cells = _cells(case, keys, wide, derived.d_max)
+    if grading_of(case) is None:
+        x = _lattice(case, keys, rng, cells, derived.d_max)
+    else:
+        sized = draw(case, flume_count(case), rng)
+        x = nested_lattice(sized, cells, keys.gap, keys.jitter, plane, rng)
     if plane:
         x[:, 1] = 0.0
     x[:, 2] += top
@@ -40,7 +48,7 @@ def flume(case: Case, derived: Derived) -> Placement:
     z_zero, where = bed_level(case, 0.0, d / 2.0 if len(x_fixed) else None)
     notes = (f"zero of the water {where} (water.zero not given)",)
     return Placement(
-        d=draw(case, len(x), rng),
+        d=draw(case, len(x), rng) if sized is None else sized,
         x=x,
         v=at_rest(len(x)),
         omega=at_rest(len(x)),
@@ -67,7 +75,7 @@ def bed_level(case: Case, base: float, crest: float | None) -> tuple[float, str]
             return keys.bottom, "at water.column.bottom"
         if crest is None:
             return base, "at the floor"
-        return crest - 0.25 * case.grains.diameter, "d/4 below the mean crest of the fixed bed"
+        return crest - 0.25 * reference_diameter(case), "d/4 below the mean crest of the fixed bed"
     level = base + bed_thickness(case)
     return level, f"at the top of the grains settled to the concentration {packed(case):g}"
 
@@ -83,17 +91,22 @@ def _base(case: Case, keys: FlumeSection, rng: np.random.Generator, wide: float)
     if not case.motion.plane:
         x[:, 1] = (grid[:, 0] + 0.5) * wide / n_y
     if keys.bed == "random":
-        x[:, 2] = rng.uniform(-0.5, 0.5, len(x)) * keys.bed_height * case.grains.diameter
+        x[:, 2] = rng.uniform(-0.5, 0.5, len(x)) * keys.bed_height * reference_diameter(case)
         x[:, 2] -= x[:, 2].mean()
     return x
 
 
-def _lattice(case: Case, keys: FlumeSection, rng: np.random.Generator, wide: float, d_max: float) -> Floats:
-    """Jittered centres from z = 0 upwards, clear of neighbours and walls [m]; the top layer is incomplete."""
+def _cells(case: Case, keys: FlumeSection, wide: float, d_max: float) -> Cells:
+    """Cells that hold the largest grain with its gap and fill length and width."""
     free = d_max * (1.0 + keys.gap)
     n_x = max(int(keys.length / free), 1)
     n_y = 1 if case.motion.plane else max(int(wide / free), 1)
-    pitch = np.array([keys.length / n_x, wide / n_y, free])
+    return Cells((keys.length / n_x, wide / n_y, free), n_x, n_y)
+
+
+def _lattice(case: Case, keys: FlumeSection, rng: np.random.Generator, cells: Cells, d_max: float) -> Floats:
+    """Jittered centres from z = 0 upwards, clear of neighbours and walls [m]; the top layer is incomplete."""
+    pitch, n_x, n_y = np.array(cells.pitch), cells.n_x, cells.n_y
     n = flume_count(case)
     layer, within = np.divmod(np.arange(math.ceil(n / (n_x * n_y)) * n_x * n_y), n_x * n_y)
     places = np.stack([within % n_x, within // n_x, layer], -1)

@@ -3,12 +3,14 @@
 import numpy as np
 
 from ryusa.build.flume import bed_level
+from ryusa.build.nested_lattice import Cells, nested_lattice
 from ryusa.build.placement import Placement, Wall, at_rest
 from ryusa.build.sizes import draw
 from ryusa.casefile.builders.schema import PackingSection
 from ryusa.casefile.builders.values import bed_counts
 from ryusa.casefile.case import Case
 from ryusa.casefile.derive import Derived
+from ryusa.casefile.grading import grading_of, reference_diameter
 from ryusa.model.scene import Floats
 
 
@@ -26,12 +28,13 @@ def packing(case: Case, derived: Derived) -> Placement:
     if keys.bed != "plane":
         x_fixed, walls = _bed(case, keys, rng, wide, deep), ()
         top = float(x_fixed[:, 2].max()) + d / 2.0
-    cells = np.stack(
-        np.meshgrid(np.arange(keys.layers), np.arange(keys.rows), np.arange(keys.columns), indexing="ij"), -1
-    )
-    x = (cells.reshape(-1, 3)[:, ::-1] + 0.5) * pitch
-    free = 0.5 * keys.jitter * keys.gap * d_max
-    x = x + rng.uniform(-free, free, x.shape)  # neighbours stay d_max apart on each axis
+    sized: Floats | None = None
+    if grading_of(case) is None:
+        x = _lattice(keys, pitch, d_max, rng)
+    else:
+        sized = draw(case, keys.columns * keys.rows * keys.layers, rng)
+        cells = Cells((pitch, pitch, pitch), keys.columns, keys.rows)
+        x = nested_lattice(sized, cells, keys.gap, keys.jitter, plane, rng)
     if plane:
         x[:, 1] = 0.0
     x[:, 2] += top
@@ -39,7 +42,7 @@ def packing(case: Case, derived: Derived) -> Placement:
     v = at_rest(n)
     v[:, 0] = keys.speed
     crest = float(np.mean(x_fixed[:, 2])) + d / 2.0 if len(x_fixed) else 0.0
-    sizes = draw(case, n, rng)
+    sizes = draw(case, n, rng) if sized is None else sized
     z_zero, where = bed_level(case, crest, crest if len(x_fixed) else None)
     notes: list[str] = []
     if case.water is not None and case.water.zero is None:
@@ -58,10 +61,20 @@ def packing(case: Case, derived: Derived) -> Placement:
     )
 
 
+def _lattice(keys: PackingSection, pitch: float, d_max: float, rng: np.random.Generator) -> Floats:
+    """Jittered centres from z = 0 upwards [m]; neighbours stay d_max apart on each axis."""
+    cells = np.stack(
+        np.meshgrid(np.arange(keys.layers), np.arange(keys.rows), np.arange(keys.columns), indexing="ij"), -1
+    )
+    x = (cells.reshape(-1, 3)[:, ::-1] + 0.5) * pitch
+    free = 0.5 * keys.jitter * keys.gap * d_max
+    return np.asarray(x + rng.uniform(-free, free, x.shape))
+
+
 def _bed(case: Case, keys: PackingSection, rng: np.random.Generator, wide: float, deep: float) -> Floats:
     """Fixed grains of mean diameter, evenly spaced under the block, at random or equal height [m]."""
     n_x, n_y = bed_counts(case)
-    d = case.grains.diameter
+    d = reference_diameter(case)
     grid = np.stack(np.meshgrid(np.arange(n_y), np.arange(n_x), indexing="ij"), -1).reshape(-1, 2)
     x = at_rest(len(grid))
     x[:, 0] = (grid[:, 1] + 0.5) * wide / n_x

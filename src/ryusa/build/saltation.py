@@ -6,6 +6,7 @@ from ryusa.build.placement import LANE, Placement, at_rest
 from ryusa.casefile.builders.schema import SaltationSection
 from ryusa.casefile.case import Case
 from ryusa.casefile.derive import Derived
+from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.water.values import water_speed
 
 ZERO = 0.25  # depth of the profile's zero below the crest, in diameters: the classical choice
@@ -16,7 +17,7 @@ def saltation(case: Case, derived: Derived) -> Placement:
     """Bed centres at z = d/2, crest at z = d, one free grain per lane at a random x; group `bed`."""
     keys = case.build
     assert isinstance(keys, SaltationSection)
-    d, n_bed, starts = case.grains.diameter, keys.n_bed, keys.starts
+    d, n_bed, starts = reference_diameter(case), keys.n_bed, keys.starts
     period = n_bed * d
     rng = np.random.default_rng(case.seed)
     x = at_rest(starts)

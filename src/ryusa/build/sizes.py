@@ -1,17 +1,24 @@
-"""Random grain sizes."""
+"""Random grain sizes, and sizes by quota of a sieve curve."""
 
 import math
 
 import numpy as np
 
 from ryusa.casefile.case import Case
+from ryusa.casefile.grading import grading_of, reference_diameter
 from ryusa.casefile.grains import CUT, spread_of
 from ryusa.model.scene import Floats
 
 
 def draw(case: Case, n: int, rng: np.random.Generator) -> Floats:
-    """Diameters [m] of n grains, distributed as `grains.spread`."""
-    d, (kind, ratio) = case.grains.diameter, spread_of(case.grains)
+    """Diameters [m] of n grains, distributed as `grains.spread` or `grains.sieve_curve`.
+
+    Those of a curve are its quotas in random order: the same sizes with every seed.
+    """
+    grading = grading_of(case)
+    if grading is not None:
+        return rng.permutation(grading.quotas(n))
+    d, (kind, ratio) = reference_diameter(case), spread_of(case.grains)
     if ratio == 0.0:
         return np.full(n, d)
     if kind == "uniform":

@@ -13,6 +13,8 @@ from ryusa.casefile.contact.schema import RIVALS as CONTACT_RIVALS
 from ryusa.casefile.derive import Derived, derive
 from ryusa.casefile.domain import check_domain, check_planes
 from ryusa.casefile.films import check_film_step, check_films
+from ryusa.casefile.grading import check_grading
+from ryusa.casefile.grains import RIVALS as GRAINS_RIVALS
 from ryusa.casefile.motion import RIVALS as MOTION_RIVALS
 from ryusa.casefile.motion import check_motion
 from ryusa.casefile.precision import check_precision
@@ -25,6 +27,7 @@ from ryusa.casefile.water.schema import RIVALS as WATER_RIVALS
 from ryusa.errors import CaseError
 
 RIVALS: dict[str, tuple[tuple[str, str], ...]] = {  # two keys for one thing, by section
+    "grains": GRAINS_RIVALS,
     "contact": CONTACT_RIVALS,
     "motion": MOTION_RIVALS,
     "water": WATER_RIVALS,
@@ -38,6 +41,9 @@ def check(case: Case, data: dict[str, Any]) -> list[CaseError]:
 
     Checks that need derived numbers come last: these exist only for a case without contradictions.
     """
+    unsized = [*check_grading(case)]
+    if unsized:  # most checks need the sizes
+        return [*_rivals(case), *unsized]
     found = [
         *_rivals(case),
         *check_choices(case),

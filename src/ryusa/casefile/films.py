@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from ryusa.casefile.contact.values import may_pull, restitution
+from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.grains import mass
 from ryusa.casefile.rows import ExplainRow, number
 from ryusa.casefile.water.schema import WaterSection
@@ -27,7 +28,7 @@ def film_reach(case: "Case") -> float:
     wet = case.water
     if wet is None or Film.of(wet.film) is Film.NONE:
         return 0.0
-    return wet.film_reach if wet.film_reach is not None else REACH * case.grains.diameter
+    return wet.film_reach if wet.film_reach is not None else REACH * reference_diameter(case)
 
 
 def check_films(case: "Case") -> Iterator[CaseError]:
@@ -49,7 +50,7 @@ def check_films(case: "Case") -> Iterator[CaseError]:
 
 
 def _lengths(case: "Case", wet: WaterSection, film: bool) -> Iterator[CaseError]:
-    d = case.grains.diameter
+    d = reference_diameter(case)
     needed = "asperity" in (*Film.of(wet.film).takes, *Rebound.of(wet.rebound).takes)
     if wet.asperity is None:
         if needed:

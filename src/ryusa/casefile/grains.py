@@ -1,10 +1,13 @@
 """[grains]: sizes, density and shape of the free grains, and the masses that follow."""
 
 import math
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
-from pydantic import Discriminator, Field, Tag
+from pydantic import AfterValidator, Discriminator, Field, Tag, ValidationError, model_validator
+from pydantic_core import InitErrorDetails
 
+from ryusa.casefile.files import relative
+from ryusa.casefile.grading import grading_of, grading_rows, reference_diameter
 from ryusa.casefile.quantities import Density, Length, Number, Ratio
 from ryusa.casefile.rows import ExplainRow, count, number
 from ryusa.casefile.section import Section
@@ -31,11 +34,20 @@ def _spread_kind(value: Any) -> str:
     return "<number>" if isinstance(value, (int, float, str)) else "<table>"
 
 
+def _curve_kind(value: Any) -> str:
+    return "<file>" if isinstance(value, str) else "<points>"
+
+
+GrainLength = Annotated[Length, Field(ge=1.0e-7, le=1.0e3)]
+Percent = Annotated[Number, Field(ge=0, le=100)]
+
+
 class GrainsSection(Section):
     """The free grains."""
 
-    diameter: Annotated[Length, Field(ge=1.0e-7, le=1.0e3)]
-    """Mean diameter d; with a table of grains, the reference diameter of u_star, roughness and overlap/d."""
+    diameter: GrainLength | None = None
+    """Mean diameter d, needed without a sieve_curve; with a table of grains or a sieve_curve, the reference
+    diameter of u_star, roughness, overlap/d and fixed grains, in a sieve_curve D50 when not given."""
     density: Annotated[Density, Field(ge=1.0, le=1.0e6)]
     """Density of the grain material, rho_s."""
     spread: Annotated[
@@ -43,14 +55,51 @@ class GrainsSection(Section):
         Discriminator(_spread_kind),
     ] = 0.0
     """Spread of the sizes: a number is the half width of a uniform distribution over the mean diameter."""
+    sieve_curve: (
+        Annotated[
+            Annotated[str, Field(min_length=1, max_length=400), AfterValidator(relative), Tag("<file>")]
+            | Annotated[
+                tuple[tuple[GrainLength, Percent], ...], Field(min_length=2, max_length=1000), Tag("<points>")
+            ],
+            Discriminator(_curve_kind),
+        ]
+        | None
+    ) = None
+    """Sizes by mass: pairs of diameter and percent finer, from 0 to 100, such as [["1 mm", 0], ["2 mm", 30],
+    ["4 mm", 100]], or a CSV file in the folder of the case with the header diameter [mm],finer [%]. Straight
+    over log d between two pairs. Builders packing, flume and box."""
+    finest: GrainLength | None = None
+    """Smallest grain of the sieve_curve that is laid; the mass of finer ones is left out."""
+    coarsest: GrainLength | None = None
+    """Largest grain of the sieve_curve that is laid; the mass of coarser ones is left out."""
     shape_volume: Annotated[Number, Field(gt=0, le=1)] = math.pi / 6
     """A_3: volume of a grain over d cubed; pi/6 for a sphere."""
+
+    @model_validator(mode="after")
+    def _has_a_size(self) -> Self:
+        if self.diameter is None and self.sieve_curve is None:
+            missing = InitErrorDetails(type="missing", loc=("diameter",), input=None)
+            raise ValidationError.from_exception_data("grains", [missing])
+        return self
+
+
+RIVALS = (("spread", "sieve_curve"),)  # two keys for one thing
 
 
 def spread_of(grains: GrainsSection) -> tuple[str, float]:
     """Shape and relative width of the size distribution."""
     spread = grains.spread
     return (spread.kind, spread.ratio) if isinstance(spread, SpreadSection) else ("uniform", float(spread))
+
+
+def mean_cube(case: "Case") -> float:
+    """Mean of d^3 over the grains of a spread or a sieve curve [m3]."""
+    grading = grading_of(case)
+    if grading is not None:
+        return grading.mean_cube
+    d, (kind, ratio) = reference_diameter(case), spread_of(case.grains)
+    # uniform sizes have a variance of ratio**2/3, the others of ratio**2
+    return d**3 * (1.0 + 3.0 * ratio**2 / (3.0 if kind == "uniform" else 1.0))
 
 
 def mass(case: "Case", d: float) -> tuple[float, float, float, float]:
@@ -68,12 +117,16 @@ def mass(case: "Case", d: float) -> tuple[float, float, float, float]:
 def grain_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     """Sizes, numbers and masses of the grains."""
     several = derived.d_max > derived.d_min
-    rows = [number("grains", "mean diameter" if several else "diameter", derived.d, "cm", "grains.diameter")]
+    curve = grading_of(case) is not None
+    which = "reference diameter" if curve else "mean diameter" if several else "diameter"
+    origin = "grains.diameter" if case.grains.diameter is not None else "D50 of the sieve curve"
+    rows = [number("grains", which, derived.d, "cm", origin)]
     if several:
         rows += [
             number("grains", "smallest diameter", derived.d_min, "cm", "lower end of the size distribution"),
             number("grains", "largest diameter", derived.d_max, "cm", "upper end of the size distribution"),
         ]
+    rows += grading_rows(case, derived)
     builder = f"builder '{case.build.kind}'"
     rows += [
         count("grains", "free grains", derived.n_grain, builder),

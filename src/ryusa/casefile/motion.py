@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field
 
+from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.quantities import Acceleration, PositiveLength, Slope, SlopeAngle
 from ryusa.casefile.section import Section
 from ryusa.errors import CaseError
@@ -56,7 +57,7 @@ def may_rotate(case: "Case") -> bool:
 
 def slab_width(case: "Case") -> float:
     """Width that a plane scene stands for [m]."""
-    return case.motion.slab_width or case.grains.diameter
+    return case.motion.slab_width or reference_diameter(case)
 
 
 def check_motion(case: "Case") -> Iterator[CaseError]:

@@ -8,6 +8,7 @@ from ryusa.casefile.case import Case
 from ryusa.casefile.column.bed import packed
 from ryusa.casefile.column.schema import CELL, ONLY_IN_A_COLUMN, column_keys
 from ryusa.casefile.derive import Derived, derive
+from ryusa.casefile.grading import points_of
 from ryusa.casefile.motion import slab_width
 from ryusa.casefile.record import events_of
 
@@ -16,6 +17,7 @@ def resolved(case: Case, derived: Derived | None = None) -> dict[str, Any]:
     """Give the case as plain data in SI with what follows filled in; numbers that do not exist are None."""
     data: dict[str, Any] = case.model_dump(mode="json", by_alias=True)
     found = derived or derive(case)
+    data["grains"] |= {"diameter": found.d, "sieve_curve": points_of(case)}
     data["contact"] |= {
         "stiffness": found.k_n,
         "shear_stiffness": found.k_s,
@@ -30,18 +32,18 @@ def resolved(case: Case, derived: Derived | None = None) -> dict[str, Any]:
     data["time"] |= {"step": found.dt, "steps_per_contact": found.steps_per_contact}
     if case.water is not None:
         data["water"] |= {"u_star": found.u_star, "tau_star": found.tau_star, "roughness": found.k_rough}
-        _resolve_column(case, data["water"])
+        _resolve_column(case, found, data["water"])
     data["derived"] = asdict(found)
     return _plain(data)
 
 
-def _resolve_column(case: Case, data: dict[str, Any]) -> None:
+def _resolve_column(case: Case, found: Derived, data: dict[str, Any]) -> None:
     """Fill in the column of water; where there is none, its keys say nothing."""
     wet = case.water
     assert wet is not None
     if wet.profile == "column":
         keys = column_keys(case)
-        cell = keys.cell or CELL * case.grains.diameter
+        cell = keys.cell or CELL * found.d
         data["column"] = keys.model_dump(mode="json") | {"cell": cell, "mixing_length": keys.mixing}
         data["column"]["packed"] = packed(case)
         return

@@ -48,7 +48,7 @@ SeriesFile = Annotated[
     typer.Option(
         "--series",
         metavar="FILE",
-        help="Write what was averaged as CSV: a time series, or single events.",
+        help="Write what was averaged as CSV: a time series, or single events; of sizes the mass by class.",
     ),
 ]
 LayersFile = Annotated[

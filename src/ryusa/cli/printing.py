@@ -13,7 +13,16 @@ from ryusa.errors import ResultsError
 from ryusa.measure.energy import TERMS
 
 if TYPE_CHECKING:
-    from ryusa.measure import Averages, Energy, HeapSurface, KineticStress, Saltation, Tracks, Vibration
+    from ryusa.measure import (
+        Averages,
+        Energy,
+        HeapSurface,
+        KineticStress,
+        Saltation,
+        Sizes,
+        Tracks,
+        Vibration,
+    )
     from ryusa.results import Results
 
 DIAMETERS = 1.0e-3  # default threshold, in mean diameters
@@ -149,6 +158,23 @@ def _print_surface(found: "HeapSurface") -> None:
     )
 
 
+def _print_sizes(found: "Sizes") -> None:
+    """Print diameters and sorting laid and asked for, then grains and mass by class."""
+    table = _table(("quantity", "laid", "asked", "unit"), left=("quantity", "unit"))
+    for name, unit, laid, asked in found.pairs():
+        scale, shown = (1.0e3, "mm") if unit == "m" else (1.0, unit)
+        cells = ("-" if math.isnan(one) else f"{one * scale:.5g}" for one in (laid, asked))
+        table.add_row(name.replace("_", " "), *cells, shown)
+    classes = _table(("class [mm]", "grains", "mass [kg]", "laid [%]", "asked [%]"), left=())
+    for row in found.series():
+        low, high, grains, mass, laid, asked, *_ = (float(str(one)) for one in row.values())
+        shares = ("-" if math.isnan(one) else f"{100.0 * one:.4g}" for one in (laid, asked))
+        limits = f"{1.0e3 * low:.4g} .. {1.0e3 * high:.4g}"
+        classes.add_row(limits, f"{grains:,.0f}", f"{mass:.4g}", *shares)
+    _show(table)
+    _show(classes, "--csv FILE writes the first table, --series FILE the second")
+
+
 def _table(names: tuple[str, ...], left: tuple[str, ...] = ("unit",)) -> Table:
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for name in names:
@@ -165,6 +191,7 @@ def _show(table: Table, *lines: str) -> None:
 
 _OWN_FORM: dict[str, Callable[..., None]] = {
     "energy": _print_energy,
+    "sizes": _print_sizes,
     "stress": _print_stress,
     "surface": _print_surface,
     "tracks": _print_tracks,

@@ -10,6 +10,7 @@ from ryusa.figures.profiles import profiles
 from ryusa.figures.repose import surface
 from ryusa.figures.rods import rod_lengths, rods
 from ryusa.figures.sensitivity import SensitivityRow, sensitivity
+from ryusa.figures.sizes import sizes
 from ryusa.figures.snapshot import snapshot
 from ryusa.figures.spin import spin
 from ryusa.figures.style import save
@@ -41,6 +42,7 @@ __all__ = [
     "rods",
     "save",
     "sensitivity",
+    "sizes",
     "snapshot",
     "spin",
     "surface",

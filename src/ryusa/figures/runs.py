@@ -113,6 +113,12 @@ def surface(results: Results, t: float | None = None, side: Side = "right", lane
     return figures.surface(measure.snapshot(results, t, lane), found), found.samples()
 
 
+def sizes(results: Results) -> Drawn:
+    """Grading curves asked for and laid."""
+    found = measure.sizes(results)
+    return figures.sizes(found), found.series()
+
+
 def vibration(
     results: Results,
     grains: Sequence[int] | None = None,

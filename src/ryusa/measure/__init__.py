@@ -12,6 +12,7 @@ from ryusa.measure.profiles import Layers, Profiles, profiles
 from ryusa.measure.repose import HeapSurface, surface
 from ryusa.measure.rods import Rod, Rods, companions, rods
 from ryusa.measure.saltation import Saltation, grouping, saltation
+from ryusa.measure.sizes import Sizes, sizes
 from ryusa.measure.snapshot import Bounds, Snapshot, bounds, snapshot
 from ryusa.measure.spin import Spin, spin
 from ryusa.measure.statistics import Average, average, ratio, standard_error
@@ -48,6 +49,7 @@ __all__ = [
     "Rod",
     "Rods",
     "Saltation",
+    "Sizes",
     "Snapshot",
     "Spin",
     "Tracks",
@@ -76,6 +78,7 @@ __all__ = [
     "rods",
     "rows_of",
     "saltation",
+    "sizes",
     "snapshot",
     "spin",
     "standard_error",

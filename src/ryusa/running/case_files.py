@@ -20,6 +20,13 @@ def table_beside(case: "Case") -> Path | None:
     return case.path.resolve().parent / name if plain and not name.startswith(".") else None
 
 
+def sieve_beside(case: "Case") -> Path | None:
+    """Path of the sieve curve of the grains, which the run folder keeps under a name of its own."""
+    from ryusa.casefile.grading import sieve_file
+
+    return sieve_file(case)
+
+
 def start_of(case: "Case") -> Callable[[], bytes] | None:
     """Table of the first grains of a case that starts from another run."""
     from ryusa.casefile.builders.schema import RunSection

@@ -12,7 +12,8 @@ from ryusa.casefile.builders.schema import (
     SaltationSection,
     TableSection,
 )
-from ryusa.casefile.builders.values import FEWEST_PERIODS, flume_count, periodic, sizes
+from ryusa.casefile.builders.values import FEWEST_PERIODS, bed_opening, flume_count, periodic, sizes
+from ryusa.casefile.grading import grading_of, reference_diameter
 from ryusa.casefile.grains import spread_of
 from ryusa.casefile.motion import may_rotate
 from ryusa.casefile.section import given
@@ -41,7 +42,7 @@ def check_builder(case: "Case") -> Iterator[CaseError]:
             yield CaseError("build.height", None, "missing; a drop needs height or speed")
         if build.spin != 0.0 and not may_rotate(case):
             yield CaseError("build.spin", build.spin, "needs motion.rotation = 'free'")
-        if abs(build.offset) >= case.grains.diameter:
+        if abs(build.offset) >= reference_diameter(case):
             yield CaseError(
                 "build.offset", build.offset, "must be smaller than the diameter, or the grains do not meet"
             )
@@ -67,6 +68,8 @@ def check_builder(case: "Case") -> Iterator[CaseError]:
         yield from _flume(case, build)
     if isinstance(build, BoxSection):
         yield from _box(case, build)
+    if isinstance(build, PackingSection | FlumeSection) and grading_of(case) is not None:
+        yield from _bed(case, build)
 
 
 def _flume(case: "Case", build: FlumeSection) -> Iterator[CaseError]:
@@ -87,6 +90,20 @@ def _flume(case: "Case", build: FlumeSection) -> Iterator[CaseError]:
         yield CaseError("build.layers", build.layers, "gives no grain; take more layers or a longer flume")
 
 
+def _bed(case: "Case", build: PackingSection | FlumeSection) -> Iterator[CaseError]:
+    """Find a sieve curve whose finest grains fall through the bed of fixed grains."""
+    finest, opening = sizes(case)[1], bed_opening(case)
+    if finest > opening or any(plane.normal[2] > 0.0 for plane in case.planes):
+        return
+    yield CaseError(
+        "grains.finest",
+        case.grains.finest,
+        f"the smallest grain, {finest:.3g} m, slips through openings of up to {opening:.2g} m between the "
+        "fixed grains of the bed; give a larger finest, build.bed = 'plane', or a plane in [[planes]] under "
+        "the bed",
+    )
+
+
 def _box(case: "Case", build: BoxSection) -> Iterator[CaseError]:
     if build.floor == "plane":
         for key in ("run_out", "drop", "floor_height"):
@@ -96,12 +113,13 @@ def _box(case: "Case", build: BoxSection) -> Iterator[CaseError]:
                     f"build.{key}", value, "has no effect with floor 'plane', which is flat and unbounded"
                 )
     d, d_min, _ = sizes(case)
+    closer = "smaller spread" if grading_of(case) is None else "larger finest"
     if d_min <= (free := hole(build, case.motion.plane)) * d:
         yield CaseError(
-            "grains.spread",
+            "grains.spread" if grading_of(case) is None else "grains.finest",
             None,
             f"the smallest grain, {d_min:.3g} m, slips through openings of up to {free:.2g} d between the "
-            "fixed grains of mean diameter; take a smaller spread (or build.floor_height), or build.floor = "
+            f"fixed grains of mean diameter; take a {closer} (or build.floor_height), or build.floor = "
             "'plane' and build.walls = 'planes'",
         )
     caught = build.drop is not None or any(plane.normal[2] > 0.0 for plane in case.planes)

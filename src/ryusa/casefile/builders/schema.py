@@ -1,10 +1,10 @@
 """Keys of the [build] section, one model per builder."""
 
-from pathlib import PurePosixPath
 from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field
 
+from ryusa.casefile.files import relative
 from ryusa.casefile.quantities import Count, Length, Moment, Number, PositiveLength, Speed, Spin
 from ryusa.casefile.section import Section
 from ryusa.units import quantity
@@ -48,13 +48,6 @@ class SaltationSection(Section):
     """Speed along x at the start; that of the water at the centre of the grain when not given."""
 
 
-def _relative(path: str) -> str:
-    parts = PurePosixPath(path.replace("\\", "/"))
-    if parts.is_absolute() or ".." in parts.parts or ":" in path or "\0" in path:
-        raise ValueError("needs a path inside the folder of the case file, such as 'grains.csv'")
-    return str(parts)
-
-
 def _unit_of(dimension: str) -> AfterValidator:
     def check(unit: str) -> str:
         quantity(f"1 {unit}", dimension)
@@ -68,7 +61,7 @@ class TableSection(Section):
 
     kind: Literal["table"]
     """Name of the builder."""
-    file: Annotated[str, Field(min_length=1, max_length=400), AfterValidator(_relative)]
+    file: Annotated[str, Field(min_length=1, max_length=400), AfterValidator(relative)]
     """File in the folder of the case. A CSV file has columns x, y, z, d, vx, vy, vz, wx, wy, wz with their
     units in the header, such as x [cm]; fixed (0 or 1) and group (a name). x, z and d are required."""
     format: Literal["csv", "lammps-dump", "lammps-data", "xyz", "vtu"] = "csv"
@@ -91,7 +84,7 @@ class RunSection(Section):
 
     kind: Literal["run"]
     """Name of the builder."""
-    folder: Annotated[str, Field(min_length=1, max_length=400), AfterValidator(_relative)]
+    folder: Annotated[str, Field(min_length=1, max_length=400), AfterValidator(relative)]
     """Run folder, within the folder of the case."""
     at: Moment | None = None
     """Time of the frame, the nearest; the last frame when not given."""
@@ -141,7 +134,7 @@ class FlumeSection(Section):
     """Smooth side walls, the planes `right` at y = 0 and `left` at y = width; false makes y periodic."""
     layers: Annotated[Number, Field(gt=0, le=100_000)]
     """Number of free grains, in layers; one layer is as many grains of mean diameter as fit side by side
-    along the length, times those that fit across the width."""
+    along the length, times those that fit across the width; of a sieve_curve as many as have that volume."""
     gap: Annotated[Number, Field(ge=0, le=2)] = 0.05
     """Smallest gap between neighbours at the start, in largest diameters."""
     jitter: Annotated[Number, Field(ge=0, le=1)] = 0.9

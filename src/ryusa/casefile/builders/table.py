@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ryusa.casefile.builders.schema import FromFile, RunSection, TableSection
+from ryusa.casefile.files import folder_of, inside
+from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.section import given
 from ryusa.errors import CaseError, ParseError, ResultsError
 from ryusa.formats.grains import GrainTable
@@ -47,17 +49,8 @@ def area_of_file(case: "Case") -> float | None:
     return table.bed_area if table is not None else None
 
 
-def _inside(case: "Case", key: str, name: str) -> tuple[Path, Path]:
-    """Folder of the case, and the path of what lies in it."""
-    folder = (case.path.parent if case.path is not None else Path()).resolve()
-    path = (folder / name).resolve()
-    if not path.is_relative_to(folder):
-        raise CaseError(key, name, "points outside the folder of the case file")
-    return folder, path
-
-
 def _table_of_file(case: "Case", build: TableSection) -> GrainTable:
-    folder, path = _inside(case, "build.file", build.file)
+    folder, path = folder_of(case), inside(case, "build.file", build.file)
     if not path.is_file():
         allowed = f"no such file in the folder of the case, {folder}"
         raise CaseError("build.file", build.file, allowed)
@@ -71,7 +64,7 @@ def _table_of_file(case: "Case", build: TableSection) -> GrainTable:
     table = _read_now(path, "build.file", build.file, build.format, options)
     if "d" in table.columns:
         return table
-    return replace(table, columns={**table.columns, "d": np.full(table.n, case.grains.diameter)})
+    return replace(table, columns={**table.columns, "d": np.full(table.n, reference_diameter(case))})
 
 
 def _read_now(path: Path, key: str, name: str, kind: str, options: ReadOptions) -> GrainTable:
@@ -93,7 +86,7 @@ def _table_of_run(case: "Case", build: RunSection) -> GrainTable:
     """Read the frame; a run folder holds the grains that its own run started from."""
     from ryusa.results import schema
 
-    folder, path = _inside(case, "build.folder", build.folder)
+    folder, path = folder_of(case), inside(case, "build.folder", build.folder)
     start = folder / schema.START
     if schema.is_run_folder(folder) and start.is_file() and not start.is_symlink():
         return _read_now(start, "build.folder", schema.START, "csv", ReadOptions())

@@ -15,6 +15,7 @@ from ryusa.casefile.builders.schema import (
     SaltationSection,
 )
 from ryusa.casefile.builders.table import period_of, table_of
+from ryusa.casefile.grading import grading_of, reference_diameter
 from ryusa.casefile.grains import CUT, spread_of
 from ryusa.casefile.motion import slab_width
 
@@ -29,8 +30,11 @@ def sizes(case: "Case") -> tuple[float, float, float]:
     table = table_of(case)
     if table is not None:
         every = table.column("d")
-        return case.grains.diameter, float(every[~table.fixed].min()), float(every.max())
-    d, (kind, ratio) = case.grains.diameter, spread_of(case.grains)
+        return reference_diameter(case), float(every[~table.fixed].min()), float(every.max())
+    d, grading = reference_diameter(case), grading_of(case)
+    if grading is not None:
+        return d, float(grading.d[0]), float(grading.d[-1])
+    kind, ratio = spread_of(case.grains)
     if kind == "uniform":
         return d, d * (1.0 - ratio), d * (1.0 + ratio)
     if kind == "normal":
@@ -82,17 +86,39 @@ def bed_counts(case: "Case") -> tuple[int, int]:
     return n_x, 1 if case.motion.plane else n_y
 
 
+def bed_opening(case: "Case") -> float:
+    """Largest grain that could slip through the fixed grains of the bed of a packing or a flume [m].
+
+    Amid four grains of a rectangle in three dimensions, between two in a plane scene, the highest beside the
+    lowest; negative where they are closer than a diameter.
+    """
+    build, (n_x, n_y) = case.build, bed_counts(case)
+    if n_x == 0:
+        return 0.0
+    assert isinstance(build, PackingSection | FlumeSection)
+    d, _, d_max = sizes(case)
+    if isinstance(build, FlumeSection):
+        long, wide = build.length, build.width or d
+    else:
+        long, wide = (count * d_max * (1.0 + build.gap) for count in (build.columns, build.rows))
+    rise = build.bed_height * d if build.bed == "random" else 0.0
+    across = 0.0 if case.motion.plane else wide / n_y
+    return math.sqrt((long / n_x) ** 2 + across**2 + rise**2) - d
+
+
 def _side_by_side(case: "Case", build: FlumeSection) -> tuple[int, int]:
     """Mean grains that fit length and width of a flume."""
-    d = case.grains.diameter
+    d = reference_diameter(case)
     return max(int(build.length / d * (1.0 + 1e-9)), 1), max(int((build.width or d) / d * (1.0 + 1e-9)), 1)
 
 
 def flume_count(case: "Case") -> int:
-    """Free grains of a flume."""
+    """Free grains of a flume; of a sieve curve as many as have the volume of those layers."""
     assert isinstance(case.build, FlumeSection)
     n_x, n_y = _side_by_side(case, case.build)
-    return round(case.build.layers * n_x * n_y)
+    grading = grading_of(case)
+    each = 1.0 if grading is None else reference_diameter(case) ** 3 / grading.mean_cube
+    return round(case.build.layers * n_x * n_y * each)
 
 
 def bed_area(case: "Case") -> float:

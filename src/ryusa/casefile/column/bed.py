@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 from ryusa.casefile.builders.schema import FlumeSection, PackingSection
 from ryusa.casefile.builders.values import bed_area, counts
 from ryusa.casefile.column.schema import column_keys
-from ryusa.casefile.grains import spread_of
+from ryusa.casefile.grading import reference_diameter
+from ryusa.casefile.grains import mean_cube
 from ryusa.casefile.motion import slab_width
 
 if TYPE_CHECKING:
@@ -23,7 +24,7 @@ def packed(case: "Case") -> float:
         return keys.packed
     if not case.motion.plane:
         return PACKED
-    return PACKED_PLANE * case.grains.diameter / slab_width(case)
+    return PACKED_PLANE * reference_diameter(case) / slab_width(case)
 
 
 def bed_thickness(case: "Case") -> float:
@@ -31,15 +32,12 @@ def bed_thickness(case: "Case") -> float:
 
     A base of fixed grains of random height takes up to half a layer more.
     """
-    d, (kind, ratio) = case.grains.diameter, spread_of(case.grains)
-    # mean of d**3: uniform sizes have a variance of ratio**2/3, the others of ratio**2
-    cube = d**3 * (1.0 + 3.0 * ratio**2 / (3.0 if kind == "uniform" else 1.0))
-    return counts(case)[0] * case.grains.shape_volume * cube / (bed_area(case) * packed(case))
+    return counts(case)[0] * case.grains.shape_volume * mean_cube(case) / (bed_area(case) * packed(case))
 
 
 def bed_top(case: "Case") -> float:
     """Height of the top of the free grains settled to the concentration `packed` [m]; nan if unknown."""
-    build, d = case.build, case.grains.diameter
+    build, d = case.build, reference_diameter(case)
     if isinstance(build, FlumeSection):
         return bed_thickness(case)
     if not isinstance(build, PackingSection):

@@ -9,6 +9,7 @@ from ryusa.casefile.builders.table import area_of_file
 from ryusa.casefile.builders.values import periodic, sizes
 from ryusa.casefile.column.bed import bed_top, packed, water_over
 from ryusa.casefile.column.schema import CELL, ColumnSection, column_keys
+from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.motion import slope_at_last
 from ryusa.casefile.section import given
 from ryusa.casefile.water.schema import WaterSection
@@ -166,7 +167,8 @@ def _contradictions(
     case: "Case", water: WaterSection, keys: ColumnSection, depth: float
 ) -> Iterator[CaseError]:
     """Cells that do not fit the depth, and stress, slope and depth that contradict each other."""
-    d, cell = case.grains.diameter, keys.cell or CELL * case.grains.diameter
+    d = reference_diameter(case)
+    cell = keys.cell or CELL * d
     if not SPARE * depth / cell <= MOST_CELLS:
         yield CaseError(
             "water.column.cell", keys.cell, f"{cell:g} m asks for more than {MOST_CELLS:,} cells in the depth"

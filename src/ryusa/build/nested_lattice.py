@@ -1,0 +1,95 @@
+"""A lattice for grains of many sizes: a cell of the largest holds one of them, or cells of half the width."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ryusa.model.scene import Floats
+
+DEEPEST = 20  # halvings; a grain a millionth as large as its cell loses nothing more
+
+
+@dataclass(frozen=True)
+class Cells:
+    """Block of cells from the corner at the origin upwards, each wide enough for the largest grain."""
+
+    pitch: tuple[float, float, float]  # of a cell along x, y and z [m]
+    n_x: int  # cells along x
+    n_y: int  # along y, 1 in a plane scene
+
+
+def nested_lattice(
+    d: Floats, cells: Cells, gap: float, jitter: float, plane: bool, rng: np.random.Generator
+) -> Floats:
+    """Centres of grains of many sizes that do not touch, well mixed, from z = 0 upwards [m].
+
+    Parameters
+    ----------
+    d : diameters [m], shape (n,); the largest fits a cell.
+    cells : the block; as many layers of it are filled as are needed, the highest at random places.
+    gap : least gap to the sides of a cell together, over the diameter of its grain [-].
+    jitter : share of the free room in its cell by which a grain is displaced, 0 to 1.
+    plane : keep y at the middle of the cells; a cell is then halved along x and z alone.
+
+    Returns
+    -------
+    x : centres, in the order of d, shape (n, 3).
+
+    Notes
+    -----
+    On a lattice of one width a block of graded grains would be as loose as its smallest, and fall far. Here a
+    grain lies in the smallest cell that holds it with its gap. From the finest level up, grains and filled
+    cells of a level are shuffled and put together by eights (by fours in a plane) into cells of the next.
+    """
+    halved = (0, 2) if plane else (0, 1, 2)
+    pitch = np.array(cells.pitch)
+    level = _levels(d, float(pitch[list(halved)].min()), gap)
+    grains = [np.flatnonzero(level == k) for k in range(int(level.max(initial=0)) + 1)]
+    slots = _slots(halved)
+    orders: list[NDArray[np.int64]] = []  # of each level, finest first: the item at each place
+    n_filled = 0
+    for k in reversed(range(len(grains))):
+        orders.append(rng.permutation(len(grains[k]) + n_filled))
+        n_filled = math.ceil(len(orders[-1]) / len(slots))
+    x = np.zeros((len(d), 3))
+    corners = _corners(len(orders[-1]), cells, rng)
+    for k, order in enumerate(reversed(orders)):
+        width = pitch.copy()
+        width[list(halved)] /= 2.0**k
+        at = np.empty_like(corners)
+        at[order] = corners
+        here = grains[k]
+        room = 0.5 * jitter * np.maximum(width - d[here, None], 0.0)
+        x[here] = at[: len(here)] + 0.5 * width + rng.uniform(-1.0, 1.0, (len(here), 3)) * room
+        if k + 1 < len(orders):
+            inner = np.arange(len(orders[-2 - k]))
+            filled, slot = np.divmod(inner, len(slots))
+            half = width.copy()
+            half[list(halved)] /= 2.0
+            corners = at[len(here) :][filled] + slots[slot] * half
+    return x
+
+
+def _levels(d: Floats, width: float, gap: float) -> NDArray[np.int64]:
+    """How often a cell of this width [m] can be halved and still hold each grain with its gap."""
+    found = np.floor(np.log2(width / (d * (1.0 + gap))) + 1.0e-9)
+    return np.clip(found, 0, DEEPEST).astype(np.int64)
+
+
+def _slots(halved: tuple[int, ...]) -> Floats:
+    """Corners of the cells of half width within a cell, in their widths, shape (2^axes, 3)."""
+    found = np.zeros((1 << len(halved), 3))
+    for bit, axis in enumerate(halved):
+        found[:, axis] = (np.arange(len(found)) >> bit) & 1
+    return found
+
+
+def _corners(n: int, cells: Cells, rng: np.random.Generator) -> Floats:
+    """Lowest corners of n cells, layer by layer [m]; those of the highest layer at random places."""
+    per_layer = cells.n_x * cells.n_y
+    full = n // per_layer * per_layer
+    place = np.concatenate([np.arange(full), full + rng.permutation(per_layer)[: n - full]])
+    layer, within = np.divmod(place, per_layer)
+    return np.stack([within % cells.n_x, within // cells.n_x, layer], -1) * np.array(cells.pitch)
