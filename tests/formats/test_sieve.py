@@ -10,8 +10,10 @@ from ryusa.errors import ParseError
 from ryusa.formats.sieve import LARGEST_FILE, read_sieve_curve
 
 SOUND = 'passing [%],"d [um]"\n100,4000\n"60",2000\n0,1000\n'
-PIECES = ["diameter [mm]", "finer [%]", "d", "[", "]", "%", ",", ";", "\n", "\t", '"', "#", "nan", "1e999", "-1",
-          "0", "1", "2", "100", "1_0", "\u00b5m", "\0"]  # fmt: skip
+PIECES = [
+    "diameter [mm]", "finer [%]", "d", "[", "]", "%", ",", ";", "\n", "\t", '"', "#", "nan", "1e999", "-1", "0",
+    "1", "2", "100", "1_0", "\u00b5m", "\0",
+]  # fmt: skip
 
 
 def test_columns_stand_in_any_order_with_any_length_and_rows_from_either_end(tmp_path: Path) -> None:

@@ -131,7 +131,7 @@ def sizes(run: Run) -> Sizes:
         asked=asked,
         sieves=sieves,
         grains=np.bincount(which, minlength=n),
-        mass=np.bincount(which, weights=m, minlength=n),
+        mass=np.asarray(np.bincount(which, weights=m, minlength=n), dtype=np.float64),
         difference=math.nan if asked is None else _difference(d, m, asked),
     )
 
