@@ -76,7 +76,8 @@ def test_a_flume_holds_the_volume_of_its_layers_whatever_the_curve() -> None:
 def test_grains_of_a_curve_do_not_stand_higher_than_a_few_times_their_volume() -> None:
     built = build(case("flume"))
     solid = float(np.sum(np.pi / 6.0 * np.asarray(built.scene.d) ** 3)) / (0.05 * 0.04)
-    assert np.max(built.state.x[:, 2]) < 10.0 * solid
+    # a cell is 1 to 8 times the cube that holds its grain with the gap, and the highest layer is not full
+    assert np.max(built.state.x[:, 2]) < 10.0 * solid + 0.008 * 1.05
 
 
 def test_sizes_are_those_of_every_seed_and_their_order_is_not() -> None:
@@ -104,7 +105,7 @@ def test_the_reference_diameter_is_d50_unless_the_case_gives_it() -> None:
 
 
 @pytest.mark.parametrize("plane", [False, True])
-def test_a_nested_lattice_keeps_grains_apart_and_mixes_them(plane: bool) -> None:
+def test_a_nested_lattice_keeps_grains_apart(plane: bool) -> None:
     rng = np.random.default_rng(5)
     d = rng.permutation(ASKED.quotas(3_000))
     cells = Cells((0.0085, 0.0088, 0.0084), 7, 1 if plane else 5)
@@ -118,10 +119,19 @@ def test_a_nested_lattice_keeps_grains_apart_and_mixes_them(plane: bool) -> None
         gap = np.sqrt((apart**2).sum(axis=1)) - 0.5 * (d + d[one])
         gap[one] = 1.0
         assert gap.min() > 0.0
-    low = x[:, 2] < np.median(x[:, 2])
-    volume = d**3
-    mean = [np.average(d, weights=volume * there) for there in (low, ~low)]
-    assert mean[0] == pytest.approx(mean[1], rel=0.1)
+
+
+@pytest.mark.parametrize("plane", [False, True])
+def test_a_nested_lattice_mixes_sizes_over_its_height(plane: bool) -> None:
+    cells = Cells((0.0085, 0.0088, 0.0084), 7, 1 if plane else 5)
+    more = []
+    for seed in range(20):  # one differs by 12 %, standard deviation: half of the mass is in 208 grains
+        rng = np.random.default_rng(seed)
+        d = rng.permutation(ASKED.quotas(3_000))
+        z = nested_lattice(d, cells, 0.05, 0.9, plane, rng)[:, 2]
+        mean = [np.average(d, weights=d**3 * there) for there in (z < np.median(z), z >= np.median(z))]
+        more.append(mean[0] / mean[1] - 1.0)
+    assert abs(np.mean(more)) < 0.1
 
 
 def test_the_packaged_case_is_built() -> None:

@@ -11,8 +11,8 @@ from ryusa.formats.sieve import LARGEST_FILE, read_sieve_curve
 
 SOUND = 'passing [%],"d [um]"\n100,4000\n"60",2000\n0,1000\n'
 PIECES = [
-    "diameter [mm]", "finer [%]", "d", "[", "]", "%", ",", ";", "\n", "\t", '"', "#", "nan", "1e999", "-1", "0",
-    "1", "2", "100", "1_0", "\u00b5m", "\0",
+    "diameter [mm]", "finer [%]", "d", "[", "]", "%", ",", ";", "\n", "\t", '"', "#", "nan", "1e999", "-1",
+    "0", "1", "2", "100", "1_0", "\u00b5m", "\0",
 ]  # fmt: skip
 
 

@@ -31,7 +31,7 @@ def nested_lattice(
     cells : the block; as many layers of it are filled as are needed, the highest at random places.
     gap : least gap to the sides of a cell together, over the diameter of its grain [-].
     jitter : share of the free room in its cell by which a grain is displaced, 0 to 1.
-    plane : keep y at the middle of the cells; a cell is then halved along x and z alone.
+    plane : y is 0, and a cell is halved along x and z alone.
 
     Returns
     -------
@@ -69,6 +69,8 @@ def nested_lattice(
             half = width.copy()
             half[list(halved)] /= 2.0
             corners = at[len(here) :][filled] + slots[slot] * half
+    if plane:
+        x[:, 1] = 0.0
     return x
 
 

@@ -88,11 +88,12 @@ def _column(cell: str) -> tuple[str, float]:
     ------
     ValueError : an unknown column, or one without a unit that fits.
     """
+    if ";" in cell or "\t" in cell:
+        raise ValueError(f"columns are separated by commas, as in {_EXAMPLE}")
     column, _, rest = cell.partition("[")
     column, unit = column.strip().lower(), rest.rstrip().removesuffix("]").strip()
     if column not in COLUMNS:
-        hint = "; columns are separated by commas" if ";" in cell or "\t" in cell else ""
-        raise ValueError(f"unknown column {column[:40]!r}; known are {', '.join(COLUMNS)}{hint}")
+        raise ValueError(f"unknown column {column[:40]!r}; known are {', '.join(COLUMNS)}")
     name = COLUMNS[column]
     if not unit:
         raise ValueError(f"column {column!r} needs its unit in the header, such as {_EXAMPLE}")
