@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ryusa.build import build
-from ryusa.build.nested_lattice import Cells, nested_lattice
+from ryusa.build.nested_lattice import LatticeCells, nested_lattice
 from ryusa.casefile import Case, derive, read, read_text
 from ryusa.casefile.builders.values import bed_area
 from ryusa.casefile.column.bed import bed_thickness
@@ -108,7 +108,7 @@ def test_the_reference_diameter_is_d50_unless_the_case_gives_it() -> None:
 def test_a_nested_lattice_keeps_grains_apart(plane: bool) -> None:
     rng = np.random.default_rng(5)
     d = rng.permutation(ASKED.quotas(3_000))
-    cells = Cells((0.0085, 0.0088, 0.0084), 7, 1 if plane else 5)
+    cells = LatticeCells((0.0085, 0.0088, 0.0084), 7, 1 if plane else 5)
     x = nested_lattice(d, cells, 0.05, 0.9, plane, rng)
     width = np.array([7 * 0.0085, cells.n_y * 0.0088])
     for one in range(0, len(d), 7):
@@ -123,7 +123,7 @@ def test_a_nested_lattice_keeps_grains_apart(plane: bool) -> None:
 
 @pytest.mark.parametrize("plane", [False, True])
 def test_a_nested_lattice_mixes_sizes_over_its_height(plane: bool) -> None:
-    cells = Cells((0.0085, 0.0088, 0.0084), 7, 1 if plane else 5)
+    cells = LatticeCells((0.0085, 0.0088, 0.0084), 7, 1 if plane else 5)
     more = []
     for seed in range(20):  # one differs by 12 %, standard deviation: half of the mass is in 208 grains
         rng = np.random.default_rng(seed)

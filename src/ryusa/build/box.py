@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ryusa.build.nested_lattice import Cells, nested_lattice
+from ryusa.build.nested_lattice import LatticeCells, nested_lattice
 from ryusa.build.placement import Placement, Wall, at_rest
 from ryusa.build.sizes import draw
 from ryusa.casefile.builders.box import BoxPlan, box_plan, stands_on_floor
@@ -33,7 +33,7 @@ def box(case: Case, derived: Derived) -> Placement:
         x = _lattice(keys, plan, rng, derived.d_max, plane)
     else:
         sized = draw(case, keys.columns * keys.rows * keys.layers, rng)
-        cells = Cells(plan.pitch, keys.columns, keys.rows)
+        cells = LatticeCells(plan.pitch, keys.columns, keys.rows)
         x = nested_lattice(sized, cells, keys.gap, keys.jitter, plane, rng)
     x[:, 2] += top + keys.height
     parts = [(name, rows) for name, rows in (("floor", floor), ("back", back), ("gate", gate)) if len(rows)]

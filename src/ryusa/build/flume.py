@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ryusa.build.nested_lattice import Cells, nested_lattice
+from ryusa.build.nested_lattice import LatticeCells, nested_lattice
 from ryusa.build.placement import Placement, Wall, at_rest
 from ryusa.build.sizes import draw
 from ryusa.casefile.builders.schema import FlumeSection
@@ -96,15 +96,17 @@ def _base(case: Case, keys: FlumeSection, rng: np.random.Generator, wide: float)
     return x
 
 
-def _cells(case: Case, keys: FlumeSection, wide: float, d_max: float) -> Cells:
+def _cells(case: Case, keys: FlumeSection, wide: float, d_max: float) -> LatticeCells:
     """Cells that hold the largest grain with its gap and fill length and width."""
     free = d_max * (1.0 + keys.gap)
     n_x = max(int(keys.length / free), 1)
     n_y = 1 if case.motion.plane else max(int(wide / free), 1)
-    return Cells((keys.length / n_x, wide / n_y, free), n_x, n_y)
+    return LatticeCells((keys.length / n_x, wide / n_y, free), n_x, n_y)
 
 
-def _lattice(case: Case, keys: FlumeSection, rng: np.random.Generator, cells: Cells, d_max: float) -> Floats:
+def _lattice(
+    case: Case, keys: FlumeSection, rng: np.random.Generator, cells: LatticeCells, d_max: float
+) -> Floats:
     """Jittered centres from z = 0 upwards, clear of neighbours and walls [m]; the top layer is incomplete."""
     pitch, n_x, n_y = np.array(cells.pitch), cells.n_x, cells.n_y
     n = flume_count(case)

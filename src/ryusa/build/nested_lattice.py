@@ -12,7 +12,7 @@ DEEPEST = 20  # halvings; a grain a millionth as large as its cell loses nothing
 
 
 @dataclass(frozen=True)
-class Cells:
+class LatticeCells:
     """Block of cells from the corner at the origin upwards, each wide enough for the largest grain."""
 
     pitch: tuple[float, float, float]  # of a cell along x, y and z [m]
@@ -21,7 +21,7 @@ class Cells:
 
 
 def nested_lattice(
-    d: Floats, cells: Cells, gap: float, jitter: float, plane: bool, rng: np.random.Generator
+    d: Floats, cells: LatticeCells, gap: float, jitter: float, plane: bool, rng: np.random.Generator
 ) -> Floats:
     """Centres of grains of many sizes that do not touch, well mixed, from z = 0 upwards [m].
 
@@ -88,7 +88,7 @@ def _slots(halved: tuple[int, ...]) -> Floats:
     return found
 
 
-def _corners(n: int, cells: Cells, rng: np.random.Generator) -> Floats:
+def _corners(n: int, cells: LatticeCells, rng: np.random.Generator) -> Floats:
     """Lowest corners of n cells, layer by layer [m]; those of the highest layer at random places."""
     per_layer = cells.n_x * cells.n_y
     full = n // per_layer * per_layer

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ryusa.build.flume import bed_level
-from ryusa.build.nested_lattice import Cells, nested_lattice
+from ryusa.build.nested_lattice import LatticeCells, nested_lattice
 from ryusa.build.placement import Placement, Wall, at_rest
 from ryusa.build.sizes import draw
 from ryusa.casefile.builders.schema import PackingSection
@@ -33,7 +33,7 @@ def packing(case: Case, derived: Derived) -> Placement:
         x = _lattice(keys, pitch, d_max, rng)
     else:
         sized = draw(case, keys.columns * keys.rows * keys.layers, rng)
-        cells = Cells((pitch, pitch, pitch), keys.columns, keys.rows)
+        cells = LatticeCells((pitch, pitch, pitch), keys.columns, keys.rows)
         x = nested_lattice(sized, cells, keys.gap, keys.jitter, plane, rng)
     if plane:
         x[:, 1] = 0.0
