@@ -69,7 +69,7 @@ slip_drops, slip_total = rules(Slip, "drop", "total")
 # Whether the whole normal force enters the Coulomb cap.
 (cap_total,) = rules(Cap, "total")
 # Whether the tangential spring of elastic spheres is let go with the contact area.
-unloading_rescales = marked(Unloading, "rescaled")
+(unloading_rescales,) = rules(Unloading, "rescaled")
 # Whether rolling friction exerts the same torque on both grains; else that on j is opposite to that on i.
 rolling_alike = marked(Rolling, "both alike")
 

@@ -1,11 +1,11 @@
 """Elastic spheres: Hertz's normal force, Mindlin's tangential stiffness, and their impacts in closed form.
 
 Two spheres of one material, or a sphere and a flat wall (infinite radius) of the same material, overlap by x.
-The normal spring is F = K x**1.5 with K = (4/3) E_e sqrt(R_e); the dashpot c x**0.25 v with a constant c makes
-the restitution independent of the speed. With y = x**1.25 and d tau = sqrt(K/m) x**0.25 dt such a contact is
-the linear oscillator y'' + 2 zeta w y' + w**2 y = 0, w**2 = 5/4 (Antypov & Elliott 2011, EPL 94, 50004), so that
-restitution over zeta is that of the linear contact (laws/collision.py) under both partings, and only the time
-is a quadrature. design/0018.
+The normal spring is F = K x**1.5 with K = (4/3) E_e sqrt(R_e); the dashpot c x**0.25 v with a constant c
+makes the restitution independent of the speed. With y = x**1.25 and d tau = sqrt(K/m) x**0.25 dt such a
+contact is the linear oscillator y'' + 2 zeta w y' + w**2 y = 0, w**2 = 5/4 (Antypov & Elliott 2011, EPL 94,
+50004), so that restitution over zeta is that of the linear contact (laws/collision.py) under both partings,
+and only the time is a quadrature. design/0018.
 """
 
 import math
@@ -37,7 +37,7 @@ def effective_modulus(young: float, poisson: float) -> float:
 
 @law
 def effective_shear_modulus(young: float, poisson: float) -> float:
-    """Effective shear modulus G_e of two bodies of one material [Pa]: 1/G_e = 2 (2 - nu)/G, G = E/(2 (1 + nu)).
+    """Effective shear modulus G_e of two bodies of one material [Pa]: 1/G_e = 2 (2 - nu)/G.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def effective_shear_modulus(young: float, poisson: float) -> float:
 
     Notes
     -----
-    Source: Mindlin 1949; Johnson 1985, Eq. (7.43).
+    Source: Mindlin 1949; Johnson 1985, Eq. (7.43); G = E/(2 (1 + nu)).
 
     >>> effective_shear_modulus(8.0, 0.0)
     1.0

@@ -1,10 +1,11 @@
 """One contact of elastic spheres, one time step: the counterpart of `contact_step` for Hertz and Mindlin.
 
-Geometry, sliding and forces are those of `contact_step`; the springs are not: the normal one stiffens with the
-overlap, and the stiffness of the tangential one changes from step to step. A pair keeps its overlap of the last
-step, from which follow its spring forces and stiffnesses then. Work is accounted by velocity interval, as
-there: where the work of the curved spring over an interval differs from what it has taken up, by third order in
-the step, and where a contact begins or ends between two steps, the difference is the term `step`.
+Geometry, sliding and forces are those of `contact_step`; the springs are not: the normal one stiffens with
+the overlap, and the stiffness of the tangential one changes from step to step. A pair keeps its overlap of
+the last step, from which follow its spring forces and stiffnesses then. Work is accounted by velocity
+interval, as there: where the work of the curved spring over an interval differs from what it has taken up, by
+third order in the step, and where a contact begins or ends between two steps, the difference is the term
+`step`.
 """
 
 import math
@@ -122,9 +123,10 @@ def shear_spring_hertz(
 
     Notes
     -----
-    Source: Mindlin 1949, k_s = 8 G_e a, a proportional to the root. On loading the force is kept: the area that
-    comes in carries no tangential stress. On unloading it is multiplied by a/a_old: what the area that goes out
-    carried is lost (Walton 1993; LAMMPS `mindlin_rescale/force`). Without it energy comes from nothing.
+    Source: Mindlin 1949, k_s = 8 G_e a, a proportional to the root. On loading the force is kept: the area
+    that comes in carries no tangential stress. On unloading it is multiplied by a/a_old: what the area that
+    goes out carried is lost (Walton 1993; LAMMPS `mindlin_rescale/force`). Without it energy comes from
+    nothing.
 
     >>> shear_spring_hertz(True, 1.0, 2.0, 4.0), shear_spring_hertz(False, 1.0, 2.0, 4.0)
     ((4.0, 0.25, 0.125, 0.5), (4.0, 0.25, 0.125, 1.0))
@@ -148,21 +150,21 @@ def tangential_step_hertz(
 
     Parameters
     ----------
-    plane, total, drop, cap_total, n_x, n_y, n_z, twist, f_n, e_n, held, s_x, s_y, s_z, p_x, p_y, p_z, q_x, q_y,
-        q_z, cohesion, mu, dt, hdt : as in `contact_step.tangential_step`.
+    plane, total, drop, cap_total, n_x, n_y, n_z, twist, f_n, e_n, held, s_x, s_y, s_z, p_x, p_y, p_z,
+        q_x, q_y, q_z, cohesion, mu, dt, hdt : as in `contact_step.tangential_step`.
     rescaled, root, root_old, k_shear : as in `shear_spring_hertz`.
     c_s : of `hertz.mindlin_damping` [N s/m**1.25].
 
     Returns
     -------
-    As `contact_step.tangential_step`; the energy lost without work has, beside that of a contact without force,
-    what the spring loses as its stiffness changes [J].
+    As `contact_step.tangential_step`; the energy lost without work has, beside that of a contact without
+    force, what the spring loses as its stiffness changes [J].
 
     Notes
     -----
     Source: Mindlin 1949 with history, as LAMMPS `mindlin/force`; derived, design/0018. The spring holds
-    e**2/(2 k_s) at the present stiffness. Scaled, it cannot gain: on loading k_s grows, on unloading e**2 falls
-    faster than k_s.
+    e**2/(2 k_s) at the present stiffness. Scaled, it cannot gain: on loading k_s grows, on unloading e**2
+    falls faster than k_s.
 
     >>> flags, normal, slip = (True, False, False, False, True), (0.0, 0.0, 1.0, 0.0), (0.0, 0.0, 0.0)
     >>> force, law = (1.0, 0.0, 0.0, 0.0, 0.0, 0.0), (1.0, 2.0, 4.0, 0.0, 0.0, 1.0)
