@@ -357,11 +357,11 @@ def contact_time_hertz(speed: float, m: float, k_hertz: float, zeta: float, tens
 
     Notes
     -----
-    Source: Hertz 1882; Johnson 1985, Eq. (11.24). It is 2.9432 times the largest overlap over v.
+    Source: Hertz 1882; Johnson 1985, Eq. (11.24). It is 2.9433 times the largest overlap over v.
 
     >>> t, x = contact_time_hertz(1.0, 4.0, 5.0, 0.0, True), overlap_max_hertz(1.0, 4.0, 5.0, 0.0)
     >>> round(t / x, 4)
-    2.9432
+    2.9433
     """
     return time_factor_hertz(zeta, tension) * (m * m / (k_hertz * k_hertz * speed)) ** 0.2
 

@@ -19,6 +19,7 @@ from ryusa.engine.cpu.arrays import (
 from ryusa.engine.cpu.barrier import wait
 from ryusa.engine.cpu.contact_rows import has_short_rows, springs_of_row
 from ryusa.engine.cpu.exact_contact import compute_exactly, keep_states, spring_energy_of_maps
+from ryusa.engine.cpu.hertz_contact import compute_hertz, spring_energy_hertz
 from ryusa.engine.cpu.integration import integrate, post
 from ryusa.engine.cpu.pair_batch import compute, filter_pairs, gather, overlap_of_lane, scatter
 from ryusa.engine.cpu.pair_physics import immersed_dashpots, optional_physics
@@ -28,6 +29,7 @@ from ryusa.engine.cpu.simd.borrow import borrow
 from ryusa.engine.cpu.simd.prefetch import prefetch
 from ryusa.engine.cpu.simd.vec4 import fill4
 from ryusa.engine.shared import block_statistics as S
+from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.kernel import FAST, inner, kernel
 from ryusa.engine.shared.status import (
@@ -53,8 +55,8 @@ TERMS = tuple(
 
 @inner(fastmath=FAST, forceinline=True)
 def block_forces(
-    variant: KernelVariant, flat: Present, water: Present, optional: Present, exact: Present, short: Present,
-    choice: LawChoice, b: int, hi: int, n: int, n_solid: int, step: int, t: float, hdt: float, last: bool,
+    variant: KernelVariant, flat: Present, water: Present, optional: Present, exact: Present, hertz: Present,
+    short: Present, choice: LawChoice, b: int, hi: int, n: int, n_solid: int, step: int, t: float, hdt: float, last: bool,
     c: Any, grains: GrainArrays, walls: WallArrays, pairs: PairArrays, candidates: CandidateArrays,
     work: Workspace, ended: Any, account: Any, stats: Any,
 ) -> None:  # fmt: skip
@@ -97,12 +99,14 @@ def block_forces(
         if m == 0:
             break
         lanes = gather(
-            variant.rotation, variant.exact, short, m, selected, n_solid, c, mass, inertia, x, v, w, points,
-            normals, i_of, j_of, touching, eta, rows, batch,
+            variant.rotation, M.OF_MAPS * variant.exact + M.HERTZ * variant.hertz, short, m, selected,
+            n_solid, c, mass, inertia, x, v, w, points, normals, i_of, j_of, touching, eta, rows, batch,
         )  # fmt: skip
         if water is not None and choice.rebound:
-            immersed_dashpots(exact, choice, m, selected, c, grains, candidates, batch)
-        if exact is None:
+            immersed_dashpots(exact, hertz, choice, m, selected, c, grains, candidates, batch)
+        if hertz is not None:
+            compute_hertz(flat, choice, lanes, hdt, stats[S.OVERLAP_MAX], c, batch)
+        elif exact is None:
             compute(flat, choice, lanes, hdt, stats[S.OVERLAP_MAX], c, batch)
         else:
             compute_exactly(
@@ -126,7 +130,9 @@ def block_forces(
             total += batch[B.WORK + row * B.PITCH + l]
         account[TERMS[row]] += total
     if last:
-        if exact is None:
+        if hertz is not None:
+            stats[S.SPRING_N], stats[S.SPRING_S], stats[S.N_CONTACT] = spring_energy_hertz(b, c, candidates)
+        elif exact is None:
             stats[S.SPRING_N], stats[S.SPRING_S], stats[S.N_CONTACT] = spring_energy(b, c, candidates)
         else:
             stats[S.SPRING_N], stats[S.SPRING_S], stats[S.N_CONTACT] = spring_energy_of_maps(b, candidates)
@@ -186,6 +192,7 @@ def make_run(variant: KernelVariant) -> Any:
     water: Present = 1 if variant.water else None
     column: Present = 1 if variant.column else None
     exact: Present = 1 if variant.exact else None
+    hertz: Present = 1 if variant.hertz else None
     short: Present = 1 if has_short_rows(variant) else None
     optional: Present = 1 if variant.rolling or variant.events or variant.film else None
 
@@ -265,8 +272,8 @@ def make_run(variant: KernelVariant) -> Any:
                 for b in range(b_0, b_1):
                     if not after:
                         block_forces(
-                            variant, flat, water, optional, exact, short, choice, b, block_start[b + 1], n,
-                            n_solid, step, t, hdt, last, c, grains, walls, pairs, candidates, work, ended[b],
+                            variant, flat, water, optional, exact, hertz, short, choice, b, block_start[b + 1],
+                            n, n_solid, step, t, hdt, last, c, grains, walls, pairs, candidates, work, ended[b],
                             terms[b], stats[b],
                         )  # fmt: skip
                     q = b if after else b - span

@@ -4,11 +4,12 @@ from typing import NamedTuple
 
 from ryusa.engine.shared import memory_rows as M
 from ryusa.laws._family import numbers
-from ryusa.laws.families import ContactTiming, Profile, Rolling
+from ryusa.laws.families import ContactForce, ContactTiming, Profile, Rolling
 from ryusa.model import Scene
 from ryusa.model.contacts import N_EVENT
 from ryusa.model.scene import EventRule
 
+_, HERTZ = numbers(__name__, ContactForce.LINEAR, ContactForce.HERTZ_MINDLIN)
 _, EXACT = numbers(__name__, ContactTiming.AT_STEPS, ContactTiming.EXACT)
 
 
@@ -23,6 +24,7 @@ class KernelVariant(NamedTuple):
     film: int  # films resist before touch
     water: int  # there is any
     exact: int  # contacts begin and end within steps
+    hertz: int  # contacts are those of elastic spheres
 
     @property
     def row_width(self) -> int:
@@ -32,7 +34,12 @@ class KernelVariant(NamedTuple):
     @property
     def springs(self) -> int:
         """Dashpots and stiffnesses kept for each pair."""
-        return M.N_SPRING if self.exact else M.K_N
+        return M.N_SPRING if self.kind else M.K_N
+
+    @property
+    def kind(self) -> int:
+        """Kind of springs (memory_rows.py)."""
+        return M.OF_MAPS * self.exact + M.HERTZ * self.hertz
 
     @property
     def event_column(self) -> int:
@@ -58,6 +65,7 @@ class LawChoice(NamedTuple):
     lift: int
     magnus: int
     rebound: int
+    unloading: int
 
 
 def variant_of(scene: Scene) -> KernelVariant:
@@ -71,6 +79,7 @@ def variant_of(scene: Scene) -> KernelVariant:
         film=int(scene.water.profile != Profile.NONE and scene.water.film_reach > 0.0),
         water=int(scene.water.profile != Profile.NONE),
         exact=int(int(scene.contact.timing) == EXACT),
+        hertz=int(int(scene.contact.force) == HERTZ),
     )
 
 
@@ -93,4 +102,5 @@ def choice_of(scene: Scene) -> LawChoice:
         lift=int(water.lift),
         magnus=int(water.magnus),
         rebound=int(water.rebound) if water.profile != Profile.NONE else 0,
+        unloading=int(law.unloading),
     )
