@@ -26,10 +26,10 @@ def pair_springs(scene: Scene, i: Ints, j: Ints, overlap: Floats) -> tuple[Float
 
     Notes
     -----
-    Of elastic spheres the normal one is the force over the overlap, and the tangential one that of the overlap
-    (design/0018). Else they are those of the law, or with exact timing those of the map that goes through the points of its
-    oscillator (design/0014), which depend on the masses and the step. A dashpot that water chose at the touch
-    of a pair is not known here: its map has that of the dry restitution.
+    Of elastic spheres the normal one is the force over the overlap, the tangential one that at the overlap
+    (design/0018). Else they are those of the law, or with exact timing those of the map that goes through
+    the points of its oscillator (design/0014), which depend on the masses and the step. A dashpot that water
+    chose at the touch of a pair is not known here: its map has that of the dry restitution.
     """
     law, n = scene.contact, len(i)
     if law.force == ContactForce.HERTZ_MINDLIN:

@@ -48,8 +48,8 @@ class EventRule(IntEnum):
 class ContactLaw:
     """Springs, dashpots and slider of every contact, Eqs. (1)-(4).
 
-    With elastic spheres k_n and k_s are those of linear springs of the same contact time at `speed`, for a mean
-    grain on a fixed one: rolling springs and estimates take them.
+    With elastic spheres k_n and k_s are those of linear springs of the same contact time at `speed`, for a
+    mean grain on a fixed one: rolling springs and estimates take them.
     """
 
     k_n: float  # normal stiffness [N/m]

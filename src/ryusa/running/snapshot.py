@@ -22,7 +22,7 @@ from ryusa.running.checkpoint import CheckpointBlock
 _LATEST = 2**62  # step
 _NUMBERS = 64  # of an engine, at most
 _FLOAT, _INT, _INT32 = np.dtype(np.float64), np.dtype(np.int64), np.dtype(np.int32)
-# arrays left out where all their numbers are zero: of rolling friction, exact timing, elastic spheres, records
+# arrays left out where all their numbers are zero: of rolling friction, exact timing, Hertz, records
 _ZERO_UNLESS_USED = {
     f"contacts/{name}" for name in ("spring_r", "dash_r", "k_n", "rest_of_closing", "overlap", "event")
 }

@@ -61,7 +61,8 @@ def gather(
 ) -> int:  # fmt: skip
     """Copy the first m selected pairs to as many lanes; returns the number of lanes to compute.
 
-    `kind` is that of their springs (memory_rows.py). Those are whole vectors of eight: the lanes beyond m hold pairs far apart.
+    Those are whole vectors of eight: the lanes beyond m hold pairs far apart. `kind` is that of the springs
+    (memory_rows.py).
     """
     for l in range(m):
         k = selected[l]

@@ -56,9 +56,9 @@ TERMS = tuple(
 @inner(fastmath=FAST, forceinline=True)
 def block_forces(
     variant: KernelVariant, flat: Present, water: Present, optional: Present, exact: Present, hertz: Present,
-    short: Present, choice: LawChoice, b: int, hi: int, n: int, n_solid: int, step: int, t: float, hdt: float, last: bool,
-    c: Any, grains: GrainArrays, walls: WallArrays, pairs: PairArrays, candidates: CandidateArrays,
-    work: Workspace, ended: Any, account: Any, stats: Any,
+    short: Present, choice: LawChoice, b: int, hi: int, n: int, n_solid: int, step: int, t: float, hdt: float,
+    last: bool, c: Any, grains: GrainArrays, walls: WallArrays, pairs: PairArrays,
+    candidates: CandidateArrays, work: Workspace, ended: Any, account: Any, stats: Any,
 ) -> None:  # fmt: skip
     """Forces of every pair that block b, grains up to hi-1, owns, batch by batch of those that touch."""
     batch, separation, inside, selected = work.batch, work.separation, work.inside, work.selected
@@ -272,9 +272,9 @@ def make_run(variant: KernelVariant) -> Any:
                 for b in range(b_0, b_1):
                     if not after:
                         block_forces(
-                            variant, flat, water, optional, exact, hertz, short, choice, b, block_start[b + 1],
-                            n, n_solid, step, t, hdt, last, c, grains, walls, pairs, candidates, work, ended[b],
-                            terms[b], stats[b],
+                            variant, flat, water, optional, exact, hertz, short, choice, b,
+                            block_start[b + 1], n, n_solid, step, t, hdt, last, c, grains, walls, pairs,
+                            candidates, work, ended[b], terms[b], stats[b],
                         )  # fmt: skip
                     q = b if after else b - span
                     soon = b_0 + span <= q < b_1 - span

@@ -122,7 +122,9 @@ def spring_immersed(
 
 
 @kernel()
-def dashpot_immersed_hertz(choice: LawChoice, closing: float, i: int, j: int, c: Any, m: Any, w: Any) -> float:
+def dashpot_immersed_hertz(
+    choice: LawChoice, closing: float, i: int, j: int, c: Any, m: Any, w: Any
+) -> float:
     """Normal dashpot over x**0.25 [N s/m**1.25] of two elastic spheres, as in `dashpot_immersed`."""
     k = hertz_stiffness(c[P.E_EFFECTIVE], reduced_radius(w[i, 3], w[j, 3]))
     return hertz_damping(zeta_immersed(choice, closing, i, j, c, m, w), k, effective_mass(m[i], m[j]))
