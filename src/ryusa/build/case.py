@@ -25,6 +25,7 @@ from ryusa.casefile.derive import Derived, derive
 from ryusa.casefile.films import film_reach
 from ryusa.casefile.motion import slab_width
 from ryusa.casefile.record import events_of
+from ryusa.casefile.time import steps_by_default
 from ryusa.casefile.water.values import hindrance_exponent
 from ryusa.errors import CaseError
 from ryusa.laws.families import (
@@ -233,7 +234,7 @@ def notes_of(case: Case) -> tuple[str, ...]:
         if bed:
             notes += _column_notes(case)
     if case.time.step is None and case.time.steps_per_contact is None:
-        notes.append("50 steps in the shortest contact (time not given)")
+        notes.append(f"{steps_by_default(case):g} steps in the shortest contact (time not given)")
     if case.record.events is None:
         notes.append(f"contacts recorded: {events_of(case)} (record.events not given)")
     return tuple(notes)

@@ -9,7 +9,18 @@ from ryusa.casefile.contact.values import timing
 from ryusa.casefile.section import Section, given
 from ryusa.errors import CaseError
 from ryusa.laws._family import Family
-from ryusa.laws.families import FAMILIES, Above, Arm, Cap, ContactTiming, Mixing, Rolling, SideWalls, Slip, Start
+from ryusa.laws.families import (
+    FAMILIES,
+    Above,
+    Arm,
+    Cap,
+    ContactTiming,
+    Mixing,
+    Rolling,
+    SideWalls,
+    Slip,
+    Start,
+)
 
 F = TypeVar("F", bound=Family)
 

@@ -18,7 +18,9 @@ if TYPE_CHECKING:
 
 RIVALS = (("steps_per_contact", "step"),)
 STEPS_PER_CONTACT = {ContactTiming.EXACT: 10.0, ContactTiming.AT_STEPS: 50.0}  # when the case gives no step
-STEPS_OF_HERTZ = 25.0  # per contact of elastic spheres: e to 7e-3 at worst, as at 50 of linear springs (design/0018)
+STEPS_OF_HERTZ = (
+    25.0  # per contact of elastic spheres: e to 7e-3 at worst, as at 50 of linear springs (design/0018)
+)
 TANGENTIAL_SHARE = 0.2  # of the largest stable step of the tangential motion, when the case gives no step
 MOST_STEPS = 500.0  # per contact when the case gives no step; a case that needs more has to say so
 STEPS_PER_FILM = 5.0  # in the time in which the thinnest film stops a grain, when the case gives no step
@@ -32,8 +34,8 @@ class TimeSection(Section):
 
     steps_per_contact: Annotated[Number, Field(ge=5, le=10_000)] | None = None
     """Number of steps in the shortest contact that can occur. When no step is given, 10 with contact.timing
-    "exact", 50 with "at steps", and 25 of elastic spheres, or more where a tangential oscillation or a film of
-    water needs them."""
+    "exact", 50 with "at steps", and 25 of elastic spheres, or more where a tangential oscillation or a film
+    of water needs them."""
     step: Duration | None = None
     """Time step dt, instead of steps_per_contact."""
 

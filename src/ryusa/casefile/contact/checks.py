@@ -43,7 +43,9 @@ def check_contact(case: "Case") -> Iterator[CaseError]:
         yield CaseError(
             "contact.restitution",
             None,
-            "missing; there is no default" if elastic else "missing; give restitution, or damping (a constant dashpot)",
+            "missing; there is no default"
+            if elastic
+            else "missing; give restitution, or damping (a constant dashpot)",
         )
     if "total" in Slip.of(contact.slip).marks and contact.cap == "spring":
         yield CaseError("contact.cap", "spring", f"must be 'total' (or left out) with slip '{contact.slip}'")

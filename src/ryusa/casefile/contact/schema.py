@@ -63,11 +63,11 @@ class ContactSection(Section):
     """Springs: linear ones of constant stiffness, or those of elastic spheres after Hertz and Mindlin."""
     stiffness: (
         Annotated[
-        Annotated[Annotated[Stiffness, Field(ge=1.0e-9, le=1.0e15)], Tag("<value>")]
-        | Annotated[OverlapStiffnessSection, Tag("<overlap>")]
-        | Annotated[TimeStiffnessSection, Tag("<time>")],
-        Discriminator(_stiffness_kind),
-    ]
+            Annotated[Annotated[Stiffness, Field(ge=1.0e-9, le=1.0e15)], Tag("<value>")]
+            | Annotated[OverlapStiffnessSection, Tag("<overlap>")]
+            | Annotated[TimeStiffnessSection, Tag("<time>")],
+            Discriminator(_stiffness_kind),
+        ]
         | None
     ) = None
     """Normal stiffness k_n of the linear spring: a value, or { overlap, speed }, or { collision_time }."""

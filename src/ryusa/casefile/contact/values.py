@@ -9,10 +9,9 @@ from ryusa.casefile.contact.schema import OverlapStiffnessSection, TimeStiffness
 from ryusa.casefile.contact.speed import expected_speed
 from ryusa.casefile.grains import mass
 from ryusa.casefile.motion import may_rotate
-from ryusa.laws import collision
+from ryusa.laws import collision, hertz
 from ryusa.laws import contact as contact_law
 from ryusa.laws._family import numbers
-from ryusa.laws import hertz
 from ryusa.laws.families import Cap, ContactForce, ContactTiming, DampingLaw, Parting, Slip, Unloading
 from ryusa.model import ContactLaw
 from ryusa.model.contact_law import (
@@ -130,7 +129,7 @@ def stiffness(case: "Case") -> tuple[float, float]:
 
 
 def hertz_law(case: "Case") -> ContactLaw:
-    """Contact law of a case with elastic spheres; its linear springs are those of a mean grain on a fixed one."""
+    """Contact law of a case with elastic spheres; its k_n is that of a mean grain on a fixed one."""
     contact, d = case.contact, sizes(case)[0]
     m, m_added, _, _ = mass(case, d)
     e_n, e_s, _, _ = restitution(case)
@@ -153,7 +152,7 @@ def hertz_law(case: "Case") -> ContactLaw:
 
 
 def reduced_radius(d: float, free: bool) -> float:
-    """Reduced radius [m] of the pair with the shortest contact: two grains, or if they cannot meet one on a wall."""
+    """Reduced radius [m] of two grains, or if they cannot meet of one on a wall: the shortest contact."""
     return 0.25 * d if free else 0.5 * d
 
 
@@ -234,8 +233,10 @@ def pair_values(case: "Case", d: float, free: bool, rotates: bool | None = None)
 
 
 def _pair_values_hertz(case: "Case", r: float, m: float, m_t: float) -> PairValues:
-    """Values of two elastic spheres of a reduced radius r [m]: times at the expected speed, dashpots and the
-    tangential oscillation at the largest overlap there."""
+    """Values of two elastic spheres of a reduced radius r [m]: all in an impact at the expected speed.
+
+    Dashpots and the tangential oscillation are those at the largest overlap.
+    """
     law = hertz_law(case)
     stiff, v = hertz_stiffness_of(law, r), law.speed
     root = math.sqrt(hertz.overlap_max_hertz(v, m, stiff, law.zeta_n))
