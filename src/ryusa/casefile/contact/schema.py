@@ -20,6 +20,7 @@ from ryusa.casefile.section import Section
 from ryusa.laws import families
 
 RIVALS = (
+    ("stiffness", "youngs_modulus"),
     ("friction_angle", "friction"),
     ("shear_ratio", "shear_stiffness"),
     ("restitution", "damping"),
