@@ -24,7 +24,7 @@ class KernelVariant(NamedTuple):
     film: int  # films resist before touch
     water: int  # there is any
     exact: int  # contacts begin and end within steps
-    hertz: int  # contacts are those of elastic spheres
+    hertz: int = 0  # contacts are those of elastic spheres
 
     @property
     def row_width(self) -> int:
@@ -65,7 +65,7 @@ class LawChoice(NamedTuple):
     lift: int
     magnus: int
     rebound: int
-    unloading: int
+    unloading: int = 0
 
 
 def variant_of(scene: Scene) -> KernelVariant:
