@@ -43,11 +43,16 @@ BLIND = {
     ("geometry.wrap", "period"),  # checked by the case reader
     ("hertz_step.normal_step_hertz", "overlap"),  # as in contact_step.normal_step
     ("hertz_step.normal_step_hertz", "least"),
+    ("hertz_step.normal_work_hertz", "overlap"),
+    ("hertz_step.normal_work_hertz", "least"),
     ("hertz_step.shear_spring_hertz", "root"),  # of the overlap, which the grain step looks at
     ("hertz_step.shear_spring_hertz", "root_old"),
     # not used in a plane, or of tau_c, as in contact_step.tangential_step
     *(("hertz_step.tangential_step_hertz", name) for name in ("n_x", "n_y", "n_z", "twist", "s_y", "s_z")),
-    *(("hertz_step.tangential_step_hertz", name) for name in ("f_n", "e_n", "cohesion", "mu", "root_old")),
+    *(
+        ("hertz_step.tangential_step_hertz", name)
+        for name in ("f_n", "e_n", "cohesion", "mu", "root", "root_old")
+    ),
     ("rolling.epsd_torque", "spin"),  # the dashpot is off while sliding
     ("rolling.epsd_torque", "eta_r"),
     ("rolling.epsd_torque", "scale"),

@@ -36,6 +36,7 @@ EXPONENTS = {  # exponents of kg, m, s
     "rad/s": (0, 0, -1),
     "rad/s2": (0, 0, -2),
     "m1/2": (0, 0.5, 0),
+    "m1/4": (0, 0.25, 0),
     "N/m1.5": (1, -0.5, -2),
     "N s/m1.25": (1, -0.25, -1),
 }
@@ -180,12 +181,13 @@ UNITS = {
     "hertz.contact_time_hertz": "m/s, kg, N/m1.5, -, bool -> s",
     "hertz.stiffness_hertz_for_time": "s, m/s, kg, -, bool -> N/m1.5",
     "hertz_step.spring_hertz": "m, N/m1.5 -> N, m1/2",
-    "hertz_step.dashpot_hertz": "m1/2, N s/m1.25, 1/kg, s -> N s/m",
-    "hertz_step.normal_step_hertz": "m, m/s, N, N, m, N, N, N, s -> N, -, -, J, J, J",
+    "hertz_step.dashpot_hertz": "m1/4, N s/m1.25, 1/kg, s -> N s/m",
+    "hertz_step.normal_step_hertz": "m, m/s, N, N, N, s -> N, -, -, J, J",
+    "hertz_step.normal_work_hertz": "m, m/s, N, m, N, N, N, s -> J, J, J",
     "hertz_step.shear_spring_hertz": "bool, m1/2, m1/2, N/m1.5 -> N/m, m/N, m/N, -",
     "hertz_step.tangential_step_hertz": (
         "bool, bool, bool, bool, bool, -, -, -, -, N, N, -, m/s, m/s, m/s, N, N, N, N, N, N, m1/2, m1/2,"
-        " N/m1.5, N s/m1.25, N, -, s, s -> N, N, N, N, N, N, -, J, J, J"
+        " m1/4, N/m1.5, N s/m1.25, N, -, s, s -> N, N, N, N, N, N, -, J, J, J"
     ),
     "immersed.stokes_number": "m/s, kg, m, kg/m3, m2/s -> -",
     "immersed.stokes_number_yade": "m/s, m, kg/m3, kg/m3, m2/s -> -",

@@ -37,12 +37,12 @@ def spring_hertz(overlap: float, k_hertz: float) -> tuple[float, float]:
 
 
 @step_law
-def dashpot_hertz(root: float, c_hertz: float, per_m: float, dt: float) -> float:
+def dashpot_hertz(fourth: float, c_hertz: float, per_m: float, dt: float) -> float:
     """Normal dashpot of elastic spheres at an overlap [N s/m], for a velocity of half a step before.
 
     Parameters
     ----------
-    root : root of the overlap [m**0.5], >= 0.
+    fourth : fourth root of the overlap [m**0.25], >= 0.
     c_hertz : of `hertz.hertz_damping` [N s/m**1.25].
     per_m : one over the effective mass [1/kg].
     dt : time step [s].
@@ -51,27 +51,24 @@ def dashpot_hertz(root: float, c_hertz: float, per_m: float, dt: float) -> float
     -----
     Source: Tsuji et al. 1992, c x**0.25; less (5/22) eta dt/m of it, derived as `contact.damping_in_steps`.
 
-    >>> dashpot_hertz(4.0, 2.0, 1.0, 0.0)
+    >>> dashpot_hertz(2.0, 2.0, 1.0, 0.0)
     4.0
     """
-    eta = c_hertz * math.sqrt(root)
+    eta = c_hertz * fourth
     return eta / (1.0 + LAG * eta * per_m * dt)
 
 
 @step_law
 def normal_step_hertz(
-    overlap: float, closing: float, raw: float, e_n: float, overlap_old: float, f_old: float, e_old: float,
-    least: float, hdt: float,
-) -> tuple[float, float, float, float, float, float]:  # fmt: skip
-    """Normal force at a step, and the work of it and of the force before it over the interval between them.
+    overlap: float, closing: float, raw: float, e_n: float, least: float, hdt: float
+) -> tuple[float, float, float, float, float]:
+    """Normal force at a step, and its work over the half interval before it.
 
     Parameters
     ----------
     overlap, closing : as `contact_step.contact_kinematics` gives them [m], [m/s].
     raw : spring and dashpot before the limit is applied [N].
     e_n : force of the spring [N], from `spring_hertz`.
-    overlap_old : overlap at the previous step [m]; 0 if the pair did not touch.
-    f_old, e_old : normal force then, and that of its spring [N].
     least : smallest normal force that a contact may have [N]: 0, or -inf if the dashpot may pull.
     hdt : half the time step [s]; 0 in the first step of a run.
 
@@ -80,6 +77,33 @@ def normal_step_hertz(
     f_n : normal force [N]; positive pushes apart.
     held, touching : 1 if the contact exerts a force, and if the grains touch; else 0 [-].
     dashpot, released : energy dissipated by the dashpot, and lost because the force was limited [J].
+
+    >>> normal_step_hertz(4.0, 1.0, 9.0, 8.0, 0.0, 1.5)
+    (9.0, 1.0, 1.0, 1.5, 0.0)
+    """
+    touching = overlap > 0.0
+    f_n = max(raw, least) if touching else 0.0
+    held = touching and f_n > least
+    work = hdt * closing * (f_n - e_n)
+    return f_n, 1.0 if held else 0.0, 1.0 if touching else 0.0, work if held else 0.0, 0.0 if held else work
+
+
+@step_law
+def normal_work_hertz(
+    overlap: float, closing: float, e_n: float, overlap_old: float, f_old: float, e_old: float, least: float,
+    hdt: float,
+) -> tuple[float, float, float]:  # fmt: skip
+    """Work of the previous normal force over the half interval after it, and the error of the step.
+
+    Parameters
+    ----------
+    overlap, closing, e_n, least, hdt : as in `normal_step_hertz`.
+    overlap_old : overlap at the previous step [m]; 0 if the pair did not touch.
+    f_old, e_old : normal force then, and that of its spring [N].
+
+    Returns
+    -------
+    dashpot, released : energy dissipated by the dashpot, and lost because the force was limited [J].
     step : energy added by the step: the elastic energy (2/5) F x taken up, less the work on the spring [J].
 
     Notes
@@ -87,20 +111,16 @@ def normal_step_hertz(
     Source: derived, design/0018. In touch at both steps the work on the spring is that of the mean force over
     the change of the overlap, else that of the one force over half the interval.
 
-    >>> [round(x, 9) for x in normal_step_hertz(4.0, 1.0, 9.0, 8.0, 1.0, 1.0, 1.0, 0.0, 1.5)]
-    [9.0, 1.0, 1.0, 1.5, 0.0, -1.1]
+    >>> [round(x, 9) for x in normal_work_hertz(4.0, 1.0, 8.0, 1.0, 1.0, 1.0, 0.0, 1.5)]
+    [0.0, 0.0, -1.1]
     """
     touching, touched = overlap > 0.0, overlap_old > 0.0
-    f_n = max(raw, least) if touching else 0.0
-    held, held_old = touching and f_n > least, touched and f_old > least
-    now, before = hdt * closing * (f_n - e_n), hdt * closing * (f_old - e_old)
-    dashpot = (now if held else 0.0) + (before if held_old else 0.0)
-    released = (0.0 if held else now) + (0.0 if held_old else before)
-    taken = 0.4 * (e_n * overlap - e_old * overlap_old) if touching else -0.4 * e_old * overlap_old
+    before, held_old = hdt * closing * (f_old - e_old), f_old > least
+    taken = 0.4 * ((e_n * overlap if touching else 0.0) - e_old * overlap_old)
     both = touching and touched
-    work = 0.5 * (overlap - overlap_old) if both else hdt * closing
-    step = taken - work * (e_n + e_old) if hdt > 0.0 else 0.0
-    return f_n, 1.0 if held else 0.0, 1.0 if touching else 0.0, dashpot, released, step
+    work = (0.5 * (overlap - overlap_old) if both else hdt * closing) * (e_n + e_old)
+    step = taken - work if hdt > 0.0 else 0.0
+    return before if held_old else 0.0, 0.0 if held_old else before, step
 
 
 @step_law
@@ -118,7 +138,8 @@ def shear_spring_hertz(
     Returns
     -------
     k_s : stiffness [N/m]; that of the step before if the grains touch no longer.
-    soft_s, soft_old : inverse of it, and of that of the step before [m/N]; 0 without a spring.
+    soft_s, soft_old : inverse of it, and of that of the step before if they touched then [m/N]; 0 without
+        a spring.
     scale : factor of the spring force kept from the step before [-].
 
     Notes
@@ -133,18 +154,20 @@ def shear_spring_hertz(
     >>> shear_spring_hertz(True, 0.0, 2.0, 4.0)
     (8.0, 0.125, 0.125, 1.0)
     """
-    here = root if root > 0.0 else root_old
-    k_s, k_old = k_shear * here, k_shear * root_old
-    soft_s, soft_old = 1.0 / k_s if k_s > 0.0 else 0.0, 1.0 / k_old if k_old > 0.0 else 0.0
-    return k_s, soft_s, soft_old, k_s * soft_old if rescaled and here < root_old else 1.0
+    here, before = root if root > 0.0 else root_old, root_old if root_old > 0.0 else root
+    k_s = k_shear * here
+    both = k_s * before
+    inverse = 1.0 / both if both > 0.0 else 0.0  # one division for the two
+    soft_s, soft_old = before * inverse, here * inverse
+    return k_s, soft_s, soft_old, k_s * soft_old if rescaled and here < before else 1.0
 
 
 @step_law
 def tangential_step_hertz(
     plane: bool, total: bool, drop: bool, cap_total: bool, rescaled: bool, n_x: float, n_y: float, n_z: float,
     twist: float, f_n: float, e_n: float, held: float, s_x: float, s_y: float, s_z: float, p_x: float,
-    p_y: float, p_z: float, q_x: float, q_y: float, q_z: float, root: float, root_old: float, k_shear: float,
-    c_s: float, cohesion: float, mu: float, dt: float, hdt: float,
+    p_y: float, p_z: float, q_x: float, q_y: float, q_z: float, root: float, root_old: float, fourth: float,
+    k_shear: float, c_s: float, cohesion: float, mu: float, dt: float, hdt: float,
 ) -> tuple[float, float, float, float, float, float, float, float, float, float]:  # fmt: skip
     """Tangential spring and dashpot force on grain i after a step, and the work of the whole interval.
 
@@ -153,6 +176,7 @@ def tangential_step_hertz(
     plane, total, drop, cap_total, n_x, n_y, n_z, twist, f_n, e_n, held, s_x, s_y, s_z, p_x, p_y, p_z,
         q_x, q_y, q_z, cohesion, mu, dt, hdt : as in `contact_step.tangential_step`.
     rescaled, root, root_old, k_shear : as in `shear_spring_hertz`.
+    fourth : fourth root of the overlap [m**0.25].
     c_s : of `hertz.mindlin_damping` [N s/m**1.25].
 
     Returns
@@ -167,13 +191,13 @@ def tangential_step_hertz(
     falls faster than k_s.
 
     >>> flags, normal, slip = (True, False, False, False, True), (0.0, 0.0, 1.0, 0.0), (0.0, 0.0, 0.0)
-    >>> force, law = (1.0, 0.0, 0.0, 0.0, 0.0, 0.0), (1.0, 2.0, 4.0, 0.0, 0.0, 1.0)
+    >>> force, law = (1.0, 0.0, 0.0, 0.0, 0.0, 0.0), (1.0, 2.0, 1.0, 4.0, 0.0, 0.0, 1.0)
     >>> found = tangential_step_hertz(*flags, *normal, 9.0, 9.0, 1.0, *slip, *force, *law, 0.1, 0.05)
     >>> found[0], found[6], found[9]
     (0.5, 1.0, 0.03125)
     """
     k_s, soft_s, soft_old, scale = shear_spring_hertz(rescaled, root, root_old, k_shear)
-    eta_s = c_s * math.sqrt(root)
+    eta_s = c_s * fourth
     held_force, slid = p_x * p_x, s_x * p_x
     if not plane:
         held_force += p_y * p_y + p_z * p_z

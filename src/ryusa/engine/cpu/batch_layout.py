@@ -59,10 +59,8 @@ KIND = 75 * PITCH  # what the step does with the pair (shared/contact_instants.p
 BEGINS, MAY_END = 76 * PITCH, 77 * PITCH  # lanes where contacts begin, and may end, one after the other
 
 # Only with elastic spheres, in place of those of exact timing (hertz_contact.py):
-OVERLAP_OLD = 64 * PITCH  # memory: overlap in the last step [m], and normal force [N]
-F_OLD = 65 * PITCH
-ROOT = 66 * PITCH  # root of the overlap, and of that in the last step [m**0.5]
-ROOT_OLD = 67 * PITCH
+ROOT = 64 * PITCH  # root of the overlap [m**0.5], and its fourth root [m**0.25]
+FOURTH = 65 * PITCH
 
 # Events: contacts that begin or may end, packed into lanes of their own (contact_events.py)
 EVENT = 78 * PITCH  # twelve rows as from OVERLAP on

@@ -18,7 +18,13 @@ from ryusa.laws.contact_step import contact_force, contact_kinematics
 from ryusa.laws.dispatch import cap_total, slip_drops, slip_total, unloading_rescales
 from ryusa.laws.geometry import wrap
 from ryusa.laws.hertz import hertz_energy
-from ryusa.laws.hertz_step import dashpot_hertz, normal_step_hertz, spring_hertz, tangential_step_hertz
+from ryusa.laws.hertz_step import (
+    dashpot_hertz,
+    normal_step_hertz,
+    normal_work_hertz,
+    spring_hertz,
+    tangential_step_hertz,
+)
 
 
 def _make_kinematics(plane: bool) -> Any:
@@ -50,8 +56,9 @@ def _make_kinematics(plane: bool) -> Any:
             batch[B.ARM_I + l], batch[B.ARM_J + l] = a_i, a_j
             batch[B.EXCESS + l] = overlap - 2.0 * most * min(r_i, r_j)
             e_n, root = spring_hertz(overlap, batch[B.K_N + l])
-            eta = dashpot_hertz(root, batch[B.RELATIVE_VELOCITY + 4 * l + 3], batch[B.K_S + l], dt)
-            batch[B.E_N + l], batch[B.ROOT + l] = e_n, root
+            fourth = math.sqrt(root)
+            eta = dashpot_hertz(fourth, batch[B.RELATIVE_VELOCITY + 4 * l + 3], batch[B.K_S + l], dt)
+            batch[B.E_N + l], batch[B.ROOT + l], batch[B.FOURTH + l] = e_n, root, fourth
             batch[B.RAW + l] = e_n + eta * closing
 
     return kinematics_hertz
@@ -59,27 +66,24 @@ def _make_kinematics(plane: bool) -> Any:
 
 @inner(fastmath=FAST)
 def _normal_force(least: float, m: int, hdt: float, batch: Any) -> None:
-    """Normal force and its work; `least` is the least a contact can have [N]."""
+    """Normal force and the second half of its work; `least` is the least a contact can have [N]."""
     for l in range(min(m, B.LANES)):
-        overlap_old = batch[B.OVERLAP_OLD + l]
-        e_old, root_old = spring_hertz(overlap_old, batch[B.K_N + l])
-        f_n, held, touching, dashpot_n, released_n, step = normal_step_hertz(
-            batch[B.OVERLAP + l], batch[B.CLOSING + l], batch[B.RAW + l], batch[B.E_N + l], overlap_old,
-            batch[B.F_OLD + l], e_old, least, hdt,
-        )  # fmt: skip
+        f_n, held, touching, dashpot_n, released_n = normal_step_hertz(
+            batch[B.OVERLAP + l], batch[B.CLOSING + l], batch[B.RAW + l], batch[B.E_N + l], least, hdt
+        )
         batch[B.DASH_N + l] += dashpot_n
         batch[B.RELEASED_N + l] += released_n
-        batch[B.STEP + l] += step
-        batch[B.F_N + l], batch[B.ROOT_OLD + l] = f_n, root_old
+        batch[B.F_N + l] = f_n
         batch[B.HELD + l], batch[B.TOUCHING + l] = held, touching
 
 
 def _make_tangential(plane: bool) -> Any:
     @inner(fastmath=FAST)
     def tangential_hertz(
-        total: bool, drop: bool, cap_total: bool, rescaled: bool, m: int, hdt: float, c: Any, batch: Any
-    ) -> None:
-        """Tangential force and its work; force and torques on both grains."""
+        total: bool, drop: bool, cap_total: bool, rescaled: bool, least: float, m: int, hdt: float, c: Any,
+        batch: Any,
+    ) -> None:  # fmt: skip
+        """Tangential force, its work, the first half of the normal work; force and torques on both grains."""
         dt, mu, cohesion, mindlin = c[P.DT], c[P.MU], c[P.COHESION], c[P.MINDLIN]
         for l in range(min(m, B.LANES)):
             n_x, n_y, n_z = batch[B.NORMAL + l], 0.0, batch[B.NORMAL + 2 * B.PITCH + l]
@@ -87,17 +91,27 @@ def _make_tangential(plane: bool) -> Any:
             p_x, p_y, p_z = batch[B.SPRING + 4 * l], batch[B.SPRING + 4 * l + 1], batch[B.SPRING + 4 * l + 2]
             q_x, q_y, q_z = batch[B.DASH + 4 * l], batch[B.DASH + 4 * l + 1], batch[B.DASH + 4 * l + 2]
             s_x, s_y, s_z, twist = batch[B.SLIP + l], 0.0, 0.0, 0.0
+            overlap, e_n, stiff = batch[B.OVERLAP + l], batch[B.E_N + l], batch[B.K_N + l]
+            overlap_old = batch[B.DASH + 4 * l + 3]
+            e_old, root_old = spring_hertz(overlap_old, stiff)
+            dashpot_n, released_n, step = normal_work_hertz(
+                overlap, batch[B.CLOSING + l], e_n, overlap_old, batch[B.SPRING + 4 * l + 3], e_old, least,
+                hdt,
+            )  # fmt: skip
             if not plane:
                 n_y, twist = batch[B.NORMAL + B.PITCH + l], batch[B.TWIST + l]
                 s_y, s_z = batch[B.SLIP + B.PITCH + l], batch[B.SLIP + 2 * B.PITCH + l]
             e_x, e_y, e_z, b_x, b_y, b_z, share, dashpot_s, sliding, released_s = tangential_step_hertz(
-                plane, total, drop, cap_total, rescaled, n_x, n_y, n_z, twist, f_n, batch[B.E_N + l],
+                plane, total, drop, cap_total, rescaled, n_x, n_y, n_z, twist, f_n, e_n,
                 batch[B.HELD + l], s_x, s_y, s_z, p_x, p_y, p_z, q_x, q_y, q_z, batch[B.ROOT + l],
-                batch[B.ROOT_OLD + l], mindlin * batch[B.K_N + l], batch[B.ETA_S + l], cohesion, mu, dt, hdt,
+                root_old, batch[B.FOURTH + l], mindlin * stiff, batch[B.ETA_S + l], cohesion, mu, dt, hdt,
             )  # fmt: skip
             f_x, f_y, f_z, t_x, t_y, t_z = contact_force(
                 plane, n_x, n_y, n_z, f_n, e_x + b_x, e_y + b_y, e_z + b_z
             )
+            batch[B.DASH_N + l] += dashpot_n
+            batch[B.RELEASED_N + l] += released_n
+            batch[B.STEP + l] += step
             batch[B.DASH_S + l] += dashpot_s
             batch[B.SLIDE + l] += sliding
             batch[B.RELEASED_S + l] += released_s
@@ -105,7 +119,7 @@ def _make_tangential(plane: bool) -> Any:
             batch[B.SPRING + 4 * l], batch[B.SPRING + 4 * l + 1] = e_x, e_y
             batch[B.SPRING + 4 * l + 2], batch[B.SPRING + 4 * l + 3] = e_z, f_n
             batch[B.DASH + 4 * l], batch[B.DASH + 4 * l + 1] = b_x, b_y
-            batch[B.DASH + 4 * l + 2], batch[B.DASH + 4 * l + 3] = b_z, max(batch[B.OVERLAP + l], 0.0)
+            batch[B.DASH + 4 * l + 2], batch[B.DASH + 4 * l + 3] = b_z, max(overlap, 0.0)
             a_i, a_j = batch[B.ARM_I + l], batch[B.ARM_J + l]
             batch[B.FORCE + 4 * l], batch[B.FORCE + 4 * l + 1] = f_x, f_y
             batch[B.FORCE + 4 * l + 2], batch[B.FORCE + 4 * l + 3] = f_z, 0.0
@@ -133,11 +147,11 @@ def compute_hertz(
     if flat is not None:
         _kinematics_plane(m, most, c, batch)
         _normal_force(least, m, hdt, batch)
-        _tangential_plane(total, drop, whole, rescaled, m, hdt, c, batch)
+        _tangential_plane(total, drop, whole, rescaled, least, m, hdt, c, batch)
     else:
         _kinematics_space(m, most, c, batch)
         _normal_force(least, m, hdt, batch)
-        _tangential_space(total, drop, whole, rescaled, m, hdt, c, batch)
+        _tangential_space(total, drop, whole, rescaled, least, m, hdt, c, batch)
 
 
 @inner(fastmath=FAST)

@@ -11,7 +11,13 @@ from ryusa.engine.shared.dashpots import dashpot_immersed_hertz
 from ryusa.engine.shared.variant import KernelVariant, LawChoice
 from ryusa.laws.contact_step import contact_force
 from ryusa.laws.families import Cap, Slip, Unloading
-from ryusa.laws.hertz_step import dashpot_hertz, normal_step_hertz, spring_hertz, tangential_step_hertz
+from ryusa.laws.hertz_step import (
+    dashpot_hertz,
+    normal_step_hertz,
+    normal_work_hertz,
+    spring_hertz,
+    tangential_step_hertz,
+)
 from ryusa.model.tally import Term
 
 B_DASH_N, B_DASH_S, B_SLIDE = int(Term.DASH_N), int(Term.DASH_S), int(Term.SLIDE)
@@ -51,21 +57,23 @@ def make_hertz_contact(variant: KernelVariant, choice: LawChoice) -> Any:
         stiff = eta[M.K_HERTZ]
         e_n, root = spring_hertz(overlap, stiff)
         e_old, root_old = spring_hertz(overlap_old, stiff)
-        raw = e_n + dashpot_hertz(root, eta[M.ETA_N], eta[M.PER_MASS], dt) * closing
-        f_n, held, touching, dashpot_n, released_n, step = normal_step_hertz(
-            overlap, closing, raw, e_n, overlap_old, f_old, e_old, least, hdt
+        fourth = math.sqrt(root)
+        raw = e_n + dashpot_hertz(fourth, eta[M.ETA_N], eta[M.PER_MASS], dt) * closing
+        f_n, held, touching, dashpot_n, released_n = normal_step_hertz(overlap, closing, raw, e_n, least, hdt)
+        dashpot_old, released_old, step = normal_work_hertz(
+            overlap, closing, e_n, overlap_old, f_old, e_old, least, hdt
         )
         e_x, e_y, e_z, b_x, b_y, b_z, share, dashpot_s, sliding, released_s = tangential_step_hertz(
             plane_case, total, drop, cap_total, rescaled, n_x, n_y, n_z, twist, f_n, e_n, held,
-            s_x, s_y, s_z, p_x, p_y, p_z, q_x, q_y, q_z, root, root_old, c[P.MINDLIN] * stiff,
+            s_x, s_y, s_z, p_x, p_y, p_z, q_x, q_y, q_z, root, root_old, fourth, c[P.MINDLIN] * stiff,
             eta[M.ETA_S], c[P.COHESION], c[P.MU], dt, hdt,
         )  # fmt: skip
         f_x, f_y, f_z, t_x, t_y, t_z = contact_force(
             plane_case, n_x, n_y, n_z, f_n, e_x + b_x, e_y + b_y, e_z + b_z
         )
 
-        totals[B_DASH_N] += weight * dashpot_n
-        totals[B_RELEASED_N] += weight * released_n
+        totals[B_DASH_N] += weight * (dashpot_n + dashpot_old)
+        totals[B_RELEASED_N] += weight * (released_n + released_old)
         totals[B_STEP] += weight * step
         totals[B_DASH_S] += weight * dashpot_s
         totals[B_SLIDE] += weight * sliding
