@@ -116,10 +116,10 @@ def normal_work_hertz(
     """
     touching, touched = overlap > 0.0, overlap_old > 0.0
     before, held_old = hdt * closing * (f_old - e_old), f_old > least
-    taken = 0.4 * ((e_n * overlap if touching else 0.0) - e_old * overlap_old)
-    both = touching and touched
-    work = (0.5 * (overlap - overlap_old) if both else hdt * closing) * (e_n + e_old)
-    step = taken - work if hdt > 0.0 else 0.0
+    taken = 0.4 * (e_n * overlap - e_old * overlap_old)
+    moved, flown = 0.5 * (overlap - overlap_old), hdt * closing
+    added = taken - (moved if touching and touched else flown) * (e_n + e_old)
+    step = added if hdt > 0.0 else 0.0
     return before if held_old else 0.0, 0.0 if held_old else before, step
 
 
@@ -157,9 +157,10 @@ def shear_spring_hertz(
     here, before = root if root > 0.0 else root_old, root_old if root_old > 0.0 else root
     k_s = k_shear * here
     both = k_s * before
-    inverse = 1.0 / both if both > 0.0 else 0.0  # one division for the two
+    # one division for the two, outside of any branch, which would keep the lanes of a batch apart
+    inverse = 1.0 / (both if both > 0.0 else math.inf)
     soft_s, soft_old = before * inverse, here * inverse
-    return k_s, soft_s, soft_old, k_s * soft_old if rescaled and here < before else 1.0
+    return k_s, soft_s, soft_old, max(min(k_s * soft_old, 1.0), 0.0 if rescaled else 1.0)
 
 
 @step_law
