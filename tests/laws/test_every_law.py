@@ -49,10 +49,7 @@ BLIND = {
     ("hertz_step.shear_spring_hertz", "root_old"),
     # not used in a plane, or of tau_c, as in contact_step.tangential_step
     *(("hertz_step.tangential_step_hertz", name) for name in ("n_x", "n_y", "n_z", "twist", "s_y", "s_z")),
-    *(
-        ("hertz_step.tangential_step_hertz", name)
-        for name in ("f_n", "e_n", "cohesion", "mu", "root", "root_old")
-    ),
+    *(("hertz_step.tangential_step_hertz", name) for name in ("f_n", "e_n", "cohesion", "mu")),
     ("rolling.epsd_torque", "spin"),  # the dashpot is off while sliding
     ("rolling.epsd_torque", "eta_r"),
     ("rolling.epsd_torque", "scale"),

@@ -186,8 +186,8 @@ UNITS = {
     "hertz_step.normal_work_hertz": "m, m/s, N, m, N, N, N, s -> J, J, J",
     "hertz_step.shear_spring_hertz": "bool, m1/2, m1/2, N/m1.5 -> N/m, m/N, m/N, -",
     "hertz_step.tangential_step_hertz": (
-        "bool, bool, bool, bool, bool, -, -, -, -, N, N, -, m/s, m/s, m/s, N, N, N, N, N, N, m1/2, m1/2,"
-        " m1/4, N/m1.5, N s/m1.25, N, -, s, s -> N, N, N, N, N, N, -, J, J, J"
+        "bool, bool, bool, bool, -, -, -, -, N, N, -, m/s, m/s, m/s, N, N, N, N, N, N, N/m, m/N, m/N, -,"
+        " N s/m, N, -, s, s -> N, N, N, N, N, N, -, J, J, J"
     ),
     "immersed.stokes_number": "m/s, kg, m, kg/m3, m2/s -> -",
     "immersed.stokes_number_yade": "m/s, m, kg/m3, kg/m3, m2/s -> -",

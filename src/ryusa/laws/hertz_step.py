@@ -165,10 +165,10 @@ def shear_spring_hertz(
 
 @step_law
 def tangential_step_hertz(
-    plane: bool, total: bool, drop: bool, cap_total: bool, rescaled: bool, n_x: float, n_y: float, n_z: float,
-    twist: float, f_n: float, e_n: float, held: float, s_x: float, s_y: float, s_z: float, p_x: float,
-    p_y: float, p_z: float, q_x: float, q_y: float, q_z: float, root: float, root_old: float, fourth: float,
-    k_shear: float, c_s: float, cohesion: float, mu: float, dt: float, hdt: float,
+    plane: bool, total: bool, drop: bool, cap_total: bool, n_x: float, n_y: float, n_z: float, twist: float,
+    f_n: float, e_n: float, held: float, s_x: float, s_y: float, s_z: float, p_x: float, p_y: float,
+    p_z: float, q_x: float, q_y: float, q_z: float, k_s: float, soft_s: float, soft_old: float, scale: float,
+    eta_s: float, cohesion: float, mu: float, dt: float, hdt: float,
 ) -> tuple[float, float, float, float, float, float, float, float, float, float]:  # fmt: skip
     """Tangential spring and dashpot force on grain i after a step, and the work of the whole interval.
 
@@ -176,9 +176,8 @@ def tangential_step_hertz(
     ----------
     plane, total, drop, cap_total, n_x, n_y, n_z, twist, f_n, e_n, held, s_x, s_y, s_z, p_x, p_y, p_z,
         q_x, q_y, q_z, cohesion, mu, dt, hdt : as in `contact_step.tangential_step`.
-    rescaled, root, root_old, k_shear : as in `shear_spring_hertz`.
-    fourth : fourth root of the overlap [m**0.25].
-    c_s : of `hertz.mindlin_damping` [N s/m**1.25].
+    k_s, soft_s, soft_old, scale : as `shear_spring_hertz` gives them [N/m], [m/N], [m/N], [-].
+    eta_s : tangential dashpot at the overlap [N s/m]: c x**0.25, c of `hertz.mindlin_damping`.
 
     Returns
     -------
@@ -191,14 +190,12 @@ def tangential_step_hertz(
     e**2/(2 k_s) at the present stiffness. Scaled, it cannot gain: on loading k_s grows, on unloading e**2
     falls faster than k_s.
 
-    >>> flags, normal, slip = (True, False, False, False, True), (0.0, 0.0, 1.0, 0.0), (0.0, 0.0, 0.0)
-    >>> force, law = (1.0, 0.0, 0.0, 0.0, 0.0, 0.0), (1.0, 2.0, 1.0, 4.0, 0.0, 0.0, 1.0)
+    >>> flags, normal, slip = (True, False, False, False), (0.0, 0.0, 1.0, 0.0), (0.0, 0.0, 0.0)
+    >>> force, law = (1.0, 0.0, 0.0, 0.0, 0.0, 0.0), (4.0, 0.25, 0.125, 0.5, 0.0, 0.0, 1.0)
     >>> found = tangential_step_hertz(*flags, *normal, 9.0, 9.0, 1.0, *slip, *force, *law, 0.1, 0.05)
     >>> found[0], found[6], found[9]
     (0.5, 1.0, 0.03125)
     """
-    k_s, soft_s, soft_old, scale = shear_spring_hertz(rescaled, root, root_old, k_shear)
-    eta_s = c_s * fourth
     held_force, slid = p_x * p_x, s_x * p_x
     if not plane:
         held_force += p_y * p_y + p_z * p_z

@@ -22,6 +22,7 @@ from ryusa.laws.hertz_step import (
     dashpot_hertz,
     normal_step_hertz,
     normal_work_hertz,
+    shear_spring_hertz,
     spring_hertz,
     tangential_step_hertz,
 )
@@ -65,8 +66,12 @@ def _make_kinematics(plane: bool) -> Any:
 
 
 @inner(fastmath=FAST)
-def _normal_force(least: float, m: int, hdt: float, batch: Any) -> None:
-    """Normal force and the second half of its work; `least` is the least a contact can have [N]."""
+def _normal_force(least: float, rescaled: bool, m: int, hdt: float, c: Any, batch: Any) -> None:
+    """Normal force and the second half of its work, and the tangential stiffness.
+
+    `least` is the least normal force that a contact can have [N].
+    """
+    mindlin = c[P.MINDLIN]
     for l in range(min(m, B.LANES)):
         f_n, held, touching, dashpot_n, released_n = normal_step_hertz(
             batch[B.OVERLAP + l], batch[B.CLOSING + l], batch[B.RAW + l], batch[B.E_N + l], least, hdt
@@ -75,36 +80,41 @@ def _normal_force(least: float, m: int, hdt: float, batch: Any) -> None:
         batch[B.RELEASED_N + l] += released_n
         batch[B.F_N + l] = f_n
         batch[B.HELD + l], batch[B.TOUCHING + l] = held, touching
+        stiff = batch[B.K_N + l]
+        e_old, root_old = spring_hertz(batch[B.OVERLAP_OLD + l], stiff)
+        k_s, soft_s, soft_old, scale = shear_spring_hertz(
+            rescaled, batch[B.ROOT + l], root_old, mindlin * stiff
+        )
+        batch[B.E_OLD + l], batch[B.STIFF_S + l], batch[B.SOFT_S + l] = e_old, k_s, soft_s
+        batch[B.SOFT_OLD + l], batch[B.SCALE + l] = soft_old, scale
 
 
 def _make_tangential(plane: bool) -> Any:
     @inner(fastmath=FAST)
     def tangential_hertz(
-        total: bool, drop: bool, cap_total: bool, rescaled: bool, least: float, m: int, hdt: float, c: Any,
-        batch: Any,
-    ) -> None:  # fmt: skip
+        total: bool, drop: bool, cap_total: bool, least: float, m: int, hdt: float, c: Any, batch: Any
+    ) -> None:
         """Tangential force, its work, the first half of the normal work; force and torques on both grains."""
-        dt, mu, cohesion, mindlin = c[P.DT], c[P.MU], c[P.COHESION], c[P.MINDLIN]
+        dt, mu, cohesion = c[P.DT], c[P.MU], c[P.COHESION]
         for l in range(min(m, B.LANES)):
             n_x, n_y, n_z = batch[B.NORMAL + l], 0.0, batch[B.NORMAL + 2 * B.PITCH + l]
             f_n, touching = batch[B.F_N + l], batch[B.TOUCHING + l]
             p_x, p_y, p_z = batch[B.SPRING + 4 * l], batch[B.SPRING + 4 * l + 1], batch[B.SPRING + 4 * l + 2]
             q_x, q_y, q_z = batch[B.DASH + 4 * l], batch[B.DASH + 4 * l + 1], batch[B.DASH + 4 * l + 2]
             s_x, s_y, s_z, twist = batch[B.SLIP + l], 0.0, 0.0, 0.0
-            overlap, e_n, stiff = batch[B.OVERLAP + l], batch[B.E_N + l], batch[B.K_N + l]
-            overlap_old = batch[B.DASH + 4 * l + 3]
-            e_old, root_old = spring_hertz(overlap_old, stiff)
+            overlap, e_n = batch[B.OVERLAP + l], batch[B.E_N + l]
             dashpot_n, released_n, step = normal_work_hertz(
-                overlap, batch[B.CLOSING + l], e_n, overlap_old, batch[B.SPRING + 4 * l + 3], e_old, least,
-                hdt,
+                overlap, batch[B.CLOSING + l], e_n, batch[B.DASH + 4 * l + 3], batch[B.SPRING + 4 * l + 3],
+                batch[B.E_OLD + l], least, hdt,
             )  # fmt: skip
             if not plane:
                 n_y, twist = batch[B.NORMAL + B.PITCH + l], batch[B.TWIST + l]
                 s_y, s_z = batch[B.SLIP + B.PITCH + l], batch[B.SLIP + 2 * B.PITCH + l]
             e_x, e_y, e_z, b_x, b_y, b_z, share, dashpot_s, sliding, released_s = tangential_step_hertz(
-                plane, total, drop, cap_total, rescaled, n_x, n_y, n_z, twist, f_n, e_n,
-                batch[B.HELD + l], s_x, s_y, s_z, p_x, p_y, p_z, q_x, q_y, q_z, batch[B.ROOT + l],
-                root_old, batch[B.FOURTH + l], mindlin * stiff, batch[B.ETA_S + l], cohesion, mu, dt, hdt,
+                plane, total, drop, cap_total, n_x, n_y, n_z, twist, f_n, e_n, batch[B.HELD + l], s_x, s_y,
+                s_z, p_x, p_y, p_z, q_x, q_y, q_z, batch[B.STIFF_S + l], batch[B.SOFT_S + l],
+                batch[B.SOFT_OLD + l], batch[B.SCALE + l], batch[B.ETA_S + l] * batch[B.FOURTH + l], cohesion,
+                mu, dt, hdt,
             )  # fmt: skip
             f_x, f_y, f_z, t_x, t_y, t_z = contact_force(
                 plane, n_x, n_y, n_z, f_n, e_x + b_x, e_y + b_y, e_z + b_z
@@ -146,12 +156,12 @@ def compute_hertz(
     rescaled = unloading_rescales(choice.unloading)
     if flat is not None:
         _kinematics_plane(m, most, c, batch)
-        _normal_force(least, m, hdt, batch)
-        _tangential_plane(total, drop, whole, rescaled, least, m, hdt, c, batch)
+        _normal_force(least, rescaled, m, hdt, c, batch)
+        _tangential_plane(total, drop, whole, least, m, hdt, c, batch)
     else:
         _kinematics_space(m, most, c, batch)
-        _normal_force(least, m, hdt, batch)
-        _tangential_space(total, drop, whole, rescaled, least, m, hdt, c, batch)
+        _normal_force(least, rescaled, m, hdt, c, batch)
+        _tangential_space(total, drop, whole, least, m, hdt, c, batch)
 
 
 @inner(fastmath=FAST)

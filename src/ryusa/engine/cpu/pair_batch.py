@@ -84,6 +84,8 @@ def gather(
         batch[B.ETA_S + l], batch[B.WAS_TOUCHING + l] = eta[e, M.ETA_S], touching[k]
         if kind:
             batch[B.K_N + l], batch[B.K_S + l] = eta[e, M.K_N], eta[e, M.K_S]
+        if kind == M.HERTZ:  # a row of its own, since a loop reads all four of a group or none
+            batch[B.OVERLAP_OLD + l] = batch[B.DASH + 4 * l + 3]
     whole = (m + 7) // 8 * 8
     for l in range(m, whole):
         for a in range(4):
@@ -92,6 +94,8 @@ def gather(
             batch[B.SPRING + 4 * l + a] = batch[B.DASH + 4 * l + a] = 0.0
         batch[B.ETA_S + l] = batch[B.WAS_TOUCHING + l] = 0.0
         batch[B.K_N + l] = batch[B.K_S + l] = 1.0
+        if kind == M.HERTZ:
+            batch[B.OVERLAP_OLD + l] = 0.0
         batch[B.SEPARATION + 4 * l] = B.FAR
     return whole
 

@@ -15,6 +15,7 @@ from ryusa.laws.hertz_step import (
     dashpot_hertz,
     normal_step_hertz,
     normal_work_hertz,
+    shear_spring_hertz,
     spring_hertz,
     tangential_step_hertz,
 )
@@ -63,10 +64,11 @@ def make_hertz_contact(variant: KernelVariant, choice: LawChoice) -> Any:
         dashpot_old, released_old, step = normal_work_hertz(
             overlap, closing, e_n, overlap_old, f_old, e_old, least, hdt
         )
+        k_s, soft_s, soft_old, scale = shear_spring_hertz(rescaled, root, root_old, c[P.MINDLIN] * stiff)
         e_x, e_y, e_z, b_x, b_y, b_z, share, dashpot_s, sliding, released_s = tangential_step_hertz(
-            plane_case, total, drop, cap_total, rescaled, n_x, n_y, n_z, twist, f_n, e_n, held,
-            s_x, s_y, s_z, p_x, p_y, p_z, q_x, q_y, q_z, root, root_old, fourth, c[P.MINDLIN] * stiff,
-            eta[M.ETA_S], c[P.COHESION], c[P.MU], dt, hdt,
+            plane_case, total, drop, cap_total, n_x, n_y, n_z, twist, f_n, e_n, held, s_x, s_y, s_z,
+            p_x, p_y, p_z, q_x, q_y, q_z, k_s, soft_s, soft_old, scale, eta[M.ETA_S] * fourth,
+            c[P.COHESION], c[P.MU], dt, hdt,
         )  # fmt: skip
         f_x, f_y, f_z, t_x, t_y, t_z = contact_force(
             plane_case, n_x, n_y, n_z, f_n, e_x + b_x, e_y + b_y, e_z + b_z
