@@ -61,6 +61,7 @@ def block_forces(
     candidates: CandidateArrays, work: Workspace, ended: Any, account: Any, stats: Any,
 ) -> None:  # fmt: skip
     """Forces of every pair that block b, grains up to hi-1, owns, batch by batch of those that touch."""
+    # One function: what a variant goes without is taken out of it before it is compiled
     batch, separation, inside, selected = work.batch, work.separation, work.inside, work.selected
     reach_on = c[P.FILM_REACH] if variant.film else 0.0
     # arrays are passed one by one: references to a tuple of them would be counted for every batch
