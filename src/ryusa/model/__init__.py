@@ -7,21 +7,26 @@ from ryusa.model.fluid import CouplingState, FluidAtGrains
 from ryusa.model.scene import ContactLaw, RollingLaw, Scene, Water
 from ryusa.model.state import State
 from ryusa.model.tally import Tally, Term
+from ryusa.model.traffic import PASSAGE, Exit, Feed, Traffic
 
 __all__ = [
     "EVENT",
+    "PASSAGE",
     "Budget",
     "Column",
     "ContactLaw",
     "Contacts",
     "CouplingState",
     "EngineBlock",
+    "Exit",
+    "Feed",
     "FluidAtGrains",
     "RollingLaw",
     "Scene",
     "State",
     "Tally",
     "Term",
+    "Traffic",
     "Water",
     "WaterState",
 ]

@@ -25,6 +25,7 @@ from ryusa.laws.families import (
 )
 from ryusa.model.arrays import Bools, Floats
 from ryusa.model.column import Column
+from ryusa.model.traffic import Traffic
 
 _INF = float("inf")
 
@@ -127,7 +128,8 @@ class Water:
 class Scene:
     """All data that are fixed during a run, or between two changes of its timeline.
 
-    Free grains have ids 0 to n_grain - 1, fixed grains n_grain to n_grain + n_fixed - 1; planes follow.
+    Free grains have ids 0 to n_grain - 1, fixed grains n_grain to n_grain + n_fixed - 1; planes follow. With
+    feeds they include those that have not entered yet (design/0021).
     """
 
     # free grains, each of shape (n_grain,)
@@ -151,6 +153,7 @@ class Scene:
     rotation: bool = True  # False: spin locked at zero
     water: Water = field(default_factory=Water)
     column: Column | None = None  # with profile COLUMN
+    traffic: Traffic | None = None  # feeds and exits; None: the grains are always the same
     # space
     plane_case: bool = False  # motion in x-z only; y, v_y, omega_x, omega_z are constant
     period: tuple[float, float] = (float("inf"), float("inf"))  # period in x and y [m]; inf if not periodic
@@ -167,7 +170,7 @@ class Scene:
 
     @property
     def n_grain(self) -> int:
-        """Number of free grains."""
+        """Number of free grains, with those that a feed will bring."""
         return len(self.d)
 
     @property

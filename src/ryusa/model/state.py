@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ryusa.model.arrays import Floats
+from ryusa.model.arrays import Bools, Floats
 from ryusa.model.contacts import Contacts
 from ryusa.model.engine_block import EngineBlock
 from ryusa.model.fluid import CouplingState, FluidAtGrains
@@ -30,6 +30,8 @@ class State:
     tally: Tally | None = None  # energy account and extremes so far; None before the first step
     fluid: FluidAtGrains | None = None  # water at every grain, if there is a water column
     coupling: CouplingState | None = None  # state of the column, not used by engines
+    # whether each grain is there, shape (n_grain,); empty: all are. x, v and omega of absent ones are nan
+    present: Bools = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
     engine: EngineBlock | None = None  # internal data of the engine that wrote this
 
     @staticmethod

@@ -13,8 +13,10 @@ from ryusa.errors import ResultsError
 from ryusa.laws.families import ContactForce
 from ryusa.model import Column, ContactLaw, RollingLaw, Scene, Water
 from ryusa.model.scene import ONLY_HERTZ, EventRule
+from ryusa.model.traffic import Traffic
 from ryusa.results.hdf5 import opened, read_dataset
 
+_TRAFFIC = "traffic"  # left out where a scene has none, so that scenes of earlier versions keep their digest
 _LAWS: dict[str, type] = {"contact": ContactLaw, "rolling": RollingLaw, "water": Water, "column": Column}
 _ARRAYS = tuple(f.name for f in fields(Scene) if get_origin(f.type) is np.ndarray)
 _LIMIT = 1 << 20  # bytes of JSON read from a scene file
@@ -35,7 +37,10 @@ def _scalars(scene: Scene) -> dict[str, Any]:
     for f in fields(Scene):
         if f.name not in _ARRAYS:
             value = getattr(scene, f.name)
-            found[f.name] = asdict(value) if f.name in _LAWS and value is not None else value
+            if f.name == _TRAFFIC and value is None:
+                continue
+            nested = f.name in {*_LAWS, _TRAFFIC} and value is not None
+            found[f.name] = asdict(value) if nested else value
     if scene.contact.force == ContactForce.LINEAR:  # as before there were others: the digest stays
         found["contact"] = {key: one for key, one in found["contact"].items() if key not in ONLY_HERTZ}
     return found
@@ -79,6 +84,8 @@ def read_scene(path: Path) -> tuple[int, float, Scene]:
         laws = {
             name: _law(kind, raw) for name, kind in _LAWS.items() if (raw := scalars.pop(name)) is not None
         }
+        if _TRAFFIC in scalars:
+            scalars[_TRAFFIC] = Traffic.from_data(scalars[_TRAFFIC])
         scalars["events"] = EventRule(scalars["events"])
         scalars["groups"] = {str(name): (int(a), int(b)) for name, (a, b) in scalars["groups"].items()}
         for name in ("period", "world_low", "world_high"):

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from ryusa.engine.shared.contact_history import forces_of_contacts
 from ryusa.model import Scene, State
 from ryusa.results import schema
 
@@ -16,23 +17,7 @@ def contact_forces(state: State, scene: Scene) -> NDArray[np.void]:
     scene : the scene; fixed grains and planes stand where they stood at the start.
     """
     held = state.contacts
-    x, i, j = state.x - state.v * scene.dt, held.i, held.j
-    every = np.concatenate([x, scene.x_fixed.reshape(-1, 3)])
-    plane = j >= len(every)
-    normal = np.zeros((len(held), 3))
-    gap = every[j[~plane]] - x[i[~plane]]
-    for axis, period in enumerate(scene.period):
-        if np.isfinite(period):
-            gap[:, axis] -= period * np.round(gap[:, axis] / period)
-    if scene.plane_case:
-        gap[:, 1] = 0.0
-    normal[~plane] = gap / np.linalg.norm(gap, axis=1)[:, None]
-    normal[plane] = -scene.plane_normal[j[plane] - len(every)]
-    shear = held.spring_s + held.dash_s
-    if scene.plane_case:  # one component, along (n_z, 0, -n_x)
-        along = shear[:, 0]
-        shear = np.stack([along * normal[:, 2], np.zeros(len(held)), -along * normal[:, 0]], axis=1)
     rows = np.zeros(len(held), dtype=schema.FORCE)
-    rows["i"], rows["j"] = i, j
-    rows["force"] = shear - held.f_n[:, None] * normal
+    rows["i"], rows["j"] = held.i, held.j
+    rows["force"] = forces_of_contacts(scene, state, np.arange(len(held))).force
     return rows[np.abs(rows["force"]).max(axis=1, initial=0.0) > 0.0]

@@ -139,6 +139,10 @@ class CpuEngine:
         if state.step == 0:
             begin_account(scene, state, self._accounts.stats, self._accounts.terms)
 
+    def forget(self) -> None:
+        """Forget the scene: the next one is loaded as by a new engine, not as a change of the timeline."""
+        self._scene = None
+
     def advance(self, n_steps: int) -> Flags:
         """Do n_steps steps, fewer if a fault stops the run."""
         if n_steps > 0 and self._step == 0:

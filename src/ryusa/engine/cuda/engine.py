@@ -122,6 +122,10 @@ class CudaEngine:
         if resumed:
             self._device.set_positions(state.x)
 
+    def forget(self) -> None:
+        """Forget the scene: the next one is loaded as by a new engine, not as a change of the timeline."""
+        self._scene = None
+
     def advance(self, n_steps: int) -> Flags:
         """Do n_steps steps, fewer if a fault stops the run."""
         if n_steps > 0 and self._step == 0:

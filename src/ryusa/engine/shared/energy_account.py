@@ -6,10 +6,8 @@
 import numpy as np
 
 from ryusa.engine.shared import block_statistics as S
-from ryusa.laws.families import ContactForce
-from ryusa.laws.rolling import epsd_stiffness, reduced_radius
-from ryusa.model import Contacts, EngineBlock, Scene, State, Tally
-from ryusa.model.pair_springs import pair_springs
+from ryusa.engine.shared.contact_history import energies_of_springs, rolling_energy
+from ryusa.model import EngineBlock, Scene, State, Tally
 from ryusa.model.scene import Floats
 from ryusa.model.tally import HELD, N_TERM, Term
 
@@ -103,34 +101,6 @@ def potential_energy(scene: Scene, state: State) -> float:
     return -float(np.sum(scene.m_weight[:, None] * x * scene.gravity))
 
 
-def rolling_energy(scene: Scene, state: State, places: np.ndarray) -> float:
-    """Energy in the rolling springs of some of a state's contacts [J]."""
-    if "spring" not in scene.rolling.model.marks:
-        return 0.0
-    r = 0.5 * np.concatenate([scene.d, scene.d_fixed, np.full(scene.n_plane, np.inf)])
-    energy = 0.0
-    for place in places:
-        radius = reduced_radius(float(r[state.contacts.i[place]]), float(r[state.contacts.j[place]]))
-        f = scene.rolling.coefficient * radius
-        k_r = epsd_stiffness(scene.contact.k_n, f, scene.rolling.stiffness_factor)
-        energy += 0.5 * float(np.sum(state.contacts.spring_r[place] ** 2)) / k_r if k_r > 0.0 else 0.0
-    return energy
-
-
-def spring_energy(scene: Scene, contacts: Contacts, places: np.ndarray) -> float:
-    """Energy in the normal and tangential springs of some of a state's contacts [J]."""
-    i, j = contacts.i[places], contacts.j[places]
-    k_n, k_s = pair_springs(scene, i, j, contacts.overlap[places])
-    e_n, e_s = contacts.f_n[places] - contacts.dash_n[places], contacts.spring_s[places]
-    if scene.contact.force == ContactForce.HERTZ_MINDLIN:
-        held = float(np.sum(0.4 * e_n * contacts.overlap[places]))
-    else:
-        held = float(np.sum(0.5 * e_n**2 / np.where(contacts.k_n[places] > 0.0, contacts.k_n[places], k_n)))
-    if scene.contact.k_s > 0.0:
-        held += float(np.sum(0.5 * e_s**2 / k_s[:, None]))
-    return held
-
-
 def energy_of_change(before: Scene, scene: Scene, state: State, dropped: np.ndarray) -> float:
     """Energy a change of the timeline gives [J]: height on a new slope, spin locked, springs let go.
 
@@ -143,6 +113,6 @@ def energy_of_change(before: Scene, scene: Scene, state: State, dropped: np.ndar
     elif len(dropped):
         given -= rolling_energy(before, state, dropped)
     if len(dropped):
-        gone = state.contacts
-        given -= spring_energy(before, gone, dropped)
+        springs = energies_of_springs(before, state, dropped)
+        given -= springs.normal + springs.tangential
     return given

@@ -1,0 +1,183 @@
+"""Grains taken out of a snapshot and put into it; their energy goes through the account as a change.
+
+The account of a step belongs to x(n), and a snapshot holds x(n+1) and v(n+1/2). A grain that leaves takes
+what it held at x(n), (1/2) m v(n-1/2).v(n+1/2) and its height; v(n-1/2) follows from the weight and the
+contact forces of that step, so that grains leave without a residual, also out of contacts. Their springs are
+let go; what the force of a grain that leaves still does to its partner in the second half of the step is
+entered too. A grain that enters brings (1/2) m v(n+1/2).v(n+3/2), which is exact where it touches nothing.
+The forces of water in that half step are not known any more: a residual of the order of dt over the time in
+which drag acts.
+"""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ryusa.engine.shared.contact_history import SpringEnergies, energies_of_springs, forces_of_contacts
+from ryusa.engine.shared.contact_records import closed_records, sorted_events
+from ryusa.model import FluidAtGrains, Scene, State, Tally, Term
+from ryusa.model.arrays import Bools, Floats
+from ryusa.model.contacts import N_EVENT
+from ryusa.model.fluid import DRAG, SUBMERGED
+from ryusa.model.scene import EventRule
+from ryusa.model.tally import N_TERM, PENDING
+
+Ints = NDArray[np.int64]
+_NO_SPRINGS = SpringEnergies(0.0, 0.0, 0.0)
+
+
+class Entering(NamedTuple):
+    """Grains to be put into a snapshot, in any order of ids."""
+
+    ids: Ints
+    x: Floats  # centres, inside the period [m], shape (n, 3)
+    v: Floats  # [m/s]
+    omega: Floats  # [rad/s]
+
+
+def everywhere(state: State) -> Bools:
+    """Whether each grain of a state is there, shape (n_grain,)."""
+    return state.present if len(state.present) else np.ones(state.n_grain, dtype=np.bool_)
+
+
+def removed(scene: Scene, state: State, ids: Ints) -> tuple[State, np.ndarray]:
+    """Take grains out of a snapshot.
+
+    Parameters
+    ----------
+    scene, state : the scene, and a snapshot of all its grains (`GrainPool.state`).
+    ids : of the grains, present ones.
+
+    Returns
+    -------
+    state : without them; their rows are nan.
+    events : records of the contacts that end with it, dtype EVENT; values at parting are nan.
+    """
+    if not len(ids):
+        return state, sorted_events(np.zeros((0, N_EVENT)))
+    leaves = np.zeros(scene.n_grain, dtype=np.bool_)
+    leaves[ids] = True
+    held = state.contacts
+    touches = leaves[held.i] | (leaves[np.minimum(held.j, scene.n_grain - 1)] & (held.j < scene.n_grain))
+    places = np.flatnonzero(touches)
+    recorded = scene.events != EventRule.NONE
+    rows = closed_records(state, places) if recorded else np.zeros((0, N_EVENT))
+    tally = _less(scene, state, ids, leaves, places)
+    kept = replace(held, **{name: array[~touches] for name, array in vars(held).items()})
+    fluid = state.fluid
+    if fluid is not None:  # what they took since the last exchange is still owed by the water
+        impulse = fluid.impulse.copy()
+        impulse[ids, DRAG] = 0.0
+        fluid = FluidAtGrains(fluid.sampled, impulse)
+    x, v, omega = (array.copy() for array in (state.x, state.v, state.omega))
+    x[ids] = v[ids] = omega[ids] = np.nan
+    image = state.image.copy()
+    if len(image):
+        image[ids] = 0
+    state = replace(
+        state, x=x, v=v, omega=omega, image=image, contacts=kept, tally=tally, fluid=fluid, engine=None,
+        present=everywhere(state) & ~leaves,
+    )  # fmt: skip
+    return state, sorted_events(rows)
+
+
+def placed(scene: Scene, state: State, grains: Entering) -> State:
+    """Put grains into a snapshot; they touch nothing."""
+    if not len(grains.ids):
+        return state
+    ids, there = grains.ids, everywhere(state).copy()
+    there[ids] = True
+    x, v, omega = (array.copy() for array in (state.x, state.v, state.omega))
+    x[ids], v[ids], omega[ids] = grains.x, grains.v, grains.omega
+    image = state.image.copy() if len(state.image) else np.zeros((scene.n_grain, 2), dtype=np.int32)
+    image[ids] = 0
+    state = replace(state, x=x, v=v, omega=omega, image=image, engine=None, present=there)
+    return replace(state, tally=_more(scene, state, ids))
+
+
+def _less(scene: Scene, state: State, ids: Ints, leaves: Bools, places: Ints) -> Tally | None:
+    """The account without the grains of some ids, whose contacts are at `places`."""
+    held, dt = state.contacts, scene.dt
+    force, torque = np.zeros((scene.n_grain, 3)), np.zeros((scene.n_grain, 3))
+    to_partners = 0.0
+    springs = _NO_SPRINGS
+    if len(places):
+        springs = energies_of_springs(scene, state, places)
+        normal, on_i = forces_of_contacts(scene, state, places)
+        i, j = held.i[places], held.j[places]
+        free = j < scene.n_grain
+        about = np.cross(normal, on_i)  # times the radius: the torque on either side
+        np.add.at(force, i, on_i)
+        np.add.at(torque, i, 0.5 * scene.d[i, None] * about)
+        np.add.at(force, j[free], -on_i[free])
+        np.add.at(torque, j[free], 0.5 * scene.d[j[free], None] * about[free])
+        stays = np.unique(np.concatenate([i, j[free]]))
+        stays = stays[~leaves[stays]]
+        to_partners = 0.5 * dt * float(np.sum(force[stays] * state.v[stays]))
+        if scene.rotation:
+            to_partners += 0.5 * dt * float(np.sum(torque[stays] * state.omega[stays]))
+    v, weight, m = state.v[ids], *_weight_and_mass(scene, state, ids)
+    before = v - dt * (weight + force[ids]) / m[:, None]
+    kinetic = 0.5 * float(np.sum(m[:, None] * v * before))
+    spin = 0.0
+    if scene.rotation:
+        omega, inertia = state.omega[ids], scene.inertia[ids, None]
+        spin = 0.5 * float(np.sum(inertia * omega * (omega - dt * torque[ids] / inertia)))
+    potential = _height(scene, state, ids, state.x[ids] - dt * v)
+    return _entered(state, -kinetic, -spin, -potential, springs, to_partners)
+
+
+def _more(scene: Scene, state: State, ids: Ints) -> Tally | None:
+    """The account with the grains of some ids, which have just been put in."""
+    v, weight, m = state.v[ids], *_weight_and_mass(scene, state, ids)
+    after = v + scene.dt * weight / m[:, None]
+    kinetic = 0.5 * float(np.sum(m[:, None] * v * after))
+    spin = 0.5 * float(np.sum(scene.inertia[ids, None] * state.omega[ids] ** 2)) if scene.rotation else 0.0
+    return _entered(state, kinetic, spin, _height(scene, state, ids, state.x[ids]), _NO_SPRINGS, 0.0)
+
+
+def _weight_and_mass(scene: Scene, state: State, ids: Ints) -> tuple[Floats, Floats]:
+    """Weight less buoyancy [N], shape (n, 3), and mass with added mass [kg]; of dry parts in full."""
+    under = np.ones(len(ids)) if state.fluid is None else state.fluid.sampled[ids, SUBMERGED]
+    heavy = scene.m_weight[ids] + (1.0 - under) * (scene.m[ids] - scene.m_weight[ids])
+    return heavy[:, None] * scene.gravity, scene.m[ids] + under * scene.m_added[ids]
+
+
+def _height(scene: Scene, state: State, ids: Ints, x: Floats) -> float:
+    """Potential energy of grains at x [m], from the origin, periods crossed added [J]."""
+    x = x.copy()
+    for axis in range(2):
+        if np.isfinite(scene.period[axis]) and len(state.image):
+            x[:, axis] += state.image[ids, axis] * scene.period[axis]
+    return -float(np.sum(scene.m_weight[ids, None] * x * scene.gravity))
+
+
+def _entered(
+    state: State, kinetic: float, spin: float, potential: float, gone: SpringEnergies, to_partners: float
+) -> Tally | None:
+    """The account after a change of what is held [J]; before the first step it is opened by the engine."""
+    if state.step == 0:
+        return state.tally
+    tally = state.tally or empty_tally(state.t)
+    terms = list(tally.terms)
+    terms[Term.SWITCH] += kinetic + spin + potential - sum(gone) + to_partners
+    return replace(
+        tally,
+        kinetic=tally.kinetic + kinetic,
+        spin=tally.spin + spin,
+        potential=tally.potential + potential,
+        spring_n=tally.spring_n - gone.normal,
+        spring_s=tally.spring_s - gone.tangential,
+        spring_r=tally.spring_r - gone.rolling,
+        terms=tuple(terms),
+    )
+
+
+def empty_tally(t: float) -> Tally:
+    """The account of no grain at time t [s]."""
+    return Tally(
+        t, *(0.0,) * 6, terms=(0.0,) * N_TERM, overlap_max=0.0, overlap_grain=-1, overlap_step=0,
+        speed_max=0.0, spin_max=0.0, n_contact=0, pending=(0.0,) * len(PENDING),
+    )  # fmt: skip

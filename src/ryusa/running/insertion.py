@@ -1,0 +1,113 @@
+"""Places for grains that enter: drawn from a stream of random numbers, and free of any overlap."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ryusa.model import Feed, Scene
+from ryusa.model.arrays import Floats
+from ryusa.water.eddies import draw
+
+ATTEMPTS = 50  # places tried for a grain at one instant
+_STREAM = 0x2545F4914F6CDD1D  # tells these random numbers from those of the eddies of the same seed
+
+
+@dataclass
+class Neighbours:
+    """Grains near a feed that a place must not overlap.
+
+    Attributes
+    ----------
+    x, d : centres, inside the period [m], shape (n, 3), and diameters [m], shape (n,).
+    """
+
+    scene: Scene
+    x: Floats
+    d: Floats
+
+    @staticmethod
+    def of(scene: Scene, feed: Feed, x: Floats, there: NDArray[np.bool_], reach: float) -> "Neighbours":
+        """Free grains that are there and fixed ones, as far from a feed as a grain may be that is placed.
+
+        Parameters
+        ----------
+        x : centres of all free grains [m], shape (n_grain, 3).
+        there : whether each is there.
+        reach : how far beyond the feed a centre may be placed [m].
+        """
+        largest = float(np.concatenate([scene.d, scene.d_fixed]).max())
+        low, high = corners(feed)
+        low, high = low - reach - largest, high + reach + largest
+        axes = [k for k in range(3) if k == 2 or not math.isfinite(scene.period[k])]
+
+        def near(rows: Floats) -> NDArray[np.bool_]:
+            return ((rows[:, axes] > low[axes]) & (rows[:, axes] < high[axes])).all(axis=1)
+
+        free, fixed = np.flatnonzero(there), np.flatnonzero(scene.fixed_active)
+        free = free[near(x[free])]
+        stones = scene.x_fixed.reshape(-1, 3)
+        fixed = fixed[near(stones[fixed])]
+        return Neighbours(
+            scene, np.concatenate([x[free], stones[fixed]]),
+            np.concatenate([scene.d[free], scene.d_fixed[fixed]]),
+        )  # fmt: skip
+
+    def free(self, place: Floats, d: float) -> bool:
+        """Whether a grain of diameter d [m] fits at a place [m], shape (3,)."""
+        scene = self.scene
+        planes = scene.plane_active
+        if np.any(np.sum((place - scene.plane_point) * scene.plane_normal, axis=1)[planes] < 0.5 * d):
+            return False
+        gap = self.x - place
+        for axis, period in enumerate(scene.period):
+            if math.isfinite(period):
+                gap[:, axis] -= period * np.round(gap[:, axis] / period)
+        return not bool(np.any(np.sum(gap**2, axis=1) < (0.5 * (self.d + d)) ** 2))
+
+    def add(self, place: Floats, d: float) -> None:
+        """Take a grain that has been placed."""
+        self.x, self.d = np.concatenate([self.x, place[None]]), np.append(self.d, d)
+
+
+def corners(feed: Feed) -> tuple[Floats, Floats]:
+    """Lowest and highest corner of a feed [m], shape (3,) each."""
+    if feed.is_box:
+        return np.array(feed.low), np.array(feed.high)
+    reach = feed.radius * np.sqrt(np.maximum(1.0 - np.square(feed.normal), 0.0))
+    return np.array(feed.centre) - reach, np.array(feed.centre) + reach
+
+
+def drawn_place(feed: Feed, plane_case: bool, d: float, grain: int, step: int, attempt: int) -> Floats:
+    """Place drawn for the centre of a grain of diameter d [m] in a feed [m], shape (3,).
+
+    Notes
+    -----
+    The numbers follow from (seed, grain, step, attempt) alone. The whole grain lies within a box; in a
+    direction in which the box is thinner than a grain, and across a plane scene, the centre lies in its
+    middle. On a disc all points that are a radius of the grain away from its rim are alike; in a plane scene
+    it is a line.
+    """
+    u = [draw(feed.seed ^ _STREAM, grain, step, 3 * attempt + k) for k in range(3)]
+    if feed.is_box:
+        low, high = np.array(feed.low), np.array(feed.high)
+        room = high - low - d
+        return 0.5 * (low + high) + np.where(room > 0.0, (np.array(u) - 0.5) * room, 0.0)
+    normal, free = np.array(feed.normal), feed.radius - 0.5 * d
+    if plane_case:
+        return np.array(feed.centre) + free * (2.0 * u[0] - 1.0) * np.array([normal[2], 0.0, -normal[0]])
+    side = np.cross(normal, np.eye(3)[int(np.argmin(np.abs(normal)))])
+    side /= np.linalg.norm(side)
+    other = np.cross(normal, side)
+    far, turn = free * math.sqrt(u[0]), 2.0 * math.pi * u[1]
+    return np.array(feed.centre) + far * (math.cos(turn) * side + math.sin(turn) * other)
+
+
+def wrapped(place: Floats, period: tuple[float, float]) -> Floats:
+    """A place taken into the period [m]; rows of shape (n, 3) too."""
+    place = place.copy()
+    for axis, length in enumerate(period):
+        if math.isfinite(length):
+            place[..., axis] -= np.floor(place[..., axis] / length) * length
+    return place

@@ -1,0 +1,322 @@
+"""Grains that enter and leave during a run: decided at fixed steps, recorded, and kept as debts where full."""
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ryusa.engine.protocol import Engine
+from ryusa.engine.shared.passages import Entering, everywhere, placed, removed
+from ryusa.errors import CheckpointError
+from ryusa.model import PASSAGE, Exit, Scene, State
+from ryusa.model.arrays import Floats
+from ryusa.model.traffic import GONE, IN, NONE, OUT, PRESENT, WAITING, Population, Traffic
+from ryusa.running.checkpoint import CheckpointBlock
+from ryusa.running.insertion import ATTEMPTS, Neighbours, drawn_place, wrapped
+
+_FULL = 3  # grains in a row that find no place, after which a feed is tried again at the next instant
+Ints = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Passed:
+    """What happened at one instant.
+
+    Attributes
+    ----------
+    state : of all grains after it, for the engine.
+    events : contacts that ended with a grain that left, dtype EVENT.
+    rows : grains that entered and left, dtype PASSAGE.
+    """
+
+    state: State
+    events: np.ndarray
+    rows: np.ndarray
+
+
+@dataclass
+class TrafficRule:
+    """Feeds and exits of a run.
+
+    Attributes
+    ----------
+    traffic : feeds and exits.
+    population : which grains are there, and which wait.
+    entered, left : number of grains by feed and by exit so far.
+    said : for each feed, whether a debt has been reported.
+    """
+
+    traffic: Traffic
+    population: Population
+    entered: Ints
+    left: Ints
+    said: NDArray[np.bool_]
+    _scene: Scene = field(repr=False)
+
+    @staticmethod
+    def of(scene: Scene) -> "TrafficRule | None":
+        """The rule of a scene; None where its grains are always the same."""
+        traffic = scene.traffic
+        if traffic is None:
+            return None
+        feeds, exits = len(traffic.feeds), len(traffic.exits)
+        return TrafficRule(
+            traffic, Population.first(traffic, scene.m), np.zeros(feeds, np.int64),
+            np.zeros(exits, np.int64), np.zeros(feeds, np.bool_), scene,
+        )  # fmt: skip
+
+    @property
+    def finished(self) -> bool:
+        """Whether no grain waits to enter."""
+        return not np.any(self.population.status == WAITING)
+
+    @property
+    def n_present(self) -> int:
+        """Number of grains that are there."""
+        return int(np.sum(self.population.status == PRESENT))
+
+    def next_step(self, step: int) -> int:
+        """Step of the next instant after a step."""
+        return (step // self.traffic.interval + 1) * self.traffic.interval
+
+    def begin(self, scene: Scene, state: State) -> Passed:
+        """Place the grains that are due at the first step, before an engine has loaded the state."""
+        there = self.population.status == PRESENT
+        if not np.array_equal(everywhere(state), there):
+            raise ValueError(
+                f"the state holds other grains than the first {self.traffic.n_first} of its scene"
+            )
+        return self._place(scene, state, state.x, np.zeros(0, PASSAGE), state.contacts.event[:0])
+
+    def at_instant(self, scene: Scene, engine: Engine, step: int, t: float) -> Passed | None:
+        """Let grains leave and enter; None where none does.
+
+        Parameters
+        ----------
+        scene : that holds now.
+        engine : has stepped to `step`, time t [s]; it is only read.
+        """
+        status = self.population.status
+        leaving = np.zeros(0, PASSAGE)
+        if self.traffic.exits:
+            x, v, _ = engine.kinematics()
+            leaving = self._leaving(scene, x, v, step, t)
+        waits = (status == WAITING) & (self.population.due <= t)
+        if not len(leaving) and not waits.any():
+            return None
+        state = engine.state()
+        if len(leaving):
+            leaving["omega"] = state.omega[leaving["grain"]]
+        gone, events = removed(scene, state, leaving["grain"])
+        self._let_go(leaving)
+        found = self._place(scene, gone, gone.x, leaving, events)
+        return found if len(found.rows) else None
+
+    def _leaving(self, scene: Scene, x: Floats, v: Floats, step: int, t: float) -> np.ndarray:
+        """Grains that are beyond an exit, in the order of exits and ids; dtype PASSAGE, without spin."""
+        there, inside = self.population.status == PRESENT, wrapped(x, scene.period)
+        found: list[np.ndarray] = []
+        for k, one in enumerate(self.traffic.exits):
+            ids = np.flatnonzero(one.beyond(inside) & there)
+            there[ids] = False
+            rows = np.zeros(len(ids), PASSAGE)
+            rows["step"], rows["way"], rows["at"], rows["to"] = step, OUT, k, one.to
+            rows["grain"], rows["d"], rows["m"], rows["due"] = ids, scene.d[ids], scene.m[ids], math.nan
+            weight = scene.m_weight[ids, None] * scene.gravity / (scene.m + scene.m_added)[ids, None]
+            longest = self.traffic.interval * scene.dt
+            for row, i, a in zip(rows, ids.tolist(), weight, strict=True):
+                speed = v[i] + 0.5 * scene.dt * a  # v belongs to half a step before x
+                since = min(time_since(one, inside[i], speed, a), longest, t)
+                row["t"], row["v"] = t - since, speed - since * a
+                row["x"] = inside[i] - since * speed + 0.5 * since * since * a
+            found.append(rows)
+        return np.concatenate(found)
+
+    def _let_go(self, leaving: np.ndarray) -> None:
+        population = self.population
+        for row in leaving:
+            i, to = int(row["grain"]), int(row["to"])
+            self.left[row["at"]] += 1
+            population.status[i] = GONE if to == NONE else WAITING
+            population.feed[i], population.due[i] = to, math.inf if to == NONE else row["t"]
+
+    def _place(
+        self, scene: Scene, state: State, x: Floats, leaving: np.ndarray, events: np.ndarray
+    ) -> Passed:
+        """Place grains that are due, the longest waiting first, as far as there is room."""
+        population, step, t = self.population, state.step, state.t
+        due = np.flatnonzero((population.status == WAITING) & (population.due <= t))
+        due = due[np.lexsort((due, population.due[due]))]
+        near: dict[int, Neighbours] = {}
+        failed = np.zeros(len(self.traffic.feeds), np.int64)
+        rows: list[np.ndarray] = []
+        places: list[Floats] = []
+        inside = wrapped(x, scene.period)
+        for i in due.tolist():
+            k = int(population.feed[i])
+            if failed[k] >= _FULL:
+                continue
+            if k not in near:
+                near[k] = self._neighbours(scene, k, inside)
+            row, place = self._entering(scene, near[k], i, step, t)
+            if place is None:
+                failed[k] += 1
+                continue
+            failed[k] = 0
+            for one in near.values():
+                one.add(place, float(scene.d[i]))
+            population.status[i], population.due[i], population.feed[i] = PRESENT, math.inf, NONE
+            self.entered[k] += 1
+            rows.append(row)
+            places.append(place)
+            inside[i] = place
+        if not rows:
+            return Passed(state, events, leaving)
+        came = np.concatenate(rows)
+        back = t - came["t"][:, None]
+        a = self._fall(scene, came["grain"])
+        speed = came["v"] + (back - 0.5 * scene.dt) * a if step else came["v"] + back * a
+        grains = Entering(came["grain"], np.array(places), speed, came["omega"])
+        return Passed(placed(scene, state, grains), events, np.concatenate([leaving, came]))
+
+    def _neighbours(self, scene: Scene, k: int, inside: Floats) -> Neighbours:
+        feed, interval = self.traffic.feeds[k], self.traffic.interval * scene.dt
+        g = float(np.linalg.norm(scene.gravity))
+        reach = interval * (math.hypot(*feed.velocity) + g * interval)
+        return Neighbours.of(scene, feed, inside, self.population.status == PRESENT, reach)
+
+    def _entering(
+        self, scene: Scene, near: Neighbours, i: int, step: int, t: float
+    ) -> tuple[np.ndarray, Floats | None]:
+        """Record of a grain that enters, and its place; None where it finds none."""
+        feed, due = self.traffic.feeds[int(self.population.feed[i])], float(self.population.due[i])
+        late = t - due
+        # a grain that passes a disc between two instants is already on its way
+        on_way = late if not feed.is_box and late < self.traffic.interval * scene.dt else 0.0
+        v, a, d = np.array(feed.velocity), self._fall(scene, np.array([i]))[0], float(scene.d[i])
+        row = np.zeros(1, PASSAGE)
+        row["step"], row["t"], row["way"], row["at"] = step, t - on_way, IN, self.population.feed[i]
+        row["grain"], row["to"], row["due"], row["d"], row["m"] = i, NONE, due, d, scene.m[i]
+        row["v"] = v
+        for attempt in range(ATTEMPTS):
+            begin = drawn_place(feed, scene.plane_case, d, i, step, attempt)
+            place = wrapped(begin + on_way * v + 0.5 * on_way * on_way * a, scene.period)
+            if near.free(place, d):
+                row["x"] = begin
+                return row, place
+        return row, None
+
+    @staticmethod
+    def _fall(scene: Scene, ids: Ints) -> Floats:
+        """Acceleration of grains by their weight alone [m/s2], shape (n, 3)."""
+        return (scene.m_weight[ids] / (scene.m[ids] + scene.m_added[ids]))[:, None] * scene.gravity
+
+    def debts(self, t: float) -> list[tuple[int, float]]:
+        """Number and mass [kg] of the grains that are due at each feed and have found no place."""
+        population = self.population
+        waits = (population.status == WAITING) & (population.due <= t)
+        return [
+            (int(own.sum()), float(self._scene.m[own].sum()))
+            for k in range(len(self.traffic.feeds))
+            for own in (waits & (population.feed == k),)
+        ]
+
+    def news(self, t: float) -> list[str]:
+        """Feeds that are full for the first time, one line each."""
+        found: list[str] = []
+        for k, (count, mass) in enumerate(self.debts(t)):
+            if count and not self.said[k]:
+                self.said[k] = True
+                name = self.traffic.feeds[k].name
+                found.append(f"feed '{name}' is full: {_grains(count)}, {mass:.3g} kg, due and not yet in")
+        return found
+
+    def summary(self, t: float) -> dict[str, Any]:
+        """Numbers of all feeds and exits, for summary.json."""
+        feeds = [
+            {"name": one.name, "entered": int(self.entered[k]), "due": count, "due_mass": mass}
+            for k, (one, (count, mass)) in enumerate(zip(self.traffic.feeds, self.debts(t), strict=True))
+        ]
+        exits = [{"name": one.name, "left": int(self.left[k])} for k, one in enumerate(self.traffic.exits)]
+        return {"present": self.n_present, "feeds": feeds, "exits": exits}
+
+    def warnings(self, t: float) -> list[str]:
+        """Debts at the end of a run, one sentence each."""
+        return [
+            f"feed '{one.name}' could not place {_grains(count)} ({mass:.3g} kg) that were due: lower its "
+            "rate, or give it more room or more speed"
+            for one, (count, mass) in zip(self.traffic.feeds, self.debts(t), strict=True)
+            if count
+        ]
+
+    def to_block(self) -> CheckpointBlock:
+        """All of it, for a checkpoint."""
+        population = self.population
+        arrays = {"status": population.status, "feed": population.feed, "due": population.due}
+        arrays |= {"entered": self.entered, "left": self.left, "said": self.said.astype(np.int64)}
+        return CheckpointBlock({}, arrays)
+
+    def restore(self, block: CheckpointBlock, state: State) -> None:
+        """Take over the numbers of a checkpoint, whose state is given.
+
+        Raises
+        ------
+        CheckpointError : they are missing, or do not match the scene or the state.
+        """
+        mine = self.to_block().arrays
+        try:
+            found = {name: block.arrays[name] for name in mine}
+        except KeyError as error:
+            raise CheckpointError(f"the feeds in the checkpoint are incomplete ({error})") from error
+        for name, array in mine.items():
+            if (found[name].shape, found[name].dtype) != (array.shape, array.dtype):
+                raise CheckpointError(f"'{name}' of the feeds in the checkpoint does not match the scene")
+        status, feed, due = found["status"], found["feed"], found["due"]
+        waits = status == WAITING
+        good = np.isin(status, (WAITING, PRESENT, GONE)).all() and not np.isnan(due).any()
+        good = good and (feed[waits] >= 0).all() and (feed[waits] < len(self.traffic.feeds)).all()
+        if not good or not np.array_equal(everywhere(state), status == PRESENT):
+            raise CheckpointError("the feeds in the checkpoint do not match its state")
+        self.population = Population(status.copy(), due.copy(), feed.copy())
+        self.entered, self.left = found["entered"].copy(), found["left"].copy()
+        self.said = found["said"].astype(np.bool_)
+
+
+def time_since(one: Exit, x: Floats, v: Floats, a: Floats) -> float:
+    """Time since a grain in free flight crossed an exit [s]; inf where it did not come from outside.
+
+    Parameters
+    ----------
+    x, v, a : its centre [m], velocity [m/s] and acceleration [m/s2] now, shape (3,).
+
+    >>> floor = Exit("floor", point=(0.0, 0.0, 0.0), normal=(0.0, 0.0, -1.0))
+    >>> x, v, a = np.array([0.0, 0.0, -0.75]), np.array([0.0, 0.0, -2.0]), np.array([0.0, 0.0, -2.0])
+    >>> time_since(floor, x, v, a)
+    0.5
+    """
+    if one.is_plane:
+        normal = np.array(one.normal)
+        return _back(float((x - np.array(one.point)) @ normal), float(v @ normal), float(a @ normal))
+    faces = [(x[k] - one.low[k], v[k], a[k]) for k in range(3)]
+    faces += [(one.high[k] - x[k], -v[k], -a[k]) for k in range(3)]
+    return min(_back(*(float(part) for part in face)) for face in faces)
+
+
+def _back(depth: float, speed: float, a: float) -> float:
+    """Smallest time since a depth [m] was zero, with the speed [m/s] at which it grows; inf if it never was.
+
+    depth - speed t + a t**2/2 = 0, solved without cancellation.
+    """
+    square = speed * speed - 2.0 * a * depth
+    if square < 0.0:
+        return math.inf
+    below = speed + math.copysign(math.sqrt(square), speed)
+    times = [2.0 * depth / below] if below != 0.0 else []
+    times += [below / a] if a != 0.0 else []
+    return min((one for one in times if one >= 0.0), default=math.inf)
+
+
+def _grains(count: int) -> str:
+    return "1 grain" if count == 1 else f"{count} grains"
