@@ -231,6 +231,11 @@ class GrainPool:
         return replace(contacts, i=i, j=j, event=event)
 
 
+def stepping(engine: Engine, scene: Scene) -> Engine:
+    """The engine for a scene: itself, or in a pool where grains enter and leave."""
+    return engine if scene.traffic is None else GrainPool(engine)
+
+
 def _scene_of(scene: Scene, ids: Ints, earlier: Scene | None) -> Scene:
     """The scene of the grains of some ids; `earlier` one of the same ids lends its arrays."""
     if earlier is not None:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.errors import ResultsError
-from ryusa.model import EVENT
+from ryusa.model import EVENT, PASSAGE
 from ryusa.results import schema
 from ryusa.results.hdf5 import DAMAGE, OpenFiles, opened, plain_dataset, read_dataset
 
@@ -58,6 +58,14 @@ class Part:
         """Read all contacts of this part, dtype model.EVENT."""
         with opened(self.path) as file:
             return read_dataset(file, "contacts", self.path).astype(EVENT, copy=False)
+
+    def passages(self) -> NDArray[np.void]:
+        """Read the grains that entered and left during this part, dtype PASSAGE."""
+        with opened(self.path) as file:
+            rows = read_dataset(file, schema.PASSAGES, self.path)
+            if rows.dtype != PASSAGE or rows.ndim != 1:
+                raise ResultsError(f"{self.path}: '{schema.PASSAGES}' has another layout")
+            return rows
 
     def tally(self) -> NDArray[np.void]:
         """Read the energy account at each frame of this part."""

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.errors import ResultsError
-from ryusa.model import EVENT, Scene
+from ryusa.model import EVENT, PASSAGE, Scene
 from ryusa.results import schema
 from ryusa.results.hdf5 import OpenFiles, opened, plain_dataset, read_dataset, read_integer
 from ryusa.results.lazy import LazyFrames, Part
@@ -172,6 +172,12 @@ class Results:
         joined = joined[np.lexsort((joined["j"], joined["i"], joined["t_part"]))]
         joined.flags.writeable = False
         return joined
+
+    @cached_property
+    def passages(self) -> NDArray[np.void]:
+        """Grains that entered and left: structured array of dtype model.PASSAGE, in order; empty without."""
+        rows = [part.passages() for part in self._parts] if self.scene.traffic is not None else []
+        return _joined(rows, PASSAGE)
 
     def contact_forces(self, k: int) -> NDArray[np.void]:
         """Contact forces at frame k: structured array of dtype schema.FORCE, of the step before the frame.

@@ -68,6 +68,8 @@ FORCE = np.dtype(
     ]
 )
 
+PASSAGES = "passages"  # grains that entered and left, dtype model.PASSAGE, if the case has feeds or exits
+
 PER_GRAIN = ("x", "v", "omega", "image")
 
 _INTEGER = {"overlap_grain", "overlap_step", "n_contact"}

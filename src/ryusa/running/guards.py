@@ -34,7 +34,8 @@ def energy_created(scene: Scene, state: State, tally: Tally) -> EnergyCreated | 
     weight = float(np.linalg.norm(scene.gravity)) * float((np.abs(scene.m_weight) * scene.d).sum())
     if created <= _AT_REST * weight:
         return None
-    grain = int(np.argmax((scene.m + scene.m_added) * np.square(state.v).sum(axis=1)))
+    motion = np.nan_to_num(np.square(state.v)).sum(axis=1)  # nan where a grain is not there
+    grain = int(np.argmax((scene.m + scene.m_added) * motion))
     return EnergyCreated(
         f"the grains gained {created:.3g} J that no force supplied, {share:.2g} of the largest term of the "
         f"energy account (limit {CREATED:g}); the grain with the highest kinetic energy moves at "

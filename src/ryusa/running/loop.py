@@ -23,6 +23,7 @@ from ryusa.running.folder import write_final_json, write_json
 from ryusa.running.guards import energy_created
 from ryusa.running.interrupt import StopSignal, catch_signals
 from ryusa.running.loop_state import LoopState
+from ryusa.running.pace import Pace
 from ryusa.running.precision import PrecisionRule
 from ryusa.running.progress import Progress, ProgressNumbers
 from ryusa.running.recorder import Recorder
@@ -30,17 +31,14 @@ from ryusa.running.snapshot import state_block
 from ryusa.running.stops import RestDetector, SaltationCounter, Stop
 from ryusa.running.summary import summary_lines
 from ryusa.running.timeline import Change, in_order
+from ryusa.running.traffic import Passed, TrafficRule
 from ryusa.running.watch import Watch
 from ryusa.water.coupling import Coupling
 
 Done = TypeVar("Done")
-_CHUNK = 0.25  # s of wall time between two checks of clock and signals
-_CHUNK_FIRST = (1, 16)  # steps of the first calls, while the speed is unknown
 _COMPILING = "compiling for this processor, 10 to 30 seconds; later runs use the compiled code"
 _NEVER = 2**62  # steps
-_DELIVER_EVERY = (
-    65_536  # steps after which contacts are passed to the recorder if nothing else is due earlier
-)
+_DELIVER_EVERY = 65_536  # steps after which contacts go to the recorder if nothing else is due earlier
 
 
 @dataclass
@@ -58,6 +56,7 @@ class Loop:
     origin: dict[str, Any]  # provenance of the run
     precision: PrecisionRule
     checkpoints: CheckpointScheduler | None = None  # writes checkpoints
+    traffic: TrafficRule | None = None  # feeds and exits
     status: str = schema.RUNNING
     message: str = ""
     _step: int = 0
@@ -69,10 +68,8 @@ class Loop:
     _at_rest: bool = False  # for as long as the stop rule requires
     _saltations_done: bool = False  # every tracked grain has made the required number
     _gathered: list[NDArray[np.void]] = field(default_factory=list[NDArray[np.void]])
-    _calls: int = 0
     _water: Coupling | None = None
-    _speed: float = 0.0  # steps per second, running mean
-    _warm: tuple[int, float] = (0, 0.0)  # step and wall time when kernels were ready
+    _pace: Pace = field(default_factory=Pace)
     _begun: float = field(default_factory=time.monotonic)
     _loaded: bool = False  # the engine has a state
 
@@ -125,16 +122,24 @@ class Loop:
             next_change = self.changes[0][0] if self.changes else _NEVER
             next_check = (self._step // check_steps + 1) * check_steps
             next_delivery = (self._step // _DELIVER_EVERY + 1) * _DELIVER_EVERY
-            due = min(next_frame, next_change, next_check, last)
+            next_pass = self.traffic.next_step(self._step) if self.traffic is not None else _NEVER
+            due = min(next_frame, next_change, next_check, next_pass, last)
             if not self._advance_to(min(due, next_delivery)):
                 continue
+            if self.traffic is not None and self._step == next_pass:
+                passed = self.traffic.at_instant(self.scene, self.engine, self._step, self._t)
+                if passed is not None:
+                    self._take(passed)
+                for line in self.traffic.news(self._step, self._t):
+                    self.progress.line(line)
             self._deliver_contacts()
             if self._step == next_frame:
                 self._record()
                 self._frame += 1
             if self._step == due:
                 self._saltations_done = self._saltations.reached()
-            if self._step == next_check and not self.changes:
+            fed = self.traffic is None or self.traffic.finished
+            if self._step == next_check and fed and not self.changes:
                 fastest = self._rest.fastest(self.engine, self.scene)
                 self._at_rest = self._rest.reached(self._t, fastest)
             self._change_if_due()
@@ -146,10 +151,11 @@ class Loop:
         self._step, self._t_zero = state.step, state.t - state.step * self.scene.dt
         self._first = state.step
         self._rest, self._saltations = RestDetector(self.stop), SaltationCounter(self.scene, self.stop)
-        with self._compiling():
-            self.engine.load(self.scene, state)
-        self._loaded = True
-        self._start_water(state)
+        if self.traffic is not None:
+            passed = self.traffic.begin(self.scene, state)
+            self.recorder.passages(passed.rows)
+            state = passed.state
+        self._load(state)
         self._record()
         self._change_if_due()
         self.recorder.reached(self._step)
@@ -157,7 +163,8 @@ class Loop:
 
     def _continue_from(self, state: State, block: CheckpointBlock) -> None:
         """Continue at the step of a checkpoint, which may be any step."""
-        self._step, self._warm = state.step, (state.step, time.monotonic())
+        self._step = state.step
+        self._pace.begin()
         self._rest = RestDetector(self.stop)
         self._saltations = SaltationCounter(self.recorder.first_scene, self.stop)
         saved = LoopState.from_block(block, self.scene)
@@ -171,16 +178,19 @@ class Loop:
         self._begun -= saved.wall
         self._n_changed = saved.changed
         try:
-            with self._compiling():
-                self.engine.load(self.scene, state)
-            self._start_water(state)
-            self._loaded = True
+            self._load(state)
             if self.precision.asked:
                 self._retry_when_full(self.recorder.flush)
                 self.precision.restore(self._frame - 1, self._t_first)
             self.progress.start_at(self._progress_numbers().share)
         except (ValueError, ArithmeticError, AssertionError) as error:
             raise CheckpointError(f"the state in the checkpoint cannot be used ({error})") from error
+
+    def _load(self, state: State) -> None:
+        with self._compiling():
+            self.engine.load(self.scene, state)
+        self._loaded = True
+        self._start_water(state)
 
     def _loop_state(self) -> LoopState:
         self._collect_contacts()
@@ -221,6 +231,7 @@ class Loop:
             "loop": self._loop_state().to_block(),
             "watch": self.watch.to_block(),
             "recorder": self.recorder.to_block(),
+            **({} if self.traffic is None else {"traffic": self.traffic.to_block()}),
         }
         try:
             self.checkpoints.write(state_block(self.state()), self.scene, parts)
@@ -256,18 +267,13 @@ class Loop:
 
     def _advance(self, n_steps: int) -> None:
         begun = time.monotonic()
-        with self._compiling() if self._calls == 0 else nullcontext():
+        with self._compiling() if self._pace.calls == 0 else nullcontext():
             flags = self._steps(n_steps)
         if flags:
             self._step = self.engine.grains().step
             flags.raise_if_any()
-        now = time.monotonic()
-        speed = n_steps / max(now - begun, 1e-9)
-        if self._calls <= 1:
-            self._warm, self._speed = (self._step, now), speed
-        else:
-            self._speed += 0.3 * (speed - self._speed)
-        self._calls += 1
+        n_grain = self.scene.n_grain if self.traffic is None else self.traffic.n_present
+        self._pace.took(n_steps, n_grain, begun)
 
     @contextmanager
     def _compiling(self) -> Generator[None]:
@@ -307,9 +313,14 @@ class Loop:
         return state if self._water is None else replace(state, coupling=self._water.snapshot())
 
     def _chunk(self) -> int:
-        if self._calls < len(_CHUNK_FIRST):
-            return _CHUNK_FIRST[self._calls]
-        return max(1, int(self._speed * _CHUNK))
+        return self._pace.steps
+
+    def _take(self, passed: Passed) -> None:
+        """Go on with the grains that are there after some have left or entered."""
+        self._collect_contacts()
+        self._gathered.append(passed.events)
+        self.engine.load(self.scene, passed.state)
+        self.recorder.passages(passed.rows)
 
     def _change_if_due(self) -> None:
         while self.changes and self.changes[0][0] <= self._step:
@@ -364,19 +375,12 @@ class Loop:
             self.status = schema.COMPLETE
             self.message = f"reached {self.stop.time:g} s{self.precision.missed()}"
         elif self._saltations_done:
-            self.status, self.message = (
-                schema.COMPLETE,
-                f"every tracked grain made {self._saltations.least} saltations",
-            )
+            self.status = schema.COMPLETE
+            self.message = f"every tracked grain made {self._saltations.least} saltations"
         elif self._at_rest:
             slow = f"{self.stop.rest_speed:g} m/s (centre and surface) for {self.stop.rest_for:g} s"
             self.status, self.message = schema.COMPLETE, f"all grains slower than {slow}"
         return self.status != schema.RUNNING
-
-    def _rate(self) -> float:
-        """Particle-steps per second since compilation, recording included."""
-        step, since = self._warm
-        return self.scene.n_grain * (self._step - step) / max(time.monotonic() - since, 1e-9)
 
     def _progress_numbers(self) -> ProgressNumbers:
         tally, hops = self.engine.tally(), None
@@ -384,7 +388,7 @@ class Loop:
         if self.stop.saltations is not None:
             hops = self._saltations.least
             share = max(share, hops / self.stop.saltations)
-        share, rate = min(max(share, self.precision.share(self._t)), 1.0), self._rate()
+        share, rate = min(max(share, self.precision.share(self._t)), 1.0), self._pace.rate
         known = str(self.precision) if self.precision.asked else ""
         return ProgressNumbers(share, self._t, rate, tally.overlap_max, tally.residual, hops, known)
 
@@ -393,6 +397,8 @@ class Loop:
         if self._water is not None:
             numbers["water"] = self._water.numbers()
             numbers["warnings"] = [*numbers["warnings"], *self._water.warnings()]
+        if self.traffic is not None:
+            self.traffic.enter(numbers, self._step, self._t)
         return {
             "t": self._t,
             "steps": self._step,
@@ -402,7 +408,7 @@ class Loop:
             "events": self.scene.events.name.lower(),
             "saltations": None if self.stop.saltations is None else self._saltations.count.tolist(),
             "wall": time.monotonic() - self._begun,
-            "particle_steps_per_second": self._rate(),
+            "particle_steps_per_second": self._pace.rate,
             **numbers,
             **({"precision": self.precision.summary()} if self.precision.asked else {}),
         }

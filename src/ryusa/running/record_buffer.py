@@ -7,7 +7,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from ryusa.model import EVENT, Scene, State, Tally
+from ryusa.model import EVENT, PASSAGE, Scene, State, Tally
 from ryusa.model.contacts import joined
 from ryusa.results import schema
 from ryusa.running.contact_forces import contact_forces
@@ -40,6 +40,7 @@ class RecordBuffer:
         self._tally: list[tuple[float, ...]] = []
         self._contacts: list[NDArray[np.void]] = []
         self._forces: list[NDArray[np.void]] | None = [] if scene.forces else None  # of each frame
+        self._passages: list[NDArray[np.void]] | None = None if scene.traffic is None else []
         self._water: dict[str, list[NDArray[np.float64]]] = {}
 
     def __bool__(self) -> bool:
@@ -74,6 +75,11 @@ class RecordBuffer:
             self._contacts.append(events)
             self.n_contact += len(events)
 
+    def passages(self, rows: NDArray[np.void]) -> None:
+        """Add grains that entered or left, dtype PASSAGE, in order of time."""
+        assert self._passages is not None
+        self._passages.append(rows)
+
     def rows(self) -> dict[str, NDArray[Any]]:
         """Content by dataset of a part."""
         return self._rows(self._contacts)
@@ -85,6 +91,8 @@ class RecordBuffer:
         if self._forces is not None:
             rows[schema.N_FORCE] = np.array([len(one) for one in self._forces], dtype=np.int64)
             rows[schema.FORCES] = np.concatenate([np.zeros(0, dtype=schema.FORCE), *self._forces])
+        if self._passages is not None:
+            rows[schema.PASSAGES] = np.concatenate([np.zeros(0, dtype=PASSAGE), *self._passages])
         return rows | {f"{schema.WATER}/{name}": np.array(one) for name, one in self._water.items()}
 
     def write(self, file: h5py.File) -> None:
@@ -110,6 +118,8 @@ class RecordBuffer:
         self.contacts(rows["contacts"])
         if self._forces is not None and count:
             self._forces += np.split(rows[schema.FORCES], np.cumsum(rows[schema.N_FORCE])[:-1])
+        if self._passages is not None:
+            self._passages.append(rows[schema.PASSAGES])
         begin = f"{schema.WATER}/"
         for name, profiles in rows.items():
             if name.startswith(begin):

@@ -142,6 +142,11 @@ class Recorder:
         if self._verify_until is None:
             self._buffer.contacts(events)
 
+    def passages(self, rows: NDArray[np.void]) -> None:
+        """Add grains that entered or left to the buffer, dtype model.PASSAGE."""
+        if self._verify_until is None and len(rows):
+            self._buffer.passages(rows)
+
     def reached(self, step: int) -> None:
         """Note that all frames and contacts up to `step` have been added.
 

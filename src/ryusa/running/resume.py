@@ -10,7 +10,7 @@ import numpy as np
 
 from ryusa.casefile.earlier import completed
 from ryusa.errors import CheckpointError, ResultsError
-from ryusa.model import EVENT, Scene, State
+from ryusa.model import EVENT, PASSAGE, Scene, State
 from ryusa.results import schema
 from ryusa.results.hdf5 import OpenFiles
 from ryusa.results.lazy import Part
@@ -298,6 +298,9 @@ def _buffered(recorder: CheckpointBlock, scene: Scene, folder: Path) -> dict[str
         if scene.forces:
             n_force = rows[schema.N_FORCE].sum() if schema.N_FORCE in rows else 0
             shapes |= {schema.N_FORCE: ((k,), np.dtype(np.int64)), schema.FORCES: ((n_force,), schema.FORCE)}
+        if scene.traffic is not None:
+            n_passage = len(rows[schema.PASSAGES]) if schema.PASSAGES in rows else 0
+            shapes[schema.PASSAGES] = ((n_passage,), PASSAGE)
         if set(shapes) != set(rows):
             raise ValueError(f"datasets {', '.join(sorted(rows))}")
         for name, (shape, dtype) in shapes.items():

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ryusa.engine import registry
+from ryusa.engine.pool import stepping
 from ryusa.engine.protocol import Engine
 from ryusa.errors import CaseError, CheckpointError, ResultsError
 from ryusa.model import Scene, State
@@ -41,6 +42,7 @@ from ryusa.running.recorder import RecordedSoFar, Recorder
 from ryusa.running.resume import ResumePoint, find_resume_point
 from ryusa.running.stops import Stop
 from ryusa.running.timeline import Change
+from ryusa.running.traffic import TrafficRule
 from ryusa.running.watch import Watch
 
 if TYPE_CHECKING:
@@ -256,7 +258,7 @@ def _run_or_resume(
                     return run.resume_from(going, make)
         scene, state, notes = make()
         _refuse(scene, frames, stop)
-        reasons = engine.refuses(scene)
+        reasons = stepping(engine, scene).refuses(scene)
         if reasons:
             raise CaseError("engine", engine.name, f"does not support this case: {'; '.join(reasons)}")
         refuse_if_not_writable(folder)
@@ -362,9 +364,13 @@ class _Run:
             for note in notes:
                 reporter.line(note)
             done = 0 if recorded is None else len(recorded.scenes) - 1
+            traffic = TrafficRule.of(now)
+            if traffic is not None and block is not None:
+                traffic.restore(block.block("traffic"), state)
             changes = sorted((round(one.at / now.dt), k, one) for k, one in enumerate(self.changes))
             loop = Loop(
-                engine=self.engine, scene=now, frames=self.frames, stop=self.stop, changes=changes[done:],
+                engine=stepping(self.engine, now), scene=now, frames=self.frames, stop=self.stop,
+                changes=changes[done:],
                 recorder=Recorder(self.folder, now, earlier=recorded), watch=watch, progress=reporter,
                 origin=self.origin,
                 precision=PrecisionRule(
@@ -372,6 +378,7 @@ class _Run:
                     max([self.stop.settle, *(one.at for one in self.changes)]), self.frames,
                 ),
                 checkpoints=CheckpointScheduler(self.folder, self.identity, first, self.options.checkpoint),
+                traffic=traffic,
             )  # fmt: skip
             loop.run(state, None if block is None else block.block("loop"))
         finally:

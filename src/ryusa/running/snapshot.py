@@ -26,6 +26,7 @@ _FLOAT, _INT, _INT32 = np.dtype(np.float64), np.dtype(np.int64), np.dtype(np.int
 _ZERO_UNLESS_USED = {
     f"contacts/{name}" for name in ("spring_r", "dash_r", "k_n", "rest_of_closing", "overlap", "event")
 }
+_MOTION = ("x", "v", "omega")  # nan in a state where a grain is not there, zero in a checkpoint
 _AT_ONCE = 1 << 14  # contacts
 _EDGE = 1e12  # m; larger coordinates are refused
 _LARGEST = 1e100  # in any unit: products of a few such values are still finite
@@ -36,6 +37,11 @@ def state_block(state: State) -> CheckpointBlock:
     values: dict[str, Any] = {}
     arrays: dict[str, np.ndarray] = {}
     _flatten("", state, values, arrays)
+    if len(state.present):
+        for name in _MOTION:
+            arrays[name] = np.where(state.present[:, None], arrays[name], 0.0)
+    else:
+        del arrays["present"]
     return CheckpointBlock(values, arrays)
 
 
@@ -85,10 +91,17 @@ class _Reader:
         if not 0 <= step < _LATEST or not np.isfinite(t):
             raise ValueError(f"step {step}, t = {t}")
         image = self._arrays.get("image", np.zeros((0, 2), _INT32))
+        present = np.zeros(0, np.bool_)
+        if self._scene.traffic is not None:
+            present = self._array("present", (n,), np.dtype(np.bool_))
+        x, v, omega = self._positions("x", n), self._floats("v", (n, 3)), self._floats("omega", (n, 3))
+        if len(present):
+            x, v, omega = (np.where(present[:, None], one, np.nan) for one in (x, v, omega))
         state = State(
-            x=self._positions("x", n),
-            v=self._floats("v", (n, 3)),
-            omega=self._floats("omega", (n, 3)),
+            x=x,
+            v=v,
+            omega=omega,
+            present=present,
             step=step,
             t=t,
             image=self._array("image", (len(image) and n, 2), _INT32),

@@ -52,7 +52,8 @@ class RestDetector:
         if fastest >= self._stop.rest_speed or not scene.rotation:
             return fastest
         spin = np.linalg.norm(engine.grains().omega, axis=1)
-        return max(fastest, float((spin * scene.d / 2).max(initial=0.0)))
+        surface = spin * scene.d / 2  # nan where a grain is not there
+        return max(fastest, float(surface[~np.isnan(surface)].max(initial=0.0)))
 
     def reached(self, t: float, speed_max: float) -> bool:
         """Update with the largest speed of a centre or a spinning surface [m/s] at time t [s]."""

@@ -1,4 +1,4 @@
-"""Grains that enter and leave during a run: decided at fixed steps, recorded, and kept as debts where full."""
+"""Grains that enter and leave during a run: at fixed steps, with debts where a feed is full."""
 
 import math
 from dataclasses import dataclass, field
@@ -213,43 +213,43 @@ class TrafficRule:
         """Acceleration of grains by their weight alone [m/s2], shape (n, 3)."""
         return (scene.m_weight[ids] / (scene.m[ids] + scene.m_added[ids]))[:, None] * scene.gravity
 
-    def debts(self, t: float) -> list[tuple[int, float]]:
-        """Number and mass [kg] of the grains that are due at each feed and have found no place."""
+    def debts(self, step: int, t: float) -> list[tuple[int, float]]:
+        """Number and mass [kg] of the grains that found no place at each feed, at the last instant."""
         population = self.population
-        waits = (population.status == WAITING) & (population.due <= t)
+        instant = t - (step % self.traffic.interval) * self._scene.dt
+        waits = (population.status == WAITING) & (population.due <= instant)
         return [
             (int(own.sum()), float(self._scene.m[own].sum()))
             for k in range(len(self.traffic.feeds))
             for own in (waits & (population.feed == k),)
         ]
 
-    def news(self, t: float) -> list[str]:
+    def news(self, step: int, t: float) -> list[str]:
         """Feeds that are full for the first time, one line each."""
         found: list[str] = []
-        for k, (count, mass) in enumerate(self.debts(t)):
+        for k, (count, mass) in enumerate(self.debts(step, t)):
             if count and not self.said[k]:
                 self.said[k] = True
                 name = self.traffic.feeds[k].name
                 found.append(f"feed '{name}' is full: {_grains(count)}, {mass:.3g} kg, due and not yet in")
         return found
 
-    def summary(self, t: float) -> dict[str, Any]:
-        """Numbers of all feeds and exits, for summary.json."""
+    def enter(self, numbers: dict[str, Any], step: int, t: float) -> None:
+        """Enter the numbers of all feeds and exits, and their debts as warnings, in those of summary.json."""
+        debts = self.debts(step, t)
         feeds = [
-            {"name": one.name, "entered": int(self.entered[k]), "due": count, "due_mass": mass}
-            for k, (one, (count, mass)) in enumerate(zip(self.traffic.feeds, self.debts(t), strict=True))
+            {"name": one.name, "entered": int(entered), "due": count, "due_mass": mass}
+            for one, entered, (count, mass) in zip(self.traffic.feeds, self.entered, debts, strict=True)
         ]
         exits = [{"name": one.name, "left": int(self.left[k])} for k, one in enumerate(self.traffic.exits)]
-        return {"present": self.n_present, "feeds": feeds, "exits": exits}
-
-    def warnings(self, t: float) -> list[str]:
-        """Debts at the end of a run, one sentence each."""
-        return [
+        numbers["traffic"] = {"present": self.n_present, "feeds": feeds, "exits": exits}
+        full = [
             f"feed '{one.name}' could not place {_grains(count)} ({mass:.3g} kg) that were due: lower its "
             "rate, or give it more room or more speed"
-            for one, (count, mass) in zip(self.traffic.feeds, self.debts(t), strict=True)
+            for one, (count, mass) in zip(self.traffic.feeds, debts, strict=True)
             if count
         ]
+        numbers["warnings"] = [*numbers["warnings"], *full]
 
     def to_block(self) -> CheckpointBlock:
         """All of it, for a checkpoint."""

@@ -1,0 +1,49 @@
+"""How fast a run goes: grains times steps per second, and steps between two looks at the clock."""
+
+import time
+from dataclasses import dataclass
+
+_CHUNK = 0.25  # s of wall time between two checks of clock and signals
+_CHUNK_FIRST = (1, 16)  # steps of the first calls, while the speed is unknown
+
+
+@dataclass
+class Pace:
+    """Speed of a run, from the wall time of the calls of its engine.
+
+    Attributes
+    ----------
+    calls : calls so far.
+    """
+
+    calls: int = 0
+    _speed: float = 0.0  # steps per second, running mean
+    _since: float = 0.0  # wall time when kernels were ready
+    _moved: int = 0  # grains times steps since then
+
+    def begin(self) -> None:
+        """Count from now on."""
+        self._since = time.monotonic()
+
+    def took(self, n_steps: int, n_grain: int, begun: float) -> None:
+        """Take a call of n_steps steps of n_grain grains that began at a wall time [s]."""
+        now = time.monotonic()
+        speed = n_steps / max(now - begun, 1e-9)
+        if self.calls <= 1:
+            self._since, self._moved, self._speed = now, 0, speed
+        else:
+            self._moved += n_grain * n_steps
+            self._speed += 0.3 * (speed - self._speed)
+        self.calls += 1
+
+    @property
+    def steps(self) -> int:
+        """Steps of the next call at most."""
+        if self.calls < len(_CHUNK_FIRST):
+            return _CHUNK_FIRST[self.calls]
+        return max(1, int(self._speed * _CHUNK))
+
+    @property
+    def rate(self) -> float:
+        """Particle-steps per second since compilation, recording included."""
+        return self._moved / max(time.monotonic() - self._since, 1e-9)
