@@ -2,8 +2,8 @@
 
 import math
 import time
-from collections.abc import Callable, Generator
-from contextlib import contextmanager, nullcontext, suppress
+from collections.abc import Callable
+from contextlib import nullcontext, suppress
 from dataclasses import dataclass, field, replace
 from typing import Any, TypeVar
 
@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.engine.protocol import Engine, Flags
-from ryusa.engine.shared.kernel import collecting_rarely
 from ryusa.errors import CheckpointError, DiskFull, RyusaError
 from ryusa.model import Scene, State
 from ryusa.results import schema
@@ -23,7 +22,7 @@ from ryusa.running.folder import write_final_json, write_json
 from ryusa.running.guards import energy_created
 from ryusa.running.interrupt import StopSignal, catch_signals
 from ryusa.running.loop_state import LoopState
-from ryusa.running.pace import Pace
+from ryusa.running.pace import Pace, compiling
 from ryusa.running.precision import PrecisionRule
 from ryusa.running.progress import Progress, ProgressNumbers
 from ryusa.running.recorder import Recorder
@@ -31,12 +30,11 @@ from ryusa.running.snapshot import state_block
 from ryusa.running.stops import RestDetector, SaltationCounter, Stop
 from ryusa.running.summary import summary_lines
 from ryusa.running.timeline import Change, in_order
-from ryusa.running.traffic import Passed, TrafficRule
+from ryusa.running.traffic import TrafficRule
 from ryusa.running.watch import Watch
 from ryusa.water.coupling import Coupling
 
 Done = TypeVar("Done")
-_COMPILING = "compiling for this processor, 10 to 30 seconds; later runs use the compiled code"
 _NEVER = 2**62  # steps
 _DELIVER_EVERY = 65_536  # steps after which contacts go to the recorder if nothing else is due earlier
 
@@ -127,11 +125,7 @@ class Loop:
             if not self._advance_to(min(due, next_delivery)):
                 continue
             if self.traffic is not None and self._step == next_pass:
-                passed = self.traffic.at_instant(self.scene, self.engine, self._step, self._t)
-                if passed is not None:
-                    self._take(passed)
-                for line in self.traffic.news(self._step, self._t):
-                    self.progress.line(line)
+                self._pass_grains(self.traffic)
             self._deliver_contacts()
             if self._step == next_frame:
                 self._record()
@@ -187,7 +181,7 @@ class Loop:
             raise CheckpointError(f"the state in the checkpoint cannot be used ({error})") from error
 
     def _load(self, state: State) -> None:
-        with self._compiling():
+        with compiling(self.progress):
             self.engine.load(self.scene, state)
         self._loaded = True
         self._start_water(state)
@@ -267,18 +261,13 @@ class Loop:
 
     def _advance(self, n_steps: int) -> None:
         begun = time.monotonic()
-        with self._compiling() if self._pace.calls == 0 else nullcontext():
+        with compiling(self.progress) if self._pace.calls == 0 else nullcontext():
             flags = self._steps(n_steps)
         if flags:
             self._step = self.engine.grains().step
             flags.raise_if_any()
         n_grain = self.scene.n_grain if self.traffic is None else self.traffic.n_present
         self._pace.took(n_steps, n_grain, begun)
-
-    @contextmanager
-    def _compiling(self) -> Generator[None]:
-        with self.progress.explain_if_slow(_COMPILING), collecting_rarely():
-            yield
 
     def _steps(self, n_steps: int) -> Flags:
         """Step the engine, with an exchange between water and grains at each coupling interval."""
@@ -315,12 +304,16 @@ class Loop:
     def _chunk(self) -> int:
         return self._pace.steps
 
-    def _take(self, passed: Passed) -> None:
-        """Go on with the grains that are there after some have left or entered."""
-        self._collect_contacts()
-        self._gathered.append(passed.events)
-        self.engine.load(self.scene, passed.state)
-        self.recorder.passages(passed.rows)
+    def _pass_grains(self, traffic: TrafficRule) -> None:
+        """Let grains leave and enter, and go on with those that are there."""
+        passed = traffic.at_instant(self.scene, self.engine, self._step, self._t)
+        if passed is not None:
+            self._collect_contacts()
+            self._gathered.append(passed.events)
+            self.engine.load(self.scene, passed.state)
+            self.recorder.passages(passed.rows)
+        for line in traffic.news(self._step, self._t):
+            self.progress.line(line)
 
     def _change_if_due(self) -> None:
         while self.changes and self.changes[0][0] <= self._step:
@@ -360,9 +353,8 @@ class Loop:
         return self._t_zero + self._first * self.scene.dt
 
     def _last_step(self) -> int:
-        if math.isinf(self.stop.time):
-            return _NEVER
-        return round((self.stop.time - self._t_zero) / self.scene.dt)
+        end = self.stop.time
+        return _NEVER if math.isinf(end) else round((end - self._t_zero) / self.scene.dt)
 
     def _done(self, last: int) -> bool:
         if self._signal.stop:

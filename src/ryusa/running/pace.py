@@ -1,10 +1,23 @@
 """How fast a run goes: grains times steps per second, and steps between two looks at the clock."""
 
 import time
+from collections.abc import Generator
+from contextlib import contextmanager
 from dataclasses import dataclass
+
+from ryusa.engine.shared.kernel import collecting_rarely
+from ryusa.running.progress import Progress
 
 _CHUNK = 0.25  # s of wall time between two checks of clock and signals
 _CHUNK_FIRST = (1, 16)  # steps of the first calls, while the speed is unknown
+_COMPILING = "compiling for this processor, 10 to 30 seconds; later runs use the compiled code"
+
+
+@contextmanager
+def compiling(progress: Progress) -> Generator[None]:
+    """Explain a call that takes long because it compiles."""
+    with progress.explain_if_slow(_COMPILING), collecting_rarely():
+        yield
 
 
 @dataclass

@@ -177,7 +177,7 @@ class TrafficRule:
         came = np.concatenate(rows)
         back = t - came["t"][:, None]
         a = self._fall(scene, came["grain"])
-        speed = came["v"] + (back - 0.5 * scene.dt) * a if step else came["v"] + back * a
+        speed = came["v"] + (back - 0.5 * scene.dt) * a  # that of half a step before
         grains = Entering(came["grain"], np.array(places), speed, came["omega"])
         return Passed(placed(scene, state, grains), events, np.concatenate([leaving, came]))
 
