@@ -49,7 +49,7 @@ class GrainPool:
     def refuses(self, scene: Scene) -> tuple[str, ...]:
         """Reasons why the engine cannot simulate the scene; () when it can."""
         reasons = self._engine.refuses(scene)
-        if not hasattr(self._engine, "forget"):
+        if getattr(self._engine, "forget", None) is None:
             return (*reasons, f"engine '{self.name}' steps a fixed number of grains: no feeds or exits")
         return reasons
 
