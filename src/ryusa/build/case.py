@@ -8,12 +8,14 @@ from ryusa.build.assemble import Laws, assemble
 from ryusa.build.box import box
 from ryusa.build.column import column_of, zero_of
 from ryusa.build.drop import drop
+from ryusa.build.empty import empty
 from ryusa.build.flume import flume
 from ryusa.build.overlaps import refuse_overlaps
 from ryusa.build.packing import packing
 from ryusa.build.placement import Placement, Wall
 from ryusa.build.saltation import saltation
 from ryusa.build.table import table
+from ryusa.build.traffic import before_feeding, with_feeds
 from ryusa.casefile.builders.schema import FromFile
 from ryusa.casefile.builders.table import key_of
 from ryusa.casefile.case import Case
@@ -54,6 +56,7 @@ BUILDERS = {
     "packing": packing,
     "flume": flume,
     "box": box,
+    "empty": empty,
 }
 _OF_A_COLUMN = ("buoyancy", "hindrance", "lift", "magnus")
 _WATER_DEFAULTS = {  # key of [water]: how `ryusa check` calls it, and its unit
@@ -96,7 +99,8 @@ def build(case: Case, derived: Derived | None = None) -> Built:
     refuse_overlaps(placement, key, case.motion.plane)
     _refuse_unknown_groups(placement, case)
     laws = replace(laws_of(case, found, placement.z_zero), column=column_of(case, found, placement))
-    scene, state = assemble(placement, laws)
+    placement, traffic = with_feeds(placement, case, found)
+    scene, state = before_feeding(*assemble(placement, laws), traffic)
     return Built(scene, state, (*placement.notes, *notes_of(case)))
 
 

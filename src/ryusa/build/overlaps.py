@@ -42,7 +42,7 @@ def refuse_overlaps(placement: Placement, key: str, plane: bool = False) -> None
     from scipy.spatial import KDTree  # the import takes a tenth of a second
 
     lanes = lanes_of(placement, key) if plane else None
-    if placement.allow_overlap:
+    if placement.allow_overlap or not len(placement.d):
         return
     _against_walls(placement, key)
     n = len(placement.d)

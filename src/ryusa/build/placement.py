@@ -42,7 +42,7 @@ class Placement:
     @property
     def d_max(self) -> float:
         """Largest diameter, fixed grains included [m]."""
-        return float(max(self.d.max(), self.d_fixed.max(initial=0.0)))
+        return float(max(self.d.max(initial=0.0), self.d_fixed.max(initial=0.0)))
 
     def groups(self) -> dict[str, tuple[int, int]]:
         """Slices of ids by name: free grains, bed, their parts, and planes."""

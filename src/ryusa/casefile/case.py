@@ -14,6 +14,7 @@ from ryusa.casefile.quantities import Count
 from ryusa.casefile.record import ChangeSection, RecordSection, StopSection
 from ryusa.casefile.section import Section
 from ryusa.casefile.time import TimeSection
+from ryusa.casefile.traffic.schema import ExitSection, FeedSection
 from ryusa.casefile.water.schema import WaterSection
 from ryusa.catalogue import load
 from ryusa.notebook import html_table
@@ -37,6 +38,10 @@ class Case(Section):
     """Water; left out of a dry case."""
     build: BuildSection
     """First grains: kind names the builder, its keys follow."""
+    feeds: tuple[FeedSection, ...] = ()
+    """Where grains enter during the run."""
+    exits: tuple[ExitSection, ...] = ()
+    """Where grains leave."""
     time: TimeSection = TimeSection()
     stop: StopSection
     timeline: tuple[ChangeSection, ...] = ()

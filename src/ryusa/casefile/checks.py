@@ -22,6 +22,7 @@ from ryusa.casefile.record import check_frames, check_record, check_stop, check_
 from ryusa.casefile.section import Section, given
 from ryusa.casefile.time import RIVALS as TIME_RIVALS
 from ryusa.casefile.time import check_time
+from ryusa.casefile.traffic.checks import check_traffic
 from ryusa.casefile.water.checks import check_drag_step, check_water
 from ryusa.casefile.water.schema import RIVALS as WATER_RIVALS
 from ryusa.errors import CaseError
@@ -56,6 +57,7 @@ def check(case: Case, data: dict[str, Any]) -> list[CaseError]:
         *check_motion(case),
         *check_planes(case),
         *check_builder(case),
+        *check_traffic(case),
         *check_timeline(case, data),
         *check_precision(case),
     ]

@@ -90,7 +90,8 @@ def events_expected(case: Case, derived: Derived) -> int:
     if kept == "tracked":
         n = len(set(case.record.tracked))
     rate = EVENTS_ALONE
-    if isinstance(case.build, PackingSection | FlumeSection | FromFile | BoxSection) and derived.meet:
+    dense = isinstance(case.build, PackingSection | FlumeSection | FromFile | BoxSection) or bool(case.feeds)
+    if dense and derived.meet:
         rate = max(rate, EVENTS_DENSE * math.sqrt(derived.g / derived.d))
     return 0 if kept == "none" else math.ceil(n * rate * time_expected(case)[0])
 

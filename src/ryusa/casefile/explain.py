@@ -12,6 +12,7 @@ from ryusa.casefile.laws import law_rows
 from ryusa.casefile.precision import precision_rows
 from ryusa.casefile.rows import ExplainRow
 from ryusa.casefile.time import time_rows
+from ryusa.casefile.traffic.rows import traffic_rows
 from ryusa.casefile.water.rows import rotation_rows, water_rows
 
 
@@ -26,6 +27,7 @@ def explain(case: Case, derived: Derived | None = None) -> list[ExplainRow]:
     found = derived or derive(case)
     return [
         *grain_rows(case, found),
+        *traffic_rows(case),
         *contact_rows(case, found),
         *damping_rows(case, found),
         *time_rows(case, found),

@@ -39,6 +39,9 @@ def resolved(case: Case, derived: Derived | None = None) -> dict[str, Any]:
     if case.water is not None:
         data["water"] |= {"u_star": found.u_star, "tau_star": found.tau_star, "roughness": found.k_rough}
         _resolve_column(case, found, data["water"])
+    for key in ("feeds", "exits"):  # left out where there are none, as in cases of earlier versions
+        if not data[key]:
+            del data[key]
     data["derived"] = asdict(found)
     return _plain(data)
 

@@ -179,7 +179,24 @@ class BoxSection(Section):
     Group `pit`."""
 
 
+class EmptySection(Section):
+    """No free grain at the start: all come from [[feeds]]; on a plate of fixed grains, or between planes."""
+
+    kind: Literal["empty"]
+    """Name of the builder."""
+    plate: PositiveLength | None = None
+    """Radius of a round plate of touching fixed grains of mean diameter, centred on x = y = 0 with its top at
+    z = 0; in a plane scene a row from -plate to plate. No plate when not given. Group `plate`."""
+
+
 BuildSection = Annotated[
-    DropSection | SaltationSection | TableSection | RunSection | PackingSection | FlumeSection | BoxSection,
+    DropSection
+    | SaltationSection
+    | TableSection
+    | RunSection
+    | PackingSection
+    | FlumeSection
+    | BoxSection
+    | EmptySection,
     Field(discriminator="kind"),
 ]

@@ -4,11 +4,13 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ryusa.casefile.builders.box import box_plan
 from ryusa.casefile.builders.schema import (
     BoxSection,
     DropSection,
+    EmptySection,
     FlumeSection,
     FromFile,
     PackingSection,
@@ -18,6 +20,7 @@ from ryusa.casefile.builders.table import period_of, table_of
 from ryusa.casefile.grading import grading_of, reference_diameter
 from ryusa.casefile.grains import CUT, spread_of
 from ryusa.casefile.motion import slab_width
+from ryusa.casefile.traffic.values import fed_in_all
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
@@ -30,7 +33,16 @@ def sizes(case: "Case") -> tuple[float, float, float]:
     table = table_of(case)
     if table is not None:
         every = table.column("d")
-        return reference_diameter(case), float(every[~table.fixed].min()), float(every.max())
+        smallest, largest = float(every[~table.fixed].min()), float(every.max())
+        if case.feeds:
+            _, *fed = _drawn_sizes(case)
+            smallest, largest = min(smallest, fed[0]), max(largest, fed[1])
+        return reference_diameter(case), smallest, largest
+    return _drawn_sizes(case)
+
+
+def _drawn_sizes(case: "Case") -> tuple[float, float, float]:
+    """Mean, smallest and largest diameter of the distribution of [grains] [m]."""
     d, grading = reference_diameter(case), grading_of(case)
     if grading is not None:
         return d, float(grading.d[0]), float(grading.d[-1])
@@ -48,7 +60,13 @@ def sizes(case: "Case") -> tuple[float, float, float]:
 
 
 def counts(case: "Case") -> tuple[int, int, bool]:
-    """Free grains, fixed grains, and whether two free grains can meet."""
+    """Free grains with those that feeds bring, fixed grains, and whether two free grains can meet."""
+    free, fixed, meet = built_counts(case)
+    return free + fed_in_all(case), fixed, meet or bool(case.feeds)
+
+
+def built_counts(case: "Case") -> tuple[int, int, bool]:
+    """Free grains at the start, fixed grains, and whether two of these free grains can meet."""
     build = case.build
     table = table_of(case)
     if table is not None:
@@ -59,6 +77,8 @@ def counts(case: "Case") -> tuple[int, int, bool]:
     if isinstance(build, DropSection):
         free = 2 if build.partner == "free" else 1
         return build.copies * free, build.copies * (build.partner == "fixed"), build.partner == "free"
+    if isinstance(build, EmptySection):
+        return 0, len(plate_of(case, build.plate)), False
     if isinstance(build, SaltationSection):
         return build.starts, build.starts * build.n_bed, False
     if isinstance(build, BoxSection):
@@ -70,6 +90,19 @@ def counts(case: "Case") -> tuple[int, int, bool]:
         return flume_count(case), bed[0] * bed[1], True
     assert isinstance(build, PackingSection)
     return build.columns * build.rows * build.layers, bed[0] * bed[1], True
+
+
+def plate_of(case: "Case", radius: float | None) -> NDArray[np.float64]:
+    """Centres of touching grains of mean diameter within a radius [m], at z = -d/2; shape (n, 3)."""
+    if radius is None:
+        return np.zeros((0, 3))
+    d = reference_diameter(case)
+    reach = math.ceil(2.0 * radius / d) + 1
+    i, j = np.meshgrid(np.arange(-reach, reach + 1), np.arange(-reach, reach + 1), indexing="ij")
+    if case.motion.plane:
+        i, j = np.arange(-reach, reach + 1), np.zeros(2 * reach + 1)
+    x = np.stack([d * (i + 0.5 * j), d * math.sqrt(0.75) * j, np.full(i.shape, -0.5 * d)], -1).reshape(-1, 3)
+    return x[np.hypot(x[:, 0], x[:, 1]) <= radius]
 
 
 def bed_counts(case: "Case") -> tuple[int, int]:

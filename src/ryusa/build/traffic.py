@@ -1,0 +1,137 @@
+"""Grains that feeds will bring: their sizes, drawn before the run, and feeds and exits as a scene has them."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from ryusa.build.placement import Placement, at_rest
+from ryusa.build.sizes import draw
+from ryusa.casefile.case import Case
+from ryusa.casefile.derive import Derived
+from ryusa.casefile.grains import mass
+from ryusa.casefile.traffic.schema import ExitSection, FeedSection
+from ryusa.casefile.traffic.values import fed_count, feed_end
+from ryusa.errors import CaseError
+from ryusa.model import Exit, Feed, Scene, State, Traffic
+from ryusa.model.scene import Floats
+
+_WIDE = 1.0e9  # half the width across a plane scene of the box of an exit [m]
+_STREAM = 0x46454544  # tells the sizes of fed grains from those of the first ones
+_TRAVEL = 0.5  # diameters that a grain falls from rest between two instants
+
+
+def with_feeds(placement: Placement, case: Case, derived: Derived) -> tuple[Placement, Traffic | None]:
+    """Add the grains that feeds will bring, each waiting at its feed, and give feeds and exits.
+
+    Raises
+    ------
+    CaseError : the builder already uses the name of a feed.
+    """
+    if not case.feeds and not case.exits:
+        return placement, None
+    taken = placement.groups()
+    n_first = first = len(placement.d)
+    feeds: list[Feed] = []
+    sizes, centres = [placement.d], [placement.x]
+    for k, keys in enumerate(case.feeds):
+        if keys.name in taken:
+            raise CaseError(
+                f"feeds.{k}.name", keys.name, "is already used by the builder; choose another name"
+            )
+        d = _sizes_of(case, keys, np.random.default_rng([case.seed, _STREAM, k]))
+        feeds.append(_feed(case, keys, k, first, len(d)))
+        sizes.append(d)
+        centres.append(np.tile(_middle(keys), (len(d), 1)))
+        first += len(d)
+    n = first - n_first
+    traffic = Traffic(
+        tuple(feeds), tuple(_exit(case, one) for one in case.exits), _interval(case, derived), n_first
+    )
+    groups = tuple((one.name, one.first, one.count) for one in feeds if one.count)
+    return replace(
+        placement,
+        d=np.concatenate(sizes),
+        x=np.concatenate(centres),
+        v=np.concatenate([placement.v, at_rest(n)]),
+        omega=np.concatenate([placement.omega, at_rest(n)]),
+        free_groups=(*placement.free_groups, *groups),
+    ), traffic
+
+
+def before_feeding(scene: Scene, state: State, traffic: Traffic | None) -> tuple[Scene, State]:
+    """Scene and state with only the first grains there; the others wait."""
+    if traffic is None:
+        return scene, state
+    there = np.arange(scene.n_grain) < traffic.n_first
+    there.flags.writeable = False
+    motion = {name: np.where(there[:, None], getattr(state, name), np.nan) for name in ("x", "v", "omega")}
+    image = np.where(there[:, None], state.image, 0).astype(np.int32)
+    for array in (*motion.values(), image):
+        array.flags.writeable = False
+    return replace(scene, traffic=traffic), replace(state, **motion, image=image, present=there)
+
+
+def _sizes_of(case: Case, keys: FeedSection, rng: np.random.Generator) -> Floats:
+    """Diameters of all grains of a feed that are due before its end [m]."""
+    count = fed_count(case, keys)
+    d = draw(case, count, rng)
+    if keys.rate is None or keys.rate[1] == "grains/s":
+        return d
+    wanted = keys.rate[0] * (feed_end(case, keys) - keys.begin)
+    while True:
+        m = np.array([mass(case, one)[0] for one in d.tolist()])
+        due = np.concatenate([[0.0], np.cumsum(m)])  # mass before each grain
+        if due[-1] >= wanted:
+            return d[: int(np.searchsorted(due, wanted * (1.0 - 1e-12)))]
+        d = np.concatenate([d, draw(case, max(count // 10, 10), rng)])
+
+
+def _middle(keys: FeedSection) -> Floats:
+    if keys.low is None or keys.high is None:
+        assert keys.centre is not None
+        return np.array(keys.centre)
+    return 0.5 * (np.array(keys.low) + np.array(keys.high))
+
+
+def _unit(normal: tuple[float, float, float]) -> tuple[float, float, float]:
+    x, y, z = (part / math.hypot(*normal) for part in normal)
+    return x, y, z
+
+
+def _feed(case: Case, keys: FeedSection, k: int, first: int, count: int) -> Feed:
+    rate, unit = keys.rate if keys.rate is not None else (0.0, "grains/s")
+    common = Feed(
+        keys.name, velocity=keys.velocity, rate=rate, by_mass=unit == "kg/s", begin=keys.begin,
+        end=feed_end(case, keys), first=first, count=count, seed=(case.seed + 7919 * (k + 1)) % 2**62,
+    )  # fmt: skip
+    if keys.low is not None and keys.high is not None:
+        return replace(common, low=keys.low, high=keys.high)
+    assert keys.centre is not None
+    assert keys.radius is not None
+    return replace(common, centre=keys.centre, normal=_unit(keys.normal), radius=keys.radius)
+
+
+def _exit(case: Case, keys: ExitSection) -> Exit:
+    names = [feed.name for feed in case.feeds]
+    to = -1 if keys.to is None else names.index(keys.to)
+    if keys.point is not None and keys.normal is not None:
+        return Exit(keys.name, point=keys.point, normal=_unit(keys.normal), to=to)
+    assert keys.low is not None
+    assert keys.high is not None
+    low, high = keys.low, keys.high
+    if case.motion.plane:
+        low, high = (low[0], -_WIDE, low[2]), (high[0], _WIDE, high[2])
+    return Exit(keys.name, low=low, high=high, to=to)
+
+
+def _interval(case: Case, derived: Derived) -> int:
+    """Steps between two instants at which grains enter and leave.
+
+    In that time a grain falls from rest by half the smallest diameter, or goes a diameter at the speed of
+    the fastest feed, whichever is sooner.
+    """
+    times = [math.sqrt(2.0 * _TRAVEL * derived.d_min / derived.g)] if derived.g > 0.0 else []
+    fastest = max((math.hypot(*feed.velocity) for feed in case.feeds), default=0.0)
+    times += [derived.d_min / fastest] if fastest > 0.0 else []
+    return max(1, int(min(times) / derived.dt)) if times else 100

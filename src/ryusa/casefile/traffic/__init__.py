@@ -1,0 +1,1 @@
+"""[[feeds]] and [[exits]]: where grains enter and leave during a run."""

@@ -1,0 +1,234 @@
+"""Checks of [[feeds]] and [[exits]]."""
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from ryusa.casefile.builders.schema import DropSection, EmptySection, SaltationSection
+from ryusa.casefile.builders.values import periodic, sizes
+from ryusa.casefile.traffic.schema import ExitSection, FeedSection
+from ryusa.casefile.traffic.values import (
+    FULLEST,
+    FULLEST_PLANE,
+    fed_count,
+    feed_end,
+    grains_per_second,
+    share_filled,
+)
+from ryusa.errors import CaseError
+from ryusa.spelling import nearest_word
+
+if TYPE_CHECKING:
+    from ryusa.casefile.case import Case
+
+Corners = tuple[Sequence[float], Sequence[float]]
+
+
+def check_traffic(case: "Case") -> Iterator[CaseError]:
+    """Find feeds and exits that are incomplete, contradict others, or cannot do what they are asked."""
+    if not case.feeds and not case.exits:
+        if isinstance(case.build, EmptySection):
+            yield CaseError("build.kind", "empty", "gives no grain; give [[feeds]]")
+        return
+    yield from _case(case)
+    yield from _names(case)
+    shapes = [*_shapes(case)]
+    yield from shapes
+    if not shapes:
+        for k, feed in enumerate(case.feeds):
+            yield from _feed(case, f"feeds.{k}", feed)
+        yield from _targets(case)
+
+
+def _case(case: "Case") -> Iterator[CaseError]:
+    """Find what does not go together with grains that enter and leave."""
+    if isinstance(case.build, DropSection | SaltationSection):
+        key = "feeds" if case.feeds else "exits"
+        yield CaseError(key, None, f"cannot be used with builder '{case.build.kind}', whose starts are alone")
+    if case.water is not None and case.water.profile == "column":
+        yield CaseError(
+            "feeds" if case.feeds else "exits", None,
+            "cannot be used with water.profile = 'column': the column exchanges momentum with grains that "
+            "are always there; take another profile, or a periodic channel without feeds and exits",
+        )  # fmt: skip
+    if case.stop.saltations is not None:
+        yield CaseError("stop.saltations", case.stop.saltations, "cannot end a run with feeds or exits")
+    if case.stop.precision is not None:
+        yield CaseError("stop.precision", None, "cannot end a run with feeds or exits; give stop.time")
+
+
+def _names(case: "Case") -> Iterator[CaseError]:
+    """Find names used twice, and exits that lead to no feed."""
+    taken = [plane.name for plane in case.planes] + ["grains", "bed"]
+    names = [feed.name for feed in case.feeds]
+    for kind, entries in (("feeds", case.feeds), ("exits", case.exits)):
+        for k, one in enumerate(entries):
+            if one.name in taken:
+                yield CaseError(f"{kind}.{k}.name", one.name, "is used twice")
+            taken.append(one.name)
+    for k, one in enumerate(case.exits):
+        if one.to is not None and one.to not in names:
+            allowed = f"must be a feed: {', '.join(names) or 'there is none'}"
+            yield CaseError(f"exits.{k}.to", one.to, allowed, nearest_word(one.to, names))
+
+
+def _shapes(case: "Case") -> Iterator[CaseError]:
+    """Find regions with missing keys, without a direction or a volume, or beside a plane scene."""
+    for k, feed in enumerate(case.feeds):
+        key = f"feeds.{k}"
+        box, disc = (feed.low, feed.high), (feed.centre, feed.radius)
+        if any(one is not None for one in box) == any(one is not None for one in disc):
+            yield CaseError(key, None, "needs either low and high (a box) or centre and radius (a disc)")
+            continue
+        pairs = (("low", "high"), box) if box != (None, None) else (("centre", "radius"), disc)
+        yield from _missing(key, *pairs)
+        yield from _direction(case, f"{key}.normal", feed.normal, "normal" in feed.model_fields_set)
+        yield from _box(case, key, feed.low, feed.high)
+        if case.motion.plane:
+            for name, point in (("centre", feed.centre), ("velocity", feed.velocity)):
+                if point is not None and point[1] != 0.0:
+                    yield CaseError(f"{key}.{name}", list(point), "must have y = 0 in a plane scene")
+    for k, one in enumerate(case.exits):
+        key = f"exits.{k}"
+        box, plane = (one.low, one.high), (one.point, one.normal)
+        if any(part is not None for part in box) == any(part is not None for part in plane):
+            yield CaseError(key, None, "needs either point and normal (a plane) or low and high (a box)")
+            continue
+        pairs = (("low", "high"), box) if box != (None, None) else (("point", "normal"), plane)
+        yield from _missing(key, *pairs)
+        if one.normal is not None:
+            yield from _direction(case, f"{key}.normal", one.normal, True)
+            for axis, is_periodic in zip((0, 1), periodic(case), strict=True):
+                if is_periodic and one.normal[axis] != 0.0:
+                    name = "xy"[axis]
+                    yield CaseError(
+                        f"{key}.normal", list(one.normal), f"must have {name} = 0, because {name} is periodic"
+                    )
+        yield from _box(case, key, one.low, one.high)
+
+
+def _missing(key: str, names: tuple[str, str], values: tuple[object, object]) -> Iterator[CaseError]:
+    for name, value in zip(names, values, strict=True):
+        if value is None:
+            other = next(one for one in names if one != name)
+            yield CaseError(f"{key}.{name}", None, f"missing; {other} needs it")
+
+
+def _direction(case: "Case", key: str, normal: Sequence[float], given: bool) -> Iterator[CaseError]:
+    if given and not any(normal):
+        yield CaseError(key, list(normal), "must not be zero")
+    elif given and case.motion.plane and normal[1] != 0.0:
+        yield CaseError(key, list(normal), "must have y = 0 in a plane scene")
+
+
+def _box(
+    case: "Case", key: str, low: Sequence[float] | None, high: Sequence[float] | None
+) -> Iterator[CaseError]:
+    """Find boxes without a volume, or thinner than the largest grain."""
+    if low is None or high is None:
+        return
+    plane, (_, _, largest) = case.motion.plane, sizes(case)
+    if plane and (low[1], high[1]) != (0.0, 0.0):
+        yield CaseError(f"{key}.low", list(low), "must have y = 0 in a plane scene, as high")
+    axes = (0, 2) if plane else (0, 1, 2)
+    if any(low[axis] >= high[axis] for axis in axes):
+        yield CaseError(f"{key}.low", list(low), f"must lie below {key}.high in every direction")
+    elif min(high[axis] - low[axis] for axis in axes) < largest:
+        yield CaseError(
+            key, None, f"is smaller than the largest grain, {largest:.4g} m: make the box wider than that"
+        )
+
+
+def _feed(case: "Case", key: str, feed: FeedSection) -> Iterator[CaseError]:
+    """Find feeds without grains, with too small an opening, or a rate that cannot fit."""
+    _, _, largest = sizes(case)
+    if feed.radius is not None and 2.0 * feed.radius < largest:
+        yield CaseError(
+            f"{key}.radius", feed.radius, f"is too small for the largest grain: at least {largest / 2:.4g} m"
+        )
+    led = any(one.to == feed.name for one in case.exits)
+    if feed.rate is None and not led:
+        yield CaseError(f"{key}.rate", None, "missing; no exit leads to this feed, so it would bring nothing")
+    if feed.rate is not None:
+        yield from _rate(case, key, feed)
+    for k, one in enumerate(case.exits):
+        if _meet(feed, one):
+            yield CaseError(
+                key,
+                None,
+                f"lies within exits.{k} ('{one.name}'): its grains would leave at once; move one of them",
+            )
+    points = _points(feed)
+    for plane in case.planes:
+        away = [
+            sum(n * (a - b) for n, a, b in zip(plane.normal, x, plane.point, strict=True)) for x in points
+        ]
+        if max(away) <= 0.0:
+            yield CaseError(key, None, f"lies behind the plane '{plane.name}': no grain finds a place there")
+
+
+def _rate(case: "Case", key: str, feed: FeedSection) -> Iterator[CaseError]:
+    assert feed.rate is not None
+    rate, unit = feed.rate
+    text, end = f"{rate:g} {unit}", feed_end(case, feed)
+    if not 0.0 < rate < math.inf:
+        yield CaseError(f"{key}.rate", text, "must be greater than 0")
+        return
+    if math.isinf(end):
+        yield CaseError(f"{key}.end", None, "missing; without stop.time a feed needs an end")
+        return
+    if feed.begin >= end:
+        name = "end" if feed.end is not None and feed.end == end else "begin"
+        yield CaseError(
+            f"{key}.{name}",
+            getattr(feed, name),
+            "leaves no time to feed: begin must come before end and stop.time",
+        )
+        return
+    if fed_count(case, feed) < 1:
+        yield CaseError(f"{key}.rate", text, f"brings no grain before {end:g} s")
+    most = FULLEST_PLANE if case.motion.plane else FULLEST
+    share = share_filled(case, feed, grains_per_second(case, feed))
+    if share > most:
+        fits = rate * most / share
+        yield CaseError(
+            f"{key}.rate", text,
+            f"cannot fit: grains would fill {share:.2g} of the room at the feed, and at most {most:g} can be "
+            f"filled at random; lower it below {fits:.3g} {unit}, or give more room or speed",
+        )  # fmt: skip
+
+
+def _targets(case: "Case") -> Iterator[CaseError]:
+    """Find feeds outside the domain that the case gives."""
+    low, high = case.domain.low, case.domain.high
+    for k, feed in enumerate(case.feeds):
+        for x in _points(feed):
+            if (low is not None and any(a < b for a, b in zip(x, low, strict=True))) or (
+                high is not None and any(a > b for a, b in zip(x, high, strict=True))
+            ):
+                yield CaseError(f"feeds.{k}", None, "lies outside domain.low and domain.high")
+                break
+
+
+def _points(feed: FeedSection) -> list[tuple[float, ...]]:
+    """Corners of a box, or the centre of a disc [m]."""
+    if feed.low is None or feed.high is None:
+        assert feed.centre is not None
+        return [feed.centre]
+    pairs = list(zip(feed.low, feed.high, strict=True))
+    return [(x, y, z) for x in pairs[0] for y in pairs[1] for z in pairs[2]]
+
+
+def _meet(feed: FeedSection, one: ExitSection) -> bool:
+    """Whether a grain of a feed can be within an exit when it enters."""
+    points = _points(feed)
+    if one.point is not None and one.normal is not None:
+        away = [sum(n * (a - b) for n, a, b in zip(one.normal, x, one.point, strict=True)) for x in points]
+        return max(away) > 0.0
+    assert one.low is not None
+    assert one.high is not None
+    low, high = (tuple(part(x[k] for x in points) for k in range(3)) for part in (min, max))
+    return all(
+        a < d and c < b or (k == 1 and a == b == c == d)
+        for k, (a, b, c, d) in enumerate(zip(low, high, one.low, one.high, strict=True))
+    ) or any(all(c <= p <= d for p, c, d in zip(x, one.low, one.high, strict=True)) for x in points)

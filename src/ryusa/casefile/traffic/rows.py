@@ -1,0 +1,50 @@
+"""Rows of [[feeds]] and [[exits]] in an explained case."""
+
+from typing import TYPE_CHECKING
+
+from ryusa.casefile.rows import ExplainRow, count, number, word
+from ryusa.casefile.traffic.values import (
+    FULLEST,
+    FULLEST_PLANE,
+    fed_count,
+    feed_end,
+    grains_per_second,
+    mean_mass,
+    share_filled,
+)
+
+if TYPE_CHECKING:
+    from ryusa.casefile.case import Case
+
+_DENSE = 0.6  # of the fullest share, from which some grains wait for a place
+
+
+def traffic_rows(case: "Case") -> list[ExplainRow]:
+    """Rates, numbers and room of every feed; where grains leave."""
+    rows: list[ExplainRow] = []
+    most = FULLEST_PLANE if case.motion.plane else FULLEST
+    for k, feed in enumerate(case.feeds):
+        key, name = f"feeds.{k}", f"feed '{feed.name}'"
+        if feed.rate is None:
+            rows.append(word("traffic", name, "recirculation", "only grains that an exit leads to it"))
+            continue
+        rate, end = grains_per_second(case, feed), feed_end(case, feed)
+        shown = f"{rate:.4g} grains/s, {rate * mean_mass(case):.4g} kg/s"
+        window = f"{key}.rate, from {feed.begin:g} s to {end:g} s"
+        rows.append(ExplainRow("traffic", name, rate, "1/s", shown, window))
+        about = "rate times duration" + (", with the mean mass of a grain" if feed.rate[1] == "kg/s" else "")
+        rows.append(count("traffic", f"{name}: grains", fed_count(case, feed), about))
+        share = share_filled(case, feed, rate)
+        late = (
+            f"; some grains will wait for a place, near {most:g} none is left"
+            if share > _DENSE * most
+            else ""
+        )
+        filled = f"share of the room at the feed that grains fill; at most {most:g} at random{late}"
+        flag = "warning" if late else ""
+        rows.append(number("traffic", f"{name}: filled", share, "-", filled, flag))
+    for k, one in enumerate(case.exits):
+        where = "plane" if one.point is not None else "box"
+        then = "leave the run" if one.to is None else f"come in again at feed '{one.to}'"
+        rows.append(word("traffic", f"exit '{one.name}'", where, f"exits.{k}; grains {then}"))
+    return rows

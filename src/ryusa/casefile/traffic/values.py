@@ -1,0 +1,102 @@
+"""What follows from [[feeds]]: times, numbers of grains, how densely a feed is filled."""
+
+import math
+from typing import TYPE_CHECKING
+
+from ryusa.casefile.grading import grading_of, reference_diameter
+from ryusa.casefile.grains import mass, spread_of
+from ryusa.casefile.traffic.schema import FeedSection
+
+if TYPE_CHECKING:
+    from ryusa.casefile.case import Case
+
+FULLEST = 0.38  # largest share of a volume that spheres take that are placed at random one after another
+FULLEST_PLANE = 0.547  # discs in a plane
+
+
+def feed_end(case: "Case", feed: FeedSection) -> float:
+    """When the last grain of a feed may be due [s]; inf where the case does not say."""
+    ends = [one for one in (feed.end, case.stop.time) if one is not None]
+    return min(ends, default=math.inf)
+
+
+def mean_mass(case: "Case") -> float:
+    """Mean mass of a grain of the size distribution [kg]; not the mass of the mean grain."""
+    d = reference_diameter(case)
+    return mass(case, d)[0] * mean_cube(case) / d**3
+
+
+def mean_cube(case: "Case") -> float:
+    """Mean of the cube of the diameters of the size distribution [m3]."""
+    grading = grading_of(case)
+    if grading is not None:
+        return grading.mean_cube
+    kind, ratio = spread_of(case.grains)
+    wider = {
+        "uniform": 1.0 + ratio**2,
+        "normal": 1.0 + 3.0 * ratio**2,
+        "lognormal": (1.0 + ratio**2) ** 3,
+    }[kind]
+    return reference_diameter(case) ** 3 * wider
+
+
+def grains_per_second(case: "Case", feed: FeedSection) -> float:
+    """Grains of its own that a feed brings in a second."""
+    if feed.rate is None:
+        return 0.0
+    rate, unit = feed.rate
+    return rate / mean_mass(case) if unit == "kg/s" else rate
+
+
+def fed_count(case: "Case", feed: FeedSection) -> int:
+    """Number of its own grains that a feed brings; by the mean mass where its rate is a mass."""
+    return math.ceil(grains_per_second(case, feed) * (feed_end(case, feed) - feed.begin) * (1.0 - 1e-12))
+
+
+def fed_in_all(case: "Case") -> int:
+    """Number of grains that all feeds bring."""
+    return sum(fed_count(case, feed) for feed in case.feeds)
+
+
+def share_filled(case: "Case", feed: FeedSection, rate: float) -> float:
+    """Share of the volume (in a plane scene area) at a feed that its grains fill [-].
+
+    Parameters
+    ----------
+    rate : grains in a second.
+
+    Notes
+    -----
+    A grain leaves a box after the time in which its velocity and gravity carry it through, and the place
+    behind a disc after a diameter.
+    """
+    plane, d, g = case.motion.plane, reference_diameter(case), case.motion.gravity
+    grain = math.pi / 4.0 * d * d if plane else math.pi / 6.0 * mean_cube(case)
+    if feed.radius is not None:
+        away = _speed_through(feed)
+        speed = math.sqrt(away * away + 2.0 * g * d)
+        opening = 2.0 * feed.radius if plane else math.pi * feed.radius**2
+        return rate * grain / (opening * speed) if speed > 0.0 else math.inf
+    assert feed.low is not None
+    assert feed.high is not None
+    sides = [b - a for a, b in zip(feed.low, feed.high, strict=True)]
+    times = [
+        _time_through(side, abs(speed), g if axis == 2 else 0.0)
+        for axis, (side, speed) in enumerate(zip(sides, feed.velocity, strict=True))
+        if not (plane and axis == 1)
+    ]
+    room = sides[0] * sides[2] * (1.0 if plane else sides[1])
+    return rate * grain * min(times) / room if room > 0.0 else math.inf
+
+
+def _speed_through(feed: FeedSection) -> float:
+    """Speed at which grains pass a disc [m/s]."""
+    along = sum(v * n for v, n in zip(feed.velocity, feed.normal, strict=True))
+    return abs(along) / math.hypot(*feed.normal)
+
+
+def _time_through(side: float, speed: float, g: float) -> float:
+    """Time to pass a side [m] from a speed [m/s] under gravity [m/s2]; inf at rest."""
+    if g > 0.0:
+        return (math.sqrt(speed * speed + 2.0 * g * side) - speed) / g
+    return side / speed if speed > 0.0 else math.inf
