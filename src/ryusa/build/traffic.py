@@ -1,4 +1,4 @@
-"""Grains that feeds will bring: their sizes, drawn before the run, and feeds and exits as a scene has them."""
+"""Grains that feeds will bring, with sizes drawn before the run; feeds and exits as a scene has them."""
 
 import math
 from dataclasses import replace

@@ -211,12 +211,18 @@ def _targets(case: "Case") -> Iterator[CaseError]:
 
 
 def _points(feed: FeedSection) -> list[tuple[float, ...]]:
-    """Corners of a box, or the centre of a disc [m]."""
-    if feed.low is None or feed.high is None:
-        assert feed.centre is not None
-        return [feed.centre]
-    pairs = list(zip(feed.low, feed.high, strict=True))
-    return [(x, y, z) for x in pairs[0] for y in pairs[1] for z in pairs[2]]
+    """Corners of a box, or four points on the rim of a disc [m]."""
+    if feed.low is not None and feed.high is not None:
+        pairs = list(zip(feed.low, feed.high, strict=True))
+        return [(x, y, z) for x in pairs[0] for y in pairs[1] for z in pairs[2]]
+    assert feed.centre is not None
+    assert feed.radius is not None
+    a, b, c = (part / math.hypot(*feed.normal) for part in feed.normal)
+    level = math.hypot(a, c)
+    one = (c / level, 0.0, -a / level) if level > 0.0 else (1.0, 0.0, 0.0)
+    other = (b * one[2], c * one[0] - a * one[2], -b * one[0])
+    sides = [tuple(sign * part for part in side) for side in (one, other) for sign in (-1.0, 1.0)]
+    return [tuple(x + feed.radius * s for x, s in zip(feed.centre, side, strict=True)) for side in sides]
 
 
 def _meet(feed: FeedSection, one: ExitSection) -> bool:
@@ -228,7 +234,4 @@ def _meet(feed: FeedSection, one: ExitSection) -> bool:
     assert one.low is not None
     assert one.high is not None
     low, high = (tuple(part(x[k] for x in points) for k in range(3)) for part in (min, max))
-    return all(
-        a < d and c < b or (k == 1 and a == b == c == d)
-        for k, (a, b, c, d) in enumerate(zip(low, high, one.low, one.high, strict=True))
-    ) or any(all(c <= p <= d for p, c, d in zip(x, one.low, one.high, strict=True)) for x in points)
+    return all(a <= d and c <= b for a, b, c, d in zip(low, high, one.low, one.high, strict=True))

@@ -47,8 +47,7 @@ Name = Annotated[str, Field(min_length=1, max_length=64)]
 
 
 class FeedSection(Section):
-    """Grains that enter during the run, in a box or through a disc; sizes as [grains], never on another
-    grain."""
+    """Grains that enter during the run, in a box or through a disc, with the sizes of [grains]."""
 
     name: Name
     """Name of the feed; [[exits]] can lead to it, and its grains are a group of this name."""
