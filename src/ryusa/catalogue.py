@@ -7,8 +7,11 @@ Functions are given as "module:function" and imported by `load` when they are us
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import wraps
 from importlib import import_module
 from typing import Any
+
+from ryusa.errors import ResultsError
 
 OPTION_NAMES = {"t": "--at", "grains": "--grain"}  # options whose name differs from the keyword
 
@@ -27,6 +30,7 @@ class MeasureEntry:
     settled : whether the measure ignores the time up to `record.settle` by default; --settle changes it.
     printing : options that affect only the printed text.
     builders : kinds of `[build]` whose runs have it in their report.
+    fed : whether it can be had of a run with feeds or exits, where grains are nan in frames while away.
     precision : its averages whose standard error can end a run; each is a key of `stop.precision`.
     numbers : names and SI units of those of its numbers that `ryusa soften` takes; durations and overlaps of
         contacts are left out, for they follow from the stiffness alone.
@@ -39,6 +43,7 @@ class MeasureEntry:
     settled: bool = False
     printing: tuple[str, ...] = ()
     builders: tuple[str, ...] = ()
+    fed: bool = False
     precision: tuple[str, ...] = ()
     numbers: tuple[tuple[str, str], ...] = ()
 
@@ -63,6 +68,7 @@ class PictureEntry:
     settled : whether the picture ignores the time up to `record.settle` by default.
     measure : name of the measure that it draws, or "".
     builders : kinds of `[build]` whose runs have it in their report.
+    fed : as of a measure; that of a picture of a measure is the measure's.
     """
 
     name: str
@@ -72,6 +78,7 @@ class PictureEntry:
     settled: bool = False
     measure: str = ""
     builders: tuple[str, ...] = ()
+    fed: bool = False
 
     @property
     def given_as(self) -> tuple[str, ...]:
@@ -93,7 +100,7 @@ MEASURES = (
                           ("bed_shear", "N"), ("bed_friction", "N"), ("shear_ratio", "-"))),
     MeasureEntry("collisions", "ryusa.measure.collisions:collisions",
                  "single contacts: duration, overlap, restitution",
-                 ("settle", "end"), settled=True,
+                 ("settle", "end"), settled=True, fed=True,
                  builders=("saltation", "drop")),
     MeasureEntry("apparent_contact", "ryusa.measure.apparent_contact:apparent_contact",
                  "contact as a film of --fps frames per second and a resolution shows it",
@@ -102,7 +109,7 @@ MEASURES = (
                  ("settle",), settled=True,
                  builders=("saltation",),
                  numbers=(("spin", "rad/s"), ("turns", "1/s"), ("spin_absolute", "rad/s"))),
-    MeasureEntry("energy", "ryusa.measure.energy:energy", "every term of the energy account"),
+    MeasureEntry("energy", "ryusa.measure.energy:energy", "every term of the energy account", fed=True),
     MeasureEntry("tracks", "ryusa.measure.tracks:tracks", "paths of the grains in the x-z plane", WINDOW),
     MeasureEntry("profile", "ryusa.measure.profiles:profiles",
                  "concentration, velocity, spin and flux over height",
@@ -161,15 +168,19 @@ MEASURES = (
                  (*WINDOW, "window"), printing=("threshold",)),
     MeasureEntry("surface", "ryusa.measure.repose:surface",
                  "free surface of a heap: slope, height, run-out", ("t", "side"),
-                 builders=("box",),
+                 builders=("box", "empty"), fed=True,
                  numbers=(("slope", "rad"), ("crest", "m"), ("toe", "m"),
                           ("run_out", "m"), ("grains", "-"), ("away", "-"))),
+    MeasureEntry("discharge", "ryusa.measure.discharge:discharge",
+                 "grains and mass in and out by feeds and exits, over time", WINDOW, settled=True,
+                 builders=("empty",), fed=True,
+                 numbers=(("rate_in", "kg/s"), ("rate_out", "kg/s"))),
 )  # fmt: skip
 
 PICTURES = (
     PictureEntry("grains", "ryusa.figures.runs:grains", "grains at one moment, to scale",
                  ("t", "colour", "lane"),
-                 builders=EVERY_BUILDER),
+                 builders=EVERY_BUILDER, fed=True),
     PictureEntry("forces", "ryusa.figures.runs:forces",
                  "network of contact forces at one moment, as lines between centres", ("t", "lane"),
                  builders=("box", "packing")),
@@ -178,9 +189,9 @@ PICTURES = (
                  builders=("saltation", "drop", "flume")),
     PictureEntry("spin", "ryusa.figures.runs:spin", "spin over distance", ("grains", "length")),
     PictureEntry("energy", "ryusa.figures.runs:energy", "the energy account over time",
-                 builders=EVERY_BUILDER),
+                 builders=EVERY_BUILDER, fed=True),
     PictureEntry("contacts", "ryusa.figures.runs:contacts", "distribution of contact times", settled=True,
-                 builders=("saltation", "drop")),
+                 builders=("saltation", "drop"), fed=True),
     PictureEntry("hops", "ryusa.figures.runs:hops", "distribution of jump heights and lengths", settled=True,
                  builders=("saltation",)),
     PictureEntry("profile", "ryusa.figures.runs:profile", "concentration and grain speed over height",
@@ -201,7 +212,7 @@ PICTURES = (
                  WINDOW, settled=True, measure="contact_stress"),
     PictureEntry("surface", "ryusa.figures.runs:surface", "a heap with its free surface and fitted slope",
                  ("t", "side", "lane"),
-                 builders=("box",)),
+                 builders=("box", "empty"), fed=True),
     PictureEntry("sizes", "ryusa.figures.runs:sizes",
                  "percent finer by mass over diameter, asked for and laid"),
     PictureEntry("vibration", "ryusa.figures.runs:vibration", "grains that do not come to rest",
@@ -227,3 +238,27 @@ def load(function: str) -> Callable[..., Any]:
     module, _, name = function.partition(":")
     found: Callable[..., Any] = getattr(import_module(module), name)
     return found
+
+
+def called(entry: MeasureEntry | PictureEntry) -> Callable[..., Any]:
+    """Import what a measure or picture calls; one that is not `fed` refuses a run with feeds or exits.
+
+    Raises
+    ------
+    ResultsError : by the function returned.
+    """
+    function = load(entry.function)
+    if entry.fed or (isinstance(entry, PictureEntry) and entry.measure):
+        return function
+
+    @wraps(function)
+    def refusing(run: Any, *args: Any, **options: Any) -> Any:
+        if getattr(run.scene, "traffic", None) is not None:
+            fed = ", ".join(one.name for one in (*MEASURES, *PICTURES) if one.fed)
+            raise ResultsError(
+                f"{entry.name} needs the same grains in every frame, and this run has feeds or exits, which "
+                f"let grains in and out; of such a run there are {fed}"
+            )
+        return function(run, *args, **options)
+
+    return refusing

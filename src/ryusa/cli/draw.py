@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ryusa.catalogue import MEASURES, PICTURES, PictureEntry, load
+from ryusa.catalogue import MEASURES, PICTURES, PictureEntry, called, load
 from ryusa.cli import chosen
 from ryusa.cli.chosen import SIDES, entry_of, keywords, listed, taking
 from ryusa.cli.options import grains_of, in_unit, open_run, within, write_rows
@@ -159,6 +159,6 @@ def _drawn(
 ) -> "tuple[Figure, list[dict[str, object]]]":
     """The figure and its numbers: of the measure it names, or what its own function gives."""
     if not entry.measure:
-        return load(entry.function)(results, **given)
-    found = load(entry_of(entry.measure, MEASURES, "measure").function)(results, **given)
+        return called(entry)(results, **given)
+    found = called(entry_of(entry.measure, MEASURES, "measure"))(results, **given)
     return load(entry.function)(found), found.rows()

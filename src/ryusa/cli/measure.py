@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ryusa.catalogue import MEASURES, load
+from ryusa.catalogue import MEASURES, called
 from ryusa.cli import chosen
 from ryusa.cli.chosen import SIDES, entry_of, keywords, listed, taking
 from ryusa.cli.options import in_unit, open_run, within, write_rows
@@ -163,7 +163,7 @@ def measure(
     for results in opened:
         given = keywords(context, entry, results, CHECKS)
         printed = {name: given.pop(name) for name in entry.printing if name in given}
-        records.append(load(entry.function)(results, **given))
+        records.append(called(entry)(results, **given))
     found: Any = records[0] if len(records) == 1 else _pooled(entry.name, opened, records)
     files = {"--series": (series, _series), "--layers": (layers, _layers)}
     for option, (path, rows_of) in files.items():

@@ -1,9 +1,10 @@
 """Numbers from a run folder: every function reads results and returns a frozen record; none steps a grain."""
 
-from ryusa.catalogue import MEASURES, load
+from ryusa.catalogue import MEASURES, called
 from ryusa.measure.apparent_contact import ApparentContact, apparent_contact
 from ryusa.measure.collisions import Collisions, ContactTimes, collisions, contact_times, turned_time
 from ryusa.measure.contact_network import ContactNetwork, contact_network
+from ryusa.measure.discharge import Discharge, discharge
 from ryusa.measure.energy import Energy, energy
 from ryusa.measure.entrainment import Entrainment, entrainment
 from ryusa.measure.formulae import FormulaCurve, classical
@@ -38,6 +39,7 @@ __all__ = [
     "Collisions",
     "ContactNetwork",
     "ContactTimes",
+    "Discharge",
     "Energy",
     "Entrainment",
     "FormulaCurve",
@@ -66,6 +68,7 @@ __all__ = [
     "companions",
     "contact_network",
     "contact_times",
+    "discharge",
     "energy",
     "entrainment",
     "farthest",
@@ -95,4 +98,4 @@ __all__ = [
 
 # A measure of the catalogue needs no line here; the names above are written out for type checkers.
 for _entry in MEASURES:
-    globals()[_entry.function.partition(":")[2]] = load(_entry.function)
+    globals()[_entry.function.partition(":")[2]] = called(_entry)

@@ -28,6 +28,7 @@ class Run(Protocol):
     scene: Scene  # at the start of the run
 
     contacts: Any  # contacts that ended: structured array of dtype model.EVENT
+    passages: Any  # grains that entered and left: structured array of dtype model.PASSAGE
     tally: Any  # dict of arrays (n_frame,): the energy account at each frame
 
 

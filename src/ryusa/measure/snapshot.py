@@ -108,11 +108,11 @@ def snapshot(run: Run, t: float | None = None, lane: int | None = None) -> Snaps
     scene = scene_at(run, now)
     x = inside_periods(np.asarray(run.frames.x[k], dtype=np.float64), scene)
     v, omega = np.asarray(run.frames.v[k]), np.asarray(run.frames.omega[k])
-    places, lanes = lanes_of(x[:, 1], scene)
+    places, lanes = lanes_of(np.nan_to_num(x[:, 1]), scene)
     chosen = (int(places[0]) if len(places) else 0) if lane is None else lane
     if not 0 <= chosen < lanes:
         raise ResultsError(f"no lane {chosen}: there are {lanes}, counted from 0")
-    shown = np.flatnonzero(places == chosen)
+    shown = np.flatnonzero((places == chosen) & np.isfinite(x[:, 0]))  # nan: not there
     bed = scene.fixed_active.copy()
     if lanes > 1 and len(shown):
         bed &= np.abs(scene.x_fixed[:, 1] - x[shown[0], 1]) < 0.5 * float(scene.d.max())
@@ -148,6 +148,7 @@ def bounds(run: Run, lane: int | None = None) -> Bounds:
     """
     seen, scene = snapshot(run, lane=lane), run.scene
     bed = np.ones(scene.n_fixed, dtype=np.bool_)
+    ids = seen.grains if scene.traffic is None else np.arange(scene.n_grain)  # also those away by then
     if seen.lanes > 1 and len(seen.x):
         bed = np.abs(scene.x_fixed[:, 1] - seen.x[0, 1]) < 0.5 * float(scene.d.max())
     n_frame = len(run.frames.t)
@@ -156,15 +157,17 @@ def bounds(run: Run, lane: int | None = None) -> Bounds:
     speed: list[Floats] = []
     spin: list[Floats] = []
     for k in np.unique(np.linspace(0, n_frame - 1, count).round().astype(np.int64)):
-        ends.append(_ends(inside_periods(np.asarray(run.frames.x[k])[seen.grains], scene), seen.d))
-        speed.append(np.linalg.norm(np.asarray(run.frames.v[k])[seen.grains], axis=1))
-        spin.append(np.asarray(run.frames.omega[k])[seen.grains, 1])
+        x = inside_periods(np.asarray(run.frames.x[k])[ids], scene)
+        there = np.isfinite(x[:, 0])
+        ends.append(_ends(x[there], scene.d[ids][there]))
+        speed.append(np.linalg.norm(np.asarray(run.frames.v[k])[ids][there], axis=1))
+        spin.append(np.asarray(run.frames.omega[k])[ids, 1][there])
     water = getattr(run, "water", None)
     highest = -math.inf if water is None else float(np.max(water.z_surface))
     return _bounds(
         np.array(ends), np.concatenate(speed), np.concatenate(spin),
         (scene.x_fixed[bed].reshape(-1, 3), scene.d_fixed[bed]), seen.period, highest,
-        float(seen.d.max(initial=0.0)),
+        float(scene.d[ids].max(initial=0.0)),
     )  # fmt: skip
 
 

@@ -22,7 +22,7 @@ class Term(IntEnum):
     DRAG = 7  # given by drag
     TORQUE = 8  # given by the water torque
     LIFT = 9  # given by lift and the Magnus force
-    SWITCH = 10  # given by a change of the timeline (gravity, friction, rotation, a gate)
+    SWITCH = 10  # given by a change of the timeline (gravity, a gate), by grains that enter or leave
     # given by the finite step where contacts begin and end, (1/2) k overlap (closing dt - overlap), and where
     # the spring of elastic spheres is curved
     STEP = 11

@@ -7,7 +7,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from ryusa.catalogue import MEASURES, PICTURES, MeasureEntry, PictureEntry, load
+from ryusa.catalogue import MEASURES, PICTURES, MeasureEntry, PictureEntry, called, load
 from ryusa.errors import RyusaError
 from ryusa.measure._run import settle_time
 from ryusa.results import Results, schema
@@ -138,7 +138,7 @@ def _need_settled(results: Results) -> None:
 def _measure(found: RunContents, results: Results, entry: MeasureEntry) -> None:
     if entry.settled:
         _need_settled(results)
-    record = load(entry.function)(results)
+    record = called(entry)(results)
     averages = getattr(record, "averages", None)
     if averages is None:
         rows = [(name, f"{value:.4g}", unit) for name, value, unit in record.quantities()]
@@ -165,9 +165,9 @@ def _draw(found: RunContents, results: Results, entry: PictureEntry) -> None:
         _need_settled(results)
     if entry.measure:
         source = next(one for one in MEASURES if one.name == entry.measure)
-        figure: Figure = load(entry.function)(load(source.function)(results))
+        figure: Figure = load(entry.function)(called(source)(results))
     else:
-        figure, _ = load(entry.function)(results)
+        figure, _ = called(entry)(results)
     held = io.BytesIO()
     figure.savefig(held, format="png", dpi=DPI)
     held.seek(0)

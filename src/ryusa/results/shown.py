@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ryusa.catalogue import MEASURES, PICTURES, MeasureEntry, PictureEntry, load
+from ryusa.catalogue import MEASURES, PICTURES, MeasureEntry, PictureEntry, called, load
 from ryusa.errors import CaseError, ResultsError
 from ryusa.notebook import html_table
 from ryusa.spelling import nearest_word
@@ -94,14 +94,14 @@ def _saved(data: bytes, path: Path) -> Path:
 
 def measured(results: "Results", name: str, options: dict[str, Any]) -> Any:
     """Give what a measure finds in a run."""
-    return load(_entry(name, MEASURES, "measure").function)(results, **options)
+    return called(_entry(name, MEASURES, "measure"))(results, **options)
 
 
 def drawn(results: "Results", name: str, options: dict[str, Any]) -> "Figure":
     """Give a picture of a run; the options are its own, or of the measure that it draws."""
     entry = _entry(name, PICTURES, "picture")
     if not entry.measure:
-        return load(entry.function)(results, **options)[0]
+        return called(entry)(results, **options)[0]
     return load(entry.function)(measured(results, entry.measure, options))
 
 

@@ -19,6 +19,8 @@ def summary_lines(summary: dict[str, Any]) -> list[str]:
     ]
     headings = {"dissipated": "energy dissipated", "imbalance": "energy imbalance"}
     lines += [f"{headings.get(name, name)}: {text}" for name, text in energy_lines(summary["energy"])]
+    if "traffic" in summary:
+        lines.append(_traffic(summary["traffic"]))
     if "water" in summary:
         lines.append(_water(summary["water"]))
     if "precision" in summary:
@@ -36,6 +38,12 @@ def _contacts(summary: dict[str, Any]) -> list[str]:
         f"tangential restitution: {_set(shear)}; measured without sliding {_measured(shear['sticking'])}; "
         f"with sliding {_measured(shear['sliding'])}",
     ]
+
+
+def _traffic(found: dict[str, Any]) -> str:
+    feeds = [f"{one['entered']} in by '{one['name']}'" for one in found["feeds"]]
+    exits = [f"{one['left']} out by '{one['name']}'" for one in found["exits"]]
+    return f"grains: {', '.join([*feeds, *exits])}; {found['present']} there at the end"
 
 
 def _water(found: dict[str, Any]) -> str:

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from ryusa.casefile.contact.impact import impact_rows
 from ryusa.casefile.derive import derive
-from ryusa.catalogue import MEASURES, load
+from ryusa.catalogue import MEASURES
 from ryusa.errors import RunError
 from ryusa.figures.softening import StiffnessRun, softening
 from ryusa.results import Results
@@ -63,7 +63,7 @@ class SoftenPart:
         """The number asked for, and the largest overlap."""
         del task
         entry = next(one for one in MEASURES if one.name == self.question.measure)
-        found: Any = load(entry.function)(results)
+        found: Any = called(entry)(results)
         rows = (found.averages if hasattr(found, "averages") else found).rows()
         values = {row["quantity"]: float(row["value"]) for row in rows}
         overlap = results.tally["overlap_max"]
