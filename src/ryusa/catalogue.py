@@ -254,7 +254,7 @@ def called(entry: MeasureEntry | PictureEntry) -> Callable[..., Any]:
     @wraps(function)
     def refusing(run: Any, *args: Any, **options: Any) -> Any:
         if getattr(run.scene, "traffic", None) is not None:
-            fed = ", ".join(one.name for one in (*MEASURES, *PICTURES) if one.fed)
+            fed = ", ".join(dict.fromkeys(one.name for one in (*MEASURES, *PICTURES) if one.fed))
             raise ResultsError(
                 f"{entry.name} needs the same grains in every frame, and this run has feeds or exits, which "
                 f"let grains in and out; of such a run there are {fed}"

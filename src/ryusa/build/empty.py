@@ -10,11 +10,11 @@ from ryusa.casefile.derive import Derived
 
 
 def empty(case: Case, derived: Derived) -> Placement:
-    """Place the plate, its top at z = 0; group `plate`."""
+    """Place the plate, its top at z = 0; group `floor`."""
     keys = case.build
     assert isinstance(keys, EmptySection)
     x = plate_of(case, keys.plate)
-    groups = (("plate", 0, len(x)),) if len(x) else ()
+    groups = (("floor", 0, len(x)),) if len(x) else ()
     return Placement(
         d=np.zeros(0), x=at_rest(0), v=at_rest(0), omega=at_rest(0),
         d_fixed=np.full(len(x), derived.d), x_fixed=x, fixed_groups=groups,

@@ -99,30 +99,33 @@ def table_of_frame(run: Results, k: int) -> GrainTable:
 
     Notes
     -----
-    A fixed grain has the mass that a free grain of its size would have. Groups are those of fixed grains.
+    Grains that have not entered, or have left, are left out. A fixed grain has the mass that a free grain of
+    its size would have. Groups are those of fixed grains.
     """
     frames, t = run.frames, float(run.frames.t[k])
     scene = run.scene_at(t)
     there = np.flatnonzero(scene.fixed_active)
-    n, n_fixed = scene.n_grain, len(there)
-    x = np.concatenate([frames.x_wrapped[k], scene.x_fixed[there].reshape(-1, 3)])
+    every, n_grain, n_fixed = frames.x_wrapped[k], scene.n_grain, len(there)
+    here = np.arange(n_grain) if scene.traffic is None else np.flatnonzero(np.isfinite(every[:, 0]))
+    n = len(here)
+    x = np.concatenate([every[here], scene.x_fixed[there].reshape(-1, 3)])
     image = np.zeros((n + n_fixed, 2), dtype=np.int64)
-    image[:n] = frames.image[k]
+    image[:n] = frames.image[k][here]
     for axis, period in enumerate(scene.period):
         if math.isfinite(period):  # engines wrap now and then, so a grain may be a little outside
             turns = np.floor(x[:, axis] / period)
             x[:, axis] -= turns * period
             image[:, axis] += turns.astype(np.int64)
-    d = np.concatenate([scene.d, scene.d_fixed[there]])
-    m = np.concatenate([scene.m, scene.m[0] / scene.d[0] ** 3 * scene.d_fixed[there] ** 3])
+    d = np.concatenate([scene.d[here], scene.d_fixed[there]])
+    m = np.concatenate([scene.m[here], scene.m[0] / scene.d[0] ** 3 * scene.d_fixed[there] ** 3])
     still = np.zeros((n_fixed, 3))
-    v, omega = (np.concatenate([part[k], still]) for part in (frames.v, frames.omega))
+    v, omega = (np.concatenate([part[k][here], still]) for part in (frames.v, frames.omega))
     names = ("x", "y", "z", "d", "vx", "vy", "vz", "wx", "wy", "wz", "m")
-    ids = np.concatenate([np.arange(n), n + there]).astype(np.int64)
+    ids = np.concatenate([here, n_grain + there]).astype(np.int64)
     return GrainTable(
         name=run.folder.name,
         columns=dict(zip(names, [*x.T, d, *v.T, *omega.T, m], strict=True)),
-        fixed=ids >= n,
+        fixed=ids >= n_grain,
         group=_groups(scene.groups, ids),
         labels=tuple(f"{one} of {run.folder.name}" for one in ids.tolist()),
         ids=ids,

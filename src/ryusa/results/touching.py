@@ -29,18 +29,22 @@ def touching_pairs(x: Floats, scene: Scene, gap: float = 0.0) -> tuple[Ints, Int
     n, there = scene.n_grain, np.flatnonzero(scene.fixed_active)
     if n == 0:
         return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
-    every = np.concatenate([x, scene.x_fixed[there].reshape(-1, 3)])
-    d = np.concatenate([scene.d, scene.d_fixed[there]])
+    here = np.arange(n) if scene.traffic is None else np.flatnonzero(np.isfinite(x[:, 0]))  # nan: away
+    every = np.concatenate([x[here], scene.x_fixed[there].reshape(-1, 3)])
+    d = np.concatenate([scene.d[here], scene.d_fixed[there]])
+    ids = np.concatenate([here, n + there])
+    if not len(here):
+        return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
     box = np.array([*(p if math.isfinite(p) else 0.0 for p in scene.period), 0.0])  # 0: open
     for axis in np.flatnonzero(box):
         every[:, axis] %= box[axis]
         every[every[:, axis] >= box[axis], axis] = 0.0  # round-off of the line above
     pairs = KDTree(every, boxsize=box).query_pairs((1.0 + gap) * float(d.max()), output_type="ndarray")
-    i, j = pairs[(pairs < n).any(axis=1)].T  # at least one of the two is free, and i < j
+    i, j = pairs[(pairs < len(here)).any(axis=1)].T  # at least one of the two is free, and i < j
     way = every[j] - every[i]
     way -= np.where(box > 0.0, box * np.round(way / np.where(box > 0.0, box, 1.0)), 0.0)
     near = (way**2).sum(axis=1) < (0.5 * (1.0 + gap) * (d[i] + d[j])) ** 2
-    firsts, partners = [i[near]], [np.concatenate([np.arange(n), n + there])[j[near]]]
+    firsts, partners = [ids[i[near]]], [ids[j[near]]]
     for k in np.flatnonzero(scene.plane_active):
         at = np.flatnonzero((x - scene.plane_point[k]) @ scene.plane_normal[k] < (0.5 + gap) * scene.d)
         firsts.append(at)

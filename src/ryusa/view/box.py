@@ -38,8 +38,9 @@ def box_of(results: Results, d: Floats, centres: Iterable[Floats]) -> tuple[Floa
         for axis, period in enumerate(scene.period):
             if math.isfinite(period):
                 inside[:, axis] %= period
-        low = np.minimum(low, (inside - r).min(axis=0, initial=math.inf))
-        high = np.maximum(high, (inside + r).max(axis=0, initial=-math.inf))
+        there = np.isfinite(inside[:, 0])  # nan: a grain that has not entered, or has left
+        low = np.minimum(low, (inside - r)[there].min(axis=0, initial=math.inf))
+        high = np.maximum(high, (inside + r)[there].max(axis=0, initial=-math.inf))
     for axis, period in enumerate(scene.period):
         if math.isfinite(period):
             low[axis], high[axis] = 0.0, period

@@ -54,6 +54,7 @@ def positions(
         back into the period without a rounding error.
     """
     scene = results.scene
+    there = presence(results, frames, grains)
     quantum = np.full(3, float(scene.d[grains].min()) / STEPS_PER_DIAMETER)
     for axis, period in enumerate(scene.period):
         if np.isfinite(period):
@@ -61,6 +62,8 @@ def positions(
     whole = np.empty((len(frames), len(grains), 3), dtype=np.int32)
     for row, k in enumerate(frames):
         x = results.frames.x[int(k)][grains] / quantum
+        if there is not None:
+            x[~there[row]] = 0.0
         wrong = np.flatnonzero(~(np.abs(x) < _MOST).all(axis=1))
         if len(wrong):
             grain = int(grains[wrong[0]])
@@ -71,7 +74,31 @@ def positions(
             )
         whole[row] = np.rint(x)
         progress(row)
+    if there is not None:
+        _fill(whole, there)
     return whole, quantum
+
+
+def presence(
+    results: Results, frames: NDArray[np.int64], grains: NDArray[np.int64]
+) -> NDArray[np.bool_] | None:
+    """Whether grains are there in frames, shape (n_frame, n_grain); None where they always are."""
+    if results.scene.traffic is None:
+        return None
+    return np.stack([np.isfinite(results.frames.x[int(k)][grains, 0]) for k in frames])
+
+
+def _fill(whole: NDArray[np.int32], there: NDArray[np.bool_]) -> None:
+    """Put a grain that is away where it was last, or else where it will be first, or is another one."""
+    n_frame, n_grain = there.shape
+    row = np.arange(n_frame)[:, None]
+    last = np.maximum.accumulate(np.where(there, row, -1), axis=0)
+    following = np.minimum.accumulate(np.where(there, row, n_frame)[::-1], axis=0)[::-1]
+    source = np.where(last >= 0, last, np.minimum(following, n_frame - 1))
+    whole[:] = whole[source, np.arange(n_grain)]
+    seen = np.argwhere(there)
+    if len(seen):
+        whole[:, ~there.any(axis=0)] = whole[tuple(seen[0])]
 
 
 def add_positions(blob: Blob, whole: NDArray[np.int32]) -> None:
@@ -101,7 +128,9 @@ def _colouring(
 ) -> dict[str, Any]:
     chosen = frames[:1] if one.steady else frames
     values = np.stack([one.values(results, int(k))[grains] for k in chosen])
-    low, high = value_range(one, values, results.scene)
+    there = np.isfinite(values)
+    low, high = value_range(one, values if there.all() else values[there], results.scene)
+    values = np.where(there, values, low)
     if one.word != "height":  # the page has the heights already
         level = np.rint((values - low) / (high - low) * (LEVELS - 1))
         level = np.clip(level, 0, LEVELS - 1).astype(np.uint8)

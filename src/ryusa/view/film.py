@@ -100,6 +100,8 @@ def film(
         if not SMALLEST[axis] <= size[axis] <= LARGEST[axis]:
             allowed = f"must be {SMALLEST[0]}x{SMALLEST[1]} to {LARGEST[0]}x{LARGEST[1]}"
             raise CaseError("size", f"{size[0]}x{size[1]}", allowed)
+    if follow is not None and results.scene.traffic is not None:
+        raise CaseError("follow", follow, "cannot be used with feeds or exits: a grain may not be there yet")
     if follow is not None and not 0 <= follow < results.scene.n_grain:
         raise CaseError("follow", follow, f"must be a free grain, 0 to {results.scene.n_grain - 1}")
     window = _window(results, begin, end)
@@ -208,6 +210,7 @@ def _look(
         camera = camera.closer(NEAR * float(scene.d[follow]))
     chosen = _some(window, scene.n_grain, _VALUES, _VALUE_FRAMES)[:: 1 if not one.steady else len(window)]
     values = np.stack([one.values(results, int(k)) for k in chosen])
+    values = values if scene.traffic is None else values[np.isfinite(values)]
     least, most = value_range(one, values, scene)
     beyond = bool(values.min(initial=least) < least), bool(values.max(initial=most) > most)
     return Look(view, one, least, most, camera, (low, high), follow), beyond
@@ -222,7 +225,7 @@ def _some(window: NDArray[np.int64], n_grain: int, most: int, least: int) -> NDA
 def _centres(results: Results, k: int) -> Floats:
     x = results.frames.x_wrapped[k]
     wrong = np.flatnonzero(~np.isfinite(x).all(axis=1))
-    if len(wrong):
+    if len(wrong) and results.scene.traffic is None:
         raise ResultsError(
             f"{results.folder}: grain {wrong[0]} is at {x[wrong[0]]} m in the frame at "
             f"t = {results.frames.t[k]:g} s, which cannot be shown"

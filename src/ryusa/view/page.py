@@ -19,7 +19,7 @@ from ryusa.errors import ResultsError
 from ryusa.model import Scene
 from ryusa.results import Results
 from ryusa.view.box import box_of
-from ryusa.view.encode import Blob, add_colours, add_positions, positions
+from ryusa.view.encode import Blob, add_colours, add_positions, positions, presence
 from ryusa.view.flow import flow_of
 
 HERE = Path(__file__).parent
@@ -120,6 +120,9 @@ def _encode(
     frames, grains, scene = chosen.frames, chosen.grains, results.scene
     whole, quantum = positions(results, frames, grains, lambda row: progress(0.3 * row / len(frames)))
     add_positions(blob, whole)
+    there = presence(results, frames, grains)
+    if there is not None:
+        blob.add("there", there.astype(np.uint8))
     colourings = add_colours(blob, results, frames, grains)
     progress(0.9)
     blob.add("radius", (0.5 * scene.d[grains]).astype(np.float32))

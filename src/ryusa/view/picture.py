@@ -67,18 +67,21 @@ class Painter:
         nearer = k + round(share)
         x = self._frame(k)
         if share > 0.0:
-            x = x + share * (self._frame(k + 1) - x)
+            x = self._towards_next(k, share)
         low, high, camera = self._seen(x)
         scene = self.results.scene_at(t)
         fixed = np.flatnonzero(scene.fixed_active)
-        centres = np.concatenate([x, scene.x_fixed[fixed].reshape(-1, 3)])
-        d = np.concatenate([scene.d, scene.d_fixed[fixed]])
+        there = np.flatnonzero(np.isfinite(x[:, 0]))  # nan: a grain that has not entered, or has left
+        centres = np.concatenate([x[there], scene.x_fixed[fixed].reshape(-1, 3)])
+        d = np.concatenate([scene.d[there], scene.d_fixed[fixed]])
         for axis in np.flatnonzero(np.isfinite(self._period)):
             row = centres[:, axis]
             row -= self._period[axis] * np.floor((row - low[axis]) / self._period[axis])
         wide, high_up = SAMPLES * self.canvas.width, SAMPLES * self.canvas.height
         scale = 0.5 * high_up / camera.half
-        colour = np.concatenate([self._colours(nearer), np.full((len(fixed), 3), FIXED, dtype=np.uint8)])
+        colour = np.concatenate(
+            [self._colours(nearer)[there], np.full((len(fixed), 3), FIXED, dtype=np.uint8)]
+        )
         spheres = Spheres(
             camera.project(centres, wide, high_up),
             np.maximum(0.5 * d * scale, LEAST).astype(np.float32),
@@ -115,6 +118,18 @@ class Painter:
             lines += self._ring(spheres, self.look.follow)
         return self.canvas.draw(spheres, lines, faces)
 
+    def _towards_next(self, k: int, share: float) -> Floats:
+        """Centres on the way from a frame to the next; grains that pass a feed or an exit stay at either."""
+        before, after = self._frame(k), self._frame(k + 1)
+        x = before + share * (after - before)
+        if self.results.scene.traffic is None:
+            return x
+        passages, step = self.results.passages, self.results.frames.step
+        within = (passages["step"] > step[k]) & (passages["step"] <= step[k + 1])
+        ids = passages["grain"][within]
+        x[ids] = (before if share < 0.5 else after)[ids]
+        return x
+
     def _between(self, t: float) -> tuple[int, float]:
         """The frame before a time, and the share of the way to the next."""
         times = self.results.frames.t
@@ -135,7 +150,7 @@ class Painter:
         """Red, green, blue of the free grains at a frame."""
         if self._shades is None or (self._shades[0] != k and not self.look.colouring.steady):
             low, high = self.look.low, self.look.high
-            share = (self.look.colouring.values(self.results, k) - low) / (high - low)
+            share = np.nan_to_num((self.look.colouring.values(self.results, k) - low) / (high - low))
             shade = np.clip(np.rint(share * (SHADES - 1)), 0, SHADES - 1).astype(np.int64)
             self._shades = k, self._palette[shade]
         return self._shades[1]

@@ -63,7 +63,7 @@ class Viewer {
 
   start() {
     const { data, arrays, painter } = this;
-    painter.put("free", { radius: arrays.radius });
+    painter.put("free", { radius: this.radii = arrays.radius.slice() });
     [this.low, this.high] = data.box;
     this.centre = this.low.map((one, k) => (one + this.high[k]) / 2);
     this.radius = Math.hypot(...minus(this.high, this.low)) / 2 + 2 * Math.max(...arrays.radius.subarray(0, 1000), 0);
@@ -151,7 +151,9 @@ class Viewer {
       from[i] = here * quantum[axis];
       to[i] = (here + x[b + i] - x[a + i]) * quantum[axis];
     }
-    this.painter.put("free", { from, to });
+    const { there, radius } = this.arrays;  // grains that feeds bring and exits take: away in both frames, not shown
+    if (there) for (let g = 0; g < n; g++) this.radii[g] = there[k * n + g] || there[next * n + g] ? radius[g] : 0;
+    this.painter.put("free", there ? { from, to, radius: this.radii } : { from, to });
     this.loaded = k; this.coloured = null;
   }
 
@@ -295,9 +297,10 @@ class Viewer {
   }
 
   pick(x, y) {
-    const [origin, sight] = this.camera.ray(x, y, this.aspect), { radius } = this.arrays;
+    const [origin, sight] = this.camera.ray(x, y, this.aspect), radius = this.radii;
     let best = Infinity, found = -1;
     for (let g = 0; g < this.grains; g++) {
+      if (!radius[g]) continue;
       const out = minus(origin, this.placeOf(g)), b = dot(out, sight), h = b * b - dot(out, out) + radius[g] ** 2;
       if (h >= 0 && -b - Math.sqrt(h) < best) { best = -b - Math.sqrt(h); found = g; }
     }

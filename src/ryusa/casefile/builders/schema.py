@@ -186,7 +186,7 @@ class EmptySection(Section):
     """Name of the builder."""
     plate: PositiveLength | None = None
     """Radius of a round plate of touching fixed grains of mean diameter, centred on x = y = 0 with its top at
-    z = 0; in a plane scene a row from -plate to plate. No plate when not given. Group `plate`."""
+    z = 0; in a plane scene a row from -plate to plate. No plate when not given. Group `floor`."""
 
 
 BuildSection = Annotated[

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from ryusa.casefile.contact.impact import impact_rows
 from ryusa.casefile.derive import derive
-from ryusa.catalogue import MEASURES
+from ryusa.catalogue import MEASURES, called
 from ryusa.errors import RunError
 from ryusa.figures.softening import StiffnessRun, softening
 from ryusa.results import Results
