@@ -100,7 +100,7 @@ def build(case: Case, derived: Derived | None = None) -> Built:
     _refuse_unknown_groups(placement, case)
     laws = replace(laws_of(case, found, placement.z_zero), column=column_of(case, found, placement))
     placement, traffic = with_feeds(placement, case, found)
-    scene, state = before_feeding(*assemble(placement, laws), traffic)
+    scene, state = before_feeding(*assemble(placement, laws), traffic, case)
     return Built(scene, state, (*placement.notes, *notes_of(case)))
 
 

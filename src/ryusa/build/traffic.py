@@ -18,6 +18,7 @@ from ryusa.model.scene import Floats
 
 _WIDE = 1.0e9  # half the width across a plane scene of the box of an exit [m]
 _STREAM = 0x46454544  # tells the sizes of fed grains from those of the first ones
+_BEYOND = 100.0  # largest diameters that the domain reaches beyond an exit, where the case gives none
 _TRAVEL = 0.5  # diameters that a grain falls from rest between two instants
 
 
@@ -59,10 +60,11 @@ def with_feeds(placement: Placement, case: Case, derived: Derived) -> tuple[Plac
     ), traffic
 
 
-def before_feeding(scene: Scene, state: State, traffic: Traffic | None) -> tuple[Scene, State]:
+def before_feeding(scene: Scene, state: State, traffic: Traffic | None, case: Case) -> tuple[Scene, State]:
     """Scene and state with only the first grains there; the others wait."""
     if traffic is None:
         return scene, state
+    scene = _reaching(scene, traffic, case)
     there = np.arange(scene.n_grain) < traffic.n_first
     there.flags.writeable = False
     motion = {name: np.where(there[:, None], getattr(state, name), np.nan) for name in ("x", "v", "omega")}
@@ -70,6 +72,22 @@ def before_feeding(scene: Scene, state: State, traffic: Traffic | None) -> tuple
     for array in (*motion.values(), image):
         array.flags.writeable = False
     return replace(scene, traffic=traffic), replace(state, **motion, image=image, present=there)
+
+
+def _reaching(scene: Scene, traffic: Traffic, case: Case) -> Scene:
+    """The scene with a default domain that holds every exit, and what is beyond it until it is removed."""
+    every = [one.point if one.is_plane else corner for one in traffic.exits for corner in (one.low, one.high)]
+    if not every:
+        return scene
+    room = _BEYOND * float(np.concatenate([scene.d, scene.d_fixed]).max())
+    low, high = np.min(every, axis=0) - room, np.max(every, axis=0) + room
+    if case.domain.low is None:
+        x, y, z = np.minimum(low, scene.world_low).tolist()
+        scene = replace(scene, world_low=(x, y, z))
+    if case.domain.high is None:
+        x, y, z = np.maximum(high, scene.world_high).tolist()
+        scene = replace(scene, world_high=(x, y, z))
+    return scene
 
 
 def _sizes_of(case: Case, keys: FeedSection, rng: np.random.Generator) -> Floats:
