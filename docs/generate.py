@@ -24,6 +24,7 @@ UNITS = {
     "kinematic viscosity": "m2/s",
     "pressure gradient": "Pa/m",
     "discharge per width": "m2/s",
+    "rate": "kg/s or grains/s",
 }
 KNOWN_NUMBERS = {0.5235987755982988: "pi/6", 0.7853981633974483: "pi/4"}
 

@@ -1,6 +1,7 @@
 """The cases of docs/cases-of-your-own.md are read, built and stepped as they stand."""
 
 import re
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -65,3 +66,12 @@ def test_the_bed_under_water_runs_and_its_water_is_measured(blocks, tmp_path):
     found = run(read(path, short), tmp_path / "run", progress=False)
     assert measure.water(found).averages["discharge"].value > 0.0
     assert measure.transport(found).averages["tau_star"].value > 0.0
+
+
+def test_the_feed_of_the_page_is_that_of_the_packaged_case(blocks):
+    (text,) = [text for kind, text in blocks if "[[feeds]]" in text]
+    from ryusa.cases import case_path
+
+    written = tomllib.loads(text)
+    packaged = tomllib.loads(case_path("poured_heap.toml").read_text(encoding="utf-8"))
+    assert {key: packaged[key] for key in written} == written
