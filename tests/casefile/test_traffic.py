@@ -142,7 +142,7 @@ BAD = [
     ([("normal = [0, 0, -1]   ", "# ")], "exits.0.normal", "missing; point needs it"),
     ([('radius = "1 cm"', 'low = ["0 cm", "0 cm", "1 cm"]')], "feeds.0", "needs either low and high"),
     ([('radius = "1 cm"', "# ")], "feeds.0.radius", "missing; centre needs it"),
-    ([('time = "3 s"', "saltations = 5")], "stop.saltations", "cannot end a run with feeds"),
+    ([('time = "3.4 s"', "saltations = 5")], "stop.saltations", "cannot end a run with feeds"),
     ([("[time]", '[[planes]]\nname = "roof"\npoint = ["0 m", "0 m", "4 cm"]\nnormal = [0, 0, -1]\n[time]')],
      "feeds.0", "lies behind the plane 'roof'"),
     ([("[time]", '[domain]\nhigh = ["1 m", "1 m", "4 cm"]\n[time]')], "feeds.0", "lies outside domain"),

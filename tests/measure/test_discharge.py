@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import ryusa
-from ryusa.catalogue import MEASURES, PICTURES
 from ryusa.casefile.read import read_text
 from ryusa.cases import case_path
+from ryusa.catalogue import MEASURES, PICTURES
 from ryusa.errors import CaseError, ResultsError
 from ryusa.formats.export import export
 from ryusa.formats.grains import table_of_frame
@@ -21,20 +21,32 @@ from ryusa.results.touching import contacts_per_grain
 from ryusa.view.encode import positions, presence
 from ryusa.view.page import encoded
 
-TEXT = case_path("poured_heap.toml").read_text()
+HEAP = case_path("poured_heap.toml").read_text()
+TEXT = (
+    HEAP[: HEAP.index("[[feeds]]")].replace('plate = "4 cm"', "")
+    + """
+[[feeds]]
+name = "hose"
+centre = ["10 cm", "0 m", "0 m"]
+radius = "2 cm"
+rate = "40 grains/s"
+end = "1 s"
+
+[[exits]]
+name = "floor"
+point = ["0 m", "0 m", "-122.5 cm"]
+normal = [0, 0, -1]
+"""
+    + HEAP[HEAP.index("[time]") :]
+)
 
 
 @pytest.fixture(scope="module")
 def fed(tmp_path_factory: pytest.TempPathFactory) -> Results:
     """Grains that fall through a hose past an exit: forty in a second, each half a second on its way."""
-    text = TEXT.replace('plate = "4 cm"', 'plate = "4 mm"').replace('"4.5 cm"]', '"150 cm"]')
-    changes = {
-        "contact.stiffness": "1 N/cm", "stop.time": "1.5 s", "record.frames": "50 ms",
-        "feeds": '[{name="hose", centre=["10 cm", "0 m", "0 m"], radius="2 cm", rate="40 grains/s", end="1 s"}]',
-        "exits": '[{name="floor", point=["0 m", "0 m", "-122.5 cm"], normal=[0, 0, -1]}]',
-    }  # fmt: skip
+    changes = {"contact.stiffness": "1 N/cm", "stop.time": "1.5 s", "record.frames": "50 ms"}
     folder = tmp_path_factory.mktemp("fed") / "run"
-    return ryusa.run(read_text(text, changes), folder, progress=False)
+    return ryusa.run(read_text(TEXT, changes), folder, progress=False)
 
 
 def test_what_is_there_is_what_entered_less_what_left(fed: Results) -> None:
@@ -128,7 +140,7 @@ def test_the_page_shows_grains_only_while_they_are_there(fed: Results) -> None:
 def test_a_film_is_drawn_and_follows_no_grain(fed: Results, tmp_path: Path) -> None:
     from ryusa.view.film import film
 
-    film(fed, tmp_path / "film.webp", frames=3, size=(160, 120))
+    film(fed, tmp_path / "film.webp", frames=3, size=(480, 270))
     assert (tmp_path / "film.webp").stat().st_size > 0
     with pytest.raises(CaseError, match="cannot be used with feeds"):
         film(fed, tmp_path / "film.webp", frames=3, follow=0)

@@ -24,11 +24,11 @@ def xyz_frame(table: GrainTable) -> bytes:
     radius = table.column("d") / 2.0
     shut = [math.isfinite(length) for length in period]
     low = [
-        0.0 if periodic else float((table.column(axis) - radius).min())
+        0.0 if periodic or not table.n else float((table.column(axis) - radius).min())
         for axis, periodic in zip("xyz", shut, strict=True)
     ]
     sides = [
-        length if periodic else float((table.column(axis) + radius).max()) - begin
+        length if periodic else float((table.column(axis) + radius).max(initial=begin)) - begin
         for axis, periodic, length, begin in zip("xyz", shut, period, low, strict=True)
     ]
     a, b, c = sides

@@ -28,7 +28,10 @@ def dump_frame(table: GrainTable) -> bytes:
     for axis, length in zip("xyz", period, strict=True):
         x = table.column(axis)
         shut = math.isfinite(length)
-        low, high = (0.0, length) if shut else (float((x - radius).min()), float((x + radius).max()))
+        low, high = 0.0, length
+        if not shut:
+            low = float((x - radius).min()) if table.n else 0.0
+            high = float((x + radius).max(initial=low))
         sides.append("pp" if shut else "ss")
         bounds.append(f"{low!r} {high!r}")
     head = [
