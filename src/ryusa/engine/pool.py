@@ -15,16 +15,14 @@ from ryusa.engine.protocol import Engine, Flags
 from ryusa.engine.shared import record_fields as R
 from ryusa.engine.shared.passages import empty_tally, everywhere
 from ryusa.errors import RunError
-from ryusa.model import EVENT, Contacts, FluidAtGrains, Scene, State, Tally
+from ryusa.model import EVENT, Contacts, Scene, State, Tally
 from ryusa.model.arrays import Bools, Floats
-from ryusa.model.fluid import N_IMPULSE
 from ryusa.model.scene import EventRule
 from ryusa.model.state import make_read_only
 
 Ints = NDArray[np.int64]
 _ROWS = ("d", "m", "m_added", "m_weight", "inertia")  # of a scene, by grain
 _KEPT = ("terms", "overlap_max", "overlap_grain", "overlap_step")  # of an account while no grain is there
-AWAY = -1.0e9  # height at which a grain that is not there is for the water [m]: below every column
 
 
 class GrainPool:
@@ -51,6 +49,11 @@ class GrainPool:
         reasons = self._engine.refuses(scene)
         if getattr(self._engine, "forget", None) is None:
             return (*reasons, f"engine '{self.name}' steps a fixed number of grains: no feeds or exits")
+        if scene.column is not None:
+            return (
+                *reasons,
+                "a column of water exchanges momentum with grains that are always there: no feeds or exits",
+            )
         return reasons
 
     def load(self, scene: Scene, state: State) -> None:
@@ -62,11 +65,6 @@ class GrainPool:
         self._n, self._dt = scene.n_grain, scene.dt
         self._t_zero = state.t - state.step * scene.dt
         self._worst = -1 if state.tally is None else state.tally.overlap_grain
-        fluid = state.fluid
-        self._sampled = None if fluid is None else fluid.sampled.copy()
-        self._left = np.zeros((self._n, N_IMPULSE))  # impulse of grains that left since the last exchange
-        if fluid is not None:
-            self._left[~there] = fluid.impulse[~there]
         if not len(self._ids):
             self._forget()
             self._inner = None
@@ -79,21 +77,15 @@ class GrainPool:
         self._engine.load(self._inner, self._state_of(state))
 
     def set_fluid(self, sampled: Floats) -> None:
-        """Set the water at every grain, also at those that are not there."""
-        self._sampled = sampled.copy()
-        self._left[:] = 0.0
-        if self._inner is not None:
-            self._engine.set_fluid(np.ascontiguousarray(sampled[self._ids]))
+        """Refuse: there is no column of water."""
+        raise ValueError("the scene has no column of water: water.profile is not COLUMN")
 
     def kinematics(self) -> tuple[Floats, Floats, Floats]:
-        """Centres [m], velocities [m/s] and impulse from the fluid, by id; absent grains are far below."""
-        x, v, impulse = np.zeros((self._n, 3)), np.zeros((self._n, 3)), self._left.copy()
-        x[:, 2] = AWAY
+        """Centres [m] and velocities [m/s] by id, nan for grains that are not there; no impulse."""
+        x, v = np.full((self._n, 3), np.nan), np.full((self._n, 3), np.nan)
         if self._inner is not None:
-            x[self._ids], v[self._ids], inner = self._engine.kinematics()
-            if len(inner):
-                impulse[self._ids] = inner
-        return x, v, impulse
+            x[self._ids], v[self._ids], _ = self._engine.kinematics()
+        return x, v, np.zeros((0, 3))
 
     def advance(self, n_steps: int) -> Flags:
         """Do n_steps steps, fewer if a fault stops the run."""
@@ -106,35 +98,24 @@ class GrainPool:
     def grains(self) -> State:
         """Positions and motion of all grains; nan for those that are not there."""
         inner = self._engine.grains() if self._inner is not None else None
-        rows = {name: np.full((self._n, 3), np.nan) for name in ("x", "v", "omega")}
+        x, v, omega = (np.full((self._n, 3), np.nan) for _ in range(3))
         image = np.zeros((self._n, 2), dtype=np.int32)
         step, t = self._step, self._t
         if inner is not None:
             step, t = inner.step, inner.t
-            for name, array in rows.items():
-                array[self._ids] = getattr(inner, name)
+            x[self._ids], v[self._ids], omega[self._ids] = inner.x, inner.v, inner.omega
             if len(inner.image):
                 image[self._ids] = inner.image
-        return State(**rows, step=step, t=t, image=image, present=self._there)
+        return State(x=x, v=v, omega=omega, step=step, t=t, image=image, present=self._there)
 
     def state(self) -> State:
         """Read-only snapshot of all grains."""
         if self._inner is None:
-            fluid = None if self._sampled is None else FluidAtGrains(self._sampled, self._left)
-            state = replace(self.grains(), tally=self._tally, fluid=fluid)
+            state = replace(self.grains(), tally=self._tally)
         else:
             inner = self._engine.state()
-            fluid = None
-            if inner.fluid is not None:
-                sampled = np.zeros((self._n, inner.fluid.sampled.shape[1]))
-                sampled = sampled if self._sampled is None else self._sampled.copy()
-                impulse = self._left.copy()
-                sampled[self._ids], impulse[self._ids] = inner.fluid.sampled, inner.fluid.impulse
-                fluid = FluidAtGrains(sampled, impulse)
-            state = replace(
-                self.grains(), contacts=self._contacts_out(inner.contacts), tally=self.tally(), fluid=fluid,
-                engine=inner.engine,
-            )  # fmt: skip
+            contacts = self._contacts_out(inner.contacts)
+            state = replace(self.grains(), contacts=contacts, tally=self.tally(), engine=inner.engine)
         make_read_only(state)
         return state
 
@@ -183,7 +164,7 @@ class GrainPool:
 
     def _state_of(self, state: State) -> State:
         """The state of the grains that are there, for the engine."""
-        ids, tally, fluid = self._ids, state.tally, state.fluid
+        ids, tally = self._ids, state.tally
         if tally is not None:
             grain = int(np.searchsorted(ids, tally.overlap_grain)) if tally.overlap_grain >= 0 else -1
             known = 0 <= grain < len(ids) and ids[grain] == tally.overlap_grain
@@ -197,7 +178,6 @@ class GrainPool:
             image=np.ascontiguousarray(state.image[ids]) if len(state.image) else state.image,
             contacts=self._contacts_in(state.contacts),
             tally=tally,
-            fluid=None if fluid is None else FluidAtGrains(fluid.sampled[ids], fluid.impulse[ids]),
             engine=state.engine,
         )
 

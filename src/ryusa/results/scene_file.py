@@ -39,8 +39,7 @@ def _scalars(scene: Scene) -> dict[str, Any]:
             value = getattr(scene, f.name)
             if f.name == _TRAFFIC and value is None:
                 continue
-            nested = f.name in {*_LAWS, _TRAFFIC} and value is not None
-            found[f.name] = asdict(value) if nested else value
+            found[f.name] = asdict(value) if f.name in {*_LAWS, _TRAFFIC} and value is not None else value
     if scene.contact.force == ContactForce.LINEAR:  # as before there were others: the digest stays
         found["contact"] = {key: one for key, one in found["contact"].items() if key not in ONLY_HERTZ}
     return found

@@ -43,7 +43,8 @@ class Neighbours:
         axes = [k for k in range(3) if k == 2 or not math.isfinite(scene.period[k])]
 
         def near(rows: Floats) -> NDArray[np.bool_]:
-            return ((rows[:, axes] > low[axes]) & (rows[:, axes] < high[axes])).all(axis=1)
+            inside = (rows[:, axes] > low[axes]) & (rows[:, axes] < high[axes])
+            return np.asarray(inside.all(axis=1))
 
         free, fixed = np.flatnonzero(there), np.flatnonzero(scene.fixed_active)
         free = free[near(x[free])]

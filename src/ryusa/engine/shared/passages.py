@@ -17,10 +17,9 @@ from numpy.typing import NDArray
 
 from ryusa.engine.shared.contact_history import SpringEnergies, energies_of_springs, forces_of_contacts
 from ryusa.engine.shared.contact_records import closed_records, sorted_events
-from ryusa.model import FluidAtGrains, Scene, State, Tally, Term
+from ryusa.model import Scene, State, Tally, Term
 from ryusa.model.arrays import Bools, Floats
 from ryusa.model.contacts import N_EVENT
-from ryusa.model.fluid import DRAG, SUBMERGED
 from ryusa.model.scene import EventRule
 from ryusa.model.tally import N_TERM, PENDING
 
@@ -66,18 +65,13 @@ def removed(scene: Scene, state: State, ids: Ints) -> tuple[State, np.ndarray]:
     rows = closed_records(state, places) if recorded else np.zeros((0, N_EVENT))
     tally = _less(scene, state, ids, leaves, places)
     kept = replace(held, **{name: array[~touches] for name, array in vars(held).items()})
-    fluid = state.fluid
-    if fluid is not None:  # what they took since the last exchange is still owed by the water
-        impulse = fluid.impulse.copy()
-        impulse[ids, DRAG] = 0.0
-        fluid = FluidAtGrains(fluid.sampled, impulse)
     x, v, omega = (array.copy() for array in (state.x, state.v, state.omega))
     x[ids] = v[ids] = omega[ids] = np.nan
     image = state.image.copy()
     if len(image):
         image[ids] = 0
     state = replace(
-        state, x=x, v=v, omega=omega, image=image, contacts=kept, tally=tally, fluid=fluid, engine=None,
+        state, x=x, v=v, omega=omega, image=image, contacts=kept, tally=tally, engine=None,
         present=everywhere(state) & ~leaves,
     )  # fmt: skip
     return state, sorted_events(rows)
@@ -118,7 +112,7 @@ def _less(scene: Scene, state: State, ids: Ints, leaves: Bools, places: Ints) ->
         to_partners = 0.5 * dt * float(np.sum(force[stays] * state.v[stays]))
         if scene.rotation:
             to_partners += 0.5 * dt * float(np.sum(torque[stays] * state.omega[stays]))
-    v, weight, m = state.v[ids], *_weight_and_mass(scene, state, ids)
+    v, weight, m = state.v[ids], *_weight_and_mass(scene, ids)
     before = v - dt * (weight + force[ids]) / m[:, None]
     kinetic = 0.5 * float(np.sum(m[:, None] * v * before))
     spin = 0.0
@@ -131,18 +125,16 @@ def _less(scene: Scene, state: State, ids: Ints, leaves: Bools, places: Ints) ->
 
 def _more(scene: Scene, state: State, ids: Ints) -> Tally | None:
     """The account with the grains of some ids, which have just been put in."""
-    v, weight, m = state.v[ids], *_weight_and_mass(scene, state, ids)
+    v, weight, m = state.v[ids], *_weight_and_mass(scene, ids)
     after = v + scene.dt * weight / m[:, None]
     kinetic = 0.5 * float(np.sum(m[:, None] * v * after))
     spin = 0.5 * float(np.sum(scene.inertia[ids, None] * state.omega[ids] ** 2)) if scene.rotation else 0.0
     return _entered(state, kinetic, spin, _height(scene, state, ids, state.x[ids]), _NO_SPRINGS, 0.0)
 
 
-def _weight_and_mass(scene: Scene, state: State, ids: Ints) -> tuple[Floats, Floats]:
-    """Weight less buoyancy [N], shape (n, 3), and mass with added mass [kg]; of dry parts in full."""
-    under = np.ones(len(ids)) if state.fluid is None else state.fluid.sampled[ids, SUBMERGED]
-    heavy = scene.m_weight[ids] + (1.0 - under) * (scene.m[ids] - scene.m_weight[ids])
-    return heavy[:, None] * scene.gravity, scene.m[ids] + under * scene.m_added[ids]
+def _weight_and_mass(scene: Scene, ids: Ints) -> tuple[Floats, Floats]:
+    """Weight less buoyancy [N], shape (n, 3), and mass with added mass [kg]."""
+    return scene.m_weight[ids, None] * scene.gravity, scene.m[ids] + scene.m_added[ids]
 
 
 def _height(scene: Scene, state: State, ids: Ints, x: Floats) -> float:
