@@ -7,6 +7,7 @@ from ryusa.model.fluid import CouplingState, FluidAtGrains
 from ryusa.model.scene import ContactLaw, RollingLaw, Scene, Water
 from ryusa.model.state import State
 from ryusa.model.tally import Tally, Term
+from ryusa.model.walls import FaceKind, Walls
 
 __all__ = [
     "EVENT",
@@ -16,12 +17,14 @@ __all__ = [
     "Contacts",
     "CouplingState",
     "EngineBlock",
+    "FaceKind",
     "FluidAtGrains",
     "RollingLaw",
     "Scene",
     "State",
     "Tally",
     "Term",
+    "Walls",
     "Water",
     "WaterState",
 ]

@@ -376,8 +376,8 @@ def read_part(path: Path, first: int, n_grain: int, files: OpenFiles) -> Part:
             shape = (k, n_grain, *tail) if name in schema.PER_GRAIN else (k,)
             _check(plain_dataset(file, name, path), shape, dtype, path)
         tally = plain_dataset(file, "tally", path)
-        earlier = tally.dtype == schema.BEFORE_FILMS
-        _check(tally, (k,), schema.BEFORE_FILMS if earlier else schema.TALLY, path)
+        kinds = (schema.BEFORE_FILMS, schema.BEFORE_WALLS)
+        _check(tally, (k,), next((one for one in kinds if one == tally.dtype), schema.TALLY), path)
         contacts = plain_dataset(file, "contacts", path)
         _check(contacts, (contacts.shape[0] if contacts.ndim == 1 else -1,), EVENT, path)
         end, tail = read_integer(file, schema.END_STEP, path), read_integer(file, schema.TAIL, path)

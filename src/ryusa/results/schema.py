@@ -82,11 +82,14 @@ TALLY = np.dtype(
     ]
 )
 
-BEFORE_FILMS = np.dtype([(name, TALLY[name]) for name in TALLY.names or () if name != Term.FILM.name.lower()])
+BEFORE_WALLS = np.dtype([(name, TALLY[name]) for name in TALLY.names or () if name != Term.WALL.name.lower()])
+BEFORE_FILMS = np.dtype(
+    [(name, TALLY[name]) for name in BEFORE_WALLS.names or () if name != Term.FILM.name.lower()]
+)
 
 
 def whole(tally: NDArray[np.void]) -> NDArray[np.void]:
-    """Convert rows to dtype TALLY; in folders older than the films of water their term is set to zero."""
+    """Convert rows to dtype TALLY; a term that an earlier version lacks is set to zero."""
     if tally.dtype == TALLY:
         return tally
     rows = np.zeros(tally.shape, TALLY)

@@ -12,7 +12,7 @@ from ryusa.engine.shared.layout import aligned
 
 
 class GrainArrays(NamedTuple):
-    """Grains by place. n free grains, n_solid with the fixed ones, n_total with the planes.
+    """Grains by place. n free grains, n_solid with the fixed ones, n_total with planes and faces.
 
     Vectors lie in rows of four doubles, a whole vector register; the fourth column is named with each.
     """
@@ -72,13 +72,18 @@ class CandidateArrays(NamedTuple):
     touching: Any  # state of the pair (shared/contact_instants.py), 0 where the row holds nothing
     eta: Any  # dashpots and stiffnesses (shared/memory_rows.py); one row for all where they are alike
     rows: Any  # memory (shared/memory_rows.py), (n_near, width); it and `eta` hold where they touch
+    # only in scenes with walls, else of length 0
+    met: Any  # how a grain and a face meet (faces.py), (n_near, N_MET)
+    face: Any  # numbers of the candidates of each block that are faces, from first[b] on, (n_near,)
+    face_count: Any  # how many, (n_block,)
 
 
 class WallArrays(NamedTuple):
-    """Planes."""
+    """Planes and faces."""
 
     normals: Any  # (n_plane, 3)
     points: Any  # [m], (n_plane, 3)
+    faces: Any  # FaceArrays (faces.py), None in scenes without walls
 
 
 class AccountArrays(NamedTuple):
@@ -87,6 +92,7 @@ class AccountArrays(NamedTuple):
     ended: Any  # records of contacts that parted, (n_block, slots, N_EVENT)
     terms: Any  # energy account [J], (n_block, N_ACCOUNT), columns of model.tally.Term
     stats: Any  # statistics, (n_block, N_STATISTIC), columns of shared/block_statistics.py
+    walls: Any  # impulses on walls since the start, (n_block, n_wall, N_IMPULSE), columns of model.walls
 
 
 class Workspace(NamedTuple):

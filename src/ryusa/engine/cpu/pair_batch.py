@@ -14,6 +14,7 @@ import math
 from typing import Any
 
 from ryusa.engine.cpu import batch_layout as B
+from ryusa.engine.cpu import faces as F
 from ryusa.engine.cpu.contact_rows import begin_row, dashpot_row, lane_to_row, row_to_lane
 from ryusa.engine.cpu.cutoff import mark_within_cutoff, set_separation
 from ryusa.engine.cpu.simd.vec4 import add4, copy4, read4, subtract4, with_fourth, write4
@@ -36,16 +37,19 @@ from ryusa.laws.geometry import wrap
 
 @inner(fastmath=FAST, forceinline=True)
 def filter_pairs(
-    plane_case: int, reach_on: float, first: int, m: int, waiting: int, n_solid: int, c: Any, x: Any,
-    i_of: Any, j_of: Any, touching: Any, points: Any, normals: Any, separation: Any, inside: Any,
-    selected: Any,
+    plane_case: int, walled: int | None, reach_on: float, first: int, m: int, waiting: int, n_solid: int,
+    c: Any, x: Any, i_of: Any, j_of: Any, touching: Any, points: Any, normals: Any, met: Any, separation: Any,
+    inside: Any, selected: Any,
 ) -> int:  # fmt: skip
     """Select those of m <= LANES candidates that touch or did in the last step; returns how many.
 
     `selected` gets their numbers; `separation` and `inside` are workspace.
     """
     for l in range(m):
-        set_separation(l, i_of[first + l], j_of[first + l], n_solid, x, points, normals, separation)
+        if walled is not None and j_of[first + l] >= n_solid + len(points):
+            copy4(separation, 4 * l, met, F.N_MET * (first + l))
+        else:
+            set_separation(l, i_of[first + l], j_of[first + l], n_solid, x, points, normals, separation)
     mark_within_cutoff(plane_case, reach_on, m, c, separation, inside)
     for l in range(m):  # no branch: which pairs touch is not predictable
         selected[waiting] = first + l
@@ -55,9 +59,9 @@ def filter_pairs(
 
 @inner(fastmath=FAST, forceinline=True)
 def gather(
-    rotation: int, exact: int, short: int | None, m: int, selected: Any, n_solid: int, c: Any, mass: Any,
-    inertia: Any, x: Any, v: Any, w: Any, points: Any, normals: Any, i_of: Any, j_of: Any, touching: Any,
-    eta: Any, rows: Any, batch: Any,
+    rotation: int, exact: int, short: int | None, walled: int | None, m: int, selected: Any, n_solid: int,
+    c: Any, mass: Any, inertia: Any, x: Any, v: Any, w: Any, points: Any, normals: Any, i_of: Any, j_of: Any,
+    touching: Any, eta: Any, rows: Any, met: Any, batch: Any,
 ) -> int:  # fmt: skip
     """Copy the first m selected pairs to as many lanes; returns the number of lanes to compute.
 
@@ -68,7 +72,10 @@ def gather(
         i, j = i_of[k], j_of[k]
         if not touching[k]:
             begin_row(k, i, j, rotation, exact, c, mass, x, inertia, eta, rows)
-        set_separation(B.SEPARATION // 4 + l, i, j, n_solid, x, points, normals, batch)
+        if walled is not None and j >= n_solid + len(points):
+            copy4(batch, B.SEPARATION + 4 * l, met, F.N_MET * k)
+        else:
+            set_separation(B.SEPARATION // 4 + l, i, j, n_solid, x, points, normals, batch)
         e = dashpot_row(k, eta)
         write4(
             batch,

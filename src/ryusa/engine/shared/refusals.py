@@ -4,11 +4,14 @@ from typing import get_type_hints
 
 import numpy as np
 
+from ryusa.engine.shared.parameters import LARGEST_DISPLACEMENT
+from ryusa.engine.shared.wall_pose import largest_speed
 from ryusa.errors import NotANumber
 from ryusa.laws._family import Family
 from ryusa.laws.families import Rebound
-from ryusa.model import Scene, State
+from ryusa.model import Scene, State, Walls
 from ryusa.model.scene import Damping
+from ryusa.model.walls import SPIN
 
 _SHORTEST_PERIOD = 3.0  # in diameters: below, a pair could touch through two images
 
@@ -31,7 +34,29 @@ def refusals(scene: Scene) -> tuple[str, ...]:
     for k, axis in enumerate("xy"):
         if np.isfinite(scene.period[k]) and np.any(scene.plane_normal[scene.plane_active, k] != 0.0):
             reasons.append(f"a plane stands across the periodic direction {axis}")
+    if scene.walls is not None:
+        reasons += _walls(scene, scene.walls)
     return tuple(reasons)
+
+
+def _walls(scene: Scene, walls: Walls) -> list[str]:
+    """Reasons why the walls of a scene cannot be simulated."""
+    reasons: list[str] = []
+    if scene.plane_case:
+        reasons.append("walls need motion in space: a plane scene has none but planes")
+    for k, axis in enumerate("xy"):
+        across = np.delete(walls.motion[:, SPIN : SPIN + 3], k, axis=1)
+        for w in np.flatnonzero(walls.active & np.any(across != 0.0, axis=1)):
+            if np.isfinite(scene.period[k]):
+                reasons.append(f"wall '{walls.names[w]}' turns across the periodic direction {axis}")
+    smallest = float(np.concatenate([scene.d, scene.d_fixed]).min(initial=np.inf))
+    step, speed = LARGEST_DISPLACEMENT * smallest, largest_speed(walls)
+    if speed * scene.dt > step:
+        reasons.append(
+            f"walls move at up to {speed:.3g} m/s, {speed * scene.dt / smallest:.2g} diameters in one step: at most "
+            f"{LARGEST_DISPLACEMENT:g}; a smaller time step is needed"
+        )
+    return reasons
 
 
 def check_state(scene: Scene, state: State) -> None:

@@ -1,0 +1,238 @@
+"""Faces of walls: how they lie in memory, their nearest points, and the cells in which they are found."""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ryusa.engine.shared.kernel import FAST, inner
+from ryusa.engine.shared.wall_pose import N_POSE, NOW, face_boxes, largest_speed
+from ryusa.laws.walls import nearest_on_cylinder, nearest_on_disc, nearest_on_triangle
+from ryusa.model.scene import Floats
+from ryusa.model.walls import FaceKind, Walls
+
+# columns of a face: a corner or centre, two edges or axes, the unit normal, and
+A, EDGE_1, EDGE_2, NORMAL = 0, 3, 6, 9
+KIND, S_11, S_12, S_22 = 12, 13, 14, 15  # products of the edges; radius and length in S_11 and S_12
+N_FACE = 16
+TRIANGLE, DISC, CYLINDER = int(FaceKind.TRIANGLE), int(FaceKind.DISC), int(FaceKind.CYLINDER)
+_CELLS = 4.0  # cells of a grid over the faces in it
+
+# columns of CandidateArrays.met: how a grain and a face meet in this step
+GAP = 0  # separation from the grain to its mirror image in the face [m], and its diameter
+DRIFT = 4  # velocity of the mirror image, which moves with the wall [m/s]
+POINT = 7  # nearest point, in the frame of the wall [m]
+AWAY = 10  # unit normal from the face to the grain, in the world [-]
+DISTANCE = 13  # from the centre of the grain [m]
+BY = 14  # the candidate whose contact takes the place of this one, or -1
+SLOT = 15  # number of the wall
+N_MET = 16
+
+
+class FaceArrays(NamedTuple):
+    """Faces of all walls, each in the frame of its wall, and the grid of each wall."""
+
+    first: int  # id of the first face
+    rows: Any  # columns as above, (n_face, N_FACE)
+    centre: Any  # middle of the box round each face [m], (n_face, 3)
+    wall: Any  # (n_face,)
+    surface: Any  # (n_face,)
+    motion: Any  # model.walls, (n_wall, N_MOTION)
+    poses: Any  # shared/wall_pose.py, (n_wall, N_POSE); every thread writes the same numbers
+    speed: float  # bound of the speed of any wall [m/s]
+    grid_low: Any  # lowest corner of the grid of each wall [m], (n_wall, 3)
+    grid_width: Any  # its cells [m], (n_wall, 3)
+    grid_dims: Any  # (n_wall, 3)
+    grid_first: Any  # place of the first cell of each wall in `cell_first`, (n_wall,)
+    cell_first: Any  # faces of each cell are cell_face[cell_first[c]:cell_first[c + 1]]
+    cell_face: Any
+    cells_low: Any  # lowest and highest cell of each face, (n_face, 3) each
+    cells_high: Any
+
+
+def face_arrays(walls: Walls, first: int) -> FaceArrays:
+    """Arrays of the faces of a scene whose first face has the id `first`."""
+    n, n_wall = walls.n_face, walls.n_wall
+    low, high = face_boxes(walls.face, walls.kind)
+    dims, grid_low, width = np.ones((n_wall, 3), np.int64), np.zeros((n_wall, 3)), np.ones((n_wall, 3))
+    cells_low, cells_high = np.zeros((n, 3), np.int64), np.zeros((n, 3), np.int64)
+    for w in range(n_wall):
+        mine = np.flatnonzero(walls.wall == w)
+        if not (walls.active[w] and len(mine)):
+            continue
+        bottom, top = low[mine].min(axis=0), high[mine].max(axis=0)
+        size = top - bottom
+        cell = max(float(np.prod(np.maximum(size, 1e-3 * size.max())) / (_CELLS * len(mine))) ** (1 / 3), 1e-12)
+        while np.prod(np.floor(size / cell) + 1.0) > _CELLS * len(mine) + 64.0:
+            cell *= 1.26
+        dims[w], grid_low[w], width[w] = np.floor(size / cell).astype(np.int64) + 1, bottom, cell
+        cells_low[mine] = np.clip((low[mine] - bottom) // cell, 0, dims[w] - 1)
+        cells_high[mine] = np.clip((high[mine] - bottom) // cell, 0, dims[w] - 1)
+    cells = np.prod(dims, axis=1)
+    grid_first = np.concatenate([[0], np.cumsum(cells)])
+    count, found = np.zeros(grid_first[-1] + 1, np.int64), []
+    for f in np.flatnonzero(walls.face_active):
+        w = walls.wall[f]
+        axes = [np.arange(a, b + 1) for a, b in zip(cells_low[f], cells_high[f], strict=True)]
+        at = grid_first[w] + ((axes[0][:, None] * dims[w, 1] + axes[1])[:, :, None] * dims[w, 2] + axes[2]).ravel()
+        found.append((at, np.full(len(at), f)))
+    every = np.concatenate([at for at, _ in found]) if found else np.zeros(0, np.int64)
+    faces = np.concatenate([f for _, f in found]) if found else np.zeros(0, np.int64)
+    np.add.at(count, every + 1, 1)
+    return FaceArrays(
+        first, _rows(walls), 0.5 * (low + high), walls.wall.astype(np.int64), walls.surface.astype(np.int64),
+        np.array(walls.motion), np.zeros((n_wall, N_POSE)), largest_speed(walls), grid_low, width, dims,
+        grid_first[:-1].copy(), np.cumsum(count), faces[np.argsort(every, kind="stable")], cells_low, cells_high,
+    )  # fmt: skip
+
+
+def _rows(walls: Walls) -> Floats:
+    rows = np.zeros((walls.n_face, N_FACE))
+    rows[:, :9], rows[:, KIND] = walls.face, walls.kind
+    b, c = walls.face[:, 3:6], walls.face[:, 6:9]
+    flat = walls.kind == TRIANGLE
+    across = np.cross(b, c)
+    rows[:, NORMAL : NORMAL + 3] = np.where(flat[:, None], across, b)
+    length = np.linalg.norm(rows[:, NORMAL : NORMAL + 3], axis=1)
+    rows[:, NORMAL : NORMAL + 3] /= length[:, None]
+    rows[:, S_11] = np.where(flat, np.sum(b * b, axis=1), c[:, 0])
+    rows[:, S_12] = np.where(flat, np.sum(b * c, axis=1), c[:, 1])
+    rows[:, S_22] = np.sum(c * c, axis=1)
+    for f in np.flatnonzero(~flat):  # some direction across the axis, for a point on it
+        axis = rows[f, NORMAL : NORMAL + 3]
+        side = np.cross(axis, np.eye(3)[int(np.abs(axis).argmin())])
+        rows[f, EDGE_2 : EDGE_2 + 3] = side / np.linalg.norm(side)
+    return rows
+
+
+@inner(fastmath=FAST)
+def in_frame(w: int, at: int, x: float, y: float, z: float, poses: Any) -> tuple[float, float, float]:
+    """A point of the world in the frame of wall w, whose pose is in columns from `at` on."""
+    p = poses[w]
+    x, y, z = x - p[at + 9], y - p[at + 10], z - p[at + 11]
+    return (
+        p[at] * x + p[at + 3] * y + p[at + 6] * z,
+        p[at + 1] * x + p[at + 4] * y + p[at + 7] * z,
+        p[at + 2] * x + p[at + 5] * y + p[at + 8] * z,
+    )
+
+
+@inner(fastmath=FAST)
+def in_world(w: int, at: int, x: float, y: float, z: float, poses: Any) -> tuple[float, float, float]:
+    """A point of the frame of wall w in the world."""
+    p = poses[w]
+    return (
+        p[at] * x + p[at + 1] * y + p[at + 2] * z + p[at + 9],
+        p[at + 3] * x + p[at + 4] * y + p[at + 5] * z + p[at + 10],
+        p[at + 6] * x + p[at + 7] * y + p[at + 8] * z + p[at + 11],
+    )
+
+
+@inner(fastmath=FAST)
+def nearest_image(f: int, x: float, y: float, l_x: float, l_y: float, centre: Any) -> tuple[float, float]:
+    """x and y of the image of a point of a frame that is nearest to face f; axes of the frame do not turn."""
+    if l_x < math.inf:
+        x -= math.floor((x - centre[f, 0]) / l_x + 0.5) * l_x
+    if l_y < math.inf:
+        y -= math.floor((y - centre[f, 1]) / l_y + 0.5) * l_y
+    return x, y
+
+
+@inner(fastmath=FAST)
+def nearest_of_face(
+    f: int, x: float, y: float, z: float, rows: Any
+) -> tuple[float, float, float, float, float, float, float]:
+    """Nearest point of face f [m], unit normal from there to the point given, and their distance [m].
+
+    Over the face the normal is that of the face to the last bit, and the distance as to a plane.
+    """
+    g = rows[f]
+    d_x, d_y, d_z = x - g[A], y - g[A + 1], z - g[A + 2]
+    n_x, n_y, n_z = g[NORMAL], g[NORMAL + 1], g[NORMAL + 2]
+    along = d_x * n_x + d_y * n_y + d_z * n_z
+    inside, kind = 0.0, g[KIND]
+    if kind == TRIANGLE:
+        v, w, inside = nearest_on_triangle(
+            d_x * g[EDGE_1] + d_y * g[EDGE_1 + 1] + d_z * g[EDGE_1 + 2],
+            d_x * g[EDGE_2] + d_y * g[EDGE_2 + 1] + d_z * g[EDGE_2 + 2],
+            g[S_11], g[S_12], g[S_22],
+        )  # fmt: skip
+        c_x = g[A] + v * g[EDGE_1] + w * g[EDGE_2]
+        c_y = g[A + 1] + v * g[EDGE_1 + 1] + w * g[EDGE_2 + 1]
+        c_z = g[A + 2] + v * g[EDGE_1 + 2] + w * g[EDGE_2 + 2]
+    else:
+        a_x, a_y, a_z = d_x - along * n_x, d_y - along * n_y, d_z - along * n_z
+        away = math.sqrt(a_x * a_x + a_y * a_y + a_z * a_z)
+        if kind == DISC:
+            share = nearest_on_disc(away, g[S_11])
+            inside = 1.0 if share == 1.0 else 0.0
+            c_x, c_y, c_z = g[A] + share * a_x, g[A + 1] + share * a_y, g[A + 2] + share * a_z
+        else:
+            if away == 0.0:  # on the axis every direction is as good
+                a_x, a_y, a_z, away = g[EDGE_2], g[EDGE_2 + 1], g[EDGE_2 + 2], 1.0
+            h, share = nearest_on_cylinder(along, away, g[S_11], g[S_12])
+            c_x = g[A] + h * n_x + share * a_x
+            c_y = g[A + 1] + h * n_y + share * a_y
+            c_z = g[A + 2] + h * n_z + share * a_z
+    if inside != 0.0:
+        side = -1.0 if along < 0.0 else 1.0
+        return c_x, c_y, c_z, side * n_x, side * n_y, side * n_z, side * along
+    d_x, d_y, d_z = x - c_x, y - c_y, z - c_z
+    distance = math.sqrt(d_x * d_x + d_y * d_y + d_z * d_z)
+    if distance > 0.0:
+        n_x, n_y, n_z = d_x / distance, d_y / distance, d_z / distance
+    return c_x, c_y, c_z, n_x, n_y, n_z, distance
+
+
+@inner()
+def _cell(x: float, low: float, width: float, n: int) -> int:
+    return int(min(max(math.floor((x - low) / width), -1.0), float(n)))
+
+
+@inner(fastmath=FAST)
+def append_faces(
+    x: float, y: float, z: float, reach: float, l_x: float, l_y: float, faces: FaceArrays, partners: Any, used: int
+) -> int:
+    """Append the faces nearer than `reach` [m] to a point; the new count, or -1 where `partners` is too short.
+
+    The order follows from the point alone: images, cells, then faces in the order of their ids. A face in
+    several cells is taken in the lowest that both it and the box round the point have.
+    """
+    images_x, images_y = 1 if l_x == math.inf else 3, 1 if l_y == math.inf else 3
+    begin = used
+    for w in range(len(faces.motion)):
+        f_x, f_y, f_z = in_frame(w, NOW, x, y, z, faces.poses)
+        n_x, n_y, n_z = faces.grid_dims[w, 0], faces.grid_dims[w, 1], faces.grid_dims[w, 2]
+        for image in range(images_x * images_y):
+            q_x = f_x if images_x == 1 else f_x + (image // images_y - 1) * l_x
+            q_y = f_y if images_y == 1 else f_y + (image % images_y - 1) * l_y
+            low, width = faces.grid_low[w], faces.grid_width[w]
+            a_0, a_1 = _cell(q_x - reach, low[0], width[0], n_x), _cell(q_x + reach, low[0], width[0], n_x)
+            b_0, b_1 = _cell(q_y - reach, low[1], width[1], n_y), _cell(q_y + reach, low[1], width[1], n_y)
+            c_0, c_1 = _cell(f_z - reach, low[2], width[2], n_z), _cell(f_z + reach, low[2], width[2], n_z)
+            a_0, b_0, c_0 = max(a_0, 0), max(b_0, 0), max(c_0, 0)
+            for a in range(a_0, min(a_1, n_x - 1) + 1):
+                for b in range(b_0, min(b_1, n_y - 1) + 1):
+                    for c in range(c_0, min(c_1, n_z - 1) + 1):
+                        cell = faces.grid_first[w] + (a * n_y + b) * n_z + c
+                        for k in range(faces.cell_first[cell], faces.cell_first[cell + 1]):
+                            f = faces.cell_face[k]
+                            if (
+                                a != max(a_0, faces.cells_low[f, 0])
+                                or b != max(b_0, faces.cells_low[f, 1])
+                                or c != max(c_0, faces.cells_low[f, 2])
+                            ):
+                                continue
+                            distance = nearest_of_face(f, q_x, q_y, f_z, faces.rows)[6]
+                            if distance >= reach:
+                                continue
+                            known = False
+                            for p in range(begin, used):
+                                known = known or partners[p] == faces.first + f
+                            if known:
+                                continue
+                            if used >= len(partners):
+                                return -1
+                            partners[used] = faces.first + f
+                            used += 1
+    return used
