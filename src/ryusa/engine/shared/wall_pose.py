@@ -37,10 +37,8 @@ def pose_at(w: int, t: float, motion: Any, poses: Any, at: int) -> None:
     since = t - row[BEGIN]
     s_x, s_y, s_z = row[SPIN], row[SPIN + 1], row[SPIN + 2]
     rate = math.sqrt(s_x * s_x + s_y * s_y + s_z * s_z)
-    for k in range(9):
-        poses[w, at + k] = row[TURN + k]
-    for k in range(3):
-        poses[w, at + 9 + k] = row[SHIFT + k]
+    # every number is written once: another thread, that writes the same ones, may be reading already
+    q_x, q_y, q_z = row[SHIFT], row[SHIFT + 1], row[SHIFT + 2]
     if rate > 0.0:
         a_x, a_y, a_z, angle = s_x / rate, s_y / rate, s_z / rate, rate * since
         for k in range(3):
@@ -48,12 +46,15 @@ def pose_at(w: int, t: float, motion: Any, poses: Any, at: int) -> None:
                 row[TURN + k], row[TURN + 3 + k], row[TURN + 6 + k], a_x, a_y, a_z, angle
             )
         p_x, p_y, p_z = row[AXIS_POINT], row[AXIS_POINT + 1], row[AXIS_POINT + 2]
-        q_x, q_y, q_z = turned_about(
-            row[SHIFT] - p_x, row[SHIFT + 1] - p_y, row[SHIFT + 2] - p_z, a_x, a_y, a_z, angle
-        )
-        poses[w, at + 9], poses[w, at + 10], poses[w, at + 11] = p_x + q_x, p_y + q_y, p_z + q_z
-    for k in range(3):
-        poses[w, at + 9 + k] += row[VELOCITY + k] * since + swing(row[SWING + k], row[RATE], since, row[PHASE])
+        q_x, q_y, q_z = turned_about(q_x - p_x, q_y - p_y, q_z - p_z, a_x, a_y, a_z, angle)
+        q_x, q_y, q_z = p_x + q_x, p_y + q_y, p_z + q_z
+    else:
+        for k in range(9):
+            poses[w, at + k] = row[TURN + k]
+    rate, phase = row[RATE], row[PHASE]
+    poses[w, at + 9] = q_x + row[VELOCITY] * since + swing(row[SWING], rate, since, phase)
+    poses[w, at + 10] = q_y + row[VELOCITY + 1] * since + swing(row[SWING + 1], rate, since, phase)
+    poses[w, at + 11] = q_z + row[VELOCITY + 2] * since + swing(row[SWING + 2], rate, since, phase)
 
 
 @kernel(nogil=True)
