@@ -9,9 +9,27 @@ from numpy.typing import ArrayLike
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
+from ryusa.build.overlaps import TOLERANCE
+from ryusa.build.overlaps import name as name_of
+from ryusa.build.placement import ROOM_BELOW, Placement
+from ryusa.casefile.case import Case
+from ryusa.casefile.walls import WallSection, mesh_of
+from ryusa.errors import CaseError
+from ryusa.laws.walls import nearest_on_cylinder, nearest_on_disc, nearest_on_triangle
 from ryusa.model import FaceKind, Scene, Walls
 from ryusa.model.scene import Floats
-from ryusa.model.walls import AXIS_POINT, PHASE, RATE, SPIN, SWING, VELOCITY, Ints, at_rest
+from ryusa.model.walls import (
+    AXIS_POINT,
+    PHASE,
+    RATE,
+    SPIN,
+    SWING,
+    VELOCITY,
+    Ints,
+    at_rest,
+    box_of,
+    face_boxes,
+)
 
 FOLD = math.radians(30.0)  # angle up to which two triangles are one smooth surface
 _WELD = 1e-9  # of the size of a mesh: nearer corners are one
@@ -189,3 +207,95 @@ def _split(wall: SolidWall, period: tuple[float, float]) -> dict[str, np.ndarray
         halves = [np.hstack([first, middle - first, third - first]), np.hstack([middle, second - middle, third - middle])]
         face = np.vstack([face[~long], *halves])
         kind = np.concatenate([kind[~long], np.zeros(2 * len(a), np.int64)])
+
+
+def walls_of(case: Case) -> tuple[SolidWall, ...]:
+    """Walls of a case, meshes read from their files."""
+    return tuple(_wall_of(case, wall, f"walls.{k}") for k, wall in enumerate(case.walls))
+
+
+def _wall_of(case: Case, wall: WallSection, key: str) -> SolidWall:
+    at = wall.at or (0.0, 0.0, 0.0)
+    if wall.shape == "mesh":
+        made = triangles(wall.name, mesh_of(case, wall, key).corners)
+    elif wall.sides is not None:
+        made = rectangle(wall.name, at, *wall.sides)
+    elif wall.axis is not None:
+        closed = (wall.ends in {"closed", "first"}, wall.ends in {"closed", "last"})
+        made = cylinder(wall.name, at, wall.axis, wall.radius or 0.0, closed=closed)
+    else:
+        made = disc(wall.name, at, wall.normal or (0.0, 0.0, 1.0), wall.radius or 0.0)
+    motion = WallMotion(
+        velocity=wall.velocity or (0.0, 0.0, 0.0),
+        spin=wall.angular_velocity or (0.0, 0.0, 0.0),
+        axis_point=wall.axis_point or at,
+        amplitude=wall.amplitude or (0.0, 0.0, 0.0),
+        frequency=wall.frequency or 0.0,
+        phase=wall.phase,
+    )
+    return replace(made, motion=motion)
+
+
+def refuse_overlaps_with_walls(placement: Placement, walls: Sequence[SolidWall], key: str) -> None:
+    """Raise a `CaseError` that names a first grain and the wall that it overlaps most."""
+    from scipy.spatial import KDTree
+
+    if placement.allow_overlap or not walls or not len(placement.d):
+        return
+    tree, largest = KDTree(placement.x), 0.5 * float(placement.d.max())
+    for wall in walls:
+        low, high = face_boxes(wall.face, wall.kind)
+        near = tree.query_ball_point(0.5 * (low + high), 0.5 * np.linalg.norm(high - low, axis=1) + largest)
+        worst, grain = 0.0, -1
+        for f, some in enumerate(near):
+            found = np.array(some, dtype=np.int64)
+            inside = np.all((placement.x[found] > low[f] - largest) & (placement.x[found] < high[f] + largest), axis=1)
+            for k in found[inside]:
+                apart = distance_to_face(wall.face[f], int(wall.kind[f]), placement.x[k])
+                relative = 0.5 - apart / float(placement.d[k])
+                if relative > worst:
+                    worst, grain = relative, int(k)
+        if worst > TOLERANCE:
+            who = name_of(placement, grain)
+            text = f"first grains overlap: {who} and wall '{wall.name}' by {worst:.3g} d; move the wall or the grains"
+            raise CaseError(key, None, text)
+
+
+def distance_to_face(face: Floats, kind: int, x: Floats) -> float:
+    """Distance of a point from a face [m].
+
+    >>> distance_to_face(np.array([0.0, 0, 0, 0, 0, 1, 2, 3, 0]), FaceKind.CYLINDER, np.array([1.0, 0, 1]))
+    1.0
+    """
+    a, b, c = face[:3], face[3:6], face[6:9]
+    away = x - a
+    if kind == FaceKind.TRIANGLE:
+        v, w, _ = nearest_on_triangle(
+            float(away @ b), float(away @ c), float(b @ b), float(b @ c), float(c @ c)
+        )
+        return float(np.linalg.norm(away - v * b - w * c))
+    along = float(away @ b)
+    across = away - along * b
+    rho = float(np.linalg.norm(across))
+    if kind == FaceKind.DISC:
+        return float(np.linalg.norm(away - nearest_on_disc(rho, float(c[0])) * across))
+    if rho == 0.0:
+        return math.hypot(float(c[0]), along - min(max(along, 0.0), float(c[1])))
+    h, factor = nearest_on_cylinder(along, rho, float(c[0]), float(c[1]))
+    return float(np.linalg.norm(away - h * b - factor * across))
+
+
+def with_room(scene: Scene, low: bool, high: bool) -> Scene:
+    """The same scene with a default domain that has room for its walls, on the sides that are asked for."""
+    if scene.walls is None:
+        return scene
+    bottom, top = box_of(scene.walls, 0.0)
+    size = float((top - bottom).max())
+    below, above = bottom - ROOM_BELOW * float(scene.d.max(initial=0.0)) - size, top + size
+    if low:
+        least = tuple(min(a, float(b)) for a, b in zip(scene.world_low, below, strict=True))
+        scene = replace(scene, world_low=least)
+    if high:
+        most = tuple(max(a, float(b)) for a, b in zip(scene.world_high, above, strict=True))
+        scene = replace(scene, world_high=most)
+    return scene

@@ -22,6 +22,7 @@ from ryusa.casefile.record import check_frames, check_record, check_stop, check_
 from ryusa.casefile.section import Section, given
 from ryusa.casefile.time import RIVALS as TIME_RIVALS
 from ryusa.casefile.time import check_time
+from ryusa.casefile.walls import check_meshes, check_walls
 from ryusa.casefile.water.checks import check_drag_step, check_water
 from ryusa.casefile.water.schema import RIVALS as WATER_RIVALS
 from ryusa.errors import CaseError
@@ -55,6 +56,7 @@ def check(case: Case, data: dict[str, Any]) -> list[CaseError]:
         *check_rolling(case),
         *check_motion(case),
         *check_planes(case),
+        *check_walls(case),
         *check_builder(case),
         *check_timeline(case, data),
         *check_precision(case),
@@ -71,7 +73,9 @@ def check(case: Case, data: dict[str, Any]) -> list[CaseError]:
         *check_drag_step(case, derived),
     ]
     frames = [] if step else check_frames(case, derived, data)
-    return [*check_domain(case, derived), *step, *frames, *check_record(case, derived)]
+    return [
+        *check_domain(case, derived), *check_meshes(case, derived), *step, *frames, *check_record(case, derived)
+    ]  # fmt: skip
 
 
 def _rivals(case: Case) -> Iterator[CaseError]:

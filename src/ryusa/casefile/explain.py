@@ -12,6 +12,7 @@ from ryusa.casefile.laws import law_rows
 from ryusa.casefile.precision import precision_rows
 from ryusa.casefile.rows import ExplainRow
 from ryusa.casefile.time import time_rows
+from ryusa.casefile.walls import wall_rows
 from ryusa.casefile.water.rows import rotation_rows, water_rows
 
 
@@ -28,6 +29,7 @@ def explain(case: Case, derived: Derived | None = None) -> list[ExplainRow]:
         *grain_rows(case, found),
         *contact_rows(case, found),
         *damping_rows(case, found),
+        *wall_rows(case),
         *time_rows(case, found),
         *impact_rows(case, found),
         *water_rows(case, found, origin_of_u_star(case) if case.water is not None else ""),

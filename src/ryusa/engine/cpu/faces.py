@@ -6,10 +6,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ryusa.engine.shared.kernel import FAST, inner
-from ryusa.engine.shared.wall_pose import N_POSE, NOW, face_boxes, largest_speed
+from ryusa.engine.shared.wall_pose import N_POSE, NOW
 from ryusa.laws.walls import nearest_on_cylinder, nearest_on_disc, nearest_on_triangle
 from ryusa.model.scene import Floats
-from ryusa.model.walls import FaceKind, Walls
+from ryusa.model.walls import FaceKind, Walls, face_boxes, largest_speed
 
 # columns of a face: a corner or centre, two edges or axes, the unit normal, and
 A, EDGE_1, EDGE_2, NORMAL = 0, 3, 6, 9

@@ -5,13 +5,12 @@ from typing import get_type_hints
 import numpy as np
 
 from ryusa.engine.shared.parameters import LARGEST_DISPLACEMENT
-from ryusa.engine.shared.wall_pose import largest_speed
 from ryusa.errors import NotANumber
 from ryusa.laws._family import Family
 from ryusa.laws.families import Rebound
 from ryusa.model import Scene, State, Walls
 from ryusa.model.scene import Damping
-from ryusa.model.walls import SPIN
+from ryusa.model.walls import SPIN, largest_speed
 
 _SHORTEST_PERIOD = 3.0  # in diameters: below, a pair could touch through two images
 

@@ -3,25 +3,9 @@
 import math
 from typing import Any
 
-import numpy as np
-
 from ryusa.engine.shared.kernel import kernel
 from ryusa.laws.walls import swing, turned_about
-from ryusa.model.scene import Floats
-from ryusa.model.walls import (
-    AXIS_POINT,
-    BEGIN,
-    N_MOTION,
-    PHASE,
-    RATE,
-    SHIFT,
-    SPIN,
-    SWING,
-    TURN,
-    VELOCITY,
-    FaceKind,
-    Walls,
-)
+from ryusa.model.walls import AXIS_POINT, BEGIN, PHASE, RATE, SHIFT, SPIN, SWING, TURN, VELOCITY
 
 # Columns of a pose: world = turn . frame + shift, twelve numbers each.
 NOW, BEFORE, AFTER = 0, 12, 24
@@ -76,57 +60,3 @@ def set_poses(t: float, dt: float, motion: Any, poses: Any) -> None:
                 + row[VELOCITY + k] * since
                 + swing(row[SWING + k], row[RATE], since, row[PHASE])
             )
-
-
-def poses_of(walls: Walls, t: float, dt: float) -> Floats:
-    """Poses of walls at time t [s], columns as above, shape (n_wall, N_POSE)."""
-    poses = np.zeros((walls.n_wall, N_POSE))
-    set_poses(t, dt, np.array(walls.motion), poses)
-    return poses
-
-
-def carried_on(motion: Floats, t: float) -> Floats:
-    """The same motion, described from time t [s] on; shape (n_wall, N_MOTION)."""
-    later, poses = np.array(motion), np.zeros((len(motion), N_POSE))
-    set_poses(t, 0.0, later, poses)
-    rows = np.array(motion)
-    rows[:, PHASE] += rows[:, RATE] * (t - rows[:, BEGIN])
-    rows[:, TURN : TURN + 12] = poses[:, NOW : NOW + 12]
-    rows[:, AXIS_POINT : AXIS_POINT + 3] = poses[:, AXIS : AXIS + 3]
-    rows[:, BEGIN] = t
-    assert rows.shape[1] == N_MOTION
-    return rows
-
-
-def largest_speed(walls: Walls) -> float:
-    """Bound of the speed of any point of a wall that is there [m/s]; 0 where none moves."""
-    fastest = 0.0
-    for w in np.flatnonzero(walls.active & walls.moving()):
-        row, mine = walls.motion[w], walls.wall == w
-        spin = float(np.linalg.norm(row[SPIN : SPIN + 3]))
-        speed = float(np.linalg.norm(row[VELOCITY : VELOCITY + 3]))
-        speed += float(np.linalg.norm(row[SWING : SWING + 3])) * abs(float(row[RATE]))
-        if spin > 0.0 and mine.any():
-            turn = row[TURN : TURN + 9].reshape(3, 3)
-            low, high = face_boxes(walls.face[mine], walls.kind[mine])
-            corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)])
-            every = (low[:, None] + corners * (high - low)[:, None]).reshape(-1, 3)
-            arm = np.cross(every @ turn.T + row[SHIFT : SHIFT + 3] - row[AXIS_POINT : AXIS_POINT + 3],
-                           row[SPIN : SPIN + 3] / spin)  # fmt: skip
-            speed += spin * float(np.linalg.norm(arm, axis=1).max())
-        fastest = max(fastest, speed)
-    return fastest
-
-
-def face_boxes(face: Floats, kind: np.ndarray) -> tuple[Floats, Floats]:
-    """Lowest and highest corner of the box round each face [m], in its frame, (n_face, 3) each."""
-    a, b, c = face[:, :3], face[:, 3:6], face[:, 6:9]
-    low = np.minimum(a, np.minimum(a + b, a + c))
-    high = np.maximum(a, np.maximum(a + b, a + c))
-    round_ = kind > 0
-    across = np.sqrt(np.maximum(1.0 - b**2, 0.0)) * c[:, :1]  # of a disc normal to b
-    length = np.where(kind == FaceKind.CYLINDER, c[:, 1], 0.0)[:, None]
-    end = a + length * b
-    low[round_] = (np.minimum(a, end) - across)[round_]
-    high[round_] = (np.maximum(a, end) + across)[round_]
-    return low, high
