@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from ryusa.errors import ResultsError
 from ryusa.model import EVENT, Scene
+from ryusa.model.walls import N_IMPULSE
 from ryusa.results import schema
 from ryusa.results.hdf5 import OpenFiles, opened, plain_dataset, read_dataset, read_integer
 from ryusa.results.lazy import LazyFrames, Part
@@ -194,6 +195,15 @@ class Results:
         """The energy account [J] and extremes at each frame, shape (n_frame,) each; keys of schema.TALLY."""
         rows = _joined([part.tally() for part in self._parts], schema.TALLY)
         return {name: rows[name] for name in schema.TALLY.names or ()}
+
+    @cached_property
+    def walls(self) -> NDArray[np.float64]:
+        """Impulses on each wall and its work since the start, shape (n_frame, n_wall, N_IMPULSE)."""
+        shape = (self.scene.n_wall, N_IMPULSE)
+        if self.scene.walls is None:
+            return np.zeros((len(self.frames), *shape))
+        rows = [part.walls(shape) for part in self._parts if part.n_frame]
+        return np.concatenate([np.zeros((0, *shape)), *rows])
 
     @cached_property
     def water(self) -> WaterFrames | None:

@@ -58,6 +58,9 @@ WATER_CELLS = ("u", "w", "phi", "content")  # [m/s], [m/s], [-], [m]
 WATER_FACES = ("tau", "nu_t")  # [Pa], [m2/s]
 WATER_NUMBERS = ("z_surface", "gradient")  # [m], [Pa/m]
 
+# impulses on walls and their work since the start, if the run has walls: (k, n_wall, model.walls.N_IMPULSE)
+WALLS = "walls"
+
 # contact forces, if the case records them: those of all frames in one dataset, and the number of each frame
 FORCES, N_FORCE = "forces", "n_force"
 FORCE = np.dtype(

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ryusa.model import EVENT, Scene, State, Tally
 from ryusa.model.contacts import joined
+from ryusa.model.walls import N_IMPULSE
 from ryusa.results import schema
 from ryusa.running.contact_forces import contact_forces
 from ryusa.water.coupling import Coupling
@@ -41,6 +42,7 @@ class RecordBuffer:
         self._contacts: list[NDArray[np.void]] = []
         self._forces: list[NDArray[np.void]] | None = [] if scene.forces else None  # of each frame
         self._water: dict[str, list[NDArray[np.float64]]] = {}
+        self._walls: list[NDArray[np.float64]] = []  # impulses on them up to each frame
 
     def __bool__(self) -> bool:
         return self.n_frame > 0 or self.n_contact > 0
@@ -66,6 +68,9 @@ class RecordBuffer:
         if self._forces is not None:
             self._forces.append(contact_forces(state, self._scene))
         self._tally.append(schema.tally_row(tally))
+        if n_wall := self._scene.n_wall:
+            so_far = tally.walls or (0.0,) * (n_wall * N_IMPULSE)
+            self._walls.append(np.array(so_far).reshape(n_wall, N_IMPULSE))
         self.n_frame += 1
 
     def contacts(self, events: NDArray[np.void]) -> None:
@@ -85,6 +90,8 @@ class RecordBuffer:
         if self._forces is not None:
             rows[schema.N_FORCE] = np.array([len(one) for one in self._forces], dtype=np.int64)
             rows[schema.FORCES] = np.concatenate([np.zeros(0, dtype=schema.FORCE), *self._forces])
+        if self._scene.n_wall:
+            rows[schema.WALLS] = np.array(self._walls).reshape(self.n_frame, self._scene.n_wall, N_IMPULSE)
         return rows | {f"{schema.WATER}/{name}": np.array(one) for name, one in self._water.items()}
 
     def write(self, file: h5py.File) -> None:
@@ -110,6 +117,7 @@ class RecordBuffer:
         self.contacts(rows["contacts"])
         if self._forces is not None and count:
             self._forces += np.split(rows[schema.FORCES], np.cumsum(rows[schema.N_FORCE])[:-1])
+        self._walls += list(rows.get(schema.WALLS, ()))
         begin = f"{schema.WATER}/"
         for name, profiles in rows.items():
             if name.startswith(begin):

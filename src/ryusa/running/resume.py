@@ -11,6 +11,7 @@ import numpy as np
 from ryusa.casefile.earlier import completed
 from ryusa.errors import CheckpointError, ResultsError
 from ryusa.model import EVENT, Scene, State
+from ryusa.model.walls import N_IMPULSE
 from ryusa.results import schema
 from ryusa.results.hdf5 import OpenFiles
 from ryusa.results.lazy import Part
@@ -298,6 +299,8 @@ def _buffered(recorder: CheckpointBlock, scene: Scene, folder: Path) -> dict[str
         if scene.forces:
             n_force = rows[schema.N_FORCE].sum() if schema.N_FORCE in rows else 0
             shapes |= {schema.N_FORCE: ((k,), np.dtype(np.int64)), schema.FORCES: ((n_force,), schema.FORCE)}
+        if scene.n_wall:
+            shapes |= {schema.WALLS: ((k, scene.n_wall, N_IMPULSE), np.dtype(np.float64))}
         if set(shapes) != set(rows):
             raise ValueError(f"datasets {', '.join(sorted(rows))}")
         for name, (shape, dtype) in shapes.items():
