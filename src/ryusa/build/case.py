@@ -272,7 +272,9 @@ def _refuse_taken_names(placement: Placement, walls: Sequence[SolidWall]) -> Non
     taken = {"grains", *placement.groups()}
     for number, wall in enumerate(walls):
         if wall.name in taken:
-            raise CaseError(f"walls.{number}.name", wall.name, "is the name of a plane or a group of grains already")
+            raise CaseError(
+                f"walls.{number}.name", wall.name, "is the name of a plane or a group of grains already"
+            )
 
 
 def _refuse_unknown_groups(placement: Placement, case: Case) -> None:
@@ -280,5 +282,6 @@ def _refuse_unknown_groups(placement: Placement, case: Case) -> None:
     known += [wall.name for wall in case.walls]
     for number, entry in enumerate(case.timeline):
         if entry.remove is not None and entry.remove not in known:
-            allowed = f"must be a group of fixed grains, a plane or a wall: {', '.join(known) or 'there is none'}"
+            there = ", ".join(known) or "there is none"
+            allowed = f"must be a group of fixed grains, a plane or a wall: {there}"
             raise CaseError(f"timeline.{number}.remove", entry.remove, allowed)

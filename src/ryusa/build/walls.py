@@ -15,9 +15,9 @@ from ryusa.build.placement import ROOM_BELOW, Placement
 from ryusa.casefile.case import Case
 from ryusa.casefile.walls import WallSection, mesh_of
 from ryusa.errors import CaseError
-from ryusa.laws.walls import nearest_on_cylinder, nearest_on_disc, nearest_on_triangle
 from ryusa.model import FaceKind, Scene, Walls
 from ryusa.model.scene import Floats
+from ryusa.model.wall_shape import nearest_on_face
 from ryusa.model.walls import (
     AXIS_POINT,
     PHASE,
@@ -204,8 +204,9 @@ def _split(wall: SolidWall, period: tuple[float, float]) -> dict[str, np.ndarray
         second = np.choose(longest[:, None], [a + b, a + c, a])
         third = np.choose(longest[:, None], [a + c, a, a + b])
         middle = 0.5 * (first + second)
-        halves = [np.hstack([first, middle - first, third - first]), np.hstack([middle, second - middle, third - middle])]
-        face = np.vstack([face[~long], *halves])
+        one = np.hstack([first, middle - first, third - first])
+        other = np.hstack([middle, second - middle, third - middle])
+        face = np.vstack([face[~long], one, other])
         kind = np.concatenate([kind[~long], np.zeros(2 * len(a), np.int64)])
 
 
@@ -249,40 +250,17 @@ def refuse_overlaps_with_walls(placement: Placement, walls: Sequence[SolidWall],
         worst, grain = 0.0, -1
         for f, some in enumerate(near):
             found = np.array(some, dtype=np.int64)
-            inside = np.all((placement.x[found] > low[f] - largest) & (placement.x[found] < high[f] + largest), axis=1)
-            for k in found[inside]:
-                apart = distance_to_face(wall.face[f], int(wall.kind[f]), placement.x[k])
+            x = placement.x[found]
+            for k in found[np.all((x > low[f] - largest) & (x < high[f] + largest), axis=1)]:
+                x = placement.x[k]
+                apart = float(np.linalg.norm(nearest_on_face(wall.face[f], int(wall.kind[f]), x) - x))
                 relative = 0.5 - apart / float(placement.d[k])
                 if relative > worst:
                     worst, grain = relative, int(k)
         if worst > TOLERANCE:
             who = name_of(placement, grain)
-            text = f"first grains overlap: {who} and wall '{wall.name}' by {worst:.3g} d; move the wall or the grains"
-            raise CaseError(key, None, text)
-
-
-def distance_to_face(face: Floats, kind: int, x: Floats) -> float:
-    """Distance of a point from a face [m].
-
-    >>> distance_to_face(np.array([0.0, 0, 0, 0, 0, 1, 2, 3, 0]), FaceKind.CYLINDER, np.array([1.0, 0, 1]))
-    1.0
-    """
-    a, b, c = face[:3], face[3:6], face[6:9]
-    away = x - a
-    if kind == FaceKind.TRIANGLE:
-        v, w, _ = nearest_on_triangle(
-            float(away @ b), float(away @ c), float(b @ b), float(b @ c), float(c @ c)
-        )
-        return float(np.linalg.norm(away - v * b - w * c))
-    along = float(away @ b)
-    across = away - along * b
-    rho = float(np.linalg.norm(across))
-    if kind == FaceKind.DISC:
-        return float(np.linalg.norm(away - nearest_on_disc(rho, float(c[0])) * across))
-    if rho == 0.0:
-        return math.hypot(float(c[0]), along - min(max(along, 0.0), float(c[1])))
-    h, factor = nearest_on_cylinder(along, rho, float(c[0]), float(c[1]))
-    return float(np.linalg.norm(away - h * b - factor * across))
+            text = f"first grains overlap: {who} and wall '{wall.name}' by {worst:.3g} d"
+            raise CaseError(key, None, f"{text}; move the wall or the grains")
 
 
 def with_room(scene: Scene, low: bool, high: bool) -> Scene:

@@ -74,8 +74,12 @@ def check(case: Case, data: dict[str, Any]) -> list[CaseError]:
     ]
     frames = [] if step else check_frames(case, derived, data)
     return [
-        *check_domain(case, derived), *check_meshes(case, derived), *step, *frames, *check_record(case, derived)
-    ]  # fmt: skip
+        *check_domain(case, derived),
+        *check_meshes(case, derived),
+        *step,
+        *frames,
+        *check_record(case, derived),
+    ]
 
 
 def _rivals(case: Case) -> Iterator[CaseError]:

@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import Field
 
 from ryusa.casefile.files import inside
-from ryusa.casefile.quantities import Angle, Length, Number, Point, PositiveLength, Speed, Spin
+from ryusa.casefile.quantities import Angle, Number, Point, PositiveLength, Speed, Spin
 from ryusa.casefile.rows import ExplainRow, count, word
 from ryusa.casefile.section import Section, given
 from ryusa.errors import CaseError, ParseError
@@ -123,7 +123,8 @@ def mesh_of(case: "Case", wall: WallSection, key: str) -> Mesh:
     try:
         unit = quantity(f"1 {wall.unit}", "m")
     except ValueError as error:
-        raise CaseError(f"{key}.unit", wall.unit, f"must be a unit of length such as 'mm' ({error})") from None
+        allowed = f"must be a unit of length such as 'mm' ({error})"
+        raise CaseError(f"{key}.unit", wall.unit, allowed) from None
     stamp = path.stat()
     try:
         corners = _read(path, wall.file, stamp.st_mtime_ns, stamp.st_size)
@@ -138,8 +139,9 @@ def mesh_of(case: "Case", wall: WallSection, key: str) -> Mesh:
     corners = corners[~flat]
     if wall.turn_axis is not None and wall.turn_angle is not None:
         axis = np.array(wall.turn_axis) / np.linalg.norm(wall.turn_axis)
-        turn = np.column_stack([turned_about(*unit_, *axis.tolist(), wall.turn_angle) for unit_ in np.eye(3).tolist()])
-        corners = corners @ turn.T
+        angle, (x, y, z) = wall.turn_angle, axis.tolist()
+        turn = np.array([turned_about(a, b, c, x, y, z, angle) for a, b, c in np.eye(3).tolist()])
+        corners = corners @ turn
     return Mesh(corners + np.array(wall.at or (0.0, 0.0, 0.0)), int(flat.sum()))
 
 
@@ -219,7 +221,7 @@ def check_meshes(case: "Case", derived: "Derived") -> Iterator[CaseError]:
         elif size.max() > LARGEST * derived.d_max:
             yield CaseError(
                 f"{key}.name", wall.name,
-                f"is {across} m, more than {LARGEST:g} times the largest grain, {derived.d_max:.3g} m; {remedy}",
+                f"is {across} m, over {LARGEST:g} times the largest grain, {derived.d_max:.3g} m; {remedy}",
             )  # fmt: skip
 
 
@@ -274,7 +276,7 @@ def _mesh_rows(case: "Case", wall: WallSection, key: str) -> list[ExplainRow]:
         about = "triangles of no area in the file; they are left out"
         found.append(count("walls", f"{wall.name}: left out", mesh.empty, about, "note"))
     if single:
-        about = "sides that one triangle has alone: the mesh is open, or has holes through which grains may pass"
+        about = "sides that one triangle has alone: the mesh is open, or has holes that grains may pass"
         found.append(count("walls", f"{wall.name}: open sides", single, about, "note"))
     if several:
         about = "sides that more than two triangles share: corners there are not smoothed"

@@ -11,7 +11,7 @@ LINES = ("-", (0, (4, 1.5)), (0, (1, 1.2)))
 
 @style.house
 def walls(found: WallForces) -> Figure:
-    """Draw the force on each wall, and the power of those that move; components that stay zero are left out."""
+    """Draw the force on each wall, and the power of those that move; what stays zero is left out."""
     powered = bool(np.any(found.power != 0.0))
     figure, axes = style.new(1 + powered, width=4.8, height=2.6 + 1.6 * powered, sharex=True)
     for w, name in enumerate(found.names):

@@ -1,6 +1,5 @@
 """Walls of a scene: faces in the frame of their wall, and how each wall moves."""
 
-import math
 from dataclasses import dataclass
 from enum import IntEnum
 
@@ -86,8 +85,8 @@ def pose(row: Floats, t: float) -> tuple[Floats, Floats]:
     row : motion of the wall, columns as above.
 
     >>> row = at_rest(1)[0]
-    >>> row[SPIN + 2] = math.pi
-    >>> [float(one) for one in np.round(pose(row, 0.5)[0] @ np.array([1.0, 0.0, 0.0]), 12)]
+    >>> row[SPIN + 2] = np.pi
+    >>> [float(one) for one in np.round(pose(row, 0.5)[0] @ np.array([1.0, 0.0, 0.0]), 12) + 0.0]
     [0.0, 1.0, 0.0]
     """
     since = t - float(row[BEGIN])

@@ -62,7 +62,8 @@ def face_arrays(walls: Walls, first: int) -> FaceArrays:
             continue
         bottom, top = low[mine].min(axis=0), high[mine].max(axis=0)
         size = top - bottom
-        cell = max(float(np.prod(np.maximum(size, 1e-3 * size.max())) / (_CELLS * len(mine))) ** (1 / 3), 1e-12)
+        volume = float(np.prod(np.maximum(size, 1e-3 * size.max())))
+        cell = max((volume / (_CELLS * len(mine))) ** (1 / 3), 1e-12)
         while np.prod(np.floor(size / cell) + 1.0) > _CELLS * len(mine) + 64.0:
             cell *= 1.26
         dims[w], grid_low[w], width[w] = np.floor(size / cell).astype(np.int64) + 1, bottom, cell
@@ -74,7 +75,8 @@ def face_arrays(walls: Walls, first: int) -> FaceArrays:
     for f in np.flatnonzero(walls.face_active):
         w = walls.wall[f]
         axes = [np.arange(a, b + 1) for a, b in zip(cells_low[f], cells_high[f], strict=True)]
-        at = grid_first[w] + ((axes[0][:, None] * dims[w, 1] + axes[1])[:, :, None] * dims[w, 2] + axes[2]).ravel()
+        columns = (axes[0][:, None] * dims[w, 1] + axes[1])[:, :, None] * dims[w, 2]
+        at = grid_first[w] + (columns + axes[2]).ravel()
         found.append((at, np.full(len(at), f)))
     every = np.concatenate([at for at, _ in found]) if found else np.zeros(0, np.int64)
     faces = np.concatenate([f for _, f in found]) if found else np.zeros(0, np.int64)
@@ -82,7 +84,8 @@ def face_arrays(walls: Walls, first: int) -> FaceArrays:
     return FaceArrays(
         first, _rows(walls), 0.5 * (low + high), walls.wall.astype(np.int64), walls.surface.astype(np.int64),
         np.array(walls.motion), np.zeros((n_wall, N_POSE)), largest_speed(walls), grid_low, width, dims,
-        grid_first[:-1].copy(), np.cumsum(count), faces[np.argsort(every, kind="stable")], cells_low, cells_high,
+        grid_first[:-1].copy(), np.cumsum(count), faces[np.argsort(every, kind="stable")], cells_low,
+        cells_high,
     )  # fmt: skip
 
 
@@ -130,7 +133,7 @@ def in_world(w: int, at: int, x: float, y: float, z: float, poses: Any) -> tuple
 
 @inner(fastmath=FAST)
 def nearest_image(f: int, x: float, y: float, l_x: float, l_y: float, centre: Any) -> tuple[float, float]:
-    """x and y of the image of a point of a frame that is nearest to face f; axes of the frame do not turn."""
+    """Coordinates of the image of a point that is nearest to face f, in a frame that is not turned."""
     if l_x < math.inf:
         x -= math.floor((x - centre[f, 0]) / l_x + 0.5) * l_x
     if l_y < math.inf:
@@ -191,12 +194,13 @@ def _cell(x: float, low: float, width: float, n: int) -> int:
 
 @inner(fastmath=FAST)
 def append_faces(
-    x: float, y: float, z: float, reach: float, l_x: float, l_y: float, faces: FaceArrays, partners: Any, used: int
-) -> int:
-    """Append the faces nearer than `reach` [m] to a point; the new count, or -1 where `partners` is too short.
+    x: float, y: float, z: float, reach: float, l_x: float, l_y: float, faces: FaceArrays, partners: Any,
+    used: int,
+) -> int:  # fmt: skip
+    """Append faces nearer than `reach` [m] to a point; the new count, or -1 where `partners` is too short.
 
     The order follows from the point alone: images, cells, then faces in the order of their ids. A face in
-    several cells is taken in the lowest that both it and the box round the point have.
+    several cells is taken in the lowest that it and the box round the point both have.
     """
     images_x, images_y = 1 if l_x == math.inf else 3, 1 if l_y == math.inf else 3
     begin = used

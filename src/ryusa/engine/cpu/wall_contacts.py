@@ -1,7 +1,7 @@
-"""Which of the faces near a grain it is in contact with, and what the contacts do to moving walls (design/0019).
+"""Which of the faces near a grain it touches, and what contacts do to moving walls (design/0019).
 
-Before the pairs of a block are filtered, the nearest points of all faces near its grains are found, and of the
-faces met in one place one is kept: the others are put out of reach, and their memory goes to the one kept.
+Before the pairs of a block are filtered, the nearest points of all faces near its grains are found, and of
+the faces met in one place one is kept: the others are put out of reach, and their memory goes to that one.
 """
 # ruff: noqa: E741  (l is a lane)
 
@@ -118,7 +118,8 @@ def _one_in_a_place(
         for q in range(begin, stop):
             g = number[q]
             away = met[g, F.DISTANCE]
-            if q == s or away > met[k, F.DISTANCE] or (away == met[k, F.DISTANCE] and q > s) or away >= nearest:
+            farther = away > met[k, F.DISTANCE] or (away == met[k, F.DISTANCE] and q > s)
+            if q == s or farther or away >= nearest:
                 continue
             f, h = candidates.j[g] - faces.first, candidates.j[k] - faces.first
             same = faces.surface[f] == faces.surface[h] and _alike(k, g, met)
@@ -154,7 +155,7 @@ def _one_in_a_place(
 
 @inner(fastmath=FAST)
 def add_drift(m: int, selected: Any, j_of: Any, faces: FaceArrays, met: Any, batch: Any) -> None:
-    """Take the motion of walls off the relative velocities of m lanes; mirrored grains spin with their wall."""
+    """Take the motion of walls off the relative velocities of m lanes; mirrored grains spin with the wall."""
     for l in range(m):
         k = selected[l]
         if j_of[k] >= faces.first:
@@ -181,7 +182,8 @@ def book_walls(
         if candidates.j[k] < faces.first:
             continue
         f_x, f_y, f_z = batch[B.FORCE + 4 * l], batch[B.FORCE + 4 * l + 1], batch[B.FORCE + 4 * l + 2]
-        t_x, t_y, t_z = batch[B.TORQUE_J + 4 * l], batch[B.TORQUE_J + 4 * l + 1], batch[B.TORQUE_J + 4 * l + 2]
+        at = B.TORQUE_J + 4 * l
+        t_x, t_y, t_z = batch[at], batch[at + 1], batch[at + 2]
         if f_x == 0.0 and f_y == 0.0 and f_z == 0.0:
             continue
         i, w, row = candidates.i[k], int(met[k, F.SLOT]), met[k]

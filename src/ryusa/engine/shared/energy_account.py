@@ -83,7 +83,12 @@ def account_arrays(stats: Floats, terms: Floats) -> dict[str, Floats]:
 
 
 def read_walls(state: State, walls: Floats, block: EngineBlock | None) -> None:
-    """Continue the impulses on walls of a snapshot, (n_block, n_wall, N_IMPULSE); `block` as in `read_account`.
+    """Continue the impulses on walls of a snapshot, (n_block, n_wall, N_IMPULSE).
+
+    Parameters
+    ----------
+    walls : filled.
+    block : as in `read_account`.
 
     Raises
     ------

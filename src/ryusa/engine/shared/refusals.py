@@ -51,8 +51,9 @@ def _walls(scene: Scene, walls: Walls) -> list[str]:
     smallest = float(np.concatenate([scene.d, scene.d_fixed]).min(initial=np.inf))
     step, speed = LARGEST_DISPLACEMENT * smallest, largest_speed(walls)
     if speed * scene.dt > step:
+        way = speed * scene.dt / smallest
         reasons.append(
-            f"walls move at up to {speed:.3g} m/s, {speed * scene.dt / smallest:.2g} diameters in one step: at most "
+            f"walls move at up to {speed:.3g} m/s, {way:.2g} diameters in one step: at most "
             f"{LARGEST_DISPLACEMENT:g}; a smaller time step is needed"
         )
     return reasons

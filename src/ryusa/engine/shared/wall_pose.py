@@ -43,7 +43,7 @@ def pose_at(w: int, t: float, motion: Any, poses: Any, at: int) -> None:
 
 @kernel(nogil=True)
 def set_poses(t: float, dt: float, motion: Any, poses: Any) -> None:
-    """Write the poses of all walls at time t [s], and a step before and after; `poses` is (n_wall, N_POSE)."""
+    """Write the poses of all walls at time t [s], and a step before and after, to (n_wall, N_POSE)."""
     for w in range(len(motion)):
         row = motion[w]
         moves = 0.0
