@@ -80,7 +80,7 @@ class PictureEntry:
 
 
 WINDOW = ("begin", "end")
-EVERY_BUILDER = ("drop", "saltation", "table", "run", "packing", "flume", "box")
+EVERY_BUILDER = ("drop", "saltation", "table", "run", "packing", "flume", "box", "fill")
 
 MEASURES = (
     MeasureEntry("saltation", "ryusa.measure.saltation:saltation",

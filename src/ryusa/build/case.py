@@ -9,6 +9,7 @@ from ryusa.build.assemble import Laws, assemble
 from ryusa.build.box import box
 from ryusa.build.column import column_of, zero_of
 from ryusa.build.drop import drop
+from ryusa.build.fill import fill
 from ryusa.build.flume import flume
 from ryusa.build.overlaps import refuse_overlaps
 from ryusa.build.packing import packing
@@ -55,6 +56,7 @@ BUILDERS = {
     "packing": packing,
     "flume": flume,
     "box": box,
+    "fill": fill,
 }
 _OF_A_COLUMN = ("buoyancy", "hindrance", "lift", "magnus")
 _WATER_DEFAULTS = {  # key of [water]: how `ryusa check` calls it, and its unit

@@ -3,7 +3,7 @@
 import math
 import shutil
 
-from ryusa.casefile.builders.schema import BoxSection, FlumeSection, FromFile, PackingSection
+from ryusa.casefile.builders.schema import BoxSection, FillSection, FlumeSection, FromFile, PackingSection
 from ryusa.casefile.case import Case
 from ryusa.casefile.derive import Derived
 from ryusa.casefile.record import MANY, events_of
@@ -87,7 +87,10 @@ def events_expected(case: Case, derived: Derived) -> int:
     if kept == "tracked":
         n = len(set(case.record.tracked))
     rate = EVENTS_ALONE
-    if isinstance(case.build, PackingSection | FlumeSection | FromFile | BoxSection) and derived.meet:
+    if (
+        isinstance(case.build, PackingSection | FlumeSection | FromFile | BoxSection | FillSection)
+        and derived.meet
+    ):
         rate = max(rate, EVENTS_DENSE * math.sqrt(derived.g / derived.d))
     return 0 if kept == "none" else math.ceil(n * rate * time_expected(case)[0])
 

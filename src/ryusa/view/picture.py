@@ -64,9 +64,7 @@ class Painter:
             255.0 * mpl.colormaps[look.colouring.colours](np.linspace(0.0, 1.0, SHADES))[:, :3]
         ).astype(np.uint8)
         self._surfaces = surfaces(results)
-        self._walls: tuple[Floats, Any, Floats, Any] | None = (
-            None  # faces and edges, and whose
-        )
+        self._walls: tuple[Floats, Any, Floats, Any] | None = None  # faces and edges, and whose
         self._period = np.array([*results.scene.period, math.inf])
 
     def at(self, t: float) -> Bytes:

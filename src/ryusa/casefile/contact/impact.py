@@ -3,7 +3,8 @@
 import math
 from typing import TYPE_CHECKING
 
-from ryusa.casefile.builders.schema import BoxSection, DropSection, FlumeSection, PackingSection
+from ryusa.casefile.builders.schema import BoxSection, DropSection, FillSection, FlumeSection, PackingSection
+from ryusa.casefile.builders.values import fill_cells
 from ryusa.casefile.contact.schema import OverlapStiffnessSection
 from ryusa.casefile.rows import ExplainRow, Flag, number
 from ryusa.casefile.water.values import terminal_velocity, water_speed
@@ -33,7 +34,7 @@ def expected_speed(case: "Case", derived: "Derived") -> tuple[float, str]:
         if height > derived.d:
             fastest = math.sqrt(2.0 * derived.g * height * buoyant)
             return min(fastest, settling), "fall of the top layer through the free height below it"
-    if isinstance(build, PackingSection | FlumeSection | BoxSection):
+    if isinstance(build, PackingSection | FlumeSection | BoxSection | FillSection):
         return math.sqrt(2.0 * derived.g * derived.d), "fall through one diameter, sqrt(2 g d)"
     if math.isfinite(settling):
         return settling, "settling velocity; most impacts of a saltating grain are slower"
@@ -44,11 +45,12 @@ def impact_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     """Overlap and travel to expect within one contact."""
     speed, origin = expected_speed(case, derived)
     rows = [number("impact", "expected impact speed", speed, "m/s", origin), _overlap(derived, speed)]
-    if isinstance(case.build, PackingSection | FlumeSection | BoxSection):
-        weight = case.build.layers * derived.m_weight * derived.g * math.cos(derived.slope)
+    if isinstance(case.build, PackingSection | FlumeSection | BoxSection | FillSection):
+        layers = fill_cells(case)[2] if isinstance(case.build, FillSection) else case.build.layers
+        weight = layers * derived.m_weight * derived.g * math.cos(derived.slope)
         rest = weight / (derived.k_n * derived.d)
         deep: Flag = "warning" if rest > STABLE[1] else ""
-        origin = f"weight of {case.build.layers:g} layers over k_n d"
+        origin = f"weight of {layers:g} layers over k_n d"
         rows.append(number("impact", "overlap/d at rest", rest, "-", origin, deep))
     along, where = _speed_along(case, derived)
     if along > 0.0:
