@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.engine.conftest import bits, run
 
 from ryusa.build import scene
 from ryusa.build.walls import WallMotion, cylinder, disc, rectangle, triangles, with_walls
@@ -12,8 +13,6 @@ from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.laws.families import ContactTiming, Slip
 from ryusa.model import Term
 from ryusa.model.scene import EventRule
-
-from .conftest import bits, run
 
 D = 2.0e-3
 R = 0.5 * D
@@ -40,7 +39,8 @@ def shell(n, radius, length=0.1):
     """Corners of 2 n triangles round the y axis, corners on the radius."""
     angle = 2.0 * math.pi * np.arange(n + 1) / n
     ring = np.column_stack([radius * np.sin(angle), np.zeros(n + 1), radius * np.cos(angle)])
-    low, high = ring - [0, 0.5 * length, 0], ring + [0, 0.5 * length, 0]
+    across = np.array([0.0, 0.5 * length, 0.0])
+    low, high = ring - across, ring + across
     return np.concatenate(
         [np.stack([low[:-1], low[1:], high[1:]], axis=1), np.stack([low[:-1], high[1:], high[:-1]], axis=1)]
     )
@@ -48,7 +48,12 @@ def shell(n, radius, length=0.1):
 
 @pytest.mark.parametrize("timing", TIMINGS)
 def test_a_ball_on_a_split_plane_does_as_on_the_endless_plane(timing):
-    how = {"x": [[0.0, 0.0, 0.6 * D]], "v": [[0.3, 0.1, -0.2]], "omega": [[10.0, 20.0, 30.0]], "timing": timing}
+    how = {
+        "x": [[0.0, 0.0, 0.6 * D]],
+        "v": [[0.3, 0.1, -0.2]],
+        "omega": [[10.0, 20.0, 30.0]],
+        "timing": timing,
+    }
     made = scene(planes=[("floor", (0, 0, 0), (0, 0, 1))], **KEYS, **how)
     steps = round(0.36 / made[0].dt)
     plane = run(made, steps)
@@ -157,11 +162,15 @@ def test_a_ball_bounces_on_the_rim_of_a_disc_and_on_a_corner():
         disc("plate", (0, 0, 0), (0, 0, 1), 0.01),
         triangles("plate", [[[0.01, 0, 0], [-0.01, 0.01, 0], [-0.01, -0.01, 0]]]),
     ):
-        over = walled([wall], x=[[0.01, 0, 1.5 * R]], v=[[0, 0, -0.1]], restitution=1.0, gravity=0.0, friction=0.0)
+        over = walled(
+            [wall], x=[[0.01, 0, 1.5 * R]], v=[[0, 0, -0.1]], restitution=1.0, gravity=0.0, friction=0.0
+        )
         speed = run(over, round(0.02 / over[0].dt)).state().v[0]
         assert speed == pytest.approx([0, 0, 0.1], abs=1e-4)
         side = 0.5 * R  # the corner meets it aside: the line of centres is at 30 deg
-        met = walled([wall], x=[[0.01 + side, 0, 2 * R]], v=[[0, 0, -0.1]], restitution=1.0, gravity=0.0, friction=0.0)
+        met = walled(
+            [wall], x=[[0.01 + side, 0, 2 * R]], v=[[0, 0, -0.1]], restitution=1.0, gravity=0.0, friction=0.0
+        )
         speed = run(met, round(0.03 / met[0].dt)).state().v[0]
         assert speed == pytest.approx([0.1 * math.sin(math.pi / 3), 0, 0.1 * math.cos(math.pi / 3)], abs=2e-3)
 
@@ -194,7 +203,11 @@ def test_a_ball_put_on_a_belt_ends_at_two_sevenths_of_its_speed():
     """Sliding gives v = mu g t and r omega = 5/2 of it, until the belt sees no slip: v = 2/7 U."""
     m_g = 2650.0 * math.pi / 6 * D**3 * G
     made = walled(
-        [floor(velocity=(0.2, 0, 0))], x=[[0, 0, R - m_g / 1e4]], stiffness=1.0e4, friction=0.5, slip=Slip.TOTAL
+        [floor(velocity=(0.2, 0, 0))],
+        x=[[0, 0, R - m_g / 1e4]],
+        stiffness=1.0e4,
+        friction=0.5,
+        slip=Slip.TOTAL,
     )
     engine = run(made, round(0.1 / made[0].dt))
     state, tally = engine.state(), engine.tally()
@@ -245,9 +258,7 @@ def drum(n=300, threads=1, **more):
     a = np.arange(-7, 8) * step
     x = np.stack(np.meshgrid(a, np.arange(1, 6) * step, a, indexing="ij"), axis=-1).reshape(-1, 3)
     x = x[np.hypot(x[:, 0], x[:, 2]) < radius - 0.6 * D][:n]
-    wall = moving(
-        cylinder("drum", (0, 0, 0), (0, width, 0), radius, closed=(True, True)), spin=(0, 6.0, 0)
-    )
+    wall = moving(cylinder("drum", (0, 0, 0), (0, width, 0), radius, closed=(True, True)), spin=(0, 6.0, 0))
     return walled(
         [wall], x=x, v=rng.normal(0, 0.1, x.shape), restitution=0.5, steps_per_contact=20.0,
         timing=ContactTiming.AT_STEPS, **more,
@@ -293,6 +304,8 @@ def test_what_walls_cannot_do_is_refused_by_name():
     assert "motion in space" in CpuEngine().refuses(with_walls(flat, [floor()]))[0]
     turning = moving(cylinder("drum", (0, 0, 0), (0, 1, 0), 0.1), spin=(0, 0, 1.0))
     fixed = scene(x=[[0, 0, 0]], period=(math.inf, 1.0), **KEYS)[0]
-    assert "'drum' turns across the periodic direction y" in CpuEngine().refuses(with_walls(fixed, [turning]))[0]
+    assert (
+        "'drum' turns across the periodic direction y" in CpuEngine().refuses(with_walls(fixed, [turning]))[0]
+    )
     fast = walled([floor(velocity=(1e4, 0, 0))], x=[[0, 0, D]])[0]
     assert "smaller time step" in CpuEngine().refuses(fast)[0]
