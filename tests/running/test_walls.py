@@ -38,7 +38,7 @@ at = ["0 cm", "0 cm", "3 cm"]
 normal = [0, 0, 1]
 radius = "2 cm"
 amplitude = ["0 cm", "0 cm", "1 mm"]
-frequency = 20
+frequency = "20 Hz"
 [[timeline]]
 at = "60 ms"
 [timeline.move]

@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import Field
 
 from ryusa.casefile.files import inside
-from ryusa.casefile.quantities import Angle, Number, Point, PositiveLength, Speed, Spin
+from ryusa.casefile.quantities import Angle, Frequency, Number, Point, PositiveLength, Speed, Spin
 from ryusa.casefile.rows import ExplainRow, count, word
 from ryusa.casefile.section import Section, given
 from ryusa.errors import CaseError, ParseError
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 Vector = tuple[Number, Number, Number]
 VelocityVector = tuple[Speed, Speed, Speed]
 SpinVector = tuple[Spin, Spin, Spin]
-Frequency = Annotated[Number, Field(gt=0)]
 _KEYS = {  # of each shape: those it needs, those it may have
     "rectangle": (("at", "sides"), ()),
     "disc": (("at", "normal", "radius"), ()),
@@ -77,7 +76,7 @@ class WallSection(Section):
     amplitude: Point | None = None
     """Amplitude of an oscillation, half of the stroke in each direction."""
     frequency: Frequency | None = None
-    """Frequency of that oscillation, in Hz."""
+    """Frequency of that oscillation."""
     phase: Angle = 0.0
     """Phase of that oscillation at the start."""
 
@@ -96,7 +95,7 @@ class MoveSection(Section):
     amplitude: Point | None = None
     """Amplitude of an oscillation that begins now."""
     frequency: Frequency | None = None
-    """Frequency of that oscillation, in Hz."""
+    """Frequency of that oscillation."""
     phase: Angle = 0.0
     """Phase at which it begins."""
 
