@@ -140,7 +140,7 @@ def test_walls_are_drawn(whole: Results, tmp_path: Path) -> None:
     assert whole.draw("walls") is not None
     whole.view().save(tmp_path / "view.html")
     assert '"wall_faces"' in (tmp_path / "view.html").read_text()
-    still = whole.film(frames=2, size=(160, 120))
+    still = whole.film(frames=2, size=(480, 270))
     assert still is not None
     still = ryusa.Results.open(whole.folder)
     assert still.walls.shape == (len(still.frames), 2, 7)
