@@ -108,30 +108,28 @@ def _rows(walls: Walls) -> Floats:
     return rows
 
 
-@inner(fastmath=FAST)
+@inner(fastmath=FAST, forceinline=True)
 def in_frame(w: int, at: int, x: float, y: float, z: float, poses: Any) -> tuple[float, float, float]:
     """A point of the world in the frame of wall w, whose pose is in columns from `at` on."""
-    p = poses[w]
-    x, y, z = x - p[at + 9], y - p[at + 10], z - p[at + 11]
+    x, y, z = x - poses[w, at + 9], y - poses[w, at + 10], z - poses[w, at + 11]
     return (
-        p[at] * x + p[at + 3] * y + p[at + 6] * z,
-        p[at + 1] * x + p[at + 4] * y + p[at + 7] * z,
-        p[at + 2] * x + p[at + 5] * y + p[at + 8] * z,
+        poses[w, at] * x + poses[w, at + 3] * y + poses[w, at + 6] * z,
+        poses[w, at + 1] * x + poses[w, at + 4] * y + poses[w, at + 7] * z,
+        poses[w, at + 2] * x + poses[w, at + 5] * y + poses[w, at + 8] * z,
     )
 
 
-@inner(fastmath=FAST)
+@inner(fastmath=FAST, forceinline=True)
 def in_world(w: int, at: int, x: float, y: float, z: float, poses: Any) -> tuple[float, float, float]:
     """A point of the frame of wall w in the world."""
-    p = poses[w]
     return (
-        p[at] * x + p[at + 1] * y + p[at + 2] * z + p[at + 9],
-        p[at + 3] * x + p[at + 4] * y + p[at + 5] * z + p[at + 10],
-        p[at + 6] * x + p[at + 7] * y + p[at + 8] * z + p[at + 11],
+        poses[w, at] * x + poses[w, at + 1] * y + poses[w, at + 2] * z + poses[w, at + 9],
+        poses[w, at + 3] * x + poses[w, at + 4] * y + poses[w, at + 5] * z + poses[w, at + 10],
+        poses[w, at + 6] * x + poses[w, at + 7] * y + poses[w, at + 8] * z + poses[w, at + 11],
     )
 
 
-@inner(fastmath=FAST)
+@inner(fastmath=FAST, forceinline=True)
 def nearest_image(f: int, x: float, y: float, l_x: float, l_y: float, centre: Any) -> tuple[float, float]:
     """Coordinates of the image of a point that is nearest to face f, in a frame that is not turned."""
     if l_x < math.inf:
@@ -141,7 +139,7 @@ def nearest_image(f: int, x: float, y: float, l_x: float, l_y: float, centre: An
     return x, y
 
 
-@inner(fastmath=FAST)
+@inner(fastmath=FAST, forceinline=True)
 def nearest_of_face(
     f: int, x: float, y: float, z: float, rows: Any
 ) -> tuple[float, float, float, float, float, float, float]:
@@ -149,38 +147,35 @@ def nearest_of_face(
 
     Over the face the normal is that of the face to the last bit, and the distance as to a plane.
     """
-    g = rows[f]
-    d_x, d_y, d_z = x - g[A], y - g[A + 1], z - g[A + 2]
-    n_x, n_y, n_z = g[NORMAL], g[NORMAL + 1], g[NORMAL + 2]
+    d_x, d_y, d_z = x - rows[f, A], y - rows[f, A + 1], z - rows[f, A + 2]
+    n_x, n_y, n_z = rows[f, NORMAL], rows[f, NORMAL + 1], rows[f, NORMAL + 2]
     along = d_x * n_x + d_y * n_y + d_z * n_z
-    inside, kind = 0.0, g[KIND]
+    inside, kind = 0.0, rows[f, KIND]
+    s_11, s_12 = rows[f, S_11], rows[f, S_12]
+    p_x, p_y, p_z = rows[f, EDGE_1], rows[f, EDGE_1 + 1], rows[f, EDGE_1 + 2]
+    q_x, q_y, q_z = rows[f, EDGE_2], rows[f, EDGE_2 + 1], rows[f, EDGE_2 + 2]
     if kind == TRIANGLE:
         v, w, inside = nearest_on_triangle(
-            d_x * g[EDGE_1] + d_y * g[EDGE_1 + 1] + d_z * g[EDGE_1 + 2],
-            d_x * g[EDGE_2] + d_y * g[EDGE_2 + 1] + d_z * g[EDGE_2 + 2],
-            g[S_11], g[S_12], g[S_22],
-        )  # fmt: skip
-        c_x = g[A] + v * g[EDGE_1] + w * g[EDGE_2]
-        c_y = g[A + 1] + v * g[EDGE_1 + 1] + w * g[EDGE_2 + 1]
-        c_z = g[A + 2] + v * g[EDGE_1 + 2] + w * g[EDGE_2 + 2]
+            d_x * p_x + d_y * p_y + d_z * p_z, d_x * q_x + d_y * q_y + d_z * q_z, s_11, s_12, rows[f, S_22]
+        )
+        m_x, m_y, m_z = v * p_x + w * q_x, v * p_y + w * q_y, v * p_z + w * q_z
     else:
         a_x, a_y, a_z = d_x - along * n_x, d_y - along * n_y, d_z - along * n_z
         away = math.sqrt(a_x * a_x + a_y * a_y + a_z * a_z)
+        h = 0.0
         if kind == DISC:
-            share = nearest_on_disc(away, g[S_11])
+            share = nearest_on_disc(away, s_11)
             inside = 1.0 if share == 1.0 else 0.0
-            c_x, c_y, c_z = g[A] + share * a_x, g[A + 1] + share * a_y, g[A + 2] + share * a_z
         else:
             if away == 0.0:  # on the axis every direction is as good
-                a_x, a_y, a_z, away = g[EDGE_2], g[EDGE_2 + 1], g[EDGE_2 + 2], 1.0
-            h, share = nearest_on_cylinder(along, away, g[S_11], g[S_12])
-            c_x = g[A] + h * n_x + share * a_x
-            c_y = g[A + 1] + h * n_y + share * a_y
-            c_z = g[A + 2] + h * n_z + share * a_z
+                a_x, a_y, a_z, away = q_x, q_y, q_z, 1.0
+            h, share = nearest_on_cylinder(along, away, s_11, s_12)
+        m_x, m_y, m_z = h * n_x + share * a_x, h * n_y + share * a_y, h * n_z + share * a_z
+    c_x, c_y, c_z = rows[f, A] + m_x, rows[f, A + 1] + m_y, rows[f, A + 2] + m_z
     if inside != 0.0:
         side = -1.0 if along < 0.0 else 1.0
         return c_x, c_y, c_z, side * n_x, side * n_y, side * n_z, side * along
-    d_x, d_y, d_z = x - c_x, y - c_y, z - c_z
+    d_x, d_y, d_z = d_x - m_x, d_y - m_y, d_z - m_z
     distance = math.sqrt(d_x * d_x + d_y * d_y + d_z * d_z)
     if distance > 0.0:
         n_x, n_y, n_z = d_x / distance, d_y / distance, d_z / distance
@@ -193,6 +188,25 @@ def _cell(x: float, low: float, width: float, n: int) -> int:
 
 
 @inner(fastmath=FAST)
+def distance_to(
+    f: int,
+    x: float,
+    y: float,
+    z: float,
+    l_x: float,
+    l_y: float,
+    wall: Any,
+    poses: Any,
+    rows: Any,
+    centre: Any,
+) -> float:
+    """Distance of a point from face f [m]."""
+    x, y, z = in_frame(wall[f], NOW, x, y, z, poses)
+    x, y = nearest_image(f, x, y, l_x, l_y, centre)
+    return nearest_of_face(f, x, y, z, rows)[6]
+
+
+@inner(fastmath=FAST)
 def append_faces(
     x: float, y: float, z: float, reach: float, l_x: float, l_y: float, faces: FaceArrays, partners: Any,
     used: int,
@@ -202,41 +216,44 @@ def append_faces(
     The order follows from the point alone: images, cells, then faces in the order of their ids. A face in
     several cells is taken in the lowest that it and the box round the point both have.
     """
+    # arrays one by one: references to a tuple of them would be counted for every face (design/0005)
+    rows, first_id, cells_low = faces.rows, faces.first, faces.cells_low
+    cell_first, cell_face, dims, poses = faces.cell_first, faces.cell_face, faces.grid_dims, faces.poses
+    grid_low, grid_width, grid_first = faces.grid_low, faces.grid_width, faces.grid_first
     images_x, images_y = 1 if l_x == math.inf else 3, 1 if l_y == math.inf else 3
     begin = used
-    for w in range(len(faces.motion)):
-        f_x, f_y, f_z = in_frame(w, NOW, x, y, z, faces.poses)
-        n_x, n_y, n_z = faces.grid_dims[w, 0], faces.grid_dims[w, 1], faces.grid_dims[w, 2]
+    for w in range(len(poses)):
+        f_x, f_y, f_z = in_frame(w, NOW, x, y, z, poses)
+        n_x, n_y, n_z = dims[w, 0], dims[w, 1], dims[w, 2]
         for image in range(images_x * images_y):
             q_x = f_x if images_x == 1 else f_x + (image // images_y - 1) * l_x
             q_y = f_y if images_y == 1 else f_y + (image % images_y - 1) * l_y
-            low, width = faces.grid_low[w], faces.grid_width[w]
-            a_0, a_1 = _cell(q_x - reach, low[0], width[0], n_x), _cell(q_x + reach, low[0], width[0], n_x)
-            b_0, b_1 = _cell(q_y - reach, low[1], width[1], n_y), _cell(q_y + reach, low[1], width[1], n_y)
-            c_0, c_1 = _cell(f_z - reach, low[2], width[2], n_z), _cell(f_z + reach, low[2], width[2], n_z)
-            a_0, b_0, c_0 = max(a_0, 0), max(b_0, 0), max(c_0, 0)
+            low, width = grid_low[w, 0], grid_width[w, 0]
+            a_0, a_1 = max(_cell(q_x - reach, low, width, n_x), 0), _cell(q_x + reach, low, width, n_x)
+            low, width = grid_low[w, 1], grid_width[w, 1]
+            b_0, b_1 = max(_cell(q_y - reach, low, width, n_y), 0), _cell(q_y + reach, low, width, n_y)
+            low, width = grid_low[w, 2], grid_width[w, 2]
+            c_0, c_1 = max(_cell(f_z - reach, low, width, n_z), 0), _cell(f_z + reach, low, width, n_z)
             for a in range(a_0, min(a_1, n_x - 1) + 1):
                 for b in range(b_0, min(b_1, n_y - 1) + 1):
                     for c in range(c_0, min(c_1, n_z - 1) + 1):
-                        cell = faces.grid_first[w] + (a * n_y + b) * n_z + c
-                        for k in range(faces.cell_first[cell], faces.cell_first[cell + 1]):
-                            f = faces.cell_face[k]
+                        cell = grid_first[w] + (a * n_y + b) * n_z + c
+                        for k in range(cell_first[cell], cell_first[cell + 1]):
+                            f = cell_face[k]
                             if (
-                                a != max(a_0, faces.cells_low[f, 0])
-                                or b != max(b_0, faces.cells_low[f, 1])
-                                or c != max(c_0, faces.cells_low[f, 2])
+                                a != max(a_0, cells_low[f, 0])
+                                or b != max(b_0, cells_low[f, 1])
+                                or c != max(c_0, cells_low[f, 2])
+                                or nearest_of_face(f, q_x, q_y, f_z, rows)[6] >= reach
                             ):
-                                continue
-                            distance = nearest_of_face(f, q_x, q_y, f_z, faces.rows)[6]
-                            if distance >= reach:
                                 continue
                             known = False
                             for p in range(begin, used):
-                                known = known or partners[p] == faces.first + f
-                            if known:
+                                known = known or partners[p] == first_id + f
+                            if known:  # met through another image
                                 continue
                             if used >= len(partners):
                                 return -1
-                            partners[used] = faces.first + f
+                            partners[used] = first_id + f
                             used += 1
     return used

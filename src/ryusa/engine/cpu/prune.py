@@ -12,12 +12,11 @@ from ryusa.engine.cpu import batch_layout as B
 from ryusa.engine.cpu.arrays import CandidateArrays, GrainArrays, PairArrays, WallArrays, Workspace
 from ryusa.engine.cpu.contact_rows import copy_row
 from ryusa.engine.cpu.cutoff import mark_approaching, set_relative_velocity, set_separation
-from ryusa.engine.cpu.faces import FaceArrays, in_frame, nearest_image, nearest_of_face
+from ryusa.engine.cpu.faces import distance_to
 from ryusa.engine.cpu.simd.borrow import borrow
 from ryusa.engine.cpu.simd.vec4 import copy4, fill4
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.kernel import FAST, inner, kernel
-from ryusa.engine.shared.wall_pose import NOW
 
 _SLACK = 2 * B.LANES  # pairs are listed by the batch, where a whole one must find room
 
@@ -71,7 +70,12 @@ def prune(
             owner[l] = i
             if walled is not None and partners[begin + l] >= n_solid + len(points):
                 seconds = max(ahead, 2.0 * c[P.DT])
-                set_face(l, i, partners[begin + l], seconds, c, grains, walls.faces, separation, velocity)
+                f = partners[begin + l] - n_solid - len(points)
+                distance = distance_to(
+                    f, x[i, 0], x[i, 1], x[i, 2], c[P.PERIOD_X], c[P.PERIOD_Y], walls.faces.wall,
+                    walls.faces.poses, walls.faces.rows, walls.faces.centre,
+                )  # fmt: skip
+                set_face(l, i, distance, seconds * walls.faces.speed, seconds, x, v, separation, velocity)
                 continue
             set_separation(l, i, partners[begin + l], n_solid, x, points, normals, separation)
             set_relative_velocity(l, i, partners[begin + l], n_solid, v, normals, velocity)
@@ -126,22 +130,24 @@ def _link_partners(b: int, lo: int, hi: int, n: int, pairs: PairArrays, candidat
             wanted[rows + q] = 1
 
 
-@inner(fastmath=FAST)
+@inner(fastmath=FAST, forceinline=True)
 def set_face(
-    l: int, i: int, j: int, seconds: float, c: Any, grains: GrainArrays, faces: FaceArrays, separation: Any,
+    l: int,
+    i: int,
+    distance: float,
+    moved: float,
+    seconds: float,
+    x: Any,
+    v: Any,
+    separation: Any,
     velocity: Any,
-) -> None:  # fmt: skip
-    """Write to lane l how near grain i can come to a face within `seconds`, at the speeds that both have."""
-    f = j - faces.first
-    w = faces.wall[f]
-    x, y, z = in_frame(w, NOW, grains.x[i, 0], grains.x[i, 1], grains.x[i, 2], faces.poses)
-    x, y = nearest_image(f, x, y, c[P.PERIOD_X], c[P.PERIOD_Y], faces.centre)
-    distance = nearest_of_face(f, x, y, z, faces.rows)[6]
-    u_x, u_y, u_z = grains.v[i, 0], grains.v[i, 1], grains.v[i, 2]
-    speed = math.sqrt(u_x * u_x + u_y * u_y + u_z * u_z) + faces.speed
+) -> None:
+    """Write to lane l how near grain i can come to a face within `seconds`, if the face is `moved` [m]."""
+    speed = math.sqrt(v[i, 0] * v[i, 0] + v[i, 1] * v[i, 1] + v[i, 2] * v[i, 2])
     fill4(separation, 4 * l, 0.0)
     fill4(velocity, 4 * l, 0.0)
-    separation[4 * l + 2], separation[4 * l + 3] = max(distance - speed * seconds, 0.0), grains.x[i, 3]
+    separation[4 * l + 2] = max(distance - speed * seconds - moved, 0.0)
+    separation[4 * l + 3] = x[i, 3]
 
 
 @inner()

@@ -62,6 +62,7 @@ def block_forces(
     stats: Any,
 ) -> None:  # fmt: skip
     """Forces of every pair that block b, grains up to hi-1, owns, batch by batch of those that touch."""
+    # One function: the loop over batches, whose arrays stay in registers
     batch, separation, inside, selected = work.batch, work.separation, work.inside, work.selected
     reach_on = c[P.FILM_REACH] if variant.film else 0.0
     # arrays are passed one by one: references to a tuple of them would be counted for every batch

@@ -25,30 +25,7 @@ SAME_PLACE = math.cos(math.radians(45.0))  # of normals of one smooth surface th
 WALL = int(Term.WALL)
 
 
-@inner(fastmath=FAST)
-def _meet(k: int, i: int, f: int, c: Any, grains: GrainArrays, faces: FaceArrays, met: Any) -> None:
-    """Find how grain i and face f meet, and write it to row k of `met`."""
-    w, p, r = faces.wall[f], faces.poses, grains.x[i, 3]
-    x, y, z = in_frame(w, NOW, grains.x[i, 0], grains.x[i, 1], grains.x[i, 2], p)
-    x, y = nearest_image(f, x, y, c[P.PERIOD_X], c[P.PERIOD_Y], faces.centre)
-    c_x, c_y, c_z, n_x, n_y, n_z, distance = nearest_of_face(f, x, y, z, faces.rows)
-    t, row = p[w], met[k]
-    row[F.POINT], row[F.POINT + 1], row[F.POINT + 2] = c_x, c_y, c_z
-    row[F.AWAY] = t[0] * n_x + t[1] * n_y + t[2] * n_z
-    row[F.AWAY + 1] = t[3] * n_x + t[4] * n_y + t[5] * n_z
-    row[F.AWAY + 2] = t[6] * n_x + t[7] * n_y + t[8] * n_z
-    row[F.DISTANCE], row[F.BY], row[F.SLOT] = distance, -1.0, w
-    for a in range(3):
-        row[F.GAP + a] = -(distance + r) * row[F.AWAY + a]
-        row[F.DRIFT + a] = 0.0
-    row[F.GAP + 3] = 2.0 * r
-    if t[MOVES] != 0.0:
-        drift = drift_of_image(w, NOW, BEFORE, c_x - r * n_x, c_y - r * n_y, c_z - r * n_z, p)
-        for a in range(3):
-            row[F.DRIFT + a] = drift[a] / c[P.DT]
-
-
-@inner(fastmath=FAST)
+@inner(fastmath=FAST, forceinline=True)
 def drift_of_image(
     w: int, at: int, before: int, x: float, y: float, z: float, poses: Any
 ) -> tuple[float, float, float]:
@@ -59,18 +36,45 @@ def drift_of_image(
 
 
 @inner(fastmath=FAST)
-def _lies_on(k: int, g: int, f: int, tolerance: float, c: Any, faces: FaceArrays, met: Any) -> bool:
+def _meet(
+    k: int, i: int, f: int, c: Any, x_of: Any, wall: Any, poses: Any, rows: Any, centre: Any, met: Any
+) -> None:
+    """Find how grain i and face f meet, and write it to row k of `met`."""
+    w, r = wall[f], x_of[i, 3]
+    x, y, z = in_frame(w, NOW, x_of[i, 0], x_of[i, 1], x_of[i, 2], poses)
+    x, y = nearest_image(f, x, y, c[P.PERIOD_X], c[P.PERIOD_Y], centre)
+    c_x, c_y, c_z, n_x, n_y, n_z, distance = nearest_of_face(f, x, y, z, rows)
+    a_x = poses[w, 0] * n_x + poses[w, 1] * n_y + poses[w, 2] * n_z
+    a_y = poses[w, 3] * n_x + poses[w, 4] * n_y + poses[w, 5] * n_z
+    a_z = poses[w, 6] * n_x + poses[w, 7] * n_y + poses[w, 8] * n_z
+    met[k, F.POINT], met[k, F.POINT + 1], met[k, F.POINT + 2] = c_x, c_y, c_z
+    met[k, F.AWAY], met[k, F.AWAY + 1], met[k, F.AWAY + 2] = a_x, a_y, a_z
+    met[k, F.DISTANCE], met[k, F.BY], met[k, F.SLOT] = distance, -1.0, w
+    way = -(distance + r)
+    met[k, F.GAP], met[k, F.GAP + 1], met[k, F.GAP + 2] = way * a_x, way * a_y, way * a_z
+    met[k, F.GAP + 3] = 2.0 * r
+    d_x = d_y = d_z = 0.0
+    if poses[w, MOVES] != 0.0:
+        d_x, d_y, d_z = drift_of_image(w, NOW, BEFORE, c_x - r * n_x, c_y - r * n_y, c_z - r * n_z, poses)
+    dt = c[P.DT]
+    met[k, F.DRIFT], met[k, F.DRIFT + 1], met[k, F.DRIFT + 2] = d_x / dt, d_y / dt, d_z / dt
+
+
+@inner(fastmath=FAST)
+def _lies_on(
+    k: int, g: int, f: int, tolerance: float, c: Any, poses: Any, rows: Any, centre: Any, met: Any
+) -> bool:
     """Whether the nearest point in row k lies on face f, which is in row g."""
     x, y, z = met[k, F.POINT], met[k, F.POINT + 1], met[k, F.POINT + 2]
     w, v = int(met[k, F.SLOT]), int(met[g, F.SLOT])
     if w != v:
-        x, y, z = in_world(w, NOW, x, y, z, faces.poses)
-        x, y, z = in_frame(v, NOW, x, y, z, faces.poses)
-    x, y = nearest_image(f, x, y, c[P.PERIOD_X], c[P.PERIOD_Y], faces.centre)
-    return nearest_of_face(f, x, y, z, faces.rows)[6] <= tolerance
+        x, y, z = in_world(w, NOW, x, y, z, poses)
+        x, y, z = in_frame(v, NOW, x, y, z, poses)
+    x, y = nearest_image(f, x, y, c[P.PERIOD_X], c[P.PERIOD_Y], centre)
+    return nearest_of_face(f, x, y, z, rows)[6] <= tolerance
 
 
-@inner(fastmath=FAST)
+@inner(fastmath=FAST, forceinline=True)
 def _alike(k: int, g: int, met: Any) -> bool:
     """Whether the normals in two rows count as one place of a smooth surface."""
     a = F.AWAY
@@ -79,10 +83,10 @@ def _alike(k: int, g: int, met: Any) -> bool:
 
 
 @inner()
-def _move(k: int, g: int, candidates: CandidateArrays) -> None:
+def _move(k: int, g: int, touching: Any, eta: Any, rows: Any) -> None:
     """Give the memory of candidate k to candidate g."""
-    copy_row(g, candidates.eta, candidates.rows, k, candidates.eta, candidates.rows)
-    candidates.touching[g], candidates.touching[k] = candidates.touching[k], 0
+    copy_row(g, eta, rows, k, eta, rows)
+    touching[g], touching[k] = touching[k], 0
 
 
 @inner(fastmath=FAST)
@@ -91,25 +95,40 @@ def resolve_walls(
 ) -> None:
     """Find how the grains of block b meet the faces near them, and keep one contact in one place."""
     first, end = candidates.first[b], candidates.first[b] + candidates.face_count[b]
-    number, i_of, met = candidates.face, candidates.i, candidates.met
+    # arrays are passed one by one: references to a tuple of them would be counted for every face
+    number, i_of, j_of, met, first_id = (
+        candidates.face,
+        candidates.i,
+        candidates.j,
+        candidates.met,
+        faces.first,
+    )
+    touching, eta, memory = candidates.touching, candidates.eta, candidates.rows
+    x_of, wall, surface = grains.x, faces.wall, faces.surface
+    poses, rows, centre = faces.poses, faces.rows, faces.centre
     begin = first
     while begin < end:
-        i, stop = i_of[number[begin]], begin
+        i, stop, near = i_of[number[begin]], begin, 0
+        reach = x_of[i, 3] + reach_on
         while stop < end and i_of[number[stop]] == i:
             k = number[stop]
-            _meet(k, i, candidates.j[k] - faces.first, c, grains, faces, met)
+            _meet(k, i, j_of[k] - first_id, c, x_of, wall, poses, rows, centre, met)
+            near += int(met[k, F.DISTANCE] < reach) | int(touching[k] != 0)
             stop += 1
-        if stop - begin > 1:
-            _one_in_a_place(begin, stop, grains.x[i, 3], reach_on, c, faces, candidates)
+        if near > 1:
+            _one_in_a_place(
+                begin, stop, x_of[i, 3], reach_on, first_id, c, number, j_of, met, touching, eta, memory, surface,
+                poses, rows, centre,
+            )  # fmt: skip
         begin = stop
 
 
 @inner(fastmath=FAST)
 def _one_in_a_place(
-    begin: int, stop: int, r: float, reach_on: float, c: Any, faces: FaceArrays, candidates: CandidateArrays
-) -> None:
-    """Keep one contact in one place among the faces of one grain, `candidates.face` begin..stop-1."""
-    number, met, touching = candidates.face, candidates.met, candidates.touching
+    begin: int, stop: int, r: float, reach_on: float, first_id: int, c: Any, number: Any, j_of: Any, met: Any,
+    touching: Any, eta: Any, memory: Any, surface: Any, poses: Any, rows: Any, centre: Any,
+) -> None:  # fmt: skip
+    """Keep one contact in one place among the faces of one grain, `number` begin..stop-1."""
     for s in range(begin, stop):
         k = number[s]
         if met[k, F.DISTANCE] >= r + reach_on:
@@ -121,9 +140,9 @@ def _one_in_a_place(
             farther = away > met[k, F.DISTANCE] or (away == met[k, F.DISTANCE] and q > s)
             if q == s or farther or away >= nearest:
                 continue
-            f, h = candidates.j[g] - faces.first, candidates.j[k] - faces.first
-            same = faces.surface[f] == faces.surface[h] and _alike(k, g, met)
-            if same or _lies_on(k, g, f, ON_FACE * r, c, faces, met):
+            f, h = j_of[g] - first_id, j_of[k] - first_id
+            same = surface[f] == surface[h] and _alike(k, g, met)
+            if same or _lies_on(k, g, f, ON_FACE * r, c, poses, rows, centre, met):
                 met[k, F.BY], nearest = g, away
     for s in range(begin, stop):  # memory goes to the contact that takes the place
         k = number[s]
@@ -136,12 +155,12 @@ def _one_in_a_place(
         elif met[k, F.DISTANCE] >= r:  # it left: to a face of its surface that has come in its place
             for q in range(begin, stop):
                 o = number[q]
-                f, h = candidates.j[o] - faces.first, candidates.j[k] - faces.first
+                f, h = j_of[o] - first_id, j_of[k] - first_id
                 new = met[o, F.BY] < 0.0 and met[o, F.DISTANCE] < r and not touching[o]
-                if new and faces.surface[f] == faces.surface[h] and _alike(k, o, met):
+                if new and surface[f] == surface[h] and _alike(k, o, met):
                     g = o
         if g != k and not touching[g]:
-            _move(k, g, candidates)
+            _move(k, g, touching, eta, memory)
     for s in range(begin, stop):
         k = number[s]
         if met[k, F.BY] < 0.0:
@@ -175,21 +194,22 @@ def book_walls(
     The mirrored grain has the velocity and the spin of the wall, which works against the force and the torque
     on it. The half interval after this step is booked with the next one, as that of drag.
     """
-    met, impulse, p = candidates.met, accounts.walls, faces.poses
-    dt = c[P.DT]
+    met, impulse, p, motion = candidates.met, accounts.walls, faces.poses, faces.motion
+    i_of, j_of, x_of, first_id = candidates.i, candidates.j, grains.x, faces.first
+    dt, given, pending = c[P.DT], 0.0, 0.0
     for l in range(m):
         k = selected[l]
-        if candidates.j[k] < faces.first:
+        if j_of[k] < first_id:
             continue
         f_x, f_y, f_z = batch[B.FORCE + 4 * l], batch[B.FORCE + 4 * l + 1], batch[B.FORCE + 4 * l + 2]
         at = B.TORQUE_J + 4 * l
         t_x, t_y, t_z = batch[at], batch[at + 1], batch[at + 2]
         if f_x == 0.0 and f_y == 0.0 and f_z == 0.0:
             continue
-        i, w, row = candidates.i[k], int(met[k, F.SLOT]), met[k]
-        x = grains.x[i, 0] + row[F.GAP] - p[w, AXIS]
-        y = grains.x[i, 1] + row[F.GAP + 1] - p[w, AXIS + 1]
-        z = grains.x[i, 2] + row[F.GAP + 2] - p[w, AXIS + 2]
+        i, w = i_of[k], int(met[k, F.SLOT])
+        x = x_of[i, 0] + met[k, F.GAP] - p[w, AXIS]
+        y = x_of[i, 1] + met[k, F.GAP + 1] - p[w, AXIS + 1]
+        z = x_of[i, 2] + met[k, F.GAP + 2] - p[w, AXIS + 2]
         impulse[b, w, 0] -= f_x * dt
         impulse[b, w, 1] -= f_y * dt
         impulse[b, w, 2] -= f_z * dt
@@ -198,21 +218,21 @@ def book_walls(
         impulse[b, w, 5] += (t_z - (x * f_y - y * f_x)) * dt
         if p[w, MOVES] == 0.0:
             continue
-        spin = faces.motion[w]
-        turning = t_x * spin[SPIN] + t_y * spin[SPIN + 1] + t_z * spin[SPIN + 2]
-        before = f_x * row[F.DRIFT] + f_y * row[F.DRIFT + 1] + f_z * row[F.DRIFT + 2] - turning
-        n_x, n_y, n_z = row[F.AWAY], row[F.AWAY + 1], row[F.AWAY + 2]
-        t, r = p[w], grains.x[i, 3]
+        turning = t_x * motion[w, SPIN] + t_y * motion[w, SPIN + 1] + t_z * motion[w, SPIN + 2]
+        before = f_x * met[k, F.DRIFT] + f_y * met[k, F.DRIFT + 1] + f_z * met[k, F.DRIFT + 2] - turning
+        n_x, n_y, n_z, r = met[k, F.AWAY], met[k, F.AWAY + 1], met[k, F.AWAY + 2], x_of[i, 3]
         on = drift_of_image(
             w, AFTER, NOW,
-            row[F.POINT] - r * (t[0] * n_x + t[3] * n_y + t[6] * n_z),
-            row[F.POINT + 1] - r * (t[1] * n_x + t[4] * n_y + t[7] * n_z),
-            row[F.POINT + 2] - r * (t[2] * n_x + t[5] * n_y + t[8] * n_z), p,
+            met[k, F.POINT] - r * (p[w, 0] * n_x + p[w, 3] * n_y + p[w, 6] * n_z),
+            met[k, F.POINT + 1] - r * (p[w, 1] * n_x + p[w, 4] * n_y + p[w, 7] * n_z),
+            met[k, F.POINT + 2] - r * (p[w, 2] * n_x + p[w, 5] * n_y + p[w, 8] * n_z), p,
         )  # fmt: skip
         after = (f_x * on[0] + f_y * on[1] + f_z * on[2]) / dt - turning
-        accounts.terms[b, WALL] += hdt * before
-        accounts.stats[b, S.PENDING_WALL] += 0.5 * dt * after
+        given += hdt * before
+        pending += 0.5 * dt * after
         impulse[b, w, 6] += hdt * before + 0.5 * dt * after
+    accounts.terms[b, WALL] += given
+    accounts.stats[b, S.PENDING_WALL] += pending
 
 
 @inner()
