@@ -73,9 +73,10 @@ class CandidateArrays(NamedTuple):
     eta: Any  # dashpots and stiffnesses (shared/memory_rows.py); one row for all where they are alike
     rows: Any  # memory (shared/memory_rows.py), (n_near, width); it and `eta` hold where they touch
     # only in scenes with walls, else of length 0
-    met: Any  # how a grain and a face meet (faces.py), (n_near, N_MET)
-    face: Any  # numbers of the candidates of each block that are faces, from first[b] on, (n_near,)
-    face_count: Any  # how many, (n_block,)
+    met: Any  # how grains and faces meet (faces.py), for each block from first[b] on, (n_near, N_MET)
+    face: Any  # the candidate of each of these rows, (n_near,)
+    slot: Any  # the row of each candidate that is a face, (n_near,)
+    face_count: Any  # how many faces are candidates, (n_block,)
 
 
 class WallArrays(NamedTuple):

@@ -24,9 +24,11 @@ DRIFT = 4  # velocity of the mirror image, which moves with the wall [m/s]
 POINT = 7  # nearest point, in the frame of the wall [m]
 AWAY = 10  # unit normal from the face to the grain, in the world [-]
 DISTANCE = 13  # from the centre of the grain [m]
-BY = 14  # the candidate whose contact takes the place of this one, or -1
+BY = 14  # the row whose contact takes the place of this one, or -1
 SLOT = 15  # number of the wall
-N_MET = 16
+FORCE = 16  # on the grain [N], and on the mirror image
+TORQUE = 19  # [N m]; zeros where they do not touch
+N_MET = 24  # whole cache lines
 
 
 class FaceArrays(NamedTuple):

@@ -38,8 +38,8 @@ from ryusa.laws.geometry import wrap
 @inner(fastmath=FAST, forceinline=True)
 def filter_pairs(
     plane_case: int, walled: int | None, reach_on: float, first: int, m: int, waiting: int, n_solid: int,
-    c: Any, x: Any, i_of: Any, j_of: Any, touching: Any, points: Any, normals: Any, met: Any, separation: Any,
-    inside: Any, selected: Any,
+    c: Any, x: Any, i_of: Any, j_of: Any, touching: Any, points: Any, normals: Any, met: Any, slot: Any,
+    separation: Any, inside: Any, selected: Any,
 ) -> int:  # fmt: skip
     """Select those of m <= LANES candidates that touch or did in the last step; returns how many.
 
@@ -47,7 +47,7 @@ def filter_pairs(
     """
     for l in range(m):
         if walled is not None and j_of[first + l] >= n_solid + len(points):
-            copy4(separation, 4 * l, met, F.N_MET * (first + l))
+            copy4(separation, 4 * l, met, F.N_MET * slot[first + l])
         else:
             set_separation(l, i_of[first + l], j_of[first + l], n_solid, x, points, normals, separation)
     mark_within_cutoff(plane_case, reach_on, m, c, separation, inside)
@@ -61,7 +61,7 @@ def filter_pairs(
 def gather(
     rotation: int, exact: int, short: int | None, walled: int | None, m: int, selected: Any, n_solid: int,
     c: Any, mass: Any, inertia: Any, x: Any, v: Any, w: Any, points: Any, normals: Any, i_of: Any, j_of: Any,
-    touching: Any, eta: Any, rows: Any, met: Any, batch: Any,
+    touching: Any, eta: Any, rows: Any, met: Any, slot: Any, batch: Any,
 ) -> int:  # fmt: skip
     """Copy the first m selected pairs to as many lanes; returns the number of lanes to compute.
 
@@ -73,7 +73,7 @@ def gather(
         if not touching[k]:
             begin_row(k, i, j, rotation, exact, c, mass, x, inertia, eta, rows)
         if walled is not None and j >= n_solid + len(points):
-            copy4(batch, B.SEPARATION + 4 * l, met, F.N_MET * k)
+            copy4(batch, B.SEPARATION + 4 * l, met, F.N_MET * slot[k])
         else:
             set_separation(B.SEPARATION // 4 + l, i, j, n_solid, x, points, normals, batch)
         e = dashpot_row(k, eta)

@@ -156,7 +156,7 @@ def list_faces(b: int, first_face: int, candidates: CandidateArrays) -> None:
     first, count = candidates.first[b], 0
     for k in range(first, first + candidates.count[b]):
         if candidates.j[k] >= first_face:
-            candidates.face[first + count] = k
+            candidates.face[first + count], candidates.slot[k] = k, first + count
             count += 1
     candidates.face_count[b] = count
 

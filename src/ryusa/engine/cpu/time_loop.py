@@ -27,7 +27,7 @@ from ryusa.engine.cpu.prune_schedule import COST_GRAIN, COST_TEST, ROUNDED_UP, p
 from ryusa.engine.cpu.simd.borrow import borrow
 from ryusa.engine.cpu.simd.prefetch import prefetch
 from ryusa.engine.cpu.simd.vec4 import fill4
-from ryusa.engine.cpu.wall_contacts import add_drift, book_walls, close_wall_interval, resolve_walls
+from ryusa.engine.cpu.wall_contacts import add_drift, book_walls, keep_forces, resolve_walls
 from ryusa.engine.shared import block_statistics as S
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.kernel import FAST, inner, kernel
@@ -76,14 +76,13 @@ def block_forces(
         candidates.rows,
     )
     mass, inertia, points, normals = grains.m, grains.inertia, walls.points, walls.normals
-    met = candidates.met
+    met, slot = candidates.met, candidates.slot
     spring_r = 0.0
     fill4(f, 8 * (n + b), 0.0)  # forces on fixed grains and planes, not used
     fill4(f, 8 * (n + b) + 4, 0.0)
     for place in range(B.WORK, B.WORK + B.N_WORK * B.PITCH):
         batch[place] = 0.0
     if walled is not None:
-        close_wall_interval(b, accounts)
         resolve_walls(b, reach_on, c, grains, walls.faces, candidates)
     k = candidates.first[b]
     end = k + candidates.count[b]
@@ -98,7 +97,7 @@ def block_forces(
                     prefetch(f, 8 * g)
             waiting = filter_pairs(
                 variant.plane_case, walled, reach_on, k, some, waiting, n_solid, c, x, i_of, j_of, touching,
-                points, normals, met, separation, inside, selected,
+                points, normals, met, slot, separation, inside, selected,
             )  # fmt: skip
             k += some
         m = min(waiting, B.LANES)
@@ -106,10 +105,10 @@ def block_forces(
             break
         lanes = gather(
             variant.rotation, variant.exact, short, walled, m, selected, n_solid, c, mass, inertia, x, v, w,
-            points, normals, i_of, j_of, touching, eta, rows, met, batch,
+            points, normals, i_of, j_of, touching, eta, rows, met, slot, batch,
         )  # fmt: skip
         if walled is not None:
-            add_drift(m, selected, j_of, walls.faces, met, batch)
+            add_drift(m, selected, j_of, slot, walls.faces.first, walls.faces.motion, met, batch)
         if water is not None and choice.rebound:
             immersed_dashpots(exact, choice, m, selected, c, grains, candidates, batch)
         if exact is None:
@@ -124,7 +123,7 @@ def block_forces(
                 variant, choice, m, n, t, hdt, selected, c, grains, candidates, batch, ended, account, stats
             )
         if walled is not None:
-            book_walls(b, m, selected, hdt, c, grains, walls.faces, candidates, batch, accounts)
+            keep_forces(m, selected, j_of, slot, walls.faces.first, met, batch)
         if exact is not None:
             keep_states(m, selected, touching, batch)
         if scatter(exact, short, m, selected, i_of, to, touching, rows, batch, f):
@@ -132,6 +131,8 @@ def block_forces(
         waiting -= m
         for l in range(waiting):
             selected[l] = selected[B.LANES + l]
+    if walled is not None:
+        book_walls(b, hdt, c, grains, walls.faces, candidates, accounts)
     for row in range(B.N_WORK):
         total = 0.0
         for l in range(B.LANES):

@@ -63,7 +63,8 @@ class BlockLayout(Layout):
         eta = np.zeros((total if self.many_dashpots else 1, self.variant.springs))
         return CandidateArrays(
             first, np.zeros(len(pairs), np.int64), i, j, target, index, touching, eta, rows,
-            np.zeros((total if self.walled else 0, N_MET)), np.zeros(total if self.walled else 0, np.uint32),
+            aligned(total if self.walled else 0, N_MET),
+            *(np.zeros(total if self.walled else 0, np.uint32) for _ in range(2)),
             np.zeros(len(pairs) if self.walled else 0, np.int64),
         )  # fmt: skip
 

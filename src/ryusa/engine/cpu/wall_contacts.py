@@ -37,9 +37,9 @@ def drift_of_image(
 
 @inner(fastmath=FAST)
 def _meet(
-    k: int, i: int, f: int, c: Any, x_of: Any, wall: Any, poses: Any, rows: Any, centre: Any, met: Any
+    s: int, i: int, f: int, c: Any, x_of: Any, wall: Any, poses: Any, rows: Any, centre: Any, met: Any
 ) -> None:
-    """Find how grain i and face f meet, and write it to row k of `met`."""
+    """Find how grain i and face f meet, and write it to row s of `met`."""
     w, r = wall[f], x_of[i, 3]
     x, y, z = in_frame(w, NOW, x_of[i, 0], x_of[i, 1], x_of[i, 2], poses)
     x, y = nearest_image(f, x, y, c[P.PERIOD_X], c[P.PERIOD_Y], centre)
@@ -47,17 +47,19 @@ def _meet(
     a_x = poses[w, 0] * n_x + poses[w, 1] * n_y + poses[w, 2] * n_z
     a_y = poses[w, 3] * n_x + poses[w, 4] * n_y + poses[w, 5] * n_z
     a_z = poses[w, 6] * n_x + poses[w, 7] * n_y + poses[w, 8] * n_z
-    met[k, F.POINT], met[k, F.POINT + 1], met[k, F.POINT + 2] = c_x, c_y, c_z
-    met[k, F.AWAY], met[k, F.AWAY + 1], met[k, F.AWAY + 2] = a_x, a_y, a_z
-    met[k, F.DISTANCE], met[k, F.BY], met[k, F.SLOT] = distance, -1.0, w
+    met[s, F.POINT], met[s, F.POINT + 1], met[s, F.POINT + 2] = c_x, c_y, c_z
+    met[s, F.AWAY], met[s, F.AWAY + 1], met[s, F.AWAY + 2] = a_x, a_y, a_z
+    met[s, F.DISTANCE], met[s, F.BY], met[s, F.SLOT] = distance, -1.0, w
     way = -(distance + r)
-    met[k, F.GAP], met[k, F.GAP + 1], met[k, F.GAP + 2] = way * a_x, way * a_y, way * a_z
-    met[k, F.GAP + 3] = 2.0 * r
+    met[s, F.GAP], met[s, F.GAP + 1], met[s, F.GAP + 2] = way * a_x, way * a_y, way * a_z
+    met[s, F.GAP + 3] = 2.0 * r
     d_x = d_y = d_z = 0.0
     if poses[w, MOVES] != 0.0:
         d_x, d_y, d_z = drift_of_image(w, NOW, BEFORE, c_x - r * n_x, c_y - r * n_y, c_z - r * n_z, poses)
+    for a in range(6):
+        met[s, F.FORCE + a] = 0.0
     dt = c[P.DT]
-    met[k, F.DRIFT], met[k, F.DRIFT + 1], met[k, F.DRIFT + 2] = d_x / dt, d_y / dt, d_z / dt
+    met[s, F.DRIFT], met[s, F.DRIFT + 1], met[s, F.DRIFT + 2] = d_x / dt, d_y / dt, d_z / dt
 
 
 @inner(fastmath=FAST)
@@ -112,13 +114,13 @@ def resolve_walls(
         reach = x_of[i, 3] + reach_on
         while stop < end and i_of[number[stop]] == i:
             k = number[stop]
-            _meet(k, i, j_of[k] - first_id, c, x_of, wall, poses, rows, centre, met)
-            near += int(met[k, F.DISTANCE] < reach) | int(touching[k] != 0)
+            _meet(stop, i, j_of[k] - first_id, c, x_of, wall, poses, rows, centre, met)
+            near += int(met[stop, F.DISTANCE] < reach) | int(touching[k] != 0)
             stop += 1
         if near > 1:
             _one_in_a_place(
-                begin, stop, x_of[i, 3], reach_on, first_id, c, number, j_of, met, touching, eta, memory, surface,
-                poses, rows, centre,
+                begin, stop, x_of[i, 3], reach_on, first_id, c, number, j_of, met, touching, eta, memory,
+                surface, poses, rows, centre,
             )  # fmt: skip
         begin = stop
 
@@ -128,88 +130,95 @@ def _one_in_a_place(
     begin: int, stop: int, r: float, reach_on: float, first_id: int, c: Any, number: Any, j_of: Any, met: Any,
     touching: Any, eta: Any, memory: Any, surface: Any, poses: Any, rows: Any, centre: Any,
 ) -> None:  # fmt: skip
-    """Keep one contact in one place among the faces of one grain, `number` begin..stop-1."""
+    """Keep one contact in one place among the faces of one grain, rows begin..stop-1."""
     for s in range(begin, stop):
-        k = number[s]
-        if met[k, F.DISTANCE] >= r + reach_on:
+        if met[s, F.DISTANCE] >= r + reach_on:
             continue
         nearest = math.inf
         for q in range(begin, stop):
-            g = number[q]
-            away = met[g, F.DISTANCE]
-            farther = away > met[k, F.DISTANCE] or (away == met[k, F.DISTANCE] and q > s)
+            away = met[q, F.DISTANCE]
+            farther = away > met[s, F.DISTANCE] or (away == met[s, F.DISTANCE] and q > s)
             if q == s or farther or away >= nearest:
                 continue
-            f, h = j_of[g] - first_id, j_of[k] - first_id
-            same = surface[f] == surface[h] and _alike(k, g, met)
-            if same or _lies_on(k, g, f, ON_FACE * r, c, poses, rows, centre, met):
-                met[k, F.BY], nearest = g, away
+            f, h = j_of[number[q]] - first_id, j_of[number[s]] - first_id
+            same = surface[f] == surface[h] and _alike(s, q, met)
+            if same or _lies_on(s, q, f, ON_FACE * r, c, poses, rows, centre, met):
+                met[s, F.BY], nearest = q, away
     for s in range(begin, stop):  # memory goes to the contact that takes the place
         k = number[s]
         if not touching[k]:
             continue
-        g = k
-        if met[k, F.BY] >= 0.0:
-            while met[g, F.BY] >= 0.0:
-                g = int(met[g, F.BY])
-        elif met[k, F.DISTANCE] >= r:  # it left: to a face of its surface that has come in its place
+        to = s
+        if met[s, F.BY] >= 0.0:
+            while met[to, F.BY] >= 0.0:
+                to = int(met[to, F.BY])
+        elif met[s, F.DISTANCE] >= r:  # it left: to a face of its surface that has come in its place
             for q in range(begin, stop):
-                o = number[q]
-                f, h = j_of[o] - first_id, j_of[k] - first_id
-                new = met[o, F.BY] < 0.0 and met[o, F.DISTANCE] < r and not touching[o]
-                if new and surface[f] == surface[h] and _alike(k, o, met):
-                    g = o
-        if g != k and not touching[g]:
-            _move(k, g, touching, eta, memory)
+                f, h = j_of[number[q]] - first_id, j_of[k] - first_id
+                new = met[q, F.BY] < 0.0 and met[q, F.DISTANCE] < r and not touching[number[q]]
+                if new and surface[f] == surface[h] and _alike(s, q, met):
+                    to = q
+        if to != s and not touching[number[to]]:
+            _move(k, number[to], touching, eta, memory)
     for s in range(begin, stop):
-        k = number[s]
-        if met[k, F.BY] < 0.0:
+        if met[s, F.BY] < 0.0:
             continue
-        if touching[k]:  # two contacts have become one: this one ends
+        if touching[number[s]]:  # two contacts have become one: this one ends
             for a in range(3):
-                met[k, F.GAP + a] = -(1.0 + 1e-12) * 2.0 * r * met[k, F.AWAY + a]
+                met[s, F.GAP + a] = -(1.0 + 1e-12) * 2.0 * r * met[s, F.AWAY + a]
         else:
-            met[k, F.GAP], met[k, F.GAP + 1], met[k, F.GAP + 2] = B.FAR, 0.0, 0.0
+            met[s, F.GAP], met[s, F.GAP + 1], met[s, F.GAP + 2] = B.FAR, 0.0, 0.0
 
 
-@inner(fastmath=FAST)
-def add_drift(m: int, selected: Any, j_of: Any, faces: FaceArrays, met: Any, batch: Any) -> None:
+@inner(fastmath=FAST, forceinline=True)
+def add_drift(
+    m: int, selected: Any, j_of: Any, slot: Any, first_id: int, motion: Any, met: Any, batch: Any
+) -> None:
     """Take the motion of walls off the relative velocities of m lanes; mirrored grains spin with the wall."""
     for l in range(m):
         k = selected[l]
-        if j_of[k] >= faces.first:
-            w = int(met[k, F.SLOT])
+        if j_of[k] >= first_id:
+            s = slot[k]
+            w = int(met[s, F.SLOT])
             for a in range(3):
-                batch[B.RELATIVE_VELOCITY + 4 * l + a] -= met[k, F.DRIFT + a]
-                batch[B.SPIN_J + 4 * l + a] = faces.motion[w, SPIN + a]
+                batch[B.RELATIVE_VELOCITY + 4 * l + a] -= met[s, F.DRIFT + a]
+                batch[B.SPIN_J + 4 * l + a] = motion[w, SPIN + a]
+
+
+@inner(fastmath=FAST, forceinline=True)
+def keep_forces(m: int, selected: Any, j_of: Any, slot: Any, first_id: int, met: Any, batch: Any) -> None:
+    """Keep the forces and torques of those of the first m lanes that are faces."""
+    for l in range(m):
+        k = selected[l]
+        if j_of[k] >= first_id:
+            s = slot[k]
+            for a in range(3):
+                met[s, F.FORCE + a] = batch[B.FORCE + 4 * l + a]
+                met[s, F.TORQUE + a] = batch[B.TORQUE_J + 4 * l + a]
 
 
 @inner(fastmath=FAST)
 def book_walls(
-    b: int, m: int, selected: Any, hdt: float, c: Any, grains: GrainArrays, faces: FaceArrays,
-    candidates: CandidateArrays, batch: Any, accounts: AccountArrays,
+    b: int, hdt: float, c: Any, grains: GrainArrays, faces: FaceArrays, candidates: CandidateArrays,
+    accounts: AccountArrays,
 ) -> None:  # fmt: skip
-    """Add the impulse on walls from the first m lanes, and the work of those that move.
+    """Add the impulses on walls of block b, and the work of those that move.
 
     The mirrored grain has the velocity and the spin of the wall, which works against the force and the torque
     on it. The half interval after this step is booked with the next one, as that of drag.
     """
     met, impulse, p, motion = candidates.met, accounts.walls, faces.poses, faces.motion
-    i_of, j_of, x_of, first_id = candidates.i, candidates.j, grains.x, faces.first
-    dt, given, pending = c[P.DT], 0.0, 0.0
-    for l in range(m):
-        k = selected[l]
-        if j_of[k] < first_id:
-            continue
-        f_x, f_y, f_z = batch[B.FORCE + 4 * l], batch[B.FORCE + 4 * l + 1], batch[B.FORCE + 4 * l + 2]
-        at = B.TORQUE_J + 4 * l
-        t_x, t_y, t_z = batch[at], batch[at + 1], batch[at + 2]
+    number, i_of, x_of = candidates.face, candidates.i, grains.x
+    dt, given, pending = c[P.DT], accounts.stats[b, S.PENDING_WALL], 0.0
+    for s in range(candidates.first[b], candidates.first[b] + candidates.face_count[b]):
+        f_x, f_y, f_z = met[s, F.FORCE], met[s, F.FORCE + 1], met[s, F.FORCE + 2]
         if f_x == 0.0 and f_y == 0.0 and f_z == 0.0:
             continue
-        i, w = i_of[k], int(met[k, F.SLOT])
-        x = x_of[i, 0] + met[k, F.GAP] - p[w, AXIS]
-        y = x_of[i, 1] + met[k, F.GAP + 1] - p[w, AXIS + 1]
-        z = x_of[i, 2] + met[k, F.GAP + 2] - p[w, AXIS + 2]
+        t_x, t_y, t_z = met[s, F.TORQUE], met[s, F.TORQUE + 1], met[s, F.TORQUE + 2]
+        i, w = i_of[number[s]], int(met[s, F.SLOT])
+        x = x_of[i, 0] + met[s, F.GAP] - p[w, AXIS]
+        y = x_of[i, 1] + met[s, F.GAP + 1] - p[w, AXIS + 1]
+        z = x_of[i, 2] + met[s, F.GAP + 2] - p[w, AXIS + 2]
         impulse[b, w, 0] -= f_x * dt
         impulse[b, w, 1] -= f_y * dt
         impulse[b, w, 2] -= f_z * dt
@@ -219,24 +228,17 @@ def book_walls(
         if p[w, MOVES] == 0.0:
             continue
         turning = t_x * motion[w, SPIN] + t_y * motion[w, SPIN + 1] + t_z * motion[w, SPIN + 2]
-        before = f_x * met[k, F.DRIFT] + f_y * met[k, F.DRIFT + 1] + f_z * met[k, F.DRIFT + 2] - turning
-        n_x, n_y, n_z, r = met[k, F.AWAY], met[k, F.AWAY + 1], met[k, F.AWAY + 2], x_of[i, 3]
+        before = f_x * met[s, F.DRIFT] + f_y * met[s, F.DRIFT + 1] + f_z * met[s, F.DRIFT + 2] - turning
+        n_x, n_y, n_z, r = met[s, F.AWAY], met[s, F.AWAY + 1], met[s, F.AWAY + 2], x_of[i, 3]
         on = drift_of_image(
             w, AFTER, NOW,
-            met[k, F.POINT] - r * (p[w, 0] * n_x + p[w, 3] * n_y + p[w, 6] * n_z),
-            met[k, F.POINT + 1] - r * (p[w, 1] * n_x + p[w, 4] * n_y + p[w, 7] * n_z),
-            met[k, F.POINT + 2] - r * (p[w, 2] * n_x + p[w, 5] * n_y + p[w, 8] * n_z), p,
+            met[s, F.POINT] - r * (p[w, 0] * n_x + p[w, 3] * n_y + p[w, 6] * n_z),
+            met[s, F.POINT + 1] - r * (p[w, 1] * n_x + p[w, 4] * n_y + p[w, 7] * n_z),
+            met[s, F.POINT + 2] - r * (p[w, 2] * n_x + p[w, 5] * n_y + p[w, 8] * n_z), p,
         )  # fmt: skip
         after = (f_x * on[0] + f_y * on[1] + f_z * on[2]) / dt - turning
         given += hdt * before
         pending += 0.5 * dt * after
         impulse[b, w, 6] += hdt * before + 0.5 * dt * after
     accounts.terms[b, WALL] += given
-    accounts.stats[b, S.PENDING_WALL] += pending
-
-
-@inner()
-def close_wall_interval(b: int, accounts: AccountArrays) -> None:
-    """Book the second half of the work of walls in the step before."""
-    accounts.terms[b, WALL] += accounts.stats[b, S.PENDING_WALL]
-    accounts.stats[b, S.PENDING_WALL] = 0.0
+    accounts.stats[b, S.PENDING_WALL] = pending
