@@ -81,6 +81,7 @@ def main() -> None:
         ("rounds", 5),
         ("steps", 200),
         ("settle", 40_000),
+        ("threads", 1),
     ):
         asked.add_argument(f"--{name}", type=int, default=value)
     asked.add_argument("--turning", action="store_true")
