@@ -75,6 +75,8 @@ class CandidateArrays(NamedTuple):
     # only in scenes with walls, else of length 0
     met: Any  # how grains and faces meet (faces.py), for each block from first[b] on, (n_near, N_MET)
     face: Any  # the candidate of each of these rows, (n_near,)
+    face_grain: Any  # its grain, (n_near,)
+    face_number: Any  # number of the face, (n_near,)
     slot: Any  # the row of each candidate that is a face, (n_near,)
     face_count: Any  # how many faces are candidates, (n_block,)
 

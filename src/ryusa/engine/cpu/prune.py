@@ -156,7 +156,12 @@ def list_faces(b: int, first_face: int, candidates: CandidateArrays) -> None:
     first, count = candidates.first[b], 0
     for k in range(first, first + candidates.count[b]):
         if candidates.j[k] >= first_face:
-            candidates.face[first + count], candidates.slot[k] = k, first + count
+            s = first + count
+            candidates.face[s], candidates.slot[k] = k, s
+            candidates.face_grain[s], candidates.face_number[s] = (
+                candidates.i[k],
+                candidates.j[k] - first_face,
+            )
             count += 1
     candidates.face_count[b] = count
 

@@ -64,7 +64,7 @@ class BlockLayout(Layout):
         return CandidateArrays(
             first, np.zeros(len(pairs), np.int64), i, j, target, index, touching, eta, rows,
             aligned(total if self.walled else 0, N_MET),
-            *(np.zeros(total if self.walled else 0, np.uint32) for _ in range(2)),
+            *(np.zeros(total if self.walled else 0, np.uint32) for _ in range(4)),
             np.zeros(len(pairs) if self.walled else 0, np.int64),
         )  # fmt: skip
 

@@ -13,6 +13,7 @@ from ryusa.engine.cpu import faces as F
 from ryusa.engine.cpu.arrays import AccountArrays, CandidateArrays, GrainArrays
 from ryusa.engine.cpu.contact_rows import copy_row
 from ryusa.engine.cpu.faces import FaceArrays, in_frame, in_world, nearest_image, nearest_of_face
+from ryusa.engine.cpu.simd.prefetch import prefetch
 from ryusa.engine.shared import block_statistics as S
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.kernel import FAST, inner
@@ -22,6 +23,7 @@ from ryusa.model.walls import SPIN
 
 ON_FACE = 1e-3  # of the radius: within it a point lies on a face
 SAME_PLACE = math.cos(math.radians(45.0))  # of normals of one smooth surface that count as one place
+AHEAD = 8  # faces whose numbers are asked for before they are needed
 WALL = int(Term.WALL)
 
 
@@ -98,37 +100,38 @@ def resolve_walls(
     """Find how the grains of block b meet the faces near them, and keep one contact in one place."""
     first, end = candidates.first[b], candidates.first[b] + candidates.face_count[b]
     # arrays are passed one by one: references to a tuple of them would be counted for every face
-    number, i_of, j_of, met, first_id = (
-        candidates.face,
-        candidates.i,
-        candidates.j,
-        candidates.met,
-        faces.first,
-    )
+    number, grain, face, met = candidates.face, candidates.face_grain, candidates.face_number, candidates.met
     touching, eta, memory = candidates.touching, candidates.eta, candidates.rows
     x_of, wall, surface = grains.x, faces.wall, faces.surface
     poses, rows, centre = faces.poses, faces.rows, faces.centre
     begin = first
+    for s in range(first, min(first + AHEAD, end)):
+        prefetch(rows, F.N_FACE * face[s])
+        prefetch(rows, F.N_FACE * face[s] + 8)
+        prefetch(x_of, 4 * grain[s])
     while begin < end:
-        i, stop, near = i_of[number[begin]], begin, 0
+        i, stop, near = grain[begin], begin, 0
         reach = x_of[i, 3] + reach_on
-        while stop < end and i_of[number[stop]] == i:
-            k = number[stop]
-            _meet(stop, i, j_of[k] - first_id, c, x_of, wall, poses, rows, centre, met)
-            near += int(met[stop, F.DISTANCE] < reach) | int(touching[k] != 0)
+        while stop < end and grain[stop] == i:
+            if stop + AHEAD < end:
+                prefetch(rows, F.N_FACE * face[stop + AHEAD])
+                prefetch(rows, F.N_FACE * face[stop + AHEAD] + 8)
+                prefetch(x_of, 4 * grain[stop + AHEAD])
+            _meet(stop, i, face[stop], c, x_of, wall, poses, rows, centre, met)
+            near += 1 if met[stop, F.DISTANCE] < reach else int(touching[number[stop]] != 0)
             stop += 1
         if near > 1:
             _one_in_a_place(
-                begin, stop, x_of[i, 3], reach_on, first_id, c, number, j_of, met, touching, eta, memory,
-                surface, poses, rows, centre,
+                begin, stop, x_of[i, 3], reach_on, c, number, face, met, touching, eta, memory, surface,
+                poses, rows, centre,
             )  # fmt: skip
         begin = stop
 
 
 @inner(fastmath=FAST)
 def _one_in_a_place(
-    begin: int, stop: int, r: float, reach_on: float, first_id: int, c: Any, number: Any, j_of: Any, met: Any,
-    touching: Any, eta: Any, memory: Any, surface: Any, poses: Any, rows: Any, centre: Any,
+    begin: int, stop: int, r: float, reach_on: float, c: Any, number: Any, face: Any, met: Any, touching: Any,
+    eta: Any, memory: Any, surface: Any, poses: Any, rows: Any, centre: Any,
 ) -> None:  # fmt: skip
     """Keep one contact in one place among the faces of one grain, rows begin..stop-1."""
     for s in range(begin, stop):
@@ -140,7 +143,7 @@ def _one_in_a_place(
             farther = away > met[s, F.DISTANCE] or (away == met[s, F.DISTANCE] and q > s)
             if q == s or farther or away >= nearest:
                 continue
-            f, h = j_of[number[q]] - first_id, j_of[number[s]] - first_id
+            f, h = face[q], face[s]
             same = surface[f] == surface[h] and _alike(s, q, met)
             if same or _lies_on(s, q, f, ON_FACE * r, c, poses, rows, centre, met):
                 met[s, F.BY], nearest = q, away
@@ -154,7 +157,7 @@ def _one_in_a_place(
                 to = int(met[to, F.BY])
         elif met[s, F.DISTANCE] >= r:  # it left: to a face of its surface that has come in its place
             for q in range(begin, stop):
-                f, h = j_of[number[q]] - first_id, j_of[k] - first_id
+                f, h = face[q], face[s]
                 new = met[q, F.BY] < 0.0 and met[q, F.DISTANCE] < r and not touching[number[q]]
                 if new and surface[f] == surface[h] and _alike(s, q, met):
                     to = q
@@ -208,14 +211,14 @@ def book_walls(
     on it. The half interval after this step is booked with the next one, as that of drag.
     """
     met, impulse, p, motion = candidates.met, accounts.walls, faces.poses, faces.motion
-    number, i_of, x_of = candidates.face, candidates.i, grains.x
+    grain, x_of = candidates.face_grain, grains.x
     dt, given, pending = c[P.DT], accounts.stats[b, S.PENDING_WALL], 0.0
     for s in range(candidates.first[b], candidates.first[b] + candidates.face_count[b]):
         f_x, f_y, f_z = met[s, F.FORCE], met[s, F.FORCE + 1], met[s, F.FORCE + 2]
         if f_x == 0.0 and f_y == 0.0 and f_z == 0.0:
             continue
         t_x, t_y, t_z = met[s, F.TORQUE], met[s, F.TORQUE + 1], met[s, F.TORQUE + 2]
-        i, w = i_of[number[s]], int(met[s, F.SLOT])
+        i, w = grain[s], int(met[s, F.SLOT])
         x = x_of[i, 0] + met[s, F.GAP] - p[w, AXIS]
         y = x_of[i, 1] + met[s, F.GAP + 1] - p[w, AXIS + 1]
         z = x_of[i, 2] + met[s, F.GAP + 2] - p[w, AXIS + 2]
