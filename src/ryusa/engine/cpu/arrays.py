@@ -106,6 +106,7 @@ class Workspace(NamedTuple):
     separation: Any  # separation from i to j and sum of radii [m] of candidates, four each, (4 * LANES,)
     velocity: Any  # velocity of j against i [m/s], and 0, of candidates, (4 * LANES,)
     inside: Any  # 1 where a candidate touches, (LANES,)
+    face_lanes: Any  # lanes of the batch that are faces, and how many at place LANES, (LANES + 1,)
     selected: Any  # selected candidates, the first of them in the batch, (2 * LANES,), uint32
     schedule: Any  # this thread's copy of the prune schedule, (N_SCHEDULE,)
 
@@ -114,7 +115,7 @@ def workspace_of_thread() -> Workspace:
     """Room for one thread."""
     return Workspace(
         aligned(B.SIZE), aligned(W.SIZE), aligned(4 * B.LANES), aligned(4 * B.LANES), aligned(B.LANES),
-        np.zeros(2 * B.LANES, np.uint32), aligned(K.N_SCHEDULE),
+        np.zeros(B.LANES + 1, np.uint32), np.zeros(2 * B.LANES, np.uint32), aligned(K.N_SCHEDULE),
     )  # fmt: skip
 
 

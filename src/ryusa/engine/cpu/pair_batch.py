@@ -14,9 +14,8 @@ import math
 from typing import Any
 
 from ryusa.engine.cpu import batch_layout as B
-from ryusa.engine.cpu import faces as F
 from ryusa.engine.cpu.contact_rows import begin_row, dashpot_row, lane_to_row, row_to_lane
-from ryusa.engine.cpu.cutoff import mark_within_cutoff, set_separation
+from ryusa.engine.cpu.cutoff import mark_within_cutoff, set_separation, set_separation_of_any
 from ryusa.engine.cpu.simd.vec4 import add4, copy4, read4, subtract4, with_fourth, write4
 from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
@@ -46,10 +45,11 @@ def filter_pairs(
     `selected` gets their numbers; `separation` and `inside` are workspace.
     """
     for l in range(m):
-        if walled is not None and j_of[first + l] >= n_solid + len(points):
-            copy4(separation, 4 * l, met, F.N_MET * slot[first + l])
+        k = first + l
+        if walled is None:
+            set_separation(l, i_of[k], j_of[k], n_solid, x, points, normals, separation)
         else:
-            set_separation(l, i_of[first + l], j_of[first + l], n_solid, x, points, normals, separation)
+            set_separation_of_any(l, k, i_of[k], j_of[k], n_solid, x, points, normals, met, slot, separation)
     mark_within_cutoff(plane_case, reach_on, m, c, separation, inside)
     for l in range(m):  # no branch: which pairs touch is not predictable
         selected[waiting] = first + l
@@ -61,21 +61,25 @@ def filter_pairs(
 def gather(
     rotation: int, exact: int, short: int | None, walled: int | None, m: int, selected: Any, n_solid: int,
     c: Any, mass: Any, inertia: Any, x: Any, v: Any, w: Any, points: Any, normals: Any, i_of: Any, j_of: Any,
-    touching: Any, eta: Any, rows: Any, met: Any, slot: Any, batch: Any,
+    touching: Any, eta: Any, rows: Any, met: Any, slot: Any, face_lanes: Any, batch: Any,
 ) -> int:  # fmt: skip
     """Copy the first m selected pairs to as many lanes; returns the number of lanes to compute.
 
-    Those are whole vectors of eight: the lanes beyond m hold pairs far apart.
+    Those are whole vectors of eight: the lanes beyond m hold pairs far apart. `face_lanes` gets the lanes of
+    faces, and in place LANES their number.
     """
+    n_face = 0
     for l in range(m):
         k = selected[l]
         i, j = i_of[k], j_of[k]
         if not touching[k]:
             begin_row(k, i, j, rotation, exact, c, mass, x, inertia, eta, rows)
-        if walled is not None and j >= n_solid + len(points):
-            copy4(batch, B.SEPARATION + 4 * l, met, F.N_MET * slot[k])
-        else:
+        if walled is None:
             set_separation(B.SEPARATION // 4 + l, i, j, n_solid, x, points, normals, batch)
+        else:
+            set_separation_of_any(
+                B.SEPARATION // 4 + l, k, i, j, n_solid, x, points, normals, met, slot, batch
+            )
         e = dashpot_row(k, eta)
         write4(
             batch,
@@ -86,10 +90,15 @@ def gather(
         copy4(batch, B.SPIN_J + 4 * l, w, 8 * j)
         if j >= n_solid:
             batch[B.SPIN_J + 4 * l + 3] = w[i, 3]
+            if walled is not None and j >= n_solid + len(points):
+                face_lanes[n_face] = l
+                n_face += 1
         row_to_lane(short, l, k, rows, batch)
         batch[B.ETA_S + l], batch[B.WAS_TOUCHING + l] = eta[e, M.ETA_S], touching[k]
         if exact:
             batch[B.K_N + l], batch[B.K_S + l] = eta[e, M.K_N], eta[e, M.K_S]
+    if walled is not None:
+        face_lanes[B.LANES] = n_face
     whole = (m + 7) // 8 * 8
     for l in range(m, whole):
         for a in range(4):

@@ -76,7 +76,7 @@ def block_forces(
         candidates.rows,
     )
     mass, inertia, points, normals = grains.m, grains.inertia, walls.points, walls.normals
-    met, slot = candidates.met, candidates.slot
+    met, slot, face_lanes = candidates.met, candidates.slot, work.face_lanes
     spring_r = 0.0
     fill4(f, 8 * (n + b), 0.0)  # forces on fixed grains and planes, not used
     fill4(f, 8 * (n + b) + 4, 0.0)
@@ -105,10 +105,11 @@ def block_forces(
             break
         lanes = gather(
             variant.rotation, variant.exact, short, walled, m, selected, n_solid, c, mass, inertia, x, v, w,
-            points, normals, i_of, j_of, touching, eta, rows, met, slot, batch,
+            points, normals, i_of, j_of, touching, eta, rows, met, slot,
+            face_lanes, batch,
         )  # fmt: skip
         if walled is not None:
-            add_drift(m, selected, j_of, slot, walls.faces.first, walls.faces.motion, met, batch)
+            add_drift(face_lanes, selected, slot, walls.faces.motion, met, batch)
         if water is not None and choice.rebound:
             immersed_dashpots(exact, choice, m, selected, c, grains, candidates, batch)
         if exact is None:
@@ -123,7 +124,7 @@ def block_forces(
                 variant, choice, m, n, t, hdt, selected, c, grains, candidates, batch, ended, account, stats
             )
         if walled is not None:
-            keep_forces(m, selected, j_of, slot, walls.faces.first, met, batch)
+            keep_forces(face_lanes, selected, slot, met, batch)
         if exact is not None:
             keep_states(m, selected, touching, batch)
         if scatter(exact, short, m, selected, i_of, to, touching, rows, batch, f):

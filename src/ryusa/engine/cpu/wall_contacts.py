@@ -174,30 +174,26 @@ def _one_in_a_place(
 
 
 @inner(fastmath=FAST, forceinline=True)
-def add_drift(
-    m: int, selected: Any, j_of: Any, slot: Any, first_id: int, motion: Any, met: Any, batch: Any
-) -> None:
-    """Take the motion of walls off the relative velocities of m lanes; mirrored grains spin with the wall."""
-    for l in range(m):
-        k = selected[l]
-        if j_of[k] >= first_id:
-            s = slot[k]
-            w = int(met[s, F.SLOT])
-            for a in range(3):
-                batch[B.RELATIVE_VELOCITY + 4 * l + a] -= met[s, F.DRIFT + a]
-                batch[B.SPIN_J + 4 * l + a] = motion[w, SPIN + a]
+def add_drift(face_lanes: Any, selected: Any, slot: Any, motion: Any, met: Any, batch: Any) -> None:
+    """Take the motion of walls off relative velocities in a batch; mirrored grains spin with their wall."""
+    for n in range(face_lanes[B.LANES]):
+        l = face_lanes[n]
+        s = slot[selected[l]]
+        w = int(met[s, F.SLOT])
+        for a in range(3):
+            batch[B.RELATIVE_VELOCITY + 4 * l + a] -= met[s, F.DRIFT + a]
+            batch[B.SPIN_J + 4 * l + a] = motion[w, SPIN + a]
 
 
 @inner(fastmath=FAST, forceinline=True)
-def keep_forces(m: int, selected: Any, j_of: Any, slot: Any, first_id: int, met: Any, batch: Any) -> None:
-    """Keep the forces and torques of those of the first m lanes that are faces."""
-    for l in range(m):
-        k = selected[l]
-        if j_of[k] >= first_id:
-            s = slot[k]
-            for a in range(3):
-                met[s, F.FORCE + a] = batch[B.FORCE + 4 * l + a]
-                met[s, F.TORQUE + a] = batch[B.TORQUE_J + 4 * l + a]
+def keep_forces(face_lanes: Any, selected: Any, slot: Any, met: Any, batch: Any) -> None:
+    """Keep the forces and torques of the faces in a batch."""
+    for n in range(face_lanes[B.LANES]):
+        l = face_lanes[n]
+        s = slot[selected[l]]
+        for a in range(3):
+            met[s, F.FORCE + a] = batch[B.FORCE + 4 * l + a]
+            met[s, F.TORQUE + a] = batch[B.TORQUE_J + 4 * l + a]
 
 
 @inner(fastmath=FAST)
