@@ -71,7 +71,7 @@ def _rings(face: Floats, sides: int) -> tuple[Floats, Floats]:
     side /= np.linalg.norm(side)
     angle = 2.0 * math.pi * np.arange(sides + 1) / sides
     low = centre + radius * (np.cos(angle)[:, None] * side + np.sin(angle)[:, None] * np.cross(axis, side))
-    return low, low + length * axis
+    return np.asarray(low, dtype=np.float64), np.asarray(low + length * axis, dtype=np.float64)
 
 
 def _edges(corners: Floats, surface: Ints, wall: Ints) -> tuple[Floats, Ints]:
@@ -112,7 +112,7 @@ def nearest_on_face(face: Floats, kind: int, x: Floats) -> Floats:
         across, rho = np.cross(b, np.eye(3)[int(np.abs(b).argmin())]), 1.0
         across /= np.linalg.norm(across)
     h, factor = nearest_on_cylinder(along, rho, float(c[0]), float(c[1]))
-    return np.asarray(a + h * b + factor * across)
+    return np.asarray(a + h * b + factor * across, dtype=np.float64)
 
 
 def ways_to_faces(walls: Walls, faces: Ints, x: Floats, t: float, period: tuple[float, float]) -> Floats:

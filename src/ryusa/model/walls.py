@@ -94,11 +94,11 @@ def pose(row: Floats, t: float) -> tuple[Floats, Floats]:
     spin, axis_point = row[SPIN : SPIN + 3], row[AXIS_POINT : AXIS_POINT + 3]
     rate = float(np.linalg.norm(spin))
     if rate > 0.0:
-        axis = [float(one) / rate for one in spin]
-        for k in range(3):
-            turn[:, k] = turned_about(*(float(one) for one in turn[:, k]), *axis, rate * since)
-        arm = [float(one) for one in shift - axis_point]
-        shift = axis_point + np.array(turned_about(*arm, *axis, rate * since))
+        shift -= axis_point
+        for vector in (*turn.T, shift):
+            (x, y, z), (a, b, c) = vector.tolist(), (spin / rate).tolist()
+            vector[:] = turned_about(x, y, z, a, b, c, rate * since)
+        shift += axis_point
     return turn, shift + drift(row, since)
 
 

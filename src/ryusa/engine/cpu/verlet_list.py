@@ -61,10 +61,11 @@ class BlockLayout(Layout):
         width = len(SHORT) if has_short_rows(self.variant) else self.variant.row_width
         touching, rows = np.zeros(total, np.uint8), aligned(total, width)
         eta = np.zeros((total if self.many_dashpots else 1, self.variant.springs))
+        room = total if self.walled else 0
+        face, grain, number, slot = (np.zeros(room, np.uint32) for _ in range(4))
         return CandidateArrays(
             first, np.zeros(len(pairs), np.int64), i, j, target, index, touching, eta, rows,
-            aligned(total if self.walled else 0, N_MET),
-            *(np.zeros(total if self.walled else 0, np.uint32) for _ in range(4)),
+            aligned(room, N_MET), face, grain, number, slot,
             np.zeros(len(pairs) if self.walled else 0, np.int64),
         )  # fmt: skip
 
