@@ -28,7 +28,7 @@ from ryusa.running.checkpoint import _HEAD, _MAGIC, read_checkpoint
 from ryusa.running.disk import hdf5_image
 from ryusa.running.inspection import inspection
 
-SHORT = {"dry-2d": "0.01 s", "two-way": "0.004 s", "rolling": "0.01 s"}
+SHORT = {"dry-2d": "0.01 s", "two-way": "0.004 s", "rolling": "0.01 s", "walls": "0.01 s"}
 FAST = settings(
     max_examples=25,
     deadline=None,
