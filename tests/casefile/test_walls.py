@@ -4,10 +4,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from ryusa.build import build
 from ryusa.casefile import explain, read
-from ryusa.errors import CaseError
+from ryusa.errors import CaseError, ParseError
 from ryusa.formats.mesh import read_mesh
 
 CASE = """
@@ -178,3 +180,24 @@ def test_the_default_domain_has_room_for_the_walls(tmp_path: Path) -> None:
     (tmp_path / "case.toml").write_text(CASE + FLOOR.replace("-1 mm", "-1 m"))
     scene = build(read(tmp_path / "case.toml")).scene
     assert scene.world_low[2] < -1.01
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(kind=st.sampled_from([".stl", ".obj"]), data=st.data())
+def test_a_damaged_mesh_is_refused_or_read(tmp_path: Path, kind: str, data: st.DataObject) -> None:
+    path = tmp_path / f"part{kind}"
+    write = data.draw(st.sampled_from([write_stl, write_binary] if kind == ".stl" else [write_obj]))
+    write(path, tetrahedron())
+    whole = bytearray(path.read_bytes())
+    for _ in range(data.draw(st.integers(1, 6))):
+        at = data.draw(st.integers(0, len(whole) - 1))
+        whole[at] = data.draw(st.integers(0, 255))
+    path.write_bytes(bytes(whole[: data.draw(st.integers(0, len(whole)))]))
+    try:
+        corners = read_mesh(path, path.name)
+    except ParseError as error:
+        assert path.name in str(error)
+        assert "\n" not in str(error)
+    else:
+        assert corners.shape[1:] == (3, 3)
+        assert np.isfinite(corners).all()
