@@ -131,7 +131,9 @@ def test_a_mesh_that_cannot_be_is_named_with_its_file(tmp_path: Path) -> None:
     assert "smaller than the largest grain" in (said := fault(tmp_path, MESH.replace('"mm"', '"um"')))
     assert "check unit and scale" in said
     assert "STL or OBJ" in fault(tmp_path, MESH.replace("part.stl", "case.toml"))
-    assert "points outside the folder" in fault(tmp_path, MESH.replace("part.stl", "../part.stl"))
+    assert "needs a path inside the folder of the case file" in fault(
+        tmp_path, MESH.replace("part.stl", "../part.stl")
+    )
     assert "walls.0.turn_axis: missing" in fault(tmp_path, MESH + 'turn_angle = "3 deg"\n')
 
 

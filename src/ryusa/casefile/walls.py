@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
-from pydantic import Field
+from pydantic import AfterValidator, Field
 
-from ryusa.casefile.files import inside
+from ryusa.casefile.files import inside, relative
 from ryusa.casefile.quantities import Angle, Frequency, Number, Point, PositiveLength, Speed, Spin
 from ryusa.casefile.rows import ExplainRow, count, word
 from ryusa.casefile.section import Section, given
@@ -57,7 +57,7 @@ class WallSection(Section):
     """Radius of a disc or a cylinder."""
     ends: Literal["open", "closed", "first", "last"] = "open"
     """Ends of a cylinder that discs close: none, both, the one at `at`, or the other."""
-    file: Annotated[str, Field(min_length=1, max_length=1000)] | None = None
+    file: Annotated[str, Field(min_length=1, max_length=400), AfterValidator(relative)] | None = None
     """STL or OBJ file of a mesh, in the folder of the case file or below it."""
     unit: Annotated[str, Field(min_length=1, max_length=16)] | None = None
     """Unit of length in that file, such as "mm"; STL and OBJ files do not say."""

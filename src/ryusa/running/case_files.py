@@ -15,13 +15,12 @@ def files_beside(case: "Case") -> dict[str, Path]:
     from ryusa.casefile.grading import sieve_file
     from ryusa.results import schema
 
-    if case.path is None:
-        return {}
-    sieve = sieve_file(case)
-    names = [case.build.file] if isinstance(case.build, TableSection) else []
-    names += [wall.file for wall in case.walls if wall.file is not None]
-    folder = case.path.resolve().parent
-    found = {name: folder / name for name in names if _plain(name)}
+    sieve, found = sieve_file(case), dict[str, Path]()
+    if case.path is not None:
+        names = [case.build.file] if isinstance(case.build, TableSection) else []
+        names += [wall.file for wall in case.walls if wall.file is not None]
+        folder = case.path.resolve().parent
+        found = {name: folder / name for name in names if _plain(name)}
     return found if sieve is None else found | {schema.SIEVE: sieve}
 
 
