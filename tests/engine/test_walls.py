@@ -67,6 +67,25 @@ def test_a_ball_on_a_split_plane_does_as_on_the_endless_plane(timing):
         assert len(split.events()) == hops
 
 
+def test_a_seam_between_two_walls_is_not_felt():
+    """Two floors side by side, one of them laid double, with corners that do not meet (T-junctions)."""
+    how = {"x": [[-0.03, 0.0, 0.52 * D]], "v": [[0.4, 0.05, 0.0]]}
+    made = scene(planes=[("floor", (0, 0, 0), (0, 0, 1))], **KEYS, **how)
+    steps = round(0.25 / made[0].dt)
+    plane = run(made, steps)
+    assert plane.state().x[0, 0] > 0.03
+    left = rectangle("left", (-1, -1, 0), (1, 0, 0), (0, 2, 0))
+    right = triangles(
+        "right",
+        np.concatenate([grid(9, 0.2) + np.array([0.1, 0.011, 0.0]), grid(7, 0.2) + np.array([0.1, 0, 0])]),
+    )
+    split = run(walled([left, right], **how), steps)
+    for name in ("x", "v", "omega"):
+        a, b = getattr(plane.state(), name), getattr(split.state(), name)
+        assert np.allclose(a, b, rtol=1e-9, atol=1e-12), name
+    assert len(split.events()) == len(plane.events())
+
+
 def test_a_tilted_split_plane_is_a_plane_to_round_off():
     tilt, how = 0.3, {"x": [[0.0, 0.01, 0.55 * D]], "v": [[0.0, 0.2, 0.0]]}
     normal = (math.sin(tilt), 0.0, math.cos(tilt))
