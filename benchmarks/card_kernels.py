@@ -51,6 +51,14 @@ KINDS = {
     "exact timing, plane, records, may pull": (
         KernelVariant(1, 1, 0, 1, 0, 0, 0, 1), DRY._replace(events=2, tension=1, slip=1),
     ),
+    "elastic spheres, 3D": (KernelVariant(0, 1, 0, 0, 0, 0, 0, 0, 1), DRY),
+    "elastic spheres, column, films, rolling, records": (
+        KernelVariant(0, 1, 1, 1, 1, 1, 1, 0, 1),
+        DRY._replace(
+            rolling=3, arm=1, events=2, profile=5, drag=4, torque=2, buoyancy=1, hindrance=5, lift=2,
+            magnus=2, rebound=1, slip=2, cap=1, unloading=1,
+        ),
+    ),
     "exact timing, column, films, rolling, records": (
         KernelVariant(0, 1, 1, 1, 1, 1, 1, 1),
         DRY._replace(

@@ -138,8 +138,10 @@ def _plain_keys(top: dict[str, Any]) -> dict[str, Any]:
 
 
 def _inner_models(about: dict[str, Any]) -> list[str]:
-    branches = [about, *about.get("anyOf", []), *about.get("oneOf", [])]
-    branches += [branch["items"] for branch in branches if isinstance(branch.get("items"), dict)]
+    branches = [about]
+    for branch in branches:  # grows: a choice may be one of a choice, or nothing
+        branches += [*branch.get("anyOf", []), *branch.get("oneOf", [])]
+        branches += [branch["items"]] if isinstance(branch.get("items"), dict) else []
     return [_name(branch["$ref"]) for branch in branches if "$ref" in branch]
 
 

@@ -9,7 +9,7 @@ from ryusa.casefile.laws import law_rows
 from ryusa.casefile.read import read
 from ryusa.cases import case_path
 from ryusa.laws._family import Family
-from ryusa.laws.families import FAMILIES, Above, Arm, SideWalls
+from ryusa.laws.families import FAMILIES, Above, Arm, DampingLaw, SideWalls, Unloading
 
 CHOICES = [choice for family in FAMILIES for choice in family if choice.word]
 
@@ -17,6 +17,7 @@ CHOICES = [choice for family in FAMILIES for choice in family if choice.word]
 def with_word(choice: Family) -> Case:
     """A case that makes this choice, its other keys unchanged and unchecked."""
     beside: dict[type[Family], dict[str, Any]] = {
+        DampingLaw: {"law": "Hertz-Mindlin"}, Unloading: {"law": "Hertz-Mindlin"},
         Arm: {"model": "constant"}, SideWalls: {"side_walls": 0.1}, Above: {"profile": "uniform"},
     }  # fmt: skip
     case = read(case_path("movable_bed.toml"))

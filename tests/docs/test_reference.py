@@ -47,6 +47,8 @@ def test_the_readme_shows_every_command(generate: ModuleType) -> None:
 
 def test_the_readme_names_every_choice_of_contact_and_water() -> None:
     from ryusa.laws.families import (
+        ContactForce,
+        DampingLaw,
         Drag,
         Film,
         Hindrance,
@@ -59,11 +61,14 @@ def test_the_readme_names_every_choice_of_contact_and_water() -> None:
         Rolling,
         SideWalls,
         Slip,
+        Unloading,
         WaterTorque,
     )
 
     laws = (DOCS.parent / "README.md").read_text(encoding="utf-8").split("## Laws")[1].split("## Speed")[0]
     families = (
+        DampingLaw,
+        Unloading,
         Parting,
         Slip,
         Rolling,
@@ -77,6 +82,7 @@ def test_the_readme_names_every_choice_of_contact_and_water() -> None:
         SideWalls,
     )
     words = {word for family in (*families, Rebound, Film) for word in family.words()} - {"none", "dry"}
+    words.add(ContactForce.HERTZ_MINDLIN.word)
     missing = [word for word in sorted(words) if f"`{word}`" not in laws]
     assert not missing, f"README.md, table of '## Laws': add {missing}"
 

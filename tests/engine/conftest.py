@@ -7,6 +7,7 @@ from ryusa.build import scene
 from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.laws.families import Cap, ContactTiming, Slip
 from ryusa.model import ContactLaw, Scene, State
+from ryusa.model.contact_law import elastic_spheres
 from ryusa.model.scene import EventRule
 
 D = 2.0e-3  # [m]
@@ -35,6 +36,7 @@ def bits(state: State) -> tuple[bytes, ...]:
             contacts.spring_s,
             contacts.dash_s,
             contacts.dash_n,
+            contacts.overlap,
             contacts.spring_r,
             contacts.event,
         )
@@ -116,6 +118,14 @@ def contact_law(
         cohesion=cohesion,
         timing=timing,
     )
+
+
+M = 2650.0 * math.pi / 6.0 * D**3  # [kg]
+
+
+def elastic_law(speed=0.5, youngs_modulus=1.0e8, m=M, r=0.25 * D, **more):
+    """Elastic spheres of the size of this room: a grain on a fixed one, unless told otherwise."""
+    return elastic_spheres(m, r, youngs_modulus=youngs_modulus, speed=speed, **more)
 
 
 @pytest.fixture

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from tests.engine.conftest import D
+from tests.engine.conftest import D, elastic_law
 
 from ryusa.build import scene
 from ryusa.laws.families import (
@@ -12,6 +12,7 @@ from ryusa.laws.families import (
     Arm,
     Buoyancy,
     ContactTiming,
+    DampingLaw,
     Drag,
     Hindrance,
     Lift,
@@ -20,6 +21,7 @@ from ryusa.laws.families import (
     Rebound,
     Rolling,
     Slip,
+    Unloading,
     WaterTorque,
 )
 from ryusa.model import RollingLaw, Water
@@ -65,6 +67,15 @@ KINDS = {
     },
     "exact timing, capped together, rolling spring": {
         **EXACT, "slip": Slip.TOTAL, "rolling": RollingLaw(Rolling.EPSD, Arm.REDUCED_RADIUS, 0.1),
+    },
+    "elastic spheres, 3D": {"contact": elastic_law(0.1, 2.0e6), "events": EventRule.NONE, "walls": True},
+    "elastic spheres, plane, may pull, records": {
+        "contact": elastic_law(0.1, 2.0e6, damping_law=DampingLaw.TSUJI, unloading=Unloading.PLAIN),
+        "plane_case": True,
+    },
+    "elastic spheres, capped together, films, rolling": {
+        "contact": elastic_law(0.1, 2.0e6, slip=Slip.TOTAL), "water": FILM,
+        "rolling": RollingLaw(Rolling.EPSD, Arm.REDUCED_RADIUS, 0.1),
     },
     "exact timing, films": {**EXACT, "water": FILM},
     "exact timing, column": {**EXACT, "water": COLUMN, "events": EventRule.NONE},

@@ -21,7 +21,16 @@ class ToyEngine:
     def refuses(self, scene: Scene) -> tuple[str, ...]:
         law = scene.contact
         odd = scene.water.profile or scene.events or scene.rolling.model or scene.plane_case or scene.n_plane
-        odd = odd or law.tension or law.slip or law.cap or law.damping or law.timing or not scene.rotation
+        odd = (
+            odd
+            or law.force
+            or law.tension
+            or law.slip
+            or law.cap
+            or law.damping
+            or law.timing
+            or not scene.rotation
+        )
         return (*refusals(scene), *(["a toy has dry spheres that slip by the rule 'spring'"] if odd else []))
 
     def load(self, scene: Scene, state: State) -> None:
@@ -138,7 +147,7 @@ class ToyEngine:
         rows = [np.concatenate(one, axis=None) for _, one in sorted(self._pairs.items())]
         rows, k = np.array(rows).reshape(-1, 9), len(rows)
         parts = rows[:, :3], rows[:, 3:6], rows[:, 7], rows[:, 6], np.zeros((k, 3)), np.zeros((k, 3))
-        exact = np.zeros(k), np.ones(k, np.int64), np.zeros(k)
+        exact = np.zeros(k), np.ones(k, np.int64), np.zeros(k), np.zeros(k)
         contacts = Contacts(i, j, *parts, rows[:, 8], *exact, np.zeros((k, EVENT.itemsize // 8)))
         make_read_only(state := replace(self.grains(), contacts=contacts, tally=self._state.tally))
         return state

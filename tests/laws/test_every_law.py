@@ -43,6 +43,15 @@ BLIND = {
     ("debris.equilibrium_takahashi", "c_star"),
     ("eddies.eddy_along", "shear"),  # its sign
     ("geometry.wrap", "period"),  # checked by the case reader
+    ("hertz_step.normal_step_hertz", "overlap"),  # as in contact_step.normal_step
+    ("hertz_step.normal_step_hertz", "least"),
+    ("hertz_step.normal_work_hertz", "overlap"),
+    ("hertz_step.normal_work_hertz", "least"),
+    ("hertz_step.shear_spring_hertz", "root"),  # of the overlap, which the grain step looks at
+    ("hertz_step.shear_spring_hertz", "root_old"),
+    # not used in a plane, or of tau_c, as in contact_step.tangential_step
+    *(("hertz_step.tangential_step_hertz", name) for name in ("n_x", "n_y", "n_z", "twist", "s_y", "s_z")),
+    *(("hertz_step.tangential_step_hertz", name) for name in ("f_n", "e_n", "cohesion", "mu")),
     ("rolling.epsd_torque", "spin"),  # the dashpot is off while sliding
     ("rolling.epsd_torque", "eta_r"),
     ("rolling.epsd_torque", "scale"),

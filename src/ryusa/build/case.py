@@ -22,11 +22,13 @@ from ryusa.casefile.builders.table import key_of
 from ryusa.casefile.case import Case
 from ryusa.casefile.choices import chosen
 from ryusa.casefile.column.schema import column_keys
-from ryusa.casefile.contact.values import may_pull
+from ryusa.casefile.contact.speed import expected_speed
+from ryusa.casefile.contact.values import hertz_law, is_hertz, may_pull, timing
 from ryusa.casefile.derive import Derived, derive
 from ryusa.casefile.films import film_reach
 from ryusa.casefile.motion import slab_width
 from ryusa.casefile.record import events_of
+from ryusa.casefile.time import steps_by_default
 from ryusa.casefile.water.values import hindrance_exponent
 from ryusa.errors import CaseError
 from ryusa.laws.families import (
@@ -34,7 +36,6 @@ from ryusa.laws.families import (
     Arm,
     Buoyancy,
     Cap,
-    ContactTiming,
     Drag,
     Hindrance,
     Lift,
@@ -133,6 +134,8 @@ def laws_of(case: Case, derived: Derived, z_zero: float) -> Laws:
 def contact_of(case: Case, derived: Derived) -> ContactLaw:
     """Contact law of a case."""
     found, contact = derived, case.contact
+    if is_hertz(case):
+        return hertz_law(case)
     constants = math.isnan(found.e_n)
     return ContactLaw(
         k_n=found.k_n,
@@ -149,7 +152,7 @@ def contact_of(case: Case, derived: Derived) -> ContactLaw:
         slip=Slip.of(contact.slip),
         cap=chosen(case, Cap),
         tension=may_pull(case),
-        timing=ContactTiming.of(contact.timing),
+        timing=timing(case),
     )
 
 
@@ -212,12 +215,15 @@ def notes_of(case: Case) -> tuple[str, ...]:
     """Defaults that the case does not state and that influence the results."""
     notes: list[str] = []
     contact, water = case.contact, case.water
-    if contact.shear_ratio is None and contact.shear_stiffness is None:
+    elastic = is_hertz(case)
+    if elastic:
+        notes += _elastic_notes(case)
+    elif contact.shear_ratio is None and contact.shear_stiffness is None:
         notes.append("k_s = 2/7 k_n (contact.shear_ratio not given)")
     if contact.restitution is not None and contact.restitution_shear is None:
         notes.append("tangential restitution = normal restitution (contact.restitution_shear not given)")
     for key, what in (("slip", "slip rule"), ("parting", "parting")):
-        if key not in contact.model_fields_set:
+        if key not in contact.model_fields_set and not (key == "parting" and elastic):
             notes.append(f"{what}: {getattr(contact, key)} (contact.{key} not given)")
     if water is not None:
         bed = column_keys(case).bed if water.profile == "column" else ""
@@ -236,10 +242,23 @@ def notes_of(case: Case) -> tuple[str, ...]:
         if bed:
             notes += _column_notes(case)
     if case.time.step is None and case.time.steps_per_contact is None:
-        notes.append("50 steps in the shortest contact (time not given)")
+        notes.append(f"{steps_by_default(case):g} steps in the shortest contact (time not given)")
     if case.record.events is None:
         notes.append(f"contacts recorded: {events_of(case)} (record.events not given)")
     return tuple(notes)
+
+
+def _elastic_notes(case: Case) -> list[str]:
+    keys = (("poisson_ratio", "Poisson's ratio"), ("damping_law", "damping"), ("unloading", "unloading"))
+    notes = [
+        f"{what}: {getattr(case.contact, key)} (contact.{key} not given)"
+        for key, what in keys
+        if key not in case.contact.model_fields_set
+    ]
+    if case.contact.expected_speed is None:
+        speed, origin = expected_speed(case)
+        notes.append(f"expected impact speed: {speed:.3g} m/s, {origin} (contact.expected_speed not given)")
+    return notes
 
 
 def _column_notes(case: Case) -> list[str]:

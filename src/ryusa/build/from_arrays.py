@@ -9,11 +9,12 @@ from numpy.typing import ArrayLike
 from ryusa.build.assemble import Laws, assemble, masses
 from ryusa.build.overlaps import refuse_overlaps
 from ryusa.build.placement import Placement, Wall
-from ryusa.casefile.time import STEPS_PER_CONTACT
+from ryusa.casefile.time import STEPS_OF_HERTZ, STEPS_PER_CONTACT
 from ryusa.errors import CaseError
 from ryusa.laws import collision
-from ryusa.laws.families import Cap, ContactTiming, Slip
+from ryusa.laws.families import Cap, ContactForce, ContactTiming, Slip
 from ryusa.model import ContactLaw, RollingLaw, Scene, State, Water
+from ryusa.model.contact_law import shortest_contact_of
 from ryusa.model.scene import EventRule, Floats
 
 
@@ -174,6 +175,9 @@ def _step(
     """Time step [s]: the shortest contact that can occur over its number of steps."""
     m, m_added, _, _ = masses(d, density, math.pi / 6, water)
     lightest = float(np.min(m + m_added)) / (2.0 if len(d) > 1 else 1.0)
+    if contact.force == ContactForce.HERTZ_MINDLIN:
+        r = 0.25 * float(np.min(d)) if len(d) > 1 else 0.5 * float(np.min(d))  # alone on a wall
+        return shortest_contact_of(contact, lightest, r) / (steps_per_contact or STEPS_OF_HERTZ)
     shortest = collision.shortest_contact(lightest, contact.k_n, contact.zeta_n, contact.tension)
     return shortest / (steps_per_contact or STEPS_PER_CONTACT[ContactTiming(contact.timing)])
 

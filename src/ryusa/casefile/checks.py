@@ -8,7 +8,7 @@ from ryusa.casefile.builders.checks import check_builder
 from ryusa.casefile.case import Case
 from ryusa.casefile.choices import check_choices
 from ryusa.casefile.column.checks import check_column
-from ryusa.casefile.contact.checks import check_contact, check_rolling
+from ryusa.casefile.contact.checks import check_contact, check_expected_speed, check_rolling
 from ryusa.casefile.contact.schema import RIVALS as CONTACT_RIVALS
 from ryusa.casefile.derive import Derived, derive
 from ryusa.casefile.domain import check_domain, check_planes
@@ -61,6 +61,7 @@ def check(case: Case, data: dict[str, Any]) -> list[CaseError]:
         *check_timeline(case, data),
         *check_precision(case),
     ]
+    found = found or [*check_expected_speed(case)]
     if found:
         return found
     derived = derive(case)

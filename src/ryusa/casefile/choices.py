@@ -5,15 +5,28 @@ from typing import Any, TypeVar
 
 from ryusa.casefile.case import Case
 from ryusa.casefile.column.schema import column_keys
+from ryusa.casefile.contact.values import timing
 from ryusa.casefile.section import Section, given
 from ryusa.errors import CaseError
 from ryusa.laws._family import Family
-from ryusa.laws.families import FAMILIES, Above, Arm, Cap, Mixing, Rolling, SideWalls, Slip, Start
+from ryusa.laws.families import (
+    FAMILIES,
+    Above,
+    Arm,
+    Cap,
+    ContactTiming,
+    Mixing,
+    Rolling,
+    SideWalls,
+    Slip,
+    Start,
+)
 
 F = TypeVar("F", bound=Family)
 
 # Choices of keys that a case may leave out and that have no fixed default.
 _DEFAULTS: dict[type[Family], Callable[[Case], Family]] = {
+    ContactTiming: timing,
     Cap: lambda case: Cap.TOTAL if "total" in Slip.of(case.contact.slip).marks else Cap.SPRING,
     Arm: lambda case: (
         Arm.REDUCED_RADIUS if "spring" in Rolling.of(case.rolling.model).marks else Arm.CONTACT_WIDTH

@@ -10,19 +10,18 @@ from ryusa.casefile.column.values import column_u_star
 from ryusa.casefile.contact.values import (
     PairValues,
     friction,
-    may_pull,
     pair_values,
     restitution,
+    shortest_contact,
     step_limit,
     stiffness,
 )
 from ryusa.casefile.films import step_limits
 from ryusa.casefile.grains import mass
 from ryusa.casefile.motion import slope
-from ryusa.casefile.time import MOST_STEPS, STEPS_PER_CONTACT, STEPS_PER_FILM, TANGENTIAL_SHARE
+from ryusa.casefile.time import MOST_STEPS, STEPS_PER_FILM, TANGENTIAL_SHARE, steps_by_default
 from ryusa.casefile.water.values import u_star_given
-from ryusa.laws import collision, drag, water
-from ryusa.laws.families import ContactTiming
+from ryusa.laws import drag, water
 
 
 @dataclass(frozen=True)
@@ -66,8 +65,7 @@ def derive(case: Case) -> Derived:
     k_n, k_s = stiffness(case)
     e_n, e_s, _, _ = restitution(case)
     n_grain, n_fixed, meet = counts(case)
-    lightest, limits = pair_values(case, d_min, meet), step_limit(case, d_min, meet)
-    shortest = collision.shortest_contact(lightest.m, k_n, lightest.zeta_n, may_pull(case))
+    shortest, limits = shortest_contact(case, d_min, meet), step_limit(case, d_min, meet)
     if case.time.step is not None:
         dt = case.time.step
     elif case.time.steps_per_contact is not None:
@@ -128,6 +126,6 @@ def _default_step(case: Case, shortest: float, tangential: float, wet: tuple[flo
     wet : largest steps for the most damped wet contact and for the thinnest film [s].
     """
     rebound, film = wet
-    in_contact = shortest / STEPS_PER_CONTACT[ContactTiming.of(case.contact.timing)]
+    in_contact = shortest / steps_by_default(case)
     wanted = min(in_contact, TANGENTIAL_SHARE * tangential, rebound, film / STEPS_PER_FILM)
     return max(wanted, shortest / MOST_STEPS)

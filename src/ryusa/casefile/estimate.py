@@ -5,9 +5,11 @@ import shutil
 
 from ryusa.casefile.builders.schema import BoxSection, FillSection, FlumeSection, FromFile, PackingSection
 from ryusa.casefile.case import Case
+from ryusa.casefile.contact.values import is_hertz, timing
 from ryusa.casefile.derive import Derived
 from ryusa.casefile.record import MANY, events_of
 from ryusa.casefile.rows import ExplainRow, Flag, count, number, word
+from ryusa.laws.families import ContactTiming
 from ryusa.model.contacts import N_EVENT
 
 BYTES_PER_GRAIN = 80  # of a frame: x, v, omega, image
@@ -28,6 +30,7 @@ CHECKPOINT_IN_COLUMN = 150  # of a grain on top, and in memory while it is writt
 CHECKPOINT_PER_CONTACT = 96
 CHECKPOINT_WITH_ROLLING = 48  # of a contact on top, where there is rolling friction
 CHECKPOINT_WITH_TIMING = 16  # where contacts begin and end within steps
+CHECKPOINT_WITH_HERTZ = 8  # of a contact of elastic spheres
 HELD_MOST = 64 << 20  # frames and contacts that wait to be written
 FASTER = 3.0  # than the rule of thumb: so much sooner may frames come
 HELD_SHORTEST, HELD_SHARE, HELD_LONGEST = 2.0, 0.01, 60.0  # s, of the time so far, s: as the recorder flushes
@@ -142,7 +145,8 @@ def checkpoint_of_grains(case: Case, n_grain: int, contacts: float) -> float:
     contact = CHECKPOINT_PER_CONTACT
     contact += BYTES_PER_EVENT if events_of(case) != "none" else 0
     contact += CHECKPOINT_WITH_ROLLING if case.rolling.model != "none" else 0
-    contact += CHECKPOINT_WITH_TIMING if case.contact.timing == "exact" else 0
+    contact += CHECKPOINT_WITH_TIMING if timing(case) is ContactTiming.EXACT else 0
+    contact += CHECKPOINT_WITH_HERTZ if is_hertz(case) else 0
     return n_grain * (each + contacts * contact)
 
 

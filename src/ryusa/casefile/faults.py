@@ -29,14 +29,14 @@ _MESSAGES = {
     "string_too_short": "must not be empty",
     "string_too_long": "is too long",
 }
-_LINEAR = (
-    "unknown key; the only contact law is a linear spring and dashpot so far: give contact.stiffness "
-    "(a value, { overlap, speed } or { collision_time }), see 'Normal force' in docs/theory.md"
+_ELASTIC = (
+    "unknown key; elastic spheres take contact.law = 'Hertz-Mindlin' with youngs_modulus and poisson_ratio, "
+    "linear springs take contact.stiffness; see 'Normal force' and 'Elastic spheres' in docs/theory.md"
 )
 _AVERAGES = ("stop", "precision")  # the table whose keys are names of averages
 _OTHER_CONTACT_LAWS = {
-    *("young", "youngs_modulus", "young_modulus", "elastic_modulus", "shear_modulus"),
-    *("poisson", "poisson_ratio", "poissons_ratio", "law", "model", "hertz", "normal", "tangential"),
+    *("young", "young_modulus", "elastic_modulus", "shear_modulus", "youngs", "e"),
+    *("poisson", "poissons_ratio", "nu", "model", "hertz", "normal", "tangential"),
 }
 
 
@@ -75,7 +75,7 @@ def _unknown_key(path: tuple[str | int, ...], data: dict[str, Any]) -> CaseError
     """Unknown key, with the nearest one, the builder that has it, or why there is none."""
     name = str(path[-1])
     if path[0] == "contact" and name.lower() in _OTHER_CONTACT_LAWS:
-        return CaseError(dotted(path), None, _LINEAR)
+        return CaseError(dotted(path), None, _ELASTIC)
     if path[0] == "build" and len(path) == 2 and (others := builders_with(name)):
         kind = _value(data, ("build", "kind"))
         words = " and ".join(f"'{other}'" for other in others)

@@ -63,6 +63,7 @@ Frequency = Annotated[float, _si("Hz"), _text("frequency", "30 Hz", "2 kHz"), Fi
 Angle = Annotated[float, _si("rad"), _text("angle", "30 deg", "0.5 rad")]
 Density = Annotated[float, _si("kg/m3"), _text("density", "2650 kg/m3", "2.65 g/cm3")]
 Stiffness = Annotated[float, _si("N/m"), _text("stiffness", "100 N/cm", "1e4 N/m")]
+Pressure = Annotated[float, _si("Pa"), _text("pressure", "50 MPa", "1e7 Pa")]
 Dashpot = Annotated[float, _si("N s/m"), _text("damping constant", "0.001 N s/cm")]
 Force = Annotated[float, _si("N"), _text("force", "0 N", "1 mN")]
 Acceleration = Annotated[float, _si("m/s2"), _text("acceleration", "9.8 m/s2")]

@@ -7,6 +7,8 @@ from typing import Any
 from ryusa.casefile.case import Case
 from ryusa.casefile.column.bed import packed
 from ryusa.casefile.column.schema import CELL, ONLY_IN_A_COLUMN, column_keys
+from ryusa.casefile.contact.speed import expected_speed
+from ryusa.casefile.contact.values import is_hertz, timing
 from ryusa.casefile.derive import Derived, derive
 from ryusa.casefile.grading import points_of
 from ryusa.casefile.motion import slab_width
@@ -18,11 +20,15 @@ def resolved(case: Case, derived: Derived | None = None) -> dict[str, Any]:
     data: dict[str, Any] = case.model_dump(mode="json", by_alias=True)
     found = derived or derive(case)
     data["grains"] |= {"diameter": found.d, "sieve_curve": points_of(case)}
-    data["contact"] |= {
-        "stiffness": found.k_n,
-        "shear_stiffness": found.k_s,
-        "shear_ratio": found.k_s / found.k_n,
-    }
+    data["contact"]["timing"] = timing(case).word
+    if is_hertz(case):
+        data["contact"]["expected_speed"] = expected_speed(case)[0]
+    else:
+        data["contact"] |= {
+            "stiffness": found.k_n,
+            "shear_stiffness": found.k_s,
+            "shear_ratio": found.k_s / found.k_n,
+        }
     data["contact"] |= {"friction": found.mu, "friction_angle": math.atan(found.mu)}
     if not math.isnan(found.e_n):
         data["contact"] |= {"restitution": found.e_n, "restitution_shear": found.e_s}

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import Field
 
+from ryusa.casefile.contact.values import is_hertz, parting, timing
 from ryusa.casefile.quantities import Duration, Number
 from ryusa.casefile.rows import ExplainRow, number
 from ryusa.casefile.section import Section
@@ -17,6 +18,9 @@ if TYPE_CHECKING:
 
 RIVALS = (("steps_per_contact", "step"),)
 STEPS_PER_CONTACT = {ContactTiming.EXACT: 10.0, ContactTiming.AT_STEPS: 50.0}  # when the case gives no step
+STEPS_OF_HERTZ = (
+    25.0  # per contact of elastic spheres: e to 7e-3 at worst, as at 50 of linear springs (design/0018)
+)
 TANGENTIAL_SHARE = 0.2  # of the largest stable step of the tangential motion, when the case gives no step
 MOST_STEPS = 500.0  # per contact when the case gives no step; a case that needs more has to say so
 STEPS_PER_FILM = 5.0  # in the time in which the thinnest film stops a grain, when the case gives no step
@@ -30,7 +34,8 @@ class TimeSection(Section):
 
     steps_per_contact: Annotated[Number, Field(ge=5, le=10_000)] | None = None
     """Number of steps in the shortest contact that can occur. When no step is given, 10 with contact.timing
-    "exact" and 50 with "at steps", or more where a tangential oscillation or a film of water needs them."""
+    "exact", 50 with "at steps", and 25 of elastic spheres, or more where a tangential oscillation or a film
+    of water needs them."""
     step: Duration | None = None
     """Time step dt, instead of steps_per_contact."""
 
@@ -38,17 +43,19 @@ class TimeSection(Section):
 def check_time(case: "Case", derived: "Derived", data: dict[str, Any]) -> Iterator[CaseError]:
     """Find a time step beyond the stability limit of a contact, too coarse or needlessly fine."""
     written = data.get("time", {})
-    steps, timing = case.time.steps_per_contact, case.contact.timing
+    steps = case.time.steps_per_contact
     if steps is not None and steps < FEWEST_STEPS and not _exact(case):
         yield CaseError(
             "time.steps_per_contact",
             steps,
-            f"must be at least {FEWEST_STEPS:g} with contact.timing '{timing}'; "
+            f"must be at least {FEWEST_STEPS:g} with contact.law '{case.contact.law}'"
+            if is_hertz(case)
+            else f"must be at least {FEWEST_STEPS:g} with contact.timing '{timing(case).word}'; "
             f"'{ContactTiming.EXACT.word}' allows {COARSEST:g}",
         )
     if derived.dt > derived.step_limit:
         key = "steps_per_contact" if case.time.step is None else "step"
-        yield CaseError(f"time.{key}", written.get(key), _unstable(derived, key))
+        yield CaseError(f"time.{key}", written.get(key), _unstable(case, derived, key))
     if case.time.step is None:
         return
     t_col, steps = derived.shortest, derived.steps_per_contact
@@ -68,13 +75,19 @@ def check_time(case: "Case", derived: "Derived", data: dict[str, Any]) -> Iterat
 
 def _exact(case: "Case") -> bool:
     """Whether contacts begin and end within steps."""
-    return ContactTiming.of(case.contact.timing) is ContactTiming.EXACT
+    return timing(case) is ContactTiming.EXACT
 
 
-def _unstable(derived: "Derived", key: str) -> str:
+def steps_by_default(case: "Case") -> float:
+    """Steps in the shortest contact when the case gives no step, as far as contacts decide."""
+    return STEPS_OF_HERTZ if is_hertz(case) else STEPS_PER_CONTACT[timing(case)]
+
+
+def _unstable(case: "Case", derived: "Derived", key: str) -> str:
     """Which motion is unstable, and what makes it stable."""
     tangential = derived.step_limit_shear == derived.step_limit
     which, softer = ("tangential", "contact.shear_ratio") if tangential else ("normal", "contact.stiffness")
+    softer = "contact.youngs_modulus" if is_hertz(case) else softer
     shorter = "a larger time.steps_per_contact" if key == "steps_per_contact" else "a smaller time.step"
     return (
         f"dt = {derived.dt:.3g} s is above {derived.step_limit:.3g} s, the largest step at which the {which} "
@@ -87,12 +100,16 @@ def time_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     """Durations of contacts and the time step."""
     rows: list[ExplainRow] = []
     undamped = "Eq. (8) with added mass, without damping"
+    if is_hertz(case):
+        undamped = "Hertz, at the expected impact speed, with added mass, without damping"
     for name, pair in (("on a fixed grain", derived.fixed), ("between free grains", derived.free)):
         rows += [
             number("time", f"collision time {name}", pair.t_undamped, "s", undamped),
-            number("time", f"contact time {name}", pair.t_col, "s", f"with damping, {case.contact.parting}"),
+            number("time", f"contact time {name}", pair.t_col, "s", f"with damping, {parting(case)}"),
         ]
     partners = "two free grains" if derived.meet else "a grain on a fixed one"
+    if is_hertz(case) and not derived.meet:
+        partners = "a grain on a wall"
     size = ", both of the smallest diameter" if derived.meet else ", of the smallest diameter"
     partners += size if derived.d_max > derived.d_min else ""
     few = derived.steps_per_contact < FEWEST_STEPS and not _exact(case)

@@ -96,6 +96,7 @@ def _table(chosen: "list[StiffnessChoice]", steps_per_contact: float) -> "Table"
     lines: list[tuple[str, str]] = [
         ("normal stiffness k_n [N/m]", "k_n"),
         ("tangential stiffness k_s = 2/7 k_n [N/m]", "k_s"),
+        ("Young's modulus of the same overlap, Hertz-Mindlin, nu = 0.25 [Pa]", "youngs_modulus"),
         ("largest overlap/d, fixed partner [-]", "overlap_fixed"),
         ("largest overlap/d, free partner [-]", "overlap_free"),
         ("Eq. (8), no dashpot, no added mass [s]", "eq_8"),

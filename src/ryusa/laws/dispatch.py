@@ -24,6 +24,7 @@ from ryusa.laws.families import (
     Rolling,
     SideWalls,
     Slip,
+    Unloading,
     WaterTorque,
 )
 
@@ -67,6 +68,8 @@ side_friction = dispatch(SideWalls, ("re",), unasked=(SideWalls.NONE,))
 slip_drops, slip_total = rules(Slip, "drop", "total")
 # Whether the whole normal force enters the Coulomb cap.
 (cap_total,) = rules(Cap, "total")
+# Whether the tangential spring of elastic spheres is let go with the contact area.
+(unloading_rescales,) = rules(Unloading, "rescaled")
 # Whether rolling friction exerts the same torque on both grains; else that on j is opposite to that on i.
 rolling_alike = marked(Rolling, "both alike")
 

@@ -13,6 +13,7 @@ that `laws.dispatch` gives to the family. Modules that distinguish choices witho
 # fmt: off
 
 from ryusa.laws._family import Family
+from ryusa.laws.collision import zeta_no_tension, zeta_tension
 from ryusa.laws.contact import normal_force, normal_force_no_tension, slide
 from ryusa.laws.drag import (
     c_d_constant,
@@ -46,6 +47,34 @@ from ryusa.laws.turbulence import (
 from ryusa.laws.water import log_law_rough, log_law_smooth, still, uniform
 
 # ------------------------------------------------------------------------------------------------- contacts
+
+
+class ContactForce(Family, key="contact.law"):
+    """Springs of a contact."""
+
+    LINEAR = (0, "linear", None, "linear springs of constant stiffness k_n and k_s", "Eqs. (1)-(2)",
+        ("stiffness", "shear_ratio", "shear_stiffness", "damping", "shear_damping", "parting"))
+    HERTZ_MINDLIN = (1, "Hertz-Mindlin", None,
+        "elastic spheres: (4/3) E_e sqrt(R_e) x^1.5, and 8 G_e a along the contact",
+        "Hertz 1882; Mindlin 1949; design/0018",
+        ("youngs_modulus", "poisson_ratio", "damping_law", "unloading", "expected_speed"))
+
+
+class DampingLaw(Family, key="contact.damping_law"):
+    """Normal dashpot of elastic spheres, c x^0.25 v: how c follows from the restitution."""
+
+    THORNTON = (0, "Thornton", zeta_no_tension,
+        "the normal force ends where it would pull", "Thornton, Cummins & Cleary 2013")
+    TSUJI = (1, "Tsuji", zeta_tension,
+        "the dashpot may pull until the overlap ends", "Tsuji, Tanaka & Ishida 1992")
+
+
+class Unloading(Family, key="contact.unloading"):
+    """Tangential spring of elastic spheres as their contact area shrinks. Marks: arguments of hertz_step."""
+
+    RESCALED = (0, "rescaled", None, "the spring is let go with the contact radius, a/a_old",
+        "Walton 1993; LAMMPS mindlin_rescale/force", (), ("rescaled",))
+    PLAIN = (1, "plain", None, "the spring is kept, which creates energy", "LAMMPS mindlin/force")
 
 
 class Parting(Family, key="contact.parting"):
@@ -301,6 +330,7 @@ class Fluctuations(Family, key="water.column.fluctuations"):
 
 
 FAMILIES: tuple[type[Family], ...] = (
-    Parting, ContactTiming, Slip, Cap, Rolling, Arm, Profile, Above, Drag, Hindrance, Buoyancy, Lift, Magnus,
-    WaterTorque, Rebound, Film, BedKind, SurfaceRule, Drive, Start, Mixing, SideWalls, Fluctuations,
+    ContactForce, DampingLaw, Unloading, Parting, ContactTiming, Slip, Cap, Rolling, Arm, Profile, Above,
+    Drag, Hindrance, Buoyancy, Lift, Magnus, WaterTorque, Rebound, Film, BedKind, SurfaceRule, Drive, Start,
+    Mixing, SideWalls, Fluctuations,
 )

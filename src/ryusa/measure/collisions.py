@@ -7,17 +7,14 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from ryusa.laws.collision import (
-    collision_time,
-    contact_time,
-    damping_ratio,
-    omega_natural,
-)
+from ryusa.laws.collision import collision_time, contact_time, omega_natural
+from ryusa.laws.families import ContactForce
+from ryusa.laws.hertz import time_factor_hertz
 from ryusa.measure._run import Floats, Run, settle_time
 from ryusa.measure.statistics import Average, average
 from ryusa.measure.table import Averaged, Averages, rows_of
 from ryusa.model import Scene
-from ryusa.model.scene import Damping
+from ryusa.model.contact_law import damping_ratio_of, hertz_stiffness_of
 
 Partner = Literal["all", "bed", "free", "plane"]
 
@@ -51,7 +48,8 @@ class Collisions(Averaged):
     restitution : parting over closing speed of contacts that were alone, else nan [-].
     restitution_s : minus the slip at parting along that at first touch, over it; alone only [-]. Like the
         normal one it is positive where the motion turns round; it is negative where the slip goes on.
-    expected : duration by Eq. (8) with the pair's mass, added mass included, and its dashpot [s].
+    expected : duration by Eq. (8) with the pair's mass, added mass included, and its dashpot [s]; of elastic
+        spheres by Hertz, at the speed of each contact.
     turning : u**2 t / (r v), t the expected duration, r the distance of the centres at first touch, u and v
         the speeds of the grain's centre along and against a fixed grain: how much the normal turns [-]; nan
         where the partner is not a fixed grain. It shortens contacts (`turned_time`).
@@ -131,7 +129,8 @@ def collisions(
     slip = np.linalg.norm(events["slip_begin"], axis=1)
     along = -np.einsum("ij,ij->i", events["slip_begin"], events["slip_end"])
     e_s = np.divide(along, slip * slip, out=np.full(len(events), np.nan), where=alone & (slip > 0.0))
-    expected = _expected(scene, pair)
+    radii = 0.5 * sizes
+    expected = _expected(scene, pair, 1.0 / (1.0 / radii[i] + 1.0 / radii[j]), speed)
     window = (begin, float(events["t_part"].max()) if len(events) else math.nan)
 
     def mean(name: str, unit: str, values: Floats) -> Average:
@@ -195,10 +194,14 @@ def _of_kind(j: NDArray[np.int64], scene: Scene, partner: Partner) -> NDArray[np
 
 def _damped(scene: Scene, mass: float) -> float:
     law = scene.contact
-    zeta = law.zeta_n if law.damping == Damping.RESTITUTION else damping_ratio(law.eta_n, law.k_n, mass)
-    return contact_time(zeta, omega_natural(law.k_n, mass), law.tension)
+    return contact_time(damping_ratio_of(law, mass), omega_natural(law.k_n, mass), law.tension)
 
 
-def _expected(scene: Scene, pair: Floats) -> Floats:
+def _expected(scene: Scene, pair: Floats, r: Floats, speed: Floats) -> Floats:
+    law = scene.contact
+    if law.force == ContactForce.HERTZ_MINDLIN:
+        factor = time_factor_hertz(law.zeta_n, law.tension)
+        square = hertz_stiffness_of(law, 1.0) ** 2 * r * np.where(speed > 0.0, speed, np.nan)
+        return factor * (pair * pair / square) ** 0.2
     values, which = np.unique(pair, return_inverse=True)
     return np.array([_damped(scene, float(one)) for one in values], dtype=np.float64)[which]

@@ -93,13 +93,13 @@ def contact_network(run: Run, t: float | None = None, lane: int | None = None) -
         held = held[held["j"] < scene.n_partner - scene.n_face]
         i, j = held["i"], held["j"]
         gap, normal, overlap = _geometry(x, i, j, scene)
-        spring = pair_springs(scene, i, j)[0] * overlap
+        spring = pair_springs(scene, i, j, overlap)[0] * overlap
         f_n, f_s, sliding = _parts(np.asarray(held["force"], dtype=np.float64), normal, spring, scene)
     else:
         x = inside_periods(x, scene)
         i, j = touching_pairs(x, scene)
         gap, normal, overlap = _geometry(x, i, j, scene)
-        f_n, f_s = pair_springs(scene, i, j)[0] * overlap, np.full(len(i), np.nan)
+        f_n, f_s = pair_springs(scene, i, j, overlap)[0] * overlap, np.full(len(i), np.nan)
         sliding = np.zeros(len(i), dtype=np.bool_)
     chosen, slices, slice_y = 0, 1, None
     if scene.plane_case:

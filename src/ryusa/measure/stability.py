@@ -16,6 +16,7 @@ from ryusa.laws.collision import (
 )
 from ryusa.laws.contact import damping
 from ryusa.laws.drag import added_mass, volume
+from ryusa.laws.hertz import modulus_for_stiffness, stiffness_hertz_for_overlap
 from ryusa.measure._run import Floats
 
 BAND = (0.001, 0.01)  # largest overlap over diameter: stiffer costs steps, softer trembles (Fig. 11)
@@ -23,6 +24,7 @@ A_3 = math.pi / 6.0
 C_M = 0.5
 RHO_W = 1000.0
 SHEAR_RATIO = 2.0 / 7.0
+POISSON = 0.25
 
 
 @dataclass(frozen=True)
@@ -62,6 +64,7 @@ class StiffnessChoice:
     Attributes
     ----------
     k_n, k_s : stiffness [N/m].
+    youngs_modulus : of elastic spheres of Poisson's ratio 0.25 with the same overlap on a fixed grain [Pa].
     overlap_fixed, overlap_free : largest overlap over diameter at the impact speed [-].
     eq_8 : Eq. (8) with the dry grain's mass [s].
     time_fixed, time_free : contact time with dashpot and added mass [s].
@@ -74,6 +77,7 @@ class StiffnessChoice:
 
     k_n: float
     k_s: float
+    youngs_modulus: float
     overlap_fixed: float
     overlap_free: float
     eq_8: float
@@ -90,7 +94,7 @@ class StiffnessChoice:
         """One line of a CSV table."""
         units = {"k_n": "N_per_m", "k_s": "N_per_m", "eq_8": "s", "time_fixed": "s", "time_free": "s"}
         units |= {"eta_fixed": "Ns_per_m", "eta_free": "Ns_per_m", "dt": "s", "steps": "per_s"}
-        units |= {"cost": "s_per_s"}
+        units |= {"cost": "s_per_s", "youngs_modulus": "Pa"}
         return {f"{n}_{units[n]}" if n in units else n: v for n, v in vars(self).items()}
 
 
@@ -115,11 +119,14 @@ def choice(grain: Grain, k_n: float, steps_per_contact: float = 50.0, rate: floa
     zeta = zeta_no_tension(grain.e)
     fixed, free = grain.m_moving, 0.5 * grain.m_moving
     time_fixed = contact_time_no_tension(zeta, omega_natural(k_n, fixed))
+    overlap = overlap_max(grain.speed, fixed, k_n, zeta)
+    hertz = stiffness_hertz_for_overlap(overlap, grain.speed, fixed, zeta)
     dt = shortest_contact(free, k_n, zeta, False) / steps_per_contact
     return StiffnessChoice(
         k_n=k_n,
         k_s=SHEAR_RATIO * k_n,
-        overlap_fixed=overlap_max(grain.speed, fixed, k_n, zeta) / grain.d,
+        youngs_modulus=modulus_for_stiffness(hertz, 0.25 * grain.d, POISSON),
+        overlap_fixed=overlap / grain.d,
         overlap_free=overlap_max(grain.speed, free, k_n, zeta) / grain.d,
         eq_8=collision_time(grain.m, k_n),
         time_fixed=time_fixed,

@@ -8,27 +8,32 @@ from numpy.typing import NDArray
 from ryusa.laws.collision import effective_mass, effective_mass_tangential
 from ryusa.laws.contact import damping
 from ryusa.laws.contact_map import spring_of_map
-from ryusa.laws.families import ContactTiming
+from ryusa.laws.families import ContactForce, ContactTiming
+from ryusa.laws.hertz import effective_modulus, hertz_stiffness, mindlin_ratio
 from ryusa.model.scene import Floats, Scene
 
 Ints = NDArray[np.int64]
 
 
-def pair_springs(scene: Scene, i: Ints, j: Ints) -> tuple[Floats, Floats]:
+def pair_springs(scene: Scene, i: Ints, j: Ints, overlap: Floats) -> tuple[Floats, Floats]:
     """Normal and tangential stiffness of each pair [N/m], both of shape (n,).
 
     Parameters
     ----------
     scene : law, masses and time step.
     i, j : ids of each pair, shape (n,); i is a free grain, j a free grain, a fixed grain, a plane or a face.
+    overlap : of each pair [m], shape (n,); only the stiffness of elastic spheres depends on it.
 
     Notes
     -----
-    They are those of the law, or with exact timing those of the map that goes through the points of its
-    oscillator (design/0014), which depend on the masses and the step. A dashpot that water chose at the touch
-    of a pair is not known here: its map has that of the dry restitution.
+    Of elastic spheres the normal one is the force over the overlap, the tangential one that at the overlap
+    (design/0018). Else they are those of the law, or with exact timing those of the map that goes through
+    the points of its oscillator (design/0014), which depend on the masses and the step. A dashpot that water
+    chose at the touch of a pair is not known here: its map has that of the dry restitution.
     """
     law, n = scene.contact, len(i)
+    if law.force == ContactForce.HERTZ_MINDLIN:
+        return _springs_hertz(scene, i, j, overlap)
     k_n, k_s = np.full(n, law.k_n), np.full(n, law.k_s)
     if law.timing != ContactTiming.EXACT or n == 0:
         return k_n, k_s
@@ -40,6 +45,15 @@ def pair_springs(scene: Scene, i: Ints, j: Ints) -> tuple[Floats, Floats]:
     kinds, place = np.unique(both, axis=0, return_inverse=True)
     found = np.array([_springs_of_map(scene, *(float(one) for one in kind)) for kind in kinds])[place.ravel()]
     return found[:, 0], found[:, 1]
+
+
+def _springs_hertz(scene: Scene, i: Ints, j: Ints, overlap: Floats) -> tuple[Floats, Floats]:
+    law = scene.contact
+    r = 0.5 * np.concatenate([scene.d, scene.d_fixed, np.full(scene.n_plane, math.inf)])
+    r_eff = 1.0 / (1.0 / r[i] + 1.0 / r[j])
+    k_n = hertz_stiffness(effective_modulus(law.youngs_modulus, law.poisson_ratio), 1.0) * np.sqrt(r_eff)
+    k_n *= np.sqrt(np.maximum(overlap, 0.0))
+    return k_n, mindlin_ratio(law.poisson_ratio) * k_n
 
 
 def _springs_of_map(

@@ -10,6 +10,7 @@ from ryusa.laws.families import (
     Arm,
     Buoyancy,
     Cap,
+    ContactForce,
     ContactTiming,
     Drag,
     Hindrance,
@@ -19,6 +20,7 @@ from ryusa.laws.families import (
     Rebound,
     Rolling,
     Slip,
+    Unloading,
     WaterTorque,
 )
 from ryusa.model.arrays import Bools, Floats
@@ -45,7 +47,11 @@ class EventRule(IntEnum):
 
 @dataclass(frozen=True)
 class ContactLaw:
-    """Springs, dashpots and slider of every contact, Eqs. (1)-(4)."""
+    """Springs, dashpots and slider of every contact, Eqs. (1)-(4).
+
+    With elastic spheres k_n and k_s are those of linear springs of the same contact time at `speed`, for a
+    mean grain on a fixed one: rolling springs and estimates take them.
+    """
 
     k_n: float  # normal stiffness [N/m]
     k_s: float  # tangential stiffness [N/m]
@@ -62,6 +68,16 @@ class ContactLaw:
     cap: Cap = Cap.SPRING
     tension: bool = False  # whether the dashpot may pull before the overlap ends
     timing: ContactTiming = ContactTiming.EXACT
+    # elastic spheres, HERTZ_MINDLIN; contacts begin and end at steps then
+    force: ContactForce = ContactForce.LINEAR
+    youngs_modulus: float = float("nan")  # [Pa]
+    poisson_ratio: float = float("nan")  # [-]
+    unloading: Unloading = Unloading.RESCALED
+    speed: float = float("nan")  # impact speed to be expected [m/s]
+
+
+# Fields of ContactLaw that only elastic spheres have.
+ONLY_HERTZ = ("force", "youngs_modulus", "poisson_ratio", "unloading", "speed")
 
 
 @dataclass(frozen=True)

@@ -16,13 +16,16 @@ class Term(IntEnum):
     SLIDE = 2  # lost to sliding
     ROLL = 3  # lost to rolling friction (slider and dashpot)
     RELEASED_N = 4  # lost: left in normal springs whose force ended before the overlap did
-    RELEASED_S = 5  # lost: left in tangential springs when a contact ended
+    # lost: left in tangential springs when a contact ended, or as the contact of elastic spheres changes
+    RELEASED_S = 5
     RELEASED_R = 6  # lost: left in rolling springs when a contact ended
     DRAG = 7  # given by drag
     TORQUE = 8  # given by the water torque
     LIFT = 9  # given by lift and the Magnus force
     SWITCH = 10  # given by a change of the timeline (gravity, friction, rotation, a gate)
-    STEP = 11  # given by the finite step where contacts begin and end, (1/2) k overlap (closing dt - overlap)
+    # given by the finite step where contacts begin and end, (1/2) k overlap (closing dt - overlap), and where
+    # the spring of elastic spheres is curved
+    STEP = 11
     START = 12  # energy at the first step: kinetic + spin + potential + springs
     FLOW = 13  # given by pressure, stress and acceleration of the water, beyond buoyancy in still water
     FILM = 14  # lost to films of water between grains that do not touch

@@ -10,8 +10,9 @@ import h5py
 import numpy as np
 
 from ryusa.errors import ResultsError
+from ryusa.laws.families import ContactForce
 from ryusa.model import Column, ContactLaw, FaceKind, RollingLaw, Scene, Walls, Water
-from ryusa.model.scene import EventRule
+from ryusa.model.scene import ONLY_HERTZ, EventRule
 from ryusa.model.walls import N_MOTION
 from ryusa.results.hdf5 import opened, read_dataset
 
@@ -40,6 +41,8 @@ def _scalars(scene: Scene) -> dict[str, Any]:
         if f.name not in _ARRAYS:
             value = getattr(scene, f.name)
             found[f.name] = asdict(value) if f.name in _LAWS and value is not None else value
+    if scene.contact.force == ContactForce.LINEAR:  # as before there were others: the digest stays
+        found["contact"] = {key: one for key, one in found["contact"].items() if key not in ONLY_HERTZ}
     walls: Walls | None = found.pop("walls")
     return found if walls is None else found | {"walls": list(walls.names)}
 

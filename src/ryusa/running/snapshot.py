@@ -23,8 +23,10 @@ from ryusa.running.checkpoint import CheckpointBlock
 _LATEST = 2**62  # step
 _NUMBERS = 64  # of an engine, at most
 _FLOAT, _INT, _INT32 = np.dtype(np.float64), np.dtype(np.int64), np.dtype(np.int32)
-# arrays left out where all their numbers are zero: those of rolling friction, exact timing and records
-_ZERO_UNLESS_USED = {f"contacts/{name}" for name in ("spring_r", "dash_r", "k_n", "rest_of_closing", "event")}
+# arrays left out where all their numbers are zero: of rolling friction, exact timing, Hertz, records
+_ZERO_UNLESS_USED = {
+    f"contacts/{name}" for name in ("spring_r", "dash_r", "k_n", "rest_of_closing", "overlap", "event")
+}
 _AT_ONCE = 1 << 14  # contacts
 _EDGE = 1e12  # m; larger coordinates are refused
 _LARGEST = 1e100  # in any unit: products of a few such values are still finite
@@ -113,7 +115,7 @@ class _Reader:
         if len(np.unique(i * np.int64(last) + j)) < k:
             raise ValueError("a contact that occurs twice")
         rows = {name: (k, 3) for name in ("spring_s", "dash_s", "spring_r", "dash_r")}
-        rows |= {name: (k,) for name in ("dash_n", "f_n", "eta_n", "k_n", "rest_of_closing")}
+        rows |= {name: (k,) for name in ("dash_n", "f_n", "eta_n", "k_n", "rest_of_closing", "overlap")}
         found = {name: self._floats(f"contacts/{name}", shape) for name, shape in rows.items()}
         event = np.zeros((k, N_EVENT))
         if "contacts/event" in self._arrays:

@@ -15,11 +15,12 @@ from ryusa.laws.collision import (
     effective_mass_tangential,
     restitution_for_zeta,
     restitution_tension,
-    shortest_contact,
 )
 from ryusa.laws.families import WaterTorque
+from ryusa.laws.rolling import reduced_radius
 from ryusa.laws.torque import reynolds_spin, torque_in_range
 from ryusa.model import Scene, State, Tally, Term
+from ryusa.model.contact_law import shortest_contact_of
 from ryusa.model.scene import Damping
 from ryusa.model.tally import HELD
 from ryusa.running.checkpoint import CheckpointBlock
@@ -282,10 +283,16 @@ def shortest_collision_time(scene: Scene, state: State) -> float:
     if scene.n_grain == 0:
         return math.inf
     law = scene.contact
-    m = np.sort(scene.m + scene.m_added)
-    pair = effective_mass(float(m[0]), float(m[1]) if _free_pairs(scene, state) else math.inf)
-    zeta = law.zeta_n if law.damping == Damping.RESTITUTION else damping_ratio(law.eta_n, law.k_n, pair)
-    return shortest_contact(pair, law.k_n, zeta, law.tension)
+    m, free = scene.m + scene.m_added, _free_pairs(scene, state)
+    order = np.argsort(m, kind="stable")
+    pair = effective_mass(float(m[order[0]]), float(m[order[1]]) if free else math.inf)
+    return shortest_contact_of(law, pair, _shortest_radius(scene, order, free))
+
+
+def _shortest_radius(scene: Scene, order: NDArray[np.int64], free: bool) -> float:
+    """Reduced radius of the lightest pair [m]; of the lightest grain on a wall if free grains cannot meet."""
+    r = 0.5 * float(scene.d[order[0]])
+    return reduced_radius(r, 0.5 * float(scene.d[order[1]]) if free else math.inf)
 
 
 def _follows(scene: Scene, free_pairs: bool) -> dict[str, tuple[float, float | None]]:

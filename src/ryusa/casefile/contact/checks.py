@@ -1,19 +1,38 @@
 """Checks of [contact] and [rolling] that need more than one key."""
 
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from ryusa.casefile.contact.speed import expected_speed
+from ryusa.casefile.contact.values import is_hertz, timing
 from ryusa.casefile.motion import may_rotate
 from ryusa.errors import CaseError
-from ryusa.laws.families import Arm, Rolling, Slip
+from ryusa.laws.families import Arm, ContactTiming, Rolling, Slip
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
 
 
 def check_contact(case: "Case") -> Iterator[CaseError]:
-    """Find friction or damping that is missing, and a Coulomb limit that contradicts the slip rule."""
-    contact = case.contact
+    """Find stiffness, friction or damping that is missing, and choices that contradict each other."""
+    contact, elastic = case.contact, is_hertz(case)
+    if elastic and contact.youngs_modulus is None:
+        yield CaseError("contact.youngs_modulus", None, f"missing; law '{contact.law}' needs it")
+    if not elastic and contact.stiffness is None:
+        yield CaseError(
+            "contact.stiffness",
+            None,
+            "missing; normal stiffness k_n of the linear spring: a value, or { overlap, speed }, or "
+            "{ collision_time }",
+        )
+    if elastic and timing(case) is not ContactTiming.AT_STEPS:
+        yield CaseError(
+            "contact.timing",
+            contact.timing,
+            f"must be 'at steps' (or left out) with law '{contact.law}', whose contacts cannot begin and end "
+            "within steps (design/0018)",
+        )
     if contact.friction is None and contact.friction_angle is None:
         yield CaseError(
             "contact.friction_angle",
@@ -22,10 +41,25 @@ def check_contact(case: "Case") -> Iterator[CaseError]:
         )
     if contact.restitution is None and contact.damping is None:
         yield CaseError(
-            "contact.restitution", None, "missing; give restitution, or damping (a constant dashpot)"
+            "contact.restitution",
+            None,
+            "missing; there is no default"
+            if elastic
+            else "missing; give restitution, or damping (a constant dashpot)",
         )
     if "total" in Slip.of(contact.slip).marks and contact.cap == "spring":
         yield CaseError("contact.cap", "spring", f"must be 'total' (or left out) with slip '{contact.slip}'")
+
+
+def check_expected_speed(case: "Case") -> Iterator[CaseError]:
+    """Find elastic spheres whose contacts have no duration, because nothing makes them fast."""
+    if is_hertz(case) and not 0.0 < expected_speed(case)[0] < math.inf:
+        yield CaseError(
+            "contact.expected_speed",
+            None,
+            "missing; the contact time of elastic spheres depends on the impact speed, and none follows from "
+            "gravity and the builder",
+        )
 
 
 def check_rolling(case: "Case") -> Iterator[CaseError]:

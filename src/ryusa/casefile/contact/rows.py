@@ -4,8 +4,10 @@ import math
 from typing import TYPE_CHECKING
 
 from ryusa.casefile.contact.schema import OverlapStiffnessSection, TimeStiffnessSection
-from ryusa.casefile.contact.values import PairValues
+from ryusa.casefile.contact.speed import expected_speed
+from ryusa.casefile.contact.values import PairValues, hertz_law, is_hertz, largest_overlap, parting
 from ryusa.casefile.rows import ExplainRow, Flag, number, word
+from ryusa.laws import collision, hertz
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
@@ -17,6 +19,8 @@ FAR_APART = 1.5  # ratio of tangential to normal half period beyond which e_s is
 def contact_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     """Stiffness and friction."""
     rule, contact = case.contact.stiffness, case.contact
+    if is_hertz(case):
+        return [*_elastic_rows(case, derived), *_friction_rows(case, derived)]
     origin = "contact.stiffness"
     if isinstance(rule, OverlapStiffnessSection):
         origin += f": overlap {rule.overlap:g} d in an impact at {rule.speed:g} m/s on a fixed grain"
@@ -25,24 +29,71 @@ def contact_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     shear = "contact.shear_stiffness"
     if contact.shear_stiffness is None:
         shear = f"{derived.k_s / derived.k_n:.4g} k_n (contact.shear_ratio)"
-    angle = math.degrees(math.atan(derived.mu))
-    rows = [
+    return [
         number("contact", "normal stiffness k_n", derived.k_n, "N/cm", origin),
         number("contact", "tangential stiffness k_s", derived.k_s, "N/cm", shear),
-        number("contact", "friction mu", derived.mu, "-", f"tan(phi), phi = {angle:.3g} deg"),
+        *_moduli_of_springs(case, derived),
+        *_friction_rows(case, derived),
     ]
-    if contact.cohesion:
-        rows.append(number("contact", "cohesion c", contact.cohesion, "N", "contact.cohesion, Eq. (4)"))
+
+
+def _friction_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
+    angle = math.degrees(math.atan(derived.mu))
+    rows = [number("contact", "friction mu", derived.mu, "-", f"tan(phi), phi = {angle:.3g} deg")]
+    if case.contact.cohesion:
+        rows.append(number("contact", "cohesion c", case.contact.cohesion, "N", "contact.cohesion, Eq. (4)"))
     return rows
+
+
+def _elastic_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
+    """Moduli of elastic spheres, and the linear springs that stand for them in one kind of impact."""
+    law, pair = hertz_law(case), derived.fixed
+    speed, _ = expected_speed(case)
+    modulus = hertz.effective_modulus(law.youngs_modulus, law.poisson_ratio)
+    shear = hertz.effective_shear_modulus(law.youngs_modulus, law.poisson_ratio)
+    alike = collision.stiffness_for_overlap(largest_overlap(case, speed), speed, pair.m, pair.zeta_n)
+    impact = f"in an impact at {speed:.3g} m/s on a fixed grain"
+    given = "" if "poisson_ratio" in case.contact.model_fields_set else " (contact.poisson_ratio not given)"
+    wall = "2 (1 - nu^2)/E of both; fixed grains and walls are of the same material"
+    return [
+        number("contact", "Young's modulus E", law.youngs_modulus, "Pa", "contact.youngs_modulus"),
+        number("contact", "Poisson's ratio nu", law.poisson_ratio, "-", f"contact.poisson_ratio{given}"),
+        number("contact", "effective modulus E_e", modulus, "Pa", f"1/E_e = {wall}"),
+        number("contact", "effective shear modulus G_e", shear, "Pa", "k_s = 8 G_e a, a the contact radius"),
+        number("contact", "k_n of the same contact time", derived.k_n, "N/cm", f"linear spring, {impact}"),
+        number("contact", "k_n of the same overlap", alike, "N/cm", f"linear spring, {impact}"),
+    ]
+
+
+def _moduli_of_springs(case: "Case", derived: "Derived") -> list[ExplainRow]:
+    """Young's modulus of the elastic spheres that stand for linear springs in one kind of impact."""
+    (speed, _), pair, nu = expected_speed(case), derived.fixed, case.contact.poisson_ratio
+    if not 0.0 < speed < math.inf:
+        return []
+    r, overlap = 0.25 * derived.d, largest_overlap(case, speed)
+    alike = {
+        "overlap": hertz.stiffness_hertz_for_overlap(overlap, speed, pair.m, pair.zeta_n),
+        "contact time": hertz.stiffness_hertz_for_time(pair.t_undamped, speed, pair.m, 0.0, True),
+    }
+    origin = f"elastic spheres, nu = {nu:g}, in an impact at {speed:.3g} m/s on a fixed grain"
+    return [
+        number("contact", f"E of the same {what}", hertz.modulus_for_stiffness(stiff, r, nu), "Pa", origin)
+        for what, stiff in alike.items()
+    ]
 
 
 def damping_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     """Dashpots, the restitution they give and the half period of the tangential spring."""
-    by_restitution, parting = not math.isnan(derived.e_n), case.contact.parting
+    by_restitution, ends = not math.isnan(derived.e_n), parting(case)
     normal, shear = "contact.damping, a constant", "contact.shear_damping, a constant"
     if by_restitution:
         normal, shear = "2 zeta sqrt(k_n m_eff) for contact.restitution", "2 zeta_s sqrt(k_s m_t)"
-    reached = f"contact.restitution, {parting}" if by_restitution else f"from eta_n and m_eff, {parting}"
+    if is_hertz(case):
+        normal, shear = (
+            f"{law}, at the largest overlap at the expected speed"
+            for law in ("sqrt(5) zeta sqrt(K m_eff) x^0.25", "2 zeta_s sqrt(k_s m_t)")
+        )
+    reached = f"contact.restitution, {ends}" if by_restitution else f"from eta_n and m_eff, {ends}"
     differ = not by_restitution and abs(derived.fixed.e - derived.free.e) > 0.02
     rows: list[ExplainRow] = []
     for name, pair in (("on a fixed grain", derived.fixed), ("between free grains", derived.free)):
@@ -63,6 +114,7 @@ def _half_period(case: "Case", name: str, pair: PairValues) -> ExplainRow:
         return word("damping", name, "none", "k_s = 0: no tangential spring")
     ratio = pair.t_shear / pair.t_undamped
     origin = f"{ratio:.3g} times the collision time, rotation {case.motion.rotation}"
+    origin += ", at the largest overlap" if is_hertz(case) else ""
     far: Flag = "" if 1.0 / FAR_APART <= ratio <= FAR_APART else "note"
     origin += "; too different for a tangential restitution" if far else ""
     return number("damping", name, pair.t_shear, "s", origin, far)

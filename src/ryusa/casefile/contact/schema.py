@@ -11,6 +11,7 @@ from ryusa.casefile.quantities import (
     FrictionAngle,
     FrictionCoefficient,
     Number,
+    Pressure,
     Speed,
     Stiffness,
     WordOf,
@@ -19,6 +20,7 @@ from ryusa.casefile.section import Section
 from ryusa.laws import families
 
 RIVALS = (
+    ("stiffness", "youngs_modulus"),
     ("friction_angle", "friction"),
     ("shear_ratio", "shear_stiffness"),
     ("restitution", "damping"),
@@ -58,17 +60,29 @@ def _stiffness_kind(value: Any) -> str:
 class ContactSection(Section):
     """Springs, dashpots and slider of every contact, Eqs. (1)-(4)."""
 
-    stiffness: Annotated[
-        Annotated[Annotated[Stiffness, Field(ge=1.0e-9, le=1.0e15)], Tag("<value>")]
-        | Annotated[OverlapStiffnessSection, Tag("<overlap>")]
-        | Annotated[TimeStiffnessSection, Tag("<time>")],
-        Discriminator(_stiffness_kind),
-    ]
+    law: Annotated[str, WordOf(families.ContactForce)] = "linear"
+    """Springs: linear ones of constant stiffness, or those of elastic spheres after Hertz and Mindlin."""
+    stiffness: (
+        Annotated[
+            Annotated[Annotated[Stiffness, Field(ge=1.0e-9, le=1.0e15)], Tag("<value>")]
+            | Annotated[OverlapStiffnessSection, Tag("<overlap>")]
+            | Annotated[TimeStiffnessSection, Tag("<time>")],
+            Discriminator(_stiffness_kind),
+        ]
+        | None
+    ) = None
     """Normal stiffness k_n of the linear spring: a value, or { overlap, speed }, or { collision_time }."""
     shear_ratio: Annotated[Number, Field(ge=0, le=10)] | None = None
     """k_s over k_n; 2/7 when neither this nor shear_stiffness is given."""
     shear_stiffness: Annotated[Stiffness, Field(ge=0, le=1.0e15)] | None = None
     """Tangential stiffness k_s, instead of shear_ratio."""
+    youngs_modulus: Annotated[Pressure, Field(ge=1.0, le=1.0e15)] | None = None
+    """Young's modulus E of elastic spheres; walls and fixed grains are of the same material."""
+    poisson_ratio: Annotated[Number, Field(ge=0, le=0.5)] = 0.25
+    """Poisson's ratio of elastic spheres."""
+    expected_speed: Annotated[Speed, Field(gt=0)] | None = None
+    """Impact speed to be expected: the contact time of elastic spheres, and with it the time step, is that at
+    this speed. When not given it follows from the builder, as `ryusa check` shows."""
     restitution: Annotated[Number, Field(gt=0, le=1)] | None = None
     """Normal coefficient of restitution e, the same on fixed grains and between free grains."""
     restitution_shear: Annotated[Number, Field(gt=0, le=1)] | None = None
@@ -89,11 +103,17 @@ class ContactSection(Section):
     cap: Annotated[str, WordOf(families.Cap)] | None = None
     """Normal force in the Coulomb limit: that of the spring, e_n, or the total, f_n; "total" when not given
     with slip = "total", else "spring"."""
-    timing: Annotated[str, WordOf(families.ContactTiming)] = "exact"
+    timing: Annotated[str, WordOf(families.ContactTiming)] | None = None
     """Whether a contact begins and ends at time steps, or at its true instants within a step, which needs far
-    fewer steps per contact for the same restitution."""
+    fewer steps per contact for the same restitution. When not given "exact", and "at steps" with law
+    "Hertz-Mindlin", which has no other."""
     parting: Annotated[str, WordOf(families.Parting)] = "no tension"
     """Whether the normal dashpot may pull before the overlap ends."""
+    damping_law: Annotated[str, WordOf(families.DampingLaw)] = "Thornton"
+    """Normal dashpot of elastic spheres, which gives the restitution at every speed: "Thornton" never pulls,
+    "Tsuji" may pull until the overlap ends."""
+    unloading: Annotated[str, WordOf(families.Unloading)] = "rescaled"
+    """Whether the tangential spring of elastic spheres is let go as the contact area shrinks."""
 
 
 class RollingSection(Section):

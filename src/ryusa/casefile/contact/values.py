@@ -6,12 +6,21 @@ from typing import TYPE_CHECKING
 
 from ryusa.casefile.builders.values import sizes
 from ryusa.casefile.contact.schema import OverlapStiffnessSection, TimeStiffnessSection
+from ryusa.casefile.contact.speed import expected_speed
 from ryusa.casefile.grains import mass
 from ryusa.casefile.motion import may_rotate
-from ryusa.laws import collision
+from ryusa.laws import collision, hertz
 from ryusa.laws import contact as contact_law
 from ryusa.laws._family import numbers
-from ryusa.laws.families import Parting
+from ryusa.laws.families import Cap, ContactForce, ContactTiming, DampingLaw, Parting, Slip, Unloading
+from ryusa.model import ContactLaw
+from ryusa.model.contact_law import (
+    elastic_spheres,
+    hertz_stiffness_of,
+    largest_overlap_of,
+    shortest_contact_of,
+    step_limits_of,
+)
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
@@ -37,8 +46,27 @@ class PairValues:
     t_shear: float  # half period of the tangential oscillator [s]; inf without spring
 
 
+def is_hertz(case: "Case") -> bool:
+    """Whether contacts are those of elastic spheres."""
+    return ContactForce.of(case.contact.law) is ContactForce.HERTZ_MINDLIN
+
+
+def timing(case: "Case") -> ContactTiming:
+    """Begin and end of contacts in time."""
+    if case.contact.timing is not None:
+        return ContactTiming.of(case.contact.timing)
+    return ContactTiming.AT_STEPS if is_hertz(case) else ContactTiming.EXACT
+
+
+def parting(case: "Case") -> str:
+    """Word of the case for the end of the normal force."""
+    return case.contact.damping_law if is_hertz(case) else case.contact.parting
+
+
 def may_pull(case: "Case") -> bool:
     """Whether the normal dashpot may pull before the overlap ends."""
+    if is_hertz(case):
+        return DampingLaw.of(case.contact.damping_law) is DampingLaw.TSUJI
     return Parting.of(case.contact.parting) is Parting.TENSION
 
 
@@ -82,6 +110,10 @@ def restitution(case: "Case") -> tuple[float, float, float, float]:
 def stiffness(case: "Case") -> tuple[float, float]:
     """Give k_n and k_s [N/m], as written or as they follow for a mean grain on a fixed one."""
     rule, contact = case.contact.stiffness, case.contact
+    if is_hertz(case):
+        law = hertz_law(case)
+        return law.k_n, law.k_s
+    assert rule is not None
     m, m_added, _, _ = mass(case, sizes(case)[0])
     if isinstance(rule, OverlapStiffnessSection):
         zeta = restitution(case)[2]
@@ -96,8 +128,63 @@ def stiffness(case: "Case") -> tuple[float, float]:
     return k_n, k_n * (SHEAR_RATIO if contact.shear_ratio is None else contact.shear_ratio)
 
 
+def hertz_law(case: "Case") -> ContactLaw:
+    """Contact law of a case with elastic spheres; its k_n is that of a mean grain on a fixed one."""
+    contact, d = case.contact, sizes(case)[0]
+    m, m_added, _, _ = mass(case, d)
+    e_n, e_s, _, _ = restitution(case)
+    slip = Slip.of(contact.slip)
+    return elastic_spheres(
+        m + m_added,
+        0.25 * d,
+        youngs_modulus=contact.youngs_modulus or math.nan,
+        poisson_ratio=contact.poisson_ratio,
+        speed=expected_speed(case)[0],
+        friction=friction(case),
+        restitution=e_n,
+        restitution_shear=e_s,
+        damping_law=DampingLaw.of(contact.damping_law),
+        unloading=Unloading.of(contact.unloading),
+        slip=slip,
+        cap=None if contact.cap is None else Cap.of(contact.cap),
+        cohesion=contact.cohesion,
+    )
+
+
+def reduced_radius(d: float, free: bool) -> float:
+    """Reduced radius [m] of two grains, or if they cannot meet of one on a wall: the shortest contact."""
+    return 0.25 * d if free else 0.5 * d
+
+
+def shortest_contact(case: "Case", d: float, free: bool) -> float:
+    """Shortest contact of the pair of `pair_values` [s]; of elastic spheres at the expected speed."""
+    one = pair_values(case, d, free)
+    if is_hertz(case):
+        return shortest_contact_of(hertz_law(case), one.m, reduced_radius(d, free))
+    return collision.shortest_contact(one.m, stiffness(case)[0], one.zeta_n, may_pull(case))
+
+
+def largest_overlap(case: "Case", speed: float) -> float:
+    """Largest overlap of a mean grain that hits a fixed one [m]."""
+    d = sizes(case)[0]
+    one = pair_values(case, d, False)
+    if is_hertz(case):
+        return largest_overlap_of(hertz_law(case), one.m, 0.25 * d, speed)
+    return collision.overlap_max(speed, one.m, stiffness(case)[0], one.zeta_n)
+
+
+def overlap_under(case: "Case", load: float) -> float:
+    """Overlap of a mean grain on a fixed one under a load [N] at rest [m]."""
+    if is_hertz(case):
+        return hertz.hertz_overlap(load, hertz_stiffness_of(hertz_law(case), 0.25 * sizes(case)[0]))
+    return load / stiffness(case)[0]
+
+
 def step_limit(case: "Case", d: float, free: bool) -> tuple[float, float]:
     """Largest stable step [s] of the normal and of the tangential motion of the pair of `pair_values`."""
+    if is_hertz(case):
+        one = pair_values(case, d, free, may_rotate(case))
+        return step_limits_of(hertz_law(case), one.m, one.m_t, reduced_radius(d, free))
     (k_n, k_s), one = stiffness(case), pair_values(case, d, free, may_rotate(case))
     normal = collision.step_limit(one.zeta_n, collision.omega_natural(k_n, one.m))
     if k_s > 0.0:
@@ -120,6 +207,8 @@ def pair_values(case: "Case", d: float, free: bool, rotates: bool | None = None)
         heavy, r, inertia, heavy if free else still, r, inertia if free else still, rotates
     )
     _, _, zeta_n, zeta_s = restitution(case)
+    if is_hertz(case):
+        return _pair_values_hertz(case, 0.25 * d, m_eff, m_t)
     if math.isnan(zeta_n):
         eta_n, eta_s = contact.damping or 0.0, contact.shear_damping or 0.0
         zeta_n = collision.damping_ratio(eta_n, k_n, m_eff)
@@ -140,4 +229,28 @@ def pair_values(case: "Case", d: float, free: bool, rotates: bool | None = None)
         t_undamped=collision.collision_time(m_eff, k_n),
         t_col=collision.contact_time(zeta_n, omega, tension),
         t_shear=math.inf if k_s == 0.0 else collision.collision_time(m_t, k_s),
+    )
+
+
+def _pair_values_hertz(case: "Case", r: float, m: float, m_t: float) -> PairValues:
+    """Values of two elastic spheres of a reduced radius r [m]: all in an impact at the expected speed.
+
+    Dashpots and the tangential oscillation are those at the largest overlap.
+    """
+    law = hertz_law(case)
+    stiff, v = hertz_stiffness_of(law, r), law.speed
+    root = math.sqrt(hertz.overlap_max_hertz(v, m, stiff, law.zeta_n))
+    k_shear = hertz.mindlin_ratio(law.poisson_ratio) * stiff
+    return PairValues(
+        m=m,
+        m_t=m_t,
+        zeta_n=law.zeta_n,
+        zeta_s=law.zeta_s,
+        eta_n=hertz.hertz_damping(law.zeta_n, stiff, m) * math.sqrt(root),
+        eta_s=hertz.mindlin_damping(law.zeta_s, k_shear, m_t) * math.sqrt(root),
+        e=law.e_n,
+        e_s=law.e_s,
+        t_undamped=hertz.contact_time_hertz(v, m, stiff, 0.0, True),
+        t_col=hertz.contact_time_hertz(v, m, stiff, law.zeta_n, law.tension),
+        t_shear=collision.collision_time(m_t, k_shear * root),
     )

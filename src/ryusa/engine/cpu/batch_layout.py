@@ -58,6 +58,16 @@ REST = 74 * PITCH  # correction of the closing speed that the next step makes [m
 KIND = 75 * PITCH  # what the step does with the pair (shared/contact_instants.py)
 BEGINS, MAY_END = 76 * PITCH, 77 * PITCH  # lanes where contacts begin, and may end, one after the other
 
+# Only with elastic spheres, in place of those of exact timing (hertz_contact.py):
+OVERLAP_OLD = 64 * PITCH  # memory: overlap in the last step [m], and force of the spring then [N]
+E_OLD = 65 * PITCH
+ROOT = 66 * PITCH  # root of the overlap [m**0.5], and its fourth root [m**0.25]
+FOURTH = 67 * PITCH
+STIFF_S = 68 * PITCH  # tangential stiffness [N/m], its inverse, that of the last step [m/N]
+SOFT_S = 69 * PITCH
+SOFT_OLD = 70 * PITCH
+SCALE = 71 * PITCH  # factor of the tangential spring [-]
+
 # Events: contacts that begin or may end, packed into lanes of their own (contact_events.py)
 EVENT = 78 * PITCH  # twelve rows as from OVERLAP on
 N_INPUT = 12

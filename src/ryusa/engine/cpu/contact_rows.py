@@ -86,7 +86,7 @@ def begin_row(
     i: int,
     j: int,
     rotation: int,
-    exact: int,
+    kind: int,
     c: Any,
     m: Any,
     x: Any,
@@ -100,7 +100,7 @@ def begin_row(
     """
     for a in range(rows.shape[1]):
         rows[k, a] = 0.0
-    set_springs(dashpot_row(k, eta), i, j, rotation, exact, c, m, x, inertia, eta)
+    set_springs(dashpot_row(k, eta), i, j, rotation, kind, c, m, x, inertia, eta)
 
 
 @inner(forceinline=True)

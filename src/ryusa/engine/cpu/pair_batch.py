@@ -59,13 +59,14 @@ def filter_pairs(
 
 @inner(fastmath=FAST, forceinline=True)
 def gather(
-    rotation: int, exact: int, short: int | None, walled: int | None, m: int, selected: Any, n_solid: int,
+    rotation: int, kind: int, short: int | None, walled: int | None, m: int, selected: Any, n_solid: int,
     c: Any, mass: Any, inertia: Any, x: Any, v: Any, w: Any, points: Any, normals: Any, i_of: Any, j_of: Any,
     touching: Any, eta: Any, rows: Any, met: Any, slot: Any, face_lanes: Any, batch: Any,
 ) -> int:  # fmt: skip
     """Copy the first m selected pairs to as many lanes; returns the number of lanes to compute.
 
-    Those are whole vectors of eight: the lanes beyond m hold pairs far apart. `face_lanes` gets the lanes of
+    Those are whole vectors of eight: the lanes beyond m hold pairs far apart. `kind` is that of the springs
+    (memory_rows.py). `face_lanes` gets the lanes of
     faces, and in place LANES their number.
     """
     n_face = 0
@@ -73,7 +74,7 @@ def gather(
         k = selected[l]
         i, j = i_of[k], j_of[k]
         if not touching[k]:
-            begin_row(k, i, j, rotation, exact, c, mass, x, inertia, eta, rows)
+            begin_row(k, i, j, rotation, kind, c, mass, x, inertia, eta, rows)
         if walled is None:
             set_separation(B.SEPARATION // 4 + l, i, j, n_solid, x, points, normals, batch)
         else:
@@ -95,8 +96,10 @@ def gather(
                 n_face += 1
         row_to_lane(short, l, k, rows, batch)
         batch[B.ETA_S + l], batch[B.WAS_TOUCHING + l] = eta[e, M.ETA_S], touching[k]
-        if exact:
+        if kind:
             batch[B.K_N + l], batch[B.K_S + l] = eta[e, M.K_N], eta[e, M.K_S]
+        if kind == M.HERTZ:  # a row of its own, since a loop reads all four of a group or none
+            batch[B.OVERLAP_OLD + l] = batch[B.DASH + 4 * l + 3]
     if walled is not None:
         face_lanes[B.LANES] = n_face
     whole = (m + 7) // 8 * 8
@@ -107,6 +110,8 @@ def gather(
             batch[B.SPRING + 4 * l + a] = batch[B.DASH + 4 * l + a] = 0.0
         batch[B.ETA_S + l] = batch[B.WAS_TOUCHING + l] = 0.0
         batch[B.K_N + l] = batch[B.K_S + l] = 1.0
+        if kind == M.HERTZ:
+            batch[B.OVERLAP_OLD + l] = 0.0
         batch[B.SEPARATION + 4 * l] = B.FAR
     return whole
 

@@ -14,7 +14,7 @@ from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared import record_fields as R
 from ryusa.engine.shared.contact_records import begin_record, end_record, keep_record
-from ryusa.engine.shared.dashpots import dashpot_immersed, spring_immersed
+from ryusa.engine.shared.dashpots import dashpot_immersed, dashpot_immersed_hertz, spring_immersed
 from ryusa.engine.shared.kernel import FAST, inner, kernel
 from ryusa.engine.shared.rolling import end_rolling, rolling_friction
 from ryusa.engine.shared.variant import KernelVariant, LawChoice
@@ -28,6 +28,7 @@ from ryusa.model.contacts import N_EVENT
 @kernel(fastmath=FAST)
 def immersed_dashpots(
     exact: int | None,
+    hertz: int | None,
     choice: LawChoice,
     m: int,
     selected: Any,
@@ -52,7 +53,9 @@ def immersed_dashpots(
         )
         closing = (u_x * d_x + u_y * d_y + u_z * d_z) / distance
         i, j = candidates.i[k], candidates.j[k]
-        if exact is None:
+        if hertz is not None:
+            eta_n = dashpot_immersed_hertz(choice, closing, i, j, c, grains.m, grains.w)
+        elif exact is None:
             eta_n = dashpot_immersed(choice, closing, i, j, c, grains.m, grains.w)
         else:
             eta_n, k_n = spring_immersed(choice, closing, i, j, c, grains.m, grains.w)

@@ -19,6 +19,7 @@ from ryusa.engine.cpu.arrays import (
 from ryusa.engine.cpu.barrier import wait
 from ryusa.engine.cpu.contact_rows import has_short_rows, springs_of_row
 from ryusa.engine.cpu.exact_contact import compute_exactly, keep_states, spring_energy_of_maps
+from ryusa.engine.cpu.hertz_contact import compute_hertz, spring_energy_hertz
 from ryusa.engine.cpu.integration import integrate, post
 from ryusa.engine.cpu.pair_batch import compute, filter_pairs, gather, overlap_of_lane, scatter
 from ryusa.engine.cpu.pair_physics import immersed_dashpots, optional_physics
@@ -29,6 +30,7 @@ from ryusa.engine.cpu.simd.prefetch import prefetch
 from ryusa.engine.cpu.simd.vec4 import fill4
 from ryusa.engine.cpu.wall_contacts import add_drift, book_walls, keep_forces, resolve_walls
 from ryusa.engine.shared import block_statistics as S
+from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.kernel import FAST, inner, kernel
 from ryusa.engine.shared.status import (
@@ -55,14 +57,14 @@ TERMS = tuple(
 
 @inner(fastmath=FAST, forceinline=True)
 def block_forces(
-    variant: KernelVariant, flat: Present, water: Present, optional: Present, exact: Present, short: Present,
-    walled: Present, choice: LawChoice, b: int, hi: int, n: int, n_solid: int, step: int, t: float,
-    hdt: float, last: bool, c: Any, grains: GrainArrays, walls: WallArrays, pairs: PairArrays,
+    variant: KernelVariant, flat: Present, water: Present, optional: Present, exact: Present, hertz: Present,
+    short: Present, walled: Present, choice: LawChoice, b: int, hi: int, n: int, n_solid: int, step: int,
+    t: float, hdt: float, last: bool, c: Any, grains: GrainArrays, walls: WallArrays, pairs: PairArrays,
     candidates: CandidateArrays, work: Workspace, accounts: AccountArrays, ended: Any, account: Any,
     stats: Any,
 ) -> None:  # fmt: skip
     """Forces of every pair that block b, grains up to hi-1, owns, batch by batch of those that touch."""
-    # One function: the loop over batches, whose arrays stay in registers
+    # One function: what a variant goes without is taken out of it before it is compiled
     batch, separation, inside, selected = work.batch, work.separation, work.inside, work.selected
     reach_on = c[P.FILM_REACH] if variant.film else 0.0
     # arrays are passed one by one: references to a tuple of them would be counted for every batch
@@ -104,15 +106,17 @@ def block_forces(
         if m == 0:
             break
         lanes = gather(
-            variant.rotation, variant.exact, short, walled, m, selected, n_solid, c, mass, inertia, x, v, w,
-            points, normals, i_of, j_of, touching, eta, rows, met, slot,
+            variant.rotation, M.OF_MAPS * variant.exact + M.HERTZ * variant.hertz, short, walled, m, selected,
+            n_solid, c, mass, inertia, x, v, w, points, normals, i_of, j_of, touching, eta, rows, met, slot,
             face_lanes, batch,
         )  # fmt: skip
         if walled is not None:
             add_drift(face_lanes, selected, slot, walls.faces.motion, met, batch)
         if water is not None and choice.rebound:
-            immersed_dashpots(exact, choice, m, selected, c, grains, candidates, batch)
-        if exact is None:
+            immersed_dashpots(exact, hertz, choice, m, selected, c, grains, candidates, batch)
+        if hertz is not None:
+            compute_hertz(flat, choice, lanes, hdt, stats[S.OVERLAP_MAX], c, batch)
+        elif exact is None:
             compute(flat, choice, lanes, hdt, stats[S.OVERLAP_MAX], c, batch)
         else:
             compute_exactly(
@@ -140,7 +144,9 @@ def block_forces(
             total += batch[B.WORK + row * B.PITCH + l]
         account[TERMS[row]] += total
     if last:
-        if exact is None:
+        if hertz is not None:
+            stats[S.SPRING_N], stats[S.SPRING_S], stats[S.N_CONTACT] = spring_energy_hertz(b, c, candidates)
+        elif exact is None:
             stats[S.SPRING_N], stats[S.SPRING_S], stats[S.N_CONTACT] = spring_energy(b, c, candidates)
         else:
             stats[S.SPRING_N], stats[S.SPRING_S], stats[S.N_CONTACT] = spring_energy_of_maps(b, candidates)
@@ -200,6 +206,7 @@ def make_run(variant: KernelVariant) -> Any:
     water: Present = 1 if variant.water else None
     column: Present = 1 if variant.column else None
     exact: Present = 1 if variant.exact else None
+    hertz: Present = 1 if variant.hertz else None
     short: Present = 1 if has_short_rows(variant) else None
     optional: Present = 1 if variant.rolling or variant.events or variant.film else None
     walled: Present = 1 if variant.walls else None
@@ -282,7 +289,7 @@ def make_run(variant: KernelVariant) -> Any:
                 for b in range(b_0, b_1):
                     if not after:
                         block_forces(
-                            variant, flat, water, optional, exact, short, walled, choice, b,
+                            variant, flat, water, optional, exact, hertz, short, walled, choice, b,
                             block_start[b + 1], n, n_solid, step, t, hdt, last, c, grains, walls, pairs,
                             candidates, work, accounts_of_blocks, ended[b], terms[b], stats[b],
                         )  # fmt: skip

@@ -207,7 +207,7 @@ class DeviceState:
             self.pairs = self._room(self.n_pair, start)
         launch(kernels.find_neighbours, n, 1, *common, self.pairs.partners)
         launch(
-            kernels.transfer_memory, n, n, self.n_solid, self.variant.rotation, self.variant.exact, half,
+            kernels.transfer_memory, n, n, self.n_solid, self.variant.rotation, self.variant.kind, half,
             self.c, self._order, new, self._held, self.pairs, missing,
         )  # fmt: skip
         grain = int(missing.copy_to_host()[0])

@@ -10,6 +10,7 @@ from typing import Any
 from ryusa.engine.cuda import step_totals as T
 from ryusa.engine.cuda.device import device, on_device
 from ryusa.engine.cuda.exact_pair import make_exact_contact
+from ryusa.engine.cuda.hertz_pair import make_hertz_contact
 from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.contact_instants import BEGAN, HELD
@@ -18,6 +19,7 @@ from ryusa.engine.shared.variant import KernelVariant, LawChoice
 from ryusa.laws.contact import normal_force
 from ryusa.laws.contact_step import contact_force, normal_step, normal_work_of_last_force, tangential_step
 from ryusa.laws.families import Cap, Slip
+from ryusa.laws.hertz import hertz_energy
 from ryusa.model.tally import Term
 
 B_DASH_N, B_DASH_S, B_SLIDE = int(Term.DASH_N), int(Term.DASH_S), int(Term.SLIDE)
@@ -32,6 +34,8 @@ def make_contact(variant: KernelVariant, choice: LawChoice) -> Any:
     """Build the contact of one pair for one variant."""
     if variant.exact:
         return make_exact_contact(variant, choice)
+    if variant.hertz:
+        return make_hertz_contact(variant, choice)
     plane_case = variant.plane_case != 0
     least = -math.inf if choice.tension else 0.0  # a contact that may pull has no least force
     total, drop = "total" in Slip(choice.slip).marks, "drop" in Slip(choice.slip).marks
@@ -119,6 +123,8 @@ def make_contact(variant: KernelVariant, choice: LawChoice) -> Any:
 @cache
 def make_spring_energy(variant: KernelVariant) -> Any:
     """Build what adds up the energy in the springs of a pair in contact, and counts it."""
+    if variant.hertz:
+        return _make_hertz_energy()
     exact = variant.exact != 0
 
     @device
@@ -130,6 +136,22 @@ def make_spring_energy(variant: KernelVariant) -> Any:
         if k_n > 0.0:
             totals[T.SPRING_N] += 0.5 * e_n * e_n / k_n
         if now in (HELD, BEGAN):
+            if k_s > 0.0:
+                for s in range(3):
+                    totals[T.SPRING_S] += 0.5 * row[M.SPRING_S + s] ** 2 / k_s
+            totals[T.N_CONTACT] += 1.0
+
+    return add_spring_energy
+
+
+@cache
+def _make_hertz_energy() -> Any:
+    @device
+    def add_spring_energy(now: int, c: Any, eta: Any, row: Any, totals: Any) -> None:
+        """Add what the springs of two elastic spheres in state `now` hold [J]."""
+        if now == HELD:
+            totals[T.SPRING_N] += hertz_energy(row[M.OVERLAP], eta[M.K_HERTZ])
+            k_s = c[P.MINDLIN] * eta[M.K_HERTZ] * math.sqrt(row[M.OVERLAP])
             if k_s > 0.0:
                 for s in range(3):
                     totals[T.SPRING_S] += 0.5 * row[M.SPRING_S + s] ** 2 / k_s

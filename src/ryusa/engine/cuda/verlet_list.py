@@ -219,7 +219,7 @@ def find_neighbours(
 
 @cuda.jit
 def transfer_memory(
-    n: int, n_solid: int, rotation: int, exact: int, half: int, c: Any, order: Any, bodies: DeviceGrainArrays,
+    n: int, n_solid: int, rotation: int, kind: int, half: int, c: Any, order: Any, bodies: DeviceGrainArrays,
     held: DevicePairArrays, pairs: DevicePairArrays, missing: Any,
 ) -> None:  # fmt: skip
     """Give every neighbour its dashpots, and the pairs in contact their memory, to both sides.
@@ -250,7 +250,7 @@ def transfer_memory(
                 pairs.touching[k] = 0
                 for e in range(min(width, M.END_ROLLING)):
                     pairs.rows[k, e] = 0.0
-                _set_springs(k, a, b, rotation, exact, c, bodies.m, x, bodies.inertia, pairs.eta)
+                _set_springs(k, a, b, rotation, kind, c, bodies.m, x, bodies.inertia, pairs.eta)
         if found < held.start[order[i] + 1] - held.start[order[i]]:
             cuda.atomic.min(missing, 0, bodies.ids[i])
 

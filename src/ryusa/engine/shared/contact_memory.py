@@ -33,6 +33,10 @@ def contacts_of(memory: ContactMemory, variant: KernelVariant) -> Contacts:
     i, j, states, eta, rows = memory
     n = len(i)
     eta = np.broadcast_to(eta, (n, eta.shape[1]))
+    dash_n, overlap = rows[:, M.DASH_N], np.zeros(n)
+    if variant.hertz:
+        overlap = rows[:, M.OVERLAP]
+        dash_n = rows[:, M.F_N] - eta[:, M.K_HERTZ] * overlap * np.sqrt(overlap)
     spring_s, rest = rows[:, M.SPRING_S : M.SPRING_S + 3], np.zeros(n)
     ending = states == ENDING
     if ending.any():
@@ -43,7 +47,7 @@ def contacts_of(memory: ContactMemory, variant: KernelVariant) -> Contacts:
         j=j,
         spring_s=spring_s,
         dash_s=rows[:, M.DASH_S : M.DASH_S + 3],
-        dash_n=rows[:, M.DASH_N],
+        dash_n=dash_n,
         f_n=rows[:, M.F_N],
         spring_r=rows[:, M.SPRING_R : M.SPRING_R + 3] if variant.rolling else np.zeros((n, 3)),
         dash_r=rows[:, M.DASH_R : M.DASH_R + 3] if variant.rolling else np.zeros((n, 3)),
@@ -51,6 +55,7 @@ def contacts_of(memory: ContactMemory, variant: KernelVariant) -> Contacts:
         k_n=eta[:, M.K_N] if variant.exact else np.zeros(n),
         state=states.astype(np.int64),
         rest_of_closing=rest,
+        overlap=overlap,
         event=rows[:, variant.event_column :] if variant.events else np.zeros((n, N_EVENT)),
     )
 
@@ -63,7 +68,7 @@ def memory_of(
     eta, x = np.zeros((len(contacts), variant.springs)), np.zeros((len(layout.r), 4))
     x[:, 3] = layout.r
     springs_of(
-        contacts.i, contacts.j, variant.rotation, variant.exact, numbers, layout.m, x, layout.inertia, eta
+        contacts.i, contacts.j, variant.rotation, variant.kind, numbers, layout.m, x, layout.inertia, eta
     )
     if choice.rebound:
         eta[:, M.ETA_N] = contacts.eta_n
@@ -74,6 +79,8 @@ def memory_of(
         contacts.dash_s,
     )
     rows[:, M.DASH_N], rows[:, M.F_N] = contacts.dash_n, contacts.f_n
+    if variant.hertz:
+        rows[:, M.OVERLAP] = contacts.overlap
     if variant.rolling:
         rows[:, M.SPRING_R : M.SPRING_R + 3], rows[:, M.DASH_R : M.DASH_R + 3] = (
             contacts.spring_r,

@@ -10,6 +10,7 @@ from ryusa.laws.collision import effective_mass, effective_mass_tangential, zeta
 from ryusa.laws.contact import damping, damping_in_steps
 from ryusa.laws.contact_map import dashpot_of_map, spring_of_map
 from ryusa.laws.dispatch import wet_restitution
+from ryusa.laws.hertz import hertz_damping, hertz_stiffness, mindlin_damping
 from ryusa.laws.immersed import stokes_number
 from ryusa.laws.rolling import reduced_radius
 
@@ -44,12 +45,32 @@ def springs_of_maps(
 
 
 @inner()
+def springs_hertz(
+    i: int, j: int, rotation: int, c: Any, m: Any, x: Any, inertia: Any
+) -> tuple[float, float, float, float]:
+    """Dashpots over x**0.25 [N s/m**1.25], stiffness K [N/m**1.5] and 1/m [1/kg] of two elastic spheres."""
+    m_t = effective_mass_tangential(m[i], x[i, 3], inertia[i], m[j], x[j, 3], inertia[j], rotation != 0)
+    m_n = effective_mass(m[i], m[j])
+    k = hertz_stiffness(c[P.E_EFFECTIVE], reduced_radius(x[i, 3], x[j, 3]))
+    return (
+        hertz_damping(c[P.ZETA_N], k, m_n),
+        mindlin_damping(c[P.ZETA_S], c[P.MINDLIN] * k, m_t),
+        k,
+        1.0 / m_n,
+    )
+
+
+@inner()
 def set_springs(
-    at: int, i: int, j: int, rotation: int, exact: int, c: Any, m: Any, x: Any, inertia: Any, out: Any
+    at: int, i: int, j: int, rotation: int, kind: int, c: Any, m: Any, x: Any, inertia: Any, out: Any
 ) -> None:
-    """Fill row `at` of `out` with the dashpots, and with exact timing the stiffnesses, of pair i, j."""
-    if exact:
+    """Fill row `at` of `out` with the dashpots, and those of a kind with the stiffnesses, of pair i, j."""
+    if kind == M.OF_MAPS:
         out[at, M.ETA_N], out[at, M.ETA_S], out[at, M.K_N], out[at, M.K_S] = springs_of_maps(
+            i, j, rotation, c, m, x, inertia
+        )
+    elif kind == M.HERTZ:
+        out[at, M.ETA_N], out[at, M.ETA_S], out[at, M.K_HERTZ], out[at, M.PER_MASS] = springs_hertz(
             i, j, rotation, c, m, x, inertia
         )
     else:
@@ -58,11 +79,21 @@ def set_springs(
 
 @kernel()
 def springs_of(
-    i: Any, j: Any, rotation: int, exact: int, c: Any, m: Any, x: Any, inertia: Any, out: Any
+    i: Any, j: Any, rotation: int, kind: int, c: Any, m: Any, x: Any, inertia: Any, out: Any
 ) -> None:
     """Fill `out`, (n, KernelVariant.springs), with those of pairs i, j."""
     for k in range(len(i)):
-        set_springs(k, i[k], j[k], rotation, exact, c, m, x, inertia, out)
+        set_springs(k, i[k], j[k], rotation, kind, c, m, x, inertia, out)
+
+
+@inner()
+def zeta_immersed(choice: LawChoice, closing: float, i: int, j: int, c: Any, m: Any, w: Any) -> float:
+    """Damping ratio of a pair that just touched under water at a closing speed [-]."""
+    m_n = effective_mass(m[i], m[j])
+    st = stokes_number(closing, m_n, reduced_radius(w[i, 3], w[j, 3]), c[P.RHO_W], c[P.NU])
+    smaller = 2.0 * min(w[i, 3], w[j, 3])
+    e = wet_restitution(choice.rebound, c[P.E_DRY], st, c[P.ST_C], c[P.ASPERITY], smaller)
+    return zeta_for_restitution(max(e, c[P.E_LEAST]), choice.tension != 0)
 
 
 @inner()
@@ -71,11 +102,7 @@ def damping_immersed(
 ) -> tuple[float, float]:
     """Effective mass [kg] and dashpot [N s/m] of a pair that just touched under water at a closing speed."""
     m_n = effective_mass(m[i], m[j])
-    st = stokes_number(closing, m_n, reduced_radius(w[i, 3], w[j, 3]), c[P.RHO_W], c[P.NU])
-    smaller = 2.0 * min(w[i, 3], w[j, 3])
-    e = wet_restitution(choice.rebound, c[P.E_DRY], st, c[P.ST_C], c[P.ASPERITY], smaller)
-    zeta = zeta_for_restitution(max(e, c[P.E_LEAST]), choice.tension != 0)
-    return m_n, damping(zeta, c[P.K_N], m_n)
+    return m_n, damping(zeta_immersed(choice, closing, i, j, c, m, w), c[P.K_N], m_n)
 
 
 @kernel()
@@ -92,3 +119,12 @@ def spring_immersed(
     """Normal dashpot [N s/m] and stiffness [N/m] of its map, as in `dashpot_immersed`."""
     m_n, eta = damping_immersed(choice, closing, i, j, c, m, w)
     return dashpot_of_map(eta, m_n, c[P.DT]), spring_of_map(c[P.K_N], eta, m_n, c[P.DT])
+
+
+@kernel()
+def dashpot_immersed_hertz(
+    choice: LawChoice, closing: float, i: int, j: int, c: Any, m: Any, w: Any
+) -> float:
+    """Normal dashpot over x**0.25 [N s/m**1.25] of two elastic spheres, as in `dashpot_immersed`."""
+    k = hertz_stiffness(c[P.E_EFFECTIVE], reduced_radius(w[i, 3], w[j, 3]))
+    return hertz_damping(zeta_immersed(choice, closing, i, j, c, m, w), k, effective_mass(m[i], m[j]))

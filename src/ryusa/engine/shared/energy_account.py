@@ -6,8 +6,9 @@
 import numpy as np
 
 from ryusa.engine.shared import block_statistics as S
+from ryusa.laws.families import ContactForce
 from ryusa.laws.rolling import epsd_stiffness, reduced_radius
-from ryusa.model import EngineBlock, Scene, State, Tally
+from ryusa.model import Contacts, EngineBlock, Scene, State, Tally
 from ryusa.model.pair_springs import pair_springs
 from ryusa.model.scene import Floats
 from ryusa.model.tally import HELD, N_TERM, Term
@@ -145,6 +146,20 @@ def rolling_energy(scene: Scene, state: State, places: np.ndarray) -> float:
     return energy
 
 
+def spring_energy(scene: Scene, contacts: Contacts, places: np.ndarray) -> float:
+    """Energy in the normal and tangential springs of some of a state's contacts [J]."""
+    i, j = contacts.i[places], contacts.j[places]
+    k_n, k_s = pair_springs(scene, i, j, contacts.overlap[places])
+    e_n, e_s = contacts.f_n[places] - contacts.dash_n[places], contacts.spring_s[places]
+    if scene.contact.force == ContactForce.HERTZ_MINDLIN:
+        held = float(np.sum(0.4 * e_n * contacts.overlap[places]))
+    else:
+        held = float(np.sum(0.5 * e_n**2 / np.where(contacts.k_n[places] > 0.0, contacts.k_n[places], k_n)))
+    if scene.contact.k_s > 0.0:
+        held += float(np.sum(0.5 * e_s**2 / k_s[:, None]))
+    return held
+
+
 def energy_of_change(before: Scene, scene: Scene, state: State, dropped: np.ndarray) -> float:
     """Energy a change of the timeline gives [J]: height on a new slope, spin locked, springs let go.
 
@@ -158,9 +173,5 @@ def energy_of_change(before: Scene, scene: Scene, state: State, dropped: np.ndar
         given -= rolling_energy(before, state, dropped)
     if len(dropped):
         gone = state.contacts
-        k_n, k_s = pair_springs(before, gone.i[dropped], gone.j[dropped])
-        e_n = gone.f_n[dropped] - gone.dash_n[dropped]
-        given -= float(np.sum(0.5 * e_n**2 / np.where(gone.k_n[dropped] > 0.0, gone.k_n[dropped], k_n)))
-        if before.contact.k_s > 0.0:
-            given -= float(np.sum(0.5 * gone.spring_s[dropped] ** 2 / k_s[:, None]))
+        given -= spring_energy(before, gone, dropped)
     return given

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ryusa.engine.shared.variant import KernelVariant
-from ryusa.laws.families import ContactTiming, Profile, Rebound
+from ryusa.laws.families import ContactForce, ContactTiming, Profile, Rebound
 from ryusa.model import FluidAtGrains, Scene, State
 from ryusa.model.scene import Damping, Floats
 
@@ -46,6 +46,7 @@ class Layout:
         self.tracked = scene.tracked if len(scene.tracked) == n else np.zeros(n, np.bool_)
         law, water = scene.contact, scene.water
         constant = law.damping == Damping.CONSTANTS and law.timing == ContactTiming.AT_STEPS
+        constant = constant and law.force == ContactForce.LINEAR
         self.many_dashpots = not constant or water.rebound != Rebound.DRY
         self.period, self.scene = np.array(scene.period), scene
         self.low, self.high = np.array(scene.world_low), np.array(scene.world_high)

@@ -9,6 +9,7 @@ REST_OF_CLOSING = 0  # in their place, once the force has ended: correction of t
 F_N = 3  # normal force in the last step [N]
 DASH_S = 4  # tangential dashpot force on i in the last step [N]
 DASH_N = 7  # normal force less normal spring in the last step [N]
+OVERLAP = 7  # in its place, of elastic spheres: overlap in the last step [m]
 SPRING_R = 8  # rolling spring torque on i [N m]; from here on only where rolling friction acts
 DASH_R = 11  # rolling torque on i in the last step, less its spring [N m]
 END_ROLLING = 14
@@ -17,3 +18,8 @@ WIDTH, WIDTH_ROLLING = 8, 16  # doubles of a row without and with rolling fricti
 # Dashpots [N s/m] and stiffnesses [N/m] of a pair, kept beside its row; those of its map with exact timing.
 ETA_N, ETA_S, K_N, K_S = 0, 1, 2, 3
 N_SPRING = 4
+# Of elastic spheres in their places: dashpots over x**0.25 [N s/m**1.25], stiffness K [N/m**1.5], 1/m [1/kg].
+K_HERTZ, PER_MASS = K_N, K_S
+
+# Kinds of springs (`dashpots.set_springs`).
+LINEAR, OF_MAPS, HERTZ = 0, 1, 2

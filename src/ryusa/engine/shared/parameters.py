@@ -5,7 +5,8 @@ import numpy as np
 from ryusa.laws.collision import zeta_for_restitution
 from ryusa.laws.contact import damping
 from ryusa.laws.contact_map import dashpot_of_map, spring_of_map
-from ryusa.laws.families import ContactTiming, Rebound
+from ryusa.laws.families import ContactForce, ContactTiming, Rebound
+from ryusa.laws.hertz import effective_modulus, mindlin_ratio
 from ryusa.model import Scene
 from ryusa.model.scene import Damping, Floats
 
@@ -47,7 +48,9 @@ ST_C = 34
 E_DRY = 35  # restitution of the case, in air [-]
 E_LEAST = 36
 FADING = 37  # a contact goes on through a step where so much of its force outweighs the fall of its spring
-N_PARAMETER = FADING + 1
+E_EFFECTIVE = 38  # of elastic spheres [Pa]; else 0
+MINDLIN = 39  # their tangential stiffness over K sqrt(overlap) [-]
+N_PARAMETER = MINDLIN + 1
 
 # Largest displacement of a grain in one step, over the smallest diameter: two grains that approach each other
 # by twice that cannot pass through each other unseen (design/0008).
@@ -121,7 +124,12 @@ def parameters_of(scene: Scene) -> Floats:
         E_DRY: law.e_n,
         E_LEAST: water.e_least,
         FADING: fading(scene),
+        E_EFFECTIVE: 0.0,
+        MINDLIN: 0.0,
     }
+    if law.force == ContactForce.HERTZ_MINDLIN:
+        table[E_EFFECTIVE] = effective_modulus(law.youngs_modulus, law.poisson_ratio)
+        table[MINDLIN] = mindlin_ratio(law.poisson_ratio)
     parameters = np.zeros(len(table))
     for place, value in table.items():
         parameters[place] = value

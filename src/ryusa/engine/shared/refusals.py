@@ -7,7 +7,7 @@ import numpy as np
 from ryusa.engine.shared.parameters import LARGEST_DISPLACEMENT
 from ryusa.errors import NotANumber
 from ryusa.laws._family import Family
-from ryusa.laws.families import Rebound
+from ryusa.laws.families import ContactForce, ContactTiming, Rebound
 from ryusa.model import Scene, State, Walls
 from ryusa.model.scene import Damping
 from ryusa.model.walls import SPIN, largest_speed
@@ -26,6 +26,7 @@ def refusals(scene: Scene) -> tuple[str, ...]:
         )
     if scene.water.rebound != Rebound.DRY and scene.contact.damping == Damping.CONSTANTS:
         reasons.append("an immersed rebound needs a restitution in air: contact.damping gives constants")
+    reasons += _refused_of_hertz(scene)
     largest = float(np.concatenate([scene.d, scene.d_fixed[scene.fixed_active]]).max(initial=0.0))
     for axis, length in zip("xy", scene.period, strict=True):
         if length < _SHORTEST_PERIOD * largest:
@@ -57,6 +58,22 @@ def _walls(scene: Scene, walls: Walls) -> list[str]:
             f"{LARGEST_DISPLACEMENT:g}; a smaller time step is needed"
         )
     return reasons
+
+
+def _refused_of_hertz(scene: Scene) -> list[str]:
+    """What elastic spheres cannot have."""
+    law, found = scene.contact, list[str]()
+    if law.force != ContactForce.HERTZ_MINDLIN:
+        return found
+    if law.timing != ContactTiming.AT_STEPS:
+        found.append("elastic spheres (Hertz-Mindlin) need contact.timing = 'at steps' (design/0018)")
+    if law.damping == Damping.CONSTANTS:
+        found.append("elastic spheres (Hertz-Mindlin) take a restitution, not constant dashpots")
+    if not (0.0 < law.youngs_modulus < np.inf and 0.0 <= law.poisson_ratio <= 0.5):
+        found.append("elastic spheres need a Young's modulus above 0 and a Poisson's ratio from 0 to 0.5")
+    if scene.walls is not None:
+        found.append("elastic spheres (Hertz-Mindlin) meet grains and planes, no other walls (design/0019)")
+    return found
 
 
 def check_state(scene: Scene, state: State) -> None:

@@ -4,11 +4,12 @@ from typing import NamedTuple
 
 from ryusa.engine.shared import memory_rows as M
 from ryusa.laws._family import numbers
-from ryusa.laws.families import ContactTiming, Profile, Rolling
+from ryusa.laws.families import ContactForce, ContactTiming, Profile, Rolling
 from ryusa.model import Scene
 from ryusa.model.contacts import N_EVENT
 from ryusa.model.scene import EventRule
 
+_, HERTZ = numbers(__name__, ContactForce.LINEAR, ContactForce.HERTZ_MINDLIN)
 _, EXACT = numbers(__name__, ContactTiming.AT_STEPS, ContactTiming.EXACT)
 
 
@@ -24,6 +25,7 @@ class KernelVariant(NamedTuple):
     water: int  # there is any
     exact: int  # contacts begin and end within steps
     walls: int = 0  # faces, at rest or moving
+    hertz: int = 0  # contacts are those of elastic spheres
 
     @property
     def row_width(self) -> int:
@@ -33,7 +35,12 @@ class KernelVariant(NamedTuple):
     @property
     def springs(self) -> int:
         """Dashpots and stiffnesses kept for each pair."""
-        return M.N_SPRING if self.exact else M.K_N
+        return M.N_SPRING if self.kind else M.K_N
+
+    @property
+    def kind(self) -> int:
+        """Kind of springs (memory_rows.py)."""
+        return M.OF_MAPS * self.exact + M.HERTZ * self.hertz
 
     @property
     def event_column(self) -> int:
@@ -59,6 +66,7 @@ class LawChoice(NamedTuple):
     lift: int
     magnus: int
     rebound: int
+    unloading: int = 0
 
 
 def variant_of(scene: Scene) -> KernelVariant:
@@ -73,6 +81,7 @@ def variant_of(scene: Scene) -> KernelVariant:
         water=int(scene.water.profile != Profile.NONE),
         exact=int(int(scene.contact.timing) == EXACT),
         walls=int(scene.n_face > 0),
+        hertz=int(int(scene.contact.force) == HERTZ),
     )
 
 
@@ -95,4 +104,5 @@ def choice_of(scene: Scene) -> LawChoice:
         lift=int(water.lift),
         magnus=int(water.magnus),
         rebound=int(water.rebound) if water.profile != Profile.NONE else 0,
+        unloading=int(law.unloading),
     )

@@ -24,6 +24,11 @@ def refuse_if_not_softenable(case: "Case") -> None:
     ------
     CaseError : names the key.
     """
+    if case.contact.stiffness is None:
+        raise CaseError(
+            "contact.law", case.contact.law,
+            "cannot be softened: what goes with the stiffness is known for law 'linear' alone",
+        )  # fmt: skip
     if isinstance(case.build, DropSection):
         raise CaseError(
             "build.kind", case.build.kind,

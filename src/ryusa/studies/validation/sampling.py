@@ -88,6 +88,7 @@ CLOSED: Mapping[str, str] = {
     "terminal_velocity": "one grain",
     "suspension": "a lattice of grains that do not touch",
     "impact": "one grain, at twenty given phases of the time step",
+    "hertz": "one grain or two, at twenty given phases of the time step",
     "rebound": "one grain",
     "rolling": "one grain",
 }

@@ -17,6 +17,7 @@ NAMES = (
     "suspension",
     "balance",
     "impact",
+    "hertz",
     "rebound",
     "rolling",
     "gas",

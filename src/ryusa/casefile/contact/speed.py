@@ -1,0 +1,40 @@
+"""Impact speed to be expected in a case: stable range, contact time of elastic spheres, time step."""
+
+import math
+from typing import TYPE_CHECKING
+
+from ryusa.casefile.builders.schema import BoxSection, DropSection, FillSection, FlumeSection, PackingSection
+from ryusa.casefile.builders.values import sizes
+from ryusa.casefile.contact.schema import OverlapStiffnessSection
+from ryusa.casefile.grains import mass
+from ryusa.casefile.water.values import terminal_velocity
+
+if TYPE_CHECKING:
+    from ryusa.casefile.case import Case
+
+
+def expected_speed(case: "Case") -> tuple[float, str]:
+    """Impact speed for judging the overlap [m/s], and where it comes from."""
+    rule, build, g = case.contact.stiffness, case.build, case.motion.gravity
+    if case.contact.expected_speed is not None:
+        return case.contact.expected_speed, "contact.expected_speed"
+    if isinstance(rule, OverlapStiffnessSection):
+        return rule.speed, "contact.stiffness.speed"
+    d, _, d_max = sizes(case)
+    m, m_added, m_weight, _ = mass(case, d)
+    settling, buoyant = terminal_velocity(case), m_weight / (m + m_added)
+    if isinstance(build, DropSection):
+        fall = math.sqrt(build.speed**2 + 2.0 * g * (build.height or 0.0) * buoyant)
+        if math.isfinite(settling) and settling < fall:
+            return max(settling, build.speed), "settling velocity, which is below the speed of a free fall"
+        return fall, "free fall from build.height with build.speed, without drag"
+    if isinstance(build, BoxSection):
+        height = build.height + build.layers * build.gap * d_max
+        if height > d:
+            fastest = math.sqrt(2.0 * g * height * buoyant)
+            return min(fastest, settling), "fall of the top layer through the free height below it"
+    if isinstance(build, PackingSection | FlumeSection | BoxSection | FillSection):
+        return math.sqrt(2.0 * g * d), "fall through one diameter, sqrt(2 g d)"
+    if math.isfinite(settling):
+        return settling, "settling velocity; most impacts of a saltating grain are slower"
+    return math.sqrt(2.0 * g * d), "fall through one diameter, sqrt(2 g d)"
