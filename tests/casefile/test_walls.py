@@ -113,6 +113,11 @@ def test_a_plane_scene_has_no_walls(tmp_path: Path) -> None:
     assert "needs motion.plane = false" in fault(tmp_path, FLOOR, flat)
 
 
+def test_elastic_spheres_meet_no_walls_but_planes(tmp_path: Path) -> None:
+    elastic = CASE.replace('stiffness = "100 N/cm"', 'law = "Hertz-Mindlin"\nyoungs_modulus = "10 MPa"')
+    assert "contact.law" in fault(tmp_path, FLOOR, elastic)
+
+
 def test_a_mesh_that_cannot_be_is_named_with_its_file(tmp_path: Path) -> None:
     part = tmp_path / "part.stl"
     assert "walls.0.file = 'part.stl': no such file in the folder of the case" in fault(tmp_path, MESH)
