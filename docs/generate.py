@@ -15,6 +15,7 @@ UNITS = {
     "time": "s",
     "speed": "m/s",
     "spin": "rad/s",
+    "frequency": "Hz",
     "angle": "rad",
     "density": "kg/m3",
     "stiffness": "N/m",

@@ -87,7 +87,7 @@ class PictureEntry:
 
 
 WINDOW = ("begin", "end")
-EVERY_BUILDER = ("drop", "saltation", "table", "run", "packing", "flume", "box", "empty")
+EVERY_BUILDER = ("drop", "saltation", "table", "run", "packing", "flume", "box", "empty", "fill")
 
 MEASURES = (
     MeasureEntry("saltation", "ryusa.measure.saltation:saltation",
@@ -163,6 +163,8 @@ MEASURES = (
                  "stress of contacts and motion over height, mu and I; needs record.forces",
                  (*WINDOW, "layer"), settled=True,
                  numbers=(("bed_normal", "Pa"), ("bed_shear", "Pa"))),
+    MeasureEntry("walls", "ryusa.measure.walls:walls",
+                 "force and torque on each wall, and the power of those that move", WINDOW, settled=True),
     MeasureEntry("vibration", "ryusa.measure.vibration:vibration",
                  "grains that do not come to rest",
                  (*WINDOW, "window"), printing=("threshold",)),
@@ -215,6 +217,9 @@ PICTURES = (
                  builders=("box", "empty"), fed=True),
     PictureEntry("sizes", "ryusa.figures.runs:sizes",
                  "percent finer by mass over diameter, asked for and laid"),
+    PictureEntry("walls", "ryusa.figures.walls:walls",
+                 "force on each wall over time, and the power of those that move",
+                 WINDOW, settled=True, measure="walls"),
     PictureEntry("vibration", "ryusa.figures.runs:vibration", "grains that do not come to rest",
                  ("grains", *WINDOW)),
 )  # fmt: skip

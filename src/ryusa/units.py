@@ -24,6 +24,7 @@ _NAMES = {  # quantity that an SI unit measures, for messages
     "Pa/m": "a pressure gradient",
     "rad": "an angle",
     "rad/s": "a spin",
+    "Hz": "a frequency",
 }
 _METRE, _SECOND, _GRAM, _RADIAN = (("meter", 1),), (("second", 1),), (("gram", 1),), (("radian", 1),)
 _NEWTON, _PASCAL = (("gram", 1), ("meter", 1), ("second", -2)), (("gram", 1), ("meter", -1), ("second", -2))

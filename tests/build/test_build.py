@@ -207,7 +207,9 @@ def test_planes_of_the_case_become_groups_that_the_timeline_can_remove() -> None
     after = change(one, built.scene, one.timeline[0])
     assert after.plane_active.tolist() == [False]
     assert built.scene.plane_active.tolist() == [True]
-    with pytest.raises(CaseError, match="must be a group of fixed grains or a plane: bed, struck, gate"):
+    with pytest.raises(
+        CaseError, match="must be a group of fixed grains, a plane or a wall: bed, struck, gate"
+    ):
         build(
             case(
                 "{ kind = 'drop', height = '1 cm' }",

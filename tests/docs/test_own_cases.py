@@ -57,6 +57,15 @@ def test_the_box_settles_without_friction_and_gets_it_back(blocks, tmp_path):
     assert len(read(path).timeline) == 3
 
 
+def test_the_hopper_runs_and_its_walls_are_measured(blocks, tmp_path):
+    (text,) = [text for kind, text in blocks if kind == "toml" and "Hopper" in text]
+    path = tmp_path / "hopper.toml"
+    path.write_text(text, encoding="utf-8")
+    short = {"stop.time": "0.02 s", "timeline.0.at": "0.01 s", "record.frames": "5 ms"}
+    found = run(read(path, short), tmp_path / "run", progress=False)
+    assert measure.walls(found).names == ("left", "right", "plate")
+
+
 def test_the_bed_under_water_runs_and_its_water_is_measured(blocks, tmp_path):
     (text,) = [text for kind, text in blocks if kind == "toml" and 'profile = "column"' in text]
     path = tmp_path / "gravel.toml"

@@ -34,7 +34,7 @@ NOT_THE_SAME = {"wall", "particle_steps_per_second"}  # of a summary
 
 
 def run(kind: str, folder: Path, **how: Any) -> Results:
-    """Run one of the five, or go on with it."""
+    """Run one of the six, or go on with it."""
     return ryusa.run(read_text(KINDS[kind]), folder, progress=False, **how)
 
 

@@ -1,4 +1,4 @@
-"""The five kinds of run that the fault campaign kills, small enough to be made many times."""
+"""The six kinds of run that the fault campaign kills, small enough to be made many times."""
 
 DRY_2D = """
 title = "Grains settle between walls, then a gate opens and the bed is tilted"
@@ -180,4 +180,60 @@ frames = "5 ms"
 events = "all"
 """
 
-KINDS = {"dry-2d": DRY_2D, "dry-3d": DRY_3D, "saltation": SALTATION, "two-way": TWO_WAY, "rolling": ROLLING}
+WALLS = """
+title = "Grains in a drum of triangles and discs that turns, stops and swings"
+[grains]
+diameter = "4 mm"
+density = "2650 kg/m3"
+spread = 0.2
+[contact]
+stiffness = "50 N/cm"
+restitution = 0.5
+friction = 0.5
+[rolling]
+model = "spring-dashpot-slider"
+arm = "reduced radius"
+coefficient = 0.1
+[motion]
+rotation = "free"
+plane = false
+[[walls]]
+name = "drum"
+shape = "cylinder"
+at = ["0 cm", "0 cm", "0 cm"]
+axis = ["0 cm", "1.6 cm", "0 cm"]
+radius = "2 cm"
+ends = "closed"
+angular_velocity = ["0 rpm", "100 rpm", "0 rpm"]
+axis_point = ["0 cm", "0 cm", "0 cm"]
+[[walls]]
+name = "shelf"
+shape = "rectangle"
+at = ["-1.9 cm", "0 cm", "-3 mm"]
+sides = [["6 mm", "0 cm", "0 cm"], ["0 cm", "1.6 cm", "0 cm"]]
+[build]
+kind = "fill"
+low = ["-1.2 cm", "0 cm", "-1.3 cm"]
+high = ["1.2 cm", "1.6 cm", "1.3 cm"]
+[time]
+steps_per_contact = 10
+[[timeline]]
+at = "0.06 s"
+move = { wall = "drum" }
+[[timeline]]
+at = "0.08 s"
+move = { wall = "drum", amplitude = ["1 mm", "0 mm", "0 mm"], frequency = "40 Hz" }
+[[timeline]]
+at = "0.1 s"
+remove = "shelf"
+[stop]
+time = "0.15 s"
+[record]
+frames = "2 ms"
+events = "all"
+"""
+
+KINDS = {
+    "dry-2d": DRY_2D, "dry-3d": DRY_3D, "saltation": SALTATION, "two-way": TWO_WAY, "rolling": ROLLING,
+    "walls": WALLS,
+}  # fmt: skip

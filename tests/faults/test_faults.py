@@ -100,7 +100,7 @@ def test_a_disk_that_fills_up_again_and_again_loses_nothing(
 
 
 def stopped_half_way(kind: str, folder: Path) -> bytes:
-    """A checkpoint of one of the five, whose run was stopped in the middle."""
+    """A checkpoint of one of the six, whose run was stopped in the middle."""
     advance = loop.Loop._advance
 
     def watched(self: Any, n_steps: int) -> None:

@@ -13,6 +13,8 @@ import ryusa.laws
 
 # Laws that may answer with a number although an argument is not one, and why that hides nothing.
 BLIND = {
+    ("walls.nearest_on_cylinder", "length"),  # the end, of a point that is not beyond it
+    *(("walls.nearest_on_triangle", name) for name in ("s_11", "s_12", "s_22")),  # of a face in the scene
     ("contact.slip_scale", "size"),  # a factor of the vector that is not a number itself
     ("contact.slip_scale", "tau_c"),  # tau_c comes from the normal force, which is not a number either
     ("contact.slip_spring", "spring_n"),

@@ -44,6 +44,11 @@ EXPONENTS = {  # exponents of kg, m, s
 
 # Arguments and answers of every law.
 UNITS = {
+    "walls.nearest_on_triangle": "m2, m2, m2, m2, m2 -> -, -, -",
+    "walls.nearest_on_disc": "m, m -> -",
+    "walls.nearest_on_cylinder": "m, m, m, m -> m, -",
+    "walls.turned_about": "m, m, m, -, -, -, - -> m, m, m",
+    "walls.swing": "m, rad/s, s, - -> m",
     "collision.collision_time": "kg, N/m -> s",
     "collision.effective_mass": "kg, kg -> kg",
     "collision.effective_mass_tangential": "kg, m, kg m2, kg, m, kg m2, bool -> kg",

@@ -13,7 +13,7 @@ import pytest
 from ryusa.errors import CheckpointError, RyusaError
 from ryusa.model import Contacts, EngineBlock, State, Tally
 from ryusa.model.contacts import N_EVENT
-from ryusa.model.tally import N_TERM
+from ryusa.model.tally import N_TERM, PENDING
 from ryusa.results import schema
 from ryusa.running.checkpoint import CheckpointBlock, read_checkpoint, write_checkpoint
 from ryusa.running.disk import hdf5_image
@@ -46,7 +46,7 @@ def some_state() -> State:
         image=np.ones((N, 2), np.int32), contacts=contacts,
         tally=Tally(
             0.3, *draw.random(6).tolist(), tuple(draw.random(N_TERM).tolist()), 0.01, 2, 5, 1.5, 30.0, 2,
-            tuple(draw.random(5).tolist()),
+            tuple(draw.random(len(PENDING)).tolist()),
         ),
         engine=EngineBlock("cpu", 1, {"x_listed": x + 1e-9}, {"skin": 1 / 3e4, "since": 5.0}),
     )  # fmt: skip

@@ -1,6 +1,7 @@
 """Builds a checked case: scene, initial state and the choices that the case does not state."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -9,6 +10,7 @@ from ryusa.build.box import box
 from ryusa.build.column import column_of, zero_of
 from ryusa.build.drop import drop
 from ryusa.build.empty import empty
+from ryusa.build.fill import fill
 from ryusa.build.flume import flume
 from ryusa.build.overlaps import refuse_overlaps
 from ryusa.build.packing import packing
@@ -16,6 +18,7 @@ from ryusa.build.placement import Placement, Wall
 from ryusa.build.saltation import saltation
 from ryusa.build.table import table
 from ryusa.build.traffic import before_feeding, with_feeds
+from ryusa.build.walls import SolidWall, refuse_overlaps_with_walls, walls_of, with_room, with_walls
 from ryusa.casefile.builders.schema import FromFile
 from ryusa.casefile.builders.table import key_of
 from ryusa.casefile.case import Case
@@ -57,6 +60,7 @@ BUILDERS = {
     "flume": flume,
     "box": box,
     "empty": empty,
+    "fill": fill,
 }
 _OF_A_COLUMN = ("buoyancy", "hindrance", "lift", "magnus")
 _WATER_DEFAULTS = {  # key of [water]: how `ryusa check` calls it, and its unit
@@ -97,10 +101,14 @@ def build(case: Case, derived: Derived | None = None) -> Built:
     placement = _with_planes(placement, case)
     key = key_of(case.build) if isinstance(case.build, FromFile) else "build"
     refuse_overlaps(placement, key, case.motion.plane)
+    walls = walls_of(case)
+    _refuse_taken_names(placement, walls)
+    refuse_overlaps_with_walls(placement, walls, key)
     _refuse_unknown_groups(placement, case)
     laws = replace(laws_of(case, found, placement.z_zero), column=column_of(case, found, placement))
     placement, traffic = with_feeds(placement, case, found)
     scene, state = before_feeding(*assemble(placement, laws), traffic, case)
+    scene = with_room(with_walls(scene, walls), case.domain.low is None, case.domain.high is None)
     return Built(scene, state, (*placement.notes, *notes_of(case)))
 
 
@@ -285,9 +293,20 @@ def _with_planes(placement: Placement, case: Case) -> Placement:
     return replace(placement, walls=(*placement.walls, *walls))
 
 
+def _refuse_taken_names(placement: Placement, walls: Sequence[SolidWall]) -> None:
+    taken = {"grains", *placement.groups()}
+    for number, wall in enumerate(walls):
+        if wall.name in taken:
+            raise CaseError(
+                f"walls.{number}.name", wall.name, "is the name of a plane or a group of grains already"
+            )
+
+
 def _refuse_unknown_groups(placement: Placement, case: Case) -> None:
     known = [name for name, (first, _) in placement.groups().items() if first >= len(placement.d)]
+    known += [wall.name for wall in case.walls]
     for number, entry in enumerate(case.timeline):
         if entry.remove is not None and entry.remove not in known:
-            allowed = f"must be a group of fixed grains or a plane: {', '.join(known) or 'there is none'}"
+            there = ", ".join(known) or "there is none"
+            allowed = f"must be a group of fixed grains, a plane or a wall: {there}"
             raise CaseError(f"timeline.{number}.remove", entry.remove, allowed)

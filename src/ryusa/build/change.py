@@ -8,17 +8,21 @@ import numpy as np
 from ryusa.build.assemble import gravity
 from ryusa.casefile.case import Case
 from ryusa.casefile.record import ChangeSection
+from ryusa.casefile.walls import MoveSection
 from ryusa.errors import CaseError
 from ryusa.model import Scene
+from ryusa.model.walls import AXIS_POINT, PHASE, RATE, SPIN, SWING, VELOCITY, carried_on
 
 
 def change(case: Case, scene: Scene, entry: ChangeSection) -> Scene:
-    """Scene after one entry of the timeline: a group removed, gravity tilted, friction or rotation changed.
+    """Scene after one entry of the timeline: a group removed, gravity tilted, a wall moved, and so on.
 
     A new slope also changes the driving force of a column of water.
     """
     if entry.remove is not None:
         return _without(scene, entry.remove)
+    if entry.move is not None:
+        return _moved(scene, entry.move, entry.at)
     if entry.slope is not None or entry.slope_angle is not None:
         angle = entry.slope_angle if entry.slope_angle is not None else math.atan(entry.slope or 0.0)
         tilted = gravity(case.motion.gravity, angle)
@@ -31,11 +35,34 @@ def change(case: Case, scene: Scene, entry: ChangeSection) -> Scene:
     return replace(scene, rotation=entry.rotation == "free")
 
 
+def _moved(scene: Scene, move: MoveSection, at: float) -> Scene:
+    """Scene whose wall moves as `move` says from the step nearest to a time [s] on."""
+    t = round(at / scene.dt) * scene.dt
+    walls = scene.walls
+    assert walls is not None
+    motion, w = walls.motion.copy(), walls.names.index(move.wall)
+    row = carried_on(motion[w], t)
+    row[VELOCITY:] = 0.0
+    row[VELOCITY : VELOCITY + 3] = move.velocity or 0.0
+    row[SPIN : SPIN + 3] = move.angular_velocity or 0.0
+    row[SWING : SWING + 3] = move.amplitude or 0.0
+    row[RATE], row[PHASE] = 2.0 * math.pi * (move.frequency or 0.0), move.phase
+    if move.axis_point is not None:
+        row[AXIS_POINT : AXIS_POINT + 3] = move.axis_point
+    motion[w] = row
+    motion.flags.writeable = False
+    return replace(scene, walls=replace(walls, motion=motion))
+
+
 def _without(scene: Scene, name: str) -> Scene:
     n, n_fixed = scene.n_grain, scene.n_fixed
     first, end = scene.groups.get(name, (0, 0))
     if first < n:
-        raise CaseError("timeline.remove", name, "is no group of fixed grains and no plane")
+        raise CaseError("timeline.remove", name, "is no group of fixed grains, no plane and no wall")
+    if scene.walls is not None and name in scene.walls.names:
+        active = scene.walls.active & (np.array(scene.walls.names) != name)
+        active.flags.writeable = False
+        return replace(scene, walls=replace(scene.walls, active=active))
     fixed, planes = scene.fixed_active.copy(), scene.plane_active.copy()
     ids = np.arange(first, end)
     fixed[ids[ids < n + n_fixed] - n] = False

@@ -15,6 +15,7 @@ from ryusa.casefile.record import ChangeSection, RecordSection, StopSection
 from ryusa.casefile.section import Section
 from ryusa.casefile.time import TimeSection
 from ryusa.casefile.traffic.schema import ExitSection, FeedSection
+from ryusa.casefile.walls import WallSection
 from ryusa.casefile.water.schema import WaterSection
 from ryusa.catalogue import load
 from ryusa.notebook import html_table
@@ -33,7 +34,9 @@ class Case(Section):
     motion: MotionSection
     domain: DomainSection = DomainSection()
     planes: tuple[PlaneSection, ...] = ()
-    """Flat walls."""
+    """Flat walls without end."""
+    walls: tuple[WallSection, ...] = ()
+    """Finite walls, at rest or moving."""
     water: WaterSection | None = None
     """Water; left out of a dry case."""
     build: BuildSection

@@ -23,6 +23,7 @@ from ryusa.casefile.section import Section, given
 from ryusa.casefile.time import RIVALS as TIME_RIVALS
 from ryusa.casefile.time import check_time
 from ryusa.casefile.traffic.checks import check_traffic
+from ryusa.casefile.walls import check_meshes, check_walls
 from ryusa.casefile.water.checks import check_drag_step, check_water
 from ryusa.casefile.water.schema import RIVALS as WATER_RIVALS
 from ryusa.errors import CaseError
@@ -56,6 +57,7 @@ def check(case: Case, data: dict[str, Any]) -> list[CaseError]:
         *check_rolling(case),
         *check_motion(case),
         *check_planes(case),
+        *check_walls(case),
         *check_builder(case),
         *check_traffic(case),
         *check_timeline(case, data),
@@ -74,7 +76,13 @@ def check(case: Case, data: dict[str, Any]) -> list[CaseError]:
         *check_drag_step(case, derived),
     ]
     frames = [] if step else check_frames(case, derived, data)
-    return [*check_domain(case, derived), *step, *frames, *check_record(case, derived)]
+    return [
+        *check_domain(case, derived),
+        *check_meshes(case, derived),
+        *step,
+        *frames,
+        *check_record(case, derived),
+    ]
 
 
 def _rivals(case: Case) -> Iterator[CaseError]:

@@ -3,7 +3,7 @@
 import math
 import shutil
 
-from ryusa.casefile.builders.schema import BoxSection, FlumeSection, FromFile, PackingSection
+from ryusa.casefile.builders.schema import BoxSection, FillSection, FlumeSection, FromFile, PackingSection
 from ryusa.casefile.case import Case
 from ryusa.casefile.contact.values import is_hertz, timing
 from ryusa.casefile.derive import Derived
@@ -90,8 +90,8 @@ def events_expected(case: Case, derived: Derived) -> int:
     if kept == "tracked":
         n = len(set(case.record.tracked))
     rate = EVENTS_ALONE
-    dense = isinstance(case.build, PackingSection | FlumeSection | FromFile | BoxSection) or bool(case.feeds)
-    if dense and derived.meet:
+    dense = isinstance(case.build, PackingSection | FlumeSection | FromFile | BoxSection | FillSection)
+    if (dense or case.feeds) and derived.meet:
         rate = max(rate, EVENTS_DENSE * math.sqrt(derived.g / derived.d))
     return 0 if kept == "none" else math.ceil(n * rate * time_expected(case)[0])
 

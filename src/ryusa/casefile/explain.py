@@ -13,6 +13,7 @@ from ryusa.casefile.precision import precision_rows
 from ryusa.casefile.rows import ExplainRow
 from ryusa.casefile.time import time_rows
 from ryusa.casefile.traffic.rows import traffic_rows
+from ryusa.casefile.walls import wall_rows
 from ryusa.casefile.water.rows import rotation_rows, water_rows
 
 
@@ -30,6 +31,7 @@ def explain(case: Case, derived: Derived | None = None) -> list[ExplainRow]:
         *traffic_rows(case),
         *contact_rows(case, found),
         *damping_rows(case, found),
+        *wall_rows(case),
         *time_rows(case, found),
         *impact_rows(case, found),
         *water_rows(case, found, origin_of_u_star(case) if case.water is not None else ""),

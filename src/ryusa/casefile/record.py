@@ -19,6 +19,7 @@ from ryusa.casefile.quantities import (
     Speed,
 )
 from ryusa.casefile.section import Section
+from ryusa.casefile.walls import MoveSection
 from ryusa.errors import CaseError
 
 if TYPE_CHECKING:
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from ryusa.casefile.derive import Derived
 
 MANY = 1000  # free grains above which contacts are recorded only on request
-CHANGES = ("remove", "slope", "slope_angle", "friction_angle", "friction", "rotation")
+CHANGES = ("remove", "slope", "slope_angle", "friction_angle", "friction", "rotation", "move")
 
 
 class RestSection(Section):
@@ -58,7 +59,7 @@ class ChangeSection(Section):
     at: Moment
     """Simulated time of the change."""
     remove: str | None = None
-    """Name of the group of fixed grains or of the plane to remove."""
+    """Name of the group of fixed grains, of the plane or of the wall to remove."""
     slope: Slope | None = None
     """New bed slope as a tangent."""
     slope_angle: SlopeAngle | None = None
@@ -69,6 +70,8 @@ class ChangeSection(Section):
     """New friction coefficient."""
     rotation: Literal["locked", "free"] | None = None
     """Lock or free the rotation of grains."""
+    move: MoveSection | None = None
+    """Give a wall another motion."""
 
 
 class RecordSection(Section):

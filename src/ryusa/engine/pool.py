@@ -49,6 +49,11 @@ class GrainPool:
         reasons = self._engine.refuses(scene)
         if getattr(self._engine, "forget", None) is None:
             return (*reasons, f"engine '{self.name}' steps a fixed number of grains: no feeds or exits")
+        if scene.walls is not None:
+            return (
+                *reasons,
+                "grains that enter are placed clear of grains and planes, not yet of other walls",
+            )
         if scene.column is not None:
             return (
                 *reasons,

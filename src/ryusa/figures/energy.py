@@ -19,7 +19,7 @@ HELD = {
     "spring_r": AMBER,
 }
 WORK = {
-    "drag": BLUE, "torque": RED, "lift": GREEN, "flow": SKY, "switch": AMBER, "step": PINK,
+    "drag": BLUE, "torque": RED, "lift": GREEN, "flow": SKY, "wall": BLACK, "switch": AMBER, "step": PINK,
     "dash_n": BLUE, "dash_s": RED, "slide": GREEN, "roll": PINK, "film": SKY, "released_n": AMBER,
     "released_s": BLACK, "released_r": style.FAINT,
 }  # fmt: skip

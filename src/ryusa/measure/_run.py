@@ -30,6 +30,7 @@ class Run(Protocol):
     contacts: Any  # contacts that ended: structured array of dtype model.EVENT
     passages: Any  # grains that entered and left: structured array of dtype model.PASSAGE
     tally: Any  # dict of arrays (n_frame,): the energy account at each frame
+    walls: Any  # impulses on each wall up to each frame (n_frame, n_wall, N_IMPULSE), model.walls
 
 
 def settle_time(run: Run) -> float:

@@ -191,7 +191,7 @@ def near_pairs(run: Run, begin: float | None, end: float, resolution: float) -> 
     if last - first < 2:
         raise ResultsError(f"{last - first} frames from t = {since:g} s to {end:g} s; 2 or more are needed")
     scene = run.scene
-    n_id = scene.n_grain + scene.n_fixed + scene.n_plane
+    n_id = scene.n_partner
     counts, pairs = np.zeros(last - first, dtype=np.int64), [np.zeros(0, dtype=np.int64)]
     for k in range(first, last):
         x = np.asarray(run.frames.x[k], dtype=np.float64)

@@ -82,6 +82,7 @@ def contact_network(run: Run, t: float | None = None, lane: int | None = None) -
     A contact is that of the step before the frame, at x - v dt, where forces were recorded. It slides where
     f_s has reached tau_c = max(c + mu p, 0) of Eq. (4), where p is the force of the spring or, with
     `contact.cap = "total"`, f_n. In 3D a contact belongs to the slice that holds its point of touch.
+    Contacts with [[walls]] are left out.
     """
     k = frame_at(run, t)
     scene = scene_at(run, float(run.frames.t[k]))
@@ -89,6 +90,7 @@ def contact_network(run: Run, t: float | None = None, lane: int | None = None) -
     if scene.forces:
         x = inside_periods(x - np.asarray(run.frames.v[k], dtype=np.float64) * scene.dt, scene)
         held: np.ndarray = run.contact_forces(k)  # type: ignore[attr-defined]
+        held = held[held["j"] < scene.n_partner - scene.n_face]
         i, j = held["i"], held["j"]
         gap, normal, overlap = _geometry(x, i, j, scene)
         spring = pair_springs(scene, i, j, overlap)[0] * overlap

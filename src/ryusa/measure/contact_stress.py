@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import ndtr
 
+from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run, crest_of
 from ryusa.measure.profiles import Layers, _mean, _quotient
 from ryusa.measure.snapshot import scene_at
@@ -119,6 +120,8 @@ def contact_stress(
     flow is steady and dry. Forces are those of the step before the frame.
     """
     t, first, last, scene, area = window_of(run, begin, end, least=1)
+    if scene.n_face:
+        raise ResultsError("not measured in a run with [[walls]]; the measure 'walls' has their forces")
     length = layer * float(scene.d.mean())
     z = _heights(run, first, last, scene, length)
     frames = [_frame(run, k, z, length) for k in range(first, last)]

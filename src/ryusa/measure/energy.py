@@ -27,6 +27,7 @@ TERMS = {
     "torque": "torque of the water",
     "lift": "lift and Magnus force",
     "flow": "pressure, stress, acceleration of the water",
+    "wall": "moving walls",
     "switch": "changes of the scene",
     "step": "finite time step",
 }  # key of a term -> what it is, as printed and drawn

@@ -271,6 +271,7 @@ def _turns_of_contacts(run: Run, scene: Scene, begin: float, end: float) -> Ints
     n, planes = scene.n_grain, scene.n_grain + scene.n_fixed
     i, j = events["i"], events["j"]
     upward = np.concatenate([np.ones(planes, dtype=np.bool_), scene.plane_normal[:, 2] > 0.5])
+    upward = np.concatenate([upward, np.zeros(scene.n_face, dtype=np.bool_)])
     mover, bed = j < n, (j >= n) & upward[j]
     grain = np.concatenate([i[bed], i[mover], j[mover]])
     among = np.concatenate([np.zeros(bed.sum()), np.ones(2 * mover.sum())])

@@ -8,6 +8,7 @@ from ryusa.model.scene import ContactLaw, RollingLaw, Scene, Water
 from ryusa.model.state import State
 from ryusa.model.tally import Tally, Term
 from ryusa.model.traffic import PASSAGE, Exit, Feed, Traffic
+from ryusa.model.walls import FaceKind, Walls
 
 __all__ = [
     "EVENT",
@@ -19,6 +20,7 @@ __all__ = [
     "CouplingState",
     "EngineBlock",
     "Exit",
+    "FaceKind",
     "Feed",
     "FluidAtGrains",
     "RollingLaw",
@@ -27,6 +29,7 @@ __all__ = [
     "Tally",
     "Term",
     "Traffic",
+    "Walls",
     "Water",
     "WaterState",
 ]

@@ -21,7 +21,7 @@ def pair_springs(scene: Scene, i: Ints, j: Ints, overlap: Floats) -> tuple[Float
     Parameters
     ----------
     scene : law, masses and time step.
-    i, j : ids of each pair, shape (n,); i is a free grain, j a free grain, a fixed grain or a plane.
+    i, j : ids of each pair, shape (n,); i is a free grain, j a free grain, a fixed grain, a plane or a face.
     overlap : of each pair [m], shape (n,); only the stiffness of elastic spheres depends on it.
 
     Notes
@@ -37,10 +37,10 @@ def pair_springs(scene: Scene, i: Ints, j: Ints, overlap: Floats) -> tuple[Float
     k_n, k_s = np.full(n, law.k_n), np.full(n, law.k_s)
     if law.timing != ContactTiming.EXACT or n == 0:
         return k_n, k_s
-    beyond = np.full(scene.n_fixed + scene.n_plane, math.inf)
+    beyond = np.full(scene.n_partner - scene.n_grain, math.inf)
     m = np.concatenate([scene.m + scene.m_added, beyond])
     inertia = np.concatenate([scene.inertia, beyond])
-    r = 0.5 * np.concatenate([scene.d, scene.d_fixed, np.full(scene.n_plane, math.inf)])
+    r = 0.5 * np.concatenate([scene.d, scene.d_fixed, np.full(scene.n_plane + scene.n_face, math.inf)])
     both = np.column_stack([m[i], r[i], inertia[i], m[j], r[j], inertia[j]])
     kinds, place = np.unique(both, axis=0, return_inverse=True)
     found = np.array([_springs_of_map(scene, *(float(one) for one in kind)) for kind in kinds])[place.ravel()]

@@ -26,6 +26,7 @@ from ryusa.laws.families import (
 from ryusa.model.arrays import Bools, Floats
 from ryusa.model.column import Column
 from ryusa.model.traffic import Traffic
+from ryusa.model.walls import Walls
 
 _INF = float("inf")
 
@@ -128,8 +129,8 @@ class Water:
 class Scene:
     """All data that are fixed during a run, or between two changes of its timeline.
 
-    Free grains have ids 0 to n_grain - 1, fixed grains n_grain to n_grain + n_fixed - 1; planes follow. With
-    feeds they include those that have not entered yet (design/0021).
+    Free grains have ids 0 to n_grain - 1, fixed grains n_grain to n_grain + n_fixed - 1; planes follow, then
+    faces of walls. With feeds they include those that have not entered yet (design/0021).
     """
 
     # free grains, each of shape (n_grain,)
@@ -167,6 +168,7 @@ class Scene:
     tracked: Bools = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))  # (n_grain,) or empty
     # names of groups, for timeline and measures: slices of the ids above
     groups: dict[str, tuple[int, int]] = field(default_factory=lambda: {})
+    walls: Walls | None = None  # finite walls, at rest or moving
 
     @property
     def n_grain(self) -> int:
@@ -182,3 +184,18 @@ class Scene:
     def n_plane(self) -> int:
         """Number of planes, including removed ones."""
         return len(self.plane_normal)
+
+    @property
+    def n_face(self) -> int:
+        """Number of faces of walls, including removed ones."""
+        return 0 if self.walls is None else self.walls.n_face
+
+    @property
+    def n_wall(self) -> int:
+        """Number of walls, including removed ones; planes do not count."""
+        return 0 if self.walls is None else self.walls.n_wall
+
+    @property
+    def n_partner(self) -> int:
+        """Number of ids: grains, fixed grains, planes and faces of walls."""
+        return self.n_grain + self.n_fixed + self.n_plane + self.n_face

@@ -29,16 +29,17 @@ class Term(IntEnum):
     START = 12  # energy at the first step: kinetic + spin + potential + springs
     FLOW = 13  # given by pressure, stress and acceleration of the water, beyond buoyancy in still water
     FILM = 14  # lost to films of water between grains that do not touch
+    WALL = 15  # given by moving walls
 
 
 N_TERM = len(Term)
 # Terms whose work of the second half step is still to be added.
-PENDING = (Term.DRAG, Term.TORQUE, Term.LIFT, Term.FLOW, Term.FILM)
+PENDING = (Term.DRAG, Term.TORQUE, Term.LIFT, Term.FLOW, Term.FILM, Term.WALL)
 LOSSES = (
     Term.DASH_N, Term.DASH_S, Term.SLIDE, Term.ROLL, Term.RELEASED_N, Term.RELEASED_S, Term.RELEASED_R,
     Term.FILM,
 )  # fmt: skip
-GIFTS = (Term.DRAG, Term.TORQUE, Term.LIFT, Term.FLOW, Term.SWITCH, Term.STEP)
+GIFTS = (Term.DRAG, Term.TORQUE, Term.LIFT, Term.FLOW, Term.WALL, Term.SWITCH, Term.STEP)
 # Terms for the size of the account; START and SWITCH depend on the origin of heights.
 SIZES = tuple(term for term in Term if term not in {Term.START, Term.SWITCH})
 HELD = ("kinetic", "spin", "potential", "spring_n", "spring_s", "spring_r")
@@ -82,6 +83,7 @@ class Tally:
     spin_max: float  # largest spin in the last step [rad/s]
     n_contact: int  # number of touching pairs
     pending: tuple[float, ...] = (0.0,) * len(PENDING)  # work of the second half of the present step [J]
+    walls: tuple[float, ...] = ()  # impulses and work of each wall since the start (model.walls)
 
     @property
     def held(self) -> float:

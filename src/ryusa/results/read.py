@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from ryusa.errors import ResultsError
 from ryusa.model import EVENT, PASSAGE, Scene
+from ryusa.model.walls import N_IMPULSE
 from ryusa.results import schema
 from ryusa.results.hdf5 import OpenFiles, opened, plain_dataset, read_dataset, read_integer
 from ryusa.results.lazy import LazyFrames, Part
@@ -202,6 +203,15 @@ class Results:
         return {name: rows[name] for name in schema.TALLY.names or ()}
 
     @cached_property
+    def walls(self) -> NDArray[np.float64]:
+        """Impulses on each wall and its work since the start, shape (n_frame, n_wall, N_IMPULSE)."""
+        shape = (self.scene.n_wall, N_IMPULSE)
+        if self.scene.walls is None:
+            return np.zeros((len(self.frames), *shape))
+        rows = [part.walls(shape) for part in self._parts if part.n_frame]
+        return np.concatenate([np.zeros((0, *shape)), *rows])
+
+    @cached_property
     def water(self) -> WaterFrames | None:
         """Profiles of the water at every frame; None if the run has no water column."""
         column = self.scene.column
@@ -382,8 +392,8 @@ def read_part(path: Path, first: int, n_grain: int, files: OpenFiles) -> Part:
             shape = (k, n_grain, *tail) if name in schema.PER_GRAIN else (k,)
             _check(plain_dataset(file, name, path), shape, dtype, path)
         tally = plain_dataset(file, "tally", path)
-        earlier = tally.dtype == schema.BEFORE_FILMS
-        _check(tally, (k,), schema.BEFORE_FILMS if earlier else schema.TALLY, path)
+        kinds = (schema.BEFORE_FILMS, schema.BEFORE_WALLS)
+        _check(tally, (k,), next((one for one in kinds if one == tally.dtype), schema.TALLY), path)
         contacts = plain_dataset(file, "contacts", path)
         _check(contacts, (contacts.shape[0] if contacts.ndim == 1 else -1,), EVENT, path)
         end, tail = read_integer(file, schema.END_STEP, path), read_integer(file, schema.TAIL, path)

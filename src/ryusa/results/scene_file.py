@@ -11,14 +11,16 @@ import numpy as np
 
 from ryusa.errors import ResultsError
 from ryusa.laws.families import ContactForce
-from ryusa.model import Column, ContactLaw, RollingLaw, Scene, Water
+from ryusa.model import Column, ContactLaw, FaceKind, RollingLaw, Scene, Walls, Water
 from ryusa.model.scene import ONLY_HERTZ, EventRule
 from ryusa.model.traffic import Traffic
+from ryusa.model.walls import N_MOTION
 from ryusa.results.hdf5 import opened, read_dataset
 
 _TRAFFIC = "traffic"  # left out where a scene has none, so that scenes of earlier versions keep their digest
 _LAWS: dict[str, type] = {"contact": ContactLaw, "rolling": RollingLaw, "water": Water, "column": Column}
 _ARRAYS = tuple(f.name for f in fields(Scene) if get_origin(f.type) is np.ndarray)
+_WALLS = tuple(f.name for f in fields(Walls) if f.name != "names")  # datasets of the group "walls"
 _LIMIT = 1 << 20  # bytes of JSON read from a scene file
 
 
@@ -26,6 +28,9 @@ def write_scene(file: h5py.File, scene: Scene, step: int, t: float) -> None:
     """Write a scene that is valid from `step` and time `t` [s] into an open HDF5 file."""
     for name in _ARRAYS:
         file.create_dataset(name, data=np.asarray(getattr(scene, name)))
+    if scene.walls is not None:
+        for name in _WALLS:
+            file.create_dataset(f"walls/{name}", data=np.asarray(getattr(scene.walls, name)))
     scalars = _scalars(scene) | {"step": step, "t": t}
     file.create_dataset(
         "scalars", data=np.frombuffer(json.dumps(scalars, default=_plain).encode(), dtype=np.uint8)
@@ -42,7 +47,8 @@ def _scalars(scene: Scene) -> dict[str, Any]:
             found[f.name] = asdict(value) if f.name in {*_LAWS, _TRAFFIC} and value is not None else value
     if scene.contact.force == ContactForce.LINEAR:  # as before there were others: the digest stays
         found["contact"] = {key: one for key, one in found["contact"].items() if key not in ONLY_HERTZ}
-    return found
+    walls: Walls | None = found.pop("walls")
+    return found if walls is None else found | {"walls": list(walls.names)}
 
 
 def scene_digest(scene: Scene) -> str:
@@ -52,6 +58,8 @@ def scene_digest(scene: Scene) -> str:
         array = np.ascontiguousarray(getattr(scene, name))
         digest.update(f"{name} {array.shape} ".encode())
         digest.update(array.astype(np.float64).tobytes())
+    for name in () if scene.walls is None else _WALLS:
+        digest.update(np.ascontiguousarray(getattr(scene.walls, name), dtype=np.float64).tobytes())
     digest.update(json.dumps(_even(_scalars(scene)), sort_keys=True).encode())
     return digest.hexdigest()
 
@@ -75,6 +83,7 @@ def read_scene(path: Path) -> tuple[int, float, Scene]:
     with opened(path) as file:
         arrays = {name: read_dataset(file, name, path) for name in _ARRAYS}
         raw = read_dataset(file, "scalars", path)
+        faces = {name: read_dataset(file, f"walls/{name}", path) for name in _WALLS if "walls" in file}
     try:
         if raw.dtype != np.uint8 or raw.nbytes > _LIMIT:
             raise ValueError("its scalars are not text")
@@ -85,6 +94,8 @@ def read_scene(path: Path) -> tuple[int, float, Scene]:
         }
         if _TRAFFIC in scalars:
             scalars[_TRAFFIC] = Traffic.from_data(scalars[_TRAFFIC])
+        if (names := scalars.pop("walls", None)) is not None:
+            scalars["walls"] = _walls(faces, names)
         scalars["events"] = EventRule(scalars["events"])
         scalars["groups"] = {str(name): (int(a), int(b)) for name, (a, b) in scalars["groups"].items()}
         for name in ("period", "world_low", "world_high"):
@@ -105,6 +116,25 @@ def _plain(value: np.generic) -> Any:
 def _law(kind: type, raw: dict[str, Any]) -> Any:
     hints = get_type_hints(kind)
     return kind(**{name: hints[name](value) for name, value in raw.items()})
+
+
+def _walls(arrays: dict[str, np.ndarray], names: list[str]) -> Walls:
+    """Walls from their arrays, whose numbers go to compiled code and are therefore checked."""
+    walls = Walls(**arrays, names=tuple(str(name) for name in names))
+    n, n_wall = walls.n_face, walls.n_wall
+    wanted = {
+        "face": (n, 9), "kind": (n,), "wall": (n,), "surface": (n,), "active": (n_wall,),
+        "motion": (n_wall, N_MOTION),
+    }  # fmt: skip
+    for name, shape in wanted.items():
+        array = arrays[name]
+        if array.shape != shape or not np.isfinite(array).all():
+            raise ValueError(f"walls/{name} has shape {array.shape}, expected {shape} of finite numbers")
+        array.flags.writeable = False
+    for name, most in (("kind", len(FaceKind)), ("wall", n_wall), ("surface", max(n, 1))):
+        if arrays[name].dtype != np.int64 or (n and not 0 <= arrays[name].min() <= arrays[name].max() < most):
+            raise ValueError(f"walls/{name} holds a number that is not 0 to {most - 1}")
+    return walls
 
 
 def _check_shapes(scene: Scene, path: Path) -> None:

@@ -58,6 +58,9 @@ WATER_CELLS = ("u", "w", "phi", "content")  # [m/s], [m/s], [-], [m]
 WATER_FACES = ("tau", "nu_t")  # [Pa], [m2/s]
 WATER_NUMBERS = ("z_surface", "gradient")  # [m], [Pa/m]
 
+# impulses on walls and their work since the start, if the run has walls: (k, n_wall, model.walls.N_IMPULSE)
+WALLS = "walls"
+
 # contact forces, if the case records them: those of all frames in one dataset, and the number of each frame
 FORCES, N_FORCE = "forces", "n_force"
 FORCE = np.dtype(
@@ -84,11 +87,14 @@ TALLY = np.dtype(
     ]
 )
 
-BEFORE_FILMS = np.dtype([(name, TALLY[name]) for name in TALLY.names or () if name != Term.FILM.name.lower()])
+BEFORE_WALLS = np.dtype([(name, TALLY[name]) for name in TALLY.names or () if name != Term.WALL.name.lower()])
+BEFORE_FILMS = np.dtype(
+    [(name, TALLY[name]) for name in BEFORE_WALLS.names or () if name != Term.FILM.name.lower()]
+)
 
 
 def whole(tally: NDArray[np.void]) -> NDArray[np.void]:
-    """Convert rows to dtype TALLY; in folders older than the films of water their term is set to zero."""
+    """Convert rows to dtype TALLY; a term that an earlier version lacks is set to zero."""
     if tally.dtype == TALLY:
         return tally
     rows = np.zeros(tally.shape, TALLY)

@@ -9,22 +9,26 @@ if TYPE_CHECKING:
     from ryusa.casefile.case import Case
 
 
-def table_beside(case: "Case") -> Path | None:
-    """Path of the table of first grains if it can be copied beside the case in the run folder."""
+def files_beside(case: "Case") -> dict[str, Path]:
+    """Paths of first grains, meshes and sieve curve, by the names of their copies in the run folder."""
     from ryusa.casefile.builders.schema import TableSection
-
-    if not isinstance(case.build, TableSection) or case.path is None:
-        return None
-    name = case.build.file
-    plain = Path(name).name == name and Path(name).suffix not in {".json", ".toml", ".vtkhdf", ".h5", ".txt"}
-    return case.path.resolve().parent / name if plain and not name.startswith(".") else None
-
-
-def sieve_beside(case: "Case") -> Path | None:
-    """Path of the sieve curve of the grains, which the run folder keeps under a name of its own."""
     from ryusa.casefile.grading import sieve_file
+    from ryusa.results import schema
 
-    return sieve_file(case)
+    sieve, found = sieve_file(case), dict[str, Path]()
+    if case.path is not None:
+        names = [case.build.file] if isinstance(case.build, TableSection) else []
+        names += [wall.file for wall in case.walls if wall.file is not None]
+        folder = case.path.resolve().parent
+        found = {name: folder / name for name in names if _plain(name)}
+    return found if sieve is None else found | {schema.SIEVE: sieve}
+
+
+def _plain(name: str) -> bool:
+    """Whether a name is that of a file in the folder or below it, which nothing of a run folder has."""
+    taken, path = {".json", ".toml", ".vtkhdf", ".h5", ".txt", ".html", ".webp"}, Path(name)
+    inside = not path.is_absolute() and not any(one.startswith(".") for one in path.parts)
+    return inside and path.suffix not in taken and path.parts[0] not in {"parts", "pictures"}
 
 
 def start_of(case: "Case") -> Callable[[], bytes] | None:

@@ -25,6 +25,7 @@ _WORK = {
     Term.TORQUE: "torque of the water",
     Term.LIFT: "lift",
     Term.FLOW: "pressure gradient and acceleration of the water",
+    Term.WALL: "moving walls",
     Term.SWITCH: "changes of the scene",
     Term.STEP: "error of the time step",
 }

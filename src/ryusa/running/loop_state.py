@@ -56,7 +56,7 @@ class LoopState:
                 f"the state of the loop in the checkpoint is incomplete ({error})"
             ) from error
         ids = (gathered["i"], gathered["j"]) if gathered.dtype == EVENT else ()
-        last = n + scene.n_fixed + scene.n_plane
+        last = scene.n_partner
         if (
             (state.parted.shape, state.parted.dtype) != ((n,), np.dtype(np.float64))
             or (state.hops.shape, state.hops.dtype) != ((n,), np.dtype(np.int64))

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ryusa.model import EVENT, PASSAGE, Scene, State, Tally
 from ryusa.model.contacts import joined
+from ryusa.model.walls import N_IMPULSE
 from ryusa.results import schema
 from ryusa.running.contact_forces import contact_forces
 from ryusa.water.coupling import Coupling
@@ -42,6 +43,7 @@ class RecordBuffer:
         self._forces: list[NDArray[np.void]] | None = [] if scene.forces else None  # of each frame
         self._passages: list[NDArray[np.void]] | None = None if scene.traffic is None else []
         self._water: dict[str, list[NDArray[np.float64]]] = {}
+        self._walls: list[NDArray[np.float64]] = []  # impulses on them up to each frame
 
     def __bool__(self) -> bool:
         return self.n_frame > 0 or self.n_contact > 0
@@ -67,6 +69,9 @@ class RecordBuffer:
         if self._forces is not None:
             self._forces.append(contact_forces(state, self._scene))
         self._tally.append(schema.tally_row(tally))
+        if n_wall := self._scene.n_wall:
+            so_far = tally.walls or (0.0,) * (n_wall * N_IMPULSE)
+            self._walls.append(np.array(so_far).reshape(n_wall, N_IMPULSE))
         self.n_frame += 1
 
     def contacts(self, events: NDArray[np.void]) -> None:
@@ -93,6 +98,8 @@ class RecordBuffer:
             rows[schema.FORCES] = np.concatenate([np.zeros(0, dtype=schema.FORCE), *self._forces])
         if self._passages is not None:
             rows[schema.PASSAGES] = np.concatenate([np.zeros(0, dtype=PASSAGE), *self._passages])
+        if self._scene.n_wall:
+            rows[schema.WALLS] = np.array(self._walls).reshape(self.n_frame, self._scene.n_wall, N_IMPULSE)
         return rows | {f"{schema.WATER}/{name}": np.array(one) for name, one in self._water.items()}
 
     def write(self, file: h5py.File) -> None:
@@ -120,6 +127,7 @@ class RecordBuffer:
             self._forces += np.split(rows[schema.FORCES], np.cumsum(rows[schema.N_FORCE])[:-1])
         if self._passages is not None:
             self._passages.append(rows[schema.PASSAGES])
+        self._walls += list(rows.get(schema.WALLS, ()))
         begin = f"{schema.WATER}/"
         for name, profiles in rows.items():
             if name.startswith(begin):

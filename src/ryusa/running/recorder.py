@@ -355,4 +355,9 @@ class _PartBeingWritten(threading.Thread):
 
 
 def _same_bed(a: Scene, b: Scene) -> bool:
-    return np.array_equal(a.fixed_active, b.fixed_active) and np.array_equal(a.plane_active, b.plane_active)
+    same = np.array_equal(a.fixed_active, b.fixed_active) and np.array_equal(a.plane_active, b.plane_active)
+    return same and (
+        a.walls is None
+        or b.walls is None
+        or (np.array_equal(a.walls.active, b.walls.active) and np.array_equal(a.walls.motion, b.walls.motion))
+    )

@@ -11,6 +11,7 @@ import numpy as np
 from ryusa.casefile.earlier import completed
 from ryusa.errors import CheckpointError, ResultsError
 from ryusa.model import EVENT, PASSAGE, Scene, State
+from ryusa.model.walls import N_IMPULSE
 from ryusa.results import schema
 from ryusa.results.hdf5 import OpenFiles
 from ryusa.results.lazy import Part
@@ -301,6 +302,8 @@ def _buffered(recorder: CheckpointBlock, scene: Scene, folder: Path) -> dict[str
         if scene.traffic is not None:
             n_passage = len(rows[schema.PASSAGES]) if schema.PASSAGES in rows else 0
             shapes[schema.PASSAGES] = ((n_passage,), PASSAGE)
+        if scene.n_wall:
+            shapes |= {schema.WALLS: ((k, scene.n_wall, N_IMPULSE), np.dtype(np.float64))}
         if set(shapes) != set(rows):
             raise ValueError(f"datasets {', '.join(sorted(rows))}")
         for name, (shape, dtype) in shapes.items():

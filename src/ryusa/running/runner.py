@@ -3,8 +3,8 @@
 import math
 import os
 import sys
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,7 +18,7 @@ from ryusa.model.scene import EventRule
 from ryusa.results import Results, schema
 from ryusa.results.scene_file import scene_digest
 from ryusa.running import provenance
-from ryusa.running.case_files import sieve_beside, start_of, table_beside, timeline_texts
+from ryusa.running.case_files import files_beside, start_of, timeline_texts
 from ryusa.running.checkpoint import CheckpointBlock
 from ryusa.running.checkpoint_scheduler import CHECKPOINT_INTERVAL, CheckpointScheduler, run_identity
 from ryusa.running.disk import disk_errors, write_atomically
@@ -124,7 +124,7 @@ def run(
         about = _CaseData(
             resolved=resolved(case, derived), text=case.text, seed=case.seed, overrides=case.overrides,
             disk=_Disk(frames_expected(case), disk_needed(case, derived), disk_for_events(case, derived)),
-            table=table_beside(case), sieve=sieve_beside(case), start=start_of(case),
+            files=files_beside(case), start=start_of(case),
         )  # fmt: skip
         return _run_or_resume(
             make,
@@ -155,8 +155,7 @@ class _CaseData:
     seed: int | None = None
     overrides: dict[str, str] | None = None
     disk: _Disk | None = None
-    table: Path | None = None  # of first grains, named in the case
-    sieve: Path | None = None  # sieve curve of the grains, named in the case
+    files: Mapping[str, Path] = field(default_factory=dict[str, Path])  # copied beside the case, by name
     start: Callable[[], bytes] | None = None  # first grains as a table, if they are those of another run
 
 
@@ -305,14 +304,12 @@ class _Run:
         write_json(self.folder / schema.CASE_JSON, self.resolved)
         if self.about.text is not None:
             _write_text(self.folder / schema.CASE_TOML, self.about.text)
-        table = self.about.table
-        if table is not None and table.parent != self.folder.resolve():
-            with disk_errors(self.folder):
-                write_atomically(self.folder / table.name, table.read_bytes())
-        sieve = self.about.sieve
-        if sieve is not None and sieve != self.folder.resolve() / schema.SIEVE:
-            with disk_errors(self.folder):
-                write_atomically(self.folder / schema.SIEVE, sieve.read_bytes())
+        for name, path in self.about.files.items():
+            copy = self.folder / name
+            if path != copy.resolve():
+                with disk_errors(self.folder):
+                    copy.parent.mkdir(parents=True, exist_ok=True)
+                    write_atomically(copy, path.read_bytes())
         if self.about.start is not None:
             with disk_errors(self.folder):
                 write_atomically(self.folder / schema.START, self.about.start())

@@ -17,6 +17,7 @@ from ryusa.model.contacts import N_EVENT, N_STATE
 from ryusa.model.eddies import Eddies
 from ryusa.model.fluid import N_IMPULSE, N_SAMPLED
 from ryusa.model.tally import N_TERM, PENDING, Tally
+from ryusa.model.walls import N_IMPULSE as N_WALL_IMPULSE
 from ryusa.running.checkpoint import CheckpointBlock
 
 _LATEST = 2**62  # step
@@ -119,7 +120,7 @@ class _Reader:
 
     def _contacts(self) -> Contacts:
         scene = self._scene
-        n, last = scene.n_grain, scene.n_grain + scene.n_fixed + scene.n_plane
+        n, last = scene.n_grain, scene.n_partner
         k = len(self._arrays["contacts/i"])
         i, j = (self._array(f"contacts/{name}", (k,), _INT) for name in "ij")
         if k and (i.min() < 0 or i.max() >= n or np.any(j <= i) or j.max() >= last):
@@ -146,8 +147,11 @@ class _Reader:
         names = {one.name: f"tally/{one.name}" for one in fields(Tally)}
         if "tally/books" in values:  # the name of the terms in checkpoints of earlier versions
             names["terms"] = "tally/books"
-        given = {name: values[key] for name, key in names.items()}
-        lengths = {"terms": N_TERM, "pending": len(PENDING)}
+        given = {name: values[key] for name, key in names.items() if name != "walls" or key in values}
+        lengths = {"terms": N_TERM, "pending": len(PENDING), "walls": N_WALL_IMPULSE * self._scene.n_wall}
+        for name in ("terms", "pending"):  # earlier versions have no term of walls
+            if len(given[name]) == lengths[name] - 1:
+                given[name] = [*given[name], 0.0]
         found: dict[str, Any] = {}
         for name, value in given.items():
             values = [float(one) for one in (value if name in lengths else [value])]

@@ -15,6 +15,7 @@ import h5py
 import numpy as np
 
 from ryusa.model import EVENT, Scene
+from ryusa.model.wall_shape import in_world, triangles_of
 from ryusa.results import schema
 from ryusa.running.disk import hdf5_image, write_atomically
 
@@ -191,7 +192,9 @@ def _share(group: h5py.Group, name: str, source: str, count: int, dtype: np.dtyp
 
 
 def write_bed(path: Path, scenes: list[tuple[float, Scene]]) -> None:
-    """Write fixed grains (points with a diameter) and planes (squares whose corners have diameter 0).
+    """Write fixed grains (points with a diameter), planes and walls (squares whose corners have diameter 0).
+
+    A triangle of a wall is a square with two corners in one place. Walls stand where they are at that time.
 
     One frame per (time [s], scene); more than one if the timeline removed grains or planes.
     """
@@ -204,7 +207,7 @@ def write_bed(path: Path, scenes: list[tuple[float, Scene]]) -> None:
 
 def _fill_bed(file: h5py.File, scenes: list[tuple[float, Scene]]) -> None:
     root = _root(file)
-    shown = [_bed_points(scene) for _, scene in scenes]
+    shown = [_bed_points(scene, t) for t, scene in scenes]
     n_points = np.array([len(points) for points, _, _, _ in shown], dtype=np.int64)
     n_verts = np.array([n_vert for _, _, _, n_vert in shown], dtype=np.int64)
     n_squares = (n_points - n_verts) // 4
@@ -240,13 +243,20 @@ def _starts(counts: np.ndarray) -> np.ndarray:
     return np.concatenate([[0], np.cumsum(counts)[:-1]]).astype(np.int64)
 
 
-def _bed_points(scene: Scene) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
+def _bed_points(scene: Scene, t: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
     """Points, diameters and ids of the present bed, and how many of the points are grains."""
     there = np.asarray(scene.fixed_active, dtype=bool)
     x, d = np.asarray(scene.x_fixed).reshape(-1, 3)[there], np.asarray(scene.d_fixed)[there]
     ids = scene.n_grain + np.flatnonzero(there)
     corners = [_square(scene, int(k)) for k in np.flatnonzero(scene.plane_active)]
     plane_ids = scene.n_grain + scene.n_fixed + np.repeat(np.flatnonzero(scene.plane_active), 4)
+    if scene.walls is not None:
+        triangles, wall = triangles_of(scene.walls)
+        there = scene.walls.active[wall]
+        triangles = in_world(scene.walls, triangles, wall, t)[there]
+        corners += list(triangles[:, [0, 1, 2, 2]])
+        first = scene.n_partner - scene.n_face
+        plane_ids = np.append(plane_ids, np.repeat(first + wall[there], 4))
     points = np.concatenate([x, *corners]) if corners else x
     return (
         points,

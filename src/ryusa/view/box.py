@@ -6,6 +6,7 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
+from ryusa.model.walls import box_of as walls_box
 from ryusa.results import Results
 from ryusa.view.flow import surfaces
 
@@ -41,6 +42,10 @@ def box_of(results: Results, d: Floats, centres: Iterable[Floats]) -> tuple[Floa
         there = np.isfinite(inside[:, 0])  # nan: a grain that has not entered, or has left
         low = np.minimum(low, (inside - r)[there].min(axis=0, initial=math.inf))
         high = np.maximum(high, (inside + r)[there].max(axis=0, initial=-math.inf))
+    if scene.walls is not None:  # walls much larger than what the grains take up would make these dots
+        bottom, top = walls_box(scene.walls, 0.0)
+        if (top - bottom).max() < FAR * (high - low).max():
+            low, high = np.minimum(low, bottom), np.maximum(high, top)
     for axis, period in enumerate(scene.period):
         if math.isfinite(period):
             low[axis], high[axis] = 0.0, period

@@ -140,7 +140,7 @@ class Painter {
     gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 0, 0);
     gl.uniform4fv(at.plain, colour);
     gl.enable(gl.BLEND); gl.depthMask(colour[3] === 1);
-    gl.drawArrays({ face: gl.TRIANGLE_FAN, lines: gl.LINES }[kind], 0, points.length);
+    gl.drawArrays({ face: gl.TRIANGLE_FAN, lines: gl.LINES, triangles: gl.TRIANGLES }[kind], 0, points.length);
     gl.depthMask(true); gl.disable(gl.BLEND);
     gl.bindVertexArray(null);
   }

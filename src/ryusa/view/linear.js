@@ -84,3 +84,29 @@ function planeInBox(point, normal, low, high) {
   }
   return corners;
 }
+
+// Pose of a wall at a time, a function from its frame to the scene; the columns of its motion are those of model/walls.py.
+function poseOf(motion, t) {
+  const since = t - motion[0], turn = motion.slice(1, 10), shift = motion.slice(10, 13), axisPoint = motion.slice(13, 16);
+  const spin = motion.slice(19, 22), rate = Math.hypot(...spin);
+  const drift = [0, 1, 2].map((k) => motion[16 + k] * since + motion[22 + k] * (Math.sin(motion[25] * since + motion[26]) - Math.sin(motion[26])));
+  const axis = rate ? spin.map((one) => one / rate) : [0, 0, 1], c = Math.cos(rate * since), s = Math.sin(rate * since);
+  const turned = (p) => {
+    const side = cross(axis, p), along = dot(axis, p) * (1 - c);
+    return p.map((one, k) => c * one + s * side[k] + along * axis[k]);
+  };
+  return (p) => {
+    const own = [0, 1, 2].map((k) => turn[3 * k] * p[0] + turn[3 * k + 1] * p[1] + turn[3 * k + 2] * p[2] + shift[k]);
+    return plus(plus(turned(minus(own, axisPoint)), axisPoint), drift);
+  };
+}
+
+// Points of one wall, `count` to each face or line, in the scene.
+function placed(points, owner, wall, count, place) {
+  const found = [];
+  for (let k = 0; k < owner.length; k++) {
+    if (owner[k] !== wall) continue;
+    for (let a = 3 * count * k; a < 3 * count * (k + 1); a += 3) found.push(place([points[a], points[a + 1], points[a + 2]]));
+  }
+  return found;
+}

@@ -16,11 +16,13 @@ from numpy.typing import NDArray
 
 from ryusa import __version__
 from ryusa.errors import ResultsError
-from ryusa.model import Scene
+from ryusa.model import Scene, Walls
+from ryusa.model.wall_shape import lines_of, triangles_of
 from ryusa.results import Results
 from ryusa.view.box import box_of
 from ryusa.view.encode import Blob, add_colours, add_positions, positions, presence
 from ryusa.view.flow import flow_of
+from ryusa.view.picture import MOST_FACES
 
 HERE = Path(__file__).parent
 SCRIPTS = ("decode.js", "linear.js", "draw.js", "overlay.js", "viewer.js")
@@ -129,6 +131,15 @@ def _encode(
     if len(grains) < scene.n_grain:
         blob.add("id", grains.astype(np.uint32))
     blob.add("fixed", np.column_stack([scene.x_fixed.reshape(-1, 3), 0.5 * scene.d_fixed]).astype(np.float32))
+    if scene.walls is not None:
+        corners, of = triangles_of(scene.walls)
+        if len(corners) > MOST_FACES:
+            corners, of = corners[:0], of[:0]
+        ends, end_of = lines_of(scene.walls)
+        blob.add("wall_faces", corners.astype(np.float32))
+        blob.add("wall_face_of", of.astype(np.uint32))
+        blob.add("wall_lines", ends.astype(np.float32))
+        blob.add("wall_line_of", end_of.astype(np.uint32))
     box = box_of(results, scene.d[grains], (each * quantum for each in whole))
     title = str(results.case.get("title") or results.folder.resolve().name)
     times = results.frames.t[frames]
@@ -162,7 +173,13 @@ def _walls(scene: Scene, t: float) -> dict[str, Any]:
             for k in np.flatnonzero(scene.plane_active)
         ],
         "gravity": scene.gravity.tolist(),
+        "walls": [] if scene.walls is None else _motions(scene.walls),
     }
+
+
+def _motions(walls: Walls) -> list[list[float] | None]:
+    """Motion of each wall (model.walls), None where it is gone."""
+    return [row.tolist() if there else None for row, there in zip(walls.motion, walls.active, strict=True)]
 
 
 def script() -> str:

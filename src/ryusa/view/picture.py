@@ -2,10 +2,13 @@
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
 
+from ryusa.model import Scene
+from ryusa.model.wall_shape import in_world, lines_of, triangles_of
 from ryusa.results import Results
 from ryusa.view.box import Floats, edges_of, plane_in_box
 from ryusa.view.camera import Camera
@@ -17,6 +20,8 @@ SHADES = 256  # of a colour scale
 FIXED = (168, 163, 153)  # as in the page, and so the other colours
 EDGE, WALL, WATER, LEVEL = (140, 148, 158), (128, 120, 107), (38, 128, 204), (0, 114, 178)
 WALL_ALPHA, WATER_ALPHA, DEEP_ALPHA = 0.25, 0.22, 0.1
+THIN_ALPHA = 0.12  # of the faces of walls, of which several lie behind each other
+MOST_FACES = 4000  # of walls that are drawn; of more the edges alone
 RING = 1.35  # radius of the ring around a grain that is followed, in its own
 _ABOVE = 1.0e9  # towards the eye, in samples: before everything
 
@@ -59,6 +64,7 @@ class Painter:
             255.0 * mpl.colormaps[look.colouring.colours](np.linspace(0.0, 1.0, SHADES))[:, :3]
         ).astype(np.uint8)
         self._surfaces = surfaces(results)
+        self._walls: tuple[Floats, Any, Floats, Any] | None = None  # faces and edges, and whose
         self._period = np.array([*results.scene.period, math.inf])
 
     def at(self, t: float) -> Bytes:
@@ -108,6 +114,7 @@ class Painter:
             corners = plane_in_box(scene.plane_point[k], scene.plane_normal[k], low, high)
             if len(corners):
                 face(corners, WALL, WALL_ALPHA, WALL)
+        self._add_walls(scene, t, line, face)
         if len(self._surfaces) and low[2] < (z := float(self._surfaces[nearer])) <= high[2]:
             level = [(low[0], low[1]), (high[0], low[1]), (high[0], high[1]), (low[0], high[1])]
             face(np.array([(*place, z) for place in level]), WATER, WATER_ALPHA, LEVEL)
@@ -129,6 +136,21 @@ class Painter:
         ids = passages["grain"][within]
         x[ids] = (before if share < 0.5 else after)[ids]
         return x
+
+    def _add_walls(self, scene: Scene, t: float, line: Any, face: Any) -> None:
+        """Edges of the walls that are there, and their faces where they are few."""
+        walls = scene.walls
+        if walls is None:
+            return
+        if self._walls is None:
+            self._walls = (*triangles_of(walls), *lines_of(walls))
+        corners, of, ends, end_of = self._walls
+        there = walls.active
+        if len(corners) <= MOST_FACES:
+            for one in in_world(walls, corners, of, t)[there[of]]:
+                face(one, WALL, THIN_ALPHA, None)
+        for one in in_world(walls, ends, end_of, t)[there[end_of]]:
+            line(one, WALL)
 
     def _between(self, t: float) -> tuple[int, float]:
         """The frame before a time, and the share of the way to the next."""

@@ -211,6 +211,12 @@ class Viewer {
       painter.drawPlain(rim(corners), [0.5, 0.47, 0.42, 1], "lines");
       painter.drawPlain(corners, [0.5, 0.47, 0.42, 0.25], "face");
     }
+    scene.walls.forEach((motion, w) => {
+      if (!motion) return;
+      const place = poseOf(motion, this.time), { wall_faces, wall_face_of, wall_lines, wall_line_of } = this.arrays;
+      painter.drawPlain(placed(wall_faces, wall_face_of, w, 3, place), [0.5, 0.47, 0.42, 0.12], "triangles");
+      painter.drawPlain(placed(wall_lines, wall_line_of, w, 2, place), [0.5, 0.47, 0.42, 1], "lines");
+    });
     const surface = this.surface(nearest);
     if (surface !== undefined) {
       const corners = [[low[0], low[1], surface], [high[0], low[1], surface], [high[0], high[1], surface], [low[0], high[1], surface]];

@@ -7,12 +7,20 @@ from ryusa.casefile.builders.box import hole
 from ryusa.casefile.builders.schema import (
     BoxSection,
     DropSection,
+    FillSection,
     FlumeSection,
     PackingSection,
     SaltationSection,
     TableSection,
 )
-from ryusa.casefile.builders.values import FEWEST_PERIODS, bed_opening, flume_count, periodic, sizes
+from ryusa.casefile.builders.values import (
+    FEWEST_PERIODS,
+    bed_opening,
+    counts,
+    flume_count,
+    periodic,
+    sizes,
+)
 from ryusa.casefile.grading import grading_of, reference_diameter
 from ryusa.casefile.grains import spread_of
 from ryusa.casefile.motion import may_rotate
@@ -70,6 +78,14 @@ def check_builder(case: "Case") -> Iterator[CaseError]:
         yield from _box(case, build)
     if isinstance(build, PackingSection | FlumeSection) and grading_of(case) is not None:
         yield from _bed(case, build)
+    if isinstance(build, FillSection):
+        if any(a >= b for a, b in zip(build.low, build.high, strict=True)):
+            yield CaseError("build.low", list(build.low), "must lie below build.high in every direction")
+        elif counts(case)[0] < 1:
+            least = sizes(case)[2] * (1.0 + build.gap)
+            yield CaseError(
+                "build.high", list(build.high), f"holds no grain: a grain needs {least:.4g} m each way"
+            )
 
 
 def _flume(case: "Case", build: FlumeSection) -> Iterator[CaseError]:

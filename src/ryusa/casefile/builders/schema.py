@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, Field
 
 from ryusa.casefile.files import relative
-from ryusa.casefile.quantities import Count, Length, Moment, Number, PositiveLength, Speed, Spin
+from ryusa.casefile.quantities import Count, Length, Moment, Number, Point, PositiveLength, Speed, Spin
 from ryusa.casefile.section import Section
 from ryusa.units import quantity
 
@@ -189,6 +189,23 @@ class EmptySection(Section):
     z = 0; in a plane scene a row from -plate to plate. No plate when not given. Group `floor`."""
 
 
+class FillSection(Section):
+    """Grains in a box of space, to fall between [[walls]] and [[planes]] of the case."""
+
+    kind: Literal["fill"]
+    """Name of the builder."""
+    low: Point
+    """Lower corner of the box that the grains fill at the start."""
+    high: Point
+    """Upper corner of the box."""
+    most: Annotated[Count, Field(ge=1, le=20_000_000)] | None = None
+    """Most grains, the lowest ones; as many as the box holds when not given."""
+    gap: Annotated[Number, Field(ge=0, le=2)] = 0.05
+    """Gap between neighbours on the lattice, in largest diameters."""
+    jitter: Annotated[Number, Field(ge=0, le=1)] = 0.9
+    """Fraction of that gap used for random displacements."""
+
+
 BuildSection = Annotated[
     DropSection
     | SaltationSection
@@ -197,6 +214,7 @@ BuildSection = Annotated[
     | PackingSection
     | FlumeSection
     | BoxSection
-    | EmptySection,
+    | EmptySection
+    | FillSection,
     Field(discriminator="kind"),
 ]

@@ -11,6 +11,7 @@ from ryusa.casefile.builders.schema import (
     BoxSection,
     DropSection,
     EmptySection,
+    FillSection,
     FlumeSection,
     FromFile,
     PackingSection,
@@ -85,6 +86,9 @@ def built_counts(case: "Case") -> tuple[int, int, bool]:
         d, _, d_max = sizes(case)
         n_fixed = box_plan(build, d, d_max, case.motion.plane).n_fixed
         return build.columns * build.rows * build.layers, n_fixed, True
+    if isinstance(build, FillSection):
+        held = math.prod(fill_cells(case))
+        return min(held, build.most or held), 0, True
     bed = bed_counts(case)
     if isinstance(build, FlumeSection):
         return flume_count(case), bed[0] * bed[1], True
@@ -152,6 +156,18 @@ def flume_count(case: "Case") -> int:
     grading = grading_of(case)
     each = 1.0 if grading is None else reference_diameter(case) ** 3 / grading.mean_cube
     return round(case.build.layers * n_x * n_y * each)
+
+
+def fill_cells(case: "Case") -> tuple[int, int, int]:
+    """Cells of the lattice in the box of builder 'fill' along x, y and z."""
+    build = case.build
+    assert isinstance(build, FillSection)
+    pitch = sizes(case)[2] * (1.0 + build.gap)
+    x, y, z = (
+        max(int((high - low) / pitch * (1.0 + 1e-9)), 0)
+        for low, high in zip(build.low, build.high, strict=True)
+    )
+    return x, 1 if case.motion.plane else y, z
 
 
 def bed_area(case: "Case") -> float:

@@ -3,7 +3,8 @@
 import math
 from typing import TYPE_CHECKING
 
-from ryusa.casefile.builders.schema import BoxSection, DropSection, FlumeSection, PackingSection
+from ryusa.casefile.builders.schema import BoxSection, DropSection, FillSection, FlumeSection, PackingSection
+from ryusa.casefile.builders.values import fill_cells
 from ryusa.casefile.contact.speed import expected_speed
 from ryusa.casefile.contact.values import is_hertz, largest_overlap, overlap_under
 from ryusa.casefile.rows import ExplainRow, Flag, number
@@ -21,12 +22,13 @@ def impact_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     """Overlap and travel to expect within one contact."""
     speed, origin = expected_speed(case)
     rows = [number("impact", "expected impact speed", speed, "m/s", origin), _overlap(case, derived, speed)]
-    if isinstance(case.build, PackingSection | FlumeSection | BoxSection):
-        weight = case.build.layers * derived.m_weight * derived.g * math.cos(derived.slope)
+    if isinstance(case.build, PackingSection | FlumeSection | BoxSection | FillSection):
+        layers = fill_cells(case)[2] if isinstance(case.build, FillSection) else case.build.layers
+        weight = layers * derived.m_weight * derived.g * math.cos(derived.slope)
         rest = overlap_under(case, weight) / derived.d
         deep: Flag = "warning" if rest > STABLE[1] else ""
         what = "by Hertz" if is_hertz(case) else "over k_n d"
-        origin = f"weight of {case.build.layers:g} layers {what}"
+        origin = f"weight of {layers:g} layers {what}"
         rows.append(number("impact", "overlap/d at rest", rest, "-", origin, deep))
     along, where = _speed_along(case, derived)
     if along > 0.0:

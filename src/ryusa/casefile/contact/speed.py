@@ -3,7 +3,7 @@
 import math
 from typing import TYPE_CHECKING
 
-from ryusa.casefile.builders.schema import BoxSection, DropSection, FlumeSection, PackingSection
+from ryusa.casefile.builders.schema import BoxSection, DropSection, FillSection, FlumeSection, PackingSection
 from ryusa.casefile.builders.values import sizes
 from ryusa.casefile.contact.schema import OverlapStiffnessSection
 from ryusa.casefile.grains import mass
@@ -33,7 +33,7 @@ def expected_speed(case: "Case") -> tuple[float, str]:
         if height > d:
             fastest = math.sqrt(2.0 * g * height * buoyant)
             return min(fastest, settling), "fall of the top layer through the free height below it"
-    if isinstance(build, PackingSection | FlumeSection | BoxSection):
+    if isinstance(build, PackingSection | FlumeSection | BoxSection | FillSection):
         return math.sqrt(2.0 * g * d), "fall through one diameter, sqrt(2 g d)"
     if math.isfinite(settling):
         return settling, "settling velocity; most impacts of a saltating grain are slower"

@@ -51,6 +51,11 @@ def _case(case: "Case") -> Iterator[CaseError]:
             "cannot be used with water.profile = 'column': the column exchanges momentum with grains that "
             "are always there; take another profile, or a periodic channel without feeds and exits",
         )  # fmt: skip
+    if case.walls:
+        yield CaseError(
+            "feeds" if case.feeds else "exits", None,
+            "cannot be used with [[walls]]: grains that enter keep clear of grains and [[planes]] alone",
+        )  # fmt: skip
     if case.stop.saltations is not None:
         yield CaseError("stop.saltations", case.stop.saltations, "cannot end a run with feeds or exits")
     if case.stop.precision is not None:

@@ -12,7 +12,7 @@ from ryusa.engine.shared.layout import aligned
 
 
 class GrainArrays(NamedTuple):
-    """Grains by place. n free grains, n_solid with the fixed ones, n_total with the planes.
+    """Grains by place. n free grains, n_solid with the fixed ones, n_total with planes and faces.
 
     Vectors lie in rows of four doubles, a whole vector register; the fourth column is named with each.
     """
@@ -72,13 +72,21 @@ class CandidateArrays(NamedTuple):
     touching: Any  # state of the pair (shared/contact_instants.py), 0 where the row holds nothing
     eta: Any  # dashpots and stiffnesses (shared/memory_rows.py); one row for all where they are alike
     rows: Any  # memory (shared/memory_rows.py), (n_near, width); it and `eta` hold where they touch
+    # only in scenes with walls, else of length 0
+    met: Any  # how grains and faces meet (faces.py), for each block from first[b] on, (n_near, N_MET)
+    face: Any  # the candidate of each of these rows, (n_near,)
+    face_grain: Any  # its grain, (n_near,)
+    face_number: Any  # number of the face, (n_near,)
+    slot: Any  # the row of each candidate that is a face, (n_near,)
+    face_count: Any  # how many faces are candidates, (n_block,)
 
 
 class WallArrays(NamedTuple):
-    """Planes."""
+    """Planes and faces."""
 
     normals: Any  # (n_plane, 3)
     points: Any  # [m], (n_plane, 3)
+    faces: Any  # FaceArrays (faces.py), None in scenes without walls
 
 
 class AccountArrays(NamedTuple):
@@ -87,6 +95,7 @@ class AccountArrays(NamedTuple):
     ended: Any  # records of contacts that parted, (n_block, slots, N_EVENT)
     terms: Any  # energy account [J], (n_block, N_ACCOUNT), columns of model.tally.Term
     stats: Any  # statistics, (n_block, N_STATISTIC), columns of shared/block_statistics.py
+    walls: Any  # impulses on walls since the start, (n_block, n_wall, N_IMPULSE), columns of model.walls
 
 
 class Workspace(NamedTuple):
@@ -97,6 +106,7 @@ class Workspace(NamedTuple):
     separation: Any  # separation from i to j and sum of radii [m] of candidates, four each, (4 * LANES,)
     velocity: Any  # velocity of j against i [m/s], and 0, of candidates, (4 * LANES,)
     inside: Any  # 1 where a candidate touches, (LANES,)
+    face_lanes: Any  # lanes of the batch that are faces, and how many at place LANES, (LANES + 1,)
     selected: Any  # selected candidates, the first of them in the batch, (2 * LANES,), uint32
     schedule: Any  # this thread's copy of the prune schedule, (N_SCHEDULE,)
 
@@ -105,7 +115,7 @@ def workspace_of_thread() -> Workspace:
     """Room for one thread."""
     return Workspace(
         aligned(B.SIZE), aligned(W.SIZE), aligned(4 * B.LANES), aligned(4 * B.LANES), aligned(B.LANES),
-        np.zeros(2 * B.LANES, np.uint32), aligned(K.N_SCHEDULE),
+        np.zeros(B.LANES + 1, np.uint32), np.zeros(2 * B.LANES, np.uint32), aligned(K.N_SCHEDULE),
     )  # fmt: skip
 
 

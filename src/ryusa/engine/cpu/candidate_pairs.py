@@ -76,8 +76,8 @@ class CandidatePairs:
             work = self._work.get(first) or self._work.setdefault(first, workspace_of_thread())
             prune_blocks(
                 first, last, layout.block_start, layout.n, layout.n_solid, reach_on, ahead,
-                variant.plane_case, parameters, grains, layout.walls, pairs, self.pairs, self.spares[0],
-                work, wanted,
+                variant.plane_case, layout.walled, parameters, grains, layout.walls, pairs, self.pairs,
+                self.spares[0], work, wanted,
             )  # fmt: skip
 
         while True:

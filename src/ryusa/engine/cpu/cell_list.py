@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ryusa.engine.cpu.faces import append_faces
 from ryusa.engine.shared.kernel import inner, kernel
 from ryusa.laws.geometry import wrap
 from ryusa.model.scene import Floats
@@ -149,13 +150,14 @@ def build_list(
     period: Any,
     skin: float,
     plane_case: bool,
+    walled: int | None,
     start: Any,
     partners: Any,
 ) -> int:
     """Fill the Verlet list of grains lo..hi-1, each pair under its lower id, and return the pairs found.
 
     Partners of grain i begin at partners[start[i]]. Free ones come first, then fixed grains, then planes,
-    each in a fixed order. Returns -1 where `partners` is too short.
+    then faces, each in a fixed order. Returns -1 where `partners` is too short.
     """
     low, width, dims, first, order = free_grid
     low_b, width_b, dims_b, first_b, order_b = fixed_grid
@@ -192,4 +194,10 @@ def build_list(
             if active_planes[k] and gap < x[i, 3] + skin:
                 partners[used] = n_solid + k
                 used += 1
+        if walled is not None:
+            used = append_faces(
+                x[i, 0], x[i, 1], x[i, 2], x[i, 3] + skin, period[0], period[1], walls.faces, partners, used
+            )
+            if used < 0:
+                return -1
     return used

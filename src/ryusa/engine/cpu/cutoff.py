@@ -4,7 +4,8 @@
 from typing import Any
 
 from ryusa.engine.cpu import batch_layout as B
-from ryusa.engine.cpu.simd.vec4 import difference4
+from ryusa.engine.cpu.faces import N_MET
+from ryusa.engine.cpu.simd.vec4 import copy4, difference4
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.kernel import FAST, inner
 from ryusa.laws.geometry import wrap
@@ -27,6 +28,20 @@ def set_separation(
         for k in range(3):
             separation[4 * l + k] = -(gap + r) * normals[a, k]
         separation[4 * l + 3] = 2.0 * r
+
+
+@inner(fastmath=FAST, forceinline=True)
+def set_separation_of_any(
+    l: int, k: int, i: int, j: int, n_solid: int, x: Any, points: Any, normals: Any, met: Any, slot: Any,
+    separation: Any,
+) -> None:  # fmt: skip
+    """As `set_separation`, where partner j of candidate k may be a face: then it has been found already."""
+    if j < n_solid:  # the usual one first
+        difference4(separation, 4 * l, x, 4 * j, 4 * i)
+    elif j >= n_solid + len(points):
+        copy4(separation, 4 * l, met, N_MET * slot[k])
+    else:
+        set_separation(l, i, j, n_solid, x, points, normals, separation)
 
 
 @inner(fastmath=FAST, forceinline=True)

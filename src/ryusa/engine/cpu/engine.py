@@ -39,6 +39,7 @@ from ryusa.engine.shared.energy_account import (
     energy_of_change,
     enter_start,
     read_account,
+    read_walls,
     tally_of,
 )
 from ryusa.engine.shared.faults import fault_of, lost_of, unsafe_of
@@ -47,12 +48,14 @@ from ryusa.engine.shared.refusals import check_state, refusals
 from ryusa.engine.shared.skin import best_skin
 from ryusa.engine.shared.status import STOP_EVENTS, STOP_LIST, STOP_ROOM, STOP_UNSAFE
 from ryusa.engine.shared.variant import choice_of, variant_of
+from ryusa.engine.shared.wall_pose import set_poses
 from ryusa.errors import RunError
 from ryusa.model import EngineBlock, FluidAtGrains, Scene, State, Tally, Term
 from ryusa.model.contacts import N_EVENT
 from ryusa.model.fluid import SUBMERGED
 from ryusa.model.scene import EventRule, Floats
 from ryusa.model.state import make_read_only
+from ryusa.model.walls import N_IMPULSE
 
 VERSION = 1  # of the block in a snapshot
 _FARTHEST = 1e12  # [m]; beyond there is no grain
@@ -111,8 +114,9 @@ class CpuEngine:
         self._parameters[P.T_ZERO] = state.t - state.step * scene.dt
         records = (n // blocks + _RECORDS, N_EVENT) if scene.events != EventRule.NONE else (1, 1)
         self._accounts = AccountArrays(
-            np.zeros((blocks, *records)), np.zeros((blocks, N_ACCOUNT)), np.zeros((blocks, S.N_STATISTIC))
-        )
+            np.zeros((blocks, *records)), np.zeros((blocks, N_ACCOUNT)), np.zeros((blocks, S.N_STATISTIC)),
+            np.zeros((blocks, scene.n_wall, N_IMPULSE)),
+        )  # fmt: skip
         self._n_list = 0
         own = self._read_block(state)
 
@@ -130,6 +134,7 @@ class CpuEngine:
         if own is not None and resumed:
             by_id.x[:n, :3] = own.array("x_listed", (n, 3), _FARTHEST)
             self._travel = own.number("travel", 0.0, np.inf)
+        self._set_poses()
         place_of, _ = self._list_pairs(by_id, self._layout.empty_pairs().start)
         if resumed:
             self._grains.x[:n, :3] = state.x[self._grains.ids[:n]]
@@ -223,7 +228,8 @@ class CpuEngine:
     def tally(self) -> Tally:
         """Energy account and extremes at the moment of the last force evaluation."""
         t = float(self._t - self._parameters[P.DT]) if self._step else self._t
-        return tally_of(t, self._accounts.stats, self._accounts.terms)
+        walls = self._accounts.walls.sum(axis=0).ravel()
+        return tally_of(t, self._accounts.stats, self._accounts.terms, tuple(walls.tolist()))
 
     def events(self) -> np.ndarray:
         """Contacts ended since the last call, in order of parting."""
@@ -296,10 +302,17 @@ class CpuEngine:
         self._skin = max(min(max(skin, 0.02 * self._smallest), self._most_skin()), parted)
         self._since, self._travel, self._n_list = 0, 0.0, self._n_list + 1
         starts, self._pairs = self._pairs.start, self._layout.empty_pairs()  # frees the old list
+        self._set_poses()
         place_of, lost = self._list_pairs(self._grains, starts)
         self._prune(memory, place_of)
         self._parameters[P.SKIN] = self._skin
         return lost_of(self._grains, lost, self._step, self._t) if lost >= 0 else None
+
+    def _set_poses(self) -> None:
+        """Put walls where they are at this step."""
+        faces, c = self._layout.walls.faces, self._parameters
+        if faces is not None:
+            set_poses(c[P.T_ZERO] + self._step * c[P.DT], c[P.DT], faces.motion, faces.poses)
 
     def _list_pairs(self, grains: GrainArrays, starts: np.ndarray) -> tuple[np.ndarray, int]:
         """Sort the grains and list their pairs; returns the new place of each, and a lost grain or -1."""
@@ -327,8 +340,10 @@ class CpuEngine:
         return (8.0 if self._n <= _FEW else 1.0) * self._smallest
 
     def _fastest_displacement(self) -> float:
-        """How far the fastest grain went in the last step [m]."""
-        return float(self._accounts.stats[:, S.SPEED_MAX].max() * self._parameters[P.DT])
+        """How far the fastest grain, or a point of a wall, went in the last step [m]."""
+        faces = self._layout.walls.faces
+        speed = max(float(self._accounts.stats[:, S.SPEED_MAX].max()), 0.0 if faces is None else faces.speed)
+        return float(speed * self._parameters[P.DT])
 
     def _drain_records(self) -> None:
         for block, row in enumerate(self._accounts.stats):
@@ -343,6 +358,8 @@ class CpuEngine:
             "x_listed": self._x_listed[np.argsort(self._grains.ids[: self._n])],
             **account_arrays(self._accounts.stats, self._accounts.terms),
         }
+        if self._layout.walled:
+            arrays["walls"] = self._accounts.walls.reshape(len(self._accounts.walls), -1).copy()
         numbers = {"skin": self._skin, "travel": self._travel, "since": float(self._since)}
         return EngineBlock(self.name, VERSION, arrays, numbers)
 
@@ -360,6 +377,7 @@ class CpuEngine:
             self._skin = own.number("skin", 0.0, max(self._most_skin(), self._layout.largest))
             self._since = int(own.number("since", 0.0, state.step))
         read_account(state, self._accounts.stats, self._accounts.terms, own)
+        read_walls(state, self._accounts.walls, own)
         return own
 
 

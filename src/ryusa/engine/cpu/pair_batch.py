@@ -15,7 +15,7 @@ from typing import Any
 
 from ryusa.engine.cpu import batch_layout as B
 from ryusa.engine.cpu.contact_rows import begin_row, dashpot_row, lane_to_row, row_to_lane
-from ryusa.engine.cpu.cutoff import mark_within_cutoff, set_separation
+from ryusa.engine.cpu.cutoff import mark_within_cutoff, set_separation, set_separation_of_any
 from ryusa.engine.cpu.simd.vec4 import add4, copy4, read4, subtract4, with_fourth, write4
 from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
@@ -36,16 +36,20 @@ from ryusa.laws.geometry import wrap
 
 @inner(fastmath=FAST, forceinline=True)
 def filter_pairs(
-    plane_case: int, reach_on: float, first: int, m: int, waiting: int, n_solid: int, c: Any, x: Any,
-    i_of: Any, j_of: Any, touching: Any, points: Any, normals: Any, separation: Any, inside: Any,
-    selected: Any,
+    plane_case: int, walled: int | None, reach_on: float, first: int, m: int, waiting: int, n_solid: int,
+    c: Any, x: Any, i_of: Any, j_of: Any, touching: Any, points: Any, normals: Any, met: Any, slot: Any,
+    separation: Any, inside: Any, selected: Any,
 ) -> int:  # fmt: skip
     """Select those of m <= LANES candidates that touch or did in the last step; returns how many.
 
     `selected` gets their numbers; `separation` and `inside` are workspace.
     """
     for l in range(m):
-        set_separation(l, i_of[first + l], j_of[first + l], n_solid, x, points, normals, separation)
+        k = first + l
+        if walled is None:
+            set_separation(l, i_of[k], j_of[k], n_solid, x, points, normals, separation)
+        else:
+            set_separation_of_any(l, k, i_of[k], j_of[k], n_solid, x, points, normals, met, slot, separation)
     mark_within_cutoff(plane_case, reach_on, m, c, separation, inside)
     for l in range(m):  # no branch: which pairs touch is not predictable
         selected[waiting] = first + l
@@ -55,21 +59,28 @@ def filter_pairs(
 
 @inner(fastmath=FAST, forceinline=True)
 def gather(
-    rotation: int, kind: int, short: int | None, m: int, selected: Any, n_solid: int, c: Any, mass: Any,
-    inertia: Any, x: Any, v: Any, w: Any, points: Any, normals: Any, i_of: Any, j_of: Any, touching: Any,
-    eta: Any, rows: Any, batch: Any,
+    rotation: int, kind: int, short: int | None, walled: int | None, m: int, selected: Any, n_solid: int,
+    c: Any, mass: Any, inertia: Any, x: Any, v: Any, w: Any, points: Any, normals: Any, i_of: Any, j_of: Any,
+    touching: Any, eta: Any, rows: Any, met: Any, slot: Any, face_lanes: Any, batch: Any,
 ) -> int:  # fmt: skip
     """Copy the first m selected pairs to as many lanes; returns the number of lanes to compute.
 
     Those are whole vectors of eight: the lanes beyond m hold pairs far apart. `kind` is that of the springs
-    (memory_rows.py).
+    (memory_rows.py). `face_lanes` gets the lanes of
+    faces, and in place LANES their number.
     """
+    n_face = 0
     for l in range(m):
         k = selected[l]
         i, j = i_of[k], j_of[k]
         if not touching[k]:
             begin_row(k, i, j, rotation, kind, c, mass, x, inertia, eta, rows)
-        set_separation(B.SEPARATION // 4 + l, i, j, n_solid, x, points, normals, batch)
+        if walled is None:
+            set_separation(B.SEPARATION // 4 + l, i, j, n_solid, x, points, normals, batch)
+        else:
+            set_separation_of_any(
+                B.SEPARATION // 4 + l, k, i, j, n_solid, x, points, normals, met, slot, batch
+            )
         e = dashpot_row(k, eta)
         write4(
             batch,
@@ -80,12 +91,17 @@ def gather(
         copy4(batch, B.SPIN_J + 4 * l, w, 8 * j)
         if j >= n_solid:
             batch[B.SPIN_J + 4 * l + 3] = w[i, 3]
+            if walled is not None and j >= n_solid + len(points):
+                face_lanes[n_face] = l
+                n_face += 1
         row_to_lane(short, l, k, rows, batch)
         batch[B.ETA_S + l], batch[B.WAS_TOUCHING + l] = eta[e, M.ETA_S], touching[k]
         if kind:
             batch[B.K_N + l], batch[B.K_S + l] = eta[e, M.K_N], eta[e, M.K_S]
         if kind == M.HERTZ:  # a row of its own, since a loop reads all four of a group or none
             batch[B.OVERLAP_OLD + l] = batch[B.DASH + 4 * l + 3]
+    if walled is not None:
+        face_lanes[B.LANES] = n_face
     whole = (m + 7) // 8 * 8
     for l in range(m, whole):
         for a in range(4):

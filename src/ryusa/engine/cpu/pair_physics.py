@@ -126,7 +126,8 @@ def optional_physics(
         normal = (batch[B.NORMAL + l], batch[B.NORMAL + B.PITCH + l], batch[B.NORMAL + 2 * B.PITCH + l])
         slip = (batch[B.SLIP + l], batch[B.SLIP + B.PITCH + l], batch[B.SLIP + 2 * B.PITCH + l])
         force = (batch[B.FORCE + 4 * l], batch[B.FORCE + 4 * l + 1], batch[B.FORCE + 4 * l + 2])
-        spin_i, spin_j = (w[i, 0], w[i, 1], w[i, 2]), (w[j, 0], w[j, 1], w[j, 2])
+        spin_i = (w[i, 0], w[i, 1], w[i, 2])  # a wall turns with its mirrored grain
+        spin_j = (batch[B.SPIN_J + 4 * l], batch[B.SPIN_J + 4 * l + 1], batch[B.SPIN_J + 4 * l + 2])
         f_n = batch[B.SPRING + 4 * l + 3]
         if variant.rolling:
             if touching:

@@ -5,16 +5,18 @@ touch are skipped: when the list is pruned never shows in the bits of a run.
 """
 # ruff: noqa: E741  (l is a lane)
 
+import math
 from typing import Any
 
 from ryusa.engine.cpu import batch_layout as B
 from ryusa.engine.cpu.arrays import CandidateArrays, GrainArrays, PairArrays, WallArrays, Workspace
 from ryusa.engine.cpu.contact_rows import copy_row
 from ryusa.engine.cpu.cutoff import mark_approaching, set_relative_velocity, set_separation
+from ryusa.engine.cpu.faces import distance_to
 from ryusa.engine.cpu.simd.borrow import borrow
-from ryusa.engine.cpu.simd.vec4 import copy4
+from ryusa.engine.cpu.simd.vec4 import copy4, fill4
 from ryusa.engine.shared import parameters as P
-from ryusa.engine.shared.kernel import inner, kernel
+from ryusa.engine.shared.kernel import FAST, inner, kernel
 
 _SLACK = 2 * B.LANES  # pairs are listed by the batch, where a whole one must find room
 
@@ -22,22 +24,21 @@ _SLACK = 2 * B.LANES  # pairs are listed by the batch, where a whole one must fi
 @kernel(nogil=True)
 def prune_blocks(
     first: int, last: int, block_start: Any, n: int, n_solid: int, reach_on: float, ahead: float,
-    plane_case: int, c: Any, grains: GrainArrays, walls: WallArrays, pairs: PairArrays,
-    candidates: CandidateArrays, spare: CandidateArrays, work: Workspace,
-    wanted: Any,
+    plane_case: int, walled: int | None, c: Any, grains: GrainArrays, walls: WallArrays, pairs: PairArrays,
+    candidates: CandidateArrays, spare: CandidateArrays, work: Workspace, wanted: Any,
 ) -> None:  # fmt: skip
     """Prune the lists of blocks first..last-1; `wanted` gets the room that each needs (see `prune`)."""
     for b in range(first, last):
         wanted[b] = prune(
-            b, block_start[b], block_start[b + 1], n, n_solid, reach_on, ahead, plane_case, c, grains, walls,
-            pairs, candidates, spare, work,
+            b, block_start[b], block_start[b + 1], n, n_solid, reach_on, ahead, plane_case, walled, c, grains,
+            walls, pairs, candidates, spare, work,
         )[0]  # fmt: skip
 
 
 @inner()
 def prune(
-    b: int, lo: int, hi: int, n: int, n_solid: int, reach_on: float, ahead: float, plane_case: int, c: Any,
-    grains: GrainArrays, walls: WallArrays, pairs: PairArrays,
+    b: int, lo: int, hi: int, n: int, n_solid: int, reach_on: float, ahead: float, plane_case: int,
+    walled: int | None, c: Any, grains: GrainArrays, walls: WallArrays, pairs: PairArrays,
     candidates: CandidateArrays, spare: CandidateArrays, work: Workspace,
 ) -> tuple[int, int]:  # fmt: skip
     """List anew the pairs of block b, grains lo..hi-1, that come nearer than `reach_on` [m] beyond touch.
@@ -67,6 +68,15 @@ def prune(
             while begin + l >= start[i + 1]:
                 i += 1
             owner[l] = i
+            if walled is not None and partners[begin + l] >= n_solid + len(points):
+                seconds = max(ahead, 2.0 * c[P.DT])
+                f = partners[begin + l] - n_solid - len(points)
+                distance = distance_to(
+                    f, x[i, 0], x[i, 1], x[i, 2], c[P.PERIOD_X], c[P.PERIOD_Y], walls.faces.wall,
+                    walls.faces.poses, walls.faces.rows, walls.faces.centre,
+                )  # fmt: skip
+                set_face(l, i, distance, seconds * walls.faces.speed, seconds, x, v, separation, velocity)
+                continue
             set_separation(l, i, partners[begin + l], n_solid, x, points, normals, separation)
             set_relative_velocity(l, i, partners[begin + l], n_solid, v, normals, velocity)
         mark_approaching(plane_case, reach_on, 2.0 * c[P.DT], ahead, m, c, separation, velocity, inside)
@@ -80,6 +90,8 @@ def prune(
         return new + _SLACK, n_touching
     candidates.count[b] = new
     _link_partners(b, lo, hi, n, pairs, candidates)
+    if walled is not None:
+        list_faces(b, n_solid + len(points), candidates)
     for k in range(first, first + new):
         touching[k] = 0
     k = first
@@ -116,6 +128,42 @@ def _link_partners(b: int, lo: int, hi: int, n: int, pairs: PairArrays, candidat
                 q += 1
             candidates.target[k] = rows + q
             wanted[rows + q] = 1
+
+
+@inner(fastmath=FAST, forceinline=True)
+def set_face(
+    l: int,
+    i: int,
+    distance: float,
+    moved: float,
+    seconds: float,
+    x: Any,
+    v: Any,
+    separation: Any,
+    velocity: Any,
+) -> None:
+    """Write to lane l how near grain i can come to a face within `seconds`, if the face is `moved` [m]."""
+    speed = math.sqrt(v[i, 0] * v[i, 0] + v[i, 1] * v[i, 1] + v[i, 2] * v[i, 2])
+    fill4(separation, 4 * l, 0.0)
+    fill4(velocity, 4 * l, 0.0)
+    separation[4 * l + 2] = max(distance - speed * seconds - moved, 0.0)
+    separation[4 * l + 3] = x[i, 3]
+
+
+@inner()
+def list_faces(b: int, first_face: int, candidates: CandidateArrays) -> None:
+    """List the candidates of block b that are faces."""
+    first, count = candidates.first[b], 0
+    for k in range(first, first + candidates.count[b]):
+        if candidates.j[k] >= first_face:
+            s = first + count
+            candidates.face[s], candidates.slot[k] = k, s
+            candidates.face_grain[s], candidates.face_number[s] = (
+                candidates.i[k],
+                candidates.j[k] - first_face,
+            )
+            count += 1
+    candidates.face_count[b] = count
 
 
 @inner()

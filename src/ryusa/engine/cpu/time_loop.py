@@ -28,6 +28,7 @@ from ryusa.engine.cpu.prune_schedule import COST_GRAIN, COST_TEST, ROUNDED_UP, p
 from ryusa.engine.cpu.simd.borrow import borrow
 from ryusa.engine.cpu.simd.prefetch import prefetch
 from ryusa.engine.cpu.simd.vec4 import fill4
+from ryusa.engine.cpu.wall_contacts import add_drift, book_walls, keep_forces, resolve_walls
 from ryusa.engine.shared import block_statistics as S
 from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
@@ -43,6 +44,7 @@ from ryusa.engine.shared.status import (
     STOP_UNSAFE,
 )
 from ryusa.engine.shared.variant import KernelVariant, LawChoice
+from ryusa.engine.shared.wall_pose import set_poses
 from ryusa.model.tally import Term
 
 Present = int | None  # 1, or None for what a variant goes without
@@ -56,9 +58,10 @@ TERMS = tuple(
 @inner(fastmath=FAST, forceinline=True)
 def block_forces(
     variant: KernelVariant, flat: Present, water: Present, optional: Present, exact: Present, hertz: Present,
-    short: Present, choice: LawChoice, b: int, hi: int, n: int, n_solid: int, step: int, t: float, hdt: float,
-    last: bool, c: Any, grains: GrainArrays, walls: WallArrays, pairs: PairArrays,
-    candidates: CandidateArrays, work: Workspace, ended: Any, account: Any, stats: Any,
+    short: Present, walled: Present, choice: LawChoice, b: int, hi: int, n: int, n_solid: int, step: int,
+    t: float, hdt: float, last: bool, c: Any, grains: GrainArrays, walls: WallArrays, pairs: PairArrays,
+    candidates: CandidateArrays, work: Workspace, accounts: AccountArrays, ended: Any, account: Any,
+    stats: Any,
 ) -> None:  # fmt: skip
     """Forces of every pair that block b, grains up to hi-1, owns, batch by batch of those that touch."""
     # One function: what a variant goes without is taken out of it before it is compiled
@@ -75,11 +78,14 @@ def block_forces(
         candidates.rows,
     )
     mass, inertia, points, normals = grains.m, grains.inertia, walls.points, walls.normals
+    met, slot, face_lanes = candidates.met, candidates.slot, work.face_lanes
     spring_r = 0.0
     fill4(f, 8 * (n + b), 0.0)  # forces on fixed grains and planes, not used
     fill4(f, 8 * (n + b) + 4, 0.0)
     for place in range(B.WORK, B.WORK + B.N_WORK * B.PITCH):
         batch[place] = 0.0
+    if walled is not None:
+        resolve_walls(b, reach_on, c, grains, walls.faces, candidates)
     k = candidates.first[b]
     end = k + candidates.count[b]
     waiting = 0
@@ -92,17 +98,20 @@ def block_forces(
                 if g < hi:  # beyond, another thread may be writing
                     prefetch(f, 8 * g)
             waiting = filter_pairs(
-                variant.plane_case, reach_on, k, some, waiting, n_solid, c, x, i_of, j_of, touching, points,
-                normals, separation, inside, selected,
+                variant.plane_case, walled, reach_on, k, some, waiting, n_solid, c, x, i_of, j_of, touching,
+                points, normals, met, slot, separation, inside, selected,
             )  # fmt: skip
             k += some
         m = min(waiting, B.LANES)
         if m == 0:
             break
         lanes = gather(
-            variant.rotation, M.OF_MAPS * variant.exact + M.HERTZ * variant.hertz, short, m, selected,
-            n_solid, c, mass, inertia, x, v, w, points, normals, i_of, j_of, touching, eta, rows, batch,
+            variant.rotation, M.OF_MAPS * variant.exact + M.HERTZ * variant.hertz, short, walled, m, selected,
+            n_solid, c, mass, inertia, x, v, w, points, normals, i_of, j_of, touching, eta, rows, met, slot,
+            face_lanes, batch,
         )  # fmt: skip
+        if walled is not None:
+            add_drift(face_lanes, selected, slot, walls.faces.motion, met, batch)
         if water is not None and choice.rebound:
             immersed_dashpots(exact, hertz, choice, m, selected, c, grains, candidates, batch)
         if hertz is not None:
@@ -118,6 +127,8 @@ def block_forces(
             spring_r += optional_physics(
                 variant, choice, m, n, t, hdt, selected, c, grains, candidates, batch, ended, account, stats
             )
+        if walled is not None:
+            keep_forces(face_lanes, selected, slot, met, batch)
         if exact is not None:
             keep_states(m, selected, touching, batch)
         if scatter(exact, short, m, selected, i_of, to, touching, rows, batch, f):
@@ -125,6 +136,8 @@ def block_forces(
         waiting -= m
         for l in range(waiting):
             selected[l] = selected[B.LANES + l]
+    if walled is not None:
+        book_walls(b, hdt, c, grains, walls.faces, candidates, accounts)
     for row in range(B.N_WORK):
         total = 0.0
         for l in range(B.LANES):
@@ -196,6 +209,7 @@ def make_run(variant: KernelVariant) -> Any:
     hertz: Present = 1 if variant.hertz else None
     short: Present = 1 if has_short_rows(variant) else None
     optional: Present = 1 if variant.rolling or variant.events or variant.film else None
+    walled: Present = 1 if variant.walls else None
 
     @kernel(nogil=True, fastmath=FAST)
     def run(
@@ -242,6 +256,8 @@ def make_run(variant: KernelVariant) -> Any:
             if 2.0 * travel > skin:
                 stop = STOP_LIST
                 break
+            if walled is not None:
+                set_poses(t_zero + step * dt, dt, walls.faces.motion, walls.faces.poses)
             if own[K.APPROACH] > own[K.SKIN] or own[K.SINCE] >= own[K.LASTS]:
                 plan_prune(own, listing_cost)
                 fastest = 0.0
@@ -252,7 +268,7 @@ def make_run(variant: KernelVariant) -> Any:
                 for b in range(b_0, b_1):
                     stats[b, S.ROOM_WANTED], stats[b, S.N_TOUCHING] = prune(
                         b, block_start[b], block_start[b + 1], n, n_solid, reach_on, own[K.LASTS] * dt,
-                        variant.plane_case, c, grains, walls, pairs, candidates, spare, work,
+                        variant.plane_case, walled, c, grains, walls, pairs, candidates, spare, work,
                     )  # fmt: skip
                 target = wait(count, n_threads, target)
                 own[K.APPROACH] = own[K.SINCE] = own[K.CANDIDATES] = own[K.TOUCHING] = 0.0
@@ -273,9 +289,9 @@ def make_run(variant: KernelVariant) -> Any:
                 for b in range(b_0, b_1):
                     if not after:
                         block_forces(
-                            variant, flat, water, optional, exact, hertz, short, choice, b,
+                            variant, flat, water, optional, exact, hertz, short, walled, choice, b,
                             block_start[b + 1], n, n_solid, step, t, hdt, last, c, grains, walls, pairs,
-                            candidates, work, ended[b], terms[b], stats[b],
+                            candidates, work, accounts_of_blocks, ended[b], terms[b], stats[b],
                         )  # fmt: skip
                     q = b if after else b - span
                     soon = b_0 + span <= q < b_1 - span
@@ -297,7 +313,10 @@ def make_run(variant: KernelVariant) -> Any:
                 full = full or stats[b, S.N_ENDED_POSTED] > 0.5 * ended.shape[1]
                 if stats[b, S.FAULT_POSTED] != FAULT_NONE:
                     stop = STOP_FAULT
-            travel += fastest * dt
+            if walled is not None:
+                travel += max(fastest, walls.faces.speed) * dt
+            else:
+                travel += fastest * dt
             own[K.APPROACH] += 2.0 * velocity_change * dt
             own[K.SINCE] += 1.0
             step += 1

@@ -10,6 +10,7 @@ from ryusa.engine.cpu.arrays import CandidateArrays, GrainArrays, PairArrays, Wa
 from ryusa.engine.cpu.block_exchange import number_crossing_pairs
 from ryusa.engine.cpu.cell_list import bounds_of, build_list, grid_of, sort_by_cell
 from ryusa.engine.cpu.contact_rows import SHORT, has_short_rows
+from ryusa.engine.cpu.faces import N_MET, face_arrays
 from ryusa.engine.cpu.prune import copy_rows_in, copy_rows_out, count_touching
 from ryusa.engine.cpu.reorder import like, move_grains, wrap_grains
 from ryusa.engine.shared.contact_memory import ContactMemory
@@ -40,7 +41,9 @@ class BlockLayout(Layout):
     def __init__(self, scene: Scene, blocks: int, variant: KernelVariant) -> None:
         super().__init__(scene, variant)
         self.block_start = np.arange(blocks + 1) * self.n // blocks
-        self.walls = WallArrays(self.plane_normals, self.plane_points)
+        faces = face_arrays(scene.walls, self.n_solid + scene.n_plane) if scene.walls is not None else None
+        self.walls = WallArrays(self.plane_normals, self.plane_points, faces if scene.n_face else None)
+        self.walled = 1 if scene.n_face else None
 
     def empty_pairs(self) -> PairArrays:
         """A Verlet list without pairs."""
@@ -58,9 +61,13 @@ class BlockLayout(Layout):
         width = len(SHORT) if has_short_rows(self.variant) else self.variant.row_width
         touching, rows = np.zeros(total, np.uint8), aligned(total, width)
         eta = np.zeros((total if self.many_dashpots else 1, self.variant.springs))
+        room = total if self.walled else 0
+        face, grain, number, slot = (np.zeros(room, np.uint32) for _ in range(4))
         return CandidateArrays(
-            first, np.zeros(len(pairs), np.int64), i, j, target, index, touching, eta, rows
-        )
+            first, np.zeros(len(pairs), np.int64), i, j, target, index, touching, eta, rows,
+            aligned(room, N_MET), face, grain, number, slot,
+            np.zeros(len(pairs) if self.walled else 0, np.int64),
+        )  # fmt: skip
 
     def grains_by_id(self, state: State) -> GrainArrays:
         """Grain arrays of a state, still in the order of ids."""
@@ -118,7 +125,7 @@ class BlockLayout(Layout):
                 partners = np.empty(room, np.uint32)
                 used = build_list(
                     lo, hi, grains.x, grains.ids, n, self.n_solid, self.walls, scene.plane_active, free,
-                    fixed, period, skin, scene.plane_case, start, partners,
+                    fixed, period, skin, scene.plane_case, self.walled, start, partners,
                 )  # fmt: skip
                 if used >= 0:
                     return hi, partners[:used]

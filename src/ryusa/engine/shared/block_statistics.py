@@ -31,6 +31,7 @@ N_TOUCHING = 24  # pairs in touch at the last pruning
 VELOCITY_CHANGE_MAX = 25  # largest difference of a velocity to that at the last pruning [m/s], posted
 SPEED_MOVED = 26  # largest speed and difference as the block last moved: its own thread's, until posted
 VELOCITY_CHANGE_MOVED = 27
+PENDING_WALL = 28
 N_STATISTIC = 32  # a whole number of cache lines: blocks of different threads share none
 PENDING = (
     PENDING_DRAG,
@@ -38,4 +39,5 @@ PENDING = (
     PENDING_LIFT,
     PENDING_FLOW,
     PENDING_FILM,
+    PENDING_WALL,
 )  # booked with the next step

@@ -9,6 +9,7 @@ from ryusa.laws.rolling import epsd_stiffness, reduced_radius
 from ryusa.model import Scene, State
 from ryusa.model.pair_springs import pair_springs
 from ryusa.model.scene import Floats
+from ryusa.model.wall_shape import ways_to_faces
 
 
 class ContactForces(NamedTuple):
@@ -37,15 +38,21 @@ def forces_of_contacts(scene: Scene, state: State, places: np.ndarray) -> Contac
     held = state.contacts
     x, i, j = state.x - state.v * scene.dt, held.i[places], held.j[places]
     every = np.concatenate([x, scene.x_fixed.reshape(-1, 3)])
-    plane = j >= len(every)
+    plane = (j >= len(every)) & (j < len(every) + scene.n_plane)
+    face = j >= len(every) + scene.n_plane
+    grain = ~(plane | face)
     normal = np.zeros((len(i), 3))
-    gap = every[j[~plane]] - x[i[~plane]]
+    gap = every[j[grain]] - x[i[grain]]
     for axis, period in enumerate(scene.period):
         if np.isfinite(period):
             gap[:, axis] -= period * np.round(gap[:, axis] / period)
     if scene.plane_case:
         gap[:, 1] = 0.0
-    normal[~plane] = gap / np.linalg.norm(gap, axis=1)[:, None]
+    normal[grain] = gap / np.linalg.norm(gap, axis=1)[:, None]
+    if scene.walls is not None and face.any():
+        number = j[face] - len(every) - scene.n_plane
+        ways = ways_to_faces(scene.walls, number, x[i[face]], state.t - scene.dt, scene.period)
+        normal[face] = ways / np.linalg.norm(ways, axis=1)[:, None]
     normal[plane] = -scene.plane_normal[j[plane] - len(every)]
     shear = held.spring_s[places] + held.dash_s[places]
     if scene.plane_case:  # one component, along (n_z, 0, -n_x)
@@ -81,7 +88,7 @@ def rolling_energy(scene: Scene, state: State, places: np.ndarray) -> float:
     """Energy in the rolling springs of some of a state's contacts [J]."""
     if "spring" not in scene.rolling.model.marks:
         return 0.0
-    r = 0.5 * np.concatenate([scene.d, scene.d_fixed, np.full(scene.n_plane, np.inf)])
+    r = 0.5 * np.concatenate([scene.d, scene.d_fixed, np.full(scene.n_plane + scene.n_face, np.inf)])
     energy = 0.0
     for place in places:
         radius = reduced_radius(float(r[state.contacts.i[place]]), float(r[state.contacts.j[place]]))

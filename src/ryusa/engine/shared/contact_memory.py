@@ -103,7 +103,8 @@ def contacts_of_grains(memory: ContactMemory, n: int) -> np.ndarray:
 
 def remaining_contacts(scene: Scene, contacts: Contacts) -> tuple[Contacts, np.ndarray]:
     """Contacts whose partner still stands, and the places of those whose partner was taken away."""
-    active = np.concatenate([np.ones(scene.n_grain, np.bool_), scene.fixed_active, scene.plane_active])
+    faces = np.ones(0, np.bool_) if scene.walls is None else scene.walls.face_active
+    active = np.concatenate([np.ones(scene.n_grain, np.bool_), scene.fixed_active, scene.plane_active, faces])
     keep = active[contacts.j]
     if keep.all():
         return contacts, np.zeros(0, np.int64)

@@ -61,12 +61,19 @@ def read_account(state: State, stats: Floats, terms: Floats, block: EngineBlock 
     if block is None:
         terms[0, :N_TERM], stats[0, S.PENDING] = tally.terms, tally.pending
     else:
-        terms[:, :N_TERM] = block.array("work", (len(terms), N_TERM), _LARGEST)
-        stats[:, S.PENDING] = block.array("pending", (len(terms), len(S.PENDING)), _LARGEST)
+        terms[:, :N_TERM] = _whole(block, "work", len(terms), N_TERM)
+        stats[:, S.PENDING] = _whole(block, "pending", len(terms), len(S.PENDING))
     stats[:, S.OVERLAP_MAX] = tally.overlap_max
     stats[:, S.OVERLAP_GRAIN], stats[:, S.OVERLAP_STEP] = tally.overlap_grain, tally.overlap_step
     stats[:, S.SPEED_MAX], stats[:, S.SPIN_MAX] = tally.speed_max, tally.spin_max
     stats[0, _SUMS] = (*(getattr(tally, name) for name in HELD), tally.n_contact)
+
+
+def _whole(block: EngineBlock, name: str, rows: int, columns: int) -> Floats:
+    """An account of a block, with the term of walls, which earlier versions lack, as zero."""
+    earlier = name in block.arrays and block.arrays[name].shape == (rows, columns - 1)
+    found = block.array(name, (rows, columns - 1 if earlier else columns), _LARGEST)
+    return np.hstack([found, np.zeros((rows, 1))]) if earlier else found
 
 
 def account_arrays(stats: Floats, terms: Floats) -> dict[str, Floats]:
@@ -74,8 +81,29 @@ def account_arrays(stats: Floats, terms: Floats) -> dict[str, Floats]:
     return {"work": terms[:, :N_TERM].copy(), "pending": stats[:, S.PENDING].copy()}
 
 
-def tally_of(t: float, stats: Floats, terms: Floats) -> Tally:
-    """Energy account and extremes at time t [s]."""
+def read_walls(state: State, walls: Floats, block: EngineBlock | None) -> None:
+    """Continue the impulses on walls of a snapshot, (n_block, n_wall, N_IMPULSE).
+
+    Parameters
+    ----------
+    walls : filled.
+    block : as in `read_account`.
+
+    Raises
+    ------
+    ValueError : their number is another.
+    """
+    if not walls.size or state.tally is None:
+        return
+    if block is None or "walls" not in block.arrays:
+        found = np.array(state.tally.walls)
+        walls[0] = found.reshape(walls.shape[1:]) if len(found) else 0.0
+    else:
+        walls[:] = block.array("walls", (len(walls), walls[0].size), _LARGEST).reshape(walls.shape)
+
+
+def tally_of(t: float, stats: Floats, terms: Floats, walls: tuple[float, ...] = ()) -> Tally:
+    """Energy account and extremes at time t [s]; `walls` as in `Tally`."""
     block = stats[int(stats[:, S.OVERLAP_MAX].argmax())]
     held = dict(zip(HELD, (float(stats[:, column].sum()) for column in _SUMS), strict=False))
     return Tally(
@@ -89,6 +117,7 @@ def tally_of(t: float, stats: Floats, terms: Floats) -> Tally:
         spin_max=float(stats[:, S.SPIN_MAX].max()),
         n_contact=int(stats[:, S.N_CONTACT].sum()),
         pending=tuple(float(one) for one in stats[:, S.PENDING].sum(axis=0)),
+        walls=walls,
     )
 
 

@@ -33,10 +33,10 @@ class StateArrays(NamedTuple):
 
 
 class Layout:
-    """What engines need of a scene, by id: n free grains, n_solid with fixed ones, n_total with planes."""
+    """What engines need of a scene, by id: n free grains, n_solid with fixed ones, n_total with walls."""
 
     def __init__(self, scene: Scene, variant: KernelVariant) -> None:
-        n, n_fixed, n_plane = scene.n_grain, scene.n_fixed, scene.n_plane
+        n, n_fixed, n_plane = scene.n_grain, scene.n_fixed, scene.n_plane + scene.n_face
         self.n, self.n_solid, self.variant = n, n + n_fixed, variant
         inf = np.full(n_fixed + n_plane, np.inf)
         self.r = np.concatenate([0.5 * scene.d, 0.5 * scene.d_fixed, np.full(n_plane, np.inf)])

@@ -4,11 +4,13 @@ from typing import get_type_hints
 
 import numpy as np
 
+from ryusa.engine.shared.parameters import LARGEST_DISPLACEMENT
 from ryusa.errors import NotANumber
 from ryusa.laws._family import Family
 from ryusa.laws.families import ContactForce, ContactTiming, Rebound
-from ryusa.model import Scene, State
+from ryusa.model import Scene, State, Walls
 from ryusa.model.scene import Damping
+from ryusa.model.walls import SPIN, largest_speed
 
 _SHORTEST_PERIOD = 3.0  # in diameters: below, a pair could touch through two images
 
@@ -32,7 +34,30 @@ def refusals(scene: Scene) -> tuple[str, ...]:
     for k, axis in enumerate("xy"):
         if np.isfinite(scene.period[k]) and np.any(scene.plane_normal[scene.plane_active, k] != 0.0):
             reasons.append(f"a plane stands across the periodic direction {axis}")
+    if scene.walls is not None:
+        reasons += _walls(scene, scene.walls)
     return tuple(reasons)
+
+
+def _walls(scene: Scene, walls: Walls) -> list[str]:
+    """Reasons why the walls of a scene cannot be simulated."""
+    reasons: list[str] = []
+    if scene.plane_case:
+        reasons.append("walls need motion in space: a plane scene has none but planes")
+    for k, axis in enumerate("xy"):
+        across = np.delete(walls.motion[:, SPIN : SPIN + 3], k, axis=1)
+        for w in np.flatnonzero(walls.active & np.any(across != 0.0, axis=1)):
+            if np.isfinite(scene.period[k]):
+                reasons.append(f"wall '{walls.names[w]}' turns across the periodic direction {axis}")
+    smallest = float(np.concatenate([scene.d, scene.d_fixed]).min(initial=np.inf))
+    step, speed = LARGEST_DISPLACEMENT * smallest, largest_speed(walls)
+    if speed * scene.dt > step:
+        way = speed * scene.dt / smallest
+        reasons.append(
+            f"walls move at up to {speed:.3g} m/s, {way:.2g} diameters in one step: at most "
+            f"{LARGEST_DISPLACEMENT:g}; a smaller time step is needed"
+        )
+    return reasons
 
 
 def _refused_of_hertz(scene: Scene) -> list[str]:
@@ -46,6 +71,8 @@ def _refused_of_hertz(scene: Scene) -> list[str]:
         found.append("elastic spheres (Hertz-Mindlin) take a restitution, not constant dashpots")
     if not (0.0 < law.youngs_modulus < np.inf and 0.0 <= law.poisson_ratio <= 0.5):
         found.append("elastic spheres need a Young's modulus above 0 and a Poisson's ratio from 0 to 0.5")
+    if scene.walls is not None:
+        found.append("elastic spheres (Hertz-Mindlin) meet grains and planes, no other walls (design/0019)")
     return found
 
 

@@ -24,6 +24,7 @@ class KernelVariant(NamedTuple):
     film: int  # films resist before touch
     water: int  # there is any
     exact: int  # contacts begin and end within steps
+    walls: int = 0  # faces, at rest or moving
     hertz: int = 0  # contacts are those of elastic spheres
 
     @property
@@ -79,6 +80,7 @@ def variant_of(scene: Scene) -> KernelVariant:
         film=int(scene.water.profile != Profile.NONE and scene.water.film_reach > 0.0),
         water=int(scene.water.profile != Profile.NONE),
         exact=int(int(scene.contact.timing) == EXACT),
+        walls=int(scene.n_face > 0),
         hertz=int(int(scene.contact.force) == HERTZ),
     )
 

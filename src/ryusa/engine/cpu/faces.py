@@ -1,0 +1,261 @@
+"""Faces of walls: how they lie in memory, their nearest points, and the cells in which they are found."""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ryusa.engine.shared.kernel import FAST, inner
+from ryusa.engine.shared.wall_pose import N_POSE, NOW
+from ryusa.laws.walls import nearest_on_cylinder, nearest_on_disc, nearest_on_triangle
+from ryusa.model.scene import Floats
+from ryusa.model.walls import FaceKind, Walls, face_boxes, largest_speed
+
+# columns of a face: a corner or centre, two edges or axes, the unit normal, and
+A, EDGE_1, EDGE_2, NORMAL = 0, 3, 6, 9
+KIND, S_11, S_12, S_22 = 12, 13, 14, 15  # products of the edges; radius and length in S_11 and S_12
+N_FACE = 16
+TRIANGLE, DISC, CYLINDER = int(FaceKind.TRIANGLE), int(FaceKind.DISC), int(FaceKind.CYLINDER)
+_CELLS = 4.0  # cells of a grid over the faces in it
+
+# columns of CandidateArrays.met: how a grain and a face meet in this step
+GAP = 0  # separation from the grain to its mirror image in the face [m], and its diameter
+DRIFT = 4  # velocity of the mirror image, which moves with the wall [m/s]
+POINT = 7  # nearest point, in the frame of the wall [m]
+AWAY = 10  # unit normal from the face to the grain, in the world [-]
+DISTANCE = 13  # from the centre of the grain [m]
+BY = 14  # the row whose contact takes the place of this one, or -1
+SLOT = 15  # number of the wall
+FORCE = 16  # on the grain [N], and on the mirror image
+TORQUE = 19  # [N m]; zeros where they do not touch
+N_MET = 24  # whole cache lines
+
+
+class FaceArrays(NamedTuple):
+    """Faces of all walls, each in the frame of its wall, and the grid of each wall."""
+
+    first: int  # id of the first face
+    rows: Any  # columns as above, (n_face, N_FACE)
+    centre: Any  # middle of the box round each face [m], (n_face, 3)
+    wall: Any  # (n_face,)
+    surface: Any  # (n_face,)
+    motion: Any  # model.walls, (n_wall, N_MOTION)
+    poses: Any  # shared/wall_pose.py, (n_wall, N_POSE); every thread writes the same numbers
+    speed: float  # bound of the speed of any wall [m/s]
+    grid_low: Any  # lowest corner of the grid of each wall [m], (n_wall, 3)
+    grid_width: Any  # its cells [m], (n_wall, 3)
+    grid_dims: Any  # (n_wall, 3)
+    grid_first: Any  # place of the first cell of each wall in `cell_first`, (n_wall,)
+    cell_first: Any  # faces of each cell are cell_face[cell_first[c]:cell_first[c + 1]]
+    cell_face: Any
+    cells_low: Any  # lowest and highest cell of each face, (n_face, 3) each
+    cells_high: Any
+
+
+def face_arrays(walls: Walls, first: int) -> FaceArrays:
+    """Arrays of the faces of a scene whose first face has the id `first`."""
+    n, n_wall = walls.n_face, walls.n_wall
+    low, high = face_boxes(walls.face, walls.kind)
+    dims, grid_low, width = np.ones((n_wall, 3), np.int64), np.zeros((n_wall, 3)), np.ones((n_wall, 3))
+    cells_low, cells_high = np.zeros((n, 3), np.int64), np.zeros((n, 3), np.int64)
+    for w in range(n_wall):
+        mine = np.flatnonzero(walls.wall == w)
+        if not (walls.active[w] and len(mine)):
+            continue
+        bottom, top = low[mine].min(axis=0), high[mine].max(axis=0)
+        size = top - bottom
+        volume = float(np.prod(np.maximum(size, 1e-3 * size.max())))
+        cell = max((volume / (_CELLS * len(mine))) ** (1 / 3), 1e-12)
+        while np.prod(np.floor(size / cell) + 1.0) > _CELLS * len(mine) + 64.0:
+            cell *= 1.26
+        dims[w], grid_low[w], width[w] = np.floor(size / cell).astype(np.int64) + 1, bottom, cell
+        cells_low[mine] = np.clip((low[mine] - bottom) // cell, 0, dims[w] - 1)
+        cells_high[mine] = np.clip((high[mine] - bottom) // cell, 0, dims[w] - 1)
+    cells = np.prod(dims, axis=1)
+    grid_first = np.concatenate([[0], np.cumsum(cells)])
+    count, found = np.zeros(grid_first[-1] + 1, np.int64), []
+    for f in np.flatnonzero(walls.face_active):
+        w = walls.wall[f]
+        axes = [np.arange(a, b + 1) for a, b in zip(cells_low[f], cells_high[f], strict=True)]
+        columns = (axes[0][:, None] * dims[w, 1] + axes[1])[:, :, None] * dims[w, 2]
+        at = grid_first[w] + (columns + axes[2]).ravel()
+        found.append((at, np.full(len(at), f)))
+    every = np.concatenate([at for at, _ in found]) if found else np.zeros(0, np.int64)
+    faces = np.concatenate([f for _, f in found]) if found else np.zeros(0, np.int64)
+    np.add.at(count, every + 1, 1)
+    return FaceArrays(
+        first, _rows(walls), 0.5 * (low + high), walls.wall.astype(np.int64), walls.surface.astype(np.int64),
+        np.array(walls.motion), np.zeros((n_wall, N_POSE)), largest_speed(walls), grid_low, width, dims,
+        grid_first[:-1].copy(), np.cumsum(count), faces[np.argsort(every, kind="stable")], cells_low,
+        cells_high,
+    )  # fmt: skip
+
+
+def _rows(walls: Walls) -> Floats:
+    rows = np.zeros((walls.n_face, N_FACE))
+    rows[:, :9], rows[:, KIND] = walls.face, walls.kind
+    b, c = walls.face[:, 3:6], walls.face[:, 6:9]
+    flat = walls.kind == TRIANGLE
+    across = np.cross(b, c)
+    rows[:, NORMAL : NORMAL + 3] = np.where(flat[:, None], across, b)
+    length = np.linalg.norm(rows[:, NORMAL : NORMAL + 3], axis=1)
+    rows[:, NORMAL : NORMAL + 3] /= length[:, None]
+    rows[:, S_11] = np.where(flat, np.sum(b * b, axis=1), c[:, 0])
+    rows[:, S_12] = np.where(flat, np.sum(b * c, axis=1), c[:, 1])
+    rows[:, S_22] = np.sum(c * c, axis=1)
+    for f in np.flatnonzero(~flat):  # some direction across the axis, for a point on it
+        axis = rows[f, NORMAL : NORMAL + 3]
+        side = np.cross(axis, np.eye(3)[int(np.abs(axis).argmin())])
+        rows[f, EDGE_2 : EDGE_2 + 3] = side / np.linalg.norm(side)
+    return rows
+
+
+@inner(fastmath=FAST, forceinline=True)
+def in_frame(w: int, at: int, x: float, y: float, z: float, poses: Any) -> tuple[float, float, float]:
+    """A point of the world in the frame of wall w, whose pose is in columns from `at` on."""
+    x, y, z = x - poses[w, at + 9], y - poses[w, at + 10], z - poses[w, at + 11]
+    return (
+        poses[w, at] * x + poses[w, at + 3] * y + poses[w, at + 6] * z,
+        poses[w, at + 1] * x + poses[w, at + 4] * y + poses[w, at + 7] * z,
+        poses[w, at + 2] * x + poses[w, at + 5] * y + poses[w, at + 8] * z,
+    )
+
+
+@inner(fastmath=FAST, forceinline=True)
+def in_world(w: int, at: int, x: float, y: float, z: float, poses: Any) -> tuple[float, float, float]:
+    """A point of the frame of wall w in the world."""
+    return (
+        poses[w, at] * x + poses[w, at + 1] * y + poses[w, at + 2] * z + poses[w, at + 9],
+        poses[w, at + 3] * x + poses[w, at + 4] * y + poses[w, at + 5] * z + poses[w, at + 10],
+        poses[w, at + 6] * x + poses[w, at + 7] * y + poses[w, at + 8] * z + poses[w, at + 11],
+    )
+
+
+@inner(fastmath=FAST, forceinline=True)
+def nearest_image(f: int, x: float, y: float, l_x: float, l_y: float, centre: Any) -> tuple[float, float]:
+    """Coordinates of the image of a point that is nearest to face f, in a frame that is not turned."""
+    if l_x < math.inf:
+        x -= math.floor((x - centre[f, 0]) / l_x + 0.5) * l_x
+    if l_y < math.inf:
+        y -= math.floor((y - centre[f, 1]) / l_y + 0.5) * l_y
+    return x, y
+
+
+@inner(fastmath=FAST, forceinline=True)
+def nearest_of_face(
+    f: int, x: float, y: float, z: float, rows: Any
+) -> tuple[float, float, float, float, float, float, float]:
+    """Nearest point of face f [m], unit normal from there to the point given, and their distance [m].
+
+    Over the face the normal is that of the face to the last bit, and the distance as to a plane.
+    """
+    d_x, d_y, d_z = x - rows[f, A], y - rows[f, A + 1], z - rows[f, A + 2]
+    n_x, n_y, n_z = rows[f, NORMAL], rows[f, NORMAL + 1], rows[f, NORMAL + 2]
+    along = d_x * n_x + d_y * n_y + d_z * n_z
+    inside, kind = 0.0, rows[f, KIND]
+    s_11, s_12 = rows[f, S_11], rows[f, S_12]
+    p_x, p_y, p_z = rows[f, EDGE_1], rows[f, EDGE_1 + 1], rows[f, EDGE_1 + 2]
+    q_x, q_y, q_z = rows[f, EDGE_2], rows[f, EDGE_2 + 1], rows[f, EDGE_2 + 2]
+    if kind == TRIANGLE:
+        v, w, inside = nearest_on_triangle(
+            d_x * p_x + d_y * p_y + d_z * p_z, d_x * q_x + d_y * q_y + d_z * q_z, s_11, s_12, rows[f, S_22]
+        )
+        m_x, m_y, m_z = v * p_x + w * q_x, v * p_y + w * q_y, v * p_z + w * q_z
+    else:
+        a_x, a_y, a_z = d_x - along * n_x, d_y - along * n_y, d_z - along * n_z
+        away = math.sqrt(a_x * a_x + a_y * a_y + a_z * a_z)
+        h = 0.0
+        if kind == DISC:
+            share = nearest_on_disc(away, s_11)
+            inside = 1.0 if share == 1.0 else 0.0
+        else:
+            if away == 0.0:  # on the axis every direction is as good
+                a_x, a_y, a_z, away = q_x, q_y, q_z, 1.0
+            h, share = nearest_on_cylinder(along, away, s_11, s_12)
+        m_x, m_y, m_z = h * n_x + share * a_x, h * n_y + share * a_y, h * n_z + share * a_z
+    c_x, c_y, c_z = rows[f, A] + m_x, rows[f, A + 1] + m_y, rows[f, A + 2] + m_z
+    if inside != 0.0:
+        side = -1.0 if along < 0.0 else 1.0
+        return c_x, c_y, c_z, side * n_x, side * n_y, side * n_z, side * along
+    d_x, d_y, d_z = d_x - m_x, d_y - m_y, d_z - m_z
+    distance = math.sqrt(d_x * d_x + d_y * d_y + d_z * d_z)
+    if distance > 0.0:
+        n_x, n_y, n_z = d_x / distance, d_y / distance, d_z / distance
+    return c_x, c_y, c_z, n_x, n_y, n_z, distance
+
+
+@inner()
+def _cell(x: float, low: float, width: float, n: int) -> int:
+    return int(min(max(math.floor((x - low) / width), -1.0), float(n)))
+
+
+@inner(fastmath=FAST)
+def distance_to(
+    f: int,
+    x: float,
+    y: float,
+    z: float,
+    l_x: float,
+    l_y: float,
+    wall: Any,
+    poses: Any,
+    rows: Any,
+    centre: Any,
+) -> float:
+    """Distance of a point from face f [m]."""
+    x, y, z = in_frame(wall[f], NOW, x, y, z, poses)
+    x, y = nearest_image(f, x, y, l_x, l_y, centre)
+    return nearest_of_face(f, x, y, z, rows)[6]
+
+
+@inner(fastmath=FAST)
+def append_faces(
+    x: float, y: float, z: float, reach: float, l_x: float, l_y: float, faces: FaceArrays, partners: Any,
+    used: int,
+) -> int:  # fmt: skip
+    """Append faces nearer than `reach` [m] to a point; the new count, or -1 where `partners` is too short.
+
+    The order follows from the point alone: images, cells, then faces in the order of their ids. A face in
+    several cells is taken in the lowest that it and the box round the point both have.
+    """
+    # arrays one by one: references to a tuple of them would be counted for every face (design/0005)
+    rows, first_id, cells_low = faces.rows, faces.first, faces.cells_low
+    cell_first, cell_face, dims, poses = faces.cell_first, faces.cell_face, faces.grid_dims, faces.poses
+    grid_low, grid_width, grid_first = faces.grid_low, faces.grid_width, faces.grid_first
+    images_x, images_y = 1 if l_x == math.inf else 3, 1 if l_y == math.inf else 3
+    begin = used
+    for w in range(len(poses)):
+        f_x, f_y, f_z = in_frame(w, NOW, x, y, z, poses)
+        n_x, n_y, n_z = dims[w, 0], dims[w, 1], dims[w, 2]
+        for image in range(images_x * images_y):
+            q_x = f_x if images_x == 1 else f_x + (image // images_y - 1) * l_x
+            q_y = f_y if images_y == 1 else f_y + (image % images_y - 1) * l_y
+            low, width = grid_low[w, 0], grid_width[w, 0]
+            a_0, a_1 = max(_cell(q_x - reach, low, width, n_x), 0), _cell(q_x + reach, low, width, n_x)
+            low, width = grid_low[w, 1], grid_width[w, 1]
+            b_0, b_1 = max(_cell(q_y - reach, low, width, n_y), 0), _cell(q_y + reach, low, width, n_y)
+            low, width = grid_low[w, 2], grid_width[w, 2]
+            c_0, c_1 = max(_cell(f_z - reach, low, width, n_z), 0), _cell(f_z + reach, low, width, n_z)
+            for a in range(a_0, min(a_1, n_x - 1) + 1):
+                for b in range(b_0, min(b_1, n_y - 1) + 1):
+                    for c in range(c_0, min(c_1, n_z - 1) + 1):
+                        cell = grid_first[w] + (a * n_y + b) * n_z + c
+                        for k in range(cell_first[cell], cell_first[cell + 1]):
+                            f = cell_face[k]
+                            if (
+                                a != max(a_0, cells_low[f, 0])
+                                or b != max(b_0, cells_low[f, 1])
+                                or c != max(c_0, cells_low[f, 2])
+                                or nearest_of_face(f, q_x, q_y, f_z, rows)[6] >= reach
+                            ):
+                                continue
+                            known = False
+                            for p in range(begin, used):
+                                known = known or partners[p] == first_id + f
+                            if known:  # met through another image
+                                continue
+                            if used >= len(partners):
+                                return -1
+                            partners[used] = first_id + f
+                            used += 1
+    return used

@@ -1,0 +1,100 @@
+"""Force and torque on each wall over time, and the work of walls that move."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ryusa.errors import ResultsError
+from ryusa.measure._run import Floats, Run, settle_time
+from ryusa.measure.statistics import average
+from ryusa.measure.table import Averaged, Averages
+from ryusa.model.walls import N_IMPULSE
+
+AXES = ("x", "y", "z")
+
+
+@dataclass(frozen=True)
+class WallForces(Averaged):
+    """What grains do to walls: means from frame to frame, of every step in between.
+
+    Attributes
+    ----------
+    t : middle of the time between two frames [s], shape (n,).
+    names : of the walls.
+    force : of the grains on each wall [N], shape (n, n_wall, 3).
+    torque : about the axis point of each wall [N m], shape (n, n_wall, 3).
+    power : that each wall gives to the grains [W], shape (n, n_wall); 0 where it does not move.
+    averages : of the components of each wall, those that are not zero throughout.
+    """
+
+    t: Floats
+    names: tuple[str, ...]
+    force: Floats
+    torque: Floats
+    power: Floats
+    averages: Averages
+
+    def rows(self) -> list[dict[str, object]]:
+        """One dictionary per time between two frames and wall."""
+        return [
+            {
+                "t_s": float(t),
+                "wall": name,
+                **{f"force_{axis}_N": float(self.force[k, w, a]) for a, axis in enumerate(AXES)},
+                **{f"torque_{axis}_Nm": float(self.torque[k, w, a]) for a, axis in enumerate(AXES)},
+                "power_W": float(self.power[k, w]),
+            }
+            for k, t in enumerate(self.t)
+            for w, name in enumerate(self.names)
+        ]
+
+
+def walls(run: Run, begin: float | None = None, end: float = math.inf) -> WallForces:
+    """Force and torque of the grains on each wall, and the power that each gives to them.
+
+    Parameters
+    ----------
+    run : a run folder with [[walls]].
+    begin, end : window [s]; `begin` defaults to the case's `record.settle`.
+
+    Raises
+    ------
+    ResultsError : no wall, or fewer than two frames in the window.
+
+    Notes
+    -----
+    The engine sums the impulses at every step; their difference between two frames over the time is the mean
+    force, whatever happens in between. The torque is about the axis point of the wall, which is its `at`
+    where the case gives no axis_point. Weight of the wall itself is not included.
+    """
+    if run.scene.walls is None:
+        raise ResultsError("the run has no [[walls]]; planes are not measured")
+    names = run.scene.walls.names
+    since = settle_time(run) if begin is None else begin
+    every = np.asarray(run.tally["t"], dtype=np.float64)
+    first, last = int(np.searchsorted(every, since, "left")), int(np.searchsorted(every, end, "right"))
+    if last - first < 2:
+        raise ResultsError(f"{last - first} frames from t = {since:g} s to {end:g} s; 2 or more are needed")
+    t = every[first:last]
+    impulse = np.asarray(run.walls, dtype=np.float64).reshape(len(every), len(names), N_IMPULSE)[first:last]
+    dt = np.diff(t)
+    rate = np.diff(impulse, axis=0) / dt[:, None, None]
+    window = (float(t[0]), float(t[-1]))
+    items = [
+        average(f"{name}: {quantity}", unit, [rate[:, w, k]], window)
+        for w, name in enumerate(names)
+        for k, (quantity, unit) in enumerate(_QUANTITIES)
+        if np.any(rate[:, w, k] != 0.0)
+    ]
+    return WallForces(
+        0.5 * (t[1:] + t[:-1]), names, rate[:, :, :3], rate[:, :, 3:6], rate[:, :, 6],
+        Averages("walls", tuple(items), ("forces of the grains on the walls; torque about the axis point",)),
+    )  # fmt: skip
+
+
+_QUANTITIES = (
+    *((f"force {axis}", "N") for axis in AXES),
+    *((f"torque {axis}", "N m") for axis in AXES),
+    ("power", "W"),
+)

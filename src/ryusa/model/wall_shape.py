@@ -1,0 +1,131 @@
+"""Walls as triangles and lines, for pictures: round faces with so many sides."""
+
+import math
+
+import numpy as np
+
+from ryusa.laws.walls import nearest_on_cylinder, nearest_on_disc, nearest_on_triangle
+from ryusa.model.arrays import Floats
+from ryusa.model.walls import FaceKind, Ints, Walls, face_boxes, pose
+
+SIDES = 48
+_RULES = 8  # lines along a cylinder
+
+
+def triangles_of(walls: Walls, sides: int = SIDES) -> tuple[Floats, Ints]:
+    """Triangles of all faces in the frames of their walls, (n, 3, 3) [m], and the wall of each, (n,)."""
+    flat = walls.kind == FaceKind.TRIANGLE
+    a, b, c = walls.face[flat, :3], walls.face[flat, 3:6], walls.face[flat, 6:9]
+    corners, owner = [np.stack([a, a + b, a + c], axis=1)], [walls.wall[flat]]
+    for f in np.flatnonzero(~flat):
+        low, high = _rings(walls.face[f], sides)
+        if walls.kind[f] == FaceKind.DISC:
+            middle = np.broadcast_to(walls.face[f, :3], (sides, 3))
+            some = np.stack([middle, low[:-1], low[1:]], axis=1)
+        else:
+            some = np.concatenate(
+                [
+                    np.stack([low[:-1], low[1:], high[1:]], axis=1),
+                    np.stack([low[:-1], high[1:], high[:-1]], axis=1),
+                ]
+            )
+        corners.append(some)
+        owner.append(np.full(len(some), walls.wall[f]))
+    return np.concatenate(corners), np.concatenate(owner)
+
+
+def lines_of(walls: Walls, sides: int = SIDES) -> tuple[Floats, Ints]:
+    """Edges where a smooth surface ends, in the frames of the walls, (n, 2, 3) [m], and the wall of each.
+
+    Rims of round faces, and some lines along a cylinder, by which its turning is seen.
+    """
+    flat = np.flatnonzero(walls.kind == FaceKind.TRIANGLE)
+    corners = triangles_of(walls, 3)[0][: len(flat)]
+    lines, owner = _edges(corners, walls.surface[flat], walls.wall[flat])
+    found, owners = [lines], [owner]
+    for f in np.flatnonzero(walls.kind != FaceKind.TRIANGLE):
+        low, high = _rings(walls.face[f], sides)
+        some = [np.stack([low[:-1], low[1:]], axis=1)]
+        if walls.kind[f] == FaceKind.CYLINDER:
+            rules = slice(0, sides, max(sides // _RULES, 1))
+            some += [np.stack([high[:-1], high[1:]], axis=1), np.stack([low[rules], high[rules]], axis=1)]
+        found += some
+        owners += [np.full(len(one), walls.wall[f]) for one in some]
+    return np.concatenate(found), np.concatenate(owners)
+
+
+def in_world(walls: Walls, points: Floats, owner: Ints, t: float) -> Floats:
+    """Points of walls, (n, m, 3) in the frame of the wall of each row, where they are at time t [s]."""
+    placed = np.array(points)
+    for w in range(walls.n_wall):
+        turn, shift = pose(walls.motion[w], t)
+        mine = owner == w
+        placed[mine] = points[mine] @ turn.T + shift
+    return placed
+
+
+def _rings(face: Floats, sides: int) -> tuple[Floats, Floats]:
+    """Points round the two ends of a round face, the last again the first, (sides + 1, 3) each."""
+    centre, axis, radius, length = face[:3], face[3:6], float(face[6]), float(face[7])
+    side = np.cross(axis, np.eye(3)[int(np.abs(axis).argmin())])
+    side /= np.linalg.norm(side)
+    angle = 2.0 * math.pi * np.arange(sides + 1) / sides
+    low = centre + radius * (np.cos(angle)[:, None] * side + np.sin(angle)[:, None] * np.cross(axis, side))
+    return np.asarray(low, dtype=np.float64), np.asarray(low + length * axis, dtype=np.float64)
+
+
+def _edges(corners: Floats, surface: Ints, wall: Ints) -> tuple[Floats, Ints]:
+    """Sides of triangles that no other triangle of the same surface shares."""
+    if not len(corners):
+        return np.zeros((0, 2, 3)), np.zeros(0, np.int64)
+    unit = 1e-9 * max(float(np.ptp(corners.reshape(-1, 3), axis=0).max()), 1e-300)
+    _, number = np.unique(np.round(corners.reshape(-1, 3) / unit), axis=0, return_inverse=True)
+    number = number.reshape(-1, 3)
+    ends = np.concatenate([corners[:, [k, (k + 1) % 3]] for k in range(3)])
+    sides = np.concatenate([np.sort(number[:, [k, (k + 1) % 3]], axis=1) for k in range(3)])
+    key = np.column_stack([sides, np.tile(surface, 3)])
+    _, first, times = np.unique(key, axis=0, return_index=True, return_counts=True)
+    alone = first[times == 1]
+    return ends[alone], np.tile(wall, 3)[alone]
+
+
+def nearest_on_face(face: Floats, kind: int, x: Floats) -> Floats:
+    """Point of a face nearest to a point, both in the frame of its wall [m], shape (3,).
+
+    >>> shell = np.array([0.0, 0, 0, 0, 0, 1, 2, 3, 0])  # of radius 2 m and length 3 m
+    >>> nearest_on_face(shell, FaceKind.CYLINDER, np.array([1.0, 0, 1])).tolist()
+    [2.0, 0.0, 1.0]
+    """
+    a, b, c = face[:3], face[3:6], face[6:9]
+    away = x - a
+    if kind == FaceKind.TRIANGLE:
+        v, w, _ = nearest_on_triangle(
+            float(away @ b), float(away @ c), float(b @ b), float(b @ c), float(c @ c)
+        )
+        return np.asarray(a + v * b + w * c)
+    along = float(away @ b)
+    across = away - along * b
+    rho = float(np.linalg.norm(across))
+    if kind == FaceKind.DISC:
+        return np.asarray(a + nearest_on_disc(rho, float(c[0])) * across)
+    if rho == 0.0:  # on the axis every direction is as good
+        across, rho = np.cross(b, np.eye(3)[int(np.abs(b).argmin())]), 1.0
+        across /= np.linalg.norm(across)
+    h, factor = nearest_on_cylinder(along, rho, float(c[0]), float(c[1]))
+    return np.asarray(a + h * b + factor * across, dtype=np.float64)
+
+
+def ways_to_faces(walls: Walls, faces: Ints, x: Floats, t: float, period: tuple[float, float]) -> Floats:
+    """Vectors from points to the nearest points of faces at time t [s], (n, 3) [m]; `x` has shape (n, 3)."""
+    poses = [pose(row, t) for row in walls.motion]
+    low, high = face_boxes(walls.face, walls.kind)
+    ways = np.zeros((len(faces), 3))
+    for k, f in enumerate(faces.tolist()):
+        turn, shift = poses[walls.wall[f]]
+        at = turn.T @ (x[k] - shift)
+        for axis, length in enumerate(period):
+            if math.isfinite(length):
+                middle = 0.5 * (low[f, axis] + high[f, axis])
+                at[axis] -= length * math.floor((at[axis] - middle) / length + 0.5)
+        ways[k] = turn @ (nearest_on_face(walls.face[f], int(walls.kind[f]), at) - at)
+    return ways

@@ -1,0 +1,180 @@
+"""Walls of a scene: faces in the frame of their wall, and how each wall moves."""
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ryusa.laws.walls import swing, turned_about
+from ryusa.model.arrays import Bools, Floats
+
+Ints = NDArray[np.int64]
+
+
+class FaceKind(IntEnum):
+    """What a face is; its nine numbers are three vectors."""
+
+    TRIANGLE = 0  # one corner, and the edges from it to the two others [m]
+    DISC = 1  # centre [m], unit normal [-], and (radius, 0, 0) [m]
+    CYLINDER = 2  # centre of one end [m], unit axis [-], and (radius, length, 0) [m]: the shell, without ends
+
+
+# columns of the motion of a wall
+BEGIN = 0  # time of the pose below [s]
+TURN = 1  # rotation at that time, world = turn . frame + shift, by rows, nine columns [-]
+SHIFT = 10  # [m]
+AXIS_POINT = 13  # on the axis of rotation at that time; it moves with the wall [m]
+VELOCITY = 16  # [m/s]
+SPIN = 19  # [rad/s], constant
+SWING = 22  # amplitude of the oscillation [m]
+RATE = 25  # its angular frequency [rad/s]
+PHASE = 26  # its phase at that time [rad]
+N_MOTION = 27
+N_IMPULSE = 7  # of a wall: force [N s], torque about its axis point [N m s], and work that it gave [J]
+
+
+@dataclass(frozen=True)
+class Walls:
+    """Faces of all walls, each in the frame of its wall, which is that of the world while it is at rest.
+
+    Faces take the ids after the planes. Grains touch both sides of a face.
+    """
+
+    face: Floats  # numbers of each face (FaceKind), shape (n_face, 9)
+    kind: Ints  # FaceKind, shape (n_face,)
+    wall: Ints  # number of its wall, shape (n_face,)
+    surface: Ints  # number of its smooth surface, shape (n_face,)
+    active: Bools  # False once removed, shape (n_wall,)
+    motion: Floats  # shape (n_wall, N_MOTION)
+    names: tuple[str, ...]  # of each wall
+
+    @property
+    def n_face(self) -> int:
+        """Number of faces."""
+        return len(self.kind)
+
+    @property
+    def n_wall(self) -> int:
+        """Number of walls."""
+        return len(self.names)
+
+    @property
+    def face_active(self) -> Bools:
+        """Whether the wall of each face is there, shape (n_face,)."""
+        return self.active[self.wall]
+
+    def moving(self) -> Bools:
+        """Whether each wall moves, shape (n_wall,)."""
+        return np.any(self.motion[:, VELOCITY:RATE] != 0.0, axis=1)
+
+
+def at_rest(n_wall: int, t: float = 0.0) -> Floats:
+    """Motion of walls that stay where they are, shape (n_wall, N_MOTION)."""
+    motion = np.zeros((n_wall, N_MOTION))
+    motion[:, BEGIN] = t
+    motion[:, TURN : TURN + 9] = np.eye(3).ravel()
+    return motion
+
+
+def pose(row: Floats, t: float) -> tuple[Floats, Floats]:
+    """Rotation (3, 3) and shift (3,) [m] of a wall at time t [s]: world = rotation . frame + shift.
+
+    Parameters
+    ----------
+    row : motion of the wall, columns as above.
+
+    >>> row = at_rest(1)[0]
+    >>> row[SPIN + 2] = np.pi
+    >>> [float(one) for one in np.round(pose(row, 0.5)[0] @ np.array([1.0, 0.0, 0.0]), 12) + 0.0]
+    [0.0, 1.0, 0.0]
+    """
+    since = t - float(row[BEGIN])
+    turn, shift = row[TURN : TURN + 9].reshape(3, 3).copy(), row[SHIFT : SHIFT + 3].copy()
+    spin, axis_point = row[SPIN : SPIN + 3], row[AXIS_POINT : AXIS_POINT + 3]
+    rate = float(np.linalg.norm(spin))
+    if rate > 0.0:
+        shift -= axis_point
+        for vector in (*turn.T, shift):
+            (x, y, z), (a, b, c) = vector.tolist(), (spin / rate).tolist()
+            vector[:] = turned_about(x, y, z, a, b, c, rate * since)
+        shift += axis_point
+    return turn, shift + drift(row, since)
+
+
+def drift(row: Floats, since: float) -> Floats:
+    """Displacement of the axis point of a wall in a time [s] after its motion began [m], (3,)."""
+    swings = [swing(float(one), float(row[RATE]), since, float(row[PHASE])) for one in row[SWING : SWING + 3]]
+    return np.asarray(row[VELOCITY : VELOCITY + 3] * since + np.array(swings))
+
+
+def carried_on(row: Floats, t: float) -> Floats:
+    """The same motion of a wall, described from time t [s] on."""
+    turn, shift = pose(row, t)
+    since, later = t - float(row[BEGIN]), row.copy()
+    later[TURN : TURN + 9], later[SHIFT : SHIFT + 3], later[BEGIN] = turn.ravel(), shift, t
+    later[AXIS_POINT : AXIS_POINT + 3] += drift(row, since)
+    later[PHASE] += row[RATE] * since
+    return later
+
+
+def face_boxes(face: Floats, kind: Ints) -> tuple[Floats, Floats]:
+    """Lowest and highest corner of the box round each face [m], in its frame, (n_face, 3) each."""
+    a, b, c = face[:, :3], face[:, 3:6], face[:, 6:9]
+    low = np.minimum(a, np.minimum(a + b, a + c))
+    high = np.maximum(a, np.maximum(a + b, a + c))
+    curved = kind != FaceKind.TRIANGLE
+    across = np.sqrt(np.maximum(1.0 - b**2, 0.0)) * c[:, :1]  # of a disc normal to b
+    end = a + np.where(kind == FaceKind.CYLINDER, c[:, 1], 0.0)[:, None] * b
+    low[curved] = (np.minimum(a, end) - across)[curved]
+    high[curved] = (np.maximum(a, end) + across)[curved]
+    return low, high
+
+
+def corners_of_box(low: Floats, high: Floats) -> Floats:
+    """The eight corners of a box [m], (8, 3)."""
+    unit = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)])
+    return np.asarray(low + unit * (high - low))
+
+
+def speed_of(row: Floats, low: Floats, high: Floats) -> float:
+    """Bound of the speed of any point of a wall [m/s].
+
+    Parameters
+    ----------
+    row : its motion.
+    low, high : corners of the box round it, in its frame [m].
+    """
+    spin = row[SPIN : SPIN + 3]
+    rate = float(np.linalg.norm(spin))
+    speed = float(np.linalg.norm(row[VELOCITY : VELOCITY + 3]))
+    speed += float(np.linalg.norm(row[SWING : SWING + 3])) * abs(float(row[RATE]))
+    if rate > 0.0:
+        turn, shift = row[TURN : TURN + 9].reshape(3, 3), row[SHIFT : SHIFT + 3]
+        arm = corners_of_box(low, high) @ turn.T + shift - row[AXIS_POINT : AXIS_POINT + 3]
+        speed += rate * float(np.linalg.norm(np.cross(arm, spin / rate), axis=1).max())
+    return speed
+
+
+def largest_speed(walls: Walls) -> float:
+    """Bound of the speed of any point of any wall that is there [m/s]; 0 where none moves."""
+    low, high = face_boxes(walls.face, walls.kind)
+    fastest = 0.0
+    for w in np.flatnonzero(walls.active & walls.moving()):
+        mine = walls.wall == w
+        if mine.any():
+            fastest = max(fastest, speed_of(walls.motion[w], low[mine].min(axis=0), high[mine].max(axis=0)))
+    return fastest
+
+
+def box_of(walls: Walls, t: float) -> tuple[Floats, Floats]:
+    """Lowest and highest corner of the boxes of all walls at time t [s], in the world [m]."""
+    low, high = face_boxes(walls.face, walls.kind)
+    every: list[Floats] = []
+    for w in range(walls.n_wall):
+        mine = walls.wall == w
+        if mine.any():
+            turn, shift = pose(walls.motion[w], t)
+            every.append(corners_of_box(low[mine].min(axis=0), high[mine].max(axis=0)) @ turn.T + shift)
+    points = np.vstack(every)
+    return points.min(axis=0), points.max(axis=0)

@@ -1,0 +1,210 @@
+"""Walls of a case file: every fault is named by key and remedy, and meshes are read as they are."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from ryusa.build import build
+from ryusa.casefile import explain, read
+from ryusa.errors import CaseError, ParseError
+from ryusa.formats.mesh import read_mesh
+
+CASE = """
+[grains]
+diameter = "2 mm"
+density = "2650 kg/m3"
+[contact]
+stiffness = "100 N/cm"
+restitution = 0.7
+friction = 0.5
+[motion]
+rotation = "free"
+plane = false
+[build]
+kind = "fill"
+low = ["0 cm", "0 cm", "0 cm"]
+high = ["1 cm", "1 cm", "0.5 cm"]
+[stop]
+time = "0.1 s"
+"""
+FLOOR = """
+[[walls]]
+name = "floor"
+shape = "rectangle"
+at = ["-2 cm", "-2 cm", "-1 mm"]
+sides = [["5 cm", "0 cm", "0 cm"], ["0 cm", "5 cm", "0 cm"]]
+"""
+MESH = """
+[[walls]]
+name = "part"
+shape = "mesh"
+file = "part.stl"
+unit = "mm"
+at = ["0 cm", "0 cm", "-3 cm"]
+"""
+
+
+def tetrahedron(size: float = 20.0) -> np.ndarray:
+    a, b, c, d = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]) * size
+    return np.array([[a, c, b], [a, b, d], [a, d, c], [b, c, d]])
+
+
+def write_stl(path: Path, corners: np.ndarray) -> None:
+    lines = ["solid part"]
+    for one in corners:
+        points = [f"vertex {x:.9g} {y:.9g} {z:.9g}" for x, y, z in one]
+        lines += ["facet normal 0 0 0", "outer loop", *points]
+        lines += ["endloop", "endfacet"]
+    path.write_text("\n".join([*lines, "endsolid part", ""]))
+
+
+def write_obj(path: Path, corners: np.ndarray) -> None:
+    lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in corners.reshape(-1, 3)]
+    lines += [f"f {3 * k + 1} {3 * k + 2} {3 * k + 3}" for k in range(len(corners))]
+    path.write_text("\n".join(["mtllib /etc/passwd", "usemtl red", *lines, ""]))
+
+
+def write_binary(path: Path, corners: np.ndarray) -> None:
+    rows = np.zeros(len(corners), np.dtype([("n", "<f4", 3), ("c", "<f4", (3, 3)), ("a", "<u2")]))
+    rows["c"] = corners
+    path.write_bytes(bytes(80) + np.uint32(len(corners)).tobytes() + rows.tobytes())
+
+
+def fault(folder: Path, walls: str, case: str = CASE) -> str:
+    (folder / "case.toml").write_text(case + walls)
+    with pytest.raises(CaseError) as caught:
+        build(read(folder / "case.toml"))
+    return str(caught.value)
+
+
+BAD = [
+    (FLOOR.replace('shape = "rectangle"', 'shape = "rectange"'), "Did you mean 'rectangle'"),
+    (FLOOR.replace("sides", "side"), "Did you mean"),
+    (FLOOR + 'radius = "1 cm"\n', "walls.0.radius: has no effect with shape 'rectangle'"),
+    (FLOOR.replace('"0 cm", "5 cm", "0 cm"]]', '"5 cm", "0 cm", "0 cm"]]'), "that span an area"),
+    (FLOOR + FLOOR, "walls.1.name = 'floor': is used twice"),
+    (FLOOR.replace('"floor"', '"grains"'), "is the name of a plane or a group of grains already"),
+    (FLOOR + 'amplitude = ["0 cm", "0 cm", "1 cm"]\n', "walls.0.frequency: missing"),
+    (FLOOR + 'angular_velocity = ["0 rpm", "0 rpm", "9 rpm"]\n', "walls.0.axis_point: missing"),
+    (FLOOR + 'axis_point = ["0 cm", "0 cm", "0 cm"]\n', "has no effect without angular_velocity"),
+    (FLOOR + 'velocity = ["0 cm", "0 cm/s", "0 cm/s"]\n', "wrong unit"),
+    (FLOOR.replace("-1 mm", "0.4 mm"), "and wall 'floor' by"),
+    (FLOOR.replace("-2 cm", "-2 m").replace("5 cm", "5 km"), "times the largest grain"),
+    (FLOOR.replace("5 cm", "1 mm").replace("-2 cm", "-2 m"), "smaller than the largest grain, 0.002 m"),
+    ('[[walls]]\nname = "a"\nshape = "cylinder"\nradius = "1 cm"\n', "a cylinder needs at, axis, radius"),
+    ('[[walls]]\nname = "a"\nshape = "disc"\nat = ["0 m","0 m","9 m"]\nradius = "1 m"\nnormal = [0, 0, 0]\n',
+     "walls.0.normal = [0.0, 0.0, 0.0]: must not be zero"),
+    (FLOOR + '[[timeline]]\nat = "1 ms"\nmove = { wall = "flor" }\n', "must be a wall: floor"),
+    (FLOOR + '[[timeline]]\nat = "1 ms"\nremove = "roof"\n', "a plane or a wall: floor"),
+    (FLOOR + '[[timeline]]\nat = "1 ms"\nremove = "floor"\nslope = 0.1\n', "needs exactly one of"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("walls", "said"), BAD)
+def test_a_wall_that_cannot_be_is_named_with_its_key(tmp_path: Path, walls: str, said: str) -> None:
+    assert said in fault(tmp_path, walls)
+
+
+def test_a_plane_scene_has_no_walls(tmp_path: Path) -> None:
+    flat = CASE.replace("plane = false", "plane = true")
+    assert "needs motion.plane = false" in fault(tmp_path, FLOOR, flat)
+
+
+def test_elastic_spheres_meet_no_walls_but_planes(tmp_path: Path) -> None:
+    elastic = CASE.replace('stiffness = "100 N/cm"', 'law = "Hertz-Mindlin"\nyoungs_modulus = "10 MPa"')
+    assert "contact.law" in fault(tmp_path, FLOOR, elastic)
+
+
+def test_a_mesh_that_cannot_be_is_named_with_its_file(tmp_path: Path) -> None:
+    part = tmp_path / "part.stl"
+    assert "walls.0.file = 'part.stl': no such file in the folder of the case" in fault(tmp_path, MESH)
+    part.write_text("solid nothing\nendsolid nothing\n")
+    assert "walls.0.file" in (said := fault(tmp_path, MESH))
+    assert "no triangle" in said or "cannot be read as STL" in said
+    part.write_bytes(b"\x00" * 200)
+    assert "walls.0.file" in fault(tmp_path, MESH)
+    write_stl(part, np.zeros((2, 3, 3)))
+    assert "all its 2 triangles have no area" in fault(tmp_path, MESH)
+    write_binary(part, np.full((1, 3, 3), np.nan))
+    assert "triangle 0 has a corner that is not finite" in fault(tmp_path, MESH)
+    write_stl(part, tetrahedron())
+    assert "walls.0.unit = 'mmm'" in fault(tmp_path, MESH.replace('"mm"', '"mmm"'))
+    assert "walls.0.unit = 's'" in fault(tmp_path, MESH.replace('"mm"', '"s"'))
+    assert "smaller than the largest grain" in (said := fault(tmp_path, MESH.replace('"mm"', '"um"')))
+    assert "check unit and scale" in said
+    assert "STL or OBJ" in fault(tmp_path, MESH.replace("part.stl", "case.toml"))
+    assert "needs a path inside the folder of the case file" in fault(
+        tmp_path, MESH.replace("part.stl", "../part.stl")
+    )
+    assert "walls.0.turn_axis: missing" in fault(tmp_path, MESH + 'turn_angle = "3 deg"\n')
+
+
+def test_text_binary_and_obj_files_give_the_same_triangles(tmp_path: Path) -> None:
+    corners = tetrahedron()
+    for name, write in (("a.stl", write_stl), ("b.stl", write_binary), ("c.obj", write_obj)):
+        write(tmp_path / name, corners)
+        assert np.array_equal(read_mesh(tmp_path / name, name), corners), name
+
+
+def test_a_mesh_is_scaled_turned_and_placed(tmp_path: Path) -> None:
+    write_stl(tmp_path / "part.stl", tetrahedron())
+    turned = MESH + 'scale = 2\nturn_axis = [0, 0, 3]\nturn_angle = "90 deg"\n'
+    (tmp_path / "case.toml").write_text(CASE + turned)
+    walls = build(read(tmp_path / "case.toml")).scene.walls
+    assert walls is not None
+    face = walls.face[0]  # its corners are (0, 0, 0), (0, 1, 0) and (1, 0, 0) of 20 mm in the file
+    assert face[:3] == pytest.approx([0, 0, -0.03])
+    assert face[3:6] == pytest.approx([-0.04, 0, 0])
+    assert face[6:9] == pytest.approx([0, 0.04, 0], abs=1e-15)
+
+
+def test_check_says_what_a_mesh_is_like(tmp_path: Path) -> None:
+    corners = np.concatenate([tetrahedron()[:3], np.zeros((1, 3, 3))])  # open, and one triangle of no area
+    write_stl(tmp_path / "part.stl", corners)
+    (tmp_path / "case.toml").write_text(CASE + MESH)
+    rows = {one.name: one for one in explain(read(tmp_path / "case.toml"))}
+    assert rows["part: triangles"].value == 3
+    assert rows["part: left out"].value == 1
+    assert rows["part: open sides"].value == 3
+    assert "holes" in rows["part: open sides"].origin
+    assert rows["part: size in x, y, z"].value == "2 x 2 x 2 cm"
+
+
+def test_flipped_triangles_are_one_surface_with_their_neighbours(tmp_path: Path) -> None:
+    square = np.array([[[0, 0, 0], [1, 0, 0], [1, 1, 0]], [[0, 0, 0], [0, 1, 0], [1, 1, 0]]]) * 20.0
+    for corners in (square, square[:, [0, 2, 1]], np.stack([square[0], square[1, [0, 2, 1]]])):
+        write_stl(tmp_path / "part.stl", corners)
+        (tmp_path / "case.toml").write_text(CASE + MESH)
+        walls = build(read(tmp_path / "case.toml")).scene.walls
+        assert walls is not None
+        assert walls.surface.tolist() == [0, 0]
+
+
+def test_the_default_domain_has_room_for_the_walls(tmp_path: Path) -> None:
+    (tmp_path / "case.toml").write_text(CASE + FLOOR.replace("-1 mm", "-1 m"))
+    scene = build(read(tmp_path / "case.toml")).scene
+    assert scene.world_low[2] < -1.01
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(kind=st.sampled_from([".stl", ".obj"]), data=st.data())
+def test_a_damaged_mesh_is_refused_or_read(tmp_path: Path, kind: str, data: st.DataObject) -> None:
+    path = tmp_path / f"part{kind}"
+    write = data.draw(st.sampled_from([write_stl, write_binary] if kind == ".stl" else [write_obj]))
+    write(path, tetrahedron())
+    whole = bytearray(path.read_bytes())
+    for _ in range(data.draw(st.integers(1, 6))):
+        at = data.draw(st.integers(0, len(whole) - 1))
+        whole[at] = data.draw(st.integers(0, 255))
+    path.write_bytes(bytes(whole[: data.draw(st.integers(0, len(whole)))]))
+    try:
+        corners = read_mesh(path, path.name)
+    except ParseError as error:
+        assert path.name in str(error)
+        assert "\n" not in str(error)
+    else:
+        assert corners.shape[1:] == (3, 3)
+        assert np.isfinite(corners).all()
