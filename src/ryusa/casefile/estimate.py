@@ -14,7 +14,7 @@ from ryusa.model.contacts import N_EVENT
 
 BYTES_PER_GRAIN = 80  # of a frame: x, v, omega, image
 BYTES_OF_FORCES = 120  # per grain and frame where forces are recorded: three contacts of 40 bytes
-BYTES_PER_FRAME = 264  # t, step, offset for ParaView and tally
+BYTES_PER_FRAME = 272  # t, step, offset for ParaView and tally
 BYTES_PER_RUN = 100_000  # headers of the parts, log, summary, bed
 # Memory, measured (design/lab/0008-memory-of-a-run.md) [B]:
 MEMORY_PER_RUN = 218_000_000  # Python, its packages and the compiled code
