@@ -160,7 +160,7 @@ def runs(hop, tmp_path_factory):
     heap = {"build.columns": "8", "build.layers": "8", "stop.time": "0.6 s"}
     every = {
         "saltation": ("saltation", SHORT), "spin": ("saltation", SHORT), "surface": ("heap", heap),
-        "": ("bedload_3d", flume),
+        "discharge": ("poured_heap", {"stop.time": "0.5 s"}), "": ("bedload_3d", flume),
     }  # fmt: skip
     made = {}
     for name, changes in every.values():
