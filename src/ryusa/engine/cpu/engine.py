@@ -65,7 +65,7 @@ _RECORDS = 256  # room for ended contacts in a block, beside one a grain
 # Measured, and fixed so that a run never depends on a clock: cost of a Verlet list [ns], and steps
 # between two prunings.
 _LIST, _LIST_GRAIN, _STEPS_A_CUT = 300_000.0, 600.0, 16.0
-_FEW = 50  # grains up to which making a list costs far more than keeping its pairs
+_FEW = 256  # grains up to which making a list costs far more than keeping its pairs
 
 
 class CpuEngine:
