@@ -20,8 +20,8 @@ def film(
         Path | None,
         typer.Option(
             "--output", "-o", metavar="FILE",
-            help="A .webp, .avif, .gif or .mp4 file (MP4 needs `pip install 'ryusa[film]'`); default "
-            "RUN/film.webp.",
+            help="A .webp, .avif, .gif or .mp4 file (MP4 needs PyAV, which ryusa's extra `film` installs); "
+            "default RUN/film.webp.",
         ),
     ] = None,
     view: Annotated[

@@ -118,11 +118,7 @@ class Slices:
 
     @cached_property
     def _of_submerged(self) -> tuple[Floats, Floats]:
-        dry = self.submerged <= DRY * self.whole
-        if not dry.any():
-            return 1.0 / self.submerged, np.zeros(self.n_grain)
-        within = np.where(dry, 0.0, 1.0 / np.where(dry, 1.0, self.submerged))
-        return within, np.where(dry, 1.0 / self.whole, 0.0)
+        return factors_in_water(self.whole, self.submerged)
 
 
 @dataclass(frozen=True)
@@ -305,7 +301,7 @@ def _table(values: Floats, n: int, what: str) -> tuple[Floats, bool]:
     return (table[:, None], True) if table.ndim == 1 else (table, False)
 
 
-@law  # compiled as a law is, like the two below: a loop over arrays that calls laws
+@law  # compiled as a law is, like the three below: a loop over arrays that calls laws
 def cut_grains(
     z: Floats, r: Floats, z_low: float, dz: float, n: int,
     first: Ints, count: Ints, volume: Floats, whole: Floats, submerged: Floats, below: Floats, above: Floats,
@@ -328,6 +324,19 @@ def cut_grains(
         whole[i] = sphere_slice(r[i], -r[i], r[i])
         below[i] = max(sphere_slice(r[i], -r[i], z_low - z[i]), 0.0)
         above[i] = max(sphere_slice(r[i], z_low + n * dz - z[i], r[i]), 0.0)
+
+
+@law
+def factors_in_water(whole: Floats, submerged: Floats) -> tuple[Floats, Floats]:
+    """Factors that turn volumes of a grain into shares of its submerged part, in cells and outside [1/m3]."""
+    n = len(whole)
+    per, outer = np.empty(n), np.zeros(n)
+    for i in range(n):
+        if submerged[i] <= DRY * whole[i]:
+            per[i], outer[i] = 0.0, 1.0 / whole[i]
+        else:
+            per[i] = 1.0 / submerged[i]
+    return per, outer
 
 
 @law

@@ -14,7 +14,15 @@ from ryusa.model.scene import Floats
 from ryusa.water._kernel import ColumnParameters, kernel
 from ryusa.water.at_grains import DENSEST, WEIGHT, given_by_grains, sample
 from ryusa.water.at_grains import STRESS as BY_STRESS
-from ryusa.water.exchange import DRY, FOUR, Ints, Slices, add_to_cells, cut_grains, mean_over_grains
+from ryusa.water.exchange import (
+    FOUR,
+    Ints,
+    Slices,
+    add_to_cells,
+    cut_grains,
+    factors_in_water,
+    mean_over_grains,
+)
 from ryusa.water.fixed_grains import drag_on_fixed
 from ryusa.water.free_surface import cut_at_surface
 from ryusa.water.time_step import (
@@ -101,19 +109,6 @@ class WaterLaws(NamedTuple):
 
 
 @kernel
-def weights_in_water(cut: SliceArrays) -> tuple[Floats, Floats]:
-    """Factors that turn volumes of a grain into shares of its submerged part, in cells and outside [1/m3]."""
-    n = len(cut.whole)
-    per, outer = np.empty(n), np.zeros(n)
-    for i in range(n):
-        if cut.submerged[i] <= DRY * cut.whole[i]:
-            per[i], outer[i] = 0.0, 1.0 / cut.whole[i]
-        else:
-            per[i] = 1.0 / cut.submerged[i]
-    return per, outer
-
-
-@kernel
 def cells_of_grains(
     cut: SliceArrays, order: Ints, per: Floats, outer: Floats, amounts: Floats, n: int
 ) -> Floats:
@@ -151,7 +146,7 @@ def force_on_water(
     per_dt : one over the interval [1/s].
     force_z : receives the force along z per volume of cells [N/m3], shape (n,).
     """
-    per, outer = weights_in_water(wet)
+    per, outer = factors_in_water(wet.whole, wet.submerged)
     table = np.zeros((p.n, FOUR))
     table[:, 0] = u
     met = means_of_cells(wet, per, table)[:, 0].copy()
@@ -223,7 +218,7 @@ def add_fixed_grains(
     volume = area * p.dz
     if len(bed.d) > 0:
         there = wet if cut_wet(cut, wet, bed.z, bed.d, p.z_low, p.dz, z_surface) else cut
-        per, outer = weights_in_water(there)
+        per, outer = factors_in_water(there.whole, there.submerged)
         table = np.zeros((p.n, FOUR))
         for k in range(p.n):
             table[k, 0], table[k, 1] = rows[ROW_U, k], rows[ROW_W, k]
@@ -343,7 +338,7 @@ def fastest_relaxation(
     impulse: Floats, phi: Floats,
 ) -> float:  # fmt: skip
     """Largest rate at which drag brings water to the speed of grains or grains to that of water [1/s]."""
-    per, outer = weights_in_water(wet)
+    per, outer = factors_in_water(wet.whole, wet.submerged)
     drag = np.empty((len(per), 1))
     drag[:, 0] = impulse[:, DRAG]
     sums = cells_of_grains(wet, grains.order, per, outer, drag, p.n)
@@ -370,7 +365,7 @@ def water_at_grains(
     phi, force_z : concentration [-], and force on grains along z per volume of cells [N/m3], shape (n,).
     eddies : velocity of the eddy at each grain [m/s], shape (n_grain, 3); (0, 3) without.
     """
-    per, _ = weights_in_water(wet)
+    per, _ = factors_in_water(wet.whole, wet.submerged)
     table = np.zeros((p.n, 2 * FOUR))
     for k in range(p.n):
         table[k, 0], table[k, 1], table[k, 2] = rows[ROW_U, k], rows[ROW_W, k], rows[ROW_SHEAR, k]
