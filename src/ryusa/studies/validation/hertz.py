@@ -230,5 +230,5 @@ def _sliding(found: Found) -> Finding:
             misfit("rebound angle, test 4", read[2], "deg", at_most(2.0, digitised)),
         ],
         {"radius": "2.5 mm", "speed": "3.9 m/s", "e": "0.98", "mu": "0.092", "slip": "total"},
-        "Tests 5 and 6, and test 4 below 32.5 deg, are not compared: their curves are not at hand.",
+        "Test 4 below 32.5 deg is not compared; for sticking see tests 5 and 6.",
     )  # fmt: skip

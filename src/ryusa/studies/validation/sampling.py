@@ -89,6 +89,7 @@ CLOSED: Mapping[str, str] = {
     "suspension": "a lattice of grains that do not touch",
     "impact": "one grain, at twenty given phases of the time step",
     "hertz": "one grain or two, at twenty given phases of the time step",
+    "hertz_oblique": "one grain",
     "rebound": "one grain",
     "rolling": "one grain",
 }

@@ -18,6 +18,7 @@ NAMES = (
     "balance",
     "impact",
     "hertz",
+    "hertz_oblique",
     "rebound",
     "rolling",
     "gas",
