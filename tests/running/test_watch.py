@@ -9,6 +9,7 @@ import pytest
 from ryusa.errors import CheckpointError
 from ryusa.laws.collision import collision_time, contact_time_no_tension, omega_natural
 from ryusa.model import State
+from ryusa.model.contact_law import elastic_spheres
 from ryusa.running.energy_terms import energy_lines
 from ryusa.running.stops import HOP_RISE, RestDetector, SaltationCounter, Stop
 from ryusa.running.summary import summary_lines
@@ -104,6 +105,15 @@ def test_the_stable_band_is_watched(
     said = [one for one in watch.warnings(tally(overlap_max=overlap)) if "overlap" in one]
     assert bool(said) == (word is not None)
     assert word is None or word in said[0]
+
+
+def test_a_warning_names_the_key_that_makes_these_contacts_stiffer(
+    scene: Any, state: Any, tally: Any
+) -> None:
+    law = elastic_spheres(float(scene.m[0]), 1e-3, youngs_modulus=1e7, speed=0.5)
+    for contact, key in ((scene.contact, "contact.stiffness"), (law, "contact.youngs_modulus")):
+        said = Watch(replace(scene, contact=contact), state).warnings(tally(overlap_max=0.05))
+        assert any(f"raise {key}" in one for one in said)
 
 
 def test_a_grain_that_skims_the_bed_gives_a_warning(scene: Any, state: Any, event: Any, tally: Any) -> None:

@@ -71,6 +71,12 @@ def elastic_spheres(
     )
 
 
+def stiffness_key(law: ContactLaw) -> str:
+    """Key of a case file that makes contacts stiffer: messages name it."""
+    elastic = law.force == ContactForce.HERTZ_MINDLIN
+    return "contact.youngs_modulus" if elastic else "contact.stiffness"
+
+
 def hertz_stiffness_of(law: ContactLaw, r: float) -> float:
     """Stiffness K of elastic spheres of a reduced radius [N/m**1.5]."""
     return hertz.hertz_stiffness(hertz.effective_modulus(law.youngs_modulus, law.poisson_ratio), r)

@@ -4,6 +4,7 @@ import numpy as np
 
 from ryusa.errors import EnergyCreated
 from ryusa.model import Scene, State, Tally, Term
+from ryusa.model.contact_law import stiffness_key
 from ryusa.model.tally import HELD, residual_of
 
 # Of the largest term of the energy account. In an unstable run nearly all energy is spurious. Sound runs stay
@@ -44,6 +45,6 @@ def energy_created(scene: Scene, state: State, tally: Tally) -> EnergyCreated | 
         step=state.step,
         t=state.t,
         hint="Either the step is too long to resolve a contact: raise time.steps_per_contact, which "
-        "shortens the step. Or the springs are so soft that grains overlap deeply: raise "
-        "contact.stiffness, which keeps overlaps small.",
+        "shortens the step. Or the contacts are so soft that grains overlap deeply: raise "
+        f"{stiffness_key(scene.contact)}, which keeps overlaps small.",
     )

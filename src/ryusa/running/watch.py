@@ -20,7 +20,7 @@ from ryusa.laws.families import WaterTorque
 from ryusa.laws.rolling import reduced_radius
 from ryusa.laws.torque import reynolds_spin, torque_in_range
 from ryusa.model import Scene, State, Tally, Term
-from ryusa.model.contact_law import shortest_contact_of
+from ryusa.model.contact_law import shortest_contact_of, stiffness_key
 from ryusa.model.scene import Damping
 from ryusa.model.tally import HELD
 from ryusa.running.checkpoint import CheckpointBlock
@@ -181,22 +181,22 @@ class Watch:
     def warnings(self, tally: Tally) -> list[str]:
         """Warnings about the run, one sentence each."""
         found: list[str] = []
-        largest = tally.overlap_max
+        largest, key = tally.overlap_max, stiffness_key(self.scene.contact)
         if largest > PASSED:
             found.append(
                 f"largest overlap/d {largest:.3g} is above {PASSED}: grains may have passed through "
-                "each other; raise contact.stiffness"
+                f"each other; raise {key}"
             )
         touched = self.n_contact > 0 or tally.n_contact > 0
         if largest > BAND[1]:
             found.append(
-                f"largest overlap/d {largest:.3g} is above {BAND[1]}: springs so soft that grains at rest "
-                "may vibrate; raise contact.stiffness"
+                f"largest overlap/d {largest:.3g} is above {BAND[1]}: contacts so soft that grains at rest "
+                f"may vibrate; raise {key}"
             )
         elif touched and largest < BAND[0]:
             found.append(
-                f"largest overlap/d {largest:.3g} is below {BAND[0]}: springs are stiffer than needed, which "
-                "costs computing time"
+                f"largest overlap/d {largest:.3g} is below {BAND[0]}: contacts are stiffer than needed, "
+                "which costs computing time"
             )
         steps = self.t_col_shortest / self.scene.dt
         if steps < STEPS_LEAST:
@@ -208,7 +208,7 @@ class Watch:
             found.append(
                 f"a grain moved {self._travel_most:.2g} d along the bed within one contact "
                 f"(mean {self._travel.mean:.2g} d, limit {TRAVEL_LIMIT}): geometry ends contacts before the "
-                "rebound; raise contact.stiffness"
+                f"rebound; raise {key}"
             )
         if self._re_spin:
             found.append(

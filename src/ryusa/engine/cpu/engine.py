@@ -285,7 +285,9 @@ class CpuEngine:
                     unsafe_of(self._grains, self._n, self._parameters, self._smallest, self._step, self._t)
                 )
             elif stop:
-                return Flags(fault_of(self._accounts.stats, self._parameters, self._step - 1))
+                return Flags(
+                    fault_of(self._accounts.stats, self._parameters, layout.scene.contact, self._step - 1)
+                )
         return Flags()
 
     def _rebuild_list(self) -> RunError | None:
@@ -306,7 +308,9 @@ class CpuEngine:
         place_of, lost = self._list_pairs(self._grains, starts)
         self._prune(memory, place_of)
         self._parameters[P.SKIN] = self._skin
-        return lost_of(self._grains, lost, self._step, self._t) if lost >= 0 else None
+        if lost < 0:
+            return None
+        return lost_of(self._grains, self._layout.scene.contact, lost, self._step, self._t)
 
     def _set_poses(self) -> None:
         """Put walls where they are at this step."""

@@ -76,6 +76,7 @@ class CudaEngine:
             raise ValueError("; ".join(reasons))
         check_state(scene, state)
         before, self._scene = self._scene, scene
+        self._contact = scene.contact
         changed = before is not None and before is not scene and state.step > 0
         self._n = n = scene.n_grain
         self._variant, self._choice = variant_of(scene), choice_of(scene)
@@ -253,7 +254,9 @@ class CudaEngine:
             elif stop == STOP_UNSAFE:
                 return Flags(self._unsafe_grain())
             elif stop not in (STOP_DONE, STOP_LIST):
-                return Flags(fault_of(self._d_stats.copy_to_host(), self._parameters, self._step - 1))
+                return Flags(
+                    fault_of(self._d_stats.copy_to_host(), self._parameters, self._contact, self._step - 1)
+                )
         return Flags()
 
     def _until_list(self) -> int:
@@ -306,7 +309,7 @@ class CudaEngine:
             self._d_status.copy_to_device(self._status)
 
     def _lost_grain(self, grain: int) -> RunError:
-        return lost_of(self._grains_by_id(), grain, self._step, self._t)
+        return lost_of(self._grains_by_id(), self._contact, grain, self._step, self._t)
 
     def _unsafe_grain(self) -> RunError:
         return unsafe_of(self._grains_by_id(), self._n, self._parameters, self._smallest, self._step, self._t)

@@ -8,10 +8,12 @@ from ryusa.engine.shared import block_statistics as S
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.status import FAULT_NOT_A_NUMBER, FAULT_OVERLAP
 from ryusa.errors import ContactSlotsFull, GrainLost, ListUnsafe, NotANumber, OverlapTooLarge, RunError
+from ryusa.model import ContactLaw
+from ryusa.model.contact_law import stiffness_key
 from ryusa.model.scene import Floats
 
 
-def fault_of(stats: Floats, parameters: Floats, step: int) -> RunError:
+def fault_of(stats: Floats, parameters: Floats, law: ContactLaw, step: int) -> RunError:
     """The first fault that a block flagged in this step."""
     block = int(np.argmax(stats[:, S.FAULT] != 0))
     fault, grain, partner = (int(stats[block, k]) for k in (S.FAULT, S.FAULT_GRAIN, S.FAULT_PARTNER))
@@ -30,7 +32,7 @@ def fault_of(stats: Floats, parameters: Floats, step: int) -> RunError:
         return NotANumber("velocity is not finite", **where, hint=hint)
     if fault == FAULT_OVERLAP:
         found = f"overlap is {stats[block, S.OVERLAP_MAX]:.3g} of the smaller diameter, more than the limit"
-        hint = "Use stiffer springs (contact.stiffness), or raise domain.overlap_limit if this is meant."
+        hint = f"Use stiffer contacts ({stiffness_key(law)}), or raise domain.overlap_limit if this is meant."
         return OverlapTooLarge(f"{found} {parameters[P.OVERLAP_LIMIT]:g}", **where, hint=hint)
     hint = "Record fewer of them: record.events = 'tracked' or 'none'."
     return ContactSlotsFull("more contacts ended in one step than the record holds", **where, hint=hint)
@@ -52,12 +54,12 @@ def unsafe_of(grains: Any, n: int, parameters: Floats, smallest: float, step: in
     )
 
 
-def lost_of(grains: Any, grain: int, step: int, t: float) -> GrainLost:
+def lost_of(grains: Any, law: ContactLaw, grain: int, step: int, t: float) -> GrainLost:
     """Error of a grain that has left the domain."""
     place = int(np.flatnonzero(grains.ids == grain)[0])
     where = ", ".join(f"{a:.4g}" for a in grains.x[place, :3])
     hint = (
         "It flew, rolled or fell out, through a gap or a bed too soft to hold it: close the gap, increase "
-        "contact.stiffness, or widen domain.low and domain.high."
+        f"{stiffness_key(law)}, or widen domain.low and domain.high."
     )
     return GrainLost(f"a grain left the world at ({where}) m", grain=grain, step=step, t=t, hint=hint)

@@ -195,7 +195,7 @@ def _finding_5(
         key, title, _source(5), Axis("v_t/(mu v_n) before the impact"), y, ours,
         [Curve(f"{one}, Chung & Ooi", rows[one][:, 0], rows[one][:, 1]) for one in FIVE],
         [
-            *(misfit(f"{one}, below theta = 5", _below(found, one, key, rows[one]), "-", band) for one in FIVE),
+            *(misfit(f"{one}, theta < 5", _below(found, one, key, rows[one]), "-", band) for one in FIVE),
             misfit(f"sliding branch, {words}", _sliding(found, key, rows, law), "-", at_most(0.02, FINE)),
         ],
         {"e": "1", "mu": "0.3", "normal speed": "5 m/s", "radius": "10 um"},
