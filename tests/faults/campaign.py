@@ -34,7 +34,7 @@ NOT_THE_SAME = {"wall", "particle_steps_per_second"}  # of a summary
 
 
 def run(kind: str, folder: Path, **how: Any) -> Results:
-    """Run one of the six, or go on with it."""
+    """Run one of the kinds, or go on with it."""
     return ryusa.run(read_text(KINDS[kind]), folder, progress=False, **how)
 
 
@@ -49,6 +49,8 @@ def differences(one: Path, other: Path) -> list[str]:
     found += [f"tally.{name}" for name in a.tally if a.tally[name].tobytes() != b.tally[name].tobytes()]
     if a.contacts.tobytes() != b.contacts.tobytes():
         found.append(f"contacts, {len(a.contacts)} and {len(b.contacts)}")
+    if a.passages.tobytes() != b.passages.tobytes():
+        found.append(f"passages, {len(a.passages)} and {len(b.passages)}")
     if a.water is not None and b.water is not None:
         pairs = zip(vars(a.water).items(), vars(b.water).values(), strict=True)
         found += [f"water.{name}" for (name, left), right in pairs if left.tobytes() != right.tobytes()]

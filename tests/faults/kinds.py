@@ -1,4 +1,4 @@
-"""The six kinds of run that the fault campaign kills, small enough to be made many times."""
+"""The kinds of run that the fault campaign kills, small enough to be made many times."""
 
 DRY_2D = """
 title = "Grains settle between walls, then a gate opens and the bed is tilted"
@@ -233,7 +233,95 @@ frames = "2 ms"
 events = "all"
 """
 
+FEEDS = """
+title = "Grains fall from a hose and a box on a plate; some leave, some of those come back, and it is tilted"
+seed = 3
+[grains]
+diameter = "4 mm"
+density = "2650 kg/m3"
+spread = 0.2
+[contact]
+stiffness = "50 N/cm"
+restitution = 0.5
+friction = 0.5
+[rolling]
+model = "spring-dashpot-slider"
+arm = "reduced radius"
+coefficient = 0.1
+[motion]
+rotation = "free"
+plane = false
+[build]
+kind = "empty"
+plate = "1.5 cm"
+[[feeds]]
+name = "hose"
+centre = ["0 cm", "0 cm", "2.5 cm"]
+radius = "8 mm"
+rate = "600 grains/s"
+velocity = ["0 m/s", "0 m/s", "-0.6 m/s"]
+end = "0.12 s"
+[[feeds]]
+name = "box"
+low = ["-1 cm", "-1 cm", "3 cm"]
+high = ["1 cm", "1 cm", "4 cm"]
+rate = "0.02 kg/s"
+velocity = ["0.1 m/s", "0 m/s", "-0.5 m/s"]
+begin = "0.02 s"
+end = "0.1 s"
+[[exits]]
+name = "below"
+point = ["0 cm", "0 cm", "-1 cm"]
+normal = [0, 0, -1]
+[[exits]]
+name = "side"
+low = ["1 cm", "-4 cm", "-1 cm"]
+high = ["6 cm", "4 cm", "6 mm"]
+to = "hose"
+[time]
+steps_per_contact = 10
+[[timeline]]
+at = "0.14 s"
+slope_angle = "20 deg"
+[stop]
+time = "0.2 s"
+[record]
+frames = "2 ms"
+events = "all"
+"""
+
+ELASTIC = """
+title = "Elastic spheres of two sizes settle in a periodic cell and are tilted"
+[grains]
+diameter = "2 mm"
+density = "2650 kg/m3"
+spread = 0.3
+[contact]
+law = "Hertz-Mindlin"
+youngs_modulus = "20 MPa"
+poisson_ratio = 0.3
+expected_speed = "0.2 m/s"
+restitution = 0.6
+friction = 0.5
+[motion]
+rotation = "free"
+plane = false
+[build]
+kind = "packing"
+columns = 6
+rows = 6
+layers = 5
+[[timeline]]
+at = "0.03 s"
+slope_angle = "26 deg"
+[stop]
+time = "0.06 s"
+[record]
+frames = "1 ms"
+events = "all"
+"""
+
 KINDS = {
     "dry-2d": DRY_2D, "dry-3d": DRY_3D, "saltation": SALTATION, "two-way": TWO_WAY, "rolling": ROLLING,
-    "walls": WALLS,
+    "walls": WALLS, "feeds": FEEDS, "elastic": ELASTIC,
 }  # fmt: skip
