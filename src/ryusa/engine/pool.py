@@ -22,7 +22,13 @@ from ryusa.model.state import make_read_only
 
 Ints = NDArray[np.int64]
 _ROWS = ("d", "m", "m_added", "m_weight", "inertia")  # of a scene, by grain
-_KEPT = ("terms", "overlap_max", "overlap_grain", "overlap_step")  # of an account while no grain is there
+_KEPT = (
+    "terms",
+    "overlap_max",
+    "overlap_grain",
+    "overlap_step",
+    "walls",
+)  # of an account while no grain is there
 
 
 class GrainPool:
@@ -46,20 +52,14 @@ class GrainPool:
 
     def refuses(self, scene: Scene) -> tuple[str, ...]:
         """Reasons why the engine cannot simulate the scene; () when it can."""
-        reasons = self._engine.refuses(scene)
+        reasons = [*self._engine.refuses(scene)]
         if getattr(self._engine, "forget", None) is None:
-            return (*reasons, f"engine '{self.name}' steps a fixed number of grains: no feeds or exits")
-        if scene.walls is not None:
-            return (
-                *reasons,
-                "grains that enter are placed clear of grains and planes, not yet of other walls",
-            )
+            reasons.append(f"engine '{self.name}' steps a fixed number of grains: no feeds or exits")
         if scene.column is not None:
-            return (
-                *reasons,
-                "a column of water exchanges momentum with grains that are always there: no feeds or exits",
+            reasons.append(
+                "a column of water exchanges momentum with grains that are always there: no feeds or exits"
             )
-        return reasons
+        return tuple(reasons)
 
     def load(self, scene: Scene, state: State) -> None:
         """Take a scene and a state of all grains; also when the timeline or a feed changes them."""

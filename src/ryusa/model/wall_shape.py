@@ -1,6 +1,8 @@
-"""Walls as triangles and lines, for pictures: round faces with so many sides."""
+"""Walls as triangles and lines, for pictures, and how near a point is to them."""
 
 import math
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -129,3 +131,45 @@ def ways_to_faces(walls: Walls, faces: Ints, x: Floats, t: float, period: tuple[
                 at[axis] -= length * math.floor((at[axis] - middle) / length + 0.5)
         ways[k] = turn @ (nearest_on_face(walls.face[f], int(walls.kind[f]), at) - at)
     return ways
+
+
+@dataclass(frozen=True)
+class WallsAt:
+    """Walls at one moment.
+
+    Attributes
+    ----------
+    walls : their faces and motion.
+    t : time [s].
+    period : of the scene along x and y [m]; inf where it is not periodic.
+    """
+
+    walls: Walls
+    t: float
+    period: tuple[float, float]
+
+    @cached_property
+    def _poses(self) -> list[tuple[Floats, Floats]]:
+        return [pose(row, self.t) for row in self.walls.motion]
+
+    @cached_property
+    def _boxes(self) -> tuple[Floats, Floats]:
+        return face_boxes(self.walls.face, self.walls.kind)
+
+    def touch(self, x: Floats, r: float) -> bool:
+        """Whether a sphere of radius r [m] with its centre at x [m], shape (3,), overlaps a wall."""
+        walls, (low, high) = self.walls, self._boxes
+        for w in np.flatnonzero(walls.active):
+            turn, shift = self._poses[w]
+            mine = np.flatnonzero(walls.wall == w)
+            at = np.tile(turn.T @ (x - shift), (len(mine), 1))
+            for axis, length in enumerate(self.period):
+                if math.isfinite(length):
+                    middle = 0.5 * (low[mine, axis] + high[mine, axis])
+                    at[:, axis] -= length * np.floor((at[:, axis] - middle) / length + 0.5)
+            for k in np.flatnonzero(np.all((at > low[mine] - r) & (at < high[mine] + r), axis=1)):
+                f = mine[k]
+                away = nearest_on_face(walls.face[f], int(walls.kind[f]), at[k]) - at[k]
+                if float(np.linalg.norm(away)) < r:
+                    return True
+        return False

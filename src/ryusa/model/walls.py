@@ -31,7 +31,8 @@ SWING = 22  # amplitude of the oscillation [m]
 RATE = 25  # its angular frequency [rad/s]
 PHASE = 26  # its phase at that time [rad]
 N_MOTION = 27
-N_IMPULSE = 7  # of a wall: force [N s], torque about its axis point [N m s], and work that it gave [J]
+N_IMPULSE = 7  # of a wall: force [N s], torque about its axis point [N m s], and
+WORK = 6  # work that it gave [J]
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from ryusa.model import Feed, Scene
 from ryusa.model.arrays import Floats
+from ryusa.model.wall_shape import WallsAt
 from ryusa.water.eddies import draw
 
 ATTEMPTS = 50  # places tried for a grain at one instant
@@ -16,19 +17,23 @@ _STREAM = 0x2545F4914F6CDD1D  # tells these random numbers from those of the edd
 
 @dataclass
 class Neighbours:
-    """Grains near a feed that a place must not overlap.
+    """Grains near a feed, and walls, that a place must not overlap.
 
     Attributes
     ----------
+    walls : where they are now; None where the scene has none.
     x, d : centres, inside the period [m], shape (n, 3), and diameters [m], shape (n,).
     """
 
     scene: Scene
     x: Floats
     d: Floats
+    walls: WallsAt | None
 
     @staticmethod
-    def of(scene: Scene, feed: Feed, x: Floats, there: NDArray[np.bool_], reach: float) -> "Neighbours":
+    def of(
+        scene: Scene, feed: Feed, x: Floats, there: NDArray[np.bool_], reach: float, t: float
+    ) -> "Neighbours":
         """Free grains that are there and fixed ones, as far from a feed as a grain may be that is placed.
 
         Parameters
@@ -36,6 +41,7 @@ class Neighbours:
         x : centres of all free grains [m], shape (n_grain, 3).
         there : whether each is there.
         reach : how far beyond the feed a centre may be placed [m].
+        t : time [s].
         """
         largest = float(np.concatenate([scene.d, scene.d_fixed]).max())
         low, high = corners(feed)
@@ -53,6 +59,7 @@ class Neighbours:
         return Neighbours(
             scene, np.concatenate([x[free], stones[fixed]]),
             np.concatenate([scene.d[free], scene.d_fixed[fixed]]),
+            None if scene.walls is None else WallsAt(scene.walls, t, scene.period),
         )  # fmt: skip
 
     def free(self, place: Floats, d: float) -> bool:
@@ -65,7 +72,9 @@ class Neighbours:
         for axis, period in enumerate(scene.period):
             if math.isfinite(period):
                 gap[:, axis] -= period * np.round(gap[:, axis] / period)
-        return not bool(np.any(np.sum(gap**2, axis=1) < (0.5 * (self.d + d)) ** 2))
+        if np.any(np.sum(gap**2, axis=1) < (0.5 * (self.d + d)) ** 2):
+            return False
+        return self.walls is None or not self.walls.touch(place, 0.5 * d)
 
     def add(self, place: Floats, d: float) -> None:
         """Take a grain that has been placed."""

@@ -159,7 +159,7 @@ class TrafficRule:
             if failed[k] >= _FULL:
                 continue
             if k not in near:
-                near[k] = self._neighbours(scene, k, inside)
+                near[k] = self._neighbours(scene, k, inside, t)
             row, place = self._entering(scene, near[k], i, step, t)
             if place is None:
                 failed[k] += 1
@@ -181,11 +181,11 @@ class TrafficRule:
         grains = Entering(came["grain"], np.array(places), speed, came["omega"])
         return Passed(placed(scene, state, grains), events, np.concatenate([leaving, came]))
 
-    def _neighbours(self, scene: Scene, k: int, inside: Floats) -> Neighbours:
+    def _neighbours(self, scene: Scene, k: int, inside: Floats, t: float) -> Neighbours:
         feed, interval = self.traffic.feeds[k], self.traffic.interval * scene.dt
         g = float(np.linalg.norm(scene.gravity))
         reach = interval * (math.hypot(*feed.velocity) + g * interval)
-        return Neighbours.of(scene, feed, inside, self.population.status == PRESENT, reach)
+        return Neighbours.of(scene, feed, inside, self.population.status == PRESENT, reach, t)
 
     def _entering(
         self, scene: Scene, near: Neighbours, i: int, step: int, t: float

@@ -51,11 +51,6 @@ def _case(case: "Case") -> Iterator[CaseError]:
             "cannot be used with water.profile = 'column': the column exchanges momentum with grains that "
             "are always there; take another profile, or a periodic channel without feeds and exits",
         )  # fmt: skip
-    if case.walls:
-        yield CaseError(
-            "feeds" if case.feeds else "exits", None,
-            "cannot be used with [[walls]]: grains that enter keep clear of grains and [[planes]] alone",
-        )  # fmt: skip
     if case.stop.saltations is not None:
         yield CaseError("stop.saltations", case.stop.saltations, "cannot end a run with feeds or exits")
     if case.stop.precision is not None:
@@ -64,7 +59,7 @@ def _case(case: "Case") -> Iterator[CaseError]:
 
 def _names(case: "Case") -> Iterator[CaseError]:
     """Find names used twice, and exits that lead to no feed."""
-    taken = [plane.name for plane in case.planes] + ["grains", "bed"]
+    taken = [one.name for one in (*case.planes, *case.walls)] + ["grains", "bed"]
     names = [feed.name for feed in case.feeds]
     for kind, entries in (("feeds", case.feeds), ("exits", case.exits)):
         for k, one in enumerate(entries):

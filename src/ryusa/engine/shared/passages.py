@@ -4,9 +4,9 @@ The account of a step belongs to x(n), and a snapshot holds x(n+1) and v(n+1/2).
 what it held at x(n), (1/2) m v(n-1/2).v(n+1/2) and its height; v(n-1/2) follows from the weight and the
 contact forces of that step, so that grains leave without a residual, also out of contacts. Their springs are
 let go; what the force of a grain that leaves still does to its partner in the second half of the step is
-entered too. A grain that enters brings (1/2) m v(n+1/2).v(n+3/2), which is exact where it touches nothing.
-The forces of water in that half step are not known any more: a residual of the order of dt over the time in
-which drag acts.
+entered too, and a moving wall does no more work on it. A grain that enters brings
+(1/2) m v(n+1/2).v(n+3/2), which is exact where it touches nothing. The forces of water in that half step are
+not known any more: a residual of the order of dt over the time in which drag acts.
 """
 
 from dataclasses import replace
@@ -22,6 +22,8 @@ from ryusa.model.arrays import Bools, Floats
 from ryusa.model.contacts import N_EVENT
 from ryusa.model.scene import EventRule
 from ryusa.model.tally import N_TERM, PENDING
+from ryusa.model.wall_shape import ways_to_faces
+from ryusa.model.walls import N_IMPULSE, SPIN, WORK, pose
 
 Ints = NDArray[np.int64]
 _NO_SPRINGS = SpringEnergies(0.0, 0.0, 0.0)
@@ -96,10 +98,11 @@ def _less(scene: Scene, state: State, ids: Ints, leaves: Bools, places: Ints) ->
     held, dt = state.contacts, scene.dt
     force, torque = np.zeros((scene.n_grain, 3)), np.zeros((scene.n_grain, 3))
     to_partners = 0.0
-    springs = _NO_SPRINGS
+    springs, of_walls = _NO_SPRINGS, np.zeros(scene.n_wall)
     if len(places):
         springs = energies_of_springs(scene, state, places)
         normal, on_i = forces_of_contacts(scene, state, places)
+        of_walls = _pending_of_walls(scene, state, places, normal, on_i)
         i, j = held.i[places], held.j[places]
         free = j < scene.n_grain
         about = np.cross(normal, on_i)  # times the radius: the torque on either side
@@ -120,7 +123,45 @@ def _less(scene: Scene, state: State, ids: Ints, leaves: Bools, places: Ints) ->
         omega, inertia = state.omega[ids], scene.inertia[ids, None]
         spin = 0.5 * float(np.sum(inertia * omega * (omega - dt * torque[ids] / inertia)))
     potential = _height(scene, state, ids, state.x[ids] - dt * v)
-    return _entered(state, -kinetic, -spin, -potential, springs, to_partners)
+    less = _entered(state, -kinetic, -spin, -potential, springs, to_partners)
+    return less if less is None else _without_work(less, of_walls)
+
+
+def _pending_of_walls(scene: Scene, state: State, places: Ints, normal: Floats, on_i: Floats) -> Floats:
+    """Work that each wall would do in the second half of the step on the grains of some contacts [J].
+
+    Parameters
+    ----------
+    places, normal, on_i : contacts, and what `forces_of_contacts` gives of them.
+    """
+    found, walls, held = np.zeros(scene.n_wall), scene.walls, state.contacts
+    if walls is None:
+        return found
+    first, dt, t = scene.n_grain + scene.n_fixed + scene.n_plane, scene.dt, state.t
+    face = held.j[places] - first
+    mine = np.flatnonzero((face >= 0) & walls.moving()[walls.wall[np.maximum(face, 0)]])
+    i, owner, f = held.i[places][mine], walls.wall[face[mine]], on_i[mine]
+    x, r = state.x[i] - state.v[i] * dt, 0.5 * scene.d[i, None]
+    image = x + ways_to_faces(walls, face[mine], x, t - dt, scene.period) + r * normal[mine]
+    torque = r * np.cross(normal[mine], f)
+    for w in np.unique(owner):
+        (turn, shift), (later, shift_later) = pose(walls.motion[w], t - dt), pose(walls.motion[w], t)
+        its = owner == w
+        moved = (image[its] - shift) @ turn @ later.T + shift_later - image[its]  # mirrored grains go along
+        spins = torque[its] @ walls.motion[w, SPIN : SPIN + 3]
+        found[w] = 0.5 * float(np.sum(f[its] * moved) - dt * spins.sum())
+    return found
+
+
+def _without_work(tally: Tally, of_walls: Floats) -> Tally:
+    """The account without work that walls have yet to do [J], shape (n_wall,)."""
+    if not np.any(of_walls):
+        return tally
+    walls = np.array(tally.walls).reshape(len(of_walls), N_IMPULSE)
+    walls[:, WORK] -= of_walls
+    pending = list(tally.pending)
+    pending[PENDING.index(Term.WALL)] -= float(of_walls.sum())
+    return replace(tally, pending=tuple(pending), walls=tuple(walls.ravel().tolist()))
 
 
 def _more(scene: Scene, state: State, ids: Ints) -> Tally | None:

@@ -58,6 +58,11 @@ SAMPLING: Mapping[str, Sampling] = {
         "steady after 2.5 s; the exponent scatters by 0.14 between runs of 5 s, and the band is 0.1 wide on "
         "each side",
     ),
+    "silo": Sampling(
+        (1, 2), None, "s",
+        "each seed gives one fit of four openings; the number of grains that leave, some hundred to two "
+        "thousand, scatters little",
+    ),
     "transport": Sampling(
         (1, 2), (2.0, 5.0, 8.0), "s",
         "rates scatter by 5 to 10 % between runs, a tenth of what separates them from a limit; a spread "

@@ -23,6 +23,7 @@ NAMES = (
     "rolling",
     "gas",
     "incline",
+    "silo",
     "transport",
     "equilibrium",
     "frey",
