@@ -114,9 +114,7 @@ def test_5(material: str, unloading: str) -> dict[str, Floats]:
 def test_6(material: str, dashpot: str) -> dict[str, Floats]:
     """Tangential restitution `beta` of the contact point of a grain that comes with spin alone [-]."""
     law = _law(material, LARGE, SLOW, MU_6, E_6, Unloading.PLAIN)
-    # that of Tsuji et al. as written in EDEM and LIGGGHTS, 2 sqrt(5/6) zeta sqrt(k_s m), or none
-    zeta_s = math.sqrt(5.0 / 6.0 * 3.5) * law.zeta_n if dashpot == "with" else 0.0
-    law = replace(law, zeta_s=zeta_s)
+    law = replace(law, zeta_s=_zeta_s(law, dashpot))
     beta: list[float] = []
     for q, _ in BETA[material]:
         v_t = 3.5 * MU_6 * (1.0 + E_6) * SLOW / q
@@ -125,16 +123,22 @@ def test_6(material: str, dashpot: str) -> dict[str, Floats]:
     return {"beta": np.array(beta)}
 
 
-def inelastic(e: float, unloading: str) -> dict[str, Floats]:
-    """Recoil at the abscissae of INELASTIC [-]; no tangential dashpot."""
+def inelastic(e: float, unloading: str, dashpot: str) -> dict[str, Floats]:
+    """Recoil at the abscissae of INELASTIC [-]."""
     law = elastic_spheres(
         _mass("glass", MIDDLE), MIDDLE, youngs_modulus=MATERIALS["glass"][0], poisson_ratio=0.3, speed=BRISK,
         friction=MU_T, restitution=e, restitution_shear=1.0, damping_law=DampingLaw.THORNTON,
         unloading=Unloading.of(unloading), slip=Slip.TOTAL,
     )  # fmt: skip
+    law = replace(law, zeta_s=_zeta_s(law, dashpot))
     unit = 0.5 * (1.0 + e) * MU_T * BRISK
     found = [_impact(law, "glass", MIDDLE, BRISK, x * unit, 0.0) for x, _ in INELASTIC[e]]
     return {"recoil": np.array([(v_x - MIDDLE * w) / unit for v_x, _, w in found])}
+
+
+def _zeta_s(law: ContactLaw, dashpot: str) -> float:
+    """Ratio of the tangential dashpot: that of EDEM and LIGGGHTS, 2 sqrt(5/6) zeta sqrt(k_s m), or none."""
+    return math.sqrt(5.0 / 6.0 * 3.5) * law.zeta_n if dashpot == "with" else 0.0
 
 
 def _mass(material: str, r: float) -> float:
@@ -173,15 +177,15 @@ def _test_6(material: str, dashpot: str) -> Task:
     return calculation(test_6, material=material, dashpot=dashpot, seconds=0.1)
 
 
-def _inelastic(e: float, unloading: Unloading) -> Task:
-    return calculation(inelastic, e=e, unloading=unloading.word, seconds=0.1)
+def _inelastic(e: float, unloading: Unloading, dashpot: str = "without") -> Task:
+    return calculation(inelastic, e=e, unloading=unloading.word, dashpot=dashpot, seconds=0.1)
 
 
 def tasks(plan: Plan) -> Sequence[Task]:
     """Test 5 with both ways of unloading, test 6 with and without a tangential dashpot."""
     del plan
     five = [_test_5(one, unloading) for one in FIVE for unloading in Unloading]
-    slow = [_inelastic(e, unloading) for e in INELASTIC for unloading in Unloading]
+    slow = [_inelastic(e, unloading, d) for e in INELASTIC for unloading in Unloading for d in DASHPOTS]
     return [*five, *slow, *(_test_6(one, dashpot) for one in BETA for dashpot in DASHPOTS)]
 
 
@@ -240,7 +244,11 @@ def _finding_5(
             misfit(f"sliding branch, {words}", _sliding(found, key, rows, law), "-", at_most(0.02, FINE)),
         ],
         {"e": "1", "mu": "0.3", "normal speed": "5 m/s", "radius": "10 um"},
-        "Judged is plain unloading; the other, and finite elements where they were read, are beside it.",
+        "Missed: at small angles the published springs have turned the contact point back by 0.75 to 0.9 of "
+        "its speed, ours, which solve the equations of design/0018, not at all; finite elements and "
+        "Thornton et al. 2013 lie between or with ours. The source does not print its tangential law. Ours "
+        "slide throughout from 5.8 on, not from 5, and an overlap of up to 0.035 of the radius shortens the "
+        "arm of polyethylene.",
         beside=[Curve(one, points[:, 0], points[:, 1]) for one, points in rows.items() if one not in FIVE],
     )  # fmt: skip
 
@@ -269,18 +277,23 @@ def _tangential_restitution(found: Found) -> Finding:
             *(misfit(f"sticking branch, {name}", value, "-") for name, value in stuck),
         ],
         {"e": "0.5", "mu": "0.4", "normal speed": "0.2 m/s", "radius": "0.1 m", "unloading": "plain"},
-        "The source does not print its tangential dashpot, so that the sticking branch is shown only.",
+        "The source does not print its tangential dashpot, so that the sticking branch is shown only. While it "
+        "slides, a dashpot that pulls at the end (Tsuji) adds up to 6 % of friction impulse to the closed "
+        "form, which is why it is missed by a quarter of its band.",
     )  # fmt: skip
 
 
 def _recoil_inelastic(found: Found) -> Finding:
     rows = {e: np.array(points) for e, points in INELASTIC.items()}
-    below, above = list[float](), list[float]()
+    off: dict[str, list[float]] = {one: [] for one in DASHPOTS}
+    above = list[float]()
     for e, points in rows.items():
         x, read = points.T
-        ours = found[_inelastic(e, Unloading.RESCALED)]["recoil"]
-        below.append(float(np.abs(ours - read)[x < SLIDES_T].max()))
-        above.append(float(np.abs(ours - (x - 7.0))[x > SLIDES_T].max()))
+        for dashpot in DASHPOTS:
+            ours = found[_inelastic(e, Unloading.RESCALED, dashpot)]["recoil"]
+            off[dashpot].append(float(np.abs(ours - read)[x < SLIDES_T].max()))
+            if dashpot == "with":
+                above.append(float(np.abs(ours - (x - 7.0))[x > SLIDES_T].max()))
     return comparison(
         "recoil-inelastic", "Recoil of the contact point of inelastic spheres",
         Source(
@@ -289,15 +302,22 @@ def _recoil_inelastic(found: Found) -> Finding:
         ),
         Axis("2 v_t/((1 + e) mu v_n) before the impact"), Axis("2 v_t/((1 + e) mu v_n) after the impact"),
         [
-            Curve(f"e = {e:g}, {unloading.word}", rows[e][:, 0], found[_inelastic(e, unloading)]["recoil"])
-            for e in INELASTIC for unloading in Unloading
+            Curve(
+                f"e = {e:g}, {dashpot} tangential dashpot", rows[e][:, 0],
+                found[_inelastic(e, Unloading.RESCALED, dashpot)]["recoil"],
+            )
+            for e in INELASTIC for dashpot in DASHPOTS
         ],
         [Curve(f"e = {e:g}, Thornton et al.", points[:, 0], points[:, 1]) for e, points in rows.items()],
         [
-            misfit("e = 0.9, sticking at first or throughout", below[0], "-", at_most(0.1, READ)),
-            misfit("e = 0.5, sticking at first or throughout", below[1], "-", at_most(0.1, READ)),
+            misfit("e = 0.9, not sliding throughout", off["with"][0], "-", at_most(0.1, READ)),
+            misfit("e = 0.5, not sliding throughout", off["with"][1], "-", at_most(0.1, READ)),
             misfit("sliding branch, closed form x - 7", max(above), "-", at_most(0.02, FINE)),
+            misfit("e = 0.9, as first registered: without a tangential dashpot", off["without"][0], "-"),
+            misfit("e = 0.5, as first registered: without a tangential dashpot", off["without"][1], "-"),
         ],
         {"mu": "0.1", "normal speed": "0.5 m/s", "radius": "25 mm", "unloading": "rescaled"},
-        "Judged with the correction of unloading, without a tangential dashpot, as the source has it.",
+        "First registered without a tangential dashpot, on the same bands: missed by 0.19 and 1.13. With that of "
+        "EDEM and LIGGGHTS, found afterwards, the shape is that of the source; at e = 0.5 its dashpot is "
+        "stronger than the source's.",
     )  # fmt: skip
