@@ -277,7 +277,7 @@ def _tangential_restitution(found: Found) -> Finding:
             *(misfit(f"sticking branch, {name}", value, "-") for name, value in stuck),
         ],
         {"e": "0.5", "mu": "0.4", "normal speed": "0.2 m/s", "radius": "0.1 m", "unloading": "plain"},
-        "The source does not print its tangential dashpot, so that the sticking branch is shown only. While it "
+        "The source does not print its tangential dashpot: the sticking branch is shown only. While it "
         "slides, a dashpot that pulls at the end (Tsuji) adds up to 6 % of friction impulse to the closed "
         "form, which is why it is missed by a quarter of its band.",
     )  # fmt: skip
@@ -317,7 +317,7 @@ def _recoil_inelastic(found: Found) -> Finding:
             misfit("e = 0.5, as first registered: without a tangential dashpot", off["without"][1], "-"),
         ],
         {"mu": "0.1", "normal speed": "0.5 m/s", "radius": "25 mm", "unloading": "rescaled"},
-        "First registered without a tangential dashpot, on the same bands: missed by 0.19 and 1.13. With that of "
+        "First registered without a tangential dashpot, on the same bands: 0.19 and 1.13. With that of "
         "EDEM and LIGGGHTS, found afterwards, the shape is that of the source; at e = 0.5 its dashpot is "
         "stronger than the source's.",
     )  # fmt: skip

@@ -59,7 +59,7 @@ SAMPLING: Mapping[str, Sampling] = {
         "each side",
     ),
     "silo": Sampling(
-        (1, 2), None, "s",
+        (0, 1), None, "s",
         "each seed gives one fit of four openings; the number of grains that leave, some hundred to two "
         "thousand, scatters little",
     ),

@@ -63,13 +63,16 @@ def _length(width: float) -> float:
 
 
 def _run(width: float, seed: int) -> CaseRun:
-    changed = {"walls": walls(width), "stop.time": f"{_length(width):.2f} s"}
+    # a quarter of the stiffness of the case: half the steps, overlaps of 0.01 d while the grains flow
+    changed = {
+        "walls": walls(width), "stop.time": f"{_length(width):.2f} s", "contact.stiffness": "100 N/cm",
+    }  # fmt: skip
     return case_run(case_path("hopper.toml"), changed, seed=seed)
 
 
 def tasks(plan: Plan) -> Sequence[Task]:
-    """Runs of a minute; none at the quick level."""
-    if plan.level is Level.QUICK:
+    """Runs of half a minute, at the full level alone: the others have an hour on two cores."""
+    if plan.level is not Level.FULL:
         return []
     return [_run(width, seed) for seed in SAMPLING["silo"].seeds(plan) for width in WIDTHS]
 
@@ -114,7 +117,7 @@ def fitted(width: Floats, rate: Floats, density: float) -> tuple[float, float, f
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """Power and constants of Beverloo's law."""
-    if plan.level is Level.QUICK:
+    if plan.level is not Level.FULL:
         return []
     width = 0.01 * np.array(WIDTHS)
     seeds = SAMPLING["silo"].seeds(plan)
