@@ -220,7 +220,10 @@ PICTURES = (
                  "percent finer by mass over diameter, asked for and laid"),
     PictureEntry("walls", "ryusa.figures.walls:walls",
                  "force on each wall over time, and the power of those that move",
-                 WINDOW, settled=True, measure="walls"),
+                 WINDOW, settled=True, measure="walls", fed=True),
+    PictureEntry("discharge", "ryusa.figures.discharge:discharge",
+                 "mass in by each feed and out by each exit, and mass there, over time",
+                 WINDOW, settled=True, measure="discharge", builders=("empty",), fed=True),
     PictureEntry("vibration", "ryusa.figures.runs:vibration", "grains that do not come to rest",
                  ("grains", *WINDOW)),
 )  # fmt: skip

@@ -145,8 +145,8 @@ BAD = [
     ([('time = "3.4 s"', "saltations = 5")], "stop.saltations", "cannot end a run with feeds"),
     ([("[time]", '[[planes]]\nname = "roof"\npoint = ["0 m", "0 m", "4 cm"]\nnormal = [0, 0, -1]\n[time]')],
      "feeds.0", "lies behind the plane 'roof'"),
-    ([("[time]", '[[walls]]\nname = "chute"\nshape = "disc"\nat = ["0 m", "0 m", "9 m"]\nnormal = [0, 0, 1]\n'
-      'radius = "1 cm"\n[time]')], "feeds", "cannot be used with [[walls]]"),
+    ([("[time]", '[[walls]]\nname = "hose"\nshape = "disc"\nat = ["0 m", "0 m", "9 m"]\nnormal = [0, 0, 1]\n'
+      'radius = "1 cm"\n[time]')], "feeds.0.name", "is used twice"),
     ([("[time]", '[domain]\nhigh = ["1 m", "1 m", "4 cm"]\n[time]')], "feeds.0", "lies outside domain"),
 ]  # fmt: skip
 

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from ryusa.build import build
 from ryusa.casefile import explain, read
+from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.errors import CaseError, ParseError
 from ryusa.formats.mesh import read_mesh
 
@@ -113,9 +114,16 @@ def test_a_plane_scene_has_no_walls(tmp_path: Path) -> None:
     assert "needs motion.plane = false" in fault(tmp_path, FLOOR, flat)
 
 
-def test_elastic_spheres_meet_no_walls_but_planes(tmp_path: Path) -> None:
-    elastic = CASE.replace('stiffness = "100 N/cm"', 'law = "Hertz-Mindlin"\nyoungs_modulus = "10 MPa"')
-    assert "contact.law" in fault(tmp_path, FLOOR, elastic)
+def test_elastic_spheres_meet_walls(tmp_path: Path) -> None:
+    elastic = CASE.replace(
+        'stiffness = "100 N/cm"',
+        'law = "Hertz-Mindlin"\nyoungs_modulus = "10 MPa"\nexpected_speed = "0.5 m/s"',
+    )
+    path = tmp_path / "case.toml"
+    path.write_text(elastic + FLOOR, encoding="utf-8")
+    built = build(read(path))
+    assert built.scene.walls is not None
+    assert CpuEngine().refuses(built.scene) == ()
 
 
 def test_a_mesh_that_cannot_be_is_named_with_its_file(tmp_path: Path) -> None:

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.engine.conftest import bits, run
+from tests.engine.conftest import bits, elastic_law, run
 
 from ryusa.build import scene
 from ryusa.build.walls import WallMotion, cylinder, disc, rectangle, triangles, with_walls
@@ -22,7 +22,8 @@ TIMINGS = (ContactTiming.EXACT, ContactTiming.AT_STEPS)
 
 
 def walled(walls, **keys):
-    fixed, first = scene(**(KEYS | keys))
+    keys = {"d": D} | keys if "contact" in keys else KEYS | keys
+    fixed, first = scene(**keys)
     return replace(with_walls(fixed, walls), world_low=(-9.0,) * 3, world_high=(9.0,) * 3), first
 
 
@@ -46,15 +47,18 @@ def shell(n, radius, length=0.1):
     )
 
 
-@pytest.mark.parametrize("timing", TIMINGS)
-def test_a_ball_on_a_split_plane_does_as_on_the_endless_plane(timing):
-    how = {
-        "x": [[0.0, 0.0, 0.6 * D]],
-        "v": [[0.3, 0.1, -0.2]],
-        "omega": [[10.0, 20.0, 30.0]],
-        "timing": timing,
-    }
-    made = scene(planes=[("floor", (0, 0, 0), (0, 0, 1))], **KEYS, **how)
+# linear springs with both timings, and elastic spheres
+LAWS = {
+    "exact": {**KEYS, "timing": ContactTiming.EXACT},
+    "at steps": {**KEYS, "timing": ContactTiming.AT_STEPS},
+    "elastic": {"d": D, "contact": elastic_law(r=R, friction=0.4, restitution=0.7)},
+}
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_a_ball_on_a_split_plane_does_as_on_the_endless_plane(law):
+    how = {"x": [[0.0, 0.0, 0.6 * D]], "v": [[0.3, 0.1, -0.2]], "omega": [[10.0, 20.0, 30.0]], **LAWS[law]}
+    made = scene(planes=[("floor", (0, 0, 0), (0, 0, 1))], **how)
     steps = round(0.36 / made[0].dt)
     plane = run(made, steps)
     assert plane.tally().n_contact == 1  # it came to roll
@@ -269,7 +273,7 @@ def test_a_wall_that_swings_does_the_work_that_the_account_books():
     assert tally.residual < 1e-3
 
 
-def drum(n=300, threads=1, **more):
+def drum(n=300, **more):
     """A small drum, closed by discs, half full, turning."""
     rng = np.random.default_rng(1)
     radius, width = 8 * D, 6 * D
@@ -278,14 +282,15 @@ def drum(n=300, threads=1, **more):
     x = np.stack(np.meshgrid(a, np.arange(1, 6) * step, a, indexing="ij"), axis=-1).reshape(-1, 3)
     x = x[np.hypot(x[:, 0], x[:, 2]) < radius - 0.6 * D][:n]
     wall = moving(cylinder("drum", (0, 0, 0), (0, width, 0), radius, closed=(True, True)), spin=(0, 6.0, 0))
+    law = more or {"restitution": 0.5, "timing": ContactTiming.AT_STEPS}
     return walled(
-        [wall], x=x, v=rng.normal(0, 0.1, x.shape), restitution=0.5, steps_per_contact=20.0,
-        timing=ContactTiming.AT_STEPS, **more,
-    )  # fmt: skip
+        [wall], x=x, v=rng.normal(0, 0.1, x.shape), steps_per_contact=20.0, events=EventRule.NONE, **law
+    )
 
 
-def test_a_drum_gives_the_same_bits_for_any_threads_and_after_a_resume():
-    made = drum(events=EventRule.NONE)
+@pytest.mark.parametrize("law", [{}, {"contact": elastic_law(r=R, friction=0.4, restitution=0.5)}])
+def test_a_drum_gives_the_same_bits_for_any_threads_and_after_a_resume(law):
+    made = drum(**law)
     one, two = run(made, 3000), run(made, 3000, threads=2)
     assert bits(one.state()) == bits(two.state())
     assert one.tally() == two.tally()

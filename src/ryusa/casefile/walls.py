@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import numpy as np
 from pydantic import AfterValidator, Field
 
-from ryusa.casefile.contact.values import is_hertz
 from ryusa.casefile.files import inside, relative
 from ryusa.casefile.quantities import Angle, Frequency, Number, Point, PositiveLength, Speed, Spin
 from ryusa.casefile.rows import ExplainRow, count, word
@@ -157,10 +156,6 @@ def check_walls(case: "Case") -> Iterator[CaseError]:
         key = f"walls.{k}"
         if case.motion.plane:
             yield CaseError(key, wall.name, "needs motion.plane = false; a plane scene has [[planes]]")
-        if is_hertz(case):
-            yield CaseError(
-                key, wall.name, 'needs contact.law = "linear"; elastic spheres meet grains and planes'
-            )
         needs, may = _KEYS[wall.shape]
         for one in needs:
             if not given(wall, one):

@@ -49,7 +49,7 @@ def pair_springs(scene: Scene, i: Ints, j: Ints, overlap: Floats) -> tuple[Float
 
 def _springs_hertz(scene: Scene, i: Ints, j: Ints, overlap: Floats) -> tuple[Floats, Floats]:
     law = scene.contact
-    r = 0.5 * np.concatenate([scene.d, scene.d_fixed, np.full(scene.n_plane, math.inf)])
+    r = 0.5 * np.concatenate([scene.d, scene.d_fixed, np.full(scene.n_plane + scene.n_face, math.inf)])
     r_eff = 1.0 / (1.0 / r[i] + 1.0 / r[j])
     k_n = hertz_stiffness(effective_modulus(law.youngs_modulus, law.poisson_ratio), 1.0) * np.sqrt(r_eff)
     k_n *= np.sqrt(np.maximum(overlap, 0.0))

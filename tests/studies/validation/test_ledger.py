@@ -202,7 +202,7 @@ def test_the_page_of_the_standard_level_says_how_often_each_comparison_was_run(c
     checks["one"] = Fake()
     (page, *_) = write(make(checks, None, Level.STANDARD, tmp_path))
     text = page.read_text(encoding="utf-8")
-    assert all(f"<td>{name}</td>" in text for name in SAMPLING if name != "frey/walls")
+    assert all(f"<td>{name}</td>" in text for name, one in SAMPLING.items() if one.runs[0])
     assert all(f"{name} ({why})" in text for name, why in CLOSED.items())
 
 

@@ -71,8 +71,6 @@ def _refused_of_hertz(scene: Scene) -> list[str]:
         found.append("elastic spheres (Hertz-Mindlin) take a restitution, not constant dashpots")
     if not (0.0 < law.youngs_modulus < np.inf and 0.0 <= law.poisson_ratio <= 0.5):
         found.append("elastic spheres need a Young's modulus above 0 and a Poisson's ratio from 0 to 0.5")
-    if scene.walls is not None:
-        found.append("elastic spheres (Hertz-Mindlin) meet grains and planes, no other walls (design/0019)")
     return found
 
 
