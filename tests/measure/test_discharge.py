@@ -144,3 +144,18 @@ def test_a_film_is_drawn_and_follows_no_grain(fed: Results, tmp_path: Path) -> N
     assert (tmp_path / "film.webp").stat().st_size > 0
     with pytest.raises(CaseError, match="cannot be used with feeds"):
         film(fed, tmp_path / "film.webp", frames=3, follow=0)
+
+
+def test_a_silo_discharges_at_the_rate_of_beverloo(tmp_path: Path) -> None:
+    """Two thirds of the grains of the packaged case: C between 0.45 and 0.7 with k = 1.4, for one seed."""
+    less = {"build.most": "3000", "contact.stiffness": "100 N/cm", "stop.time": "0.8 s"}
+    run = ryusa.run(ryusa.load(case_path("hopper.toml"), less), tmp_path / "run", progress=False)
+    found = run.measure("discharge", begin=0.5)
+    width, d = 0.024, 0.004
+    z, frame = run.frames.x[20][:, 2], np.asarray(run.frames.t)[20]
+    assert frame == pytest.approx(0.4, abs=1e-3)  # the shutter is still there
+    packed = float(run.scene.m[(z > d) & (z < 4.0 * d)].sum()) / (np.pi * 0.036**2 * 3.0 * d)
+    rate = found["rate_out"].value / (4.0 / np.pi * packed * np.sqrt(9.81) * (width - 1.4 * d) ** 2.5)
+    assert 0.45 < rate < 0.7
+    assert not found["rate_in"].value
+    assert run.tally["residual"].max() < 1e-3
