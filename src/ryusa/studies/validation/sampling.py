@@ -63,6 +63,10 @@ SAMPLING: Mapping[str, Sampling] = {
         "each seed gives one fit of four openings; the number of grains that leave, some hundred to two "
         "thousand, scatters little",
     ),
+    "collapse": Sampling(
+        (0, 1), None, "s",
+        "the foot is a mean over twelve sectors of one heap; between seeds it scatters by some per cent",
+    ),
     "transport": Sampling(
         (1, 2), (2.0, 5.0, 8.0), "s",
         "rates scatter by 5 to 10 % between runs, a tenth of what separates them from a limit; a spread "

@@ -24,6 +24,7 @@ NAMES = (
     "gas",
     "incline",
     "silo",
+    "collapse",
     "transport",
     "equilibrium",
     "frey",
