@@ -4,7 +4,9 @@ import re
 import tomllib
 from pathlib import Path
 
+import numpy as np
 import pytest
+import trimesh
 
 from ryusa import measure, run
 from ryusa.build import build
@@ -78,9 +80,26 @@ def test_the_bed_under_water_runs_and_its_water_is_measured(blocks, tmp_path):
 
 
 def test_the_feed_of_the_page_is_that_of_the_packaged_case(blocks):
-    (text,) = [text for kind, text in blocks if "[[feeds]]" in text]
+    (text,) = [text for kind, text in blocks if "[[feeds]]" in text and 'kind = "empty"   ' in text]
     from ryusa.cases import case_path
 
     written = tomllib.loads(text)
     packaged = tomllib.loads(case_path("poured_heap.toml").read_text(encoding="utf-8"))
     assert {key: packaged[key] for key in written} == written
+
+
+def test_the_flume_with_a_weir_runs(blocks, tmp_path):
+    (text,) = [text for kind, text in blocks if kind == "toml" and "Flume with a weir" in text]
+    path = tmp_path / "flume.toml"
+    path.write_text(text, encoding="utf-8")
+    profile = np.array([[0.0, 0.0], [4.0, 12.0], [8.0, 12.0], [14.0, 0.0]])  # x, z [mm]
+    ends = [np.insert(profile, 1, y, axis=1) for y in (-30.0, 30.0)]
+    triangles = []
+    for k in range(4):
+        n = (k + 1) % 4
+        triangles += [[ends[0][k], ends[0][n], ends[1][n]], [ends[0][k], ends[1][n], ends[1][k]]]
+    trimesh.Trimesh(np.concatenate(triangles), np.arange(24).reshape(-1, 3)).export(tmp_path / "weir.stl")
+    short = {"stop.time": "0.1 s", "feeds.0.end": "0.1 s", "record.frames": "5 ms"}
+    found = run(read(path, short), tmp_path / "run", progress=False)
+    assert measure.walls(found).names == ("floor", "left", "right", "weir")
+    assert measure.discharge(found).n_in[-1] > 20
