@@ -50,7 +50,7 @@ MIDDLE, BRISK, MU_T, SLIDES_T = (
     0.1,
     7.0,
 )  # of Thornton et al.: radius, normal speed, friction, as above
-READ = "some times the accuracy of reading"
+READ = "a few times the accuracy of reading"
 ARM = "1/400, and an overlap of up to 0.035 of the radius, which shortens the arm"
 FINE = "1/400, and the error of the first step"
 
