@@ -104,7 +104,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     def mean(key: str, n: int, rough: bool = False) -> list[float]:
         return [float(found[_run(n, seed, rough)][key]) for seed in seeds]
 
-    aspects = np.array([np.mean(mean("aspect", n)) for n in GRAINS])
+    aspects = np.array([float(np.mean(mean("aspect", n))) for n in GRAINS])
     bands = [_band(float(a)) for a in aspects]
     fine = np.linspace(0.9 * aspects[0], 1.1 * aspects[-1], 80)
     control = mean("run_out", 3600, True)
@@ -115,8 +115,8 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             Source("Lube et al. 2004; Lajeunesse et al. 2004: dry grains of several kinds", Known.QUOTED),
             Axis("height over radius of the column"), Axis("run-out over radius"),
             [
-                Curve("grains", aspects, np.array([np.mean(mean("run_out", n)) for n in GRAINS])),
-                Curve("friction 5, rolling friction 2", aspects[1:2], np.array([np.mean(control)])),
+                Curve("grains", aspects, np.array([float(np.mean(mean("run_out", n))) for n in GRAINS])),
+                Curve("friction 5, rolling friction 2", aspects[1:2], np.array([float(np.mean(control))])),
             ],
             [Curve("Lube", fine, _over(lube, fine)), Curve("Lajeunesse", fine, _over(lajeunesse, fine))],
             [
