@@ -351,6 +351,12 @@ def test_a_folder_left_by_a_run_killed_as_it_began_is_used(go: Any, tmp_path: Pa
     assert go(overwrite=True).complete
 
 
+def test_a_folder_left_by_a_run_that_was_killed_before_it_made_parts_is_used(go: Any, tmp_path: Path) -> None:
+    (tmp_path / "run").mkdir()
+    (tmp_path / "run" / ".lock").write_bytes(b"")
+    assert go().complete
+
+
 def test_an_empty_parts_folder_behind_a_link_is_not_used(go: Any, tmp_path: Path) -> None:
     (tmp_path / "elsewhere").mkdir()
     (tmp_path / "run").mkdir()

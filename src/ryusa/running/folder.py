@@ -29,7 +29,8 @@ def make_folder(folder: Path, *, overwrite: bool) -> None:
 
     Notes
     -----
-    A folder with nothing but an empty parts/ is left by a run that was killed at its start; it is reused.
+    A folder with nothing but a lock and an empty parts/ is left by a run that was killed at its start, before
+    or after it created parts/; it is reused.
     """
     with _writing(folder):
         if folder.is_symlink() or (folder.exists() and not folder.is_dir()):
@@ -78,14 +79,13 @@ def is_run(folder: Path) -> bool:
 
 
 def _just_begun(folder: Path) -> bool:
-    """True for a folder with nothing but what `prepare` creates."""
-    parts, unfinished = folder / schema.PARTS, folder / f".{schema.PROVENANCE}.new"
-    return (
-        set(folder.iterdir()) <= {parts, unfinished, folder / schema.LOCK}
-        and parts.is_dir()
-        and not parts.is_symlink()
-        and not any(parts.iterdir())
+    """True for a folder with nothing but the lock and what `prepare` creates."""
+    parts, unfinished, lock = (
+        folder / one for one in (schema.PARTS, f".{schema.PROVENANCE}.new", schema.LOCK)
     )
+    if not set(folder.iterdir()) <= {parts, unfinished, lock} or parts.is_symlink():
+        return False
+    return not any(parts.iterdir()) if parts.is_dir() else lock.is_file() and not parts.exists()
 
 
 def clear(folder: Path) -> None:
