@@ -22,13 +22,8 @@ from ryusa.model.state import make_read_only
 
 Ints = NDArray[np.int64]
 _ROWS = ("d", "m", "m_added", "m_weight", "inertia")  # of a scene, by grain
-_KEPT = (
-    "terms",
-    "overlap_max",
-    "overlap_grain",
-    "overlap_step",
-    "walls",
-)  # of an account while no grain is there
+# of an account while no grain is there
+_KEPT = ("terms", "overlap_max", "overlap_grain", "overlap_step", "walls")
 
 
 class GrainPool:

