@@ -118,6 +118,16 @@ class EnergyCreated(RunError):
     """The energy account does not close: the grains gained energy that no force supplied."""
 
 
+class WallLost(RyusaError):
+    """A wall that a servo presses has gone too far: states wall, distance and force, step and remedy."""
+
+    exit_code = 3
+
+    def __init__(self, cause: str, step: int, t: float, hint: str) -> None:
+        self.cause, self.step, self.t, self.hint = cause, step, t, hint
+        super().__init__(f"{cause}: step {step}, t = {t:.6g} s. {hint}")
+
+
 class WaterError(RyusaError):
     """The column of water cannot be stepped further: states cause, step and remedy."""
 

@@ -48,6 +48,9 @@ class ToyEngine:
         for k, pair in enumerate(zip(c.i.tolist(), c.j.tolist(), strict=True)):
             self._pairs[pair] = c.spring_s[k], c.dash_s[k], c.f_n[k], c.dash_n[k], c.eta_n[k]
 
+    def set_walls(self, motion: np.ndarray) -> None:
+        raise ValueError("the scene has no walls")
+
     def set_fluid(self, sampled: np.ndarray) -> None:
         raise ValueError("the scene has no column of water: water.profile is not COLUMN")
 

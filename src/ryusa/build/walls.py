@@ -12,6 +12,7 @@ from scipy.sparse.csgraph import connected_components
 from ryusa.build.overlaps import TOLERANCE
 from ryusa.build.overlaps import name as name_of
 from ryusa.build.placement import ROOM_BELOW, Placement
+from ryusa.build.servo import Servo, servo_rows
 from ryusa.casefile.case import Case
 from ryusa.casefile.walls import WallSection, mesh_of
 from ryusa.errors import CaseError
@@ -56,6 +57,7 @@ class SolidWall:
     face: Floats  # numbers of each face (model.walls.FaceKind), shape (n_face, 9)
     kind: Ints  # shape (n_face,)
     motion: WallMotion = WallMotion()
+    servo: Servo | None = None
 
 
 def triangles(name: str, corners: ArrayLike, motion: WallMotion | None = None) -> SolidWall:
@@ -117,6 +119,7 @@ def with_walls(scene: Scene, walls: Sequence[SolidWall]) -> Scene:
     made = Walls(
         face, kind, number, np.concatenate(surface), np.ones(len(walls), np.bool_),
         np.vstack([_motion(wall.motion) for wall in split]), tuple(wall.name for wall in walls),
+        servo_rows(scene, [(wall.face, wall.kind) for wall in walls], [wall.servo for wall in walls]),
     )  # fmt: skip
     for array in (one for one in vars(made).values() if isinstance(one, np.ndarray)):
         array.flags.writeable = False
@@ -234,7 +237,18 @@ def _wall_of(case: Case, wall: WallSection, key: str) -> SolidWall:
         frequency=wall.frequency or 0.0,
         phase=wall.phase,
     )
-    return replace(made, motion=motion)
+    return replace(made, motion=motion, servo=_servo(wall, made))
+
+
+def _servo(wall: WallSection, made: SolidWall) -> Servo | None:
+    asked = wall.servo
+    if asked is None:
+        return None
+    low, high = face_boxes(made.face, made.kind)
+    extent = float((high.max(axis=0) - low.min(axis=0)).max())
+    travel = extent if asked.max_travel is None else asked.max_travel
+    force, pressure = (math.nan if one is None else one for one in (asked.force, asked.pressure))
+    return Servo(asked.direction, asked.max_speed, travel, force, pressure)
 
 
 def refuse_overlaps_with_walls(placement: Placement, walls: Sequence[SolidWall], key: str) -> None:

@@ -11,9 +11,18 @@ import numpy as np
 from pydantic import AfterValidator, Field
 
 from ryusa.casefile.files import inside, relative
-from ryusa.casefile.quantities import Angle, Frequency, Number, Point, PositiveLength, Speed, Spin
+from ryusa.casefile.quantities import (
+    Angle,
+    Frequency,
+    Number,
+    Point,
+    PositiveLength,
+    Speed,
+    Spin,
+)
 from ryusa.casefile.rows import ExplainRow, count, word
 from ryusa.casefile.section import Section, given
+from ryusa.casefile.servo import ServoSection, check_moves, check_servo, servo_text
 from ryusa.errors import CaseError, ParseError
 from ryusa.formats.mesh import read_mesh
 from ryusa.laws.walls import turned_about
@@ -79,6 +88,8 @@ class WallSection(Section):
     """Frequency of that oscillation."""
     phase: Angle = 0.0
     """Phase of that oscillation at the start."""
+    servo: ServoSection | None = None
+    """Presses the wall on the grains with a given force or pressure, beside its other motion."""
 
 
 class MoveSection(Section):
@@ -168,12 +179,14 @@ def check_walls(case: "Case") -> Iterator[CaseError]:
         names.append(wall.name)
         yield from _shape(key, wall)
         yield from _motion(key, wall)
+        yield from check_servo(case, wall, key)
     for k, entry in enumerate(case.timeline):
         if entry.move is not None:
             if entry.move.wall not in names:
                 known = ", ".join(names) or "there is none"
                 yield CaseError(f"timeline.{k}.move.wall", entry.move.wall, f"must be a wall: {known}")
             yield from _motion(f"timeline.{k}.move", entry.move)
+    yield from check_moves(case)
 
 
 def _shape(key: str, wall: WallSection) -> Iterator[CaseError]:
@@ -264,6 +277,8 @@ def wall_rows(case: "Case") -> list[ExplainRow]:
         moves = [name for name in ("velocity", "angular_velocity", "amplitude") if given(wall, name)]
         if moves:
             rows.append(word("walls", f"{wall.name}: moves", _motion_text(wall), ", ".join(moves)))
+        if wall.servo is not None:
+            rows.append(word("walls", f"{wall.name}: presses with", servo_text(wall.servo), "servo"))
     return rows
 
 

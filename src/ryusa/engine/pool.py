@@ -80,6 +80,10 @@ class GrainPool:
         """Refuse: there is no column of water."""
         raise ValueError("the scene has no column of water: water.profile is not COLUMN")
 
+    def set_walls(self, motion: Floats) -> None:
+        """Refuse: grains that enter or leave need walls whose motion the scene gives."""
+        raise ValueError("walls pressed by a servo cannot be beside feeds or exits")
+
     def kinematics(self) -> tuple[Floats, Floats, Floats]:
         """Centres [m] and velocities [m/s] by id, nan for grains that are not there; no impulse."""
         x, v = np.full((self._n, 3), np.nan), np.full((self._n, 3), np.nan)

@@ -53,6 +53,13 @@ class Engine(Protocol):
         """
         ...
 
+    def set_walls(self, motion: Floats) -> None:
+        """Set the motion of the walls from this step on (model.walls), shape (n_wall, N_MOTION).
+
+        Walls are where they were, and no faster than the scene says; a snapshot does not carry the motion.
+        """
+        ...
+
     def kinematics(self) -> tuple[Floats, Floats, Floats]:
         """Centres [m], velocities [m/s] and impulse from the fluid (model.fluid), by id; cheap."""
         ...

@@ -130,3 +130,30 @@ def swing(amplitude: float, rate: float, t: float, phase: float) -> float:
     0.01
     """
     return amplitude * (math.sin(rate * t + phase) - math.sin(phase))
+
+
+@law
+def servo_speed(
+    asked: float, found: float, contacts: float, k_n: float, interval: float, most: float
+) -> float:
+    """Speed of a servo wall in its direction until the next correction [m/s].
+
+    Parameters
+    ----------
+    asked, found : force on the grains in the direction of the servo [N].
+    contacts : mean number of contacts of the wall since the last correction [-].
+    k_n : stiffness of one [N/m].
+    interval : time from one correction to the next [s].
+    most : largest speed [m/s]; a wall that touches nothing has it.
+
+    Notes
+    -----
+    Itasca, PFC, wall servo: a wall on N contacts changes its force by N k_n per distance, and half of what is
+    missing is made good in an interval. Grains that yield only make the wall slower.
+
+    >>> [round(servo_speed(10.0, found, 4.0, 1e4, 1e-3, 0.2), 9) for found in (8.0, 1e4, 0.0)]
+    [0.025, -0.2, 0.2]
+    """
+    if found == 0.0:
+        return most
+    return max(min(0.5 * (asked - found) / (max(contacts, 1.0) * k_n * interval), most), -most)

@@ -30,6 +30,7 @@ class Run(Protocol):
     contacts: Any  # contacts that ended: structured array of dtype model.EVENT
     passages: Any  # grains that entered and left: structured array of dtype model.PASSAGE
     tally: Any  # dict of arrays (n_frame,): the energy account at each frame
+    wall_travel: Any  # of each wall along the direction of its servo at each frame (n_frame, n_wall) [m]
     walls: Any  # impulses on each wall up to each frame (n_frame, n_wall, N_IMPULSE), model.walls
 
 

@@ -196,6 +196,11 @@ class Scene:
         return 0 if self.walls is None else self.walls.n_wall
 
     @property
+    def has_servo(self) -> bool:
+        """Whether a servo presses one of the walls."""
+        return self.walls is not None and len(self.walls.servo) > 0
+
+    @property
     def n_partner(self) -> int:
         """Number of ids: grains, fixed grains, planes and faces of walls."""
         return self.n_grain + self.n_fixed + self.n_plane + self.n_face

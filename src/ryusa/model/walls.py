@@ -1,6 +1,6 @@
 """Walls of a scene: faces in the frame of their wall, and how each wall moves."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import IntEnum
 
 import numpy as np
@@ -31,8 +31,16 @@ SWING = 22  # amplitude of the oscillation [m]
 RATE = 25  # its angular frequency [rad/s]
 PHASE = 26  # its phase at that time [rad]
 N_MOTION = 27
-N_IMPULSE = 7  # of a wall: force [N s], torque about its axis point [N m s], and
+# columns of a servo; a wall without one has zeros
+TOWARDS = 0  # unit vector in which the wall presses [-]
+ASKED = 3  # force that it is to exert on the grains in this direction [N]
+MOST_SPEED = 4  # largest speed along the direction [m/s]
+MOST_TRAVEL = 5  # largest distance from the first place along the direction, either way [m]
+INTERVAL = 6  # steps from one correction to the next, the same for all walls
+N_SERVO = 7
+N_IMPULSE = 8  # of a wall: force [N s], torque about its axis point [N m s], and
 WORK = 6  # work that it gave [J]
+TOUCHED = 7  # number of its contacts times the time that they lasted [s]
 
 
 @dataclass(frozen=True)
@@ -49,6 +57,8 @@ class Walls:
     active: Bools  # False once removed, shape (n_wall,)
     motion: Floats  # shape (n_wall, N_MOTION)
     names: tuple[str, ...]  # of each wall
+    # of walls that press on the grains (model.servo), shape (n_wall, N_SERVO); empty: there is none
+    servo: Floats = field(default_factory=lambda: np.zeros((0, N_SERVO)))
 
     @property
     def n_face(self) -> int:
@@ -67,7 +77,13 @@ class Walls:
 
     def moving(self) -> Bools:
         """Whether each wall moves, shape (n_wall,)."""
-        return np.any(self.motion[:, VELOCITY:RATE] != 0.0, axis=1)
+        moves = np.any(self.motion[:, VELOCITY:RATE] != 0.0, axis=1)
+        return moves | (self.servo_speed > 0.0)
+
+    @property
+    def servo_speed(self) -> Floats:
+        """Largest speed that its servo gives each wall [m/s], shape (n_wall,)."""
+        return self.servo[:, MOST_SPEED] if len(self.servo) else np.zeros(self.n_wall)
 
 
 def at_rest(n_wall: int, t: float = 0.0) -> Floats:
@@ -164,7 +180,8 @@ def largest_speed(walls: Walls) -> float:
     for w in np.flatnonzero(walls.active & walls.moving()):
         mine = walls.wall == w
         if mine.any():
-            fastest = max(fastest, speed_of(walls.motion[w], low[mine].min(axis=0), high[mine].max(axis=0)))
+            speed = speed_of(walls.motion[w], low[mine].min(axis=0), high[mine].max(axis=0))
+            fastest = max(fastest, speed + float(walls.servo_speed[w]))
     return fastest
 
 

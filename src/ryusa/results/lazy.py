@@ -54,12 +54,12 @@ class Part:
             except DAMAGE as error:
                 raise ResultsError(f"{self.path}: '{schema.FORCES}' cannot be read ({error})") from error
 
-    def walls(self, shape: tuple[int, int]) -> NDArray[np.float64]:
-        """Read the impulses on walls up to each frame, (n_frame, *shape)."""
+    def of_walls(self, name: str, shape: tuple[int, ...]) -> NDArray[np.float64]:
+        """Read a dataset of walls, schema.WALLS or schema.TRAVEL, (n_frame, *shape)."""
         with opened(self.path) as file:
-            found = read_dataset(file, schema.WALLS, self.path)
+            found = read_dataset(file, name, self.path)
         if found.shape != (self.n_frame, *shape) or found.dtype != np.float64:
-            raise ResultsError(f"{self.path}: '{schema.WALLS}' does not match its frames")
+            raise ResultsError(f"{self.path}: '{name}' does not match its frames")
         return found
 
     def contacts(self) -> NDArray[np.void]:

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from ryusa.errors import ResultsError
 from ryusa.model import EVENT, PASSAGE, Scene
+from ryusa.model.servo import on_way
 from ryusa.model.walls import N_IMPULSE
 from ryusa.results import schema
 from ryusa.results.hdf5 import OpenFiles, opened, plain_dataset, read_dataset, read_integer
@@ -205,10 +206,17 @@ class Results:
     @cached_property
     def walls(self) -> NDArray[np.float64]:
         """Impulses on each wall and its work since the start, shape (n_frame, n_wall, N_IMPULSE)."""
-        shape = (self.scene.n_wall, N_IMPULSE)
-        if self.scene.walls is None:
+        return self._of_walls(schema.WALLS, (self.scene.n_wall, N_IMPULSE), self.scene.n_wall > 0)
+
+    @cached_property
+    def wall_travel(self) -> NDArray[np.float64]:
+        """Way of each wall along the direction of its servo [m], (n_frame, n_wall); 0 without one."""
+        return self._of_walls(schema.TRAVEL, (self.scene.n_wall,), self.scene.has_servo)
+
+    def _of_walls(self, name: str, shape: tuple[int, ...], recorded: bool) -> NDArray[np.float64]:
+        if not recorded:
             return np.zeros((len(self.frames), *shape))
-        rows = [part.walls(shape) for part in self._parts if part.n_frame]
+        rows = [part.of_walls(name, shape) for part in self._parts if part.n_frame]
         return np.concatenate([np.zeros((0, *shape)), *rows])
 
     @cached_property
@@ -233,8 +241,9 @@ class Results:
         return Planes(self.scene.plane_normal, self.scene.plane_point, self.scene.plane_active)
 
     def scene_at(self, t: float) -> Scene:
-        """Return the scene at time `t` [s]; it changes only with the timeline."""
-        return self.scenes[max(bisect_right([begin for _, begin, _ in self.scenes], t) - 1, 0)][2]
+        """Return the scene at time `t` [s]; it changes with the timeline, and walls with their servos."""
+        scene = self.scenes[max(bisect_right([begin for _, begin, _ in self.scenes], t) - 1, 0)][2]
+        return scene if not scene.has_servo else on_way(scene, self.frames.t, self.wall_travel, t)
 
     def measure(self, name: str, **options: Any) -> Any:
         """Measure the run, as `ryusa measure RUN name` does.

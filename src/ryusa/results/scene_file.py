@@ -14,7 +14,7 @@ from ryusa.laws.families import ContactForce
 from ryusa.model import Column, ContactLaw, FaceKind, RollingLaw, Scene, Walls, Water
 from ryusa.model.scene import ONLY_HERTZ, EventRule
 from ryusa.model.traffic import Traffic
-from ryusa.model.walls import N_MOTION
+from ryusa.model.walls import N_MOTION, N_SERVO
 from ryusa.results.hdf5 import opened, read_dataset
 
 _TRAFFIC = "traffic"  # left out where a scene has none, so that scenes of earlier versions keep their digest
@@ -29,7 +29,7 @@ def write_scene(file: h5py.File, scene: Scene, step: int, t: float) -> None:
     for name in _ARRAYS:
         file.create_dataset(name, data=np.asarray(getattr(scene, name)))
     if scene.walls is not None:
-        for name in _WALLS:
+        for name in _datasets_of(scene.walls):
             file.create_dataset(f"walls/{name}", data=np.asarray(getattr(scene.walls, name)))
     scalars = _scalars(scene) | {"step": step, "t": t}
     file.create_dataset(
@@ -51,6 +51,11 @@ def _scalars(scene: Scene) -> dict[str, Any]:
     return found if walls is None else found | {"walls": list(walls.names)}
 
 
+def _datasets_of(walls: Walls) -> tuple[str, ...]:
+    """Arrays of walls; servos where there are some, so that other scenes keep their digest."""
+    return _WALLS if len(walls.servo) else tuple(name for name in _WALLS if name != "servo")
+
+
 def scene_digest(scene: Scene) -> str:
     """Digest of all numbers of a scene; the same before writing and after reading."""
     digest = hashlib.sha256()
@@ -58,7 +63,7 @@ def scene_digest(scene: Scene) -> str:
         array = np.ascontiguousarray(getattr(scene, name))
         digest.update(f"{name} {array.shape} ".encode())
         digest.update(array.astype(np.float64).tobytes())
-    for name in () if scene.walls is None else _WALLS:
+    for name in () if scene.walls is None else _datasets_of(scene.walls):
         digest.update(np.ascontiguousarray(getattr(scene.walls, name), dtype=np.float64).tobytes())
     digest.update(json.dumps(_even(_scalars(scene)), sort_keys=True).encode())
     return digest.hexdigest()
@@ -83,7 +88,9 @@ def read_scene(path: Path) -> tuple[int, float, Scene]:
     with opened(path) as file:
         arrays = {name: read_dataset(file, name, path) for name in _ARRAYS}
         raw = read_dataset(file, "scalars", path)
-        faces = {name: read_dataset(file, f"walls/{name}", path) for name in _WALLS if "walls" in file}
+        faces = {
+            name: read_dataset(file, f"walls/{name}", path) for name in _WALLS if f"walls/{name}" in file
+        }
     try:
         if raw.dtype != np.uint8 or raw.nbytes > _LIMIT:
             raise ValueError("its scalars are not text")
@@ -126,6 +133,8 @@ def _walls(arrays: dict[str, np.ndarray], names: list[str]) -> Walls:
         "face": (n, 9), "kind": (n,), "wall": (n,), "surface": (n,), "active": (n_wall,),
         "motion": (n_wall, N_MOTION),
     }  # fmt: skip
+    if "servo" in arrays:
+        wanted["servo"] = (n_wall, N_SERVO)
     for name, shape in wanted.items():
         array = arrays[name]
         if array.shape != shape or not np.isfinite(array).all():

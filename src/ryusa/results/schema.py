@@ -60,6 +60,8 @@ WATER_NUMBERS = ("z_surface", "gradient")  # [m], [Pa/m]
 
 # impulses on walls and their work since the start, if the run has walls: (k, n_wall, model.walls.N_IMPULSE)
 WALLS = "walls"
+# way of each wall along the direction of its servo, if the run has one: (k, n_wall) [m]
+TRAVEL = "wall_travel"
 
 # contact forces, if the case records them: those of all frames in one dataset, and the number of each frame
 FORCES, N_FORCE = "forces", "n_force"

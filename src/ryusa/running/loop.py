@@ -26,6 +26,7 @@ from ryusa.running.pace import Pace, compiling
 from ryusa.running.precision import PrecisionRule
 from ryusa.running.progress import Progress, ProgressNumbers
 from ryusa.running.recorder import Recorder
+from ryusa.running.servo import ServoRule, with_servos
 from ryusa.running.snapshot import state_block
 from ryusa.running.stops import RestDetector, SaltationCounter, Stop
 from ryusa.running.summary import summary_lines
@@ -55,6 +56,7 @@ class Loop:
     precision: PrecisionRule
     checkpoints: CheckpointScheduler | None = None  # writes checkpoints
     traffic: TrafficRule | None = None  # feeds and exits
+    servo: ServoRule | None = None  # walls pressed on the grains
     status: str = schema.RUNNING
     message: str = ""
     _step: int = 0
@@ -120,13 +122,16 @@ class Loop:
             next_change = self.changes[0][0] if self.changes else _NEVER
             next_check = (self._step // check_steps + 1) * check_steps
             next_delivery = (self._step // _DELIVER_EVERY + 1) * _DELIVER_EVERY
-            next_pass = self.traffic.next_step(self._step) if self.traffic is not None else _NEVER
-            due = min(next_frame, next_change, next_check, next_pass, last)
+            next_pass = _NEVER if self.traffic is None else self.traffic.next_step(self._step)
+            next_press = _NEVER if self.servo is None else self.servo.next_step(self.scene, self._step)
+            due = min(next_frame, next_change, next_check, next_pass, next_press, last)
             if not self._advance_to(min(due, next_delivery)):
                 continue
             if self.traffic is not None and self._step == next_pass:
                 self._pass_grains(self.traffic)
             self._deliver_contacts()
+            if self.servo is not None and self._step == next_press:
+                self.servo.correct(self.scene, self.engine, self._step, self._t)
             if self._step == next_frame:
                 self._record()
                 self._frame += 1
@@ -182,7 +187,7 @@ class Loop:
 
     def _load(self, state: State) -> None:
         with compiling(self.progress):
-            self.engine.load(self.scene, state)
+            self.engine.load(with_servos(self.scene, self.servo), state)
         self._loaded = True
         self._start_water(state)
 
@@ -225,8 +230,9 @@ class Loop:
             "loop": self._loop_state().to_block(),
             "watch": self.watch.to_block(),
             "recorder": self.recorder.to_block(),
-            **({} if self.traffic is None else {"traffic": self.traffic.to_block()}),
         }
+        rules = {"traffic": self.traffic, "servo": self.servo}
+        parts |= {name: rule.to_block() for name, rule in rules.items() if rule is not None}
         try:
             self.checkpoints.write(state_block(self.state()), self.scene, parts)
         except RyusaError as error:
@@ -320,7 +326,7 @@ class Loop:
             _, _, change = self.changes.pop(0)
             state = self.engine.state()
             self.scene = change.apply(self.scene)
-            self.engine.load(self.scene, state)
+            self.engine.load(with_servos(self.scene, self.servo), state)
             self._collect_contacts()
             self._n_changed += 1
             if self._water is not None and self.scene.column is not None:
@@ -333,7 +339,7 @@ class Loop:
 
     def _record(self) -> None:
         state, tally = self.engine.state() if self.scene.forces else self.engine.grains(), self.engine.tally()
-        self.recorder.frame(state, tally, self._water)
+        self.recorder.frame(state, tally, self._water, self.servo and self.servo.travel_at(self._t))
         self.watch.frame(tally)
         if fault := energy_created(self.scene, state, tally):
             self.recorder.reached(self._step)  # the frame of the failure is recorded

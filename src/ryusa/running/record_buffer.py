@@ -44,6 +44,7 @@ class RecordBuffer:
         self._passages: list[NDArray[np.void]] | None = None if scene.traffic is None else []
         self._water: dict[str, list[NDArray[np.float64]]] = {}
         self._walls: list[NDArray[np.float64]] = []  # impulses on them up to each frame
+        self._travel: list[NDArray[np.float64]] = []  # of those that servos press, up to each frame
 
     def __bool__(self) -> bool:
         return self.n_frame > 0 or self.n_contact > 0
@@ -55,8 +56,10 @@ class RecordBuffer:
         frames = self.n_frame * bytes_per_frame(self._scene.n_grain)
         return frames + forces + self.n_contact * EVENT.itemsize
 
-    def frame(self, state: State, tally: Tally, water: Coupling | None) -> None:
-        """Add a frame, as copies of its arrays; with `water` where a column is solved."""
+    def frame(
+        self, state: State, tally: Tally, water: Coupling | None, travel: NDArray[np.float64] | None
+    ) -> None:
+        """Add a frame, as copies of its arrays; parameters as for `Recorder.frame`."""
         if water is not None:
             profiles = {**vars(water.state), "phi": water.phi}
             for name in (*schema.WATER_CELLS, *schema.WATER_FACES, *schema.WATER_NUMBERS):
@@ -72,6 +75,8 @@ class RecordBuffer:
         if n_wall := self._scene.n_wall:
             so_far = tally.walls or (0.0,) * (n_wall * N_IMPULSE)
             self._walls.append(np.array(so_far).reshape(n_wall, N_IMPULSE))
+            if self._scene.has_servo:
+                self._travel.append(np.zeros(n_wall) if travel is None else np.array(travel))
         self.n_frame += 1
 
     def contacts(self, events: NDArray[np.void]) -> None:
@@ -100,6 +105,8 @@ class RecordBuffer:
             rows[schema.PASSAGES] = np.concatenate([np.zeros(0, dtype=PASSAGE), *self._passages])
         if self._scene.n_wall:
             rows[schema.WALLS] = np.array(self._walls).reshape(self.n_frame, self._scene.n_wall, N_IMPULSE)
+        if self._scene.has_servo:
+            rows[schema.TRAVEL] = np.array(self._travel).reshape(self.n_frame, self._scene.n_wall)
         return rows | {f"{schema.WATER}/{name}": np.array(one) for name, one in self._water.items()}
 
     def write(self, file: h5py.File) -> None:
@@ -128,6 +135,7 @@ class RecordBuffer:
         if self._passages is not None:
             self._passages.append(rows[schema.PASSAGES])
         self._walls += list(rows.get(schema.WALLS, ()))
+        self._travel += list(rows.get(schema.TRAVEL, ()))
         begin = f"{schema.WATER}/"
         for name, profiles in rows.items():
             if name.startswith(begin):

@@ -128,13 +128,25 @@ class Recorder:
         self._scenes, self._n_scene = shown, self._n_scene + 1
         return True
 
-    def frame(self, state: State, tally: Tally, water: Coupling | None = None) -> None:
-        """Add a frame to the buffer, as copies of its arrays; with `water` where a column is solved."""
+    def frame(
+        self,
+        state: State,
+        tally: Tally,
+        water: Coupling | None = None,
+        travel: NDArray[np.float64] | None = None,
+    ) -> None:
+        """Add a frame to the buffer, as copies of its arrays.
+
+        Parameters
+        ----------
+        water : where a column is solved.
+        travel : of walls that servos press [m], shape (n_wall,), where there are some.
+        """
         self.n_frame += 1
         if self._verify_until is not None:
             self._compare(state)
             return
-        self._buffer.frame(state, tally, water)
+        self._buffer.frame(state, tally, water, travel)
 
     def contacts(self, events: NDArray[np.void]) -> None:
         """Add contacts that ended to the buffer, dtype model.EVENT; the array is kept."""

@@ -304,6 +304,8 @@ def _buffered(recorder: CheckpointBlock, scene: Scene, folder: Path) -> dict[str
             shapes[schema.PASSAGES] = ((n_passage,), PASSAGE)
         if scene.n_wall:
             shapes |= {schema.WALLS: ((k, scene.n_wall, N_IMPULSE), np.dtype(np.float64))}
+        if scene.has_servo:
+            shapes |= {schema.TRAVEL: ((k, scene.n_wall), np.dtype(np.float64))}
         if set(shapes) != set(rows):
             raise ValueError(f"datasets {', '.join(sorted(rows))}")
         for name, (shape, dtype) in shapes.items():

@@ -40,6 +40,7 @@ from ryusa.running.progress import Progress
 from ryusa.running.record_buffer import bytes_per_frame
 from ryusa.running.recorder import RecordedSoFar, Recorder
 from ryusa.running.resume import ResumePoint, find_resume_point
+from ryusa.running.servo import ServoRule
 from ryusa.running.stops import Stop
 from ryusa.running.timeline import Change
 from ryusa.running.traffic import TrafficRule
@@ -364,6 +365,9 @@ class _Run:
             traffic = TrafficRule.of(now)
             if traffic is not None and block is not None:
                 traffic.restore(block.block("traffic"), state)
+            servo = ServoRule.of(now, state.t)
+            if servo is not None and block is not None:
+                servo.restore(block.block("servo"))
             changes = sorted((round(one.at / now.dt), k, one) for k, one in enumerate(self.changes))
             loop = Loop(
                 engine=stepping(self.engine, now), scene=now, frames=self.frames, stop=self.stop,
@@ -375,7 +379,7 @@ class _Run:
                     max([self.stop.settle, *(one.at for one in self.changes)]), self.frames,
                 ),
                 checkpoints=CheckpointScheduler(self.folder, self.identity, first, self.options.checkpoint),
-                traffic=traffic,
+                traffic=traffic, servo=servo,
             )  # fmt: skip
             loop.run(state, None if block is None else block.block("loop"))
         finally:

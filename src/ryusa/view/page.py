@@ -156,11 +156,17 @@ def _encode(
         "box": [corner.tolist() for corner in box],
         "plane": scene.plane_case,
         "colourings": colourings,
-        "scenes": [_walls(one, t) for _, t, one in results.scenes],
+        "scenes": [_walls(results.scene_at(t), t) for t in _instants(results, times)],
         "flow": flow_of(results, frames, blob),
     }
     data["arrays"] = blob.contents
     return data
+
+
+def _instants(results: Results, times: NDArray[np.float64]) -> list[float]:
+    """Times from which walls, fixed grains or gravity are others [s]: every frame, where there is a servo."""
+    begins = [t for _, t, _ in results.scenes]
+    return sorted({*begins, *times.tolist()}) if results.scene.has_servo else begins
 
 
 def _walls(scene: Scene, t: float) -> dict[str, Any]:

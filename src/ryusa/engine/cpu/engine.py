@@ -225,6 +225,20 @@ class CpuEngine:
         rows_by_place(ids, sampled, grains.fluid)
         grains.impulse[:] = 0.0
 
+    def set_walls(self, motion: Floats) -> None:
+        """Set the motion of the walls from this step on (model.walls), shape (n_wall, N_MOTION).
+
+        Walls are where they were, and no faster than the scene says; a snapshot does not carry the motion.
+
+        Raises
+        ------
+        ValueError : the scene has no walls, or the shape is another.
+        """
+        faces = self._layout.walls.faces
+        if faces is None or faces.motion.shape != motion.shape:
+            raise ValueError(f"motion has shape {motion.shape}, which is not that of the walls of the scene")
+        faces.motion[:] = motion
+
     def tally(self) -> Tally:
         """Energy account and extremes at the moment of the last force evaluation."""
         t = float(self._t - self._parameters[P.DT]) if self._step else self._t

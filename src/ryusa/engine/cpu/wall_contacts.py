@@ -19,7 +19,7 @@ from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.kernel import FAST, inner
 from ryusa.engine.shared.wall_pose import AFTER, AXIS, BEFORE, MOVES, NOW
 from ryusa.model.tally import Term
-from ryusa.model.walls import SPIN
+from ryusa.model.walls import SPIN, TOUCHED
 
 ON_FACE = 1e-3  # of the radius: within it a point lies on a face
 SAME_PLACE = math.cos(math.radians(45.0))  # of normals of one smooth surface that count as one place
@@ -218,6 +218,7 @@ def book_walls(
         x = x_of[i, 0] + met[s, F.GAP] - p[w, AXIS]
         y = x_of[i, 1] + met[s, F.GAP + 1] - p[w, AXIS + 1]
         z = x_of[i, 2] + met[s, F.GAP + 2] - p[w, AXIS + 2]
+        impulse[b, w, TOUCHED] += dt
         impulse[b, w, 0] -= f_x * dt
         impulse[b, w, 1] -= f_y * dt
         impulse[b, w, 2] -= f_z * dt

@@ -179,6 +179,10 @@ class CudaEngine:
             impulse,
         )
 
+    def set_walls(self, motion: Floats) -> None:
+        """Refuse: this engine has no walls but planes."""
+        raise ValueError("the cuda engine has no [[walls]]")
+
     def set_fluid(self, sampled: Floats) -> None:
         """Set the water at every grain for the next steps, and count its impulse anew.
 
