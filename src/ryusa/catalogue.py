@@ -164,7 +164,7 @@ MEASURES = (
                  (*WINDOW, "layer"), settled=True,
                  numbers=(("bed_normal", "Pa"), ("bed_shear", "Pa"))),
     MeasureEntry("walls", "ryusa.measure.walls:walls",
-                 "force and torque on each wall, and the power of those that move", WINDOW, settled=True,
+                 "force and torque on each wall, its contacts, its power, the way of a servo", WINDOW, settled=True,
                  fed=True),
     MeasureEntry("vibration", "ryusa.measure.vibration:vibration",
                  "grains that do not come to rest",

@@ -38,6 +38,7 @@ shape = "rectangle"
 at = ["-2 cm", "-2 cm", "-1 mm"]
 sides = [["5 cm", "0 cm", "0 cm"], ["0 cm", "5 cm", "0 cm"]]
 """
+PRESSED = 'servo = { direction = [0, 0, 1], force = "1 N", max_speed = "1 cm/s" }\n'
 MESH = """
 [[walls]]
 name = "part"
@@ -98,6 +99,18 @@ BAD = [
     ('[[walls]]\nname = "a"\nshape = "cylinder"\nradius = "1 cm"\n', "a cylinder needs at, axis, radius"),
     ('[[walls]]\nname = "a"\nshape = "disc"\nat = ["0 m","0 m","9 m"]\nradius = "1 m"\nnormal = [0, 0, 0]\n',
      "walls.0.normal = [0.0, 0.0, 0.0]: must not be zero"),
+    (FLOOR + 'servo = { direction = [0, 0, 1], max_speed = "1 m/s" }\n', "needs either force or pressure"),
+    (FLOOR + 'servo = { direction = [0, 0, 1], force = "1 N", pressure = "1 Pa", max_speed = "1 m/s" }\n',
+     "walls.0.servo.force = 1.0: needs either force or pressure, and not both"),
+    (FLOOR + 'servo = { direction = [0, 0, 1], force = "1 N" }\n', "walls.0.servo.max_speed"),
+    (FLOOR + 'servo = { direction = [0, 0, 0], force = "1 N", max_speed = "1 m/s" }\n', "must not be zero"),
+    (FLOOR + 'servo = { direction = [0, 1, 0], force = "1 N", max_speed = "1 m/s" }\n', "lies in the wall"),
+    (FLOOR + 'servo = { direction = [0, 0, 1], force = "-1 N", max_speed = "1 m/s" }\n', "0.servo.force"),
+    (FLOOR + PRESSED + 'axis_point = ["0 m", "0 m", "0 m"]\nangular_velocity = ["9 rpm", "0 rpm", "0 rpm"]\n',
+     "must be along angular_velocity"),
+    (FLOOR + PRESSED + '[[timeline]]\nat = "1 ms"\nmove = { wall = "floor" }\n', "has a servo, which"),
+    ('[[walls]]\nname = "a"\nshape = "cylinder"\nat = ["0 m","0 m","9 m"]\nradius = "1 m"\n'
+     'axis = ["0 m", "0 m", "1 m"]\n' + PRESSED, "needs a wall that is a rectangle, a disc or a mesh"),
     (FLOOR + '[[timeline]]\nat = "1 ms"\nmove = { wall = "flor" }\n', "must be a wall: floor"),
     (FLOOR + '[[timeline]]\nat = "1 ms"\nremove = "roof"\n', "a plane or a wall: floor"),
     (FLOOR + '[[timeline]]\nat = "1 ms"\nremove = "floor"\nslope = 0.1\n', "needs exactly one of"),

@@ -13,6 +13,7 @@ from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.laws.families import ContactTiming, Slip
 from ryusa.model import Term
 from ryusa.model.scene import EventRule
+from ryusa.model.walls import N_IMPULSE
 
 D = 2.0e-3
 R = 0.5 * D
@@ -303,7 +304,7 @@ def test_a_drum_gives_the_same_bits_for_any_threads_and_after_a_resume(law):
     tally = one.tally()
     assert tally.terms[Term.WALL] > 0.0
     assert tally.residual < 5e-4
-    assert np.array(tally.walls).reshape(-1, 7)[0, 6] == pytest.approx(
+    assert np.array(tally.walls).reshape(-1, N_IMPULSE)[0, 6] == pytest.approx(
         tally.terms[Term.WALL] + tally.pending[-1], rel=1e-9
     )
     x = one.state().x

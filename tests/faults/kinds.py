@@ -321,7 +321,57 @@ frames = "1 ms"
 events = "all"
 """
 
+SERVO = """
+title = "A lid is pressed on grains in a box and drawn along"
+[grains]
+diameter = "4 mm"
+density = "2650 kg/m3"
+[contact]
+stiffness = "2000 N/m"
+restitution = 0.5
+friction = 0.3
+[motion]
+rotation = "free"
+plane = false
+[[planes]]
+name = "left"
+point = ["0 cm", "0 cm", "0 cm"]
+normal = [1, 0, 0]
+[[planes]]
+name = "right"
+point = ["2.4 cm", "0 cm", "0 cm"]
+normal = [-1, 0, 0]
+[[planes]]
+name = "front"
+point = ["0 cm", "0 cm", "0 cm"]
+normal = [0, 1, 0]
+[[planes]]
+name = "back"
+point = ["0 cm", "2.4 cm", "0 cm"]
+normal = [0, -1, 0]
+[[planes]]
+name = "floor"
+point = ["0 cm", "0 cm", "0 cm"]
+normal = [0, 0, 1]
+[[walls]]
+name = "lid"
+shape = "rectangle"
+at = ["-3 cm", "0 cm", "2 cm"]
+sides = [["8 cm", "0 cm", "0 cm"], ["0 cm", "2.4 cm", "0 cm"]]
+velocity = ["5 cm/s", "0 cm/s", "0 cm/s"]
+servo = { direction = [0, 0, -1], force = "0.1152 N", max_speed = "10 cm/s", max_travel = "1.5 cm" }
+[build]
+kind = "fill"
+low = ["0 mm", "0 mm", "0 mm"]
+high = ["2.4 cm", "2.4 cm", "1.8 cm"]
+[stop]
+time = "0.3 s"
+[record]
+frames = "2 ms"
+events = "all"
+"""
+
 KINDS = {
     "dry-2d": DRY_2D, "dry-3d": DRY_3D, "saltation": SALTATION, "two-way": TWO_WAY, "rolling": ROLLING,
-    "walls": WALLS, "feeds": FEEDS, "elastic": ELASTIC,
+    "walls": WALLS, "feeds": FEEDS, "elastic": ELASTIC, "servo": SERVO,
 }  # fmt: skip

@@ -143,4 +143,4 @@ def test_walls_are_drawn(whole: Results, tmp_path: Path) -> None:
     still = whole.film(frames=2, size=(480, 270))
     assert still is not None
     still = ryusa.Results.open(whole.folder)
-    assert still.walls.shape == (len(still.frames), 2, 7)
+    assert still.walls.shape == (len(still.frames), 2, 8)

@@ -11,12 +11,15 @@ from ryusa.model.arrays import Floats
 from ryusa.model.contact_law import contact_time_of
 from ryusa.model.walls import (
     ASKED,
+    BOUND,
     INTERVAL,
     MOST_SPEED,
     MOST_TRAVEL,
     N_SERVO,
     TOWARDS,
     Ints,
+    face_boxes,
+    speed_of,
 )
 
 
@@ -60,19 +63,22 @@ def servo_interval(scene: Scene) -> int:
     return max(round(contact_time_of(scene.contact, m, r, scene.contact.speed) / scene.dt), 1)
 
 
-def servo_rows(scene: Scene, faces: Sequence[tuple[Floats, Ints]], servos: Sequence[Servo | None]) -> Floats:
+def servo_rows(
+    scene: Scene, faces: Sequence[tuple[Floats, Ints]], servos: Sequence[Servo | None], motion: Floats
+) -> Floats:
     """Numbers of the servos of all walls (model.walls), (n_wall, N_SERVO); no row where there is none.
 
     Parameters
     ----------
     scene : its grains, contact law and step.
     faces : numbers and kinds of the faces of each wall.
+    motion : of each wall beside its servo (model.walls), (n_wall, N_MOTION).
     """
     rows = np.zeros((len(servos), N_SERVO))
     if not any(servos):
         return rows[:0]
     rows[:, INTERVAL] = servo_interval(scene)
-    for row, (face, kind), servo in zip(rows, faces, servos, strict=True):
+    for row, (face, kind), servo, own in zip(rows, faces, servos, motion, strict=True):
         if servo is None:
             continue
         towards = np.array(servo.towards) / np.linalg.norm(servo.towards)
@@ -80,4 +86,6 @@ def servo_rows(scene: Scene, faces: Sequence[tuple[Floats, Ints]], servos: Seque
         row[TOWARDS : TOWARDS + 3] = towards
         row[ASKED] = servo.force if math.isnan(servo.pressure) else servo.pressure * area
         row[MOST_SPEED], row[MOST_TRAVEL] = servo.max_speed, servo.max_travel
+        low, high = face_boxes(face, kind)
+        row[BOUND] = speed_of(own, low.min(axis=0), high.max(axis=0)) + servo.max_speed
     return rows

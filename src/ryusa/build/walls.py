@@ -116,10 +116,12 @@ def with_walls(scene: Scene, walls: Sequence[SolidWall]) -> Scene:
         mine = surfaces(wall.face, wall.kind, scene.period)
         surface.append(mine + used)
         used += int(mine.max(initial=-1)) + 1
+    motion = np.vstack([_motion(wall.motion) for wall in split])
+    faces = [(wall.face, wall.kind) for wall in split]
     made = Walls(
-        face, kind, number, np.concatenate(surface), np.ones(len(walls), np.bool_),
-        np.vstack([_motion(wall.motion) for wall in split]), tuple(wall.name for wall in walls),
-        servo_rows(scene, [(wall.face, wall.kind) for wall in walls], [wall.servo for wall in walls]),
+        face, kind, number, np.concatenate(surface), np.ones(len(walls), np.bool_), motion,
+        tuple(wall.name for wall in walls),
+        servo_rows(scene, faces, [wall.servo for wall in walls], motion),
     )  # fmt: skip
     for array in (one for one in vars(made).values() if isinstance(one, np.ndarray)):
         array.flags.writeable = False

@@ -25,6 +25,7 @@ class WallForces(Averaged):
     force : of the grains on each wall [N], shape (n, n_wall, 3).
     torque : about the axis point of each wall [N m], shape (n, n_wall, 3).
     power : that each wall gives to the grains [W], shape (n, n_wall); 0 where it does not move.
+    contacts : mean number of contacts of each wall, shape (n, n_wall).
     travel : way of each wall along the direction of its servo [m], shape (n, n_wall); None without a servo.
     averages : of the components of each wall, those that are not zero throughout.
     """
@@ -34,6 +35,7 @@ class WallForces(Averaged):
     force: Floats
     torque: Floats
     power: Floats
+    contacts: Floats
     travel: Floats | None
     averages: Averages
 
@@ -46,6 +48,7 @@ class WallForces(Averaged):
                 **{f"force_{axis}_N": float(self.force[k, w, a]) for a, axis in enumerate(AXES)},
                 **{f"torque_{axis}_Nm": float(self.torque[k, w, a]) for a, axis in enumerate(AXES)},
                 "power_W": float(self.power[k, w]),
+                "contacts": float(self.contacts[k, w]),
                 **({} if self.travel is None else {"travel_m": float(self.travel[k, w])}),
             }
             for k, t in enumerate(self.t)
@@ -92,7 +95,7 @@ def walls(run: Run, begin: float | None = None, end: float = math.inf) -> WallFo
     ]
     travel = np.asarray(run.wall_travel, dtype=np.float64)[first:last]
     return WallForces(
-        0.5 * (t[1:] + t[:-1]), names, rate[:, :, :3], rate[:, :, 3:6], rate[:, :, 6],
+        0.5 * (t[1:] + t[:-1]), names, rate[:, :, :3], rate[:, :, 3:6], rate[:, :, 6], rate[:, :, 7],
         0.5 * (travel[1:] + travel[:-1]) if run.scene.has_servo else None,
         Averages("walls", tuple(items), ("forces of the grains on the walls; torque about the axis point",)),
     )  # fmt: skip

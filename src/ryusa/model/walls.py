@@ -37,7 +37,8 @@ ASKED = 3  # force that it is to exert on the grains in this direction [N]
 MOST_SPEED = 4  # largest speed along the direction [m/s]
 MOST_TRAVEL = 5  # largest distance from the first place along the direction, either way [m]
 INTERVAL = 6  # steps from one correction to the next, the same for all walls
-N_SERVO = 7
+BOUND = 7  # of the speed of any point of the wall, from all that moves it [m/s]; known before the run
+N_SERVO = 8
 N_IMPULSE = 8  # of a wall: force [N s], torque about its axis point [N m s], and
 WORK = 6  # work that it gave [J]
 TOUCHED = 7  # number of its contacts times the time that they lasted [s]
@@ -78,12 +79,7 @@ class Walls:
     def moving(self) -> Bools:
         """Whether each wall moves, shape (n_wall,)."""
         moves = np.any(self.motion[:, VELOCITY:RATE] != 0.0, axis=1)
-        return moves | (self.servo_speed > 0.0)
-
-    @property
-    def servo_speed(self) -> Floats:
-        """Largest speed that its servo gives each wall [m/s], shape (n_wall,)."""
-        return self.servo[:, MOST_SPEED] if len(self.servo) else np.zeros(self.n_wall)
+        return moves | (self.servo[:, ASKED] != 0.0) if len(self.servo) else moves
 
 
 def at_rest(n_wall: int, t: float = 0.0) -> Floats:
@@ -180,8 +176,10 @@ def largest_speed(walls: Walls) -> float:
     for w in np.flatnonzero(walls.active & walls.moving()):
         mine = walls.wall == w
         if mine.any():
-            speed = speed_of(walls.motion[w], low[mine].min(axis=0), high[mine].max(axis=0))
-            fastest = max(fastest, speed + float(walls.servo_speed[w]))
+            # a servo changes the motion, and must not change when lists are made
+            known = float(walls.servo[w, BOUND]) if len(walls.servo) else 0.0
+            speed = known or speed_of(walls.motion[w], low[mine].min(axis=0), high[mine].max(axis=0))
+            fastest = max(fastest, speed)
     return fastest
 
 

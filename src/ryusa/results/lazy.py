@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ryusa.errors import ResultsError
 from ryusa.model import EVENT, PASSAGE
+from ryusa.model.walls import TOUCHED
 from ryusa.results import schema
 from ryusa.results.hdf5 import DAMAGE, OpenFiles, opened, plain_dataset, read_dataset
 
@@ -58,6 +59,8 @@ class Part:
         """Read a dataset of walls, schema.WALLS or schema.TRAVEL, (n_frame, *shape)."""
         with opened(self.path) as file:
             found = read_dataset(file, name, self.path)
+        if name == schema.WALLS and found.shape == (self.n_frame, shape[0], TOUCHED):  # of earlier versions
+            found = np.concatenate([found, np.full((self.n_frame, shape[0], 1), np.nan)], axis=2)
         if found.shape != (self.n_frame, *shape) or found.dtype != np.float64:
             raise ResultsError(f"{self.path}: '{name}' does not match its frames")
         return found

@@ -87,7 +87,7 @@ class ServoRule:
         for w in driven(walls):
             row = walls.servo[w]
             impulse, touched = float(every[w, :3] @ row[TOWARDS : TOWARDS + 3]), float(every[w, TOUCHED])
-            force = -(impulse - float(self.impulse[w])) / since  # of the wall on the grains
+            force = (float(self.impulse[w]) - impulse) / since  # of the wall on the grains
             contacts = (touched - float(self.touched[w])) / since
             self.impulse[w], self.touched[w] = impulse, touched
             if abs(travel[w]) > row[MOST_TRAVEL]:

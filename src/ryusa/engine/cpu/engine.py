@@ -48,7 +48,7 @@ from ryusa.engine.shared.refusals import check_state, refusals
 from ryusa.engine.shared.skin import best_skin
 from ryusa.engine.shared.status import STOP_EVENTS, STOP_LIST, STOP_ROOM, STOP_UNSAFE
 from ryusa.engine.shared.variant import choice_of, variant_of
-from ryusa.engine.shared.wall_pose import set_poses
+from ryusa.engine.shared.wall_pose import BEFORE, set_poses
 from ryusa.errors import RunError
 from ryusa.model import EngineBlock, FluidAtGrains, Scene, State, Tally, Term
 from ryusa.model.contacts import N_EVENT
@@ -135,7 +135,11 @@ class CpuEngine:
             by_id.x[:n, :3] = own.array("x_listed", (n, 3), _FARTHEST)
             self._travel = own.number("travel", 0.0, np.inf)
         self._set_poses()
+        if resumed and own is not None and (faces := self._layout.walls.faces) is not None:
+            shape = (len(faces.poses), BEFORE)  # walls too stood elsewhere when the pairs were listed
+            faces.poses[:, :BEFORE] = own.array("poses_listed", shape, _FARTHEST)
         place_of, _ = self._list_pairs(by_id, self._layout.empty_pairs().start)
+        self._set_poses()
         if resumed:
             self._grains.x[:n, :3] = state.x[self._grains.ids[:n]]
         self._parameters[P.SKIN] = self._skin
@@ -334,6 +338,8 @@ class CpuEngine:
 
     def _list_pairs(self, grains: GrainArrays, starts: np.ndarray) -> tuple[np.ndarray, int]:
         """Sort the grains and list their pairs; returns the new place of each, and a lost grain or -1."""
+        if (faces := self._layout.walls.faces) is not None:
+            self._poses_listed = faces.poses[:, :BEFORE].copy()
         self._grains, self._pairs, self._x_listed, place_of, lost = self._layout.list_pairs(
             grains, starts, self._skin, self._share
         )
@@ -378,6 +384,7 @@ class CpuEngine:
         }
         if self._layout.walled:
             arrays["walls"] = self._accounts.walls.reshape(len(self._accounts.walls), -1).copy()
+            arrays["poses_listed"] = self._poses_listed
         numbers = {"skin": self._skin, "travel": self._travel, "since": float(self._since)}
         return EngineBlock(self.name, VERSION, arrays, numbers)
 
