@@ -43,3 +43,16 @@ def test_adjoining_slices_add_up_to_the_whole(r, cuts):
         math.pi * r**3 * 4 / 3, rel=1e-13
     )
     assert sum(slices.circle_slice(r, *pair) for pair in pairs) == pytest.approx(math.pi * r**2, rel=1e-13)
+
+
+@given(r=radius, low=height, high=height)
+def test_moments_of_a_slice_are_those_of_its_sections(r, low, high):
+    a, b = (min(max(z, -1.0), 1.0) for z in (low, high))
+    section = (
+        lambda z: math.pi * z * (1.0 - z * z),
+        lambda z: math.pi * z * z * (1.0 - z * z),
+        lambda z: 0.25 * math.pi * (1.0 - z * z) ** 2,
+    )
+    found = slices.sphere_slice_moments(r, low * r, high * r)
+    for k, (one, power) in enumerate(zip(found, (4, 5, 5), strict=True)):
+        assert one == pytest.approx(quad(section[k], a, b)[0] * r**power, rel=1e-11, abs=1e-13 * r**power)

@@ -16,6 +16,8 @@ EXPONENTS = {  # exponents of kg, m, s
     "s": (0, 0, 1),
     "m2": (0, 2, 0),
     "m3": (0, 3, 0),
+    "m4": (0, 4, 0),
+    "m5": (0, 5, 0),
     "m/s": (0, 1, -1),
     "1/s": (0, 0, -1),
     "m/s2": (0, 1, -2),
@@ -228,7 +230,23 @@ UNITS = {
     "rolling.slider_scale": "N m, N m -> -",
     "rolling.epsd_torque": "N m, rad/s, N m s, - -> N m",
     "reduced.reduced": "kg, kg -> kg",
+    "rigid_body.rotate": "m, m, m, -, -, -, - -> m, m, m",
+    "rigid_body.rotate_back": "m, m, m, -, -, -, - -> m, m, m",
+    "rigid_body.turn_about_first": (
+        "-, -, -, -, N m s, N m s, N m s, 1/(kg m2), s -> -, -, -, -, N m s, N m s"
+    ),
+    "rigid_body.rotor_step": (
+        "-, -, -, -, N m s, N m s, N m s, 1/(kg m2), 1/(kg m2), 1/(kg m2), s -> -, -, -, -"
+    ),
+    "rigid_body.spin": (
+        "-, -, -, -, N m s, N m s, N m s, 1/(kg m2), 1/(kg m2), 1/(kg m2) -> rad/s, rad/s, rad/s"
+    ),
+    "rigid_body.angular_momentum": (
+        "-, -, -, -, rad/s, rad/s, rad/s, kg m2, kg m2, kg m2 -> N m s, N m s, N m s"
+    ),
+    "rigid_body.rotational_energy": "-, -, -, -, N m s, N m s, N m s, 1/(kg m2), 1/(kg m2), 1/(kg m2) -> J",
     "slices.sphere_slice": "m, m, m -> m3",
+    "slices.sphere_slice_moments": "m, m, m -> m4, m5, m5",
     "slices.circle_slice": "m, m, m -> m2",
     "torque.reynolds_spin": "rad/s, m, m2/s -> -",
     "torque.torque_stokes": "rad/s, m, m2/s, kg/m3 -> N m s",

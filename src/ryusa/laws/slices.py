@@ -1,4 +1,4 @@
-"""Volume or area of a grain between two levels, for profiles of concentration."""
+"""Volume, area and moments of a grain between two levels: profiles of concentration, spheres that overlap."""
 
 import math
 
@@ -27,6 +27,40 @@ def sphere_slice(r: float, low: float, high: float) -> float:
     a = min(max(low, -r), r)
     b = min(max(high, -r), r)
     return math.pi * (b - a) * (r * r - (a * a + a * b + b * b) / 3.0)
+
+
+@law
+def sphere_slice_moments(r: float, low: float, high: float) -> tuple[float, float, float]:
+    """Moments of the part of a sphere between two parallel planes.
+
+    Parameters
+    ----------
+    r : radius [m].
+    low, high : places of the planes along their normal, from the centre [m]; limited to -r and r.
+
+    Returns
+    -------
+    first : integral of z over the part, z along the normal from the centre [m4].
+    along, across : integrals of z**2, and of the square of a coordinate in the planes [m5].
+
+    Notes
+    -----
+    Integrals of pi z s, pi z**2 s and pi s**2/4 with s = r**2 - z**2. Adjoining slices add up to the sphere,
+    whose second moments are both 4 pi r**5/15.
+
+    >>> [round(one / math.pi, 12) for one in sphere_slice_moments(1.0, -1.0, 1.0)]
+    [0.0, 0.266666666667, 0.266666666667]
+    >>> [round(one / math.pi, 12) for one in sphere_slice_moments(1.0, 0.0, 1.0)]  # centroid of a half: 3 r/8
+    [0.25, 0.133333333333, 0.133333333333]
+    """
+    a = min(max(low, -r), r)
+    b = min(max(high, -r), r)
+    rr, aa, bb, ab = r * r, a * a, b * b, a * b
+    thick = math.pi * (b - a)
+    cubic = (aa + ab + bb) / 3.0
+    fifth = (aa * aa + bb * bb + ab * (aa + ab + bb)) / 5.0
+    first = 0.25 * thick * (a + b) * (2.0 * rr - aa - bb)
+    return first, thick * (rr * cubic - fifth), 0.25 * thick * (rr * (rr - 2.0 * cubic) + fifth)
 
 
 @law
