@@ -7,7 +7,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from ryusa.errors import ParseError
-from ryusa.formats.sieve import LARGEST_FILE, read_sieve_curve
+from ryusa.formats.sieve import read_sieve_curve
+from ryusa.formats.table import LARGEST_FILE
 
 SOUND = 'passing [%],"d [um]"\n100,4000\n"60",2000\n0,1000\n'
 PIECES = [

@@ -2,13 +2,11 @@
 
 from pathlib import Path
 
-from ryusa.errors import ParseError
-from ryusa.formats.csv import cell_column, split_cells
-from ryusa.formats.text import D_HIGH, D_LOW, Lines, Rows, opened
+from ryusa.formats.table import read_table
+from ryusa.formats.text import D_HIGH, D_LOW
 from ryusa.model.grading import Grading, GradingFault
 from ryusa.units import UnitError, quantity
 
-LARGEST_FILE = 1 << 20  # bytes
 COLUMNS = {"diameter": "diameter", "d": "diameter", "finer": "finer", "passing": "finer"}
 _EXAMPLE = "'diameter [mm],finer [%]'"
 
@@ -26,21 +24,9 @@ def read_sieve_curve(path: Path, name: str) -> tuple[tuple[float, float], ...]:
     ------
     ParseError : the file is not a grading curve; names line and column.
     """
-    if path.stat().st_size > LARGEST_FILE:
-        raise ParseError(name, 1, 1, "is larger than 1 MiB, the limit for a sieve curve")
-    with opened(path, name) as lines:
-        heads = _head(lines)
-        where: list[tuple[int, str]] = []
-        while lines.advance():
-            if not lines.text.strip(" ,\t") or lines.text.lstrip().startswith("#"):
-                continue
-            cells = split_cells(lines.text)
-            if len(cells) != len(heads):
-                raise lines.error(f"line {lines.number} has {len(cells)} cells, the header has {len(heads)}")
-            where.append((lines.number, lines.text))
-        if not where:
-            raise lines.error("expected at least two sieves below the header")
-    rows = Rows(name, where, cell_column, split_cells)
+    rows, heads = read_table(
+        path, name, "sieve", "at least two sieves", _EXAMPLE, _column, ("diameter", "finer")
+    )
     names = [one for one, _ in heads]
     k_d, k_finer = names.index("diameter"), names.index("finer")
     d, finer = rows.columns([k_d, k_finer], ["a diameter", "percent finer"])
@@ -52,33 +38,8 @@ def read_sieve_curve(path: Path, name: str) -> tuple[tuple[float, float], ...]:
     try:
         Grading.of([(one, percent / 100.0) for one, percent in points])
     except GradingFault as fault:
-        raise rows.error(min(fault.point, len(where) - 1), 0, str(fault)) from None
+        raise rows.error(min(fault.point, len(rows.where) - 1), 0, str(fault)) from None
     return points
-
-
-def _head(lines: Lines) -> list[tuple[str, float]]:
-    """Name of each column and its factor to SI, or to percent."""
-    while lines.advance():
-        if lines.text.strip() and not lines.text.lstrip().startswith("#"):
-            break
-    else:
-        raise lines.error(f"expected a header such as {_EXAMPLE}, and below it a row per sieve")
-    header = Rows(lines.name, [(lines.number, lines.text)], cell_column, split_cells)
-    heads: list[tuple[str, float]] = []
-    for k, cell in enumerate(split_cells(lines.text)):
-        try:
-            heads.append(_column(cell))
-        except ValueError as error:
-            raise header.error(0, k, str(error)) from None
-    names = [one for one, _ in heads]
-    for needed in ("diameter", "finer"):
-        if needed not in names:
-            raise header.error(
-                0, len(names), f"column '{needed}' is missing; a header reads, for example, {_EXAMPLE}"
-            )
-        if names.count(needed) > 1:
-            raise header.error(0, len(names) - 1 - names[::-1].index(needed), "a column appears twice")
-    return heads
 
 
 def _column(cell: str) -> tuple[str, float]:

@@ -1,0 +1,84 @@
+"""Small CSV tables whose header names the columns with their units."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from ryusa.errors import ParseError
+from ryusa.formats.csv import cell_column, split_cells
+from ryusa.formats.text import Lines, Rows, opened
+
+LARGEST_FILE = 1 << 20  # bytes
+
+
+def read_table(
+    path: Path,
+    name: str,
+    row: str,
+    least: str,
+    example: str,
+    column: Callable[[str], tuple[str, float]],
+    needed: Sequence[str],
+) -> tuple[Rows, list[tuple[str, float]]]:
+    """Rows of a table, and the name of each column with its factor to SI.
+
+    Lines that are blank or begin with # are passed over; the first other line is the header.
+
+    Parameters
+    ----------
+    path, name : the file, and what messages call it.
+    row : what a row is, in one word.
+    least : how many there must be, for messages; the caller counts those of a table that has any.
+    example : a header, for messages.
+    column : name and factor of a cell of the header; raises ValueError with what is wrong.
+    needed : columns that must be there.
+
+    Raises
+    ------
+    ParseError : the file is not such a table; names line and column.
+    """
+    if path.stat().st_size > LARGEST_FILE:
+        raise ParseError(name, 1, 1, f"is larger than 1 MiB, the limit for a table of a row per {row}")
+    with opened(path, name) as lines:
+        heads = _head(lines, row, example, column, needed)
+        where: list[tuple[int, str]] = []
+        while lines.advance():
+            if not lines.text.strip(" ,\t") or lines.text.lstrip().startswith("#"):
+                continue
+            cells = split_cells(lines.text)
+            if len(cells) != len(heads):
+                raise lines.error(f"line {lines.number} has {len(cells)} cells, the header has {len(heads)}")
+            where.append((lines.number, lines.text))
+        if not where:
+            raise lines.error(f"expected {least} below the header")
+    return Rows(name, where, cell_column, split_cells), heads
+
+
+def _head(
+    lines: Lines,
+    row: str,
+    example: str,
+    column: Callable[[str], tuple[str, float]],
+    needed: Sequence[str],
+) -> list[tuple[str, float]]:
+    """Name of each column and its factor."""
+    while lines.advance():
+        if lines.text.strip() and not lines.text.lstrip().startswith("#"):
+            break
+    else:
+        raise lines.error(f"expected a header such as {example}, and below it a row per {row}")
+    header = Rows(lines.name, [(lines.number, lines.text)], cell_column, split_cells)
+    heads: list[tuple[str, float]] = []
+    for k, cell in enumerate(split_cells(lines.text)):
+        try:
+            heads.append(column(cell))
+        except ValueError as error:
+            raise header.error(0, k, str(error)) from None
+    names = [one for one, _ in heads]
+    for one in needed:
+        if one not in names:
+            raise header.error(
+                0, len(names), f"column '{one}' is missing; a header reads, for example, {example}"
+            )
+        if names.count(one) > 1:
+            raise header.error(0, len(names) - 1 - names[::-1].index(one), "a column appears twice")
+    return heads
