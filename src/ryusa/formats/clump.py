@@ -1,0 +1,65 @@
+"""A clump as CSV: the centre and diameter of each of its spheres, with their units, one row per sphere."""
+
+from pathlib import Path
+
+import numpy as np
+
+from ryusa.formats.table import read_table
+from ryusa.formats.text import D_HIGH, D_LOW, shown
+from ryusa.model.clump import Clump, ClumpFault
+from ryusa.units import UnitError, quantity
+
+COLUMNS = ("x", "y", "z", "d")
+_EXAMPLE = "'x [mm],y [mm],z [mm],d [mm]'"
+
+
+def read_clump(path: Path, name: str) -> Clump:
+    """Read the spheres of a clump.
+
+    Parameters
+    ----------
+    path, name : the file, and what messages call it. Lines that are blank or begin with # are passed over;
+        the first other line is the header, with the columns x, y, z (centre) and d (diameter) and their
+        units, such as x [mm],y [mm],z [mm],d [mm].
+
+    Raises
+    ------
+    ParseError : the file is no such table, or its spheres make no clump; names line and column.
+    """
+    rows, heads = read_table(path, name, "sphere", "at least one sphere", _EXAMPLE, _column, COLUMNS)
+    names = [one for one, _ in heads]
+    where = [names.index(one) for one in COLUMNS]
+    values = rows.columns(where, [f"column '{one}'" for one in COLUMNS])
+    x, y, z, d = (one * heads[k][1] for one, k in zip(values, where, strict=True))
+    for row, one in enumerate(d.tolist()):
+        if not D_LOW <= one <= D_HIGH:
+            raise rows.error(
+                row, where[3], f"expected a diameter from {D_LOW:g} to {D_HIGH:g} m, found {one:g} m"
+            )
+    try:
+        return Clump.of(np.stack([x, y, z], axis=1), d)
+    except ClumpFault as fault:
+        raise rows.error(
+            min(fault.sphere, len(rows.where) - 1), 0, f"{fault}; spheres count from 0"
+        ) from None
+
+
+def _column(cell: str) -> tuple[str, float]:
+    """Name of a column and its factor to metres.
+
+    Raises
+    ------
+    ValueError : an unknown column, or one without a unit that fits.
+    """
+    if ";" in cell or "\t" in cell:
+        raise ValueError(f"columns are separated by commas, as in {_EXAMPLE}")
+    column, _, rest = cell.partition("[")
+    column, unit = column.strip().lower(), rest.rstrip().removesuffix("]").strip()
+    if column not in COLUMNS:
+        raise ValueError(f"unknown column {shown(column)}; known are {', '.join(COLUMNS)}")
+    if not unit:
+        raise ValueError(f"column {column!r} needs its unit in the header, such as {_EXAMPLE}")
+    try:
+        return column, quantity(f"1 {unit}", "m")
+    except UnitError as error:
+        raise ValueError(f"column {column!r}: {error}") from None
