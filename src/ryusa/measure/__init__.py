@@ -3,6 +3,7 @@
 from ryusa.catalogue import MEASURES, called
 from ryusa.measure.apparent_contact import ApparentContact, apparent_contact
 from ryusa.measure.collisions import Collisions, ContactTimes, collisions, contact_times, turned_time
+from ryusa.measure.cone import Cone, cone
 from ryusa.measure.contact_network import ContactNetwork, contact_network
 from ryusa.measure.discharge import Discharge, discharge
 from ryusa.measure.energy import Energy, energy
@@ -37,6 +38,7 @@ __all__ = [
     "Averages",
     "Bounds",
     "Collisions",
+    "Cone",
     "ContactNetwork",
     "ContactTimes",
     "Discharge",
@@ -66,6 +68,7 @@ __all__ = [
     "classical",
     "collisions",
     "companions",
+    "cone",
     "contact_network",
     "contact_times",
     "discharge",
