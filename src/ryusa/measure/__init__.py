@@ -6,6 +6,7 @@ from ryusa.measure.collisions import Collisions, ContactTimes, collisions, conta
 from ryusa.measure.cone import Cone, cone
 from ryusa.measure.contact_network import ContactNetwork, contact_network
 from ryusa.measure.discharge import Discharge, discharge
+from ryusa.measure.dynamic_angle import DynamicAngle, dynamic_angle
 from ryusa.measure.energy import Energy, energy
 from ryusa.measure.entrainment import Entrainment, entrainment
 from ryusa.measure.formulae import FormulaCurve, classical
@@ -42,6 +43,7 @@ __all__ = [
     "ContactNetwork",
     "ContactTimes",
     "Discharge",
+    "DynamicAngle",
     "Energy",
     "Entrainment",
     "FormulaCurve",
@@ -72,6 +74,7 @@ __all__ = [
     "contact_network",
     "contact_times",
     "discharge",
+    "dynamic_angle",
     "energy",
     "entrainment",
     "farthest",
