@@ -67,6 +67,10 @@ SAMPLING: Mapping[str, Sampling] = {
         (0, 1), None, "s",
         "the foot is a mean over twelve sectors of one heap; between seeds it scatters by some per cent",
     ),
+    "drum": Sampling(
+        (0, 1), None, "s",
+        "the angle is a mean over half a turn or more; between seeds it scatters by some tenths of a degree",
+    ),
     "transport": Sampling(
         (1, 2), (2.0, 5.0, 8.0), "s",
         "rates scatter by 5 to 10 % between runs, a tenth of what separates them from a limit; a spread "

@@ -25,6 +25,7 @@ NAMES = (
     "incline",
     "silo",
     "collapse",
+    "drum",
     "transport",
     "equilibrium",
     "frey",
