@@ -67,6 +67,10 @@ SAMPLING: Mapping[str, Sampling] = {
         (0, 1), None, "s",
         "the foot is a mean over twelve sectors of one heap; between seeds it scatters by some per cent",
     ),
+    "channel_collapse": Sampling(
+        (0, 1), None, "s",
+        "the foot is the outermost grain of one heap; between seeds it scatters by some per cent",
+    ),
     "drum": Sampling(
         (0, 1), None, "s",
         "the angle is a mean over half a turn or more; between seeds it scatters by some tenths of a degree",

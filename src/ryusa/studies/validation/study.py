@@ -25,6 +25,7 @@ NAMES = (
     "incline",
     "silo",
     "collapse",
+    "channel_collapse",
     "drum",
     "transport",
     "equilibrium",
