@@ -229,10 +229,15 @@ def _scene_of(scene: Scene, ids: Ints, earlier: Scene | None) -> Scene:
         rows["tracked"] = scene.tracked[ids] if len(scene.tracked) else scene.tracked
         for array in rows.values():
             array.flags.writeable = False
+    materials = scene.materials
+    if materials is not None:
+        of = np.concatenate([materials.of[ids], materials.of[scene.n_grain :]])
+        of.flags.writeable = False
+        materials = replace(materials, of=of)
     shift = len(ids) - scene.n_grain
     groups = {
         name: (first + shift, end + shift)
         for name, (first, end) in scene.groups.items()
         if first >= scene.n_grain
     }
-    return replace(scene, **rows, groups=groups, traffic=None)
+    return replace(scene, **rows, groups=groups, traffic=None, materials=materials)

@@ -121,13 +121,18 @@ def contact_network(run: Run, t: float | None = None, lane: int | None = None) -
     )  # fmt: skip
 
 
-def _parts(force: Floats, normal: Floats, spring: Floats, scene: Scene) -> tuple[Floats, Floats, Bools]:
+def _parts(
+    force: Floats, normal: Floats, spring: Floats, i: Ints, j: Ints, scene: Scene
+) -> tuple[Floats, Floats, Bools]:
     """Normal force, size of the tangential force [N], and whether that has reached the shear strength."""
     f_n = -(force * normal).sum(axis=1)
     f_s = np.linalg.norm(force + f_n[:, None] * normal, axis=1)
     law = scene.contact
     push = f_n if law.cap == Cap.TOTAL else spring
-    tau_c = np.maximum(law.cohesion + law.mu * push, 0.0)
+    mu = np.empty(len(i))
+    for one, some in scene.by_pair(i, j):
+        mu[some] = one.contact.mu
+    tau_c = np.maximum(law.cohesion + mu * push, 0.0)
     return f_n, f_s, (spring > 0.0) & (f_s >= (1.0 - AT_LIMIT) * tau_c)
 
 

@@ -4,7 +4,7 @@ from ryusa.model.column import Budget, Column, WaterState
 from ryusa.model.contacts import EVENT, Contacts
 from ryusa.model.engine_block import EngineBlock
 from ryusa.model.fluid import CouplingState, FluidAtGrains
-from ryusa.model.scene import ContactLaw, RollingLaw, Scene, Water
+from ryusa.model.scene import ContactLaw, Materials, RollingLaw, Scene, Water
 from ryusa.model.state import State
 from ryusa.model.tally import Tally, Term
 from ryusa.model.traffic import PASSAGE, Exit, Feed, Traffic
@@ -23,6 +23,7 @@ __all__ = [
     "FaceKind",
     "Feed",
     "FluidAtGrains",
+    "Materials",
     "RollingLaw",
     "Scene",
     "State",

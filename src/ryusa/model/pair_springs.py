@@ -31,6 +31,11 @@ def pair_springs(scene: Scene, i: Ints, j: Ints, overlap: Floats) -> tuple[Float
     the points of its oscillator (design/0014), which depend on the masses and the step. A dashpot that water
     chose at the touch of a pair is not known here: its map has that of the dry restitution.
     """
+    if scene.materials is not None:
+        k_n, k_s = np.empty(len(i)), np.empty(len(i))
+        for one, some in scene.by_pair(i, j):
+            k_n[some], k_s[some] = pair_springs(one, i[some], j[some], overlap[some])
+        return k_n, k_s
     law, n = scene.contact, len(i)
     if law.force == ContactForce.HERTZ_MINDLIN:
         return _springs_hertz(scene, i, j, overlap)

@@ -1,9 +1,12 @@
 """Fixed data of a run: sizes and masses of grains, bed, planes, laws, water, time step."""
 
-from dataclasses import dataclass, field
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
 from enum import IntEnum
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ryusa.laws.families import (
     Above,
@@ -77,6 +80,8 @@ class ContactLaw:
     speed: float = float("nan")  # impact speed to be expected [m/s]
 
 
+# Fields of ContactLaw that are the same for all pairs of materials.
+ALIKE = ("cohesion", "damping", "slip", "cap", "tension", "timing", "force", "unloading")
 # Fields of ContactLaw that only elastic spheres have.
 ONLY_HERTZ = ("force", "youngs_modulus", "poisson_ratio", "unloading", "speed")
 
@@ -90,6 +95,25 @@ class RollingLaw:
     coefficient: float = 0.0  # f' (contact width) or mu_r (reduced radius) [-]
     stiffness_factor: float = 2.25  # EPSD: k_r = factor * k_n * f**2, f = mu_r R* [-]
     zeta_r: float = 0.3  # EPSD: damping ratio of the rolling spring [-]
+
+
+@dataclass(frozen=True)
+class Materials:
+    """Materials of grains and walls, and the contact of each two of them (design/0020)."""
+
+    names: tuple[str, ...]
+    of: NDArray[np.int8]  # number of the material of each id, shape (n_partner,)
+    contact: tuple[ContactLaw, ...]  # of materials a and b at a n + b; that of b and a is the same
+    rolling: tuple[RollingLaw, ...]  # as `contact`
+
+    @property
+    def n(self) -> int:
+        """Number of materials."""
+        return len(self.names)
+
+    def pair_name(self, k: int) -> str:
+        """Name of pair k of `contact`."""
+        return f"'{self.names[k // self.n]}' and '{self.names[k % self.n]}'"
 
 
 @dataclass(frozen=True)
@@ -169,6 +193,7 @@ class Scene:
     # names of groups, for timeline and measures: slices of the ids above
     groups: dict[str, tuple[int, int]] = field(default_factory=lambda: {})
     walls: Walls | None = None  # finite walls, at rest or moving
+    materials: Materials | None = None  # None: all contacts are those of `contact` and `rolling`
 
     @property
     def n_grain(self) -> int:
@@ -204,3 +229,19 @@ class Scene:
     def n_partner(self) -> int:
         """Number of ids: grains, fixed grains, planes and faces of walls."""
         return self.n_grain + self.n_fixed + self.n_plane + self.n_face
+
+    def of_pair(self, k: int) -> "Scene":
+        """The same scene in which all contacts are those of pair k of its materials."""
+        made = self.materials
+        assert made is not None
+        return replace(self, contact=made.contact[k], rolling=made.rolling[k], materials=None)
+
+    def by_pair(self, i: NDArray[np.int64], j: NDArray[np.int64]) -> Iterator[tuple["Scene", Any]]:
+        """Scenes of one contact law each, and which of the pairs i, j of ids have it."""
+        made = self.materials
+        if made is None:
+            yield self, slice(None)
+            return
+        pair = made.of[i].astype(np.int64) * made.n + made.of[j]
+        for k in np.unique(pair).tolist():
+            yield self.of_pair(k), pair == k

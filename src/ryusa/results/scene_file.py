@@ -11,13 +11,13 @@ import numpy as np
 
 from ryusa.errors import ResultsError
 from ryusa.laws.families import ContactForce
-from ryusa.model import Column, ContactLaw, FaceKind, RollingLaw, Scene, Walls, Water
+from ryusa.model import Column, ContactLaw, FaceKind, Materials, RollingLaw, Scene, Walls, Water
 from ryusa.model.scene import ONLY_HERTZ, EventRule
 from ryusa.model.traffic import Traffic
 from ryusa.model.walls import N_MOTION, N_SERVO
 from ryusa.results.hdf5 import opened, read_dataset
 
-_TRAFFIC = "traffic"  # left out where a scene has none, so that scenes of earlier versions keep their digest
+_TRAFFIC, _MATERIALS = "traffic", "materials"  # left out where a scene has none: digests of earlier versions stay
 _LAWS: dict[str, type] = {"contact": ContactLaw, "rolling": RollingLaw, "water": Water, "column": Column}
 _ARRAYS = tuple(f.name for f in fields(Scene) if get_origin(f.type) is np.ndarray)
 _WALLS = tuple(f.name for f in fields(Walls) if f.name != "names")  # datasets of the group "walls"
@@ -31,6 +31,8 @@ def write_scene(file: h5py.File, scene: Scene, step: int, t: float) -> None:
     if scene.walls is not None:
         for name in _datasets_of(scene.walls):
             file.create_dataset(f"walls/{name}", data=np.asarray(getattr(scene.walls, name)))
+    if scene.materials is not None:
+        file.create_dataset(f"{_MATERIALS}/of", data=scene.materials.of)
     scalars = _scalars(scene) | {"step": step, "t": t}
     file.create_dataset(
         "scalars", data=np.frombuffer(json.dumps(scalars, default=_plain).encode(), dtype=np.uint8)
@@ -42,9 +44,12 @@ def _scalars(scene: Scene) -> dict[str, Any]:
     for f in fields(Scene):
         if f.name not in _ARRAYS:
             value = getattr(scene, f.name)
-            if f.name == _TRAFFIC and value is None:
+            if f.name in {_TRAFFIC, _MATERIALS} and value is None:
                 continue
-            found[f.name] = asdict(value) if f.name in {*_LAWS, _TRAFFIC} and value is not None else value
+            laws = f.name in {*_LAWS, _TRAFFIC, _MATERIALS} and value is not None
+            found[f.name] = asdict(value) if laws else value
+    if _MATERIALS in found:  # an array of its own
+        del found[_MATERIALS]["of"]
     if scene.contact.force == ContactForce.LINEAR:  # as before there were others: the digest stays
         found["contact"] = {key: one for key, one in found["contact"].items() if key not in ONLY_HERTZ}
     walls: Walls | None = found.pop("walls")
@@ -65,6 +70,8 @@ def scene_digest(scene: Scene) -> str:
         digest.update(array.astype(np.float64).tobytes())
     for name in () if scene.walls is None else _datasets_of(scene.walls):
         digest.update(np.ascontiguousarray(getattr(scene.walls, name), dtype=np.float64).tobytes())
+    if scene.materials is not None:
+        digest.update(scene.materials.of.astype(np.float64).tobytes())
     digest.update(json.dumps(_even(_scalars(scene)), sort_keys=True).encode())
     return digest.hexdigest()
 
@@ -91,6 +98,7 @@ def read_scene(path: Path) -> tuple[int, float, Scene]:
         faces = {
             name: read_dataset(file, f"walls/{name}", path) for name in _WALLS if f"walls/{name}" in file
         }
+        of = read_dataset(file, f"{_MATERIALS}/of", path) if _MATERIALS in file else np.zeros(0, np.int8)
     try:
         if raw.dtype != np.uint8 or raw.nbytes > _LIMIT:
             raise ValueError("its scalars are not text")
@@ -101,6 +109,8 @@ def read_scene(path: Path) -> tuple[int, float, Scene]:
         }
         if _TRAFFIC in scalars:
             scalars[_TRAFFIC] = Traffic.from_data(scalars[_TRAFFIC])
+        if _MATERIALS in scalars:
+            scalars[_MATERIALS] = _materials(of, scalars[_MATERIALS])
         if (names := scalars.pop("walls", None)) is not None:
             scalars["walls"] = _walls(faces, names)
         scalars["events"] = EventRule(scalars["events"])
@@ -123,6 +133,19 @@ def _plain(value: np.generic) -> Any:
 def _law(kind: type, raw: dict[str, Any]) -> Any:
     hints = get_type_hints(kind)
     return kind(**{name: hints[name](value) for name, value in raw.items()})
+
+
+def _materials(of: np.ndarray, raw: dict[str, Any]) -> Materials:
+    """Materials, whose numbers go to compiled code and are therefore checked."""
+    names = tuple(str(name) for name in raw["names"])
+    contact = tuple(_law(ContactLaw, one) for one in raw["contact"])
+    rolling = tuple(_law(RollingLaw, one) for one in raw["rolling"])
+    if of.dtype != np.int8 or of.ndim != 1 or (len(of) and not 0 <= of.min() <= of.max() < len(names)):
+        raise ValueError(f"materials/of holds a number that is not 0 to {len(names) - 1}")
+    if len(contact) != len(names) ** 2 or len(rolling) != len(names) ** 2:
+        raise ValueError(f"{len(names)} materials have {len(contact)} contact laws")
+    of.flags.writeable = False
+    return Materials(names, of, contact, rolling)
 
 
 def _walls(arrays: dict[str, np.ndarray], names: list[str]) -> Walls:

@@ -81,5 +81,11 @@ RADIUS_OF_EVENT = 104 * PITCH
 CURVE_OF_EVENT = 106 * PITCH  # of `contact_map.passing` [m/s2]
 ANSWER = 107 * PITCH  # fourteen rows as from F_N on
 N_ANSWER = 14
-SIZE = 121 * PITCH
+# Only where materials differ:
+MU = 121 * PITCH  # friction of the pair [-]
+MINDLIN = 122 * PITCH  # tangential stiffness of elastic spheres over K sqrt(overlap) [-]
+MU_OF_EVENT = 123 * PITCH
+K_N_OF_EVENT = 124 * PITCH  # of the law, not of the map [N/m]
+K_S_OF_EVENT = 125 * PITCH
+SIZE = 126 * PITCH
 FAR = 1.0e9  # [m] where a lane without a pair puts its partner

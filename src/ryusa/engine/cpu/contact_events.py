@@ -21,6 +21,7 @@ from ryusa.engine.shared.contact_instants import (
     end_contact,
 )
 from ryusa.engine.shared.kernel import FAST, inner
+from ryusa.engine.shared.materials import material_of
 from ryusa.engine.shared.variant import LawChoice
 from ryusa.laws.collision import effective_mass, effective_mass_tangential
 from ryusa.laws.contact_map import passing
@@ -47,8 +48,9 @@ def _find(m: int, selected: Any, i_of: Any, j_of: Any, mass: Any, dt: float, bat
 
 @inner(fastmath=FAST)
 def _pack(
-    n: int, lanes: int, selected: Any, i_of: Any, j_of: Any, mass: Any, inertia: Any, w: Any, batch: Any
-) -> int:
+    n: int, lanes: int, selected: Any, i_of: Any, j_of: Any, mass: Any, inertia: Any, w: Any, ids: Any,
+    material: Any, table: Any, batch: Any,
+) -> int:  # fmt: skip
     """Copy n events, of the lanes listed from `lanes` on, to event lanes; returns these in whole vectors.
 
     The lanes beyond n hold what earlier events left there: finite or not, it is not read.
@@ -69,6 +71,10 @@ def _pack(
         batch[B.INERTIA_OF_EVENT + e], batch[B.INERTIA_OF_EVENT + NEXT + e] = inertia[i], inertia[j]
         batch[B.RADIUS_OF_EVENT + e] = batch[B.SPIN_I + 4 * l + 3]
         batch[B.RADIUS_OF_EVENT + NEXT + e] = batch[B.SPIN_J + 4 * l + 3]
+        if table is not None:
+            a, b = material_of(i, ids, material), material_of(j, ids, material)
+            batch[B.MU_OF_EVENT + e] = table[a, b, P.MU]
+            batch[B.K_N_OF_EVENT + e], batch[B.K_S_OF_EVENT + e] = table[a, b, P.K_N], table[a, b, P.K_S]
         batch[B.CURVE_OF_EVENT + e] = passing(
             u_x * u_x + u_y * u_y + u_z * u_z, batch[B.CLOSING + l],
             w[i, 3] + w[j, 3] - batch[B.OVERLAP + l],  # inf of a plane, whose radius on its lane is that of i
@@ -122,29 +128,39 @@ def _answer(
     batch[at + B.UNTIL], batch[at + B.REST] = until, correction
 
 
-def _make_begin(plane: bool) -> Any:
+@inner(fastmath=FAST, forceinline=True)
+def _springs(e: int, cohesion: float, batch: Any) -> tuple[float, float, float, float]:
+    """Stiffnesses [N/m], cohesion [N] and friction [-] of event e, where materials differ."""
+    return batch[B.K_N_OF_EVENT + e], batch[B.K_S_OF_EVENT + e], cohesion, batch[B.MU_OF_EVENT + e]
+
+
+def _make_begin(plane: bool, mixed: bool) -> Any:
     @inner(fastmath=FAST)
     def begin(n: int, rotates: bool, rules: Any, c: Any, batch: Any) -> None:
         """Begin the contacts of the first n event lanes."""
+        alike, cohesion = (c[P.K_N], c[P.K_S], c[P.COHESION], c[P.MU]), c[P.COHESION]
         for e in range(min(n, B.LANES)):
             m_n, m_t = _masses(e, rotates, batch)
+            law = _springs(e, cohesion, batch) if mixed else alike
             at = B.EVENT - B.OVERLAP + e
             f_n, e_n, spring, rest, slid = begin_contact(
                 batch[at + B.OVERLAP], batch[at + B.CLOSING], batch[B.CURVE_OF_EVENT + e], m_n,
                 batch[at + B.K_N], batch[B.ETA_N_OF_EVENT + e], m_t, batch[at + B.K_S], batch[at + B.ETA_S],
-                _slip(e, plane, batch), rules, c,
+                _slip(e, plane, batch), rules, law, c,
             )  # fmt: skip
             _answer(e, f_n, e_n, f_n, BEGAN, 1.0, spring, rest, 1.0 if slid else 0.0, math.inf, 0.0, batch)
 
     return begin
 
 
-def _make_end(plane: bool) -> Any:
+def _make_end(plane: bool, mixed: bool) -> Any:
     @inner(fastmath=FAST)
     def end(n: int, rotates: bool, rules: Any, tension: bool, c: Any, batch: Any) -> None:
         """End the contacts of the first n event lanes, or let them go on."""
+        alike, cohesion = (c[P.K_N], c[P.K_S], c[P.COHESION], c[P.MU]), c[P.COHESION]
         for e in range(min(n, B.LANES)):
             m_n, m_t = _masses(e, rotates, batch)
+            law = _springs(e, cohesion, batch) if mixed else alike
             at = B.EVENT - B.OVERLAP + e
             overlap, closing, k_n = batch[at + B.OVERLAP], batch[at + B.CLOSING], batch[at + B.K_N]
             p_x, p_y, p_z = batch[B.SPRING_OF_EVENT + e], 0.0, 0.0
@@ -162,7 +178,7 @@ def _make_end(plane: bool) -> Any:
             ends, correction, f_n, push, rest, slid, until = end_contact(
                 late if batch[B.STATE_OF_EVENT + e] == BEGAN else 0.0, overlap, closing, m_n, k_n,
                 batch[B.ETA_N_OF_EVENT + e], m_t, batch[at + B.K_S], batch[at + B.ETA_S], (p_x, p_y, p_z),
-                (p_x + q_x, p_y + q_y, p_z + q_z), _slip(e, plane, batch), tension, rules, c,
+                (p_x + q_x, p_y + q_y, p_z + q_z), _slip(e, plane, batch), tension, rules, law, c,
             )  # fmt: skip
             _answer(
                 e, f_n, k_n * overlap, push, ENDING if ends else HELD, 1.0 if ends else 0.0, (0.0, 0.0, 0.0),
@@ -172,28 +188,41 @@ def _make_end(plane: bool) -> Any:
     return end
 
 
-_begin_plane, _begin_space = _make_begin(True), _make_begin(False)
-_end_plane, _end_space = _make_end(True), _make_end(False)
+_begin_plane, _begin_space = _make_begin(True, False), _make_begin(False, False)
+_end_plane, _end_space = _make_end(True, False), _make_end(False, False)
+# of materials that differ
+_begin_plane_mixed, _begin_space_mixed = _make_begin(True, True), _make_begin(False, True)
+_end_plane_mixed, _end_space_mixed = _make_end(True, True), _make_end(False, True)
 
 
 @inner(fastmath=FAST, forceinline=True)
 def begin_and_end(
     flat: int | None, rotation: int, choice: LawChoice, m: int, selected: Any, i_of: Any, j_of: Any,
-    mass: Any, inertia: Any, w: Any, c: Any, batch: Any,
+    mass: Any, inertia: Any, w: Any, ids: Any, material: Any, table: Any, c: Any, batch: Any,
 ) -> None:  # fmt: skip
     """Do the events among the first m lanes."""
     rules = (slip_total(choice.slip), slip_drops(choice.slip), cap_total(choice.cap))
     begin, end = _find(m, selected, i_of, j_of, mass, c[P.DT], batch)
     if begin > 0:
-        n = _pack(begin, B.BEGINS, selected, i_of, j_of, mass, inertia, w, batch)
-        if flat is not None:
+        n = _pack(begin, B.BEGINS, selected, i_of, j_of, mass, inertia, w, ids, material, table, batch)
+        if table is not None:
+            if flat is not None:
+                _begin_plane_mixed(n, rotation != 0, rules, c, batch)
+            else:
+                _begin_space_mixed(n, rotation != 0, rules, c, batch)
+        elif flat is not None:
             _begin_plane(n, rotation != 0, rules, c, batch)
         else:
             _begin_space(n, rotation != 0, rules, c, batch)
         _put_back(begin, B.BEGINS, batch)
     if end > 0:
-        n = _pack(end, B.MAY_END, selected, i_of, j_of, mass, inertia, w, batch)
-        if flat is not None:
+        n = _pack(end, B.MAY_END, selected, i_of, j_of, mass, inertia, w, ids, material, table, batch)
+        if table is not None:
+            if flat is not None:
+                _end_plane_mixed(n, rotation != 0, rules, choice.tension != 0, c, batch)
+            else:
+                _end_space_mixed(n, rotation != 0, rules, choice.tension != 0, c, batch)
+        elif flat is not None:
             _end_plane(n, rotation != 0, rules, choice.tension != 0, c, batch)
         else:
             _end_space(n, rotation != 0, rules, choice.tension != 0, c, batch)

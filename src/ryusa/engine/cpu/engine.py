@@ -43,7 +43,7 @@ from ryusa.engine.shared.energy_account import (
     tally_of,
 )
 from ryusa.engine.shared.faults import fault_of, lost_of, unsafe_of
-from ryusa.engine.shared.parameters import parameters_of
+from ryusa.engine.shared.materials import common_parameters, material_arrays
 from ryusa.engine.shared.refusals import check_state, refusals
 from ryusa.engine.shared.skin import best_skin
 from ryusa.engine.shared.status import STOP_EVENTS, STOP_LIST, STOP_ROOM, STOP_UNSAFE
@@ -109,7 +109,8 @@ class CpuEngine:
         self._run = make_run(self._variant)
         blocks = blocks_of(n, scene.plane_case)
         self._layout = BlockLayout(scene, blocks, self._variant)
-        self._parameters = parameters_of(scene)
+        self._parameters = common_parameters(scene)
+        self._material, self._table = material_arrays(scene)
         self._smallest = float(np.concatenate([scene.d, scene.d_fixed]).min(initial=np.inf))
         self._parameters[P.T_ZERO] = state.t - state.step * scene.dt
         records = (n // blocks + _RECORDS, N_EVENT) if scene.events != EventRule.NONE else (1, 1)
@@ -261,7 +262,7 @@ class CpuEngine:
         while n_steps > 0:
             arguments = (
                 threads, n_steps, self._step, self._travel, np.zeros(1, np.int64), self._parameters,
-                layout.block_start, self._n, layout.n_solid, self._grains, layout.walls, self._pairs,
+                self._material, self._table, layout.block_start, self._n, layout.n_solid, self._grains, layout.walls, self._pairs,
                 self._candidates.pairs,
             )  # fmt: skip
             more = (self._choice, self._candidates.schedule)

@@ -82,7 +82,7 @@ def _make_kinematics(plane: bool) -> Any:
     return kinematics_of_maps
 
 
-def _make_tangential(plane: bool) -> Any:
+def _make_tangential(plane: bool, mixed: bool) -> Any:
     @inner(fastmath=FAST)
     def tangential_of_maps(
         total: bool, drop: bool, cap_total: bool, m: int, hdt: float, c: Any, batch: Any
@@ -109,7 +109,8 @@ def _make_tangential(plane: bool) -> Any:
             held = 0.0 if without else 1.0
             e_x, e_y, e_z, b_x, b_y, b_z, share, dashpot_s, sliding, _ = tangential_step(
                 plane, total, drop, cap_total, n_x, n_y, n_z, twist, batch[B.RAW + l], e_n, held, s_x, s_y,
-                s_z, p_x, p_y, p_z, q_x, q_y, q_z, k_s, soft_s, batch[B.ETA_S + l], cohesion, mu, dt, hdt,
+                s_z, p_x, p_y, p_z, q_x, q_y, q_z, k_s, soft_s, batch[B.ETA_S + l], cohesion,
+                batch[B.MU + l] if mixed else mu, dt, hdt,
             )  # fmt: skip
             shaped, slid = batch[B.GIVEN + l] > 0.0, batch[B.GIVEN_SLID + l] > 0.0
             given = without or shaped
@@ -163,13 +164,15 @@ def _make_tangential(plane: bool) -> Any:
 
 # Built once for a plane and once for space; not passed as functions, which numba could not keep on disk.
 _kinematics_plane, _kinematics_space = _make_kinematics(True), _make_kinematics(False)
-_tangential_plane, _tangential_space = _make_tangential(True), _make_tangential(False)
+_tangential_plane, _tangential_space = _make_tangential(True, False), _make_tangential(False, False)
+_tangential_plane_mixed, _tangential_space_mixed = _make_tangential(True, True), _make_tangential(False, True)
 
 
 @inner(fastmath=FAST, forceinline=True)
 def compute_exactly(
     flat: int | None, rotation: int, choice: LawChoice, m: int, lanes: int, hdt: float, most: float,
-    selected: Any, i_of: Any, j_of: Any, mass: Any, inertia: Any, w: Any, c: Any, batch: Any,
+    selected: Any, i_of: Any, j_of: Any, mass: Any, inertia: Any, w: Any, ids: Any, material: Any,
+    table: Any, c: Any, batch: Any,
 ) -> None:  # fmt: skip
     """Forces, torques and work of the first m lanes, as `pair_batch.compute`; `lanes` in whole vectors."""
     total, drop, whole = slip_total(choice.slip), slip_drops(choice.slip), cap_total(choice.cap)
@@ -177,8 +180,15 @@ def compute_exactly(
         _kinematics_plane(lanes, most, choice.tension != 0, c, batch)
     else:
         _kinematics_space(lanes, most, choice.tension != 0, c, batch)
-    begin_and_end(flat, rotation, choice, m, selected, i_of, j_of, mass, inertia, w, c, batch)
-    if flat is not None:
+    begin_and_end(
+        flat, rotation, choice, m, selected, i_of, j_of, mass, inertia, w, ids, material, table, c, batch
+    )  # fmt: skip
+    if table is not None:
+        if flat is not None:
+            _tangential_plane_mixed(total, drop, whole, lanes, hdt, c, batch)
+        else:
+            _tangential_space_mixed(total, drop, whole, lanes, hdt, c, batch)
+    elif flat is not None:
         _tangential_plane(total, drop, whole, lanes, hdt, c, batch)
     else:
         _tangential_space(total, drop, whole, lanes, hdt, c, batch)

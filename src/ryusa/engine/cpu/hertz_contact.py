@@ -13,6 +13,7 @@ from ryusa.engine.cpu.contact_rows import SHORT
 from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.kernel import FAST, inner
+from ryusa.engine.shared.materials import material_of
 from ryusa.engine.shared.variant import LawChoice
 from ryusa.laws.contact_step import contact_force, contact_kinematics
 from ryusa.laws.dispatch import cap_total, slip_drops, slip_total, unloading_rescales
@@ -65,31 +66,34 @@ def _make_kinematics(plane: bool) -> Any:
     return kinematics_hertz
 
 
-@inner(fastmath=FAST)
-def _normal_force(least: float, rescaled: bool, m: int, hdt: float, c: Any, batch: Any) -> None:
-    """Normal force and the second half of its work, and the tangential stiffness.
+def _make_normal(mixed: bool) -> Any:
+    @inner(fastmath=FAST)
+    def normal_hertz(least: float, rescaled: bool, m: int, hdt: float, c: Any, batch: Any) -> None:
+        """Normal force and the second half of its work, and the tangential stiffness.
 
-    `least` is the least normal force that a contact can have [N].
-    """
-    mindlin = c[P.MINDLIN]
-    for l in range(min(m, B.LANES)):
-        f_n, held, touching, dashpot_n, released_n = normal_step_hertz(
-            batch[B.OVERLAP + l], batch[B.CLOSING + l], batch[B.RAW + l], batch[B.E_N + l], least, hdt
-        )
-        batch[B.DASH_N + l] += dashpot_n
-        batch[B.RELEASED_N + l] += released_n
-        batch[B.F_N + l] = f_n
-        batch[B.HELD + l], batch[B.TOUCHING + l] = held, touching
-        stiff = batch[B.K_N + l]
-        e_old, root_old = spring_hertz(batch[B.OVERLAP_OLD + l], stiff)
-        k_s, soft_s, soft_old, scale = shear_spring_hertz(
-            rescaled, batch[B.ROOT + l], root_old, mindlin * stiff
-        )
-        batch[B.E_OLD + l], batch[B.STIFF_S + l], batch[B.SOFT_S + l] = e_old, k_s, soft_s
-        batch[B.SOFT_OLD + l], batch[B.SCALE + l] = soft_old, scale
+        `least` is the least normal force that a contact can have [N].
+        """
+        mindlin = c[P.MINDLIN]
+        for l in range(min(m, B.LANES)):
+            f_n, held, touching, dashpot_n, released_n = normal_step_hertz(
+                batch[B.OVERLAP + l], batch[B.CLOSING + l], batch[B.RAW + l], batch[B.E_N + l], least, hdt
+            )
+            batch[B.DASH_N + l] += dashpot_n
+            batch[B.RELEASED_N + l] += released_n
+            batch[B.F_N + l] = f_n
+            batch[B.HELD + l], batch[B.TOUCHING + l] = held, touching
+            stiff = batch[B.K_N + l]
+            e_old, root_old = spring_hertz(batch[B.OVERLAP_OLD + l], stiff)
+            k_s, soft_s, soft_old, scale = shear_spring_hertz(
+                rescaled, batch[B.ROOT + l], root_old, (batch[B.MINDLIN + l] if mixed else mindlin) * stiff
+            )
+            batch[B.E_OLD + l], batch[B.STIFF_S + l], batch[B.SOFT_S + l] = e_old, k_s, soft_s
+            batch[B.SOFT_OLD + l], batch[B.SCALE + l] = soft_old, scale
+
+    return normal_hertz
 
 
-def _make_tangential(plane: bool) -> Any:
+def _make_tangential(plane: bool, mixed: bool) -> Any:
     @inner(fastmath=FAST)
     def tangential_hertz(
         total: bool, drop: bool, cap_total: bool, least: float, m: int, hdt: float, c: Any, batch: Any
@@ -114,7 +118,7 @@ def _make_tangential(plane: bool) -> Any:
                 plane, total, drop, cap_total, n_x, n_y, n_z, twist, f_n, e_n, batch[B.HELD + l], s_x, s_y,
                 s_z, p_x, p_y, p_z, q_x, q_y, q_z, batch[B.STIFF_S + l], batch[B.SOFT_S + l],
                 batch[B.SOFT_OLD + l], batch[B.SCALE + l], batch[B.ETA_S + l] * batch[B.FOURTH + l], cohesion,
-                mu, dt, hdt,
+                batch[B.MU + l] if mixed else mu, dt, hdt,
             )  # fmt: skip
             f_x, f_y, f_z, t_x, t_y, t_z = contact_force(
                 plane, n_x, n_y, n_z, f_n, e_x + b_x, e_y + b_y, e_z + b_z
@@ -143,12 +147,14 @@ def _make_tangential(plane: bool) -> Any:
 
 # Built once for a plane and once for space; not passed as functions, which numba could not keep on disk.
 _kinematics_plane, _kinematics_space = _make_kinematics(True), _make_kinematics(False)
-_tangential_plane, _tangential_space = _make_tangential(True), _make_tangential(False)
+_normal_force, _normal_force_mixed = _make_normal(False), _make_normal(True)
+_tangential_plane, _tangential_space = _make_tangential(True, False), _make_tangential(False, False)
+_tangential_plane_mixed, _tangential_space_mixed = _make_tangential(True, True), _make_tangential(False, True)
 
 
 @inner(fastmath=FAST, forceinline=True)
 def compute_hertz(
-    flat: int | None, choice: LawChoice, m: int, hdt: float, most: float, c: Any, batch: Any
+    flat: int | None, choice: LawChoice, m: int, hdt: float, most: float, table: Any, c: Any, batch: Any
 ) -> None:
     """Forces, torques and work of the first m lanes, as `pair_batch.compute`."""
     least = -math.inf if choice.tension else 0.0  # a contact that may pull has no least force
@@ -156,16 +162,26 @@ def compute_hertz(
     rescaled = unloading_rescales(choice.unloading)
     if flat is not None:
         _kinematics_plane(m, most, c, batch)
-        _normal_force(least, rescaled, m, hdt, c, batch)
-        _tangential_plane(total, drop, whole, least, m, hdt, c, batch)
+        if table is not None:
+            _normal_force_mixed(least, rescaled, m, hdt, c, batch)
+            _tangential_plane_mixed(total, drop, whole, least, m, hdt, c, batch)
+        else:
+            _normal_force(least, rescaled, m, hdt, c, batch)
+            _tangential_plane(total, drop, whole, least, m, hdt, c, batch)
     else:
         _kinematics_space(m, most, c, batch)
-        _normal_force(least, rescaled, m, hdt, c, batch)
-        _tangential_space(total, drop, whole, least, m, hdt, c, batch)
+        if table is not None:
+            _normal_force_mixed(least, rescaled, m, hdt, c, batch)
+            _tangential_space_mixed(total, drop, whole, least, m, hdt, c, batch)
+        else:
+            _normal_force(least, rescaled, m, hdt, c, batch)
+            _tangential_space(total, drop, whole, least, m, hdt, c, batch)
 
 
 @inner(fastmath=FAST)
-def spring_energy_hertz(b: int, c: Any, candidates: Any) -> tuple[float, float, int]:
+def spring_energy_hertz(
+    b: int, c: Any, ids: Any, material: Any, table: Any, candidates: Any
+) -> tuple[float, float, int]:
     """Energy in the normal and tangential springs of block b [J], and its contacts."""
     eta, rows, mindlin = candidates.eta, candidates.rows, c[P.MINDLIN]
     short = rows.shape[1] == len(SHORT)
@@ -176,6 +192,9 @@ def spring_energy_hertz(b: int, c: Any, candidates: Any) -> tuple[float, float, 
             overlap = rows[k, 2] if short else rows[k, M.OVERLAP]  # SHORT.index(M.OVERLAP)
             stiff = eta[k, M.K_HERTZ]
             normal += hertz_energy(overlap, stiff)
+            if table is not None:
+                i, j = candidates.i[k], candidates.j[k]
+                mindlin = table[material_of(i, ids, material), material_of(j, ids, material), P.MINDLIN]
             k_s = mindlin * stiff * math.sqrt(overlap)
             if k_s > 0.0:
                 square = rows[k, 0] ** 2

@@ -20,6 +20,7 @@ from ryusa.engine.cpu.simd.vec4 import add4, copy4, read4, subtract4, with_fourt
 from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.kernel import FAST, inner
+from ryusa.engine.shared.materials import material_of
 from ryusa.engine.shared.variant import LawChoice
 from ryusa.laws.contact import normal_force
 from ryusa.laws.contact_step import (
@@ -61,19 +62,28 @@ def filter_pairs(
 def gather(
     rotation: int, kind: int, short: int | None, walled: int | None, m: int, selected: Any, n_solid: int,
     c: Any, mass: Any, inertia: Any, x: Any, v: Any, w: Any, points: Any, normals: Any, i_of: Any, j_of: Any,
-    touching: Any, eta: Any, rows: Any, met: Any, slot: Any, face_lanes: Any, batch: Any,
+    touching: Any, eta: Any, rows: Any, met: Any, slot: Any, face_lanes: Any, ids: Any,
+    material: Any, table: Any, batch: Any,
 ) -> int:  # fmt: skip
     """Copy the first m selected pairs to as many lanes; returns the number of lanes to compute.
 
     Those are whole vectors of eight: the lanes beyond m hold pairs far apart. `kind` is that of the springs
-    (memory_rows.py). `face_lanes` gets the lanes of
+    (memory_rows.py). `table` has a row of parameters for each two materials, None
+    where there is one material. `face_lanes` gets the lanes of
     faces, and in place LANES their number.
     """
     n_face = 0
     for l in range(m):
         k = selected[l]
         i, j = i_of[k], j_of[k]
-        if not touching[k]:
+        if table is not None:
+            a, b = material_of(i, ids, material), material_of(j, ids, material)
+            if not touching[k]:
+                begin_row(k, i, j, rotation, kind, table[a, b], mass, x, inertia, eta, rows)
+            batch[B.MU + l] = table[a, b, P.MU]
+            if kind == M.HERTZ:
+                batch[B.MINDLIN + l] = table[a, b, P.MINDLIN]
+        elif not touching[k]:
             begin_row(k, i, j, rotation, kind, c, mass, x, inertia, eta, rows)
         if walled is None:
             set_separation(B.SEPARATION // 4 + l, i, j, n_solid, x, points, normals, batch)
@@ -112,6 +122,8 @@ def gather(
         batch[B.K_N + l] = batch[B.K_S + l] = 1.0
         if kind == M.HERTZ:
             batch[B.OVERLAP_OLD + l] = 0.0
+        if table is not None:
+            batch[B.MU + l] = batch[B.MINDLIN + l] = 1.0
         batch[B.SEPARATION + 4 * l] = B.FAR
     return whole
 
@@ -174,7 +186,7 @@ def _normal_force(least: float, m: int, hdt: float, c: Any, batch: Any) -> None:
         batch[B.HELD + l], batch[B.TOUCHING + l] = held, touching
 
 
-def _make_tangential(plane: bool) -> Any:
+def _make_tangential(plane: bool, mixed: bool) -> Any:
     @inner(fastmath=FAST)
     def tangential(
         total: bool, drop: bool, cap_total: bool, least: float, m: int, hdt: float, c: Any, batch: Any
@@ -198,7 +210,8 @@ def _make_tangential(plane: bool) -> Any:
             )  # fmt: skip
             e_x, e_y, e_z, b_x, b_y, b_z, share, dashpot_s, sliding, released_s = tangential_step(
                 plane, total, drop, cap_total, n_x, n_y, n_z, twist, f_n, e_n, held, s_x, s_y, s_z,
-                p_x, p_y, p_z, q_x, q_y, q_z, k_s, soft_s, batch[B.ETA_S + l], cohesion, mu, dt, hdt,
+                p_x, p_y, p_z, q_x, q_y, q_z, k_s, soft_s, batch[B.ETA_S + l], cohesion,
+                batch[B.MU + l] if mixed else mu, dt, hdt,
             )  # fmt: skip
             f_x, f_y, f_z, t_x, t_y, t_z = contact_force(
                 plane, n_x, n_y, n_z, f_n, e_x + b_x, e_y + b_y, e_z + b_z
@@ -227,11 +240,14 @@ def _make_tangential(plane: bool) -> Any:
 
 # Built once for a plane and once for space; not passed as functions, which numba could not keep on disk.
 _kinematics_plane, _kinematics_space = _make_kinematics(True), _make_kinematics(False)
-_tangential_plane, _tangential_space = _make_tangential(True), _make_tangential(False)
+_tangential_plane, _tangential_space = _make_tangential(True, False), _make_tangential(False, False)
+_tangential_plane_mixed, _tangential_space_mixed = _make_tangential(True, True), _make_tangential(False, True)
 
 
 @inner(fastmath=FAST, forceinline=True)
-def compute(flat: int | None, choice: LawChoice, m: int, hdt: float, most: float, c: Any, batch: Any) -> None:
+def compute(
+    flat: int | None, choice: LawChoice, m: int, hdt: float, most: float, table: Any, c: Any, batch: Any
+) -> None:
     """Forces, torques and work of the first m lanes; their memory goes from the last step to this one.
 
     Three loops, not one: each reads what it needs from the batch. One long loop has more numbers alive than
@@ -243,11 +259,17 @@ def compute(flat: int | None, choice: LawChoice, m: int, hdt: float, most: float
     if flat is not None:
         _kinematics_plane(m, most, c, batch)
         _normal_force(least, m, hdt, c, batch)
-        _tangential_plane(total, drop, whole, least, m, hdt, c, batch)
+        if table is not None:
+            _tangential_plane_mixed(total, drop, whole, least, m, hdt, c, batch)
+        else:
+            _tangential_plane(total, drop, whole, least, m, hdt, c, batch)
     else:
         _kinematics_space(m, most, c, batch)
         _normal_force(least, m, hdt, c, batch)
-        _tangential_space(total, drop, whole, least, m, hdt, c, batch)
+        if table is not None:
+            _tangential_space_mixed(total, drop, whole, least, m, hdt, c, batch)
+        else:
+            _tangential_space(total, drop, whole, least, m, hdt, c, batch)
 
 
 @inner(fastmath=FAST, forceinline=True)

@@ -16,6 +16,7 @@ from ryusa.engine.shared import record_fields as R
 from ryusa.engine.shared.contact_records import begin_record, end_record, keep_record
 from ryusa.engine.shared.dashpots import dashpot_immersed, dashpot_immersed_hertz, spring_immersed
 from ryusa.engine.shared.kernel import FAST, inner, kernel
+from ryusa.engine.shared.materials import material_of
 from ryusa.engine.shared.rolling import end_rolling, rolling_friction
 from ryusa.engine.shared.variant import KernelVariant, LawChoice
 from ryusa.laws.dispatch import rolling_alike
@@ -33,11 +34,14 @@ def immersed_dashpots(
     m: int,
     selected: Any,
     c: Any,
+    material: Any,
+    table: Any,
     grains: GrainArrays,
     candidates: CandidateArrays,
     batch: Any,
 ) -> None:
     """Give lanes that touch now and did not before the normal dashpot of their rebound."""
+    of = c
     for l in range(m):
         overlap = overlap_of_lane(l, c, batch)
         if batch[B.WAS_TOUCHING + l] > 0.0 or overlap <= 0.0:
@@ -53,12 +57,14 @@ def immersed_dashpots(
         )
         closing = (u_x * d_x + u_y * d_y + u_z * d_z) / distance
         i, j = candidates.i[k], candidates.j[k]
+        if table is not None:
+            of = table[material_of(i, grains.ids, material), material_of(j, grains.ids, material)]
         if hertz is not None:
-            eta_n = dashpot_immersed_hertz(choice, closing, i, j, c, grains.m, grains.w)
+            eta_n = dashpot_immersed_hertz(choice, closing, i, j, of, grains.m, grains.w)
         elif exact is None:
-            eta_n = dashpot_immersed(choice, closing, i, j, c, grains.m, grains.w)
+            eta_n = dashpot_immersed(choice, closing, i, j, of, grains.m, grains.w)
         else:
-            eta_n, k_n = spring_immersed(choice, closing, i, j, c, grains.m, grains.w)
+            eta_n, k_n = spring_immersed(choice, closing, i, j, of, grains.m, grains.w)
             batch[B.K_N + l] = candidates.eta[k, M.K_N] = k_n
         batch[B.RELATIVE_VELOCITY + 4 * l + 3] = candidates.eta[k, M.ETA_N] = eta_n
 
@@ -106,6 +112,8 @@ def optional_physics(
     hdt: float,
     selected: Any,
     c: Any,
+    material: Any,
+    table: Any,
     grains: GrainArrays,
     candidates: CandidateArrays,
     batch: Any,
@@ -116,7 +124,7 @@ def optional_physics(
     """Rolling friction, records and films of the first m lanes; returns the energy in rolling springs [J]."""
     w, n_touching = grains.w, grains.n_touching
     rows, width = candidates.rows, candidates.rows.shape[1]
-    held = 0.0
+    held, of = 0.0, c
     for l in range(m):
         was, touching = batch[B.WAS_TOUCHING + l] > 0.0, batch[B.TORQUE_I + 4 * l + 3] > 0.0
         overlap, closing = batch[B.OVERLAP + l], batch[B.CLOSING + l]
@@ -130,6 +138,8 @@ def optional_physics(
         spin_j = (batch[B.SPIN_J + 4 * l], batch[B.SPIN_J + 4 * l + 1], batch[B.SPIN_J + 4 * l + 2])
         f_n = batch[B.SPRING + 4 * l + 3]
         if variant.rolling:
+            if table is not None:
+                of = table[material_of(i, grains.ids, material), material_of(j, grains.ids, material)]
             if touching:
                 turned = (
                     normal[1] * force[2] - normal[2] * force[1],
@@ -138,7 +148,7 @@ def optional_physics(
                 )
                 share_j = float(max(n_touching[j], 1)) if j < n else 1.0
                 r_x, r_y, r_z, e_r = rolling_friction(
-                    choice.rolling, choice.arm, row, c, f_n, overlap, hdt,
+                    choice.rolling, choice.arm, row, of, f_n, overlap, hdt,
                     (w[i, 3], grains.m[i], grains.inertia[i], float(max(n_touching[i], 1))),
                     (w[j, 3], grains.m[j], grains.inertia[j], share_j),
                     normal, turned, spin_i, spin_j, account,
@@ -150,7 +160,7 @@ def optional_physics(
                 held += e_r
             elif was:
                 radius = reduced_radius(w[i, 3], w[j, 3])
-                end_rolling(choice.rolling, row, c, hdt, spin_i, spin_j, radius, account)
+                end_rolling(choice.rolling, row, of, hdt, spin_i, spin_j, radius, account)
         if variant.events:
             record_of_lane(
                 variant, choice, l, i, j, n, t, was, touching, normal, slip, force, c, grains,

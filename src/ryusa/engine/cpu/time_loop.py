@@ -59,7 +59,7 @@ TERMS = tuple(
 def block_forces(
     variant: KernelVariant, flat: Present, water: Present, optional: Present, exact: Present, hertz: Present,
     short: Present, walled: Present, choice: LawChoice, b: int, hi: int, n: int, n_solid: int, step: int,
-    t: float, hdt: float, last: bool, c: Any, grains: GrainArrays, walls: WallArrays, pairs: PairArrays,
+    t: float, hdt: float, last: bool, c: Any, material: Any, table: Any, grains: GrainArrays, walls: WallArrays, pairs: PairArrays,
     candidates: CandidateArrays, work: Workspace, accounts: AccountArrays, ended: Any, account: Any,
     stats: Any,
 ) -> None:  # fmt: skip
@@ -68,7 +68,7 @@ def block_forces(
     batch, separation, inside, selected = work.batch, work.separation, work.inside, work.selected
     reach_on = c[P.FILM_REACH] if variant.film else 0.0
     # arrays are passed one by one: references to a tuple of them would be counted for every batch
-    x, v, w, f = grains.x, grains.v, grains.w, pairs.f
+    x, v, w, f, ids = grains.x, grains.v, grains.w, pairs.f, grains.ids
     i_of, j_of, to, touching, eta, rows = (
         candidates.i,
         candidates.j,
@@ -108,25 +108,26 @@ def block_forces(
         lanes = gather(
             variant.rotation, M.OF_MAPS * variant.exact + M.HERTZ * variant.hertz, short, walled, m, selected,
             n_solid, c, mass, inertia, x, v, w, points, normals, i_of, j_of, touching, eta, rows, met, slot,
-            face_lanes, batch,
+            face_lanes, ids, material, table, batch,
         )  # fmt: skip
         if walled is not None:
             add_drift(face_lanes, selected, slot, walls.faces.motion, met, batch)
         if water is not None and choice.rebound:
-            immersed_dashpots(exact, hertz, choice, m, selected, c, grains, candidates, batch)
+            immersed_dashpots(exact, hertz, choice, m, selected, c, material, table, grains, candidates, batch)
         if hertz is not None:
-            compute_hertz(flat, choice, lanes, hdt, stats[S.OVERLAP_MAX], c, batch)
+            compute_hertz(flat, choice, lanes, hdt, stats[S.OVERLAP_MAX], table, c, batch)
         elif exact is None:
-            compute(flat, choice, lanes, hdt, stats[S.OVERLAP_MAX], c, batch)
+            compute(flat, choice, lanes, hdt, stats[S.OVERLAP_MAX], table, c, batch)
         else:
             compute_exactly(
                 flat, variant.rotation, choice, m, lanes, hdt, stats[S.OVERLAP_MAX], selected, i_of, j_of,
-                mass, inertia, w, c, batch,
+                mass, inertia, w, ids, material, table, c, batch,
             )  # fmt: skip
         if optional is not None:
             spring_r += optional_physics(
-                variant, choice, m, n, t, hdt, selected, c, grains, candidates, batch, ended, account, stats
-            )
+                variant, choice, m, n, t, hdt, selected, c, material, table, grains, candidates, batch, ended,
+                account, stats,
+            )  # fmt: skip
         if walled is not None:
             keep_forces(face_lanes, selected, slot, met, batch)
         if exact is not None:
@@ -145,7 +146,9 @@ def block_forces(
         account[TERMS[row]] += total
     if last:
         if hertz is not None:
-            stats[S.SPRING_N], stats[S.SPRING_S], stats[S.N_CONTACT] = spring_energy_hertz(b, c, candidates)
+            stats[S.SPRING_N], stats[S.SPRING_S], stats[S.N_CONTACT] = spring_energy_hertz(
+                b, c, ids, material, table, candidates
+            )
         elif exact is None:
             stats[S.SPRING_N], stats[S.SPRING_S], stats[S.N_CONTACT] = spring_energy(b, c, candidates)
         else:
@@ -220,6 +223,8 @@ def make_run(variant: KernelVariant) -> Any:
         travel: float,
         count: Any,
         c: Any,
+        material: Any,
+        table: Any,
         block_start: Any,
         n: int,
         n_solid: int,
@@ -242,6 +247,8 @@ def make_run(variant: KernelVariant) -> Any:
             borrow(accounts_of_blocks),
             borrow(block_start),
         )
+        if table is not None:
+            material, table = borrow(material), borrow(table)
         ended, terms, stats = accounts_of_blocks.ended, accounts_of_blocks.terms, accounts_of_blocks.stats
         n_block = len(block_start) - 1
         b_0, b_1 = thread * n_block // n_threads, (thread + 1) * n_block // n_threads
@@ -290,8 +297,8 @@ def make_run(variant: KernelVariant) -> Any:
                     if not after:
                         block_forces(
                             variant, flat, water, optional, exact, hertz, short, walled, choice, b,
-                            block_start[b + 1], n, n_solid, step, t, hdt, last, c, grains, walls, pairs,
-                            candidates, work, accounts_of_blocks, ended[b], terms[b], stats[b],
+                            block_start[b + 1], n, n_solid, step, t, hdt, last, c, material, table, grains, walls,
+                            pairs, candidates, work, accounts_of_blocks, ended[b], terms[b], stats[b],
                         )  # fmt: skip
                     q = b if after else b - span
                     soon = b_0 + span <= q < b_1 - span

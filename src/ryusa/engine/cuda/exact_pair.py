@@ -80,7 +80,8 @@ def make_exact_contact(variant: KernelVariant, choice: LawChoice) -> Any:
                 rest = (overlap - e_old / k_n) / dt - closing - 0.5 * dt * curve
             now, rest, f_n, e_n, push, given, (g_x, g_y, g_z), (h_x, h_y, h_z), slid, until = _instant_step(
                 was, rest, overlap, closing, curve, m_n, k_n, eta_n, m_t, k_s, eta_s, (t_x, t_y, t_z),
-                (t_x + r_x, t_y + r_y, t_z + r_z), slip, tension, (total, drop, cap_total), c,
+                (t_x + r_x, t_y + r_y, t_z + r_z), slip, tension, (total, drop, cap_total),
+                (c[P.K_N], c[P.K_S], c[P.COHESION], c[P.MU]), c,
             )  # fmt: skip
         soft_s = 1.0 / k_s if k_s > 0.0 else 0.0
         if given:

@@ -89,10 +89,11 @@ def rolling_energy(scene: Scene, state: State, places: np.ndarray) -> float:
     if "spring" not in scene.rolling.model.marks:
         return 0.0
     r = 0.5 * np.concatenate([scene.d, scene.d_fixed, np.full(scene.n_plane + scene.n_face, np.inf)])
-    energy = 0.0
-    for place in places:
-        radius = reduced_radius(float(r[state.contacts.i[place]]), float(r[state.contacts.j[place]]))
-        f = scene.rolling.coefficient * radius
-        k_r = epsd_stiffness(scene.contact.k_n, f, scene.rolling.stiffness_factor)
-        energy += 0.5 * float(np.sum(state.contacts.spring_r[place] ** 2)) / k_r if k_r > 0.0 else 0.0
+    energy, i, j = 0.0, state.contacts.i[places], state.contacts.j[places]
+    for one, some in scene.by_pair(i, j):
+        for place in places[some]:
+            radius = reduced_radius(float(r[state.contacts.i[place]]), float(r[state.contacts.j[place]]))
+            f = one.rolling.coefficient * radius
+            k_r = epsd_stiffness(one.contact.k_n, f, one.rolling.stiffness_factor)
+            energy += 0.5 * float(np.sum(state.contacts.spring_r[place] ** 2)) / k_r if k_r > 0.0 else 0.0
     return energy

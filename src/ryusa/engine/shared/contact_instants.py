@@ -22,6 +22,7 @@ from ryusa.laws.slip_within_step import slip_within_step
 
 Vector = tuple[float, float, float]
 Rules = tuple[bool, bool, bool]
+Springs = tuple[float, float, float, float]  # stiffnesses [N/m], cohesion [N], friction [-] of a pair
 
 # States of a pair
 APART = 0
@@ -65,7 +66,7 @@ def kind_of_step(
 
 @inner(fastmath=FAST, forceinline=True)
 def oscillators(
-    m: float, eta_d: float, m_t: float, eta_sd: float, c: Any
+    m: float, eta_d: float, m_t: float, eta_sd: float, k_n: float, c: Any
 ) -> tuple[float, float, float, float]:
     """Oscillators of the normal and the tangential map of a pair.
 
@@ -73,18 +74,18 @@ def oscillators(
     the second.
     """
     a, a_t = decay_of_map(eta_d, m, c[P.DT]), decay_of_map(eta_sd, m_t, c[P.DT])
-    return a, c[P.K_N] / m - a * a, a_t, 2.0 * a_t * m_t
+    return a, k_n / m - a * a, a_t, 2.0 * a_t * m_t
 
 
 @inner(fastmath=FAST, forceinline=True)
 def begin_contact(
     overlap: float, closing: float, curve: float, m: float, k_d: float, eta_d: float, m_t: float, k_sd: float,
-    eta_sd: float, s: Vector, rules: Rules, c: Any,
+    eta_sd: float, s: Vector, rules: Rules, law: Springs, c: Any,
 ) -> tuple[float, float, Vector, Vector, bool]:  # fmt: skip
     """Normal force and that of its spring [N], tangential force as in `instant_step`, and whether it slid."""
-    dt, k_s, cohesion, mu = c[P.DT], c[P.K_S], c[P.COHESION], c[P.MU]
+    dt, (k_n, k_s, cohesion, mu) = c[P.DT], law
     total, drop, cap_total = rules
-    a, q, _, eta_s = oscillators(m, eta_d, m_t, eta_sd, c)
+    a, q, _, eta_s = oscillators(m, eta_d, m_t, eta_sd, k_n, c)
     since, v_touch, y, rate, brake = begin_in_step(overlap, closing, curve, dt, a, q)
     p_x, p_y, p_z, s_x, s_y, s_z, _, _, _, slid = slip_within_step(
         since, 0.0, v_touch, a, q, m, 0.0, 0.0, 0.0, s[0], s[1], s[2], k_s, eta_s, m_t, cohesion, mu, total,
@@ -108,10 +109,10 @@ def begin_contact(
 def _slip_to_the_end(
     until: float, overlap: float, v: float, a: float, q: float, m: float, push: float, e_n: float,
     m_t: float, k_sd: float, eta_sd: float, eta_s: float, p: Vector, f_t: Vector, s: Vector, rules: Rules,
-    c: Any,
+    law: Springs, c: Any,
 ) -> tuple[Vector, bool]:  # fmt: skip
     """Tangential force on i [N] in the step in which the normal force ends, and whether the contact slid."""
-    dt, k_s, cohesion, mu = c[P.DT], c[P.K_S], c[P.COHESION], c[P.MU]
+    dt, (_, k_s, cohesion, mu) = c[P.DT], law
     total, drop, cap_total = rules
     stiffer = k_s / k_sd if k_sd > 0.0 else 0.0
     e_x, e_y, e_z = p[0] - k_sd * s[0] * dt, p[1] - k_sd * s[1] * dt, p[2] - k_sd * s[2] * dt
@@ -136,7 +137,8 @@ def _slip_to_the_end(
 @inner(fastmath=FAST, forceinline=True)
 def end_contact(
     rest: float, overlap: float, closing: float, m: float, k_d: float, eta_d: float, m_t: float, k_sd: float,
-    eta_sd: float, p: Vector, f_t: Vector, s: Vector, tension: bool, rules: Rules, c: Any,
+    eta_sd: float, p: Vector, f_t: Vector, s: Vector, tension: bool, rules: Rules, law: Springs,
+    c: Any,
 ) -> tuple[bool, float, float, float, Vector, bool, float]:  # fmt: skip
     """Forces of a contact on its map that may end within the coming step.
 
@@ -148,14 +150,14 @@ def end_contact(
     raw = e_n + eta_d * closing
     onward = closing - dt * raw / m
     fades = closing < 0.0 and k_d * (overlap + dt * onward) + eta_d * onward <= P.LEAST_NEXT * raw
-    a, q, _, eta_s = oscillators(m, eta_d, m_t, eta_sd, c)
+    a, q, _, eta_s = oscillators(m, eta_d, m_t, eta_sd, law[0], c)
     v = velocity_of_map(overlap, closing, dt, a, q)
     until = time_of_release(overlap, v, a, q, tension)
     ends = fades and until <= (1.0 + _ROUND_OFF) * dt
     until = until if ends else 0.0
     v_mean, v_end = end_in_step(overlap, v, until, dt, a, q)
     b, slid = _slip_to_the_end(
-        until, overlap, v, a, q, m, raw, e_n, m_t, k_sd, eta_sd, eta_s, p, f_t, s, rules, c
+        until, overlap, v, a, q, m, raw, e_n, m_t, k_sd, eta_sd, eta_s, p, f_t, s, rules, law, c
     )
     f_n = (m * (closing - v_mean) / dt if ends else raw) - m * rest / dt
     return ends, v_end - v_mean, f_n, raw, b, slid, until if ends else math.inf
@@ -165,7 +167,7 @@ def end_contact(
 def instant_step(
     state: int, rest: float, overlap: float, closing: float, curve: float, m: float, k_d: float, eta_d: float,
     m_t: float, k_sd: float, eta_sd: float, p: Vector, f_t: Vector, s: Vector, tension: bool, rules: Rules,
-    c: Any,
+    law: Springs, c: Any,
 ) -> tuple[int, float, float, float, float, bool, Vector, Vector, bool, float]:  # fmt: skip
     """Forces of a pair in a step that begins or ends its contact, or may end it.
 
@@ -181,6 +183,7 @@ def instant_step(
     s : slip velocity of i relative to j [m/s].
     tension : the force ends with the overlap; else where it would pull.
     rules : of sliding, `total`, `drop` and `cap_total` of `tangential_step`.
+    law : of the pair.
     c : parameters.
 
     Returns
@@ -204,13 +207,13 @@ def instant_step(
         return now, 0.0, 0.0, 0.0, 0.0, True, none, none, False, until
     if kind == BEGINS:
         f_n, e_n, e, b, slid = begin_contact(
-            overlap, closing, curve, m, k_d, eta_d, m_t, k_sd, eta_sd, s, rules, c
+            overlap, closing, curve, m, k_d, eta_d, m_t, k_sd, eta_sd, s, rules, law, c
         )
         return BEGAN, 0.0, f_n, e_n, f_n, True, e, b, slid, math.inf
     if kind == MAY_END:
         rest = rest if state == BEGAN else 0.0
         ends, rest, f_n, raw, b, slid, until = end_contact(
-            rest, overlap, closing, m, k_d, eta_d, m_t, k_sd, eta_sd, p, f_t, s, tension, rules, c
+            rest, overlap, closing, m, k_d, eta_d, m_t, k_sd, eta_sd, p, f_t, s, tension, rules, law, c
         )
         if ends:
             return ENDING, rest, f_n, e_n, raw, True, none, b, slid, until

@@ -9,6 +9,7 @@ from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared.contact_instants import ENDING, PARTED
 from ryusa.engine.shared.dashpots import springs_of
 from ryusa.engine.shared.layout import Layout
+from ryusa.engine.shared.parameters import parameters_of
 from ryusa.engine.shared.variant import KernelVariant, LawChoice
 from ryusa.model import Contacts, Scene
 from ryusa.model.contacts import N_EVENT
@@ -67,9 +68,15 @@ def memory_of(
     rows = np.zeros((len(contacts), variant.row_width))
     eta, x = np.zeros((len(contacts), variant.springs)), np.zeros((len(layout.r), 4))
     x[:, 3] = layout.r
-    springs_of(
-        contacts.i, contacts.j, variant.rotation, variant.kind, numbers, layout.m, x, layout.inertia, eta
-    )
+    for scene, some in layout.scene.by_pair(contacts.i, contacts.j):
+        mine, law = np.empty((len(contacts.i[some]), variant.springs)), numbers
+        if layout.scene.materials is not None:
+            law = parameters_of(scene)
+        springs_of(
+            contacts.i[some], contacts.j[some], variant.rotation, variant.kind, law, layout.m, x,
+            layout.inertia, mine,
+        )  # fmt: skip
+        eta[some] = mine
     if choice.rebound:
         eta[:, M.ETA_N] = contacts.eta_n
         if variant.exact:

@@ -47,7 +47,7 @@ class Layout:
         law, water = scene.contact, scene.water
         constant = law.damping == Damping.CONSTANTS and law.timing == ContactTiming.AT_STEPS
         constant = constant and law.force == ContactForce.LINEAR
-        self.many_dashpots = not constant or water.rebound != Rebound.DRY
+        self.many_dashpots = not constant or water.rebound != Rebound.DRY or scene.materials is not None
         self.period, self.scene = np.array(scene.period), scene
         self.low, self.high = np.array(scene.world_low), np.array(scene.world_high)
         self.plane_normals = np.ascontiguousarray(scene.plane_normal, dtype=np.float64).reshape(-1, 3)

@@ -9,7 +9,7 @@ from ryusa.errors import NotANumber
 from ryusa.laws._family import Family
 from ryusa.laws.families import ContactForce, ContactTiming, Rebound
 from ryusa.model import Scene, State, Walls
-from ryusa.model.scene import Damping
+from ryusa.model.scene import ALIKE, Damping
 from ryusa.model.walls import SPIN, largest_speed
 
 _SHORTEST_PERIOD = 3.0  # in diameters: below, a pair could touch through two images
@@ -27,6 +27,7 @@ def refusals(scene: Scene) -> tuple[str, ...]:
     if scene.water.rebound != Rebound.DRY and scene.contact.damping == Damping.CONSTANTS:
         reasons.append("an immersed rebound needs a restitution in air: contact.damping gives constants")
     reasons += _refused_of_hertz(scene)
+    reasons += _refused_of_materials(scene)
     largest = float(np.concatenate([scene.d, scene.d_fixed[scene.fixed_active]]).max(initial=0.0))
     for axis, length in zip("xy", scene.period, strict=True):
         if length < _SHORTEST_PERIOD * largest:
@@ -71,6 +72,28 @@ def _refused_of_hertz(scene: Scene) -> list[str]:
         found.append("elastic spheres (Hertz-Mindlin) take a restitution, not constant dashpots")
     if not (0.0 < law.youngs_modulus < np.inf and 0.0 <= law.poisson_ratio <= 0.5):
         found.append("elastic spheres need a Young's modulus above 0 and a Poisson's ratio from 0 to 0.5")
+    return found
+
+
+def _refused_of_materials(scene: Scene) -> list[str]:
+    """What contacts between several materials cannot have."""
+    made, law, found = scene.materials, scene.contact, list[str]()
+    if made is None:
+        return found
+    if len(made.of) != scene.n_partner or not (made.of >= 0).all() or not (made.of < made.n).all():
+        found.append(f"materials need a number from 0 to {made.n - 1} for each of {scene.n_partner} ids")
+    if len(made.contact) != made.n**2 or len(made.rolling) != made.n**2:
+        found.append(f"{made.n} materials need {made.n**2} contact laws")
+        return found
+    if law.damping == Damping.CONSTANTS:
+        found.append("materials need a restitution, not constant dashpots (contact.damping)")
+    for k, one in enumerate(made.contact):
+        if any(getattr(one, name) != getattr(law, name) for name in ALIKE):
+            found.append(f"contacts of {made.pair_name(k)} need the laws of all others: {', '.join(ALIKE)}")
+    springs = {(one.k_n, one.k_s) for one in made.contact}
+    at_steps = law.force == ContactForce.LINEAR and law.timing == ContactTiming.AT_STEPS
+    if at_steps and len(springs) > 1:
+        found.append("linear springs of several stiffnesses need contact.timing = 'exact'")
     return found
 
 

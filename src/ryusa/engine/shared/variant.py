@@ -26,6 +26,7 @@ class KernelVariant(NamedTuple):
     exact: int  # contacts begin and end within steps
     walls: int = 0  # faces, at rest or moving
     hertz: int = 0  # contacts are those of elastic spheres
+    mixed: int = 0  # materials differ
 
     @property
     def row_width(self) -> int:
@@ -82,6 +83,7 @@ def variant_of(scene: Scene) -> KernelVariant:
         exact=int(int(scene.contact.timing) == EXACT),
         walls=int(scene.n_face > 0),
         hertz=int(int(scene.contact.force) == HERTZ),
+        mixed=int(scene.materials is not None),
     )
 
 
