@@ -16,7 +16,7 @@ from ryusa.model.scene import EventRule, Floats
 class Laws:
     """Parameters of a scene beyond the placement of its grains, SI."""
 
-    density: float  # of grains [kg/m3]
+    density: float | Floats  # of grains, or of each of them [kg/m3]
     contact: ContactLaw
     dt: float  # [s]
     a_3: float = math.pi / 6  # volume over d cubed [-]
@@ -41,7 +41,7 @@ def gravity(g: float, slope: float) -> Floats:
     return np.array([g * math.sin(slope), 0.0, -g * math.cos(slope)])
 
 
-def masses(d: Floats, density: float, a_3: float, water: Water) -> tuple[Floats, Floats, Floats, Floats]:
+def masses(d: Floats, density: float | Floats, a_3: float, water: Water) -> tuple[Floats, Floats, Floats, Floats]:
     """Mass, added mass, submerged mass [kg] and moment of inertia [kg m2] for diameters d [m]."""
     volume = np.array([drag.volume(one, a_3) for one in d.tolist()])
     m = density * volume

@@ -5,6 +5,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+import numpy as np
+
 from ryusa.build.assemble import Laws, assemble
 from ryusa.build.box import box
 from ryusa.build.column import column_of, zero_of
@@ -13,6 +15,7 @@ from ryusa.build.empty import empty
 from ryusa.build.fill import fill
 from ryusa.build.flume import flume
 from ryusa.build.overlaps import refuse_overlaps
+from ryusa.build.materials import Numbers, densities, materials_of
 from ryusa.build.packing import packing
 from ryusa.build.placement import Placement, Wall
 from ryusa.build.saltation import saltation
@@ -28,6 +31,7 @@ from ryusa.casefile.contact.speed import expected_speed
 from ryusa.casefile.contact.values import hertz_law, is_hertz, may_pull, timing
 from ryusa.casefile.derive import Derived, derive
 from ryusa.casefile.films import film_reach
+from ryusa.casefile.materials import GRAINS, case_of_pair, names_of
 from ryusa.casefile.motion import slab_width
 from ryusa.casefile.record import events_of
 from ryusa.casefile.time import steps_by_default
@@ -48,7 +52,7 @@ from ryusa.laws.families import (
     Slip,
     WaterTorque,
 )
-from ryusa.model import ContactLaw, RollingLaw, Scene, State, Water
+from ryusa.model import ContactLaw, Materials, RollingLaw, Scene, State, Water
 from ryusa.model.scene import Damping, EventRule
 
 BUILDERS = {
@@ -107,8 +111,13 @@ def build(case: Case, derived: Derived | None = None) -> Built:
     _refuse_unknown_groups(placement, case)
     laws = replace(laws_of(case, found, placement.z_zero), column=column_of(case, found, placement))
     placement, traffic = with_feeds(placement, case, found)
+    n_first = len(placement.d) if traffic is None else traffic.n_first
+    of = materials_of(case, placement, n_first, traffic)
+    if len(of):
+        laws = replace(laws, density=densities(case, of[: len(placement.d)]))
     scene, state = before_feeding(*assemble(placement, laws), traffic, case)
     scene = with_room(with_walls(scene, walls), case.domain.low is None, case.domain.high is None)
+    scene = with_materials(case, scene, of)
     return Built(scene, state, (*placement.notes, *notes_of(case)))
 
 
@@ -133,6 +142,20 @@ def laws_of(case: Case, derived: Derived, z_zero: float) -> Laws:
         low=case.domain.low,
         high=case.domain.high,
     )
+
+
+def with_materials(case: Case, scene: Scene, of: Numbers) -> Scene:
+    """The same scene with the materials of a case, `of` by id without faces; as it is where there is one."""
+    if not len(of):
+        return scene
+    names, walls = names_of(case), scene.walls
+    if walls is not None:
+        own = np.array([names.index(one.material or GRAINS) for one in case.walls], np.int8)
+        of = np.concatenate([of, own[walls.wall]])
+    of.flags.writeable = False
+    pairs = [case_of_pair(case, *sorted((a, b), key=names.index)) for a in names for b in names]
+    contact = tuple(contact_of(one, derive(one)) for one in pairs)
+    return replace(scene, materials=Materials(names, of, contact, tuple(rolling_of(one) for one in pairs)))
 
 
 def contact_of(case: Case, derived: Derived) -> ContactLaw:

@@ -10,6 +10,7 @@ from ryusa.build.sizes import draw
 from ryusa.casefile.case import Case
 from ryusa.casefile.derive import Derived
 from ryusa.casefile.grains import mass
+from ryusa.casefile.materials import of_material
 from ryusa.casefile.traffic.schema import ExitSection, FeedSection
 from ryusa.casefile.traffic.values import fed_count, feed_end
 from ryusa.errors import CaseError
@@ -98,7 +99,7 @@ def _sizes_of(case: Case, keys: FeedSection, rng: np.random.Generator) -> Floats
         return d
     wanted = keys.rate[0] * (feed_end(case, keys) - keys.begin)
     while True:
-        m = np.array([mass(case, one)[0] for one in d.tolist()])
+        m = np.array([mass(of_material(case, keys.material), one)[0] for one in d.tolist()])
         due = np.concatenate([[0.0], np.cumsum(m)])  # mass before each grain
         if due[-1] >= wanted:
             return d[: int(np.searchsorted(due, wanted * (1.0 - 1e-12)))]

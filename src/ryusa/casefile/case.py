@@ -9,6 +9,7 @@ from ryusa.casefile.builders.schema import BuildSection
 from ryusa.casefile.contact.schema import ContactSection, RollingSection
 from ryusa.casefile.domain import DomainSection, PlaneSection
 from ryusa.casefile.grains import GrainsSection
+from ryusa.casefile.materials import MaterialSection, PairSection
 from ryusa.casefile.motion import MotionSection
 from ryusa.casefile.quantities import Count
 from ryusa.casefile.record import ChangeSection, RecordSection, StopSection
@@ -47,6 +48,10 @@ class Case(Section):
     """Where grains leave."""
     time: TimeSection = TimeSection()
     stop: StopSection
+    materials: dict[str, MaterialSection] = {}
+    """Materials of grains and walls other than that of [grains] and [contact], by name."""
+    pairs: tuple[PairSection, ...] = ()
+    """Contacts of two different materials."""
     timeline: tuple[ChangeSection, ...] = ()
     """Changes of the scene during the run, in order of time."""
     record: RecordSection = RecordSection()

@@ -15,6 +15,7 @@ from ryusa.casefile.domain import check_domain, check_planes
 from ryusa.casefile.films import check_film_step, check_films
 from ryusa.casefile.grading import check_grading
 from ryusa.casefile.grains import RIVALS as GRAINS_RIVALS
+from ryusa.casefile.materials import check_materials
 from ryusa.casefile.motion import RIVALS as MOTION_RIVALS
 from ryusa.casefile.motion import check_motion
 from ryusa.casefile.precision import check_precision
@@ -61,6 +62,7 @@ def check(case: Case, data: dict[str, Any]) -> list[CaseError]:
         *check_builder(case),
         *check_traffic(case),
         *check_timeline(case, data),
+        *check_materials(case),
         *check_precision(case),
     ]
     found = found or [*check_expected_speed(case)]

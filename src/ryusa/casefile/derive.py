@@ -18,6 +18,7 @@ from ryusa.casefile.contact.values import (
 )
 from ryusa.casefile.films import step_limits
 from ryusa.casefile.grains import mass
+from ryusa.casefile.materials import lightest_of, meeting
 from ryusa.casefile.motion import slope
 from ryusa.casefile.time import MOST_STEPS, STEPS_PER_FILM, TANGENTIAL_SHARE, steps_by_default
 from ryusa.casefile.water.values import u_star_given
@@ -65,13 +66,19 @@ def derive(case: Case) -> Derived:
     k_n, k_s = stiffness(case)
     e_n, e_s, _, _ = restitution(case)
     n_grain, n_fixed, meet = counts(case)
-    shortest, limits = shortest_contact(case, d_min, meet), step_limit(case, d_min, meet)
+    pairs = [(lightest_of(case, a, b, both), both) for (a, b), both in meeting(case).items()]
+    pairs = pairs if case.materials else [(case, meet)]
+    shortest = min(shortest_contact(one, d_min, both) for one, both in pairs)
+    steps = [step_limit(one, d_min, both) for one, both in pairs]
+    limits = min(normal for normal, _ in steps), min(shear for _, shear in steps)
     if case.time.step is not None:
         dt = case.time.step
     elif case.time.steps_per_contact is not None:
         dt = shortest / case.time.steps_per_contact
     else:
-        dt = _default_step(case, shortest, limits[1], step_limits(case, k_n, d_min, meet))
+        wet_limits = [step_limits(one, stiffness(one)[0], d_min, both) for one, both in pairs]
+        wet_steps = min(one for one, _ in wet_limits), min(one for _, one in wet_limits)
+        dt = _default_step(case, shortest, limits[1], wet_steps)
     u_star, tau_star, k_rough, g = math.nan, math.nan, math.nan, case.motion.gravity
     if case.water is not None:
         wet, rho_s = case.water, case.grains.density

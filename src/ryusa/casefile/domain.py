@@ -43,6 +43,8 @@ class PlaneSection(Section):
     """A point on the plane."""
     normal: tuple[Number, Number, Number]
     """Direction from the plane towards the grains, of any length."""
+    material: Annotated[str, Field(min_length=1, max_length=64)] | None = None
+    """Material of [materials]; that of [contact] when not given."""
 
 
 def check_planes(case: "Case") -> Iterator[CaseError]:

@@ -9,6 +9,7 @@ from ryusa.casefile.estimate import cost_rows
 from ryusa.casefile.films import film_rows
 from ryusa.casefile.grains import grain_rows
 from ryusa.casefile.laws import law_rows
+from ryusa.casefile.materials import material_rows
 from ryusa.casefile.precision import precision_rows
 from ryusa.casefile.rows import ExplainRow
 from ryusa.casefile.time import time_rows
@@ -31,6 +32,7 @@ def explain(case: Case, derived: Derived | None = None) -> list[ExplainRow]:
         *traffic_rows(case),
         *contact_rows(case, found),
         *damping_rows(case, found),
+        *material_rows(case),
         *wall_rows(case),
         *time_rows(case, found),
         *impact_rows(case, found),

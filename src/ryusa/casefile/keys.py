@@ -11,6 +11,9 @@ from ryusa.casefile.case import Case
 from ryusa.spelling import nearest_word
 
 
+BY_NAME = ("materials",)  # tables of tables whose names the user chooses
+
+
 def dotted(path: Sequence[str | int]) -> str:
     """Write a path as a user would: `timeline.0.at`."""
     return ".".join(str(part) for part in path) or "case"
@@ -82,13 +85,13 @@ def _describe(model: type[BaseModel], before: str) -> Iterator[tuple[str, str]]:
         inner += [one for item in field.metadata for one in _models_in(item)]
         yield key, field.description or (inner[0].__doc__ or "" if inner else "")
         for one in inner:
-            yield from _describe(one, key + ".")
+            yield from _describe(one, f"{key}.NAME." if key in BY_NAME else f"{key}.")
 
 
 def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         yield annotation
-    elif typing.get_origin(annotation) in {Annotated, typing.Union, types.UnionType, tuple}:
+    elif typing.get_origin(annotation) in {Annotated, typing.Union, types.UnionType, tuple, dict}:
         for part in typing.get_args(annotation):
             yield from _models_in(part)
 
@@ -96,9 +99,9 @@ def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
 def _models_at(path: Sequence[str | int], data: dict[str, Any]) -> list[type[BaseModel]]:
     models: list[type[BaseModel]] = [Case]
     here: Any = data
-    for part in path:
+    for n, part in enumerate(path):
         here = item(here, part)
-        if isinstance(part, int):
+        if isinstance(part, int) or (n == 1 and path[0] in BY_NAME):
             continue
         inner: list[type[BaseModel]] = []
         for model in models:

@@ -39,7 +39,12 @@ def resolved(case: Case, derived: Derived | None = None) -> dict[str, Any]:
     if case.water is not None:
         data["water"] |= {"u_star": found.u_star, "tau_star": found.tau_star, "roughness": found.k_rough}
         _resolve_column(case, found, data["water"])
-    for key in ("feeds", "exits"):  # left out where there are none, as in cases of earlier versions
+    for section in (*data["planes"], *data["walls"], *data["feeds"]):
+        if section["material"] is None:
+            del section["material"]
+    if not case.materials:
+        del data["grains"]["mixture"], data["grains"]["bed_material"]
+    for key in ("feeds", "exits", "materials", "pairs"):  # left out where there are none, as in cases of earlier versions
         if not data[key]:
             del data[key]
     data["derived"] = asdict(found)

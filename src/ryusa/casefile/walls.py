@@ -90,6 +90,8 @@ class WallSection(Section):
     """Phase of that oscillation at the start."""
     servo: ServoSection | None = None
     """Presses the wall on the grains with a given force or pressure, beside its other motion."""
+    material: Annotated[str, Field(min_length=1, max_length=64)] | None = None
+    """Material of [materials]; that of [contact] when not given."""
 
 
 class MoveSection(Section):

@@ -70,6 +70,8 @@ class FeedSection(Section):
     """Simulated time at which the first grain is due."""
     end: Moment | None = None
     """Simulated time from which no new grain is due; stop.time when not given."""
+    material: Name | None = None
+    """Material of its grains, of [materials]; that of [grains] when not given."""
 
 
 class ExitSection(Section):

@@ -20,10 +20,13 @@ def feed_end(case: "Case", feed: FeedSection) -> float:
     return min(ends, default=math.inf)
 
 
-def mean_mass(case: "Case") -> float:
+def mean_mass(case: "Case", material: str | None = None) -> float:
     """Mean mass of a grain of the size distribution [kg]; not the mass of the mean grain."""
     d = reference_diameter(case)
-    return mass(case, d)[0] * mean_cube(case) / d**3
+    heavier = 1.0
+    if material in case.materials:
+        heavier = (case.materials[material].density or case.grains.density) / case.grains.density
+    return heavier * mass(case, d)[0] * mean_cube(case) / d**3
 
 
 def mean_cube(case: "Case") -> float:
@@ -45,7 +48,7 @@ def grains_per_second(case: "Case", feed: FeedSection) -> float:
     if feed.rate is None:
         return 0.0
     rate, unit = feed.rate
-    return rate / mean_mass(case) if unit == "kg/s" else rate
+    return rate / mean_mass(case, feed.material) if unit == "kg/s" else rate
 
 
 def fed_count(case: "Case", feed: FeedSection) -> int:
