@@ -46,6 +46,9 @@ EXPONENTS = {  # exponents of kg, m, s
 
 # Arguments and answers of every law.
 UNITS = {
+    "materials.stiffness_of_two": "N/m, N/m -> N/m",
+    "materials.poisson_of_two": "Pa, -, Pa, - -> -",
+    "materials.young_of_two": "Pa, -, Pa, - -> Pa",
     "walls.nearest_on_triangle": "m2, m2, m2, m2, m2 -> -, -, -",
     "walls.nearest_on_disc": "m, m -> -",
     "walls.nearest_on_cylinder": "m, m, m, m -> m, -",

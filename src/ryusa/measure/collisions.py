@@ -130,7 +130,9 @@ def collisions(
     along = -np.einsum("ij,ij->i", events["slip_begin"], events["slip_end"])
     e_s = np.divide(along, slip * slip, out=np.full(len(events), np.nan), where=alone & (slip > 0.0))
     radii = 0.5 * sizes
-    expected = _expected(scene, pair, 1.0 / (1.0 / radii[i] + 1.0 / radii[j]), speed)
+    reduced, expected = 1.0 / (1.0 / radii[i] + 1.0 / radii[j]), np.empty(len(events))
+    for one, some in scene.by_pair(i, j):
+        expected[some] = _expected(one, pair[some], reduced[some], speed[some])
     window = (begin, float(events["t_part"].max()) if len(events) else math.nan)
 
     def mean(name: str, unit: str, values: Floats) -> Average:

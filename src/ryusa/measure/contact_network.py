@@ -94,7 +94,7 @@ def contact_network(run: Run, t: float | None = None, lane: int | None = None) -
         i, j = held["i"], held["j"]
         gap, normal, overlap = _geometry(x, i, j, scene)
         spring = pair_springs(scene, i, j, overlap)[0] * overlap
-        f_n, f_s, sliding = _parts(np.asarray(held["force"], dtype=np.float64), normal, spring, scene)
+        f_n, f_s, sliding = _parts(np.asarray(held["force"], dtype=np.float64), normal, spring, i, j, scene)
     else:
         x = inside_periods(x, scene)
         i, j = touching_pairs(x, scene)

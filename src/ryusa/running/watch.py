@@ -163,12 +163,12 @@ class Watch:
             },
             "steps_per_contact": {"shortest": self.t_col_shortest / scene.dt, "observed": self._observed()},
             "restitution": {
-                "asked": _or_none(scene.contact.e_n),
+                "asked": _common(scene, "e_n"),
                 "follows": {name: e_n for name, (e_n, _) in self._follows.items()},
                 **{name: average.as_dict() for name, average in self._normal.items()},
             },
             "restitution_shear": {
-                "asked": _or_none(scene.contact.e_s),
+                "asked": _common(scene, "e_s"),
                 "follows": {name: e_s for name, (_, e_s) in self._follows.items()},
                 "sticking": {name: average.as_dict() for name, average in self._stuck.items()},
                 "sliding": {name: average.as_dict() for name, average in self._slid.items()},
@@ -288,11 +288,12 @@ def shortest_collision_time(scene: Scene, state: State) -> float:
     """Contact time of the lightest pair that can collide, damped or undamped [s]; inf without grains."""
     if scene.n_grain == 0:
         return math.inf
-    law = scene.contact
     m, free = scene.m + scene.m_added, _free_pairs(scene, state)
     order = np.argsort(m, kind="stable")
     pair = effective_mass(float(m[order[0]]), float(m[order[1]]) if free else math.inf)
-    return shortest_contact_of(law, pair, _shortest_radius(scene, order, free))
+    laws = (scene.contact,) if scene.materials is None else scene.materials.contact
+    radius = _shortest_radius(scene, order, free)
+    return min(shortest_contact_of(law, pair, radius) for law in laws)
 
 
 def _shortest_radius(scene: Scene, order: NDArray[np.int64], free: bool) -> float:
@@ -341,6 +342,13 @@ def _free_pairs(scene: Scene, state: State) -> bool:
     order = np.argsort(state.x[:, 1])
     y, r = state.x[order, 1], scene.d[order] / 2
     return bool(np.any(np.diff(y) < r[1:] + r[:-1]))
+
+
+def _common(scene: Scene, name: str) -> float | None:
+    """Value of a contact law that is the same for all pairs of materials; None where there is none."""
+    laws = (scene.contact,) if scene.materials is None else scene.materials.contact
+    values = {getattr(law, name) for law in laws}
+    return _or_none(float(values.pop())) if len(values) == 1 else None
 
 
 def _or_none(value: float) -> float | None:

@@ -29,6 +29,11 @@ def refuse_if_not_softenable(case: "Case") -> None:
             "contact.law", case.contact.law,
             "cannot be softened: what goes with the stiffness is known for law 'linear' alone",
         )  # fmt: skip
+    if case.materials:
+        raise CaseError(
+            "materials", ", ".join(case.materials),
+            "cannot be softened: how contacts of several materials go with the stiffness is not built",
+        )  # fmt: skip
     if isinstance(case.build, DropSection):
         raise CaseError(
             "build.kind", case.build.kind,
