@@ -54,10 +54,12 @@ def case_reference() -> str:
             continue
         name, many = _model_of(about)
         model = definitions[name]
-        brackets = f"[[{key}]]" if many else f"[{key}]"
+        named = "additionalProperties" in about  # tables whose names the user chooses
+        place = f"{key}.NAME" if named else key
+        brackets = f"[[{place}]]" if many else f"[{place}]"
         must = " (required)" if key in required else ""
         text = about.get("description") or model.get("description", "")
-        lines += ["", f"## {brackets}{must}", "", text, "", *_section(f"{key}.", model, definitions)]
+        lines += ["", f"## {brackets}{must}", "", text, "", *_section(f"{place}.", model, definitions)]
     return "\n".join(lines) + "\n"
 
 
@@ -107,6 +109,8 @@ def _value(about: dict[str, Any], definitions: dict[str, Any]) -> str:
         inner = about.get("items") or several[0]
         count = f"{about['maxItems']} of: " if "maxItems" in about else "list of: "
         return f"[{count}{_value(inner, definitions)}]"
+    if about.get("type") == "object":
+        return f"table of: {_value(about['additionalProperties'], definitions)}"
     words = {"string": "text", "number": "number", "integer": "whole number", "boolean": "`true` or `false`"}
     return words[about["type"]] + _bounds(about)
 
@@ -142,7 +146,8 @@ def _inner_models(about: dict[str, Any]) -> list[str]:
     branches = [about]
     for branch in branches:  # grows: a choice may be one of a choice, or nothing
         branches += [*branch.get("anyOf", []), *branch.get("oneOf", [])]
-        branches += [branch["items"]] if isinstance(branch.get("items"), dict) else []
+        for inner in ("items", "additionalProperties"):
+            branches += [branch[inner]] if isinstance(branch.get(inner), dict) else []
     return [_name(branch["$ref"]) for branch in branches if "$ref" in branch]
 
 

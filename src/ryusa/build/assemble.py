@@ -41,7 +41,9 @@ def gravity(g: float, slope: float) -> Floats:
     return np.array([g * math.sin(slope), 0.0, -g * math.cos(slope)])
 
 
-def masses(d: Floats, density: float | Floats, a_3: float, water: Water) -> tuple[Floats, Floats, Floats, Floats]:
+def masses(
+    d: Floats, density: float | Floats, a_3: float, water: Water
+) -> tuple[Floats, Floats, Floats, Floats]:
     """Mass, added mass, submerged mass [kg] and moment of inertia [kg m2] for diameters d [m]."""
     volume = np.array([drag.volume(one, a_3) for one in d.tolist()])
     m = density * volume

@@ -14,8 +14,8 @@ from ryusa.build.drop import drop
 from ryusa.build.empty import empty
 from ryusa.build.fill import fill
 from ryusa.build.flume import flume
-from ryusa.build.overlaps import refuse_overlaps
 from ryusa.build.materials import Numbers, densities, materials_of
+from ryusa.build.overlaps import refuse_overlaps
 from ryusa.build.packing import packing
 from ryusa.build.placement import Placement, Wall
 from ryusa.build.saltation import saltation

@@ -48,7 +48,7 @@ class Case(Section):
     """Where grains leave."""
     time: TimeSection = TimeSection()
     stop: StopSection
-    materials: dict[str, MaterialSection] = {}
+    materials: dict[str, MaterialSection] = Field(default_factory=lambda: {})
     """Materials of grains and walls other than that of [grains] and [contact], by name."""
     pairs: tuple[PairSection, ...] = ()
     """Contacts of two different materials."""

@@ -74,7 +74,7 @@ class GrainsSection(Section):
     """Largest grain of the sieve_curve that is laid; the mass of coarser ones is left out."""
     shape_volume: Annotated[Number, Field(gt=0, le=1)] = math.pi / 6
     """A_3: volume of a grain over d cubed; pi/6 for a sphere."""
-    mixture: dict[str, Annotated[Number, Field(gt=0, le=1)]] = {}
+    mixture: dict[str, Annotated[Number, Field(gt=0, le=1)]] = Field(default_factory=lambda: {})
     """Shares by number of free grains that are of other materials, such as { glass = 0.3 }, drawn at random
     among those that the builder lays; the rest are of the material of [grains]."""
     bed_material: Annotated[str, Field(min_length=1, max_length=64)] | None = None

@@ -43,8 +43,8 @@ class MaterialSection(Section):
     density: Annotated[Density, Field(ge=1.0, le=1.0e6)] | None = None
     """Density of grains of this material; of walls and fixed grains it means nothing."""
     stiffness: Annotated[Stiffness, Field(ge=1.0e-9, le=1.0e15)] | None = None
-    """Normal stiffness k_n of the linear spring between two grains of this material. Two materials give way as
-    springs in series: 2/(1/k_a + 1/k_b)."""
+    """Normal stiffness k_n of the linear spring between two grains of this material. Two materials give way
+    as springs in series: 2/(1/k_a + 1/k_b)."""
     youngs_modulus: Annotated[Pressure, Field(ge=1.0, le=1.0e15)] | None = None
     """Young's modulus of elastic spheres; two materials combine as Hertz and Mindlin have it."""
     poisson_ratio: Annotated[Number, Field(ge=0, le=0.5)] | None = None
@@ -60,8 +60,11 @@ class MaterialSection(Section):
 
 
 class PairSection(Section):
-    """Contacts of two different materials. No law gives friction and restitution of a pair from those of its
-    materials: where these differ in the two, they have to be given here."""
+    """Contacts of two different materials.
+
+    No law gives friction and restitution of a pair from those of its two materials: where these differ, they
+    have to be given here.
+    """
 
     materials: tuple[str, str]
     """Names of the two; "grains" is the material of [grains] and [contact]."""
@@ -233,7 +236,9 @@ def check_materials(case: "Case") -> Iterator[CaseError]:
 def _names(case: "Case", known: tuple[str, ...]) -> Iterator[CaseError]:
     listed, said = ", ".join(known), [name for _, name in uses(case)]
     if GRAINS in case.materials:
-        yield CaseError(f"materials.{GRAINS}", None, "is what [grains], [contact] and [rolling] say; leave it out")
+        yield CaseError(
+            f"materials.{GRAINS}", None, "is what [grains], [contact] and [rolling] say; leave it out"
+        )
     if len(known) > MOST:
         yield CaseError("materials", None, f"has {len(case.materials)} entries; at most {MOST - 1}")
     for key, name in uses(case):
@@ -264,7 +269,9 @@ def _keys(case: "Case") -> Iterator[CaseError]:
     every += [(f"pairs.{k}", one) for k, one in enumerate(case.pairs)]
     for key, one in every:
         if given(one, "friction") and given(one, "friction_angle"):
-            yield CaseError(f"{key}.friction", None, f"excludes {key}.friction_angle; give only one of the two")
+            yield CaseError(
+                f"{key}.friction", None, f"excludes {key}.friction_angle; give only one of the two"
+            )
         if given(one, "rolling_coefficient") and case.rolling.model == "none":
             value = one.rolling_coefficient
             yield CaseError(f"{key}.rolling_coefficient", value, "has no effect with rolling.model = 'none'")
@@ -272,7 +279,9 @@ def _keys(case: "Case") -> Iterator[CaseError]:
     for key, one in sections:
         for name in ("youngs_modulus", "poisson_ratio") if not elastic else ("stiffness",):
             if given(one, name):
-                yield CaseError(f"{key}.{name}", getattr(one, name), f"has no effect with contact.law '{law}'")
+                yield CaseError(
+                    f"{key}.{name}", getattr(one, name), f"has no effect with contact.law '{law}'"
+                )
         at_steps = timing(case) is not ContactTiming.EXACT
         if given(one, "stiffness") and not elastic and at_steps:
             yield CaseError(
@@ -335,7 +344,9 @@ def material_rows(case: "Case") -> list[ExplainRow]:
         if given(case.materials[name], "density"):
             rows.append(number("materials", f"density of {name}", density(case, name), "kg/m3", "density"))
     for name, share in case.grains.mixture.items():
-        rows.append(number("materials", f"share of {name}", share, "-", "grains.mixture, by number, at random"))
+        rows.append(
+            number("materials", f"share of {name}", share, "-", "grains.mixture, by number, at random")
+        )
     if not case.materials:
         return rows
     entries = [set(one.materials) for one in case.pairs]
@@ -349,7 +360,9 @@ def material_rows(case: "Case") -> list[ExplainRow]:
         if case.rolling.model != "none":
             values += f", rolling {one.rolling.coefficient:.4g}"
         if is_hertz(case):
-            values += f", E {_young(one, GRAINS):.4g} Pa, nu {one.contact.poisson_ratio:.3g} if both were alike"
+            values += (
+                f", E {_young(one, GRAINS):.4g} Pa, nu {one.contact.poisson_ratio:.3g} if both were alike"
+            )
         else:
             values += f", k_n {stiffness(one)[0]:.4g} N/m"
         rows.append(word("materials", f"{a} on {b}", values, origin))

@@ -44,7 +44,12 @@ def resolved(case: Case, derived: Derived | None = None) -> dict[str, Any]:
             del section["material"]
     if not case.materials:
         del data["grains"]["mixture"], data["grains"]["bed_material"]
-    for key in ("feeds", "exits", "materials", "pairs"):  # left out where there are none, as in cases of earlier versions
+    for key in (
+        "feeds",
+        "exits",
+        "materials",
+        "pairs",
+    ):  # left out where there are none, as in cases of earlier versions
         if not data[key]:
             del data[key]
     data["derived"] = asdict(found)

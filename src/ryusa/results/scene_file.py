@@ -17,7 +17,10 @@ from ryusa.model.traffic import Traffic
 from ryusa.model.walls import N_MOTION, N_SERVO
 from ryusa.results.hdf5 import opened, read_dataset
 
-_TRAFFIC, _MATERIALS = "traffic", "materials"  # left out where a scene has none: digests of earlier versions stay
+_TRAFFIC, _MATERIALS = (
+    "traffic",
+    "materials",
+)  # left out where a scene has none: digests of earlier versions stay
 _LAWS: dict[str, type] = {"contact": ContactLaw, "rolling": RollingLaw, "water": Water, "column": Column}
 _ARRAYS = tuple(f.name for f in fields(Scene) if get_origin(f.type) is np.ndarray)
 _WALLS = tuple(f.name for f in fields(Walls) if f.name != "names")  # datasets of the group "walls"
@@ -46,8 +49,8 @@ def _scalars(scene: Scene) -> dict[str, Any]:
             value = getattr(scene, f.name)
             if f.name in {_TRAFFIC, _MATERIALS} and value is None:
                 continue
-            laws = f.name in {*_LAWS, _TRAFFIC, _MATERIALS} and value is not None
-            found[f.name] = asdict(value) if laws else value
+            law = f.name in {*_LAWS, _TRAFFIC, _MATERIALS}
+            found[f.name] = asdict(value) if law and value is not None else value
     if _MATERIALS in found:  # an array of its own
         del found[_MATERIALS]["of"]
     if scene.contact.force == ContactForce.LINEAR:  # as before there were others: the digest stays

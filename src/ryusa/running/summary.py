@@ -85,5 +85,7 @@ def _set(restitution: dict[str, Any]) -> str:
     """Value set by the case, or the one that its constant dashpots give for the mean grain."""
     if restitution["asked"] is not None:
         return f"{restitution['asked']:g} set"
+    if "by_pair" in restitution:
+        return "set by pair of materials"
     follows = [f"{e:.4f} against {name}" for name, e in restitution["follows"].items() if e is not None]
     return f"{', '.join(follows)} grains from constant dashpots" if follows else "not set"

@@ -164,6 +164,7 @@ class Watch:
             "steps_per_contact": {"shortest": self.t_col_shortest / scene.dt, "observed": self._observed()},
             "restitution": {
                 "asked": _common(scene, "e_n"),
+                **({} if scene.materials is None else {"by_pair": True}),
                 "follows": {name: e_n for name, (e_n, _) in self._follows.items()},
                 **{name: average.as_dict() for name, average in self._normal.items()},
             },

@@ -262,8 +262,8 @@ class CpuEngine:
         while n_steps > 0:
             arguments = (
                 threads, n_steps, self._step, self._travel, np.zeros(1, np.int64), self._parameters,
-                self._material, self._table, layout.block_start, self._n, layout.n_solid, self._grains, layout.walls, self._pairs,
-                self._candidates.pairs,
+                self._material, self._table, layout.block_start, self._n, layout.n_solid, self._grains,
+                layout.walls, self._pairs, self._candidates.pairs,
             )  # fmt: skip
             more = (self._choice, self._candidates.schedule)
             others = (

@@ -59,9 +59,9 @@ TERMS = tuple(
 def block_forces(
     variant: KernelVariant, flat: Present, water: Present, optional: Present, exact: Present, hertz: Present,
     short: Present, walled: Present, choice: LawChoice, b: int, hi: int, n: int, n_solid: int, step: int,
-    t: float, hdt: float, last: bool, c: Any, material: Any, table: Any, grains: GrainArrays, walls: WallArrays, pairs: PairArrays,
-    candidates: CandidateArrays, work: Workspace, accounts: AccountArrays, ended: Any, account: Any,
-    stats: Any,
+    t: float, hdt: float, last: bool, c: Any, material: Any, table: Any, grains: GrainArrays,
+    walls: WallArrays, pairs: PairArrays, candidates: CandidateArrays, work: Workspace, accounts: AccountArrays,
+    ended: Any, account: Any, stats: Any,
 ) -> None:  # fmt: skip
     """Forces of every pair that block b, grains up to hi-1, owns, batch by batch of those that touch."""
     # One function: what a variant goes without is taken out of it before it is compiled
@@ -113,7 +113,9 @@ def block_forces(
         if walled is not None:
             add_drift(face_lanes, selected, slot, walls.faces.motion, met, batch)
         if water is not None and choice.rebound:
-            immersed_dashpots(exact, hertz, choice, m, selected, c, material, table, grains, candidates, batch)
+            immersed_dashpots(
+                exact, hertz, choice, m, selected, c, material, table, grains, candidates, batch
+            )
         if hertz is not None:
             compute_hertz(flat, choice, lanes, hdt, stats[S.OVERLAP_MAX], table, c, batch)
         elif exact is None:
@@ -297,8 +299,8 @@ def make_run(variant: KernelVariant) -> Any:
                     if not after:
                         block_forces(
                             variant, flat, water, optional, exact, hertz, short, walled, choice, b,
-                            block_start[b + 1], n, n_solid, step, t, hdt, last, c, material, table, grains, walls,
-                            pairs, candidates, work, accounts_of_blocks, ended[b], terms[b], stats[b],
+                            block_start[b + 1], n, n_solid, step, t, hdt, last, c, material, table, grains,
+                            walls, pairs, candidates, work, accounts_of_blocks, ended[b], terms[b], stats[b],
                         )  # fmt: skip
                     q = b if after else b - span
                     soon = b_0 + span <= q < b_1 - span
