@@ -14,7 +14,7 @@ from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.engine.cuda.engine import CudaEngine
 from ryusa.engine.shared.contact_history import energies_of_springs
 from ryusa.laws.collision import collision_time, zeta_for_restitution, zeta_tension
-from ryusa.laws.families import Arm, ContactTiming, Rolling
+from ryusa.laws.families import Arm, ContactTiming, Rolling, Slip
 from ryusa.laws.materials import poisson_of_two, young_of_two
 from ryusa.model import Materials, RollingLaw, Scene
 from ryusa.model.contact_law import hertz_stiffness_of
@@ -111,7 +111,7 @@ def test_stiffness_of_a_pair_gives_its_contact_time(partner):
 @pytest.mark.parametrize("force", ["linear", "linear at steps", "Hertz"])
 def test_a_block_slides_to_rest_by_the_friction_of_the_pair(force):
     v, mu, n = 0.3, 0.2, 4000
-    law = elastic_law(0.3, restitution=0.5) if force == "Hertz" else None
+    law = elastic_law(0.3, restitution=0.5, slip=Slip.TOTAL) if force == "Hertz" else None
     timing = ContactTiming.AT_STEPS if force == "linear at steps" else ContactTiming.EXACT
     planes = [("floor", (0, 0, 0), (0, 0, 1))]
     k = 1.0e4
@@ -120,7 +120,7 @@ def test_a_block_slides_to_rest_by_the_friction_of_the_pair(force):
         below = (M * G / hertz_stiffness_of(law, 0.5 * D)) ** (2.0 / 3.0)
     made, state = scene(
         [[0.0, 0.0, 0.5 * D - below]], D, v=[[v, 0.0, 0.0]], planes=planes, rotation=False, contact=law,
-        stiffness=k, timing=timing, dt=5.0e-6, allow_overlap=True,
+        stiffness=k, timing=timing, slip=Slip.TOTAL, dt=5.0e-6, allow_overlap=True,
     )  # fmt: skip
     two = of_two(made, [0, 1], replace(made.contact, mu=mu))
     engine = run((two, state), n)
@@ -171,7 +171,7 @@ def test_the_account_closes_with_several_materials(kind):
     made = mixed_pile(events=EventRule.ALL, **KINDS[kind])
     engine = run(made, 3000)
     tally = engine.tally()
-    assert tally.n_contact > 100
+    assert tally.n_contact > 10
     assert tally.residual < 2e-4
     held = engine.state()
     found = energies_of_springs(made[0], held, np.arange(len(held.contacts)))

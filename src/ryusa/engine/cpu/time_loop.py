@@ -60,8 +60,8 @@ def block_forces(
     variant: KernelVariant, flat: Present, water: Present, optional: Present, exact: Present, hertz: Present,
     short: Present, walled: Present, choice: LawChoice, b: int, hi: int, n: int, n_solid: int, step: int,
     t: float, hdt: float, last: bool, c: Any, material: Any, table: Any, grains: GrainArrays,
-    walls: WallArrays, pairs: PairArrays, candidates: CandidateArrays, work: Workspace, accounts: AccountArrays,
-    ended: Any, account: Any, stats: Any,
+    walls: WallArrays, pairs: PairArrays, candidates: CandidateArrays, work: Workspace,
+    accounts: AccountArrays, ended: Any, account: Any, stats: Any,
 ) -> None:  # fmt: skip
     """Forces of every pair that block b, grains up to hi-1, owns, batch by batch of those that touch."""
     # One function: what a variant goes without is taken out of it before it is compiled
