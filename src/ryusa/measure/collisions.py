@@ -119,7 +119,7 @@ def collisions(
     free = j < scene.n_grain
     other = np.where(free, mass[np.where(free, j, 0)], np.inf) if scene.n_grain else np.zeros(0)
     pair = 1.0 / (1.0 / mass[i] + 1.0 / other)
-    sizes = np.concatenate([scene.d, scene.d_fixed, np.full(scene.n_plane, np.inf)])
+    sizes = np.concatenate([scene.d, scene.d_fixed, np.full(scene.n_plane + scene.n_face, np.inf)])
     whole = np.isfinite(events["closing_end"])  # of the others the partner was taken away
     duration = np.where(whole, events["t_end"] - events["t_begin"], np.nan)
     overlap = events["overlap_max"] / np.minimum(sizes[i], sizes[j])

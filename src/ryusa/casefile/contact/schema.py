@@ -77,7 +77,8 @@ class ContactSection(Section):
     shear_stiffness: Annotated[Stiffness, Field(ge=0, le=1.0e15)] | None = None
     """Tangential stiffness k_s, instead of shear_ratio."""
     youngs_modulus: Annotated[Pressure, Field(ge=1.0, le=1.0e15)] | None = None
-    """Young's modulus E of elastic spheres; walls and fixed grains are of the same material."""
+    """Young's modulus E of elastic spheres; walls and fixed grains are of the same material,
+    unless [materials] says otherwise."""
     poisson_ratio: Annotated[Number, Field(ge=0, le=0.5)] = 0.25
     """Poisson's ratio of elastic spheres."""
     expected_speed: Annotated[Speed, Field(gt=0)] | None = None
