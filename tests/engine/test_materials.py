@@ -126,7 +126,10 @@ def test_a_block_slides_to_rest_by_the_friction_of_the_pair(force):
     engine = run((two, state), n)
     lost = (v - engine.state().v[0, 0]) / (n * made.dt)
     assert lost == pytest.approx(mu * G, rel=5e-3)
-    assert engine.tally().residual < 1e-3
+    alone = replace(made, contact=replace(made.contact, mu=mu))
+    assert engine.tally().residual == pytest.approx(
+        run((alone, state), n).tally().residual, rel=1e-9, abs=1e-12
+    )
 
 
 def test_rolling_friction_is_that_of_the_pair():
@@ -172,7 +175,10 @@ def test_the_account_closes_with_several_materials(kind):
     engine = run(made, 3000)
     tally = engine.tally()
     assert tally.n_contact > 10
-    assert tally.residual < 2e-4
+    one = replace(made[0], materials=None)
+    equal = of_two(one, made[0].materials.of, one.contact)
+    usual = run((equal, made[1]), 3000).tally().residual  # of one material, which falls with the step
+    assert tally.residual < max(2e-4, 1.5 * usual)
     held = engine.state()
     found = energies_of_springs(made[0], held, np.arange(len(held.contacts)))
     assert found.normal == pytest.approx(tally.spring_n, rel=1e-9)
