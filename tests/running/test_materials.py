@@ -108,9 +108,9 @@ def test_a_stopped_run_of_several_materials_resumes_with_the_same_bits(
 def test_contacts_are_held_against_the_law_of_their_pair(whole: Results) -> None:
     made, scene = whole.scene.materials, whole.scene
     assert made is not None
-    found = ryusa.measure.collisions(whole)
+    found = ryusa.measure.collisions(whole, slowest=0.1)  # gravity acts on slower ones
     alone = (found.events["alone"] > 0.0) & (found.events["j"] == scene.n_grain)  # on the floor
     for name, e in ((0, 0.9), (1, 0.5)):
         mine = alone & (made.of[found.events["i"]] == name)
         assert mine.sum() > 10
-        assert np.nanmedian(found.restitution[mine]) == pytest.approx(e, abs=0.02)
+        assert np.nanmedian(found.restitution[mine]) == pytest.approx(e, abs=0.006)
