@@ -84,6 +84,8 @@ class ServoRule:
         every = np.array(engine.tally().walls or np.zeros(scene.n_wall * N_IMPULSE))
         every = every.reshape(scene.n_wall, N_IMPULSE)
         travel, since = self.travel_at(t), t - self.t
+        laws = (scene.contact,) if scene.materials is None else scene.materials.contact
+        k_n = max(law.k_n for law in laws)
         for w in driven(walls):
             row = walls.servo[w]
             impulse, touched = float(every[w, :3] @ row[TOWARDS : TOWARDS + 3]), float(every[w, TOUCHED])
@@ -100,9 +102,7 @@ class ServoRule:
                     "Either there is nothing in its way, or the grains cannot carry the force: check "
                     "direction and force, or raise servo.max_travel.",
                 )
-            self.speed[w] = servo_speed(
-                row[ASKED], force, contacts, scene.contact.k_n, since, row[MOST_SPEED]
-            )
+            self.speed[w] = servo_speed(row[ASKED], force, contacts, k_n, since, row[MOST_SPEED])
         self.travel, self.t = travel, t
         engine.set_walls(self.motion(scene))
 
