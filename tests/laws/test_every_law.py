@@ -15,6 +15,8 @@ import ryusa.laws
 BLIND = {
     ("walls.nearest_on_cylinder", "length"),  # the end, of a point that is not beyond it
     *(("walls.nearest_on_triangle", name) for name in ("s_11", "s_12", "s_22")),  # of a face in the scene
+    # moduli have no effect where both materials have one Poisson's ratio, as here
+    *(("materials.poisson_of_two", name) for name in ("young_a", "young_b")),
     ("contact.slip_scale", "size"),  # a factor of the vector that is not a number itself
     ("contact.slip_scale", "tau_c"),  # tau_c comes from the normal force, which is not a number either
     ("contact.slip_spring", "spring_n"),

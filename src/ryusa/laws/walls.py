@@ -156,4 +156,5 @@ def servo_speed(
     """
     if found == 0.0:
         return most
-    return max(min(0.5 * (asked - found) / (max(contacts, 1.0) * k_n * interval), most), -most)
+    speed = 0.5 * (asked - found) / (max(contacts, 1.0) * k_n * interval)
+    return most * max(min(speed / most, 1.0), -1.0)

@@ -121,11 +121,10 @@ class Loop:
             next_frame = self._first + round(self._frame * self.frames / self.scene.dt)
             next_change = self.changes[0][0] if self.changes else _NEVER
             next_check = (self._step // check_steps + 1) * check_steps
-            next_delivery = (self._step // _DELIVER_EVERY + 1) * _DELIVER_EVERY
             next_pass = _NEVER if self.traffic is None else self.traffic.next_step(self._step)
             next_press = _NEVER if self.servo is None else self.servo.next_step(self.scene, self._step)
             due = min(next_frame, next_change, next_check, next_pass, next_press, last)
-            if not self._advance_to(min(due, next_delivery)):
+            if not self._advance_to(min(due, (self._step // _DELIVER_EVERY + 1) * _DELIVER_EVERY)):
                 continue
             if self.traffic is not None and self._step == next_pass:
                 self._pass_grains(self.traffic)
@@ -151,9 +150,8 @@ class Loop:
         self._first = state.step
         self._rest, self._saltations = RestDetector(self.stop), SaltationCounter(self.scene, self.stop)
         if self.traffic is not None:
-            passed = self.traffic.begin(self.scene, state)
-            self.recorder.passages(passed.rows)
-            state = passed.state
+            state, _, rows = self.traffic.begin(self.scene, state)
+            self.recorder.passages(rows)
         self._load(state)
         self._record()
         self._change_if_due()

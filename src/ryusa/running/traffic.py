@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,8 +20,7 @@ _FULL = 3  # grains in a row that find no place, after which a feed is tried aga
 Ints = NDArray[np.int64]
 
 
-@dataclass(frozen=True)
-class Passed:
+class Passed(NamedTuple):
     """What happened at one instant.
 
     Attributes
