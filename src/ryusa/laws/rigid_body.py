@@ -7,10 +7,11 @@ it as a force changes a momentum, and no torque leaves it alone to the bit.
 
 import math
 
-from ryusa.laws._law import law
+from ryusa.laws._law import step_law
+from ryusa.laws.elementary_trigonometric import cosine_of_root, sine_of_root
 
 
-@law
+@step_law
 def rotate(
     x: float, y: float, z: float, q_w: float, q_x: float, q_y: float, q_z: float
 ) -> tuple[float, float, float]:
@@ -36,7 +37,7 @@ def rotate(
     )
 
 
-@law
+@step_law
 def rotate_back(
     x: float, y: float, z: float, q_w: float, q_x: float, q_y: float, q_z: float
 ) -> tuple[float, float, float]:
@@ -53,7 +54,7 @@ def rotate_back(
     return rotate(x, y, z, q_w, -q_x, -q_y, -q_z)
 
 
-@law
+@step_law
 def turn_about_first(
     q_w: float,
     q_a: float,
@@ -81,14 +82,15 @@ def turn_about_first(
 
     Notes
     -----
-    Source: Miller et al. 2002, J. Chem. Phys. 116, 8649: a rotation about a by the angle l_a dt/I_a.
+    Source: Miller et al. 2002, J. Chem. Phys. 116, 8649: a rotation about a by the angle l_a dt/I_a, by series
+    that are exact to round-off up to 2.8 rad and to 4e-15 up to 4 rad.
 
     >>> q_w, q_a, q_b, q_c, l_b, l_c = turn_about_first(1.0, 0.0, 0.0, 0.0, math.pi, 1.0, 0.0, 0.5, 1.0)
     >>> round(q_w, 9), round(q_a, 9), round(l_b, 9), round(l_c, 9)  # a quarter of a turn
     (0.707106781, 0.707106781, 0.0, -1.0)
     """
     half = 0.5 * (l_a * over * dt)
-    c, s = math.cos(half), math.sin(half)
+    c, s = cosine_of_root(half * half), half * sine_of_root(half * half)
     c_l, s_l = (c - s) * (c + s), 2.0 * c * s
     return (
         c * q_w - s * q_a,
@@ -100,7 +102,7 @@ def turn_about_first(
     )
 
 
-@law
+@step_law
 def rotor_step(
     q_w: float,
     q_x: float,
@@ -113,8 +115,8 @@ def rotor_step(
     over_2: float,
     over_3: float,
     dt: float,
-) -> tuple[float, float, float, float]:
-    """Orientation of a rigid body after a step without torque [-].
+) -> tuple[float, float, float, float, float, float, float]:
+    """Orientation of a rigid body after a step without torque [-], and the angular momentum in its frame.
 
     Parameters
     ----------
@@ -131,7 +133,7 @@ def rotor_step(
     same map. It keeps the angular momentum; its error in the energy stays bounded, and is none where all
     moments are equal. The quaternion is brought back to length 1, against round-off alone.
 
-    >>> [round(one, 9) for one in rotor_step(1.0, 0.0, 0.0, 0.0, 0.0, 0.0, math.pi, 1.0, 0.7, 0.5, 1.0)]
+    >>> [round(one, 9) for one in rotor_step(1.0, 0.0, 0.0, 0.0, 0.0, 0.0, math.pi, 1.0, 0.7, 0.5, 1.0)[:4]]
     [0.707106781, 0.0, 0.0, 0.707106781]
     """
     a, b, c = rotate_back(l_x, l_y, l_z, q_w, q_x, q_y, q_z)
@@ -142,10 +144,10 @@ def rotor_step(
     q_w, q_y, q_z, q_x, c, a = turn_about_first(q_w, q_y, q_z, q_x, b, c, a, over_2, half)
     q_w, q_z, q_x, q_y, a, b = turn_about_first(q_w, q_z, q_x, q_y, c, a, b, over_3, half)
     scale = 1.0 / math.sqrt(q_w * q_w + q_x * q_x + q_y * q_y + q_z * q_z)
-    return q_w * scale, q_x * scale, q_y * scale, q_z * scale
+    return q_w * scale, q_x * scale, q_y * scale, q_z * scale, a, b, c
 
 
-@law
+@step_law
 def spin(
     q_w: float,
     q_x: float,
@@ -173,7 +175,7 @@ def spin(
     return rotate(over_1 * a, over_2 * b, over_3 * c, q_w, q_x, q_y, q_z)
 
 
-@law
+@step_law
 def angular_momentum(
     q_w: float,
     q_x: float,
@@ -201,7 +203,7 @@ def angular_momentum(
     return rotate(inertia_1 * a, inertia_2 * b, inertia_3 * c, q_w, q_x, q_y, q_z)
 
 
-@law
+@step_law
 def rotational_energy(
     q_w: float,
     q_x: float,

@@ -4,6 +4,7 @@ from ryusa.model.column import Budget, Column, WaterState
 from ryusa.model.contacts import EVENT, Contacts
 from ryusa.model.engine_block import EngineBlock
 from ryusa.model.fluid import CouplingState, FluidAtGrains
+from ryusa.model.rigid_bodies import BodyState, RigidBodies
 from ryusa.model.scene import ContactLaw, Materials, RollingLaw, Scene, Water
 from ryusa.model.state import State
 from ryusa.model.tally import Tally, Term
@@ -13,6 +14,7 @@ from ryusa.model.walls import FaceKind, Walls
 __all__ = [
     "EVENT",
     "PASSAGE",
+    "BodyState",
     "Budget",
     "Column",
     "ContactLaw",
@@ -24,6 +26,7 @@ __all__ = [
     "Feed",
     "FluidAtGrains",
     "Materials",
+    "RigidBodies",
     "RollingLaw",
     "Scene",
     "State",

@@ -126,6 +126,29 @@ class Clump:
         a, b, c = self.lengths
         return c / math.sqrt(a * b)
 
+    @property
+    def least_mass(self) -> float:
+        """Least effective mass of a push through the centre of one of its spheres, over the mass [-].
+
+        Notes
+        -----
+        A push along n at the arm a turns the clump too: 1/m_e = 1/m + (a x n) . I^-1 (a x n).
+
+        >>> round(Clump.of(np.array([[-0.5, 0.0, 0.0], [0.5, 0.0, 0.0]]), np.ones(2)).least_mass, 6)
+        0.583333
+        """
+        most = 0.0
+        for a_x, a_y, a_z in self.x:
+            cross = np.array([[0.0, -a_z, a_y], [a_z, 0.0, -a_x], [-a_y, a_x, 0.0]])
+            mobility = cross.T @ (cross / self.inertia[:, None])
+            most = max(most, float(np.linalg.eigvalsh(mobility)[-1]))
+        return 1.0 / (1.0 + self.volume * most)
+
+    @property
+    def extent(self) -> float:
+        """Diameter of the sphere about the centre of mass that holds all spheres [m]."""
+        return 2.0 * float((np.linalg.norm(self.x, axis=1) + 0.5 * self.d).max())
+
     def scaled(self, factor: float) -> "Clump":
         """The same form, all lengths times a factor > 0.
 

@@ -28,6 +28,7 @@ from ryusa.laws.families import (
 )
 from ryusa.model.arrays import Bools, Floats
 from ryusa.model.column import Column
+from ryusa.model.rigid_bodies import RigidBodies
 from ryusa.model.traffic import Traffic
 from ryusa.model.walls import Walls
 
@@ -194,6 +195,7 @@ class Scene:
     groups: dict[str, tuple[int, int]] = field(default_factory=lambda: {})
     walls: Walls | None = None  # finite walls, at rest or moving
     materials: Materials | None = None  # None: all contacts are those of `contact` and `rolling`
+    bodies: RigidBodies | None = None  # clumps, whose spheres are free grains
 
     @property
     def n_grain(self) -> int:

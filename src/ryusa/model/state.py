@@ -8,6 +8,7 @@ from ryusa.model.arrays import Bools, Floats
 from ryusa.model.contacts import Contacts
 from ryusa.model.engine_block import EngineBlock
 from ryusa.model.fluid import CouplingState, FluidAtGrains
+from ryusa.model.rigid_bodies import BodyState
 from ryusa.model.tally import Tally
 
 
@@ -32,6 +33,7 @@ class State:
     coupling: CouplingState | None = None  # state of the column, not used by engines
     # whether each grain is there, shape (n_grain,); empty: all are. x, v and omega of absent ones are nan
     present: Bools = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
+    bodies: BodyState | None = None  # motion of clumps, of which x, v and omega of their members follow
     engine: EngineBlock | None = None  # internal data of the engine that wrote this
 
     @staticmethod

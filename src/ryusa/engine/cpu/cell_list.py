@@ -95,7 +95,7 @@ def _neighbour_cell(c: int, step: int, n: int, periodic: bool) -> int:
 @inner(forceinline=True)
 def _append_partners(
     i: int, offset: int, low: Any, width: Any, dims: Any, first: Any, order: Any, x: Any, ids: Any,
-    period: Any, skin: float, plane_case: bool, partners: Any, used: int,
+    period: Any, skin: float, plane_case: bool, body: Any, partners: Any, used: int,
 ) -> int:  # fmt: skip
     """Append to `partners` all grains of one grid with a higher id than grain i and within its reach.
 
@@ -103,7 +103,9 @@ def _append_partners(
     ----------
     offset : added to the numbers in the grid to get places (free grains 0, fixed grains n).
     low, width, dims, first, order : the grid, of `grid_of` and `sort_into`.
-    lanes : a plane scene, where grains at another y are in another lane and never met.
+    plane_case : grains at another y are in another lane and never met.
+    body : number of the rigid body of each grain, by id, another for each grain of its own; two of one body
+        never meet. None where there are none.
     partners : uint32 array to fill from `used`.
 
     Returns
@@ -130,6 +132,8 @@ def _append_partners(
             d_x, d_y, d_z = wrap(x[j, 0] - x_i, l_x), wrap(x[j, 1] - y_i, l_y), x[j, 2] - z_i
             reach = r_i + x[j, 3]
             met = (d_x * d_x + d_y * d_y + d_z * d_z < reach * reach) & (ids[j] > id_i)
+            if body is not None:
+                met = met & (body[ids[j]] != body[id_i])
             partners[used] = j
             used += int(met & ((not plane_case) | (x[j, 1] == y_i)))
     return used
@@ -151,6 +155,7 @@ def build_list(
     skin: float,
     plane_case: bool,
     walled: int | None,
+    body: Any,
     start: Any,
     partners: Any,
 ) -> int:
@@ -166,7 +171,7 @@ def build_list(
     for i in range(lo, hi):
         start[i] = used
         used = _append_partners(
-            i, 0, low, width, dims, first, order, x, ids, period, skin, plane_case, partners, used
+            i, 0, low, width, dims, first, order, x, ids, period, skin, plane_case, body, partners, used
         )
         if bed and used >= 0:
             used = _append_partners(
@@ -182,6 +187,7 @@ def build_list(
                 period,
                 skin,
                 plane_case,
+                body,
                 partners,
                 used,
             )

@@ -19,6 +19,7 @@ from ryusa.engine.cpu.arrays import (
 from ryusa.engine.cpu.candidate_pairs import CandidatePairs
 from ryusa.engine.cpu.contact_rows import has_short_rows, lengthened, shortened
 from ryusa.engine.cpu.prune_schedule import COST_TEST
+from ryusa.engine.cpu.rigid_bodies import body_arrays, body_state, place_members, wrap_bodies
 from ryusa.engine.cpu.time_loop import make_run
 from ryusa.engine.cpu.verlet_list import BlockLayout, collect_memory
 from ryusa.engine.protocol import Flags
@@ -111,6 +112,9 @@ class CpuEngine:
         self._layout = BlockLayout(scene, blocks, self._variant)
         self._parameters = common_parameters(scene)
         self._material, self._table = material_arrays(scene)
+        self._bodies = None
+        if scene.bodies is not None and state.bodies is not None:
+            self._bodies = body_arrays(scene.bodies, state.bodies, n)
         self._smallest = float(np.concatenate([scene.d, scene.d_fixed]).min(initial=np.inf))
         self._parameters[P.T_ZERO] = state.t - state.step * scene.dt
         records = (n // blocks + _RECORDS, N_EVENT) if scene.events != EventRule.NONE else (1, 1)
@@ -174,6 +178,7 @@ class CpuEngine:
             step=self._step,
             t=self._t,
             image=grains.image[back],
+            bodies=None if self._bodies is None else body_state(self._bodies),
         )
 
     def state(self) -> State:
@@ -265,7 +270,7 @@ class CpuEngine:
                 self._material, self._table, layout.block_start, self._n, layout.n_solid, self._grains,
                 layout.walls, self._pairs, self._candidates.pairs,
             )  # fmt: skip
-            more = (self._choice, self._candidates.schedule)
+            more = (self._choice, self._candidates.schedule, self._bodies)
             others = (
                 [
                     self._pool.submit(
@@ -324,6 +329,8 @@ class CpuEngine:
         self._since, self._travel, self._n_list = 0, 0.0, self._n_list + 1
         starts, self._pairs = self._pairs.start, self._layout.empty_pairs()  # frees the old list
         self._set_poses()
+        if self._bodies is not None:
+            wrap_bodies(self._bodies, self._layout.period)
         place_of, lost = self._list_pairs(self._grains, starts)
         self._prune(memory, place_of)
         self._parameters[P.SKIN] = self._skin
@@ -344,6 +351,8 @@ class CpuEngine:
         self._grains, self._pairs, self._x_listed, place_of, lost = self._layout.list_pairs(
             grains, starts, self._skin, self._share
         )
+        if self._bodies is not None and (bodies := self._layout.scene.bodies) is not None:
+            self._bodies = place_members(self._bodies, bodies.members, self._grains.ids[: self._n])
         return place_of, lost
 
     def _prune(self, memory: ContactMemory, place_of: np.ndarray) -> None:

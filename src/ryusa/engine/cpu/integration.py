@@ -71,11 +71,15 @@ def integrate(
     c: Any,
     grains: GrainArrays,
     pairs: PairArrays,
+    bodies: Any,
     batch: Any,
     account: Any,
     stats: Any,
 ) -> None:
-    """Gather what other blocks stored, add water and weight, and move grains lo..hi-1 by one step."""
+    """Gather what other blocks stored, add water and weight, and move grains lo..hi-1 by one step.
+
+    Members of `bodies`, None where there are none, only gather (rigid_bodies.py).
+    """
     x, v, w, v_pruned, ids, image = grains.x, grains.v, grains.w, grains.v_pruned, grains.ids, grains.image
     m_bare, m_weight, inertia = grains.m_bare, grains.m_weight, grains.inertia
     per_m, per_inertia = grains.per_m, grains.per_inertia
@@ -96,10 +100,13 @@ def integrate(
             forces_of_water(column, choice, variant.rotation, i, min(i + W.LANES, hi), c, grains, batch)
         gather_incoming(i, active, incoming, incoming_start, f, film)
         push, turn = read4(f, 8 * i), read4(f, 8 * i + 4)
-        fill4(f, 8 * i, 0.0)
-        fill4(f, 8 * i + 4, 0.0)
         if variant.rolling or variant.events:
             n_touching[i] = int(component(turn, 3))
+        if bodies is not None:
+            if bodies.member[ids[i]]:
+                continue
+        fill4(f, 8 * i, 0.0)
+        fill4(f, 8 * i + 4, 0.0)
         x_new, before, spin = read4(x, 4 * i), read4(v, 8 * i), read4(w, 8 * i)
         drag, inverse = vec4_of(0.0, 0.0, 0.0, 0.0), per_m[i]
         if water is not None:

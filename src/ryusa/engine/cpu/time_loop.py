@@ -25,6 +25,7 @@ from ryusa.engine.cpu.pair_batch import compute, filter_pairs, gather, overlap_o
 from ryusa.engine.cpu.pair_physics import immersed_dashpots, optional_physics
 from ryusa.engine.cpu.prune import prune
 from ryusa.engine.cpu.prune_schedule import COST_GRAIN, COST_TEST, ROUNDED_UP, plan_prune, steps_ahead
+from ryusa.engine.cpu.rigid_bodies import move_bodies
 from ryusa.engine.cpu.simd.borrow import borrow
 from ryusa.engine.cpu.simd.prefetch import prefetch
 from ryusa.engine.cpu.simd.vec4 import fill4
@@ -239,6 +240,7 @@ def make_run(variant: KernelVariant) -> Any:
         work: Workspace,
         choice: LawChoice,
         schedule: Any,
+        bodies: Any,
     ) -> tuple[int, float, int]:
         """Do up to n_steps steps; all threads return the same (steps done, travel, stop)."""
         # One function: split into four, W1 and W2 at 2,000 grains took 1 % longer (design/lab/0005)
@@ -307,10 +309,19 @@ def make_run(variant: KernelVariant) -> Any:
                     if soon != (after == 1):
                         integrate(
                             variant, water, column, choice, block_start[q], block_start[q + 1], step == 0,
-                            last, c, grains, pairs, work.water, terms[q], stats[q],
+                            last, c, grains, pairs, bodies, work.water, terms[q], stats[q],
                         )  # fmt: skip
-                    if after:
+                    if after and bodies is None:
                         post(stats[b])
+                target = wait(count, n_threads, target)
+            if bodies is not None:
+                n_body = len(bodies.order)
+                for b in range(b_0, b_1):
+                    move_bodies(
+                        b * n_body // n_block, (b + 1) * n_body // n_block, last, c, grains, pairs, bodies,
+                        stats[b],
+                    )  # fmt: skip
+                    post(stats[b])
                 target = wait(count, n_threads, target)
             fastest = velocity_change = 0.0
             full = False

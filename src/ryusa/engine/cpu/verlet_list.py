@@ -44,6 +44,11 @@ class BlockLayout(Layout):
         faces = face_arrays(scene.walls, self.n_solid + scene.n_plane) if scene.walls is not None else None
         self.walls = WallArrays(self.plane_normals, self.plane_points, faces if scene.n_face else None)
         self.walled = 1 if scene.n_face else None
+        self.body: np.ndarray | None = None  # number of the rigid body of each grain, by id (`build_list`)
+        if scene.bodies is not None:
+            of = scene.bodies.of_grain(self.n)
+            self.body = np.arange(self.n_solid) + scene.bodies.n
+            self.body[: self.n][of >= 0] = of[of >= 0]
 
     def empty_pairs(self) -> PairArrays:
         """A Verlet list without pairs."""
@@ -125,7 +130,7 @@ class BlockLayout(Layout):
                 partners = np.empty(room, np.uint32)
                 used = build_list(
                     lo, hi, grains.x, grains.ids, n, self.n_solid, self.walls, scene.plane_active, free,
-                    fixed, period, skin, scene.plane_case, self.walled, start, partners,
+                    fixed, period, skin, scene.plane_case, self.walled, self.body, start, partners,
                 )  # fmt: skip
                 if used >= 0:
                     return hi, partners[:used]

@@ -68,7 +68,8 @@ class CudaEngine:
         """Reasons why this engine cannot simulate the scene; () when it can. Those of the CPU engine."""
         walls = ("walls are simulated by engine 'cpu' alone",) if scene.n_face else ()
         mixed = ("several materials are simulated by engine 'cpu' alone",) if scene.materials else ()
-        return (*refusals(scene), *walls, *mixed)
+        clumps = ("clumps are simulated by engine 'cpu' alone",) if scene.bodies else ()
+        return (*refusals(scene), *walls, *mixed, *clumps)
 
     def load(self, scene: Scene, state: State) -> None:
         """Take a scene and an initial state or a snapshot; enter a change of the scene in the account."""

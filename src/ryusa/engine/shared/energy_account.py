@@ -8,7 +8,7 @@ import numpy as np
 from ryusa.engine.shared import block_statistics as S
 from ryusa.engine.shared.contact_history import energies_of_springs, rolling_energy
 from ryusa.model import EngineBlock, Scene, State, Tally
-from ryusa.model.scene import Floats
+from ryusa.model.arrays import Bools, Floats
 from ryusa.model.tally import HELD, N_TERM, Term
 
 N_ACCOUNT = 24  # doubles of the account of a block: whole cache lines
@@ -19,8 +19,14 @@ _SUMS = (S.KINETIC, S.SPIN, S.POTENTIAL, S.SPRING_N, S.SPRING_S, S.SPRING_R, S.N
 def begin_account(scene: Scene, state: State, stats: Floats, terms: Floats) -> None:
     """Write what grains hold before the first step, which adds springs of pairs that begin in touch."""
     spin = state.omega if scene.rotation else np.zeros_like(state.omega)
-    stats[0, S.KINETIC] = 0.5 * np.sum((scene.m + scene.m_added)[:, None] * state.v**2)
-    stats[0, S.SPIN] = 0.5 * np.sum(scene.inertia[:, None] * spin**2)
+    m, inertia = (scene.m + scene.m_added)[:, None], scene.inertia[:, None]
+    stats[0, S.KINETIC], stats[0, S.SPIN] = 0.5 * np.sum(m * state.v**2), 0.5 * np.sum(inertia * spin**2)
+    if scene.bodies is not None and state.bodies is not None:
+        alone, bodies, moved = _alone(scene), scene.bodies, state.bodies
+        stats[0, S.KINETIC] = 0.5 * np.sum((m * state.v**2)[alone])
+        stats[0, S.KINETIC] += 0.5 * np.sum(bodies.m[:, None] * moved.v**2)
+        stats[0, S.SPIN] = 0.5 * np.sum((inertia * spin**2)[alone])
+        stats[0, S.SPIN] += 0.5 * np.sum(moved.momentum * moved.spin(bodies))
     stats[0, S.POTENTIAL] = potential_energy(scene, state)
     stats[0, S.SPEED_MAX] = np.sqrt(np.sum(state.v**2, axis=1).max(initial=0.0))
     stats[0, S.SPIN_MAX] = np.sqrt(np.sum(spin**2, axis=1).max(initial=0.0))
@@ -123,11 +129,24 @@ def tally_of(t: float, stats: Floats, terms: Floats, walls: tuple[float, ...] = 
 
 def potential_energy(scene: Scene, state: State) -> float:
     """Energy of weight and buoyancy at a state [J], from the origin, periods crossed added."""
-    x = np.array(state.x)
+    m, x = scene.m_weight, np.array(state.x)
+    image = state.image if len(state.image) == len(x) else np.zeros((len(x), 2), np.int32)
+    if scene.bodies is not None and state.bodies is not None:
+        alone, moved = _alone(scene), state.bodies
+        m = np.concatenate([m[alone], scene.bodies.m_weight])
+        x, image = np.concatenate([x[alone], moved.x]), np.concatenate([image[alone], moved.image])
     for a in range(2):
-        if np.isfinite(scene.period[a]) and len(state.image) == len(x):
-            x[:, a] += state.image[:, a] * scene.period[a]
-    return -float(np.sum(scene.m_weight[:, None] * x * scene.gravity))
+        if np.isfinite(scene.period[a]):
+            x[:, a] += image[:, a] * scene.period[a]
+    return -float(np.sum(m[:, None] * x * scene.gravity))
+
+
+def _alone(scene: Scene) -> Bools:
+    """Grains that are no members of clumps, shape (n_grain,)."""
+    alone = np.ones(scene.n_grain, np.bool_)
+    if scene.bodies is not None:
+        alone[scene.bodies.members] = False
+    return alone
 
 
 def energy_of_change(before: Scene, scene: Scene, state: State, dropped: np.ndarray) -> float:

@@ -43,6 +43,9 @@ class Layout:
         self.largest = 2.0 * float(self.r[: self.n_solid].max(initial=0.0))
         self.m = np.concatenate([scene.m + scene.m_added, inf])
         self.inertia = np.concatenate([scene.inertia, inf])
+        if (bodies := scene.bodies) is not None:  # contacts see the body
+            self.m[bodies.members] = np.repeat(bodies.m, bodies.count)
+            self.inertia[bodies.members] = np.repeat(bodies.inertia.mean(axis=1), bodies.count)
         self.tracked = scene.tracked if len(scene.tracked) == n else np.zeros(n, np.bool_)
         law, water = scene.contact, scene.water
         constant = law.damping == Damping.CONSTANTS and law.timing == ContactTiming.AT_STEPS

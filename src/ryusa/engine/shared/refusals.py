@@ -7,11 +7,12 @@ import numpy as np
 from ryusa.engine.shared.parameters import LARGEST_DISPLACEMENT
 from ryusa.errors import NotANumber
 from ryusa.laws._family import Family
-from ryusa.laws.families import ContactForce, ContactTiming, Rebound
-from ryusa.model import Scene, State, Walls
+from ryusa.laws.families import ContactForce, ContactTiming, Profile, Rebound
+from ryusa.model import RigidBodies, Scene, State, Walls
 from ryusa.model.scene import ALIKE, Damping
 from ryusa.model.walls import SPIN, largest_speed
 
+_OFF = 1.0e-6  # of a diameter, or of a unit quaternion: more is no round-off
 _SHORTEST_PERIOD = 3.0  # in diameters: below, a pair could touch through two images
 
 
@@ -28,6 +29,7 @@ def refusals(scene: Scene) -> tuple[str, ...]:
         reasons.append("an immersed rebound needs a restitution in air: contact.damping gives constants")
     reasons += _refused_of_hertz(scene)
     reasons += _refused_of_materials(scene)
+    reasons += _refused_of_clumps(scene)
     largest = float(np.concatenate([scene.d, scene.d_fixed[scene.fixed_active]]).max(initial=0.0))
     for axis, length in zip("xy", scene.period, strict=True):
         if length < _SHORTEST_PERIOD * largest:
@@ -97,6 +99,24 @@ def _refused_of_materials(scene: Scene) -> list[str]:
     return found
 
 
+def _refused_of_clumps(scene: Scene) -> list[str]:
+    """What a scene with clumps cannot have."""
+    bodies, found = scene.bodies, list[str]()
+    if bodies is None:
+        return found
+    if fault := bodies.fault(scene.n_grain):
+        found.append(fault)
+    if scene.contact.timing != ContactTiming.AT_STEPS:
+        found.append("clumps need contact.timing = 'at steps' (design/0022)")
+    if scene.plane_case or not scene.rotation:
+        found.append("clumps need motion in space with rotation")
+    if scene.water.profile != Profile.NONE:
+        found.append("clumps are dry: water.profile must be none (design/0022)")
+    if scene.traffic is not None:
+        found.append("clumps cannot enter or leave through feeds and exits (design/0022)")
+    return found
+
+
 def check_state(scene: Scene, state: State) -> None:
     """Refuse a state of another scene, one that is not finite, and lanes of a plane scene that overlap.
 
@@ -109,6 +129,8 @@ def check_state(scene: Scene, state: State) -> None:
         raise ValueError(f"state.x has shape {state.x.shape}, the scene has {n} free grains")
     if scene.plane_case:
         _check_lanes(scene, state)
+    if scene.bodies is not None:
+        _check_bodies(scene, scene.bodies, state)
     bad = np.flatnonzero(~np.isfinite(np.hstack([state.x, state.v, state.omega])).all(axis=1))
     if len(bad):
         raise NotANumber(
@@ -118,6 +140,28 @@ def check_state(scene: Scene, state: State) -> None:
             t=state.t,
             hint="Nothing was stepped: give finite numbers.",
         )
+
+
+def _check_bodies(scene: Scene, bodies: RigidBodies, state: State) -> None:
+    """Clumps have to be where their members are."""
+    moved = state.bodies
+    shapes = {"x": (3,), "v": (3,), "q": (4,), "momentum": (3,), "image": (2,)}
+    if moved is None or any(getattr(moved, name).shape != (bodies.n, *row) for name, row in shapes.items()):
+        raise ValueError(f"state.bodies must hold the motion of {bodies.n} clumps")
+    numbers = np.hstack([moved.x, moved.v, moved.q, moved.momentum])
+    bad = np.flatnonzero(~np.isfinite(numbers).all(axis=1))
+    if len(bad):
+        raise ValueError(f"clump {bad[0]}: position, velocity, orientation or angular momentum is not finite")
+    if np.abs(np.linalg.norm(moved.q, axis=1) - 1.0).max(initial=0.0) > _OFF:
+        raise ValueError("an orientation of a clump is no unit quaternion")
+    members = bodies.members
+    apart = state.x[members] - moved.of_members(bodies)[0]
+    for k in range(2):
+        if np.isfinite(scene.period[k]):
+            apart[:, k] -= scene.period[k] * np.round(apart[:, k] / scene.period[k])
+    off = np.linalg.norm(apart, axis=1) > _OFF * np.repeat(bodies.d, bodies.count)
+    if off.any():
+        raise ValueError(f"grain {members[int(off.argmax())]} is not where its clump has it")
 
 
 def _check_lanes(scene: Scene, state: State) -> None:

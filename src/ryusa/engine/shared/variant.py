@@ -27,6 +27,7 @@ class KernelVariant(NamedTuple):
     walls: int = 0  # faces, at rest or moving
     hertz: int = 0  # contacts are those of elastic spheres
     mixed: int = 0  # materials differ
+    bodies: int = 0  # grains that are members of rigid bodies
 
     @property
     def row_width(self) -> int:
@@ -84,6 +85,7 @@ def variant_of(scene: Scene) -> KernelVariant:
         walls=int(scene.n_face > 0),
         hertz=int(int(scene.contact.force) == HERTZ),
         mixed=int(scene.materials is not None),
+        bodies=int(scene.bodies is not None),
     )
 
 

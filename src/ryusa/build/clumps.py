@@ -1,0 +1,128 @@
+"""Grains of a scene made into clumps of the same volume."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ryusa.errors import CaseError
+from ryusa.laws.families import ContactForce
+from ryusa.model import BodyState, Materials, RigidBodies, Scene, State
+from ryusa.model.arrays import Floats
+from ryusa.model.clump import Clump
+
+Ints = NDArray[np.int64]
+
+
+def with_clumps(
+    scene: Scene,
+    state: State,
+    forms: Sequence[Clump],
+    *,
+    form_of: ArrayLike | None = None,
+    orientation: ArrayLike | None = None,
+    names: Sequence[str] = (),
+) -> tuple[Scene, State]:
+    """Make grains of a scene into clumps, each of the volume of its grain, and shorten the time step.
+
+    The centre of mass of a clump is where the centre of its grain was; velocity and spin are those of the
+    grain. The step is that of the lightest contact: a push on a sphere off the centre also turns the clump.
+
+    Parameters
+    ----------
+    scene, state : at the start of a run.
+    forms : clumps of any size; each is scaled.
+    form_of : number of the form of each free grain, -1 for a grain that stays a sphere, shape (n_grain,);
+        all of the first form when not given.
+    orientation : quaternions (w, x, y, z) from the principal axes to space, shape (n_grain, 4); along x, y, z
+        when not given.
+    names : of the forms.
+
+    Raises
+    ------
+    CaseError : a shape that does not fit, an orientation of length zero, a scene that has clumps already.
+    """
+    scene, state = expanded(scene, state, forms, form_of=form_of, orientation=orientation, names=names)
+    power = 0.4 if scene.contact.force == ContactForce.HERTZ_MINDLIN else 0.5
+    share = min((form.least_mass for form in forms), default=1.0)
+    return replace(scene, dt=scene.dt * share**power), state
+
+
+def random_orientations(n: int, rng: np.random.Generator) -> Floats:
+    """Quaternions of orientations that are all as likely, shape (n, 4)."""
+    q = rng.standard_normal((n, 4))
+    return np.asarray(q / np.linalg.norm(q, axis=1, keepdims=True))
+
+
+def expanded(
+    scene: Scene,
+    state: State,
+    forms: Sequence[Clump],
+    *,
+    form_of: ArrayLike | None = None,
+    orientation: ArrayLike | None = None,
+    names: Sequence[str] = (),
+) -> tuple[Scene, State]:
+    """As `with_clumps`, with the time step of the scene."""
+    n = scene.n_grain
+    if scene.bodies is not None or len(state.contacts) or state.step:
+        raise CaseError("state", f"step {state.step}", "must be the start of a run without clumps")
+    which = np.zeros(n, np.int64) if form_of is None else np.array(form_of, np.int64)
+    if which.shape != (n,) or which.min(initial=0) < -1 or which.max(initial=0) >= len(forms):
+        raise CaseError("form_of", which.shape, f"must hold -1 to {len(forms) - 1} for each of {n} grains")
+    q = np.tile([1.0, 0.0, 0.0, 0.0], (n, 1)) if orientation is None else np.array(orientation, np.float64)
+    if q.shape != (n, 4) or not (np.linalg.norm(q, axis=1) > 0.0).all():
+        raise CaseError("orientation", q.shape, f"must hold a quaternion for each of {n} grains")
+    made = np.flatnonzero(which >= 0)
+    count = np.ones(n, np.int64)
+    count[made] = [len(forms[k].d) for k in which[made]]
+    first = np.cumsum(count) - count
+    scaled = [forms[which[k]].scaled(float(scene.d[k]) / forms[which[k]].d_volume) for k in made]
+    inertia = np.array([form.inertia / form.volume for form in scaled]).reshape(-1, 3)
+    bodies = RigidBodies(
+        first=first[made],
+        count=count[made],
+        arm=np.concatenate([np.zeros((0, 3)), *(form.x for form in scaled)]),
+        m=scene.m[made],
+        m_weight=scene.m_weight[made],
+        inertia=inertia * scene.m[made, None],
+        d=scene.d[made],
+        names=tuple(names),
+        form=which[made],
+    )
+    moved = BodyState.of(bodies, state.x[made], state.v[made], q[made], state.omega[made])
+    owner, members = np.repeat(np.arange(n), count), bodies.members
+    d = scene.d[owner]
+    d[members] = np.concatenate([np.zeros(0), *(form.d for form in scaled)])
+    share = np.ones(len(d))
+    for k, form in zip(made, scaled, strict=True):
+        share[first[k] : first[k] + count[k]] = form.d**3 / np.sum(form.d**3)
+    x, v, omega = state.x[owner], state.v[owner], state.omega[owner]
+    x[members], v[members], omega[members] = moved.of_members(bodies)
+    inertia_of_each = scene.inertia[owner]
+    inertia_of_each[members] = 0.1 * (scene.m[owner] * share * d**2)[members]
+    ends = np.concatenate([first, [len(d)]])
+
+    def new_id(k: int) -> int:
+        return int(ends[k]) if k <= n else k - n + len(d)
+
+    scene = replace(
+        scene,
+        d=d,
+        m=scene.m[owner] * share,
+        m_added=scene.m_added[owner] * share,
+        m_weight=scene.m_weight[owner] * share,
+        inertia=inertia_of_each,
+        tracked=scene.tracked[owner] if len(scene.tracked) == n else scene.tracked,
+        groups={name: (new_id(a), new_id(b)) for name, (a, b) in scene.groups.items()},
+        materials=_materials(scene.materials, owner, n),
+        bodies=bodies,
+    )
+    return scene, replace(State.at_rest(x), v=v, omega=omega, t=state.t, bodies=moved)
+
+
+def _materials(made: Materials | None, owner: Ints, n: int) -> Materials | None:
+    if made is None:
+        return None
+    return replace(made, of=np.concatenate([made.of[:n][owner], made.of[n:]]))

@@ -1,0 +1,163 @@
+"""Motion of rigid bodies: forces on their members summed, the body moved, and its members with it.
+
+After the forces on all grains are complete and before the next step. A body is the work of one thread, and
+its members are taken in the order of ids: sums do not depend on the number of threads.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ryusa.engine.cpu.arrays import GrainArrays, PairArrays
+from ryusa.engine.cpu.simd.borrow import borrow
+from ryusa.engine.shared import block_statistics as S
+from ryusa.engine.shared import parameters as P
+from ryusa.engine.shared.kernel import FAST, inner
+from ryusa.engine.shared.layout import aligned
+from ryusa.engine.shared.status import FAULT_NONE, FAULT_NOT_A_NUMBER
+from ryusa.laws.grain_step import kinetic_energy, potential_energy, translation_step, unwrapped
+from ryusa.laws.rigid_body import rotate, rotor_step, spin
+from ryusa.model.rigid_bodies import BodyState, RigidBodies
+
+
+class BodyArrays(NamedTuple):
+    """Bodies by number, their members in rows start[b] to start[b + 1]."""
+
+    order: Any  # bodies in the order of the places of their first members, (n_body,)
+    start: Any  # (n_body + 1,)
+    place: Any  # place of each member among the grains, (n_member,)
+    arm: Any  # centre of each member in the body frame [m], and 0, (n_member, 4)
+    member: Any  # 1 for grains that are members, by id, (n,)
+    x: Any  # centres of mass [m], and 0, (n_body, 4)
+    v: Any  # velocities [m/s], and 0, (n_body, 4)
+    q: Any  # orientations, (n_body, 4)
+    momentum: Any  # angular momenta in space [N m s], and 0, (n_body, 4)
+    image: Any  # periods crossed, (n_body, 2)
+    m: Any  # [kg], (n_body,)
+    m_weight: Any  # [kg], (n_body,)
+    over: Any  # 1 over the principal moments of inertia [1/(kg m2)], and 0, (n_body, 4)
+
+
+def body_arrays(bodies: RigidBodies, state: BodyState, n: int) -> BodyArrays:
+    """Arrays of bodies; `place_members` has to follow."""
+    k = bodies.n
+    start = np.concatenate([[0], np.cumsum(bodies.count)]).astype(np.int64)
+    member = np.zeros(n, np.uint8)
+    member[bodies.members] = 1
+    arrays = BodyArrays(
+        np.arange(k), start, np.zeros(start[-1], np.int64), aligned(int(start[-1]), 4), member,
+        *(aligned(k, 4) for _ in range(4)), np.array(state.image, np.int32), np.array(bodies.m),
+        np.array(bodies.m_weight), aligned(k, 4),
+    )  # fmt: skip
+    for room, given in (
+        (arrays.arm, bodies.arm), (arrays.x, state.x), (arrays.v, state.v), (arrays.momentum, state.momentum),
+        (arrays.over, 1.0 / bodies.inertia),
+    ):  # fmt: skip
+        room[:, :3] = given
+    arrays.q[:] = state.q
+    return arrays
+
+
+def place_members(arrays: BodyArrays, members: np.ndarray, ids: np.ndarray) -> BodyArrays:
+    """The same bodies once grains have new places; `ids` are those of free grains by place."""
+    place = np.argsort(ids)[members]
+    return arrays._replace(place=place, order=np.argsort(place[arrays.start[:-1]], kind="stable"))
+
+
+def wrap_bodies(arrays: BodyArrays, period: np.ndarray) -> None:
+    """Bring centres of mass back into the period, and count it."""
+    for k in range(2):
+        if period[k] < math.inf:
+            shift = np.floor(arrays.x[:, k] / period[k])
+            arrays.x[:, k] -= shift * period[k]
+            arrays.image[:, k] += shift.astype(np.int32)
+
+
+def body_state(arrays: BodyArrays) -> BodyState:
+    """Copy of the motion of bodies."""
+    return BodyState(
+        arrays.x[:, :3].copy(), arrays.v[:, :3].copy(), arrays.q.copy(), arrays.momentum[:, :3].copy(),
+        arrays.image.copy(),
+    )  # fmt: skip
+
+
+@inner(fastmath=FAST)
+def move_bodies(
+    first: int, last_body: int, last: bool, c: Any, grains: GrainArrays, pairs: PairArrays, bodies: BodyArrays,
+    stats: Any,
+) -> None:  # fmt: skip
+    """Move bodies first..last_body-1, in `BodyArrays.order`, and their members, by one step.
+
+    Energy is that of the scheme: 1/2 L(n-1/2) w(n+1/2) at the orientation of step n changes by the work of
+    torques over the velocity intervals, as 1/2 m v(n-1/2) v(n+1/2) does by that of forces. A member takes
+    its displacement over the step as velocity, and the mean of the spins at both ends as spin (design/0022).
+    """
+    # One function: sums over members and the motion of members share all that lies between them
+    grains, pairs, bodies = borrow(grains), borrow(pairs), borrow(bodies)
+    x, v, w, f, image = grains.x, grains.v, grains.w, pairs.f, grains.image
+    dt, l_x, l_y, v_pruned = c[P.DT], c[P.PERIOD_X], c[P.PERIOD_Y], grains.v_pruned
+    g = (c[P.G_X], c[P.G_Y], c[P.G_Z])
+    speed_2 = spin_2 = velocity_change_2 = 0.0
+    for k in range(first, last_body):
+        b = bodies.order[k]
+        q_w, q_x, q_y, q_z = bodies.q[b, 0], bodies.q[b, 1], bodies.q[b, 2], bodies.q[b, 3]
+        f_x = f_y = f_z = t_x = t_y = t_z = 0.0
+        for s in range(bodies.start[b], bodies.start[b + 1]):
+            i = bodies.place[s]
+            a_x, a_y, a_z = rotate(bodies.arm[s, 0], bodies.arm[s, 1], bodies.arm[s, 2], q_w, q_x, q_y, q_z)
+            p_x, p_y, p_z = f[i, 0], f[i, 1], f[i, 2]
+            f_x, f_y, f_z = f_x + p_x, f_y + p_y, f_z + p_z
+            t_x += f[i, 4] + (a_y * p_z - a_z * p_y)
+            t_y += f[i, 5] + (a_z * p_x - a_x * p_z)
+            t_z += f[i, 6] + (a_x * p_y - a_y * p_x)
+            for a in range(8):
+                f[i, a] = 0.0
+        m, weight, per_m = bodies.m[b], bodies.m_weight[b], 1.0 / bodies.m[b]
+        over_1, over_2, over_3 = bodies.over[b, 0], bodies.over[b, 1], bodies.over[b, 2]
+        u_x, u_y, u_z = bodies.v[b, 0], bodies.v[b, 1], bodies.v[b, 2]
+        x_b, v_x = translation_step(bodies.x[b, 0], u_x, f_x, 0.0, weight * g[0], per_m, dt)
+        y_b, v_y = translation_step(bodies.x[b, 1], u_y, f_y, 0.0, weight * g[1], per_m, dt)
+        z_b, v_z = translation_step(bodies.x[b, 2], u_z, f_z, 0.0, weight * g[2], per_m, dt)
+        b_x, b_y, b_z = bodies.momentum[b, 0], bodies.momentum[b, 1], bodies.momentum[b, 2]
+        m_x, m_y, m_z = b_x + dt * t_x, b_y + dt * t_y, b_z + dt * t_z
+        w_x, w_y, w_z = spin(q_w, q_x, q_y, q_z, m_x, m_y, m_z, over_1, over_2, over_3)
+        if last:
+            stats[S.KINETIC] += kinetic_energy(m, u_x, u_y, u_z, v_x, v_y, v_z)
+            stats[S.SPIN] += kinetic_energy(1.0, b_x, b_y, b_z, w_x, w_y, w_z)
+            stats[S.POTENTIAL] += potential_energy(
+                weight, g[0], g[1], g[2], unwrapped(bodies.x[b, 0], bodies.image[b, 0], l_x),
+                unwrapped(bodies.x[b, 1], bodies.image[b, 1], l_y), bodies.x[b, 2],
+            )  # fmt: skip
+        r_w, r_x, r_y, r_z, l_1, l_2, l_3 = rotor_step(
+            q_w, q_x, q_y, q_z, m_x, m_y, m_z, over_1, over_2, over_3, dt
+        )
+        s_x, s_y, s_z = rotate(over_1 * l_1, over_2 * l_2, over_3 * l_3, r_w, r_x, r_y, r_z)
+        s_x, s_y, s_z = 0.5 * (w_x + s_x), 0.5 * (w_y + s_y), 0.5 * (w_z + s_z)
+        bodies.x[b, 0], bodies.x[b, 1], bodies.x[b, 2] = x_b, y_b, z_b
+        bodies.v[b, 0], bodies.v[b, 1], bodies.v[b, 2] = v_x, v_y, v_z
+        bodies.q[b, 0], bodies.q[b, 1], bodies.q[b, 2], bodies.q[b, 3] = r_w, r_x, r_y, r_z
+        bodies.momentum[b, 0], bodies.momentum[b, 1], bodies.momentum[b, 2] = m_x, m_y, m_z
+        per_dt = 1.0 / dt
+        for s in range(bodies.start[b], bodies.start[b + 1]):
+            i = bodies.place[s]
+            arm_1, arm_2, arm_3 = bodies.arm[s, 0], bodies.arm[s, 1], bodies.arm[s, 2]
+            a_x, a_y, a_z = rotate(arm_1, arm_2, arm_3, q_w, q_x, q_y, q_z)
+            c_x, c_y, c_z = rotate(arm_1, arm_2, arm_3, r_w, r_x, r_y, r_z)
+            x[i, 0] = unwrapped(x_b + c_x, bodies.image[b, 0] - image[i, 0], l_x)
+            x[i, 1] = unwrapped(y_b + c_y, bodies.image[b, 1] - image[i, 1], l_y)
+            x[i, 2] = z_b + c_z
+            e_x, e_y, e_z = v_x + (c_x - a_x) * per_dt, v_y + (c_y - a_y) * per_dt, v_z + (c_z - a_z) * per_dt
+            v[i, 0], v[i, 1], v[i, 2] = e_x, e_y, e_z
+            w[i, 0], w[i, 1], w[i, 2] = s_x, s_y, s_z
+            speed_2 = max(speed_2, e_x * e_x + e_y * e_y + e_z * e_z)
+            d_x, d_y, d_z = e_x - v_pruned[i, 0], e_y - v_pruned[i, 1], e_z - v_pruned[i, 2]
+            velocity_change_2 = max(velocity_change_2, d_x * d_x + d_y * d_y + d_z * d_z)
+        fast, fast_spin = v_x * v_x + v_y * v_y + v_z * v_z, s_x * s_x + s_y * s_y + s_z * s_z
+        spin_2 = max(spin_2, fast_spin)
+        if not fast + fast_spin < math.inf and stats[S.FAULT] == FAULT_NONE:
+            stats[S.FAULT], stats[S.FAULT_PARTNER] = FAULT_NOT_A_NUMBER, -1
+            stats[S.FAULT_GRAIN] = grains.ids[bodies.place[bodies.start[b]]]
+    stats[S.SPEED_MOVED] = max(stats[S.SPEED_MOVED], math.sqrt(speed_2))
+    stats[S.SPIN_MAX] = max(stats[S.SPIN_MAX], math.sqrt(spin_2))
+    stats[S.VELOCITY_CHANGE_MOVED] = max(stats[S.VELOCITY_CHANGE_MOVED], math.sqrt(velocity_change_2))

@@ -1,0 +1,102 @@
+"""Rigid bodies of a scene: clumps whose spheres are grains of the scene, and how they move."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ryusa.laws.rigid_body import angular_momentum, rotate, spin
+from ryusa.model.arrays import Floats
+
+Ints = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class RigidBodies:
+    """Fixed data of clumps. The spheres of a clump are free grains of successive ids: its members.
+
+    Grains that belong to no clump move on their own. The mass of a member in `Scene.m` is its share of the
+    mass of its clump, by volume of spheres; contacts see the mass of the clump.
+    """
+
+    first: Ints  # ids of the members of clump b are first[b] to first[b] + count[b] - 1, shape (n_body,)
+    count: Ints  # members, shape (n_body,)
+    arm: Floats  # centre of each member in the frame of the principal axes [m], in the order of clumps, (k, 3)
+    m: Floats  # mass [kg], shape (n_body,)
+    m_weight: Floats  # mass that gravity sees [kg], shape (n_body,)
+    inertia: Floats  # principal moments of inertia [kg m2], shape (n_body, 3)
+    d: Floats  # diameter of the sphere of the same volume [m], shape (n_body,)
+    names: tuple[str, ...] = ()  # names of the forms
+    form: Ints = field(default_factory=lambda: np.zeros(0, np.int64))  # number of the form of each, (n_body,)
+
+    @property
+    def n(self) -> int:
+        """Number of clumps."""
+        return len(self.first)
+
+    @property
+    def members(self) -> Ints:
+        """Ids of all members, in the order of `arm`."""
+        offset = np.arange(len(self.arm)) - np.repeat(np.cumsum(self.count) - self.count, self.count)
+        return np.repeat(self.first, self.count) + offset
+
+    def of_grain(self, n_grain: int) -> Ints:
+        """Number of the clump of each free grain, -1 for a grain of its own, shape (n_grain,)."""
+        found = np.full(n_grain, -1, np.int64)
+        found[self.members] = np.repeat(np.arange(self.n), self.count)
+        return found
+
+    def fault(self, n_grain: int) -> str:
+        """What is wrong with these data for a scene of so many free grains; "" where nothing is."""
+        k = int(self.count.sum())
+        shapes = {
+            "first": (self.first, (self.n,)), "count": (self.count, (self.n,)), "arm": (self.arm, (k, 3)),
+            "m": (self.m, (self.n,)), "m_weight": (self.m_weight, (self.n,)),
+            "inertia": (self.inertia, (self.n, 3)), "d": (self.d, (self.n,)),
+        }  # fmt: skip
+        for name, (array, shape) in shapes.items():
+            if array.shape != shape:
+                return f"bodies.{name} has shape {array.shape}, expected {shape}"
+        if (self.count < 1).any() or len(np.unique(self.members)) < k:
+            return "a clump has no member, or two clumps share one"
+        if k and (self.members.min() < 0 or self.members.max() >= n_grain):
+            return f"a member of a clump is none of the {n_grain} free grains"
+        for name, array in (("m", self.m), ("inertia", self.inertia)):
+            if not (np.isfinite(array).all() and (array > 0.0).all()):
+                return f"bodies.{name} is not finite and positive"
+        return ""
+
+
+@dataclass(frozen=True)
+class BodyState:
+    """Motion of clumps; velocities and angular momenta belong to half a step before the rest."""
+
+    x: Floats  # centres of mass [m], shape (n_body, 3)
+    v: Floats  # velocities [m/s], shape (n_body, 3)
+    q: Floats  # orientation: unit quaternions (w, x, y, z) from the principal axes to space, shape (n_body, 4)
+    momentum: Floats  # angular momenta, in space [N m s], shape (n_body, 3)
+    image: NDArray[np.int32]  # periods crossed by the centre of mass in x, y, shape (n_body, 2)
+
+    @staticmethod
+    def of(bodies: RigidBodies, x: Floats, v: Floats, q: Floats, omega: Floats) -> "BodyState":
+        """Clumps at x with velocities v, orientation q and spin omega in space [rad/s]."""
+        q = q / np.linalg.norm(q, axis=1, keepdims=True)
+        momentum = np.stack(angular_momentum(*q.T, *omega.T, *bodies.inertia.T), axis=1)
+        return BodyState(
+            np.array(x, np.float64), np.array(v, np.float64), q, momentum, np.zeros((len(x), 2), np.int32)
+        )
+
+    def spin(self, bodies: RigidBodies) -> Floats:
+        """Spin in space [rad/s], shape (n_body, 3)."""
+        return np.stack(spin(*self.q.T, *self.momentum.T, *(1.0 / bodies.inertia).T), axis=1)
+
+    def arms(self, bodies: RigidBodies) -> Floats:
+        """From the centre of mass to each member, in space [m], in the order of `RigidBodies.arm`."""
+        q = np.repeat(self.q, bodies.count, axis=0)
+        return np.stack(rotate(*bodies.arm.T, *q.T), axis=1)
+
+    def of_members(self, bodies: RigidBodies) -> tuple[Floats, Floats, Floats]:
+        """Centres [m], velocities [m/s] and spins [rad/s] of all members, each of shape (k, 3)."""
+        arms, omega = self.arms(bodies), np.repeat(self.spin(bodies), bodies.count, axis=0)
+        x, v = (np.repeat(one, bodies.count, axis=0) for one in (self.x, self.v))
+        return x + arms, v + np.cross(omega, arms), omega
