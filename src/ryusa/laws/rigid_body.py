@@ -82,8 +82,8 @@ def turn_about_first(
 
     Notes
     -----
-    Source: Miller et al. 2002, J. Chem. Phys. 116, 8649: a rotation about a by the angle l_a dt/I_a, by series
-    that are exact to round-off up to 2.8 rad and to 4e-15 up to 4 rad.
+    Source: Miller et al. 2002, J. Chem. Phys. 116, 8649: a rotation about a by the angle l_a dt/I_a. Its sine
+    and cosine are series that are exact to round-off up to 2.8 rad, and to 4e-15 up to 4 rad.
 
     >>> q_w, q_a, q_b, q_c, l_b, l_c = turn_about_first(1.0, 0.0, 0.0, 0.0, math.pi, 1.0, 0.0, 0.5, 1.0)
     >>> round(q_w, 9), round(q_a, 9), round(l_b, 9), round(l_c, 9)  # a quarter of a turn

@@ -21,7 +21,7 @@ class RigidBodies:
 
     first: Ints  # ids of the members of clump b are first[b] to first[b] + count[b] - 1, shape (n_body,)
     count: Ints  # members, shape (n_body,)
-    arm: Floats  # centre of each member in the frame of the principal axes [m], in the order of clumps, (k, 3)
+    arm: Floats  # centres of members in the frame of the principal axes [m], in the order of clumps, (k, 3)
     m: Floats  # mass [kg], shape (n_body,)
     m_weight: Floats  # mass that gravity sees [kg], shape (n_body,)
     inertia: Floats  # principal moments of inertia [kg m2], shape (n_body, 3)
@@ -73,7 +73,7 @@ class BodyState:
 
     x: Floats  # centres of mass [m], shape (n_body, 3)
     v: Floats  # velocities [m/s], shape (n_body, 3)
-    q: Floats  # orientation: unit quaternions (w, x, y, z) from the principal axes to space, shape (n_body, 4)
+    q: Floats  # unit quaternions (w, x, y, z) from the frame of the principal axes to space, (n_body, 4)
     momentum: Floats  # angular momenta, in space [N m s], shape (n_body, 3)
     image: NDArray[np.int32]  # periods crossed by the centre of mass in x, y, shape (n_body, 2)
 

@@ -1,6 +1,7 @@
 """A run folder as read-only arrays."""
 
+from ryusa.results.frames import BodyFrames, Frame, Frames
 from ryusa.results.lazy import LazyFrames
-from ryusa.results.read import Bed, Frame, Frames, Grains, Planes, Results
+from ryusa.results.read import Bed, Grains, Planes, Results
 
-__all__ = ["Bed", "Frame", "Frames", "Grains", "LazyFrames", "Planes", "Results"]
+__all__ = ["Bed", "BodyFrames", "Frame", "Frames", "Grains", "LazyFrames", "Planes", "Results"]

@@ -94,7 +94,7 @@ class LazyFrames:
     def __init__(
         self, parts: list[Part], name: str, n_grain: int, lift: NDArray[np.float64] | None = None
     ) -> None:
-        dtype, tail = schema.FRAME_DATASETS[name]
+        dtype, tail = (schema.FRAME_DATASETS | schema.BODY_DATASETS)[name]
         n_frame = parts[-1].first + parts[-1].n_frame if parts else 0
         self.shape: tuple[int, ...] = (n_frame, n_grain, *tail)
         self.dtype: np.dtype[Any] = dtype

@@ -7,7 +7,6 @@ come from the write-once files in parts/, so every frame that was written is fou
 import json
 import os
 from bisect import bisect_right
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -22,8 +21,9 @@ from ryusa.model import EVENT, PASSAGE, Scene
 from ryusa.model.servo import on_way
 from ryusa.model.walls import N_IMPULSE
 from ryusa.results import schema
+from ryusa.results.frames import BodyFrames, Frames, joined
 from ryusa.results.hdf5 import OpenFiles, opened, plain_dataset, read_dataset, read_integer
-from ryusa.results.lazy import LazyFrames, Part
+from ryusa.results.lazy import Part
 from ryusa.results.scene_file import read_scene
 from ryusa.results.shown import (
     FilmFile,
@@ -46,18 +46,6 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 _JSON_LIMIT = 64 << 20  # bytes
-
-
-@dataclass(frozen=True)
-class Frame:
-    """One moment of a run."""
-
-    t: float  # [s]
-    step: int
-    x: Floats  # centres, unwrapped [m], shape (n_grain, 3)
-    v: Floats  # [m/s], half a step before x
-    omega: Floats  # [rad/s]
-    x_wrapped: Floats  # centres inside the period [m]
 
 
 @dataclass(frozen=True)
@@ -88,35 +76,6 @@ class Planes:
     active: NDArray[np.bool_]
 
 
-class Frames:
-    """All recorded frames; big arrays are read from the disk when indexed."""
-
-    def __init__(self, parts: list[Part], n_grain: int, period: tuple[float, float]) -> None:
-        self.t: Floats = _joined([part.t for part in parts], np.dtype(np.float64))  # [s], shape (n_frame,)
-        self.step: NDArray[np.int64] = _joined([part.step for part in parts], np.dtype(np.int64))
-        lift = np.array([period[0], period[1], 0.0])
-        self._lift = np.where(np.isfinite(lift), lift, 0.0)
-        self.x_wrapped = LazyFrames(parts, "x", n_grain)  # [m], shape (n_frame, n_grain, 3)
-        self.v = LazyFrames(parts, "v", n_grain)  # [m/s]
-        self.omega = LazyFrames(parts, "omega", n_grain)  # [rad/s]
-        self.image = LazyFrames(parts, "image", n_grain)  # periods crossed, shape (n_frame, n_grain, 2)
-        self.x = LazyFrames(parts, "x", n_grain, lift=self._lift)  # unwrapped [m]
-
-    def __len__(self) -> int:
-        return len(self.t)
-
-    def __getitem__(self, k: int) -> Frame:
-        k = range(len(self))[k]
-        wrapped, image = self.x_wrapped[k], self.image[k]
-        x = wrapped.copy()
-        x[:, :2] += image * self._lift[:2]
-        x.flags.writeable = False
-        return Frame(float(self.t[k]), int(self.step[k]), x, self.v[k], self.omega[k], wrapped)
-
-    def __iter__(self) -> Iterator[Frame]:
-        return (self[k] for k in range(len(self)))
-
-
 class Results:
     """The results of a run, read-only. Open the folder again to see what was written since."""
 
@@ -136,8 +95,9 @@ class Results:
             folder
         )  # (step, t [s], Scene) at the start and after every change of the timeline
         self.scene: Scene = self.scenes[0][2]  # at the start of the run
-        self._parts = read_parts(folder, self.scene.n_grain)
+        self._parts = read_parts(folder, self.scene)
         self.frames = Frames(self._parts, self.scene.n_grain, self.scene.period)
+        self.bodies = None if (clumps := self.scene.bodies) is None else BodyFrames(self._parts, clumps.n)
 
     @staticmethod
     def open(folder: str | os.PathLike[str]) -> "Results":
@@ -179,7 +139,7 @@ class Results:
     def passages(self) -> NDArray[np.void]:
         """Grains that entered and left: structured array of dtype model.PASSAGE, in order; empty without."""
         rows = [part.passages() for part in self._parts] if self.scene.traffic is not None else []
-        return _joined(rows, PASSAGE)
+        return joined(rows, PASSAGE)
 
     def contact_forces(self, k: int) -> NDArray[np.void]:
         """Contact forces at frame k: structured array of dtype schema.FORCE, of the step before the frame.
@@ -200,7 +160,7 @@ class Results:
     @cached_property
     def tally(self) -> dict[str, NDArray[Any]]:
         """The energy account [J] and extremes at each frame, shape (n_frame,) each; keys of schema.TALLY."""
-        rows = _joined([part.tally() for part in self._parts], schema.TALLY)
+        rows = joined([part.tally() for part in self._parts], schema.TALLY)
         return {name: rows[name] for name in schema.TALLY.names or ()}
 
     @cached_property
@@ -334,12 +294,6 @@ class Results:
         )
 
 
-def _joined(arrays: list[NDArray[Any]], dtype: np.dtype[Any]) -> NDArray[Any]:
-    joined = np.concatenate(arrays) if arrays else np.zeros(0, dtype=dtype)
-    joined.flags.writeable = False
-    return joined
-
-
 def read_json(path: Path, *, missing_ok: bool = False) -> dict[str, Any]:
     """Read a JSON object from a file of a run folder."""
     if missing_ok and not path.exists() and not path.is_symlink():
@@ -378,7 +332,7 @@ def read_scenes(folder: Path) -> list[tuple[int, float, Scene]]:
     return scenes
 
 
-def read_parts(folder: Path, n_grain: int) -> list[Part]:
+def read_parts(folder: Path, scene: Scene) -> list[Part]:
     """Open all parts of a run, in order."""
     parts: list[Part] = []
     files = OpenFiles()
@@ -386,20 +340,23 @@ def read_parts(folder: Path, n_grain: int) -> list[Part]:
     for number, path in enumerate(numbered(folder, schema.PART_NAME)):
         if path.name != schema.part_name(number):
             raise ResultsError(f"{path.parent}: {schema.part_name(number)} is missing")
-        part = read_part(path, first, n_grain, files)
+        part = read_part(path, first, scene, files)
         parts.append(part)
         first += part.n_frame
     return parts
 
 
-def read_part(path: Path, first: int, n_grain: int, files: OpenFiles) -> Part:
+def read_part(path: Path, first: int, scene: Scene, files: OpenFiles) -> Part:
     """Open a part whose first frame has number `first`; every shape is checked."""
     with opened(path) as file:
         t, step = read_dataset(file, "t", path), read_dataset(file, "step", path)
         k = len(t) if t.ndim == 1 else -1
         for name, (dtype, tail) in schema.FRAME_DATASETS.items():
-            shape = (k, n_grain, *tail) if name in schema.PER_GRAIN else (k,)
+            shape = (k, scene.n_grain, *tail) if name in schema.PER_GRAIN else (k,)
             _check(plain_dataset(file, name, path), shape, dtype, path)
+        n_body = -1 if scene.bodies is None else scene.bodies.n
+        for name, (dtype, tail) in schema.BODY_DATASETS.items() if n_body >= 0 else ():
+            _check(plain_dataset(file, name, path), (k, n_body, *tail), dtype, path)
         tally = plain_dataset(file, "tally", path)
         kinds = (schema.BEFORE_FILMS, schema.BEFORE_WALLS)
         _check(tally, (k,), next((one for one in kinds if one == tally.dtype), schema.TALLY), path)

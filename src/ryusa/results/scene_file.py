@@ -11,7 +11,7 @@ import numpy as np
 
 from ryusa.errors import ResultsError
 from ryusa.laws.families import ContactForce
-from ryusa.model import Column, ContactLaw, FaceKind, Materials, RollingLaw, Scene, Walls, Water
+from ryusa.model import Column, ContactLaw, FaceKind, Materials, RigidBodies, RollingLaw, Scene, Walls, Water
 from ryusa.model.scene import ONLY_HERTZ, EventRule
 from ryusa.model.traffic import Traffic
 from ryusa.model.walls import N_MOTION, N_SERVO
@@ -21,6 +21,8 @@ _TRAFFIC, _MATERIALS = (
     "traffic",
     "materials",
 )  # left out where a scene has none: digests of earlier versions stay
+_BODIES = "bodies"
+_OF_BODIES = tuple(f.name for f in fields(RigidBodies) if f.name != "names")
 _LAWS: dict[str, type] = {"contact": ContactLaw, "rolling": RollingLaw, "water": Water, "column": Column}
 _ARRAYS = tuple(f.name for f in fields(Scene) if get_origin(f.type) is np.ndarray)
 _WALLS = tuple(f.name for f in fields(Walls) if f.name != "names")  # datasets of the group "walls"
@@ -36,6 +38,8 @@ def write_scene(file: h5py.File, scene: Scene, step: int, t: float) -> None:
             file.create_dataset(f"walls/{name}", data=np.asarray(getattr(scene.walls, name)))
     if scene.materials is not None:
         file.create_dataset(f"{_MATERIALS}/of", data=scene.materials.of)
+    for name in _OF_BODIES if scene.bodies is not None else ():
+        file.create_dataset(f"{_BODIES}/{name}", data=getattr(scene.bodies, name))
     scalars = _scalars(scene) | {"step": step, "t": t}
     file.create_dataset(
         "scalars", data=np.frombuffer(json.dumps(scalars, default=_plain).encode(), dtype=np.uint8)
@@ -47,7 +51,10 @@ def _scalars(scene: Scene) -> dict[str, Any]:
     for f in fields(Scene):
         if f.name not in _ARRAYS:
             value = getattr(scene, f.name)
-            if f.name in {_TRAFFIC, _MATERIALS} and value is None:
+            if f.name in {_TRAFFIC, _MATERIALS, _BODIES} and value is None:
+                continue
+            if f.name == _BODIES:  # its arrays are datasets
+                found[_BODIES] = list(value.names)
                 continue
             law = f.name in {*_LAWS, _TRAFFIC, _MATERIALS}
             found[f.name] = asdict(value) if law and value is not None else value
@@ -75,6 +82,8 @@ def scene_digest(scene: Scene) -> str:
         digest.update(np.ascontiguousarray(getattr(scene.walls, name), dtype=np.float64).tobytes())
     if scene.materials is not None:
         digest.update(scene.materials.of.astype(np.float64).tobytes())
+    for name in _OF_BODIES if scene.bodies is not None else ():
+        digest.update(np.ascontiguousarray(getattr(scene.bodies, name), dtype=np.float64).tobytes())
     digest.update(json.dumps(_even(_scalars(scene)), sort_keys=True).encode())
     return digest.hexdigest()
 
@@ -102,6 +111,9 @@ def read_scene(path: Path) -> tuple[int, float, Scene]:
             name: read_dataset(file, f"walls/{name}", path) for name in _WALLS if f"walls/{name}" in file
         }
         of = read_dataset(file, f"{_MATERIALS}/of", path) if _MATERIALS in file else np.zeros(0, np.int8)
+        bodies = {
+            name: read_dataset(file, f"{_BODIES}/{name}", path) for name in _OF_BODIES if _BODIES in file
+        }
     try:
         if raw.dtype != np.uint8 or raw.nbytes > _LIMIT:
             raise ValueError("its scalars are not text")
@@ -114,6 +126,8 @@ def read_scene(path: Path) -> tuple[int, float, Scene]:
             scalars[_TRAFFIC] = Traffic.from_data(scalars[_TRAFFIC])
         if _MATERIALS in scalars:
             scalars[_MATERIALS] = _materials(of, scalars[_MATERIALS])
+        if (forms := scalars.pop(_BODIES, None)) is not None:
+            scalars[_BODIES] = _bodies(bodies, forms, len(arrays["d"]))
         if (names := scalars.pop("walls", None)) is not None:
             scalars["walls"] = _walls(faces, names)
         scalars["events"] = EventRule(scalars["events"])
@@ -149,6 +163,19 @@ def _materials(of: np.ndarray, raw: dict[str, Any]) -> Materials:
         raise ValueError(f"{len(names)} materials have {len(contact)} contact laws")
     of.flags.writeable = False
     return Materials(names, of, contact, rolling)
+
+
+def _bodies(arrays: dict[str, np.ndarray], names: list[str], n_grain: int) -> RigidBodies:
+    """Clumps from their arrays, whose numbers go to compiled code and are therefore checked."""
+    for name, array in arrays.items():
+        wanted = np.int64 if name in {"first", "count", "form"} else np.float64
+        if array.dtype != wanted or not np.isfinite(array).all():
+            raise ValueError(f"bodies/{name} is no array of finite numbers of type {wanted.__name__}")
+        array.flags.writeable = False
+    bodies = RigidBodies(**arrays, names=tuple(str(name) for name in names))
+    if fault := bodies.fault(n_grain):
+        raise ValueError(fault)
+    return bodies
 
 
 def _walls(arrays: dict[str, np.ndarray], names: list[str]) -> Walls:

@@ -63,6 +63,15 @@ WALLS = "walls"
 # way of each wall along the direction of its servo, if the run has one: (k, n_wall) [m]
 TRAVEL = "wall_travel"
 
+# motion of clumps, if the run has some, as model.BodyState: k frames of n_body
+BODY_DATASETS = {
+    "bodies/x": (np.dtype(np.float64), (3,)),
+    "bodies/v": (np.dtype(np.float64), (3,)),
+    "bodies/q": (np.dtype(np.float64), (4,)),
+    "bodies/momentum": (np.dtype(np.float64), (3,)),
+    "bodies/image": (np.dtype(np.int32), (2,)),
+}
+
 # contact forces, if the case records them: those of all frames in one dataset, and the number of each frame
 FORCES, N_FORCE = "forces", "n_force"
 FORCE = np.dtype(

@@ -43,6 +43,7 @@ class RecordBuffer:
         self._forces: list[NDArray[np.void]] | None = [] if scene.forces else None  # of each frame
         self._passages: list[NDArray[np.void]] | None = None if scene.traffic is None else []
         self._water: dict[str, list[NDArray[np.float64]]] = {}
+        self._bodies: dict[str, list[NDArray[Any]]] = {}  # motion of clumps at each frame
         self._walls: list[NDArray[np.float64]] = []  # impulses on them up to each frame
         self._travel: list[NDArray[np.float64]] = []  # of those that servos press, up to each frame
 
@@ -54,6 +55,7 @@ class RecordBuffer:
         """Size of the content [B]."""
         forces = sum(one.nbytes for one in self._forces or ())
         frames = self.n_frame * bytes_per_frame(self._scene.n_grain)
+        frames += sum(one.nbytes for rows in self._bodies.values() for one in rows)
         return frames + forces + self.n_contact * EVENT.itemsize
 
     def frame(
@@ -71,6 +73,10 @@ class RecordBuffer:
         row["image"][k] = state.image if len(state.image) else 0
         if self._forces is not None:
             self._forces.append(contact_forces(state, self._scene))
+        if state.bodies is not None:
+            for name in schema.BODY_DATASETS:
+                moved = getattr(state.bodies, name.removeprefix("bodies/"))
+                self._bodies.setdefault(name, []).append(np.array(moved))
         self._tally.append(schema.tally_row(tally))
         if n_wall := self._scene.n_wall:
             so_far = tally.walls or (0.0,) * (n_wall * N_IMPULSE)
@@ -107,6 +113,10 @@ class RecordBuffer:
             rows[schema.WALLS] = np.array(self._walls).reshape(self.n_frame, self._scene.n_wall, N_IMPULSE)
         if self._scene.has_servo:
             rows[schema.TRAVEL] = np.array(self._travel).reshape(self.n_frame, self._scene.n_wall)
+        if self._scene.bodies is not None:
+            for name, (dtype, tail) in schema.BODY_DATASETS.items():
+                shape = (self.n_frame, self._scene.bodies.n, *tail)
+                rows[name] = np.array(self._bodies.get(name, ()), dtype).reshape(shape)
         return rows | {f"{schema.WATER}/{name}": np.array(one) for name, one in self._water.items()}
 
     def write(self, file: h5py.File) -> None:
@@ -136,6 +146,9 @@ class RecordBuffer:
             self._passages.append(rows[schema.PASSAGES])
         self._walls += list(rows.get(schema.WALLS, ()))
         self._travel += list(rows.get(schema.TRAVEL, ()))
+        for name in schema.BODY_DATASETS:
+            if name in rows:
+                self._bodies.setdefault(name, []).extend(rows[name])
         begin = f"{schema.WATER}/"
         for name, profiles in rows.items():
             if name.startswith(begin):

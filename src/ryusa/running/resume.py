@@ -153,7 +153,7 @@ def _from_the_start(
     folder: Path, before: dict[str, Any], scenes: Sequence[tuple[int, float, Scene]]
 ) -> ResumePoint | None:
     first = scenes[0][2]
-    parts, _ = _parts(folder, first.n_grain, at_least=0)
+    parts, _ = _parts(folder, first, at_least=0)
     if not any(part.n_frame for part in parts):
         return None
     recorded = RecordedSoFar(
@@ -193,7 +193,7 @@ def _from_checkpoint(
         raise CheckpointError(
             f"{folder}: the state of the recorder in the checkpoint is incomplete ({error})"
         ) from error
-    parts, damaged = _parts(folder, scene.n_grain, at_least=n_part)
+    parts, damaged = _parts(folder, scene, at_least=n_part)
     if damaged:
         differences = [*differences, damaged]
     if not alike:
@@ -227,7 +227,7 @@ def _from_checkpoint(
     )
 
 
-def _parts(folder: Path, n_grain: int, *, at_least: int) -> tuple[list[Part], str]:
+def _parts(folder: Path, scene: Scene, *, at_least: int) -> tuple[list[Part], str]:
     """Undamaged parts in order, without a tail, and the damage found after the first `at_least`."""
     found: list[Part] = []
     files, first = OpenFiles(), 0
@@ -235,7 +235,7 @@ def _parts(folder: Path, n_grain: int, *, at_least: int) -> tuple[list[Part], st
         try:
             if path.name != schema.part_name(number):
                 raise ResultsError(f"{path.parent}: {schema.part_name(number)} is missing")
-            part = read_part(path, first, n_grain, files)
+            part = read_part(path, first, scene, files)
         except ResultsError as error:
             if number < at_least:
                 raise CheckpointError(f"{error}. It was written before the checkpoint; {_ANEW}") from error
@@ -304,6 +304,9 @@ def _buffered(recorder: CheckpointBlock, scene: Scene, folder: Path) -> dict[str
             shapes[schema.PASSAGES] = ((n_passage,), PASSAGE)
         if scene.n_wall:
             shapes |= {schema.WALLS: ((k, scene.n_wall, N_IMPULSE), np.dtype(np.float64))}
+        if scene.bodies is not None:
+            for name, (dtype, tail) in schema.BODY_DATASETS.items():
+                shapes[name] = ((k, scene.bodies.n, *tail), dtype)
         if scene.has_servo:
             shapes |= {schema.TRAVEL: ((k, scene.n_wall), np.dtype(np.float64))}
         if set(shapes) != set(rows):

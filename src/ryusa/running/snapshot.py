@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.errors import CheckpointError
-from ryusa.model import Contacts, CouplingState, EngineBlock, FluidAtGrains, Scene, State
+from ryusa.model import BodyState, Contacts, CouplingState, EngineBlock, FluidAtGrains, Scene, State
 from ryusa.model.column import WaterState
 from ryusa.model.contacts import N_EVENT, N_STATE
 from ryusa.model.eddies import Eddies
@@ -110,6 +110,7 @@ class _Reader:
             tally=self._tally(),
             fluid=self._fluid(n) if values.get("fluid") else None,
             coupling=self._coupling(n) if values.get("coupling") else None,
+            bodies=self._bodies() if values.get("bodies") else None,
             engine=self._engine(),
         )
         if unknown := sorted(set(self._arrays) - self._read):
@@ -205,6 +206,18 @@ class _Reader:
             exchanges=exchanges,
             worst=float(values["coupling/worst"]),
             eddies=eddies,
+        )
+
+    def _bodies(self) -> BodyState:
+        if self._scene.bodies is None:
+            raise ValueError("clumps, but the scene has none")
+        n = self._scene.bodies.n
+        return BodyState(
+            x=self._positions("bodies/x", n),
+            v=self._floats("bodies/v", (n, 3)),
+            q=self._floats("bodies/q", (n, 4)),
+            momentum=self._floats("bodies/momentum", (n, 3)),
+            image=self._array("bodies/image", (n, 2), _INT32),
         )
 
     def _positions(self, name: str, n: int) -> NDArray[np.float64]:

@@ -21,7 +21,7 @@ from ryusa.engine.cpu.contact_rows import has_short_rows, lengthened, shortened
 from ryusa.engine.cpu.prune_schedule import COST_TEST
 from ryusa.engine.cpu.rigid_bodies import body_arrays, body_state, place_members, wrap_bodies
 from ryusa.engine.cpu.time_loop import make_run
-from ryusa.engine.cpu.verlet_list import BlockLayout, collect_memory
+from ryusa.engine.cpu.verlet_list import BlockLayout, blocks_of, collect_memory
 from ryusa.engine.protocol import Flags
 from ryusa.engine.shared import block_statistics as S
 from ryusa.engine.shared import parameters as P
@@ -60,8 +60,6 @@ from ryusa.model.walls import N_IMPULSE
 
 VERSION = 1  # of the block in a snapshot
 _FARTHEST = 1e12  # [m]; beyond there is no grain
-_MANY = 256  # grains from which work is divided into blocks
-_BLOCKS = 4, 32  # at least and at most; in between one for 2048 grains (`blocks_of`), a power of two
 _RECORDS = 256  # room for ended contacts in a block, beside one a grain
 # Measured, and fixed so that a run never depends on a clock: cost of a Verlet list [ns], and steps
 # between two prunings.
@@ -414,16 +412,3 @@ class CpuEngine:
         read_account(state, self._accounts.stats, self._accounts.terms, own)
         read_walls(state, self._accounts.walls, own)
         return own
-
-
-def blocks_of(n: int, plane_case: bool) -> int:
-    """Number of blocks for n grains; it does not depend on the number of threads.
-
-    Thin blocks have many pairs with their neighbours, which cost more: in space, where blocks are slabs,
-    there are more than 16 only if each has 8192 grains.
-    """
-    least, most = _BLOCKS
-    if n < _MANY:
-        return 1
-    blocks = int(min(max(2.0 ** round(np.log2(n / 2048)), least), most))
-    return blocks if plane_case else min(blocks, max(16, int(2.0 ** round(np.log2(n / 8192)))))

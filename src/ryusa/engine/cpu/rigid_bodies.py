@@ -18,6 +18,7 @@ from ryusa.engine.shared.layout import aligned
 from ryusa.engine.shared.status import FAULT_NONE, FAULT_NOT_A_NUMBER
 from ryusa.laws.grain_step import kinetic_energy, potential_energy, translation_step, unwrapped
 from ryusa.laws.rigid_body import rotate, rotor_step, spin
+from ryusa.model.arrays import Floats
 from ryusa.model.rigid_bodies import BodyState, RigidBodies
 
 
@@ -45,18 +46,27 @@ def body_arrays(bodies: RigidBodies, state: BodyState, n: int) -> BodyArrays:
     start = np.concatenate([[0], np.cumsum(bodies.count)]).astype(np.int64)
     member = np.zeros(n, np.uint8)
     member[bodies.members] = 1
-    arrays = BodyArrays(
-        np.arange(k), start, np.zeros(start[-1], np.int64), aligned(int(start[-1]), 4), member,
-        *(aligned(k, 4) for _ in range(4)), np.array(state.image, np.int32), np.array(bodies.m),
-        np.array(bodies.m_weight), aligned(k, 4),
-    )  # fmt: skip
-    for room, given in (
-        (arrays.arm, bodies.arm), (arrays.x, state.x), (arrays.v, state.v), (arrays.momentum, state.momentum),
-        (arrays.over, 1.0 / bodies.inertia),
-    ):  # fmt: skip
-        room[:, :3] = given
-    arrays.q[:] = state.q
-    return arrays
+    return BodyArrays(
+        order=np.arange(k),
+        start=start,
+        place=np.zeros(start[-1], np.int64),
+        arm=_rows_of_four(bodies.arm),
+        member=member,
+        x=_rows_of_four(state.x),
+        v=_rows_of_four(state.v),
+        q=_rows_of_four(state.q),
+        momentum=_rows_of_four(state.momentum),
+        image=np.array(state.image, np.int32),
+        m=np.array(bodies.m),
+        m_weight=np.array(bodies.m_weight),
+        over=_rows_of_four(1.0 / bodies.inertia),
+    )
+
+
+def _rows_of_four(given: Floats) -> Floats:
+    rows = aligned(len(given), 4)
+    rows[:, : given.shape[1]] = given
+    return rows
 
 
 def place_members(arrays: BodyArrays, members: np.ndarray, ids: np.ndarray) -> BodyArrays:
@@ -84,10 +94,10 @@ def body_state(arrays: BodyArrays) -> BodyState:
 
 @inner(fastmath=FAST)
 def move_bodies(
-    first: int, last_body: int, last: bool, c: Any, grains: GrainArrays, pairs: PairArrays, bodies: BodyArrays,
+    begin: int, end: int, last: bool, c: Any, grains: GrainArrays, pairs: PairArrays, bodies: BodyArrays,
     stats: Any,
 ) -> None:  # fmt: skip
-    """Move bodies first..last_body-1, in `BodyArrays.order`, and their members, by one step.
+    """Move bodies begin..end-1, in `BodyArrays.order`, and their members, by one step.
 
     Energy is that of the scheme: 1/2 L(n-1/2) w(n+1/2) at the orientation of step n changes by the work of
     torques over the velocity intervals, as 1/2 m v(n-1/2) v(n+1/2) does by that of forces. A member takes
@@ -99,7 +109,7 @@ def move_bodies(
     dt, l_x, l_y, v_pruned = c[P.DT], c[P.PERIOD_X], c[P.PERIOD_Y], grains.v_pruned
     g = (c[P.G_X], c[P.G_Y], c[P.G_Z])
     speed_2 = spin_2 = velocity_change_2 = 0.0
-    for k in range(first, last_body):
+    for k in range(begin, end):
         b = bodies.order[k]
         q_w, q_x, q_y, q_z = bodies.q[b, 0], bodies.q[b, 1], bodies.q[b, 2], bodies.q[b, 3]
         f_x = f_y = f_z = t_x = t_y = t_z = 0.0

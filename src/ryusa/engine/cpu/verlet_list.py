@@ -22,6 +22,8 @@ from ryusa.model.scene import Floats
 # Results of a task for blocks first..last-1, in order.
 Share = Callable[[Callable[[int, int], Any]], list[Any]]
 
+_MANY = 256  # grains from which work is divided into blocks
+_BLOCKS = 4, 32  # at least and at most; in between one for 2048 grains (`blocks_of`), a power of two
 _CACHED = 8192  # grains that a cache holds: more have to be prefetched
 
 
@@ -183,3 +185,16 @@ def collect_memory(n: int, ids: np.ndarray, candidates: CandidateArrays, share: 
     )  # fmt: skip
     share(lambda a, b: copy_rows_out(a, b, n, count, candidates, ids, *memory))
     return memory
+
+
+def blocks_of(n: int, plane_case: bool) -> int:
+    """Number of blocks for n grains; it does not depend on the number of threads.
+
+    Thin blocks have many pairs with their neighbours, which cost more: in space, where blocks are slabs,
+    there are more than 16 only if each has 8192 grains.
+    """
+    least, most = _BLOCKS
+    if n < _MANY:
+        return 1
+    blocks = int(min(max(2.0 ** round(np.log2(n / 2048)), least), most))
+    return blocks if plane_case else min(blocks, max(16, int(2.0 ** round(np.log2(n / 8192)))))
