@@ -31,6 +31,7 @@ class MeasureEntry:
     printing : options that affect only the printed text.
     builders : kinds of `[build]` whose runs have it in their report.
     fed : whether it can be had of a run with feeds or exits, where grains are nan in frames while away.
+    clumps : whether it can be had of a run with clumps, whose spheres are free grains of the scene.
     precision : its averages whose standard error can end a run; each is a key of `stop.precision`.
     numbers : names and SI units of those of its numbers that `ryusa soften` takes; durations and overlaps of
         contacts are left out, for they follow from the stiffness alone.
@@ -44,6 +45,7 @@ class MeasureEntry:
     printing: tuple[str, ...] = ()
     builders: tuple[str, ...] = ()
     fed: bool = False
+    clumps: bool = False
     precision: tuple[str, ...] = ()
     numbers: tuple[tuple[str, str], ...] = ()
 
@@ -68,7 +70,7 @@ class PictureEntry:
     settled : whether the picture ignores the time up to `record.settle` by default.
     measure : name of the measure that it draws, or "".
     builders : kinds of `[build]` whose runs have it in their report.
-    fed : as of a measure; that of a picture of a measure is the measure's.
+    fed, clumps : as of a measure; those of a picture of a measure are the measure's.
     """
 
     name: str
@@ -79,6 +81,7 @@ class PictureEntry:
     measure: str = ""
     builders: tuple[str, ...] = ()
     fed: bool = False
+    clumps: bool = False
 
     @property
     def given_as(self) -> tuple[str, ...]:
@@ -109,8 +112,10 @@ MEASURES = (
                  ("settle",), settled=True,
                  builders=("saltation",),
                  numbers=(("spin", "rad/s"), ("turns", "1/s"), ("spin_absolute", "rad/s"))),
-    MeasureEntry("energy", "ryusa.measure.energy:energy", "every term of the energy account", fed=True),
-    MeasureEntry("tracks", "ryusa.measure.tracks:tracks", "paths of the grains in the x-z plane", WINDOW),
+    MeasureEntry("energy", "ryusa.measure.energy:energy", "every term of the energy account",
+                 fed=True, clumps=True),
+    MeasureEntry("tracks", "ryusa.measure.tracks:tracks", "paths of the grains in the x-z plane",
+                 WINDOW, clumps=True),
     MeasureEntry("profile", "ryusa.measure.profiles:profiles",
                  "concentration, velocity, spin and flux over height",
                  (*WINDOW, "layer"), settled=True,
@@ -153,7 +158,7 @@ MEASURES = (
                  "heights of large and small grains over time", WINDOW, settled=True,
                  numbers=(("segregation_index", "-"), ("small_over_all", "m"), ("large_over_all", "m"))),
     MeasureEntry("sizes", "ryusa.measure.sizes:sizes",
-                 "sizes laid by mass, D10 to D90 and sorting, beside the sieve curve asked for"),
+                 "sizes laid by mass, D10 to D90 and sorting, beside the sieve curve asked for", clumps=True),
     MeasureEntry("dispersion", "ryusa.measure.dispersion:dispersion",
                  "mean squared displacement about the mean motion, and diffusivities",
                  (*WINDOW, "layer"), settled=True,
@@ -165,7 +170,7 @@ MEASURES = (
                  numbers=(("bed_normal", "Pa"), ("bed_shear", "Pa"))),
     MeasureEntry("walls", "ryusa.measure.walls:walls",
                  "force and torque on each wall, its contacts, its power, the way of a servo", WINDOW,
-                 settled=True, fed=True),
+                 settled=True, fed=True, clumps=True),
     MeasureEntry("vibration", "ryusa.measure.vibration:vibration",
                  "grains that do not come to rest",
                  (*WINDOW, "window"), printing=("threshold",)),
@@ -173,11 +178,11 @@ MEASURES = (
                  "free surface of a heap: slope, height, run-out", ("t", "side"),
                  builders=("box", "empty"), fed=True,
                  numbers=(("slope", "rad"), ("crest", "m"), ("toe", "m"),
-                          ("run_out", "m"), ("grains", "-"), ("away", "-"))),
+                          ("run_out", "m"), ("grains", "-"), ("away", "-")), clumps=True),
     MeasureEntry("cone", "ryusa.measure.cone:cone",
-                 "slope of a heap with a round foot, on all its sides", ("t",), fed=True),
+                 "slope of a heap with a round foot, on all its sides", ("t",), fed=True, clumps=True),
     MeasureEntry("dynamic_angle", "ryusa.measure.dynamic_angle:dynamic_angle",
-                 "angle of the surface in a drum that turns", WINDOW, settled=True, fed=True),
+                 "angle of the surface in a drum that turns", WINDOW, settled=True, fed=True, clumps=True),
     MeasureEntry("discharge", "ryusa.measure.discharge:discharge",
                  "grains and mass in and out by feeds and exits, over time", WINDOW, settled=True,
                  builders=("empty",), fed=True,
@@ -187,18 +192,18 @@ MEASURES = (
 PICTURES = (
     PictureEntry("grains", "ryusa.figures.runs:grains", "grains at one moment, to scale",
                  ("t", "colour", "lane"),
-                 builders=EVERY_BUILDER, fed=True),
+                 builders=EVERY_BUILDER, fed=True, clumps=True),
     PictureEntry("forces", "ryusa.figures.runs:forces",
                  "network of contact forces at one moment, as lines between centres", ("t", "lane"),
-                 builders=("box", "packing")),
+                 builders=("box", "packing"), clumps=True),
     PictureEntry("tracks", "ryusa.figures.runs:tracks", "paths of grains over the bed, to scale",
                  ("grains", *WINDOW, "length", "exaggeration"), settled=True,
-                 builders=("saltation", "drop", "flume")),
+                 builders=("saltation", "drop", "flume"), clumps=True),
     PictureEntry("spin", "ryusa.figures.runs:spin", "spin over distance", ("grains", "length")),
     PictureEntry("energy", "ryusa.figures.runs:energy", "the energy account over time",
-                 builders=EVERY_BUILDER, fed=True),
+                 builders=EVERY_BUILDER, fed=True, clumps=True),
     PictureEntry("contacts", "ryusa.figures.runs:contacts", "distribution of contact times", settled=True,
-                 builders=("saltation", "drop"), fed=True),
+                 builders=("saltation", "drop"), fed=True, clumps=True),
     PictureEntry("hops", "ryusa.figures.runs:hops", "distribution of jump heights and lengths", settled=True,
                  builders=("saltation",)),
     PictureEntry("profile", "ryusa.figures.runs:profile", "concentration and grain speed over height",
@@ -219,18 +224,18 @@ PICTURES = (
                  WINDOW, settled=True, measure="contact_stress"),
     PictureEntry("surface", "ryusa.figures.runs:surface", "a heap with its free surface and fitted slope",
                  ("t", "side", "lane"),
-                 builders=("box", "empty"), fed=True),
+                 builders=("box", "empty"), fed=True, clumps=True),
     PictureEntry("cone", "ryusa.figures.cone:cone",
                  "a round heap: height over distance from its axis, with its slope",
-                 ("t",), measure="cone", fed=True),
+                 ("t",), measure="cone", fed=True, clumps=True),
     PictureEntry("dynamic_angle", "ryusa.figures.dynamic_angle:dynamic_angle",
                  "angle of the surface in a drum over time",
-                 WINDOW, settled=True, measure="dynamic_angle", fed=True),
+                 WINDOW, settled=True, measure="dynamic_angle", fed=True, clumps=True),
     PictureEntry("sizes", "ryusa.figures.runs:sizes",
-                 "percent finer by mass over diameter, asked for and laid"),
+                 "percent finer by mass over diameter, asked for and laid", clumps=True),
     PictureEntry("walls", "ryusa.figures.walls:walls",
                  "force on each wall over time, and the power of those that move",
-                 WINDOW, settled=True, measure="walls", fed=True),
+                 WINDOW, settled=True, measure="walls", fed=True, clumps=True),
     PictureEntry("discharge", "ryusa.figures.discharge:discharge",
                  "mass in by each feed and out by each exit, and mass there, over time",
                  WINDOW, settled=True, measure="discharge", builders=("empty",), fed=True),
@@ -260,24 +265,33 @@ def load(function: str) -> Callable[..., Any]:
 
 
 def called(entry: MeasureEntry | PictureEntry) -> Callable[..., Any]:
-    """Import what a measure or picture calls; one that is not `fed` refuses a run with feeds or exits.
+    """Import what a measure or picture calls; it refuses runs that it is not `fed` or `clumps` for.
 
     Raises
     ------
     ResultsError : by the function returned.
     """
     function = load(entry.function)
-    if entry.fed or (isinstance(entry, PictureEntry) and entry.measure):
+    if (entry.fed and entry.clumps) or (isinstance(entry, PictureEntry) and entry.measure):
         return function
 
     @wraps(function)
     def refusing(run: Any, *args: Any, **options: Any) -> Any:
-        if getattr(run.scene, "traffic", None) is not None:
-            fed = ", ".join(dict.fromkeys(one.name for one in (*MEASURES, *PICTURES) if one.fed))
+        if not entry.fed and getattr(run.scene, "traffic", None) is not None:
             raise ResultsError(
                 f"{entry.name} needs the same grains in every frame, and this run has feeds or exits, which "
-                f"let grains in and out; of such a run there are {fed}"
+                f"let grains in and out; of such a run there are {_names('fed')}"
+            )
+        if not entry.clumps and getattr(run.scene, "bodies", None) is not None:
+            raise ResultsError(
+                f"{entry.name} takes every sphere for a grain, and this run has clumps; of such a run there "
+                f"are {_names('clumps')}"
             )
         return function(run, *args, **options)
 
     return refusing
+
+
+def _names(flag: str) -> str:
+    """Measures and pictures that have a flag."""
+    return ", ".join(dict.fromkeys(one.name for one in (*MEASURES, *PICTURES) if getattr(one, flag)))

@@ -65,7 +65,7 @@ def test_a_step_backwards_undoes_a_step():
     q = unit((0.3, -0.2, 0.7, 0.4))
     args = (0.3, -1.2, 0.8, 1.0, 0.5, 1.0 / 3.0)
     there = rigid_body.rotor_step(*q, *args, 0.4)
-    assert rigid_body.rotor_step(*there, *args, -0.4) == pytest.approx(q, abs=2e-16)
+    assert rigid_body.rotor_step(*there[:4], *args, -0.4)[:4] == pytest.approx(q, abs=2e-16)
 
 
 def _no_squish(q, p, moments, dt):

@@ -10,6 +10,7 @@ from ryusa.casefile.builders.schema import BoxSection
 from ryusa.casefile.case import Case
 from ryusa.casefile.derive import Derived
 from ryusa.casefile.grading import grading_of
+from ryusa.casefile.shape import extent
 from ryusa.model.scene import Floats
 
 ZERO = 0.25  # depth of the profile's zero below the crest of a floor of grains, in diameters
@@ -24,17 +25,17 @@ def box(case: Case, derived: Derived) -> Placement:
     assert isinstance(keys, BoxSection)
     rng = np.random.default_rng(case.seed)
     d, plane = derived.d, case.motion.plane
-    plan = box_plan(keys, d, derived.d_max, plane)
+    plan = box_plan(keys, d, derived.room, plane)
     floor = _floor(keys, plan, rng, d, plane)
     back, gate = _stacks(keys, plan, floor, d, plane)
     top = float(floor[:, 2].max()) + d / 2.0 if len(floor) else 0.0
     sized: Floats | None = None
     if grading_of(case) is None:
-        x = _lattice(keys, plan, rng, derived.d_max, plane)
+        x = _lattice(keys, plan, rng, derived.room, plane)
     else:
         sized = draw(case, keys.columns * keys.rows * keys.layers, rng)
         cells = LatticeCells(plan.pitch, keys.columns, keys.rows)
-        x = nested_lattice(sized, cells, keys.gap, keys.jitter, plane, rng)
+        x = nested_lattice(sized * extent(case), cells, keys.gap, keys.jitter, plane, rng)
     x[:, 2] += top + keys.height
     parts = [(name, rows) for name, rows in (("floor", floor), ("back", back), ("gate", gate)) if len(rows)]
     firsts = np.cumsum([0, *(len(rows) for _, rows in parts)]).tolist()
@@ -57,15 +58,15 @@ def box(case: Case, derived: Derived) -> Placement:
     )
 
 
-def _lattice(keys: BoxSection, plan: BoxPlan, rng: np.random.Generator, d_max: float, plane: bool) -> Floats:
-    """Jittered centres from z = 0 upwards, each axis d_max apart at least [m]."""
+def _lattice(keys: BoxSection, plan: BoxPlan, rng: np.random.Generator, room: float, plane: bool) -> Floats:
+    """Jittered centres from z = 0 upwards, each axis `room` apart at least [m]."""
     cells = np.stack(
         np.meshgrid(np.arange(keys.layers), np.arange(keys.rows), np.arange(keys.columns), indexing="ij"), -1
     )
     pitch = np.array(plan.pitch)
-    room = 0.5 * keys.jitter * np.maximum(pitch - d_max, 0.0)
+    free = 0.5 * keys.jitter * np.maximum(pitch - room, 0.0)
     x = (cells.reshape(-1, 3)[:, ::-1] + 0.5) * pitch
-    x = x + rng.uniform(-1.0, 1.0, x.shape) * room
+    x = x + rng.uniform(-1.0, 1.0, x.shape) * free
     if plane:
         x[:, 1] = 0.0
     return np.asarray(x)

@@ -9,6 +9,7 @@ import numpy as np
 
 from ryusa.build.assemble import Laws, assemble
 from ryusa.build.box import box
+from ryusa.build.clumps import clumps_of
 from ryusa.build.column import column_of, zero_of
 from ryusa.build.drop import drop
 from ryusa.build.empty import empty
@@ -34,6 +35,7 @@ from ryusa.casefile.films import film_reach
 from ryusa.casefile.materials import GRAINS, case_of_pair, names_of
 from ryusa.casefile.motion import slab_width
 from ryusa.casefile.record import events_of
+from ryusa.casefile.shape import extent
 from ryusa.casefile.time import steps_by_default
 from ryusa.casefile.water.values import hindrance_exponent
 from ryusa.errors import CaseError
@@ -104,10 +106,11 @@ def build(case: Case, derived: Derived | None = None) -> Built:
     placement = BUILDERS[case.build.kind](case, found)
     placement = _with_planes(placement, case)
     key = key_of(case.build) if isinstance(case.build, FromFile) else "build"
-    refuse_overlaps(placement, key, case.motion.plane)
+    reach = replace(placement, d=placement.d * extent(case))  # clumps, however they are turned
+    refuse_overlaps(reach, key, case.motion.plane)
     walls = walls_of(case)
     _refuse_taken_names(placement, walls)
-    refuse_overlaps_with_walls(placement, walls, key)
+    refuse_overlaps_with_walls(reach, walls, key)
     _refuse_unknown_groups(placement, case)
     laws = replace(laws_of(case, found, placement.z_zero), column=column_of(case, found, placement))
     placement, traffic = with_feeds(placement, case, found)
@@ -117,7 +120,7 @@ def build(case: Case, derived: Derived | None = None) -> Built:
         laws = replace(laws, density=densities(case, of[: len(placement.d)]))
     scene, state = before_feeding(*assemble(placement, laws), traffic, case)
     scene = with_room(with_walls(scene, walls), case.domain.low is None, case.domain.high is None)
-    scene = with_materials(case, scene, of)
+    scene, state = clumps_of(case, with_materials(case, scene, of), state)
     return Built(scene, state, (*placement.notes, *notes_of(case)))
 
 

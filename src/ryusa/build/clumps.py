@@ -6,6 +6,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ryusa.casefile.case import Case
+from ryusa.casefile.shape import shapes_of
 from ryusa.errors import CaseError
 from ryusa.laws.families import ContactForce
 from ryusa.model import BodyState, Materials, RigidBodies, Scene, State
@@ -13,6 +15,7 @@ from ryusa.model.arrays import Floats
 from ryusa.model.clump import Clump
 
 Ints = NDArray[np.int64]
+_STREAM = 0x434C554D  # tells forms and orientations of grains from their sizes
 
 
 def with_clumps(
@@ -120,6 +123,28 @@ def expanded(
         bodies=bodies,
     )
     return scene, replace(State.at_rest(x), v=v, omega=omega, t=state.t, bodies=moved)
+
+
+def clumps_of(case: Case, scene: Scene, state: State) -> tuple[Scene, State]:
+    """Scene and state of a case with its clumps, drawn and turned at random."""
+    shapes = shapes_of(case)
+    if not shapes:
+        return scene, state
+    rng = np.random.default_rng([case.seed, _STREAM])
+    n = scene.n_grain
+    drawn, form_of, begin = rng.permutation(n), np.full(n, -1, np.int64), 0.0
+    for k, one in enumerate(shapes):
+        end = begin + one.share * n
+        form_of[drawn[round(begin) : round(end)]] = k
+        begin = end
+    return expanded(
+        scene,
+        state,
+        [one.clump for one in shapes],
+        form_of=form_of,
+        orientation=random_orientations(n, rng),
+        names=[one.name for one in shapes],
+    )
 
 
 def _materials(made: Materials | None, owner: Ints, n: int) -> Materials | None:

@@ -15,16 +15,16 @@ def fill(case: Case, derived: Derived) -> Placement:
     keys = case.build
     assert isinstance(keys, FillSection)
     rng = np.random.default_rng(case.seed)
-    pitch = derived.d_max * (1.0 + keys.gap)
+    pitch = derived.room * (1.0 + keys.gap)
     n_x, n_y, n_z = fill_cells(case)
     low, high = np.array(keys.low), np.array(keys.high)
     cells = np.stack(np.meshgrid(np.arange(n_z), np.arange(n_y), np.arange(n_x), indexing="ij"), -1)
     cells = cells.reshape(-1, 3)[: derived.n_grain, ::-1]
     corner = 0.5 * (low + high - pitch * np.array([n_x, n_y, n_z]))
     corner[2] = low[2]
-    free = 0.5 * keys.jitter * keys.gap * derived.d_max
+    free = 0.5 * keys.jitter * keys.gap * derived.room
     x = corner + (cells + 0.5) * pitch
-    x = x + rng.uniform(-free, free, x.shape)  # neighbours stay d_max apart on each axis
+    x = x + rng.uniform(-free, free, x.shape)  # neighbours stay `room` apart on each axis
     if case.motion.plane:
         x[:, 1] = 0.0
     n = len(x)

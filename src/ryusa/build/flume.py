@@ -14,6 +14,7 @@ from ryusa.casefile.column.bed import bed_thickness, packed
 from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.derive import Derived
 from ryusa.casefile.grading import grading_of, reference_diameter
+from ryusa.casefile.shape import extent
 from ryusa.model.scene import Floats
 
 SIDES = ("right", "left")  # looking downstream: y = 0 and y = width
@@ -29,12 +30,12 @@ def flume(case: Case, derived: Derived) -> Placement:
     x_fixed = _base(case, keys, rng, wide)
     top = float(x_fixed[:, 2].max()) + d / 2.0 if len(x_fixed) else 0.0
     sized: Floats | None = None
-    cells = _cells(case, keys, wide, derived.d_max)
+    cells = _cells(case, keys, wide, derived.room)
     if grading_of(case) is None:
-        x = _lattice(case, keys, rng, cells, derived.d_max)
+        x = _lattice(case, keys, rng, cells, derived.room)
     else:
         sized = draw(case, flume_count(case), rng)
-        x = nested_lattice(sized, cells, keys.gap, keys.jitter, plane, rng)
+        x = nested_lattice(sized * extent(case), cells, keys.gap, keys.jitter, plane, rng)
     if plane:
         x[:, 1] = 0.0
     x[:, 2] += top
@@ -96,16 +97,16 @@ def _base(case: Case, keys: FlumeSection, rng: np.random.Generator, wide: float)
     return x
 
 
-def _cells(case: Case, keys: FlumeSection, wide: float, d_max: float) -> LatticeCells:
+def _cells(case: Case, keys: FlumeSection, wide: float, room: float) -> LatticeCells:
     """Cells that hold the largest grain with its gap and fill length and width."""
-    free = d_max * (1.0 + keys.gap)
+    free = room * (1.0 + keys.gap)
     n_x = max(int(keys.length / free), 1)
     n_y = 1 if case.motion.plane else max(int(wide / free), 1)
     return LatticeCells((keys.length / n_x, wide / n_y, free), n_x, n_y)
 
 
 def _lattice(
-    case: Case, keys: FlumeSection, rng: np.random.Generator, cells: LatticeCells, d_max: float
+    case: Case, keys: FlumeSection, rng: np.random.Generator, cells: LatticeCells, room: float
 ) -> Floats:
     """Jittered centres from z = 0 upwards, clear of neighbours and walls [m]; the top layer is incomplete."""
     pitch, n_x, n_y = np.array(cells.pitch), cells.n_x, cells.n_y
@@ -114,6 +115,6 @@ def _lattice(
     places = np.stack([within % n_x, within // n_x, layer], -1)
     last = int(layer[-1]) * n_x * n_y  # the highest layer is filled at random places
     chosen = np.concatenate([np.arange(last), last + np.sort(rng.permutation(n_x * n_y)[: n - last])])
-    room = 0.5 * keys.jitter * np.maximum(pitch - d_max, 0.0)
+    free = 0.5 * keys.jitter * np.maximum(pitch - room, 0.0)
     x = (places[chosen] + 0.5) * pitch
-    return np.asarray(x + rng.uniform(-1.0, 1.0, x.shape) * room)
+    return np.asarray(x + rng.uniform(-1.0, 1.0, x.shape) * free)

@@ -11,6 +11,7 @@ from ryusa.casefile.builders.values import bed_counts
 from ryusa.casefile.case import Case
 from ryusa.casefile.derive import Derived
 from ryusa.casefile.grading import grading_of, reference_diameter
+from ryusa.casefile.shape import extent
 from ryusa.model.scene import Floats
 
 
@@ -19,8 +20,8 @@ def packing(case: Case, derived: Derived) -> Placement:
     keys = case.build
     assert isinstance(keys, PackingSection)
     rng = np.random.default_rng(case.seed)
-    d, d_max, plane = derived.d, derived.d_max, case.motion.plane
-    pitch = d_max * (1.0 + keys.gap)
+    d, room, plane = derived.d, derived.room, case.motion.plane
+    pitch = room * (1.0 + keys.gap)
     wide, deep = keys.columns * pitch, keys.rows * pitch
     inf = float("inf")
     period = (wide, inf if plane else deep) if keys.periodic else (inf, inf)
@@ -30,11 +31,11 @@ def packing(case: Case, derived: Derived) -> Placement:
         top = float(x_fixed[:, 2].max()) + d / 2.0
     sized: Floats | None = None
     if grading_of(case) is None:
-        x = _lattice(keys, pitch, d_max, rng)
+        x = _lattice(keys, pitch, room, rng)
     else:
         sized = draw(case, keys.columns * keys.rows * keys.layers, rng)
         cells = LatticeCells((pitch, pitch, pitch), keys.columns, keys.rows)
-        x = nested_lattice(sized, cells, keys.gap, keys.jitter, plane, rng)
+        x = nested_lattice(sized * extent(case), cells, keys.gap, keys.jitter, plane, rng)
     if plane:
         x[:, 1] = 0.0
     x[:, 2] += top
@@ -61,13 +62,13 @@ def packing(case: Case, derived: Derived) -> Placement:
     )
 
 
-def _lattice(keys: PackingSection, pitch: float, d_max: float, rng: np.random.Generator) -> Floats:
-    """Jittered centres from z = 0 upwards [m]; neighbours stay d_max apart on each axis."""
+def _lattice(keys: PackingSection, pitch: float, room: float, rng: np.random.Generator) -> Floats:
+    """Jittered centres from z = 0 upwards [m]; neighbours stay `room` apart on each axis."""
     cells = np.stack(
         np.meshgrid(np.arange(keys.layers), np.arange(keys.rows), np.arange(keys.columns), indexing="ij"), -1
     )
     x = (cells.reshape(-1, 3)[:, ::-1] + 0.5) * pitch
-    free = 0.5 * keys.jitter * keys.gap * d_max
+    free = 0.5 * keys.jitter * keys.gap * room
     return np.asarray(x + rng.uniform(-free, free, x.shape))
 
 

@@ -21,6 +21,7 @@ from ryusa.casefile.motion import check_motion
 from ryusa.casefile.precision import check_precision
 from ryusa.casefile.record import check_frames, check_record, check_stop, check_timeline
 from ryusa.casefile.section import Section, given
+from ryusa.casefile.shape import check_shape
 from ryusa.casefile.time import RIVALS as TIME_RIVALS
 from ryusa.casefile.time import check_time
 from ryusa.casefile.traffic.checks import check_traffic
@@ -44,7 +45,7 @@ def check(case: Case, data: dict[str, Any]) -> list[CaseError]:
 
     Checks that need derived numbers come last: these exist only for a case without contradictions.
     """
-    unsized = [*check_grading(case)]
+    unsized = [*check_grading(case), *check_shape(case)]
     if unsized:  # most checks need the sizes
         return [*_rivals(case), *unsized]
     found = [

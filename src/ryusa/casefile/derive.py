@@ -3,13 +3,14 @@
 import math
 from dataclasses import dataclass
 
-from ryusa.casefile.builders.values import counts, sizes
+from ryusa.casefile.builders.values import counts, room, sizes
 from ryusa.casefile.case import Case
 from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.column.values import column_u_star
 from ryusa.casefile.contact.values import (
     PairValues,
     friction,
+    is_hertz,
     pair_values,
     restitution,
     shortest_contact,
@@ -20,6 +21,7 @@ from ryusa.casefile.films import step_limits
 from ryusa.casefile.grains import mass
 from ryusa.casefile.materials import lightest_of, meeting
 from ryusa.casefile.motion import slope
+from ryusa.casefile.shape import least_mass
 from ryusa.casefile.time import MOST_STEPS, STEPS_PER_FILM, TANGENTIAL_SHARE, steps_by_default
 from ryusa.casefile.water.values import u_star_given
 from ryusa.laws import drag, water
@@ -32,6 +34,7 @@ class Derived:
     d: float  # mean diameter [m]
     d_min: float
     d_max: float
+    room: float  # diameter of the sphere that holds any free grain, as clumps reach farther [m]
     volume: float  # of the mean grain [m3]
     m: float  # its mass [kg]
     m_added: float  # its added mass [kg]
@@ -68,9 +71,12 @@ def derive(case: Case) -> Derived:
     n_grain, n_fixed, meet = counts(case)
     pairs = [(lightest_of(case, a, b, both), both) for (a, b), both in meeting(case).items()]
     pairs = pairs if case.materials else [(case, meet)]
-    shortest = min(shortest_contact(one, d_min, both) for one, both in pairs)
+    lighter = least_mass(case)
+    power = 0.4 if is_hertz(case) else 0.5  # of the mass in the duration of a contact
+    shortest = lighter**power * min(shortest_contact(one, d_min, both) for one, both in pairs)
     steps = [step_limit(one, d_min, both) for one, both in pairs]
-    limits = min(normal for normal, _ in steps), min(shear for _, shear in steps)
+    slower = math.sqrt(lighter)
+    limits = slower * min(normal for normal, _ in steps), slower * min(shear for _, shear in steps)
     if case.time.step is not None:
         dt = case.time.step
     elif case.time.steps_per_contact is not None:
@@ -95,6 +101,7 @@ def derive(case: Case) -> Derived:
         d=d,
         d_min=d_min,
         d_max=d_max,
+        room=room(case),
         volume=drag.volume(d, case.grains.shape_volume),
         m=m,
         m_added=m_added,

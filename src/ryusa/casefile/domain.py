@@ -68,7 +68,7 @@ def check_planes(case: "Case") -> Iterator[CaseError]:
 
 def check_domain(case: "Case", derived: "Derived") -> Iterator[CaseError]:
     """Find periods that are too short or set by the builder, and corners in the wrong order."""
-    least = FEWEST_PERIODS * derived.d_max
+    least = FEWEST_PERIODS * derived.room
     from_file = isinstance(case.build, FromFile)
     periods = period_of(case) if from_file else (case.domain.period_x, case.domain.period_y)
     for key, period in zip(("period_x", "period_y"), periods, strict=True):

@@ -12,6 +12,7 @@ from ryusa.casefile.laws import law_rows
 from ryusa.casefile.materials import material_rows
 from ryusa.casefile.precision import precision_rows
 from ryusa.casefile.rows import ExplainRow
+from ryusa.casefile.shape import shape_rows
 from ryusa.casefile.time import time_rows
 from ryusa.casefile.traffic.rows import traffic_rows
 from ryusa.casefile.walls import wall_rows
@@ -29,6 +30,7 @@ def explain(case: Case, derived: Derived | None = None) -> list[ExplainRow]:
     found = derived or derive(case)
     return [
         *grain_rows(case, found),
+        *shape_rows(case, found),
         *traffic_rows(case),
         *contact_rows(case, found),
         *damping_rows(case, found),

@@ -34,11 +34,16 @@ def _spread_kind(value: Any) -> str:
     return "<number>" if isinstance(value, (int, float, str)) else "<table>"
 
 
+def _shape_kind(value: Any) -> str:
+    return "<name>" if isinstance(value, str) else "<shares>"
+
+
 def _curve_kind(value: Any) -> str:
     return "<file>" if isinstance(value, str) else "<points>"
 
 
 GrainLength = Annotated[Length, Field(ge=1.0e-7, le=1.0e3)]
+ShapeName = Annotated[str, Field(min_length=1, max_length=400), AfterValidator(relative)]
 Percent = Annotated[Number, Field(ge=0, le=100)]
 
 
@@ -72,6 +77,20 @@ class GrainsSection(Section):
     """Smallest grain of the sieve_curve that is laid; the mass of finer ones is left out."""
     coarsest: GrainLength | None = None
     """Largest grain of the sieve_curve that is laid; the mass of coarser ones is left out."""
+    shape: Annotated[
+        Annotated[
+            Annotated[str, Field(min_length=1, max_length=400), AfterValidator(relative)], Tag("<name>")
+        ]
+        | Annotated[
+            dict[ShapeName, Annotated[Number, Field(gt=0, le=1)]],
+            Tag("<shares>"),
+        ],
+        Discriminator(_shape_kind),
+    ] = "sphere"
+    """Form of the free grains: "sphere", a clump of the library ("dumbbell", "pebble", "rod", "triangle",
+    "tetrahedron", "disc", "blade"), or a CSV file of spheres in the folder of the case with the header
+    x [mm],y [mm],z [mm],d [mm]. Shares by number mix them, such as { rod = 0.5, "flint.csv" = 0.2 }; the
+    rest are spheres. A clump has the volume of a sphere of its diameter; its orientation is random."""
     shape_volume: Annotated[Number, Field(gt=0, le=1)] = math.pi / 6
     """A_3: volume of a grain over d cubed; pi/6 for a sphere."""
     mixture: dict[str, Annotated[Number, Field(gt=0, le=1)]] = Field(default_factory=lambda: {})

@@ -9,6 +9,7 @@ from ryusa.casefile.contact.values import is_hertz, parting, timing
 from ryusa.casefile.quantities import Duration, Number
 from ryusa.casefile.rows import ExplainRow, number
 from ryusa.casefile.section import Section
+from ryusa.casefile.shape import has_clumps
 from ryusa.errors import CaseError
 from ryusa.laws.families import ContactTiming
 
@@ -112,6 +113,7 @@ def time_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
         partners = "a grain on a wall"
     size = ", both of the smallest diameter" if derived.meet else ", of the smallest diameter"
     partners += size if derived.d_max > derived.d_min else ""
+    partners += ", pushed where a clump gives way most" if has_clumps(case) else ""
     few = derived.steps_per_contact < FEWEST_STEPS and not _exact(case)
     ratio = "shortest contact over dt"
     ratio += "; the paper asks for at least ten: with fewer the restitution is not reached" if few else ""

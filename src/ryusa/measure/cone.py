@@ -107,7 +107,7 @@ def cone(run: Run, t: float | None = None) -> Cone:
     chosen = np.isin(seen.grains, heap.grains)
     x, d = seen.x[chosen], seen.d[chosen]
     axis = np.average(x[:, :2], axis=0, weights=d**3)
-    away, width = np.hypot(*(x[:, :2] - axis).T), BIN * float(run.scene.d.mean())
+    away, width = np.hypot(*(x[:, :2] - axis).T), BIN * float(run.scene.whole_grains()[0].mean())
     turned = np.arctan2(*(x[:, :2] - axis).T[::-1]) / (2.0 * math.pi) % 1.0
     top = x[:, 2] + 0.5 * d - heap.floor
     ring = (away / width).astype(np.int64)

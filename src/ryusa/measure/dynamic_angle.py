@@ -78,7 +78,7 @@ def dynamic_angle(run: Run, begin: float | None = None, end: float = math.inf) -
     if len(chosen) == 0:
         raise ResultsError(f"no frame from t = {since:g} s to {end:g} s")
     name, centre, along, up, radius, rate, g = _drum(run, float(every[chosen[-1]]))
-    d, m = run.scene.d, run.scene.m
+    d, m, width = run.scene.d, run.scene.m, BIN * float(run.scene.whole_grains()[0].mean())
     angles, masses, offsets = (np.empty(len(chosen)) for _ in range(3))
     for n, k in enumerate(chosen):
         x = np.asarray(run.frames.x[k], dtype=np.float64) - centre
@@ -86,7 +86,7 @@ def dynamic_angle(run: Run, begin: float | None = None, end: float = math.inf) -
         s, z = x[there] @ along, x[there] @ up
         offsets[n] = np.average(s, weights=m[there])
         masses[n] = math.atan2(offsets[n], -float(np.average(z, weights=m[there])))
-        angles[n] = masses[n] + _rest(s, z, 0.5 * d[there], masses[n], radius, BIN * float(d.mean()))
+        angles[n] = masses[n] + _rest(s, z, 0.5 * d[there], masses[n], radius, width)
     window = (float(every[chosen[0]]), float(every[chosen[-1]]))
     froude = rate * rate * radius / g
     items = (

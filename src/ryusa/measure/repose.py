@@ -167,7 +167,7 @@ def surface(
         raise ResultsError(f"fit {fit[0]:g} .. {fit[1]:g}: must be two shares of the height, 0 to 1, rising")
     seen = snapshot(run, t, lane)
     scene = _open_scene(run, seen.t)
-    d = float(scene.d.mean())
+    d = float(scene.whole_grains()[0].mean())
     level = _floor(scene, seen) if floor is None else floor
     chosen = _heap(seen, scene, level, link * d)
     if len(chosen) == 0:

@@ -117,8 +117,9 @@ def sizes(run: Run) -> Sizes:
     inclusive graphic standard deviation (phi84 - phi16)/4 + (phi95 - phi5)/6.6 of Folk & Ward 1957, of
     percentiles counted from the coarse end.
     """
-    order = np.argsort(run.scene.d, kind="stable")
-    d, m = np.asarray(run.scene.d[order]), np.asarray(run.scene.m[order])
+    d, m = run.scene.whole_grains()
+    order = np.argsort(d, kind="stable")
+    d, m = np.asarray(d[order]), np.asarray(m[order])
     if not len(d):
         raise ResultsError("the run holds no free grain")
     asked = _asked(run.case)

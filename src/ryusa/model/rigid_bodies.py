@@ -40,6 +40,20 @@ class RigidBodies:
         offset = np.arange(len(self.arm)) - np.repeat(np.cumsum(self.count) - self.count, self.count)
         return np.repeat(self.first, self.count) + offset
 
+    @property
+    def least_mass(self) -> Floats:
+        """Least effective mass of a push through the centre of a member of each clump [kg], (n_body,).
+
+        As `Clump.least_mass`: a push along n at the arm a meets 1/m_e = 1/m + (a x n) . I^-1 (a x n).
+        """
+        a_x, a_y, a_z = self.arm.T
+        none = np.zeros_like(a_x)
+        cross = np.array([[none, -a_z, a_y], [a_z, none, -a_x], [-a_y, a_x, none]]).transpose(2, 0, 1)
+        over = np.repeat(1.0 / self.inertia, self.count, axis=0)
+        most = np.linalg.eigvalsh(np.swapaxes(cross, 1, 2) @ (over[:, :, None] * cross))[:, -1]
+        most = np.maximum.reduceat(most, np.cumsum(self.count) - self.count) if self.n else np.zeros(0)
+        return np.asarray(1.0 / (1.0 / self.m + most))
+
     def of_grain(self, n_grain: int) -> Ints:
         """Number of the clump of each free grain, -1 for a grain of its own, shape (n_grain,)."""
         found = np.full(n_grain, -1, np.int64)

@@ -202,6 +202,14 @@ class Scene:
         """Number of free grains, with those that a feed will bring."""
         return len(self.d)
 
+    def whole_grains(self) -> tuple[Floats, Floats]:
+        """Diameters [m] and masses [kg] of grains, each clump as one, of the sphere of the same volume."""
+        if self.bodies is None:
+            return self.d, self.m
+        alone = np.ones(self.n_grain, np.bool_)
+        alone[self.bodies.members] = False
+        return np.concatenate([self.d[alone], self.bodies.d]), np.concatenate([self.m[alone], self.bodies.m])
+
     @property
     def n_fixed(self) -> int:
         """Number of fixed grains, including removed ones."""

@@ -10,14 +10,16 @@ if TYPE_CHECKING:
 
 
 def files_beside(case: "Case") -> dict[str, Path]:
-    """Paths of first grains, meshes and sieve curve, by the names of their copies in the run folder."""
+    """Paths of first grains, clumps, meshes and sieve curve by the names of their copies."""
     from ryusa.casefile.builders.schema import TableSection
     from ryusa.casefile.grading import sieve_file
+    from ryusa.casefile.shape import clump_files
     from ryusa.results import schema
 
     sieve, found = sieve_file(case), dict[str, Path]()
     if case.path is not None:
         names = [case.build.file] if isinstance(case.build, TableSection) else []
+        names += clump_files(case)
         names += [wall.file for wall in case.walls if wall.file is not None]
         folder = case.path.resolve().parent
         found = {name: folder / name for name in names if _plain(name)}

@@ -31,10 +31,11 @@ def summary_lines(summary: dict[str, Any]) -> list[str]:
 def _contacts(summary: dict[str, Any]) -> list[str]:
     """Lines that need recorded contacts."""
     shear = summary["restitution_shear"]
+    why = "an oblique impact rotates the normal, which changes it by a few per cent (design/0006)"
+    if summary["restitution"].get("clumps"):
+        why += "; a clump hit off its centre has less effective mass, and rebounds less (design/0022)"
     return [
-        f"restitution: {_set(summary['restitution'])}; measured "
-        f"{_measured(summary['restitution'])}; an oblique impact rotates the normal, which changes it by a "
-        "few per cent (design/0006)",
+        f"restitution: {_set(summary['restitution'])}; measured {_measured(summary['restitution'])}; {why}",
         f"tangential restitution: {_set(shear)}; measured without sliding {_measured(shear['sticking'])}; "
         f"with sliding {_measured(shear['sliding'])}",
     ]

@@ -165,6 +165,7 @@ class Watch:
             "restitution": {
                 "asked": _common(scene, "e_n"),
                 **({} if scene.materials is None else {"by_pair": True}),
+                **({} if scene.bodies is None else {"clumps": True}),
                 "follows": {name: e_n for name, (e_n, _) in self._follows.items()},
                 **{name: average.as_dict() for name, average in self._normal.items()},
             },
@@ -289,18 +290,20 @@ def shortest_collision_time(scene: Scene, state: State) -> float:
     """Contact time of the lightest pair that can collide, damped or undamped [s]; inf without grains."""
     if scene.n_grain == 0:
         return math.inf
-    m, free = scene.m + scene.m_added, _free_pairs(scene, state)
+    m, d, free = scene.m + scene.m_added, scene.d, _free_pairs(scene, state)
+    if (
+        bodies := scene.bodies
+    ) is not None:  # its largest sphere, where it gives way most
+        alone = bodies.of_grain(scene.n_grain) < 0
+        of_bodies = np.maximum.reduceat(d[bodies.members], np.cumsum(bodies.count) - bodies.count)
+        m, d = np.concatenate([m[alone], bodies.least_mass]), np.concatenate([d[alone], of_bodies])
+        free = len(m) > 1
     order = np.argsort(m, kind="stable")
     pair = effective_mass(float(m[order[0]]), float(m[order[1]]) if free else math.inf)
     laws = (scene.contact,) if scene.materials is None else scene.materials.contact
-    radius = _shortest_radius(scene, order, free)
+    r, other = 0.5 * float(d[order[0]]), 0.5 * float(d[order[1]]) if free else math.inf
+    radius = reduced_radius(r, other)
     return min(shortest_contact_of(law, pair, radius) for law in laws)
-
-
-def _shortest_radius(scene: Scene, order: NDArray[np.int64], free: bool) -> float:
-    """Reduced radius of the lightest pair [m]; of the lightest grain on a wall if free grains cannot meet."""
-    r = 0.5 * float(scene.d[order[0]])
-    return reduced_radius(r, 0.5 * float(scene.d[order[1]]) if free else math.inf)
 
 
 def _follows(scene: Scene, free_pairs: bool) -> dict[str, tuple[float, float | None]]:
@@ -329,7 +332,7 @@ def _speed_of_weight(scene: Scene) -> float:
     if scene.n_grain == 0:
         return 0.0
     k = int(np.argmax(scene.m))
-    m = float(scene.m[k] + scene.m_added[k])
+    m = float(scene.m[k] + scene.m_added[k])  # that of a sphere of a clump, at most: contacts judged are more
     g = float(np.linalg.norm(scene.gravity)) * abs(float(scene.m_weight[k])) / m
     return g * collision_time(m, scene.contact.k_n)
 

@@ -28,9 +28,9 @@ class BoxPlan:
         return self.n_deep * (self.n_floor + self.n_back + self.n_gate)
 
 
-def box_plan(build: BoxSection, d: float, d_max: float, plane: bool) -> BoxPlan:
-    """Plan of a box of grains of mean diameter d and largest diameter d_max [m]."""
-    pitch = d_max * (1.0 + build.gap)
+def box_plan(build: BoxSection, d: float, room: float, plane: bool) -> BoxPlan:
+    """Plan of a box of grains of mean diameter d, each within a sphere of diameter `room` [m]."""
+    pitch = room * (1.0 + build.gap)
     wide, deep = build.columns * pitch, build.rows * pitch
     n_wide, n_deep = fitting(wide, d), 1 if plane else fitting(deep, d)
     if build.floor == "grains" or build.walls == "grains":

@@ -21,6 +21,7 @@ from ryusa.casefile.builders.table import period_of, table_of
 from ryusa.casefile.grading import grading_of, reference_diameter
 from ryusa.casefile.grains import CUT, spread_of
 from ryusa.casefile.motion import slab_width
+from ryusa.casefile.shape import extent
 from ryusa.casefile.traffic.values import fed_in_all
 
 if TYPE_CHECKING:
@@ -40,6 +41,11 @@ def sizes(case: "Case") -> tuple[float, float, float]:
             smallest, largest = min(smallest, fed[0]), max(largest, fed[1])
         return reference_diameter(case), smallest, largest
     return _drawn_sizes(case)
+
+
+def room(case: "Case") -> float:
+    """Diameter of the sphere that holds any of the free grains, however it is turned [m]."""
+    return sizes(case)[2] * extent(case)
 
 
 def _drawn_sizes(case: "Case") -> tuple[float, float, float]:
@@ -83,8 +89,7 @@ def built_counts(case: "Case") -> tuple[int, int, bool]:
     if isinstance(build, SaltationSection):
         return build.starts, build.starts * build.n_bed, False
     if isinstance(build, BoxSection):
-        d, _, d_max = sizes(case)
-        n_fixed = box_plan(build, d, d_max, case.motion.plane).n_fixed
+        n_fixed = box_plan(build, sizes(case)[0], room(case), case.motion.plane).n_fixed
         return build.columns * build.rows * build.layers, n_fixed, True
     if isinstance(build, FillSection):
         held = math.prod(fill_cells(case))
@@ -116,8 +121,7 @@ def bed_counts(case: "Case") -> tuple[int, int]:
         return (0, 0) if build.bed == "plane" else _side_by_side(case, build)
     if not isinstance(build, PackingSection) or build.bed == "plane":
         return 0, 0
-    d, _, d_max = sizes(case)
-    pitch = d_max * (1.0 + build.gap)
+    d, pitch = sizes(case)[0], room(case) * (1.0 + build.gap)
     fewest = 3 if build.periodic else 1
     n_x, n_y = (max(round(count * pitch / d), fewest) for count in (build.columns, build.rows))
     return n_x, 1 if case.motion.plane else n_y
@@ -133,11 +137,11 @@ def bed_opening(case: "Case") -> float:
     if n_x == 0:
         return 0.0
     assert isinstance(build, PackingSection | FlumeSection)
-    d, _, d_max = sizes(case)
+    d = sizes(case)[0]
     if isinstance(build, FlumeSection):
         long, wide = build.length, build.width or d
     else:
-        long, wide = (count * d_max * (1.0 + build.gap) for count in (build.columns, build.rows))
+        long, wide = (count * room(case) * (1.0 + build.gap) for count in (build.columns, build.rows))
     rise = build.bed_height * d if build.bed == "random" else 0.0
     across = 0.0 if case.motion.plane else wide / n_y
     return math.sqrt((long / n_x) ** 2 + across**2 + rise**2) - d
@@ -162,7 +166,7 @@ def fill_cells(case: "Case") -> tuple[int, int, int]:
     """Cells of the lattice in the box of builder 'fill' along x, y and z."""
     build = case.build
     assert isinstance(build, FillSection)
-    pitch = sizes(case)[2] * (1.0 + build.gap)
+    pitch = room(case) * (1.0 + build.gap)
     x, y, z = (
         max(int((high - low) / pitch * (1.0 + 1e-9)), 0)
         for low, high in zip(build.low, build.high, strict=True)
@@ -176,7 +180,7 @@ def bed_area(case: "Case") -> float:
     if isinstance(build, FlumeSection):
         return build.length * (slab if case.motion.plane or build.width is None else build.width)
     if isinstance(build, PackingSection):
-        pitch = sizes(case)[2] * (1.0 + build.gap)
+        pitch = room(case) * (1.0 + build.gap)
         return build.columns * pitch * (slab if case.motion.plane else build.rows * pitch)
     return math.nan
 

@@ -107,7 +107,7 @@ class ContactSection(Section):
     timing: Annotated[str, WordOf(families.ContactTiming)] | None = None
     """Whether a contact begins and ends at time steps, or at its true instants within a step, which needs far
     fewer steps per contact for the same restitution. When not given "exact", and "at steps" with law
-    "Hertz-Mindlin", which has no other."""
+    "Hertz-Mindlin" and with clumps, which have no other."""
     parting: Annotated[str, WordOf(families.Parting)] = "no tension"
     """Whether the normal dashpot may pull before the overlap ends."""
     damping_law: Annotated[str, WordOf(families.DampingLaw)] = "Thornton"

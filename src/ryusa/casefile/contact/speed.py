@@ -4,7 +4,7 @@ import math
 from typing import TYPE_CHECKING
 
 from ryusa.casefile.builders.schema import BoxSection, DropSection, FillSection, FlumeSection, PackingSection
-from ryusa.casefile.builders.values import sizes
+from ryusa.casefile.builders.values import room, sizes
 from ryusa.casefile.contact.schema import OverlapStiffnessSection
 from ryusa.casefile.grains import mass
 from ryusa.casefile.water.values import terminal_velocity
@@ -20,7 +20,7 @@ def expected_speed(case: "Case") -> tuple[float, str]:
         return case.contact.expected_speed, "contact.expected_speed"
     if isinstance(rule, OverlapStiffnessSection):
         return rule.speed, "contact.stiffness.speed"
-    d, _, d_max = sizes(case)
+    d = sizes(case)[0]
     m, m_added, m_weight, _ = mass(case, d)
     settling, buoyant = terminal_velocity(case), m_weight / (m + m_added)
     if isinstance(build, DropSection):
@@ -29,7 +29,7 @@ def expected_speed(case: "Case") -> tuple[float, str]:
             return max(settling, build.speed), "settling velocity, which is below the speed of a free fall"
         return fall, "free fall from build.height with build.speed, without drag"
     if isinstance(build, BoxSection):
-        height = build.height + build.layers * build.gap * d_max
+        height = build.height + build.layers * build.gap * room(case)
         if height > d:
             fastest = math.sqrt(2.0 * g * height * buoyant)
             return min(fastest, settling), "fall of the top layer through the free height below it"

@@ -9,6 +9,7 @@ from ryusa.casefile.contact.schema import OverlapStiffnessSection, TimeStiffness
 from ryusa.casefile.contact.speed import expected_speed
 from ryusa.casefile.grains import mass
 from ryusa.casefile.motion import may_rotate
+from ryusa.casefile.shape import has_clumps
 from ryusa.laws import collision, hertz
 from ryusa.laws import contact as contact_law
 from ryusa.laws._family import numbers
@@ -55,7 +56,7 @@ def timing(case: "Case") -> ContactTiming:
     """Begin and end of contacts in time."""
     if case.contact.timing is not None:
         return ContactTiming.of(case.contact.timing)
-    return ContactTiming.AT_STEPS if is_hertz(case) else ContactTiming.EXACT
+    return ContactTiming.AT_STEPS if is_hertz(case) or has_clumps(case) else ContactTiming.EXACT
 
 
 def parting(case: "Case") -> str:

@@ -102,7 +102,7 @@ def integrate(
         push, turn = read4(f, 8 * i), read4(f, 8 * i + 4)
         if variant.rolling or variant.events:
             n_touching[i] = int(component(turn, 3))
-        if bodies is not None:
+        if bodies is not None:  # noqa: SIM102 (the outer test alone is taken out by the compiler)
             if bodies.member[ids[i]]:
                 continue
         fill4(f, 8 * i, 0.0)

@@ -1,0 +1,166 @@
+"""grains.shape: clumps in place of spheres, from the library of shapes or from tables of spheres."""
+
+from collections.abc import Iterator
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from ryusa.casefile.files import folder_of, inside
+from ryusa.casefile.rows import ExplainRow, count, number, word
+from ryusa.errors import CaseError, ParseError
+from ryusa.formats.clump import read_clump
+from ryusa.laws.families import ContactTiming
+from ryusa.model.clump import SHAPES, Clump, shape
+from ryusa.spelling import nearest_word
+
+if TYPE_CHECKING:
+    from ryusa.casefile.case import Case
+    from ryusa.casefile.derive import Derived
+
+KEY = "grains.shape"
+SPHERE = "sphere"
+BUILDERS = ("packing", "flume", "box", "fill", "table")  # those that leave room for clumps
+WHOLE = 1.0e-9  # shares that add up to 1 within this are all
+
+
+class Shape(NamedTuple):
+    """One shape of a case, with the diameter 1 m of the sphere of its volume."""
+
+    name: str
+    share: float  # of the free grains, by number
+    clump: Clump
+
+
+def shapes_of(case: "Case") -> tuple[Shape, ...]:
+    """Clumps of a case; the rest of the grains are spheres.
+
+    Raises
+    ------
+    CaseError : an unknown name, a file that cannot be read, or spheres that make no clump.
+    """
+    given = case.grains.shape
+    shares = {given: 1.0} if isinstance(given, str) else given
+    found: list[Shape] = []
+    for name, share in shares.items():
+        key = KEY if isinstance(given, str) else f"{KEY}.{name}"
+        clump = _clump_of(case, key, name)
+        if name != SPHERE:
+            found.append(Shape(name, share, clump))
+    return tuple(found)
+
+
+def clump_files(case: "Case") -> list[str]:
+    """Names of the files that `grains.shape` gives."""
+    given = case.grains.shape
+    return [name for name in ([given] if isinstance(given, str) else given) if _is_file(name)]
+
+
+def has_clumps(case: "Case") -> bool:
+    """Whether some grains are clumps; their file need not be there."""
+    given = case.grains.shape
+    return any(name != SPHERE for name in ([given] if isinstance(given, str) else given))
+
+
+def extent(case: "Case") -> float:
+    """Largest sphere about the centre of a grain that holds it, over the diameter of its volume [-]."""
+    return max((one.clump.extent for one in shapes_of(case)), default=1.0)
+
+
+def least_mass(case: "Case") -> float:
+    """Least effective mass of a push on a grain over its mass: off the centre it also turns a clump [-]."""
+    return min((one.clump.least_mass for one in shapes_of(case)), default=1.0)
+
+
+def spheres_per_grain(case: "Case") -> float:
+    """Mean number of spheres of a grain."""
+    return 1.0 + sum(one.share * (len(one.clump.d) - 1) for one in shapes_of(case))
+
+
+def check_shape(case: "Case") -> Iterator[CaseError]:
+    """Find shapes that are unknown, and cases that cannot have clumps."""
+    from ryusa.casefile.contact.values import timing  # it asks this room whether there are clumps
+
+    given = case.grains.shape
+    if not has_clumps(case) and isinstance(given, str):
+        return
+    try:
+        shapes_of(case)
+    except CaseError as error:
+        yield error
+        return
+    if not isinstance(given, str) and (total := sum(given.values())) > 1.0 + WHOLE:
+        yield CaseError(KEY, None, f"the shares add up to {total:g}: at most 1, the rest are spheres")
+    if not has_clumps(case):
+        return
+    if timing(case) is not ContactTiming.AT_STEPS:
+        allowed = "must be 'at steps' (or left out) with clumps: within a step, contacts would be those of "
+        yield CaseError("contact.timing", case.contact.timing, allowed + "spheres (design/0022)")
+    if case.motion.plane:
+        yield CaseError(KEY, None, "needs motion in space: motion.plane = false")
+    if case.motion.rotation != "free":
+        yield CaseError(KEY, None, "needs motion.rotation = 'free'")
+    if case.water is not None:
+        yield CaseError(KEY, None, "needs a dry case: water does not yet act on clumps (design/0022)")
+    if case.feeds or case.exits:
+        yield CaseError(KEY, None, "excludes [[feeds]] and [[exits]]: clumps do not yet enter or leave")
+    if case.stop.precision is not None:
+        yield CaseError("stop.precision", None, "cannot end a run with clumps; give stop.time")
+    if case.build.kind not in BUILDERS:
+        yield CaseError(KEY, None, f"needs builder {', '.join(BUILDERS)}; this one is '{case.build.kind}'")
+    if "shape_volume" in case.grains.model_fields_set:
+        yield CaseError("grains.shape_volume", case.grains.shape_volume, f"excludes {KEY}")
+
+
+def shape_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
+    """Clumps of a case: their form, and what they change."""
+    shapes, rows = shapes_of(case), list[ExplainRow]()
+    if not shapes:
+        return rows
+    for one in shapes:
+        a, b, c = one.clump.lengths
+        flat, thick = one.clump.zingg
+        form = (
+            f"{len(one.clump.d)} spheres; b/a = {flat:.3g}, c/b = {thick:.3g} ({one.clump.zingg_class}); "
+            f"lengths of equal inertia {a:.3g}, {b:.3g} and {c:.3g} times the diameter"
+        )
+        rows.append(word("grains", f"shape '{one.name}'", f"{100.0 * one.share:.4g} %", form))
+    spheres = round(derived.n_grain * spheres_per_grain(case))
+    most = "free grains with the spheres of clumps counted one by one: what a step costs"
+    rows.append(count("grains", "spheres to compute", spheres, most))
+    lever = "of its mass, of the sphere farthest out: a push off the centre also turns a clump; sets the step"
+    rows.append(number("grains", "least effective mass of a clump", least_mass(case), "-", lever))
+    return rows
+
+
+def _is_file(name: str) -> bool:
+    return name.lower().endswith(".csv")
+
+
+def _clump_of(case: "Case", key: str, name: str) -> Clump:
+    """A shape of the library or of a file, of the volume of a sphere of 1 m."""
+    if not _is_file(name):
+        if name not in SHAPES:
+            known = f"must be {', '.join(SHAPES)}, or a CSV file of spheres in the folder of the case"
+            raise CaseError(key, name, known, nearest_word(name, tuple(SHAPES)))
+        return _of_library(name)
+    path = inside(case, key, name)
+    if not path.is_file():
+        raise CaseError(key, name, f"no such file in the folder of the case, {folder_of(case)}")
+    try:
+        stamp = path.stat()
+        return _of_file(path, name, stamp.st_mtime_ns, stamp.st_size)
+    except OSError as error:
+        raise CaseError(key, name, f"cannot be read: {error.strerror or error}") from None
+    except ParseError as error:
+        raise CaseError(key, None, str(error)) from error
+
+
+@lru_cache(maxsize=16)
+def _of_library(name: str) -> Clump:
+    return shape(name)
+
+
+@lru_cache(maxsize=16)
+def _of_file(path: Path, name: str, _changed: int, _size: int) -> Clump:
+    clump = read_clump(path, name)
+    return clump.scaled(1.0 / clump.d_volume)
