@@ -21,7 +21,7 @@ from ryusa.casefile.films import step_limits
 from ryusa.casefile.grains import mass
 from ryusa.casefile.materials import lightest_of, meeting
 from ryusa.casefile.motion import slope
-from ryusa.casefile.shape import least_mass
+from ryusa.casefile.shape import least_mass, spheres_per_grain
 from ryusa.casefile.time import MOST_STEPS, STEPS_PER_FILM, TANGENTIAL_SHARE, steps_by_default
 from ryusa.casefile.water.values import u_star_given
 from ryusa.laws import drag, water
@@ -50,6 +50,7 @@ class Derived:
     fixed: PairValues  # mean grain on a fixed one
     free: PairValues  # two mean grains
     n_grain: int
+    n_sphere: int  # free grains with the spheres of clumps counted one by one
     n_fixed: int
     meet: bool  # can two free grains meet
     shortest: float  # shortest contact that can occur [s]
@@ -117,6 +118,7 @@ def derive(case: Case) -> Derived:
         fixed=pair_values(case, d, False),
         free=pair_values(case, d, True),
         n_grain=n_grain,
+        n_sphere=round(n_grain * spheres_per_grain(case)),
         n_fixed=n_fixed,
         meet=meet,
         shortest=shortest,

@@ -80,13 +80,13 @@ def bytes_per_grain(case: Case) -> int:
 
 def disk_needed(case: Case, derived: Derived) -> int:
     """Bytes that the frames of a run will take; contacts recorded come on top."""
-    frame = derived.n_grain * bytes_per_grain(case) + BYTES_PER_FRAME
+    frame = derived.n_sphere * bytes_per_grain(case) + BYTES_PER_FRAME
     return frames_expected(case) * frame + BYTES_PER_RUN
 
 
 def events_expected(case: Case, derived: Derived) -> int:
     """Contacts recorded, by a rule of thumb."""
-    kept, n = events_of(case), derived.n_grain
+    kept, n = events_of(case), derived.n_sphere
     if kept == "tracked":
         n = len(set(case.record.tracked))
     rate = EVENTS_ALONE
@@ -152,7 +152,7 @@ def held_back(case: Case, derived: Derived) -> float:
     """Bytes of frames and contacts that wait to be written, one frame at least."""
     seconds = seconds_needed(case, derived)
     interval = min(max(HELD_SHORTEST, HELD_SHARE * seconds), HELD_LONGEST)
-    frame = derived.n_grain * bytes_per_grain(case)
+    frame = derived.n_sphere * bytes_per_grain(case)
     whole = frames_expected(case) * frame + disk_for_events(case, derived)
     return max(frame, min(whole * min(FASTER * interval / seconds, 1.0), HELD_MOST))
 
@@ -167,7 +167,7 @@ def memory_needed(case: Case, derived: Derived) -> int:
     """
     column = case.water is not None and case.water.profile == "column"
     contacts, held = contacts_expected(case, derived), held_back(case, derived)
-    running, snapshot = memory_of_grains(derived.n_grain, derived.n_fixed, contacts, column)
+    running, snapshot = memory_of_grains(derived.n_sphere, derived.n_fixed, contacts, column)
     return round(MEMORY_PER_RUN + running + held + max(WRITING * held, snapshot))
 
 
@@ -176,7 +176,7 @@ def seconds_needed(case: Case, derived: Derived) -> float:
     per_grain = SECONDS_PER_GRAIN if case.motion.plane else SECONDS_PER_GRAIN_3D
     if case.water is not None:
         per_grain += SECONDS_PER_GRAIN_IN_WATER
-    return SECONDS_PER_RUN + steps_expected(case, derived) * (SECONDS_PER_STEP + per_grain * derived.n_grain)
+    return SECONDS_PER_RUN + steps_expected(case, derived) * (SECONDS_PER_STEP + per_grain * derived.n_sphere)
 
 
 def cost_rows(case: Case, derived: Derived) -> list[ExplainRow]:

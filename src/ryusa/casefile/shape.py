@@ -124,9 +124,8 @@ def shape_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
             f"lengths of equal inertia {a:.3g}, {b:.3g} and {c:.3g} times the diameter"
         )
         rows.append(word("grains", f"shape '{one.name}'", f"{100.0 * one.share:.4g} %", form))
-    spheres = round(derived.n_grain * spheres_per_grain(case))
     most = "free grains with the spheres of clumps counted one by one: what a step costs"
-    rows.append(count("grains", "spheres to compute", spheres, most))
+    rows.append(count("grains", "spheres to compute", derived.n_sphere, most))
     lever = "of its mass, of the sphere farthest out: a push off the centre also turns a clump; sets the step"
     rows.append(number("grains", "least effective mass of a clump", least_mass(case), "-", lever))
     return rows
