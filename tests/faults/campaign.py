@@ -51,6 +51,10 @@ def differences(one: Path, other: Path) -> list[str]:
         found.append(f"contacts, {len(a.contacts)} and {len(b.contacts)}")
     if a.passages.tobytes() != b.passages.tobytes():
         found.append(f"passages, {len(a.passages)} and {len(b.passages)}")
+    if a.bodies is not None and b.bodies is not None:
+        for name in ("x", "v", "q", "momentum", "image"):
+            left, right = (np.asarray(getattr(one.bodies, name)) for one in (a, b))
+            found += [f"bodies.{name}"] if left.tobytes() != right.tobytes() else []
     if a.water is not None and b.water is not None:
         pairs = zip(vars(a.water).items(), vars(b.water).values(), strict=True)
         found += [f"water.{name}" for (name, left), right in pairs if left.tobytes() != right.tobytes()]

@@ -371,7 +371,40 @@ frames = "2 ms"
 events = "all"
 """
 
+CLUMPS = """
+title = "Clumps and spheres fall on a bed, periodic, which is tilted on the way"
+[grains]
+diameter = "0.2 cm"
+density = "2650 kg/m3"
+spread = 0.2
+shape = { rod = 0.4, tetrahedron = 0.4 }
+[contact]
+stiffness = "100 N/cm"
+restitution = 0.5
+friction_angle = "30 deg"
+[motion]
+rotation = "free"
+plane = false
+[build]
+kind = "packing"
+columns = 5
+rows = 4
+layers = 6
+speed = "20 cm/s"
+[time]
+steps_per_contact = 20
+[[timeline]]
+at = "0.03 s"
+slope_angle = "20 deg"
+[stop]
+time = "0.08 s"
+[record]
+frames = "2 ms"
+events = "all"
+"""
+
 KINDS = {
     "dry-2d": DRY_2D, "dry-3d": DRY_3D, "saltation": SALTATION, "two-way": TWO_WAY, "rolling": ROLLING,
     "walls": WALLS, "feeds": FEEDS, "elastic": ELASTIC, "servo": SERVO,
+    "clumps": CLUMPS,
 }  # fmt: skip

@@ -5,13 +5,13 @@ import numpy as np
 from ryusa.build.placement import Placement, at_rest
 from ryusa.build.sizes import draw
 from ryusa.casefile.builders.schema import FillSection
-from ryusa.casefile.builders.values import fill_cells
+from ryusa.casefile.builders.values import fill_cells, plate_of
 from ryusa.casefile.case import Case
 from ryusa.casefile.derive import Derived
 
 
 def fill(case: Case, derived: Derived) -> Placement:
-    """Lattice in the middle of the box, filled from below; open on all sides."""
+    """Lattice in the middle of the box, filled from below; open on all sides. Group `floor`, a plate."""
     keys = case.build
     assert isinstance(keys, FillSection)
     rng = np.random.default_rng(case.seed)
@@ -27,5 +27,9 @@ def fill(case: Case, derived: Derived) -> Placement:
     x = x + rng.uniform(-free, free, x.shape)  # neighbours stay `room` apart on each axis
     if case.motion.plane:
         x[:, 1] = 0.0
-    n = len(x)
-    return Placement(d=draw(case, n, rng), x=x, v=at_rest(n), omega=at_rest(n))
+    n, plate = len(x), plate_of(case, keys.plate)
+    return Placement(
+        d=draw(case, n, rng), x=x, v=at_rest(n), omega=at_rest(n),
+        d_fixed=np.full(len(plate), derived.d), x_fixed=plate,
+        fixed_groups=(("floor", 0, len(plate)),) if len(plate) else (),
+    )  # fmt: skip

@@ -291,9 +291,7 @@ def shortest_collision_time(scene: Scene, state: State) -> float:
     if scene.n_grain == 0:
         return math.inf
     m, d, free = scene.m + scene.m_added, scene.d, _free_pairs(scene, state)
-    if (
-        bodies := scene.bodies
-    ) is not None:  # its largest sphere, where it gives way most
+    if (bodies := scene.bodies) is not None:  # its largest sphere, where it gives way most
         alone = bodies.of_grain(scene.n_grain) < 0
         of_bodies = np.maximum.reduceat(d[bodies.members], np.cumsum(bodies.count) - bodies.count)
         m, d = np.concatenate([m[alone], bodies.least_mass]), np.concatenate([d[alone], of_bodies])

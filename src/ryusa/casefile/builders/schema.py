@@ -200,6 +200,8 @@ class FillSection(Section):
     """Upper corner of the box."""
     most: Annotated[Count, Field(ge=1, le=20_000_000)] | None = None
     """Most grains, the lowest ones; as many as the box holds when not given."""
+    plate: PositiveLength | None = None
+    """Radius of a round plate of touching fixed grains of mean diameter, as of builder "empty"."""
     gap: Annotated[Number, Field(ge=0, le=2)] = 0.05
     """Gap between neighbours on the lattice, in largest diameters."""
     jitter: Annotated[Number, Field(ge=0, le=1)] = 0.9

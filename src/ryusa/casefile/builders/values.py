@@ -93,7 +93,7 @@ def built_counts(case: "Case") -> tuple[int, int, bool]:
         return build.columns * build.rows * build.layers, n_fixed, True
     if isinstance(build, FillSection):
         held = math.prod(fill_cells(case))
-        return min(held, build.most or held), 0, True
+        return min(held, build.most or held), len(plate_of(case, build.plate)), True
     bed = bed_counts(case)
     if isinstance(build, FlumeSection):
         return flume_count(case), bed[0] * bed[1], True

@@ -1,0 +1,168 @@
+"""grains.shape of the case file: what it becomes, and what bad ones get."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ryusa.build import build
+from ryusa.casefile.derive import derive
+from ryusa.casefile.explain import explain
+from ryusa.casefile.read import read, read_text
+from ryusa.engine.cpu.engine import CpuEngine
+from ryusa.errors import CaseError
+from ryusa.laws.families import ContactTiming
+from ryusa.model.clump import shape
+from ryusa.running.case_files import files_beside
+
+PLAIN = """
+[grains]
+diameter = "2 mm"
+density = "2650 kg/m3"
+spread = 0.2
+[contact]
+stiffness = "1e4 N/m"
+friction = 0.5
+restitution = 0.7
+[motion]
+plane = false
+rotation = "free"
+[build]
+kind = "box"
+columns = 6
+rows = 5
+layers = 6
+floor = "plane"
+[stop]
+time = "0.01 s"
+[record]
+frames = "1 ms"
+"""
+SPHERES = "x [mm],y [mm],z [mm],d [mm]\n0,0,0,1\n0.6,0,0,0.8\n"
+
+
+def case_of(given, text=PLAIN, **more):
+    return read_text(text.replace("spread = 0.2", f"spread = 0.2\nshape = {given}"), more)
+
+
+def faults(given, **more):
+    with pytest.raises(CaseError) as found:
+        case_of(given, **more)
+    return str(found.value)
+
+
+@pytest.mark.parametrize("kind", ["box", "packing", "fill", "flume"])
+def test_builders_leave_room_for_clumps_however_they_are_turned(kind):
+    boxes = {
+        "box": "", "packing": "", "fill": 'low = ["0 cm", "0 cm", "0 cm"]\nhigh = ["2 cm", "2 cm", "2 cm"]',
+        "flume": 'length = "3 cm"\nwidth = "2 cm"\nlayers = 3',
+    }  # fmt: skip
+    text = PLAIN
+    if kind != "box":
+        text = text.replace('kind = "box"', f'kind = "{kind}"\n{boxes[kind]}').replace(
+            'floor = "plane"\n', ""
+        )
+    if kind in {"fill", "flume"}:
+        for key in ("columns = 6\n", "rows = 5\n", "layers = 6\n"):
+            text = text.replace(key, "")
+    made = build(case_of('"rod"', text))
+    bodies = made.scene.bodies
+    assert bodies is not None
+    assert bodies.n * 3 == made.scene.n_grain
+    assert CpuEngine().refuses(made.scene) == ()
+    engine = CpuEngine()
+    engine.load(made.scene, made.state)
+    engine.advance(1).raise_if_any()
+    assert engine.tally().n_contact == 0  # none overlaps another, the bed or a wall
+
+
+def test_shares_are_by_number_and_the_rest_are_spheres():
+    made = build(case_of("{ rod = 0.5, tetrahedron = 0.3 }"))
+    bodies = made.scene.bodies
+    assert bodies.names == ("rod", "tetrahedron")
+    assert np.bincount(bodies.form).tolist() == [90, 54]
+    assert made.scene.n_grain == 90 * 3 + 54 * 4 + 36
+    d, m = made.scene.whole_grains()
+    assert len(d) == 180
+    assert m == pytest.approx(2650.0 * np.pi / 6.0 * d**3)
+    assert 0.0016 <= d.min() < d.max() <= 0.0024
+    again = build(case_of("{ rod = 0.5, tetrahedron = 0.3 }"))
+    assert np.array_equal(again.state.x, made.state.x)
+    other = build(case_of("{ rod = 0.5, tetrahedron = 0.3 }", seed=2))
+    assert not np.array_equal(other.state.bodies.q, made.state.bodies.q)
+
+
+def test_the_step_follows_the_least_effective_mass_and_contacts_are_at_steps():
+    case, spheres = case_of('"rod"'), case_of('"sphere"', **{"contact.timing": "at steps"})
+    assert build(case).scene.contact.timing is ContactTiming.AT_STEPS
+    lighter = shape("rod").least_mass
+    assert derive(case).shortest == pytest.approx(derive(spheres).shortest * lighter**0.5)
+    assert derive(case).dt == pytest.approx(derive(spheres).dt * lighter**0.5)
+    rows = {row.name: row for row in explain(case)}
+    assert rows["shape 'rod'"].value == "100 %"
+    assert "3 spheres" in rows["shape 'rod'"].origin
+    assert rows["spheres to compute"].value == 540
+    assert rows["least effective mass of a clump"].value == pytest.approx(lighter)
+    elastic = PLAIN.replace(
+        'stiffness = "1e4 N/m"',
+        'law = "Hertz-Mindlin"\nyoungs_modulus = "1e8 Pa"\nexpected_speed = "0.2 m/s"',
+    )
+    assert derive(case_of('"rod"', elastic)).shortest == pytest.approx(
+        derive(case_of('"sphere"', elastic)).shortest * lighter**0.4
+    )
+    assert CpuEngine().refuses(build(case_of('"rod"', elastic)).scene) == ()
+
+
+def test_a_file_of_spheres_is_read_and_kept_beside_the_run(tmp_path: Path):
+    (tmp_path / "flint.csv").write_text(SPHERES)
+    path = tmp_path / "case.toml"
+    path.write_text(PLAIN.replace("spread = 0.2", 'shape = { "flint.csv" = 0.5 }'))
+    case = read(path)
+    made = build(case)
+    assert made.scene.bodies.count.tolist() == [2] * 90
+    assert made.scene.bodies.d == pytest.approx(np.full(90, 0.002))
+    assert files_beside(case) == {"flint.csv": tmp_path / "flint.csv"}
+    (tmp_path / "flint.csv").write_text(SPHERES.replace("0.6,0", "6,0"))
+    with pytest.raises(CaseError, match=r"flint\.csv.*not joined to sphere 0"):
+        read(path)
+
+
+BAD = [
+    ('"rodd"', "Did you mean 'rod'"),
+    ('"none.csv"', "no such file in the folder of the case"),
+    ('"../flint.csv"', "inside the folder of the case"),
+    ("{ rod = 0.8, disc = 0.4 }", "the shares add up to 1.2: at most 1"),
+    ("{ rod = 0.0 }", "must be greater than 0"),
+    ("{ rodd = 0.5 }", "Did you mean 'rod'"),
+    ("3", "grains.shape"),
+]
+
+
+@pytest.mark.parametrize(("given", "part"), BAD)
+def test_a_bad_shape_gets_one_message(given, part):
+    assert part in faults(given)
+
+
+@pytest.mark.parametrize(
+    ("more", "part"),
+    [
+        ({"contact.timing": "exact"}, "must be 'at steps' (or left out) with clumps"),
+        ({"motion.plane": True, "build.rows": 1}, "needs motion in space"),
+        ({"motion.rotation": "locked"}, "needs motion.rotation = 'free'"),
+        ({"grains.shape_volume": 0.5}, "excludes grains.shape"),
+    ],
+)
+def test_what_excludes_clumps_is_said_with_its_key(more, part):
+    assert part in faults('"rod"', **more)
+
+
+def test_water_and_feeds_exclude_clumps():
+    wet = PLAIN + '[water]\nprofile = "uniform"\nspeed = "0.1 m/s"\ndrag = "constant"\n'
+    with pytest.raises(CaseError, match="needs a dry case"):
+        case_of('"rod"', wet)
+    fed = PLAIN + (
+        '[[feeds]]\nname = "tap"\nlow = ["0 cm", "0 cm", "3 cm"]\nhigh = ["1 cm", "1 cm", "4 cm"]\n'
+        'rate = "10 grains/s"\n'
+    )
+    with pytest.raises(CaseError, match="clumps do not yet enter or leave"):
+        case_of('"rod"', fed)
