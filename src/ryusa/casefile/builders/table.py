@@ -108,6 +108,8 @@ def _frame(path: Path, name: str, at: float | None, _changed: int) -> GrainTable
         run = Results.open(path)
         if not len(run.frames):
             raise ResultsError(f"{path}: has no frame yet")
+        if run.scene.bodies is not None:
+            raise ResultsError(f"{path}: holds clumps, and a frame gives single spheres only")
         return table_of_frame(run, len(run.frames) - 1 if at is None else nearest_frame(run, at))
     except ResultsError as error:
         raise CaseError("build.folder", name, str(error)) from None
