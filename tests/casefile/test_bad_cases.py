@@ -70,6 +70,8 @@ BAD = [
     ("domain.period_x", "'0.1 cm'", "at least 3 largest diameters"),
     ("rolling.model", "'constant'", "needs motion.rotation"),
     ("rolling.coefficient", "0.1", "has no effect"),
+    ("rolling.twisting_coefficient", "0.1", "needs motion"),
+    ("rolling.twisting_coefficient", "-0.1", "must be at least 0"),
     ("water", "{ profile = 'log rough' }", "needs tau_star or u_star"),
     ("water", "{ profile = 'still', u_star = '1 m/s' }", "has no effect"),
     ("water", "{ profile = 'uniform' }", "needs it"),

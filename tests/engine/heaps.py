@@ -54,6 +54,9 @@ KINDS = {
         "water": FLOW, "rolling": RollingLaw(Rolling.EPSD, Arm.REDUCED_RADIUS, 0.1), "events": EventRule.ALL,
     },
     "rolling as printed": {"rolling": RollingLaw(Rolling.PRINTED, Arm.CONTACT_WIDTH, 0.3)},
+    "twisting, rolling spring": {
+        "rolling": RollingLaw(Rolling.EPSD, Arm.REDUCED_RADIUS, 0.1, twisting=0.05),
+    },
     "rolling, constant, plane": {
         "rolling": RollingLaw(Rolling.CONSTANT, Arm.REDUCED_RADIUS, 0.1), "plane_case": True,
     },

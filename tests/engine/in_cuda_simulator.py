@@ -40,7 +40,9 @@ def test_both_sides_of_every_pair_hold_the_same_bits():
     assert sum(bool(sides[0][0]) for sides in found.values()) > 20
 
 
-@pytest.mark.parametrize("kind", ["3D", "plane, records", "column", "exact timing, records"])
+@pytest.mark.parametrize(
+    "kind", ["3D", "plane, records", "column", "exact timing, records", "twisting, rolling spring"]
+)
 def test_the_count_of_bytes_is_that_of_the_arrays_on_the_device(kind):
     fixed, first = heap(**KINDS[kind])
     engine = loaded(CudaEngine(), (fixed, first))

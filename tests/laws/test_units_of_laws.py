@@ -225,6 +225,8 @@ UNITS = {
     "rolling.rolling_printed": "N, m -> N m",
     "rolling.rolling_limited": "N m, N m -> N m",
     "rolling.rolling_constant": "N m, rad/s, kg m2, s -> N m",
+    "rolling.twisting_cap": "N, -, m -> N m",
+    "rolling.torque_of_slipping_disc": "N, -, m -> N m",
     "rolling.inertia_spin": "kg m2, kg m2 -> kg m2",
     "rolling.inertia_rolling": "kg, m, kg m2, kg, m, kg m2 -> kg m2",
     "rolling.epsd_stiffness": "N/m, m, - -> N m",
@@ -239,7 +241,8 @@ UNITS = {
         "-, -, -, -, N m s, N m s, N m s, 1/(kg m2), s -> -, -, -, -, N m s, N m s"
     ),
     "rigid_body.rotor_step": (
-        "-, -, -, -, N m s, N m s, N m s, 1/(kg m2), 1/(kg m2), 1/(kg m2), s -> -, -, -, -"
+        "-, -, -, -, N m s, N m s, N m s, 1/(kg m2), 1/(kg m2), 1/(kg m2), s"
+        " -> -, -, -, -, N m s, N m s, N m s"
     ),
     "rigid_body.spin": (
         "-, -, -, -, N m s, N m s, N m s, 1/(kg m2), 1/(kg m2), 1/(kg m2) -> rad/s, rad/s, rad/s"

@@ -195,6 +195,7 @@ def rolling_of(case: Case) -> RollingLaw:
         coefficient=rolling.coefficient,
         stiffness_factor=rolling.stiffness_factor,
         zeta_r=rolling.damping_ratio,
+        twisting=rolling.twisting_coefficient,
     )
 
 

@@ -142,7 +142,11 @@ def checkpoint_of_grains(case: Case, n_grain: int, contacts: float) -> float:
     each = CHECKPOINT_PER_GRAIN + (CHECKPOINT_IN_COLUMN if column else 0)
     contact = CHECKPOINT_PER_CONTACT
     contact += BYTES_PER_EVENT if events_of(case) != "none" else 0
-    contact += CHECKPOINT_WITH_ROLLING if case.rolling.model != "none" else 0
+    contact += (
+        CHECKPOINT_WITH_ROLLING
+        if case.rolling.model != "none" or case.rolling.twisting_coefficient > 0.0
+        else 0
+    )
     contact += CHECKPOINT_WITH_TIMING if timing(case) is ContactTiming.EXACT else 0
     contact += CHECKPOINT_WITH_HERTZ if is_hertz(case) else 0
     return n_grain * (each + contacts * contact)

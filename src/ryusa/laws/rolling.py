@@ -250,3 +250,47 @@ def epsd_torque(spring: float, spin: float, eta_r: float, scale: float) -> float
     if scale < 1.0:
         return spring
     return spring - eta_r * spin
+
+
+@law
+def twisting_cap(f_n: float, coefficient: float, radius: float) -> float:
+    """Largest torque about the normal that a contact transmits [N m].
+
+    Parameters
+    ----------
+    f_n : normal force [N], >= 0.
+    coefficient : torque over normal force and reduced radius [-].
+    radius : reduced radius of the two grains [m].
+
+    Notes
+    -----
+    By definition of the coefficient. What a contact disc can transmit is `torque_of_slipping_disc`.
+
+    Examples
+    --------
+    >>> twisting_cap(2.0, 0.25, 0.5)
+    0.25
+    """
+    return coefficient * radius * f_n
+
+
+@law
+def torque_of_slipping_disc(f_n: float, mu: float, a: float) -> float:
+    """Torque of a contact disc that slips everywhere about its axis, under the pressure of Hertz [N m].
+
+    Parameters
+    ----------
+    f_n : normal force [N].
+    mu : friction coefficient [-].
+    a : radius of the disc [m].
+
+    Notes
+    -----
+    The integral of mu p r over the disc with p = 3 N/(2 pi a^2) sqrt(1 - r^2/a^2): 3 pi/16 mu a N.
+
+    Examples
+    --------
+    >>> round(torque_of_slipping_disc(1.0, 1.0, 1.0), 6)
+    0.589049
+    """
+    return 3.0 * math.pi / 16.0 * mu * a * f_n

@@ -96,6 +96,7 @@ class RollingLaw:
     coefficient: float = 0.0  # f' (contact width) or mu_r (reduced radius) [-]
     stiffness_factor: float = 2.25  # EPSD: k_r = factor * k_n * f**2, f = mu_r R* [-]
     zeta_r: float = 0.3  # EPSD: damping ratio of the rolling spring [-]
+    twisting: float = 0.0  # largest torque about the normal over f_n R*, in space [-]; 0: none
 
 
 @dataclass(frozen=True)

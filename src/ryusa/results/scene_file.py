@@ -60,6 +60,9 @@ def _scalars(scene: Scene) -> dict[str, Any]:
             found[f.name] = asdict(value) if law and value is not None else value
     if _MATERIALS in found:  # an array of its own
         del found[_MATERIALS]["of"]
+    for one in (found["rolling"], *found.get(_MATERIALS, {}).get("rolling", ())):
+        if not one["twisting"]:  # as before there was any: the digest stays
+            del one["twisting"]
     if scene.contact.force == ContactForce.LINEAR:  # as before there were others: the digest stays
         found["contact"] = {key: one for key, one in found["contact"].items() if key not in ONLY_HERTZ}
     walls: Walls | None = found.pop("walls")

@@ -70,6 +70,17 @@ def check_rolling(case: "Case") -> Iterator[CaseError]:
             yield CaseError("rolling.model", rolling.model, "needs motion.rotation = 'free'")
         if rolling.coefficient == 0.0:
             yield CaseError("rolling.coefficient", None, f"missing or zero; model '{rolling.model}' needs it")
+    if rolling.twisting_coefficient > 0.0:
+        key, value = "rolling.twisting_coefficient", rolling.twisting_coefficient
+        if not may_rotate(case):
+            yield CaseError(key, value, "needs motion.rotation = 'free'")
+        if case.motion.plane:
+            yield CaseError(key, value, "needs motion in space: motion.plane = false")
+        if "both alike" in Rolling.of(rolling.model).marks:
+            allowed = (
+                "needs rolling.model none, constant or spring-dashpot-slider, which oppose relative spin"
+            )
+            yield CaseError(key, value, allowed)
     arm = rolling.arm and Arm.of(rolling.arm)
     if arm and "spring" in Rolling.of(rolling.model).marks and "varies" in arm.marks:
         yield CaseError(

@@ -8,6 +8,7 @@ from ryusa.casefile.contact.speed import expected_speed
 from ryusa.casefile.contact.values import PairValues, hertz_law, is_hertz, largest_overlap, parting
 from ryusa.casefile.rows import ExplainRow, Flag, number, word
 from ryusa.laws import collision, hertz
+from ryusa.laws.rolling import torque_of_slipping_disc
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
@@ -42,6 +43,15 @@ def _friction_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     rows = [number("contact", "friction mu", derived.mu, "-", f"tan(phi), phi = {angle:.3g} deg")]
     if case.contact.cohesion:
         rows.append(number("contact", "cohesion c", case.contact.cohesion, "N", "contact.cohesion, Eq. (4)"))
+    if case.rolling.twisting_coefficient > 0.0:
+        speed, radius = expected_speed(case)[0], 0.25 * derived.d
+        width = math.sqrt(radius * largest_overlap(case, speed))  # of the contact of two spheres
+        slipping = torque_of_slipping_disc(1.0, derived.mu, width) / radius
+        origin = (
+            f"rolling.twisting_coefficient; a disc that slips all over has {slipping:.3g} at the overlap of "
+            f"an impact at {speed:.3g} m/s, 3 pi/16 mu a/R*"
+        )
+        rows.append(number("contact", "twisting coefficient", case.rolling.twisting_coefficient, "-", origin))
     return rows
 
 

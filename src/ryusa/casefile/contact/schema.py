@@ -132,3 +132,8 @@ class RollingSection(Section):
     """Rolling stiffness over k_n times lever arm squared; only for spring-dashpot-slider."""
     damping_ratio: Annotated[Number, Field(ge=0)] = 0.3
     """Damping ratio of the rolling spring; only for spring-dashpot-slider."""
+    twisting_coefficient: Annotated[Number, Field(ge=0)] = 0.0
+    """Twisting friction, in space: the largest torque about the normal of a contact over normal force and
+    reduced radius R*; it opposes the relative spin about the normal, which it cannot reverse in a step. A
+    contact disc of radius a that slips everywhere has 3 pi/16 mu a/R*. With no rolling friction, constant or
+    spring-dashpot-slider."""

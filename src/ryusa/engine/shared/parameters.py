@@ -50,7 +50,8 @@ E_LEAST = 36
 FADING = 37  # a contact goes on through a step where so much of its force outweighs the fall of its spring
 E_EFFECTIVE = 38  # of elastic spheres [Pa]; else 0
 MINDLIN = 39  # their tangential stiffness over K sqrt(overlap) [-]
-N_PARAMETER = MINDLIN + 1
+TWISTING = 40  # largest torque about the normal over f_n R* [-]
+N_PARAMETER = TWISTING + 1
 
 # Largest displacement of a grain in one step, over the smallest diameter: two grains that approach each other
 # by twice that cannot pass through each other unseen (design/0008).
@@ -126,6 +127,7 @@ def parameters_of(scene: Scene) -> Floats:
         FADING: fading(scene),
         E_EFFECTIVE: 0.0,
         MINDLIN: 0.0,
+        TWISTING: rolling.twisting,
     }
     if law.force == ContactForce.HERTZ_MINDLIN:
         table[E_EFFECTIVE] = effective_modulus(law.youngs_modulus, law.poisson_ratio)

@@ -25,6 +25,13 @@ def refusals(scene: Scene) -> tuple[str, ...]:
         reasons.append(
             "the spring-dashpot-slider needs rolling.arm = 'reduced radius': its stiffness may not change"
         )
+    if scene.rolling.twisting > 0.0:
+        if "both alike" in scene.rolling.model.marks:
+            reasons.append(
+                "twisting friction opposes the relative spin: rolling.model may not act alike on both"
+            )
+        if scene.plane_case or not scene.rotation:
+            reasons.append("twisting friction needs motion in space with rotation")
     if scene.water.rebound != Rebound.DRY and scene.contact.damping == Damping.CONSTANTS:
         reasons.append("an immersed rebound needs a restitution in air: contact.damping gives constants")
     reasons += _refused_of_hertz(scene)

@@ -17,10 +17,12 @@ from ryusa.laws.rolling import (
     epsd_torque,
     inertia_rolling,
     inertia_spin,
+    reduced_radius,
     rolling_constant,
     rolling_limited,
     rolling_printed,
     slider_scale,
+    twisting_cap,
 )
 from ryusa.model.tally import Term
 
@@ -52,7 +54,7 @@ def rolling_friction(
     w_j: Vector,
     account: Any,
 ) -> tuple[float, float, float, float]:
-    """Rolling friction of one contact: torque on grain i [N m] and the energy in its spring [J].
+    """Rolling and twisting friction of one contact: torque on grain i [N m], energy in its spring [J].
 
     `t` is n x F, the direction in which the tangential force turns both grains; Eq. (13), as printed or
     limited, opposes it on each of the two. The other models oppose the relative spin and give the
@@ -108,8 +110,14 @@ def rolling_friction(
             account[B_RELEASED_R] += taken + stored - energy
         elif scale < 1.0:
             account[B_ROLL] += taken + stored - energy
-    else:
+    elif model != NONE:
         q_x = q_y = q_z = math.nan  # `refusals` names such a model before any step
+    if c[P.TWISTING] > 0.0:  # about the normal; with it the account is that of the whole relative spin
+        limit = twisting_cap(f_n, c[P.TWISTING], reduced_radius(r_i, r_j))
+        most = rolling_constant(limit, along, inertia_spin(inertia_i / share_i, inertia_j / share_j), dt)
+        twisting = -math.copysign(most, along)
+        q_x, q_y, q_z = q_x + twisting * n[0], q_y + twisting * n[1], q_z + twisting * n[2]
+        s_x, s_y, s_z = s_x + along * n[0], s_y + along * n[1], s_z + along * n[2]
     account[B_ROLL] -= hdt * (
         s_x * (row[M.DASH_R] + q_x) + s_y * (row[M.DASH_R + 1] + q_y) + s_z * (row[M.DASH_R + 2] + q_z)
     )

@@ -71,12 +71,17 @@ class LawChoice(NamedTuple):
     unloading: int = 0
 
 
+def resists_spin(scene: Scene) -> bool:
+    """Whether contacts have rolling or twisting friction."""
+    return scene.rolling.model != Rolling.NONE or scene.rolling.twisting > 0.0
+
+
 def variant_of(scene: Scene) -> KernelVariant:
     """The kernel this scene needs."""
     return KernelVariant(
         plane_case=int(scene.plane_case),
         rotation=int(scene.rotation),
-        rolling=int(scene.rotation and scene.rolling.model != Rolling.NONE),
+        rolling=int(scene.rotation and resists_spin(scene)),
         events=int(scene.events != EventRule.NONE),
         column=int(scene.water.profile == Profile.COLUMN),
         film=int(scene.water.profile != Profile.NONE and scene.water.film_reach > 0.0),
