@@ -17,7 +17,7 @@ def keys(**others: object) -> BoxSection:
 
 
 def test_fixed_grains_are_counted_whole() -> None:
-    plan = box_plan(keys(walls="grains", run_out="0.3 cm"), d=0.002, d_max=0.002, plane=True)
+    plan = box_plan(keys(walls="grains", run_out="0.3 cm"), d=0.002, room=0.002, plane=True)
     assert (plan.n_wide, plan.n_floor, plan.n_deep) == (5, 5 + 2, 1)  # 4 x 1.1 d and 1.5 d, rounded up
     assert plan.wide == pytest.approx(0.010)
     assert plan.n_back == 5 + 2  # floor and 3 x 1.1 d, rounded up, and two to spare
@@ -26,7 +26,7 @@ def test_fixed_grains_are_counted_whole() -> None:
 
 
 def test_between_planes_the_width_is_that_of_the_lattice() -> None:
-    plan = box_plan(keys(floor="plane"), d=0.002, d_max=0.0024, plane=True)
+    plan = box_plan(keys(floor="plane"), d=0.002, room=0.0024, plane=True)
     assert plan.wide == pytest.approx(4 * 1.1 * 0.0024)
     assert plan.n_fixed == 0
 

@@ -28,7 +28,7 @@ def _steps(l_x, l_y, l_z, i_1, i_2, i_3, dt, n):
         found[k, 0] = rotational_energy(*q, l_x, l_y, l_z, 1.0 / i_1, 1.0 / i_2, 1.0 / i_3)
         found[k, 1:] = rotate_back(l_x, l_y, l_z, *q)
         if k < n:
-            q = rotor_step(*q, l_x, l_y, l_z, 1.0 / i_1, 1.0 / i_2, 1.0 / i_3, dt)
+            q = rotor_step(*q, l_x, l_y, l_z, 1.0 / i_1, 1.0 / i_2, 1.0 / i_3, dt)[:4]
     return found, q
 
 
@@ -65,7 +65,7 @@ def test_a_step_backwards_undoes_a_step():
     q = unit((0.3, -0.2, 0.7, 0.4))
     args = (0.3, -1.2, 0.8, 1.0, 0.5, 1.0 / 3.0)
     there = rigid_body.rotor_step(*q, *args, 0.4)
-    assert rigid_body.rotor_step(*there[:4], *args, -0.4)[:4] == pytest.approx(q, abs=2e-16)
+    assert rigid_body.rotor_step(*there[:4], *args, -0.4)[:4] == pytest.approx(q, abs=1e-15)
 
 
 def _no_squish(q, p, moments, dt):
@@ -91,7 +91,7 @@ def test_the_step_is_that_of_the_published_scheme():
     published, p = np.array(q), 2.0 * rows @ np.array([a, b, c])
     for _ in range(50):
         published, p = _no_squish(published, p, MOMENTS, 0.2)
-        q = rigid_body.rotor_step(*q, *momentum, *(1.0 / one for one in MOMENTS), 0.2)
+        q = rigid_body.rotor_step(*q, *momentum, *(1.0 / one for one in MOMENTS), 0.2)[:4]
     assert q == pytest.approx(published, abs=1e-13)
 
 
@@ -180,7 +180,7 @@ def _heavy_top(q, momentum, over, pull, arm, dt, n):
         found[k, 0] = rotational_energy(*q, l_x, l_y, l_z, *over) + pull * z
         found[k, 1] = l_z
         l_x, l_y = l_x - 0.5 * dt * pull * y, l_y + 0.5 * dt * pull * x
-        q = rotor_step(*q, l_x, l_y, l_z, *over, dt)
+        q = rotor_step(*q, l_x, l_y, l_z, *over, dt)[:4]
         x, y, z = rotate(0.0, 0.0, arm, *q)
         l_x, l_y = l_x - 0.5 * dt * pull * y, l_y + 0.5 * dt * pull * x
     return found

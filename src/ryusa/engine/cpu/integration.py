@@ -76,10 +76,8 @@ def integrate(
     account: Any,
     stats: Any,
 ) -> None:
-    """Gather what other blocks stored, add water and weight, and move grains lo..hi-1 by one step.
-
-    Members of `bodies`, None where there are none, only gather (rigid_bodies.py).
-    """
+    """Gather what other blocks stored, add water and weight, and move grains lo..hi-1 by one step."""
+    # One function: the state of a grain stays in registers. Members of bodies only gather (rigid_bodies.py)
     x, v, w, v_pruned, ids, image = grains.x, grains.v, grains.w, grains.v_pruned, grains.ids, grains.image
     m_bare, m_weight, inertia = grains.m_bare, grains.m_weight, grains.inertia
     per_m, per_inertia = grains.per_m, grains.per_inertia

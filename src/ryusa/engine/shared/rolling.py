@@ -60,6 +60,7 @@ def rolling_friction(
     limited, opposes it on each of the two. The other models oppose the relative spin and give the
     opposite torque to j.
     """
+    # One function: the models share arm, cap, relative spin and account
     r_i, m_i, inertia_i, share_i = body_i
     r_j, m_j, inertia_j, share_j = body_j
     dt, k_n = c[P.DT], c[P.K_N]
@@ -113,9 +114,7 @@ def rolling_friction(
     elif model != NONE:
         q_x = q_y = q_z = math.nan  # `refusals` names such a model before any step
     if c[P.TWISTING] > 0.0:  # about the normal; with it the account is that of the whole relative spin
-        limit = twisting_cap(f_n, c[P.TWISTING], reduced_radius(r_i, r_j))
-        most = rolling_constant(limit, along, inertia_spin(inertia_i / share_i, inertia_j / share_j), dt)
-        twisting = -math.copysign(most, along)
+        twisting = twisting_torque(f_n, along, c[P.TWISTING], body_i, body_j, dt)
         q_x, q_y, q_z = q_x + twisting * n[0], q_y + twisting * n[1], q_z + twisting * n[2]
         s_x, s_y, s_z = s_x + along * n[0], s_y + along * n[1], s_z + along * n[2]
     account[B_ROLL] -= hdt * (
@@ -124,6 +123,16 @@ def rolling_friction(
     row[M.SPRING_R], row[M.SPRING_R + 1], row[M.SPRING_R + 2] = e_x, e_y, e_z
     row[M.DASH_R], row[M.DASH_R + 1], row[M.DASH_R + 2] = q_x, q_y, q_z
     return e_x + q_x, e_y + q_y, e_z + q_z, energy
+
+
+@kernel(fastmath=FAST)
+def twisting_torque(
+    f_n: float, along: float, coefficient: float, body_i: Body, body_j: Body, dt: float
+) -> float:
+    """Torque about the normal [N m] against the relative spin `along` it [rad/s], which it cannot reverse."""
+    inertia = inertia_spin(body_i[2] / body_i[3], body_j[2] / body_j[3])
+    limit = twisting_cap(f_n, coefficient, reduced_radius(body_i[0], body_j[0]))
+    return -math.copysign(rolling_constant(limit, along, inertia, dt), along)
 
 
 @kernel(fastmath=FAST)
