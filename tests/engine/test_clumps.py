@@ -12,6 +12,7 @@ from ryusa.build import scene
 from ryusa.build.clumps import random_orientations, with_clumps
 from ryusa.build.walls import WallMotion, rectangle, with_walls
 from ryusa.engine.cpu.engine import CpuEngine
+from ryusa.engine.shared.energy_account import potential_energy
 from ryusa.errors import CaseError
 from ryusa.laws.families import ContactTiming
 from ryusa.model import Term
@@ -201,6 +202,11 @@ def test_a_part_of_the_grains_may_be_clumps_and_ids_follow():
     assert fixed.m.sum() == pytest.approx(32 * 2650.0 * math.pi / 6.0 * D**3, rel=1e-12)
     d, m = fixed.whole_grains()
     assert len(d) == 32
+    outside = scene(x=[[1.5, 0.2, D]], d=D, period=(1.0, 1.0), **KEYS)
+    there, moved = with_clumps(*outside, [shape("rod")])
+    assert moved.image.tolist() == [[1, 0]] * 3
+    assert moved.bodies.image.tolist() == [[1, 0]]
+    assert potential_energy(there, moved) == pytest.approx(potential_energy(*outside), rel=1e-12)
     assert m == pytest.approx(2650.0 * math.pi / 6.0 * d**3)
     assert bodies.least_mass == pytest.approx(bodies.m * shape("rod").least_mass)
     assert np.array_equal(np.bincount(bodies.of_grain(fixed.n_grain) + 1)[1:], np.full(bodies.n, 3))

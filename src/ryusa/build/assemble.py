@@ -61,22 +61,22 @@ def assemble(placement: Placement, laws: Laws) -> tuple[Scene, State]:
     low, high = placement.box()
     walls = placement.walls
     scene = Scene(
-        d=_read_only(placement.d),
-        m=_read_only(m),
-        m_added=_read_only(m_added),
-        m_weight=_read_only(m_weight),
-        inertia=_read_only(inertia),
-        x_fixed=_read_only(placement.x_fixed.reshape(-1, 3)),
-        d_fixed=_read_only(placement.d_fixed),
-        fixed_active=_read_only(np.ones(len(placement.d_fixed), dtype=np.bool_)),
-        plane_normal=_read_only(
+        d=read_only(placement.d),
+        m=read_only(m),
+        m_added=read_only(m_added),
+        m_weight=read_only(m_weight),
+        inertia=read_only(inertia),
+        x_fixed=read_only(placement.x_fixed.reshape(-1, 3)),
+        d_fixed=read_only(placement.d_fixed),
+        fixed_active=read_only(np.ones(len(placement.d_fixed), dtype=np.bool_)),
+        plane_normal=read_only(
             np.array([unit_normal(wall) for wall in walls], dtype=np.float64).reshape(-1, 3)
         ),
-        plane_point=_read_only(np.array([wall.point for wall in walls], dtype=np.float64).reshape(-1, 3)),
-        plane_active=_read_only(np.ones(len(walls), dtype=np.bool_)),
+        plane_point=read_only(np.array([wall.point for wall in walls], dtype=np.float64).reshape(-1, 3)),
+        plane_active=read_only(np.ones(len(walls), dtype=np.bool_)),
         contact=laws.contact,
         dt=laws.dt,
-        gravity=_read_only(gravity(laws.g, laws.slope)),
+        gravity=read_only(gravity(laws.g, laws.slope)),
         rolling=laws.rolling,
         rotation=laws.rotation,
         water=laws.water,
@@ -89,7 +89,7 @@ def assemble(placement: Placement, laws: Laws) -> tuple[Scene, State]:
         overlap_limit=laws.overlap_limit,
         events=laws.events,
         forces=laws.forces,
-        tracked=_read_only(mask(n, laws.tracked)),
+        tracked=read_only(mask(n, laws.tracked)),
         groups=placement.groups(),
     )
     x = placement.x.astype(np.float64, copy=True)
@@ -103,15 +103,16 @@ def assemble(placement: Placement, laws: Laws) -> tuple[Scene, State]:
     state = State.at_rest(x)
     state = replace(
         state,
-        x=_read_only(state.x),
-        v=_read_only(placement.v),
-        omega=_read_only(placement.omega),
-        image=_read_only(image),
+        x=read_only(state.x),
+        v=read_only(placement.v),
+        omega=read_only(placement.omega),
+        image=read_only(image),
     )
     return scene, state
 
 
-def _read_only(array: np.ndarray) -> np.ndarray:
+def read_only(array: np.ndarray) -> np.ndarray:
+    """A copy that cannot be written to."""
     array = np.ascontiguousarray(array).copy()
     array.flags.writeable = False
     return array

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ryusa.build.assemble import read_only
 from ryusa.casefile.case import Case
 from ryusa.casefile.shape import shapes_of
 from ryusa.errors import CaseError
@@ -94,7 +95,9 @@ def expanded(
         names=tuple(names),
         form=which[made],
     )
+    image = state.image if len(state.image) == n else np.zeros((n, 2), np.int32)
     moved = BodyState.of(bodies, state.x[made], state.v[made], q[made], state.omega[made])
+    moved = replace(moved, image=image[made])
     owner, members = np.repeat(np.arange(n), count), bodies.members
     d = scene.d[owner]
     d[members] = np.concatenate([np.zeros(0), *(form.d for form in scaled)])
@@ -112,17 +115,18 @@ def expanded(
 
     scene = replace(
         scene,
-        d=d,
-        m=scene.m[owner] * share,
-        m_added=scene.m_added[owner] * share,
-        m_weight=scene.m_weight[owner] * share,
-        inertia=inertia_of_each,
-        tracked=scene.tracked[owner] if len(scene.tracked) == n else scene.tracked,
+        d=read_only(d),
+        m=read_only(scene.m[owner] * share),
+        m_added=read_only(scene.m_added[owner] * share),
+        m_weight=read_only(scene.m_weight[owner] * share),
+        inertia=read_only(inertia_of_each),
+        tracked=read_only(scene.tracked[owner]) if len(scene.tracked) == n else scene.tracked,
         groups={name: (new_id(a), new_id(b)) for name, (a, b) in scene.groups.items()},
         materials=_materials(scene.materials, owner, n),
         bodies=bodies,
     )
-    return scene, replace(State.at_rest(x), v=v, omega=omega, t=state.t, bodies=moved)
+    arrays = {"x": x, "v": v, "omega": omega, "image": image[owner]}
+    return scene, replace(state, bodies=moved, **{name: read_only(array) for name, array in arrays.items()})
 
 
 def clumps_of(case: Case, scene: Scene, state: State) -> tuple[Scene, State]:
