@@ -324,6 +324,23 @@ def test_a_mesh_across_a_period_has_no_seam():
     assert len(split.events()) == len(plane.events())
 
 
+@pytest.mark.parametrize("axis", [0, 1])
+def test_a_belt_that_has_moved_by_many_periods_still_carries(axis):
+    """It fills the period exactly; a ball on it ends at 2/7 of its speed, as on an endless belt."""
+    period, m_g = 10 * D, 2650.0 * math.pi / 6 * D**3 * G
+    velocity = [1.0 if k == axis else 0.0 for k in range(3)]
+    wall = rectangle("floor", (0, 0, 0), (period, 0, 0), (0, period, 0))
+    made = walled(
+        [replace(wall, motion=WallMotion(velocity=tuple(velocity)))], x=[[0.4 * D, 0.3 * D, R - m_g / 1e4]],
+        stiffness=1.0e4, friction=0.5, slip=Slip.TOTAL, period=(period, period),
+    )  # fmt: skip
+    engine = run(made, round(0.3 / made[0].dt))  # 15 periods
+    state = engine.state()
+    assert state.x[0, 2] == pytest.approx(R, rel=1e-3)
+    assert state.v[0, axis] == pytest.approx(2.0 / 7.0, rel=2e-3)
+    assert state.v[0, 1 - axis] == pytest.approx(0.0, abs=1e-6)
+
+
 def test_what_walls_cannot_do_is_refused_by_name():
     flat = scene(x=[[0, 0, D]], plane_case=True, **KEYS)[0]
     assert "motion in space" in CpuEngine().refuses(with_walls(flat, [floor()]))[0]

@@ -227,6 +227,13 @@ def append_faces(
     for w in range(len(poses)):
         f_x, f_y, f_z = in_frame(w, NOW, x, y, z, poses)
         n_x, n_y, n_z = dims[w, 0], dims[w, 1], dims[w, 2]
+        # a wall may have moved by any number of periods: from the image nearest to its middle, one either way
+        if images_x > 1:
+            middle = grid_low[w, 0] + 0.5 * n_x * grid_width[w, 0]
+            f_x -= math.floor((f_x - middle) / l_x + 0.5) * l_x
+        if images_y > 1:
+            middle = grid_low[w, 1] + 0.5 * n_y * grid_width[w, 1]
+            f_y -= math.floor((f_y - middle) / l_y + 0.5) * l_y
         for image in range(images_x * images_y):
             q_x = f_x if images_x == 1 else f_x + (image // images_y - 1) * l_x
             q_y = f_y if images_y == 1 else f_y + (image % images_y - 1) * l_y
