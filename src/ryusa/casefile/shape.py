@@ -9,7 +9,6 @@ from ryusa.casefile.files import folder_of, inside
 from ryusa.casefile.rows import ExplainRow, count, number, word
 from ryusa.errors import CaseError, ParseError
 from ryusa.formats.clump import read_clump
-from ryusa.laws.families import ContactTiming
 from ryusa.model.clump import SHAPES, Clump, shape
 from ryusa.spelling import nearest_word
 
@@ -78,8 +77,6 @@ def spheres_per_grain(case: "Case") -> float:
 
 def check_shape(case: "Case") -> Iterator[CaseError]:
     """Find shapes that are unknown, and cases that cannot have clumps."""
-    from ryusa.casefile.contact.values import timing  # it asks this room whether there are clumps
-
     given = case.grains.shape
     if not has_clumps(case) and isinstance(given, str):
         return
@@ -92,9 +89,6 @@ def check_shape(case: "Case") -> Iterator[CaseError]:
         yield CaseError(KEY, None, f"the shares add up to {total:g}: at most 1, the rest are spheres")
     if not has_clumps(case):
         return
-    if timing(case) is not ContactTiming.AT_STEPS:
-        allowed = "must be 'at steps' (or left out) with clumps: within a step, contacts would be those of "
-        yield CaseError("contact.timing", case.contact.timing, allowed + "spheres (design/0022)")
     if case.motion.plane:
         yield CaseError(KEY, None, "needs motion in space: motion.plane = false")
     if case.motion.rotation != "free":

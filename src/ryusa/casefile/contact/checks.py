@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from ryusa.casefile.contact.speed import expected_speed
 from ryusa.casefile.contact.values import is_hertz, timing
 from ryusa.casefile.motion import may_rotate
+from ryusa.casefile.shape import has_clumps
 from ryusa.errors import CaseError
 from ryusa.laws.families import Arm, ContactTiming, Rolling, Slip
 
@@ -33,6 +34,9 @@ def check_contact(case: "Case") -> Iterator[CaseError]:
             f"must be 'at steps' (or left out) with law '{contact.law}', whose contacts cannot begin and end "
             "within steps (design/0018)",
         )
+    if has_clumps(case) and timing(case) is not ContactTiming.AT_STEPS:
+        allowed = "must be 'at steps' (or left out) with clumps: within a step, contacts would be those of "
+        yield CaseError("contact.timing", contact.timing, allowed + "spheres (design/0022)")
     if contact.friction is None and contact.friction_angle is None:
         yield CaseError(
             "contact.friction_angle",
