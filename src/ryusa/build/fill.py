@@ -1,17 +1,22 @@
 """Grains on a jittered lattice in a box, inside walls of the case; they settle in a run."""
 
+import math
+
 import numpy as np
 
 from ryusa.build.placement import Placement, at_rest
 from ryusa.build.sizes import draw
 from ryusa.casefile.builders.schema import FillSection
-from ryusa.casefile.builders.values import fill_cells, plate_of
+from ryusa.casefile.builders.values import fill_cells, periodic, plate_of
 from ryusa.casefile.case import Case
 from ryusa.casefile.derive import Derived
 
 
 def fill(case: Case, derived: Derived) -> Placement:
-    """Lattice in the middle of the box, filled from below; open on all sides. Group `floor`, a plate."""
+    """Lattice in the middle of the box, filled from below; where periodic, the box is the period.
+
+    Group `floor`, a plate.
+    """
     keys = case.build
     assert isinstance(keys, FillSection)
     rng = np.random.default_rng(case.seed)
@@ -27,9 +32,11 @@ def fill(case: Case, derived: Derived) -> Placement:
     x = x + rng.uniform(-free, free, x.shape)  # neighbours stay `room` apart on each axis
     if case.motion.plane:
         x[:, 1] = 0.0
+    period = tuple(float(high[k] - low[k]) if one else math.inf for k, one in enumerate(periodic(case)))
     n, plate = len(x), plate_of(case, keys.plate)
     return Placement(
         d=draw(case, n, rng), x=x, v=at_rest(n), omega=at_rest(n),
+        period=(period[0], period[1]),
         d_fixed=np.full(len(plate), derived.d), x_fixed=plate,
         fixed_groups=(("floor", 0, len(plate)),) if len(plate) else (),
     )  # fmt: skip

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -75,6 +76,25 @@ def rectangle(name: str, corner: ArrayLike, side_1: ArrayLike, side_2: ArrayLike
     """A rectangle, or any parallelogram, from one corner and two sides [m]."""
     a, b, c = (np.asarray(one, dtype=np.float64) for one in (corner, side_1, side_2))
     return triangles(name, [[a, a + b, a + b + c], [a, a + b + c, a + c]])
+
+
+def ridges(
+    name: str, corner: ArrayLike, side_1: ArrayLike, side_2: ArrayLike, number: int, height: float
+) -> SolidWall:
+    """Triangular ridges on a rectangle, one after another along side_1, each as long as side_2 [m].
+
+    They rise by `height` [m] along side_1 x side_2.
+
+    >>> ridges("lid", (0, 0, 0), (4, 0, 0), (0, 1, 0), 2, 0.5).face[:, 2].tolist()
+    [0.0, 0.5, 0.0, 0.5, 0.0, 0.5, 0.0, 0.5]
+    """
+    a, b, c = (np.asarray(one, dtype=np.float64) for one in (corner, side_1, side_2))
+    up = np.cross(b, c)
+    up *= height / np.linalg.norm(up)
+    line = [a + b * (k / (2 * number)) + up * (k % 2) for k in range(2 * number + 1)]
+    both = list(pairwise(line))
+    near = [[p, q, q + c] for p, q in both]
+    return triangles(name, near + [[p, q + c, p + c] for p, q in both])
 
 
 def disc(name: str, centre: ArrayLike, normal: ArrayLike, radius: float) -> SolidWall:
@@ -224,6 +244,8 @@ def _wall_of(case: Case, wall: WallSection, key: str) -> SolidWall:
     at = wall.at or (0.0, 0.0, 0.0)
     if wall.shape == "mesh":
         made = triangles(wall.name, mesh_of(case, wall, key).corners)
+    elif wall.sides is not None and wall.number is not None:
+        made = ridges(wall.name, at, *wall.sides, wall.number, wall.height or 0.0)
     elif wall.sides is not None:
         made = rectangle(wall.name, at, *wall.sides)
     elif wall.axis is not None:

@@ -38,6 +38,7 @@ VelocityVector = tuple[Speed, Speed, Speed]
 SpinVector = tuple[Spin, Spin, Spin]
 _KEYS = {  # of each shape: those it needs, those it may have
     "rectangle": (("at", "sides"), ()),
+    "ridges": (("at", "sides", "number", "height"), ()),
     "disc": (("at", "normal", "radius"), ()),
     "cylinder": (("at", "axis", "radius"), ("ends",)),
     "mesh": (("file", "unit"), ("at", "scale", "turn_axis", "turn_angle")),
@@ -51,13 +52,19 @@ class WallSection(Section):
 
     name: Annotated[str, Field(min_length=1, max_length=64)]
     """Name of the wall; [[timeline]] can move it or remove it by this name."""
-    shape: Literal["rectangle", "disc", "cylinder", "mesh"]
-    """A rectangle, a disc, the shell of a cylinder, or triangles from a file."""
+    shape: Literal["rectangle", "ridges", "disc", "cylinder", "mesh"]
+    """A rectangle, one covered by triangular ridges as a rough plate, a disc, the shell of a cylinder, or
+    triangles from a file."""
     at: Point | None = None
-    """One corner of a rectangle, the centre of a disc, the centre of one end of a cylinder; where the origin
-    of the file of a mesh goes, by default (0, 0, 0)."""
+    """One corner of a rectangle, with ridges or not, the centre of a disc, the centre of one end of a
+    cylinder; where the origin of the file of a mesh goes, by default (0, 0, 0)."""
     sides: tuple[Point, Point] | None = None
-    """The two sides of a rectangle from that corner."""
+    """The two sides of a rectangle from that corner. Ridges follow each other along the first and rise on
+    the side of the first crossed with the second."""
+    number: Annotated[int, Field(ge=1, le=10_000)] | None = None
+    """Number of ridges along the first side."""
+    height: PositiveLength | None = None
+    """Height of the ridges above the rectangle."""
     normal: Vector | None = None
     """Direction normal to a disc, of any length."""
     axis: Point | None = None
@@ -172,7 +179,9 @@ def check_walls(case: "Case") -> Iterator[CaseError]:
         needs, may = _KEYS[wall.shape]
         for one in needs:
             if not given(wall, one):
-                yield CaseError(f"{key}.{one}", None, f"missing; a {wall.shape} needs {', '.join(needs)}")
+                yield CaseError(
+                    f"{key}.{one}", None, f"missing; shape '{wall.shape}' needs {', '.join(needs)}"
+                )
         for one in _OF_SHAPES:
             if one not in (*needs, *may) and given(wall, one):
                 yield CaseError(f"{key}.{one}", None, f"has no effect with shape '{wall.shape}'")
@@ -245,7 +254,9 @@ def size_of(case: "Case", wall: WallSection, key: str) -> Floats:
         corners = mesh_of(case, wall, key).corners.reshape(-1, 3)
         return np.asarray(np.ptp(corners, axis=0))
     if wall.sides is not None:
-        return np.asarray(np.abs(np.array(wall.sides)).sum(axis=0))
+        flat = np.abs(np.array(wall.sides)).sum(axis=0)
+        up = np.cross(*wall.sides)
+        return np.asarray(flat + np.abs(up) / np.linalg.norm(up) * (wall.height or 0.0))
     radius = wall.radius or 0.0
     along = np.array(wall.axis or wall.normal or (0.0, 0.0, 1.0))
     n = along / np.linalg.norm(along)

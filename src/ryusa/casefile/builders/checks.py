@@ -79,13 +79,22 @@ def check_builder(case: "Case") -> Iterator[CaseError]:
     if isinstance(build, PackingSection | FlumeSection) and grading_of(case) is not None:
         yield from _bed(case, build)
     if isinstance(build, FillSection):
-        if any(a >= b for a, b in zip(build.low, build.high, strict=True)):
-            yield CaseError("build.low", list(build.low), "must lie below build.high in every direction")
-        elif counts(case)[0] < 1:
-            least = sizes(case)[2] * (1.0 + build.gap)
-            yield CaseError(
-                "build.high", list(build.high), f"holds no grain: a grain needs {least:.4g} m each way"
-            )
+        yield from _fill(case, build)
+
+
+def _fill(case: "Case", build: FillSection) -> Iterator[CaseError]:
+    if any(a >= b for a, b in zip(build.low, build.high, strict=True)):
+        yield CaseError("build.low", list(build.low), "must lie below build.high in every direction")
+    elif counts(case)[0] < 1:
+        least = sizes(case)[2] * (1.0 + build.gap)
+        yield CaseError(
+            "build.high", list(build.high), f"holds no grain: a grain needs {least:.4g} m each way"
+        )
+    for k, one in enumerate(periodic(case)):
+        least = FEWEST_PERIODS * sizes(case)[2]
+        if one and build.high[k] - build.low[k] < least:
+            text = f"must be at least {least:.4g} m above build.low in {'xy'[k]}, which is periodic"
+            yield CaseError("build.high", list(build.high), text)
 
 
 def _flume(case: "Case", build: FlumeSection) -> Iterator[CaseError]:

@@ -202,6 +202,8 @@ class FillSection(Section):
     """Most grains, the lowest ones; as many as the box holds when not given."""
     plate: PositiveLength | None = None
     """Radius of a round plate of touching fixed grains of mean diameter, as of builder "empty"."""
+    periodic: bool = False
+    """Periodic in x, and in y in three dimensions, with the lengths of the box; otherwise open."""
     gap: Annotated[Number, Field(ge=0, le=2)] = 0.05
     """Gap between neighbours on the lattice, in largest diameters."""
     jitter: Annotated[Number, Field(ge=0, le=1)] = 0.9

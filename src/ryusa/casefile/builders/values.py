@@ -190,7 +190,7 @@ def periodic(case: "Case") -> tuple[bool, bool]:
     build = case.build
     if isinstance(build, FlumeSection):
         return True, not (case.motion.plane or build.walls)
-    if isinstance(build, PackingSection):
+    if isinstance(build, PackingSection | FillSection):
         return build.periodic, build.periodic and not case.motion.plane
     if isinstance(build, BoxSection):
         return False, not case.motion.plane
