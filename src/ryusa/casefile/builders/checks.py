@@ -90,6 +90,8 @@ def _fill(case: "Case", build: FillSection) -> Iterator[CaseError]:
         yield CaseError(
             "build.high", list(build.high), f"holds no grain: a grain needs {least:.4g} m each way"
         )
+    if build.periodic and build.plate is not None:
+        yield CaseError("build.plate", build.plate, "cannot be in a periodic box: a plate is round")
     for k, one in enumerate(periodic(case)):
         least = FEWEST_PERIODS * sizes(case)[2]
         if one and build.high[k] - build.low[k] < least:

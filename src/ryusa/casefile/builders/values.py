@@ -175,13 +175,16 @@ def fill_cells(case: "Case") -> tuple[int, int, int]:
 
 
 def bed_area(case: "Case") -> float:
-    """Area of bed under the grains of a packing or a flume, a slab in a plane scene [m2]; nan for others."""
+    """Area of bed under a packing, a flume or a periodic box, a slab in the plane [m2]; nan for others."""
     build, slab = case.build, slab_width(case)
     if isinstance(build, FlumeSection):
         return build.length * (slab if case.motion.plane or build.width is None else build.width)
     if isinstance(build, PackingSection):
         pitch = room(case) * (1.0 + build.gap)
         return build.columns * pitch * (slab if case.motion.plane else build.rows * pitch)
+    if isinstance(build, FillSection) and build.periodic:
+        x, y = build.high[0] - build.low[0], build.high[1] - build.low[1]
+        return x * (slab if case.motion.plane else y)
     return math.nan
 
 
