@@ -10,10 +10,11 @@ from ryusa.build.assemble import read_only
 from ryusa.casefile.case import Case
 from ryusa.casefile.shape import shapes_of
 from ryusa.errors import CaseError
-from ryusa.laws.families import ContactForce
+from ryusa.laws.families import ContactForce, Profile
 from ryusa.model import BodyState, Materials, RigidBodies, Scene, State
 from ryusa.model.arrays import Floats
-from ryusa.model.clump import Clump
+from ryusa.model.clump import Clump, drag_form
+from ryusa.model.rigid_bodies import N_DRAG_FORM
 
 Ints = NDArray[np.int64]
 _STREAM = 0x434C554D  # tells forms and orientations of grains from their sizes
@@ -94,6 +95,7 @@ def expanded(
         d=scene.d[made],
         names=tuple(names),
         form=which[made],
+        drag_form=_drag_forms(scene, [forms[which[k]] for k in made], made),
     )
     image = state.image if len(state.image) == n else np.zeros((n, 2), np.int32)
     moved = BodyState.of(bodies, state.x[made], state.v[made], q[made], state.omega[made])
@@ -127,6 +129,16 @@ def expanded(
     )
     arrays = {"x": x, "v": v, "omega": omega, "image": image[owner]}
     return scene, replace(state, bodies=moved, **{name: read_only(array) for name, array in arrays.items()})
+
+
+def _drag_forms(scene: Scene, forms: Sequence[Clump], made: Ints) -> Floats:
+    """Form of the clumps made of grains `made` as the drag of the water sees it; without rows when dry."""
+    if scene.water.profile == Profile.NONE:
+        return np.zeros((0, N_DRAG_FORM))
+    displaced = scene.m[made] - scene.m_weight[made]
+    ratios = scene.m[made] / np.where(displaced > 0.0, displaced, np.inf)
+    rows = [drag_form(scene.water.drag_of_form, *one) for one in zip(forms, ratios.tolist(), strict=True)]
+    return np.array(rows).reshape(-1, N_DRAG_FORM)
 
 
 def clumps_of(case: Case, scene: Scene, state: State) -> tuple[Scene, State]:

@@ -32,6 +32,7 @@ from ryusa.laws.lift import (
     shear_lift_saffman_mei,
     shear_lift_wiberg_smith,
 )
+from ryusa.laws.nonspherical import c_d_bagheri_bonadonna, c_d_ganser, c_d_haider_levenspiel
 from ryusa.laws.rolling import reduced_radius, rolling_arm_width
 from ryusa.laws.torque import torque_dennis, torque_stokes
 from ryusa.laws.turbulence import (
@@ -180,6 +181,17 @@ class Drag(Family, key="water.drag"):
         "(1/3) (sqrt(0.3) + sqrt(0.3 + 72/Re))^2: settling of spheres", "Ferguson & Church 2004")
     FERGUSON_CHURCH_SAND = (6, "Ferguson-Church sand", c_d_ferguson_church_sand,
         "(1/3) (sqrt(0.75) + sqrt(0.75 + 72/Re))^2: settling of natural sand", "Ferguson & Church 2004")
+
+
+class DragOfForm(Family, key="water.drag_of_form"):
+    """Drag coefficient of clumps; Re is the slip times d/nu, d the diameter of the sphere of their volume."""
+
+    SPHERE = (0, "sphere", None, "that of the sphere of the same volume, `drag`")
+    GANSER = (1, "Ganser", c_d_ganser, "by sphericity", "Ganser 1993")
+    HAIDER_LEVENSPIEL = (2, "Haider-Levenspiel", c_d_haider_levenspiel, "by sphericity",
+        "Haider & Levenspiel 1989")
+    BAGHERI_BONADONNA = (3, "Bagheri-Bonadonna", c_d_bagheri_bonadonna, "by the lengths of three axes",
+        "Bagheri & Bonadonna 2016")
 
 
 class Hindrance(Family, key="water.hindrance"):

@@ -7,11 +7,21 @@ from typing import Self
 
 import numpy as np
 
+from ryusa.laws._family import numbers
+from ryusa.laws.families import DragOfForm
+from ryusa.laws.nonspherical import shape_factors_bagheri_bonadonna, shape_factors_ganser
 from ryusa.model.arrays import Floats
 from ryusa.model.union_of_spheres import moments_of_union
 
 MOST_SPHERES = 64
 _GAP = 1.0e-9  # spheres nearer than this share of the sum of their radii touch
+_, GANSER, _, BAGHERI_BONADONNA = numbers(
+    __name__,
+    DragOfForm.SPHERE,
+    DragOfForm.GANSER,
+    DragOfForm.HAIDER_LEVENSPIEL,
+    DragOfForm.BAGHERI_BONADONNA,
+)
 _EQUAL = 1.0e-9  # moments of inertia that differ by less than this share are equal
 
 
@@ -39,16 +49,19 @@ class Clump:
     x : centres of the spheres [m], shape (n_sphere, 3).
     d : their diameters [m], shape (n_sphere,).
     volume : of the union [m3].
+    surface : of the union [m2].
     inertia : principal moments over the density [m5], ascending, shape (3,); axis 1 is the long one.
     centre : centre of mass in the frame in which the spheres were given [m], shape (3,).
     axes : principal axes in that frame, one per column, right-handed, shape (3, 3).
-    exact : whether volume and inertia are closed forms.
-    error : relative error of volume and inertia, as estimated; 0 for closed forms [-].
+    exact : whether volume, surface and inertia are closed forms.
+    error : relative error of volume and inertia, as estimated; 0 for closed forms [-]. That of the surface is
+        larger, 1e-8 for a tetrahedron.
     """
 
     x: Floats
     d: Floats
     volume: float
+    surface: float
     inertia: Floats
     centre: Floats
     axes: Floats
@@ -75,8 +88,9 @@ class Clump:
         body = moments_of_union(x, 0.5 * d)
         inertia, axes = _principal(body.inertia)
         return cls(
-            (x - body.centre) @ axes, d, body.volume, inertia, body.centre, axes, body.exact, body.error
-        )
+            (x - body.centre) @ axes, d, body.volume, body.surface, inertia, body.centre, axes, body.exact,
+            body.error,
+        )  # fmt: skip
 
     @property
     def d_volume(self) -> float:
@@ -127,6 +141,15 @@ class Clump:
         return c / math.sqrt(a * b)
 
     @property
+    def sphericity(self) -> float:
+        """Surface of the sphere of the same volume over that of the clump [-] (Wadell 1933).
+
+        >>> round(Clump.of(np.array([[-0.5, 0.0, 0.0], [0.5, 0.0, 0.0]]), np.ones(2)).sphericity, 6)
+        0.793701
+        """
+        return math.pi * self.d_volume**2 / self.surface
+
+    @property
     def least_mass(self) -> float:
         """Least effective mass of a push through the centre of one of its spheres, over the mass [-].
 
@@ -160,6 +183,7 @@ class Clump:
             self.x * factor,
             self.d * factor,
             self.volume * factor**3,
+            self.surface * factor**2,
             self.inertia * factor**5,
             self.centre * factor,
             self.axes,
@@ -292,6 +316,23 @@ def shape(name: str, d: float = 1.0) -> Clump:
         raise ValueError(f"d = {d!r}: the diameter of a shape must be positive and finite [m]")
     clump = of_spheres(SHAPES[name][1])
     return clump.scaled(d / clump.d_volume)
+
+
+def drag_form(law: DragOfForm, clump: Clump, density_ratio: float) -> tuple[float, float, float]:
+    """Form of a clump as a law of drag takes it: its shape factors Stokes and Newton, and its sphericity [-].
+
+    Parameters
+    ----------
+    density_ratio : density of the clump over that of the water [-].
+    """
+    stokes = newton = 1.0
+    if int(law) == GANSER:
+        stokes, newton = shape_factors_ganser(clump.sphericity)
+    elif int(law) == BAGHERI_BONADONNA:
+        a, b, c = clump.lengths
+        fullness = clump.d_volume**3 / (a * b * c)
+        stokes, newton = shape_factors_bagheri_bonadonna(b / a, c / b, fullness, density_ratio)
+    return stokes, newton, clump.sphericity
 
 
 def of_spheres(spheres: Sequence[tuple[float, float, float, float]]) -> Clump:

@@ -9,6 +9,9 @@ from ryusa.laws.rigid_body import angular_momentum, rotate, spin
 from ryusa.model.arrays import Floats
 
 Ints = NDArray[np.int64]
+# Columns of `RigidBodies.drag_form`.
+STOKES, NEWTON, SPHERICITY = 0, 1, 2  # shape factors of the drag, and the sphericity [-]
+N_DRAG_FORM = 3
 
 
 @dataclass(frozen=True)
@@ -28,6 +31,8 @@ class RigidBodies:
     d: Floats  # diameter of the sphere of the same volume [m], shape (n_body,)
     names: tuple[str, ...] = ()  # names of the forms
     form: Ints = field(default_factory=lambda: np.zeros(0, np.int64))  # number of the form of each, (n_body,)
+    # form as the drag of the water sees it, columns as above, (n_body, N_DRAG_FORM); without rows when dry
+    drag_form: Floats = field(default_factory=lambda: np.zeros((0, N_DRAG_FORM)))
 
     @property
     def n(self) -> int:
@@ -39,6 +44,12 @@ class RigidBodies:
         """Ids of all members, in the order of `arm`."""
         offset = np.arange(len(self.arm)) - np.repeat(np.cumsum(self.count) - self.count, self.count)
         return np.repeat(self.first, self.count) + offset
+
+    def sums(self, of_members: Floats) -> Floats:
+        """Sums over the members of each clump of numbers in the order of `arm`, shape (n_body, ...)."""
+        if not self.n:
+            return np.zeros((0, *of_members.shape[1:]))
+        return np.add.reduceat(of_members, np.cumsum(self.count) - self.count, axis=0)
 
     @property
     def least_mass(self) -> Floats:
@@ -75,7 +86,9 @@ class RigidBodies:
             return "a clump has no member, or two clumps share one"
         if k and (self.members.min() < 0 or self.members.max() >= n_grain):
             return f"a member of a clump is none of the {n_grain} free grains"
-        for name, array in (("m", self.m), ("inertia", self.inertia)):
+        if self.drag_form.shape not in ((0, N_DRAG_FORM), (self.n, N_DRAG_FORM)):
+            return f"bodies.drag_form has shape {self.drag_form.shape}, expected {(self.n, N_DRAG_FORM)}"
+        for name, array in (("m", self.m), ("inertia", self.inertia), ("drag_form", self.drag_form)):
             if not (np.isfinite(array).all() and (array > 0.0).all()):
                 return f"bodies.{name} is not finite and positive"
         return ""

@@ -16,6 +16,7 @@ from ryusa.laws.families import (
     ContactForce,
     ContactTiming,
     Drag,
+    DragOfForm,
     Hindrance,
     Lift,
     Magnus,
@@ -133,6 +134,7 @@ class Water:
     rho_w: float = 1000.0  # density [kg/m3]
     drag: Drag = Drag.NONE
     c_d: float = 0.4  # constant drag coefficient [-]
+    drag_of_form: DragOfForm = DragOfForm.SPHERE  # of clumps
     a_2: float = float(np.pi / 4)  # area coefficient of Eq. (10) [-]
     c_m: float = 0.5  # added-mass coefficient [-]
     torque: WaterTorque = WaterTorque.NONE

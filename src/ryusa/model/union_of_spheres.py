@@ -1,4 +1,4 @@
-"""Volume and moments of a body made of spheres that overlap.
+"""Volume, surface and moments of a body made of spheres that overlap.
 
 Where no point lies in three spheres, the body is the sum of its spheres less the lenses in which two overlap,
 each a pair of caps: closed forms. Else the body is cut into sections across z. A section is a union of
@@ -27,6 +27,7 @@ class Moments:
     Attributes
     ----------
     volume : [m3].
+    surface : [m2].
     centre : centre of mass [m], shape (3,).
     second : integrals of the products of coordinates from the centre [m5], shape (3, 3), symmetric.
     exact : whether they are closed forms.
@@ -35,6 +36,7 @@ class Moments:
     """
 
     volume: float
+    surface: float
     centre: Floats
     second: Floats
     exact: bool
@@ -69,15 +71,16 @@ def moments_of_union(x: Floats, r: Floats) -> Moments:
         nodes = max(NODES[0], min(NODES[1], 1500 // len(heights)))
         fine, coarse = (_by_sections(x, r, heights, one) for one in (nodes, 2 * nodes // 3))
         change = np.abs(fine - coarse)
-        second = fine[4:].reshape(3, 3)
-        error = max(float(change[0] / fine[0]), float(change[4:].max() / np.trace(second)))
+        second = fine[4:13].reshape(3, 3)
+        error = max(float(change[0] / fine[0]), float(change[4:13].max() / np.trace(second)))
         error = max(error, float(np.finfo(np.float64).eps))
         total, exact = fine, False
     else:
         total, exact, error = _by_pairs(x, r), True, 0.0
     volume, centre = float(total[0]), total[1:4] / total[0]
-    second = total[4:].reshape(3, 3) - volume * np.outer(centre, centre)
-    return Moments(volume * scale**3, origin + scale * centre, second * scale**5, exact, error)
+    second = total[4:13].reshape(3, 3) - volume * np.outer(centre, centre)
+    surface = float(total[13]) * scale**2
+    return Moments(volume * scale**3, surface, origin + scale * centre, second * scale**5, exact, error)
 
 
 def touching(x: Floats, r: Floats) -> list[tuple[int, int]]:
@@ -126,8 +129,8 @@ def _circle(x: Floats, r: Floats, i: int, j: int) -> tuple[Floats, Floats, float
 
 
 def _by_pairs(x: Floats, r: Floats) -> Floats:
-    """Volume, first and second moments about 0: spheres less the lenses of pairs."""
-    total = np.zeros(13)
+    """Volume, first and second moments about 0, surface: spheres less the lenses of pairs."""
+    total = np.zeros(14)
     for one, radius in zip(x, r.tolist(), strict=True):
         total += _part(one, np.array([0.0, 0.0, 1.0]), radius, -radius)
     for i, j in touching(x, r):
@@ -138,30 +141,31 @@ def _by_pairs(x: Floats, r: Floats) -> Floats:
 
 
 def _part(centre: Floats, axis: Floats, r: float, low: float) -> Floats:
-    """Volume and moments about 0 of the cap of a sphere beyond a plane across `axis`."""
+    """Volume, moments about 0 and curved surface of the cap of a sphere beyond a plane across `axis`."""
     volume = slices.sphere_slice(r, low, r)
     first, along, across = slices.sphere_slice_moments(r, low, r)
     arm = first * axis
     outer = np.outer(axis, axis)
     second = along * outer + across * (np.eye(3) - outer)
     second += np.outer(centre, arm) + np.outer(arm, centre) + volume * np.outer(centre, centre)
-    return np.concatenate([[volume], volume * centre + arm, second.ravel()])
+    curved = math.tau * r * (r - low)
+    return np.concatenate([[volume], volume * centre + arm, second.ravel(), [curved]])
 
 
 def _by_sections(x: Floats, r: Floats, heights: list[float], nodes: int) -> Floats:
-    """Volume, first and second moments about 0, summed over sections between heights."""
+    """Volume, first and second moments about 0, surface, summed over sections between heights."""
     node, weight = np.polynomial.legendre.leggauss(nodes)
     # z = a + (b - a) sin**2(pi u/2): roots of the distance to an end become smooth in u
     u = 0.25 * math.pi * (node + 1.0)
     place, slope = np.sin(u) ** 2, 0.25 * math.pi * np.sin(2.0 * u)
-    total = np.zeros(13)
+    total = np.zeros(14)
     for a, b in itertools.pairwise(heights):
         for one, each in zip(
             (a + (b - a) * place).tolist(), (weight * slope * (b - a)).tolist(), strict=True
         ):
-            area, s_x, s_y, s_xx, s_yy, s_xy = _section(x, r, one).tolist()
+            area, s_x, s_y, s_xx, s_yy, s_xy, outline = _section(x, r, one).tolist()
             second = [s_xx, s_xy, one * s_x, s_xy, s_yy, one * s_y, one * s_x, one * s_y, one * one * area]
-            total += each * np.array([area, s_x, s_y, one * area, *second])
+            total += each * np.array([area, s_x, s_y, one * area, *second, outline])
     return total
 
 
@@ -215,11 +219,14 @@ def _corners(x: Floats, r: Floats, i: int, j: int, k: int) -> list[Floats]:
 
 
 def _section(x: Floats, r: Floats, z: float) -> Floats:
-    """Area and integrals of x, y, x**2, y**2, x y over the section of the union at height z."""
+    """Area and integrals of x, y, x**2, y**2, x y over the section of the union at height z, and surface.
+
+    The surface per height [m]: a sphere of radius r has r times the angle of its arc.
+    """
     square = (r - (z - x[:, 2])) * (r + (z - x[:, 2]))
     cut = square > 0.0
-    centres, radii = x[cut, :2].tolist(), np.sqrt(square[cut]).tolist()
-    total = np.zeros(6)
+    centres, radii, spheres = x[cut, :2].tolist(), np.sqrt(square[cut]).tolist(), r[cut].tolist()
+    total = np.zeros(7)
     for k, ((x_c, y_c), radius) in enumerate(zip(centres, radii, strict=True)):
         arcs = _open_arcs(centres, radii, k)
         if not arcs:
@@ -239,7 +246,8 @@ def _section(x: Floats, r: Floats, z: float) -> Floats:
             -(py**3) * dx / 3.0,
             0.5 * px**2 * py * dy,
         )
-        total += [float((weight * form).sum()) for form in forms]
+        outline = spheres[k] * float((ends[:, 1] - ends[:, 0]).sum())
+        total += [*(float((weight * form).sum()) for form in forms), outline]
     return total
 
 

@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 
 from ryusa.errors import ResultsError
-from ryusa.laws.families import ContactForce
+from ryusa.laws.families import ContactForce, DragOfForm
 from ryusa.model import Column, ContactLaw, FaceKind, Materials, RigidBodies, RollingLaw, Scene, Walls, Water
 from ryusa.model.scene import ONLY_HERTZ, EventRule
 from ryusa.model.traffic import Traffic
@@ -38,7 +38,7 @@ def write_scene(file: h5py.File, scene: Scene, step: int, t: float) -> None:
             file.create_dataset(f"walls/{name}", data=np.asarray(getattr(scene.walls, name)))
     if scene.materials is not None:
         file.create_dataset(f"{_MATERIALS}/of", data=scene.materials.of)
-    for name in _OF_BODIES if scene.bodies is not None else ():
+    for name in _datasets_of_bodies(scene.bodies):
         file.create_dataset(f"{_BODIES}/{name}", data=getattr(scene.bodies, name))
     scalars = _scalars(scene) | {"step": step, "t": t}
     file.create_dataset(
@@ -63,6 +63,8 @@ def _scalars(scene: Scene) -> dict[str, Any]:
     for one in (found["rolling"], *found.get(_MATERIALS, {}).get("rolling", ())):
         if not one["twisting"]:  # as before there was any: the digest stays
             del one["twisting"]
+    if scene.water.drag_of_form == DragOfForm.SPHERE:
+        del found["water"]["drag_of_form"]
     if scene.contact.force == ContactForce.LINEAR:  # as before there were others: the digest stays
         found["contact"] = {key: one for key, one in found["contact"].items() if key not in ONLY_HERTZ}
     walls: Walls | None = found.pop("walls")
@@ -72,6 +74,13 @@ def _scalars(scene: Scene) -> dict[str, Any]:
 def _datasets_of(walls: Walls) -> tuple[str, ...]:
     """Arrays of walls; servos where there are some, so that other scenes keep their digest."""
     return _WALLS if len(walls.servo) else tuple(name for name in _WALLS if name != "servo")
+
+
+def _datasets_of_bodies(bodies: RigidBodies | None) -> tuple[str, ...]:
+    """Arrays of clumps; their form in water where there is some, so that dry scenes keep their digest."""
+    if bodies is None:
+        return ()
+    return _OF_BODIES if len(bodies.drag_form) else tuple(name for name in _OF_BODIES if name != "drag_form")
 
 
 def scene_digest(scene: Scene) -> str:
@@ -85,7 +94,7 @@ def scene_digest(scene: Scene) -> str:
         digest.update(np.ascontiguousarray(getattr(scene.walls, name), dtype=np.float64).tobytes())
     if scene.materials is not None:
         digest.update(scene.materials.of.astype(np.float64).tobytes())
-    for name in _OF_BODIES if scene.bodies is not None else ():
+    for name in _datasets_of_bodies(scene.bodies):
         digest.update(np.ascontiguousarray(getattr(scene.bodies, name), dtype=np.float64).tobytes())
     digest.update(json.dumps(_even(_scalars(scene)), sort_keys=True).encode())
     return digest.hexdigest()
@@ -115,7 +124,9 @@ def read_scene(path: Path) -> tuple[int, float, Scene]:
         }
         of = read_dataset(file, f"{_MATERIALS}/of", path) if _MATERIALS in file else np.zeros(0, np.int8)
         bodies = {
-            name: read_dataset(file, f"{_BODIES}/{name}", path) for name in _OF_BODIES if _BODIES in file
+            name: read_dataset(file, f"{_BODIES}/{name}", path)
+            for name in _OF_BODIES
+            if _BODIES in file and (name != "drag_form" or f"{_BODIES}/{name}" in file)
         }
     try:
         if raw.dtype != np.uint8 or raw.nbytes > _LIMIT:

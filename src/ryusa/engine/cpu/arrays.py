@@ -7,6 +7,7 @@ import numpy as np
 from ryusa.engine.cpu import batch_layout as B
 from ryusa.engine.cpu import fluid_layout as W
 from ryusa.engine.cpu import prune_schedule as K
+from ryusa.engine.cpu.body_lanes import body_lanes
 from ryusa.engine.shared.kernel import kernel
 from ryusa.engine.shared.layout import aligned
 
@@ -103,6 +104,7 @@ class Workspace(NamedTuple):
 
     batch: Any  # a batch of touching pairs (batch_layout.py)
     water: Any  # a batch of grains in water (fluid_layout.py)
+    bodies: Any  # a batch of bodies in water (bodies_in_water.py)
     separation: Any  # separation from i to j and sum of radii [m] of candidates, four each, (4 * LANES,)
     velocity: Any  # velocity of j against i [m/s], and 0, of candidates, (4 * LANES,)
     inside: Any  # 1 where a candidate touches, (LANES,)
@@ -114,8 +116,9 @@ class Workspace(NamedTuple):
 def workspace_of_thread() -> Workspace:
     """Room for one thread."""
     return Workspace(
-        aligned(B.SIZE), aligned(W.SIZE), aligned(4 * B.LANES), aligned(4 * B.LANES), aligned(B.LANES),
-        np.zeros(B.LANES + 1, np.uint32), np.zeros(2 * B.LANES, np.uint32), aligned(K.N_SCHEDULE),
+        aligned(B.SIZE), aligned(W.SIZE), body_lanes(), aligned(4 * B.LANES), aligned(4 * B.LANES),
+        aligned(B.LANES), np.zeros(B.LANES + 1, np.uint32), np.zeros(2 * B.LANES, np.uint32),
+        aligned(K.N_SCHEDULE),
     )  # fmt: skip
 
 

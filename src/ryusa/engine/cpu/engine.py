@@ -19,7 +19,7 @@ from ryusa.engine.cpu.arrays import (
 from ryusa.engine.cpu.candidate_pairs import CandidatePairs
 from ryusa.engine.cpu.contact_rows import has_short_rows, lengthened, shortened
 from ryusa.engine.cpu.prune_schedule import COST_TEST
-from ryusa.engine.cpu.rigid_bodies import body_arrays, body_state, place_members, wrap_bodies
+from ryusa.engine.cpu.rigid_bodies import body_arrays, body_shares, body_state, place_members, wrap_bodies
 from ryusa.engine.cpu.time_loop import make_run
 from ryusa.engine.cpu.verlet_list import BlockLayout, blocks_of, collect_memory
 from ryusa.engine.protocol import Flags
@@ -112,7 +112,7 @@ class CpuEngine:
         self._material, self._table = material_arrays(scene)
         self._bodies = None
         if scene.bodies is not None and state.bodies is not None:
-            self._bodies = body_arrays(scene.bodies, state.bodies, n)
+            self._bodies = body_arrays(scene, scene.bodies, state.bodies)
         self._smallest = float(np.concatenate([scene.d, scene.d_fixed]).min(initial=np.inf))
         self._parameters[P.T_ZERO] = state.t - state.step * scene.dt
         records = (n // blocks + _RECORDS, N_EVENT) if scene.events != EventRule.NONE else (1, 1)
@@ -227,8 +227,12 @@ class CpuEngine:
             # energy of the water that moves along with a grain, or no longer does
             more = sampled[ids, SUBMERGED] - grains.fluid[:, SUBMERGED]
             added = grains.m[: self._n] - grains.m_bare[: self._n]
+            v = grains.v[: self._n, :3]
+            if self._bodies is not None:
+                v = v.copy()
+                body_shares(self._bodies, added, v)
             gain = np.zeros(self._n)
-            gain[ids] = 0.5 * added * more * np.sum(grains.v[: self._n, :3] ** 2, axis=1)
+            gain[ids] = 0.5 * added * more * np.sum(v**2, axis=1)
             self._accounts.stats[0, S.PENDING_FLOW] += float(gain.sum())
         rows_by_place(ids, sampled, grains.fluid)
         grains.impulse[:] = 0.0

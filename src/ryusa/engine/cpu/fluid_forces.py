@@ -16,10 +16,11 @@ from ryusa.engine.shared.kernel import FAST, inner
 from ryusa.engine.shared.variant import LawChoice
 from ryusa.laws._family import dispatch_lanes
 from ryusa.laws.drag import drag_among_neighbours, drag_factor, reynolds
-from ryusa.laws.families import Drag, Hindrance, Lift, Magnus, Profile, WaterTorque
+from ryusa.laws.families import Drag, DragOfForm, Hindrance, Lift, Magnus, Profile, WaterTorque
 from ryusa.laws.grain_step import flow_force
 from ryusa.laws.lift import magnus_force, shear_lift_force
 from ryusa.model.fluid import N_SAMPLED, SUBMERGED
+from ryusa.model.rigid_bodies import NEWTON, SPHERICITY, STOKES
 
 
 @inner()
@@ -53,6 +54,13 @@ def _drag_arguments(l: int, batch: Any, shared: Any) -> Any:
 @inner()
 def _to_drag(l: int, batch: Any, c_d: float) -> None:
     batch[W.C_D + l] = c_d
+
+
+@inner()
+def _form_arguments(l: int, batch: Any, shared: Any) -> Any:
+    nu, form = shared
+    re = reynolds(batch[W.ALONE + l], batch[W.D + l], nu)
+    return re, form[l, STOKES], form[l, NEWTON], form[l, SPHERICITY]
 
 
 @inner()
@@ -99,6 +107,10 @@ _hindrance_lanes = dispatch_lanes(
     answers=2,
 )  # fmt: skip
 _drag_lanes = dispatch_lanes(Drag, ("re", "c_d"), _drag_arguments, _to_drag, W.LANES, unasked=(Drag.NONE,))
+_form_lanes = dispatch_lanes(
+    DragOfForm, ("re", "stokes", "newton", "sphericity"), _form_arguments, _to_drag, W.LANES,
+    unasked=(DragOfForm.SPHERE,),
+)  # fmt: skip
 _lift_lanes = dispatch_lanes(
     Lift, ("top", "bottom", "slip", "shear", "d", "nu", "rho_w", "a_2", "c_l"), _lift_arguments, _to_lift,
     W.LANES, answers=2, unasked=(Lift.NONE,),
@@ -196,6 +208,13 @@ def _torque_in_water(m: int, batch: Any) -> None:
         batch[W.K_T + l] *= batch[W.SHARE + l]
 
 
+@inner()
+def _drag_of_form(choice: LawChoice, m: int, nu: float, form: Any, batch: Any) -> None:
+    """Drag coefficients of bodies that are not those of spheres."""
+    if choice.drag_of_form:
+        _form_lanes(choice.drag_of_form, m, batch, (nu, form))
+
+
 @inner(fastmath=FAST, forceinline=True)
 def _clear(first: int, rows: int, batch: Any) -> None:
     """Rows of what the scene goes without."""
@@ -206,9 +225,12 @@ def _clear(first: int, rows: int, batch: Any) -> None:
 @inner(fastmath=FAST)
 def forces_in_column(
     choice: LawChoice, rotation: int, lo: int, hi: int, c: Any, v: Any, w: Any, m_all: Any, m_bare: Any,
-    fluid: Any, batch: Any,
+    fluid: Any, batch: Any, form: Any = None,
 ) -> None:  # fmt: skip
-    """Coefficients and forces of the column of water on grains lo..hi-1, at most LANES, on as many lanes."""
+    """Coefficients and forces of the column of water on grains lo..hi-1, at most LANES, on as many lanes.
+
+    `form` of bodies: columns of `RigidBodies.drag_form`, by lane.
+    """
     nu, rho_w, a_2 = c[P.NU], c[P.RHO_W], c[P.A_2]
     for i in range(lo, hi):
         l = i - lo
@@ -226,6 +248,8 @@ def forces_in_column(
     else:
         _hindrance_lanes(choice.hindrance, m, batch, (c[P.HINDRANCE], nu, choice.buoyancy == STRESS))
         _drag_lanes(choice.drag, m, batch, (nu, c[P.C_D]))
+        if form is not None:
+            _drag_of_form(choice, m, nu, form, batch)
         _drag_over_slip(m, rho_w, a_2, batch)
     if choice.lift == 0 and choice.magnus == 0:
         _clear(W.LIFT, 4, batch)
@@ -246,8 +270,9 @@ def forces_in_column(
 
 @inner(fastmath=FAST)
 def forces_in_profile(
-    choice: LawChoice, rotation: int, lo: int, hi: int, c: Any, x: Any, v: Any, w: Any, batch: Any
-) -> None:
+    choice: LawChoice, rotation: int, lo: int, hi: int, c: Any, x: Any, v: Any, w: Any, batch: Any,
+    form: Any = None,
+) -> None:  # fmt: skip
     """As `forces_in_column`, in water of a given profile, which neither lifts nor accelerates."""
     nu, rho_w, a_2 = c[P.NU], c[P.RHO_W], c[P.A_2]
     still = vec4_of(0.0, 0.0, 0.0, 0.0)
@@ -265,6 +290,8 @@ def forces_in_profile(
         _profile_lanes(choice.profile, m, batch, (c[P.U_STAR], c[P.K_ROUGH], nu, c[P.U_UNIFORM]))
         _fill_profile(m, batch)
         _drag_lanes(choice.drag, m, batch, (nu, c[P.C_D]))
+        if form is not None:
+            _drag_of_form(choice, m, nu, form, batch)
         _drag_of_isolated(m, rho_w, a_2, batch)
     if rotation and choice.torque:
         _fill_spin(m, False, batch)

@@ -318,7 +318,8 @@ def make_run(variant: KernelVariant) -> Any:
                 n_body = len(bodies.order)
                 for b in range(b_0, b_1):
                     move_bodies(
-                        b * n_body // n_block, (b + 1) * n_body // n_block, last, c, grains, pairs, bodies,
+                        variant, water, column, choice, b * n_body // n_block, (b + 1) * n_body // n_block,
+                        step == 0, last, c, grains, pairs, bodies, work.bodies, work.water, terms[b],
                         stats[b],
                     )  # fmt: skip
                     post(stats[b])

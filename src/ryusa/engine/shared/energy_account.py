@@ -24,7 +24,8 @@ def begin_account(scene: Scene, state: State, stats: Floats, terms: Floats) -> N
     if scene.bodies is not None and state.bodies is not None:
         alone, bodies, moved = _alone(scene), scene.bodies, state.bodies
         stats[0, S.KINETIC] = 0.5 * np.sum((m * state.v**2)[alone])
-        stats[0, S.KINETIC] += 0.5 * np.sum(bodies.m[:, None] * moved.v**2)
+        whole = bodies.m + bodies.sums(scene.m_added[bodies.members])
+        stats[0, S.KINETIC] += 0.5 * np.sum(whole[:, None] * moved.v**2)
         stats[0, S.SPIN] = 0.5 * np.sum((inertia * spin**2)[alone])
         stats[0, S.SPIN] += 0.5 * np.sum(moved.momentum * moved.spin(bodies))
     stats[0, S.POTENTIAL] = potential_energy(scene, state)

@@ -44,7 +44,8 @@ class Layout:
         self.m = np.concatenate([scene.m + scene.m_added, inf])
         self.inertia = np.concatenate([scene.inertia, inf])
         if (bodies := scene.bodies) is not None:  # contacts see the body
-            self.m[bodies.members] = np.repeat(bodies.m, bodies.count)
+            whole = bodies.m + bodies.sums(scene.m_added[bodies.members])
+            self.m[bodies.members] = np.repeat(whole, bodies.count)
             self.inertia[bodies.members] = np.repeat(bodies.inertia.mean(axis=1), bodies.count)
         self.tracked = scene.tracked if len(scene.tracked) == n else np.zeros(n, np.bool_)
         law, water = scene.contact, scene.water

@@ -7,7 +7,7 @@ import numpy as np
 from ryusa.engine.shared.parameters import LARGEST_DISPLACEMENT
 from ryusa.errors import NotANumber
 from ryusa.laws._family import Family
-from ryusa.laws.families import ContactForce, ContactTiming, Profile, Rebound
+from ryusa.laws.families import ContactForce, ContactTiming, Fluctuations, Profile, Rebound
 from ryusa.model import RigidBodies, Scene, State, Walls
 from ryusa.model.scene import ALIKE, Damping
 from ryusa.model.walls import SPIN, largest_speed
@@ -117,8 +117,12 @@ def _refused_of_clumps(scene: Scene) -> list[str]:
         found.append("clumps need contact.timing = 'at steps' (design/0022)")
     if scene.plane_case or not scene.rotation:
         found.append("clumps need motion in space with rotation")
-    if scene.water.profile != Profile.NONE:
-        found.append("clumps are dry: water.profile must be none (design/0022)")
+    if scene.water.profile != Profile.NONE and len(bodies.drag_form) != bodies.n:
+        found.append("clumps in water need their form: bodies.drag_form (ryusa.build.clumps)")
+    if scene.water.rebound != Rebound.DRY or scene.water.film_reach > 0.0:
+        found.append("clumps have no films of water between them: rebound must be dry, film_reach 0")
+    if scene.column is not None and scene.column.fluctuations != Fluctuations.NONE:
+        found.append("clumps need a column of water without fluctuations: each grain has an eddy of its own")
     if scene.traffic is not None:
         found.append("clumps cannot enter or leave through feeds and exits (design/0022)")
     return found

@@ -69,6 +69,7 @@ class LawChoice(NamedTuple):
     magnus: int
     rebound: int
     unloading: int = 0
+    drag_of_form: int = 0  # of rigid bodies
 
 
 def resists_spin(scene: Scene) -> bool:
@@ -114,4 +115,5 @@ def choice_of(scene: Scene) -> LawChoice:
         magnus=int(water.magnus),
         rebound=int(water.rebound) if water.profile != Profile.NONE else 0,
         unloading=int(law.unloading),
+        drag_of_form=int(water.drag_of_form),
     )
