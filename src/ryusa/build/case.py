@@ -35,7 +35,7 @@ from ryusa.casefile.films import film_reach
 from ryusa.casefile.materials import GRAINS, case_of_pair, names_of
 from ryusa.casefile.motion import slab_width
 from ryusa.casefile.record import events_of
-from ryusa.casefile.shape import extent
+from ryusa.casefile.shape import extent, has_clumps
 from ryusa.casefile.time import steps_by_default
 from ryusa.casefile.water.values import hindrance_exponent
 from ryusa.errors import CaseError
@@ -45,6 +45,7 @@ from ryusa.laws.families import (
     Buoyancy,
     Cap,
     Drag,
+    DragOfForm,
     Hindrance,
     Lift,
     Magnus,
@@ -215,6 +216,7 @@ def water_of(case: Case, derived: Derived, z_zero: float) -> Water:
         nu=water.viscosity,
         rho_w=water.density,
         drag=Drag.of(water.drag),
+        drag_of_form=DragOfForm.of(water.drag_of_form) if has_clumps(case) else DragOfForm.SPHERE,
         c_d=water.drag_coefficient,
         a_2=water.shape_area,
         c_m=water.added_mass,

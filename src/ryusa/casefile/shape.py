@@ -93,8 +93,7 @@ def check_shape(case: "Case") -> Iterator[CaseError]:
         yield CaseError(KEY, None, "needs motion in space: motion.plane = false")
     if case.motion.rotation != "free":
         yield CaseError(KEY, None, "needs motion.rotation = 'free'")
-    if case.water is not None:
-        yield CaseError(KEY, None, "needs a dry case: water does not yet act on clumps (design/0022)")
+    yield from _check_water(case)
     if case.feeds or case.exits:
         yield CaseError(KEY, None, "excludes [[feeds]] and [[exits]]: clumps do not yet enter or leave")
     if case.stop.precision is not None:
@@ -103,6 +102,23 @@ def check_shape(case: "Case") -> Iterator[CaseError]:
         yield CaseError(KEY, None, f"needs builder {', '.join(BUILDERS)}; this one is '{case.build.kind}'")
     if "shape_volume" in case.grains.model_fields_set:
         yield CaseError("grains.shape_volume", case.grains.shape_volume, f"excludes {KEY}")
+
+
+def _check_water(case: "Case") -> Iterator[CaseError]:
+    """Find keys of the water that clumps exclude."""
+    water = case.water
+    if water is None:
+        return
+    for key in ("rebound", "film"):
+        if getattr(water, key) != ("dry" if key == "rebound" else "none"):
+            text = f"excludes clumps ({KEY}): films between grains of other forms are not known"
+            yield CaseError(f"water.{key}", getattr(water, key), text)
+    if water.column is not None and water.column.fluctuations != "none":
+        text = f"excludes clumps ({KEY}): every sphere of a clump would have an eddy of its own"
+        yield CaseError("water.column.fluctuations", water.column.fluctuations, text)
+    if "shape_area" in water.model_fields_set and water.drag_of_form != "sphere":
+        text = f"excludes drag_of_form '{water.drag_of_form}', which refers to pi/4 d^2"
+        yield CaseError("water.shape_area", water.shape_area, text)
 
 
 def shape_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
@@ -115,7 +131,8 @@ def shape_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
         flat, thick = one.clump.zingg
         form = (
             f"{len(one.clump.d)} spheres; b/a = {flat:.3g}, c/b = {thick:.3g} ({one.clump.zingg_class}); "
-            f"lengths of equal inertia {a:.3g}, {b:.3g} and {c:.3g} times the diameter"
+            f"lengths of equal inertia {a:.3g}, {b:.3g} and {c:.3g} times the diameter; sphericity "
+            f"{one.clump.sphericity:.3g}"
         )
         rows.append(word("grains", f"shape '{one.name}'", f"{100.0 * one.share:.4g} %", form))
     most = "free grains with the spheres of clumps counted one by one: what a step costs"

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 from ryusa.casefile.builders.values import sizes
 from ryusa.casefile.grains import mass
 from ryusa.casefile.motion import may_rotate
+from ryusa.casefile.shape import KEY as SHAPE
+from ryusa.casefile.shape import has_clumps, shapes_of
 from ryusa.casefile.water.values import drag_coefficient, terminal_velocity
 from ryusa.errors import CaseError
 from ryusa.laws import drag
@@ -36,6 +38,8 @@ def check_water(case: "Case") -> Iterator[CaseError]:
         )
     if water.above != "continue" and water.depth is None and water.profile != "column":
         yield CaseError("water.depth", None, f"missing; above = '{water.above}' needs it")
+    if "drag_of_form" in water.model_fields_set and not has_clumps(case):
+        yield CaseError("water.drag_of_form", water.drag_of_form, f"has no effect without clumps ({SHAPE})")
     if water.torque != "none" and not may_rotate(case):
         yield CaseError("water.torque", water.torque, "needs motion.rotation = 'free'")
 
@@ -52,7 +56,8 @@ def check_drag_step(case: "Case", derived: "Derived") -> Iterator[CaseError]:
     d, speed = sizes(case)[1], terminal_velocity(case)
     if not 0.0 < speed < math.inf:
         speed = 1.0e-3 * wet.viscosity / d  # without weight: slow enough for Stokes' drag
-    c_d = drag_coefficient(case, drag.reynolds(speed, d, wet.viscosity))
+    re = drag.reynolds(speed, d, wet.viscosity)
+    c_d = max(drag_coefficient(case, re, form) for form in (None, *(one.clump for one in shapes_of(case))))
     rate = drag.drag_factor(speed, c_d, wet.density, wet.shape_area, d) / sum(mass(case, d)[:2])
     column = wet.profile == "column"
     most = STIFF if column else 1.0

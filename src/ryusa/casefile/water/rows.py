@@ -10,14 +10,18 @@ from ryusa.casefile.builders.table import table_of
 from ryusa.casefile.column.bed import water_over
 from ryusa.casefile.motion import slope_at_last
 from ryusa.casefile.rows import ExplainRow, Flag, number
+from ryusa.casefile.shape import shapes_of
 from ryusa.casefile.water.schema import WaterSection
 from ryusa.casefile.water.values import terminal_velocity
 from ryusa.laws import drag, torque, water
+from ryusa.laws.nonspherical import terminal_velocity_corey
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
     from ryusa.casefile.derive import Derived
 
+ROUND, NATURAL = 6.0, 3.5  # roundness on the scale of Powers
+LEAST_COREY = 0.2  # below, the fit of Dietrich does not hold
 APART = 0.1  # relative difference between two friction velocities that is worth a note
 
 
@@ -34,6 +38,29 @@ def water_rows(case: "Case", derived: "Derived", origin: str) -> list[ExplainRow
             number("water", "settling velocity", settling, "m/s", f"of a single mean grain, drag {wet.drag}"),
             number("water", "grain Re", re, "-", "settling velocity times d/nu"),
         ]
+    return [*rows, *_of_clumps(case, derived, wet)]
+
+
+def _of_clumps(case: "Case", derived: "Derived", wet: WaterSection) -> list[ExplainRow]:
+    """Settling velocity of each shape, with that of natural grains of its axes."""
+    rows, ratio = list[ExplainRow](), case.grains.density / wet.density - 1.0
+    for one in shapes_of(case):
+        settling = terminal_velocity(case, one.clump)
+        if not math.isfinite(settling):
+            continue
+        origin = f"of a mean grain of this shape, drag_of_form {wet.drag_of_form}"
+        if one.clump.corey > LEAST_COREY:
+            smooth, rough = (
+                terminal_velocity_corey(
+                    ratio, derived.g, derived.d, wet.viscosity, one.clump.corey, roundness
+                )
+                for roundness in (ROUND, NATURAL)
+            )
+            origin += (
+                f"; Dietrich 1982 for c/sqrt(a b) = {one.clump.corey:.3g}: {smooth:.3g} m/s perfectly round, "
+                f"{rough:.3g} m/s natural"
+            )
+        rows.append(number("water", f"settling velocity of '{one.name}'", settling, "m/s", origin))
     return rows
 
 

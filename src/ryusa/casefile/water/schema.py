@@ -45,6 +45,9 @@ class WaterSection(Section):
     """Law of the drag coefficient C_D."""
     drag_coefficient: Annotated[Number, Field(ge=0)] = 0.4
     """C_D of drag = "constant"."""
+    drag_of_form: Annotated[str, WordOf(families.DragOfForm)] = "Bagheri-Bonadonna"
+    """Law of the drag coefficient of clumps (`grains.shape`), by their sphericity or their three axes;
+    "sphere" takes that of `drag`. Spheres always take `drag`."""
     shape_area: Annotated[Number, Field(gt=0, le=2)] = math.pi / 4
     """A_2: projected area of a grain over d squared; pi/4 for a sphere."""
     added_mass: Annotated[Number, Field(ge=0, le=5)] = 0.5

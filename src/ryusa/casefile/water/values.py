@@ -8,7 +8,8 @@ from ryusa.casefile.column.bed import water_over
 from ryusa.casefile.grains import mass
 from ryusa.laws import drag, hindrance, water
 from ryusa.laws._family import evaluate
-from ryusa.laws.families import Drag, Profile
+from ryusa.laws.families import Drag, DragOfForm, Profile
+from ryusa.model.clump import Clump, drag_form
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
@@ -67,15 +68,24 @@ def hindrance_exponent(case: "Case") -> float:
     return hindrance.exponent_rowe(drag.reynolds(settling, sizes(case)[0], wet.viscosity))
 
 
-def drag_coefficient(case: "Case", re: float) -> float:
-    """C_D of a case at a grain Reynolds number [-]."""
-    assert case.water is not None
-    law = Drag.of(case.water.drag)
-    return 0.0 if law == Drag.NONE else evaluate(law, re=re, c_d=case.water.drag_coefficient)
+def drag_coefficient(case: "Case", re: float, form: Clump | None = None) -> float:
+    """C_D of a case at a grain Reynolds number [-], of a sphere or of a clump."""
+    wet = case.water
+    assert wet is not None
+    law, of_form = Drag.of(wet.drag), DragOfForm.of(wet.drag_of_form)
+    if law == Drag.NONE:
+        return 0.0
+    if form is None or of_form == DragOfForm.SPHERE:
+        return evaluate(law, re=re, c_d=wet.drag_coefficient)
+    stokes, newton, sphericity = drag_form(of_form, form, case.grains.density / wet.density)
+    return evaluate(of_form, re=re, stokes=stokes, newton=newton, sphericity=sphericity)
 
 
-def terminal_velocity(case: "Case") -> float:
-    """Settling velocity of the mean grain [m/s]; inf without drag, nan for a grain that floats."""
+def terminal_velocity(case: "Case", form: Clump | None = None) -> float:
+    """Settling velocity of the mean grain [m/s]; inf without drag, nan for a grain that floats.
+
+    Of a sphere, or of a clump of the same volume.
+    """
     d, wet = sizes(case)[0], case.water
     m_weight = mass(case, d)[2]
     if wet is None or wet.drag == "none":
@@ -85,7 +95,7 @@ def terminal_velocity(case: "Case") -> float:
     pull, low, high = m_weight * case.motion.gravity, 0.0, 1.0e4
     for _ in range(200):
         w = 0.5 * (low + high)
-        c_d = drag_coefficient(case, drag.reynolds(w, d, wet.viscosity))
+        c_d = drag_coefficient(case, drag.reynolds(w, d, wet.viscosity), form)
         if drag.drag_factor(w, c_d, wet.density, wet.shape_area, d) * w > pull:
             high = w
         else:
