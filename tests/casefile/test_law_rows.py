@@ -9,7 +9,7 @@ from ryusa.casefile.laws import law_rows
 from ryusa.casefile.read import read
 from ryusa.cases import case_path
 from ryusa.laws._family import Family
-from ryusa.laws.families import FAMILIES, Above, Arm, DampingLaw, SideWalls, Unloading
+from ryusa.laws.families import FAMILIES, Above, Arm, DampingLaw, DragOfForm, SideWalls, Unloading
 
 CHOICES = [choice for family in FAMILIES for choice in family if choice.word]
 
@@ -21,6 +21,8 @@ def with_word(choice: Family) -> Case:
         Arm: {"model": "constant"}, SideWalls: {"side_walls": 0.1}, Above: {"profile": "uniform"},
     }  # fmt: skip
     case = read(case_path("movable_bed.toml"))
+    if isinstance(choice, DragOfForm):
+        case = case.model_copy(update={"grains": case.grains.model_copy(update={"shape": "rod"})})
     *sections, leaf = choice.key.split(".")
     parents: list[Any] = [case]
     for name in sections:
@@ -43,6 +45,7 @@ def test_keys_of_a_column_are_not_printed_without_one() -> None:
     case = read(case_path("saltation.toml"))
     names = {row.name for row in law_rows(case)}
     assert {"contact.slip", "water.drag"} <= names
+    assert "water.drag_of_form" not in names  # of spheres
     assert not names & {
         "water.lift",
         "water.hindrance",

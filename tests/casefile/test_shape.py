@@ -11,8 +11,8 @@ from ryusa.casefile.explain import explain
 from ryusa.casefile.read import read, read_text
 from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.errors import CaseError
-from ryusa.laws.families import ContactTiming
-from ryusa.model.clump import shape
+from ryusa.laws.families import ContactTiming, DragOfForm
+from ryusa.model.clump import drag_form, shape
 from ryusa.running.case_files import files_beside
 
 PLAIN = """
@@ -156,10 +156,51 @@ def test_what_excludes_clumps_is_said_with_its_key(more, part):
     assert part in faults('"rod"', **more)
 
 
-def test_water_and_feeds_exclude_clumps():
-    wet = PLAIN + '[water]\nprofile = "uniform"\nspeed = "0.1 m/s"\ndrag = "constant"\n'
-    with pytest.raises(CaseError, match="needs a dry case"):
-        case_of('"rod"', wet)
+WET = PLAIN + '[water]\nprofile = "uniform"\nspeed = "0.1 m/s"\ndrag = "Schiller-Naumann"\n'
+
+
+def test_water_acts_on_clumps_by_their_form_and_check_says_how_fast_they_settle():
+    case = case_of('{ rod = 0.5, "blade" = 0.5 }', WET)
+    made = build(case)
+    assert made.scene.water.drag_of_form is DragOfForm.BAGHERI_BONADONNA
+    rows = drag_form(DragOfForm.BAGHERI_BONADONNA, shape("rod"), 2.65)
+    assert made.scene.bodies.drag_form[made.scene.bodies.form == 0] == pytest.approx(np.tile(rows, (90, 1)))
+    assert made.scene.m_weight.sum() == pytest.approx(made.scene.m.sum() * 1.65 / 2.65)
+    assert CpuEngine().refuses(made.scene) == ()
+    printed = {row.name: row for row in explain(case)}
+    sphere, rod, blade = (
+        printed[name].value
+        for name in ("settling velocity", "settling velocity of 'rod'", "settling velocity of 'blade'")
+    )
+    assert sphere > rod > blade > 0.4 * sphere
+    assert "Dietrich 1982" in printed["settling velocity of 'rod'"].origin
+    as_sphere = case_of('"rod"', WET + 'drag_of_form = "sphere"\n')
+    rows = {row.name: row for row in explain(as_sphere)}
+    assert rows["settling velocity of 'rod'"].value == pytest.approx(sphere)
+    assert build(case_of('"sphere"', WET)).scene.water.drag_of_form is DragOfForm.SPHERE
+
+
+@pytest.mark.parametrize(
+    ("keys", "part"),
+    [
+        ('rebound = "exponential"', "water.rebound"),
+        ('film = "lubrication"\nasperity = "1 um"', "water.film"),
+        ("shape_area = 0.7", "refers to pi/4 d^2"),
+        ('drag_of_form = "Gansr"', "Did you mean 'Ganser'"),
+    ],
+)
+def test_what_clumps_in_water_exclude_is_said_with_its_key(keys, part):
+    with pytest.raises(CaseError) as found:
+        case_of('"rod"', WET + keys + "\n")
+    assert part in str(found.value)
+
+
+def test_a_drag_of_form_needs_clumps():
+    with pytest.raises(CaseError, match="has no effect without clumps"):
+        case_of('"sphere"', WET + 'drag_of_form = "Ganser"\n')
+
+
+def test_feeds_exclude_clumps():
     fed = PLAIN + (
         '[[feeds]]\nname = "tap"\nlow = ["0 cm", "0 cm", "3 cm"]\nhigh = ["1 cm", "1 cm", "4 cm"]\n'
         'rate = "10 grains/s"\n'

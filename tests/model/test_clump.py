@@ -25,6 +25,7 @@ def test_one_sphere_is_exact(x, r):
     body = moments_of_union(np.array([x]), np.array([r]))
     assert body.volume == pytest.approx(ball(r), rel=1e-15)
     assert body.centre == pytest.approx(x, abs=1e-15)
+    assert body.surface == pytest.approx(4.0 * math.pi * r * r, rel=1e-15)
     assert body.inertia == pytest.approx(0.4 * ball(r) * r * r * np.eye(3), rel=1e-14, abs=1e-16)
     assert body.exact
     assert body.error == 0.0
@@ -55,6 +56,10 @@ def test_two_spheres_lose_the_lens_once(r, share):
         / (12.0 * distance)
     )
     assert body.volume == pytest.approx(ball(a) + ball(b) - lens, rel=1e-13)
+    # Archimedes: a zone of a sphere has the surface 2 pi r h, whatever its place
+    plane = 0.5 * (distance + (a * a - b * b) / distance)
+    hidden = math.tau * (a * (a - plane) + b * (b - (distance - plane)))
+    assert body.surface == pytest.approx(4.0 * math.pi * (a * a + b * b) - hidden, rel=1e-13)
     assert body.exact
 
 
@@ -83,7 +88,8 @@ def test_sections_agree_with_the_closed_form(r, share, turn):
     body = moments_of_union(x, np.array(r))
     total = _by_sections(x, np.array(r), _heights(x, np.array(r)), 30)
     assert total[0] == pytest.approx(body.volume, rel=1e-9)
-    second = total[4:].reshape(3, 3) - total[0] * np.outer(body.centre, body.centre)
+    assert total[13] == pytest.approx(body.surface, rel=1e-7)
+    second = total[4:13].reshape(3, 3) - total[0] * np.outer(body.centre, body.centre)
     assert second == pytest.approx(body.second, abs=1e-9 * np.trace(body.second))
 
 
@@ -117,6 +123,16 @@ def test_many_overlapping_spheres_agree_with_random_points(seed):
     assert (np.abs(products.mean(axis=0) - body.second / body.volume) < slack).all()
     assert (np.abs(arms.mean(axis=0)) < 5.0 * arms.std(axis=0) / math.sqrt(len(arms))).all()
     assert body.error < 1e-8
+    seen = 0.0
+    spread = 0.0
+    for k, (one, radius) in enumerate(zip(x, r, strict=True)):
+        there = draw.normal(size=(50_000, 3))
+        there = one + radius * there / np.linalg.norm(there, axis=1)[:, None]
+        apart = ((there[:, None] - np.delete(x, k, axis=0)) ** 2).sum(axis=2)
+        bare = (apart > np.delete(r, k) ** 2).all(axis=1).mean()
+        seen += 4.0 * math.pi * radius**2 * bare
+        spread += (4.0 * math.pi * radius**2) ** 2 * bare * (1.0 - bare) / len(there)
+    assert abs(body.surface - seen) < 5.0 * math.sqrt(spread)
 
 
 @settings(max_examples=20, deadline=None)

@@ -7,6 +7,7 @@ from ryusa.casefile.case import Case
 from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.contact.values import timing
 from ryusa.casefile.section import Section, given
+from ryusa.casefile.shape import has_clumps
 from ryusa.errors import CaseError
 from ryusa.laws._family import Family
 from ryusa.laws.families import (
@@ -15,6 +16,7 @@ from ryusa.laws.families import (
     Arm,
     Cap,
     ContactTiming,
+    DragOfForm,
     Mixing,
     Rolling,
     SideWalls,
@@ -33,6 +35,9 @@ _DEFAULTS: dict[type[Family], Callable[[Case], Family]] = {
     ),
     Mixing: lambda case: Mixing.of(column_keys(case).mixing),
     Start: lambda case: Start.REST if case.water and case.water.drag == "none" else Start.STEADY,
+}
+_ONLY_IN: dict[type[Family], Callable[[Case], bool]] = {  # cases of some kind
+    DragOfForm: lambda case: has_clumps(case) and case.water is not None and case.water.drag != "none"
 }
 _ONLY_WITH: dict[type[Family], str] = {Above: "depth", SideWalls: "side_walls"}  # another key of the section
 
@@ -58,6 +63,8 @@ def in_force(case: Case) -> dict[type[Family], Family]:
         section, other = section_of(case, family), _ONLY_WITH.get(family)
         parts = family.key.split(".")
         if section is None or dead & {".".join(parts[: k + 1]) for k in range(len(parts))}:
+            continue
+        if family in _ONLY_IN and not _ONLY_IN[family](case):
             continue
         if other is None or getattr(section, other) is not None:
             choice = found[family] = chosen(case, family)

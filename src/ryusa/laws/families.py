@@ -343,6 +343,6 @@ class Fluctuations(Family, key="water.column.fluctuations"):
 
 FAMILIES: tuple[type[Family], ...] = (
     ContactForce, DampingLaw, Unloading, Parting, ContactTiming, Slip, Cap, Rolling, Arm, Profile, Above,
-    Drag, Hindrance, Buoyancy, Lift, Magnus, WaterTorque, Rebound, Film, BedKind, SurfaceRule, Drive, Start,
-    Mixing, SideWalls, Fluctuations,
+    Drag, DragOfForm, Hindrance, Buoyancy, Lift, Magnus, WaterTorque, Rebound, Film, BedKind, SurfaceRule,
+    Drive, Start, Mixing, SideWalls, Fluctuations,
 )
