@@ -403,8 +403,44 @@ frames = "2 ms"
 events = "all"
 """
 
+CLUMPS_IN_WATER = """
+title = "Clumps and spheres in a column of flowing water over a rough bed"
+[grains]
+diameter = "0.2 cm"
+density = "2650 kg/m3"
+spread = 0.2
+shape = { rod = 0.4, tetrahedron = 0.4 }
+[contact]
+stiffness = "100 N/cm"
+restitution = 0.5
+friction_angle = "30 deg"
+[motion]
+rotation = "free"
+plane = false
+slope = 0.02
+[water]
+profile = "column"
+depth = "2 cm"
+drag = "Schiller-Naumann"
+drag_of_form = "Bagheri-Bonadonna"
+torque = "Dennis"
+lift = "Wiberg-Smith"
+[build]
+kind = "flume"
+length = "1.6 cm"
+width = "1.2 cm"
+layers = 2
+[time]
+steps_per_contact = 20
+[stop]
+time = "0.03 s"
+[record]
+frames = "2 ms"
+events = "all"
+"""
+
 KINDS = {
     "dry-2d": DRY_2D, "dry-3d": DRY_3D, "saltation": SALTATION, "two-way": TWO_WAY, "rolling": ROLLING,
     "walls": WALLS, "feeds": FEEDS, "elastic": ELASTIC, "servo": SERVO,
-    "clumps": CLUMPS,
+    "clumps": CLUMPS, "clumps-water": CLUMPS_IN_WATER,
 }  # fmt: skip

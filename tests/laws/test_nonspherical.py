@@ -30,7 +30,7 @@ def test_the_stokes_factor_of_axes_is_near_the_exact_one_of_spheroids(p):
     stokes, newton = nonspherical.shape_factors_bagheri_bonadonna(
         axes[1] / axes[0], axes[2] / axes[1], 1.0, 2.65
     )
-    assert stokes == pytest.approx(perrin(p), rel=0.03)
+    assert stokes == pytest.approx(perrin(p), rel=0.05)
     assert newton > 1.0
 
 

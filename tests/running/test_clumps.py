@@ -16,7 +16,7 @@ from ryusa.results.scene_file import scene_digest
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "faults"))
 from campaign import differences
-from kinds import CLUMPS
+from kinds import CLUMPS, CLUMPS_IN_WATER
 
 
 @pytest.fixture(scope="module")
@@ -74,3 +74,44 @@ def test_the_others_take_clumps(whole: Results) -> None:
     whole.draw("grains")
     whole.draw("energy")
     whole.draw("tracks", grains=[0, 1])
+
+
+@pytest.fixture(scope="module")
+def wet(tmp_path_factory: pytest.TempPathFactory) -> Results:
+    return ryusa.run(read_text(CLUMPS_IN_WATER), tmp_path_factory.mktemp("c") / "run", progress=False)
+
+
+def test_a_stopped_run_of_clumps_in_water_resumes_with_the_same_bits(
+    wet: Results, tmp_path: Path, stop_at: Any
+) -> None:
+    assert wet.summary["water"]["momentum_residual"] < 1e-9
+    assert wet.tally["residual"][-1] < 1e-3
+    stop_at(round(0.55 * wet.summary["steps"]))
+    first = ryusa.run(read_text(CLUMPS_IN_WATER), tmp_path / "run", progress=False)
+    assert first.status == schema.STOPPED
+    again = read_text((tmp_path / "run" / schema.CASE_TOML).read_text())
+    assert ryusa.run(again, tmp_path / "run", progress=False, resume=True).status == schema.COMPLETE
+    assert differences(wet.folder, tmp_path / "run") == []
+
+
+def test_what_spheres_of_a_clump_share_counts_once(wet: Results) -> None:
+    """Solid volume over the bed and its flux are those of the clumps, not of all their spheres."""
+    scene, area = wet.scene, 0.016 * 0.012
+    d, m = scene.whole_grains()
+    solid = float((np.pi / 6.0 * d**3).sum())
+    assert scene.solid_volume.sum() == pytest.approx(solid, rel=1e-12)
+    assert (np.pi / 6.0 * scene.d**3).sum() > 1.05 * solid
+    found = wet.measure("profile", begin=0.0)
+    assert found.phi.value.sum() * found.thickness == pytest.approx(solid / area, rel=1e-12)
+    assert found.d == pytest.approx(d.mean())
+    assert found.density == pytest.approx(m.sum() / solid)
+    carried = float(scene.m @ np.asarray(wet.frames.v[-1])[:, 0]) / 2650.0 / area
+    assert found.q[-1] == pytest.approx(carried, rel=1e-12)
+    phi = np.asarray(wet.water.phi[-1])
+    assert wet.water.faces[1] > wet.water.faces[0]
+    cell = float(wet.water.faces[1] - wet.water.faces[0])
+    bed = float((np.pi / 6.0 * scene.d_fixed**3).sum())
+    assert phi.sum() * cell * area <= (solid + bed) * (1.0 + 1e-9)
+    for name in ("transport", "water"):
+        wet.measure(name, begin=0.0)
+    wet.draw("profile", begin=0.0)

@@ -165,7 +165,7 @@ def profiles(
     `x`, which no profile can tell. In a plane scene the width is `slab_width`, and lanes are averaged.
     """
     t, first, last, scene, since = _frames(run, begin, end)
-    z_0, thickness = level_of(scene, above), layer * float(scene.d.mean())
+    z_0, thickness = level_of(scene, above), layer * scene.d_mean
     _, lanes = lanes_of(np.asarray(run.frames.x[first], dtype=np.float64)[:, 1], scene)
     length = float(scene.period[0]) if between is None else between[1] - between[0]
     width = _width(scene, lanes)
@@ -188,7 +188,7 @@ def profiles(
         thickness=thickness,
         above=above,
         origin=z_0,
-        d=float(scene.d.mean()),
+        d=scene.d_mean,
         phi=_mean("phi", "-", volume / space),
         area_fraction=_mean("area_fraction", "-", sums[:, :, A] / side),
         v_x=_quotient("v_x", "m/s", sums[:, :, U_X], volume),
@@ -202,7 +202,7 @@ def profiles(
         q=q,
         speed=speed,
         volume=weight / area,
-        density=float(scene.m.sum() / (np.pi / 6.0 * scene.d**3).sum()),
+        density=float(scene.m.sum() / scene.solid_volume.sum()),
         area=area,
         lanes=lanes,
         averages=_averages(q, speed, weight / area, n_layer, thickness, (since, float(t[-1]))),
@@ -238,9 +238,12 @@ def _averages(
 
 @law  # for its compiler: a loop over arrays that calls laws
 def _cut(
-    z: Floats, r: Floats, counted: Bools, carried: Floats, bottom: int, thickness: float, sums: Floats
-) -> None:
+    z: Floats, r: Floats, solid: Floats, counted: Bools, carried: Floats, bottom: int, thickness: float,
+    sums: Floats,
+) -> None:  # fmt: skip
     """Add every grain's slices to the layers they lie in.
+
+    solid : (n_grain,) volume of matter over that of the sphere [-]; below 1 where spheres of a clump overlap.
 
     z, counted : (n_frame, n_grain) heights above the origin [m], and whether the grain counts.
     carried : (n_frame, n_grain, 5) what a slice carries along, per volume.
@@ -257,7 +260,7 @@ def _cut(
             for k in range(low, high + 1):  # the outermost slices reach to the poles, whatever the rounding
                 a = -r[g] if k == low else (bottom + k) * thickness - z[f, g]
                 b = r[g] if k == high else (bottom + k + 1) * thickness - z[f, g]
-                part = sphere_slice(r[g], a, b)
+                part = solid[g] * sphere_slice(r[g], a, b)
                 sums[f, k, 0] += part
                 sums[f, k, 1] += circle_slice(r[g], a, b)
                 for c in range(carried.shape[2]):
@@ -269,7 +272,7 @@ def _sums(
     between: tuple[float, float] | None, bed: bool,
 ) -> tuple[Floats, int]:  # fmt: skip
     """Sums over slices, (n_frame, n_layer, 7), and the number of the lowest layer counted from the origin."""
-    r = 0.5 * scene.d
+    r, solid = 0.5 * scene.d, scene.solid_volume / (np.pi / 6.0 * scene.d**3)
     step = max(CHUNK // scene.n_grain, 1)
     spans = [slice(a, min(a + step, last)) for a in range(first, last, step)]
     pieces: list[tuple[int, Floats]] = []
@@ -290,7 +293,7 @@ def _sums(
             )
         carried = np.stack([v[:, :, 0], v[:, :, 2], omega[:, :, 1], v[:, :, 0] ** 2, v[:, :, 2] ** 2], axis=2)
         part = np.zeros((len(x), top - bottom, 7))
-        _cut(z, r, counted, carried, bottom, thickness, part)
+        _cut(z, r, solid, counted, carried, bottom, thickness, part)
         pieces.append((bottom, part))
     low, high = min(low for low, _ in reached), max(high for _, high in reached)
     sums = np.zeros((last - first, high - low, 7))
@@ -307,7 +310,7 @@ def _bed(
     z = np.ascontiguousarray(scene.x_fixed[None, :, 2] - z_0)
     sums = np.zeros((1, n_layer, 7))
     none = np.zeros((*z.shape, 0))
-    _cut(z, 0.5 * scene.d_fixed, there[None, :], none, edge, thickness, sums)
+    _cut(z, 0.5 * scene.d_fixed, np.ones(scene.n_fixed), there[None, :], none, edge, thickness, sums)
     return sums[0, :, V]
 
 

@@ -142,14 +142,14 @@ def transport(
     is backwards are left out. Errors of the levels are to first order in the flux of the frames.
     """
     t, first, last, scene, area = window_of(run, begin, end, least=2)
-    since, thickness = float(t[0]), layer * float(scene.d.mean())
-    ball = np.pi / 6.0 * scene.d**3
+    since, thickness = float(t[0]), layer * scene.d_mean
+    ball = scene.solid_volume
     dt = np.diff(t)
     ever = _moved(run, last, ball) / area
     moved, times = ever[first:], np.asarray(run.frames.t[:last], dtype=np.float64)
     sums, edge = _sums(run, first, last, scene, 0.0, thickness, None, False)
     carried = sums[:, :, U_X] / area
-    d, g = float(scene.d.mean()), float(np.linalg.norm(scene.gravity))
+    d, g = scene.d_mean, float(np.linalg.norm(scene.gravity))
     excess = _excess(run, scene, float(scene.m.sum() / ball.sum()), rho_w)
     scale = math.sqrt(excess * g * d**3)
     window = (since, float(t[-1]))
@@ -221,7 +221,8 @@ def kinetic_stress(
         v = np.asarray(run.frames.v[span], dtype=np.float64)
         carried = np.concatenate([v, v**2, v[:, :, :1] * v[:, :, 2:]], axis=2)
         part = sums[a - first : span.stop - first]
-        _cut(z, r, np.ones(z.shape, dtype=np.bool_), carried, bottom, thickness, part)
+        every = np.ones(z.shape, dtype=np.bool_)
+        _cut(z, r, np.ones(len(r)), every, carried, bottom, thickness, part)
     volume, once = sums[:, :, 0], sums[:, :, 2:5]
     weight = volume.sum(axis=0)
     with np.errstate(invalid="ignore", divide="ignore"):

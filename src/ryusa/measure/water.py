@@ -106,7 +106,7 @@ def water(run: Run, begin: float | None = None, end: float = math.inf) -> WaterP
     """
     found, span, since = _frames(run, begin, end)
     scene = scene_at(run, since)
-    d = float(scene.d.mean())
+    d = scene.d_mean
     keys: dict[str, Any] = (run.case.get("water") or {}).get("column") or {}
     packed = float(keys.get("packed") or math.nan)
     surfaces = found.z_surface[span]
@@ -176,8 +176,8 @@ def _averages(
     """Averages over the frames of what is known in each; tau is the stress at the bed [Pa]."""
     window = (float(found.t[span][0]), float(found.t[span][-1]))
     surfaces, content, u = found.z_surface[span], found.content[span], found.u[span]
-    d, g = float(scene.d.mean()), float(np.linalg.norm(scene.gravity))
-    rho_s = float(scene.m.sum() / (np.pi / 6.0 * scene.d**3).sum())
+    d, g = scene.d_mean, float(np.linalg.norm(scene.gravity))
+    rho_s = float(scene.m.sum() / scene.solid_volume.sum())
     rho_w = scene.water.rho_w
     per = tau_star_from_stress(1.0, rho_s, rho_w, g, d) if rho_s > rho_w and g > 0.0 else math.nan
     over = _over(content, found.faces, bed)

@@ -214,6 +214,21 @@ class Scene:
         return np.concatenate([self.d[alone], self.bodies.d]), np.concatenate([self.m[alone], self.bodies.m])
 
     @property
+    def d_mean(self) -> float:
+        """Mean diameter of the free grains, each clump as the sphere of its volume [m]."""
+        return float(self.whole_grains()[0].mean())
+
+    @property
+    def solid_volume(self) -> Floats:
+        """Volume of each sphere [m3], shape (n_grain,); of a member of a clump its share of the clump."""
+        ball = np.pi / 6.0 * self.d**3
+        if self.bodies is not None:
+            bodies, members = self.bodies, self.bodies.members
+            whole = np.repeat(np.pi / 6.0 * bodies.d**3 / bodies.m, bodies.count)
+            ball[members] = whole * self.m[members]
+        return ball
+
+    @property
     def n_fixed(self) -> int:
         """Number of fixed grains, including removed ones."""
         return len(self.d_fixed)
