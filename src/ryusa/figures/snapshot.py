@@ -1,4 +1,4 @@
-"""Grains at one moment in the x-z plane, to scale: fixed grains grey, planes as edges of a solid."""
+"""Grains at one moment in the x-z plane, to scale, with bed, planes and the edges of walls."""
 
 import math
 from typing import Any, Literal
@@ -7,7 +7,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.collections import EllipseCollection
+from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
@@ -19,6 +19,7 @@ from ryusa.measure.repose import STILL, G
 CM = 100.0  # centimetres in a metre
 WET, SURFACE = "#e8f1f8", "#0072B2"  # water, and its surface
 PLAIN, RIM, SOLID = "#cfdce8", "#3c4a57", "#d8d4cc"
+EDGE = "#6f695f"  # of planes and walls
 WIDE = 2.2  # ratio of the sides above which a picture is two columns wide
 SLIM, LOW = 0.75, 9.0  # smallest and largest width over height
 BAR = 0.065  # height of the colour bar [inch]
@@ -76,6 +77,9 @@ def panel(seen: Snapshot, above: float = 0.0, bounds: Bounds | None = None) -> t
     if math.isfinite(seen.surface):
         _water(axes, seen.surface, box)
     planes(axes, seen.plane_point, seen.plane_normal, box, CM)
+    axes.add_collection(
+        LineCollection([*(CM * seen.wall_lines[:, :, [0, 2]])], colors=EDGE, lw=0.9, zorder=0.6)
+    )
     circles(axes, seen.bed_x, seen.bed_d, style.BED, "#8c8578", period=seen.period)
     return figure, axes
 
@@ -134,7 +138,7 @@ def planes(axes: Axes, point: Any, normal: Any, box: Box, unit: float) -> None:
             axes.add_patch(Polygon(np.array(shape) * unit, closed=True, fc=SOLID, ec="none", zorder=0.5))
         if len(edge) == 2:
             ends = np.array(edge) * unit
-            axes.plot(ends[:, 0], ends[:, 1], color="#6f695f", lw=0.9, zorder=0.6)
+            axes.plot(ends[:, 0], ends[:, 1], color=EDGE, lw=0.9, zorder=0.6)
 
 
 def _box(bounds: Bounds, period: float) -> Box:

@@ -1,7 +1,7 @@
 """One moment of a run: where grains, bed and planes are, in one lane of a plane scene."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run
 from ryusa.model import Scene
+from ryusa.model.wall_shape import in_world, lines_of
 
 UPRIGHT = 1.0e-6  # component along y up to which a plane shows as a line in the x-z plane
 SHARE = (
@@ -53,6 +54,7 @@ class Snapshot:
     plane_point, plane_normal : planes that are there now and stand upright on the x-z plane, (n_plane, 3).
     period : along x [m]; inf where open.
     surface : height of the water's surface where a column was solved [m]; nan elsewhere.
+    wall_lines : ends of the edges of walls, where they are now [m], shape (n_line, 2, 3).
     lane, lanes : number of the lane shown, in order of y, and of all lanes; 0 and 1 where there are none.
     """
 
@@ -70,6 +72,7 @@ class Snapshot:
     lane: int = 0
     lanes: int = 1
     surface: float = math.nan
+    wall_lines: Floats = field(default_factory=lambda: np.zeros((0, 2, 3)))
 
     @property
     def bounds(self) -> Bounds:
@@ -135,7 +138,16 @@ def snapshot(run: Run, t: float | None = None, lane: int | None = None) -> Snaps
         lane=chosen,
         lanes=lanes,
         surface=math.nan if water is None else float(water.z_surface[k]),
+        wall_lines=_lines_of_walls(scene, now),
     )
+
+
+def _lines_of_walls(scene: Scene, t: float) -> Floats:
+    """Ends of the edges of the walls that are there at a time [m], shape (n_line, 2, 3)."""
+    if scene.walls is None:
+        return np.zeros((0, 2, 3))
+    ends, owner = lines_of(scene.walls)
+    return in_world(scene.walls, ends, owner, t)[scene.walls.active[owner]]
 
 
 def bounds(run: Run, lane: int | None = None) -> Bounds:
