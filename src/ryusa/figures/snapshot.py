@@ -77,9 +77,9 @@ def panel(seen: Snapshot, above: float = 0.0, bounds: Bounds | None = None) -> t
     if math.isfinite(seen.surface):
         _water(axes, seen.surface, box)
     planes(axes, seen.plane_point, seen.plane_normal, box, CM)
-    axes.add_collection(
-        LineCollection([*(CM * seen.wall_lines[:, :, [0, 2]])], colors=EDGE, lw=0.9, zorder=0.6)
-    )
+    if len(seen.wall_lines):
+        edges = [*(CM * seen.wall_lines[:, :, [0, 2]])]
+        axes.add_collection(LineCollection(edges, colors=EDGE, lw=0.9, zorder=0.6))
     circles(axes, seen.bed_x, seen.bed_d, style.BED, "#8c8578", period=seen.period)
     return figure, axes
 
