@@ -14,10 +14,11 @@ from ryusa.casefile import resolved
 from ryusa.errors import CaseError, NotANumber, ResultsError
 from ryusa.running import runner
 from ryusa.studies.osada2004._parts import paper_run
-from ryusa.study import CostEstimate, Plan, ProgressLines, StudyProgress, estimate_cost
+from ryusa.study import CostEstimate, Plan, ProgressLines, StudyProgress, estimate_cost, executors
 from ryusa.study import carry_out as carry_out_tasks
 from ryusa.study import cost as cost_module
 from ryusa.study import runs as runs_module
+from ryusa.study.executors import executor_of
 
 SHORT = {"stop.time": "0.01 s", "record.settle": "0 s"}
 
@@ -106,7 +107,7 @@ def test_a_result_that_cannot_be_sent_does_not_affect_the_others(fakes, tmp_path
         return runs_module.TaskResult(one, {"one": 1}, False, 1.0)
 
     monkeypatch.setattr(runs_module, "_one", answer)
-    monkeypatch.setattr(runs_module, "ProcessPoolExecutor", lambda jobs, **_: ThreadPoolExecutor(jobs))
+    monkeypatch.setattr(executors, "ProcessPoolExecutor", lambda jobs, **_: ThreadPoolExecutor(jobs))
     found = carry_out(fakes, ("one",), Plan(), tmp_path, jobs=2)
     assert len(found.found["one"]) == 1
     assert [one.get("seed") for one in found.missing["one"]] == ["2"]
@@ -349,15 +350,42 @@ def test_an_interrupt_ends_every_process_and_says_how_to_continue(campaign, how)
 
 
 @needs_proc
-def test_a_killed_process_is_reported_and_nothing_hangs(campaign):
+def test_a_run_whose_process_was_killed_is_tried_once_more_and_costs_no_other(campaign):
     workers = [one for one, words in family(campaign.pid).items() if "spawn_main" in words]
     os.kill(workers[0], signal.SIGKILL)
-    _, said = campaign.communicate(timeout=30)
-    assert campaign.returncode == 2
-    assert "ended from outside" in said
-    assert "it was running: saltation" in said
-    assert "The same command continues there" in said.replace("\n", " ")
+    _, said = campaign.communicate(timeout=120)
+    assert "its process was ended from outside; it is tried once more, by itself" in said
+    assert "could not be carried out" not in said
+    assert campaign.returncode == 0
     assert gone(campaign.pid)
+
+
+DEADLY = """import os
+import signal
+
+
+def measure(run, one):
+    if one.get("seed") == "2":
+        os.kill(os.getpid(), signal.SIGKILL)  # as the kernel does where memory is short
+    return len(run.frames)
+
+
+def load(name):
+    import deadly_part
+    return deadly_part
+"""
+
+
+def test_a_run_that_ends_its_process_every_time_costs_no_other(tmp_path, monkeypatch):
+    (tmp_path / "deadly_part.py").write_text(DEADLY)  # a module that processes of their own can import
+    monkeypatch.syspath_prepend(tmp_path)
+    from importlib import import_module
+
+    tasks = {"one": Fake(seeds=(1, 2, 3)).tasks(Plan())}
+    found = carry_out_tasks(tasks, import_module("deadly_part").load, tmp_path / "runs", jobs=2)
+    assert sorted(one.get("seed") for one in found.found["one"]) == ["1", "3"]
+    assert [one.get("seed") for one in found.missing["one"]] == ["2"]
+    assert "ended from outside twice" in next(iter(found.problems.values()))
 
 
 @needs_proc
@@ -398,3 +426,12 @@ def test_a_run_that_goes_on_tells_its_share(tmp_path):
     assert one.share(tmp_path) is None
     (tmp_path / "summary.json").write_text(json.dumps({"t": one.read().stop.time / 2, "saltations": [0]}))
     assert one.share(tmp_path) == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize(
+    ("name", "jobs", "said"),
+    [("proceses", 2, "on = 'proceses'.*Did you mean 'processes'"), ("processes", 0, "jobs = 0: must be 1")],
+)
+def test_an_unknown_executor_is_refused_with_the_nearest_one(name, jobs, said):
+    with pytest.raises(CaseError, match=said):
+        executor_of(name, jobs)

@@ -21,6 +21,9 @@ class StudyProgress:
     def done(self, one: Task, seconds: float, opened: bool, problem: str) -> None:
         """Called when a run has ended."""
 
+    def lost(self, one: Task) -> None:
+        """Called when the process of a run was ended from outside; the run is tried once more."""
+
     def tick(self) -> None:
         """Called several times a second."""
 
@@ -86,6 +89,15 @@ class ProgressLines(StudyProgress):
         if problem:
             self._console.print(f"{one.label}: {problem}", markup=False, soft_wrap=True)
         self.tick()
+
+    def lost(self, one: Task) -> None:
+        """Say that the run is tried once more."""
+        self._now.pop(one, None)
+        self._shares.pop(one, None)
+        self._console.print(
+            f"{one.label}: its process was ended from outside; it is tried once more, by itself",
+            markup=False, soft_wrap=True,
+        )  # fmt: skip
 
     def tick(self) -> None:
         """Show the progress, at most every ten seconds."""

@@ -1,31 +1,30 @@
 """Carry out tasks, each once and several at a time; finished ones are opened."""
 
-import os
 import signal
 import threading
 import time
 from collections import Counter
 from collections.abc import Callable, Generator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
-from concurrent.futures.process import BrokenProcessPool
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future, wait
 from contextlib import closing, contextmanager
 from dataclasses import dataclass, field
 from functools import partial
-from multiprocessing import get_context, parent_process
 from pathlib import Path
 from typing import Any
 
-from ryusa.errors import ResultsError, RunError
+from ryusa.errors import RunError
 from ryusa.study.cost import CostEstimate, code_of, estimate_cost, is_other, present, refuse_if_too_big
+from ryusa.study.executors import Processes, RunExecutor
 from ryusa.study.fault import Fault, fault_of, noted
 from ryusa.study.progress import StudyProgress
 from ryusa.study.task import Calculation, Task
 
 _WAIT = 0.2  # s between two checks for finished runs
-_PATIENCE = 5.0  # s until the process of a run that does not close its folder is killed
+LOST = (
+    "the process of the run was ended from outside twice, perhaps for want of memory; the same command "
+    "continues the run, and -j 1 needs the least memory"
+)
 Load = Callable[[str], Any]
-
-_ONE_THREAD = {name: "1" for name in ("NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")}
 
 
 @dataclass(frozen=True)
@@ -81,6 +80,7 @@ def carry_out(
     jobs: int = 1,
     again: bool = False,
     progress: StudyProgress | None = None,
+    where: RunExecutor | None = None,
 ) -> TaskResults:
     """Carry out every task once, and measure it for every part that needs it.
 
@@ -94,16 +94,19 @@ def carry_out(
     jobs : number of runs at a time, each in its own process on one thread; results do not depend on it.
     again : repeat finished runs.
     progress : receives the progress.
+    where : where runs are carried out; `jobs` processes of this machine if not given.
 
     Raises
     ------
     CaseError : a case cannot be run, or the runs do not fit on the disk; nothing was run.
-    ResultsError : a process was killed from outside; finished runs are kept.
     KeyboardInterrupt : Ctrl-C or SIGTERM; finished runs are kept and opened by the next call.
     """
     begun, progress = time.monotonic(), progress or StudyProgress()
     wanted = _wanted(tasks)
-    ahead = estimate_cost(wanted, folder, jobs=jobs, again=again)  # reads, and so checks, every case first
+    where = where or Processes(jobs)
+    ahead = estimate_cost(
+        wanted, folder, jobs=where.jobs, again=again
+    )  # reads, and so checks, every case first
     refuse_if_too_big(ahead, folder)
     found: dict[str, dict[Any, Any]] = {name: {} for name in tasks}
     results = TaskResults(found)
@@ -113,8 +116,7 @@ def carry_out(
             _order(ahead),
             wanted,
             partial(_one, folder=folder, again=again, load=load),
-            folder,
-            jobs,
+            where,
             progress,
         )
         with _stopped_by_sigterm(), closing(runs):
@@ -164,102 +166,69 @@ def _done(
     order: Sequence[Task],
     wanted: Mapping[Task, Sequence[str]],
     do: Callable[[Task, Sequence[str]], TaskResult],
-    folder: Path,
-    jobs: int,
+    where: RunExecutor,
     progress: StudyProgress,
 ) -> Generator[TaskResult]:
-    if jobs == 1 or len(order) <= 1:
+    """Results as they come; a run whose process was ended from outside is tried once more, by itself."""
+    if where.here or len(order) <= 1:
         for one in order:
             progress.started(one)
             yield do(one, tuple(wanted[one]))
         return
-    pool = ProcessPoolExecutor(jobs, mp_context=get_context("spawn"), initializer=_settle_in)
+    lost: list[Task] = []
+    yield from _in_pool(order, where.jobs, wanted, do, where, progress, lost.append)
+    # which of the runs that were under way ended the pool is not known: each has a pool to itself
+    for one in dict.fromkeys(lost):
+        again: list[Task] = []
+        yield from _in_pool([one], 1, wanted, do, where, progress, again.append)
+        if again:
+            yield TaskResult(one, {}, False, 0.0, dict.fromkeys(wanted[one], Fault(LOST)), broken=True)
+
+
+def _in_pool(
+    order: Sequence[Task],
+    jobs: int,
+    wanted: Mapping[Task, Sequence[str]],
+    do: Callable[[Task, Sequence[str]], TaskResult],
+    where: RunExecutor,
+    progress: StudyProgress,
+    lose: Callable[[Task], None],
+) -> Generator[TaskResult]:
+    """Results of runs, `jobs` at a time; a pool that breaks is replaced, and the runs in it are lost."""
+    pool = where.open()
     waiting = list(reversed(order))
     running: dict[Future[TaskResult], Task] = {}
     try:
         while waiting or running:
             while waiting and len(running) < jobs:
                 one = waiting.pop()
-                with _for_a_child():
-                    future = pool.submit(do, one, tuple(wanted[one]))
+                try:
+                    future = where.submit(pool, do, one, tuple(wanted[one]))
+                except BrokenExecutor:  # a process ended between two runs
+                    where.stop(pool)
+                    pool = where.open()
+                    future = where.submit(pool, do, one, tuple(wanted[one]))
                 running[future] = one
                 progress.started(one)
             ready, _ = wait(running, _WAIT, FIRST_COMPLETED)
             progress.tick()
             for future in ready:
-                one = running[future]
+                one = running.pop(future)
                 try:
                     done = future.result()
-                except BrokenProcessPool:
-                    raise
+                except where.lost:
+                    progress.lost(one)
+                    lose(one)
+                    continue
                 except Exception as error:  # the measurements cannot be sent between processes
                     faults = dict.fromkeys(wanted[one], fault_of(error))
                     done = TaskResult(one, {}, False, 0.0, faults, broken=True)
-                del running[future]
                 yield done
-    except BrokenProcessPool:
-        labels = ", ".join(one.label for one in running.values())
-        raise ResultsError(
-            "the process of a run was ended from outside, perhaps for want of memory; it was running: "
-            f"{labels}. Finished runs are kept in {folder}. The same command continues there; -j 1 needs "
-            "the least memory"
-        ) from None
     finally:
         if running or waiting:
-            _end(pool)
+            where.stop(pool)
         else:
             pool.shutdown(wait=True)
-
-
-def _end(pool: ProcessPoolExecutor) -> None:
-    """Stop all runs: on SIGTERM a run closes its folder; a process that does not end is killed."""
-    processes = list((pool._processes or {}).values())
-    pool.shutdown(wait=False, cancel_futures=True)
-    for process in processes:
-        if process.is_alive():
-            process.terminate()
-    deadline = time.monotonic() + _PATIENCE
-    for process in processes:
-        process.join(max(0.0, deadline - time.monotonic()))
-        if process.is_alive():
-            process.kill()
-
-
-@contextmanager
-def _for_a_child() -> Generator[None]:
-    """Within the block processes start with one numerical thread and with Ctrl-C blocked."""
-    before = {name: os.environ.get(name) for name in _ONE_THREAD}
-    os.environ.update(_ONE_THREAD)
-    can_hold = hasattr(signal, "pthread_sigmask")
-    if can_hold:
-        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        if can_hold:
-            signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value
-
-
-def _settle_in() -> None:
-    """Ignore Ctrl-C, because the parent ends the runs by SIGTERM, and end with the parent."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    if hasattr(signal, "pthread_sigmask"):
-        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # a run installs its own handler
-    threading.Thread(target=_leave_with_parent, daemon=True).start()
-
-
-def _leave_with_parent() -> None:
-    parent = parent_process()
-    if parent is not None:
-        parent.join()
-        os.kill(os.getpid(), signal.SIGTERM)
-        time.sleep(_PATIENCE)
-        os._exit(1)
 
 
 @contextmanager
