@@ -26,6 +26,7 @@ _NAMES = {  # quantity that an SI unit measures, for messages
     "rad/s": "a spin",
     "Hz": "a frequency",
 }
+_SI_UNITS = (*_NAMES, "kg/s", "Pa", "J", "m2")
 _METRE, _SECOND, _GRAM, _RADIAN = (("meter", 1),), (("second", 1),), (("gram", 1),), (("radian", 1),)
 _NEWTON, _PASCAL = (("gram", 1), ("meter", 1), ("second", -2)), (("gram", 1), ("meter", -1), ("second", -2))
 COMMON = {  # common units, because Pint takes long to read its definitions; a test compares the two
@@ -112,6 +113,21 @@ def format_quantity(value: float, unit: str, digits: int = 4) -> str:
     if unit in {"", "-"}:
         return f"{value:.{digits}g}"
     return f"{value / _to_si(unit)[0]:.{digits}g} {unit}"
+
+
+def si_unit(text: str) -> str:
+    """SI unit of a quantity as written; "" for a number without one, and for what is no quantity.
+
+    >>> si_unit("0.2 cm"), si_unit("100 N/cm"), si_unit("5 %"), si_unit("free")
+    ('m', 'N/m', '', '')
+    """
+    found = _NUMBER.match(text.strip())
+    written = text.strip()[found.end() :].strip() if found else ""
+    try:
+        dimension = _to_si(written)[1] if written else ()
+    except UnitError:
+        return ""
+    return next((unit for unit in _SI_UNITS if dimension and _to_si(unit)[1] == dimension), "")
 
 
 def _kind(unit: str) -> str:

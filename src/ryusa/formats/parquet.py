@@ -1,9 +1,9 @@
-"""Parquet: the columns of the CSV table, one row group a frame; needs pyarrow (`ryusa[parquet]`)."""
+"""Parquet: tables of frames, one row group a frame, and of rows; needs pyarrow (`ryusa[parquet]`)."""
 
 import importlib.util
 import json
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 from ryusa.errors import ResultsError
@@ -11,10 +11,41 @@ from ryusa.formats.csv import NUMBERS
 from ryusa.formats.grains import UNITS, GrainTable
 
 
-def need_pyarrow() -> None:
+def need_pyarrow(what: str = "--to parquet") -> None:
     """Raise an error that says how to install pyarrow where it is missing."""
     if importlib.util.find_spec("pyarrow") is None:
-        raise ResultsError("--to parquet needs pyarrow: pip install 'ryusa[parquet]'")
+        raise ResultsError(f"{what} needs pyarrow: pip install 'ryusa[parquet]'")
+
+
+def write_rows_as_parquet(path: Path, rows: Sequence[Mapping[str, object]], units: Mapping[str, str]) -> None:
+    """Write rows that share their keys; None is null, and a column of numbers is one of float64 or int64.
+
+    Parameters
+    ----------
+    path : the file.
+    rows : lines of the table.
+    units : SI unit of columns, for their metadata.
+    """
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    fields: list[pa.Field] = []
+    columns: list[pa.Array] = []
+    for name in rows[0] if rows else ():
+        values = [row[name] for row in rows]
+        kinds = {type(one) for one in values if one is not None}
+        kind = pa.string()
+        if kinds and kinds <= {bool}:
+            kind = pa.bool_()
+        elif kinds and kinds <= {int}:
+            kind = pa.int64()
+        elif kinds <= {int, float}:
+            kind = pa.float64()
+        columns.append(
+            pa.array([one if one is None or kind != pa.string() else str(one) for one in values], kind)
+        )
+        fields.append(pa.field(name, kind, metadata={"unit": units[name]} if name in units else None))
+    pq.write_table(pa.Table.from_arrays(columns, schema=pa.schema(fields)), path)
 
 
 def write_parquet(path: Path, frames: Iterable[GrainTable]) -> None:

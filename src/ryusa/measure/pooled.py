@@ -30,7 +30,9 @@ def pooled(runs: Sequence[Averages]) -> Averages:
         raise ResultsError("an error between runs needs two runs or more")
     names = [one.name for one in runs[0].items]
     columns = [[_named(run, name) for run in runs] for name in names]
-    items = tuple(_mean([one for one in column if one is not None]) for column in columns if all(column))
+    items = tuple(
+        mean_of_runs([one for one in column if one is not None]) for column in columns if all(column)
+    )
     if not items:
         raise ResultsError("the runs have no quantity in common that all of them have samples of")
     left = [name for name, column in zip(names, columns, strict=True) if not all(column)]
@@ -43,7 +45,8 @@ def _named(run: Averages, name: str) -> Average | None:
     return next((one for one in run.items if one.name == name and one.n > 0), None)
 
 
-def _mean(column: Sequence[Average]) -> Average:
+def mean_of_runs(column: Sequence[Average]) -> Average:
+    """Mean of one quantity over two runs or more, each counted once, with the error between them."""
     values = [one.value for one in column]
     least = max(column, key=lambda one: -math.inf if math.isnan(one.variation) else one.variation)
     begins = [one.steady_from for one in column]

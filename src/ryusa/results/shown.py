@@ -130,7 +130,7 @@ def report_of(runs: Sequence["Results"], size: float) -> Page:
 
 def xarray_of(results: "Results", frames: slice) -> "Dataset":
     """Give frames as an xarray Dataset."""
-    xarray = _needed("xarray")
+    xarray = needed("xarray")
     units = {"x": "m", "v": "m/s", "omega": "rad/s"}
     held = {
         name: (("t", "grain", "axis"), getattr(results.frames, name)[frames], {"units": unit})
@@ -151,7 +151,7 @@ def xarray_of(results: "Results", frames: slice) -> "Dataset":
 
 def pandas_of(results: "Results", what: str, options: dict[str, Any]) -> "DataFrame":
     """Give contacts, energy account or a measure as a pandas DataFrame."""
-    pandas = _needed("pandas")
+    pandas = needed("pandas")
     if what == "contacts":
         rows = results.contacts
         columns: dict[str, Any] = {}
@@ -181,7 +181,8 @@ def _entry(name: str, entries: Sequence[Any], kind: str) -> Any:
     return known[name]
 
 
-def _needed(package: str) -> Any:
+def needed(package: str) -> Any:
+    """Import a package of the extra `notebook`; where it is missing an error says how to install it."""
     from importlib import import_module
 
     try:
