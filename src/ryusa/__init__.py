@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from ryusa.results import Results
     from ryusa.running.runner import run, run_scene
     from ryusa.studies.soften import soften
+    from ryusa.studies.sweep import sweep
 
 __version__ = "0.1.0"
 
@@ -31,6 +32,7 @@ _LAZY = {
     "run": ("ryusa.running.runner", "run"),
     "run_scene": ("ryusa.running.runner", "run_scene"),
     "soften": ("ryusa.studies.soften", "soften"),
+    "sweep": ("ryusa.studies.sweep", "sweep"),
 }
 
 __all__ = [
@@ -44,6 +46,7 @@ __all__ = [
     "run",
     "run_scene",
     "soften",
+    "sweep",
 ]
 
 

@@ -1,0 +1,251 @@
+"""`ryusa sweep`: a case at many settings, with several seeds each."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from ryusa.catalogue import MEASURES
+from ryusa.cli.options import Quiet
+from ryusa.cli.run import CaseFile, Settings, overrides_of
+from ryusa.cli.study import (
+    Again,
+    Jobs,
+    Show,
+    console,
+    cores,
+    interrupted,
+    plan_of,
+    report_failures,
+)
+
+if TYPE_CHECKING:
+    from ryusa.studies.sweep import SweepPlan
+    from ryusa.studies.sweep.carry import Sweep
+
+MOST_LISTED = 50  # settings, and lines of what differs
+
+Over = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--over", metavar="KEY=A,B,..", show_default=False,
+        help="Values of a key of the case, such as --over motion.slope=0.01,0.02; repeated for every "
+        "combination with another key. 'KEY=A,B; OTHER=C,D' changes both together.",
+    ),
+]  # fmt: skip
+Measures = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--measure", "-m", metavar="NAME", show_default=False,
+        help=f"Measure; may be repeated: {', '.join(one.name for one in MEASURES if not one.table)}.",
+    ),
+]  # fmt: skip
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command()(sweep)
+
+
+def sweep(
+    case: CaseFile,
+    over: Over = None,
+    measure: Measures = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "-o",
+            "--out",
+            metavar="FOLDER",
+            help="Table, page, pictures and runs; default runs/sweep-CASE.",
+        ),
+    ] = None,
+    seeds: Annotated[
+        str | None,
+        typer.Option(
+            "--seeds", metavar="N|A,B,..", help="Number of seeds of each setting, or the seeds; default 3."
+        ),
+    ] = None,
+    settings: Settings = None,
+    parquet: Annotated[
+        bool, typer.Option("--parquet", help="Write the table as Parquet too; needs ryusa[parquet].")
+    ] = False,
+    pages: Annotated[
+        bool, typer.Option("--pages/--no-pages", help="Write a page for each run, with its grains in motion.")
+    ] = True,
+    on: Annotated[
+        str, typer.Option("--on", metavar="WHERE", help="Where runs are carried out: processes.")
+    ] = "processes",
+    jobs: Jobs = None,
+    again: Again = False,
+    show: Show = False,
+    quiet: Quiet = False,
+) -> None:
+    """Run a case at many settings with several seeds, and write one table and one page.
+
+    Everything is checked before the first run. The table has every quantity of
+    every run with its error and steadiness, and pooled over the seeds with the
+    error between runs. CASE may be a TOML file with a table [sweep] instead:
+    grids, lists, Latin hypercubes, Sobol sequences. The same command continues
+    an interrupted sweep: finished runs are opened, others go on where they were.
+    """  # fmt: skip
+    from ryusa.errors import ResultsError
+    from ryusa.studies.sweep import carry_out_sweep, write_sweep
+    from ryusa.studies.sweep.folder import refuse_folder
+    from ryusa.study import ProgressLines
+    from ryusa.study.executors import executor_of
+
+    where = executor_of(on, jobs or cores())
+    plan = _planned(case, over or [], measure or [], seeds, overrides_of(settings), pages)
+    folder = Path("runs") / f"sweep-{case.stem}" if out is None else out
+    if show:
+        refuse_folder(plan, folder, again=again)
+        _list(plan, folder, where.jobs, again)
+        return
+    if not quiet:
+        _warn(plan)
+    try:
+        made = carry_out_sweep(
+            plan, folder, where, again=again, parquet=parquet, progress=None if quiet else ProgressLines()
+        )
+        files = write_sweep(made, _command(case, over or [], measure or [], seeds, settings or []))
+    except KeyboardInterrupt:
+        interrupted(folder)
+    except OSError as error:
+        raise ResultsError(f"{folder}: cannot be written ({error.strerror or error})") from None
+    _print(made)
+    for path in files:
+        typer.echo(f"wrote {path}")
+    report_failures(made.problems, made.faults, made.traces, folder / "sweep-errors.log")
+
+
+def _planned(
+    case: Path,
+    over: Sequence[str],
+    measures: Sequence[str],
+    seeds: str | None,
+    overrides: dict[str, str],
+    pages: bool,
+) -> "SweepPlan":
+    """The sweep of the command, or of a file with a table [sweep]; every case is checked."""
+    from ryusa.errors import CaseError
+    from ryusa.studies.sweep import plan_sweep, seeds_of
+    from ryusa.studies.sweep.asked import axes_of_words, is_sweep_file, read_sweep
+    from ryusa.studies.sweep.design import GRID, design_of
+
+    given = None if seeds is None else plan_of(False, False, seeds).seeds
+    if is_sweep_file(case):
+        if over:
+            raise CaseError("--over", over[0], f"stands in {case.name}, which has a table [sweep]")
+        file = read_sweep(case)
+        return plan_sweep(
+            file.case, file.design, seeds_of(file.seeds) if given is None else given,
+            measures or file.measures, overrides={**file.overrides, **overrides}, pages=pages,
+        )  # fmt: skip
+    design = design_of(GRID, axes_of_words(over))
+    return plan_sweep(
+        case, design, seeds_of(None) if given is None else given, measures, overrides=overrides, pages=pages
+    )
+
+
+def _command(
+    case: Path, over: Sequence[str], measures: Sequence[str], seeds: str | None, settings: Sequence[str]
+) -> str:
+    """The command in words, without paths."""
+    import shlex
+
+    words = ["ryusa", "sweep", case.name]
+    for option, every in (("--over", over), ("--measure", measures), ("--set", settings)):
+        words += [word for one in every for word in (option, one)]
+    return shlex.join([*words, *(() if seeds is None else ("--seeds", seeds))])
+
+
+def _list(plan: "SweepPlan", folder: Path, jobs: int, again: bool) -> None:
+    """Every setting with its cost, what differs between the cases, and the cost of all by number of cores."""
+    from rich import box
+    from rich.markup import escape
+    from rich.table import Table
+
+    from ryusa.studies.sweep.folder import RUNS
+    from ryusa.study import duration, estimate_cost
+
+    n = len(plan.seeds)
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for heading in ("no.", *plan.design.keys, "runs", "core minutes"):
+        table.add_column(escape(heading), justify="right")
+    first = plan.first_runs
+    for k, run in enumerate(first[:MOST_LISTED]):
+        values = (escape(one) for one in plan.design.settings[k].values())
+        table.add_row(str(k + 1), *values, str(n), f"{n * run.cost() / 60.0:.1f}")
+    console().print(table)
+    if len(first) > MOST_LISTED:
+        typer.echo(f"and {len(first) - MOST_LISTED} more settings")
+    if plan.design.dropped:
+        typer.echo(f"{plan.design.dropped} points of the design give settings that are there already")
+    _explain(plan)
+    _warn(plan)
+    ahead = estimate_cost(plan.runs, folder / RUNS, jobs=jobs, again=again)
+    typer.echo(str(ahead))
+    if ahead.costs:
+        longest = max(ahead.costs.values())
+        by_cores = (
+            f"{one} in {duration(max(ahead.core_seconds / one, longest))}"
+            for one in (1, 2, 4, 8, 16, 32, 64)
+            if one == 1 or one <= 2 * len(ahead.costs)
+        )
+        typer.echo(f"by number of cores: {', '.join(by_cores)}")
+
+
+def _explain(plan: "SweepPlan") -> None:
+    """Values that differ between the settings, as `ryusa check` prints them."""
+    from rich import box
+    from rich.markup import escape
+    from rich.table import Table
+
+    if not plan.explained or len(plan.design.settings) > MOST_LISTED:
+        return
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, title="what differs", title_justify="left")
+    table.add_column("value")
+    for k in range(min(len(plan.design.settings), 8)):
+        table.add_column(str(k + 1), justify="right", overflow="fold")
+    for name, held in plan.explained:
+        table.add_row(escape(name), *(escape(one) for one in held[:8]))
+    console().print(table)
+
+
+def _warn(plan: "SweepPlan") -> None:
+    """What `ryusa check` warns of, on stderr."""
+    n = len(plan.design.settings)
+    for text, which in plan.warnings.items():
+        held = "all settings" if len(which) == n else f"setting {', '.join(str(one) for one in which)}"
+        typer.echo(f"warning: {held}: {text}", err=True)
+
+
+def _print(made: "Sweep") -> None:
+    """Every quantity of every setting: the mean over the seeds with the error between them."""
+    from rich import box
+    from rich.markup import escape
+    from rich.table import Table
+
+    plan, quantities = made.plan, made.quantities
+    table: Any = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for heading in ("quantity", *plan.design.keys):
+        table.add_column(escape(heading))
+    for heading in ("value", "± s.e.", "unit", "runs"):
+        table.add_column(escape(heading), justify="right")
+    table.add_column("steady")
+    for one in quantities:
+        for k, setting in enumerate(plan.design.settings[:MOST_LISTED]):
+            mean = one.pooled[k]
+            name = escape(one.title) if k == 0 else ""
+            values = [escape(value) for value in setting.values()]
+            if mean is None:
+                table.add_row(name, *values, "–", "–", one.unit, "0", "-")
+                continue
+            table.add_row(
+                name, *values, f"{mean.value:.4g}", mean.error_text.rstrip("*"), one.unit,
+                str(len(one.runs[k])), "no" if mean.changes else mean.verdict,
+            )  # fmt: skip
+    if quantities:
+        console().print(table)
