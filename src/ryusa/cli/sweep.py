@@ -1,5 +1,6 @@
 """`ryusa sweep`: a case at many settings, with several seeds each."""
 
+import shlex
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -24,7 +25,8 @@ if TYPE_CHECKING:
     from ryusa.studies.sweep import SweepPlan
     from ryusa.studies.sweep.carry import Sweep
 
-MOST_LISTED = 50  # settings, and lines of what differs
+MOST_LISTED = 50  # settings
+MOST_BESIDE = 2  # keys that stand beside a quantity; of more, the number of the setting does
 
 Over = Annotated[
     list[str] | None,
@@ -77,6 +79,15 @@ def sweep(
     on: Annotated[
         str, typer.Option("--on", metavar="WHERE", help="Where runs are carried out: processes.")
     ] = "processes",
+    emit: Annotated[
+        str | None,
+        typer.Option(
+            "--emit",
+            metavar="slurm",
+            show_default=False,
+            help="Run nothing; write the scripts of a job array of Slurm into FOLDER/slurm.",
+        ),
+    ] = None,
     jobs: Jobs = None,
     again: Again = False,
     show: Show = False,
@@ -90,6 +101,7 @@ def sweep(
     grids, lists, Latin hypercubes, Sobol sequences. The same command continues
     an interrupted sweep: finished runs are opened, others go on where they were.
     """  # fmt: skip
+    # One function: two thirds of it are the options of the command, which typer reads from its signature.
     from ryusa.errors import ResultsError
     from ryusa.studies.sweep import carry_out_sweep, write_sweep
     from ryusa.studies.sweep.folder import refuse_folder
@@ -105,11 +117,16 @@ def sweep(
         return
     if not quiet:
         _warn(plan)
+    words = _words(over or [], measure or [], seeds, settings or [])
+    if emit is not None:
+        more = [*(["--parquet"] if parquet else []), *([] if pages else ["--no-pages"])]
+        _emit(emit, plan, folder, ["sweep", str(case), *words, *more], again)
+        return
     try:
         made = carry_out_sweep(
             plan, folder, where, again=again, parquet=parquet, progress=None if quiet else ProgressLines()
         )
-        files = write_sweep(made, _command(case, over or [], measure or [], seeds, settings or []))
+        files = write_sweep(made, shlex.join(["ryusa", "sweep", case.name, *words]))
     except KeyboardInterrupt:
         interrupted(folder)
     except OSError as error:
@@ -149,16 +166,36 @@ def _planned(
     )
 
 
-def _command(
-    case: Path, over: Sequence[str], measures: Sequence[str], seeds: str | None, settings: Sequence[str]
-) -> str:
-    """The command in words, without paths."""
-    import shlex
-
-    words = ["ryusa", "sweep", case.name]
+def _words(
+    over: Sequence[str], measures: Sequence[str], seeds: str | None, settings: Sequence[str]
+) -> list[str]:
+    """Arguments of the command that say what the sweep is, without its files."""
+    words: list[str] = []
     for option, every in (("--over", over), ("--measure", measures), ("--set", settings)):
         words += [word for one in every for word in (option, one)]
-    return shlex.join([*words, *(() if seeds is None else ("--seeds", seeds))])
+    return [*words, *(() if seeds is None else ("--seeds", seeds))]
+
+
+def _emit(what: str, plan: "SweepPlan", folder: Path, words: Sequence[str], again: bool) -> None:
+    """Write the scripts of another scheduler, and say how to submit them."""
+    from ryusa.cli.options import known
+    from ryusa.errors import CaseError, ResultsError
+    from ryusa.studies.sweep.slurm import emit_slurm, submission
+
+    known(what, ("slurm",), "--emit")
+    if again:
+        raise CaseError(
+            "--again", None, "cannot be combined with --emit: a requeued run goes on. Choose another -o"
+        )
+    try:
+        scripts, n = emit_slurm(plan, folder, words)
+    except OSError as error:
+        raise ResultsError(f"{folder}: cannot be written ({error.strerror or error})") from None
+    for path in scripts:
+        typer.echo(f"wrote {path}")
+    typer.echo(f"{n} {'run' if n == 1 else 'runs'} to make. To submit:")
+    for line in submission(scripts):
+        typer.echo(f"  {line}")
 
 
 def _list(plan: "SweepPlan", folder: Path, jobs: int, again: bool) -> None:
@@ -228,18 +265,25 @@ def _print(made: "Sweep") -> None:
     from rich.markup import escape
     from rich.table import Table
 
+    from ryusa.studies.sweep.part import short_names
+
     plan, quantities = made.plan, made.quantities
-    table: Any = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for heading in ("quantity", *plan.design.keys):
-        table.add_column(escape(heading))
+    keys = short_names(plan.design.keys)
+    settings = [[escape(value) for value in one.values()] for one in plan.design.settings[:MOST_LISTED]]
+    if len(keys) > MOST_BESIDE:  # the settings have a table of their own, and are named by number below
+        table: Any = Table("no.", *map(escape, keys), box=box.SIMPLE_HEAD, pad_edge=False)
+        for k, values in enumerate(settings):
+            table.add_row(str(k + 1), *values)
+        console().print(table)
+        keys, settings = ["no."], [[str(k + 1)] for k in range(len(settings))]
+    table = Table("quantity", *map(escape, keys), box=box.SIMPLE_HEAD, pad_edge=False)
     for heading in ("value", "± s.e.", "unit", "runs"):
-        table.add_column(escape(heading), justify="right")
+        table.add_column(heading, justify="right")
     table.add_column("steady")
     for one in quantities:
-        for k, setting in enumerate(plan.design.settings[:MOST_LISTED]):
+        for k, values in enumerate(settings):
             mean = one.pooled[k]
             name = escape(one.title) if k == 0 else ""
-            values = [escape(value) for value in setting.values()]
             if mean is None:
                 table.add_row(name, *values, "–", "–", one.unit, "0", "-")
                 continue

@@ -53,14 +53,19 @@ class SweepRun(CaseRun):
         """Words for the progress line.
 
         >>> SweepRun("bed", varied=(("motion.slope", "0.01"), ("seed", "2"))).label
-        'slope 0.01, seed 2'
+        'slope 0.01 seed 2'
         """
         names = short_names([key for key, _ in self.varied])
-        return ", ".join(f"{name} {value}" for name, (_, value) in zip(names, self.varied, strict=True))
+        return " ".join(f"{name} {value}" for name, (_, value) in zip(names, self.varied, strict=True))
 
     def cost(self) -> float:
         """Estimated core seconds of the run, with its page."""
-        return super().cost() + PAGE_SECONDS * self.page
+        return super().cost() + self.page_cost
+
+    @property
+    def page_cost(self) -> float:
+        """Estimated core seconds to measure it and write its page."""
+        return PAGE_SECONDS * (1 + self.page) / 2
 
     def disk(self) -> int:
         """Estimated size of the run with its page [bytes]."""
