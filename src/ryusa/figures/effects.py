@@ -6,10 +6,13 @@ from dataclasses import dataclass
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from ryusa.figures import style
 
 PANELS = 3  # side by side
+TICKS = 5  # intervals along an axis of numbers
+LONG = 36  # letters of all words of an axis from which they are slanted
 ASIDE = 0.12  # of the distance between two words, between groups
 
 
@@ -64,8 +67,8 @@ def effects(
     joined : whether the means of a group are joined by lines, as they are at the levels of a grid.
     error : what the bars are, in words.
     """
-    columns = min(len(axes), PANELS)
-    rows = math.ceil(len(axes) / PANELS)
+    columns = 2 if len(axes) == 4 else min(len(axes), PANELS)
+    rows = math.ceil(len(axes) / columns)
     width = style.COLUMN if columns == 1 else style.PAGE
     figure, panels = style.new(rows, columns, width=width, height=2.6 * rows, sharey=True)
     for k, (panel, axis) in enumerate(zip(panels, axes, strict=False)):
@@ -100,12 +103,20 @@ def _panel(
             elinewidth=0.9, capsize=1.8, capthick=0.9, color=colour, label=group or error, zorder=3,
         )  # fmt: skip
     if axis.words:
-        panel.set_xticks(range(len(axis.words)), axis.words)
+        slanted = sum(map(len, axis.words)) > LONG
+        panel.set_xticks(
+            range(len(axis.words)),
+            axis.words,
+            rotation=20 if slanted else 0,
+            ha="right" if slanted else "center",
+        )
         panel.set_xlim(-0.5, len(axis.words) - 0.5)
         panel.tick_params(axis="x", which="minor", bottom=False, top=False)
     elif axis.log:
         panel.set_xscale("log")
         style.log_ticks(panel.xaxis)
+    else:
+        panel.xaxis.set_major_locator(MaxNLocator(TICKS))
     panel.set_xlabel(axis.label)
     if groups != [""]:
         panel.legend(title=axis.legend, title_fontsize=6.5, fontsize=6.5)
