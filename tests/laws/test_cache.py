@@ -60,6 +60,48 @@ def test_the_cache_of_another_edition_is_not_read(tmp_path):
     assert other._load_index() == {}
 
 
+def test_code_of_another_key_is_not_given_out(tmp_path):
+    """Two processes that compile for different types at the same time write to the same file."""
+    kept = collision.effective_mass._cache._cache_file
+    first, second = (type(kept)(_Place(tmp_path), "law", EDITION) for _ in range(2))
+    seen = second._load_index()
+    first.save("of one type", 1)
+    assert first.load("of one type") == 1
+    second._load_index = lambda: dict(seen)  # what the second process read before the first one wrote
+    second.save("of another type", 2)
+    del second._load_index
+    assert second.load("of another type") == 2
+    first._save_data(first._data_name(1), (first._version, "of one type", 1))
+    assert second.load("of another type") is None
+
+
+class _Place:
+    """Where a cache of another process is: as much of it as a cache file asks for."""
+
+    def __init__(self, folder):
+        self._cache_path, self._source_stamp, self._version = str(folder), "stamp", numba.__version__
+
+
+WHO_CALLS = """
+import sys
+from ryusa.laws._law import FAST, compiled
+
+plain = compiled(None)(lambda x: x * x + 1.0)
+fast = compiled(None, fastmath=FAST, forceinline=True)(lambda x: plain(x))
+(fast if sys.argv[1] == "fast" else plain)(0.1)
+plain(0.1)
+print("contract" in next(iter(plain.inspect_llvm().values())))
+"""
+
+
+def test_who_calls_a_function_first_does_not_change_its_arithmetic():
+    for first in ("fast", "plain"):
+        done = subprocess.run(
+            [sys.executable, "-c", WHO_CALLS, first], check=True, capture_output=True, text=True
+        )
+        assert done.stdout.split() == ["False"], first
+
+
 def _closures(function, found):
     """Every compiled function that a dispatcher holds in its closure, itself included."""
     text = getattr(function, "py_func", None)

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
+from numba.core.caching import IndexDataCacheFile
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -24,6 +25,27 @@ FAST = {"contract", "nsz"}  # fused multiply-add, sign of zero ignored; no flag 
 EDITION = edition(LAWS)
 
 
+class _CacheFile(IndexDataCacheFile):
+    """Compiled code of one function on disk, which is given out only for what it was compiled for.
+
+    Two processes that compile a function for different types at the same time give their code the same
+    number; the later index may then point to the earlier code. So the code carries its own key.
+    """
+
+    def __init__(self, kept: Any, base: str, edition: str) -> None:
+        super().__init__(kept._cache_path, base, kept._source_stamp)
+        self._version = f"{kept._version} {edition}"
+
+    def save(self, key: Any, data: Any) -> None:
+        """Write code and the key that it answers."""
+        super().save(key, (self._version, key, data))
+
+    def load(self, key: Any) -> Any:
+        """Read the code of a key; None, so that it is compiled, where that on disk is of another."""
+        found = super().load(key)
+        return found[2] if found is not None and found[:2] == (self._version, key) else None
+
+
 def compiled(edition: str | None, **options: Any) -> Callable[[F], F]:
     """Compile a function at its first call, and cache it on disk as long as its edition is the same.
 
@@ -34,13 +56,20 @@ def compiled(edition: str | None, **options: Any) -> Callable[[F], F]:
     alone, and would keep calling an outdated law from another file. The edition is therefore added to
     the version that Numba compares before it reads the cache. This relies on private parts of Numba, which
     tests/laws/test_cache.py tests.
+
+    A function for which `fastmath` is not given has none, and one that has it is inlined only where
+    `forceinline` says so. Numba would take both from the function that calls it first, and keep the result
+    for all callers: the last bits of a run would depend on what ran before it on the machine.
     """
+    options = {"fastmath": False} | options
+    if options["fastmath"]:
+        options = {"forceinline": False} | options
 
     def decorate(function: F) -> F:
         dispatcher: Any = numba.njit(error_model="numpy", cache=edition is not None, **options)(function)
-        kept: Any = getattr(getattr(dispatcher, "_cache", None), "_cache_file", None)
-        if kept is not None:
-            kept._version = f"{kept._version} {edition}"
+        cache: Any = getattr(dispatcher, "_cache", None)
+        if edition is not None and getattr(cache, "_cache_file", None) is not None:
+            cache._cache_file = _CacheFile(cache._cache_file, cache._impl.filename_base, edition)
         return cast(F, dispatcher)
 
     return decorate
@@ -50,10 +79,9 @@ def law(function: F) -> F:
     """Compile a scalar law at its first call.
 
     With `error_model="numpy"` a division by zero gives inf or nan: laws never raise, and the engine stops on
-    a number that is not finite. `fastmath=False` is explicit because Numba would otherwise take the flags of
-    the kernel that calls the law first, and cache the result for all callers.
+    a number that is not finite.
     """
-    return compiled(EDITION, fastmath=False)(function)
+    return compiled(EDITION)(function)
 
 
 def step_law(function: F) -> F:

@@ -14,7 +14,7 @@ from ryusa.engine.cpu.simd.vec4 import component, copy4, read4, vec4_of, write4
 from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared.contact_memory import ContactMemory
 from ryusa.engine.shared.dashpots import set_springs
-from ryusa.engine.shared.kernel import inner
+from ryusa.engine.shared.kernel import FAST, inner
 from ryusa.engine.shared.variant import KernelVariant
 
 SHORT = (M.SPRING_S, M.DASH_S, M.DASH_N, M.F_N)  # columns of a whole row that a short one has
@@ -37,7 +37,7 @@ def lengthened(memory: ContactMemory) -> ContactMemory:
     return memory._replace(rows=rows)
 
 
-@inner(forceinline=True)
+@inner(fastmath=FAST)
 def row_to_lane(short: int | None, l: int, k: int, rows: Any, batch: Any) -> None:
     """Copy the memory of candidate k to lane l of a batch."""
     if short is not None:
@@ -50,7 +50,7 @@ def row_to_lane(short: int | None, l: int, k: int, rows: Any, batch: Any) -> Non
         copy4(batch, B.DASH + 4 * l, rows, width * k + M.DASH_S)
 
 
-@inner(forceinline=True)
+@inner(fastmath=FAST)
 def lane_to_row(short: int | None, l: int, k: int, rows: Any, batch: Any) -> None:
     """Copy the memory of lane l of a batch back to candidate k."""
     if short is not None:
@@ -65,7 +65,7 @@ def lane_to_row(short: int | None, l: int, k: int, rows: Any, batch: Any) -> Non
         copy4(rows, width * k + M.DASH_S, batch, B.DASH + 4 * l)
 
 
-@inner(forceinline=True)
+@inner(fastmath=FAST)
 def springs_of_row(k: int, rows: Any) -> tuple[float, float, float, float]:
     """Force of the normal spring, and of the tangential one, of candidate k [N]."""
     if rows.shape[1] == len(SHORT):
@@ -74,13 +74,13 @@ def springs_of_row(k: int, rows: Any) -> tuple[float, float, float, float]:
     return rows[k, M.F_N] - rows[k, M.DASH_N], rows[k, s], rows[k, s + 1], rows[k, s + 2]
 
 
-@inner(forceinline=True)
+@inner(fastmath=FAST)
 def dashpot_row(k: int, eta: Any) -> int:
     """Row of the dashpots of candidate k."""
     return k if len(eta) > 1 else 0
 
 
-@inner()
+@inner(fastmath=FAST)
 def begin_row(
     k: int,
     i: int,
@@ -103,7 +103,7 @@ def begin_row(
     set_springs(dashpot_row(k, eta), i, j, rotation, kind, c, m, x, inertia, eta)
 
 
-@inner(forceinline=True)
+@inner(fastmath=FAST)
 def copy_row(at: int, to_eta: Any, to_rows: Any, of: int, eta: Any, rows: Any) -> None:
     """Copy dashpots and memory of pair `of` of one list to pair `at` of another, by whole vectors."""
     width = rows.shape[1]

@@ -194,7 +194,7 @@ def compute_exactly(
         _tangential_space(total, drop, whole, lanes, hdt, c, batch)
 
 
-@inner(forceinline=True)
+@inner(fastmath=FAST)
 def keep_states(m: int, selected: Any, touching: Any, batch: Any) -> None:
     """Keep the states of the first m lanes."""
     for l in range(m):

@@ -184,12 +184,12 @@ def nearest_of_face(
     return c_x, c_y, c_z, n_x, n_y, n_z, distance
 
 
-@inner()
+@inner(fastmath=FAST, forceinline=False)
 def _cell(x: float, low: float, width: float, n: int) -> int:
     return int(min(max(math.floor((x - low) / width), -1.0), float(n)))
 
 
-@inner(fastmath=FAST)
+@inner(fastmath=FAST, forceinline=False)
 def distance_to(
     f: int,
     x: float,
@@ -208,7 +208,7 @@ def distance_to(
     return nearest_of_face(f, x, y, z, rows)[6]
 
 
-@inner(fastmath=FAST)
+@inner(fastmath=FAST, forceinline=False)
 def append_faces(
     x: float, y: float, z: float, reach: float, l_x: float, l_y: float, faces: FaceArrays, partners: Any,
     used: int,

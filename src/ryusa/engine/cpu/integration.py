@@ -143,7 +143,7 @@ def integrate(
     stats[S.VELOCITY_CHANGE_MOVED] = math.sqrt(velocity_change_2)
 
 
-@inner(forceinline=True)
+@inner(fastmath=FAST)
 def post(stats: Any) -> None:
     """Copy to where other threads read it what they need to know of a block that has moved.
 

@@ -26,7 +26,7 @@ from ryusa.laws.rolling import reduced_radius
 from ryusa.model.contacts import N_EVENT
 
 
-@kernel(fastmath=FAST)
+@kernel(fastmath=FAST, forceinline=True)
 def immersed_dashpots(
     exact: int | None,
     hertz: int | None,

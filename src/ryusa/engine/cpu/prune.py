@@ -35,7 +35,7 @@ def prune_blocks(
         )[0]  # fmt: skip
 
 
-@inner()
+@inner(forceinline=False)
 def prune(
     b: int, lo: int, hi: int, n: int, n_solid: int, reach_on: float, ahead: float, plane_case: int,
     walled: int | None, c: Any, grains: GrainArrays, walls: WallArrays, pairs: PairArrays,
@@ -105,7 +105,7 @@ def prune(
     return 0, n_touching
 
 
-@inner()
+@inner(forceinline=False)
 def _link_partners(b: int, lo: int, hi: int, n: int, pairs: PairArrays, candidates: CandidateArrays) -> None:
     """Set the partners of the candidates of block b, and the rows where the forces on them go."""
     first, rows, crossing, wanted = (
@@ -150,7 +150,7 @@ def set_face(
     separation[4 * l + 3] = x[i, 3]
 
 
-@inner()
+@inner(forceinline=False)
 def list_faces(b: int, first_face: int, candidates: CandidateArrays) -> None:
     """List the candidates of block b that are faces."""
     first, count = candidates.first[b], 0
@@ -166,7 +166,7 @@ def list_faces(b: int, first_face: int, candidates: CandidateArrays) -> None:
     candidates.face_count[b] = count
 
 
-@inner()
+@inner(forceinline=False)
 def _save_touching(b: int, candidates: CandidateArrays, spare: CandidateArrays) -> int:
     """Copy the pairs in touch of block b; returns how many there are."""
     t = 0
@@ -180,7 +180,7 @@ def _save_touching(b: int, candidates: CandidateArrays, spare: CandidateArrays) 
     return t
 
 
-@inner()
+@inner(forceinline=False)
 def _restore_touching(b: int, n_touching: int, candidates: CandidateArrays, spare: CandidateArrays) -> None:
     """Make the saved pairs the whole list of block b."""
     first = candidates.first[b]

@@ -6,7 +6,7 @@ The schedule is a row of doubles kept between calls. It never shows in the bits 
 import math
 from typing import Any
 
-from ryusa.engine.shared.kernel import inner, kernel
+from ryusa.engine.shared.kernel import FAST, inner, kernel
 from ryusa.engine.shared.skin import best_skin
 
 SKIN = 0  # reach of the candidates beyond touch [m]
@@ -29,7 +29,7 @@ SAFETY = 1.5  # steps that a list is pruned for, over those it should last
 ROUNDED_UP = 1.000001  # what keeps a reach from falling short by round-off
 
 
-@inner()
+@inner(fastmath=FAST, forceinline=False)
 def plan_prune(schedule: Any, testing: float) -> None:
     """Choose reach and duration of the next list from the approach since the last pruning.
 

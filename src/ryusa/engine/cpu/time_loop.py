@@ -159,7 +159,7 @@ def block_forces(
         stats[S.SPRING_R] = spring_r
 
 
-@inner()
+@inner(fastmath=FAST)
 def track_overlap(
     m: int,
     selected: Any,

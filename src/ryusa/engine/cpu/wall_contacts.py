@@ -86,7 +86,7 @@ def _alike(k: int, g: int, met: Any) -> bool:
     return along > SAME_PLACE
 
 
-@inner()
+@inner(fastmath=FAST)
 def _move(k: int, g: int, touching: Any, eta: Any, rows: Any) -> None:
     """Give the memory of candidate k to candidate g."""
     copy_row(g, eta, rows, k, eta, rows)

@@ -163,7 +163,7 @@ def end_contact(
     return ends, v_end - v_mean, f_n, raw, b, slid, until if ends else math.inf
 
 
-@inner()
+@inner(fastmath=FAST)
 def instant_step(
     state: int, rest: float, overlap: float, closing: float, curve: float, m: float, k_d: float, eta_d: float,
     m_t: float, k_sd: float, eta_sd: float, p: Vector, f_t: Vector, s: Vector, tension: bool, rules: Rules,

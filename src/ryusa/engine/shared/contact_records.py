@@ -6,7 +6,7 @@ import numpy as np
 
 from ryusa.engine.shared import block_statistics as S
 from ryusa.engine.shared import record_fields as R
-from ryusa.engine.shared.kernel import kernel
+from ryusa.engine.shared.kernel import FAST, kernel
 from ryusa.engine.shared.status import FAULT_EVENTS_FULL, FAULT_NONE
 from ryusa.model import EVENT, State
 from ryusa.model.contacts import N_EVENT, in_order_of_parting
@@ -16,7 +16,7 @@ Vector = tuple[float, float, float]
 ONLY_TRACKED = int(EventRule.TRACKED)
 
 
-@kernel()
+@kernel(fastmath=FAST, forceinline=True)
 def _put(record: Any, column: int, plane_case: int, s: Vector, n: Vector) -> None:
     # a plane scene hands over one component along the tangent (n_z, 0, -n_x)
     if plane_case:
@@ -25,7 +25,7 @@ def _put(record: Any, column: int, plane_case: int, s: Vector, n: Vector) -> Non
         record[column], record[column + 1], record[column + 2] = s
 
 
-@kernel()
+@kernel(fastmath=FAST, forceinline=True)
 def begin_record(
     plane_case: int,
     rule: int,
@@ -63,7 +63,7 @@ def begin_record(
         record[R.OMEGA_BEGIN + k] = w[i, k]
 
 
-@kernel()
+@kernel(fastmath=FAST, forceinline=True)
 def keep_record(
     record: Any,
     t: float,
@@ -93,7 +93,7 @@ def keep_record(
     record[R.T_PART] = f_n
 
 
-@kernel()
+@kernel(fastmath=FAST, forceinline=True)
 def end_record(
     plane_case: int,
     tension: int,

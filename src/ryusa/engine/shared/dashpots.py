@@ -4,7 +4,7 @@ from typing import Any
 
 from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
-from ryusa.engine.shared.kernel import inner, kernel
+from ryusa.engine.shared.kernel import FAST, inner, kernel
 from ryusa.engine.shared.variant import LawChoice
 from ryusa.laws.collision import effective_mass, effective_mass_tangential, zeta_for_restitution
 from ryusa.laws.contact import damping, damping_in_steps
@@ -15,7 +15,7 @@ from ryusa.laws.immersed import stokes_number
 from ryusa.laws.rolling import reduced_radius
 
 
-@inner()
+@inner(fastmath=FAST)
 def dashpots(i: int, j: int, rotation: int, c: Any, m: Any, x: Any, inertia: Any) -> tuple[float, float]:
     """Normal and tangential dashpot of a pair [N s/m]; `x` as in `arrays.Grains`."""
     m_t = effective_mass_tangential(m[i], x[i, 3], inertia[i], m[j], x[j, 3], inertia[j], rotation != 0)
@@ -26,7 +26,7 @@ def dashpots(i: int, j: int, rotation: int, c: Any, m: Any, x: Any, inertia: Any
     )
 
 
-@inner()
+@inner(fastmath=FAST)
 def springs_of_maps(
     i: int, j: int, rotation: int, c: Any, m: Any, x: Any, inertia: Any
 ) -> tuple[float, float, float, float]:
@@ -44,7 +44,7 @@ def springs_of_maps(
     )
 
 
-@inner()
+@inner(fastmath=FAST)
 def springs_hertz(
     i: int, j: int, rotation: int, c: Any, m: Any, x: Any, inertia: Any
 ) -> tuple[float, float, float, float]:
@@ -60,7 +60,7 @@ def springs_hertz(
     )
 
 
-@inner()
+@inner(fastmath=FAST)
 def set_springs(
     at: int, i: int, j: int, rotation: int, kind: int, c: Any, m: Any, x: Any, inertia: Any, out: Any
 ) -> None:
@@ -86,7 +86,7 @@ def springs_of(
         set_springs(k, i[k], j[k], rotation, kind, c, m, x, inertia, out)
 
 
-@inner()
+@inner(fastmath=FAST)
 def zeta_immersed(choice: LawChoice, closing: float, i: int, j: int, c: Any, m: Any, w: Any) -> float:
     """Damping ratio of a pair that just touched under water at a closing speed [-]."""
     m_n = effective_mass(m[i], m[j])
@@ -96,7 +96,7 @@ def zeta_immersed(choice: LawChoice, closing: float, i: int, j: int, c: Any, m: 
     return zeta_for_restitution(max(e, c[P.E_LEAST]), choice.tension != 0)
 
 
-@inner()
+@inner(fastmath=FAST)
 def damping_immersed(
     choice: LawChoice, closing: float, i: int, j: int, c: Any, m: Any, w: Any
 ) -> tuple[float, float]:
@@ -112,7 +112,7 @@ def dashpot_immersed(choice: LawChoice, closing: float, i: int, j: int, c: Any, 
     return damping_in_steps(eta, m_n, c[P.DT])
 
 
-@inner()
+@inner(fastmath=FAST)
 def spring_immersed(
     choice: LawChoice, closing: float, i: int, j: int, c: Any, m: Any, w: Any
 ) -> tuple[float, float]:

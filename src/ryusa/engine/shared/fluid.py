@@ -95,7 +95,7 @@ def torque_over_spin(
     return submerged * water_torque(choice.torque, spin, 2.0 * r, c[P.NU], c[P.RHO_W])
 
 
-@inner()
+@inner(fastmath=FAST)
 def close_fluid_interval(account: Any, stats: Any) -> None:
     """Book the second half of the work of the water in the step before."""
     account[B_DRAG] += stats[S.PENDING_DRAG]

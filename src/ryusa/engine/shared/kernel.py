@@ -21,12 +21,12 @@ _EDITION = edition(LAWS, _ENGINE / "shared", _ENGINE / "cpu", _ENGINE.parent / "
 
 def kernel(**options: Any) -> Callable[[F], F]:
     """Compile a function when first called; the text of laws, model and engine is its edition."""
-    return compiled(_EDITION, **options)
+    return compiled(_EDITION, **{"forceinline": False} | options)
 
 
 def inner(**options: Any) -> Callable[[F], F]:
-    """A kernel that only kernels call: without an entry from Python, which takes its time to compile."""
-    return kernel(no_cpython_wrapper=True, no_cfunc_wrapper=True, **options)
+    """A kernel that only kernels call: inlined unless told otherwise, and without an entry from Python."""
+    return kernel(no_cpython_wrapper=True, no_cfunc_wrapper=True, **{"forceinline": True} | options)
 
 
 @contextmanager

@@ -37,7 +37,7 @@ NONE, PRINTED, CONSTANT, EPSD, LIMITED = numbers(
 B_ROLL, B_RELEASED_R = int(Term.ROLL), int(Term.RELEASED_R)
 
 
-@kernel(fastmath=FAST)
+@kernel(fastmath=FAST, forceinline=True)
 def rolling_friction(
     model: int,
     arms: int,
@@ -125,7 +125,7 @@ def rolling_friction(
     return e_x + q_x, e_y + q_y, e_z + q_z, energy
 
 
-@kernel(fastmath=FAST)
+@kernel(fastmath=FAST, forceinline=True)
 def twisting_torque(
     f_n: float, along: float, coefficient: float, body_i: Body, body_j: Body, dt: float
 ) -> float:
@@ -135,7 +135,7 @@ def twisting_torque(
     return -math.copysign(rolling_constant(limit, along, inertia, dt), along)
 
 
-@kernel(fastmath=FAST)
+@kernel(fastmath=FAST, forceinline=True)
 def end_rolling(
     rolling: int, row: Any, c: Any, hdt: float, w_i: Vector, w_j: Vector, radius: float, account: Any
 ) -> None:

@@ -2,10 +2,10 @@
 
 import math
 
-from ryusa.engine.shared.kernel import kernel
+from ryusa.engine.shared.kernel import FAST, kernel
 
 
-@kernel()
+@kernel(fastmath=FAST)
 def best_skin(skin: float, closing: float, making: float, keeping: float) -> float:
     """Reach of a list beyond touch that costs least [m]; at most twice, at least half of what it is.
 
