@@ -371,6 +371,77 @@ frames = "2 ms"
 events = "all"
 """
 
+SERVO_FEEDS = """
+title = "A lid follows a bed that is drawn off below and fed beside it, and the box is tilted"
+[grains]
+diameter = "4 mm"
+density = "2650 kg/m3"
+spread = 0.1
+[contact]
+stiffness = "2000 N/m"
+restitution = 0.5
+friction = 0.3
+[motion]
+rotation = "free"
+plane = false
+[[planes]]
+name = "left"
+point = ["0 cm", "0 cm", "0 cm"]
+normal = [1, 0, 0]
+[[planes]]
+name = "right"
+point = ["2.4 cm", "0 cm", "0 cm"]
+normal = [-1, 0, 0]
+[[planes]]
+name = "front"
+point = ["0 cm", "0 cm", "0 cm"]
+normal = [0, 1, 0]
+[[planes]]
+name = "back"
+point = ["0 cm", "2.4 cm", "0 cm"]
+normal = [0, -1, 0]
+[[planes]]
+name = "floor"
+point = ["0 cm", "0 cm", "0 cm"]
+normal = [0, 0, 1]
+[[walls]]
+name = "lid"
+shape = "rectangle"
+at = ["1.1 cm", "0 cm", "1.7 cm"]
+sides = [["1.3 cm", "0 cm", "0 cm"], ["0 cm", "2.4 cm", "0 cm"]]
+servo = { direction = [0, 0, -1], force = "0.5 N", max_speed = "20 cm/s", max_travel = "1.6 cm" }
+[[walls]]
+name = "partition"
+shape = "rectangle"
+at = ["1 cm", "0 cm", "1.4 cm"]
+sides = [["0 cm", "2.4 cm", "0 cm"], ["0 cm", "0 cm", "4 cm"]]
+[build]
+kind = "fill"
+low = ["0 mm", "0 mm", "0 mm"]
+high = ["2.4 cm", "2.4 cm", "1.4 cm"]
+[[feeds]]
+name = "hose"
+centre = ["5 mm", "12 mm", "4 cm"]
+radius = "4 mm"
+rate = "150 grains/s"
+velocity = ["0 m/s", "0 m/s", "-0.4 m/s"]
+begin = "0.05 s"
+[[exits]]
+name = "hatch"
+low = ["1.4 cm", "0.7 cm", "-5 mm"]
+high = ["2.2 cm", "1.5 cm", "2.2 mm"]
+[time]
+steps_per_contact = 20
+[[timeline]]
+at = "0.21 s"
+slope_angle = "5 deg"
+[stop]
+time = "0.3 s"
+[record]
+frames = "2 ms"
+events = "all"
+"""
+
 CLUMPS = """
 title = "Clumps and spheres fall on a bed, periodic, which is tilted on the way"
 [grains]
@@ -441,6 +512,6 @@ events = "all"
 
 KINDS = {
     "dry-2d": DRY_2D, "dry-3d": DRY_3D, "saltation": SALTATION, "two-way": TWO_WAY, "rolling": ROLLING,
-    "walls": WALLS, "feeds": FEEDS, "elastic": ELASTIC, "servo": SERVO,
+    "walls": WALLS, "feeds": FEEDS, "elastic": ELASTIC, "servo": SERVO, "servo-feeds": SERVO_FEEDS,
     "clumps": CLUMPS, "clumps-water": CLUMPS_IN_WATER,
 }  # fmt: skip

@@ -42,8 +42,6 @@ def check_servo(case: "Case", wall: "WallSection", key: str) -> Iterator[CaseErr
         yield CaseError(f"{key}.servo.force", servo.force, "needs either force or pressure, and not both")
     if wall.shape == "cylinder":
         yield CaseError(f"{key}.servo", wall.shape, "needs a wall that is a rectangle, a disc or a mesh")
-    if case.feeds or case.exits:
-        yield CaseError(f"{key}.servo", None, "cannot be beside [[feeds]] or [[exits]]")
     towards = np.array(servo.direction)
     if not towards.any():
         yield CaseError(f"{key}.servo.direction", list(servo.direction), "must not be zero")

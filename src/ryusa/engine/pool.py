@@ -72,6 +72,9 @@ class GrainPool:
         if not same or self._inner is None:
             self._forget()
             self._inner = _scene_of(scene, self._ids, None)
+        elif state.engine is None:  # a grain left and came in again at once: no change of the timeline
+            self._forget()
+            self._inner = _scene_of(scene, self._ids, self._inner)
         elif scene is not before:
             self._inner = _scene_of(scene, self._ids, self._inner)
         self._engine.load(self._inner, self._state_of(state))
@@ -81,8 +84,9 @@ class GrainPool:
         raise ValueError("the scene has no column of water: water.profile is not COLUMN")
 
     def set_walls(self, motion: Floats) -> None:
-        """Refuse: grains that enter or leave need walls whose motion the scene gives."""
-        raise ValueError("walls pressed by a servo cannot be beside feeds or exits")
+        """Set the motion of the walls from this step on, as the engine does; nothing without a grain."""
+        if self._inner is not None:
+            self._engine.set_walls(motion)
 
     def kinematics(self) -> tuple[Floats, Floats, Floats]:
         """Centres [m] and velocities [m/s] by id, nan for grains that are not there; no impulse."""

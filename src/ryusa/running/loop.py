@@ -310,11 +310,12 @@ class Loop:
 
     def _pass_grains(self, traffic: TrafficRule) -> None:
         """Let grains leave and enter, and go on with those that are there."""
-        passed = traffic.at_instant(self.scene, self.engine, self._step, self._t)
+        scene = with_servos(self.scene, self.servo)
+        passed = traffic.at_instant(scene, self.engine, self._step, self._t)
         if passed is not None:
             self._collect_contacts()
             self._gathered.append(passed.events)
-            self.engine.load(self.scene, passed.state)
+            self.engine.load(scene, passed.state)
             self.recorder.passages(passed.rows)
         for line in traffic.news(self._step, self._t):
             self.progress.line(line)
