@@ -33,6 +33,7 @@ from ryusa.running.summary import summary_lines
 from ryusa.running.timeline import Change, in_order
 from ryusa.running.traffic import TrafficRule
 from ryusa.running.watch import Watch
+from ryusa.running.water import advanced, started
 from ryusa.water.coupling import Coupling
 
 Done = TypeVar("Done")
@@ -274,31 +275,12 @@ class Loop:
         self._pace.took(n_steps, n_grain, begun)
 
     def _steps(self, n_steps: int) -> Flags:
-        """Step the engine, with an exchange between water and grains at each coupling interval."""
-        end = self._step + n_steps
-        while self._step < end:
-            due = end if self._water is None else self._water.due
-            k = min(end, due) - self._step
-            flags = self.engine.advance(k)
-            if flags:
-                return flags
-            self._step += k
-            if self._water is not None and self._step == due:
-                self.engine.set_fluid(self._water.exchange(*self.engine.kinematics()))
-        return Flags()
+        """Step the engine, and the water that its grains feel."""
+        self._step, flags = advanced(self.engine, self._water, self._step, n_steps)
+        return flags
 
     def _start_water(self, state: State) -> None:
-        """Initialise the column of water if the scene has one, or restore it from the state."""
-        column = self.scene.column
-        if column is None:
-            return
-        if state.coupling is not None and state.fluid is not None:
-            sampled = state.fluid.sampled
-            self._water = Coupling.resume(self.scene, column, column.interval, state.coupling, sampled)
-            return
-        x, _, _ = self.engine.kinematics()
-        self._water = Coupling.begin(self.scene, column, column.interval, x, step=self._step)
-        self.engine.set_fluid(self._water.sampled)
+        self._water = started(self.scene, self.engine, state, self._step)
 
     def state(self) -> State:
         """Snapshot of grains and water, sufficient for an exact resume."""
