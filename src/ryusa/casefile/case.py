@@ -8,6 +8,7 @@ from pydantic import Field, PrivateAttr
 from ryusa.casefile.builders.schema import BuildSection
 from ryusa.casefile.contact.schema import ContactSection, RollingSection
 from ryusa.casefile.domain import DomainSection, PlaneSection
+from ryusa.casefile.forms import FormSection
 from ryusa.casefile.grains import GrainsSection
 from ryusa.casefile.materials import MaterialSection, PairSection
 from ryusa.casefile.motion import MotionSection
@@ -52,6 +53,8 @@ class Case(Section):
     """Materials of grains and walls other than that of [grains] and [contact], by name."""
     pairs: tuple[PairSection, ...] = ()
     """Contacts of two different materials."""
+    shapes: dict[str, FormSection] = Field(default_factory=lambda: {})
+    """Clumps of your own, by name, for grains.shape: made from a mesh or from ratios of axes."""
     timeline: tuple[ChangeSection, ...] = ()
     """Changes of the scene during the run, in order of time."""
     record: RecordSection = RecordSection()

@@ -88,9 +88,10 @@ class GrainsSection(Section):
         Discriminator(_shape_kind),
     ] = "sphere"
     """Form of the free grains: "sphere", a clump of the library ("dumbbell", "pebble", "rod", "triangle",
-    "tetrahedron", "disc", "blade"), or a CSV file of spheres in the folder of the case with the header
-    x [mm],y [mm],z [mm],d [mm]. Shares by number mix them, such as { rod = 0.5, "flint.csv" = 0.2 }; the
-    rest are spheres. A clump has the volume of a sphere of its diameter; its orientation is random."""
+    "tetrahedron", "disc", "blade"), one of [shapes], or a CSV file of spheres in the folder of the case with
+    the header x [mm],y [mm],z [mm],d [mm]. Shares by number mix them, such as
+    { rod = 0.5, "flint.csv" = 0.2 }; the rest are spheres. A clump has the volume of a
+    sphere of its diameter; its orientation is random."""
     shape_volume: Annotated[Number, Field(gt=0, le=1)] = math.pi / 6
     """A_3: volume of a grain over d cubed; pi/6 for a sphere."""
     mixture: dict[str, Annotated[Number, Field(gt=0, le=1)]] = Field(default_factory=lambda: {})

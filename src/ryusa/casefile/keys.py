@@ -10,7 +10,7 @@ from pydantic import BaseModel
 from ryusa.casefile.case import Case
 from ryusa.spelling import nearest_word
 
-BY_NAME = ("materials",)  # tables of tables whose names the user chooses
+BY_NAME = ("materials", "shapes")  # tables of tables whose names the user chooses
 
 
 def dotted(path: Sequence[str | int]) -> str:

@@ -13,6 +13,7 @@ from ryusa.casefile.derive import Derived, derive
 from ryusa.casefile.grading import points_of
 from ryusa.casefile.motion import slab_width
 from ryusa.casefile.record import events_of
+from ryusa.casefile.shape import spheres_of
 
 
 def resolved(case: Case, derived: Derived | None = None) -> dict[str, Any]:
@@ -42,6 +43,8 @@ def resolved(case: Case, derived: Derived | None = None) -> dict[str, Any]:
     for section in (*data["planes"], *data["walls"], *data["feeds"]):
         if section["material"] is None:
             del section["material"]
+    for name, section in data["shapes"].items():
+        section["made_of"] = spheres_of(case, name)
     if not case.materials:
         del data["grains"]["mixture"], data["grains"]["bed_material"]
     for key in (
@@ -49,6 +52,7 @@ def resolved(case: Case, derived: Derived | None = None) -> dict[str, Any]:
         "exits",
         "materials",
         "pairs",
+        "shapes",
     ):  # left out where there are none, as in cases of earlier versions
         if not data[key]:
             del data[key]

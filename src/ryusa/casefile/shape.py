@@ -1,4 +1,4 @@
-"""grains.shape: clumps in place of spheres, from the library of shapes or from tables of spheres."""
+"""grains.shape: clumps in place of spheres, from the library, from [shapes] or from tables of spheres."""
 
 from collections.abc import Iterator
 from functools import lru_cache
@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from ryusa.casefile.files import folder_of, inside
+from ryusa.casefile.forms import check_forms, clump_of_form, form_rows, spheres_of_form
 from ryusa.casefile.rows import ExplainRow, count, number, word
 from ryusa.errors import CaseError, ParseError
 from ryusa.formats.clump import read_clump
@@ -49,9 +50,15 @@ def shapes_of(case: "Case") -> tuple[Shape, ...]:
 
 
 def clump_files(case: "Case") -> list[str]:
-    """Names of the files that `grains.shape` gives."""
+    """Names of the files that `grains.shape` and [shapes] give."""
     given = case.grains.shape
-    return [name for name in ([given] if isinstance(given, str) else given) if _is_file(name)]
+    tables = [name for name in ([given] if isinstance(given, str) else given) if _is_file(name)]
+    return tables + [form.file for form in case.shapes.values() if form.file is not None]
+
+
+def spheres_of(case: "Case", name: str) -> list[list[float]]:
+    """Spheres of one of [shapes] as x, y, z, d, in the unit of its mesh, for the resolved case."""
+    return [list(one) for one in spheres_of_form(case, name)]
 
 
 def has_clumps(case: "Case") -> bool:
@@ -78,6 +85,9 @@ def spheres_per_grain(case: "Case") -> float:
 def check_shape(case: "Case") -> Iterator[CaseError]:
     """Find shapes that are unknown, and cases that cannot have clumps."""
     given = case.grains.shape
+    if faults := list(check_forms(case)):
+        yield from faults
+        return
     if not has_clumps(case) and isinstance(given, str):
         return
     try:
@@ -135,6 +145,7 @@ def shape_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
             f"{one.clump.sphericity:.3g}"
         )
         rows.append(word("grains", f"shape '{one.name}'", f"{100.0 * one.share:.4g} %", form))
+        rows += form_rows(case, one.name, one.clump)
     most = "free grains with the spheres of clumps counted one by one: what a step costs"
     rows.append(count("grains", "spheres to compute", derived.n_sphere, most))
     lever = "of its mass, of the sphere farthest out: a push off the centre also turns a clump; sets the step"
@@ -148,10 +159,16 @@ def _is_file(name: str) -> bool:
 
 def _clump_of(case: "Case", key: str, name: str) -> Clump:
     """A shape of the library or of a file, of the volume of a sphere of 1 m."""
+    if name in case.shapes:
+        return clump_of_form(case, name)
     if not _is_file(name):
         if name not in SHAPES:
-            known = f"must be {', '.join(SHAPES)}, or a CSV file of spheres in the folder of the case"
-            raise CaseError(key, name, known, nearest_word(name, tuple(SHAPES)))
+            words = (*SHAPES, *case.shapes)
+            known = (
+                f"must be {', '.join(words)}, or a CSV file of spheres in the folder of the case; "
+                "[shapes.NAME] makes one of a mesh or of ratios of axes"
+            )
+            raise CaseError(key, name, known, nearest_word(name, words))
         return _of_library(name)
     path = inside(case, key, name)
     if not path.is_file():

@@ -48,13 +48,14 @@ class Moments:
         return np.trace(self.second) * np.eye(3) - self.second
 
 
-def moments_of_union(x: Floats, r: Floats) -> Moments:
+def moments_of_union(x: Floats, r: Floats, *, nodes: int | None = None) -> Moments:
     """Volume, centre and second moments of the union of spheres.
 
     Parameters
     ----------
     x : centres [m], shape (n, 3).
     r : radii [m], shape (n,), > 0. No sphere lies wholly inside another.
+    nodes : of the Gauss rule between two heights, where sections are summed; fine when not given.
 
     Notes
     -----
@@ -68,7 +69,7 @@ def moments_of_union(x: Floats, r: Floats) -> Moments:
     x, r = (x - origin) / scale, r / scale
     if three_overlap(x, r):
         heights = _heights(x, r)
-        nodes = max(NODES[0], min(NODES[1], 1500 // len(heights)))
+        nodes = nodes or max(NODES[0], min(NODES[1], 1500 // len(heights)))
         fine, coarse = (_by_sections(x, r, heights, one) for one in (nodes, 2 * nodes // 3))
         change = np.abs(fine - coarse)
         second = fine[4:13].reshape(3, 3)
