@@ -25,6 +25,7 @@ _NAMES = {  # quantity that an SI unit measures, for messages
     "rad": "an angle",
     "rad/s": "a spin",
     "Hz": "a frequency",
+    "J/m2": "an energy per area",
 }
 _SI_UNITS = (*_NAMES, "kg/s", "Pa", "J", "m2")
 _METRE, _SECOND, _GRAM, _RADIAN = (("meter", 1),), (("second", 1),), (("gram", 1),), (("radian", 1),)

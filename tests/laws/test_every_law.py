@@ -13,6 +13,7 @@ import ryusa.laws
 
 # Laws that may answer with a number although an argument is not one, and why that hides nothing.
 BLIND = {
+    ("adhesion.sticking_speed_hertz", "pull"),  # one of the two attractions is 0
     ("walls.nearest_on_cylinder", "length"),  # the end, of a point that is not beyond it
     *(("walls.nearest_on_triangle", name) for name in ("s_11", "s_12", "s_22")),  # of a face in the scene
     # moduli have no effect where both materials have one Poisson's ratio, as here

@@ -22,6 +22,7 @@ PROBES = {  # of each generated dispatch: what its laws are asked, in the order 
     "water_torque": (300.0, 2.0e-3, 1.0e-6, 1000.0),
     "profile_speed": (0.004, 0.1, 0.002, 1.0e-6, 0.3),
     "wet_restitution": (0.9, 60.0, 35.0, 1.0e-5, 2.0e-3),
+    "attraction": (0.05, 1.0e-3, 1.0e-5),
     "rolling_length": (1.0e-3, 2.0e-3, 1.0e-5),
     "mixing_length": (0.009, 0.01, 0.02, 0.1, 1.0e-4, 0.41),
     "wall_stress": (0.3, 0.002, 1.0e-5, 0.002, 1.0e-7),
@@ -30,7 +31,7 @@ PROBES = {  # of each generated dispatch: what its laws are asked, in the order 
 FAMILY_OF = {
     "drag_coefficient": "Drag", "hindrance": "Hindrance", "shear_lift": "Lift", "magnus": "Magnus",
     "water_torque": "WaterTorque", "profile_speed": "Profile", "wet_restitution": "Rebound",
-    "rolling_length": "Arm", "mixing_length": "Mixing", "wall_stress": "BedKind",
+    "attraction": "Adhesion", "rolling_length": "Arm", "mixing_length": "Mixing", "wall_stress": "BedKind",
     "side_friction": "SideWalls",
 }  # fmt: skip
 SAME = {"BedKind.NO_SLIP", "BedKind.MOVING"}  # one wall: the eddies tell the two apart

@@ -13,7 +13,8 @@ from ryusa.laws.families import FAMILIES, Cap, Slip
 
 # A law and one line in families.py are enough; in all others a new choice needs code of its own.
 BY_LAW_ALONE = {
-    "Arm", "Profile", "Drag", "Hindrance", "Lift", "Magnus", "WaterTorque", "Rebound", "Mixing", "SideWalls",
+    "Adhesion", "Arm", "Profile", "Drag", "Hindrance", "Lift", "Magnus", "WaterTorque", "Rebound", "Mixing",
+    "SideWalls",
 }  # fmt: skip
 IMPORT_ALL = """
 import importlib, json, sys, types

@@ -29,7 +29,14 @@ from ryusa.casefile.case import Case
 from ryusa.casefile.choices import chosen
 from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.contact.speed import expected_speed
-from ryusa.casefile.contact.values import hertz_law, is_hertz, may_pull, timing
+from ryusa.casefile.contact.values import (
+    adhesion,
+    adhesion_amount,
+    hertz_law,
+    is_hertz,
+    may_pull,
+    timing,
+)
 from ryusa.casefile.derive import Derived, derive
 from ryusa.casefile.films import film_reach
 from ryusa.casefile.materials import GRAINS, case_of_pair, names_of
@@ -184,6 +191,8 @@ def contact_of(case: Case, derived: Derived) -> ContactLaw:
         cap=chosen(case, Cap),
         tension=may_pull(case),
         timing=timing(case),
+        adhesion=adhesion(case),
+        adhesion_amount=adhesion_amount(case),
     )
 
 

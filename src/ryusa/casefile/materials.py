@@ -13,19 +13,22 @@ from pydantic import Field
 
 from ryusa.casefile.builders.schema import EmptySection
 from ryusa.casefile.builders.values import built_counts
-from ryusa.casefile.contact.values import friction, is_hertz, stiffness, timing
+from ryusa.casefile.contact.values import adhesion, friction, is_hertz, stiffness, timing
 from ryusa.casefile.quantities import (
     Density,
+    EnergyDensity,
+    Force,
     FrictionAngle,
     FrictionCoefficient,
     Number,
     Pressure,
     Stiffness,
+    SurfaceEnergy,
 )
 from ryusa.casefile.rows import ExplainRow, number, word
 from ryusa.casefile.section import Section, given
 from ryusa.errors import CaseError
-from ryusa.laws.families import ContactTiming
+from ryusa.laws.families import Adhesion, ContactTiming
 from ryusa.laws.materials import poisson_of_two, stiffness_of_two, young_of_two
 from ryusa.spelling import nearest_word
 
@@ -35,6 +38,8 @@ if TYPE_CHECKING:
 GRAINS = "grains"  # the material of [grains] and [contact]
 MOST = 100  # materials: their numbers are int8
 _OF_PAIRS = ("friction", "restitution", "rolling_coefficient")
+_ADHESION_UNITS = {"pull_off_force": "N", "work_of_adhesion": "J/m2", "adhesion_density": "J/m3"}
+_OF_ADHESION = Adhesion.all_takes()  # of pairs too, where the case has adhesion
 
 
 class MaterialSection(Section):
@@ -57,13 +62,19 @@ class MaterialSection(Section):
     """Normal coefficient of restitution between two grains of this material."""
     rolling_coefficient: Annotated[Number, Field(ge=0)] | None = None
     """rolling.coefficient between two grains of this material."""
+    pull_off_force: Annotated[Force, Field(ge=0, le=1.0e9)] | None = None
+    """contact.pull_off_force between two grains of this material."""
+    work_of_adhesion: Annotated[SurfaceEnergy, Field(ge=0, le=1.0e9)] | None = None
+    """contact.work_of_adhesion between two grains of this material."""
+    adhesion_density: Annotated[EnergyDensity, Field(ge=0, le=1.0e15)] | None = None
+    """contact.adhesion_density between two grains of this material."""
 
 
 class PairSection(Section):
     """Contacts of two different materials.
 
-    No law gives friction and restitution of a pair from those of its two materials: where these differ, they
-    have to be given here.
+    No law gives friction, restitution and adhesion of a pair from those of its two materials: where these
+    differ, they have to be given here.
     """
 
     materials: tuple[str, str]
@@ -76,6 +87,12 @@ class PairSection(Section):
     """Normal coefficient of restitution of the pair."""
     rolling_coefficient: Annotated[Number, Field(ge=0)] | None = None
     """rolling.coefficient of the pair."""
+    pull_off_force: Annotated[Force, Field(ge=0, le=1.0e9)] | None = None
+    """contact.pull_off_force of the pair."""
+    work_of_adhesion: Annotated[SurfaceEnergy, Field(ge=0, le=1.0e9)] | None = None
+    """contact.work_of_adhesion of the pair."""
+    adhesion_density: Annotated[EnergyDensity, Field(ge=0, le=1.0e15)] | None = None
+    """contact.adhesion_density of the pair."""
 
 
 def names_of(case: "Case") -> tuple[str, ...]:
@@ -129,9 +146,10 @@ def case_of_pair(case: "Case", a: str, b: str) -> "Case":
     k_a, k_b = _stiffness(case, a), _stiffness(case, b)
     e_a, e_b = _young(case, a), _young(case, b)
     nu_a, nu_b = _poisson(case, a), _poisson(case, b)
-    values = {key: _of_pair(case, a, b, key) for key in _OF_PAIRS}
+    values = {key: _of_pair(case, a, b, key) for key in _keys_of_pairs(case)}
     changed: dict[str, Any] = {
         "friction": values["friction"], "friction_angle": None, "restitution": values["restitution"],
+        **{key: values[key] for key in adhesion(case).takes},
     }  # fmt: skip
     if is_hertz(case):
         changed["youngs_modulus"] = young_of_two(e_a, nu_a, e_b, nu_b)
@@ -150,6 +168,11 @@ def case_of_pair(case: "Case", a: str, b: str) -> "Case":
             "pairs": (),
         }
     )
+
+
+def _keys_of_pairs(case: "Case") -> tuple[str, ...]:
+    """Keys that belong to a pair and not to its materials."""
+    return (*_OF_PAIRS, *adhesion(case).takes)
 
 
 def lightest_of(case: "Case", a: str, b: str, free: bool) -> "Case":
@@ -204,6 +227,9 @@ def _of_material(case: "Case", name: str, key: str) -> float:
         return own
     if key == "friction":
         return friction(case)
+    if key in _OF_ADHESION:
+        value: float | None = getattr(case.contact, key)
+        return value or 0.0
     return case.rolling.coefficient if key == "rolling_coefficient" else case.contact.restitution or math.nan
 
 
@@ -275,6 +301,12 @@ def _keys(case: "Case") -> Iterator[CaseError]:
         if given(one, "rolling_coefficient") and case.rolling.model == "none":
             value = one.rolling_coefficient
             yield CaseError(f"{key}.rolling_coefficient", value, "has no effect with rolling.model = 'none'")
+        for name in _OF_ADHESION:
+            if given(one, name) and name not in adhesion(case).takes:
+                yield CaseError(
+                    f"{key}.{name}", getattr(one, name),
+                    f"has no effect with contact.adhesion = '{case.contact.adhesion}'",
+                )  # fmt: skip
     law = case.contact.law
     for key, one in sections:
         for name in ("youngs_modulus", "poisson_ratio") if not elastic else ("stiffness",):
@@ -325,7 +357,7 @@ def _missing(case: "Case") -> Iterator[CaseError]:
     pairs = meeting(case)
     for a, b in pairs:
         k = entries.index({a, b}) if {a, b} in entries else -1
-        for key in _OF_PAIRS:
+        for key in _keys_of_pairs(case):
             values = [_of_material(case, name, key) for name in (a, b)]
             asked = k >= 0 and _own(case, case.pairs[k], key) is not None
             if values[0] != values[1] and not asked:
@@ -359,6 +391,8 @@ def material_rows(case: "Case") -> list[ExplainRow]:
         values = f"mu {friction(one):.4g}, e {one.contact.restitution:.4g}"
         if case.rolling.model != "none":
             values += f", rolling {one.rolling.coefficient:.4g}"
+        for key in adhesion(case).takes:
+            values += f", {key} {getattr(one.contact, key):.4g} {_ADHESION_UNITS[key]}"
         if is_hertz(case):
             values += (
                 f", E {_young(one, GRAINS):.4g} Pa, nu {one.contact.poisson_ratio:.3g} if both were alike"

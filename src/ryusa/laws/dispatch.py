@@ -11,6 +11,7 @@ from ryusa.laws._family import dispatch, marked, rules
 from ryusa.laws._law import EDITION, compiled
 from ryusa.laws.drag import drag_among_neighbours, drag_factor, reynolds
 from ryusa.laws.families import (
+    Adhesion,
     Arm,
     BedKind,
     Cap,
@@ -51,6 +52,8 @@ profile_speed = dispatch(
 )
 # Restitution of a contact under water [-].
 wet_restitution = dispatch(Rebound, ("e_dry", "st", "st_c", "roughness", "d"), unasked=(Rebound.DRY,))
+# Attraction [N] of a pair in touch, and the energy that it has released since touch [J].
+attraction = dispatch(Adhesion, ("amount", "r", "overlap"), answers=2, unasked=(Adhesion.NONE,))
 # Length that turns the coefficient of rolling friction into its arm [m].
 rolling_length = dispatch(Arm, ("r_i", "r_j", "overlap"))
 # Mixing length [m] at a face.

@@ -13,6 +13,7 @@ that `laws.dispatch` gives to the family. Modules that distinguish choices witho
 # fmt: off
 
 from ryusa.laws._family import Family
+from ryusa.laws.adhesion import adhesion_area, adhesion_constant, adhesion_dmt
 from ryusa.laws.collision import zeta_no_tension, zeta_tension
 from ryusa.laws.contact import normal_force, normal_force_no_tension, slide
 from ryusa.laws.drag import (
@@ -94,6 +95,19 @@ class ContactTiming(Family, key="contact.timing"):
         "a contact begins and ends at time steps, with errors of one step", "LAMMPS and others")
     EXACT = (1, "exact", None,
         "a contact begins and ends at its true instants within a step", "design/0014")
+
+
+class Adhesion(Family, key="contact.adhesion"):
+    """Attraction of two grains in touch, along their normal, beside springs and dashpots."""
+
+    NONE = (0, "none", None, "no attraction")
+    CONSTANT = (1, "constant", adhesion_constant, "the pull-off force that is given, the same for all pairs",
+        "design/0024", ("pull_off_force",))
+    DMT = (2, "DMT", adhesion_dmt, "the pull-off force 2 pi w R_e, constant in touch",
+        "Bradley 1932; Derjaguin, Muller & Toporov 1975", ("work_of_adhesion",))
+    CONTACT_AREA = (3, "contact area", adhesion_area,
+        "c pi R_e x, energy density times the contact area of elastic spheres: simplified JKR",
+        "LIGGGHTS sjkr, with the area of Hertz", ("adhesion_density",), ("elastic",))
 
 
 class Slip(Family, key="contact.slip"):
@@ -342,7 +356,7 @@ class Fluctuations(Family, key="water.column.fluctuations"):
 
 
 FAMILIES: tuple[type[Family], ...] = (
-    ContactForce, DampingLaw, Unloading, Parting, ContactTiming, Slip, Cap, Rolling, Arm, Profile, Above,
-    Drag, DragOfForm, Hindrance, Buoyancy, Lift, Magnus, WaterTorque, Rebound, Film, BedKind, SurfaceRule,
-    Drive, Start, Mixing, SideWalls, Fluctuations,
+    ContactForce, DampingLaw, Unloading, Parting, ContactTiming, Adhesion, Slip, Cap, Rolling, Arm,
+    Profile, Above, Drag, DragOfForm, Hindrance, Buoyancy, Lift, Magnus, WaterTorque, Rebound, Film,
+    BedKind, SurfaceRule, Drive, Start, Mixing, SideWalls, Fluctuations,
 )

@@ -10,7 +10,7 @@ from ryusa.laws.families import Cap
 from ryusa.measure._run import Floats, Run
 from ryusa.measure.snapshot import Snapshot, frame_at, inside_periods, lanes_of, scene_at, snapshot
 from ryusa.model import Scene
-from ryusa.model.pair_springs import pair_springs
+from ryusa.model.pair_springs import pair_attractions, pair_springs
 from ryusa.model.scene import Bools
 from ryusa.results.touching import touching_pairs
 
@@ -81,8 +81,8 @@ def contact_network(run: Run, t: float | None = None, lane: int | None = None) -
     -----
     A contact is that of the step before the frame, at x - v dt, where forces were recorded. It slides where
     f_s has reached tau_c = max(c + mu p, 0) of Eq. (4), where p is the force of the spring or, with
-    `contact.cap = "total"`, f_n. In 3D a contact belongs to the slice that holds its point of touch.
-    Contacts with [[walls]] are left out.
+    `contact.cap = "total"`, f_n, both without adhesion. In 3D a contact belongs to the slice that holds its
+    point of touch. Contacts with [[walls]] are left out.
     """
     k = frame_at(run, t)
     scene = scene_at(run, float(run.frames.t[k]))
@@ -94,12 +94,15 @@ def contact_network(run: Run, t: float | None = None, lane: int | None = None) -
         i, j = held["i"], held["j"]
         gap, normal, overlap = _geometry(x, i, j, scene)
         spring = pair_springs(scene, i, j, overlap)[0] * overlap
-        f_n, f_s, sliding = _parts(np.asarray(held["force"], dtype=np.float64), normal, spring, i, j, scene)
+        pull = pair_attractions(scene, i, j, overlap)[0]
+        force = np.asarray(held["force"], dtype=np.float64)
+        f_n, f_s, sliding = _parts(force, normal, spring, pull, i, j, scene)
     else:
         x = inside_periods(x, scene)
         i, j = touching_pairs(x, scene)
         gap, normal, overlap = _geometry(x, i, j, scene)
         f_n, f_s = pair_springs(scene, i, j, overlap)[0] * overlap, np.full(len(i), np.nan)
+        f_n -= pair_attractions(scene, i, j, overlap)[0]
         sliding = np.zeros(len(i), dtype=np.bool_)
     chosen, slices, slice_y = 0, 1, None
     if scene.plane_case:
@@ -122,13 +125,13 @@ def contact_network(run: Run, t: float | None = None, lane: int | None = None) -
 
 
 def _parts(
-    force: Floats, normal: Floats, spring: Floats, i: Ints, j: Ints, scene: Scene
+    force: Floats, normal: Floats, spring: Floats, pull: Floats, i: Ints, j: Ints, scene: Scene
 ) -> tuple[Floats, Floats, Bools]:
     """Normal force, size of the tangential force [N], and whether that has reached the shear strength."""
     f_n = -(force * normal).sum(axis=1)
     f_s = np.linalg.norm(force + f_n[:, None] * normal, axis=1)
     law = scene.contact
-    push = f_n if law.cap == Cap.TOTAL else spring
+    push = f_n + pull if law.cap == Cap.TOTAL else spring
     mu = np.empty(len(i))
     for one, some in scene.by_pair(i, j):
         mu[some] = one.contact.mu

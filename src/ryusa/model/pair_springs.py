@@ -1,4 +1,4 @@
-"""Stiffness of the springs of single pairs, as the steps of a scene use them."""
+"""Stiffness and attraction of single pairs, as the steps of a scene use them."""
 
 import math
 
@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 from ryusa.laws.collision import effective_mass, effective_mass_tangential
 from ryusa.laws.contact import damping
 from ryusa.laws.contact_map import spring_of_map
-from ryusa.laws.families import ContactForce, ContactTiming
+from ryusa.laws.families import Adhesion, ContactForce, ContactTiming
 from ryusa.laws.hertz import effective_modulus, hertz_stiffness, mindlin_ratio
+from ryusa.model.contact_law import attraction_of
 from ryusa.model.scene import Floats, Scene
 
 Ints = NDArray[np.int64]
@@ -52,10 +53,32 @@ def pair_springs(scene: Scene, i: Ints, j: Ints, overlap: Floats) -> tuple[Float
     return found[:, 0], found[:, 1]
 
 
-def _springs_hertz(scene: Scene, i: Ints, j: Ints, overlap: Floats) -> tuple[Floats, Floats]:
-    law = scene.contact
+def pair_attractions(scene: Scene, i: Ints, j: Ints, overlap: Floats) -> tuple[Floats, Floats]:
+    """Attraction of each pair in touch [N], and the energy that it has released [J], both of shape (n,).
+
+    Parameters
+    ----------
+    scene, i, j, overlap : as in `pair_springs`.
+    """
+    force, energy = np.zeros(len(i)), np.zeros(len(i))
+    if scene.contact.adhesion == Adhesion.NONE:
+        return force, energy
+    for one, some in scene.by_pair(i, j):
+        pull, slope = attraction_of(one.contact, 1.0)  # by the radius, or the same for all pairs
+        r = 1.0 if one.contact.adhesion == Adhesion.CONSTANT else _reduced_radii(scene, i[some], j[some])
+        x = np.maximum(overlap[some], 0.0)
+        force[some] = r * (pull + slope * x)
+        energy[some] = r * (pull + 0.5 * slope * x) * x
+    return force, energy
+
+
+def _reduced_radii(scene: Scene, i: Ints, j: Ints) -> Floats:
     r = 0.5 * np.concatenate([scene.d, scene.d_fixed, np.full(scene.n_plane + scene.n_face, math.inf)])
-    r_eff = 1.0 / (1.0 / r[i] + 1.0 / r[j])
+    return 1.0 / (1.0 / r[i] + 1.0 / r[j])
+
+
+def _springs_hertz(scene: Scene, i: Ints, j: Ints, overlap: Floats) -> tuple[Floats, Floats]:
+    law, r_eff = scene.contact, _reduced_radii(scene, i, j)
     k_n = hertz_stiffness(effective_modulus(law.youngs_modulus, law.poisson_ratio), 1.0) * np.sqrt(r_eff)
     k_n *= np.sqrt(np.maximum(overlap, 0.0))
     return k_n, mindlin_ratio(law.poisson_ratio) * k_n

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ryusa.laws.families import (
     Above,
+    Adhesion,
     Arm,
     Buoyancy,
     Cap,
@@ -80,12 +81,16 @@ class ContactLaw:
     poisson_ratio: float = float("nan")  # [-]
     unloading: Unloading = Unloading.RESCALED
     speed: float = float("nan")  # impact speed to be expected [m/s]
+    adhesion: Adhesion = Adhesion.NONE  # contacts begin and end at steps then
+    adhesion_amount: float = 0.0  # pull-off force [N], work of adhesion [J/m2] or energy density [Pa]
 
 
 # Fields of ContactLaw that are the same for all pairs of materials.
-ALIKE = ("cohesion", "damping", "slip", "cap", "tension", "timing", "force", "unloading")
+ALIKE = ("cohesion", "damping", "slip", "cap", "tension", "timing", "force", "unloading", "adhesion")
 # Fields of ContactLaw that only elastic spheres have.
 ONLY_HERTZ = ("force", "youngs_modulus", "poisson_ratio", "unloading", "speed")
+# Fields of ContactLaw that only adhesive contacts have.
+ONLY_ADHESIVE = ("adhesion", "adhesion_amount")
 
 
 @dataclass(frozen=True)

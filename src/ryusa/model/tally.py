@@ -72,7 +72,7 @@ class Tally:
     kinetic: float  # translation, added mass included
     spin: float
     potential: float  # weight and buoyancy, measured from z = 0 (and x = 0 on a slope)
-    spring_n: float
+    spring_n: float  # less the energy that adhesion has released
     spring_s: float
     spring_r: float
     terms: tuple[float, ...]  # indexed by Term

@@ -10,9 +10,9 @@ import h5py
 import numpy as np
 
 from ryusa.errors import ResultsError
-from ryusa.laws.families import ContactForce, DragOfForm
+from ryusa.laws.families import Adhesion, ContactForce, DragOfForm
 from ryusa.model import Column, ContactLaw, FaceKind, Materials, RigidBodies, RollingLaw, Scene, Walls, Water
-from ryusa.model.scene import ONLY_HERTZ, EventRule
+from ryusa.model.scene import ONLY_ADHESIVE, ONLY_HERTZ, EventRule
 from ryusa.model.traffic import Traffic
 from ryusa.model.walls import N_MOTION, N_SERVO
 from ryusa.results.hdf5 import opened, read_dataset
@@ -67,6 +67,10 @@ def _scalars(scene: Scene) -> dict[str, Any]:
         del found["water"]["drag_of_form"]
     if scene.contact.force == ContactForce.LINEAR:  # as before there were others: the digest stays
         found["contact"] = {key: one for key, one in found["contact"].items() if key not in ONLY_HERTZ}
+    for one in (found["contact"], *found.get(_MATERIALS, {}).get("contact", ())):
+        if one["adhesion"] == Adhesion.NONE:  # as before there was any
+            for key in ONLY_ADHESIVE:
+                del one[key]
     walls: Walls | None = found.pop("walls")
     return found if walls is None else found | {"walls": list(walls.names)}
 

@@ -5,11 +5,11 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from ryusa.casefile.contact.speed import expected_speed
-from ryusa.casefile.contact.values import is_hertz, timing
+from ryusa.casefile.contact.values import adhesion, is_hertz, timing
 from ryusa.casefile.motion import may_rotate
 from ryusa.casefile.shape import has_clumps
 from ryusa.errors import CaseError
-from ryusa.laws.families import Arm, ContactTiming, Rolling, Slip
+from ryusa.laws.families import Adhesion, Arm, ContactTiming, Rolling, Slip
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
@@ -37,6 +37,7 @@ def check_contact(case: "Case") -> Iterator[CaseError]:
     if has_clumps(case) and timing(case) is not ContactTiming.AT_STEPS:
         allowed = "must be 'at steps' (or left out) with clumps: within a step, contacts would be those of "
         yield CaseError("contact.timing", contact.timing, allowed + "spheres (design/0022)")
+    yield from _check_adhesion(case)
     if contact.friction is None and contact.friction_angle is None:
         yield CaseError(
             "contact.friction_angle",
@@ -53,6 +54,28 @@ def check_contact(case: "Case") -> Iterator[CaseError]:
         )
     if "total" in Slip.of(contact.slip).marks and contact.cap == "spring":
         yield CaseError("contact.cap", "spring", f"must be 'total' (or left out) with slip '{contact.slip}'")
+
+
+def _check_adhesion(case: "Case") -> Iterator[CaseError]:
+    """Find adhesion without its amount, without an area, or with contacts that begin within steps."""
+    contact, chosen = case.contact, adhesion(case)
+    for key in chosen.takes:
+        if getattr(contact, key) is None:
+            yield CaseError(f"contact.{key}", None, f"missing; adhesion '{chosen.word}' needs it")
+    if chosen is Adhesion.NONE:
+        return
+    if "elastic" in chosen.marks and not is_hertz(case):
+        yield CaseError(
+            "contact.adhesion", chosen.word,
+            f"needs law 'Hertz-Mindlin', whose contacts have an area; '{Adhesion.CONSTANT.word}' and "
+            f"'{Adhesion.DMT.word}' go with law '{contact.law}'",
+        )  # fmt: skip
+    if timing(case) is not ContactTiming.AT_STEPS and not is_hertz(case) and not has_clumps(case):
+        yield CaseError(
+            "contact.timing", contact.timing,
+            "must be 'at steps' (or left out) with adhesion: contacts that begin and end within steps are "
+            "those of springs alone (design/0024)",
+        )  # fmt: skip
 
 
 def check_expected_speed(case: "Case") -> Iterator[CaseError]:

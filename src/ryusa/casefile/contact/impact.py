@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING
 from ryusa.casefile.builders.schema import BoxSection, DropSection, FillSection, FlumeSection, PackingSection
 from ryusa.casefile.builders.values import fill_cells
 from ryusa.casefile.contact.speed import expected_speed
-from ryusa.casefile.contact.values import is_hertz, largest_overlap, overlap_under
+from ryusa.casefile.contact.values import adhesion, deepest_overlap, is_hertz, overlap_under
 from ryusa.casefile.rows import ExplainRow, Flag, number
 from ryusa.casefile.water.values import water_speed
+from ryusa.laws.families import Adhesion
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
@@ -29,6 +30,7 @@ def impact_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
         deep: Flag = "warning" if rest > STABLE[1] else ""
         what = "by Hertz" if is_hertz(case) else "over k_n d"
         origin = f"weight of {layers:g} layers {what}"
+        origin += "" if adhesion(case) is Adhesion.NONE else ", with adhesion"
         rows.append(number("impact", "overlap/d at rest", rest, "-", origin, deep))
     along, where = _speed_along(case, derived)
     if along > 0.0:
@@ -44,7 +46,7 @@ def impact_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
 
 
 def _overlap(case: "Case", derived: "Derived", speed: float) -> ExplainRow:
-    overlap = largest_overlap(case, speed) / derived.d
+    overlap = deepest_overlap(case, speed) / derived.d
     stiff, (low, high) = "Young's modulus" if is_hertz(case) else "k_n", STABLE
     verdict, flag = f"in the stable range {low:g} to {high:g}", ""
     if overlap > high:

@@ -3,12 +3,23 @@
 import math
 from typing import TYPE_CHECKING
 
+from ryusa.casefile.contact.impact import STABLE
 from ryusa.casefile.contact.schema import OverlapStiffnessSection, TimeStiffnessSection
 from ryusa.casefile.contact.speed import expected_speed
-from ryusa.casefile.contact.values import PairValues, hertz_law, is_hertz, largest_overlap, parting
+from ryusa.casefile.contact.values import (
+    PairValues,
+    adhesion,
+    hertz_law,
+    is_hertz,
+    largest_overlap,
+    law_of,
+    parting,
+)
 from ryusa.casefile.rows import ExplainRow, Flag, number, word
 from ryusa.laws import collision, hertz
+from ryusa.laws.families import Adhesion
 from ryusa.laws.rolling import torque_of_slipping_disc
+from ryusa.model.contact_law import attraction_of, pull_off_of, rest_overlap_of, sticking_speed_of
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
@@ -43,6 +54,7 @@ def _friction_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     rows = [number("contact", "friction mu", derived.mu, "-", f"tan(phi), phi = {angle:.3g} deg")]
     if case.contact.cohesion:
         rows.append(number("contact", "cohesion c", case.contact.cohesion, "N", "contact.cohesion, Eq. (4)"))
+    rows += _adhesion_rows(case, derived)
     if case.rolling.twisting_coefficient > 0.0:
         speed, radius = expected_speed(case)[0], 0.25 * derived.d
         width = math.sqrt(radius * largest_overlap(case, speed))  # of the contact of two spheres
@@ -52,6 +64,37 @@ def _friction_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
             f"an impact at {speed:.3g} m/s, 3 pi/16 mu a/R*"
         )
         rows.append(number("contact", "twisting coefficient", case.rolling.twisting_coefficient, "-", origin))
+    return rows
+
+
+def _adhesion_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
+    """What adhesion does to a mean grain on a fixed one."""
+    if adhesion(case) is Adhesion.NONE:
+        return []
+    law, r, pair = law_of(case), 0.25 * derived.d, derived.fixed
+    pull, rest, weight = pull_off_of(law, r), rest_overlap_of(law, r), derived.m_weight * derived.g
+    stick, deep = sticking_speed_of(law, pair.m, r), rest / derived.d
+    at_touch, slope = attraction_of(law, r)
+    by_area = "4/27 (pi c R_e)^3/K^2, which falls with the square of Young's modulus; on a fixed grain"
+    origin = by_area if slope > 0.0 else f"{adhesion(case).about}; on a fixed grain"
+    rows = [number("contact", "pull-off force", pull, "N", origin)]
+    if weight > 0.0:
+        bond = "pull-off force over the weight of a grain; above 1 a grain hangs from another"
+        rows.append(number("contact", "Bond number", pull / weight, "-", bond))
+    far: Flag = "warning" if deep > STABLE[1] else ""
+    stiffer = "Young's modulus" if is_hertz(case) else "k_n"
+    origin = "overlap at which springs carry the attraction alone"
+    origin += f"; above {STABLE[1]:g}: take a larger {stiffer}" if far else ""
+    rows.append(number("contact", "overlap/d by adhesion", deep, "-", origin, far))
+    shear = case.contact.cohesion + derived.mu * (at_touch + slope * rest)
+    rows.append(
+        number("contact", "shear strength without load", shear, "N", "c + mu times the push by adhesion")
+    )
+    if math.isinf(stick):
+        rows.append(word("contact", "sticking speed", "none", "every head-on impact on a fixed grain sticks"))
+    else:
+        slower = "head-on impacts on a fixed grain up to this speed stick; faster ones lose more than e says"
+        rows.append(number("contact", "sticking speed", stick, "m/s", slower))
     return rows
 
 
@@ -104,6 +147,7 @@ def damping_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
             for law in ("sqrt(5) zeta sqrt(K m_eff) x^0.25", "2 zeta_s sqrt(k_s m_t)")
         )
     reached = f"contact.restitution, {ends}" if by_restitution else f"from eta_n and m_eff, {ends}"
+    reached += "" if adhesion(case) is Adhesion.NONE else ", less with adhesion"
     differ = not by_restitution and abs(derived.fixed.e - derived.free.e) > 0.02
     rows: list[ExplainRow] = []
     for name, pair in (("on a fixed grain", derived.fixed), ("between free grains", derived.free)):

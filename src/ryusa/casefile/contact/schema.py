@@ -7,6 +7,7 @@ from pydantic import Discriminator, Field, Tag
 from ryusa.casefile.quantities import (
     Dashpot,
     Duration,
+    EnergyDensity,
     Force,
     FrictionAngle,
     FrictionCoefficient,
@@ -14,6 +15,7 @@ from ryusa.casefile.quantities import (
     Pressure,
     Speed,
     Stiffness,
+    SurfaceEnergy,
     WordOf,
 )
 from ryusa.casefile.section import Section
@@ -98,6 +100,18 @@ class ContactSection(Section):
     """Friction coefficient mu = tan(phi), instead of friction_angle."""
     cohesion: Annotated[Force, Field(ge=0)] = 0.0
     """Cohesion c of Eq. (4): the shear force that a contact carries without normal force."""
+    adhesion: Annotated[str, WordOf(families.Adhesion)] = "none"
+    """Attraction of grains in touch, along the normal of their contact: none, a constant pull-off force, that
+    of Derjaguin, Muller & Toporov, or one in proportion to the contact area of elastic spheres. Contacts
+    begin and end at overlap 0. Friction sees the push that carries load and attraction."""
+    pull_off_force: Annotated[Force, Field(ge=0, le=1.0e9)] | None = None
+    """Pull-off force of every pair with adhesion = "constant": what parts two grains at rest."""
+    work_of_adhesion: Annotated[SurfaceEnergy, Field(ge=0, le=1.0e9)] | None = None
+    """Work of adhesion w with adhesion = "DMT", twice the surface energy of the material: the pull-off force
+    is 2 pi w R_e, R_e the reduced radius of the pair, half the radius of two equal grains."""
+    adhesion_density: Annotated[EnergyDensity, Field(ge=0, le=1.0e15)] | None = None
+    """Energy density with adhesion = "contact area", the attraction per contact area pi R_e x, x the overlap;
+    half of it is the cohesion energy density of LIGGGHTS' sjkr."""
     slip: Annotated[str, WordOf(families.Slip)] = "spring"
     """Force that the Coulomb limit caps: "spring" caps the tangential spring and keeps the dashpot,
     "spring-drop" caps the spring and drops the dashpot while sliding, "total" caps their sum."""
@@ -107,7 +121,7 @@ class ContactSection(Section):
     timing: Annotated[str, WordOf(families.ContactTiming)] | None = None
     """Whether a contact begins and ends at time steps, or at its true instants within a step, which needs far
     fewer steps per contact for the same restitution. When not given "exact", and "at steps" with law
-    "Hertz-Mindlin" and with clumps, which have no other."""
+    "Hertz-Mindlin", with adhesion and with clumps, which have no other."""
     parting: Annotated[str, WordOf(families.Parting)] = "no tension"
     """Whether the normal dashpot may pull before the overlap ends."""
     damping_law: Annotated[str, WordOf(families.DampingLaw)] = "Thornton"

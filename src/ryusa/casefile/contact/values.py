@@ -1,7 +1,7 @@
 """What follows from [contact]: stiffness, friction, damping ratios, and the values of one pair of grains."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from ryusa.casefile.builders.values import sizes
@@ -13,12 +13,22 @@ from ryusa.casefile.shape import has_clumps
 from ryusa.laws import collision, hertz
 from ryusa.laws import contact as contact_law
 from ryusa.laws._family import numbers
-from ryusa.laws.families import Cap, ContactForce, ContactTiming, DampingLaw, Parting, Slip, Unloading
+from ryusa.laws.families import (
+    Adhesion,
+    Cap,
+    ContactForce,
+    ContactTiming,
+    DampingLaw,
+    Parting,
+    Slip,
+    Unloading,
+)
 from ryusa.model import ContactLaw
 from ryusa.model.contact_law import (
     elastic_spheres,
     hertz_stiffness_of,
     largest_overlap_of,
+    rest_overlap_of,
     shortest_contact_of,
     step_limits_of,
 )
@@ -56,7 +66,19 @@ def timing(case: "Case") -> ContactTiming:
     """Begin and end of contacts in time."""
     if case.contact.timing is not None:
         return ContactTiming.of(case.contact.timing)
-    return ContactTiming.AT_STEPS if is_hertz(case) or has_clumps(case) else ContactTiming.EXACT
+    at_steps = is_hertz(case) or has_clumps(case) or adhesion(case) is not Adhesion.NONE
+    return ContactTiming.AT_STEPS if at_steps else ContactTiming.EXACT
+
+
+def adhesion(case: "Case") -> Adhesion:
+    """Attraction of grains in touch."""
+    return Adhesion.of(case.contact.adhesion)
+
+
+def adhesion_amount(case: "Case") -> float:
+    """Pull-off force [N], work of adhesion [J/m2] or energy density [Pa]; 0 without adhesion."""
+    (value,) = [getattr(case.contact, key) for key in adhesion(case).takes] or (None,)
+    return value or 0.0
 
 
 def parting(case: "Case") -> str:
@@ -149,6 +171,30 @@ def hertz_law(case: "Case") -> ContactLaw:
         slip=slip,
         cap=None if contact.cap is None else Cap.of(contact.cap),
         cohesion=contact.cohesion,
+        adhesion=adhesion(case),
+        adhesion_amount=adhesion_amount(case),
+    )
+
+
+def law_of(case: "Case") -> ContactLaw:
+    """Contact law of a case, as far as estimates need it: springs, damping and adhesion."""
+    if is_hertz(case):
+        return hertz_law(case)
+    (k_n, k_s), (e_n, e_s, zeta_n, zeta_s) = stiffness(case), restitution(case)
+    one = pair_values(case, sizes(case)[0], False)
+    return ContactLaw(
+        k_n=k_n,
+        k_s=k_s,
+        mu=friction(case),
+        cohesion=case.contact.cohesion,
+        e_n=e_n,
+        e_s=e_s,
+        zeta_n=one.zeta_n if math.isnan(zeta_n) else zeta_n,
+        zeta_s=one.zeta_s if math.isnan(zeta_s) else zeta_s,
+        tension=may_pull(case),
+        timing=timing(case),
+        adhesion=adhesion(case),
+        adhesion_amount=adhesion_amount(case),
     )
 
 
@@ -166,16 +212,27 @@ def shortest_contact(case: "Case", d: float, free: bool) -> float:
 
 
 def largest_overlap(case: "Case", speed: float) -> float:
-    """Largest overlap of a mean grain that hits a fixed one [m]."""
+    """Largest overlap of a mean grain that hits a fixed one [m], as it were without adhesion."""
     d = sizes(case)[0]
     one = pair_values(case, d, False)
     if is_hertz(case):
-        return largest_overlap_of(hertz_law(case), one.m, 0.25 * d, speed)
+        law = replace(hertz_law(case), adhesion=Adhesion.NONE)
+        return largest_overlap_of(law, one.m, 0.25 * d, speed)
     return collision.overlap_max(speed, one.m, stiffness(case)[0], one.zeta_n)
 
 
+def deepest_overlap(case: "Case", speed: float) -> float:
+    """Largest overlap of a mean grain that hits a fixed one [m], with adhesion."""
+    if adhesion(case) is Adhesion.NONE:
+        return largest_overlap(case, speed)
+    d = sizes(case)[0]
+    return largest_overlap_of(law_of(case), pair_values(case, d, False).m, 0.25 * d, speed)
+
+
 def overlap_under(case: "Case", load: float) -> float:
-    """Overlap of a mean grain on a fixed one under a load [N] at rest [m]."""
+    """Overlap of a mean grain on a fixed one under a load [N] at rest, with adhesion [m]."""
+    if adhesion(case) is not Adhesion.NONE:
+        return rest_overlap_of(law_of(case), 0.25 * sizes(case)[0], load)
     if is_hertz(case):
         return hertz.hertz_overlap(load, hertz_stiffness_of(hertz_law(case), 0.25 * sizes(case)[0]))
     return load / stiffness(case)[0]

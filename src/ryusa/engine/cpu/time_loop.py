@@ -16,6 +16,7 @@ from ryusa.engine.cpu.arrays import (
     WallArrays,
     Workspace,
 )
+from ryusa.engine.cpu.attraction import attract, energy_of_attraction
 from ryusa.engine.cpu.barrier import wait
 from ryusa.engine.cpu.contact_rows import has_short_rows, springs_of_row
 from ryusa.engine.cpu.exact_contact import compute_exactly, keep_states, spring_energy_of_maps
@@ -59,9 +60,9 @@ TERMS = tuple(
 @inner(fastmath=FAST, forceinline=True)
 def block_forces(
     variant: KernelVariant, flat: Present, water: Present, optional: Present, exact: Present, hertz: Present,
-    short: Present, walled: Present, choice: LawChoice, b: int, hi: int, n: int, n_solid: int, step: int,
-    t: float, hdt: float, last: bool, c: Any, material: Any, table: Any, grains: GrainArrays,
-    walls: WallArrays, pairs: PairArrays, candidates: CandidateArrays, work: Workspace,
+    short: Present, walled: Present, adhesive: Present, choice: LawChoice, b: int, hi: int, n: int,
+    n_solid: int, step: int, t: float, hdt: float, last: bool, c: Any, material: Any, table: Any,
+    grains: GrainArrays, walls: WallArrays, pairs: PairArrays, candidates: CandidateArrays, work: Workspace,
     accounts: AccountArrays, ended: Any, account: Any, stats: Any,
 ) -> None:  # fmt: skip
     """Forces of every pair that block b, grains up to hi-1, owns, batch by batch of those that touch."""
@@ -126,6 +127,8 @@ def block_forces(
                 flat, variant.rotation, choice, m, lanes, hdt, stats[S.OVERLAP_MAX], selected, i_of, j_of,
                 mass, inertia, w, ids, material, table, c, batch,
             )  # fmt: skip
+        if adhesive is not None:
+            attract(choice, m, hdt, selected, c, material, table, grains, candidates, batch)
         if optional is not None:
             spring_r += optional_physics(
                 variant, choice, m, n, t, hdt, selected, c, material, table, grains, candidates, batch, ended,
@@ -156,6 +159,10 @@ def block_forces(
             stats[S.SPRING_N], stats[S.SPRING_S], stats[S.N_CONTACT] = spring_energy(b, c, candidates)
         else:
             stats[S.SPRING_N], stats[S.SPRING_S], stats[S.N_CONTACT] = spring_energy_of_maps(b, candidates)
+        if adhesive is not None:
+            stats[S.SPRING_N] -= energy_of_attraction(
+                b, choice, hertz, c, material, table, grains, candidates
+            )
         stats[S.SPRING_R] = spring_r
 
 
@@ -216,6 +223,7 @@ def make_run(variant: KernelVariant) -> Any:
     short: Present = 1 if has_short_rows(variant) else None
     optional: Present = 1 if variant.rolling or variant.events or variant.film else None
     walled: Present = 1 if variant.walls else None
+    adhesive: Present = 1 if variant.adhesive else None
 
     @kernel(nogil=True, fastmath=FAST)
     def run(
@@ -300,7 +308,7 @@ def make_run(variant: KernelVariant) -> Any:
                 for b in range(b_0, b_1):
                     if not after:
                         block_forces(
-                            variant, flat, water, optional, exact, hertz, short, walled, choice, b,
+                            variant, flat, water, optional, exact, hertz, short, walled, adhesive, choice, b,
                             block_start[b + 1], n, n_solid, step, t, hdt, last, c, material, table, grains,
                             walls, pairs, candidates, work, accounts_of_blocks, ended[b], terms[b], stats[b],
                         )  # fmt: skip

@@ -33,6 +33,7 @@ from ryusa.engine.shared.skin import best_skin
 from ryusa.engine.shared.status import STOP_DONE, STOP_EVENTS, STOP_LIST, STOP_UNSAFE
 from ryusa.engine.shared.variant import choice_of, variant_of
 from ryusa.errors import RunError
+from ryusa.laws.families import Adhesion
 from ryusa.model import EngineBlock, FluidAtGrains, Scene, State, Tally, Term
 from ryusa.model.contacts import N_EVENT
 from ryusa.model.fluid import SUBMERGED
@@ -69,7 +70,9 @@ class CudaEngine:
         walls = ("walls are simulated by engine 'cpu' alone",) if scene.n_face else ()
         mixed = ("several materials are simulated by engine 'cpu' alone",) if scene.materials else ()
         clumps = ("clumps are simulated by engine 'cpu' alone",) if scene.bodies else ()
-        return (*refusals(scene), *walls, *mixed, *clumps)
+        sticky = scene.contact.adhesion != Adhesion.NONE
+        adhesion = ("adhesion is simulated by engine 'cpu' alone",) if sticky else ()
+        return (*refusals(scene), *walls, *mixed, *clumps, *adhesion)
 
     def load(self, scene: Scene, state: State) -> None:
         """Take a scene and an initial state or a snapshot; enter a change of the scene in the account."""

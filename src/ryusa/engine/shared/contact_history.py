@@ -7,7 +7,7 @@ import numpy as np
 from ryusa.laws.families import ContactForce
 from ryusa.laws.rolling import epsd_stiffness, reduced_radius
 from ryusa.model import Scene, State
-from ryusa.model.pair_springs import pair_springs
+from ryusa.model.pair_springs import pair_attractions, pair_springs
 from ryusa.model.scene import Floats
 from ryusa.model.wall_shape import ways_to_faces
 
@@ -22,7 +22,7 @@ class ContactForces(NamedTuple):
 class SpringEnergies(NamedTuple):
     """Energy in springs [J]."""
 
-    normal: float
+    normal: float  # less that released by adhesion
     tangential: float
     rolling: float
 
@@ -58,7 +58,16 @@ def forces_of_contacts(scene: Scene, state: State, places: np.ndarray) -> Contac
     if scene.plane_case:  # one component, along (n_z, 0, -n_x)
         along = shear[:, 0]
         shear = np.stack([along * normal[:, 2], np.zeros(len(i)), -along * normal[:, 0]], axis=1)
-    return ContactForces(normal, shear - held.f_n[places][:, None] * normal)
+    f_n = held.f_n[places] - pair_attractions(scene, i, j, overlaps_of_contacts(scene, state, places))[0]
+    return ContactForces(normal, shear - f_n[:, None] * normal)
+
+
+def overlaps_of_contacts(scene: Scene, state: State, places: np.ndarray) -> Floats:
+    """Overlaps of some contacts that begin and end at steps, in the last step of a snapshot [m]."""
+    held = state.contacts
+    if scene.contact.force == ContactForce.HERTZ_MINDLIN:
+        return held.overlap[places]
+    return (held.f_n[places] - held.dash_n[places]) / scene.contact.k_n
 
 
 def energies_of_springs(scene: Scene, state: State, places: np.ndarray) -> SpringEnergies:
@@ -78,6 +87,8 @@ def energies_of_springs(scene: Scene, state: State, places: np.ndarray) -> Sprin
         normal = float(np.sum(0.4 * e_n * overlap))
     else:
         normal = float(np.sum(0.5 * e_n**2 / np.where(held.k_n[places] > 0.0, held.k_n[places], k_n)))
+    i, j = held.i[places], held.j[places]
+    normal -= float(pair_attractions(scene, i, j, overlaps_of_contacts(scene, state, places))[1].sum())
     tangential = 0.0
     if scene.contact.k_s > 0.0:
         tangential = float(np.sum(0.5 * held.spring_s[places] ** 2 / k_s[:, None]))

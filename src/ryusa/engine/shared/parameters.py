@@ -51,7 +51,8 @@ FADING = 37  # a contact goes on through a step where so much of its force outwe
 E_EFFECTIVE = 38  # of elastic spheres [Pa]; else 0
 MINDLIN = 39  # their tangential stiffness over K sqrt(overlap) [-]
 TWISTING = 40  # largest torque about the normal over f_n R* [-]
-N_PARAMETER = TWISTING + 1
+ADHESION = 41  # pull-off force [N], work of adhesion [J/m2] or energy density [Pa]
+N_PARAMETER = ADHESION + 1
 
 # Largest displacement of a grain in one step, over the smallest diameter: two grains that approach each other
 # by twice that cannot pass through each other unseen (design/0008).
@@ -128,6 +129,7 @@ def parameters_of(scene: Scene) -> Floats:
         E_EFFECTIVE: 0.0,
         MINDLIN: 0.0,
         TWISTING: rolling.twisting,
+        ADHESION: law.adhesion_amount,
     }
     if law.force == ContactForce.HERTZ_MINDLIN:
         table[E_EFFECTIVE] = effective_modulus(law.youngs_modulus, law.poisson_ratio)

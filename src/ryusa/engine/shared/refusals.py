@@ -7,7 +7,7 @@ import numpy as np
 from ryusa.engine.shared.parameters import LARGEST_DISPLACEMENT
 from ryusa.errors import NotANumber
 from ryusa.laws._family import Family
-from ryusa.laws.families import ContactForce, ContactTiming, Fluctuations, Profile, Rebound
+from ryusa.laws.families import Adhesion, ContactForce, ContactTiming, Fluctuations, Profile, Rebound
 from ryusa.model import RigidBodies, Scene, State, Walls
 from ryusa.model.scene import ALIKE, Damping
 from ryusa.model.walls import SPIN, largest_speed
@@ -35,6 +35,7 @@ def refusals(scene: Scene) -> tuple[str, ...]:
     if scene.water.rebound != Rebound.DRY and scene.contact.damping == Damping.CONSTANTS:
         reasons.append("an immersed rebound needs a restitution in air: contact.damping gives constants")
     reasons += _refused_of_hertz(scene)
+    reasons += _refused_of_adhesion(scene)
     reasons += _refused_of_materials(scene)
     reasons += _refused_of_clumps(scene)
     largest = float(np.concatenate([scene.d, scene.d_fixed[scene.fixed_active]]).max(initial=0.0))
@@ -81,6 +82,23 @@ def _refused_of_hertz(scene: Scene) -> list[str]:
         found.append("elastic spheres (Hertz-Mindlin) take a restitution, not constant dashpots")
     if not (0.0 < law.youngs_modulus < np.inf and 0.0 <= law.poisson_ratio <= 0.5):
         found.append("elastic spheres need a Young's modulus above 0 and a Poisson's ratio from 0 to 0.5")
+    return found
+
+
+def _refused_of_adhesion(scene: Scene) -> list[str]:
+    """What adhesive contacts cannot have."""
+    law, found = scene.contact, list[str]()
+    if law.adhesion == Adhesion.NONE:
+        return found
+    if law.timing != ContactTiming.AT_STEPS:
+        found.append("adhesion needs contact.timing = 'at steps' (design/0024)")
+    if "elastic" in law.adhesion.marks and law.force != ContactForce.HERTZ_MINDLIN:
+        found.append(
+            f"adhesion '{law.adhesion.word}' needs elastic spheres (Hertz-Mindlin), which have an area"
+        )
+    laws = (law,) if scene.materials is None else scene.materials.contact
+    if not all(0.0 <= one.adhesion_amount < np.inf for one in laws):
+        found.append("the amount of adhesion must be a number from 0 on")
     return found
 
 

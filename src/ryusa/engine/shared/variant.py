@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from ryusa.engine.shared import memory_rows as M
 from ryusa.laws._family import numbers
-from ryusa.laws.families import ContactForce, ContactTiming, Profile, Rolling
+from ryusa.laws.families import Adhesion, ContactForce, ContactTiming, Profile, Rolling
 from ryusa.model import Scene
 from ryusa.model.contacts import N_EVENT
 from ryusa.model.scene import EventRule
@@ -28,6 +28,7 @@ class KernelVariant(NamedTuple):
     hertz: int = 0  # contacts are those of elastic spheres
     mixed: int = 0  # materials differ
     bodies: int = 0  # grains that are members of rigid bodies
+    adhesive: int = 0  # grains in touch attract each other
 
     @property
     def row_width(self) -> int:
@@ -70,6 +71,7 @@ class LawChoice(NamedTuple):
     rebound: int
     unloading: int = 0
     drag_of_form: int = 0  # of rigid bodies
+    adhesion: int = 0
 
 
 def resists_spin(scene: Scene) -> bool:
@@ -92,6 +94,7 @@ def variant_of(scene: Scene) -> KernelVariant:
         hertz=int(int(scene.contact.force) == HERTZ),
         mixed=int(scene.materials is not None),
         bodies=int(scene.bodies is not None),
+        adhesive=int(scene.contact.adhesion != Adhesion.NONE),
     )
 
 
@@ -116,4 +119,5 @@ def choice_of(scene: Scene) -> LawChoice:
         rebound=int(water.rebound) if water.profile != Profile.NONE else 0,
         unloading=int(law.unloading),
         drag_of_form=int(water.drag_of_form),
+        adhesion=int(law.adhesion),
     )
