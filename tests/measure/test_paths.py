@@ -4,6 +4,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from ryusa.errors import ResultsError
 from ryusa.measure import energy, farthest, rows_of, spin, tracks, write_csv
 from ryusa.model import Tally, Term
 from ryusa.model.tally import HELD
@@ -116,3 +117,9 @@ def test_csv_reads_back_without_loss(make, tmp_path):
     values = dict(zip(head.split(","), line.split(","), strict=True))
     assert float(values["t_begin"]) == 1 / 3
     assert float(values["v_begin_z"]) == 2
+
+
+def test_a_run_of_an_engine_without_an_account_has_none_to_measure():
+    tally = {name: np.full(3, np.nan) for name in TALLY.names}
+    with pytest.raises(ResultsError, match="keeps no account of energy"):
+        energy(SimpleNamespace(tally=tally))

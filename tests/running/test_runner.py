@@ -454,7 +454,9 @@ def test_slow_kernels_are_explained_once(
 def test_an_engine_is_chosen_by_name_or_refused_in_one_line(go: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     from ryusa.engine.cuda import availability
 
-    with pytest.raises(CaseError, match=r"engine = 'cuad': must be cpu .* or cuda .*\. Did you mean 'cuda'"):
+    with pytest.raises(
+        CaseError, match=r"engine = 'cuad': must be cpu .* or lammps .*\. Did you mean 'cuda'"
+    ):
         go(engine="cuad")
     monkeypatch.setattr(availability, "unavailable", lambda: "the CUDA driver finds no card")
     with pytest.raises(CaseError, match="engine = 'cuda': the CUDA driver finds no card"):

@@ -2,7 +2,7 @@
 
 import typer
 
-_WIDE = 13  # columns of the heading of a line
+_WIDE = 15  # columns of the heading of a line
 
 
 def register(app: typer.Typer) -> None:

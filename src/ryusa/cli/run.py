@@ -155,10 +155,15 @@ def run(
 
     SIGUSR1 requests a checkpoint. A stopped run exits with code 5; --resume or
     `ryusa resume` continues it, bit for bit as if it had not been stopped.
+
+    `mpirun -np N ryusa run CASE --engine lammps` shares the grains among N processes.
     """
     from ryusa.running.interrupt import catch_signals
 
-    with catch_signals() as signal:  # before anything heavy is loaded
+    # before anything heavy is loaded
+    with catch_signals() as signal, registry.leading(engine) as leads:
+        if not leads:
+            return
         found = _read(case, settings, seed)
         from ryusa.running.runner import run as run_case
 
@@ -167,7 +172,7 @@ def run(
             found, out, threads=threads, progress=not quiet, overwrite=overwrite,
             checkpoint=_every(checkpoint), resume=resume, force=force, engine=engine,
         )  # fmt: skip
-    _close(results, quiet)
+        _close(results, quiet)
 
 
 def resume(
@@ -186,22 +191,24 @@ def resume(
     A complete run is lengthened with a later end: --set 'stop.time=10 s'. It becomes the same, bit for bit,
     as a run that had this end from the start.
     """
+    from ryusa.errors import ResultsError
+    from ryusa.results import schema
+    from ryusa.results.read import read_json
     from ryusa.running.interrupt import catch_signals
 
-    with catch_signals() as signal:
+    if not schema.is_run_folder(folder):
+        raise ResultsError(f"{folder}: not a run folder of ryusa")
+    origin = read_json(folder / schema.PROVENANCE)
+    with catch_signals() as signal, registry.leading(str(origin.get("engine"))) as leads:
+        if not leads:
+            return
         from ryusa.casefile.earlier import kept_choices
         from ryusa.casefile.read import read
-        from ryusa.errors import ResultsError
-        from ryusa.results import schema
-        from ryusa.results.read import read_json
 
-        if not schema.is_run_folder(folder):
-            raise ResultsError(f"{folder}: not a run folder of ryusa")
         if not (folder / schema.CASE_TOML).is_file():
             raise ResultsError(
                 f"{folder}: holds no case file; resume it in Python with ryusa.run_scene(..., resume=True)"
             )
-        origin = read_json(folder / schema.PROVENANCE)
         overrides, engine = origin.get("overrides"), origin.get("engine")
         given = {str(key): str(one) for key, one in overrides.items()} if isinstance(overrides, dict) else {}
         kept = kept_choices(read_json(folder / schema.CASE_JSON, missing_ok=True))
@@ -213,7 +220,7 @@ def resume(
             found, folder, threads=threads, progress=not quiet, checkpoint=_every(checkpoint), resume=True,
             force=force, engine=engine if engine in registry.names() else None,
         )  # fmt: skip
-    _close(results, quiet)
+        _close(results, quiet)
 
 
 def inspect(

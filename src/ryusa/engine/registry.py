@@ -5,11 +5,12 @@ an engine of its own the same way:
 
 >>> register("mirror", "ryusa.engine.cpu.engine:CpuEngine", "an example")
 >>> names()
-('cpu', 'cuda', 'mirror')
+('cpu', 'cuda', 'lammps', 'mirror')
 >>> forget("mirror")
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
@@ -34,6 +35,11 @@ class EngineEntry:
     threaded : whether it shares its work among threads.
     probe : "module:function" that returns why the engine cannot be used here, "" where it can; "" is always.
     device : "module:function" that names the device that it would use; "" for the processor.
+    leading : "module:function" that returns a context manager, for an engine that shares a run among
+        processes started together: it gives True in the one that leads, and False in one that has done what
+        the leader said; "" for an engine of one process.
+    exact_resume : whether a resumed run has the bits of one that was not interrupted.
+    remarks : what the log of every run has to say of the engine.
     """
 
     path: str
@@ -41,14 +47,18 @@ class EngineEntry:
     threaded: bool = False
     probe: str = ""
     device: str = ""
+    leading: str = ""
+    exact_resume: bool = True
+    remarks: tuple[str, ...] = ()
 
 
 _ENGINES: dict[str, EngineEntry] = {}
 
 
 def register(
-    name: str, path: str, summary: str, *, threaded: bool = False, probe: str = "", device: str = ""
-) -> None:
+    name: str, path: str, summary: str, *, threaded: bool = False, probe: str = "", device: str = "",
+    leading: str = "", exact_resume: bool = True, remarks: tuple[str, ...] = (),
+) -> None:  # fmt: skip
     """Add an engine to the table; see `EngineEntry`.
 
     Raises
@@ -57,7 +67,7 @@ def register(
     """
     if name in _ENGINES:
         raise ValueError(f"an engine named {name!r} is registered already: {_ENGINES[name].path}")
-    _ENGINES[name] = EngineEntry(path, summary, threaded, probe, device)
+    _ENGINES[name] = EngineEntry(path, summary, threaded, probe, device, leading, exact_resume, remarks)
 
 
 def forget(name: str) -> None:
@@ -70,6 +80,17 @@ register(
     "cuda", "ryusa.engine.cuda.engine:CudaEngine", "an NVIDIA card",
     probe="ryusa.engine.cuda.availability:unavailable", device="ryusa.engine.cuda.availability:device_name",
 )  # fmt: skip
+register(
+    "lammps", "ryusa.engine.lammps.engine:LammpsEngine", "LAMMPS, alone or under mpirun",
+    probe="ryusa.engine.lammps.availability:unavailable",
+    device="ryusa.engine.lammps.availability:device_name", leading="ryusa.engine.lammps.ranks:leading",
+    exact_resume=False,
+    remarks=(
+        "LAMMPS takes slip, and torques at planes, at the radius, the CPU engine at half of the overlap",
+        "LAMMPS is inspected every 1,000 steps and at frames (overlaps, speeds, places); it has no records "
+        "of contacts and no account of energy by cause, and a resume is not bit for bit (docs/big-runs.md)",
+    ),
+)  # fmt: skip
 
 
 def names() -> tuple[str, ...]:
@@ -81,9 +102,10 @@ def summary() -> str:
     """All engines in one line, for help.
 
     >>> summary()
-    'cpu (threads of the processor) or cuda (an NVIDIA card)'
+    'cpu (threads of the processor), cuda (an NVIDIA card) or lammps (LAMMPS, alone or under mpirun)'
     """
-    return " or ".join(f"{name} ({one.summary})" for name, one in _ENGINES.items())
+    *most, last = (f"{name} ({one.summary})" for name, one in _ENGINES.items())
+    return f"{', '.join(most)} or {last}"
 
 
 def entry(name: str) -> EngineEntry:
@@ -98,11 +120,16 @@ def entry(name: str) -> EngineEntry:
     >>> entry("cuad")  # doctest: +ELLIPSIS
     Traceback (most recent call last):
         ...
-    ryusa.errors.CaseError: engine = 'cuad': must be cpu (...) or cuda (an NVIDIA card). Did you mean 'cuda'?
+    ryusa.errors.CaseError: engine = 'cuad': must be cpu (...) or lammps (...). Did you mean 'cuda'?
     """
     if name not in _ENGINES:
         raise CaseError("engine", name, f"must be {summary()}", nearest_word(name, names()))
     return _ENGINES[name]
+
+
+def known(name: object) -> EngineEntry:
+    """The line of an engine by a name that may be unknown, as in a run folder."""
+    return _ENGINES.get(str(name), EngineEntry("", ""))
 
 
 def unavailable(name: str) -> str:
@@ -115,6 +142,17 @@ def device_of(name: str) -> str:
     """Device that an engine would use, where it is not the processor; only where it is available."""
     device = entry(name).device
     return _imported(device)() if device else ""
+
+
+@contextmanager
+def leading(name: str) -> Generator[bool]:
+    """False in a process that is another's to lead, once that one is done; True in all others."""
+    found = known(name).leading
+    if not found or unavailable(name):
+        yield True
+        return
+    with _imported(found)() as leads:
+        yield leads
 
 
 def create(name: str = DEFAULT, *, threads: int = 1, **options: Any) -> "Engine":

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run
 from ryusa.model import Term
 from ryusa.model.tally import GIFTS, HELD, LOSSES, residual_of
@@ -74,8 +75,14 @@ def energy(run: Run) -> Energy:
     """Energy account of a run, from the tally the engine summed while stepping.
 
     A first frame taken before the first step, when nothing is booked yet, is left out.
+
+    Raises
+    ------
+    ResultsError : the engine of the run kept no account.
     """
     tally = run.tally
+    if len(tally["t"]) and np.isnan(tally["start"]).all():
+        raise ResultsError("the engine of this run keeps no account of energy")
     unbooked = (
         len(tally["t"]) > 1 and tally["start"][0] != tally["start"][-1]
     )  # start is that of the first step

@@ -1,5 +1,6 @@
 """The energy account; every term is summed separately, none is found as a difference."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import IntEnum
@@ -48,6 +49,8 @@ HELD = ("kinetic", "spin", "potential", "spring_n", "spring_s", "spring_r")
 def residual_of(imbalance: Any, held: Mapping[str, Any], work: Mapping[Term, Any]) -> float:
     """Largest imbalance over the largest term of an account [-], at one moment or over arrays of moments.
 
+    nan where an engine keeps no account.
+
     The terms are the energies of motion and springs, the terms of `SIZES`, and the change of held energy
     without the energy given by the timeline; none depends on the origin of heights.
 
@@ -61,6 +64,8 @@ def residual_of(imbalance: Any, held: Mapping[str, Any], work: Mapping[Term, Any
     sizes = [change, *(one for name, one in held.items() if name != "potential")]
     sizes += [work[term] for term in SIZES if term in work]
     largest = max(float(np.abs(one).max(initial=0.0)) for one in map(np.asarray, sizes))
+    if math.isnan(largest):
+        return largest
     return float(np.abs(np.asarray(imbalance)).max(initial=0.0)) / largest if largest > 0.0 else 0.0
 
 

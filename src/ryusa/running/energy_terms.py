@@ -1,5 +1,6 @@
 """Energy account of a run as lines of text, every term with its full name (docs/glossary.md)."""
 
+import math
 from collections.abc import Mapping
 
 from ryusa.model import Term
@@ -36,7 +37,7 @@ def energy_lines(terms: Mapping[str, float]) -> list[tuple[str, str]]:
 
     Parameters
     ----------
-    terms : energies by the names of summary.json [J], and `residual` [-].
+    terms : energies by the names of summary.json [J], and `residual` [-]; nan where an engine keeps none.
 
     >>> energy_lines({"kinetic": 1.0, "start": 2.5, "slide": 1.5, "imbalance": 0.0, "residual": 0.0})[1]
     ('dissipated', '1.5 J: sliding friction 1.5')
@@ -45,6 +46,9 @@ def energy_lines(terms: Mapping[str, float]) -> list[tuple[str, str]]:
     lost = {_WORK[term]: terms.get(term.name.lower(), 0.0) for term in LOSSES}
     given = {_WORK[term]: terms.get(term.name.lower(), 0.0) for term in GIFTS}
     start = terms.get(Term.START.name.lower(), 0.0)
+    if math.isnan(start):
+        known = {name: value for name, value in held.items() if not math.isnan(value)}
+        return [("energy now", _sum(known)), ("account", "not kept by this engine")]
     return [
         ("energy now", f"{_sum(held)}; at the start {start:.3g} J"),
         ("dissipated", _sum(lost)),

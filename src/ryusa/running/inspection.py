@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from ryusa.engine import registry
 from ryusa.errors import CheckpointError
 from ryusa.results import Results, schema
 from ryusa.running.checkpoint import read_checkpoint
@@ -69,9 +70,10 @@ def _case(results: Results) -> str:
 def _made_by(origin: Mapping[str, Any]) -> str:
     machine = _table(origin.get("machine"))
     commit = str(origin.get("commit") or "")[:12]
+    device = f" ({_words(origin['device'])})" if origin.get("device") else ""
     return (
         f"ryusa {_words(origin.get('ryusa'))}{f' ({_words(commit)})' if commit else ''}, "
-        f"engine {_words(origin.get('engine'))}, threads {_words(origin.get('threads'))}, "
+        f"engine {_words(origin.get('engine'))}{device}, threads {_words(origin.get('threads'))}, "
         f"{_words(machine.get('processor'))}"
     )
 
@@ -139,7 +141,9 @@ def _next(results: Results) -> str:
         return f"ryusa measure {results.folder} WHAT, ryusa draw {results.folder} WHAT"
     if results.status == schema.RUNNING and holder(results.folder):
         return ""
-    return f"ryusa resume {results.folder}"
+    engine = results.provenance.get("engine")
+    exact = registry.known(engine).exact_resume
+    return f"ryusa resume {results.folder}{'' if exact else f' ({_words(engine)}: not bit for bit)'}"
 
 
 def _words(value: object) -> str:

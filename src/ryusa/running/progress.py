@@ -1,5 +1,6 @@
 """Progress of a run: a bar on a terminal, plain lines elsewhere, and the same lines in log.txt."""
 
+import math
 import sys
 import threading
 import time
@@ -28,15 +29,16 @@ class ProgressNumbers:
     t: float  # simulated [s]
     rate: float  # particle-steps per second
     overlap: float  # largest overlap/d
-    residual: float  # of the energy account
+    residual: float  # of the energy account; nan without one
     hops: int | None = None  # saltations of the tracked grain with the fewest
     precision: str = ""  # of the averages that end the run
 
     def __str__(self) -> str:
         hops = "" if self.hops is None else f"  saltations {self.hops}"
         known = f"{self.precision}  " if self.precision else ""
+        account = "" if math.isnan(self.residual) else f"energy residual {self.residual:.0e}  "
         return (
-            f"t {self.t:.4g} s  {known}overlap/d {self.overlap:.2g}  energy residual {self.residual:.0e}  "
+            f"t {self.t:.4g} s  {known}overlap/d {self.overlap:.2g}  {account}"
             f"{self.rate / 1e6:.2f} M particle-steps/s{hops}"
         )
 

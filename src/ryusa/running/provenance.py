@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ryusa import __version__
+from ryusa.engine import registry
 from ryusa.results import schema
 
 _PACKAGES = ("numpy", "numba", "llvmlite", "h5py", "pydantic", "pint", "scipy")
@@ -33,10 +34,17 @@ def begin(*, threads: int, seed: int | None, engine: str, overrides: dict[str, s
         "machine": {"processor": processor(), "cores": os.cpu_count(), "architecture": platform.machine()},
         "threads": threads,
         "engine": engine,
+        **_device(engine),
         "seed": seed,
         "overrides": overrides,
         "command": _command(),
     }
+
+
+def _device(engine: str) -> dict[str, str]:
+    """Device of an engine of the registry, where it is not the processor."""
+    named = registry.device_of(engine) if registry.known(engine).device else ""
+    return {"device": named} if named else {}
 
 
 def versions() -> dict[str, str | None]:

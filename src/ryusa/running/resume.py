@@ -27,6 +27,7 @@ from ryusa.running.vtkhdf import PartSize
 
 _ANEW = "to discard it and start again, use --overwrite"
 _NAMES = {"plan": "frame interval or timeline", "engine": "engine"}
+_INEXACT = "the engine '{}' goes on from its own restart: not bit for bit as without the interruption"
 _DERIVED = "derived"  # computed from the other sections
 
 
@@ -64,6 +65,7 @@ def find_resume_point(
     origin: Mapping[str, Any],
     *,
     force: bool,
+    exact: bool = True,
 ) -> ResumePoint | None:
     """Find the step from which a run continues; None if the folder holds no usable data of it.
 
@@ -74,6 +76,8 @@ def find_resume_point(
     identity : of this run without its scenes, see `checkpoint_scheduler.run_identity`.
     origin : provenance of this process.
     force : allow a resume whose results are valid but not bitwise those of an uninterrupted run.
+    exact : whether the engine can resume bitwise; where it cannot, the frames after the checkpoint are
+        computed anew, and another processor or version is no obstacle.
 
     Raises
     ------
@@ -121,16 +125,18 @@ def find_resume_point(
     differences: list[str] = []
     if stop_changed:
         differences += _other_stop(was_stop, identity["stop"], block, changed)
-    differences += _other_code(written_by.get("code"), code_versions(origin))
+    code = _other_code(written_by.get("code"), code_versions(origin))
+    differences += code if exact else []
     if differences and not force:
         raise CheckpointError(
             f"{folder}: {'; '.join(differences)}. With --force the run continues with valid results, but not "
             f"bitwise those of an uninterrupted run; {_ANEW}"
         )
     if block is None:
-        return None if differences else _from_the_start(folder, before, scenes)
+        return None if differences or not exact else _from_the_start(folder, before, scenes)
     _refuse_foreign(folder, block, was, identity, scenes)
-    return _from_checkpoint(folder, before, scenes, block, [*lost, *differences], alike=not differences)
+    alike, said = exact and not differences, [] if exact else [_INEXACT.format(origin.get("engine")), *code]
+    return _from_checkpoint(folder, before, scenes, block, [*lost, *differences, *said], alike=alike)
 
 
 def _newest(folder: Path, n_grain: int) -> tuple[CheckpointBlock | None, list[str]]:

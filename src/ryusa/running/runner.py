@@ -42,7 +42,7 @@ from ryusa.running.recorder import RecordedSoFar, Recorder
 from ryusa.running.resume import ResumePoint, find_resume_point
 from ryusa.running.servo import ServoRule
 from ryusa.running.stops import Stop
-from ryusa.running.timeline import Change
+from ryusa.running.timeline import Change, refuse_changes
 from ryusa.running.traffic import TrafficRule
 from ryusa.running.watch import Watch
 
@@ -247,7 +247,10 @@ def _run_or_resume(
             refuse_if_not_writable(folder)
             with locked(folder):
                 try:
-                    going = find_resume_point(folder, resolved, identity, origin, force=options.force)
+                    going = find_resume_point(
+                        folder, resolved, identity, origin, force=options.force,
+                        exact=registry.known(engine.name).exact_resume,
+                    )  # fmt: skip
                 except CheckpointError as error:
                     if not options.overwrite:
                         raise
@@ -261,6 +264,7 @@ def _run_or_resume(
         reasons = stepping(engine, scene).refuses(scene)
         if reasons:
             raise CaseError("engine", engine.name, f"does not support this case: {'; '.join(reasons)}")
+        refuse_changes(engine, scene, changes)
         refuse_if_not_writable(folder)
         n_frame = stop.time / frames + 1
         fits = about.disk or _Disk(n_frame, n_frame * bytes_per_frame(scene.n_grain))
@@ -274,7 +278,7 @@ def _run_or_resume(
         with locked(folder):
             prepare(folder)
             run.write_case()
-            return run.begin(scene, state, (*first, *notes))
+            return run.begin(scene, state, (*first, *notes, *registry.known(engine.name).remarks))
 
 
 def _already_complete(folder: Path, options: _Options) -> Results:

@@ -1,0 +1,145 @@
+"""A scene as commands of LAMMPS: box, types, contact laws, planes, motion. Text alone; nothing is run here.
+
+Types: one for each class of mass of the free grains, then one for the fixed grains. Ids are those of ryusa
+plus one. All names are made here, so that no text of a user enters a command.
+"""
+
+import math
+
+import numpy as np
+
+from ryusa.engine.lammps.contact_words import FLAT, RIGID, Partner, contact_words
+from ryusa.engine.lammps.mass_classes import MassClasses
+from ryusa.laws.families import Profile
+from ryusa.model import Scene
+from ryusa.model.scene import Floats
+
+SKIN = 0.15  # of the mean diameter: distance beyond contact up to which neighbours are listed
+WATER = "water"  # fix external that completes the forces
+# what a grain knows of a column of water, columns of model.fluid and of `forces`; it goes with the grain
+SAMPLED, IMPULSE, LAST = "d2_sampled", "d2_impulse", "d2_last"
+N_LAST = 7
+PAIRS = "pairs"  # compute of pairs in contact: distance of their centres [m]
+PROCESSORS = "processors * {} 1"  # grains lie in layers: ranks share the bed, not its height
+_MARGIN = 2.0  # of the largest diameter: margin of open sides around the first grains
+_IDS = 200  # in one command
+
+
+def completes_forces(scene: Scene) -> bool:
+    """Whether forces are completed in every step: by water, or for the spin of grains with added mass."""
+    return scene.water.profile != Profile.NONE or bool(np.any(scene.m_added != 0.0))
+
+
+def box(scene: Scene, classes: MassClasses, x: Floats) -> list[str]:
+    """Commands that come before the grains.
+
+    Parameters
+    ----------
+    classes : of the free grains.
+    x : centres of free and fixed grains [m], shape (n, 3).
+    """
+    largest = float(np.concatenate([scene.d, scene.d_fixed]).max())
+    low, high = x.min(axis=0) - _MARGIN * largest, x.max(axis=0) + _MARGIN * largest
+    sides = ["m", "m", "m"]  # they follow the grains outwards
+    for axis, period in enumerate(scene.period):
+        if math.isfinite(period):
+            low[axis], high[axis], sides[axis] = 0.0, period, "p"
+    if scene.plane_case:
+        sides[1] = "f"  # nothing moves across
+    corners = " ".join(f"{float(a)!r} {float(b)!r}" for a, b in zip(low, high, strict=True))
+    return [
+        "units si",
+        "atom_style sphere",
+        "atom_modify map array",
+        "newton on",
+        f"boundary {' '.join(sides)}",
+        "comm_modify vel yes",
+        PROCESSORS.format(1 if scene.plane_case else "*"),
+        f"region box block {corners} units box",
+        f"create_box {classes.n + 1} box",
+    ]
+
+
+def laws(scene: Scene, classes: MassClasses) -> list[str]:
+    """Commands that come after the grains: groups, contact laws, neighbours, motion, planes, weight."""
+    n = classes.n
+    fixed, mean = n + 1, float(scene.d.mean())
+    free = [_free(scene, classes, k) for k in range(n)]
+    bed = float(scene.d_fixed.mean()) if scene.n_fixed else mean
+    rigid = Partner(RIGID, RIGID, 0.5 * bed)
+    commands = [f"group free type 1:{n}", f"group fixed type {fixed}"]
+    commands += [f"group class{k} type {k + 1}" for k in range(n)]
+    commands.append("pair_style granular")
+    for a in range(n):
+        commands += [
+            f"pair_coeff {a + 1} {b + 1} {contact_words(scene, free[a], free[b])}" for b in range(a, n)
+        ]
+        commands.append(f"pair_coeff {a + 1} {fixed} {contact_words(scene, free[a], rigid)}")
+    commands += [
+        f"pair_coeff {fixed} {fixed} {contact_words(scene, free[0], rigid)}",  # never used: excluded below
+        f"neighbor {SKIN * mean!r} bin",
+        f"neigh_modify delay 0 every 1 check yes exclude type {fixed} {fixed}",
+        f"timestep {scene.dt!r}",
+        "fix hold fixed freeze",
+        f"fix move free nve{'/sphere' if scene.rotation else ''}",
+        f"compute {PAIRS} all pair/local dist cutoff radius",
+        f"compute {PAIRS}_ids all property/local patom1 patom2 cutoff radius",
+        "thermo_style custom step",
+        "thermo_modify norm no",
+        "thermo 0",
+    ]
+    for k in np.flatnonzero(scene.plane_active).tolist():
+        commands += plane(scene, classes, k)
+    if completes_forces(scene):
+        if scene.water.profile == Profile.COLUMN:
+            commands.append(f"fix rows all property/atom {SAMPLED} 9 {IMPULSE} 4 {LAST} {N_LAST}")
+        commands.append(f"fix {WATER} all external pf/callback 1 1")  # the last that changes forces
+    else:
+        commands.append(weight(scene))
+    return commands
+
+
+def plane(scene: Scene, classes: MassClasses, k: int) -> list[str]:
+    """A plane: a region, and a wall for each class of mass."""
+    point, normal = scene.plane_point[k].tolist(), scene.plane_normal[k].tolist()
+    where = " ".join(repr(float(a)) for a in (*point, *normal))
+    flat = Partner(RIGID, RIGID, FLAT)
+    return [
+        f"region plane{k} plane {where} side in units box",
+        *(
+            f"fix {wall(k, c)} class{c} wall/gran/region granular "
+            f"{contact_words(scene, _free(scene, classes, c), flat)} region plane{k}"
+            for c in range(classes.n)
+        ),
+    ]
+
+
+def wall(k: int, c: int) -> str:
+    """Name of the wall that plane k is for grains of class c."""
+    return f"wall{k}_{c}"
+
+
+def weight(scene: Scene) -> str:
+    """Gravity on dry grains."""
+    g = scene.gravity * scene.m_weight[0] / scene.m[0]  # all have the same share
+    size = float(np.linalg.norm(g))
+    x, y, z = g.tolist() if size > 0.0 else (0.0, 0.0, -1.0)
+    if scene.plane_case:
+        y = 0.0
+    return f"fix weight free gravity {size!r} vector {x!r} {y!r} {z!r}"
+
+
+def removed(ids: np.ndarray) -> list[str]:
+    """Commands that take fixed grains away, by their ids in ryusa."""
+    groups = [
+        "group gone id " + " ".join(str(one + 1) for one in ids[k : k + _IDS].tolist())
+        for k in range(0, len(ids), _IDS)
+    ]
+    return [*groups, "delete_atoms group gone compress no", "group gone delete"] if groups else []
+
+
+def _free(scene: Scene, classes: MassClasses, k: int) -> Partner:
+    """A grain of a class."""
+    m = float(classes.m[k])
+    bare = float(scene.m[0] / (scene.m[0] + scene.m_added[0])) * m
+    return Partner(m, bare, 0.5 * float(classes.d[k]))

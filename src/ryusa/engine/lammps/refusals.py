@@ -1,0 +1,144 @@
+"""What LAMMPS cannot carry, each with the key of the case and what would be carried instead."""
+
+import numpy as np
+
+from ryusa.laws.families import (
+    Arm,
+    Cap,
+    ContactForce,
+    ContactTiming,
+    DragOfForm,
+    Film,
+    Parting,
+    Rebound,
+    Rolling,
+    Slip,
+)
+from ryusa.model import Scene
+from ryusa.model.scene import Damping, EventRule
+
+_STEEPEST = 0.99  # damping ratio up to which `coeff_restitution` of LAMMPS can be given an e
+_ALIKE = 1e-9  # largest relative difference of ratios that are the same for all grains
+
+
+def refusals_of_lammps(scene: Scene) -> tuple[str, ...]:
+    """Reasons why LAMMPS cannot simulate a scene that the laws of ryusa can; () when it can."""
+    return tuple([*_contact(scene), *_rolling(scene), *_films(scene), *_kinds(scene), *_records(scene)])
+
+
+def _instead(key: str, value: str) -> str:
+    return f"--set {key}='{value}' would be carried"
+
+
+def _contact(scene: Scene) -> list[str]:
+    law, found = scene.contact, list[str]()
+    if law.force == ContactForce.HERTZ_MINDLIN:
+        return ["elastic spheres (Hertz-Mindlin): linear springs, contact.stiffness, would be carried"]
+    if law.timing != ContactTiming.AT_STEPS:
+        found.append(
+            f"contact.timing is '{law.timing.word}', the default: LAMMPS begins and ends contacts at steps, "
+            "so that e is within 0.01 with 50 steps per contact, and within 0.03 with 10; "
+            f"{_instead('contact.timing', ContactTiming.AT_STEPS.word)}"
+        )
+    if law.slip != Slip.TOTAL:
+        found.append(
+            f"contact.slip is '{law.slip.word}': LAMMPS caps spring and dashpot together; "
+            f"{_instead('contact.slip', Slip.TOTAL.word)}"
+        )
+    if law.cap != Cap.TOTAL:
+        found.append(
+            f"contact.cap is '{law.cap.word}': LAMMPS caps by the whole normal force; "
+            f"{_instead('contact.cap', Cap.TOTAL.word)}"
+        )
+    if law.cohesion != 0.0:
+        found.append("contact.cohesion: LAMMPS has none in the Coulomb cap; 0 would be carried")
+    if law.tension and law.mu > 0.0:
+        found.append(
+            "contact.parting is 'tension': where the dashpot pulls, LAMMPS lets friction act by the size of "
+            f"the pull; {_instead('contact.parting', Parting.NO_TENSION.word)}"
+        )
+    if not law.k_s > 0.0:
+        found.append("no tangential spring: a contact.shear_stiffness above 0 would be carried")
+    if law.damping == Damping.RESTITUTION and law.zeta_n > _STEEPEST:
+        found.append(f"contact.restitution {law.e_n:g}: from 0.14 on it would be carried")
+    lossless = law.eta_n == 0.0 if law.damping == Damping.CONSTANTS else law.zeta_n == 0.0
+    dashed = law.eta_s != 0.0 if law.damping == Damping.CONSTANTS else law.zeta_s != 0.0
+    if lossless and dashed:
+        found.append(
+            "a tangential dashpot without a normal one: LAMMPS takes their ratio; contact.restitution_shear "
+            "1, or a restitution below 1, would be carried"
+        )
+    return found
+
+
+def _rolling(scene: Scene) -> list[str]:
+    rolling, found = scene.rolling, list[str]()
+    if rolling.twisting > 0.0:
+        found.append("rolling.twisting: 0 would be carried")
+    if rolling.model == Rolling.NONE:
+        return found
+    if rolling.model != Rolling.EPSD:
+        found.append(
+            f"rolling.model is '{rolling.model.word}': {_instead('rolling.model', Rolling.EPSD.word)} with "
+            "damping_ratio 0"
+        )
+        return found
+    if rolling.arm != Arm.REDUCED_RADIUS:
+        found.append(f"rolling.arm: {_instead('rolling.arm', Arm.REDUCED_RADIUS.word)}")
+    if rolling.zeta_r != 0.0:
+        found.append(
+            "rolling.damping_ratio: the slider of LAMMPS limits rolling spring and dashpot together, ours "
+            "the spring alone; --set rolling.damping_ratio=0, the same law in both, would be carried"
+        )
+    return found
+
+
+def _films(scene: Scene) -> list[str]:
+    water, found = scene.water, list[str]()
+    if water.rebound != Rebound.DRY:
+        found.append(f"water.rebound: {_instead('water.rebound', Rebound.DRY.word)}")
+    if water.film_reach > 0.0:
+        found.append(f"water.film: {_instead('water.film', Film.NONE.word)}")
+    if water.drag_of_form != DragOfForm.SPHERE:
+        found.append(f"water.drag_of_form: {_instead('water.drag_of_form', DragOfForm.SPHERE.word)}")
+    return found
+
+
+def _kinds(scene: Scene) -> list[str]:
+    found: list[str] = []
+    if scene.n_grain == 0:
+        found.append("a scene without free grains")
+    if scene.bodies is not None:
+        found.append("clumps: spheres would be carried")
+    if scene.materials is not None:
+        found.append("[materials]: one contact law for all would be carried")
+    if scene.walls is not None:
+        found.append("[[walls]]: planes and fixed grains would be carried")
+    if scene.traffic is not None:
+        found.append("[[feeds]] and [[exits]]: a fixed number of grains would be carried")
+    if scene.n_grain:
+        m = scene.m + scene.m_added
+        for name, one in {"added mass": scene.m_added, "buoyancy": scene.m_weight}.items():
+            share = one / m
+            if np.ptp(share) > _ALIKE * abs(float(share[0])):
+                found.append(f"grains with different {name} per mass: one density would be carried")
+    return found
+
+
+def _records(scene: Scene) -> list[str]:
+    found: list[str] = []
+    if scene.events != EventRule.NONE:
+        found.append("record.events: LAMMPS keeps no records of contacts; --set record.events=none")
+    if scene.forces:
+        found.append("record.forces: contact forces are not recorded; --set record.forces=false")
+    return found
+
+
+def refusals_of_change(before: Scene, after: Scene) -> tuple[str, ...]:
+    """Reasons why LAMMPS cannot go on with a scene that the timeline changed; () when it can."""
+    found: list[str] = []
+    if before.rotation != after.rotation:
+        found.append("a timeline that locks or frees rotation")
+    if before.contact != after.contact:
+        found.append("a timeline that changes the friction")
+    return tuple(found)

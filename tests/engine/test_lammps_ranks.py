@@ -1,0 +1,133 @@
+"""The LAMMPS engine shared by two processes, started by `mpirun`."""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ryusa.engine import registry
+from ryusa.results import Results
+
+HERE = Path(__file__).parent
+MPIRUN = shutil.which("mpirun", path=f"{Path(sys.executable).parent}{os.pathsep}{os.environ.get('PATH', '')}")
+
+pytestmark = [
+    pytest.mark.skipif(MPIRUN is None, reason="mpirun is an extra"),
+    pytest.mark.skipif(bool(registry.unavailable("lammps")), reason="LAMMPS is an extra"),
+]
+
+FLOW = [
+    "contact.slip=total", "contact.cap=total", "contact.timing=at steps", "build.columns=5", "build.rows=5",
+    "build.layers=3", "record.frames=5 ms", "record.settle=2 ms", "stop.time=20 ms",
+]  # fmt: skip
+
+
+def command(ranks, *words):
+    alone = [sys.executable, *words]
+    return alone if ranks == 1 else [MPIRUN, "-np", str(ranks), *alone]
+
+
+def done(ranks, *words, code=0):
+    found = subprocess.run(
+        command(ranks, *words), cwd=HERE.parents[1], check=False, capture_output=True, text=True, timeout=600
+    )
+    assert found.returncode == code, found.stdout[-2000:] + found.stderr[-4000:]
+    return found
+
+
+@pytest.fixture
+def flow(tmp_path):
+    """The packaged dense flow, small and short, in a folder whose name a shell would read."""
+    case = (HERE.parents[1] / "src/ryusa/cases/dense_3d.toml").read_text(encoding="utf-8")
+    folder = tmp_path / "a \"b\" $(c) 'd'"
+    folder.mkdir()
+    (folder / "flow.toml").write_text(case.replace('at = "0.3 s"', 'at = "3 ms"'), encoding="utf-8")
+    return folder
+
+
+def words_for(folder, out, *more):
+    settings = [word for one in (*FLOW, *more) for word in ("--set", one)]
+    case = [str(folder / "flow.toml"), "--engine", "lammps", "-o", str(folder / out)]
+    return ["-m", "ryusa", "run", *case, *settings]
+
+
+@pytest.mark.parametrize("water", ["dry", "column"])
+def test_contacts_across_the_border_are_those_of_one_rank(water):
+    one, two = (
+        json.loads(done(ranks, "-m", "tests.engine.lammps_across_ranks", water).stdout) for ranks in (1, 2)
+    )
+    assert one["n_contact"] > 2
+    for name, found in one.items():
+        if name != "restart":
+            size = np.abs(np.array(found)).max(initial=0.0)
+            assert np.array(two[name]) == pytest.approx(np.array(found), rel=1e-9, abs=1e-10 * size), name
+
+
+def test_a_run_of_two_ranks_has_the_frames_of_one_and_is_resumed_by_either(flow):
+    for ranks, out in ((1, "one"), (2, "two")):
+        said = done(ranks, *words_for(flow, out)).stderr
+        assert said.count("complete: reached 0.02 s") == 1
+        assert "a resume is not bit for bit" in said
+    one, two = (Results.open(flow / out) for out in ("one", "two"))
+    assert len(two.frames) == 5 and two.complete
+    assert two.tally["overlap_max"][-1] > 1e-4
+    assert two.provenance["device"].endswith("2 ranks of MPI")
+    for k in range(5):
+        assert two.frames.x[k] == pytest.approx(one.frames.x[k], abs=1e-9 * 2e-3)
+        assert two.frames.v[k] == pytest.approx(one.frames.v[k], abs=1e-8)
+    assert np.isnan(two.tally["residual"]).all() and (two.tally["kinetic"][1:] > 0.0).all()
+    done(1, "-m", "ryusa", "resume", str(flow / "two"), "--set", "stop.time=25 ms")
+    done(2, "-m", "ryusa", "resume", str(flow / "one"), "--set", "stop.time=25 ms")
+    one, two = (Results.open(flow / out) for out in ("one", "two"))
+    assert len(one.frames) == len(two.frames) == 6
+    assert two.frames.x[5] == pytest.approx(one.frames.x[5], abs=1e-8 * 2e-3)
+    told = done(1, "-m", "ryusa", "inspect", str(flow / "two")).stdout
+    assert "goes on from its own restart: not bit for bit" in told
+
+
+@pytest.mark.parametrize("whom", ["mpirun", "the second rank"])
+def test_a_signal_to_any_of_them_ends_the_run_in_order(flow, whom):
+    words = words_for(flow, "long", "stop.time=100 s", "record.frames=1 s")
+    running = subprocess.Popen(
+        command(2, *words), cwd=HERE.parents[1], stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True
+    )
+    for line in running.stderr:
+        if "slope_angle" in line:  # the timeline of the first steps
+            break
+    target = running.pid if whom == "mpirun" else sorted(ranks_of(running.pid))[-1]
+    os.kill(target, signal.SIGTERM)
+    begun, rest = time.monotonic(), running.stderr.read()
+    assert running.wait(60) == 5, rest
+    assert time.monotonic() - begun < 60.0
+    assert rest.count("checkpoint written at step") == 1
+    assert Results.open(flow / "long").status == "stopped"
+
+
+def ranks_of(mpirun):
+    """Processes of Python under a process."""
+    found, waiting = [], [mpirun]
+    while waiting:
+        parent = waiting.pop()
+        children = Path(f"/proc/{parent}/task/{parent}/children").read_text(encoding="utf-8").split()
+        waiting += [int(one) for one in children]
+        found += [
+            int(one) for one in children
+            if b"-m\0ryusa" in (text := Path(f"/proc/{one}/cmdline").read_bytes()) and b"mpirun" not in text
+        ]  # fmt: skip
+    return found
+
+
+def test_an_error_of_the_case_or_of_the_grains_is_one_message(flow):
+    said = done(2, *words_for(flow, "wrong", "contact.slip=spring"), code=2).stderr
+    assert said.count("contact.slip='total' would be carried") == 1
+    assert not (flow / "wrong").exists()
+    said = done(2, *words_for(flow, "deep", "domain.overlap_limit=0.00001"), code=3).stderr
+    assert said.count("ryusa: overlap is") == 1
+    assert Results.open(flow / "deep").status == "failed"
