@@ -21,10 +21,9 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parent))
 
-from kinds import KINDS
+from kinds import KINDS, case_of
 
 import ryusa
-from ryusa.casefile.read import read_text
 from ryusa.errors import RyusaError
 from ryusa.results import Results, schema
 from ryusa.running import checkpoint_scheduler, loop, recorder, vtkhdf
@@ -35,7 +34,7 @@ NOT_THE_SAME = {"wall", "particle_steps_per_second"}  # of a summary
 
 def run(kind: str, folder: Path, **how: Any) -> Results:
     """Run one of the kinds, or go on with it."""
-    return ryusa.run(read_text(KINDS[kind]), folder, progress=False, **how)
+    return ryusa.run(case_of(kind), folder, progress=False, **how)
 
 
 def differences(one: Path, other: Path) -> list[str]:

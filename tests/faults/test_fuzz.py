@@ -17,10 +17,9 @@ from hypothesis import strategies as st
 
 sys.path.insert(0, str(Path(__file__).parent))
 
-from kinds import KINDS
+from kinds import case_of
 
 import ryusa
-from ryusa.casefile.read import read_text
 from ryusa.errors import RyusaError
 from ryusa.results import Results, schema
 from ryusa.running import loop
@@ -28,8 +27,11 @@ from ryusa.running.checkpoint import _HEAD, _MAGIC, read_checkpoint
 from ryusa.running.disk import hdf5_image
 from ryusa.running.inspection import inspection
 
-SHORT = {"dry-2d": "0.01 s", "two-way": "0.004 s", "rolling": "0.01 s", "walls": "0.01 s", "feeds": "0.05 s"}
-IN_SPACE = ("walls", "feeds")
+SHORT = {
+    "dry-2d": "0.01 s", "two-way": "0.004 s", "rolling": "0.01 s", "walls": "0.01 s", "feeds": "0.05 s",
+    "mesh": "0.01 s", "materials": "0.05 s", "servo": "0.02 s", "clumps": "0.01 s",
+}  # fmt: skip
+IN_SPACE = ("walls", "feeds", "mesh", "materials", "servo", "clumps")
 FAST = settings(
     max_examples=25,
     deadline=None,
@@ -39,7 +41,7 @@ SLOW = settings(FAST, max_examples=300)
 
 
 def go(kind: str, folder: Path, **how: Any) -> Results:
-    case = read_text(KINDS[kind], {"stop.time": SHORT[kind], "record.frames": "1 ms", "timeline": "[]"})
+    case = case_of(kind, {"stop.time": SHORT[kind], "record.frames": "1 ms", "timeline": "[]"})
     return ryusa.run(case, folder, progress=False, **how)
 
 

@@ -16,7 +16,9 @@ from ryusa.results.scene_file import scene_digest
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "faults"))
 from campaign import differences
-from kinds import CLUMPS, CLUMPS_IN_WATER
+from kinds import KINDS
+
+CLUMPS, CLUMPS_IN_WATER = KINDS["clumps"], KINDS["clumps-water"]
 
 
 @pytest.fixture(scope="module")

@@ -17,7 +17,7 @@ from ryusa.results import Results, schema
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "faults"))
 from campaign import differences
-from kinds import SERVO
+from kinds import KINDS
 
 D, K, FORCE, MASS = 4.0e-3, 2000.0, 0.5, 2650.0 * math.pi / 6.0 * 4.0e-3**3
 ONE = f"""
@@ -53,6 +53,7 @@ time = "0.3 s"
 [record]
 frames = "10 ms"
 """
+SERVO = KINDS["servo"]
 SINKING = re.sub(r"servo = .*\n", "", SERVO).replace('"5 cm/s", "0 cm/s", "0', '"5 cm/s", "0 cm/s", "-2.5')
 
 

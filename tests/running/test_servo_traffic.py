@@ -15,7 +15,9 @@ from ryusa.results import Results
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "faults"))
 from campaign import differences
-from kinds import SERVO_FEEDS
+from kinds import KINDS
+
+SERVO_FEEDS = KINDS["servo-feeds"]
 
 D, K, FORCE, MASS, G = 4.0e-3, 2000.0, 0.5, 2650.0 * math.pi / 6.0 * 4.0e-3**3, 9.80665
 EMPTY = f"""

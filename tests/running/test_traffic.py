@@ -13,11 +13,12 @@ from ryusa.build import scene as scene_of
 from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.engine.pool import GrainPool
 from ryusa.errors import CaseError, CheckpointError
-from ryusa.model import Exit, Feed, Scene, State, Traffic
+from ryusa.model import PASSAGE, Exit, Feed, Scene, State, Traffic
 from ryusa.model.traffic import IN, OUT
 from ryusa.results import Results
 from ryusa.results.scene_file import scene_digest
 from ryusa.running.checkpoint import CheckpointBlock
+from ryusa.running.recorder import Recorder
 from ryusa.running.runner import run_scene
 from ryusa.running.stops import Stop
 from ryusa.running.traffic import TrafficRule
@@ -185,6 +186,19 @@ def test_a_stopped_run_resumes_with_the_same_bits(
     assert last.complete
     assert differences(whole.folder, tmp_path / "run") == []
     assert last.passages.tobytes() == whole.passages.tobytes()
+
+
+def test_grains_that_passed_between_frames_are_in_a_checkpoint_and_in_a_part(tmp_path: Path) -> None:
+    scene, _ = fed(3, 0, (disc(count=3),))
+    (tmp_path / "provenance.json").write_text('{"format": 2, "status": "running"}')
+    recorder, rows = Recorder(tmp_path, scene), np.zeros(2, PASSAGE)
+    rows["grain"] = 0, 1
+    assert recorder.to_block().arrays == {}
+    recorder.passages(rows)
+    assert recorder.buffered == rows.nbytes
+    assert recorder.to_block().arrays["passages"].tobytes() == rows.tobytes()
+    assert recorder.flush()
+    assert Results.open(tmp_path).passages["grain"].tolist() == [0, 1]
 
 
 def test_a_checkpoint_of_other_feeds_is_refused() -> None:

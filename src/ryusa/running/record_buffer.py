@@ -48,7 +48,7 @@ class RecordBuffer:
         self._travel: list[NDArray[np.float64]] = []  # of those that servos press, up to each frame
 
     def __bool__(self) -> bool:
-        return self.n_frame > 0 or self.n_contact > 0
+        return self.n_frame > 0 or self.n_contact > 0 or any(len(one) for one in self._passages or ())
 
     @property
     def nbytes(self) -> int:
@@ -56,7 +56,8 @@ class RecordBuffer:
         forces = sum(one.nbytes for one in self._forces or ())
         frames = self.n_frame * bytes_per_frame(self._scene.n_grain)
         frames += sum(one.nbytes for rows in self._bodies.values() for one in rows)
-        return frames + forces + self.n_contact * EVENT.itemsize
+        passages = sum(one.nbytes for one in self._passages or ())
+        return frames + forces + passages + self.n_contact * EVENT.itemsize
 
     def frame(
         self, state: State, tally: Tally, water: Coupling | None, travel: NDArray[np.float64] | None
