@@ -1,15 +1,18 @@
 """Triangle meshes of STL and OBJ files."""
 
+import re
 from pathlib import Path
 
 import numpy as np
 
 from ryusa.errors import ParseError
+from ryusa.formats.obj import read_obj
 from ryusa.model.scene import Floats
 
 KINDS = (".stl", ".obj")
 MOST_TRIANGLES = 2_000_000
 _LARGEST = 1 << 29  # bytes of a file
+_HEAD, _ROW = 84, 50  # bytes of a binary STL file before its triangles, and of each
 
 
 def read_mesh(path: Path, name: str) -> Floats:
@@ -24,30 +27,81 @@ def read_mesh(path: Path, name: str) -> Floats:
 
     Raises
     ------
-    ParseError : it is not such a file, holds no triangle, too many, or a corner that is not finite.
+    ParseError : it is not such a file, is cut off, holds no triangle, too many, or a corner that is not
+        finite.
     """
-    import trimesh
-
     if path.suffix.lower() not in KINDS:
         raise ParseError(name, 1, 1, f"must be an {' or '.join(one[1:].upper() for one in KINDS)} file")
-    if path.stat().st_size > _LARGEST:
-        raise ParseError(name, 1, 1, f"is larger than {_LARGEST >> 20} MiB, the limit for a mesh")
-    kind = path.suffix.lower()[1:]
-    with path.open("rb") as file:
-        try:
-            loaded = trimesh.load_mesh(
-                file, file_type=kind, process=False, maintain_order=True, skip_materials=True
-            )
-            corners = np.asarray(loaded.vertices, dtype=np.float64)[np.asarray(loaded.faces, dtype=np.int64)]
-        except Exception as error:  # of any kind: the file is the user's, and the reader another's
-            about = str(error).splitlines()[0][:120] if str(error) else type(error).__name__
-            raise ParseError(name, 1, 1, f"cannot be read as {kind.upper()} ({about})") from error
+    try:
+        if path.stat().st_size > _LARGEST:
+            raise ParseError(name, 1, 1, f"is larger than {_LARGEST >> 20} MiB, the limit for a mesh")
+        corners = read_obj(path, name) if path.suffix.lower() == ".obj" else _read_stl(path, name)
+    except OSError as error:
+        raise ParseError(name, 1, 1, f"cannot be read ({error.strerror or error})") from error
     if not corners.size:
         raise ParseError(name, 1, 1, "holds no triangle; export the part as a mesh of triangles")
-    corners = corners.reshape(-1, 3, 3)
     if len(corners) > MOST_TRIANGLES:
-        raise ParseError(name, 1, 1, f"holds {len(corners):,} triangles; at most {MOST_TRIANGLES:,}")
+        raise ParseError(
+            name, 1, 1, f"holds {len(corners):,} triangles; at most {MOST_TRIANGLES:,}: coarsen the mesh"
+        )
     bad = np.flatnonzero(~np.isfinite(corners).all(axis=(1, 2)))
     if len(bad):
         raise ParseError(name, 1, 1, f"triangle {bad[0]} has a corner that is not finite")
     return corners
+
+
+def _read_stl(path: Path, name: str) -> Floats:
+    """Corners of an STL file; text and binary are told apart by the length, as many binary ones say solid."""
+    import trimesh
+
+    whole = path.read_bytes()
+    stated = int.from_bytes(whole[80:_HEAD], "little") if len(whole) >= _HEAD else -1
+    kind = "stl" if len(whole) == _HEAD + _ROW * stated else "stl_ascii"
+    expected = stated if kind == "stl" else _facets(whole, stated, name)
+    if expected == 0:
+        return np.zeros((0, 3, 3))
+    with path.open("rb") as file:
+        try:
+            loaded = trimesh.load_mesh(file, file_type=kind, process=False, maintain_order=True)
+            corners = np.asarray(loaded.vertices, dtype=np.float64)[np.asarray(loaded.faces, dtype=np.int64)]
+            corners = corners.reshape(-1, 3, 3)
+        except Exception as error:  # of any kind: the file is the user's, and the reader another's
+            about = str(error).splitlines()[0][:120] if str(error) else type(error).__name__
+            raise ParseError(name, 1, 1, f"cannot be read as STL ({about})") from error
+    if len(corners) != expected:
+        raise ParseError(name, 1, 1, f"has {expected} facets, of which {len(corners)} could be read")
+    return corners
+
+
+def _facets(whole: bytes, stated: int, name: str) -> int:
+    """Number of facets of a text file that is whole.
+
+    Raises
+    ------
+    ParseError : it is no text of an STL file, or cut off.
+    """
+    if not whole.strip():
+        raise ParseError(name, 1, 1, "is empty")
+    if re.match(rb"\s*solid\b", whole, re.IGNORECASE) is None or b"\0" in whole:
+        if stated < 0:
+            raise ParseError(name, 1, 1, "is neither text nor binary STL; is it another format?")
+        raise ParseError(
+            name, 1, 1,
+            f"is no text STL, and as binary STL it would hold {stated:,} triangles in "
+            f"{_HEAD + _ROW * stated:,} bytes, but has {len(whole):,}: it is cut off, "
+            "damaged or of another format; export it again",
+        )  # fmt: skip
+    begun, ended, vertices = (
+        len(re.findall(rb"^\s*%b\b" % word, whole, re.IGNORECASE | re.MULTILINE))
+        for word in (b"facet", b"endfacet", b"vertex")
+    )
+    last = re.search(rb"^\s*endsolid\b[^\r\n]*\s*\Z", whole, re.IGNORECASE | re.MULTILINE)
+    if last is None or begun != ended or vertices != 3 * begun:
+        line = whole.count(b"\n") + 1
+        ends = "with" if last is not None else "without"
+        raise ParseError(
+            name, line, 1,
+            f"holds {begun} facets, of which {ended} end, and {vertices} vertices, and ends {ends} 'endsolid'"
+            ": it is cut off or damaged; export it again",
+        )  # fmt: skip
+    return begun
