@@ -8,8 +8,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from ryusa.build import build
+from ryusa.build.wall_checks import MOST_STEP
 from ryusa.casefile import explain, read
 from ryusa.engine.cpu.engine import CpuEngine
+from ryusa.engine.shared.parameters import LARGEST_DISPLACEMENT
 from ryusa.errors import CaseError, ParseError
 from ryusa.formats.mesh import read_mesh
 
@@ -38,6 +40,9 @@ shape = "rectangle"
 at = ["-2 cm", "-2 cm", "-1 mm"]
 sides = [["5 cm", "0 cm", "0 cm"], ["0 cm", "5 cm", "0 cm"]]
 """
+LID = FLOOR.replace("floor", "lid").replace("-1 mm", "3 cm")
+BASE = '[[planes]]\nname = "base"\npoint = ["0 m", "0 m", "0 m"]\nnormal = [0, 0, 1]\n'
+DOMAIN = '[domain]\nlow = ["-3 cm", "-3 cm", "-3 cm"]\nhigh = ["3 cm", "3 cm", "3 cm"]\n'
 PRESSED = 'servo = { direction = [0, 0, 1], force = "1 N", max_speed = "1 cm/s" }\n'
 MESH = """
 [[walls]]
@@ -116,6 +121,17 @@ BAD = [
     (FLOOR + '[[timeline]]\nat = "1 ms"\nmove = { wall = "flor" }\n', "must be a wall: floor"),
     (FLOOR + '[[timeline]]\nat = "1 ms"\nremove = "roof"\n', "a plane or a wall: floor"),
     (FLOOR + '[[timeline]]\nat = "1 ms"\nremove = "floor"\nslope = 0.1\n', "needs exactly one of"),
+    (FLOOR.replace('"floor"', '"a\\nb"'), "walls.0.name = 'a\\nb': must be printable text on one line"),
+    (BASE + FLOOR, "walls.0.name = 'floor': lies behind the plane 'base', where no grain gets: move it 0"),
+    (DOMAIN + FLOOR.replace("-1 mm", "5 cm"), "lies outside domain.low and domain.high"),
+    (FLOOR + 'velocity = ["0 m/s", "0 m/s", "-1e5 m/s"]\n', "walls.0 = 'floor': moves at up to 1e+05 m/s"),
+    (FLOOR + '[[timeline]]\nat = "1 ms"\nmove = {wall = "floor", velocity = ["1e3 m/s", "0 m/s", "0 m/s"]}\n',
+     "timeline.0.move = 'floor': moves at up to 1e+03 m/s and could pass through a grain in a step: at most"),
+    (LID + 'servo = { direction = [0, 0, 1], force = "1 N", max_speed = "1 cm/s" }\n',
+     "walls.0.servo.direction = [0.0, 0.0, 1.0]: presses away from all first grains"),
+    (LID + 'servo = { direction = [0, 0, -1], force = "1 N", max_speed = "1 m/s", max_travel = "1 cm" }\n',
+     "walls.0.servo.max_travel = 0.01: ends before the first grain, which is 0.0258"),
+    (LID + 'servo = { direction = [0, 0, -1], force = "1 N", max_speed = "1 km/s" }\n', "moves at up to 1e"),
 ]  # fmt: skip
 
 
@@ -194,6 +210,74 @@ def test_check_says_what_a_mesh_is_like(tmp_path: Path) -> None:
     assert rows["part: open sides"].value == 3
     assert "holes" in rows["part: open sides"].origin
     assert rows["part: size in x, y, z"].value == "2 x 2 x 2 cm"
+
+
+def test_a_triangle_given_twice_counts_once_and_a_far_corner_is_not_forgotten(tmp_path: Path) -> None:
+    part = tmp_path / "part.stl"
+    whole = tetrahedron()
+    write_stl(part, np.concatenate([whole, whole[:1], whole[1:2, [2, 0, 1]], whole[2:3, [0, 2, 1]]]))
+    (tmp_path / "case.toml").write_text(CASE + MESH)
+    case = read(tmp_path / "case.toml")
+    rows = {one.name: one for one in explain(case)}
+    assert (rows["part: triangles"].value, rows["part: doubled"].value) == (4, 3)
+    assert "part: open sides" not in rows
+    assert "part: shared sides" not in rows
+    walls = build(case).scene.walls
+    assert walls is not None
+    assert walls.n_face == 4
+    far = whole.copy()
+    far[0, 0] = 1e30  # so long that it has no area beside its length
+    write_stl(part, far)
+    assert "check unit and scale" in fault(tmp_path, MESH)
+    far[0, 0] = 1e12
+    write_stl(part, far)
+    assert "times the largest grain" in fault(tmp_path, MESH)
+
+
+def test_a_hole_is_told_with_its_width_and_a_doubtful_unit_with_the_size(tmp_path: Path) -> None:
+    write_stl(tmp_path / "part.stl", tetrahedron()[1:])
+    (tmp_path / "case.toml").write_text(CASE + MESH)
+    rows = {one.name: one for one in explain(read(tmp_path / "case.toml"))}
+    assert "in 1 rim, the widest 2.83 cm across" in rows["part: open sides"].origin
+    assert rows["part: size in x, y, z"].flag == ""
+    assert rows["part: size in x, y, z"].origin == "mesh; 10 of the largest grains across"
+    (tmp_path / "case.toml").write_text(CASE + MESH.replace('"mm"', '"m"').replace("-3 cm", "-30 m"))
+    assert not [one for one in explain(read(tmp_path / "case.toml")) if "more than 10000" in one.origin]
+    (tmp_path / "case.toml").write_text(
+        CASE + MESH.replace('"mm"', '"ft"').replace("-3 cm", "-30 m") + "scale = 20\n"
+    )
+    wide = [one for one in explain(read(tmp_path / "case.toml")) if one.flag == "warning"]
+    assert any("more than 10000: check its lengths and units" in one.origin for one in wide)
+
+
+PERIODIC = CASE.replace(
+    'kind = "fill"\nlow = ["0 cm", "0 cm", "0 cm"]\nhigh = ["1 cm", "1 cm", "0.5 cm"]',
+    'kind = "packing"\ncolumns = 7\nrows = 7\nlayers = 2',
+)
+TUBE = """
+[[walls]]
+name = "tube"
+shape = "cylinder"
+at = ["0 m", "0 m", "-2 cm"]
+axis = ["0 m", "0 m", "5 cm"]
+radius = "3 cm"
+"""
+
+
+def test_a_wall_that_does_not_fit_a_period_is_named(tmp_path: Path) -> None:
+    turning = FLOOR + 'angular_velocity = ["0 rpm", "0 rpm", "9 rpm"]\naxis_point = ["0 m", "0 m", "0 m"]\n'
+    assert "walls.0.angular_velocity = [0.0, 0.0, 0.94" in (said := fault(tmp_path, turning, PERIODIC))
+    assert "across x, which is periodic" in said
+    assert "walls.0: is 0.06 m wide in x, too wide for the period" in fault(tmp_path, TUBE, PERIODIC)
+    long = FLOOR.replace("-2 cm", "-2 m").replace("5 cm", "9 m")
+    assert "make it as long as the period" in fault(tmp_path, long, PERIODIC)
+    along = TUBE.replace('["0 m", "0 m", "5 cm"]', '["5 cm", "0 m", "0 m"]').replace("3 cm", "3 mm")
+    (tmp_path / "case.toml").write_text(PERIODIC + along)
+    assert build(read(tmp_path / "case.toml")).scene.n_wall == 1
+
+
+def test_builders_and_engines_agree_how_far_a_wall_may_go_in_a_step() -> None:
+    assert MOST_STEP == LARGEST_DISPLACEMENT
 
 
 def test_flipped_triangles_are_one_surface_with_their_neighbours(tmp_path: Path) -> None:

@@ -22,6 +22,12 @@ from ryusa.build.placement import Placement, Wall
 from ryusa.build.saltation import saltation
 from ryusa.build.table import table
 from ryusa.build.traffic import before_feeding, with_feeds
+from ryusa.build.wall_checks import (
+    refuse_fast_walls,
+    refuse_full_feeds,
+    refuse_grains_beyond_exits,
+    refuse_idle_servos,
+)
 from ryusa.build.walls import SolidWall, refuse_overlaps_with_walls, walls_of, with_room, with_walls
 from ryusa.casefile.builders.schema import FromFile
 from ryusa.casefile.builders.table import key_of
@@ -108,7 +114,8 @@ def build(case: Case, derived: Derived | None = None) -> Built:
 
     Raises
     ------
-    CaseError : first grains overlap or lie between lanes, or the timeline names an unknown group.
+    CaseError : first grains overlap or lie between lanes, the timeline names an unknown group, or a wall, a
+        feed or an exit cannot do what it is asked.
     """
     found = derived or derive(case)
     placement = BUILDERS[case.build.kind](case, found)
@@ -129,7 +136,11 @@ def build(case: Case, derived: Derived | None = None) -> Built:
     scene, state = before_feeding(*assemble(placement, laws), traffic, case)
     scene = with_room(with_walls(scene, walls), case.domain.low is None, case.domain.high is None)
     scene, state = clumps_of(case, with_materials(case, scene, of), state)
-    return Built(scene, state, (*placement.notes, *notes_of(case)))
+    refuse_fast_walls(case, scene)
+    refuse_idle_servos(case, scene, state)
+    gone = refuse_grains_beyond_exits(scene, state)
+    refuse_full_feeds(case, scene)
+    return Built(scene, state, (*placement.notes, *gone, *notes_of(case)))
 
 
 def laws_of(case: Case, derived: Derived, z_zero: float) -> Laws:

@@ -14,9 +14,12 @@ from ryusa.build.overlaps import TOLERANCE
 from ryusa.build.overlaps import name as name_of
 from ryusa.build.placement import ROOM_BELOW, Placement
 from ryusa.build.servo import Servo, servo_rows
+from ryusa.build.wall_checks import refuse_wide_round_faces
 from ryusa.casefile.case import Case
-from ryusa.casefile.walls import WallSection, mesh_of
+from ryusa.casefile.mesh import mesh_of
+from ryusa.casefile.walls import WallSection
 from ryusa.errors import CaseError
+from ryusa.formats.mesh import MOST_TRIANGLES
 from ryusa.model import FaceKind, Scene, Walls
 from ryusa.model.scene import Floats
 from ryusa.model.wall_shape import nearest_on_face
@@ -32,9 +35,9 @@ from ryusa.model.walls import (
     box_of,
     face_boxes,
 )
+from ryusa.model.welding import sides_of, welded
 
 FOLD = math.radians(30.0)  # angle up to which two triangles are one smooth surface
-_WELD = 1e-9  # of the size of a mesh: nearer corners are one
 _SHARE = 4.0  # of a period: the longest side of a triangle along it
 
 
@@ -124,10 +127,18 @@ def _round(centre: ArrayLike, normal: ArrayLike, radius: float, length: float) -
 
 
 def with_walls(scene: Scene, walls: Sequence[SolidWall]) -> Scene:
-    """The same scene with walls; their names become groups, as those of planes."""
+    """The same scene with walls; their names become groups, as those of planes.
+
+    Raises
+    ------
+    CaseError : a wall too large for a period of the scene.
+    """
     if not walls:
         return scene
-    split = [replace(wall, **_split(wall, scene.period)) for wall in walls]
+    split = [replace(wall, **_split(wall, scene.period, f"walls.{k}")) for k, wall in enumerate(walls)]
+    largest = float(np.concatenate([scene.d, scene.d_fixed]).max(initial=0.0))
+    for k, wall in enumerate(split):
+        refuse_wide_round_faces(wall.face, wall.kind, scene.period, largest, f"walls.{k}")
     count = [len(wall.kind) for wall in split]
     face, kind = np.vstack([wall.face for wall in split]), np.concatenate([wall.kind for wall in split])
     number = np.repeat(np.arange(len(walls)), count)
@@ -174,33 +185,20 @@ def surfaces(face: Floats, kind: Ints, period: tuple[float, float] = (math.inf, 
     return np.asarray(connected_components(graph, directed=False)[1], dtype=np.int64)
 
 
-def welded(corners: Floats, period: tuple[float, float] = (math.inf, math.inf)) -> Ints:
-    """Numbers of the distinct corners of triangles, (n, 3); `corners` have shape (n, 3, 3) [m]."""
-    points = corners.reshape(-1, 3)
-    step = _WELD * max(float(np.ptp(points, axis=0).max(initial=0.0)), 1e-300)
-    units = np.round(points / step)
-    for k in range(2):
-        if math.isfinite(period[k]):
-            units[:, k] = np.mod(units[:, k], round(period[k] / step))
-    _, number = np.unique(units, axis=0, return_inverse=True)
-    return number.reshape(-1, 3).astype(np.int64)
-
-
 def _smooth_links(face: Floats, period: tuple[float, float]) -> Ints:
     """Pairs of triangles that continue each other, shape (n, 2)."""
     if not len(face):
         return np.zeros((0, 2), np.int64)
     a, b, c = face[:, :3], face[:, :3] + face[:, 3:6], face[:, :3] + face[:, 6:9]
     corners = np.stack([a, b, c], axis=1)
-    number = welded(corners, period)
-    sides = np.concatenate([np.sort(number[:, [k, (k + 1) % 3]], axis=1) for k in range(3)])
+    sides = sides_of(welded(corners, period))
     owner = np.tile(np.arange(len(face)), 3)
     along = np.concatenate([corners[:, (k + 1) % 3] - corners[:, k] for k in range(3)])
     to_third = np.concatenate([corners[:, (k + 2) % 3] - corners[:, k] for k in range(3)])
     along /= np.maximum(np.linalg.norm(along, axis=1), 1e-300)[:, None]
     across = to_third - np.sum(to_third * along, axis=1)[:, None] * along
     across /= np.maximum(np.linalg.norm(across, axis=1), 1e-300)[:, None]
-    _, edge, times = np.unique(sides, axis=0, return_inverse=True, return_counts=True)
+    _, edge, times = np.unique(sides, return_inverse=True, return_counts=True)
     order = np.argsort(edge.ravel(), kind="stable")
     starts = np.concatenate([[0], np.cumsum(times)])[:-1][times == 2]
     one, other = order[starts], order[starts + 1]
@@ -208,13 +206,22 @@ def _smooth_links(face: Floats, period: tuple[float, float]) -> Ints:
     return np.column_stack([owner[one], owner[other]])[smooth]
 
 
-def _split(wall: SolidWall, period: tuple[float, float]) -> dict[str, np.ndarray]:
+def _split(wall: SolidWall, period: tuple[float, float], key: str) -> dict[str, np.ndarray]:
     """Faces of a wall, with triangles too long along a period cut in halves.
 
     The nearest image of a face is found from its middle; it has to be the nearest for all of it.
     """
     face, kind = wall.face, wall.kind
     while True:
+        if (
+            len(kind) > MOST_TRIANGLES
+            or _least_pieces(face[kind == FaceKind.TRIANGLE], period) > MOST_TRIANGLES
+        ):
+            raise CaseError(
+                key, wall.name,
+                f"is so much longer than the period, {min(period):.4g} m, that it would be cut into over "
+                f"{MOST_TRIANGLES:,} triangles: make it as long as the period, where it meets itself",
+            )  # fmt: skip
         corners = np.stack([np.zeros_like(face[:, :3]), face[:, 3:6], face[:, 6:9]], axis=1)
         long = np.zeros(len(face), np.bool_)
         for k in range(2):
@@ -233,6 +240,13 @@ def _split(wall: SolidWall, period: tuple[float, float]) -> dict[str, np.ndarray
         other = np.hstack([middle, second - middle, third - middle])
         face = np.vstack([face[~long], one, other])
         kind = np.concatenate([kind[~long], np.zeros(2 * len(a), np.int64)])
+
+
+def _least_pieces(face: Floats, period: tuple[float, float]) -> float:
+    """Number of pieces that triangles are cut into at least, so that none is too long along a period."""
+    short = [min(one / _SHARE, 1e300) for one in period]
+    area = 0.5 * np.abs(np.cross(face[:, 3:6], face[:, 6:9])[:, 2]).sum()  # seen from above
+    return float(area / (0.5 * short[0] * short[1]))
 
 
 def walls_of(case: Case) -> tuple[SolidWall, ...]:

@@ -12,7 +12,7 @@ from ryusa.casefile.forms import FormSection
 from ryusa.casefile.grains import GrainsSection
 from ryusa.casefile.materials import MaterialSection, PairSection
 from ryusa.casefile.motion import MotionSection
-from ryusa.casefile.quantities import Count
+from ryusa.casefile.quantities import Count, Name
 from ryusa.casefile.record import ChangeSection, RecordSection, StopSection
 from ryusa.casefile.section import Section
 from ryusa.casefile.time import TimeSection
@@ -49,7 +49,7 @@ class Case(Section):
     """Where grains leave."""
     time: TimeSection = TimeSection()
     stop: StopSection
-    materials: dict[str, MaterialSection] = Field(default_factory=lambda: {})
+    materials: dict[Name, MaterialSection] = Field(default_factory=lambda: {})
     """Materials of grains and walls other than that of [grains] and [contact], by name."""
     pairs: tuple[PairSection, ...] = ()
     """Contacts of two different materials."""

@@ -9,7 +9,7 @@ from pydantic import Field
 from ryusa.casefile.builders.schema import FromFile, PackingSection
 from ryusa.casefile.builders.table import key_of, period_of, table_of
 from ryusa.casefile.builders.values import FEWEST_PERIODS, periodic
-from ryusa.casefile.quantities import Number, Point, PositiveLength
+from ryusa.casefile.quantities import Name, Number, Point, PositiveLength
 from ryusa.casefile.section import Section
 from ryusa.errors import CaseError
 
@@ -37,13 +37,13 @@ class DomainSection(Section):
 class PlaneSection(Section):
     """A flat wall with the same contact law as the grains."""
 
-    name: Annotated[str, Field(min_length=1, max_length=64)]
+    name: Name
     """Name of the plane; [[timeline]] can remove it by this name."""
     point: Point
     """A point on the plane."""
     normal: tuple[Number, Number, Number]
     """Direction from the plane towards the grains, of any length."""
-    material: Annotated[str, Field(min_length=1, max_length=64)] | None = None
+    material: Name | None = None
     """Material of [materials]; that of [contact] when not given."""
 
 

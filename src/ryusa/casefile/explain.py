@@ -35,7 +35,7 @@ def explain(case: Case, derived: Derived | None = None) -> list[ExplainRow]:
         *contact_rows(case, found),
         *damping_rows(case, found),
         *material_rows(case),
-        *wall_rows(case),
+        *wall_rows(case, found),
         *time_rows(case, found),
         *impact_rows(case, found),
         *water_rows(case, found, origin_of_u_star(case) if case.water is not None else ""),

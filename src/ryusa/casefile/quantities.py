@@ -4,7 +4,15 @@ import math
 import re
 from typing import Annotated, Any
 
-from pydantic import AllowInfNan, BeforeValidator, Field, GetCoreSchemaHandler, Strict, WithJsonSchema
+from pydantic import (
+    AfterValidator,
+    AllowInfNan,
+    BeforeValidator,
+    Field,
+    GetCoreSchemaHandler,
+    Strict,
+    WithJsonSchema,
+)
 from pydantic_core import CoreSchema, core_schema
 
 from ryusa.laws._family import Family
@@ -52,6 +60,19 @@ class WordOf:
         return core_schema.literal_schema(list(self._family.words()))
 
 
+def printable(name: str) -> str:
+    """Check a name that will stand in tables and messages.
+
+    Raises
+    ------
+    ValueError : it has a line break, or another character that cannot be printed.
+    """
+    if not name.isprintable():
+        raise ValueError("must be printable text on one line")
+    return name
+
+
+Name = Annotated[str, Field(min_length=1, max_length=64), AfterValidator(printable)]
 Number = Annotated[float, Strict(), AllowInfNan(False)]
 Count = Annotated[int, Strict()]
 Length = Annotated[float, _si("m"), _text("length", "0.2 cm", "2 mm")]

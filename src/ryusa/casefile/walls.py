@@ -2,32 +2,30 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
-from functools import lru_cache
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
 from pydantic import AfterValidator, Field
 
-from ryusa.casefile.files import inside, relative
+from ryusa.casefile.builders.values import periodic
+from ryusa.casefile.files import relative
+from ryusa.casefile.mesh import mesh_of, mesh_rows
 from ryusa.casefile.quantities import (
     Angle,
     Frequency,
+    Name,
     Number,
     Point,
     PositiveLength,
     Speed,
     Spin,
 )
-from ryusa.casefile.rows import ExplainRow, count, word
+from ryusa.casefile.rows import ExplainRow, word
 from ryusa.casefile.section import Section, given
 from ryusa.casefile.servo import ServoSection, check_moves, check_servo, servo_text
-from ryusa.errors import CaseError, ParseError
-from ryusa.formats.mesh import read_mesh
-from ryusa.laws.walls import turned_about
-from ryusa.model.scene import Floats
-from ryusa.units import quantity
+from ryusa.errors import CaseError
+from ryusa.model.arrays import Floats
+from ryusa.model.walls import corners_of_box
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
@@ -45,12 +43,14 @@ _KEYS = {  # of each shape: those it needs, those it may have
 }
 _OF_SHAPES = tuple(dict.fromkeys(key for needs, may in _KEYS.values() for key in (*needs, *may)))
 LARGEST = 1.0e6  # of a wall, in largest diameters
+WIDE = 1.0e4  # from which the size of a wall is doubted
+_BEHIND = 1e-9  # of its size: nearer to a plane a wall lies in it
 
 
 class WallSection(Section):
     """A finite wall with the contact law of the grains; grains touch both of its sides."""
 
-    name: Annotated[str, Field(min_length=1, max_length=64)]
+    name: Name
     """Name of the wall; [[timeline]] can move it or remove it by this name."""
     shape: Literal["rectangle", "ridges", "disc", "cylinder", "mesh"]
     """A rectangle, one covered by triangular ridges as a rough plate, a disc, the shell of a cylinder, or
@@ -97,14 +97,14 @@ class WallSection(Section):
     """Phase of that oscillation at the start."""
     servo: ServoSection | None = None
     """Presses the wall on the grains with a given force or pressure, beside its other motion."""
-    material: Annotated[str, Field(min_length=1, max_length=64)] | None = None
+    material: Name | None = None
     """Material of [materials]; that of [contact] when not given."""
 
 
 class MoveSection(Section):
     """New motion of a wall, in place of the one it had; what is not given is zero."""
 
-    wall: Annotated[str, Field(min_length=1, max_length=64)]
+    wall: Name
     """Name of the wall."""
     velocity: VelocityVector | None = None
     """Velocity of the wall."""
@@ -118,55 +118,6 @@ class MoveSection(Section):
     """Frequency of that oscillation."""
     phase: Angle = 0.0
     """Phase at which it begins."""
-
-
-@dataclass(frozen=True)
-class Mesh:
-    """A mesh in its place."""
-
-    corners: Floats  # [m], shape (n, 3, 3), without triangles of no area
-    empty: int  # triangles of no area that were left out
-
-
-def mesh_of(case: "Case", wall: WallSection, key: str) -> Mesh:
-    """Read the mesh of a wall, in SI and in its place; `key` is that of the wall.
-
-    Raises
-    ------
-    CaseError : no such file, not a mesh, or an unknown unit.
-    """
-    assert wall.file is not None
-    path = inside(case, f"{key}.file", wall.file)
-    if not path.is_file():
-        raise CaseError(f"{key}.file", wall.file, f"no such file in the folder of the case, {path.parent}")
-    try:
-        unit = quantity(f"1 {wall.unit}", "m")
-    except ValueError as error:
-        allowed = f"must be a unit of length such as 'mm' ({error})"
-        raise CaseError(f"{key}.unit", wall.unit, allowed) from None
-    stamp = path.stat()
-    try:
-        corners = _read(path, wall.file, stamp.st_mtime_ns, stamp.st_size)
-    except ParseError as error:
-        raise CaseError(f"{key}.file", None, str(error)) from error
-    corners = corners * (unit * wall.scale)
-    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-    longest = np.linalg.norm(np.ptp(corners, axis=1), axis=1)
-    flat = area <= 1e-12 * longest**2
-    if flat.all():
-        raise CaseError(f"{key}.file", wall.file, f"all its {len(corners)} triangles have no area")
-    corners = corners[~flat]
-    if wall.turn_axis is not None and wall.turn_angle is not None:
-        axis = np.array(wall.turn_axis) / np.linalg.norm(wall.turn_axis)
-        angle, (x, y, z) = wall.turn_angle, axis.tolist()
-        turn = np.array([turned_about(a, b, c, x, y, z, angle) for a, b, c in np.eye(3).tolist()])
-        corners = corners @ turn
-    return Mesh(corners + np.array(wall.at or (0.0, 0.0, 0.0)), int(flat.sum()))
-
-
-@lru_cache(maxsize=8)
-def _read(path: Path, name: str, _changed: int, _size: int) -> Floats:
-    return read_mesh(path, name)
 
 
 def check_walls(case: "Case") -> Iterator[CaseError]:
@@ -189,14 +140,14 @@ def check_walls(case: "Case") -> Iterator[CaseError]:
             yield CaseError(f"{key}.name", wall.name, "is used twice")
         names.append(wall.name)
         yield from _shape(key, wall)
-        yield from _motion(key, wall)
+        yield from _motion(case, key, wall)
         yield from check_servo(case, wall, key)
     for k, entry in enumerate(case.timeline):
         if entry.move is not None:
             if entry.move.wall not in names:
                 known = ", ".join(names) or "there is none"
                 yield CaseError(f"timeline.{k}.move.wall", entry.move.wall, f"must be a wall: {known}")
-            yield from _motion(f"timeline.{k}.move", entry.move)
+            yield from _motion(case, f"timeline.{k}.move", entry.move)
     yield from check_moves(case)
 
 
@@ -215,7 +166,14 @@ def _shape(key: str, wall: WallSection) -> Iterator[CaseError]:
         yield CaseError(f"{key}.{missing}", None, "missing; a turn needs turn_axis and turn_angle")
 
 
-def _motion(key: str, moved: WallSection | MoveSection) -> Iterator[CaseError]:
+def _motion(case: "Case", key: str, moved: WallSection | MoveSection) -> Iterator[CaseError]:
+    spin = moved.angular_velocity or (0.0, 0.0, 0.0)
+    for axis, is_periodic in enumerate(periodic(case)):
+        if is_periodic and any(one != 0.0 for k, one in enumerate(spin) if k != axis):
+            yield CaseError(
+                f"{key}.angular_velocity", list(spin),
+                f"turns the wall across {'xy'[axis]}, which is periodic: only about {'xy'[axis]} can it turn",
+            )  # fmt: skip
     if (moved.amplitude is None) != (moved.frequency is None):
         missing = "amplitude" if moved.amplitude is None else "frequency"
         yield CaseError(f"{key}.{missing}", None, "missing; an oscillation needs amplitude and frequency")
@@ -226,14 +184,15 @@ def _motion(key: str, moved: WallSection | MoveSection) -> Iterator[CaseError]:
 
 
 def check_meshes(case: "Case", derived: "Derived") -> Iterator[CaseError]:
-    """Find files that are no meshes, and walls of a size that does not fit the grains."""
+    """Find files that are no meshes, walls of a size that does not fit the grains, and walls out of reach."""
     for k, wall in enumerate(case.walls):
         key = f"walls.{k}"
         try:
-            size = size_of(case, wall, key)
+            low, high = box_of(case, wall, key)
         except CaseError as error:
             yield error
             continue
+        size = high - low
         remedy = "check unit and scale" if wall.shape == "mesh" else "check its lengths"
         across = " x ".join(f"{one:.3g}" for one in size)
         if size.max() < derived.d_max:
@@ -246,69 +205,82 @@ def check_meshes(case: "Case", derived: "Derived") -> Iterator[CaseError]:
                 f"{key}.name", wall.name,
                 f"is {across} m, over {LARGEST:g} times the largest grain, {derived.d_max:.3g} m; {remedy}",
             )  # fmt: skip
+        elif not _moves(case, wall):
+            yield from _out_of_reach(case, wall, key, low, high)
 
 
-def size_of(case: "Case", wall: WallSection, key: str) -> Floats:
-    """Size of a wall along each axis [m], shape (3,)."""
+def _moves(case: "Case", wall: WallSection) -> bool:
+    """Whether a wall moves at any time."""
+    own = any(given(wall, one) for one in ("velocity", "angular_velocity", "amplitude", "servo"))
+    return own or any(entry.move is not None and entry.move.wall == wall.name for entry in case.timeline)
+
+
+def _out_of_reach(
+    case: "Case", wall: WallSection, key: str, low: Floats, high: Floats
+) -> Iterator[CaseError]:
+    """Find a wall at rest that lies wholly outside the domain, or behind a plane that is never removed."""
+    bottom, top = case.domain.low, case.domain.high
+    for axis, is_periodic in enumerate((*periodic(case), False)):
+        if is_periodic:
+            continue
+        if (bottom is not None and high[axis] < bottom[axis]) or (top is not None and low[axis] > top[axis]):
+            yield CaseError(
+                f"{key}.name", wall.name, "lies outside domain.low and domain.high, where no grain gets"
+            )
+            return
+    corners = corners_of_box(low, high)
+    removed = {entry.remove for entry in case.timeline}
+    for plane in case.planes:
+        normal = np.array(plane.normal) / np.linalg.norm(plane.normal)
+        above = float(((corners - np.array(plane.point)) @ normal).max())
+        if above < -_BEHIND * float((high - low).max()) and plane.name not in removed:
+            yield CaseError(
+                f"{key}.name", wall.name,
+                f"lies behind the plane '{plane.name}', where no grain gets: move it {-above:.3g} m or more, "
+                "or leave it out",
+            )  # fmt: skip
+            return
+
+
+def box_of(case: "Case", wall: WallSection, key: str) -> tuple[Floats, Floats]:
+    """Lowest and highest corner of the box round a wall in its first place [m], shape (3,) each."""
     if wall.shape == "mesh":
-        corners = mesh_of(case, wall, key).corners.reshape(-1, 3)
-        return np.asarray(np.ptp(corners, axis=0))
+        mesh = mesh_of(case, wall, key)
+        return mesh.low, mesh.high
+    at = np.array(wall.at or (0.0, 0.0, 0.0))
     if wall.sides is not None:
-        flat = np.abs(np.array(wall.sides)).sum(axis=0)
-        up = np.cross(*wall.sides)
-        return np.asarray(flat + np.abs(up) / np.linalg.norm(up) * (wall.height or 0.0))
-    radius = wall.radius or 0.0
+        one, other = (np.array(side) for side in wall.sides)
+        up = np.cross(one, other)
+        up *= (wall.height or 0.0) / np.linalg.norm(up)
+        ends = at + np.array([a * one + b * other + c * up for a, b, c in np.ndindex(2, 2, 2)])
+        return ends.min(axis=0), ends.max(axis=0)
     along = np.array(wall.axis or wall.normal or (0.0, 0.0, 1.0))
     n = along / np.linalg.norm(along)
-    across = 2.0 * radius * np.sqrt(np.maximum(1.0 - n**2, 0.0))
-    return np.asarray(across + (np.abs(along) if wall.axis is not None else 0.0))
+    across = (wall.radius or 0.0) * np.sqrt(np.maximum(1.0 - n**2, 0.0))
+    end = at + along if wall.axis is not None else at
+    return np.minimum(at, end) - across, np.maximum(at, end) + across
 
 
-def open_sides(corners: Floats) -> tuple[int, int]:
-    """Sides of triangles that no other triangle shares, and that more than two share.
-
-    >>> open_sides(np.array([[[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]]))
-    (3, 0)
-    """
-    points = np.round(corners.reshape(-1, 3) / (1e-9 * max(float(np.ptp(corners)), 1e-300)))
-    _, number = np.unique(points, axis=0, return_inverse=True)
-    number = number.reshape(-1, 3)
-    sides = np.concatenate([np.sort(number[:, [k, (k + 1) % 3]], axis=1) for k in range(3)])
-    _, times = np.unique(sides, axis=0, return_counts=True)
-    return int((times == 1).sum()), int((times > 2).sum())
-
-
-def wall_rows(case: "Case") -> list[ExplainRow]:
+def wall_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     """Shape, size and motion of each wall."""
     rows: list[ExplainRow] = []
     for k, wall in enumerate(case.walls):
         key = f"walls.{k}"
-        size = " x ".join(f"{100.0 * one:.4g}" for one in size_of(case, wall, key))
-        rows.append(word("walls", f"{wall.name}: size in x, y, z", f"{size} cm", wall.shape))
+        low, high = box_of(case, wall, key)
+        size = " x ".join(f"{100.0 * one:.4g}" for one in high - low)
+        ratio = float((high - low).max()) / derived.d_max
+        wide = f"; {ratio:.3g} of the largest grains across"
+        doubt = f", more than {WIDE:g}: check its lengths and units" if ratio > WIDE else ""
+        about, flag = f"{wall.shape}{wide}{doubt}", "warning" if doubt else ""
+        rows.append(word("walls", f"{wall.name}: size in x, y, z", f"{size} cm", about, flag))
         if wall.shape == "mesh":
-            rows += _mesh_rows(case, wall, key)
+            rows += mesh_rows(case, derived, wall, key)
         moves = [name for name in ("velocity", "angular_velocity", "amplitude") if given(wall, name)]
         if moves:
             rows.append(word("walls", f"{wall.name}: moves", _motion_text(wall), ", ".join(moves)))
         if wall.servo is not None:
             rows.append(word("walls", f"{wall.name}: presses with", servo_text(wall.servo), "servo"))
     return rows
-
-
-def _mesh_rows(case: "Case", wall: WallSection, key: str) -> list[ExplainRow]:
-    mesh = mesh_of(case, wall, key)
-    single, several = open_sides(mesh.corners)
-    found = [count("walls", f"{wall.name}: triangles", len(mesh.corners), f"{wall.file}, in {wall.unit}")]
-    if mesh.empty:
-        about = "triangles of no area in the file; they are left out"
-        found.append(count("walls", f"{wall.name}: left out", mesh.empty, about, "note"))
-    if single:
-        about = "sides that one triangle has alone: the mesh is open, or has holes that grains may pass"
-        found.append(count("walls", f"{wall.name}: open sides", single, about, "note"))
-    if several:
-        about = "sides that more than two triangles share: corners there are not smoothed"
-        found.append(count("walls", f"{wall.name}: shared sides", several, about, "note"))
-    return found
 
 
 def _motion_text(wall: WallSection) -> str:

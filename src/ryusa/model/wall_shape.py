@@ -1,14 +1,15 @@
 """Walls as triangles and lines, for pictures, and how near a point is to them."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from ryusa.laws.walls import nearest_on_cylinder, nearest_on_disc, nearest_on_triangle
 from ryusa.model.arrays import Floats
-from ryusa.model.walls import FaceKind, Ints, Walls, face_boxes, pose
+from ryusa.model.walls import FaceKind, Ints, Walls, corners_of_box, face_boxes, pose
+from ryusa.model.welding import sides_of, welded
 
 SIDES = 48
 _RULES = 8  # lines along a cylinder
@@ -80,13 +81,10 @@ def _edges(corners: Floats, surface: Ints, wall: Ints) -> tuple[Floats, Ints]:
     """Sides of triangles that no other triangle of the same surface shares."""
     if not len(corners):
         return np.zeros((0, 2, 3)), np.zeros(0, np.int64)
-    unit = 1e-9 * max(float(np.ptp(corners.reshape(-1, 3), axis=0).max()), 1e-300)
-    _, number = np.unique(np.round(corners.reshape(-1, 3) / unit), axis=0, return_inverse=True)
-    number = number.reshape(-1, 3)
     ends = np.concatenate([corners[:, [k, (k + 1) % 3]] for k in range(3)])
-    sides = np.concatenate([np.sort(number[:, [k, (k + 1) % 3]], axis=1) for k in range(3)])
-    key = np.column_stack([sides, np.tile(surface, 3)])
-    _, first, times = np.unique(key, axis=0, return_index=True, return_counts=True)
+    side = np.unique(sides_of(welded(corners)), return_inverse=True)[1].ravel()
+    key = side * (int(surface.max()) + 1) + np.tile(surface, 3)
+    _, first, times = np.unique(key, return_index=True, return_counts=True)
     alone = first[times == 1]
     return ends[alone], np.tile(wall, 3)[alone]
 
@@ -155,6 +153,20 @@ class WallsAt:
     @cached_property
     def _boxes(self) -> tuple[Floats, Floats]:
         return face_boxes(self.walls.face, self.walls.kind)
+
+    def around(self, low: Floats, high: Floats) -> "WallsAt":
+        """Only the faces that can reach into a box [m], for many questions about places in it."""
+        walls, corners = self.walls, corners_of_box(low, high)
+        keep = np.zeros(walls.n_face, np.bool_)
+        for w in np.flatnonzero(walls.active):
+            turn, shift = self._poses[w]
+            points = (corners - shift) @ turn
+            bottom, top = points.min(axis=0), points.max(axis=0)
+            axes = [k for k in range(3) if k == 2 or not math.isfinite(self.period[k])]
+            near = (self._boxes[0] <= top)[:, axes] & (self._boxes[1] >= bottom)[:, axes]
+            keep |= near.all(axis=1) & (walls.wall == w)
+        arrays = {name: getattr(walls, name)[keep] for name in ("face", "kind", "wall", "surface")}
+        return replace(self, walls=replace(walls, **arrays))
 
     def touch(self, x: Floats, r: float) -> bool:
         """Whether a sphere of radius r [m] with its centre at x [m], shape (3,), overlaps a wall."""

@@ -59,7 +59,7 @@ class Neighbours:
         return Neighbours(
             scene, np.concatenate([x[free], stones[fixed]]),
             np.concatenate([scene.d[free], scene.d_fixed[fixed]]),
-            None if scene.walls is None else WallsAt(scene.walls, t, scene.period),
+            None if scene.walls is None else WallsAt(scene.walls, t, scene.period).around(low, high),
         )  # fmt: skip
 
     def free(self, place: Floats, d: float) -> bool:

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from itertools import product
 from typing import TYPE_CHECKING
 
 from ryusa.casefile.builders.schema import DropSection, EmptySection, SaltationSection
@@ -30,6 +31,8 @@ def check_traffic(case: "Case") -> Iterator[CaseError]:
         if isinstance(case.build, EmptySection):
             yield CaseError("build.kind", "empty", "gives no grain; give [[feeds]]")
         return
+    if isinstance(case.build, EmptySection) and all(feed.rate is None for feed in case.feeds):
+        yield CaseError("build.kind", "empty", "gives no grain, and no feed has a rate: give feeds.0.rate")
     yield from _case(case)
     yield from _names(case)
     shapes = [*_shapes(case)]
@@ -38,6 +41,8 @@ def check_traffic(case: "Case") -> Iterator[CaseError]:
         for k, feed in enumerate(case.feeds):
             yield from _feed(case, f"feeds.{k}", feed)
         yield from _targets(case)
+        for k, one in enumerate(case.exits):
+            yield from _reach(case, f"exits.{k}", one)
 
 
 def _case(case: "Case") -> Iterator[CaseError]:
@@ -146,6 +151,7 @@ def _feed(case: "Case", key: str, feed: FeedSection) -> Iterator[CaseError]:
         yield CaseError(
             f"{key}.radius", feed.radius, f"is too small for the largest grain: at least {largest / 2:.4g} m"
         )
+        return
     led = any(one.to == feed.name for one in case.exits)
     if feed.rate is None and not led:
         yield CaseError(f"{key}.rate", None, "missing; no exit leads to this feed, so it would bring nothing")
@@ -208,6 +214,47 @@ def _targets(case: "Case") -> Iterator[CaseError]:
             ):
                 yield CaseError(f"feeds.{k}", None, "lies outside domain.low and domain.high")
                 break
+
+
+def _reach(case: "Case", key: str, one: ExitSection) -> Iterator[CaseError]:
+    """Find exits that no grain can get to: outside the domain, or behind a plane that is never removed."""
+    corners = None
+    if one.low is not None and one.high is not None:
+        corners = list(product(*zip(one.low, one.high, strict=True)))
+    low, high = case.domain.low, case.domain.high
+    if corners is not None:
+        apart = low is not None and any(b < a for a, b in zip(low, one.high or low, strict=True))
+        apart |= high is not None and any(b > a for a, b in zip(high, one.low or high, strict=True))
+    elif low is not None and high is not None and one.point is not None and one.normal is not None:
+        within = [_above(x, one.point, one.normal) for x in product(*zip(low, high, strict=True))]
+        apart = max(within) <= 0.0
+    else:
+        apart = False
+    if apart:
+        yield CaseError(key, one.name, "lies outside domain.low and domain.high: no grain gets there")
+    removed = {entry.remove for entry in case.timeline}
+    for plane in case.planes:
+        if plane.name in removed:
+            continue
+        if corners is not None:
+            behind = max(_above(x, plane.point, plane.normal) for x in corners) <= 0.0
+        else:
+            assert one.point is not None
+            assert one.normal is not None
+            behind = _opposite(one.normal, plane.normal) and _above(one.point, plane.point, plane.normal) <= 0
+        if behind:
+            yield CaseError(key, one.name, f"lies behind the plane '{plane.name}': no grain gets there")
+
+
+def _above(x: Sequence[float], point: Sequence[float], normal: Sequence[float]) -> float:
+    """Height of a point above a plane, times the length of its normal."""
+    return sum(n * (a - b) for n, a, b in zip(normal, x, point, strict=True))
+
+
+def _opposite(one: Sequence[float], other: Sequence[float]) -> bool:
+    """Whether two directions are opposite."""
+    along = sum(a * b for a, b in zip(one, other, strict=True))
+    return along <= -(1.0 - 1e-12) * math.hypot(*one) * math.hypot(*other)
 
 
 def _points(feed: FeedSection) -> list[tuple[float, ...]]:

@@ -3,9 +3,9 @@
 import re
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, WithJsonSchema
+from pydantic import BeforeValidator, WithJsonSchema
 
-from ryusa.casefile.quantities import Moment, Number, Point, PositiveLength, Speed
+from ryusa.casefile.quantities import Moment, Name, Number, Point, PositiveLength, Speed
 from ryusa.casefile.section import Section
 from ryusa.units import UnitError, quantity
 
@@ -43,7 +43,6 @@ FeedRate = Annotated[
         {"type": "string", "format": "quantity", "title": "rate", "examples": ["0.1 kg/s", "20 grains/s"]}
     ),
 ]
-Name = Annotated[str, Field(min_length=1, max_length=64)]
 
 
 class FeedSection(Section):
