@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from ryusa.model import Scene, State
     from ryusa.results import Results
     from ryusa.running.runner import run, run_scene
+    from ryusa.studies.calibrate import calibrate
     from ryusa.studies.soften import soften
     from ryusa.studies.sweep import sweep
 
@@ -27,6 +28,7 @@ _LAZY = {
     "Results": ("ryusa.results", "Results"),
     "Scene": ("ryusa.model", "Scene"),
     "State": ("ryusa.model", "State"),
+    "calibrate": ("ryusa.studies.calibrate", "calibrate"),
     "load": ("ryusa.casefile.read", "read"),
     "measure": ("ryusa.measure", ""),
     "run": ("ryusa.running.runner", "run"),
@@ -41,6 +43,7 @@ __all__ = [
     "Scene",
     "State",
     "__version__",
+    "calibrate",
     "load",
     "measure",
     "run",

@@ -1,0 +1,64 @@
+"""Parameters that observations determine, and those that they do not: `ryusa calibrate`."""
+
+from pathlib import Path
+
+from ryusa.studies.calibrate.asked import CalibrationAsked, Observation, Target, read_calibration
+from ryusa.studies.calibrate.carry import Calibration, Predicted, carry_out_calibration, refuse_truths
+from ryusa.studies.calibrate.page import write_calibration
+from ryusa.studies.calibrate.prior import Prior
+from ryusa.study import ProgressLines
+from ryusa.study.executors import DEFAULT, executor_of
+
+__all__ = [
+    "Calibration",
+    "CalibrationAsked",
+    "Observation",
+    "Predicted",
+    "Prior",
+    "Target",
+    "calibrate",
+    "carry_out_calibration",
+    "read_calibration",
+    "refuse_truths",
+    "write_calibration",
+]
+
+
+def calibrate(
+    study: Path | str | CalibrationAsked,
+    *,
+    folder: Path | str | None = None,
+    coverage: int = 0,
+    jobs: int = 1,
+    on: str = DEFAULT,
+    again: bool = False,
+    progress: bool = True,
+) -> Calibration:
+    """Find the parameters of cases that agree with observations, with their uncertainty.
+
+    Parameters
+    ----------
+    study : TOML file with parameters and observations; or the same as `CalibrationAsked`.
+    folder : for table, page, pictures and runs; default runs/calibration-STUDY. Finished runs in it are
+        opened, and interrupted ones go on.
+    coverage : number of made-up truths on which the intervals are checked; 0 for none.
+    jobs : number of runs at a time.
+    on : executor, by name.
+    again : make all runs anew.
+    progress : whether to print cost and progress on stderr.
+
+    Raises
+    ------
+    CaseError : a case cannot be run, or the study asks for what is not there; little or nothing was run.
+    ResultsError : scikit-learn is missing, the folder holds something else, or the observations are out of
+        reach of the priors.
+    """
+    asked = study if isinstance(study, CalibrationAsked) else read_calibration(Path(study))
+    refuse_truths(coverage)
+    out = Path("runs") / f"calibration-{asked.name}" if folder is None else Path(folder)
+    made = carry_out_calibration(
+        asked, out, executor_of(on, jobs), again=again, truths=coverage,
+        progress=ProgressLines() if progress else None,
+    )  # fmt: skip
+    write_calibration(made, "ryusa.calibrate")
+    return made

@@ -1,0 +1,103 @@
+"""The file of a calibration: what it says, and what is said of a bad one."""
+
+import pytest
+
+from ryusa.errors import CaseError
+from ryusa.studies.calibrate.asked import read_calibration
+
+GOOD = """
+[calibrate]
+points = 16
+seeds = 1
+set = { "stop.time" = "0.2 s" }
+
+[[parameters]]
+key = "contact.restitution"
+low = 0.3
+high = 0.95
+
+[[parameters]]
+key = "contact.friction_angle"
+low = "10 deg"
+high = "40 deg"
+mean = "25 deg"
+sd = "5 deg"
+
+[[observations]]
+case = "drop.toml"
+measure = "collisions"
+quantity = "restitution_alone"
+value = 0.7
+error = 0.01
+
+[[predictions]]
+case = "drop.toml"
+measure = "collisions"
+quantity = "closing_speed"
+"""
+
+
+def read(tmp_path, text):
+    path = tmp_path / "study.toml"
+    path.write_text(text)
+    return read_calibration(path)
+
+
+def test_a_calibration_is_read_with_its_priors_and_targets(tmp_path):
+    found = read(tmp_path, GOOD)
+    assert [one.words for one in found.priors] == [
+        "uniform from 0.3 to 0.95", "normal, 25 ± 5, from 10 to 40 deg",
+    ]  # fmt: skip
+    assert [one.words for one in found.targets] == [
+        "drop: collisions restitution_alone", "drop: collisions closing_speed",
+    ]  # fmt: skip
+    assert found.overrides == {"stop.time": "0.2 s"}
+    assert found.observations[0].in_si("-") == (0.7, 0.01)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("points = 16", "points = 17", "calibrate.points = 17: must be a power of 2"),
+        ("points = 16", "points = 4", "at least 4 for each of the 2 parameters, such as 16"),
+        ("points = 16", "pionts = 16", "calibrate.pionts: unknown key; must be one of points"),
+        ("seeds = 1", "seeds = 0", "calibrate.seeds = 0: must be 1 or more"),
+        ('"contact.restitution"', '"contact.friction_angle"', "stands there twice"),
+        ('"contact.restitution"', '"seed"', "is no parameter; calibrate.seeds says how many"),
+        ("low = 0.3", "low = 0.99", "the low end must be less than the high end"),
+        ('low = "10 deg"', 'low = "0.1 rad"', "both ends must have one unit"),
+        ('sd = "5 deg"', 'sd = "0.1 rad"', "must be a number in the unit of low and high, 'deg'"),
+        ('sd = "5 deg"', "", "a normal prior has mean and sd"),
+        ('mean = "25 deg"', 'mean = "45 deg"', "must lie between low and high"),
+        ('measure = "collisions"', 'measure = "colisions"', "Did you mean 'collisions'?"),
+        ("value = 0.7", "", "observations.0.value: missing"),
+        ("[[observations]]", "[[observation]]", "Did you mean 'observations'?"),
+        ("[calibrate]", "[calibrate", "is no TOML"),
+    ],
+)
+def test_a_fault_is_named_by_its_key(tmp_path, old, new, said):
+    with pytest.raises(Exception, match=r"study\.toml") as caught:
+        read(tmp_path, GOOD.replace(old, new, 1))
+    assert said in str(caught.value)
+
+
+def test_all_faults_of_a_file_are_named_together(tmp_path):
+    with pytest.raises(CaseError, match="3 faults"):
+        read(
+            tmp_path, GOOD.replace("points = 16", "points = 16.5").replace("0.01", "true").replace("0.3", "2")
+        )
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "unit", "said"),
+    [
+        ("21 deg", "0.5", "rad", "error = '0.5': missing unit"),
+        ("21 cm", "0.5 deg", "rad", "'cm' does not measure an angle"),
+        ("0.7 m", "0.1", "-", "must be a number without a unit"),
+        (0.7, 0.0, "-", "must be greater than 0"),
+    ],
+)
+def test_an_observation_in_another_unit_is_refused(tmp_path, value, error, unit, said):
+    text = GOOD.replace("value = 0.7", f"value = {value!r}").replace("error = 0.01", f"error = {error!r}")
+    with pytest.raises(CaseError, match=f"(?s).*{said}"):
+        read(tmp_path, text).observations[0].in_si(unit)
