@@ -1,9 +1,12 @@
 import csv
+import math
 
 import pytest
 from typer.testing import CliRunner
 
 from ryusa.cli import app
+from ryusa.laws.adhesion import sticking_speed
+from ryusa.laws.collision import zeta_no_tension
 
 PAPER = [
     "design",
@@ -35,12 +38,28 @@ def test_charts_and_tables_are_written(tmp_path):
     assert [round(float(row["overlap_fixed"]), 6) for row in rows] == [0.01, 0.003162, 0.001]
 
 
+def test_adhesion_adds_the_bond_number_and_the_sticking_speed():
+    result = CliRunner().invoke(app, [*PAPER, "--pull-off-force", "0.1 mN"])
+    assert result.exit_code == 0, result.output
+    bond = 1.0e-4 / (2650.0 * math.pi / 6.0 * 0.002**3 * 9.80665)
+    assert f"(Bond number): {bond:.4g}" in result.output
+    zeta = zeta_no_tension(0.7)
+    k_n, m = 6993.0, 2650.0 * math.pi / 6.0 * 0.002**3
+    (line,) = [one for one in result.output.splitlines() if "sticking speed" in one]
+    assert float(line.split()[-3]) == pytest.approx(sticking_speed(1.0e-4, m, k_n, zeta, False), rel=1e-3)
+    (line,) = [one for one in result.output.splitlines() if "pull-off force alone" in one]
+    assert float(line.split()[-3]) == pytest.approx(1.0e-4 / k_n / 0.002, rel=1e-3)
+    assert "sticking" not in CliRunner().invoke(app, PAPER).output
+
+
 @pytest.mark.parametrize(
     ("option", "value", "message"),
     [
         ("--diameter", "0.2", "missing unit"),
         ("--diameter", "0.2 s", "wrong unit"),
         ("--speed", "-1 m/s", "above 0"),
+        ("--pull-off-force", "-1 N", "at least 0"),
+        ("--pull-off-force", "1 m", "wrong unit"),
         ("--restitution", "1.5", "at most 1"),
         ("--restitution", "nan", "at most 1"),
         ("--steps-per-contact", "2", "at least 10"),

@@ -11,6 +11,10 @@ if TYPE_CHECKING:
 
     from ryusa.measure.stability import Grain, StiffnessChoice
 
+_OF_ADHESION = (
+    ("overlap/d by the pull-off force alone [-]", "overlap_adhesion"),
+    ("sticking speed, head-on on a fixed partner [m/s]", "sticking"),
+)
 RATE = 5.0e6  # grain steps per second and core, assumed for the cost
 
 
@@ -27,6 +31,9 @@ def design(
         float, typer.Option(help="Normal restitution e of a contact without tension.")
     ] = 0.7,
     water: Annotated[bool, typer.Option("--water/--dry", help="Include added mass, C_M = 0.5.")] = False,
+    pull_off_force: Annotated[
+        str, typer.Option(help="Pull-off force of adhesion between two grains, such as 0.1mN.")
+    ] = "0 N",
     steps_per_contact: Annotated[float, typer.Option(help="Steps in the shortest contact.")] = 50.0,
     output: Annotated[
         Path | None, typer.Option("--output", "-o", help="Folder for charts (PNG, SVG) and CSV.")
@@ -42,7 +49,7 @@ def design(
         raise CaseError("--restitution", restitution, "must be above 0 and at most 1")
     if not 10.0 <= steps_per_contact <= 1.0e4:
         raise CaseError("--steps-per-contact", steps_per_contact, "must be at least 10 and at most 10000")
-    grain = _grain(diameter, density, restitution, speed, water)
+    grain = _grain(diameter, density, restitution, speed, water, pull_off_force)
     soft, stiff = stable_range(grain)
     chosen = [choice(grain, k, steps_per_contact, RATE) for k in (soft, (soft * stiff) ** 0.5, stiff)]
     console = Console(width=None if sys.stdout.isatty() else 120)
@@ -52,6 +59,11 @@ def design(
         f"e = {restitution:g}, impact at {grain.speed:g} m/s"
     )
     console.print(f"stable range 0.001 < overlap/d < 0.01: k_n = {soft:.4g} to {stiff:.4g} N/m")
+    if grain.pull_off > 0.0:
+        console.print(
+            f"pull-off force over weight of a grain (Bond number): {grain.bond_number:.4g}; "
+            "contact times and overlaps are those without adhesion"
+        )
     console.print(_table(chosen, steps_per_contact))
     if chosen[0].travel > 0.3:
         console.print("speed x contact time / d is above 0.3: a grain passes over a crest before it rebounds")
@@ -60,19 +72,26 @@ def design(
             console.print(f"wrote {path}", soft_wrap=True, highlight=False)
 
 
-def _grain(diameter: str, density: str, restitution: float, speed: str, water: bool) -> "Grain":
-    from ryusa.measure.stability import Grain
+def _grain(
+    diameter: str, density: str, restitution: float, speed: str, water: bool, pull_off: str
+) -> "Grain":
+    from ryusa.errors import CaseError
+    from ryusa.measure.stability import RHO_W, Grain
 
-    return Grain(
+    grain = Grain(
         d=_positive("--diameter", diameter, "m"),
         rho_s=_positive("--density", density, "kg/m3"),
         e=restitution,
         speed=_positive("--speed", speed, "m/s"),
         water=water,
+        pull_off=_positive("--pull-off-force", pull_off, "N", least=0.0),
     )
+    if water and grain.pull_off > 0.0 and grain.rho_s <= RHO_W:
+        raise CaseError("--density", density, "must be above 1000 kg/m3 with --water and --pull-off-force")
+    return grain
 
 
-def _positive(key: str, text: str, unit: str) -> float:
+def _positive(key: str, text: str, unit: str, least: float | None = None) -> float:
     from ryusa.errors import CaseError
     from ryusa.units import UnitError, quantity
 
@@ -80,8 +99,8 @@ def _positive(key: str, text: str, unit: str) -> float:
         value = quantity(text, unit)
     except UnitError as error:
         raise CaseError(key, text, str(error)) from None
-    if not value > 0.0:
-        raise CaseError(key, text, "must be above 0")
+    if not (value > 0.0 if least is None else value >= least):
+        raise CaseError(key, text, "must be above 0" if least is None else f"must be at least {least:g}")
     return value
 
 
@@ -104,6 +123,7 @@ def _table(chosen: "list[StiffnessChoice]", steps_per_contact: float) -> "Table"
         ("contact time, free partner [s]", "time_free"),
         ("dashpot eta_n, fixed partner [N s/m]", "eta_fixed"),
         ("dashpot eta_n, free partner [N s/m]", "eta_free"),
+        *(_OF_ADHESION if chosen[0].overlap_adhesion > 0.0 else ()),
         (f"step dt at {steps_per_contact:g} steps per contact [s]", "dt"),
         ("speed x contact time / d [-]", "travel"),
         ("steps per simulated second", "steps"),

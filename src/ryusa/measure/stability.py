@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ryusa.laws.adhesion import sticking_speed
 from ryusa.laws.collision import (
     collision_time,
     contact_time_no_tension,
@@ -23,6 +24,7 @@ BAND = (0.001, 0.01)  # largest overlap over diameter: stiffer costs steps, soft
 A_3 = math.pi / 6.0
 C_M = 0.5
 RHO_W = 1000.0
+G = 9.80665
 SHEAR_RATIO = 2.0 / 7.0
 POISSON = 0.25
 
@@ -38,6 +40,7 @@ class Grain:
     e : restitution wanted, without tension [-].
     speed : impact speed [m/s].
     water : True when it carries added mass (C_M = 0.5, 1000 kg/m3).
+    pull_off : pull-off force [N]; 0 without adhesion.
     """
 
     d: float
@@ -45,6 +48,12 @@ class Grain:
     e: float
     speed: float
     water: bool = False
+    pull_off: float = 0.0
+
+    @property
+    def bond_number(self) -> float:
+        """Pull-off force over weight, in water less buoyancy [-]."""
+        return self.pull_off / (G * (self.m - (RHO_W * volume(self.d, A_3) if self.water else 0.0)))
 
     @property
     def m(self) -> float:
@@ -69,6 +78,8 @@ class StiffnessChoice:
     eq_8 : Eq. (8) with the dry grain's mass [s].
     time_fixed, time_free : contact time with dashpot and added mass [s].
     eta_fixed, eta_free : normal dashpot that gives e [N s/m].
+    overlap_adhesion : overlap over diameter that the pull-off force alone gives [-].
+    sticking : speed up to which head-on impacts on a fixed grain stick [m/s].
     dt : step, the shortest contact of a free pair over the steps per contact [s].
     travel : speed times contact time over diameter [-]; beyond about 0.3 a grain skims the crests.
     steps : steps per simulated second.
@@ -85,6 +96,8 @@ class StiffnessChoice:
     time_free: float
     eta_fixed: float
     eta_free: float
+    overlap_adhesion: float
+    sticking: float
     dt: float
     travel: float
     steps: float
@@ -94,7 +107,7 @@ class StiffnessChoice:
         """One line of a CSV table."""
         units = {"k_n": "N_per_m", "k_s": "N_per_m", "eq_8": "s", "time_fixed": "s", "time_free": "s"}
         units |= {"eta_fixed": "Ns_per_m", "eta_free": "Ns_per_m", "dt": "s", "steps": "per_s"}
-        units |= {"cost": "s_per_s", "youngs_modulus": "Pa"}
+        units |= {"cost": "s_per_s", "youngs_modulus": "Pa", "sticking": "m_per_s"}
         return {f"{n}_{units[n]}" if n in units else n: v for n, v in vars(self).items()}
 
 
@@ -133,6 +146,8 @@ def choice(grain: Grain, k_n: float, steps_per_contact: float = 50.0, rate: floa
         time_free=contact_time_no_tension(zeta, omega_natural(k_n, free)),
         eta_fixed=damping(zeta, k_n, fixed),
         eta_free=damping(zeta, k_n, free),
+        overlap_adhesion=grain.pull_off / k_n / grain.d,
+        sticking=sticking_speed(grain.pull_off, fixed, k_n, zeta, False),
         dt=dt,
         travel=grain.speed * time_fixed / grain.d,
         steps=1.0 / dt,
