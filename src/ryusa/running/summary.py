@@ -34,6 +34,8 @@ def _contacts(summary: dict[str, Any]) -> list[str]:
     why = "an oblique impact rotates the normal, which changes it by a few per cent (design/0006)"
     if summary["restitution"].get("clumps"):
         why += "; a clump hit off its centre has less effective mass, and rebounds less (design/0022)"
+    if summary["restitution"].get("adhesion"):
+        why += "; adhesion takes more from slow impacts (design/0024)"
     return [
         f"restitution: {_set(summary['restitution'])}; measured {_measured(summary['restitution'])}; {why}",
         f"tangential restitution: {_set(shear)}; measured without sliding {_measured(shear['sticking'])}; "

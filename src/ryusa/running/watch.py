@@ -16,7 +16,7 @@ from ryusa.laws.collision import (
     restitution_for_zeta,
     restitution_tension,
 )
-from ryusa.laws.families import WaterTorque
+from ryusa.laws.families import Adhesion, WaterTorque
 from ryusa.laws.rolling import reduced_radius
 from ryusa.laws.torque import reynolds_spin, torque_in_range
 from ryusa.model import Scene, State, Tally, Term
@@ -166,6 +166,7 @@ class Watch:
                 "asked": _common(scene, "e_n"),
                 **({} if scene.materials is None else {"by_pair": True}),
                 **({} if scene.bodies is None else {"clumps": True}),
+                **({} if scene.contact.adhesion == Adhesion.NONE else {"adhesion": True}),
                 "follows": {name: e_n for name, (e_n, _) in self._follows.items()},
                 **{name: average.as_dict() for name, average in self._normal.items()},
             },

@@ -62,8 +62,8 @@ def softened(one: CaseRun, factor: float) -> CaseRun:
     dashpots go with sqrt(k), which keeps the damping ratio and so e of every pair. Where the arm of rolling
     friction is the width of the contact, b ~ sqrt(overlap), f' goes with sqrt(k): at a given load the overlap
     goes with 1/k, so that the torque f' b N is kept. A time step that is given goes with the duration of the
-    contact, and the interval between two exchanges of water and grains stays as long. Friction and cohesion
-    are kept.
+    contact, and the interval between two exchanges of water and grains stays as long. Friction,
+    cohesion and adhesion are kept.
     """
     if factor == 1.0:
         return one
