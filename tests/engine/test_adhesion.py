@@ -8,11 +8,15 @@ import pytest
 from tests.engine.conftest import D, M, bits, contact_law, elastic_law, pile, run
 
 from ryusa.build import scene
+from ryusa.build.clumps import with_clumps
+from ryusa.build.walls import WallMotion, rectangle, with_walls
 from ryusa.engine.cpu.engine import CpuEngine
+from ryusa.engine.cuda.engine import CudaEngine
 from ryusa.engine.shared.contact_history import forces_of_contacts
 from ryusa.engine.shared.refusals import refusals
 from ryusa.laws.families import Adhesion, Cap, ContactTiming, DampingLaw, Slip
 from ryusa.model import Materials, RollingLaw, Term
+from ryusa.model.clump import shape
 from ryusa.model.contact_law import (
     attraction_of,
     pull_off_of,
@@ -20,6 +24,7 @@ from ryusa.model.contact_law import (
     shortest_contact_of,
     sticking_speed_of,
 )
+from ryusa.model.scene import EventRule
 
 PULL = 20.0 * M * 9.8  # [N]
 R = 0.5 * D  # reduced radius on a plane [m]
@@ -198,6 +203,69 @@ def test_each_pair_of_materials_has_its_own_attraction():
     assert engine.tally().residual < 1e-9
 
 
+@pytest.mark.parametrize("name", ["linear, DMT", "elastic, constant"])
+def test_a_wall_lifts_a_grain_that_hangs_on_it_and_its_work_is_booked(name):
+    law = sticky(name)
+    wall = rectangle("ceiling", (-1, -1, 0), (2, 0, 0), (0, 2, 0))
+    wall = replace(wall, motion=WallMotion(amplitude=(0, 0, 0.25 * D), frequency=4.0))
+    rest = rest_overlap_of(law, R)
+    made, first = scene(
+        [[0.0, 0.0, -0.5 * D + rest]], D, contact=law, allow_overlap=True,
+        dt=shortest_contact_of(law, M, R) / 30.0,
+    )  # fmt: skip
+    engine = run((with_walls(made, [wall]), first), round(0.0625 / made.dt))
+    state, tally = engine.state(), engine.tally()
+    assert len(state.contacts) == 1
+    up = 0.25 * D * math.sin(2.0 * math.pi * 4.0 * state.t)
+    assert up > 0.2 * D
+    assert state.x[0, 2] == pytest.approx(up - 0.5 * D + rest, abs=1e-3 * D)
+    swing = 0.5 * M * (state.v[0, 2]) ** 2
+    assert tally.terms[Term.WALL] == pytest.approx(M * 9.80665 * up + swing, rel=0.02)
+    assert tally.residual < 1e-3
+
+
+def test_clumps_stick_by_each_of_their_spheres():
+    law = replace(contact_law(zeta_n=0.12), adhesion=Adhesion.CONSTANT, adhesion_amount=PULL)
+    form = shape("dumbbell")
+    for load in (1.9, 2.1):  # times the pull-off force of one sphere
+        made = scene(
+            [[0.0, 0.0, 0.0]], D, planes=[("ceiling", (0, 0, 0), (0, 0, -1))], contact=law,
+            dt=shortest_contact_of(law, M, R) / 50.0, gravity=0.0, allow_overlap=True,
+        )  # fmt: skip
+        fixed, first = with_clumps(*made, [form], orientation=[[1.0, 0.0, 0.0, 0.0]])
+        high = float((first.x[:, 2] + 0.5 * fixed.d).max())
+        lift = np.array([0.0, 0.0, rest_overlap_of(law, R) - high])
+        first = replace(first, x=first.x + lift, bodies=replace(first.bodies, x=first.bodies.x + lift))
+        assert np.ptp(first.x[:, 2]) < 1e-12  # both spheres touch
+        engine = CpuEngine(threads=1)
+        engine.load(fixed, first)
+        for k in range(120):
+            pull = load * PULL / float(fixed.bodies.m[0]) * min((k + 1) / 100.0, 1.0)
+            engine.load(replace(fixed, gravity=np.array([0.0, 0.0, -pull])), engine.state())
+            engine.advance(100).raise_if_any()
+            if not len(engine.state().contacts):
+                break
+        assert len(engine.state().contacts) == (2 if load < 2.0 else 0)
+
+
+def test_a_plane_scene_with_records_agrees_with_space():
+    law = replace(contact_law(mu=0.4), adhesion=Adhesion.CONSTANT, adhesion_amount=5.0 * PULL)
+    ends = []
+    for plane_case in (True, False):
+        made = scene(
+            [[0.0, 0.0, 0.0], [1.6e-3, 0.0, 1.3e-3]], D, v=[[0.1, 0.0, 0.2], [-0.3, 0.0, -0.4]],
+            omega=[[0.0, 90.0, 0.0], [0.0, -30.0, 0.0]], contact=law, gravity=0.0, plane_case=plane_case,
+            events=EventRule.ALL,
+        )  # fmt: skip
+        engine = run(made, 2000)
+        (event,) = engine.events()
+        state, m = engine.state(), float(made[0].m[0])
+        gained = m * (event["v_end"] - event["v_begin"])
+        assert event["impulse"] == pytest.approx(gained, rel=2e-3, abs=2e-3 * np.abs(gained).max())
+        ends.append(np.hstack([state.x, state.v, state.omega * 1e-3]))
+    assert ends[0] == pytest.approx(ends[1], rel=1e-9, abs=1e-15)
+
+
 def test_what_adhesion_cannot_have_is_refused_by_name():
     made, _ = on_a_plane(sticky("linear, constant"))
     for change, says in (
@@ -209,3 +277,4 @@ def test_what_adhesion_cannot_have_is_refused_by_name():
         (reason,) = refusals(replace(made, contact=replace(made.contact, **change)))
         assert says in reason
     assert refusals(made) == ()
+    assert any("adhesion is simulated by engine" in reason for reason in CudaEngine().refuses(made))

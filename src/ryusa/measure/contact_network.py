@@ -164,7 +164,8 @@ def _slices(x: Floats, scene: Scene) -> tuple[float, float, int]:
     """Lower end and thickness of the slices of a scene in 3D [m], and how many there are."""
     low, high = 0.0, float(scene.period[1])
     if not np.isfinite(high):
-        low, high = float((x[:, 1] - 0.5 * scene.d).min()), float((x[:, 1] + 0.5 * scene.d).max())
+        y, r = x[:, 1], 0.5 * scene.d  # nan: away
+        low, high = float(np.nanmin(y - r)), float(np.nanmax(y + r))
     slices = max(int((high - low) / float(scene.d.max())), 1)
     return low, (high - low) / slices, slices
 
