@@ -30,24 +30,24 @@ def nearest_on_triangle(
     """
     d_3, d_4 = d_1 - s_11, d_2 - s_12
     d_5, d_6 = d_1 - s_12, d_2 - s_22
+    v_a, v_b, v_c = d_3 * d_6 - d_5 * d_4, d_5 * d_2 - d_1 * d_6, d_1 * d_4 - d_3 * d_2
+    total = v_a + v_b + v_c
+    if v_a > 0.0 and v_b > 0.0 and v_c > 0.0:  # the usual one first
+        return v_b / total, v_c / total, 1.0
     if d_1 <= 0.0 and d_2 <= 0.0:
         return 0.0, 0.0, 0.0
     if d_3 >= 0.0 and d_4 <= d_3:
         return 1.0, 0.0, 0.0
     if d_6 >= 0.0 and d_5 <= d_6:
         return 0.0, 1.0, 0.0
-    v_c = d_1 * d_4 - d_3 * d_2
     if v_c <= 0.0 and d_1 >= 0.0 and d_3 <= 0.0:
         return d_1 / (d_1 - d_3), 0.0, 0.0
-    v_b = d_5 * d_2 - d_1 * d_6
     if v_b <= 0.0 and d_2 >= 0.0 and d_6 <= 0.0:
         return 0.0, d_2 / (d_2 - d_6), 0.0
-    v_a = d_3 * d_6 - d_5 * d_4
     along, back = d_4 - d_3, d_5 - d_6
     if v_a <= 0.0 and along >= 0.0 and back >= 0.0:
         w = along / (along + back)
         return 1.0 - w, w, 0.0
-    total = v_a + v_b + v_c
     return v_b / total, v_c / total, 1.0
 
 

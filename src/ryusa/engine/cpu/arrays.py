@@ -74,11 +74,11 @@ class CandidateArrays(NamedTuple):
     eta: Any  # dashpots and stiffnesses (shared/memory_rows.py); one row for all where they are alike
     rows: Any  # memory (shared/memory_rows.py), (n_near, width); it and `eta` hold where they touch
     # only in scenes with walls, else of length 0
-    met: Any  # how grains and faces meet (faces.py), for each block from first[b] on, (n_near, N_MET)
-    face: Any  # the candidate of each of these rows, (n_near,)
-    face_grain: Any  # its grain, (n_near,)
-    face_number: Any  # number of the face, (n_near,)
-    slot: Any  # the row of each candidate that is a face, (n_near,)
+    face: Any  # candidates that are faces, for each block from first[b] on, (n_near,)
+    face_grain: Any  # their grains, (n_near,)
+    face_number: Any  # numbers of the faces, (n_near,)
+    slot: Any  # place of each candidate that is a face among those of its block, (n_near,)
+    met: Any  # how grains and faces of a block meet (faces.py), workspace of its thread, (n_near, N_MET)
     face_count: Any  # how many faces are candidates, (n_block,)
 
 

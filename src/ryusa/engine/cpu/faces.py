@@ -13,8 +13,8 @@ from ryusa.model.walls import FaceKind, Walls, face_boxes, largest_speed
 
 # columns of a face: a corner or centre, two edges or axes, the unit normal, and
 A, EDGE_1, EDGE_2, NORMAL = 0, 3, 6, 9
-KIND, S_11, S_12, S_22 = 12, 13, 14, 15  # products of the edges; radius and length in S_11 and S_12
-N_FACE = 16
+KIND, WALL, S_11, S_12 = 12, 13, 14, 15  # kind, wall, products of the edges; in their place radius, length
+N_FACE = 16  # two cache lines
 TRIANGLE, DISC, CYLINDER = int(FaceKind.TRIANGLE), int(FaceKind.DISC), int(FaceKind.CYLINDER)
 _CELLS = 4.0  # cells of a grid over the faces in it
 
@@ -24,11 +24,9 @@ DRIFT = 4  # velocity of the mirror image, which moves with the wall [m/s]
 POINT = 7  # nearest point, in the frame of the wall [m]
 AWAY = 10  # unit normal from the face to the grain, in the world [-]
 DISTANCE = 13  # from the centre of the grain [m]
-BY = 14  # the row whose contact takes the place of this one, or -1
+BY = 14  # the face of the list whose contact takes the place of this one, or -1
 SLOT = 15  # number of the wall
-FORCE = 16  # on the grain [N], and on the mirror image
-TORQUE = 19  # [N m]; zeros where they do not touch
-N_MET = 24  # whole cache lines
+N_MET = 16  # two cache lines
 
 
 class FaceArrays(NamedTuple):
@@ -37,7 +35,6 @@ class FaceArrays(NamedTuple):
     first: int  # id of the first face
     rows: Any  # columns as above, (n_face, N_FACE)
     centre: Any  # middle of the box round each face [m], (n_face, 3)
-    wall: Any  # (n_face,)
     surface: Any  # (n_face,)
     motion: Any  # model.walls, (n_wall, N_MOTION)
     poses: Any  # shared/wall_pose.py, (n_wall, N_POSE); every thread writes the same numbers
@@ -84,16 +81,15 @@ def face_arrays(walls: Walls, first: int) -> FaceArrays:
     faces = np.concatenate([f for _, f in found]) if found else np.zeros(0, np.int64)
     np.add.at(count, every + 1, 1)
     return FaceArrays(
-        first, _rows(walls), 0.5 * (low + high), walls.wall.astype(np.int64), walls.surface.astype(np.int64),
-        np.array(walls.motion), np.zeros((n_wall, N_POSE)), largest_speed(walls), grid_low, width, dims,
-        grid_first[:-1].copy(), np.cumsum(count), faces[np.argsort(every, kind="stable")], cells_low,
-        cells_high,
+        first, _rows(walls), 0.5 * (low + high), walls.surface.astype(np.int64), np.array(walls.motion),
+        np.zeros((n_wall, N_POSE)), largest_speed(walls), grid_low, width, dims, grid_first[:-1].copy(),
+        np.cumsum(count), faces[np.argsort(every, kind="stable")], cells_low, cells_high,
     )  # fmt: skip
 
 
 def _rows(walls: Walls) -> Floats:
     rows = np.zeros((walls.n_face, N_FACE))
-    rows[:, :9], rows[:, KIND] = walls.face, walls.kind
+    rows[:, :9], rows[:, KIND], rows[:, WALL] = walls.face, walls.kind, walls.wall
     b, c = walls.face[:, 3:6], walls.face[:, 6:9]
     flat = walls.kind == TRIANGLE
     across = np.cross(b, c)
@@ -102,7 +98,6 @@ def _rows(walls: Walls) -> Floats:
     rows[:, NORMAL : NORMAL + 3] /= length[:, None]
     rows[:, S_11] = np.where(flat, np.sum(b * b, axis=1), c[:, 0])
     rows[:, S_12] = np.where(flat, np.sum(b * c, axis=1), c[:, 1])
-    rows[:, S_22] = np.sum(c * c, axis=1)
     for f in np.flatnonzero(~flat):  # some direction across the axis, for a point on it
         axis = rows[f, NORMAL : NORMAL + 3]
         side = np.cross(axis, np.eye(3)[int(np.abs(axis).argmin())])
@@ -158,8 +153,9 @@ def nearest_of_face(
     q_x, q_y, q_z = rows[f, EDGE_2], rows[f, EDGE_2 + 1], rows[f, EDGE_2 + 2]
     if kind == TRIANGLE:
         v, w, inside = nearest_on_triangle(
-            d_x * p_x + d_y * p_y + d_z * p_z, d_x * q_x + d_y * q_y + d_z * q_z, s_11, s_12, rows[f, S_22]
-        )
+            d_x * p_x + d_y * p_y + d_z * p_z, d_x * q_x + d_y * q_y + d_z * q_z, s_11, s_12,
+            q_x * q_x + q_y * q_y + q_z * q_z,
+        )  # fmt: skip
         m_x, m_y, m_z = v * p_x + w * q_x, v * p_y + w * q_y, v * p_z + w * q_z
     else:
         a_x, a_y, a_z = d_x - along * n_x, d_y - along * n_y, d_z - along * n_z
@@ -197,13 +193,12 @@ def distance_to(
     z: float,
     l_x: float,
     l_y: float,
-    wall: Any,
     poses: Any,
     rows: Any,
     centre: Any,
 ) -> float:
     """Distance of a point from face f [m]."""
-    x, y, z = in_frame(wall[f], NOW, x, y, z, poses)
+    x, y, z = in_frame(int(rows[f, WALL]), NOW, x, y, z, poses)
     x, y = nearest_image(f, x, y, l_x, l_y, centre)
     return nearest_of_face(f, x, y, z, rows)[6]
 

@@ -72,8 +72,8 @@ def prune(
                 seconds = max(ahead, 2.0 * c[P.DT])
                 f = partners[begin + l] - n_solid - len(points)
                 distance = distance_to(
-                    f, x[i, 0], x[i, 1], x[i, 2], c[P.PERIOD_X], c[P.PERIOD_Y], walls.faces.wall,
-                    walls.faces.poses, walls.faces.rows, walls.faces.centre,
+                    f, x[i, 0], x[i, 1], x[i, 2], c[P.PERIOD_X], c[P.PERIOD_Y], walls.faces.poses,
+                    walls.faces.rows, walls.faces.centre,
                 )  # fmt: skip
                 set_face(l, i, distance, seconds * walls.faces.speed, seconds, x, v, separation, velocity)
                 continue
@@ -157,7 +157,7 @@ def list_faces(b: int, first_face: int, candidates: CandidateArrays) -> None:
     for k in range(first, first + candidates.count[b]):
         if candidates.j[k] >= first_face:
             s = first + count
-            candidates.face[s], candidates.slot[k] = k, s
+            candidates.face[s], candidates.slot[k] = k, count
             candidates.face_grain[s], candidates.face_number[s] = (
                 candidates.i[k],
                 candidates.j[k] - first_face,

@@ -30,7 +30,7 @@ from ryusa.engine.cpu.rigid_bodies import move_bodies
 from ryusa.engine.cpu.simd.borrow import borrow
 from ryusa.engine.cpu.simd.prefetch import prefetch
 from ryusa.engine.cpu.simd.vec4 import fill4
-from ryusa.engine.cpu.wall_contacts import add_drift, book_walls, keep_forces, resolve_walls
+from ryusa.engine.cpu.wall_contacts import add_drift, book_walls, resolve_walls
 from ryusa.engine.shared import block_statistics as S
 from ryusa.engine.shared import memory_rows as M
 from ryusa.engine.shared import parameters as P
@@ -55,17 +55,21 @@ TERMS = tuple(
     int(account)
     for account in (Term.DASH_N, Term.DASH_S, Term.SLIDE, Term.RELEASED_N, Term.RELEASED_S, Term.STEP)
 )
+WALL = int(Term.WALL)
 
 
 @inner(fastmath=FAST, forceinline=True)
 def block_forces(
     variant: KernelVariant, flat: Present, water: Present, optional: Present, exact: Present, hertz: Present,
-    short: Present, walled: Present, adhesive: Present, choice: LawChoice, b: int, hi: int, n: int,
+    short: Present, walled: Present, adhesive: Present, choice: LawChoice, b: int, b_0: int, hi: int, n: int,
     n_solid: int, step: int, t: float, hdt: float, last: bool, c: Any, material: Any, table: Any,
     grains: GrainArrays, walls: WallArrays, pairs: PairArrays, candidates: CandidateArrays, work: Workspace,
     accounts: AccountArrays, ended: Any, account: Any, stats: Any,
 ) -> None:  # fmt: skip
-    """Forces of every pair that block b, grains up to hi-1, owns, batch by batch of those that touch."""
+    """Forces of every pair that block b, grains up to hi-1, owns, batch by batch of those that touch.
+
+    `b_0` is the first block of the thread, with whose place in the workspace of faces it begins.
+    """
     # One function: what a variant goes without is taken out of it before it is compiled
     batch, separation, inside, selected = work.batch, work.separation, work.inside, work.selected
     reach_on = c[P.FILM_REACH] if variant.film else 0.0
@@ -80,14 +84,16 @@ def block_forces(
         candidates.rows,
     )
     mass, inertia, points, normals = grains.m, grains.inertia, walls.points, walls.normals
-    met, slot, face_lanes = candidates.met, candidates.slot, work.face_lanes
-    spring_r = 0.0
+    met, slot, face_lanes, impulse = candidates.met, candidates.slot, work.face_lanes, accounts.walls[b]
+    spring_r = given = pending = 0.0
     fill4(f, 8 * (n + b), 0.0)  # forces on fixed grains and planes, not used
     fill4(f, 8 * (n + b) + 4, 0.0)
     for place in range(B.WORK, B.WORK + B.N_WORK * B.PITCH):
         batch[place] = 0.0
     if walled is not None:
-        resolve_walls(b, reach_on, c, grains, walls.faces, candidates)
+        met = met[candidates.first[b_0] :]  # the same rows for all blocks of a thread stay in its cache
+        given = stats[S.PENDING_WALL]
+        resolve_walls(b, reach_on, c, grains, walls.faces, candidates, met)
     k = candidates.first[b]
     end = k + candidates.count[b]
     waiting = 0
@@ -135,7 +141,10 @@ def block_forces(
                 account, stats,
             )  # fmt: skip
         if walled is not None:
-            keep_forces(face_lanes, selected, slot, met, batch)
+            given, pending = book_walls(
+                given, pending, face_lanes, selected, hdt, c, i_of, x, slot, walls.faces.poses,
+                walls.faces.motion, met, impulse, batch,
+            )  # fmt: skip
         if exact is not None:
             keep_states(m, selected, touching, batch)
         if scatter(exact, short, m, selected, i_of, to, touching, rows, batch, f):
@@ -144,7 +153,8 @@ def block_forces(
         for l in range(waiting):
             selected[l] = selected[B.LANES + l]
     if walled is not None:
-        book_walls(b, hdt, c, grains, walls.faces, candidates, accounts)
+        account[WALL] += given
+        stats[S.PENDING_WALL] = pending
     for row in range(B.N_WORK):
         total = 0.0
         for l in range(B.LANES):
@@ -309,8 +319,9 @@ def make_run(variant: KernelVariant) -> Any:
                     if not after:
                         block_forces(
                             variant, flat, water, optional, exact, hertz, short, walled, adhesive, choice, b,
-                            block_start[b + 1], n, n_solid, step, t, hdt, last, c, material, table, grains,
-                            walls, pairs, candidates, work, accounts_of_blocks, ended[b], terms[b], stats[b],
+                            b_0, block_start[b + 1], n, n_solid, step, t, hdt, last, c, material, table,
+                            grains, walls, pairs, candidates, work, accounts_of_blocks, ended[b], terms[b],
+                            stats[b],
                         )  # fmt: skip
                     q = b if after else b - span
                     soon = b_0 + span <= q < b_1 - span

@@ -10,21 +10,18 @@ from typing import Any
 
 from ryusa.engine.cpu import batch_layout as B
 from ryusa.engine.cpu import faces as F
-from ryusa.engine.cpu.arrays import AccountArrays, CandidateArrays, GrainArrays
+from ryusa.engine.cpu.arrays import CandidateArrays, GrainArrays
 from ryusa.engine.cpu.contact_rows import copy_row
 from ryusa.engine.cpu.faces import FaceArrays, in_frame, in_world, nearest_image, nearest_of_face
 from ryusa.engine.cpu.simd.prefetch import prefetch
-from ryusa.engine.shared import block_statistics as S
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.kernel import FAST, inner
-from ryusa.engine.shared.wall_pose import AFTER, AXIS, BEFORE, MOVES, NOW
-from ryusa.model.tally import Term
+from ryusa.engine.shared.wall_pose import AFTER, AXIS, BEFORE, MOVES, NOW, PLACED
 from ryusa.model.walls import SPIN, TOUCHED
 
 ON_FACE = 1e-3  # of the radius: within it a point lies on a face
 SAME_PLACE = math.cos(math.radians(45.0))  # of normals of one smooth surface that count as one place
 AHEAD = 8  # faces whose numbers are asked for before they are needed
-WALL = int(Term.WALL)
 
 
 @inner(fastmath=FAST, forceinline=True)
@@ -39,29 +36,38 @@ def drift_of_image(
 
 @inner(fastmath=FAST)
 def _meet(
-    s: int, i: int, f: int, c: Any, x_of: Any, wall: Any, poses: Any, rows: Any, centre: Any, met: Any
-) -> None:
-    """Find how grain i and face f meet, and write it to row s of `met`."""
-    w, r = wall[f], x_of[i, 3]
-    x, y, z = in_frame(w, NOW, x_of[i, 0], x_of[i, 1], x_of[i, 2], poses)
+    s: int, i: int, f: int, reach: float, touched: bool, c: Any, x_of: Any, poses: Any, rows: Any,
+    centre: Any, met: Any,
+) -> int:  # fmt: skip
+    """Find how grain i and face f meet, and write it to row s of `met`; 1 if they do or did, else 0."""
+    w, r = int(rows[f, F.WALL]), x_of[i, 3]
+    x, y, z = x_of[i, 0], x_of[i, 1], x_of[i, 2]
+    placed = poses[w, PLACED] != 0.0
+    if placed:
+        x, y, z = in_frame(w, NOW, x, y, z, poses)
     x, y = nearest_image(f, x, y, c[P.PERIOD_X], c[P.PERIOD_Y], centre)
     c_x, c_y, c_z, n_x, n_y, n_z, distance = nearest_of_face(f, x, y, z, rows)
-    a_x = poses[w, 0] * n_x + poses[w, 1] * n_y + poses[w, 2] * n_z
-    a_y = poses[w, 3] * n_x + poses[w, 4] * n_y + poses[w, 5] * n_z
-    a_z = poses[w, 6] * n_x + poses[w, 7] * n_y + poses[w, 8] * n_z
-    met[s, F.POINT], met[s, F.POINT + 1], met[s, F.POINT + 2] = c_x, c_y, c_z
-    met[s, F.AWAY], met[s, F.AWAY + 1], met[s, F.AWAY + 2] = a_x, a_y, a_z
-    met[s, F.DISTANCE], met[s, F.BY], met[s, F.SLOT] = distance, -1.0, w
+    met[s, F.DISTANCE], met[s, F.BY], met[s, F.GAP + 3] = distance, -1.0, 2.0 * r
+    if distance >= reach and not touched:
+        met[s, F.GAP], met[s, F.GAP + 1], met[s, F.GAP + 2] = B.FAR, 0.0, 0.0
+        return 0
+    a_x, a_y, a_z = n_x, n_y, n_z
+    if placed:
+        a_x = poses[w, 0] * n_x + poses[w, 1] * n_y + poses[w, 2] * n_z
+        a_y = poses[w, 3] * n_x + poses[w, 4] * n_y + poses[w, 5] * n_z
+        a_z = poses[w, 6] * n_x + poses[w, 7] * n_y + poses[w, 8] * n_z
     way = -(distance + r)
     met[s, F.GAP], met[s, F.GAP + 1], met[s, F.GAP + 2] = way * a_x, way * a_y, way * a_z
-    met[s, F.GAP + 3] = 2.0 * r
+    met[s, F.POINT], met[s, F.POINT + 1], met[s, F.POINT + 2] = c_x, c_y, c_z
+    met[s, F.AWAY], met[s, F.AWAY + 1], met[s, F.AWAY + 2] = a_x, a_y, a_z
+    met[s, F.SLOT] = w
     d_x = d_y = d_z = 0.0
     if poses[w, MOVES] != 0.0:
+        dt = c[P.DT]
         d_x, d_y, d_z = drift_of_image(w, NOW, BEFORE, c_x - r * n_x, c_y - r * n_y, c_z - r * n_z, poses)
-    for a in range(6):
-        met[s, F.FORCE + a] = 0.0
-    dt = c[P.DT]
-    met[s, F.DRIFT], met[s, F.DRIFT + 1], met[s, F.DRIFT + 2] = d_x / dt, d_y / dt, d_z / dt
+        d_x, d_y, d_z = d_x / dt, d_y / dt, d_z / dt
+    met[s, F.DRIFT], met[s, F.DRIFT + 1], met[s, F.DRIFT + 2] = d_x, d_y, d_z
+    return 1
 
 
 @inner(fastmath=FAST)
@@ -95,30 +101,34 @@ def _move(k: int, g: int, touching: Any, eta: Any, rows: Any) -> None:
 
 @inner(fastmath=FAST)
 def resolve_walls(
-    b: int, reach_on: float, c: Any, grains: GrainArrays, faces: FaceArrays, candidates: CandidateArrays
-) -> None:
-    """Find how the grains of block b meet the faces near them, and keep one contact in one place."""
-    first, end = candidates.first[b], candidates.first[b] + candidates.face_count[b]
+    b: int, reach_on: float, c: Any, grains: GrainArrays, faces: FaceArrays, candidates: CandidateArrays,
+    met: Any,
+) -> None:  # fmt: skip
+    """Find how the grains of block b meet the faces near them, and keep one contact in one place.
+
+    `met` has a row for each face of the block, columns of faces.py.
+    """
+    first, count = candidates.first[b], candidates.face_count[b]
     # arrays are passed one by one: references to a tuple of them would be counted for every face
-    number, grain, face, met = candidates.face, candidates.face_grain, candidates.face_number, candidates.met
+    number, grain = candidates.face[first:], candidates.face_grain[first:]
+    face = candidates.face_number[first:]
     touching, eta, memory = candidates.touching, candidates.eta, candidates.rows
-    x_of, wall, surface = grains.x, faces.wall, faces.surface
-    poses, rows, centre = faces.poses, faces.rows, faces.centre
-    begin = first
-    for s in range(first, min(first + AHEAD, end)):
+    x_of, surface, poses, rows, centre = grains.x, faces.surface, faces.poses, faces.rows, faces.centre
+    begin = 0
+    for s in range(min(AHEAD, count)):
         prefetch(rows, F.N_FACE * face[s])
         prefetch(rows, F.N_FACE * face[s] + 8)
         prefetch(x_of, 4 * grain[s])
-    while begin < end:
+    while begin < count:
         i, stop, near = grain[begin], begin, 0
         reach = x_of[i, 3] + reach_on
-        while stop < end and grain[stop] == i:
-            if stop + AHEAD < end:
+        while stop < count and grain[stop] == i:
+            if stop + AHEAD < count:
                 prefetch(rows, F.N_FACE * face[stop + AHEAD])
                 prefetch(rows, F.N_FACE * face[stop + AHEAD] + 8)
                 prefetch(x_of, 4 * grain[stop + AHEAD])
-            _meet(stop, i, face[stop], c, x_of, wall, poses, rows, centre, met)
-            near += 1 if met[stop, F.DISTANCE] < reach else int(touching[number[stop]] != 0)
+            touched = touching[number[stop]] != 0
+            near += _meet(stop, i, face[stop], reach, touched, c, x_of, poses, rows, centre, met)
             stop += 1
         if near > 1:
             _one_in_a_place(
@@ -128,7 +138,7 @@ def resolve_walls(
         begin = stop
 
 
-@inner(fastmath=FAST)
+@inner(fastmath=FAST, forceinline=False)
 def _one_in_a_place(
     begin: int, stop: int, r: float, reach_on: float, c: Any, number: Any, face: Any, met: Any, touching: Any,
     eta: Any, memory: Any, surface: Any, poses: Any, rows: Any, centre: Any,
@@ -186,45 +196,37 @@ def add_drift(face_lanes: Any, selected: Any, slot: Any, motion: Any, met: Any, 
 
 
 @inner(fastmath=FAST, forceinline=True)
-def keep_forces(face_lanes: Any, selected: Any, slot: Any, met: Any, batch: Any) -> None:
-    """Keep the forces and torques of the faces in a batch."""
+def book_walls(
+    given: float, pending: float, face_lanes: Any, selected: Any, hdt: float, c: Any, i_of: Any, x_of: Any,
+    slot: Any, p: Any, motion: Any, met: Any, impulse: Any, batch: Any,
+) -> tuple[float, float]:  # fmt: skip
+    """Add the impulses on walls of the faces in a batch to those of their block, (n_wall, N_IMPULSE).
+
+    Returns `given` and `pending` with the work of walls that move over the half interval before this step,
+    and over that after it, which is booked with the next one, as that of drag [J]. The mirrored grain has the
+    velocity and the spin of the wall, which works against the force and the torque on it.
+    """
+    dt = c[P.DT]
     for n in range(face_lanes[B.LANES]):
         l = face_lanes[n]
-        s = slot[selected[l]]
-        for a in range(3):
-            met[s, F.FORCE + a] = batch[B.FORCE + 4 * l + a]
-            met[s, F.TORQUE + a] = batch[B.TORQUE_J + 4 * l + a]
-
-
-@inner(fastmath=FAST)
-def book_walls(
-    b: int, hdt: float, c: Any, grains: GrainArrays, faces: FaceArrays, candidates: CandidateArrays,
-    accounts: AccountArrays,
-) -> None:  # fmt: skip
-    """Add the impulses on walls of block b, and the work of those that move.
-
-    The mirrored grain has the velocity and the spin of the wall, which works against the force and the torque
-    on it. The half interval after this step is booked with the next one, as that of drag.
-    """
-    met, impulse, p, motion = candidates.met, accounts.walls, faces.poses, faces.motion
-    grain, x_of = candidates.face_grain, grains.x
-    dt, given, pending = c[P.DT], accounts.stats[b, S.PENDING_WALL], 0.0
-    for s in range(candidates.first[b], candidates.first[b] + candidates.face_count[b]):
-        f_x, f_y, f_z = met[s, F.FORCE], met[s, F.FORCE + 1], met[s, F.FORCE + 2]
+        f_x, f_y, f_z = batch[B.FORCE + 4 * l], batch[B.FORCE + 4 * l + 1], batch[B.FORCE + 4 * l + 2]
         if f_x == 0.0 and f_y == 0.0 and f_z == 0.0:
             continue
-        t_x, t_y, t_z = met[s, F.TORQUE], met[s, F.TORQUE + 1], met[s, F.TORQUE + 2]
-        i, w = grain[s], int(met[s, F.SLOT])
+        t_x, t_y = batch[B.TORQUE_J + 4 * l], batch[B.TORQUE_J + 4 * l + 1]
+        t_z = batch[B.TORQUE_J + 4 * l + 2]
+        k = selected[l]
+        i, s = i_of[k], slot[k]
+        w = int(met[s, F.SLOT])
         x = x_of[i, 0] + met[s, F.GAP] - p[w, AXIS]
         y = x_of[i, 1] + met[s, F.GAP + 1] - p[w, AXIS + 1]
         z = x_of[i, 2] + met[s, F.GAP + 2] - p[w, AXIS + 2]
-        impulse[b, w, TOUCHED] += dt
-        impulse[b, w, 0] -= f_x * dt
-        impulse[b, w, 1] -= f_y * dt
-        impulse[b, w, 2] -= f_z * dt
-        impulse[b, w, 3] += (t_x - (y * f_z - z * f_y)) * dt
-        impulse[b, w, 4] += (t_y - (z * f_x - x * f_z)) * dt
-        impulse[b, w, 5] += (t_z - (x * f_y - y * f_x)) * dt
+        impulse[w, TOUCHED] += dt
+        impulse[w, 0] -= f_x * dt
+        impulse[w, 1] -= f_y * dt
+        impulse[w, 2] -= f_z * dt
+        impulse[w, 3] += (t_x - (y * f_z - z * f_y)) * dt
+        impulse[w, 4] += (t_y - (z * f_x - x * f_z)) * dt
+        impulse[w, 5] += (t_z - (x * f_y - y * f_x)) * dt
         if p[w, MOVES] == 0.0:
             continue
         turning = t_x * motion[w, SPIN] + t_y * motion[w, SPIN + 1] + t_z * motion[w, SPIN + 2]
@@ -239,6 +241,5 @@ def book_walls(
         after = (f_x * on[0] + f_y * on[1] + f_z * on[2]) / dt - turning
         given += hdt * before
         pending += 0.5 * dt * after
-        impulse[b, w, 6] += hdt * before + 0.5 * dt * after
-    accounts.terms[b, WALL] += given
-    accounts.stats[b, S.PENDING_WALL] = pending
+        impulse[w, 6] += hdt * before + 0.5 * dt * after
+    return given, pending

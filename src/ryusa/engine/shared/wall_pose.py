@@ -11,7 +11,8 @@ from ryusa.model.walls import AXIS_POINT, BEGIN, PHASE, RATE, SHIFT, SPIN, SWING
 NOW, BEFORE, AFTER = 0, 12, 24
 AXIS = 36  # the axis point now [m]
 MOVES = 39  # 1 where the wall moves
-N_POSE = 40
+PLACED = 40  # 1 where the frame of the wall is not the world now
+N_POSE = 41
 
 
 @kernel()
@@ -53,6 +54,10 @@ def set_poses(t: float, dt: float, motion: Any, poses: Any) -> None:
         pose_at(w, t, motion, poses, NOW)
         pose_at(w, t - dt, motion, poses, BEFORE)
         pose_at(w, t + dt, motion, poses, AFTER)
+        placed = 0.0
+        for k in range(12):
+            placed = placed if poses[w, NOW + k] == (1.0 if k in (0, 4, 8) else 0.0) else 1.0
+        poses[w, PLACED] = placed
         since = t - row[BEGIN]
         for k in range(3):
             poses[w, AXIS + k] = (
