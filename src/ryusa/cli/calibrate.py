@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ryusa.cli.options import Quiet
-from ryusa.cli.study import Again, Jobs, Show, console, cores, interrupted, report_failures
+from ryusa.cli.study import Again, Jobs, Show, console, executor_at, interrupted, report_failures
 
 if TYPE_CHECKING:
     from ryusa.studies.calibrate import Calibration, CalibrationAsked
@@ -61,12 +61,11 @@ def calibrate(
     )
     from ryusa.studies.calibrate.page import LOG
     from ryusa.study import ProgressLines
-    from ryusa.study.executors import executor_of
 
     asked = read_calibration(study)
     refuse_truths(coverage)
     folder = Path("runs") / f"calibration-{asked.name}" if out is None else out
-    where = executor_of(on, jobs or cores())
+    where = executor_at(on, jobs)
     if show:
         _list(asked, folder, where.jobs, coverage)
         return

@@ -13,9 +13,11 @@ from ryusa.cli.options import Quiet
 
 if TYPE_CHECKING:
     from ryusa.study import Plan, Study
+    from ryusa.study.executors import RunExecutor
     from ryusa.study.ledger import Ledger
 
 INTERRUPTED = 130  # exit code after Ctrl-C
+DEFAULT = "processes"  # of --on
 FAILED = 3  # exit code where a run could not be carried out, or something could not be judged
 BROKEN = 1  # exit code of an error in the program, as Python's own
 WIDE = 100  # columns of a table that goes to a file or pipe
@@ -27,6 +29,14 @@ MOST_SEEDS = 1000
 Jobs = Annotated[
     int | None, typer.Option("--jobs", "-j", metavar="N", min=1, help="Runs at a time; default: all cores.")
 ]
+On = Annotated[
+    str,
+    typer.Option(
+        "--on", metavar="WHERE",
+        help="Where runs are carried out: processes of this machine, dask:ADDRESS for the workers of a "
+        "scheduler, slurm for jobs of Slurm (slurm:INTERFACE where these are on other machines).",
+    ),
+]  # fmt: skip
 Show = Annotated[bool, typer.Option("--list", help="List the runs, with time and disk; run nothing.")]
 Again = Annotated[
     bool, typer.Option("--again", help="Make every run anew; otherwise finished runs are opened.")
@@ -215,6 +225,13 @@ def print_counts(ledger: "Ledger") -> None:
         f"{n} {verdict}" for word in words for (outcome, verdict), n in counts.items() if outcome == word
     ]
     typer.echo("; ".join(lines))
+
+
+def executor_at(on: str, jobs: int | None) -> "RunExecutor":
+    """Executor of the options `--on` and `-j`; all cores of this machine if the latter is not given."""
+    from ryusa.study.executors import executor_of
+
+    return executor_of(on, jobs or (cores() if on == DEFAULT else None))
 
 
 def cores() -> int:

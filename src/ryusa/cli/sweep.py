@@ -11,11 +11,13 @@ from ryusa.catalogue import MEASURES
 from ryusa.cli.options import Quiet
 from ryusa.cli.run import CaseFile, Settings, overrides_of
 from ryusa.cli.study import (
+    DEFAULT,
     Again,
     Jobs,
+    On,
     Show,
     console,
-    cores,
+    executor_at,
     interrupted,
     plan_of,
     report_failures,
@@ -76,9 +78,7 @@ def sweep(
     pages: Annotated[
         bool, typer.Option("--pages/--no-pages", help="Write a page for each run, with its grains in motion.")
     ] = True,
-    on: Annotated[
-        str, typer.Option("--on", metavar="WHERE", help="Where runs are carried out: processes.")
-    ] = "processes",
+    on: On = DEFAULT,
     emit: Annotated[
         str | None,
         typer.Option(
@@ -106,9 +106,8 @@ def sweep(
     from ryusa.studies.sweep import carry_out_sweep, write_sweep
     from ryusa.studies.sweep.folder import refuse_folder
     from ryusa.study import ProgressLines
-    from ryusa.study.executors import executor_of
 
-    where = executor_of(on, jobs or cores())
+    where = executor_at(on, jobs)
     plan = _planned(case, over or [], measure or [], seeds, overrides_of(settings), pages)
     folder = Path("runs") / f"sweep-{case.stem}" if out is None else out
     if show:

@@ -1,5 +1,6 @@
 """Cost of a study before it starts: runs, seconds, bytes."""
 
+import math
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -10,7 +11,12 @@ from ryusa import __version__
 from ryusa.errors import CaseError
 from ryusa.running import provenance
 from ryusa.running.folder import format_bytes, free_bytes, nearest_existing
-from ryusa.study.task import Task
+from ryusa.study.task import CaseRun, Task
+
+LATE = 3.0  # time limit of a job over the time estimated
+SHORTEST = 30  # time limit of a job at least [min]
+_MEMORY = 1.2  # memory limit of a job over the memory estimated
+_COMPILING = 400_000_000  # on top while a first run compiles its laws [B]
 
 
 @dataclass(frozen=True)
@@ -132,6 +138,18 @@ def refuse_if_too_big(ahead: CostEstimate, folder: Path) -> None:
             f"free at {place}. "
             "Choose another disk with -o, or run fewer parts at a time",
         )
+
+
+def memory_of(tasks: Iterable[Task]) -> int:
+    """Memory that the largest of some runs needs, with a margin and room to compile its laws [B]."""
+    from ryusa.casefile.derive import derive
+    from ryusa.casefile.estimate import memory_needed
+
+    cases = (one.read() for one in tasks if isinstance(one, CaseRun))
+    return (
+        math.ceil(_MEMORY * max((memory_needed(case, derive(case)) for case in cases), default=0.0))
+        + _COMPILING
+    )
 
 
 def duration(seconds: float) -> str:

@@ -1,7 +1,7 @@
 """Where the runs of a study are carried out: executors of `concurrent.futures`, by name.
 
-An executor opens as one of `concurrent.futures`, and nothing else of it is used: a cluster whose client gives
-such an executor needs one class here. Results do not depend on the executor.
+An executor opens as one of `concurrent.futures`, and nothing else of it is used. Results do not depend on the
+executor. Those of a cluster are in `cluster` and `slurm`.
 """
 
 import os
@@ -9,19 +9,19 @@ import signal
 import threading
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
 from multiprocessing import get_context, parent_process
+from pathlib import Path
 from typing import Any, TypeVar
 
 from ryusa.errors import CaseError
 from ryusa.spelling import nearest_word
+from ryusa.study.remote import ONE_THREAD, PATIENCE, leave
+from ryusa.study.task import Task
 
 Value = TypeVar("Value")
-
-_PATIENCE = 5.0  # s until the process of a run that does not close its folder is killed
-_ONE_THREAD = {name: "1" for name in ("NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")}
 
 
 class RunExecutor(ABC):
@@ -30,21 +30,26 @@ class RunExecutor(ABC):
     Attributes
     ----------
     jobs : number of runs at a time.
-    here : whether runs are carried out one after the other by the calling process itself.
     lost : what a future raises if the process of its run was ended from outside.
     """
 
     jobs: int
-    here = False
     lost: tuple[type[Exception], ...] = (BrokenExecutor,)
 
     @abstractmethod
-    def open(self) -> Executor:
-        """Return an executor that is ready to take runs."""
+    def here(self, n: int, made: int) -> bool:
+        """Whether n tasks, of which some are finished and `made` are not, need no process but this one."""
+
+    @abstractmethod
+    def open(self, folder: Path, tasks: Sequence[Task]) -> Executor:
+        """Return an executor that is ready to carry out these tasks in a folder."""
 
     def submit(self, pool: Executor, call: Callable[..., Value], *given: Any) -> Future[Value]:
         """Hand one call to an open executor."""
         return pool.submit(call, *given)
+
+    def look(self, pool: Executor) -> None:  # noqa: B027 - most have nothing to look after
+        """Called several times a second while runs are under way; raises if they cannot go on."""
 
     @abstractmethod
     def stop(self, pool: Executor) -> None:
@@ -61,10 +66,15 @@ class Processes(RunExecutor):
 
     def __init__(self, jobs: int) -> None:
         self.jobs = jobs
-        self.here = jobs == 1
 
-    def open(self) -> Executor:
+    def here(self, n: int, made: int) -> bool:
+        """One task at a time needs no other process."""
+        del made
+        return self.jobs == 1 or n <= 1
+
+    def open(self, folder: Path, tasks: Sequence[Task]) -> Executor:
         """Return a pool of processes; they start when runs are handed over."""
+        del folder, tasks
         return ProcessPoolExecutor(self.jobs, mp_context=get_context("spawn"), initializer=_settle_in)
 
     def submit(self, pool: Executor, call: Callable[..., Value], *given: Any) -> Future[Value]:
@@ -79,46 +89,68 @@ class Processes(RunExecutor):
         for process in processes:
             if process.is_alive():
                 process.terminate()
-        deadline = time.monotonic() + _PATIENCE
+        deadline = time.monotonic() + PATIENCE
         for process in processes:
             process.join(max(0.0, deadline - time.monotonic()))
             if process.is_alive():
                 process.kill()
 
 
-EXECUTORS: dict[str, Callable[[int], RunExecutor]] = {"processes": Processes}
+def _processes(given: str, jobs: int | None) -> RunExecutor:
+    if given:
+        raise CaseError("on", f"processes:{given}", "must be processes alone")
+    return Processes(jobs or 1)
+
+
+def _dask(given: str, jobs: int | None) -> RunExecutor:
+    from ryusa.study.cluster import DaskWorkers
+
+    return DaskWorkers(given, jobs)
+
+
+def _slurm(given: str, jobs: int | None) -> RunExecutor:
+    from ryusa.study.slurm import SlurmJobs
+
+    return SlurmJobs(given, jobs)
+
+
 DEFAULT = "processes"
+# by name; of what stands after the colon, and the number of runs at a time if it is given
+EXECUTORS: dict[str, Callable[[str, int | None], RunExecutor]] = {
+    DEFAULT: _processes, "dask": _dask, "slurm": _slurm,
+}  # fmt: skip
+FORMS = "processes, dask:ADDRESS, slurm, slurm:INTERFACE"
 
 
-def executor_of(name: str, jobs: int) -> RunExecutor:
+def executor_of(on: str, jobs: int | None = None) -> RunExecutor:
     """Return an executor by its name.
 
     Parameters
     ----------
-    name : a name of `EXECUTORS`.
-    jobs : number of runs at a time, 1 or more.
+    on : a name of `EXECUTORS`, with its address after a colon: "processes", "dask:tcp://node1:8786", "slurm",
+        "slurm:ib0".
+    jobs : number of runs at a time, 1 or more; if not given, one process, or all threads of dask's workers.
 
     Raises
     ------
-    CaseError : there is no executor of that name, or `jobs` is less than 1.
+    CaseError : there is no executor of that name, it cannot be reached, or `jobs` is less than 1 or missing.
 
     >>> executor_of("processes", 2).jobs
     2
     """
+    name, _, given = on.partition(":")
     if name not in EXECUTORS:
-        raise CaseError(
-            "on", name, f"must be one of {', '.join(EXECUTORS)}", nearest_word(name, list(EXECUTORS))
-        )
-    if jobs < 1:
+        raise CaseError("on", on, f"must be one of {FORMS}", nearest_word(name, list(EXECUTORS)))
+    if jobs is not None and jobs < 1:
         raise CaseError("jobs", jobs, "must be 1 or more")
-    return EXECUTORS[name](jobs)
+    return EXECUTORS[name](given, jobs)
 
 
 @contextmanager
 def _for_a_child() -> Generator[None]:
     """Within the block processes start with one numerical thread and with Ctrl-C blocked."""
-    before = {name: os.environ.get(name) for name in _ONE_THREAD}
-    os.environ.update(_ONE_THREAD)
+    before = {name: os.environ.get(name) for name in ONE_THREAD}
+    os.environ.update(ONE_THREAD)
     can_hold = hasattr(signal, "pthread_sigmask")
     if can_hold:
         signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
@@ -146,6 +178,4 @@ def _leave_with_parent() -> None:
     parent = parent_process()
     if parent is not None:
         parent.join()
-        os.kill(os.getpid(), signal.SIGTERM)
-        time.sleep(_PATIENCE)
-        os._exit(1)
+        leave()

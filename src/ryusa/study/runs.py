@@ -12,7 +12,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from ryusa.errors import RunError
+from ryusa.errors import RunError, RyusaError
+from ryusa.running.lock import holder
 from ryusa.study.cost import CostEstimate, code_of, estimate_cost, is_other, present, refuse_if_too_big
 from ryusa.study.executors import Processes, RunExecutor
 from ryusa.study.fault import Fault, fault_of, noted
@@ -20,6 +21,7 @@ from ryusa.study.progress import StudyProgress
 from ryusa.study.task import Calculation, Task
 
 _WAIT = 0.2  # s between two checks for finished runs
+_CLOSING = 20.0  # s that a run which was asked to end has to close its folder
 LOST = (
     "the process of the run was ended from outside twice, perhaps for want of memory; the same command "
     "continues the run, and -j 1 needs the least memory"
@@ -112,13 +114,8 @@ def carry_out(
     results = TaskResults(found)
     progress.begin(ahead, folder)
     try:
-        runs = _done(
-            _order(ahead),
-            wanted,
-            partial(_one, folder=folder, again=again, load=load),
-            where,
-            progress,
-        )
+        do = partial(_one, folder=folder, again=again, load=load)
+        runs = _done(ahead, folder, wanted, do, where, progress)
         with _stopped_by_sigterm(), closing(runs):
             for done in runs:
                 _count(results, done)
@@ -163,30 +160,33 @@ def _count(results: TaskResults, done: TaskResult) -> None:
 
 
 def _done(
-    order: Sequence[Task],
+    ahead: CostEstimate,
+    folder: Path,
     wanted: Mapping[Task, Sequence[str]],
     do: Callable[[Task, Sequence[str]], TaskResult],
     where: RunExecutor,
     progress: StudyProgress,
 ) -> Generator[TaskResult]:
     """Results as they come; a run whose process was ended from outside is tried once more, by itself."""
-    if where.here or len(order) <= 1:
+    order = _order(ahead)
+    if not order or where.here(len(order), len(ahead.costs)):
         for one in order:
             progress.started(one)
             yield do(one, tuple(wanted[one]))
         return
     lost: list[Task] = []
-    yield from _in_pool(order, where.jobs, wanted, do, where, progress, lost.append)
+    yield from _in_pool(order, folder, where.jobs, wanted, do, where, progress, lost.append)
     # which of the runs that were under way ended the pool is not known: each has a pool to itself
     for one in dict.fromkeys(lost):
         again: list[Task] = []
-        yield from _in_pool([one], 1, wanted, do, where, progress, again.append)
+        yield from _in_pool([one], folder, 1, wanted, do, where, progress, again.append)
         if again:
             yield TaskResult(one, {}, False, 0.0, dict.fromkeys(wanted[one], Fault(LOST)), broken=True)
 
 
 def _in_pool(
     order: Sequence[Task],
+    folder: Path,
     jobs: int,
     wanted: Mapping[Task, Sequence[str]],
     do: Callable[[Task, Sequence[str]], TaskResult],
@@ -195,7 +195,7 @@ def _in_pool(
     lose: Callable[[Task], None],
 ) -> Generator[TaskResult]:
     """Results of runs, `jobs` at a time; a pool that breaks is replaced, and the runs in it are lost."""
-    pool = where.open()
+    pool = where.open(folder, order)
     waiting = list(reversed(order))
     running: dict[Future[TaskResult], Task] = {}
     try:
@@ -206,12 +206,13 @@ def _in_pool(
                     future = where.submit(pool, do, one, tuple(wanted[one]))
                 except BrokenExecutor:  # a process ended between two runs
                     where.stop(pool)
-                    pool = where.open()
+                    pool = where.open(folder, order)
                     future = where.submit(pool, do, one, tuple(wanted[one]))
                 running[future] = one
                 progress.started(one)
             ready, _ = wait(running, _WAIT, FIRST_COMPLETED)
             progress.tick()
+            where.look(pool)
             for future in ready:
                 one = running.pop(future)
                 try:
@@ -220,6 +221,8 @@ def _in_pool(
                     progress.lost(one)
                     lose(one)
                     continue
+                except RyusaError:  # of the executor itself; those of a run are part of its result
+                    raise
                 except Exception as error:  # the measurements cannot be sent between processes
                     faults = dict.fromkeys(wanted[one], fault_of(error))
                     done = TaskResult(one, {}, False, 0.0, faults, broken=True)
@@ -256,6 +259,7 @@ def _one(one: Task, names: Sequence[str], *, folder: Path, again: bool, load: Lo
     place = folder / one.folder
     parts = {name: load(name) for name in names}  # first: a calculation may be a function of a part
     try:
+        _wait_for_another(place)
         answer = None if again else one.open(place)
         opened = answer is not None
         if not opened:
@@ -279,3 +283,10 @@ def _one(one: Task, names: Sequence[str], *, folder: Path, again: bool, load: Lo
             measured[name] = answer if isinstance(one, Calculation) else parts[name].measure(answer, one)
     made_by = code_of(one.origin(place) or {})
     return TaskResult(one, measured, opened, time.monotonic() - begun, faults, made_by)
+
+
+def _wait_for_another(place: Path) -> None:
+    """Give another process that writes to the folder time to end: one whose worker was lost is closing it."""
+    late = time.monotonic() + _CLOSING
+    while holder(place) and time.monotonic() < late:
+        time.sleep(_WAIT)

@@ -6,20 +6,14 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from ryusa.casefile.derive import derive
-from ryusa.casefile.estimate import memory_needed
 from ryusa.running.disk import write_atomically
 from ryusa.studies.sweep.folder import RUNS, keep_plan, refuse_folder
 from ryusa.studies.sweep.part import SweepRun
 from ryusa.studies.sweep.plan import SweepPlan
-from ryusa.study.cost import estimate_cost, refuse_if_too_big
+from ryusa.study.cost import LATE, SHORTEST, estimate_cost, memory_of, refuse_if_too_big
 
 SCRIPTS = "slurm"
 ARRAY, COLLECT = "array.sh", "collect.sh"
-LATE = 3.0  # time limit over the time estimated
-SHORTEST = 30  # time limit at least [min]
-MARGIN = 1.2  # memory limit over the memory estimated
-COMPILING = 400_000_000  # on top while a first run compiles its laws [B]
 WARNING = 180  # s before the time limit at which a run is asked to end with a checkpoint
 
 _HEAD = """#!/bin/bash
@@ -95,7 +89,7 @@ def emit_slurm(plan: SweepPlan, folder: Path, words: Sequence[str]) -> tuple[tup
         "python": shlex.quote(sys.executable),
     }
     minutes = max(SHORTEST, math.ceil(LATE * longest / 60.0))
-    head = {"minutes": minutes, "memory": _memory(plan.first_runs)}
+    head = {"minutes": minutes, "memory": math.ceil(memory_of(plan.first_runs) / 1.0e6)}
     scripts: list[Path] = []
     if runs:
         cases = "\n".join(_case(k, one, folder) for k, one in enumerate(runs))
@@ -128,12 +122,6 @@ def _case(k: int, one: SweepRun, folder: Path) -> str:
     words = ["-o", str(folder / RUNS / one.folder)]
     words += [word for key, value in one.overrides for word in ("--set", f"{key}={value}")]
     return f"{k}) set -- {shlex.join(words)} ;;"
-
-
-def _memory(runs: Sequence[SweepRun]) -> int:
-    """Memory limit [MB]."""
-    most = max(memory_needed(case, derive(case)) for case in (one.read() for one in runs))
-    return math.ceil((MARGIN * most + COMPILING) / 1.0e6)
 
 
 def _write(path: Path, text: str) -> Path:
