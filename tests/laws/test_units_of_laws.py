@@ -54,6 +54,7 @@ UNITS = {
     "walls.nearest_on_cylinder": "m, m, m, m -> m, -",
     "walls.turned_about": "m, m, m, -, -, -, - -> m, m, m",
     "walls.swing": "m, rad/s, s, - -> m",
+    "walls.swing_speed": "m, rad/s, s, - -> m/s",
     "walls.servo_speed": "N, N, -, N/m, s, m/s -> m/s",
     "collision.collision_time": "kg, N/m -> s",
     "collision.effective_mass": "kg, kg -> kg",

@@ -21,7 +21,7 @@ from ryusa.build.packing import packing
 from ryusa.build.placement import Placement, Wall
 from ryusa.build.saltation import saltation
 from ryusa.build.table import table
-from ryusa.build.traffic import before_feeding, with_feeds
+from ryusa.build.traffic import before_feeding, moving_with, with_feeds
 from ryusa.build.wall_checks import (
     refuse_fast_walls,
     refuse_full_feeds,
@@ -135,6 +135,7 @@ def build(case: Case, derived: Derived | None = None) -> Built:
         laws = replace(laws, density=densities(case, of[: len(placement.d)]))
     scene, state = before_feeding(*assemble(placement, laws), traffic, case)
     scene = with_room(with_walls(scene, walls), case.domain.low is None, case.domain.high is None)
+    scene = moving_with(scene)
     scene, state = clumps_of(case, with_materials(case, scene, of), state)
     refuse_fast_walls(case, scene)
     refuse_idle_servos(case, scene, state)

@@ -16,6 +16,9 @@ from ryusa.casefile.traffic.values import fed_count, feed_end
 from ryusa.errors import CaseError
 from ryusa.model import Exit, Feed, Scene, State, Traffic
 from ryusa.model.scene import Floats
+from ryusa.model.traffic import NONE
+from ryusa.model.wall_traffic import speed_of_feed
+from ryusa.model.walls import ASKED, INTERVAL
 
 _WIDE = 1.0e9  # half the width across a plane scene of the box of an exit [m]
 _STREAM = 0x46454544  # tells the sizes of fed grains from those of the first ones
@@ -123,6 +126,7 @@ def _feed(case: Case, keys: FeedSection, k: int, first: int, count: int) -> Feed
     common = Feed(
         keys.name, velocity=keys.velocity, rate=rate, by_mass=unit == "kg/s", begin=keys.begin,
         end=feed_end(case, keys), first=first, count=count, seed=(case.seed + 7919 * (k + 1)) % 2**62,
+        wall=_wall(case, keys),
     )  # fmt: skip
     if keys.low is not None and keys.high is not None:
         return replace(common, low=keys.low, high=keys.high)
@@ -133,15 +137,39 @@ def _feed(case: Case, keys: FeedSection, k: int, first: int, count: int) -> Feed
 
 def _exit(case: Case, keys: ExitSection) -> Exit:
     names = [feed.name for feed in case.feeds]
-    to = -1 if keys.to is None else names.index(keys.to)
+    to, wall = -1 if keys.to is None else names.index(keys.to), _wall(case, keys)
     if keys.point is not None and keys.normal is not None:
-        return Exit(keys.name, point=keys.point, normal=_unit(keys.normal), to=to)
+        return Exit(keys.name, point=keys.point, normal=_unit(keys.normal), to=to, wall=wall)
     assert keys.low is not None
     assert keys.high is not None
     low, high = keys.low, keys.high
     if case.motion.plane:
         low, high = (low[0], -_WIDE, low[2]), (high[0], _WIDE, high[2])
-    return Exit(keys.name, low=low, high=high, to=to)
+    return Exit(keys.name, low=low, high=high, to=to, wall=wall)
+
+
+def _wall(case: Case, keys: FeedSection | ExitSection) -> int:
+    return NONE if keys.moves_with is None else [one.name for one in case.walls].index(keys.moves_with)
+
+
+def moving_with(scene: Scene) -> Scene:
+    """The scene with instants near enough to each other for feeds and exits that move with its walls.
+
+    A grain and its feed go a diameter at most between two of them; and what moves with a servo has one
+    speed between two corrections, which are therefore instants.
+    """
+    traffic, walls = scene.traffic, scene.walls
+    if traffic is None or walls is None or not traffic.moves:
+        return scene
+    fastest = [math.hypot(*one.velocity) + speed_of_feed(scene, one) for one in traffic.feeds]
+    steps, d_min = traffic.interval, float(scene.d.min())
+    if max(fastest, default=0.0) > 0.0:
+        steps = max(1, min(steps, int(d_min / max(fastest) / scene.dt)))
+    carried = {one.wall for one in (*traffic.feeds, *traffic.exits)}
+    if len(walls.servo) and any(walls.servo[w, ASKED] != 0.0 for w in carried - {NONE}):
+        correction = int(walls.servo[0, INTERVAL])
+        steps = max(k for k in range(1, min(steps, correction) + 1) if correction % k == 0)
+    return replace(scene, traffic=replace(traffic, interval=steps))
 
 
 def _interval(case: Case, derived: Derived) -> int:

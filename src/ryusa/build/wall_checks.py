@@ -12,6 +12,7 @@ from ryusa.casefile.traffic.values import FULLEST, FULLEST_PLANE, grains_per_sec
 from ryusa.errors import CaseError
 from ryusa.model import FaceKind, Feed, Scene, State
 from ryusa.model.arrays import Bools, Floats
+from ryusa.model.traffic import NONE
 from ryusa.model.wall_shape import WallsAt
 from ryusa.model.walls import ASKED, MOST_SPEED, MOST_TRAVEL, TOWARDS, Ints, face_boxes, largest_speed
 
@@ -144,7 +145,7 @@ def refuse_full_feeds(case: Case, scene: Scene) -> None:
         return
     still = _still(case, scene)
     for k, feed in enumerate(traffic.feeds):
-        if not feed.count:
+        if not feed.count or feed.wall != NONE:  # one that moves may begin anywhere
             continue
         d = float(scene.d[feed.first : feed.first + feed.count].max())
         places = _places(feed, scene.plane_case, d, np.random.default_rng([_STREAM, k]))

@@ -45,6 +45,9 @@ def resolved(case: Case, derived: Derived | None = None) -> dict[str, Any]:
             del section["material"]
     for name, section in data["shapes"].items():
         section["made_of"] = spheres_of(case, name)
+    for section in (*data["feeds"], *data["exits"]):
+        if section["moves_with"] is None:
+            del section["moves_with"]
     if not case.materials:
         del data["grains"]["mixture"], data["grains"]["bed_material"]
     for key in (

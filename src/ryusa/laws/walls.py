@@ -133,6 +133,20 @@ def swing(amplitude: float, rate: float, t: float, phase: float) -> float:
 
 
 @law
+def swing_speed(amplitude: float, rate: float, t: float, phase: float) -> float:
+    """Speed of an oscillating wall, the derivative of `swing` [m/s].
+
+    Parameters
+    ----------
+    amplitude, rate, t, phase : as in `swing`.
+
+    >>> round(swing_speed(0.01, 2.0, 0.0, 0.0), 12)
+    0.02
+    """
+    return amplitude * rate * math.cos(rate * t + phase)
+
+
+@law
 def servo_speed(
     asked: float, found: float, contacts: float, k_n: float, interval: float, most: float
 ) -> float:

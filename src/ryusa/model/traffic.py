@@ -13,7 +13,7 @@ Vector = tuple[float, float, float]
 NAN = math.nan
 _NOWHERE: Vector = (NAN, NAN, NAN)
 IN, OUT = 1, -1  # of `way`
-NONE = -1  # no feed
+NONE = -1  # no feed, or no wall
 WAITING, PRESENT, GONE = 0, 1, 2  # of a grain
 
 # One row per grain that entered or left, in the order in which it happened.
@@ -50,6 +50,8 @@ class Feed:
     begin, end : when grains of its own are due [s].
     first, count : ids of its own grains, first to first + count - 1, in the order in which they are due.
     seed : of the places drawn.
+    wall : number of the wall with which it moves; NONE where it stays. Place, normal and velocity are
+        those in the frame of the wall.
     """
 
     name: str
@@ -66,6 +68,7 @@ class Feed:
     first: int = 0
     count: int = 0
     seed: int = 0
+    wall: int = NONE
 
     @property
     def is_box(self) -> bool:
@@ -98,6 +101,7 @@ class Exit:
         box.
     low, high : corners of a box [m]; nan for a plane.
     to : number of the feed at which the grains come in again; NONE where they do not.
+    wall : number of the wall with which it moves; NONE where it stays.
     """
 
     name: str
@@ -106,6 +110,7 @@ class Exit:
     low: Vector = _NOWHERE
     high: Vector = _NOWHERE
     to: int = NONE
+    wall: int = NONE
 
     @property
     def is_plane(self) -> bool:
@@ -113,7 +118,10 @@ class Exit:
         return not math.isnan(self.point[0])
 
     def beyond(self, x: Floats) -> NDArray[np.bool_]:
-        """Whether each centre x [m], shape (n, 3), has left; False where it is nan."""
+        """Whether each centre x [m], shape (n, 3), has left; False where it is nan.
+
+        An exit that moves with a wall is asked in the frame of the wall.
+        """
         if self.is_plane:
             return (x - np.array(self.point)) @ np.array(self.normal) > 0.0
         return np.asarray(((x > np.array(self.low)) & (x < np.array(self.high))).all(axis=1))
@@ -134,6 +142,11 @@ class Traffic:
     exits: tuple[Exit, ...] = ()
     interval: int = 1
     n_first: int = 0
+
+    @property
+    def moves(self) -> bool:
+        """Whether a feed or an exit moves with a wall."""
+        return any(one.wall != NONE for one in (*self.feeds, *self.exits))
 
     @staticmethod
     def from_data(data: dict[str, Any]) -> "Traffic":

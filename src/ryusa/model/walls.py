@@ -2,11 +2,12 @@
 
 from dataclasses import dataclass, field
 from enum import IntEnum
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ryusa.laws.walls import swing, turned_about
+from ryusa.laws.walls import swing, swing_speed, turned_about
 from ryusa.model.arrays import Bools, Floats
 
 Ints = NDArray[np.int64]
@@ -119,6 +120,57 @@ def drift(row: Floats, since: float) -> Floats:
     """Displacement of the axis point of a wall in a time [s] after its motion began [m], (3,)."""
     swings = [swing(float(one), float(row[RATE]), since, float(row[PHASE])) for one in row[SWING : SWING + 3]]
     return np.asarray(row[VELOCITY : VELOCITY + 3] * since + np.array(swings))
+
+
+class Carrier(NamedTuple):
+    """Where a wall is and how it moves at one time; what is attached to it moves with it.
+
+    Attributes
+    ----------
+    turn, shift : its pose, (3, 3) [-] and (3,) [m]: world = turn . frame + shift.
+    axis_point : a point on its axis [m], shape (3,).
+    velocity : of that point [m/s], shape (3,).
+    spin : [rad/s], shape (3,).
+    """
+
+    turn: Floats
+    shift: Floats
+    axis_point: Floats
+    velocity: Floats
+    spin: Floats
+
+    @staticmethod
+    def of(row: Floats, t: float) -> "Carrier":
+        """A wall with a motion (columns as above) at time t [s].
+
+        >>> row = at_rest(1)[0]
+        >>> row[SPIN + 2] = 2.0
+        >>> arm = Carrier.of(row, np.pi / 4.0)
+        >>> [
+        ...     [float(x) for x in np.round(one, 12) + 0.0]
+        ...     for one in (arm.place(np.array([1.0, 0.0, 0.0])), arm.velocity_at(np.array([0.0, 1.0, 0.0])))
+        ... ]
+        [[0.0, 1.0, 0.0], [-2.0, 0.0, 0.0]]
+        """
+        since, rate, phase = t - float(row[BEGIN]), float(row[RATE]), float(row[PHASE])
+        speeds = [swing_speed(float(one), rate, since, phase) for one in row[SWING : SWING + 3]]
+        turn, shift = pose(row, t)
+        axis_point = row[AXIS_POINT : AXIS_POINT + 3] + drift(row, since)
+        return Carrier(
+            turn, shift, axis_point, row[VELOCITY : VELOCITY + 3] + np.array(speeds), row[SPIN : SPIN + 3]
+        )
+
+    def place(self, x: Floats) -> Floats:
+        """Where a point of the frame of the wall is [m]; rows of shape (n, 3) too."""
+        return np.asarray(x @ self.turn.T + self.shift)
+
+    def frame(self, x: Floats) -> Floats:
+        """The point of the frame of the wall at a place [m]; rows of shape (n, 3) too."""
+        return np.asarray((x - self.shift) @ self.turn)
+
+    def velocity_at(self, x: Floats) -> Floats:
+        """Velocity of the wall at a place [m/s], shape (3,)."""
+        return np.asarray(self.velocity + np.cross(self.spin, x - self.axis_point))
 
 
 def carried_on(row: Floats, t: float) -> Floats:

@@ -13,7 +13,7 @@ from ryusa.errors import ResultsError
 from ryusa.laws.families import Adhesion, ContactForce, DragOfForm
 from ryusa.model import Column, ContactLaw, FaceKind, Materials, RigidBodies, RollingLaw, Scene, Walls, Water
 from ryusa.model.scene import ONLY_ADHESIVE, ONLY_HERTZ, EventRule
-from ryusa.model.traffic import Traffic
+from ryusa.model.traffic import NONE, Traffic
 from ryusa.model.walls import N_MOTION, N_SERVO
 from ryusa.results.hdf5 import opened, read_dataset
 
@@ -71,6 +71,9 @@ def _scalars(scene: Scene) -> dict[str, Any]:
         if one["adhesion"] == Adhesion.NONE:  # as before there was any
             for key in ONLY_ADHESIVE:
                 del one[key]
+    for one in (*found.get(_TRAFFIC, {}).get("feeds", ()), *found.get(_TRAFFIC, {}).get("exits", ())):
+        if one["wall"] == NONE:  # as before any moved with a wall: the digest stays
+            del one["wall"]
     walls: Walls | None = found.pop("walls")
     return found if walls is None else found | {"walls": list(walls.names)}
 

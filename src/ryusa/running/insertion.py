@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 from ryusa.model import Feed, Scene
 from ryusa.model.arrays import Floats
 from ryusa.model.wall_shape import WallsAt
+from ryusa.model.wall_traffic import carrier_of, corners
+from ryusa.model.walls import corners_of_box
 from ryusa.water.eddies import draw
 
 ATTEMPTS = 50  # places tried for a grain at one instant
@@ -45,6 +47,9 @@ class Neighbours:
         """
         largest = float(np.concatenate([scene.d, scene.d_fixed]).max())
         low, high = corners(feed)
+        if (carrier := carrier_of(scene, feed.wall, t)) is not None:
+            every = carrier.place(corners_of_box(low, high))
+            low, high = every.min(axis=0), every.max(axis=0)
         low, high = low - reach - largest, high + reach + largest
         axes = [k for k in range(3) if k == 2 or not math.isfinite(scene.period[k])]
 
@@ -79,14 +84,6 @@ class Neighbours:
     def add(self, place: Floats, d: float) -> None:
         """Take a grain that has been placed."""
         self.x, self.d = np.concatenate([self.x, place[None]]), np.append(self.d, d)
-
-
-def corners(feed: Feed) -> tuple[Floats, Floats]:
-    """Lowest and highest corner of a feed [m], shape (3,) each."""
-    if feed.is_box:
-        return np.array(feed.low), np.array(feed.high)
-    reach = feed.radius * np.sqrt(np.maximum(1.0 - np.square(feed.normal), 0.0))
-    return np.array(feed.centre) - reach, np.array(feed.centre) + reach
 
 
 def drawn_place(feed: Feed, plane_case: bool, d: float, grain: int, step: int, attempt: int) -> Floats:

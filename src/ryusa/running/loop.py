@@ -122,7 +122,7 @@ class Loop:
             next_frame = self._first + round(self._frame * self.frames / self.scene.dt)
             next_change = self.changes[0][0] if self.changes else _NEVER
             next_check = (self._step // check_steps + 1) * check_steps
-            next_pass = _NEVER if self.traffic is None else self.traffic.next_step(self._step)
+            next_pass = _NEVER if self.traffic is None else self.traffic.next_step(self._step, next_change)
             next_press = _NEVER if self.servo is None else self.servo.next_step(self.scene, self._step)
             due = min(next_frame, next_change, next_check, next_pass, next_press, last)
             if not self._advance_to(min(due, (self._step // _DELIVER_EVERY + 1) * _DELIVER_EVERY)):

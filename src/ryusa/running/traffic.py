@@ -13,6 +13,8 @@ from ryusa.errors import CheckpointError
 from ryusa.model import PASSAGE, Exit, Scene, State
 from ryusa.model.arrays import Floats
 from ryusa.model.traffic import GONE, IN, NONE, OUT, PRESENT, WAITING, Population, Traffic
+from ryusa.model.wall_traffic import carrier_of, speed_of_feed
+from ryusa.model.walls import BEGIN
 from ryusa.running.checkpoint import CheckpointBlock
 from ryusa.running.insertion import ATTEMPTS, Neighbours, drawn_place, wrapped
 
@@ -76,9 +78,10 @@ class TrafficRule:
         """Number of grains that are there."""
         return int(np.sum(self.population.status == PRESENT))
 
-    def next_step(self, step: int) -> int:
-        """Step of the next instant after a step."""
-        return (step // self.traffic.interval + 1) * self.traffic.interval
+    def next_step(self, step: int, next_change: int) -> int:
+        """Step of the next instant; where a feed moves with a wall a change of the scene is one too."""
+        regular = (step // self.traffic.interval + 1) * self.traffic.interval
+        return min(regular, next_change) if self.traffic.moves else regular
 
     def begin(self, scene: Scene, state: State) -> Passed:
         """Place the grains that are due at the first step, before an engine has loaded the state."""
@@ -118,7 +121,9 @@ class TrafficRule:
         there, inside = self.population.status == PRESENT, wrapped(x, scene.period)
         found: list[np.ndarray] = []
         for k, one in enumerate(self.traffic.exits):
-            ids = np.flatnonzero(one.beyond(inside) & there)
+            carrier = carrier_of(scene, one.wall, t)
+            seen = inside if carrier is None else carrier.frame(inside)
+            ids = np.flatnonzero(one.beyond(seen) & there)
             there[ids] = False
             rows = np.zeros(len(ids), PASSAGE)
             rows["step"], rows["way"], rows["at"], rows["to"] = step, OUT, k, one.to
@@ -127,7 +132,10 @@ class TrafficRule:
             longest = self.traffic.interval * scene.dt
             for row, i, a in zip(rows, ids.tolist(), weight, strict=True):
                 speed = v[i] + 0.5 * scene.dt * a  # v belongs to half a step before x
-                since = min(time_since(one, inside[i], speed, a), longest, t)
+                way = (inside[i], speed, a)
+                if carrier is not None:  # its acceleration since then is left out
+                    way = (seen[i], (speed - carrier.velocity_at(inside[i])) @ carrier.turn, a @ carrier.turn)
+                since = min(time_since(one, *way), longest, t)
                 row["t"], row["v"] = t - since, speed - since * a
                 row["x"] = inside[i] - since * speed + 0.5 * since * since * a
             found.append(rows)
@@ -183,7 +191,7 @@ class TrafficRule:
     def _neighbours(self, scene: Scene, k: int, inside: Floats, t: float) -> Neighbours:
         feed, interval = self.traffic.feeds[k], self.traffic.interval * scene.dt
         g = float(np.linalg.norm(scene.gravity))
-        reach = interval * (math.hypot(*feed.velocity) + g * interval)
+        reach = interval * (math.hypot(*feed.velocity) + 2.0 * speed_of_feed(scene, feed) + g * interval)
         return Neighbours.of(scene, feed, inside, self.population.status == PRESENT, reach, t)
 
     def _entering(
@@ -194,16 +202,23 @@ class TrafficRule:
         late = t - due
         # a grain that passes a disc between two instants is already on its way
         on_way = late if not feed.is_box and late < self.traffic.interval * scene.dt else 0.0
+        if scene.walls is not None and feed.wall != NONE and due < scene.walls.motion[feed.wall, BEGIN]:
+            on_way = 0.0  # the wall moved otherwise then
+        carrier = carrier_of(scene, feed.wall, t - on_way)
         v, a, d = np.array(feed.velocity), self._fall(scene, np.array([i]))[0], float(scene.d[i])
         row = np.zeros(1, PASSAGE)
         row["step"], row["t"], row["way"], row["at"] = step, t - on_way, IN, self.population.feed[i]
         row["grain"], row["to"], row["due"], row["d"], row["m"] = i, NONE, due, d, scene.m[i]
-        row["v"] = v
+        if carrier is not None and scene.rotation:
+            row["omega"] = carrier.spin
         for attempt in range(ATTEMPTS):
             begin = drawn_place(feed, scene.plane_case, d, i, step, attempt)
+            if carrier is not None:
+                begin = carrier.place(begin)
+                v = carrier.turn @ np.array(feed.velocity) + carrier.velocity_at(begin)
             place = wrapped(begin + on_way * v + 0.5 * on_way * on_way * a, scene.period)
             if near.free(place, d):
-                row["x"] = begin
+                row["x"], row["v"] = begin, v
                 return row, place
         return row, None
 

@@ -35,6 +35,7 @@ def check_traffic(case: "Case") -> Iterator[CaseError]:
         yield CaseError("build.kind", "empty", "gives no grain, and no feed has a rate: give feeds.0.rate")
     yield from _case(case)
     yield from _names(case)
+    yield from _walls(case)
     shapes = [*_shapes(case)]
     yield from shapes
     if not shapes:
@@ -75,6 +76,25 @@ def _names(case: "Case") -> Iterator[CaseError]:
         if one.to is not None and one.to not in names:
             allowed = f"must be a feed: {', '.join(names) or 'there is none'}"
             yield CaseError(f"exits.{k}.to", one.to, allowed, nearest_word(one.to, names))
+
+
+def _walls(case: "Case") -> Iterator[CaseError]:
+    """Find feeds and exits that move with a wall that is not there, or is removed."""
+    names, removed = [wall.name for wall in case.walls], [entry.remove for entry in case.timeline]
+    for kind, entries in (("feeds", case.feeds), ("exits", case.exits)):
+        for k, one in enumerate(entries):
+            key, name = f"{kind}.{k}.moves_with", one.moves_with
+            if name is None:
+                continue
+            if name not in names:
+                allowed = f"must be one of [[walls]]: {', '.join(names) or 'there is none'}"
+                yield CaseError(key, name, allowed, nearest_word(name, names))
+            elif name in removed:
+                yield CaseError(key, name, "is removed by the timeline, and must stay to the end")
+            elif kind == "exits" and any(periodic(case)):
+                yield CaseError(
+                    key, name, "cannot be used where x or y is periodic: the exit would leave the period"
+                )
 
 
 def _shapes(case: "Case") -> Iterator[CaseError]:

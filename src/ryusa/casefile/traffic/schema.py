@@ -69,6 +69,9 @@ class FeedSection(Section):
     """Simulated time at which the first grain is due."""
     end: Moment | None = None
     """Simulated time from which no new grain is due; stop.time when not given."""
+    moves_with: Name | None = None
+    """Name of a wall to which the feed is attached, and with which it moves and turns. Place and normal are
+    those at t = 0, and velocity is relative to the wall, with its direction at t = 0."""
     material: Name | None = None
     """Material of its grains, of [materials]; that of [grains] when not given."""
 
@@ -86,5 +89,7 @@ class ExitSection(Section):
     """Lower corner of a box, instead of a plane."""
     high: Point | None = None
     """Upper corner of the box."""
+    moves_with: Name | None = None
+    """Name of a wall to which the exit is attached; place and normal are those at t = 0."""
     to: str | None = None
     """Name of a feed through which the same grains come in again; they are removed when not given."""

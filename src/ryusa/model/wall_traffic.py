@@ -1,0 +1,34 @@
+"""Feeds and exits that move with a wall."""
+
+import numpy as np
+
+from ryusa.model.arrays import Floats
+from ryusa.model.scene import Scene
+from ryusa.model.traffic import NONE, Feed
+from ryusa.model.walls import MOST_SPEED, Carrier, speed_of
+
+
+def carrier_of(scene: Scene, wall: int, t: float) -> Carrier | None:
+    """The wall of a number at time t [s]; None for no wall."""
+    if wall == NONE:
+        return None
+    assert scene.walls is not None
+    return Carrier.of(scene.walls.motion[wall], t)
+
+
+def speed_of_feed(scene: Scene, feed: Feed) -> float:
+    """Bound of the speed of any point of a feed that moves with a wall [m/s]; 0 for one that stays."""
+    if feed.wall == NONE:
+        return 0.0
+    assert scene.walls is not None
+    walls = scene.walls
+    servo = walls.servo[feed.wall, MOST_SPEED] if len(walls.servo) else 0.0
+    return float(servo) + speed_of(walls.motion[feed.wall], *corners(feed))
+
+
+def corners(feed: Feed) -> tuple[Floats, Floats]:
+    """Lowest and highest corner of a feed [m], shape (3,) each."""
+    if feed.is_box:
+        return np.array(feed.low), np.array(feed.high)
+    reach = feed.radius * np.sqrt(np.maximum(1.0 - np.square(feed.normal), 0.0))
+    return np.array(feed.centre) - reach, np.array(feed.centre) + reach
