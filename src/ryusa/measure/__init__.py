@@ -11,6 +11,7 @@ from ryusa.measure.energy import Energy, energy
 from ryusa.measure.entrainment import Entrainment, entrainment
 from ryusa.measure.formulae import FormulaCurve, classical
 from ryusa.measure.paths import Alternating, Paths, alternating, paths
+from ryusa.measure.plane_shear import PlaneShear, plane_shear
 from ryusa.measure.profiles import Layers, Profiles, profiles
 from ryusa.measure.repose import HeapSurface, surface
 from ryusa.measure.rods import Rod, Rods, companions, rods
@@ -51,6 +52,7 @@ __all__ = [
     "KineticStress",
     "Layers",
     "Paths",
+    "PlaneShear",
     "Profiles",
     "Rod",
     "Rods",
@@ -81,6 +83,7 @@ __all__ = [
     "grouping",
     "kinetic_stress",
     "paths",
+    "plane_shear",
     "profiles",
     "ratio",
     "rest_time",
