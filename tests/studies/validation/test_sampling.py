@@ -13,6 +13,7 @@ FULL_ALONE = {
     "collapse",
     "channel_collapse",
     "drum",
+    "plane_shear",
     "frey/walls",
 }  # comparisons that the standard level leaves out
 

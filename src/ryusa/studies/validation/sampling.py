@@ -75,6 +75,10 @@ SAMPLING: Mapping[str, Sampling] = {
         (0, 1), None, "s",
         "the angle is a mean over half a turn or more; between seeds it scatters by some tenths of a degree",
     ),
+    "plane_shear": Sampling(
+        (0, 1), None, "s",
+        "friction is a mean over some 10 to 50 shear strains, and scatters by some per cent between seeds",
+    ),
     "transport": Sampling(
         (1, 2), (2.0, 5.0, 8.0), "s",
         "rates scatter by 5 to 10 % between runs, a tenth of what separates them from a limit; a spread "

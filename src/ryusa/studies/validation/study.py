@@ -27,6 +27,7 @@ NAMES = (
     "collapse",
     "channel_collapse",
     "drum",
+    "plane_shear",
     "transport",
     "equilibrium",
     "frey",
