@@ -126,6 +126,7 @@ UNITS = {
     "debris.velocity_egashira": "m, m, -, -, -, -, -, kg/m3, kg/m3, m/s2, m -> m/s",
     "dense_flow.inertial_number": "1/s, m, kg/m3, Pa -> -",
     "dense_flow.mu_of_inertial_number": "-, -, -, - -> -",
+    "dense_flow.split_bottom_centre": "m, m -> m",
     "drag.reynolds": "m/s, m, m2/s -> -",
     "drag.c_d_constant": "- -> -",
     "drag.c_d_re_04": "- -> -",

@@ -51,3 +51,25 @@ def mu_of_inertial_number(inertial: float, mu_s: float, mu_2: float, i_0: float)
     0.513
     """
     return mu_s + (mu_2 - mu_s) * inertial / (i_0 + inertial)
+
+
+@law
+def split_bottom_centre(r_s: float, h: float) -> float:
+    """Radius of the middle of a shear zone at the surface of grains over a split bottom [m].
+
+    Parameters
+    ----------
+    r_s : radius at which the bottom is split [m].
+    h : height of the grains [m], up to some 0.6 r_s.
+
+    Notes
+    -----
+    Source: Fenistein & van Hecke 2003, Nature 425, 256; from memory, 1 - R_c/R_s = (H/R_s)**(5/2). Nothing
+    is judged by it. The article says that the zone moves to the axis and widens as the grains stand higher.
+
+    Examples
+    --------
+    >>> round(split_bottom_centre(0.05, 0.025), 4)
+    0.0412
+    """
+    return r_s * (1.0 - (h / r_s) ** 2.5)

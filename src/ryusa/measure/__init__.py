@@ -16,6 +16,7 @@ from ryusa.measure.profiles import Layers, Profiles, profiles
 from ryusa.measure.repose import HeapSurface, surface
 from ryusa.measure.rods import Rod, Rods, companions, rods
 from ryusa.measure.saltation import Saltation, grouping, saltation
+from ryusa.measure.shear_zone import ShearZone, shear_zone
 from ryusa.measure.sizes import Sizes, sizes
 from ryusa.measure.snapshot import Bounds, Snapshot, bounds, snapshot
 from ryusa.measure.spin import Spin, spin
@@ -57,6 +58,7 @@ __all__ = [
     "Rod",
     "Rods",
     "Saltation",
+    "ShearZone",
     "Sizes",
     "Snapshot",
     "Spin",
@@ -90,6 +92,7 @@ __all__ = [
     "rods",
     "rows_of",
     "saltation",
+    "shear_zone",
     "sizes",
     "snapshot",
     "spin",
