@@ -14,6 +14,7 @@ FULL_ALONE = {
     "channel_collapse",
     "drum",
     "plane_shear",
+    "split_bottom",
     "frey/walls",
 }  # comparisons that the standard level leaves out
 

@@ -79,6 +79,11 @@ SAMPLING: Mapping[str, Sampling] = {
         (0, 1), None, "s",
         "friction is a mean over some 10 to 50 shear strains, and scatters by some per cent between seeds",
     ),
+    "split_bottom": Sampling(
+        (0, 1), None, "s",
+        "each run gives one fit to the mean of a sixth of a turn; between seeds its centre scatters by a part "
+        "of a diameter",
+    ),
     "transport": Sampling(
         (1, 2), (2.0, 5.0, 8.0), "s",
         "rates scatter by 5 to 10 % between runs, a tenth of what separates them from a limit; a spread "

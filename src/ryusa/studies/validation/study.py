@@ -28,6 +28,7 @@ NAMES = (
     "channel_collapse",
     "drum",
     "plane_shear",
+    "split_bottom",
     "transport",
     "equilibrium",
     "frey",
