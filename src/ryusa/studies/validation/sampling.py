@@ -81,8 +81,8 @@ SAMPLING: Mapping[str, Sampling] = {
     ),
     "split_bottom": Sampling(
         (0, 1), None, "s",
-        "each run gives one fit to the mean of a sixth of a turn; between seeds its centre scatters by a part "
-        "of a diameter",
+        "each run gives one fit, to the mean of a sixth of a turn; between seeds its centre scatters by "
+        "a part of a diameter",
     ),
     "transport": Sampling(
         (1, 2), (2.0, 5.0, 8.0), "s",

@@ -112,7 +112,8 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
                 ),
                 *(
                     misfit(
-                        f"centre, {named(grains)}", over_seeds((each("centre", grains) / D).tolist(), "d"), "d"
+                        f"centre, {named(grains)}",
+                        over_seeds((each("centre", grains) / D).tolist(), "d"), "d",
                     )
                     for grains in GRAINS
                 ),
