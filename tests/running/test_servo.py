@@ -4,16 +4,19 @@ import math
 import re
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 import ryusa
+from ryusa.build import build
 from ryusa.casefile import read_text
 from ryusa.errors import WallLost
-from ryusa.model.walls import pose
+from ryusa.model.walls import N_IMPULSE, TOUCHED, pose
 from ryusa.results import Results, schema
+from ryusa.running.servo import ServoRule
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "faults"))
 from campaign import differences
@@ -112,6 +115,26 @@ def test_a_bed_sheared_under_a_lid_carries_its_force(tmp_path: Path) -> None:
     walls = run.scene_at(t).walls
     assert walls is not None
     assert pose(walls.motion[0], t)[1] == pytest.approx([0.01 * t, 0.0, -run.wall_travel[-1, 0]], abs=1e-12)
+
+
+def test_the_mean_force_on_grains_that_flow_is_the_one_asked() -> None:
+    """Contacts come and go from one correction to the next, and force with them; each yields to the way."""
+    scene, rng = build(read_text(ONE)).scene, np.random.default_rng(1)
+    rule, impulse = ServoRule.of(scene, 0.0), np.zeros(N_IMPULSE)
+    assert rule is not None
+    since = rule.interval(scene) * scene.dt
+    engine: Any = SimpleNamespace(
+        tally=lambda: SimpleNamespace(walls=tuple(impulse)), set_walls=lambda _motion: None
+    )
+    forces: list[float] = []
+    for k in range(1, 20_001):
+        contacts = float(rng.choice([1.0, 3.0, 8.0]))
+        way = float(rule.travel_at(k * since)[0])
+        forces.append(max(contacts * K / 20.0 * (way - 1.0e-3), 0.0))
+        impulse[2] += forces[-1] * since  # the grains push the lid up
+        impulse[TOUCHED] += contacts * since
+        rule.correct(scene, engine, k, k * since)
+    assert np.mean(forces[10_000:]) == pytest.approx(FORCE, rel=0.03)
 
 
 def test_the_impulse_of_the_wall_is_the_change_of_momentum(one: Results) -> None:

@@ -155,7 +155,7 @@ def servo_speed(
     Parameters
     ----------
     asked, found : force on the grains in the direction of the servo [N].
-    contacts : mean number of contacts of the wall since the last correction [-].
+    contacts : number of contacts of the wall for which it is made [-]; 0 for a wall that touches nothing.
     k_n : stiffness of one [N/m].
     interval : time from one correction to the next [s].
     most : largest speed [m/s]; a wall that touches nothing has it.
@@ -163,12 +163,16 @@ def servo_speed(
     Notes
     -----
     Itasca, PFC, wall servo: a wall on N contacts changes its force by N k_n per distance, and half of what is
-    missing is made good in an interval. Grains that yield only make the wall slower.
+    missing is made good in an interval. Grains that yield only make the wall slower. The speed must be linear
+    in the force, with a number of contacts that does not follow it: else the mean force of a wall on moving
+    grains, where the mean speed is zero, is not the one asked for (design/0019).
 
     >>> [round(servo_speed(10.0, found, 4.0, 1e4, 1e-3, 0.2), 9) for found in (8.0, 1e4, 0.0)]
-    [0.025, -0.2, 0.2]
+    [0.025, -0.2, 0.125]
+    >>> servo_speed(10.0, 0.0, 0.0, 1e4, 1e-3, 0.2)
+    0.2
     """
-    if found == 0.0:
+    if contacts == 0.0:
         return most
     speed = 0.5 * (asked - found) / (max(contacts, 1.0) * k_n * interval)
     return most * max(min(speed / most, 1.0), -1.0)

@@ -13,6 +13,8 @@ from ryusa.model.servo import driven, motion_with
 from ryusa.model.walls import ASKED, INTERVAL, MOST_SPEED, MOST_TRAVEL, N_IMPULSE, TOUCHED, TOWARDS
 from ryusa.running.checkpoint import CheckpointBlock
 
+FORGOTTEN = 0.01  # share of the most contacts a wall has had that is forgotten at each correction
+
 
 def with_servos(scene: Scene, rule: "ServoRule | None") -> Scene:
     """The scene with its walls where their servos have brought them, for an engine to be loaded with."""
@@ -31,6 +33,8 @@ class ServoRule:
     speed : along it since then [m/s].
     impulse : of the grains on each wall along it, up to then [N s].
     touched : number of contacts of each wall times the time that they lasted, up to then [s].
+    most : contacts that each wall has had between two corrections, slowly forgotten [-]; the speed is made
+        for them, because a number that rises and falls with the force would bias its mean.
     t : time of the last correction [s].
     """
 
@@ -38,6 +42,7 @@ class ServoRule:
     speed: Floats
     impulse: Floats
     touched: Floats
+    most: Floats
     t: float
 
     @staticmethod
@@ -46,7 +51,7 @@ class ServoRule:
         if scene.walls is None or not len(scene.walls.servo):
             return None
         none = np.zeros(scene.n_wall)
-        return ServoRule(none.copy(), none.copy(), none.copy(), none.copy(), t)
+        return ServoRule(none.copy(), none.copy(), none.copy(), none.copy(), none.copy(), t)
 
     @staticmethod
     def interval(scene: Scene) -> int:
@@ -92,6 +97,7 @@ class ServoRule:
             force = (float(self.impulse[w]) - impulse) / since  # of the wall on the grains
             contacts = (touched - float(self.touched[w])) / since
             self.impulse[w], self.touched[w] = impulse, touched
+            self.most[w] = max(contacts, (1.0 - FORGOTTEN) * float(self.most[w]))
             if abs(travel[w]) > row[MOST_TRAVEL]:
                 raise WallLost(
                     f"wall '{walls.names[w]}' has moved {travel[w]:.4g} m along the direction of its servo, "
@@ -102,14 +108,14 @@ class ServoRule:
                     "Either there is nothing in its way, or the grains cannot carry the force: check "
                     "direction and force, or raise servo.max_travel.",
                 )
-            self.speed[w] = servo_speed(row[ASKED], force, contacts, k_n, since, row[MOST_SPEED])
+            self.speed[w] = servo_speed(row[ASKED], force, float(self.most[w]), k_n, since, row[MOST_SPEED])
         self.travel, self.t = travel, t
         engine.set_walls(self.motion(scene))
 
     def to_block(self) -> CheckpointBlock:
         """All of it, for a checkpoint."""
         arrays = {"travel": self.travel, "speed": self.speed, "impulse": self.impulse}
-        arrays |= {"touched": self.touched}
+        arrays |= {"touched": self.touched, "most": self.most}
         return CheckpointBlock({"t": self.t}, arrays)
 
     def restore(self, block: CheckpointBlock) -> None:
@@ -130,4 +136,4 @@ class ServoRule:
             if not (good and np.isfinite(found[name]).all()):
                 raise CheckpointError(f"'{name}' of the servos in the checkpoint does not match the walls")
         self.travel, self.speed = found["travel"], found["speed"]
-        self.impulse, self.touched = found["impulse"], found["touched"]
+        self.impulse, self.touched, self.most = found["impulse"], found["touched"], found["most"]
