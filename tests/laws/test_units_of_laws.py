@@ -127,6 +127,7 @@ UNITS = {
     "dense_flow.inertial_number": "1/s, m, kg/m3, Pa -> -",
     "dense_flow.mu_of_inertial_number": "-, -, -, - -> -",
     "dense_flow.split_bottom_centre": "m, m -> m",
+    "drum.critical_rate": "m, m, m/s2 -> rad/s",
     "drag.reynolds": "m/s, m, m2/s -> -",
     "drag.c_d_constant": "- -> -",
     "drag.c_d_re_04": "- -> -",

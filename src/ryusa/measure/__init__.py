@@ -10,6 +10,7 @@ from ryusa.measure.dynamic_angle import DynamicAngle, dynamic_angle
 from ryusa.measure.energy import Energy, energy
 from ryusa.measure.entrainment import Entrainment, entrainment
 from ryusa.measure.formulae import FormulaCurve, classical
+from ryusa.measure.mill import Mill, mill
 from ryusa.measure.paths import Alternating, Paths, alternating, paths
 from ryusa.measure.plane_shear import PlaneShear, plane_shear
 from ryusa.measure.profiles import Layers, Profiles, profiles
@@ -52,6 +53,7 @@ __all__ = [
     "HeapSurface",
     "KineticStress",
     "Layers",
+    "Mill",
     "Paths",
     "PlaneShear",
     "Profiles",
@@ -84,6 +86,7 @@ __all__ = [
     "farthest",
     "grouping",
     "kinetic_stress",
+    "mill",
     "paths",
     "plane_shear",
     "profiles",
