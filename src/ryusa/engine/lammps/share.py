@@ -4,6 +4,7 @@ Every rank has one. All methods are called on all ranks together; those that ret
 this rank, with their ids.
 """
 
+import ctypes
 import os
 from collections.abc import Generator, Iterable
 from contextlib import contextmanager
@@ -13,7 +14,7 @@ import numpy as np
 
 from ryusa.engine.lammps import commands as C
 from ryusa.engine.lammps import forces as F
-from ryusa.engine.lammps.faults import RankFault, fault_of_lammps
+from ryusa.engine.lammps.faults import RankFault, SharedFault, fault_of_lammps
 from ryusa.engine.lammps.mass_classes import mass_classes
 from ryusa.engine.lammps.module import module, open_lammps
 from ryusa.engine.shared import parameters as P
@@ -21,10 +22,17 @@ from ryusa.engine.shared.parameters import parameters_of
 from ryusa.engine.shared.variant import choice_of
 from ryusa.laws.families import Profile
 from ryusa.model import Scene, State
-from ryusa.model.fluid import DRAG, N_IMPULSE, SUBMERGED
+from ryusa.model.fluid import DRAG, N_IMPULSE, N_SAMPLED, SUBMERGED
 from ryusa.model.scene import Floats
 
-FEWEST_IMAGES = 1024  # LAMMPS counts periods modulo this number, or a multiple of it
+_DOUBLE, _INT = np.dtype(np.float64), np.dtype(np.int32)
+# arrays of the atoms: type, and number of columns, 0 of a vector
+_ARRAYS = {
+    "id": (_INT, 0), "image": (_INT, 0), "radius": (_DOUBLE, 0), "rmass": (_DOUBLE, 0),
+    **{name: (_DOUBLE, 3) for name in ("x", "v", "omega", "f", "torque")},
+    C.SAMPLED: (_DOUBLE, N_SAMPLED), C.IMPULSE: (_DOUBLE, N_IMPULSE), C.LAST: (_DOUBLE, C.N_LAST),
+}  # fmt: skip
+FEWEST_IMAGES = 1024  # LAMMPS counts periods modulo this number: ten bits of a flag for each axis
 
 
 class RankRows(NamedTuple):
@@ -73,6 +81,7 @@ class GrainShare:
         self._lmp: Any = None
         self._scene: Scene | None = None
         self._first = comm is None or comm.Get_rank() == 0
+        self._arrays: dict[str, tuple[int, int, np.ndarray]] = {}  # address, number of atoms, array
         self._broken: Exception | None = None  # raised where LAMMPS calls, which drops exceptions
 
     def load(self, scene: Scene, state: State, restart: bytes | None) -> None:
@@ -81,7 +90,11 @@ class GrainShare:
         self._scene, self._classes = scene, mass_classes(scene)
         self._take_numbers(scene, state)
         self._lmp = lmp = open_lammps(self._comm)
-        self._bits = 10 if lmp.extract_setting("imageint") == 4 else 21  # of the image flag of an axis
+        self._extract, self._count = lmp.lib["lammps_extract_atom"], lmp.lib["lammps_extract_setting"]
+        self._extract.restype, self._extract.argtypes = ctypes.c_void_p, [ctypes.c_void_p, ctypes.c_char_p]
+        self._count.restype, self._count.argtypes = ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p]
+        if (lmp.extract_setting("tagint"), lmp.extract_setting("imageint")) != (4, 4):
+            raise SharedFault("LAMMPS was built with 64-bit ids: a build with the usual 32 bits is needed")
         self._bed = scene.fixed_active.copy()
         if restart is None:
             self._create(scene, state)
@@ -127,6 +140,7 @@ class GrainShare:
             self._lmp.close()
             self._lmp = None
             self._broken = None
+            self._arrays.clear()
 
     def _take_numbers(self, scene: Scene, state: State) -> None:
         self._choice, self._c = choice_of(scene), parameters_of(scene)
@@ -249,8 +263,7 @@ class GrainShare:
         image = np.zeros((len(free), 2), np.int32)
         for axis, period in enumerate(scene.period):
             if np.isfinite(period):
-                flags = crossed >> (self._bits * axis) & ((1 << self._bits) - 1)
-                image[:, axis] = flags - (1 << (self._bits - 1))
+                image[:, axis] = (crossed >> (10 * axis) & 1023) - 512
         return RankRows(tag[free].astype(np.int64) - 1, x, v, w, image)
 
     def fluid(self) -> tuple[np.ndarray, Floats, Floats]:
@@ -376,8 +389,17 @@ class GrainShare:
             self._command(text)
 
     def _atoms(self, name: str) -> np.ndarray:
-        """An array of the atoms of this rank, in the memory of LAMMPS."""
-        lmp = self._lmp
-        n = lmp.extract_global("nlocal")
-        found = lmp.numpy.extract_atom(name)
-        return found[:n]
+        """An array of the atoms of this rank, in the memory of LAMMPS, which moves it when it grows."""
+        kind, columns = _ARRAYS[name]
+        n = self._count(self._lmp.lmp, b"nlocal")
+        where = self._extract(self._lmp.lmp, name.encode())
+        if n == 0 or not where:
+            return np.zeros((0, columns) if columns else 0, kind)
+        if columns:  # rows are contiguous: the first pointer is that of all
+            where = int(ctypes.c_void_p.from_address(where).value or 0)
+        known = self._arrays.get(name)
+        if known is None or known[0] != where or known[1] != n:
+            size = n * max(columns, 1)
+            flat = np.ctypeslib.as_array((np.ctypeslib.as_ctypes_type(kind) * size).from_address(where))
+            known = self._arrays[name] = (where, n, flat.reshape(n, columns) if columns else flat)
+        return known[2]
