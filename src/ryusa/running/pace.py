@@ -1,13 +1,17 @@
 """How fast a run goes: grains times steps per second, and steps between two looks at the clock."""
 
+import math
 import time
 from collections.abc import Generator
 from contextlib import contextmanager
 from dataclasses import dataclass
 
+from ryusa.engine import registry
 from ryusa.engine.shared.kernel import collecting_rarely
 from ryusa.running.progress import Progress
 
+_TYPICAL = 12.0e6  # particle-steps per second and thread of many grains (benchmarks/README.md)
+_LONG = 2.0  # days on the CPU engine from which other engines are named
 _CHUNK = 0.25  # s of wall time between two checks of clock and signals
 _CHUNK_FIRST = (1, 16)  # steps of the first calls, while the speed is unknown
 _COMPILING = "compiling for this processor, 10 to 30 seconds; later runs use the compiled code"
@@ -18,6 +22,32 @@ def compiling(progress: Progress) -> Generator[None]:
     """Explain a call that takes long because it compiles."""
     with progress.explain_if_slow(_COMPILING), collecting_rarely():
         yield
+
+
+def other_engines(engine: object, n_grain: int, n_steps: float, threads: int) -> tuple[str, ...]:
+    """A note for the log of a long run of the CPU engine, with the engines that may serve better; or none.
+
+    Parameters
+    ----------
+    engine : as asked for; None is that of the CPU.
+    n_grain, n_steps : grains, and steps to the end of the run; inf if it has none.
+    threads : threads of the engine.
+
+    >>> other_engines(None, 1000, 1e6, 1)
+    ()
+    """
+    days = n_grain * n_steps / (_TYPICAL * threads) / 86_400.0
+    if engine not in {None, registry.DEFAULT} or not _LONG <= days < math.inf:
+        return ()
+    others = [name for name in registry.names() if name != registry.DEFAULT]
+    here = [
+        f"--engine {name} ({registry.unavailable(name) or registry.entry(name).summary})" for name in others
+    ]
+    return (
+        f"about {days:.2g} days on {threads} threads ({n_grain:,} grains, {n_steps:.2g} steps, "
+        f"{_TYPICAL / 1e6:g} million particle-steps per second and thread). Other engines: {'; '.join(here)}"
+        " (docs/big-runs.md)",
+    )
 
 
 @dataclass

@@ -35,6 +35,7 @@ from ryusa.running.folder import (
 from ryusa.running.interrupt import catch_signals
 from ryusa.running.lock import locked
 from ryusa.running.loop import Loop
+from ryusa.running.pace import other_engines
 from ryusa.running.precision import PrecisionRule
 from ryusa.running.progress import Progress
 from ryusa.running.record_buffer import bytes_per_frame
@@ -74,8 +75,7 @@ def run(
     threads : threads of the CPU engine; the results do not depend on it.
     progress : show a bar, or lines if stderr is not a terminal.
     overwrite : replace an earlier run in `folder`; a folder that is not a run is never changed.
-    engine : the engine that steps the grains, by its name in `ryusa.engine.registry` or as an object; "cpu"
-        when not given.
+    engine : its name in `ryusa.engine.registry`, or an object; "cpu" when not given.
     checkpoint : wall time between two checkpoints [s]; inf writes only those that a signal requests.
     resume : continue an earlier run of this case in `folder`; a complete one is opened, and without one the
         run starts. With `overwrite` the run also starts anew if the earlier one cannot be continued.
@@ -107,7 +107,8 @@ def run(
         def make() -> _Made:
             built = build(case, derived)
             signal.raise_if_stopped(_BEFORE)
-            return built.scene, built.state, tuple(str(note) for note in built.notes)
+            said = other_engines(engine, built.scene.n_grain, stop.time / derived.dt, threads)
+            return built.scene, built.state, (*(str(note) for note in built.notes), *said)
 
         stop = Stop(
             time=math.inf if case.stop.time is None else case.stop.time,
@@ -198,8 +199,7 @@ def run_scene(
     frames : time between frames [s]; frame k falls on step round(k frames/dt).
     stop : when to stop.
     changes : changes of the scene during the run, in any order.
-    threads, progress, overwrite, engine, checkpoint, resume, force : as in `run`; to resume, all other
-        arguments must be the same.
+    threads, progress, overwrite, engine, checkpoint, resume, force : as in `run`; a resume needs the others
 
     Returns
     -------
