@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
+from ryusa.engine.lammps.answers import FEWEST_IMAGES, Extremes, together
 from ryusa.engine.lammps.faults import fault_of_grains
 from ryusa.engine.lammps.ranks import Ranks
 from ryusa.engine.lammps.refusals import refusals_of_change, refusals_of_lammps
-from ryusa.engine.lammps.share import FEWEST_IMAGES, Extremes
 from ryusa.engine.protocol import Flags
 from ryusa.engine.shared.energy_account import potential_energy
 from ryusa.engine.shared.refusals import check_state, refusals
@@ -139,17 +139,12 @@ class LammpsEngine:
 
     def kinematics(self) -> tuple[Floats, Floats, Floats]:
         """Centres [m], velocities [m/s] and impulse from the fluid (model.fluid), by id."""
-        frame = self.grains()
-        return frame.x, frame.v, self._impulse()
-
-    def _impulse(self) -> Floats:
         assert self._scene is not None
-        if self._scene.water.profile != Profile.COLUMN:
-            return np.zeros((0, 0))
-        out = np.empty((self._scene.n_grain, N_IMPULSE))
-        for ids, _, impulse in self._all("fluid"):
-            out[ids] = impulse
-        return out
+        n, column = self._scene.n_grain, self._scene.water.profile == Profile.COLUMN
+        x, v, impulse = np.empty((n, 3)), np.empty((n, 3)), np.empty((n, N_IMPULSE))
+        for ids, *found in self._all("kinematics"):
+            x[ids], v[ids], impulse[ids] = found
+        return x, v, impulse if column else np.zeros((0, 0))
 
     def state(self) -> State:
         """Read-only snapshot: enough to go on from, though not with the same bits."""
@@ -157,8 +152,9 @@ class LammpsEngine:
         fluid = None
         if self._scene.water.profile == Profile.COLUMN:
             fluid = FluidAtGrains.at_rest(self._scene.n_grain)
-            for ids, sampled, impulse in self._all("fluid"):
-                fluid.sampled[ids], fluid.impulse[ids] = sampled, impulse
+            fluid.impulse[:] = self.kinematics()[2]
+            for ids, sampled in self._all("fluid"):
+                fluid.sampled[ids] = sampled
         content: bytes = self._all("restart")[0]
         words = np.frombuffer(content + bytes(-len(content) % _WORD), np.uint32).astype(np.float64)
         numbers = dict(zip(("overlap_max", "overlap_grain", "overlap_step"), self._overlap, strict=True))
@@ -204,22 +200,3 @@ class LammpsEngine:
         if self._ranks is None:
             self._ranks = Ranks()
         return self._ranks.all(method, *arguments)
-
-
-def together(parts: list[Extremes]) -> Extremes:
-    """Sums and extremes of all ranks."""
-    worst = max(parts, key=lambda one: one.overlap)
-    fast = max(parts, key=lambda one: one.speed)
-    return Extremes(
-        kinetic=sum(one.kinetic for one in parts),
-        spin=sum(one.spin for one in parts),
-        spring_n=sum(one.spring_n for one in parts),
-        n_contact=sum(one.n_contact for one in parts),
-        overlap=worst.overlap,
-        pair=worst.pair,
-        speed=fast.speed,
-        fastest=fast.fastest,
-        spin_max=max(one.spin_max for one in parts),
-        not_finite=max(one.not_finite for one in parts),
-        outside=max(one.outside for one in parts),
-    )

@@ -38,7 +38,7 @@ def fault_of_grains(scene: Scene, found: Any, step: int, t: float, since: int) -
 
     Parameters
     ----------
-    found : extremes of all grains (`share.Extremes`).
+    found : extremes of all grains (`answers.Extremes`).
     step, t : step and time of the inspection [s].
     since : steps since the one before.
     """

@@ -8,12 +8,13 @@ import ctypes
 import os
 from collections.abc import Generator, Iterable
 from contextlib import contextmanager
-from typing import Any, BinaryIO, NamedTuple
+from typing import Any, BinaryIO
 
 import numpy as np
 
 from ryusa.engine.lammps import commands as C
 from ryusa.engine.lammps import forces as F
+from ryusa.engine.lammps.answers import FEWEST_IMAGES, Extremes, RankRows
 from ryusa.engine.lammps.faults import RankFault, SharedFault, fault_of_lammps
 from ryusa.engine.lammps.mass_classes import mass_classes
 from ryusa.engine.lammps.module import module, open_lammps
@@ -32,33 +33,6 @@ _ARRAYS = {
     **{name: (_DOUBLE, 3) for name in ("x", "v", "omega", "f", "torque")},
     C.SAMPLED: (_DOUBLE, N_SAMPLED), C.IMPULSE: (_DOUBLE, N_IMPULSE), C.LAST: (_DOUBLE, C.N_LAST),
 }  # fmt: skip
-FEWEST_IMAGES = 1024  # LAMMPS counts periods modulo this number: ten bits of a flag for each axis
-
-
-class RankRows(NamedTuple):
-    """Grains of one rank: ids from 0, and what is known of them; periods crossed modulo FEWEST_IMAGES."""
-
-    ids: np.ndarray
-    x: Floats
-    v: Floats  # half a step before x, as omega
-    omega: Floats
-    image: np.ndarray
-
-
-class Extremes(NamedTuple):
-    """Sums and extremes over the grains of one rank, at the time of x."""
-
-    kinetic: float
-    spin: float
-    spring_n: float
-    n_contact: int
-    overlap: float  # largest, over the smaller diameter [-]
-    pair: tuple[int, int]  # that has it; -1 without
-    speed: float  # of the fastest grain [m/s]
-    fastest: int
-    spin_max: float
-    not_finite: int  # id of a grain that is not; -1 without
-    outside: int  # id of a grain outside the world; -1 without
 
 
 @contextmanager
@@ -266,18 +240,32 @@ class GrainShare:
                 image[:, axis] = (crossed >> (10 * axis) & 1023) - 512
         return RankRows(tag[free].astype(np.int64) - 1, x, v, w, image)
 
-    def fluid(self) -> tuple[np.ndarray, Floats, Floats]:
-        """Ids of the grains of this rank, the water at them, and its impulse on them (model.fluid)."""
-        scene = self._scene
-        assert scene is not None
+    def fluid(self) -> tuple[np.ndarray, Floats]:
+        """Ids of the grains of this rank, and the water at them (model.fluid)."""
+        tag, free = self._free()
+        return tag[free].astype(np.int64) - 1, self._atoms(C.SAMPLED)[free]
+
+    def kinematics(self) -> tuple[np.ndarray, Floats, Floats, Floats]:
+        """Ids of the grains of this rank, centres, velocities and impulse from the water (model.fluid)."""
+        tag, free = self._free()
+        v, impulse = self._half("v"), np.zeros((len(tag), N_IMPULSE))
+        if self._column:
+            F.taken_from_water(
+                tag,
+                self._own,
+                v,
+                self._atoms(C.SAMPLED),
+                self._atoms(C.IMPULSE),
+                self._atoms(C.LAST),
+                impulse,
+            )
+        return tag[free].astype(np.int64) - 1, self._atoms("x")[free], v[free], impulse[free]
+
+    def _free(self) -> tuple[np.ndarray, np.ndarray]:
+        """Ids in LAMMPS of the atoms of this rank, and which of them are free grains."""
+        assert self._scene is not None
         tag = self._atoms("id")
-        free = np.flatnonzero(tag <= scene.n_grain)
-        out = np.zeros((len(tag), N_IMPULSE))
-        F.taken_from_water(
-            tag, self._own, self._half("v"), self._atoms(C.SAMPLED), self._atoms(C.IMPULSE),
-            self._atoms(C.LAST), out,
-        )  # fmt: skip
-        return tag[free].astype(np.int64) - 1, self._atoms(C.SAMPLED)[free], out[free]
+        return tag, np.flatnonzero(tag <= self._scene.n_grain)
 
     def extremes(self) -> Extremes:
         """Energies and extremes of the grains of this rank, from its pairs in contact and its planes."""
