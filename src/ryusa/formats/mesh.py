@@ -52,33 +52,31 @@ def read_mesh(path: Path, name: str) -> Floats:
 
 def _read_stl(path: Path, name: str) -> Floats:
     """Corners of an STL file; text and binary are told apart by the length, as many binary ones say solid."""
-    import trimesh
-
     whole = path.read_bytes()
     stated = int.from_bytes(whole[80:_HEAD], "little") if len(whole) >= _HEAD else -1
-    kind = "stl" if len(whole) == _HEAD + _ROW * stated else "stl_ascii"
-    expected = stated if kind == "stl" else _facets(whole, stated, name)
-    if expected == 0:
+    if len(whole) != _HEAD + _ROW * stated:
+        return _read_text(whole, stated, name)
+    if stated == 0:
         return np.zeros((0, 3, 3))
+    import trimesh
+
     with path.open("rb") as file:
         try:
-            loaded = trimesh.load_mesh(file, file_type=kind, process=False, maintain_order=True)
+            loaded = trimesh.load_mesh(file, file_type="stl", process=False, maintain_order=True)
             corners = np.asarray(loaded.vertices, dtype=np.float64)[np.asarray(loaded.faces, dtype=np.int64)]
             corners = corners.reshape(-1, 3, 3)
         except Exception as error:  # of any kind: the file is the user's, and the reader another's
             about = str(error).splitlines()[0][:120] if str(error) else type(error).__name__
             raise ParseError(name, 1, 1, f"cannot be read as STL ({about})") from error
-    if len(corners) != expected:
-        raise ParseError(name, 1, 1, f"has {expected} facets, of which {len(corners)} could be read")
     return corners
 
 
-def _facets(whole: bytes, stated: int, name: str) -> int:
-    """Number of facets of a text file that is whole.
+def _read_text(whole: bytes, stated: int, name: str) -> Floats:
+    """Corners of a text file. trimesh prints what it cannot read, with the trace of its own error.
 
     Raises
     ------
-    ParseError : it is no text of an STL file, or cut off.
+    ParseError : it is no text of an STL file, is cut off, or a vertex is not three numbers.
     """
     if not whole.strip():
         raise ParseError(name, 1, 1, "is empty")
@@ -104,4 +102,14 @@ def _facets(whole: bytes, stated: int, name: str) -> int:
             f"holds {begun} facets, of which {ended} end, and {vertices} vertices, and ends {ends} 'endsolid'"
             ": it is cut off or damaged; export it again",
         )  # fmt: skip
-    return begun
+    rows = np.zeros((vertices, 3))
+    for k, found in enumerate(re.finditer(rb"^\s*vertex\b([^\r\n]*)", whole, re.IGNORECASE | re.MULTILINE)):
+        try:
+            x, y, z = (float(one) for one in found.group(1).split())
+        except ValueError:
+            line, text = whole[: found.start(1)].count(b"\n") + 1, found.group(1).decode("utf-8", "replace")
+            raise ParseError(
+                name, line, 1, f"a vertex needs three numbers, found '{text.strip()[:40]}'"
+            ) from None
+        rows[k] = x, y, z
+    return rows.reshape(-1, 3, 3)
