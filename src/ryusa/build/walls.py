@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from itertools import chain, pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -38,6 +38,7 @@ from ryusa.model.walls import (
 from ryusa.model.welding import sides_of, welded
 
 FOLD = math.radians(30.0)  # angle up to which two triangles are one smooth surface
+_AT_ONCE = 2_000_000  # pairs of a grain and a face near it
 _SHARE = 4.0  # of a period: the longest side of a triangle along it
 
 
@@ -298,21 +299,35 @@ def refuse_overlaps_with_walls(placement: Placement, walls: Sequence[SolidWall],
     tree, largest = KDTree(placement.x), 0.5 * float(placement.d.max())
     for wall in walls:
         low, high = face_boxes(wall.face, wall.kind)
-        near = tree.query_ball_point(0.5 * (low + high), 0.5 * np.linalg.norm(high - low, axis=1) + largest)
+        middle, reach = 0.5 * (low + high), 0.5 * np.linalg.norm(high - low, axis=1) + largest
+        near = np.cumsum(tree.query_ball_point(middle, reach, return_length=True))
+        chunk = near // _AT_ONCE  # so that few pairs are held at a time
         worst, grain = 0.0, -1
-        for f, some in enumerate(near):
-            found = np.array(some, dtype=np.int64)
-            x = placement.x[found]
-            for k in found[np.all((x > low[f] - largest) & (x < high[f] + largest), axis=1)]:
-                x = placement.x[k]
+        for one in np.split(np.arange(len(near)), np.flatnonzero(np.diff(chunk)) + 1):
+            found = tree.query_ball_point(middle[one], reach[one])
+            face = np.repeat(one, [len(some) for some in found])
+            k = np.fromiter(chain.from_iterable(found), np.int64, len(face))
+            x = placement.x[k]
+            close = np.all((x > low[face] - largest) & (x < high[face] + largest), axis=1)
+            close &= _from_plane(wall, face, x) < 0.5 * placement.d[k]
+            for f, i in zip(face[close].tolist(), k[close].tolist(), strict=True):
+                x = placement.x[i]
                 apart = float(np.linalg.norm(nearest_on_face(wall.face[f], int(wall.kind[f]), x) - x))
-                relative = 0.5 - apart / float(placement.d[k])
+                relative = 0.5 - apart / float(placement.d[i])
                 if relative > worst:
-                    worst, grain = relative, int(k)
+                    worst, grain = relative, i
         if worst > TOLERANCE:
             who = name_of(placement, grain)
             text = f"first grains overlap: {who} and wall '{wall.name}' by {worst:.3g} d"
             raise CaseError(key, None, f"{text}; move the wall or the grains")
+
+
+def _from_plane(wall: SolidWall, face: Ints, x: Floats) -> Floats:
+    """Distance of points from the planes of triangles [m]; 0 for other faces."""
+    normal = np.cross(wall.face[:, 3:6], wall.face[:, 6:9])
+    normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None]
+    normal[wall.kind != FaceKind.TRIANGLE] = 0.0
+    return np.abs(np.sum((x - wall.face[face, :3]) * normal[face], axis=1))
 
 
 def with_room(scene: Scene, low: bool, high: bool) -> Scene:

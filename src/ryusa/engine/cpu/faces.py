@@ -17,6 +17,7 @@ KIND, WALL, S_11, S_12 = 12, 13, 14, 15  # kind, wall, products of the edges; in
 N_FACE = 16  # two cache lines
 TRIANGLE, DISC, CYLINDER = int(FaceKind.TRIANGLE), int(FaceKind.DISC), int(FaceKind.CYLINDER)
 _CELLS = 4.0  # cells of a grid over the faces in it
+_HELD = 64.0  # entries in the cells over the faces: long faces beside many short ones make cells wider
 
 # columns of CandidateArrays.met: how a grain and a face meet in this step
 GAP = 0  # separation from the grain to its mirror image in the face [m], and its diameter
@@ -51,6 +52,31 @@ class FaceArrays(NamedTuple):
 
 def face_arrays(walls: Walls, first: int) -> FaceArrays:
     """Arrays of the faces of a scene whose first face has the id `first`."""
+    grid = _grid(walls)
+    return FaceArrays(
+        first, grid.rows, grid.centre, walls.surface.astype(np.int64),
+        np.array(walls.motion), np.zeros((walls.n_wall, N_POSE)), largest_speed(walls), *grid.cells,
+    )  # fmt: skip
+
+
+class _Grid(NamedTuple):
+    """What follows from the faces alone, whatever their motion and the grains."""
+
+    face: Floats  # of the walls, to know them again
+    active: Any
+    rows: Floats
+    centre: Floats
+    cells: tuple[Any, ...]  # the last eight of `FaceArrays`
+
+
+_last: list[_Grid] = []  # a run with feeds loads the same walls at every instant
+
+
+def _grid(walls: Walls) -> _Grid:
+    """Rows and cells of faces, those of the last walls again where the faces are the same arrays."""
+    known = _last[0] if _last else None
+    if known is not None and known.face is walls.face and np.array_equal(known.active, walls.active):
+        return known
     n, n_wall = walls.n_face, walls.n_wall
     low, high = face_boxes(walls.face, walls.kind)
     dims, grid_low, width = np.ones((n_wall, 3), np.int64), np.zeros((n_wall, 3)), np.ones((n_wall, 3))
@@ -63,28 +89,36 @@ def face_arrays(walls: Walls, first: int) -> FaceArrays:
         size = top - bottom
         volume = float(np.prod(np.maximum(size, 1e-3 * size.max())))
         cell = max((volume / (_CELLS * len(mine))) ** (1 / 3), 1e-12)
-        while np.prod(np.floor(size / cell) + 1.0) > _CELLS * len(mine) + 64.0:
+        while True:
+            dims[w] = np.minimum(np.floor(size / cell) + 1.0, 1e9).astype(np.int64)
+            cells_low[mine] = np.clip((low[mine] - bottom) // cell, 0, dims[w] - 1)
+            cells_high[mine] = np.clip((high[mine] - bottom) // cell, 0, dims[w] - 1)
+            held = float(np.prod(cells_high[mine] - cells_low[mine] + 1.0, axis=1).sum())
+            if (
+                np.prod(dims[w].astype(float)) <= _CELLS * len(mine) + 64.0
+                and held <= _HELD * len(mine) + 1e6
+            ):
+                break
             cell *= 1.26
-        dims[w], grid_low[w], width[w] = np.floor(size / cell).astype(np.int64) + 1, bottom, cell
-        cells_low[mine] = np.clip((low[mine] - bottom) // cell, 0, dims[w] - 1)
-        cells_high[mine] = np.clip((high[mine] - bottom) // cell, 0, dims[w] - 1)
+        grid_low[w], width[w] = bottom, cell
     cells = np.prod(dims, axis=1)
     grid_first = np.concatenate([[0], np.cumsum(cells)])
-    count, found = np.zeros(grid_first[-1] + 1, np.int64), []
-    for f in np.flatnonzero(walls.face_active):
-        w = walls.wall[f]
-        axes = [np.arange(a, b + 1) for a, b in zip(cells_low[f], cells_high[f], strict=True)]
-        columns = (axes[0][:, None] * dims[w, 1] + axes[1])[:, :, None] * dims[w, 2]
-        at = grid_first[w] + (columns + axes[2]).ravel()
-        found.append((at, np.full(len(at), f)))
-    every = np.concatenate([at for at, _ in found]) if found else np.zeros(0, np.int64)
-    faces = np.concatenate([f for _, f in found]) if found else np.zeros(0, np.int64)
-    np.add.at(count, every + 1, 1)
-    return FaceArrays(
-        first, _rows(walls), 0.5 * (low + high), walls.surface.astype(np.int64), np.array(walls.motion),
-        np.zeros((n_wall, N_POSE)), largest_speed(walls), grid_low, width, dims, grid_first[:-1].copy(),
-        np.cumsum(count), faces[np.argsort(every, kind="stable")], cells_low, cells_high,
+    spans = (cells_high - cells_low + 1) * walls.face_active[:, None]
+    times = np.prod(spans, axis=1)
+    faces = np.repeat(np.arange(n), times)
+    k = np.arange(len(faces)) - np.repeat(np.cumsum(times) - times, times)
+    _, n_y, n_z = spans[faces].T
+    a, b, c = (cells_low[faces] + np.column_stack([k // (n_y * n_z), k // n_z % n_y, k % n_z])).T
+    w = walls.wall[faces]
+    every = grid_first[w] + (a * dims[w, 1] + b) * dims[w, 2] + c
+    first = np.concatenate([[0], np.cumsum(np.bincount(every, minlength=int(grid_first[-1])))])
+    found = _Grid(
+        walls.face, walls.active, _rows(walls), 0.5 * (low + high),
+        (grid_low, width, dims, grid_first[:-1].copy(), first, faces[np.argsort(every, kind="stable")],
+         cells_low, cells_high),
     )  # fmt: skip
+    _last[:] = [found]
+    return found
 
 
 def _rows(walls: Walls) -> Floats:
