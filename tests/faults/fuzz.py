@@ -20,7 +20,7 @@ import time
 import traceback
 import warnings
 from collections import Counter
-from collections.abc import Generator
+from collections.abc import Generator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -30,7 +30,7 @@ from hypothesis import HealthCheck, Phase, given, seed, settings
 
 sys.path.insert(0, str(Path(__file__).parent))
 
-from strange_cases import strange_cases, strange_tables
+from strange_cases import FILES, lay, strange_cases, strange_files
 
 from ryusa.build import build
 from ryusa.casefile import derive, explain, resolved
@@ -109,11 +109,14 @@ def answer(path: Path) -> str:
     return "laid out"
 
 
-def judged(folder: Path, text: str, table: str, tally: Tally) -> None:
+def _changed(files: Mapping[str, str]) -> str:
+    """Files that are not as they were."""
+    return "\n".join(f"{name}:\n{text}" for name, text in files.items() if text != FILES[name])
+
+
+def judged(folder: Path, text: str, files: Mapping[str, str], tally: Tally) -> None:
     """One case file, in process."""
-    path = folder / "case.toml"
-    path.write_text(text, encoding="utf-8")
-    (folder / "grains.csv").write_text(table, encoding="utf-8")
+    path = lay(folder, text, files)
     begun, clock = time.process_time(), time.perf_counter()
     try:
         with alarm(HANG), warnings.catch_warnings():
@@ -123,7 +126,7 @@ def judged(folder: Path, text: str, table: str, tally: Tally) -> None:
         tally.outcomes["wrong"] += 1
         where = traceback.extract_tb(error.__traceback__)[-1]
         tally.wrong.append(
-            f"{type(error).__name__}: {error} ({where.filename}, {where.lineno})\n{text}\n{table}"
+            f"{type(error).__name__}: {error} ({where.filename}, {where.lineno})\n{text}\n{_changed(files)}"
         )
     tally.took(time.process_time() - begun, time.perf_counter() - clock, text)
 
@@ -131,7 +134,7 @@ def judged(folder: Path, text: str, table: str, tally: Tally) -> None:
 def cases(folder: Path, n: int, start: int) -> Tally:
     """So many case files in process."""
     tally, done = Tally(), [0]
-    judged(folder, "title = 1\n[grains]\ndiameter = '1 cm'", "", Tally())  # loads units and laws
+    judged(folder, "title = 1\n[grains]\ndiameter = '1 cm'", FILES, Tally())  # loads units and laws
 
     while done[0] < n:
 
@@ -140,10 +143,10 @@ def cases(folder: Path, n: int, start: int) -> Tally:
             max_examples=n - done[0], deadline=None, database=None, phases=[Phase.generate],
             suppress_health_check=list(HealthCheck),
         )  # fmt: skip
-        @given(text=strange_cases(), table=strange_tables())
-        def one(text: str, table: str) -> None:
+        @given(text=strange_cases(), files=strange_files())
+        def one(text: str, files: dict[str, str]) -> None:
             done[0] += 1
-            judged(folder, text, table, tally)
+            judged(folder, text, files, tally)
 
         one()
     return tally
@@ -157,22 +160,20 @@ def children() -> float:
 
 def cli(folder: Path, n: int, start: int) -> Tally:
     """So many case files through `ryusa check`, a process each."""
-    tally, texts = Tally(), list[tuple[str, str]]()
+    tally, texts = Tally(), list[tuple[str, dict[str, str]]]()
 
     @seed(start)
     @settings(
         max_examples=n, deadline=None, database=None, phases=[Phase.generate],
         suppress_health_check=list(HealthCheck),
     )  # fmt: skip
-    @given(text=strange_cases(), table=strange_tables())
-    def one(text: str, table: str) -> None:
-        texts.append((text, table))
+    @given(text=strange_cases(), files=strange_files())
+    def one(text: str, files: dict[str, str]) -> None:
+        texts.append((text, files))
 
     one()
-    for text, table in texts[:n]:
-        path = folder / "case.toml"
-        path.write_text(text, encoding="utf-8")
-        (folder / "grains.csv").write_text(table, encoding="utf-8")
+    for text, files in texts[:n]:
+        path = lay(folder, text, files)
         begun, clock = children(), time.perf_counter()
         words = [sys.executable, "-c", RUN, "check", str(path)]
         try:

@@ -1,11 +1,11 @@
 """Fuzzing guided by coverage: libFuzzer, by atheris, on everything that reads what a stranger wrote.
 
-    python tests/faults/fuzz.py guided SECONDS    # so long in all, a quarter for each target
+    python tests/faults/fuzz.py guided SECONDS    # so long in all, the same for each target
     python tests/faults/guided.py TARGET FOLDER [OPTIONS OF LIBFUZZER ...]
 
-Targets are `schema` (a case file), `units`, `results` (a file of a run folder put in the place of one) and
-`resume` (a checkpoint, its numbers or one of its arrays changed and signed again). Anything but a named error
-is a crash, and so is no answer in time. Needs `pip install ryusa[fuzz]`.
+Targets are `schema` (a case file), `units`, `mesh` (an OBJ or STL file), `results` (a file of a run folder
+put in the place of one) and `resume` (a checkpoint, its numbers or one of its arrays changed and signed
+again). Anything but a named error is a crash, and so is no answer in time. Needs `pip install ryusa[fuzz]`.
 """
 
 import hashlib
@@ -13,9 +13,11 @@ import io
 import json
 import re
 import shutil
+import struct
 import subprocess
 import sys
 from collections.abc import Callable
+from functools import partial
 from importlib import import_module
 from importlib.resources import files
 from importlib.util import find_spec
@@ -24,9 +26,15 @@ from pkgutil import iter_modules
 
 sys.path.insert(0, str(Path(__file__).parent))
 
-LONGEST = {"schema": 4_000, "units": 70, "results": 60_000, "resume": 60_000}
+LONGEST = {"schema": 4_000, "units": 70, "mesh": 6_000, "results": 60_000, "resume": 60_000}
 UNITS = ("m", "s", "kg/m3", "m/s", "m/s2", "m2/s", "N", "N/m", "N s/m", "Pa/m", "rad", "rad/s", "-")
-ANSWER = {"schema": 2, "units": 2, "results": 20, "resume": 20}  # s; the last two run on, if they may
+ANSWER = {
+    "schema": 2,
+    "units": 2,
+    "mesh": 2,
+    "results": 20,
+    "resume": 20,
+}  # s; the last two run on, if they may
 
 
 def target(name: str, folder: Path) -> Callable[[bytes], None]:
@@ -61,6 +69,9 @@ def target(name: str, folder: Path) -> Callable[[bytes], None]:
         return one_case
     if name == "units":
         return one_quantity
+
+    if name == "mesh":
+        return partial(one_mesh, folder)
 
     from test_fuzz import judged, read_checkpoint
 
@@ -112,8 +123,30 @@ def target(name: str, folder: Path) -> Callable[[bytes], None]:
     return one_file if name == "results" else one_checkpoint
 
 
+def one_mesh(folder: Path, data: bytes) -> None:
+    """A file of triangles: an OBJ file where its first byte is even, an STL file where it is odd."""
+    import numpy as np
+
+    from ryusa.errors import ParseError
+    from ryusa.formats.mesh import read_mesh
+    from ryusa.model.welding import first_of_each, rims, welded
+
+    path = folder / ("mesh.stl" if data[:1] and data[0] % 2 else "mesh.obj")
+    path.write_bytes(data[1:])
+    try:
+        corners = read_mesh(path, path.name)
+    except ParseError as error:
+        assert "\n" not in str(error)
+        return
+    assert np.isfinite(corners).all()
+    if np.abs(corners).max() < 1e12:
+        assert 0 < len(first_of_each(welded(corners))) <= len(corners)
+        assert rims(corners)[0] <= 3 * len(corners)
+
+
 def prepare(folder: Path) -> None:
     """Write first inputs for every target, words of the case file, and a run that stopped half way."""
+    from kinds import MESHES
     from strange_cases import NUMBERS, UNITS, bases, known, toml_of
     from test_fuzz import go
 
@@ -145,14 +178,24 @@ def prepare(folder: Path) -> None:
     arrays = sorted(kept.arrays)
     signed = [b"\1" + json.dumps({**kept.values, "arrays": arrays}).encode()]
     signed += [bytes([0, k]) + kept.arrays[one].tobytes() for k, one in enumerate(arrays)]
-    seeds = {"schema": texts, "units": quantities, "results": contents, "resume": signed}
+    meshes = [b"\0" + one.encode() for one in MESHES.values()]
+    meshes += [b"\1" + one for one in stl_files()]
+    seeds = {"schema": texts, "units": quantities, "mesh": meshes, "results": contents, "resume": signed}
     for name, ones in seeds.items():
         for k, one in enumerate(ones):
             (folder / name / f"seed-{k:03}").write_bytes(one)
 
 
+def stl_files() -> list[bytes]:
+    """One triangle as binary and as text."""
+    one = bytes(80) + (1).to_bytes(4, "little") + struct.pack("<12f", *range(12)) + bytes(2)
+    lines = ["solid a", "facet normal 0 0 1", "outer loop"]
+    lines += [*(f"vertex {k} 0 {k * k}" for k in range(3)), "endloop", "endfacet", "endsolid a", ""]
+    return [one, "\n".join(lines).encode()]
+
+
 def guided(folder: Path, seconds: int) -> int:
-    """All four targets, one after the other; the exit code."""
+    """All targets, one after the other; the exit code."""
     if find_spec("atheris") is None:
         print("atheris is not installed: pip install 'ryusa[fuzz]' (Linux)")
         return 2

@@ -3,12 +3,14 @@
 import datetime
 import json
 import tomllib
+from collections.abc import Mapping
 from copy import deepcopy
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 from hypothesis import strategies as st
-from kinds import KINDS
+from kinds import KINDS, MESHES
 
 from ryusa.casefile import json_schema_text
 from ryusa.cases import FOLDERS, case_files
@@ -45,15 +47,35 @@ normal = [0, 0, 1]
 time = "1 ms"
 """
 ROWS = "x [cm], z [cm], d [cm], vx [m/s], fixed, group\n0, 0.2, 0.2, 0.1, 0,\n1, 0.2, 0.3, 0, 1, stones\n"
+CLUMPS = KINDS["clumps"].replace("{ rod = 0.4, tetrahedron = 0.4 }", '"stones.csv"')
+STONES = "x [mm], y [mm], z [mm], d [mm]\n0, 0, 0, 2\n1, 0, 0, 2\n0, 1.2, 0.1, 1.5\n"
+FILES = {"grains.csv": ROWS, "stones.csv": STONES, **MESHES}  # beside each case
+PARTS = ("walls", "feeds", "exits", "materials", "pairs", "shape", "servo", "mixture")
+CARRIED = ("walls", "feeds", "exits", "materials", "pairs", "planes", "timeline")
 
 
 @cache
 def bases() -> tuple[dict[str, Any], ...]:
-    """Every case that comes with ryusa, those of the fault campaign, and one with a table."""
-    texts = [*KINDS.values(), TABLE]
+    """Every case that comes with ryusa, those of the fault campaign, one with a table, one with clumps."""
+    texts = [*KINDS.values(), TABLE, CLUMPS]
     for folder in FOLDERS:
         texts += [one.read_text(encoding="utf-8") for one in case_files(folder).values()]
     return tuple(tomllib.loads(text) for text in texts)
+
+
+@cache
+def rich() -> tuple[dict[str, Any], ...]:
+    """Those bases that have walls, feeds, exits, materials or clumps."""
+    return tuple(base for base in bases() if any(f"{part}" in str(base) for part in PARTS))
+
+
+def merged(draw: st.DrawFn, case: dict[str, Any]) -> None:
+    """Take a section of walls, feeds, exits or materials from another base, beside what is there."""
+    other = draw(st.sampled_from(rich()))
+    for key in CARRIED:
+        if key in other and draw(st.booleans()):
+            more = deepcopy(other[key])
+            case[key] = case.get(key, []) + more if isinstance(more, list) else case.get(key, {}) | more
 
 
 @cache
@@ -208,7 +230,9 @@ def broken(draw: st.DrawFn, text: str) -> str:
 @st.composite
 def strange_cases(draw: st.DrawFn) -> str:
     """The text of a case file."""
-    case = deepcopy(draw(st.sampled_from(bases())))
+    case = deepcopy(draw(st.sampled_from(draw(st.sampled_from([bases(), rich()])))))
+    if draw(st.integers(0, 3)) == 0:
+        merged(draw, case)
     for _ in range(draw(st.sampled_from([0, 1, 1, 1, 2, 2, 3, 5]))):
         mutated(draw, case)
     text = toml_of(case)
@@ -216,9 +240,18 @@ def strange_cases(draw: st.DrawFn) -> str:
 
 
 @st.composite
-def strange_tables(draw: st.DrawFn) -> str:
-    """The text of a table of first grains, beside the case."""
-    text = ROWS
+def strange_files(draw: st.DrawFn) -> dict[str, str]:
+    """The texts of the files that cases name: first grains, a clump, a mesh."""
+    files = dict(FILES)
     for _ in range(draw(st.sampled_from([0, 0, 0, 1, 2]))):
-        text = broken(draw, text)
-    return text
+        name = draw(st.sampled_from(sorted(files)))
+        files[name] = broken(draw, files[name])
+    return files
+
+
+def lay(folder: Path, text: str, files: Mapping[str, str]) -> Path:
+    """Write a case and what it names; the path of the case."""
+    for name, content in files.items():
+        (folder / name).write_text(content, encoding="utf-8", errors="replace")
+    (folder / "case.toml").write_text(text, encoding="utf-8")
+    return folder / "case.toml"

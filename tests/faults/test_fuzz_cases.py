@@ -13,7 +13,7 @@ from hypothesis import HealthCheck, given, settings
 sys.path.insert(0, str(Path(__file__).parent))
 
 from fuzz import Tally, cli, judged
-from strange_cases import bases, strange_cases, strange_tables, toml_of
+from strange_cases import bases, rich, strange_cases, strange_files, toml_of
 
 from ryusa.build import build
 from ryusa.casefile.read import read_text
@@ -24,12 +24,12 @@ MANY = settings(max_examples=400, suppress_health_check=list(HealthCheck))
 
 
 @MANY
-@given(text=strange_cases(), table=strange_tables())
+@given(text=strange_cases(), files=strange_files())
 def test_a_manipulated_case_file_is_used_or_refused_by_name(
-    tmp_path_factory: pytest.TempPathFactory, text: str, table: str
+    tmp_path_factory: pytest.TempPathFactory, text: str, files: dict[str, str]
 ) -> None:
     tally = Tally()
-    judged(tmp_path_factory.getbasetemp(), text, table, tally)
+    judged(tmp_path_factory.getbasetemp(), text, files, tally)
     assert tally.outcomes["wrong"] == 0, tally.wrong[0]
 
 
@@ -37,6 +37,12 @@ def test_manipulated_case_files_get_an_answer_from_the_command_line(tmp_path: Pa
     tally = cli(tmp_path, 4, 5)
     assert tally.outcomes["wrong"] == 0, tally.wrong[0]
     assert sum(tally.outcomes.values()) == 4
+
+
+def test_the_fuzzer_has_cases_with_every_part_of_walls_and_traffic() -> None:
+    words = " ".join(toml_of(base) for base in rich())
+    for part in ("walls", "mesh", "servo", "feeds", "exits", "materials", "pairs", "mixture", "stones.csv"):
+        assert part in words, part
 
 
 # what fuzzing found
