@@ -345,7 +345,7 @@ def sticking_speed_hertz(
     """
     if pull == 0.0 and slope == 0.0:
         return 0.0
-    if slope > 0.0:
+    if slope != 0.0:
         return slope**2.5 / (k_hertz**2 * math.sqrt(m)) * sticking_factor_hertz(zeta, tension, True)
     unit = pull ** (5.0 / 6.0) / (k_hertz ** (1.0 / 3.0) * math.sqrt(m))
     return unit * sticking_factor_hertz(zeta, tension, False)
