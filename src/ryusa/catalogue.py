@@ -222,7 +222,7 @@ MEASURES = (
                  needs=("walls", "space")),
     MeasureEntry("discharge", "ryusa.measure.discharge:discharge",
                  "grains and mass in and out by feeds and exits, over time", WINDOW, settled=True,
-                 builders=("empty",), fed=True,
+                 builders=("empty",), fed=True, clumps=True,
                  numbers=(("rate_in", "kg/s"), ("rate_out", "kg/s")),
                  needs=("traffic",)),
 )  # fmt: skip
@@ -285,7 +285,8 @@ PICTURES = (
                  WINDOW, settled=True, measure="walls", fed=True, clumps=True),
     PictureEntry("discharge", "ryusa.figures.discharge:discharge",
                  "mass in by each feed and out by each exit, and mass there, over time",
-                 WINDOW, settled=True, measure="discharge", builders=("empty",), fed=True),
+                 WINDOW, settled=True, measure="discharge", builders=("empty",), fed=True,
+                 clumps=True),
     PictureEntry("vibration", "ryusa.figures.runs:vibration", "grains that do not come to rest",
                  ("grains", *WINDOW)),
 )  # fmt: skip

@@ -200,10 +200,35 @@ def test_a_drag_of_form_needs_clumps():
         case_of('"sphere"', WET + 'drag_of_form = "Ganser"\n')
 
 
-def test_feeds_exclude_clumps():
-    fed = PLAIN + (
-        '[[feeds]]\nname = "tap"\nlow = ["0 cm", "0 cm", "3 cm"]\nhigh = ["1 cm", "1 cm", "4 cm"]\n'
-        'rate = "10 grains/s"\n'
-    )
-    with pytest.raises(CaseError, match="clumps do not yet enter or leave"):
-        case_of('"rod"', fed)
+FEED = """
+[[feeds]]
+name = "tap"
+low = ["0 cm", "0 cm", "3 cm"]
+high = ["1 cm", "1 cm", "4 cm"]
+rate = "0.001 kg/s"
+"""
+
+
+def test_a_feed_brings_clumps_by_their_number_and_mass():
+    case = case_of("{ rod = 0.5, tetrahedron = 0.25 }", PLAIN + FEED, **{"stop.time": "10 s"})
+    scene = build(case).scene
+    feed, heads = scene.traffic.feeds[0], scene.heads
+    own = slice(feed.first, feed.first + feed.count)
+    assert scene.traffic.n_first == feed.first
+    assert heads[: feed.first].sum() == 180
+    d, m = scene.of_heads()
+    assert feed.first + feed.count == scene.n_grain
+    fed = m[own][heads[own]]
+    assert fed[:-1].sum() < 0.01 <= fed.sum()  # 0.001 kg/s in 10 s
+    assert fed == pytest.approx(2650.0 * np.pi / 6.0 * d[own][heads[own]] ** 3)
+    assert scene.groups["tap"] == (feed.first, feed.first + feed.count)
+    state = build(case).state
+    assert np.array_equal(state.present, np.arange(scene.n_grain) < feed.first)
+    assert np.isnan(state.bodies.x[scene.bodies.first >= feed.first]).all()
+
+
+def test_a_feed_leaves_room_for_clumps_however_they_are_turned():
+    narrow = FEED.replace('"1 cm", "1 cm", "4 cm"', '"3 mm", "1 cm", "4 cm"')
+    read_text(PLAIN + narrow, {"stop.time": "10 s"})
+    with pytest.raises(CaseError, match="smaller than the largest grain"):
+        case_of('"rod"', PLAIN + narrow, **{"stop.time": "10 s"})

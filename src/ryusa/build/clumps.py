@@ -1,6 +1,6 @@
 """Grains of a scene made into clumps of the same volume."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +11,7 @@ from ryusa.casefile.case import Case
 from ryusa.casefile.shape import shapes_of
 from ryusa.errors import CaseError
 from ryusa.laws.families import ContactForce, Profile
-from ryusa.model import BodyState, Materials, RigidBodies, Scene, State
+from ryusa.model import BodyState, Materials, RigidBodies, Scene, State, Traffic
 from ryusa.model.arrays import Floats
 from ryusa.model.clump import Clump, drag_form
 from ryusa.model.rigid_bodies import N_DRAG_FORM
@@ -124,11 +124,25 @@ def expanded(
         inertia=read_only(inertia_of_each),
         tracked=read_only(scene.tracked[owner]) if len(scene.tracked) == n else scene.tracked,
         groups={name: (new_id(a), new_id(b)) for name, (a, b) in scene.groups.items()},
+        traffic=_traffic(scene.traffic, new_id),
         materials=_materials(scene.materials, owner, n),
         bodies=bodies,
     )
     arrays = {"x": x, "v": v, "omega": omega, "image": image[owner]}
+    if len(state.present):
+        arrays["present"] = state.present[owner]
     return scene, replace(state, bodies=moved, **{name: read_only(array) for name, array in arrays.items()})
+
+
+def _traffic(traffic: Traffic | None, new_id: Callable[[int], int]) -> Traffic | None:
+    """Feeds and exits with the ids of spheres."""
+    if traffic is None:
+        return None
+    feeds = [
+        replace(one, first=new_id(one.first), count=new_id(one.first + one.count) - new_id(one.first))
+        for one in traffic.feeds
+    ]
+    return replace(traffic, feeds=tuple(feeds), n_first=new_id(traffic.n_first))
 
 
 def _drag_forms(scene: Scene, forms: Sequence[Clump], made: Ints) -> Floats:

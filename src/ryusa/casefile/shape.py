@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 KEY = "grains.shape"
 SPHERE = "sphere"
-BUILDERS = ("packing", "flume", "box", "fill", "table")  # those that leave room for clumps
+BUILDERS = ("packing", "flume", "box", "fill", "table", "empty")  # those that leave room for clumps
 WHOLE = 1.0e-9  # shares that add up to 1 within this are all
 
 
@@ -104,8 +104,6 @@ def check_shape(case: "Case") -> Iterator[CaseError]:
     if case.motion.rotation != "free":
         yield CaseError(KEY, None, "needs motion.rotation = 'free'")
     yield from _check_water(case)
-    if case.feeds or case.exits:
-        yield CaseError(KEY, None, "excludes [[feeds]] and [[exits]]: clumps do not yet enter or leave")
     if case.stop.precision is not None:
         yield CaseError("stop.precision", None, "cannot end a run with clumps; give stop.time")
     if case.build.kind not in BUILDERS:

@@ -15,7 +15,7 @@ from ryusa.engine.protocol import Engine, Flags
 from ryusa.engine.shared import record_fields as R
 from ryusa.engine.shared.passages import empty_tally, everywhere
 from ryusa.errors import RunError
-from ryusa.model import EVENT, Contacts, Scene, State, Tally
+from ryusa.model import EVENT, BodyState, Contacts, Scene, State, Tally
 from ryusa.model.arrays import Bools, Floats
 from ryusa.model.scene import EventRule
 from ryusa.model.state import make_read_only
@@ -114,7 +114,19 @@ class GrainPool:
             x[self._ids], v[self._ids], omega[self._ids] = inner.x, inner.v, inner.omega
             if len(inner.image):
                 image[self._ids] = inner.image
-        return State(x=x, v=v, omega=omega, step=step, t=t, image=image, present=self._there)
+        bodies = self._bodies_out(None if inner is None else inner.bodies)
+        return State(x=x, v=v, omega=omega, step=step, t=t, image=image, present=self._there, bodies=bodies)
+
+    def _bodies_out(self, inner: BodyState | None) -> BodyState | None:
+        """Motion of all clumps; nan for those that are not there."""
+        if self._scene is None or (bodies := self._scene.bodies) is None:
+            return None
+        x, v, momentum = (np.full((bodies.n, 3), np.nan) for _ in range(3))
+        moved = BodyState(x, v, np.full((bodies.n, 4), np.nan), momentum, np.zeros((bodies.n, 2), np.int32))
+        if inner is not None:
+            for name, array in vars(moved).items():
+                array[self._there[bodies.first]] = getattr(inner, name)
+        return moved
 
     def state(self) -> State:
         """Read-only snapshot of all grains."""
@@ -186,8 +198,15 @@ class GrainPool:
             image=np.ascontiguousarray(state.image[ids]) if len(state.image) else state.image,
             contacts=self._contacts_in(state.contacts),
             tally=tally,
+            bodies=None if state.bodies is None else state.bodies.some(self._bodies_there()),
             engine=state.engine,
         )
+
+    def _bodies_there(self) -> Ints:
+        """Clumps that are there."""
+        assert self._scene is not None
+        bodies = self._scene.bodies
+        return np.zeros(0, np.int64) if bodies is None else np.flatnonzero(self._there[bodies.first])
 
     def _contacts_in(self, contacts: Contacts) -> Contacts:
         if not len(contacts):
@@ -238,10 +257,16 @@ def _scene_of(scene: Scene, ids: Ints, earlier: Scene | None) -> Scene:
         of = np.concatenate([materials.of[ids], materials.of[scene.n_grain :]])
         of.flags.writeable = False
         materials = replace(materials, of=of)
+    bodies = scene.bodies
+    if bodies is not None and earlier is not None:
+        bodies = earlier.bodies
+    elif bodies is not None:
+        which = np.flatnonzero(np.isin(bodies.first, ids))
+        bodies = bodies.some(which, np.searchsorted(ids, bodies.first[which]))
     shift = len(ids) - scene.n_grain
     groups = {
         name: (first + shift, end + shift)
         for name, (first, end) in scene.groups.items()
         if first >= scene.n_grain
     }
-    return replace(scene, **rows, groups=groups, traffic=None, materials=materials)
+    return replace(scene, **rows, groups=groups, traffic=None, materials=materials, bodies=bodies)

@@ -11,7 +11,7 @@ from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run, settle_time
 from ryusa.measure.statistics import ratio
 from ryusa.measure.table import Averaged, Averages
-from ryusa.model.traffic import IN, OUT, Traffic
+from ryusa.model.traffic import IN, OUT
 
 Ints = NDArray[np.int64]
 ENTERED, LEFT = "rate_in", "rate_out"
@@ -85,6 +85,7 @@ def discharge(run: Run, begin: float | None = None, end: float = math.inf) -> Di
     n_in, n_out = _passed(came, step, weigh=False), _passed(gone, step, weigh=False)
     m_in, m_out = _passed(came, step), _passed(gone, step)
     first = run.scene.m[: traffic.n_first]
+    n_first = int(run.scene.heads[: traffic.n_first].sum())  # a clump counts once
     by_feed = {one.name: _passed(came[came["at"] == k], step) for k, one in enumerate(traffic.feeds)}
     by_exit = {one.name: _passed(gone[gone["at"] == k], step) for k, one in enumerate(traffic.exits)}
     window = (float(t[0]), float(t[-1]))
@@ -96,10 +97,10 @@ def discharge(run: Run, begin: float | None = None, end: float = math.inf) -> Di
     items = [ratio(name, "kg/s", [np.diff(one)], [dt], window) for name, one in rates.items()]
     items += [ratio(name, "1/s", [np.diff(one)], [dt], window) for name, one in numbers.items()]
     return Discharge(
-        t=t, n=(traffic.n_first + n_in - n_out).astype(np.int64), m=first.sum() + m_in - m_out,
+        t=t, n=(n_first + n_in - n_out).astype(np.int64), m=first.sum() + m_in - m_out,
         n_in=n_in.astype(np.int64), n_out=n_out.astype(np.int64), m_in=m_in, m_out=m_out,
         by_feed=by_feed, by_exit=by_exit,
-        averages=Averages("discharge", tuple(items), _notes(traffic, n_in, n_out, m_in, m_out)),
+        averages=Averages("discharge", tuple(items), _notes(n_first, n_in, n_out, m_in, m_out)),
     )  # fmt: skip
 
 
@@ -114,8 +115,8 @@ def _rate(amount: Floats, t: Floats) -> Floats:
     return np.concatenate([[math.nan], np.diff(amount) / np.diff(t)])
 
 
-def _notes(traffic: Traffic, n_in: Floats, n_out: Floats, m_in: Floats, m_out: Floats) -> tuple[str, ...]:
-    there = traffic.n_first + n_in[-1] - n_out[-1]
+def _notes(n_first: int, n_in: Floats, n_out: Floats, m_in: Floats, m_out: Floats) -> tuple[str, ...]:
+    there = n_first + n_in[-1] - n_out[-1]
     return (
         f"since the start: {int(n_in[-1])} grains in ({m_in[-1]:.4g} kg), {int(n_out[-1])} out "
         f"({m_out[-1]:.4g} kg), {int(there)} there at the end of the window",

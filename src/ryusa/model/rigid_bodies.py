@@ -1,6 +1,6 @@
 """Rigid bodies of a scene: clumps whose spheres are grains of the scene, and how they move."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,6 +44,29 @@ class RigidBodies:
         """Ids of all members, in the order of `arm`."""
         offset = np.arange(len(self.arm)) - np.repeat(np.cumsum(self.count) - self.count, self.count)
         return np.repeat(self.first, self.count) + offset
+
+    def rows(self, which: Ints) -> Ints:
+        """Rows of `arm` of the members of some clumps, in the order of those."""
+        count = self.count[which]
+        offset = np.arange(int(count.sum())) - np.repeat(np.cumsum(count) - count, count)
+        return np.repeat((np.cumsum(self.count) - self.count)[which], count) + offset
+
+    def some(self, which: Ints, first: Ints) -> "RigidBodies":
+        """Some of the clumps, their first members with other ids."""
+        rows = {name: getattr(self, name)[which] for name in ("count", "m", "m_weight", "inertia", "d")}
+        if len(self.form):
+            rows["form"] = self.form[which]
+        if len(self.drag_form):
+            rows["drag_form"] = self.drag_form[which]
+        return replace(self, first=first, arm=self.arm[self.rows(which)], **rows)
+
+    def extent(self, d: Floats) -> Floats:
+        """Diameter of the sphere about the centre of each clump that holds it [m], (n_body,).
+
+        `d` are the diameters of all spheres of the scene [m].
+        """
+        reach = 2.0 * np.linalg.norm(self.arm, axis=1) + d[self.members]
+        return np.maximum.reduceat(reach, np.cumsum(self.count) - self.count) if self.n else np.zeros(0)
 
     def sums(self, of_members: Floats) -> Floats:
         """Sums over the members of each clump of numbers in the order of `arm`, shape (n_body, ...)."""
@@ -112,6 +135,10 @@ class BodyState:
         return BodyState(
             np.array(x, np.float64), np.array(v, np.float64), q, momentum, np.zeros((len(x), 2), np.int32)
         )
+
+    def some(self, which: Ints) -> "BodyState":
+        """Motion of some of the clumps."""
+        return BodyState(**{name: array[which] for name, array in vars(self).items()})
 
     def spin(self, bodies: RigidBodies) -> Floats:
         """Spin in space [rad/s], shape (n_body, 3)."""

@@ -219,6 +219,29 @@ class Scene:
         return np.concatenate([self.d[alone], self.bodies.d]), np.concatenate([self.m[alone], self.bodies.m])
 
     @property
+    def heads(self) -> Bools:
+        """Whether each sphere is a grain of its own or the first of a clump, shape (n_grain,)."""
+        heads = np.ones(self.n_grain, np.bool_)
+        if self.bodies is not None:
+            heads[self.bodies.members], heads[self.bodies.first] = False, True
+        return heads
+
+    def spheres_of(self, ids: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Ids of free grains with those of all members of their clumps, ascending."""
+        if self.bodies is None:
+            return np.sort(ids)
+        of = self.bodies.of_grain(self.n_grain)[ids]
+        members = self.bodies.members[self.bodies.rows(np.unique(of[of >= 0]))]
+        return np.sort(np.concatenate([ids[of < 0], members]))
+
+    def of_heads(self) -> tuple[Floats, Floats]:
+        """Diameters [m] and masses [kg] by id; the first member of a clump has those of the clump."""
+        d, m = self.d.copy(), self.m.copy()
+        if self.bodies is not None:
+            d[self.bodies.first], m[self.bodies.first] = self.bodies.d, self.bodies.m
+        return d, m
+
+    @property
     def d_mean(self) -> float:
         """Mean diameter of the free grains, each clump as the sphere of its volume [m]."""
         return float(self.whole_grains()[0].mean())

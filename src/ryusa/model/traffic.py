@@ -1,7 +1,7 @@
 """Grains that enter and leave during a run: feeds, exits, and the record of each passage."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -183,13 +183,18 @@ class Population:
     feed: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
 
     @staticmethod
-    def first(traffic: Traffic, m: Floats) -> "Population":
-        """Before any grain has entered; `m` are the masses of all grains [kg]."""
+    def first(traffic: Traffic, m: Floats, heads: NDArray[np.bool_] | None = None) -> "Population":
+        """Before any grain has entered; `m` are the masses of all grains [kg].
+
+        `heads` tells which of them count: the members of a clump but the first are never due.
+        """
         n = len(m)
+        heads = np.ones(n, np.bool_) if heads is None else heads
         status, due = np.full(n, WAITING, np.int64), np.full(n, math.inf)
         feeds = np.full(n, NONE, np.int64)
         status[: traffic.n_first] = PRESENT
         for k, feed in enumerate(traffic.feeds):
             own = slice(feed.first, feed.first + feed.count)
-            due[own], feeds[own] = feed.due(m), k
+            mine = feed.first + np.flatnonzero(heads[own])
+            due[mine], feeds[own] = replace(feed, first=0, count=len(mine)).due(m[mine]), k
         return Population(status, due, feeds)

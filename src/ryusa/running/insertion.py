@@ -15,6 +15,7 @@ from ryusa.water.eddies import draw
 
 ATTEMPTS = 50  # places tried for a grain at one instant
 _STREAM = 0x2545F4914F6CDD1D  # tells these random numbers from those of the eddies of the same seed
+_TURNS = 0x3C6EF372FE94F82B  # tells orientations from places
 
 
 @dataclass
@@ -109,6 +110,20 @@ def drawn_place(feed: Feed, plane_case: bool, d: float, grain: int, step: int, a
     other = np.cross(normal, side)
     far, turn = free * math.sqrt(u[0]), 2.0 * math.pi * u[1]
     return np.array(feed.centre) + far * (math.cos(turn) * side + math.sin(turn) * other)
+
+
+def drawn_orientation(feed: Feed, grain: int, step: int, attempt: int) -> Floats:
+    """Orientation drawn for a clump, a quaternion (w, x, y, z); all are as likely.
+
+    Notes
+    -----
+    Of three numbers that follow from (seed, grain, step, attempt) alone, after Shoemake (1992, Graphics Gems
+    III, 124).
+    """
+    u = [draw(feed.seed ^ _TURNS, grain, step, 3 * attempt + k) for k in range(3)]
+    low, high = math.sqrt(1.0 - u[0]), math.sqrt(u[0])
+    a, b = 2.0 * math.pi * u[1], 2.0 * math.pi * u[2]
+    return np.array([low * math.sin(a), low * math.cos(a), high * math.sin(b), high * math.cos(b)])
 
 
 def wrapped(place: Floats, period: tuple[float, float]) -> Floats:

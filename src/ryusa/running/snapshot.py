@@ -28,6 +28,7 @@ _ZERO_UNLESS_USED = {
     f"contacts/{name}" for name in ("spring_r", "dash_r", "k_n", "rest_of_closing", "overlap", "event")
 }
 _MOTION = ("x", "v", "omega")  # nan in a state where a grain is not there, zero in a checkpoint
+_MOTION_OF_BODIES = ("bodies/x", "bodies/v", "bodies/q", "bodies/momentum")
 _AT_ONCE = 1 << 14  # contacts
 _EDGE = 1e12  # m; larger coordinates are refused
 _LARGEST = 1e100  # in any unit: products of a few such values are still finite
@@ -41,6 +42,9 @@ def state_block(state: State) -> CheckpointBlock:
     if len(state.present):
         for name in _MOTION:
             arrays[name] = np.where(state.present[:, None], arrays[name], 0.0)
+        if state.bodies is not None:
+            for name in _MOTION_OF_BODIES:
+                arrays[name] = np.where(np.isnan(arrays[name]), 0.0, arrays[name])
     else:
         del arrays["present"]
     return CheckpointBlock(values, arrays)
@@ -110,7 +114,7 @@ class _Reader:
             tally=self._tally(),
             fluid=self._fluid(n) if values.get("fluid") else None,
             coupling=self._coupling(n) if values.get("coupling") else None,
-            bodies=self._bodies() if values.get("bodies") else None,
+            bodies=self._bodies(present) if values.get("bodies") else None,
             engine=self._engine(),
         )
         if unknown := sorted(set(self._arrays) - self._read):
@@ -208,17 +212,19 @@ class _Reader:
             eddies=eddies,
         )
 
-    def _bodies(self) -> BodyState:
-        if self._scene.bodies is None:
+    def _bodies(self, present: NDArray[np.bool_]) -> BodyState:
+        if (bodies := self._scene.bodies) is None:
             raise ValueError("clumps, but the scene has none")
-        n = self._scene.bodies.n
-        return BodyState(
-            x=self._positions("bodies/x", n),
-            v=self._floats("bodies/v", (n, 3)),
-            q=self._floats("bodies/q", (n, 4)),
-            momentum=self._floats("bodies/momentum", (n, 3)),
-            image=self._array("bodies/image", (n, 2), _INT32),
-        )
+        n = bodies.n
+        motion = {"x": self._positions("bodies/x", n)}
+        motion |= {name: self._floats(f"bodies/{name}", (n, 3)) for name in ("v", "momentum")}
+        motion["q"] = self._floats("bodies/q", (n, 4))
+        if len(present):
+            if not np.array_equal(present[bodies.members], np.repeat(present[bodies.first], bodies.count)):
+                raise ValueError("a clump of which some members are there and others are not")
+            there = present[bodies.first][:, None]
+            motion = {name: np.where(there, one, np.nan) for name, one in motion.items()}
+        return BodyState(**motion, image=self._array("bodies/image", (n, 2), _INT32))
 
     def _positions(self, name: str, n: int) -> NDArray[np.float64]:
         x = self._floats(name, (n, 3))

@@ -10,16 +10,17 @@ from numpy.typing import NDArray
 from ryusa.engine.protocol import Engine
 from ryusa.engine.shared.passages import Entering, everywhere, placed, removed
 from ryusa.errors import CheckpointError
-from ryusa.model import PASSAGE, Exit, Scene, State
+from ryusa.model import PASSAGE, BodyState, Exit, Scene, State
 from ryusa.model.arrays import Floats
 from ryusa.model.traffic import GONE, IN, NONE, OUT, PRESENT, WAITING, Population, Traffic
 from ryusa.model.wall_traffic import carrier_of, speed_of_feed
 from ryusa.model.walls import BEGIN
 from ryusa.running.checkpoint import CheckpointBlock
-from ryusa.running.insertion import ATTEMPTS, Neighbours, drawn_place, wrapped
+from ryusa.running.insertion import ATTEMPTS, Neighbours, drawn_orientation, drawn_place, wrapped
 
 _FULL = 3  # grains in a row that find no place, after which a feed is tried again at the next instant
 Ints = NDArray[np.int64]
+_UPRIGHT = np.array([1.0, 0.0, 0.0, 0.0])  # orientation of a grain that is no clump
 
 
 class Passed(NamedTuple):
@@ -64,7 +65,7 @@ class TrafficRule:
             return None
         feeds, exits = len(traffic.feeds), len(traffic.exits)
         return TrafficRule(
-            traffic, Population.first(traffic, scene.m), np.zeros(feeds, np.int64),
+            traffic, Population.first(traffic, scene.of_heads()[1], scene.heads), np.zeros(feeds, np.int64),
             np.zeros(exits, np.int64), np.zeros(feeds, np.bool_), scene,
         )  # fmt: skip
 
@@ -76,7 +77,7 @@ class TrafficRule:
     @property
     def n_present(self) -> int:
         """Number of grains that are there."""
-        return int(np.sum(self.population.status == PRESENT))
+        return int(np.sum((self.population.status == PRESENT) & self._scene.heads))
 
     def next_step(self, step: int, next_change: int) -> int:
         """Step of the next instant; where a feed moves with a wall a change of the scene is one too."""
@@ -103,14 +104,14 @@ class TrafficRule:
         status = self.population.status
         leaving = np.zeros(0, PASSAGE)
         if self.traffic.exits:
-            x, v, _ = engine.kinematics()
+            x, v = centres(scene, engine)
             leaving = self._leaving(scene, x, v, step, t)
         waits = (status == WAITING) & (self.population.due <= t)
         if not len(leaving) and not waits.any():
             return None
         state = engine.state()
         if len(leaving):
-            leaving["omega"] = state.omega[leaving["grain"]]
+            leaving["omega"] = state.omega[leaving["grain"]]  # of a clump, that of its first member
         gone, events = removed(scene, state, leaving["grain"])
         self._let_go(leaving)
         found = self._place(scene, gone, gone.x, leaving, events)
@@ -118,7 +119,8 @@ class TrafficRule:
 
     def _leaving(self, scene: Scene, x: Floats, v: Floats, step: int, t: float) -> np.ndarray:
         """Grains that are beyond an exit, in the order of exits and ids; dtype PASSAGE, without spin."""
-        there, inside = self.population.status == PRESENT, wrapped(x, scene.period)
+        there, inside = (self.population.status == PRESENT) & scene.heads, wrapped(x, scene.period)
+        d, m = scene.of_heads()
         found: list[np.ndarray] = []
         for k, one in enumerate(self.traffic.exits):
             carrier = carrier_of(scene, one.wall, t)
@@ -127,7 +129,7 @@ class TrafficRule:
             there[ids] = False
             rows = np.zeros(len(ids), PASSAGE)
             rows["step"], rows["way"], rows["at"], rows["to"] = step, OUT, k, one.to
-            rows["grain"], rows["d"], rows["m"], rows["due"] = ids, scene.d[ids], scene.m[ids], math.nan
+            rows["grain"], rows["d"], rows["m"], rows["due"] = ids, d[ids], m[ids], math.nan
             weight = scene.m_weight[ids, None] * scene.gravity / (scene.m + scene.m_added)[ids, None]
             longest = self.traffic.interval * scene.dt
             for row, i, a in zip(rows, ids.tolist(), weight, strict=True):
@@ -146,8 +148,10 @@ class TrafficRule:
         for row in leaving:
             i, to = int(row["grain"]), int(row["to"])
             self.left[row["at"]] += 1
-            population.status[i] = GONE if to == NONE else WAITING
-            population.feed[i], population.due[i] = to, math.inf if to == NONE else row["t"]
+            spheres = self._scene.spheres_of(np.array([i]))
+            population.status[spheres] = GONE if to == NONE else WAITING
+            population.feed[spheres] = to
+            population.due[i] = math.inf if to == NONE else row["t"]
 
     def _place(
         self, scene: Scene, state: State, x: Floats, leaving: np.ndarray, events: np.ndarray
@@ -160,6 +164,7 @@ class TrafficRule:
         failed = np.zeros(len(self.traffic.feeds), np.int64)
         rows: list[np.ndarray] = []
         places: list[Floats] = []
+        turns: list[Floats] = []
         inside = wrapped(x, scene.period)
         for i in due.tolist():
             k = int(population.feed[i])
@@ -167,37 +172,43 @@ class TrafficRule:
                 continue
             if k not in near:
                 near[k] = self._neighbours(scene, k, inside, t)
-            row, place = self._entering(scene, near[k], i, step, t)
+            row, place, q = self._entering(scene, near[k], i, step, t)
             if place is None:
                 failed[k] += 1
                 continue
             failed[k] = 0
+            spheres, x_of = spheres_at(scene, i, place, q)
             for one in near.values():
-                one.add(place, float(scene.d[i]))
-            population.status[i], population.due[i], population.feed[i] = PRESENT, math.inf, NONE
+                for sphere, x_sphere in zip(spheres.tolist(), x_of, strict=True):
+                    one.add(x_sphere, float(scene.d[sphere]))
+            population.status[spheres], population.feed[spheres] = PRESENT, NONE
+            population.due[i] = math.inf
             self.entered[k] += 1
             rows.append(row)
             places.append(place)
-            inside[i] = place
+            turns.append(q)
+            inside[spheres] = x_of
         if not rows:
             return Passed(state, events, leaving)
         came = np.concatenate(rows)
         back = t - came["t"][:, None]
         a = self._fall(scene, came["grain"])
         speed = came["v"] + (back - 0.5 * scene.dt) * a  # that of half a step before
-        grains = Entering(came["grain"], np.array(places), speed, came["omega"])
+        grains = Entering(came["grain"], np.array(places), speed, came["omega"], np.array(turns))
         return Passed(placed(scene, state, grains), events, np.concatenate([leaving, came]))
 
     def _neighbours(self, scene: Scene, k: int, inside: Floats, t: float) -> Neighbours:
         feed, interval = self.traffic.feeds[k], self.traffic.interval * scene.dt
         g = float(np.linalg.norm(scene.gravity))
         reach = interval * (math.hypot(*feed.velocity) + 2.0 * speed_of_feed(scene, feed) + g * interval)
+        if scene.bodies is not None:
+            reach += 0.5 * float(scene.bodies.extent(scene.d).max(initial=0.0))
         return Neighbours.of(scene, feed, inside, self.population.status == PRESENT, reach, t)
 
     def _entering(
         self, scene: Scene, near: Neighbours, i: int, step: int, t: float
-    ) -> tuple[np.ndarray, Floats | None]:
-        """Record of a grain that enters, and its place; None where it finds none."""
+    ) -> tuple[np.ndarray, Floats | None, Floats]:
+        """Record of a grain that enters, its place, None where it finds none, and its orientation."""
         feed, due = self.traffic.feeds[int(self.population.feed[i])], float(self.population.due[i])
         late = t - due
         # a grain that passes a disc between two instants is already on its way
@@ -205,22 +216,27 @@ class TrafficRule:
         if scene.walls is not None and feed.wall != NONE and due < scene.walls.motion[feed.wall, BEGIN]:
             on_way = 0.0  # the wall moved otherwise then
         carrier = carrier_of(scene, feed.wall, t - on_way)
-        v, a, d = np.array(feed.velocity), self._fall(scene, np.array([i]))[0], float(scene.d[i])
+        v, a = np.array(feed.velocity), self._fall(scene, np.array([i]))[0]
+        d, m = (float(one[i]) for one in scene.of_heads())
+        of = -1 if scene.bodies is None else int(scene.bodies.of_grain(scene.n_grain)[i])
+        extent = d if scene.bodies is None or of < 0 else float(scene.bodies.extent(scene.d)[of])
         row = np.zeros(1, PASSAGE)
         row["step"], row["t"], row["way"], row["at"] = step, t - on_way, IN, self.population.feed[i]
-        row["grain"], row["to"], row["due"], row["d"], row["m"] = i, NONE, due, d, scene.m[i]
+        row["grain"], row["to"], row["due"], row["d"], row["m"] = i, NONE, due, d, m
         if carrier is not None and scene.rotation:
             row["omega"] = carrier.spin
         for attempt in range(ATTEMPTS):
-            begin = drawn_place(feed, scene.plane_case, d, i, step, attempt)
+            begin = drawn_place(feed, scene.plane_case, extent, i, step, attempt)
+            q = drawn_orientation(feed, i, step, attempt) if of >= 0 else _UPRIGHT
             if carrier is not None:
                 begin = carrier.place(begin)
                 v = carrier.turn @ np.array(feed.velocity) + carrier.velocity_at(begin)
             place = wrapped(begin + on_way * v + 0.5 * on_way * on_way * a, scene.period)
-            if near.free(place, d):
+            spheres, x = spheres_at(scene, i, place, q)
+            if all(near.free(*one) for one in zip(x, scene.d[spheres].tolist(), strict=True)):
                 row["x"], row["v"] = begin, v
-                return row, place
-        return row, None
+                return row, place, q
+        return row, None, _UPRIGHT
 
     @staticmethod
     def _fall(scene: Scene, ids: Ints) -> Floats:
@@ -230,10 +246,11 @@ class TrafficRule:
     def debts(self, step: int, t: float) -> list[tuple[int, float]]:
         """Number and mass [kg] of the grains that found no place at each feed, at the last instant."""
         population = self.population
+        m = self._scene.of_heads()[1]
         instant = t - (step % self.traffic.interval) * self._scene.dt
         waits = (population.status == WAITING) & (population.due <= instant)
         return [
-            (int(own.sum()), float(self._scene.m[own].sum()))
+            (int(own.sum()), float(m[own].sum()))
             for k in range(len(self.traffic.feeds))
             for own in (waits & (population.feed == k),)
         ]
@@ -296,6 +313,29 @@ class TrafficRule:
         self.population = Population(status.copy(), due.copy(), feed.copy())
         self.entered, self.left = found["entered"].copy(), found["left"].copy()
         self.said = found["said"].astype(np.bool_)
+
+
+def centres(scene: Scene, engine: Engine) -> tuple[Floats, Floats]:
+    """Centres [m] and velocities [m/s] by id; those of a clump stand at its first member."""
+    if scene.bodies is None:
+        x, v, _ = engine.kinematics()
+        return x, v
+    state = engine.grains()
+    x, v, moved = state.x.copy(), state.v.copy(), state.bodies
+    assert moved is not None
+    x[scene.bodies.first], v[scene.bodies.first] = moved.x, moved.v
+    return x, v
+
+
+def spheres_at(scene: Scene, i: int, place: Floats, q: Floats) -> tuple[Ints, Floats]:
+    """Ids and centres of the spheres of a grain or clump at a place [m], shape (n,) and (n, 3)."""
+    spheres = scene.spheres_of(np.array([i]))
+    if scene.bodies is None or len(spheres) == 1:
+        return spheres, place[None]
+    which = scene.bodies.of_grain(scene.n_grain)[[i]]
+    some = scene.bodies.some(which, scene.bodies.first[which])
+    none = np.zeros((1, 3))
+    return spheres, place + BodyState(place[None], none, q[None], none, np.zeros((1, 2), np.int32)).arms(some)
 
 
 def time_since(one: Exit, x: Floats, v: Floats, a: Floats) -> float:

@@ -133,7 +133,7 @@ class Painter:
             return x
         passages, step = self.results.passages, self.results.frames.step
         within = (passages["step"] > step[k]) & (passages["step"] <= step[k + 1])
-        ids = passages["grain"][within]
+        ids = self.results.scene.spheres_of(passages["grain"][within])
         x[ids] = (before if share < 0.5 else after)[ids]
         return x
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from ryusa.casefile.builders.schema import DropSection, EmptySection, SaltationSection
 from ryusa.casefile.builders.values import periodic, sizes
+from ryusa.casefile.shape import extent
 from ryusa.casefile.traffic.schema import ExitSection, FeedSection
 from ryusa.casefile.traffic.values import (
     FULLEST,
@@ -146,13 +147,18 @@ def _direction(case: "Case", key: str, normal: Sequence[float], given: bool) -> 
         yield CaseError(key, list(normal), "must have y = 0 in a plane scene")
 
 
+def _largest(case: "Case") -> float:
+    """Diameter of the sphere that holds the largest grain, however a clump is turned [m]."""
+    return sizes(case)[2] * extent(case)
+
+
 def _box(
     case: "Case", key: str, low: Sequence[float] | None, high: Sequence[float] | None
 ) -> Iterator[CaseError]:
     """Find boxes without a volume, or thinner than the largest grain."""
     if low is None or high is None:
         return
-    plane, (_, _, largest) = case.motion.plane, sizes(case)
+    plane, largest = case.motion.plane, _largest(case)
     if plane and (low[1], high[1]) != (0.0, 0.0):
         yield CaseError(f"{key}.low", list(low), "must have y = 0 in a plane scene, as high")
     axes = (0, 2) if plane else (0, 1, 2)
@@ -166,7 +172,7 @@ def _box(
 
 def _feed(case: "Case", key: str, feed: FeedSection) -> Iterator[CaseError]:
     """Find feeds without grains, with too small an opening, or a rate that cannot fit."""
-    _, _, largest = sizes(case)
+    largest = _largest(case)
     if feed.radius is not None and 2.0 * feed.radius < largest:
         yield CaseError(
             f"{key}.radius", feed.radius, f"is too small for the largest grain: at least {largest / 2:.4g} m"

@@ -17,7 +17,15 @@ from numpy.typing import NDArray
 
 from ryusa.engine.shared.contact_history import SpringEnergies, energies_of_springs, forces_of_contacts
 from ryusa.engine.shared.contact_records import closed_records, sorted_events
-from ryusa.model import Scene, State, Tally, Term
+from ryusa.engine.shared.passing_bodies import (
+    Held,
+    half_step_on_bodies,
+    held_at_entry,
+    held_by_bodies,
+    split,
+    with_bodies,
+)
+from ryusa.model import BodyState, Scene, State, Tally, Term
 from ryusa.model.arrays import Bools, Floats
 from ryusa.model.contacts import N_EVENT
 from ryusa.model.scene import EventRule
@@ -30,12 +38,13 @@ _NO_SPRINGS = SpringEnergies(0.0, 0.0, 0.0)
 
 
 class Entering(NamedTuple):
-    """Grains to be put into a snapshot, in any order of ids."""
+    """Grains to be put into a snapshot, in any order of ids; a clump by its first member."""
 
     ids: Ints
     x: Floats  # centres, inside the period [m], shape (n, 3)
     v: Floats  # [m/s]
     omega: Floats  # [rad/s]
+    q: Floats  # orientations of clumps, shape (n, 4)
 
 
 def everywhere(state: State) -> Bools:
@@ -49,7 +58,7 @@ def removed(scene: Scene, state: State, ids: Ints) -> tuple[State, np.ndarray]:
     Parameters
     ----------
     scene, state : the scene, and a snapshot of all its grains (`GrainPool.state`).
-    ids : of the grains, present ones.
+    ids : of the grains, present ones; of a clump one member at least.
 
     Returns
     -------
@@ -58,6 +67,7 @@ def removed(scene: Scene, state: State, ids: Ints) -> tuple[State, np.ndarray]:
     """
     if not len(ids):
         return state, sorted_events(np.zeros((0, N_EVENT)))
+    ids = scene.spheres_of(ids)
     leaves = np.zeros(scene.n_grain, dtype=np.bool_)
     leaves[ids] = True
     held = state.contacts
@@ -72,9 +82,12 @@ def removed(scene: Scene, state: State, ids: Ints) -> tuple[State, np.ndarray]:
     image = state.image.copy()
     if len(image):
         image[ids] = 0
+    bodies = state.bodies
+    if bodies is not None:
+        bodies = with_bodies(scene, bodies, split(scene, ids)[1], None)
     state = replace(
         state, x=x, v=v, omega=omega, image=image, contacts=kept, tally=tally, engine=None,
-        present=everywhere(state) & ~leaves,
+        present=everywhere(state) & ~leaves, bodies=bodies,
     )  # fmt: skip
     return state, sorted_events(rows)
 
@@ -83,19 +96,27 @@ def placed(scene: Scene, state: State, grains: Entering) -> State:
     """Put grains into a snapshot; they touch nothing."""
     if not len(grains.ids):
         return state
-    ids, there = grains.ids, everywhere(state).copy()
+    ids, there = scene.spheres_of(grains.ids), everywhere(state).copy()
     there[ids] = True
     x, v, omega = (array.copy() for array in (state.x, state.v, state.omega))
-    x[ids], v[ids], omega[ids] = grains.x, grains.v, grains.omega
+    x[grains.ids], v[grains.ids], omega[grains.ids] = grains.x, grains.v, grains.omega
+    bodies = state.bodies
+    if scene.bodies is not None and bodies is not None:
+        of = scene.bodies.of_grain(scene.n_grain)[grains.ids]
+        made = of >= 0
+        some = scene.bodies.some(of[made], scene.bodies.first[of[made]])
+        put = BodyState.of(some, *(one[made] for one in (grains.x, grains.v, grains.q, grains.omega)))
+        bodies = with_bodies(scene, bodies, of[made], put)
+        x[some.members], v[some.members], omega[some.members] = put.of_members(some)
     image = state.image.copy() if len(state.image) else np.zeros((scene.n_grain, 2), dtype=np.int32)
     image[ids] = 0
-    state = replace(state, x=x, v=v, omega=omega, image=image, engine=None, present=there)
+    state = replace(state, x=x, v=v, omega=omega, image=image, engine=None, present=there, bodies=bodies)
     return replace(state, tally=_more(scene, state, ids))
 
 
 def _less(scene: Scene, state: State, ids: Ints, leaves: Bools, places: Ints) -> Tally | None:
     """The account without the grains of some ids, whose contacts are at `places`."""
-    held, dt = state.contacts, scene.dt
+    contacts, dt = state.contacts, scene.dt
     force, torque = np.zeros((scene.n_grain, 3)), np.zeros((scene.n_grain, 3))
     to_partners = 0.0
     springs, of_walls = _NO_SPRINGS, np.zeros(scene.n_wall)
@@ -103,7 +124,7 @@ def _less(scene: Scene, state: State, ids: Ints, leaves: Bools, places: Ints) ->
         springs = energies_of_springs(scene, state, places)
         normal, on_i = forces_of_contacts(scene, state, places)
         of_walls = _pending_of_walls(scene, state, places, normal, on_i)
-        i, j = held.i[places], held.j[places]
+        i, j = contacts.i[places], contacts.j[places]
         free = j < scene.n_grain
         about = np.cross(normal, on_i)  # times the radius: the torque on either side
         np.add.at(force, i, on_i)
@@ -111,10 +132,12 @@ def _less(scene: Scene, state: State, ids: Ints, leaves: Bools, places: Ints) ->
         np.add.at(force, j[free], -on_i[free])
         np.add.at(torque, j[free], 0.5 * scene.d[j[free], None] * about[free])
         stays = np.unique(np.concatenate([i, j[free]]))
-        stays = stays[~leaves[stays]]
-        to_partners = 0.5 * dt * float(np.sum(force[stays] * state.v[stays]))
+        stays, partners = split(scene, stays[~leaves[stays]])
+        to_partners = half_step_on_bodies(scene, state, partners, force, torque)
+        to_partners += 0.5 * dt * float(np.sum(force[stays] * state.v[stays]))
         if scene.rotation:
             to_partners += 0.5 * dt * float(np.sum(torque[stays] * state.omega[stays]))
+    ids, which = split(scene, ids)
     v, weight, m = state.v[ids], *_weight_and_mass(scene, ids)
     before = v - dt * (weight + force[ids]) / m[:, None]
     kinetic = 0.5 * float(np.sum(m[:, None] * v * before))
@@ -123,7 +146,8 @@ def _less(scene: Scene, state: State, ids: Ints, leaves: Bools, places: Ints) ->
         omega, inertia = state.omega[ids], scene.inertia[ids, None]
         spin = 0.5 * float(np.sum(inertia * omega * (omega - dt * torque[ids] / inertia)))
     potential = _height(scene, state, ids, state.x[ids] - dt * v)
-    less = _entered(state, -kinetic, -spin, -potential, springs, to_partners)
+    held = Held(kinetic, spin, potential) + held_by_bodies(scene, state, which, force, torque)
+    less = _entered(state, -held.kinetic, -held.spin, -held.potential, springs, to_partners)
     return less if less is None else _without_work(less, of_walls)
 
 
@@ -166,11 +190,13 @@ def _without_work(tally: Tally, of_walls: Floats) -> Tally:
 
 def _more(scene: Scene, state: State, ids: Ints) -> Tally | None:
     """The account with the grains of some ids, which have just been put in."""
+    ids, which = split(scene, ids)
     v, weight, m = state.v[ids], *_weight_and_mass(scene, ids)
     after = v + scene.dt * weight / m[:, None]
     kinetic = 0.5 * float(np.sum(m[:, None] * v * after))
     spin = 0.5 * float(np.sum(scene.inertia[ids, None] * state.omega[ids] ** 2)) if scene.rotation else 0.0
-    return _entered(state, kinetic, spin, _height(scene, state, ids, state.x[ids]), _NO_SPRINGS, 0.0)
+    held = Held(kinetic, spin, _height(scene, state, ids, state.x[ids])) + held_at_entry(scene, state, which)
+    return _entered(state, held.kinetic, held.spin, held.potential, _NO_SPRINGS, 0.0)
 
 
 def _weight_and_mass(scene: Scene, ids: Ints) -> tuple[Floats, Floats]:

@@ -141,8 +141,6 @@ def _refused_of_clumps(scene: Scene) -> list[str]:
         found.append("clumps have no films of water between them: rebound must be dry, film_reach 0")
     if scene.column is not None and scene.column.fluctuations != Fluctuations.NONE:
         found.append("clumps need a column of water without fluctuations: each grain has an eddy of its own")
-    if scene.traffic is not None:
-        found.append("clumps cannot enter or leave through feeds and exits (design/0022)")
     return found
 
 
