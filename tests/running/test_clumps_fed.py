@@ -13,6 +13,9 @@ import ryusa
 from ryusa.build import scene as scene_of
 from ryusa.build.clumps import with_clumps
 from ryusa.casefile.read import read_text
+from ryusa.engine.cpu.engine import CpuEngine
+from ryusa.engine.pool import GrainPool
+from ryusa.engine.shared.passages import removed
 from ryusa.formats.export import export
 from ryusa.laws.families import ContactTiming
 from ryusa.model import Exit, Feed, Traffic
@@ -188,4 +191,34 @@ def test_pictures_view_and_tables_show_those_that_are_there(whole: Results, tmp_
     whole.film(frames=3).save(tmp_path / "film.webp")
     [table] = export(whole, tmp_path / "grains.csv", "csv", at=float(whole.frames.t[-1]))
     there = int(np.isfinite(whole.frames.x[-1][:, 0]).sum())
-    assert len(table.read_text().splitlines()) == there + 1 + int(whole.scene.fixed_active.sum())
+    assert len(table.read_text().splitlines()) == there + 2 + int(whole.scene.fixed_active.sum())
+
+
+def test_a_clump_taken_out_of_a_contact_leaves_no_imbalance() -> None:
+    """Two that spin and collide without damping: one is taken away while they press on each other."""
+    keys: dict[str, Any] = {"timing": ContactTiming.AT_STEPS, "restitution": 1.0, "friction": 0.3}
+    x = np.array([[0.0, 0.0, 0.0], [1.7 * D, 0.1 * D, 0.2 * D], [0.0, 9.0 * D, 0.0]])
+    scene, state = scene_of(x=x, d=D, stiffness=2000.0, dt=2.0e-6, **keys)
+    omega = np.array([[20.0, -30.0, 10.0], [-15.0, 10.0, 40.0], [0.0, 0.0, 5.0]])
+    v = np.array([[0.3, 0.0, 0.0], [-0.2, 0.1, 0.0], [0.0, 0.0, 0.0]])
+    traffic = Traffic(exits=(Exit("far", point=(9.0, 0.0, 0.0), normal=(1.0, 0.0, 0.0)),), n_first=3)
+    scene = replace(scene, traffic=traffic, world_low=(-1.0, -1.0, -5.0), world_high=(1.0, 1.0, 5.0))
+    state = replace(state, v=v, omega=omega, present=np.ones(3, np.bool_))
+    scene, state = with_clumps(scene, state, [shape("rod")])
+    engine = GrainPool(CpuEngine())
+    engine.load(scene, state)
+    for _ in range(4000):
+        engine.advance(10).raise_if_any()
+        if len(engine.state().contacts) and engine.tally().spring_n > 0.2 * engine.tally().kinetic:
+            break
+    before = engine.state()
+    assert before.tally is not None
+    assert len(before.contacts) > 0
+    held = before.tally.kinetic + before.tally.spin + before.tally.spring_n
+    after, _ = removed(scene, before, np.array([3]))
+    assert after.present.tolist() == [True] * 3 + [False] * 3 + [True] * 3
+    engine.load(scene, after)
+    engine.advance(200).raise_if_any()
+    change = engine.tally().imbalance - before.tally.imbalance
+    assert abs(change) < 1e-4 * held
+    assert engine.tally().spring_n == 0.0
