@@ -12,6 +12,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
+from importlib import import_module
 from multiprocessing import get_context, parent_process
 from pathlib import Path
 from typing import Any, TypeVar
@@ -102,23 +103,22 @@ def _processes(given: str, jobs: int | None) -> RunExecutor:
     return Processes(jobs or 1)
 
 
-def _dask(given: str, jobs: int | None) -> RunExecutor:
-    from ryusa.study.cluster import DaskWorkers
+def _in_module(module: str, name: str) -> Callable[[str, int | None], RunExecutor]:
+    """An executor of a module that stands above this one, which is loaded when it is asked for."""
 
-    return DaskWorkers(given, jobs)
+    def opened(given: str, jobs: int | None) -> RunExecutor:
+        return getattr(import_module(module), name)(given, jobs)
 
-
-def _slurm(given: str, jobs: int | None) -> RunExecutor:
-    from ryusa.study.slurm import SlurmJobs
-
-    return SlurmJobs(given, jobs)
+    return opened
 
 
 DEFAULT = "processes"
 # by name; of what stands after the colon, and the number of runs at a time if it is given
 EXECUTORS: dict[str, Callable[[str, int | None], RunExecutor]] = {
-    DEFAULT: _processes, "dask": _dask, "slurm": _slurm,
-}  # fmt: skip
+    DEFAULT: _processes,
+    "dask": _in_module("ryusa.study.cluster", "DaskWorkers"),
+    "slurm": _in_module("ryusa.study.slurm", "SlurmJobs"),
+}
 FORMS = "processes, dask:ADDRESS, slurm, slurm:INTERFACE"
 
 
