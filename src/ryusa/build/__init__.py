@@ -3,5 +3,17 @@
 from ryusa.build.case import Built, build
 from ryusa.build.change import change
 from ryusa.build.from_arrays import scene
+from ryusa.build.walls import WallMotion, cylinder, disc, rectangle, ridges, triangles
 
-__all__ = ["Built", "build", "change", "scene"]
+__all__ = [
+    "Built",
+    "WallMotion",
+    "build",
+    "change",
+    "cylinder",
+    "disc",
+    "rectangle",
+    "ridges",
+    "scene",
+    "triangles",
+]

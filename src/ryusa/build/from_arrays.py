@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from ryusa.build.assemble import Laws, assemble, masses
 from ryusa.build.overlaps import refuse_overlaps
 from ryusa.build.placement import Placement, Wall
+from ryusa.build.walls import SolidWall, refuse_overlaps_with_walls, with_room, with_walls
 from ryusa.casefile.time import STEPS_OF_HERTZ, STEPS_PER_CONTACT
 from ryusa.errors import CaseError
 from ryusa.laws import collision
@@ -28,6 +29,7 @@ def scene(
     x_fixed: ArrayLike | None = None,
     d_fixed: ArrayLike | None = None,
     planes: Sequence[tuple[str, Sequence[float], Sequence[float]]] = (),
+    walls: Sequence[SolidWall] = (),
     stiffness: float = 1.0e4,
     shear_ratio: float = 2.0 / 7.0,
     restitution: float = 0.7,
@@ -57,7 +59,8 @@ def scene(
     density : of the grains [kg/m3].
     v, omega : velocities [m/s] and spins [rad/s], shape (n, 3); at rest when not given.
     x_fixed, d_fixed : fixed grains, as x and d; d_fixed is the mean of d when not given.
-    planes : (name, point [m], normal) of each flat wall.
+    planes : (name, point [m], normal) of each flat wall without an end.
+    walls : of `rectangle`, `ridges`, `disc`, `cylinder` and `triangles`, each at rest or with a `WallMotion`.
     stiffness, shear_ratio, restitution, restitution_shear, friction, slip, tension,
         timing : the contact law; friction is mu = tan(phi). `contact` replaces them by a complete law.
     gravity, slope : g [m/s2] and bed slope [rad], down towards +x.
@@ -72,7 +75,8 @@ def scene(
     Raises
     ------
     CaseError : shapes that do not fit, a number that is not finite or out of its range, overlapping first
-        grains, lanes of a plane scene closer than the largest diameter, a wall that crosses a period.
+        grains, lanes of a plane scene closer than the largest diameter, a wall that crosses a period or
+        overlaps a first grain.
 
     >>> fixed, first = scene(x=[[0.0, 0.0, 0.011]], d=0.002, planes=[("floor", (0, 0, 0), (0, 0, 1))])
     >>> fixed.n_grain, fixed.n_plane, first.n_grain
@@ -87,6 +91,7 @@ def scene(
     placement = _placement(x, d, v, omega, x_fixed, d_fixed, planes, period, allow_overlap)
     _refuse_walls(placement, plane_case)
     refuse_overlaps(placement, "x", plane_case)
+    refuse_overlaps_with_walls(placement, walls, "walls")
     fluid = water or Water()
     e_s = restitution if restitution_shear is None else restitution_shear
     law = contact or _contact_law(stiffness, shear_ratio, friction, restitution, e_s, slip, tension, timing)
@@ -96,7 +101,8 @@ def scene(
         density=density, contact=law, dt=step, rolling=rolling or RollingLaw(), water=fluid, g=gravity,
         slope=slope, rotation=rotation, plane_case=plane_case, slab_width=slab_width, events=events,
     )  # fmt: skip
-    return assemble(placement, laws)
+    made, state = assemble(placement, laws)
+    return with_room(with_walls(made, walls), low=True, high=True), state
 
 
 def _refuse_numbers(
