@@ -35,7 +35,7 @@ def shear_zone(found: ShearZone) -> Figure:
     )  # fmt: skip
     right.plot(
         [split_bottom_centre(found.r_s, found.height) * CM], [found.height * CM], "k*", ms=6.0,
-        label="Fenistein & van Hecke 2003",
+        label="5/2 power law (not verified)",
     )  # fmt: skip
     right.axvline(found.r_s * CM, color=style.FAINT, ls=":", lw=0.8)
     right.set_ylim(0.0, 1.15 * found.height * CM)
