@@ -82,6 +82,7 @@ def scene(
     >>> fixed.n_grain, fixed.n_plane, first.n_grain
     (1, 1, 1)
     """
+    # One function: four lines of five are its signature, and what the arguments mean.
     _refuse_numbers(
         {"density": density, "stiffness": stiffness, "steps_per_contact": steps_per_contact, "dt": dt},
         {"shear_ratio": shear_ratio, "friction": friction, "gravity": gravity},
