@@ -52,7 +52,7 @@ class ClosedMesh:
         >>> ClosedMesh.of(np.array([[[0.0, 0, 0], [0, 1, 0], [1, 0, 0]]]))
         Traceback (most recent call last):
         ...
-        ryusa.model.closed_mesh.MeshFault: is not closed: 3 sides of triangles have no other beside them
+        ryusa.model.closed_mesh.MeshFault: has 1 triangles; a body has 4 to 100,000
         """
         number = _numbered(corners)
         apart = (number != np.roll(number, 1, axis=1)).all(axis=1)
