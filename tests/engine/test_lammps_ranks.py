@@ -16,11 +16,12 @@ from ryusa.engine import registry
 from ryusa.results import Results
 
 HERE = Path(__file__).parent
+MISSING = registry.unavailable("lammps")
 MPIRUN = shutil.which("mpirun", path=f"{Path(sys.executable).parent}{os.pathsep}{os.environ.get('PATH', '')}")
 
 pytestmark = [
-    pytest.mark.skipif(MPIRUN is None, reason="mpirun is an extra"),
-    pytest.mark.skipif(bool(registry.unavailable("lammps")), reason="LAMMPS is an extra"),
+    pytest.mark.skipif(MPIRUN is None, reason="there is no mpirun beside Python or on the path"),
+    pytest.mark.skipif(bool(MISSING), reason=f"the engine is not available: {MISSING}"),
 ]
 
 FLOW = [

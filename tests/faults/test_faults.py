@@ -37,7 +37,9 @@ def kill(folder: Path, kind: str, kills: int, seed: int) -> None:
     assert f"{kind}: {kills} kills" in done.stdout
 
 
-@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
+@pytest.mark.skipif(
+    not hasattr(os, "fork"), reason="kills a process that os.fork made, which this system has not"
+)
 @pytest.mark.parametrize("kind", KINDS)
 def test_runs_killed_at_random_moments_lose_nothing_and_end_with_the_same_results(
     tmp_path: Path, kind: str
@@ -46,7 +48,9 @@ def test_runs_killed_at_random_moments_lose_nothing_and_end_with_the_same_result
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
+@pytest.mark.skipif(
+    not hasattr(os, "fork"), reason="kills a process that os.fork made, which this system has not"
+)
 @pytest.mark.parametrize("kind", KINDS)
 def test_two_hundred_kills_lose_nothing(tmp_path: Path, kind: str) -> None:
     kill(tmp_path, kind, 40, seed=int.from_bytes(os.urandom(4)))

@@ -70,8 +70,15 @@ def parameters_picture(parameters: Sequence[CalibratedParameter]) -> Figure:
 
 
 def _marginal(panel: Axes, one: CalibratedParameter, *, legend: bool) -> None:
-    edges = np.linspace(one.low, one.high, BINS + 1)
-    for values, fill, name in ((one.prior, False, "prior"), (one.values, True, "posterior")):
+    _densities(panel, one.prior, one.values, np.linspace(one.low, one.high, BINS + 1))
+    panel.set_ylabel("density")
+    if legend:
+        panel.legend(fontsize=6.5)
+
+
+def _densities(panel: Axes, prior: Floats, posterior: Floats, edges: Floats) -> None:
+    """Draw the distribution of a sample of the prior as a line, and that of the posterior filled."""
+    for values, fill, name in ((prior, False, "prior"), (posterior, True, "posterior")):
         heights, _ = np.histogram(values, edges, density=True)
         panel.stairs(
             heights, edges, fill=fill, color=style.COLOURS[0] if fill else style.COLOURS[6], lw=0.9,
@@ -79,9 +86,6 @@ def _marginal(panel: Axes, one: CalibratedParameter, *, legend: bool) -> None:
         )  # fmt: skip
     panel.set_yticks([])
     panel.set_ylim(0.0, None)
-    panel.set_ylabel("density")
-    if legend:
-        panel.legend(fontsize=6.5)
 
 
 @dataclass(frozen=True)
@@ -154,19 +158,12 @@ def predicted_picture(targets: Sequence[PredictedTarget]) -> Figure:
     for k, (panel, one) in enumerate(zip(panels, targets, strict=False)):
         both = np.concatenate([one.prior, one.posterior])
         edges = np.linspace(both.min(), both.max(), 2 * BINS + 1)
-        for values, fill, name in ((one.prior, False, "prior"), (one.posterior, True, "posterior")):
-            heights, _ = np.histogram(values, edges, density=True)
-            panel.stairs(
-                heights, edges, fill=fill, color=style.COLOURS[0] if fill else style.COLOURS[6], lw=0.9,
-                alpha=0.55 if fill else 1.0, label=name,
-            )  # fmt: skip
+        _densities(panel, one.prior, one.posterior, edges)
         if one.observed is not None:
             value, error = one.observed
             panel.axvspan(value - error, value + error, color=style.COLOURS[1], alpha=0.3, lw=0.0)
             panel.axvline(value, color=style.COLOURS[1], lw=0.9, label="observed ± s.e.")
         panel.set_xlabel(one.label)
-        panel.set_yticks([])
-        panel.set_ylim(0.0, None)
         panel.xaxis.set_major_locator(MaxNLocator(TICKS))
         if k % columns == 0:
             panel.set_ylabel("density")

@@ -2,7 +2,8 @@
 
 import math
 import tomllib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -158,20 +159,13 @@ def read_calibration(path: Path) -> CalibrationAsked:
     return found
 
 
-class _gathered:
+@contextmanager
+def _gathered(faults: list[CaseError]) -> Generator[None]:
     """Within the block a fault is kept in a list instead of raised."""
-
-    def __init__(self, faults: list[CaseError]) -> None:
-        self.faults = faults
-
-    def __enter__(self) -> None:
-        return None
-
-    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> bool:
-        if isinstance(error, CaseError):
-            self.faults.append(error)
-            return True
-        return False
+    try:
+        yield
+    except CaseError as error:
+        faults.append(error)
 
 
 def _each(

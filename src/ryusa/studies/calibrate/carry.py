@@ -166,8 +166,7 @@ def carry_out_calibration(
     runs.make(first[:1], seeds[:1])  # one run shows whether the quantities are there and in which unit
     units = {one: runs.unit(one) for one in asked.targets}
     held = {one.target: one.in_si(units[one.target]) for one in asked.observations}
-    runs.again = False  # that run is new already
-    training = runs.make(first, seeds) if not again else _anew(runs, first, seeds)
+    training = runs.make(first, seeds)
     emulators = _emulators(runs, training)
     seen = [Seen(emulators[one], *held[one]) for one in held]
     posterior = sample_posterior(asked.priors, seen, asked.design_seed)
@@ -182,13 +181,6 @@ def carry_out_calibration(
     )
     coverage = cover(runs, held, emulators, truths) if truths else None
     return Calibration(asked, folder, runs, tuple(training), emulators, posterior, predicted, coverage)
-
-
-def _anew(runs: CaseRuns, u: Any, seeds: tuple[int, ...]) -> list[SweepRun]:
-    runs.again = True
-    made = runs.make(u, seeds)
-    runs.again = False
-    return made
 
 
 def refuse_folder(asked: CalibrationAsked, folder: Path) -> None:

@@ -92,7 +92,7 @@ def emulate(u: Floats, values: Floats, seed: int = 0) -> Emulator:
     from sklearn.gaussian_process import GaussianProcessRegressor
     from sklearn.gaussian_process.kernels import RBF, ConstantKernel, WhiteKernel
 
-    lengths: Any = np.full(u.shape[1], 0.5)  # one for each parameter, which the stub does not know
+    lengths: Any = np.full(u.shape[1], 0.5)  # one a parameter; the stub has a float
     mean, scale = float(values.mean()), float(values.std())
     scale = scale if scale > 0.0 else 1.0
     kernel = ConstantKernel(1.0, (1e-2, 1e3)) * RBF(lengths, (SHORTEST, LONGEST)) + WhiteKernel(

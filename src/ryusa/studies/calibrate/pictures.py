@@ -65,4 +65,5 @@ def drawn_calibration(made: Calibration) -> dict[str, Figure]:
 
 
 def _label(name: str, unit: str) -> str:
-    return f"{name}  ({printed_unit(unit)})" if unit not in {"", "-"} else name
+    words = name.replace("_", " ")
+    return f"{words}  ({printed_unit(unit)})" if unit not in {"", "-"} else words
