@@ -8,6 +8,8 @@ from ryusa.casefile import Case, derive, estimate, explain
 from ryusa.casefile.builders.box import box_plan, hole
 from ryusa.casefile.builders.schema import BoxSection
 from ryusa.casefile.contact.speed import expected_speed
+from ryusa.casefile.read import read
+from ryusa.cases import case_path
 
 CaseOf = Callable[..., Case]
 
@@ -47,3 +49,9 @@ def test_the_impact_speed_of_a_box_is_that_of_its_top_layer(case: CaseOf) -> Non
     assert "top layer" in origin
     assert any(row.name == "overlap/d at rest" for row in explain(high))
     assert estimate.events_expected(high, derive(high)) > 12 * 20 * 0.1
+
+
+def test_without_gravity_impacts_are_as_fast_as_the_fastest_wall() -> None:
+    speed, origin = expected_speed(read(case_path("shear_cell.toml")))
+    assert speed == 0.3
+    assert origin.startswith("speed of the fastest wall")

@@ -2,6 +2,7 @@
 
 import pytest
 
+from ryusa.cases import case_path
 from ryusa.errors import CaseError
 from ryusa.studies.calibrate.asked import read_calibration
 
@@ -79,6 +80,11 @@ def test_a_fault_is_named_by_its_key(tmp_path, old, new, said):
     with pytest.raises(Exception, match=r"study\.toml") as caught:
         read(tmp_path, GOOD.replace(old, new, 1))
     assert said in str(caught.value)
+
+
+def test_a_case_is_not_taken_for_a_calibration(tmp_path):
+    with pytest.raises(CaseError, match="is a case; a calibration is a file of its own"):
+        read(tmp_path, case_path("drop.toml").read_text())
 
 
 def test_all_faults_of_a_file_are_named_together(tmp_path):

@@ -137,6 +137,11 @@ def read_calibration(path: Path) -> CalibrationAsked:
         raise ParseError(path.name, 1, 1, "is no text in UTF-8") from None
     except tomllib.TOMLDecodeError as error:
         raise ParseError(path.name, 1, 1, f"is no TOML: {error}") from None
+    if "grains" in data:
+        raise CaseError(
+            "study", path.name, "is a case; a calibration is a file of its own, which names cases "
+            "(docs/calibration.md)",
+        )  # fmt: skip
     faults: list[CaseError] = []
     found: Any = None
     with _gathered(faults):
