@@ -50,7 +50,7 @@ def calibrate(
     the cases that show them. The cases are run at points that fill the priors,
     with several seeds; an emulator through these runs gives the posterior, and
     further runs are made where it needs them. The same command continues an
-    interrupted calibration. Needs ryusa[calibrate].
+    interrupted calibration. Needs the extra calibrate.
     """
     from ryusa.errors import ResultsError
     from ryusa.studies.calibrate import (

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from inspect import cleandoc
+from textwrap import fill
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import typer
@@ -27,6 +28,7 @@ ALWAYS = {
     "json",
     "output",
 }  # arguments, and options that every measure or every picture takes
+HELP_WIDTH = 78  # of a terminal of 80 columns
 SIDES = ("right", "left")
 
 
@@ -42,8 +44,12 @@ def taking(keyword: str, entries: tuple[Entry, ...]) -> str:
 
 
 def listed(text: str, entries: tuple[Entry, ...]) -> str:
-    """The help of a command, with a line for each entry."""
-    lines = [f"{one.name:<12} {one.doc}" for one in entries]
+    """The help of a command, with a line or two for each entry."""
+    wide = max(len(one.name) for one in entries) + 2
+    lines = [
+        fill(one.doc, HELP_WIDTH, initial_indent=one.name.ljust(wide), subsequent_indent=" " * wide)
+        for one in entries
+    ]
     return "\n\n".join([cleandoc(text), "\b\n" + "\n".join(lines)])
 
 

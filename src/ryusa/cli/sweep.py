@@ -73,7 +73,7 @@ def sweep(
     ] = None,
     settings: Settings = None,
     parquet: Annotated[
-        bool, typer.Option("--parquet", help="Write the table as Parquet too; needs ryusa[parquet].")
+        bool, typer.Option("--parquet", help="Write the table as Parquet too; needs the extra parquet.")
     ] = False,
     pages: Annotated[
         bool, typer.Option("--pages/--no-pages", help="Write a page for each run, with its grains in motion.")
@@ -97,7 +97,7 @@ def sweep(
 
     Everything is checked before the first run. The table has every quantity of
     every run with its error and steadiness, and pooled over the seeds with the
-    error between runs. CASE may be a TOML file with a table [sweep] instead:
+    error between runs. CASE may be a TOML file with a table `sweep` instead:
     grids, lists, Latin hypercubes, Sobol sequences. The same command continues
     an interrupted sweep: finished runs are opened, others go on where they were.
     """  # fmt: skip
