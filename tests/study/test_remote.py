@@ -88,3 +88,12 @@ def test_a_process_that_is_killed_breaks_its_call_alone(site):
 def test_the_site_is_one_line(site):
     assert "\n" not in packed_site(changed(site, place="a\nb"))
     assert Site(**json.loads(packed_site(site))) == site
+
+
+def test_a_study_whose_file_changes_under_way_is_refused(site, tmp_path):
+    (tmp_path / "study.py").write_text('"""A."""\ntasks = measure = print\n')
+    study = open_study(tmp_path)
+    assert call(site, study.claims, "any") == ()
+    (tmp_path / "study.py").write_text('"""B."""\ntasks = measure = print\n')
+    with pytest.raises(ResultsError, match=r"study\.py: has changed since the study began"):
+        call(site, study.claims, "any")

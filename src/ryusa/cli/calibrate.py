@@ -7,7 +7,17 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ryusa.cli.options import Quiet
-from ryusa.cli.study import Again, Jobs, Show, console, executor_at, interrupted, report_failures
+from ryusa.cli.study import (
+    DEFAULT,
+    Again,
+    Jobs,
+    On,
+    Show,
+    console,
+    executor_at,
+    interrupted,
+    report_failures,
+)
 
 if TYPE_CHECKING:
     from ryusa.studies.calibrate import Calibration, CalibrationAsked
@@ -36,9 +46,7 @@ def calibrate(
             help="Check the intervals on N made-up truths, which are run too; 5 or more.",
         ),
     ] = 0,
-    on: Annotated[
-        str, typer.Option("--on", metavar="WHERE", help="Where runs are carried out, as for ryusa sweep.")
-    ] = "processes",
+    on: On = DEFAULT,
     jobs: Jobs = None,
     again: Again = False,
     show: Show = False,

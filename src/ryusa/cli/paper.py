@@ -9,12 +9,14 @@ import typer
 
 from ryusa.cli.options import Quiet
 from ryusa.cli.study import (
+    DEFAULT,
     Again,
     Jobs,
     Json,
+    On,
     carried_out,
     console,
-    cores,
+    executor_at,
     finish,
     listing,
     numbers_table,
@@ -58,6 +60,7 @@ def paper(
         ),
     ] = None,
     json: Json = None,
+    on: On = DEFAULT,
     jobs: Jobs = None,
     again: Again = False,
     show: Annotated[
@@ -72,12 +75,12 @@ def paper(
     """
     from ryusa.studies.osada2004.study import PAPER
 
-    plan = plan_of(quick, full, seeds, SEEDS)
+    plan, where = plan_of(quick, full, seeds, SEEDS), executor_at(on, jobs)
     chosen = None if not names else [one for name in names for one in _known(name)]
     if show:
-        _list(plan, chosen, out, jobs, again)
+        _list(plan, chosen, out, where.jobs, again)
         return
-    ledger, files = carried_out(PAPER, chosen, plan, out, json, jobs, again, quiet)
+    ledger, files = carried_out(PAPER, chosen, plan, out, json, where, again, quiet)
     _print(ledger)
     finish(ledger, files, out)
 
@@ -102,7 +105,7 @@ def _known(word: str) -> list[str]:
     raise CaseError("experiment", word, allowed, nearest_word(claim, words))
 
 
-def _list(plan: "Plan", chosen: Sequence[str] | None, out: Path, jobs: int | None, again: bool) -> None:
+def _list(plan: "Plan", chosen: Sequence[str] | None, out: Path, jobs: int, again: bool) -> None:
     from ryusa.studies.osada2004.study import NAMES, PAPER
     from ryusa.study import Task, estimate_cost
 
@@ -115,7 +118,7 @@ def _list(plan: "Plan", chosen: Sequence[str] | None, out: Path, jobs: int | Non
             table.add_row(name, part.TITLE, ", ".join(PAPER.claims(name)), str(len(tasks)), minutes)
             every += tasks
     typer.echo("A run that several experiments need is made once.")
-    typer.echo(f"{plan.level}: {estimate_cost(every, out / 'runs', jobs=jobs or cores(), again=again)}")
+    typer.echo(f"{plan.level}: {estimate_cost(every, out / 'runs', jobs=jobs, again=again)}")
 
 
 def _print(ledger: "Ledger") -> None:

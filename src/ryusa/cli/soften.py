@@ -9,13 +9,16 @@ from ryusa.catalogue import MEASURES
 from ryusa.cli.options import Quiet
 from ryusa.cli.run import CaseFile, Settings, overrides_of
 from ryusa.cli.study import (
+    DEFAULT,
     FAILED,
     Again,
     Jobs,
     Json,
+    On,
     Show,
     carried_out,
     console,
+    executor_at,
     finish,
     list_runs,
     plan_of,
@@ -78,6 +81,7 @@ def soften(
     ] = None,
     settings: Settings = None,
     json: Json = None,
+    on: On = DEFAULT,
     jobs: Jobs = None,
     again: Again = False,
     show: Show = False,
@@ -93,16 +97,16 @@ def soften(
     """
     from ryusa.studies.soften import plan_of_seeds, study_of
 
-    plan = plan_of_seeds(plan_of(False, False, seeds).seeds)
+    plan, where = plan_of_seeds(plan_of(False, False, seeds).seeds), executor_at(on, jobs)
     study = study_of(
         case, measure, to, value=value, softer=_factors(softer), against=against,
         overrides=overrides_of(settings),
     )  # fmt: skip
     out = Path("runs") / f"soften-{case.stem}" if out is None else out
     if show:
-        list_runs(study, plan, out, jobs, again)
+        list_runs(study, plan, out, where.jobs, again)
         return
-    ledger, files = carried_out(study, None, plan, out, json, jobs, again, quiet)
+    ledger, files = carried_out(study, None, plan, out, json, where, again, quiet)
     if study.answer is not None:
         _print(study.answer)
     finish(ledger, files, out)

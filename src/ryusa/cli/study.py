@@ -27,7 +27,14 @@ MOST_SEEDS = 1000
 
 
 Jobs = Annotated[
-    int | None, typer.Option("--jobs", "-j", metavar="N", min=1, help="Runs at a time; default: all cores.")
+    int | None,
+    typer.Option(
+        "--jobs",
+        "-j",
+        metavar="N",
+        min=1,
+        help="Runs at a time; default: all cores, or all threads of dask's workers. Slurm needs it.",
+    ),
 ]
 On = Annotated[
     str,
@@ -68,6 +75,7 @@ def study(
     full: Annotated[bool, typer.Option("--full", help="Full level.")] = False,
     seeds: Seeds = None,
     json: Json = None,
+    on: On = DEFAULT,
     jobs: Jobs = None,
     again: Again = False,
     show: Show = False,
@@ -81,13 +89,13 @@ def study(
     """
     from ryusa.study.user import open_study
 
-    plan = plan_of(quick, full, seeds)
+    plan, where = plan_of(quick, full, seeds), executor_at(on, jobs)
     mine = open_study(folder)
     out = Path("runs") / mine.name if out is None else out
     if show:
-        list_runs(mine, plan, out, jobs, again)
+        list_runs(mine, plan, out, where.jobs, again)
         return
-    ledger, files = carried_out(mine, None, plan, out, json, jobs, again, quiet)
+    ledger, files = carried_out(mine, None, plan, out, json, where, again, quiet)
     _print(ledger)
     finish(ledger, files, out)
 
@@ -98,7 +106,7 @@ def carried_out(
     plan: "Plan",
     out: Path,
     json: Path | None,
-    jobs: int | None,
+    where: "RunExecutor",
     again: bool,
     quiet: bool,
     earlier: Mapping[str, Any] | None = None,
@@ -114,7 +122,7 @@ def carried_out(
 
     try:
         progress = None if quiet else ProgressLines()
-        made = make(chosen, names, plan, out, jobs=jobs or cores(), again=again, progress=progress)
+        made = make(chosen, names, plan, out, where=where, again=again, progress=progress)
         ledger = replace(made, earlier=earlier)
         return ledger, write(ledger, json)
     except KeyboardInterrupt:
@@ -173,7 +181,7 @@ def listing(columns: Sequence[str]) -> Generator[Any]:
     console().print(table)
 
 
-def list_runs(mine: "Study", plan: "Plan", out: Path, jobs: int | None, again: bool) -> None:
+def list_runs(mine: "Study", plan: "Plan", out: Path, jobs: int, again: bool) -> None:
     """Print every run of a study with one part, and what all of them cost."""
     from ryusa.study import estimate_cost
 
@@ -182,7 +190,7 @@ def list_runs(mine: "Study", plan: "Plan", out: Path, jobs: int | None, again: b
     with listing(("name",)) as table:
         for one in tasks:
             table.add_row(one.label, "1", f"{one.cost() / 60.0:.1f}")
-    typer.echo(f"{plan.level}: {estimate_cost(tasks, out / 'runs', jobs=jobs or cores(), again=again)}")
+    typer.echo(f"{plan.level}: {estimate_cost(tasks, out / 'runs', jobs=jobs, again=again)}")
 
 
 def numbers_table() -> Any:

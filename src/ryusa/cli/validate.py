@@ -8,13 +8,15 @@ import typer
 
 from ryusa.cli.options import Quiet
 from ryusa.cli.study import (
+    DEFAULT,
     Again,
     Jobs,
     Json,
+    On,
     Seeds,
     carried_out,
     console,
-    cores,
+    executor_at,
     finish,
     listing,
     numbers_table,
@@ -56,6 +58,7 @@ def validate(
         ),
     ] = None,
     json: Json = None,
+    on: On = DEFAULT,
     jobs: Jobs = None,
     again: Again = False,
     show: Annotated[
@@ -75,15 +78,15 @@ def validate(
     from ryusa.study.kept import read_ledger
     from ryusa.study.verdicts import refuse_other_study
 
-    plan = plan_of(quick, full, seeds)
+    plan, where = plan_of(quick, full, seeds), executor_at(on, jobs)
     chosen = None if not names else [_known(name) for name in names]
     if show:
-        _list(plan, chosen, out, jobs, again)
+        _list(plan, chosen, out, where.jobs, again)
         return
     earlier = None if against is None else read_ledger(against)  # first: --json may write the same file
     if earlier is not None:
         refuse_other_study(earlier, VALIDATION.name)
-    ledger, files = carried_out(VALIDATION, chosen, plan, out, json, jobs, again, quiet, earlier)
+    ledger, files = carried_out(VALIDATION, chosen, plan, out, json, where, again, quiet, earlier)
     _print(ledger)
     finish(ledger, files, out)
     missed = [one.id for one in ledger.entries if one.outcome is Outcome.FAILS]
@@ -100,7 +103,7 @@ def _known(word: str) -> str:
     return known(word.replace("-", "_").split("/", 1)[0], NAMES, "check")
 
 
-def _list(plan: "Plan", chosen: Sequence[str] | None, out: Path, jobs: int | None, again: bool) -> None:
+def _list(plan: "Plan", chosen: Sequence[str] | None, out: Path, jobs: int, again: bool) -> None:
     from ryusa.studies.validation.study import NAMES, load
     from ryusa.study import Task, estimate_cost
 
@@ -111,7 +114,7 @@ def _list(plan: "Plan", chosen: Sequence[str] | None, out: Path, jobs: int | Non
             minutes = sum(one.cost() for one in tasks) / 60.0
             table.add_row(name, load(name).TITLE, str(len(tasks)), f"{minutes:.1f}")
             every += tasks
-    typer.echo(f"{plan.level}: {estimate_cost(every, out / 'runs', jobs=jobs or cores(), again=again)}")
+    typer.echo(f"{plan.level}: {estimate_cost(every, out / 'runs', jobs=jobs, again=again)}")
 
 
 def _print(ledger: "Ledger") -> None:

@@ -14,6 +14,7 @@ from ryusa.measure import write_csv
 from ryusa.running import provenance
 from ryusa.running.folder import refuse_if_not_writable
 from ryusa.study.entry import LedgerEntry, plain_entry
+from ryusa.study.executors import Processes, RunExecutor
 from ryusa.study.fault import Fault, noted
 from ryusa.study.judge import Finding
 from ryusa.study.means import means, rows_of
@@ -87,7 +88,7 @@ def make(
     plan: Plan,
     folder: Path,
     *,
-    jobs: int = 1,
+    where: RunExecutor | None = None,
     again: bool = False,
     progress: StudyProgress | None = None,
 ) -> Ledger:
@@ -99,7 +100,8 @@ def make(
     names : names of its parts; None for all.
     plan : level and seeds.
     folder : runs go into `folder/runs`, tables and pictures of each part into `folder/<part>`.
-    jobs, again, progress : as in `carry_out`.
+    where : where runs are carried out, one at a time in this process if not given; no number depends on it.
+    again, progress : as in `carry_out`.
 
     Raises
     ------
@@ -114,7 +116,8 @@ def make(
     for name in chosen:
         with noted(faults, _naming(name), passing=(RyusaError,) if len(chosen) == 1 else ()):
             tasks[name] = study.part(name).tasks(plan)
-    results = carry_out(tasks, study.part, folder / "runs", jobs=jobs, again=again, progress=progress)
+    where = where or Processes(1)
+    results = carry_out(tasks, study.part, folder / "runs", again=again, progress=progress, where=where)
     tables: dict[str, list[dict[str, object]]] = {}
     entries: dict[str, LedgerEntry] = {}
     for name in chosen:
@@ -123,7 +126,7 @@ def make(
     level = "" if plan.level is study.level else f"-{plan.level}"
     return Ledger(
         study, tuple(entries[one] for one in study.order(list(entries))), plan, folder, results.problems,
-        counted(results, jobs), tables, f"{study.stem}{level}{'' if names is None else '-part'}",
+        counted(results, where.jobs), tables, f"{study.stem}{level}{'' if names is None else '-part'}",
         {what: one.words for what, one in faults.items()}, traces_of(results, faults),
     )  # fmt: skip
 

@@ -25,15 +25,27 @@ class UserStudy(Study):
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
+        self._digest = _digest(folder / FILE)
         self.name = folder.name
         self.title = str(self.part(self.name).TITLE)
         self.command = f"ryusa study {folder.name}"
         self.parts = (self.name,)
 
     def part(self, name: str) -> StudyPart:
-        """Load study.py, once per process."""
+        """Load study.py, once per process.
+
+        Raises
+        ------
+        ResultsError : it has changed since the study began, so that runs would be measured differently.
+        """
         del name
-        module: Any = load_module(self.folder / FILE)
+        path = self.folder / FILE
+        if not _is_loaded(path) and _digest(path) != self._digest:
+            raise ResultsError(
+                f"{path}: has changed since the study began. The same command measures all runs with the "
+                "changed file"
+            )
+        module: Any = load_module(path)
         return module
 
 
@@ -55,6 +67,22 @@ def open_study(folder: Path) -> UserStudy:
     return UserStudy(folder)
 
 
+def _is_loaded(path: Path) -> bool:
+    """Whether this process has read the file of a study."""
+    return _module_name(path) in sys.modules
+
+
+def _module_name(path: Path) -> str:
+    return f"ryusa_study_{hashlib.sha256(str(path).encode()).hexdigest()[:12]}"
+
+
+def _digest(path: Path) -> str:
+    try:
+        return hashlib.sha256(path.read_bytes()).hexdigest()
+    except OSError as error:
+        raise ResultsError(f"{path}: cannot be read ({error.strerror or error})") from None
+
+
 def load_module(path: Path) -> ModuleType:
     """Import the file of a study under a unique module name, the same in every process.
 
@@ -62,7 +90,7 @@ def load_module(path: Path) -> ModuleType:
     ------
     ResultsError : it cannot be imported, or lacks a function that a study needs.
     """
-    name = f"ryusa_study_{hashlib.sha256(str(path).encode()).hexdigest()[:12]}"
+    name = _module_name(path)
     if name in sys.modules:
         return sys.modules[name]
     spec = spec_from_file_location(name, path)

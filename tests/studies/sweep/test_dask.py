@@ -112,6 +112,40 @@ def test_ctrl_c_ends_remote_runs_with_a_checkpoint_and_a_killed_worker_costs_not
     assert not harmed(tmp_path)
 
 
+STUDY = """'Twice a number.'
+from ryusa.study import calculation
+
+def twice(x):
+    return {"y": 2.0 * x}
+
+def tasks(plan):
+    return [calculation(twice, x=float(seed)) for seed in plan.seeds]
+
+def measure(results, task):
+    raise AssertionError("there is no run")
+
+def rows(found, plan):
+    return [{"x": dict(task.arguments)["x"], "y": float(one["y"])} for task, one in found.items()]
+
+def judge(found, plan):
+    return []
+"""
+
+
+def test_a_study_gives_the_same_table_at_the_workers(dask, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "study.py").write_text(STUDY)
+    tables = []
+    for where in ("processes", f"dask:{dask.address}"):
+        words = ("study", "mine", "--seeds", "2", "-q", "-o", where[:4], "--on", where, "-j", "1")
+        result = CliRunner().invoke(app, words)
+        assert result.exit_code == 0, result.output
+        tables.append((tmp_path / where[:4] / "mine" / "mine.csv").read_bytes())
+    assert tables[0] == tables[1]
+    assert tables[0].count(b"\n") == 3
+
+
 def test_a_worker_that_differs_is_refused_before_any_run(dask, tmp_path, monkeypatch):
     monkeypatch.chdir(new_place(tmp_path))
     here = remote.versions()

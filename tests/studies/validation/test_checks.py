@@ -7,6 +7,7 @@ from ryusa.studies.validation import terminal_velocity
 from ryusa.studies.validation.study import NAMES, VALIDATION, load
 from ryusa.studies.validation.suspension import expected, exponent
 from ryusa.study import CaseRun, Level, Outcome, Plan, Task, relative
+from ryusa.study.executors import Processes
 from ryusa.study.ledger import make
 
 LEVELS = tuple(Level)
@@ -37,7 +38,7 @@ def test_the_standard_level_fits_into_an_hour_on_two_cores():
 
 @pytest.mark.slow
 def test_every_comparison_of_the_quick_level_is_within_tolerance(tmp_path):
-    made = make(VALIDATION, None, Plan(Level.QUICK, (1,)), tmp_path, jobs=2)
+    made = make(VALIDATION, None, Plan(Level.QUICK, (1,)), tmp_path, where=Processes(2))
     assert {
         one.id: one.outcome for one in made.entries if one.outcome not in (Outcome.HOLDS, Outcome.SHOWN)
     } == {}

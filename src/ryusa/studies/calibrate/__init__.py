@@ -29,7 +29,7 @@ def calibrate(
     *,
     folder: Path | str | None = None,
     coverage: int = 0,
-    jobs: int = 1,
+    jobs: int | None = None,
     on: str = DEFAULT,
     again: bool = False,
     progress: bool = True,
@@ -42,8 +42,8 @@ def calibrate(
     folder : for table, page, pictures and runs; default runs/calibration-STUDY. Finished runs in it are
         opened, and interrupted ones go on.
     coverage : number of made-up truths on which the intervals are checked; 0 for none.
-    jobs : number of runs at a time.
-    on : executor, by name.
+    jobs : number of runs at a time; if not given one, or as many as dask has threads. Slurm needs it.
+    on : where runs are carried out: "processes", "dask:ADDRESS", "slurm" or "slurm:INTERFACE".
     again : make all runs anew.
     progress : whether to print cost and progress on stderr.
 

@@ -10,6 +10,7 @@ from ryusa.spelling import nearest_word
 from ryusa.studies.soften.answer import Answer, Question, Softening, SofterError, SofterRuns
 from ryusa.studies.soften.study import SoftenPart, SoftenStudy
 from ryusa.study import Plan, ProgressLines, case_run
+from ryusa.study.executors import DEFAULT, executor_of
 from ryusa.study.ledger import make
 from ryusa.study.page import write
 
@@ -40,7 +41,8 @@ def soften(
     against: str = "case",
     overrides: Mapping[str, str] | None = None,
     folder: Path | str | None = None,
-    jobs: int = 1,
+    jobs: int | None = None,
+    on: str = DEFAULT,
     progress: bool = True,
 ) -> Softening:
     """Find out which stiffness is soft enough for a case and a measure.
@@ -56,7 +58,8 @@ def soften(
     against : what errors refer to: "case", the stiffness of the case, or "hard", the limit of hard grains.
     overrides : changes to the case, as `ryusa run --set` takes them.
     folder : for page, table, picture and runs; default runs/soften-CASE. Finished runs in it are opened.
-    jobs : number of runs at a time.
+    jobs : number of runs at a time; if not given one, or as many as dask has threads. Slurm needs it.
+    on : where runs are carried out: "processes", "dask:ADDRESS", "slurm" or "slurm:INTERFACE".
     progress : whether to print cost and progress on stderr.
 
     Raises
@@ -68,7 +71,9 @@ def soften(
     study = study_of(path, measure, to, value=value, softer=softer, against=against, overrides=overrides)
     plan = plan_of_seeds(tuple(range(1, seeds + 1)) if isinstance(seeds, int) else tuple(seeds))
     out = Path("runs") / f"soften-{path.stem}" if folder is None else Path(folder)
-    ledger = make(study, None, plan, out, jobs=jobs, progress=ProgressLines() if progress else None)
+    ledger = make(
+        study, None, plan, out, where=executor_of(on, jobs), progress=ProgressLines() if progress else None
+    )
     write(ledger)
     if study.answer is None:
         raise ResultsError("; ".join(one.problem for one in ledger.entries))
