@@ -103,3 +103,16 @@ def test_the_flume_with_a_weir_runs(blocks, tmp_path):
     found = run(read(path, short), tmp_path / "run", progress=False)
     assert measure.walls(found).names == ("floor", "left", "right", "weir")
     assert measure.discharge(found).n_in[-1] > 20
+
+
+def test_the_drum_of_arrays_is_built_and_its_grains_can_be_clumps(blocks):
+    (text,) = [text for kind, text in blocks if kind == "python" and "build.scene(" in text]
+    made = {}
+    exec(text.split("run = ")[0], made)
+    scene, shape = made["scene"], made["shape"]
+    assert scene.n_grain == 600
+    assert scene.materials.of[-scene.n_face :].tolist() == [1, 1]
+    assert scene.traffic.exits[0].to == 0
+    clumps, _ = made["build"].with_clumps(scene, made["state"], [shape("tetrahedron")])
+    assert clumps.bodies.n == 600
+    assert clumps.traffic.feeds[0].count == 4 * 600

@@ -133,8 +133,9 @@ def build(case: Case, derived: Derived | None = None) -> Built:
     of = materials_of(case, placement, n_first, traffic)
     if len(of):
         laws = replace(laws, density=densities(case, of[: len(placement.d)]))
-    scene, state = before_feeding(*assemble(placement, laws), traffic, case)
-    scene = with_room(with_walls(scene, walls), case.domain.low is None, case.domain.high is None)
+    open_below, open_above = case.domain.low is None, case.domain.high is None
+    scene, state = before_feeding(*assemble(placement, laws), traffic, open_below, open_above)
+    scene = with_room(with_walls(scene, walls), open_below, open_above)
     scene = moving_with(scene)
     scene, state = clumps_of(case, with_materials(case, scene, of), state)
     refuse_fast_walls(case, scene)

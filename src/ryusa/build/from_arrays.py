@@ -2,13 +2,24 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ryusa.build.array_materials import ArrayMaterials, MadeOf, Material, MaterialPair, array_materials
+from ryusa.build.array_traffic import (
+    FedGrains,
+    Outlet,
+    array_traffic,
+    refuse_crowded_feeds,
+    refuse_traffic,
+    with_array_feeds,
+)
 from ryusa.build.assemble import Laws, assemble, masses
 from ryusa.build.overlaps import refuse_overlaps
 from ryusa.build.placement import Placement, Wall
+from ryusa.build.traffic import before_feeding, moving_with, steps_between
 from ryusa.build.walls import SolidWall, refuse_overlaps_with_walls, with_room, with_walls
 from ryusa.casefile.time import STEPS_OF_HERTZ, STEPS_PER_CONTACT
 from ryusa.errors import CaseError
@@ -30,6 +41,12 @@ def scene(
     d_fixed: ArrayLike | None = None,
     planes: Sequence[tuple[str, Sequence[float], Sequence[float]]] = (),
     walls: Sequence[SolidWall] = (),
+    feeds: Sequence[FedGrains] = (),
+    exits: Sequence[Outlet] = (),
+    seed: int = 1,
+    materials: Sequence[Material] = (),
+    pairs: Sequence[MaterialPair] = (),
+    made_of: MadeOf | None = None,
     stiffness: float = 1.0e4,
     shear_ratio: float = 2.0 / 7.0,
     restitution: float = 0.7,
@@ -55,12 +72,19 @@ def scene(
 
     Parameters
     ----------
-    x, d : centres [m], shape (n, 3), and diameters [m], a number or shape (n,), of the free grains.
+    x, d : centres [m], shape (n, 3), and diameters [m], a number or shape (n,), of the first free grains;
+        none of them, x = (), where feeds bring all.
     density : of the grains [kg/m3].
     v, omega : velocities [m/s] and spins [rad/s], shape (n, 3); at rest when not given.
     x_fixed, d_fixed : fixed grains, as x and d; d_fixed is the mean of d when not given.
     planes : (name, point [m], normal) of each flat wall without an end.
-    walls : of `rectangle`, `ridges`, `disc`, `cylinder` and `triangles`, each at rest or with a `WallMotion`.
+    walls : of `rectangle`, `ridges`, `disc`, `cylinder` and `triangles`, at rest, with a `WallMotion` or a
+        `Servo`.
+    feeds, exits : of `feed_disc`, `feed_box`, `exit_plane` and `exit_box`. Grains of feeds have ids after the
+        first ones; `seed` draws their places.
+    materials, pairs, made_of : materials beside that of the contact law, "grains"; what belongs to two of
+        them; and which plane, wall or group of grains is of which, by name: {"drum": "steel"}. For a feed,
+        "bed" and "grains", which are the first ones, also one name for each grain.
     stiffness, shear_ratio, restitution, restitution_shear, friction, slip, tension,
         timing : the contact law; friction is mu = tan(phi). `contact` replaces them by a complete law.
     gravity, slope : g [m/s2] and bed slope [rad], down towards +x.
@@ -76,7 +100,8 @@ def scene(
     ------
     CaseError : shapes that do not fit, a number that is not finite or out of its range, overlapping first
         grains, lanes of a plane scene closer than the largest diameter, a wall that crosses a period or
-        overlaps a first grain.
+        overlaps a first grain, a feed or an exit that cannot do what it is asked, materials that are unknown
+        or lack what belongs to a pair.
 
     >>> fixed, first = scene(x=[[0.0, 0.0, 0.011]], d=0.002, planes=[("floor", (0, 0, 0), (0, 0, 1))])
     >>> fixed.n_grain, fixed.n_plane, first.n_grain
@@ -90,20 +115,38 @@ def scene(
         {"restitution": restitution, "restitution_shear": restitution_shear},
     )
     placement = _placement(x, d, v, omega, x_fixed, d_fixed, planes, period, allow_overlap)
+    if not len(placement.d) and not any(len(one.d) for one in feeds):
+        raise CaseError("x", None, "needs at least one grain, here or in a feed")
     _refuse_walls(placement, plane_case)
     refuse_overlaps(placement, "x", plane_case)
     refuse_overlaps_with_walls(placement, walls, "walls")
+    n_first, named = len(placement.d), [wall.name for wall in walls]
+    _refuse_names([*placement.groups(), *named], "walls")
+    refuse_traffic(feeds, exits, [*placement.groups(), *named], named, plane_case, period)
+    placement = with_array_feeds(placement, feeds)
     fluid = water or Water()
     e_s = restitution if restitution_shear is None else restitution_shear
     law = contact or _contact_law(stiffness, shear_ratio, friction, restitution, e_s, slip, tension, timing)
-    step = _step(placement.d, density, fluid, law, steps_per_contact) if dt is None else dt
+    roll, count = rolling or RollingLaw(), len(placement.d)
+    made = array_materials(
+        materials, pairs, made_of or {}, {**placement.groups(), "grains": (0, n_first)}, named,
+        (count, count + len(placement.d_fixed) + len(placement.walls)), density, law, roll,
+    )  # fmt: skip
+    heavy_as = density if made is None else made.density
+    step = _step(placement.d, heavy_as, fluid, law, steps_per_contact, made) if dt is None else dt
     slab_width = float(placement.d.mean()) if plane_case else math.nan
     laws = Laws(
-        density=density, contact=law, dt=step, rolling=rolling or RollingLaw(), water=fluid, g=gravity,
+        density=heavy_as, contact=law, dt=step, rolling=roll, water=fluid, g=gravity,
         slope=slope, rotation=rotation, plane_case=plane_case, slab_width=slab_width, events=events,
     )  # fmt: skip
-    made, state = assemble(placement, laws)
-    return with_room(with_walls(made, walls), low=True, high=True), state
+    traffic = array_traffic(feeds, exits, named, n_first, seed, plane_case)
+    if traffic is not None:
+        apart = steps_between(traffic.feeds, float(placement.d.min()), gravity, step)
+        traffic = replace(traffic, interval=apart)
+    built, state = before_feeding(*assemble(placement, laws), traffic)
+    refuse_crowded_feeds(built)
+    built = moving_with(with_room(with_walls(built, walls), low=True, high=True))
+    return (built if made is None else made.on(built)), state
 
 
 def _refuse_numbers(
@@ -116,6 +159,12 @@ def _refuse_numbers(
     _refuse(at_least_zero, lambda one: one >= 0.0, "must be finite and at least 0")
     _refuse({"slope": slope}, lambda one: abs(one) < math.pi / 2, "must lie between -pi/2 and pi/2 rad")
     _refuse(restitutions, lambda one: 0.0 < one <= 1.0, "must be greater than 0 and at most 1")
+
+
+def _refuse_names(names: Sequence[str], key: str) -> None:
+    twice = [name for k, name in enumerate(names) if name in names[:k]]
+    if twice:
+        raise CaseError(key, twice[0], "is the name of another wall, plane or group already")
 
 
 def _placement(
@@ -134,16 +183,15 @@ def _placement(
         raise CaseError("period", period, "must be greater than 0 in x and y, or inf where open")
     centres = _rows(x, "x", None)
     n = len(centres)
-    if n == 0:
-        raise CaseError("x", None, "needs at least one grain")
-    sizes = _sizes(d, "d", n)
+    sizes, given = _sizes(d, "d", n), np.asarray(d, np.float64)
+    usual = float(given.mean()) if given.size else math.nan
     bed = _rows(x_fixed, "x_fixed", None) if x_fixed is not None else np.zeros((0, 3))
     return Placement(
         d=sizes,
         x=centres,
         v=_rows(v, "v", n) if v is not None else np.zeros((n, 3)),
         omega=_rows(omega, "omega", n) if omega is not None else np.zeros((n, 3)),
-        d_fixed=_sizes(float(sizes.mean()) if d_fixed is None else d_fixed, "d_fixed", len(bed)),
+        d_fixed=_sizes(usual if d_fixed is None else d_fixed, "d_fixed", len(bed)),
         x_fixed=bed,
         walls=tuple(Wall(name, _point(point), _point(normal)) for name, point, normal in planes),
         period=period,
@@ -177,16 +225,39 @@ def _contact_law(
 
 
 def _step(
-    d: Floats, density: float, water: Water, contact: ContactLaw, steps_per_contact: float | None
+    d: Floats,
+    density: float | Floats,
+    water: Water,
+    contact: ContactLaw,
+    steps_per_contact: float | None,
+    materials: ArrayMaterials | None,
 ) -> float:
     """Time step [s]: the shortest contact that can occur over its number of steps."""
     m, m_added, _, _ = masses(d, density, math.pi / 6, water)
-    lightest = float(np.min(m + m_added)) / (2.0 if len(d) > 1 else 1.0)
+    heavy, alone = m + m_added, len(d) == 1
+    elastic = contact.force == ContactForce.HERTZ_MINDLIN
+    default = STEPS_OF_HERTZ if elastic else STEPS_PER_CONTACT[ContactTiming(contact.timing)]
+    r = (0.5 if alone else 0.25) * float(np.min(d))  # alone on a wall
+    if materials is None:
+        shortest = _shortest(contact, float(np.min(heavy)) / (1.0 if alone else 2.0), r)
+    else:
+        n, of = len(materials.names), materials.of[: len(d)]
+        least = [float(np.min(heavy[of == k], initial=math.inf)) for k in range(n)]
+        times: list[float] = []
+        for (a, b), both in materials.meeting().items():
+            m_e = 1.0 / (1.0 / least[a] + 1.0 / least[b]) if both else min(least[a], least[b])
+            times.append(_shortest(materials.contact[a * n + b], m_e, r))
+        shortest = min(times, default=math.inf)
+        if not math.isfinite(shortest):
+            shortest = _shortest(contact, float(np.min(heavy)), r)  # a grain alone, which touches nothing
+    return shortest / (steps_per_contact or default)
+
+
+def _shortest(contact: ContactLaw, m: float, r: float) -> float:
+    """Duration of a contact of an effective mass [kg] and a reduced radius [m], in [s]."""
     if contact.force == ContactForce.HERTZ_MINDLIN:
-        r = 0.25 * float(np.min(d)) if len(d) > 1 else 0.5 * float(np.min(d))  # alone on a wall
-        return shortest_contact_of(contact, lightest, r) / (steps_per_contact or STEPS_OF_HERTZ)
-    shortest = collision.shortest_contact(lightest, contact.k_n, contact.zeta_n, contact.tension)
-    return shortest / (steps_per_contact or STEPS_PER_CONTACT[ContactTiming(contact.timing)])
+        return shortest_contact_of(contact, m, r)
+    return collision.shortest_contact(m, contact.k_n, contact.zeta_n, contact.tension)
 
 
 def _refuse(numbers: Mapping[str, float | None], fits: Callable[[float], bool], allowed: str) -> None:
@@ -210,6 +281,8 @@ def _refuse_walls(placement: Placement, plane_case: bool) -> None:
 
 def _rows(values: ArrayLike, name: str, n: int | None) -> Floats:
     rows = np.array(values, dtype=np.float64)
+    if rows.size == 0:
+        rows = rows.reshape(0, 3)
     if rows.ndim == 1 and rows.size == 3:
         rows = rows.reshape(1, 3)
     if rows.ndim != 2 or rows.shape[1] != 3 or (n is not None and len(rows) != n):

@@ -1,6 +1,7 @@
 """Grains that feeds will bring, with sizes drawn before the run; feeds and exits as a scene has them."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -51,8 +52,9 @@ def with_feeds(placement: Placement, case: Case, derived: Derived) -> tuple[Plac
         first += len(d)
     n = first - n_first
     traffic = Traffic(
-        tuple(feeds), tuple(_exit(case, one) for one in case.exits), _interval(case, derived), n_first
-    )
+        tuple(feeds), tuple(_exit(case, one) for one in case.exits),
+        steps_between(feeds, derived.d_min, derived.g, derived.dt), n_first,
+    )  # fmt: skip
     groups = tuple((one.name, one.first, one.count) for one in feeds if one.count)
     return replace(
         placement,
@@ -64,11 +66,16 @@ def with_feeds(placement: Placement, case: Case, derived: Derived) -> tuple[Plac
     ), traffic
 
 
-def before_feeding(scene: Scene, state: State, traffic: Traffic | None, case: Case) -> tuple[Scene, State]:
-    """Scene and state with only the first grains there; the others wait."""
+def before_feeding(
+    scene: Scene, state: State, traffic: Traffic | None, low: bool = True, high: bool = True
+) -> tuple[Scene, State]:
+    """Scene and state with only the first grains there; the others wait.
+
+    `low` and `high` tell on which sides the domain is the default, and makes room for the exits.
+    """
     if traffic is None:
         return scene, state
-    scene = _reaching(scene, traffic, case)
+    scene = _reaching(scene, traffic, low, high)
     there = np.arange(scene.n_grain) < traffic.n_first
     there.flags.writeable = False
     motion = {name: np.where(there[:, None], getattr(state, name), np.nan) for name in ("x", "v", "omega")}
@@ -78,17 +85,17 @@ def before_feeding(scene: Scene, state: State, traffic: Traffic | None, case: Ca
     return replace(scene, traffic=traffic), replace(state, **motion, image=image, present=there)
 
 
-def _reaching(scene: Scene, traffic: Traffic, case: Case) -> Scene:
+def _reaching(scene: Scene, traffic: Traffic, by_default_low: bool, by_default_high: bool) -> Scene:
     """The scene with a default domain that holds every exit, and what is beyond it until it is removed."""
     every = [one.point if one.is_plane else corner for one in traffic.exits for corner in (one.low, one.high)]
     if not every:
         return scene
     room = _BEYOND * float(np.concatenate([scene.d, scene.d_fixed]).max())
     low, high = np.min(every, axis=0) - room, np.max(every, axis=0) + room
-    if case.domain.low is None:
+    if by_default_low:
         x, y, z = np.minimum(low, scene.world_low).tolist()
         scene = replace(scene, world_low=(x, y, z))
-    if case.domain.high is None:
+    if by_default_high:
         x, y, z = np.maximum(high, scene.world_high).tolist()
         scene = replace(scene, world_high=(x, y, z))
     return scene
@@ -116,6 +123,11 @@ def _middle(keys: FeedSection) -> Floats:
     return 0.5 * (np.array(keys.low) + np.array(keys.high))
 
 
+def seed_of_feed(seed: int, k: int) -> int:
+    """Seed of the places of feed k."""
+    return (seed + 7919 * (k + 1)) % 2**62
+
+
 def _unit(normal: tuple[float, float, float]) -> tuple[float, float, float]:
     x, y, z = (part / math.hypot(*normal) for part in normal)
     return x, y, z
@@ -125,7 +137,7 @@ def _feed(case: Case, keys: FeedSection, k: int, first: int, count: int) -> Feed
     rate, unit = keys.rate if keys.rate is not None else (0.0, "grains/s")
     common = Feed(
         keys.name, velocity=keys.velocity, rate=rate, by_mass=unit == "kg/s", begin=keys.begin,
-        end=feed_end(case, keys), first=first, count=count, seed=(case.seed + 7919 * (k + 1)) % 2**62,
+        end=feed_end(case, keys), first=first, count=count, seed=seed_of_feed(case.seed, k),
         wall=_wall(case, keys),
     )  # fmt: skip
     if keys.low is not None and keys.high is not None:
@@ -172,13 +184,18 @@ def moving_with(scene: Scene) -> Scene:
     return replace(scene, traffic=replace(traffic, interval=steps))
 
 
-def _interval(case: Case, derived: Derived) -> int:
+def steps_between(feeds: Sequence[Feed], d_min: float, g: float, dt: float) -> int:
     """Steps between two instants at which grains enter and leave.
 
     In that time a grain falls from rest by half the smallest diameter, or goes a diameter at the speed of
     the fastest feed, whichever is sooner.
+
+    Parameters
+    ----------
+    d_min : smallest diameter [m].
+    g, dt : gravity [m/s2] and time step [s].
     """
-    times = [math.sqrt(2.0 * _TRAVEL * derived.d_min / derived.g)] if derived.g > 0.0 else []
-    fastest = max((math.hypot(*feed.velocity) for feed in case.feeds), default=0.0)
-    times += [derived.d_min / fastest] if fastest > 0.0 else []
-    return max(1, int(min(times) / derived.dt)) if times else 100
+    times = [math.sqrt(2.0 * _TRAVEL * d_min / g)] if g > 0.0 else []
+    fastest = max((math.hypot(*feed.velocity) for feed in feeds), default=0.0)
+    times += [d_min / fastest] if fastest > 0.0 else []
+    return max(1, int(min(times) / dt)) if times else 100

@@ -1,6 +1,7 @@
 """What follows from [[feeds]]: times, numbers of grains, how densely a feed is filled."""
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ryusa.casefile.grading import grading_of, reference_diameter
@@ -76,20 +77,38 @@ def share_filled(case: "Case", feed: FeedSection, rate: float) -> float:
     plane, d, g = case.motion.plane, reference_diameter(case), case.motion.gravity
     grain = math.pi / 4.0 * d * d if plane else math.pi / 6.0 * mean_cube(case)
     if feed.radius is not None:
-        away = _speed_through(feed)
-        speed = math.sqrt(away * away + 2.0 * g * d)
-        opening = 2.0 * feed.radius if plane else math.pi * feed.radius**2
-        return rate * grain / (opening * speed) if speed > 0.0 else math.inf
+        return share_at_disc(rate * grain, feed.radius, _speed_through(feed), d, g, plane)
     assert feed.low is not None
     assert feed.high is not None
     sides = [b - a for a, b in zip(feed.low, feed.high, strict=True)]
+    return share_in_box(rate * grain, sides, feed.velocity, g, plane)
+
+
+def share_at_disc(volume: float, radius: float, speed: float, d: float, g: float, plane: bool) -> float:
+    """Share of the room behind a disc that grains fill [-].
+
+    Parameters
+    ----------
+    volume : of grains in a second [m3/s]; in a plane scene their area [m2/s].
+    radius, speed : of the disc [m], and of grains through it [m/s].
+    d, g : diameter [m] and gravity [m/s2].
+    """
+    speed = math.sqrt(speed * speed + 2.0 * g * d)
+    opening = 2.0 * radius if plane else math.pi * radius**2
+    return volume / (opening * speed) if speed > 0.0 else math.inf
+
+
+def share_in_box(
+    volume: float, sides: Sequence[float], velocity: Sequence[float], g: float, plane: bool
+) -> float:
+    """Share of a box of given sides [m] that grains fill [-]; the others as in `share_at_disc`."""
     times = [
         _time_through(side, abs(speed), g if axis == 2 else 0.0)
-        for axis, (side, speed) in enumerate(zip(sides, feed.velocity, strict=True))
+        for axis, (side, speed) in enumerate(zip(sides, velocity, strict=True))
         if not (plane and axis == 1)
     ]
     room = sides[0] * sides[2] * (1.0 if plane else sides[1])
-    return rate * grain * min(times) / room if room > 0.0 else math.inf
+    return volume * min(times) / room if room > 0.0 else math.inf
 
 
 def _speed_through(feed: FeedSection) -> float:
