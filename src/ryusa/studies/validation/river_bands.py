@@ -1,0 +1,56 @@
+"""How large the errors of a row of columns may be (`river`): registered before its first run.
+
+Most limits are twice the error that a throw-away prototype of the same equations had on the same grid; the
+reason names it. The others are round-off.
+"""
+
+from collections.abc import Mapping
+
+from ryusa.study.judge import Band, at_most
+
+
+def _twice(error: float, unit: str = "-") -> Band:
+    """Twice the error of the prototype."""
+    return at_most(2.0 * error, f"twice the error of the prototype, {error:g}", unit)
+
+
+STILL = at_most(1e-12, "round-off of the surface's slope", "m/s")
+MASS = at_most(1e-14, "round-off of 10,000 steps")
+SAME_BITS = at_most(0.0, "one period of one column is the column")
+RITTER_DEPTH: Mapping[int, Band] = {  # by the thickness of a segment [mm]
+    5: _twice(0.0013),
+    10: _twice(0.0035),
+}
+RITTER_FRONT = _twice(0.05)  # where the depth is a hundredth of the first one: 0.96 of 1.01 m
+STOKER: Mapping[str, tuple[Band, Band]] = {  # depth and speed of the plateau, by the depth ahead
+    "0.02 m": (_twice(0.0004), _twice(0.002)),
+    "0.002 m": (_twice(0.006), _twice(0.011)),
+    "0.02 m, 20 levels": (_twice(0.004), _twice(0.014)),
+}
+STOKER_FRONT = at_most(0.02, "twice one segment of 10 mm", "m")
+STOKER_FRONT_LEVELS = _twice(0.04)  # levels that do not mix are not one layer
+UNIFORM: Mapping[str, tuple[Band, Band]] = {  # profile over the speed of the surface, and discharge; by slope
+    "0.002": (_twice(3e-4), _twice(3e-4)),
+    "0.01": (_twice(8e-3), _twice(3e-3)),
+    "0.05": (_twice(4e-6), _twice(1e-5)),
+}
+BACKWATER = _twice(0.00008, "m")
+BREAK_STEEP = _twice(0.003)  # depth on the steep reach
+BREAK_BEFORE = _twice(0.017)  # depth before the jump
+BREAK_BEHIND = _twice(0.002)  # depth behind it
+JUMP_PLACE = _twice(0.11, "m")  # segments of 2 cm
+DROP = at_most(0.001, "the prototype's 0.544 is exact in its three digits")
+WEIR: Mapping[int, Band] = {  # against critical flow without loss, (2/3)**1.5; by segments of the crest
+    1: _twice(0.011),
+    2: _twice(0.070),
+    3: _twice(0.096),
+    5: _twice(0.116),
+    10: _twice(0.127),
+}
+DARCY: Mapping[int, tuple[Band, Band]] = {  # discharge, and surface over the upper depth; by segments across
+    20: (_twice(0.032), _twice(0.016)),
+    40: (_twice(0.015), _twice(0.009)),
+    80: (_twice(0.007), _twice(0.005)),
+}
+ERGUN: Mapping[int, Band] = {20: _twice(0.021), 40: _twice(0.009), 80: _twice(0.003)}
+INCLINED = at_most(0.01, "the wall's logarithm at cos(10 deg) of its height: 0.5 % of the speed")
