@@ -25,8 +25,8 @@ from ryusa.water.drive import discharge
 from ryusa.water.exchange import Cells, Slices, concentration, slices, weighted_concentration
 from ryusa.water.fixed_grains import steady_start
 from ryusa.water.free_surface import submerged_part
+from ryusa.water.momentum_balance import DONE, GRADIENT
 from ryusa.water.solve import budget_of, fault_of, profiles_of, water_of
-from ryusa.water.time_step import DONE, GRADIENT
 
 numbers(__name__, Start.REST, Start.STEADY)
 numbers(__name__, Fluctuations.NONE, Fluctuations.RANDOM_WALK)

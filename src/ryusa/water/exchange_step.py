@@ -25,7 +25,7 @@ from ryusa.water.exchange import (
 )
 from ryusa.water.fixed_grains import drag_on_fixed
 from ryusa.water.free_surface import cut_at_surface
-from ryusa.water.time_step import (
+from ryusa.water.momentum_balance import (
     B_BED,
     B_CHANGE,
     B_DRIVER,
@@ -38,10 +38,11 @@ from ryusa.water.time_step import (
     B_SURFACE,
     DONE,
     GRADIENT,
+    N_GIVEN,
     N_OUT,
     SURFACE,
-    time_step,
 )
+from ryusa.water.time_step import time_step
 
 NOT_FINITE = 100  # status: the height of a grain is not finite; others are those of `time_step`
 ROW_U, ROW_W, ROW_CONTENT, ROW_SHEAR, ROW_DU_DT, ROW_DTAU_DZ = range(6)  # of the profiles of `time_step`
@@ -291,7 +292,7 @@ def exchange_step(
         values[i, 0], values[i, 1] = solid, v[i, 2] * solid
     one, none = np.ones(len(z)), np.zeros(len(z))
     both = cells_of_grains(cut, grains.order, one, none, values, n)
-    given = np.zeros((8, n))
+    given = np.zeros((N_GIVEN, n))
     for k in range(n):
         phi[k] = both[0, k] / cells + bed.phi[k]
         given[3, k], given[7, k] = phi[k], both[1, k] / cells

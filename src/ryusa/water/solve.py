@@ -15,8 +15,9 @@ import numpy as np
 from ryusa.errors import WaterError
 from ryusa.model.column import Budget, Column, WaterState
 from ryusa.model.scene import Floats
-from ryusa.water import time_step as kernels
+from ryusa.water import momentum_balance as kernels
 from ryusa.water._kernel import parameters_of
+from ryusa.water.time_step import time_step
 
 
 def advance(
@@ -68,14 +69,12 @@ def solve_step(
 ) -> tuple[WaterState, Budget]:
     """Solve the balance of `advance`; 1/dt = `per_dt` [1/s], Newton's method starts at `guess` [m/s]."""
     n = column.n
-    given = np.zeros((8, n))  # a single array type, so that the step is compiled once
+    given = np.zeros((kernels.N_GIVEN, n))  # a single array type, so that the step is compiled once
     for row, values in enumerate((state.u, state.content, guess, phi, force, slope, carried, phi_w)):
         if values is not None:
             given[row] = values
     rows, faces, out = np.empty((6, n)), np.empty((2, n + 1)), np.zeros(kernels.N_OUT)
-    status = kernels.time_step(
-        parameters_of(column), given, float(state.volume), float(per_dt), rows, faces, out
-    )
+    status = time_step(parameters_of(column), given, float(state.volume), float(per_dt), rows, faces, out)
     if status != kernels.DONE:
         raise fault_of(status, state.step, state.t)
     now = water_of(rows, faces, out, state.volume, state.t + dt, state.step + 1)

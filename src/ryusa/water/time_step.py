@@ -1,85 +1,53 @@
-"""Compiled implicit time step of the column: water level, Newton's method, momentum budget."""
-
-from typing import NamedTuple
-
-import numpy as np
+"""Compiled implicit time step of the column: its water, and the momentum balance of its cells."""
 
 from ryusa.laws._family import numbers
-from ryusa.laws.dispatch import length_of_wall
-from ryusa.laws.families import SideWalls, SurfaceRule
-from ryusa.laws.turbulence import eddy_viscosity
-from ryusa.model.column import Top
+from ryusa.laws.families import SurfaceRule
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import ColumnParameters, kernel
-from ryusa.water.closures import bed_shear, bed_stress, mixing_lengths, side_drag
-from ryusa.water.drive import DISCHARGE, imposed_gradient
-
-LID = int(Top.LID)
-DEPTH, VOLUME = numbers(__name__, SurfaceRule.DEPTH, SurfaceRule.VOLUME)
-NO_WALLS = int(SideWalls.NONE)
-TOLERANCE = 1.0e-13  # relative change of the speed at which Newton's method stops
-ROUND_OFF = 1.0e-9  # relative change accepted where the next is no smaller: limit of round-off
-MAX_ITERATIONS = 300
-DAMPED_AFTER = (
-    30  # iterations after which only half of a change is taken: the wall's two layers meet in a kink
+from ryusa.water.closures import mixing_lengths
+from ryusa.water.drive import imposed_gradient
+from ryusa.water.momentum_balance import (
+    DONE,
+    GRADIENT,
+    NO_ROOM,
+    SURFACE,
+    TOO_SHORT,
+    StepWorkspace,
+    friction_velocity_at,
+    iterate,
+    sources_of,
+    weigh_vertical_flow,
+    workspace,
+    write_results,
 )
-DONE, TOO_SHORT, NO_ROOM, NOT_A_NUMBER, NOT_CONVERGED = range(5)
-# scalars that a step writes, beside its profiles
-SURFACE, GRADIENT, ITERATIONS = range(3)
-B_GRAVITY, B_DRIVER, B_BED, B_LID, B_SIDE, B_GRAINS, B_SHARED, B_SURFACE, B_CHANGE = range(3, 12)
-B_FIXED = 12  # written by an exchange, which tells fixed grains from free ones
-N_OUT = 13
 
-
-class Sources(NamedTuple):
-    """Action of the grains on the cells during a step, each of shape (n,); see `solve.advance`."""
-
-    phi: Floats
-    force: Floats
-    slope: Floats
-    carried: Floats
-    phi_w: Floats
-
-
-class StepWorkspace(NamedTuple):
-    """Work arrays of one step; cells of shape (n,), faces of shape (n + 1,)."""
-
-    h: Floats  # wet thickness of a cell [m]
-    z: Floats  # middle of its wet part [m]
-    q: Floats  # upward flux of water through a face, per area [m/s]
-    below: Floats  # weight of the cell below a face in the momentum of that flux [-]
-    square: Floats  # volume fraction of water times mixing length squared at a face [m2]
-    k_face: Floats  # tau/rho at a face is k_face (u above - u below) - r_face
-    r_face: Floats
-    k_side: Floats  # side walls and cell: r_side - k_side u [m2/s2]
-    r_side: Floats
-    a: Floats  # the tridiagonal system
-    b: Floats
-    c: Floats
-    r: Floats
-    y: Floats
-    scratch: Floats
+DEPTH, VOLUME = numbers(__name__, SurfaceRule.DEPTH, SurfaceRule.VOLUME)
 
 
 @kernel
 def distribute_water(
-    p: ColumnParameters, phi: Floats, volume: float, content: Floats, h: Floats, z: Floats
+    p: ColumnParameters, first: int, phi: Floats, volume: float, content: Floats, h: Floats, z: Floats
 ) -> tuple[int, float]:
     """Distribute the water over the cells: content, wet thickness h and its middle z [m], shape (n,).
 
+    Parameters
+    ----------
+    p, phi, volume : as in `time_step`.
+    first : lowest cell that can hold water; those below it are left as they are.
+
     Returns
     -------
-    m, z_surface : highest wet cell, and height of the surface [m]; m = n if the column is too short, -1 if a
-        concentration is not below 1.
+    m, z_surface : highest wet cell, and height of the surface [m]; m = n if the column is too short, -1
+        without water, -2 if a concentration is not below 1.
     """
     left = volume
     m = -1
     z_surface = p.z_surface
-    for k in range(p.n):
+    for k in range(first, p.n):
         low = p.z_low + k * p.dz
         eps = 1.0 - phi[k]
         if not 0.0 < eps <= 1.0:
-            return -1, z_surface
+            return -2, z_surface
         if p.surface == VOLUME:
             wet = min(left / eps, p.dz)
             left -= eps * wet
@@ -105,192 +73,24 @@ def vertical_flow(
     m: int,
     content: Floats,
     content_old: Floats,
-    u_old: Floats,
     per_dt: float,
     work: StepWorkspace,
 ) -> int:
-    """Vertical flux of water through the faces, from the change of content, and how it carries momentum.
+    """Vertical flux of water through the faces, from the change of content.
 
     Returns
     -------
     last : highest cell with water now or before the step; the latter still passes its momentum down.
-
-    Notes
-    -----
-    The flux carries the mean speed of both cells where friction between them exceeds it (no numerical
-    diffusion), else the speed of the upstream cell.
     """
-    q, below = work.q, work.below
+    q = work.q
     last = m
     q[:] = 0.0
-    below[:] = 1.0
     if per_dt > 0.0:
         for k in range(p.n):
             q[k + 1] = q[k] - (content[k] - content_old[k]) * per_dt
             if content_old[k] > 0.0 and k > last:
                 last = k
-    for f in range(1, last + 1):
-        mixed = 0.0
-        if f <= m:
-            gap = work.z[f] - work.z[f - 1]
-            mixed = (p.nu + eddy_viscosity(1.0, (u_old[f] - u_old[f - 1]) / gap, work.square[f])) / gap
-        if 0.5 * abs(q[f]) <= mixed:
-            below[f] = 0.5
-        elif q[f] < 0.0:
-            below[f] = 0.0
     return last
-
-
-@kernel
-def linearise(p: ColumnParameters, m: int, u: Floats, content: Floats, work: StepWorkspace) -> None:
-    """Linearise all stresses at the speeds u for Newton's method: bed, faces, lid and side walls."""
-    wall = work.z[0] - p.z_low
-    stress, rate = bed_stress(p, u[0], wall, work.square[0])
-    work.k_face[0], work.r_face[0] = rate, rate * u[0] - stress
-    for f in range(1, m + 1):
-        gap = work.z[f] - work.z[f - 1]
-        shear = (u[f] - u[f - 1]) / gap
-        nu_t = eddy_viscosity(1.0, shear, work.square[f])
-        work.k_face[f] = (p.nu + 2.0 * nu_t) / gap
-        work.r_face[f] = nu_t * shear
-    work.k_face[m + 1] = p.nu / (0.5 * work.h[m]) if p.top == LID else 0.0
-    if p.side != NO_WALLS:
-        for k in range(m + 1):
-            drag, grows = side_drag(p, u[k])
-            work.k_side[k] = -content[k] * grows
-            work.r_side[k] = content[k] * (drag - grows * u[k])
-
-
-@kernel
-def assemble(
-    p: ColumnParameters,
-    m: int,
-    last: int,
-    u_old: Floats,
-    content: Floats,
-    content_old: Floats,
-    given: Sources,
-    gradient: float,
-    lost: float,
-    per_dt: float,
-    work: StepWorkspace,
-) -> None:
-    """Momentum balance of each cell over density: a u_below + b u + c u_above = r [m2/s2]."""
-    a, b, c, r, y, q, below = work.a, work.b, work.c, work.r, work.y, work.q, work.below
-    for k in range(last + 1):
-        share = 1.0 - given.carried[k] if k <= m else 1.0
-        a[k] = -share * work.k_face[k] - q[k] * below[k]
-        c[k] = -share * work.k_face[k + 1] + q[k + 1] * (1.0 - below[k + 1])
-        b[k] = content[k] * per_dt + share * (work.k_face[k] + work.k_face[k + 1])
-        b[k] += q[k + 1] * below[k + 1] - q[k] * (1.0 - below[k])
-        r[k] = content_old[k] * per_dt * u_old[k] + share * (work.r_face[k] - work.r_face[k + 1])
-        y[k] = work.h[k] / p.rho_w
-        if k <= m:
-            taken = given.force[k] - given.slope[k] * u_old[k]
-            if k == m:
-                r[k] += share * work.k_face[k + 1] * p.u_lid
-                taken += lost
-            b[k] += work.k_side[k] + given.slope[k] * p.dz / p.rho_w
-            r[k] += work.r_side[k] + p.g_x * content[k] - taken * p.dz / p.rho_w + gradient * y[k]
-
-
-@kernel
-def tridiagonal(n: int, both: bool, work: StepWorkspace) -> None:
-    """Solve the system for r, and for y if `both`, in place."""
-    a, b, c, r, y, scratch = work.a, work.b, work.c, work.r, work.y, work.scratch
-    scratch[0] = c[0] / b[0]
-    r[0] /= b[0]
-    y[0] /= b[0]
-    for k in range(1, n):
-        pivot = 1.0 / (b[k] - a[k] * scratch[k - 1])
-        scratch[k] = c[k] * pivot
-        r[k] = (r[k] - a[k] * r[k - 1]) * pivot
-        if both:
-            y[k] = (y[k] - a[k] * y[k - 1]) * pivot
-    for k in range(n - 2, -1, -1):
-        r[k] -= scratch[k] * r[k + 1]
-        if both:
-            y[k] -= scratch[k] * y[k + 1]
-
-
-@kernel
-def write_results(
-    p: ColumnParameters,
-    m: int,
-    last: int,
-    u_old: Floats,
-    content_old: Floats,
-    given: Sources,
-    gradient: float,
-    lost: float,
-    per_dt: float,
-    rows: Floats,
-    faces: Floats,
-    out: Floats,
-    work: StepWorkspace,
-) -> None:
-    """Write stresses, derivatives and momentum budget, with the stresses of the last linear system."""
-    u, content, tau, nu_t = rows[0], rows[2], faces[0], faces[1]
-    tau[:] = 0.0
-    nu_t[:] = 0.0
-    tau[0] = p.rho_w * (work.k_face[0] * u[0] - work.r_face[0])
-    nu_t[0] = eddy_viscosity(1.0, u[0] / (work.z[0] - p.z_low), work.square[0])
-    for f in range(1, m + 1):
-        tau[f] = p.rho_w * (work.k_face[f] * (u[f] - u[f - 1]) - work.r_face[f])
-        nu_t[f] = eddy_viscosity(1.0, (u[f] - u[f - 1]) / (work.z[f] - work.z[f - 1]), work.square[f])
-    if p.top == LID:
-        tau[m + 1] = p.rho_w * work.k_face[m + 1] * (p.u_lid - u[m])
-    out[B_GRAVITY : B_CHANGE + 1] = 0.0
-    for k in range(last + 1):
-        out[B_CHANGE] += p.rho_w * (content[k] * u[k] - content_old[k] * u_old[k]) * per_dt
-        if k <= m:
-            out[B_GRAVITY] += p.rho_w * p.g_x * content[k]
-            out[B_DRIVER] += gradient * work.h[k]
-            out[B_SIDE] += p.rho_w * (work.r_side[k] - work.k_side[k] * u[k])
-            out[B_GRAINS] -= (given.force[k] + given.slope[k] * (u[k] - u_old[k])) * p.dz
-            out[B_SHARED] -= given.carried[k] * (tau[k + 1] - tau[k])
-    out[B_GRAINS] -= lost * p.dz
-    out[B_BED], out[B_LID] = -tau[0], tau[m + 1]
-    out[B_SURFACE] = -p.rho_w * work.q[last + 1] * u[last]
-
-    u[m + 1 :] = u[m]
-    w, shear, du_dt, dtau_dz = rows[1], rows[3], rows[4], rows[5]
-    rows[1, m + 1 :] = 0.0
-    rows[3:, m + 1 :] = 0.0
-    for k in range(m + 1):
-        w[k] = -given.phi_w[k] / (1.0 - given.phi[k])
-        dtau_dz[k] = (tau[k + 1] - tau[k]) / work.h[k]
-        if k == 0:
-            shear[k] = bed_shear(p, u[0], work.z[0] - p.z_low, tau[0] / p.rho_w)
-        else:
-            shear[k] = 0.5 * (u[k] - u[k - 1]) / (work.z[k] - work.z[k - 1])
-            if k < m:
-                shear[k] += 0.5 * (u[k + 1] - u[k]) / (work.z[k + 1] - work.z[k])
-            elif p.top == LID:
-                shear[k] += (p.u_lid - u[k]) / work.h[k]
-        du_dt[k] = (u[k] - u_old[k]) * per_dt + w[k] * shear[k]
-
-
-@kernel
-def gradient_of_discharge(p: ColumnParameters, m: int, content: Floats, work: StepWorkspace) -> float:
-    """Pressure gradient [Pa/m] with which the solution of the linear system has the prescribed discharge."""
-    without, per_gradient = 0.0, 0.0
-    for k in range(m + 1):
-        without += content[k] * work.r[k]
-        per_gradient += content[k] * work.y[k]
-    return (p.discharge - without) / per_gradient
-
-
-@kernel
-def largest_change(u: Floats, last: int, work: StepWorkspace) -> tuple[float, float]:
-    """Largest change of the speed and largest speed [m/s]; the latter is nan if a speed is not finite."""
-    change, scale = 0.0, 0.0
-    for k in range(last + 1):
-        change = max(change, abs(work.r[k] - u[k]))
-        scale = max(scale, abs(work.r[k]))
-        if not np.isfinite(work.r[k]):
-            return change, np.nan
-    return change, scale
 
 
 @kernel
@@ -305,63 +105,33 @@ def time_step(
 ) -> int:
     """One step, backward Euler, solved to round-off; per_dt = 1/dt, 0 for the steady state.
 
-    given_rows : u and content before the step, first guess of u, then the fields of `Sources`; shape (8, n).
+    given_rows : u and content before the step, first guess of u, then the fields of `Sources`; shape
+        (N_GIVEN, n).
     rows, faces : output; u, w, content, shear, du_dt, dtau_dz, shape (6, n); tau, nu_t, shape (2, n + 1).
     """
     n = p.n
     u_old, content_old, guess = given_rows[0], given_rows[1], given_rows[2]
-    given = Sources(given_rows[3], given_rows[4], given_rows[5], given_rows[6], given_rows[7])
+    given = sources_of(given_rows)
     u, content = rows[0], rows[2]
-    cells, edges = np.zeros((10, n)), np.zeros((5, n + 1))
-    work = StepWorkspace(
-        cells[0], cells[1], edges[0], edges[1], edges[2], edges[3], edges[4], cells[2], cells[3], cells[4],
-        cells[5], cells[6], cells[7], cells[8], cells[9],
-    )  # fmt: skip
-    m, z_surface = distribute_water(p, given.phi, volume, content, work.h, work.z)
+    work = workspace(n)
+    m, z_surface = distribute_water(p, 0, given.phi, volume, content, work.h, work.z)
     if m < 0:
         return NO_ROOM
     if m >= n:
         return TOO_SHORT
-    wall = work.z[0] - p.z_low
-    stress, _ = bed_stress(p, guess[0], wall, 0.0)
-    u_star = np.sqrt(abs(stress))
+    u_star = friction_velocity_at(p, guess[0], work.z[0] - p.z_low)
     mixing_lengths(p, m, given.phi, work.z, z_surface, u_star, work.square)
-    last = vertical_flow(p, m, content, content_old, u_old, per_dt, work)
+    last = vertical_flow(p, m, content, content_old, per_dt, work)
+    weigh_vertical_flow(p, m, last, u_old, work)
     lost = 0.0  # forces in cells that have run dry act on the highest wet cell
     for k in range(m + 1, n):
         lost += given.force[k]
     gradient = imposed_gradient(p, content, z_surface)
-    solve_gradient = p.drive == DISCHARGE
     u[:] = guess
-    status = NOT_CONVERGED
-    change_before = np.inf
-    for iteration in range(MAX_ITERATIONS):
-        if length_of_wall(p.mixing) and iteration > 0:
-            stress, _ = bed_stress(p, u[0], wall, work.square[0])
-            part = 1.0 if iteration < DAMPED_AFTER else 0.5
-            u_star += part * (np.sqrt(abs(stress)) - u_star)
-            mixing_lengths(p, m, given.phi, work.z, z_surface, u_star, work.square)
-        linearise(p, m, u, content, work)
-        known = 0.0 if solve_gradient else gradient
-        assemble(p, m, last, u_old, content, content_old, given, known, lost, per_dt, work)
-        tridiagonal(last + 1, solve_gradient, work)
-        if solve_gradient:
-            gradient = gradient_of_discharge(p, m, content, work)
-            for k in range(last + 1):
-                work.r[k] += gradient * work.y[k]
-        change, scale = largest_change(u, last, work)
-        if not np.isfinite(scale):
-            return NOT_A_NUMBER
-        stuck = change <= ROUND_OFF * scale and change >= 0.9 * change_before
-        if change <= TOLERANCE * scale or stuck:
-            status = DONE
-        change_before = change
-        part = 1.0 if iteration < DAMPED_AFTER or status == DONE else 0.5
-        for k in range(last + 1):
-            u[k] = work.r[k] if part == 1.0 else u[k] + part * (work.r[k] - u[k])
-        out[ITERATIONS] = iteration + 1.0
-        if status == DONE:
-            break
+    status, gradient = iterate(
+        p, m, last, z_surface, u_star, u_old, content_old, given, gradient, lost, per_dt, 1.0, u, content,
+        out, work,
+    )  # fmt: skip
     if status == DONE:
         out[SURFACE], out[GRADIENT] = z_surface, gradient
         write_results(p, m, last, u_old, content_old, given, gradient, lost, per_dt, rows, faces, out, work)

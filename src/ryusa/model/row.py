@@ -1,0 +1,168 @@
+"""A row of water columns along a stream: its fixed properties, its ends, and its state."""
+
+import math
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ryusa.laws.families import Drive, SurfaceRule
+from ryusa.model.arrays import Floats
+from ryusa.model.column import Column, Top
+
+Ints = NDArray[np.int64]
+NAN = float("nan")
+OPEN, WALL, INFLOW = range(3)  # kinds of a station
+DEPTH_GIVEN, SAME_DEPTH = range(2)  # rules of the segment beyond an end
+STEEPEST = math.radians(20.0)  # largest angle between bottom and x axis
+
+
+class EndKind(IntEnum):
+    """What lies beyond an end of a row."""
+
+    WALL = 0  # nothing passes
+    LEVEL = 1  # water at rest with a given surface
+    FREE_FALL = 2  # a drop, no water
+    UNIFORM = 3  # the depth of the last segment; where the flow leaves faster than waves, or is uniform
+    DISCHARGE = 4  # a given discharge enters
+
+
+@dataclass(frozen=True)
+class RowEnd:
+    """One end of a row."""
+
+    kind: EndKind
+    level: float = NAN  # height of the surface for LEVEL [m]
+    discharge: float = NAN  # for DISCHARGE [m2/s]
+    profile: Floats | None = None  # its speeds to any scale, shape (n,); None: uniform
+    depth: float = NAN  # of the entering water [m], where it is faster than waves; nan: that of the row
+
+
+@dataclass(frozen=True)
+class ColumnRow:
+    """Fixed properties of a row of n_segment segments; without ends it is periodic."""
+
+    column: Column  # of each station, its heights measured from the bottom
+    dx: float  # length of a segment [m]
+    bottom: Floats  # height of the bottom over the x axis [m], shape (n_segment,)
+    g_z: float  # gravity normal to the x axis [m/s2]; `column.g_x` is that along it
+    upstream: RowEnd | None = None
+    downstream: RowEnd | None = None
+    solid: Ints | None = None  # lowest cells of each segment that are solid, as in a dam; None: none
+
+    @property
+    def n_segment(self) -> int:
+        """Number of segments."""
+        return len(self.bottom)
+
+    @property
+    def periodic(self) -> bool:
+        """Whether the last segment is followed by the first."""
+        return self.upstream is None and self.downstream is None
+
+    @property
+    def inner(self) -> slice:
+        """The segments of the row among all that a state holds: one lies beyond each open end."""
+        return slice(0, self.n_segment) if self.periodic else slice(1, self.n_segment + 1)
+
+    @property
+    def x(self) -> Floats:
+        """Middles of the segments [m], shape (n_segment,)."""
+        return (np.arange(self.n_segment, dtype=np.float64) + 0.5) * self.dx
+
+    @property
+    def x_station(self) -> Floats:
+        """Where the stations are [m], shape (n_station,)."""
+        return np.arange(self.n_segment + (not self.periodic), dtype=np.float64) * self.dx
+
+    def with_ends(self, values: Floats) -> Floats:
+        """Values of the segments, and beyond open ends those of the segment beside, in a new array."""
+        if self.periodic:
+            return np.array(values)
+        return np.concatenate([values[:1], values, values[-1:]])
+
+    def bottom_with_ends(self) -> Floats:
+        """Heights of the bottom, continued as a line beyond open ends [m]."""
+        b = self.with_ends(self.bottom)
+        if not self.periodic and self.n_segment > 1:
+            b[0], b[-1] = 2.0 * b[1] - b[2], 2.0 * b[-2] - b[-3]
+        return b
+
+    def solid_cells(self) -> Ints:
+        """Number of solid cells of each segment, ends included."""
+        solid = np.zeros(self.n_segment, np.int64) if self.solid is None else self.solid
+        return solid.copy() if self.periodic else np.concatenate([[0], solid, [0]])
+
+    def refuses(self) -> tuple[str, ...]:
+        """Reasons why this row cannot be solved, one sentence each; () if there are none."""
+        c = self.column
+        faults = list(c.refuses())
+        if (self.upstream is None) != (self.downstream is None):
+            faults.append("a row has two ends, or is periodic and has none")
+        if not self.dx > 0.0:
+            faults.append(f"dx = {self.dx:g} m: must be above 0")
+        if not self.g_z > 0.0:
+            faults.append(f"g_z = {self.g_z:g} m/s2: must be above 0")
+        if c.surface is not SurfaceRule.VOLUME:
+            faults.append("the surface of a row follows from its water: keep the volume, not the depth")
+        if c.top is not Top.FREE:
+            faults.append("a row has a free surface: no lid")
+        if c.drive in (Drive.DISCHARGE, Drive.TAU) and not (self.periodic and self.n_segment == 1):
+            faults.append(
+                f"driver {c.drive.word}: in a row of several segments the flow has no gradient of its own; "
+                "give gravity, a pressure gradient, or a discharge at the upstream end"
+            )
+        if self.solid is not None and (
+            self.solid.shape != self.bottom.shape or self.solid.min() < 0 or self.solid.max() >= c.n
+        ):
+            faults.append(f"solid: one number of 0 to {c.n - 1} cells for each of {self.n_segment} segments")
+        for name, end in (("upstream", self.upstream), ("downstream", self.downstream)):
+            faults += [] if end is None else _faults_of_end(name, end, c.n)
+        if not faults and self.n_segment:
+            steepest = float(np.abs(np.arctan(np.diff(self.bottom) / self.dx)).max(initial=0.0))
+            if steepest > STEEPEST:
+                faults.append(
+                    f"the bottom is inclined to the x axis by up to {math.degrees(steepest):.1f} deg: at "
+                    f"most {math.degrees(STEEPEST):g} deg; turn the axis, or make steps of solid cells"
+                )
+        return tuple(faults)
+
+
+def _faults_of_end(name: str, end: RowEnd, n: int) -> list[str]:
+    """Faults of one end, one sentence each."""
+    faults: list[str] = []
+    if end.kind is EndKind.LEVEL and not math.isfinite(end.level):
+        faults.append(f"{name}: this end needs the height of its surface, level")
+    if end.kind is EndKind.DISCHARGE:
+        if name == "downstream":
+            faults.append("downstream: a discharge can only be given at the upstream end")
+        if not end.discharge >= 0.0 or math.isinf(end.discharge):
+            faults.append(f"{name}: discharge = {end.discharge:g} m2/s: must be 0 or above")
+        if end.profile is not None and (end.profile.shape != (n,) or not (end.profile > 0.0).all()):
+            faults.append(f"{name}: profile: {n} speeds above 0")
+        if not math.isnan(end.depth) and not end.depth > 0.0:
+            faults.append(f"{name}: depth = {end.depth:g} m: must be above 0")
+    return faults
+
+
+@dataclass(frozen=True)
+class RowState:
+    """The water of a row at one moment; arrays are read-only. Segments beyond open ends are included.
+
+    Cells above the surface have the speed of the surface. `profiles`, `edges` and `budgets` are those of the
+    last step at every station, as `momentum_balance` writes them.
+    """
+
+    u: Floats  # speed along x at the stations [m/s], shape (n_station, n)
+    volume: Floats  # water per area of a segment [m], shape (n_all,)
+    content: Floats  # the part in each cell [m], shape (n_all, n)
+    wet: Floats  # wet thickness of each cell [m], shape (n_all, n)
+    surface: Floats  # height of the surface above the bottom, plus z_low [m], shape (n_all,)
+    passed: Floats  # water that has passed each station since the start [m2], shape (n_station,)
+    profiles: Floats  # u, w, content, shear, du_dt, dtau_dz, shape (n_station, 6, n)
+    edges: Floats  # stress [Pa] and eddy viscosity [m2/s] at the faces, shape (n_station, 2, n + 1)
+    budgets: Floats  # momentum budget, shape (n_station, N_OUT)
+    t: float = 0.0  # [s]
+    steps: int = 0  # steps of the water done
+    courant: float = 0.0  # largest Courant number met [-]

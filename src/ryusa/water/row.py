@@ -1,0 +1,228 @@
+"""A row of columns: water that varies along the stream, its state, and a step of it (design/0027)."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ryusa.errors import WaterError
+from ryusa.laws.porous import ergun_linear, ergun_quadratic
+from ryusa.model.arrays import Floats
+from ryusa.model.row import DEPTH_GIVEN, INFLOW, OPEN, SAME_DEPTH, WALL, ColumnRow, EndKind, RowEnd, RowState
+from ryusa.water._kernel import parameters_of
+from ryusa.water.momentum_balance import DONE, N_GIVEN, N_OUT, workspace
+from ryusa.water.row_station import StationArrays
+from ryusa.water.row_step import (
+    COURANT_MET,
+    FAULT_AT,
+    N_SCALARS,
+    STEPS,
+    RowEnds,
+    RowGrains,
+    RowMatrix,
+    RowShape,
+    RowWater,
+)
+from ryusa.water.row_step import advance_row as _advance
+from ryusa.water.solve import FAULTS
+
+
+@dataclass(frozen=True)
+class PorousSolid:
+    """A fixed porous solid in the cells of the segments, such as a bed or a dam of grains at rest.
+
+    Its force on the water per volume of mixture is rho (linear u + quadratic |u| u), with u in the pores, and
+    it has the buoyancy of the form `stress`. Each array has the shape (n_segment, n).
+    """
+
+    phi: Floats  # concentration [-]
+    linear: Floats  # [1/s]
+    quadratic: Floats  # [1/m]
+
+    @staticmethod
+    def of_grains(phi: Floats, d: float, nu: float, *, inertia: bool = True) -> "PorousSolid":
+        """Grains at rest of concentration phi [-] and diameter d [m], by Ergun's law.
+
+        nu [m2/s] is the viscosity of the water; without `inertia` the law is Darcy's.
+        """
+        linear = np.array([[ergun_linear(one, d, nu) for one in row] for row in phi.tolist()])
+        quadratic = np.array([[ergun_quadratic(one, d) * inertia for one in row] for row in phi.tolist()])
+        return PorousSolid(phi, linear, quadratic)
+
+
+@dataclass(frozen=True)
+class GrainAction:
+    """Action of free grains on the water during a step; arguments of `advance`, with an axis of stations."""
+
+    phi: Floats  # of all grains, fixed ones included, at the end of the step [-], shape (n_segment, n)
+    force: Floats  # [N/m3], shape (n_station, n)
+    slope: Floats  # [N s/m4], shape (n_station, n)
+    carried: Floats  # [-], shape (n_station, n)
+    phi_w: Floats  # [m/s], shape (n_station, n)
+
+
+def row_at_rest(row: ColumnRow, surface: Floats, solid: PorousSolid | None = None) -> RowState:
+    """Water at rest in a row.
+
+    Parameters
+    ----------
+    row : the row.
+    surface : height of the surface over the x axis [m], shape (n_segment,); below the bottom: no water.
+    solid : porous solid in the row.
+
+    Raises
+    ------
+    ValueError : the row is not valid, or the surface lies above the top of its cells.
+    """
+    faults = row.refuses()
+    if faults:
+        raise ValueError("; ".join(faults))
+    c = row.column
+    depth = row.with_ends(np.asarray(surface, dtype=np.float64) - row.bottom)
+    if depth.max() > c.n * c.dz * (1.0 + 1e-12):
+        raise ValueError(
+            f"the surface lies {depth.max():g} m above the bottom, and the column is {c.n * c.dz:g} m high"
+        )
+    first, phi = row.solid_cells(), _phi_of(row, solid)
+    level = c.z_low + np.maximum(depth, first * c.dz)
+    wet = np.clip(level[:, None] - c.faces[:-1], 0.0, c.dz)
+    wet[np.arange(c.n) < first[:, None]] = 0.0
+    content = (1.0 - phi) * wet
+    volume = np.array([cells.sum() for cells in content])  # the sum of `WaterState.at_rest`
+    stations = len(row.x_station)
+    return RowState(
+        np.zeros((stations, c.n)), volume, content, wet, level, np.zeros(stations),
+        np.zeros((stations, 6, c.n)), np.zeros((stations, 2, c.n + 1)), np.zeros((stations, N_OUT)),
+    )  # fmt: skip
+
+
+def advance_row(
+    row: ColumnRow,
+    state: RowState,
+    time: float,
+    *,
+    longest: float = math.inf,
+    solid: PorousSolid | None = None,
+    grains: GrainAction | None = None,
+) -> RowState:
+    """State of the row after a time.
+
+    Parameters
+    ----------
+    row, state : fixed properties, and the present state.
+    time : what passes [s]; divided into equal steps where the Courant number would exceed 1/2.
+    longest : longest step [s].
+    solid : porous solid in the row; its concentration is that of all grains, unless `grains` are given.
+    grains : action of free grains, constant during the time.
+
+    Notes
+    -----
+    Raises `WaterError` with the place if the surface leaves the column, if grains fill a cell completely, if
+    a speed is not finite, or if the stresses of a station do not converge.
+    """
+    p, c = parameters_of(row.column), row.column
+    shape, ends = _shape_of(row), _ends_of(row)
+    stations, segments = len(shape.left), len(shape.bottom)
+    matrix = _matrix_of(row, solid)
+    given = RowGrains(_phi_of(row, solid), *np.zeros((4, stations, c.n)))
+    if grains is not None:
+        given = RowGrains(row.with_ends(grains.phi), grains.force, grains.slope, grains.carried, grains.phi_w)
+    water = RowWater(
+        state.u.copy(), state.volume.copy(), state.content.copy(), state.wet.copy(), state.surface.copy(),
+        state.passed.copy(),
+    )  # fmt: skip
+    rows, faces = np.zeros((stations, 6, c.n)), np.zeros((stations, 2, c.n + 1))
+    out, scalars = np.zeros((stations, N_OUT)), np.zeros(N_SCALARS)
+    work = StationArrays(
+        np.zeros((stations, c.n)), np.zeros(stations), np.zeros(segments), np.zeros((segments, c.n)),
+        np.zeros((segments, c.n + 1)), np.zeros((segments, c.n)), np.zeros((stations, c.n)), np.zeros(c.n),
+        np.zeros((N_GIVEN, c.n)), np.zeros((6, c.n)), np.zeros((2, c.n + 1)), workspace(c.n),
+    )  # fmt: skip
+    status = _advance(
+        p, shape, ends, matrix, given, float(time), float(longest), water, work, rows, faces, out, scalars
+    )
+    if status != DONE:
+        cause, hint = FAULTS[status]
+        where = scalars[FAULT_AT] * row.dx
+        raise WaterError(f"{cause}, at x = {where:.4g} m", step=state.steps, t=state.t, hint=hint)
+    for array in (*water, rows, faces, out):
+        array.flags.writeable = False
+    return replace(
+        state, **water._asdict(), profiles=rows, edges=faces, budgets=out, t=state.t + time,
+        steps=state.steps + int(scalars[STEPS]), courant=max(state.courant, float(scalars[COURANT_MET])),
+    )  # fmt: skip
+
+
+def discharges(row: ColumnRow, state: RowState) -> Floats:
+    """Discharge at the stations, with the mean content of the segments beside [m2/s], shape (n_station,)."""
+    shape = _shape_of(row)
+    return (0.5 * (state.content[shape.left] + state.content[shape.right]) * state.u).sum(axis=1)
+
+
+def _shape_of(row: ColumnRow) -> RowShape:
+    """Geometry of a row as the compiled step takes it."""
+    n = row.n_segment
+    bottom = row.bottom_with_ends()
+    if row.periodic:
+        left, right = (np.arange(n) - 1) % n, np.arange(n)
+        west, east = np.arange(n), (np.arange(n) + 1) % n
+    else:
+        left, right = np.arange(n + 1), np.arange(n + 1) + 1
+        west = np.concatenate([[0], np.arange(n), [n]])
+        east = np.concatenate([[0], np.arange(n) + 1, [n]])
+    kind = np.full(len(left), OPEN)
+    for j, end in ((0, row.upstream), (-1, row.downstream)):
+        if end is not None and end.kind is EndKind.WALL:
+            kind[j] = WALL
+        if end is not None and end.kind is EndKind.DISCHARGE:
+            kind[j] = INFLOW
+    return RowShape(
+        left, right, west, east, row.solid_cells(), kind, bottom,
+        1.0 + ((bottom[right] - bottom[left]) / row.dx) ** 2, (row.inner.start, row.inner.stop),
+        float(row.dx), float(row.g_z),
+    )  # fmt: skip
+
+
+def _ends_of(row: ColumnRow) -> RowEnds:
+    """Ends of a row as the compiled step takes them."""
+    n, cells = row.n_segment, row.column.n
+    bottom = row.bottom_with_ends()
+    rule, depth = np.full(2, SAME_DEPTH), np.zeros(2)
+    discharge, profile = 0.0, np.ones(cells)
+    for e, end in enumerate((row.upstream, row.downstream)):
+        if end is None:
+            continue
+        if end.kind is EndKind.LEVEL:
+            rule[e], depth[e] = DEPTH_GIVEN, max(end.level - bottom[-e], 0.0)
+        elif end.kind is EndKind.FREE_FALL:
+            rule[e] = DEPTH_GIVEN
+        elif end.kind is EndKind.DISCHARGE:
+            discharge, profile = _inflow_of(end, cells)
+            if not math.isnan(end.depth):
+                rule[e], depth[e] = DEPTH_GIVEN, end.depth
+    count = 0 if row.periodic else 2
+    return RowEnds(
+        np.array([0, n + 1])[:count], np.array([1, n])[:count], rule[:count], depth[:count], discharge,
+        profile,
+    )  # fmt: skip
+
+
+def _inflow_of(end: RowEnd, cells: int) -> tuple[float, Floats]:
+    """Discharge [m2/s] and profile of an inlet."""
+    profile = np.ones(cells) if end.profile is None else np.array(end.profile, dtype=np.float64)
+    return float(end.discharge), profile
+
+
+def _phi_of(row: ColumnRow, solid: PorousSolid | None) -> Floats:
+    """Concentration of a porous solid, ends included [-]."""
+    if solid is None:
+        return np.zeros((row.n_segment + (0 if row.periodic else 2), row.column.n))
+    return row.with_ends(solid.phi)
+
+
+def _matrix_of(row: ColumnRow, solid: PorousSolid | None) -> RowMatrix:
+    """A porous solid as the compiled step takes it."""
+    phi = _phi_of(row, solid)
+    if solid is None:
+        return RowMatrix(phi, np.zeros_like(phi), np.zeros_like(phi))
+    return RowMatrix(phi, row.with_ends(solid.linear), row.with_ends(solid.quadratic))

@@ -1,0 +1,355 @@
+"""Compiled time step of a row of columns: water that varies along the stream.
+
+The grid is staggered. Segments of equal length hold the volume of water, its surface and its concentration of
+grains; the stations between them hold the speed along x in cells that follow the bottom. Along x the step is
+explicit, along z each station solves the momentum balance of a column (`momentum_balance`). Equations, order
+of a step and limits: design/0027.
+"""
+
+import math
+from typing import NamedTuple
+
+from ryusa.model.row import OPEN, SAME_DEPTH, WALL
+from ryusa.model.scene import Floats
+from ryusa.water._kernel import ColumnParameters, kernel
+from ryusa.water.drive import imposed_gradient
+from ryusa.water.exchange import Ints
+from ryusa.water.momentum_balance import DONE, NO_ROOM, NOT_A_NUMBER, TOO_SHORT
+from ryusa.water.row_station import StationArrays, solve_station
+from ryusa.water.time_step import distribute_water
+
+COURANT = 0.5  # largest (|u| + wave speed) dt/dx of a step; above it the interval is divided
+MOST_TAKEN = 0.98  # largest share of the water of a segment that leaves it in a step
+# scalars that `advance_row` writes
+FAULT_AT, STEPS, COURANT_MET = range(3)
+N_SCALARS = 3
+
+
+class RowShape(NamedTuple):
+    """Fixed geometry of a row; segments and stations are numbered downstream."""
+
+    left: Ints  # segment upstream of each station, shape (n_station,)
+    right: Ints  # segment downstream of it
+    west: Ints  # station at the upstream end of each segment, shape (n_segment,)
+    east: Ints  # station at its downstream end
+    first: Ints  # lowest cell of each segment that is not solid, shape (n_segment,)
+    kind: Ints  # OPEN, WALL or INFLOW of each station, shape (n_station,)
+    bottom: Floats  # height of the bottom of each segment [m], shape (n_segment,)
+    steep: Floats  # 1 + tan**2 of the angle between bottom and x axis at each station [-]
+    inner: tuple[int, int]  # first segment that is not beyond an end, and last one plus one
+    dx: float  # length of a segment [m]
+    g_z: float  # gravity normal to the x axis [m/s2]
+
+
+class RowEnds(NamedTuple):
+    """What lies beyond the open ends: one segment each, filled anew before each step."""
+
+    segment: Ints  # the segment, shape (n_end,)
+    beside: Ints  # its neighbour in the row
+    rule: Ints  # DEPTH_GIVEN or SAME_DEPTH
+    depth: Floats  # depth for DEPTH_GIVEN [m]
+    discharge: float  # through a station of kind INFLOW [m2/s]
+    shape: Floats  # profile of its speed, to any scale, shape (n,)
+
+
+class RowMatrix(NamedTuple):
+    """Fixed porous solid in the cells of the segments, each of shape (n_segment, n).
+
+    Its force on the water per volume of mixture is rho (linear u + quadratic |u| u), with u in the pores.
+    """
+
+    phi: Floats  # concentration [-]
+    linear: Floats  # [1/s]
+    quadratic: Floats  # [1/m]
+
+
+class RowGrains(NamedTuple):
+    """Action of free grains during a step, as in `Sources`."""
+
+    phi: Floats  # concentration of all grains, fixed ones included, in the segments [-], (n_segment, n)
+    force: Floats  # at the stations [N/m3], shape (n_station, n)
+    slope: Floats  # [N s/m4], shape (n_station, n)
+    carried: Floats  # [-], shape (n_station, n)
+    phi_w: Floats  # [m/s], shape (n_station, n)
+
+
+class RowWater(NamedTuple):
+    """State of the water, overwritten by a step."""
+
+    u: Floats  # speed along x [m/s], shape (n_station, n)
+    volume: Floats  # water per area of a segment [m], shape (n_segment,)
+    content: Floats  # the part in each cell [m], shape (n_segment, n)
+    wet: Floats  # wet thickness of each cell [m], shape (n_segment, n)
+    surface: Floats  # height of the surface above the bottom, plus z_low [m], shape (n_segment,)
+    passed: Floats  # water that has passed each station [m2], shape (n_station,)
+
+
+@kernel
+def limited(before: float, after: float) -> float:
+    """Slope limiter of van Leer: twice the harmonic mean of two differences, 0 at an extremum.
+
+    >>> limited(1.0, 3.0), limited(-1.0, 3.0)
+    (1.5, 0.0)
+    """
+    product = before * after
+    return 2.0 * product / (before + after) if product > 0.0 else 0.0
+
+
+@kernel
+def fill_to_depth(
+    p: ColumnParameters, first: int, phi: Floats, depth: float, content: Floats, wet: Floats
+) -> float:
+    """Fill a segment up to a depth [m]: content, wet thickness of its cells, and volume returned [m]."""
+    volume = 0.0
+    for k in range(p.n):
+        wet[k] = min(max(depth - k * p.dz, 0.0), p.dz) if k >= first else 0.0
+        content[k] = (1.0 - phi[k]) * wet[k] if wet[k] > 0.0 else 0.0
+        volume += content[k]
+    return volume
+
+
+@kernel
+def fill_ends(p: ColumnParameters, ends: RowEnds, shape: RowShape, phi: Floats, water: RowWater) -> None:
+    """Fill the segments beyond the ends; they stay as they are during the step."""
+    for e in range(len(ends.segment)):
+        i = ends.segment[e]
+        depth = ends.depth[e]
+        if ends.rule[e] == SAME_DEPTH:
+            depth = water.surface[ends.beside[e]] - p.z_low
+        water.surface[i] = p.z_low + depth
+        water.volume[i] = fill_to_depth(
+            p, int(shape.first[i]), phi[i], float(depth), water.content[i], water.wet[i]
+        )
+
+
+@kernel
+def inflow(p: ColumnParameters, ends: RowEnds, content: Floats, u: Floats, flux: Floats) -> None:
+    """Speeds and fluxes at the inlet, so that the discharge is kept with the profile given."""
+    total = 0.0
+    for k in range(p.n):
+        total += content[k] * ends.shape[k]
+    scale = ends.discharge / total if total > 0.0 else 0.0
+    for k in range(p.n):
+        u[k] = scale * ends.shape[k]
+        flux[k] = content[k] * u[k]
+
+
+@kernel
+def fluxes_along(
+    p: ColumnParameters, shape: RowShape, ends: RowEnds, dt: float, water: RowWater, flux: Floats,
+    tilt: Floats,
+) -> None:  # fmt: skip
+    """Water that passes each station per time and width [m2/s], shape (n_station, n).
+
+    Notes
+    -----
+    A cell gives what the segment upstream holds in it, up to the surface at the station: the surface of the
+    segment and half its limited slope, less what passes during the step. A cell that is thin gives at most
+    twice its water, and a segment at most the share MOST_TAKEN of its water.
+    """
+    low = p.z_low
+    for i in range(len(shape.bottom)):
+        before = water.surface[i] - water.surface[shape.left[shape.west[i]]]
+        after = water.surface[shape.right[shape.east[i]]] - water.surface[i]
+        tilt[i] = limited(before, after)
+    for j in range(len(shape.left)):
+        for k in range(p.n):
+            flux[j, k] = 0.0
+        if shape.kind[j] == WALL:
+            continue
+        left, right = shape.left[j], shape.right[j]
+        if shape.kind[j] != OPEN:
+            inflow(p, ends, water.content[left], water.u[j], flux[j])
+            continue
+        for k in range(max(shape.first[left], shape.first[right]), p.n):
+            u = water.u[j, k]
+            up = left if u > 0.0 else right
+            held = water.content[up, k]
+            if u == 0.0 or held <= 0.0:
+                continue
+            half = 0.5 * max(1.0 - abs(u) * dt / shape.dx, 0.0)
+            side = water.surface[up] + (half if u > 0.0 else -half) * tilt[up] - low - k * p.dz
+            part = min(max(side, 0.0), p.dz) / water.wet[up, k]
+            flux[j, k] = u * held * min(part, 2.0)
+    for i in range(shape.inner[0], shape.inner[1]):
+        taken = 0.0
+        for k in range(p.n):
+            taken += max(flux[shape.east[i], k], 0.0) + max(-flux[shape.west[i], k], 0.0)
+        most = MOST_TAKEN * water.volume[i] * shape.dx
+        if taken * dt > most:
+            part = most / (taken * dt)
+            for k in range(p.n):
+                if flux[shape.east[i], k] > 0.0:
+                    flux[shape.east[i], k] *= part
+                if flux[shape.west[i], k] < 0.0:
+                    flux[shape.west[i], k] *= part
+
+
+@kernel
+def fluxes_upwards(
+    p: ColumnParameters, first: int, per_dx: float, per_dt: float, content: Floats, old: Floats, west: Floats,
+    east: Floats, q: Floats,
+) -> None:  # fmt: skip
+    """Vertical flux of water through the faces of a segment [m/s], shape (n + 1,).
+
+    Notes
+    -----
+    From the bottom up to the highest cell with water now or before the step, and from the top down above it:
+    water that enters over a drop falls. What is left over at the surface is round-off.
+    """
+    top = first - 1
+    for k in range(p.n):
+        if content[k] > 0.0 or old[k] > 0.0:
+            top = k
+    for k in range(first + 1):
+        q[k] = 0.0
+    for k in range(first, top + 1):
+        q[k + 1] = q[k] - (content[k] - old[k]) * per_dt - (east[k] - west[k]) * per_dx
+    falling = 0.0
+    for k in range(p.n - 1, top, -1):
+        q[k + 1] = falling
+        falling += (east[k] - west[k]) * per_dx
+    if top >= first and falling != 0.0:
+        q[top + 1] = falling
+
+
+@kernel
+def fastest(p: ColumnParameters, shape: RowShape, water: RowWater) -> float:
+    """Largest speed of the water plus that of a long wave [m/s]."""
+    most = 0.0
+    for j in range(len(shape.left)):
+        deepest, u = 0.0, 0.0
+        for i in (shape.left[j], shape.right[j]):
+            if water.volume[i] > 0.0:
+                deepest = max(deepest, water.surface[i] - p.z_low - shape.first[i] * p.dz)
+            for k in range(p.n):
+                if water.content[i, k] > 0.0:
+                    u = max(u, abs(water.u[j, k]))
+        most = max(most, u + math.sqrt(shape.g_z * max(deepest, 0.0)))
+    return most
+
+
+@kernel
+def driving_gradient(p: ColumnParameters, shape: RowShape, j: int, water: RowWater, driver: float) -> float:
+    """Pressure gradient at a station [Pa/m]: the driver's, and that of the slope of the surface.
+
+    Notes
+    -----
+    Neither surface counts below the lowest cell that is open at the station. A dry segment whose bottom lies
+    above the water beside it counts as level with it.
+    """
+    left, right = shape.left[j], shape.right[j]
+    sill = p.z_low + max(shape.first[left], shape.first[right]) * p.dz
+    here, there = max(water.surface[left], sill), max(water.surface[right], sill)
+    here, there = here + shape.bottom[left], there + shape.bottom[right]
+    level = shape.dx * p.g_x / shape.g_z  # rise of a level surface from segment to segment
+    if water.surface[right] <= sill and there > here + level:
+        there = here + level
+    elif water.surface[left] <= sill and here > there - level:
+        here = there - level
+    return float(driver - p.rho_w * shape.g_z * (there - here) / shape.dx)
+
+
+@kernel
+def continuity(
+    p: ColumnParameters, shape: RowShape, dt: float, phi: Floats, water: RowWater, work: StationArrays,
+    scalars: Floats,
+) -> int:  # fmt: skip
+    """Move the water on along x, and find the vertical fluxes and the momentum that is carried.
+
+    Returns
+    -------
+    status : DONE, or a fault of `momentum_balance` in the segment `scalars[FAULT_AT]`.
+    """
+    n, per_dt, per_dx = p.n, 1.0 / dt, 1.0 / shape.dx
+    for j in range(len(shape.left)):
+        total = 0.0
+        for k in range(n):
+            total += work.flux[j, k]
+        work.total[j] = total
+        water.passed[j] += total * dt
+    for i in range(len(shape.bottom)):
+        west, east = shape.west[i], shape.east[i]
+        for k in range(n):
+            work.old[i, k] = water.content[i, k]
+        if shape.inner[0] <= i < shape.inner[1]:
+            water.volume[i] -= dt * per_dx * (work.total[east] - work.total[west])
+            m, surface = distribute_water(
+                p, shape.first[i], phi[i], water.volume[i], water.content[i], water.wet[i], work.middle
+            )
+            if m < -1 or m >= n:
+                scalars[FAULT_AT] = i
+                return TOO_SHORT if m >= n else NO_ROOM
+            water.surface[i] = surface if m >= 0 else p.z_low + shape.first[i] * p.dz
+        fluxes_upwards(
+            p, shape.first[i], per_dx, per_dt, water.content[i], work.old[i], work.flux[west],
+            work.flux[east], work.q[i],
+        )  # fmt: skip
+        for k in range(n):
+            through = 0.5 * (work.flux[west, k] + work.flux[east, k])
+            up = west if through > 0.0 else east
+            # along an inclined bottom the speed u sqrt(steep) is carried, of which u is the part along x
+            work.carried[i, k] = through * water.u[up, k] * math.sqrt(shape.steep[up])
+    return DONE
+
+
+@kernel
+def advance_row(
+    p: ColumnParameters, shape: RowShape, ends: RowEnds, matrix: RowMatrix, grains: RowGrains, time: float,
+    longest: float, water: RowWater, work: StationArrays, rows: Floats, faces: Floats, out: Floats,
+    scalars: Floats,
+) -> int:  # fmt: skip
+    """Move the water on, in as few equal steps as the Courant number and `longest` permit.
+
+    Parameters
+    ----------
+    p : the column of every station; its heights are measured from the bottom of the row.
+    shape, ends, matrix, grains : the row, what lies beyond its ends, a porous solid in it, and its grains.
+    time, longest : what is to pass, and the longest step [s].
+    water : the state, overwritten; left in the middle of a step after a fault.
+    work : work arrays.
+    rows, faces, out : profiles and momentum budget of each station after the last step, as `time_step` writes
+        them, with a leading axis of stations.
+    scalars : receives FAULT_AT (segment or station), STEPS and COURANT_MET, shape (N_SCALARS,).
+
+    Returns
+    -------
+    status : DONE, or a fault of `momentum_balance`.
+    """
+    remaining = time
+    while remaining > 0.0:
+        speed = fastest(p, shape, water)
+        if not math.isfinite(speed):
+            return NOT_A_NUMBER
+        dt = min(longest, COURANT * shape.dx / speed if speed > 0.0 else longest)
+        parts = max(math.ceil(remaining / dt - 1.0e-9), 1.0)
+        dt = remaining / parts
+        remaining = remaining - dt if parts > 1.0 else 0.0
+        fill_ends(p, ends, shape, grains.phi, water)
+        fluxes_along(p, shape, ends, dt, water, work.flux, work.tilt)
+        status = continuity(p, shape, dt, grains.phi, water, work, scalars)
+        if status != DONE:
+            return status
+        first = shape.inner[0]
+        driver = imposed_gradient(p, water.content[first], water.surface[first])
+        for j in range(len(shape.left)):
+            if shape.kind[j] != OPEN:
+                continue
+            left, right = shape.left[j], shape.right[j]
+            status = solve_station(
+                p, int(max(shape.first[left], shape.first[right])), shape.steep[j],
+                driving_gradient(p, shape, j, water, driver), 1.0 / shape.dx, 1.0 / dt, left, right, j,
+                matrix.phi, matrix.linear, matrix.quadratic, grains.phi, grains.force[j], grains.slope[j],
+                grains.carried[j], grains.phi_w[j], water.u[j], water.content, water.wet, water.surface,
+                water.volume, work, rows[j], faces[j], out[j],
+            )  # fmt: skip
+            if status != DONE:
+                scalars[FAULT_AT] = j
+                return status
+        for j in range(len(shape.left)):
+            if shape.kind[j] == OPEN:
+                for k in range(p.n):
+                    water.u[j, k] = work.u[j, k]
+        scalars[STEPS] += 1.0
+        scalars[COURANT_MET] = max(scalars[COURANT_MET], speed * dt / shape.dx)
+    return DONE
