@@ -13,6 +13,7 @@ from ryusa.study.study import limits_in_words
 
 NAMES = (
     "water_alone",
+    "river",
     "terminal_velocity",
     "suspension",
     "balance",
