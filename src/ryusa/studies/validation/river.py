@@ -5,9 +5,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.integrate import solve_ivp
+from scipy.interpolate import CubicSpline
 
 from ryusa.figures.comparison import Axis, Curve
-from ryusa.laws.families import BedKind, Mixing, SurfaceRule
+from ryusa.laws.families import BedKind, Drive, Mixing, SurfaceRule
 from ryusa.model.column import Column
 from ryusa.model.row import ColumnRow, EndKind, RowEnd
 from ryusa.model.scene import Floats
@@ -92,6 +94,37 @@ def weir(crest: int) -> dict[str, Floats]:
     return {"x": row.x, "h": now.surface[row.inner], "c": q / math.sqrt(G) / total**1.5}
 
 
+def backwater() -> dict[str, Floats]:
+    """Depth before a dam of 8 cm after 80 s, and that of the equation of gradually varied flow [m]."""
+    q, theta, dx = 0.03, math.atan(0.005), 0.04
+    c = replace(
+        _column(0.1, 25, nu=1e-6, bed=BedKind.ROUGH, k_rough=0.004, mixing=Mixing.PARABOLIC), n=50,
+        g_x=G * math.sin(theta),
+    )  # fmt: skip
+    solid = np.zeros(200, np.int64)
+    solid[175:180] = 20
+    inlet, outlet = RowEnd(EndKind.DISCHARGE, discharge=q), RowEnd(EndKind.FREE_FALL)
+    row = ColumnRow(c, dx, np.zeros(200), G * math.cos(theta), inlet, outlet, solid=solid)
+    start = np.where(np.arange(200) < 180, np.interp(row.x, [0.0, 7.0], [0.11, 0.145]), 0.03)
+    now = advance_row(row, row_at_rest(row, start), 80.0)
+    h = now.surface[row.inner]
+    some = np.linspace(0.06, 0.19, 53)
+    flows = [steady(replace(c, g_x=0.0, depth=one, drive=Drive.DISCHARGE, discharge=q))[0] for one in some]
+    friction = np.array([one.gradient for one in flows]) / c.rho_w / row.g_z
+    beta = np.array([float(one.content @ one.u**2) * one.z_surface / q**2 for one in flows])
+    slope_of, beta_of = CubicSpline(some, friction), CubicSpline(some, beta)
+
+    def rise(_: float, depth: Floats) -> Floats:
+        froude = q * q / (row.g_z * depth**3)
+        below = 1.0 - froude * (beta_of(depth) - depth * beta_of(depth, 1))
+        return (c.g_x / row.g_z - slope_of(depth)) / below
+
+    part = slice(12, 168)  # from 0.5 m to 0.3 m before the dam
+    x = row.x[part][::-1]
+    exact = solve_ivp(rise, (x[0], x[-1]), [h[part][-1]], t_eval=x, rtol=1e-9, atol=1e-10).y[0][::-1]
+    return {"x": x[::-1], "h": h[part], "exact": exact}
+
+
 def dupuit(x: Floats) -> Floats:
     """Dupuit's parabola in the porous dam [m]."""
     part = np.clip(x / DAM_LONG, 0.0, 1.0)
@@ -134,6 +167,10 @@ def _weir(crest: int) -> Task:
     return calculation(weir, crest=crest, seconds=8.0)
 
 
+def _backwater() -> Task:
+    return calculation(backwater, seconds=12.0)
+
+
 STOKERS = {"0.02 m": (0.02, 1), "0.002 m": (0.002, 1), "0.02 m, 20 levels": (0.02, 20)}
 
 
@@ -144,6 +181,7 @@ def tasks(plan: Plan) -> Sequence[Task]:
     every += [_break(ahead, 10, levels) for ahead, levels in STOKERS.values()]
     every += [_uniform(slope) for slope in SLOPES]
     every += [_seepage(across, inertia) for across in ACROSS for inertia in (False, True)]
+    every.append(_backwater())
     return [*every, *(_weir(crest) for crest in (0, *CRESTS))]
 
 
@@ -152,7 +190,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     del plan
     stokers = [_stoker(found, name) for name in STOKERS]
     uniforms = [_uniform_flow(found, slope) for slope in SLOPES]
-    return [_ritter(found), *stokers, *uniforms, _darcy(found), _ergun(found), _weirs(found)]
+    return [_ritter(found), *stokers, *uniforms, _m1(found), _darcy(found), _ergun(found), _weirs(found)]
 
 
 def _ritter(found: Found) -> Finding:
@@ -212,6 +250,17 @@ def _uniform_flow(found: Found, slope: str) -> Finding:
             misfit("largest difference over the speed of the surface", off, "-", one),
             misfit("discharge", abs(float(got["q"]) - 1.0), "-", two),
         ],
+    )  # fmt: skip
+
+
+def _m1(found: Found) -> Finding:
+    got = found[_backwater()]
+    off = float(np.abs(got["h"] - got["exact"]).max())
+    return comparison(
+        "backwater", "Backwater before a dam",
+        Source("gradually varied flow, with friction and momentum coefficient of the column"), X, H,
+        [Curve("row", got["x"], got["h"])], [Curve("gradually varied flow", got["x"], got["exact"])],
+        [misfit("largest difference", off, "m", bands.BACKWATER)], {"q": "0.03 m2/s", "slope": "0.005"},
     )  # fmt: skip
 
 
