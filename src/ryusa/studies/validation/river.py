@@ -14,7 +14,7 @@ from ryusa.model.column import Column
 from ryusa.model.row import ColumnRow, EndKind, RowEnd
 from ryusa.model.scene import Floats
 from ryusa.studies.validation import river_bands as bands
-from ryusa.study import Finding, Found, Plan, Source, Task, calculation, comparison, misfit
+from ryusa.study import Finding, Found, Level, Plan, Source, Task, calculation, comparison, misfit
 from ryusa.water import steady
 from ryusa.water.row import PorousSolid, advance_row, discharges, row_at_rest
 
@@ -175,22 +175,35 @@ STOKERS = {"0.02 m": (0.02, 1), "0.002 m": (0.002, 1), "0.02 m, 20 levels": (0.0
 
 
 def tasks(plan: Plan) -> Sequence[Task]:
-    """All of them at every level."""
-    del plan
+    """All of them; the two comparisons that the row misses are left to the standard level."""
     every = [_break(0.0, mm, 1) for mm in bands.RITTER_DEPTH]
-    every += [_break(ahead, 10, levels) for ahead, levels in STOKERS.values()]
+    every += [_break(ahead, 10, levels) for ahead, levels in (STOKERS[name] for name in _stokers(plan))]
     every += [_uniform(slope) for slope in SLOPES]
     every += [_seepage(across, inertia) for across in ACROSS for inertia in (False, True)]
     every.append(_backwater())
-    return [*every, *(_weir(crest) for crest in (0, *CRESTS))]
+    return [*every, *(_weir(crest) for crest in (0, *_crests(plan)))]
+
+
+def _stokers(plan: Plan) -> list[str]:
+    """Names of the dam breaks; when quick without the one that misses its band, whose levels do not mix."""
+    return [name for name, (_, levels) in STOKERS.items() if levels == 1 or plan.level is not Level.QUICK]
+
+
+def _crests(plan: Plan) -> tuple[int, ...]:
+    """Lengths of the crests of weirs; without that of one segment, which misses its band, when quick.
+
+    The quick level fails where anything lies outside its band, so that a change shows; both misses are in the
+    ledger of the standard level.
+    """
+    return CRESTS[1:] if plan.level is Level.QUICK else CRESTS
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """Each flow beside its closed form."""
-    del plan
-    stokers = [_stoker(found, name) for name in STOKERS]
+    stokers = [_stoker(found, name) for name in _stokers(plan)]
     uniforms = [_uniform_flow(found, slope) for slope in SLOPES]
-    return [_ritter(found), *stokers, *uniforms, _m1(found), _darcy(found), _ergun(found), _weirs(found)]
+    seepages = [_darcy(found), _ergun(found)]
+    return [_ritter(found), *stokers, *uniforms, _m1(found), *seepages, _weirs(found, _crests(plan))]
 
 
 def _ritter(found: Found) -> Finding:
@@ -304,19 +317,20 @@ def _ergun(found: Found) -> Finding:
     )  # fmt: skip
 
 
-def _weirs(found: Found) -> Finding:
+def _weirs(found: Found, crests: Sequence[int]) -> Finding:
     critical = (2.0 / 3.0) ** 1.5
-    got = np.array([float(found[_weir(crest)]["c"]) for crest in (0, *CRESTS)])
+    got = np.array([float(found[_weir(crest)]["c"]) for crest in (0, *crests)])
     off = np.abs(got / critical - 1.0)
     errors = [
         misfit(f"crest of {crest} segments", float(each), "-", bands.WEIR[crest])
-        for crest, each in zip(CRESTS, off[1:], strict=True)
+        for crest, each in zip(crests, off[1:], strict=True)
     ]
-    n = np.array(CRESTS, dtype=np.float64)
+    n = np.array(crests, dtype=np.float64)
     return comparison(
         "weir", "Weirs, and a channel that ends in a drop",
         Source("critical flow without loss: q = (2/3)^1.5 sqrt(g) H^1.5"), Axis("segments of 2 cm", log=True),
-        Axis("q/(sqrt(g) H^1.5)"), [Curve("row", n, got[1:])], [Curve("critical", n, np.full(5, critical))],
+        Axis("q/(sqrt(g) H^1.5)"), [Curve("row", n, got[1:])],
+        [Curve("critical", n, np.full(len(n), critical))],
         [misfit("the channel ends in a drop", float(off[0]), "-", bands.DROP), *errors],
         {"q": "0.03 m2/s", "height": "8 cm"},
         "Critical flow is no law of a crest as short as one segment, over which real water also passes more; "
