@@ -1,7 +1,7 @@
 """Rigid bodies in water: each as one grain of its volume, with the drag of its form.
 
-The water at a body is the mean over its members by volume, as each of them lies in cells of its own in a
-column; what the body takes from the water goes back by the same shares.
+The water at a body is the mean over its members by volume under water, as each of them lies in cells of its
+own in a column; what the body takes from the water goes back by the same shares.
 """
 # ruff: noqa: E741  (l is a lane)
 
@@ -12,7 +12,7 @@ from ryusa.engine.cpu.fluid_forces import forces_in_column, forces_in_profile
 from ryusa.engine.shared.kernel import FAST, inner
 from ryusa.engine.shared.variant import LawChoice
 from ryusa.laws.rigid_body import spin
-from ryusa.model.fluid import EXTRA_X, EXTRA_Z, N_IMPULSE, N_SAMPLED
+from ryusa.model.fluid import EXTRA_X, EXTRA_Z, N_IMPULSE, N_SAMPLED, SUBMERGED
 from ryusa.model.rigid_bodies import N_DRAG_FORM
 
 
@@ -51,20 +51,33 @@ def forces_of_water_on_bodies(
 
 @inner(fastmath=FAST)
 def mean_over_members(l: int, b: int, fluid: Any, bodies: Any, lanes: BodyLanes) -> None:
-    """Water at body b: means over its members by volume, and sums of forces."""
+    """Water at body b: means over what of its members is under water, their share, and sums of forces."""
+    wet = 0.0
+    for s in range(bodies.start[b], bodies.start[b + 1]):
+        wet += bodies.share[s] * fluid[bodies.place[s], SUBMERGED]
+    per = 1.0 / wet if wet > 0.0 else 0.0
     for a in range(N_SAMPLED):
         total = 0.0
         for s in range(bodies.start[b], bodies.start[b + 1]):
+            i = bodies.place[s]
             part = 1.0 if EXTRA_X <= a <= EXTRA_Z else bodies.share[s]
-            total += part * fluid[bodies.place[s], a]
+            if a < EXTRA_X:
+                part *= per * fluid[i, SUBMERGED]
+            total += part * fluid[i, a]
         lanes.fluid[l, a] = total
 
 
 @inner(fastmath=FAST)
-def share_impulse(l: int, b: int, bodies: Any, lanes: BodyLanes, impulse: Any) -> None:
-    """Book what body b took from the water in this step to its members, by volume."""
+def share_impulse(l: int, b: int, bodies: Any, lanes: BodyLanes, fluid: Any, impulse: Any) -> None:
+    """Book what body b took from the water in this step to its members, by their volumes under water.
+
+    A member above the surface lies in no cell: what is booked to it is lost.
+    """
+    wet = lanes.fluid[l, SUBMERGED]
+    per = 1.0 / wet if wet > 0.0 else 0.0
     for s in range(bodies.start[b], bodies.start[b + 1]):
         i = bodies.place[s]
+        part = per * bodies.share[s] * fluid[i, SUBMERGED]
         for a in range(3):
-            impulse[i, a] += bodies.share[s] * lanes.impulse[l, a]
-        impulse[i, 3] = bodies.share[s] * lanes.impulse[l, 3]
+            impulse[i, a] += part * lanes.impulse[l, a]
+        impulse[i, 3] = part * lanes.impulse[l, 3]

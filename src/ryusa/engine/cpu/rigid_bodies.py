@@ -190,7 +190,7 @@ def move_bodies(
                 lanes.impulse, lanes.film, batch,
             )  # fmt: skip
             if column is not None:
-                share_impulse(l, b, bodies, lanes, grains.impulse)
+                share_impulse(l, b, bodies, lanes, grains.fluid, grains.impulse)
         if last:
             stats[S.KINETIC] += kinetic_energy(m, u_x, u_y, u_z, v_x, v_y, v_z)
             stats[S.SPIN] += kinetic_energy(1.0, b_x, b_y, b_z, w_x, w_y, w_z)
