@@ -69,7 +69,7 @@ def test_the_hopper_runs_and_its_walls_are_measured(blocks, tmp_path):
 
 
 def test_the_bed_under_water_runs_and_its_water_is_measured(blocks, tmp_path):
-    (text,) = [text for kind, text in blocks if kind == "toml" and 'profile = "column"' in text]
+    (text,) = [text for _, text in blocks if 'title = "Gravel bed under water"' in text]
     path = tmp_path / "gravel.toml"
     path.write_text(text, encoding="utf-8")
     assert derive(read(path)).tau_star == pytest.approx(0.25, abs=0.01)
@@ -116,3 +116,15 @@ def test_the_drum_of_arrays_is_built_and_its_grains_can_be_clumps(blocks):
     clumps, _ = made["build"].with_clumps(scene, made["state"], [shape("tetrahedron")])
     assert clumps.bodies.n == 600
     assert clumps.traffic.feeds[0].count == 4 * 600
+
+
+def test_grains_are_fed_and_trapped_in_a_column_of_water(blocks, tmp_path):
+    (text,) = [text for _, text in blocks if "Bed load fed" in text]
+    path = tmp_path / "trap.toml"
+    path.write_text(text.replace('time = "2 s"', 'time = "0.11 s"').replace('settle = "1 s"', ""), "utf-8")
+    results = run(read(path), tmp_path / "run", progress=False)
+    rows = results.passages
+    assert (rows["way"] == 1).sum() >= 2  # one at once, one a tenth of a second later
+    assert (rows["way"] == -1).sum() >= 1
+    assert results.summary["energy"]["residual"] < 1e-3
+    assert results.summary["water"]["momentum_residual"] < 1e-9

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.engine.test_clumps_in_water import STILL
 
 import ryusa
 from ryusa.build import scene as scene_of
@@ -17,9 +18,11 @@ from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.engine.pool import GrainPool
 from ryusa.engine.shared.passages import removed
 from ryusa.formats.export import export
+from ryusa.laws._family import evaluate
 from ryusa.laws.families import ContactTiming
 from ryusa.model import Exit, Feed, Traffic
-from ryusa.model.clump import shape
+from ryusa.model.clump import drag_form, shape
+from ryusa.model.scene import EventRule
 from ryusa.model.traffic import IN, OUT
 from ryusa.results import Results, schema
 from ryusa.running.runner import run_scene
@@ -222,3 +225,38 @@ def test_a_clump_taken_out_of_a_contact_leaves_no_imbalance() -> None:
     change = engine.tally().imbalance - before.tally.imbalance
     assert abs(change) < 1e-4 * held
     assert engine.tally().spring_n == 0.0
+
+
+def test_clumps_fed_into_water_of_a_given_profile_settle_and_the_account_closes(tmp_path: Path) -> None:
+    """They fall a long way through still water, and leave at the speed that the law of their form gives."""
+    n = 8
+    scene, state = scene_of(
+        x=np.arange(3.0 * n).reshape(n, 3) * D, d=D, water=STILL, dt=1e-4,
+        planes=[("deep", (0.0, 0.0, -100.0), (0.0, 0.0, 1.0))], timing=ContactTiming.AT_STEPS,
+        events=EventRule.NONE,
+    )  # fmt: skip
+    feed = Feed(
+        "hose", centre=(0.0, 0.0, 0.9), normal=DOWN, radius=0.02, velocity=(0.0, 0.0, -0.1), rate=4.0,
+        count=n, seed=3,
+    )  # fmt: skip
+    traffic = Traffic((feed,), (Exit("floor", point=(0.0, 0.0, 0.0), normal=DOWN),), 20, 0)
+    away = np.full((n, 3), np.nan)
+    scene = replace(scene, traffic=traffic, world_low=(-1.0, -1.0, -5.0), world_high=(2.0, 1.0, 5.0))
+    state = replace(state, x=away, v=away, omega=away, present=np.zeros(n, np.bool_))
+    forms = [shape("tetrahedron"), shape("blade")]
+    scene, state = with_clumps(scene, state, forms, form_of=np.arange(n) % 2)
+    scene = replace(scene, dt=1e-4)
+    run = run_scene(scene, state, tmp_path / "run", frames=2.0e-3, stop=Stop(time=6.0), progress=False)
+    rows, bodies = run.passages, scene.bodies
+    assert bodies is not None
+    assert (rows["way"] == OUT).sum() > 4
+    assert run.tally["residual"].max() < 1e-12
+    assert run.tally["drag"][-1] < -0.9 * run.tally["switch"].max()
+    for row in rows[rows["way"] == OUT]:
+        k = np.searchsorted(run.frames.step, row["step"]) - 1  # the last frame in which it was there
+        which = int(bodies.of_grain(scene.n_grain)[row["grain"]])
+        speed = -float(run.bodies[k].v[which, 2])
+        stokes, newton, sphericity = drag_form(STILL.drag_of_form, forms[which % 2], 2.65)
+        re = speed * D / 1.0e-6
+        c_d = evaluate(STILL.drag_of_form, re=re, stokes=stokes, newton=newton, sphericity=sphericity)
+        assert 0.75 * c_d * speed**2 == pytest.approx(1.65 * G * D, rel=1e-6)

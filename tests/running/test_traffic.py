@@ -13,7 +13,7 @@ from ryusa.build import scene as scene_of
 from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.engine.pool import GrainPool
 from ryusa.errors import CaseError, CheckpointError
-from ryusa.model import PASSAGE, Exit, Feed, Scene, State, Traffic
+from ryusa.model import PASSAGE, Exit, Feed, Scene, State, Traffic, with_momentum
 from ryusa.model.traffic import IN, OUT
 from ryusa.results import Results
 from ryusa.results.scene_file import scene_digest
@@ -244,3 +244,15 @@ def test_a_grain_reaches_rest_only_after_the_last_has_entered(tmp_path: Path) ->
     )  # fmt: skip
     assert len(results.passages) == 3
     assert 0.7 < results.frames.t[-1] < 20.0
+
+
+def test_passages_of_an_earlier_version_are_read_without_a_momentum() -> None:
+    earlier = np.dtype([(name, PASSAGE.fields[name][0]) for name in PASSAGE.names if name != "momentum"])
+    rows = np.zeros(3, earlier)
+    rows["grain"], rows["v"] = (4, 5, 6), 0.5
+    found = with_momentum(rows)
+    assert found.dtype == PASSAGE
+    assert found["grain"].tolist() == [4, 5, 6]
+    assert (found["v"] == 0.5).all()
+    assert np.isnan(found["momentum"]).all()
+    assert with_momentum(found) is found

@@ -15,8 +15,9 @@ from ryusa.engine.protocol import Engine, Flags
 from ryusa.engine.shared import record_fields as R
 from ryusa.engine.shared.passages import empty_tally, everywhere
 from ryusa.errors import RunError
-from ryusa.model import EVENT, BodyState, Contacts, Scene, State, Tally
+from ryusa.model import EVENT, BodyState, Contacts, FluidAtGrains, Scene, State, Tally
 from ryusa.model.arrays import Bools, Floats
+from ryusa.model.fluid import N_IMPULSE, N_SAMPLED
 from ryusa.model.scene import EventRule
 from ryusa.model.state import make_read_only
 
@@ -50,10 +51,6 @@ class GrainPool:
         reasons = [*self._engine.refuses(scene)]
         if getattr(self._engine, "forget", None) is None:
             reasons.append(f"engine '{self.name}' steps a fixed number of grains: no feeds or exits")
-        if scene.column is not None:
-            reasons.append(
-                "a column of water exchanges momentum with grains that are always there: no feeds or exits"
-            )
         return tuple(reasons)
 
     def load(self, scene: Scene, state: State) -> None:
@@ -80,8 +77,9 @@ class GrainPool:
         self._engine.load(self._inner, self._state_of(state))
 
     def set_fluid(self, sampled: Floats) -> None:
-        """Refuse: there is no column of water."""
-        raise ValueError("the scene has no column of water: water.profile is not COLUMN")
+        """Set the water at every grain for the next steps; rows of grains that are away mean nothing."""
+        if self._inner is not None:
+            self._engine.set_fluid(np.ascontiguousarray(sampled[self._ids]))
 
     def set_walls(self, motion: Floats) -> None:
         """Set the motion of the walls from this step on, as the engine does; nothing without a grain."""
@@ -89,11 +87,15 @@ class GrainPool:
             self._engine.set_walls(motion)
 
     def kinematics(self) -> tuple[Floats, Floats, Floats]:
-        """Centres [m] and velocities [m/s] by id, nan for grains that are not there; no impulse."""
+        """Centres [m], velocities [m/s] and impulse from the fluid by id; nan and 0 for grains away."""
         x, v = np.full((self._n, 3), np.nan), np.full((self._n, 3), np.nan)
+        column = self._scene is not None and self._scene.column is not None
+        impulse = np.zeros((self._n if column else 0, N_IMPULSE))
         if self._inner is not None:
-            x[self._ids], v[self._ids], _ = self._engine.kinematics()
-        return x, v, np.zeros((0, 3))
+            x[self._ids], v[self._ids], found = self._engine.kinematics()
+            if column:
+                impulse[self._ids] = found
+        return x, v, impulse
 
     def advance(self, n_steps: int) -> Flags:
         """Do n_steps steps, fewer if a fault stops the run."""
@@ -131,11 +133,14 @@ class GrainPool:
     def state(self) -> State:
         """Read-only snapshot of all grains."""
         if self._inner is None:
-            state = replace(self.grains(), tally=self._tally)
+            state = replace(self.grains(), tally=self._tally, fluid=self._fluid_out(None))
         else:
             inner = self._engine.state()
             contacts = self._contacts_out(inner.contacts)
-            state = replace(self.grains(), contacts=contacts, tally=self.tally(), engine=inner.engine)
+            state = replace(
+                self.grains(), contacts=contacts, tally=self.tally(), engine=inner.engine,
+                fluid=self._fluid_out(inner.fluid),
+            )  # fmt: skip
         make_read_only(state)
         return state
 
@@ -189,6 +194,9 @@ class GrainPool:
             grain = int(np.searchsorted(ids, tally.overlap_grain)) if tally.overlap_grain >= 0 else -1
             known = 0 <= grain < len(ids) and ids[grain] == tally.overlap_grain
             tally = replace(tally, overlap_grain=grain if known else -1)
+        fluid = state.fluid
+        if fluid is not None:
+            fluid = FluidAtGrains(*(np.ascontiguousarray(one[ids]) for one in (fluid.sampled, fluid.impulse)))
         return State(
             x=np.ascontiguousarray(state.x[ids]),
             v=np.ascontiguousarray(state.v[ids]),
@@ -199,6 +207,7 @@ class GrainPool:
             contacts=self._contacts_in(state.contacts),
             tally=tally,
             bodies=None if state.bodies is None else state.bodies.some(self._bodies_there()),
+            fluid=fluid,
             engine=state.engine,
         )
 
@@ -207,6 +216,15 @@ class GrainPool:
         assert self._scene is not None
         bodies = self._scene.bodies
         return np.zeros(0, np.int64) if bodies is None else np.flatnonzero(self._there[bodies.first])
+
+    def _fluid_out(self, fluid: FluidAtGrains | None) -> FluidAtGrains | None:
+        """The water at all grains, zero at those that are away; None without a column."""
+        if self._scene is None or self._scene.column is None:
+            return None
+        sampled, impulse = np.zeros((self._n, N_SAMPLED)), np.zeros((self._n, N_IMPULSE))
+        if fluid is not None:
+            sampled[self._ids], impulse[self._ids] = fluid.sampled, fluid.impulse
+        return FluidAtGrains(sampled, impulse)
 
     def _contacts_in(self, contacts: Contacts) -> Contacts:
         if not len(contacts):

@@ -8,7 +8,7 @@ from ryusa.model.rigid_bodies import BodyState, RigidBodies
 from ryusa.model.scene import ContactLaw, Materials, RollingLaw, Scene, Water
 from ryusa.model.state import State
 from ryusa.model.tally import Tally, Term
-from ryusa.model.traffic import PASSAGE, Exit, Feed, Traffic
+from ryusa.model.traffic import PASSAGE, Exit, Feed, Traffic, with_momentum
 from ryusa.model.walls import FaceKind, Walls
 
 __all__ = [
@@ -36,4 +36,5 @@ __all__ = [
     "Walls",
     "Water",
     "WaterState",
+    "with_momentum",
 ]

@@ -31,8 +31,22 @@ PASSAGE = np.dtype(
         ("x", np.float64, (3,)),  # centre where it was placed, or where it crossed [m]
         ("v", np.float64, (3,)),  # its velocity there [m/s]
         ("omega", np.float64, (3,)),  # its spin [rad/s]
+        # that it brings or takes: mass times its velocity in the state at `step`, half a step old [N s]
+        ("momentum", np.float64, (3,)),
     ]
 )
+
+
+def with_momentum(rows: NDArray[np.void]) -> NDArray[np.void]:
+    """Passages of dtype PASSAGE; those of earlier versions, without a momentum, get nan for it."""
+    earlier = [name for name in PASSAGE.names or () if name != "momentum"]
+    if list(rows.dtype.names or ()) != earlier:
+        return rows
+    found = np.zeros(len(rows), PASSAGE)
+    for name in earlier:
+        found[name] = rows[name]
+    found["momentum"] = NAN
+    return found
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.errors import ResultsError
-from ryusa.model import EVENT, PASSAGE
+from ryusa.model import EVENT, PASSAGE, with_momentum
 from ryusa.model.walls import TOUCHED
 from ryusa.results import schema
 from ryusa.results.hdf5 import DAMAGE, OpenFiles, opened, plain_dataset, read_dataset
@@ -73,7 +73,7 @@ class Part:
     def passages(self) -> NDArray[np.void]:
         """Read the grains that entered and left during this part, dtype PASSAGE."""
         with opened(self.path) as file:
-            rows = read_dataset(file, schema.PASSAGES, self.path)
+            rows = with_momentum(read_dataset(file, schema.PASSAGES, self.path))
             if rows.dtype != PASSAGE or rows.ndim != 1:
                 raise ResultsError(f"{self.path}: '{schema.PASSAGES}' has another layout")
             return rows

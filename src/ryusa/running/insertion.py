@@ -6,13 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ryusa.model import Feed, Scene
+from ryusa.model import BodyState, Feed, Scene
 from ryusa.model.arrays import Floats
 from ryusa.model.wall_shape import WallsAt
 from ryusa.model.wall_traffic import carrier_of, corners
 from ryusa.model.walls import corners_of_box
 from ryusa.water.eddies import draw
 
+Ints = NDArray[np.int64]
 ATTEMPTS = 50  # places tried for a grain at one instant
 _STREAM = 0x2545F4914F6CDD1D  # tells these random numbers from those of the eddies of the same seed
 _TURNS = 0x3C6EF372FE94F82B  # tells orientations from places
@@ -26,12 +27,14 @@ class Neighbours:
     ----------
     walls : where they are now; None where the scene has none.
     x, d : centres, inside the period [m], shape (n, 3), and diameters [m], shape (n,).
+    lowest : no grain that is placed reaches below this height [m].
     """
 
     scene: Scene
     x: Floats
     d: Floats
     walls: WallsAt | None
+    lowest: float
 
     @staticmethod
     def of(
@@ -66,6 +69,7 @@ class Neighbours:
             scene, np.concatenate([x[free], stones[fixed]]),
             np.concatenate([scene.d[free], scene.d_fixed[fixed]]),
             None if scene.walls is None else WallsAt(scene.walls, t, scene.period).around(low, high),
+            float(low[2]),
         )  # fmt: skip
 
     def free(self, place: Floats, d: float) -> bool:
@@ -124,6 +128,17 @@ def drawn_orientation(feed: Feed, grain: int, step: int, attempt: int) -> Floats
     low, high = math.sqrt(1.0 - u[0]), math.sqrt(u[0])
     a, b = 2.0 * math.pi * u[1], 2.0 * math.pi * u[2]
     return np.array([low * math.sin(a), low * math.cos(a), high * math.sin(b), high * math.cos(b)])
+
+
+def spheres_at(scene: Scene, i: int, place: Floats, q: Floats) -> tuple[Ints, Floats]:
+    """Ids and centres of the spheres of a grain or clump at a place [m], shape (n,) and (n, 3)."""
+    spheres = scene.spheres_of(np.array([i]))
+    if scene.bodies is None or len(spheres) == 1:
+        return spheres, place[None]
+    which = scene.bodies.of_grain(scene.n_grain)[[i]]
+    some = scene.bodies.some(which, scene.bodies.first[which])
+    none = np.zeros((1, 3))
+    return spheres, place + BodyState(place[None], none, q[None], none, np.zeros((1, 2), np.int32)).arms(some)
 
 
 def wrapped(place: Floats, period: tuple[float, float]) -> Floats:

@@ -151,8 +151,9 @@ class Loop:
         self._first = state.step
         self._rest, self._saltations = RestDetector(self.stop), SaltationCounter(self.scene, self.stop)
         if self.traffic is not None:
-            state, _, rows = self.traffic.begin(self.scene, state)
-            self.recorder.passages(rows)
+            begun = self.traffic.begin(self.scene, state)
+            state = begun.state
+            self.recorder.passages(begun.rows)
         self._load(state)
         self._record()
         self._change_if_due()
@@ -293,11 +294,14 @@ class Loop:
     def _pass_grains(self, traffic: TrafficRule) -> None:
         """Let grains leave and enter, and go on with those that are there."""
         scene = with_servos(self.scene, self.servo)
-        passed = traffic.at_instant(scene, self.engine, self._step, self._t)
+        passed = traffic.at_instant(scene, self.engine, self._step, self._t, self._water)
         if passed is not None:
             self._collect_contacts()
             self._gathered.append(passed.events)
             self.engine.load(scene, passed.state)
+            if passed.water is not None:
+                self._water = passed.water
+                self.engine.set_fluid(passed.water.sampled)
             self.recorder.passages(passed.rows)
         for line in traffic.news(self._step, self._t):
             self.progress.line(line)

@@ -10,7 +10,7 @@ import numpy as np
 
 from ryusa.casefile.earlier import completed
 from ryusa.errors import CheckpointError, ResultsError
-from ryusa.model import EVENT, PASSAGE, Scene, State
+from ryusa.model import EVENT, PASSAGE, Scene, State, with_momentum
 from ryusa.model.walls import N_IMPULSE
 from ryusa.results import schema
 from ryusa.results.hdf5 import OpenFiles
@@ -289,11 +289,11 @@ def _buffered(recorder: CheckpointBlock, scene: Scene, folder: Path) -> dict[str
     """Data that was buffered and not in a part, every shape checked."""
     if not recorder.arrays:
         return {}
-    rows, n = recorder.arrays, scene.n_grain
+    rows = {k: with_momentum(one) if k == schema.PASSAGES else one for k, one in recorder.arrays.items()}
     try:
         k = len(rows["t"])
         shapes = {
-            name: ((k, n, *tail) if name in schema.PER_GRAIN else (k,), dtype)
+            name: ((k, scene.n_grain, *tail) if name in schema.PER_GRAIN else (k,), dtype)
             for name, (dtype, tail) in schema.FRAME_DATASETS.items()
         }
         shapes |= {"tally": ((k,), schema.TALLY), "contacts": ((len(rows["contacts"]),), EVENT)}
@@ -324,7 +324,7 @@ def _buffered(recorder: CheckpointBlock, scene: Scene, folder: Path) -> dict[str
         raise CheckpointError(
             f"{folder}: the buffered frames in the checkpoint do not match the run ({error})"
         ) from error
-    return dict(rows)
+    return rows
 
 
 def _refuse_foreign(

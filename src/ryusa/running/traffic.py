@@ -1,7 +1,7 @@
 """Grains that enter and leave during a run: at fixed steps, with debts where a feed is full."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,13 +10,22 @@ from numpy.typing import NDArray
 from ryusa.engine.protocol import Engine
 from ryusa.engine.shared.passages import Entering, everywhere, placed, removed
 from ryusa.errors import CheckpointError
-from ryusa.model import PASSAGE, BodyState, Exit, Scene, State
+from ryusa.model import PASSAGE, Scene, State
 from ryusa.model.arrays import Floats
-from ryusa.model.traffic import GONE, IN, NONE, OUT, PRESENT, WAITING, Population, Traffic
+from ryusa.model.traffic import GONE, IN, NONE, PRESENT, WAITING, Population, Traffic
 from ryusa.model.wall_traffic import carrier_of, speed_of_feed
 from ryusa.model.walls import BEGIN
 from ryusa.running.checkpoint import CheckpointBlock
-from ryusa.running.insertion import ATTEMPTS, Neighbours, drawn_orientation, drawn_place, wrapped
+from ryusa.running.crossing import fall, leaving_at, of_heads
+from ryusa.running.insertion import (
+    ATTEMPTS,
+    Neighbours,
+    drawn_orientation,
+    drawn_place,
+    spheres_at,
+    wrapped,
+)
+from ryusa.water.coupling import Coupling
 
 _FULL = 3  # grains in a row that find no place, after which a feed is tried again at the next instant
 Ints = NDArray[np.int64]
@@ -31,11 +40,13 @@ class Passed(NamedTuple):
     state : of all grains after it, for the engine.
     events : contacts that ended with a grain that left, dtype EVENT.
     rows : grains that entered and left, dtype PASSAGE.
+    water : the column among the grains that are there now; None without one, and before the first step.
     """
 
     state: State
     events: np.ndarray
     rows: np.ndarray
+    water: Coupling | None = None
 
 
 @dataclass
@@ -91,57 +102,54 @@ class TrafficRule:
             raise ValueError(
                 f"the state holds other grains than the first {self.traffic.n_first} of its scene"
             )
-        return self._place(scene, state, state.x, np.zeros(0, PASSAGE), state.contacts.event[:0])
+        surface = -math.inf if scene.column is None else scene.column.z_surface
+        came, grains, _ = self._find_places(scene, state, surface)
+        return Passed(placed(scene, state, grains), state.contacts.event[:0], came)
 
-    def at_instant(self, scene: Scene, engine: Engine, step: int, t: float) -> Passed | None:
+    def at_instant(
+        self, scene: Scene, engine: Engine, step: int, t: float, water: Coupling | None = None
+    ) -> Passed | None:
         """Let grains leave and enter; None where none does.
 
         Parameters
         ----------
         scene : that holds now.
         engine : has stepped to `step`, time t [s]; it is only read.
+        water : the column; where a grain enters or leaves it is given what all took of it up to this step.
         """
+        surface = -math.inf if water is None else water.state.z_surface
         status = self.population.status
-        leaving = np.zeros(0, PASSAGE)
+        through: list[Ints] = []
         if self.traffic.exits:
-            x, v = centres(scene, engine)
-            leaving = self._leaving(scene, x, v, step, t)
+            through = self._beyond(scene, engine, t)
         waits = (status == WAITING) & (self.population.due <= t)
-        if not len(leaving) and not waits.any():
+        if not any(len(ids) for ids in through) and not waits.any():
             return None
         state = engine.state()
-        if len(leaving):
-            leaving["omega"] = state.omega[leaving["grain"]]  # of a clump, that of its first member
-        gone, events = removed(scene, state, leaving["grain"])
+        leaving = leaving_at(self.traffic, scene, state, through, surface)
+        state, events = removed(scene, state, leaving["grain"])
         self._let_go(leaving)
-        found = self._place(scene, gone, gone.x, leaving, events)
-        return found if len(found.rows) else None
+        came, grains, x = self._find_places(scene, state, surface)
+        if not len(leaving) and not len(came):
+            return None
+        if water is not None:
+            water.finish(step, *engine.kinematics())
+            water = water.among(x, step)
+            state = _at_entry(state, water, scene.spheres_of(came["grain"]))
+        rows = np.concatenate([leaving, came])
+        return Passed(placed(scene, state, grains), events, rows, water)
 
-    def _leaving(self, scene: Scene, x: Floats, v: Floats, step: int, t: float) -> np.ndarray:
-        """Grains that are beyond an exit, in the order of exits and ids; dtype PASSAGE, without spin."""
+    def _beyond(self, scene: Scene, engine: Engine, t: float) -> list[Ints]:
+        """Ids of the grains that are beyond each exit; those beyond several leave through the first."""
+        x = engine.kinematics()[0] if scene.bodies is None else of_heads(scene, engine.grains())[0]
         there, inside = (self.population.status == PRESENT) & scene.heads, wrapped(x, scene.period)
-        d, m = scene.of_heads()
-        found: list[np.ndarray] = []
-        for k, one in enumerate(self.traffic.exits):
+        found: list[Ints] = []
+        for one in self.traffic.exits:
             carrier = carrier_of(scene, one.wall, t)
-            seen = inside if carrier is None else carrier.frame(inside)
-            ids = np.flatnonzero(one.beyond(seen) & there)
+            ids = np.flatnonzero(one.beyond(inside if carrier is None else carrier.frame(inside)) & there)
             there[ids] = False
-            rows = np.zeros(len(ids), PASSAGE)
-            rows["step"], rows["way"], rows["at"], rows["to"] = step, OUT, k, one.to
-            rows["grain"], rows["d"], rows["m"], rows["due"] = ids, d[ids], m[ids], math.nan
-            weight = scene.m_weight[ids, None] * scene.gravity / (scene.m + scene.m_added)[ids, None]
-            longest = self.traffic.interval * scene.dt
-            for row, i, a in zip(rows, ids.tolist(), weight, strict=True):
-                speed = v[i] + 0.5 * scene.dt * a  # v belongs to half a step before x
-                way = (inside[i], speed, a)
-                if carrier is not None:  # its acceleration since then is left out
-                    way = (seen[i], (speed - carrier.velocity_at(inside[i])) @ carrier.turn, a @ carrier.turn)
-                since = min(time_since(one, *way), longest, t)
-                row["t"], row["v"] = t - since, speed - since * a
-                row["x"] = inside[i] - since * speed + 0.5 * since * since * a
-            found.append(rows)
-        return np.concatenate(found)
+            found.append(ids)
+        return found
 
     def _let_go(self, leaving: np.ndarray) -> None:
         population = self.population
@@ -153,10 +161,20 @@ class TrafficRule:
             population.feed[spheres] = to
             population.due[i] = math.inf if to == NONE else row["t"]
 
-    def _place(
-        self, scene: Scene, state: State, x: Floats, leaving: np.ndarray, events: np.ndarray
-    ) -> Passed:
-        """Place grains that are due, the longest waiting first, as far as there is room."""
+    def _find_places(self, scene: Scene, state: State, surface: float) -> tuple[np.ndarray, Entering, Floats]:
+        """Find places for grains that are due, the longest waiting first, as far as there is room.
+
+        Parameters
+        ----------
+        state : without those that have just left.
+        surface : height of the water of a column [m]; -inf without one.
+
+        Returns
+        -------
+        came : records of those that enter.
+        grains : they, for `placed`.
+        x : centres of all spheres then, inside the period [m], shape (n_grain, 3).
+        """
         population, step, t = self.population, state.step, state.t
         due = np.flatnonzero((population.status == WAITING) & (population.due <= t))
         due = due[np.lexsort((due, population.due[due]))]
@@ -165,14 +183,14 @@ class TrafficRule:
         rows: list[np.ndarray] = []
         places: list[Floats] = []
         turns: list[Floats] = []
-        inside = wrapped(x, scene.period)
+        inside = wrapped(state.x, scene.period)
         for i in due.tolist():
             k = int(population.feed[i])
             if failed[k] >= _FULL:
                 continue
             if k not in near:
                 near[k] = self._neighbours(scene, k, inside, t)
-            row, place, q = self._entering(scene, near[k], i, step, t)
+            row, place, q = self._entering(scene, near[k], i, step, t, surface)
             if place is None:
                 failed[k] += 1
                 continue
@@ -188,14 +206,17 @@ class TrafficRule:
             places.append(place)
             turns.append(q)
             inside[spheres] = x_of
-        if not rows:
-            return Passed(state, events, leaving)
-        came = np.concatenate(rows)
+        came = np.concatenate([np.zeros(0, PASSAGE), *rows])
+        where = np.array(places).reshape(-1, 3)
         back = t - came["t"][:, None]
-        a = self._fall(scene, came["grain"])
+        a = fall(scene, came["grain"], where[:, 2], surface)
         speed = came["v"] + (back - 0.5 * scene.dt) * a  # that of half a step before
-        grains = Entering(came["grain"], np.array(places), speed, came["omega"], np.array(turns))
-        return Passed(placed(scene, state, grains), events, np.concatenate([leaving, came]))
+        came["momentum"] = came["m"][:, None] * speed
+        return (
+            came,
+            Entering(came["grain"], where, speed, came["omega"], np.array(turns).reshape(-1, 4)),
+            inside,
+        )
 
     def _neighbours(self, scene: Scene, k: int, inside: Floats, t: float) -> Neighbours:
         feed, interval = self.traffic.feeds[k], self.traffic.interval * scene.dt
@@ -206,17 +227,20 @@ class TrafficRule:
         return Neighbours.of(scene, feed, inside, self.population.status == PRESENT, reach, t)
 
     def _entering(
-        self, scene: Scene, near: Neighbours, i: int, step: int, t: float
+        self, scene: Scene, near: Neighbours, i: int, step: int, t: float, surface: float
     ) -> tuple[np.ndarray, Floats | None, Floats]:
         """Record of a grain that enters, its place, None where it finds none, and its orientation."""
         feed, due = self.traffic.feeds[int(self.population.feed[i])], float(self.population.due[i])
         late = t - due
         # a grain that passes a disc between two instants is already on its way
         on_way = late if not feed.is_box and late < self.traffic.interval * scene.dt else 0.0
+        if near.lowest <= surface:
+            on_way = 0.0  # what the water does to it on the way is not known
         if scene.walls is not None and feed.wall != NONE and due < scene.walls.motion[feed.wall, BEGIN]:
             on_way = 0.0  # the wall moved otherwise then
         carrier = carrier_of(scene, feed.wall, t - on_way)
-        v, a = np.array(feed.velocity), self._fall(scene, np.array([i]))[0]
+        v = np.array(feed.velocity)
+        a = fall(scene, np.array([i]), np.array([near.lowest]), surface)[0]
         d, m = (float(one[i]) for one in scene.of_heads())
         of = -1 if scene.bodies is None else int(scene.bodies.of_grain(scene.n_grain)[i])
         extent = d if scene.bodies is None or of < 0 else float(scene.bodies.extent(scene.d)[of])
@@ -237,11 +261,6 @@ class TrafficRule:
                 row["x"], row["v"] = begin, v
                 return row, place, q
         return row, None, _UPRIGHT
-
-    @staticmethod
-    def _fall(scene: Scene, ids: Ints) -> Floats:
-        """Acceleration of grains by their weight alone [m/s2], shape (n, 3)."""
-        return (scene.m_weight[ids] / (scene.m[ids] + scene.m_added[ids]))[:, None] * scene.gravity
 
     def debts(self, step: int, t: float) -> list[tuple[int, float]]:
         """Number and mass [kg] of the grains that found no place at each feed, at the last instant."""
@@ -315,61 +334,12 @@ class TrafficRule:
         self.said = found["said"].astype(np.bool_)
 
 
-def centres(scene: Scene, engine: Engine) -> tuple[Floats, Floats]:
-    """Centres [m] and velocities [m/s] by id; those of a clump stand at its first member."""
-    if scene.bodies is None:
-        x, v, _ = engine.kinematics()
-        return x, v
-    state = engine.grains()
-    x, v, moved = state.x.copy(), state.v.copy(), state.bodies
-    assert moved is not None
-    x[scene.bodies.first], v[scene.bodies.first] = moved.x, moved.v
-    return x, v
-
-
-def spheres_at(scene: Scene, i: int, place: Floats, q: Floats) -> tuple[Ints, Floats]:
-    """Ids and centres of the spheres of a grain or clump at a place [m], shape (n,) and (n, 3)."""
-    spheres = scene.spheres_of(np.array([i]))
-    if scene.bodies is None or len(spheres) == 1:
-        return spheres, place[None]
-    which = scene.bodies.of_grain(scene.n_grain)[[i]]
-    some = scene.bodies.some(which, scene.bodies.first[which])
-    none = np.zeros((1, 3))
-    return spheres, place + BodyState(place[None], none, q[None], none, np.zeros((1, 2), np.int32)).arms(some)
-
-
-def time_since(one: Exit, x: Floats, v: Floats, a: Floats) -> float:
-    """Time since a grain in free flight crossed an exit [s]; inf where it did not come from outside.
-
-    Parameters
-    ----------
-    x, v, a : its centre [m], velocity [m/s] and acceleration [m/s2] now, shape (3,).
-
-    >>> floor = Exit("floor", point=(0.0, 0.0, 0.0), normal=(0.0, 0.0, -1.0))
-    >>> x, v, a = np.array([0.0, 0.0, -0.75]), np.array([0.0, 0.0, -2.0]), np.array([0.0, 0.0, -2.0])
-    >>> time_since(floor, x, v, a)
-    0.5
-    """
-    if one.is_plane:
-        normal = np.array(one.normal)
-        return _back(float((x - np.array(one.point)) @ normal), float(v @ normal), float(a @ normal))
-    faces = [(x[k] - one.low[k], v[k], a[k]) for k in range(3)]
-    faces += [(one.high[k] - x[k], -v[k], -a[k]) for k in range(3)]
-    return min(_back(*(float(part) for part in face)) for face in faces)
-
-
-def _back(depth: float, speed: float, a: float) -> float:
-    """Smallest time since a depth [m] was zero, with the speed [m/s] at which it grows; inf if it never was.
-
-    depth - speed t + a t**2/2 = 0, solved without cancellation.
-    """
-    square = speed * speed - 2.0 * a * depth
-    if square < 0.0:
-        return math.inf
-    below = speed + math.copysign(math.sqrt(square), speed)
-    times = [2.0 * depth / below] if below != 0.0 else []
-    times += [below / a] if a != 0.0 else []
-    return min((one for one in times if one >= 0.0), default=math.inf)
+def _at_entry(state: State, water: Coupling, ids: Ints) -> State:
+    """A snapshot in a column, with the water at spheres of some ids that are about to be put into it."""
+    assert state.fluid is not None
+    sampled = state.fluid.sampled.copy()
+    sampled[ids] = water.sampled[ids]
+    return replace(state, fluid=replace(state.fluid, sampled=sampled))
 
 
 def _grains(count: int) -> str:

@@ -80,6 +80,7 @@ class Coupling:
         faults = column.refuses()
         if faults or longest < 1:
             raise ValueError("; ".join(faults) or f"an interval of {longest} steps: at least 1")
+        x, _ = _with_those_away(scene, column, x, x)
         cells = Cells(column.z_low, column.dz, column.n, column.area)
         cut = slices(x[:, 2], scene.d, cells)
         bed = _bed(scene, cells)
@@ -170,7 +171,8 @@ class Coupling:
 
         Parameters
         ----------
-        x, v : centres and velocities of the grains now [m], [m/s], shape (n_grain, 3).
+        x, v : centres and velocities of the grains now [m], [m/s], shape (n_grain, 3); where grains enter and
+            leave, nan for one that is away.
         impulse : what each took from the water in the interval, columns of `model.fluid`.
 
         Returns
@@ -181,6 +183,7 @@ class Coupling:
         ------
         WaterError : the water cannot be moved on, or drag acts faster than a step resolves.
         """
+        x, v = _with_those_away(self.scene, self.column, x, v)
         dt, arrays = self.steps * self.scene.dt, self._arrays
         volume, t, count = self._about
         rows, faces = np.empty_like(self._rows), np.empty_like(self._faces)
@@ -204,6 +207,38 @@ class Coupling:
             self.eddies = eddies.renew(self.eddies, self.column.seed, dt, self.sampled[:, SHEAR])
         self.sampled = self._water_at_grains()
         return self.sampled
+
+    def finish(self, step: int, x: Floats, v: Floats, impulse: Floats) -> None:
+        """End the interval before the next exchange is due, with an exchange of what was taken so far.
+
+        Parameters
+        ----------
+        step : of the engine.
+        x, v, impulse : as in `exchange`.
+        """
+        if step > self.due - self.steps:  # grains have moved since the last exchange
+            self.steps, self.due = self.steps - (self.due - step), step
+            self.exchange(x, v, impulse)
+
+    def among(self, x: Floats, step: int) -> "Coupling":
+        """The same water at a step at which grains have entered or left, just after an exchange.
+
+        Parameters
+        ----------
+        x : centres of the grains now [m], shape (n_grain, 3); nan for one that is away.
+        step : of the engine; the next exchange is due one later, as the drag on those that entered is not
+            known yet.
+
+        Notes
+        -----
+        The water in each cell is what it was, and so is its momentum. What entering grains displace moves on
+        with the next exchange, as it does where grains move from cell to cell.
+        """
+        other = Coupling.begin(self.scene, self.column, self.longest, x, self.state, step)
+        other.exchanges, other.worst, other.eddies = self.exchanges, self.worst, self.eddies
+        other._arrays.force_z[:] = self._arrays.force_z
+        other.sampled = other._water_at_grains()
+        return other
 
     def numbers(self) -> dict[str, float | int]:
         """State of the water for the summary of a run; SI."""
@@ -271,6 +306,15 @@ class Coupling:
             arrays.force_z, speeds, sampled,
         )  # fmt: skip
         return sampled
+
+
+def _with_those_away(scene: Scene, column: Column, x: Floats, v: Floats) -> tuple[Floats, Floats]:
+    """Centres and velocities, with grains that are away (nan) at rest below the column, in no cell of it."""
+    if scene.traffic is None or not (away := np.isnan(x[:, 2])).any():
+        return x, v
+    x, v = np.where(away[:, None], 0.0, x), np.where(away[:, None], 0.0, v)
+    x[away, 2] = column.z_low - scene.d[away]
+    return x, v
 
 
 @dataclass

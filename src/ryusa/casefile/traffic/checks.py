@@ -52,12 +52,6 @@ def _case(case: "Case") -> Iterator[CaseError]:
     if isinstance(case.build, DropSection | SaltationSection):
         key = "feeds" if case.feeds else "exits"
         yield CaseError(key, None, f"cannot be used with builder '{case.build.kind}', whose starts are alone")
-    if case.water is not None and case.water.profile == "column":
-        yield CaseError(
-            "feeds" if case.feeds else "exits", None,
-            "cannot be used with water.profile = 'column': the column exchanges momentum with grains that "
-            "are always there; take another profile, or a periodic channel without feeds and exits",
-        )  # fmt: skip
     if case.stop.saltations is not None:
         yield CaseError("stop.saltations", case.stop.saltations, "cannot end a run with feeds or exits")
     if case.stop.precision is not None:

@@ -4,9 +4,11 @@ The account of a step belongs to x(n), and a snapshot holds x(n+1) and v(n+1/2).
 what it held at x(n), (1/2) m v(n-1/2).v(n+1/2) and its height; v(n-1/2) follows from the weight and the
 contact forces of that step, so that grains leave without a residual, also out of contacts. Their springs are
 let go; what the force of a grain that leaves still does to its partner in the second half of the step is
-entered too, and a moving wall does no more work on it. A grain that enters brings
-(1/2) m v(n+1/2).v(n+3/2), which is exact where it touches nothing. The forces of water in that half step are
-not known any more: a residual of the order of dt over the time in which drag acts.
+entered too, and a moving wall does no more work on it. Forces of water in that step are left out of v(n-1/2):
+so a grain takes along the work of the second half as well, which is booked with the next step whether it is
+there or not, and nothing remains. A grain that enters brings (1/2) m v(n+1/2).(v(n+1/2) + dt g m_weight/m),
+to which the next step adds the work of all other forces; it touches nothing. In a column m counts the water
+that moves along with what of a grain is in it by `State.fluid`, in which grains that enter have to be.
 """
 
 from dataclasses import replace
@@ -28,6 +30,7 @@ from ryusa.engine.shared.passing_bodies import (
 from ryusa.model import BodyState, Scene, State, Tally, Term
 from ryusa.model.arrays import Bools, Floats
 from ryusa.model.contacts import N_EVENT
+from ryusa.model.fluid import SUBMERGED
 from ryusa.model.scene import EventRule
 from ryusa.model.tally import N_TERM, PENDING
 from ryusa.model.wall_shape import ways_to_faces
@@ -138,7 +141,7 @@ def _less(scene: Scene, state: State, ids: Ints, leaves: Bools, places: Ints) ->
         if scene.rotation:
             to_partners += 0.5 * dt * float(np.sum(torque[stays] * state.omega[stays]))
     ids, which = split(scene, ids)
-    v, weight, m = state.v[ids], *_weight_and_mass(scene, ids)
+    v, weight, m = state.v[ids], *_weight_and_mass(scene, state, ids)
     before = v - dt * (weight + force[ids]) / m[:, None]
     kinetic = 0.5 * float(np.sum(m[:, None] * v * before))
     spin = 0.0
@@ -191,7 +194,7 @@ def _without_work(tally: Tally, of_walls: Floats) -> Tally:
 def _more(scene: Scene, state: State, ids: Ints) -> Tally | None:
     """The account with the grains of some ids, which have just been put in."""
     ids, which = split(scene, ids)
-    v, weight, m = state.v[ids], *_weight_and_mass(scene, ids)
+    v, weight, m = state.v[ids], *_weight_and_mass(scene, state, ids)
     after = v + scene.dt * weight / m[:, None]
     kinetic = 0.5 * float(np.sum(m[:, None] * v * after))
     spin = 0.5 * float(np.sum(scene.inertia[ids, None] * state.omega[ids] ** 2)) if scene.rotation else 0.0
@@ -199,9 +202,10 @@ def _more(scene: Scene, state: State, ids: Ints) -> Tally | None:
     return _entered(state, held.kinetic, held.spin, held.potential, _NO_SPRINGS, 0.0)
 
 
-def _weight_and_mass(scene: Scene, ids: Ints) -> tuple[Floats, Floats]:
-    """Weight less buoyancy [N], shape (n, 3), and mass with added mass [kg]."""
-    return scene.m_weight[ids, None] * scene.gravity, scene.m[ids] + scene.m_added[ids]
+def _weight_and_mass(scene: Scene, state: State, ids: Ints) -> tuple[Floats, Floats]:
+    """Weight less buoyancy [N], shape (n, 3), and mass with that of the water that moves along [kg]."""
+    share = 1.0 if state.fluid is None else state.fluid.sampled[ids, SUBMERGED]
+    return scene.m_weight[ids, None] * scene.gravity, scene.m[ids] + share * scene.m_added[ids]
 
 
 def _height(scene: Scene, state: State, ids: Ints, x: Floats) -> float:

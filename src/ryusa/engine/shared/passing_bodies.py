@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ryusa.laws.rigid_body import rotor_step
 from ryusa.model import BodyState, RigidBodies, Scene, State
 from ryusa.model.arrays import Floats
+from ryusa.model.fluid import SUBMERGED
 
 Ints = NDArray[np.int64]
 
@@ -38,7 +39,7 @@ def split(scene: Scene, ids: Ints) -> tuple[Ints, Ints]:
 
 
 def held_by_bodies(scene: Scene, state: State, which: Ints, force: Floats, torque: Floats) -> Held:
-    """Energy of some clumps at x(n) of a snapshot.
+    """Energy that some clumps of a snapshot take along (`passages.py`).
 
     Parameters
     ----------
@@ -49,7 +50,7 @@ def held_by_bodies(scene: Scene, state: State, which: Ints, force: Floats, torqu
         return Held()
     some, moved = _some(scene, state, which)
     push, turn, w = _of_contacts(scene, some, moved, force, torque)
-    m, weight, dt = _mass(scene, some), some.m_weight[:, None] * scene.gravity, scene.dt
+    m, weight, dt = _mass(scene, state, some), some.m_weight[:, None] * scene.gravity, scene.dt
     before = moved.v - dt * (weight + push) / m[:, None]
     kinetic = 0.5 * float(np.sum(m[:, None] * moved.v * before))
     spin = 0.5 * float(np.sum((moved.momentum - dt * turn) * w))
@@ -61,7 +62,7 @@ def held_at_entry(scene: Scene, state: State, which: Ints) -> Held:
     if not len(which):
         return Held()
     some, moved = _some(scene, state, which)
-    m, weight = _mass(scene, some), some.m_weight[:, None] * scene.gravity
+    m, weight = _mass(scene, state, some), some.m_weight[:, None] * scene.gravity
     kinetic = 0.5 * float(np.sum(m[:, None] * moved.v * (moved.v + scene.dt * weight / m[:, None])))
     spin = 0.5 * float(np.sum(moved.momentum * moved.spin(some)))
     return Held(kinetic, spin, _height(scene, some, moved))
@@ -112,9 +113,13 @@ def _of_contacts(
     return push, turn, then.spin(some)
 
 
-def _mass(scene: Scene, some: RigidBodies) -> Floats:
-    """Mass of clumps with their added mass [kg]."""
-    return some.m + some.sums(scene.m_added[some.members])
+def _mass(scene: Scene, state: State, some: RigidBodies) -> Floats:
+    """Mass of clumps with that of the water that moves along [kg]; in a column with what of them is in it."""
+    added = some.sums(scene.m_added[some.members])
+    if state.fluid is None:
+        return some.m + added
+    share = scene.m[some.members] / np.repeat(some.m, some.count)
+    return some.m + added * some.sums(share * state.fluid.sampled[some.members, SUBMERGED])
 
 
 def _height(scene: Scene, some: RigidBodies, moved: BodyState) -> float:
