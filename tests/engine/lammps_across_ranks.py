@@ -2,23 +2,108 @@
 
 import json
 import sys
+from dataclasses import replace
 
 import numpy as np
 from tests.engine.heaps import COLUMN
 
 from ryusa.build import scene
 from ryusa.engine import registry
-from ryusa.laws.families import ContactTiming, Slip
-from ryusa.model import Water
+from ryusa.laws.families import BedKind, ContactTiming, Fluctuations, Mixing, Slip, SurfaceRule
+from ryusa.model import Column, Water
 from ryusa.model.fluid import N_SAMPLED, SUBMERGED, U
 from ryusa.model.scene import EventRule
+from ryusa.running.water import advanced, changed, snapshot, started
 
 D = 2.0e-3
+INTERVAL, STEPS = 20, 310
+
+
+def stream():
+    """Grains that fly through a column of water, over fixed ones and out of its surface, and collide.
+
+    Without friction the laws of both engines are the same. Grains cross borders of ranks within intervals.
+    """
+    rng, wide = np.random.default_rng(6), 8.0 * D
+    layer = (np.arange(6) + 0.5) * wide / 6.0
+    x = np.stack(np.meshgrid(layer, layer, 2.2 * D + 1.1 * D * np.arange(4), indexing="ij"), -1).reshape(
+        -1, 3
+    )
+    spots = (np.arange(5) + 0.5) * wide / 5.0
+    bed = np.stack(np.meshgrid(spots, spots, [0.5 * D], indexing="ij"), -1).reshape(-1, 3)
+    bed[:, 2] += rng.uniform(0.0, 0.5 * D, len(bed))
+    v = np.array([1.0, 0.4, 0.0]) + rng.normal(0.0, 0.3, x.shape)
+    fixed, first = scene(
+        x, D, v=v, omega=rng.normal(0.0, 30.0, x.shape), x_fixed=bed,
+        d_fixed=D, period=(wide, wide), slip=Slip.TOTAL, friction=0.0, timing=ContactTiming.AT_STEPS,
+        events=EventRule.NONE, water=COLUMN, slope=0.1, stiffness=2e3,
+    )  # fmt: skip
+    column = Column(
+        z_low=0.0, dz=0.2 * D, n=45, depth=5.5 * D, z_bed=D, area=wide**2, bed=BedKind.MOVING, phi_max=0.6,
+        surface=SurfaceRule.VOLUME, mixing=Mixing.LI_SAWAMOTO, g_x=float(fixed.gravity[0]), d=D,
+        fluctuations=Fluctuations.RANDOM_WALK, seed=3, interval=INTERVAL,
+    )  # fmt: skip
+    return replace(fixed, column=column), first
+
+
+def in_a_column(name):
+    """Where grains and water are after a few exchanges; then after a change of the slope and of the bed."""
+    fixed, first = stream()
+    engine = registry.create(name)
+    engine.load(fixed, first)
+    water = started(fixed, engine, first, 0)
+    begun = ranks_of(engine)
+    step, flags = advanced(engine, water, 0, STEPS)
+    flags.raise_if_any()
+    found = {**seen(engine, water), "crossed": int(np.count_nonzero(ranks_of(engine) != begun))}
+    kept = replace(engine.state(), coupling=snapshot(engine, water))
+    gone = fixed.fixed_active & (np.arange(fixed.n_fixed) % 2 == 0)
+    steeper = replace(
+        fixed, gravity=np.array([1.5, 0.0, -9.6]), fixed_active=gone,
+        column=replace(fixed.column, g_x=1.5),
+    )  # fmt: skip
+    ends = []
+    for state in (engine.state(), kept):  # the second goes on from the snapshot
+        if state is kept:
+            engine = registry.create(name)
+            engine.load(fixed, kept)
+            water = started(fixed, engine, kept, step)
+        engine.load(steeper, engine.state())
+        changed(engine, water, steeper)
+        _, flags = advanced(engine, water, step, STEPS // 2)
+        flags.raise_if_any()
+        ends.append(seen(engine, water))
+    apart = {name: float(np.abs(np.array(ends[0][name]) - one).max()) for name, one in ends[1].items()}
+    return {**found, **{f"{name}, later": one for name, one in ends[0].items()}, "apart": apart}
+
+
+def ranks_of(engine):
+    """Rank of every grain."""
+    of = np.zeros(len(engine.grains().x), int)
+    for rank, (ids, _) in enumerate(engine._all("kept") if hasattr(engine, "kept") else ()):
+        of[ids] = rank
+    return of
+
+
+def seen(engine, water):
+    """Grains and water."""
+    state, now = engine.grains(), water.state
+    x = state.x + 8.0 * D * np.column_stack([state.image, np.zeros(len(state.x))])
+    kept = water.snapshot(engine.kept()) if hasattr(engine, "kept") else water.snapshot()
+    return {
+        "x": x.tolist(), "v": state.v.tolist(), "u": now.u.tolist(), "tau": now.tau.tolist(),
+        "surface": now.z_surface, "phi": water.phi.tolist(), "worst": water.worst, "due": int(water.due),
+        "walk": kept.eddies.r.tolist(), "age": kept.eddies.spent.tolist(), "cut": kept.z.tolist(),
+        "n_contact": engine.tally().n_contact,
+    }  # fmt: skip
 
 
 def main() -> None:
     with registry.leading("lammps") as leads:
         if not leads:
+            return
+        if sys.argv[1] == "two-way":
+            print(json.dumps(in_a_column("lammps")))
             return
         column = sys.argv[1] == "column"
         rng = np.random.default_rng(2)

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.engine.lammps_across_ranks import in_a_column
 
 from ryusa.engine import registry
 from ryusa.results import Results
@@ -69,6 +70,25 @@ def test_contacts_across_the_border_are_those_of_one_rank(water):
         if name != "restart":
             size = np.abs(np.array(found)).max(initial=0.0)
             assert np.array(two[name]) == pytest.approx(np.array(found), rel=1e-9, abs=1e-10 * size), name
+
+
+def test_a_column_that_all_ranks_move_is_that_of_one_rank_and_of_the_cpu():
+    # two-way, with eddies, a free surface, fixed grains, a change of slope and bed, and a resume
+    one, two = (
+        json.loads(done(ranks, "-m", "tests.engine.lammps_across_ranks", "two-way").stdout)
+        for ranks in (1, 2)
+    )
+    cpu = in_a_column("cpu")
+    assert cpu["n_contact"] > 2
+    assert two["crossed"] > 5 and one["crossed"] == 0
+    assert np.ptp(cpu["u"]) > 0.1 and np.abs(np.array(cpu["u"]) - cpu["u, later"]).max() > 0.01
+    assert max(cpu["apart"].values()) == 0.0  # bit for bit
+    assert two["n_contact"] == one["n_contact"]  # the CPU engine counts those of the last force evaluation
+    for name in set(cpu) - {"apart", "crossed", "n_contact", "n_contact, later"}:
+        size = max(np.abs(np.array(cpu[name])).max(initial=0.0), 1e-3)
+        for found in (one, two):
+            assert np.array(found[name]) == pytest.approx(np.array(cpu[name]), abs=1e-11 * size), name
+            assert found["apart"][name.removesuffix(", later")] < 1e-11 * size
 
 
 def test_a_run_of_two_ranks_has_the_frames_of_one_and_is_resumed_by_either(flow):

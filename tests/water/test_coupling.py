@@ -15,6 +15,7 @@ from ryusa.model import Column, Water
 from ryusa.model.scene import EventRule
 from ryusa.water.coupling import Coupling
 from ryusa.water.exchange_step import force_on_water
+from ryusa.water.slice_sums import GIVEN_MET, sum_given
 
 D, G = 2.0e-3, 9.80665
 FORMS = list(Buoyancy)
@@ -164,9 +165,9 @@ def test_every_slice_of_a_grain_drags_the_water_by_its_own_slip():
     k_d, dt = 2.0e-5, 1e-3
     taken = np.zeros((6, 4))
     taken[:, 0], taken[:, 3] = k_d * coupling.sampled[:, 0] * dt, k_d  # drag on grains at rest
-    arrays = coupling._arrays
-    given = taken, coupling.sampled, arrays.grains, arrays.cut
-    force = force_on_water(arrays.p, area, sheared.u, *given, 1.0 / dt, arrays.force_z)
+    arrays, sums = coupling._arrays, np.zeros((GIVEN_MET + 1, column.n))
+    sum_given(arrays.p, sheared.u, taken, coupling.sampled, arrays.grains, arrays.cut, 1.0 / dt, sums)
+    force = force_on_water(arrays.p, area, sheared.u, sums, arrays.force_z)
     volume = column.dz * area
     assert (force * volume).sum() == pytest.approx(taken[:, 0].sum() / dt, rel=1e-12)
     # of a sphere: every cell gives k_d U_k times the part of the sphere in it

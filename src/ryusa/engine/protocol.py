@@ -1,7 +1,8 @@
 """What the loop over steps asks of an engine."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -82,4 +83,35 @@ class Engine(Protocol):
 
     def events(self) -> np.ndarray:
         """Contacts ended since the last call: structured array of dtype model.EVENT, in order of parting."""
+        ...
+
+
+@runtime_checkable
+class SharesColumn(Protocol):
+    """An engine of several processes, each with a column of water for the grains that it has.
+
+    The columns (`water.coupling.Coupling`) move alike; that of the process that leads stands for all.
+    """
+
+    def couple(self, begin: Callable[..., Any], told: bool) -> Any:
+        """Begin a column in every process, and return that of this one.
+
+        Parameters
+        ----------
+        begin : called with the scene, the ids of the grains in a process, their centres, the water at them
+            (model.fluid) and the processes (water.processes), None of one process; can be pickled.
+        told : whether the grains know of the water, from a snapshot.
+        """
+        ...
+
+    def exchange(self) -> None:
+        """Let the grains of every process exchange momentum with its column."""
+        ...
+
+    def change_column(self) -> None:
+        """Let the columns take over the scene that was loaded last."""
+        ...
+
+    def kept(self) -> Floats:
+        """What the grains keep for the column, columns of model.fluid by id."""
         ...

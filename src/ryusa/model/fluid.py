@@ -16,6 +16,10 @@ A_X = 5  # acceleration of the water along x, DU/Dt [m/s2]
 EXTRA_X, EXTRA_Z = 6, 7  # force of pressure and stress in excess of that of still water, -rho V g [N]
 SUBMERGED = 8  # share of the volume below the water surface [-]; scales drag, added mass, lift and torque too
 N_SAMPLED = 9
+# Columns of what a grain keeps for the column of water between exchanges, in whatever process it is.
+KEPT_Z = 0  # height at the last exchange [m]
+KEPT_R, KEPT_SPENT, KEPT_COUNT = 1, 4, 5  # of its eddy (model.eddies): r fills three columns
+N_KEPT = 6
 DRAG = 3  # column of `impulse`: drag over slip [N s/m]
 N_IMPULSE = 4
 

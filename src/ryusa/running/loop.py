@@ -33,7 +33,7 @@ from ryusa.running.summary import summary_lines
 from ryusa.running.timeline import Change, in_order
 from ryusa.running.traffic import TrafficRule
 from ryusa.running.watch import Watch
-from ryusa.running.water import advanced, started
+from ryusa.running.water import advanced, changed, snapshot, started
 from ryusa.water.coupling import Coupling
 
 Done = TypeVar("Done")
@@ -286,7 +286,7 @@ class Loop:
     def state(self) -> State:
         """Snapshot of grains and water, sufficient for an exact resume."""
         state = self.engine.state()
-        return state if self._water is None else replace(state, coupling=self._water.snapshot())
+        return state if self._water is None else replace(state, coupling=snapshot(self.engine, self._water))
 
     def _chunk(self) -> int:
         return self._pace.steps
@@ -314,8 +314,8 @@ class Loop:
             self.engine.load(with_servos(self.scene, self.servo), state)
             self._collect_contacts()
             self._n_changed += 1
-            if self._water is not None and self.scene.column is not None:
-                self._water.change(self.scene, self.scene.column)
+            if self._water is not None:
+                changed(self.engine, self._water, self.scene)
             self.watch.scene = self.scene
             scene, step, t = self.scene, self._step, self._t
             self._retry_when_full(lambda scene=scene, step=step, t=t: self.recorder.scene(scene, step, t))

@@ -1,8 +1,18 @@
-"""The column of water of a run: its start, and the steps of an engine between exchanges with it."""
+"""The column of water of a run: its start, and the steps of an engine between exchanges with it.
 
-from ryusa.engine.protocol import Engine, Flags
-from ryusa.model import Scene, State
+An engine of several processes has a column in each of them; that of the process that leads is the one here.
+"""
+
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from ryusa.engine.protocol import Engine, Flags, SharesColumn
+from ryusa.model import CouplingState, Scene, State
+from ryusa.model.scene import Floats
 from ryusa.water.coupling import Coupling
+from ryusa.water.processes import SharingProcesses
 
 
 def started(scene: Scene, engine: Engine, state: State, step: int) -> Coupling | None:
@@ -16,12 +26,28 @@ def started(scene: Scene, engine: Engine, state: State, step: int) -> Coupling |
     column = scene.column
     if column is None:
         return None
-    if state.coupling is not None and state.fluid is not None:
-        return Coupling.resume(scene, column, column.interval, state.coupling, state.fluid.sampled)
+    found = state.coupling if state.fluid is not None else None
+    if isinstance(engine, SharesColumn):
+        return engine.couple(partial(_in_process, step, found), told=found is not None)
+    if found is not None and state.fluid is not None:
+        return Coupling.resume(scene, column, column.interval, found, state.fluid.sampled)
     x, _, _ = engine.kinematics()
     water = Coupling.begin(scene, column, column.interval, x, step=step)
     engine.set_fluid(water.sampled)
     return water
+
+
+def _in_process(
+    step: int, found: CouplingState | None, scene: Scene, ids: np.ndarray, x: Floats, sampled: Floats,
+    processes: SharingProcesses | None,
+) -> Coupling:  # fmt: skip
+    """The column for the grains of one of several processes."""
+    column = scene.column
+    assert column is not None
+    of_process: dict[str, Any] = {"ids": ids, "processes": processes}
+    if found is not None:
+        return Coupling.resume(scene, column, column.interval, found, sampled, **of_process)
+    return Coupling.begin(scene, column, column.interval, x, step=step, **of_process)
 
 
 def advanced(engine: Engine, water: Coupling | None, step: int, n_steps: int) -> tuple[int, Flags]:
@@ -32,7 +58,7 @@ def advanced(engine: Engine, water: Coupling | None, step: int, n_steps: int) ->
     step : that the engine has reached, if no fault has stopped it.
     flags : of the call that a fault stopped.
     """
-    end = step + n_steps
+    end, shared = step + n_steps, engine if isinstance(engine, SharesColumn) else None
     while step < end:
         k = (end if water is None else min(end, water.due)) - step
         flags = engine.advance(k)
@@ -40,5 +66,21 @@ def advanced(engine: Engine, water: Coupling | None, step: int, n_steps: int) ->
             return step, flags
         step += k
         if water is not None and step == water.due:
-            engine.set_fluid(water.exchange(*engine.kinematics()))
+            if shared is None:
+                engine.set_fluid(water.exchange(*engine.kinematics()))
+            else:
+                shared.exchange()
     return step, Flags()
+
+
+def changed(engine: Engine, water: Coupling, scene: Scene) -> None:
+    """Let the water take over a scene that the timeline changed and the engine has loaded."""
+    if isinstance(engine, SharesColumn):
+        engine.change_column()
+    elif scene.column is not None:
+        water.change(scene, scene.column)
+
+
+def snapshot(engine: Engine, water: Coupling) -> CouplingState:
+    """State of the column, for an exact resume."""
+    return water.snapshot(engine.kept() if isinstance(engine, SharesColumn) else None)

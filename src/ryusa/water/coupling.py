@@ -5,7 +5,8 @@ received is taken from the cells with the same slices, so that momentum is conse
 """
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from zlib import crc32
 
 import numpy as np
 
@@ -15,17 +16,17 @@ from ryusa.laws.families import BedKind, Fluctuations, Mixing, Start
 from ryusa.model import CouplingState, Scene
 from ryusa.model.column import STIFF, Budget, Column, WaterState
 from ryusa.model.eddies import Eddies
-from ryusa.model.fluid import N_SAMPLED, SHEAR
+from ryusa.model.fluid import KEPT_COUNT, KEPT_R, KEPT_SPENT, KEPT_Z, N_KEPT, N_SAMPLED, SHEAR
 from ryusa.model.scene import Floats
 from ryusa.water import eddies
 from ryusa.water import exchange_step as step
-from ryusa.water._kernel import parameters_of
 from ryusa.water.closures import averaged
 from ryusa.water.drive import discharge
-from ryusa.water.exchange import Cells, Slices, concentration, slices, weighted_concentration
+from ryusa.water.exchange import Ints, weighted_concentration
+from ryusa.water.exchange_arrays import ExchangeArrays, concentration_of_bed
 from ryusa.water.fixed_grains import steady_start
-from ryusa.water.free_surface import submerged_part
-from ryusa.water.momentum_balance import DONE, GRADIENT
+from ryusa.water.momentum_balance import DONE, GRADIENT, SURFACE
+from ryusa.water.processes import SharingProcesses
 from ryusa.water.solve import budget_of, fault_of, profiles_of, water_of
 
 numbers(__name__, Start.REST, Start.STEADY)
@@ -48,6 +49,8 @@ class Coupling:
     exchanges : number of exchanges so far.
     worst : largest residual of the momentum budget so far, over its largest term [-].
     eddies : present eddies of the grains; None without fluctuations.
+    ids : of the grains that are rows here; None: all grains, in their order.
+    processes : that share the grains, each with a column that moves alike; None: this one has them all.
     """
 
     scene: Scene
@@ -59,17 +62,20 @@ class Coupling:
     due: int
     exchanges: int
     worst: float
-    _arrays: "_Arrays"
+    _arrays: ExchangeArrays
     _rows: Floats  # profiles of the water in cells, those of `time_step`
     _faces: Floats  # and at faces
     _out: Floats  # scalars of the last exchange
     _about: tuple[float, float, int]  # water per area of bed [m], t [s] and steps of the water
     eddies: Eddies | None = None
+    ids: Ints | None = None
+    processes: SharingProcesses | None = None
 
     @staticmethod
     def begin(
-        scene: Scene, column: Column, longest: int, x: Floats, state: WaterState | None = None, step: int = 0
-    ) -> "Coupling":
+        scene: Scene, column: Column, longest: int, x: Floats, state: WaterState | None = None, step: int = 0,
+        ids: Ints | None = None, processes: SharingProcesses | None = None,
+    ) -> "Coupling":  # fmt: skip
         """Cut the grains at x [m], and fill the column with its initial state or with a given one.
 
         Raises
@@ -81,12 +87,12 @@ class Coupling:
         if faults or longest < 1:
             raise ValueError("; ".join(faults) or f"an interval of {longest} steps: at least 1")
         x, _ = _with_those_away(scene, column, x, x)
-        cells = Cells(column.z_low, column.dz, column.n, column.area)
-        cut = slices(x[:, 2], scene.d, cells)
-        bed = _bed(scene, cells)
-        phi_bed = concentration(bed)
-        solid = (scene.m - scene.m_weight) / scene.water.rho_w
-        free = weighted_concentration(cut, solid / cut.whole)
+        phi_bed = concentration_of_bed(scene, column)
+        surface = column.z_surface if state is None else state.z_surface
+        arrays = ExchangeArrays.of(
+            scene, column, np.ascontiguousarray(x[:, 2]), surface, phi_bed, ids, processes
+        )
+        free = _of_free_grains(arrays, column, processes)
         phi = free + phi_bed
         if state is None and column.start is Start.STEADY:
             d_bed = scene.d_fixed[scene.fixed_active]
@@ -95,23 +101,23 @@ class Coupling:
                 column, scene.water, phi_bed, free, float((every**3).sum() / (every**2).sum())
             )
         now = WaterState.at_rest(column, phi) if state is None else state
-        wet = submerged_part(cut, x[:, 2], scene.d, now.z_surface)
         rows, faces, out = profiles_of(now)
+        n = len(x)
         coupling = Coupling(
-            scene, column, longest, 1, phi, np.zeros((scene.n_grain, N_SAMPLED)), step + 1, 0, 0.0,
-            _Arrays.of(scene, column, cut, wet, bed, phi_bed, np.array(x[:, 2]), solid), rows, faces, out,
-            (now.volume, now.t, now.step),
+            scene, column, longest, 1, phi, np.zeros((n, N_SAMPLED)), step + 1, 0, 0.0, arrays, rows, faces,
+            out, (now.volume, now.t, now.step), ids=ids, processes=processes,
         )  # fmt: skip
         if column.fluctuations is Fluctuations.RANDOM_WALK:
-            coupling.eddies = eddies.begin(column.seed, scene.n_grain)
+            coupling.eddies = eddies.begin(column.seed, n, ids)
         coupling.sampled = coupling._water_at_grains()
         return coupling
 
     @staticmethod
     def resume(
-        scene: Scene, column: Column, longest: int, found: CouplingState, sampled: Floats
-    ) -> "Coupling":
-        """Go on from a snapshot; `sampled` is the water at its grains, columns of `model.fluid`.
+        scene: Scene, column: Column, longest: int, found: CouplingState, sampled: Floats,
+        ids: Ints | None = None, processes: SharingProcesses | None = None,
+    ) -> "Coupling":  # fmt: skip
+        """Go on from a snapshot; `sampled` is the water at the grains here, columns of `model.fluid`.
 
         Raises
         ------
@@ -122,28 +128,61 @@ class Coupling:
                 f"the snapshot has {len(found.water.u)} cells and {len(found.z)} grains, the run has "
                 f"{column.n} cells and {scene.n_grain} grains"
             )
-        x = np.zeros((scene.n_grain, 3))
-        x[:, 2] = found.z
-        coupling = Coupling.begin(scene, column, longest, x, found.water)
+        here = slice(None) if ids is None else ids
+        x = np.zeros((len(sampled), 3))
+        x[:, 2] = found.z[here]
+        coupling = Coupling.begin(scene, column, longest, x, found.water, ids=ids, processes=processes)
         coupling.steps, coupling.due = found.steps, found.due
         coupling.exchanges, coupling.worst = found.exchanges, found.worst
         coupling.sampled = np.array(sampled)  # one that may be written: read-only arrays would compile anew
         coupling._arrays.force_z[:] = found.force_z
-        coupling.eddies = found.eddies
+        if found.eddies is not None:
+            coupling.eddies = Eddies(*(one[here] for one in vars(found.eddies).values()))
         return coupling
 
-    def snapshot(self) -> CouplingState:
-        """All that `resume` needs, beside the water at the grains."""
+    def snapshot(self, kept: Floats | None = None) -> CouplingState:
+        """All that `resume` needs, beside the water at the grains; `kept` is that of all processes, by id."""
+        walk = self.eddies
         z, force_z = self._arrays.z.copy(), self._arrays.force_z.copy()
+        if kept is not None:
+            z, walk = kept[:, KEPT_Z].copy(), None if walk is None else _eddies_of(kept)
         z.flags.writeable = force_z.flags.writeable = False
-        return CouplingState(
-            self.state, z, force_z, self.steps, self.due, self.exchanges, self.worst, self.eddies
-        )
+        return CouplingState(self.state, z, force_z, self.steps, self.due, self.exchanges, self.worst, walk)
+
+    @property
+    def kept(self) -> Floats:
+        """What goes with the grains here to another process, columns of `model.fluid`."""
+        kept = np.zeros((len(self._arrays.z), N_KEPT))
+        kept[:, KEPT_Z] = self._arrays.z
+        if self.eddies is not None:
+            kept[:, KEPT_R : KEPT_R + 3] = self.eddies.r
+            kept[:, KEPT_SPENT], kept[:, KEPT_COUNT] = self.eddies.spent, self.eddies.count
+        return kept
+
+    def hold(self, ids: Ints, kept: Floats, sampled: Floats) -> None:
+        """Go on with the grains that are in this process now, since some came and some went.
+
+        Parameters
+        ----------
+        ids : of the grains here.
+        kept, sampled : what `kept` and `sampled` were of each, wherever it was, columns of `model.fluid`.
+        """
+        if self.ids is not None and np.array_equal(ids, self.ids):
+            return
+        self.ids, self.sampled = ids, sampled
+        self._cut(np.ascontiguousarray(kept[:, KEPT_Z]))
+        if self.eddies is not None:
+            self.eddies = _eddies_of(kept)
 
     @property
     def state(self) -> WaterState:
         """Present state of the water."""
         return water_of(self._rows.view(), self._faces.view(), self._out, *self._about)
+
+    @property
+    def checksum(self) -> int:
+        """Of the profiles of the water: the same where all their bits are."""
+        return crc32(self._faces.data, crc32(self._rows.data))
 
     @property
     def budget(self) -> Budget | None:
@@ -152,18 +191,18 @@ class Coupling:
 
     def change(self, scene: Scene, column: Column) -> None:
         """Take over a scene that the timeline changed: its slope, or removed fixed grains."""
-        arrays, before = self._arrays, self.scene
-        cut, wet = arrays.slices(column, arrays.cut), arrays.slices(column, arrays.wet)
-        bed = _bed(scene, cut.cells)
-        phi_bed, solid = concentration(bed), arrays.grains.solid
+        before, self.scene, self.column = self.scene, scene, column
+        self._cut(self._arrays.z)
         if not np.array_equal(scene.fixed_active, before.fixed_active):
             # the same bits as after a resume
-            self.phi = weighted_concentration(cut, solid / cut.whole) + phi_bed
-        force_z = arrays.force_z
-        self.scene, self.column = scene, column
-        self._arrays = _Arrays.of(
-            scene, column, cut, wet if arrays.reaches else cut, bed, phi_bed, arrays.z, solid
-        )
+            free = _of_free_grains(self._arrays, column, self.processes)
+            self.phi = free + self._arrays.bed.phi
+
+    def _cut(self, z: Floats) -> None:
+        """Cut the grains here at their heights at the last exchange [m]."""
+        scene, column, force_z = self.scene, self.column, self._arrays.force_z
+        phi_bed, surface = concentration_of_bed(scene, column), float(self._out[SURFACE])
+        self._arrays = ExchangeArrays.of(scene, column, z, surface, phi_bed, self.ids, self.processes)
         self._arrays.force_z[:] = force_z
 
     def exchange(self, x: Floats, v: Floats, impulse: Floats) -> Floats:
@@ -188,14 +227,20 @@ class Coupling:
         volume, t, count = self._about
         rows, faces = np.empty_like(self._rows), np.empty_like(self._faces)
         out = np.zeros(step.N_SCALAR)
-        status = step.exchange_step(
-            arrays.p, arrays.area, arrays.laws, arrays.grains, arrays.bed, arrays.cut, arrays.wet,
-            arrays.bed_cut, arrays.bed_wet, arrays.reaches, x, v, impulse, self.sampled, dt, volume,
-            self._out, self._rows, arrays.z, self.phi, arrays.force_z, rows, faces, out,
-        )  # fmt: skip
+        if self.processes is None or self.ids is None:
+            status = step.exchange_step(
+                arrays.p, arrays.area, arrays.laws, arrays.grains, arrays.bed, arrays.cut, arrays.wet,
+                arrays.bed_cut, arrays.bed_wet, arrays.reaches, x, v, impulse, self.sampled, dt, volume,
+                self._out, self._rows, arrays.z, self.phi, arrays.force_z, rows, faces, out,
+            )  # fmt: skip
+        else:
+            status = step.exchange_of_processes(
+                self.processes, self.ids, arrays, (x, v, impulse, self.sampled), dt, volume, self._out,
+                self._rows, self.phi, rows, faces, out,
+            )  # fmt: skip
         if status == step.NOT_FINITE:
             i = int(out[step.BAD])
-            raise ValueError(f"grain in row {i}: z = {x[i, 2]:g} m, d = {self.scene.d[i]:g} m")
+            raise ValueError(f"the height of grain {i} is not finite")
         if status != DONE:
             raise fault_of(status, count, t)
         self._rows, self._faces, self._out, self._about = rows, faces, out, (volume, t + dt, count + 1)
@@ -204,7 +249,7 @@ class Coupling:
         self.steps = min(self.longest, self._resolved(float(out[step.FASTEST])))
         self.due += self.steps
         if self.eddies is not None:
-            self.eddies = eddies.renew(self.eddies, self.column.seed, dt, self.sampled[:, SHEAR])
+            self.eddies = eddies.renew(self.eddies, self.column.seed, dt, self.sampled[:, SHEAR], self.ids)
         self.sampled = self._water_at_grains()
         return self.sampled
 
@@ -300,7 +345,7 @@ class Coupling:
             cut, water = arrays.slices(self.column, wet), self.state
             u_tau, drift, shear = eddies.turbulence(self.column, water, self.phi, cut)
             speeds = eddies.speeds(self.eddies, self.scene.plane_case, u_tau, drift, shear)
-        sampled = np.empty((self.scene.n_grain, N_SAMPLED))
+        sampled = np.empty((len(arrays.z), N_SAMPLED))
         step.water_at_grains(
             arrays.p, arrays.laws, arrays.grains, wet, self._rows, float(self._out[GRADIENT]), self.phi,
             arrays.force_z, speeds, sampled,
@@ -317,65 +362,15 @@ def _with_those_away(scene: Scene, column: Column, x: Floats, v: Floats) -> tupl
     return x, v
 
 
-@dataclass
-class _Arrays:
-    """What the compiled exchange works with; constant but for the slices, z, force_z and `reaches`."""
-
-    p: step.ColumnParameters
-    area: float
-    laws: step.WaterLaws
-    grains: step.GrainNumbers
-    bed: step.BedNumbers
-    cut: step.SliceArrays  # of whole grains: volume in the cells
-    wet: step.SliceArrays  # of the parts below the surface, where a grain reaches it: exchange of forces
-    bed_cut: step.SliceArrays
-    bed_wet: step.SliceArrays
-    z: Floats  # heights at which the grains are cut [m]
-    force_z: Floats  # of the water on grains along z, per volume of cells [N/m3]
-    reaches: bool = field(default=False)  # whether a grain reaches the surface
-
-    @staticmethod
-    def of(
-        scene: Scene, column: Column, cut: Slices, wet: Slices, bed: Slices, phi_bed: Floats, z: Floats,
-        solid: Floats,
-    ) -> "_Arrays":  # fmt: skip
-        """For slices of the free grains, of their parts below the surface, and of the fixed grains."""
-        water, there = scene.water, scene.fixed_active
-        z_bed = np.ascontiguousarray(scene.x_fixed[there, 2])
-        whole, bed_cut = step.SliceArrays.of(cut), step.SliceArrays.of(bed)
-        reaches = wet is not cut
-        return _Arrays(
-            parameters_of(column),
-            float(column.area),
-            step.WaterLaws(
-                int(water.drag), int(water.hindrance), int(water.buoyancy), float(water.hindrance_exponent),
-                float(water.nu), float(water.rho_w), float(water.a_2), float(water.c_d),
-                float(scene.gravity[0]), float(scene.gravity[2]),
-            ),
-            step.GrainNumbers(
-                np.arange(scene.n_grain), np.array(scene.d), solid,
-                (scene.m_weight - scene.m) * scene.gravity[0], scene.m + scene.m_added,
-            ),
-            step.BedNumbers(
-                np.arange(len(z_bed)), z_bed, np.array(scene.d_fixed[there]), phi_bed,
-                column.bed is BedKind.ROUGH,
-            ),
-            whole,
-            step.SliceArrays.of(wet) if reaches else whole.copy(),
-            bed_cut,
-            bed_cut.copy(),
-            z,
-            np.zeros(column.n),
-            reaches,
-        )  # fmt: skip
-
-    def slices(self, column: Column, arrays: step.SliceArrays) -> Slices:
-        """The arrays as slices of grains."""
-        cells = Cells(column.z_low, column.dz, column.n, column.area)
-        return Slices(cells, *arrays, self.grains.order)
+def _of_free_grains(arrays: ExchangeArrays, column: Column, processes: SharingProcesses | None) -> Floats:
+    """Concentration of the free grains of all processes [-], shape (n,)."""
+    free = weighted_concentration(arrays.slices(column, arrays.cut), arrays.grains.solid / arrays.cut.whole)
+    if processes is not None:
+        processes.add(free)
+    return free
 
 
-def _bed(scene: Scene, cells: Cells) -> Slices:
-    """Slices of the fixed grains that are still there."""
-    there = scene.fixed_active
-    return slices(scene.x_fixed[there, 2], scene.d_fixed[there], cells)
+def _eddies_of(kept: Floats) -> Eddies:
+    """Eddies as they go with the grains."""
+    r, spent = kept[:, KEPT_R : KEPT_R + 3].copy(), kept[:, KEPT_SPENT].copy()
+    return Eddies(r, spent, kept[:, KEPT_COUNT].astype(np.int64))

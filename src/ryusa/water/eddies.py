@@ -18,7 +18,7 @@ from ryusa.model.column import Column, WaterState
 from ryusa.model.eddies import Eddies
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import kernel
-from ryusa.water.exchange import Slices, to_grains
+from ryusa.water.exchange import Ints, Slices, to_grains
 
 LEAST = 0.01  # lower limit of the volume fraction of water in a cell
 GOLDEN, MIX_1, MIX_2 = 0x9E3779B97F4A7C15, 0xBF58476D1CE4E5B9, 0x94D049BB133111EB
@@ -43,32 +43,32 @@ def draw(seed: int, grain: int, count: int, k: int) -> float:
 
 
 @kernel
-def _born(seed: int, grain: int, count: int, r: Floats) -> None:
-    """Draw the speeds of eddy `count` of a grain, by Box & Muller from four uniform numbers."""
+def _born(seed: int, grain: int, count: int, i: int, r: Floats) -> None:
+    """Draw the speeds of eddy `count` of the grain in row i, by Box & Muller from four uniform numbers."""
     for k, axis in ((0, 0), (2, 1)):
         size = math.sqrt(-2.0 * math.log(draw(seed, grain, count, k)))
         turn = 2.0 * math.pi * draw(seed, grain, count, k + 1)
-        r[grain, axis] = size * math.cos(turn)
+        r[i, axis] = size * math.cos(turn)
         if axis == 0:
-            r[grain, 2] = size * math.sin(turn)
+            r[i, 2] = size * math.sin(turn)
 
 
 @kernel
-def _begin(seed: int, r: Floats, spent: Floats) -> None:
+def _begin(seed: int, ids: Ints, r: Floats, spent: Floats) -> None:
     for i in range(len(spent)):
-        _born(seed, i, 0, r)
-        spent[i] = draw(seed, i, 0, 4)
+        _born(seed, ids[i], 0, i, r)
+        spent[i] = draw(seed, ids[i], 0, 4)
 
 
 @kernel
-def _renew(seed: int, dt: float, shear: Floats, r: Floats, spent: Floats, count: Any) -> None:
+def _renew(seed: int, dt: float, ids: Ints, shear: Floats, r: Floats, spent: Floats, count: Any) -> None:
     for i in range(len(spent)):
         spent[i] += dt / eddy_life(shear[i])
         if spent[i] >= 1.0:
             left = math.floor(spent[i])
             spent[i] -= left
             count[i] += int(left)
-            _born(seed, i, count[i], r)
+            _born(seed, ids[i], count[i], i, r)
 
 
 @kernel
@@ -90,14 +90,21 @@ def _drift(dz: float, u_tau: Floats, viscosity: Floats, drift: Floats) -> None:
         drift[k] = eddy_drift(length, (u_tau[k + 1] - u_tau[k]) / dz)
 
 
-def begin(seed: int, n_grain: int) -> Eddies:
-    """Put every grain into an eddy of random age; `seed` is that of the case."""
+def begin(seed: int, n_grain: int, ids: Ints | None = None) -> Eddies:
+    """Put every grain into an eddy of random age.
+
+    Parameters
+    ----------
+    seed : of the case.
+    n_grain : number of rows.
+    ids : ids of the grains in the rows, shape (n_grain,); None: 0 to n_grain - 1.
+    """
     r, spent = np.zeros((n_grain, 3)), np.zeros(n_grain)
-    _begin(seed, r, spent)
+    _begin(seed, np.arange(n_grain) if ids is None else ids, r, spent)
     return Eddies(r, spent, np.zeros(n_grain, np.int64))
 
 
-def renew(eddies: Eddies, seed: int, dt: float, shear: Floats) -> Eddies:
+def renew(eddies: Eddies, seed: int, dt: float, shear: Floats, ids: Ints | None = None) -> Eddies:
     """Advance the age of the eddies, and renew those that have ended.
 
     Parameters
@@ -106,9 +113,12 @@ def renew(eddies: Eddies, seed: int, dt: float, shear: Floats) -> Eddies:
     seed : of the case.
     dt : elapsed time [s].
     shear : velocity gradient of the water at each grain in that time [1/s], shape (n_grain,).
+    ids : as in `begin`.
     """
     r, spent, count = eddies.r.copy(), eddies.spent.copy(), eddies.count.copy()
-    _renew(seed, dt, np.ascontiguousarray(shear), r, spent, count)
+    _renew(
+        seed, dt, np.arange(len(spent)) if ids is None else ids, np.ascontiguousarray(shear), r, spent, count
+    )
     return Eddies(r, spent, count)
 
 

@@ -12,12 +12,13 @@ from ryusa.engine.lammps.contact_words import FLAT, RIGID, Partner, contact_word
 from ryusa.engine.lammps.mass_classes import MassClasses
 from ryusa.laws.families import Profile
 from ryusa.model import Scene
+from ryusa.model.fluid import N_IMPULSE, N_KEPT, N_SAMPLED
 from ryusa.model.scene import Floats
 
 SKIN = 0.15  # of the mean diameter: distance beyond contact up to which neighbours are listed
 WATER = "water"  # fix external that completes the forces
 # what a grain knows of a column of water, columns of model.fluid and of `forces`; it goes with the grain
-SAMPLED, IMPULSE, LAST = "d2_sampled", "d2_impulse", "d2_last"
+SAMPLED, IMPULSE, LAST, KEPT = "d2_sampled", "d2_impulse", "d2_last", "d2_kept"
 N_LAST = 7
 PAIRS = "pairs"  # compute of pairs in contact: distance of their centres [m]
 PROCESSORS = "processors * {} 1"  # grains lie in layers: ranks share the bed, not its height
@@ -92,7 +93,8 @@ def laws(scene: Scene, classes: MassClasses) -> list[str]:
         commands += plane(scene, classes, k)
     if completes_forces(scene):
         if scene.water.profile == Profile.COLUMN:
-            commands.append(f"fix rows all property/atom {SAMPLED} 9 {IMPULSE} 4 {LAST} {N_LAST}")
+            columns = f"{SAMPLED} {N_SAMPLED} {IMPULSE} {N_IMPULSE} {LAST} {N_LAST} {KEPT} {N_KEPT}"
+            commands.append(f"fix rows all property/atom {columns}")
         commands.append(f"fix {WATER} all external pf/callback 1 1")  # the last that changes forces
     else:
         commands.append(weight(scene))

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from ryusa.engine.lammps.answers import FEWEST_IMAGES, Extremes, together
-from ryusa.engine.lammps.faults import fault_of_grains
+from ryusa.engine.lammps.faults import LammpsFailed, fault_of_grains
 from ryusa.engine.lammps.ranks import Ranks
 from ryusa.engine.lammps.refusals import refusals_of_change, refusals_of_lammps
 from ryusa.engine.protocol import Flags
@@ -15,7 +15,7 @@ from ryusa.engine.shared.refusals import check_state, refusals
 from ryusa.errors import RunError
 from ryusa.laws.families import Profile
 from ryusa.model import EVENT, EngineBlock, Scene, State, Tally, Term
-from ryusa.model.fluid import N_IMPULSE, N_SAMPLED, FluidAtGrains
+from ryusa.model.fluid import N_IMPULSE, N_KEPT, N_SAMPLED, FluidAtGrains
 from ryusa.model.scene import Floats
 from ryusa.model.state import make_read_only
 
@@ -93,6 +93,32 @@ class LammpsEngine:
         if sampled.shape != (scene.n_grain, N_SAMPLED):
             raise ValueError(f"sampled has shape {sampled.shape}, not {(scene.n_grain, N_SAMPLED)}")
         self._all("set_fluid", np.arange(scene.n_grain), sampled)
+
+    def couple(self, begin: Any, told: bool) -> Any:
+        """Begin a column of water in every process (engine.protocol.SharesColumn)."""
+        self._all("couple", begin, told)
+        assert self._ranks is not None
+        return self._ranks.water
+
+    def exchange(self) -> None:
+        """Let the grains of every process exchange momentum with its column."""
+        if len(set(self._all("exchange"))) > 1:
+            raise LammpsFailed(
+                f"the columns of water of the ranks have parted at step {self._step}: run all ranks on "
+                "processors of one kind, with one version of each library"
+            )
+
+    def change_column(self) -> None:
+        """Let the columns take over the scene that was loaded last."""
+        self._all("change_column")
+
+    def kept(self) -> Floats:
+        """What the grains keep for the column, columns of model.fluid by id."""
+        assert self._scene is not None
+        kept = np.empty((self._scene.n_grain, N_KEPT))
+        for ids, found in self._all("kept"):
+            kept[ids] = found
+        return kept
 
     def set_walls(self, motion: Floats) -> None:
         """Refuse: this engine has no walls but planes."""

@@ -16,7 +16,7 @@ from typing import Any
 
 from ryusa.engine.lammps.availability import started_together
 from ryusa.engine.lammps.faults import LammpsFailed, RankFault, SharedFault
-from ryusa.errors import CaseError
+from ryusa.errors import CaseError, RyusaError
 
 _END = "end"
 _SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGUSR1)
@@ -81,9 +81,9 @@ class Ranks:
             self._relay.listen()
 
     @property
-    def n(self) -> int:
-        """Number of processes."""
-        return 1 if self._comm is None else int(self._comm.Get_size())
+    def water(self) -> Any:
+        """Column of water of the leader; those of the other ranks move alike."""
+        return self._share.water
 
     def all(self, method: str, *arguments: Any) -> list[Any]:
         """Call a method of every share, and return what each returned.
@@ -91,6 +91,7 @@ class Ranks:
         Raises
         ------
         LammpsFailed : on any rank.
+        RyusaError : an error of the column of water, which all ranks have.
         """
         if self._comm is None:
             try:
@@ -107,6 +108,8 @@ class Ranks:
             raise
         answers = self._comm.gather((*mine, ()), 0)
         self._relay.take(one for _, _, signals in answers for one in signals)
+        if isinstance(mine[0], RyusaError):
+            raise mine[0]
         faults = [fault for _, fault, _ in answers if fault]
         if faults:
             raise LammpsFailed(faults[0])
@@ -178,6 +181,8 @@ def _attempt(share: Any, method: str, arguments: tuple[Any, ...]) -> tuple[Any, 
         return getattr(share, method)(*arguments), ""
     except SharedFault as error:
         return None, str(error)
+    except RyusaError as error:  # of the column, which is the same on all ranks
+        return error, str(error)
 
 
 def _abort_at_exit(comm: Any) -> None:

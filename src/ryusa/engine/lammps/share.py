@@ -4,7 +4,6 @@ Every rank has one. All methods are called on all ranks together; those that ret
 this rank, with their ids.
 """
 
-import ctypes
 import os
 from collections.abc import Generator, Iterable
 from contextlib import contextmanager
@@ -15,24 +14,18 @@ import numpy as np
 from ryusa.engine.lammps import commands as C
 from ryusa.engine.lammps import forces as F
 from ryusa.engine.lammps.answers import FEWEST_IMAGES, Extremes, RankRows
+from ryusa.engine.lammps.atoms import AtomArrays
 from ryusa.engine.lammps.faults import RankFault, SharedFault, fault_of_lammps
 from ryusa.engine.lammps.mass_classes import mass_classes
 from ryusa.engine.lammps.module import module, open_lammps
+from ryusa.engine.lammps.sums import RankSums
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.parameters import parameters_of
 from ryusa.engine.shared.variant import choice_of
 from ryusa.laws.families import Profile
 from ryusa.model import Scene, State
-from ryusa.model.fluid import DRAG, N_IMPULSE, N_SAMPLED, SUBMERGED
+from ryusa.model.fluid import DRAG, N_IMPULSE, SUBMERGED
 from ryusa.model.scene import Floats
-
-_DOUBLE, _INT = np.dtype(np.float64), np.dtype(np.int32)
-# arrays of the atoms: type, and number of columns, 0 of a vector
-_ARRAYS = {
-    "id": (_INT, 0), "image": (_INT, 0), "radius": (_DOUBLE, 0), "rmass": (_DOUBLE, 0),
-    **{name: (_DOUBLE, 3) for name in ("x", "v", "omega", "f", "torque")},
-    C.SAMPLED: (_DOUBLE, N_SAMPLED), C.IMPULSE: (_DOUBLE, N_IMPULSE), C.LAST: (_DOUBLE, C.N_LAST),
-}  # fmt: skip
 
 
 @contextmanager
@@ -55,8 +48,9 @@ class GrainShare:
         self._lmp: Any = None
         self._scene: Scene | None = None
         self._first = comm is None or comm.Get_rank() == 0
-        self._arrays: dict[str, tuple[int, int, np.ndarray]] = {}  # address, number of atoms, array
+        self._atoms: Any = None  # AtomArrays
         self._broken: Exception | None = None  # raised where LAMMPS calls, which drops exceptions
+        self.water: Any = None  # column of water of this process (engine.protocol.ColumnHere)
 
     def load(self, scene: Scene, state: State, restart: bytes | None) -> None:
         """Take a scene and a state; `restart` is what `restart` returned, for a resume."""
@@ -64,9 +58,7 @@ class GrainShare:
         self._scene, self._classes = scene, mass_classes(scene)
         self._take_numbers(scene, state)
         self._lmp = lmp = open_lammps(self._comm)
-        self._extract, self._count = lmp.lib["lammps_extract_atom"], lmp.lib["lammps_extract_setting"]
-        self._extract.restype, self._extract.argtypes = ctypes.c_void_p, [ctypes.c_void_p, ctypes.c_char_p]
-        self._count.restype, self._count.argtypes = ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p]
+        self._atoms = AtomArrays(lmp)
         if (lmp.extract_setting("tagint"), lmp.extract_setting("imageint")) != (4, 4):
             raise SharedFault("LAMMPS was built with 64-bit ids: a build with the usual 32 bits is needed")
         self._bed = scene.fixed_active.copy()
@@ -113,8 +105,7 @@ class GrainShare:
         if self._lmp is not None:
             self._lmp.close()
             self._lmp = None
-            self._broken = None
-            self._arrays.clear()
+            self._broken = self.water = self._atoms = None
 
     def _take_numbers(self, scene: Scene, state: State) -> None:
         self._choice, self._c = choice_of(scene), parameters_of(scene)
@@ -172,25 +163,69 @@ class GrainShare:
         self._bed = scene.fixed_active.copy()
         for k in np.flatnonzero(before.plane_active & ~scene.plane_active).tolist():
             self._run(f"unfix {C.wall(k, c)}" for c in range(self._classes.n))
-        impulse = self._atoms(C.IMPULSE).copy() if self._column else None
-        self._set_out()
-        if impulse is not None:
-            self._atoms(C.IMPULSE)[:] = impulse
+        self._set_out()  # counts no impulse: what was taken from the water goes with its grain
 
     def set_fluid(self, ids: np.ndarray, sampled: Floats) -> None:
         """Set the water at grains, rows by id, and evaluate the forces at the present positions again."""
         scene = self._scene
         assert scene is not None
-        tag = self._atoms("id")
+        here, free = self._free()
         place = np.full(scene.n_grain, -1)
         place[ids] = np.arange(len(ids))
-        free = np.flatnonzero(tag <= scene.n_grain)
+        self._tell(free, sampled[place[here]])
+
+    def _tell(self, free: np.ndarray, sampled: Floats) -> None:
+        """Set the water at the free grains here; their impulse is counted anew."""
         self._shift(-0.5)
-        self._atoms(C.SAMPLED)[free] = sampled[place[tag[free] - 1]]
+        self._atoms(C.SAMPLED)[free] = sampled
         self._atoms(C.IMPULSE)[:] = 0.0
         self._atoms(C.LAST)[:, F.V_BEGIN : F.V_BEGIN + 3] = self._atoms("v")
         self._evaluate()
         self._shift(+0.5)
+
+    def couple(self, begin: Any, told: bool) -> None:
+        """Begin a column of water for the grains here; `told`: they know of its water."""
+        ids, free = self._free()
+        several = self._comm is not None and self._comm.Get_size() > 1
+        processes, x = RankSums(self._comm) if several else None, self._atoms("x")[free]
+        self.water = begin(self._scene, ids, x, self._atoms(C.SAMPLED)[free], processes)
+        if not told:
+            self._tell(free, self.water.sampled)
+        self._atoms(C.KEPT)[free] = self.water.kept
+
+    def exchange(self) -> int:
+        """Exchange momentum between the grains here and the column, which all ranks move alike.
+
+        Returns
+        -------
+        Checksum of the water.
+
+        Raises
+        ------
+        RyusaError : the water cannot be moved on; on all ranks.
+        """
+        _, x, v, impulse = self.kinematics()
+        free = self._hold()
+        self._tell(free, self.water.exchange(x, v, impulse))
+        self._atoms(C.KEPT)[free] = self.water.kept
+        return self.water.checksum
+
+    def change_column(self) -> None:
+        """Let the column take over the scene that `change` took."""
+        assert self._scene is not None
+        self._hold()
+        self.water.change(self._scene, self._scene.column)
+
+    def kept(self) -> tuple[np.ndarray, Floats]:
+        """Ids of the grains of this rank, and what they keep for the column (model.fluid)."""
+        ids, free = self._free()
+        return ids, self._atoms(C.KEPT)[free]
+
+    def _hold(self) -> np.ndarray:
+        """Tell the column which grains are here now; their rows."""
+        ids, free = self._free()
+        self.water.hold(ids, self._atoms(C.KEPT)[free], self._atoms(C.SAMPLED)[free])
+        return free
 
     def _complete(self, _caller: Any, _step: int, _n: int, _tag: Any, _x: Any, _force: Any) -> None:
         """Complete the forces of a step; LAMMPS calls it after those of contacts, and drops exceptions."""
@@ -242,38 +277,32 @@ class GrainShare:
 
     def fluid(self) -> tuple[np.ndarray, Floats]:
         """Ids of the grains of this rank, and the water at them (model.fluid)."""
-        tag, free = self._free()
-        return tag[free].astype(np.int64) - 1, self._atoms(C.SAMPLED)[free]
+        ids, free = self._free()
+        return ids, self._atoms(C.SAMPLED)[free]
 
     def kinematics(self) -> tuple[np.ndarray, Floats, Floats, Floats]:
         """Ids of the grains of this rank, centres, velocities and impulse from the water (model.fluid)."""
-        tag, free = self._free()
-        v, impulse = self._half("v"), np.zeros((len(tag), N_IMPULSE))
+        ids, free = self._free()
+        v, impulse = self._half("v"), np.zeros((len(self._atoms("id")), N_IMPULSE))
         if self._column:
             F.taken_from_water(
-                tag,
-                self._own,
-                v,
-                self._atoms(C.SAMPLED),
-                self._atoms(C.IMPULSE),
-                self._atoms(C.LAST),
-                impulse,
-            )
-        return tag[free].astype(np.int64) - 1, self._atoms("x")[free], v[free], impulse[free]
+                self._atoms("id"), self._own, v, self._atoms(C.SAMPLED), self._atoms(C.IMPULSE),
+                self._atoms(C.LAST), impulse,
+            )  # fmt: skip
+        return ids, self._atoms("x")[free], v[free], impulse[free]
 
     def _free(self) -> tuple[np.ndarray, np.ndarray]:
-        """Ids in LAMMPS of the atoms of this rank, and which of them are free grains."""
+        """Ids of the free grains of this rank, and their rows among its atoms."""
         assert self._scene is not None
         tag = self._atoms("id")
-        return tag, np.flatnonzero(tag <= self._scene.n_grain)
+        free = np.flatnonzero(tag <= self._scene.n_grain)
+        return tag[free].astype(np.int64) - 1, free
 
     def extremes(self) -> Extremes:
         """Energies and extremes of the grains of this rank, from its pairs in contact and its planes."""
         scene = self._scene
         assert scene is not None
-        tag = self._atoms("id")
-        free = np.flatnonzero(tag <= scene.n_grain)
-        ids = tag[free].astype(np.int64) - 1
+        ids, free = self._free()
         x, v, w = (self._atoms(name)[free] for name in ("x", "v", "omega"))
         speed, spin = np.linalg.norm(v, axis=1), np.linalg.norm(w, axis=1)
         m = self._inertial_mass()[free]
@@ -375,19 +404,3 @@ class GrainShare:
     def _run(self, texts: Iterable[str]) -> None:
         for text in texts:
             self._command(text)
-
-    def _atoms(self, name: str) -> np.ndarray:
-        """An array of the atoms of this rank, in the memory of LAMMPS, which moves it when it grows."""
-        kind, columns = _ARRAYS[name]
-        n = self._count(self._lmp.lmp, b"nlocal")
-        where = self._extract(self._lmp.lmp, name.encode())
-        if n == 0 or not where:
-            return np.zeros((0, columns) if columns else 0, kind)
-        if columns:  # rows are contiguous: the first pointer is that of all
-            where = int(ctypes.c_void_p.from_address(where).value or 0)
-        known = self._arrays.get(name)
-        if known is None or known[0] != where or known[1] != n:
-            size = n * max(columns, 1)
-            flat = np.ctypeslib.as_array((np.ctypeslib.as_ctypes_type(kind) * size).from_address(where))
-            known = self._arrays[name] = (where, n, flat.reshape(n, columns) if columns else flat)
-        return known[2]
