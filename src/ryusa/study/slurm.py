@@ -22,6 +22,7 @@ from ryusa.study.task import Task
 
 _LOOPBACK = "127.0.0.1"
 _JOBS_EVERY = 10.0  # s between two looks at the jobs
+_NO_PAGES = "http.routes"  # pages of dask in plain HTTP, which anybody on the machine could read
 
 
 class SlurmJobs(Workers):
@@ -140,16 +141,17 @@ def _slurm_cluster(
     minutes = max(SHORTEST, math.ceil(LATE * seconds / 60.0))
     memory = memory_of(tasks)
     secured = _keys_of_dask(keys)
+    silenced = {f"distributed.{one}.{_NO_PAGES}": list[str]() for one in ("scheduler", "worker")}
     exports = [
         f"export DASK_{key.upper().replace('.', '__').replace('-', '_')}={shlex.quote(value)}"
-        for key, value in secured.items()
+        for key, value in {**secured, **dict.fromkeys(silenced, "[]")}.items()
     ]
     log = f'exec >> {shlex.quote(str(logs.resolve()))}/"$SLURM_JOB_ID".log 2>&1'
     jobqueue = config.get("jobqueue.slurm", {})
     prologue = [*(jobqueue.get("job-script-prologue") or ()), log, *exports]
     directives = [*(jobqueue.get("job-extra-directives") or ()), "--output=/dev/null"]
     near = ["--host", _LOOPBACK] if listen.get("host") == _LOOPBACK else []
-    with config.set(secured), warnings.catch_warnings():
+    with config.set({**secured, **silenced}), warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of ports and dashboards
         return SLURMCluster(
             cores=1, processes=1, memory=f"{memory}B", walltime=f"{minutes // 60}:{minutes % 60:02d}:00",

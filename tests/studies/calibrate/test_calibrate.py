@@ -102,6 +102,13 @@ def test_a_second_method_gives_the_same_posterior(done, study, tmp_path):
     made = ryusa.calibrate(study, folder=done[1], coverage=5, progress=False)
     assert made.posterior.mean()[0] == pytest.approx(mean, abs=0.35 * sd)
     assert made.posterior.sd()[0] == pytest.approx(sd, rel=0.35)
+    times = np.array(
+        [one["value"] for one in found.rows if one["quantity"] == "duration_alone" and one["over"] == "run"]
+    )
+    (left_out,) = [one for one in made.predicted if one.observed is None]
+    time = np.sum(weights * times) / np.sum(weights)
+    assert left_out.low < time < left_out.high
+    assert left_out.mean == pytest.approx(time, rel=0.01)
 
 
 def test_the_same_command_opens_what_is_there_and_gives_the_same_numbers(done, study):

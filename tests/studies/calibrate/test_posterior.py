@@ -125,6 +125,36 @@ def test_further_points_lie_in_the_posterior_and_are_distinct():
     assert len(settings_of((SLOPE, OTHER), more).settings) == 6
 
 
+def test_a_measure_that_was_left_out_is_predicted_as_the_closed_form_has_it():
+    """Observed 3 + 2 a = 13 +- 0.8: 1 - a / 2 is -1.5 +- 0.2, and a single run scatters by 0.3 about it."""
+    u = np.repeat(filling_points(2, 64, 1), 2, axis=0)
+    left_out = 1.0 - 5.0 * u[:, 0] + 0.3 * np.random.default_rng(2).standard_normal(len(u))
+    found = sample_posterior((SLOPE, OTHER), [Seen(emulate(u, a_line(u)), 13.0, 0.8)])
+    mean, sd, sample = found.of(emulate(u, left_out))
+    assert mean == pytest.approx(-1.5, abs=0.1)
+    assert sd == pytest.approx(0.2, rel=0.15)
+    assert np.quantile(sample, (0.025, 0.975)) == pytest.approx(norm.interval(0.95, mean, 0.2), abs=0.06)
+    _, run_sd, _ = found.of(emulate(u, left_out), noise=True)
+    assert run_sd == pytest.approx(math.hypot(0.2, 0.3), rel=0.15)
+
+
+def test_further_points_tell_more_where_the_posterior_is_than_as_many_of_the_prior():
+    """The uncertainty of the emulator over the posterior, after four points of either kind."""
+
+    def bent(u):
+        return np.sin(9.0 * u[:, 0]) + 0.5 * u[:, 1]
+
+    u = filling_points(2, 16, 1)
+    seen = [Seen(emulate(u, bent(u)), 1.2, 0.05)]
+    found = sample_posterior((SLOPE, OTHER), seen)
+    left: list[float] = []
+    for more in (next_points(found, seen, 4, 1, 1), filling_points(2, 4, 7)):
+        every = np.concatenate([u, more])
+        _, sd = emulate(every, bent(every)).at(found.u)
+        left.append(math.sqrt(found.weights @ sd**2))
+    assert left[0] < 0.7 * left[1]
+
+
 def test_intervals_hold_made_up_truths_as_often_as_they_say():
     """100 truths on a line with scatter, each observed once; the counts lie within those of chance."""
     u = np.repeat(filling_points(1, 32, 1), 2, axis=0)
