@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from ryusa.build import build
 from ryusa.build.wall_checks import MOST_STEP
 from ryusa.casefile import explain, read
+from ryusa.casefile.read import read_text
 from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.engine.shared.parameters import LARGEST_DISPLACEMENT
 from ryusa.errors import CaseError, ParseError
@@ -132,6 +133,9 @@ BAD = [
     (LID + 'servo = { direction = [0, 0, -1], force = "1 N", max_speed = "1 m/s", max_travel = "1 cm" }\n',
      "walls.0.servo.max_travel = 0.01: ends before the first grain, which is 0.0258"),
     (LID + 'servo = { direction = [0, 0, -1], force = "1 N", max_speed = "1 km/s" }\n', "moves at up to 1e"),
+    (LID + 'servo = { direction = [0, 0, -1], pressure = "1 MPa", max_speed = "1 m/s", max_travel = "1 m"}\n',
+     "walls.0.servo = 'lid': presses at most 32 grains side by side, each by at least 3.9 d, more than "
+     "domain.overlap_limit, 0.5: lower its force or pressure below 0.13 of what it is, or raise contact."),
 ]  # fmt: skip
 
 
@@ -315,3 +319,19 @@ def test_a_damaged_mesh_is_refused_or_read(tmp_path: Path, kind: str, data: st.D
     else:
         assert corners.shape[1:] == (3, 3)
         assert np.isfinite(corners).all()
+
+
+def test_a_servo_that_presses_grains_out_of_the_stable_range_is_noted() -> None:
+    """Of 32 grains each bears 1/32 of 10 N: 0.0156 d of 2 mm with springs of 10 kN/m."""
+    lid = (
+        LID + 'servo = { direction = [0, 0, -1], force = "10 N", max_speed = "1 m/s", max_travel = "5 cm" }\n'
+    )
+    (said,) = (one for one in build(read_text(CASE + lid)).notes if "presses" in one)
+    assert "wall 'lid' presses at most 32 grains side by side, each by at least 0.016 d, above 0.01 d" in said
+    light = lid.replace("10 N", "1 N")
+    assert not [one for one in build(read_text(CASE + light)).notes if "presses" in one]
+    narrow = lid.replace('"5 cm", "0 cm"', '"4 mm", "0 cm"').replace('"0 cm", "5 cm"', '"0 cm", "4 mm"')
+    (said,) = (
+        one for one in build(read_text(CASE + narrow.replace("10 N", "1 N"))).notes if "presses" in one
+    )
+    assert "at most 5 grains" in said

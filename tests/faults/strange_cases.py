@@ -48,6 +48,8 @@ time = "1 ms"
 """
 ROWS = "x [cm], z [cm], d [cm], vx [m/s], fixed, group\n0, 0.2, 0.2, 0.1, 0,\n1, 0.2, 0.3, 0, 1, stones\n"
 CLUMPS = KINDS["clumps"].replace("{ rod = 0.4, tetrahedron = 0.4 }", '"stones.csv"')
+ATTACHED = KINDS["servo-feeds"].replace("[[feeds]]\n", '[[feeds]]\nmoves_with = "lid"\n')
+ATTACHED = ATTACHED.replace("[[exits]]\n", '[[exits]]\nmoves_with = "lid"\n')
 STONES = "x [mm], y [mm], z [mm], d [mm]\n0, 0, 0, 2\n1, 0, 0, 2\n0, 1.2, 0.1, 1.5\n"
 FILES = {"grains.csv": ROWS, "stones.csv": STONES, **MESHES}  # beside each case
 PARTS = ("walls", "feeds", "exits", "materials", "pairs", "shape", "servo", "mixture")
@@ -56,8 +58,8 @@ CARRIED = ("walls", "feeds", "exits", "materials", "pairs", "planes", "timeline"
 
 @cache
 def bases() -> tuple[dict[str, Any], ...]:
-    """Every case that comes with ryusa, those of the fault campaign, one with a table, one with clumps."""
-    texts = [*KINDS.values(), TABLE, CLUMPS]
+    """Every case of ryusa and of the fault campaign, with a table, with clumps, with feeds on a wall."""
+    texts = [*KINDS.values(), TABLE, CLUMPS, ATTACHED]
     for folder in FOLDERS:
         texts += [one.read_text(encoding="utf-8") for one in case_files(folder).values()]
     return tuple(tomllib.loads(text) for text in texts)

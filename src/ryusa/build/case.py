@@ -23,6 +23,7 @@ from ryusa.build.saltation import saltation
 from ryusa.build.table import table
 from ryusa.build.traffic import before_feeding, moving_with, with_feeds
 from ryusa.build.wall_checks import (
+    refuse_crushing_servos,
     refuse_fast_walls,
     refuse_full_feeds,
     refuse_grains_beyond_exits,
@@ -140,9 +141,10 @@ def build(case: Case, derived: Derived | None = None) -> Built:
     scene, state = clumps_of(case, with_materials(case, scene, of), state)
     refuse_fast_walls(case, scene)
     refuse_idle_servos(case, scene, state)
+    pressed = refuse_crushing_servos(scene)
     gone = refuse_grains_beyond_exits(scene, state)
     refuse_full_feeds(case, scene)
-    return Built(scene, state, (*placement.notes, *gone, *notes_of(case)))
+    return Built(scene, state, (*placement.notes, *pressed, *gone, *notes_of(case)))
 
 
 def laws_of(case: Case, derived: Derived, z_zero: float) -> Laws:

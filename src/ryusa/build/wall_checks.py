@@ -7,17 +7,21 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from ryusa.build.change import change
+from ryusa.build.servo import area_along
 from ryusa.casefile.case import Case
+from ryusa.casefile.contact.impact import STABLE
 from ryusa.casefile.traffic.values import FULLEST, FULLEST_PLANE, grains_per_second, share_filled
 from ryusa.errors import CaseError
 from ryusa.model import FaceKind, Feed, Scene, State
 from ryusa.model.arrays import Bools, Floats
+from ryusa.model.contact_law import rest_overlap_of, stiffness_key
 from ryusa.model.traffic import NONE
 from ryusa.model.wall_shape import WallsAt
 from ryusa.model.walls import ASKED, MOST_SPEED, MOST_TRAVEL, TOWARDS, Ints, face_boxes, largest_speed
 
 _TRIED = 200  # places of a grain in a feed
 _STREAM = 0x524F4F4D  # tells their random numbers from others
+_SIDE_BY_SIDE = math.sqrt(3.0) / 2.0  # area that a grain takes in the closest layer, over d**2
 MOST_STEP = 0.25  # smallest diameters that a wall may go in a step; the engines' LARGEST_DISPLACEMENT
 
 
@@ -106,6 +110,40 @@ def refuse_idle_servos(case: Case, scene: Scene, state: State) -> None:
                 f"{key}.max_travel", float(row[MOST_TRAVEL]),
                 f"ends before the first grain, which is {gap:.4g} m ahead: raise it, or move the wall",
             )  # fmt: skip
+
+
+def refuse_crushing_servos(scene: Scene) -> tuple[str, ...]:
+    """Notes on servos that press grains out of the stable range of overlaps; a `CaseError` beyond the limit.
+
+    The force is shared among all grains, or as many as can lie side by side under the wall: no overlap at the
+    wall is less in the mean. Of several materials the pair that yields least is taken.
+    """
+    walls, notes = scene.walls, list[str]()
+    if walls is None or not len(walls.servo):
+        return ()
+    d = scene.d_mean
+    laws = (scene.contact,) if scene.materials is None else scene.materials.contact
+    for w in np.flatnonzero(walls.servo[:, ASKED] > 0.0):
+        row, mine = walls.servo[w], walls.wall == w
+        area = area_along(walls.face[mine], walls.kind[mine], row[TOWARDS : TOWARDS + 3])
+        bearing = min(max(area / (_SIDE_BY_SIDE * d * d), 1.0), len(scene.whole_grains()[0]))
+        load = float(row[ASKED]) / bearing
+        least = min(rest_overlap_of(law, 0.5 * d, load) for law in laws) / d
+        law, name = laws[0], walls.names[w]
+        text = f"presses at most {bearing:.0f} grains side by side, each by at least {least:.2g} d"
+        if least > scene.overlap_limit:
+            raise CaseError(
+                f"walls.{w}.servo", name,
+                f"{text}, more than domain.overlap_limit, {scene.overlap_limit:g}: lower its force or "
+                f"pressure below {scene.overlap_limit / least:.2g} of what it is, or raise "
+                f"{stiffness_key(law)}",
+            )  # fmt: skip
+        if least > STABLE[1]:
+            notes.append(
+                f"wall '{name}' {text}, above {STABLE[1]:g} d: raise {stiffness_key(law)} or lower its force "
+                f"(walls.{w}.servo)"
+            )
+    return tuple(notes)
 
 
 def _extent(face: Floats, kind: Ints, along: Floats) -> tuple[float, float]:
