@@ -31,6 +31,7 @@ SHORT = {
     "dry-2d": "0.01 s", "two-way": "0.004 s", "rolling": "0.01 s", "walls": "0.01 s", "feeds": "0.05 s",
     "mesh": "0.01 s", "materials": "0.05 s", "servo": "0.02 s", "clumps": "0.01 s",
 }  # fmt: skip
+SHOWN = ("two-way", "feeds", "servo", "clumps")  # one for each thing that a folder may hold beside grains
 IN_SPACE = ("walls", "feeds", "mesh", "materials", "servo", "clumps")
 FAST = settings(
     max_examples=25,
@@ -248,6 +249,7 @@ def fuzzed(trick: Trick, stopped: tuple[str, Path], tmp_path: Path, data: st.Dat
 
 
 @pytest.mark.parametrize("trick", TRICKS)
+@pytest.mark.parametrize("stopped", SHOWN, indirect=True, scope="module")
 @FAST
 @given(data=st.data())
 def test_a_manipulated_folder_is_used_or_refused_by_name(
