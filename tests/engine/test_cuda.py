@@ -27,6 +27,14 @@ pytest.importorskip("numba.cuda")
 
 HERE = Path(__file__).parent
 CC = (8, 0)  # compute capability compiled for
+# The shortest step and the fullest ones. The others are left to `make slow`: their laws become PTX one by one
+# in tests/laws, and scenes of all kinds are run in the simulator.
+SHOWN = (
+    "dry, 3D",
+    "elastic spheres, column, films, rolling, records",
+    "exact timing, plane, records, may pull",
+    "exact timing, column, films, rolling, records",
+)
 
 
 def in_simulator(*words: str) -> subprocess.CompletedProcess[str]:
@@ -90,7 +98,9 @@ def entry(kernel: Kernel) -> str:
 
 
 @pytest.mark.usefixtures("card")
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize(
+    "kind", [one if one in SHOWN else pytest.param(one, marks=pytest.mark.slow) for one in KINDS]
+)
 def test_the_step_becomes_ptx_in_double_precision_without_racing_sums(kind: str) -> None:
     ptx = entry(step_kernel(kind))
     assert ".f64" in ptx
