@@ -49,7 +49,7 @@ def pile(
     seed=3,
     spread=0.15,
     friction=0.5,
-    events=EventRule.NONE,
+    events=EventRule.ALL,
     stir=0.4,
     timing=ContactTiming.AT_STEPS,
     **more,

@@ -203,7 +203,11 @@ def test_each_pair_of_materials_has_its_own_attraction():
     assert engine.tally().residual < 1e-9
 
 
-@pytest.mark.parametrize("name", ["linear, DMT", "elastic, constant"])
+@pytest.mark.parametrize(
+    "name",
+    # elastic spheres on walls and elastic spheres that stick have faster tests of their own
+    ["linear, DMT", pytest.param("elastic, constant", marks=pytest.mark.slow)],
+)
 def test_a_wall_lifts_a_grain_that_hangs_on_it_and_its_work_is_booked(name):
     law = sticky(name)
     wall = rectangle("ceiling", (-1, -1, 0), (2, 0, 0), (0, 2, 0))

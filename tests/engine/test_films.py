@@ -13,7 +13,7 @@ from ryusa.laws import immersed
 from ryusa.laws.families import Drag, Profile, Rebound
 from ryusa.laws.reduced import reduced
 from ryusa.model import ContactLaw, Term, Water
-from ryusa.model.scene import Damping, EventRule
+from ryusa.model.scene import Damping
 
 NU, RHO, E_DRY, ROUGH = 1.0e-6, 1000.0, 0.9, 2.0e-5
 STILL = Water(profile=Profile.STILL, drag=Drag.NONE, nu=NU, asperity=ROUGH)
@@ -71,8 +71,7 @@ def test_a_grain_rebounds_with_the_restitution_of_its_stokes_number(law, st, par
 
 
 @pytest.mark.parametrize("tension", [False, True])
-@pytest.mark.parametrize("rotation", [False, True])
-@pytest.mark.parametrize("wide", [False, True])
+@pytest.mark.parametrize("rotation, wide", [(False, False), (True, False), (True, True)])
 def test_the_rebound_is_the_same_however_contacts_part_and_grains_move(tension, rotation, wide):
     water = replace(STILL, rebound=Rebound.EXPONENTIAL)
     got, _ = rebound(40.0, "wall", water, tension=tension, rotation=rotation, wide=wide)
@@ -129,7 +128,7 @@ BOTH = {
 @pytest.mark.parametrize("kind", BOTH)
 def test_threads_calls_and_a_resume_do_not_change_a_bit(kind):
     more, water = BOTH[kind]
-    made = pile(n=600, events=EventRule.ALL, water=water, **more)
+    made = pile(n=600, water=water, **more)
     whole = run(made, 900)
     split = CpuEngine(threads=2)
     split.load(*made)

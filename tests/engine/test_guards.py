@@ -12,7 +12,6 @@ from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.errors import ContactSlotsFull, GrainLost, ListUnsafe, NotANumber, OverlapTooLarge
 from ryusa.laws.families import Arm, Rolling
 from ryusa.model import RollingLaw
-from ryusa.model.scene import EventRule
 
 
 def advance(made, n_steps, threads=1):
@@ -98,7 +97,7 @@ def test_a_full_record_of_ended_contacts_is_a_fault_and_not_a_loss(monkeypatch):
 
 
 def test_no_contact_record_is_lost_however_small_the_buffer(monkeypatch):
-    made = pile(n=200, plane_case=True, events=EventRule.ALL)  # one block, whatever the buffer
+    made = pile(n=200, plane_case=True)  # one block, whatever the buffer
     engine, _ = advance(made, 6000)
     whole = engine.events()
     monkeypatch.setattr(cpu, "_RECORDS", -170)

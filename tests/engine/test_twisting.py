@@ -70,7 +70,7 @@ def test_two_grains_that_meet_head_on_share_spin_by_the_impulse_between_them():
 def test_a_pile_with_twisting_keeps_its_account_and_bits(model, law):
     arm = Arm.REDUCED_RADIUS
     rolling = RollingLaw(model, arm, coefficient=0.1 if model else 0.0, twisting=0.05)
-    made = pile(300, events=EventRule.ALL)
+    made = pile(300)
     made = (replace(made[0], rolling=rolling, **law), made[1])
     one, two = run(made, 1500), run(made, 1500, threads=2)
     assert bits(one.state()) == bits(two.state())

@@ -12,7 +12,6 @@ from ryusa.build.walls import WallMotion, cylinder, disc, rectangle, triangles, 
 from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.laws.families import ContactTiming, Slip
 from ryusa.model import Term
-from ryusa.model.scene import EventRule
 from ryusa.model.walls import N_IMPULSE
 
 D = 2.0e-3
@@ -284,9 +283,7 @@ def drum(n=300, **more):
     x = x[np.hypot(x[:, 0], x[:, 2]) < radius - 0.6 * D][:n]
     wall = moving(cylinder("drum", (0, 0, 0), (0, width, 0), radius, closed=(True, True)), spin=(0, 6.0, 0))
     law = more or {"restitution": 0.5, "timing": ContactTiming.AT_STEPS}
-    return walled(
-        [wall], x=x, v=rng.normal(0, 0.1, x.shape), steps_per_contact=20.0, events=EventRule.NONE, **law
-    )
+    return walled([wall], x=x, v=rng.normal(0, 0.1, x.shape), steps_per_contact=20.0, **law)
 
 
 @pytest.mark.parametrize("law", [{}, {"contact": elastic_law(r=R, friction=0.4, restitution=0.5)}])
