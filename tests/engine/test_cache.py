@@ -15,7 +15,7 @@ print(sum(engine._run.stats.cache_hits.values()), sum(engine._run.stats.cache_mi
 
 
 def test_a_second_process_compiles_nothing():
-    """In the cache of all tests, where the first process may find the kernel: compiling all anew takes 50 s."""
+    """In the cache of all tests, where the first process may find the kernel: to compile anew takes 50 s."""
     told = [
         subprocess.run(
             [sys.executable, "-c", STEP], capture_output=True, text=True, check=True
