@@ -1,6 +1,7 @@
 """Priors, emulators and posteriors against closed forms; nothing is run."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -123,6 +124,10 @@ def test_further_points_lie_in_the_posterior_and_are_distinct():
     assert len({tuple(one) for one in more}) == 6
     assert np.all(np.abs(10.0 * more[:, 0] - 5.0) < 2.0)
     assert len(settings_of((SLOPE, OTHER), more).settings) == 6
+    few = np.arange(len(found.u)) < 9  # of which the first is drawn nearly always
+    weights = np.where(few, 0.02, 0.0) + 0.82 * (np.arange(len(few)) == 0)
+    again = next_points(replace(found, weights=weights / weights.sum()), seen, 6, 2, 1)
+    assert len({tuple(one) for one in again}) == 6
 
 
 def test_a_measure_that_was_left_out_is_predicted_as_the_closed_form_has_it():

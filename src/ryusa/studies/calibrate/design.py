@@ -38,10 +38,11 @@ def next_points(posterior: Posterior, seen: Sequence[Seen], n: int, seeds: int, 
     is chosen as if it had been run (a Gaussian process needs no value for that).
     """
     rng = np.random.default_rng(seed)
-    u = posterior.u[rng.choice(len(posterior.u), CANDIDATES, p=posterior.weights)]
+    drawn = rng.choice(len(posterior.u), CANDIDATES, p=posterior.weights)
+    u = posterior.u[np.unique(drawn)]  # one of great weight is drawn many times
     held = [one.emulator.covariance(u) for one in seen]
     chosen: list[int] = []
-    for _ in range(n):
+    for _ in range(min(n, len(u))):
         gain = np.sum([np.diag(cov) / one.error**2 for cov, one in zip(held, seen, strict=True)], axis=0)
         gain[chosen] = -1.0  # the same point with the same seeds would be the same run
         best = int(np.argmax(gain))
