@@ -159,3 +159,16 @@ def test_a_silo_discharges_at_the_rate_of_beverloo(tmp_path: Path) -> None:
     assert 0.45 < rate < 0.7
     assert not found["rate_in"].value
     assert run.tally["residual"].max() < 1e-3
+
+
+@pytest.mark.slow
+def test_what_is_fed_into_the_packaged_flume_passes_its_weir(tmp_path: Path) -> None:
+    """Once the room behind the weir is full; until then less leaves than comes in."""
+    run = ryusa.run(ryusa.load(case_path("flume.toml")), tmp_path / "run", progress=False)
+    late, early = run.measure("discharge"), run.measure("discharge", begin=0.05, end=0.6)
+    assert late["rate_in"].value == pytest.approx(0.1, rel=0.03)
+    error = np.hypot(late["rate_in"].error, late["rate_out"].error)
+    assert abs(late["rate_out"].value - late["rate_in"].value) < 3.0 * error
+    assert error < 0.06 * late["rate_in"].value
+    assert early["rate_out"].value < 0.8 * early["rate_in"].value
+    assert run.tally["residual"].max() < 1e-3
