@@ -37,6 +37,8 @@ class MeasureEntry:
         contacts are left out, for they follow from the stiffness alone.
     table : whether it gives a table, such as a path, and no quantities that a sweep could list.
     needs : what it needs of a case, by words of `studies.sweep.measures.NEEDS`.
+    layers : its quantities over height, which `ryusa calibrate` takes at one height: names of the `columns`
+        of what it returns, whose middles are its `z`.
     """
 
     name: str
@@ -52,6 +54,7 @@ class MeasureEntry:
     numbers: tuple[tuple[str, str], ...] = ()
     table: bool = False
     needs: tuple[str, ...] = ()
+    layers: tuple[str, ...] = ()
 
     @property
     def given_as(self) -> tuple[str, ...]:
@@ -128,7 +131,9 @@ MEASURES = (
                  (*WINDOW, "layer"), settled=True,
                  builders=("flume", "packing"),
                  numbers=(("flux", "m2/s"), ("speed", "m/s")),
-                 needs=("period",), clumps=True),
+                 needs=("period",), clumps=True,
+                 layers=("phi", "area_fraction", "v_x", "v_z", "spin", "temperature_x",
+                         "temperature_z", "flux")),
     MeasureEntry("paths", "ryusa.measure.paths:paths",
                  "shape of grain paths: advance, vertical range, reversals",
                  (*WINDOW, "window"), settled=True,

@@ -8,10 +8,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from ryusa.catalogue import MEASURES
 from ryusa.errors import ResultsError
 from ryusa.measure import profiles
 from ryusa.measure.statistics import standard_error, standard_errors
 from ryusa.model import EVENT
+from ryusa.studies.sweep.measures import AtHeight, at_height
 
 D = 0.002
 LENGTH, WIDTH = 20 * D, D
@@ -42,6 +44,22 @@ def flow(make):
         )
 
     return build
+
+
+def test_a_quantity_at_one_height_lies_on_the_line_between_two_layers(flow):
+    run = flow(plane=False)
+    found = profiles(run)
+    entry = next(one for one in MEASURES if one.name == "profile")
+    assert entry.layers == tuple(one.name for one in found.columns)
+    a, b = found.z[6:8]
+    for name in ("phi", "v_x", "flux"):
+        (column,) = (one for one in found.columns if one.name == name)
+        one = at_height(found, AtHeight("profile", name, a + 0.25 * (b - a)))
+        assert one.value == pytest.approx(0.75 * column.value[6] + 0.25 * column.value[7], rel=1e-12)
+        assert one.error == pytest.approx(0.75 * column.error[6] + 0.25 * column.error[7], rel=1e-12)
+        assert (one.unit, one.n) == (column.unit, 40)
+    for z in (found.z[0] - 1e-6, found.z[-1] + 1e-6):
+        assert at_height(found, AtHeight("profile", "phi", z)).n == 0
 
 
 @pytest.mark.parametrize("plane", [True, False])

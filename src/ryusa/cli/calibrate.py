@@ -96,9 +96,11 @@ def calibrate(
 
 def _list(asked: "CalibrationAsked", folder: Path, jobs: int, truths: int) -> None:
     """Parameters, quantities, and the cost of all runs."""
+    from ryusa.running.folder import format_bytes
     from ryusa.studies.calibrate.design import filling_points
     from ryusa.studies.calibrate.runs import RUNS, CaseRuns
     from ryusa.study import duration
+    from ryusa.study.cost import by_cores
     from ryusa.study.executors import executor_of
 
     for prior in asked.priors:
@@ -110,15 +112,21 @@ def _list(asked: "CalibrationAsked", folder: Path, jobs: int, truths: int) -> No
     runs = CaseRuns(asked, folder, executor_of("processes", 1))
     first = filling_points(len(asked.priors), asked.points, asked.design_seed)
     plans = runs.plans(first, tuple(range(1, asked.seeds + 1)))
-    points = asked.points + asked.rounds * asked.more + truths
+    n = asked.seeds * (asked.points + asked.rounds * asked.more + truths)
+    cost = longest = disk = 0.0
     for case, plan in plans.items():
-        each = sum(one.cost() for one in plan.first_runs) / len(plan.first_runs)
-        n = points * asked.seeds
-        typer.echo(
-            f"{case.name}: {n} runs of {duration(each)} on average, "
-            f"{duration(n * each / jobs)} with {jobs} at a time"
-        )
-    typer.echo(f"runs in {folder / RUNS}")
+        costs = [one.cost() for one in plan.first_runs]
+        each = sum(costs) / len(costs)
+        typer.echo(f"{case.name}: {n} runs of {duration(each)} on average")
+        cost, longest = cost + n * each, max(longest, *costs)
+        disk += n * sum(one.disk() for one in plan.first_runs) / len(costs)
+    total = n * len(plans)
+    at_once = "one at a time" if jobs == 1 else f"{jobs} at a time"
+    typer.echo(
+        f"{total} runs in all: about {duration(max(cost / jobs, longest))} {at_once}, "
+        f"{format_bytes(round(disk))} on the disk, in {folder / RUNS}"
+    )
+    typer.echo(f"by number of cores: {by_cores(cost, longest, total)}")
 
 
 def _print(made: "Calibration") -> None:

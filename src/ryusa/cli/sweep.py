@@ -204,7 +204,8 @@ def _list(plan: "SweepPlan", folder: Path, jobs: int, again: bool) -> None:
     from rich.table import Table
 
     from ryusa.studies.sweep.folder import RUNS
-    from ryusa.study import duration, estimate_cost
+    from ryusa.study import estimate_cost
+    from ryusa.study.cost import by_cores
 
     n = len(plan.seeds)
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
@@ -225,12 +226,7 @@ def _list(plan: "SweepPlan", folder: Path, jobs: int, again: bool) -> None:
     typer.echo(str(ahead))
     if ahead.costs:
         longest = max(ahead.costs.values())
-        by_cores = (
-            f"{one} in {duration(max(ahead.core_seconds / one, longest))}"
-            for one in (1, 2, 4, 8, 16, 32, 64)
-            if one == 1 or one <= 2 * len(ahead.costs)
-        )
-        typer.echo(f"by number of cores: {', '.join(by_cores)}")
+        typer.echo(f"by number of cores: {by_cores(ahead.core_seconds, longest, len(ahead.costs))}")
 
 
 def _explain(plan: "SweepPlan") -> None:

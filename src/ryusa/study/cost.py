@@ -152,6 +152,22 @@ def memory_of(tasks: Iterable[Task]) -> int:
     )
 
 
+def by_cores(core_seconds: float, longest: float, n: int) -> str:
+    """Wall time of n runs by number of cores, in words.
+
+    Parameters
+    ----------
+    core_seconds : of all runs [s].
+    longest : time of the longest run [s], below which no number of cores brings it.
+    n : number of runs.
+
+    >>> by_cores(1200.0, 200.0, 6)
+    '1 in 20 min, 2 in 10 min, 4 in 5 min, 8 in 3 min'
+    """
+    cores = (one for one in (1, 2, 4, 8, 16, 32, 64) if one == 1 or one <= 2 * n)
+    return ", ".join(f"{one} in {duration(max(core_seconds / one, longest))}" for one in cores)
+
+
 def duration(seconds: float) -> str:
     """A time in words, with the digits of an estimate.
 

@@ -56,6 +56,18 @@ def test_a_calibration_is_read_with_its_priors_and_targets(tmp_path):
     assert found.observations[0].in_si("-") == (0.7, 0.01)
 
 
+def test_a_quantity_over_height_is_a_target_at_each_height(tmp_path):
+    profile = 'measure = "profile"\nquantity = "v_x"\nat = "{} mm"'
+    text = GOOD.replace('measure = "collisions"\nquantity = "restitution_alone"', profile.format(12), 1)
+    text = text.replace('measure = "collisions"\nquantity = "closing_speed"', profile.format(30), 1)
+    found = read(tmp_path, text)
+    assert [one.words for one in found.targets] == [
+        "drop: profile v_x at 12 mm", "drop: profile v_x at 30 mm",
+    ]  # fmt: skip
+    assert [one.z for one in found.heights(tmp_path / "drop.toml")] == [0.012, 0.03]
+    assert found.measures(tmp_path / "drop.toml") == ("profile",)
+
+
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
@@ -73,6 +85,22 @@ def test_a_calibration_is_read_with_its_priors_and_targets(tmp_path):
         ('measure = "collisions"', 'measure = "colisions"', "Did you mean 'collisions'?"),
         ("value = 0.7", "", "observations.0.value: missing"),
         ("[[observations]]", "[[observation]]", "Did you mean 'observations'?"),
+        ("value = 0.7", 'value = 0.7\nat = "1 cm"', "is for a quantity over height, of the measures profile"),
+        (
+            'measure = "collisions"\nquantity = "restitution_alone"',
+            'measure = "profile"\nquantity = "v_y"\nat = "1 cm"',
+            "at one height, must be one of phi, area_fraction, v_x, v_z",
+        ),
+        (
+            'measure = "collisions"\nquantity = "restitution_alone"',
+            'measure = "profile"\nquantity = "v_x"\nat = 1.0',
+            "at = 1.0: missing unit",
+        ),
+        (
+            'case = "drop.toml"\nmeasure = "collisions"\nquantity = "closing_speed"',
+            'case = "other/drop.toml"\nmeasure = "collisions"\nquantity = "closing_speed"',
+            "has the name of another case",
+        ),
         ("[calibrate]", "[calibrate", "is no TOML"),
     ],
 )

@@ -14,13 +14,15 @@ from ryusa.spelling import nearest_word
 from ryusa.studies.calibrate.prior import LOG, NORMAL, UNIFORM, Prior
 from ryusa.studies.sweep.asked import text_of
 from ryusa.studies.sweep.design import span_of
+from ryusa.studies.sweep.measures import AtHeight
 from ryusa.units import UnitError, quantity
 
 MOST = 8  # parameters: an emulator of more needs more runs than a calibration is meant for
 _TABLES = ("calibrate", "parameters", "observations", "predictions")
 _SETTINGS = ("points", "seeds", "rounds", "more", "design_seed", "set")
 _PARAMETER = ("key", "low", "high", "scale", "mean", "sd")
-_TARGET = ("case", "measure", "quantity")
+_NAMED = ("case", "measure", "quantity")
+_TARGET = (*_NAMED, "at")
 _OBSERVATION = (*_TARGET, "value", "error")
 
 
@@ -32,16 +34,28 @@ class Target:
     ----------
     case : case file.
     measure, quantity : as `ryusa measure` names them.
+    at : height above datum of a quantity over height [m]; None for any other.
     """
 
     case: Path
     measure: str
     quantity: str
+    at: float | None = None
+
+    @property
+    def height(self) -> AtHeight | None:
+        """The same as a quantity over height, at one height; None for any other."""
+        return None if self.at is None else AtHeight(self.measure, self.quantity, self.at)
+
+    @property
+    def name(self) -> str:
+        """Name of the quantity among those that a run gives."""
+        return self.quantity if self.height is None else self.height.name
 
     @property
     def words(self) -> str:
         """Case, measure and quantity."""
-        return f"{self.case.stem}: {self.measure} {self.quantity}"
+        return f"{self.case.stem}: {self.measure} {self.name}"
 
 
 @dataclass(frozen=True)
@@ -118,6 +132,10 @@ class CalibrationAsked:
         """Names of the measures that are wanted of a case."""
         return tuple(dict.fromkeys(one.measure for one in self.targets if one.case == case))
 
+    def heights(self, case: Path) -> tuple[AtHeight, ...]:
+        """Quantities over height that are wanted of a case at one height."""
+        return tuple(one.height for one in self.targets if one.case == case and one.height is not None)
+
 
 def read_calibration(path: Path) -> CalibrationAsked:
     """Read the file of a calibration.
@@ -154,6 +172,8 @@ def read_calibration(path: Path) -> CalibrationAsked:
     )
     with _gathered(faults):
         _refuse_repeated(priors, observations)
+    with _gathered(faults):
+        _refuse_namesakes([*(one.target for one in observations), *predictions])
     with _gathered(faults):
         found = CalibrationAsked(
             path.stem, tuple(priors), tuple(observations), tuple(predictions), **settings
@@ -292,7 +312,7 @@ def _in_unit(at: str, value: object, unit: str) -> float:
 
 def _target(at: str, table: Mapping[str, Any], folder: Path, names: Sequence[str]) -> Target:
     _known(at, table, names)
-    for name in _TARGET:
+    for name in _NAMED:
         if not isinstance(table.get(name), str) or not table[name]:
             raise CaseError(f"{at}.{name}", table.get(name), "missing; case, measure and quantity are words")
     known = [one.name for one in MEASURES if not one.table]
@@ -301,7 +321,27 @@ def _target(at: str, table: Mapping[str, Any], folder: Path, names: Sequence[str
             f"{at}.measure", table["measure"], f"must be one of {', '.join(known)}",
             nearest_word(table["measure"], known),
         )  # fmt: skip
-    return Target(folder / table["case"], table["measure"], table["quantity"])
+    at_height = _height(at, table) if "at" in table else None
+    return Target(folder / table["case"], table["measure"], table["quantity"], at_height)
+
+
+def _height(at: str, table: Mapping[str, Any]) -> float:
+    """Height of a quantity over height [m]."""
+    layers = {one.name: one.layers for one in MEASURES if one.layers}
+    names = layers.get(table["measure"], ())
+    if not names:
+        raise CaseError(
+            f"{at}.at", table["at"], f"is for a quantity over height, of the measures {', '.join(layers)}"
+        )
+    if table["quantity"] not in names:
+        raise CaseError(
+            f"{at}.quantity", table["quantity"], f"at one height, must be one of {', '.join(names)}",
+            nearest_word(table["quantity"], names),
+        )  # fmt: skip
+    try:
+        return quantity(table["at"], "m")
+    except UnitError as error:
+        raise CaseError(f"{at}.at", table["at"], str(error)) from None
 
 
 def _observation(at: str, table: Mapping[str, Any], folder: Path) -> Observation:
@@ -340,3 +380,14 @@ def _refuse_repeated(priors: Sequence[Prior], observations: Sequence[Observation
     for k, target in enumerate(targets):
         if target in targets[:k]:
             raise CaseError(f"observations.{k}", target.words, "was observed twice; combine the two values")
+
+
+def _refuse_namesakes(targets: Sequence[Target]) -> None:
+    """Refuse two cases of one name, whose runs would have the same folders."""
+    seen: dict[str, Path] = {}
+    for one in targets:
+        other = seen.setdefault(one.case.stem, one.case)
+        if other != one.case:
+            raise CaseError(
+                "case", str(one.case), f"has the name of another case, {other}; runs are named by their case"
+            )

@@ -64,8 +64,9 @@ class CaseRuns:
         found: dict[Path, SweepPlan] = {}
         for case in self.asked.cases:
             found[case] = plan_sweep(
-                case, design, seeds, self.asked.measures(case), overrides=self.asked.overrides, pages=False
-            )
+                case, design, seeds, self.asked.measures(case), overrides=self.asked.overrides, pages=False,
+                heights=self.asked.heights(case),
+            )  # fmt: skip
             changed = {} if self.again else changed_runs(found[case].runs, self.folder)
             if changed:
                 every = list(dict.fromkeys(one for held in changed.values() for one in held))
@@ -108,7 +109,7 @@ class CaseRuns:
     def value(self, target: Target, run: SweepRun) -> float | None:
         """Value of a target in one run; None if it has none."""
         for one in self.found[run].averages.get(target.measure, ()):
-            if one.name == target.quantity and np.isfinite(one.value):
+            if one.name == target.name and np.isfinite(one.value):
                 return one.value
         return None
 
@@ -123,8 +124,13 @@ class CaseRuns:
         for run, measured in self.found.items():
             if run.case == target.case.stem:
                 names |= {one.name: one.unit for one in measured.averages.get(target.measure, ())}
-        if target.quantity in names:
-            return names[target.quantity]
+        if target.name in names:
+            return names[target.name]
+        if target.at is not None:
+            raise CaseError(
+                "at", f"{1e3 * target.at:g} mm",
+                f"the first run of {target.case.name} has no grains at this height above datum",
+            )  # fmt: skip
         reasons = [one for held in self.found.values() for one in held.problems.values()]
         if not names and reasons:
             raise ResultsError(f"{target.words} could not be had of any run: {reasons[0]}")

@@ -2,7 +2,10 @@
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from ryusa.casefile.builders.values import periodic
 from ryusa.casefile.record import events_of
@@ -77,19 +80,74 @@ def refuse_measure(entry: MeasureEntry, case: "Case") -> None:
         raise CaseError("measure", entry.name, "takes every sphere for a grain, and the case has clumps")
 
 
-def averages_of(entry: MeasureEntry, results: Results) -> tuple[Average, ...]:
+@dataclass(frozen=True)
+class AtHeight:
+    """A quantity over height of a measure, at one height.
+
+    Attributes
+    ----------
+    measure, quantity : its measure, and its name among the `layers` of that.
+    z : height above datum [m].
+    """
+
+    measure: str
+    quantity: str
+    z: float
+
+    @property
+    def name(self) -> str:
+        """Name beside the other quantities of the measure.
+
+        >>> AtHeight("profile", "v_x", 0.012).name
+        'v_x at 12 mm'
+        """
+        return f"{self.quantity} at {1e3 * self.z:g} mm"
+
+
+def averages_of(
+    entry: MeasureEntry, results: Results, heights: Sequence[AtHeight] = ()
+) -> tuple[Average, ...]:
     """Quantities of one measure of a run; those without samples are left out.
 
     Of a measure of one moment each quantity is one sample without an error.
+
+    Parameters
+    ----------
+    entry : the measure.
+    results : the run.
+    heights : of its quantities over height, those that are wanted at one height too.
     """
     found: Any = called(entry)(results)
     averages = getattr(found, "averages", None)
     if averages is not None:
-        return tuple(one for one in averages.items if one.n)
+        every = (*averages.items, *(at_height(found, one) for one in heights))
+        return tuple(one for one in every if one.n)
     nan, t = math.nan, float(getattr(found, "t", math.nan))
     return tuple(
         Average(
             str(row["quantity"]), str(row["unit"]), float(row["value"]), nan, 1, 1, 1.0, (t, t), nan, nan, nan
         )
         for row in found.rows()
+    )
+
+
+def at_height(found: Any, wanted: AtHeight) -> Average:
+    """A quantity over height, on the straight line between the middles of two layers.
+
+    It has no samples where the height lies beyond the layers, or where no grain ever was in one of the two.
+
+    Parameters
+    ----------
+    found : what the measure gives, with `z` [m], `columns` of quantities over height, and times `t` [s].
+    wanted : the quantity.
+    """
+    (column,) = (one for one in found.columns if one.name == wanted.quantity)
+    value, error = (
+        float(np.interp(wanted.z, found.z, one, left=math.nan, right=math.nan))
+        for one in (column.value, column.error)
+    )
+    n = len(found.t) if math.isfinite(value) else 0
+    window = (float(found.t[0]), float(found.t[-1]))
+    return Average(
+        wanted.name, column.unit, value, error, n, 1, float(n), window, math.nan, math.nan, math.nan
     )

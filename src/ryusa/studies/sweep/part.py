@@ -14,7 +14,7 @@ from ryusa.report.page import report_page
 from ryusa.results import Results, schema
 from ryusa.running.disk import write_atomically
 from ryusa.studies.sweep.design import SEED
-from ryusa.studies.sweep.measures import averages_of
+from ryusa.studies.sweep.measures import AtHeight, averages_of
 from ryusa.study import CaseRun, Plan
 
 PAGE_SIZE = 2.0e6  # of the grains in motion on the page of one run [B]
@@ -111,10 +111,12 @@ class SweepPart:
     ----------
     runs : all runs, setting by setting.
     measures : what is measured of each.
+    heights : quantities over height that are wanted at one height.
     """
 
     runs: tuple[SweepRun, ...]
     measures: tuple[MeasureEntry, ...]
+    heights: tuple[AtHeight, ...] = ()
     TITLE = "sweep"
 
     def tasks(self, plan: Plan) -> Sequence[SweepRun]:
@@ -128,7 +130,8 @@ class SweepPart:
         problems: dict[str, str] = {}
         for entry in self.measures:
             try:
-                averages[entry.name] = averages_of(entry, results)
+                heights = [one for one in self.heights if one.measure == entry.name]
+                averages[entry.name] = averages_of(entry, results, heights)
             except RyusaError as error:
                 problems[entry.name] = str(error)
             else:

@@ -11,7 +11,7 @@ from ryusa.casefile.explain import explain
 from ryusa.casefile.resolved import resolved
 from ryusa.errors import CaseError
 from ryusa.studies.sweep.design import MOST, SweepDesign
-from ryusa.studies.sweep.measures import measures_of, refuse_measure
+from ryusa.studies.sweep.measures import AtHeight, measures_of, refuse_measure
 from ryusa.studies.sweep.part import SweepPart, SweepRun, runs_of, short_names
 from ryusa.studies.sweep.table import SweepColumn, column_of
 from ryusa.study import case_run
@@ -75,6 +75,7 @@ def plan_sweep(
     *,
     overrides: Mapping[str, str] | None = None,
     pages: bool = True,
+    heights: Sequence[AtHeight] = (),
 ) -> SweepPlan:
     """Check a sweep as a whole.
 
@@ -86,6 +87,7 @@ def plan_sweep(
     measures : names of measures.
     overrides : keys set in all runs, as `ryusa run --set` takes them.
     pages : whether each run gets its page.
+    heights : quantities over height that are wanted at one height, of these measures.
 
     Raises
     ------
@@ -105,7 +107,7 @@ def plan_sweep(
             "seeds", len(seeds), f"give {len(design.settings) * len(seeds):,} runs; at most {MOST:,}"
         )
     runs = runs_of(case, given, design.settings, seeds, page=pages)
-    part = SweepPart(runs, entries)
+    part = SweepPart(runs, entries, tuple(heights))
     first = runs[:: len(seeds)]
     _refuse_faults(part, design, runs)
     plain = [resolved(one.read()) for one in first]
