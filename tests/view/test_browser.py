@@ -224,8 +224,7 @@ def test_a_report_of_two_runs_plays_both(opened, three, saltation):
     assert page.locator(".grains").count() == 2
     for k in range(2):
         page.locator(".bar button[title^=play]").nth(k).click()
-        page.wait_for_timeout(500)
-        assert page.evaluate(f"ryusaViewers[{k}].time > ryusaViewers[{k}].data.t[0]")
+        page.wait_for_function(f"ryusaViewers[{k}].time > ryusaViewers[{k}].data.t[0]")  # raises after 30 s
     assert page.locator("figure img").count() >= 4
     broken = "[...document.querySelectorAll('figure img')].filter((one) => !one.naturalWidth).length"
     assert page.evaluate(broken) == 0
