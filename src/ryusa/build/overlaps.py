@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from ryusa.build.placement import Placement, unit_normal
 from ryusa.errors import CaseError
+from ryusa.model.near_pairs import near_pairs
 
 TOLERANCE = 1.0e-9  # of the smaller diameter
 
@@ -39,8 +40,6 @@ def refuse_overlaps(placement: Placement, key: str, plane: bool = False) -> None
 
     In a plane scene grains overlap in x-z and only with others of their lane.
     """
-    from scipy.spatial import KDTree  # the import takes a tenth of a second
-
     lanes = lanes_of(placement, key) if plane else None
     if placement.allow_overlap or not len(placement.d):
         return
@@ -55,7 +54,7 @@ def refuse_overlaps(placement: Placement, key: str, plane: bool = False) -> None
         if sides[axis] > 0.0:
             x[:, axis] = np.mod(x[:, axis], sides[axis])
             x[x[:, axis] >= sides[axis], axis] = 0.0
-    pairs = KDTree(x, boxsize=sides).query_pairs(float(d.max()), output_type="ndarray")
+    pairs = near_pairs(x, d, sides)
     pairs = pairs[(pairs[:, 0] < n) | (pairs[:, 1] < n)]
     if not len(pairs):
         return

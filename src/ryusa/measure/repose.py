@@ -11,6 +11,7 @@ from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run
 from ryusa.measure.snapshot import Snapshot, frame_at, scene_at, snapshot
 from ryusa.model import Scene
+from ryusa.model.near_pairs import near_pairs
 
 FIT = (0.15, 0.85)  # of the heap's height
 OTHER_FITS = ((0.1, 0.9), (0.2, 0.8), (0.25, 0.75))
@@ -250,7 +251,6 @@ def _heap(seen: Snapshot, scene: Scene, level: float, gap: float) -> NDArray[np.
     """Largest group of grains above the floor that touch, or nearly so; places in the snapshot."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
-    from scipy.spatial import KDTree
 
     above = np.flatnonzero(seen.x[:, 2] > level)
     if len(above) < 2:
@@ -258,7 +258,7 @@ def _heap(seen: Snapshot, scene: Scene, level: float, gap: float) -> NDArray[np.
     x, r = seen.x[above], 0.5 * seen.d[above]
     period = np.array([*scene.period, 0.0])
     period = np.where(np.isfinite(period), period, 0.0)  # 0 means open
-    pairs = KDTree(x, boxsize=period).query_pairs(2.0 * float(r.max()) + gap, output_type="ndarray")
+    pairs = near_pairs(x, 2.0 * r, period, gap=gap)
     away = x[pairs[:, 0]] - x[pairs[:, 1]]
     away -= period * np.round(np.divide(away, period, out=np.zeros_like(away), where=period > 0.0))
     touch = np.linalg.norm(away, axis=1) - r[pairs].sum(axis=1) <= gap

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
-from scipy.spatial import KDTree
 
 from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run
@@ -16,6 +15,7 @@ from ryusa.measure.statistics import Average, ratio
 from ryusa.measure.table import Averaged, Averages
 from ryusa.measure.transport import window_of
 from ryusa.model import Scene
+from ryusa.model.near_pairs import near_pairs
 from ryusa.model.scene import Bools
 
 LASTS = 5.0  # a window lasts so long, over sqrt(d/g)
@@ -259,8 +259,7 @@ def _pairs(x: Floats, d: Floats, scene: Scene, gap: float) -> Ints:
         if period > 0.0:
             inside[:, axis] = np.mod(x[:, axis], period)
             inside[inside[:, axis] >= period, axis] = 0.0  # round-off
-    tree = KDTree(inside, boxsize=periods)
-    pairs = tree.query_pairs((1.0 + gap) * float(d.max()), output_type="ndarray").astype(np.int64)
+    pairs = near_pairs(inside, d, np.array(periods), share=gap).astype(np.int64)
     apart = np.linalg.norm(_between(x, pairs, scene), axis=-1)
     pairs = pairs[apart <= 0.5 * (1.0 + gap) * (d[pairs[:, 0]] + d[pairs[:, 1]])]
     return pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]

@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import KDTree
 
 from ryusa.model import Scene
+from ryusa.model.near_pairs import near_pairs
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -39,7 +39,7 @@ def touching_pairs(x: Floats, scene: Scene, gap: float = 0.0) -> tuple[Ints, Int
     for axis in np.flatnonzero(box):
         every[:, axis] %= box[axis]
         every[every[:, axis] >= box[axis], axis] = 0.0  # round-off of the line above
-    pairs = KDTree(every, boxsize=box).query_pairs((1.0 + gap) * float(d.max()), output_type="ndarray")
+    pairs = near_pairs(every, d, box, share=gap)
     i, j = pairs[(pairs < len(here)).any(axis=1)].T  # at least one of the two is free, and i < j
     way = every[j] - every[i]
     way -= np.where(box > 0.0, box * np.round(way / np.where(box > 0.0, box, 1.0)), 0.0)
