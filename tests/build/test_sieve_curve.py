@@ -33,8 +33,9 @@ BUILD = {
     "packing": 'kind = "packing"\ncolumns = 5\nrows = 4\nlayers = 40\nbed = "plane"\n',
     "flume": 'kind = "flume"\nlength = "5 cm"\nwidth = "4 cm"\nlayers = 3\nbed = "plane"\n',
     "box": 'kind = "box"\ncolumns = 5\nrows = 4\nlayers = 40\nfloor = "plane"\n',
+    "fill": 'kind = "fill"\nlow = ["0 cm", "0 cm", "0 cm"]\nhigh = ["5 cm", "4 cm", "6 cm"]\n',
 }
-PLANE = {"packing": {"build.rows": "1"}, "flume": {}, "box": {"build.rows": "1"}}
+PLANE = {"packing": {"build.rows": "1"}, "flume": {}, "box": {"build.rows": "1"}, "fill": {}}
 
 
 def case(kind: str, **keys: str) -> Case:
@@ -138,3 +139,25 @@ def test_the_packaged_case_is_built() -> None:
     found = read(case_path("graded_gravel.toml"))
     assert build(found).scene.n_grain == derive(found).n_grain
     assert Path(case_path("graded_gravel.toml")).is_file()
+
+
+@pytest.mark.parametrize("plane", ["false", "true"])
+@pytest.mark.parametrize(
+    "curve", [CURVE, "[['0.3 mm', 0], ['1 mm', 60], ['9 mm', 100]]", "[['3 mm', 0], ['4 mm', 100]]"]
+)
+def test_a_box_filled_by_a_curve_holds_all_its_grains_and_little_room_is_left(plane: str, curve: str) -> None:
+    made = build(case("fill", motion__plane=plane, grains__sieve_curve=curve))
+    x, r = made.state.x, 0.5 * np.asarray(made.scene.d)
+    for axis, high in ((0, 0.05), (2, 0.06)):
+        assert np.min(x[:, axis] - r) >= -1e-12
+        assert np.max(x[:, axis] + r) <= high + 1e-12
+    assert np.max(x[:, 2] + r) > 0.06 - 2.5 * 1.05 * 2.0 * r.max()  # the highest layers are not left empty
+
+
+def test_the_most_grains_of_a_box_are_those_that_it_holds_at_first_whatever_feeds_bring() -> None:
+    hose = 'feeds=[{name="hose", centre=["2 cm", "2 cm", "9 cm"], radius="1 cm", rate="100 grains/s"}]\n'
+    found = read_text("\n" + hose + HEAD + BUILD["fill"] + "most = 20\n", {"grains.diameter": "3 mm"})
+    made = build(found)
+    assert made.scene.traffic is not None
+    assert made.scene.traffic.n_first == 20
+    assert derive(found).n_grain == made.scene.n_grain == 30

@@ -4,12 +4,16 @@ import math
 
 import numpy as np
 
+from ryusa.build.nested_lattice import LatticeCells, nested_lattice
 from ryusa.build.placement import Placement, at_rest
 from ryusa.build.sizes import draw
 from ryusa.casefile.builders.schema import FillSection
-from ryusa.casefile.builders.values import fill_cells, periodic, plate_of
+from ryusa.casefile.builders.values import fill_cells, fill_count, periodic, plate_of
 from ryusa.casefile.case import Case
 from ryusa.casefile.derive import Derived
+from ryusa.casefile.grading import grading_of
+from ryusa.casefile.shape import extent
+from ryusa.model.scene import Floats
 
 
 def fill(case: Case, derived: Derived) -> Placement:
@@ -23,19 +27,27 @@ def fill(case: Case, derived: Derived) -> Placement:
     pitch = derived.room * (1.0 + keys.gap)
     n_x, n_y, n_z = fill_cells(case)
     low, high = np.array(keys.low), np.array(keys.high)
-    cells = np.stack(np.meshgrid(np.arange(n_z), np.arange(n_y), np.arange(n_x), indexing="ij"), -1)
-    cells = cells.reshape(-1, 3)[: derived.n_grain, ::-1]
     corner = 0.5 * (low + high - pitch * np.array([n_x, n_y, n_z]))
     corner[2] = low[2]
-    free = 0.5 * keys.jitter * keys.gap * derived.room
-    x = corner + (cells + 0.5) * pitch
-    x = x + rng.uniform(-free, free, x.shape)  # neighbours stay `room` apart on each axis
+    sized: Floats | None = None
+    if grading_of(case) is None:
+        cells = np.stack(np.meshgrid(np.arange(n_z), np.arange(n_y), np.arange(n_x), indexing="ij"), -1)
+        cells = cells.reshape(-1, 3)[: fill_count(case), ::-1]
+        free = 0.5 * keys.jitter * keys.gap * derived.room
+        x = corner + (cells + 0.5) * pitch
+        x = x + rng.uniform(-free, free, x.shape)  # neighbours stay `room` apart on each axis
+    else:
+        sized = draw(case, fill_count(case), rng)
+        block = LatticeCells((pitch, pitch, pitch), n_x, n_y)
+        x = corner + nested_lattice(
+            sized * extent(case), block, keys.gap, keys.jitter, case.motion.plane, rng
+        )
     if case.motion.plane:
         x[:, 1] = 0.0
     period = tuple(float(high[k] - low[k]) if one else math.inf for k, one in enumerate(periodic(case)))
     n, plate = len(x), plate_of(case, keys.plate)
     return Placement(
-        d=draw(case, n, rng), x=x, v=at_rest(n), omega=at_rest(n),
+        d=draw(case, n, rng) if sized is None else sized, x=x, v=at_rest(n), omega=at_rest(n),
         period=(period[0], period[1]),
         d_fixed=np.full(len(plate), derived.d), x_fixed=plate,
         fixed_groups=(("floor", 0, len(plate)),) if len(plate) else (),

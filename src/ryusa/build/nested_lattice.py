@@ -6,9 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ryusa.casefile.builders.values import DEEPEST
 from ryusa.model.scene import Floats
-
-DEEPEST = 20  # halvings; a grain a millionth as large as its cell loses nothing more
 
 
 @dataclass(frozen=True)

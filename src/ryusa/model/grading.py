@@ -97,6 +97,20 @@ class Grading:
         """
         return float(np.interp(math.log(d), np.log(self.d), self.finer))
 
+    def number_below(self, d: float) -> float:
+        """Share of the number of grains below a diameter [m]; dN = dM/d^3.
+
+        >>> even = Grading.of([(1.0, 0.0), (4.0, 1.0)])  # (1 - 1/8)/(1 - 1/64)
+        >>> round(even.number_below(2.0) / (56.0 / 63.0), 12)
+        1.0
+        """
+        if not d > self.d[0]:
+            return 0.0
+        k = int(np.searchsorted(self.d, d, side="left"))
+        inner = np.concatenate([self.d[:k], [d]]) if k < len(self.d) else self.d
+        finer = np.interp(np.log(inner), np.log(self.d), self.finer)
+        return float(Grading(inner, finer)._numbers()[-1] / self._numbers()[-1])
+
     def diameter(self, share: float) -> float:
         """Diameter below which there is a share of the mass [m]; D50 for 0.5.
 

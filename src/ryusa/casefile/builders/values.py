@@ -1,6 +1,7 @@
 """What a builder will place: sizes and numbers of grains, the fixed bed, the periods."""
 
 import math
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
     from ryusa.casefile.case import Case
 
 FEWEST_PERIODS = 3  # largest diameters that a period must hold
+DEEPEST = 20  # halvings of a cell; a grain a millionth as large as its cell loses nothing more
+_ROUNDED = 4.0  # cells of the lattice of builder 'fill'
 
 
 def sizes(case: "Case") -> tuple[float, float, float]:
@@ -92,8 +95,7 @@ def built_counts(case: "Case") -> tuple[int, int, bool]:
         n_fixed = box_plan(build, sizes(case)[0], room(case), case.motion.plane).n_fixed
         return build.columns * build.rows * build.layers, n_fixed, True
     if isinstance(build, FillSection):
-        held = math.prod(fill_cells(case))
-        return min(held, build.most or held), len(plate_of(case, build.plate)), True
+        return fill_count(case), len(plate_of(case, build.plate)), True
     bed = bed_counts(case)
     if isinstance(build, FlumeSection):
         return flume_count(case), bed[0] * bed[1], True
@@ -172,6 +174,27 @@ def fill_cells(case: "Case") -> tuple[int, int, int]:
         for low, high in zip(build.low, build.high, strict=True)
     )
     return x, 1 if case.motion.plane else y, z
+
+
+def fill_count(case: "Case") -> int:
+    """Free grains of builder 'fill'; of a sieve curve as many as its cells hold, halved for smaller ones.
+
+    Notes
+    -----
+    A grain of level k, with d <= d_max/2^k, takes 8^-k of a cell (4^-k in a plane). Sizes by quota differ by
+    up to two grains from the share of a level, and the grains of a level are rounded up to a whole cell of
+    the next: together less than `_ROUNDED` cells.
+    """
+    build, cells, grading = case.build, math.prod(fill_cells(case)), grading_of(case)
+    assert isinstance(build, FillSection)
+    held = cells
+    if grading is not None:
+        halved, largest = 4.0 if case.motion.plane else 8.0, float(grading.d[-1])
+        below = [grading.number_below(largest * 0.5**k) for k in range(DEEPEST)]
+        below[0] = 1.0
+        each = sum((a - b) / halved**k for k, (a, b) in enumerate(pairwise([*below, 0.0])))
+        held = max(cells, int((cells - _ROUNDED) / each))
+    return min(held, build.most or held)
 
 
 def bed_area(case: "Case") -> float:
