@@ -1,10 +1,22 @@
 """Exceptions of ryusa. Each message states what is wrong, where, and how to correct it."""
 
+from typing import Any
+
 
 class RyusaError(Exception):
     """Base of all errors of ryusa; the command line prints the message and exits with `exit_code`."""
 
     exit_code = 2
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """As it is, not made anew from its message: errors go from process to process."""
+        return _restored, (type(self), self.args, self.__dict__)
+
+
+def _restored(kind: type[RyusaError], arguments: tuple[Any, ...], known: dict[str, Any]) -> RyusaError:
+    error = kind.__new__(kind, *arguments)
+    error.__dict__.update(known)
+    return error
 
 
 class CaseError(RyusaError):

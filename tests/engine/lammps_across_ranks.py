@@ -98,7 +98,31 @@ def seen(engine, water):
     }  # fmt: skip
 
 
+def broken(kind, words):
+    """`ryusa` with these words, until something happens to the second rank alone."""
+    from ryusa.cli import main as ryusa
+    from ryusa.engine.lammps.ranks import world
+    from ryusa.engine.lammps.share import GrainShare
+
+    advance = GrainShare.advance
+
+    def breaks(self, n_steps):
+        if world().Get_rank() == 1 and self._lmp.extract_global("ntimestep") > 40:
+            if kind == "program":
+                raise MemoryError("no room for a list")
+            _, free = self._free()
+            self._atoms("x" if kind == "place" else "v")[free[0], 2] = np.nan
+        advance(self, n_steps)
+
+    GrainShare.advance = breaks
+    sys.argv = ["ryusa", *words]
+    ryusa()
+
+
 def main() -> None:
+    if sys.argv[1] == "broken":
+        broken(sys.argv[2], sys.argv[3:])
+        return
     with registry.leading("lammps") as leads:
         if not leads:
             return

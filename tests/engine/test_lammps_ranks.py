@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -113,8 +114,11 @@ def test_a_run_of_two_ranks_has_the_frames_of_one_and_is_resumed_by_either(flow)
     assert "goes on from its own restart: not bit for bit" in told
 
 
-@pytest.mark.parametrize("whom", ["mpirun", "the second rank"])
-def test_a_signal_to_any_of_them_ends_the_run_in_order(flow, whom):
+@pytest.mark.parametrize(
+    "whom, number",
+    [("mpirun", signal.SIGINT), ("mpirun", signal.SIGTERM), ("the second rank", signal.SIGTERM)],
+)
+def test_a_signal_to_any_of_them_ends_the_run_in_order(flow, whom, number):
     words = words_for(flow, "long", "stop.time=100 s", "record.frames=1 s")
     running = subprocess.Popen(
         command(2, *words), cwd=HERE.parents[1], stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True
@@ -123,7 +127,7 @@ def test_a_signal_to_any_of_them_ends_the_run_in_order(flow, whom):
         if "slope_angle" in line:  # the timeline of the first steps
             break
     target = running.pid if whom == "mpirun" else sorted(ranks_of(running.pid))[-1]
-    os.kill(target, signal.SIGTERM)
+    os.kill(target, number)
     begun, rest = time.monotonic(), running.stderr.read()
     assert running.wait(60) == 5, rest
     assert time.monotonic() - begun < 60.0
@@ -143,6 +147,31 @@ def ranks_of(mpirun):
             if b"-m\0ryusa" in (text := Path(f"/proc/{one}/cmdline").read_bytes()) and b"mpirun" not in text
         ]  # fmt: skip
     return found
+
+
+NOT_FINITE = r"is not finite: grain \d+, step \d+, t = .* s\. Most likely the step is too long"
+
+
+@pytest.mark.parametrize(
+    "kind, case, said",
+    [
+        ("place", "flow", NOT_FINITE),
+        ("speed", "stream", NOT_FINITE),
+        ("program", "flow", r"rank 1 failed: MemoryError: no room for a list"),
+    ],
+)
+def test_an_error_of_the_second_rank_alone_ends_both_with_one_message(flow, kind, case, said):
+    words = words_for(flow, "broken", "stop.time=100 s", "record.frames=1 s")[2:]
+    if case == "stream":
+        path = str(HERE.parents[1] / "src/ryusa/cases/bedload_3d.toml")
+        settings = [word for one in FLOW[:3] for word in ("--set", one)]
+        words = ["run", path, "--engine", "lammps", "-o", str(flow / "broken"), *settings]
+    told = done(2, "-m", "tests.engine.lammps_across_ranks", "broken", kind, *words, code=3).stderr
+    assert re.search(said, told) and told.count("ryusa: ") == 1, told
+    left = Results.open(flow / "broken")
+    assert left.status == "failed" and re.search(said, left.provenance["message"])
+    assert len(left.frames) == 1 and np.isfinite(left.frames.x[0]).all()
+    assert left.summary["steps"] > 0
 
 
 def test_an_error_of_the_case_or_of_the_grains_is_one_message(flow):

@@ -8,10 +8,12 @@ import pytest
 
 from ryusa.build import scene
 from ryusa.engine.cpu.engine import CpuEngine
+from ryusa.errors import NotANumber
 from ryusa.laws import drag
 from ryusa.laws.families import BedKind, Buoyancy, Drag, Hindrance, Lift, Magnus, Mixing, Profile, WaterTorque
 from ryusa.laws.hindrance import exponent_settling
 from ryusa.model import Column, Water
+from ryusa.model.fluid import N_IMPULSE
 from ryusa.model.scene import EventRule
 from ryusa.water.coupling import Coupling
 from ryusa.water.exchange_step import force_on_water
@@ -56,6 +58,15 @@ def column_of(area, **more):
     given = {"z_low": 0.0, "dz": 0.2 * D, "n": 130, "depth": 25.0 * D, "area": area, "bed": BedKind.ROUGH}
     given |= {"k_rough": 0.4 * D, "mixing": Mixing.PARABOLIC, "g_x": G * math.sin(0.05)}
     return Column(**(given | more))
+
+
+def test_a_grain_whose_height_is_not_finite_is_named_with_its_step():
+    (fixed, first), area = cloud(FORMS[0])
+    coupling = Coupling.begin(fixed, column_of(area), 20, first.x)
+    x = first.x.copy()
+    x[7, 2] = np.nan
+    with pytest.raises(NotANumber, match="height is not finite: grain 7, step 1, t ="):
+        coupling.exchange(x, first.v, np.zeros((len(x), N_IMPULSE)))
 
 
 @pytest.mark.parametrize("form", FORMS)

@@ -10,7 +10,7 @@ from zlib import crc32
 
 import numpy as np
 
-from ryusa.errors import WaterError
+from ryusa.errors import NotANumber, WaterError
 from ryusa.laws._family import numbers
 from ryusa.laws.families import BedKind, Fluctuations, Mixing, Start
 from ryusa.model import CouplingState, Scene
@@ -221,6 +221,7 @@ class Coupling:
         Raises
         ------
         WaterError : the water cannot be moved on, or drag acts faster than a step resolves.
+        NotANumber : the height of a grain is not finite.
         """
         x, v = _with_those_away(self.scene, self.column, x, v)
         dt, arrays = self.steps * self.scene.dt, self._arrays
@@ -239,8 +240,14 @@ class Coupling:
                 self._rows, self.phi, rows, faces, out,
             )  # fmt: skip
         if status == step.NOT_FINITE:
-            i = int(out[step.BAD])
-            raise ValueError(f"the height of grain {i} is not finite")
+            raise NotANumber(
+                "the height is not finite",
+                grain=int(out[step.BAD]),
+                step=self.due,
+                t=t + dt,
+                hint="Most likely the step is too long for the springs: raise time.steps_per_contact, which "
+                "shortens the step.",
+            )
         if status != DONE:
             raise fault_of(status, count, t)
         self._rows, self._faces, self._out, self._about = rows, faces, out, (volume, t + dt, count + 1)

@@ -12,7 +12,7 @@ from ryusa.engine.lammps.refusals import refusals_of_change, refusals_of_lammps
 from ryusa.engine.protocol import Flags
 from ryusa.engine.shared.energy_account import potential_energy
 from ryusa.engine.shared.refusals import check_state, refusals
-from ryusa.errors import RunError
+from ryusa.errors import NotANumber, RunError, WaterError
 from ryusa.laws.families import Profile
 from ryusa.model import EVENT, EngineBlock, Scene, State, Tally, Term
 from ryusa.model.fluid import N_IMPULSE, N_KEPT, N_SAMPLED, FluidAtGrains
@@ -40,6 +40,8 @@ class LammpsEngine:
         self._step, self._t_zero, self._inspected = 0, 0.0, -1
         self._found: Extremes | None = None  # of the present step
         self._fault: RunError | None = None
+        self._failed = False  # LAMMPS has
+        self._last: Tally | None = None
         self._overlap = (0.0, -1, 0)  # largest over the smaller diameter so far, its grain and step
 
     def refuses(self, scene: Scene) -> tuple[str, ...]:
@@ -54,19 +56,26 @@ class LammpsEngine:
         """Take a scene and an initial state or a snapshot; also when the timeline changes the scene."""
         if reasons := self.refuses(scene):
             raise ValueError("; ".join(reasons))
-        check_state(scene, state)
-        before, self._scene = self._scene, scene
+        before = self._scene
         if before is not None and before is not scene and state.step == self._step:
             if reasons := refusals_of_change(before, scene):
                 raise ValueError("; ".join(reasons))
+            self._inspect()
+            if self._fault is not None:
+                raise self._fault
+            check_state(scene, state)
+            self._scene = scene
             self._all("change", scene)
         else:
+            check_state(scene, state)
+            self._scene = scene
             self._begin(scene, state)
         self._found, self._fault, self._inspected = None, None, self._step
 
     def _begin(self, scene: Scene, state: State) -> None:
         self._step, self._t_zero = state.step, state.t - state.step * scene.dt
         self._overlap, restart = (0.0, -1, 0), None
+        self._failed, self._last = False, None
         self._image = state.image if len(state.image) else np.zeros((scene.n_grain, 2), np.int32)
         block = state.engine if state.engine is not None and state.engine.engine == self.name else None
         if block is not None:
@@ -102,7 +111,15 @@ class LammpsEngine:
 
     def exchange(self) -> None:
         """Let the grains of every process exchange momentum with its column."""
-        if len(set(self._all("exchange"))) > 1:
+        try:
+            sums = self._all("exchange")
+        except WaterError:
+            self._found = None
+            self._inspect()  # a grain that is not finite takes the water along
+            if self._fault is not None:
+                raise self._fault from None
+            raise
+        if len(set(sums)) > 1:
             raise LammpsFailed(
                 f"the columns of water of the ranks have parted at step {self._step}: run all ranks on "
                 "processors of one kind, with one version of each library"
@@ -193,10 +210,22 @@ class LammpsEngine:
         return state
 
     def tally(self) -> Tally:
-        """Energies of the present step, and extremes of the inspections; terms of the account are nan."""
+        """Energies of the present step, and extremes of the inspections; terms of the account are nan.
+
+        After an error of LAMMPS, those of the last time.
+
+        Raises
+        ------
+        NotANumber : a grain is not finite.
+        """
         assert self._scene is not None
+        if self._failed and self._last is not None:
+            return self._last
         found = self._inspect()
-        return Tally(
+        if isinstance(self._fault, NotANumber):  # no frame of it
+            self._failed = True
+            raise self._fault
+        self._last = Tally(
             t=self._t,
             kinetic=found.kinetic,
             spin=found.spin,
@@ -212,6 +241,7 @@ class LammpsEngine:
             spin_max=found.spin_max,
             n_contact=found.n_contact,
         )
+        return self._last
 
     def events(self) -> np.ndarray:
         """No records: a scene that asks for them is refused."""
@@ -225,4 +255,8 @@ class LammpsEngine:
     def _all(self, method: str, *arguments: Any) -> list[Any]:
         if self._ranks is None:
             self._ranks = Ranks()
-        return self._ranks.all(method, *arguments)
+        try:
+            return self._ranks.all(method, *arguments)
+        except (LammpsFailed, RunError):
+            self._failed = True
+            raise

@@ -10,6 +10,8 @@ from ryusa.model import Scene
 from ryusa.model.contact_law import stiffness_key
 
 INSPECTED = "LAMMPS is inspected at intervals: it happened within the last {} steps."
+LISTED = "LAMMPS noticed it as it listed neighbours: it happened since the last list."
+_LONGER = "raise time.steps_per_contact, which shortens the step"
 
 
 class LammpsFailed(RyusaError):
@@ -19,18 +21,44 @@ class LammpsFailed(RyusaError):
 
 
 class SharedFault(Exception):
-    """An error that LAMMPS reported on all ranks."""
+    """An error that LAMMPS reported on all ranks.
+
+    Attributes
+    ----------
+    error : what to say.
+    """
+
+    def __init__(self, error: RyusaError) -> None:
+        self.error = error
+        super().__init__(str(error))
 
 
-class RankFault(Exception):
+class RankFault(SharedFault):
     """An error of one rank, for which the others wait."""
 
 
-def fault_of_lammps(error: Exception) -> Exception:
-    """What an exception of the module of LAMMPS means."""
-    text = f"LAMMPS: {' '.join(str(error).split())}"
+def fault_of_lammps(error: Exception, lost: RunError | None) -> SharedFault:
+    """What an exception of the module of LAMMPS means.
+
+    Parameters
+    ----------
+    lost : the error of a grain of this rank, if one explains the exception.
+    """
+    said = lost or LammpsFailed(f"LAMMPS: {' '.join(str(error).split())}")
     alone = type(error).__name__ == "MPIAbortException"
-    return RankFault(text) if alone else SharedFault(text)
+    return RankFault(said) if alone else SharedFault(said)
+
+
+def not_a_number(grain: int, step: int, t: float, when: str) -> NotANumber:
+    """The error of a grain whose position, velocity or spin is not finite.
+
+    Parameters
+    ----------
+    step, t : where it was noticed; t in s.
+    when : a sentence that says how much earlier it may have happened.
+    """
+    hint = f"Most likely the step is too long for the springs: {_LONGER}. {when}"
+    return NotANumber("position, velocity or spin is not finite", grain=grain, step=step, t=t, hint=hint)
 
 
 def fault_of_grains(scene: Scene, found: Any, step: int, t: float, since: int) -> RunError | None:
@@ -44,12 +72,8 @@ def fault_of_grains(scene: Scene, found: Any, step: int, t: float, since: int) -
     """
     where: dict[str, Any] = {"step": step, "t": t}
     ago = INSPECTED.format(since)
-    longer = "raise time.steps_per_contact, which shortens the step"
     if found.not_finite >= 0:
-        hint = f"Most likely the step is too long for the springs: {longer}. {ago}"
-        return NotANumber(
-            "position, velocity or spin is not finite", grain=found.not_finite, hint=hint, **where
-        )
+        return not_a_number(found.not_finite, step, t, ago)
     if found.overlap > scene.overlap_limit:
         key = stiffness_key(scene.contact)
         return OverlapTooLarge(
@@ -66,7 +90,7 @@ def fault_of_grains(scene: Scene, found: Any, step: int, t: float, since: int) -
             f"({found.speed:.3g} m/s)",
             grain=found.fastest,
             hint="At this speed it could pass through another grain between two steps. Most likely the step "
-            f"is too long for a contact that accelerated it: {longer}. {ago}",
+            f"is too long for a contact that accelerated it: {_LONGER}. {ago}",
             **where,
         )  # fmt: skip
     if found.outside >= 0:

@@ -2,7 +2,7 @@
 
 Each has a `GrainShare`. The leader sends the name of a method and its arguments to all, calls it itself,
 and collects what each returned or why it failed. A signal that reaches another process is passed on to the
-leader.
+leader. A process that fails alone raises an alarm (`alarm.py`), as the others wait for it.
 """
 
 import atexit
@@ -14,14 +14,16 @@ from collections.abc import Generator, Iterable
 from contextlib import contextmanager
 from typing import Any
 
+from ryusa.engine.lammps.alarm import Alarm, Worker
 from ryusa.engine.lammps.availability import started_together
 from ryusa.engine.lammps.faults import LammpsFailed, RankFault, SharedFault
-from ryusa.errors import CaseError, RyusaError
+from ryusa.errors import CaseError, RunError, RyusaError
 
 _END = "end"
 _SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGUSR1)
 _PATIENCE = 1.0  # s for a signal of all processes to reach this one
 _BROKEN = 3  # exit code after a fault that left ranks waiting for each other
+_LOST = "the ranks of LAMMPS wait for each other after an error"
 
 
 def world() -> Any:
@@ -77,8 +79,10 @@ class Ranks:
         self._comm = world()
         self._share = GrainShare(self._comm)
         self._relay = Relay()
+        self._lost: RyusaError | None = None  # why the other ranks do not answer any more
         if self._comm is not None:
             self._relay.listen()
+            self._worker = Worker()
 
     @property
     def water(self) -> Any:
@@ -90,33 +94,46 @@ class Ranks:
 
         Raises
         ------
-        LammpsFailed : on any rank.
+        LammpsFailed, RunError : on any rank.
         RyusaError : an error of the column of water, which all ranks have.
         """
+        if self._lost is not None:
+            raise self._lost
         if self._comm is None:
             try:
                 return [getattr(self._share, method)(*arguments)]
-            except (SharedFault, RankFault) as error:
-                raise LammpsFailed(str(error)) from error
-        self._comm.bcast((method, arguments), 0)
-        try:
-            mine = _attempt(self._share, method, arguments)
-        except BaseException as error:  # the other ranks wait for this one, within LAMMPS
-            _abort_at_exit(self._comm)
-            if isinstance(error, RankFault):
-                raise LammpsFailed(str(error)) from error
-            raise
-        answers = self._comm.gather((*mine, ()), 0)
+            except SharedFault as fault:
+                raise fault.error from fault
+        answers = self._answers(method, arguments)
         self._relay.take(one for _, _, signals in answers for one in signals)
-        if isinstance(mine[0], RyusaError):
-            raise mine[0]
-        faults = [fault for _, fault, _ in answers if fault]
-        if faults:
-            raise LammpsFailed(faults[0])
+        errors = [error for _, error, _ in answers if error is not None]
+        if errors:
+            raise next((one for one in errors if isinstance(one, RunError)), errors[0])
         return [answer for answer, _, _ in answers]
 
+    def _answers(self, method: str, arguments: tuple[Any, ...]) -> list[Any]:
+        """What every rank answers; in a thread of its own, which a rank that fails leaves waiting forever."""
+        alarm = _leads[0]
+        try:
+            call = self._worker.begin(lambda: self._of_all(method, arguments))
+            while not call.wait():
+                if (error := alarm.heard()) is not None and not call.wait(_PATIENCE):
+                    raise RankFault(error)
+            return call.result()
+        except BaseException as error:  # the other ranks wait for this one, within LAMMPS
+            self._lost = error.error if isinstance(error, RankFault) else LammpsFailed(_LOST)
+            _abort_at_exit(self._comm)
+            if isinstance(error, RankFault):
+                raise self._lost from error
+            raise
 
-_leads: list[bool] = []  # True while this process leads others
+    def _of_all(self, method: str, arguments: tuple[Any, ...]) -> list[Any]:
+        self._comm.bcast((method, arguments), 0)
+        answer, error = _attempt(self._share, method, arguments)
+        return self._comm.gather((answer, error, ()), 0)
+
+
+_leads: list[Alarm] = []  # while this process leads others
 _aborts: list[bool] = []  # True once the end of this process ends the others
 
 
@@ -139,11 +156,12 @@ def leading() -> Generator[bool]:
             f"{together} processes were started, but the MPI of mpi4py sees {comm.Get_size()}: start them "
             "with the mpirun that belongs to it",
         )  # fmt: skip
+    alarm = Alarm(comm)
     if comm.Get_rank() != 0:
-        _serve(comm)
+        _serve(comm, alarm)
         yield False
         return
-    _leads.append(True)
+    _leads.append(alarm)
     try:
         yield True
     finally:
@@ -152,7 +170,7 @@ def leading() -> Generator[bool]:
             comm.bcast((_END, ()), 0)
 
 
-def _serve(comm: Any) -> None:
+def _serve(comm: Any, alarm: Alarm) -> None:
     """Do what the leader says."""
     from ryusa.engine.lammps.share import GrainShare
 
@@ -166,23 +184,28 @@ def _serve(comm: Any) -> None:
             share.close()
             return
         try:
-            answer, fault = _attempt(share, method, arguments)
-        except BaseException as error:
-            print(f"ryusa: rank {comm.Get_rank()}: {error}", file=sys.stderr, flush=True)
+            answer, error = _attempt(share, method, arguments)
+        except BaseException as fault:
+            rank = comm.Get_rank()
+            said = fault.error if isinstance(fault, RankFault) else None
+            alarm.ring(said or LammpsFailed(f"rank {rank} failed: {type(fault).__name__}: {fault}"))
+            print(f"ryusa: rank {rank}: {fault}", file=sys.stderr, flush=True)  # the leader did not hear it
             comm.Abort(_BROKEN)
             raise
         signals, received[:] = tuple(received), []
-        comm.gather((answer, fault, signals), 0)
+        comm.gather((answer, error, signals), 0)
 
 
-def _attempt(share: Any, method: str, arguments: tuple[Any, ...]) -> tuple[Any, str]:
-    """Call a method: its answer, or the fault that all ranks have in common."""
+def _attempt(share: Any, method: str, arguments: tuple[Any, ...]) -> tuple[Any, RyusaError | None]:
+    """Call a method: its answer, or the error that all ranks have in common."""
     try:
-        return getattr(share, method)(*arguments), ""
-    except SharedFault as error:
-        return None, str(error)
+        return getattr(share, method)(*arguments), None
+    except RankFault:
+        raise
+    except SharedFault as fault:
+        return None, fault.error
     except RyusaError as error:  # of the column, which is the same on all ranks
-        return error, str(error)
+        return None, error
 
 
 def _abort_at_exit(comm: Any) -> None:

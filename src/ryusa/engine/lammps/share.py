@@ -15,13 +15,22 @@ from ryusa.engine.lammps import commands as C
 from ryusa.engine.lammps import forces as F
 from ryusa.engine.lammps.answers import FEWEST_IMAGES, Extremes, RankRows
 from ryusa.engine.lammps.atoms import AtomArrays
-from ryusa.engine.lammps.faults import RankFault, SharedFault, fault_of_lammps
+from ryusa.engine.lammps.faults import (
+    LISTED,
+    LammpsFailed,
+    RankFault,
+    SharedFault,
+    fault_of_lammps,
+    not_a_number,
+)
 from ryusa.engine.lammps.mass_classes import mass_classes
 from ryusa.engine.lammps.module import module, open_lammps
+from ryusa.engine.lammps.overlaps import contacts
 from ryusa.engine.lammps.sums import RankSums
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.parameters import parameters_of
 from ryusa.engine.shared.variant import choice_of
+from ryusa.errors import RunError
 from ryusa.laws.families import Profile
 from ryusa.model import Scene, State
 from ryusa.model.fluid import DRAG, N_IMPULSE, SUBMERGED
@@ -56,11 +65,14 @@ class GrainShare:
         """Take a scene and a state; `restart` is what `restart` returned, for a resume."""
         self.close()
         self._scene, self._classes = scene, mass_classes(scene)
+        self._t_zero = state.t - state.step * scene.dt
         self._take_numbers(scene, state)
         self._lmp = lmp = open_lammps(self._comm)
         self._atoms = AtomArrays(lmp)
         if (lmp.extract_setting("tagint"), lmp.extract_setting("imageint")) != (4, 4):
-            raise SharedFault("LAMMPS was built with 64-bit ids: a build with the usual 32 bits is needed")
+            raise SharedFault(
+                LammpsFailed("LAMMPS was built with 64-bit ids: a build with the usual 32 bits is needed")
+            )
         self._bed = scene.fixed_active.copy()
         if restart is None:
             self._create(scene, state)
@@ -306,7 +318,8 @@ class GrainShare:
         x, v, w = (self._atoms(name)[free] for name in ("x", "v", "omega"))
         speed, spin = np.linalg.norm(v, axis=1), np.linalg.norm(w, axis=1)
         m = self._inertial_mass()[free]
-        spring, n_contact, overlap, pair = self._contacts(ids, x)
+        ends = self._local(f"{C.PAIRS}_ids", 2).astype(np.int64) - 1
+        spring, n_contact, overlap, pair = contacts(scene, ids, x, np.ravel(self._local(C.PAIRS, 1)), ends)
         bad = ~np.isfinite(np.hstack([x, v, w])).all(axis=1)
         out = np.any((x < scene.world_low) | (x > scene.world_high), axis=1)
         fast = int(speed.argmax()) if len(ids) else -1
@@ -334,31 +347,6 @@ class GrainShare:
             mass[free] = own[:, 0] + own[:, 1] * self._atoms(C.SAMPLED)[free, SUBMERGED]
         return mass
 
-    def _contacts(self, ids: np.ndarray, x: Floats) -> tuple[float, int, float, tuple[int, int]]:
-        """Energy of normal springs [J], number of contacts, largest overlap over diameter, and its pair."""
-        scene = self._scene
-        assert scene is not None
-        n, r = scene.n_grain, 0.5 * np.concatenate([scene.d, scene.d_fixed])
-        distance = np.ravel(self._local(C.PAIRS, 1))
-        ends = self._local(f"{C.PAIRS}_ids", 2).astype(np.int64) - 1
-        i, j = np.minimum(*ends.T), np.maximum(*ends.T)
-        overlaps = [np.maximum(r[i] + r[j] - distance, 0.0)]
-        firsts, seconds, sizes = [i], [j], [2.0 * np.minimum(r[i], r[j])]
-        for k in np.flatnonzero(scene.plane_active).tolist():
-            into = r[ids] - (x - scene.plane_point[k]) @ scene.plane_normal[k]
-            met = np.flatnonzero(into > 0.0)
-            overlaps.append(into[met])
-            firsts.append(ids[met])
-            seconds.append(np.full(len(met), n + scene.n_fixed + k))
-            sizes.append(2.0 * r[ids[met]])
-        overlap, size = np.concatenate(overlaps), np.concatenate(sizes)
-        if not len(overlap):
-            return 0.0, 0, 0.0, (-1, -1)
-        worst = int((overlap / size).argmax())
-        pair = int(np.concatenate(firsts)[worst]), int(np.concatenate(seconds)[worst])
-        energy = 0.5 * scene.contact.k_n * float(np.sum(overlap**2))
-        return energy, int(np.count_nonzero(overlap)), float((overlap / size)[worst]), pair
-
     def restart(self) -> bytes | None:
         """What a resume needs, of all ranks: on the first rank the content of a restart file of LAMMPS."""
         with memory_file() as (path, file):
@@ -367,7 +355,7 @@ class GrainShare:
             return file.read() if self._first else None
 
     def _local(self, name: str, columns: int) -> np.ndarray:
-        """RankRows of a compute of pairs, copied."""
+        """Rows of a compute of pairs, copied."""
         words = module()
         if not self._lmp.extract_compute(name, words.LMP_STYLE_LOCAL, words.LMP_SIZE_ROWS):
             return np.zeros((0, columns))
@@ -397,9 +385,22 @@ class GrainShare:
         try:
             self._lmp.command(text)
         except Exception as error:  # the module raises nothing narrower
-            raise fault_of_lammps(error) from error
+            raise fault_of_lammps(error, self._lost()) from error
         if self._broken is not None:
-            raise RankFault(f"forces of the water: {self._broken}") from self._broken
+            raise RankFault(LammpsFailed(f"forces of the water: {self._broken}")) from self._broken
+
+    def _lost(self) -> RunError | None:
+        """The error of a grain of this rank that is not finite, after LAMMPS failed; None without one."""
+        scene = self._scene
+        if scene is None or self._atoms is None:
+            return None
+        ids, free = self._free()
+        moves = np.hstack([self._atoms(name)[free] for name in ("x", "v", "omega")])
+        bad = ~np.isfinite(moves).all(axis=1)
+        if not bad.any():
+            return None
+        step = int(self._lmp.extract_global("ntimestep"))
+        return not_a_number(int(ids[bad].min()), step, self._t_zero + step * scene.dt, LISTED)
 
     def _run(self, texts: Iterable[str]) -> None:
         for text in texts:
