@@ -3,6 +3,7 @@
 import numpy as np
 
 from ryusa.laws.families import (
+    Adhesion,
     Arm,
     Cap,
     ContactForce,
@@ -33,7 +34,10 @@ def _instead(key: str, value: str) -> str:
 def _contact(scene: Scene) -> list[str]:
     law, found = scene.contact, list[str]()
     if law.force == ContactForce.HERTZ_MINDLIN:
-        return ["elastic spheres (Hertz-Mindlin): linear springs, contact.stiffness, would be carried"]
+        return [
+            f"contact.law is '{law.force.word}': {_instead('contact.law', ContactForce.LINEAR.word)} with a "
+            "contact.stiffness"
+        ]
     if law.timing != ContactTiming.AT_STEPS:
         found.append(
             f"contact.timing is '{law.timing.word}', the default: LAMMPS begins and ends contacts at steps, "
@@ -51,7 +55,14 @@ def _contact(scene: Scene) -> list[str]:
             f"{_instead('contact.cap', Cap.TOTAL.word)}"
         )
     if law.cohesion != 0.0:
-        found.append("contact.cohesion: LAMMPS has none in the Coulomb cap; 0 would be carried")
+        found.append(
+            f"contact.cohesion: LAMMPS has none in the Coulomb cap; {_instead('contact.cohesion', '0 N')}"
+        )
+    if law.adhesion != Adhesion.NONE:
+        found.append(
+            f"contact.adhesion is '{law.adhesion.word}': the laws of LAMMPS are others; "
+            f"{_instead('contact.adhesion', Adhesion.NONE.word)}"
+        )
     if law.tension and law.mu > 0.0:
         found.append(
             "contact.parting is 'tension': where the dashpot pulls, LAMMPS lets friction act by the size of "
@@ -74,7 +85,7 @@ def _contact(scene: Scene) -> list[str]:
 def _rolling(scene: Scene) -> list[str]:
     rolling, found = scene.rolling, list[str]()
     if rolling.twisting > 0.0:
-        found.append("rolling.twisting: 0 would be carried")
+        found.append(f"rolling.twisting_coefficient: {_instead('rolling.twisting_coefficient', '0')}")
     if rolling.model == Rolling.NONE:
         return found
     if rolling.model != Rolling.EPSD:
@@ -88,7 +99,7 @@ def _rolling(scene: Scene) -> list[str]:
     if rolling.zeta_r != 0.0:
         found.append(
             "rolling.damping_ratio: the slider of LAMMPS limits rolling spring and dashpot together, ours "
-            "the spring alone; --set rolling.damping_ratio=0, the same law in both, would be carried"
+            f"the spring alone; {_instead('rolling.damping_ratio', '0')}, the same law in both"
         )
     return found
 
@@ -112,7 +123,9 @@ def _kinds(scene: Scene) -> list[str]:
         found.append("clumps: spheres would be carried")
     if scene.materials is not None:
         found.append("[materials]: one contact law for all would be carried")
-    if scene.walls is not None:
+    if scene.has_servo:
+        found.append("[walls.servo]: no wall is pressed; planes and fixed grains at rest would be carried")
+    elif scene.walls is not None:
         found.append("[[walls]]: planes and fixed grains would be carried")
     if scene.traffic is not None:
         found.append("[[feeds]] and [[exits]]: a fixed number of grains would be carried")
@@ -128,9 +141,11 @@ def _kinds(scene: Scene) -> list[str]:
 def _records(scene: Scene) -> list[str]:
     found: list[str] = []
     if scene.events != EventRule.NONE:
-        found.append("record.events: LAMMPS keeps no records of contacts; --set record.events=none")
+        found.append(
+            f"record.events: LAMMPS keeps no records of contacts; {_instead('record.events', 'none')}"
+        )
     if scene.forces:
-        found.append("record.forces: contact forces are not recorded; --set record.forces=false")
+        found.append(f"record.forces: contact forces are not recorded; {_instead('record.forces', 'false')}")
     return found
 
 
