@@ -230,6 +230,12 @@ MEASURES = (
                  builders=("empty",), fed=True, clumps=True,
                  numbers=(("rate_in", "kg/s"), ("rate_out", "kg/s")),
                  needs=("traffic",)),
+    MeasureEntry("long_section", "ryusa.measure.long_section:long_section",
+                 "depth, surface, speed, Froude number and discharge along a row of columns", ("t",),
+                 fed=True, clumps=True, table=True, needs=("row",)),
+    MeasureEntry("x_t", "ryusa.measure.long_section:depth_history",
+                 "depth, discharge and Froude number of a row of columns over distance and time", WINDOW,
+                 fed=True, clumps=True, table=True, needs=("row",)),
 )  # fmt: skip
 
 PICTURES = (
@@ -295,6 +301,12 @@ PICTURES = (
                  "mass in by each feed and out by each exit, and mass there, over time",
                  WINDOW, settled=True, measure="discharge", builders=("empty",), fed=True,
                  clumps=True),
+    PictureEntry("long_section", "ryusa.figures.long_section:long_section",
+                 "bottom, water, energy line and Froude number along a row of columns",
+                 ("t",), measure="long_section", fed=True, clumps=True),
+    PictureEntry("x_t", "ryusa.figures.long_section:x_t",
+                 "depth of a row of columns over distance and time", WINDOW, measure="x_t",
+                 fed=True, clumps=True),
     PictureEntry("vibration", "ryusa.figures.runs:vibration", "grains that do not come to rest",
                  ("grains", *WINDOW)),
 )  # fmt: skip

@@ -8,7 +8,7 @@ import numpy as np
 from ryusa.build.placement import Placement, mask, unit_normal
 from ryusa.laws import drag, motion
 from ryusa.laws.families import Profile
-from ryusa.model import Column, ContactLaw, RollingLaw, Scene, State, Water
+from ryusa.model import Column, ColumnRow, ContactLaw, RollingLaw, Scene, State, Water
 from ryusa.model.scene import EventRule, Floats
 
 
@@ -23,6 +23,7 @@ class Laws:
     rolling: RollingLaw = field(default_factory=RollingLaw)
     water: Water = field(default_factory=Water)
     column: Column | None = None  # where the profile is COLUMN
+    row: ColumnRow | None = None  # columns in a row instead
     g: float = 9.80665  # [m/s2]
     slope: float = 0.0  # [rad], down towards +x
     rotation: bool = True
@@ -81,6 +82,7 @@ def assemble(placement: Placement, laws: Laws) -> tuple[Scene, State]:
         rotation=laws.rotation,
         water=laws.water,
         column=laws.column,
+        row=laws.row,
         plane_case=laws.plane_case,
         period=placement.period,
         world_low=laws.low or low,

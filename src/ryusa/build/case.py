@@ -19,6 +19,7 @@ from ryusa.build.materials import Numbers, densities, materials_of
 from ryusa.build.overlaps import refuse_overlaps
 from ryusa.build.packing import packing
 from ryusa.build.placement import Placement, Wall
+from ryusa.build.row import row_of
 from ryusa.build.saltation import saltation
 from ryusa.build.table import table
 from ryusa.build.traffic import before_feeding, moving_with, with_feeds
@@ -49,6 +50,7 @@ from ryusa.casefile.films import film_reach
 from ryusa.casefile.materials import GRAINS, case_of_pair, names_of
 from ryusa.casefile.motion import slab_width
 from ryusa.casefile.record import events_of
+from ryusa.casefile.row.values import water_alone
 from ryusa.casefile.shape import extent, has_clumps
 from ryusa.casefile.time import steps_by_default
 from ryusa.casefile.water.values import hindrance_exponent
@@ -128,7 +130,11 @@ def build(case: Case, derived: Derived | None = None) -> Built:
     _refuse_taken_names(placement, walls)
     refuse_overlaps_with_walls(reach, walls, key)
     _refuse_unknown_groups(placement, case)
-    laws = replace(laws_of(case, found, placement.z_zero), column=column_of(case, found, placement))
+    laws = replace(
+        laws_of(case, found, placement.z_zero),
+        column=column_of(case, found, placement),
+        row=row_of(case, found),
+    )
     placement, traffic = with_feeds(placement, case, found)
     n_first = len(placement.d) if traffic is None else traffic.n_first
     of = materials_of(case, placement, n_first, traffic)
@@ -272,6 +278,10 @@ def notes_of(case: Case) -> tuple[str, ...]:
     """Defaults that the case does not state and that influence the results."""
     notes: list[str] = []
     contact, water = case.contact, case.water
+    if water is not None and water_alone(case):
+        if water.roughness is None and column_keys(case).bed == "rough":
+            notes.append("roughness k_s of Eq. (9) = mean d (water.roughness not given)")
+        return (*notes, *_column_notes(case))
     elastic = is_hertz(case)
     if elastic:
         notes += _elastic_notes(case)

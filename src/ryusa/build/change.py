@@ -28,7 +28,8 @@ def change(case: Case, scene: Scene, entry: ChangeSection) -> Scene:
         tilted = gravity(case.motion.gravity, angle)
         tilted.flags.writeable = False
         column = None if scene.column is None else replace(scene.column, g_x=float(tilted[0]))
-        return replace(scene, gravity=tilted, column=column)
+        row = None if scene.row is None else scene.row.tilted(float(tilted[0]), -float(tilted[2]))
+        return replace(scene, gravity=tilted, column=column, row=row)
     if entry.friction is not None or entry.friction_angle is not None:
         mu = entry.friction if entry.friction is not None else math.tan(entry.friction_angle or 0.0)
         return replace(scene, contact=replace(scene.contact, mu=mu))

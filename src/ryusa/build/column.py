@@ -44,7 +44,7 @@ def column_of(case: Case, derived: Derived, placement: Placement) -> Column | No
     CaseError : the column cannot be: it begins above the bed, or asks for too many cells.
     """
     water, found = case.water, derived
-    if water is None or water.profile != "column":
+    if water is None or water.profile != "column" or water.row is not None:
         return None
     assert water.depth is not None
     keys = column_keys(case)
@@ -72,7 +72,7 @@ def column_of(case: Case, derived: Derived, placement: Placement) -> Column | No
         nu=water.viscosity,
         bed=BedKind.of(keys.bed),
         k_rough=found.k_rough,
-        surface=SurfaceRule.of(keys.surface),
+        surface=chosen(case, SurfaceRule),
         side=SideWalls.NONE if keys.side_walls is None else SideWalls.of(keys.side_friction),
         width=math.nan if keys.side_walls is None else keys.side_walls,
         g_x=found.g * math.sin(found.slope),

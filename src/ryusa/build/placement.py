@@ -1,5 +1,6 @@
 """Placement of the first grains, the fixed grains and the walls, as every builder returns it."""
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -60,6 +61,8 @@ class Placement:
         every = np.concatenate(
             [self.x, self.x_fixed, np.array([wall.point for wall in self.walls]).reshape(-1, 3)]
         )
+        if not len(every):  # water alone
+            return (-math.inf, -math.inf, -math.inf), (math.inf, math.inf, math.inf)
         d, low, high = self.d_max, every.min(axis=0), every.max(axis=0)
         below, above = (
             [float(low[k] - ROOM_ASIDE * d) for k in (0, 1)],

@@ -20,6 +20,8 @@ from ryusa.casefile.motion import RIVALS as MOTION_RIVALS
 from ryusa.casefile.motion import check_motion
 from ryusa.casefile.precision import check_precision
 from ryusa.casefile.record import check_frames, check_record, check_stop, check_timeline
+from ryusa.casefile.row.checks import check_row
+from ryusa.casefile.row.values import water_alone
 from ryusa.casefile.section import Section, given
 from ryusa.casefile.shape import check_shape
 from ryusa.casefile.time import RIVALS as TIME_RIVALS
@@ -55,6 +57,7 @@ def check(case: Case, data: dict[str, Any]) -> list[CaseError]:
         *check_stop(case),
         *check_water(case),
         *check_column(case),
+        *check_row(case),
         *check_films(case),
         *check_rolling(case),
         *check_motion(case),
@@ -73,11 +76,13 @@ def check(case: Case, data: dict[str, Any]) -> list[CaseError]:
     found = [*_numbers(derived)]
     if found:
         return found
-    step = [
-        *check_time(case, derived, data),
-        *check_film_step(case, derived),
-        *check_drag_step(case, derived),
-    ]
+    step: list[CaseError] = []
+    if not water_alone(case):  # no contact and no drag to resolve
+        step = [
+            *check_time(case, derived, data),
+            *check_film_step(case, derived),
+            *check_drag_step(case, derived),
+        ]
     frames = [] if step else check_frames(case, derived, data)
     return [
         *check_domain(case, derived),

@@ -6,6 +6,7 @@ from typing import Any, TypeVar
 from ryusa.casefile.case import Case
 from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.contact.values import timing
+from ryusa.casefile.row.schema import row_keys
 from ryusa.casefile.section import Section, given
 from ryusa.casefile.shape import has_clumps
 from ryusa.errors import CaseError
@@ -22,6 +23,7 @@ from ryusa.laws.families import (
     SideWalls,
     Slip,
     Start,
+    SurfaceRule,
 )
 
 F = TypeVar("F", bound=Family)
@@ -34,7 +36,12 @@ _DEFAULTS: dict[type[Family], Callable[[Case], Family]] = {
         Arm.REDUCED_RADIUS if "spring" in Rolling.of(case.rolling.model).marks else Arm.CONTACT_WIDTH
     ),
     Mixing: lambda case: Mixing.of(column_keys(case).mixing),
-    Start: lambda case: Start.REST if case.water and case.water.drag == "none" else Start.STEADY,
+    SurfaceRule: lambda case: SurfaceRule.VOLUME if row_keys(case) is not None else SurfaceRule.DEPTH,
+    Start: lambda case: (
+        Start.REST
+        if row_keys(case) is not None or (case.water and case.water.drag == "none")
+        else Start.STEADY
+    ),
 }
 _ONLY_IN: dict[type[Family], Callable[[Case], bool]] = {  # cases of some kind
     DragOfForm: lambda case: has_clumps(case) and case.water is not None and case.water.drag != "none"

@@ -21,6 +21,7 @@ from ryusa.casefile.films import step_limits
 from ryusa.casefile.grains import mass
 from ryusa.casefile.materials import lightest_of, meeting
 from ryusa.casefile.motion import slope
+from ryusa.casefile.row.values import water_alone, water_step
 from ryusa.casefile.shape import least_mass, spheres_per_grain
 from ryusa.casefile.time import MOST_STEPS, STEPS_PER_FILM, TANGENTIAL_SHARE, steps_by_default
 from ryusa.casefile.water.values import u_star_given
@@ -80,6 +81,8 @@ def derive(case: Case) -> Derived:
     limits = slower * min(normal for normal, _ in steps), slower * min(shear for _, shear in steps)
     if case.time.step is not None:
         dt = case.time.step
+    elif water_alone(case):
+        dt = water_step(case)
     elif case.time.steps_per_contact is not None:
         dt = shortest / case.time.steps_per_contact
     else:
@@ -90,11 +93,12 @@ def derive(case: Case) -> Derived:
     if case.water is not None:
         wet, rho_s = case.water, case.grains.density
         k_rough = wet.roughness if wet.roughness is not None else d
+        row = wet.row is not None
         driven = wet.profile == "column" and column_keys(case).drive == "tau_star"
         u_star = u_star_given(case)
         if wet.tau_star is not None and not driven:
             tau_star = wet.tau_star
-        elif wet.profile == "column" or wet.u_star is not None:
+        elif (wet.profile == "column" and not row) or wet.u_star is not None:
             u_star = column_u_star(case, k_rough) if math.isnan(u_star) or driven else u_star
             heavier = rho_s > wet.density and g > 0.0
             tau_star = water.tau_star_from_u_star(u_star, rho_s, wet.density, g, d) if heavier else math.nan

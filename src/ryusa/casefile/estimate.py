@@ -8,6 +8,8 @@ from ryusa.casefile.case import Case
 from ryusa.casefile.contact.values import is_hertz, timing
 from ryusa.casefile.derive import Derived
 from ryusa.casefile.record import MANY, events_of
+from ryusa.casefile.row.schema import row_keys
+from ryusa.casefile.row.values import row_plan, water_alone
 from ryusa.casefile.rows import ExplainRow, Flag, count, number, word
 from ryusa.laws.families import ContactTiming
 from ryusa.model.contacts import N_EVENT
@@ -15,6 +17,7 @@ from ryusa.model.contacts import N_EVENT
 BYTES_PER_GRAIN = 80  # of a frame: x, v, omega, image
 BYTES_OF_FORCES = 120  # per grain and frame where forces are recorded: three contacts of 40 bytes
 BYTES_PER_FRAME = 272  # t, step, offset for ParaView and tally
+BYTES_OF_ROW = 8 * 4  # of a cell of a row of columns and frame: two speeds, water, concentration
 BYTES_PER_RUN = 100_000  # headers of the parts, log, summary, bed
 # Memory, measured (design/lab/0008-memory-of-a-run.md) [B]:
 MEMORY_PER_RUN = 218_000_000  # Python, its packages and the compiled code
@@ -44,6 +47,7 @@ SECONDS_PER_STEP = 4.0e-7  # of any step
 SECONDS_PER_GRAIN = 6.5e-8  # and per grain in it, in a plane scene
 SECONDS_PER_GRAIN_3D = 1.3e-7
 SECONDS_PER_GRAIN_IN_WATER = 6.0e-8  # on top
+SECONDS_PER_ROW_CELL = 1.5e-7  # of a cell of a row of columns and step of the water
 SECONDS_PER_SALTATION = 0.15  # simulated, where only a number of saltations ends the run
 HOUR = 3600.0  # [s]
 SECONDS_TO_REST = 10.0  # simulated, where only rest ends it
@@ -80,7 +84,7 @@ def bytes_per_grain(case: Case) -> int:
 
 def disk_needed(case: Case, derived: Derived) -> int:
     """Bytes that the frames of a run will take; contacts recorded come on top."""
-    frame = derived.n_sphere * bytes_per_grain(case) + BYTES_PER_FRAME
+    frame = derived.n_sphere * bytes_per_grain(case) + BYTES_PER_FRAME + BYTES_OF_ROW * cells_of_row(case)
     return frames_expected(case) * frame + BYTES_PER_RUN
 
 
@@ -156,7 +160,7 @@ def held_back(case: Case, derived: Derived) -> float:
     """Bytes of frames and contacts that wait to be written, one frame at least."""
     seconds = seconds_needed(case, derived)
     interval = min(max(HELD_SHORTEST, HELD_SHARE * seconds), HELD_LONGEST)
-    frame = derived.n_sphere * bytes_per_grain(case)
+    frame = derived.n_sphere * bytes_per_grain(case) + BYTES_OF_ROW * cells_of_row(case)
     whole = frames_expected(case) * frame + disk_for_events(case, derived)
     return max(frame, min(whole * min(FASTER * interval / seconds, 1.0), HELD_MOST))
 
@@ -180,7 +184,16 @@ def seconds_needed(case: Case, derived: Derived) -> float:
     per_grain = SECONDS_PER_GRAIN if case.motion.plane else SECONDS_PER_GRAIN_3D
     if case.water is not None:
         per_grain += SECONDS_PER_GRAIN_IN_WATER
-    return SECONDS_PER_RUN + steps_expected(case, derived) * (SECONDS_PER_STEP + per_grain * derived.n_sphere)
+    per_step = SECONDS_PER_STEP + per_grain * derived.n_sphere + SECONDS_PER_ROW_CELL * cells_of_row(case)
+    return SECONDS_PER_RUN + steps_expected(case, derived) * per_step
+
+
+def cells_of_row(case: Case) -> int:
+    """Cells of a row of columns; 0 where there is none."""
+    if row_keys(case) is None:
+        return 0
+    plan = row_plan(case)
+    return plan.n * plan.n_cell
 
 
 def cost_rows(case: Case, derived: Derived) -> list[ExplainRow]:
@@ -189,17 +202,29 @@ def cost_rows(case: Case, derived: Derived) -> list[ExplainRow]:
     disk, seconds = disk_needed(case, derived), seconds_needed(case, derived)
     memory, contacts = memory_needed(case, derived), contacts_expected(case, derived)
     wall = f"{seconds / HOUR:.3g} h" if seconds > HOUR else f"{seconds:.3g} s"
+    alone = water_alone(case)
+    held = "of the program; a first run compiles its laws and takes up to 0.4 GB more"
     held = (
-        f"at most, on any number of threads: {human(MEMORY_PER_RUN)} for the program, grains with "
-        f"{contacts:g} contacts each, {human(held_back(case, derived))} not yet written, and what is being "
-        "written; a first run compiles its laws and takes up to 0.4 GB more"
+        held
+        if alone
+        else (
+            f"at most, on any number of threads: {human(MEMORY_PER_RUN)} for the program, grains with "
+            f"{contacts:g} contacts each, {human(held_back(case, derived))} not yet written, and what is "
+            "being written; a first run compiles its laws and takes up to 0.4 GB more"
+        )
     )
     return [
         number("cost", "simulated time", simulated, "s", origin),
         count("cost", "steps", steps_expected(case, derived), "simulated time over dt"),
         count("cost", "frames", frames_expected(case), f"one every {case.record.frames:g} s (record.frames)"),
-        _size("disk for frames", disk, "positions, velocities and spins of the free grains"),
-        *_events(case, derived),
+        _size(
+            "disk for frames",
+            disk,
+            "speeds and water in the cells"
+            if alone
+            else "positions, velocities and spins of the free grains",
+        ),
+        *([] if alone else _events(case, derived)),
         *_disk(case, derived),
         _size("memory", memory, held),
         ExplainRow("cost", "wall time", seconds, "s", wall, "rule of thumb for one core"),

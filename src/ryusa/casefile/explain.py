@@ -11,6 +11,8 @@ from ryusa.casefile.grains import grain_rows
 from ryusa.casefile.laws import law_rows
 from ryusa.casefile.materials import material_rows
 from ryusa.casefile.precision import precision_rows
+from ryusa.casefile.row.rows import row_rows
+from ryusa.casefile.row.values import water_alone
 from ryusa.casefile.rows import ExplainRow
 from ryusa.casefile.shape import shape_rows
 from ryusa.casefile.time import time_rows
@@ -28,6 +30,8 @@ def explain(case: Case, derived: Derived | None = None) -> list[ExplainRow]:
     derived : what follows from it; computed when not given.
     """
     found = derived or derive(case)
+    if water_alone(case):
+        return [*row_rows(case, found), *law_rows(case), *cost_rows(case, found)]
     return [
         *grain_rows(case, found),
         *shape_rows(case, found),
@@ -41,6 +45,7 @@ def explain(case: Case, derived: Derived | None = None) -> list[ExplainRow]:
         *water_rows(case, found, origin_of_u_star(case) if case.water is not None else ""),
         *film_rows(case, found),
         *column_rows(case, found),
+        *row_rows(case, found),
         *rotation_rows(case, found),
         *law_rows(case),
         *precision_rows(case),

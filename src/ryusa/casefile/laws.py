@@ -2,6 +2,7 @@
 
 from ryusa.casefile.case import Case
 from ryusa.casefile.choices import in_force, section_of
+from ryusa.casefile.row.values import water_alone
 from ryusa.casefile.rows import ExplainRow, word
 from ryusa.casefile.section import given
 
@@ -10,6 +11,8 @@ def law_rows(case: Case) -> list[ExplainRow]:
     """One row for each family of laws that has an effect in the case."""
     rows: list[ExplainRow] = []
     for family, choice in in_force(case).items():
+        if water_alone(case) and not family.key.startswith(("water.profile", "water.column")):
+            continue  # of grains
         section = section_of(case, family)
         stated = section is not None and given(section, family.key.rsplit(".", 1)[1])
         source = f"; {choice.source}" if choice.source else ""

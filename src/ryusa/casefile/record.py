@@ -18,6 +18,7 @@ from ryusa.casefile.quantities import (
     SlopeAngle,
     Speed,
 )
+from ryusa.casefile.row.values import water_alone
 from ryusa.casefile.section import Section
 from ryusa.casefile.walls import MoveSection
 from ryusa.errors import CaseError
@@ -94,6 +95,8 @@ def events_of(case: "Case") -> Literal["all", "tracked", "none"]:
     """Which contacts are recorded."""
     if case.record.events is not None:
         return case.record.events
+    if water_alone(case):
+        return "none"
     return "all" if counts(case)[0] <= MANY or case.stop.saltations is not None else "none"
 
 

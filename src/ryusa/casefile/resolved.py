@@ -5,6 +5,7 @@ from dataclasses import asdict
 from typing import Any
 
 from ryusa.casefile.case import Case
+from ryusa.casefile.choices import chosen
 from ryusa.casefile.column.bed import packed
 from ryusa.casefile.column.schema import CELL, ONLY_IN_A_COLUMN, column_keys
 from ryusa.casefile.contact.speed import expected_speed
@@ -13,7 +14,9 @@ from ryusa.casefile.derive import Derived, derive
 from ryusa.casefile.grading import points_of
 from ryusa.casefile.motion import slab_width
 from ryusa.casefile.record import events_of
+from ryusa.casefile.row.values import bottom_points, line_points, row_plan
 from ryusa.casefile.shape import spheres_of
+from ryusa.laws.families import SurfaceRule
 
 
 def resolved(case: Case, derived: Derived | None = None) -> dict[str, Any]:
@@ -71,10 +74,25 @@ def _resolve_column(case: Case, found: Derived, data: dict[str, Any]) -> None:
         keys = column_keys(case)
         cell = keys.cell or CELL * found.d
         data["column"] = keys.model_dump(mode="json") | {"cell": cell, "mixing_length": keys.mixing}
+        data["column"]["surface"] = chosen(case, SurfaceRule).word
+        if wet.row is None:
+            del data["row"]
+        else:
+            _resolve_row(case, data)
         data["column"]["packed"] = packed(case)
         return
     for key in ONLY_IN_A_COLUMN:
         del data[key]
+
+
+def _resolve_row(case: Case, data: dict[str, Any]) -> None:
+    """Fill in the row of columns: its lines as points, its cells and what it is divided into."""
+    plan, row = row_plan(case), data["row"]
+    data["column"]["cell"] = plan.cell
+    row["bottom"] = [list(one) for one in bottom_points(case)]
+    if row["surface"] is not None:
+        row["surface"] = [list(one) for one in line_points(case, "water.row.surface", row["surface"])]
+    row |= {"segments": plan.n, "segment": plan.dx, "height": plan.n_cell * plan.cell}
 
 
 def _plain(value: Any) -> Any:

@@ -257,8 +257,8 @@ class GrainPool:
 
 
 def stepping(engine: Engine, scene: Scene) -> Engine:
-    """The engine for a scene: itself, or in a pool where grains enter and leave."""
-    return engine if scene.traffic is None else GrainPool(engine)
+    """The engine for a scene: itself, or in a pool where grains enter and leave, or where there is none."""
+    return engine if scene.traffic is None and scene.n_grain else GrainPool(engine)
 
 
 def _scene_of(scene: Scene, ids: Ints, earlier: Scene | None) -> Scene:

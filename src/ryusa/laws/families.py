@@ -168,7 +168,7 @@ class Profile(Family, key="water.profile"):
     UNIFORM = (3, "uniform", uniform, "one speed at every height above `water.zero`", "", ("speed", "above"))
     STILL = (4, "still", still, "water at rest", "", ("above",))
     COLUMN = (5, "column", None, "a water column, coupled both ways with the grains", "design/0007",
-        ("tau_star", "u_star", "roughness", "buoyancy", "hindrance", "lift", "magnus", "column"))
+        ("tau_star", "u_star", "roughness", "buoyancy", "hindrance", "lift", "magnus", "column", "row"))
 
 
 class Above(Family, key="water.above"):

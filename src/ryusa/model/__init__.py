@@ -5,6 +5,7 @@ from ryusa.model.contacts import EVENT, Contacts
 from ryusa.model.engine_block import EngineBlock
 from ryusa.model.fluid import CouplingState, FluidAtGrains
 from ryusa.model.rigid_bodies import BodyState, RigidBodies
+from ryusa.model.row import ColumnRow, RowCouplingState, RowState
 from ryusa.model.scene import ContactLaw, Materials, RollingLaw, Scene, Water
 from ryusa.model.state import State
 from ryusa.model.tally import Tally, Term
@@ -17,6 +18,7 @@ __all__ = [
     "BodyState",
     "Budget",
     "Column",
+    "ColumnRow",
     "ContactLaw",
     "Contacts",
     "CouplingState",
@@ -28,6 +30,8 @@ __all__ = [
     "Materials",
     "RigidBodies",
     "RollingLaw",
+    "RowCouplingState",
+    "RowState",
     "Scene",
     "State",
     "Tally",

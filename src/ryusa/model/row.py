@@ -1,13 +1,14 @@
 """A row of water columns along a stream: its fixed properties, its ends, and its state."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.laws.families import Drive, SurfaceRule
+from ryusa.laws.porous import ergun_linear, ergun_quadratic
 from ryusa.model.arrays import Floats
 from ryusa.model.column import Column, Top
 
@@ -15,6 +16,7 @@ Ints = NDArray[np.int64]
 NAN = float("nan")
 OPEN, WALL, INFLOW = range(3)  # kinds of a station
 DEPTH_GIVEN, SAME_DEPTH = range(2)  # rules of the segment beyond an end
+N_BUDGET = 14  # numbers of the momentum budget of a station, as `momentum_balance` writes them
 STEEPEST = math.radians(20.0)  # largest angle between bottom and x axis
 
 
@@ -37,6 +39,41 @@ class RowEnd:
     discharge: float = NAN  # for DISCHARGE [m2/s]
     profile: Floats | None = None  # its speeds to any scale, shape (n,); None: uniform
     depth: float = NAN  # of the entering water [m], where it is faster than waves; nan: that of the row
+    developed: bool = False  # profile, and the depth of a flow faster than waves, of steady flow
+
+
+@dataclass(frozen=True)
+class PorousSolid:
+    """A fixed porous solid in the cells of the segments, such as a bed or a dam of grains at rest.
+
+    Its force on the water per volume of mixture is rho (linear u + quadratic |u| u), with u in the pores, and
+    it has the buoyancy of the form `stress`. Each array has the shape (n_segment, n).
+    """
+
+    phi: Floats  # concentration [-]
+    linear: Floats  # [1/s]
+    quadratic: Floats  # [1/m]
+
+    @staticmethod
+    def of_grains(phi: Floats, d: float, nu: float, *, inertia: bool = True) -> "PorousSolid":
+        """Grains at rest of concentration phi [-] and diameter d [m], by Ergun's law.
+
+        nu [m2/s] is the viscosity of the water; without `inertia` the law is Darcy's.
+        """
+        linear = np.array([[ergun_linear(one, d, nu) for one in row] for row in phi.tolist()])
+        quadratic = np.array([[ergun_quadratic(one, d) * inertia for one in row] for row in phi.tolist()])
+        return PorousSolid(phi, linear, quadratic)
+
+
+@dataclass(frozen=True)
+class RowDam:
+    """A dam, a weir or a sill of a row, by its name."""
+
+    name: str
+    first: int  # segment
+    end: int  # segment after the last
+    crest: float  # height over the x axis [m]
+    porous: bool = False
 
 
 @dataclass(frozen=True)
@@ -50,6 +87,10 @@ class ColumnRow:
     upstream: RowEnd | None = None
     downstream: RowEnd | None = None
     solid: Ints | None = None  # lowest cells of each segment that are solid, as in a dam; None: none
+    x_low: float = 0.0  # where the first segment begins [m]
+    porous: PorousSolid | None = None  # in the cells
+    start: Floats | None = None  # height of the surface at the start [m], (n_segment,)
+    dams: tuple[RowDam, ...] = ()  # names of what `solid` and `porous` hold
 
     @property
     def n_segment(self) -> int:
@@ -69,12 +110,43 @@ class ColumnRow:
     @property
     def x(self) -> Floats:
         """Middles of the segments [m], shape (n_segment,)."""
-        return (np.arange(self.n_segment, dtype=np.float64) + 0.5) * self.dx
+        return self.x_low + (np.arange(self.n_segment, dtype=np.float64) + 0.5) * self.dx
 
     @property
     def x_station(self) -> Floats:
         """Where the stations are [m], shape (n_station,)."""
-        return np.arange(self.n_segment + (not self.periodic), dtype=np.float64) * self.dx
+        return self.x_low + np.arange(self.n_segment + (not self.periodic), dtype=np.float64) * self.dx
+
+    @property
+    def stations_between(self) -> tuple[Ints, Ints]:
+        """The segments before and behind each station, numbered as in a state, shape (n_station,)."""
+        n = self.n_segment
+        if self.periodic:
+            return (np.arange(n) - 1) % n, np.arange(n)
+        return np.arange(n + 1), np.arange(n + 1) + 1
+
+    def frame_shapes(self) -> dict[str, tuple[int, ...]]:
+        """Shapes of the datasets of a frame of this row, as a run folder holds them."""
+        segments, stations, n = self.n_segment, len(self.x_station), self.column.n
+        return {
+            "surface": (segments,), "volume": (segments,), "content": (segments, n), "phi": (segments, n),
+            "discharge": (stations,), "passed": (stations,), "tau": (stations,), "u": (stations, n),
+            "w": (stations, n),
+        }  # fmt: skip
+
+    def state_shapes(self) -> dict[str, tuple[int, ...]]:
+        """Shapes of the arrays of a `RowState` of this row."""
+        n, stations = self.column.n, len(self.x_station)
+        segments = self.n_segment + (0 if self.periodic else 2)
+        return {
+            "u": (stations, n), "volume": (segments,), "content": (segments, n), "wet": (segments, n),
+            "surface": (segments,), "passed": (stations,), "profiles": (stations, 6, n),
+            "edges": (stations, 2, n + 1), "budgets": (stations, N_BUDGET),
+        }  # fmt: skip
+
+    def tilted(self, g_x: float, g_z: float) -> "ColumnRow":
+        """The same row with another gravity along and normal to the x axis [m/s2]."""
+        return replace(self, column=replace(self.column, g_x=g_x), g_z=g_z)
 
     def with_ends(self, values: Floats) -> Floats:
         """Values of the segments, and beyond open ends those of the segment beside, in a new array."""
@@ -166,3 +238,23 @@ class RowState:
     t: float = 0.0  # [s]
     steps: int = 0  # steps of the water done
     courant: float = 0.0  # largest Courant number met [-]
+
+
+@dataclass(frozen=True)
+class RowCouplingState:
+    """State of a row of a run between two exchanges, complete for a resume.
+
+    Attributes
+    ----------
+    water : water since the last exchange.
+    steps : steps of the engine in the present coupling interval.
+    due : step of the next exchange.
+    exchanges : number of exchanges so far.
+    worst : largest residual of the momentum of a station over its largest term so far [-].
+    """
+
+    water: RowState
+    steps: int
+    due: int
+    exchanges: int
+    worst: float

@@ -31,6 +31,7 @@ from ryusa.laws.families import (
 from ryusa.model.arrays import Bools, Floats
 from ryusa.model.column import Column
 from ryusa.model.rigid_bodies import RigidBodies
+from ryusa.model.row import ColumnRow
 from ryusa.model.traffic import Traffic
 from ryusa.model.walls import Walls
 
@@ -204,6 +205,7 @@ class Scene:
     walls: Walls | None = None  # finite walls, at rest or moving
     materials: Materials | None = None  # None: all contacts are those of `contact` and `rolling`
     bodies: RigidBodies | None = None  # clumps, whose spheres are free grains
+    row: ColumnRow | None = None  # columns of water along the stream; then `column` is None
 
     @property
     def n_grain(self) -> int:

@@ -24,6 +24,7 @@ from ryusa.results import schema
 from ryusa.results.frames import BodyFrames, Frames, joined
 from ryusa.results.hdf5 import OpenFiles, opened, plain_dataset, read_dataset, read_integer
 from ryusa.results.lazy import Part
+from ryusa.results.row import RowFrames, read_row
 from ryusa.results.scene_file import read_scene
 from ryusa.results.shown import (
     FilmFile,
@@ -184,6 +185,12 @@ class Results:
         """Profiles of the water at every frame; None if the run has no water column."""
         column = self.scene.column
         return None if column is None else read_water(self._parts, self.frames.t, column.z, column.faces)
+
+    @cached_property
+    def row(self) -> RowFrames | None:
+        """Water of a row of columns at every frame; None if the run has none."""
+        row = self.scene.row
+        return None if row is None else read_row(self._parts, self.frames.t, row)
 
     @property
     def grains(self) -> Grains:

@@ -16,6 +16,7 @@ from ryusa.model.scene import ONLY_ADHESIVE, ONLY_HERTZ, EventRule
 from ryusa.model.traffic import NONE, Traffic
 from ryusa.model.walls import N_MOTION, N_SERVO
 from ryusa.results.hdf5 import opened, read_dataset
+from ryusa.results.row_file import ROW, dataset_names, row_arrays, row_from, row_scalars
 
 _TRAFFIC, _MATERIALS = (
     "traffic",
@@ -40,6 +41,8 @@ def write_scene(file: h5py.File, scene: Scene, step: int, t: float) -> None:
         file.create_dataset(f"{_MATERIALS}/of", data=scene.materials.of)
     for name in _datasets_of_bodies(scene.bodies):
         file.create_dataset(f"{_BODIES}/{name}", data=getattr(scene.bodies, name))
+    for name, array in ({} if scene.row is None else row_arrays(scene.row)).items():
+        file.create_dataset(f"{ROW}/{name}", data=array)
     scalars = _scalars(scene) | {"step": step, "t": t}
     file.create_dataset(
         "scalars", data=np.frombuffer(json.dumps(scalars, default=_plain).encode(), dtype=np.uint8)
@@ -51,7 +54,10 @@ def _scalars(scene: Scene) -> dict[str, Any]:
     for f in fields(Scene):
         if f.name not in _ARRAYS:
             value = getattr(scene, f.name)
-            if f.name in {_TRAFFIC, _MATERIALS, _BODIES} and value is None:
+            if f.name in {_TRAFFIC, _MATERIALS, _BODIES, ROW} and value is None:
+                continue
+            if f.name == ROW:  # its arrays are datasets
+                found[ROW] = row_scalars(value)
                 continue
             if f.name == _BODIES:  # its arrays are datasets
                 found[_BODIES] = list(value.names)
@@ -103,6 +109,9 @@ def scene_digest(scene: Scene) -> str:
         digest.update(scene.materials.of.astype(np.float64).tobytes())
     for name in _datasets_of_bodies(scene.bodies):
         digest.update(np.ascontiguousarray(getattr(scene.bodies, name), dtype=np.float64).tobytes())
+    for name, array in ({} if scene.row is None else row_arrays(scene.row)).items():
+        digest.update(f"{name} {array.shape} ".encode())
+        digest.update(np.ascontiguousarray(array, dtype=np.float64).tobytes())
     digest.update(json.dumps(_even(_scalars(scene)), sort_keys=True).encode())
     return digest.hexdigest()
 
@@ -135,6 +144,11 @@ def read_scene(path: Path) -> tuple[int, float, Scene]:
             for name in _OF_BODIES
             if _BODIES in file and (name != "drag_form" or f"{_BODIES}/{name}" in file)
         }
+        in_row = {
+            name: read_dataset(file, f"{ROW}/{name}", path)
+            for name in dataset_names()
+            if f"{ROW}/{name}" in file
+        }
     try:
         if raw.dtype != np.uint8 or raw.nbytes > _LIMIT:
             raise ValueError("its scalars are not text")
@@ -149,6 +163,8 @@ def read_scene(path: Path) -> tuple[int, float, Scene]:
             scalars[_MATERIALS] = _materials(of, scalars[_MATERIALS])
         if (forms := scalars.pop(_BODIES, None)) is not None:
             scalars[_BODIES] = _bodies(bodies, forms, len(arrays["d"]))
+        if (given := scalars.pop(ROW, None)) is not None:
+            scalars[ROW] = row_from(given, in_row, _law(Column, given["column"]))
         if (names := scalars.pop("walls", None)) is not None:
             scalars["walls"] = _walls(faces, names)
         scalars["events"] = EventRule(scalars["events"])

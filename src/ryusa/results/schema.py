@@ -58,6 +58,9 @@ WATER_CELLS = ("u", "w", "phi", "content")  # [m/s], [m/s], [-], [m]
 WATER_FACES = ("tau", "nu_t")  # [Pa], [m2/s]
 WATER_NUMBERS = ("z_surface", "gradient")  # [m], [Pa/m]
 
+# in a group of a part, if the run has a row of columns: k frames of what `ColumnRow.frame_shapes` names
+ROW = "row"
+
 # impulses on walls and their work since the start, if the run has walls: (k, n_wall, model.walls.N_IMPULSE)
 WALLS = "walls"
 # way of each wall along the direction of its servo, if the run has one: (k, n_wall) [m]

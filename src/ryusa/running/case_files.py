@@ -13,6 +13,7 @@ def files_beside(case: "Case") -> dict[str, Path]:
     """Paths of first grains, clumps, meshes and sieve curve by the names of their copies."""
     from ryusa.casefile.builders.schema import TableSection
     from ryusa.casefile.grading import sieve_file
+    from ryusa.casefile.row.values import line_files
     from ryusa.casefile.shape import clump_files
     from ryusa.results import schema
 
@@ -21,6 +22,7 @@ def files_beside(case: "Case") -> dict[str, Path]:
         names = [case.build.file] if isinstance(case.build, TableSection) else []
         names += clump_files(case)
         names += [wall.file for wall in case.walls if wall.file is not None]
+        names += line_files(case)
         folder = case.path.resolve().parent
         found = {name: folder / name for name in names if _plain(name)}
     return found if sieve is None else found | {schema.SIEVE: sieve}

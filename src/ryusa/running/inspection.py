@@ -59,6 +59,8 @@ def _status(results: Results) -> str:
 def _case(results: Results) -> str:
     scene, origin = results.scene, results.provenance
     water = "" if scene.column is None else f", a column of {scene.column.n} cells of water"
+    if (row := scene.row) is not None:
+        water = f", a row of {row.n_segment} columns of {row.column.n} cells of water"
     overrides = origin.get("overrides")
     lines = "".join(f", {_words(k)} = {_words(v)}" for k, v in _table(overrides).items())
     return (
@@ -114,7 +116,7 @@ def _recorded(results: Results) -> str:
 
 def _energy(results: Results) -> list[tuple[str, str]]:
     """Energy account at the last frame."""
-    if not len(results.frames):
+    if not len(results.frames) or (results.scene.row is not None and not results.scene.n_grain):
         return []
     last = {name: float(column[-1]) for name, column in results.tally.items()}
     grain = int(last["overlap_grain"])

@@ -33,8 +33,8 @@ from ryusa.running.summary import summary_lines
 from ryusa.running.timeline import Change, in_order
 from ryusa.running.traffic import TrafficRule
 from ryusa.running.watch import Watch
-from ryusa.running.water import advanced, changed, snapshot, started
-from ryusa.water.coupling import Coupling
+from ryusa.running.water import RunWater, advanced, changed, snapshot, started
+from ryusa.water.row_coupling import RowCoupling
 
 Done = TypeVar("Done")
 _NEVER = 2**62  # steps
@@ -69,7 +69,7 @@ class Loop:
     _at_rest: bool = False  # for as long as the stop rule requires
     _saltations_done: bool = False  # every tracked grain has made the required number
     _gathered: list[NDArray[np.void]] = field(default_factory=list[NDArray[np.void]])
-    _water: Coupling | None = None
+    _water: RunWater | None = None
     _pace: Pace = field(default_factory=Pace)
     _begun: float = field(default_factory=time.monotonic)
     _loaded: bool = False  # the engine has a state
@@ -293,8 +293,9 @@ class Loop:
 
     def _pass_grains(self, traffic: TrafficRule) -> None:
         """Let grains leave and enter, and go on with those that are there."""
-        scene = with_servos(self.scene, self.servo)
-        passed = traffic.at_instant(scene, self.engine, self._step, self._t, self._water)
+        scene, water = with_servos(self.scene, self.servo), self._water
+        assert not isinstance(water, RowCoupling)  # a case file refuses grains in a row
+        passed = traffic.at_instant(scene, self.engine, self._step, self._t, water)
         if passed is not None:
             self._collect_contacts()
             self._gathered.append(passed.events)
@@ -373,7 +374,8 @@ class Loop:
             share = max(share, hops / self.stop.saltations)
         share, rate = min(max(share, self.precision.share(self._t)), 1.0), self._pace.rate
         known = str(self.precision) if self.precision.asked else ""
-        return ProgressNumbers(share, self._t, rate, tally.overlap_max, tally.residual, hops, known)
+        water = self._water.text if isinstance(self._water, RowCoupling) and not self.scene.n_grain else ""
+        return ProgressNumbers(share, self._t, rate, tally.overlap_max, tally.residual, hops, known, water)
 
     def _summary(self) -> dict[str, Any]:
         numbers = self.watch.summary(self.engine.tally())

@@ -32,8 +32,11 @@ class ProgressNumbers:
     residual: float  # of the energy account; nan without one
     hops: int | None = None  # saltations of the tracked grain with the fewest
     precision: str = ""  # of the averages that end the run
+    water: str = ""  # instead of the numbers of grains, where there is none
 
     def __str__(self) -> str:
+        if self.water:
+            return f"t {self.t:.4g} s  {self.water}"
         hops = "" if self.hops is None else f"  saltations {self.hops}"
         known = f"{self.precision}  " if self.precision else ""
         account = "" if math.isnan(self.residual) else f"energy residual {self.residual:.0e}  "

@@ -27,7 +27,7 @@ from ryusa.running.disk import disk_errors, free_bytes, hdf5_file, write_atomica
 from ryusa.running.folder import write_json
 from ryusa.running.record_buffer import RecordBuffer
 from ryusa.running.vtkhdf import PartSize, write_bed, write_hdf5, write_index, write_points
-from ryusa.water.coupling import Coupling
+from ryusa.running.water import RunWater
 
 _FLUSH_SOON = 2.0  # s between parts at the start of a run
 _FLUSH_LATE = 60.0  # upper limit, while there are few parts
@@ -132,14 +132,14 @@ class Recorder:
         self,
         state: State,
         tally: Tally,
-        water: Coupling | None = None,
+        water: RunWater | None = None,
         travel: NDArray[np.float64] | None = None,
     ) -> None:
         """Add a frame to the buffer, as copies of its arrays.
 
         Parameters
         ----------
-        water : where a column is solved.
+        water : where a column or a row of columns is solved.
         travel : of walls that servos press [m], shape (n_wall,), where there are some.
         """
         self.n_frame += 1

@@ -10,13 +10,13 @@ import numpy as np
 
 from ryusa.casefile.earlier import completed
 from ryusa.errors import CheckpointError, ResultsError
-from ryusa.model import EVENT, PASSAGE, Scene, State, with_momentum
-from ryusa.model.walls import N_IMPULSE
+from ryusa.model import Scene, State
 from ryusa.results import schema
 from ryusa.results.hdf5 import OpenFiles
 from ryusa.results.lazy import Part
 from ryusa.results.read import numbered, read_json, read_part, read_scenes
 from ryusa.results.scene_file import scene_digest
+from ryusa.running.buffered_frames import buffered_frames
 from ryusa.running.checkpoint import CheckpointBlock, read_checkpoint
 from ryusa.running.checkpoint_scheduler import FREE_KEYS, case_digest, code_versions
 from ryusa.running.folder import is_run
@@ -207,7 +207,7 @@ def _from_checkpoint(
         parts = parts[:n_part]
     reach = parts[-1].end if parts else -1
     assert reach is not None
-    buffered = {} if reach != parts_end else _buffered(recorder, scene, folder)
+    buffered = {} if reach != parts_end else buffered_frames(recorder, scene, folder)
     n_recorded = sum(part.n_frame for part in parts) + len(buffered.get("t", ()))
     contacts = sum(part.n_contact for part in parts) + len(buffered.get("contacts", ()))
     further = reach > end
@@ -283,48 +283,6 @@ def _first(parts: Sequence[Part], buffered: Mapping[str, np.ndarray]) -> np.ndar
     if "x" not in buffered or not len(buffered["x"]):
         raise CheckpointError(f"the first frame is missing; {_ANEW}")
     return buffered["x"][0]
-
-
-def _buffered(recorder: CheckpointBlock, scene: Scene, folder: Path) -> dict[str, np.ndarray]:
-    """Data that was buffered and not in a part, every shape checked."""
-    if not recorder.arrays:
-        return {}
-    rows = {k: with_momentum(one) if k == schema.PASSAGES else one for k, one in recorder.arrays.items()}
-    try:
-        k = len(rows["t"])
-        shapes = {
-            name: ((k, scene.n_grain, *tail) if name in schema.PER_GRAIN else (k,), dtype)
-            for name, (dtype, tail) in schema.FRAME_DATASETS.items()
-        }
-        shapes |= {"tally": ((k,), schema.TALLY), "contacts": ((len(rows["contacts"]),), EVENT)}
-        if scene.column is not None and k:
-            n_cell, float_ = scene.column.n, np.dtype(np.float64)
-            cells, faces = (schema.WATER_CELLS, (n_cell,)), (schema.WATER_FACES, (n_cell + 1,))
-            for names, tail in (cells, faces, (schema.WATER_NUMBERS, ())):
-                shapes |= {f"{schema.WATER}/{name}": ((k, *tail), float_) for name in names}
-        if scene.forces:
-            n_force = rows[schema.N_FORCE].sum() if schema.N_FORCE in rows else 0
-            shapes |= {schema.N_FORCE: ((k,), np.dtype(np.int64)), schema.FORCES: ((n_force,), schema.FORCE)}
-        if scene.traffic is not None:
-            n_passage = len(rows[schema.PASSAGES]) if schema.PASSAGES in rows else 0
-            shapes[schema.PASSAGES] = ((n_passage,), PASSAGE)
-        if scene.n_wall:
-            shapes |= {schema.WALLS: ((k, scene.n_wall, N_IMPULSE), np.dtype(np.float64))}
-        if scene.bodies is not None:
-            for name, (dtype, tail) in schema.BODY_DATASETS.items():
-                shapes[name] = ((k, scene.bodies.n, *tail), dtype)
-        if scene.has_servo:
-            shapes |= {schema.TRAVEL: ((k, scene.n_wall), np.dtype(np.float64))}
-        if set(shapes) != set(rows):
-            raise ValueError(f"datasets {', '.join(sorted(rows))}")
-        for name, (shape, dtype) in shapes.items():
-            if rows[name].shape != shape or rows[name].dtype != dtype:
-                raise ValueError(f"'{name}' is {rows[name].shape} of {rows[name].dtype}")
-    except (KeyError, ValueError, TypeError) as error:
-        raise CheckpointError(
-            f"{folder}: the buffered frames in the checkpoint do not match the run ({error})"
-        ) from error
-    return rows
 
 
 def _refuse_foreign(

@@ -11,7 +11,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.errors import CheckpointError
-from ryusa.model import BodyState, Contacts, CouplingState, EngineBlock, FluidAtGrains, Scene, State
+from ryusa.model import (
+    BodyState,
+    ColumnRow,
+    Contacts,
+    CouplingState,
+    EngineBlock,
+    FluidAtGrains,
+    RowCouplingState,
+    RowState,
+    Scene,
+    State,
+)
 from ryusa.model.column import WaterState
 from ryusa.model.contacts import N_EVENT, N_STATE
 from ryusa.model.eddies import Eddies
@@ -172,7 +183,9 @@ class _Reader:
             self._floats("fluid/sampled", (n, N_SAMPLED)), self._floats("fluid/impulse", (n, N_IMPULSE))
         )
 
-    def _coupling(self, n: int) -> CouplingState:
+    def _coupling(self, n: int) -> CouplingState | RowCouplingState:
+        if self._scene.row is not None:
+            return self._row(self._scene.row)
         column, values = self._scene.column, self._values
         if column is None:
             raise ValueError("water, but the scene has no column")
@@ -211,6 +224,21 @@ class _Reader:
             worst=float(values["coupling/worst"]),
             eddies=eddies,
         )
+
+    def _row(self, row: ColumnRow) -> RowCouplingState:
+        values, about = self._values, "coupling/water"
+        shapes = row.state_shapes()
+        arrays = {name: self._floats(f"{about}/{name}", shape) for name, shape in shapes.items()}
+        if min(arrays["volume"].min(), arrays["content"].min(), arrays["wet"].min()) < 0.0:
+            raise ValueError("a negative amount of water")
+        steps, due, exchanges = (int(values[f"coupling/{name}"]) for name in ("steps", "due", "exchanges"))
+        if not 1 <= steps < _LATEST or not int(values["step"]) < due < _LATEST:
+            raise ValueError(f"{steps} steps between exchanges, the next at step {due}")
+        state = RowState(
+            **arrays, t=float(values[f"{about}/t"]), steps=int(values[f"{about}/steps"]),
+            courant=float(values[f"{about}/courant"]),
+        )  # fmt: skip
+        return RowCouplingState(state, steps, due, exchanges, float(values["coupling/worst"]))
 
     def _bodies(self, present: NDArray[np.bool_]) -> BodyState:
         if (bodies := self._scene.bodies) is None:

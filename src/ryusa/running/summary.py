@@ -8,6 +8,8 @@ from ryusa.running.energy_terms import energy_lines
 def summary_lines(summary: dict[str, Any]) -> list[str]:
     """Largest overlap, steps per contact, restitution, energy account, warnings."""
     recorded = summary.get("events") != "none"
+    if summary.get("water", {}).get("grains") == 0:
+        return _of_water(summary)
     contacts = f"{summary['contacts']} contacts" if recorded else "contacts not recorded,"
     lines = [
         f"{summary['steps']} steps, {summary['frames']} frames, {contacts} "
@@ -26,6 +28,12 @@ def summary_lines(summary: dict[str, Any]) -> list[str]:
     if "precision" in summary:
         lines.append(f"precision: {summary['precision']['text']}")
     return lines + [f"warning: {warning}" for warning in summary["warnings"]]
+
+
+def _of_water(summary: dict[str, Any]) -> list[str]:
+    """Lines of a run without a grain."""
+    done = f"{summary['steps']} steps, {summary['frames']} frames in {summary['wall']:.1f} s"
+    return [done, _water(summary["water"]), *(f"warning: {warning}" for warning in summary["warnings"])]
 
 
 def _contacts(summary: dict[str, Any]) -> list[str]:
@@ -50,6 +58,14 @@ def _traffic(found: dict[str, Any]) -> str:
 
 
 def _water(found: dict[str, Any]) -> str:
+    if "courant" in found:
+        return (
+            f"water: {found['steps']} steps of a row, Courant number at most {found['courant']:.2g}; "
+            f"per width {found['volume']:.4g} m2 in it, {found['entered']:.4g} m2 entered and "
+            f"{found['left']:.4g} m2 left; discharge {found['discharge_first']:.4g} m2/s upstream and "
+            f"{found['discharge_last']:.4g} m2/s downstream; momentum imbalance "
+            f"{found['momentum_residual']:.1e} of the largest term"
+        )
     return (
         f"water: {found['exchanges']} exchanges with grains, the last after {found['steps_between']} steps; "
         f"discharge {found['discharge']:.3g} m2/s; stress at the bottom of the column "

@@ -1,4 +1,4 @@
-"""The column of water of a run: its start, and the steps of an engine between exchanges with it.
+"""The column or row of columns of a run: its start, and the steps of an engine between exchanges with it.
 
 An engine of several processes has a column in each of them; that of the process that leads is the one here.
 """
@@ -9,14 +9,17 @@ from typing import Any
 import numpy as np
 
 from ryusa.engine.protocol import Engine, Flags, SharesColumn
-from ryusa.model import CouplingState, Scene, State
+from ryusa.model import CouplingState, RowCouplingState, Scene, State
 from ryusa.model.scene import Floats
 from ryusa.water.coupling import Coupling
 from ryusa.water.processes import SharingProcesses
+from ryusa.water.row_coupling import RowCoupling
+
+RunWater = Coupling | RowCoupling
 
 
-def started(scene: Scene, engine: Engine, state: State, step: int) -> Coupling | None:
-    """The column of water of a scene at its first step, or as a state holds it; None where there is none.
+def started(scene: Scene, engine: Engine, state: State, step: int) -> RunWater | None:
+    """The water of a scene at its first step, or as a state holds it; None where there is none.
 
     Parameters
     ----------
@@ -24,9 +27,15 @@ def started(scene: Scene, engine: Engine, state: State, step: int) -> Coupling |
     step : of the engine.
     """
     column = scene.column
+    if scene.row is not None:
+        found = state.coupling
+        if isinstance(found, RowCouplingState):
+            return RowCoupling.resume(scene, scene.row, found)
+        return RowCoupling.begin(scene, scene.row, step)
     if column is None:
         return None
     found = state.coupling if state.fluid is not None else None
+    assert not isinstance(found, RowCouplingState)
     if isinstance(engine, SharesColumn):
         return engine.couple(partial(_in_process, step, found), told=found is not None)
     if found is not None and state.fluid is not None:
@@ -50,7 +59,7 @@ def _in_process(
     return Coupling.begin(scene, column, column.interval, x, step=step, **of_process)
 
 
-def advanced(engine: Engine, water: Coupling | None, step: int, n_steps: int) -> tuple[int, Flags]:
+def advanced(engine: Engine, water: RunWater | None, step: int, n_steps: int) -> tuple[int, Flags]:
     """Step the engine, with an exchange between water and grains at each coupling interval.
 
     Returns
@@ -73,14 +82,19 @@ def advanced(engine: Engine, water: Coupling | None, step: int, n_steps: int) ->
     return step, Flags()
 
 
-def changed(engine: Engine, water: Coupling, scene: Scene) -> None:
+def changed(engine: Engine, water: RunWater, scene: Scene) -> None:
     """Let the water take over a scene that the timeline changed and the engine has loaded."""
-    if isinstance(engine, SharesColumn):
+    if isinstance(water, RowCoupling):
+        assert scene.row is not None
+        water.change(scene, scene.row)
+    elif isinstance(engine, SharesColumn):
         engine.change_column()
     elif scene.column is not None:
         water.change(scene, scene.column)
 
 
-def snapshot(engine: Engine, water: Coupling) -> CouplingState:
-    """State of the column, for an exact resume."""
+def snapshot(engine: Engine, water: RunWater) -> CouplingState | RowCouplingState:
+    """State of the water, for an exact resume."""
+    if isinstance(water, RowCoupling):
+        return water.snapshot()
     return water.snapshot(engine.kept() if isinstance(engine, SharesColumn) else None)

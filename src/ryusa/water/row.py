@@ -6,11 +6,21 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ryusa.errors import WaterError
-from ryusa.laws.porous import ergun_linear, ergun_quadratic
 from ryusa.model.arrays import Floats
-from ryusa.model.row import DEPTH_GIVEN, INFLOW, OPEN, SAME_DEPTH, WALL, ColumnRow, EndKind, RowEnd, RowState
+from ryusa.model.row import (
+    DEPTH_GIVEN,
+    INFLOW,
+    OPEN,
+    SAME_DEPTH,
+    WALL,
+    ColumnRow,
+    EndKind,
+    PorousSolid,
+    RowEnd,
+    RowState,
+)
 from ryusa.water._kernel import parameters_of
-from ryusa.water.momentum_balance import DONE, N_GIVEN, N_OUT, workspace
+from ryusa.water.momentum_balance import DONE, N_GIVEN, N_OUT, NOT_A_NUMBER, TOO_SHORT, workspace
 from ryusa.water.row_station import StationArrays
 from ryusa.water.row_step import (
     COURANT_MET,
@@ -26,28 +36,11 @@ from ryusa.water.row_step import (
 from ryusa.water.row_step import advance_row as _advance
 from ryusa.water.solve import FAULTS
 
-
-@dataclass(frozen=True)
-class PorousSolid:
-    """A fixed porous solid in the cells of the segments, such as a bed or a dam of grains at rest.
-
-    Its force on the water per volume of mixture is rho (linear u + quadratic |u| u), with u in the pores, and
-    it has the buoyancy of the form `stress`. Each array has the shape (n_segment, n).
-    """
-
-    phi: Floats  # concentration [-]
-    linear: Floats  # [1/s]
-    quadratic: Floats  # [1/m]
-
-    @staticmethod
-    def of_grains(phi: Floats, d: float, nu: float, *, inertia: bool = True) -> "PorousSolid":
-        """Grains at rest of concentration phi [-] and diameter d [m], by Ergun's law.
-
-        nu [m2/s] is the viscosity of the water; without `inertia` the law is Darcy's.
-        """
-        linear = np.array([[ergun_linear(one, d, nu) for one in row] for row in phi.tolist()])
-        quadratic = np.array([[ergun_quadratic(one, d) * inertia for one in row] for row in phi.tolist()])
-        return PorousSolid(phi, linear, quadratic)
+IN_A_ROW = {  # hints that differ from those of one column
+    TOO_SHORT: "Raise the top of the cells (water.row.height), or let less water in.",
+    NOT_A_NUMBER: "Look at the last frames: ryusa draw RUN long_section --at T. A step of the bottom belongs "
+    "in water.row.dams, not in water.row.bottom.",
+}
 
 
 @dataclass(frozen=True)
@@ -143,8 +136,10 @@ def advance_row(
     )
     if status != DONE:
         cause, hint = FAULTS[status]
-        where = scalars[FAULT_AT] * row.dx
-        raise WaterError(f"{cause}, at x = {where:.4g} m", step=state.steps, t=state.t, hint=hint)
+        where = row.x_low + (scalars[FAULT_AT] - row.inner.start) * row.dx
+        raise WaterError(
+            f"{cause}, at x = {where:.4g} m", step=state.steps, t=state.t, hint=IN_A_ROW.get(status, hint)
+        )
     for array in (*water, rows, faces, out):
         array.flags.writeable = False
     return replace(
@@ -154,20 +149,26 @@ def advance_row(
 
 
 def discharges(row: ColumnRow, state: RowState) -> Floats:
-    """Discharge at the stations, with the mean content of the segments beside [m2/s], shape (n_station,)."""
-    shape = _shape_of(row)
-    return (0.5 * (state.content[shape.left] + state.content[shape.right]) * state.u).sum(axis=1)
+    """Discharge at the stations [m2/s], shape (n_station,).
+
+    With the mean content of the segments beside; at an open end with that of the segment the water leaves.
+    """
+    left, right = row.stations_between
+    content = 0.5 * (state.content[left] + state.content[right])
+    if not row.periodic:
+        for j in (0, -1):
+            content[j] = np.where(state.u[j] > 0.0, state.content[left[j]], state.content[right[j]])
+    return (content * state.u).sum(axis=1)
 
 
 def _shape_of(row: ColumnRow) -> RowShape:
     """Geometry of a row as the compiled step takes it."""
     n = row.n_segment
     bottom = row.bottom_with_ends()
+    left, right = row.stations_between
     if row.periodic:
-        left, right = (np.arange(n) - 1) % n, np.arange(n)
         west, east = np.arange(n), (np.arange(n) + 1) % n
     else:
-        left, right = np.arange(n + 1), np.arange(n + 1) + 1
         west = np.concatenate([[0], np.arange(n), [n]])
         east = np.concatenate([[0], np.arange(n) + 1, [n]])
     kind = np.full(len(left), OPEN)

@@ -29,7 +29,7 @@ SPARE = 1.2  # height of the column over the depth
 def check_column(case: "Case") -> Iterator[CaseError]:
     """Find faults of the column of water."""
     water = case.water
-    if water is None or water.profile != "column":
+    if water is None or water.profile != "column" or water.row is not None:
         return
     keys = column_keys(case)
     yield from _place(case, water)

@@ -93,7 +93,7 @@ def regime(
 def column_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     """Rows about the column of a case; none where the water does not respond to the grains."""
     wet = case.water
-    if wet is None or wet.profile != "column" or wet.depth is None:
+    if wet is None or wet.profile != "column" or wet.depth is None or wet.row is not None:
         return []
     keys = column_keys(case)
     cell = keys.cell or CELL * derived.d

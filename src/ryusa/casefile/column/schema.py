@@ -28,6 +28,7 @@ ONLY_IN_A_COLUMN = (
     "lift_coefficient",
     "magnus",
     "column",
+    "row",
 )
 CELL = 0.1  # thickness of a cell when the case gives none, in mean diameters
 
@@ -43,8 +44,9 @@ class ColumnSection(Section):
     bed: Annotated[str, WordOf(families.BedKind)] = "moving"
     """Lower boundary of the water: grains whose drag brings it to rest, the rough bed of Eq. (9), or a smooth
     wall."""
-    surface: Annotated[str, WordOf(families.SurfaceRule)] = "depth"
-    """What is held constant while grains move: the height of the surface or the volume of water."""
+    surface: Annotated[str, WordOf(families.SurfaceRule)] | None = None
+    """What is held constant while grains move: the height of the surface or the volume of water. When not
+    given the height, and in a row the volume."""
     drive: Annotated[str, WordOf(families.Drive)] = "slope"
     """What drives the water: the slope alone, or beside it a pressure gradient: the one that gives the stress
     water.tau_star (or u_star) at the zero of the water, the one given, or the one that keeps the discharge
@@ -56,7 +58,7 @@ class ColumnSection(Section):
     start: Annotated[str, WordOf(families.Start)] | None = None
     """State of the water at the start: at rest, or in steady flow. Steady flow is computed over a moving bed
     with the grains settled to the concentration `packed`, over a fixed bed without free grains; it is the
-    default, except without drag."""
+    default, except without drag and in a row."""
     mixing_length: Annotated[str, WordOf(families.Mixing)] | None = None
     """Mixing length of the turbulence: kappa times the integral of (packed - phi)/packed over height (default
     over a moving bed), kappa z, kappa z sqrt(1 - z/depth) of Nezu (default over a fixed bed), kappa z with

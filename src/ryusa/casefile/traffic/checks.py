@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from ryusa.casefile.builders.schema import DropSection, EmptySection, SaltationSection
 from ryusa.casefile.builders.values import periodic, sizes
+from ryusa.casefile.row.schema import row_keys
 from ryusa.casefile.shape import extent
 from ryusa.casefile.traffic.schema import ExitSection, FeedSection
 from ryusa.casefile.traffic.values import (
@@ -29,7 +30,7 @@ Corners = tuple[Sequence[float], Sequence[float]]
 def check_traffic(case: "Case") -> Iterator[CaseError]:
     """Find feeds and exits that are incomplete, contradict others, or cannot do what they are asked."""
     if not case.feeds and not case.exits:
-        if isinstance(case.build, EmptySection):
+        if isinstance(case.build, EmptySection) and row_keys(case) is None:
             yield CaseError("build.kind", "empty", "gives no grain; give [[feeds]]")
         return
     if isinstance(case.build, EmptySection) and all(feed.rate is None for feed in case.feeds):

@@ -7,6 +7,7 @@ from pydantic import Field
 
 from ryusa.casefile.column.schema import ColumnSection
 from ryusa.casefile.quantities import Density, Length, Number, PositiveLength, Speed, Viscosity, WordOf
+from ryusa.casefile.row.schema import RowSection
 from ryusa.casefile.section import Section
 from ryusa.laws import families
 
@@ -87,3 +88,5 @@ class WaterSection(Section):
     """Column only. Lift due to the rotation of a grain relative to the water."""
     column: ColumnSection | None = None
     """The column of water of profile = "column"."""
+    row: RowSection | None = None
+    """Columns in a row along the stream instead of one, with profile = "column": a river."""

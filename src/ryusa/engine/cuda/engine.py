@@ -72,7 +72,8 @@ class CudaEngine:
         clumps = ("clumps are simulated by engine 'cpu' alone",) if scene.bodies else ()
         sticky = scene.contact.adhesion != Adhesion.NONE
         adhesion = ("adhesion is simulated by engine 'cpu' alone",) if sticky else ()
-        return (*refusals(scene), *walls, *mixed, *clumps, *adhesion)
+        row = ("a row of columns of water goes with engine 'cpu' alone",) if scene.row else ()
+        return (*refusals(scene), *row, *walls, *mixed, *clumps, *adhesion)
 
     def load(self, scene: Scene, state: State) -> None:
         """Take a scene and an initial state or a snapshot; enter a change of the scene in the account."""

@@ -24,7 +24,8 @@ _ALIKE = 1e-9  # largest relative difference of ratios that are the same for all
 
 def refusals_of_lammps(scene: Scene) -> tuple[str, ...]:
     """Reasons why LAMMPS cannot simulate a scene that the laws of ryusa can; () when it can."""
-    return tuple([*_contact(scene), *_rolling(scene), *_films(scene), *_kinds(scene), *_records(scene)])
+    row = ["a row of columns of water goes with engine 'cpu' alone"] if scene.row is not None else []
+    return tuple([*row, *_contact(scene), *_rolling(scene), *_films(scene), *_kinds(scene), *_records(scene)])
 
 
 def _instead(key: str, value: str) -> str:

@@ -27,9 +27,10 @@ def _along(case: "Case") -> bool:
 # What a measure needs of a case: word of the catalogue -> test, and how a case gets it.
 NEEDS: dict[str, tuple[Callable[["Case"], bool], str]] = {
     "column": (
-        lambda case: case.water is not None and case.water.profile == "column",
+        lambda case: case.water is not None and case.water.profile == "column" and case.water.row is None,
         "water.profile = 'column'",
     ),
+    "row": (lambda case: case.water is not None and case.water.row is not None, "[water.row]"),
     "forces": (lambda case: case.record.forces, "record.forces = true"),
     "walls": (lambda case: bool(case.walls), "[[walls]]"),
     "no walls": (lambda case: not case.walls, "a case without [[walls]]"),

@@ -1,0 +1,124 @@
+"""The row of columns of a case: its columns, its ends and its dams."""
+
+import math
+
+import numpy as np
+
+from ryusa.casefile.case import Case
+from ryusa.casefile.column.bed import packed
+from ryusa.casefile.column.schema import column_keys
+from ryusa.casefile.derive import Derived
+from ryusa.casefile.grading import reference_diameter
+from ryusa.casefile.row.schema import RowEndSection, row_keys
+from ryusa.casefile.row.values import RowPlan, crest_of, dam_span, discharge_of, row_plan
+from ryusa.errors import CaseError
+from ryusa.laws.families import BedKind, Drive, Mixing, SideWalls, Start, SurfaceRule
+from ryusa.model import Column, ColumnRow
+from ryusa.model.arrays import Floats
+from ryusa.model.row import EndKind, PorousSolid, RowDam, RowEnd
+
+_KINDS = {
+    "wall": EndKind.WALL,
+    "level": EndKind.LEVEL,
+    "free fall": EndKind.FREE_FALL,
+    "same depth": EndKind.UNIFORM,
+    "discharge": EndKind.DISCHARGE,
+}
+
+
+def row_of(case: Case, derived: Derived) -> ColumnRow | None:
+    """The row of columns of a case; None where it has none.
+
+    Raises
+    ------
+    CaseError : the row cannot be.
+    """
+    keys, wet = row_keys(case), case.water
+    if keys is None or wet is None:
+        return None
+    plan = row_plan(case)
+    solid, porous, dams = _dams(case, plan)
+    row = ColumnRow(
+        _column(case, derived, plan), plan.dx, plan.bottom.copy(), derived.g * math.cos(derived.slope),
+        _end(case, keys.upstream), _end(case, keys.downstream), solid, plan.x_low, porous,
+        plan.start.copy(), dams,
+    )  # fmt: skip
+    if faults := row.refuses():
+        raise CaseError("water.row", None, "; ".join(faults))
+    for one in (row.bottom, row.solid, row.start):
+        if one is not None:
+            one.flags.writeable = False
+    return row
+
+
+def _column(case: Case, derived: Derived, plan: RowPlan) -> Column:
+    """The column of every station, its heights over the bottom."""
+    wet, keys = case.water, column_keys(case)
+    assert wet is not None
+    deepest = max(float((plan.start - plan.bottom).max()), 0.5 * plan.cell)
+    return Column(
+        z_low=0.0,
+        dz=plan.cell,
+        n=plan.n_cell,
+        depth=min(deepest, plan.n_cell * plan.cell),
+        rho_w=wet.density,
+        nu=wet.viscosity,
+        bed=BedKind.of(keys.bed),
+        k_rough=derived.k_rough,
+        surface=SurfaceRule.VOLUME,
+        side=SideWalls.NONE if keys.side_walls is None else SideWalls.of(keys.side_friction),
+        width=math.nan if keys.side_walls is None else keys.side_walls,
+        g_x=derived.g * math.sin(derived.slope),
+        drive=Drive.of(keys.drive),
+        gradient=keys.pressure_gradient or 0.0,
+        mixing=Mixing.of(keys.mixing),
+        kappa=keys.kappa,
+        phi_max=packed(case),
+        k_f=keys.pore_eddies,
+        d=derived.d,
+        seed=case.seed,
+        interval=1,
+        start=Start.REST,
+    )
+
+
+def _end(case: Case, end: RowEndSection | None) -> RowEnd | None:
+    if end is None:
+        return None
+    kind = _KINDS[end.end]
+    if kind is not EndKind.DISCHARGE:
+        return RowEnd(kind, level=math.nan if end.level is None else end.level)
+    depth = math.nan if end.depth is None else end.depth
+    return RowEnd(kind, discharge=discharge_of(case), depth=depth, developed=end.profile == "developed")
+
+
+def _dams(case: Case, plan: RowPlan) -> tuple[np.ndarray | None, PorousSolid | None, tuple[RowDam, ...]]:
+    """Solid cells of the segments, the porous solid in them, and the dams by name."""
+    keys, wet = row_keys(case), case.water
+    assert keys is not None and wet is not None
+    solid = np.zeros(plan.n, np.int64)
+    porous: list[tuple[Floats, float]] = []
+    dams: list[RowDam] = []
+    for dam in keys.dams:
+        (first, end), crest = dam_span(plan, dam), crest_of(plan, dam)
+        over = (crest - plan.bottom[first:end]) / plan.cell
+        dams.append(RowDam(dam.name, first, end, crest, dam.concentration is not None))
+        if dam.concentration is None:
+            solid[first:end] = np.round(over).astype(np.int64)
+            continue
+        phi = np.zeros((plan.n, plan.n_cell))
+        share = np.clip(over[:, None] - np.arange(plan.n_cell), 0.0, 1.0)  # of each cell below the crest
+        phi[first:end] = dam.concentration * share
+        porous.append((phi, dam.diameter or reference_diameter(case)))
+    matrix = [PorousSolid.of_grains(phi, d, wet.viscosity) for phi, d in porous]
+    found = None
+    if matrix:
+        found = PorousSolid(
+            *(
+                np.sum([getattr(one, name) for one in matrix], axis=0)
+                for name in ("phi", "linear", "quadratic")
+            )
+        )
+        for array in vars(found).values():
+            array.flags.writeable = False
+    return (solid if solid.any() else None), found, tuple(dams)

@@ -1,0 +1,1 @@
+"""[water.row]: columns of water in a row along the stream."""

@@ -1,0 +1,346 @@
+"""Checks of a row of columns: keys that are missing or contradict others, and what a row cannot do yet."""
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ryusa.casefile.column.schema import ColumnSection, column_keys
+from ryusa.casefile.grading import reference_diameter
+from ryusa.casefile.motion import slope
+from ryusa.casefile.row.schema import RowDamSection, RowEndSection, RowSection, row_keys
+from ryusa.casefile.row.values import (
+    MOST_CELLS,
+    RowPlan,
+    bottom_points,
+    crest_of,
+    dam_span,
+    deepest,
+    discharge_of,
+    line_points,
+    row_plan,
+    water_alone,
+    width_of,
+)
+from ryusa.casefile.section import given
+from ryusa.casefile.water.schema import WaterSection
+from ryusa.errors import CaseError
+from ryusa.model.row import STEEPEST
+
+if TYPE_CHECKING:
+    from ryusa.casefile.case import Case
+
+MOST_SEGMENTS = 100_000
+_NEEDS = {"level": ("level",), "discharge": ("discharge",)}  # keys that a kind of end needs
+_TAKES = {"level": ("level",), "discharge": ("discharge", "depth", "profile")}
+_OTHER_END = "give [water.row.{}] with end = 'wall', 'level', 'free fall' or 'same depth'"
+
+
+def check_row(case: "Case") -> Iterator[CaseError]:
+    """Find faults of a row of columns."""
+    keys, water = row_keys(case), case.water
+    if keys is None or water is None:
+        return
+    if water.profile != "column":
+        return  # reported as a key without effect
+    found = [
+        *_grains(case), *_water(case, water), *_column(column_keys(case)), *_lines(case, keys, water),
+        *_ends(case, keys),
+    ]  # fmt: skip
+    yield from found
+    if not found:
+        yield from _shape(case, keys)
+
+
+def _grains(case: "Case") -> Iterator[CaseError]:
+    """Moving grains in a row do not go yet."""
+    if not water_alone(case):
+        yield CaseError(
+            "water.row",
+            None,
+            "takes the water alone so far: no moving grains in a row of columns. Give build.kind = 'empty' "
+            "and no [[feeds]], or leave [water.row] out for one column over a periodic bed",
+        )
+    if getattr(case.build, "plate", None) is not None:
+        yield CaseError("build.plate", case.build.plate, "fixed grains do not act on a row of columns yet")  # pyright: ignore[reportAttributeAccessIssue]
+    for k, _ in enumerate(case.walls):
+        yield CaseError(
+            f"walls.{k}",
+            None,
+            "does not act on a row of columns; what stands in the water is [[water.row.dams]]",
+        )
+        break
+    if case.stop.time is None:
+        yield CaseError("stop.time", None, "missing; a row of columns ends at a time")
+    if case.motion.gravity <= 0.0:
+        yield CaseError("motion.gravity", case.motion.gravity, "must be above 0: a row has a free surface")
+    for k, change in enumerate(case.timeline):
+        if change.slope is None and change.slope_angle is None:
+            yield CaseError(f"timeline.{k}", None, "a row without grains takes changes of slope alone")
+
+
+def _water(case: "Case", water: WaterSection) -> Iterator[CaseError]:
+    """Keys of [water] that mean something else in a row, or nothing."""
+    for key in ("tau_star", "u_star"):
+        if getattr(water, key) is not None:
+            yield CaseError(
+                f"water.{key}",
+                getattr(water, key),
+                "has no effect in a row: the stress follows from slope, bottom and discharge; leave it out",
+            )
+    if water.zero is not None:
+        yield CaseError(
+            "water.zero", water.zero, "has no effect in a row, whose depth is measured from its bottom"
+        )
+    if water.depth is None and water.row is not None and water.row.surface is None:
+        yield CaseError(
+            "water.depth",
+            None,
+            "missing; a row needs the depth at the start, or its surface (water.row.surface)",
+        )
+    if water.depth is not None and water.row is not None and water.row.surface is not None:
+        yield CaseError("water.depth", water.depth, "excludes water.row.surface; give only one of the two")
+    if water.buoyancy != "stress":
+        yield CaseError(
+            "water.buoyancy", water.buoyancy, "must be 'stress' in a row: with a sloping surface 'weight' "
+            "counts the pressure twice, and with 'pressure' still water would move",
+        )  # fmt: skip
+
+
+def _column(keys: ColumnSection) -> Iterator[CaseError]:
+    """Keys of [water.column] that a row does not take."""
+    if keys.bed == "moving":
+        yield CaseError(
+            "water.column.bed",
+            "moving" if given(keys, "bed") else None,
+            "must be 'rough' or 'smooth' in a row: a loose bed needs grains, which a row does not take yet",
+        )
+    if keys.surface == "depth":
+        yield CaseError("water.column.surface", "depth", "must be 'volume' in a row, or left out")
+    if keys.drive not in {"slope", "pressure gradient"}:
+        yield CaseError(
+            "water.column.drive",
+            keys.drive,
+            "has no meaning in a row, whose flow has no gradient of its own: take 'slope', and give the "
+            "discharge as water.row.upstream = { end = 'discharge', discharge = ... }",
+        )
+    if keys.discharge is not None:
+        yield CaseError(
+            "water.column.discharge", keys.discharge, "is given as water.row.upstream.discharge in a row"
+        )
+    if keys.drive == "pressure gradient" and keys.pressure_gradient is None:
+        yield CaseError("water.column.pressure_gradient", None, "missing; drive 'pressure gradient' needs it")
+    if keys.bottom is not None:
+        yield CaseError("water.column.bottom", keys.bottom, "is given as water.row.bottom in a row")
+    if keys.start == "steady":
+        yield CaseError(
+            "water.column.start", "steady", "must be 'rest' in a row: it finds its flow in the run itself"
+        )
+    if keys.fluctuations != "none":
+        yield CaseError(
+            "water.column.fluctuations", keys.fluctuations, "must be 'none' in a row, which has no grains yet"
+        )
+    if given(keys, "side_friction") and keys.side_walls is None:
+        yield CaseError("water.column.side_friction", keys.side_friction, "needs water.column.side_walls")
+    if given(keys, "interval"):
+        yield CaseError(
+            "water.column.interval", keys.interval, "has no effect without grains: the water moves each step"
+        )
+
+
+def _lines(case: "Case", keys: RowSection, water: WaterSection) -> Iterator[CaseError]:
+    """Points of bottom and surface in their order, and a division into segments."""
+    lines = [("bottom", keys.bottom)] + ([] if keys.surface is None else [("surface", keys.surface)])
+    for name, one in lines:
+        key = f"water.row.{name}"
+        try:
+            points = np.array(line_points(case, key, one))
+        except CaseError as error:
+            yield error
+            return
+        if len(points) < 2:
+            yield CaseError(key, None, "needs at least two points")
+            return
+        behind = np.diff(points[:, 0])
+        k = int(np.argmin(behind))
+        if behind[k] < 0.0 or (name == "bottom" and behind[k] == 0.0):
+            more = "; a step of the bottom is one of water.row.dams" if name == "bottom" else ""
+            yield CaseError(
+                key, None, f"point {k + 2} lies at x = {points[k + 1, 0]:g} m, not downstream of the one "
+                f"before at {points[k, 0]:g} m{more}",
+            )  # fmt: skip
+            return
+    if keys.surface is not None:
+        low, high = bottom_points(case)[0][0], bottom_points(case)[-1][0]
+        points = line_points(case, "water.row.surface", keys.surface)
+        if points[0][0] > low or points[-1][0] < high:
+            yield CaseError(
+                "water.row.surface", None, f"reaches from x = {points[0][0]:g} to {points[-1][0]:g} m; must "
+                f"reach over the bottom, from {low:g} to {high:g} m",
+            )  # fmt: skip
+    if (keys.segments is None) == (keys.segment is None):
+        what = (
+            "missing; give" if keys.segments is None else "excludes water.row.segment; give one of the two:"
+        )
+        yield CaseError(
+            "water.row.segments", keys.segments, f"{what} the number of segments, or their length (segment)"
+        )
+        return
+    length = bottom_points(case)[-1][0] - bottom_points(case)[0][0]
+    if keys.segment is not None and not length / MOST_SEGMENTS <= keys.segment <= length:
+        yield CaseError(
+            "water.row.segment", keys.segment, f"must be at most the length of the row, {length:g} m, and "
+            f"give at most {MOST_SEGMENTS:,} segments",
+        )  # fmt: skip
+
+
+def _ends(case: "Case", keys: RowSection) -> Iterator[CaseError]:
+    """Each end with what it needs, and both or none."""
+    ends = {"upstream": keys.upstream, "downstream": keys.downstream}
+    for name, end in ends.items():
+        other = next(one for one in ends if one != name)
+        if end is None and ends[other] is not None:
+            yield CaseError(
+                f"water.row.{name}", None, f"missing; a row has two ends, or none and is periodic: "
+                f"{_OTHER_END.format(name)}",
+            )  # fmt: skip
+        if end is not None:
+            yield from _end(case, name, end)
+    if keys.upstream is None and keys.downstream is None:
+        first, last = bottom_points(case)[0][1], bottom_points(case)[-1][1]
+        if first != last:
+            yield CaseError(
+                "water.row.bottom", None, f"ends at z = {last:g} m and begins at {first:g} m, but a row "
+                "without ends is periodic: give [water.row.upstream] and [water.row.downstream], or the "
+                "slope as motion.slope",
+            )  # fmt: skip
+
+
+def _end(case: "Case", name: str, end: RowEndSection) -> Iterator[CaseError]:
+    key = f"water.row.{name}"
+    if end.end == "discharge" and name == "downstream":
+        yield CaseError(
+            f"{key}.end", end.end, f"can only be given upstream; {_OTHER_END.format('downstream')}"
+        )
+        return
+    for one in _NEEDS.get(end.end, ()):
+        if getattr(end, one) is None:
+            yield CaseError(f"{key}.{one}", None, f"missing; end '{end.end}' needs it")
+    for one in ("level", "discharge", "depth", "profile"):
+        if one not in _TAKES.get(end.end, ()) and given(end, one):
+            shown = None if one == "discharge" else getattr(end, one)
+            yield CaseError(f"{key}.{one}", shown, f"has no effect with end '{end.end}'")
+    if end.discharge is not None:
+        value, unit = end.discharge
+        if not value > 0.0:
+            yield CaseError(f"{key}.discharge", f"{value:g} {unit}", "must be above 0, along +x")
+        if unit == "m3/s" and width_of(case) is None:
+            yield CaseError(
+                "water.row.width", None, f"missing; {key}.discharge is in m3/s: give the width of the "
+                "stream, or the discharge per width in m2/s",
+            )  # fmt: skip
+
+
+def _shape(case: "Case", keys: RowSection) -> Iterator[CaseError]:
+    """What only the divided row shows: slopes, cells, dams, depths."""
+    points = np.array(bottom_points(case))
+    angles = np.arctan2(np.diff(points[:, 1]), np.diff(points[:, 0]))
+    k = int(np.argmax(np.abs(angles)))
+    if abs(angles[k]) > STEEPEST:
+        yield CaseError(
+            "water.row.bottom", None, f"is inclined to the x axis by {abs(math.degrees(angles[k])):.1f} deg "
+            f"from x = {points[k, 0]:g} to {points[k + 1, 0]:g} m; must be at most "
+            f"{math.degrees(STEEPEST):g} deg: turn the axis with motion.slope, as between two reaches of a "
+            "flume, or make a step with [[water.row.dams]]",
+        )  # fmt: skip
+        return
+    plan, column = row_plan(case), column_keys(case)
+    rough = case.water.roughness or reference_diameter(case) if case.water is not None else math.nan
+    if plan.n * plan.n_cell > MOST_CELLS:
+        yield CaseError(
+            "water.column.cell", column.cell, f"{plan.n:,} segments of {plan.n_cell:,} cells are more than "
+            f"{MOST_CELLS:,}: take thicker cells, fewer segments or a lower water.row.height",
+        )  # fmt: skip
+    if column.bed == "rough" and plan.cell <= rough / 15.0:
+        yield CaseError(
+            "water.column.cell", column.cell, f"{plan.cell:.3g} m must be above 1/15 of the roughness, "
+            f"{rough / 15.0:.3g} m, because Eq. (9) is zero below 1/30",
+        )  # fmt: skip
+    yield from _dams(plan, keys)
+    yield from _depths(case, plan, keys)
+
+
+def _dams(plan: RowPlan, keys: RowSection) -> Iterator[CaseError]:
+    """Dams that are in the row, one segment thick at least, below the top of the cells."""
+    names = [one.name for one in keys.dams]
+    taken: dict[int, str] = {}
+    for k, dam in enumerate(keys.dams):
+        key = f"water.row.dams.{k}"
+        if dam.name in names[:k]:
+            yield CaseError(f"{key}.name", dam.name, "is used twice")
+        if (dam.crest is None) == (dam.height is None):
+            yield CaseError(
+                f"{key}.crest", dam.crest, "needs the height of its crest: exactly one of crest and height"
+            )
+            return
+        if dam.diameter is not None and dam.concentration is None:
+            yield CaseError(
+                f"{key}.diameter", dam.diameter, "has no effect without concentration: the dam is impermeable"
+            )
+        first, end = dam_span(plan, dam)
+        if first == end:
+            yield CaseError(
+                f"{key}.begin", dam.begin, f"from {dam.begin:g} to {dam.end:g} m lies no middle of a "
+                f"segment; a dam is at least one segment thick ({plan.dx:.4g} m), because a thin plate would "
+                "let through far more than it does",
+            )  # fmt: skip
+            return
+        yield from _dam(plan, dam, key, first, end)
+        for i in range(first, end):
+            if taken.setdefault(i, dam.name) != dam.name:
+                yield CaseError(
+                    f"{key}.begin", dam.begin, f"lies in dam '{taken[i]}'; dams stand side by side"
+                )
+                return
+
+
+def _dam(plan: RowPlan, dam: RowDamSection, key: str, first: int, end: int) -> Iterator[CaseError]:
+    over = crest_of(plan, dam) - plan.bottom[first:end]
+    at = f"{key}.crest" if dam.crest is not None else f"{key}.height"
+    shown = dam.crest if dam.crest is not None else dam.height
+    if over.min() < 0.5 * plan.cell:
+        yield CaseError(
+            at, shown, f"must rise at least half a cell, {0.5 * plan.cell:.3g} m, above the bottom"
+        )
+    elif over.max() >= (plan.n_cell - 1) * plan.cell:
+        yield CaseError(
+            at, shown, f"must stay below the top of the cells, {plan.n_cell * plan.cell:.4g} m over the "
+            "bottom; raise water.row.height",
+        )  # fmt: skip
+
+
+def _depths(case: "Case", plan: RowPlan, keys: RowSection) -> Iterator[CaseError]:
+    """Water at the start within the cells, and a row that is not dry for ever."""
+    high = plan.n_cell * plan.cell
+    depth = plan.start - plan.bottom
+    if keys.height is not None and depth.max() > high * (1.0 + 1e-12):
+        yield CaseError(
+            "water.row.height", keys.height, f"must be at least the depth at the start, {depth.max():.4g} m"
+        )
+    elif keys.height is not None and deepest(case, plan) > high:
+        yield CaseError(
+            "water.row.height", keys.height, f"must be at least {deepest(case, plan):.4g} m, the depth to be "
+            "expected (at the start, at normal flow, behind dams, below a level)",
+        )  # fmt: skip
+    wet = [one for one in (keys.upstream, keys.downstream) if one is not None and one.level is not None]
+    if depth.max() <= 0.0 and not wet and not discharge_of(case) > 0.0:
+        yield CaseError(
+            "water.row.surface", None, "lies below the bottom everywhere, and no water enters: the row would "
+            "stay dry",
+        )  # fmt: skip
+    largest = float(np.abs(np.arctan(np.diff(plan.bottom) / plan.dx)).max(initial=0.0))
+    if abs(slope(case)) + largest > math.radians(60.0):
+        yield CaseError(
+            "motion.slope", case.motion.slope, "is too steep for water in layers: at most 60 deg in all"
+        )

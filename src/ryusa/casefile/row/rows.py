@@ -1,0 +1,141 @@
+"""Rows of `ryusa check` about a row of columns: its grid, its flow, its dams and its time step."""
+
+import math
+from typing import TYPE_CHECKING
+
+from ryusa.casefile.motion import slope
+from ryusa.casefile.row.schema import RowSection, row_keys
+from ryusa.casefile.row.values import (
+    COURANT,
+    SPARE,
+    WEIR,
+    Reach,
+    RowPlan,
+    crest_of,
+    critical_depth,
+    dam_span,
+    discharge_of,
+    fastest,
+    reaches,
+    row_plan,
+    water_alone,
+    width_of,
+)
+from ryusa.casefile.rows import ExplainRow, Flag, count, number, word
+
+if TYPE_CHECKING:
+    from ryusa.casefile.case import Case
+    from ryusa.casefile.derive import Derived
+
+_NEAR = 0.15  # distance of a Froude number from 1 within which a flow is undular in nature
+
+
+def row_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
+    """Rows about the row of a case; none where it has none."""
+    keys = row_keys(case)
+    if keys is None:
+        return []
+    plan = row_plan(case)
+    return [
+        *_grid(case, keys, plan),
+        *_flow(case, keys),
+        *_dams(case, keys, plan),
+        *_step(case, derived, plan),
+    ]
+
+
+def _grid(case: "Case", keys: RowSection, plan: RowPlan) -> list[ExplainRow]:
+    length, high = plan.n * plan.dx, plan.n_cell * plan.cell
+    by = (
+        "water.row.height" if keys.height is not None else f"{SPARE:g} times the largest depth to be expected"
+    )
+    ends = "periodic" if keys.upstream is None else f"{keys.upstream.end} - {_end(keys)}"
+    return [
+        number("water", "length of the row", length, "m", f"x = {plan.x_low:g} to {plan.x_low + length:g} m"),
+        word("water", "ends", ends, "upstream - downstream"),
+        count("water", "segments", plan.n, f"of {100.0 * plan.dx:.4g} cm"),
+        number("water", "cell", plan.cell, "cm", f"{plan.n_cell} up to {100.0 * high:.4g} cm: {by}"),
+        number(
+            "water", "water at the start", float((plan.start - plan.bottom).clip(0.0).sum() * plan.dx), "m2",
+            "per width",
+        ),
+    ]  # fmt: skip
+
+
+def _end(keys: RowSection) -> str:
+    return "" if keys.downstream is None else keys.downstream.end
+
+
+def _flow(case: "Case", keys: RowSection) -> list[ExplainRow]:
+    """Discharge, critical depth, and normal flow on each reach."""
+    q = discharge_of(case)
+    if not q > 0.0:
+        return []
+    origin = "water.row.upstream.discharge"
+    if keys.upstream is not None and keys.upstream.discharge is not None:
+        value, unit = keys.upstream.discharge
+        origin += "" if unit == "m2/s" else f", {value:g} m3/s over a width of {width_of(case):g} m"
+    rows = [
+        number("water", "discharge", q, "m2/s", origin),
+        number("water", "critical depth", critical_depth(case), "cm", "(q^2/(g cos(slope)))^(1/3)"),
+    ]
+    for one in reaches(case):
+        rows += _reach(one)
+    return rows
+
+
+def _reach(one: Reach) -> list[ExplainRow]:
+    where = f"x = {one.begin:g} to {one.end:g} m"
+    if not one.normal > 0.0:
+        return [
+            word("water", f"normal depth, {where}", "none", f"slope {math.tan(one.slope):.4g}: does not fall")
+        ]
+    kind = "supercritical" if one.froude > 1.0 else "subcritical"
+    flag: Flag = ""
+    if abs(one.froude - 1.0) < _NEAR:
+        kind, flag = f"{kind}, near critical: real water has waves that a hydrostatic row lacks", "note"
+    law = f"slope {math.tan(one.slope):.4g}, mean of the log law; without side walls"
+    return [
+        number("water", f"normal depth, {where}", one.normal, "cm", law),
+        number("water", f"Froude number, {where}", one.froude, "-", f"of normal flow: {kind}", flag),
+    ]
+
+
+def _dams(case: "Case", keys: RowSection, plan: RowPlan) -> list[ExplainRow]:
+    rows: list[ExplainRow] = []
+    q = discharge_of(case)
+    for dam in keys.dams:
+        first, end = dam_span(plan, dam)
+        crest = crest_of(plan, dam)
+        high = crest - float(plan.bottom[first:end].min())
+        kind = "impermeable" if dam.concentration is None else f"porous, concentration {dam.concentration:g}"
+        rows.append(
+            number(
+                "water", f"dam '{dam.name}'", high, "cm", f"over the bottom; {kind}, {end - first} segments"
+            )
+        )
+        if dam.concentration is None and q > 0.0:
+            head = (q / (WEIR * math.sqrt(case.motion.gravity * math.cos(slope(case))))) ** (2.0 / 3.0)
+            origin = "critical flow without loss: q = (2/3)^1.5 sqrt(g) H^1.5"
+            rows.append(number("water", f"energy head over '{dam.name}'", head, "cm", origin))
+    return rows
+
+
+def _step(case: "Case", derived: "Derived", plan: RowPlan) -> list[ExplainRow]:
+    if not water_alone(case):
+        return []
+    speed = fastest(case, plan)
+    courant = speed * derived.dt / plan.dx
+    origin = (
+        "time.step"
+        if case.time.step is not None
+        else f"an even part of record.frames, Courant number {COURANT:g}"
+    )
+    more = "" if courant <= COURANT * (1.0 + 1e-9) else "; the row divides each step until it is 0.5"
+    return [
+        number("time", "dt", derived.dt, "s", origin),
+        number(
+            "time", "Courant number", courant, "-",
+            f"{speed:.3g} m/s, the fastest wave to be expected, times dt over a segment{more}",
+        ),
+    ]  # fmt: skip

@@ -1,0 +1,126 @@
+"""Keys of [water.row]."""
+
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag, WithJsonSchema
+
+from ryusa.casefile.files import relative
+from ryusa.casefile.quantities import Count, Length, Name, Number, PositiveLength
+from ryusa.casefile.section import Section
+from ryusa.units import UnitError, quantity
+
+if TYPE_CHECKING:
+    from ryusa.casefile.case import Case
+
+End = Literal["wall", "level", "free fall", "same depth", "discharge"]
+Discharge = tuple[float, Literal["m2/s", "m3/s"]]
+
+
+def read_discharge(value: Any) -> Any:
+    """Read a discharge per width, or one of the whole width.
+
+    >>> read_discharge("300 cm2/s"), read_discharge("6 L/s")
+    ((0.03, 'm2/s'), (0.006, 'm3/s'))
+    """
+    if isinstance(value, list | tuple):  # as case.json holds it
+        return tuple(value)
+    for unit in ("m2/s", "m3/s"):
+        try:
+            return quantity(value, unit), unit
+        except UnitError:
+            continue
+    raise ValueError(
+        "needs a discharge per width or of the whole width, such as '0.03 m2/s' or '0.006 m3/s'"
+    ) from None
+
+
+RowDischarge = Annotated[
+    Discharge,
+    BeforeValidator(read_discharge),
+    WithJsonSchema(
+        {
+            "type": "string", "format": "quantity", "title": "discharge",
+            "examples": ["0.03 m2/s", "6 L/s"],
+        }
+    ),
+]  # fmt: skip
+
+
+def _line_kind(value: Any) -> str:
+    return "<file>" if isinstance(value, str) else "<points>"
+
+
+Line = Annotated[
+    Annotated[str, Field(min_length=1, max_length=400), AfterValidator(relative), Tag("<file>")]
+    | Annotated[tuple[tuple[Length, Length], ...], Field(min_length=2, max_length=10_000), Tag("<points>")],
+    Discriminator(_line_kind),
+]
+
+
+class RowEndSection(Section):
+    """An end of the row."""
+
+    end: End
+    """What lies beyond: a wall; water at rest with the surface at `level`; a drop without water; the depth of
+    the last segment, for flow that is uniform or faster than waves; or an inlet that keeps `discharge`."""
+    level: Length | None = None
+    """Height of the surface beyond end = "level", over the x axis."""
+    discharge: RowDischarge | None = None
+    """Discharge of end = "discharge": per width, or of the whole width (`width`)."""
+    depth: PositiveLength | None = None
+    """Depth of the water that enters. When not given: that of the row, and where normal flow is faster than
+    waves the normal depth."""
+    profile: Literal["developed", "uniform"] = "developed"
+    """Velocity over height at the inlet: that of steady flow over the bottom, or the same at every height."""
+
+
+class RowDamSection(Section):
+    """A dam, a weir or a sill across the row, from the bottom up to a crest."""
+
+    name: Name
+    """Its name."""
+    begin: Length
+    """Where it begins along x; it takes the segments whose middles lie between begin and end."""
+    end: Length
+    """Where it ends."""
+    crest: Length | None = None
+    """Height of its crest over the x axis."""
+    height: PositiveLength | None = None
+    """Height over the bottom in its middle, instead of crest."""
+    concentration: Annotated[Number, Field(gt=0, lt=0.9)] | None = None
+    """Concentration of the grains of a dam that lets water through (Ergun's law); impermeable when not
+    given."""
+    diameter: PositiveLength | None = None
+    """Diameter of its grains; the mean diameter of the case when not given."""
+
+
+class RowSection(Section):
+    """Columns of water in a row along x, each as [water.column] says: water that varies along the stream."""
+
+    bottom: Line
+    """Rigid bottom: pairs of x and z from upstream to downstream, straight between them, such as
+    [["0 m", "0 cm"], ["4 m", "-8 cm"]], or a CSV file in the folder of the case with the header x [m],z [mm].
+    The row reaches from the first to the last point. motion.slope tilts both axes."""
+    segments: Annotated[Count, Field(ge=1, le=100_000)] | None = None
+    """Number of segments of equal length."""
+    segment: PositiveLength | None = None
+    """Length of a segment, instead of their number; the row is divided into the nearest whole number."""
+    height: PositiveLength | None = None
+    """Height of the cells over the bottom; water that stands higher stops the run. When not given 1.5 times
+    the largest depth that the case lets expect."""
+    surface: Line | None = None
+    """Surface of the water at the start, as pairs of x and z or a CSV file; below the bottom it is dry.
+    Instead of water.depth, the depth over the bottom."""
+    width: PositiveLength | None = None
+    """Width of the stream, for a discharge in m3/s; `column.side_walls` when not given."""
+    upstream: RowEndSection | None = None
+    """Upper end, at the first point of the bottom. Without both ends the row is periodic."""
+    downstream: RowEndSection | None = None
+    """Lower end, at the last point."""
+    dams: tuple[RowDamSection, ...] = ()
+    """Dams, weirs and sills: [[water.row.dams]]."""
+
+
+def row_keys(case: "Case") -> RowSection | None:
+    """Keys of [water.row]; None where the case has no row."""
+    return None if case.water is None else case.water.row

@@ -1,0 +1,249 @@
+"""What a row of columns will be: its segments and cells, its dams, and estimates of its flow."""
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ryusa.casefile.column.schema import column_keys
+from ryusa.casefile.files import folder_of, inside
+from ryusa.casefile.grading import reference_diameter
+from ryusa.casefile.motion import slope
+from ryusa.casefile.row.schema import RowDamSection, RowSection, row_keys
+from ryusa.errors import CaseError, ParseError
+from ryusa.formats.line import read_line
+from ryusa.laws import turbulence, water
+from ryusa.model.arrays import Floats
+
+if TYPE_CHECKING:
+    from ryusa.casefile.case import Case
+
+CELL = 0.5  # thickness of a cell when the case gives none, in mean diameters
+SPARE = 1.5  # height of the cells over the largest depth to be expected, when the case gives none
+COURANT = 0.5  # largest Courant number of a step
+WEIR = (2.0 / 3.0) ** 1.5  # q/(sqrt(g) H**1.5) of critical flow without loss
+MOST_CELLS = 4_000_000
+
+Points = tuple[tuple[float, float], ...]
+
+
+@dataclass(frozen=True)
+class RowPlan:
+    """Segments and cells of a row."""
+
+    x_low: float  # [m]
+    dx: float  # length of a segment [m]
+    n: int  # segments
+    cell: float  # thickness of a cell [m]
+    n_cell: int  # cells of a column
+    x: Floats  # middles of the segments [m], shape (n,)
+    bottom: Floats  # height of the bottom there [m], shape (n,)
+    start: Floats  # height of the surface at the start [m], shape (n,)
+
+
+@dataclass(frozen=True)
+class Reach:
+    """A straight piece of the bottom, and the uniform flow of the discharge on it."""
+
+    begin: float  # [m]
+    end: float
+    slope: float  # total, of frame and bottom, positive down towards +x [rad]
+    normal: float  # normal depth [m]; nan where nothing drives the water, or without a discharge
+    froude: float  # of normal flow [-]
+
+
+def line_points(case: "Case", key: str, given: Points | str) -> Points:
+    """Points of a line as given, or as its file holds them.
+
+    Raises
+    ------
+    CaseError : its file cannot be read.
+    """
+    if not isinstance(given, str):
+        return given
+    path = inside(case, key, given)
+    if not path.is_file():
+        raise CaseError(key, given, f"no such file in the folder of the case, {folder_of(case)}")
+    try:
+        stamp = path.stat()
+        return _read(path, given, stamp.st_mtime_ns, stamp.st_size)
+    except OSError as error:
+        raise CaseError(key, given, f"cannot be read: {error.strerror or error}") from None
+    except ParseError as error:
+        raise CaseError(key, None, str(error)) from error
+
+
+@lru_cache(maxsize=4)
+def _read(path: Path, name: str, _changed: int, _size: int) -> Points:
+    return read_line(path, name)
+
+
+def line_files(case: "Case") -> list[str]:
+    """Names of the CSV files of the lines of a row."""
+    keys = row_keys(case)
+    return [] if keys is None else [one for one in (keys.bottom, keys.surface) if isinstance(one, str)]
+
+
+def bottom_points(case: "Case") -> Points:
+    """Points of the bottom [m]."""
+    return line_points(case, "water.row.bottom", _row(case).bottom)
+
+
+def segments_of(case: "Case") -> tuple[float, float, int]:
+    """Where the row begins [m], the length of a segment [m], and how many there are."""
+    keys, points = _row(case), bottom_points(case)
+    length = points[-1][0] - points[0][0]
+    count = keys.segments or max(round(length / (keys.segment or length)), 1)
+    return points[0][0], length / count, count
+
+
+def discharge_of(case: "Case") -> float:
+    """Discharge per width that enters upstream [m2/s]; nan where none is given."""
+    end = _row(case).upstream
+    if end is None or end.discharge is None:
+        return math.nan
+    value, unit = end.discharge
+    if unit == "m2/s":
+        return value
+    width = width_of(case)
+    return math.nan if width is None else value / width
+
+
+def width_of(case: "Case") -> float | None:
+    """Width of the stream [m]; None if not given."""
+    return _row(case).width or column_keys(case).side_walls
+
+
+def cell_of(case: "Case") -> float:
+    """Thickness of a cell [m]."""
+    return column_keys(case).cell or CELL * reference_diameter(case)
+
+
+def water_alone(case: "Case") -> bool:
+    """Whether a case is a row without a moving grain, whose step resolves waves instead of contacts."""
+    return row_keys(case) is not None and case.build.kind == "empty" and not case.feeds
+
+
+@lru_cache(maxsize=8)
+def _plan(
+    points: Points, surface: Points | None, depth: float, about: tuple[float, float, int], cell: float,
+    height: float,
+) -> RowPlan:  # fmt: skip
+    x_low, dx, n = about
+    x: Floats = x_low + (np.arange(n, dtype=np.float64) + 0.5) * dx
+    bottom = np.interp(x, *np.array(points).T)
+    start = bottom + depth if surface is None else np.interp(x, *np.array(surface).T)
+    n_cell = max(math.ceil(height / cell - 1e-9), 2)
+    return RowPlan(x_low, dx, n, cell, n_cell, x, bottom, start)
+
+
+def row_plan(case: "Case") -> RowPlan:
+    """Segments, cells, bottom and first surface of the row of a case."""
+    keys, wet = _row(case), case.water
+    assert wet is not None
+    surface = None if keys.surface is None else line_points(case, "water.row.surface", keys.surface)
+    about, cell = segments_of(case), cell_of(case)
+    first = _plan(bottom_points(case), surface, wet.depth or 0.0, about, cell, cell)
+    height = keys.height or SPARE * max(deepest(case, first), 4.0 * cell)
+    return _plan(bottom_points(case), surface, wet.depth or 0.0, about, cell, height)
+
+
+def reaches(case: "Case") -> list[Reach]:
+    """The straight pieces of the bottom, with normal depth and Froude number of the discharge."""
+    q, tilt, g = discharge_of(case), slope(case), case.motion.gravity
+    found: list[Reach] = []
+    for (a, low), (b, high) in pairwise(bottom_points(case)):
+        angle = tilt - math.atan2(high - low, b - a)
+        normal = normal_depth(case, q, angle)
+        froude = q / math.sqrt(g * math.cos(angle) * normal**3) if normal > 0.0 else math.nan
+        found.append(Reach(a, b, angle, normal, froude))
+    return found
+
+
+def critical_depth(case: "Case") -> float:
+    """Critical depth of the discharge [m]; nan without one."""
+    return (discharge_of(case) ** 2 / (case.motion.gravity * math.cos(slope(case)))) ** (1.0 / 3.0)
+
+
+def normal_depth(case: "Case", q: float, angle: float) -> float:
+    """Depth of uniform flow of a discharge [m2/s] on a slope [rad], mean of Eq. (9) [m]; nan without."""
+    wet, keys = case.water, column_keys(case)
+    along = case.motion.gravity * math.sin(angle)
+    if wet is None or not q > 0.0 or not along > 0.0:
+        return math.nan
+    rough = wet.roughness or reference_diameter(case)
+
+    def passes(depth: float) -> float:
+        shear = math.sqrt(along * depth)
+        if keys.bed == "smooth":
+            return depth * water.log_law_smooth(depth / math.e, shear, wet.viscosity)
+        return depth * turbulence.speed_mean_rough(depth, shear, rough)
+
+    low, high = 0.0, 1.0e3
+    for _ in range(80):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if passes(middle) < q else (low, middle)
+    return 0.5 * (low + high)
+
+
+def deepest(case: "Case", plan: RowPlan) -> float:
+    """Largest depth to be expected [m]: at the start, at normal flow, behind dams, below a level."""
+    keys, critical = _row(case), critical_depth(case)
+    found = [float((plan.start - plan.bottom).max()), *(one.normal for one in reaches(case)), critical]
+    over = 1.5 * critical if critical > 0.0 else 0.0
+    tilt = math.tan(slope(case))
+    for dam in keys.dams:
+        if dam.concentration is None:
+            crest = crest_of(plan, dam)
+            before = plan.x < dam.end
+            found.append(
+                float((crest + over - tilt * (dam.begin - plan.x) - plan.bottom)[before].max(initial=0.0))
+            )
+    for end, at in ((keys.upstream, plan.x[0]), (keys.downstream, plan.x[-1])):
+        if end is not None and end.level is not None:
+            found.append(float((end.level - tilt * (at - plan.x) - plan.bottom).max()))
+        if end is not None and end.depth is not None:
+            found.append(end.depth)
+    return max((one for one in found if one > 0.0), default=0.0)
+
+
+def crest_of(plan: RowPlan, dam: RowDamSection) -> float:
+    """Height of the crest of a dam over the x axis [m]."""
+    if dam.crest is not None:
+        return dam.crest
+    middle = 0.5 * (dam.begin + dam.end)
+    return float(np.interp(middle, plan.x, plan.bottom)) + (dam.height or 0.0)
+
+
+def dam_span(plan: RowPlan, dam: RowDamSection) -> tuple[int, int]:
+    """First segment of a dam, and the one after its last."""
+    inside_it = np.flatnonzero((plan.x >= dam.begin) & (plan.x <= dam.end))
+    return (int(inside_it[0]), int(inside_it[-1]) + 1) if len(inside_it) else (0, 0)
+
+
+def fastest(case: "Case", plan: RowPlan) -> float:
+    """Speed of water and long waves that the case lets expect [m/s], for the time step."""
+    q, g = discharge_of(case), case.motion.gravity
+    flows = [one.normal for one in reaches(case) if one.normal > 0.0]
+    flows += [critical_depth(case)] if q > 0.0 else []
+    wave = math.sqrt(g * deepest(case, plan))
+    # 2 sqrt(g h): the front of a dam break over a dry bed (Ritter 1892)
+    return max([2.0 * wave, *(q / one + math.sqrt(g * one) for one in flows)])
+
+
+def water_step(case: "Case") -> float:
+    """Time step of a row without grains [s]: an even part of record.frames within the Courant number."""
+    plan = row_plan(case)
+    longest = COURANT * plan.dx / fastest(case, plan) if fastest(case, plan) > 0.0 else math.inf
+    frames = case.record.frames
+    return frames / max(math.ceil(frames / longest - 1e-9), 1)
+
+
+def _row(case: "Case") -> RowSection:
+    keys = row_keys(case)
+    assert keys is not None
+    return keys

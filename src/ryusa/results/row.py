@@ -1,0 +1,83 @@
+"""The water of a row of columns of a run at every frame."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ryusa.errors import ResultsError
+from ryusa.model import ColumnRow
+from ryusa.results import schema
+from ryusa.results.hdf5 import opened, plain_dataset, read_dataset
+from ryusa.results.lazy import Part
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class RowFrames:
+    """Water of a row at every frame: of segments, and of stations between them, from upstream on.
+
+    Attributes
+    ----------
+    row : the row at the start of the run; `row.x` and `row.x_station` are where they are [m].
+    t : times of the frames [s], shape (n_frame,).
+    surface : height of the surface [m], shape (n_frame, n_segment); the bottom where it is dry.
+    volume : water per area of a segment [m], shape (n_frame, n_segment).
+    content : the part in each cell [m], shape (n_frame, n_segment, n).
+    phi : concentration of grains, fixed ones included [-], shape (n_frame, n_segment, n).
+    discharge : water that passes a station per time and width [m2/s], shape (n_frame, n_station).
+    passed : water that has passed since the start, per width [m2], shape (n_frame, n_station).
+    tau : shear stress of the water at the bottom [Pa], shape (n_frame, n_station).
+    u, w : velocity along x and upwards [m/s], shape (n_frame, n_station, n).
+    """
+
+    row: ColumnRow
+    t: Floats
+    surface: Floats
+    volume: Floats
+    content: Floats
+    phi: Floats
+    discharge: Floats
+    passed: Floats
+    tau: Floats
+    u: Floats
+    w: Floats
+
+    @property
+    def floor(self) -> Floats:
+        """Height of the bottom, or of the top of solid cells on it [m], shape (n_segment,)."""
+        row = self.row
+        return row.bottom if row.solid is None else row.bottom + row.solid * row.column.dz
+
+    @property
+    def depth(self) -> Floats:
+        """Depth of the water over the floor [m], shape (n_frame, n_segment)."""
+        return self.surface - self.floor
+
+
+def read_row(parts: list[Part], t: Floats, row: ColumnRow) -> RowFrames:
+    """Read the water of all frames.
+
+    Raises
+    ------
+    ResultsError : a part lacks it, or has it in another shape.
+    """
+    names = row.frame_shapes()
+    rows: dict[str, list[Floats]] = {name: [] for name in names}
+    for part in parts:
+        if not part.n_frame:
+            continue
+        with opened(part.path) as file:
+            for name, tail in names.items():
+                key, shape = f"{schema.ROW}/{name}", (part.n_frame, *tail)
+                got = plain_dataset(file, key, part.path)
+                if got.shape != shape or got.dtype != np.float64:
+                    raise ResultsError(
+                        f"{part.path}: '{key}' is {got.shape} of {got.dtype}, expected {shape} of float64"
+                    )
+                rows[name].append(read_dataset(file, key, part.path))
+    found = {name: np.concatenate(one) if one else np.zeros((0, *names[name])) for name, one in rows.items()}
+    for array in found.values():
+        array.flags.writeable = False
+    return RowFrames(row, t, **found)

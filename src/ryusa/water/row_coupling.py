@@ -1,0 +1,207 @@
+"""The row of columns of a run, and what its grains are told of it: so far the water alone (design/0027)."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ryusa.laws.families import Drive
+from ryusa.model import ColumnRow, RowCouplingState, RowState, Scene
+from ryusa.model.fluid import N_SAMPLED
+from ryusa.model.row import EndKind
+from ryusa.model.scene import Floats
+from ryusa.water.momentum_balance import B_ADVECTED, B_CHANGE, B_GRAVITY
+from ryusa.water.row import advance_row, discharges, row_at_rest
+from ryusa.water.steady import steady
+
+_DRY = 1.0e-12  # of the volume that all cells can hold; less is a dry row
+
+
+@dataclass
+class RowCoupling:
+    """The row of columns of a run.
+
+    Attributes
+    ----------
+    scene : its water has the profile COLUMN, and its row is this one.
+    row : with the inlet that `with_inlet` found.
+    steps : steps of the engine in the present interval.
+    sampled : water at the grains as given last, columns of `model.fluid`.
+    due : step of the engine at which the next exchange is due.
+    exchanges : number of exchanges so far.
+    worst : largest residual of the momentum of a station so far, over the largest term in the row [-].
+    state : present state of the water.
+    """
+
+    scene: Scene
+    row: ColumnRow
+    steps: int
+    sampled: Floats
+    due: int
+    exchanges: int
+    worst: float
+    state: RowState
+
+    @staticmethod
+    def begin(scene: Scene, row: ColumnRow, step: int = 0) -> "RowCoupling":
+        """Fill the row with its first water, at rest.
+
+        Parameters
+        ----------
+        step : of the engine.
+
+        Raises
+        ------
+        ValueError : the row is not valid, or has no surface at the start.
+        """
+        if scene.n_grain:
+            raise ValueError("a row of columns has no moving grains yet")
+        if row.start is None:
+            raise ValueError("the row needs its surface at the start")
+        start, row = row.start, with_inlet(row)
+        state = row_at_rest(row, start, row.porous)
+        return RowCoupling(scene, row, 1, np.zeros((0, N_SAMPLED)), step + 1, 0, 0.0, state)
+
+    @staticmethod
+    def resume(scene: Scene, row: ColumnRow, found: RowCouplingState) -> "RowCoupling":
+        """Go on from a snapshot."""
+        about = found.steps, np.zeros((0, N_SAMPLED)), found.due, found.exchanges, found.worst, found.water
+        return RowCoupling(scene, with_inlet(row), *about)
+
+    def snapshot(self) -> RowCouplingState:
+        """All that `resume` needs."""
+        return RowCouplingState(self.state, self.steps, self.due, self.exchanges, self.worst)
+
+    def change(self, scene: Scene, row: ColumnRow) -> None:
+        """Take over a scene that the timeline changed: its slope."""
+        self.scene, self.row = scene, with_inlet(row)
+
+    def exchange(self, _x: Floats, _v: Floats, _impulse: Floats) -> Floats:
+        """Move the water on, and give what the grains are told; parameters as of `Coupling`.
+
+        Raises
+        ------
+        WaterError : the water cannot be moved on; names the place.
+        """
+        time = self.steps * self.scene.dt
+        self.state = advance_row(self.row, self.state, time, solid=self.row.porous)
+        self.exchanges += 1
+        self.worst = max(self.worst, _residual(self.state.budgets))
+        self.due += self.steps
+        return self.sampled
+
+    @property
+    def phi(self) -> Floats:
+        """Concentration of grains, fixed ones included [-], shape (n_segment, n)."""
+        row = self.row
+        return np.zeros((row.n_segment, row.column.n)) if row.porous is None else row.porous.phi
+
+    @property
+    def volume(self) -> float:
+        """Water in the row per width [m2]."""
+        return float(self.state.volume[self.row.inner].sum() * self.row.dx)
+
+    @property
+    def dry(self) -> bool:
+        """Whether there is no water."""
+        room = self.row.n_segment * self.row.column.n * self.row.column.dz * self.row.dx
+        return self.volume <= _DRY * room
+
+    def numbers(self) -> dict[str, float | int]:
+        """State of the water for the summary of a run; SI."""
+        row, state = self.row, self.state
+        depth = _depths(row, state)
+        through = discharges(row, state)
+        passed = (0.0, 0.0) if row.periodic else (float(state.passed[0]), float(state.passed[-1]))
+        return {
+            "grains": self.scene.n_grain,
+            "exchanges": self.exchanges,
+            "steps": state.steps,
+            "momentum_residual": self.worst,
+            "courant": state.courant,
+            "volume": self.volume,
+            "entered": passed[0],
+            "left": passed[1],
+            "deepest": float(depth.max()),
+            "discharge_first": float(through[0]),
+            "discharge_last": float(through[-1]),
+            "speed_max": float(np.abs(state.u).max()),
+        }
+
+    @property
+    def text(self) -> str:
+        """State of the water in a line, for the progress of a run."""
+        found = self.numbers()
+        return (
+            f"in {found['discharge_first']:.4g} m2/s  out {found['discharge_last']:.4g} m2/s  "
+            f"deepest {found['deepest']:.3g} m  Courant {found['courant']:.2g}"
+        )
+
+    def warnings(self) -> list[str]:
+        """Warnings about the water, one sentence each."""
+        return ["the row is dry: no water is left in it"] if self.dry else []
+
+
+def with_inlet(row: ColumnRow) -> ColumnRow:
+    """The row with profile and depth of a developed inlet: those of steady flow over the bottom there.
+
+    Notes
+    -----
+    Where the bottom falls and normal flow is faster than waves, the water enters at normal depth; else the
+    row finds the depth, and the profile is that of steady flow as deep as normal flow, or as the row at its
+    start.
+    """
+    end = row.upstream
+    if end is None or end.kind is not EndKind.DISCHARGE or not end.developed or end.discharge == 0.0:
+        return row
+    b = row.bottom_with_ends()
+    tilt = (b[1] - b[0]) / row.dx  # the bottom falls where it is negative
+    along = (row.column.g_x - row.g_z * tilt) / np.hypot(1.0, tilt)
+    normal = _normal_depth(row, float(along), end.discharge)
+    depth = end.depth
+    if np.isnan(depth) and end.discharge > normal * np.sqrt(row.g_z * normal):
+        depth = normal
+    assert row.start is not None
+    first = float(row.start[0] - row.bottom[0])
+    there = next((h for h in (depth, normal, first) if row.column.dz < h < _room(row)), 0.5 * _room(row))
+    flow, _ = steady(
+        replace(row.column, g_x=0.0, depth=there, drive=Drive.DISCHARGE, discharge=end.discharge)
+    )
+    profile = np.array(flow.u)
+    return replace(row, upstream=replace(end, depth=float(depth), profile=profile, developed=False))
+
+
+def _normal_depth(row: ColumnRow, along: float, q: float) -> float:
+    """Depth of uniform flow by the column itself [m]; nan where there is none in the cells."""
+    if not along > 0.0:
+        return float("nan")
+    column, low, high = replace(row.column, g_x=along), 1.01 * row.column.dz, _room(row)
+
+    def passes(depth: float) -> float:
+        flow, _ = steady(replace(column, depth=depth))
+        return float(flow.content @ flow.u)
+
+    if not passes(low) < q < passes(high):
+        return float("nan")
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if passes(middle) < q else (low, middle)
+    return 0.5 * (low + high)
+
+
+def _room(row: ColumnRow) -> float:
+    """Largest depth that the cells hold [m]."""
+    return row.column.n * row.column.dz
+
+
+def _depths(row: ColumnRow, state: RowState) -> Floats:
+    """Depth over the bottom or the top of solid cells [m], shape (n_segment,)."""
+    depth = state.surface[row.inner] - row.column.z_low
+    return depth if row.solid is None else depth - row.solid * row.column.dz
+
+
+def _residual(budgets: Floats) -> float:
+    """Largest residual of a station over the largest term in the row [-]; budgets (n_station, N_OUT)."""
+    terms = budgets[:, B_GRAVITY : B_ADVECTED + 1].copy()
+    terms[:, B_CHANGE - B_GRAVITY] *= -1.0
+    largest = float(np.abs(terms).max(initial=0.0))
+    return float(np.abs(terms.sum(axis=1)).max()) / largest if largest > 0.0 else 0.0

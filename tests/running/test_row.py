@@ -1,0 +1,129 @@
+"""A row of columns from a case file: it runs, is recorded and read back, and resumes with the same bits."""
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import ryusa
+from ryusa.casefile.read import read_text
+from ryusa.errors import CaseError, WaterError
+from ryusa.results import Results, schema
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "faults"))
+from campaign import differences
+
+WEIR = """
+[grains]
+diameter = "4 mm"
+density = "2650 kg/m3"
+[contact]
+stiffness = "700 N/cm"
+restitution = 0.5
+friction_angle = "30 deg"
+[motion]
+rotation = "free"
+plane = false
+slope = "1/100"
+[water]
+profile = "column"
+depth = "5 cm"
+[water.column]
+bed = "rough"
+cell = "5 mm"
+[water.row]
+bottom = [["0 m", "0 cm"], ["2 m", "0 cm"]]
+segments = 20
+upstream = { end = "discharge", discharge = "0.03 m2/s" }
+downstream = { end = "free fall" }
+[[water.row.dams]]
+name = "weir"
+begin = "1.5 m"
+end = "1.8 m"
+height = "4 cm"
+[build]
+kind = "empty"
+[stop]
+time = "3 s"
+[record]
+frames = "0.1 s"
+"""
+
+
+def run(folder: Path, text: str = WEIR, overrides: dict[str, str] | None = None, **how: Any) -> Results:
+    return ryusa.run(read_text(text, overrides or {}), folder, progress=False, **how)
+
+
+@pytest.fixture(scope="module")
+def weir(tmp_path_factory: pytest.TempPathFactory) -> Results:
+    return run(tmp_path_factory.mktemp("weir") / "run")
+
+
+def test_what_enters_and_does_not_leave_is_in_the_row(weir: Results) -> None:
+    found = weir.row
+    assert found is not None
+    held = found.volume.sum(axis=1) * found.row.dx
+    assert held[0] == pytest.approx(0.05 * 1.4 + 0.01 * 0.3 + 0.05 * 0.3, rel=1e-12)
+    gained = held - held[0]
+    assert np.abs(gained - (found.passed[:, 0] - found.passed[:, -1])).max() < 1e-14
+    assert found.passed[-1, 0] == pytest.approx(0.03 * 3.0, rel=1e-12)
+    assert np.allclose(found.content.sum(axis=2), found.volume, rtol=1e-14)
+
+
+def test_frames_hold_depths_speeds_and_discharges_that_agree(weir: Results) -> None:
+    found = weir.row
+    assert found is not None
+    assert np.allclose(weir.frames.t, np.arange(31) * 0.1)
+    assert found.u.shape == (31, 21, found.row.column.n) and found.w.shape == found.u.shape
+    last = found.content[-1]
+    through = (0.5 * (last[:-1] + last[1:]) * found.u[-1, 1:-1]).sum(axis=1)
+    assert np.allclose(through, found.discharge[-1, 1:-1])
+    assert np.allclose((last[-1] * found.u[-1, -1]).sum(), found.discharge[-1, -1])
+    assert found.discharge[1:, 0] == pytest.approx(0.03, rel=1e-9)
+    assert np.allclose(found.depth[-1], found.volume[-1])  # clear water
+    assert (found.tau[1:, 2] > 0.0).all()
+    assert weir.water is None
+    water = weir.summary["water"]
+    assert water["momentum_residual"] < 1e-10
+    assert 0.1 < water["courant"] <= 0.5
+    assert water["entered"] - water["left"] == pytest.approx(
+        float((found.volume[-1] - found.volume[0]).sum() * found.row.dx), abs=1e-13
+    )
+
+
+def test_a_run_that_was_stopped_resumes_with_the_same_bits(
+    weir: Results, tmp_path: Path, stop_at: Any
+) -> None:
+    for step in (1, 33, 150):
+        stop_at(step)
+        assert run(tmp_path / "run", resume=True).status == schema.STOPPED
+    run(tmp_path / "run", resume=True)
+    assert differences(weir.folder, tmp_path / "run") == []
+
+
+def test_water_behind_a_dam_in_a_tilted_frame_stays_still(tmp_path: Path) -> None:
+    """A pond with a level surface over a bottom with a kink, between a wall and a dam that is dry behind."""
+    text = WEIR.replace('depth = "5 cm"', "").replace(
+        '[["0 m", "0 cm"], ["2 m", "0 cm"]]',
+        '[["0 m", "0 cm"], ["1 m", "1 cm"], ["2 m", "0 cm"]]\n'
+        'surface = [["0 m", "2 cm"], ["1.5 m", "3.5 cm"], ["1.5 m", "-1 cm"], ["2 m", "-1 cm"]]',
+    )
+    text = text.replace('{ end = "discharge", discharge = "0.03 m2/s" }', '{ end = "wall" }')
+    found = run(tmp_path / "run", text, {"stop.time": "1 s"}).row
+    assert found is not None
+    assert np.abs(found.u).max() < 1e-12 and found.passed[-1, -1] == 0.0
+
+
+def test_a_row_filled_over_its_top_stops_with_the_place(tmp_path: Path) -> None:
+    text = WEIR.replace('{ end = "free fall" }', '{ end = "wall" }')
+    with pytest.raises(WaterError, match=r"above the top of the column, at x = .*water\.row\.height"):
+        run(tmp_path / "run", text, {"stop.time": "10 s"})
+    assert Results.open(tmp_path / "run").status == schema.FAILED
+
+
+@pytest.mark.parametrize("engine", ["lammps"])
+def test_other_engines_refuse_a_row(engine: str, tmp_path: Path) -> None:
+    with pytest.raises(CaseError, match="a row of columns of water goes with engine 'cpu' alone"):
+        run(tmp_path / "run", engine=engine)
