@@ -58,6 +58,15 @@ def test_new_check_and_run_lead_to_a_run_folder(ryusa_: Any, drop: str, here: Pa
     assert (here / "runs/drop/case.toml").read_bytes() == (here / drop).read_bytes()
 
 
+def test_check_names_other_engines_for_a_case_that_takes_days(ryusa_: Any) -> None:
+    assert ryusa_("new", "dense_3d").code == 0
+    size = ("--set", "build.columns=1000", "--set", "build.rows=1000")
+    said = " ".join(ryusa_("check", "dense_3d.toml", *size).out.split())
+    assert "a long run about 4.9 days on 1 thread, by a rule of thumb (12,000,000 grains)" in said
+    assert "--engine lammps (" in said
+    assert "a long run" not in ryusa_("check", "dense_3d.toml").out
+
+
 def test_new_lists_kinds_and_every_kind_reads(ryusa_: Any) -> None:
     listed = ryusa_("new").out.splitlines()
     kinds = [line.split()[0] for line in listed]

@@ -103,6 +103,8 @@ def check(case: CaseFile, settings: Settings = None, seed: Seed = None) -> None:
 
     from ryusa.build import build
     from ryusa.casefile import derive, explain
+    from ryusa.casefile.estimate import seconds_needed
+    from ryusa.running.pace import other_engines
 
     derived = derive(found)
     n_grain = derived.n_grain + derived.n_fixed
@@ -128,6 +130,10 @@ def check(case: CaseFile, settings: Settings = None, seed: Seed = None) -> None:
     )
     for note in built.notes if built is not None else notes:
         console.print(f"  {escape(note)}", highlight=False)
+    if said := other_engines(None, derived.n_sphere, seconds_needed(found, derived), 1):
+        console.print("[bold]a long run[/bold]")
+        for note in said:
+            console.print(f"  {escape(note)}", highlight=False)
 
 
 def run(

@@ -10,7 +10,6 @@ from ryusa.engine import registry
 from ryusa.engine.shared.kernel import collecting_rarely
 from ryusa.running.progress import Progress
 
-_TYPICAL = 12.0e6  # particle-steps per second and thread of many grains (benchmarks/README.md)
 _LONG = 2.0  # days on the CPU engine from which other engines are named
 _CHUNK = 0.25  # s of wall time between two checks of clock and signals
 _CHUNK_FIRST = (1, 16)  # steps of the first calls, while the speed is unknown
@@ -24,19 +23,20 @@ def compiling(progress: Progress) -> Generator[None]:
         yield
 
 
-def other_engines(engine: object, n_grain: int, n_steps: float, threads: int) -> tuple[str, ...]:
-    """A note for the log of a long run of the CPU engine, with the engines that may serve better; or none.
+def other_engines(engine: object, n_grain: int, seconds: float, threads: int) -> tuple[str, ...]:
+    """A note on a long run of the CPU engine, with the engines that may serve better; or none.
 
     Parameters
     ----------
     engine : as asked for; None is that of the CPU.
-    n_grain, n_steps : grains, and steps to the end of the run; inf if it has none.
+    n_grain : number of grains.
+    seconds : wall time that the run is expected to take on one core [s].
     threads : threads of the engine.
 
-    >>> other_engines(None, 1000, 1e6, 1)
+    >>> other_engines(None, 1000, 600.0, 1)
     ()
     """
-    days = n_grain * n_steps / (_TYPICAL * threads) / 86_400.0
+    days = seconds / threads / 86_400.0
     if engine not in {None, registry.DEFAULT} or not _LONG <= days < math.inf:
         return ()
     others = [name for name in registry.names() if name != registry.DEFAULT]
@@ -44,9 +44,8 @@ def other_engines(engine: object, n_grain: int, n_steps: float, threads: int) ->
         f"--engine {name} ({registry.unavailable(name) or registry.entry(name).summary})" for name in others
     ]
     return (
-        f"about {days:.2g} days on {threads} threads ({n_grain:,} grains, {n_steps:.2g} steps, "
-        f"{_TYPICAL / 1e6:g} million particle-steps per second and thread). Other engines: {'; '.join(here)}"
-        " (docs/big-runs.md)",
+        f"about {days:.2g} days on {threads} thread{'s' if threads > 1 else ''}, by a rule of thumb "
+        f"({n_grain:,} grains). Other engines: {'; '.join(here)} (docs/big-runs.md)",
     )
 
 

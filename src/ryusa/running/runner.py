@@ -100,14 +100,20 @@ def run(
             case = read(Path(case))
         from ryusa.build import build, change
         from ryusa.casefile import derive, resolved
-        from ryusa.casefile.estimate import disk_for_events, disk_needed, frames_expected, memory_needed
+        from ryusa.casefile.estimate import (
+            disk_for_events,
+            disk_needed,
+            frames_expected,
+            memory_needed,
+            seconds_needed,
+        )
 
         derived = derive(case)
 
         def make() -> _Made:
             built = build(case, derived)
             signal.raise_if_stopped(_BEFORE)
-            said = other_engines(engine, built.scene.n_grain, stop.time / derived.dt, threads)
+            said = other_engines(engine, built.scene.n_grain, seconds_needed(case, derived), threads)
             return built.scene, built.state, (*(str(note) for note in built.notes), *said)
 
         stop = Stop(
