@@ -151,14 +151,26 @@ def turbulence(column: Column, state: WaterState, phi: Floats, cut: Slices) -> t
     u_tau**2 is the turbulent part of the shear stress over density and volume fraction, nu_t |dU/dz|/eps. It
     vanishes at a wall, except at a rough bed, where the lowest cell takes the value of the face above it.
     """
+    square, drift = turbulence_of_cells(column, state.tau, state.nu_t, phi)
+    at = to_grains(cut, np.column_stack([square, drift, state.shear]), "submerged")
+    return np.sqrt(at[:, 0]), at[:, 1], at[:, 2]
+
+
+def turbulence_of_cells(column: Column, tau: Floats, nu_t: Floats, phi: Floats) -> tuple[Floats, Floats]:
+    """Square of u_tau [m2/s2] and drift velocity [m/s] in the cells, each of shape (n,).
+
+    Parameters
+    ----------
+    column : of the water.
+    tau, nu_t : stress [Pa] and eddy viscosity [m2/s] at the faces, shape (n + 1,).
+    phi : concentration [-], shape (n,).
+    """
     eps = np.maximum(1.0 - phi, LEAST)
     share = np.concatenate([eps[:1], 0.5 * (eps[1:] + eps[:-1]), eps[-1:]])
-    viscosity = state.nu_t / share
-    square = np.abs(state.tau) / column.rho_w * viscosity / (column.nu + state.nu_t)
+    viscosity = nu_t / share
+    square = np.abs(tau) / column.rho_w * viscosity / (column.nu + nu_t)
     if column.bed is BedKind.ROUGH:
         square[0] = square[1]
     drift = np.empty(column.n)
     _drift(column.dz, np.sqrt(square), viscosity, drift)
-    both = np.column_stack([0.5 * (square[:-1] + square[1:]), drift, state.shear])
-    at = to_grains(cut, both, "submerged")
-    return np.sqrt(at[:, 0]), at[:, 1], at[:, 2]
+    return 0.5 * (square[:-1] + square[1:]), drift

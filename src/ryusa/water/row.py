@@ -114,7 +114,7 @@ def advance_row(
     a speed is not finite, or if the stresses of a station do not converge.
     """
     p, c = parameters_of(row.column), row.column
-    shape, ends = _shape_of(row), _ends_of(row)
+    shape, ends = shape_of(row), ends_of(row)
     stations, segments = len(shape.left), len(shape.bottom)
     matrix = _matrix_of(row, solid)
     given = RowGrains(_phi_of(row, solid), *np.zeros((4, stations, c.n)))
@@ -161,7 +161,7 @@ def discharges(row: ColumnRow, state: RowState) -> Floats:
     return (content * state.u).sum(axis=1)
 
 
-def _shape_of(row: ColumnRow) -> RowShape:
+def shape_of(row: ColumnRow) -> RowShape:
     """Geometry of a row as the compiled step takes it."""
     n = row.n_segment
     bottom = row.bottom_with_ends()
@@ -184,7 +184,7 @@ def _shape_of(row: ColumnRow) -> RowShape:
     )  # fmt: skip
 
 
-def _ends_of(row: ColumnRow) -> RowEnds:
+def ends_of(row: ColumnRow) -> RowEnds:
     """Ends of a row as the compiled step takes them."""
     n, cells = row.n_segment, row.column.n
     bottom = row.bottom_with_ends()

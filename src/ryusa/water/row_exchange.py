@@ -1,0 +1,242 @@
+"""Compiled exchange of grains and a row of columns: forces at the stations, and the water at every grain.
+
+A station holds half of each segment beside it, so what grains give to it, and what they are told of it, go
+with half the weights that they have in these segments.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ryusa.model.row import INFLOW, OPEN, WALL
+from ryusa.model.scene import Floats
+from ryusa.water._kernel import ColumnParameters, kernel
+from ryusa.water.at_grains import DENSEST, sample
+from ryusa.water.drive import DISCHARGE
+from ryusa.water.exchange import FOUR
+from ryusa.water.exchange_arrays import GrainNumbers, SliceArrays, WaterLaws
+from ryusa.water.momentum_balance import B_FIXED, B_GRAINS, B_SHARED, GRADIENT
+from ryusa.water.row_step import RowEnds, RowShape, RowWater, driving_gradient, fluxes_along
+from ryusa.water.row_sums import (
+    BUOYED,
+    GrainPlaces,
+    RowBed,
+    gradient_of_segments,
+    mean_along,
+    means_of_segments,
+    of_both_stations,
+    submerge,
+)
+from ryusa.water.slice_sums import (
+    DRAG_NOW,
+    GIVEN_DRAG,
+    GIVEN_MET,
+    GIVEN_X,
+    GIVEN_Z,
+    ROW_CONTENT,
+    ROW_DTAU_DZ,
+    ROW_DU_DT,
+    ROW_SHEAR,
+    SOLID,
+    SOLID_W,
+)
+
+
+class StationForces(NamedTuple):
+    """Action of the grains on the water at the stations during an interval."""
+
+    force: Floats  # of the water on grains [N/m3], shape (n_station, n)
+    slope: Floats  # its derivative with respect to the speed of the water [N s/m4]
+    phi_w: Floats  # concentration times vertical speed of free grains [m/s]
+    fixed: Floats  # the part of `force` on fixed grains [N/m3]
+    phi: Floats  # concentration of all grains in the segments [-], shape (n_segment, n)
+    force_z: Floats  # force along z in the segments [N/m3]
+
+
+class RowTold(NamedTuple):
+    """What grains are told of the water of a row."""
+
+    stations: Floats  # rows of `time_step` at the stations, shape (n_station, 6, n)
+    u: Floats  # speed there [m/s], shape (n_station, n)
+    w: Floats  # vertical speed in the segments, relative to the bottom [m/s], shape (n_segment, n)
+    gradient: Floats  # pressure gradient at the stations [Pa/m], shape (n_station,)
+    wet: Floats  # share of the cells of the segments below the surface [-], shape (n_segment, n)
+    phi: Floats  # as in StationForces
+    force_z: Floats
+
+
+@kernel
+def continue_ends(shape: RowShape, sums: Floats) -> None:
+    """Let the grains beyond an open end be as those of the last segment; sums (m, n_segment, n)."""
+    first, end = shape.inner
+    if end - first < len(shape.bottom):
+        sums[:, first - 1] = sums[:, first]
+        sums[:, end] = sums[:, end - 1]
+
+
+@kernel
+def concentration_in_row(p: ColumnParameters, area: float, bed: RowBed, sums: Floats, phi: Floats) -> None:
+    """Concentration of free and fixed grains in the segments, of the area [m2] each."""
+    for i in range(len(phi)):
+        for k in range(p.n):
+            phi[i, k] = sums[SOLID, i, k] / (area * p.dz) + bed.phi[i, k]
+
+
+@kernel
+def act_on_stations(
+    p: ColumnParameters, area: float, shape: RowShape, u: Floats, sums: Floats, sums_fixed: Floats,
+    acts: StationForces,
+) -> None:  # fmt: skip
+    """Forces at the stations from sums over grains in the segments, as `force_on_water`.
+
+    Parameters
+    ----------
+    area : of the bottom of a segment [m2].
+    u : speed of the water at the stations in the interval [m/s], shape (n_station, n).
+    sums, sums_fixed : of `sum_grains_in_row` and of `sum_fixed_in_row`.
+    acts : overwritten, but for `phi`.
+
+    Notes
+    -----
+    Along an inclined bottom the balance of a station is divided by `steep`, and drag and stress keep their
+    size then, but the push of the surface's slope does not.
+    """
+    volume = area * p.dz
+    for j in range(len(shape.left)):
+        a, b = shape.left[j], shape.right[j]
+        level = 1.0 - 1.0 / shape.steep[j]
+        for k in range(p.n):
+            given = 0.5 * (sums[GIVEN_X, a, k] / volume + sums[GIVEN_X, b, k] / volume)
+            drag = 0.5 * (sums[GIVEN_DRAG, a, k] / volume + sums[GIVEN_DRAG, b, k] / volume)
+            met = 0.5 * (sums[GIVEN_MET, a, k] / volume + sums[GIVEN_MET, b, k] / volume)
+            free = given + (drag * u[j, k] - met)
+            if level > 0.0:
+                free -= level * 0.5 * (sums[BUOYED, a, k] / volume + sums[BUOYED, b, k] / volume)
+            fixed = 0.5 * (sums_fixed[0, a, k] / volume + sums_fixed[0, b, k] / volume) * u[j, k]
+            acts.force[j, k], acts.fixed[j, k] = free + fixed, fixed
+            acts.slope[j, k] = 0.5 * (sums_fixed[1, a, k] / volume + sums_fixed[1, b, k] / volume)
+            acts.phi_w[j, k] = 0.5 * (sums[SOLID_W, a, k] / volume + sums[SOLID_W, b, k] / volume)
+    for i in range(len(shape.bottom)):
+        for k in range(p.n):
+            acts.force_z[i, k] = sums[GIVEN_Z, i, k] / volume
+            acts.force_z[i, k] += sums_fixed[2, i, k] / volume
+
+
+@kernel
+def split_budgets(
+    p: ColumnParameters, shape: RowShape, acts: StationForces, water: RowWater, out: Floats
+) -> None:
+    """Tell in the budgets of the stations, out (n_station, N_OUT), free grains from those at rest."""
+    for j in range(len(shape.left)):
+        a, b = shape.left[j], shape.right[j]
+        wet, free = 0.0, 0.0
+        for k in range(max(shape.first[a], shape.first[b]), p.n):
+            wet += water.wet[a, k] + water.wet[b, k]
+            free += acts.force[j, k] - acts.fixed[j, k]
+        if wet > 0.0 and shape.kind[j] == OPEN:
+            out[j, B_FIXED] = out[j, B_GRAINS] + out[j, B_SHARED] + free * p.dz
+            out[j, B_GRAINS], out[j, B_SHARED] = -free * p.dz, 0.0
+
+
+@kernel
+def fastest_in_row(
+    p: ColumnParameters, area: float, laws: WaterLaws, sums: Floats, by_grain: float, phi: Floats
+) -> float:
+    """Largest rate at which drag brings water and grains to one speed [1/s], as `fastest_relaxation`."""
+    fastest = 0.0
+    for i in range(len(phi)):
+        for k in range(p.n):
+            water = laws.rho_w * max(1.0 - phi[i, k], 1.0 - DENSEST)
+            fastest = max(fastest, sums[DRAG_NOW, i, k] / (area * p.dz) / water)
+    return max(fastest, by_grain)
+
+
+@kernel
+def tell(
+    p: ColumnParameters, area: float, shape: RowShape, ends: RowEnds, dt: float, driver: float,
+    sums: Floats, through: Floats, water: RowWater, flux: Floats, tilt: Floats, budgets: Floats,
+    told: RowTold,
+) -> None:  # fmt: skip
+    """Complete what the grains are told, with what varies along the row.
+
+    Parameters
+    ----------
+    dt, driver : interval [s], and pressure gradient of the driver [Pa/m].
+    sums, through : of `sum_grains_in_row`, for the concentrations and speeds of free grains now.
+    water : after the interval; at an inlet its speeds are set anew.
+    flux, tilt : work arrays, as in `StationArrays`.
+    budgets : of the last step.
+    told : `stations` as the step wrote them, and `phi`; the rest is overwritten.
+
+    Notes
+    -----
+    Mixture that converges rises: eps w = - phi w_p - integral from the bottom of d(eps U + phi u_p)/dx. The
+    acceleration of the water gains U dU/dx, with the difference from upstream that carries the momentum.
+    """
+    volume, per_dx = area * p.dz, 1.0 / shape.dx
+    fluxes_along(p, shape, ends, dt, water, flux, tilt)
+    told.u[:] = water.u
+    told.wet[:] = water.wet / p.dz
+    rise = np.zeros((len(shape.bottom), p.n))  # of the mixture, by what converges below [m/s]
+    for i in range(len(shape.bottom)):
+        west, east = shape.west[i], shape.east[i]
+        below = 0.0
+        for k in range(p.n):
+            more = flux[east, k] - flux[west, k] + (through[east, k] / area - through[west, k] / area)
+            rise[i, k] = -(below + 0.5 * more) * per_dx
+            below += more
+            told.w[i, k] = 0.0
+            if water.wet[i, k] > 0.0:
+                free = sums[SOLID_W, i, k] / volume
+                told.w[i, k] = (rise[i, k] - free) / max(1.0 - told.phi[i, k], 1.0 - DENSEST)
+    for j in range(len(shape.left)):
+        a, b = shape.left[j], shape.right[j]
+        told.gradient[j] = driving_gradient(p, shape, j, water, driver)
+        if p.drive == DISCHARGE:
+            told.gradient[j] = budgets[j, GRADIENT]
+        if shape.kind[j] == WALL:  # at rest: the pressure holds the weight
+            told.gradient[j] = -p.rho_w * p.g_x
+        before, after = shape.west[a], shape.east[b]
+        for k in range(p.n):
+            if not water.content[a, k] + water.content[b, k] > 0.0 or shape.kind[j] != OPEN:
+                continue
+            u = water.u[j, k]
+            eps = 1.0 - 0.5 * (told.phi[a, k] + told.phi[b, k])
+            up = before if u > 0.0 else after
+            varies = 0.0
+            if shape.kind[up] != OPEN or told.stations[up, ROW_CONTENT, k] > 0.0:
+                varies = (u - water.u[up, k]) * per_dx if u > 0.0 else (water.u[up, k] - u) * per_dx
+            lift = 0.5 * (rise[a, k] + rise[b, k]) / max(eps, 1.0 - DENSEST)
+            told.stations[j, ROW_DU_DT, k] += u * varies + lift * told.stations[j, ROW_SHEAR, k]
+    for j in range(len(shape.left)):
+        if shape.kind[j] == INFLOW:
+            told.stations[j] = told.stations[j + 1]
+            told.gradient[j] = told.gradient[j + 1]
+
+
+@kernel
+def water_at_grains_in_row(
+    p: ColumnParameters, laws: WaterLaws, shape: RowShape, grains: GrainNumbers, cut: SliceArrays,
+    places: GrainPlaces, told: RowTold, eddies: Floats, sampled: Floats,
+) -> None:  # fmt: skip
+    """Fill `sampled`, columns of `model.fluid`, with the water at every grain, as `water_at_grains`."""
+    submerged = np.empty(len(grains.d))
+    per = submerge(cut, places, told.wet, submerged)
+    table = np.zeros((len(shape.bottom), p.n, 2 * FOUR))
+    of_both_stations(shape, told.u, table[:, :, 0])
+    of_both_stations(shape, told.stations[:, ROW_SHEAR], table[:, :, 2])
+    of_both_stations(shape, told.stations[:, ROW_DU_DT], table[:, :, 4])
+    of_both_stations(shape, told.stations[:, ROW_DTAU_DZ], table[:, :, 5])
+    for i in range(len(shape.bottom)):
+        for k in range(p.n):
+            table[i, k, 1], table[i, k, 3] = told.w[i, k], told.phi[i, k]
+            table[i, k, 6] = told.force_z[i, k] / max(1.0 - told.phi[i, k], 1.0 - DENSEST)
+    at = means_of_segments(cut, places, told.wet, per, table)
+    here = gradient_of_segments(shape, told.gradient)
+    for i in range(len(per)):
+        at[i, 1] += at[i, 0] * places.tilt[i]
+        at[i, 5] += mean_along(places, here, i)
+    sample(
+        at, submerged / cut.whole, grains.solid, eddies, laws.buoyancy, 0.0, laws.rho_w, laws.g_x,
+        laws.g_z, sampled,
+    )  # fmt: skip

@@ -1,0 +1,323 @@
+"""Grains in a row of columns: what they give to the water at an exchange, and what they are told of it.
+
+As `coupling` for one column: the slices of the grains, their weights along x and the water stay as they are
+during an interval, and what a grain received is taken from the stations with the same weights, so that
+momentum is conserved to round-off over the row (design/0027).
+"""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ryusa.laws.families import BedKind, Buoyancy, Drive, Fluctuations
+from ryusa.model import Scene
+from ryusa.model.arrays import Floats
+from ryusa.model.eddies import Eddies
+from ryusa.model.fluid import N_SAMPLED, SHEAR
+from ryusa.model.row import ColumnRow, PorousSolid, RowState
+from ryusa.water import eddies
+from ryusa.water._kernel import ColumnParameters, parameters_of
+from ryusa.water.drive import imposed_gradient
+from ryusa.water.exchange import FOUR, slices
+from ryusa.water.exchange_arrays import GrainNumbers, SliceArrays, WaterLaws, cells_of
+from ryusa.water.fixed_grains import steady_start
+from ryusa.water.row import GrainAction, advance_row, ends_of, row_at_rest, shape_of
+from ryusa.water.row_exchange import (
+    RowTold,
+    StationForces,
+    act_on_stations,
+    concentration_in_row,
+    continue_ends,
+    fastest_in_row,
+    split_budgets,
+    tell,
+    water_at_grains_in_row,
+)
+from ryusa.water.row_station import relative_residual_at
+from ryusa.water.row_step import RowEnds, RowShape, RowWater
+from ryusa.water.row_sums import (
+    N_ROW_SUM,
+    GrainPlaces,
+    RowBed,
+    add_to_segments,
+    means_of_segments,
+    of_both_stations,
+    place_grains,
+    submerge,
+    sum_fixed_in_row,
+    sum_grains_in_row,
+)
+from ryusa.water.slice_sums import (
+    BAD_GRAIN,
+    N_SUM_FIXED,
+    RATE,
+    ROW_SHEAR,
+    SOLID,
+)
+
+AGREE = 1.0e-9  # permitted relative difference between the length of a periodic row and the period of grains
+
+
+@dataclass
+class GrainsInRow:
+    """The grains of a run in a row of columns, and what they were told last.
+
+    Attributes
+    ----------
+    scene, row : the scene, and its row; `row.column.area` is the area of bed of the whole row.
+    solid : a porous solid in the row beside the grains.
+    told : water that the grains meet in the present interval.
+    sampled : the same at the grains, columns of `model.fluid`.
+    fastest : largest rate at which drag brought water and grains to one speed in the last interval [1/s].
+    worst : largest residual of the momentum of a station so far, over its largest term [-].
+    eddies : present eddies of the grains; None without fluctuations.
+    """
+
+    scene: Scene
+    row: ColumnRow
+    solid: PorousSolid | None
+    told: RowTold
+    sampled: Floats
+    fastest: float
+    worst: float
+    x: Floats  # centres along the row at the last exchange [m]
+    _p: ColumnParameters
+    _area: float  # of bed in a segment [m2]
+    _shape: RowShape
+    _ends: RowEnds
+    _laws: WaterLaws
+    _grains: GrainNumbers
+    _bed: RowBed
+    _cut: SliceArrays
+    _bed_cut: SliceArrays
+    _places: GrainPlaces
+    _bed_places: GrainPlaces
+    _z: Floats  # heights above the bottom, plus z_low [m]
+    eddies: Eddies | None = None
+
+    @staticmethod
+    def begin(
+        scene: Scene, row: ColumnRow, x: Floats, state: RowState | None = None,
+        solid: PorousSolid | None = None,
+    ) -> "GrainsInRow":  # fmt: skip
+        """Cut the grains at x [m], shape (n_grain, 3), in water of a given state.
+
+        Parameters
+        ----------
+        state : None: only the concentrations are of interest, as for the first state of the water.
+
+        Raises
+        ------
+        ValueError : the row is not valid, or does not carry these grains.
+        """
+        faults = row.refuses() or refuses_grains(scene, row)
+        if faults:
+            raise ValueError("; ".join(faults))
+        p, shape, column = parameters_of(row.column), shape_of(row), row.column
+        stations, segments = len(shape.left), len(shape.bottom)
+        there = np.flatnonzero(scene.fixed_active)
+        cells, n = cells_of(column), len(x)
+        places = GrainPlaces.of(n, row.n_segment)
+        bed_places = GrainPlaces.of(len(there), row.n_segment)
+        for what, here, into in (("grain", x, places), ("fixed grain", scene.x_fixed[there], bed_places)):
+            bad = place_grains(np.ascontiguousarray(here[:, 0]), 0.0, shape, into)
+            if bad >= 0:
+                raise ValueError(f"the place of {what} {bad} along the row is not finite")
+        z, d_bed = x[:, 2] - places.base, np.ascontiguousarray(scene.d_fixed[there])
+        z_bed = scene.x_fixed[there, 2] - bed_places.base
+        cut, bed_cut = (SliceArrays.of(slices(*one, cells)) for one in ((z, scene.d), (z_bed, d_bed)))
+        bed = RowBed(
+            np.arange(len(there)), z_bed, d_bed, np.zeros((segments, column.n)), column.bed is BedKind.ROUGH
+        )
+        told = RowTold(
+            np.zeros((stations, 6, column.n)), np.zeros((stations, column.n)), np.zeros((segments, column.n)),
+            np.zeros(stations), *np.zeros((3, segments, column.n)),
+        )  # fmt: skip
+        made = GrainsInRow(
+            scene, row, solid, told, np.zeros((n, N_SAMPLED)), 0.0, 0.0, x[:, 0].copy(), p,
+            float(column.area) / row.n_segment, shape, ends_of(row), WaterLaws.of(scene),
+            GrainNumbers.of(scene, None), bed, cut, bed_cut, places, bed_places, z,
+        )  # fmt: skip
+        made._concentrate()
+        if column.fluctuations is Fluctuations.RANDOM_WALK:
+            made.eddies = eddies.begin(column.seed, n)
+        if state is not None:
+            made._tell(state, np.zeros((N_ROW_SUM, segments, column.n)), np.zeros((stations, column.n)), 0.0)
+            made._sample(state)
+        return made
+
+    def _concentrate(self) -> None:
+        """Concentrations of fixed grains, and of all, from the present slices."""
+        sums = np.zeros((N_ROW_SUM, *self.told.phi.shape))
+        volume, whole_cells = self._area * self._p.dz, np.ones_like(self.told.phi)
+        for cut, places, order, whole in (
+            (self._bed_cut, self._bed_places, self._bed.order, self._bed_cut.whole),
+            (self._cut, self._places, self._grains.order, self._grains.solid),
+        ):
+            sums[SOLID] = 0.0
+            per, solid = np.ones(len(order)), np.ascontiguousarray((whole / cut.whole)[:, None])
+            add_to_segments(cut, places, whole_cells, order, per, solid, sums[SOLID : SOLID + 1])
+            continue_ends(self._shape, sums)
+            if places is self._bed_places:
+                self._bed.phi[:] = sums[SOLID] / volume
+                if self.solid is not None:
+                    self._bed.phi[:] += self.row.with_ends(self.solid.phi)
+        concentration_in_row(self._p, self._area, self._bed, sums, self.told.phi)
+
+    @property
+    def phi(self) -> Floats:
+        """Concentration of grains in the segments, fixed ones included [-], shape (n_segment, n)."""
+        return self.told.phi[self.row.inner]
+
+    def at_rest(self, surface: Floats) -> RowState:
+        """Water at rest among the grains up to the surface over the x axis [m], shape (n_segment,)."""
+        phi = self.phi
+        return row_at_rest(self.row, surface, PorousSolid(phi, 0.0 * phi, 0.0 * phi))
+
+    def flowing(self, surface: Floats) -> RowState:
+        """The same with the steady flow of one column over the mean bed of the row.
+
+        Raises
+        ------
+        WaterError : no steady flow was found.
+        """
+        start, scene, column = self.at_rest(surface), self.scene, self.row.column
+        bed = self._bed.phi[self.row.inner].mean(axis=0)
+        free = self.phi.mean(axis=0) - bed
+        every = np.concatenate([scene.d, scene.d_fixed[scene.fixed_active]])
+        flow = steady_start(column, scene.water, bed, free, float((every**3).sum() / (every**2).sum()))
+        u, profiles, edges = np.array(start.u), np.array(start.profiles), np.array(start.edges)
+        u[:] = flow.u
+        profiles[:, 0], profiles[:, 3], profiles[:, 5] = flow.u, flow.shear, flow.dtau_dz
+        content = start.content
+        profiles[:, 2] = 0.5 * (content[self._shape.left] + content[self._shape.right])
+        edges[:, 0], edges[:, 1] = flow.tau, flow.nu_t
+        return replace(start, u=u, profiles=profiles, edges=edges)
+
+    def exchange(self, state: RowState, x: Floats, v: Floats, impulse: Floats, dt: float) -> RowState:
+        """Give the water what the grains took in an interval, move it on, and tell the grains anew.
+
+        Parameters
+        ----------
+        state : the water in the interval.
+        x, v : centres and velocities of the grains now [m], [m/s], shape (n_grain, 3).
+        impulse : what each took from the water in the interval, columns of `model.fluid`.
+        dt : the interval [s].
+
+        Returns
+        -------
+        The water now; `sampled` is what the grains are told of it.
+
+        Raises
+        ------
+        ValueError : a grain is at no finite place.
+        WaterError : the water cannot be moved on.
+        """
+        p, told, row = self._p, self.told, self.row
+        segments, stations = len(told.phi), len(told.u)
+        sums, fixed = np.zeros((N_ROW_SUM, segments, p.n)), np.zeros((N_SUM_FIXED, segments, p.n))
+        through, largest = np.zeros((stations, p.n)), np.array([0.0, -1.0])
+        sum_grains_in_row(
+            p, self._shape, 0.0, self._grains, self._cut, self._places, x, v, impulse, self.sampled, told.u,
+            told.gradient, told.wet, 1.0 / dt, self._z, sums, through, largest,
+        )  # fmt: skip
+        if largest[BAD_GRAIN] >= 0.0:
+            raise ValueError(f"the place of grain {int(largest[BAD_GRAIN])} is not finite")
+        self.x[:] = x[:, 0]
+        continue_ends(self._shape, sums)
+        concentration_in_row(p, self._area, self._bed, sums, told.phi)
+        sum_fixed_in_row(
+            p, self._shape, self._laws, self._bed, self._bed_cut, self._bed_places, told.u, told.w, told.wet,
+            told.phi, fixed,
+        )  # fmt: skip
+        continue_ends(self._shape, fixed)
+        force, slope, phi_w, part = np.zeros((4, stations, p.n))
+        acts = StationForces(force, slope, phi_w, part, told.phi, told.force_z)
+        act_on_stations(p, self._area, self._shape, told.u, sums, fixed, acts)
+        state = advance_row(
+            row, state, dt, solid=self._at_rest(),
+            grains=GrainAction(told.phi[row.inner], force, slope, np.zeros_like(force), phi_w),
+        )  # fmt: skip
+        budgets = np.array(state.budgets)
+        split_budgets(p, self._shape, acts, _water_of(state), budgets)
+        budgets.flags.writeable = False
+        state = replace(state, budgets=budgets)
+        self.worst = max(self.worst, *(relative_residual_at(one) for one in budgets))
+        self.fastest = fastest_in_row(p, self._area, self._laws, sums, float(largest[RATE]), told.phi)
+        if self.eddies is not None:
+            self.eddies = eddies.renew(self.eddies, row.column.seed, dt, self.sampled[:, SHEAR])
+        self._tell(state, sums, through, dt)
+        self._sample(state)
+        return state
+
+    def _at_rest(self) -> PorousSolid | None:
+        """All that does not move in the cells; its drag is that of the porous solid alone."""
+        phi = self._bed.phi[self.row.inner]
+        if self.solid is not None:
+            return self.solid if self._bed.taken else replace(self.solid, phi=phi)
+        return None if self._bed.taken or not phi.any() else PorousSolid(phi, 0.0 * phi, 0.0 * phi)
+
+    def _tell(self, state: RowState, sums: Floats, through: Floats, dt: float) -> None:
+        """Note what the grains meet in the next interval."""
+        told, water = self.told, _water_of(state)
+        told.stations[:] = state.profiles
+        inner = self._shape.inner[0]
+        driver = imposed_gradient(self._p, water.content[inner], float(water.surface[inner]))
+        tell(
+            self._p, self._area, self._shape, self._ends, dt, float(driver), sums, through, water,
+            np.zeros_like(told.u), np.zeros(len(told.phi)), np.array(state.budgets), told,
+        )  # fmt: skip
+
+    def _sample(self, state: RowState) -> None:
+        """Write the water at every grain."""
+        speeds = np.zeros((0, 3)) if self.eddies is None else self._eddies_at_grains(state, self.eddies)
+        self.sampled = np.empty((len(self._z), N_SAMPLED))
+        water_at_grains_in_row(
+            self._p, self._laws, self._shape, self._grains, self._cut, self._places, self.told, speeds,
+            self.sampled,
+        )  # fmt: skip
+
+    def _eddies_at_grains(self, state: RowState, present: Eddies) -> Floats:
+        """Velocity of the eddy at each grain [m/s], shape (n_grain, 3)."""
+        column, told, shape = self.row.column, self.told, self._shape
+        phi = 0.5 * (told.phi[shape.left] + told.phi[shape.right])
+        of_cells = np.zeros((3, *told.u.shape))
+        for j in range(len(phi)):
+            tau, nu_t = state.edges[j]
+            of_cells[:2, j] = eddies.turbulence_of_cells(column, tau, nu_t, phi[j])
+        of_cells[2] = told.stations[:, ROW_SHEAR]
+        table = np.zeros((*told.phi.shape, FOUR))
+        for c in range(3):
+            of_both_stations(shape, of_cells[c], table[:, :, c])
+        per = submerge(self._cut, self._places, told.wet, np.empty(len(self._z)))
+        at = means_of_segments(self._cut, self._places, told.wet, per, table)
+        return eddies.speeds(present, self.scene.plane_case, np.sqrt(at[:, 0]), at[:, 1], at[:, 2])
+
+
+def refuses_grains(scene: Scene, row: ColumnRow) -> tuple[str, ...]:
+    """Reasons why a row cannot carry the grains of a scene, one sentence each; () if there are none."""
+    faults: list[str] = []
+    form = scene.water.buoyancy
+    if form is not Buoyancy.STRESS:
+        why = {
+            Buoyancy.WEIGHT: "counts a pool with a sloping surface twice",
+            Buoyancy.PRESSURE: "lets water at rest among grains run down the x axis",
+        }
+        faults.append(
+            f"water.buoyancy = {form.word!r}: in a row of columns it {why[form]}; take "
+            f"{Buoyancy.STRESS.word!r}"
+        )
+    length, period = row.n_segment * row.dx, scene.period[0]
+    if row.periodic and not math.isclose(length, period, rel_tol=AGREE):
+        faults.append(f"the row is {length:g} m long, and the period of the grains {period:g} m: must agree")
+    if not row.periodic and math.isfinite(period):
+        faults.append(f"the row has ends, and the grains the period {period:g} m: leave the period out")
+    if row.column.drive is Drive.TAU and row.n_segment > 1:
+        faults.append("a row of several segments has no prescribed stress")
+    return tuple(faults)
+
+
+def _water_of(state: RowState) -> RowWater:
+    """The water of a state in arrays that may be written."""
+    return RowWater(*(np.array(getattr(state, name)) for name in RowWater._fields))
