@@ -38,6 +38,9 @@ def play(page: Path) -> None:
 )
 def test_a_page_runs_from_top_to_bottom(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     page = ROOT / name
+    for extra, call in (("pandas", "to_pandas("), ("xarray", "to_xarray(")):
+        if call in page.read_text(encoding="utf-8"):
+            pytest.importorskip(extra)
     assert list(blocks(page)), "a page that promises to run has blocks"
     monkeypatch.chdir(tmp_path)
     play(page)
