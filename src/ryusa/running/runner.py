@@ -99,21 +99,15 @@ def run(
 
             case = read(Path(case))
         from ryusa.build import build, change
-        from ryusa.casefile import derive, resolved
-        from ryusa.casefile.estimate import (
-            disk_for_events,
-            disk_needed,
-            frames_expected,
-            memory_needed,
-            seconds_needed,
-        )
+        from ryusa.casefile import derive, estimate, resolved
+        from ryusa.casefile.estimate import disk_for_events, disk_needed, frames_expected, memory_needed
 
         derived = derive(case)
 
         def make() -> _Made:
             built = build(case, derived)
             signal.raise_if_stopped(_BEFORE)
-            said = other_engines(engine, built.scene.n_grain, seconds_needed(case, derived), threads)
+            said = other_engines(engine, built.scene.n_grain, estimate.seconds_needed(case, derived), threads)
             return built.scene, built.state, (*(str(note) for note in built.notes), *said)
 
         stop = Stop(
