@@ -8,11 +8,10 @@ import pytest
 from ryusa.errors import WaterError
 from ryusa.laws.families import BedKind, Drive, Mixing, SideWalls, SurfaceRule
 from ryusa.model.column import Column, Top, WaterState
-from ryusa.model.row import ColumnRow, EndKind, RowEnd
+from ryusa.model.row import ColumnRow, EndKind, PorousSolid, RowEnd
 from ryusa.water import advance, steady
 from ryusa.water.row import (
     GrainAction,
-    PorousSolid,
     advance_row,
     discharges,
     row_at_rest,

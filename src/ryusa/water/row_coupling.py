@@ -159,7 +159,7 @@ def with_inlet(row: ColumnRow) -> ColumnRow:
     normal = _normal_depth(row, float(along), end.discharge)
     depth = end.depth
     if np.isnan(depth) and end.discharge > normal * np.sqrt(row.g_z * normal):
-        depth = normal
+        depth = normal * np.hypot(1.0, tilt)  # normal to the x axis
     assert row.start is not None
     first = float(row.start[0] - row.bottom[0])
     there = next((h for h in (depth, normal, first) if row.column.dz < h < _room(row)), 0.5 * _room(row))

@@ -11,12 +11,13 @@ from scipy.interpolate import CubicSpline
 from ryusa.figures.comparison import Axis, Curve
 from ryusa.laws.families import BedKind, Drive, Mixing, SurfaceRule
 from ryusa.model.column import Column
-from ryusa.model.row import ColumnRow, EndKind, RowEnd
+from ryusa.model.row import ColumnRow, EndKind, PorousSolid, RowEnd
 from ryusa.model.scene import Floats
 from ryusa.studies.validation import river_bands as bands
+from ryusa.studies.validation import river_basics as basics
 from ryusa.study import Finding, Found, Level, Plan, Source, Task, calculation, comparison, misfit
 from ryusa.water import steady
-from ryusa.water.row import PorousSolid, advance_row, discharges, row_at_rest
+from ryusa.water.row import advance_row, discharges, row_at_rest
 
 TITLE = "A row of columns, water alone"
 G = 9.80665
@@ -176,7 +177,7 @@ STOKERS = {"0.02 m": (0.02, 1), "0.002 m": (0.002, 1), "0.02 m, 20 levels": (0.0
 
 def tasks(plan: Plan) -> Sequence[Task]:
     """All of them; the two comparisons that the row misses are left to the standard level."""
-    every = [_break(0.0, mm, 1) for mm in bands.RITTER_DEPTH]
+    every = [*basics.tasks(plan), *(_break(0.0, mm, 1) for mm in bands.RITTER_DEPTH)]
     every += [_break(ahead, 10, levels) for ahead, levels in (STOKERS[name] for name in _stokers(plan))]
     every += [_uniform(slope) for slope in SLOPES]
     every += [_seepage(across, inertia) for across in ACROSS for inertia in (False, True)]
@@ -203,7 +204,15 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     stokers = [_stoker(found, name) for name in _stokers(plan)]
     uniforms = [_uniform_flow(found, slope) for slope in SLOPES]
     seepages = [_darcy(found), _ergun(found)]
-    return [_ritter(found), *stokers, *uniforms, _m1(found), *seepages, _weirs(found, _crests(plan))]
+    return [
+        *basics.judge(found, plan),
+        _ritter(found),
+        *stokers,
+        *uniforms,
+        _m1(found),
+        *seepages,
+        _weirs(found, _crests(plan)),
+    ]
 
 
 def _ritter(found: Found) -> Finding:
