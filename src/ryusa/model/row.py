@@ -251,6 +251,7 @@ class RowCouplingState:
     due : step of the next exchange.
     exchanges : number of exchanges so far.
     worst : largest residual of the momentum of a station over its largest term so far [-].
+    passing : what passed each station in the last interval, per time and width [m2/s], shape (n_station,).
     """
 
     water: RowState
@@ -258,3 +259,4 @@ class RowCouplingState:
     due: int
     exchanges: int
     worst: float
+    passing: Floats

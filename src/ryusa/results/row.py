@@ -26,7 +26,8 @@ class RowFrames:
     volume : water per area of a segment [m], shape (n_frame, n_segment).
     content : the part in each cell [m], shape (n_frame, n_segment, n).
     phi : concentration of grains, fixed ones included [-], shape (n_frame, n_segment, n).
-    discharge : water that passes a station per time and width [m2/s], shape (n_frame, n_station).
+    discharge : what passed a station in the last step of the water, per time and width [m2/s],
+        shape (n_frame, n_station).
     passed : water that has passed since the start, per width [m2], shape (n_frame, n_station).
     tau : shear stress of the water at the bottom [Pa], shape (n_frame, n_station).
     u, w : velocity along x and upwards [m/s], shape (n_frame, n_station, n).

@@ -13,7 +13,6 @@ from ryusa.model.walls import N_IMPULSE
 from ryusa.results import schema
 from ryusa.running.contact_forces import contact_forces
 from ryusa.running.water import RunWater
-from ryusa.water.row import discharges
 from ryusa.water.row_coupling import RowCoupling
 
 _FIRST_ROOM = 16  # frames
@@ -195,7 +194,7 @@ def _of_row(water: RowCoupling) -> dict[str, NDArray[np.float64]]:
         "phi": np.array(water.phi),
         "u": state.u.copy(),
         "w": state.profiles[:, 1].copy(),
-        "discharge": discharges(row, state),
+        "discharge": water.passing.copy(),
         "passed": state.passed.copy(),
         "tau": state.edges[np.arange(len(sill)), 0, sill],
     }

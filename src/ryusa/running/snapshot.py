@@ -234,11 +234,12 @@ class _Reader:
         steps, due, exchanges = (int(values[f"coupling/{name}"]) for name in ("steps", "due", "exchanges"))
         if not 1 <= steps < _LATEST or not int(values["step"]) < due < _LATEST:
             raise ValueError(f"{steps} steps between exchanges, the next at step {due}")
+        passing = self._floats("coupling/passing", shapes["passed"])
         state = RowState(
             **arrays, t=float(values[f"{about}/t"]), steps=int(values[f"{about}/steps"]),
             courant=float(values[f"{about}/courant"]),
         )  # fmt: skip
-        return RowCouplingState(state, steps, due, exchanges, float(values["coupling/worst"]))
+        return RowCouplingState(state, steps, due, exchanges, float(values["coupling/worst"]), passing)
 
     def _bodies(self, present: NDArray[np.bool_]) -> BodyState:
         if (bodies := self._scene.bodies) is None:

@@ -149,16 +149,12 @@ def advance_row(
 
 
 def discharges(row: ColumnRow, state: RowState) -> Floats:
-    """Discharge at the stations [m2/s], shape (n_station,).
+    """Discharge at the stations, with the mean content of the segments beside [m2/s], shape (n_station,).
 
-    With the mean content of the segments beside; at an open end with that of the segment the water leaves.
+    At an open end it is not what passes: `RowState.passed` is.
     """
     left, right = row.stations_between
-    content = 0.5 * (state.content[left] + state.content[right])
-    if not row.periodic:
-        for j in (0, -1):
-            content[j] = np.where(state.u[j] > 0.0, state.content[left[j]], state.content[right[j]])
-    return (content * state.u).sum(axis=1)
+    return (0.5 * (state.content[left] + state.content[right]) * state.u).sum(axis=1)
 
 
 def shape_of(row: ColumnRow) -> RowShape:

@@ -10,7 +10,7 @@ from ryusa.model.fluid import N_SAMPLED
 from ryusa.model.row import EndKind
 from ryusa.model.scene import Floats
 from ryusa.water.momentum_balance import B_ADVECTED, B_CHANGE, B_GRAVITY
-from ryusa.water.row import advance_row, discharges, row_at_rest
+from ryusa.water.row import advance_row, row_at_rest
 from ryusa.water.steady import steady
 
 _DRY = 1.0e-12  # of the volume that all cells can hold; less is a dry row
@@ -30,6 +30,7 @@ class RowCoupling:
     exchanges : number of exchanges so far.
     worst : largest residual of the momentum of a station so far, over the largest term in the row [-].
     state : present state of the water.
+    passing : what passed each station in the last interval, per time and width [m2/s], shape (n_station,).
     """
 
     scene: Scene
@@ -40,6 +41,7 @@ class RowCoupling:
     exchanges: int
     worst: float
     state: RowState
+    passing: Floats
 
     @staticmethod
     def begin(scene: Scene, row: ColumnRow, step: int = 0) -> "RowCoupling":
@@ -59,17 +61,18 @@ class RowCoupling:
             raise ValueError("the row needs its surface at the start")
         start, row = row.start, with_inlet(row)
         state = row_at_rest(row, start, row.porous)
-        return RowCoupling(scene, row, 1, np.zeros((0, N_SAMPLED)), step + 1, 0, 0.0, state)
+        none = np.zeros((0, N_SAMPLED))
+        return RowCoupling(scene, row, 1, none, step + 1, 0, 0.0, state, np.zeros_like(state.passed))
 
     @staticmethod
     def resume(scene: Scene, row: ColumnRow, found: RowCouplingState) -> "RowCoupling":
         """Go on from a snapshot."""
-        about = found.steps, np.zeros((0, N_SAMPLED)), found.due, found.exchanges, found.worst, found.water
-        return RowCoupling(scene, with_inlet(row), *about)
+        about = found.due, found.exchanges, found.worst, found.water, found.passing
+        return RowCoupling(scene, with_inlet(row), found.steps, np.zeros((0, N_SAMPLED)), *about)
 
     def snapshot(self) -> RowCouplingState:
         """All that `resume` needs."""
-        return RowCouplingState(self.state, self.steps, self.due, self.exchanges, self.worst)
+        return RowCouplingState(self.state, self.steps, self.due, self.exchanges, self.worst, self.passing)
 
     def change(self, scene: Scene, row: ColumnRow) -> None:
         """Take over a scene that the timeline changed: its slope."""
@@ -82,8 +85,9 @@ class RowCoupling:
         ------
         WaterError : the water cannot be moved on; names the place.
         """
-        time = self.steps * self.scene.dt
+        time, before = self.steps * self.scene.dt, self.state.passed
         self.state = advance_row(self.row, self.state, time, solid=self.row.porous)
+        self.passing = (self.state.passed - before) / time
         self.exchanges += 1
         self.worst = max(self.worst, _residual(self.state.budgets))
         self.due += self.steps
@@ -110,7 +114,6 @@ class RowCoupling:
         """State of the water for the summary of a run; SI."""
         row, state = self.row, self.state
         depth = _depths(row, state)
-        through = discharges(row, state)
         passed = (0.0, 0.0) if row.periodic else (float(state.passed[0]), float(state.passed[-1]))
         return {
             "grains": self.scene.n_grain,
@@ -122,8 +125,8 @@ class RowCoupling:
             "entered": passed[0],
             "left": passed[1],
             "deepest": float(depth.max()),
-            "discharge_first": float(through[0]),
-            "discharge_last": float(through[-1]),
+            "discharge_first": float(self.passing[0]),
+            "discharge_last": float(self.passing[-1]),
             "speed_max": float(np.abs(state.u).max()),
         }
 

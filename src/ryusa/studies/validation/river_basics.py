@@ -36,8 +36,8 @@ X, H, U = Axis("distance", "m"), Axis("depth", "m"), Axis("speed", "m/s")
 
 def _rough(depth: float, levels: int, **more: object) -> Column:
     given = {
-        "z_low": 0.0, "dz": depth / levels, "n": levels + 4, "depth": depth, "bed": BedKind.ROUGH, "k_rough": 0.002,
-        "mixing": Mixing.PARABOLIC, **more,
+        "z_low": 0.0, "dz": depth / levels, "n": levels + 4, "depth": depth, "bed": BedKind.ROUGH,
+        "k_rough": 0.002, "mixing": Mixing.PARABOLIC, **more,
     }  # fmt: skip
     return Column(surface=SurfaceRule.VOLUME, **given)  # pyright: ignore[reportArgumentType]
 
