@@ -285,4 +285,7 @@ def _jump(found: Found) -> Finding:
             misfit("place of the jump", abs(place - jump), "m", bands.JUMP_PLACE),
         ],
         {"q": f"{FLOW:g} m2/s", "slopes": f"{STEEP:g} and 0", "depth at the end": f"{TAIL:g} m"},
+        "Behind the jump the depth comes to that of the level reach over about a metre: 0.70 % below it at "
+        "0.4 m, 0.1 % at 1 m. The shift of the place is worth 2.7 % of the momentum function. The bands are "
+        "those of the prototype, whose roughness and lengths of the reaches are not known.",
     )  # fmt: skip

@@ -122,8 +122,12 @@ def telling(errors: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 def _used(one: Mapping[str, Any]) -> float:
-    """Share of its tolerance that an error uses [-]; one without an upper end uses none."""
+    """Share of its tolerance that an error uses [-]; one without an upper end, or bound to 0, uses none.
+
+    >>> _used({"value": 0.0, "asked": {"low": 0.0, "high": 0.0}})
+    0.0
+    """
     low, high = one["asked"]["low"] or 0.0, one["asked"]["high"]
-    if high is None:
+    if high is None or low == high:
         return 0.0
     return abs(one["value"] - 0.5 * (low + high)) / (0.5 * (high - low)) if low else one["value"] / high
