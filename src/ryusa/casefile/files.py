@@ -1,12 +1,15 @@
 """Files that a case names: inside the folder of the case file, and nowhere else."""
 
+from collections.abc import Callable
 from pathlib import Path, PurePosixPath
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
-from ryusa.errors import CaseError
+from ryusa.errors import CaseError, ParseError
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
+
+T = TypeVar("T")
 
 
 def relative(path: str) -> str:
@@ -39,3 +42,28 @@ def inside(case: "Case", key: str, name: str) -> Path:
     if not path.is_relative_to(folder):
         raise CaseError(key, name, "points outside the folder of the case file")
     return path
+
+
+def contents(case: "Case", key: str, name: str, path: Path, read: Callable[[Path, str, int, int], T]) -> T:
+    """What is in a file that a case names.
+
+    Parameters
+    ----------
+    key, name : of the file in the case.
+    path : where it is, as `inside` gives it.
+    read : reads path and name; its further arguments, the time of the last change and the size, are for the
+        cache that it keeps.
+
+    Raises
+    ------
+    CaseError : there is no such file, or it cannot be read.
+    """
+    if not path.is_file():
+        raise CaseError(key, name, f"no such file in the folder of the case, {folder_of(case)}")
+    try:
+        stamp = path.stat()
+        return read(path, name, stamp.st_mtime_ns, stamp.st_size)
+    except OSError as error:
+        raise CaseError(key, name, f"cannot be read: {error.strerror or error}") from None
+    except ParseError as error:
+        raise CaseError(key, None, str(error)) from error

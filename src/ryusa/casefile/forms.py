@@ -3,18 +3,18 @@
 import json
 import math
 from collections.abc import Iterator
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 from pydantic import AfterValidator, Field
 
-from ryusa.casefile.files import folder_of, inside, relative
+from ryusa.casefile.files import contents, folder_of, inside, relative
 from ryusa.casefile.quantities import Number
 from ryusa.casefile.rows import ExplainRow, word
 from ryusa.casefile.section import Section
-from ryusa.errors import CaseError, ParseError
+from ryusa.errors import CaseError
 from ryusa.formats.mesh import KINDS, read_mesh
 from ryusa.model.closed_mesh import ClosedMesh, MeshFault
 from ryusa.model.clump import MOST_SPHERES, SHAPES, Clump
@@ -175,19 +175,11 @@ def _body(case: "Case", name: str) -> _Body:
     path = inside(case, key, file)
     if path.suffix.lower() not in KINDS:
         raise CaseError(key, file, "must be an STL or OBJ file")
-    if not path.is_file():
-        raise CaseError(key, file, f"no such file in the folder of the case, {folder_of(case)}")
-    try:
-        stamp = path.stat()
-        return _read(path, file, key, stamp.st_mtime_ns, stamp.st_size)
-    except OSError as error:
-        raise CaseError(key, file, f"cannot be read: {error.strerror or error}") from None
-    except ParseError as error:
-        raise CaseError(key, None, str(error)) from error
+    return contents(case, key, file, path, partial(_read, key))
 
 
 @lru_cache(maxsize=8)
-def _read(path: Path, name: str, key: str, _changed: int, _size: int) -> _Body:
+def _read(key: str, path: Path, name: str, _changed: int, _size: int) -> _Body:
     try:
         return _Body(key, ClosedMesh.of(read_mesh(path, name)))
     except MeshFault as fault:

@@ -6,9 +6,9 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ryusa.casefile.files import folder_of, inside
+from ryusa.casefile.files import contents, folder_of, inside
 from ryusa.casefile.rows import ExplainRow, number, word
-from ryusa.errors import CaseError, ParseError
+from ryusa.errors import CaseError
 from ryusa.formats.sieve import read_sieve_curve
 from ryusa.model.grading import SHARES, Grading, GradingFault
 
@@ -34,15 +34,7 @@ def points_of(case: "Case") -> tuple[tuple[float, float], ...] | None:
         return given
     path = sieve_file(case)
     assert path is not None
-    if not path.is_file():
-        raise CaseError(KEY, given, f"no such file in the folder of the case, {folder_of(case)}")
-    try:
-        stamp = path.stat()
-        return _read(path, given, stamp.st_mtime_ns, stamp.st_size)
-    except OSError as error:
-        raise CaseError(KEY, given, f"cannot be read: {error.strerror or error}") from None
-    except ParseError as error:
-        raise CaseError(KEY, None, str(error)) from error
+    return contents(case, KEY, given, path, _read)
 
 
 @lru_cache(maxsize=4)

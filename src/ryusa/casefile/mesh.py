@@ -1,13 +1,13 @@
 """Meshes of [[walls]]: read from their files, scaled and placed, and what `ryusa check` says of them."""
 
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ryusa.casefile.files import inside
+from ryusa.casefile.files import contents, inside
 from ryusa.casefile.rows import ExplainRow, count
 from ryusa.errors import CaseError, ParseError
 from ryusa.formats.mesh import read_mesh
@@ -59,8 +59,6 @@ def mesh_of(case: "Case", wall: "WallSection", key: str) -> Mesh:
     """
     assert wall.file is not None
     path = inside(case, f"{key}.file", wall.file)
-    if not path.is_file():
-        raise CaseError(f"{key}.file", wall.file, f"no such file in the folder of the case, {path.parent}")
     try:
         unit = quantity(f"1 {wall.unit}", "m")
     except ValueError as error:
@@ -69,20 +67,14 @@ def mesh_of(case: "Case", wall: "WallSection", key: str) -> Mesh:
     turn = None
     if wall.turn_axis is not None and wall.turn_angle is not None:
         turn = (wall.turn_axis, wall.turn_angle)
-    try:
-        stamp = path.stat()
-        at = wall.at or (0.0, 0.0, 0.0)
-        return _placed(path, wall.file, stamp.st_mtime_ns, stamp.st_size, unit * wall.scale, turn, at)
-    except OSError as error:
-        raise CaseError(f"{key}.file", wall.file, f"cannot be read: {error.strerror or error}") from None
-    except ParseError as error:
-        raise CaseError(f"{key}.file", None, str(error)) from error
+    placed = partial(_placed, unit * wall.scale, turn, wall.at or (0.0, 0.0, 0.0))
+    return contents(case, f"{key}.file", wall.file, path, placed)
 
 
 @lru_cache(maxsize=8)
 def _placed(
-    path: Path, name: str, _changed: int, _size: int, factor: float, turn: Turn | None,
-    at: tuple[float, float, float],
+    factor: float, turn: Turn | None, at: tuple[float, float, float], path: Path, name: str, _changed: int,
+    _size: int,
 ) -> Mesh:  # fmt: skip
     corners = read_mesh(path, name) * factor
     if turn is not None:

@@ -5,10 +5,10 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from ryusa.casefile.files import folder_of, inside
+from ryusa.casefile.files import contents, inside
 from ryusa.casefile.forms import check_forms, clump_of_form, form_rows, spheres_of_form
 from ryusa.casefile.rows import ExplainRow, count, number, word
-from ryusa.errors import CaseError, ParseError
+from ryusa.errors import CaseError
 from ryusa.formats.clump import read_clump
 from ryusa.model.clump import SHAPES, Clump, shape
 from ryusa.spelling import nearest_word
@@ -168,16 +168,7 @@ def _clump_of(case: "Case", key: str, name: str) -> Clump:
             )
             raise CaseError(key, name, known, nearest_word(name, words))
         return _of_library(name)
-    path = inside(case, key, name)
-    if not path.is_file():
-        raise CaseError(key, name, f"no such file in the folder of the case, {folder_of(case)}")
-    try:
-        stamp = path.stat()
-        return _of_file(path, name, stamp.st_mtime_ns, stamp.st_size)
-    except OSError as error:
-        raise CaseError(key, name, f"cannot be read: {error.strerror or error}") from None
-    except ParseError as error:
-        raise CaseError(key, None, str(error)) from error
+    return contents(case, key, name, inside(case, key, name), _of_file)
 
 
 @lru_cache(maxsize=16)

@@ -4,10 +4,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ryusa.formats.table import read_table
-from ryusa.formats.text import D_HIGH, D_LOW, shown
+from ryusa.formats.table import metres, name_and_unit, read_table
+from ryusa.formats.text import D_HIGH, D_LOW
 from ryusa.model.clump import Clump, ClumpFault
-from ryusa.units import UnitError, quantity
 
 COLUMNS = ("x", "y", "z", "d")
 _EXAMPLE = "'x [mm],y [mm],z [mm],d [mm]'"
@@ -51,15 +50,5 @@ def _column(cell: str) -> tuple[str, float]:
     ------
     ValueError : an unknown column, or one without a unit that fits.
     """
-    if ";" in cell or "\t" in cell:
-        raise ValueError(f"columns are separated by commas, as in {_EXAMPLE}")
-    column, _, rest = cell.partition("[")
-    column, unit = column.strip().lower(), rest.rstrip().removesuffix("]").strip()
-    if column not in COLUMNS:
-        raise ValueError(f"unknown column {shown(column)}; known are {', '.join(COLUMNS)}")
-    if not unit:
-        raise ValueError(f"column {column!r} needs its unit in the header, such as {_EXAMPLE}")
-    try:
-        return column, quantity(f"1 {unit}", "m")
-    except UnitError as error:
-        raise ValueError(f"column {column!r}: {error}") from None
+    column, unit = name_and_unit(cell, COLUMNS, _EXAMPLE)
+    return column, metres(column, unit)

@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from ryusa.formats.table import read_table
-from ryusa.units import UnitError, quantity
+from ryusa.formats.table import metres, name_and_unit, read_table
 
+COLUMNS = ("x", "z")
 _EXAMPLE = "'x [m],z [mm]'"
 
 
@@ -20,7 +20,7 @@ def read_line(path: Path, name: str) -> tuple[tuple[float, float], ...]:
     ------
     ParseError : the file is not such a table; names line and column.
     """
-    rows, heads = read_table(path, name, "point", "at least two points", _EXAMPLE, _column, ("x", "z"))
+    rows, heads = read_table(path, name, "point", "at least two points", _EXAMPLE, _column, COLUMNS)
     names = [one for one, _ in heads]
     places = names.index("x"), names.index("z")
     x, z = rows.columns(list(places), ["a place x", "a height z"])
@@ -35,15 +35,5 @@ def _column(cell: str) -> tuple[str, float]:
     ------
     ValueError : an unknown column, or one without a unit of length.
     """
-    if ";" in cell or "\t" in cell:
-        raise ValueError(f"columns are separated by commas, as in {_EXAMPLE}")
-    column, _, rest = cell.partition("[")
-    column, unit = column.strip().lower(), rest.rstrip().removesuffix("]").strip()
-    if column not in {"x", "z"}:
-        raise ValueError(f"unknown column {column[:40]!r}; known are x, z")
-    if not unit:
-        raise ValueError(f"column {column!r} needs its unit in the header, such as {_EXAMPLE}")
-    try:
-        return column, quantity(f"1 {unit}", "m")
-    except UnitError as error:
-        raise ValueError(f"column {column!r}: {error}") from None
+    column, unit = name_and_unit(cell, COLUMNS, _EXAMPLE)
+    return column, metres(column, unit)

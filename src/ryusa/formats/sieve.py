@@ -2,10 +2,9 @@
 
 from pathlib import Path
 
-from ryusa.formats.table import read_table
+from ryusa.formats.table import metres, name_and_unit, read_table
 from ryusa.formats.text import D_HIGH, D_LOW
 from ryusa.model.grading import Grading, GradingFault
-from ryusa.units import UnitError, quantity
 
 COLUMNS = {"diameter": "diameter", "d": "diameter", "finer": "finer", "passing": "finer"}
 _EXAMPLE = "'diameter [mm],finer [%]'"
@@ -49,20 +48,10 @@ def _column(cell: str) -> tuple[str, float]:
     ------
     ValueError : an unknown column, or one without a unit that fits.
     """
-    if ";" in cell or "\t" in cell:
-        raise ValueError(f"columns are separated by commas, as in {_EXAMPLE}")
-    column, _, rest = cell.partition("[")
-    column, unit = column.strip().lower(), rest.rstrip().removesuffix("]").strip()
-    if column not in COLUMNS:
-        raise ValueError(f"unknown column {column[:40]!r}; known are {', '.join(COLUMNS)}")
+    column, unit = name_and_unit(cell, COLUMNS, _EXAMPLE)
     name = COLUMNS[column]
-    if not unit:
-        raise ValueError(f"column {column!r} needs its unit in the header, such as {_EXAMPLE}")
     if name == "finer":
         if unit != "%":
             raise ValueError(f"column {column!r} is in percent, '{column} [%]', not in {unit[:20]!r}")
         return name, 1.0
-    try:
-        return name, quantity(f"1 {unit}", "m")
-    except UnitError as error:
-        raise ValueError(f"column {column!r}: {error}") from None
+    return name, metres(column, unit)

@@ -1,11 +1,12 @@
 """Small CSV tables whose header names the columns with their units."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
 
 from ryusa.errors import ParseError
 from ryusa.formats.csv import cell_column, split_cells
-from ryusa.formats.text import Lines, Rows, opened
+from ryusa.formats.text import Lines, Rows, opened, shown
+from ryusa.units import UnitError, quantity
 
 LARGEST_FILE = 1 << 20  # bytes
 
@@ -51,6 +52,37 @@ def read_table(
         if not where:
             raise lines.error(f"expected {least} below the header")
     return Rows(name, where, cell_column, split_cells), heads
+
+
+def name_and_unit(cell: str, known: Collection[str], example: str) -> tuple[str, str]:
+    """Name and unit of a cell of the header, such as x [mm].
+
+    Raises
+    ------
+    ValueError : an unknown column, or one without a unit.
+    """
+    if ";" in cell or "\t" in cell:
+        raise ValueError(f"columns are separated by commas, as in {example}")
+    column, _, rest = cell.partition("[")
+    column, unit = column.strip().lower(), rest.rstrip().removesuffix("]").strip()
+    if column not in known:
+        raise ValueError(f"unknown column {shown(column)}; known are {', '.join(known)}")
+    if not unit:
+        raise ValueError(f"column {column!r} needs its unit in the header, such as {example}")
+    return column, unit
+
+
+def metres(column: str, unit: str) -> float:
+    """Factor of a column to metres.
+
+    Raises
+    ------
+    ValueError : it is no unit of length.
+    """
+    try:
+        return quantity(f"1 {unit}", "m")
+    except UnitError as error:
+        raise ValueError(f"column {column!r}: {error}") from None
 
 
 def _head(

@@ -1,7 +1,7 @@
 """Frames of one quantity over all parts of a run, read from the disk when they are indexed."""
 
 from bisect import bisect_right
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -189,3 +189,35 @@ class LazyFrames:
             image = part.rows("image", begin, end, grains)
             rows[..., :2] += image * self._lift[:2]
         return rows
+
+
+def read_frames(
+    parts: list[Part], group: str, shapes: Mapping[str, tuple[int, ...]]
+) -> dict[str, NDArray[np.float64]]:
+    """Read datasets of one group over all frames, each as one read-only array.
+
+    Parameters
+    ----------
+    shapes : of one frame of each dataset.
+
+    Raises
+    ------
+    ResultsError : a part lacks one, or has it in another shape.
+    """
+    rows: dict[str, list[NDArray[np.float64]]] = {name: [] for name in shapes}
+    for part in parts:
+        if not part.n_frame:
+            continue
+        with opened(part.path) as file:
+            for name, tail in shapes.items():
+                key, shape = f"{group}/{name}", (part.n_frame, *tail)
+                got = plain_dataset(file, key, part.path)
+                if got.shape != shape or got.dtype != np.float64:
+                    raise ResultsError(
+                        f"{part.path}: '{key}' is {got.shape} of {got.dtype}, expected {shape} of float64"
+                    )
+                rows[name].append(read_dataset(file, key, part.path))
+    found = {name: np.concatenate(one) if one else np.zeros((0, *shapes[name])) for name, one in rows.items()}
+    for array in found.values():
+        array.flags.writeable = False
+    return found

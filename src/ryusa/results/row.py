@@ -5,11 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ryusa.errors import ResultsError
 from ryusa.model import ColumnRow
 from ryusa.results import schema
-from ryusa.results.hdf5 import opened, plain_dataset, read_dataset
-from ryusa.results.lazy import Part
+from ryusa.results.lazy import Part, read_frames
 
 Floats = NDArray[np.float64]
 
@@ -64,21 +62,5 @@ def read_row(parts: list[Part], t: Floats, row: ColumnRow) -> RowFrames:
     ------
     ResultsError : a part lacks it, or has it in another shape.
     """
-    names = row.frame_shapes()
-    rows: dict[str, list[Floats]] = {name: [] for name in names}
-    for part in parts:
-        if not part.n_frame:
-            continue
-        with opened(part.path) as file:
-            for name, tail in names.items():
-                key, shape = f"{schema.ROW}/{name}", (part.n_frame, *tail)
-                got = plain_dataset(file, key, part.path)
-                if got.shape != shape or got.dtype != np.float64:
-                    raise ResultsError(
-                        f"{part.path}: '{key}' is {got.shape} of {got.dtype}, expected {shape} of float64"
-                    )
-                rows[name].append(read_dataset(file, key, part.path))
-    found = {name: np.concatenate(one) if one else np.zeros((0, *names[name])) for name, one in rows.items()}
-    for array in found.values():
-        array.flags.writeable = False
+    found = read_frames(parts, schema.ROW, row.frame_shapes())
     return RowFrames(row, t, **found)

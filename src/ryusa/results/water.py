@@ -2,14 +2,11 @@
 
 from dataclasses import dataclass
 
-import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from ryusa.errors import ResultsError
 from ryusa.results import schema
-from ryusa.results.hdf5 import opened, plain_dataset, read_dataset
-from ryusa.results.lazy import Part
+from ryusa.results.lazy import Part, read_frames
 
 Floats = NDArray[np.float64]
 
@@ -56,22 +53,5 @@ def read_water(parts: list[Part], t: Floats, z: Floats, faces: Floats) -> WaterF
         **{name: (len(faces),) for name in schema.WATER_FACES},
         **{name: () for name in schema.WATER_NUMBERS},
     }
-    rows: dict[str, list[Floats]] = {name: [] for name in names}
-    for part in parts:
-        if not part.n_frame:
-            continue
-        with opened(part.path) as file:
-            for name, tail in names.items():
-                rows[name].append(_profile(file, name, (part.n_frame, *tail), part))
-    found = {name: np.concatenate(one) if one else np.zeros((0, *names[name])) for name, one in rows.items()}
-    for array in found.values():
-        array.flags.writeable = False
+    found = read_frames(parts, schema.WATER, names)
     return WaterFrames(t=t, z=z, faces=faces, **found)
-
-
-def _profile(file: h5py.File, name: str, shape: tuple[int, ...], part: Part) -> Floats:
-    key = f"{schema.WATER}/{name}"
-    got = plain_dataset(file, key, part.path)
-    if got.shape != shape or got.dtype != np.float64:
-        raise ResultsError(f"{part.path}: '{key}' is {got.shape} of {got.dtype}, expected {shape} of float64")
-    return read_dataset(file, key, part.path)

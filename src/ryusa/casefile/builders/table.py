@@ -2,17 +2,17 @@
 
 import math
 from dataclasses import replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ryusa.casefile.builders.schema import FromFile, RunSection, TableSection
-from ryusa.casefile.files import folder_of, inside
+from ryusa.casefile.files import contents, folder_of, inside
 from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.section import given
-from ryusa.errors import CaseError, ParseError, ResultsError
+from ryusa.errors import CaseError, ResultsError
 from ryusa.formats.grains import GrainTable
 from ryusa.formats.read import read_grains
 from ryusa.formats.text import ReadOptions
@@ -50,10 +50,7 @@ def area_of_file(case: "Case") -> float | None:
 
 
 def _table_of_file(case: "Case", build: TableSection) -> GrainTable:
-    folder, path = folder_of(case), inside(case, "build.file", build.file)
-    if not path.is_file():
-        allowed = f"no such file in the folder of the case, {folder}"
-        raise CaseError("build.file", build.file, allowed)
+    path = inside(case, "build.file", build.file)
     options = ReadOptions(
         frame=build.frame,
         length=quantity(f"1 {build.length_unit}", "m"),
@@ -61,24 +58,14 @@ def _table_of_file(case: "Case", build: TableSection) -> GrainTable:
         stated=given(build, "length_unit") and given(build, "time_unit"),
         fixed_types=build.fixed_types,
     )
-    table = _read_now(path, "build.file", build.file, build.format, options)
+    table = contents(case, "build.file", build.file, path, partial(_read, build.format, options))
     if "d" in table.columns:
         return table
     return replace(table, columns={**table.columns, "d": np.full(table.n, reference_diameter(case))})
 
 
-def _read_now(path: Path, key: str, name: str, kind: str, options: ReadOptions) -> GrainTable:
-    try:
-        stamp = path.stat()
-        return _read(path, name, kind, options, stamp.st_mtime_ns, stamp.st_size)
-    except OSError as error:
-        raise CaseError(key, name, f"cannot be read: {error.strerror or error}") from None
-    except ParseError as error:
-        raise CaseError(key, None, str(error)) from error
-
-
 @lru_cache(maxsize=4)
-def _read(path: Path, name: str, kind: str, options: ReadOptions, _changed: int, _size: int) -> GrainTable:
+def _read(kind: str, options: ReadOptions, path: Path, name: str, _changed: int, _size: int) -> GrainTable:
     return read_grains(path, name, kind, options)
 
 
@@ -89,7 +76,7 @@ def _table_of_run(case: "Case", build: RunSection) -> GrainTable:
     folder, path = folder_of(case), inside(case, "build.folder", build.folder)
     start = folder / schema.START
     if schema.is_run_folder(folder) and start.is_file() and not start.is_symlink():
-        return _read_now(start, "build.folder", schema.START, "csv", ReadOptions())
+        return contents(case, "build.folder", schema.START, start, partial(_read, "csv", ReadOptions()))
     try:
         changed = (path / schema.PARTS).stat().st_mtime_ns
     except OSError:

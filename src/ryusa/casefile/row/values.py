@@ -10,11 +10,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ryusa.casefile.column.schema import column_keys
-from ryusa.casefile.files import folder_of, inside
+from ryusa.casefile.files import contents, inside
 from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.motion import slope
 from ryusa.casefile.row.schema import RowDamSection, RowSection, row_keys
-from ryusa.errors import CaseError, ParseError
 from ryusa.formats.line import read_line
 from ryusa.laws import turbulence, water
 from ryusa.model.arrays import Floats
@@ -65,16 +64,7 @@ def line_points(case: "Case", key: str, given: Points | str) -> Points:
     """
     if not isinstance(given, str):
         return given
-    path = inside(case, key, given)
-    if not path.is_file():
-        raise CaseError(key, given, f"no such file in the folder of the case, {folder_of(case)}")
-    try:
-        stamp = path.stat()
-        return _read(path, given, stamp.st_mtime_ns, stamp.st_size)
-    except OSError as error:
-        raise CaseError(key, given, f"cannot be read: {error.strerror or error}") from None
-    except ParseError as error:
-        raise CaseError(key, None, str(error)) from error
+    return contents(case, key, given, inside(case, key, given), _read)
 
 
 @lru_cache(maxsize=4)
