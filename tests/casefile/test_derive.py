@@ -165,5 +165,8 @@ def test_every_shipped_case_is_good_and_stays_in_its_limits(packaged: list[Path]
     for file in packaged:
         one = read(file)
         assert one.title
-        assert derive(one).steps_per_contact >= 10.0 - 1e-9
+        found = derive(one)
+        grains = found.n_grain + found.n_fixed
+        assert grains or one.water.row is not None  # the step of water alone knows no contact
+        assert not grains or found.steps_per_contact >= 10.0 - 1e-9
         assert len(explain(one)) > 20
