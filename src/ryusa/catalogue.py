@@ -32,6 +32,7 @@ class MeasureEntry:
     builders : kinds of `[build]` whose runs have it in their report.
     fed : whether it can be had of a run with feeds or exits, where grains are nan in frames while away.
     clumps : whether it can be had of a run with clumps, whose spheres are free grains of the scene.
+    grainless : whether it can be had of a run of water alone.
     precision : its averages whose standard error can end a run; each is a key of `stop.precision`.
     numbers : names and SI units of those of its numbers that `ryusa soften` takes; durations and overlaps of
         contacts are left out, for they follow from the stiffness alone.
@@ -50,6 +51,7 @@ class MeasureEntry:
     builders: tuple[str, ...] = ()
     fed: bool = False
     clumps: bool = False
+    grainless: bool = False
     precision: tuple[str, ...] = ()
     numbers: tuple[tuple[str, str], ...] = ()
     table: bool = False
@@ -77,7 +79,7 @@ class PictureEntry:
     settled : whether the picture ignores the time up to `record.settle` by default.
     measure : name of the measure that it draws, or "".
     builders : kinds of `[build]` whose runs have it in their report.
-    fed, clumps : as of a measure; those of a picture of a measure are the measure's.
+    fed, clumps, grainless : as of a measure; those of a picture of a measure are the measure's.
     """
 
     name: str
@@ -89,6 +91,7 @@ class PictureEntry:
     builders: tuple[str, ...] = ()
     fed: bool = False
     clumps: bool = False
+    grainless: bool = False
 
     @property
     def given_as(self) -> tuple[str, ...]:
@@ -232,10 +235,10 @@ MEASURES = (
                  needs=("traffic",)),
     MeasureEntry("long_section", "ryusa.measure.long_section:long_section",
                  "depth, surface, speed, Froude number and discharge along a row of columns", ("t",),
-                 fed=True, clumps=True, table=True, needs=("row",)),
+                 fed=True, clumps=True, grainless=True, table=True, needs=("row",)),
     MeasureEntry("x_t", "ryusa.measure.long_section:depth_history",
                  "depth, discharge and Froude number of a row of columns over distance and time", WINDOW,
-                 fed=True, clumps=True, table=True, needs=("row",)),
+                 fed=True, clumps=True, grainless=True, table=True, needs=("row",)),
 )  # fmt: skip
 
 PICTURES = (
@@ -303,10 +306,10 @@ PICTURES = (
                  clumps=True),
     PictureEntry("long_section", "ryusa.figures.long_section:long_section",
                  "bottom, water, energy line and Froude number along a row of columns",
-                 ("t",), measure="long_section", fed=True, clumps=True),
+                 ("t",), measure="long_section", fed=True, clumps=True, grainless=True),
     PictureEntry("x_t", "ryusa.figures.long_section:x_t",
                  "depth of a row of columns over distance and time", WINDOW, measure="x_t",
-                 fed=True, clumps=True),
+                 fed=True, clumps=True, grainless=True),
     PictureEntry("vibration", "ryusa.figures.runs:vibration", "grains that do not come to rest",
                  ("grains", *WINDOW)),
 )  # fmt: skip
@@ -333,18 +336,25 @@ def load(function: str) -> Callable[..., Any]:
 
 
 def called(entry: MeasureEntry | PictureEntry) -> Callable[..., Any]:
-    """Import what a measure or picture calls; it refuses runs that it is not `fed` or `clumps` for.
+    """Import what a measure or picture calls; it refuses runs that its flags do not allow.
 
     Raises
     ------
     ResultsError : by the function returned.
     """
     function = load(entry.function)
-    if (entry.fed and entry.clumps) or (isinstance(entry, PictureEntry) and entry.measure):
+    if (entry.fed and entry.clumps and entry.grainless) or (
+        isinstance(entry, PictureEntry) and entry.measure
+    ):
         return function
 
     @wraps(function)
     def refusing(run: Any, *args: Any, **options: Any) -> Any:
+        if not entry.grainless and not run.scene.n_grain and not run.scene.n_fixed:
+            raise ResultsError(
+                f"{entry.name} needs grains, and this run has water alone; of such a run there are "
+                f"{_names('grainless')}"
+            )
         if not entry.fed and getattr(run.scene, "traffic", None) is not None:
             raise ResultsError(
                 f"{entry.name} needs the same grains in every frame, and this run has feeds or exits, which "

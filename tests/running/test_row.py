@@ -9,8 +9,13 @@ import pytest
 
 import ryusa
 from ryusa.casefile.read import read_text
-from ryusa.errors import CaseError, WaterError
+from ryusa.catalogue import MEASURES, PICTURES
+from ryusa.errors import CaseError, ResultsError, WaterError
+from ryusa.measure.long_section import long_section
+from ryusa.report.page import report_page
 from ryusa.results import Results, schema
+from ryusa.view.film import film
+from ryusa.view.page import view_page
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "faults"))
 from campaign import differences
@@ -94,6 +99,30 @@ def test_the_discharge_of_a_frame_is_what_passed_in_its_step_at_open_ends_too(tm
     assert found is not None
     assert np.allclose(np.diff(found.passed, axis=0) / 0.005, found.discharge[1:], rtol=1e-9, atol=1e-12)
     assert (found.discharge[-1, [0, -1]] > 0.01).all()
+
+
+def test_a_long_section_has_the_stress_of_the_flow_up_to_the_inlet(weir: Results) -> None:
+    tau = long_section(weir).tau
+    assert tau[0] == pytest.approx(tau[1], rel=0.5)  # half of it with the inlet's own, 0
+
+
+def test_a_page_or_film_of_water_alone_is_refused_by_name_and_a_report_goes_without(
+    weir: Results, tmp_path: Path
+) -> None:
+    with pytest.raises(ResultsError, match="no free grains to show in motion; ryusa draw RUN long_section"):
+        view_page(weir)
+    with pytest.raises(ResultsError, match="has no free grains"):
+        film(weir, tmp_path / "film.webp")
+    page = report_page([weir], size=1.0e6)
+    assert "has no free grains to show in motion" in page
+    assert "x_t" in page and "long_section" in page
+
+
+@pytest.mark.parametrize("entry", [one for one in (*MEASURES, *PICTURES) if not one.grainless])
+def test_what_needs_grains_refuses_water_alone_by_name(weir: Results, entry: Any) -> None:
+    call = weir.measure if entry in MEASURES else weir.draw
+    with pytest.raises(ResultsError, match="needs grains, and this run has water alone"):
+        call(entry.name)
 
 
 def test_a_run_that_was_stopped_resumes_with_the_same_bits(

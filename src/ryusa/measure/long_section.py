@@ -10,6 +10,7 @@ from ryusa.errors import ResultsError
 from ryusa.measure._run import Run
 from ryusa.measure.snapshot import scene_at
 from ryusa.model import ColumnRow
+from ryusa.model.row import EndKind
 from ryusa.results.row import RowFrames
 
 Floats = NDArray[np.float64]
@@ -84,6 +85,9 @@ def long_section(run: Run, t: float | None = None) -> LongSection:
     g_x, _, minus_g_z = np.asarray(scene_at(run, float(found.t[k])).gravity).tolist()
     g_z = -minus_g_z
     depth, through = found.depth[k], _between(row.periodic, found.discharge[k])
+    stress = found.tau[k].copy()
+    if row.upstream is not None and row.upstream.kind is EndKind.DISCHARGE:
+        stress[0] = stress[1]  # the speeds of an inlet are given, so that no stress is solved for
     wet = depth > THIN
     speed = np.divide(through, depth, out=np.full(len(depth), math.nan), where=wet)
     wave = np.sqrt(g_z * np.maximum(depth, 0.0))
@@ -100,7 +104,7 @@ def long_section(run: Run, t: float | None = None) -> LongSection:
         froude=np.divide(np.abs(speed), wave, out=np.full(len(depth), math.nan), where=wet),
         critical=np.cbrt(through**2 / g_z),
         energy=found.surface[k] + speed**2 / (2.0 * math.hypot(g_x, g_z)),
-        tau=_between(row.periodic, found.tau[k]),
+        tau=_between(row.periodic, stress),
         dams=_dams(row),
     )
 

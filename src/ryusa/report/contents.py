@@ -19,6 +19,7 @@ DPI = 200  # of a picture in the page
 _ONE_COLUMN = 5.0  # inch; a wider picture takes the whole width of the page
 _OWN = ("run", "next")  # rows that a page has no use for: its title, and a command with the path of a machine
 _LINES = 400  # of the case file that are shown
+_OF_ROW = [one.name for one in MEASURES if "row" in one.needs]
 
 
 @dataclass(frozen=True)
@@ -87,7 +88,8 @@ def contents_of(results: Results, *, size: float, progress: Callable[[float], No
             _attempt(found, f"measure {entry.name}", lambda one=entry: _measure(found, results, one))
     progress(0.2)
     for entry in PICTURES:
-        if kind in entry.builders or (not kind and not entry.settled and not entry.measure):
+        of_row = results.row is not None and entry.measure in _OF_ROW
+        if of_row or kind in entry.builders or (not kind and not entry.settled and not entry.measure):
             _attempt(found, f"picture {entry.name}", lambda one=entry: _draw(found, results, one))
     progress(0.5)
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
+from ryusa.errors import ResultsError
 from ryusa.model.walls import box_of as walls_box
 from ryusa.results import Results
 from ryusa.view.flow import surfaces
@@ -13,6 +14,18 @@ from ryusa.view.flow import surfaces
 Floats = NDArray[np.float64]
 
 FAR = 3.0  # heights of what the grains take up, above which the surface of the water is not shown
+
+
+def needs_grains(results: Results) -> None:
+    """Say that there is nothing to show of a run without free grains.
+
+    Raises
+    ------
+    ResultsError : it has none.
+    """
+    if not results.scene.n_grain:
+        water = "; ryusa draw RUN long_section shows its water" if results.row is not None else ""
+        raise ResultsError(f"{results.folder}: has no free grains to show in motion{water}")
 
 
 def box_of(results: Results, d: Floats, centres: Iterable[Floats]) -> tuple[Floats, Floats]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ryusa.errors import CaseError, ResultsError
 from ryusa.results import Results
 from ryusa.spelling import nearest_word
-from ryusa.view.box import Floats, box_of
+from ryusa.view.box import Floats, box_of, needs_grains
 from ryusa.view.camera import VIEWS, Camera
 from ryusa.view.colouring import COLOURINGS, Colouring, value_range
 from ryusa.view.film_file import check, write
@@ -90,8 +90,9 @@ def film(
     Raises
     ------
     CaseError : names the parameter that is wrong, and what is allowed.
-    ResultsError : fewer than two frames in the window, or a file that cannot be written.
+    ResultsError : no grains, fewer than two frames in the window, or a file that cannot be written.
     """
+    needs_grains(results)
     if view is None:
         view = "side" if results.scene.plane_case else "oblique"
     one = _colouring(colour)

@@ -19,7 +19,7 @@ from ryusa.errors import ResultsError
 from ryusa.model import Scene, Walls
 from ryusa.model.wall_shape import lines_of, triangles_of
 from ryusa.results import Results
-from ryusa.view.box import box_of
+from ryusa.view.box import box_of, needs_grains
 from ryusa.view.encode import Blob, add_colours, add_positions, positions, presence
 from ryusa.view.flow import flow_of
 from ryusa.view.picture import MOST_FACES
@@ -61,7 +61,7 @@ def view_page(
 
     Raises
     ------
-    ResultsError : no frame in the window.
+    ResultsError : no grains, or no frame in the window.
     """
     data, blob = encoded(results, begin=begin, end=end, size=size, progress=progress)
     return _template("page.html").render(title=data["title"], parts=component([(data, blob)]))
@@ -75,7 +75,13 @@ def encoded(
     size: float = SIZE,
     progress: Callable[[float], None] = lambda share: None,
 ) -> tuple[dict[str, Any], str]:
-    """What a page shows of a run: a table of keys, and its arrays, compressed and in base64."""
+    """What a page shows of a run: a table of keys, and its arrays, compressed and in base64.
+
+    Raises
+    ------
+    ResultsError : no grains, or no frame in the window.
+    """
+    needs_grains(results)
     times = results.frames.t
     window = np.flatnonzero((times >= begin) & (times <= end))
     if len(window) == 0:
