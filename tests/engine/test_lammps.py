@@ -26,9 +26,22 @@ from ryusa.laws.families import (
     Rebound,
     Rolling,
     Slip,
+    SurfaceRule,
     WaterTorque,
 )
-from ryusa.model import ContactLaw, Materials, RigidBodies, RollingLaw, Scene, Term, Traffic, Walls, Water
+from ryusa.model import (
+    Column,
+    ColumnRow,
+    ContactLaw,
+    Materials,
+    RigidBodies,
+    RollingLaw,
+    Scene,
+    Term,
+    Traffic,
+    Walls,
+    Water,
+)
 from ryusa.model.scene import EventRule
 from ryusa.model.walls import N_MOTION, N_SERVO
 
@@ -319,6 +332,9 @@ def of_clumps(fixed):
     return replace(fixed, bodies=pair)
 
 
+ONE_ROW = ColumnRow(
+    Column(z_low=0.0, dz=0.01, n=9, depth=0.05, surface=SurfaceRule.VOLUME), 0.1, np.zeros(4), 9.81
+)
 ONE_MATERIAL = Materials(("a",), np.zeros(2, np.int8), (), ())
 ELASTIC = {"youngs_modulus": 1e7, "poisson_ratio": 0.25, "speed": 0.1}
 
@@ -350,6 +366,7 @@ ELASTIC = {"youngs_modulus": 1e7, "poisson_ratio": 0.25, "speed": 0.1}
         (of_water(drag_of_form=DragOfForm.HAIDER_LEVENSPIEL), "water.drag_of_form", "drag_of_form='sphere'"),
         (of_scene(events=EventRule.ALL), "record.events", "--set record.events='none'"),
         (of_scene(forces=True), "record.forces", "--set record.forces='false'"),
+        (of_scene(row=ONE_ROW), "water.row", "one column would be"),
         (of_scene(traffic=Traffic()), "[[feeds]] and [[exits]]", "a fixed number of grains"),
         (of_scene(materials=ONE_MATERIAL), "[materials]", "one contact law"),
         (of_walls(False), "[[walls]]", "planes and fixed grains"),
@@ -374,7 +391,7 @@ KNOWN = {
     Water: "profile u_star k_rough z_zero u_uniform depth above nu rho_w drag c_d drag_of_form a_2 c_m "
     "torque rebound st_c e_least asperity film_reach buoyancy hindrance hindrance_exponent lift c_l magnus",
     Scene: "d m m_added m_weight inertia x_fixed d_fixed fixed_active plane_normal plane_point plane_active "
-    "contact dt gravity rolling rotation water column traffic plane_case period world_low world_high "
+    "contact dt gravity rolling rotation water column row traffic plane_case period world_low world_high "
     "slab_width overlap_limit events forces tracked groups walls materials bodies",
 }
 

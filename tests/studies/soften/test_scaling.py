@@ -108,9 +108,11 @@ def test_changes_to_the_case_are_kept():
     assert (soft.contact.restitution, soft.stop.time) == (0.5, 1.0)
 
 
-def test_a_single_impact_and_grains_from_a_file_are_refused_by_name(tmp_path):
+def test_a_single_impact_water_alone_and_grains_from_a_file_are_refused_by_name(tmp_path):
     with pytest.raises(CaseError, match=r"build.kind = 'drop': cannot be softened.*ryusa design"):
         refuse_if_not_softenable(task("drop").read())
+    with pytest.raises(CaseError, match=r"water.row: cannot be softened: it is water alone"):
+        refuse_if_not_softenable(task("weir").read())
     shutil.copy(case_path("validation/frey_2014.csv"), tmp_path / "grains.csv")
     text = case_path("heap.toml").read_text(encoding="utf-8")
     build, timeline = text.index("[build]"), text.index("[[timeline]]")
@@ -122,11 +124,11 @@ def test_a_single_impact_and_grains_from_a_file_are_refused_by_name(tmp_path):
         refuse_if_not_softenable(case_run(tmp_path / "case.toml").read())
 
 
-def test_every_case_of_the_package_can_be_softened_but_the_drop():
+def test_every_case_of_the_package_can_be_softened_but_the_drop_and_water_alone():
     from ryusa.cases import case_files
 
     for name, path in case_files().items():
-        if name == "drop":
+        if name in {"drop", "weir"}:
             continue
         one = case_run(path)
         refuse_if_not_softenable(one.read())

@@ -24,8 +24,15 @@ _ALIKE = 1e-9  # largest relative difference of ratios that are the same for all
 
 def refusals_of_lammps(scene: Scene) -> tuple[str, ...]:
     """Reasons why LAMMPS cannot simulate a scene that the laws of ryusa can; () when it can."""
-    row = ["a row of columns of water goes with engine 'cpu' alone"] if scene.row is not None else []
-    return tuple([*row, *_contact(scene), *_rolling(scene), *_films(scene), *_kinds(scene), *_records(scene)])
+    return tuple(
+        [*_row(scene), *_contact(scene), *_rolling(scene), *_films(scene), *_kinds(scene), *_records(scene)]
+    )
+
+
+def _row(scene: Scene) -> list[str]:
+    if scene.row is None:
+        return []
+    return ["water.row: a row of columns of water goes with engine 'cpu' alone; one column would be carried"]
 
 
 def _instead(key: str, value: str) -> str:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from ryusa.casefile.builders.schema import DropSection, FromFile
 from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.derive import derive
+from ryusa.casefile.row.values import water_alone
 from ryusa.errors import CaseError
 from ryusa.laws.families import Arm, Rolling
 from ryusa.study.task import CaseRun
@@ -34,6 +35,8 @@ def refuse_if_not_softenable(case: "Case") -> None:
             "materials", ", ".join(case.materials),
             "cannot be softened: how contacts of several materials go with the stiffness is not built",
         )  # fmt: skip
+    if water_alone(case):
+        raise CaseError("water.row", None, "cannot be softened: it is water alone, which has no stiffness")
     if isinstance(case.build, DropSection):
         raise CaseError(
             "build.kind", case.build.kind,
