@@ -105,6 +105,8 @@ def time_step(
 ) -> int:
     """One step, backward Euler, solved to round-off; per_dt = 1/dt, 0 for the steady state.
 
+    Parameters
+    ----------
     given_rows : u and content before the step, first guess of u, then the fields of `Sources`; shape
         (N_GIVEN, n).
     rows, faces : output; u, w, content, shear, du_dt, dtau_dz, shape (6, n); tau, nu_t, shape (2, n + 1).
