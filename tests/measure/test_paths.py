@@ -69,6 +69,11 @@ def test_the_grain_that_goes_farthest_is_found_within_the_window(make):
     assert farthest(run, begin=t[-1]) == 0  # one frame alone says nothing
 
 
+def accounted(tally):
+    """A run of one grain of which the account of energy alone is known."""
+    return SimpleNamespace(scene=SimpleNamespace(n_grain=1, n_fixed=0), tally=tally)
+
+
 def test_the_energy_account_closes_where_its_terms_say_so():
     tally = {name: np.zeros(3) for name in TALLY.names}
     tally["t"] = np.arange(3.0)
@@ -76,10 +81,10 @@ def test_the_energy_account_closes_where_its_terms_say_so():
     tally[Term.START.name.lower()] = np.ones(3)
     tally["dash_n"] = np.array([0.0, 0.3, 0.3])
     tally["drag"] = np.array([0.0, 0.0, 0.2])
-    found = energy(SimpleNamespace(tally=tally))
+    found = energy(accounted(tally))
     np.testing.assert_allclose(found.imbalance, 0.0, atol=1e-15)
     tally["slide"] = np.array([0.0, 0.0, 0.05])
-    assert energy(SimpleNamespace(tally=tally)).residual == pytest.approx(0.05)
+    assert energy(accounted(tally)).residual == pytest.approx(0.05)
     assert found.rows()[2]["given_drag_J"] == 0.2
 
 
@@ -89,7 +94,7 @@ def test_the_frame_before_the_first_step_is_not_part_of_the_account():
     tally["kinetic"] = np.array([1.3, 1.0, 0.7])  # before the first step nothing is booked
     tally[Term.START.name.lower()] = np.array([0.0, 1.0, 1.0])
     tally["dash_n"] = np.array([0.0, 0.0, 0.3])
-    found = energy(SimpleNamespace(tally=tally))
+    found = energy(accounted(tally))
     assert found.t.tolist() == [1.0, 2.0]
     assert found.residual == pytest.approx(0.0, abs=1e-15)
 
@@ -104,7 +109,7 @@ def test_the_residual_is_that_of_the_tally_wherever_heights_begin():
             overlap_max=0.0, overlap_grain=0, overlap_step=0, speed_max=0.0, spin_max=0.0, n_contact=0,
         )  # fmt: skip
         rows = np.array([tally_row(one)], dtype=TALLY)
-        found = energy(SimpleNamespace(tally={name: rows[name] for name in TALLY.names}))
+        found = energy(accounted({name: rows[name] for name in TALLY.names}))
         assert found.residual == pytest.approx(one.residual, rel=1e-9)
         assert one.residual == pytest.approx(0.08 / 0.5, rel=1e-9)
         assert found.rows()[0]["given_step_J"] == 0.02
@@ -122,4 +127,4 @@ def test_csv_reads_back_without_loss(make, tmp_path):
 def test_a_run_of_an_engine_without_an_account_has_none_to_measure():
     tally = {name: np.full(3, np.nan) for name in TALLY.names}
     with pytest.raises(ResultsError, match="keeps no account of energy"):
-        energy(SimpleNamespace(tally=tally))
+        energy(accounted(tally))
