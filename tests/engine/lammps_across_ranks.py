@@ -1,15 +1,26 @@
 """Run by `mpirun -np N`: grains collide across the border of ranks; the first rank prints where they end."""
 
 import json
+import math
 import sys
 from dataclasses import replace
 
 import numpy as np
+from tests.engine.conftest import contact_law
 from tests.engine.heaps import COLUMN
 
 from ryusa.build import scene
 from ryusa.engine import registry
-from ryusa.laws.families import BedKind, ContactTiming, Fluctuations, Mixing, Slip, SurfaceRule
+from ryusa.laws.families import (
+    BedKind,
+    ContactTiming,
+    Drag,
+    Fluctuations,
+    Mixing,
+    Profile,
+    Slip,
+    SurfaceRule,
+)
 from ryusa.model import Column, Water
 from ryusa.model.fluid import N_SAMPLED, SUBMERGED, U
 from ryusa.model.scene import EventRule
@@ -98,6 +109,57 @@ def seen(engine, water):
     }  # fmt: skip
 
 
+def owners(engine, fixed):
+    """Rank of every grain, by what each rank holds."""
+    of = np.zeros(fixed.n_grain, int)
+    for rank, rows in enumerate(engine._all("rows", 0, fixed.n_grain)):
+        of[rows.ids] = rank
+    return of.tolist()
+
+
+def closed_forms():
+    """A collision across the border of ranks, a grain that begins to roll as it crosses it, two that fall."""
+    dry = {"slip": Slip.TOTAL, "timing": ContactTiming.AT_STEPS, "events": EventRule.NONE}
+    found = {"rebound": [], "owners": []}
+    for phase in (0.0, 0.25, 0.5, 0.75):
+        made = scene(
+            [[0.0, 0.0, 0.0], [1.0001 * D, 0.0, 0.0]], D, v=[[0.1, 0.0, 0.0], [-0.1, 0.0, 0.0]], gravity=0.0,
+            restitution=0.7, steps_per_contact=50.0, **dry,
+        )  # fmt: skip
+        apart = np.array([[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]]) * 0.1 * phase * made[0].dt
+        first = replace(made[1], x=made[1].x + apart)
+        engine = registry.create("lammps")
+        engine.load(made[0], first)
+        found["owners"].append(owners(engine, made[0]))
+        engine.advance(125).raise_if_any()
+        found["rebound"].append(float(np.diff(engine.grains().v[:, 0])[0]) / 0.2)
+    law = contact_law(k_n=1e3, zeta_n=0.5, zeta_s=0.3, slip=Slip.TOTAL, mu=0.3)
+    floor = [("floor", (0.0, 0.0, 0.0), (0.0, 0.0, 1.0))]
+    # the second lies still: the border is half way
+    places = [[0.0, 0.0, 0.5 * D], [2.4 * D, 1.1 * D, 0.5 * D]]
+    made = scene(
+        places, D, v=[[0.2, 0.0, 0.0], [0.0] * 3], planes=floor, contact=law, allow_overlap=True,
+        events=EventRule.NONE,
+    )  # fmt: skip
+    sunk = float(made[0].m_weight[0]) * 9.80665 / law.k_n
+    engine = registry.create("lammps")
+    engine.load(made[0], replace(made[1], x=made[1].x - [0.0, 0.0, sunk]))
+    found["slide owners"] = [owners(engine, made[0])]
+    engine.advance(math.ceil(0.022 / made[0].dt)).raise_if_any()
+    found["slide owners"].append(owners(engine, made[0]))
+    end = engine.grains()
+    found |= {"speed": end.v[0, 0], "surface": end.omega[0, 1] * 0.5 * D, "still": np.abs(end.v[1]).max()}
+    water = Water(profile=Profile.STILL, drag=Drag.SCHILLER_NAUMANN)
+    made = scene([[0.0, 0.0, 1.0], [8.0 * D, 0.0, 1.0]], D, water=water, stiffness=1.0, **dry)
+    fixed = replace(made[0], world_low=(-math.inf,) * 3)
+    engine = registry.create("lammps")
+    engine.load(fixed, made[1])
+    found["fall owners"] = owners(engine, fixed)
+    engine.advance(math.ceil(0.6 / fixed.dt)).raise_if_any()
+    fall = (-engine.grains().v[:, 2]).tolist()
+    return {**found, "fall": fall, "weight": float(fixed.m_weight[0] * 9.80665)}
+
+
 def broken(kind, words):
     """`ryusa` with these words, until something happens to the second rank alone."""
     from ryusa.cli import main as ryusa
@@ -125,6 +187,9 @@ def main() -> None:
         return
     with registry.leading("lammps") as leads:
         if not leads:
+            return
+        if sys.argv[1] == "closed forms":
+            print(json.dumps(closed_forms()))
             return
         if sys.argv[1] == "two-way":
             print(json.dumps(in_a_column("lammps")))

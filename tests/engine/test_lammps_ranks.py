@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.engine.lammps_across_ranks import in_a_column
+from tests.engine.lammps_across_ranks import D, in_a_column
 
 from ryusa.engine import registry
 from ryusa.results import Results
@@ -59,6 +59,42 @@ def words_for(folder, out, *more):
     settings = [word for one in (*FLOW, *more) for word in ("--set", one)]
     case = [str(folder / "flow.toml"), "--engine", "lammps", "-o", str(folder / out)]
     return ["-m", "ryusa", "run", *case, *settings]
+
+
+@pytest.fixture(scope="module")
+def closed_forms():
+    """What one and two ranks find."""
+    words = "-m", "tests.engine.lammps_across_ranks", "closed forms"
+    return {ranks: json.loads(done(ranks, *words).stdout) for ranks in (1, 2)}
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_a_collision_across_the_border_at_50_steps_has_the_restitution_of_the_case(closed_forms, ranks):
+    found = closed_forms[ranks]
+    assert found["owners"] == [[0, ranks - 1]] * 4
+    assert np.mean(found["rebound"]) == pytest.approx(0.7, abs=2e-3)
+    assert found["rebound"] == pytest.approx([0.7] * 4, abs=1e-2)
+    assert found["rebound"] == pytest.approx(closed_forms[1]["rebound"], abs=1e-13)
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_a_sliding_grain_ends_rolling_at_five_sevenths_of_its_speed(closed_forms, ranks):
+    found = closed_forms[ranks]
+    assert found["slide owners"] == [[0, ranks - 1], [ranks - 1, ranks - 1]]
+    assert found["speed"] == pytest.approx(0.2 * 5.0 / 7.0, rel=3e-4)
+    assert found["surface"] == pytest.approx(found["speed"], rel=1e-3)
+    assert found["still"] < 1e-6
+    assert found["speed"] == pytest.approx(closed_forms[1]["speed"], rel=1e-10)
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_grains_of_every_rank_fall_at_their_terminal_velocity(closed_forms, ranks):
+    found = closed_forms[ranks]
+    assert found["fall owners"] == [0, ranks - 1]
+    for fall in found["fall"]:
+        re = fall * D / 1e-6
+        drag = 0.5 * 1000.0 * np.pi / 4.0 * D**2 * fall**2 * 24.0 / re * (1.0 + 0.15 * re**0.687)
+        assert drag == pytest.approx(found["weight"], rel=1e-5)
 
 
 @pytest.mark.parametrize("water", ["dry", "column"])
