@@ -12,6 +12,7 @@ FULL_ALONE = {
     "silo",
     "collapse",
     "channel_collapse",
+    "gravel_heap",
     "drum",
     "plane_shear",
     "split_bottom",

@@ -71,6 +71,10 @@ SAMPLING: Mapping[str, Sampling] = {
         (0, 1), None, "s",
         "the foot is the outermost grain of one heap; between seeds it scatters by some per cent",
     ),
+    "gravel_heap": Sampling(
+        (0, 1), None, "s",
+        "the angle is that of all sides of one heap; between seeds it scatters by some tenths of a degree",
+    ),
     "drum": Sampling(
         (0, 1), None, "s",
         "the angle is a mean over half a turn or more; between seeds it scatters by some tenths of a degree",

@@ -27,6 +27,7 @@ NAMES = (
     "silo",
     "collapse",
     "channel_collapse",
+    "gravel_heap",
     "drum",
     "plane_shear",
     "split_bottom",
