@@ -68,14 +68,14 @@ def test_weights_add_up_to_one_and_to_the_place_of_a_grain():
     for ends in ({}, {"upstream": WALLS[0], "downstream": WALLS[1]}):
         row = row_of(column_of(1.0), 0.3, 10, **ends)
         places = GrainPlaces.of(len(x), 10)
-        assert place_grains(x, 0.0, shape_of(row), places) == -1
+        assert place_grains(x, 0.0, 0.0, shape_of(row), places) == -1
         assert places.weight.sum(axis=1) == pytest.approx(1.0, abs=1e-15)
         assert (places.weight >= 0.0).all()
         middle = (places.at - row.inner.start + 0.5) * row.dx
         inside = (x > 0.03) & (x < 0.27)
         assert (places.weight * middle).sum(axis=1)[inside] == pytest.approx(x[inside], abs=1e-15)
         bottom = 0.1 * row.x + 0.02
-        place_grains(x, 0.0, shape_of(replace(row, bottom=bottom)), places)
+        place_grains(x, 0.0, 0.0, shape_of(replace(row, bottom=bottom)), places)
         part = inside if row.periodic else x > 0.0
         assert places.base[part] == pytest.approx(0.1 * x[part] + 0.02, abs=1e-15)
         assert places.tilt[part] == pytest.approx(0.1, abs=1e-12)
@@ -87,7 +87,7 @@ def test_what_passes_the_stations_is_what_segments_gain_and_lose():
     held = []
     for at in (x, x + by, x + 0.5 * by):
         places = GrainPlaces.of(1, 10)
-        place_grains(at, 0.0, shape_of(row), places)
+        place_grains(at, 0.0, 0.0, shape_of(row), places)
         held.append(np.bincount(places.at[0], places.weight[0], minlength=10))
         last = places
     passed = np.zeros(10)  # at the middle of the way: exact for weights of the second degree
@@ -101,10 +101,10 @@ def test_a_period_of_one_segment_has_the_bits_of_one_column(start):
     bed = np.column_stack([(np.arange(80) + 0.5) * 2.0 * D, np.zeros(80), np.full(80, 0.5 * D)])
     moving = {"bed": BedKind.MOVING, "mixing": Mixing.LI_SAWAMOTO, "d": D, "phi_max": 0.58}
     more = {"start": start, "seed": 3, "fluctuations": Fluctuations.RANDOM_WALK, **moving}
-    column = column_of(length * D, **more)
+    column = column_of(length * D, z_low=-0.3 * D, z_bed=0.5 * D, depth=24.5 * D, n=140, **more)
     made = cloud(fixed=bed, lift=Lift.WIBERG_SMITH, hindrance=Hindrance.DI_FELICE, below=23.0)
     fixed, first = made
-    row = row_of(column, length, 1)
+    row = replace(row_of(column, length, 1), bottom=np.full(1, column.z_low))
     grains = GrainsInRow.begin(fixed, row, first.x)
     state = grains.at_rest(np.full(1, column.z_surface))
     if start is Start.STEADY:
@@ -136,7 +136,7 @@ def test_grains_in_file_that_pass_leave_concentrations_even():
     most = 0.0
     for shift in np.linspace(0.0, pitch, 7):
         places = GrainPlaces.of(43, n)
-        place_grains(np.arange(43) * pitch + shift, 0.0, shape_of(row), places)
+        place_grains(np.arange(43) * pitch + shift, 0.0, 0.0, shape_of(row), places)
         held = np.bincount(places.at.ravel(), places.weight.ravel(), minlength=n)
         most = max(most, float(np.abs(held / 4.3 - 1.0).max()))
     assert 0.0 < most < 1e-3

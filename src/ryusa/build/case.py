@@ -50,6 +50,7 @@ from ryusa.casefile.films import film_reach
 from ryusa.casefile.materials import GRAINS, case_of_pair, names_of
 from ryusa.casefile.motion import slab_width
 from ryusa.casefile.record import events_of
+from ryusa.casefile.row.schema import row_keys
 from ryusa.casefile.row.values import water_alone
 from ryusa.casefile.shape import extent, has_clumps
 from ryusa.casefile.time import steps_by_default
@@ -132,8 +133,8 @@ def build(case: Case, derived: Derived | None = None) -> Built:
     _refuse_unknown_groups(placement, case)
     laws = replace(
         laws_of(case, found, placement.z_zero),
-        column=column_of(case, found, placement),
-        row=row_of(case, found),
+        column=None if row_keys(case) is not None else column_of(case, found, placement),
+        row=row_of(case, found, placement),
     )
     placement, traffic = with_feeds(placement, case, found)
     n_first = len(placement.d) if traffic is None else traffic.n_first

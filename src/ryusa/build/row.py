@@ -1,18 +1,22 @@
 """The row of columns of a case: its columns, its ends and its dams."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
+from ryusa.build.column import column_of
+from ryusa.build.placement import Placement
 from ryusa.casefile.case import Case
 from ryusa.casefile.column.bed import packed
 from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.derive import Derived
 from ryusa.casefile.grading import reference_diameter
+from ryusa.casefile.motion import slope
 from ryusa.casefile.row.schema import RowEndSection, row_keys
-from ryusa.casefile.row.values import RowPlan, crest_of, dam_span, discharge_of, row_plan
+from ryusa.casefile.row.values import RowPlan, crest_of, dam_span, discharge_of, row_plan, segments_of
 from ryusa.errors import CaseError
-from ryusa.laws.families import BedKind, Drive, Mixing, SideWalls, Start, SurfaceRule
+from ryusa.laws.families import BedKind, Buoyancy, Drive, Mixing, SideWalls, Start, SurfaceRule
 from ryusa.model import Column, ColumnRow
 from ryusa.model.arrays import Floats
 from ryusa.model.row import EndKind, PorousSolid, RowDam, RowEnd
@@ -26,8 +30,8 @@ _KINDS = {
 }
 
 
-def row_of(case: Case, derived: Derived) -> ColumnRow | None:
-    """The row of columns of a case; None where it has none.
+def row_of(case: Case, derived: Derived, placement: Placement) -> ColumnRow | None:
+    """The row of columns of a case over its first grains; None where it has none.
 
     Raises
     ------
@@ -36,6 +40,8 @@ def row_of(case: Case, derived: Derived) -> ColumnRow | None:
     keys, wet = row_keys(case), case.water
     if keys is None or wet is None:
         return None
+    if (column := column_of(case, derived, placement)) is not None:
+        return _among_grains(case, replace(column, surface=SurfaceRule.VOLUME), placement.period[0])
     plan = row_plan(case)
     solid, porous, dams = _dams(case, plan)
     row = ColumnRow(
@@ -48,6 +54,17 @@ def row_of(case: Case, derived: Derived) -> ColumnRow | None:
     for one in (row.bottom, row.solid, row.start):
         if one is not None:
             one.flags.writeable = False
+    return row
+
+
+def _among_grains(case: Case, column: Column, period: float) -> ColumnRow:
+    """A periodic row over a bed of grains, with the surface of one column over the same bed."""
+    x_low, dx, n = segments_of(case)
+    g_z = case.motion.gravity * math.cos(slope(case))
+    bottom = np.full(n, column.z_low)
+    row = ColumnRow(column, dx, bottom, g_z, x_low=x_low, start=np.full(n, column.z_surface))
+    if faults := row.refuses() or row.refuses_grains(Buoyancy.STRESS, period):
+        raise CaseError("water.row.bottom", None, "; ".join(faults))
     return row
 
 

@@ -39,7 +39,8 @@ _DEFAULTS: dict[type[Family], Callable[[Case], Family]] = {
     SurfaceRule: lambda case: SurfaceRule.VOLUME if row_keys(case) is not None else SurfaceRule.DEPTH,
     Start: lambda case: (
         Start.REST
-        if row_keys(case) is not None or (case.water and case.water.drag == "none")
+        if (row_keys(case) is not None and case.build.kind == "empty")
+        or (case.water and case.water.drag == "none")
         else Start.STEADY
     ),
 }

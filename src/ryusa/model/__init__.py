@@ -5,7 +5,7 @@ from ryusa.model.contacts import EVENT, Contacts
 from ryusa.model.engine_block import EngineBlock
 from ryusa.model.fluid import CouplingState, FluidAtGrains
 from ryusa.model.rigid_bodies import BodyState, RigidBodies
-from ryusa.model.row import ColumnRow, RowCouplingState, RowState
+from ryusa.model.row import ColumnRow, RowCouplingState, RowGrainState, RowState
 from ryusa.model.scene import ContactLaw, Materials, RollingLaw, Scene, Water
 from ryusa.model.state import State
 from ryusa.model.tally import Tally, Term
@@ -31,6 +31,7 @@ __all__ = [
     "RigidBodies",
     "RollingLaw",
     "RowCouplingState",
+    "RowGrainState",
     "RowState",
     "Scene",
     "State",

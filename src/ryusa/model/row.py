@@ -7,13 +7,15 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from ryusa.laws.families import Drive, SurfaceRule
+from ryusa.laws.families import Buoyancy, Drive, SurfaceRule
 from ryusa.laws.porous import ergun_linear, ergun_quadratic
 from ryusa.model.arrays import Floats
 from ryusa.model.column import Column, Top
+from ryusa.model.eddies import Eddies
 
 Ints = NDArray[np.int64]
 NAN = float("nan")
+AGREE = 1.0e-9  # permitted relative difference of the length of a periodic row and the period of grains
 OPEN, WALL, INFLOW = range(3)  # kinds of a station
 DEPTH_GIVEN, SAME_DEPTH = range(2)  # rules of the segment beyond an end
 N_BUDGET = 14  # numbers of the momentum budget of a station, as `momentum_balance` writes them
@@ -200,6 +202,25 @@ class ColumnRow:
                 )
         return tuple(faults)
 
+    def refuses_grains(self, buoyancy: Buoyancy, period: float) -> tuple[str, ...]:
+        """Reasons why it cannot carry grains of a period along x [m], one sentence each; () if it can."""
+        faults: list[str] = []
+        why = {
+            Buoyancy.WEIGHT: "counts the slope of the surface twice",
+            Buoyancy.PRESSURE: "lets still water among grains run down an inclined axis",
+        }
+        if buoyancy is not Buoyancy.STRESS:
+            faults.append(
+                f"water.buoyancy = {buoyancy.word!r}: in a row of columns it {why[buoyancy]}; take "
+                f"{Buoyancy.STRESS.word!r}"
+            )
+        length = self.n_segment * self.dx
+        if self.periodic and not math.isclose(length, period, rel_tol=AGREE):
+            faults.append(f"the row is {length:g} m long, the period of the grains {period:g} m: must agree")
+        if not self.periodic and math.isfinite(period):
+            faults.append(f"the row has ends, and the grains have the period {period:g} m: leave it out")
+        return tuple(faults)
+
 
 def _faults_of_end(name: str, end: RowEnd, n: int) -> list[str]:
     """Faults of one end, one sentence each."""
@@ -241,6 +262,24 @@ class RowState:
 
 
 @dataclass(frozen=True)
+class RowGrainState:
+    """What the grains of a row know of its water between two exchanges.
+
+    Attributes
+    ----------
+    x : their centres at the last exchange [m], for their volumes in the cells, shape (n_grain, 3).
+    w : vertical speed of the water in the segments, relative to the bottom [m/s], shape (n_all, n).
+    force_z : force of the water on the grains along z per volume of the cell [N/m3], shape (n_all, n).
+    eddies : present eddies of the grains; None without fluctuations.
+    """
+
+    x: Floats
+    w: Floats
+    force_z: Floats
+    eddies: Eddies | None = None
+
+
+@dataclass(frozen=True)
 class RowCouplingState:
     """State of a row of a run between two exchanges, complete for a resume.
 
@@ -252,6 +291,7 @@ class RowCouplingState:
     exchanges : number of exchanges so far.
     worst : largest residual of the momentum of a station over its largest term so far [-].
     passing : what passed each station in the last interval, per time and width [m2/s], shape (n_station,).
+    grains : None without free and fixed grains.
     """
 
     water: RowState
@@ -260,3 +300,4 @@ class RowCouplingState:
     exchanges: int
     worst: float
     passing: Floats
+    grains: RowGrainState | None = None

@@ -19,6 +19,7 @@ from ryusa.model import (
     EngineBlock,
     FluidAtGrains,
     RowCouplingState,
+    RowGrainState,
     RowState,
     Scene,
     State,
@@ -185,7 +186,7 @@ class _Reader:
 
     def _coupling(self, n: int) -> CouplingState | RowCouplingState:
         if self._scene.row is not None:
-            return self._row(self._scene.row)
+            return self._row(self._scene.row, n)
         column, values = self._scene.column, self._values
         if column is None:
             raise ValueError("water, but the scene has no column")
@@ -196,14 +197,6 @@ class _Reader:
         }
         if (profiles["nu_t"] < 0.0).any():
             raise ValueError("a negative eddy viscosity")
-        eddies = None
-        if values.get("coupling/eddies"):
-            eddies = Eddies(
-                self._floats("coupling/eddies/r", (n, 3)),
-                self._floats("coupling/eddies/spent", (n,)),
-                self._array("coupling/eddies/count", (n,), _INT).copy(),
-            )
-            eddies = Eddies(eddies.r.copy(), eddies.spent.copy(), eddies.count)
         steps, due, exchanges = (int(values[f"coupling/{name}"]) for name in ("steps", "due", "exchanges"))
         if not 1 <= steps < _LATEST or not int(values["step"]) < due < _LATEST:
             raise ValueError(f"{steps} steps between exchanges, the next at step {due}")
@@ -222,10 +215,10 @@ class _Reader:
             due=due,
             exchanges=exchanges,
             worst=float(values["coupling/worst"]),
-            eddies=eddies,
+            eddies=self._eddies("coupling/eddies", n),
         )
 
-    def _row(self, row: ColumnRow) -> RowCouplingState:
+    def _row(self, row: ColumnRow, n: int) -> RowCouplingState:
         values, about = self._values, "coupling/water"
         shapes = row.state_shapes()
         arrays = {name: self._floats(f"{about}/{name}", shape) for name, shape in shapes.items()}
@@ -239,7 +232,21 @@ class _Reader:
             **arrays, t=float(values[f"{about}/t"]), steps=int(values[f"{about}/steps"]),
             courant=float(values[f"{about}/courant"]),
         )  # fmt: skip
-        return RowCouplingState(state, steps, due, exchanges, float(values["coupling/worst"]), passing)
+        grains, about = None, "coupling/grains"
+        if values.get(about):
+            two = {name: self._floats(f"{about}/{name}", shapes["content"]) for name in ("w", "force_z")}
+            x = self._positions(f"{about}/x", n)
+            grains = RowGrainState(x, two["w"], two["force_z"], self._eddies(f"{about}/eddies", n))
+        elif len(self._scene.d_fixed) + n:
+            raise ValueError("a row without its grains")
+        worst = float(values["coupling/worst"])
+        return RowCouplingState(state, steps, due, exchanges, worst, passing, grains)
+
+    def _eddies(self, about: str, n: int) -> Eddies | None:
+        if not self._values.get(about):
+            return None
+        r, spent = self._floats(f"{about}/r", (n, 3)).copy(), self._floats(f"{about}/spent", (n,)).copy()
+        return Eddies(r, spent, self._array(f"{about}/count", (n,), _INT).copy())
 
     def _bodies(self, present: NDArray[np.bool_]) -> BodyState:
         if (bodies := self._scene.bodies) is None:

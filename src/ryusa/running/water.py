@@ -30,8 +30,11 @@ def started(scene: Scene, engine: Engine, state: State, step: int) -> RunWater |
     if scene.row is not None:
         found = state.coupling
         if isinstance(found, RowCouplingState):
-            return RowCoupling.resume(scene, scene.row, found)
-        return RowCoupling.begin(scene, scene.row, step)
+            told = None if state.fluid is None else state.fluid.sampled
+            return RowCoupling.resume(scene, scene.row, found, told)
+        row = RowCoupling.begin(scene, scene.row, engine.kinematics()[0], step)
+        engine.set_fluid(row.sampled)
+        return row
     if column is None:
         return None
     found = state.coupling if state.fluid is not None else None

@@ -253,7 +253,8 @@ class Coupling:
         self._rows, self._faces, self._out, self._about = rows, faces, out, (volume, t + dt, count + 1)
         arrays.reaches = bool(out[step.REACHES])
         self.exchanges, self.worst = self.exchanges + 1, max(self.worst, float(out[step.RESIDUAL]))
-        self.steps = min(self.longest, self._resolved(float(out[step.FASTEST])))
+        fastest = float(out[step.FASTEST])
+        self.steps = steps_resolved(fastest, self.scene.dt, self.longest, *self._about[1:])
         self.due += self.steps
         if self.eddies is not None:
             self.eddies = eddies.renew(self.eddies, self.column.seed, dt, self.sampled[:, SHEAR], self.ids)
@@ -327,22 +328,6 @@ class Coupling:
             "is at rest, set water.column.packed to its concentration"
         ]
 
-    def _resolved(self, fastest: float) -> int:
-        """Steps for which an interval resolves the drag, at its largest rate of relaxation [1/s]."""
-        dt = self.scene.dt
-        if fastest * dt * self.longest <= STIFF:
-            return self.longest
-        most = math.floor(STIFF / (fastest * dt))
-        if most < 1:
-            raise WaterError(
-                f"Drag brings grains to the speed of the water within {1.0 / fastest:.3g} s, which a step of "
-                f"{dt:.3g} s does not resolve",
-                step=self._about[2],
-                t=self._about[1],
-                hint="Take a shorter step (time.step), larger grains or a less viscous fluid.",
-            )
-        return most
-
     def _water_at_grains(self) -> Floats:
         """State of the water at every grain."""
         arrays = self._arrays
@@ -358,6 +343,32 @@ class Coupling:
             arrays.force_z, speeds, sampled,
         )  # fmt: skip
         return sampled
+
+
+def steps_resolved(fastest: float, dt: float, longest: int, t: float, step: int) -> int:
+    """Steps of dt [s] for which an interval resolves the drag, at most `longest`.
+
+    Parameters
+    ----------
+    fastest : largest rate of relaxation by drag [1/s].
+    t, step : of the water, for the message.
+
+    Raises
+    ------
+    WaterError : a single step does not resolve it.
+    """
+    if fastest * dt * longest <= STIFF:
+        return longest
+    most = math.floor(STIFF / (fastest * dt))
+    if most < 1:
+        raise WaterError(
+            f"Drag brings grains to the speed of the water within {1.0 / fastest:.3g} s, which a step of "
+            f"{dt:.3g} s does not resolve",
+            step=step,
+            t=t,
+            hint="Take a shorter step (time.step), larger grains or a less viscous fluid.",
+        )
+    return most
 
 
 def _with_those_away(scene: Scene, column: Column, x: Floats, v: Floats) -> tuple[Floats, Floats]:

@@ -1,16 +1,18 @@
-"""The row of columns of a run, and what its grains are told of it: so far the water alone (design/0027)."""
+"""The row of columns of a run: its water, alone or among grains (design/0027)."""
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ryusa.laws.families import Drive
+from ryusa.laws.families import Drive, Start
 from ryusa.model import ColumnRow, RowCouplingState, RowState, Scene
 from ryusa.model.fluid import N_SAMPLED
 from ryusa.model.row import EndKind
 from ryusa.model.scene import Floats
+from ryusa.water.coupling import steps_resolved
 from ryusa.water.momentum_balance import B_ADVECTED, B_CHANGE, B_GRAVITY
-from ryusa.water.row import advance_row, row_at_rest
+from ryusa.water.row import advance_row, discharges, row_at_rest
+from ryusa.water.row_grains import GrainsInRow
 from ryusa.water.steady import steady
 
 _DRY = 1.0e-12  # of the volume that all cells can hold; less is a dry row
@@ -31,6 +33,7 @@ class RowCoupling:
     worst : largest residual of the momentum of a station so far, over the largest term in the row [-].
     state : present state of the water.
     passing : what passed each station in the last interval, per time and width [m2/s], shape (n_station,).
+    grains : free and fixed grains; None without any.
     """
 
     scene: Scene
@@ -42,51 +45,77 @@ class RowCoupling:
     worst: float
     state: RowState
     passing: Floats
+    grains: GrainsInRow | None = None
 
     @staticmethod
-    def begin(scene: Scene, row: ColumnRow, step: int = 0) -> "RowCoupling":
-        """Fill the row with its first water, at rest.
+    def begin(scene: Scene, row: ColumnRow, x: Floats, step: int = 0) -> "RowCoupling":
+        """Fill the row with its first water, at rest or in steady flow over the grains.
 
         Parameters
         ----------
+        x : centres of the grains [m], shape (n_grain, 3).
         step : of the engine.
 
         Raises
         ------
-        ValueError : the row is not valid, or has no surface at the start.
+        ValueError : the row is not valid, does not carry the grains, or has no surface at the start.
+        WaterError : no steady flow was found.
         """
-        if scene.n_grain:
-            raise ValueError("a row of columns has no moving grains yet")
         if row.start is None:
             raise ValueError("the row needs its surface at the start")
         start, row = row.start, with_inlet(row)
-        state = row_at_rest(row, start, row.porous)
-        none = np.zeros((0, N_SAMPLED))
-        return RowCoupling(scene, row, 1, none, step + 1, 0, 0.0, state, np.zeros_like(state.passed))
+        about = scene, row, 1, np.zeros((0, N_SAMPLED)), step + 1, 0, 0.0
+        if not scene.n_grain + scene.n_fixed:
+            state = row_at_rest(row, start, row.porous)
+            return RowCoupling(*about, state, np.zeros_like(state.passed))
+        grains = GrainsInRow.begin(scene, row, x)
+        flows = row.column.start is Start.STEADY
+        state = grains.flowing(start) if flows else grains.at_rest(start)
+        grains.meet(state)
+        made = RowCoupling(*about, state, discharges(row, state), grains)
+        made.sampled = grains.sampled
+        return made
 
     @staticmethod
-    def resume(scene: Scene, row: ColumnRow, found: RowCouplingState) -> "RowCoupling":
-        """Go on from a snapshot."""
-        about = found.due, found.exchanges, found.worst, found.water, found.passing
-        return RowCoupling(scene, with_inlet(row), found.steps, np.zeros((0, N_SAMPLED)), *about)
+    def resume(
+        scene: Scene, row: ColumnRow, found: RowCouplingState, sampled: Floats | None = None
+    ) -> "RowCoupling":
+        """Go on from a snapshot; `sampled` is the water at the grains, columns of `model.fluid`."""
+        row, grains, sampled = with_inlet(row), None, np.zeros((0, N_SAMPLED)) if sampled is None else sampled
+        if found.grains is not None:
+            grains = GrainsInRow.resume(scene, row, found.water, found.grains, sampled)
+            sampled = grains.sampled
+        about = found.steps, sampled, found.due, found.exchanges, found.worst, found.water, found.passing
+        return RowCoupling(scene, row, *about, grains)
 
     def snapshot(self) -> RowCouplingState:
         """All that `resume` needs."""
-        return RowCouplingState(self.state, self.steps, self.due, self.exchanges, self.worst, self.passing)
+        grains = None if self.grains is None else self.grains.snapshot()
+        about = self.state, self.steps, self.due, self.exchanges, self.worst, self.passing
+        return RowCouplingState(*about, grains)
 
     def change(self, scene: Scene, row: ColumnRow) -> None:
-        """Take over a scene that the timeline changed: its slope."""
+        """Take over a scene that the timeline changed: its slope, or removed fixed grains."""
         self.scene, self.row = scene, with_inlet(row)
+        if self.grains is not None:
+            self.grains = self.grains.changed(scene, self.row, self.state)
 
-    def exchange(self, _x: Floats, _v: Floats, _impulse: Floats) -> Floats:
+    def exchange(self, x: Floats, v: Floats, impulse: Floats) -> Floats:
         """Move the water on, and give what the grains are told; parameters as of `Coupling`.
 
         Raises
         ------
-        WaterError : the water cannot be moved on; names the place.
+        ValueError : a grain is at no finite place.
+        WaterError : the water cannot be moved on, with the place; or drag acts faster than a step resolves.
         """
-        time, before = self.steps * self.scene.dt, self.state.passed
-        self.state = advance_row(self.row, self.state, time, solid=self.row.porous)
+        time, grains, before = self.steps * self.scene.dt, self.grains, self.state.passed
+        if grains is None:
+            self.state = advance_row(self.row, self.state, time, solid=self.row.porous)
+        else:
+            self.state = grains.exchange(self.state, x, v, impulse, time)
+            self.sampled, now = grains.sampled, self.state
+            longest = self.row.column.interval
+            self.steps = steps_resolved(grains.fastest, self.scene.dt, longest, now.t, now.steps)
         self.passing = (self.state.passed - before) / time
         self.exchanges += 1
         self.worst = max(self.worst, _residual(self.state.budgets))
@@ -97,6 +126,8 @@ class RowCoupling:
     def phi(self) -> Floats:
         """Concentration of grains, fixed ones included [-], shape (n_segment, n)."""
         row = self.row
+        if self.grains is not None:
+            return self.grains.phi
         return np.zeros((row.n_segment, row.column.n)) if row.porous is None else row.porous.phi
 
     @property
@@ -118,6 +149,7 @@ class RowCoupling:
         return {
             "grains": self.scene.n_grain,
             "exchanges": self.exchanges,
+            "steps_between": self.steps,
             "steps": state.steps,
             "momentum_residual": self.worst,
             "courant": state.courant,

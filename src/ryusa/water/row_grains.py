@@ -5,17 +5,16 @@ during an interval, and what a grain received is taken from the stations with th
 momentum is conserved to round-off over the row (design/0027).
 """
 
-import math
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ryusa.laws.families import BedKind, Buoyancy, Drive, Fluctuations
+from ryusa.laws.families import BedKind, Fluctuations
 from ryusa.model import Scene
 from ryusa.model.arrays import Floats
 from ryusa.model.eddies import Eddies
 from ryusa.model.fluid import N_SAMPLED, SHEAR
-from ryusa.model.row import ColumnRow, PorousSolid, RowState
+from ryusa.model.row import ColumnRow, PorousSolid, RowGrainState, RowState
 from ryusa.water import eddies
 from ryusa.water._kernel import ColumnParameters, parameters_of
 from ryusa.water.drive import imposed_gradient
@@ -56,8 +55,6 @@ from ryusa.water.slice_sums import (
     SOLID,
 )
 
-AGREE = 1.0e-9  # permitted relative difference between the length of a periodic row and the period of grains
-
 
 @dataclass
 class GrainsInRow:
@@ -66,7 +63,7 @@ class GrainsInRow:
     Attributes
     ----------
     scene, row : the scene, and its row; `row.column.area` is the area of bed of the whole row.
-    solid : a porous solid in the row beside the grains.
+    solid : the porous solid of the row, beside the grains.
     told : water that the grains meet in the present interval.
     sampled : the same at the grains, columns of `model.fluid`.
     fastest : largest rate at which drag brought water and grains to one speed in the last interval [1/s].
@@ -81,7 +78,7 @@ class GrainsInRow:
     sampled: Floats
     fastest: float
     worst: float
-    x: Floats  # centres along the row at the last exchange [m]
+    x: Floats  # centres at the last exchange [m], shape (n_grain, 3)
     _p: ColumnParameters
     _area: float  # of bed in a segment [m2]
     _shape: RowShape
@@ -98,8 +95,7 @@ class GrainsInRow:
 
     @staticmethod
     def begin(
-        scene: Scene, row: ColumnRow, x: Floats, state: RowState | None = None,
-        solid: PorousSolid | None = None,
+        scene: Scene, row: ColumnRow, x: Floats, state: RowState | None = None
     ) -> "GrainsInRow":  # fmt: skip
         """Cut the grains at x [m], shape (n_grain, 3), in water of a given state.
 
@@ -111,7 +107,7 @@ class GrainsInRow:
         ------
         ValueError : the row is not valid, or does not carry these grains.
         """
-        faults = row.refuses() or refuses_grains(scene, row)
+        faults = row.refuses() or row.refuses_grains(scene.water.buoyancy, scene.period[0])
         if faults:
             raise ValueError("; ".join(faults))
         p, shape, column = parameters_of(row.column), shape_of(row), row.column
@@ -121,7 +117,7 @@ class GrainsInRow:
         places = GrainPlaces.of(n, row.n_segment)
         bed_places = GrainPlaces.of(len(there), row.n_segment)
         for what, here, into in (("grain", x, places), ("fixed grain", scene.x_fixed[there], bed_places)):
-            bad = place_grains(np.ascontiguousarray(here[:, 0]), 0.0, shape, into)
+            bad = place_grains(np.ascontiguousarray(here[:, 0]), float(row.x_low), p.z_low, shape, into)
             if bad >= 0:
                 raise ValueError(f"the place of {what} {bad} along the row is not finite")
         z, d_bed = x[:, 2] - places.base, np.ascontiguousarray(scene.d_fixed[there])
@@ -135,7 +131,7 @@ class GrainsInRow:
             np.zeros(stations), *np.zeros((3, segments, column.n)),
         )  # fmt: skip
         made = GrainsInRow(
-            scene, row, solid, told, np.zeros((n, N_SAMPLED)), 0.0, 0.0, x[:, 0].copy(), p,
+            scene, row, row.porous, told, np.zeros((n, N_SAMPLED)), 0.0, 0.0, np.array(x), p,
             float(column.area) / row.n_segment, shape, ends_of(row), WaterLaws.of(scene),
             GrainNumbers.of(scene, None), bed, cut, bed_cut, places, bed_places, z,
         )  # fmt: skip
@@ -143,9 +139,39 @@ class GrainsInRow:
         if column.fluctuations is Fluctuations.RANDOM_WALK:
             made.eddies = eddies.begin(column.seed, n)
         if state is not None:
-            made._tell(state, np.zeros((N_ROW_SUM, segments, column.n)), np.zeros((stations, column.n)), 0.0)
-            made._sample(state)
+            made.meet(state)
         return made
+
+    def meet(self, state: RowState) -> None:
+        """Tell the grains of water of a given state, in which nothing has moved yet."""
+        shape = self.told.phi.shape
+        self._tell(state, np.zeros((N_ROW_SUM, *shape)), np.zeros_like(self.told.u), 0.0)
+        self._sample(state)
+
+    @staticmethod
+    def resume(
+        scene: Scene, row: ColumnRow, state: RowState, found: RowGrainState, sampled: Floats
+    ) -> "GrainsInRow":
+        """Go on from a snapshot; `sampled` is the water at the grains, columns of `model.fluid`."""
+        grains = GrainsInRow.begin(scene, row, np.array(found.x), state)
+        grains.told.w[:], grains.told.force_z[:] = found.w, found.force_z
+        grains.sampled, grains.eddies = np.array(sampled), found.eddies
+        return grains
+
+    def snapshot(self) -> RowGrainState:
+        """All that `resume` needs, beside the water and the water at the grains."""
+        told = self.told
+        kept = self.x.copy(), told.w.copy(), told.force_z.copy()
+        for one in kept:
+            one.flags.writeable = False
+        return RowGrainState(*kept, self.eddies)
+
+    def changed(self, scene: Scene, row: ColumnRow, state: RowState) -> "GrainsInRow":
+        """The same grains in a scene that the timeline changed: its slope, or removed fixed grains."""
+        found = self.snapshot()
+        other = GrainsInRow.resume(scene, row, state, found, self.sampled)
+        other.worst = self.worst
+        return other
 
     def _concentrate(self) -> None:
         """Concentrations of fixed grains, and of all, from the present slices."""
@@ -219,12 +245,12 @@ class GrainsInRow:
         sums, fixed = np.zeros((N_ROW_SUM, segments, p.n)), np.zeros((N_SUM_FIXED, segments, p.n))
         through, largest = np.zeros((stations, p.n)), np.array([0.0, -1.0])
         sum_grains_in_row(
-            p, self._shape, 0.0, self._grains, self._cut, self._places, x, v, impulse, self.sampled, told.u,
-            told.gradient, told.wet, 1.0 / dt, self._z, sums, through, largest,
+            p, self._shape, float(row.x_low), self._grains, self._cut, self._places, x, v, impulse,
+            self.sampled, told.u, told.gradient, told.wet, 1.0 / dt, self._z, sums, through, largest,
         )  # fmt: skip
         if largest[BAD_GRAIN] >= 0.0:
             raise ValueError(f"the place of grain {int(largest[BAD_GRAIN])} is not finite")
-        self.x[:] = x[:, 0]
+        self.x[:] = x
         continue_ends(self._shape, sums)
         concentration_in_row(p, self._area, self._bed, sums, told.phi)
         sum_fixed_in_row(
@@ -293,29 +319,6 @@ class GrainsInRow:
         per = submerge(self._cut, self._places, told.wet, np.empty(len(self._z)))
         at = means_of_segments(self._cut, self._places, told.wet, per, table)
         return eddies.speeds(present, self.scene.plane_case, np.sqrt(at[:, 0]), at[:, 1], at[:, 2])
-
-
-def refuses_grains(scene: Scene, row: ColumnRow) -> tuple[str, ...]:
-    """Reasons why a row cannot carry the grains of a scene, one sentence each; () if there are none."""
-    faults: list[str] = []
-    form = scene.water.buoyancy
-    if form is not Buoyancy.STRESS:
-        why = {
-            Buoyancy.WEIGHT: "counts a pool with a sloping surface twice",
-            Buoyancy.PRESSURE: "lets water at rest among grains run down the x axis",
-        }
-        faults.append(
-            f"water.buoyancy = {form.word!r}: in a row of columns it {why[form]}; take "
-            f"{Buoyancy.STRESS.word!r}"
-        )
-    length, period = row.n_segment * row.dx, scene.period[0]
-    if row.periodic and not math.isclose(length, period, rel_tol=AGREE):
-        faults.append(f"the row is {length:g} m long, and the period of the grains {period:g} m: must agree")
-    if not row.periodic and math.isfinite(period):
-        faults.append(f"the row has ends, and the grains the period {period:g} m: leave the period out")
-    if row.column.drive is Drive.TAU and row.n_segment > 1:
-        faults.append("a row of several segments has no prescribed stress")
-    return tuple(faults)
 
 
 def _water_of(state: RowState) -> RowWater:

@@ -45,7 +45,7 @@ class GrainPlaces(NamedTuple):
 
     at: Ints  # segments that hold a part of each grain, shape (n_grain, N_SHARING) or (n_grain, 1)
     weight: Floats  # these parts [-], same shape
-    base: Floats  # height of the bottom below its centre [m], shape (n_grain,)
+    base: Floats  # height of the bottom below its centre, less z_low of the cells [m], shape (n_grain,)
     tilt: Floats  # and its slope [-]
     gate: Ints  # stations upstream and downstream of its centre, shape (n_grain, 2)
     past: Floats  # how far its centre is from the one to the other [-], shape (n_grain,)
@@ -72,13 +72,14 @@ class RowBed(NamedTuple):
 
 
 @kernel
-def place_grains(x: Floats, x_low: float, shape: RowShape, places: GrainPlaces) -> int:
+def place_grains(x: Floats, x_low: float, z_low: float, shape: RowShape, places: GrainPlaces) -> int:
     """Find the segments that share each grain.
 
     Parameters
     ----------
     x : centres along the row [m], shape (n_grain,).
     x_low : where the first segment begins [m].
+    z_low : height that cells give to the bottom [m].
     places : overwritten.
 
     Returns
@@ -108,7 +109,7 @@ def place_grains(x: Floats, x_low: float, shape: RowShape, places: GrainPlaces) 
         places.past[i] = t + 0.5
         if shared == 1:
             places.at[i, 0], places.weight[i, 0] = middle, 1.0
-            places.base[i], places.tilt[i] = shape.bottom[middle], 0.0
+            places.base[i], places.tilt[i] = shape.bottom[middle] - z_low, 0.0
             continue
         places.weight[i, 0] = 0.5 * (0.5 - t) ** 2
         places.weight[i, 1] = 0.75 - t * t
@@ -124,7 +125,7 @@ def place_grains(x: Floats, x_low: float, shape: RowShape, places: GrainPlaces) 
             base += places.weight[i, b] * shape.bottom[below]
             grows = (t - 0.5, -2.0 * t, t + 0.5)[b]
             tilt += grows / shape.dx * shape.bottom[below]
-        places.base[i], places.tilt[i] = base, tilt
+        places.base[i], places.tilt[i] = base - z_low, tilt
     return -1
 
 
@@ -285,7 +286,7 @@ def sum_grains_in_row(
     largest : as in `sum_grains`.
     """
     sum_given_in_row(p, shape, u, gradient, wet, impulse, sampled, grains, cut, places, per_dt, sums)
-    bad = place_grains(x[:, 0], x_low, shape, places)
+    bad = place_grains(x[:, 0], x_low, p.z_low, shape, places)
     for i in range(len(z)):
         z[i] = x[i, 2] - places.base[i]
         if bad < 0 and not math.isfinite(z[i]):

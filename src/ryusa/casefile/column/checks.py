@@ -11,6 +11,7 @@ from ryusa.casefile.column.bed import bed_top, packed, water_over
 from ryusa.casefile.column.schema import CELL, ColumnSection, column_keys
 from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.motion import slope_at_last
+from ryusa.casefile.row.values import water_alone
 from ryusa.casefile.section import given
 from ryusa.casefile.water.schema import WaterSection
 from ryusa.casefile.water.values import u_star_given
@@ -29,7 +30,7 @@ SPARE = 1.2  # height of the column over the depth
 def check_column(case: "Case") -> Iterator[CaseError]:
     """Find faults of the column of water."""
     water = case.water
-    if water is None or water.profile != "column" or water.row is not None:
+    if water is None or water.profile != "column" or water_alone(case):
         return
     keys = column_keys(case)
     yield from _place(case, water)

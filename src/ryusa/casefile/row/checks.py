@@ -34,6 +34,10 @@ if TYPE_CHECKING:
 MOST_SEGMENTS = 100_000
 _NEEDS = {"level": ("level",), "discharge": ("discharge",)}  # keys that a kind of end needs
 _TAKES = {"level": ("level",), "discharge": ("discharge", "depth", "profile")}
+_FORMS = (
+    "must be 'stress' in a row: with a sloping surface 'weight' counts the pressure twice, and with "
+    "'pressure' still water would move"
+)
 _OTHER_END = "give [water.row.{}] with end = 'wall', 'level', 'free fall' or 'same depth'"
 
 
@@ -44,24 +48,46 @@ def check_row(case: "Case") -> Iterator[CaseError]:
         return
     if water.profile != "column":
         return  # reported as a key without effect
-    found = [
+    among = not water_alone(case)
+    found = [*_among_grains(case, keys)] if among else [
         *_grains(case), *_water(case, water), *_column(column_keys(case)), *_lines(case, keys, water),
         *_ends(case, keys),
     ]  # fmt: skip
     yield from found
-    if not found:
+    if not found and not among:
         yield from _shape(case, keys)
 
 
-def _grains(case: "Case") -> Iterator[CaseError]:
-    """Moving grains in a row do not go yet."""
-    if not water_alone(case):
+def _among_grains(case: "Case", keys: RowSection) -> Iterator[CaseError]:
+    """Grains go in a periodic row over a level bottom, with the depth over their bed as in one column."""
+    water, column = case.water, column_keys(case)
+    assert water is not None
+    for name, what in (("feeds", case.feeds), ("exits", case.exits)):
+        if what:
+            yield CaseError(name, None, "grains do not enter or leave a row of columns yet; leave it out")
+    for name in ("upstream", "downstream", "surface", "height", "dams"):
+        if getattr(keys, name):
+            yield CaseError(
+                f"water.row.{name}", None, "has no place in a row with grains, which is periodic so far and "
+                "has the depth water.depth over their bed as one column; leave it out",
+            )  # fmt: skip
+    if water.buoyancy != "stress":
+        yield CaseError("water.buoyancy", water.buoyancy, _FORMS)
+    if column.surface == "depth":
+        yield CaseError("water.column.surface", "depth", "must be 'volume' in a row, or left out")
+    if column.drive not in {"slope", "pressure gradient"}:
+        yield CaseError("water.column.drive", column.drive, "must be 'slope' or 'pressure gradient' in a row")
+    lines = [*_lines(case, keys, water)]
+    yield from lines
+    if not lines and any(z != 0.0 for _, z in bottom_points(case)):
         yield CaseError(
-            "water.row",
-            None,
-            "takes the water alone so far: no moving grains in a row of columns. Give build.kind = 'empty' "
-            "and no [[feeds]], or leave [water.row] out for one column over a periodic bed",
-        )
+            "water.row.bottom", None, "must lie at z = 0 with grains, the axis along which they lie; the "
+            "slope is motion.slope",
+        )  # fmt: skip
+
+
+def _grains(case: "Case") -> Iterator[CaseError]:
+    """Things that act on grains alone."""
     if getattr(case.build, "plate", None) is not None:
         yield CaseError("build.plate", case.build.plate, "fixed grains do not act on a row of columns yet")  # pyright: ignore[reportAttributeAccessIssue]
     for k, _ in enumerate(case.walls):
@@ -102,10 +128,7 @@ def _water(case: "Case", water: WaterSection) -> Iterator[CaseError]:
     if water.depth is not None and water.row is not None and water.row.surface is not None:
         yield CaseError("water.depth", water.depth, "excludes water.row.surface; give only one of the two")
     if water.buoyancy != "stress":
-        yield CaseError(
-            "water.buoyancy", water.buoyancy, "must be 'stress' in a row: with a sloping surface 'weight' "
-            "counts the pressure twice, and with 'pressure' still water would move",
-        )  # fmt: skip
+        yield CaseError("water.buoyancy", water.buoyancy, _FORMS)
 
 
 def _column(keys: ColumnSection) -> Iterator[CaseError]:

@@ -36,6 +36,8 @@ def row_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     if keys is None:
         return []
     plan = row_plan(case)
+    if not water_alone(case):
+        return _segments(plan, "periodic")
     return [
         *_grid(case, keys, plan),
         *_flow(case, keys),
@@ -44,16 +46,23 @@ def row_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     ]
 
 
+def _segments(plan: RowPlan, ends: str) -> list[ExplainRow]:
+    length = plan.n * plan.dx
+    return [
+        number("water", "length of the row", length, "m", f"x = {plan.x_low:g} to {plan.x_low + length:g} m"),
+        word("water", "ends", ends, "upstream - downstream"),
+        count("water", "segments", plan.n, f"of {100.0 * plan.dx:.4g} cm"),
+    ]
+
+
 def _grid(case: "Case", keys: RowSection, plan: RowPlan) -> list[ExplainRow]:
-    length, high = plan.n * plan.dx, plan.n_cell * plan.cell
+    high = plan.n_cell * plan.cell
     by = (
         "water.row.height" if keys.height is not None else f"{SPARE:g} times the largest depth to be expected"
     )
     ends = "periodic" if keys.upstream is None else f"{keys.upstream.end} - {_end(keys)}"
     return [
-        number("water", "length of the row", length, "m", f"x = {plan.x_low:g} to {plan.x_low + length:g} m"),
-        word("water", "ends", ends, "upstream - downstream"),
-        count("water", "segments", plan.n, f"of {100.0 * plan.dx:.4g} cm"),
+        *_segments(plan, ends),
         number("water", "cell", plan.cell, "cm", f"{plan.n_cell} up to {100.0 * high:.4g} cm: {by}"),
         number(
             "water", "water at the start", float((plan.start - plan.bottom).clip(0.0).sum() * plan.dx), "m2",

@@ -100,7 +100,8 @@ class RowSection(Section):
     bottom: Line
     """Rigid bottom: pairs of x and z from upstream to downstream, straight between them, such as
     [["0 m", "0 cm"], ["4 m", "-8 cm"]], or a CSV file in the folder of the case with the header x [m],z [mm].
-    The row reaches from the first to the last point. motion.slope tilts both axes."""
+    The row reaches from the first to the last point. motion.slope tilts both axes. With grains the row is
+    periodic, as long as their period, and the bottom is the x axis."""
     segments: Annotated[Count, Field(ge=1, le=100_000)] | None = None
     """Number of segments of equal length."""
     segment: PositiveLength | None = None

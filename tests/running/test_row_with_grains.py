@@ -1,0 +1,82 @@
+"""A row of columns with grains from a case file: it runs, resumes with the same bits, and refuses by name."""
+
+import sys
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import ryusa
+from ryusa.build import build
+from ryusa.casefile.read import read_text
+from ryusa.errors import CaseError
+from ryusa.results import Results, schema
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "faults"))
+from campaign import differences
+
+TEXT = files("ryusa.cases").joinpath("bedload_3d.toml").read_text(encoding="utf-8")
+SMALL = {
+    "build.length": "'4.8 cm'", "build.layers": "3", "water.column.surface": "'volume'",
+    "stop.time": "'30 ms'", "record.frames": "'10 ms'", "record.settle": "'0 s'",
+}  # fmt: skip
+
+
+def row(segments: int, length: str = "4.8 cm") -> dict[str, str]:
+    return {"water.row.bottom": f"[['0 m', '0 m'], ['{length}', '0 m']]", "water.row.segments": str(segments)}
+
+
+def run(folder: Path, more: dict[str, str], **how: Any) -> Results:
+    return ryusa.run(read_text(TEXT, {**SMALL, **more}), folder, progress=False, **how)
+
+
+@pytest.fixture(scope="module")
+def reach(tmp_path_factory: pytest.TempPathFactory) -> Results:
+    return run(tmp_path_factory.mktemp("reach") / "run", row(4))
+
+
+def test_grains_in_a_row_of_one_segment_move_as_in_one_column(tmp_path: Path) -> None:
+    column, one = run(tmp_path / "column", {}), run(tmp_path / "row", row(1))
+    assert np.array_equal(one.frames.x[-1], column.frames.x[-1])
+    assert one.row is not None and column.water is not None
+    assert np.array_equal(one.row.u[-1, 0], column.water.u[-1])
+    assert np.array_equal(one.row.phi[-1, 0], column.water.phi[-1])
+
+
+def test_the_row_holds_its_water_and_closes_momentum_and_energy(reach: Results) -> None:
+    found, summary = reach.row, reach.summary
+    assert found is not None and found.u.shape[1] == 4
+    assert np.ptp(found.volume.sum(axis=1)) < 1e-14 * found.volume[0].sum()
+    assert summary["water"]["momentum_residual"] < 1e-9
+    assert summary["water"]["exchanges"] > 30
+    assert summary["energy"]["residual"] < 1e-3
+    phi = found.phi.sum() * found.row.column.dz * found.row.dx
+    assert phi > 0.0 and found.u[-1].max() > 0.3
+
+
+def test_a_run_with_grains_that_was_stopped_resumes_with_the_same_bits(
+    reach: Results, tmp_path: Path, stop_at: Any
+) -> None:
+    for step in (1, 130, 901):
+        stop_at(step)
+        assert run(tmp_path / "run", row(4), resume=True).status == schema.STOPPED
+    run(tmp_path / "run", row(4), resume=True)
+    assert differences(reach.folder, tmp_path / "run") == []
+
+
+@pytest.mark.parametrize(
+    ("more", "key", "says"),
+    [
+        ({"water.buoyancy": "'weight'"}, "water.buoyancy", "must be 'stress' in a row"),
+        ({"water.row.upstream": "{ end = 'wall' }"}, "water.row.upstream", "periodic so far"),
+        ({"water.row.bottom": "[['0 m', '0 m'], ['4.8 cm', '1 mm']]"}, "water.row.bottom", "z = 0"),
+        ({"water.column.drive": "'discharge'"}, "water.column.drive", "'slope' or 'pressure gradient'"),
+        ({"water.row.bottom": "[['0 m', '0 m'], ['5 cm', '0 m']]"}, "water.row.bottom", "must agree"),
+    ],
+)
+def test_what_a_row_with_grains_cannot_do_is_refused(more: dict[str, str], key: str, says: str) -> None:
+    with pytest.raises((CaseError, ExceptionGroup)) as caught:
+        build(read_text(TEXT, {**SMALL, **row(4), **more}))
+    assert key in str(caught.value) and says in str(caught.value)
