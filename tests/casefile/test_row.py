@@ -141,7 +141,7 @@ BAD = [
     ({"water.buoyancy": "weight"}, "water.buoyancy", "'stress'"),
     ({"water.tau_star": "0.2"}, "water.tau_star", "leave it out"),
     ({"build.kind": "flume", "build.length": "40 cm", "build.layers": "2", "build.width": "2 cm"},
-     "water.row", "the water alone so far"),
+     "water.row.upstream", "has no place in a row with grains"),
 ]  # fmt: skip
 
 

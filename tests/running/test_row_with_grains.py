@@ -10,9 +10,12 @@ import pytest
 
 import ryusa
 from ryusa.build import build
-from ryusa.casefile.read import read_text
-from ryusa.errors import CaseError
+from ryusa.casefile import explain, read_text, resolved
+from ryusa.errors import CaseError, ResultsError
+from ryusa.formats.grains import table_of_frame
 from ryusa.results import Results, schema
+from ryusa.view.flow import surfaces
+from ryusa.view.page import encoded
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "faults"))
 from campaign import differences
@@ -66,6 +69,28 @@ def test_a_run_with_grains_that_was_stopped_resumes_with_the_same_bits(
     assert differences(reach.folder, tmp_path / "run") == []
 
 
+def test_its_grains_are_measured_shown_and_exported_as_those_of_one_column(reach: Results) -> None:
+    assert reach.measure("transport", begin=0.0)["q_star"].value > 0.0
+    data, _ = encoded(reach)
+    assert data["flow"]["solved"] and data["flow"]["z"] == reach.row.row.column.z.tolist()
+    assert surfaces(reach) == pytest.approx(reach.row.surface.mean(axis=1))
+    assert table_of_frame(reach, 1).bed_area == reach.row.row.column.area
+    assert len(reach.measure("long_section").rows()) == 4
+    with pytest.raises(ResultsError, match="row of columns; ryusa measure RUN long_section"):
+        reach.measure("water")
+
+
+def test_check_explains_bed_flow_and_segments() -> None:
+    one, many = (read_text(TEXT, {**SMALL, **more}) for more in ({}, row(4)))
+    shown = {line.name: line.value for line in explain(many)}
+    both = {line.name: line.value for line in explain(one)}
+    for name in ("u_star", "tau_star", "bed thickness", "water over the bed", "cell", "expected motion"):
+        assert shown[name] == both[name]
+    assert shown["segments"] == 4 and shown["length of the row"] == pytest.approx(0.048)
+    assert 1.0 < shown["wall time"] / both["wall time"] < 1.5
+    assert resolved(many)["water"]["row"]["height"] is None
+
+
 @pytest.mark.parametrize(
     ("more", "key", "says"),
     [
@@ -74,6 +99,7 @@ def test_a_run_with_grains_that_was_stopped_resumes_with_the_same_bits(
         ({"water.row.bottom": "[['0 m', '0 m'], ['4.8 cm', '1 mm']]"}, "water.row.bottom", "z = 0"),
         ({"water.column.drive": "'discharge'"}, "water.column.drive", "'slope' or 'pressure gradient'"),
         ({"water.row.bottom": "[['0 m', '0 m'], ['5 cm', '0 m']]"}, "water.row.bottom", "must agree"),
+        ({"stop.precision.tau_star": "'5 %'"}, "stop.precision.tau_star", "not a row"),
     ],
 )
 def test_what_a_row_with_grains_cannot_do_is_refused(more: dict[str, str], key: str, says: str) -> None:

@@ -93,7 +93,7 @@ def derive(case: Case) -> Derived:
     if case.water is not None:
         wet, rho_s = case.water, case.grains.density
         k_rough = wet.roughness if wet.roughness is not None else d
-        row = wet.row is not None
+        row = water_alone(case)
         driven = wet.profile == "column" and column_keys(case).drive == "tau_star"
         u_star = u_star_given(case)
         if wet.tau_star is not None and not driven:

@@ -5,6 +5,7 @@ import shutil
 
 from ryusa.casefile.builders.schema import BoxSection, FillSection, FlumeSection, FromFile, PackingSection
 from ryusa.casefile.case import Case
+from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.contact.values import is_hertz, timing
 from ryusa.casefile.derive import Derived
 from ryusa.casefile.record import MANY, events_of
@@ -184,7 +185,9 @@ def seconds_needed(case: Case, derived: Derived) -> float:
     per_grain = SECONDS_PER_GRAIN if case.motion.plane else SECONDS_PER_GRAIN_3D
     if case.water is not None:
         per_grain += SECONDS_PER_GRAIN_IN_WATER
-    per_step = SECONDS_PER_STEP + per_grain * derived.n_sphere + SECONDS_PER_ROW_CELL * cells_of_row(case)
+    steps = 1 if water_alone(case) or case.water is None else column_keys(case).interval
+    per_step = SECONDS_PER_STEP + per_grain * derived.n_sphere
+    per_step += SECONDS_PER_ROW_CELL * cells_of_row(case) / steps
     return SECONDS_PER_RUN + steps_expected(case, derived) * per_step
 
 

@@ -166,6 +166,8 @@ def check_precision(case: "Case") -> Iterator[CaseError]:
         if measure_of(name) == "water":
             if wet is None or wet.profile != "column":
                 yield CaseError(one, str(limit), "needs a column of water (water.profile = 'column')")
+            elif wet.row is not None:
+                yield CaseError(one, str(limit), "needs one column of water, not a row; leave out water.row")
         elif not periodic(case)[0]:
             yield CaseError(one, str(limit), "needs a scene that is periodic along x, such as a flume")
         if name == "q_star" and wet is not None and not case.grains.density > wet.density:

@@ -14,7 +14,7 @@ from ryusa.casefile.derive import Derived, derive
 from ryusa.casefile.grading import points_of
 from ryusa.casefile.motion import slab_width
 from ryusa.casefile.record import events_of
-from ryusa.casefile.row.values import bottom_points, line_points, row_plan
+from ryusa.casefile.row.values import bottom_points, line_points, row_plan, water_alone
 from ryusa.casefile.shape import spheres_of
 from ryusa.laws.families import SurfaceRule
 
@@ -92,7 +92,9 @@ def _resolve_row(case: Case, data: dict[str, Any]) -> None:
     row["bottom"] = [list(one) for one in bottom_points(case)]
     if row["surface"] is not None:
         row["surface"] = [list(one) for one in line_points(case, "water.row.surface", row["surface"])]
-    row |= {"segments": plan.n, "segment": plan.dx, "height": plan.n_cell * plan.cell}
+    row |= {"segments": plan.n, "segment": plan.dx}
+    if water_alone(case):
+        row["height"] = plan.n_cell * plan.cell
 
 
 def _plain(value: Any) -> Any:

@@ -104,6 +104,7 @@ def table_of_frame(run: Results, k: int) -> GrainTable:
     """
     frames, t = run.frames, float(run.frames.t[k])
     scene = run.scene_at(t)
+    column = scene.column if scene.row is None else scene.row.column
     there = np.flatnonzero(scene.fixed_active)
     every, n_grain, n_fixed = frames.x_wrapped[k], scene.n_grain, len(there)
     here = np.arange(n_grain) if scene.traffic is None else np.flatnonzero(np.isfinite(every[:, 0]))
@@ -135,7 +136,7 @@ def table_of_frame(run: Results, k: int) -> GrainTable:
         period=scene.period,
         planes=_planes(scene),
         z_zero=scene.water.z_zero,
-        bed_area=scene.column.area if scene.column is not None else None,
+        bed_area=None if column is None else column.area,
     )
 
 

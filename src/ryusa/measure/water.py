@@ -139,6 +139,8 @@ def water(run: Run, begin: float | None = None, end: float = math.inf) -> WaterP
 def _frames(run: Run, begin: float | None, end: float) -> tuple[Any, slice, float]:
     """Column of water of a run, its frames within a window, and the begin of the window [s]."""
     found = getattr(run, "water", None)
+    if found is None and getattr(run, "row", None) is not None:
+        raise ResultsError("the water is a row of columns; ryusa measure RUN long_section gives it")
     if found is None:
         raise ResultsError("the run solved no column of water (water.profile = 'column')")
     since = settle_time(run) if begin is None else begin

@@ -237,8 +237,10 @@ class _Reader:
             two = {name: self._floats(f"{about}/{name}", shapes["content"]) for name in ("w", "force_z")}
             x = self._positions(f"{about}/x", n)
             grains = RowGrainState(x, two["w"], two["force_z"], self._eddies(f"{about}/eddies", n))
+            if not values.get("fluid"):
+                raise ValueError("a row of water without the water at its grains")
         elif len(self._scene.d_fixed) + n:
-            raise ValueError("a row without its grains")
+            raise ValueError("a row of water without its grains")
         worst = float(values["coupling/worst"])
         return RowCouplingState(state, steps, due, exchanges, worst, passing, grains)
 

@@ -10,6 +10,7 @@ from ryusa.laws.dispatch import profile_speed
 from ryusa.laws.families import Profile
 from ryusa.model import Scene
 from ryusa.results import Results
+from ryusa.results.row import RowFrames
 from ryusa.view.encode import Blob
 
 POINTS = 60  # of a profile that is given by a formula
@@ -22,10 +23,13 @@ def flow_of(results: Results, frames: NDArray[np.int64], blob: Blob) -> dict[str
     Returns
     -------
     z : heights of the profile [m]. The speeds are the array "u" in m/s, one row per frame for a column of
-        water, one row in all for a given profile; nan where there is no water. The surface is the array
+        water, or the mean along a row of columns, one row in all for a given profile; nan where there is no
+        water. The surface is the array
         "surface" in m, one per frame, or one, or none where the depth is unbounded.
     """
     column = results.water
+    if results.row is not None:
+        return _mean_of_row(results, results.row, frames, blob)
     if column is not None:
         u = np.array(column.u[frames])
         wet = column.content[frames] / ((1.0 - column.phi[frames]) * np.diff(column.faces))
@@ -43,9 +47,22 @@ def flow_of(results: Results, frames: NDArray[np.int64], blob: Blob) -> dict[str
     return {"z": z.tolist(), "solved": False}
 
 
+def _mean_of_row(results: Results, row: RowFrames, frames: NDArray[np.int64], blob: Blob) -> dict[str, Any]:
+    """The mean along a row of columns, for `flow_of`."""
+    column, among = row.row.column, 1.0 - row.phi[frames]
+    wet = (row.content[frames] / (among * column.dz)).mean(axis=1)
+    u = row.u[frames].mean(axis=1)
+    u[wet < _HALF] = math.nan
+    blob.add("u", u.astype(np.float32))
+    blob.add("surface", surfaces(results)[frames].astype(np.float32))
+    return {"z": column.z.tolist(), "solved": True}
+
+
 def surfaces(results: Results) -> NDArray[np.float64]:
-    """Height of the water's surface at every frame [m], shape (n_frame,); empty where there is none."""
+    """Height of the surface at every frame [m], its mean along a row, shape (n_frame,); empty without one."""
     water, column = results.scene.water, results.water
+    if results.row is not None:
+        return np.asarray(results.row.surface.mean(axis=1))
     if column is not None:
         return np.asarray(column.z_surface)
     if water.profile == Profile.NONE or not math.isfinite(water.depth):
