@@ -4,12 +4,12 @@ import numpy as np
 
 from ryusa.build.nested_lattice import LatticeCells, nested_lattice
 from ryusa.build.placement import Placement, Wall, at_rest
-from ryusa.build.sizes import draw
+from ryusa.build.sizes import draw, draw_laid
 from ryusa.casefile.builders.box import BoxPlan, box_plan, stands_on_floor
 from ryusa.casefile.builders.schema import BoxSection
 from ryusa.casefile.case import Case
 from ryusa.casefile.derive import Derived
-from ryusa.casefile.grading import grading_of
+from ryusa.casefile.grains import graded
 from ryusa.casefile.shape import extent
 from ryusa.model.scene import Floats
 
@@ -30,10 +30,10 @@ def box(case: Case, derived: Derived) -> Placement:
     back, gate = _stacks(keys, plan, floor, d, plane)
     top = float(floor[:, 2].max()) + d / 2.0 if len(floor) else 0.0
     sized: Floats | None = None
-    if grading_of(case) is None:
+    if not graded(case):
         x = _lattice(keys, plan, rng, derived.room, plane)
     else:
-        sized = draw(case, keys.columns * keys.rows * keys.layers, rng)
+        sized = draw_laid(case, keys.columns * keys.rows * keys.layers, rng)
         cells = LatticeCells(plan.pitch, keys.columns, keys.rows)
         x = nested_lattice(sized * extent(case), cells, keys.gap, keys.jitter, plane, rng)
     x[:, 2] += top + keys.height
@@ -119,7 +119,7 @@ def _notes(case: Case, keys: BoxSection) -> tuple[str, ...]:
     for key in ("floor", "walls"):
         if key not in keys.model_fields_set:
             notes.append(f"{key} of the box: {getattr(keys, key)} (build.{key} not given)")
-    if "spread" not in case.grains.model_fields_set and grading_of(case) is None:
+    if "spread" not in case.grains.model_fields_set and not graded(case):
         notes.append("grains of one size, which settle into rows (grains.spread not given)")
     opened = any(entry.remove == "gate" for entry in case.timeline)
     if opened and keys.floor == "grains":

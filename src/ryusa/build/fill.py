@@ -6,12 +6,12 @@ import numpy as np
 
 from ryusa.build.nested_lattice import LatticeCells, nested_lattice
 from ryusa.build.placement import Placement, at_rest
-from ryusa.build.sizes import draw
+from ryusa.build.sizes import draw, draw_laid
 from ryusa.casefile.builders.schema import FillSection
 from ryusa.casefile.builders.values import fill_cells, fill_count, periodic, plate_of
 from ryusa.casefile.case import Case
 from ryusa.casefile.derive import Derived
-from ryusa.casefile.grading import grading_of
+from ryusa.casefile.grains import graded
 from ryusa.casefile.shape import extent
 from ryusa.model.scene import Floats
 
@@ -30,14 +30,14 @@ def fill(case: Case, derived: Derived) -> Placement:
     corner = 0.5 * (low + high - pitch * np.array([n_x, n_y, n_z]))
     corner[2] = low[2]
     sized: Floats | None = None
-    if grading_of(case) is None:
+    if not graded(case):
         cells = np.stack(np.meshgrid(np.arange(n_z), np.arange(n_y), np.arange(n_x), indexing="ij"), -1)
         cells = cells.reshape(-1, 3)[: fill_count(case), ::-1]
         free = 0.5 * keys.jitter * keys.gap * derived.room
         x = corner + (cells + 0.5) * pitch
         x = x + rng.uniform(-free, free, x.shape)  # neighbours stay `room` apart on each axis
     else:
-        sized = draw(case, fill_count(case), rng)
+        sized = draw_laid(case, fill_count(case), rng)
         block = LatticeCells((pitch, pitch, pitch), n_x, n_y)
         x = corner + nested_lattice(
             sized * extent(case), block, keys.gap, keys.jitter, case.motion.plane, rng

@@ -6,14 +6,15 @@ import numpy as np
 
 from ryusa.build.nested_lattice import LatticeCells, nested_lattice
 from ryusa.build.placement import Placement, Wall, at_rest
-from ryusa.build.sizes import draw
+from ryusa.build.sizes import draw, draw_laid
 from ryusa.casefile.builders.schema import FlumeSection
 from ryusa.casefile.builders.values import bed_counts, flume_count
 from ryusa.casefile.case import Case
 from ryusa.casefile.column.bed import bed_thickness, packed
 from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.derive import Derived
-from ryusa.casefile.grading import grading_of, reference_diameter
+from ryusa.casefile.grading import reference_diameter
+from ryusa.casefile.grains import graded
 from ryusa.casefile.shape import extent
 from ryusa.model.scene import Floats
 
@@ -31,10 +32,10 @@ def flume(case: Case, derived: Derived) -> Placement:
     top = float(x_fixed[:, 2].max()) + d / 2.0 if len(x_fixed) else 0.0
     sized: Floats | None = None
     cells = _cells(case, keys, wide, derived.room)
-    if grading_of(case) is None:
+    if not graded(case):
         x = _lattice(case, keys, rng, cells, derived.room)
     else:
-        sized = draw(case, flume_count(case), rng)
+        sized = draw_laid(case, flume_count(case), rng)
         x = nested_lattice(sized * extent(case), cells, keys.gap, keys.jitter, plane, rng)
     if plane:
         x[:, 1] = 0.0

@@ -4,13 +4,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.build.placement import Placement
+from ryusa.build.sizes import laid_materials
 from ryusa.casefile.case import Case
 from ryusa.casefile.materials import GRAINS, density, names_of
 from ryusa.model import Traffic
 from ryusa.model.scene import Floats
 
 Numbers = NDArray[np.int8]
-_STREAM = 0x4D415445  # tells the materials of grains from their sizes
 
 
 def materials_of(case: Case, placement: Placement, n_first: int, traffic: Traffic | None) -> Numbers:
@@ -25,12 +25,8 @@ def materials_of(case: Case, placement: Placement, n_first: int, traffic: Traffi
         return np.zeros(0, np.int8)
     names = names_of(case)
     of = np.zeros(len(placement.d) + len(placement.d_fixed) + len(placement.walls), np.int8)
-    drawn = np.random.default_rng([case.seed, _STREAM]).permutation(n_first)
-    begin = 0.0
-    for name, share in case.grains.mixture.items():
-        end = begin + share * n_first
-        of[drawn[round(begin) : round(end)]] = names.index(name)
-        begin = end
+    for name, which in laid_materials(case, n_first):
+        of[which] = names.index(name)
     for feed, keys in zip(traffic.feeds if traffic is not None else (), case.feeds, strict=True):
         of[feed.first : feed.first + feed.count] = names.index(keys.material or GRAINS)
     of[len(placement.d) :] = names.index(case.grains.bed_material or GRAINS)

@@ -5,12 +5,13 @@ import numpy as np
 from ryusa.build.flume import bed_level
 from ryusa.build.nested_lattice import LatticeCells, nested_lattice
 from ryusa.build.placement import Placement, Wall, at_rest
-from ryusa.build.sizes import draw
+from ryusa.build.sizes import draw, draw_laid
 from ryusa.casefile.builders.schema import PackingSection
 from ryusa.casefile.builders.values import bed_counts
 from ryusa.casefile.case import Case
 from ryusa.casefile.derive import Derived
-from ryusa.casefile.grading import grading_of, reference_diameter
+from ryusa.casefile.grading import reference_diameter
+from ryusa.casefile.grains import graded
 from ryusa.casefile.shape import extent
 from ryusa.model.scene import Floats
 
@@ -30,10 +31,10 @@ def packing(case: Case, derived: Derived) -> Placement:
         x_fixed, walls = _bed(case, keys, rng, wide, deep), ()
         top = float(x_fixed[:, 2].max()) + d / 2.0
     sized: Floats | None = None
-    if grading_of(case) is None:
+    if not graded(case):
         x = _lattice(keys, pitch, room, rng)
     else:
-        sized = draw(case, keys.columns * keys.rows * keys.layers, rng)
+        sized = draw_laid(case, keys.columns * keys.rows * keys.layers, rng)
         cells = LatticeCells((pitch, pitch, pitch), keys.columns, keys.rows)
         x = nested_lattice(sized * extent(case), cells, keys.gap, keys.jitter, plane, rng)
     if plane:

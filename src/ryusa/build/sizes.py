@@ -3,11 +3,37 @@
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ryusa.casefile.case import Case
 from ryusa.casefile.grading import grading_of, reference_diameter
-from ryusa.casefile.grains import CUT, spread_of
+from ryusa.casefile.grains import CUT, has_own_sizes, sized_as, spread_of
 from ryusa.model.scene import Floats
+
+_STREAM = 0x4D415445  # tells the materials of grains from their sizes
+
+
+def laid_materials(case: Case, n: int) -> list[tuple[str, NDArray[np.int64]]]:
+    """Which of the n grains that the builder lays are of each material of `grains.mixture`."""
+    drawn = np.random.default_rng([case.seed, _STREAM]).permutation(n)
+    found: list[tuple[str, NDArray[np.int64]]] = []
+    begin = 0.0
+    for name, share in case.grains.mixture.items():
+        end = begin + share * n
+        found.append((name, drawn[round(begin) : round(end)]))
+        begin = end
+    return found
+
+
+def draw_laid(case: Case, n: int, rng: np.random.Generator) -> Floats:
+    """Diameters [m] of the n grains that the builder lays, each by its material."""
+    if not any(has_own_sizes(case, name) for name in case.grains.mixture):
+        return draw(case, n, rng)
+    d, rest = np.zeros(n), np.ones(n, np.bool_)
+    for name, which in laid_materials(case, n):
+        d[which], rest[which] = draw(sized_as(case, name), len(which), rng), False
+    d[rest] = draw(case, int(rest.sum()), rng)
+    return d
 
 
 def draw(case: Case, n: int, rng: np.random.Generator) -> Floats:

@@ -10,7 +10,7 @@ from ryusa.build.placement import Placement, at_rest
 from ryusa.build.sizes import draw
 from ryusa.casefile.case import Case
 from ryusa.casefile.derive import Derived
-from ryusa.casefile.grains import mass
+from ryusa.casefile.grains import mass, sized_as
 from ryusa.casefile.materials import of_material
 from ryusa.casefile.traffic.schema import ExitSection, FeedSection
 from ryusa.casefile.traffic.values import fed_count, feed_end
@@ -104,7 +104,8 @@ def _reaching(scene: Scene, traffic: Traffic, by_default_low: bool, by_default_h
 def _sizes_of(case: Case, keys: FeedSection, rng: np.random.Generator) -> Floats:
     """Diameters of all grains of a feed that are due before its end [m]."""
     count = fed_count(case, keys)
-    d = draw(case, count, rng)
+    sized = sized_as(case, keys.material)
+    d = draw(sized, count, rng)
     if keys.rate is None or keys.rate[1] == "grains/s":
         return d
     wanted = keys.rate[0] * (feed_end(case, keys) - keys.begin)
@@ -113,7 +114,7 @@ def _sizes_of(case: Case, keys: FeedSection, rng: np.random.Generator) -> Floats
         due = np.concatenate([[0.0], np.cumsum(m)])  # mass before each grain
         if due[-1] >= wanted:
             return d[: int(np.searchsorted(due, wanted * (1.0 - 1e-12)))]
-        d = np.concatenate([d, draw(case, max(count // 10, 10), rng)])
+        d = np.concatenate([d, draw(sized, max(count // 10, 10), rng)])
 
 
 def _middle(keys: FeedSection) -> Floats:

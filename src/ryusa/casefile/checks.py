@@ -15,6 +15,7 @@ from ryusa.casefile.domain import check_domain, check_planes
 from ryusa.casefile.films import check_film_step, check_films
 from ryusa.casefile.grading import check_grading
 from ryusa.casefile.grains import RIVALS as GRAINS_RIVALS
+from ryusa.casefile.material_sizes import check_sizes
 from ryusa.casefile.materials import check_materials
 from ryusa.casefile.motion import RIVALS as MOTION_RIVALS
 from ryusa.casefile.motion import check_motion
@@ -47,7 +48,7 @@ def check(case: Case, data: dict[str, Any]) -> list[CaseError]:
 
     Checks that need derived numbers come last: these exist only for a case without contradictions.
     """
-    unsized = [*check_grading(case), *check_shape(case)]
+    unsized = [*check_grading(case), *check_sizes(case), *check_shape(case)]
     if unsized:  # most checks need the sizes
         return [*_rivals(case), *unsized]
     found = [

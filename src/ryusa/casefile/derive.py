@@ -19,7 +19,7 @@ from ryusa.casefile.contact.values import (
 )
 from ryusa.casefile.films import step_limits
 from ryusa.casefile.grains import mass
-from ryusa.casefile.materials import lightest_of, meeting
+from ryusa.casefile.materials import lightest_of, meeting, smallest_of
 from ryusa.casefile.motion import slope
 from ryusa.casefile.row.values import water_alone, water_step
 from ryusa.casefile.shape import least_mass, spheres_per_grain
@@ -71,12 +71,15 @@ def derive(case: Case) -> Derived:
     k_n, k_s = stiffness(case)
     e_n, e_s, _, _ = restitution(case)
     n_grain, n_fixed, meet = counts(case)
-    pairs = [(lightest_of(case, a, b, both), both) for (a, b), both in meeting(case).items()]
-    pairs = pairs if case.materials else [(case, meet)]
+    pairs = [
+        (lightest_of(case, a, b, both), smallest_of(case, a, b), both)
+        for (a, b), both in meeting(case).items()
+    ]
+    pairs = pairs if case.materials else [(case, d_min, meet)]
     lighter = least_mass(case)
     power = 0.4 if is_hertz(case) else 0.5  # of the mass in the duration of a contact
-    shortest = lighter**power * min(shortest_contact(one, d_min, both) for one, both in pairs)
-    steps = [step_limit(one, d_min, both) for one, both in pairs]
+    shortest = lighter**power * min(shortest_contact(one, d, both) for one, d, both in pairs)
+    steps = [step_limit(one, d, both) for one, d, both in pairs]
     slower = math.sqrt(lighter)
     limits = slower * min(normal for normal, _ in steps), slower * min(shear for _, shear in steps)
     if case.time.step is not None:
@@ -86,7 +89,7 @@ def derive(case: Case) -> Derived:
     elif case.time.steps_per_contact is not None:
         dt = shortest / case.time.steps_per_contact
     else:
-        wet_limits = [step_limits(one, stiffness(one)[0], d_min, both) for one, both in pairs]
+        wet_limits = [step_limits(one, stiffness(one)[0], d, both) for one, d, both in pairs]
         wet_steps = min(one for one, _ in wet_limits), min(one for _, one in wet_limits)
         dt = _default_step(case, shortest, limits[1], wet_steps)
     u_star, tau_star, k_rough, g = math.nan, math.nan, math.nan, case.motion.gravity

@@ -9,7 +9,7 @@ from ryusa.casefile.estimate import cost_rows
 from ryusa.casefile.films import film_rows
 from ryusa.casefile.grains import grain_rows
 from ryusa.casefile.laws import law_rows
-from ryusa.casefile.materials import material_rows
+from ryusa.casefile.material_rows import material_rows
 from ryusa.casefile.precision import precision_rows
 from ryusa.casefile.row.rows import row_rows
 from ryusa.casefile.row.values import water_alone

@@ -123,6 +123,23 @@ def check_grading(case: "Case") -> Iterator[CaseError]:
             yield error
 
 
+def check_points(key: str, points: tuple[tuple[float, float], ...]) -> Iterator[CaseError]:
+    """Find pairs of diameter and percent that are no closed curve."""
+    try:
+        whole = _whole(points)
+    except GradingFault as fault:
+        yield CaseError(f"{key}.{fault.point}", None, str(fault))
+        return
+    if not whole.closed:
+        first, last = 100.0 * float(whole.finer[0]), 100.0 * float(whole.finer[-1])
+        yield CaseError(key, None, f"goes from {first:g} to {last:g} % finer; a curve goes from 0 to 100 %")
+    else:
+        try:
+            whole.cut()
+        except GradingFault as fault:
+            yield CaseError(key, None, str(fault))
+
+
 def _ends(whole: Grading, finest: float | None, coarsest: float | None) -> Iterator[CaseError]:
     """Find ends of a curve that are open, and cuts beyond them."""
     first, last = float(whole.d[0]), float(whole.d[-1])

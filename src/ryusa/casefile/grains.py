@@ -10,7 +10,7 @@ from ryusa.casefile.files import relative
 from ryusa.casefile.grading import grading_of, grading_rows, reference_diameter
 from ryusa.casefile.quantities import Density, Length, Number, Ratio
 from ryusa.casefile.rows import ExplainRow, count, number
-from ryusa.casefile.section import Section
+from ryusa.casefile.section import Section, given
 from ryusa.laws import drag, motion
 
 if TYPE_CHECKING:
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 
 CUT = 2.5  # standard deviations at which normal and lognormal sizes are cut
+OWN_SIZES = ("diameter", "spread", "sieve_curve")  # keys of a material
 
 
 class SpreadSection(Section):
@@ -43,8 +44,13 @@ def _curve_kind(value: Any) -> str:
 
 
 GrainLength = Annotated[Length, Field(ge=1.0e-7, le=1.0e3)]
+Spread = Annotated[
+    Annotated[Ratio, Field(ge=0, lt=0.9), Tag("<number>")] | Annotated[SpreadSection, Tag("<table>")],
+    Discriminator(_spread_kind),
+]
 ShapeName = Annotated[str, Field(min_length=1, max_length=400), AfterValidator(relative)]
 Percent = Annotated[Number, Field(ge=0, le=100)]
+CurvePoints = Annotated[tuple[tuple[GrainLength, Percent], ...], Field(min_length=2, max_length=1000)]
 
 
 class GrainsSection(Section):
@@ -55,17 +61,12 @@ class GrainsSection(Section):
     diameter of u_star, roughness, overlap/d and fixed grains, in a sieve_curve D50 when not given."""
     density: Annotated[Density, Field(ge=1.0, le=1.0e6)]
     """Density of the grain material, rho_s."""
-    spread: Annotated[
-        Annotated[Ratio, Field(ge=0, lt=0.9), Tag("<number>")] | Annotated[SpreadSection, Tag("<table>")],
-        Discriminator(_spread_kind),
-    ] = 0.0
+    spread: Spread = 0.0
     """Spread of the sizes: a number is the half width of a uniform distribution over the mean diameter."""
     sieve_curve: (
         Annotated[
             Annotated[str, Field(min_length=1, max_length=400), AfterValidator(relative), Tag("<file>")]
-            | Annotated[
-                tuple[tuple[GrainLength, Percent], ...], Field(min_length=2, max_length=1000), Tag("<points>")
-            ],
+            | Annotated[CurvePoints, Tag("<points>")],
             Discriminator(_curve_kind),
         ]
         | None
@@ -118,13 +119,60 @@ def spread_of(grains: GrainsSection) -> tuple[str, float]:
 
 
 def mean_cube(case: "Case") -> float:
-    """Mean of d^3 over the grains of a spread or a sieve curve [m3]."""
+    """Mean of d^3 over the sizes of [grains] [m3]."""
     grading = grading_of(case)
     if grading is not None:
         return grading.mean_cube
-    d, (kind, ratio) = reference_diameter(case), spread_of(case.grains)
-    # uniform sizes have a variance of ratio**2/3, the others of ratio**2
-    return d**3 * (1.0 + 3.0 * ratio**2 / (3.0 if kind == "uniform" else 1.0))
+    kind, ratio = spread_of(case.grains)
+    wider = {
+        "uniform": 1.0 + ratio**2,
+        "normal": 1.0 + 3.0 * ratio**2,
+        "lognormal": (1.0 + ratio**2) ** 3,
+    }[kind]
+    return reference_diameter(case) ** 3 * wider
+
+
+def has_own_sizes(case: "Case", name: str | None) -> bool:
+    """Whether a material says how large its grains are."""
+    own = case.materials.get(name) if name is not None else None
+    return own is not None and any(given(own, key) for key in OWN_SIZES)
+
+
+def sized_as(case: "Case", name: str | None) -> "Case":
+    """The case with the sizes of a material as those of [grains]; as it is where the material has none."""
+    if name is None or not has_own_sizes(case, name):
+        return case
+    own, grains = case.materials[name], case.grains
+    curve = own.sieve_curve
+    changed: dict[str, Any] = {"finest": None, "coarsest": None, "sieve_curve": curve}
+    if curve is not None:
+        changed |= {"diameter": None, "spread": 0.0}
+    else:
+        wide = grains.spread if grains.sieve_curve is None else 0.0
+        changed["diameter"] = own.diameter or reference_diameter(case)
+        changed["spread"] = wide if own.spread is None else own.spread
+    return case.model_copy(update={"grains": grains.model_copy(update=changed)})
+
+
+def laid_shares(case: "Case") -> dict[str | None, float]:
+    """Shares by number of what the builder lays, by material; None is that of [grains]."""
+    if case.build.kind == "empty":
+        return {}
+    rest = 1.0 - sum(case.grains.mixture.values())
+    return {**({None: rest} if rest > 1e-9 else {}), **case.grains.mixture}
+
+
+def graded(case: "Case") -> bool:
+    """Whether the builder lays a sieve curve, or materials of sizes of their own."""
+    laid = laid_shares(case)
+    curves = (grading_of(sized_as(case, name)) for name in laid)
+    return any(has_own_sizes(case, name) for name in laid) or any(one is not None for one in curves)
+
+
+def laid_mean_cube(case: "Case") -> float:
+    """Mean of d^3 over what the builder lays [m3]; of builder "empty" that of [grains]."""
+    laid = laid_shares(case)
+    return sum(share * mean_cube(sized_as(case, name)) for name, share in laid.items()) or mean_cube(case)
 
 
 def mass(case: "Case", d: float) -> tuple[float, float, float, float]:

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 from pydantic import Field
 
 from ryusa.casefile.builders.schema import EmptySection
-from ryusa.casefile.builders.values import built_counts
+from ryusa.casefile.builders.values import built_counts, size_range
 from ryusa.casefile.contact.values import adhesion, friction, is_hertz, stiffness, timing
+from ryusa.casefile.grains import OWN_SIZES, CurvePoints, GrainLength, Spread
 from ryusa.casefile.quantities import (
     Density,
     EnergyDensity,
@@ -25,7 +26,6 @@ from ryusa.casefile.quantities import (
     Stiffness,
     SurfaceEnergy,
 )
-from ryusa.casefile.rows import ExplainRow, number, word
 from ryusa.casefile.section import Section, given
 from ryusa.errors import CaseError
 from ryusa.laws.families import Adhesion, ContactTiming
@@ -38,7 +38,6 @@ if TYPE_CHECKING:
 GRAINS = "grains"  # the material of [grains] and [contact]
 MOST = 100  # materials: their numbers are int8
 _OF_PAIRS = ("friction", "restitution", "rolling_coefficient")
-_ADHESION_UNITS = {"pull_off_force": "N", "work_of_adhesion": "J/m2", "adhesion_density": "J/m3"}
 _OF_ADHESION = Adhesion.all_takes()  # of pairs too, where the case has adhesion
 
 
@@ -47,6 +46,14 @@ class MaterialSection(Section):
 
     density: Annotated[Density, Field(ge=1.0, le=1.0e6)] | None = None
     """Density of grains of this material; of walls and fixed grains it means nothing."""
+    diameter: GrainLength | None = None
+    """Mean diameter of the grains of this material that feeds bring and grains.mixture lays; of walls and
+    fixed grains it means nothing."""
+    spread: Spread | None = None
+    """Spread of their sizes about it, as grains.spread."""
+    sieve_curve: CurvePoints | None = None
+    """Their sizes by mass, in place of diameter and spread: pairs of diameter and percent finer, from 0 to
+    100."""
     stiffness: Annotated[Stiffness, Field(ge=1.0e-9, le=1.0e15)] | None = None
     """Normal stiffness k_n of the linear spring between two grains of this material. Two materials give way
     as springs in series: 2/(1/k_a + 1/k_b)."""
@@ -182,6 +189,13 @@ def lightest_of(case: "Case", a: str, b: str, free: bool) -> "Case":
         return made
     least = min(density(case, a), density(case, b))
     return made.model_copy(update={"grains": made.grains.model_copy(update={"density": least})})
+
+
+def smallest_of(case: "Case", a: str, b: str) -> float:
+    """Diameter of the smallest free grain in contacts of two materials [m]."""
+    free = free_materials(case)
+    names = [None if name == GRAINS else name for name in {a, b} if name in free]
+    return min(size_range(case, name)[0] for name in names)
 
 
 def of_material(case: "Case", name: str | None) -> "Case":
@@ -322,8 +336,10 @@ def _keys(case: "Case") -> Iterator[CaseError]:
             )  # fmt: skip
     free = free_materials(case)
     for key, one in sections:
-        if given(one, "density") and key.partition(".")[2] not in free:
-            yield CaseError(f"{key}.density", one.density, "has no effect: no free grain is of this material")
+        for name in ("density", *OWN_SIZES):
+            if given(one, name) and key.partition(".")[2] not in free:
+                value = getattr(one, name) if name in {"density", "diameter"} else None
+                yield CaseError(f"{key}.{name}", value, "has no effect: no free grain is of this material")
     shares = sum(case.grains.mixture.values())
     if shares > 1.0 + 1e-9:
         yield CaseError("grains.mixture", None, f"has shares that sum to {shares:g}, more than 1")
@@ -367,37 +383,3 @@ def _missing(case: "Case") -> Iterator[CaseError]:
     for k, pair in enumerate(case.pairs):
         if not {pair.materials, pair.materials[::-1]} & set(pairs):
             yield CaseError(f"pairs.{k}.materials", list(pair.materials), "has no effect: the two never meet")
-
-
-def material_rows(case: "Case") -> list[ExplainRow]:
-    """Contacts of each two materials that meet."""
-    rows: list[ExplainRow] = []
-    for name in case.materials:
-        if given(case.materials[name], "density"):
-            rows.append(number("materials", f"density of {name}", density(case, name), "kg/m3", "density"))
-    for name, share in case.grains.mixture.items():
-        rows.append(
-            number("materials", f"share of {name}", share, "-", "grains.mixture, by number, at random")
-        )
-    if not case.materials:
-        return rows
-    entries = [set(one.materials) for one in case.pairs]
-    for a, b in meeting(case):
-        one = case_of_pair(case, a, b)
-        origin = f"[materials.{a}]" if a == b else f"the same in {a} and {b}"
-        origin = "[contact]" if a == b == GRAINS else origin
-        if {a, b} in entries and a != b:
-            origin = f"pairs.{entries.index({a, b})}"
-        values = f"mu {friction(one):.4g}, e {one.contact.restitution:.4g}"
-        if case.rolling.model != "none":
-            values += f", rolling {one.rolling.coefficient:.4g}"
-        for key in adhesion(case).takes:
-            values += f", {key} {getattr(one.contact, key):.4g} {_ADHESION_UNITS[key]}"
-        if is_hertz(case):
-            values += (
-                f", E {_young(one, GRAINS):.4g} Pa, nu {one.contact.poisson_ratio:.3g} if both were alike"
-            )
-        else:
-            values += f", k_n {stiffness(one)[0]:.4g} N/m"
-        rows.append(word("materials", f"{a} on {b}", values, origin))
-    return rows

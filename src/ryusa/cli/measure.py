@@ -24,6 +24,7 @@ CHECKS: dict[str, chosen.Check] = {
     "--begin": chosen.time,
     "--end": chosen.time,
     "--fps": chosen.in_range(1.0, 1.0e6),
+    "--material": lambda _name, value, _results: value,
     "--layer": chosen.in_range(0.01, 100.0),
     "--resolution": chosen.in_range(0.001, 1.0),
     "--rise": chosen.in_range(0.0, 100.0),
@@ -118,6 +119,10 @@ Threshold = Annotated[
 At = Annotated[
     str | None, typer.Option(help=f"{taking('t', MEASURES)}: time of the frame; default the last frame.")
 ]
+Material = Annotated[
+    str | None,
+    typer.Option(help=f"{taking('material', MEASURES)}: only the grains of this material; default all."),
+]
 Side = Annotated[
     str, typer.Option(help=f"{taking('side', MEASURES)}: slope of a heap, {' or '.join(SIDES)}.")
 ]
@@ -147,6 +152,7 @@ def measure(
     threshold: Threshold = None,
     at: At = None,
     side: Side = "right",
+    material: Material = None,
 ) -> None:
     """Measure a run and print averages with standard errors, or a table; --csv writes the numbers.
 

@@ -7,10 +7,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ryusa.errors import ResultsError
+from ryusa.errors import CaseError, ResultsError
 from ryusa.measure._run import Floats, Run
+from ryusa.model.arrays import Bools
 from ryusa.model.grading import SHARES, Grading, GradingFault, laid
+from ryusa.spelling import nearest_word
 
+OWN_SIZES = ("diameter", "spread", "sieve_curve")  # keys of a material of the case
 HALF_PHI = math.sqrt(2.0)  # ratio of the sieves where the case asks for no curve
 
 
@@ -103,12 +106,18 @@ class Sizes:
         ]
 
 
-def sizes(run: Run) -> Sizes:
+def sizes(run: Run, material: str | None = None) -> Sizes:
     """Sizes by mass of the free grains, beside the sieve curve of the case.
+
+    Parameters
+    ----------
+    material : only the grains of this material, beside its own curve; all when not given, which have no one
+        curve where a material has sizes of its own.
 
     Raises
     ------
     ResultsError : the run holds no grain, or case.json a curve that cannot be.
+    CaseError : there is no such material.
 
     Notes
     -----
@@ -118,11 +127,14 @@ def sizes(run: Run) -> Sizes:
     percentiles counted from the coarse end.
     """
     d, m = run.scene.whole_grains()
+    if material is not None:
+        of_it = _of_material(run, material)
+        d, m = d[of_it], m[of_it]
     order = np.argsort(d, kind="stable")
     d, m = np.asarray(d[order]), np.asarray(m[order])
     if not len(d):
-        raise ResultsError("the run holds no free grain")
-    asked = _asked(run.case)
+        raise ResultsError("the run holds no free grain" + (f" of {material}" if material else ""))
+    asked = _asked(run.case, material)
     sieves = asked.d if asked is not None else _half_phi(float(d[0]), float(d[-1]))
     which = np.searchsorted(sieves[1:-1], d, side="right")
     n = len(sieves) - 1
@@ -137,9 +149,30 @@ def sizes(run: Run) -> Sizes:
     )
 
 
-def _asked(case: Any) -> Grading | None:
+def _of_material(run: Run, material: str) -> Bools:
+    """Which grains are of a material, in the order of `Scene.whole_grains`."""
+    scene = run.scene
+    names = ("grains",) if scene.materials is None else scene.materials.names
+    if material not in names:
+        allowed = f"must be a material of the run: {', '.join(names)}"
+        raise CaseError("--material", material, allowed, nearest_word(material, names))
+    of = np.zeros(scene.n_grain, np.int64) if scene.materials is None else scene.materials.of[: scene.n_grain]
+    if scene.bodies is not None:
+        alone = np.ones(scene.n_grain, np.bool_)
+        alone[scene.bodies.members] = False
+        of = np.concatenate([of[alone], of[scene.bodies.first]])
+    return np.asarray(of == names.index(material))
+
+
+def _asked(case: Any, material: str | None) -> Grading | None:
     """Curve of the case as case.json holds it: pairs of diameter [m] and percent finer."""
     grains = case.get("grains") or {} if isinstance(case, dict) else {}
+    made = case.get("materials") or {} if isinstance(case, dict) else {}
+    own = {name for name, one in made.items() if any(one.get(key) is not None for key in OWN_SIZES)}
+    if material in own:
+        grains = {"sieve_curve": made[material].get("sieve_curve")}
+    elif material is None and own:
+        return None
     points = grains.get("sieve_curve") if isinstance(grains, dict) else None
     if points is None:
         return None
@@ -147,7 +180,8 @@ def _asked(case: Any) -> Grading | None:
         whole = Grading.of([(float(d), float(percent) / 100.0) for d, percent in points])
         return whole.cut(float(grains.get("finest") or 0.0), float(grains.get("coarsest") or math.inf))
     except (GradingFault, TypeError, ValueError) as error:
-        raise ResultsError(f"case.json: grains.sieve_curve cannot be read: {error}") from None
+        key = "grains" if material not in own else f"materials.{material}"
+        raise ResultsError(f"case.json: {key}.sieve_curve cannot be read: {error}") from None
 
 
 def _half_phi(low: float, high: float) -> Floats:

@@ -22,7 +22,7 @@ from ryusa.casefile.builders.values import (
     sizes,
 )
 from ryusa.casefile.grading import grading_of, reference_diameter
-from ryusa.casefile.grains import spread_of
+from ryusa.casefile.grains import graded, spread_of
 from ryusa.casefile.motion import may_rotate
 from ryusa.casefile.section import given
 from ryusa.errors import CaseError
@@ -76,7 +76,7 @@ def check_builder(case: "Case") -> Iterator[CaseError]:
         yield from _flume(case, build)
     if isinstance(build, BoxSection):
         yield from _box(case, build)
-    if isinstance(build, PackingSection | FlumeSection) and grading_of(case) is not None:
+    if isinstance(build, PackingSection | FlumeSection) and graded(case):
         yield from _bed(case, build)
     if isinstance(build, FillSection):
         yield from _fill(case, build)

@@ -20,7 +20,7 @@ from ryusa.casefile.builders.schema import (
 )
 from ryusa.casefile.builders.table import period_of, table_of
 from ryusa.casefile.grading import grading_of, reference_diameter
-from ryusa.casefile.grains import CUT, spread_of
+from ryusa.casefile.grains import CUT, graded, laid_mean_cube, laid_shares, sized_as, spread_of
 from ryusa.casefile.motion import slab_width
 from ryusa.casefile.shape import extent
 from ryusa.casefile.traffic.values import fed_in_all
@@ -36,14 +36,32 @@ _ROUNDED = 4.0  # cells of the lattice of builder 'fill'
 def sizes(case: "Case") -> tuple[float, float, float]:
     """Mean diameter as the case states it, smallest of free grains and largest that can occur [m]."""
     table = table_of(case)
+    ranges = [drawn_range(case, name) for name in drawn_materials(case)]
     if table is not None:
         every = table.column("d")
-        smallest, largest = float(every[~table.fixed].min()), float(every.max())
-        if case.feeds:
-            _, *fed = _drawn_sizes(case)
-            smallest, largest = min(smallest, fed[0]), max(largest, fed[1])
-        return reference_diameter(case), smallest, largest
-    return _drawn_sizes(case)
+        ranges.append((float(every[~table.fixed].min()), float(every.max())))
+    return reference_diameter(case), min(low for low, _ in ranges), max(high for _, high in ranges)
+
+
+def drawn_materials(case: "Case") -> set[str | None]:
+    """Materials of which the builder or a feed draws the sizes; None is that of [grains]."""
+    laid = set(laid_shares(case)) if table_of(case) is None else set[str | None]()
+    fed = {feed.material for feed in case.feeds if feed.rate is not None}
+    return laid | fed or ({None} if table_of(case) is None else set[str | None]())
+
+
+def size_range(case: "Case", name: str | None) -> tuple[float, float]:
+    """Smallest and largest diameter of the free grains of a material [m]."""
+    table = table_of(case)
+    if table is None:
+        return drawn_range(case, name)
+    of_it = {feed.material for feed in case.feeds if feed.rate is not None}
+    every = table.column("d")[~table.fixed]
+    there = (float(every.min()), float(every.max()))
+    if name not in of_it:
+        return there
+    drawn = drawn_range(case, name)
+    return (min(there[0], drawn[0]), max(there[1], drawn[1]))
 
 
 def room(case: "Case") -> float:
@@ -51,22 +69,19 @@ def room(case: "Case") -> float:
     return sizes(case)[2] * extent(case)
 
 
-def _drawn_sizes(case: "Case") -> tuple[float, float, float]:
-    """Mean, smallest and largest diameter of the distribution of [grains] [m]."""
-    d, grading = reference_diameter(case), grading_of(case)
+def drawn_range(case: "Case", name: str | None) -> tuple[float, float]:
+    """Smallest and largest diameter of the distribution of a material [m]; None is that of [grains]."""
+    sized = sized_as(case, name)
+    d, grading = reference_diameter(sized), grading_of(sized)
     if grading is not None:
-        return d, float(grading.d[0]), float(grading.d[-1])
-    kind, ratio = spread_of(case.grains)
+        return float(grading.d[0]), float(grading.d[-1])
+    kind, ratio = spread_of(sized.grains)
     if kind == "uniform":
-        return d, d * (1.0 - ratio), d * (1.0 + ratio)
+        return d * (1.0 - ratio), d * (1.0 + ratio)
     if kind == "normal":
-        return d, d * max(1.0 - CUT * ratio, 0.05), d * (1.0 + CUT * ratio)
+        return d * max(1.0 - CUT * ratio, 0.05), d * (1.0 + CUT * ratio)
     width = math.sqrt(math.log1p(ratio * ratio))
-    return (
-        d,
-        d * math.exp(-0.5 * width * width - CUT * width),
-        d * math.exp(-0.5 * width * width + CUT * width),
-    )
+    return d * math.exp(-0.5 * width * width - CUT * width), d * math.exp(-0.5 * width * width + CUT * width)
 
 
 def counts(case: "Case") -> tuple[int, int, bool]:
@@ -156,11 +171,10 @@ def _side_by_side(case: "Case", build: FlumeSection) -> tuple[int, int]:
 
 
 def flume_count(case: "Case") -> int:
-    """Free grains of a flume; of a sieve curve as many as have the volume of those layers."""
+    """Free grains of a flume; of several sizes as many as have the volume of those layers."""
     assert isinstance(case.build, FlumeSection)
     n_x, n_y = _side_by_side(case, case.build)
-    grading = grading_of(case)
-    each = 1.0 if grading is None else reference_diameter(case) ** 3 / grading.mean_cube
+    each = reference_diameter(case) ** 3 / laid_mean_cube(case) if graded(case) else 1.0
     return round(case.build.layers * n_x * n_y * each)
 
 
@@ -177,24 +191,36 @@ def fill_cells(case: "Case") -> tuple[int, int, int]:
 
 
 def fill_count(case: "Case") -> int:
-    """Free grains of builder 'fill'; of a sieve curve as many as its cells hold, halved for smaller ones.
+    """Free grains of builder 'fill'; of several sizes as many as its cells hold, halved for smaller ones.
 
     Notes
     -----
     A grain of level k, with d <= d_max/2^k, takes 8^-k of a cell (4^-k in a plane). Sizes by quota differ by
     up to two grains from the share of a level, and the grains of a level are rounded up to a whole cell of
-    the next: together less than `_ROUNDED` cells.
+    the next: together less than `_ROUNDED` cells for each material.
     """
-    build, cells, grading = case.build, math.prod(fill_cells(case)), grading_of(case)
+    build, cells = case.build, math.prod(fill_cells(case))
     assert isinstance(build, FillSection)
     held = cells
-    if grading is not None:
-        halved, largest = 4.0 if case.motion.plane else 8.0, float(grading.d[-1])
-        below = [grading.number_below(largest * 0.5**k) for k in range(DEEPEST)]
-        below[0] = 1.0
-        each = sum((a - b) / halved**k for k, (a, b) in enumerate(pairwise([*below, 0.0])))
-        held = max(cells, int((cells - _ROUNDED) / each))
+    if graded(case):
+        laid = laid_shares(case)
+        each = sum(share * _cells_of_a_grain(case, name) for name, share in laid.items())
+        held = max(cells, int((cells - _ROUNDED * len(laid)) / each))
     return min(held, build.most or held)
+
+
+def _cells_of_a_grain(case: "Case", name: str | None) -> float:
+    """Cells of the largest grain that a grain of a material takes in the mean [-]."""
+    halved, widest, grading = (
+        4.0 if case.motion.plane else 8.0,
+        sizes(case)[2],
+        grading_of(sized_as(case, name)),
+    )
+    if grading is None:  # each as its largest
+        level = math.floor(math.log2(widest / drawn_range(case, name)[1]) + 1.0e-9)
+        return halved ** -min(level, DEEPEST)
+    below = [grading.number_below(widest * 0.5**k * (1.0 + 1.0e-12)) for k in range(DEEPEST)]
+    return sum((a - b) / halved**k for k, (a, b) in enumerate(pairwise([*below, 0.0])))
 
 
 def bed_area(case: "Case") -> float:

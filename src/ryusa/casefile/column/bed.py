@@ -7,7 +7,7 @@ from ryusa.casefile.builders.schema import FlumeSection, PackingSection
 from ryusa.casefile.builders.values import bed_area, counts
 from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.grading import reference_diameter
-from ryusa.casefile.grains import mean_cube
+from ryusa.casefile.grains import laid_mean_cube
 from ryusa.casefile.motion import slab_width
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ def bed_thickness(case: "Case") -> float:
 
     A base of fixed grains of random height takes up to half a layer more.
     """
-    return counts(case)[0] * case.grains.shape_volume * mean_cube(case) / (bed_area(case) * packed(case))
+    return counts(case)[0] * case.grains.shape_volume * laid_mean_cube(case) / (bed_area(case) * packed(case))
 
 
 def bed_top(case: "Case") -> float:

@@ -6,7 +6,7 @@ from itertools import product
 from typing import TYPE_CHECKING
 
 from ryusa.casefile.builders.schema import DropSection, EmptySection, SaltationSection
-from ryusa.casefile.builders.values import periodic, sizes
+from ryusa.casefile.builders.values import periodic, size_range, sizes
 from ryusa.casefile.row.schema import row_keys
 from ryusa.casefile.shape import extent
 from ryusa.casefile.traffic.schema import ExitSection, FeedSection
@@ -104,7 +104,7 @@ def _shapes(case: "Case") -> Iterator[CaseError]:
         pairs = (("low", "high"), box) if box != (None, None) else (("centre", "radius"), disc)
         yield from _missing(key, *pairs)
         yield from _direction(case, f"{key}.normal", feed.normal, "normal" in feed.model_fields_set)
-        yield from _box(case, key, feed.low, feed.high)
+        yield from _box(case, key, feed.low, feed.high, _largest(case, feed))
         if case.motion.plane:
             for name, point in (("centre", feed.centre), ("velocity", feed.velocity)):
                 if point is not None and point[1] != 0.0:
@@ -125,7 +125,7 @@ def _shapes(case: "Case") -> Iterator[CaseError]:
                     yield CaseError(
                         f"{key}.normal", list(one.normal), f"must have {name} = 0, because {name} is periodic"
                     )
-        yield from _box(case, key, one.low, one.high)
+        yield from _box(case, key, one.low, one.high, _largest(case))
 
 
 def _missing(key: str, names: tuple[str, str], values: tuple[object, object]) -> Iterator[CaseError]:
@@ -142,18 +142,24 @@ def _direction(case: "Case", key: str, normal: Sequence[float], given: bool) -> 
         yield CaseError(key, list(normal), "must have y = 0 in a plane scene")
 
 
-def _largest(case: "Case") -> float:
-    """Diameter of the sphere that holds the largest grain, however a clump is turned [m]."""
-    return sizes(case)[2] * extent(case)
+def _largest(case: "Case", feed: FeedSection | None = None) -> float:
+    """Diameter of the sphere that holds the largest grain, or that of a feed, however it is turned [m]."""
+    own = feed is not None and not _led(case, feed)
+    return (size_range(case, feed.material)[1] if own and feed else sizes(case)[2]) * extent(case)
+
+
+def _led(case: "Case", feed: FeedSection) -> bool:
+    """Whether an exit leads to a feed, which may bring it grains of any size."""
+    return any(one.to == feed.name for one in case.exits)
 
 
 def _box(
-    case: "Case", key: str, low: Sequence[float] | None, high: Sequence[float] | None
+    case: "Case", key: str, low: Sequence[float] | None, high: Sequence[float] | None, largest: float
 ) -> Iterator[CaseError]:
     """Find boxes without a volume, or thinner than the largest grain."""
     if low is None or high is None:
         return
-    plane, largest = case.motion.plane, _largest(case)
+    plane = case.motion.plane
     if plane and (low[1], high[1]) != (0.0, 0.0):
         yield CaseError(f"{key}.low", list(low), "must have y = 0 in a plane scene, as high")
     axes = (0, 2) if plane else (0, 1, 2)
@@ -167,14 +173,13 @@ def _box(
 
 def _feed(case: "Case", key: str, feed: FeedSection) -> Iterator[CaseError]:
     """Find feeds without grains, with too small an opening, or a rate that cannot fit."""
-    largest = _largest(case)
+    largest = _largest(case, feed)
     if feed.radius is not None and 2.0 * feed.radius < largest:
         yield CaseError(
             f"{key}.radius", feed.radius, f"is too small for the largest grain: at least {largest / 2:.4g} m"
         )
         return
-    led = any(one.to == feed.name for one in case.exits)
-    if feed.rate is None and not led:
+    if feed.rate is None and not _led(case, feed):
         yield CaseError(f"{key}.rate", None, "missing; no exit leads to this feed, so it would bring nothing")
     if feed.rate is not None:
         yield from _rate(case, key, feed)

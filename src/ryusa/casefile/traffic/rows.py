@@ -29,7 +29,7 @@ def traffic_rows(case: "Case") -> list[ExplainRow]:
             rows.append(word("traffic", name, "recirculation", "only grains that an exit leads to it"))
             continue
         rate, end = grains_per_second(case, feed), feed_end(case, feed)
-        shown = f"{rate:.4g} grains/s, {rate * mean_mass(case):.4g} kg/s"
+        shown = f"{rate:.4g} grains/s, {rate * mean_mass(case, feed.material):.4g} kg/s"
         window = f"{key}.rate, from {feed.begin:g} s to {end:g} s"
         rows.append(ExplainRow("traffic", name, rate, "1/s", shown, window))
         about = "rate times duration" + (", with the mean mass of a grain" if feed.rate[1] == "kg/s" else "")

@@ -46,7 +46,7 @@ FeedRate = Annotated[
 
 
 class FeedSection(Section):
-    """Grains that enter during the run, in a box or through a disc, with the sizes of [grains]."""
+    """Grains that enter during the run, in a box or through a disc."""
 
     name: Name
     """Name of the feed; [[exits]] can lead to it, and its grains are a group of this name."""
@@ -73,7 +73,7 @@ class FeedSection(Section):
     """Name of a wall to which the feed is attached, and with which it moves and turns. Place and normal are
     those at t = 0, and velocity is relative to the wall, with its direction at t = 0."""
     material: Name | None = None
-    """Material of its grains, of [materials]; that of [grains] when not given."""
+    """Material of its grains, of [materials], with its sizes; that of [grains] when not given."""
 
 
 class ExitSection(Section):

@@ -4,8 +4,8 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from ryusa.casefile.grading import grading_of, reference_diameter
-from ryusa.casefile.grains import mass, spread_of
+from ryusa.casefile.grading import reference_diameter
+from ryusa.casefile.grains import mass, mean_cube, sized_as
 from ryusa.casefile.traffic.schema import FeedSection
 
 if TYPE_CHECKING:
@@ -22,26 +22,13 @@ def feed_end(case: "Case", feed: FeedSection) -> float:
 
 
 def mean_mass(case: "Case", material: str | None = None) -> float:
-    """Mean mass of a grain of the size distribution [kg]; not the mass of the mean grain."""
-    d = reference_diameter(case)
+    """Mean mass of a grain of the size distribution of a material [kg]; not the mass of the mean grain."""
+    sized = sized_as(case, material)
+    d = reference_diameter(sized)
     heavier = 1.0
     if material in case.materials:
         heavier = (case.materials[material].density or case.grains.density) / case.grains.density
-    return heavier * mass(case, d)[0] * mean_cube(case) / d**3
-
-
-def mean_cube(case: "Case") -> float:
-    """Mean of the cube of the diameters of the size distribution [m3]."""
-    grading = grading_of(case)
-    if grading is not None:
-        return grading.mean_cube
-    kind, ratio = spread_of(case.grains)
-    wider = {
-        "uniform": 1.0 + ratio**2,
-        "normal": 1.0 + 3.0 * ratio**2,
-        "lognormal": (1.0 + ratio**2) ** 3,
-    }[kind]
-    return reference_diameter(case) ** 3 * wider
+    return heavier * mass(sized, d)[0] * mean_cube(sized) / d**3
 
 
 def grains_per_second(case: "Case", feed: FeedSection) -> float:
@@ -74,8 +61,9 @@ def share_filled(case: "Case", feed: FeedSection, rate: float) -> float:
     A grain leaves a box after the time in which its velocity and gravity carry it through, and the place
     behind a disc after a diameter.
     """
-    plane, d, g = case.motion.plane, reference_diameter(case), case.motion.gravity
-    grain = math.pi / 4.0 * d * d if plane else math.pi / 6.0 * mean_cube(case)
+    sized = sized_as(case, feed.material)
+    plane, d, g = case.motion.plane, reference_diameter(sized), case.motion.gravity
+    grain = math.pi / 4.0 * d * d if plane else math.pi / 6.0 * mean_cube(sized)
     if feed.radius is not None:
         return share_at_disc(rate * grain, feed.radius, _speed_through(feed), d, g, plane)
     assert feed.low is not None
