@@ -1,6 +1,7 @@
 """Mass and number through feeds and exits; what other measures and pictures make of such a run."""
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,7 @@ from ryusa.catalogue import MEASURES, PICTURES
 from ryusa.errors import CaseError, ResultsError
 from ryusa.formats.export import export
 from ryusa.formats.grains import table_of_frame
-from ryusa.measure import discharge
+from ryusa.measure import discharge, passages
 from ryusa.measure.snapshot import bounds, snapshot
 from ryusa.results import Results
 from ryusa.results.touching import contacts_per_grain
@@ -70,6 +71,20 @@ def test_rates_are_those_of_the_feed(fed: Results) -> None:
     assert set(rows[0]) >= {"t_s", "present", "in_kg", "out_kg", "rate_out_kg_per_s", "out_by_floor_kg"}
 
 
+def test_passages_balance_with_what_the_last_frame_holds(fed: Results) -> None:
+    found, there = passages(fed), np.isfinite(fed.frames.x[-1][:, 0])
+    assert found.m_end == math.fsum(fed.scene.m[there])
+    assert found.n_end == there.sum()
+    assert len(found.rows()) == 80
+    assert not found.gates[0].owed_n.any()
+    whole = discharge(fed)
+    assert found["rate_out"].value == pytest.approx(whole["rate_out"].value, rel=1e-9)
+    fallen = [row["speed_m_per_s"] for row in found.rows() if row["way"] == "out"]
+    g, h = float(np.linalg.norm(fed.scene.gravity)), 1.225  # from the hose to the exit
+    v = float(np.linalg.norm(fed.scene.traffic.feeds[0].velocity)) if fed.scene.traffic else 0.0
+    assert fallen == pytest.approx([math.sqrt(v * v + 2.0 * g * h)] * 40, rel=1e-9)
+
+
 def test_a_run_without_feeds_has_no_discharge(tmp_path: Path) -> None:
     run = ryusa.run(
         read_text(case_path("drop.toml").read_text(), {"stop.time": "0.01 s"}),
@@ -78,6 +93,8 @@ def test_a_run_without_feeds_has_no_discharge(tmp_path: Path) -> None:
     )
     with pytest.raises(ResultsError, match="no feeds and no exits"):
         discharge(run)
+    with pytest.raises(ResultsError, match="no feeds and no exits"):
+        passages(run)
     assert len(run.passages) == 0
 
 

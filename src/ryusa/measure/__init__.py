@@ -11,6 +11,7 @@ from ryusa.measure.energy import Energy, energy
 from ryusa.measure.entrainment import Entrainment, entrainment
 from ryusa.measure.formulae import FormulaCurve, classical
 from ryusa.measure.mill import Mill, mill
+from ryusa.measure.passages import Passages, passages
 from ryusa.measure.paths import Alternating, Paths, alternating, paths
 from ryusa.measure.plane_shear import PlaneShear, plane_shear
 from ryusa.measure.profiles import Layers, Profiles, profiles
@@ -54,6 +55,7 @@ __all__ = [
     "KineticStress",
     "Layers",
     "Mill",
+    "Passages",
     "Paths",
     "PlaneShear",
     "Profiles",
@@ -87,6 +89,7 @@ __all__ = [
     "grouping",
     "kinetic_stress",
     "mill",
+    "passages",
     "paths",
     "plane_shear",
     "profiles",
