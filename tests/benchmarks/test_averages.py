@@ -23,17 +23,24 @@ def averages():
         sys.path.remove(str(FOLDER))
 
 
-def test_equal_flows_rarely_differ_and_a_shift_of_many_errors_does(averages):
+def test_equal_flows_rarely_differ_however_their_seeds_scatter_and_a_shift_of_many_errors_does(averages):
     rng = np.random.default_rng(1)
     wrong = 0
-    for _ in range(400):
+    for _ in range(150):
         every = [
-            averages.difference([*rng.normal(1.0, 0.1, 6)], [*rng.normal(1.0, 0.1, 3)], 19) for _ in range(19)
+            averages.difference([*rng.lognormal(0, 1, 6)], [*rng.lognormal(0, 1, 6)], 5) for _ in "12345"
         ]
-        wrong += any(abs(one.over_error) > one.limit for one in every)
-    assert 0.01 * 400 < wrong < 0.09 * 400  # of 5 % asked
-    far = averages.difference([*rng.normal(1.0, 0.01, 6)], [*rng.normal(1.2, 0.01, 3)], 19)
+        wrong += any(one.verdict(1.0) == "**differs**" for one in every)
+    assert 0 < wrong < 0.1 * 150  # of 5 % asked
+    far = averages.difference([*rng.normal(1.0, 0.01, 6)], [*rng.normal(1.2, 0.01, 6)], 20)
+    assert far.chance == pytest.approx(2.0 / 924.0)
     assert far.verdict(0.1) == "**differs**"
+
+
+def test_too_few_seeds_to_tell_any_difference_are_refused(averages):
+    averages.refuse_too_few(6, 6, 20)
+    with pytest.raises(SystemExit, match="--seeds 3 and --cpu-seeds 6 cannot show that any of 20 numbers"):
+        averages.refuse_too_few(6, 3, 20)
 
 
 def test_a_difference_that_is_not_known_well_enough_is_not_called_the_same(averages):
@@ -44,5 +51,5 @@ def test_a_difference_that_is_not_known_well_enough_is_not_called_the_same(avera
     assert found.verdict(1.1 * found.half / abs(found.cpu)) == "same"
     exact = averages.difference([1.0, 1.0], [1.0, 1.0], 1)
     assert exact.over_error == 0.0 and exact.verdict(0.01) == "same"
-    apart = averages.difference([1.0, 1.0], [1.1, 1.1], 1)
+    apart = averages.difference([1.0] * 4, [1.1] * 4, 1)
     assert apart.verdict(0.5) == "**differs**"
