@@ -86,7 +86,8 @@ register(
     device="ryusa.engine.lammps.availability:device_name", leading="ryusa.engine.lammps.ranks:leading",
     exact_resume=False,
     remarks=(
-        "LAMMPS takes slip, and torques at planes, at the radius, the CPU engine at half of the overlap",
+        "LAMMPS takes slip, and torques at planes, at the radius, the CPU engine at half of the overlap; "
+        "docs/big-runs.md lists what else differs along a contact",
         "LAMMPS is inspected every 1,000 steps and at frames (overlaps, speeds, places); it has no records "
         "of contacts and no account of energy by cause, and a resume is not bit for bit (docs/big-runs.md)",
     ),
