@@ -5,6 +5,7 @@ from ryusa.measure.apparent_contact import ApparentContact, apparent_contact
 from ryusa.measure.collisions import Collisions, ContactTimes, collisions, contact_times, turned_time
 from ryusa.measure.cone import Cone, cone
 from ryusa.measure.contact_network import ContactNetwork, contact_network
+from ryusa.measure.direct_shear import DirectShear, direct_shear
 from ryusa.measure.discharge import Discharge, discharge
 from ryusa.measure.dynamic_angle import DynamicAngle, dynamic_angle
 from ryusa.measure.energy import Energy, energy
@@ -46,6 +47,7 @@ __all__ = [
     "Cone",
     "ContactNetwork",
     "ContactTimes",
+    "DirectShear",
     "Discharge",
     "DynamicAngle",
     "Energy",
@@ -81,6 +83,7 @@ __all__ = [
     "cone",
     "contact_network",
     "contact_times",
+    "direct_shear",
     "discharge",
     "dynamic_angle",
     "energy",
