@@ -11,11 +11,16 @@ import pytest
 import ryusa
 from ryusa.build import build
 from ryusa.casefile import explain, read_text, resolved
+from ryusa.engine import registry
 from ryusa.errors import CaseError, ResultsError
 from ryusa.formats.grains import table_of_frame
+from ryusa.model import RowState
+from ryusa.model.fluid import EXTRA_X
 from ryusa.results import Results, schema
 from ryusa.view.flow import surfaces
 from ryusa.view.page import encoded
+from ryusa.water import momentum_balance as m
+from ryusa.water.row_coupling import RowCoupling
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "faults"))
 from campaign import differences
@@ -67,6 +72,38 @@ def test_a_run_with_grains_that_was_stopped_resumes_with_the_same_bits(
         assert run(tmp_path / "run", row(4), resume=True).status == schema.STOPPED
     run(tmp_path / "run", row(4), resume=True)
     assert differences(reach.folder, tmp_path / "run") == []
+
+
+def test_two_threads_give_the_same_bits_as_one(reach: Results, tmp_path: Path) -> None:
+    assert differences(reach.folder, run(tmp_path / "run", row(4), threads=2).folder) == []
+
+
+def test_what_the_water_of_a_case_gains_and_gives_to_its_grains_is_what_drives_and_holds_it() -> None:
+    """Over the whole row, at every exchange: to the round-off of the sums."""
+    built = build(read_text(TEXT, {**SMALL, **row(4)}))
+    scene, engine = built.scene, registry.create()
+    assert scene.row is not None
+    engine.load(scene, built.state)
+    water = RowCoupling.begin(scene, scene.row, built.state.x)
+    engine.set_fluid(water.sampled)
+    area, weight = scene.row.column.area / 4.0, (scene.m_weight - scene.m) * scene.gravity[0]
+    for _ in range(20):
+        time, told, was = water.steps * scene.dt, water.sampled, momentum(water.state)
+        engine.advance(water.steps).raise_if_any()
+        x, v, impulse = engine.kinematics()
+        engine.set_fluid(water.exchange(x, v, impulse))
+        per_time = scene.water.rho_w * area / time
+        gained = per_time * (momentum(water.state) - was)
+        taken = float((impulse[:, 0] / time + told[:, EXTRA_X] + weight).sum())
+        b = area * water.state.budgets.sum(axis=0)
+        given = b[m.B_GRAVITY] + b[m.B_BED] + b[m.B_FIXED] + b[m.B_SURFACE]
+        assert taken > 0.1 * b[m.B_GRAVITY]
+        assert gained + taken == pytest.approx(given, abs=1e-14 * per_time * was)
+
+
+def momentum(state: RowState) -> float:
+    """Momentum of the water of a periodic row over density and area of a segment [m2/s]."""
+    return float((0.5 * (state.content + np.roll(state.content, 1, axis=0)) * state.u).sum())
 
 
 def test_its_grains_are_measured_shown_and_exported_as_those_of_one_column(reach: Results) -> None:
