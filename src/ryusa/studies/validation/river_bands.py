@@ -54,3 +54,20 @@ DARCY: Mapping[int, tuple[Band, Band]] = {  # discharge, and surface over the up
 }
 ERGUN: Mapping[int, Band] = {20: _twice(0.021), 40: _twice(0.009), 80: _twice(0.003)}
 INCLINED = at_most(0.01, "the wall's logarithm at cos(10 deg) of its height: 0.5 % of the speed")
+# Bed load in a row and in one column: two samples of four seeds differ by more than this many standard errors
+# in one case of a hundred (Student, 6 degrees of freedom, both sides).
+REACH_APART = at_most(3.71, "one comparison of a hundred by chance alone: Student, 6 degrees of freedom")
+_SAYS = "more, and the comparison would say little"
+REACH_ERROR: Mapping[str, Band] = {  # standard error of the difference over the mean
+    "q_star": at_most(0.15, _SAYS),
+    "discharge": at_most(0.03, _SAYS),
+    "u_high": at_most(0.03, _SAYS),
+    "u_low": at_most(0.15, _SAYS),
+    "phi_low": at_most(0.15, _SAYS),
+    "height": at_most(0.03, _SAYS),
+}
+REACH_CLOSES = at_most(1e-9, "round-off of the sums over grains")
+# Discharge through settled grains in a row, against Ergun's law with their own concentration: 3 % allow for a
+# concentration that varies between the layers.
+OWN_PACKING = at_most(0.03, "grains of a packing meet concentrations that vary about their mean")
+AT_REST = at_most(1e-3, "a thousandth of a diameter in 0.2 s, on a level bed under still water")
