@@ -13,9 +13,11 @@ from ryusa.laws.families import BedKind, Drive, Mixing, SurfaceRule
 from ryusa.model.column import Column
 from ryusa.model.row import ColumnRow, EndKind, PorousSolid, RowEnd
 from ryusa.model.scene import Floats
+from ryusa.results import Results
 from ryusa.studies.validation import river_bands as bands
 from ryusa.studies.validation import river_basics as basics
-from ryusa.study import Finding, Found, Level, Plan, Source, Task, calculation, comparison, misfit
+from ryusa.studies.validation import river_grains as with_grains
+from ryusa.study import CaseRun, Finding, Found, Level, Plan, Source, Task, calculation, comparison, misfit
 from ryusa.water import steady
 from ryusa.water.row import advance_row, discharges, row_at_rest
 
@@ -181,7 +183,7 @@ def tasks(plan: Plan) -> Sequence[Task]:
     every += [_break(ahead, 10, levels) for ahead, levels in (STOKERS[name] for name in _stokers(plan))]
     every += [_uniform(slope) for slope in SLOPES]
     every += [_seepage(across, inertia) for across in ACROSS for inertia in (False, True)]
-    every.append(_backwater())
+    every += [_backwater(), *with_grains.tasks(plan)]
     return [*every, *(_weir(crest) for crest in (0, *_crests(plan)))]
 
 
@@ -199,6 +201,11 @@ def _crests(plan: Plan) -> tuple[int, ...]:
     return CRESTS[1:] if plan.level is Level.QUICK else CRESTS
 
 
+def measure(run: Results, one: CaseRun) -> dict[str, Floats]:
+    """Of the runs with grains."""
+    return with_grains.measure(run, one)
+
+
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """Each flow beside its closed form."""
     stokers = [_stoker(found, name) for name in _stokers(plan)]
@@ -212,6 +219,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         _m1(found),
         *seepages,
         _weirs(found, _crests(plan)),
+        *with_grains.judge(found, plan),
     ]
 
 
