@@ -1,8 +1,10 @@
 """A row of columns with grains from a case file: it runs, resumes with the same bits, and refuses by name."""
 
 import sys
+from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -14,6 +16,7 @@ from ryusa.casefile import explain, read_text, resolved
 from ryusa.engine import registry
 from ryusa.errors import CaseError, ResultsError
 from ryusa.formats.grains import table_of_frame
+from ryusa.measure.long_section import depth_history, long_section
 from ryusa.model import RowState
 from ryusa.model.fluid import EXTRA_X
 from ryusa.results import Results, schema
@@ -115,6 +118,19 @@ def test_its_grains_are_measured_shown_and_exported_as_those_of_one_column(reach
     assert len(reach.measure("long_section").rows()) == 4
     with pytest.raises(ResultsError, match="row of columns; ryusa measure RUN long_section"):
         reach.measure("water")
+
+
+def test_depth_counts_from_where_grains_fall_below_half_of_packed(reach: Results) -> None:
+    row, column = reach.row, reach.row.row.column
+    cells = 40 + 10 * np.arange(4)  # of the bed, in each segment
+    phi = np.where(np.arange(column.n) < cells[:, None], column.phi_max, 0.0)
+    run = SimpleNamespace(scene=reach.scene, row=replace(row, phi=np.tile(phi, (len(row.t), 1, 1))))
+    one, every = long_section(run), depth_history(run)
+    assert one.bed == pytest.approx(column.z_low + cells * column.dz)
+    assert one.depth == pytest.approx(row.surface[-1] - one.bed)
+    assert every.depth[-1] == pytest.approx(one.depth)
+    assert {"bed", "floor"} <= set(one.rows()[0])
+    assert (long_section(reach).bed > column.z_low + 8.0e-3).all()
 
 
 def test_check_explains_bed_flow_and_segments() -> None:

@@ -22,15 +22,18 @@ def long_section(found: LongSection) -> Figure:
         2, width=style.PAGE, height=3.7, sharex=True, gridspec_kw={"height_ratios": (2.4, 1.0)}
     )
     x, wet = found.x, found.depth > THIN
-    bottom, floor, surface, energy = (
-        found.elevation(z) * CM for z in (found.bottom, found.floor, found.surface, found.energy)
+    bottom, floor, bed, surface, energy = (
+        found.elevation(z) * CM for z in (found.bottom, found.floor, found.bed, found.surface, found.energy)
     )
-    critical = found.elevation(found.floor + found.critical) * CM
+    critical = found.elevation(found.bed + found.critical) * CM
     step = x[1] - x[0] if len(x) > 1 else 1.0
     low = float(np.min(bottom))
     span = float(np.nanmax(np.concatenate([surface, energy[wet]]))) - low
     above.fill_between(x, bottom, low - 0.12 * span, color=style.BED, lw=0.0)
     above.fill_between(x, bottom, surface, where=wet.tolist(), color=WATER, alpha=0.22, lw=0.0)
+    if (loose := found.bed > found.floor).any():
+        above.fill_between(x, floor, bed, where=loose.tolist(), color=GROUND, alpha=0.6, lw=0.0)
+        above.plot(x, bed, color=GROUND, lw=0.9, label="bed")
     for name, first, end in found.dams:
         _dam(above, name, first, end, x, step, bottom, floor)
     above.plot(x, bottom, color="#5a4a2f", lw=0.9)
@@ -42,7 +45,7 @@ def long_section(found: LongSection) -> Figure:
         above.plot(at, part, color="black", lw=0.7, ls=":", label="critical depth" if k == 0 else None)
     above.set_ylabel("elevation  (cm)")
     above.set_ylim(low - 0.12 * span, low + 1.12 * span)
-    above.legend(loc="upper right", ncols=3, fontsize=6.5)
+    above.legend(loc="upper right", ncols=4, fontsize=6.5)
     above.annotate(
         f"t = {found.t:.4g} s", (0, 1), (4, -4), xycoords="axes fraction", textcoords="offset points",
         va="top", fontsize=7.0,

@@ -7,8 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.errors import ResultsError
+from ryusa.laws.families import BedKind
 from ryusa.measure._run import Run
 from ryusa.measure.snapshot import scene_at
+from ryusa.measure.water import HALF, averaged_over_grain, height_reached
 from ryusa.model import ColumnRow
 from ryusa.model.row import EndKind
 from ryusa.results.row import RowFrames
@@ -27,8 +29,9 @@ class LongSection:
     slope : of the x axis, positive where it falls downstream [rad].
     x : middles of the segments [m].
     bottom, floor : height of the bottom, and of it with the dams that let no water through [m].
+    bed : height of the top of the loose bed [m], as in `measure.water`; the floor without one.
     surface : height of the surface [m]; the floor where it is dry.
-    depth : from the floor to the surface [m].
+    depth : from the bed to the surface [m]; 0 where the surface lies in the bed.
     discharge : mean of both ends of a segment [m2/s].
     speed : discharge over depth [m/s]; nan where it is dry.
     froude : speed over that of a long wave, sqrt(g_z depth) [-].
@@ -43,6 +46,7 @@ class LongSection:
     x: Floats
     bottom: Floats
     floor: Floats
+    bed: Floats
     surface: Floats
     depth: Floats
     discharge: Floats
@@ -60,8 +64,8 @@ class LongSection:
     def rows(self) -> list[dict[str, object]]:
         """One line for each segment."""
         names = (
-            "x", "bottom", "floor", "surface", "depth", "speed", "froude", "discharge", "critical", "energy",
-            "tau",
+            "x", "bottom", "floor", "bed", "surface", "depth", "speed", "froude", "discharge", "critical",
+            "energy", "tau",
         )  # fmt: skip
         table = [getattr(self, name).tolist() for name in names]
         return [dict(zip(names, one, strict=True)) for one in zip(*table, strict=True)]
@@ -84,7 +88,8 @@ def long_section(run: Run, t: float | None = None) -> LongSection:
     row = found.row
     g_x, _, minus_g_z = np.asarray(scene_at(run, float(found.t[k])).gravity).tolist()
     g_z = -minus_g_z
-    depth, through = found.depth[k], _between(row.periodic, found.discharge[k])
+    through, (bed,) = _between(row.periodic, found.discharge[k]), _beds(run, found, np.array([k]))
+    depth = np.maximum(found.surface[k] - bed, 0.0)
     stress = found.tau[k].copy()
     if row.upstream is not None and row.upstream.kind is EndKind.DISCHARGE:
         stress[0] = stress[1]  # the speeds of an inlet are given, so that no stress is solved for
@@ -97,6 +102,7 @@ def long_section(run: Run, t: float | None = None) -> LongSection:
         x=row.x,
         bottom=np.array(row.bottom),
         floor=found.floor,
+        bed=bed,
         surface=found.surface[k],
         depth=depth,
         discharge=through,
@@ -117,7 +123,7 @@ class DepthHistory:
     ----------
     t : times of the frames [s], shape (n_frame,).
     x : middles of the segments [m], shape (n_segment,).
-    depth : from the floor to the surface [m].
+    depth : from the bed to the surface [m], as in `LongSection`.
     discharge : mean of both ends of a segment [m2/s].
     froude : Froude number [-]; nan where it is dry.
     dams : name, first and last x [m] of each.
@@ -157,7 +163,9 @@ def depth_history(run: Run, begin: float = 0.0, end: float = math.inf) -> DepthH
     row, shown = found.row, (found.t >= begin) & (found.t <= end)
     if not shown.any():
         raise ResultsError(f"the run has no frame from {begin:g} to {end:g} s")
-    depth, through = found.depth[shown], _between(row.periodic, found.discharge[shown])
+    beds = _beds(run, found, np.flatnonzero(shown))
+    depth = np.maximum(found.surface[shown] - beds, 0.0)
+    through = _between(row.periodic, found.discharge[shown])
     thick = np.where(depth > THIN, depth, math.nan)
     return DepthHistory(
         found.t[shown], row.x, depth, through, np.abs(through) / np.sqrt(row.g_z * thick**3), _dams(row)
@@ -177,6 +185,21 @@ def row_of(run: Run) -> RowFrames:
     if not len(found.t):
         raise ResultsError("the run has no frame yet")
     return found
+
+
+def _beds(run: Run, found: RowFrames, frames: NDArray[np.int64]) -> Floats:
+    """Height of the loose bed in some frames, or of the floor without one [m], shape (n_frame, n_segment)."""
+    floors = np.tile(found.floor, (len(frames), 1))
+    column = found.row.column
+    if not run.scene.n_grain or column.bed != BedKind.MOVING:
+        return floors
+    cells, least = run.scene.d_mean / column.dz, HALF * column.phi_max
+    for m, k in enumerate(frames.tolist()):
+        for i, bottom in enumerate(found.row.bottom.tolist()):
+            even = averaged_over_grain(found.phi[k, i], cells)
+            top = height_reached(column.z - column.z_low + bottom, even, least)
+            floors[m, i] = max(floors[m, i], top) if math.isfinite(top) else floors[m, i]
+    return floors
 
 
 def _dams(row: ColumnRow) -> tuple[tuple[str, float, float], ...]:

@@ -110,9 +110,9 @@ def water(run: Run, begin: float | None = None, end: float = math.inf) -> WaterP
     keys: dict[str, Any] = (run.case.get("water") or {}).get("column") or {}
     packed = float(keys.get("packed") or math.nan)
     surfaces = found.z_surface[span]
-    even = _averaged(found.phi[span].mean(axis=0), d / float(found.faces[1] - found.faces[0]))
+    even = averaged_over_grain(found.phi[span].mean(axis=0), d / float(found.faces[1] - found.faces[0]))
     rigid = keys.get("bed") in {"rough", "smooth"}
-    bed = float(found.faces[0]) if rigid else _top(found.z, even, HALF * packed)
+    bed = float(found.faces[0]) if rigid else height_reached(found.z, even, HALF * packed)
     clear = _clear(found.faces, even, bed, float(surfaces.min()))
     tau = _stress_at_bed(found.tau[span], found.faces, surfaces, clear, bed)
     discharge = (found.content[: span.stop] * found.u[: span.stop]).sum(axis=1)
@@ -212,14 +212,14 @@ def _mean(name: str, unit: str, frames: Floats) -> Layers:
     return Layers(name, unit, frames.mean(axis=0), standard_errors(frames))
 
 
-def _averaged(phi: Floats, cells: float) -> Floats:
+def averaged_over_grain(phi: Floats, cells: float) -> Floats:
     """Mean over the height of a grain, which is as many cells."""
     reach = max(round(0.5 * cells - 0.5), 0)
     window = np.ones(2 * reach + 1)
     return np.convolve(phi, window, "same") / np.convolve(np.ones(len(phi)), window, "same")
 
 
-def _top(z: Floats, phi: Floats, least: float) -> float:
+def height_reached(z: Floats, phi: Floats, least: float) -> float:
     """Height at which a concentration is reached first, going down [m]; nan where it never is."""
     dense = np.flatnonzero(phi >= least)
     if not len(dense):
