@@ -18,6 +18,7 @@ from ryusa.build.flume import flume
 from ryusa.build.materials import Numbers, densities, materials_of
 from ryusa.build.overlaps import refuse_overlaps
 from ryusa.build.packing import packing
+from ryusa.build.passing_walls import refuse_passing_walls
 from ryusa.build.placement import Placement, Wall
 from ryusa.build.row import row_of
 from ryusa.build.saltation import saltation
@@ -147,11 +148,12 @@ def build(case: Case, derived: Derived | None = None) -> Built:
     scene = moving_with(scene)
     scene, state = clumps_of(case, with_materials(case, scene, of), state)
     refuse_fast_walls(case, scene)
+    passed = refuse_passing_walls(case, scene)
     refuse_idle_servos(case, scene, state)
     pressed = refuse_crushing_servos(scene)
     gone = refuse_grains_beyond_exits(scene, state)
     refuse_full_feeds(case, scene)
-    return Built(scene, state, (*placement.notes, *pressed, *gone, *notes_of(case)))
+    return Built(scene, state, (*placement.notes, *passed, *pressed, *gone, *notes_of(case)))
 
 
 def laws_of(case: Case, derived: Derived, z_zero: float) -> Laws:
