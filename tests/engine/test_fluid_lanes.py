@@ -147,5 +147,8 @@ def test_no_law_on_lanes_leaves_them_for_a_call_of_the_library(grains):
     in_profile(GIVEN[0], c, x, v, w, aligned(W.SIZE))
     for loop in (in_column, in_profile):
         for code in loop.inspect_llvm().values():
-            assert len(re.findall(r"fmul.* <\d+ x double>", code)) > 80
+            # each product of a law is there twice: for vectors, and for the grains left at the end of a loop;
+            # how many there are is the compiler's choice
+            vectors = len(re.findall(r"fmul.* <\d+ x double>", code))
+            assert vectors > 0.9 * len(re.findall(r"fmul [a-z ]*double", code)) > 0
             assert not re.findall(r"@(?:llvm\.)?(?:exp|expm1|log|log10|pow|tanh)\b", code)
