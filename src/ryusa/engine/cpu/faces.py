@@ -7,6 +7,7 @@ import numpy as np
 
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.kernel import FAST, inner
+from ryusa.engine.shared.layout import aligned
 from ryusa.engine.shared.wall_pose import N_POSE, NOW, PLACED
 from ryusa.laws.walls import nearest_on_cylinder, nearest_on_disc, nearest_on_triangle
 from ryusa.model.scene import Floats
@@ -14,8 +15,10 @@ from ryusa.model.walls import FaceKind, Walls, face_boxes, largest_speed
 
 # columns of a face: a corner or centre, two edges or axes, the unit normal, and
 A, EDGE_1, EDGE_2, NORMAL = 0, 3, 6, 9
-KIND, WALL, S_11, S_12 = 12, 13, 14, 15  # kind, wall, products of the edges; in their place radius, length
+KIND, SURFACE = 12, 13  # kind + KINDS * wall, and the number of the smooth surface
+S_11, S_12 = 14, 15  # products of the edges; in their place radius, length
 N_FACE = 16  # two cache lines
+KINDS = 4  # room for them
 TRIANGLE, DISC, CYLINDER = int(FaceKind.TRIANGLE), int(FaceKind.DISC), int(FaceKind.CYLINDER)
 ROUND_OFF = 1e-6  # of the radius, by which a gap may be wrong: far from the origin positions add up round-off
 _CELLS = 4.0  # cells of a grid over the faces in it
@@ -39,7 +42,6 @@ class FaceArrays(NamedTuple):
     rows: Any  # columns as above, (n_face, N_FACE)
     centre: Any  # middle of the box round each face, and radius of the sphere round that [m], (n_face, 4)
     wall: Any  # (n_face,)
-    surface: Any  # (n_face,)
     motion: Any  # model.walls, (n_wall, N_MOTION)
     poses: Any  # shared/wall_pose.py, (n_wall, N_POSE); every thread writes the same numbers
     speed: float  # bound of the speed of any wall [m/s]
@@ -57,8 +59,8 @@ def face_arrays(walls: Walls, first: int) -> FaceArrays:
     """Arrays of the faces of a scene whose first face has the id `first`."""
     grid = _grid(walls)
     return FaceArrays(
-        first, grid.rows, grid.centre, walls.wall.astype(np.uint32), walls.surface.astype(np.int64),
-        np.array(walls.motion), np.zeros((walls.n_wall, N_POSE)), largest_speed(walls), *grid.cells,
+        first, grid.rows, grid.centre, walls.wall.astype(np.uint32), np.array(walls.motion),
+        np.zeros((walls.n_wall, N_POSE)), largest_speed(walls), *grid.cells,
     )  # fmt: skip
 
 
@@ -115,7 +117,8 @@ def _grid(walls: Walls) -> _Grid:
     w = walls.wall[faces]
     every = grid_first[w] + (a * dims[w, 1] + b) * dims[w, 2] + c
     first = np.concatenate([[0], np.cumsum(np.bincount(every, minlength=int(grid_first[-1])))])
-    around = np.column_stack([0.5 * (low + high), 0.5 * np.linalg.norm(high - low, axis=1)])
+    around = aligned(n, 4)
+    around[:, :3], around[:, 3] = 0.5 * (low + high), 0.5 * np.linalg.norm(high - low, axis=1)
     found = _Grid(
         walls.face, walls.active, _rows(walls), around,
         (grid_low, width, dims, grid_first[:-1].copy(), first, faces[np.argsort(every, kind="stable")],
@@ -126,8 +129,8 @@ def _grid(walls: Walls) -> _Grid:
 
 
 def _rows(walls: Walls) -> Floats:
-    rows = np.zeros((walls.n_face, N_FACE))
-    rows[:, :9], rows[:, KIND], rows[:, WALL] = walls.face, walls.kind, walls.wall
+    rows = aligned(walls.n_face, N_FACE)  # else the end of each row would be on a third line, not asked for
+    rows[:, :9], rows[:, KIND], rows[:, SURFACE] = walls.face, walls.kind + KINDS * walls.wall, walls.surface
     b, c = walls.face[:, 3:6], walls.face[:, 6:9]
     flat = walls.kind == TRIANGLE
     across = np.cross(b, c)
@@ -204,7 +207,7 @@ def nearest_of_face(
     d_x, d_y, d_z = x - rows[f, A], y - rows[f, A + 1], z - rows[f, A + 2]
     n_x, n_y, n_z = rows[f, NORMAL], rows[f, NORMAL + 1], rows[f, NORMAL + 2]
     along = d_x * n_x + d_y * n_y + d_z * n_z
-    inside, kind = 0.0, rows[f, KIND]
+    inside, kind = 0.0, int(rows[f, KIND]) % KINDS
     s_11, s_12 = rows[f, S_11], rows[f, S_12]
     p_x, p_y, p_z = rows[f, EDGE_1], rows[f, EDGE_1 + 1], rows[f, EDGE_1 + 2]
     q_x, q_y, q_z = rows[f, EDGE_2], rows[f, EDGE_2 + 1], rows[f, EDGE_2 + 2]
@@ -272,7 +275,7 @@ def nearest_in(
     if room_of_image(f, x, y, c, centre) <= way:
         return 0.0
     _, _, _, n_x, n_y, n_z, distance = nearest_of_face(f, x, y, z, rows)
-    if rows[f, KIND] == CYLINDER:
+    if int(rows[f, KIND]) % KINDS == CYLINDER:
         return distance - way
     if poses[w, PLACED] != 0.0:
         n_x, n_y, n_z = turned(w, n_x, n_y, n_z, poses)

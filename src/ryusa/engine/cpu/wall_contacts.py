@@ -30,7 +30,7 @@ from ryusa.model.walls import SPIN, TOUCHED
 
 ON_FACE = 1e-3  # of the radius: within it a point lies on a face
 SAME_PLACE = math.cos(math.radians(45.0))  # of normals of one smooth surface that count as one place
-AHEAD = 8  # faces whose numbers are asked for before they are needed
+AHEAD = 16  # faces whose numbers are asked for before they are needed
 # columns of CandidateArrays.face_far: a grain with the velocity of the last pruning is out of reach of a face
 # while GAP_FIRST + GAP_RATE * steps since then is above what changes of velocity have added up to [m]
 GAP_FIRST, GAP_RATE = 0, 1
@@ -55,7 +55,7 @@ def _meet(
 
     `far` gets how long they do not.
     """
-    w, r = int(rows[f, F.WALL]), x_of[i, 3]
+    w, r = int(rows[f, F.KIND]) // F.KINDS, x_of[i, 3]
     x, y, z = x_of[i, 0], x_of[i, 1], x_of[i, 2]
     placed = poses[w, PLACED] != 0.0
     if placed:
@@ -75,7 +75,7 @@ def _meet(
         most = (schedule[K.LASTS] - since) * (speed * c[P.DT] + moved) + 0.5 * schedule[K.SKIN] - changed
         if room <= most:  # before the next list: then the nearest point may be another
             gap, along = min(gap, room), -speed
-        elif rows[f, F.KIND] == F.CYLINDER:  # grains inside come nearer sideways too
+        elif int(rows[f, F.KIND]) % F.KINDS == F.CYLINDER:  # grains inside come nearer sideways too
             along = -speed
         rate = along * c[P.DT] - moved
         far[s, GAP_FIRST], far[s, GAP_RATE] = gap + changed - rate * since, rate
@@ -139,7 +139,7 @@ def resolve_walls(
     number, grain = candidates.face[first:], candidates.face_grain[first:]
     face = candidates.face_number[first:]
     touching, eta, memory = candidates.touching, candidates.eta, candidates.rows
-    x_of, surface, poses, rows, centre = grains.x, faces.surface, faces.poses, faces.rows, faces.centre
+    x_of, poses, rows, centre = grains.x, faces.poses, faces.rows, faces.centre
     v, far, moved, begin = grains.v_pruned, candidates.face_far[first:], faces.speed * c[P.DT], 0
     since, changed = schedule[K.SINCE], 0.5 * schedule[K.APPROACH]
     for s in range(min(AHEAD, count)):
@@ -168,7 +168,7 @@ def resolve_walls(
             stop += 1
         if near > 1:
             _one_in_a_place(
-                begin, stop, x_of[i, 3], reach_on, c, number, face, met, touching, eta, memory, surface,
+                begin, stop, x_of[i, 3], reach_on, c, number, face, met, touching, eta, memory,
                 poses, rows, centre,
             )  # fmt: skip
         begin = stop
@@ -177,7 +177,7 @@ def resolve_walls(
 @inner(fastmath=FAST, forceinline=False)
 def _one_in_a_place(
     begin: int, stop: int, r: float, reach_on: float, c: Any, number: Any, face: Any, met: Any, touching: Any,
-    eta: Any, memory: Any, surface: Any, poses: Any, rows: Any, centre: Any,
+    eta: Any, memory: Any, poses: Any, rows: Any, centre: Any,
 ) -> None:  # fmt: skip
     """Keep one contact in one place among the faces of one grain, rows begin..stop-1."""
     for s in range(begin, stop):
@@ -190,7 +190,7 @@ def _one_in_a_place(
             if q == s or farther or away >= nearest:
                 continue
             f, h = face[q], face[s]
-            same = surface[f] == surface[h] and _alike(s, q, met)
+            same = rows[f, F.SURFACE] == rows[h, F.SURFACE] and _alike(s, q, met)
             if same or _lies_on(s, q, f, ON_FACE * r, c, poses, rows, centre, met):
                 met[s, F.BY], nearest = q, away
     for s in range(begin, stop):  # memory goes to the contact that takes the place
@@ -205,7 +205,7 @@ def _one_in_a_place(
             for q in range(begin, stop):
                 f, h = face[q], face[s]
                 new = met[q, F.BY] < 0.0 and met[q, F.DISTANCE] < r and not touching[number[q]]
-                if new and surface[f] == surface[h] and _alike(s, q, met):
+                if new and rows[f, F.SURFACE] == rows[h, F.SURFACE] and _alike(s, q, met):
                     to = q
         if to != s and not touching[number[to]]:
             _move(k, number[to], touching, eta, memory)
