@@ -38,8 +38,9 @@ def export(
 ) -> None:
     """Write the grains of a run for another program: LAMMPS, OVITO, ASE, ParaView, a table.
 
-    Free and fixed grains, with position, velocity, spin, diameter and mass, in SI; a case can start from any
-    of these files but parquet.
+    Free and fixed grains, with position, velocity, spin, diameter and mass, in SI; of clumps also which
+    spheres belong together and how they are turned. A case of spheres can start from any of these files but
+    parquet.
     """
     from ryusa.errors import CaseError
     from ryusa.formats.export import FORMATS

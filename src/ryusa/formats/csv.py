@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.errors import ParseError
-from ryusa.formats.grains import UNITS, GrainTable, PlaneWall
+from ryusa.formats.grains import NO_CLUMP, PART_OF_A_CLUMP, UNITS, GrainTable, PlaneWall
 from ryusa.formats.text import LARGEST, Lines, Rows, checked, opened
 from ryusa.model.arrays import Floats
 from ryusa.units import UnitError, quantity
@@ -19,6 +19,9 @@ MARK = "# ryusa "  # before the JSON object that states periods and planes
 NUMBERS = ("x", "y", "z", "d", "vx", "vy", "vz", "wx", "wy", "wz", "m")
 HEAD = ("t [s]", "step", "id", "fixed", "group", "ix", "iy", *(f"{one} [{UNITS[one]}]" for one in NUMBERS))
 _ROW = "%r,%d,%d,%d,%s,%d,%d" + ",%r" * len(NUMBERS)
+TURN = ("qw", "qx", "qy", "qz")  # orientation of a clump
+CLUMP_HEAD = ("clump", *TURN)  # columns of a run with clumps, after the others
+_CLUMP_ROW = ",%d" + ",%r" * len(TURN)
 
 
 def csv_head(table: GrainTable) -> bytes:
@@ -30,13 +33,18 @@ def csv_head(table: GrainTable) -> bytes:
         "water_zero": table.z_zero,
         "bed_area": table.bed_area,
     }
-    return f"{MARK}{json.dumps(about)}\n{','.join(HEAD)}\n".encode()
+    names = HEAD if table.clump is None else (*HEAD, *CLUMP_HEAD)
+    return f"{MARK}{json.dumps(about)}\n{','.join(names)}\n".encode()
 
 
 def csv_frame(table: GrainTable) -> bytes:
     """Rows of one frame."""
     quoted = {name: _quoted(name) for name in set(table.group)}
-    n = table.n
+    n, row_form = table.n, _ROW
+    more: list[list[Any]] = []
+    if table.clump is not None and table.orientation is not None:
+        row_form += _CLUMP_ROW
+        more = [table.clump.tolist(), *table.orientation.T.tolist()]
     rows = zip(
         [table.t] * n,
         [table.step] * n,
@@ -45,9 +53,10 @@ def csv_frame(table: GrainTable) -> bytes:
         [quoted[name] for name in table.group],
         *(table.image[:, axis].tolist() for axis in (0, 1)),
         *(table.column(name).tolist() for name in NUMBERS),
+        *more,
         strict=True,
     )
-    return "".join(_ROW % row + "\n" for row in rows).encode()
+    return "".join(row_form % row + "\n" for row in rows).encode()
 
 
 def _quoted(name: str) -> str:
@@ -56,7 +65,8 @@ def _quoted(name: str) -> str:
 
 
 NEEDED = ("x", "z", "d")
-_WORDS = ("fixed", "group", "t", "step", "id", "ix", "iy")  # columns that are no numbers of a grain
+# columns that are no numbers of a grain
+_WORDS = ("fixed", "group", "t", "step", "id", "ix", "iy", *CLUMP_HEAD)
 _YES, _NO = {"1", "true", "yes", "fixed"}, {"0", "false", "no", "free", ""}
 
 
@@ -221,6 +231,10 @@ def _table(rows: Rows, heads: list[tuple[str, float]], about: dict[str, Any]) ->
             raise rows.error(row, words["fixed"], f"fixed must be 0 or 1, not {word[:40]!r}")
         fixed.append(word in _YES)
         group.append(cells[words["group"]].strip() if "group" in words else "")
+    clumps = _integers(rows, words, "clump") if "clump" in words else np.zeros(0, np.int64)
+    if (clumps != NO_CLUMP).any():
+        row = int((clumps != NO_CLUMP).argmax())
+        raise rows.error(row, words["clump"], PART_OF_A_CLUMP)
     table = GrainTable(
         name=rows.name,
         columns=columns,

@@ -5,6 +5,7 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -14,8 +15,10 @@ from ryusa.formats.text import Lines, ReadOptions, Rows, checked, frame_asked_fo
 from ryusa.model.arrays import Floats
 
 PROPERTIES = "species:S:1:pos:R:3:id:I:1:fixed:I:1:image:I:3:velo:R:3:omega:R:3:radius:R:1:mass:R:1"
+OF_CLUMPS = ":clump:I:1:orientation:R:4"  # x, y, z, w, the order of OVITO
 SPECIES = "X"  # neither program knows gravel; X is what ASE calls an unknown element
 _ROW = SPECIES + " %r %r %r %d %d %d %d 0 %r %r %r %r %r %r %r %r"
+_CLUMP_ROW = " %d %r %r %r %r"
 
 
 def xyz_frame(table: GrainTable) -> bytes:
@@ -32,10 +35,14 @@ def xyz_frame(table: GrainTable) -> bytes:
         for axis, periodic, length, begin in zip("xyz", shut, period, low, strict=True)
     ]
     a, b, c = sides
+    more: list[list[Any]] = []
+    if table.clump is not None and table.orientation is not None:
+        more = [table.clump.tolist(), *np.roll(table.orientation, -1, axis=1).T.tolist()]
+    row_form = _ROW + _CLUMP_ROW * bool(more)
     about = [
         f'Lattice="{a!r} 0.0 0.0 0.0 {b!r} 0.0 0.0 0.0 {c!r}"',
         f'Origin="{" ".join(map(repr, low))}"',
-        f"Properties={PROPERTIES}",
+        f"Properties={PROPERTIES}{OF_CLUMPS if more else ''}",
         f'pbc="{" ".join("T" if periodic else "F" for periodic in shut)}"',
         f"Time={table.t!r}",
         f"Step={table.step}",
@@ -49,9 +56,10 @@ def xyz_frame(table: GrainTable) -> bytes:
         *(table.column(name).tolist() for name in ("vx", "vy", "vz", "wx", "wy", "wz")),
         radius.tolist(),
         table.column("m").tolist(),
+        *more,
         strict=True,
     )
-    return "\n".join([str(table.n), " ".join(about), *(_ROW % row for row in rows), ""]).encode("ascii")
+    return "\n".join([str(table.n), " ".join(about), *(row_form % row for row in rows), ""]).encode("ascii")
 
 
 _KEY = re.compile(r"""([A-Za-z_][A-Za-z0-9_-]*)\s*=\s*(?:"([^"]*)"|'([^']*)'|(\S+))""")

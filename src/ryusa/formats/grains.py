@@ -19,6 +19,10 @@ UNITS = {
 }
 
 
+NO_CLUMP = -1
+PART_OF_A_CLUMP = "expected single spheres, with clump -1: a case cannot begin with clumps from a file"
+
+
 @dataclass(frozen=True)
 class PlaneWall:
     """A plane that a file states beside its grains."""
@@ -46,6 +50,9 @@ class GrainTable:
     planes : walls beside the grains.
     z_zero : zero of the water profile [m]; None where the file does not say.
     bed_area : area of bed under a column of water [m2]; None where the file does not say.
+    clump : number of the clump of each row, `NO_CLUMP` for a grain of its own, (n,); None without clumps.
+    orientation : unit quaternions (w, x, y, z) from the principal axes of the clump of each row to space,
+        (1, 0, 0, 0) for a grain of its own, (n, 4); None without clumps.
     """
 
     name: str
@@ -61,6 +68,8 @@ class GrainTable:
     planes: tuple[PlaneWall, ...] = ()
     z_zero: float | None = None
     bed_area: float | None = None
+    clump: NDArray[np.int64] | None = None
+    orientation: Floats | None = None
 
     @property
     def n(self) -> int:
@@ -100,7 +109,7 @@ def table_of_frame(run: Results, k: int) -> GrainTable:
     Notes
     -----
     Grains that have not entered, or have left, are left out. A fixed grain has the mass that a free grain of
-    its size would have. Groups are those of fixed grains.
+    its size would have. Groups are those of fixed grains. A sphere of a clump has the spin of the clump.
     """
     frames, t = run.frames, float(run.frames.t[k])
     scene = run.scene_at(t)
@@ -123,6 +132,7 @@ def table_of_frame(run: Results, k: int) -> GrainTable:
     v, omega = (np.concatenate([part[k][here], still]) for part in (frames.v, frames.omega))
     names = ("x", "y", "z", "d", "vx", "vy", "vz", "wx", "wy", "wz", "m")
     ids = np.concatenate([here, n_grain + there]).astype(np.int64)
+    clump, orientation = _clumps(run, k, scene, here, n_fixed)
     return GrainTable(
         name=run.folder.name,
         columns=dict(zip(names, [*x.T, d, *v.T, *omega.T, m], strict=True)),
@@ -137,7 +147,22 @@ def table_of_frame(run: Results, k: int) -> GrainTable:
         planes=_planes(scene),
         z_zero=scene.water.z_zero,
         bed_area=None if column is None else column.area,
+        clump=clump,
+        orientation=orientation,
     )
+
+
+def _clumps(
+    run: Results, k: int, scene: Scene, here: NDArray[np.int64], n_fixed: int
+) -> tuple[NDArray[np.int64] | None, Floats | None]:
+    """Clump and orientation of the free spheres `here` at frame k, then of fixed grains."""
+    if scene.bodies is None or run.bodies is None:
+        return None, None
+    alone = np.full(n_fixed, NO_CLUMP, np.int64)
+    clump = np.concatenate([scene.bodies.of_grain(scene.n_grain)[here], alone])
+    orientation = np.tile([1.0, 0.0, 0.0, 0.0], (len(clump), 1))
+    orientation[clump != NO_CLUMP] = run.bodies.q[k][clump[clump != NO_CLUMP]]
+    return clump, orientation
 
 
 def _groups(groups: dict[str, tuple[int, int]], ids: NDArray[np.int64]) -> tuple[str, ...]:

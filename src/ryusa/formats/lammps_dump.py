@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -12,13 +13,17 @@ from ryusa.model.arrays import Floats
 
 FREE_TYPE, FIXED_TYPE = 1, 2
 COLUMNS = "id type x y z ix iy iz vx vy vz omegax omegay omegaz diameter mass"  # names of LAMMPS
+OF_CLUMPS = " mol quatw quati quatj quatk"  # names of LAMMPS as well; molecule 0 is a grain of its own
 # Once in a file, as LAMMPS writes it: OVITO reads one frame of a dump that repeats it.
 DUMP_HEAD = b"ITEM: UNITS\nsi\n"
 _ROW = "%d %d %r %r %r %d %d 0 %r %r %r %r %r %r %r %r"
+_CLUMP_ROW = " %d %r %r %r %r"
 
 
 def dump_frame(table: GrainTable) -> bytes:
     """One frame. Ids are those of the run plus 1, since LAMMPS counts from 1; type 2 is fixed.
+
+    The spheres of a clump are a molecule, numbered from 1.
 
     The box is the period where there is one, and encloses the grains elsewhere.
     """
@@ -34,10 +39,14 @@ def dump_frame(table: GrainTable) -> bytes:
             high = float((x + radius).max(initial=low))
         sides.append("pp" if shut else "ss")
         bounds.append(f"{low!r} {high!r}")
+    more: list[list[Any]] = []
+    if table.clump is not None and table.orientation is not None:
+        more = [(table.clump + 1).tolist(), *table.orientation.T.tolist()]
+    row_form = _ROW + _CLUMP_ROW * bool(more)
     head = [
         "ITEM: TIME", repr(table.t), "ITEM: TIMESTEP", str(table.step),
         "ITEM: NUMBER OF ATOMS", str(table.n), f"ITEM: BOX BOUNDS {' '.join(sides)}", *bounds,
-        f"ITEM: ATOMS {COLUMNS}",
+        f"ITEM: ATOMS {COLUMNS}{OF_CLUMPS if more else ''}",
     ]  # fmt: skip
     names = ("x", "y", "z"), ("vx", "vy", "vz", "wx", "wy", "wz", "d", "m")
     rows = zip(
@@ -46,9 +55,10 @@ def dump_frame(table: GrainTable) -> bytes:
         *(table.column(name).tolist() for name in names[0]),
         *(table.image[:, axis].tolist() for axis in (0, 1)),
         *(table.column(name).tolist() for name in names[1]),
+        *more,
         strict=True,
     )
-    return "\n".join([*head, *(_ROW % row for row in rows), ""]).encode("ascii")
+    return "\n".join([*head, *(row_form % row for row in rows), ""]).encode("ascii")
 
 
 _READ = {

@@ -5,9 +5,10 @@ import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from ryusa.errors import ResultsError
-from ryusa.formats.csv import NUMBERS
+from ryusa.formats.csv import CLUMP_HEAD, NUMBERS, TURN
 from ryusa.formats.grains import UNITS, GrainTable
 
 
@@ -63,11 +64,14 @@ def write_parquet(path: Path, frames: Iterable[GrainTable]) -> None:
     try:
         for table in frames:
             n = table.n
-            columns = {
+            columns: dict[str, Any] = {
                 "t": [table.t] * n, "step": [table.step] * n, "id": table.ids, "fixed": table.fixed,
                 "group": list(table.group), "ix": table.image[:, 0], "iy": table.image[:, 1],
                 **{name: table.column(name) for name in NUMBERS},
             }  # fmt: skip
+            if table.clump is not None and table.orientation is not None:
+                columns |= dict(zip(CLUMP_HEAD, (table.clump, *table.orientation.T), strict=True))
+                kinds |= {"clump": pa.int64(), **dict.fromkeys(TURN, pa.float64())}
             if writer is None:
                 period = [one if math.isfinite(one) else None for one in table.period or ()]
                 fields = [

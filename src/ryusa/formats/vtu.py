@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.errors import ParseError
-from ryusa.formats.grains import GrainTable
+from ryusa.formats.grains import NO_CLUMP, PART_OF_A_CLUMP, GrainTable
 from ryusa.formats.text import D_HIGH, D_LOW, LARGEST, shown
 
 _TYPES = {"f8": "Float64", "i8": "Int64", "u1": "UInt8"}
@@ -21,7 +21,7 @@ _VERTEX = 1  # number of VTK for a cell of one point
 
 
 def vtu_file(table: GrainTable) -> bytes:
-    """One frame. The numbers are stored as they are, in base64."""
+    """One frame. The numbers are stored as they are, in base64; quaternions as (w, x, y, z), as in VTK."""
     n = table.n
     period = np.array(table.period or (math.inf, math.inf))
     zero = np.zeros((n, 1), dtype=np.int64)
@@ -36,6 +36,8 @@ def vtu_file(table: GrainTable) -> bytes:
         _array("fixed", table.fixed.astype(np.uint8)),
         _array("image", np.hstack([table.image, zero])),
     ]
+    if table.clump is not None and table.orientation is not None:
+        data += [_array("clump", table.clump), _array("orientation", table.orientation)]
     cells = [
         _array("connectivity", steps),
         _array("offsets", steps + 1),
@@ -127,6 +129,8 @@ def read_vtu(path: Path, name: str) -> GrainTable:
                 name, where.line, where.column,
                 f"'{one}': expected numbers from {low:g} to {high:g}, found {found[one][wrong][0]:g}",
             )  # fmt: skip
+    if "clump" in stored and (values("clump", (n,), "Int64") != NO_CLUMP).any():
+        raise ParseError(name, stored["clump"].line, stored["clump"].column, PART_OF_A_CLUMP)
     where = stored["fixed"]
     if found["fixed"].all():
         raise ParseError(name, where.line, where.column, "expected at least one free grain")

@@ -46,21 +46,26 @@ def write_hdf5(path: Path, fill: Callable[[h5py.File], None]) -> None:
 
 
 def write_points(parts: Path, scene: Scene) -> None:
-    """Write the data that all frames share: diameter, id and one vertex cell per grain."""
+    """Write the data that all frames share: diameter, id, clump and one vertex cell per grain."""
 
     def fill(file: h5py.File) -> None:
         file["diameter"] = scene.d
         file["id"] = np.arange(scene.n_grain, dtype=np.int64)
+        if scene.bodies is not None:
+            file["clump"] = scene.bodies.of_grain(scene.n_grain)
         file["offsets"] = np.arange(scene.n_grain + 1, dtype=np.int64)
 
     write_hdf5(parts / POINTS, fill)
 
 
-def write_index(folder: Path, parts: list[PartSize], n_grain: int, n_subindex: int = 0) -> int:
+def write_index(
+    folder: Path, parts: list[PartSize], n_grain: int, n_subindex: int = 0, *, clumps: bool = False
+) -> int:
     """Write `grains.vtkhdf` over `parts`; at least one frame is needed.
 
     Parameters
     ----------
+    clumps : whether `write_points` wrote the clump of each grain.
     n_subindex : number of sub-indices that this process has written.
 
     Returns
@@ -84,7 +89,7 @@ def write_index(folder: Path, parts: list[PartSize], n_grain: int, n_subindex: i
         )
 
     def fill(file: h5py.File) -> None:
-        _fill_index(file, [*subindices, *parts[len(subindices) * SUBINDEX_PARTS :]], n_grain)
+        _fill_index(file, [*subindices, *parts[len(subindices) * SUBINDEX_PARTS :]], n_grain, clumps)
 
     write_hdf5(folder / schema.GRAINS, fill)
     return len(subindices)
@@ -112,7 +117,7 @@ def _write_subindex(path: Path, parts: list[PartSize], n: int) -> None:
     write_hdf5(path, fill)
 
 
-def _fill_index(file: h5py.File, parts: list[PartSize], n: int) -> None:
+def _fill_index(file: h5py.File, parts: list[PartSize], n: int, clumps: bool) -> None:
     n_frame = sum(part.n_frame for part in parts)
     root = _root(file)
     root["NumberOfPoints"] = np.array([n], dtype=np.int64)
@@ -121,7 +126,9 @@ def _fill_index(file: h5py.File, parts: list[PartSize], n: int) -> None:
     _gather(data, "velocity", parts, "v", (n, 3), _FLOAT)
     _gather(data, "spin", parts, "omega", (n, 3), _FLOAT)
     _share(data, "diameter", "diameter", n, _FLOAT)
-    _share(data, "id", "id", n, _INT)
+    shared = ("id", "clump") if clumps else ("id",)
+    for name in shared:
+        _share(data, name, name, n, _INT)
     for kind in _CELLS:
         cells = root.create_group(kind)
         count = n if kind == "Vertices" else 0
@@ -141,7 +148,8 @@ def _fill_index(file: h5py.File, parts: list[PartSize], n: int) -> None:
     steps["ConnectivityIdOffsets"] = steps.create_dataset("CellOffsets", (n_frame, 4), np.int64)
     offsets = steps.create_group("PointDataOffsets")
     offsets["velocity"] = offsets["spin"] = steps["PointOffsets"]
-    offsets["diameter"] = offsets["id"] = zeros
+    for name in ("diameter", *shared):
+        offsets[name] = zeros
     # for h5py: data that ParaView does not use
     more = file.create_group("ryusa")
     _gather(more, "step", parts, "step", (), _INT)
