@@ -101,6 +101,7 @@ def test_the_step_follows_the_least_effective_mass_and_contacts_are_at_steps():
     rows = {row.name: row for row in explain(case)}
     assert rows["shape 'rod'"].value == "100 %"
     assert "3 spheres" in rows["shape 'rod'"].origin
+    assert rows["shape 'rod'"].origin.endswith(f"volume and inertia {shape('rod').precision}")
     assert rows["spheres to compute"].value == 540
     assert rows["least effective mass of a clump"].value == pytest.approx(lighter)
     elastic = PLAIN.replace(

@@ -215,6 +215,15 @@ def test_check_says_what_is_cut_and_what_the_finest_grains_cost() -> None:
     coarse = rows["mass coarser than coarsest, left out"]
     assert coarse.flag == "warning"
     assert coarse.value == pytest.approx(1.0 - CURVE.share_below(0.006))
+    more = CURVE.cut(0.002, 0.006).mean_cube / CURVE.cut(0.002).mean_cube * 0.8 / kept
+    assert more > 1.0
+    assert f"up to {1e3 * CURVE.d[-1]:.3g} mm, no more steps at the same stiffness" in coarse.origin
+    assert f"{more:.3g} times as many grains for the same mass of the others" in coarse.origin
+    assert f"{CURVE.d[-1] / 0.006:.3g} times as wide" in coarse.origin
+    both, fine = (
+        derive(inline(grains__finest="'2 mm'", **one)) for one in ({"grains__coarsest": "'6 mm'"}, {})
+    )
+    assert both.shortest == fine.shortest
     cost = rows["cost of the finest grains"]
     laid = CURVE.cut(0.002, 0.006)
     d = laid.diameter(0.5)

@@ -30,7 +30,11 @@ def test_forms_are_drawn_in_the_volume_of_the_sphere_beside_them():
     assert [len(one) for one in circles] == [3, 5, 3, 5]
     assert sorted(one.radius for one in circles[0])[:2] == pytest.approx(0.5 * pair)
     texts = [one.get_text() for axes in figure.axes for one in axes.texts]
-    assert "b/a 0.41\nc/b 1.00" in texts
+    assert "b/a 0.41\nc/b 1.00\nvolume exact" in texts
+    assert [row["volume_error"] for row in rows[:2]] == [0.0] * 2
+    [error] = {row["volume_error"] for row in rows[2:]}  # three spheres have a common point: no closed form
+    assert 0.0 < error < 1e-9
+    assert f"volume to {error:.0e}" in texts[-1]
 
 
 def test_a_run_of_spheres_has_none():

@@ -193,7 +193,11 @@ def grading_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
 
 
 def _cut_rows(case: "Case", whole: Grading, grading: Grading) -> Iterator[ExplainRow]:
-    """What truncation leaves out; what the finer ones would have cost."""
+    """What truncation leaves out, and what it would have cost.
+
+    The shortest contact is one of the finest grains, and a cell of the search for neighbours is as wide as
+    the largest grain and a little more.
+    """
     low, high = case.grains.finest, case.grains.coarsest
     if low is not None and (share := whole.share_below(low)) > 0.0:
         without = "how small they are the curve does not say"
@@ -208,7 +212,18 @@ def _cut_rows(case: "Case", whole: Grading, grading: Grading) -> Iterator[Explai
             )
         yield _share("mass finer than finest, left out", share, f"grains.finest; {without}")
     if high is not None and (share := 1.0 - whole.share_below(high)) > 0.0:
-        yield _share("mass coarser than coarsest, left out", share, "grains.coarsest")
+        without = "how large they are the curve does not say"
+        if whole.finer[-1] == 1.0:
+            kept = 1.0 - share - (whole.share_below(low) if low else 0.0)
+            open_cut = whole.cut(low or 0.0)
+            wider = float(open_cut.d[-1]) / float(grading.d[-1])
+            grains = grading.mean_cube / open_cut.mean_cube * (kept + share) / kept
+            without = (
+                f"with them, up to {1e3 * float(open_cut.d[-1]):.3g} mm, no more steps at the same "
+                f"stiffness, as the finest grains set the step; {_times(grains)} as many grains for the same "
+                f"mass of the others, and cells of the search for neighbours {_times(wider)} as wide"
+            )
+        yield _share("mass coarser than coarsest, left out", share, f"grains.coarsest; {without}")
 
 
 def _share(name: str, share: float, origin: str) -> ExplainRow:

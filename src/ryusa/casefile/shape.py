@@ -140,7 +140,7 @@ def shape_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
         form = (
             f"{len(one.clump.d)} spheres; b/a = {flat:.3g}, c/b = {thick:.3g} ({one.clump.zingg_class}); "
             f"lengths of equal inertia {a:.3g}, {b:.3g} and {c:.3g} times the diameter; sphericity "
-            f"{one.clump.sphericity:.3g}"
+            f"{one.clump.sphericity:.3g}; volume and inertia {one.clump.precision}"
         )
         rows.append(word("grains", f"shape '{one.name}'", f"{100.0 * one.share:.4g} %", form))
         rows += form_rows(case, one.name, one.clump)

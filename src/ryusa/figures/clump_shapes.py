@@ -7,6 +7,7 @@ from matplotlib.patches import Circle
 
 from ryusa.errors import ResultsError
 from ryusa.figures import style
+from ryusa.model.clump import Clump
 from ryusa.model.rigid_bodies import RigidBodies
 from ryusa.model.scene import Floats, Scene
 from ryusa.results import Results
@@ -22,7 +23,8 @@ def clump_shapes(results: Results) -> tuple[Figure, list[dict[str, object]]]:
     -------
     figure : forms beside each other; above seen along axis c, below along axis b, with the sphere of the same
         volume as a dashed circle.
-    rows : every sphere of every form: centre and diameter over that of the sphere of the same volume.
+    rows : every sphere of every form: centre and diameter over that of the sphere of the same volume, and the
+        relative error of the volume of the form, 0 for a closed form.
 
     Raises
     ------
@@ -35,9 +37,11 @@ def clump_shapes(results: Results) -> tuple[Figure, list[dict[str, object]]]:
     rows: list[dict[str, object]] = []
     for body in forms:
         x, d = _spheres(results.scene, bodies, body)
+        error = Clump.of(x, d).error
         for i in range(len(d)):
             row: dict[str, object] = {"shape": _name(bodies, body)}
             row |= {"x_over_d": x[i, 0], "y_over_d": x[i, 1], "z_over_d": x[i, 2], "d_sphere_over_d": d[i]}
+            row["volume_error"] = error
             rows.append(row)
     return _drawn(results.scene, bodies, forms), rows
 
@@ -56,8 +60,10 @@ def _drawn(scene: Scene, bodies: RigidBodies, forms: list[int]) -> Figure:
         a, b, c = _lengths(bodies, body)
         count = int(bodies.count[body])
         panels[column].set_title(f"{_name(bodies, body)}\n{count} spheres", fontsize=6.5)
+        clump = Clump.of(x, d)
+        known = "exact" if clump.exact else f"to {clump.error:.0e}"
         panels[n + column].annotate(
-            f"b/a {b / a:.2f}\nc/b {c / b:.2f}", (0.5, 0), (0, -2), xycoords="axes fraction",
+            f"b/a {b / a:.2f}\nc/b {c / b:.2f}\nvolume {known}", (0.5, 0), (0, -2), xycoords="axes fraction",
             textcoords="offset points", ha="center", va="top", fontsize=6.5,
         )  # fmt: skip
     return figure

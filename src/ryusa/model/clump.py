@@ -150,6 +150,15 @@ class Clump:
         return math.pi * self.d_volume**2 / self.surface
 
     @property
+    def precision(self) -> str:
+        """How well volume and inertia are known, in words.
+
+        >>> Clump.of(np.array([[-0.5, 0.0, 0.0], [0.5, 0.0, 0.0]]), np.ones(2)).precision
+        'in closed form'
+        """
+        return "in closed form" if self.exact else f"summed over sections, to {self.error:.1g}"
+
+    @property
     def least_mass(self) -> float:
         """Least effective mass of a push through the centre of one of its spheres, over the mass [-].
 
