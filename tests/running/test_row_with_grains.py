@@ -20,6 +20,7 @@ from ryusa.measure.long_section import depth_history, long_section
 from ryusa.model import RowState
 from ryusa.model.fluid import EXTRA_X
 from ryusa.results import Results, schema
+from ryusa.running.summary import summary_lines
 from ryusa.view.flow import surfaces
 from ryusa.view.page import encoded
 from ryusa.water import momentum_balance as m
@@ -62,6 +63,8 @@ def test_the_row_holds_its_water_and_closes_momentum_and_energy(reach: Results) 
     assert np.ptp(found.volume.sum(axis=1)) < 1e-14 * found.volume[0].sum()
     assert summary["water"]["momentum_residual"] < 1e-9
     assert summary["water"]["exchanges"] > 30
+    (said,) = (line for line in summary_lines(summary) if line.startswith("water:"))
+    assert "exchanges with grains in a row of columns" in said
     assert summary["energy"]["residual"] < 1e-3
     phi = found.phi.sum() * found.row.column.dz * found.row.dx
     assert phi > 0.0 and found.u[-1].max() > 0.3

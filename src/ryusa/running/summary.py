@@ -58,6 +58,13 @@ def _traffic(found: dict[str, Any]) -> str:
 
 
 def _water(found: dict[str, Any]) -> str:
+    if "courant" in found and found["grains"]:
+        return (
+            f"water: {found['exchanges']} exchanges with grains in a row of columns, the last after "
+            f"{found['steps_between']} steps; Courant number at most {found['courant']:.2g}; per width "
+            f"{found['volume']:.4g} m2 in it; discharge {found['discharge_first']:.4g} m2/s; momentum "
+            f"imbalance {found['momentum_residual']:.1e} of the largest term"
+        )
     if "courant" in found:
         return (
             f"water: {found['steps']} steps of a row, Courant number at most {found['courant']:.2g}; "
