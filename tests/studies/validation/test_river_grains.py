@@ -17,7 +17,7 @@ def results(of_row=1.0, scatter=0.01, w=1.0, moved=1e-5):
     for task in river_grains.tasks(PLAN):
         if isinstance(task, CaseRun):
             found[task] = {"z": Z, "w": w + 0.0 * Z, "inside": np.array(w), "ergun": np.array(1.0)}
-            found[task] |= {"moved": np.array(moved)}
+            found[task] |= {"moved": np.array(moved), "moving": np.array(3), "median": np.array(1e-6)}
             continue
         factor = of_row if dict(task.arguments)["segments"] > 1 else 1.0
         means = {name: factor + scatter * rng.normal(size=1) for name in river_bands.REACH_ERROR}

@@ -45,8 +45,9 @@ def reach(seed: int, segments: int) -> dict[str, Floats]:
     Returns
     -------
     The numbers of `river_bands.REACH_ERROR`: transport rate [-], discharge [m2/s], speed of the water well
-    above the bed and in its two lowest diameters [m/s], concentration there [-], mean height of the grains
-    [m]; profiles over z [m] of the water `u` [m/s] and the concentration `phi` [-]; `residual` of momentum.
+    above the bed and in the two diameters above water.zero [m/s], concentration there [-], mean height of
+    the grains [m]; profiles over z [m] of the water `u` [m/s] and the concentration `phi` [-]; `residual`
+    of momentum [-].
     """
     built = build(read(case_path("bedload_3d.toml"), {"seed": str(seed)}))
     fixed = built.scene
@@ -96,7 +97,8 @@ def measure(run: Results, one: CaseRun) -> dict[str, Floats]:
     Returns
     -------
     Over the heights `z` [m]: discharge per height `w` [m/s] and concentration `phi` [-]; in the middle of the
-    bed the mean `inside` and that of `ergun` [m/s]; the longest way of a grain over d, `moved` [-].
+    bed the mean `inside` and that of `ergun` [m/s]; the longest way of a grain over d, `moved` [-], that of
+    half of them, `median`, and how many went farther than `river_bands.AT_REST`, `moving`.
     """
     del one
     found, frames = run.row, run.frames
@@ -111,10 +113,11 @@ def measure(run: Results, one: CaseRun) -> dict[str, Floats]:
     a, b = ergun_linear(share, d, c.nu), ergun_quadratic(share, d)
     pores = (math.sqrt(a * a + 4.0 * b * (1.0 - share) * c.g_x) - a) / (2.0 * b)
     first = int(np.flatnonzero(span)[0])
-    way = np.linalg.norm(frames.x[-1] - frames.x[first], axis=1).max() / scene.d_mean
+    way = np.linalg.norm(frames.x[-1] - frames.x[first], axis=1) / scene.d_mean
     return {
         "z": c.z, "w": w, "phi": phi, "inside": np.array(w[middle].mean()),
-        "ergun": np.array((1.0 - share) * pores), "moved": np.array(way),
+        "ergun": np.array((1.0 - share) * pores), "moved": np.array(way.max()),
+        "moving": np.array(np.count_nonzero(way > bands.AT_REST.high)), "median": np.array(np.median(way)),
     }  # fmt: skip
 
 
@@ -156,7 +159,8 @@ def _seepage(found: Found) -> Finding:
         ],
         {"grains": "2,560 of 2 mm, settled in the row", "row": "four segments of 9.7 mm"},
         f"Discharge over that of Ergun {ours / ergun:.4f}, between heights of {1e3 * MIDDLE[0]:g} and "
-        f"{1e3 * MIDDLE[1]:g} mm.",
+        f"{1e3 * MIDDLE[1]:g} mm. On the level bed {int(still['moving'])} grains sank through voids between "
+        f"others by more than the limit; half of all moved by less than {float(still['median']):.1g} d.",
     )  # fmt: skip
 
 
