@@ -28,6 +28,21 @@ def flowing(case: CaseOf, water: str = WATER, **others: str) -> dict[str, Explai
     return rows(case(**(given | others)))
 
 
+def test_every_exchange_with_the_column_takes_its_share_of_the_wall_time() -> None:
+    # 0.1 s of the packaged bed load took 6.1 s longer with an exchange in every step, 9,461 more
+    # exchanges, on a core that others shared
+    brief = {"stop.time": "0.15 s", "record.settle": "0.05 s"}
+    found = [
+        rows(read(case_path("bedload_3d.toml"), {**brief, "water.column.interval": interval}))
+        for interval in ("33", "1")
+    ]
+    seldom, always = (float(one["wall time"].value) for one in found)
+    exchanges = float(found[0]["steps"].value) * (1.0 - 1.0 / 33.0)
+    assert always - seldom == pytest.approx(exchanges * (2.0e-4 + 600 * 2.5e-7), rel=1e-3)
+    assert 6.1 / 2.0 < always - seldom < 6.1
+    assert always > 3.0 * seldom
+
+
 def test_the_numbers_of_flowing_water_are_explained(case: CaseOf) -> None:
     found = flowing(case)
     u_star = math.sqrt(9.80665 * 0.02 * math.sin(math.atan(0.05)))
