@@ -1,4 +1,4 @@
-"""A row of columns, water alone: waters at rest, dam breaks, uniform flow, weirs, seepage (design/0027)."""
+"""A row of columns: waters at rest, dam breaks, uniform flow, weirs, seepage, grains (design/0027)."""
 
 import math
 from collections.abc import Sequence
@@ -21,7 +21,7 @@ from ryusa.study import CaseRun, Finding, Found, Level, Plan, Source, Task, calc
 from ryusa.water import steady
 from ryusa.water.row import advance_row, discharges, row_at_rest
 
-TITLE = "A row of columns, water alone"
+TITLE = "A row of columns"
 G = 9.80665
 WALLS = RowEnd(EndKind.WALL), RowEnd(EndKind.WALL)
 BREAK_TIME, HIGH = 0.6, 0.1  # of the dam breaks [s], [m]

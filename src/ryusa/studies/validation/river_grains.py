@@ -117,7 +117,8 @@ def measure(run: Results, one: CaseRun) -> dict[str, Floats]:
     return {
         "z": c.z, "w": w, "phi": phi, "inside": np.array(w[middle].mean()),
         "ergun": np.array((1.0 - share) * pores), "moved": np.array(way.max()),
-        "moving": np.array(np.count_nonzero(way > bands.AT_REST.high)), "median": np.array(np.median(way)),
+        "moving": np.array(float((way > bands.AT_REST.high).sum())),
+        "median": np.array(float(np.median(way))),
     }  # fmt: skip
 
 
