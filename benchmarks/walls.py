@@ -1,16 +1,16 @@
 """What walls cost: a step of a settled bed between planes, and of the same bed in a mesh, in turn.
 
-    python benchmarks/walls.py [--grains 20000] [--faces 10000] [--rounds 9] [--turning]
+    python benchmarks/walls.py [--grains 20000] [--faces 10000 100000] [--rounds 9] [--turning]
 
 Grains settle in a box of five planes (a floor and four sides); then the same grains are stepped with those
-planes, and with a box of triangles in their place. The times of the two are taken in turn; the median of the
-ratios and the ratio of the least times are printed, beside the share of grains at the walls.
+planes, and with boxes of triangles in their place. The times are taken in turn; of the ratios of each box to
+the planes the median and the range are printed, and the ratio of the least times, beside the share of grains
+at the walls.
 """
 
 import argparse
 import math
 import os
-import statistics
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -110,35 +110,37 @@ def main() -> None:
     asked = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     for name, value in (
         ("grains", 20_000),
-        ("faces", 10_000),
         ("rounds", 9),
         ("steps", 200),
         ("settle", 40_000),
         ("threads", 1),
     ):
         asked.add_argument(f"--{name}", type=int, default=value)
+    asked.add_argument("--faces", type=int, nargs="+", default=[10_000, 100_000], help="of each box")
     asked.add_argument("--turning", action="store_true")
     asked.add_argument("--work", type=Path, default=Path("build/benchmarks"), help="where the bed is kept")
     how = asked.parse_args()
     planes, rest = bed(how.grains, how.settle, how.threads, how.work)
-    made, width, _ = in_a_box(planes, how.faces, how.turning)
-    assert made.walls is not None
-    at, d = rest.x, planes.d
+    boxes = [in_a_box(planes, faces, how.turning) for faces in how.faces]
+    at, d, width = rest.x, planes.d, boxes[0][1]
     near = np.minimum.reduce([at[:, 2], at[:, 0], at[:, 1], width - at[:, 0], width - at[:, 1]]) < 0.51 * d
-    a, b = loaded(planes, rest, how.threads), loaded(made, rest, how.threads)
-    timed(a, how.steps), timed(b, how.steps)
-    ratios, least = [], [math.inf, math.inf]
-    for _ in range(how.rounds):
-        one, other = timed(a, how.steps), timed(b, how.steps)
-        ratios.append(other / one)
-        least = [min(least[0], one), min(least[1], other)]
-        each = [f"{1e6 * t / how.steps:.0f} us a step" for t in (one, other)]
-        print(f"planes {each[0]}, mesh {each[1]}: {ratios[-1]:.3f}")
+    engines = [loaded(made, rest, how.threads) for made in (planes, *(box[0] for box in boxes))]
+    for engine in engines:
+        timed(engine, how.steps)
+    times = np.array([[timed(engine, how.steps) for engine in engines] for _ in range(how.rounds)])
+    ratios, least = times[:, 1:] / times[:, :1], times.min(axis=0)
+    turning = ", turning" if how.turning else ""
     print(
-        f"{how.grains} grains, {near.mean():.0%} at the walls, {made.walls.n_face} triangles"
-        f"{', turning' if how.turning else ''}: {statistics.median(ratios):.3f} of the time with planes,"
-        f" least over least {least[1] / least[0]:.3f}; load {os.getloadavg()[0]:.1f}"
+        f"{how.grains} grains, {near.mean():.0%} at the walls{turning}; {how.rounds} rounds, load "
+        f"{os.getloadavg()[0]:.1f}; planes: least {1e6 * least[0] / how.steps:.0f} us a step"
     )
+    for k, (made, _, _) in enumerate(boxes):
+        assert made.walls is not None
+        print(
+            f"{made.walls.n_face} triangles: {np.median(ratios[:, k]):.3f} of the time with planes "
+            f"({ratios[:, k].min():.3f} to {ratios[:, k].max():.3f}), least over least "
+            f"{least[k + 1] / least[0]:.3f}"
+        )
 
 
 if __name__ == "__main__":
