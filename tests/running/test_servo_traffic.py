@@ -10,6 +10,9 @@ import pytest
 
 import ryusa
 from ryusa.casefile import read_text
+from ryusa.engine.cpu.engine import CpuEngine
+from ryusa.engine.cpu.prune_schedule import APPROACH
+from ryusa.engine.protocol import Flags
 from ryusa.model.walls import INTERVAL
 from ryusa.results import Results
 
@@ -96,6 +99,24 @@ def test_a_lid_follows_a_bed_that_is_drawn_off_and_fed(whole: Results) -> None:
 
 def test_any_number_of_threads_gives_the_same_bits(whole: Results, tmp_path: Path) -> None:
     done(SERVO_FEEDS, tmp_path / "run", threads=2)
+    assert differences(whole.folder, tmp_path / "run") == []
+
+
+def test_faces_that_are_passed_over_never_show_beside_feeds(
+    whole: Results, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The other run lists pairs anew in every step, where each face near a grain is looked at."""
+    advance = CpuEngine.advance
+
+    def one_by_one(engine: CpuEngine, n_steps: int) -> Flags:
+        for _ in range(n_steps):
+            engine._candidates.schedule[APPROACH] = np.inf
+            if flags := advance(engine, 1):
+                return flags
+        return Flags()
+
+    monkeypatch.setattr(CpuEngine, "advance", one_by_one)
+    done(SERVO_FEEDS, tmp_path / "run")
     assert differences(whole.folder, tmp_path / "run") == []
 
 
