@@ -50,6 +50,7 @@ SECONDS_PER_GRAIN_3D = 1.3e-7
 SECONDS_PER_GRAIN_IN_WATER = 6.0e-8  # on top
 # Within a factor 1.8 for columns of 36 to 600 cells, which add 0.15 us each:
 SECONDS_PER_EXCHANGE = 2.0e-4  # of momentum with a column
+SECONDS_PER_EXCHANGE_IN_ROW = 1.0e-3  # with a row of 1 to 8 segments, within a factor 1.4
 SECONDS_PER_GRAIN_EXCHANGED = 2.5e-7
 SECONDS_PER_ROW_CELL = 1.5e-7  # of a cell of a row of columns and step of the water
 SECONDS_PER_SALTATION = 0.15  # simulated, where only a number of saltations ends the run
@@ -191,8 +192,9 @@ def seconds_needed(case: Case, derived: Derived) -> float:
     steps = 1 if water_alone(case) or case.water is None else column_keys(case).interval
     per_step = SECONDS_PER_STEP + per_grain * derived.n_sphere
     per_step += SECONDS_PER_ROW_CELL * cells_of_row(case) / steps
-    if case.water is not None and case.water.profile == "column" and row_keys(case) is None:
-        per_step += (SECONDS_PER_EXCHANGE + SECONDS_PER_GRAIN_EXCHANGED * derived.n_sphere) / steps
+    if case.water is not None and case.water.profile == "column" and not water_alone(case):
+        exchange = SECONDS_PER_EXCHANGE if row_keys(case) is None else SECONDS_PER_EXCHANGE_IN_ROW
+        per_step += (exchange + SECONDS_PER_GRAIN_EXCHANGED * derived.n_sphere) / steps
     return SECONDS_PER_RUN + steps_expected(case, derived) * per_step
 
 
