@@ -294,6 +294,21 @@ def test_flipped_triangles_are_one_surface_with_their_neighbours(tmp_path: Path)
         assert walls.surface.tolist() == [0, 0]
 
 
+def test_check_says_that_flipped_triangles_play_no_part(tmp_path: Path) -> None:
+    whole = tetrahedron()
+    flipped = whole.copy()
+    flipped[1] = flipped[1, ::-1]
+    for corners, sides in ((whole, 0), (whole[:, ::-1], 0), (flipped, 3)):
+        write_stl(tmp_path / "part.stl", corners)
+        (tmp_path / "case.toml").write_text(CASE + MESH)
+        rows = {one.name: one for one in explain(read(tmp_path / "case.toml"))}
+        assert ("part: flipped sides" in rows) == (sides > 0)
+        if sides:
+            found = rows["part: flipped sides"]
+            assert (found.value, found.flag) == (sides, "")
+            assert "plays no part" in found.origin
+
+
 def test_the_default_domain_has_room_for_the_walls(tmp_path: Path) -> None:
     (tmp_path / "case.toml").write_text(CASE + FLOOR.replace("-1 mm", "-1 m"))
     scene = build(read(tmp_path / "case.toml")).scene

@@ -13,7 +13,7 @@ from ryusa.errors import CaseError, ParseError
 from ryusa.formats.mesh import read_mesh
 from ryusa.laws.walls import turned_about
 from ryusa.model.arrays import Floats
-from ryusa.model.welding import first_of_each, rims, welded
+from ryusa.model.welding import first_of_each, flipped_sides, rims, welded
 from ryusa.units import quantity
 
 if TYPE_CHECKING:
@@ -48,6 +48,11 @@ class Mesh:
     def rims(self) -> tuple[int, Floats, int]:
         """Open sides, widths of their rims [m], and sides that more than two triangles share."""
         return rims(self.corners)
+
+    @cached_property
+    def flipped_sides(self) -> int:
+        """Sides at which the normals of two triangles point to different sides of the mesh."""
+        return flipped_sides(self.corners)
 
 
 def mesh_of(case: "Case", wall: "WallSection", key: str) -> Mesh:
@@ -124,4 +129,10 @@ def mesh_rows(case: "Case", derived: "Derived", wall: "WallSection", key: str) -
     if several:
         about = "sides that more than two triangles share: corners there are not smoothed"
         found.append(count("walls", f"{wall.name}: shared sides", several, about, "note"))
+    if mesh.flipped_sides:
+        about = (
+            "sides at which one of two triangles is flipped: that plays no part, grains touch both sides of "
+            "a triangle and no force depends on the order of its corners"
+        )
+        found.append(count("walls", f"{wall.name}: flipped sides", mesh.flipped_sides, about))
     return found

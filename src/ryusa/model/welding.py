@@ -47,6 +47,21 @@ def sides_of(number: Ints) -> Ints:
     return np.concatenate([np.minimum(a, b) * most + np.maximum(a, b) for a, b in pairs])
 
 
+def flipped_sides(corners: Floats) -> int:
+    """Sides that two triangles share and both run in the same direction, so that their normals disagree.
+
+    >>> one = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]])
+    >>> other = np.array([[1.0, 0, 0], [1, 1, 0], [0, 1, 0]])
+    >>> flipped_sides(np.stack([one, other])), flipped_sides(np.stack([one, other[::-1]]))
+    (0, 1)
+    """
+    number = welded(corners)
+    up = np.concatenate([number[:, k] < number[:, (k + 1) % 3] for k in range(3)])
+    _, side, times = np.unique(sides_of(number), return_inverse=True, return_counts=True)
+    rising = np.bincount(side.ravel(), weights=up, minlength=len(times))
+    return int(np.count_nonzero((times == 2) & (rising != 1.0)))
+
+
 def first_of_each(number: Ints) -> Ints:
     """Triangles that have three corners which no earlier one has, in their order."""
     most = int(number.max(initial=0)) + 1
