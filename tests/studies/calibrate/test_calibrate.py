@@ -2,6 +2,7 @@
 
 import csv
 import json
+import math
 import shutil
 
 import numpy as np
@@ -12,7 +13,11 @@ import ryusa
 from ryusa.cases import case_path
 from ryusa.cli import app
 from ryusa.errors import CaseError, ResultsError
+from ryusa.measure.statistics import Average
 from ryusa.studies.calibrate import read_calibration
+from ryusa.studies.calibrate.runs import CaseRuns
+from ryusa.studies.sweep.part import Measured, SweepRun
+from ryusa.study.executors import Processes
 
 pytest.importorskip("sklearn")
 
@@ -162,3 +167,24 @@ def test_the_list_runs_nothing(study, tmp_path):
     assert "18 runs" in result.output
     assert not (tmp_path / "out").exists()
     assert read_calibration(study).points == 16
+
+
+def test_a_target_that_few_runs_give_is_refused_with_points_and_reasons(study, tmp_path):
+    asked = read_calibration(study)
+    target = asked.targets[0]
+    runs = CaseRuns(asked, tmp_path, Processes(1))
+    made = [
+        SweepRun("drop", varied=(("contact.restitution", f"0.{k}"), ("seed", "1")), cases=target.case.parent)
+        for k in (5, 6, 7, 8)
+    ]
+    for run, value in zip(made, (math.nan, 0.6, 0.7, 0.8), strict=True):
+        average = Average(target.name, "-", value, 0.1, 9, 1, 9.0, (0.0, 1.0), 0.0, 0.0, 0.0)
+        runs.found[run] = Measured({"collisions": (average,)})
+    runs.refuse_if_few(target, made)
+    runs.found[made[3]] = Measured(problems={"run": "a grain was lost"})
+    with pytest.raises(ResultsError, match=r"restitution_alone: only 2 of 4 runs gave it") as raised:
+        runs.refuse_if_few(target, made)
+    said = str(raised.value)
+    assert "at restitution 0.5 seed 1: its restitution_alone is nan" in said
+    assert "at restitution 0.8 seed 1: a grain was lost" in said
+    assert "stop.time" in said and str(tmp_path / "runs") in said

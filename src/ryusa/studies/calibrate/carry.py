@@ -17,7 +17,7 @@ from ryusa.studies.calibrate.coverage import Coverage, cover
 from ryusa.studies.calibrate.design import filling_points, next_points
 from ryusa.studies.calibrate.emulator import Emulator, emulate, need_sklearn
 from ryusa.studies.calibrate.posterior import ONE_SIGMA, TWO_SIGMA, Posterior, Seen, sample_posterior
-from ryusa.studies.calibrate.runs import SHARE_OF_RUNS, CaseRuns
+from ryusa.studies.calibrate.runs import CaseRuns
 from ryusa.studies.sweep.part import SweepRun
 from ryusa.study.executors import RunExecutor
 from ryusa.study.progress import StudyProgress
@@ -235,13 +235,7 @@ def _emulators(runs: CaseRuns, training: list[SweepRun]) -> dict[Target, Emulato
     found: dict[Target, Emulator] = {}
     for target in runs.asked.targets:
         u, values = runs.of(target, training)
-        wanted = sum(one.case == target.case.stem for one in training)
-        if len(values) < SHARE_OF_RUNS * wanted:
-            reason = next(iter(runs.problems.values()), "the value is not finite")
-            raise ResultsError(
-                f"{target.words}: only {len(values)} of {wanted} runs gave it ({reason}). Choose priors "
-                "in which the case gives it"
-            )
+        runs.refuse_if_few(target, training)
         found[target] = emulate(u, values, runs.asked.design_seed)
     return found
 

@@ -101,8 +101,11 @@ class CaseRuns:
 
     def of(self, target: Target, runs: Sequence[SweepRun]) -> tuple[Floats, Floats]:
         """Points and values of a target in runs that gave it, shapes (n, n_parameters) and (n,), in SI."""
-        mine = [one for one in runs if one.case == target.case.stem and one.cases == target.case.parent]
-        held = [(self.u[one], value) for one in mine if (value := self.value(target, one)) is not None]
+        held = [
+            (self.u[one], value)
+            for one in _of_case(target, runs)
+            if (value := self.value(target, one)) is not None
+        ]
         u = np.array([place for place, _ in held]).reshape(len(held), len(self.asked.priors))
         return u, np.array([value for _, value in held])
 
@@ -112,6 +115,34 @@ class CaseRuns:
             if one.name == target.name and np.isfinite(one.value):
                 return one.value
         return None
+
+    def refuse_if_few(self, target: Target, runs: Sequence[SweepRun]) -> None:
+        """Refuse an emulator where too few runs gave its target.
+
+        Raises
+        ------
+        ResultsError : more than a quarter of the runs have no number; names them with the reason.
+        """
+        mine = _of_case(target, runs)
+        lacking = [one for one in mine if self.value(target, one) is None]
+        if len(mine) - len(lacking) >= SHARE_OF_RUNS * len(mine):
+            return
+        named = "; ".join(f"at {one.label}: {self._lack(target, one)}" for one in lacking[:NAMED])
+        more = f"; and {len(lacking) - NAMED} more" if len(lacking) > NAMED else ""
+        raise ResultsError(
+            f"{target.words}: only {len(mine) - len(lacking)} of {len(mine)} runs gave it, and an emulator "
+            f"needs three quarters. {named}{more}. Choose priors without such points, let the case run "
+            f"longer (stop.time), or observe another quantity; the runs are in {self.folder / RUNS}"
+        )
+
+    def _lack(self, target: Target, run: SweepRun) -> str:
+        """Why a run has no value of a target."""
+        held = self.found[run]
+        for one in held.averages.get(target.measure, ()):
+            if one.name == target.name:
+                return f"its {target.name} is {one.value}, not a number to go by"
+        reason = held.problems.get("run") or held.problems.get(target.measure)
+        return reason or f"its {target.measure} has no {target.name}"
 
     def unit(self, target: Target) -> str:
         """SI unit of a target.
@@ -163,6 +194,11 @@ class _Loaded:
 
     def __call__(self, name: str) -> Any:
         return self.plans[name].part
+
+
+def _of_case(target: Target, runs: Sequence[SweepRun]) -> list[SweepRun]:
+    """Those runs that are of the case of a target."""
+    return [one for one in runs if one.case == target.case.stem and one.cases == target.case.parent]
 
 
 def _place(asked: CalibrationAsked, run: SweepRun) -> Floats:
