@@ -68,6 +68,7 @@ def calibrate(
         write_calibration,
     )
     from ryusa.studies.calibrate.page import LOG
+    from ryusa.studies.sweep.table import UNMOVED, unmoved_by_seeds
     from ryusa.study import ProgressLines
 
     asked = read_calibration(study)
@@ -91,6 +92,9 @@ def calibrate(
     _print(made)
     for path in files:
         typer.echo(f"wrote {path}")
+    same, n = unmoved_by_seeds(made.runs.found)
+    if same:
+        typer.echo(f"warning: {len(same)} of {n} points: {UNMOVED}", err=True)
     report_failures(made.runs.problems, {}, made.runs.traces, folder / LOG)
 
 

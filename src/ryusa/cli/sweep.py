@@ -133,6 +133,9 @@ def sweep(
     _print(made)
     for path in files:
         typer.echo(f"wrote {path}")
+    if made.unmoved:
+        text, which = made.unmoved
+        typer.echo(f"warning: {which}: {text}", err=True)
     report_failures(made.problems, made.faults, made.traces, folder / "sweep-errors.log")
 
 

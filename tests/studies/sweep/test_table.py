@@ -11,7 +11,13 @@ from ryusa.measure import write_csv
 from ryusa.measure.statistics import average
 from ryusa.studies.sweep.part import Measured, SweepRun, runs_of, short_names
 from ryusa.studies.sweep.pictures import quantities_of
-from ryusa.studies.sweep.table import SweepColumn, column_of, pooled_over_seeds, rows_of_sweep
+from ryusa.studies.sweep.table import (
+    SweepColumn,
+    column_of,
+    pooled_over_seeds,
+    rows_of_sweep,
+    unmoved_by_seeds,
+)
 
 CASE_RUNS = ("0.01", "0.02")
 
@@ -50,6 +56,17 @@ def test_a_quantity_is_pooled_over_the_runs_that_have_it_and_not_from_one_alone(
     found = pooled_over_seeds(["transport"], runs)
     assert set(found) == {("transport", "q")}
     assert found["transport", "q"].n_series == 2
+
+
+def test_points_where_seeds_change_nothing_are_found(tmp_path):
+    runs = three_seeds(tmp_path)
+    found = {one: measured(1.0, math.nan) if one.setting else measured(0.1 * one.seed) for one in runs}
+    same, n = unmoved_by_seeds(found)
+    assert ([one.setting for one in same], n) == ([1], 2)
+    found |= {one: Measured(problems={"run": "grain 3 lost"}) for one in runs[4:]}
+    assert unmoved_by_seeds(found) == ([], 1)  # one seed alone says nothing
+    found[runs[4]] = measured(1.0, 5.0)
+    assert unmoved_by_seeds(found) == ([], 2)
 
 
 def test_rows_hold_every_run_then_the_setting_and_a_failed_run_with_its_reason(tmp_path):

@@ -17,7 +17,7 @@ from ryusa.studies.sweep.folder import RUNS, keep_plan, refuse_folder
 from ryusa.studies.sweep.part import Measured, SweepRun
 from ryusa.studies.sweep.pictures import Quantity, drawn_effects, quantities_of
 from ryusa.studies.sweep.plan import SweepPlan
-from ryusa.studies.sweep.table import Cell, rows_of_sweep
+from ryusa.studies.sweep.table import UNMOVED, Cell, rows_of_sweep, unmoved_by_seeds
 from ryusa.study.cost import estimate_cost, refuse_if_too_big
 from ryusa.study.executors import RunExecutor
 from ryusa.study.fault import Fault, noted
@@ -65,6 +65,15 @@ class Sweep:
     def by_setting(self) -> list[list[Measured]]:
         """What is known of the runs of each setting."""
         return _by_setting(self.plan, self.found)
+
+    @property
+    def unmoved(self) -> tuple[str, str] | None:
+        """Warning that seeds change nothing, and the settings where; None where they do."""
+        same, n = unmoved_by_seeds(self.found)
+        if not same:
+            return None
+        numbers = ", ".join(str(one.setting + 1) for one in same)
+        return UNMOVED, "all settings" if len(same) == n else f"setting {numbers}"
 
     @property
     def quantities(self) -> list[Quantity]:

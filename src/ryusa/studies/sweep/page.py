@@ -132,6 +132,7 @@ def _warnings(sweep: Sweep) -> list[tuple[str, str]]:
         (text, "all settings" if len(which) == n else f"setting {', '.join(str(one) for one in which)}")
         for text, which in sweep.plan.warnings.items()
     ]
+    found += [sweep.unmoved] if sweep.unmoved else []
     by_text: dict[str, list[str]] = {}
     for run, held in sweep.found.items():
         for text in held.warnings:

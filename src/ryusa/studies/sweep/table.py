@@ -8,10 +8,16 @@ from typing import Any
 from ryusa.casefile.keys import item
 from ryusa.measure.pooled import mean_of_runs
 from ryusa.measure.statistics import Average
+from ryusa.studies.sweep.design import SEED
 from ryusa.studies.sweep.part import Measured, SweepRun
 from ryusa.units import si_unit
 
 RUN, SEEDS = "run", "seeds"  # what a row is about: one run, or all runs of a setting
+UNMOVED = (
+    "the seeds change nothing: runs with different seeds gave the same numbers to the last digit, so that "
+    "the error between them, 0, says nothing. One seed is enough, or the case needs something random, such "
+    "as grains.spread"
+)
 Cell = float | int | str | bool | None
 
 
@@ -90,6 +96,29 @@ def pooled_over_seeds(measures: Sequence[str], runs: Sequence[Measured]) -> dict
             if len(column) > 1:
                 found[measure, name] = mean_of_runs(column)
     return found
+
+
+def unmoved_by_seeds(found: Mapping[SweepRun, Measured]) -> tuple[list[SweepRun], int]:
+    """Points whose runs with different seeds all gave the same numbers, to the last digit.
+
+    Returns
+    -------
+    unmoved : the first run of each such point.
+    n : points with numbers of two seeds or more.
+    """
+    points: dict[tuple[object, ...], list[SweepRun]] = {}
+    for run, held in found.items():
+        if any(held.averages.values()):
+            varied = tuple(one for one in run.varied if one[0] != SEED)
+            points.setdefault((run.cases, run.case, varied), []).append(run)
+    several = [runs for runs in points.values() if len(runs) > 1]
+    same = [runs[0] for runs in several if len({_digits_of(found[one]) for one in runs}) == 1]
+    return same, len(several)
+
+
+def _digits_of(held: Measured) -> str:
+    """All numbers of a run as text: equal where they are the same, nan included."""
+    return repr([(name, [(one.name, one.value) for one in each]) for name, each in held.averages.items()])
 
 
 def rows_of_sweep(
