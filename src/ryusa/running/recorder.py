@@ -308,7 +308,7 @@ class Recorder:
         with disk_errors(self.folder):
             n = self.first_scene.n_grain
             clumps = self.first_scene.bodies is not None
-            self._n_subindex = write_index(self.folder, self._parts, n, self._n_subindex, clumps=clumps)
+            self._n_subindex = write_index(self.folder, self._parts, n, self._n_subindex, clumps)
         self._index_is_old = False
 
     def _continue_from(self, earlier: RecordedSoFar) -> None:

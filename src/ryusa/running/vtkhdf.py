@@ -59,7 +59,7 @@ def write_points(parts: Path, scene: Scene) -> None:
 
 
 def write_index(
-    folder: Path, parts: list[PartSize], n_grain: int, n_subindex: int = 0, *, clumps: bool = False
+    folder: Path, parts: list[PartSize], n_grain: int, n_subindex: int = 0, clumps: bool = False
 ) -> int:
     """Write `grains.vtkhdf` over `parts`; at least one frame is needed.
 
