@@ -102,10 +102,10 @@ def test_any_number_of_threads_gives_the_same_bits(whole: Results, tmp_path: Pat
     assert differences(whole.folder, tmp_path / "run") == []
 
 
-def test_faces_that_are_passed_over_never_show_beside_feeds(
+def test_lists_of_pairs_never_show_beside_feeds(
     whole: Results, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The other run lists pairs anew in every step, where each face near a grain is looked at."""
+    """The other run lists pairs anew in every step."""
     advance = CpuEngine.advance
 
     def one_by_one(engine: CpuEngine, n_steps: int) -> Flags:

@@ -77,7 +77,6 @@ class CandidateArrays(NamedTuple):
     face: Any  # candidates that are faces, for each block from first[b] on, (n_near,)
     face_grain: Any  # their grains, (n_near,)
     face_number: Any  # numbers of the faces, (n_near,)
-    face_far: Any  # how long they stay out of reach (wall_contacts.py), (n_near, 2)
     slot: Any  # place of each candidate that is a face among those of its block, (n_near,)
     met: Any  # how grains and faces of a block meet (faces.py), workspace of its thread, (n_near, N_MET)
     face_count: Any  # how many faces are candidates, (n_block,)

@@ -89,7 +89,7 @@ class CandidatePairs:
             missing = layout.place_memory(place_of, self.pairs, memory, share)
             if missing < 0:
                 break
-            if reach_on > 2.0 * skin + film_reach(layout.scene):  # of faces half of it is looked at
+            if reach_on > skin + film_reach(layout.scene):
                 i, j = memory.i[missing], memory.j[missing]
                 names = [int(grains.ids[place_of[k]]) if k < layout.n else int(k) for k in (i, j)]
                 raise AssertionError(f"pair {names[0]}, {names[1]} is in touch and not in the list")

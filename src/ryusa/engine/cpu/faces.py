@@ -5,22 +5,17 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.kernel import FAST, inner
-from ryusa.engine.shared.layout import aligned
-from ryusa.engine.shared.wall_pose import N_POSE, NOW, PLACED
+from ryusa.engine.shared.wall_pose import N_POSE, NOW
 from ryusa.laws.walls import nearest_on_cylinder, nearest_on_disc, nearest_on_triangle
 from ryusa.model.scene import Floats
 from ryusa.model.walls import FaceKind, Walls, face_boxes, largest_speed
 
 # columns of a face: a corner or centre, two edges or axes, the unit normal, and
 A, EDGE_1, EDGE_2, NORMAL = 0, 3, 6, 9
-KIND, SURFACE = 12, 13  # kind + KINDS * wall, and the number of the smooth surface
-S_11, S_12 = 14, 15  # products of the edges; in their place radius, length
+KIND, WALL, S_11, S_12 = 12, 13, 14, 15  # kind, wall, products of the edges; in their place radius, length
 N_FACE = 16  # two cache lines
-KINDS = 4  # room for them
 TRIANGLE, DISC, CYLINDER = int(FaceKind.TRIANGLE), int(FaceKind.DISC), int(FaceKind.CYLINDER)
-ROUND_OFF = 1e-6  # of the radius, by which a gap may be wrong: far from the origin positions add up round-off
 _CELLS = 4.0  # cells of a grid over the faces in it
 _HELD = 64.0  # entries in the cells over the faces: long faces beside many short ones make cells wider
 
@@ -40,8 +35,8 @@ class FaceArrays(NamedTuple):
 
     first: int  # id of the first face
     rows: Any  # columns as above, (n_face, N_FACE)
-    centre: Any  # middle of the box round each face, and radius of the sphere round that [m], (n_face, 4)
-    wall: Any  # (n_face,)
+    centre: Any  # middle of the box round each face [m], (n_face, 3)
+    surface: Any  # (n_face,)
     motion: Any  # model.walls, (n_wall, N_MOTION)
     poses: Any  # shared/wall_pose.py, (n_wall, N_POSE); every thread writes the same numbers
     speed: float  # bound of the speed of any wall [m/s]
@@ -59,8 +54,8 @@ def face_arrays(walls: Walls, first: int) -> FaceArrays:
     """Arrays of the faces of a scene whose first face has the id `first`."""
     grid = _grid(walls)
     return FaceArrays(
-        first, grid.rows, grid.centre, walls.wall.astype(np.uint32), np.array(walls.motion),
-        np.zeros((walls.n_wall, N_POSE)), largest_speed(walls), *grid.cells,
+        first, grid.rows, grid.centre, walls.surface.astype(np.int64),
+        np.array(walls.motion), np.zeros((walls.n_wall, N_POSE)), largest_speed(walls), *grid.cells,
     )  # fmt: skip
 
 
@@ -117,10 +112,8 @@ def _grid(walls: Walls) -> _Grid:
     w = walls.wall[faces]
     every = grid_first[w] + (a * dims[w, 1] + b) * dims[w, 2] + c
     first = np.concatenate([[0], np.cumsum(np.bincount(every, minlength=int(grid_first[-1])))])
-    around = aligned(n, 4)
-    around[:, :3], around[:, 3] = 0.5 * (low + high), 0.5 * np.linalg.norm(high - low, axis=1)
     found = _Grid(
-        walls.face, walls.active, _rows(walls), around,
+        walls.face, walls.active, _rows(walls), 0.5 * (low + high),
         (grid_low, width, dims, grid_first[:-1].copy(), first, faces[np.argsort(every, kind="stable")],
          cells_low, cells_high),
     )  # fmt: skip
@@ -129,8 +122,8 @@ def _grid(walls: Walls) -> _Grid:
 
 
 def _rows(walls: Walls) -> Floats:
-    rows = aligned(walls.n_face, N_FACE)  # else the end of each row would be on a third line, not asked for
-    rows[:, :9], rows[:, KIND], rows[:, SURFACE] = walls.face, walls.kind + KINDS * walls.wall, walls.surface
+    rows = np.zeros((walls.n_face, N_FACE))
+    rows[:, :9], rows[:, KIND], rows[:, WALL] = walls.face, walls.kind, walls.wall
     b, c = walls.face[:, 3:6], walls.face[:, 6:9]
     flat = walls.kind == TRIANGLE
     across = np.cross(b, c)
@@ -168,16 +161,6 @@ def in_world(w: int, at: int, x: float, y: float, z: float, poses: Any) -> tuple
 
 
 @inner(fastmath=FAST, forceinline=True)
-def turned(w: int, x: float, y: float, z: float, poses: Any) -> tuple[float, float, float]:
-    """A direction in the frame of wall w, in the world now."""
-    return (
-        poses[w, 0] * x + poses[w, 1] * y + poses[w, 2] * z,
-        poses[w, 3] * x + poses[w, 4] * y + poses[w, 5] * z,
-        poses[w, 6] * x + poses[w, 7] * y + poses[w, 8] * z,
-    )
-
-
-@inner(fastmath=FAST, forceinline=True)
 def nearest_image(f: int, x: float, y: float, l_x: float, l_y: float, centre: Any) -> tuple[float, float]:
     """Coordinates of the image of a point that is nearest to face f, in a frame that is not turned."""
     if l_x < math.inf:
@@ -185,15 +168,6 @@ def nearest_image(f: int, x: float, y: float, l_x: float, l_y: float, centre: An
     if l_y < math.inf:
         y -= math.floor((y - centre[f, 1]) / l_y + 0.5) * l_y
     return x, y
-
-
-@inner(fastmath=FAST, forceinline=True)
-def room_of_image(f: int, x: float, y: float, c: Any, centre: Any) -> float:
-    """How far a point, at the image nearest to face f, may go before another image is the nearest [m].
-
-    There another part of the face may be near, to which the nearest point says nothing.
-    """
-    return min(0.5 * c[P.PERIOD_X] - abs(x - centre[f, 0]), 0.5 * c[P.PERIOD_Y] - abs(y - centre[f, 1]))
 
 
 @inner(fastmath=FAST, forceinline=True)
@@ -207,7 +181,7 @@ def nearest_of_face(
     d_x, d_y, d_z = x - rows[f, A], y - rows[f, A + 1], z - rows[f, A + 2]
     n_x, n_y, n_z = rows[f, NORMAL], rows[f, NORMAL + 1], rows[f, NORMAL + 2]
     along = d_x * n_x + d_y * n_y + d_z * n_z
-    inside, kind = 0.0, int(rows[f, KIND]) % KINDS
+    inside, kind = 0.0, rows[f, KIND]
     s_11, s_12 = rows[f, S_11], rows[f, S_12]
     p_x, p_y, p_z = rows[f, EDGE_1], rows[f, EDGE_1 + 1], rows[f, EDGE_1 + 2]
     q_x, q_y, q_z = rows[f, EDGE_2], rows[f, EDGE_2 + 1], rows[f, EDGE_2 + 2]
@@ -245,42 +219,22 @@ def _cell(x: float, low: float, width: float, n: int) -> int:
     return int(min(max(math.floor((x - low) / width), -1.0), float(n)))
 
 
-@inner(fastmath=FAST, forceinline=True)
-def beyond_sphere(f: int, x: float, y: float, z: float, reach: float, centre: Any) -> bool:
-    """Whether a point, in the frame of the wall, is farther than `reach` [m] from the sphere round face f."""
-    x, y, z, reach = x - centre[f, 0], y - centre[f, 1], z - centre[f, 2], reach + centre[f, 3]
-    return x * x + y * y + z * z >= reach * reach
-
-
 @inner(fastmath=FAST, forceinline=False)
-def nearest_in(
-    f: int, i: int, reach: float, moved: float, behind: float, ahead: float, c: Any, x_of: Any, v: Any,
-    wall: Any, poses: Any, rows: Any, centre: Any,
-) -> float:  # fmt: skip
-    """How near the centre of grain i may come to face f [m]; inf where that is far beyond `reach`.
-
-    From `behind` seconds ago to `ahead` seconds from now, at the velocity that it has and with `moved` [m] of
-    any other motion of the two. What is not round stays on one side of the plane through its nearest point,
-    so that only speed along the normal counts; 0 where another image may become the nearest.
-    """
-    w, moved = wall[f], moved + ROUND_OFF * x_of[i, 3]
-    x, y, z = x_of[i, 0], x_of[i, 1], x_of[i, 2]
-    v_x, v_y, v_z = v[i, 0], v[i, 1], v[i, 2]
-    way = math.sqrt(v_x * v_x + v_y * v_y + v_z * v_z) * max(behind, ahead) + moved
-    if poses[w, PLACED] != 0.0:
-        x, y, z = in_frame(w, NOW, x, y, z, poses)
-    x, y = nearest_image(f, x, y, c[P.PERIOD_X], c[P.PERIOD_Y], centre)
-    if beyond_sphere(f, x, y, z, reach + way, centre):
-        return math.inf
-    if room_of_image(f, x, y, c, centre) <= way:
-        return 0.0
-    _, _, _, n_x, n_y, n_z, distance = nearest_of_face(f, x, y, z, rows)
-    if int(rows[f, KIND]) % KINDS == CYLINDER:
-        return distance - way
-    if poses[w, PLACED] != 0.0:
-        n_x, n_y, n_z = turned(w, n_x, n_y, n_z, poses)
-    along = v_x * n_x + v_y * n_y + v_z * n_z
-    return distance + min(along * ahead, -along * behind, 0.0) - moved
+def distance_to(
+    f: int,
+    x: float,
+    y: float,
+    z: float,
+    l_x: float,
+    l_y: float,
+    poses: Any,
+    rows: Any,
+    centre: Any,
+) -> float:
+    """Distance of a point from face f [m]."""
+    x, y, z = in_frame(int(rows[f, WALL]), NOW, x, y, z, poses)
+    x, y = nearest_image(f, x, y, l_x, l_y, centre)
+    return nearest_of_face(f, x, y, z, rows)[6]
 
 
 @inner(fastmath=FAST, forceinline=False)
@@ -294,7 +248,7 @@ def append_faces(
     several cells is taken in the lowest that it and the box round the point both have.
     """
     # arrays one by one: references to a tuple of them would be counted for every face (design/0005)
-    rows, first_id, cells_low, centre = faces.rows, faces.first, faces.cells_low, faces.centre
+    rows, first_id, cells_low = faces.rows, faces.first, faces.cells_low
     cell_first, cell_face, dims, poses = faces.cell_first, faces.cell_face, faces.grid_dims, faces.poses
     grid_low, grid_width, grid_first = faces.grid_low, faces.grid_width, faces.grid_first
     images_x, images_y = 1 if l_x == math.inf else 3, 1 if l_y == math.inf else 3
@@ -328,7 +282,6 @@ def append_faces(
                                 a != max(a_0, cells_low[f, 0])
                                 or b != max(b_0, cells_low[f, 1])
                                 or c != max(c_0, cells_low[f, 2])
-                                or beyond_sphere(f, q_x, q_y, f_z, reach, centre)
                                 or nearest_of_face(f, q_x, q_y, f_z, rows)[6] >= reach
                             ):
                                 continue

@@ -12,11 +12,11 @@ from ryusa.engine.cpu import batch_layout as B
 from ryusa.engine.cpu.arrays import CandidateArrays, GrainArrays, PairArrays, WallArrays, Workspace
 from ryusa.engine.cpu.contact_rows import copy_row
 from ryusa.engine.cpu.cutoff import mark_approaching, set_relative_velocity, set_separation
-from ryusa.engine.cpu.faces import nearest_in
+from ryusa.engine.cpu.faces import distance_to
 from ryusa.engine.cpu.simd.borrow import borrow
 from ryusa.engine.cpu.simd.vec4 import copy4, fill4
 from ryusa.engine.shared import parameters as P
-from ryusa.engine.shared.kernel import inner, kernel
+from ryusa.engine.shared.kernel import FAST, inner, kernel
 
 _SLACK = 2 * B.LANES  # pairs are listed by the batch, where a whole one must find room
 
@@ -57,12 +57,8 @@ def prune(
     room = candidates.first[b + 1] - first
     i_of, pair, touching = candidates.i, candidates.index, candidates.touching
     x, v, v_pruned, start, partners = grains.x, grains.v, grains.v_pruned, pairs.start, pairs.partners
-    points, normals, first_face = walls.points, walls.normals, n_solid + len(walls.points)
+    points, normals = walls.points, walls.normals
     separation, velocity, inside, owner = work.separation, work.velocity, work.inside, work.selected
-    film, behind, held = c[P.FILM_REACH], 2.0 * c[P.DT], 0
-    moved = 0.5 * reach_on  # of the two that may change their velocity beside a face one is a grain
-    if walled is not None:
-        moved += max(ahead, behind) * walls.faces.speed
     for g in range(lo, hi):
         copy4(v_pruned, 4 * g, v, 8 * g)
     new, i, full = 0, lo, False
@@ -72,23 +68,18 @@ def prune(
             while begin + l >= start[i + 1]:
                 i += 1
             owner[l] = i
-            if walled is not None and partners[begin + l] >= first_face:
-                while held < n_touching and spare.index[held] < begin + l:
-                    held += 1
-                nearest = 0.0  # of what touched, however fast it parted
-                if held == n_touching or spare.index[held] != begin + l:
-                    nearest = nearest_in(
-                        partners[begin + l] - first_face, i, x[i, 3] + film, moved, behind, ahead, c, x, v,
-                        walls.faces.wall, walls.faces.poses, walls.faces.rows, walls.faces.centre,
-                    )  # fmt: skip
-                fill4(separation, 4 * l, 0.0)
-                fill4(velocity, 4 * l, 0.0)
-                separation[4 * l + 2] = min(max(nearest + reach_on - film, 0.0), B.FAR)
-                separation[4 * l + 3] = x[i, 3]
+            if walled is not None and partners[begin + l] >= n_solid + len(points):
+                seconds = max(ahead, 2.0 * c[P.DT])
+                f = partners[begin + l] - n_solid - len(points)
+                distance = distance_to(
+                    f, x[i, 0], x[i, 1], x[i, 2], c[P.PERIOD_X], c[P.PERIOD_Y], walls.faces.poses,
+                    walls.faces.rows, walls.faces.centre,
+                )  # fmt: skip
+                set_face(l, i, distance, seconds * walls.faces.speed, seconds, x, v, separation, velocity)
                 continue
             set_separation(l, i, partners[begin + l], n_solid, x, points, normals, separation)
             set_relative_velocity(l, i, partners[begin + l], n_solid, v, normals, velocity)
-        mark_approaching(plane_case, reach_on, behind, ahead, m, c, separation, velocity, inside)
+        mark_approaching(plane_case, reach_on, 2.0 * c[P.DT], ahead, m, c, separation, velocity, inside)
         full = full or new + m > room
         for l in range(m):  # no branch: which pairs are near is not predictable
             if not full:
@@ -100,7 +91,7 @@ def prune(
     candidates.count[b] = new
     _link_partners(b, lo, hi, n, pairs, candidates)
     if walled is not None:
-        list_faces(b, first_face, candidates)
+        list_faces(b, n_solid + len(points), candidates)
     for k in range(first, first + new):
         touching[k] = 0
     k = first
@@ -139,6 +130,26 @@ def _link_partners(b: int, lo: int, hi: int, n: int, pairs: PairArrays, candidat
             wanted[rows + q] = 1
 
 
+@inner(fastmath=FAST, forceinline=True)
+def set_face(
+    l: int,
+    i: int,
+    distance: float,
+    moved: float,
+    seconds: float,
+    x: Any,
+    v: Any,
+    separation: Any,
+    velocity: Any,
+) -> None:
+    """Write to lane l how near grain i can come to a face within `seconds`, if the face is `moved` [m]."""
+    speed = math.sqrt(v[i, 0] * v[i, 0] + v[i, 1] * v[i, 1] + v[i, 2] * v[i, 2])
+    fill4(separation, 4 * l, 0.0)
+    fill4(velocity, 4 * l, 0.0)
+    separation[4 * l + 2] = max(distance - speed * seconds - moved, 0.0)
+    separation[4 * l + 3] = x[i, 3]
+
+
 @inner(forceinline=False)
 def list_faces(b: int, first_face: int, candidates: CandidateArrays) -> None:
     """List the candidates of block b that are faces."""
@@ -151,7 +162,6 @@ def list_faces(b: int, first_face: int, candidates: CandidateArrays) -> None:
                 candidates.i[k],
                 candidates.j[k] - first_face,
             )
-            candidates.face_far[s, 0] = -math.inf
             count += 1
     candidates.face_count[b] = count
 

@@ -93,7 +93,7 @@ def block_forces(
     if walled is not None:
         met = met[candidates.first[b_0] :]  # the same rows for all blocks of a thread stay in its cache
         given = stats[S.PENDING_WALL]
-        resolve_walls(b, reach_on, work.schedule, c, grains, walls.faces, candidates, met)
+        resolve_walls(b, reach_on, c, grains, walls.faces, candidates, met)
     k = candidates.first[b]
     end = k + candidates.count[b]
     waiting = 0

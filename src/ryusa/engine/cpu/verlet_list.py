@@ -72,7 +72,7 @@ class BlockLayout(Layout):
         face, grain, number, slot = (np.zeros(room, np.uint32) for _ in range(4))
         return CandidateArrays(
             first, np.zeros(len(pairs), np.int64), i, j, target, index, touching, eta, rows,
-            face, grain, number, np.zeros((room, 2)), slot, aligned(room, N_MET),
+            face, grain, number, slot, aligned(room, N_MET),
             np.zeros(len(pairs) if self.walled else 0, np.int64),
         )  # fmt: skip
 

@@ -10,18 +10,9 @@ from typing import Any
 
 from ryusa.engine.cpu import batch_layout as B
 from ryusa.engine.cpu import faces as F
-from ryusa.engine.cpu import prune_schedule as K
 from ryusa.engine.cpu.arrays import CandidateArrays, GrainArrays
 from ryusa.engine.cpu.contact_rows import copy_row
-from ryusa.engine.cpu.faces import (
-    FaceArrays,
-    in_frame,
-    in_world,
-    nearest_image,
-    nearest_of_face,
-    room_of_image,
-    turned,
-)
+from ryusa.engine.cpu.faces import FaceArrays, in_frame, in_world, nearest_image, nearest_of_face
 from ryusa.engine.cpu.simd.prefetch import prefetch
 from ryusa.engine.shared import parameters as P
 from ryusa.engine.shared.kernel import FAST, inner
@@ -30,10 +21,7 @@ from ryusa.model.walls import SPIN, TOUCHED
 
 ON_FACE = 1e-3  # of the radius: within it a point lies on a face
 SAME_PLACE = math.cos(math.radians(45.0))  # of normals of one smooth surface that count as one place
-AHEAD = 16  # faces whose numbers are asked for before they are needed
-# columns of CandidateArrays.face_far: a grain with the velocity of the last pruning is out of reach of a face
-# while GAP_FIRST + GAP_RATE * steps since then is above what changes of velocity have added up to [m]
-GAP_FIRST, GAP_RATE = 0, 1
+AHEAD = 8  # faces whose numbers are asked for before they are needed
 
 
 @inner(fastmath=FAST, forceinline=True)
@@ -48,14 +36,11 @@ def drift_of_image(
 
 @inner(fastmath=FAST)
 def _meet(
-    s: int, i: int, f: int, reach: float, touched: bool, moved: float, since: float, changed: float,
-    schedule: Any, c: Any, x_of: Any, v: Any, poses: Any, rows: Any, centre: Any, far: Any, met: Any,
+    s: int, i: int, f: int, reach: float, touched: bool, c: Any, x_of: Any, poses: Any, rows: Any,
+    centre: Any, met: Any,
 ) -> int:  # fmt: skip
-    """Find how grain i and face f meet, and write it to row s of `met`; 1 if they do or did, else 0.
-
-    `far` gets how long they do not.
-    """
-    w, r = int(rows[f, F.KIND]) // F.KINDS, x_of[i, 3]
+    """Find how grain i and face f meet, and write it to row s of `met`; 1 if they do or did, else 0."""
+    w, r = int(rows[f, F.WALL]), x_of[i, 3]
     x, y, z = x_of[i, 0], x_of[i, 1], x_of[i, 2]
     placed = poses[w, PLACED] != 0.0
     if placed:
@@ -63,24 +48,14 @@ def _meet(
     x, y = nearest_image(f, x, y, c[P.PERIOD_X], c[P.PERIOD_Y], centre)
     c_x, c_y, c_z, n_x, n_y, n_z, distance = nearest_of_face(f, x, y, z, rows)
     met[s, F.DISTANCE], met[s, F.BY], met[s, F.GAP + 3] = distance, -1.0, 2.0 * r
-    a_x, a_y, a_z = n_x, n_y, n_z
-    if placed:
-        a_x, a_y, a_z = turned(w, n_x, n_y, n_z, poses)
     if distance >= reach and not touched:
         met[s, F.GAP], met[s, F.GAP + 1], met[s, F.GAP + 2] = B.FAR, 0.0, 0.0
-        v_x, v_y, v_z = v[i, 0], v[i, 1], v[i, 2]
-        gap, along = distance - reach - F.ROUND_OFF * r, v_x * a_x + v_y * a_y + v_z * a_z
-        room = room_of_image(f, x, y, c, centre) - F.ROUND_OFF * r
-        speed = math.sqrt(v_x * v_x + v_y * v_y + v_z * v_z)
-        most = (schedule[K.LASTS] - since) * (speed * c[P.DT] + moved) + 0.5 * schedule[K.SKIN] - changed
-        if room <= most:  # before the next list: then the nearest point may be another
-            gap, along = min(gap, room), -speed
-        elif int(rows[f, F.KIND]) % F.KINDS == F.CYLINDER:  # grains inside come nearer sideways too
-            along = -speed
-        rate = along * c[P.DT] - moved
-        far[s, GAP_FIRST], far[s, GAP_RATE] = gap + changed - rate * since, rate
         return 0
-    far[s, GAP_FIRST] = -math.inf
+    a_x, a_y, a_z = n_x, n_y, n_z
+    if placed:
+        a_x = poses[w, 0] * n_x + poses[w, 1] * n_y + poses[w, 2] * n_z
+        a_y = poses[w, 3] * n_x + poses[w, 4] * n_y + poses[w, 5] * n_z
+        a_z = poses[w, 6] * n_x + poses[w, 7] * n_y + poses[w, 8] * n_z
     way = -(distance + r)
     met[s, F.GAP], met[s, F.GAP + 1], met[s, F.GAP + 2] = way * a_x, way * a_y, way * a_z
     met[s, F.POINT], met[s, F.POINT + 1], met[s, F.POINT + 2] = c_x, c_y, c_z
@@ -126,22 +101,20 @@ def _move(k: int, g: int, touching: Any, eta: Any, rows: Any) -> None:
 
 @inner(fastmath=FAST)
 def resolve_walls(
-    b: int, reach_on: float, schedule: Any, c: Any, grains: GrainArrays, faces: FaceArrays,
-    candidates: CandidateArrays, met: Any,
+    b: int, reach_on: float, c: Any, grains: GrainArrays, faces: FaceArrays, candidates: CandidateArrays,
+    met: Any,
 ) -> None:  # fmt: skip
     """Find how the grains of block b meet the faces near them, and keep one contact in one place.
 
-    `met` has a row for each face of the block, columns of faces.py. A face that its grain cannot have reached
-    since they were last looked at is passed over: that never shows in the bits of a run.
+    `met` has a row for each face of the block, columns of faces.py.
     """
     first, count = candidates.first[b], candidates.face_count[b]
     # arrays are passed one by one: references to a tuple of them would be counted for every face
     number, grain = candidates.face[first:], candidates.face_grain[first:]
     face = candidates.face_number[first:]
     touching, eta, memory = candidates.touching, candidates.eta, candidates.rows
-    x_of, poses, rows, centre = grains.x, faces.poses, faces.rows, faces.centre
-    v, far, moved, begin = grains.v_pruned, candidates.face_far[first:], faces.speed * c[P.DT], 0
-    since, changed = schedule[K.SINCE], 0.5 * schedule[K.APPROACH]
+    x_of, surface, poses, rows, centre = grains.x, faces.surface, faces.poses, faces.rows, faces.centre
+    begin = 0
     for s in range(min(AHEAD, count)):
         prefetch(rows, F.N_FACE * face[s])
         prefetch(rows, F.N_FACE * face[s] + 8)
@@ -150,25 +123,16 @@ def resolve_walls(
         i, stop, near = grain[begin], begin, 0
         reach = x_of[i, 3] + reach_on
         while stop < count and grain[stop] == i:
-            s = stop + AHEAD
-            if s < count and far[s, GAP_FIRST] + far[s, GAP_RATE] * since <= changed:
-                prefetch(rows, F.N_FACE * face[s])
-                prefetch(rows, F.N_FACE * face[s] + 8)
-                prefetch(x_of, 4 * grain[s])
-            if far[stop, GAP_FIRST] + far[stop, GAP_RATE] * since > changed:
-                met[stop, F.GAP], met[stop, F.GAP + 1], met[stop, F.GAP + 2] = B.FAR, 0.0, 0.0
-                met[stop, F.GAP + 3] = 2.0 * x_of[i, 3]
-                met[stop, F.DISTANCE], met[stop, F.BY] = math.inf, -1.0
-            else:
-                touched = touching[number[stop]] != 0
-                near += _meet(
-                    stop, i, face[stop], reach, touched, moved, since, changed, schedule, c, x_of, v, poses,
-                    rows, centre, far, met,
-                )  # fmt: skip
+            if stop + AHEAD < count:
+                prefetch(rows, F.N_FACE * face[stop + AHEAD])
+                prefetch(rows, F.N_FACE * face[stop + AHEAD] + 8)
+                prefetch(x_of, 4 * grain[stop + AHEAD])
+            touched = touching[number[stop]] != 0
+            near += _meet(stop, i, face[stop], reach, touched, c, x_of, poses, rows, centre, met)
             stop += 1
         if near > 1:
             _one_in_a_place(
-                begin, stop, x_of[i, 3], reach_on, c, number, face, met, touching, eta, memory,
+                begin, stop, x_of[i, 3], reach_on, c, number, face, met, touching, eta, memory, surface,
                 poses, rows, centre,
             )  # fmt: skip
         begin = stop
@@ -177,7 +141,7 @@ def resolve_walls(
 @inner(fastmath=FAST, forceinline=False)
 def _one_in_a_place(
     begin: int, stop: int, r: float, reach_on: float, c: Any, number: Any, face: Any, met: Any, touching: Any,
-    eta: Any, memory: Any, poses: Any, rows: Any, centre: Any,
+    eta: Any, memory: Any, surface: Any, poses: Any, rows: Any, centre: Any,
 ) -> None:  # fmt: skip
     """Keep one contact in one place among the faces of one grain, rows begin..stop-1."""
     for s in range(begin, stop):
@@ -190,7 +154,7 @@ def _one_in_a_place(
             if q == s or farther or away >= nearest:
                 continue
             f, h = face[q], face[s]
-            same = rows[f, F.SURFACE] == rows[h, F.SURFACE] and _alike(s, q, met)
+            same = surface[f] == surface[h] and _alike(s, q, met)
             if same or _lies_on(s, q, f, ON_FACE * r, c, poses, rows, centre, met):
                 met[s, F.BY], nearest = q, away
     for s in range(begin, stop):  # memory goes to the contact that takes the place
@@ -205,7 +169,7 @@ def _one_in_a_place(
             for q in range(begin, stop):
                 f, h = face[q], face[s]
                 new = met[q, F.BY] < 0.0 and met[q, F.DISTANCE] < r and not touching[number[q]]
-                if new and rows[f, F.SURFACE] == rows[h, F.SURFACE] and _alike(s, q, met):
+                if new and surface[f] == surface[h] and _alike(s, q, met):
                     to = q
         if to != s and not touching[number[to]]:
             _move(k, number[to], touching, eta, memory)

@@ -1,4 +1,4 @@
-"""Faces that a grain cannot have reached are passed over: that never shows in the bits of a run."""
+"""A grain meets every face in time, whatever list of pairs it is found in."""
 
 import math
 from collections.abc import Callable
@@ -14,7 +14,6 @@ from ryusa.build.servo import Servo
 from ryusa.build.walls import SolidWall, WallMotion, cylinder, disc, rectangle, triangles, with_walls
 from ryusa.engine.cpu import prune_schedule as K
 from ryusa.engine.cpu.engine import CpuEngine
-from ryusa.engine.cpu.wall_contacts import GAP_FIRST, GAP_RATE
 from ryusa.laws.families import ContactTiming
 from ryusa.model import Scene, State
 from ryusa.model.servo import motion_with
@@ -53,15 +52,11 @@ def gas(
     return replace(with_walls(made, walls), world_low=(-1.0,) * 3, world_high=(1.0,) * 3), state
 
 
-def followed(
+def follow(
     made: tuple[Scene, State], steps: int, change: Callable[[int, CpuEngine], None] | None = None
-) -> int:
-    """How often a face was passed over in a run whose bits are those of one that passes over none.
-
-    The other lists pairs anew in every step, where each face near a grain is looked at.
-    """
+) -> None:
+    """Hold the bits of a run to those of one that lists pairs anew in every step."""
     one, other = CpuEngine(), CpuEngine()
-    passed = 0
     for engine in (one, other):
         engine.load(*made)
     for step in range(steps):
@@ -70,17 +65,11 @@ def followed(
             if change is not None:
                 change(step, engine)
             engine.advance(1).raise_if_any()
-        pairs, schedule = one._candidates.pairs, one._candidates.schedule
-        far = pairs.face_far[: pairs.face_count[0]]
-        passed += np.count_nonzero(
-            far[:, GAP_FIRST] + far[:, GAP_RATE] * schedule[K.SINCE] > 0.5 * schedule[K.APPROACH]
-        )
         if step % 100 == 0:
             assert bits(one.state()) == bits(other.state()), step
     assert bits(one.state()) == bits(other.state())
     assert one.tally() == other.tally()
     assert (np.array(one.tally().walls).reshape(-1, N_IMPULSE)[:, TOUCHED] > 0.0).all()
-    return passed
 
 
 def test_grains_that_fall_into_a_drum_on_meshes_that_turn() -> None:
@@ -90,7 +79,7 @@ def test_grains_that_fall_into_a_drum_on_meshes_that_turn() -> None:
         triangles("fine", square(60, 12 * D, z=-a)),
         moving(triangles("tilted", square(40, 8 * D, 0.3, -a)), spin=(0, 0, 3.0)),
     ]
-    assert followed(gas((4, 4, 5), 1.02 * D, 0.3, walls), 2500) > 10_000
+    follow(gas((4, 4, 5), 1.02 * D, 0.3, walls), 2500)
 
 
 def test_fast_grains_that_hit_each_other_between_walls_that_move() -> None:
@@ -120,7 +109,7 @@ def test_fast_grains_that_hit_each_other_between_walls_that_move() -> None:
             way.update(t=step * dt, speed=driven.copy())
         engine.set_walls(motion_with(made[0].walls, way["travel"], way["speed"], way["t"]))
 
-    assert followed(made, 4000, drive) > 10_000
+    follow(made, 4000, drive)
 
 
 @pytest.mark.parametrize("speed", [-1.0, 0.0, 1.0])
