@@ -21,7 +21,7 @@ from ryusa.running.stops import Stop
 RATE, END = 20.0, 0.05  # spin of the first clump about z [rad/s], and the time up to which it turns [s]
 HALF = np.sqrt(0.5)
 UPRIGHT = (HALF, 0.0, HALF, 0.0)  # a quarter turn about y: the long axis, x of the clump, points down
-CLUMP = [0, 0, 1, 1, -1, -1]  # of the spheres of two dumbbells, of a sphere and of a fixed grain
+CLUMP = [0, 0, 1, 1, -1, -1]  # of the spheres of two pebbles, of a sphere and of a fixed grain
 READ = """
 [grains]
 diameter = "4 mm"
@@ -43,7 +43,7 @@ time = "1 ms"
 
 @pytest.fixture(scope="module")
 def turning(tmp_path_factory: pytest.TempPathFactory) -> Results:
-    """A dumbbell that spins about z, one that stands on end, and a sphere, without gravity."""
+    """A pebble that spins about z, one that stands on end, and a sphere, without gravity."""
     loose, state = scene(
         x=[[0.0, 0.0, 0.02], [0.02, 0.0, 0.02], [0.04, 0.0, 0.02]],
         d=[0.004, 0.003, 0.002],
@@ -55,8 +55,8 @@ def turning(tmp_path_factory: pytest.TempPathFactory) -> Results:
         gravity=0.0,
     )
     made, begun = with_clumps(
-        loose, state, [shape("dumbbell")], form_of=[0, 0, -1],
-        orientation=[(1, 0, 0, 0), UPRIGHT, (1, 0, 0, 0)], names=("dumbbell",),
+        loose, state, [shape("pebble")], form_of=[0, 0, -1],
+        orientation=[(1, 0, 0, 0), UPRIGHT, (1, 0, 0, 0)], names=("pebble",),
     )  # fmt: skip
     folder = tmp_path_factory.mktemp("clumps") / "run"
     return run_scene(made, begun, folder, frames=END / 5, stop=Stop(time=END), progress=False)
@@ -90,6 +90,8 @@ def test_a_csv_has_the_clump_of_each_sphere_and_how_it_is_turned(turning: Result
         np.abs([np.cos(angle), np.sin(angle), 0.0]), abs=1e-9
     )
     assert np.abs(x[3] - x[2])[:2] == pytest.approx(0.0, abs=1e-15)  # the other stands upright
+    # the sphere of its own and the fixed one have one size and one density, whatever spheres of a clump share
+    assert float(rows[5]["m [kg]"]) == pytest.approx(float(rows[4]["m [kg]"]), rel=1e-12)
 
 
 def test_vtk_reads_clumps_as_point_data(turning: Results, tmp_path: Path) -> None:

@@ -59,7 +59,7 @@ def _drawn(scene: Scene, bodies: RigidBodies, forms: list[int]) -> Figure:
                 axes.annotate(up, (0, 0.5), (-6, 0), xycoords="axes fraction", textcoords="offset points")
         a, b, c = _lengths(bodies, body)
         count = int(bodies.count[body])
-        panels[column].set_title(f"{_name(bodies, body)}\n{count} spheres", fontsize=6.5)
+        panels[column].set_title(f"{_name(bodies, body)}\n{count} sphere{'s' * (count > 1)}", fontsize=6.5)
         clump = Clump.of(x, d)
         known = "exact" if clump.exact else f"to {clump.error:.0e}"
         panels[n + column].annotate(

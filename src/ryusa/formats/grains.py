@@ -108,8 +108,9 @@ def table_of_frame(run: Results, k: int) -> GrainTable:
 
     Notes
     -----
-    Grains that have not entered, or have left, are left out. A fixed grain has the mass that a free grain of
-    its size would have. Groups are those of fixed grains. A sphere of a clump has the spin of the clump.
+    Grains that have not entered, or have left, are left out. A fixed grain has the mass of a sphere of its
+    size and of the density of the first free grain. Groups are those of fixed grains. A sphere of a clump has
+    the spin of the clump.
     """
     frames, t = run.frames, float(run.frames.t[k])
     scene = run.scene_at(t)
@@ -127,7 +128,8 @@ def table_of_frame(run: Results, k: int) -> GrainTable:
             x[:, axis] -= turns * period
             image[:, axis] += turns.astype(np.int64)
     d = np.concatenate([scene.d[here], scene.d_fixed[there]])
-    m = np.concatenate([scene.m[here], scene.m[0] / scene.d[0] ** 3 * scene.d_fixed[there] ** 3])
+    density = scene.m[0] / scene.solid_volume[0]  # a sphere of a clump has a share of its volume
+    m = np.concatenate([scene.m[here], density * np.pi / 6.0 * scene.d_fixed[there] ** 3])
     still = np.zeros((n_fixed, 3))
     v, omega = (np.concatenate([part[k][here], still]) for part in (frames.v, frames.omega))
     names = ("x", "y", "z", "d", "vx", "vy", "vz", "wx", "wy", "wz", "m")
