@@ -1,13 +1,19 @@
 """Numbers that the catalogue names for measures that need walls; the others: `tests/studies/soften`."""
 
 import pytest
+from tests.measure.test_direct_shear import sheared as drawn_apart
 from tests.measure.test_mill import turning
 from tests.measure.test_plane_shear import sheared
 from tests.measure.test_shear_zone import turned
 
 from ryusa.catalogue import MEASURES, load
 
-RUNS = {"mill": turning, "shear": sheared, "shear_zone": turned}
+RUNS = {
+    "direct_shear": lambda _: drawn_apart(),
+    "mill": turning,
+    "shear": sheared,
+    "shear_zone": turned,
+}
 
 
 @pytest.mark.parametrize(
