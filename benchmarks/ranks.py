@@ -12,7 +12,7 @@ little:
 - the water adds `water` n to a step, and an exchange with a column of C cells takes `exchange` n + `cells` C;
 - a frame takes `frame` N on the first rank.
 
-Two ranks are timed by the wall, the shortest stretch of a few steps: waiting ranks spin, so that their
+Two ranks are timed by the wall, the shortest stretch of some hundred steps: waiting ranks spin, so that their
 processor time says nothing. On a machine that others use that is what two ranks reach when both happen to
 have a core.
 
@@ -39,7 +39,7 @@ import numpy as np
 D, DEEP = 2.0e-3, 12
 CELLS = (60, 240)  # of the columns that are timed
 INTERVAL = 33  # steps between two exchanges, as the packaged cases have it
-STRETCH = 5  # steps of a stretch on several ranks
+STRETCH = 400  # steps of a stretch on several ranks; each call costs them as much as a step or more
 SHAPES = {"square": (13, 13), "strip": (56, 3), "large": (29, 29)}  # grains along and across; 12 deep
 FRAME = 88  # bytes of a grain in a frame
 
