@@ -13,6 +13,7 @@ import pytest
 import ryusa
 from ryusa.build import build
 from ryusa.casefile import explain, read_text, resolved
+from ryusa.casefile.estimate import cells_of_row
 from ryusa.engine import registry
 from ryusa.errors import CaseError, ResultsError
 from ryusa.formats.grains import table_of_frame
@@ -145,6 +146,15 @@ def test_check_explains_bed_flow_and_segments() -> None:
     assert shown["segments"] == 4 and shown["length of the row"] == pytest.approx(0.048)
     assert 1.0 < shown["wall time"] / both["wall time"] < 1.5
     assert resolved(many)["water"]["row"]["height"] is None
+
+
+def test_case_json_and_check_have_the_cells_that_are_built(reach: Results) -> None:
+    case = read_text(TEXT, {**SMALL, **row(4)})
+    assert reach.row is not None
+    column = reach.row.row.column
+    assert resolved(case)["water"]["column"]["cell"] == column.dz
+    assert reach.case["water"]["column"]["cell"] == column.dz
+    assert cells_of_row(case) == pytest.approx(4 * column.n, rel=0.2)
 
 
 @pytest.mark.parametrize(

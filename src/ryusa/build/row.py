@@ -63,7 +63,9 @@ def _among_grains(case: Case, column: Column, period: float) -> ColumnRow:
     g_z = case.motion.gravity * math.cos(slope(case))
     bottom = np.full(n, column.z_low)
     row = ColumnRow(column, dx, bottom, g_z, x_low=x_low, start=np.full(n, column.z_surface))
-    if faults := row.refuses() or row.refuses_grains(Buoyancy.STRESS, period):
+    if faults := row.refuses():
+        raise CaseError("water.row", None, "; ".join(faults))
+    if faults := row.refuses_grains(Buoyancy.STRESS, period):  # what else it refuses, the case file did
         raise CaseError("water.row.bottom", None, "; ".join(faults))
     return row
 

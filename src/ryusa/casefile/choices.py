@@ -7,6 +7,7 @@ from ryusa.casefile.case import Case
 from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.contact.values import timing
 from ryusa.casefile.row.schema import row_keys
+from ryusa.casefile.row.values import water_alone
 from ryusa.casefile.section import Section, given
 from ryusa.casefile.shape import has_clumps
 from ryusa.errors import CaseError
@@ -38,10 +39,7 @@ _DEFAULTS: dict[type[Family], Callable[[Case], Family]] = {
     Mixing: lambda case: Mixing.of(column_keys(case).mixing),
     SurfaceRule: lambda case: SurfaceRule.VOLUME if row_keys(case) is not None else SurfaceRule.DEPTH,
     Start: lambda case: (
-        Start.REST
-        if (row_keys(case) is not None and case.build.kind == "empty")
-        or (case.water and case.water.drag == "none")
-        else Start.STEADY
+        Start.REST if water_alone(case) or (case.water and case.water.drag == "none") else Start.STEADY
     ),
 }
 _ONLY_IN: dict[type[Family], Callable[[Case], bool]] = {  # cases of some kind

@@ -5,12 +5,15 @@ import shutil
 
 from ryusa.casefile.builders.schema import BoxSection, FillSection, FlumeSection, FromFile, PackingSection
 from ryusa.casefile.case import Case
-from ryusa.casefile.column.schema import column_keys
+from ryusa.casefile.column.bed import bed_thickness
+from ryusa.casefile.column.checks import SPARE
+from ryusa.casefile.column.schema import CELL, column_keys
 from ryusa.casefile.contact.values import is_hertz, timing
 from ryusa.casefile.derive import Derived
+from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.record import MANY, events_of
 from ryusa.casefile.row.schema import row_keys
-from ryusa.casefile.row.values import row_plan, water_alone
+from ryusa.casefile.row.values import row_plan, segments_of, water_alone
 from ryusa.casefile.rows import ExplainRow, Flag, count, number, word
 from ryusa.laws.families import ContactTiming
 from ryusa.model.contacts import N_EVENT
@@ -199,11 +202,17 @@ def seconds_needed(case: Case, derived: Derived) -> float:
 
 
 def cells_of_row(case: Case) -> int:
-    """Cells of a row of columns; 0 where there is none."""
+    """Cells of a row of columns; 0 where there is none. Over a bed it is an estimate: grains decide."""
     if row_keys(case) is None:
         return 0
-    plan = row_plan(case)
-    return plan.n * plan.n_cell
+    if water_alone(case):
+        plan = row_plan(case)
+        return plan.n * plan.n_cell
+    bed, depth = bed_thickness(case), 0.0 if case.water is None else case.water.depth or 0.0
+    height = SPARE * depth + (bed if math.isfinite(bed) else 0.0)
+    return segments_of(case)[2] * math.ceil(
+        height / (column_keys(case).cell or CELL * reference_diameter(case))
+    )
 
 
 def cost_rows(case: Case, derived: Derived) -> list[ExplainRow]:

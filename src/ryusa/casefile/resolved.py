@@ -14,7 +14,7 @@ from ryusa.casefile.derive import Derived, derive
 from ryusa.casefile.grading import points_of
 from ryusa.casefile.motion import slab_width
 from ryusa.casefile.record import events_of
-from ryusa.casefile.row.values import bottom_points, line_points, row_plan, water_alone
+from ryusa.casefile.row.values import bottom_points, line_points, row_plan, segments_of, water_alone
 from ryusa.casefile.shape import spheres_of
 from ryusa.laws.families import SurfaceRule
 
@@ -86,14 +86,18 @@ def _resolve_column(case: Case, found: Derived, data: dict[str, Any]) -> None:
 
 
 def _resolve_row(case: Case, data: dict[str, Any]) -> None:
-    """Fill in the row of columns: its lines as points, its cells and what it is divided into."""
-    plan, row = row_plan(case), data["row"]
-    data["column"]["cell"] = plan.cell
+    """Fill in the row of columns: its lines as points, and what it is divided into.
+
+    Cells over a bed of grains are those of one column.
+    """
+    row, (_, dx, n) = data["row"], segments_of(case)
+    row |= {"segments": n, "segment": dx}
     row["bottom"] = [list(one) for one in bottom_points(case)]
     if row["surface"] is not None:
         row["surface"] = [list(one) for one in line_points(case, "water.row.surface", row["surface"])]
-    row |= {"segments": plan.n, "segment": plan.dx}
     if water_alone(case):
+        plan = row_plan(case)
+        data["column"]["cell"] = plan.cell
         row["height"] = plan.n_cell * plan.cell
 
 

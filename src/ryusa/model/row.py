@@ -216,7 +216,9 @@ class ColumnRow:
             )
         length = self.n_segment * self.dx
         if self.periodic and not math.isclose(length, period, rel_tol=AGREE):
-            faults.append(f"the row is {length:g} m long, the period of the grains {period:g} m: must agree")
+            faults.append(
+                f"the row is {length:.12g} m long, the period of the grains {period:.12g} m: must agree"
+            )
         if not self.periodic and math.isfinite(period):
             faults.append(f"the row has ends, and the grains have the period {period:g} m: leave it out")
         return tuple(faults)

@@ -18,6 +18,7 @@ from ryusa.casefile.row.values import (
     fastest,
     reaches,
     row_plan,
+    segments_of,
     water_alone,
     width_of,
 )
@@ -35,9 +36,9 @@ def row_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     keys = row_keys(case)
     if keys is None:
         return []
-    plan = row_plan(case)
     if not water_alone(case):
-        return _segments(plan, "periodic")
+        return _segments(case, "periodic")
+    plan = row_plan(case)
     return [
         *_grid(case, keys, plan),
         *_flow(case, keys),
@@ -46,12 +47,12 @@ def row_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     ]
 
 
-def _segments(plan: RowPlan, ends: str) -> list[ExplainRow]:
-    length = plan.n * plan.dx
+def _segments(case: "Case", ends: str) -> list[ExplainRow]:
+    x_low, dx, n = segments_of(case)
     return [
-        number("water", "length of the row", length, "m", f"x = {plan.x_low:g} to {plan.x_low + length:g} m"),
+        number("water", "length of the row", n * dx, "m", f"x = {x_low:g} to {x_low + n * dx:g} m"),
         word("water", "ends", ends, "upstream - downstream"),
-        count("water", "segments", plan.n, f"of {100.0 * plan.dx:.4g} cm"),
+        count("water", "segments", n, f"of {100.0 * dx:.4g} cm"),
     ]
 
 
@@ -62,7 +63,7 @@ def _grid(case: "Case", keys: RowSection, plan: RowPlan) -> list[ExplainRow]:
     )
     ends = "periodic" if keys.upstream is None else f"{keys.upstream.end} - {_end(keys)}"
     return [
-        *_segments(plan, ends),
+        *_segments(case, ends),
         number("water", "cell", plan.cell, "cm", f"{plan.n_cell} up to {100.0 * high:.4g} cm: {by}"),
         number(
             "water", "water at the start", float((plan.start - plan.bottom).clip(0.0).sum() * plan.dx), "m2",
@@ -131,8 +132,6 @@ def _dams(case: "Case", keys: RowSection, plan: RowPlan) -> list[ExplainRow]:
 
 
 def _step(case: "Case", derived: "Derived", plan: RowPlan) -> list[ExplainRow]:
-    if not water_alone(case):
-        return []
     speed = fastest(case, plan)
     courant = speed * derived.dt / plan.dx
     origin = (
