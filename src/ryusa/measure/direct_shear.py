@@ -10,12 +10,10 @@ from ryusa.measure._run import Floats, Run
 from ryusa.measure.snapshot import scene_at
 from ryusa.measure.statistics import average, ratio
 from ryusa.measure.table import Averaged, Averages
-from ryusa.measure.walls import walls
+from ryusa.measure.walls import ALONG, pressed_lid, walls
 from ryusa.model import Scene
-from ryusa.model.servo import driven
-from ryusa.model.walls import SPIN, SWING, TOWARDS, VELOCITY, pose
+from ryusa.model.walls import SPIN, SWING, VELOCITY, pose
 
-LEVEL = 1.0e-9  # sine of the angle up to which a direction is level or upright
 PEAK = 0.25  # displacement over which the peak is a mean, in mean diameters
 LAST = 0.5  # share of the displacement that counts as residual
 LEAST = 8  # frames in the window
@@ -84,15 +82,16 @@ def direct_shear(run: Run, begin: float | None = None, end: float = math.inf) ->
     if len(forces.t) < LEAST:
         raise ResultsError(f"{len(forces.t) + 1} frames in the window; {LEAST + 1} or more are needed")
     lid, moving, along = _halves(scene_at(run, float(forces.t[-1])))
-    first = 1.5 * forces.t[0] - 0.5 * forces.t[1]  # the first frame
-    places = [float(_place(run, moving[0], t) @ along) for t in (first, *forces.t.tolist())]
+    times = np.asarray(run.tally["t"], dtype=np.float64)
+    first = int(np.searchsorted(times, forces.t[0])) - 1  # the frame with which the window begins
+    places = [float(_place(run, moving[0], t) @ along) for t in (float(times[first]), *forces.t.tolist())]
     displacement = np.array(places[1:]) - places[0]
     others = np.setdiff1d(np.arange(len(forces.names)), moving)
     here, there = forces.force[:, moving].sum(axis=1), forces.force[:, others].sum(axis=1)
     shear = 0.5 * (there - here) @ along
     normal = 0.5 * np.abs((there - here)[:, 2])
     assert forces.travel is not None  # there is a servo
-    rise = forces.travel[0, lid] - forces.travel[:, lid]
+    rise = run.wall_travel[first, lid] - forces.travel[:, lid]
     peak, at = _peak(displacement, shear, normal, PEAK * run.scene.d_mean)
     late = displacement >= (1.0 - LAST) * displacement[-1]
     window, whole = (float(forces.t[late][0]), float(forces.t[-1])), (float(forces.t[0]), float(forces.t[-1]))
@@ -123,15 +122,9 @@ def _place(run: Run, wall: int, t: float) -> Floats:
 
 def _halves(scene: Scene) -> tuple[int, list[int], Floats]:
     """Number of the lid, numbers of the walls that move, and the direction in which they do, (3,)."""
-    pressed = driven(scene.walls).tolist()
-    if scene.walls is None or len(pressed) != 1:
-        raise ResultsError(f"needs one wall with a servo, the lid; the run has {len(pressed) or 'none'}")
-    lid, names, motion = pressed[0], scene.walls.names, scene.walls.motion
-    towards = scene.walls.servo[lid, TOWARDS : TOWARDS + 3]
-    if abs(float(towards[2])) < 1.0 - LEVEL:
-        raise ResultsError(
-            f"wall {names[lid]!r} is not pressed along z; a direct shear test has a level plane"
-        )
+    lid, _ = pressed_lid(scene)
+    assert scene.walls is not None  # it has a lid
+    names, motion = scene.walls.names, scene.walls.motion
     moving = [k for k in range(len(names)) if k != lid and motion[k, VELOCITY : VELOCITY + 3].any()]
     if not moving or motion[lid, VELOCITY : VELOCITY + 2].any():
         raise ResultsError(
@@ -149,7 +142,7 @@ def _halves(scene: Scene) -> tuple[int, list[int], Floats]:
                 f"wall {names[k]!r} moves otherwise than {names[moving[0]]!r}; half of the box moves as one"
             )
     speed = float(np.linalg.norm(velocity))
-    if abs(float(velocity[2])) > LEVEL * speed:
+    if abs(float(velocity[2])) > ALONG * speed:
         raise ResultsError(f"wall {names[moving[0]]!r} does not move along a level direction")
     return lid, moving, np.asarray(velocity / speed)
 

@@ -12,15 +12,13 @@ from ryusa.measure.profiles import U_X, Layers, V, _mean, _quotient, _sums
 from ryusa.measure.statistics import average, ratio
 from ryusa.measure.table import Averaged, Averages
 from ryusa.measure.transport import window_of
-from ryusa.measure.walls import walls
+from ryusa.measure.walls import pressed_lid, walls
 from ryusa.model import Scene
-from ryusa.model.servo import driven
-from ryusa.model.walls import SPIN, TOWARDS, VELOCITY
+from ryusa.model.walls import SPIN, VELOCITY
 
 LAYER = 0.5  # thickness of a layer in mean diameters
 CORE = (0.2, 0.8)  # shares of the volume of the grains below and above which plates matter
 LEAST = 4  # layers in the core
-ALONG = 1.0e-9  # sine of the angle up to which two directions are one
 
 
 @dataclass(frozen=True)
@@ -142,19 +140,10 @@ def plane_shear(run: Run, begin: float | None = None, end: float = math.inf) -> 
 
 def _lid(scene: Scene) -> tuple[int, float, float, float]:
     """Number of the lid, sign of its velocity, sign of the direction in which it presses, and speed [m/s]."""
-    pressed = driven(scene.walls).tolist()
-    if scene.walls is None or len(pressed) != 1:
-        raise ResultsError(f"needs one wall with a servo, the lid; the run has {len(pressed) or 'none'}")
-    name, motion = scene.walls.names[pressed[0]], scene.walls.motion[pressed[0]]
-    towards = scene.walls.servo[pressed[0], TOWARDS : TOWARDS + 3]
+    number, towards = pressed_lid(scene)
+    assert scene.walls is not None  # it has a lid
+    name, motion = scene.walls.names[number], scene.walls.motion[number]
     velocity = motion[VELOCITY : VELOCITY + 3]
-    if abs(float(towards[2])) < 1.0 - ALONG:
-        raise ResultsError(f"wall {name!r} is not pressed along z; plane shear has its lid above its base")
     if velocity[0] == 0.0 or velocity[1] != 0.0 or motion[SPIN : SPIN + 3].any():
         raise ResultsError(f"wall {name!r} is not drawn along x alone; plane shear needs a lid that is")
-    return (
-        pressed[0],
-        math.copysign(1.0, velocity[0]),
-        math.copysign(1.0, towards[2]),
-        abs(float(velocity[0])),
-    )
+    return number, math.copysign(1.0, velocity[0]), towards, abs(float(velocity[0]))

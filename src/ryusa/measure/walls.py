@@ -9,9 +9,12 @@ from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run, settle_time
 from ryusa.measure.statistics import average
 from ryusa.measure.table import Averaged, Averages
-from ryusa.model.walls import N_IMPULSE
+from ryusa.model import Scene
+from ryusa.model.servo import driven
+from ryusa.model.walls import N_IMPULSE, TOWARDS
 
 AXES = ("x", "y", "z")
+ALONG = 1.0e-9  # sine of the angle up to which two directions are one
 
 
 @dataclass(frozen=True)
@@ -99,6 +102,22 @@ def walls(run: Run, begin: float | None = None, end: float = math.inf) -> WallFo
         0.5 * (travel[1:] + travel[:-1]) if run.scene.has_servo else None,
         Averages("walls", tuple(items), ("forces of the grains on the walls; torque about the axis point",)),
     )  # fmt: skip
+
+
+def pressed_lid(scene: Scene) -> tuple[int, float]:
+    """Number of the one wall that a servo presses along z, and the sign of that direction.
+
+    Raises
+    ------
+    ResultsError : no such wall, or several.
+    """
+    pressed = driven(scene.walls).tolist()
+    if scene.walls is None or len(pressed) != 1:
+        raise ResultsError(f"needs one wall with a servo, the lid; the run has {len(pressed) or 'none'}")
+    towards = float(scene.walls.servo[pressed[0], TOWARDS + 2])
+    if abs(towards) < 1.0 - ALONG:
+        raise ResultsError(f"wall {scene.walls.names[pressed[0]]!r} is not pressed along z, as a lid is")
+    return pressed[0], math.copysign(1.0, towards)
 
 
 _QUANTITIES = (
