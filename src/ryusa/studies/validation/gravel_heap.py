@@ -58,10 +58,10 @@ def tasks(plan: Plan) -> Sequence[Task]:
 
 
 def measure(run: Results, one: CaseRun) -> dict[str, float]:
-    """Angle of the heap [deg], its foot [m], and the share of its grains that still move [-]."""
+    """Angle of the heap [deg], and the share of its grains that still move [-]."""
     del one
     found = cone(run)
-    return {"angle": math.degrees(found.angle), "foot": found.foot, "moving": found.moving}
+    return {"angle": math.degrees(found.angle), "moving": found.moving}
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
