@@ -1,6 +1,7 @@
 """Change of a scene by an entry of the timeline."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -34,6 +35,13 @@ def change(case: Case, scene: Scene, entry: ChangeSection) -> Scene:
         mu = entry.friction if entry.friction is not None else math.tan(entry.friction_angle or 0.0)
         return replace(scene, contact=replace(scene.contact, mu=mu))
     return replace(scene, rotation=entry.rotation == "free")
+
+
+def replay(case: Case, scene: Scene) -> Iterator[tuple[str, ChangeSection, Scene]]:
+    """Go through the timeline: key of each entry, the entry, and the scene after it."""
+    for k, entry in enumerate(case.timeline):
+        scene = change(case, scene, entry)
+        yield f"timeline.{k}", entry, scene
 
 
 def _moved(scene: Scene, move: MoveSection, at: float) -> Scene:

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.spatial import KDTree
 
-from ryusa.build.change import change
+from ryusa.build.change import change, replay
 from ryusa.build.servo import area_along
 from ryusa.casefile.case import Case
 from ryusa.casefile.contact.impact import STABLE
@@ -61,10 +61,9 @@ def refuse_fast_walls(case: Case, scene: Scene) -> None:
     smallest = float(np.concatenate([scene.d, scene.d_fixed]).min())
     most = MOST_STEP * smallest / scene.dt
     _refuse_faster(scene, most, {name: f"walls.{w}" for w, name in enumerate(scene.walls.names)})
-    for k, entry in enumerate(case.timeline):
-        scene = change(case, scene, entry)
+    for key, entry, after in replay(case, scene):
         if entry.move is not None:
-            _refuse_faster(scene, most, {entry.move.wall: f"timeline.{k}.move"})
+            _refuse_faster(after, most, {entry.move.wall: f"{key}.move"})
 
 
 def _refuse_faster(scene: Scene, most: float, keys: dict[str, str]) -> None:
