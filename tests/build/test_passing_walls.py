@@ -127,6 +127,20 @@ def test_an_oscillation_counts_by_its_amplitude() -> None:
     assert notes(FLOOR + lid.replace("AMP", "2.05")) == []
 
 
+def test_touches_before_a_passage_do_not_hide_it() -> None:
+    """Each of some 1000 points dips a quarter of a grain below the floor, comes back, then goes through."""
+    swing = 'amplitude = ["0 cm", "0 cm", "2.05 cm"]\nfrequency = "2 Hz"\n'
+    lid, down = PISTON.replace(velocity(0, 0, -5), swing), 'velocity = ["0 cm/s", "0 cm/s", "-10 cm/s"]'
+    assert notes(FLOOR + lid) == []
+    said = fault(FLOOR + lid + later("0.5 s", f'wall = "piston", {down}'))
+    assert said.startswith("timeline.0.move = 'piston': goes face-on through the wall 'floor' at 0.7 s")
+    plane = '[[planes]]\nname = "bottom"\npoint = ["0 cm", "0 cm", "-4.5 cm"]\nnormal = [0, 0, 1]\n'
+    deeper, faster = lid.replace("2.05", "6.55"), down.replace("-10", "-20")
+    assert notes(plane + deeper) == []
+    said = fault(plane + deeper + later("0.5 s", f'wall = "piston", {faster}'))
+    assert said.startswith("timeline.0.move = 'piston': goes face-on through the plane 'bottom' at 0.825 s")
+
+
 def test_faces_whose_edges_alone_meet_are_found() -> None:
     one = rectangle("one", "-2 -0.2 0", "4 0 0", "0 0.4 0")
     other = rectangle("other", "-0.2 -2 1", "0.4 0 0", "0 4 0", velocity(0, 0, -2))
