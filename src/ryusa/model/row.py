@@ -168,6 +168,15 @@ class ColumnRow:
         solid = np.zeros(self.n_segment, np.int64) if self.solid is None else self.solid
         return solid.copy() if self.periodic else np.concatenate([[0], solid, [0]])
 
+    def cells_of_dams(self) -> Ints:
+        """Number of the lowest cells of each segment that a dam takes, seeping ones too, ends included."""
+        taken, first = self.solid_cells(), self.inner.start
+        for dam in self.dams:
+            if dam.porous:
+                over = (dam.crest - self.bottom[dam.first : dam.end]) / self.column.dz
+                taken[first + dam.first : first + dam.end] = np.round(over).astype(np.int64)
+        return taken
+
     def refuses(self) -> tuple[str, ...]:
         """Reasons why this row cannot be solved, one sentence each; () if there are none."""
         c = self.column

@@ -174,7 +174,7 @@ def shape_of(row: ColumnRow) -> RowShape:
         if end is not None and end.kind is EndKind.DISCHARGE:
             kind[j] = INFLOW
     return RowShape(
-        left, right, west, east, row.solid_cells(), kind, bottom,
+        left, right, west, east, row.solid_cells(), row.cells_of_dams(), kind, bottom,
         1.0 + ((bottom[right] - bottom[left]) / row.dx) ** 2, (row.inner.start, row.inner.stop),
         float(row.dx), float(row.g_z),
     )  # fmt: skip

@@ -21,8 +21,7 @@ from ryusa.water.row_sums import (
     BUOYED,
     GrainPlaces,
     RowBed,
-    gradient_of_segments,
-    mean_along,
+    gradient_at,
     means_of_segments,
     of_both_stations,
     submerge,
@@ -181,8 +180,12 @@ def tell(
     for i in range(len(shape.bottom)):
         west, east = shape.west[i], shape.east[i]
         below = 0.0
+        # grains do not pass a wall, nor an inlet, where a screen holds them
+        come = 1.0 if shape.kind[west] == OPEN else 0.0
+        go = 1.0 if shape.kind[east] == OPEN else 0.0
         for k in range(p.n):
-            more = flux[east, k] - flux[west, k] + (through[east, k] / area - through[west, k] / area)
+            grains = go * through[east, k] / area - come * through[west, k] / area
+            more = flux[east, k] - flux[west, k] + grains
             rise[i, k] = -(below + 0.5 * more) * per_dx
             below += more
             told.w[i, k] = 0.0
@@ -232,10 +235,9 @@ def water_at_grains_in_row(
             table[i, k, 1], table[i, k, 3] = told.w[i, k], told.phi[i, k]
             table[i, k, 6] = told.force_z[i, k] / max(1.0 - told.phi[i, k], 1.0 - DENSEST)
     at = means_of_segments(cut, places, told.wet, per, table)
-    here = gradient_of_segments(shape, told.gradient)
     for i in range(len(per)):
         at[i, 1] += at[i, 0] * places.tilt[i]
-        at[i, 5] += mean_along(places, here, i)
+        at[i, 5] += gradient_at(shape, cut, places, told.gradient, -p.rho_w * p.g_x, i)
     sample(
         at, submerged / cut.whole, grains.solid, eddies, laws.buoyancy, 0.0, laws.rho_w, laws.g_x,
         laws.g_z, sampled,

@@ -5,6 +5,8 @@ which its centre lies and the two beside it by quadratic B-splines, which add up
 the centre. A sphere cut exactly by the borders of segments would give concentrations that change while it
 passes, and the water would be stirred by borders that are not there (design/0027).
 
+What would go to cells within a dam beside a grain, the segment of its centre takes.
+
 The part of a grain below the surface is, in each cell of each segment, the share of the cell that is wet. So
 the volume of submerged grains is that by which they displace water, and grains that reach out of still water
 do not move it. Cuts at the height of the surface itself, as in one column, would leave a small difference.
@@ -45,6 +47,7 @@ class GrainPlaces(NamedTuple):
 
     at: Ints  # segments that hold a part of each grain, shape (n_grain, N_SHARING) or (n_grain, 1)
     weight: Floats  # these parts [-], same shape
+    shut: Ints  # cells below these are within a dam there: the segment of the centre takes their part
     base: Floats  # height of the bottom below its centre, less z_low of the cells [m], shape (n_grain,)
     tilt: Floats  # and its slope [-]
     gate: Ints  # stations upstream and downstream of its centre, shape (n_grain, 2)
@@ -57,8 +60,9 @@ class GrainPlaces(NamedTuple):
         three = (np.zeros(n_grain) for _ in range(3))
         base, tilt, past = three
         return GrainPlaces(
-            np.zeros(shape, np.int64), np.ones(shape), base, tilt, np.zeros((n_grain, 2), np.int64), past
-        )
+            np.zeros(shape, np.int64), np.ones(shape), np.zeros(shape, np.int64), base, tilt,
+            np.zeros((n_grain, 2), np.int64), past,
+        )  # fmt: skip
 
 
 class RowBed(NamedTuple):
@@ -122,6 +126,7 @@ def place_grains(x: Floats, x_low: float, z_low: float, shape: RowShape, places:
             else:
                 here, below = first + int(min(max(one, 0), n - 1)), first + int(one)
             places.at[i, b] = here
+            places.shut[i, b] = shape.shut[here] if here != middle else 0
             base += places.weight[i, b] * shape.bottom[below]
             grows = (t - 0.5, -2.0 * t, t + 0.5)[b]
             tilt += grows / shape.dx * shape.bottom[below]
@@ -148,10 +153,16 @@ def add_to_segments(
         low, high = cut.first[i], cut.first[i] + cut.n_cells[i]
         for c in range(amounts.shape[1]):
             amount = amounts[i, c] * per[i]
+            home = places.at[i, places.at.shape[1] // 2]
             for b in range(places.at.shape[1]):
                 part = amount * places.weight[i, b]
+                apart = min(max(places.shut[i, b] - low, 0), cut.n_cells[i])
+                if apart > 0:
+                    row, share = sums[c, home, low:high], wet[home, low:high]
+                    for s in range(apart):
+                        row[s] += part * cut.volume[i, s] * share[s]
                 row, share = sums[c, places.at[i, b], low:high], wet[places.at[i, b], low:high]
-                for s in range(cut.n_cells[i]):
+                for s in range(apart, cut.n_cells[i]):
                     row[s] += part * cut.volume[i, s] * share[s]
 
 
@@ -167,8 +178,10 @@ def add_to_gates(cut: SliceArrays, places: GrainPlaces, order: Ints, amounts: Fl
         low, high = cut.first[i], cut.first[i] + cut.n_cells[i]
         for b in range(2):
             part = amounts[i] * (places.past[i] if b == 1 else 1.0 - places.past[i])
-            row = sums[places.gate[i, b], low:high]
-            for s in range(cut.n_cells[i]):
+            row, apart = sums[places.gate[i, b], low:high], 0
+            if places.at.shape[1] > 1:  # nothing passes into a dam
+                apart = min(max(places.shut[i, 2 * b] - low, 0), cut.n_cells[i])
+            for s in range(apart, cut.n_cells[i]):
                 row[s] += part * cut.volume[i, s]
 
 
@@ -181,10 +194,19 @@ def means_of_segments(
     for i in range(len(per)):
         for c in range(0, table.shape[2], FOUR):
             p = q = r = t = 0.0
+            home = places.at[i, places.at.shape[1] // 2]
             for b in range(places.at.shape[1]):
                 here, weight = places.at[i, b], places.weight[i, b]
                 cells, share = table[here], wet[here]
-                for s in range(cut.n_cells[i]):
+                apart = min(max(places.shut[i, b] - cut.first[i], 0), cut.n_cells[i])
+                for s in range(apart):
+                    k = cut.first[i] + s
+                    part, cell = weight * cut.volume[i, s] * wet[home, k], table[home, k]
+                    p += part * cell[c]
+                    q += part * cell[c + 1]
+                    r += part * cell[c + 2]
+                    t += part * cell[c + 3]
+                for s in range(apart, cut.n_cells[i]):
                     k = cut.first[i] + s
                     part, cell = weight * cut.volume[i, s] * share[k], cells[k]
                     p += part * cell[c]
@@ -204,11 +226,14 @@ def submerge(cut: SliceArrays, places: GrainPlaces, wet: Floats, submerged: Floa
     """
     per = np.zeros(len(submerged))
     for i in range(len(submerged)):
-        total = 0.0
+        total, low, home = 0.0, cut.first[i], places.at[i, places.at.shape[1] // 2]
         for b in range(places.at.shape[1]):
             weight, share = places.weight[i, b], wet[places.at[i, b]]
-            for s in range(cut.n_cells[i]):
-                total += weight * cut.volume[i, s] * share[cut.first[i] + s]
+            apart = min(max(places.shut[i, b] - low, 0), cut.n_cells[i])
+            for s in range(apart):
+                total += weight * cut.volume[i, s] * wet[home, low + s]
+            for s in range(apart, cut.n_cells[i]):
+                total += weight * cut.volume[i, s] * share[low + s]
         submerged[i] = total
         if total > DRY * cut.whole[i]:
             per[i] = 1.0 / total
@@ -216,11 +241,39 @@ def submerge(cut: SliceArrays, places: GrainPlaces, wet: Floats, submerged: Floa
 
 
 @kernel
-def mean_along(places: GrainPlaces, values: Floats, i: int) -> float:
-    """Mean over grain i of values of the segments (n_segment,)."""
-    mean = 0.0
-    for b in range(places.at.shape[1]):
-        mean += places.weight[i, b] * values[places.at[i, b]]
+def beside_dam(cut: SliceArrays, places: GrainPlaces, i: int, b: int) -> float:
+    """Part of grain i that lies beside a dam in segment b of those that share it [-]."""
+    inside, apart = 0.0, min(max(places.shut[i, b] - cut.first[i], 0), cut.n_cells[i])
+    for s in range(apart):
+        inside += cut.volume[i, s]
+    return inside / cut.whole[i] if apart > 0 else 0.0
+
+
+@kernel
+def gradient_at(
+    shape: RowShape, cut: SliceArrays, places: GrainPlaces, gradient: Floats, rest: float, i: int
+) -> float:
+    """Pressure gradient at grain i [Pa/m] from that at the stations (n_station,).
+
+    `rest` is that of water at rest [Pa/m], which a grain beside a dam meets on its side.
+    """
+    shared, mean = places.at.shape[1], 0.0
+    home = places.at[i, shared // 2]
+    west, east = gradient[shape.west[home]], gradient[shape.east[home]]
+    before, after = 0.0, 0.0
+    if shared > 1:
+        before, after = beside_dam(cut, places, i, 0), beside_dam(cut, places, i, 2)
+        if before > 0.0:
+            west = (1.0 - before) * west + before * rest
+        if after > 0.0:
+            east = (1.0 - after) * east + after * rest
+    middle = 0.5 * (west + east)
+    for b in range(shared):
+        at, apart = places.at[i, b], 0.0
+        here = middle if at == home else 0.5 * (gradient[shape.west[at]] + gradient[shape.east[at]])
+        if shared > 1 and b != 1:
+            apart = before if b == 0 else after
+        mean += places.weight[i, b] * (here if apart == 0.0 else (1.0 - apart) * here + apart * middle)
     return mean
 
 
@@ -254,20 +307,11 @@ def sum_given_in_row(
     amounts = given_by_grains(impulse, met, grains.archimedes, sampled, per_dt)
     add_to_segments(cut, places, wet, grains.order, per, amounts, sums[GIVEN_X : GIVEN_MET + 1])
     if shape.steep.max() > 1.0:
-        here = gradient_of_segments(shape, gradient)
         push = np.empty((len(per), 1))
         for i in range(len(per)):
-            push[i, 0] = grains.solid[i] * submerged[i] / cut.whole[i] * mean_along(places, here, i)
+            here = gradient_at(shape, cut, places, gradient, -p.rho_w * p.g_x, i)
+            push[i, 0] = grains.solid[i] * submerged[i] / cut.whole[i] * here
         add_to_segments(cut, places, wet, grains.order, per, push, sums[BUOYED:])
-
-
-@kernel
-def gradient_of_segments(shape: RowShape, gradient: Floats) -> Floats:
-    """Pressure gradient in the segments [Pa/m], mean of both stations."""
-    here = np.empty(len(shape.bottom))
-    for i in range(len(here)):
-        here[i] = 0.5 * (gradient[shape.west[i]] + gradient[shape.east[i]])
-    return here
 
 
 @kernel
