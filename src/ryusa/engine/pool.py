@@ -89,11 +89,11 @@ class GrainPool:
     def kinematics(self) -> tuple[Floats, Floats, Floats]:
         """Centres [m], velocities [m/s] and impulse from the fluid by id; nan and 0 for grains away."""
         x, v = np.full((self._n, 3), np.nan), np.full((self._n, 3), np.nan)
-        column = self._scene is not None and self._scene.column is not None
-        impulse = np.zeros((self._n if column else 0, N_IMPULSE))
+        coupled = self._scene is not None and self._scene.coupled
+        impulse = np.zeros((self._n if coupled else 0, N_IMPULSE))
         if self._inner is not None:
             x[self._ids], v[self._ids], found = self._engine.kinematics()
-            if column:
+            if coupled:
                 impulse[self._ids] = found
         return x, v, impulse
 
@@ -218,8 +218,8 @@ class GrainPool:
         return np.zeros(0, np.int64) if bodies is None else np.flatnonzero(self._there[bodies.first])
 
     def _fluid_out(self, fluid: FluidAtGrains | None) -> FluidAtGrains | None:
-        """The water at all grains, zero at those that are away; None without a column."""
-        if self._scene is None or self._scene.column is None:
+        """The water at all grains, zero at those that are away; None where the water does not feel them."""
+        if self._scene is None or not self._scene.coupled:
             return None
         sampled, impulse = np.zeros((self._n, N_SAMPLED)), np.zeros((self._n, N_IMPULSE))
         if fluid is not None:

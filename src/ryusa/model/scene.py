@@ -259,6 +259,11 @@ class Scene:
         return ball
 
     @property
+    def coupled(self) -> bool:
+        """Whether water feels the grains: a column or a row of columns."""
+        return self.column is not None or self.row is not None
+
+    @property
     def n_fixed(self) -> int:
         """Number of fixed grains, including removed ones."""
         return len(self.d_fixed)

@@ -1,6 +1,7 @@
 """Grains that are beyond an exit: when they crossed it, and the record of it."""
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,10 +13,11 @@ from ryusa.model.wall_traffic import carrier_of
 from ryusa.running.insertion import wrapped
 
 Ints = NDArray[np.int64]
+Surface = Callable[[Floats], Floats]  # height of the water at places along x [m], same shape; -inf without
 
 
 def leaving_at(
-    traffic: Traffic, scene: Scene, state: State, through: list[Ints], surface: float
+    traffic: Traffic, scene: Scene, state: State, through: list[Ints], surface: Surface
 ) -> np.ndarray:
     """Records of grains that leave, dtype PASSAGE, in the order of exits and ids.
 
@@ -24,7 +26,7 @@ def leaving_at(
     traffic, scene : the exits, and the scene that holds now.
     state : snapshot of all its grains.
     through : ids of the grains that are beyond each exit; empty without an exit.
-    surface : height of the water of a column [m]; -inf without one.
+    surface : height of the water of a column or a row.
     """
     x, v = of_heads(scene, state)
     step, t, inside, (d, m) = state.step, state.t, wrapped(x, scene.period), scene.of_heads()
@@ -37,7 +39,7 @@ def leaving_at(
         rows["grain"], rows["d"], rows["m"], rows["due"] = ids, d[ids], m[ids], math.nan
         rows["omega"] = state.omega[ids]  # of a clump, that of its first member
         rows["momentum"] = m[ids, None] * v[ids]
-        rates = fall(scene, ids, x[ids, 2], surface)
+        rates = fall(scene, ids, x[ids, 2], surface(x[ids, 0]))
         for row, i, a in zip(rows, ids.tolist(), rates, strict=True):
             speed = v[i] + 0.5 * scene.dt * a  # v belongs to half a step before x
             way = (inside[i], speed, a)
@@ -51,13 +53,14 @@ def leaving_at(
     return np.concatenate(found)
 
 
-def fall(scene: Scene, ids: Ints, z: Floats, surface: float) -> Floats:
+def fall(scene: Scene, ids: Ints, z: Floats, surface: Floats) -> Floats:
     """Acceleration of grains at heights z [m] by their weight alone [m/s2], shape (n, 3).
 
-    Above the surface [m] of a column it is that of gravity; a given profile of water has none.
+    Above the surface [m] of a column or a row, shape (n,), it is that of gravity; a given profile of water
+    has none.
     """
     share = scene.m_weight[ids] / (scene.m[ids] + scene.m_added[ids])
-    if scene.column is not None:
+    if scene.coupled:
         share = np.where(z - 0.5 * scene.of_heads()[0][ids] > surface, 1.0, share)
     return share[:, None] * scene.gravity
 

@@ -294,7 +294,6 @@ class Loop:
     def _pass_grains(self, traffic: TrafficRule) -> None:
         """Let grains leave and enter, and go on with those that are there."""
         scene, water = with_servos(self.scene, self.servo), self._water
-        assert not isinstance(water, RowCoupling)  # a case file refuses grains in a row
         passed = traffic.at_instant(scene, self.engine, self._step, self._t, water)
         if passed is not None:
             self._collect_contacts()
@@ -304,6 +303,8 @@ class Loop:
                 self._water = passed.water
                 self.engine.set_fluid(passed.water.sampled)
             self.recorder.passages(passed.rows)
+        if isinstance(self._water, RowCoupling):
+            self._water.refuse_lost(self.engine.kinematics()[0])
         for line in traffic.news(self._step, self._t):
             self.progress.line(line)
 

@@ -13,10 +13,10 @@ from ryusa.errors import CheckpointError
 from ryusa.model import PASSAGE, Scene, State
 from ryusa.model.arrays import Floats
 from ryusa.model.traffic import GONE, IN, NONE, PRESENT, WAITING, Population, Traffic
-from ryusa.model.wall_traffic import carrier_of, speed_of_feed
+from ryusa.model.wall_traffic import carrier_of, corners, speed_of_feed
 from ryusa.model.walls import BEGIN
 from ryusa.running.checkpoint import CheckpointBlock
-from ryusa.running.crossing import fall, leaving_at, of_heads
+from ryusa.running.crossing import Surface, fall, leaving_at, of_heads
 from ryusa.running.insertion import (
     ATTEMPTS,
     Neighbours,
@@ -26,6 +26,7 @@ from ryusa.running.insertion import (
     wrapped,
 )
 from ryusa.water.coupling import Coupling
+from ryusa.water.row_coupling import RowCoupling
 
 _FULL = 3  # grains in a row that find no place, after which a feed is tried again at the next instant
 Ints = NDArray[np.int64]
@@ -40,13 +41,13 @@ class Passed(NamedTuple):
     state : of all grains after it, for the engine.
     events : contacts that ended with a grain that left, dtype EVENT.
     rows : grains that entered and left, dtype PASSAGE.
-    water : the column among the grains that are there now; None without one, and before the first step.
+    water : column or row among the grains that are there now; None without one, and before the first step.
     """
 
     state: State
     events: np.ndarray
     rows: np.ndarray
-    water: Coupling | None = None
+    water: Coupling | RowCoupling | None = None
 
 
 @dataclass
@@ -102,22 +103,23 @@ class TrafficRule:
             raise ValueError(
                 f"the state holds other grains than the first {self.traffic.n_first} of its scene"
             )
-        surface = -math.inf if scene.column is None else scene.column.z_surface
+        surface = surface_of(scene, None)
         came, grains, _ = self._find_places(scene, state, surface)
         return Passed(placed(scene, state, grains), state.contacts.event[:0], came)
 
     def at_instant(
-        self, scene: Scene, engine: Engine, step: int, t: float, water: Coupling | None = None
-    ) -> Passed | None:
+        self, scene: Scene, engine: Engine, step: int, t: float,
+        water: Coupling | RowCoupling | None = None,
+    ) -> Passed | None:  # fmt: skip
         """Let grains leave and enter; None where none does.
 
         Parameters
         ----------
         scene : that holds now.
         engine : has stepped to `step`, time t [s]; it is only read.
-        water : the column; where a grain enters or leaves it is given what all took of it up to this step.
+        water : column or row; where a grain enters or leaves it is given what all took of it up to this step.
         """
-        surface = -math.inf if water is None else water.state.z_surface
+        surface = surface_of(scene, water)
         status = self.population.status
         through: list[Ints] = []
         if self.traffic.exits:
@@ -161,13 +163,15 @@ class TrafficRule:
             population.feed[spheres] = to
             population.due[i] = math.inf if to == NONE else row["t"]
 
-    def _find_places(self, scene: Scene, state: State, surface: float) -> tuple[np.ndarray, Entering, Floats]:
+    def _find_places(
+        self, scene: Scene, state: State, surface: Surface
+    ) -> tuple[np.ndarray, Entering, Floats]:
         """Find places for grains that are due, the longest waiting first, as far as there is room.
 
         Parameters
         ----------
         state : without those that have just left.
-        surface : height of the water of a column [m]; -inf without one.
+        surface : height of the water of a column or a row.
 
         Returns
         -------
@@ -209,7 +213,7 @@ class TrafficRule:
         came = np.concatenate([np.zeros(0, PASSAGE), *rows])
         where = np.array(places).reshape(-1, 3)
         back = t - came["t"][:, None]
-        a = fall(scene, came["grain"], where[:, 2], surface)
+        a = fall(scene, came["grain"], where[:, 2], surface(where[:, 0]))
         speed = came["v"] + (back - 0.5 * scene.dt) * a  # that of half a step before
         came["momentum"] = came["m"][:, None] * speed
         return (
@@ -227,20 +231,21 @@ class TrafficRule:
         return Neighbours.of(scene, feed, inside, self.population.status == PRESENT, reach, t)
 
     def _entering(
-        self, scene: Scene, near: Neighbours, i: int, step: int, t: float, surface: float
+        self, scene: Scene, near: Neighbours, i: int, step: int, t: float, surface: Surface
     ) -> tuple[np.ndarray, Floats | None, Floats]:
         """Record of a grain that enters, its place, None where it finds none, and its orientation."""
         feed, due = self.traffic.feeds[int(self.population.feed[i])], float(self.population.due[i])
         late = t - due
         # a grain that passes a disc between two instants is already on its way
         on_way = late if not feed.is_box and late < self.traffic.interval * scene.dt else 0.0
-        if near.lowest <= surface:
+        level = float(surface(np.array([corner[0] for corner in corners(feed)])).max())
+        if near.lowest <= level:
             on_way = 0.0  # what the water does to it on the way is not known
         if scene.walls is not None and feed.wall != NONE and due < scene.walls.motion[feed.wall, BEGIN]:
             on_way = 0.0  # the wall moved otherwise then
         carrier = carrier_of(scene, feed.wall, t - on_way)
         v = np.array(feed.velocity)
-        a = fall(scene, np.array([i]), np.array([near.lowest]), surface)[0]
+        a = fall(scene, np.array([i]), np.array([near.lowest]), np.array([level]))[0]
         d, m = (float(one[i]) for one in scene.of_heads())
         of = -1 if scene.bodies is None else int(scene.bodies.of_grain(scene.n_grain)[i])
         extent = d if scene.bodies is None or of < 0 else float(scene.bodies.extent(scene.d)[of])
@@ -334,8 +339,22 @@ class TrafficRule:
         self.said = found["said"].astype(np.bool_)
 
 
-def _at_entry(state: State, water: Coupling, ids: Ints) -> State:
-    """A snapshot in a column, with the water at spheres of some ids that are about to be put into it."""
+def surface_of(scene: Scene, water: Coupling | RowCoupling | None) -> Surface:
+    """Height of the surface along x, before the first step that of the start; -inf without water."""
+    if isinstance(water, RowCoupling):
+        return water.surface_at
+    row = scene.row
+    if water is None and row is not None and row.start is not None:
+        start = row.start
+        return lambda x: start[np.clip((x - row.x_low) // row.dx, 0, row.n_segment - 1).astype(np.int64)]
+    level = -math.inf if scene.column is None else scene.column.z_surface
+    if water is not None:
+        level = water.state.z_surface
+    return lambda x: np.full(len(x), level)
+
+
+def _at_entry(state: State, water: Coupling | RowCoupling, ids: Ints) -> State:
+    """A snapshot in water, with the water at spheres of some ids that are about to be put into it."""
     assert state.fluid is not None
     sampled = state.fluid.sampled.copy()
     sampled[ids] = water.sampled[ids]

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ryusa.errors import GrainLost
 from ryusa.laws.families import Drive, Start
 from ryusa.model import ColumnRow, RowCouplingState, RowState, Scene
 from ryusa.model.fluid import N_SAMPLED
@@ -106,9 +107,12 @@ class RowCoupling:
         Raises
         ------
         ValueError : a grain is at no finite place.
+        GrainLost : a grain is beyond the ends of the row, and the scene has no exit.
         WaterError : the water cannot be moved on, with the place; or drag acts faster than a step resolves.
         """
         time, grains, before = self.steps * self.scene.dt, self.grains, self.state.passed
+        if self.scene.traffic is None:
+            self.refuse_lost(x)
         if grains is None:
             self.state = advance_row(self.row, self.state, time, solid=self.row.porous)
         else:
@@ -121,6 +125,48 @@ class RowCoupling:
         self.worst = max(self.worst, _residual(self.state.budgets))
         self.due += self.steps
         return self.sampled
+
+    def finish(self, step: int, x: Floats, v: Floats, impulse: Floats) -> None:
+        """End the interval before the next exchange is due; parameters as of `Coupling.finish`."""
+        if step > self.due - self.steps:  # grains have moved since the last exchange
+            self.steps, self.due = self.steps - (self.due - step), step
+            self.exchange(x, v, impulse)
+
+    def among(self, x: Floats, step: int) -> "RowCoupling":
+        """The same water at a step at which grains have entered or left; parameters as of `Coupling.among`.
+
+        Notes
+        -----
+        The water in each cell is what it was. What entering grains displace raises the surface with the next
+        exchange, a step later, and what leaving grains have held sinks.
+        """
+        assert self.grains is not None
+        grains = self.grains.among(x, self.state)
+        return replace(self, steps=1, due=step + 1, grains=grains, sampled=grains.sampled)
+
+    def surface_at(self, x: Floats) -> Floats:
+        """Height of the surface over z = 0 at places along the row [m], same shape."""
+        row = self.row
+        at = np.clip(np.floor((x - row.x_low) / row.dx), 0, row.n_segment - 1).astype(np.int64)
+        return (row.bottom + self.state.surface[row.inner] - row.column.z_low)[at]
+
+    def refuse_lost(self, x: Floats) -> None:
+        """Raise a `GrainLost` for a grain beyond the ends of the row; x [m], shape (n_grain, 3).
+
+        To be called where no grain is on its way through an exit.
+        """
+        row = self.row
+        if row.periodic:
+            return
+        high = row.x_low + row.n_segment * row.dx
+        lost = np.flatnonzero((x[:, 0] < row.x_low) | (x[:, 0] > high))
+        if len(lost):
+            i = int(lost[0])
+            raise GrainLost(
+                f"the grain is at x = {x[i, 0]:.4g} m, beyond the row of columns from {row.x_low:g} to "
+                f"{high:g} m", grain=i, step=self.due - self.steps, t=self.state.t,
+                hint="Give an exit that takes what leaves the row there ([[exits]]), or a wall.",
+            )  # fmt: skip
 
     @property
     def phi(self) -> Floats:

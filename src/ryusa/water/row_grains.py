@@ -111,6 +111,7 @@ class GrainsInRow:
         if faults:
             raise ValueError("; ".join(faults))
         p, shape, column = parameters_of(row.column), shape_of(row), row.column
+        x, _ = _with_those_away(scene, row, x, x)
         stations, segments = len(shape.left), len(shape.bottom)
         there = np.flatnonzero(scene.fixed_active)
         cells, n = cells_of(column), len(x)
@@ -173,6 +174,19 @@ class GrainsInRow:
         other.worst = self.worst
         return other
 
+    def among(self, x: Floats, state: RowState) -> "GrainsInRow":
+        """The same water at a step at which grains have entered or left, just after an exchange.
+
+        Parameters
+        ----------
+        x : centres of the grains now [m], shape (n_grain, 3); nan for one that is away.
+        """
+        other = GrainsInRow.begin(self.scene, self.row, x, state)
+        other.told.w[:], other.told.force_z[:] = self.told.w, self.told.force_z
+        other.worst, other.eddies = self.worst, self.eddies
+        other._sample(state)
+        return other
+
     def _concentrate(self) -> None:
         """Concentrations of fixed grains, and of all, from the present slices."""
         sums = np.zeros((N_ROW_SUM, *self.told.phi.shape))
@@ -227,7 +241,8 @@ class GrainsInRow:
         Parameters
         ----------
         state : the water in the interval.
-        x, v : centres and velocities of the grains now [m], [m/s], shape (n_grain, 3).
+        x, v : centres and velocities of the grains now [m], [m/s], shape (n_grain, 3); nan for one that is
+            away.
         impulse : what each took from the water in the interval, columns of `model.fluid`.
         dt : the interval [s].
 
@@ -241,6 +256,7 @@ class GrainsInRow:
         WaterError : the water cannot be moved on.
         """
         p, told, row = self._p, self.told, self.row
+        x, v = _with_those_away(self.scene, row, x, v)
         segments, stations = len(told.phi), len(told.u)
         sums, fixed = np.zeros((N_ROW_SUM, segments, p.n)), np.zeros((N_SUM_FIXED, segments, p.n))
         through, largest = np.zeros((stations, p.n)), np.array([0.0, -1.0])
@@ -319,6 +335,16 @@ class GrainsInRow:
         per = submerge(self._cut, self._places, told.wet, np.empty(len(self._z)))
         at = means_of_segments(self._cut, self._places, told.wet, per, table)
         return eddies.speeds(present, self.scene.plane_case, np.sqrt(at[:, 0]), at[:, 1], at[:, 2])
+
+
+def _with_those_away(scene: Scene, row: ColumnRow, x: Floats, v: Floats) -> tuple[Floats, Floats]:
+    """Centres and velocities, with grains that are away (nan) at rest below the row, in no cell of it."""
+    if scene.traffic is None or not (away := np.isnan(x[:, 2])).any():
+        return x, v
+    x, v = np.where(away[:, None], 0.0, x), np.where(away[:, None], 0.0, v)
+    x[away, 0] = row.x[0]
+    x[away, 2] = row.bottom_with_ends().min() - 2.0 * scene.d[away]
+    return x, v
 
 
 def _water_of(state: RowState) -> RowWater:
