@@ -100,7 +100,7 @@ class PictureEntry:
 
 
 WINDOW = ("begin", "end")
-EVERY_BUILDER = ("drop", "saltation", "table", "run", "packing", "flume", "box", "empty", "fill")
+EVERY_BUILDER = ("drop", "saltation", "table", "run", "packing", "flume", "box", "empty", "fill", "stream")
 
 MEASURES = (
     MeasureEntry("saltation", "ryusa.measure.saltation:saltation",

@@ -161,7 +161,7 @@ def test_case_json_and_check_have_the_cells_that_are_built(reach: Results) -> No
     ("more", "key", "says"),
     [
         ({"water.buoyancy": "'weight'"}, "water.buoyancy", "must be 'stress' in a row"),
-        ({"water.row.upstream": "{ end = 'wall' }"}, "water.row.upstream", "periodic so far"),
+        ({"water.row.upstream": "{ end = 'wall' }"}, "water.row.upstream", "build.kind = 'stream'"),
         ({"water.row.bottom": "[['0 m', '0 m'], ['4.8 cm', '1 mm']]"}, "water.row.bottom", "z = 0"),
         ({"water.column.drive": "'discharge'"}, "water.column.drive", "'slope' or 'pressure gradient'"),
         ({"water.row.bottom": "[['0 m', '0 m'], ['5 cm', '0 m']]"}, "water.row.bottom", "must agree"),

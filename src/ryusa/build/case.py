@@ -22,6 +22,7 @@ from ryusa.build.passing_walls import refuse_passing_walls
 from ryusa.build.placement import Placement, Wall
 from ryusa.build.row import row_of
 from ryusa.build.saltation import saltation
+from ryusa.build.stream import stream_bed, stream_walls
 from ryusa.build.table import table
 from ryusa.build.traffic import before_feeding, moving_with, with_feeds
 from ryusa.build.wall_checks import (
@@ -67,6 +68,7 @@ from ryusa.laws.families import (
     Hindrance,
     Lift,
     Magnus,
+    Mixing,
     Profile,
     Rebound,
     Rolling,
@@ -86,6 +88,7 @@ BUILDERS = {
     "box": box,
     "empty": empty,
     "fill": fill,
+    "stream": stream_bed,
 }
 _OF_A_COLUMN = ("buoyancy", "hindrance", "lift", "magnus")
 _WATER_DEFAULTS = {  # key of [water]: how `ryusa check` calls it, and its unit
@@ -128,7 +131,7 @@ def build(case: Case, derived: Derived | None = None) -> Built:
     key = key_of(case.build) if isinstance(case.build, FromFile) else "build"
     reach = replace(placement, d=placement.d * extent(case))  # clumps, however they are turned
     refuse_overlaps(reach, key, case.motion.plane)
-    walls = walls_of(case)
+    walls = (*walls_of(case), *stream_walls(case))
     _refuse_taken_names(placement, walls)
     refuse_overlaps_with_walls(reach, walls, key)
     _refuse_unknown_groups(placement, case)
@@ -185,7 +188,9 @@ def with_materials(case: Case, scene: Scene, of: Numbers) -> Scene:
         return scene
     names, walls = names_of(case), scene.walls
     if walls is not None:
-        own = np.array([names.index(one.material or GRAINS) for one in case.walls], np.int8)
+        of_case = [names.index(one.material or GRAINS) for one in case.walls]
+        others = walls.names[len(of_case) :]  # bottom and dams of a stream
+        own = np.array([*of_case, *(names.index(GRAINS) for _ in others)], np.int8)
         of = np.concatenate([of, own[walls.wall]])
     of.flags.writeable = False
     pairs = [case_of_pair(case, *sorted((a, b), key=names.index)) for a in names for b in names]
@@ -339,7 +344,7 @@ def _column_notes(case: Case) -> list[str]:
         if key not in keys.model_fields_set
     ]
     if keys.mixing_length is None:
-        notes.append(f"mixing length: {keys.mixing} (water.column.mixing_length not given)")
+        notes.append(f"mixing length: {chosen(case, Mixing).word} (water.column.mixing_length not given)")
     return notes
 
 

@@ -9,12 +9,12 @@ from ryusa.casefile.builders.schema import FlumeSection
 from ryusa.casefile.builders.table import area_of_file
 from ryusa.casefile.case import Case
 from ryusa.casefile.choices import chosen
-from ryusa.casefile.column.bed import packed
 from ryusa.casefile.column.checks import SPARE
+from ryusa.casefile.column.packed import packed
 from ryusa.casefile.column.schema import CELL, column_keys
 from ryusa.casefile.derive import Derived
 from ryusa.casefile.motion import slab_width
-from ryusa.casefile.row.values import water_alone
+from ryusa.casefile.row.values import stream, water_alone
 from ryusa.casefile.water.values import u_star_given
 from ryusa.errors import CaseError
 from ryusa.laws.families import BedKind, Drive, Fluctuations, Mixing, SideWalls, Start, SurfaceRule
@@ -45,7 +45,7 @@ def column_of(case: Case, derived: Derived, placement: Placement) -> Column | No
     CaseError : the column cannot be: it begins above the bed, or asks for too many cells.
     """
     water, found = case.water, derived
-    if water is None or water.profile != "column" or water_alone(case):
+    if water is None or water.profile != "column" or water_alone(case) or stream(case):
         return None
     assert water.depth is not None
     keys = column_keys(case)

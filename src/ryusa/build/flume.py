@@ -10,7 +10,8 @@ from ryusa.build.sizes import draw, draw_laid
 from ryusa.casefile.builders.schema import FlumeSection
 from ryusa.casefile.builders.values import bed_counts, flume_count
 from ryusa.casefile.case import Case
-from ryusa.casefile.column.bed import bed_thickness, packed
+from ryusa.casefile.column.bed import bed_thickness
+from ryusa.casefile.column.packed import packed
 from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.derive import Derived
 from ryusa.casefile.grading import reference_diameter

@@ -8,15 +8,34 @@ import numpy as np
 from ryusa.build.column import column_of
 from ryusa.build.placement import Placement
 from ryusa.casefile.case import Case
-from ryusa.casefile.column.bed import packed
+from ryusa.casefile.choices import chosen
+from ryusa.casefile.column.packed import packed
 from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.derive import Derived
 from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.motion import slope
 from ryusa.casefile.row.schema import RowEndSection, row_keys
-from ryusa.casefile.row.values import RowPlan, crest_of, dam_span, discharge_of, row_plan, segments_of
+from ryusa.casefile.row.values import (
+    RowPlan,
+    crest_of,
+    dam_span,
+    discharge_of,
+    row_plan,
+    segments_of,
+    stream,
+    width_of,
+)
 from ryusa.errors import CaseError
-from ryusa.laws.families import BedKind, Buoyancy, Drive, Mixing, SideWalls, Start, SurfaceRule
+from ryusa.laws.families import (
+    BedKind,
+    Buoyancy,
+    Drive,
+    Fluctuations,
+    Mixing,
+    SideWalls,
+    Start,
+    SurfaceRule,
+)
 from ryusa.model import Column, ColumnRow
 from ryusa.model.arrays import Floats
 from ryusa.model.row import EndKind, PorousSolid, RowDam, RowEnd
@@ -49,7 +68,10 @@ def row_of(case: Case, derived: Derived, placement: Placement) -> ColumnRow | No
         _end(case, keys.upstream), _end(case, keys.downstream), solid, plan.x_low, porous,
         plan.start.copy(), dams,
     )  # fmt: skip
-    if faults := row.refuses():
+    faults = row.refuses()
+    if stream(case):
+        faults += row.refuses_grains(Buoyancy.STRESS, placement.period[0])
+    if faults:
         raise CaseError("water.row", None, "; ".join(faults))
     for one in (row.bottom, row.solid, row.start):
         if one is not None:
@@ -75,6 +97,7 @@ def _column(case: Case, derived: Derived, plan: RowPlan) -> Column:
     wet, keys = case.water, column_keys(case)
     assert wet is not None
     deepest = max(float((plan.start - plan.bottom).max()), 0.5 * plan.cell)
+    grains = stream(case)
     return Column(
         z_low=0.0,
         dz=plan.cell,
@@ -90,13 +113,15 @@ def _column(case: Case, derived: Derived, plan: RowPlan) -> Column:
         g_x=derived.g * math.sin(derived.slope),
         drive=Drive.of(keys.drive),
         gradient=keys.pressure_gradient or 0.0,
-        mixing=Mixing.of(keys.mixing),
+        mixing=chosen(case, Mixing),
         kappa=keys.kappa,
         phi_max=packed(case),
         k_f=keys.pore_eddies,
         d=derived.d,
         seed=case.seed,
-        interval=1,
+        area=plan.n * plan.dx * (width_of(case) or 1.0) if grains else 1.0,
+        fluctuations=Fluctuations.of(keys.fluctuations),
+        interval=keys.interval if grains else 1,
         start=Start.REST,
     )
 

@@ -22,6 +22,7 @@ from ryusa.casefile.motion import check_motion
 from ryusa.casefile.precision import check_precision
 from ryusa.casefile.record import check_frames, check_record, check_stop, check_timeline
 from ryusa.casefile.row.checks import check_row
+from ryusa.casefile.row.schema import row_keys
 from ryusa.casefile.row.values import water_alone
 from ryusa.casefile.section import Section, given
 from ryusa.casefile.shape import check_shape
@@ -48,6 +49,9 @@ def check(case: Case, data: dict[str, Any]) -> list[CaseError]:
 
     Checks that need derived numbers come last: these exist only for a case without contradictions.
     """
+    if case.build.kind == "stream" and row_keys(case) is None:
+        text = "needs [water.row], whose bottom is the floor of its grains; without it take another builder"
+        return [*_rivals(case), CaseError("build.kind", "stream", text)]
     unsized = [*check_grading(case), *check_sizes(case), *check_shape(case)]
     if unsized:  # most checks need the sizes
         return [*_rivals(case), *unsized]

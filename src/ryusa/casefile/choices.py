@@ -7,7 +7,7 @@ from ryusa.casefile.case import Case
 from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.contact.values import timing
 from ryusa.casefile.row.schema import row_keys
-from ryusa.casefile.row.values import water_alone
+from ryusa.casefile.row.values import stream, water_alone
 from ryusa.casefile.section import Section, given
 from ryusa.casefile.shape import has_clumps
 from ryusa.errors import CaseError
@@ -36,10 +36,13 @@ _DEFAULTS: dict[type[Family], Callable[[Case], Family]] = {
     Arm: lambda case: (
         Arm.REDUCED_RADIUS if "spring" in Rolling.of(case.rolling.model).marks else Arm.CONTACT_WIDTH
     ),
-    Mixing: lambda case: Mixing.of(column_keys(case).mixing),
+    # a deposit may lie anywhere in a stream, and the length counts from its top
+    Mixing: lambda case: Mixing.LI_SAWAMOTO if stream(case) else Mixing.of(column_keys(case).mixing),
     SurfaceRule: lambda case: SurfaceRule.VOLUME if row_keys(case) is not None else SurfaceRule.DEPTH,
     Start: lambda case: (
-        Start.REST if water_alone(case) or (case.water and case.water.drag == "none") else Start.STEADY
+        Start.REST
+        if water_alone(case) or stream(case) or (case.water and case.water.drag == "none")
+        else Start.STEADY
     ),
 }
 _ONLY_IN: dict[type[Family], Callable[[Case], bool]] = {  # cases of some kind

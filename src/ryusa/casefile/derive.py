@@ -21,7 +21,7 @@ from ryusa.casefile.films import step_limits
 from ryusa.casefile.grains import mass
 from ryusa.casefile.materials import lightest_of, meeting, smallest_of
 from ryusa.casefile.motion import slope
-from ryusa.casefile.row.values import water_alone, water_step
+from ryusa.casefile.row.values import stream, water_alone, water_step
 from ryusa.casefile.shape import least_mass, spheres_per_grain
 from ryusa.casefile.time import MOST_STEPS, STEPS_PER_FILM, TANGENTIAL_SHARE, steps_by_default
 from ryusa.casefile.water.values import u_star_given
@@ -96,7 +96,7 @@ def derive(case: Case) -> Derived:
     if case.water is not None:
         wet, rho_s = case.water, case.grains.density
         k_rough = wet.roughness if wet.roughness is not None else d
-        row = water_alone(case)
+        row = water_alone(case) or stream(case)  # its flow follows from its ends
         driven = wet.profile == "column" and column_keys(case).drive == "tau_star"
         u_star = u_star_given(case)
         if wet.tau_star is not None and not driven:

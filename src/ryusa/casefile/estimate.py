@@ -13,7 +13,7 @@ from ryusa.casefile.derive import Derived
 from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.record import MANY, events_of
 from ryusa.casefile.row.schema import row_keys
-from ryusa.casefile.row.values import row_plan, segments_of, water_alone
+from ryusa.casefile.row.values import row_plan, segments_of, stream, water_alone
 from ryusa.casefile.rows import ExplainRow, Flag, count, number, word
 from ryusa.laws.families import ContactTiming
 from ryusa.model.contacts import N_EVENT
@@ -205,7 +205,7 @@ def cells_of_row(case: Case) -> int:
     """Cells of a row of columns; 0 where there is none. Over a bed it is an estimate: grains decide."""
     if row_keys(case) is None:
         return 0
-    if water_alone(case):
+    if water_alone(case) or stream(case):
         plan = row_plan(case)
         return plan.n * plan.n_cell
     bed, depth = bed_thickness(case), 0.0 if case.water is None else case.water.depth or 0.0

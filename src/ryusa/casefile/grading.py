@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from ryusa.casefile.derive import Derived
 
 KEY = "grains.sieve_curve"
-BUILDERS = ("packing", "flume", "box", "fill", "empty")  # those that draw sizes
+BUILDERS = ("packing", "flume", "box", "fill", "empty", "stream")  # those that draw sizes
 COARSE = 0.05  # share of the mass in one grain above which a curve is laid poorly
 DURATION = 1.5  # power of the diameter that the shortest contact follows at one stiffness
 

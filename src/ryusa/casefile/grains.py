@@ -156,7 +156,7 @@ def sized_as(case: "Case", name: str | None) -> "Case":
 
 def laid_shares(case: "Case") -> dict[str | None, float]:
     """Shares by number of what the builder lays, by material; None is that of [grains]."""
-    if case.build.kind == "empty":
+    if case.build.kind == "empty" or (case.build.kind == "stream" and case.build.bed == 0.0):
         return {}
     rest = 1.0 - sum(case.grains.mixture.values())
     return {**({None: rest} if rest > 1e-9 else {}), **case.grains.mixture}

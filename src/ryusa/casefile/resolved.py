@@ -6,7 +6,7 @@ from typing import Any
 
 from ryusa.casefile.case import Case
 from ryusa.casefile.choices import chosen
-from ryusa.casefile.column.bed import packed
+from ryusa.casefile.column.packed import packed
 from ryusa.casefile.column.schema import CELL, ONLY_IN_A_COLUMN, column_keys
 from ryusa.casefile.contact.speed import expected_speed
 from ryusa.casefile.contact.values import is_hertz, timing
@@ -14,9 +14,9 @@ from ryusa.casefile.derive import Derived, derive
 from ryusa.casefile.grading import points_of
 from ryusa.casefile.motion import slab_width
 from ryusa.casefile.record import events_of
-from ryusa.casefile.row.values import bottom_points, line_points, row_plan, segments_of, water_alone
+from ryusa.casefile.row.values import bottom_points, line_points, row_plan, segments_of, stream, water_alone
 from ryusa.casefile.shape import spheres_of
-from ryusa.laws.families import SurfaceRule
+from ryusa.laws.families import Mixing, SurfaceRule
 
 
 def resolved(case: Case, derived: Derived | None = None) -> dict[str, Any]:
@@ -73,7 +73,10 @@ def _resolve_column(case: Case, found: Derived, data: dict[str, Any]) -> None:
     if wet.profile == "column":
         keys = column_keys(case)
         cell = keys.cell or CELL * found.d
-        data["column"] = keys.model_dump(mode="json") | {"cell": cell, "mixing_length": keys.mixing}
+        data["column"] = keys.model_dump(mode="json") | {
+            "cell": cell,
+            "mixing_length": chosen(case, Mixing).word,
+        }
         data["column"]["surface"] = chosen(case, SurfaceRule).word
         if wet.row is None:
             del data["row"]
@@ -95,7 +98,7 @@ def _resolve_row(case: Case, data: dict[str, Any]) -> None:
     row["bottom"] = [list(one) for one in bottom_points(case)]
     if row["surface"] is not None:
         row["surface"] = [list(one) for one in line_points(case, "water.row.surface", row["surface"])]
-    if water_alone(case):
+    if water_alone(case) or stream(case):
         plan = row_plan(case)
         data["column"]["cell"] = plan.cell
         row["height"] = plan.n_cell * plan.cell

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 KEY = "grains.shape"
 SPHERE = "sphere"
-BUILDERS = ("packing", "flume", "box", "fill", "table", "empty")  # those that leave room for clumps
+BUILDERS = ("packing", "flume", "box", "fill", "table", "empty", "stream")  # those that leave room for clumps
 WHOLE = 1.0e-9  # shares that add up to 1 within this are all
 
 

@@ -210,6 +210,28 @@ class FillSection(Section):
     """Fraction of that gap used for random displacements."""
 
 
+class StreamSection(Section):
+    """Grains in a row of columns with ends, [water.row]: a bed along its bottom, or none at the start."""
+
+    kind: Literal["stream"]
+    """Name of the builder. The line water.row.bottom is the floor, each of water.row.dams a wall, and
+    water.row.width the width; a screen, the plane `upstream`, holds grains at the upper end."""
+    bed: Annotated[Length, Field(ge=0)] = 0.0
+    """Thickness of a bed along the bottom, settled to the concentration water.column.packed; it is laid loose
+    and settles in the run. None when not given: all grains come from [[feeds]]."""
+    begin: Length | None = None
+    """Where the bed begins along x; at the upper end when not given."""
+    end: Length | None = None
+    """Where the bed ends; at the lower end when not given. There is none on dams."""
+    walls: bool = True
+    """Smooth side walls, the planes `right` at y = 0 and `left` at y = water.row.width; false makes y
+    periodic."""
+    gap: Annotated[Number, Field(ge=0, le=2)] = 0.05
+    """Gap between neighbours on the lattice, in largest diameters."""
+    jitter: Annotated[Number, Field(ge=0, le=1)] = 0.9
+    """Fraction of that gap used for random displacements."""
+
+
 BuildSection = Annotated[
     DropSection
     | SaltationSection
@@ -219,6 +241,7 @@ BuildSection = Annotated[
     | FlumeSection
     | BoxSection
     | EmptySection
-    | FillSection,
+    | FillSection
+    | StreamSection,
     Field(discriminator="kind"),
 ]

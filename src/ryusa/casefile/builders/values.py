@@ -17,11 +17,14 @@ from ryusa.casefile.builders.schema import (
     FromFile,
     PackingSection,
     SaltationSection,
+    StreamSection,
 )
 from ryusa.casefile.builders.table import period_of, table_of
+from ryusa.casefile.column.packed import packed
 from ryusa.casefile.grading import grading_of, reference_diameter
 from ryusa.casefile.grains import CUT, graded, laid_mean_cube, laid_shares, sized_as, spread_of
 from ryusa.casefile.motion import slab_width
+from ryusa.casefile.row.values import dam_span, row_plan, stream_span, width_of
 from ryusa.casefile.shape import extent
 from ryusa.casefile.traffic.values import fed_in_all
 
@@ -111,6 +114,8 @@ def built_counts(case: "Case") -> tuple[int, int, bool]:
         return build.columns * build.rows * build.layers, n_fixed, True
     if isinstance(build, FillSection):
         return fill_count(case), len(plate_of(case, build.plate)), True
+    if isinstance(build, StreamSection):
+        return stream_count(case), 0, True
     bed = bed_counts(case)
     if isinstance(build, FlumeSection):
         return flume_count(case), bed[0] * bed[1], True
@@ -209,6 +214,36 @@ def fill_count(case: "Case") -> int:
     return min(held, build.most or held)
 
 
+def stream_cells(case: "Case") -> tuple[float, tuple[float, float], NDArray[np.int64], int]:
+    """Lattice of builder 'stream': where it begins [m], its pitch along x and y [m], its columns, rows.
+
+    The columns are those beside dams, numbered from where the lattice begins; each spans a pitch along x.
+    """
+    build = case.build
+    assert isinstance(build, StreamSection)
+    begin, end = stream_span(case)
+    free, width = room(case) * (1.0 + build.gap), width_of(case) or 0.0
+    n_x, n_y = max(int((end - begin) / free * (1.0 + 1e-9)), 1), max(int(width / free * (1.0 + 1e-9)), 1)
+    pitch, plan = (end - begin) / n_x, row_plan(case)
+    low = begin + np.arange(n_x) * pitch
+    beside = np.ones(n_x, np.bool_)
+    for dam in case.water.row.dams if case.water is not None and case.water.row is not None else ():
+        first, last = (plan.x_low + i * plan.dx for i in dam_span(plan, dam))
+        beside &= (low + pitch <= first) | (low >= last)
+    return begin, (pitch, width / n_y), np.flatnonzero(beside), n_y
+
+
+def stream_count(case: "Case") -> int:
+    """Free grains of the bed of builder 'stream': their volume over its area is thickness times `packed`."""
+    build = case.build
+    assert isinstance(build, StreamSection)
+    if build.bed == 0.0:
+        return 0
+    _, (pitch, _), columns, _ = stream_cells(case)
+    volume = build.bed * packed(case) * len(columns) * pitch * (width_of(case) or 0.0)
+    return max(round(volume / (case.grains.shape_volume * laid_mean_cube(case))), 0)
+
+
 def _cells_of_a_grain(case: "Case", name: str | None) -> float:
     """Cells of the largest grain that a grain of a material takes in the mean [-]."""
     halved, widest, grading = (
@@ -246,6 +281,8 @@ def periodic(case: "Case") -> tuple[bool, bool]:
         return build.periodic, build.periodic and not case.motion.plane
     if isinstance(build, BoxSection):
         return False, not case.motion.plane
+    if isinstance(build, StreamSection):
+        return False, not build.walls
     if isinstance(build, FromFile):
         x, y = period_of(case)
         return math.isfinite(x), math.isfinite(y)

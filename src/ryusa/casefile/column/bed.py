@@ -5,26 +5,13 @@ from typing import TYPE_CHECKING
 
 from ryusa.casefile.builders.schema import FlumeSection, PackingSection
 from ryusa.casefile.builders.values import bed_area, counts
+from ryusa.casefile.column.packed import packed
 from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.grains import laid_mean_cube
-from ryusa.casefile.motion import slab_width
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
-
-# concentration of a bed at rest [-]; in a plane scene, of spheres in a slab one diameter wide
-PACKED, PACKED_PLANE = 0.61, 0.55
-
-
-def packed(case: "Case") -> float:
-    """Concentration of the bed at rest [-], at which the mixing length is zero."""
-    keys = column_keys(case)
-    if keys.packed is not None:
-        return keys.packed
-    if not case.motion.plane:
-        return PACKED
-    return PACKED_PLANE * reference_diameter(case) / slab_width(case)
 
 
 def bed_thickness(case: "Case") -> float:

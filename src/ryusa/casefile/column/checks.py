@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 from ryusa.casefile.builders.schema import FlumeSection
 from ryusa.casefile.builders.table import area_of_file
 from ryusa.casefile.builders.values import periodic, sizes
-from ryusa.casefile.column.bed import bed_top, packed, water_over
+from ryusa.casefile.column.bed import bed_top, water_over
+from ryusa.casefile.column.packed import packed
 from ryusa.casefile.column.schema import CELL, ColumnSection, column_keys
 from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.motion import slope_at_last
-from ryusa.casefile.row.values import water_alone
+from ryusa.casefile.row.values import stream, water_alone
 from ryusa.casefile.section import given
 from ryusa.casefile.water.schema import WaterSection
 from ryusa.casefile.water.values import u_star_given
@@ -33,6 +34,9 @@ def check_column(case: "Case") -> Iterator[CaseError]:
     if water is None or water.profile != "column" or water_alone(case):
         return
     keys = column_keys(case)
+    if stream(case):
+        yield from _laws(water)
+        return
     yield from _place(case, water)
     yield from _laws(water)
     yield from _boundaries(case, water, keys)

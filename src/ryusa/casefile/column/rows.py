@@ -3,12 +3,13 @@
 import math
 from typing import TYPE_CHECKING
 
-from ryusa.casefile.column.bed import bed_thickness, bed_top, packed, water_over
+from ryusa.casefile.column.bed import bed_thickness, bed_top, water_over
+from ryusa.casefile.column.packed import packed
 from ryusa.casefile.column.schema import CELL, ColumnSection, column_keys
 from ryusa.casefile.column.spin_up import spin_up_rows
 from ryusa.casefile.contact.values import friction_at_last
 from ryusa.casefile.motion import slope_at_last
-from ryusa.casefile.row.values import water_alone
+from ryusa.casefile.row.values import stream, water_alone
 from ryusa.casefile.rows import ExplainRow, Flag, number, word
 from ryusa.casefile.water.values import hindrance_exponent, terminal_velocity
 from ryusa.laws import drag, transport
@@ -94,7 +95,9 @@ def regime(
 def column_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     """Rows about the column of a case; none where the water does not respond to the grains."""
     wet = case.water
-    if wet is None or wet.profile != "column" or wet.depth is None or water_alone(case):
+    if wet is None or wet.profile != "column" or wet.depth is None:
+        return []
+    if water_alone(case) or stream(case):
         return []
     keys = column_keys(case)
     cell = keys.cell or CELL * derived.d

@@ -3,7 +3,8 @@
 import math
 from typing import TYPE_CHECKING
 
-from ryusa.casefile.column.bed import packed, water_over
+from ryusa.casefile.column.bed import water_over
+from ryusa.casefile.column.packed import packed
 from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.motion import slope_at_last
 from ryusa.casefile.water.values import u_star_given

@@ -10,6 +10,7 @@ from ryusa.casefile.column.schema import ColumnSection, column_keys
 from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.motion import slope
 from ryusa.casefile.row.schema import RowDamSection, RowEndSection, RowSection, row_keys
+from ryusa.casefile.row.stream_checks import check_places, check_stream
 from ryusa.casefile.row.values import (
     MOST_CELLS,
     RowPlan,
@@ -20,6 +21,7 @@ from ryusa.casefile.row.values import (
     discharge_of,
     line_points,
     row_plan,
+    stream,
     water_alone,
     width_of,
 )
@@ -48,28 +50,36 @@ def check_row(case: "Case") -> Iterator[CaseError]:
         return
     if water.profile != "column":
         return  # reported as a key without effect
-    among = not water_alone(case)
-    found = [*_among_grains(case, keys)] if among else [
-        *_grains(case), *_water(case, water), *_column(column_keys(case)), *_lines(case, keys, water),
-        *_ends(case, keys),
-    ]  # fmt: skip
+    if stream(case):
+        found = [*check_stream(case, keys), *_ending(case), *_water(case, water), *_driver(column_keys(case))]
+    elif water_alone(case):
+        found = [*_grains(case), *_ending(case), *_water(case, water), *_column(column_keys(case))]
+    else:
+        yield from _among_grains(case, keys)
+        return
+    found += [*_lines(case, keys, water), *_ends(case, keys)]
+    found = found or [*_shape(case, keys)]
     yield from found
-    if not found and not among:
-        yield from _shape(case, keys)
+    if not found and stream(case):
+        yield from check_places(case, keys)
 
 
 def _among_grains(case: "Case", keys: RowSection) -> Iterator[CaseError]:
     """Grains go in a periodic row over a level bottom, with the depth over their bed as in one column."""
-    water, column = case.water, column_keys(case)
+    water, column, kind = case.water, column_keys(case), case.build.kind
     assert water is not None
     for name, what in (("feeds", case.feeds), ("exits", case.exits)):
         if what:
-            yield CaseError(name, None, "grains do not enter or leave a row of columns yet; leave it out")
+            yield CaseError(
+                name, None, "grains enter and leave a row of columns with build.kind = 'stream' alone; leave "
+                "it out of a row in a period",
+            )  # fmt: skip
     for name in ("upstream", "downstream", "surface", "height", "dams"):
         if getattr(keys, name):
             yield CaseError(
-                f"water.row.{name}", None, "has no place in a row with grains, which is periodic so far and "
-                "has the depth water.depth over their bed as one column; leave it out",
+                f"water.row.{name}", None, f"has no place in a row with grains of builder '{kind}', "
+                "which is periodic and has the depth water.depth over their bed as one column; leave it out, "
+                "or take build.kind = 'stream'",
             )  # fmt: skip
     if water.buoyancy != "stress":
         yield CaseError("water.buoyancy", water.buoyancy, _FORMS)
@@ -81,8 +91,8 @@ def _among_grains(case: "Case", keys: RowSection) -> Iterator[CaseError]:
     yield from lines
     if not lines and any(z != 0.0 for _, z in bottom_points(case)):
         yield CaseError(
-            "water.row.bottom", None, "must lie at z = 0 with grains, the axis along which they lie; the "
-            "slope is motion.slope",
+            "water.row.bottom", None, f"must lie at z = 0 with grains of builder '{kind}', the "
+            "axis along which they lie; the slope is motion.slope",
         )  # fmt: skip
 
 
@@ -97,13 +107,17 @@ def _grains(case: "Case") -> Iterator[CaseError]:
             "does not act on a row of columns; what stands in the water is [[water.row.dams]]",
         )
         break
+    for k, change in enumerate(case.timeline):
+        if change.slope is None and change.slope_angle is None:
+            yield CaseError(f"timeline.{k}", None, "a row without grains takes changes of slope alone")
+
+
+def _ending(case: "Case") -> Iterator[CaseError]:
+    """A row with ends runs for a time, and water needs gravity."""
     if case.stop.time is None:
         yield CaseError("stop.time", None, "missing; a row of columns ends at a time")
     if case.motion.gravity <= 0.0:
         yield CaseError("motion.gravity", case.motion.gravity, "must be above 0: a row has a free surface")
-    for k, change in enumerate(case.timeline):
-        if change.slope is None and change.slope_angle is None:
-            yield CaseError(f"timeline.{k}", None, "a row without grains takes changes of slope alone")
 
 
 def _water(case: "Case", water: WaterSection) -> Iterator[CaseError]:
@@ -137,8 +151,21 @@ def _column(keys: ColumnSection) -> Iterator[CaseError]:
         yield CaseError(
             "water.column.bed",
             "moving" if given(keys, "bed") else None,
-            "must be 'rough' or 'smooth' in a row: a loose bed needs grains, which a row does not take yet",
+            "must be 'rough' or 'smooth' in a row without grains",
         )
+    yield from _driver(keys)
+    if keys.fluctuations != "none":
+        yield CaseError(
+            "water.column.fluctuations", keys.fluctuations, "must be 'none' in a row without grains"
+        )
+    if given(keys, "interval"):
+        yield CaseError(
+            "water.column.interval", keys.interval, "has no effect without grains: the water moves each step"
+        )
+
+
+def _driver(keys: ColumnSection) -> Iterator[CaseError]:
+    """Drivers, bottom and start that have no meaning where the flow follows from bottom and ends."""
     if keys.surface == "depth":
         yield CaseError("water.column.surface", "depth", "must be 'volume' in a row, or left out")
     if keys.drive not in {"slope", "pressure gradient"}:
@@ -160,16 +187,8 @@ def _column(keys: ColumnSection) -> Iterator[CaseError]:
         yield CaseError(
             "water.column.start", "steady", "must be 'rest' in a row: it finds its flow in the run itself"
         )
-    if keys.fluctuations != "none":
-        yield CaseError(
-            "water.column.fluctuations", keys.fluctuations, "must be 'none' in a row, which has no grains yet"
-        )
     if given(keys, "side_friction") and keys.side_walls is None:
         yield CaseError("water.column.side_friction", keys.side_friction, "needs water.column.side_walls")
-    if given(keys, "interval"):
-        yield CaseError(
-            "water.column.interval", keys.interval, "has no effect without grains: the water moves each step"
-        )
 
 
 def _lines(case: "Case", keys: RowSection, water: WaterSection) -> Iterator[CaseError]:

@@ -3,6 +3,7 @@
 import math
 from typing import TYPE_CHECKING
 
+from ryusa.casefile.column.packed import packed
 from ryusa.casefile.motion import slope
 from ryusa.casefile.row.schema import RowSection, row_keys
 from ryusa.casefile.row.values import (
@@ -19,6 +20,8 @@ from ryusa.casefile.row.values import (
     reaches,
     row_plan,
     segments_of,
+    stream,
+    stream_span,
     water_alone,
     width_of,
 )
@@ -36,15 +39,12 @@ def row_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
     keys = row_keys(case)
     if keys is None:
         return []
-    if not water_alone(case):
+    alone = water_alone(case)
+    if not alone and not stream(case):
         return _segments(case, "periodic")
     plan = row_plan(case)
-    return [
-        *_grid(case, keys, plan),
-        *_flow(case, keys),
-        *_dams(case, keys, plan),
-        *_step(case, derived, plan),
-    ]
+    about = [*_grid(case, keys, plan), *_flow(case, keys), *_dams(case, keys, plan)]
+    return [*about, *(_step(case, derived, plan) if alone else _bed(case))]
 
 
 def _segments(case: "Case", ends: str) -> list[ExplainRow]:
@@ -70,6 +70,15 @@ def _grid(case: "Case", keys: RowSection, plan: RowPlan) -> list[ExplainRow]:
             "per width",
         ),
     ]  # fmt: skip
+
+
+def _bed(case: "Case") -> list[ExplainRow]:
+    """The bed at the start."""
+    build, (begin, end) = case.build, stream_span(case)
+    if build.kind != "stream" or build.bed == 0.0:
+        return [word("water", "bed at the start", "none", "build.bed not given: all grains come from feeds")]
+    origin = f"build.bed, from x = {begin:g} to {end:g} m, settled to the concentration {packed(case):g}"
+    return [number("water", "bed at the start", build.bed, "cm", origin)]
 
 
 def _end(keys: RowSection) -> str:

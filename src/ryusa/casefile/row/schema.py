@@ -100,8 +100,9 @@ class RowSection(Section):
     bottom: Line
     """Rigid bottom: pairs of x and z from upstream to downstream, straight between them, such as
     [["0 m", "0 cm"], ["4 m", "-8 cm"]], or a CSV file in the folder of the case with the header x [m],z [mm].
-    The row reaches from the first to the last point. motion.slope tilts both axes. With grains the row is
-    periodic, as long as their period, and the bottom is the x axis."""
+    The row reaches from the first to the last point. motion.slope tilts both axes. With grains of builder
+    "stream" it is their floor; with those of other builders the row is periodic, as long as their period, and
+    the bottom is the x axis."""
     segments: Annotated[Count, Field(ge=1, le=100_000)] | None = None
     """Number of segments of equal length."""
     segment: PositiveLength | None = None
@@ -113,7 +114,7 @@ class RowSection(Section):
     """Surface of the water at the start, as pairs of x and z or a CSV file; below the bottom it is dry.
     Instead of water.depth, the depth over the bottom."""
     width: PositiveLength | None = None
-    """Width of the stream, for a discharge in m3/s; `column.side_walls` when not given."""
+    """Width of the stream, for grains and for a discharge in m3/s; `column.side_walls` when not given."""
     upstream: RowEndSection | None = None
     """Upper end, at the first point of the bottom. Without both ends the row is periodic."""
     downstream: RowEndSection | None = None

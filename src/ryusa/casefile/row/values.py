@@ -113,6 +113,21 @@ def cell_of(case: "Case") -> float:
     return column_keys(case).cell or CELL * reference_diameter(case)
 
 
+def stream(case: "Case") -> bool:
+    """Whether grains enter and leave a row with ends."""
+    return row_keys(case) is not None and case.build.kind == "stream"
+
+
+def stream_span(case: "Case") -> tuple[float, float]:
+    """Where the bed of builder 'stream' begins and ends along x [m]."""
+    build, points = case.build, bottom_points(case)
+    assert build.kind == "stream"
+    return (
+        points[0][0] if build.begin is None else build.begin,
+        points[-1][0] if build.end is None else build.end,
+    )
+
+
 def water_alone(case: "Case") -> bool:
     """Whether a case is a row without a moving grain, whose step resolves waves instead of contacts."""
     return row_keys(case) is not None and case.build.kind == "empty" and not case.feeds
@@ -121,12 +136,14 @@ def water_alone(case: "Case") -> bool:
 @lru_cache(maxsize=8)
 def _plan(
     points: Points, surface: Points | None, depth: float, about: tuple[float, float, int], cell: float,
-    height: float,
+    height: float, bed: tuple[float, float, float],
 ) -> RowPlan:  # fmt: skip
     x_low, dx, n = about
     x: Floats = x_low + (np.arange(n, dtype=np.float64) + 0.5) * dx
     bottom = np.interp(x, *np.array(points).T)
-    start = bottom + depth if surface is None else np.interp(x, *np.array(surface).T)
+    begin, end, thick = bed
+    over = depth + np.where((x >= begin) & (x <= end), thick, 0.0)
+    start = bottom + over if surface is None else np.interp(x, *np.array(surface).T)
     n_cell = max(math.ceil(height / cell - 1e-9), 2)
     return RowPlan(x_low, dx, n, cell, n_cell, x, bottom, start)
 
@@ -137,9 +154,10 @@ def row_plan(case: "Case") -> RowPlan:
     assert wet is not None
     surface = None if keys.surface is None else line_points(case, "water.row.surface", keys.surface)
     about, cell = segments_of(case), cell_of(case)
-    first = _plan(bottom_points(case), surface, wet.depth or 0.0, about, cell, cell)
+    bed = (*stream_span(case), case.build.bed) if case.build.kind == "stream" else (0.0, 0.0, 0.0)
+    first = _plan(bottom_points(case), surface, wet.depth or 0.0, about, cell, cell, bed)
     height = keys.height or SPARE * max(deepest(case, first), 4.0 * cell)
-    return _plan(bottom_points(case), surface, wet.depth or 0.0, about, cell, height)
+    return _plan(bottom_points(case), surface, wet.depth or 0.0, about, cell, height, bed)
 
 
 def reaches(case: "Case") -> list[Reach]:

@@ -1,0 +1,135 @@
+"""Checks of a row of columns with ends and grains: what builder "stream" needs, and where grains could go."""
+
+from collections.abc import Iterator
+from itertools import product
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ryusa.casefile.builders.schema import StreamSection
+from ryusa.casefile.builders.values import FEWEST_PERIODS, sizes, stream_count
+from ryusa.casefile.column.schema import ColumnSection, column_keys
+from ryusa.casefile.row.schema import RowSection
+from ryusa.casefile.row.values import bottom_points, row_plan, stream_span, width_of
+from ryusa.casefile.traffic.schema import ExitSection
+from ryusa.errors import CaseError
+from ryusa.laws.families import Mixing
+from ryusa.model.column import AGREE
+
+if TYPE_CHECKING:
+    from ryusa.casefile.case import Case
+
+NAMES = ("bottom", "upstream", "downstream", "right", "left", "grains", "bed")  # taken by builder "stream"
+
+
+def check_stream(case: "Case", keys: RowSection) -> Iterator[CaseError]:
+    """Find what is missing before a row can be divided, with keys that mean nothing in a stream."""
+    build = case.build
+    assert isinstance(build, StreamSection)
+    if case.motion.plane:
+        yield CaseError(
+            "motion.plane", True, "must be false with builder 'stream', whose bottom and dams are walls in "
+            "three dimensions; a narrow stream with build.walls = false is nearest to a plane",
+        )  # fmt: skip
+    for name in ("upstream", "downstream"):
+        if getattr(keys, name) is None:
+            yield CaseError(f"water.row.{name}", None, "missing; builder 'stream' has two ends")
+    width = width_of(case)
+    least = sizes(case)[2] * (1.0 if build.walls else FEWEST_PERIODS)
+    if width is None or width < least:
+        what = "missing; builder 'stream' needs it, and it " if width is None else ""
+        yield CaseError("water.row.width", width, f"{what}must be at least {least:.4g} m for these grains")
+    yield from _column(column_keys(case), width)
+    yield from _names(case, keys)
+
+
+def _column(keys: ColumnSection, width: float | None) -> Iterator[CaseError]:
+    if keys.bed == "moving":
+        yield CaseError(
+            "water.column.bed", None if "bed" not in keys.model_fields_set else "moving",
+            "must be 'rough' or 'smooth' in a stream, the rigid bottom where no grains lie",
+        )  # fmt: skip
+    if keys.mixing_length not in (None, Mixing.LI_SAWAMOTO.word, Mixing.LAMINAR.word):
+        yield CaseError(
+            "water.column.mixing_length", keys.mixing_length, "counts from the rigid bottom, through any "
+            "deposit; must be 'Li-Sawamoto' or 'none' in a stream, or left out",
+        )  # fmt: skip
+    if keys.side_walls is not None and width is not None and keys.side_walls < (1.0 - AGREE) * width:
+        yield CaseError(
+            "water.column.side_walls", keys.side_walls, f"must be at least water.row.width, {width:g} m"
+        )
+
+
+def _names(case: "Case", keys: RowSection) -> Iterator[CaseError]:
+    """Names of dams, which are walls for the grains, and of what the builder makes are used once."""
+    others = (*case.walls, *case.planes, *case.feeds, *case.exits)
+    taken = {*NAMES, *(one.name for one in others)}
+    for k, dam in enumerate(keys.dams):
+        if dam.name in taken:
+            yield CaseError(f"water.row.dams.{k}.name", dam.name, "is used twice; builder 'stream' takes "
+                            f"{', '.join(NAMES)} itself")  # fmt: skip
+    for kind, entries in (("walls", case.walls), ("planes", case.planes), ("feeds", case.feeds),
+                          ("exits", case.exits)):  # fmt: skip
+        for k, one in enumerate(entries):
+            if one.name in NAMES:
+                yield CaseError(f"{kind}.{k}.name", one.name, "is a name that builder 'stream' gives itself")
+    own = {*NAMES[:3], *(dam.name for dam in keys.dams)}
+    for k, entry in enumerate(case.timeline):
+        if entry.remove in own:
+            yield CaseError(
+                f"timeline.{k}.remove", entry.remove, "cannot be removed: it is one for grains and water"
+            )
+
+
+def check_places(case: "Case", keys: RowSection) -> Iterator[CaseError]:
+    """Find a bed outside the row or without a grain, feeds outside it, and ends that lose grains."""
+    build = case.build
+    assert isinstance(build, StreamSection)
+    low, high = bottom_points(case)[0][0], bottom_points(case)[-1][0]
+    begin, end = stream_span(case)
+    if build.bed == 0.0 and not any(feed.rate is not None for feed in case.feeds):
+        yield CaseError(
+            "build.bed", None, "gives no grain, and no feed brings one: give a thickness, or [[feeds]]"
+        )
+    for name in ("begin", "end"):
+        value = getattr(build, name)
+        if value is not None and not low <= value <= high:
+            yield CaseError(f"build.{name}", value, f"must lie in the row, from {low:g} to {high:g} m")
+    if not begin < end:
+        yield CaseError("build.begin", build.begin, f"must lie before the end of the bed, {end:g} m")
+        return
+    if build.bed > 0.0 and stream_count(case) < 1:
+        yield CaseError("build.bed", build.bed, "gives no grain: take a thicker or longer bed")
+    for k, feed in enumerate(case.feeds):
+        ends = [feed.low, feed.high] if feed.low is not None else [feed.centre]
+        reach = feed.radius or 0.0
+        if any(one is not None and not low + reach <= one[0] <= high - reach for one in ends):
+            yield CaseError(f"feeds.{k}", feed.name, f"must lie in the row, from x = {low:g} to {high:g} m")
+    if keys.downstream is not None and keys.downstream.end != "wall":
+        yield from _outlet(case, high)
+
+
+def _outlet(case: "Case", high: float) -> Iterator[CaseError]:
+    """All that passes the lower end must leave through an exit."""
+    plan, wide = row_plan(case), width_of(case) or 0.0
+    step, floor = 1.0e-6 * plan.dx, bottom_points(case)[-1][1]
+    heights = np.linspace(floor, floor + plan.n_cell * plan.cell, 9)
+    for y, z in product(np.linspace(0.01, 0.99, 5) * wide, heights):
+        if not any(_beyond(one, (high + step, float(y), float(z))) for one in case.exits):
+            yield CaseError(
+                "exits", None, f"none takes grains at x = {high:g} m, the lower end of the row, at y = "
+                f"{y:.3g} and z = {z:.3g} m, where they would leave the water: give one, such as name = "
+                f"'outlet', point = ['{high:g} m', '0 m', '0 m'], normal = [1, 0, 0]",
+            )  # fmt: skip
+            return
+
+
+def _beyond(one: ExitSection, x: tuple[float, float, float]) -> bool:
+    """Whether a point [m] is beyond an exit that stays where it is."""
+    if one.moves_with is not None:
+        return False
+    if one.point is not None and one.normal is not None:
+        return sum(n * (a - b) for n, a, b in zip(one.normal, x, one.point, strict=True)) > 0.0
+    if one.low is None or one.high is None:
+        return False
+    return all(a <= b <= c for a, b, c in zip(one.low, x, one.high, strict=True))

@@ -1,0 +1,254 @@
+"""Grains in a row with ends, fed and leaving, from a case file: books, bits, dams, and what is refused."""
+
+import math
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import ryusa
+from ryusa.build import build
+from ryusa.casefile import explain, read_text, resolved
+from ryusa.errors import CaseError, GrainLost
+from ryusa.measure.walls import walls
+from ryusa.model.traffic import IN, OUT
+from ryusa.results import Results, schema
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "faults"))
+from campaign import differences
+
+STREAM = """
+[grains]
+diameter = "6 mm"
+density = "2650 kg/m3"
+spread = 0.1
+[contact]
+stiffness = "200 N/cm"
+restitution = 0.5
+friction_angle = "30 deg"
+[motion]
+rotation = "free"
+plane = false
+slope = "1/20"
+[water]
+profile = "column"
+depth = "2 cm"
+hindrance = "Di Felice"
+[water.column]
+bed = "rough"
+cell = "3 mm"
+[water.row]
+bottom = [["0 m", "1 cm"], ["0.2 m", "0 cm"], ["0.4 m", "0 cm"]]
+segments = 16
+width = "2.4 cm"
+upstream = { end = "discharge", discharge = "0.02 m2/s" }
+downstream = { end = "free fall" }
+[[water.row.dams]]
+name = "dam"
+begin = "0.25 m"
+end = "0.3 m"
+height = "1.5 cm"
+[build]
+kind = "stream"
+bed = "6 mm"
+walls = false
+[[feeds]]
+name = "feeder"
+low = ["2 cm", "0 cm", "4 cm"]
+high = ["8 cm", "2.4 cm", "7 cm"]
+rate = "300 grains/s"
+velocity = ["1 m/s", "0 m/s", "0 m/s"]
+[[exits]]
+name = "outlet"
+point = ["0.4 m", "0 m", "0 m"]
+normal = [1, 0, 0]
+[stop]
+time = "0.12 s"
+[record]
+frames = "10 ms"
+events = "none"
+"""
+
+
+def run(folder: Path, more: dict[str, str] | None = None, **how: Any) -> Results:
+    return ryusa.run(read_text(STREAM, more or {}), folder, progress=False, **how)
+
+
+@pytest.fixture(scope="module")
+def stream(tmp_path_factory: pytest.TempPathFactory) -> Results:
+    return run(tmp_path_factory.mktemp("stream") / "run")
+
+
+def test_grains_enter_and_leave_and_the_water_is_kept(stream: Results) -> None:
+    found, water = stream.row, stream.summary["water"]
+    assert found is not None
+    ways = stream.passages["way"]
+    assert (ways == IN).sum() > 20 and (ways == OUT).sum() > 3
+    assert water["momentum_residual"] < 1e-9
+    held = found.volume.sum(axis=1) * found.row.dx
+    assert np.abs(held - held[0] - found.passed[:, 0] + found.passed[:, -1]).max() < 1e-14
+    assert found.passed[-1, 0] == pytest.approx(0.02 * 0.12, rel=1e-2)  # a step of the water is still to come
+    assert stream.summary["energy"]["residual"] < 1e-2
+
+
+def test_all_grains_that_are_there_are_in_the_segments(stream: Results) -> None:
+    found, scene = stream.row, stream.scene
+    assert found is not None
+    row = found.row
+    solid = found.phi.sum(axis=(1, 2)) * row.column.dz * row.column.area / row.n_segment
+    volume = np.isfinite(stream.frames.x[:, :, 2]) @ (math.pi / 6.0 * scene.d**3)
+    np.testing.assert_allclose(solid[2:], volume[2:], rtol=1e-2)  # a little lies above or below all cells
+    assert found.phi.max() < 0.75
+    assert found.phi[:, 10:12, :5].max() == 0.0  # of the dam
+
+
+def test_a_run_that_was_stopped_and_two_threads_give_the_same_bits(
+    stream: Results, tmp_path: Path, stop_at: Any
+) -> None:
+    for step in (1, 901, 3000):
+        stop_at(step)
+        assert run(tmp_path / "run", resume=True).status == schema.STOPPED
+    run(tmp_path / "run", resume=True, threads=2)
+    assert differences(stream.folder, tmp_path / "run") == []
+
+
+def test_bottom_and_dam_are_walls_for_the_grains_by_their_names(stream: Results) -> None:
+    scene = stream.scene
+    assert scene.walls is not None
+    assert scene.walls.names == ("bottom", "dam")
+    found = walls(stream, begin=0.05)
+    assert found.names == ("bottom", "dam")
+    assert found.force[:, 0, 2].mean() < 0.0  # grains lie on the bottom
+    x = stream.frames.x[-1]
+    inside = (x[:, 0] > 0.253) & (x[:, 0] < 0.297) & (x[:, 2] < 0.015)
+    assert not inside.any()
+
+
+def test_check_explains_flow_dams_and_bed() -> None:
+    case = read_text(STREAM)
+    shown = {line.name: line.value for line in explain(case)}
+    assert shown["critical depth"] == pytest.approx(
+        (0.02**2 / (9.80665 * math.cos(math.atan(0.05)))) ** (1 / 3)
+    )
+    assert shown["Froude number, x = 0 to 0.2 m"] > 1.0
+    assert shown["bed at the start"] == pytest.approx(0.006)
+    assert shown["water.column.mixing_length"] == "Li-Sawamoto"
+    volume = shown["free grains"] - shown["feed 'feeder': grains"]
+    volume *= math.pi / 6.0 * 0.006**3
+    assert volume == pytest.approx(0.61 * 0.006 * 0.024 * 0.35, rel=0.1)
+    assert resolved(case)["water"]["row"]["height"] > 0.05
+    assert resolved(case)["water"]["column"]["mixing_length"] == "Li-Sawamoto"
+
+
+QUIET = {
+    "build.bed": "'1.2 cm'", "build.begin": "'3 cm'", "build.end": "'0.25 m'", "feeds": "[]", "exits": "[]",
+    "water.row.upstream": "{ end = 'wall' }", "water.row.downstream": "{ end = 'wall' }",
+    "water.row.bottom": "[['0 m', '1 cm'], ['0.2 m', '0 cm'], ['0.4 m', '-1 cm']]",
+    "water.row.surface": "[['0 m', '4 cm'], ['0.4 m', '6 cm']]", "stop.time": "'0.6 s'",
+    "rolling.model": "'spring-dashpot-slider'", "rolling.arm": "'reduced radius'",
+    "rolling.coefficient": "0.1",
+}  # fmt: skip
+
+
+def test_walls_carry_the_weight_under_water_of_grains_at_rest_behind_a_dam(tmp_path: Path) -> None:
+    """Bottom and dam together: m g less that of the water displaced, along and normal to the axis."""
+    found = ryusa.run(
+        read_text(STREAM.replace('depth = "2 cm"\n', ""), QUIET), tmp_path / "run", progress=False
+    )
+    scene = found.scene
+    assert np.abs(found.frames.v[-1]).max() < 1e-2
+    weight = float(scene.m_weight.sum()) * scene.gravity
+    total = walls(found, begin=0.4).force.sum(axis=1).mean(axis=0)
+    assert total == pytest.approx(weight, abs=0.01 * abs(weight[2]))
+    assert total[0] > 0.03 * abs(total[2])
+    assert walls(found, begin=0.4).force[:, 1, 0].mean() > 0.0  # the dam holds some of it
+    assert found.row is not None
+    assert np.abs(found.row.u[-1]).max() < 2e-2  # waves that the settling grains have made
+    assert found.row.volume[-1].sum() == pytest.approx(found.row.volume[0].sum(), rel=1e-14)
+
+
+SLIDER = {
+    "grains.density": "'7800 kg/m3'", "grains.spread": "0", "contact.friction_angle": "'11.31 deg'",
+    "contact.slip": "'total'", "motion.rotation": "'locked'", "motion.slope": "0",
+    "water.hindrance": "'none'", "water.depth": "'3.5 cm'",
+    "water.row.bottom": "[['0 m', '10 cm'], ['1 m', '0 cm']]", "water.row.segments": "30",
+    "water.row.width": "'20 cm'", "water.row.upstream": "{ end = 'discharge', discharge = '0.04 m2/s' }",
+    "water.row.downstream": "{ end = 'same depth' }", "water.row.dams": "[]", "build.bed": "'0 cm'",
+    "feeds": "[{ name = 'one', low = ['5 cm', '5 cm', '11 cm'], high = ['8 cm', '15 cm', '12 cm'], "
+    "rate = '2 grains/s', begin = '0.8 s', end = '1.3 s', velocity = ['0.5 m/s', '0 m/s', '0 m/s'] }]",
+    "exits": "[{ name = 'outlet', point = ['1 m', '0 m', '0 m'], normal = [1, 0, 0] }]",
+    "stop.time": "'1.6 s'", "record.frames": "'20 ms'",
+}  # fmt: skip
+
+
+def test_a_heavy_grain_slides_down_an_inclined_reach_as_drag_weight_and_friction_say(tmp_path: Path) -> None:
+    """Drag of the slip r takes (mu cos - sin) of the weight under water; the grain is slower by r."""
+    found = run(tmp_path / "run", SLIDER)
+    assert found.row is not None
+    row, d, alpha, x = found.row.row, 0.006, math.atan(0.1), found.frames.x[:, 0, 0]
+    there = np.flatnonzero((x > 0.6) & (x < 0.85))
+    assert len(there) > 3
+    weight = 6800.0 * math.pi / 6.0 * d**3 * 9.80665
+    holds = (math.tan(math.radians(11.31)) * math.cos(alpha) - math.sin(alpha)) * weight
+    low, high = 0.0, 5.0
+    for _ in range(60):
+        r = 0.5 * (low + high)
+        drag = 0.5 * 1000.0 * math.pi / 4.0 * d**2 * (24.0 / (r * d / 1e-6) + 0.4) * r * r
+        low, high = (low, r) if drag > holds else (r, high)
+    edges = np.clip(row.column.faces, 0.0, d)
+    slices = np.diff(edges**2 / 2.0 * d - edges**3 / 3.0)
+    slices /= slices.sum()
+    for k in there:
+        j = int(np.abs(row.x_station - x[k]).argmin())
+        u = float(slices @ found.row.u[k, j]) / math.cos(alpha)
+        v = float(found.frames.v[k, 0, 0]) / math.cos(alpha)
+        assert u > 0.6
+        assert v == pytest.approx(u - r, abs=0.03 * u)
+        assert np.hypot(*found.frames.v[k, 0, [0, 2]]) == pytest.approx(v, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("more", "key", "says"),
+    [
+        ({"exits": "[]"}, "exits", "lower end of the row"),
+        ({"exits": "[{ name = 'outlet', point = ['0.5 m', '0 m', '0 m'], normal = [1, 0, 0] }]"}, "exits",
+         "none takes grains at x = 0.4 m"),
+        ({"motion.plane": "true"}, "motion.plane", "three dimensions"),
+        ({"water.row.width": "3 mm"}, "water.row.width", "at least"),
+        ({"water.column.bed": "'moving'"}, "water.column.bed", "'rough' or 'smooth'"),
+        ({"water.column.mixing_length": "'parabolic'"}, "water.column.mixing_length", "Li-Sawamoto"),
+        ({"water.column.start": "'steady'"}, "water.column.start", "'rest'"),
+        ({"water.buoyancy": "'weight'"}, "water.buoyancy", "'stress'"),
+        ({"build.end": "'0.5 m'"}, "build.end", "must lie in the row"),
+        ({"build.bed": "'0 cm'", "feeds": "[]"}, "build.bed", "no grain"),
+        ({"exits": "[{ name = 'dam', point = ['0.4 m', '0 m', '0 m'], normal = [1, 0, 0] }]"},
+         "water.row.dams.0.name", "used twice"),
+        ({"timeline": "[{ at = '0.1 s', remove = 'dam' }]"}, "timeline.0.remove", "cannot be removed"),
+    ],
+)  # fmt: skip
+def test_what_a_stream_cannot_be_is_refused_with_its_key(more: dict[str, str], key: str, says: str) -> None:
+    with pytest.raises(CaseError) as caught:
+        build(read_text(STREAM, more))
+    faults = (caught.value, *caught.value.others)
+    assert any(one.key == key and says in one.line for one in faults), [one.line for one in faults]
+
+
+def test_a_stream_without_a_row_is_refused() -> None:
+    head, rest = STREAM.split("[water.row]")
+    text = head + rest[rest.index("[build]") :]
+    with pytest.raises(CaseError, match=r"build.kind = 'stream': needs \[water.row\]"):
+        read_text(text)
+
+
+def test_a_grain_that_leaves_the_row_beside_its_exit_stops_the_run(tmp_path: Path) -> None:
+    """It flies over the box of the exit, which reaches as high as the water can."""
+    more = {
+        "exits": "[{ name = 'outlet', low = ['0.4 m', '-1 m', '-1 m'], high = ['0.5 m', '1 m', '12 cm'] }]",
+        "feeds": "[{ name = 'jet', low = ['2 cm', '0 cm', '30 cm'], high = ['8 cm', '2.4 cm', '33 cm'], "
+        "rate = '100 grains/s', velocity = ['4 m/s', '0 m/s', '0 m/s'] }]",
+        "build.bed": "'0 cm'",
+    }
+    with pytest.raises(GrainLost, match=r"beyond the row of columns from 0 to 0\.4 m"):
+        run(tmp_path / "run", more)
