@@ -78,6 +78,7 @@ class PictureEntry:
     options : keywords, of the measure if there is one, that are options of the command.
     settled : whether the picture ignores the time up to `record.settle` by default.
     measure : name of the measure that it draws, or "".
+    drawing : of a picture of a measure, options of its own function, beside those of the measure.
     builders : kinds of `[build]` whose runs have it in their report.
     fed, clumps, grainless : as of a measure; those of a picture of a measure are the measure's.
     """
@@ -88,6 +89,7 @@ class PictureEntry:
     options: tuple[str, ...] = ()
     settled: bool = False
     measure: str = ""
+    drawing: tuple[str, ...] = ()
     builders: tuple[str, ...] = ()
     fed: bool = False
     clumps: bool = False
@@ -96,7 +98,12 @@ class PictureEntry:
     @property
     def given_as(self) -> tuple[str, ...]:
         """Options of the command, such as "--begin"."""
-        return tuple(option(keyword) for keyword in self.options)
+        return tuple(option(keyword) for keyword in (*self.options, *self.drawing))
+
+    def parted(self, given: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
+        """Keywords for the measure that it draws, and for its own function."""
+        own = {name: given[name] for name in self.drawing if name in given}
+        return {name: one for name, one in given.items() if name not in own}, own
 
 
 WINDOW = ("begin", "end")
@@ -243,11 +250,23 @@ MEASURES = (
                  "each grain that a feed brought or an exit took: time, size, speed, place; debts of feeds",
                  WINDOW, settled=True, fed=True, clumps=True, needs=("traffic",)),
     MeasureEntry("long_section", "ryusa.measure.long_section:long_section",
-                 "depth, surface, speed, Froude number and discharge along a row of columns", ("t",),
+                 "surface, bed, speed, Froude number, discharge of water and grains along a row of columns",
+                 ("t", "bed", *WINDOW),
                  fed=True, clumps=True, grainless=True, table=True, needs=("row",)),
     MeasureEntry("x_t", "ryusa.measure.long_section:depth_history",
-                 "depth, discharge and Froude number of a row of columns over distance and time", WINDOW,
+                 "depth, bed, discharge of water and grains of a row of columns over distance and time",
+                 ("bed", *WINDOW),
                  fed=True, clumps=True, grainless=True, table=True, needs=("row",)),
+    MeasureEntry("deposit", "ryusa.measure.deposit:deposit",
+                 "slope of a deposit in a row of columns, volume stored behind a dam, share that is trapped",
+                 ("dam", "reach", "bed", *WINDOW), fed=True, clumps=True,
+                 numbers=(("slope", "-"), ("stored_rate", "m2/s"), ("brought_rate", "m2/s"),
+                          ("passed_rate", "m2/s"), ("trapped_share", "-")),
+                 needs=("row", "open")),
+    MeasureEntry("front", "ryusa.measure.front:front",
+                 "front of the grains that move downstream: place and speed",
+                 WINDOW, fed=True, clumps=True,
+                 numbers=(("first_speed", "m/s"), ("front_speed", "m/s")), needs=("open",)),
 )  # fmt: skip
 
 PICTURES = (
@@ -320,11 +339,18 @@ PICTURES = (
                  "mass in by each feed and out by each exit, grain by grain, and what feeds owe",
                  WINDOW, settled=True, measure="passages", fed=True, clumps=True),
     PictureEntry("long_section", "ryusa.figures.long_section:long_section",
-                 "bottom, water, energy line and Froude number along a row of columns",
-                 ("t",), measure="long_section", fed=True, clumps=True, grainless=True),
+                 "bed, water, energy line, Froude number and transport along a row of columns",
+                 ("t", "bed", *WINDOW), measure="long_section", fed=True, clumps=True, grainless=True),
     PictureEntry("x_t", "ryusa.figures.long_section:x_t",
-                 "depth of a row of columns over distance and time", WINDOW, measure="x_t",
+                 "depth, change of the bed and transport of a row of columns over distance and time",
+                 ("bed", *WINDOW), measure="x_t", drawing=("quantity",),
                  fed=True, clumps=True, grainless=True),
+    PictureEntry("deposit", "ryusa.figures.deposit:deposit",
+                 "volume that came, went and is stored, and slope of the deposit, over time",
+                 ("dam", "reach", "bed", *WINDOW), measure="deposit", fed=True, clumps=True),
+    PictureEntry("front", "ryusa.figures.front:front",
+                 "place of the first grain and of the front over time",
+                 WINDOW, measure="front", fed=True, clumps=True),
     PictureEntry("vibration", "ryusa.figures.runs:vibration", "grains that do not come to rest",
                  ("grains", *WINDOW)),
 )  # fmt: skip

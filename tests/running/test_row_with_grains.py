@@ -17,6 +17,7 @@ from ryusa.casefile.estimate import cells_of_row
 from ryusa.engine import registry
 from ryusa.errors import CaseError, ResultsError
 from ryusa.formats.grains import table_of_frame
+from ryusa.measure.along_row import grains_along_row
 from ryusa.measure.long_section import depth_history, long_section
 from ryusa.model import RowState
 from ryusa.model.fluid import EXTRA_X
@@ -117,6 +118,7 @@ def test_its_grains_are_measured_shown_and_exported_as_those_of_one_column(reach
     assert reach.measure("transport", begin=0.0)["q_star"].value > 0.0
     data, _ = encoded(reach)
     assert data["flow"]["solved"] and data["flow"]["z"] == reach.row.row.column.z.tolist()
+    assert data["arrays"]["line"]["shape"] == [4, 6] and len(data["flow"]["x"]) == 6
     assert surfaces(reach) == pytest.approx(reach.row.surface.mean(axis=1))
     assert table_of_frame(reach, 1).bed_area == reach.row.row.column.area
     assert len(reach.measure("long_section").rows()) == 4
@@ -128,13 +130,36 @@ def test_depth_counts_from_where_grains_fall_below_half_of_packed(reach: Results
     row, column = reach.row, reach.row.row.column
     cells = 40 + 10 * np.arange(4)  # of the bed, in each segment
     phi = np.where(np.arange(column.n) < cells[:, None], column.phi_max, 0.0)
-    run = SimpleNamespace(scene=reach.scene, row=replace(row, phi=np.tile(phi, (len(row.t), 1, 1))))
+    told = replace(row, phi=np.tile(phi, (len(row.t), 1, 1)))
+    run = SimpleNamespace(scene=reach.scene, frames=reach.frames, row=told)
     one, every = long_section(run), depth_history(run)
     assert one.bed == pytest.approx(column.z_low + cells * column.dz)
     assert one.depth == pytest.approx(row.surface[-1] - one.bed)
     assert every.depth[-1] == pytest.approx(one.depth)
     assert {"bed", "floor"} <= set(one.rows()[0])
     assert (long_section(reach).bed > column.z_low + 8.0e-3).all()
+
+
+def test_grains_of_a_row_are_conserved_segment_by_segment_and_give_the_rate_of_transport(
+    reach: Results,
+) -> None:
+    row, frames = reach.row.row, np.arange(len(reach.frames))
+    held = grains_along_row(reach, row, frames)
+    gained = np.diff(held.volume, axis=0) * row.dx
+    given = np.diff(held.passed - np.roll(held.passed, -1, axis=1), axis=0)
+    assert np.abs(gained - given).max() < 1e-13 * held.volume.max() * row.dx
+    assert np.abs(gained).max() > 1e-4 * held.volume.max() * row.dx
+    q = reach.measure("transport", begin=0.0)["q"].value
+    assert held.passed[-1].mean() / reach.frames.t[-1] == pytest.approx(q, rel=1e-9)
+    found = long_section(reach, begin=0.0)
+    assert found.solid_discharge.mean() == pytest.approx(q, rel=1e-9)
+    assert (found.error["froude"] > 0.0).all() and (found.error["bed"] > 0.0).all()
+    bed, rest = found.bed, long_section(reach, begin=0.0, bed="rest").bed
+    assert (rest <= bed).all()
+    cells = reach.row.phi.sum(axis=2) * row.column.dz  # of the water, with fixed grains
+    assert np.diff(cells, axis=0) == pytest.approx(
+        np.diff(held.volume, axis=0), abs=0.05 * np.abs(gained).max() / row.dx
+    )
 
 
 def test_check_explains_bed_flow_and_segments() -> None:

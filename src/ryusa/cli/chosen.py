@@ -30,6 +30,7 @@ ALWAYS = {
 }  # arguments, and options that every measure or every picture takes
 HELP_WIDTH = 78  # of a terminal of 80 columns
 SIDES = ("right", "left")
+BEDS = ("packed", "rest")  # what ends the bed of a row of columns
 
 
 def entry_of(what: str, entries: tuple[Entry, ...], key: str) -> Entry:
@@ -119,3 +120,11 @@ def time(name: str, value: Any, _results: "Results") -> float:
 def length(name: str, value: Any, _results: "Results") -> float:
     """A length with its unit [m]."""
     return in_unit(value, "m", name)
+
+
+def reach(name: str, value: Any, _results: "Results") -> tuple[float, float]:
+    """Two places along x with their units, such as "0.5 m to 2 m" [m]."""
+    begin, between, end = str(value).partition(" to ")
+    if not between:
+        raise CaseError(name, str(value), 'must be two places with their units, such as "0.5 m to 2 m"')
+    return in_unit(begin, "m", name), in_unit(end, "m", name)

@@ -8,7 +8,7 @@ import typer
 
 from ryusa.catalogue import MEASURES, PICTURES, PictureEntry, called, load
 from ryusa.cli import chosen
-from ryusa.cli.chosen import SIDES, entry_of, keywords, listed, taking
+from ryusa.cli.chosen import BEDS, SIDES, entry_of, keywords, listed, taking
 from ryusa.cli.options import grains_of, in_unit, open_run, within, write_rows
 from ryusa.errors import CaseError, ResultsError
 
@@ -27,17 +27,49 @@ def _length(name: str, value: str, results: "Results") -> float:
 MOST = 1.0e6  # bytes of a CSV that is written unasked
 SAMPLE = 500  # rows from which its size is estimated
 COLOURS = ("speed", "spin", "none")
+QUANTITIES = ("depth", "bed", "transport")
 CHECKS: dict[str, chosen.Check] = {
     "--at": chosen.time,
+    "--bed": chosen.one_of(BEDS),
     "--begin": chosen.time,
     "--colour": chosen.one_of(COLOURS),
+    "--dam": lambda _name, value, _results: value,
     "--end": chosen.time,
     "--exaggeration": chosen.in_range(0.1, 100.0),
     "--grain": lambda _name, value, results: grains_of(value, results),
     "--lane": lambda _name, value, _results: value,
     "--length": _length,
+    "--quantity": chosen.one_of(QUANTITIES),
+    "--reach": chosen.reach,
     "--side": chosen.one_of(SIDES),
 }
+
+
+Bed = Annotated[
+    str,
+    typer.Option(help=f"{taking('bed', PICTURES)}: what ends the bed, {' grains or those at '.join(BEDS)}."),
+]
+Dam = Annotated[
+    str | None,
+    typer.Option(
+        help=f"{taking('dam', PICTURES)}: name of the dam behind which grains are stored; default the "
+        "first, or the whole row."
+    ),
+]
+Reach = Annotated[
+    str | None,
+    typer.Option(
+        help=f"{taking('reach', PICTURES)}: another reach, such as '0.5 m to 2 m', instead of that behind "
+        "a dam."
+    ),
+]
+Quantity = Annotated[
+    str | None,
+    typer.Option(
+        help=f"{taking('quantity', PICTURES)}: only one of {', '.join(QUANTITIES)}; default all that "
+        "the run has."
+    ),
+]
 
 
 def register(app: typer.Typer) -> None:
@@ -106,6 +138,10 @@ def draw(
     side: Annotated[
         str, typer.Option(help=f"{taking('side', PICTURES)}: slope of a heap, {' or '.join(SIDES)}.")
     ] = "right",
+    bed: Bed = "packed",
+    dam: Dam = None,
+    reach: Reach = None,
+    quantity: Quantity = None,
 ) -> None:
     """Draw a picture of a run, and write the numbers in it as CSV beside it.
 
@@ -160,5 +196,6 @@ def _drawn(
     """The figure and its numbers: of the measure it names, or what its own function gives."""
     if not entry.measure:
         return called(entry)(results, **given)
-    found = called(entry_of(entry.measure, MEASURES, "measure"))(results, **given)
-    return load(entry.function)(found), found.rows()
+    of_measure, own = entry.parted(given)
+    found = called(entry_of(entry.measure, MEASURES, "measure"))(results, **of_measure)
+    return load(entry.function)(found, **own), found.rows()

@@ -11,7 +11,7 @@ import typer
 
 from ryusa.catalogue import MEASURES, called
 from ryusa.cli import chosen
-from ryusa.cli.chosen import SIDES, entry_of, keywords, listed, taking
+from ryusa.cli.chosen import BEDS, SIDES, entry_of, keywords, listed, taking
 from ryusa.cli.options import in_unit, open_run, within, write_rows
 from ryusa.errors import CaseError, ResultsError
 
@@ -21,11 +21,14 @@ if TYPE_CHECKING:
 
 CHECKS: dict[str, chosen.Check] = {
     "--at": chosen.time,
+    "--bed": chosen.one_of(BEDS),
     "--begin": chosen.time,
+    "--dam": lambda _name, value, _results: value,
     "--end": chosen.time,
     "--fps": chosen.in_range(1.0, 1.0e6),
     "--material": lambda _name, value, _results: value,
     "--layer": chosen.in_range(0.01, 100.0),
+    "--reach": chosen.reach,
     "--resolution": chosen.in_range(0.001, 1.0),
     "--rise": chosen.in_range(0.0, 100.0),
     "--settle": chosen.time,
@@ -127,6 +130,25 @@ Side = Annotated[
     str, typer.Option(help=f"{taking('side', MEASURES)}: slope of a heap, {' or '.join(SIDES)}.")
 ]
 
+Bed = Annotated[
+    str,
+    typer.Option(help=f"{taking('bed', MEASURES)}: what ends the bed, {' grains or those at '.join(BEDS)}."),
+]
+Dam = Annotated[
+    str | None,
+    typer.Option(
+        help=f"{taking('dam', MEASURES)}: name of the dam behind which grains are stored; default the "
+        "first, or the whole row."
+    ),
+]
+Reach = Annotated[
+    str | None,
+    typer.Option(
+        help=f"{taking('reach', MEASURES)}: another reach, such as '0.5 m to 2 m', instead of that behind "
+        "a dam."
+    ),
+]
+
 
 def register(app: typer.Typer) -> None:
     """Add the command."""
@@ -153,6 +175,9 @@ def measure(
     at: At = None,
     side: Side = "right",
     material: Material = None,
+    bed: Bed = "packed",
+    dam: Dam = None,
+    reach: Reach = None,
 ) -> None:
     """Measure a run and print averages with standard errors, or a table; --csv writes the numbers.
 

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
         Energy,
         HeapSurface,
         KineticStress,
+        LongSection,
         Saltation,
         Sizes,
         Tracks,
@@ -175,6 +176,28 @@ def _print_sizes(found: "Sizes") -> None:
     _show(classes, "--csv FILE writes the first table, --series FILE the second")
 
 
+def _print_long_section(found: "LongSection") -> None:
+    """Print a row with grains in few columns; one without has few."""
+    if not found.grains:
+        _print_rows(found.rows())
+        return
+    heads = {
+        "x": "x [m]", "bed": "bed [m]", "surface": "surface [m]", "depth": "depth [m]",
+        "speed": "speed [m/s]", "froude": "Froude", "discharge": "q_w [m2/s]",
+        "solid_discharge": "q_s [m2/s]",
+        "transport_concentration": "q_s/q", "concentration": "c",
+    }  # fmt: skip
+    table, rows = _table(tuple(one.replace("[", "\\[") for one in heads.values())), found.rows()
+    for row in rows[:LINES]:
+        table.add_row(*(f"{row[name]:.4g}" for name in heads))
+    more = (f"the first {LINES} of {len(rows)} segments",) * (len(rows) > LINES)
+    errors = ", with standard errors" if found.error else ""
+    _show(
+        table, *more, f"--csv FILE writes all segments and columns{errors}",
+        "q_s: volume of grains per width and time; q = q_s + q_w; c: concentration between bed and surface",
+    )  # fmt: skip
+
+
 def _table(names: tuple[str, ...], left: tuple[str, ...] = ("unit",)) -> Table:
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for name in names:
@@ -191,6 +214,7 @@ def _show(table: Table, *lines: str) -> None:
 
 _OWN_FORM: dict[str, Callable[..., None]] = {
     "energy": _print_energy,
+    "long_section": _print_long_section,
     "sizes": _print_sizes,
     "stress": _print_stress,
     "surface": _print_surface,

@@ -1,26 +1,62 @@
-"""A row of columns: its long section at one moment, and depth over distance and time."""
+"""A row of columns: its long section, and what varies over distance and time."""
+
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ryusa.errors import ResultsError
 from ryusa.figures import style
 from ryusa.measure.long_section import THIN, DepthHistory, Floats, LongSection
 
 CM = 100.0  # centimetres in a metre
+CM2 = 1.0e4  # square centimetres in a square metre
 WATER, LINE, GROUND = "#0072B2", "#D55E00", "#8c6d3f"
 DASHED = (0, (5, 2))
+FAST = 6.0  # Froude number up to which its axis goes at most, that of thin films
+SHARE = 0.995  # of the values that a colour scale covers
 
 
 @style.house
 def long_section(found: LongSection) -> Figure:
-    """Draw bottom, water, energy line and critical depth by elevation, and below the Froude number.
+    """Draw bed, water, energy line and critical depth by elevation, below them Froude number and transport.
 
-    Elevations are vertical, so that water at rest is level whatever the slope of the x axis.
+    Elevations are vertical, so that water at rest is level whatever the slope of the x axis. Of means, the
+    bands are one standard error.
     """
-    figure, (above, below) = style.new(
-        2, width=style.PAGE, height=3.7, sharex=True, gridspec_kw={"height_ratios": (2.4, 1.0)}
-    )
+    panels = 3 if found.grains else 2
+    figure, axes = style.new(
+        panels, width=style.PAGE, height=3.7 if panels == 2 else 4.7, sharex=True,
+        gridspec_kw={"height_ratios": (2.4, 1.0, 1.0)[:panels]},
+    )  # fmt: skip
+    _elevations(axes[0], found)
+    x = found.x
+    axes[1].axhline(1.0, color=style.FAINT, lw=0.6)
+    axes[1].plot(x, found.froude, color=WATER)
+    _band(axes[1], found, "froude", 1.0, WATER)
+    axes[1].set_ylabel("Froude  (–)")
+    axes[1].set_ylim(0.0, min(axes[1].get_ylim()[1], FAST))
+    if found.grains:
+        axes[2].axhline(0.0, color=style.FAINT, lw=0.6)
+        axes[2].plot(x, found.solid_discharge * CM2, color=LINE)
+        _band(axes[2], found, "solid_discharge", CM2, LINE)
+        axes[2].set_ylabel("grains  $q_s$\n(cm²/s)")
+    axes[-1].set_xlabel("distance along the row  $x$  (m)")
+    axes[-1].margins(x=0.0)
+    figure.align_ylabels(axes)
+    return figure
+
+
+def _band(axes: Axes, found: LongSection, name: str, scale: float, colour: str) -> None:
+    if name in found.error:
+        mean, error = getattr(found, name) * scale, found.error[name] * scale
+        axes.fill_between(found.x, mean - error, mean + error, color=colour, alpha=0.2, lw=0.0)
+
+
+def _elevations(axes: Axes, found: LongSection) -> None:
+    """Bottom, bed, water, energy line and dams."""
     x, wet = found.x, found.depth > THIN
     bottom, floor, bed, surface, energy = (
         found.elevation(z) * CM for z in (found.bottom, found.floor, found.bed, found.surface, found.energy)
@@ -28,35 +64,31 @@ def long_section(found: LongSection) -> Figure:
     critical = found.elevation(found.bed + found.critical) * CM
     step = x[1] - x[0] if len(x) > 1 else 1.0
     low = float(np.min(bottom))
-    span = float(np.nanmax(np.concatenate([surface, energy[wet]]))) - low
-    above.fill_between(x, bottom, low - 0.12 * span, color=style.BED, lw=0.0)
-    above.fill_between(x, bottom, surface, where=wet.tolist(), color=WATER, alpha=0.22, lw=0.0)
+    highest = float(np.max(np.maximum(surface, bed)))
+    head = float(np.max(energy[wet], initial=highest))  # of thin fast films it would dwarf all else
+    span = min(head, highest + 0.5 * (highest - low)) - low
+    axes.fill_between(x, bottom, low - 0.12 * span, color=style.BED, lw=0.0)
+    axes.fill_between(x, bottom, surface, where=(surface > bottom).tolist(), color=WATER, alpha=0.22, lw=0.0)
     if (loose := found.bed > found.floor).any():
-        above.fill_between(x, floor, bed, where=loose.tolist(), color=GROUND, alpha=0.6, lw=0.0)
-        above.plot(x, bed, color=GROUND, lw=0.9, label="bed")
+        axes.fill_between(x, floor, bed, where=loose.tolist(), color=GROUND, alpha=0.6, lw=0.0)
+        axes.plot(x, np.where(loose, bed, np.nan), color=GROUND, lw=0.9, label="bed")
     for name, first, end in found.dams:
-        _dam(above, name, first, end, x, step, bottom, floor)
-    above.plot(x, bottom, color="#5a4a2f", lw=0.9)
-    above.plot(x, np.where(wet, surface, np.nan), color=WATER, lw=1.2, label="surface")
-    above.plot(x, np.where(wet, energy, np.nan), color=LINE, lw=0.8, ls=DASHED, label="energy line")
+        _dam(axes, name, first, end, x, step, bottom, floor)
+    axes.plot(x, bottom, color="#5a4a2f", lw=0.9)
+    axes.plot(x, np.where(surface > floor, surface, np.nan), color=WATER, lw=1.2, label="surface")
+    axes.plot(x, np.where(wet, energy, np.nan), color=LINE, lw=0.8, ls=DASHED, label="energy line")
     steps = np.flatnonzero(np.diff(floor - bottom) != 0.0) + 1  # the critical depth is over the floor
     flows = np.where(wet & (found.critical > THIN), critical, np.nan)
     for k, (at, part) in enumerate(zip(np.split(x, steps), np.split(flows, steps), strict=True)):
-        above.plot(at, part, color="black", lw=0.7, ls=":", label="critical depth" if k == 0 else None)
-    above.set_ylabel("elevation  (cm)")
-    above.set_ylim(low - 0.12 * span, low + 1.12 * span)
-    above.legend(loc="upper right", ncols=4, fontsize=6.5)
-    above.annotate(
-        f"t = {found.t:.4g} s", (0, 1), (4, -4), xycoords="axes fraction", textcoords="offset points",
-        va="top", fontsize=7.0,
+        axes.plot(at, part, color="black", lw=0.7, ls=":", label="critical depth" if k == 0 else None)
+    axes.set_ylabel("elevation  (cm)")
+    axes.set_ylim(low - 0.12 * span, low + 1.25 * span)
+    axes.legend(loc="upper right", ncols=4, fontsize=6.5)
+    begin = "" if found.window is None else f"mean of {found.window[0]:.4g} s to "
+    axes.annotate(
+        f"{begin}{'' if begin else 't = '}{found.t:.4g} s", (0, 1), (4, -4), xycoords="axes fraction",
+        textcoords="offset points", va="top", fontsize=7.0,
     )  # fmt: skip
-    below.axhline(1.0, color=style.FAINT, lw=0.6)
-    below.plot(x, found.froude, color=WATER)
-    below.set_ylabel("Froude  (–)")
-    below.set_ylim(bottom=0.0)
-    below.set_xlabel("distance along the row  $x$  (m)")
-    below.margins(x=0.0)
-    return figure
 
 
 def _dam(
@@ -65,34 +97,83 @@ def _dam(
     """Draw a dam with its name; one that lets water through as a shade."""
     inside = (x > first) & (x < end)
     low, top = bottom[inside], floor[inside]
-    solid = bool((top > low).any())
-    if solid:
+    if (top > low).any():
         sides = np.column_stack([x[inside] - 0.5 * step, x[inside] + 0.5 * step]).ravel()
         axes.fill_between(sides, np.repeat(low, 2), np.repeat(top, 2), color=GROUND, lw=0.0, zorder=3)
     else:
         axes.axvspan(first, end, color=GROUND, alpha=0.25, lw=0.0)
     axes.annotate(
-        name, (0.5 * (first + end), float(low.min())), (0, 2), textcoords="offset points", ha="center",
-        va="bottom", fontsize=6.2, color="white" if solid else "black", zorder=4,
+        name, (0.5 * (first + end), float(low.min())), (0, -2), textcoords="offset points", ha="center",
+        va="top", fontsize=6.2, zorder=4,
     )  # fmt: skip
 
 
 @style.house
-def x_t(found: DepthHistory) -> Figure:
-    """Draw depth over distance and time; a line marks where the flow is critical."""
-    figure, (axes,) = style.new(width=4.8, height=3.4)
+def x_t(found: DepthHistory, quantity: str | None = None) -> Figure:
+    """Draw depth over distance and time, and with grains the change of the bed and their transport.
+
+    Parameters
+    ----------
+    found : a history.
+    quantity : only "depth", with a line where the flow is critical, "bed" or "transport"; default all.
+
+    Raises
+    ------
+    ResultsError : there are no grains whose bed or transport could be drawn.
+    """
+    if quantity not in {None, "depth"} and not found.grains:
+        raise ResultsError(f"the run has water alone; --quantity {quantity} needs grains")
+    shown = (quantity,) if quantity else ("depth", "bed", "transport")[: 3 if found.grains else 1]
+    wide = 4.8 if len(shown) == 1 else style.PAGE
+    figure, axes = style.new(1, len(shown), width=wide, height=3.4, sharey=True)
+    draw = {"depth": _depth, "bed": _bed_change, "transport": _transport}
+    for one, panel in zip(shown, axes, strict=True):
+        draw[one](figure, panel, found, "right" if len(shown) == 1 else "top")
+        for _, first, end in found.dams:
+            panel.axvspan(first, end, ymax=0.02, color=GROUND, lw=0.0)
+        panel.set_xlabel("distance along the row  $x$  (m)" if len(shown) == 1 else "$x$  (m)")
+    axes[0].set_ylabel("time  $t$  (s)")
+    return figure
+
+
+def _map(
+    figure: Figure, axes: Axes, found: DepthHistory, values: Floats, label: str, side: Any, **how: Any
+) -> None:
+    """Colours over distance and time with their scale."""
+    drawn = axes.pcolormesh(found.x, found.t, values, shading="nearest", rasterized=True, **how)
+    low, high = drawn.get_clim()
+    known, slack = values[np.isfinite(values)], 1.0e-6 * (high - low)
+    beyond = bool((known < low - slack).any()), bool((known > high + slack).any())
+    extend = ("neither", "max", "min", "both")[2 * beyond[0] + beyond[1]]
+    figure.colorbar(drawn, ax=axes, label=label, pad=0.02, location=side, extend=extend)
+
+
+def _depth(figure: Figure, axes: Axes, found: DepthHistory, side: str) -> None:
     shown = np.where(found.depth > THIN, found.depth, np.nan) * CM
-    drawn = axes.pcolormesh(
-        found.x, found.t, shown, cmap="Blues", vmin=0.0, shading="nearest", rasterized=True
-    )
-    figure.colorbar(drawn, ax=axes, label="depth  (cm)", pad=0.02)
+    _map(figure, axes, found, shown, "depth  (cm)", side, cmap="Blues", vmin=0.0)
     filled = np.nan_to_num(found.froude)
-    if len(found.t) > 1 and filled.min() < 1.0 < filled.max():
+    if len(found.t) > 1 and len(found.x) > 1 and filled.min() < 1.0 < filled.max():
         axes.contour(found.x, found.t, filled, levels=[1.0], colors=LINE, linewidths=0.8)
         axes.plot([], [], color=LINE, lw=0.8, label="Froude number 1")
         axes.legend(loc="upper left", fontsize=6.5, frameon=True, framealpha=0.9, edgecolor="none")
-    for _, first, end in found.dams:
-        axes.axvspan(first, end, ymax=0.02, color=GROUND, lw=0.0)
-    axes.set_xlabel("distance along the row  $x$  (m)")
-    axes.set_ylabel("time  $t$  (s)")
-    return figure
+
+
+def _bed_change(figure: Figure, axes: Axes, found: DepthHistory, side: str) -> None:
+    shown = found.bed_change * CM
+    most = _most(shown)
+    label = "rise of the bed  (cm)"
+    _map(figure, axes, found, shown, label, side, cmap="BrBG_r", vmin=-most, vmax=most)
+
+
+def _transport(figure: Figure, axes: Axes, found: DepthHistory, side: str) -> None:
+    shown = found.solid_discharge * CM2
+    most = _most(shown)
+    label = "grains  $q_s$  (cm²/s)"
+    _map(figure, axes, found, shown, label, side, cmap="YlOrBr", vmin=0.0, vmax=most)
+
+
+def _most(values: Floats | Sequence[float]) -> float:
+    """What all but a few values do not exceed, without their sign; 1 where there are none."""
+    known = np.abs(np.asarray(values))
+    known = known[np.isfinite(known)]
+    return float(np.quantile(known, SHARE)) or 1.0 if len(known) else 1.0

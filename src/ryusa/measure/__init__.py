@@ -5,12 +5,15 @@ from ryusa.measure.apparent_contact import ApparentContact, apparent_contact
 from ryusa.measure.collisions import Collisions, ContactTimes, collisions, contact_times, turned_time
 from ryusa.measure.cone import Cone, cone
 from ryusa.measure.contact_network import ContactNetwork, contact_network
+from ryusa.measure.deposit import Deposit, deposit
 from ryusa.measure.direct_shear import DirectShear, direct_shear
 from ryusa.measure.discharge import Discharge, discharge
 from ryusa.measure.dynamic_angle import DynamicAngle, dynamic_angle
 from ryusa.measure.energy import Energy, energy
 from ryusa.measure.entrainment import Entrainment, entrainment
 from ryusa.measure.formulae import FormulaCurve, classical
+from ryusa.measure.front import Front, front
+from ryusa.measure.long_section import DepthHistory, LongSection, depth_history, long_section
 from ryusa.measure.mill import Mill, mill
 from ryusa.measure.passages import Passages, passages
 from ryusa.measure.paths import Alternating, Paths, alternating, paths
@@ -47,15 +50,19 @@ __all__ = [
     "Cone",
     "ContactNetwork",
     "ContactTimes",
+    "Deposit",
+    "DepthHistory",
     "DirectShear",
     "Discharge",
     "DynamicAngle",
     "Energy",
     "Entrainment",
     "FormulaCurve",
+    "Front",
     "HeapSurface",
     "KineticStress",
     "Layers",
+    "LongSection",
     "Mill",
     "Passages",
     "Paths",
@@ -83,14 +90,18 @@ __all__ = [
     "cone",
     "contact_network",
     "contact_times",
+    "deposit",
+    "depth_history",
     "direct_shear",
     "discharge",
     "dynamic_angle",
     "energy",
     "entrainment",
     "farthest",
+    "front",
     "grouping",
     "kinetic_stress",
+    "long_section",
     "mill",
     "passages",
     "paths",

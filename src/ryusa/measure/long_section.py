@@ -1,44 +1,61 @@
-"""Water along a row of columns: at one moment, and its depth over distance and time."""
+"""Water and grains along a row of columns: at one moment or as means, and over distance and time."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.errors import ResultsError
-from ryusa.laws.families import BedKind
 from ryusa.measure._run import Run
+from ryusa.measure.along_row import grains_along_row, moving_in_row
 from ryusa.measure.snapshot import scene_at
+from ryusa.measure.statistics import standard_errors
 from ryusa.measure.water import HALF, averaged_over_grain, height_reached
 from ryusa.model import ColumnRow
 from ryusa.model.row import EndKind
 from ryusa.results.row import RowFrames
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bed = Literal["packed", "rest"]
 THIN = 1.0e-6  # depth below which a segment counts as dry [m]
+_WATER = (
+    "x", "bottom", "floor", "bed", "surface", "depth", "speed", "froude", "discharge", "critical", "energy",
+    "tau",
+)  # fmt: skip
+_GRAINS = ("volume", "solid_discharge", "transport_concentration", "concentration")
 
 
 @dataclass(frozen=True)
 class LongSection:
-    """Water of a row at one moment, by segment; arrays of shape (n_segment,).
+    """Water and grains of a row by segment, at one moment or as means; arrays of shape (n_segment,).
 
     Attributes
     ----------
-    t : time of the frame [s].
+    t : time of the frame, or of the last one of the window [s].
     slope : of the x axis, positive where it falls downstream [rad].
     x : middles of the segments [m].
     bottom, floor : height of the bottom, and of it with the dams that let no water through [m].
-    bed : height of the top of the loose bed [m], as in `measure.water`; the floor without one.
+    bed : height of the top of the bed of grains [m], see `long_section`; the floor without one.
     surface : height of the surface [m]; the floor where it is dry.
     depth : from the bed to the surface [m]; 0 where the surface lies in the bed.
-    discharge : mean of both ends of a segment [m2/s].
-    speed : discharge over depth [m/s]; nan where it is dry.
+    discharge : of water, mean of both ends of a segment [m2/s].
+    speed : of water and grains, the discharge of both over the depth [m/s]; nan where it is dry.
     froude : speed over that of a long wave, sqrt(g_z depth) [-].
-    critical : critical depth of the discharge [m].
+    critical : critical depth of the discharge of both [m].
     energy : height of the energy line, surface + speed**2/(2 g) [m].
     tau : shear stress at the bottom, mean of both ends [Pa].
     dams : name, first and last x [m] of each.
+    volume : of free grains per area, with pores left out [m]; 0 in a run without, and so the following.
+    solid_discharge : q_s, volume of grains per width and time, mean of both ends [m2/s].
+    transport_concentration : q_s/(q_s + q_w), the concentration averaged over the discharge [-]; nan where
+        nothing flows.
+    concentration : of grains between bed and surface, averaged over the cross-section [-]; nan where dry.
+    window : begin and end of the means [s]; None for one moment.
+    error : standard errors of the means by name, in their unit; empty for one moment.
+    grains : whether there are free grains.
     """
 
     t: float
@@ -56,77 +73,182 @@ class LongSection:
     energy: Floats
     tau: Floats
     dams: tuple[tuple[str, float, float], ...]
+    volume: Floats
+    solid_discharge: Floats
+    transport_concentration: Floats
+    concentration: Floats
+    window: tuple[float, float] | None = None
+    error: dict[str, Floats] = field(default_factory=dict[str, Floats])
+    grains: bool = False
 
     def elevation(self, z: Floats) -> Floats:
         """Vertical height of points at the heights z normal to the x axis [m]; 0 at the origin."""
         return z * math.cos(self.slope) - self.x * math.sin(self.slope)
 
     def rows(self) -> list[dict[str, object]]:
-        """One line for each segment."""
-        names = (
-            "x", "bottom", "floor", "bed", "surface", "depth", "speed", "froude", "discharge", "critical",
-            "energy", "tau",
-        )  # fmt: skip
-        table = [getattr(self, name).tolist() for name in names]
-        return [dict(zip(names, one, strict=True)) for one in zip(*table, strict=True)]
+        """One line for each segment; the error of a mean is beside it."""
+        names = (*_WATER, *_GRAINS) if self.grains else _WATER
+        columns: dict[str, list[float]] = {}
+        for name in names:
+            columns[name] = getattr(self, name).tolist()
+            if name in self.error:
+                columns[f"{name}_error"] = self.error[name].tolist()
+        return [dict(zip(columns, one, strict=True)) for one in zip(*columns.values(), strict=True)]
 
 
-def long_section(run: Run, t: float | None = None) -> LongSection:
-    """Find the water along a row of columns.
+def long_section(
+    run: Run,
+    t: float | None = None,
+    bed: Bed = "packed",
+    begin: float = -math.inf,
+    end: float = math.inf,
+) -> LongSection:
+    """Find water and grains along a row of columns.
 
     Parameters
     ----------
     run : its water is a row of columns.
     t : time [s]; that of the frame nearest to it, the last one when not given.
+    bed : what ends the bed, going down from the surface: "packed", where the concentration, averaged over the
+        height of a grain, reaches half of `water.column.packed`, as in `measure.water`; "rest", where that of
+        the grains slower than 0.1 sqrt(g d) does. They differ in a flow as dense as a debris flow.
+    begin, end : window of means [s], instead of one moment.
 
     Raises
     ------
-    ResultsError : the run has no row of columns, or no frame.
+    ResultsError : the run has no row of columns, no frame, fewer than two in the window, or a moment and a
+        window are both given.
+
+    Notes
+    -----
+    In a window, discharges are what passed a station from its first to its last frame over the time, and what
+    follows from two quantities, such as the Froude number, follows from their means; its error is to first
+    order that of the mean of its linear part. At one moment the discharge of grains is that by their speeds.
     """
     found = row_of(run)
-    k = len(found.t) - 1 if t is None else int(np.argmin(np.abs(found.t - t)))
-    row = found.row
-    g_x, _, minus_g_z = np.asarray(scene_at(run, float(found.t[k])).gravity).tolist()
-    g_z = -minus_g_z
-    through, (bed,) = _between(row.periodic, found.discharge[k]), _beds(run, found, np.array([k]))
-    depth = np.maximum(found.surface[k] - bed, 0.0)
-    stress = found.tau[k].copy()
-    if row.upstream is not None and row.upstream.kind is EndKind.DISCHARGE:
-        stress[0] = stress[1]  # the speeds of an inlet are given, so that no stress is solved for
-    wet = depth > THIN
-    speed = np.divide(through, depth, out=np.full(len(depth), math.nan), where=wet)
-    wave = np.sqrt(g_z * np.maximum(depth, 0.0))
+    if math.isinf(begin) and math.isinf(end):
+        k = len(found.t) - 1 if t is None else int(np.argmin(np.abs(found.t - t)))
+        return _section(run, found, np.array([k]), bed)
+    if t is not None:
+        raise ResultsError("give a moment or a window of means, not both")
+    frames = np.flatnonzero((found.t >= begin) & (found.t <= end))
+    if len(frames) < 2:
+        raise ResultsError(f"{len(frames)} frames from {begin:g} to {end:g} s: means need two or more")
+    return _section(run, found, frames, bed)
+
+
+def _section(run: Run, found: RowFrames, frames: Ints, bed: Bed) -> LongSection:
+    """The section at one frame, or means over several."""
+    row, now = found.row, float(found.t[frames[-1]])
+    g_x, _, minus_g_z = np.asarray(scene_at(run, now).gravity).tolist()
+    g_z, g = -minus_g_z, math.hypot(g_x, minus_g_z)
+    series = _series(run, found, frames, bed)
+    means = {name: one.mean(axis=0) for name, one in series.items()}
+    depth, through = means["depth"], means["discharge"] + means["solid_discharge"]
+    wet, all_above = depth > THIN, means["above"] + means["over"]
+    speed = _over(through, depth, wet)
+    froude = _over(np.abs(speed), np.sqrt(g_z * depth), wet)
+    moved = np.abs(means["discharge"]) + np.abs(means["solid_discharge"]) > 0.0
+    carried = _over(means["solid_discharge"], through, moved)
+    errors: dict[str, Floats] = {}
+    if len(frames) > 1:
+        errors = {name: standard_errors(one) for name, one in series.items() if name not in _PARTS}
+        errors |= _errors_of_ratios(series, means, carried, wet, g_z, g)
     return LongSection(
-        t=float(found.t[k]),
+        t=now,
         slope=math.atan2(g_x, g_z),
         x=row.x,
         bottom=np.array(row.bottom),
         floor=found.floor,
-        bed=bed,
-        surface=found.surface[k],
+        bed=means["bed"],
+        surface=means["surface"],
         depth=depth,
-        discharge=through,
+        discharge=means["discharge"],
         speed=speed,
-        froude=np.divide(np.abs(speed), wave, out=np.full(len(depth), math.nan), where=wet),
+        froude=froude,
         critical=np.cbrt(through**2 / g_z),
-        energy=found.surface[k] + speed**2 / (2.0 * math.hypot(g_x, g_z)),
-        tau=_between(row.periodic, stress),
+        energy=means["surface"] + speed**2 / (2.0 * g),
+        tau=means["tau"],
         dams=_dams(row),
+        volume=means["volume"],
+        solid_discharge=means["solid_discharge"],
+        transport_concentration=carried,
+        concentration=_over(means["above"], all_above, wet & (all_above > 0.0)),
+        window=(float(found.t[frames[0]]), now) if len(frames) > 1 else None,
+        error=errors,
+        grains=bool(run.scene.n_grain),
     )
+
+
+_PARTS = ("above", "over")  # of the series: grains and water above the bed, per area [m]
+
+
+def _series(run: Run, found: RowFrames, frames: Ints, bed: Bed) -> dict[str, Floats]:
+    """Quantities at some frames, of discharges between them; arrays (n_frame, n_segment) by name."""
+    row = found.row
+    stress = found.tau[frames].copy()
+    if row.upstream is not None and row.upstream.kind is EndKind.DISCHARGE:
+        stress[:, 0] = stress[:, 1]  # the speeds of an inlet are given, so that no stress is solved for
+    beds, surface = bed_line(run, found, frames, bed), found.surface[frames]
+    grains, water = _above(found, frames, beds)
+    volume, solid = np.zeros(surface.shape), np.zeros((max(len(frames) - 1, 1), row.n_segment))
+    dt = np.diff(found.t[frames])[:, None]
+    through = np.diff(found.passed[frames], axis=0) / dt if len(frames) > 1 else found.discharge[frames]
+    if run.scene.n_grain:
+        held = grains_along_row(run, row, frames)
+        volume = held.volume
+        solid = _between(
+            row.periodic, np.diff(held.passed, axis=0) / dt if len(frames) > 1 else held.flux
+        )  # fmt: skip
+    weights = dt / dt.mean() if len(frames) > 1 else 1.0  # their plain mean is that over time
+    return {
+        "bed": beds, "surface": surface, "depth": np.maximum(surface - beds, 0.0),
+        "discharge": weights * _between(row.periodic, through), "tau": _between(row.periodic, stress),
+        "volume": volume, "solid_discharge": weights * solid, "above": grains, "over": water,
+    }  # fmt: skip
+
+
+def _errors_of_ratios(
+    series: dict[str, Floats], means: dict[str, Floats], carried: Floats, wet: NDArray[np.bool_], g_z: float,
+    g: float,
+) -> dict[str, Floats]:  # fmt: skip
+    """Standard errors of what follows from two means, to first order; nan where it is dry."""
+    n = len(series["discharge"])
+    after = {name: one if len(one) == n else 0.5 * (one[1:] + one[:-1]) for name, one in series.items()}
+    both = after["discharge"] + after["solid_discharge"]
+    mean = means["discharge"] + means["solid_discharge"]
+    thick, all_above = np.where(wet, means["depth"], math.nan), means["above"] + means["over"]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        share, deeper, speed = both / mean, after["depth"] / thick, mean / thick
+        held = means["above"] / all_above
+        solid = after["solid_discharge"] - carried * both
+        grains = after["above"] - held * (after["above"] + after["over"])
+        return {
+            "speed": standard_errors((share - deeper) * speed),
+            "froude": standard_errors(share - 1.5 * deeper) * np.abs(speed) / np.sqrt(g_z * thick),
+            "critical": standard_errors(share) * np.cbrt(mean**2 / g_z) * 2.0 / 3.0,
+            "energy": standard_errors(after["surface"] + (share - deeper) * speed**2 / g),
+            "transport_concentration": standard_errors(solid / mean),
+            "concentration": standard_errors(grains / np.where(wet, all_above, math.nan)),
+        }
 
 
 @dataclass(frozen=True)
 class DepthHistory:
-    """Depth of a row over distance and time; arrays of shape (n_frame, n_segment).
+    """A row over distance and time; arrays of shape (n_frame, n_segment).
 
     Attributes
     ----------
     t : times of the frames [s], shape (n_frame,).
     x : middles of the segments [m], shape (n_segment,).
     depth : from the bed to the surface [m], as in `LongSection`.
-    discharge : mean of both ends of a segment [m2/s].
+    discharge : of water, mean of both ends of a segment [m2/s].
     froude : Froude number [-]; nan where it is dry.
     dams : name, first and last x [m] of each.
+    bed : height of the bed [m].
+    volume : of free grains per area [m]; 0 in a run without.
+    solid_discharge : of grains since the frame before, mean of both ends [m2/s]; nan in the first.
+    grains : whether there are free grains.
     """
 
     t: Floats
@@ -135,6 +257,15 @@ class DepthHistory:
     discharge: Floats
     froude: Floats
     dams: tuple[tuple[str, float, float], ...]
+    bed: Floats
+    volume: Floats
+    solid_discharge: Floats
+    grains: bool = False
+
+    @property
+    def bed_change(self) -> Floats:
+        """Rise of the bed since the first of the frames [m]."""
+        return self.bed - self.bed[0]
 
     def rows(self) -> list[dict[str, object]]:
         """One line for each frame and segment."""
@@ -143,33 +274,47 @@ class DepthHistory:
             "t": np.repeat(self.t, m), "x": np.tile(self.x, n), "depth": self.depth.ravel(),
             "discharge": self.discharge.ravel(), "froude": self.froude.ravel(),
         }  # fmt: skip
+        if self.grains:
+            columns |= {
+                "bed": self.bed.ravel(), "bed_change": self.bed_change.ravel(),
+                "volume": self.volume.ravel(), "solid_discharge": self.solid_discharge.ravel(),
+            }  # fmt: skip
         values = [one.tolist() for one in columns.values()]
         return [dict(zip(columns, one, strict=True)) for one in zip(*values, strict=True)]
 
 
-def depth_history(run: Run, begin: float = 0.0, end: float = math.inf) -> DepthHistory:
-    """Find depth and Froude number of a row of columns over distance and time.
+def depth_history(run: Run, begin: float = 0.0, end: float = math.inf, bed: Bed = "packed") -> DepthHistory:
+    """Find depth, bed and discharges of a row of columns over distance and time.
 
     Parameters
     ----------
     run : its water is a row of columns.
     begin, end : window [s].
+    bed : what ends the bed, as in `long_section`.
 
     Raises
     ------
     ResultsError : the run has no row of columns, or no frame in the window.
     """
     found = row_of(run)
-    row, shown = found.row, (found.t >= begin) & (found.t <= end)
-    if not shown.any():
+    row, frames = found.row, np.flatnonzero((found.t >= begin) & (found.t <= end))
+    if not len(frames):
         raise ResultsError(f"the run has no frame from {begin:g} to {end:g} s")
-    beds = _beds(run, found, np.flatnonzero(shown))
-    depth = np.maximum(found.surface[shown] - beds, 0.0)
-    through = _between(row.periodic, found.discharge[shown])
+    beds = bed_line(run, found, frames, bed)
+    depth = np.maximum(found.surface[frames] - beds, 0.0)
+    through = _between(row.periodic, found.discharge[frames])
+    volume, solid = np.zeros(depth.shape), np.zeros(depth.shape)
+    if run.scene.n_grain:
+        held = grains_along_row(run, row, frames)
+        volume, solid = held.volume, np.full(depth.shape, math.nan)
+        rate = np.diff(held.passed, axis=0) / np.diff(found.t[frames])[:, None]
+        solid[1:] = _between(row.periodic, rate)
     thick = np.where(depth > THIN, depth, math.nan)
+    both = np.abs(through + np.nan_to_num(solid))
     return DepthHistory(
-        found.t[shown], row.x, depth, through, np.abs(through) / np.sqrt(row.g_z * thick**3), _dams(row)
-    )
+        found.t[frames], row.x, depth, through, both / np.sqrt(row.g_z * thick**3), _dams(row), beds,
+        volume, solid, bool(run.scene.n_grain),
+    )  # fmt: skip
 
 
 def row_of(run: Run) -> RowFrames:
@@ -187,19 +332,47 @@ def row_of(run: Run) -> RowFrames:
     return found
 
 
-def _beds(run: Run, found: RowFrames, frames: NDArray[np.int64]) -> Floats:
-    """Height of the loose bed in some frames, or of the floor without one [m], shape (n_frame, n_segment)."""
+def bed_line(run: Run, found: RowFrames, frames: Ints, bed: Bed) -> Floats:
+    """Height of the bed of grains in some frames, or of the floor without one [m], (n_frame, n_segment)."""
     floors = np.tile(found.floor, (len(frames), 1))
     column = found.row.column
-    if not run.scene.n_grain or column.bed != BedKind.MOVING:
+    if not run.scene.n_grain:
         return floors
     cells, least = run.scene.d_mean / column.dz, HALF * column.phi_max
     for m, k in enumerate(frames.tolist()):
+        phi = _grains_in_cells(found, k)
+        if bed == "rest":
+            phi = phi - moving_in_row(run, found, k)
         for i, bottom in enumerate(found.row.bottom.tolist()):
-            even = averaged_over_grain(found.phi[k, i], cells)
-            top = height_reached(column.z - column.z_low + bottom, even, least)
+            top = height_reached(
+                column.z - column.z_low + bottom, averaged_over_grain(phi[i], cells), least
+            )  # fmt: skip
             floors[m, i] = max(floors[m, i], top) if math.isfinite(top) else floors[m, i]
     return floors
+
+
+def _grains_in_cells(found: RowFrames, k: int) -> Floats:
+    """Concentration of grains in frame k, without the matter of dams that let water through [-]."""
+    solid = found.row.porous
+    return found.phi[k] if solid is None else found.phi[k] - solid.phi
+
+
+def _above(found: RowFrames, frames: Ints, beds: Floats) -> tuple[Floats, Floats]:
+    """Grains and water between bed and surface, per area [m], shape (n_frame, n_segment) each."""
+    row, dz = found.row, found.row.column.dz
+    low = row.bottom[:, None] + np.arange(row.column.n) * dz
+    grains, water = np.zeros(beds.shape), np.zeros(beds.shape)
+    for m, k in enumerate(frames.tolist()):
+        share = np.clip((low + dz - beds[m][:, None]) / dz, 0.0, 1.0)
+        wet = np.clip((found.surface[k][:, None] - low) / dz, 0.0, 1.0)
+        grains[m] = (_grains_in_cells(found, k) * dz * np.minimum(share, wet)).sum(axis=1)
+        water[m] = (found.content[k] * share).sum(axis=1)
+    return grains, water
+
+
+def _over(above: Floats, below: Floats, where: NDArray[np.bool_]) -> Floats:
+    """A quotient; nan elsewhere."""
+    return np.divide(above, below, out=np.full(len(below), math.nan), where=where)
 
 
 def _dams(row: ColumnRow) -> tuple[tuple[str, float, float], ...]:

@@ -102,7 +102,8 @@ def drawn(results: "Results", name: str, options: dict[str, Any]) -> "Figure":
     entry = _entry(name, PICTURES, "picture")
     if not entry.measure:
         return called(entry)(results, **options)[0]
-    return load(entry.function)(measured(results, entry.measure, options))
+    of_measure, own = entry.parted(options)
+    return load(entry.function)(measured(results, entry.measure, of_measure), **own)
 
 
 def view_of(results: "Results", options: dict[str, Any]) -> Page:

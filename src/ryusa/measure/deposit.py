@@ -1,0 +1,202 @@
+"""A deposit in a row of columns over time: its slope, what is stored, and the share that is trapped."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ryusa.errors import ResultsError
+from ryusa.measure._run import Floats, Run
+from ryusa.measure.along_row import volumes_of_heads
+from ryusa.measure.long_section import Bed, bed_line, row_of
+from ryusa.measure.snapshot import scene_at
+from ryusa.measure.statistics import average, ratio, standard_error
+from ryusa.measure.table import Averaged, Averages
+from ryusa.model import ColumnRow
+from ryusa.model.traffic import IN, OUT
+from ryusa.spelling import nearest_word
+
+FEWEST = 3  # segments with a bed to which a line is fitted
+
+
+@dataclass(frozen=True)
+class Deposit(Averaged):
+    """Grains in a reach of a row and the line of their bed at each frame; arrays of shape (n_frame,).
+
+    Attributes
+    ----------
+    t : times of the frames [s].
+    reach : its begin and end along x [m].
+    fitted : the part over which the line is fitted [m]: to the upstream face of the dam.
+    slope : of the line of least squares through the bed, fall over horizontal distance [-]; nan with fewer
+        than three segments that have a bed.
+    slope_error : its standard error by the scatter of the bed about it [-].
+    held : volume of grains in the reach per width [m2].
+    stored : the same less that in the first frame.
+    brought : volume per width that came over the upstream end of the reach or by feeds within it, since then.
+    passed : that went over the downstream end or by exits within it.
+    trapped : stored over brought [-]; nan where nothing was brought.
+    unaccounted : grains in the frame less those that feeds and exits have left there [m2]; round-off.
+    averages : of the slope, of the rates of these volumes, and of the trapped share over the window.
+    """
+
+    t: Floats
+    reach: tuple[float, float]
+    fitted: tuple[float, float]
+    slope: Floats
+    slope_error: Floats
+    held: Floats
+    stored: Floats
+    brought: Floats
+    passed: Floats
+    trapped: Floats
+    unaccounted: Floats
+    averages: Averages
+
+    def rows(self) -> list[dict[str, object]]:
+        """One line for each frame."""
+        columns = {
+            "t_s": self.t, "slope": self.slope, "slope_error": self.slope_error, "held_m2": self.held,
+            "stored_m2": self.stored, "brought_m2": self.brought, "passed_m2": self.passed,
+            "trapped": self.trapped, "unaccounted_m2": self.unaccounted,
+        }  # fmt: skip
+        values = [one.tolist() for one in columns.values()]
+        return [dict(zip(columns, one, strict=True)) for one in zip(*values, strict=True)]
+
+
+def deposit(
+    run: Run,
+    begin: float = 0.0,
+    end: float = math.inf,
+    dam: str | None = None,
+    reach: tuple[float, float] | None = None,
+    bed: Bed = "packed",
+) -> Deposit:
+    """Slope of a deposit, volume stored in a reach, and the share of what came that is trapped there.
+
+    Parameters
+    ----------
+    run : its water is a row of columns with ends, and it has free grains.
+    begin, end : window [s]; volumes count from its first frame.
+    dam : name of a dam: the reach goes from the begin of the row to its downstream face. Default the first
+        dam of the row; without one the whole row.
+    reach : begin and end of another reach [m].
+    bed : what ends the bed, as in `long_section`.
+
+    Raises
+    ------
+    ResultsError : no such row, dam or reach, a periodic row, no grains, or fewer than two frames.
+
+    Notes
+    -----
+    A grain is where its centre is. Volumes leave pores out. stored = brought - passed at every frame, to
+    round-off: what passes is counted from frame to frame with the places at which grains came and left. The
+    line is that of least squares through the bed of the segments in the reach that have one; the error of
+    its slope allows for bed heights that are correlated along x (`standard_error`).
+    """
+    found = row_of(run)
+    row, times = found.row, found.t
+    if row.periodic or not run.scene.n_grain:
+        raise ResultsError("needs free grains in a row of columns with ends; a period stores nothing")
+    low, high, face = _reach(row, dam, reach)
+    frames = np.flatnonzero((times >= begin) & (times <= end))
+    if len(frames) < 2:
+        raise ResultsError(f"{len(frames)} frames from {begin:g} to {end:g} s: rates need two or more")
+    t = times[frames]
+    width = row.column.area / (row.n_segment * row.dx)
+    beyond, came, gone = _volumes(run, frames, (-math.inf, low, high))
+    over = (beyond - beyond[0] - (came - gone)) / width  # -inf, low and high: passed each since the begin
+    held = (beyond[:, 1] - beyond[:, 2]) / width
+    brought = over[:, 1] + (came[:, 1] - came[:, 2]) / width
+    passed = over[:, 2] + (gone[:, 1] - gone[:, 2]) / width
+    stored = held - held[0]
+    slope, error = _slopes(run, row, bed_line(run, found, frames, bed), (low, face), t)
+    window = (float(t[0]), float(t[-1]))
+    dt = np.diff(t)
+    averages = [average("slope", "-", [slope], window)]
+    averages += [
+        ratio(f"{name}_rate", "m2/s", [np.diff(one)], [dt], window)
+        for name, one in (("stored", stored), ("brought", brought), ("passed", passed))
+    ]
+    averages.append(ratio("trapped_share", "-", [np.diff(stored)], [np.diff(brought)], window))
+    scatter = float(np.sqrt(np.nanmean(error**2))) if np.isfinite(error).any() else math.nan
+    with np.errstate(invalid="ignore", divide="ignore"):
+        trapped = np.where(brought > 0.0, stored / brought, math.nan)
+    return Deposit(
+        t, (low, high), (low, face), slope, error, held, stored, brought, passed, trapped, over[:, 0],
+        Averages(
+            "deposit", tuple(averages),
+            (
+                f"reach: x = {low:.4g} to {high:.4g} m; since t = {t[0]:.4g} s {brought[-1]:.4g} m2 came and "
+                f"{passed[-1]:.4g} m2 went, {stored[-1]:.4g} m2 are stored, per width and without pores",
+                f"slope: line of least squares through the bed from {low:.4g} to {face:.4g} m; the scatter "
+                f"of the bed about it gives an error of {scatter:.2g} in one frame",
+            ),
+        ),
+    )  # fmt: skip
+
+
+def _reach(row: ColumnRow, dam: str | None, reach: tuple[float, float] | None) -> tuple[float, float, float]:
+    """Begin and end of the reach, and where the deposit meets the dam [m]."""
+    first, last = row.x_low, row.x_low + row.n_segment * row.dx
+    if dam is not None and reach is not None:
+        raise ResultsError("give a dam or a reach, not both")
+    if reach is not None:
+        if not first <= reach[0] < reach[1] <= last:
+            raise ResultsError(
+                f"reach from {reach[0]:g} to {reach[1]:g} m: must ascend within the row, from {first:g} to "
+                f"{last:g} m"
+            )
+        return (*reach, reach[1])
+    names = [one.name for one in row.dams]
+    if dam is not None and dam not in names:
+        known = f"the row has {', '.join(names)}" if names else "the row has none"
+        near = nearest_word(dam, tuple(names))
+        raise ResultsError(f"no dam {dam!r}: {known}" + (f". Did you mean {near!r}?" if near else ""))
+    if not names:
+        return first, last, last
+    chosen = row.dams[names.index(dam) if dam is not None else 0]
+    return first, first + chosen.end * row.dx, first + chosen.first * row.dx
+
+
+def _volumes(run: Run, frames: np.ndarray, places: tuple[float, ...]) -> tuple[Floats, Floats, Floats]:
+    """Volume of grains beyond some places [m3]: at each frame, and that came and left since the first.
+
+    Each has the shape (n_frame, n_place).
+    """
+    solid, at = run.scene.solid_volume, np.array(places)
+    beyond, came, gone = np.zeros((3, len(frames), len(places)))
+    for m, k in enumerate(frames.tolist()):
+        x = np.asarray(run.frames.x[k])[:, 0]
+        beyond[m] = ((x[:, None] >= at) * solid[:, None]).sum(axis=0)  # nan, away: beyond no place
+    if run.scene.traffic is None:
+        return beyond, came, gone
+    steps, rows, volume = np.asarray(run.frames.step)[frames], run.passages, volumes_of_heads(run)
+    for way, into in ((IN, came), (OUT, gone)):
+        own = rows[(rows["way"] == way) & (rows["step"] > steps[0])]
+        amounts = (own["x"][:, :1] >= at) * volume[own["grain"]][:, None]
+        sums = np.concatenate([np.zeros((1, len(at))), np.cumsum(amounts, axis=0)])
+        into[:] = sums[np.searchsorted(own["step"], steps, side="right")]
+    return beyond, came, gone
+
+
+def _slopes(
+    run: Run, row: ColumnRow, beds: Floats, reach: tuple[float, float], t: Floats
+) -> tuple[Floats, Floats]:
+    """Slope of the line through the bed in each frame and its standard error [-], shape (n_frame,)."""
+    inside = (row.x > reach[0]) & (row.x < reach[1])
+    floor = row.bottom if row.solid is None else row.bottom + row.solid * row.column.dz
+    slope, error = np.full((2, len(beds)), math.nan)
+    for m, bed in enumerate(beds):
+        there = inside & (bed > floor)
+        n = int(there.sum())
+        if n < FEWEST:
+            continue
+        x, z = row.x[there] - row.x[there].mean(), bed[there] - bed[there].mean()
+        steep = float(x @ z / (x @ x))
+        scatter = (z - steep * x) * x
+        g_x, _, minus_g_z = np.asarray(scene_at(run, float(t[m])).gravity).tolist()
+        slope[m] = math.tan(math.atan2(g_x, -minus_g_z) - math.atan(steep))
+        wide = n * standard_error([scatter]).error / float(x @ x) * math.sqrt(n / (n - 2.0))
+        error[m] = wide * (1.0 + slope[m] ** 2) / (1.0 + steep**2)
+    return slope, error

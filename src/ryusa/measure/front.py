@@ -1,0 +1,123 @@
+"""The front of grains that move downstream: where it is and how fast, over time."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ryusa.errors import ResultsError
+from ryusa.measure._run import Floats, Run
+from ryusa.measure.statistics import ratio
+from ryusa.measure.table import Averaged, Averages
+from ryusa.model.traffic import IN, OUT
+
+FAR = 5.0  # distance from its first place from which a grain counts, in mean diameters
+SHARE = 0.05  # of the volume, beyond the front
+
+
+@dataclass(frozen=True)
+class Front(Averaged):
+    """Front of the grains that have moved, at each frame; arrays of shape (n_frame,).
+
+    Attributes
+    ----------
+    t : times of the frames [s].
+    first : place of the first grain, the farthest downstream [m]; nan before any has moved.
+    front : place beyond which 5 % of the volume of the grains that have moved is [m].
+    moved : that volume, of grains that have left too [m3].
+    averages : speeds of both over the window.
+    """
+
+    t: Floats
+    first: Floats
+    front: Floats
+    moved: Floats
+    averages: Averages
+
+    def rows(self) -> list[dict[str, object]]:
+        """One line for each frame; speeds are those since the frame before, nan at the first."""
+        columns = {
+            "t_s": self.t, "first_m": self.first, "front_m": self.front, "moved_m3": self.moved,
+            "first_speed_m_per_s": _rate(self.first, self.t),
+            "front_speed_m_per_s": _rate(self.front, self.t),
+        }  # fmt: skip
+        values = [one.tolist() for one in columns.values()]
+        return [dict(zip(columns, one, strict=True)) for one in zip(*values, strict=True)]
+
+
+def front(run: Run, begin: float = 0.0, end: float = math.inf) -> Front:
+    """Place and speed of the front of the grains that have moved.
+
+    Parameters
+    ----------
+    run : open along x.
+    begin, end : window [s].
+
+    Raises
+    ------
+    ResultsError : a scene that is periodic along x, without free grains, or fewer than two frames.
+
+    Notes
+    -----
+    A grain has moved that came in since the first frame of the window, or is farther than five mean diameters
+    from where it was then: grains of a bed over which the front has not gone do not count. One that has left
+    counts where it left. Two fronts are given, since single grains may run ahead: that of the first grain,
+    and that beyond which 5 % of the volume is. Mean speeds are the way of a front over the time.
+    """
+    scene = run.scene
+    if math.isfinite(float(scene.period[0])):
+        raise ResultsError("the scene is periodic along x: a front needs one that is open")
+    times = np.asarray(run.frames.t, dtype=np.float64)
+    frames = np.flatnonzero((times >= begin) & (times <= end))
+    if not scene.n_grain or len(frames) < 2:
+        raise ResultsError(f"{len(frames)} frames of grains from {begin:g} to {end:g} s: needs two or more")
+    t, solid, least = times[frames], scene.solid_volume, FAR * scene.d_mean
+    start = np.asarray(run.frames.x[int(frames[0])], dtype=np.float64)
+    left = np.full(start.shape, math.nan)  # where grains that are away left
+    came = np.zeros(scene.n_grain, np.bool_)
+    first, main, moved = np.full((3, len(t)), math.nan)
+    for m, k in enumerate(frames.tolist()):
+        if m and scene.traffic is not None:
+            _note_passages(run, int(frames[m - 1]), k, came, left)
+        x = np.asarray(run.frames.x[k], dtype=np.float64)
+        x = np.where(np.isfinite(x), x, left)
+        way = np.linalg.norm(x - start, axis=1)
+        counted = np.isfinite(x[:, 0]) & (came | (way > least))
+        moved[m] = solid[counted].sum()
+        if counted.any():
+            first[m], main[m] = x[counted, 0].max(), _beyond(x[counted, 0], solid[counted])
+    window = (float(t[0]), float(t[-1]))
+    known = np.isfinite(main)
+    items = [
+        ratio(f"{name}_speed", "m/s", [np.diff(one[known])], [np.diff(t[known])], window)
+        for name, one in (("first", first), ("front", main))
+    ]
+    ends = f"{first[-1]:.4g} m and {main[-1]:.4g} m"
+    note = (
+        f"grains that came in or moved more than {FAR:g} d; the first of them, and the front beyond which "
+        f"{SHARE:.0%} of their volume is, are at {ends} at the end"
+    )
+    return Front(t, first, main, moved, Averages("front", tuple(items), (note,)))
+
+
+def _note_passages(run: Run, before: int, now: int, came: np.ndarray, left: Floats) -> None:
+    """Mark the grains that came in between two frames, and note where others left."""
+    rows, step = run.passages, run.frames.step
+    between = rows[(rows["step"] > step[before]) & (rows["step"] <= step[now])]
+    for row in between:
+        spheres = run.scene.spheres_of(np.array([row["grain"]]))
+        if row["way"] == IN:
+            came[spheres] = True
+        elif row["way"] == OUT:
+            left[spheres] = row["x"]
+
+
+def _beyond(x: Floats, volume: Floats) -> float:
+    """Place beyond which a share of the volume is, that of one of the grains [m]."""
+    order = np.argsort(-x)
+    beyond = np.cumsum(volume[order])
+    return float(x[order][np.searchsorted(beyond, SHARE * beyond[-1])])
+
+
+def _rate(places: Floats, t: Floats) -> Floats:
+    return np.concatenate([[math.nan], np.diff(places) / np.diff(t)])

@@ -1,0 +1,180 @@
+"""Grains along a row of columns, in runs made up by hand with volumes, fluxes and lines in closed form."""
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from ryusa.errors import ResultsError
+from ryusa.measure.along_row import grains_along_row, segments_of
+from ryusa.measure.long_section import depth_history, long_section
+from ryusa.model.column import Column
+from ryusa.model.traffic import IN, OUT, PASSAGE
+from ryusa.water.row import shape_of
+from ryusa.water.row_sums import GrainPlaces, place_grains
+
+sys.path.insert(0, str(Path(__file__).parent))
+from made_rows import BALL, CELLS, DX, DZ, PACKED, WIDTH, D, G, layered, row_of, run_of
+
+
+@pytest.fixture
+def cloud() -> Any:
+    """Grains of random speeds in a period, for 2 s."""
+    rng = np.random.default_rng(1)
+    v = np.zeros((50, 3))
+    v[:, 0] = rng.normal(0.02, 0.03, 50)
+    t = np.linspace(0.0, 2.0, 21)
+    x = np.stack([0.1 + 0.08 * rng.random(50), np.zeros(50), 0.01 * rng.random(50)], axis=1)
+    x = x + t[:, None, None] * v
+    return run_of(row_of(), t, x, np.broadcast_to(v, x.shape))
+
+
+@pytest.mark.parametrize("ends", [False, True])
+@pytest.mark.parametrize("n", [2, 3, 8])
+def test_grains_are_shared_between_segments_as_by_the_water(n: int, ends: bool) -> None:
+    row, x = row_of(n, ends=ends), 0.1 + n * DX * np.linspace(-0.5, 1.5, 401)
+    shape, places = shape_of(row), GrainPlaces.of(len(x), n)
+    place_grains(x, row.x_low, 0.0, shape, places)
+    at, weight, _ = segments_of(x, row)
+    assert np.array_equal(at + (1 if ends else 0), places.at)
+    assert weight == pytest.approx(places.weight, abs=1e-12)
+
+
+@pytest.mark.parametrize("n", [1, 2, 8])
+def test_what_segments_gain_is_what_passes_their_ends(cloud: Any, n: int) -> None:
+    row = row_of(n, dx=0.08 / n)
+    found = grains_along_row(cloud, row, np.arange(21))
+    gained = (found.volume - found.volume[0]) * row.dx
+    given = found.passed - np.roll(found.passed, -1, axis=1)
+    assert np.abs(gained - given).max() < 1e-12 * 50 * BALL / WIDTH
+    assert found.volume.sum(axis=1) * row.dx * WIDTH == pytest.approx(50 * BALL, rel=1e-13)
+    assert np.ptp(found.volume[:, 0]) > 0.0 or n == 1
+
+
+def test_what_passes_is_volume_times_speed_over_the_length(cloud: Any) -> None:
+    """Averaged along the row, at every frame and between frames, exactly."""
+    found = grains_along_row(cloud, cloud.row.row, np.arange(21))
+    q = BALL * cloud.frames.v[0][:, 0].sum() / (0.08 * WIDTH)
+    assert found.flux.mean(axis=1) == pytest.approx(q, rel=1e-12)
+    assert found.passed[-1].mean() / 2.0 == pytest.approx(q, rel=1e-12)
+
+
+def test_the_speeds_of_a_frame_give_what_passes_in_a_short_time(cloud: Any) -> None:
+    cloud.frames.x = cloud.frames.x[:2].copy()
+    cloud.frames.x[1] = cloud.frames.x[0] + 1.0e-6 * cloud.frames.v[0]
+    found = grains_along_row(cloud, cloud.row.row, np.arange(2))
+    assert found.flux[0] == pytest.approx(found.passed[1] / 1.0e-6, rel=1e-4, abs=1e-9)
+
+
+def test_a_row_with_ends_feeds_and_an_exit_balances_to_round_off() -> None:
+    """One grain lies still; one is fed at 0.11 m and leaves at 0.18 m; one comes and goes between frames."""
+    t, v = np.array([0.0, 0.5, 1.0, 1.5]), 0.05
+    x = np.full((4, 4, 3), np.nan)
+    x[:, 0] = (0.142, 0.0, 0.001)
+    x[1, 1] = (0.11 + 0.3 * v, 0.0, 0.001)
+    x[2, 1] = (0.11 + 0.8 * v, 0.0, 0.001)
+    x[3, 3] = (0.13, 0.0, 0.001)
+    story = [
+        (1, IN, 0.2, 0.11),
+        (2, IN, 0.55, 0.13),
+        (2, OUT, 0.85, 0.18),
+        (1, OUT, 1.4, 0.18),
+        (3, IN, 1.5, 0.13),
+    ]
+    rows = np.zeros(len(story), PASSAGE)
+    for one, (grain, way, time, place) in zip(rows, story, strict=True):
+        one["grain"], one["way"], one["t"], one["step"] = grain, way, time, round(time * 1000)
+        one["x"], one["d"] = (place, 0.0, 0.001), D
+    run = run_of(row_of(ends=True), t, x, np.zeros_like(x), rows)
+    found = grains_along_row(run, run.row.row, np.arange(4))
+    gained = (found.volume - found.volume[0]) * DX
+    rest = gained - (found.passed[:, :-1] - found.passed[:, 1:] + found.fed)
+    assert np.abs(rest).max() < 1e-15 * BALL / WIDTH
+    passed = found.passed[-1] * WIDTH / BALL
+    assert passed[-1] == pytest.approx(2.0)  # the exit lies at the end of the row
+    assert passed[4] == pytest.approx(2.0, abs=1e-12)  # the third grain was placed upstream of it, and stays
+    assert passed[1] == pytest.approx(0.5)  # on the station the first was fed
+    assert passed[0] == pytest.approx(0.5)  # and half of it counts as coming through the end
+    assert found.fed[-1].sum() * WIDTH / BALL == pytest.approx(0.5 + 1.0 + 1.0)
+
+
+def test_a_periodic_row_with_feeds_is_refused() -> None:
+    rows, x = np.zeros(0, PASSAGE), np.full((2, 2, 3), 0.15)
+    with pytest.raises(ResultsError, match="periodic row with feeds"):
+        grains_along_row(run_of(row_of(), np.arange(2.0), x, x, rows), row_of(), np.arange(2))
+
+
+def test_lines_depth_and_froude_number_over_an_inclined_bottom() -> None:
+    """Bed at 5 to 12 mm over a bottom that falls by 1 in 10, surface at 30 mm above it, q_w = 0.02 m2/s."""
+    bottom = 0.01 - 0.1 * DX * np.arange(8)
+    row = row_of(ends=True, bottom=bottom)
+    levels = 5.0e-3 + 1.0e-3 * np.arange(8)
+    phi = np.tile(layered(row, levels, 0.1), (5, 1, 1))
+    content = (1.0 - phi) * DZ * ((np.arange(CELLS) + 0.5) * DZ < 0.03)
+    t, x = np.arange(5) * 0.1, np.full((5, 1, 3), 0.14)
+    run = run_of(
+        row, t, x, np.zeros_like(x), surface=np.tile(bottom + 0.03, (5, 1)), phi=phi, content=content,
+        discharge=np.full((5, 9), 0.02), passed=np.tile(0.02 * t[:, None], (1, 9)),
+    )  # fmt: skip
+    one, mean = long_section(run), long_section(run, begin=0.0)
+    assert one.bed == pytest.approx(bottom + levels, abs=0.51 * DZ)
+    for found in (one, mean):
+        depth = found.surface - found.bed
+        assert found.depth == pytest.approx(depth)
+        assert found.speed == pytest.approx(0.02 / depth)
+        assert found.froude == pytest.approx(0.02 / np.sqrt(G * depth**3))
+        assert found.concentration == pytest.approx(0.1, abs=0.02)
+        assert found.transport_concentration == pytest.approx(0.0)
+    assert mean.window == (0.0, 0.4) and one.window is None
+    assert mean.error["bed"] == pytest.approx(0.0) and mean.error["froude"] == pytest.approx(0.0)
+    assert {"bed_error", "froude_error", "solid_discharge"} <= set(mean.rows()[0])
+    with pytest.raises(ResultsError, match="not both"):
+        long_section(run, t=0.1, begin=0.0)
+
+
+def test_the_concentration_of_the_discharge_is_that_of_both_discharges(cloud: Any) -> None:
+    n = len(cloud.frames.t)
+    q_s = grains_along_row(cloud, cloud.row.row, np.arange(n)).passed[-1] / 2.0
+    cloud.row.passed[:] = 1.0e-4 * cloud.frames.t[:, None]
+    found = long_section(cloud, begin=0.0)
+    both = 0.5 * (q_s + np.roll(q_s, -1))
+    assert found.solid_discharge == pytest.approx(both, rel=1e-12)
+    assert found.transport_concentration == pytest.approx(both / (both + 1.0e-4), rel=1e-12)
+    assert (found.error["transport_concentration"] > 0.0).all()
+
+
+def test_the_bed_of_grains_at_rest_lies_below_those_that_move() -> None:
+    """Layers of grains in every segment: two rest, the third and fourth move as densely packed."""
+    row = row_of(4)
+    n, side = 4, D * (np.pi / 6.0 / PACKED) ** (1.0 / 3.0)  # spacing of cubes with the concentration
+    along, across = np.arange(0.1, 0.1 + 4 * DX, side / 40), np.zeros(1)
+    places, speeds = [], []
+    for k in range(n):
+        for one in along:
+            places.append((one, across[0], (k + 0.5) * D))
+            speeds.append((0.2 if k > 1 else 0.0, 0.0, 0.0))
+    x, v = np.array(places)[None], np.array(speeds)[None]
+    full = len(along) * BALL / (D * 4 * DX)  # concentration times width
+    object.__setattr__(row, "column", Column(**{**vars(row.column), "area": full / PACKED * 4 * DX}))
+    levels = np.full(4, n * D)
+    run = run_of(row, np.zeros(1), x, v, phi=layered(row, levels, 0.0)[None], surface=np.full((1, 4), 0.03))
+    assert long_section(run).bed == pytest.approx(n * D, abs=DZ)
+    assert long_section(run, bed="rest").bed == pytest.approx(2 * D, abs=2 * DZ)
+
+
+def test_a_bed_that_rises_and_what_passes_between_frames_are_the_history(cloud: Any) -> None:
+    row = cloud.row.row
+    levels = 5.0e-3 + 1.0e-3 * np.arange(21)[:, None] * np.ones(8)
+    for k in range(21):
+        cloud.row.phi[k] = layered(row, levels[k], 0.0)
+    cloud.row.surface[:] = 0.03
+    found = depth_history(cloud, begin=0.5, end=1.5)
+    assert found.bed_change[-1] == pytest.approx(0.010, abs=DZ)
+    assert np.isnan(found.solid_discharge[0]).all()
+    held = grains_along_row(cloud, row, np.arange(5, 16))
+    assert found.volume == pytest.approx(held.volume)
+    gained = np.diff(found.volume, axis=0).sum() * row.dx
+    assert gained == pytest.approx(0.0, abs=1e-15)
+    assert {"bed", "bed_change", "volume", "solid_discharge"} <= set(found.rows()[0])
