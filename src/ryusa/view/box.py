@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ryusa.errors import ResultsError
 from ryusa.model.walls import box_of as walls_box
 from ryusa.results import Results
-from ryusa.view.flow import surfaces
+from ryusa.view.flow import surface_line, surfaces
 
 Floats = NDArray[np.float64]
 
@@ -62,7 +62,12 @@ def box_of(results: Results, d: Floats, centres: Iterable[Floats]) -> tuple[Floa
     for axis, period in enumerate(scene.period):
         if math.isfinite(period):
             low[axis], high[axis] = 0.0, period
+    line = surface_line(results)
     surface = surfaces(results).max(initial=-math.inf)
+    if line is not None:
+        surface = float(np.nanmax(line.z, initial=-math.inf))
+        if line.x[-1] - line.x[0] < FAR * (high[0] - low[0]):
+            low[0], high[0] = min(low[0], line.x[0]), max(high[0], line.x[-1])
     if high[2] < surface < low[2] + FAR * (high[2] - low[2]):
         high[2] = surface
     return low, high

@@ -1,6 +1,7 @@
 """The water of a run as a page or a film shows it: its surface and its velocity over height."""
 
 import math
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,69 @@ from ryusa.results.row import RowFrames
 from ryusa.view.encode import Blob
 
 POINTS = 60  # of a profile that is given by a formula
+THIN = 1.0e-6  # depth up to which a segment of a row is dry [m]
 _HALF = 0.5  # of the room between grains that must hold water for its speed to be shown
+
+
+@dataclass(frozen=True)
+class SurfaceLine:
+    """Surface of the water along a row of columns.
+
+    Attributes
+    ----------
+    x : begin of the row, middles of its segments, end [m], shape (n_point,), ascending.
+    z : height of the surface at every frame [m], shape (n_frame, n_point); nan where it is dry.
+    period : of the row along x [m]; inf in a row with ends.
+    """
+
+    x: NDArray[np.float64]
+    z: NDArray[np.float64]
+    period: float
+
+    def at(self, k: int, share: float) -> NDArray[np.float64]:
+        """Heights between frame k and the next [m], linear in time; of the nearer one where one is dry."""
+        if share == 0.0:
+            return self.z[k]
+        before, after = self.z[k], self.z[k + 1]
+        return np.where(
+            np.isfinite(before + after), before + share * (after - before), before if share < _HALF else after
+        )
+
+    def within(
+        self, z: NDArray[np.float64], low: float, high: float
+    ) -> list[tuple[NDArray[np.float64], NDArray[np.float64]]]:
+        """Wet stretches of a line of heights between two places [m]: x and z of each, of two points or more.
+
+        A periodic row is continued.
+        """
+        x = self.x
+        if math.isfinite(self.period):
+            turns = np.arange(math.floor((low - x[0]) / self.period), math.ceil((high - x[0]) / self.period))
+            x, z = (x[:-1] + self.period * turns[:, None]).ravel(), np.tile(z[:-1], len(turns))
+            x, z = np.append(x, x[0] + self.period * len(turns)), np.append(z, z[0])
+        ends = np.clip([low, high], x[0], x[-1])
+        inner = (x > ends[0]) & (x < ends[1])
+        places = np.concatenate([ends[:1], x[inner], ends[1:]])
+        heights = np.interp(places, x, z)  # nan beside a dry point
+        heights[1:-1] = z[inner]
+        parts = np.split(np.arange(len(places)), np.flatnonzero(np.diff(np.isfinite(heights))) + 1)
+        return [(places[one], heights[one]) for one in parts if len(one) > 1 and np.isfinite(heights[one[0]])]
+
+
+def surface_line(results: Results) -> SurfaceLine | None:
+    """The surface along a row of columns at every frame; None without a row."""
+    found = results.row
+    if found is None:
+        return None
+    row = found.row
+    wet = np.where(found.depth > THIN, found.surface, math.nan)
+    first, last = wet[:, :1], wet[:, -1:]
+    if row.periodic:
+        first = last = 0.5 * (first + last)
+    end = row.x_low + row.n_segment * row.dx
+    x = np.concatenate([[row.x_low], row.x, [end]])
+    period = end - row.x_low if row.periodic else math.inf
+    return SurfaceLine(x, np.concatenate([first, wet, last], axis=1), period)
 
 
 def flow_of(results: Results, frames: NDArray[np.int64], blob: Blob) -> dict[str, Any] | None:
@@ -24,8 +87,9 @@ def flow_of(results: Results, frames: NDArray[np.int64], blob: Blob) -> dict[str
     -------
     z : heights of the profile [m]. The speeds are the array "u" in m/s, one row per frame for a column of
         water, or the mean along a row of columns, one row in all for a given profile; nan where there is no
-        water. The surface is the array
-        "surface" in m, one per frame, or one, or none where the depth is unbounded.
+        water. The surface is the array "surface" in m, one per frame, or one, or none where the depth is
+        unbounded. Of a row of columns it is the mean depth above the lowest cell, and the array "line" holds
+        the surface in m at the places x, one row per frame; nan where it is dry.
     """
     column = results.water
     if results.row is not None:
@@ -55,14 +119,21 @@ def _mean_of_row(results: Results, row: RowFrames, frames: NDArray[np.int64], bl
     u[wet < _HALF] = math.nan
     blob.add("u", u.astype(np.float32))
     blob.add("surface", surfaces(results)[frames].astype(np.float32))
-    return {"z": column.z.tolist(), "solved": True}
+    line = surface_line(results)
+    assert line is not None
+    blob.add("line", line.z[frames].astype(np.float32))
+    return {"z": column.z.tolist(), "solved": True, "x": line.x.tolist()}
 
 
 def surfaces(results: Results) -> NDArray[np.float64]:
-    """Height of the surface at every frame [m], its mean along a row, shape (n_frame,); empty without one."""
+    """Height of the surface at every frame [m], shape (n_frame,); empty without one.
+
+    Along a row it is the mean depth over the bottom, counted from the lowest cell as in a column.
+    """
     water, column = results.scene.water, results.water
     if results.row is not None:
-        return np.asarray(results.row.surface.mean(axis=1))
+        row = results.row.row
+        return np.asarray((results.row.surface - row.bottom).mean(axis=1)) + row.column.z_low
     if column is not None:
         return np.asarray(column.z_surface)
     if water.profile == Profile.NONE or not math.isfinite(water.depth):

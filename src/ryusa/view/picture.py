@@ -13,7 +13,7 @@ from ryusa.results import Results
 from ryusa.view.box import Floats, edges_of, plane_in_box
 from ryusa.view.camera import Camera
 from ryusa.view.colouring import Colouring
-from ryusa.view.flow import surfaces
+from ryusa.view.flow import surface_line, surfaces
 from ryusa.view.raster import CHOSEN, LEAST, SAMPLES, Bytes, Canvas, Face, Line, Spheres
 
 SHADES = 256  # of a colour scale
@@ -63,7 +63,8 @@ class Painter:
         self._palette = np.rint(
             255.0 * mpl.colormaps[look.colouring.colours](np.linspace(0.0, 1.0, SHADES))[:, :3]
         ).astype(np.uint8)
-        self._surfaces = surfaces(results)
+        self._line = surface_line(results)
+        self._surfaces = np.zeros(0) if self._line is not None else surfaces(results)
         self._walls: tuple[Floats, Any, Floats, Any] | None = None  # faces and edges, and whose
         self._period = np.array([*results.scene.period, math.inf])
 
@@ -115,6 +116,7 @@ class Painter:
             if len(corners):
                 face(corners, WALL, WALL_ALPHA, WALL)
         self._add_walls(scene, t, line, face)
+        self._add_row(int(k), share, low, high, line, face)
         if len(self._surfaces) and low[2] < (z := float(self._surfaces[nearer])) <= high[2]:
             level = [(low[0], low[1]), (high[0], low[1]), (high[0], high[1]), (low[0], high[1])]
             face(np.array([(*place, z) for place in level]), WATER, WATER_ALPHA, LEVEL)
@@ -151,6 +153,23 @@ class Painter:
                 face(one, WALL, THIN_ALPHA, None)
         for one in in_world(walls, ends, end_of, t)[there[end_of]]:
             line(one, WALL)
+
+    def _add_row(self, k: int, share: float, low: Floats, high: Floats, line: Any, face: Any) -> None:
+        """The surface along a row of columns, and from the side the water behind the grains."""
+        if self._line is None:
+            return
+        for x, z in self._line.within(self._line.at(k, share), low[0], high[0]):
+            for ends in np.stack([x, z], axis=1)[np.arange(len(x) - 1)[:, None] + [0, 1]]:
+                if ends[:, 1].max() > high[2]:  # far above the grains
+                    continue
+                near, far = (np.insert(ends, 1, y, axis=1) for y in (low[1], high[1]))
+                line(near, LEVEL)
+                line(far, LEVEL)
+                face(np.concatenate([near, far[::-1]]), WATER, WATER_ALPHA, None)
+                if self.look.view == "side":
+                    below = far[::-1].copy()
+                    below[:, 2] = low[2]
+                    face(np.concatenate([far, below]), WATER, DEEP_ALPHA, None)
 
     def _between(self, t: float) -> tuple[int, float]:
         """The frame before a time, and the share of the way to the next."""

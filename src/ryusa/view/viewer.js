@@ -198,7 +198,7 @@ class Viewer {
     if (this.fixedShown) painter.drawSpheres("fixed", { plain: [0.66, 0.64, 0.6] });
     if (this.picked >= 0) painter.drawPlain(this.track(nearest), [0.9, 0.3, 0, 1], "lines");
     painter.drawPlain(this.frame(), [0.55, 0.58, 0.62, 1], "lines");
-    if (this.wallsShown) this.drawWalls(data.scenes[scene], nearest);
+    if (this.wallsShown) { this.drawWalls(data.scenes[scene], nearest); this.drawRow(k, share); }
     this.words(k, share, nearest, scene);
   }
 
@@ -218,11 +218,30 @@ class Viewer {
       painter.drawPlain(placed(wall_lines, wall_line_of, w, 2, place), [0.5, 0.47, 0.42, 1], "lines");
     });
     const surface = this.surface(nearest);
-    if (surface !== undefined) {
+    if (surface !== undefined && !this.arrays.line) {
       const corners = [[low[0], low[1], surface], [high[0], low[1], surface], [high[0], high[1], surface], [low[0], high[1], surface]];
       painter.drawPlain(rim(corners), [0.1, 0.45, 0.75, 1], "lines");
       painter.drawPlain(corners, [0.15, 0.5, 0.8, 0.22], "face");
     }
+  }
+
+  drawRow(k, share) {  // the surface along a row of columns, between frame k and the next; nan where it is dry
+    const { arrays, low, high, painter } = this;
+    if (!arrays.line) return;
+    const { x } = this.data.flow, n = x.length, next = Math.min(k + 1, this.frames - 1), faces = [], lines = [];
+    const highest = high[2] + 1e-3 * (high[2] - low[2]);  // what is far above the grains is left out, as in the box
+    const z = x.map((_, i) => {
+      const from = arrays.line[k * n + i], to = arrays.line[next * n + i], between = from + share * (to - from);
+      return Number.isFinite(between) ? between : share < 0.5 ? from : to;
+    });
+    for (let i = 0; i + 1 < n; i++) {
+      if (!(Math.max(z[i], z[i + 1]) <= highest)) continue;  // nan too
+      const [a, b, c, d] = [[x[i], low[1], z[i]], [x[i + 1], low[1], z[i + 1]], [x[i + 1], high[1], z[i + 1]], [x[i], high[1], z[i]]];
+      faces.push(a, b, c, a, c, d);
+      lines.push(a, b, c, d);
+    }
+    painter.drawPlain(lines, [0.1, 0.45, 0.75, 1], "lines");
+    painter.drawPlain(faces, [0.15, 0.5, 0.8, 0.22], "triangles");
   }
 
   surface(frame) {

@@ -1,0 +1,68 @@
+"""The surface along a row of columns, as pages and films draw it."""
+
+import math
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from ryusa.model.column import Column
+from ryusa.model.row import ColumnRow, EndKind, RowEnd
+from ryusa.results.row import RowFrames
+from ryusa.view.flow import SurfaceLine, surface_line, surfaces
+
+SLOPE = 0.1  # of the bottom
+X = 2.0 + 0.5 * np.arange(4) + 0.25
+
+
+def run_of(depths: Any, *, ends: bool) -> Any:
+    """Results that have water of some depths [m], shape (n_frame, 4), over an inclined bottom."""
+    end = RowEnd(EndKind.WALL) if ends else None
+    bottom = SLOPE * (4.0 - X) if ends else np.zeros(4)
+    row = ColumnRow(Column(-0.1, 0.01, 100, 0.5), 0.5, bottom, 9.81, end, end, x_low=2.0)
+    t = np.arange(len(depths)) * 1.0
+    found = {name: np.zeros((len(t), *shape)) for name, shape in row.frame_shapes().items()}
+    shown = RowFrames(row, t, **(found | {"surface": bottom + np.asarray(depths)}))
+    return SimpleNamespace(row=shown, water=None, scene=SimpleNamespace(water=None))
+
+
+def test_a_level_pond_over_an_inclined_bottom_is_a_level_line_from_end_to_end() -> None:
+    depth = 0.5 - SLOPE * (4.0 - X)
+    run = run_of([depth], ends=True)
+    line = surface_line(run)
+    assert line is not None and math.isinf(line.period)
+    assert line.x == pytest.approx([2.0, *X, 4.0]) and line.z[0] == pytest.approx(0.5)
+    assert surfaces(run) == pytest.approx([depth.mean() - 0.1])  # over the lowest cell, as the speeds
+
+
+def test_a_dry_stretch_parts_the_line() -> None:
+    line = surface_line(run_of([[0.1, 0.1, 0.0, 0.1]], ends=True))
+    assert line is not None
+    parts = line.within(line.at(0, 0.0), 0.0, 9.0)
+    assert [x.tolist() for x, _ in parts] == [[2.0, 2.25, 2.75], [3.75, 4.0]]
+    inner = line.within(line.at(0, 0.0), 2.1, 2.6)
+    assert [x.tolist() for x, _ in inner] == [[2.1, 2.25, 2.6]]
+
+
+def test_between_two_frames_the_line_moves_evenly_and_a_segment_that_falls_dry_at_once() -> None:
+    line = surface_line(run_of([[0.1, 0.1, 0.1, 0.1], [0.2, 0.2, 0.2, 0.0]], ends=False))
+    assert line is not None
+    assert line.at(0, 0.25)[1:4] == pytest.approx(0.125)
+    assert line.at(0, 0.25)[4] == pytest.approx(0.1) and math.isnan(line.at(0, 0.75)[4])
+    assert line.at(1, 0.0)[1] == pytest.approx(0.2)
+
+
+def test_a_periodic_line_goes_on_around_a_grain_that_is_followed() -> None:
+    x = np.array([0.0, 0.25, 0.75, 1.0])
+    z = np.array([[2.0, 1.0, 3.0, 2.0]])
+    line = SurfaceLine(x, z, 1.0)
+    ((places, heights),) = line.within(line.at(0, 0.0), 5.5, 6.5)
+    assert places == pytest.approx([5.5, 5.75, 6.0, 6.25, 6.5])
+    assert heights == pytest.approx([2.0, 3.0, 2.0, 1.0, 2.0])
+    ((whole, _),) = line.within(line.at(0, 0.0), 0.0, 1.0)
+    assert whole == pytest.approx(x)
+
+
+def test_without_a_row_there_is_no_line() -> None:
+    assert surface_line(SimpleNamespace(row=None)) is None
