@@ -19,7 +19,6 @@ DPI = 200  # of a picture in the page
 _ONE_COLUMN = 5.0  # inch; a wider picture takes the whole width of the page
 _OWN = ("run", "next")  # rows that a page has no use for: its title, and a command with the path of a machine
 _LINES = 400  # of the case file that are shown
-_OF_ROW = [one.name for one in MEASURES if "row" in one.needs]
 
 
 @dataclass(frozen=True)
@@ -87,9 +86,13 @@ def contents_of(results: Results, *, size: float, progress: Callable[[float], No
         if kind in entry.builders:
             _attempt(found, f"measure {entry.name}", lambda one=entry: _measure(found, results, one))
     progress(0.2)
+    along_row = _measures_of_row(results)
     for entry in PICTURES:
-        of_row = results.row is not None and entry.measure in _OF_ROW
-        if of_row or kind in entry.builders or (not kind and not entry.settled and not entry.measure):
+        if (
+            entry.measure in along_row
+            or kind in entry.builders
+            or (not kind and not entry.settled and not entry.measure)
+        ):
             _attempt(found, f"picture {entry.name}", lambda one=entry: _draw(found, results, one))
     progress(0.5)
 
@@ -99,6 +102,15 @@ def contents_of(results: Results, *, size: float, progress: Callable[[float], No
     _attempt(found, "grains in motion", view)
     progress(1.0)
     return found
+
+
+def _measures_of_row(results: Results) -> set[str]:
+    """Names of the measures that a row of columns allows, of its grains where it has some."""
+    if results.row is None:
+        return set()
+    had = {"row"} if results.row.row.periodic else {"row", "open"}
+    grains = bool(results.scene.n_grain)
+    return {one.name for one in MEASURES if one.needs and had >= {*one.needs} and (grains or one.grainless)}
 
 
 def _attempt(found: RunContents, what: str, act: Callable[[], None]) -> None:
