@@ -90,16 +90,19 @@ plain = compiled(None)(lambda x: x * x + 1.0)
 fast = compiled(None, fastmath=FAST, forceinline=True)(lambda x: plain(x))
 (fast if sys.argv[1] == "fast" else plain)(0.1)
 plain(0.1)
-print("contract" in next(iter(plain.inspect_llvm().values())))
+text = next(iter(plain.inspect_llvm().values()))
+print("contract" in text, any(made.fndesc.inline for made in plain.overloads.values()))
 """
 
 
-def test_who_calls_a_function_first_does_not_change_its_arithmetic():
+def test_who_calls_a_function_first_changes_neither_its_arithmetic_nor_its_inlining():
+    """Inlining counts: a product that a caller fuses and a law holds too is made once, and not fused."""
     for first in ("fast", "plain"):
         done = subprocess.run(
             [sys.executable, "-c", WHO_CALLS, first], check=True, capture_output=True, text=True
         )
-        assert done.stdout.split() == ["False"], first
+        assert done.stdout.split() == ["False", "False"], first
+    assert collision.effective_mass.targetoptions["forceinline"]  # said by `law`
 
 
 def _closures(function, found):

@@ -260,7 +260,7 @@ def _uncached(fastmath: Any, name: str) -> Callable[[F], F]:
 
     def decorate(function: F) -> F:
         function.__qualname__ = f"{function.__qualname__}.{name}.{flags}"
-        return compiled(None, fastmath=fast)(function)
+        return compiled(None, fastmath=fast, forceinline=True)(function)
 
     return decorate
 

@@ -57,13 +57,13 @@ def compiled(edition: str | None, **options: Any) -> Callable[[F], F]:
     the version that Numba compares before it reads the cache. This relies on private parts of Numba, which
     tests/laws/test_cache.py tests.
 
-    A function for which `fastmath` is not given has none, and one that has it is inlined only where
-    `forceinline` says so. Numba would take both from the function that calls it first, and keep the result
-    for all callers: the last bits of a run would depend on what ran before it on the machine.
+    A function has no `fastmath` and is not inlined by force unless the options say so. Numba would take both
+    from the function that calls it first, and keep the result for all callers: the last bits of a run would
+    depend on what ran before it on the machine. Inlining matters even where there is no `fastmath`: where
+    the same product stands in a function and in a caller that fuses its own, LLVM makes one of the two,
+    which is then not fused.
     """
-    options = {"fastmath": False} | options
-    if options["fastmath"]:
-        options = {"forceinline": False} | options
+    options = {"fastmath": False, "forceinline": False} | options
 
     def decorate(function: F) -> F:
         dispatcher: Any = numba.njit(error_model="numpy", cache=edition is not None, **options)(function)
@@ -76,12 +76,12 @@ def compiled(edition: str | None, **options: Any) -> Callable[[F], F]:
 
 
 def law(function: F) -> F:
-    """Compile a scalar law at its first call.
+    """Compile a scalar law at its first call; compiled functions that call it have it inlined.
 
     With `error_model="numpy"` a division by zero gives inf or nan: laws never raise, and the engine stops on
     a number that is not finite.
     """
-    return compiled(EDITION)(function)
+    return compiled(EDITION, forceinline=True)(function)
 
 
 def step_law(function: F) -> F:

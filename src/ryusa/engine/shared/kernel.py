@@ -21,7 +21,7 @@ _EDITION = edition(LAWS, _ENGINE / "shared", _ENGINE / "cpu", _ENGINE.parent / "
 
 def kernel(**options: Any) -> Callable[[F], F]:
     """Compile a function when first called; the text of laws, model and engine is its edition."""
-    return compiled(_EDITION, **{"forceinline": False} | options)
+    return compiled(_EDITION, **options)
 
 
 def inner(**options: Any) -> Callable[[F], F]:
