@@ -20,6 +20,7 @@ from ryusa.engine.shared.wall_pose import AFTER, AXIS, BEFORE, MOVES, NOW, PLACE
 from ryusa.model.walls import SPIN, TOUCHED
 
 ON_FACE = 1e-3  # of the radius: within it a point lies on a face
+SAME_POINT = 1e-9  # of the radius: nearest points closer than this are one, as on an edge that faces share
 SAME_PLACE = math.cos(math.radians(45.0))  # of normals of one smooth surface that count as one place
 AHEAD = 8  # faces whose numbers are asked for before they are needed
 
@@ -93,6 +94,16 @@ def _alike(k: int, g: int, met: Any) -> bool:
 
 
 @inner(fastmath=FAST)
+def _same_point(k: int, g: int, r: float, met: Any) -> bool:
+    """Whether the nearest points in two rows are one, seen from the centre of the grain."""
+    apart = 0.0
+    for a in range(3):
+        off = met[k, F.DISTANCE] * met[k, F.AWAY + a] - met[g, F.DISTANCE] * met[g, F.AWAY + a]
+        apart += off * off
+    return apart <= (SAME_POINT * r) ** 2
+
+
+@inner(fastmath=FAST)
 def _move(k: int, g: int, touching: Any, eta: Any, rows: Any) -> None:
     """Give the memory of candidate k to candidate g."""
     copy_row(g, eta, rows, k, eta, rows)
@@ -157,6 +168,15 @@ def _one_in_a_place(
             same = surface[f] == surface[h] and _alike(s, q, met)
             if same or _lies_on(s, q, f, ON_FACE * r, c, poses, rows, centre, met):
                 met[s, F.BY], nearest = q, away
+    # Met in one point, as on an edge that two walls share, faces are as far away but for rounding: the first
+    # of the scene has the contact, not the one that the last bit makes the nearer.
+    for s in range(begin, stop):
+        if met[s, F.BY] >= 0.0:
+            to = s
+            while met[to, F.BY] >= 0.0:
+                to = int(met[to, F.BY])
+            if face[s] < face[to] and _same_point(s, to, r, met):
+                met[s, F.BY], met[to, F.BY] = -1.0, s
     for s in range(begin, stop):  # memory goes to the contact that takes the place
         k = number[s]
         if not touching[k]:
