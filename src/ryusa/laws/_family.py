@@ -5,7 +5,7 @@ import math
 from collections.abc import Callable
 from enum import IntEnum
 from functools import cache
-from typing import Any, Self, TypeVar
+from typing import Any, Self, TypeVar, cast
 
 from ryusa.laws._law import compiled
 
@@ -76,17 +76,28 @@ class Family(IntEnum):
         ------
         ValueError : no choice has this word.
         """
-        for choice in cls:
-            if choice.word == word and word:
-                return choice
-        raise ValueError(
-            f"{cls.key or cls.__name__}: {word!r} is none of {', '.join(map(repr, cls.words()))}"
-        )
+        found = _by_word(cls).get(word)
+        if found is None:
+            raise ValueError(
+                f"{cls.key or cls.__name__}: {word!r} is none of {', '.join(map(repr, cls.words()))}"
+            )
+        return cast(Self, found)
 
     @classmethod
     def all_takes(cls) -> tuple[str, ...]:
         """Case keys that apply to at least one choice of the family."""
-        return tuple(dict.fromkeys(key for choice in cls for key in choice.takes))
+        return _all_takes(cls)
+
+
+@cache
+def _by_word(family: type[Family]) -> dict[str, Family]:
+    """Choices of a family that a case file can select, by their words."""
+    return {choice.word: choice for choice in reversed(family) if choice.word}  # of two alike the first
+
+
+@cache
+def _all_takes(family: type[Family]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(key for choice in family for key in choice.takes))
 
 
 def dispatch(
@@ -229,14 +240,19 @@ def evaluate(choice: Family, **given: Any) -> Any:
 
 def _asked_by(choice: Family, arguments: tuple[str, ...]) -> tuple[str, ...]:
     """Names of the parameters of the law of a choice."""
-    who = _name(choice)
     if choice.function is None:
-        raise TypeError(f"{who} has no function in laws/families.py, and its dispatch asks for one")
-    names = tuple(inspect.signature(getattr(choice.function, "py_func", choice.function)).parameters)
+        raise TypeError(f"{_name(choice)} has no function in laws/families.py, and its dispatch asks for one")
+    names = _parameters(choice.function)
     for name in names:
         if name not in arguments:
-            raise TypeError(f"{who} asks for '{name}'; its family is given {', '.join(arguments)}")
+            raise TypeError(f"{_name(choice)} asks for '{name}'; its family is given {', '.join(arguments)}")
     return names
+
+
+@cache
+def _parameters(function: Callable[..., Any]) -> tuple[str, ...]:
+    """Names of the parameters of a law; kept, because a settling velocity evaluates a law a hundred times."""
+    return tuple(inspect.signature(getattr(function, "py_func", function)).parameters)
 
 
 def _name(choice: Family) -> str:
