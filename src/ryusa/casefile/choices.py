@@ -1,6 +1,7 @@
 """The choice of each family of laws that is in force in a case, and keys that no choice in force takes."""
 
 from collections.abc import Callable, Iterator
+from functools import cache
 from typing import Any, TypeVar
 
 from ryusa.casefile.case import Case
@@ -87,7 +88,7 @@ def check_choices(case: Case) -> Iterator[CaseError]:
     reported: set[str] = set()
     for family in FAMILIES:
         section, above = section_of(case, family), _section(family)
-        beside = [one for one in FAMILIES if _section(one) == above]
+        beside = _beside(family)
         if section is None or not any(one in found for one in beside):
             continue
         for key in family.all_takes():
@@ -113,9 +114,17 @@ def _why(found: dict[type[Family], Family], takers: list[type[Family]]) -> str:
     return " and ".join(words)
 
 
+@cache
+def _beside(family: type[Family]) -> tuple[type[Family], ...]:
+    """Families whose keys stand in the section of a family, itself included."""
+    return tuple(one for one in FAMILIES if _section(one) == _section(family))
+
+
+@cache
 def _leaf(family: type[Family]) -> str:
     return family.key.rsplit(".", 1)[1]
 
 
+@cache
 def _section(family: type[Family]) -> str:
     return family.key.rsplit(".", 1)[0]

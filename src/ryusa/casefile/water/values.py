@@ -95,6 +95,8 @@ def terminal_velocity(case: "Case", form: Clump | None = None) -> float:
     pull, low, high = m_weight * case.motion.gravity, 0.0, 1.0e4
     for _ in range(200):
         w = 0.5 * (low + high)
+        if w in (low, high):  # no number lies between: further halving changes nothing
+            break
         c_d = drag_coefficient(case, drag.reynolds(w, d, wet.viscosity), form)
         if drag.drag_factor(w, c_d, wet.density, wet.shape_area, d) * w > pull:
             high = w
