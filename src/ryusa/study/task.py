@@ -21,6 +21,7 @@ from ryusa.spelling import nearest_word
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
+    from ryusa.casefile.derive import Derived
 
 # Corrections to the estimate for a single run, from the 639 runs of the standard level of the paper's ledger,
 # seeds 1 to 3, two at a time on two cores of an AMD EPYC: 43 core minutes in all, estimated as 46; for one
@@ -111,7 +112,6 @@ class CaseRun(Task):
 
     def cost(self) -> float:
         """Estimated core seconds of the run."""
-        from ryusa.casefile.derive import derive
         from ryusa.casefile.estimate import SECONDS_PER_RUN, seconds_needed
 
         case = self.read()
@@ -119,15 +119,13 @@ class CaseRun(Task):
             _TO_HOPS if case.stop.saltations is not None else _TO_REST if case.stop.rest is not None else 1.0
         )
         law = 1.0 if case.rolling.model == "none" else _ROLLING
-        return _BEGIN + share * law * (seconds_needed(case, derive(case)) - SECONDS_PER_RUN)
+        return _BEGIN + share * law * (seconds_needed(case, _derived(self)) - SECONDS_PER_RUN)
 
     def disk(self) -> int:
         """Estimated size of the run [bytes]."""
-        from ryusa.casefile.derive import derive
         from ryusa.casefile.estimate import disk_in_all
 
-        case = self.read()
-        return disk_in_all(case, derive(case))
+        return disk_in_all(self.read(), _derived(self))
 
     def share(self, folder: Path) -> float | None:
         """Return the share of the simulated time, or of the hops, that is recorded; None if nothing is."""
@@ -203,6 +201,13 @@ def _read(one: CaseRun) -> "Case":
     from ryusa.casefile.read import read
 
     return read(one.cases / f"{one.case}.toml", dict(one.overrides))
+
+
+@lru_cache(maxsize=4096)
+def _derived(one: CaseRun) -> "Derived":
+    from ryusa.casefile.derive import derive
+
+    return derive(_read(one))
 
 
 Numbers = Mapping[str, Any]  # names to arrays and numbers
