@@ -2,10 +2,11 @@
 
 from collections.abc import Callable
 from importlib import import_module
-from types import FunctionType
+from types import CellType, FunctionType
 from typing import Any, TypeVar
 
 from ryusa.engine.cuda.availability import simulated
+from ryusa.laws import _family
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -34,4 +35,18 @@ def _plain(function: Any) -> Any:
         one = known.get(name)
         if hasattr(one, "py_func") and one.__module__.startswith("ryusa.engine"):
             known[name] = _plain(one)
+        elif name in known:
+            known[name] = _choice(one)
     return FunctionType(text.__code__, known, text.__name__, text.__defaults__, text.__closure__)
+
+
+def _choice(one: Any) -> Any:
+    """The text of a choice among laws, which no cache keeps and every process would compile; else as given.
+
+    The laws themselves stay compiled.
+    """
+    text = getattr(one, "py_func", None)
+    if text is None or text.__module__ != _family.__name__:
+        return one
+    held = tuple(CellType(_choice(cell.cell_contents)) for cell in text.__closure__ or ())
+    return FunctionType(text.__code__, text.__globals__, text.__name__, text.__defaults__, held)
