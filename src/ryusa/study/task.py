@@ -4,7 +4,7 @@ import hashlib
 import json
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from importlib import import_module
 from pathlib import Path
@@ -114,18 +114,25 @@ class CaseRun(Task):
         """Estimated core seconds of the run."""
         from ryusa.casefile.estimate import SECONDS_PER_RUN, seconds_needed
 
-        case = self.read()
+        any_seed = self._of_any_seed()
+        case = any_seed.read()
         share = (
             _TO_HOPS if case.stop.saltations is not None else _TO_REST if case.stop.rest is not None else 1.0
         )
         law = 1.0 if case.rolling.model == "none" else _ROLLING
-        return _BEGIN + share * law * (seconds_needed(case, _derived(self)) - SECONDS_PER_RUN)
+        return _BEGIN + share * law * (seconds_needed(case, _derived(any_seed)) - SECONDS_PER_RUN)
 
     def disk(self) -> int:
         """Estimated size of the run [bytes]."""
         from ryusa.casefile.estimate import disk_in_all
 
-        return disk_in_all(self.read(), _derived(self))
+        any_seed = self._of_any_seed()
+        return disk_in_all(any_seed.read(), _derived(any_seed))
+
+    def _of_any_seed(self) -> "CaseRun":
+        """The run with the seed of its case file, on which nothing depends that is known before it starts."""
+        kept = tuple((key, value) for key, value in self.overrides if key != "seed" or not _is_seed(value))
+        return replace(self, overrides=kept)
 
     def share(self, folder: Path) -> float | None:
         """Return the share of the simulated time, or of the hops, that is recorded; None if nothing is."""
@@ -194,6 +201,11 @@ def case_run(path: Path, overrides: Mapping[str, str] | None = None, *, seed: in
         raise CaseError("case file", str(path), allowed, nearest_word(path.name, beside))
     changed = {**(overrides or {}), **({} if seed is None else {"seed": str(seed)})}
     return CaseRun(path.stem, tuple(sorted(changed.items())), path.parent)
+
+
+def _is_seed(value: str) -> bool:
+    """Whether a text is a seed that every case takes; of another, reading the case tells what is wrong."""
+    return value.isascii() and value.isdecimal() and len(value) <= 18
 
 
 @lru_cache(maxsize=4096)
