@@ -14,6 +14,9 @@ CHECKED := runs/validation-quick
 DRAWN  := docs/pictures
 JOBS   ?= 2
 
+# Neighbouring tests share fixtures and compiled kernels, so each process begins with one run of them.
+SPREAD := -n $(JOBS) --dist worksteal
+
 PIP    := $(BIN)/python -m pip install -qq --disable-pip-version-check --constraint constraints.txt
 
 # An empty file says what the environment holds; it is older than its recipe when something must be done again.
@@ -91,7 +94,7 @@ walls: $(HAS_TESTS) ## import-linter: which room may see which
 	$(BIN)/lint-imports
 
 unit: $(HAS_TESTS) ## pytest: doctests in src, tests in tests
-	$(BIN)/python -m pytest -q -n $(JOBS)
+	$(BIN)/python -m pytest -q $(SPREAD)
 
 paper: $(HAS_RYUSA) ## every claim of the paper, judged over four seeds: runs/paper/ledger.html
 	$(BIN)/ryusa paper --jobs $(JOBS)
@@ -116,10 +119,10 @@ soak: $(HAS_TESTS) ## half an hour of a two-way run, whose memory must stay flat
 	$(BIN)/python tests/faults/soak.py build/soak 30
 
 faults: $(HAS_TESTS) ## the fault campaign: 200 kills, full disks, a thousand damaged and foreign folders
-	$(BIN)/python -m pytest -q -n $(JOBS) tests/faults -m "slow or not slow"
+	$(BIN)/python -m pytest -q $(SPREAD) tests/faults -m "slow or not slow"
 
 slow: $(HAS_TESTS) ## tests that take longer than about ten seconds
-	$(BIN)/python -m pytest -q -n $(JOBS) -m slow
+	$(BIN)/python -m pytest -q $(SPREAD) -m slow
 
 golden: $(HAS_TESTS) ## run the recipes in tests/golden, keep the numbers that moved and say which did
 	$(BIN)/python tests/golden/goldens.py
