@@ -76,10 +76,10 @@ demo: $(HAS_RYUSA) ## install, run the saltation case, measure it, draw it, writ
 # ---------------------------------------------------------------------------------------------------------- test
 
 test: $(HAS_TESTS) ## the demo, the paper's claims and the validation in short, then every check and test
-	@$(MAKE) --no-print-directory demo
+	@$(MAKE) --no-print-directory -j $(JOBS) demo lint types walls # one process each
 	@$(MAKE) --no-print-directory paper-quick
 	@$(MAKE) --no-print-directory validate-quick
-	@$(MAKE) --no-print-directory check
+	@$(MAKE) --no-print-directory unit
 
 check: lint types walls unit ## every check and test, without the demo
 
