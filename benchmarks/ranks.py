@@ -41,6 +41,7 @@ CELLS = (60, 240)  # of the columns that are timed
 INTERVAL = 33  # steps between two exchanges, as the packaged cases have it
 STRETCH = 400  # steps of a stretch on several ranks; each call costs them as much as a step or more
 SHAPES = {"square": (13, 13), "strip": (56, 3), "large": (29, 29)}  # grains along and across; 12 deep
+BY_THE_WALL = {"square": (13, 13), "large": (29, 29), "largest": (82, 82)}  # 2,028, 10,092 and 80,688 grains
 FRAME = 88  # bytes of a grain in a frame
 
 
@@ -166,13 +167,15 @@ def _exchange(engine: Any, column: Any) -> float:
 def by_the_wall(stretches: int) -> dict[str, Any]:
     """Shortest wall time of a step, on these ranks [s], and of a sum over them."""
     found: dict[str, Any] = {}
-    for name in ("square", "large"):
-        engine, _ = loaded(SHAPES[name], "dry")
+    for name, shape in BY_THE_WALL.items():
+        engine, _ = loaded(shape, "dry")
+        most = SHAPES["large"][0] * SHAPES["large"][1]
+        steps = STRETCH * most // max(most, shape[0] * shape[1])  # longer steps, fewer of them
         taken = []
         for _ in range(stretches):
             begun = time.perf_counter()
-            engine.advance(STRETCH)
-            taken.append((time.perf_counter() - begun) / STRETCH)
+            engine.advance(steps)
+            taken.append((time.perf_counter() - begun) / steps)
         found[name] = {"step": min(taken), "middle": float(np.median(taken)), "ghosts": ghosts(engine)}
         engine._ranks._share.close()
     return found
@@ -290,7 +293,7 @@ def main() -> None:
     found["wall"] = {str(p): _asked(p, "wall", options.stretches) for p in (1, options.ranks)}
     found["load"].append(os.getloadavg()[0])
     one, more = found["wall"]["1"], found["wall"][str(options.ranks)]
-    for name in ("square", "large"):
+    for name in BY_THE_WALL:
         found[f"efficiency, {name}"] = one[name]["step"] / (options.ranks * more[name]["step"])
     options.out.parent.mkdir(parents=True, exist_ok=True)
     options.out.write_text(json.dumps(found, indent=1) + "\n")
