@@ -12,6 +12,10 @@ import ryusa
 from ryusa.build import build
 from ryusa.casefile import explain, read_text, resolved
 from ryusa.errors import CaseError, GrainLost
+from ryusa.measure.along_row import grains_along_row
+from ryusa.measure.deposit import deposit
+from ryusa.measure.front import front
+from ryusa.measure.long_section import long_section
 from ryusa.measure.walls import walls
 from ryusa.model.traffic import IN, OUT
 from ryusa.results import Results, schema
@@ -252,3 +256,22 @@ def test_a_grain_that_leaves_the_row_beside_its_exit_stops_the_run(tmp_path: Pat
     }
     with pytest.raises(GrainLost, match=r"beyond the row of columns from 0 to 0\.4 m"):
         run(tmp_path / "run", more)
+
+
+def test_measures_along_the_row_count_every_grain_that_came_and_left(stream: Results) -> None:
+    row, frames = stream.row.row, np.arange(len(stream.frames))
+    held = grains_along_row(stream, row, frames)
+    gained = (held.volume - held.volume[0]) * row.dx
+    rest = gained - (held.passed[:, :-1] - held.passed[:, 1:] + held.fed)
+    assert np.abs(rest).max() < 1e-12 * gained.max()
+    later = stream.passages[stream.passages["step"] > 0]  # one comes before the first frame
+    m, way = later["m"] / 2650.0, later["way"]
+    assert held.passed[-1, -1] * held.width == pytest.approx(m[way == OUT].sum(), rel=1e-9)  # the outlet
+    found = deposit(stream, dam="dam")
+    assert np.abs(found.unaccounted).max() < 1e-12 * found.held.max()
+    assert np.abs(found.brought - found.passed - found.stored).max() < 1e-12 * found.held.max()
+    assert found.brought[-1] * held.width == pytest.approx(m[way == IN].sum(), rel=1e-9)
+    assert 0.05 < found["trapped_share"].value <= 1.0
+    assert front(stream).first[-1] > 0.1
+    section = long_section(stream, begin=0.05)
+    assert (section.solid_discharge[3:6] > 0.0).all() and section.bed[5] > section.bottom[5]

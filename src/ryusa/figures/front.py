@@ -15,5 +15,5 @@ def front(found: Front) -> Figure:
     axes.set_xlabel("time  $t$  (s)")
     axes.set_ylabel("distance  $x$  (m)")
     axes.margins(x=0.0)
-    axes.legend(loc="upper left")
+    axes.legend(loc="lower right")
     return figure
