@@ -353,7 +353,7 @@ def test_an_interrupt_ends_every_process_and_says_how_to_continue(campaign, how)
 def test_a_run_whose_process_was_killed_is_tried_once_more_and_costs_no_other(campaign):
     workers = [one for one, words in family(campaign.pid).items() if "spawn_main" in words]
     os.kill(workers[0], signal.SIGKILL)
-    _, said = campaign.communicate(timeout=120)
+    _, said = campaign.communicate(timeout=600)
     assert "its process was ended from outside; it is tried once more, by itself" in said
     assert "could not be carried out" not in said
     assert campaign.returncode == 0
