@@ -7,7 +7,11 @@ import numpy as np
 import pytest
 from tests.water.test_row_grains import WALLS, D, cloud, column_of, lattice
 
-from ryusa.model.row import ColumnRow, PorousSolid, RowDam
+from ryusa.engine.cpu.engine import CpuEngine
+from ryusa.laws.families import Hindrance
+from ryusa.model.fluid import EXTRA_X
+from ryusa.model.row import ColumnRow, EndKind, PorousSolid, RowDam, RowEnd
+from ryusa.water import row_grains
 from ryusa.water.row import shape_of
 from ryusa.water.row_exchange import RowTold
 from ryusa.water.row_grains import GrainsInRow
@@ -91,3 +95,49 @@ def test_a_grain_beside_a_dam_does_not_feel_the_fall_of_the_surface_over_it():
     places = GrainPlaces.of(3, N)
     assert place_grains(x[:, 0], row.x_low, 0.0, shape, places) == -1
     assert (places.shut[1] == [CREST, 0, 0]).all()
+
+
+def test_what_grains_take_is_given_by_stations_ends_and_dam_together(monkeypatch):
+    """In a row with an inlet, a dam and a drop: to round-off; each station closes by itself."""
+    row, _ = dammed(0.05, False)
+    inlet = RowEnd(EndKind.DISCHARGE, discharge=0.02)
+    flat = RowDam("dam", 5, 7, CREST * D, False)
+    row = replace(
+        row, bottom=np.zeros(N), upstream=inlet, downstream=RowEnd(EndKind.FREE_FALL), dams=(flat,),
+        column=replace(row.column, g_x=G * math.sin(0.05)),
+    )  # fmt: skip
+    rng = np.random.default_rng(5)
+    at = lattice(LENGTH, 0.045, 2.5 * D, low=D)
+    at = at[(np.abs(at[:, 0] - 0.06) > 0.01 + 0.7 * D) | (at[:, 2] > CREST * D + D)]
+    fixed, first = cloud(at=at, length=math.inf, tilt=0.05, hindrance=Hindrance.DI_FELICE)
+    fixed = replace(fixed, world_low=(-math.inf,) * 3)
+    v = np.column_stack([rng.normal(0.1, 0.1, len(at)), 0.0 * at[:, 0], rng.normal(0.0, 0.05, len(at))])
+    start = GrainsInRow.begin(fixed, row, at).at_rest(np.full(N, 0.05))
+    start = replace(start, u=0.2 + 0.0 * start.u)
+    given: list[np.ndarray] = []
+    act = row_grains.act_on_stations
+
+    def acting(p, area, shape, u, sums, sums_fixed, acts):
+        act(p, area, shape, u, sums, sums_fixed, acts)
+        given.append(acts.force * area * p.dz)
+
+    monkeypatch.setattr(row_grains, "act_on_stations", acting)
+    engine = CpuEngine()
+    engine.load(fixed, replace(first, v=v))
+    state, grains = start, GrainsInRow.begin(fixed, row, at, start)
+    weight = (fixed.m_weight - fixed.m) * fixed.gravity[0]
+    for _ in range(6):
+        told = grains.sampled.copy()
+        engine.set_fluid(told)
+        engine.advance(10).raise_if_any()
+        x, v, impulse = engine.kinematics()
+        time = 10 * fixed.dt
+        state = grains.exchange(state, x, v, impulse, time)
+        taken = float((impulse[:, 0] / time + told[:, EXTRA_X] + weight).sum())
+        force = given[-1]
+        whole = force.sum() - 0.5 * (force[0] + force[-1]).sum()  # a station at an end has half a segment
+        assert whole == pytest.approx(taken, abs=1e-12 * np.abs(force).sum())
+        assert grains.worst < 1e-11
+        held = 0.5 * force[0].sum() + force[[5, 7], :CREST].sum()  # by the inlet and the dam
+        assert np.abs(held) > 1e-3 * np.abs(force).sum()
+        assert np.abs(force[6, :CREST]).max() == 0.0
