@@ -2,6 +2,7 @@
 
 import math
 import sys
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -237,6 +238,17 @@ def test_what_a_stream_cannot_be_is_refused_with_its_key(more: dict[str, str], k
         build(read_text(STREAM, more))
     faults = (caught.value, *caught.value.others)
     assert any(one.key == key and says in one.line for one in faults), [one.line for one in faults]
+
+
+@pytest.mark.parametrize(("name", "walls_of_it"), [("dam_break", ("bottom",))])
+def test_a_packaged_stream_runs(name: str, walls_of_it: tuple[str, ...], tmp_path: Path) -> None:
+    text = files("ryusa.cases").joinpath(f"{name}.toml").read_text(encoding="utf-8")
+    short = {"stop.time": "'20 ms'", "record.frames": "'10 ms'"}
+    found = ryusa.run(read_text(text, short), tmp_path / "run", progress=False)
+    assert found.complete
+    assert found.scene.walls is not None
+    assert found.scene.walls.names == walls_of_it
+    assert found.summary["water"]["momentum_residual"] < 1e-9
 
 
 def test_a_stream_without_a_row_is_refused() -> None:
