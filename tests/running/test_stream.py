@@ -240,7 +240,9 @@ def test_what_a_stream_cannot_be_is_refused_with_its_key(more: dict[str, str], k
     assert any(one.key == key and says in one.line for one in faults), [one.line for one in faults]
 
 
-@pytest.mark.parametrize(("name", "walls_of_it"), [("dam_break", ("bottom",))])
+@pytest.mark.parametrize(
+    ("name", "walls_of_it"), [("sabo_dam", ("bottom", "dam")), ("dam_break", ("bottom",))]
+)
 def test_a_packaged_stream_runs(name: str, walls_of_it: tuple[str, ...], tmp_path: Path) -> None:
     text = files("ryusa.cases").joinpath(f"{name}.toml").read_text(encoding="utf-8")
     short = {"stop.time": "'20 ms'", "record.frames": "'10 ms'"}
