@@ -28,8 +28,7 @@ def dammed(n: int = 8) -> ColumnRow:
     return row
 
 
-@pytest.fixture
-def trap() -> Any:
+def trapping() -> Any:
     """Ten grains are fed at 0.11 m, one each 0.1 s; every fifth goes on to 0.18 m and out, others stop.
 
     The first grain of the run stays at 0.12 m.
@@ -51,6 +50,11 @@ def trap() -> Any:
         rows[10 + k]["grain"], rows[10 + k]["way"], rows[10 + k]["t"] = gone, OUT, 0.1 * gone - 0.01
         rows[10 + k]["step"], rows[10 + k]["x"] = 100 * gone - 10, (0.18, 0.0, 0.001)
     return run_of(dammed(), T, x, np.zeros_like(x), rows[np.argsort(rows["step"], kind="stable")])
+
+
+@pytest.fixture
+def trap() -> Any:
+    return trapping()
 
 
 def test_what_came_less_what_went_is_stored_at_every_frame(trap: Any) -> None:

@@ -1,6 +1,7 @@
-"""Numbers that the catalogue names for measures that need walls; the others: `tests/studies/soften`."""
+"""Numbers that the catalogue names for measures that need walls or ends; others: `tests/studies/soften`."""
 
 import pytest
+from tests.measure.test_deposit import trapping
 from tests.measure.test_direct_shear import sheared as drawn_apart
 from tests.measure.test_mill import turning
 from tests.measure.test_plane_shear import sheared
@@ -9,6 +10,8 @@ from tests.measure.test_shear_zone import turned
 from ryusa.catalogue import MEASURES, load
 
 RUNS = {
+    "deposit": lambda _: trapping(),
+    "front": lambda _: trapping(),
     "direct_shear": lambda _: drawn_apart(),
     "mill": turning,
     "shear": sheared,
@@ -16,9 +19,7 @@ RUNS = {
 }
 
 
-@pytest.mark.parametrize(
-    "entry", [one for one in MEASURES if one.numbers and "walls" in one.needs], ids=lambda one: one.name
-)
+@pytest.mark.parametrize("entry", [one for one in MEASURES if one.name in RUNS], ids=lambda one: one.name)
 def test_the_numbers_of_the_catalogue_are_those_that_the_measure_gives(entry, make):
     found = load(entry.function)(RUNS[entry.name](make))
     rows = (found.averages if hasattr(found, "averages") else found).rows()
