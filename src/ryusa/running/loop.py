@@ -17,6 +17,7 @@ from ryusa.results import schema
 from ryusa.running import provenance
 from ryusa.running.checkpoint import CheckpointBlock
 from ryusa.running.checkpoint_scheduler import CheckpointScheduler
+from ryusa.running.crossing import of_heads
 from ryusa.running.disk import retry_when_full
 from ryusa.running.folder import write_final_json, write_json
 from ryusa.running.guards import energy_created
@@ -304,7 +305,8 @@ class Loop:
                 self.engine.set_fluid(passed.water.sampled)
             self.recorder.passages(passed.rows)
         if isinstance(self._water, RowCoupling):
-            self._water.refuse_lost(self.engine.kinematics()[0])
+            x = of_heads(self.scene, self.engine.grains())[0][self.scene.heads]
+            self._water.refuse_lost(x, np.flatnonzero(self.scene.heads), self._step, self._t)
         for line in traffic.news(self._step, self._t):
             self.progress.line(line)
 

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ryusa.errors import GrainLost
 from ryusa.laws.families import Drive, Start
@@ -112,7 +113,7 @@ class RowCoupling:
         """
         time, grains, before = self.steps * self.scene.dt, self.grains, self.state.passed
         if self.scene.traffic is None:
-            self.refuse_lost(x)
+            self.refuse_lost(x, np.arange(len(x)), self.due, self.state.t + time)
         if grains is None:
             self.state = advance_row(self.row, self.state, time, solid=self.row.porous)
         else:
@@ -150,10 +151,16 @@ class RowCoupling:
         at = np.clip(np.floor((x - row.x_low) / row.dx), 0, row.n_segment - 1).astype(np.int64)
         return (row.bottom + self.state.surface[row.inner] - row.column.z_low)[at]
 
-    def refuse_lost(self, x: Floats) -> None:
-        """Raise a `GrainLost` for a grain beyond the ends of the row; x [m], shape (n_grain, 3).
+    def refuse_lost(self, x: Floats, grains: NDArray[np.int64], step: int, t: float) -> None:
+        """Raise a `GrainLost` for a grain beyond the ends of the row.
 
         To be called where no grain is on its way through an exit.
+
+        Parameters
+        ----------
+        x : centres of spheres and clumps [m], nan where one is away, shape (n, 3).
+        grains : their ids, shape (n,).
+        step, t : of the engine now, its time [s].
         """
         row = self.row
         if row.periodic:
@@ -164,7 +171,7 @@ class RowCoupling:
             i = int(lost[0])
             raise GrainLost(
                 f"the grain is at x = {x[i, 0]:.4g} m, beyond the row of columns from {row.x_low:g} to "
-                f"{high:g} m", grain=i, step=self.due - self.steps, t=self.state.t,
+                f"{high:g} m", grain=int(grains[i]), step=step, t=t,
                 hint="Give an exit that takes what leaves the row there ([[exits]]), or a wall.",
             )  # fmt: skip
 
