@@ -177,11 +177,12 @@ def tell(
     told.u[:] = water.u
     told.wet[:] = water.wet / p.dz
     rise = np.zeros((len(shape.bottom), p.n))  # of the mixture, by what converges below [m/s]
+    periodic = len(shape.kind) == len(shape.bottom)
     for i in range(len(shape.bottom)):
         west, east = shape.west[i], shape.east[i]
         below = 0.0
-        # grains do not pass a wall, nor an inlet, where a screen holds them
-        come = 1.0 if shape.kind[west] == OPEN else 0.0
+        # grains do not pass a wall, an inlet, or the upper end of a row, where a screen holds them
+        come = 1.0 if shape.kind[west] == OPEN and (periodic or i > 0) else 0.0
         go = 1.0 if shape.kind[east] == OPEN else 0.0
         for k in range(p.n):
             grains = go * through[east, k] / area - come * through[west, k] / area
