@@ -12,6 +12,8 @@ import pytest
 import ryusa
 from ryusa.build import build
 from ryusa.casefile import explain, read_text, resolved
+from ryusa.casefile.builders.values import stream_cells
+from ryusa.casefile.row.values import dam_span, row_plan
 from ryusa.errors import CaseError, GrainLost
 from ryusa.measure.along_row import grains_along_row
 from ryusa.measure.deposit import deposit
@@ -20,6 +22,7 @@ from ryusa.measure.long_section import long_section
 from ryusa.measure.walls import walls
 from ryusa.model.traffic import IN, OUT
 from ryusa.results import Results, schema
+from ryusa.units import quantity
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "faults"))
 from campaign import differences
@@ -75,6 +78,14 @@ time = "0.12 s"
 frames = "10 ms"
 events = "none"
 """
+
+
+def feeder(x: str, z: str, y: str = "0 mm") -> dict[str, str]:
+    """A feed as a box of 2 x 2.4 x 2 cm3 with a given lower corner."""
+    (a, b, c), name = (quantity(one, "m") for one in (x, y, z)), "feeder"
+    high = [f"'{one + more} m'" for one, more in ((a, 0.02), (b, 0.024), (c, 0.02))]
+    box = f"low = ['{x}', '{y}', '{z}'], high = [{', '.join(high)}]"
+    return {"feeds": f"[{{ name = '{name}', {box}, rate = '100 grains/s' }}]"}
 
 
 def run(folder: Path, more: dict[str, str] | None = None, **how: Any) -> Results:
@@ -231,6 +242,14 @@ def test_a_heavy_grain_slides_down_an_inclined_reach_as_drag_weight_and_friction
         ({"exits": "[{ name = 'dam', point = ['0.4 m', '0 m', '0 m'], normal = [1, 0, 0] }]"},
          "water.row.dams.0.name", "used twice"),
         ({"timeline": "[{ at = '0.1 s', remove = 'dam' }]"}, "timeline.0.remove", "cannot be removed"),
+        (feeder(x="26 cm", z="1.4 cm"), "feeds.0", "in the dam 'dam', which stands from x = 0.25 to 0.3 m"),
+        (feeder(x="10 cm", z="0.4 cm"), "feeds.0", "reaches below the bottom, which is as high as z = 0.005"),
+        (feeder(x="-1 cm", z="4 cm"), "feeds.0", "must lie in the row"),
+        (feeder(x="10 cm", z="4 cm", y="1 mm") | {"build.walls": "true"}, "feeds.0", "between the side"),
+        ({"water.column.packed": "0.95"}, "water.column.packed", "densest packing"),
+        ({"water.column.mixing_length": "'none'", "water.column.fluctuations": "'random walk'"},
+         "water.column.fluctuations", "has no effect"),
+        ({"water.column.side_friction": "'Blasius'"}, "water.column.side_friction", "needs"),
     ],
 )  # fmt: skip
 def test_what_a_stream_cannot_be_is_refused_with_its_key(more: dict[str, str], key: str, says: str) -> None:
@@ -268,8 +287,45 @@ def test_a_grain_that_leaves_the_row_beside_its_exit_stops_the_run(tmp_path: Pat
         "rate = '100 grains/s', velocity = ['4 m/s', '0 m/s', '0 m/s'] }]",
         "build.bed": "'0 cm'",
     }
-    with pytest.raises(GrainLost, match=r"beyond the row of columns from 0 to 0\.4 m"):
+    with pytest.raises(GrainLost, match=r"beyond the row of columns from 0 to 0\.4 m") as caught:
         run(tmp_path / "run", more)
+    fault, flight = caught.value, 0.4 - 0.08  # m at most, at 4 m/s
+    assert fault.t is not None and fault.step is not None
+    assert fault.t == pytest.approx(fault.step * Results.open(tmp_path / "run").scene.dt)
+    assert 0.0 < fault.t < 0.02 + flight / 4.0
+
+
+def test_a_clump_leaves_a_stream_with_its_centre(tmp_path: Path) -> None:
+    """One of its spheres is beyond the row before its centre is at the exit."""
+    more = {
+        "grains.shape": "'dumbbell'", "build.bed": "'0 cm'", "stop.time": "'0.2 s'", "water.row.dams": "[]",
+        "feeds": "[{ name = 'jet', low = ['5 cm', '0 cm', '8 cm'], high = ['10 cm', '2.4 cm', '11 cm'], "
+        "rate = '100 grains/s', velocity = ['3 m/s', '0 m/s', '0 m/s'] }]",
+    }  # fmt: skip
+    found = run(tmp_path / "run", more)
+    assert found.scene.bodies is not None
+    out = found.passages[found.passages["way"] == OUT]
+    assert len(out) > 5
+    assert np.abs(out["x"][:, 0] - 0.4).max() < 1e-6
+
+
+@pytest.mark.parametrize("begin", [0.24, 0.26, 0.3, 0.31, 0.36])
+@pytest.mark.parametrize("n", [40, 50, 60, 80, 100, 160])
+def test_the_lattice_of_a_bed_ends_at_a_dam_and_loses_no_column_to_rounding(begin: float, n: int) -> None:
+    """A dam between columns of the lattice, whose places are rounded."""
+    row = {"water.row.bottom": "[['0 m', '0 m'], ['0.5 m', '0 m']]", "water.row.segments": "50"}
+    row |= {"exits": "[{ name = 'outlet', point = ['0.5 m', '0 m', '0 m'], normal = [1, 0, 0] }]"}
+    dam = f"[{{ name = 'dam', begin = '{begin} m', end = '{begin + 0.02} m', height = '1.5 cm' }}]"
+    size = {"grains.diameter": f"'{0.5 / n / 1.14} m'", "water.column.cell": "'3 mm'", "feeds": "[]"}
+    case = read_text(
+        STREAM, row | size | {"water.row.dams": dam, "grains.spread": "0", "water.row.width": "'6 cm'"}
+    )
+    low, (pitch, _), columns, _ = stream_cells(case)
+    first, last = (k * 0.5 / 50 for k in dam_span(row_plan(case), case.water.row.dams[0]))
+    count = round(0.5 / pitch)
+    beside = [k for k in range(count) if k + 1 <= first / pitch + 1e-6 or k >= last / pitch - 1e-6]
+    assert low == 0.0
+    assert columns.tolist() == beside
 
 
 def test_measures_along_the_row_count_every_grain_that_came_and_left(stream: Results) -> None:

@@ -225,11 +225,11 @@ def stream_cells(case: "Case") -> tuple[float, tuple[float, float], NDArray[np.i
     free, width = room(case) * (1.0 + build.gap), width_of(case) or 0.0
     n_x, n_y = max(int((end - begin) / free * (1.0 + 1e-9)), 1), max(int(width / free * (1.0 + 1e-9)), 1)
     pitch, plan = (end - begin) / n_x, row_plan(case)
-    low = begin + np.arange(n_x) * pitch
+    low, close = begin + np.arange(n_x) * pitch, 1.0e-9 * pitch
     beside = np.ones(n_x, np.bool_)
     for dam in case.water.row.dams if case.water is not None and case.water.row is not None else ():
         first, last = (plan.x_low + i * plan.dx for i in dam_span(plan, dam))
-        beside &= (low + pitch <= first) | (low >= last)
+        beside &= (low + pitch <= first + close) | (low >= last - close)
     return begin, (pitch, width / n_y), np.flatnonzero(beside), n_y
 
 

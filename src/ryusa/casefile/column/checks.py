@@ -36,9 +36,11 @@ def check_column(case: "Case") -> Iterator[CaseError]:
     keys = column_keys(case)
     if stream(case):
         yield from _laws(water)
+        yield from _closures(keys)
         return
     yield from _place(case, water)
     yield from _laws(water)
+    yield from _closures(keys)
     yield from _boundaries(case, water, keys)
     driver = [*_driver(case, water, keys)]
     yield from driver
@@ -78,25 +80,28 @@ def _laws(water: WaterSection) -> Iterator[CaseError]:
         yield CaseError("water.hindrance", water.hindrance, "has no effect with drag 'none'")
 
 
-def _boundaries(case: "Case", water: WaterSection, keys: ColumnSection) -> Iterator[CaseError]:
-    if "wall" in Mixing.of(keys.mixing).marks and keys.bed == "moving":
-        yield CaseError(
-            "water.column.mixing_length", keys.mixing, "needs a wall: water.column.bed 'smooth' or 'rough'"
-        )
+def _closures(keys: ColumnSection) -> Iterator[CaseError]:
     if keys.packed is not None and keys.packed > DENSEST:
         yield CaseError(
             "water.column.packed",
             keys.packed,
             f"must be at most {DENSEST:.4g}, pi/sqrt(18), the densest packing of equal spheres",
         )
-    if keys.side_walls is not None:
-        yield from _side_walls(case, keys.side_walls)
     if keys.fluctuations != "none" and keys.mixing == "none" and keys.pore_eddies == 0.0:
         yield CaseError(
             "water.column.fluctuations", keys.fluctuations, "has no effect with mixing_length 'none'"
         )
     if given(keys, "side_friction") and keys.side_walls is None:
         yield CaseError("water.column.side_friction", keys.side_friction, "needs water.column.side_walls")
+
+
+def _boundaries(case: "Case", water: WaterSection, keys: ColumnSection) -> Iterator[CaseError]:
+    if "wall" in Mixing.of(keys.mixing).marks and keys.bed == "moving":
+        yield CaseError(
+            "water.column.mixing_length", keys.mixing, "needs a wall: water.column.bed 'smooth' or 'rough'"
+        )
+    if keys.side_walls is not None:
+        yield from _side_walls(case, keys.side_walls)
     if keys.start == "steady" and water.drag == "none":
         yield CaseError(
             "water.column.start",

@@ -10,8 +10,8 @@ from ryusa.casefile.builders.schema import StreamSection
 from ryusa.casefile.builders.values import FEWEST_PERIODS, sizes, stream_count
 from ryusa.casefile.column.schema import ColumnSection, column_keys
 from ryusa.casefile.row.schema import RowSection
-from ryusa.casefile.row.values import bottom_points, row_plan, stream_span, width_of
-from ryusa.casefile.traffic.schema import ExitSection
+from ryusa.casefile.row.values import bottom_points, crest_of, dam_span, row_plan, stream_span, width_of
+from ryusa.casefile.traffic.schema import ExitSection, FeedSection
 from ryusa.errors import CaseError
 from ryusa.laws.families import Mixing
 from ryusa.model.column import AGREE
@@ -19,6 +19,8 @@ from ryusa.model.column import AGREE
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
 
+Corner = tuple[float, ...]
+CLOSE = 1.0e-9  # beyond a bound only by rounding [m]
 NAMES = ("bottom", "upstream", "downstream", "right", "left", "grains", "bed")  # taken by builder "stream"
 
 
@@ -101,12 +103,49 @@ def check_places(case: "Case", keys: RowSection) -> Iterator[CaseError]:
     if build.bed > 0.0 and stream_count(case) < 1:
         yield CaseError("build.bed", build.bed, "gives no grain: take a thicker or longer bed")
     for k, feed in enumerate(case.feeds):
-        ends = [feed.low, feed.high] if feed.low is not None else [feed.centre]
-        reach = feed.radius or 0.0
-        if any(one is not None and not low + reach <= one[0] <= high - reach for one in ends):
-            yield CaseError(f"feeds.{k}", feed.name, f"must lie in the row, from x = {low:g} to {high:g} m")
+        if feed.moves_with is None and (corners := _corners(feed)) is not None:
+            yield from _feed(case, keys, f"feeds.{k}", feed.name, *corners)
     if keys.downstream is not None and keys.downstream.end != "wall":
         yield from _outlet(case, high)
+
+
+def _feed(
+    case: "Case", keys: RowSection, key: str, name: str, low: Corner, high: Corner
+) -> Iterator[CaseError]:
+    """Find a feed with its corners [m] beyond the row or its side walls, below the bottom, or in a dam."""
+    points, width, build = bottom_points(case), width_of(case), case.build
+    begin, end = points[0][0], points[-1][0]
+    if low[0] < begin - CLOSE or high[0] > end + CLOSE:
+        yield CaseError(key, name, f"must lie in the row, from x = {begin:g} to {end:g} m")
+        return
+    assert isinstance(build, StreamSection)
+    if width is not None and build.walls and (low[1] < -CLOSE or high[1] > width + CLOSE):
+        yield CaseError(key, name, f"must lie between the side walls, y = 0 and {width:g} m")
+    x, z = np.array(points).T
+    inner = z[(x > low[0]) & (x < high[0])].tolist()
+    floor = max([*np.interp([low[0], high[0]], x, z).tolist(), *inner])
+    if low[2] < floor - CLOSE:
+        yield CaseError(key, name, f"reaches below the bottom, which is as high as z = {floor:g} m there")
+    plan = row_plan(case)
+    for dam in keys.dams:
+        first, last = (plan.x_low + i * plan.dx for i in dam_span(plan, dam))
+        crest = crest_of(plan, dam)
+        if low[0] < last - CLOSE and high[0] > first + CLOSE and low[2] < crest - CLOSE:
+            yield CaseError(
+                key, name, f"lies in the dam '{dam.name}', which stands from x = {first:g} to {last:g} m and "
+                f"up to z = {crest:g} m",
+            )  # fmt: skip
+
+
+def _corners(feed: FeedSection) -> tuple[Corner, Corner] | None:
+    """Lowest and highest corner of a feed [m]; None where keys are missing."""
+    if feed.low is not None and feed.high is not None:
+        return feed.low, feed.high
+    if feed.centre is None or feed.radius is None or not any(feed.normal):
+        return None
+    x, square = np.array(feed.centre), np.square(feed.normal)
+    reach = feed.radius * np.sqrt(1.0 - square / square.sum())
+    return tuple((x - reach).tolist()), tuple((x + reach).tolist())
 
 
 def _outlet(case: "Case", high: float) -> Iterator[CaseError]:
