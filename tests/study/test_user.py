@@ -133,3 +133,19 @@ def test_a_mean_is_taken_over_the_seeds_of_a_setting_alone(folder):
     assert one.chart is not None
     assert list(one.chart.ours[0].x) == [10.0, 20.0]
     assert Plan().pick(1, 2) == 2
+
+
+def test_a_case_file_that_was_edited_is_read_and_derived_anew(tmp_path):
+    text = case_path("drop.toml").read_text(encoding="utf-8")
+    own = tmp_path / "drop.toml"
+    own.write_text(text, encoding="utf-8")
+    before = case_run(own)
+    steps = before.derive().dt
+    assert before.read().stop.time == 0.3
+    own.write_text(
+        text.replace('time = "0.3 s"', 'time = "40 s"').replace('"100 N/cm"', '"400 N/cm"'), encoding="utf-8"
+    )
+    after = case_run(own)
+    assert after == before
+    assert after.read().stop.time == 40.0
+    assert after.derive().dt == pytest.approx(0.5 * steps, rel=0.01)

@@ -3,7 +3,7 @@
 import hashlib
 import json
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from importlib import import_module
@@ -104,7 +104,14 @@ class CaseRun(Task):
 
     def read(self) -> "Case":
         """Read and check the case."""
-        return _read(self)
+        return _read(self, _stamps([self.cases / f"{self.case}.toml"]))
+
+    def derive(self) -> "Derived":
+        """Derive the numbers of the case."""
+        from ryusa.running.case_files import files_beside
+
+        own = self.cases / f"{self.case}.toml"
+        return _derived(self, _stamps([own, *files_beside(self.read()).values()]))
 
     def get(self, key: str, default: str = "") -> str:
         """Value of one override as text."""
@@ -120,14 +127,14 @@ class CaseRun(Task):
             _TO_HOPS if case.stop.saltations is not None else _TO_REST if case.stop.rest is not None else 1.0
         )
         law = 1.0 if case.rolling.model == "none" else _ROLLING
-        return _BEGIN + share * law * (seconds_needed(case, _derived(any_seed)) - SECONDS_PER_RUN)
+        return _BEGIN + share * law * (seconds_needed(case, any_seed.derive()) - SECONDS_PER_RUN)
 
     def disk(self) -> int:
         """Estimated size of the run [bytes]."""
         from ryusa.casefile.estimate import disk_in_all
 
         any_seed = self._of_any_seed()
-        return disk_in_all(any_seed.read(), _derived(any_seed))
+        return disk_in_all(any_seed.read(), any_seed.derive())
 
     def _of_any_seed(self) -> "CaseRun":
         """The run with the seed of its case file, on which nothing depends that is known before it starts."""
@@ -208,18 +215,27 @@ def _is_seed(value: str) -> bool:
     return value.isascii() and value.isdecimal() and len(value) <= 18
 
 
+Stamps = tuple[tuple[int, int], ...]
+
+
+def _stamps(paths: Iterable[Path]) -> Stamps:
+    """Times of the last change [ns] and sizes [bytes] of files; zeros for one that is missing."""
+    found = [path.stat() if path.is_file() else None for path in paths]
+    return tuple((0, 0) if one is None else (one.st_mtime_ns, one.st_size) for one in found)
+
+
 @lru_cache(maxsize=4096)
-def _read(one: CaseRun) -> "Case":
+def _read(one: CaseRun, _changed: Stamps) -> "Case":
     from ryusa.casefile.read import read
 
     return read(one.cases / f"{one.case}.toml", dict(one.overrides))
 
 
 @lru_cache(maxsize=4096)
-def _derived(one: CaseRun) -> "Derived":
+def _derived(one: CaseRun, _changed: Stamps) -> "Derived":
     from ryusa.casefile.derive import derive
 
-    return derive(_read(one))
+    return derive(one.read())
 
 
 Numbers = Mapping[str, Any]  # names to arrays and numbers
