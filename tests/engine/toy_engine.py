@@ -20,18 +20,15 @@ class ToyEngine:
 
     def refuses(self, scene: Scene) -> tuple[str, ...]:
         law = scene.contact
-        odd = scene.water.profile or scene.events or scene.rolling.model or scene.plane_case or scene.n_plane
-        odd = (
-            odd
-            or law.force
-            or law.tension
-            or law.slip
-            or law.cap
-            or law.damping
-            or law.timing
-            or not scene.rotation
-        )
-        return (*refusals(scene), *(["a toy has dry spheres that slip by the rule 'spring'"] if odd else []))
+        has_not = {
+            "water": scene.water.profile, "events": scene.events, "rolling friction": scene.rolling.model,
+            "plane scenes": scene.plane_case, "planes": scene.n_plane, "Hertz contacts": law.force,
+            "tension": law.tension, "other slip rules": law.slip, "caps of the slip force": law.cap,
+            "other damping": law.damping, "contacts that begin within steps": law.timing,
+            "locked rotation": not scene.rotation,
+        }  # fmt: skip
+        odd = [name for name, value in has_not.items() if value]
+        return (*refusals(scene), *([f"the toy lacks {', '.join(odd)}"] if odd else []))
 
     def load(self, scene: Scene, state: State) -> None:
         if reasons := self.refuses(scene):
