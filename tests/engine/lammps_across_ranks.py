@@ -6,7 +6,7 @@ import sys
 from dataclasses import replace
 
 import numpy as np
-from tests.engine.conftest import contact_law
+from tests.engine.conftest import M, contact_law, elastic_law
 from tests.engine.heaps import COLUMN
 
 from ryusa.build import scene
@@ -22,6 +22,7 @@ from ryusa.laws.families import (
     SurfaceRule,
 )
 from ryusa.model import Column, Water
+from ryusa.model.contact_law import contact_time_of
 from ryusa.model.fluid import N_SAMPLED, SUBMERGED, U
 from ryusa.model.scene import EventRule
 from ryusa.running.water import advanced, changed, snapshot, started
@@ -120,7 +121,9 @@ def owners(engine, fixed):
 def closed_forms():
     """A collision across the border of ranks, a grain that begins to roll as it crosses it, two that fall."""
     dry = {"slip": Slip.TOTAL, "timing": ContactTiming.AT_STEPS, "events": EventRule.NONE}
-    found = {"rebound": [], "owners": []}
+    found = {"rebound": [], "elastic": [], "owners": []}
+    spheres = elastic_law(0.2, m=0.5 * M, slip=Slip.TOTAL, restitution=0.7)
+    elastic = {"contact": spheres, "dt": contact_time_of(spheres, 0.5 * M, 0.25 * D, 0.2) / 50.0}
     for phase in (0.0, 0.25, 0.5, 0.75):
         made = scene(
             [[0.0, 0.0, 0.0], [1.0001 * D, 0.0, 0.0]], D, v=[[0.1, 0.0, 0.0], [-0.1, 0.0, 0.0]], gravity=0.0,
@@ -133,6 +136,13 @@ def closed_forms():
         found["owners"].append(owners(engine, made[0]))
         engine.advance(125).raise_if_any()
         found["rebound"].append(float(np.diff(engine.grains().v[:, 0])[0]) / 0.2)
+        pair = scene([[0.0, 0.0, 0.0], [1.0001 * D, 0.0, 0.0]], D, v=made[1].v, gravity=0.0,
+            events=EventRule.NONE, **elastic)  # fmt: skip
+        engine = registry.create("lammps")
+        engine.load(pair[0], replace(pair[1], x=pair[1].x + apart / made[0].dt * pair[0].dt))
+        found["owners"].append(owners(engine, pair[0]))
+        engine.advance(125).raise_if_any()
+        found["elastic"].append(float(np.diff(engine.grains().v[:, 0])[0]) / 0.2)
     law = contact_law(k_n=1e3, zeta_n=0.5, zeta_s=0.3, slip=Slip.TOTAL, mu=0.3)
     floor = [("floor", (0.0, 0.0, 0.0), (0.0, 0.0, 1.0))]
     # the second lies still: the border is half way
@@ -195,14 +205,17 @@ def main() -> None:
             print(json.dumps(in_a_column("lammps")))
             return
         column = sys.argv[1] == "column"
+        law = {"slip": Slip.TOTAL, "timing": ContactTiming.AT_STEPS, "restitution": 0.3}
+        if sys.argv[1] == "elastic":
+            spheres = elastic_law(0.1, m=0.5 * M, youngs_modulus=1e7, slip=Slip.TOTAL, restitution=0.3)
+            law = {"contact": spheres, "dt": contact_time_of(spheres, 0.5 * M, 0.25 * D, 0.1) / 50.0}
         rng = np.random.default_rng(2)
         x = 1.0002 * D * np.stack(np.meshgrid(*[np.arange(4)] * 3, indexing="ij"), -1).reshape(-1, 3)
         fixed, first = scene(
             x + np.array([0.5 * D, 0.5 * D, 0.0]), D, v=rng.normal(0.0, 0.05, x.shape),
             omega=rng.normal(0.0, 20.0, x.shape),
-            period=(4.5 * D, 4.5 * D), planes=[("floor", (0, 0, -0.5001 * D), (0, 0, 1))], slip=Slip.TOTAL,
-            timing=ContactTiming.AT_STEPS, events=EventRule.NONE, water=COLUMN if column else Water(),
-            restitution=0.3,
+            period=(4.5 * D, 4.5 * D), planes=[("floor", (0, 0, -0.5001 * D), (0, 0, 1))],
+            events=EventRule.NONE, water=COLUMN if column else Water(), **law,
         )  # fmt: skip
         engine = registry.create("lammps")
         engine.load(fixed, first)

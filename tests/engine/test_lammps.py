@@ -353,8 +353,8 @@ ELASTIC = {"youngs_modulus": 1e7, "poisson_ratio": 0.25, "speed": 0.1}
         (of_contact(zeta_n=zeta_for_restitution(0.1, False)), "contact.restitution", "from 0.14 on"),
         (of_contact(zeta_n=0.0), "a tangential dashpot without", "contact.restitution_shear 1"),
         (
-            of_contact(force=ContactForce.HERTZ_MINDLIN, **ELASTIC),
-            "contact.law is 'Hertz-Mindlin'", "--set contact.law='linear'",
+            of_contact(force=ContactForce.HERTZ_MINDLIN, tension=True, **ELASTIC),
+            "contact.damping_law is 'Tsuji'", "--set contact.damping_law='Thornton'",
         ),
         (of_rolling(model=Rolling.PRINTED), "rolling.model is 'printed'", "'spring-dashpot-slider'"),
         (of_rolling(model=Rolling.CONSTANT), "rolling.model is 'constant'", "'spring-dashpot-slider'"),

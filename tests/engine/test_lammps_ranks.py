@@ -71,10 +71,11 @@ def closed_forms():
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_a_collision_across_the_border_at_50_steps_has_the_restitution_of_the_case(closed_forms, ranks):
     found = closed_forms[ranks]
-    assert found["owners"] == [[0, ranks - 1]] * 4
-    assert np.mean(found["rebound"]) == pytest.approx(0.7, abs=2e-3)
-    assert found["rebound"] == pytest.approx([0.7] * 4, abs=1e-2)
-    assert found["rebound"] == pytest.approx(closed_forms[1]["rebound"], abs=1e-13)
+    assert found["owners"] == [[0, ranks - 1]] * 8
+    for springs in ("rebound", "elastic"):
+        assert np.mean(found[springs]) == pytest.approx(0.7, abs=2e-3)
+        assert found[springs] == pytest.approx([0.7] * 4, abs=1e-2)
+        assert found[springs] == pytest.approx(closed_forms[1][springs], abs=1e-13)
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
@@ -97,10 +98,10 @@ def test_grains_of_every_rank_fall_at_their_terminal_velocity(closed_forms, rank
         assert drag == pytest.approx(found["weight"], rel=1e-5)
 
 
-@pytest.mark.parametrize("water", ["dry", "column"])
-def test_contacts_across_the_border_are_those_of_one_rank(water):
+@pytest.mark.parametrize("kind", ["dry", "elastic", "column"])
+def test_contacts_across_the_border_are_those_of_one_rank(kind):
     one, two = (
-        json.loads(done(ranks, "-m", "tests.engine.lammps_across_ranks", water).stdout) for ranks in (1, 2)
+        json.loads(done(ranks, "-m", "tests.engine.lammps_across_ranks", kind).stdout) for ranks in (1, 2)
     )
     assert one["n_contact"] > 2
     for name, found in one.items():

@@ -8,8 +8,9 @@ import math
 
 import numpy as np
 
-from ryusa.engine.lammps.contact_words import FLAT, RIGID, Partner, contact_words
+from ryusa.engine.lammps.contact_words import contact_words
 from ryusa.engine.lammps.mass_classes import MassClasses
+from ryusa.engine.lammps.partner import FLAT, RIGID, Partner
 from ryusa.laws.families import Profile
 from ryusa.model import Scene
 from ryusa.model.fluid import N_IMPULSE, N_KEPT, N_SAMPLED

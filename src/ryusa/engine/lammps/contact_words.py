@@ -1,32 +1,13 @@
 """The contact law of a scene in the words of `pair_style granular`, for each pair of classes of mass."""
 
-import math
-from dataclasses import dataclass
-
+from ryusa.engine.lammps.elastic_words import elastic_words
+from ryusa.engine.lammps.partner import Partner
 from ryusa.laws.collision import damping_ratio, effective_mass, effective_mass_tangential, restitution_tension
 from ryusa.laws.contact import damping, damping_in_steps
-from ryusa.laws.families import Rolling
-from ryusa.laws.motion import inertia_sphere
+from ryusa.laws.families import ContactForce, Rolling
 from ryusa.laws.rolling import epsd_damping, epsd_stiffness, inertia_rolling, reduced_radius
 from ryusa.model import Scene
 from ryusa.model.scene import Damping
-
-FLAT = math.inf  # radius of a plane [m]
-RIGID = math.inf  # mass of what does not move [kg]
-
-
-@dataclass(frozen=True)
-class Partner:
-    """One of the two bodies of a contact: mass with added mass, mass alone [kg], radius [m]."""
-
-    m: float
-    m_bare: float
-    r: float
-
-    @property
-    def inertia(self) -> float:
-        """Moment of inertia, without added mass [kg m2]."""
-        return inertia_sphere(self.m_bare, 2.0 * self.r) if math.isfinite(self.m_bare) else math.inf
 
 
 def contact_words(scene: Scene, i: Partner, j: Partner) -> str:
@@ -39,11 +20,25 @@ def contact_words(scene: Scene, i: Partner, j: Partner) -> str:
 
     Notes
     -----
+    Rolling: the force k_roll R* phi with the angle phi of relative rotation acts at the arm R*.
+    """
+    law = scene.contact
+    elastic = law.force == ContactForce.HERTZ_MINDLIN
+    words = elastic_words(scene, i, j) if elastic else linear_words(scene, i, j)
+    if scene.rotation and scene.rolling.model == Rolling.EPSD:
+        words += " rolling sds {!r} {!r} {!r}".format(*rolling_coefficients(scene, i, j))
+    return words if law.tension else f"{words} limit_damping"
+
+
+def linear_words(scene: Scene, i: Partner, j: Partner) -> str:
+    """Normal force, dashpot and tangential force of linear springs.
+
+    Notes
+    -----
     `damping coeff_restitution` takes a restitution e and damps with 2 zeta sqrt(k_n m), where zeta is that of
     a contact that may pull, e = exp(-pi zeta/sqrt(1 - zeta**2)) (LAMMPS documentation, pair_style granular).
     It is given the e that belongs to the zeta of the case, for either kind of parting, after the correction
-    for the lag of half a step. The tangential dashpot is given as its ratio to the normal one. Rolling: the
-    force k_roll R* phi with the angle phi of relative rotation acts at the arm R*.
+    for the lag of half a step. The tangential dashpot is given as its ratio to the normal one.
     """
     law = scene.contact
     eta_n, eta_s = dashpots(scene, i, j)
@@ -53,10 +48,7 @@ def contact_words(scene: Scene, i: Partner, j: Partner) -> str:
         zeta = damping_ratio(eta_n, law.k_n, effective_mass(i.m, j.m))
         normal = f"hooke {law.k_n!r} {restitution_tension(zeta)!r} damping coeff_restitution"
     ratio = eta_s / eta_n if eta_n > 0.0 else 0.0
-    words = f"{normal} tangential linear_history {law.k_s!r} {ratio!r} {law.mu!r}"
-    if scene.rotation and scene.rolling.model == Rolling.EPSD:
-        words += " rolling sds {!r} {!r} {!r}".format(*rolling_coefficients(scene, i, j))
-    return words if law.tension else f"{words} limit_damping"
+    return f"{normal} tangential linear_history {law.k_s!r} {ratio!r} {law.mu!r}"
 
 
 def dashpots(scene: Scene, i: Partner, j: Partner) -> tuple[float, float]:

@@ -2,7 +2,9 @@
 
 import numpy as np
 
+from ryusa.laws.families import ContactForce
 from ryusa.model import Scene
+from ryusa.model.pair_springs import pair_springs
 from ryusa.model.scene import Floats
 
 
@@ -32,5 +34,8 @@ def contacts(
         return 0.0, 0, 0.0, (-1, -1)
     worst = int((overlap / size).argmax())
     pair = int(np.concatenate(firsts)[worst]), int(np.concatenate(seconds)[worst])
-    energy = 0.5 * scene.contact.k_n * float(np.sum(overlap**2))
+    # force over overlap
+    k_n, _ = pair_springs(scene, np.concatenate(firsts), np.concatenate(seconds), overlap)
+    share = 0.4 if scene.contact.force == ContactForce.HERTZ_MINDLIN else 0.5
+    energy = share * float(np.sum(k_n * overlap**2))
     return energy, int(np.count_nonzero(overlap)), float((overlap / size)[worst]), pair

@@ -8,6 +8,7 @@ from ryusa.laws.families import (
     Cap,
     ContactForce,
     ContactTiming,
+    DampingLaw,
     DragOfForm,
     Film,
     Parting,
@@ -41,11 +42,6 @@ def _instead(key: str, value: str) -> str:
 
 def _contact(scene: Scene) -> list[str]:
     law, found = scene.contact, list[str]()
-    if law.force == ContactForce.HERTZ_MINDLIN:
-        return [
-            f"contact.law is '{law.force.word}': {_instead('contact.law', ContactForce.LINEAR.word)} with a "
-            "contact.stiffness"
-        ]
     if law.timing != ContactTiming.AT_STEPS:
         found.append(
             f"contact.timing is '{law.timing.word}', the default: LAMMPS begins and ends contacts at steps, "
@@ -72,9 +68,12 @@ def _contact(scene: Scene) -> list[str]:
             f"{_instead('contact.adhesion', Adhesion.NONE.word)}"
         )
     if law.tension and law.mu > 0.0:
+        pulls, ends = Parting.TENSION, Parting.NO_TENSION
+        if law.force == ContactForce.HERTZ_MINDLIN:
+            pulls, ends = DampingLaw.TSUJI, DampingLaw.THORNTON
         found.append(
-            "contact.parting is 'tension': where the dashpot pulls, LAMMPS lets friction act by the size of "
-            f"the pull; {_instead('contact.parting', Parting.NO_TENSION.word)}"
+            f"{pulls.key} is '{pulls.word}': where the dashpot pulls, LAMMPS lets friction act by the size "
+            f"of the pull; {_instead(pulls.key, ends.word)}"
         )
     if not law.k_s > 0.0:
         found.append("no tangential spring: a contact.shear_stiffness above 0 would be carried")
