@@ -1,22 +1,24 @@
 """Grains along a row of columns, in runs made up by hand with volumes, fluxes and lines in closed form."""
 
-import sys
-from pathlib import Path
+import math
+from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
+from tests.measure.made_rows import BALL, CELLS, DX, DZ, PACKED, WIDTH, D, G, layered, row_of, run_of
+from tests.water import test_row_dams, test_row_grains
 
 from ryusa.errors import ResultsError
-from ryusa.measure.along_row import grains_along_row, segments_of
+from ryusa.measure.along_row import grains_along_row, moving_in_row, segments_of
 from ryusa.measure.long_section import depth_history, long_section
 from ryusa.model.column import Column
+from ryusa.model.row import ColumnRow, RowDam
 from ryusa.model.traffic import IN, OUT, PASSAGE
 from ryusa.water.row import shape_of
+from ryusa.water.row_grains import GrainsInRow
 from ryusa.water.row_sums import GrainPlaces, place_grains
-
-sys.path.insert(0, str(Path(__file__).parent))
-from made_rows import BALL, CELLS, DX, DZ, PACKED, WIDTH, D, G, layered, row_of, run_of
 
 
 @pytest.fixture
@@ -40,6 +42,49 @@ def test_grains_are_shared_between_segments_as_by_the_water(n: int, ends: bool) 
     at, weight, _ = segments_of(x, row)
     assert np.array_equal(at + (1 if ends else 0), places.at)
     assert weight == pytest.approx(places.weight, abs=1e-12)
+
+
+@pytest.mark.parametrize("porous", [False, True])
+def test_grains_beside_a_dam_are_in_the_cells_in_which_the_water_has_them(porous: bool) -> None:
+    row, at = test_row_dams.dammed(0.0, porous)
+    at[:, 2] += 0.5 * D
+    made, _ = test_row_grains.cloud(at=at, length=math.inf, tilt=0.0)
+    water = GrainsInRow.begin(made, row, at).phi - (0.0 if row.porous is None else row.porous.phi)
+    frames = SimpleNamespace(x=at[None], v=np.ones((1, *at.shape)))
+    run: Any = SimpleNamespace(scene=made, frames=frames)
+    found: Any = SimpleNamespace(row=row)
+    assert moving_in_row(run, found, 0) == pytest.approx(water, abs=1e-12)
+    held = grains_along_row(run, row, np.arange(1)).volume[0]
+    assert held == pytest.approx(water.sum(axis=1) * row.column.dz, rel=1e-12, abs=1e-15)
+
+
+def behind_dam() -> ColumnRow:
+    """A dam of 8 mm, 16 cells, in the segment from 0.14 to 0.15 m, over a bottom that falls by 1 in 20."""
+    row = replace(
+        row_of(ends=True, bottom=0.01 - 0.05 * DX * np.arange(8)), dams=(RowDam("dam", 4, 5, 0.016),)
+    )
+    return replace(row, solid=np.where(np.arange(8) == 4, 16, 0))
+
+
+@pytest.mark.parametrize("upstream", [False, True])
+def test_no_part_of_a_grain_passes_into_a_dam_but_over_its_crest(upstream: bool) -> None:
+    """It lies against the dam, rises beside it, and is on the crest at the end."""
+    row, n = behind_dam(), 401
+    face = 0.14 - 0.5 * D if upstream else 0.15 + 0.5 * D
+    x, t = np.zeros((n, 1, 3)), np.linspace(0.0, 1.0, n)
+    x[:, 0, 0] = face + (0.145 - face) * np.clip(3.0 * t - 2.0, 0.0, 1.0)
+    x[:, 0, 2] = (
+        0.5 * D + 0.01 - 0.05 * (0.035 if upstream else 0.055) + 0.012 * np.clip(3.0 * t - 1.0, 0.0, 1.0)
+    )
+    found = grains_along_row(run_of(row, t, x, np.gradient(x, t, axis=0)), row, np.arange(n))
+    assert np.abs(found.volume[: n // 3, 4]).max() == 0.0
+    assert found.volume[-1, 4] * DX * WIDTH == pytest.approx(0.75 * BALL, rel=1e-12)
+    gained = (found.volume - found.volume[0]) * DX
+    rest = gained - (found.passed[:, :-1] - found.passed[:, 1:] + found.fed)
+    assert np.abs(rest).max() < 1e-15 * BALL / WIDTH
+    through = np.cumsum(0.5 * (found.flux[1:] + found.flux[:-1]) * np.diff(t)[:, None], axis=0)
+    assert np.abs(through - found.passed[1:])[:, 1:-1].max() < 0.01 * BALL / WIDTH
+    assert np.abs(found.flux[:, 4 if upstream else 5]).max() > 0.0
 
 
 @pytest.mark.parametrize("n", [1, 2, 8])

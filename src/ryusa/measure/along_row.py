@@ -12,7 +12,6 @@ from ryusa.laws.slices import sphere_slice
 from ryusa.measure._run import Floats, Run
 from ryusa.measure.profiles import CHUNK
 from ryusa.model import ColumnRow
-from ryusa.model.traffic import IN, OUT
 from ryusa.results.row import RowFrames
 
 Ints = NDArray[np.int64]
@@ -35,7 +34,8 @@ class GrainsAlongRow:
     Notes
     -----
     A grain is shared between three segments by the weights with which it acts on their water, quadratic
-    B-splines (design/0027), and passes a station while its weights pass it. So, to round-off,
+    B-splines (design/0027), and passes a station while its weights pass it. As in the water, what would go
+    to cells within a dam beside it the segment of its centre takes. So, to round-off,
     dx (volume - volume at the first frame) = passed[:, :-1] - passed[:, 1:] + fed. In a row with ends what
     feeds bring and exits take in the first and the last segment counts as passing the end.
     """
@@ -61,14 +61,14 @@ def grains_along_row(run: Run, row: ColumnRow, frames: Ints) -> GrainsAlongRow:
     """
     if run.scene.traffic is not None and row.periodic:
         raise ResultsError("what passes along a periodic row with feeds or exits is not recorded")
-    solid, n = run.scene.solid_volume, row.n_segment
+    solid, r, n = run.scene.solid_volume, 0.5 * run.scene.d, row.n_segment
     width = row.column.area / (n * row.dx)
     held, beyond = np.zeros((len(frames), n)), np.zeros((len(frames), len(row.x_station)))
     flux = np.zeros_like(beyond)
     for m, k in enumerate(frames.tolist()):
-        x, v = np.asarray(run.frames.x[k])[:, 0], np.asarray(run.frames.v[k])[:, 0]
-        held[m], beyond[m] = _held(x, solid, row)
-        flux[m] = _flux(x, solid * v, row)
+        x, v = np.asarray(run.frames.x[k]), np.asarray(run.frames.v[k])
+        held[m], beyond[m] = _held(x, r, solid, row)
+        flux[m] = _flux(x, v, r, solid, row)
     came, brought = _brought(run, row, np.asarray(run.frames.step)[frames] if run.scene.traffic else None)
     passed, fed = beyond - beyond[0] - brought, np.asarray(came)
     if not row.periodic:
@@ -98,25 +98,69 @@ def segments_of(x: Floats, row: ColumnRow) -> tuple[Ints, Floats, Floats]:
     turn : whole numbers, shape (n, 3); 0 in a row with ends, where the last segment takes what lies beyond.
     """
     n = row.n_segment
-    s = (x - row.x_low) / row.dx
-    if not row.periodic:
-        s = np.clip(s, 0.0, n)
-    cell = np.floor(s)
-    if not row.periodic:
-        cell = np.minimum(cell, n - 1.0)
-    t = s - cell - 0.5
+    cell, past = _cell_of(x, row)
+    t = past - 0.5
     weight = np.stack([0.5 * (0.5 - t) ** 2, 0.75 - t * t, 0.5 * (0.5 + t) ** 2], axis=1)
-    at = cell[:, None].astype(np.int64) + np.array([-1, 0, 1])
+    at = cell[:, None] + np.array([-1, 0, 1])
     if not row.periodic:
         return np.clip(at, 0, n - 1), weight, np.zeros(at.shape)
     return at % n, weight, (at // n).astype(np.float64)
 
 
-def _held(x: Floats, solid: Floats, row: ColumnRow) -> tuple[Floats, Floats]:
+def _cell_of(x: Floats, row: ColumnRow) -> tuple[Ints, Floats]:
+    """Segment of each centre, as in an endless row where it is periodic, and how far along it that is [-]."""
+    s = (x - row.x_low) / row.dx
+    if row.periodic:
+        cell = np.floor(s)
+    else:
+        s = np.clip(s, 0.0, row.n_segment)
+        cell = np.minimum(np.floor(s), row.n_segment - 1.0)
+    return cell.astype(np.int64), s - cell
+
+
+def _shut(at: Ints, row: ColumnRow) -> Ints:
+    """Cells below which each segment of a grain is within a dam, shape (n, 3); 0 in that of its centre."""
+    return np.where(at == at[:, 1:2], 0, row.cells_of_dams()[row.inner][at])
+
+
+def _beside_dams(x: Floats, r: Floats, at: Ints, row: ColumnRow) -> tuple[Floats, Floats]:
+    """Part of grains below the crest of a dam in each of their segments, and its decrease as they rise.
+
+    Parameters
+    ----------
+    x : centres [m], shape (n, 3). r : radii [m]. at : segments, shape (n, 3).
+
+    Returns
+    -------
+    below [-], per_rise [1/m] : shape (n, 3), 0 where there is no dam.
+    """
+    shut = _shut(at, row)
+    below, per_rise = np.zeros((2, *at.shape))
+    some = np.flatnonzero(shut.any(axis=1))
+    if len(some):
+        z, _ = _above_bottom(x[some], row)
+        levels = shut[some] * row.column.dz - z[:, None]
+        below[some], per_rise[some] = _below(levels, r[some], shut[some])
+    return below, per_rise
+
+
+def _shared(x: Floats, r: Floats, row: ColumnRow) -> tuple[Ints, Floats, Floats]:
+    """As `segments_of`, but what would go to cells within a dam the segment of the centre takes.
+
+    x : centres [m], shape (n, 3). r : radii [m].
+    """
+    at, weight, turn = segments_of(x[:, 0], row)
+    below, _ = _beside_dams(x, r, at, row)
+    part = weight * (1.0 - below)
+    part[:, 1] += (weight * below).sum(axis=1)
+    return at, part, turn
+
+
+def _held(x: Floats, r: Floats, solid: Floats, row: ColumnRow) -> tuple[Floats, Floats]:
     """Volume in each segment, and beyond each station less a constant [m3], of grains at x; nan: away."""
-    there = np.isfinite(x)
-    at, weight, turn = segments_of(x[there], row)
-    parts = solid[there, None] * weight
+    there = np.isfinite(x[:, 0])
+    at, part, turn = _shared(x[there], r[there], row)
+    parts = solid[there, None] * part
     held = _sums(at.ravel(), parts.ravel(), row.n_segment)
     before = np.concatenate([[0.0], np.cumsum(held)])
     if row.periodic:
@@ -124,16 +168,26 @@ def _held(x: Floats, solid: Floats, row: ColumnRow) -> tuple[Floats, Floats]:
     return held, before[-1] - before
 
 
-def _flux(x: Floats, carried: Floats, row: ColumnRow) -> Floats:
-    """Volume times speed of the grains at each station, by the derivatives of the weights [m4/s]."""
-    there = np.isfinite(x)
-    s, n = (x[there] - row.x_low) / row.dx, row.n_segment
-    inside = np.ones(len(s), np.bool_) if row.periodic else (s >= 0.0) & (s <= n)
-    s, amount = s[inside], carried[there][inside]
-    cell = np.floor(s) if row.periodic else np.minimum(np.floor(s), n - 1.0)
-    past, at = s - cell, cell.astype(np.int64)
+def _flux(x: Floats, v: Floats, r: Floats, solid: Floats, row: ColumnRow) -> Floats:
+    """Volume that passes each station by the speeds of the grains: its parts beyond it, derived [m4/s].
+
+    What passes a station beside a dam is that above the crest, and what rises over the crest.
+    """
+    inside = np.isfinite(x[:, 0])
+    if not row.periodic:
+        inside &= (x[:, 0] >= row.x_low) & (x[:, 0] <= row.x_low + row.n_segment * row.dx)
+    x, v, r, solid = x[inside], v[inside], r[inside], solid[inside]
+    cell, past = _cell_of(x[:, 0], row)
+    at, weight, _ = segments_of(x[:, 0], row)
+    below, per_rise = _beside_dams(x, r, at, row)
+    west, east = v[:, 0] * (1.0 - past) * (1.0 - below[:, 0]), v[:, 0] * past * (1.0 - below[:, 2])
+    if per_rise.any():
+        _, tilt = _above_bottom(x, row)
+        rise = row.dx * (v[:, 2] - tilt * v[:, 0])
+        west -= rise * weight[:, 0] * per_rise[:, 0]
+        east += rise * weight[:, 2] * per_rise[:, 2]
     count = len(row.x_station)
-    sums = _sums(at % count, amount * (1.0 - past), count) + _sums((at + 1) % count, amount * past, count)
+    sums = _sums(cell % count, solid * west, count) + _sums((cell + 1) % count, solid * east, count)
     if not row.periodic:
         sums[[0, -1]] *= 2.0  # half a segment
     return sums
@@ -152,18 +206,15 @@ def _brought(run: Run, row: ColumnRow, steps: Ints | None) -> tuple[Floats, Floa
     """
     if steps is None:
         return np.zeros((1, row.n_segment)), np.zeros((1, len(row.x_station)))
-    rows = run.passages[run.passages["step"] > steps[0]]
-    into, beyond = np.zeros((len(steps), row.n_segment)), np.zeros((len(steps), len(row.x_station)))
-    volume = volumes_of_heads(run)
-    for m in range(1, len(steps)):
-        now = rows[(rows["step"] > steps[m - 1]) & (rows["step"] <= steps[m])]
-        into[m], beyond[m] = into[m - 1], beyond[m - 1]
-        for way in (IN, OUT):
-            one = now[now["way"] == way]
-            held, behind = _held(one["x"][:, 0], volume[one["grain"]], row)
-            into[m] += way * held
-            beyond[m] += way * behind
-    return into, beyond
+    rows = run.passages
+    rows = rows[(rows["step"] > steps[0]) & (rows["step"] <= steps[-1])]
+    at, part, _ = _shared(rows["x"], 0.5 * rows["d"], row)
+    into = np.zeros((len(steps), row.n_segment))
+    amounts = (rows["way"] * volumes_of_heads(run)[rows["grain"]])[:, None] * part
+    np.add.at(into, (np.searchsorted(steps, rows["step"])[:, None], at), amounts)
+    into = np.cumsum(into, axis=0)
+    before = np.concatenate([np.zeros((len(steps), 1)), np.cumsum(into, axis=1)], axis=1)
+    return into, before[:, -1:] - before
 
 
 def volumes_of_heads(run: Run) -> Floats:
@@ -191,38 +242,55 @@ def moving_in_row(run: Run, found: RowFrames, k: int) -> Floats:
     for first in range(0, len(chosen), CHUNK):
         some = chosen[first : first + CHUNK]
         at, weight, _ = segments_of(x[some, 0], row)
-        z = x[some, 2] - _bottom_below(x[some, 0], row)
-        _cut(z, 0.5 * scene.d[some], solid[some], at, weight, row.column.dz, sums)
+        z, _ = _above_bottom(x[some], row)
+        r = 0.5 * scene.d[some]
+        _cut(z, r, solid[some], at, weight, _shut(at, row), row.column.dz, sums)
     return sums / (row.column.area / row.n_segment * row.column.dz)
 
 
-def _bottom_below(x: Floats, row: ColumnRow) -> Floats:
-    """Height of the bottom below some points, by the weights of the segments [m]."""
+def _above_bottom(x: Floats, row: ColumnRow) -> tuple[Floats, Floats]:
+    """Heights of points over the bottom [m], and its slope below them [-], by the weights of the segments."""
     bottom = row.bottom_with_ends()
-    s = (x - row.x_low) / row.dx
-    n = row.n_segment
-    s = s if row.periodic else np.clip(s, 0.0, n)
-    cell = np.floor(s) if row.periodic else np.minimum(np.floor(s), n - 1.0)
-    _, weight, _ = segments_of(x, row)
-    at = cell[:, None].astype(np.int64) + np.array([-1, 0, 1])
-    below = bottom[at % n] if row.periodic else bottom[at + 1]
-    return np.asarray((weight * below).sum(axis=1))
+    cell, past = _cell_of(x[:, 0], row)
+    _, weight, _ = segments_of(x[:, 0], row)
+    grows = np.stack([past - 1.0, 1.0 - 2.0 * past, past], axis=1) / row.dx
+    at = cell[:, None] + np.array([-1, 0, 1])
+    below = bottom[at % row.n_segment] if row.periodic else bottom[at + 1]
+    return x[:, 2] - (weight * below).sum(axis=1), np.asarray((grows * below).sum(axis=1))
 
 
-@law  # for its compiler: a loop over arrays that calls laws
-def _cut(z: Floats, r: Floats, solid: Floats, at: Ints, weight: Floats, dz: float, sums: Floats) -> None:
+@law  # for its compiler: loops over arrays that call laws
+def _below(levels: Floats, r: Floats, shut: Ints) -> tuple[Floats, Floats]:
+    """Part of spheres below levels from their centres [m], shape (n, 3), and its derivative by the level.
+
+    Both are 0 where shut is 0.
+    """
+    below, grows = np.zeros(levels.shape), np.zeros(levels.shape)
+    for i in range(len(r)):
+        whole = sphere_slice(r[i], -r[i], r[i])
+        for b in range(levels.shape[1]):
+            if shut[i, b] > 0:
+                level = min(max(levels[i, b], -r[i]), r[i])
+                below[i, b] = sphere_slice(r[i], -r[i], level) / whole
+                grows[i, b] = np.pi * (r[i] - level) * (r[i] + level) / whole
+    return below, grows
+
+
+@law
+def _cut(
+    z: Floats, r: Floats, solid: Floats, at: Ints, weight: Floats, shut: Ints, dz: float, sums: Floats
+) -> None:
     """Add the slices of grains to the cells of the segments, sums (n_segment, n) [m3].
 
     z : heights of the centres over the lowest face of the cells [m], shape (n,). solid : volume of matter
-    over that of the sphere [-]. at, weight : shape (n, 3).
+    over that of the sphere [-]. at, weight, shut : shape (n, 3).
     """
     n = sums.shape[1]
     for i in range(len(z)):
-        low = min(max(int(np.floor((z[i] - r[i]) / dz)), 0), n - 1)
-        high = min(max(int(np.floor((z[i] + r[i]) / dz)), 0), n - 1)
-        for k in range(low, high + 1):
-            a = -r[i] if k == low else k * dz - z[i]
-            b = r[i] if k == high else (k + 1) * dz - z[i]
-            part = solid[i] * sphere_slice(r[i], a, b)
+        low = int(np.floor(min(max((z[i] - r[i]) / dz, 0.0), n)))
+        high = int(np.ceil(min(max((z[i] + r[i]) / dz, 0.0), n)))
+        for k in range(low, high):
+            part = solid[i] * sphere_slice(r[i], k * dz - z[i], (k + 1) * dz - z[i])
             for c in range(at.shape[1]):
-                sums[at[i, c], k] += weight[i, c] * part
+                taken = at[i, c] if k >= shut[i, c] else at[i, 1]
+                sums[taken, k] += weight[i, c] * part
