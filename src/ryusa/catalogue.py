@@ -350,7 +350,7 @@ PICTURES = (
                  ("dam", "reach", "bed", *WINDOW), measure="deposit", fed=True, clumps=True),
     PictureEntry("front", "ryusa.figures.front:front",
                  "place of the first grain and of the front over time",
-                 WINDOW, measure="front", fed=True, clumps=True),
+                 WINDOW, measure="front", builders=("stream",), fed=True, clumps=True),
     PictureEntry("vibration", "ryusa.figures.runs:vibration", "grains that do not come to rest",
                  ("grains", *WINDOW)),
 )  # fmt: skip

@@ -105,12 +105,16 @@ def contents_of(results: Results, *, size: float, progress: Callable[[float], No
 
 
 def _measures_of_row(results: Results) -> set[str]:
-    """Names of the measures that a row of columns allows, of its grains where it has some."""
+    """Names of the measures of a row of columns that it allows, of its grains where it has some."""
     if results.row is None:
         return set()
     had = {"row"} if results.row.row.periodic else {"row", "open"}
     grains = bool(results.scene.n_grain)
-    return {one.name for one in MEASURES if one.needs and had >= {*one.needs} and (grains or one.grainless)}
+    return {
+        one.name
+        for one in MEASURES
+        if "row" in one.needs and had >= {*one.needs} and (grains or one.grainless)
+    }
 
 
 def _attempt(found: RunContents, what: str, act: Callable[[], None]) -> None:
