@@ -14,6 +14,7 @@ from ryusa.build import build
 from ryusa.casefile import explain, read_text, resolved
 from ryusa.casefile.builders.values import stream_cells
 from ryusa.casefile.row.values import dam_span, row_plan
+from ryusa.catalogue import MEASURES
 from ryusa.errors import CaseError, GrainLost
 from ryusa.measure.along_row import grains_along_row
 from ryusa.measure.deposit import deposit
@@ -21,7 +22,9 @@ from ryusa.measure.front import front
 from ryusa.measure.long_section import long_section
 from ryusa.measure.walls import walls
 from ryusa.model.traffic import IN, OUT
+from ryusa.report.contents import contents_of
 from ryusa.results import Results, schema
+from ryusa.studies.sweep.measures import refuse_measure
 from ryusa.units import quantity
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "faults"))
@@ -250,6 +253,8 @@ def test_a_heavy_grain_slides_down_an_inclined_reach_as_drag_weight_and_friction
         ({"water.column.mixing_length": "'none'", "water.column.fluctuations": "'random walk'"},
          "water.column.fluctuations", "has no effect"),
         ({"water.column.side_friction": "'Blasius'"}, "water.column.side_friction", "needs"),
+        ({"timeline": "[{ at = '0.1 s', move = { wall = 'dam', velocity = ['1 mm/s', '0 m/s', '0 m/s'] } }]"},
+         "timeline.0.move.wall", "cannot move: it is one for grains and water"),
     ],
 )  # fmt: skip
 def test_what_a_stream_cannot_be_is_refused_with_its_key(more: dict[str, str], key: str, says: str) -> None:
@@ -277,6 +282,22 @@ def test_a_stream_without_a_row_is_refused() -> None:
     text = head + rest[rest.index("[build]") :]
     with pytest.raises(CaseError, match=r"build.kind = 'stream': needs \[water.row\]"):
         read_text(text)
+
+
+def test_a_report_has_the_pictures_of_a_stream_and_none_of_a_heap(stream: Results) -> None:
+    found = contents_of(stream, size=5.0e6, progress=lambda share: None)
+    drawn = {one.name for one in found.drawings}
+    assert {"long_section", "x_t", "deposit", "front"} <= drawn
+    assert not drawn & {"surface", "cone"}
+    assert not {what for what, _ in found.missing} & {"picture surface", "picture cone"}
+
+
+def test_a_sweep_may_measure_the_walls_of_a_stream() -> None:
+    case, entries = read_text(STREAM), {one.name: one for one in MEASURES}
+    for name in ("walls", "deposit", "front", "discharge"):
+        refuse_measure(entries[name], case)
+    with pytest.raises(CaseError, match="periodic along x"):
+        refuse_measure(entries["contact_stress"], case)
 
 
 def test_a_grain_that_leaves_the_row_beside_its_exit_stops_the_run(tmp_path: Path) -> None:

@@ -20,12 +20,14 @@ from ryusa.casefile.quantities import (
     Speed,
     Spin,
 )
+from ryusa.casefile.row.values import walls_of_stream
 from ryusa.casefile.rows import ExplainRow, word
 from ryusa.casefile.section import Section, given
 from ryusa.casefile.servo import ServoSection, check_moves, check_servo, servo_text
 from ryusa.errors import CaseError
 from ryusa.model.arrays import Floats
 from ryusa.model.walls import corners_of_box
+from ryusa.spelling import nearest_word
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
@@ -144,9 +146,12 @@ def check_walls(case: "Case") -> Iterator[CaseError]:
         yield from check_servo(case, wall, key)
     for k, entry in enumerate(case.timeline):
         if entry.move is not None:
-            if entry.move.wall not in names:
+            name, at = entry.move.wall, f"timeline.{k}.move.wall"
+            if name not in names and name in walls_of_stream(case):
+                yield CaseError(at, name, "cannot move: it is one for grains and water; must be of [[walls]]")
+            elif name not in names:
                 known = ", ".join(names) or "there is none"
-                yield CaseError(f"timeline.{k}.move.wall", entry.move.wall, f"must be a wall: {known}")
+                yield CaseError(at, name, f"must be a wall: {known}", nearest_word(name, names))
             yield from _motion(case, f"timeline.{k}.move", entry.move)
     yield from check_moves(case)
 

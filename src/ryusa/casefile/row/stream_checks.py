@@ -10,7 +10,15 @@ from ryusa.casefile.builders.schema import StreamSection
 from ryusa.casefile.builders.values import FEWEST_PERIODS, sizes, stream_count
 from ryusa.casefile.column.schema import ColumnSection, column_keys
 from ryusa.casefile.row.schema import RowSection
-from ryusa.casefile.row.values import bottom_points, crest_of, dam_span, row_plan, stream_span, width_of
+from ryusa.casefile.row.values import (
+    bottom_points,
+    crest_of,
+    dam_span,
+    row_plan,
+    stream_span,
+    walls_of_stream,
+    width_of,
+)
 from ryusa.casefile.traffic.schema import ExitSection, FeedSection
 from ryusa.errors import CaseError
 from ryusa.laws.families import Mixing
@@ -75,7 +83,7 @@ def _names(case: "Case", keys: RowSection) -> Iterator[CaseError]:
         for k, one in enumerate(entries):
             if one.name in NAMES:
                 yield CaseError(f"{kind}.{k}.name", one.name, "is a name that builder 'stream' gives itself")
-    own = {*NAMES[:3], *(dam.name for dam in keys.dams)}
+    own = {*NAMES[:3], *walls_of_stream(case)}
     for k, entry in enumerate(case.timeline):
         if entry.remove in own:
             yield CaseError(

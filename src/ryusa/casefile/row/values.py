@@ -118,6 +118,11 @@ def stream(case: "Case") -> bool:
     return row_keys(case) is not None and case.build.kind == "stream"
 
 
+def walls_of_stream(case: "Case") -> tuple[str, ...]:
+    """Names of the walls that builder 'stream' makes for grains and water: the bottom, and the dams."""
+    return ("bottom", *(dam.name for dam in _row(case).dams)) if stream(case) else ()
+
+
 def stream_span(case: "Case") -> tuple[float, float]:
     """Where the bed of builder 'stream' begins and ends along x [m]."""
     build, points = case.build, bottom_points(case)

@@ -9,6 +9,7 @@ import numpy as np
 
 from ryusa.casefile.builders.values import periodic
 from ryusa.casefile.record import events_of
+from ryusa.casefile.row.values import stream
 from ryusa.casefile.shape import shapes_of
 from ryusa.catalogue import MEASURES, MeasureEntry, called
 from ryusa.errors import CaseError
@@ -32,8 +33,8 @@ NEEDS: dict[str, tuple[Callable[["Case"], bool], str]] = {
     ),
     "row": (lambda case: case.water is not None and case.water.row is not None, "[water.row]"),
     "forces": (lambda case: case.record.forces, "record.forces = true"),
-    "walls": (lambda case: bool(case.walls), "[[walls]]"),
-    "no walls": (lambda case: not case.walls, "a case without [[walls]]"),
+    "walls": (lambda case: bool(case.walls) or stream(case), "[[walls]], or builder 'stream'"),
+    "no walls": (lambda case: not case.walls and not stream(case), "a case without walls"),
     "traffic": (lambda case: bool(case.feeds or case.exits), "[[feeds]] or [[exits]]"),
     "period": (_along, "a scene that is periodic along x"),
     "open": (lambda case: not _along(case), "a scene that is open along x"),
