@@ -11,6 +11,7 @@ from ryusa.model.column import Column
 from ryusa.model.row import ColumnRow, EndKind, RowEnd
 from ryusa.results.row import RowFrames
 from ryusa.view.flow import SurfaceLine, surface_line, surfaces
+from ryusa.view.picture import DEEP_ALPHA, Painter
 
 SLOPE = 0.1  # of the bottom
 X = 2.0 + 0.5 * np.arange(4) + 0.25
@@ -40,9 +41,11 @@ def test_a_dry_stretch_parts_the_line() -> None:
     line = surface_line(run_of([[0.1, 0.1, 0.0, 0.1]], ends=True))
     assert line is not None
     parts = line.within(line.at(0, 0.0), 0.0, 9.0)
-    assert [x.tolist() for x, _ in parts] == [[2.0, 2.25, 2.75], [3.75, 4.0]]
+    assert [x.tolist() for x, _, _ in parts] == [[2.0, 2.25, 2.75], [3.75, 4.0]]
     inner = line.within(line.at(0, 0.0), 2.1, 2.6)
-    assert [x.tolist() for x, _ in inner] == [[2.1, 2.25, 2.6]]
+    ((x, z, bottom),) = inner
+    assert x == pytest.approx([2.1, 2.25, 2.6]) and bottom == pytest.approx(SLOPE * (4.0 - x))
+    assert z[1:] == pytest.approx(0.1 + bottom[1:])
 
 
 def test_between_two_frames_the_line_moves_evenly_and_a_segment_that_falls_dry_at_once() -> None:
@@ -56,12 +59,30 @@ def test_between_two_frames_the_line_moves_evenly_and_a_segment_that_falls_dry_a
 def test_a_periodic_line_goes_on_around_a_grain_that_is_followed() -> None:
     x = np.array([0.0, 0.25, 0.75, 1.0])
     z = np.array([[2.0, 1.0, 3.0, 2.0]])
-    line = SurfaceLine(x, z, 1.0)
-    ((places, heights),) = line.within(line.at(0, 0.0), 5.5, 6.5)
+    line = SurfaceLine(x, z, z[0] - 1.0, 1.0)
+    ((places, heights, bottom),) = line.within(line.at(0, 0.0), 5.5, 6.5)
     assert places == pytest.approx([5.5, 5.75, 6.0, 6.25, 6.5])
     assert heights == pytest.approx([2.0, 3.0, 2.0, 1.0, 2.0])
-    ((whole, _),) = line.within(line.at(0, 0.0), 0.0, 1.0)
+    assert bottom == pytest.approx(heights - 1.0)
+    ((whole, _, _),) = line.within(line.at(0, 0.0), 0.0, 1.0)
     assert whole == pytest.approx(x)
+
+
+@pytest.mark.parametrize("ends", [False, True])
+def test_a_picture_from_the_side_has_water_between_the_surface_and_the_bottom(ends: bool) -> None:
+    run = run_of([[0.1, 0.1, 0.1, 0.1]], ends=ends)
+    painter: Any = object.__new__(Painter)
+    faces: list[Any] = []
+    painter._line = surface_line(run)
+    painter.look = SimpleNamespace(view="side")
+    low, high = np.array([2.0, 0.0, -5.0]), np.array([4.0, 1.0, 1.0])
+    painter._add_row(0, 0.0, low, high, lambda *_: None, lambda *one: faces.append(one))
+    deep = np.concatenate([corners for corners, _, alpha, _ in faces if alpha == DEEP_ALPHA])
+    assert len(deep) == 5 * 4 and (deep[:, 1] == 1.0).all()
+    bottom = SLOPE * (4.0 - deep[:, 0]) if ends else 0.0 * deep[:, 0]
+    over = (deep[:, 2] - bottom).reshape(5, 4)
+    assert over[:, 2:] == pytest.approx(0.0, abs=1e-12)
+    assert over[1:-1, :2] == pytest.approx(0.1)
 
 
 def test_without_a_row_there_is_no_line() -> None:

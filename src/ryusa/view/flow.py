@@ -27,11 +27,13 @@ class SurfaceLine:
     ----------
     x : begin of the row, middles of its segments, end [m], shape (n_point,), ascending.
     z : height of the surface at every frame [m], shape (n_frame, n_point); nan where it is dry.
+    bottom : height of the bottom [m], shape (n_point,).
     period : of the row along x [m]; inf in a row with ends.
     """
 
     x: NDArray[np.float64]
     z: NDArray[np.float64]
+    bottom: NDArray[np.float64]
     period: float
 
     def at(self, k: int, share: float) -> NDArray[np.float64]:
@@ -45,23 +47,27 @@ class SurfaceLine:
 
     def within(
         self, z: NDArray[np.float64], low: float, high: float
-    ) -> list[tuple[NDArray[np.float64], NDArray[np.float64]]]:
-        """Wet stretches of a line of heights between two places [m]: x and z of each, of two points or more.
+    ) -> list[tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]]:
+        """Wet stretches of a line of heights between two places [m]: x, z and bottom, of two points or more.
 
         A periodic row is continued.
         """
-        x = self.x
+        x, bottom = self.x, self.bottom
         if math.isfinite(self.period):
             turns = np.arange(math.floor((low - x[0]) / self.period), math.ceil((high - x[0]) / self.period))
-            x, z = (x[:-1] + self.period * turns[:, None]).ravel(), np.tile(z[:-1], len(turns))
-            x, z = np.append(x, x[0] + self.period * len(turns)), np.append(z, z[0])
+            x = np.append(
+                (x[:-1] + self.period * turns[:, None]).ravel(), x[0] + self.period * (turns[-1] + 1)
+            )
+            z, bottom = (np.append(np.tile(one[:-1], len(turns)), one[0]) for one in (z, bottom))
         ends = np.clip([low, high], x[0], x[-1])
         inner = (x > ends[0]) & (x < ends[1])
         places = np.concatenate([ends[:1], x[inner], ends[1:]])
         heights = np.interp(places, x, z)  # nan beside a dry point
         heights[1:-1] = z[inner]
+        lowest = np.interp(places, x, bottom)
         parts = np.split(np.arange(len(places)), np.flatnonzero(np.diff(np.isfinite(heights))) + 1)
-        return [(places[one], heights[one]) for one in parts if len(one) > 1 and np.isfinite(heights[one[0]])]
+        wet = [one for one in parts if len(one) > 1 and np.isfinite(heights[one[0]])]
+        return [(places[one], heights[one], lowest[one]) for one in wet]
 
 
 def surface_line(results: Results) -> SurfaceLine | None:
@@ -77,7 +83,13 @@ def surface_line(results: Results) -> SurfaceLine | None:
     end = row.x_low + row.n_segment * row.dx
     x = np.concatenate([[row.x_low], row.x, [end]])
     period = end - row.x_low if row.periodic else math.inf
-    return SurfaceLine(x, np.concatenate([first, wet, last], axis=1), period)
+    bottom = (
+        row.bottom[np.arange(-1, row.n_segment + 1) % row.n_segment]
+        if row.periodic
+        else row.bottom_with_ends()
+    )
+    bottom[[0, -1]] = 0.5 * (bottom[[0, -1]] + bottom[[1, -2]])
+    return SurfaceLine(x, np.concatenate([first, wet, last], axis=1), bottom, period)
 
 
 def flow_of(results: Results, frames: NDArray[np.int64], blob: Blob) -> dict[str, Any] | None:

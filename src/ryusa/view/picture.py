@@ -158,17 +158,17 @@ class Painter:
         """The surface along a row of columns, and from the side the water behind the grains."""
         if self._line is None:
             return
-        for x, z in self._line.within(self._line.at(k, share), low[0], high[0]):
-            for ends in np.stack([x, z], axis=1)[np.arange(len(x) - 1)[:, None] + [0, 1]]:
+        for x, z, bottom in self._line.within(self._line.at(k, share), low[0], high[0]):
+            for ends in np.stack([x, z, bottom], axis=1)[np.arange(len(x) - 1)[:, None] + [0, 1]]:
                 if ends[:, 1].max() > high[2]:  # far above the grains
                     continue
-                near, far = (np.insert(ends, 1, y, axis=1) for y in (low[1], high[1]))
+                near, far = (np.insert(ends[:, :2], 1, y, axis=1) for y in (low[1], high[1]))
                 line(near, LEVEL)
                 line(far, LEVEL)
                 face(np.concatenate([near, far[::-1]]), WATER, WATER_ALPHA, None)
                 if self.look.view == "side":
                     below = far[::-1].copy()
-                    below[:, 2] = low[2]
+                    below[:, 2] = np.maximum(ends[::-1, 2], low[2])
                     face(np.concatenate([far, below]), WATER, DEEP_ALPHA, None)
 
     def _between(self, t: float) -> tuple[int, float]:
