@@ -11,7 +11,7 @@ from ryusa.measure.along_row import volumes_of_heads
 from ryusa.measure.long_section import Bed, bed_line, row_of
 from ryusa.measure.snapshot import scene_at
 from ryusa.measure.statistics import average, ratio, standard_error
-from ryusa.measure.table import Averaged, Averages
+from ryusa.measure.table import Averaged, Averages, lines
 from ryusa.model import ColumnRow
 from ryusa.model.traffic import IN, OUT
 from ryusa.spelling import nearest_word
@@ -60,8 +60,7 @@ class Deposit(Averaged):
             "stored_m2": self.stored, "brought_m2": self.brought, "passed_m2": self.passed,
             "trapped": self.trapped, "unaccounted_m2": self.unaccounted,
         }  # fmt: skip
-        values = [one.tolist() for one in columns.values()]
-        return [dict(zip(columns, one, strict=True)) for one in zip(*values, strict=True)]
+        return lines(columns)
 
 
 def deposit(

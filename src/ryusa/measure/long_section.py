@@ -13,6 +13,7 @@ from ryusa.measure.along_row import grains_along_row, moving_in_row
 from ryusa.measure.snapshot import scene_at
 from ryusa.measure.statistics import standard_errors
 from ryusa.measure.water import HALF, averaged_over_grain, height_reached
+from ryusa.measure.table import lines
 from ryusa.model import ColumnRow
 from ryusa.model.row import EndKind
 from ryusa.results.row import RowFrames
@@ -88,12 +89,12 @@ class LongSection:
     def rows(self) -> list[dict[str, object]]:
         """One line for each segment; the error of a mean is beside it."""
         names = (*_WATER, *_GRAINS) if self.grains else _WATER
-        columns: dict[str, list[float]] = {}
+        columns: dict[str, Floats] = {}
         for name in names:
-            columns[name] = getattr(self, name).tolist()
+            columns[name] = getattr(self, name)
             if name in self.error:
-                columns[f"{name}_error"] = self.error[name].tolist()
-        return [dict(zip(columns, one, strict=True)) for one in zip(*columns.values(), strict=True)]
+                columns[f"{name}_error"] = self.error[name]
+        return lines(columns)
 
 
 def long_section(
@@ -271,16 +272,15 @@ class DepthHistory:
         """One line for each frame and segment."""
         n, m = self.depth.shape
         columns = {
-            "t": np.repeat(self.t, m), "x": np.tile(self.x, n), "depth": self.depth.ravel(),
-            "discharge": self.discharge.ravel(), "froude": self.froude.ravel(),
+            "t": np.repeat(self.t, m), "x": np.tile(self.x, n), "depth": self.depth,
+            "discharge": self.discharge, "froude": self.froude,
         }  # fmt: skip
         if self.grains:
             columns |= {
-                "bed": self.bed.ravel(), "bed_change": self.bed_change.ravel(),
-                "volume": self.volume.ravel(), "solid_discharge": self.solid_discharge.ravel(),
+                "bed": self.bed, "bed_change": self.bed_change,
+                "volume": self.volume, "solid_discharge": self.solid_discharge,
             }  # fmt: skip
-        values = [one.tolist() for one in columns.values()]
-        return [dict(zip(columns, one, strict=True)) for one in zip(*values, strict=True)]
+        return lines(columns)
 
 
 def depth_history(run: Run, begin: float = 0.0, end: float = math.inf, bed: Bed = "packed") -> DepthHistory:

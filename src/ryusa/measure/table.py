@@ -83,6 +83,12 @@ class Averaged:
         return self.averages._repr_html_()
 
 
+def lines(columns: Mapping[str, Any]) -> list[dict[str, object]]:
+    """Arrays of one size as one dictionary for each of their elements, in order."""
+    values = [np.ravel(one).tolist() for one in columns.values()]
+    return [dict(zip(columns, one, strict=True)) for one in zip(*values, strict=True)]
+
+
 def rows_of(records: NDArray[Any]) -> list[dict[str, object]]:
     """A structured array as dictionaries; a vector field gives one column per component (x, y, z)."""
     rows: list[dict[str, object]] = []
