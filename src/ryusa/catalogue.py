@@ -264,7 +264,7 @@ MEASURES = (
                           ("passed_rate", "m2/s"), ("trapped_share", "-")),
                  needs=("row", "open")),
     MeasureEntry("front", "ryusa.measure.front:front",
-                 "front of the grains that move downstream: place and speed",
+                 "front of the grains that came in or have moved: place and speed",
                  WINDOW, fed=True, clumps=True,
                  numbers=(("first_speed", "m/s"), ("front_speed", "m/s")), needs=("open",)),
 )  # fmt: skip

@@ -1,4 +1,4 @@
-"""The front of grains that move downstream, over time."""
+"""The front of the grains that have moved, over time."""
 
 from matplotlib.figure import Figure
 

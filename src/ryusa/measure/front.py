@@ -1,15 +1,18 @@
-"""The front of grains that move downstream: where it is and how fast, over time."""
+"""The front of the grains that have moved: where it is and how fast, over time."""
 
 import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run
 from ryusa.measure.statistics import ratio
-from ryusa.measure.table import Averaged, Averages
-from ryusa.model.traffic import IN, OUT
+from ryusa.measure.table import Averaged, Averages, lines
+from ryusa.model import Scene
+from ryusa.model.arrays import Bools
+from ryusa.model.traffic import IN, OUT, PASSAGE
 
 FAR = 5.0  # distance from its first place from which a grain counts, in mean diameters
 SHARE = 0.05  # of the volume, beyond the front
@@ -41,8 +44,7 @@ class Front(Averaged):
             "first_speed_m_per_s": _rate(self.first, self.t),
             "front_speed_m_per_s": _rate(self.front, self.t),
         }  # fmt: skip
-        values = [one.tolist() for one in columns.values()]
-        return [dict(zip(columns, one, strict=True)) for one in zip(*values, strict=True)]
+        return lines(columns)
 
 
 def front(run: Run, begin: float = 0.0, end: float = math.inf) -> Front:
@@ -60,9 +62,10 @@ def front(run: Run, begin: float = 0.0, end: float = math.inf) -> Front:
     Notes
     -----
     A grain has moved that came in since the first frame of the window, or is farther than five mean diameters
-    from where it was then: grains of a bed over which the front has not gone do not count. One that has left
-    counts where it left. Two fronts are given, since single grains may run ahead: that of the first grain,
-    and that beyond which 5 % of the volume is. Mean speeds are the way of a front over the time.
+    from where it was then, in any direction: grains of a bed over which the front has not gone do not count.
+    One that has left counts where it left, and each sphere of a clump with its share of the volume. Two
+    fronts are given, since single grains may run ahead: that of the first grain, and that beyond which 5 % of
+    the volume is. Mean speeds are the way of a front over the time.
     """
     scene = run.scene
     if math.isfinite(float(scene.period[0])):
@@ -76,9 +79,11 @@ def front(run: Run, begin: float = 0.0, end: float = math.inf) -> Front:
     left = np.full(start.shape, math.nan)  # where grains that are away left
     came = np.zeros(scene.n_grain, np.bool_)
     first, main, moved = np.full((3, len(t)), math.nan)
+    passages = run.passages if scene.traffic is not None else np.zeros(0, PASSAGE)
+    until = np.searchsorted(passages["step"], np.asarray(run.frames.step)[frames], side="right")
     for m, k in enumerate(frames.tolist()):
-        if m and scene.traffic is not None:
-            _note_passages(run, int(frames[m - 1]), k, came, left)
+        if m:
+            _note_passages(scene, passages[until[m - 1] : until[m]], came, left)
         x = np.asarray(run.frames.x[k], dtype=np.float64)
         x = np.where(np.isfinite(x), x, left)
         way = np.linalg.norm(x - start, axis=1)
@@ -92,20 +97,19 @@ def front(run: Run, begin: float = 0.0, end: float = math.inf) -> Front:
         ratio(f"{name}_speed", "m/s", [np.diff(one[known])], [np.diff(t[known])], window)
         for name, one in (("first", first), ("front", main))
     ]
-    ends = f"{first[-1]:.4g} m and {main[-1]:.4g} m"
-    note = (
-        f"grains that came in or moved more than {FAR:g} d; the first of them, and the front beyond which "
-        f"{SHARE:.0%} of their volume is, are at {ends} at the end"
-    )
+    note = f"at the end no grain has come in or is farther than {FAR:g} d from where it was"
+    if known[-1]:
+        note = (
+            f"grains that came in or moved more than {FAR:g} d; the first of them, and the front beyond "
+            f"which {SHARE:.0%} of their volume is, are at {first[-1]:.4g} m and {main[-1]:.4g} m at the end"
+        )
     return Front(t, first, main, moved, Averages("front", tuple(items), (note,)))
 
 
-def _note_passages(run: Run, before: int, now: int, came: np.ndarray, left: Floats) -> None:
+def _note_passages(scene: Scene, rows: NDArray[np.void], came: Bools, left: Floats) -> None:
     """Mark the grains that came in between two frames, and note where others left."""
-    rows, step = run.passages, run.frames.step
-    between = rows[(rows["step"] > step[before]) & (rows["step"] <= step[now])]
-    for row in between:
-        spheres = run.scene.spheres_of(np.array([row["grain"]]))
+    for row in rows:
+        spheres = scene.spheres_of(np.array([row["grain"]]))
         if row["way"] == IN:
             came[spheres] = True
         elif row["way"] == OUT:
