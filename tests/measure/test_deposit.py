@@ -1,12 +1,11 @@
 """Deposits and fronts in runs made up by hand: volumes, slopes and speeds in closed form."""
 
 import math
-import sys
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from tests.measure.made_rows import BALL, DX, DZ, WIDTH, layered, row_of, run_of
 
 from ryusa.errors import ResultsError
 from ryusa.figures.deposit import deposit as drawn_deposit
@@ -15,9 +14,6 @@ from ryusa.measure.deposit import deposit
 from ryusa.measure.front import front
 from ryusa.model.row import ColumnRow, RowDam
 from ryusa.model.traffic import IN, OUT, PASSAGE
-
-sys.path.insert(0, str(Path(__file__).parent))
-from made_rows import BALL, DX, DZ, WIDTH, layered, row_of, run_of
 
 T = np.arange(11) * 0.1
 
@@ -71,6 +67,13 @@ def test_what_came_less_what_went_is_stored_at_every_frame(trap: Any) -> None:
     assert found["passed_rate"].error > 0.0
     assert "stored" in found.averages.notes[0] and len(found.rows()) == 11
     assert len(drawn_deposit(found).axes) == 2
+
+
+def test_the_first_dam_is_the_one_farthest_upstream_in_whatever_order_they_are_given(trap: Any) -> None:
+    dams = (RowDam("lower", 6, 7, 0.004), *trap.row.row.dams)
+    object.__setattr__(trap.row.row, "dams", dams)
+    assert deposit(trap).reach == pytest.approx((0.1, 0.15))
+    assert deposit(trap, dam="lower").reach == pytest.approx((0.1, 0.17))
 
 
 def test_exits_within_the_reach_and_its_own_bounds_count_as_passing(trap: Any) -> None:

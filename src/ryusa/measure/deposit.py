@@ -77,8 +77,8 @@ def deposit(
     ----------
     run : its water is a row of columns with ends, and it has free grains.
     begin, end : window [s]; volumes count from its first frame.
-    dam : name of a dam: the reach goes from the begin of the row to its downstream face. Default the first
-        dam of the row; without one the whole row.
+    dam : name of a dam: the reach goes from the begin of the row to its downstream face. Default the dam
+        farthest upstream; without one the whole row.
     reach : begin and end of another reach [m].
     bed : what ends the bed, as in `long_section`.
 
@@ -88,10 +88,11 @@ def deposit(
 
     Notes
     -----
-    A grain is where its centre is. Volumes leave pores out. stored = brought - passed at every frame, to
-    round-off: what passes is counted from frame to frame with the places at which grains came and left. The
-    line is that of least squares through the bed of the segments in the reach that have one; the error of
-    its slope allows for bed heights that are correlated along x (`standard_error`).
+    A grain is where its centre is, each sphere of a clump with its share of the volume; one that enters or
+    leaves, where the centre of the clump is. Volumes leave pores out. stored = brought - passed at every
+    frame, to round-off: what passes is counted from frame to frame with the places at which grains came and
+    left. The line is that of least squares through the bed of the segments in the reach that have one; the
+    error of its slope allows for bed heights that are correlated along x (`standard_error`).
     """
     found = row_of(run)
     row, times = found.row, found.t
@@ -147,14 +148,15 @@ def _reach(row: ColumnRow, dam: str | None, reach: tuple[float, float] | None) -
                 f"{last:g} m"
             )
         return (*reach, reach[1])
-    names = [one.name for one in row.dams]
+    dams = sorted(row.dams, key=lambda one: one.first)
+    names = [one.name for one in dams]
     if dam is not None and dam not in names:
-        known = f"the row has {', '.join(names)}" if names else "the row has none"
+        there = f"the row has {', '.join(names)}" if names else "the row has none"
         near = nearest_word(dam, tuple(names))
-        raise ResultsError(f"no dam {dam!r}: {known}" + (f". Did you mean {near!r}?" if near else ""))
+        raise ResultsError(f"no dam {dam!r}: {there}" + (f". Did you mean {near!r}?" if near else ""))
     if not names:
         return first, last, last
-    chosen = row.dams[names.index(dam) if dam is not None else 0]
+    chosen = dams[names.index(dam) if dam is not None else 0]
     return first, first + chosen.end * row.dx, first + chosen.first * row.dx
 
 
