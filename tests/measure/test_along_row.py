@@ -220,6 +220,7 @@ def test_a_bed_that_rises_and_what_passes_between_frames_are_the_history(cloud: 
     assert np.isnan(found.solid_discharge[0]).all()
     held = grains_along_row(cloud, row, np.arange(5, 16))
     assert found.volume == pytest.approx(held.volume)
+    assert found.froude[0] == pytest.approx(long_section(cloud, t=0.5).froude) and found.froude[0].max() > 0.0
     gained = np.diff(found.volume, axis=0).sum() * row.dx
     assert gained == pytest.approx(0.0, abs=1e-15)
     assert {"bed", "bed_change", "volume", "solid_discharge"} <= set(found.rows()[0])

@@ -244,7 +244,8 @@ class DepthHistory:
     x : middles of the segments [m], shape (n_segment,).
     depth : from the bed to the surface [m], as in `LongSection`.
     discharge : of water, mean of both ends of a segment [m2/s].
-    froude : Froude number [-]; nan where it is dry.
+    froude : Froude number [-], in the first frame with the discharge of grains by their speeds; nan where it
+        is dry.
     dams : name, first and last x [m] of each.
     bed : height of the bed [m].
     volume : of free grains per area [m]; 0 in a run without.
@@ -303,16 +304,16 @@ def depth_history(run: Run, begin: float = 0.0, end: float = math.inf, bed: Bed 
     beds = bed_line(run, found, frames, bed)
     depth = np.maximum(found.surface[frames] - beds, 0.0)
     through = _between(row.periodic, found.discharge[frames])
-    volume, solid = np.zeros(depth.shape), np.zeros(depth.shape)
+    volume, solid, both = np.zeros(depth.shape), np.zeros(depth.shape), through
     if run.scene.n_grain:
         held = grains_along_row(run, row, frames)
-        volume, solid = held.volume, np.full(depth.shape, math.nan)
-        rate = np.diff(held.passed, axis=0) / np.diff(found.t[frames])[:, None]
-        solid[1:] = _between(row.periodic, rate)
+        rates = np.diff(held.passed, axis=0) / np.diff(found.t[frames])[:, None]
+        solid = _between(row.periodic, np.concatenate([held.flux[:1], rates]))
+        volume, both = held.volume, through + solid
+        solid[0] = math.nan
     thick = np.where(depth > THIN, depth, math.nan)
-    both = np.abs(through + np.nan_to_num(solid))
     return DepthHistory(
-        found.t[frames], row.x, depth, through, both / np.sqrt(row.g_z * thick**3), _dams(row), beds,
+        found.t[frames], row.x, depth, through, np.abs(both) / np.sqrt(row.g_z * thick**3), _dams(row), beds,
         volume, solid, bool(run.scene.n_grain),
     )  # fmt: skip
 
