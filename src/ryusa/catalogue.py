@@ -107,6 +107,9 @@ class PictureEntry:
 
 
 WINDOW = ("begin", "end")
+SIDES = ("right", "left")  # of a heap
+BEDS = ("packed", "rest")  # what ends the bed of a row of columns
+QUANTITIES = ("depth", "bed", "transport")  # of a row over distance and time that are drawn
 EVERY_BUILDER = ("drop", "saltation", "table", "run", "packing", "flume", "box", "empty", "fill", "stream")
 
 MEASURES = (

@@ -2,6 +2,20 @@
 
 from collections.abc import Sequence
 
+from ryusa.errors import CaseError
+
+
+def known_word(word: str, words: Sequence[str], key: str) -> str:
+    """Return a word of `words`.
+
+    Raises
+    ------
+    CaseError : it is none of them; names `key`, which was to hold it, and the nearest.
+    """
+    if word not in words:
+        raise CaseError(key, word, f"must be one of {', '.join(words)}", nearest_word(word, words))
+    return word
+
 
 def nearest_word(value: object, words: Sequence[str]) -> str | None:
     """Find the known word nearest to what was written; None where none is near.

@@ -10,7 +10,9 @@ import pytest
 from tests.measure.made_rows import BALL, CELLS, DX, DZ, PACKED, WIDTH, D, G, layered, row_of, run_of
 from tests.water import test_row_dams, test_row_grains
 
-from ryusa.errors import ResultsError
+from ryusa.errors import CaseError, ResultsError
+from ryusa.figures.long_section import x_t
+from ryusa.measure import deposit
 from ryusa.measure.along_row import grains_along_row, moving_in_row, segments_of
 from ryusa.measure.long_section import depth_history, long_section
 from ryusa.model.column import Column
@@ -218,9 +220,19 @@ def test_a_bed_that_rises_and_what_passes_between_frames_are_the_history(cloud: 
     found = depth_history(cloud, begin=0.5, end=1.5)
     assert found.bed_change[-1] == pytest.approx(0.010, abs=DZ)
     assert np.isnan(found.solid_discharge[0]).all()
+    assert found.froude[0] == pytest.approx(long_section(cloud, t=0.5).froude) and found.froude[0].max() > 0.0
     held = grains_along_row(cloud, row, np.arange(5, 16))
     assert found.volume == pytest.approx(held.volume)
-    assert found.froude[0] == pytest.approx(long_section(cloud, t=0.5).froude) and found.froude[0].max() > 0.0
     gained = np.diff(found.volume, axis=0).sum() * row.dx
     assert gained == pytest.approx(0.0, abs=1e-15)
     assert {"bed", "bed_change", "volume", "solid_discharge"} <= set(found.rows()[0])
+
+
+def test_a_word_that_is_none_is_refused_with_the_nearest(cloud: Any) -> None:
+    for measure in (long_section, depth_history, deposit):
+        with pytest.raises(
+            CaseError, match=r"bed = 'Rest': must be one of packed, rest. Did you mean 'rest'"
+        ):
+            measure(cloud, bed="Rest")
+    with pytest.raises(CaseError, match=r"quantity = 'dept': must be one of .* Did you mean 'depth'"):
+        x_t(depth_history(cloud), quantity="dept")

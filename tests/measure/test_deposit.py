@@ -154,13 +154,13 @@ def test_a_front_stays_where_its_grains_left(trap: Any) -> None:
     assert found.moved[-1] == pytest.approx(10 * BALL)
 
 
-def test_a_period_has_no_front(trap: Any) -> None:
-    object.__setattr__(trap.scene, "period", (0.1, math.inf))
-    with pytest.raises(ResultsError, match="periodic along x"):
 def test_where_no_grain_has_moved_the_note_says_so() -> None:
     x = np.zeros((11, 3, 3))
     (note,) = front(run_of(row_of(ends=True), T, x, x)).averages.notes
     assert note == "at the end no grain has come in or is farther than 5 d from where it was"
 
 
+def test_a_period_has_no_front(trap: Any) -> None:
+    object.__setattr__(trap.scene, "period", (0.1, math.inf))
+    with pytest.raises(ResultsError, match="periodic along x"):
         front(trap)

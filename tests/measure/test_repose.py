@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from ryusa.errors import ResultsError
+from ryusa.errors import CaseError, ResultsError
 from ryusa.measure import snapshot, surface
 from ryusa.measure.repose import STEEP
 
@@ -64,6 +64,8 @@ def test_the_left_side_is_the_mirror_of_the_right_one(make):
     x = triangle(math.tan(math.radians(30.0)))
     right = surface(standing(make, x))
     left = surface(standing(make, x * [-1, 1, 1]), side="left")
+    with pytest.raises(CaseError, match=r"side = 'Left'.*Did you mean 'left'"):
+        surface(standing(make, x), side="Left")
     assert left.angle == pytest.approx(right.angle, abs=1e-12)
     assert left.toe == pytest.approx(-right.toe)
     assert np.diff(left.x).min() > 0.0

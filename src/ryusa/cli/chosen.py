@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import typer
 
-from ryusa.catalogue import OPTION_NAMES, MeasureEntry, PictureEntry, option
-from ryusa.cli.options import in_unit, known, need_settled, within
+from ryusa.catalogue import BEDS, OPTION_NAMES, MeasureEntry, PictureEntry, option
+from ryusa.cli.options import in_unit, need_settled, within
 from ryusa.errors import CaseError
-from ryusa.spelling import nearest_word
+from ryusa.spelling import known_word, nearest_word
 
 if TYPE_CHECKING:
     from ryusa.results import Results
@@ -35,7 +35,7 @@ BEDS = ("packed", "rest")  # what ends the bed of a row of columns
 
 def entry_of(what: str, entries: tuple[Entry, ...], key: str) -> Entry:
     """The entry of that name, or an error that names the nearest."""
-    known(what, tuple(one.name for one in entries), key)
+    known_word(what, tuple(one.name for one in entries), key)
     return next(one for one in entries if one.name == what)
 
 
@@ -109,7 +109,7 @@ def in_range(low: float, high: float) -> Check:
 
 def one_of(words: tuple[str, ...]) -> Check:
     """One of some words."""
-    return lambda name, value, _results: known(value, words, name)
+    return lambda name, value, _results: known_word(value, words, name)
 
 
 def time(name: str, value: Any, _results: "Results") -> float:

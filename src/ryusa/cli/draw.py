@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ryusa.catalogue import MEASURES, PICTURES, PictureEntry, called, load
+from ryusa.catalogue import BEDS, MEASURES, PICTURES, QUANTITIES, SIDES, PictureEntry, called, load
 from ryusa.cli import chosen
 from ryusa.cli.chosen import BEDS, SIDES, entry_of, keywords, listed, taking
 from ryusa.cli.options import grains_of, in_unit, open_run, within, write_rows
@@ -27,7 +27,6 @@ def _length(name: str, value: str, results: "Results") -> float:
 MOST = 1.0e6  # bytes of a CSV that is written unasked
 SAMPLE = 500  # rows from which its size is estimated
 COLOURS = ("speed", "spin", "none")
-QUANTITIES = ("depth", "bed", "transport")
 CHECKS: dict[str, chosen.Check] = {
     "--at": chosen.time,
     "--bed": chosen.one_of(BEDS),

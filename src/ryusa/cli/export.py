@@ -5,7 +5,8 @@ from typing import Annotated
 
 import typer
 
-from ryusa.cli.options import Begin, End, Quiet, RunFolder, known, open_run, times_of
+from ryusa.cli.options import Begin, End, Quiet, RunFolder, open_run, times_of
+from ryusa.spelling import known_word
 
 
 def register(app: typer.Typer) -> None:
@@ -46,7 +47,7 @@ def export(
     from ryusa.formats.export import FORMATS
     from ryusa.formats.export import export as write
 
-    known(to, FORMATS, "--to")
+    known_word(to, FORMATS, "--to")
     if to == "vtu" and output.suffix != ".pvd":
         raise CaseError("--output", str(output), "must end in .pvd: it lists the .vtu files, one a frame")
     if at is not None and (begin is not None or end is not None or every != 1):

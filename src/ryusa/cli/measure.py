@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ryusa.catalogue import MEASURES, called
+from ryusa.catalogue import BEDS, MEASURES, SIDES, called
 from ryusa.cli import chosen
 from ryusa.cli.chosen import BEDS, SIDES, entry_of, keywords, listed, taking
 from ryusa.cli.options import in_unit, open_run, within, write_rows

@@ -27,16 +27,6 @@ def open_run(folder: Path) -> "Results":
     return Results.open(folder)
 
 
-def known(word: str, words: tuple[str, ...], key: str) -> str:
-    """Return `word`, or raise an error that names the nearest of `words`."""
-    if word in words:
-        return word
-    from ryusa.errors import CaseError
-    from ryusa.spelling import nearest_word
-
-    raise CaseError(key, word, f"must be one of {', '.join(words)}", nearest_word(word, words))
-
-
 def grains_of(grains: list[int] | None, results: "Results") -> list[int] | None:
     """Ids of the free grains given; None if none was given."""
     if not grains:

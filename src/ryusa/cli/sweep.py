@@ -180,11 +180,11 @@ def _words(
 
 def _emit(what: str, plan: "SweepPlan", folder: Path, words: Sequence[str], again: bool) -> None:
     """Write the scripts of another scheduler, and say how to submit them."""
-    from ryusa.cli.options import known
     from ryusa.errors import CaseError, ResultsError
+    from ryusa.spelling import known_word
     from ryusa.studies.sweep.slurm import emit_slurm, submission
 
-    known(what, ("slurm",), "--emit")
+    known_word(what, ("slurm",), "--emit")
     if again:
         raise CaseError(
             "--again", None, "cannot be combined with --emit: a requeued run goes on. Choose another -o"

@@ -97,10 +97,10 @@ def validate(
 
 def _known(word: str) -> str:
     """Name of a check; hyphens as on the page are understood."""
-    from ryusa.cli.options import known
+    from ryusa.spelling import known_word
     from ryusa.studies.validation.study import NAMES
 
-    return known(word.replace("-", "_").split("/", 1)[0], NAMES, "check")
+    return known_word(word.replace("-", "_").split("/", 1)[0], NAMES, "check")
 
 
 def _list(plan: "Plan", chosen: Sequence[str] | None, out: Path, jobs: int, again: bool) -> None:

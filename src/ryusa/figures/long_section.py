@@ -7,9 +7,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ryusa.catalogue import QUANTITIES
 from ryusa.errors import ResultsError
 from ryusa.figures import style
 from ryusa.measure.long_section import THIN, DepthHistory, Floats, LongSection
+from ryusa.spelling import known_word
 
 CM = 100.0  # centimetres in a metre
 CM2 = 1.0e4  # square centimetres in a square metre
@@ -119,11 +121,14 @@ def x_t(found: DepthHistory, quantity: str | None = None) -> Figure:
 
     Raises
     ------
+    CaseError : `quantity` is no such word.
     ResultsError : there are no grains whose bed or transport could be drawn.
     """
+    if quantity is not None:
+        known_word(quantity, QUANTITIES, "quantity")
     if quantity not in {None, "depth"} and not found.grains:
         raise ResultsError(f"the run has water alone; --quantity {quantity} needs grains")
-    shown = (quantity,) if quantity else ("depth", "bed", "transport")[: 3 if found.grains else 1]
+    shown = (quantity,) if quantity else QUANTITIES[: 3 if found.grains else 1]
     wide = 4.8 if len(shown) == 1 else style.PAGE
     figure, axes = style.new(1, len(shown), width=wide, height=3.4, sharey=True)
     draw = {"depth": _depth, "bed": _bed_change, "transport": _transport}

@@ -135,7 +135,7 @@ def _beside_dams(x: Floats, r: Floats, at: Ints, row: ColumnRow) -> tuple[Floats
     below [-], per_rise [1/m] : shape (n, 3), 0 where there is no dam.
     """
     shut = _shut(at, row)
-    below, per_rise = np.zeros((2, *at.shape))
+    below, per_rise = np.zeros(at.shape), np.zeros(at.shape)
     some = np.flatnonzero(shut.any(axis=1))
     if len(some):
         z, _ = _above_bottom(x[some], row)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ryusa.catalogue import BEDS
 from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run
 from ryusa.measure.along_row import volumes_of_heads
@@ -14,7 +15,7 @@ from ryusa.measure.statistics import average, ratio, standard_error
 from ryusa.measure.table import Averaged, Averages, lines
 from ryusa.model import ColumnRow
 from ryusa.model.traffic import IN, OUT
-from ryusa.spelling import nearest_word
+from ryusa.spelling import known_word, nearest_word
 
 FEWEST = 3  # segments with a bed to which a line is fitted
 
@@ -84,6 +85,7 @@ def deposit(
 
     Raises
     ------
+    CaseError : `bed` is no such word.
     ResultsError : no such row, dam or reach, a periodic row, no grains, or fewer than two frames.
 
     Notes
@@ -94,6 +96,7 @@ def deposit(
     left. The line is that of least squares through the bed of the segments in the reach that have one; the
     error of its slope allows for bed heights that are correlated along x (`standard_error`).
     """
+    known_word(bed, BEDS, "bed")
     found = row_of(run)
     row, times = found.row, found.t
     if row.periodic or not run.scene.n_grain:

@@ -7,16 +7,18 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from ryusa.catalogue import BEDS
 from ryusa.errors import ResultsError
 from ryusa.measure._run import Run
 from ryusa.measure.along_row import grains_along_row, moving_in_row
 from ryusa.measure.snapshot import scene_at
 from ryusa.measure.statistics import standard_errors
-from ryusa.measure.water import HALF, averaged_over_grain, height_reached
 from ryusa.measure.table import lines
+from ryusa.measure.water import HALF, averaged_over_grain, height_reached
 from ryusa.model import ColumnRow
 from ryusa.model.row import EndKind
 from ryusa.results.row import RowFrames
+from ryusa.spelling import known_word
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -117,6 +119,7 @@ def long_section(
 
     Raises
     ------
+    CaseError : `bed` is no such word.
     ResultsError : the run has no row of columns, no frame, fewer than two in the window, or a moment and a
         window are both given.
 
@@ -126,6 +129,7 @@ def long_section(
     follows from two quantities, such as the Froude number, follows from their means; its error is to first
     order that of the mean of its linear part. At one moment the discharge of grains is that by their speeds.
     """
+    known_word(bed, BEDS, "bed")
     found = row_of(run)
     if math.isinf(begin) and math.isinf(end):
         k = len(found.t) - 1 if t is None else int(np.argmin(np.abs(found.t - t)))
@@ -295,8 +299,10 @@ def depth_history(run: Run, begin: float = 0.0, end: float = math.inf, bed: Bed 
 
     Raises
     ------
+    CaseError : `bed` is no such word.
     ResultsError : the run has no row of columns, or no frame in the window.
     """
+    known_word(bed, BEDS, "bed")
     found = row_of(run)
     row, frames = found.row, np.flatnonzero((found.t >= begin) & (found.t <= end))
     if not len(frames):

@@ -7,11 +7,13 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from ryusa.catalogue import SIDES
 from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run
 from ryusa.measure.snapshot import Snapshot, frame_at, scene_at, snapshot
 from ryusa.model import Scene
 from ryusa.model.near_pairs import near_pairs
+from ryusa.spelling import known_word
 
 FIT = (0.15, 0.85)  # of the heap's height
 OTHER_FITS = ((0.1, 0.9), (0.2, 0.8), (0.25, 0.75))
@@ -148,7 +150,7 @@ def surface(
     ----------
     run : a run folder.
     t : [s], the nearest frame is taken; default the last one.
-    side : which side of the crest.
+    side : which side of the crest; a CaseError where it is neither.
     fit : heights between which the slope is fitted, as shares of the heap's height above the floor.
     bin : width of a bin along x, in mean diameters.
     link : grains whose surfaces are up to this many mean diameters apart belong together; the heap is the
@@ -164,6 +166,7 @@ def surface(
     The height of a bin is that of the highest point of any sphere within it, at the place where that is; rows
     in y count as one. The slope is a least-squares line through those points.
     """
+    known_word(side, SIDES, "side")
     if not 0.0 <= fit[0] < fit[1] <= 1.0:
         raise ResultsError(f"fit {fit[0]:g} .. {fit[1]:g}: must be two shares of the height, 0 to 1, rising")
     seen = snapshot(run, t, lane)
