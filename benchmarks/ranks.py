@@ -41,7 +41,8 @@ CELLS = (60, 240)  # of the columns that are timed
 INTERVAL = 33  # steps between two exchanges, as the packaged cases have it
 STRETCH = 400  # steps of a stretch on several ranks; each call costs them as much as a step or more
 SHAPES = {"square": (13, 13), "strip": (56, 3), "large": (29, 29)}  # grains along and across; 12 deep
-BY_THE_WALL = {"square": (13, 13), "large": (29, 29), "largest": (82, 82)}  # 2,028, 10,092 and 80,688 grains
+# timed on several ranks: 2,028, 10,092 and 80,688 grains
+BY_THE_WALL = {**{name: SHAPES[name] for name in ("square", "large")}, "largest": (82, 82)}
 FRAME = 88  # bytes of a grain in a frame
 
 
