@@ -29,8 +29,12 @@ ALWAYS = {
     "output",
 }  # arguments, and options that every measure or every picture takes
 HELP_WIDTH = 78  # of a terminal of 80 columns
-SIDES = ("right", "left")
-BEDS = ("packed", "rest")  # what ends the bed of a row of columns
+OF_ROW = {  # help of the options that measures and pictures of a row of columns share
+    "bed": f"what ends the bed, {' grains or those at '.join(BEDS)}.",
+    "dam": "name of the dam behind which grains are stored; default the one farthest "
+    "upstream, or the whole row.",
+    "reach": "another reach, such as '0.5 m to 2 m', instead of that behind a dam.",
+}
 
 
 def entry_of(what: str, entries: tuple[Entry, ...], key: str) -> Entry:
@@ -42,6 +46,11 @@ def entry_of(what: str, entries: tuple[Entry, ...], key: str) -> Entry:
 def taking(keyword: str, entries: tuple[Entry, ...]) -> str:
     """Names of the entries that take an option, for its help."""
     return ", ".join(one.name for one in entries if option(keyword) in one.given_as)
+
+
+def of_row(keyword: str, entries: tuple[Entry, ...]) -> Any:
+    """The option of a keyword of `OF_ROW`, whose help names the entries that take it."""
+    return typer.Option(help=f"{taking(keyword, entries)}: {OF_ROW[keyword]}")
 
 
 def listed(text: str, entries: tuple[Entry, ...]) -> str:

@@ -8,7 +8,7 @@ import typer
 
 from ryusa.catalogue import BEDS, MEASURES, PICTURES, QUANTITIES, SIDES, PictureEntry, called, load
 from ryusa.cli import chosen
-from ryusa.cli.chosen import BEDS, SIDES, entry_of, keywords, listed, taking
+from ryusa.cli.chosen import entry_of, keywords, listed, of_row, taking
 from ryusa.cli.options import grains_of, in_unit, open_run, within, write_rows
 from ryusa.errors import CaseError, ResultsError
 
@@ -44,24 +44,9 @@ CHECKS: dict[str, chosen.Check] = {
 }
 
 
-Bed = Annotated[
-    str,
-    typer.Option(help=f"{taking('bed', PICTURES)}: what ends the bed, {' grains or those at '.join(BEDS)}."),
-]
-Dam = Annotated[
-    str | None,
-    typer.Option(
-        help=f"{taking('dam', PICTURES)}: name of the dam behind which grains are stored; default the "
-        "first, or the whole row."
-    ),
-]
-Reach = Annotated[
-    str | None,
-    typer.Option(
-        help=f"{taking('reach', PICTURES)}: another reach, such as '0.5 m to 2 m', instead of that behind "
-        "a dam."
-    ),
-]
+Bed = Annotated[str, of_row("bed", PICTURES)]
+Dam = Annotated[str | None, of_row("dam", PICTURES)]
+Reach = Annotated[str | None, of_row("reach", PICTURES)]
 Quantity = Annotated[
     str | None,
     typer.Option(

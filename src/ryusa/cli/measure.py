@@ -11,7 +11,7 @@ import typer
 
 from ryusa.catalogue import BEDS, MEASURES, SIDES, called
 from ryusa.cli import chosen
-from ryusa.cli.chosen import BEDS, SIDES, entry_of, keywords, listed, taking
+from ryusa.cli.chosen import entry_of, keywords, listed, of_row, taking
 from ryusa.cli.options import in_unit, open_run, within, write_rows
 from ryusa.errors import CaseError, ResultsError
 
@@ -129,25 +129,9 @@ Material = Annotated[
 Side = Annotated[
     str, typer.Option(help=f"{taking('side', MEASURES)}: slope of a heap, {' or '.join(SIDES)}.")
 ]
-
-Bed = Annotated[
-    str,
-    typer.Option(help=f"{taking('bed', MEASURES)}: what ends the bed, {' grains or those at '.join(BEDS)}."),
-]
-Dam = Annotated[
-    str | None,
-    typer.Option(
-        help=f"{taking('dam', MEASURES)}: name of the dam behind which grains are stored; default the "
-        "first, or the whole row."
-    ),
-]
-Reach = Annotated[
-    str | None,
-    typer.Option(
-        help=f"{taking('reach', MEASURES)}: another reach, such as '0.5 m to 2 m', instead of that behind "
-        "a dam."
-    ),
-]
+Bed = Annotated[str, of_row("bed", MEASURES)]
+Dam = Annotated[str | None, of_row("dam", MEASURES)]
+Reach = Annotated[str | None, of_row("reach", MEASURES)]
 
 
 def register(app: typer.Typer) -> None:
