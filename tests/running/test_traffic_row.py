@@ -1,13 +1,13 @@
 """Feeds and exits in a row of columns: volume and momentum close at every frame, the same bits."""
 
 import sys
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from tests.running.test_traffic_column import RHO, STEPS, G, along, fed, passed, weight_along
+from tests.running.test_traffic_column import RHO, STEPS, Books, G, along, fed, passed, weight_along
 
 from ryusa.model import Scene, State
 from ryusa.model.fluid import EXTRA_X
@@ -36,18 +36,6 @@ def in_row() -> tuple[Scene, State]:
         column, scene.period[0] / n, np.full(n, column.z_low), G, start=np.full(n, column.z_surface)
     )
     return replace(scene, column=None, row=row), state
-
-
-@dataclass
-class Books:
-    """Momentum of grains and water along the row at every frame of a run, and what has changed it [N s]."""
-
-    run: Results = field(init=False)
-    held: list[float] = field(default_factory=list[float])
-    given: float = 0.0  # by the bed, and by weight and surface of the water
-    at_frames: list[float] = field(default_factory=list[float])
-    water: list[float] = field(default_factory=list[float])  # its volume [m3]
-    solid: list[float] = field(default_factory=list[float])  # volume of the grains in cells [m3]
 
 
 def carried_out(folder: Path, **how: Any) -> Results:
