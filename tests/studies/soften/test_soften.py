@@ -6,7 +6,7 @@ import re
 import shutil
 
 import pytest
-from tests.measure.test_numbers_of_walls import RUNS as ELSEWHERE
+from tests.measure.test_numbers_of_the_catalogue import RUNS as ELSEWHERE
 from typer.testing import CliRunner
 
 import ryusa
