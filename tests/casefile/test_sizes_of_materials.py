@@ -156,7 +156,7 @@ def test_sizes_of_one_material_stand_beside_its_own_curve() -> None:
     assert found.difference < 0.02
     assert sizes(run).asked is None  # all grains together have no one curve
     assert sizes(run, "grains").laid.diameter(0.5) == pytest.approx(0.008)
-    with pytest.raises(CaseError, match=r"--material = 'sandd': must be a material .* Did you mean 'sand'"):
+    with pytest.raises(CaseError, match=r"^material = 'sandd': must be a material .* Did you mean 'sand'"):
         sizes(run, "sandd")
 
 

@@ -51,7 +51,7 @@ ASKED = Grading.of([(0.001, 0.0), (0.002, 0.4), (0.004, 1.0)]).cut(0.0015)
 def stand_in(d, case=None):
     d = np.asarray(d, dtype=float)
     scene = SimpleNamespace(n_grain=len(d), n_fixed=0, d=d, m=2650.0 * np.pi / 6.0 * d**3)
-    scene.whole_grains = lambda: (scene.d, scene.m)
+    scene.heads, scene.of_heads = np.ones(len(d), np.bool_), lambda: (scene.d, scene.m)
     return SimpleNamespace(case=case or {}, scene=scene)
 
 

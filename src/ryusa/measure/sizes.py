@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ryusa.errors import CaseError, ResultsError
 from ryusa.measure._run import Floats, Run
+from ryusa.model import Scene
 from ryusa.model.arrays import Bools
 from ryusa.model.grading import SHARES, Grading, GradingFault, laid
 from ryusa.spelling import nearest_word
@@ -126,10 +127,9 @@ def sizes(run: Run, material: str | None = None) -> Sizes:
     inclusive graphic standard deviation (phi84 - phi16)/4 + (phi95 - phi5)/6.6 of Folk & Ward 1957, of
     percentiles counted from the coarse end.
     """
-    d, m = run.scene.whole_grains()
-    if material is not None:
-        of_it = _of_material(run, material)
-        d, m = d[of_it], m[of_it]
+    scene = run.scene
+    chosen = scene.heads if material is None else scene.heads & _of_material(scene, material)
+    d, m = (one[chosen] for one in scene.of_heads())
     order = np.argsort(d, kind="stable")
     d, m = np.asarray(d[order]), np.asarray(m[order])
     if not len(d):
@@ -149,19 +149,15 @@ def sizes(run: Run, material: str | None = None) -> Sizes:
     )
 
 
-def _of_material(run: Run, material: str) -> Bools:
-    """Which grains are of a material, in the order of `Scene.whole_grains`."""
-    scene = run.scene
+def _of_material(scene: Scene, material: str) -> Bools:
+    """Which free spheres are of a material, shape (n_grain,)."""
     names = ("grains",) if scene.materials is None else scene.materials.names
     if material not in names:
         allowed = f"must be a material of the run: {', '.join(names)}"
-        raise CaseError("--material", material, allowed, nearest_word(material, names))
-    of = np.zeros(scene.n_grain, np.int64) if scene.materials is None else scene.materials.of[: scene.n_grain]
-    if scene.bodies is not None:
-        alone = np.ones(scene.n_grain, np.bool_)
-        alone[scene.bodies.members] = False
-        of = np.concatenate([of[alone], of[scene.bodies.first]])
-    return np.asarray(of == names.index(material))
+        raise CaseError("material", material, allowed, nearest_word(material, names))
+    if scene.materials is None:
+        return np.ones(scene.n_grain, np.bool_)
+    return np.asarray(scene.materials.of[: scene.n_grain] == names.index(material))
 
 
 def _asked(case: Any, material: str | None) -> Grading | None:
