@@ -9,7 +9,7 @@ import numpy as np
 from tests.engine.conftest import M, contact_law, elastic_law
 from tests.engine.heaps import COLUMN
 
-from ryusa.build import scene
+from ryusa.build import Material, MaterialPair, scene
 from ryusa.engine import registry
 from ryusa.laws.families import (
     BedKind,
@@ -209,6 +209,12 @@ def main() -> None:
         if sys.argv[1] == "elastic":
             spheres = elastic_law(0.1, m=0.5 * M, youngs_modulus=1e7, slip=Slip.TOTAL, restitution=0.3)
             law = {"contact": spheres, "dt": contact_time_of(spheres, 0.5 * M, 0.25 * D, 0.1) / 50.0}
+        if sys.argv[1] == "materials":
+            law |= {
+                "materials": [Material("heavy", density=5000.0), Material("steel", friction=0.1)],
+                "pairs": [MaterialPair((one, "steel"), friction=0.2) for one in ("grains", "heavy")],
+                "made_of": {"grains": ["heavy", "grains"] * 32, "floor": "steel"},
+            }
         rng = np.random.default_rng(2)
         x = 1.0002 * D * np.stack(np.meshgrid(*[np.arange(4)] * 3, indexing="ij"), -1).reshape(-1, 3)
         fixed, first = scene(

@@ -11,7 +11,7 @@ from tests.engine.heaps import COLUMN, told
 from ryusa.build import scene
 from ryusa.engine import registry
 from ryusa.engine.lammps.commands import box, laws
-from ryusa.engine.lammps.mass_classes import mass_classes
+from ryusa.engine.lammps.grain_types import grain_types
 from ryusa.errors import CaseError, GrainLost, ListUnsafe, NotANumber, OverlapTooLarge
 from ryusa.laws.collision import zeta_for_restitution
 from ryusa.laws.families import (
@@ -318,6 +318,18 @@ def of_scene(**more):
     return lambda fixed: replace(fixed, **more)
 
 
+def of_materials(**more):
+    """A grain of another material, whose contact with itself does not matter: there is one."""
+
+    def change(fixed):
+        alike, mixed = fixed.contact, replace(fixed.contact, **more)
+        of = np.array([0, 1], np.int8)
+        laws = (alike, mixed, mixed, alike)
+        return replace(fixed, materials=Materials(("grains", "steel"), of, laws, (fixed.rolling,) * 4))
+
+    return change
+
+
 def of_walls(pressed):
     walls = Walls(
         np.zeros((1, 9)), np.zeros(1, int), np.zeros(1, int), np.zeros(1, int), np.ones(1, bool),
@@ -335,7 +347,6 @@ def of_clumps(fixed):
 ONE_ROW = ColumnRow(
     Column(z_low=0.0, dz=0.01, n=9, depth=0.05, surface=SurfaceRule.VOLUME), 0.1, np.zeros(4), 9.81
 )
-ONE_MATERIAL = Materials(("a",), np.zeros(2, np.int8), (), ())
 ELASTIC = {"youngs_modulus": 1e7, "poisson_ratio": 0.25, "speed": 0.1}
 
 
@@ -368,7 +379,10 @@ ELASTIC = {"youngs_modulus": 1e7, "poisson_ratio": 0.25, "speed": 0.1}
         (of_scene(forces=True), "record.forces", "--set record.forces='false'"),
         (of_scene(row=ONE_ROW), "water.row", "one column would be"),
         (of_scene(traffic=Traffic()), "[[feeds]] and [[exits]]", "a fixed number of grains"),
-        (of_scene(materials=ONE_MATERIAL), "[materials]", "one contact law"),
+        (
+            of_materials(e_n=0.1, zeta_n=zeta_for_restitution(0.1, False)), "of 'grains' and 'steel'",
+            "from 0.14",
+        ),
         (of_walls(False), "[[walls]]", "planes and fixed grains"),
         (of_walls(True), "[walls.servo]", "planes and fixed grains at rest"),
         (of_clumps, "clumps", "spheres"),
@@ -405,14 +419,14 @@ def test_grains_of_several_sizes_are_in_classes_of_similar_mass():
     d = np.linspace(0.9, 1.1, 50) * D
     x = np.column_stack([np.arange(50) * 2 * D, np.zeros(50), np.zeros(50)])
     made = scene(x, d, x_fixed=[[0.0, 0.0, -5 * D]], planes=[("f", (0, 0, -9 * D), (0, 0, 1))], **CARRIED)[0]
-    classes = mass_classes(made)
-    assert classes.n == 7
-    assert np.abs(made.m / classes.m[classes.of] - 1.0).max() < 0.05
-    assert np.pi / 6.0 * 2650.0 * classes.d**3 == pytest.approx(classes.m)
-    texts = laws(made, classes)
+    types = grain_types(made)
+    assert types.n == 7 and types.fixed.tolist() == [0]
+    assert np.abs(made.m / types.m[types.of] - 1.0).max() < 0.05
+    assert np.pi / 6.0 * 2650.0 * types.d**3 == pytest.approx(types.m)
+    texts = laws(made, types)
     assert sum(one.startswith("pair_coeff") for one in texts) == 7 * 8 // 2 + 7 + 1
     assert sum("wall/gran/region" in one for one in texts) == 7
-    assert box(made, classes, x)[-1] == "create_box 8 box"
+    assert box(made, types, x)[-1] == "create_box 8 box"
 
 
 def test_without_lammps_the_doctor_and_the_registry_say_what_to_install(monkeypatch):

@@ -16,7 +16,7 @@ from ryusa.build import scene
 from ryusa.engine import registry
 from ryusa.engine.lammps.commands import laws
 from ryusa.engine.lammps.elastic_words import damping_ratio_in_steps
-from ryusa.engine.lammps.mass_classes import mass_classes
+from ryusa.engine.lammps.grain_types import grain_types
 from ryusa.engine.lammps.partner import FLAT, RIGID, Partner
 from ryusa.laws import hertz
 from ryusa.laws.collision import zeta_for_restitution
@@ -230,12 +230,12 @@ def test_grains_of_several_sizes_without_losses_are_those_of_the_cpu_to_round_of
     mine, theirs = stepped((replace(fixed, contact=lossless), first), 100)
     assert np.abs(theirs.v - first.v).max() > 0.1
     assert mine.v == pytest.approx(theirs.v, rel=0.0, abs=1e-12)
-    assert mass_classes(fixed).n > 1
+    assert grain_types(fixed).n > 1
 
 
 def test_the_words_name_the_law_and_no_tension():
     made = met("plane", AHEAD, e=0.7, mu=0.3)[0]
-    texts = [one for one in laws(made, mass_classes(made)) if "hertz" in one]
+    texts = [one for one in laws(made, grain_types(made)) if "hertz" in one]
     assert len(texts) == 4  # pairs of the one class and the fixed grains, and the wall
     assert all("tangential mindlin_rescale/force" in one and one.count("limit_damping") == 1 for one in texts)
     assert CARRIED["slip"] == made.contact.slip

@@ -98,7 +98,7 @@ def test_grains_of_every_rank_fall_at_their_terminal_velocity(closed_forms, rank
         assert drag == pytest.approx(found["weight"], rel=1e-5)
 
 
-@pytest.mark.parametrize("kind", ["dry", "elastic", "column"])
+@pytest.mark.parametrize("kind", ["dry", "elastic", "materials", "column"])
 def test_contacts_across_the_border_are_those_of_one_rank(kind):
     one, two = (
         json.loads(done(ranks, "-m", "tests.engine.lammps_across_ranks", kind).stdout) for ranks in (1, 2)

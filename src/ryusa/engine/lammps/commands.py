@@ -1,7 +1,7 @@
 """A scene as commands of LAMMPS: box, types, contact laws, planes, motion. Text alone; nothing is run here.
 
-Types: one for each class of mass of the free grains, then one for the fixed grains. Ids are those of ryusa
-plus one. All names are made here, so that no text of a user enters a command.
+Types (`grain_types`): those of the free grains, then those of the fixed grains. Ids are those of ryusa plus
+one. All names are made here, so that no text of a user enters a command.
 """
 
 import math
@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from ryusa.engine.lammps.contact_words import contact_words
-from ryusa.engine.lammps.mass_classes import MassClasses
+from ryusa.engine.lammps.grain_types import GrainTypes
 from ryusa.engine.lammps.partner import FLAT, RIGID, Partner
 from ryusa.laws.families import Profile
 from ryusa.model import Scene
@@ -32,12 +32,12 @@ def completes_forces(scene: Scene) -> bool:
     return scene.water.profile != Profile.NONE or bool(np.any(scene.m_added != 0.0))
 
 
-def box(scene: Scene, classes: MassClasses, x: Floats) -> list[str]:
+def box(scene: Scene, types: GrainTypes, x: Floats) -> list[str]:
     """Commands that come before the grains.
 
     Parameters
     ----------
-    classes : of the free grains.
+    types : of the grains.
     x : centres of free and fixed grains [m], shape (n, 3).
     """
     largest = float(np.concatenate([scene.d, scene.d_fixed]).max())
@@ -58,29 +58,22 @@ def box(scene: Scene, classes: MassClasses, x: Floats) -> list[str]:
         "comm_modify vel yes",
         PROCESSORS.format(1 if scene.plane_case else "*"),
         f"region box block {corners} units box",
-        f"create_box {classes.n + 1} box",
+        f"create_box {types.n + len(types.fixed)} box",
     ]
 
 
-def laws(scene: Scene, classes: MassClasses) -> list[str]:
+def laws(scene: Scene, types: GrainTypes) -> list[str]:
     """Commands that come after the grains: groups, contact laws, neighbours, motion, planes, weight."""
-    n = classes.n
-    fixed, mean = n + 1, float(scene.d.mean())
-    free = [_free(scene, classes, k) for k in range(n)]
-    bed = float(scene.d_fixed.mean()) if scene.n_fixed else mean
-    rigid = Partner(RIGID, RIGID, 0.5 * bed)
-    commands = [f"group free type 1:{n}", f"group fixed type {fixed}"]
-    commands += [f"group class{k} type {k + 1}" for k in range(n)]
+    n, mean = types.n, float(scene.d.mean())
+    still = range(n + 1, n + len(types.fixed) + 1)
+    commands = [f"group free type 1:{n}", f"group fixed type {still[0]}:{still[-1]}"]
+    commands += [f"group type{k} type {k + 1}" for k in range(n)]
     commands.append("pair_style granular")
-    for a in range(n):
-        commands += [
-            f"pair_coeff {a + 1} {b + 1} {contact_words(scene, free[a], free[b])}" for b in range(a, n)
-        ]
-        commands.append(f"pair_coeff {a + 1} {fixed} {contact_words(scene, free[a], rigid)}")
+    commands += [f"pair_coeff {words}" for words in _pairs(scene, types)]
+    apart = " ".join(f"exclude type {a} {b}" for a in still for b in still if a <= b)
     commands += [
-        f"pair_coeff {fixed} {fixed} {contact_words(scene, free[0], rigid)}",  # never used: excluded below
         f"neighbor {SKIN * mean!r} bin",
-        f"neigh_modify delay 0 every 1 check yes exclude type {fixed} {fixed}",
+        f"neigh_modify delay 0 every 1 check yes {apart}",
         f"timestep {scene.dt!r}",
         "fix hold fixed freeze",
         f"fix move free nve{'/sphere' if scene.rotation else ''}",
@@ -91,7 +84,7 @@ def laws(scene: Scene, classes: MassClasses) -> list[str]:
         "thermo 0",
     ]
     for k in np.flatnonzero(scene.plane_active).tolist():
-        commands += plane(scene, classes, k)
+        commands += plane(scene, types, k)
     if completes_forces(scene):
         if scene.water.profile == Profile.COLUMN:
             columns = f"{SAMPLED} {N_SAMPLED} {IMPULSE} {N_IMPULSE} {LAST} {N_LAST} {KEPT} {N_KEPT}"
@@ -102,23 +95,38 @@ def laws(scene: Scene, classes: MassClasses) -> list[str]:
     return commands
 
 
-def plane(scene: Scene, classes: MassClasses, k: int) -> list[str]:
-    """A plane: a region, and a wall for each class of mass."""
+def _pairs(scene: Scene, types: GrainTypes) -> list[str]:
+    """Two types each, and the words of their contact."""
+    free = [_free(types, k) for k in range(types.n)]
+    bed = float(scene.d_fixed.mean()) if scene.n_fixed else float(scene.d.mean())
+    rigid, found = Partner(RIGID, RIGID, 0.5 * bed), list[str]()
+    for a, one in enumerate(free):
+        for b in range(a, types.n):
+            law = _between(scene, types.material[a], types.material[b])
+            found.append(f"{a + 1} {b + 1} {contact_words(law, one, free[b])}")
+        for b, material in enumerate(types.fixed):
+            law = _between(scene, types.material[a], material)
+            found.append(f"{a + 1} {types.n + b + 1} {contact_words(law, one, rigid)}")
+    never = contact_words(scene, free[0], rigid)  # fixed grains are excluded from each other's neighbours
+    still = range(types.n + 1, types.n + len(types.fixed) + 1)
+    return [*found, *(f"{a} {b} {never}" for a in still for b in still if a <= b)]
+
+
+def plane(scene: Scene, types: GrainTypes, k: int) -> list[str]:
+    """A plane: a region, and a wall for each type of the free grains."""
     point, normal = scene.plane_point[k].tolist(), scene.plane_normal[k].tolist()
     where = " ".join(repr(float(a)) for a in (*point, *normal))
     flat = Partner(RIGID, RIGID, FLAT)
-    return [
-        f"region plane{k} plane {where} side in units box",
-        *(
-            f"fix {wall(k, c)} class{c} wall/gran/region granular "
-            f"{contact_words(scene, _free(scene, classes, c), flat)} region plane{k}"
-            for c in range(classes.n)
-        ),
-    ]
+    number = 0 if scene.materials is None else scene.materials.of[scene.n_grain + scene.n_fixed + k]
+    commands = [f"region plane{k} plane {where} side in units box"]
+    for c in range(types.n):
+        words = contact_words(_between(scene, types.material[c], number), _free(types, c), flat)
+        commands.append(f"fix {wall(k, c)} type{c} wall/gran/region granular {words} region plane{k}")
+    return commands
 
 
 def wall(k: int, c: int) -> str:
-    """Name of the wall that plane k is for grains of class c."""
+    """Name of the wall that plane k is for free grains of type c."""
     return f"wall{k}_{c}"
 
 
@@ -141,8 +149,11 @@ def removed(ids: np.ndarray) -> list[str]:
     return [*groups, "delete_atoms group gone compress no", "group gone delete"] if groups else []
 
 
-def _free(scene: Scene, classes: MassClasses, k: int) -> Partner:
-    """A grain of a class."""
-    m = float(classes.m[k])
-    bare = float(scene.m[0] / (scene.m[0] + scene.m_added[0])) * m
-    return Partner(m, bare, 0.5 * float(classes.d[k]))
+def _free(types: GrainTypes, k: int) -> Partner:
+    """A free grain of a type."""
+    return Partner(float(types.m[k]), float(types.m_bare[k]), 0.5 * float(types.d[k]))
+
+
+def _between(scene: Scene, a: int, b: int) -> Scene:
+    """The scene in which all contacts are those of two materials."""
+    return scene if scene.materials is None else scene.of_pair(int(a) * scene.materials.n + int(b))

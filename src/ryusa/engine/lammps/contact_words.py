@@ -1,4 +1,4 @@
-"""The contact law of a scene in the words of `pair_style granular`, for each pair of classes of mass."""
+"""The contact law of a scene in the words of `pair_style granular`, for each pair of types."""
 
 from ryusa.engine.lammps.elastic_words import elastic_words
 from ryusa.engine.lammps.partner import Partner

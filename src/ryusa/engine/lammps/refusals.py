@@ -1,7 +1,11 @@
 """What LAMMPS cannot carry, each with the key of the case and what would be carried instead."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
+from ryusa.engine.lammps.commands import completes_forces
+from ryusa.engine.lammps.grain_types import MOST_TYPES
 from ryusa.laws.families import (
     Adhesion,
     Arm,
@@ -17,7 +21,7 @@ from ryusa.laws.families import (
     Slip,
 )
 from ryusa.model import Scene
-from ryusa.model.scene import Damping, EventRule
+from ryusa.model.scene import ContactLaw, Damping, EventRule, Floats
 
 _STEEPEST = 0.99  # damping ratio up to which `coeff_restitution` of LAMMPS can be given an e
 _ALIKE = 1e-9  # largest relative difference of ratios that are the same for all grains
@@ -67,24 +71,43 @@ def _contact(scene: Scene) -> list[str]:
             f"contact.adhesion is '{law.adhesion.word}': the laws of LAMMPS are others; "
             f"{_instead('contact.adhesion', Adhesion.NONE.word)}"
         )
+    for one, whose in _laws(scene):
+        found += _pair(one, whose)
+    return found
+
+
+def _laws(scene: Scene) -> Iterator[tuple[ContactLaw, str]]:
+    """Contact laws of materials that can meet, and words that name the two; the one law without materials."""
+    made = scene.materials
+    if made is None:
+        yield scene.contact, ""
+    elif len(made.contact) == made.n**2:  # else it is refused for all engines
+        free, every = np.unique(made.of[: scene.n_grain]).tolist(), np.unique(made.of).tolist()
+        for k in sorted({min(a, b) * made.n + max(a, b) for a in free for b in every}):
+            yield made.contact[k], f" of {made.pair_name(k)}"
+
+
+def _pair(law: ContactLaw, whose: str) -> list[str]:
+    """What LAMMPS cannot carry of the contacts of two materials."""
+    found: list[str] = []
     if law.tension and law.mu > 0.0:
         pulls, ends = Parting.TENSION, Parting.NO_TENSION
         if law.force == ContactForce.HERTZ_MINDLIN:
             pulls, ends = DampingLaw.TSUJI, DampingLaw.THORNTON
         found.append(
-            f"{pulls.key} is '{pulls.word}': where the dashpot pulls, LAMMPS lets friction act by the size "
-            f"of the pull; {_instead(pulls.key, ends.word)}"
+            f"{pulls.key} is '{pulls.word}'{whose}: where the dashpot pulls, LAMMPS lets friction act by the "
+            f"size of the pull; {_instead(pulls.key, ends.word)}"
         )
     if not law.k_s > 0.0:
-        found.append("no tangential spring: a contact.shear_stiffness above 0 would be carried")
+        found.append(f"no tangential spring{whose}: a contact.shear_stiffness above 0 would be carried")
     if law.damping == Damping.RESTITUTION and law.zeta_n > _STEEPEST:
-        found.append(f"contact.restitution {law.e_n:g}: from 0.14 on it would be carried")
+        found.append(f"contact.restitution {law.e_n:g}{whose}: from 0.14 on it would be carried")
     lossless = law.eta_n == 0.0 if law.damping == Damping.CONSTANTS else law.zeta_n == 0.0
     dashed = law.eta_s != 0.0 if law.damping == Damping.CONSTANTS else law.zeta_s != 0.0
     if lossless and dashed:
         found.append(
-            "a tangential dashpot without a normal one: LAMMPS takes their ratio; contact.restitution_shear "
-            "1, or a restitution below 1, would be carried"
+            f"a tangential dashpot without a normal one{whose}: LAMMPS takes their ratio; "
+            "contact.restitution_shear 1, or a restitution below 1, would be carried"
         )
     return found
 
@@ -128,21 +151,37 @@ def _kinds(scene: Scene) -> list[str]:
         found.append("a scene without free grains")
     if scene.bodies is not None:
         found.append("clumps: spheres would be carried")
-    if scene.materials is not None:
-        found.append("[materials]: one contact law for all would be carried")
     if scene.has_servo:
         found.append("[walls.servo]: no wall is pressed; planes and fixed grains at rest would be carried")
     elif scene.walls is not None:
         found.append("[[walls]]: planes and fixed grains would be carried")
     if scene.traffic is not None:
         found.append("[[feeds]] and [[exits]]: a fixed number of grains would be carried")
+    if scene.materials is not None:
+        free = len(np.unique(scene.materials.of[: scene.n_grain]))
+        if free > MOST_TYPES:
+            found.append(f"free grains of {free} materials: {MOST_TYPES} would be carried")
     if scene.n_grain:
-        m = scene.m + scene.m_added
-        for name, one in {"added mass": scene.m_added, "buoyancy": scene.m_weight}.items():
-            share = one / m
-            if np.ptp(share) > _ALIKE * abs(float(share[0])):
-                found.append(f"grains with different {name} per mass: one density would be carried")
+        found += _shares(scene)
     return found
+
+
+def _shares(scene: Scene) -> list[str]:
+    """A type has one share of added mass, and the weight of grains without water is that of all."""
+    m, found = scene.m + scene.m_added, list[str]()
+    made_of = np.zeros(len(m)) if scene.materials is None else scene.materials.of[: scene.n_grain]
+    added, weight = scene.m_added / m, scene.m_weight / m
+    if any(_differ(added[made_of == number]) for number in np.unique(made_of)):
+        found.append(
+            "grains with different added mass per mass: one density for each material would be carried"
+        )
+    if not completes_forces(scene) and _differ(weight):
+        found.append("grains with different buoyancy per mass: one density would be carried")
+    return found
+
+
+def _differ(shares: Floats) -> bool:
+    return bool(np.ptp(shares) > _ALIKE * abs(float(shares[0])))
 
 
 def _records(scene: Scene) -> list[str]:

@@ -23,7 +23,7 @@ from ryusa.engine.lammps.faults import (
     fault_of_lammps,
     not_a_number,
 )
-from ryusa.engine.lammps.mass_classes import mass_classes
+from ryusa.engine.lammps.grain_types import grain_types
 from ryusa.engine.lammps.module import module, open_lammps
 from ryusa.engine.lammps.overlaps import contacts
 from ryusa.engine.lammps.sums import RankSums
@@ -64,7 +64,7 @@ class GrainShare:
     def load(self, scene: Scene, state: State, restart: bytes | None) -> None:
         """Take a scene and a state; `restart` is what `restart` returned, for a resume."""
         self.close()
-        self._scene, self._classes = scene, mass_classes(scene)
+        self._scene, self._types = scene, grain_types(scene)
         self._t_zero = state.t - state.step * scene.dt
         self._take_numbers(scene, state)
         self._lmp = lmp = open_lammps(self._comm)
@@ -79,7 +79,7 @@ class GrainShare:
         else:
             self._read_restart(restart)
         self._give_bodies(scene, state)
-        self._run(C.laws(scene, self._classes))
+        self._run(C.laws(scene, self._types))
         if self._calls:
             lmp.set_fix_external_callback(C.WATER, self._complete, None)
         self._run([f"reset_timestep {state.step}"])
@@ -91,7 +91,7 @@ class GrainShare:
         there = np.flatnonzero(scene.fixed_active)
         x = np.concatenate([state.x, scene.x_fixed[there]])
         ids = np.concatenate([np.arange(scene.n_grain), scene.n_grain + there]) + 1
-        types = np.concatenate([self._classes.of + 1, np.full(len(there), self._classes.n + 1)])
+        types = np.concatenate([self._types.of, self._types.n + self._types.of_fixed[there]]) + 1
         image = np.zeros((len(x), 3), np.int64)
         for axis, period in enumerate(scene.period):
             if np.isfinite(period):
@@ -101,7 +101,7 @@ class GrainShare:
         if len(state.image):
             image[: scene.n_grain, :2] += state.image
         image = (image + FEWEST_IMAGES // 2) % FEWEST_IMAGES - FEWEST_IMAGES // 2
-        self._run(C.box(scene, self._classes, x))
+        self._run(C.box(scene, self._types, x))
         flags = [self._lmp.encode_image_flags(*row) for row in image.tolist()]
         self._lmp.create_atoms(len(x), ids.tolist(), types.tolist(), x.ravel().tolist(), None, flags)
 
@@ -174,7 +174,7 @@ class GrainShare:
         self._run(C.removed(np.flatnonzero(self._bed & ~scene.fixed_active) + scene.n_grain))
         self._bed = scene.fixed_active.copy()
         for k in np.flatnonzero(before.plane_active & ~scene.plane_active).tolist():
-            self._run(f"unfix {C.wall(k, c)}" for c in range(self._classes.n))
+            self._run(f"unfix {C.wall(k, c)}" for c in range(self._types.n))
         self._set_out()  # counts no impulse: what was taken from the water goes with its grain
 
     def set_fluid(self, ids: np.ndarray, sampled: Floats) -> None:
