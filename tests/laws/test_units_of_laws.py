@@ -290,6 +290,7 @@ UNITS = {
     "transport.q_star_meyer_peter_mueller": "- -> -",
     "transport.q_star_wong_parker": "- -> -",
     "transport.q_star_wong_parker_steep": "- -> -",
+    "transport.solid_discharge_smart_jaeggi": "m2/s, -, m, -, m, -, - -> m2/s",
     "transport.q_star_ashida_michiue": "-, -, - -> -",
     "transport.tau_star_effective": "m/s, m, -, -, m/s2, m -> -",
     "transport.bedload_layer": "-, -, -, -, - -> -",

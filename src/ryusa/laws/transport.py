@@ -175,6 +175,37 @@ def q_star_wong_parker_steep(tau_star: float) -> float:
 
 
 @law
+def solid_discharge_smart_jaeggi(
+    q: float, slope: float, depth: float, s: float, d: float, spread: float, tau_star_c: float
+) -> float:
+    """Volume of sediment that steep flow carries per width and time [m2/s], after Smart and Jaeggi.
+
+    Parameters
+    ----------
+    q : discharge of water per width [m2/s].
+    slope : tangent of the slope of the bed [-]; the experiments had 0.005 to 0.2.
+    depth : of the flow [m].
+    s : density of the sediment over that of the water [-].
+    d : mean diameter [m].
+    spread : d_90/d_30, by mass [-]; 1 for grains of one size.
+    tau_star_c : Shields number at the threshold of motion [-]; 0.05.
+
+    Notes
+    -----
+    Source: Smart & Jaeggi 1983, 4/(s - 1) (d_90/d_30)**0.2 q slope**1.6 (1 - tau_star_c/tau_star) with
+    tau_star = depth slope/((s - 1) d); zero below the threshold.
+
+    Examples
+    --------
+    >>> round(solid_discharge_smart_jaeggi(1.0, 0.1, 0.5, 3.0, 0.25, 1.0, 0.05), 9)  # 2 * 0.1**1.6 * 0.5
+    0.025118864
+    """
+    tau_star = depth * slope / ((s - 1.0) * d)
+    share = max(tau_star - tau_star_c, 0.0) / tau_star if tau_star != 0.0 else 0.0
+    return 4.0 / (s - 1.0) * spread**0.2 * q * slope**1.6 * share
+
+
+@law
 def q_star_ashida_michiue(tau_star: float, tau_star_e: float, tau_star_c: float) -> float:
     """Dimensionless transport rate [-] after Ashida and Michiue.
 

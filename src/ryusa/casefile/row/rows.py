@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 from ryusa.casefile.column.packed import packed
 from ryusa.casefile.motion import slope
+from ryusa.casefile.row.capacity import GENTLEST, STEEPEST, Filling, capacity, filling, shields_number
 from ryusa.casefile.row.schema import RowSection, row_keys
 from ryusa.casefile.row.values import (
     COURANT,
@@ -100,7 +101,23 @@ def _flow(case: "Case", keys: RowSection) -> list[ExplainRow]:
     ]
     for one in reaches(case):
         rows += _reach(one)
+        rows += _transport(case, one) if stream(case) else []
     return rows
+
+
+def _transport(case: "Case", one: Reach) -> list[ExplainRow]:
+    """Shields number and capacity of normal flow on a reach; a slope beyond the formula has no capacity."""
+    stress = shields_number(case, one.slope, one.normal)
+    if math.isnan(stress):
+        return []
+    where = f"x = {one.begin:g} to {one.end:g} m"
+    rows = [number("water", f"Shields number, {where}", stress, "-", "of normal flow and the mean diameter")]
+    if math.isnan(most := capacity(case, one.slope)):
+        allowed = f"the formula holds for slopes from {GENTLEST:g} to {STEEPEST:g}"
+        return [*rows, word("water", f"capacity, {where}", "not known", allowed)]
+    mass = most * case.grains.density * (width_of(case) or 0.0)
+    origin = f"{mass:.3g} kg/s over the width, of uniform flow; Smart & Jaeggi 1983: a scale"
+    return [*rows, number("water", f"capacity, {where}", most, "m2/s", origin)]
 
 
 def _reach(one: Reach) -> list[ExplainRow]:
@@ -137,7 +154,22 @@ def _dams(case: "Case", keys: RowSection, plan: RowPlan) -> list[ExplainRow]:
             head = (q / (WEIR * math.sqrt(case.motion.gravity * math.cos(slope(case))))) ** (2.0 / 3.0)
             origin = "critical flow without loss: q = (2/3)^1.5 sqrt(g) H^1.5"
             rows.append(number("water", f"energy head over '{dam.name}'", head, "cm", origin))
+        if stream(case) and (found := filling(case, dam)) is not None:
+            rows += _filling(dam.name, found)
     return rows
+
+
+def _filling(name: str, found: Filling) -> list[ExplainRow]:
+    """Slope of the deposit behind a dam, and the time in which it fills."""
+    slope_of = "at which the flow carries the feed, Smart & Jaeggi 1983"
+    if found.slope < GENTLEST * (1.0 + 1e-6):
+        slope_of = f"that of the feed is less, where the formula of Smart & Jaeggi 1983 ends: {GENTLEST:g}"
+    behind = number("water", f"slope of the deposit behind '{name}'", found.slope, "-", slope_of)
+    if not found.volume > 0.0:
+        return [behind, word("water", f"time to fill '{name}'", "full", "the bed at the start is as high")]
+    up_to = "the feed" if found.reaches_feed else "where the deposit meets the bed"
+    origin = f"{found.volume:.3g} m2 per width, from the crest up to {up_to}; no grain passes before"
+    return [behind, number("water", f"time to fill '{name}'", found.time, "s", origin)]
 
 
 def _step(case: "Case", derived: "Derived", plan: RowPlan) -> list[ExplainRow]:

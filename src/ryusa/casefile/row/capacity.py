@@ -1,0 +1,134 @@
+"""Estimates of what the flow of a row can carry, and of the deposit behind a dam."""
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ryusa.casefile.column.packed import packed
+from ryusa.casefile.grading import grading_of, reference_diameter
+from ryusa.casefile.motion import slope
+from ryusa.casefile.row.schema import RowDamSection, row_keys
+from ryusa.casefile.row.values import (
+    bottom_points,
+    crest_of,
+    dam_span,
+    discharge_of,
+    normal_depth,
+    row_plan,
+    stream_span,
+    width_of,
+)
+from ryusa.casefile.traffic.schema import FeedSection
+from ryusa.casefile.traffic.values import grains_per_second, mean_mass
+from ryusa.laws.transport import solid_discharge_smart_jaeggi
+
+if TYPE_CHECKING:
+    from ryusa.casefile.case import Case
+
+GENTLEST, STEEPEST = 0.005, 0.2  # slopes of the experiments of Smart and Jaeggi [-]
+THRESHOLD = 0.05  # Shields number at the threshold of motion [-]
+
+
+@dataclass(frozen=True)
+class Filling:
+    """The deposit behind a dam, as wide as the stream.
+
+    Attributes
+    ----------
+    slope : of its surface, at which the flow carries on what the feeds bring [-]; 0.005 where that is less.
+    volume : between dam, bed and that surface, with pores, per width [m2].
+    time : in which the feeds bring it [s].
+    reaches_feed : whether the surface meets the first feed before it meets the bed.
+    """
+
+    slope: float
+    volume: float
+    time: float
+    reaches_feed: bool
+
+
+def capacity(case: "Case", angle: float) -> float:
+    """Volume of grains that uniform flow of the discharge carries on a slope [rad], per width [m2/s].
+
+    nan without a discharge, for grains that do not sink, and outside the slopes of the formula.
+    """
+    wet, q, tangent = case.water, discharge_of(case), math.tan(angle)
+    if wet is None or not q > 0.0 or not GENTLEST <= tangent <= STEEPEST:
+        return math.nan
+    s, graded = case.grains.density / wet.density, grading_of(case)
+    if not s > 1.0:
+        return math.nan
+    spread = 1.0 if graded is None else graded.diameter(0.9) / graded.diameter(0.3)
+    depth, d = normal_depth(case, q, angle), reference_diameter(case)
+    return solid_discharge_smart_jaeggi(q, tangent, depth, s, d, spread, THRESHOLD)
+
+
+def shields_number(case: "Case", angle: float, depth: float) -> float:
+    """Shields number of uniform flow of a depth [m] on a slope [rad] [-]; nan for grains that do not sink."""
+    wet = case.water
+    if wet is None or not case.grains.density > wet.density:
+        return math.nan
+    return depth * math.sin(angle) / ((case.grains.density / wet.density - 1.0) * reference_diameter(case))
+
+
+def filling(case: "Case", dam: RowDamSection) -> Filling | None:
+    """The deposit that feeds build behind a dam; None where no estimate can be made.
+
+    Notes
+    -----
+    Behind the dam the bed takes the slope at which the flow carries the feed on, from the crest upstream to
+    where it meets the bed of the start: V = P**2/(2 (S_0 - S)) behind a dam P high on a plane bed of slope
+    S_0. No estimate is made for the second dam below a feed, for one that lets water through, and for a feed
+    beyond the formula.
+    """
+    keys, width, plan = row_keys(case), width_of(case), row_plan(case)
+    first = plan.x_low + dam_span(plan, dam)[0] * plan.dx
+    feeds = [(at, one) for one in case.feeds if (at := _place(one)) is not None and at < first]
+    if keys is None or width is None or dam.concentration is not None or not feeds:
+        return None
+    start = max(at for at, _ in feeds)
+    if any(start < other.begin < dam.begin and other.concentration is None for other in keys.dams):
+        return None
+    rate = sum(_volume_rate(case, one) for _, one in feeds) / width
+    angle = _slope_that_carries(case, rate)
+    if angle is None or not rate > 0.0:
+        return None
+    x = np.linspace(start, first, 4001)
+    low = np.interp(x, *np.array(bottom_points(case)).T)
+    if case.build.kind == "stream":
+        begin, end = stream_span(case)
+        low = low + np.where((x >= begin) & (x <= end), case.build.bed, 0.0)
+    room = crest_of(plan, dam) + (first - x) * math.tan(angle - slope(case)) - low
+    shut = np.flatnonzero(room <= 0.0)
+    taken = room[shut[-1] + 1 if len(shut) else 0 :]
+    volume = float(taken.sum() * (x[1] - x[0]))
+    return Filling(math.tan(angle), volume, volume * packed(case) / rate, not len(shut))
+
+
+def _place(feed: FeedSection) -> float | None:
+    """Middle of a feed along the row [m]; None where it moves or its keys are missing."""
+    if feed.moves_with is not None:
+        return None
+    if feed.low is not None and feed.high is not None:
+        return 0.5 * (feed.low[0] + feed.high[0])
+    return None if feed.centre is None else feed.centre[0]
+
+
+def _volume_rate(case: "Case", feed: FeedSection) -> float:
+    """Volume of grains that a feed brings [m3/s]."""
+    own = case.materials.get(feed.material or "")
+    density = (own.density if own is not None else None) or case.grains.density
+    return grains_per_second(case, feed) * mean_mass(case, feed.material) / density
+
+
+def _slope_that_carries(case: "Case", rate: float) -> float | None:
+    """Slope at which uniform flow carries a volume per width [m2/s] [rad]; None beyond the formula."""
+    low, high = math.atan(GENTLEST), math.atan(STEEPEST)
+    if not capacity(case, high) >= rate:
+        return None
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if capacity(case, middle) < rate else (low, middle)
+    return high
