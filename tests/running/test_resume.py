@@ -14,6 +14,7 @@ import ryusa
 from ryusa.build import scene as scene_of
 from ryusa.casefile.read import read_text
 from ryusa.errors import CheckpointError, ResultsError
+from ryusa.model.traffic import IN
 from ryusa.results import Results, schema
 from ryusa.running import checkpoint_scheduler, loop, recorder
 from ryusa.running.runner import run_scene
@@ -332,6 +333,53 @@ def numbers_in(one: Any) -> list[float]:
     if isinstance(one, dict):
         return [number for part in one.values() for number in numbers_in(part)]
     return [float(one)] if isinstance(one, int | float) else []
+
+
+RAIN = """
+[grains]
+diameter = "4 mm"
+density = "2650 kg/m3"
+[contact]
+stiffness = "100 N/cm"
+restitution = 0.5
+friction_angle = "30 deg"
+[motion]
+rotation = "free"
+plane = false
+[build]
+kind = "empty"
+[[feeds]]
+name = "hose"
+centre = ["0 m", "0 m", "0.1 m"]
+radius = "1 cm"
+rate = "100 grains/s"
+velocity = ["0 m/s", "0 m/s", "-0.5 m/s"]
+[[exits]]
+name = "below"
+point = ["0 m", "0 m", "0 m"]
+normal = [0, 0, -1]
+[stop]
+time = "0.1 s"
+[record]
+frames = "10 ms"
+"""
+
+
+def test_a_longer_run_whose_feed_has_no_grains_left_is_refused(tmp_path: Path) -> None:
+    def made(end: str, more: dict[str, str], **how: Any) -> Results:
+        case = read_text(RAIN, {"stop.time": end} | more)
+        return ryusa.run(case, tmp_path / "run", progress=False, **how)
+
+    assert (made("0.1 s", {}).passages["way"] == IN).sum() == 10
+    with pytest.raises(
+        CheckpointError, match=r"feed 'hose' were drawn up to 0.1 s, .* not to 0.2 s"
+    ):
+        made("0.2 s", {}, resume=True)
+    forced = made("0.2 s", {}, resume=True, force=True)
+    assert forced.complete
+    assert (forced.passages["way"] == IN).sum() == 10
+    made("0.1 s", {"feeds.0.end": "0.05 s"}, overwrite=True)  # ends before the run, however long that is
+    assert (made("0.2 s", {"feeds.0.end": "0.05 s"}, resume=True).passages["way"] == IN).sum() == 5
 
 
 def test_an_end_that_the_run_has_passed_is_refused(whole: Results, tmp_path: Path) -> None:

@@ -125,6 +125,7 @@ def find_resume_point(
     differences: list[str] = []
     if stop_changed:
         differences += _other_stop(was_stop, identity["stop"], block, changed)
+        differences += _other_feeds(was, resolved)
     code = _other_code(written_by.get("code"), code_versions(origin))
     differences += code if exact else []
     if differences and not force:
@@ -137,6 +138,30 @@ def find_resume_point(
     _refuse_foreign(folder, block, was, identity, scenes)
     alike, said = exact and not differences, [] if exact else [_INEXACT.format(origin.get("engine")), *code]
     return _from_checkpoint(folder, before, scenes, block, [*lost, *differences, *said], alike=alike)
+
+
+def _other_feeds(was: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
+    """Feeds whose grains were drawn for another end of the run."""
+    before = _feeds_until(was)
+    return [
+        f"the grains of feed '{name}' were drawn up to {before[name]:g} s, the end of the run when it began, "
+        f"and not to {end:g} s, so that it brings none after that"
+        if end > before[name]
+        else f"the grains of feed '{name}' were drawn up to {before[name]:g} s and not to {end:g} s"
+        for name, end in _feeds_until(now).items()
+        if name in before and end != before[name]
+    ]
+
+
+def _feeds_until(case: Mapping[str, Any]) -> dict[str, float]:
+    """Time up to which grains of each feed with a rate are drawn [s]; `case` as case.json holds it."""
+    stop = (case.get("stop") or {}).get("time")
+    found = {one["name"]: (one.get("end"), stop) for one in case.get("feeds") or () if one.get("rate")}
+    return {
+        name: min(float(one) for one in ends if one is not None)
+        for name, ends in found.items()
+        if any(one is not None for one in ends)
+    }
 
 
 def _newest(folder: Path, n_grain: int) -> tuple[CheckpointBlock | None, list[str]]:
