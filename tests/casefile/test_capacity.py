@@ -95,7 +95,7 @@ def test_a_dam_is_full_when_the_wedge_below_the_slope_of_the_feed_is() -> None:
 
 def test_a_feed_beyond_the_formula_has_no_time_and_a_small_one_says_so() -> None:
     assert not [name for name in rows("2.5 kg/s") if name.startswith("time to fill")]
-    small = rows("0.0005 kg/s")
+    small = rows("0.0005 kg/s", {"grains.diameter": "'1 mm'"})
     assert value(small, "slope of the deposit") == pytest.approx(0.005)
     assert "where the formula" in small["slope of the deposit behind 'dam'"].origin
 
@@ -120,3 +120,12 @@ def test_gentle_and_porous_reaches_and_light_grains_have_no_estimate() -> None:
 
 def test_nothing_moves_below_the_threshold() -> None:
     assert solid_discharge_smart_jaeggi(1.0, 0.01, 0.01, 2.65, 0.01, 1.0, 0.05) == 0.0
+
+
+def test_walls_that_water_flows_through_are_named() -> None:
+    own = "[{ name = 'sill', shape = 'rectangle', at = ['1 m', '0 m', '0 m'], " \
+          "sides = [['0 m', '5 cm', '0 m'], ['0 m', '0 m', '9 cm']] }]"  # fmt: skip
+    row = rows(more={"walls": own})["walls for grains alone"]
+    assert row.value == "'sill'"
+    assert row.flag == "note"
+    assert "walls for grains alone" not in rows()

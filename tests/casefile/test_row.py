@@ -159,6 +159,11 @@ def test_a_dam_thinner_than_a_segment_is_refused(river):
         read_text(text)
 
 
+def test_a_dam_beyond_the_row_is_refused(river):
+    with pytest.raises(CaseError, match=r"dams.0.end = 60.*must lie in the row, 0 to"):
+        read_text(RIVER.replace('end = "3.2 m"', 'end = "60 m"'))
+
+
 def test_a_bottom_that_does_not_close_is_refused_without_ends(river):
     text = "\n".join(line for line in RIVER.splitlines() if not line.startswith(("upstream", "downstream")))
     with pytest.raises(CaseError, match="is periodic"):

@@ -371,9 +371,7 @@ def test_a_longer_run_whose_feed_has_no_grains_left_is_refused(tmp_path: Path) -
         return ryusa.run(case, tmp_path / "run", progress=False, **how)
 
     assert (made("0.1 s", {}).passages["way"] == IN).sum() == 10
-    with pytest.raises(
-        CheckpointError, match=r"feed 'hose' were drawn up to 0.1 s, .* not to 0.2 s"
-    ):
+    with pytest.raises(CheckpointError, match=r"feed 'hose' were drawn up to 0.1 s, .* not to 0.2 s"):
         made("0.2 s", {}, resume=True)
     forced = made("0.2 s", {}, resume=True, force=True)
     assert forced.complete

@@ -330,6 +330,10 @@ def _dams(plan: RowPlan, keys: RowSection) -> Iterator[CaseError]:
             yield CaseError(
                 f"{key}.diameter", dam.diameter, "has no effect without concentration: the dam is impermeable"
             )
+        for name, at in (("begin", dam.begin), ("end", dam.end)):
+            if not plan.x_low - 1e-9 <= at <= plan.x_low + plan.n * plan.dx + 1e-9:
+                last = plan.x_low + plan.n * plan.dx
+                yield CaseError(f"{key}.{name}", at, f"must lie in the row, {plan.x_low:g} to {last:g} m")
         first, end = dam_span(plan, dam)
         if first == end:
             yield CaseError(

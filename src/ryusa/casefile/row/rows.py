@@ -45,7 +45,16 @@ def row_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
         return _segments(case, "periodic")
     plan = row_plan(case)
     about = [*_grid(case, keys, plan), *_flow(case, keys), *_dams(case, keys, plan)]
-    return [*about, *(_step(case, derived, plan) if alone else _bed(case))]
+    return [*about, *(_step(case, derived, plan) if alone else [*_bed(case), *_walls(case)])]
+
+
+def _walls(case: "Case") -> list[ExplainRow]:
+    """Walls of a stream that only its grains meet."""
+    if not case.walls:
+        return []
+    names = ", ".join(f"'{one.name}'" for one in case.walls)
+    about = "water flows through them; for the water give a dam of [[water.row.dams]] within each"
+    return [word("water", "walls for grains alone", names, about, "note")]
 
 
 def _segments(case: "Case", ends: str) -> list[ExplainRow]:
