@@ -32,7 +32,7 @@ THRESHOLD = 0.05  # Shields number at the threshold of motion [-]
 
 
 @dataclass(frozen=True)
-class Filling:
+class DamDeposit:
     """The deposit behind a dam, as wide as the stream.
 
     Attributes
@@ -73,7 +73,7 @@ def shields_number(case: "Case", angle: float, depth: float) -> float:
     return depth * math.sin(angle) / ((case.grains.density / wet.density - 1.0) * reference_diameter(case))
 
 
-def filling(case: "Case", dam: RowDamSection) -> Filling | None:
+def dam_deposit(case: "Case", dam: RowDamSection) -> DamDeposit | None:
     """The deposit that feeds build behind a dam; None where no estimate can be made.
 
     Notes
@@ -104,7 +104,7 @@ def filling(case: "Case", dam: RowDamSection) -> Filling | None:
     shut = np.flatnonzero(room <= 0.0)
     taken = room[shut[-1] + 1 if len(shut) else 0 :]
     volume = float(taken.sum() * (x[1] - x[0]))
-    return Filling(math.tan(angle), volume, volume * packed(case) / rate, not len(shut))
+    return DamDeposit(math.tan(angle), volume, volume * packed(case) / rate, not len(shut))
 
 
 def _place(feed: FeedSection) -> float | None:

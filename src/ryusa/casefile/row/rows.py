@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from ryusa.casefile.column.packed import packed
 from ryusa.casefile.motion import slope
-from ryusa.casefile.row.capacity import GENTLEST, STEEPEST, Filling, capacity, filling, shields_number
+from ryusa.casefile.row.capacity import GENTLEST, STEEPEST, DamDeposit, capacity, dam_deposit, shields_number
 from ryusa.casefile.row.schema import RowSection, row_keys
 from ryusa.casefile.row.values import (
     COURANT,
@@ -163,12 +163,12 @@ def _dams(case: "Case", keys: RowSection, plan: RowPlan) -> list[ExplainRow]:
             head = (q / (WEIR * math.sqrt(case.motion.gravity * math.cos(slope(case))))) ** (2.0 / 3.0)
             origin = "critical flow without loss: q = (2/3)^1.5 sqrt(g) H^1.5"
             rows.append(number("water", f"energy head over '{dam.name}'", head, "cm", origin))
-        if stream(case) and (found := filling(case, dam)) is not None:
-            rows += _filling(dam.name, found)
+        if stream(case) and (found := dam_deposit(case, dam)) is not None:
+            rows += _deposit_behind(dam.name, found)
     return rows
 
 
-def _filling(name: str, found: Filling) -> list[ExplainRow]:
+def _deposit_behind(name: str, found: DamDeposit) -> list[ExplainRow]:
     """Slope of the deposit behind a dam, and the time in which it fills."""
     slope_of = "at which the flow carries the feed, Smart & Jaeggi 1983"
     if found.slope < GENTLEST * (1.0 + 1e-6):
