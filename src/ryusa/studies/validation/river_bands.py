@@ -70,4 +70,9 @@ REACH_CLOSES = at_most(1e-9, "round-off of the sums over grains")
 # Discharge through settled grains in a row, against Ergun's law with their own concentration: 3 % allow for a
 # concentration that varies between the layers.
 OWN_PACKING = at_most(0.03, "grains of a packing meet concentrations that vary about their mean")
+# A delta grows into a pool: its front moves by its balance if its shape is steady, and segments of three
+# diameters leave some per cent of its way uncertain.
+DELTA_KEPT = at_most(1e-12, "round-off of the sum of masses")
+DELTA_SPEED = Band(0.95, 1.05, "-", "the shape of the front is steady: 5 %")
+DELTA_ANGLE = Band(-2.0, 2.0, "deg", "the front is a slope at the angle of repose of the same grains")
 AT_REST = at_most(1e-3, "a thousandth of a diameter in 0.2 s, on a level bed under still water")
