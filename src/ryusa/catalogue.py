@@ -333,7 +333,7 @@ PICTURES = (
                  "percent finer by mass over diameter, asked for and laid", clumps=True),
     PictureEntry("walls", "ryusa.figures.walls:walls",
                  "force on each wall over time, and the power of those that move",
-                 WINDOW, settled=True, measure="walls", fed=True, clumps=True),
+                 WINDOW, settled=True, measure="walls", drawing=("wall",), fed=True, clumps=True),
     PictureEntry("discharge", "ryusa.figures.discharge:discharge",
                  "mass in by each feed and out by each exit, and mass there, over time",
                  WINDOW, settled=True, measure="discharge", builders=("empty",), fed=True,

@@ -6,9 +6,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 import ryusa
 from ryusa.casefile import read
+from ryusa.cli import app
 from ryusa.results import Results, schema
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "faults"))
@@ -137,7 +139,12 @@ def test_contact_forces_on_walls_point_into_the_cup(whole: Results) -> None:
 
 
 def test_walls_are_drawn(whole: Results, tmp_path: Path) -> None:
-    assert whole.draw("walls") is not None
+    shown = CliRunner().invoke(
+        app, ["draw", str(whole.folder), "walls", "--wall", "lid", "-o", str(tmp_path / "lid.png")]
+    )
+    assert shown.exit_code == 0 and (tmp_path / "lid.png").exists(), shown.output
+    both = whole.draw("walls")
+    assert {one.get_title("left") for one in both.axes} >= {"cup"}
     whole.view().save(tmp_path / "view.html")
     assert '"wall_faces"' in (tmp_path / "view.html").read_text()
     still = whole.film(frames=2, size=(480, 270))

@@ -41,6 +41,7 @@ CHECKS: dict[str, chosen.Check] = {
     "--quantity": chosen.one_of(QUANTITIES),
     "--reach": chosen.reach,
     "--side": chosen.one_of(SIDES),
+    "--wall": lambda _name, value, _results: value,
 }
 
 
@@ -52,6 +53,13 @@ Quantity = Annotated[
     typer.Option(
         help=f"{taking('quantity', PICTURES)}: only one of {', '.join(QUANTITIES)}; default all that "
         "the run has."
+    ),
+]
+Wall = Annotated[
+    list[str] | None,
+    typer.Option(
+        help=f"{taking('wall', PICTURES)}: only the wall of this name; may be repeated. Default all that "
+        "grains touched, of more than eight those with the largest forces."
     ),
 ]
 
@@ -126,6 +134,7 @@ def draw(
     dam: Dam = None,
     reach: Reach = None,
     quantity: Quantity = None,
+    wall: Wall = None,
 ) -> None:
     """Draw a picture of a run, and write the numbers in it as CSV beside it.
 
@@ -143,6 +152,7 @@ def draw(
 def _write(figure: "Figure", rows: list[dict[str, object]], path: Path, csv: Path | None) -> None:
     """Write a picture, and its numbers if a file was given for them or they are few."""
     from ryusa.figures import save
+    from ryusa.figures.style import notes
 
     try:
         typer.echo(f"wrote {save(figure, path)}")
@@ -150,6 +160,8 @@ def _write(figure: "Figure", rows: list[dict[str, object]], path: Path, csv: Pat
         raise ResultsError(
             f"{path}: cannot be written ({error.strerror or error}); choose another with -o"
         ) from None
+    for one in notes(figure):
+        typer.echo(one)
     size = _csv_size(rows)
     if csv is None and size > MOST:
         typer.echo(f"the numbers in it take about {size / 1e6:.2g} MB: --csv FILE writes them")

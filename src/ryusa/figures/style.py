@@ -4,6 +4,7 @@ import io
 from collections.abc import Callable
 from functools import wraps
 from pathlib import Path
+from textwrap import fill
 from typing import Any, TypeVar, cast
 
 import matplotlib as mpl
@@ -28,6 +29,7 @@ LINES = ("-", "--", "-.", ":")
 BED = "#b8b2a7"
 BAND = "#dfe7d8"
 FAINT = "#8a8a8a"
+NOTE_SIZE, NOTE_WIDTH = 6.0, 19.0  # of a note below a figure: letters [point], and how many go in an inch
 SHORT, SHORTEST = 200.0, 4.0  # ratios of the ends of a logarithmic axis, see `log_ticks`
 
 HOUSE: Any = {
@@ -78,6 +80,8 @@ def house(draw: Drawing) -> Drawing:
 
 class _ShownFigure(Figure):
     """A figure that a notebook shows by itself, without pyplot."""
+
+    notes: tuple[str, ...] = ()  # what is written below it
 
     def _repr_png_(self) -> bytes:
         held = io.BytesIO()
@@ -145,6 +149,20 @@ def label_panel(axes: Axes, text: str) -> None:
         va="top",
         weight="bold",
     )
+
+
+def note(figure: Figure, text: str) -> None:
+    """Write a line below a figure, such as what it leaves out; `ryusa draw` prints it as well."""
+    said = (*notes(figure), text)
+    if isinstance(figure, _ShownFigure):
+        figure.notes = said
+    wide = int(NOTE_WIDTH * figure.get_size_inches()[0])
+    figure.supxlabel("\n".join(fill(one, wide) for one in said), fontsize=NOTE_SIZE, x=0.01, ha="left")
+
+
+def notes(figure: Figure) -> tuple[str, ...]:
+    """What `note` wrote below a figure."""
+    return figure.notes if isinstance(figure, _ShownFigure) else ()
 
 
 def shade(value: float) -> tuple[float, float, float, float]:

@@ -1,17 +1,18 @@
 """Force and torque on each wall over time, and the work of walls that move."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ryusa.errors import ResultsError
 from ryusa.measure._run import Floats, Run, settle_time
+from ryusa.measure.snapshot import scene_at
 from ryusa.measure.statistics import average
 from ryusa.measure.table import Averaged, Averages
 from ryusa.model import Scene
 from ryusa.model.servo import driven
-from ryusa.model.walls import N_IMPULSE, TOWARDS
+from ryusa.model.walls import N_IMPULSE, TOWARDS, Carrier
 
 AXES = ("x", "y", "z")
 ALONG = 1.0e-9  # sine of the angle up to which two directions are one
@@ -27,20 +28,29 @@ class WallForces(Averaged):
     names : of the walls.
     force : of the grains on each wall [N], shape (n, n_wall, 3).
     torque : about the axis point of each wall [N m], shape (n, n_wall, 3).
+    axis_point : where that point is at the begin of the window [m], shape (n_wall, 3); a wall takes it along.
     power : that each wall gives to the grains [W], shape (n, n_wall); 0 where it does not move.
     contacts : mean number of contacts of each wall, shape (n, n_wall).
     travel : way of each wall along the direction of its servo [m], shape (n, n_wall); None without a servo.
-    averages : of the components of each wall, those that are not zero throughout.
+    averages : of the components of each wall, those that are not zero throughout; the notes name the walls
+        that no grain touched.
     """
 
     t: Floats
     names: tuple[str, ...]
     force: Floats
     torque: Floats
+    axis_point: Floats
     power: Floats
     contacts: Floats
     travel: Floats | None
     averages: Averages
+
+    @property
+    def untouched(self) -> tuple[str, ...]:
+        """Names of the walls that no grain touched."""
+        felt = np.any((self.force != 0.0).any(axis=2) | (self.contacts != 0.0), axis=0)
+        return tuple(name for name, one in zip(self.names, felt.tolist(), strict=True) if not one)
 
     def rows(self) -> list[dict[str, object]]:
         """One dictionary per time between two frames and wall."""
@@ -75,7 +85,8 @@ def walls(run: Run, begin: float | None = None, end: float = math.inf) -> WallFo
     -----
     The engine sums the impulses at every step; their difference between two frames over the time is the mean
     force, whatever happens in between. The torque is about the axis point of the wall, which is its `at`
-    where the case gives no axis_point. Weight of the wall itself is not included.
+    where the case gives no axis_point, and the origin where it gives neither, as for the bottom and the dams
+    of a stream. Weight of the wall itself is not included.
     """
     if run.scene.walls is None:
         raise ResultsError("the run has no [[walls]]; planes are not measured")
@@ -97,11 +108,26 @@ def walls(run: Run, begin: float | None = None, end: float = math.inf) -> WallFo
         if np.any(rate[:, w, k] != 0.0)
     ]
     travel = np.asarray(run.wall_travel, dtype=np.float64)[first:last]
-    return WallForces(
-        0.5 * (t[1:] + t[:-1]), names, rate[:, :, :3], rate[:, :, 3:6], rate[:, :, 6], rate[:, :, 7],
-        0.5 * (travel[1:] + travel[:-1]) if run.scene.has_servo else None,
-        Averages("walls", tuple(items), ("forces of the grains on the walls; torque about the axis point",)),
+    now = scene_at(run, window[0]).walls or run.scene.walls
+    found = WallForces(
+        0.5 * (t[1:] + t[:-1]), names, rate[:, :, :3], rate[:, :, 3:6],
+        np.array([Carrier.of(row, window[0]).axis_point for row in now.motion]), rate[:, :, 6], rate[:, :, 7],
+        0.5 * (travel[1:] + travel[:-1]) if run.scene.has_servo else None, Averages("walls", tuple(items)),
     )  # fmt: skip
+    return replace(found, averages=replace(found.averages, notes=_notes(found, now.moving().tolist())))
+
+
+def _notes(found: WallForces, moves: list[bool]) -> tuple[str, ...]:
+    """Whose forces these are, about which points the torques are, and which walls no grain touched."""
+    points = [
+        f"{name} ({', '.join(f'{one + 0.0:.4g}' for one in place)}) m"
+        + " at the begin, moving with it" * moving
+        for name, place, moving in zip(found.names, found.axis_point.tolist(), moves, strict=True)
+    ]
+    said = ("forces of the grains on the walls; torques about the axis point at " + ", ".join(points),)
+    if found.untouched:
+        return (*said, f"no grain touched: {', '.join(found.untouched)}")
+    return said
 
 
 def pressed_lid(scene: Scene) -> tuple[int, float]:
