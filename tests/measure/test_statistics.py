@@ -100,8 +100,18 @@ def test_a_trend_is_not_steady_and_noise_is():
     assert average("x", "-", list(noise)).steady
     rising = average("x", "-", list(noise + np.linspace(0, 2, 200)))
     assert not rising.steady
-    assert rising.drift > 3
+    assert rising.drift == pytest.approx(1.0, abs=0.2)
     assert rising.verdict.startswith("no, drift +")
+
+
+def test_a_drift_is_in_the_unit_of_its_quantity_however_quiet_the_record_was_before():
+    """An outlet that the first grains reach after half of the window."""
+    rate = np.where(np.arange(80) < 40, 0.0, 0.024 + 1e-9 * np.random.default_rng(2).normal(size=80))
+    found = ratio("rate_out", "kg/s", [0.02 * rate], [np.full(80, 0.02)])
+    assert found.changes
+    assert found.drift == pytest.approx(0.024)
+    assert found.verdict == "no, drift +0.024"
+    assert average("x", "-", [np.cos(np.arange(400) * np.pi / 200.0)]).verdict == "no, it varies"
 
 
 def test_starts_of_different_lengths_that_all_rise_are_not_steady():

@@ -21,7 +21,7 @@ FEWEST = 4  # frequencies at least
 SHARE = 0.25  # frequencies for each independent sample
 ROUNDS = 3  # estimates of the number of independent samples, each from the one before
 ONE_SIGMA = 0.5 * (1.0 + math.erf(math.sqrt(0.5)))  # normal distribution at one standard deviation [-]
-DRIFTS = 2.0  # drift that is named where a record changes, in its standard errors
+DRIFTS = 1.0  # drift that is named where a record changes, in standard errors of its mean
 APART = 0.95  # starts differ where chance explains less than the rest
 
 
@@ -38,7 +38,8 @@ class Average:
     n_series : number of independent series (starts) they come from.
     independent : number of independent samples they are worth, as far as blocks resolve it: at most 128 [-].
     window : begin and end of the record averaged over [s].
-    variation, drift : of the record, see `steadiness.compare_quarters` [-]; nan where it is too short.
+    variation : of the record, see `steadiness.compare_quarters` [-]; nan where it is too short.
+    drift : mean of the second half of the record less that of the first, in its unit; the same.
     steady_from : begin of the part of the window that is steady, see `steadiness.truncation` [s]; nan where
         there is none, or no window. Samples count as evenly spread over the window.
     """
@@ -83,7 +84,8 @@ class Average:
         if self.n == 0:
             return "-"
         if self.changes:
-            return f"no, drift {self.drift:+.1f} s.e." if abs(self.drift) >= DRIFTS else "no, it varies"
+            drifts = abs(self.drift) >= DRIFTS * self.error
+            return f"no, drift {self.drift:+.3g}" if drifts else "no, it varies"
         return "too short" if self.short else "yes"
 
     def row(self) -> dict[str, object]:

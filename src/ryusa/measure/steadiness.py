@@ -15,7 +15,6 @@ Floats = NDArray[np.float64]
 BLOCKS = 128  # most blocks that a record is averaged to
 PARTS = 4  # quarters of the record that are compared
 WAVES = 4  # slowest cosines of a quarter, of which its noise is estimated
-QUIET = 0.742  # mean noise of the three quietest of four quarters over that of all, in white noise
 LIMIT = 2.64  # variation that 1.5 % of the records of white noise exceed; 6 % with 20 independent samples
 ROUND_OFF = 1.0e-12  # share of the mean below which a record counts as constant
 MSER_BLOCKS = 64
@@ -62,7 +61,7 @@ def block_means(rows: Floats, most: int = BLOCKS) -> Floats:
 
 
 def compare_quarters(record: ArrayLike, scale: float = 0.0) -> tuple[float, float]:
-    """Variation between the four quarters of a record, and its drift, over the noise within them.
+    """Variation between the four quarters of a record over the noise within them, and its drift.
 
     Parameters
     ----------
@@ -73,7 +72,9 @@ def compare_quarters(record: ArrayLike, scale: float = 0.0) -> tuple[float, floa
     -------
     variation : standard deviation of the means of the quarters over what noise explains [-]; 0 for a record
         that is constant, nan where a quarter has fewer than five samples.
-    drift : mean of the second half less that of the first over its standard error [-]; the same.
+    drift : mean of the second half less that of the first [unit of the record]; the same. It is not held
+        against noise: where a record rests in three quarters, as that of an outlet that no grain has
+        reached, there is none.
 
     Notes
     -----
@@ -101,8 +102,8 @@ def compare_quarters(record: ArrayLike, scale: float = 0.0) -> tuple[float, floa
     half = 0.5 * float(means[2] + means[3] - means[0] - means[1])
     between = length * float(means.var(ddof=1))
     if noise <= ROUND_OFF**2 * between:
-        return math.inf, math.copysign(math.inf, half)
-    return math.sqrt(between / noise), half * math.sqrt(length * QUIET / noise)
+        return math.inf, half
+    return math.sqrt(between / noise), half
 
 
 def truncation(record: ArrayLike) -> float:
