@@ -17,7 +17,7 @@ from ryusa.model import ColumnRow
 from ryusa.model.traffic import IN, OUT
 from ryusa.spelling import known_word, nearest_word
 
-FEWEST = 3  # segments with a bed to which a line is fitted
+FEWEST = 3  # segments with a deposit to which a line is fitted
 
 
 @dataclass(frozen=True)
@@ -28,9 +28,10 @@ class Deposit(Averaged):
     ----------
     t : times of the frames [s].
     reach : its begin and end along x [m].
-    fitted : the part over which the line is fitted [m]: to the upstream face of the dam.
+    fitted : begin and end of the segments to which the line is fitted [m], shape (n_frame, 2): those with a
+        deposit, up to the upstream face of the dam; nan where there are none.
     slope : of the line of least squares through the bed, fall over horizontal distance [-]; nan with fewer
-        than three segments that have a bed.
+        than three segments that have a deposit.
     slope_error : its standard error by the scatter of the bed about it [-].
     held : volume of grains in the reach per width [m2].
     stored : the same less that in the first frame.
@@ -43,7 +44,7 @@ class Deposit(Averaged):
 
     t: Floats
     reach: tuple[float, float]
-    fitted: tuple[float, float]
+    fitted: Floats
     slope: Floats
     slope_error: Floats
     held: Floats
@@ -57,7 +58,8 @@ class Deposit(Averaged):
     def rows(self) -> list[dict[str, object]]:
         """One line for each frame."""
         columns = {
-            "t_s": self.t, "slope": self.slope, "slope_error": self.slope_error, "held_m2": self.held,
+            "t_s": self.t, "slope": self.slope, "slope_error": self.slope_error,
+            "fitted_from_m": self.fitted[:, 0], "fitted_to_m": self.fitted[:, 1], "held_m2": self.held,
             "stored_m2": self.stored, "brought_m2": self.brought, "passed_m2": self.passed,
             "trapped": self.trapped, "unaccounted_m2": self.unaccounted,
         }  # fmt: skip
@@ -93,7 +95,8 @@ def deposit(
     A grain is where its centre is, each sphere of a clump with its share of the volume; one that enters or
     leaves, where the centre of the clump is. Volumes leave pores out. stored = brought - passed at every
     frame, to round-off: what passes is counted from frame to frame with the places at which grains came and
-    left. The line is that of least squares through the bed of the segments in the reach that have one; the
+    left. The line is that of least squares through the bed of the segments in the reach whose deposit is at
+    least one mean diameter thick over bottom and dams: bare bottom has a slope of its own. The
     error of its slope allows for bed heights that are correlated along x (`standard_error`).
     """
     known_word(bed, BEDS, "bed")
@@ -113,7 +116,8 @@ def deposit(
     brought = over[:, 1] + (came[:, 1] - came[:, 2]) / width
     passed = over[:, 2] + (gone[:, 1] - gone[:, 2]) / width
     stored = held - held[0]
-    slope, error = _slopes(run, row, bed_line(run, found, frames, bed), (low, face), t)
+    beds = bed_line(run, found, frames, bed)
+    slope, error, fitted = _slopes(run, row, beds, found.floor, (low, face), t)
     window = (float(t[0]), float(t[-1]))
     dt = np.diff(t)
     averages = [average("slope", "-", [slope], window)]
@@ -126,14 +130,13 @@ def deposit(
     with np.errstate(invalid="ignore", divide="ignore"):
         trapped = np.where(brought > 0.0, stored / brought, math.nan)
     return Deposit(
-        t, (low, high), (low, face), slope, error, held, stored, brought, passed, trapped, over[:, 0],
+        t, (low, high), fitted, slope, error, held, stored, brought, passed, trapped, over[:, 0],
         Averages(
             "deposit", tuple(averages),
             (
                 f"reach: x = {low:.4g} to {high:.4g} m; since t = {t[0]:.4g} s {brought[-1]:.4g} m2 came and "
                 f"{passed[-1]:.4g} m2 went, {stored[-1]:.4g} m2 are stored, per width and without pores",
-                f"slope: line of least squares through the bed from {low:.4g} to {face:.4g} m; the scatter "
-                f"of the bed about it gives an error of {scatter:.2g} in one frame",
+                _of_fit(fitted, slope, scatter),
             ),
         ),
     )  # fmt: skip
@@ -184,16 +187,31 @@ def _volumes(run: Run, frames: np.ndarray, places: tuple[float, ...]) -> tuple[F
     return beyond, came, gone
 
 
+def _of_fit(fitted: Floats, slope: Floats, scatter: float) -> str:
+    """Over which distances the lines were fitted, in words."""
+    known = np.flatnonzero(np.isfinite(slope))
+    if not len(known):
+        return f"slope: in no frame {FEWEST} segments have a deposit at least one mean diameter thick"
+    (low, high), (first, last) = fitted[known[-1]].tolist(), (fitted[known, 0].min(), fitted[known, 1].max())
+    return (
+        f"slope: line of least squares through the deposit where it is at least one mean diameter thick, in "
+        f"the last frame from x = {low:.4g} to {high:.4g} m, in all within {first:.4g} to {last:.4g} m; the "
+        f"scatter of the bed about it gives an error of {scatter:.2g} in one frame"
+    )
+
+
 def _slopes(
-    run: Run, row: ColumnRow, beds: Floats, reach: tuple[float, float], t: Floats
-) -> tuple[Floats, Floats]:
-    """Slope of the line through the bed in each frame and its standard error [-], shape (n_frame,)."""
+    run: Run, row: ColumnRow, beds: Floats, floor: Floats, reach: tuple[float, float], t: Floats
+) -> tuple[Floats, Floats, Floats]:
+    """Slope of the line through the bed and its standard error [-] in each frame, and over which x [m]."""
     inside = (row.x > reach[0]) & (row.x < reach[1])
-    floor = row.bottom if row.solid is None else row.bottom + row.solid * row.column.dz
     slope, error = np.full((2, len(beds)), math.nan)
+    fitted = np.full((len(beds), 2), math.nan)
     for m, bed in enumerate(beds):
-        there = inside & (bed > floor)
+        there = inside & (bed - floor >= run.scene.d_mean)
         n = int(there.sum())
+        if n:
+            fitted[m] = row.x[there].min() - 0.5 * row.dx, row.x[there].max() + 0.5 * row.dx
         if n < FEWEST:
             continue
         x, z = row.x[there] - row.x[there].mean(), bed[there] - bed[there].mean()
@@ -203,4 +221,4 @@ def _slopes(
         slope[m] = math.tan(math.atan2(g_x, -minus_g_z) - math.atan(steep))
         wide = n * standard_error([scatter]).error / float(x @ x) * math.sqrt(n / (n - 2.0))
         error[m] = wide * (1.0 + slope[m] ** 2) / (1.0 + steep**2)
-    return slope, error
+    return slope, error, fitted
