@@ -21,6 +21,8 @@ def discharge(found: Discharge) -> Figure:
         if mass[-1] > mass[0]:
             mean = mass[0] + (mass[-1] - mass[0]) * since / since[-1]
             axes[0].plot(found.t, mean, color=colour, ls=DASHED, lw=0.6)
+    if any(mass[-1] > mass[0] for mass in passed.values()):
+        axes[0].plot([], [], color="black", ls=DASHED, lw=0.6, label="mean rate")
     axes[0].set_ylabel("mass that passed  (kg)")
     axes[1].plot(found.t, found.m, color=style.COLOURS[-1], lw=0.9)
     axes[1].set_ylabel("mass there  (kg)")
