@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 
 import ryusa
+from ryusa.casefile import explain
 from ryusa.casefile.read import read_text
 from ryusa.catalogue import MEASURES, PICTURES
 from ryusa.errors import CaseError, ResultsError, WaterError
 from ryusa.measure.long_section import long_section
 from ryusa.report.page import report_page
 from ryusa.results import Results, schema
+from ryusa.results.read import read_scenes
 from ryusa.view.film import film
 from ryusa.view.page import view_page
 
@@ -159,3 +161,56 @@ def test_a_row_filled_over_its_top_stops_with_the_place(tmp_path: Path) -> None:
 def test_other_engines_refuse_a_row(engine: str, tmp_path: Path) -> None:
     with pytest.raises(CaseError, match="a row of columns of water goes with engine 'cpu' alone"):
         run(tmp_path / "run", engine=engine)
+
+
+FLOOD = {
+    "timeline": "[{ at = '0.75 s', discharge = '0.05 m2/s' }, { at = '1.5 s', discharge = '0.02 m2/s' }]",
+    "stop.time": "'2.25 s'",
+}
+
+
+def test_a_hydrograph_in_steps_brings_its_volume(tmp_path: Path) -> None:
+    """Each discharge enters from the step nearest to its time on; a change ends an interval of the water."""
+    found = run(tmp_path / "run", overrides=FLOOD)
+    assert found.row is not None
+    brought = found.row.passed[:, 0]
+    asked = np.interp(found.row.t, [0.0, 0.75, 1.5, 2.25], np.cumsum([0.0, 0.0225, 0.0375, 0.015]))
+    np.testing.assert_allclose(brought, asked, atol=0.05 * 2.0 * found.scene.dt)
+    held = found.row.volume.sum(axis=1) * found.row.row.dx
+    assert np.abs(held - held[0] - brought + found.row.passed[:, -1]).max() < 1e-13
+    assert [scene.row.upstream.discharge for _, _, scene in read_scenes(tmp_path / "run")] == [
+        0.03,
+        0.05,
+        0.02,
+    ]
+
+
+def test_a_run_stopped_within_a_flood_gives_the_same_bits(tmp_path: Path, stop_at: Any) -> None:
+    whole = run(tmp_path / "whole", overrides=FLOOD)
+    half = round(1.0 / whole.scene.dt)
+    for step in (half // 2, half, 2 * half):
+        stop_at(step)
+        assert run(tmp_path / "run", overrides=FLOOD, resume=True).status == schema.STOPPED
+    assert run(tmp_path / "run", overrides=FLOOD, resume=True).complete
+    assert differences(whole.folder, tmp_path / "run") == []
+
+
+@pytest.mark.parametrize(
+    ("discharge", "more", "says"),
+    [
+        ("0 m2/s", {}, "must be above 0"),
+        ("6 L/s", {}, "discharge of the whole width"),
+        ("0.04 m2/s", {"water.row.upstream": "{ end = 'wall' }"}, "needs water.row.upstream with end ="),
+    ],
+)
+def test_a_discharge_that_cannot_enter_is_refused(discharge: str, more: dict[str, str], says: str) -> None:
+    with pytest.raises(CaseError) as caught:
+        read_text(WEIR, {"timeline": f"[{{ at = '1 s', discharge = '{discharge}' }}]"} | more)
+    assert any(says in one.line for one in (caught.value, *caught.value.others))
+
+
+def test_cells_and_step_are_made_for_the_peak() -> None:
+    steady, flood = ({row.name: row for row in explain(read_text(WEIR, one))} for one in ({}, FLOOD))
+    assert flood["Courant number"].value > steady["Courant number"].value
+    assert flood["cell"].origin != steady["cell"].origin  # of how many
+    assert flood["discharge from 0.75 s"].value == 0.05

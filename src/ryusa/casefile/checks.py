@@ -22,6 +22,7 @@ from ryusa.casefile.motion import check_motion
 from ryusa.casefile.precision import check_precision
 from ryusa.casefile.record import check_frames, check_record, check_stop, check_timeline
 from ryusa.casefile.row.checks import check_row
+from ryusa.casefile.row.hydrograph import check_hydrograph
 from ryusa.casefile.row.schema import row_keys
 from ryusa.casefile.row.values import water_alone
 from ryusa.casefile.section import Section, given
@@ -63,6 +64,7 @@ def check(case: Case, data: dict[str, Any]) -> list[CaseError]:
         *check_water(case),
         *check_column(case),
         *check_row(case),
+        *check_hydrograph(case),
         *check_films(case),
         *check_rolling(case),
         *check_motion(case),

@@ -18,6 +18,7 @@ from ryusa.casefile.quantities import (
     SlopeAngle,
     Speed,
 )
+from ryusa.casefile.row.schema import RowDischarge
 from ryusa.casefile.row.values import water_alone
 from ryusa.casefile.section import Section
 from ryusa.casefile.walls import MoveSection
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
     from ryusa.casefile.derive import Derived
 
 MANY = 1000  # free grains above which contacts are recorded only on request
-CHANGES = ("remove", "slope", "slope_angle", "friction_angle", "friction", "rotation", "move")
+CHANGES = ("remove", "slope", "slope_angle", "friction_angle", "friction", "rotation", "move", "discharge")
 
 
 class RestSection(Section):
@@ -73,6 +74,9 @@ class ChangeSection(Section):
     """Lock or free the rotation of grains."""
     move: MoveSection | None = None
     """Give a wall another motion."""
+    discharge: RowDischarge | None = None
+    """New discharge at the upper end of a row of columns, per width or of the whole width; several make a
+    hydrograph in steps."""
 
 
 class RecordSection(Section):

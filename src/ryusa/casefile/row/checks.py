@@ -108,8 +108,10 @@ def _grains(case: "Case") -> Iterator[CaseError]:
         )
         break
     for k, change in enumerate(case.timeline):
-        if change.slope is None and change.slope_angle is None:
-            yield CaseError(f"timeline.{k}", None, "a row without grains takes changes of slope alone")
+        if change.slope is None and change.slope_angle is None and change.discharge is None:
+            yield CaseError(
+                f"timeline.{k}", None, "a row without grains takes changes of slope and discharge alone"
+            )
 
 
 def _ending(case: "Case") -> Iterator[CaseError]:

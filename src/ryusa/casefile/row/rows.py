@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from ryusa.casefile.column.packed import packed
 from ryusa.casefile.motion import slope
 from ryusa.casefile.row.capacity import GENTLEST, STEEPEST, DamDeposit, capacity, dam_deposit, shields_number
+from ryusa.casefile.row.hydrograph import hydrograph_rows
 from ryusa.casefile.row.schema import RowSection, row_keys
 from ryusa.casefile.row.values import (
     COURANT,
@@ -106,9 +107,10 @@ def _flow(case: "Case", keys: RowSection) -> list[ExplainRow]:
         origin += "" if unit == "m2/s" else f", {value:g} m3/s over a width of {width_of(case):g} m"
     rows = [
         number("water", "discharge", q, "m2/s", origin),
-        number("water", "critical depth", critical_depth(case), "cm", "(q^2/(g cos(slope)))^(1/3)"),
+        number("water", "critical depth", critical_depth(case, q), "cm", "(q^2/(g cos(slope)))^(1/3)"),
+        *hydrograph_rows(case),
     ]
-    for one in reaches(case):
+    for one in reaches(case, q):
         rows += _reach(one)
         rows += _transport(case, one) if stream(case) else []
     return rows

@@ -13,7 +13,7 @@ from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.files import contents, inside
 from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.motion import slope
-from ryusa.casefile.row.schema import RowDamSection, RowSection, row_keys
+from ryusa.casefile.row.schema import Discharge, RowDamSection, RowSection, row_keys
 from ryusa.formats.line import read_line
 from ryusa.laws import turbulence, water
 from ryusa.model.arrays import Floats
@@ -96,11 +96,22 @@ def discharge_of(case: "Case") -> float:
     end = _row(case).upstream
     if end is None or end.discharge is None:
         return math.nan
-    value, unit = end.discharge
+    return per_width(case, end.discharge)
+
+
+def per_width(case: "Case", discharge: Discharge) -> float:
+    """A discharge per width [m2/s]; nan for one of the whole width where that is not given."""
+    value, unit = discharge
     if unit == "m2/s":
         return value
     width = width_of(case)
     return math.nan if width is None else value / width
+
+
+def peak_discharge(case: "Case") -> float:
+    """Largest discharge per width that enters upstream during the run [m2/s]; nan where none is given."""
+    steps = [per_width(case, one.discharge) for one in case.timeline if one.discharge is not None]
+    return max([discharge_of(case), *steps])
 
 
 def width_of(case: "Case") -> float | None:
@@ -165,9 +176,9 @@ def row_plan(case: "Case") -> RowPlan:
     return _plan(bottom_points(case), surface, wet.depth or 0.0, about, cell, height, bed)
 
 
-def reaches(case: "Case") -> list[Reach]:
-    """The straight pieces of the bottom, with normal depth and Froude number of the discharge."""
-    q, tilt, g = discharge_of(case), slope(case), case.motion.gravity
+def reaches(case: "Case", q: float) -> list[Reach]:
+    """The straight pieces of the bottom, with normal depth and Froude number of a discharge [m2/s]."""
+    tilt, g = slope(case), case.motion.gravity
     found: list[Reach] = []
     for (a, low), (b, high) in pairwise(bottom_points(case)):
         angle = tilt - math.atan2(high - low, b - a)
@@ -177,9 +188,9 @@ def reaches(case: "Case") -> list[Reach]:
     return found
 
 
-def critical_depth(case: "Case") -> float:
-    """Critical depth of the discharge [m]; nan without one."""
-    return (discharge_of(case) ** 2 / (case.motion.gravity * math.cos(slope(case)))) ** (1.0 / 3.0)
+def critical_depth(case: "Case", q: float) -> float:
+    """Critical depth of a discharge [m2/s] [m]; nan without one."""
+    return (q * q / (case.motion.gravity * math.cos(slope(case)))) ** (1.0 / 3.0)
 
 
 def normal_depth(case: "Case", q: float, angle: float) -> float:
@@ -205,8 +216,9 @@ def normal_depth(case: "Case", q: float, angle: float) -> float:
 
 def deepest(case: "Case", plan: RowPlan) -> float:
     """Largest depth to be expected [m]: at the start, at normal flow, behind dams, below a level."""
-    keys, critical = _row(case), critical_depth(case)
-    found = [float((plan.start - plan.bottom).max()), *(one.normal for one in reaches(case)), critical]
+    keys, q = _row(case), peak_discharge(case)
+    critical = critical_depth(case, q)
+    found = [float((plan.start - plan.bottom).max()), *(one.normal for one in reaches(case, q)), critical]
     over = 1.5 * critical if critical > 0.0 else 0.0
     tilt = math.tan(slope(case))
     for dam in keys.dams:
@@ -240,9 +252,9 @@ def dam_span(plan: RowPlan, dam: RowDamSection) -> tuple[int, int]:
 
 def fastest(case: "Case", plan: RowPlan) -> float:
     """Speed of water and long waves that the case lets expect [m/s], for the time step."""
-    q, g = discharge_of(case), case.motion.gravity
-    flows = [one.normal for one in reaches(case) if one.normal > 0.0]
-    flows += [critical_depth(case)] if q > 0.0 else []
+    q, g = peak_discharge(case), case.motion.gravity
+    flows = [one.normal for one in reaches(case, q) if one.normal > 0.0]
+    flows += [critical_depth(case, q)] if q > 0.0 else []
     wave = math.sqrt(g * deepest(case, plan))
     # 2 sqrt(g h): the front of a dam break over a dry bed (Ritter 1892)
     return max([2.0 * wave, *(q / one + math.sqrt(g * one) for one in flows)])
