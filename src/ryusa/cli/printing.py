@@ -5,12 +5,14 @@ import sys
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from rich import box
 from rich.console import Console
 from rich.table import Table
 
 from ryusa.errors import ResultsError
 from ryusa.measure.energy import TERMS
+from ryusa.measure.table import ROUND_OFF
 
 if TYPE_CHECKING:
     from ryusa.measure import (
@@ -188,8 +190,10 @@ def _print_long_section(found: "LongSection") -> None:
         "transport_concentration": "q_s/q", "concentration": "c",
     }  # fmt: skip
     table, rows = _table(tuple(one.replace("[", "\\[") for one in heads.values())), found.rows()
+    least = {name: ROUND_OFF * float(np.nanmax(np.abs(getattr(found, name)), initial=0.0)) for name in heads}
     for row in rows[:LINES]:
-        table.add_row(*(f"{row[name]:.4g}" for name in heads))
+        values = {name: float(str(row[name])) for name in heads}
+        table.add_row(*(f"{0.0 if abs(one) < least[name] else one:.4g}" for name, one in values.items()))
     more = (f"the first {LINES} of {len(rows)} segments",) * (len(rows) > LINES)
     errors = ", with standard errors" if found.error else ""
     _show(

@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 from ryusa.measure.statistics import STAR, Average
 from ryusa.notebook import html_table
 
+ROUND_OFF = 1.0e-12  # of the largest number of a column, below which a printed one is 0
+
 
 @dataclass(frozen=True)
 class Averages:
