@@ -40,12 +40,13 @@ def contents(one: Results) -> RunContents:
 
 def test_a_run_has_its_measures_with_errors_its_pictures_and_its_values(runs):
     found = contents(runs[0])
+    others = {"walls", "discharge", "passages"}  # of runs that have walls, or feeds and exits
     assert {one.name for one in found.measures} == {
         one.name for one in MEASURES if "saltation" in one.builders
-    }
+    } - others
     assert {one.name for one in found.drawings} == {
         one.name for one in PICTURES if "saltation" in one.builders
-    }
+    } - others
     assert found.missing == []
     height = found.averages["saltation: jump_height"]
     row = next(row for table in found.measures for row in table.rows if row[0] == "jump_height")

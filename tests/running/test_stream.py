@@ -145,6 +145,28 @@ def test_bottom_and_dam_are_walls_for_the_grains_by_their_names(stream: Results)
     assert not inside.any()
 
 
+def test_the_report_has_the_measures_that_the_run_allows_and_one_number_of_grains(stream: Results) -> None:
+    found = contents_of(stream, size=5.0e6, progress=lambda share: None)
+    tables = {one.name: one for one in found.measures}
+    assert {"walls", "discharge", "passages", "long_section", "deposit"} <= tables.keys()
+    assert {"walls", "discharge", "passages"} <= {one.name for one in found.drawings}
+    assert found.missing == []
+    assert "± s.e." in tables["discharge"].heads
+    segments = tables["long_section"]
+    assert len(segments.rows) == stream.row.row.n_segment
+    assert "±" in segments.rows[3][2] and "means with standard errors" in segments.notes[0]
+    scene, rows = stream.scene, stream.passages
+    assert scene.traffic is not None
+    first, came = scene.traffic.n_first, len(np.unique(rows["grain"][rows["way"] == IN]))
+    case = dict(found.rows)["case"]
+    assert case.startswith(
+        f"{scene.n_grain} free ({first} at the start, {scene.n_grain - first} for the feeds, which "
+        f"brought {came})"
+    )
+    shown = next(one.shown for one in found.values if one.name == "free grains")
+    assert shown.replace(",", "") == str(scene.n_grain)
+
+
 def test_check_explains_flow_dams_and_bed() -> None:
     case = read_text(STREAM)
     shown = {line.name: line.value for line in explain(case)}

@@ -1,24 +1,33 @@
 """What the report says of one run: what ran, its measures, its pictures; each that fails gives its reason."""
 
 import io
+import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from matplotlib.figure import Figure
 
 from ryusa.catalogue import MEASURES, PICTURES, MeasureEntry, PictureEntry, called, load
 from ryusa.errors import RyusaError
 from ryusa.measure._run import settle_time
+from ryusa.measure.long_section import LongSection
+from ryusa.measure.table import ROUND_OFF
 from ryusa.results import Results, schema
 from ryusa.running.inspection import inspection_rows
 from ryusa.study.html import embedded
 from ryusa.view.page import encoded
 
+if TYPE_CHECKING:
+    from ryusa.casefile.derive import Derived
+
 DPI = 200  # of a picture in the page
 _ONE_COLUMN = 5.0  # inch; a wider picture takes the whole width of the page
 _OWN = ("run", "next")  # rows that a page has no use for: its title, and a command with the path of a machine
 _LINES = 400  # of the case file that are shown
+_OVER_TIME = "x_t"  # numbers over distance and time are drawn, and no table to be read
+_PLAIN = ("walls", "traffic", "row", "open")  # needs of measures that are seen in the scene of a run
 
 
 @dataclass(frozen=True)
@@ -82,13 +91,15 @@ def contents_of(results: Results, *, size: float, progress: Callable[[float], No
     )
     _explain(found, results)
     kind = str((results.case.get("build") or {}).get("kind", ""))
+    had = _had(results)
+    along_row = _measures_of_row(results, had)
     for entry in MEASURES:
-        if kind in entry.builders:
+        if (kind in entry.builders and had >= _asked(entry)) or entry.name in along_row - {_OVER_TIME}:
             _attempt(found, f"measure {entry.name}", lambda one=entry: _measure(found, results, one))
     progress(0.2)
-    along_row = _measures_of_row(results)
+    lacking = {one.name for one in MEASURES if not had >= _asked(one)}
     for entry in PICTURES:
-        if (
+        if entry.measure not in lacking and (
             entry.measure in along_row
             or kind in entry.builders
             or (not kind and not entry.settled and not entry.measure)
@@ -104,11 +115,27 @@ def contents_of(results: Results, *, size: float, progress: Callable[[float], No
     return found
 
 
-def _measures_of_row(results: Results) -> set[str]:
+def _had(results: Results) -> set[str]:
+    """What the run has of `_PLAIN`."""
+    scene, row = results.scene, results.row
+    there = {
+        "walls": scene.walls is not None and bool(scene.n_grain),
+        "traffic": scene.traffic is not None,
+        "row": row is not None,
+        "open": row is None or not row.row.periodic,
+    }
+    return {word for word in _PLAIN if there[word]}
+
+
+def _asked(entry: MeasureEntry) -> set[str]:
+    """What a measure needs that a run has or has not, whatever its numbers are."""
+    return {*entry.needs} & {*_PLAIN}
+
+
+def _measures_of_row(results: Results, had: set[str]) -> set[str]:
     """Names of the measures of a row of columns that it allows, of its grains where it has some."""
     if results.row is None:
         return set()
-    had = {"row"} if results.row.row.periodic else {"row", "open"}
     grains = bool(results.scene.n_grain)
     return {
         one.name
@@ -134,16 +161,26 @@ def _explain(found: RunContents, results: Results) -> None:
 
     def explain_case() -> None:
         from ryusa.casefile import explain
+        from ryusa.casefile.derive import derive
         from ryusa.casefile.read import read
 
         overrides = results.provenance.get("overrides")
         given = {str(key): str(one) for key, one in overrides.items()} if isinstance(overrides, dict) else {}
+        case = read(path, given)
         found.values = [
             ExplainedValue(row.section, row.name, row.shown, row.origin, row.flag)
-            for row in explain(read(path, given))
+            for row in explain(case, _counted(derive(case), results))
         ]
 
     _attempt(found, "values of the case", explain_case)
+
+
+def _counted(derived: "Derived", results: Results) -> "Derived":
+    """What follows from a case, with the grains of the run instead of those expected of its feeds."""
+    scene = results.scene
+    if scene.traffic is None:
+        return derived
+    return replace(derived, n_grain=int(scene.heads.sum()), n_sphere=scene.n_grain)
 
 
 def _need_settled(results: Results) -> None:
@@ -156,8 +193,11 @@ def _need_settled(results: Results) -> None:
 def _measure(found: RunContents, results: Results, entry: MeasureEntry) -> None:
     if entry.settled:
         _need_settled(results)
-    record = called(entry)(results)
+    record = called(entry)(results, **_means(results, entry))
     averages = getattr(record, "averages", None)
+    if isinstance(record, LongSection):
+        found.measures.append(_of_segments(entry, record))
+        return
     if averages is None:
         rows = [(name, f"{value:.4g}", unit) for name, value, unit in record.quantities()]
         found.measures.append(MeasureTable(entry.name, entry.doc, ("quantity", "value", "unit"), rows))
@@ -176,6 +216,41 @@ def _measure(found: RunContents, results: Results, entry: MeasureEntry) -> None:
     if not rows:
         notes = (*notes, "no samples in the window")
     found.measures.append(MeasureTable(entry.name, entry.doc, heads, rows, notes))
+
+
+def _means(results: Results, entry: MeasureEntry) -> dict[str, float]:
+    """Window of a measure that gives one moment without: what follows settling, where that has two frames."""
+    settle = settle_time(results)
+    if entry.name != "long_section" or int((results.frames.t >= settle).sum()) < 2:
+        return {}
+    return {"begin": settle}
+
+
+def _of_segments(entry: MeasureEntry, found: LongSection) -> MeasureTable:
+    """A long section as a table of its segments, each mean with its error."""
+    columns = {
+        "x": "x (m)", "bed": "bed (m)", "surface": "surface (m)", "depth": "depth (m)",
+        "speed": "speed (m/s)", "froude": "Froude (–)", "discharge": "water q_w (m²/s)",
+    }  # fmt: skip
+    if found.grains:
+        columns |= {"solid_discharge": "grains q_s (m²/s)", "concentration": "concentration (–)"}
+    tiny = {name: ROUND_OFF * float(np.nanmax(np.abs(getattr(found, name)), initial=0.0)) for name in columns}
+
+    def cell(name: str, k: int) -> str:
+        value = float(getattr(found, name)[k])
+        if math.isnan(value):
+            return "–"
+        text = f"{0.0 if abs(value) < tiny[name] else value:.4g}"
+        if name not in found.error:
+            return text
+        error = float(found.error[name][k])
+        return f"{text} ± {0.0 if error < tiny[name] else error:.2g}"
+
+    rows = [tuple(cell(name, k) for name in columns) for k in range(len(found.x))]
+    at = f"at t = {found.t:.4g} s"
+    if found.window is not None:
+        at = f"means with standard errors over t = {found.window[0]:.4g} to {found.window[1]:.4g} s"
+    return MeasureTable(entry.name, entry.doc, tuple(columns.values()), rows, (at,))
 
 
 def _draw(found: RunContents, results: Results, entry: PictureEntry) -> None:

@@ -5,8 +5,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from ryusa.engine import registry
 from ryusa.errors import CheckpointError
+from ryusa.model.traffic import IN
 from ryusa.results import Results, schema
 from ryusa.running.checkpoint import read_checkpoint
 from ryusa.running.energy_terms import energy_lines
@@ -64,9 +67,21 @@ def _case(results: Results) -> str:
     overrides = origin.get("overrides")
     lines = "".join(f", {_words(k)} = {_words(v)}" for k, v in _table(overrides).items())
     return (
-        f"{scene.n_grain} free and {scene.n_fixed} fixed grains, {scene.n_plane} planes{water}; "
-        f"step {scene.dt:.4g} s; seed {_words(origin.get('seed'))}{lines}"
+        f"{scene.n_grain} free{_by_feeds(results)} and {scene.n_fixed} fixed grains, {scene.n_plane} planes"
+        f"{water}; step {scene.dt:.4g} s; seed {_words(origin.get('seed'))}{lines}"
     )
+
+
+def _by_feeds(results: Results) -> str:
+    """How many of the free grains are there at the start, how many feeds hold, and how many have entered."""
+    traffic = results.scene.traffic
+    if traffic is None:
+        return ""
+    rows, heads = results.passages, results.scene.heads
+    own = np.arange(len(heads)) >= traffic.n_first
+    first, kept = int((heads & ~own).sum()), int((heads & own).sum())
+    came = len(np.unique(rows["grain"][rows["way"] == IN]))
+    return f" ({first} at the start, {kept} for the feeds, which brought {came})"
 
 
 def _made_by(origin: Mapping[str, Any]) -> str:
