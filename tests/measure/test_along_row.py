@@ -236,3 +236,18 @@ def test_a_word_that_is_none_is_refused_with_the_nearest(cloud: Any) -> None:
             measure(cloud, bed="Rest")
     with pytest.raises(CaseError, match=r"quantity = 'dept': must be one of .* Did you mean 'depth'"):
         x_t(depth_history(cloud), quantity="dept")
+
+
+def test_the_rise_of_the_bed_counts_from_the_end_of_settling() -> None:
+    """A bed that is laid loose sinks by 1 cm in the first tenths of a second, and then rises by 2 mm."""
+    row, t = row_of(ends=True), np.arange(6) * 0.1
+    levels = np.array([0.018, 0.012, 0.008, 0.008, 0.009, 0.010])
+    phi = np.stack([layered(row, np.full(row.n_segment, one), 0.0) for one in levels])
+    run = run_of(row, t, np.full((6, 1, 3), 0.14), np.zeros((6, 1, 3)), phi=phi)
+    assert depth_history(run).bed_change[-1] == pytest.approx(-0.008)
+    run.case["record"] = {"settle": 0.2}
+    found = depth_history(run)
+    assert found.t[0] == pytest.approx(0.2) and found.bed_change[-1] == pytest.approx(0.002)
+    assert depth_history(run, begin=0.0).bed_change[-1] == pytest.approx(-0.008)
+    figure = x_t(found, "bed")
+    assert any("rise of the bed since 0.2 s" in one.get_ylabel() for one in figure.axes)

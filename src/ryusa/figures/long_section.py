@@ -166,7 +166,7 @@ def _depth(figure: Figure, axes: Axes, found: DepthHistory, side: str) -> None:
 def _bed_change(figure: Figure, axes: Axes, found: DepthHistory, side: str) -> None:
     shown = found.bed_change * CM
     most = _most(shown)
-    label = "rise of the bed  (cm)"
+    label = f"rise of the bed since {found.t[0]:.3g} s  (cm)"
     _map(figure, axes, found, shown, label, side, cmap="BrBG_r", vmin=-most, vmax=most)
 
 

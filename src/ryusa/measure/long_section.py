@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ryusa.catalogue import BEDS
 from ryusa.errors import ResultsError
-from ryusa.measure._run import Run
+from ryusa.measure._run import Run, settle_time
 from ryusa.measure.along_row import grains_along_row, moving_in_row
 from ryusa.measure.snapshot import scene_at
 from ryusa.measure.statistics import standard_errors
@@ -270,7 +270,7 @@ class DepthHistory:
 
     @property
     def bed_change(self) -> Floats:
-        """Rise of the bed since the first of the frames [m]."""
+        """Rise of the bed since the first of the frames, at `t[0]` [m]."""
         return self.bed - self.bed[0]
 
     def rows(self) -> list[dict[str, object]]:
@@ -288,13 +288,16 @@ class DepthHistory:
         return lines(columns)
 
 
-def depth_history(run: Run, begin: float = 0.0, end: float = math.inf, bed: Bed = "packed") -> DepthHistory:
+def depth_history(
+    run: Run, begin: float | None = None, end: float = math.inf, bed: Bed = "packed"
+) -> DepthHistory:
     """Find depth, bed and discharges of a row of columns over distance and time.
 
     Parameters
     ----------
     run : its water is a row of columns.
-    begin, end : window [s].
+    begin, end : window [s]; `begin` defaults to the case's `record.settle`. The rise of the bed counts from
+        its first frame: a bed that is laid loose sinks while it settles.
     bed : what ends the bed, as in `long_section`.
 
     Raises
@@ -304,6 +307,7 @@ def depth_history(run: Run, begin: float = 0.0, end: float = math.inf, bed: Bed 
     """
     known_word(bed, BEDS, "bed")
     found = row_of(run)
+    begin = settle_time(run) if begin is None else begin
     row, frames = found.row, np.flatnonzero((found.t >= begin) & (found.t <= end))
     if not len(frames):
         raise ResultsError(f"the run has no frame from {begin:g} to {end:g} s")
