@@ -6,6 +6,7 @@ import numpy as np
 
 from ryusa.cli.printing import print_found
 from ryusa.measure import Averages, average
+from ryusa.measure.long_section import LongSection
 
 WINDOW = (4.0, 8.0)
 
@@ -51,3 +52,16 @@ def test_a_table_of_steady_records_says_nothing_more(capsys):
     assert "MSER" not in text
     assert "independent" not in text
     assert "a note" in text
+
+
+def test_round_off_of_a_long_section_is_printed_as_0(capsys):
+    names = ("bottom", "floor", "bed", "surface", "depth", "discharge", "speed", "froude", "critical",
+             "energy", "tau", "volume", "transport_concentration", "concentration")  # fmt: skip
+    one = {name: np.array([0.5, 0.5]) for name in names}
+    found = LongSection(
+        t=1.0, slope=0.0, x=np.array([0.1, 0.2]), dams=(), solid_discharge=np.array([-1.168e-18, 2.0e-4]),
+        grains=True, **one,
+    )  # fmt: skip
+    print_found("long_section", found, None)
+    text = capsys.readouterr().out
+    assert "e-18" not in text and "0.0002" in text
