@@ -170,7 +170,7 @@ FLOOD = {
 
 
 def test_a_hydrograph_in_steps_brings_its_volume(tmp_path: Path) -> None:
-    """Each discharge enters from the step nearest to its time on; a change ends an interval of the water."""
+    """Each discharge enters from the step nearest to its time on."""
     found = run(tmp_path / "run", overrides=FLOOD)
     assert found.row is not None
     brought = found.row.passed[:, 0]
@@ -201,6 +201,11 @@ def test_a_run_stopped_within_a_flood_gives_the_same_bits(tmp_path: Path, stop_a
         ("0 m2/s", {}, "must be above 0"),
         ("6 L/s", {}, "discharge of the whole width"),
         ("0.04 m2/s", {"water.row.upstream": "{ end = 'wall' }"}, "needs water.row.upstream with end ="),
+        (
+            "0.04 m2/s",
+            {"water.row.upstream": "{ end = 'discharge', discharge = '0.03 m2/s', depth = '8 cm' }"},
+            "would hold the depth at every discharge",
+        ),
     ],
 )
 def test_a_discharge_that_cannot_enter_is_refused(discharge: str, more: dict[str, str], says: str) -> None:

@@ -34,7 +34,7 @@ from ryusa.running.summary import summary_lines
 from ryusa.running.timeline import Change, in_order
 from ryusa.running.traffic import TrafficRule
 from ryusa.running.watch import Watch
-from ryusa.running.water import RunWater, advanced, changed, snapshot, started
+from ryusa.running.water import RunWater, advanced, changed, finish_before, snapshot, started
 from ryusa.water.row_coupling import RowCoupling
 
 Done = TypeVar("Done")
@@ -313,8 +313,11 @@ class Loop:
     def _change_if_due(self) -> None:
         while self.changes and self.changes[0][0] <= self._step:
             _, _, change = self.changes.pop(0)
+            after = change.apply(self.scene)
+            if self._water is not None:
+                finish_before(self.engine, self._water, self._step, after)
             state = self.engine.state()
-            self.scene = change.apply(self.scene)
+            self.scene = after
             self.engine.load(with_servos(self.scene, self.servo), state)
             self._collect_contacts()
             self._n_changed += 1

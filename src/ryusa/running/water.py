@@ -85,6 +85,16 @@ def advanced(engine: Engine, water: RunWater | None, step: int, n_steps: int) ->
     return step, Flags()
 
 
+def finish_before(engine: Engine, water: RunWater, step: int, after: Scene) -> None:
+    """End the interval of a row before another discharge enters it, so that each acts in its own time."""
+    if not isinstance(water, RowCoupling) or after.row is None:
+        return
+    ends = water.scene.row.upstream if water.scene.row is not None else None, after.row.upstream
+    if ends[0] is not None and ends[1] is not None and ends[0].discharge != ends[1].discharge:
+        water.finish(step, *engine.kinematics())
+        engine.set_fluid(water.sampled)
+
+
 def changed(engine: Engine, water: RunWater, scene: Scene) -> None:
     """Let the water take over a scene that the timeline changed and the engine has loaded."""
     if isinstance(water, RowCoupling):

@@ -37,6 +37,12 @@ def check_hydrograph(case: "Case") -> Iterator[CaseError]:
             yield CaseError(key, shown, "needs [water.row]; a single column has motion.slope as its driver")
         elif end is None or end.end != "discharge":
             yield CaseError(key, shown, "needs water.row.upstream with end = 'discharge'")
+        elif end.depth is not None:
+            yield CaseError(
+                "water.row.upstream.depth", end.depth, "would hold the depth at every discharge of the "
+                "timeline: leave it out, and each enters as the flow asks",
+            )  # fmt: skip
+            return
         elif not value > 0.0:
             yield CaseError(key, shown, "must be above 0, along +x")
         elif unit == "m3/s" and width_of(case) is None:
