@@ -61,6 +61,9 @@ events = "none"
 """
 
 
+EXIT = "[{ name = 'outlet', point = ['2 m', '0 m', '0 m'], normal = [1, 0, 0] }]"
+
+
 def rows(rate: str = "0.1 kg/s", more: dict[str, str] | None = None) -> dict[str, ExplainRow]:
     return {row.name: row for row in explain(read_text(CASE.replace("RATE", rate), more or {}))}
 
@@ -129,3 +132,24 @@ def test_walls_that_water_flows_through_are_named() -> None:
     assert row.value == "'sill'"
     assert row.flag == "note"
     assert "walls for grains alone" not in rows()
+
+
+def test_a_bed_of_a_rounded_slope_has_its_capacity() -> None:
+    assert math.tan(math.atan2(0.0075, 1.5)) < 0.005
+    row = {"water.row.bottom": "[['0 m', '0.0075 m'], ['1.5 m', '0 m']]", "water.row.dams": "[]",
+           "feeds": "[]", "build.bed": "'5 mm'", "exits": EXIT.replace("2 m", "1.5 m")}  # fmt: skip
+    assert isinstance(rows(more=row)["capacity, x = 0 to 1.5 m"].value, float)
+
+
+def test_feeds_whose_rate_is_not_all_of_it_have_no_estimate() -> None:
+    back = rows(more={"exits": EXIT.replace("normal", "to = 'feeder', normal")})
+    flood = rows(more={"timeline": "[{ at = '1 s', discharge = '0.1 m2/s' }]"})
+    assert not [name for one in (back, flood) for name in one if name.startswith("time to fill")]
+    assert flood["capacity, x = 0 to 2 m, at the peak"].value > flood["capacity, x = 0 to 2 m"].value
+
+
+def test_a_feed_that_ends_before_the_dam_is_full_is_told() -> None:
+    found = rows("0.02 kg/s")["time to fill 'dam'"]
+    assert found.value > 10.0
+    assert "the feed lasts 10 s" in found.origin
+    assert found.flag == "note"

@@ -21,7 +21,7 @@ from ryusa.casefile.row.values import (
     width_of,
 )
 from ryusa.casefile.traffic.schema import FeedSection
-from ryusa.casefile.traffic.values import grains_per_second, mean_mass
+from ryusa.casefile.traffic.values import feed_end, grains_per_second, mean_mass
 from ryusa.laws.transport import solid_discharge_smart_jaeggi
 
 if TYPE_CHECKING:
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
 GENTLEST, STEEPEST = 0.005, 0.2  # slopes of the experiments of Smart and Jaeggi [-]
 THRESHOLD = 0.05  # Shields number at the threshold of motion [-]
+CLOSE = 1.0e-9  # of a slope, which is rounded
 
 
 @dataclass(frozen=True)
@@ -41,21 +42,23 @@ class DamDeposit:
     volume : between dam, bed and that surface, with pores, per width [m2].
     time : in which the feeds bring it [s].
     reaches_feed : whether the surface meets the first feed before it meets the bed.
+    lasts : how long the feed that lasts longest brings grains [s].
     """
 
     slope: float
     volume: float
     time: float
     reaches_feed: bool
+    lasts: float
 
 
-def capacity(case: "Case", angle: float) -> float:
-    """Volume of grains that uniform flow of the discharge carries on a slope [rad], per width [m2/s].
+def capacity(case: "Case", angle: float, q: float) -> float:
+    """Volume of grains that uniform flow of a discharge [m2/s] carries on a slope [rad], per width [m2/s].
 
     nan without a discharge, for grains that do not sink, and outside the slopes of the formula.
     """
-    wet, q, tangent = case.water, discharge_of(case), math.tan(angle)
-    if wet is None or not q > 0.0 or not GENTLEST <= tangent <= STEEPEST:
+    wet, tangent = case.water, math.tan(angle)
+    if wet is None or not q > 0.0 or not GENTLEST * (1.0 - CLOSE) <= tangent <= STEEPEST * (1.0 + CLOSE):
         return math.nan
     s, graded = case.grains.density / wet.density, grading_of(case)
     if not s > 1.0:
@@ -80,13 +83,17 @@ def dam_deposit(case: "Case", dam: RowDamSection) -> DamDeposit | None:
     -----
     Behind the dam the bed takes the slope at which the flow carries the feed on, from the crest upstream to
     where it meets the bed of the start: V = P**2/(2 (S_0 - S)) behind a dam P high on a plane bed of slope
-    S_0. No estimate is made for the second dam below a feed, for one that lets water through, and for a feed
-    beyond the formula.
+    S_0. Half a diameter of bed above or of room below that surface counts as none. No estimate is made for
+    the second dam below a feed, for one that lets water through, for a hydrograph, and for a feed beyond the
+    formula, of another material, or to which an exit leads.
     """
     keys, width, plan = row_keys(case), width_of(case), row_plan(case)
     first = plan.x_low + dam_span(plan, dam)[0] * plan.dx
     feeds = [(at, one) for one in case.feeds if (at := _place(one)) is not None and at < first]
-    if keys is None or width is None or dam.concentration is not None or not feeds:
+    back = {one.to for one in case.exits}
+    odd = any(one.material is not None or one.name in back for _, one in feeds)
+    odd = odd or any(one.discharge is not None for one in case.timeline)
+    if keys is None or width is None or dam.concentration is not None or not feeds or odd:
         return None
     start = max(at for at, _ in feeds)
     if any(start < other.begin < dam.begin and other.concentration is None for other in keys.dams):
@@ -101,10 +108,12 @@ def dam_deposit(case: "Case", dam: RowDamSection) -> DamDeposit | None:
         begin, end = stream_span(case)
         low = low + np.where((x >= begin) & (x <= end), case.build.bed, 0.0)
     room = crest_of(plan, dam) + (first - x) * math.tan(angle - slope(case)) - low
-    shut = np.flatnonzero(room <= 0.0)
-    taken = room[shut[-1] + 1 if len(shut) else 0 :]
-    volume = float(taken.sum() * (x[1] - x[0]))
-    return DamDeposit(math.tan(angle), volume, volume * packed(case) / rate, not len(shut))
+    half = 0.5 * reference_diameter(case)
+    shut = np.flatnonzero(room <= -half)
+    taken = room[shut[-1] + 1 if len(shut) else 0 :].clip(0.0)
+    volume = float(taken.sum() * (x[1] - x[0])) if taken.max(initial=0.0) > half else 0.0
+    lasts = max(feed_end(case, one) - one.begin for _, one in feeds)
+    return DamDeposit(math.tan(angle), volume, volume * packed(case) / rate, not len(shut), lasts)
 
 
 def _place(feed: FeedSection) -> float | None:
@@ -126,9 +135,10 @@ def _volume_rate(case: "Case", feed: FeedSection) -> float:
 def _slope_that_carries(case: "Case", rate: float) -> float | None:
     """Slope at which uniform flow carries a volume per width [m2/s] [rad]; None beyond the formula."""
     low, high = math.atan(GENTLEST), math.atan(STEEPEST)
-    if not capacity(case, high) >= rate:
+    q = discharge_of(case)
+    if not capacity(case, high, q) >= rate:
         return None
     for _ in range(60):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if capacity(case, middle) < rate else (low, middle)
+        low, high = (middle, high) if capacity(case, middle, q) < rate else (low, middle)
     return high

@@ -19,6 +19,7 @@ from ryusa.casefile.row.values import (
     dam_span,
     discharge_of,
     fastest,
+    peak_discharge,
     reaches,
     row_plan,
     segments_of,
@@ -110,20 +111,22 @@ def _flow(case: "Case", keys: RowSection) -> list[ExplainRow]:
         number("water", "critical depth", critical_depth(case, q), "cm", "(q^2/(g cos(slope)))^(1/3)"),
         *hydrograph_rows(case),
     ]
-    for one in reaches(case, q):
-        rows += _reach(one)
-        rows += _transport(case, one) if stream(case) else []
+    peak = peak_discharge(case)
+    for more, each in (("", q), (", at the peak", peak))[: 2 if peak > q else 1]:
+        for one in reaches(case, each):
+            rows += _reach(one, more)
+            rows += _transport(case, one, each, more) if stream(case) else []
     return rows
 
 
-def _transport(case: "Case", one: Reach) -> list[ExplainRow]:
+def _transport(case: "Case", one: Reach, q: float, more: str) -> list[ExplainRow]:
     """Shields number and capacity of normal flow on a reach; a slope beyond the formula has no capacity."""
     stress = shields_number(case, one.slope, one.normal)
     if math.isnan(stress):
         return []
-    where = f"x = {one.begin:g} to {one.end:g} m"
+    where = f"x = {one.begin:g} to {one.end:g} m{more}"
     rows = [number("water", f"Shields number, {where}", stress, "-", "of normal flow and the mean diameter")]
-    if math.isnan(most := capacity(case, one.slope)):
+    if math.isnan(most := capacity(case, one.slope, q)):
         allowed = f"the formula holds for slopes from {GENTLEST:g} to {STEEPEST:g}"
         return [*rows, word("water", f"capacity, {where}", "not known", allowed)]
     mass = most * case.grains.density * (width_of(case) or 0.0)
@@ -131,8 +134,8 @@ def _transport(case: "Case", one: Reach) -> list[ExplainRow]:
     return [*rows, number("water", f"capacity, {where}", most, "m2/s", origin)]
 
 
-def _reach(one: Reach) -> list[ExplainRow]:
-    where = f"x = {one.begin:g} to {one.end:g} m"
+def _reach(one: Reach, more: str) -> list[ExplainRow]:
+    where = f"x = {one.begin:g} to {one.end:g} m{more}"
     if not one.normal > 0.0:
         return [
             word("water", f"normal depth, {where}", "none", f"slope {math.tan(one.slope):.4g}: does not fall")
@@ -179,8 +182,10 @@ def _deposit_behind(name: str, found: DamDeposit) -> list[ExplainRow]:
     if not found.volume > 0.0:
         return [behind, word("water", f"time to fill '{name}'", "full", "the bed at the start is as high")]
     up_to = "the feed" if found.reaches_feed else "where the deposit meets the bed"
-    origin = f"{found.volume:.3g} m2 per width, from the crest up to {up_to}; no grain passes before"
-    return [behind, number("water", f"time to fill '{name}'", found.time, "s", origin)]
+    origin, flag = f"{found.volume:.3g} m2 per width, from the crest up to {up_to}", ""
+    if found.time > found.lasts:
+        origin, flag = f"{origin}; the feed lasts {found.lasts:.4g} s", "note"
+    return [behind, number("water", f"time to fill '{name}'", found.time, "s", origin, flag)]
 
 
 def _step(case: "Case", derived: "Derived", plan: RowPlan) -> list[ExplainRow]:
