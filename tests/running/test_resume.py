@@ -376,6 +376,10 @@ def test_a_longer_run_whose_feed_has_no_grains_left_is_refused(tmp_path: Path) -
     forced = made("0.2 s", {}, resume=True, force=True)
     assert forced.complete
     assert (forced.passages["way"] == IN).sum() == 10
+    with pytest.raises(CheckpointError, match=r"feed 'hose' were drawn up to 0.1 s, .* not to 0.2 s"):
+        made("0.2 s", {}, resume=True)  # complete, but not the run of this case
+    with pytest.raises(CheckpointError, match=r"feed 'hose' were drawn up to 0.1 s, .* not to 0.3 s"):
+        made("0.3 s", {}, resume=True)
     made("0.1 s", {"feeds.0.end": "0.05 s"}, overwrite=True)  # ends before the run, however long that is
     assert (made("0.2 s", {"feeds.0.end": "0.05 s"}, resume=True).passages["way"] == IN).sum() == 5
 

@@ -115,17 +115,16 @@ def find_resume_point(
     stop_changed = any(one.split(".", 1)[0] == "stop" for one in changed) or (
         was_stop is not None and was_stop != identity["stop"]
     )
-    if complete and not stop_changed:
+    differences = _other_feeds(scenes[0][2], resolved)
+    if complete and not stop_changed and not differences:
         return ResumePoint(before, complete=True)
     if complete and block is None:
         raise CheckpointError(
             f"{folder}: the run is complete and holds no checkpoint of its end (an earlier version "
             f"removed it), so it cannot be lengthened; {_ANEW}"
         )
-    differences: list[str] = []
     if stop_changed:
         differences += _other_stop(was_stop, identity["stop"], block, changed)
-        differences += _other_feeds(was, resolved)
     code = _other_code(written_by.get("code"), code_versions(origin))
     differences += code if exact else []
     if differences and not force:
@@ -140,28 +139,21 @@ def find_resume_point(
     return _from_checkpoint(folder, before, scenes, block, [*lost, *differences, *said], alike=alike)
 
 
-def _other_feeds(was: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
-    """Feeds whose grains were drawn for another end of the run."""
-    before = _feeds_until(was)
-    return [
-        f"the grains of feed '{name}' were drawn up to {before[name]:g} s, the end of the run when it began, "
-        f"and not to {end:g} s, so that it brings none after that"
-        if end > before[name]
-        else f"the grains of feed '{name}' were drawn up to {before[name]:g} s and not to {end:g} s"
-        for name, end in _feeds_until(now).items()
-        if name in before and end != before[name]
-    ]
-
-
-def _feeds_until(case: Mapping[str, Any]) -> dict[str, float]:
-    """Time up to which grains of each feed with a rate are drawn [s]; `case` as case.json holds it."""
+def _other_feeds(scene: Scene, case: Mapping[str, Any]) -> list[str]:
+    """Feeds whose grains were drawn for another end than that of a case, as case.json holds it."""
     stop = (case.get("stop") or {}).get("time")
-    found = {one["name"]: (one.get("end"), stop) for one in case.get("feeds") or () if one.get("rate")}
-    return {
-        name: min(float(one) for one in ends if one is not None)
-        for name, ends in found.items()
-        if any(one is not None for one in ends)
-    }
+    ends = {one["name"]: (one.get("end"), stop) for one in case.get("feeds") or () if one.get("rate")}
+    found: list[str] = []
+    for feed in scene.traffic.feeds if scene.traffic is not None else ():
+        end = min((float(one) for one in ends.get(feed.name, ()) if one is not None), default=feed.end)
+        if end == feed.end:
+            continue
+        then = "so that it brings none after that" if end > feed.end else "so that their sizes would differ"
+        found.append(
+            f"the grains of feed '{feed.name}' were drawn up to {feed.end:g} s, when the run or the feed was "
+            f"to end, and not to {end:g} s, {then}"
+        )
+    return found
 
 
 def _newest(folder: Path, n_grain: int) -> tuple[CheckpointBlock | None, list[str]]:
