@@ -149,3 +149,22 @@ def test_a_case_file_that_was_edited_is_read_and_derived_anew(tmp_path):
     assert after == before
     assert after.read().stop.time == 40.0
     assert after.derive().dt == pytest.approx(0.5 * steps, rel=0.01)
+
+
+def test_a_file_that_a_case_names_is_read_anew_once_it_was_edited(tmp_path):
+    """A finished run among other files is not that of the case, and a bad file is not passed over."""
+    own = tmp_path / "river.toml"
+    text = case_path("weir.toml").read_text(encoding="utf-8")
+    text = re.sub(r"(?m)^bottom = .*$", 'bottom = "line.csv"', text)
+    own.write_text(re.sub(r'(?m)^time = "[^"]*"', 'time = "0.2 s"', text), encoding="utf-8")
+    line = tmp_path / "line.csv"
+    line.write_text("x [m],z [m]\n0,0.18\n3,0\n6,0\n", encoding="utf-8")
+    run, folder = case_run(own), tmp_path / "run"
+    assert run.make(folder).complete
+    assert run.open(folder) is not None
+    line.write_text("x [m],z [m]\n0,0.19\n3,0\n6,0\n", encoding="utf-8")
+    assert run.open(folder) is None
+    assert run.origin(folder) is None
+    line.write_text("x [m],z [m]\n0,9\n3,0\n6,0\n", encoding="utf-8")
+    with pytest.raises(CaseError, match="is inclined to the x axis"):
+        run.read()

@@ -5,6 +5,7 @@ import json
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from filecmp import cmp
 from functools import lru_cache
 from importlib import import_module
 from pathlib import Path
@@ -104,14 +105,20 @@ class CaseRun(Task):
 
     def read(self) -> "Case":
         """Read and check the case."""
-        return _read(self, _stamps([self.cases / f"{self.case}.toml"]))
+        own = [self.cases / f"{self.case}.toml"]
+        beside = self._beside(_read(self, _stamps(own)))
+        return _read(self, _stamps([*own, *beside])) if beside else _read(self, _stamps(own))
 
     def derive(self) -> "Derived":
         """Derive the numbers of the case."""
+        own = self.cases / f"{self.case}.toml"
+        return _derived(self, _stamps([own, *self._beside(self.read())]))
+
+    def _beside(self, case: "Case") -> list[Path]:
+        """The files that the case names."""
         from ryusa.running.case_files import files_beside
 
-        own = self.cases / f"{self.case}.toml"
-        return _derived(self, _stamps([own, *files_beside(self.read()).values()]))
+        return list(files_beside(case).values())
 
     def get(self, key: str, default: str = "") -> str:
         """Value of one override as text."""
@@ -160,7 +167,7 @@ class CaseRun(Task):
             case = json.loads((folder / schema.CASE_JSON).read_text(encoding="utf-8"))
         except (OSError, ValueError):
             return None
-        return found if found is not None and self._is(case) else None
+        return found if found is not None and self._is(case, folder) else None
 
     def open(self, folder: Path) -> Results | None:
         """Open a finished run of the same case; None if it is missing, damaged, or of another version."""
@@ -170,7 +177,7 @@ class CaseRun(Task):
             old = Results.open(folder)
         except (RyusaError, OSError):
             return None
-        return old if old.complete and self._is(old.case) else None
+        return old if old.complete and self._is(old.case, folder) else None
 
     def make(self, folder: Path, *, anew: bool = False) -> Results:
         """Run or continue it; a run stopped before its end raises KeyboardInterrupt."""
@@ -182,11 +189,16 @@ class CaseRun(Task):
             raise KeyboardInterrupt
         return done
 
-    def _is(self, case: Mapping[str, Any]) -> bool:
-        """Whether the case in a run folder is the case of this run."""
+    def _is(self, case: Mapping[str, Any], folder: Path) -> bool:
+        """Whether the case in a run folder, with the files that it names, is the case of this run."""
         from ryusa.casefile.resolved import resolved
+        from ryusa.running.case_files import files_beside
 
-        return case == json.loads(json.dumps(resolved(self.read())))
+        now = self.read()
+        if case != json.loads(json.dumps(resolved(now))):
+            return False
+        copies = {folder / name: path for name, path in files_beside(now).items()}
+        return all(copy.is_file() and cmp(copy, path, shallow=False) for copy, path in copies.items())
 
 
 def case_run(path: Path, overrides: Mapping[str, str] | None = None, *, seed: int | None = None) -> CaseRun:
