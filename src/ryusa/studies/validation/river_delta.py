@@ -19,7 +19,8 @@ from ryusa.study import CaseRun, Finding, Found, Level, Plan, Source, Task, case
 SEEDS = (1, 2)
 CASES = DELTA, PILE = "delta", "pile"
 FLAT = 0.635  # where the floor of the pool begins to be level [m]
-LAST = 1.1  # the front has not come so far [m]
+LAST = 1.1  # the foot of the front must not come so far [m]
+THICK = 0.005  # of a deposit on the floor: one diameter [m]
 LIP = 0.08  # from the middle of the front upstream to the flux that feeds it [m]
 CORE = 0.015, 0.035  # heights between which the concentration of the deposit is taken [m]
 FLANK = 0.25, 0.75  # shares of its height between which a slope is fitted
@@ -59,9 +60,13 @@ def measure(run: Results, one: CaseRun) -> dict[str, Floats]:
     beds = bed_line(run, found, frames, "packed")
     held = grains_along_row(run, found.row, frames)
     rise = np.array([_front(found.row.x, line) for line in beds])
-    on = np.flatnonzero(np.array([_foot(found.row.x, line) for line in beds]) > FLAT + 2.0 * found.row.dx)
-    if len(on) < 20:
-        raise ValueError(f"the foot of the front reaches the level floor in {len(on)} frames alone")
+    foot = np.array([_foot(found.row.x, line) for line in beds])
+    on = np.flatnonzero(foot > FLAT + 2.0 * found.row.dx)
+    if len(on) < 20 or foot.max() > LAST:
+        raise ValueError(
+            f"the front is on the level floor in {len(on)} frames and comes to {foot.max():.3g} m: it must "
+            f"be there in 20 or more, before {LAST:g} m"
+        )
     dt = np.diff(found.t)
     rate = np.diff(held.passed, axis=0) / dt[:, None]
     core = _core(found, rise, on)
@@ -84,28 +89,31 @@ def measure(run: Results, one: CaseRun) -> dict[str, Floats]:
 
 
 def _front(x: Floats, bed: Floats) -> float:
-    """Where the bed last comes down through half of its height [m]; nan without a deposit."""
-    half = 0.5 * _top(x, bed)
-    above = np.flatnonzero(bed[:-1] >= half)
-    if not len(above) or not half > 0.0:
+    """Where the deposit comes down through half of its height within twelve segments before its foot [m].
+
+    nan where it does not come on to the level floor.
+    """
+    if not (last := _end(x, bed)):
         return math.nan
-    k = int(above[-1])
+    half = 0.5 * float(bed[last - 12 : last].max())
+    k = int(np.flatnonzero(bed[: last + 1] >= half)[-1])
     return float(x[k] + (x[k + 1] - x[k]) * (bed[k] - half) / (bed[k] - bed[k + 1]))
 
 
-def _top(x: Floats, bed: Floats) -> float:
-    """Height of the deposit within twelve segments before its end [m]; 0 where it ends before the floor."""
-    low = bed > 0.01
-    if not low.any():
-        return 0.0
-    last = int(np.flatnonzero(low)[-1])
-    return float(bed[max(last - 12, 0) : last].max(initial=0.0)) if x[last] > FLAT else 0.0
+def _end(x: Floats, bed: Floats) -> int:
+    """Last segment of the deposit that reaches on to the level floor; 0 where it does not come so far.
+
+    Grains that have rolled ahead lie apart from it.
+    """
+    first = int(np.searchsorted(x, FLAT))
+    bare = np.flatnonzero(bed[first:] < THICK)
+    return first + int(bare[0]) - 1 if len(bare) and bare[0] > 0 else 0
 
 
 def _foot(x: Floats, bed: Floats) -> float:
-    """Where the deposit ends on the floor [m]."""
-    thick = np.flatnonzero(bed > 0.004)
-    return float(x[thick[-1]]) if len(thick) else 0.0
+    """Where the deposit ends on the level floor [m]; 0 where it does not come so far."""
+    last = _end(x, bed)
+    return float(x[last]) if last else 0.0
 
 
 def _reach(found: RowFrames, front: float) -> slice:
@@ -145,7 +153,8 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         float((got["front"][-1] - got["front"][0]) / (got["expected"][-1] - got["front"][0]))
         for got in deltas
     ]
-    front, repose = (float(np.mean([one["angle"] for one in runs])) for runs in (deltas, piles))
+    steeper = [float(a["angle"] - b["angle"]) for a, b in zip(deltas, piles, strict=True)]
+    worst_way, worst_angle = max(ways, key=lambda way: abs(way - 1.0)), max(steeper, key=abs)
     one = deltas[0]
     each = ", ".join(f"{float(got['angle']):.1f}" for got in deltas)
     own = ", ".join(f"{float(got['angle']):.1f}" for got in piles)
@@ -157,8 +166,8 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             [Curve("front", one["t"], one["expected"])],
             [
                 misfit("grains missing", max(float(got["missing"]) for got in deltas), "-", bands.DELTA_KEPT),
-                misfit("way over that of the balance", float(np.mean(ways)), "-", bands.DELTA_SPEED),
-                misfit("angle of the front less that of a pile", front - repose, "deg", bands.DELTA_ANGLE),
+                misfit("way over that of the balance, worst seed", worst_way, "-", bands.DELTA_SPEED),
+                misfit("angle less that of a pile, worst seed", worst_angle, "deg", bands.DELTA_ANGLE),
             ],
             {"case": "`ryusa new delta`", "runs": f"{len(SEEDS)} seeds", "pile": "the same, in still water"},
             f"Ratio of the ways {', '.join(f'{way:.3f}' for way in ways)}; concentration of the deposit "
