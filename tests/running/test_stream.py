@@ -287,11 +287,18 @@ def test_what_a_stream_cannot_be_is_refused_with_its_key(more: dict[str, str], k
 
 
 @pytest.mark.parametrize(
-    ("name", "walls_of_it"), [("sabo_dam", ("bottom", "dam")), ("dam_break", ("bottom",))]
+    ("name", "walls_of_it"),
+    [
+        ("sabo_dam", ("bottom", "dam")),
+        ("dam_break", ("bottom",)),
+        ("delta", ("bottom",)),
+        ("river", ("bottom", "weir")),
+        ("slope_break", ("bottom",)),
+    ],
 )
 def test_a_packaged_stream_runs(name: str, walls_of_it: tuple[str, ...], tmp_path: Path) -> None:
     text = files("ryusa.cases").joinpath(f"{name}.toml").read_text(encoding="utf-8")
-    short = {"stop.time": "'20 ms'", "record.frames": "'10 ms'"}
+    short = {"stop.time": "'20 ms'", "record.frames": "'10 ms'", "record.settle": "'0 s'", "timeline": "[]"}
     found = ryusa.run(read_text(text, short), tmp_path / "run", progress=False)
     assert found.complete
     assert found.scene.walls is not None
@@ -388,3 +395,33 @@ def test_measures_along_the_row_count_every_grain_that_came_and_left(stream: Res
     assert front(stream).first[-1] > 0.1
     section = long_section(stream, begin=0.05)
     assert (section.solid_discharge[3:6] > 0.0).all() and section.bed[5] > section.bottom[5]
+
+
+FLOOD = {"timeline": "[{ at = '31 ms', discharge = '0.04 m2/s' }, { at = '73 ms', discharge = '0.01 m2/s' }]"}
+
+
+@pytest.fixture(scope="module")
+def flood(tmp_path_factory: pytest.TempPathFactory) -> Results:
+    return run(tmp_path_factory.mktemp("flood") / "run", FLOOD)
+
+
+def test_each_discharge_acts_among_grains_in_its_own_time(flood: Results) -> None:
+    """The water is behind by the unfinished interval alone, and is never ahead."""
+    found, dt = flood.row, flood.scene.dt
+    assert found is not None
+    asked = np.interp(found.t, [0.0, 0.031, 0.073, 0.12], np.cumsum([0.0, 0.00062, 0.00168, 0.00047]))
+    behind = asked - found.passed[:, 0]
+    q = np.interp(found.t, [0.0, 0.031, 0.0311, 0.073, 0.0731, 0.12], [0.02, 0.02, 0.04, 0.04, 0.01, 0.01])
+    assert (behind > -0.04 * dt).all()  # a change falls on the nearest step
+    assert (behind <= q * (found.row.column.interval + 1) * dt).all()
+
+
+def test_a_run_stopped_within_a_flood_among_grains_gives_the_same_bits(
+    flood: Results, tmp_path: Path, stop_at: Any
+) -> None:
+    change = round(0.031 / flood.scene.dt)
+    for step in (change - 7, change, change + 5, 4000):
+        stop_at(step)
+        assert run(tmp_path / "run", FLOOD, resume=True).status == schema.STOPPED
+    run(tmp_path / "run", FLOOD, resume=True, threads=2)
+    assert differences(flood.folder, tmp_path / "run") == []
