@@ -23,6 +23,7 @@ _END = "end"
 _SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGUSR1)
 _PATIENCE = 1.0  # s for a signal of all processes to reach this one
 _BROKEN = 3  # exit code after a fault that left ranks waiting for each other
+_PASSED_ON = 1.0  # s for mpirun to read what a process has said
 _LOST = "the ranks of LAMMPS wait for each other after an error"
 
 
@@ -190,7 +191,7 @@ def _serve(comm: Any, alarm: Alarm) -> None:
             said = fault.error if isinstance(fault, RankFault) else None
             alarm.ring(said or LammpsFailed(f"rank {rank} failed: {type(fault).__name__}: {fault}"))
             print(f"ryusa: rank {rank}: {fault}", file=sys.stderr, flush=True)  # the leader did not hear it
-            comm.Abort(_BROKEN)
+            _abort(comm)
             raise
         signals, received[:] = tuple(received), []
         comm.gather((answer, error, signals), 0)
@@ -212,4 +213,12 @@ def _abort_at_exit(comm: Any) -> None:
     """End all processes when this one ends, after it has written and said what it can."""
     if not _aborts:
         _aborts.append(True)
-        atexit.register(comm.Abort, _BROKEN)
+        atexit.register(_abort, comm)
+
+
+def _abort(comm: Any) -> None:
+    """End all processes once mpirun has passed on what they said; it drops what it has not read by then."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    time.sleep(_PASSED_ON)
+    comm.Abort(_BROKEN)
