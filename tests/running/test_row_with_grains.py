@@ -131,7 +131,7 @@ def test_depth_counts_from_where_grains_fall_below_half_of_packed(reach: Results
     cells = 40 + 10 * np.arange(4)  # of the bed, in each segment
     phi = np.where(np.arange(column.n) < cells[:, None], column.phi_max, 0.0)
     told = replace(row, phi=np.tile(phi, (len(row.t), 1, 1)))
-    run = SimpleNamespace(scene=reach.scene, frames=reach.frames, row=told)
+    run = SimpleNamespace(scene=reach.scene, frames=reach.frames, row=told, case=reach.case)
     one, every = long_section(run), depth_history(run)
     assert one.bed == pytest.approx(column.z_low + cells * column.dz)
     assert one.depth == pytest.approx(row.surface[-1] - one.bed)
