@@ -1,5 +1,7 @@
 """Feeds and exits that move with a wall."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ryusa.model.arrays import Floats
@@ -30,5 +32,12 @@ def corners(feed: Feed) -> tuple[Floats, Floats]:
     """Lowest and highest corner of a feed [m], shape (3,) each."""
     if feed.is_box:
         return np.array(feed.low), np.array(feed.high)
-    reach = feed.radius * np.sqrt(np.maximum(1.0 - np.square(feed.normal), 0.0))
-    return np.array(feed.centre) - reach, np.array(feed.centre) + reach
+    return corners_of_disc(feed.centre, feed.normal, feed.radius)
+
+
+def corners_of_disc(
+    centre: Sequence[float], normal: Sequence[float] | Floats, radius: float
+) -> tuple[Floats, Floats]:
+    """Lowest and highest corner of a disc [m], shape (3,) each; its normal has length 1."""
+    reach = radius * np.sqrt(np.maximum(1.0 - np.square(normal), 0.0))
+    return np.array(centre) - reach, np.array(centre) + reach

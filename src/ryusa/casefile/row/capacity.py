@@ -21,7 +21,7 @@ from ryusa.casefile.row.values import (
     width_of,
 )
 from ryusa.casefile.traffic.schema import FeedSection
-from ryusa.casefile.traffic.values import feed_end, grains_per_second, mean_mass
+from ryusa.casefile.traffic.values import corners_of, feed_end, grains_per_second, mean_mass
 from ryusa.laws.transport import solid_discharge_smart_jaeggi
 
 if TYPE_CHECKING:
@@ -118,11 +118,8 @@ def dam_deposit(case: "Case", dam: RowDamSection) -> DamDeposit | None:
 
 def _place(feed: FeedSection) -> float | None:
     """Middle of a feed along the row [m]; None where it moves or its keys are missing."""
-    if feed.moves_with is not None:
-        return None
-    if feed.low is not None and feed.high is not None:
-        return 0.5 * (feed.low[0] + feed.high[0])
-    return None if feed.centre is None else feed.centre[0]
+    corners = None if feed.moves_with is not None else corners_of(feed)
+    return None if corners is None else float(0.5 * (corners[0][0] + corners[1][0]))
 
 
 def _volume_rate(case: "Case", feed: FeedSection) -> float:

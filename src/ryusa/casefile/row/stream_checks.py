@@ -19,15 +19,16 @@ from ryusa.casefile.row.values import (
     walls_of_stream,
     width_of,
 )
-from ryusa.casefile.traffic.schema import ExitSection, FeedSection
+from ryusa.casefile.traffic.schema import ExitSection
+from ryusa.casefile.traffic.values import corners_of
 from ryusa.errors import CaseError
 from ryusa.laws.families import Mixing
+from ryusa.model.arrays import Floats
 from ryusa.model.column import AGREE
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
 
-Corner = tuple[float, ...]
 CLOSE = 1.0e-9  # beyond a bound only by rounding [m]
 NAMES = ("bottom", "upstream", "downstream", "right", "left", "grains", "bed")  # taken by builder "stream"
 
@@ -111,14 +112,14 @@ def check_places(case: "Case", keys: RowSection) -> Iterator[CaseError]:
     if build.bed > 0.0 and stream_count(case) < 1:
         yield CaseError("build.bed", build.bed, "gives no grain: take a thicker or longer bed")
     for k, feed in enumerate(case.feeds):
-        if feed.moves_with is None and (corners := _corners(feed)) is not None:
+        if feed.moves_with is None and (corners := corners_of(feed)) is not None:
             yield from _feed(case, keys, f"feeds.{k}", feed.name, *corners)
     if keys.downstream is not None and keys.downstream.end != "wall":
         yield from _outlet(case, high)
 
 
 def _feed(
-    case: "Case", keys: RowSection, key: str, name: str, low: Corner, high: Corner
+    case: "Case", keys: RowSection, key: str, name: str, low: Floats, high: Floats
 ) -> Iterator[CaseError]:
     """Find a feed with its corners [m] beyond the row or its side walls, below the bottom, or in a dam."""
     points, width, build = bottom_points(case), width_of(case), case.build
@@ -143,17 +144,6 @@ def _feed(
                 key, name, f"lies in the dam '{dam.name}', which stands from x = {first:g} to {last:g} m and "
                 f"up to z = {crest:g} m",
             )  # fmt: skip
-
-
-def _corners(feed: FeedSection) -> tuple[Corner, Corner] | None:
-    """Lowest and highest corner of a feed [m]; None where keys are missing."""
-    if feed.low is not None and feed.high is not None:
-        return feed.low, feed.high
-    if feed.centre is None or feed.radius is None or not any(feed.normal):
-        return None
-    x, square = np.array(feed.centre), np.square(feed.normal)
-    reach = feed.radius * np.sqrt(1.0 - square / square.sum())
-    return tuple((x - reach).tolist()), tuple((x + reach).tolist())
 
 
 def _outlet(case: "Case", high: float) -> Iterator[CaseError]:

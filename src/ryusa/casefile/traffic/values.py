@@ -4,9 +4,13 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ryusa.casefile.grading import reference_diameter
 from ryusa.casefile.grains import mass, mean_cube, sized_as
 from ryusa.casefile.traffic.schema import FeedSection
+from ryusa.model.arrays import Floats
+from ryusa.model.wall_traffic import corners_of_disc
 
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
@@ -19,6 +23,15 @@ def feed_end(case: "Case", feed: FeedSection) -> float:
     """When the last grain of a feed may be due [s]; inf where the case does not say."""
     ends = [one for one in (feed.end, case.stop.time) if one is not None]
     return min(ends, default=math.inf)
+
+
+def corners_of(feed: FeedSection) -> tuple[Floats, Floats] | None:
+    """Lowest and highest corner of a feed [m], shape (3,) each; None where keys are missing."""
+    if feed.low is not None and feed.high is not None:
+        return np.array(feed.low), np.array(feed.high)
+    if feed.centre is None or feed.radius is None or not any(feed.normal):
+        return None
+    return corners_of_disc(feed.centre, np.array(feed.normal) / math.hypot(*feed.normal), feed.radius)
 
 
 def mean_mass(case: "Case", material: str | None = None) -> float:
