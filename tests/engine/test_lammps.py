@@ -52,6 +52,28 @@ CARRIED = {"slip": Slip.TOTAL, "timing": ContactTiming.AT_STEPS, "events": Event
 STILL = Water(profile=Profile.STILL, drag=Drag.NONE)
 
 
+def sliding_block():
+    """Centres and velocities of 75 grains that slide over 25 fixed ones, and the centres of those."""
+    rng = np.random.default_rng(3)
+    side = (np.arange(5) + 0.5) * 1.02 * D
+    x = np.stack(np.meshgrid(side, side, D * (1.3 + 1.02 * np.arange(3)), indexing="ij"), -1).reshape(-1, 3)
+    bed = np.stack(np.meshgrid(side, side, [0.0], indexing="ij"), -1).reshape(-1, 3)
+    x += rng.uniform(-0.009, 0.009, x.shape) * D
+    bed[:, 2] += rng.uniform(-0.2, 0.2, len(bed)) * D
+    return x, rng.normal(0.0, 0.1, x.shape) + np.array([3.0, 0.0, -0.3]), bed
+
+
+def continued(made, steps=120):
+    """An engine that did so many steps, and one that went on half way from the snapshot of another."""
+    whole, first, second = (registry.create("lammps") for _ in range(3))
+    for engine, n in ((whole, steps), (first, steps // 2)):
+        engine.load(*made)
+        engine.advance(n).raise_if_any()
+    second.load(made[0], first.state())
+    second.advance(steps - steps // 2).raise_if_any()
+    return whole, second
+
+
 def stepped(made, n_steps):
     """States of LAMMPS and of the CPU engine after so many steps."""
     engines = registry.create("lammps"), registry.create("cpu")

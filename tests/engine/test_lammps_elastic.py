@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from tests.engine.conftest import D, M, elastic_law
-from tests.engine.test_lammps import AHEAD, ASKEW, CARRIED, NO_SPIN, SPINS, needs_lammps, stepped
+from tests.engine.test_lammps import AHEAD, ASKEW, CARRIED, NO_SPIN, SPINS, continued, needs_lammps, stepped
 
 from ryusa.build import scene
 from ryusa.engine import registry
@@ -208,13 +208,7 @@ def pebbles(**more):
 
 
 def test_a_snapshot_goes_on_with_its_contacts_though_not_bit_for_bit():
-    made = pebbles()
-    whole, first, second = (registry.create("lammps") for _ in range(3))
-    for engine, steps in ((whole, 120), (first, 60)):
-        engine.load(*made)
-        engine.advance(steps).raise_if_any()
-    second.load(made[0], first.state())
-    second.advance(60).raise_if_any()
+    whole, second = continued(pebbles())
     assert second.tally().n_contact > 5
     mine, theirs = second.grains(), whole.grains()
     assert mine.v == pytest.approx(theirs.v, rel=1e-9, abs=1e-11 * np.abs(theirs.v).max())

@@ -5,7 +5,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from tests.engine.conftest import D, M, contact_law, elastic_law
-from tests.engine.test_lammps import ASKEW, CARRIED, NO_SPIN, SPINS, STILL, needs_lammps, pair, stepped
+from tests.engine.test_lammps import (
+    ASKEW,
+    CARRIED,
+    NO_SPIN,
+    SPINS,
+    STILL,
+    continued,
+    needs_lammps,
+    pair,
+    sliding_block,
+    stepped,
+)
 
 from ryusa.build import Material, MaterialPair, scene
 from ryusa.engine import registry
@@ -109,12 +120,7 @@ def test_a_block_slides_to_rest_by_the_friction_of_its_wall():
 
 def crowd(elastic=False, **more):
     """Grains, bed and floor of three materials that slide over each other without dashpots and turning."""
-    rng = np.random.default_rng(3)
-    side = (np.arange(5) + 0.5) * 1.02 * D
-    x = np.stack(np.meshgrid(side, side, D * (1.3 + 1.02 * np.arange(3)), indexing="ij"), -1).reshape(-1, 3)
-    bed = np.stack(np.meshgrid(side, side, [0.0], indexing="ij"), -1).reshape(-1, 3)
-    x += rng.uniform(-0.009, 0.009, x.shape) * D
-    bed[:, 2] += rng.uniform(-0.2, 0.2, len(bed)) * D
+    x, v, bed = sliding_block()
     given = {"friction": 0.5, "restitution": 1.0, "stiffness": 2e3, "steps_per_contact": 20.0, **CARRIED}
     young = {}
     if elastic:
@@ -122,7 +128,7 @@ def crowd(elastic=False, **more):
         dt = contact_time_of(law, 0.5 * M, 0.25 * D, 0.5) / 40.0
         given, young = {"contact": law, "dt": dt, "events": EventRule.NONE}, {"youngs_modulus": 2e7}
     return scene(
-        x, D, v=rng.normal(0.0, 0.1, x.shape) + np.array([3.0, 0.0, -0.3]), x_fixed=bed, d_fixed=D,
+        x, D, v=v, x_fixed=bed, d_fixed=D,
         period=(5.1 * D, 5.1 * D), rotation=False, slope=0.4,
         planes=[("floor", (0.0, 0.0, 0.3 * D), (0.0, 0.0, 1.0))],
         materials=[
@@ -202,13 +208,7 @@ def test_grains_of_two_densities_fall_through_water_as_on_the_cpu():
 
 @needs_lammps
 def test_a_snapshot_goes_on_with_its_materials():
-    made = crowd(elastic=True)
-    whole, first, second = (registry.create("lammps") for _ in range(3))
-    for engine, steps in ((whole, 120), (first, 60)):
-        engine.load(*made)
-        engine.advance(steps).raise_if_any()
-    second.load(made[0], first.state())
-    second.advance(60).raise_if_any()
+    whole, second = continued(crowd(elastic=True))
     assert second.grains().v == pytest.approx(whole.grains().v, rel=0.0, abs=1e-10)
 
 

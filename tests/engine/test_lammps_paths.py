@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from tests.engine.conftest import D
-from tests.engine.test_lammps import ASKEW, CARRIED, NO_SPIN, needs_lammps, pair, stepped
+from tests.engine.test_lammps import ASKEW, CARRIED, NO_SPIN, needs_lammps, pair, sliding_block, stepped
 
 from ryusa.build import scene
 
@@ -23,14 +23,9 @@ def test_an_oblique_collision_of_grains_that_do_not_turn_is_that_of_the_cpu_to_r
 @needs_lammps
 def test_a_crowd_with_friction_keeps_the_paths_of_the_cpu_across_periods_and_new_lists():
     # without dashpots and without turning both laws are the same; grains slide over a rough bed at 3 m/s
-    rng = np.random.default_rng(3)
-    side = (np.arange(5) + 0.5) * 1.02 * D
-    x = np.stack(np.meshgrid(side, side, D * (1.3 + 1.02 * np.arange(3)), indexing="ij"), -1).reshape(-1, 3)
-    bed = np.stack(np.meshgrid(side, side, [0.0], indexing="ij"), -1).reshape(-1, 3)
-    x += rng.uniform(-0.009, 0.009, x.shape) * D
-    bed[:, 2] += rng.uniform(-0.2, 0.2, len(bed)) * D
+    x, v, bed = sliding_block()
     made = scene(
-        x, D, v=rng.normal(0.0, 0.1, x.shape) + np.array([3.0, 0.0, -0.3]), x_fixed=bed, d_fixed=D,
+        x, D, v=v, x_fixed=bed, d_fixed=D,
         period=(5.1 * D, 5.1 * D), friction=0.5, restitution=1.0, rotation=False, stiffness=2e3,
         steps_per_contact=20.0, slope=0.4, **CARRIED,
     )  # fmt: skip
