@@ -101,6 +101,26 @@ def test_a_nan_stops_the_run(tmp_path: Path) -> None:
     assert "springs" in fault.hint
 
 
+def test_a_run_whose_engine_gives_no_more_numbers_is_written_as_failed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its last words are its fault, though there is no summary of it."""
+    tally, lost = cpu.CpuEngine.tally, OverlapTooLarge("too large", grain=0, step=1, t=0.0, hint="")
+
+    def fails(self: cpu.CpuEngine) -> object:
+        if self.grains().step > 0:
+            raise lost
+        return tally(self)
+
+    monkeypatch.setattr(cpu.CpuEngine, "tally", fails)
+    with pytest.raises(OverlapTooLarge):
+        drop()(tmp_path / "run", False)
+    found = Results.open(tmp_path / "run")
+    assert found.status == schema.FAILED
+    assert "too large" in found.provenance["message"]
+    assert len(found.frames) >= 1
+
+
 def test_an_overlap_beyond_the_limit_stops_the_run(tmp_path: Path) -> None:
     soft = drop(contact__stiffness="0.01 N/cm")
     fault = stopped(soft, tmp_path / "run", OverlapTooLarge)

@@ -110,7 +110,8 @@ class Loop:
 
     def _final_actions(self) -> tuple[Callable[[], Any], ...]:
         """Final writes of a run that ends early; only the provenance if the engine took no state."""
-        whole = self.recorder.flush, self._write_tail, self._close
+        # that the run failed is written before its summary, which may meet the fault again
+        whole = self.recorder.flush, self._write_tail, self._write_provenance, self._close
         return whole if self._loaded else (self._write_provenance,)
 
     def _run(self, state: State, block: CheckpointBlock | None) -> None:

