@@ -95,12 +95,47 @@ def test_a_plane_flume_is_one_slab_wide() -> None:
         ("length='1 cm'", {}, "build.length", "at least 0.018"),
         ("", {"motion.plane": "true"}, "build.width", "plane scene"),
         ("layers=0.001", {}, "build.layers", "no grain"),
+        ("waves=1", {}, "build.wave_height", "missing"),
+        ("wave_height='1 cm'", {}, "build.waves", "missing"),
+        ("waves=7; wave_height='1 cm'", {}, "build.waves", "at most 6: a wave must be 8 grains long"),
+        ("waves=1; wave_height='5.6 cm'", {}, "build.wave_height", "at most 0.05532 m"),
+        ("waves=1; wave_height='1 cm'; layers=1", {}, "build.wave_height", "at most 0 m"),
+        ("waves=-1; wave_height='1 cm'", {}, "build.waves", "at least 0"),
     ],
 )
 def test_a_flume_that_cannot_be_is_refused(keys: str, others: dict[str, str], key: str, says: str) -> None:
     with pytest.raises(CaseError, match=says) as caught:
         case(keys, **others)
     assert caught.value.key == key
+
+
+@pytest.mark.parametrize("spread", ["0.0", "0.08"])
+@pytest.mark.parametrize("keys", ["width='3.1 cm'; walls=false", "width='3.1 cm'", "bed='plane'"])
+def test_waves_of_the_bed_have_their_height_and_a_crest_at_the_beginning(keys: str, spread: str) -> None:
+    one = case(f"{keys}; length='120 cm'; layers=8; waves=2; wave_height='3 cm'", grains__spread=spread)
+    even = case(f"{keys}; length='120 cm'; layers=8", grains__spread=spread)
+    built = build(one)
+    assert built.scene.n_grain == build(even).scene.n_grain  # waves move grains, and add none
+    width = one.build.width  # pyright: ignore[reportAttributeAccessIssue]
+    phase = 2.0 * np.pi * 2.0 * built.state.x[:, 0] / 1.2
+    volume = np.pi / 6.0 * built.scene.d**3
+    # thickness = mean + height/2 cos: twice the mean of the volume times cos is that half height, settled
+    half = 2.0 * (volume * np.cos(phase)).sum() / (1.2 * width * 0.61)
+    assert half == pytest.approx(0.015, rel=0.06)
+    assert abs(2.0 * (volume * np.sin(phase)).sum() / (1.2 * width * 0.61)) < 0.06 * 0.015
+
+
+def test_waves_without_a_height_are_an_even_bed() -> None:
+    assert np.array_equal(build(case("waves=0")).state.x, build(case()).state.x)
+
+
+def test_waves_in_a_plane_flume() -> None:
+    text = BASE.replace('width = "6.5 mm"\n', "")
+    keys = {"motion.plane": "true", "build.length": "'120 cm'", "build.waves": "1"}
+    x = build(read_text(text, {**keys, "build.wave_height": "'2 cm'"})).state.x
+    assert np.all(x[:, 1] == 0.0)
+    ends, middle = x[np.abs(x[:, 0] - 0.6) > 0.5], x[np.abs(x[:, 0] - 0.6) < 0.1]
+    assert np.ptp(ends[:, 2]) > np.ptp(middle[:, 2]) + 1.5 * D
 
 
 def test_a_flume_without_width_in_three_dimensions_is_refused() -> None:

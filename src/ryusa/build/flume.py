@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ryusa.build.nested_lattice import LatticeCells, nested_lattice
+from ryusa.build.nested_lattice import LatticeCells, filled_cells, nested_lattice, places
 from ryusa.build.placement import Placement, Wall, at_rest
 from ryusa.build.sizes import draw, draw_laid
 from ryusa.casefile.builders.schema import FlumeSection
@@ -104,19 +104,23 @@ def _cells(case: Case, keys: FlumeSection, wide: float, room: float) -> LatticeC
     free = room * (1.0 + keys.gap)
     n_x = max(int(keys.length / free), 1)
     n_y = 1 if case.motion.plane else max(int(wide / free), 1)
-    return LatticeCells((keys.length / n_x, wide / n_y, free), n_x, n_y)
+    return LatticeCells((keys.length / n_x, wide / n_y, free), n_x, n_y, _thickness(case, keys, n_x))
+
+
+def _thickness(case: Case, keys: FlumeSection, n_x: int) -> Floats | None:
+    """Thickness of the loose bed over its mean at the middles of n_x columns; None without waves."""
+    if keys.waves == 0:
+        return None
+    phase = 2.0 * math.pi * keys.waves * (np.arange(n_x) + 0.5) / n_x
+    return np.asarray(1.0 + 0.5 * keys.wave_height / bed_thickness(case) * np.cos(phase))
 
 
 def _lattice(
     case: Case, keys: FlumeSection, rng: np.random.Generator, cells: LatticeCells, room: float
 ) -> Floats:
     """Jittered centres from z = 0 upwards, clear of neighbours and walls [m]; the top layer is incomplete."""
-    pitch, n_x, n_y = np.array(cells.pitch), cells.n_x, cells.n_y
-    n = flume_count(case)
-    layer, within = np.divmod(np.arange(math.ceil(n / (n_x * n_y)) * n_x * n_y), n_x * n_y)
-    places = np.stack([within % n_x, within // n_x, layer], -1)
-    last = int(layer[-1]) * n_x * n_y  # the highest layer is filled at random places
-    chosen = np.concatenate([np.arange(last), last + np.sort(rng.permutation(n_x * n_y)[: n - last])])
+    pitch = np.array(cells.pitch)
+    chosen = np.sort(filled_cells(flume_count(case), cells, rng))
     free = 0.5 * keys.jitter * np.maximum(pitch - room, 0.0)
-    x = (places[chosen] + 0.5) * pitch
+    x = (places(chosen, cells) + 0.5) * pitch
     return np.asarray(x + rng.uniform(-1.0, 1.0, x.shape) * free)

@@ -17,6 +17,7 @@ class LatticeCells:
     pitch: tuple[float, float, float]  # of a cell along x, y and z [m]
     n_x: int  # cells along x
     n_y: int  # along y, 1 in a plane scene
+    thickness: Floats | None = None  # of the block at each of n_x, relative, >= 0 [-]; None: even
 
 
 def nested_lattice(
@@ -27,7 +28,8 @@ def nested_lattice(
     Parameters
     ----------
     d : diameters [m], shape (n,); the largest fits a cell.
-    cells : the block; as many layers of it are filled as are needed, the highest at random places.
+    cells : the block; as many layers of it are filled as are needed, the highest at random places, or layers
+        in proportion to its thickness.
     gap : least gap to the sides of a cell together, over the diameter of its grain [-].
     jitter : share of the free room in its cell by which a grain is displaced, 0 to 1.
     plane : y is 0, and a cell is halved along x and z alone.
@@ -53,7 +55,7 @@ def nested_lattice(
         orders.append(rng.permutation(len(grains[k]) + n_filled))
         n_filled = math.ceil(len(orders[-1]) / len(slots))
     x = np.zeros((len(d), 3))
-    corners = _corners(len(orders[-1]), cells, rng)
+    corners = places(filled_cells(len(orders[-1]), cells, rng), cells) * pitch
     for k, order in enumerate(reversed(orders)):
         width = pitch.copy()
         width[list(halved)] /= 2.0**k
@@ -87,10 +89,35 @@ def _slots(halved: tuple[int, ...]) -> Floats:
     return found
 
 
-def _corners(n: int, cells: LatticeCells, rng: np.random.Generator) -> Floats:
-    """Lowest corners of n cells, layer by layer [m]; those of the highest layer at random places."""
+def filled_cells(n: int, cells: LatticeCells, rng: np.random.Generator) -> NDArray[np.int64]:
+    """Numbers of n cells filled from below layer by layer, shape (n,); of the highest at random places.
+
+    A cell's number is its layer times n_x n_y, plus its place along y times n_x, plus that along x.
+
+    Notes
+    -----
+    With a thickness w along x the n cells with the smallest (layer + u)/w are filled, u uniform in [0, 1) for
+    each place: every place holds w times the same number of cells in the mean, its fraction at random.
+
+    Raises
+    ------
+    ValueError : the thickness is negative or 0 everywhere.
+    """
     per_layer = cells.n_x * cells.n_y
-    full = n // per_layer * per_layer
-    place = np.concatenate([np.arange(full), full + rng.permutation(per_layer)[: n - full]])
-    layer, within = np.divmod(place, per_layer)
-    return np.stack([within % cells.n_x, within // cells.n_x, layer], -1) * np.array(cells.pitch)
+    if cells.thickness is None:
+        full = n // per_layer * per_layer
+        return np.concatenate([np.arange(full), full + rng.permutation(per_layer)[: n - full]])
+    w = np.asarray(cells.thickness, dtype=np.float64)
+    if w.min() < 0.0 or w.max() == 0.0:
+        raise ValueError("the relative thickness must be at least 0, and more than 0 somewhere")
+    layers = np.arange(math.ceil(n * w.max() / (cells.n_y * w.sum())) + 1)
+    u = rng.uniform(0.0, 1.0, (cells.n_y, cells.n_x))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        height = np.where(w > 0.0, (layers[:, None, None] + u) / w, math.inf).ravel()
+    return np.sort(np.argsort(height, kind="stable")[:n])
+
+
+def places(numbers: NDArray[np.int64], cells: LatticeCells) -> NDArray[np.int64]:
+    """Place of cells along x, y and z, shape (n, 3)."""
+    layer, within = np.divmod(numbers, cells.n_x * cells.n_y)
+    return np.stack([within % cells.n_x, within // cells.n_x, layer], -1)

@@ -21,6 +21,7 @@ from ryusa.casefile.builders.values import (
     periodic,
     sizes,
 )
+from ryusa.casefile.column.bed import bed_thickness
 from ryusa.casefile.grading import grading_of, reference_diameter
 from ryusa.casefile.grains import graded, spread_of
 from ryusa.casefile.motion import may_rotate
@@ -30,6 +31,7 @@ from ryusa.errors import CaseError
 if TYPE_CHECKING:
     from ryusa.casefile.case import Case
 
+SHORTEST = 8  # largest diameters in a wave of the bed, so that its cosine is seen
 _FOREIGN = ("lammps-dump", "lammps-data", "xyz")
 _HAS = {  # key of a table: formats in which it has an effect
     "frame": ("csv", "lammps-dump", "xyz"),
@@ -115,6 +117,30 @@ def _flume(case: "Case", build: FlumeSection) -> Iterator[CaseError]:
             yield CaseError(f"build.{key}", value, f"must be at least {least:.4g} m for grains of this size")
     if flume_count(case) < 1:
         yield CaseError("build.layers", build.layers, "gives no grain; take more layers or a longer flume")
+    yield from _waves(case, build)
+
+
+def _waves(case: "Case", build: FlumeSection) -> Iterator[CaseError]:
+    """Find waves without a height or a height without waves, too many of them, and troughs without grains."""
+    if build.waves == 0 and build.wave_height == 0.0:
+        return
+    if build.wave_height == 0.0:
+        yield CaseError("build.wave_height", None, "missing; waves of the bed need a height")
+        return
+    if build.waves == 0:
+        yield CaseError("build.waves", None, "missing; give the number of waves along the length, such as 1")
+        return
+    largest = sizes(case)[2]
+    if build.waves > (most := int(build.length / (SHORTEST * largest))):
+        yield CaseError(
+            "build.waves", build.waves, f"must be at most {most}: a wave must be {SHORTEST} grains long or "
+            "longer"
+        )  # fmt: skip
+    if build.wave_height > (highest := 2.0 * (bed_thickness(case) - largest)):
+        yield CaseError(
+            "build.wave_height", build.wave_height, f"must be at most {max(highest, 0.0):.4g} m, so that one "
+            "layer of grains is left in the troughs; take lower waves or more layers"
+        )  # fmt: skip
 
 
 def _bed(case: "Case", build: PackingSection | FlumeSection) -> Iterator[CaseError]:

@@ -144,6 +144,12 @@ class FlumeSection(Section):
     bed_height: Annotated[Number, Field(ge=0, le=2)] = 0.9167
     """Range of the random heights, in mean diameters; the mean height of the centres is z = 0. 11/12 in Frey
     2014."""
+    waves: Annotated[Count, Field(ge=0, le=100_000)] = 0
+    """Waves of the loose bed along the length at the start: its thickness is the mean plus half of
+    wave_height times cos(2 pi waves x/length), with a crest at x = 0. `layers` is then a mean."""
+    wave_height: Annotated[Length, Field(ge=0)] = 0.0
+    """Height of these waves from trough to crest, of the bed settled to the concentration
+    water.column.packed."""
 
 
 class BoxSection(Section):

@@ -3,6 +3,7 @@
 import math
 from typing import TYPE_CHECKING
 
+from ryusa.casefile.builders.schema import FlumeSection
 from ryusa.casefile.column.bed import bed_thickness, bed_top, water_over
 from ryusa.casefile.column.packed import packed
 from ryusa.casefile.column.schema import CELL, ColumnSection, column_keys
@@ -132,6 +133,8 @@ def _bed(case: "Case", keys: ColumnSection) -> list[ExplainRow]:
     assert wet is not None
     over = water_over(case)
     settled = f"free grains settled to the concentration {packed(case):g} (water.column.packed)"
+    if isinstance(case.build, FlumeSection) and case.build.waves:
+        settled += f"; mean of {case.build.waves} waves {100.0 * case.build.wave_height:.3g} cm high"
     origin = "water.depth, measured from the top of the bed (water.zero not given)"
     if wet.zero is not None:
         origin = f"water.zero + depth less the top of the bed, z = {100.0 * top:.3g} cm"
