@@ -107,7 +107,8 @@ def _value(about: dict[str, Any], definitions: dict[str, Any]) -> str:
         if any(one != several[0] for one in several):
             return f"[{', '.join(_value(one, definitions) for one in several)}]"
         inner = about.get("items") or several[0]
-        count = f"{about['maxItems']} of: " if "maxItems" in about else "list of: "
+        exact = "maxItems" in about and about.get("minItems") == about["maxItems"]
+        count = f"{about['maxItems']} of: " if exact else "list of: "
         return f"[{count}{_value(inner, definitions)}]"
     if about.get("type") == "object":
         return f"table of: {_value(about['additionalProperties'], definitions)}"
@@ -131,7 +132,8 @@ def _default(about: dict[str, Any]) -> str:
     value = about["default"]
     if isinstance(value, float):
         text = KNOWN_NUMBERS.get(value, f"{value:g}")
-        unit = UNITS.get(about.get("title", ""))
+        one = about.get("oneOf", [about])[0]
+        unit = UNITS.get(one.get("title", ""))
         return f'`"{value:g} {unit}"`' if unit else f"`{text}`" if text == f"{value:g}" else text
     return f"`{json.dumps(value)}`"
 

@@ -10,7 +10,7 @@ from ryusa.build.placement import Placement, Wall, at_rest
 from ryusa.build.sizes import draw, draw_laid
 from ryusa.build.walls import SolidWall, triangles
 from ryusa.casefile.builders.schema import StreamSection
-from ryusa.casefile.builders.values import stream_cells, stream_count
+from ryusa.casefile.builders.values import stream_cells, stream_count, stream_thickness
 from ryusa.casefile.case import Case
 from ryusa.casefile.derive import Derived
 from ryusa.casefile.grains import graded
@@ -37,7 +37,8 @@ def stream_bed(case: Case, derived: Derived) -> Placement:
     x = at_rest(n)
     if n:
         begin, pitch, columns, rows = stream_cells(case)
-        cells = LatticeCells((*pitch, derived.room * (1.0 + keys.gap)), len(columns), rows)
+        thick = None if isinstance(keys.bed, float | int) else stream_thickness(case)
+        cells = LatticeCells((*pitch, derived.room * (1.0 + keys.gap)), len(columns), rows, thick)
         x = nested_lattice(sized * extent(case), cells, keys.gap, keys.jitter, False, rng)
         at = np.minimum((x[:, 0] / pitch[0]).astype(np.int64), len(columns) - 1)
         x[:, 0] += begin + (columns[at] - at) * pitch[0]

@@ -1,13 +1,28 @@
 """Keys of the [build] section, one model per builder."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, Discriminator, Field, Tag
 
 from ryusa.casefile.files import relative
 from ryusa.casefile.quantities import Count, Length, Moment, Number, Point, PositiveLength, Speed, Spin
+from ryusa.casefile.row.schema import LineFile, LinePoints
 from ryusa.casefile.section import Section
 from ryusa.units import quantity
+
+
+def _bed_kind(value: Any) -> str:
+    if isinstance(value, str) and value.lower().endswith(".csv"):
+        return "<file>"
+    return "<points>" if isinstance(value, list | tuple) else "<thickness>"
+
+
+BedThickness = Annotated[
+    Annotated[Length, Field(ge=0), Tag("<thickness>")]
+    | Annotated[LineFile, Tag("<file>")]
+    | Annotated[LinePoints, Tag("<points>")],
+    Discriminator(_bed_kind),
+]
 
 
 class DropSection(Section):
@@ -222,13 +237,17 @@ class StreamSection(Section):
     kind: Literal["stream"]
     """Name of the builder. The line water.row.bottom is the floor, each of water.row.dams a wall, and
     water.row.width the width; a screen, the plane `upstream`, holds grains at the upper end."""
-    bed: Annotated[Length, Field(ge=0)] = 0.0
+    bed: BedThickness = 0.0
     """Thickness of a bed along the bottom, settled to the concentration water.column.packed; it is laid loose
-    and settles in the run. None when not given: all grains come from [[feeds]]."""
+    and settles in the run. Or its thickness along the stream: pairs of x and thickness, straight between
+    them, or a CSV file with the header x [m],z [mm], z the thickness. None when not given: all grains come
+    from [[feeds]]."""
     begin: Length | None = None
-    """Where the bed begins along x; at the upper end when not given."""
+    """Where the bed begins along x; when not given at the upper end, or at the first point of its
+    thickness."""
     end: Length | None = None
-    """Where the bed ends; at the lower end when not given. There is none on dams."""
+    """Where the bed ends; when not given at the lower end, or at the last point of its thickness. There is
+    none on dams."""
     walls: bool = True
     """Smooth side walls, the planes `right` at y = 0 and `left` at y = water.row.width; false makes y
     periodic."""

@@ -24,7 +24,7 @@ from ryusa.casefile.column.packed import packed
 from ryusa.casefile.grading import grading_of, reference_diameter
 from ryusa.casefile.grains import CUT, graded, laid_mean_cube, laid_shares, sized_as, spread_of
 from ryusa.casefile.motion import slab_width
-from ryusa.casefile.row.values import dam_span, row_plan, stream_span, width_of
+from ryusa.casefile.row.values import bed_over, dam_span, row_plan, stream_span, width_of
 from ryusa.casefile.shape import extent
 from ryusa.casefile.traffic.values import fed_in_all
 
@@ -233,14 +233,20 @@ def stream_cells(case: "Case") -> tuple[float, tuple[float, float], NDArray[np.i
     return begin, (pitch, width / n_y), np.flatnonzero(beside), n_y
 
 
+def stream_thickness(case: "Case") -> NDArray[np.float64]:
+    """Thickness of the settled bed in the columns of the lattice of builder 'stream' [m]."""
+    begin, (pitch, _), columns, _ = stream_cells(case)
+    return bed_over(case, np.asarray(begin + (columns + 0.5) * pitch, dtype=np.float64))
+
+
 def stream_count(case: "Case") -> int:
     """Free grains of the bed of builder 'stream': their volume over its area is thickness times `packed`."""
     build = case.build
     assert isinstance(build, StreamSection)
     if build.bed == 0.0:
         return 0
-    _, (pitch, _), columns, _ = stream_cells(case)
-    volume = build.bed * packed(case) * len(columns) * pitch * (width_of(case) or 0.0)
+    pitch, thick = stream_cells(case)[1][0], stream_thickness(case)
+    volume = float(thick.sum()) * packed(case) * pitch * (width_of(case) or 0.0)
     return max(round(volume / (case.grains.shape_volume * laid_mean_cube(case))), 0)
 
 

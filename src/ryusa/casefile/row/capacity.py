@@ -11,13 +11,13 @@ from ryusa.casefile.grading import grading_of, reference_diameter
 from ryusa.casefile.motion import slope
 from ryusa.casefile.row.schema import RowDamSection, row_keys
 from ryusa.casefile.row.values import (
+    bed_over,
     bottom_points,
     crest_of,
     dam_span,
     discharge_of,
     normal_depth,
     row_plan,
-    stream_span,
     width_of,
 )
 from ryusa.casefile.traffic.schema import FeedSection
@@ -103,10 +103,7 @@ def dam_deposit(case: "Case", dam: RowDamSection) -> DamDeposit | None:
     if angle is None or not rate > 0.0:
         return None
     x = np.linspace(start, first, 4001)
-    low = np.interp(x, *np.array(bottom_points(case)).T)
-    if case.build.kind == "stream":
-        begin, end = stream_span(case)
-        low = low + np.where((x >= begin) & (x <= end), case.build.bed, 0.0)
+    low = np.interp(x, *np.array(bottom_points(case)).T) + bed_over(case, x)
     room = crest_of(plan, dam) + (first - x) * math.tan(angle - slope(case)) - low
     half = 0.5 * reference_diameter(case)
     shut = np.flatnonzero(room <= -half)

@@ -14,6 +14,7 @@ from ryusa.casefile.row.values import (
     WEIR,
     Reach,
     RowPlan,
+    bed_points,
     crest_of,
     critical_depth,
     dam_span,
@@ -86,11 +87,14 @@ def _grid(case: "Case", keys: RowSection, plan: RowPlan) -> list[ExplainRow]:
 
 def _bed(case: "Case") -> list[ExplainRow]:
     """The bed at the start."""
-    build, (begin, end) = case.build, stream_span(case)
-    if build.kind != "stream" or build.bed == 0.0:
+    if case.build.kind != "stream" or case.build.bed == 0.0:
         return [word("water", "bed at the start", "none", "build.bed not given: all grains come from feeds")]
+    points, (begin, end) = bed_points(case), stream_span(case)
     origin = f"build.bed, from x = {begin:g} to {end:g} m, settled to the concentration {packed(case):g}"
-    return [number("water", "bed at the start", build.bed, "cm", origin)]
+    most, least = (f([thick for _, thick in points]) for f in (max, min))
+    if most > least:
+        origin = f"the thickest of {origin}; {100.0 * least:.4g} cm where it is thinnest"
+    return [number("water", "bed at the start", most, "cm", origin)]
 
 
 def _end(keys: RowSection) -> str:

@@ -50,10 +50,10 @@ def _line_kind(value: Any) -> str:
     return "<file>" if isinstance(value, str) else "<points>"
 
 
+LineFile = Annotated[str, Field(min_length=1, max_length=400), AfterValidator(relative)]
+LinePoints = Annotated[tuple[tuple[Length, Length], ...], Field(min_length=2, max_length=10_000)]
 Line = Annotated[
-    Annotated[str, Field(min_length=1, max_length=400), AfterValidator(relative), Tag("<file>")]
-    | Annotated[tuple[tuple[Length, Length], ...], Field(min_length=2, max_length=10_000), Tag("<points>")],
-    Discriminator(_line_kind),
+    Annotated[LineFile, Tag("<file>")] | Annotated[LinePoints, Tag("<points>")], Discriminator(_line_kind)
 ]
 
 

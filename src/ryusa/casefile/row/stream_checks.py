@@ -1,7 +1,7 @@
 """Checks of a row of columns with ends and grains: what builder "stream" needs, and where grains could go."""
 
 from collections.abc import Iterator
-from itertools import product
+from itertools import pairwise, product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,9 +11,11 @@ from ryusa.casefile.builders.values import FEWEST_PERIODS, sizes, stream_count
 from ryusa.casefile.column.schema import ColumnSection, column_keys
 from ryusa.casefile.row.schema import RowSection
 from ryusa.casefile.row.values import (
+    Points,
     bottom_points,
     crest_of,
     dam_span,
+    line_points,
     row_plan,
     stream_span,
     walls_of_stream,
@@ -42,6 +44,8 @@ def check_stream(case: "Case", keys: RowSection) -> Iterator[CaseError]:
             "motion.plane", True, "must be false with builder 'stream', whose bottom and dams are walls in "
             "three dimensions; a narrow stream with build.walls = false is nearest to a plane",
         )  # fmt: skip
+    if not isinstance(build.bed, float | int):
+        yield from _bed(case, build.bed)
     for name in ("upstream", "downstream"):
         if getattr(keys, name) is None:
             yield CaseError(f"water.row.{name}", None, "missing; builder 'stream' has two ends")
@@ -52,6 +56,31 @@ def check_stream(case: "Case", keys: RowSection) -> Iterator[CaseError]:
         yield CaseError("water.row.width", width, f"{what}must be at least {least:.4g} m for these grains")
     yield from _column(column_keys(case), width)
     yield from _names(case, keys)
+
+
+def _bed(case: "Case", given: Points | str) -> Iterator[CaseError]:
+    """Find points of the thickness of the bed that do not follow one another, or lie below the bottom."""
+    try:
+        points = line_points(case, "build.bed", given)
+    except CaseError as error:
+        yield error
+        return
+    for k, ((a, _), (b, _)) in enumerate(pairwise(points)):
+        if b < a:
+            yield CaseError(
+                "build.bed", None, f"point {k + 2} lies at x = {b:g} m, not downstream of the one before at "
+                f"{a:g} m",
+            )  # fmt: skip
+    for k, (_, thick) in enumerate(points):
+        if thick < 0.0:
+            yield CaseError("build.bed", f"{thick:g} m", f"point {k + 1} must have a thickness of at least 0")
+    low, high = bottom_points(case)[0][0], bottom_points(case)[-1][0]
+    for k, what in ((0, "begin"), (-1, "end")):
+        if getattr(case.build, what) is None and not low <= points[k][0] <= high:
+            yield CaseError(
+                "build.bed", f"x = {points[k][0]:g} m", f"must {what} in the row, from {low:g} to "
+                f"{high:g} m, or give build.{what}",
+            )  # fmt: skip
 
 
 def _column(keys: ColumnSection, width: float | None) -> Iterator[CaseError]:
@@ -109,8 +138,9 @@ def check_places(case: "Case", keys: RowSection) -> Iterator[CaseError]:
     if not begin < end:
         yield CaseError("build.begin", build.begin, f"must lie before the end of the bed, {end:g} m")
         return
-    if build.bed > 0.0 and stream_count(case) < 1:
-        yield CaseError("build.bed", build.bed, "gives no grain: take a thicker or longer bed")
+    if build.bed != 0.0 and stream_count(case) < 1:
+        shown = build.bed if isinstance(build.bed, float | int) else None
+        yield CaseError("build.bed", shown, "gives no grain: take a thicker or longer bed")
     for k, feed in enumerate(case.feeds):
         if feed.moves_with is None and (corners := corners_of(feed)) is not None:
             yield from _feed(case, keys, f"feeds.{k}", feed.name, *corners)

@@ -73,9 +73,12 @@ def _read(path: Path, name: str, _changed: int, _size: int) -> Points:
 
 
 def line_files(case: "Case") -> list[str]:
-    """Names of the CSV files of the lines of a row."""
+    """Names of the CSV files of the lines of a row, and of the bed along it."""
     keys = row_keys(case)
-    return [] if keys is None else [one for one in (keys.bottom, keys.surface) if isinstance(one, str)]
+    if keys is None:
+        return []
+    bed = case.build.bed if case.build.kind == "stream" else None
+    return [one for one in (keys.bottom, keys.surface, bed) if isinstance(one, str)]
 
 
 def bottom_points(case: "Case") -> Points:
@@ -138,10 +141,33 @@ def stream_span(case: "Case") -> tuple[float, float]:
     """Where the bed of builder 'stream' begins and ends along x [m]."""
     build, points = case.build, bottom_points(case)
     assert build.kind == "stream"
+    if not isinstance(build.bed, float | int):
+        points = line_points(case, "build.bed", build.bed)
     return (
         points[0][0] if build.begin is None else build.begin,
         points[-1][0] if build.end is None else build.end,
     )
+
+
+def bed_points(case: "Case") -> Points:
+    """Points of x and thickness [m] of the bed of builder 'stream', from where it begins to where it ends."""
+    build, (begin, end) = case.build, stream_span(case)
+    assert build.kind == "stream"
+    if isinstance(build.bed, float | int):
+        return (begin, build.bed), (end, build.bed)
+    line = line_points(case, "build.bed", build.bed)
+    x, thick = np.array(line).T
+    first, last = np.interp([begin, end], x, thick).tolist()
+    return (begin, first), *(one for one in line if begin < one[0] < end), (end, last)
+
+
+def bed_over(case: "Case", x: Floats) -> Floats:
+    """Thickness of the bed of builder 'stream' at x [m], shape as x; 0 with another builder."""
+    return _thickness(bed_points(case), x) if case.build.kind == "stream" else np.zeros_like(x)
+
+
+def _thickness(points: Points, x: Floats) -> Floats:
+    return np.interp(x, *np.array(points).T, left=0.0, right=0.0)
 
 
 def water_alone(case: "Case") -> bool:
@@ -152,13 +178,12 @@ def water_alone(case: "Case") -> bool:
 @lru_cache(maxsize=8)
 def _plan(
     points: Points, surface: Points | None, depth: float, about: tuple[float, float, int], cell: float,
-    height: float, bed: tuple[float, float, float],
+    height: float, bed: Points,
 ) -> RowPlan:  # fmt: skip
     x_low, dx, n = about
     x: Floats = x_low + (np.arange(n, dtype=np.float64) + 0.5) * dx
     bottom = np.interp(x, *np.array(points).T)
-    begin, end, thick = bed
-    over = depth + np.where((x >= begin) & (x <= end), thick, 0.0)
+    over = depth + _thickness(bed, x)
     start = bottom + over if surface is None else np.interp(x, *np.array(surface).T)
     n_cell = max(math.ceil(height / cell - 1e-9), 2)
     return RowPlan(x_low, dx, n, cell, n_cell, x, bottom, start)
@@ -170,7 +195,7 @@ def row_plan(case: "Case") -> RowPlan:
     assert wet is not None
     surface = None if keys.surface is None else line_points(case, "water.row.surface", keys.surface)
     about, cell = segments_of(case), cell_of(case)
-    bed = (*stream_span(case), case.build.bed) if case.build.kind == "stream" else (0.0, 0.0, 0.0)
+    bed = bed_points(case) if case.build.kind == "stream" else ((0.0, 0.0),)
     first = _plan(bottom_points(case), surface, wet.depth or 0.0, about, cell, cell, bed)
     height = keys.height or SPARE * max(deepest(case, first), 4.0 * cell)
     return _plan(bottom_points(case), surface, wet.depth or 0.0, about, cell, height, bed)
