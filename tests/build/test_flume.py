@@ -116,7 +116,7 @@ def test_waves_of_the_bed_have_their_height_and_a_crest_at_the_beginning(keys: s
     even = case(f"{keys}; length='120 cm'; layers=8", grains__spread=spread)
     built = build(one)
     assert built.scene.n_grain == build(even).scene.n_grain  # waves move grains, and add none
-    width = one.build.width  # pyright: ignore[reportAttributeAccessIssue]
+    width = bed_area(one) / 1.2
     phase = 2.0 * np.pi * 2.0 * built.state.x[:, 0] / 1.2
     volume = np.pi / 6.0 * built.scene.d**3
     # thickness = mean + height/2 cos: twice the mean of the volume times cos is that half height, settled

@@ -17,6 +17,7 @@ from ryusa.results import Results
 from ryusa.studies.validation import river_bands as bands
 from ryusa.studies.validation import river_basics as basics
 from ryusa.studies.validation import river_delta as delta
+from ryusa.studies.validation import river_exner as exner
 from ryusa.studies.validation import river_grains as with_grains
 from ryusa.study import CaseRun, Finding, Found, Level, Plan, Source, Task, calculation, comparison, misfit
 from ryusa.water import steady
@@ -184,7 +185,7 @@ def tasks(plan: Plan) -> Sequence[Task]:
     every += [_break(ahead, 10, levels) for ahead, levels in (STOKERS[name] for name in _stokers(plan))]
     every += [_uniform(slope) for slope in SLOPES]
     every += [_seepage(across, inertia) for across in ACROSS for inertia in (False, True)]
-    every += [_backwater(), *with_grains.tasks(plan), *delta.tasks(plan)]
+    every += [_backwater(), *with_grains.tasks(plan), *delta.tasks(plan), *exner.tasks(plan)]
     return [*every, *(_weir(crest) for crest in (0, *_crests(plan)))]
 
 
@@ -204,6 +205,8 @@ def _crests(plan: Plan) -> tuple[int, ...]:
 
 def measure(run: Results, one: CaseRun) -> dict[str, Floats]:
     """Of the runs with grains."""
+    if one.case == exner.CASE:
+        return exner.measure(run, one)
     return (delta if one.case in delta.CASES else with_grains).measure(run, one)
 
 
@@ -222,6 +225,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         _weirs(found, _crests(plan)),
         *with_grains.judge(found, plan),
         *delta.judge(found, plan),
+        *exner.judge(found, plan),
     ]
 
 

@@ -4,6 +4,7 @@ Most limits are twice the error that a throw-away prototype of the same equation
 reason names it. The others are round-off.
 """
 
+import math
 from collections.abc import Mapping
 
 from ryusa.study.judge import Band, at_most
@@ -75,4 +76,15 @@ OWN_PACKING = at_most(0.03, "grains of a packing meet concentrations that vary a
 DELTA_KEPT = at_most(1e-12, "round-off of the sum of masses")
 DELTA_SPEED = Band(0.95, 1.05, "-", "the shape of the front is steady: 5 %")
 DELTA_ANGLE = Band(-2.0, 2.0, "deg", "the front is a slope at the angle of repose of the same grains")
+# A wave of a loose bed against linear theory (design/0028) with the transport over even beds, nothing fitted.
+EXNER_DECAY = Band(0.8, 1.2, "-", "20 %: the slope of q_s is known to 10 %, and q_s adapts over 10 to 20 d")
+EXNER_CELERITY: Mapping[str, Band] = {
+    "tranquil": Band(0.0, math.inf, "m/s", "downstream below a Froude number of 1"),
+    "rapid": Band(-math.inf, 0.0, "m/s", "upstream above it"),
+}
+EXNER_FROUDE: Mapping[str, Band] = {
+    "critical": Band(0.9, 1.1, "-", "where the way of adaptation changes the decay to second order alone"),
+    "tranquil": Band(0.6, 0.8, "-", "about 0.7"),
+    "rapid": Band(1.25, 1.55, "-", "about 1.4"),
+}
 AT_REST = at_most(1e-3, "a thousandth of a diameter in 0.2 s, on a level bed under still water")
