@@ -350,6 +350,27 @@ def test_a_mesh_across_a_period_has_no_seam():
     assert len(split.events()) == len(plane.events())
 
 
+def test_a_floor_much_longer_than_a_narrow_period_holds_every_grain():
+    """Its cells are several periods wide: grains at rest on it, one at each tenth of the period."""
+    n, period, m_g = 40, 6 * D, 2650.0 * math.pi / 6 * D**3 * G
+    x = np.column_stack([2 * D * np.arange(n), 0.1 * (np.arange(n) % 10) * period, np.full(n, R - m_g / 1e4)])
+    level, falls = (0, 4, 0, 0), (4, 12, 0, -3)  # from x to x, from z to z; the second out of reach
+    walls = [
+        rectangle("floor", (a, 0, z), (b - a, 0, h - z), (0, period, 0)) for a, b, z, h in (level, falls)
+    ]
+    one = replace(
+        walls[0], face=np.vstack([w.face for w in walls]), kind=np.concatenate([w.kind for w in walls])
+    )
+    made = walled(
+        [one], x=x, stiffness=1.0e4, friction=0.5, slip=Slip.TOTAL,
+        period=(math.inf, period),
+    )  # fmt: skip
+    made = replace(made[0], world_high=(99.0,) * 3), made[1]
+    engine = run(made, 200)
+    assert engine.tally().n_contact == n
+    assert engine.state().x == pytest.approx(x, abs=0.1 * m_g / 1e4)
+
+
 @pytest.mark.parametrize("axis", [0, 1])
 def test_a_belt_that_has_moved_by_many_periods_still_carries(axis):
     """It fills the period exactly; a ball on it ends at 2/7 of its speed, as on an endless belt."""

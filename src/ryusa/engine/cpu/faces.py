@@ -100,7 +100,9 @@ def _grid(walls: Walls) -> _Grid:
             ):
                 break
             cell *= 1.26
-        grid_low[w], width[w] = bottom, cell
+        # one cell along an axis is as wide as the wall: wider, its middle would not be that of the wall,
+        # which decides on the images that are searched (append_faces)
+        grid_low[w], width[w] = bottom, np.where(dims[w] > 1, cell, np.maximum(size, 1e-3 * cell))
     cells = np.prod(dims, axis=1)
     grid_first = np.concatenate([[0], np.cumsum(cells)])
     spans = (cells_high - cells_low + 1) * walls.face_active[:, None]
