@@ -121,6 +121,8 @@ UNITS = {
     "contact_step.contact_force": "bool, -, -, -, N, N, N, N -> N, N, N, N, N, N",
     "debris.equilibrium_concentration": "-, -, kg/m3, kg/m3 -> -",
     "debris.equilibrium_takahashi": "-, -, kg/m3, kg/m3, - -> -",
+    "debris.discharge_over_bed": "m2/s, -, - -> m2/s",
+    "debris.run_out": "m/s, m, -, -, -, -, kg/m3, kg/m3, m/s2 -> m, s",
     "debris.collision_factor": "-, -, -, kg/m3, kg/m3 -> -",
     "debris.pore_factor": "-, - -> -",
     "debris.static_share": "-, - -> -",

@@ -64,6 +64,74 @@ def equilibrium_takahashi(
 
 
 @law
+def discharge_over_bed(q_0: float, c: float, c_star: float) -> float:
+    """Discharge of water and grains that a flow reaches over a saturated bed [m2/s].
+
+    Parameters
+    ----------
+    q_0 : water that enters per width [m2/s].
+    c : concentration of the discharge, q_s/q_T [-].
+    c_star : concentration of the bed [-].
+
+    Notes
+    -----
+    Derived: a bed that is taken up gives grains c_star and water 1 - c_star for each of its volume E; with as
+    much water and grains in the flow at all times q_T = q_0 + E and c q_T = c_star E. Takahashi's growth of a
+    debris flow.
+
+    Examples
+    --------
+    >>> discharge_over_bed(0.02, 0.3, 0.6)
+    0.04
+    """
+    return q_0 * c_star / (c_star - c)
+
+
+@law
+def run_out(
+    u: float,
+    h: float,
+    c: float,
+    steep: float,
+    gentle: float,
+    friction: float,
+    rho_s: float,
+    rho_w: float,
+    g: float,
+) -> tuple[float, float]:
+    """Way of the front of a debris flow behind a slope break [m], and the time until it stops [s].
+
+    Parameters
+    ----------
+    u, h, c : speed [m/s], depth [m] and concentration [-] just above the break.
+    steep, gentle : angles of the reaches above and below [rad].
+    friction : dynamic friction coefficient of the grains on each other, tan(alpha) [-].
+    rho_s, rho_w : density of grain and water [kg/m3].
+    g : gravity [m/s2].
+
+    Notes
+    -----
+    Source: V**2/G after Takahashi & Yoshida 1979, derived from momentum with a steady feed (design/0028):
+    V = u cos(steep - gentle) (1 + g h cos(steep)/(2 u**2)), G = g ((sigma - rho) c cos(gentle) tan(alpha)/
+    ((sigma - rho) c + rho) - sin(gentle)). The flow slows down evenly, and stops after 2 V/G. Both are
+    infinite if the gentle reach is too steep to stop it.
+
+    Examples
+    --------
+    >>> angle = math.radians(18.0)
+    >>> way, time = run_out(1.0, 0.03, 0.4, angle, math.radians(3.0), 0.6, 2650.0, 1000.0, 9.80665)
+    >>> round(way, 3), round(time, 3)
+    (0.665, 1.208)
+    """
+    submerged = (rho_s - rho_w) * c
+    v = u * math.cos(steep - gentle) * (1.0 + g * h * math.cos(steep) / (2.0 * u * u))
+    slowing = g * (submerged * math.cos(gentle) * friction / (submerged + rho_w) - math.sin(gentle))
+    if slowing <= 0.0:
+        return math.inf, math.inf
+    return v * v / slowing, 2.0 * v / slowing
+
+
+@law
 def collision_factor(c: float, e: float, k_d: float, rho_s: float, rho_w: float) -> float:
     """Dimensionless stress of collisions [-], f_d = tau_d/(rho d**2 (dU/dz)**2).
 
