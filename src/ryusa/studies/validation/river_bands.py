@@ -88,3 +88,15 @@ EXNER_FROUDE: Mapping[str, Band] = {
     "rapid": Band(1.25, 1.55, "-", "about 1.4"),
 }
 AT_REST = at_most(1e-3, "a thousandth of a diameter in 0.2 s, on a level bed under still water")
+# Debris flows (`river_debris`): formulae of steady flow, given what is measured in the same run.
+DEBRIS_GROWTH = Band(0.8, 1.2, "-", "the flow still grows, and its bed creeps: 20 %")
+DEBRIS_STOP = Band(0.7, 1.3, "-", "one depth and one speed for the whole flow: 30 %")
+_MORE = "more grains than equilibrium, and the bed must rise"
+DEBRIS_SIGN: Mapping[str, tuple[Band, Band]] = {  # concentration over that of equilibrium; rise of the bed
+    "below": (at_most(1.0, "less than equilibrium"), Band(-math.inf, 0.0, "m/s", "the bed is eroded")),
+    "above": (Band(1.0, math.inf, "-", _MORE), Band(0.0, math.inf, "m/s", "grains are deposited")),
+}
+# A grid holds nearly all of a debris flow back where a grain barely passes, and little where three pass.
+GRID_HOLDS = Band(0.8, 1.0, "-", "Ikeya & Uehara 1980, as quoted: it jams below 1.5")
+GRID_PASSES = at_most(0.2, "it passes above 2 to 3")
+GRID_FALLS = Band(-math.inf, 0.05, "-", "a rise of some grains of a hundred is chance")

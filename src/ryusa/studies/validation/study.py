@@ -14,6 +14,7 @@ from ryusa.study.study import limits_in_words
 NAMES = (
     "water_alone",
     "river",
+    "river_debris",
     "terminal_velocity",
     "suspension",
     "balance",
