@@ -16,6 +16,7 @@ from ryusa.model.scene import Floats
 from ryusa.results import Results
 from ryusa.studies.validation import river_bands as bands
 from ryusa.studies.validation import river_basics as basics
+from ryusa.studies.validation import river_dam as dam
 from ryusa.studies.validation import river_delta as delta
 from ryusa.studies.validation import river_exner as exner
 from ryusa.studies.validation import river_grains as with_grains
@@ -186,6 +187,7 @@ def tasks(plan: Plan) -> Sequence[Task]:
     every += [_uniform(slope) for slope in SLOPES]
     every += [_seepage(across, inertia) for across in ACROSS for inertia in (False, True)]
     every += [_backwater(), *with_grains.tasks(plan), *delta.tasks(plan), *exner.tasks(plan)]
+    every += dam.tasks(plan)
     return [*every, *(_weir(crest) for crest in (0, *_crests(plan)))]
 
 
@@ -207,6 +209,8 @@ def measure(run: Results, one: CaseRun) -> dict[str, Floats]:
     """Of the runs with grains."""
     if one.case == exner.CASE:
         return exner.measure(run, one)
+    if one.case in dam.CASES:
+        return dam.measure(run, one)
     return (delta if one.case in delta.CASES else with_grains).measure(run, one)
 
 
@@ -226,6 +230,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         *with_grains.judge(found, plan),
         *delta.judge(found, plan),
         *exner.judge(found, plan),
+        *dam.judge(found, plan),
     ]
 
 

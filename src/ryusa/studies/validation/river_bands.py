@@ -87,6 +87,10 @@ EXNER_FROUDE: Mapping[str, Band] = {
     "tranquil": Band(0.6, 0.8, "-", "about 0.7"),
     "rapid": Band(1.25, 1.55, "-", "about 1.4"),
 }
+# The deposit behind a dam with the transport over even beds, nothing fitted (design/0028).
+DAM_KEPT = at_most(1e-12, "round-off of the sum of volumes over the width", "m2")
+DAM_SLOPE = Band(0.85, 1.15, "-", "15 %: the slope of q_s is known to 10 %, that of the bed to 5 %")
+DAM_VOLUME = Band(0.85, 1.15, "-", "15 %: as its slope, and half a diameter of the height of the dam")
 AT_REST = at_most(1e-3, "a thousandth of a diameter in 0.2 s, on a level bed under still water")
 # Debris flows (`river_debris`): formulae of steady flow, given what is measured in the same run.
 DEBRIS_GROWTH = Band(0.8, 1.2, "-", "the flow still grows, and its bed creeps: 20 %")

@@ -1,0 +1,127 @@
+"""Slope and volume of the deposit behind a dam, from the transport over even beds (design/0028)."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from ryusa.cases import case_path
+from ryusa.figures.comparison import Axis, Curve
+from ryusa.measure import deposit
+from ryusa.measure.long_section import bed_line, row_of
+from ryusa.model.scene import Floats
+from ryusa.results import Results
+from ryusa.studies.validation import river_bands as bands
+from ryusa.studies.validation import river_exner as exner
+from ryusa.study import CaseRun, Finding, Found, Level, Plan, Source, case_run, comparison, misfit
+
+DAM, EVEN = "filling_dam", "even_bed"
+CASES = DAM, EVEN
+FEED = 0.06  # the largest [kg/s]
+SHARES = (1.0, 0.5, 1.0 / 3.0)  # of it, one run each
+BEDS = ((0.075, 0.026), (0.05, 0.030), (0.0625, 0.0315))  # slope [-] and depth [m] of the even beds
+BOTTOM, HIGH, WIDTH, DISCHARGE, DENSITY = 0.11, 0.032, 0.032, 0.03, 2650.0  # of filling_dam.toml, in SI
+
+
+def _dam(share: float) -> CaseRun:
+    rate = {"feeds": f"[{{ {_FEEDER}, rate = '{share * FEED:g} kg/s' }}]"}
+    return case_run(case_path("validation/filling_dam.toml"), rate, seed=1)
+
+
+_FEEDER = (
+    "name = 'feeder', low = ['5 cm', '0 cm', '5 cm'], high = ['20 cm', '3.2 cm', '8 cm'], "
+    "velocity = ['1 m/s', '0 m/s', '0 m/s']"
+)
+
+
+def _even(slope: float, depth: float) -> CaseRun:
+    more = {"motion.slope": f"{slope:g}", "water.depth": f"'{depth:g} m'"}
+    return case_run(case_path("validation/even_bed.toml"), more, seed=1)
+
+
+def tasks(plan: Plan) -> Sequence[CaseRun]:
+    """Three dams and three even beds, at the full level alone: ten and two minutes each."""
+    if plan.level is not Level.FULL:
+        return []
+    return [*(_dam(share) for share in SHARES), *(_even(*one) for one in BEDS)]
+
+
+def measure(run: Results, one: CaseRun) -> dict[str, Floats]:
+    """Of an even bed as for waves of a bed; of a dam the means after the settling time.
+
+    Returns
+    -------
+    `x` and `bed` [m], middles of the segments and height of the bed over the bottom; `slope` of the deposit
+    as `ryusa measure RUN deposit` gives it, against the horizontal, with its `error` [-]; `volume` between
+    bottom and bed upstream of the dam, per width [m2]; `passes`, what goes over the dam over what comes
+    [-]; `missing`, the largest difference between the grains there and those that feeds and exits left [m2].
+    """
+    if one.case == EVEN:
+        return exner.measure(run, one)
+    found, begin = row_of(run), float(run.case["record"]["settle"])
+    frames = np.flatnonzero(found.t >= begin - 1e-9)
+    over = (bed_line(run, found, frames, "packed") - found.floor).mean(axis=0)
+    got = deposit(run, begin=begin)
+    before = found.row.x < float(run.case["water"]["row"]["dams"][0]["begin"])
+    rates = got.averages
+    return {
+        "x": found.row.x, "bed": over, "slope": np.array(rates["slope"].value),
+        "error": np.array(rates["slope"].error), "volume": np.array(over[before].sum() * found.row.dx),
+        "passes": np.array(rates["passed_rate"].value / rates["brought_rate"].value),
+        "missing": np.array(np.abs(got.unaccounted).max()),
+    }  # fmt: skip
+
+
+def slope_that_carries(even: Sequence[tuple[float, float, float, float]], q: float, q_s: float) -> float:
+    """Slope at which a discharge q carries q_s [m2/s] by q_s = a S^n q^m through three even beds [-].
+
+    even : as in `river_exner.transport_slope`.
+    """
+    here, derivative, _ = exner.transport_slope(even, 1.0, q).tolist()  # at a slope of 1: a, and n a
+    return (q_s / here) ** (here / derivative)
+
+
+def judge(found: Found, plan: Plan) -> Sequence[Finding]:
+    """Slopes at three feeds, and the volumes that follow from them."""
+    if plan.level is not Level.FULL:
+        return []
+    even = [
+        (float(e["slope"]), float(e["q"]), float(e["q_s"]), float(e["error"]))
+        for e in (found[_even(*one)] for one in BEDS)
+    ]
+    dams = [found[_dam(share)] for share in SHARES]
+    q_s = [share * FEED / (DENSITY * WIDTH) for share in SHARES]
+    expected = [slope_that_carries(even, DISCHARGE, one) for one in q_s]
+    slopes = [float(one["slope"]) for one in dams]
+    # tan of what the bottom falls more than the deposit; P is normal to the bottom
+    fall = [math.tan(math.atan(BOTTOM) - math.atan(slope)) for slope in expected]
+    volumes = [0.5 * HIGH**2 / one for one in fall]
+    errors = [misfit("grains missing", max(float(one["missing"]) for one in dams), "m2", bands.DAM_KEPT)]
+    for share, slope, own, one, volume in zip(SHARES, expected, slopes, dams, volumes, strict=True):
+        name = f"feed {share:.2f}"
+        errors.append(misfit(f"slope over that of even beds, {name}", own / slope, "-", bands.DAM_SLOPE))
+        errors.append(misfit(f"volume over P^2/(2 (S_0 - S)), {name}", float(one["volume"]) / volume, "-",
+                             bands.DAM_VOLUME))  # fmt: skip
+    names = [f"feed {share:.2f}" for share in SHARES]
+    ours = [Curve(name, one["x"], 1e3 * one["bed"]) for name, one in zip(names, dams, strict=True)]
+    face = 1.4
+    x = np.linspace(0.4, face, 101)
+    theory = [
+        Curve(name, x, 1e3 * np.maximum(HIGH - (face - x) * one, 0.0))
+        for name, one in zip(names, fall, strict=True)
+    ]
+    said = "; ".join(
+        f"{name}: slope {own:.4f} +- {float(one['error']):.4f}, of even beds {slope:.4f}, passes "
+        f"{float(one['passes']):.3f} of what comes"
+        for name, own, slope, one in zip(names, slopes, expected, dams, strict=True)
+    )
+    beds = "; ".join(f"S {s:.4f}, q {1e4 * q:.0f}, q_s {1e4 * g:.2f} cm2/s" for s, q, g, _ in even)
+    return [
+        comparison(
+            "dam-slope", "The deposit behind a dam",
+            Source("slope at which the flow over even beds carries the feed; V = P^2/(2 (S_0 - S))"),
+            Axis("distance", "m"), Axis("height of the bed over the bottom", "mm"), ours, theory, errors,
+            {"case": "validation/filling_dam.toml", "q": "0.03 m2/s", "feeds": "7.1, 3.5, 2.4 cm2/s"},
+            f"{said}. Even beds: {beds}.",
+        )
+    ]  # fmt: skip

@@ -1,0 +1,40 @@
+"""Slope of the deposit behind a dam, from a transport that is known; and the cases of its gate."""
+
+import pytest
+
+from ryusa.casefile import read
+from ryusa.cases import case_path
+from ryusa.studies.validation import river_dam as dam
+from ryusa.study import Level, Plan
+
+
+def test_the_slope_that_carries_a_known_transport_is_found() -> None:
+    def q_s(slope: float, q: float) -> float:
+        return 0.8 * slope**1.7 * q**1.2
+
+    even = [(s, q, q_s(s, q), 0.02) for s, q in ((0.075, 0.028), (0.05, 0.031), (0.0625, 0.036))]
+    for slope in (0.04, 0.06, 0.08):
+        assert dam.slope_that_carries(even, 0.03, q_s(slope, 0.03)) == pytest.approx(slope)
+
+
+def test_every_case_of_the_full_level_has_the_numbers_of_the_gate() -> None:
+    tasks = dam.tasks(Plan(Level.FULL, (1,)))
+    rates = list[float]()
+    for one in tasks:
+        case = read(case_path(f"validation/{one.case}.toml"), dict(one.overrides))
+        assert case.grains.density == dam.DENSITY
+        assert case.water is not None
+        assert case.water.row is not None
+        if one.case == dam.EVEN:
+            continue
+        row = case.water.row
+        assert row.width == dam.WIDTH
+        assert row.dams[0].height == dam.HIGH
+        assert row.upstream is not None
+        assert row.upstream.discharge == (dam.DISCHARGE, "m2/s")
+        assert case.motion.slope == pytest.approx(dam.BOTTOM)
+        assert case.feeds[0].rate is not None
+        rates.append(case.feeds[0].rate[0])
+    assert rates == pytest.approx([share * dam.FEED for share in dam.SHARES], rel=1e-4)
+    assert len(tasks) == 6
+    assert not dam.tasks(Plan(Level.STANDARD, (1,)))
