@@ -11,6 +11,7 @@ from tests.measure.made_rows import BALL, CELLS, DX, DZ, PACKED, WIDTH, D, G, la
 from tests.water import test_row_dams, test_row_grains
 
 from ryusa.errors import CaseError, ResultsError
+from ryusa.figures.long_section import long_section as long_section_figure
 from ryusa.figures.long_section import x_t
 from ryusa.measure import deposit
 from ryusa.measure.along_row import grains_along_row, moving_in_row, segments_of
@@ -251,3 +252,15 @@ def test_the_rise_of_the_bed_counts_from_the_end_of_settling() -> None:
     assert depth_history(run, begin=0.0).bed_change[-1] == pytest.approx(-0.008)
     figure = x_t(found, "bed")
     assert any("rise of the bed since 0.2 s" in one.get_ylabel() for one in figure.axes)
+
+
+def test_pictures_of_large_rivers_are_in_metres(cloud: Any) -> None:
+    """Depths a thousand times as large, and a transport of 1 m2/s more."""
+    small, large = depth_history(cloud), depth_history(cloud)
+    large = replace(large, depth=1e3 * large.depth, solid_discharge=large.solid_discharge + 1.0)
+    for found, length, rate in ((small, "cm", "cm²/s"), (large, "m", "m²/s")):
+        labels = {one.get_xlabel() for one in x_t(found).axes}
+        assert f"depth  ({length})" in labels
+        assert f"grains  $q_s$  ({rate})" in labels
+    elevations = long_section_figure(long_section(cloud)).axes[0]
+    assert elevations.get_ylabel() == "elevation  (cm)"

@@ -13,12 +13,13 @@ from ryusa.figures import style
 from ryusa.measure.long_section import THIN, DepthHistory, Floats, LongSection
 from ryusa.spelling import known_word
 
-CM = 100.0  # centimetres in a metre
-CM2 = 1.0e4  # square centimetres in a square metre
+FEW_METRES = 3.0  # span of lengths from which they are drawn in metres, below in centimetres [m]
+MUCH = 0.1  # transport per width from which it is drawn in m2/s, below in cm2/s [m2/s]
 WATER, LINE, GROUND = "#0072B2", "#D55E00", "#8c6d3f"
 DASHED = (0, (5, 2))
 FAST = 6.0  # Froude number up to which its axis goes at most, that of thin films
 SHARE = 0.995  # of the values that a colour scale covers
+CALM = 0.98  # of the energy line that its axis covers: that of thin fast films would dwarf all else
 
 
 @style.house
@@ -41,14 +42,25 @@ def long_section(found: LongSection) -> Figure:
     axes[1].set_ylabel("Froude  (–)")
     axes[1].set_ylim(0.0, min(axes[1].get_ylim()[1], FAST))
     if found.grains:
+        scale, unit = _per_width(found.solid_discharge)
         axes[2].axhline(0.0, color=style.FAINT, lw=0.6)
-        axes[2].plot(x, found.solid_discharge * CM2, color=LINE)
-        _band(axes[2], found, "solid_discharge", CM2, LINE)
-        axes[2].set_ylabel("grains  $q_s$\n(cm²/s)")
+        axes[2].plot(x, found.solid_discharge * scale, color=LINE)
+        _band(axes[2], found, "solid_discharge", scale, LINE)
+        axes[2].set_ylabel(f"grains  $q_s$\n({unit})")
     axes[-1].set_xlabel("distance along the row  $x$  (m)")
     axes[-1].margins(x=0.0)
     figure.align_ylabels(axes)
     return figure
+
+
+def _lengths(values: Floats) -> tuple[float, str]:
+    """Factor and unit in which lengths [m] are drawn, by their span."""
+    return (1.0, "m") if np.nanmax(values) - np.nanmin(values) > FEW_METRES else (100.0, "cm")
+
+
+def _per_width(values: Floats) -> tuple[float, str]:
+    """Factor and unit in which transport per width [m2/s] is drawn, by the largest."""
+    return (1.0, "m²/s") if np.nanmax(np.abs(values)) > MUCH else (1.0e4, "cm²/s")
 
 
 def _band(axes: Axes, found: LongSection, name: str, scale: float, colour: str) -> None:
@@ -60,14 +72,16 @@ def _band(axes: Axes, found: LongSection, name: str, scale: float, colour: str) 
 def _elevations(axes: Axes, found: LongSection) -> None:
     """Bottom, bed, water, energy line and dams."""
     x, wet = found.x, found.depth > THIN
+    scale, unit = _lengths(found.elevation(np.maximum(found.surface, found.bottom)))
     bottom, floor, bed, surface, energy = (
-        found.elevation(z) * CM for z in (found.bottom, found.floor, found.bed, found.surface, found.energy)
+        found.elevation(z) * scale
+        for z in (found.bottom, found.floor, found.bed, found.surface, found.energy)
     )
-    critical = found.elevation(found.bed + found.critical) * CM
+    critical = found.elevation(found.bed + found.critical) * scale
     step = x[1] - x[0] if len(x) > 1 else 1.0
     low = float(np.min(bottom))
     highest = float(np.max(np.maximum(surface, bed)))
-    head = float(np.max(energy[wet], initial=highest))  # of thin fast films it would dwarf all else
+    head = max(highest, float(np.quantile(energy[wet], CALM)) if wet.any() else highest)
     span = min(head, highest + 0.5 * (highest - low)) - low
     axes.fill_between(x, bottom, low - 0.12 * span, color=style.BED, lw=0.0)
     axes.fill_between(x, bottom, surface, where=(surface > bottom).tolist(), color=WATER, alpha=0.22, lw=0.0)
@@ -83,7 +97,7 @@ def _elevations(axes: Axes, found: LongSection) -> None:
     flows = np.where(wet & (found.critical > THIN), critical, np.nan)
     for k, (at, part) in enumerate(zip(np.split(x, steps), np.split(flows, steps), strict=True)):
         axes.plot(at, part, color="black", lw=0.7, ls=":", label="critical depth" if k == 0 else None)
-    axes.set_ylabel("elevation  (cm)")
+    axes.set_ylabel(f"elevation  ({unit})")
     axes.set_ylim(low - 0.12 * span, low + 1.25 * span)
     axes.legend(loc="upper right", ncols=4, fontsize=6.5)
     begin = "" if found.window is None else f"mean of {found.window[0]:.4g} s to "
@@ -154,8 +168,9 @@ def _map(
 
 
 def _depth(figure: Figure, axes: Axes, found: DepthHistory, side: str) -> None:
-    shown = np.where(found.depth > THIN, found.depth, np.nan) * CM
-    _map(figure, axes, found, shown, "depth  (cm)", side, cmap="Blues", vmin=0.0)
+    scale, unit = _lengths(np.append(found.depth, 0.0))
+    shown = np.where(found.depth > THIN, found.depth, np.nan) * scale
+    _map(figure, axes, found, shown, f"depth  ({unit})", side, cmap="Blues", vmin=0.0)
     filled = np.nan_to_num(found.froude)
     if len(found.t) > 1 and len(found.x) > 1 and filled.min() < 1.0 < filled.max():
         axes.contour(found.x, found.t, filled, levels=[1.0], colors=LINE, linewidths=0.8)
@@ -164,16 +179,18 @@ def _depth(figure: Figure, axes: Axes, found: DepthHistory, side: str) -> None:
 
 
 def _bed_change(figure: Figure, axes: Axes, found: DepthHistory, side: str) -> None:
-    shown = found.bed_change * CM
+    scale, unit = _lengths(np.append(found.bed_change, 0.0))
+    shown = found.bed_change * scale
     most = _most(shown)
-    label = f"rise of the bed since {found.t[0]:.3g} s  (cm)"
+    label = f"rise of the bed since {found.t[0]:.3g} s  ({unit})"
     _map(figure, axes, found, shown, label, side, cmap="BrBG_r", vmin=-most, vmax=most)
 
 
 def _transport(figure: Figure, axes: Axes, found: DepthHistory, side: str) -> None:
-    shown = found.solid_discharge * CM2
+    scale, unit = _per_width(np.array([_most(found.solid_discharge)]))
+    shown = found.solid_discharge * scale
     most = _most(shown)
-    label = "grains  $q_s$  (cm²/s)"
+    label = f"grains  $q_s$  ({unit})"
     _map(figure, axes, found, shown, label, side, cmap="YlOrBr", vmin=0.0, vmax=most)
 
 
