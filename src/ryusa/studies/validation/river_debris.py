@@ -53,7 +53,7 @@ THICK = 2.0  # least thickness of a deposit, in diameters: ridges hold single gr
 # Mixtures that are fed to debris_bed on a gentler slope [deg], below and above equilibrium: grains per time.
 # The reach in which its bed is watched [m], and since when after the feed has begun [s]
 SLOPE, RATES = 10.0, {"below": "0.08 kg/s", "above": "1.2 kg/s"}
-REACH, SINCE = (0.25, 0.8), 0.3
+REACH, SINCE = (0.25, 0.6), 0.6
 
 
 def _friction(seed: int) -> CaseRun:
@@ -70,7 +70,7 @@ def _mixture(side: str) -> CaseRun:
         '[{ name = "feeder", low = ["3 cm", "0 cm", "5 cm"], high = ["20 cm", "3.2 cm", "8 cm"], begin = '
         f'"0.4 s", velocity = ["0.8 m/s", "0 m/s", "0 m/s"], rate = "{RATES[side]}" }}]'
     )
-    gentler = {"motion.slope_angle": f"{SLOPE:g} deg", "feeds": feeder}
+    gentler = {"motion.slope_angle": f"{SLOPE:g} deg", "feeds": feeder, "stop.time": "1.8 s"}
     return case_run(case_path("validation/debris_bed.toml"), gentler, seed=SEEDS[0])
 
 
