@@ -31,7 +31,7 @@ def results(growth=1.0, way=1.0, held=(1.0, 0.5, 0.1), rise=(-1e-3, 1e-3)):
         }  # fmt: skip
         found[debris._feed(seed)] = {
             "t": T, "foot": way * x_l * np.minimum(T, 1.0), "came": np.array(0.5), "u": np.array(u),
-            "h": np.array(h), "c": np.array(c),
+            "h": np.array(h), "c": np.array(c), "grains": np.array(u), "behind": np.array(c),
         }  # fmt: skip
         for opening, share in zip(grids.OPENINGS, held, strict=True):
             found[grids.grid(seed, opening)] = {"t": T, "share": np.linspace(1.0, share, 31)}

@@ -175,13 +175,16 @@ def stopped(run: Results) -> dict[str, Floats]:
     Returns
     -------
     `u` [m/s], `h` [m] and `c` [-], means over `FLOW` since the grains have come to the reach `ABOVE` the
-    break, at `came` [s]; the `foot` of the deposit behind the break [m] over the times `t` [s].
+    break, at `came` [s]; for comparison the mean speed of the grains there, `grains` [m/s], and the
+    concentration over the whole depth in the 15 cm behind the break at the end of that time, `behind` [-];
+    the `foot` of the deposit behind it [m] over the times `t` [s].
     """
     found = row_of(run)
     row, t, d = found.row, found.t, run.scene.d_mean
     frames = np.arange(len(t))
     reach = (row.x > ABOVE[0]) & (row.x < ABOVE[1])
-    held = grains_along_row(run, row, frames).volume[:, reach].mean(axis=1)
+    along = grains_along_row(run, row, frames)
+    held = along.volume[:, reach].mean(axis=1)
     came = float(t[np.flatnonzero(held > ARRIVED * d)[0]])
     flow = long_section(run, bed="rest", begin=came, end=came + FLOW)
     beds = bed_line(run, found, frames, "packed") - found.floor
@@ -190,6 +193,10 @@ def stopped(run: Results) -> dict[str, Floats]:
         key: np.array(float(getattr(flow, name)[reach].mean()))
         for key, name in (("u", "speed"), ("h", "depth"), ("c", "concentration"))
     }
+    after = (row.x > BREAK) & (row.x < 2.0 * BREAK - ABOVE[0])
+    k = int(np.argmin(np.abs(t - came - FLOW)))
+    means["behind"] = np.array(float((along.volume[k] / found.depth[k])[after].mean()))
+    means["grains"] = np.array(float(flow.solid_discharge[reach].mean() / flow.volume[reach].mean()))
     return {"t": t, "foot": foot, "came": np.array(came), **means}
 
 
@@ -240,19 +247,20 @@ def _stop(found: Found) -> Finding:
     """Way of the front behind the break."""
     friction = _tan_alpha(found)
     runs = [found[_feed(seed)] for seed in SEEDS]
-    laws = [
-        run_out(float(one["u"]), float(one["h"]), float(one["c"]), STEEP, GENTLE, friction, RHO_S, RHO_W, G)
-        for one in runs
-    ]
-    ratios = [float(one["foot"][-1]) / way for one, (way, _) in zip(runs, laws, strict=True)]
+    laws = [_way(float(one["u"]), one, friction) for one in runs]
+    slower = [_way(float(one["grains"]), one, friction) for one in runs]
+    ways = [float(one["foot"][-1]) for one in runs]
+    ratios = [measured / way for measured, (way, _) in zip(ways, laws, strict=True)]
+    of_grains = [measured / way for measured, (way, _) in zip(ways, slower, strict=True)]
     worst = max(ratios, key=lambda ratio: abs(ratio - 1.0))
     one, (way, time) = runs[0], laws[0]
     since = np.linspace(0.0, min(time, 2.0), 41)
     begin = float(one["came"]) + (BREAK - sum(ABOVE) / 2.0) / float(one["u"])
     said = "; ".join(
         f"u {float(each['u']):.2f} m/s, h {100.0 * float(each['h']):.1f} cm, c {float(each['c']):.3f}, x_L "
-        f"{law:.2f} m, measured {float(each['foot'][-1]):.2f} m"
-        for each, (law, _) in zip(runs, laws, strict=True)
+        f"{law:.2f} m, measured {measured:.2f} m; grains alone {float(each['grains']):.2f} m/s, c behind the "
+        f"break {float(each['behind']):.2f}"
+        for each, (law, _), measured in zip(runs, laws, ways, strict=True)
     )
     return comparison(
         "stop", "A debris flow stops behind a slope break",
@@ -260,11 +268,19 @@ def _stop(found: Found) -> Finding:
         Axis("time", "s"), Axis("foot of the deposit behind the break", "m"),
         [Curve("front", one["t"], one["foot"])],
         [Curve("front", begin + since, way * (1.0 - (1.0 - since / time) ** 2))],
-        [misfit("way over x_L, worst seed", worst, "-", bands.DEBRIS_STOP)],
+        [
+            misfit("way over x_L, worst seed", worst, "-", bands.DEBRIS_STOP),
+            misfit("mean of the way over x_L with the speed of the grains", float(np.mean(of_grains))),
+        ],
         {"case": "`validation/debris_feed`", "runs": f"{len(SEEDS)} seeds", "slopes": "18 deg, then 3 deg",
          "tan(alpha)": f"{friction:.3f}, of a dry flow of the same grains that comes to rest"},
         f"Ratios {', '.join(f'{ratio:.3f}' for ratio in ratios)}. {said}.",
     )  # fmt: skip
+
+
+def _way(u: float, one: Mapping[str, Floats], friction: float) -> tuple[float, float]:
+    """Way of the front [m] and time until it stops [s] at a speed u [m/s], by its depth and concentration."""
+    return run_out(u, float(one["h"]), float(one["c"]), STEEP, GENTLE, friction, RHO_S, RHO_W, G)
 
 
 def _sign(found: Found) -> Finding:
