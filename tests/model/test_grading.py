@@ -121,3 +121,9 @@ def test_every_closed_curve_is_laid_within_a_grain(shares: list[float], ratios: 
     found = curve.quotas(n)
     assert np.isfinite(found).all()
     assert worst(curve, found) <= found[-1] ** 3 / np.sum(found**3) * (1.0 + 1e-6) + 1e-9
+
+
+def test_no_grain_has_no_size() -> None:
+    """A stream without a bed lays none of its sieve curve; nothing is divided by zero."""
+    with np.errstate(all="raise"):
+        assert EVEN.quotas(0).shape == (0,)

@@ -8,6 +8,7 @@ import pytest
 
 from ryusa.errors import CheckpointError
 from ryusa.laws.collision import collision_time, contact_time_no_tension, omega_natural
+from ryusa.laws.families import ContactTiming
 from ryusa.model import State
 from ryusa.model.contact_law import elastic_spheres
 from ryusa.running.energy_terms import energy_lines
@@ -142,6 +143,18 @@ def test_too_few_steps_and_an_unbalanced_account_give_warnings(
     said = " ".join(Watch(scene_with(3, dt=1e-4), state).warnings(tally()))
     assert "steps in the shortest contact" in said
     assert "imbalance of the energy account" in said
+
+
+@pytest.mark.parametrize(("timing", "few"), [(ContactTiming.EXACT, 4.9), (ContactTiming.AT_STEPS, 9.9)])
+def test_how_few_steps_are_too_few_depends_on_the_timing(
+    timing: ContactTiming, few: float, scene_with: Any, state: Any, tally: Any
+) -> None:
+    for steps, warns in ((few, True), (few + 0.1, False)):
+        made = scene_with(3)
+        made = replace(made, contact=replace(made.contact, timing=timing))
+        dt = Watch(made, state).t_col_shortest / steps
+        said = " ".join(Watch(replace(made, dt=dt), state).warnings(tally()))
+        assert ("steps in the shortest contact" in said) == warns
 
 
 def test_the_energy_account_names_every_term(scene: Any, state: Any, tally: Any) -> None:

@@ -73,7 +73,8 @@ class GrainsSection(Section):
     ) = None
     """Sizes by mass: pairs of diameter and percent finer, from 0 to 100, such as [["1 mm", 0], ["2 mm", 30],
     ["4 mm", 100]], or a CSV file in the folder of the case with the header diameter [mm],finer [%]. Straight
-    over log d between two pairs. Builders packing, flume, box, fill and empty."""
+    over log d between two pairs. Builders packing, flume, box, fill, empty and
+    stream."""
     finest: GrainLength | None = None
     """Smallest grain of the sieve_curve that is laid; the mass of finer ones is left out."""
     coarsest: GrainLength | None = None

@@ -86,8 +86,15 @@ def _elevations(axes: Axes, found: LongSection) -> None:
     axes.fill_between(x, bottom, low - 0.12 * span, color=style.BED, lw=0.0)
     axes.fill_between(x, bottom, surface, where=(surface > bottom).tolist(), color=WATER, alpha=0.22, lw=0.0)
     if (loose := found.bed > found.floor).any():
-        axes.fill_between(x, floor, bed, where=loose.tolist(), color=GROUND, alpha=0.6, lw=0.0)
-        axes.plot(x, np.where(loose, bed, np.nan), color=GROUND, lw=0.9, label="bed")
+        ends = np.column_stack(
+            [x - 0.5 * step, x, x + 0.5 * step]
+        )  # of each segment: a bed ends at a dam's face
+        at, low_of, high_of = (
+            np.where(loose[:, None], part, np.nan).ravel()
+            for part in (ends, *(_to_the_ends(line, loose) for line in (floor, bed)))
+        )
+        axes.fill_between(at, low_of, high_of, color=GROUND, alpha=0.6, lw=0.0)
+        axes.plot(at, high_of, color=GROUND, lw=0.9, label="bed")
     for name, first, end in found.dams:
         _dam(axes, name, first, end, x, step, bottom, floor)
     axes.plot(x, bottom, color="#5a4a2f", lw=0.9)
@@ -105,6 +112,15 @@ def _elevations(axes: Axes, found: LongSection) -> None:
         f"{begin}{'' if begin else 't = '}{found.t:.4g} s", (0, 1), (4, -4), xycoords="axes fraction",
         textcoords="offset points", va="top", fontsize=7.0,
     )  # fmt: skip
+
+
+def _to_the_ends(line: Floats, there: np.ndarray) -> Floats:
+    """A line at begin, middle and end of each segment, (n, 3); halfway to neighbours that have it too."""
+    before, after = np.roll(line, 1), np.roll(line, -1)
+    has_before, has_after = np.roll(there, 1), np.roll(there, -1)
+    has_before[0] = has_after[-1] = False
+    begin = np.where(has_before, 0.5 * (before + line), line)
+    return np.column_stack([begin, line, np.where(has_after, 0.5 * (line + after), line)])
 
 
 def _dam(

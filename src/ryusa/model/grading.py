@@ -192,7 +192,7 @@ class Grading:
         >>> bool(abs((coarse**3).sum() / (d**3).sum() - 0.5) < 0.01)
         True
         """
-        d, mass = self._parts(np.arange(n + 1) / n)
+        d, mass = self._parts(np.arange(n + 1) / max(n, 1))
         found = np.cbrt(np.diff(mass) * n * self.mean_cube)
         return np.clip(found, d[:-1], d[1:])  # the mean lies within its part but for round-off
 

@@ -16,7 +16,7 @@ from ryusa.laws.collision import (
     restitution_for_zeta,
     restitution_tension,
 )
-from ryusa.laws.families import Adhesion, WaterTorque
+from ryusa.laws.families import Adhesion, ContactTiming, WaterTorque
 from ryusa.laws.rolling import reduced_radius
 from ryusa.laws.torque import reynolds_spin, torque_in_range
 from ryusa.model import Scene, State, Tally, Term
@@ -28,7 +28,8 @@ from ryusa.running.checkpoint import CheckpointBlock
 BAND = (0.001, 0.01)  # stable range of overlap/d, fig11 of the paper
 TRAVEL_LIMIT = 0.3  # of d along the bed within one contact; beyond it geometry ends contacts, not Eq. (8)
 PASSED = 0.64  # overlap/d below which no grain passes through another (design/0008)
-STEPS_LEAST = 10  # per contact
+# steps per contact below which rebounds are inaccurate; for exact timing see design/0014
+STEPS_LEAST = {ContactTiming.EXACT: 5.0, ContactTiming.AT_STEPS: 10.0}
 RESIDUAL_LIMIT = 1e-3  # of the energy account
 QUANTILES = (0.01, 0.1, 0.5, 0.9, 0.99)
 _CLOSING_LEAST = 20.0  # times g t_col: in slower contacts the weight changes the speed by 5 % or more
@@ -202,9 +203,9 @@ class Watch:
                 "which costs computing time"
             )
         steps = self.t_col_shortest / self.scene.dt
-        if steps < STEPS_LEAST:
+        if steps < (least := STEPS_LEAST[self.scene.contact.timing]) * (1.0 - 1e-9):
             found.append(
-                f"{steps:.1f} steps in the shortest contact, below {STEPS_LEAST}: rebounds are inaccurate; "
+                f"{steps:.1f} steps in the shortest contact, below {least:g}: rebounds are inaccurate; "
                 "raise time.steps_per_contact"
             )
         if self._travel_most > TRAVEL_LIMIT:

@@ -165,7 +165,12 @@ def _dams(case: "Case", keys: RowSection, plan: RowPlan) -> list[ExplainRow]:
         kind = "impermeable" if dam.concentration is None else f"porous, concentration {dam.concentration:g}"
         rows.append(
             number(
-                "water", f"dam '{dam.name}'", high, "cm", f"over the bottom; {kind}, {end - first} segments"
+                "water",
+                f"dam '{dam.name}'",
+                high,
+                "cm",
+                f"over the bottom at its foot, x = {plan.x_low + first * plan.dx:g} to "
+                f"{plan.x_low + end * plan.dx:g} m; {kind}, {end - first} segments",
             )
         )
         if dam.concentration is None and q > 0.0:
