@@ -74,5 +74,6 @@ def of_grids(found: Found) -> Finding:
         Source("Ikeya & Uehara 1980, as quoted: jams below 1.5 d_max; passes above 2 to 3"),
         Axis("opening over d_max"), Axis("share of the grains held back"), curves, [], errors,
         {"case": "`validation/debris_grid`", "runs": f"{len(SEEDS)} seeds", "bars": "8 mm thick"},
-        f"Held after {end:.3g} s: {each}. Water flows through the bars as if they were not there.",
+        f"Held after {end:.3g} s: {each}; through the widest, grains still pass by then. Water flows "
+        "through the bars as if they were not there.",
     )  # fmt: skip
