@@ -295,3 +295,14 @@ def test_the_command_writes_beside_the_run_and_says_what(three):
     assert "3 pictures of 11 recorded frames, 0.12 s, 1.25 x real time" in result.stdout
     assert len(pictures(path)) == 3
     path.unlink()
+
+
+def test_each_picture_has_the_surface_of_its_own_frame(three, monkeypatch):
+    """Beside planes too: the surface along a row once was that of one frame in all pictures of a film."""
+    seen = []
+    monkeypatch.setattr(Painter, "_add_row", lambda self, k, share, *rest: seen.append((k, share)))
+    painter, t = painter_of(three), np.asarray(three.frames.t)
+    for one in (*t, 0.25 * t[3] + 0.75 * t[4]):
+        painter.at(float(one))
+    assert [k for k, _ in seen] == [*range(len(t)), 3]
+    assert [share for _, share in seen] == pytest.approx([*np.zeros(len(t)), 0.75], abs=1e-6)

@@ -111,12 +111,12 @@ class Painter:
 
         for ends in edges_of(low, high):
             line(ends, EDGE)
-        for k in np.flatnonzero(scene.plane_active):
-            corners = plane_in_box(scene.plane_point[k], scene.plane_normal[k], low, high)
+        for plane in np.flatnonzero(scene.plane_active):
+            corners = plane_in_box(scene.plane_point[plane], scene.plane_normal[plane], low, high)
             if len(corners):
                 face(corners, WALL, WALL_ALPHA, WALL)
         self._add_walls(scene, t, line, face)
-        self._add_row(int(k), share, low, high, line, face)
+        self._add_row(k, share, low, high, line, face)
         if len(self._surfaces) and low[2] < (z := float(self._surfaces[nearer])) <= high[2]:
             level = [(low[0], low[1]), (high[0], low[1]), (high[0], high[1]), (low[0], high[1])]
             face(np.array([(*place, z) for place in level]), WATER, WATER_ALPHA, LEVEL)
