@@ -70,6 +70,15 @@ def test_what_came_less_what_went_is_stored_at_every_frame(trap: Any) -> None:
     assert len(drawn_deposit(found).axes) == 2
 
 
+def test_the_window_begins_at_the_end_of_settling(trap: Any) -> None:
+    """What spilled over the dam before, as a loose bed does while it settles, is not in it."""
+    trap.case["record"] = {"settle": 0.55}
+    found, unit = deposit(trap), BALL / WIDTH
+    assert found.t[0] == pytest.approx(0.6) and front(trap).t[0] == pytest.approx(0.6)
+    assert found.passed[-1] == pytest.approx(unit) and found.brought[-1] == pytest.approx(4 * unit)
+    assert deposit(trap, begin=0.0).passed[-1] == pytest.approx(2 * unit)
+
+
 def test_the_first_dam_is_the_one_farthest_upstream_in_whatever_order_they_are_given(trap: Any) -> None:
     dams = (RowDam("lower", 6, 7, 0.004), *trap.row.row.dams)
     object.__setattr__(trap.row.row, "dams", dams)

@@ -100,7 +100,7 @@ def draw(
         str | None,
         typer.Option(
             help=f"{taking('begin', PICTURES)}: begin of the window; default the end of settling, for "
-            "vibration, deposit and front the first frame, and for long_section one moment."
+            "vibration the first frame, and for long_section one moment."
         ),
     ] = None,
     end: Annotated[

@@ -82,7 +82,7 @@ Begin = Annotated[
     str | None,
     typer.Option(
         help=f"{taking('begin', MEASURES)}: begin of the window; default the end of settling, "
-        "for tracks, vibration, deposit and front the first frame, and for long_section one moment."
+        "for tracks and vibration the first frame, and for long_section one moment."
     ),
 ]
 End = Annotated[

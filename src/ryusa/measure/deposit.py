@@ -7,7 +7,7 @@ import numpy as np
 
 from ryusa.catalogue import BEDS
 from ryusa.errors import ResultsError
-from ryusa.measure._run import Floats, Run
+from ryusa.measure._run import Floats, Run, settle_time
 from ryusa.measure.along_row import volumes_of_heads
 from ryusa.measure.long_section import Bed, bed_line, row_of
 from ryusa.measure.snapshot import scene_at
@@ -68,7 +68,7 @@ class Deposit(Averaged):
 
 def deposit(
     run: Run,
-    begin: float = 0.0,
+    begin: float | None = None,
     end: float = math.inf,
     dam: str | None = None,
     reach: tuple[float, float] | None = None,
@@ -79,7 +79,8 @@ def deposit(
     Parameters
     ----------
     run : its water is a row of columns with ends, and it has free grains.
-    begin, end : window [s]; volumes count from its first frame.
+    begin, end : window [s]; `begin` defaults to the case's `record.settle`. Volumes count from its first
+        frame.
     dam : name of a dam: the reach goes from the begin of the row to its downstream face. Default the dam
         farthest upstream; without one the whole row.
     reach : begin and end of another reach [m].
@@ -105,6 +106,7 @@ def deposit(
     if row.periodic or not run.scene.n_grain:
         raise ResultsError("needs free grains in a row of columns with ends; a period stores nothing")
     low, high, face = _reach(row, dam, reach)
+    begin = settle_time(run) if begin is None else begin
     frames = np.flatnonzero((times >= begin) & (times <= end))
     if len(frames) < 2:
         raise ResultsError(f"{len(frames)} frames from {begin:g} to {end:g} s: rates need two or more")

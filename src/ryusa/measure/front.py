@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.errors import ResultsError
-from ryusa.measure._run import Floats, Run
+from ryusa.measure._run import Floats, Run, settle_time
 from ryusa.measure.statistics import ratio
 from ryusa.measure.table import Averaged, Averages, lines
 from ryusa.model import Scene
@@ -47,13 +47,13 @@ class Front(Averaged):
         return lines(columns)
 
 
-def front(run: Run, begin: float = 0.0, end: float = math.inf) -> Front:
+def front(run: Run, begin: float | None = None, end: float = math.inf) -> Front:
     """Place and speed of the front of the grains that have moved.
 
     Parameters
     ----------
     run : open along x.
-    begin, end : window [s].
+    begin, end : window [s]; `begin` defaults to the case's `record.settle`.
 
     Raises
     ------
@@ -71,6 +71,7 @@ def front(run: Run, begin: float = 0.0, end: float = math.inf) -> Front:
     if math.isfinite(float(scene.period[0])):
         raise ResultsError("the scene is periodic along x: a front needs one that is open")
     times = np.asarray(run.frames.t, dtype=np.float64)
+    begin = settle_time(run) if begin is None else begin
     frames = np.flatnonzero((times >= begin) & (times <= end))
     if not scene.n_grain or len(frames) < 2:
         raise ResultsError(f"{len(frames)} frames of grains from {begin:g} to {end:g} s: needs two or more")
