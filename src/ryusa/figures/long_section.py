@@ -19,6 +19,7 @@ WATER, LINE, GROUND = "#0072B2", "#D55E00", "#8c6d3f"
 DASHED = (0, (5, 2))
 FAST = 6.0  # Froude number up to which its axis goes at most, that of thin films
 SHARE = 0.995  # of the values that a colour scale covers
+TRACE = 0.02  # of the greatest thickness of the bed, below which none is drawn
 CALM = 0.98  # of the energy line that its axis covers: that of thin fast films would dwarf all else
 
 
@@ -85,14 +86,14 @@ def _elevations(axes: Axes, found: LongSection) -> None:
     span = min(head, highest + 0.5 * (highest - low)) - low
     axes.fill_between(x, bottom, low - 0.12 * span, color=style.BED, lw=0.0)
     axes.fill_between(x, bottom, surface, where=(surface > bottom).tolist(), color=WATER, alpha=0.22, lw=0.0)
-    if (loose := found.bed > found.floor).any():
-        ends = np.column_stack(
-            [x - 0.5 * step, x, x + 0.5 * step]
-        )  # of each segment: a bed ends at a dam's face
-        at, low_of, high_of = (
-            np.where(loose[:, None], part, np.nan).ravel()
-            for part in (ends, *(_to_the_ends(line, loose) for line in (floor, bed)))
-        )
+    thick = found.bed - found.floor  # in the mean also of single grains that passed
+    if (loose := thick > TRACE * max(float(thick.max()), 0.0)).any():
+        joined = (
+            loose[1:] & loose[:-1] & np.isclose(np.diff(floor - bottom), 0.0, atol=1e-9)
+        )  # not over a face
+        lines = [_to_the_ends(line, joined) for line in (x, floor, bed)]
+        lines[0][:, [0, 2]] = np.column_stack([x - 0.5 * step, x + 0.5 * step])
+        at, low_of, high_of = (np.where(loose[:, None], one, np.nan).ravel() for one in lines)
         axes.fill_between(at, low_of, high_of, color=GROUND, alpha=0.6, lw=0.0)
         axes.plot(at, high_of, color=GROUND, lw=0.9, label="bed")
     for name, first, end in found.dams:
@@ -114,13 +115,13 @@ def _elevations(axes: Axes, found: LongSection) -> None:
     )  # fmt: skip
 
 
-def _to_the_ends(line: Floats, there: np.ndarray) -> Floats:
-    """A line at begin, middle and end of each segment, (n, 3); halfway to neighbours that have it too."""
-    before, after = np.roll(line, 1), np.roll(line, -1)
-    has_before, has_after = np.roll(there, 1), np.roll(there, -1)
-    has_before[0] = has_after[-1] = False
-    begin = np.where(has_before, 0.5 * (before + line), line)
-    return np.column_stack([begin, line, np.where(has_after, 0.5 * (line + after), line)])
+def _to_the_ends(line: Floats, joined: np.ndarray) -> Floats:
+    """A line at begin, middle and end of each segment, then a gap where it does not go on; shape (n, 4)."""
+    middle = 0.5 * (line[1:] + line[:-1])
+    before, after = line.copy(), line.copy()
+    before[1:], after[:-1] = np.where(joined, middle, line[1:]), np.where(joined, middle, line[:-1])
+    gap = np.append(np.where(joined, after[:-1], np.nan), np.nan)
+    return np.column_stack([before, line, after, gap])
 
 
 def _dam(
