@@ -25,6 +25,7 @@ from ryusa.study import (
     case_run,
     comparison,
     misfit,
+    not_negative,
     over_seeds,
 )
 
@@ -124,7 +125,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
                 ),
                 misfit(
                     "share of grains that still move, largest of the heaps",
-                    over_seeds(moving.tolist(), "-"), "-",
+                    not_negative(over_seeds(moving.tolist(), "-")), "-",
                     at_most(0.05, "an angle of repose is that of a heap at rest"),
                 ),
                 *(
