@@ -127,7 +127,8 @@ def run_out(
     v = u * math.cos(steep - gentle) * (1.0 + g * h * math.cos(steep) / (2.0 * u * u))
     slowing = g * (submerged * math.cos(gentle) * friction / (submerged + rho_w) - math.sin(gentle))
     if slowing <= 0.0:
-        return math.inf, math.inf
+        endless = math.inf + 0.0 * v  # nan where something given is
+        return endless, endless
     return v * v / slowing, 2.0 * v / slowing
 
 
