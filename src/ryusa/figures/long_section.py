@@ -88,9 +88,8 @@ def _elevations(axes: Axes, found: LongSection) -> None:
     axes.fill_between(x, bottom, surface, where=(surface > bottom).tolist(), color=WATER, alpha=0.22, lw=0.0)
     thick = found.bed - found.floor  # in the mean also of single grains that passed
     if (loose := thick > TRACE * max(float(thick.max()), 0.0)).any():
-        joined = (
-            loose[1:] & loose[:-1] & np.isclose(np.diff(floor - bottom), 0.0, atol=1e-9)
-        )  # not over a face
+        level = np.isclose(np.diff(floor - bottom), 0.0, atol=1e-9)  # not over the face of a dam
+        joined = loose[1:] & loose[:-1] & level
         lines = [_to_the_ends(line, joined) for line in (x, floor, bed)]
         lines[0][:, [0, 2]] = np.column_stack([x - 0.5 * step, x + 0.5 * step])
         at, low_of, high_of = (np.where(loose[:, None], one, np.nan).ravel() for one in lines)

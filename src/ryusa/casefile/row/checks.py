@@ -20,6 +20,7 @@ from ryusa.casefile.row.values import (
     deepest,
     discharge_of,
     line_points,
+    not_downstream,
     row_plan,
     stream,
     water_alone,
@@ -199,21 +200,16 @@ def _lines(case: "Case", keys: RowSection, water: WaterSection) -> Iterator[Case
     for name, one in lines:
         key = f"water.row.{name}"
         try:
-            points = np.array(line_points(case, key, one))
+            points = line_points(case, key, one)
         except CaseError as error:
             yield error
             return
         if len(points) < 2:
             yield CaseError(key, None, "needs at least two points")
             return
-        behind = np.diff(points[:, 0])
-        k = int(np.argmin(behind))
-        if behind[k] < 0.0 or (name == "bottom" and behind[k] == 0.0):
+        if fault := not_downstream(points, strictly=name == "bottom"):
             more = "; a step of the bottom is one of water.row.dams" if name == "bottom" else ""
-            yield CaseError(
-                key, None, f"point {k + 2} lies at x = {points[k + 1, 0]:g} m, not downstream of the one "
-                f"before at {points[k, 0]:g} m{more}",
-            )  # fmt: skip
+            yield CaseError(key, None, f"{fault}{more}")
             return
     if keys.surface is not None:
         low, high = bottom_points(case)[0][0], bottom_points(case)[-1][0]

@@ -1,7 +1,7 @@
 """Checks of a row of columns with ends and grains: what builder "stream" needs, and where grains could go."""
 
 from collections.abc import Iterator
-from itertools import pairwise, product
+from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,6 +16,7 @@ from ryusa.casefile.row.values import (
     crest_of,
     dam_span,
     line_points,
+    not_downstream,
     row_plan,
     stream_span,
     walls_of_stream,
@@ -65,12 +66,8 @@ def _bed(case: "Case", given: Points | str) -> Iterator[CaseError]:
     except CaseError as error:
         yield error
         return
-    for k, ((a, _), (b, _)) in enumerate(pairwise(points)):
-        if b < a:
-            yield CaseError(
-                "build.bed", None, f"point {k + 2} lies at x = {b:g} m, not downstream of the one before at "
-                f"{a:g} m",
-            )  # fmt: skip
+    if fault := not_downstream(points):
+        yield CaseError("build.bed", None, fault)
     for k, (_, thick) in enumerate(points):
         if thick < 0.0:
             yield CaseError("build.bed", f"{thick:g} m", f"point {k + 1} must have a thickness of at least 0")

@@ -72,6 +72,14 @@ def _read(path: Path, name: str, _changed: int, _size: int) -> Points:
     return read_line(path, name)
 
 
+def not_downstream(points: Points, strictly: bool = False) -> str:
+    """Say which point of a line lies upstream of the one before, or with `strictly` at the same place."""
+    for k, ((a, _), (b, _)) in enumerate(pairwise(points)):
+        if b < a or (strictly and b == a):
+            return f"point {k + 2} lies at x = {b:g} m, not downstream of the one before at {a:g} m"
+    return ""
+
+
 def line_files(case: "Case") -> list[str]:
     """Names of the CSV files of the lines of a row, and of the bed along it."""
     keys = row_keys(case)

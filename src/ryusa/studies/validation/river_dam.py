@@ -24,14 +24,8 @@ BOTTOM, HIGH, WIDTH, DISCHARGE, DENSITY = 0.11, 0.032, 0.032, 0.03, 2650.0  # of
 
 
 def _dam(share: float) -> CaseRun:
-    rate = {"feeds": f"[{{ {_FEEDER}, rate = '{share * FEED:g} kg/s' }}]"}
+    rate = {"feeds.0.rate": f"{share * FEED:g} kg/s"}
     return case_run(case_path("validation/filling_dam.toml"), rate, seed=1)
-
-
-_FEEDER = (
-    "name = 'feeder', low = ['5 cm', '0 cm', '5 cm'], high = ['20 cm', '3.2 cm', '8 cm'], "
-    "velocity = ['1 m/s', '0 m/s', '0 m/s']"
-)
 
 
 def _even(slope: float, depth: float) -> CaseRun:
