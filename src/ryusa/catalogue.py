@@ -255,13 +255,13 @@ MEASURES = (
                  fed=True, clumps=True, grainless=True, table=True, needs=("row",)),
     MeasureEntry("deposit", "ryusa.measure.deposit:deposit",
                  "slope of a deposit in a row of columns, volume stored behind a dam, share that is trapped",
-                 ("dam", "reach", "bed", *WINDOW), fed=True, clumps=True,
+                 ("dam", "reach", "bed", *WINDOW), settled=True, fed=True, clumps=True,
                  numbers=(("slope", "-"), ("stored_rate", "m2/s"), ("brought_rate", "m2/s"),
                           ("passed_rate", "m2/s"), ("trapped_share", "-")),
                  needs=("row", "open")),
     MeasureEntry("front", "ryusa.measure.front:front",
                  "front of the grains that came in or have moved: place and speed",
-                 WINDOW, builders=("stream",), fed=True, clumps=True,
+                 WINDOW, settled=True, builders=("stream",), fed=True, clumps=True,
                  numbers=(("first_speed", "m/s"), ("front_speed", "m/s")), needs=("open",)),
 )  # fmt: skip
 
@@ -345,10 +345,10 @@ PICTURES = (
                  fed=True, clumps=True, grainless=True),
     PictureEntry("deposit", "ryusa.figures.deposit:deposit",
                  "volume that came, went and is stored, and slope of the deposit, over time",
-                 ("dam", "reach", "bed", *WINDOW), measure="deposit", fed=True, clumps=True),
+                 ("dam", "reach", "bed", *WINDOW), settled=True, measure="deposit", fed=True, clumps=True),
     PictureEntry("front", "ryusa.figures.front:front",
                  "place of the first grain and of the front over time",
-                 WINDOW, measure="front", builders=("stream",), fed=True, clumps=True),
+                 WINDOW, settled=True, measure="front", builders=("stream",), fed=True, clumps=True),
     PictureEntry("vibration", "ryusa.figures.runs:vibration", "grains that do not come to rest",
                  ("grains", *WINDOW)),
 )  # fmt: skip

@@ -7,16 +7,19 @@ import math
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 
 sys.path.insert(0, str(Path(__file__).parent))
 
-from fuzz import Tally, cli, judged
+from fuzz import Tally, alarm, cli, judged
 from strange_cases import bases, rich, strange_cases, strange_files, toml_of
 
+import ryusa
 from ryusa.build import build
-from ryusa.casefile.read import read_text
+from ryusa.casefile.builders.values import plate_count, plate_of
+from ryusa.casefile.read import read, read_text
 from ryusa.errors import CaseError
 from ryusa.units import UnitError, quantity
 
@@ -78,3 +81,27 @@ def test_minus_zero_is_read_as_zero() -> None:
 def test_an_integer_too_long_to_be_printed_is_refused() -> None:
     with pytest.raises(CaseError, match=r"grains\.spread"):
         read_text(f"[grains]\nspread = 0x{'f' * 9_000}\n")
+
+
+@pytest.mark.parametrize("d", ["4 um", "1e-7 m"])
+def test_a_plate_of_grains_too_fine_to_lay_is_refused_at_once(d: str) -> None:
+    case = Path(__file__).parent / "cases" / "clumps-fed.toml"
+    with alarm(5), pytest.raises(CaseError, match="at most 20,000,000"):
+        read(case, {"grains.diameter": d})
+
+
+@pytest.mark.parametrize("diameter", ["1 mm", "2 mm", "3.3 mm", "1.5 cm", "4 cm"])
+@pytest.mark.parametrize("plane", [True, False])
+def test_the_grains_of_a_plate_are_counted_as_they_are_laid(diameter: str, plane: bool) -> None:
+    case = read(
+        Path(ryusa.__file__).parent / "cases" / "drop.toml",
+        {"grains.diameter": diameter, "motion.plane": plane},
+    )
+    d = quantity(diameter, "m")
+    for radius in (d, 1.5e-2):
+        laid = plate_of(case, radius)
+        assert len(laid) == plate_count(case, radius)
+        i = np.arange(-40, 41)
+        i, j = (i, 0 * i) if plane else np.meshgrid(i, i)
+        far = d * np.hypot(i + 0.5 * j, math.sqrt(0.75) * j)
+        assert len(laid) == (far <= radius * (1.0 + 1e-9)).sum()

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from ryusa.casefile.case import Case
 
 FEWEST_PERIODS = 3  # largest diameters that a period must hold
+PLATE_COUNTED = 1e4  # radius of a plate in diameters up to which its grains are counted one by one
 DEEPEST = 20  # halvings of a cell; a grain a millionth as large as its cell loses nothing more
 _ROUNDED = 4.0  # cells of the lattice of builder 'fill'
 
@@ -106,14 +107,14 @@ def built_counts(case: "Case") -> tuple[int, int, bool]:
         free = 2 if build.partner == "free" else 1
         return build.copies * free, build.copies * (build.partner == "fixed"), build.partner == "free"
     if isinstance(build, EmptySection):
-        return 0, len(plate_of(case, build.plate)), False
+        return 0, plate_count(case, build.plate), False
     if isinstance(build, SaltationSection):
         return build.starts, build.starts * build.n_bed, False
     if isinstance(build, BoxSection):
         n_fixed = box_plan(build, sizes(case)[0], room(case), case.motion.plane).n_fixed
         return build.columns * build.rows * build.layers, n_fixed, True
     if isinstance(build, FillSection):
-        return fill_count(case), len(plate_of(case, build.plate)), True
+        return fill_count(case), plate_count(case, build.plate), True
     if isinstance(build, StreamSection):
         return stream_count(case), 0, True
     bed = bed_counts(case)
@@ -128,12 +129,36 @@ def plate_of(case: "Case", radius: float | None) -> NDArray[np.float64]:
     if radius is None:
         return np.zeros((0, 3))
     d = reference_diameter(case)
-    reach = math.ceil(2.0 * radius / d) + 1
-    i, j = np.meshgrid(np.arange(-reach, reach + 1), np.arange(-reach, reach + 1), indexing="ij")
-    if case.motion.plane:
-        i, j = np.arange(-reach, reach + 1), np.zeros(2 * reach + 1)
-    x = np.stack([d * (i + 0.5 * j), d * math.sqrt(0.75) * j, np.full(i.shape, -0.5 * d)], -1).reshape(-1, 3)
-    return x[np.hypot(x[:, 0], x[:, 1]) <= radius]
+    j, low, high = _plate_rows(radius / d, case.motion.plane)
+    many = high - low + 1
+    i = np.arange(many.sum()) - np.repeat(np.cumsum(many) - many, many) + np.repeat(low, many)
+    j = np.repeat(j, many)
+    order = np.lexsort((j, i))
+    i, j = i[order], j[order]
+    return np.stack([d * (i + 0.5 * j), d * math.sqrt(0.75) * j, np.full(len(i), -0.5 * d)], -1)
+
+
+def plate_count(case: "Case", radius: float | None) -> int:
+    """Number of centres of `plate_of`, without laying them; by area for a radius of over 10,000 diameters."""
+    if radius is None:
+        return 0
+    ratio = radius / reference_diameter(case)
+    if ratio > PLATE_COUNTED:
+        ratio = min(ratio, 1e9)  # far more than a case may ask for
+        return round(2.0 * ratio) if case.motion.plane else round(math.pi / math.sqrt(0.75) * ratio * ratio)
+    _, low, high = _plate_rows(ratio, case.motion.plane)
+    return int((high - low + 1).sum())
+
+
+def _plate_rows(ratio: float, plane: bool) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
+    """Rows of a hexagonal plate that have centres within `ratio` diameters, first and last place of each."""
+    ratio *= 1.0 + 1e-12  # a centre on the edge belongs to the plate
+    reach = 0 if plane else int(ratio / math.sqrt(0.75))
+    j = np.arange(-reach, reach + 1)
+    half = np.sqrt(np.maximum(ratio * ratio - 0.75 * j * j, 0.0))
+    low, high = np.ceil(-half - 0.5 * j).astype(np.int64), np.floor(half - 0.5 * j).astype(np.int64)
+    kept = high >= low
+    return j[kept], low[kept], high[kept]
 
 
 def bed_counts(case: "Case") -> tuple[int, int]:
