@@ -34,7 +34,7 @@ def _even(slope: float, depth: float) -> CaseRun:
 
 
 def tasks(plan: Plan) -> Sequence[CaseRun]:
-    """Three dams and three even beds, at the full level alone: ten and two minutes each."""
+    """Three dams and three even beds, at the full level alone: half an hour and two minutes each."""
     if plan.level is not Level.FULL:
         return []
     return [*(_dam(share) for share in SHARES), *(_even(*one) for one in BEDS)]
