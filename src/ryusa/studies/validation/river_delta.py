@@ -18,6 +18,7 @@ from ryusa.study import CaseRun, Finding, Found, Level, Plan, Source, Task, case
 
 SEEDS = (1, 2)
 CASES = DELTA, PILE = "delta", "pile"
+BEGIN, END = 30.0, 60.0  # when the deposit has its slope, and the front is short of the outlet [s]
 FLAT = 0.635  # where the floor of the pool begins to be level [m]
 LAST = 1.1  # the foot of the front must not come so far [m]
 THICK = 0.005  # of a deposit on the floor: one diameter [m]
@@ -27,7 +28,7 @@ FLANK = 0.25, 0.75  # shares of its height between which a slope is fitted
 
 
 def _delta(seed: int) -> CaseRun:
-    return case_run(case_path("delta.toml"), seed=seed)
+    return case_run(case_path("delta.toml"), {"stop.time": f"{END:g} s"}, seed=seed)
 
 
 def _pile(seed: int) -> CaseRun:
@@ -35,7 +36,7 @@ def _pile(seed: int) -> CaseRun:
 
 
 def tasks(plan: Plan) -> Sequence[Task]:
-    """Two deltas and two piles, at the full level alone: a quarter of an hour each."""
+    """Two deltas and two piles, at the full level alone: an hour and a quarter of an hour each."""
     if plan.level is not Level.FULL:
         return []
     return [one(seed) for seed in SEEDS for one in (_delta, _pile)]
@@ -46,10 +47,10 @@ def measure(run: Results, one: CaseRun) -> dict[str, Floats]:
 
     Returns
     -------
-    Of a pile the `angle` of its flanks at the end [deg]. Of a delta, for the frames `t` [s] in which the foot
-    of the front is on the level floor, its middle `front` and where the flux that comes to it would have
-    brought it, `expected` [m]; the mean `angle` of the front [deg]; the `core`, its concentration [-]; and
-    `missing`, what feeds brought, less what left and what is there, over what was brought [-].
+    Of a pile the `angle` of its flanks at the end [deg]. Of a delta, for the frames `t` [s] from BEGIN on in
+    which the foot of the front is on the level floor, its middle `front` and where the flux that comes to it
+    would have brought it, `expected` [m]; the mean `angle` of the front [deg]; the `core`, its concentration
+    [-]; and `missing`, what feeds brought, less what left and what is there, over what was brought [-].
     """
     found = row_of(run)
     if one.case == PILE:
@@ -61,7 +62,7 @@ def measure(run: Results, one: CaseRun) -> dict[str, Floats]:
     held = grains_along_row(run, found.row, frames)
     rise = np.array([_front(found.row.x, line) for line in beds])
     foot = np.array([_foot(found.row.x, line) for line in beds])
-    on = np.flatnonzero(foot > FLAT + 2.0 * found.row.dx)
+    on = np.flatnonzero((foot > FLAT + 2.0 * found.row.dx) & (found.t >= BEGIN - 1e-9))
     if len(on) < 20 or foot.max() > LAST:
         raise ValueError(
             f"the front is on the level floor in {len(on)} frames and comes to {foot.max():.3g} m: it must "
