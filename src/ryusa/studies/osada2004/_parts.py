@@ -40,6 +40,7 @@ NAMES = (
     "eq13",
     "rolling_friction",
     "water_torque",
+    "debris_river",
 )
 
 # Free choices that several parts share: one name each, so that the page can lay them side by side.

@@ -30,6 +30,10 @@ _ITO = (
     "Ito's case 1999-004: d = 0.218 cm, tau_star 1.08, depth 1.48 cm, rigid bed; k_n 200, k_s 15 N/cm, "
     "eta_n 0.001, eta_s 0.0001 N s/cm; rotation locked; water and grains coupled both ways"
 )
+_RIVER = (
+    "grains of 20 cm on a saturated bed of 15 deg, on to which water runs, and a reach of 3 deg below; "
+    "rotation free, with rolling friction; water varies along the stream, coupled both ways with the grains"
+)
 _HEAP = "heap between walls, mean d 0.2 cm, e = 0.7, one side wall removed at once"
 _BOX = "42 grains of 0.2 cm fall into a box of fixed grains, e = 0.7"
 _FILMS = (
@@ -301,6 +305,24 @@ _CLAIMS = (
         "ours: with the torque the bed shear resistance is the half that Fig. 20 reports",
         "law of the torque, Reynolds number; definition of shear resistance",
         "the paper reports the half without the torque",
+    ),
+    Claim(
+        "debris-river",
+        "",
+        _RIVER,
+        "to be done: flow and deposition of debris flows at the scale of real rivers, where the problem of "
+        "the collision time does not arise",
+        "friction angle, k_s, depth of the bed, rolling friction",
+        "an open question of the paper; the stream and the numbers asked are ours",
+    ),
+    Claim(
+        "debris-river-time",
+        "",
+        _RIVER,
+        "with the grains of real debris flows the collision time is long enough, and problems of short ones "
+        "are thought to be avoided; ours: flow and deposit are alike with 0.01 s and 0.001 s",
+        "friction angle, k_s, depth of the bed, rolling friction",
+        "an open question of the paper; the stream and the numbers asked are ours",
     ),
 )
 CLAIMS = {claim.id: claim for claim in _CLAIMS}

@@ -17,6 +17,12 @@ from ryusa.study.registration import Registration
 # What the paper left open, and the claims whose runs answer it.
 QUESTIONS = (
     (
+        "Debris flow in a river",
+        "question-debris-flow",
+        "The paper's open question i: flow and deposition of a debris flow at the scale of a real river.",
+        ("debris-river", "debris-river-time"),
+    ),
+    (
         "Rolling friction",
         "question-rolling-friction",
         "The paper's open question ii: Eq. (13) as a model of rolling friction, its coefficient to be found.",
