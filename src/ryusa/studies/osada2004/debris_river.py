@@ -14,7 +14,7 @@ from ryusa.results import Results
 from ryusa.studies.osada2004._bands import band
 from ryusa.studies.osada2004._factors import PARTING_RULE, SLIP_RULE, STIFFNESS_RATIO, friction_angle
 from ryusa.studies.osada2004._parts import PACKING, CaseRun, Found, Plan, paper_run
-from ryusa.study import Design, Factor, Finding, Trial, over_seeds, seeds_trial
+from ryusa.study import Design, Factor, Finding, Trial, exact, over_seeds, seeds_trial
 
 FIGURE = "debris-river"
 TITLE = "A debris flow at the scale of a river, with deposition"
@@ -43,6 +43,7 @@ GRAVITY = 9.8  # [m/s2]
 REST_PART = "share of the grains past the break that are at rest at the end"
 OVERLAP_PART = "largest overlap over d, mean over contacts"
 WAY_PART = "way of the front past the break, collision time 0.01 s over 0.001 s"
+NOTHING = "no grain comes to rest past the break in some run: nothing to compare with"
 STAYED_PART = "grains at rest past the break, collision time 0.01 s over 0.001 s"
 
 
@@ -136,8 +137,19 @@ def _trials(
     for one in settings(plan):
         pairs = zip(*(_runs(found, plan, one, time) for time in (LONG, SHORT)), strict=True)
         values = [value(soft, stiff) for soft, stiff in pairs]
-        trials.append(seeds_trial(part, one, values, limits))
+        if all(map(math.isfinite, values)):
+            trials.append(seeds_trial(part, one, values, limits))
+        else:
+            trials.append(Trial(part, one, exact(math.nan, limits.unit), limits, note=NOTHING))
     return trials
+
+
+def _ways(soft: River, stiff: River) -> float:
+    return soft.way / stiff.way if stiff.way > 0.0 else math.nan
+
+
+def _stayed(soft: River, stiff: River) -> float:
+    return soft.at_rest / stiff.at_rest if stiff.at_rest else math.nan
 
 
 def judge(found: Found, plan: Plan) -> Sequence[Finding]:
@@ -180,10 +192,8 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
             "debris-river-time",
             tuple(
                 [
-                    *_trials(found, plan, CLAIMS[1], WAY_PART, lambda soft, stiff: soft.way / stiff.way),
-                    *_trials(
-                        found, plan, CLAIMS[1], STAYED_PART, lambda soft, stiff: soft.at_rest / stiff.at_rest
-                    ),
+                    *_trials(found, plan, CLAIMS[1], WAY_PART, _ways),
+                    *_trials(found, plan, CLAIMS[1], STAYED_PART, _stayed),
                 ]
             ),
             "Grains in a dense flow touch several others at once for much longer than one collision; what a "
