@@ -177,7 +177,7 @@ def test_lines_depth_and_froude_number_over_an_inclined_bottom() -> None:
         assert found.transport_concentration == pytest.approx(0.0)
     assert mean.window == (0.0, 0.4) and one.window is None
     assert mean.error["bed"] == pytest.approx(0.0) and mean.error["froude"] == pytest.approx(0.0)
-    assert {"bed_error", "froude_error", "solid_discharge"} <= set(mean.rows()[0])
+    assert {"bed_m", "bed_error", "froude_error", "solid_discharge_m2_per_s"} <= set(mean.rows()[0])
     with pytest.raises(ResultsError, match="not both"):
         long_section(run, t=0.1, begin=0.0)
 
@@ -226,7 +226,7 @@ def test_a_bed_that_rises_and_what_passes_between_frames_are_the_history(cloud: 
     assert found.volume == pytest.approx(held.volume)
     gained = np.diff(found.volume, axis=0).sum() * row.dx
     assert gained == pytest.approx(0.0, abs=1e-15)
-    assert {"bed", "bed_change", "volume", "solid_discharge"} <= set(found.rows()[0])
+    assert {"t_s", "bed_m", "bed_change_m", "volume_m", "solid_discharge_m2_per_s"} <= set(found.rows()[0])
 
 
 def test_a_word_that_is_none_is_refused_with_the_nearest(cloud: Any) -> None:

@@ -136,7 +136,7 @@ def test_depth_counts_from_where_grains_fall_below_half_of_packed(reach: Results
     assert one.bed == pytest.approx(column.z_low + cells * column.dz)
     assert one.depth == pytest.approx(row.surface[-1] - one.bed)
     assert every.depth[-1] == pytest.approx(one.depth)
-    assert {"bed", "floor"} <= set(one.rows()[0])
+    assert {"bed_m", "floor_m"} <= set(one.rows()[0])
     assert (long_section(reach).bed > column.z_low + 8.0e-3).all()
 
 

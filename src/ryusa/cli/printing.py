@@ -189,12 +189,12 @@ def _print_long_section(found: "LongSection") -> None:
         "solid_discharge": "q_s [m2/s]",
         "transport_concentration": "q_s/q", "concentration": "c",
     }  # fmt: skip
-    table, rows = _table(tuple(one.replace("[", "\\[") for one in heads.values())), found.rows()
+    table, many = _table(tuple(one.replace("[", "\\[") for one in heads.values())), len(found.x)
     least = {name: ROUND_OFF * float(np.nanmax(np.abs(getattr(found, name)), initial=0.0)) for name in heads}
-    for row in rows[:LINES]:
-        values = {name: float(str(row[name])) for name in heads}
+    for k in range(min(many, LINES)):
+        values = {name: float(getattr(found, name)[k]) for name in heads}
         table.add_row(*(f"{0.0 if abs(one) < least[name] else one:.4g}" for name, one in values.items()))
-    more = (f"the first {LINES} of {len(rows)} segments",) * (len(rows) > LINES)
+    more = (f"the first {LINES} of {many} segments",) * (many > LINES)
     errors = ", with standard errors" if found.error else ""
     _show(
         table, *more, f"--csv FILE writes all segments and columns{errors}",

@@ -49,9 +49,29 @@ def long_section(found: LongSection) -> Figure:
         _band(axes[2], found, "solid_discharge", scale, LINE)
         axes[2].set_ylabel(f"grains  $q_s$\n({unit})")
     axes[-1].set_xlabel("distance along the row  $x$  (m)")
-    axes[-1].margins(x=0.0)
+    half = 0.5 * (x[1] - x[0]) if len(x) > 1 else 0.5
+    axes[-1].set_xlim(x[0] - half, x[-1] + half)
     figure.align_ylabels(axes)
+    _note_exaggeration(figure, axes[0], _lengths(_drawn_heights(found))[0])
     return figure
+
+
+def _drawn_heights(found: LongSection) -> Floats:
+    return found.elevation(np.maximum(found.surface, found.bottom))
+
+
+def _note_exaggeration(figure: Figure, axes: Axes, scale: float) -> None:
+    """Say how many times larger than lengths heights are drawn; `scale` is the factor of heights [1/m]."""
+    figure.draw_without_rendering()  # lays the axes out
+    drawn = axes.get_window_extent()
+    (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+    times = (drawn.height * scale / (high - low)) / (drawn.width / (right - left))
+    axes.annotate(
+        f"heights {times:.2g} times exaggerated" if times >= 1.05 else "to scale" if times > 0.95
+        else f"heights drawn {times:.2g} times as large as lengths",
+        (0, 1), (4, -13), xycoords="axes fraction", textcoords="offset points", va="top",
+        fontsize=style.NOTE_SIZE,
+    )  # fmt: skip
 
 
 def _lengths(values: Floats) -> tuple[float, str]:
@@ -73,7 +93,7 @@ def _band(axes: Axes, found: LongSection, name: str, scale: float, colour: str) 
 def _elevations(axes: Axes, found: LongSection) -> None:
     """Bottom, bed, water, energy line and dams."""
     x, wet = found.x, found.depth > THIN
-    scale, unit = _lengths(found.elevation(np.maximum(found.surface, found.bottom)))
+    scale, unit = _lengths(_drawn_heights(found))
     bottom, floor, bed, surface, energy = (
         found.elevation(z) * scale
         for z in (found.bottom, found.floor, found.bed, found.surface, found.energy)

@@ -29,6 +29,13 @@ _WATER = (
     "tau",
 )  # fmt: skip
 _GRAINS = ("volume", "solid_discharge", "transport_concentration", "concentration")
+_UNITS = {  # as parts of the names of columns; none: without a unit
+    **dict.fromkeys(
+        ("x", "bottom", "floor", "bed", "bed_change", "surface", "depth", "critical", "energy", "volume"),
+        "_m",
+    ),
+    "t": "_s", "speed": "_m_per_s", "discharge": "_m2_per_s", "solid_discharge": "_m2_per_s", "tau": "_Pa",
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -89,11 +96,11 @@ class LongSection:
         return z * math.cos(self.slope) - self.x * math.sin(self.slope)
 
     def rows(self) -> list[dict[str, object]]:
-        """One line for each segment; the error of a mean is beside it."""
+        """One line for each segment; the error of a mean is beside it, in its unit."""
         names = (*_WATER, *_GRAINS) if self.grains else _WATER
         columns: dict[str, Floats] = {}
         for name in names:
-            columns[name] = getattr(self, name)
+            columns[_column(name)] = getattr(self, name)
             if name in self.error:
                 columns[f"{name}_error"] = self.error[name]
         return lines(columns)
@@ -285,7 +292,12 @@ class DepthHistory:
                 "bed": self.bed, "bed_change": self.bed_change,
                 "volume": self.volume, "solid_discharge": self.solid_discharge,
             }  # fmt: skip
-        return lines(columns)
+        return lines({_column(name): values for name, values in columns.items()})
+
+
+def _column(name: str) -> str:
+    """Name of a column of a table, with its unit."""
+    return name + _UNITS.get(name, "")
 
 
 def depth_history(
