@@ -20,6 +20,7 @@ from ryusa.studies.validation import river_dam as dam
 from ryusa.studies.validation import river_delta as delta
 from ryusa.studies.validation import river_exner as exner
 from ryusa.studies.validation import river_grains as with_grains
+from ryusa.studies.validation import river_overload as overload
 from ryusa.study import CaseRun, Finding, Found, Level, Plan, Source, Task, calculation, comparison, misfit
 from ryusa.water import steady
 from ryusa.water.row import advance_row, discharges, row_at_rest
@@ -187,7 +188,7 @@ def tasks(plan: Plan) -> Sequence[Task]:
     every += [_uniform(slope) for slope in SLOPES]
     every += [_seepage(across, inertia) for across in ACROSS for inertia in (False, True)]
     every += [_backwater(), *with_grains.tasks(plan), *delta.tasks(plan), *exner.tasks(plan)]
-    every += dam.tasks(plan)
+    every += [*dam.tasks(plan), *overload.tasks(plan)]
     return [*every, *(_weir(crest) for crest in (0, *_crests(plan)))]
 
 
@@ -211,6 +212,8 @@ def measure(run: Results, one: CaseRun) -> dict[str, Floats]:
         return exner.measure(run, one)
     if one.case in dam.CASES:
         return dam.measure(run, one)
+    if one.case == overload.CASE:
+        return overload.measure(run, one)
     return (delta if one.case in delta.CASES else with_grains).measure(run, one)
 
 
@@ -231,6 +234,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         *delta.judge(found, plan),
         *exner.judge(found, plan),
         *dam.judge(found, plan),
+        *overload.judge(found, plan),
     ]
 
 

@@ -104,3 +104,11 @@ DEBRIS_SIGN: Mapping[str, tuple[Band, Band]] = {  # concentration over that of e
 GRID_HOLDS = Band(0.8, 1.0, "-", "Ikeya & Uehara 1980, as quoted: it jams below 1.5")
 GRID_PASSES = at_most(0.2, "it passes above 2 to 3")
 GRID_FALLS = Band(-math.inf, 0.05, "-", "a rise of some grains of a hundred is chance")
+# A bed that is fed half as much again as it carries on, with linear theory and the transport over even beds,
+# nothing fitted (design/0028). The extra feed changes the slope by a third, which is not small.
+OVERLOAD_RISE = Band(
+    0.75, 1.25, "-", "25 %: dq_s/dS is known to 10 %, and the change of slope is a third of it"
+)
+OVERLOAD_SHAPE = at_most(
+    0.2, "a fifth: the bed fluctuates by a tenth of a diameter, and q_s adapts over 20 d"
+)

@@ -28,7 +28,8 @@ def _dam(share: float) -> CaseRun:
     return case_run(case_path("validation/filling_dam.toml"), rate, seed=1)
 
 
-def _even(slope: float, depth: float) -> CaseRun:
+def even_bed(slope: float, depth: float) -> CaseRun:
+    """A run over an even bed of a slope [-], begun with a depth of water [m] over it."""
     more = {"motion.slope": f"{slope:g}", "water.depth": f"'{depth:g} m'"}
     return case_run(case_path("validation/even_bed.toml"), more, seed=1)
 
@@ -37,7 +38,7 @@ def tasks(plan: Plan) -> Sequence[CaseRun]:
     """Three dams and three even beds, at the full level alone: half an hour and two minutes each."""
     if plan.level is not Level.FULL:
         return []
-    return [*(_dam(share) for share in SHARES), *(_even(*one) for one in BEDS)]
+    return [*(_dam(share) for share in SHARES), *(even_bed(*one) for one in BEDS)]
 
 
 def measure(run: Results, one: CaseRun) -> dict[str, Floats]:
@@ -81,7 +82,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         return []
     even = [
         (float(e["slope"]), float(e["q"]), float(e["q_s"]), float(e["error"]))
-        for e in (found[_even(*one)] for one in BEDS)
+        for e in (found[even_bed(*one)] for one in BEDS)
     ]
     dams = [found[_dam(share)] for share in SHARES]
     q_s = [share * FEED / (DENSITY * WIDTH) for share in SHARES]
