@@ -38,7 +38,7 @@ DESIGN = Design(
             {
                 "bed of four diameters": {},
                 "bed of six diameters": {"build.bed": "1.2 m"},
-                "no rolling friction": {"rolling.coefficient": "0"},
+                "rolling coefficient 0.05": {"rolling.coefficient": "0.05"},
             },
         ),
     )
