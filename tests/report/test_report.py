@@ -10,7 +10,8 @@ from ryusa.casefile.read import read
 from ryusa.cases import case_path
 from ryusa.catalogue import EVERY_BUILDER, MEASURES, PICTURES
 from ryusa.cli import app
-from ryusa.report.contents import RunContents, contents_of
+from ryusa.measure.long_section import LongSection
+from ryusa.report.contents import RunContents, _of_segments, contents_of
 from ryusa.report.page import differing, report_page, side_by_side
 from ryusa.results import Results
 from ryusa.running.runner import run, run_scene
@@ -135,3 +136,16 @@ def test_the_command_writes_beside_the_run_or_where_it_is_asked(runs, tmp_path):
     assert "What differs between the cases" in both.read_text()
     result = CliRunner().invoke(app, ["report", str(runs[0].folder), "-o", "page.pdf"])
     assert "must end in .html" in result.stderr
+
+
+@pytest.mark.parametrize(("n", "listed"), [(8, 8), (24, 24), (25, 12), (100, 20)])
+def test_a_table_of_segments_stays_short_and_says_what_it_leaves_out(n: int, listed: int) -> None:
+    names = ("bottom", "floor", "bed", "surface", "depth", "discharge", "speed", "froude", "critical",
+             "energy", "tau", "volume", "solid_discharge", "transport_concentration",
+             "concentration")  # fmt: skip
+    row = {name: np.full(n, 0.5) for name in names}
+    found = LongSection(t=1.0, slope=0.0, x=np.arange(n) * 0.1, dams=(), **row)
+    entry = next(one for one in MEASURES if one.name == "long_section")
+    table = _of_segments(entry, found)
+    assert len(table.rows) == listed <= 24
+    assert any(f"all {n}" in note for note in table.notes) == (listed < n)

@@ -26,6 +26,7 @@ DPI = 200  # of a picture in the page
 _ONE_COLUMN = 5.0  # inch; a wider picture takes the whole width of the page
 _OWN = ("run", "next")  # rows that a page has no use for: its title, and a command with the path of a machine
 _LINES = 400  # of the case file that are shown
+_SEGMENTS = 24  # of a row that a table on the page lists
 _OVER_TIME = "x_t"  # numbers over distance and time are drawn, and no table to be read
 _PLAIN = ("walls", "traffic", "row", "open")  # needs of measures that are seen in the scene of a run
 
@@ -246,11 +247,13 @@ def _of_segments(entry: MeasureEntry, found: LongSection) -> MeasureTable:
         error = float(found.error[name][k])
         return f"{text} ± {0.0 if error < tiny[name] else error:.2g}"
 
-    rows = [tuple(cell(name, k) for name in columns) for k in range(len(found.x))]
+    every = -(-len(found.x) // _SEGMENTS)
+    rows = [tuple(cell(name, k) for name in columns) for k in range(every // 2, len(found.x), every)]
     at = f"at t = {found.t:.4g} s"
     if found.window is not None:
         at = f"means with standard errors over t = {found.window[0]:.4g} to {found.window[1]:.4g} s"
-    return MeasureTable(entry.name, entry.doc, tuple(columns.values()), rows, (at,))
+    some = f"one of {every} segments; `ryusa measure RUN long_section --csv FILE` writes all {len(found.x)}"
+    return MeasureTable(entry.name, entry.doc, tuple(columns.values()), rows, (at, *[some] * (every > 1)))
 
 
 def _draw(found: RunContents, results: Results, entry: PictureEntry) -> None:
