@@ -35,7 +35,6 @@ def results(growth=1.0, way=1.0, held=(1.0, 0.5, 0.1), rise=(-1e-3, 1e-3)):
         }  # fmt: skip
         for opening, share in zip(grids.OPENINGS, held, strict=True):
             found[grids.grid(seed, opening)] = {"t": T, "share": np.linspace(1.0, share, 31)}
-    found[grids._longer()] = {"t": T, "share": np.linspace(1.0, 0.1, 31)}
     for side, factor, speed in zip(debris.RATES, (0.5, 1.5), rise, strict=True):
         found[debris._mixture(side)] = {
             "t": T, "series": speed * T, "c_star": np.array(0.55), "c": np.array(factor * c_eq),

@@ -16,25 +16,20 @@ SEEDS = (1, 2)
 GRID = "debris_grid"
 # Openings over the largest diameter; that, and the diameter of the bars [m]; the place of their centres [m]
 OPENINGS, D_MAX, BAR, AT = (1.2, 2.0, 3.0), 9.6e-3, 8e-3, 0.7
-LONGER = "5 s"  # of a run that is shown beside those that decide
+EARLIER = 2.5  # where runs ended at first, while grains still passed the widest: shown [s]
 
 
-def grid(seed: int, opening: float, time: str | None = None) -> CaseRun:
-    """Two bars in a channel of two openings, periodic across; until the time of the case, or another."""
+def grid(seed: int, opening: float) -> CaseRun:
+    """Two bars in a channel of two openings, periodic across."""
     pitch = opening * D_MAX + BAR
     bars = {f"walls.{k}.at": f'["{AT:g} m", "{1e3 * (k + 0.5) * pitch:.6g} mm", "0 m"]' for k in (0, 1)}
     width = {"water.row.width": f"{2e3 * pitch:.6g} mm"}
-    longer = {} if time is None else {"stop.time": time}
-    return case_run(case_path("validation/debris_grid.toml"), {**bars, **width, **longer}, seed=seed)
+    return case_run(case_path("validation/debris_grid.toml"), {**bars, **width}, seed=seed)
 
 
 def tasks() -> Sequence[Task]:
-    """Every opening with every seed, and the widest once for longer."""
-    return [*(grid(seed, opening) for seed in SEEDS for opening in OPENINGS), _longer()]
-
-
-def _longer() -> CaseRun:
-    return grid(SEEDS[0], OPENINGS[-1], LONGER)
+    """Every opening with every seed."""
+    return [grid(seed, opening) for seed in SEEDS for opening in OPENINGS]
 
 
 def held_back(run: Results) -> dict[str, Floats]:
@@ -55,11 +50,13 @@ def of_grids(found: Found) -> Finding:
     more = max(mean[after] - mean[before] for before, after in pairwise(OPENINGS))
     narrow, wide = OPENINGS[0], OPENINGS[-1]
     least, most = min(held[narrow]), max(held[wide])
+    runs = [found[grid(seed, wide)] for seed in SEEDS]
+    earlier = max(float(np.interp(EARLIER, one["t"], one["share"])) for one in runs)
     errors = [
         misfit(f"least share held by {narrow:g} d_max", least, "-", bands.GRID_HOLDS),
         misfit(f"largest share held by {wide:g} d_max", most, "-", bands.GRID_PASSES),
         misfit("largest rise of the mean share with the opening", more, "-", bands.GRID_FALLS),
-        misfit(f"share held by {wide:g} d_max after {LONGER}", float(found[_longer()]["share"][-1])),
+        misfit(f"largest share held by {wide:g} d_max after {EARLIER:g} s", earlier),
     ]
     x, end = np.array(OPENINGS), float(found[grid(SEEDS[0], narrow)]["t"][-1])
     curves = [
@@ -74,6 +71,5 @@ def of_grids(found: Found) -> Finding:
         Source("Ikeya & Uehara 1980, as quoted: jams below 1.5 d_max; passes above 2 to 3"),
         Axis("opening over d_max"), Axis("share of the grains held back"), curves, [], errors,
         {"case": "`validation/debris_grid`", "runs": f"{len(SEEDS)} seeds", "bars": "8 mm thick"},
-        f"Held after {end:.3g} s: {each}; through the widest, grains still pass by then. Water flows "
-        "through the bars as if they were not there.",
+        f"Held after {end:.3g} s: {each}. Water flows through the bars as if they were not there.",
     )  # fmt: skip
