@@ -15,7 +15,7 @@ from ryusa.water import row_grains
 from ryusa.water.row import shape_of
 from ryusa.water.row_exchange import RowTold
 from ryusa.water.row_grains import GrainsInRow
-from ryusa.water.row_sums import GrainPlaces, gradient_at, place_grains
+from ryusa.water.row_sums import GrainPlaces, gradients_at_grains, place_grains
 
 G = 9.80665
 N, LENGTH, CREST = 12, 0.12, 20  # segments, their length in all [m], cells of the dam
@@ -89,7 +89,8 @@ def test_a_grain_beside_a_dam_does_not_feel_the_fall_of_the_surface_over_it():
     slope[7] = 5000.0  # at the station behind the dam
     shape, told = shape_of(row), grains.told
     assert isinstance(told, RowTold)
-    found = [gradient_at(shape, grains._cut, grains._places, slope, 0.0, i) for i in range(3)]
+    found = np.empty(3)
+    gradients_at_grains(shape, grains._cut, grains._places, slope, 0.0, found)
     assert found[1] == 0.0  # below the crest
     assert found[2] == pytest.approx(5000.0 * 0.5 * 0.875)  # over the crest, by its weights
     places = GrainPlaces.of(3, N)

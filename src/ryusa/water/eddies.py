@@ -17,9 +17,10 @@ from ryusa.laws.families import BedKind
 from ryusa.model.column import Column, WaterState
 from ryusa.model.eddies import Eddies
 from ryusa.model.scene import Floats
-from ryusa.water._kernel import kernel
+from ryusa.water._kernel import ColumnParameters, kernel, parameters_of
 from ryusa.water.exchange import Ints, Slices, to_grains
 
+ROUGH = int(BedKind.ROUGH)
 LEAST = 0.01  # lower limit of the volume fraction of water in a cell
 GOLDEN, MIX_1, MIX_2 = 0x9E3779B97F4A7C15, 0xBF58476D1CE4E5B9, 0x94D049BB133111EB
 
@@ -151,26 +152,34 @@ def turbulence(column: Column, state: WaterState, phi: Floats, cut: Slices) -> t
     u_tau**2 is the turbulent part of the shear stress over density and volume fraction, nu_t |dU/dz|/eps. It
     vanishes at a wall, except at a rough bed, where the lowest cell takes the value of the face above it.
     """
-    square, drift = turbulence_of_cells(column, state.tau, state.nu_t, phi)
+    square, drift = np.empty((2, column.n))
+    turbulence_of_cells(parameters_of(column), state.tau, state.nu_t, phi, square, drift)
     at = to_grains(cut, np.column_stack([square, drift, state.shear]), "submerged")
     return np.sqrt(at[:, 0]), at[:, 1], at[:, 2]
 
 
-def turbulence_of_cells(column: Column, tau: Floats, nu_t: Floats, phi: Floats) -> tuple[Floats, Floats]:
-    """Square of u_tau [m2/s2] and drift velocity [m/s] in the cells, each of shape (n,).
+@kernel
+def turbulence_of_cells(
+    p: ColumnParameters, tau: Floats, nu_t: Floats, phi: Floats, square: Floats, drift: Floats
+) -> None:
+    """Write the square of u_tau [m2/s2] and the drift velocity [m/s] in the cells, each of shape (n,).
 
     Parameters
     ----------
-    column : of the water.
+    p : the column.
     tau, nu_t : stress [Pa] and eddy viscosity [m2/s] at the faces, shape (n + 1,).
     phi : concentration [-], shape (n,).
     """
-    eps = np.maximum(1.0 - phi, LEAST)
-    share = np.concatenate([eps[:1], 0.5 * (eps[1:] + eps[:-1]), eps[-1:]])
-    viscosity = nu_t / share
-    square = np.abs(tau) / column.rho_w * viscosity / (column.nu + nu_t)
-    if column.bed is BedKind.ROUGH:
-        square[0] = square[1]
-    drift = np.empty(column.n)
-    _drift(column.dz, np.sqrt(square), viscosity, drift)
-    return 0.5 * (square[:-1] + square[1:]), drift
+    u_tau, viscosity = np.empty(p.n + 1), np.empty(p.n + 1)
+    for f in range(p.n + 1):
+        below = max(1.0 - phi[max(f - 1, 0)], LEAST)
+        above = max(1.0 - phi[min(f, p.n - 1)], LEAST)
+        viscosity[f] = nu_t[f] / (0.5 * (above + below))
+        u_tau[f] = abs(tau[f]) / p.rho_w * viscosity[f] / (p.nu + nu_t[f])
+    if p.bed == ROUGH:
+        u_tau[0] = u_tau[1]
+    for k in range(p.n):
+        square[k] = 0.5 * (u_tau[k] + u_tau[k + 1])
+    for f in range(p.n + 1):
+        u_tau[f] = math.sqrt(u_tau[f])
+    _drift(p.dz, u_tau, viscosity, drift)

@@ -19,7 +19,7 @@ from ryusa.model.row import (
     RowEnd,
     RowState,
 )
-from ryusa.water._kernel import parameters_of
+from ryusa.water._kernel import ColumnParameters, parameters_of
 from ryusa.water.momentum_balance import DONE, N_GIVEN, N_OUT, NOT_A_NUMBER, TOO_SHORT, workspace
 from ryusa.water.row_station import StationArrays
 from ryusa.water.row_step import (
@@ -52,6 +52,28 @@ class GrainAction:
     slope: Floats  # [N s/m4], shape (n_station, n)
     carried: Floats  # [-], shape (n_station, n)
     phi_w: Floats  # [m/s], shape (n_station, n)
+
+
+@dataclass(frozen=True)
+class RowArrays:
+    """A row as the compiled step takes it, and work arrays, which each step overwrites."""
+
+    p: ColumnParameters
+    shape: RowShape
+    ends: RowEnds
+    work: StationArrays
+
+    @staticmethod
+    def of(row: ColumnRow) -> "RowArrays":
+        """Arrays of a row."""
+        shape, n = shape_of(row), row.column.n
+        stations, segments = len(shape.left), len(shape.bottom)
+        work = StationArrays(
+            np.zeros((stations, n)), np.zeros(stations), np.zeros(segments), np.zeros((segments, n)),
+            np.zeros((segments, n + 1)), np.zeros((segments, n)), np.zeros((stations, n)), np.zeros(n),
+            np.zeros((N_GIVEN, n)), np.zeros((6, n)), np.zeros((2, n + 1)), workspace(n),
+        )  # fmt: skip
+        return RowArrays(parameters_of(row.column), shape, ends_of(row), work)
 
 
 def row_at_rest(row: ColumnRow, surface: Floats, solid: PorousSolid | None = None) -> RowState:
@@ -97,6 +119,7 @@ def advance_row(
     longest: float = math.inf,
     solid: PorousSolid | None = None,
     grains: GrainAction | None = None,
+    arrays: RowArrays | None = None,
 ) -> RowState:
     """State of the row after a time.
 
@@ -107,15 +130,16 @@ def advance_row(
     longest : longest step [s].
     solid : porous solid in the row; its concentration is that of all grains, unless `grains` are given.
     grains : action of free grains, constant during the time.
+    arrays : of the row; a caller that keeps them saves the time of making them.
 
     Notes
     -----
     Raises `WaterError` with the place if the surface leaves the column, if grains fill a cell completely, if
     a speed is not finite, or if the stresses of a station do not converge.
     """
-    p, c = parameters_of(row.column), row.column
-    shape, ends = shape_of(row), ends_of(row)
-    stations, segments = len(shape.left), len(shape.bottom)
+    arrays, c = RowArrays.of(row) if arrays is None else arrays, row.column
+    shape = arrays.shape
+    stations = len(shape.left)
     matrix = _matrix_of(row, solid)
     given = RowGrains(_phi_of(row, solid), *np.zeros((4, stations, c.n)))
     if grains is not None:
@@ -126,14 +150,10 @@ def advance_row(
     )  # fmt: skip
     rows, faces = np.zeros((stations, 6, c.n)), np.zeros((stations, 2, c.n + 1))
     out, scalars = np.zeros((stations, N_OUT)), np.zeros(N_SCALARS)
-    work = StationArrays(
-        np.zeros((stations, c.n)), np.zeros(stations), np.zeros(segments), np.zeros((segments, c.n)),
-        np.zeros((segments, c.n + 1)), np.zeros((segments, c.n)), np.zeros((stations, c.n)), np.zeros(c.n),
-        np.zeros((N_GIVEN, c.n)), np.zeros((6, c.n)), np.zeros((2, c.n + 1)), workspace(c.n),
-    )  # fmt: skip
     status = _advance(
-        p, shape, ends, matrix, given, float(time), float(longest), water, work, rows, faces, out, scalars
-    )
+        arrays.p, shape, arrays.ends, matrix, given, float(time), float(longest), water, arrays.work, rows,
+        faces, out, scalars,
+    )  # fmt: skip
     if status != DONE:
         cause, hint = FAULTS[status]
         where = row.x_low + (scalars[FAULT_AT] - row.inner.start) * row.dx

@@ -13,7 +13,7 @@ from ryusa.model.row import EndKind
 from ryusa.model.scene import Floats
 from ryusa.water.coupling import steps_resolved
 from ryusa.water.momentum_balance import B_ADVECTED, B_CHANGE, B_GRAVITY
-from ryusa.water.row import advance_row, discharges, row_at_rest
+from ryusa.water.row import RowArrays, advance_row, discharges, row_at_rest
 from ryusa.water.row_grains import GrainsInRow
 from ryusa.water.steady import steady
 
@@ -48,6 +48,9 @@ class RowCoupling:
     state: RowState
     passing: Floats
     grains: GrainsInRow | None = None
+
+    def __post_init__(self) -> None:
+        self._arrays = RowArrays.of(self.row) if self.grains is None else None
 
     @staticmethod
     def begin(scene: Scene, row: ColumnRow, x: Floats, step: int = 0) -> "RowCoupling":
@@ -99,7 +102,9 @@ class RowCoupling:
     def change(self, scene: Scene, row: ColumnRow) -> None:
         """Take over a scene that the timeline changed: its slope, or removed fixed grains."""
         self.scene, self.row = scene, with_inlet(row)
-        if self.grains is not None:
+        if self.grains is None:
+            self._arrays = RowArrays.of(self.row)
+        else:
             self.grains = self.grains.changed(scene, self.row, self.state)
 
     def exchange(self, x: Floats, v: Floats, impulse: Floats) -> Floats:
@@ -115,7 +120,7 @@ class RowCoupling:
         if self.scene.traffic is None:
             self.refuse_lost(x, np.arange(len(x)), self.due, self.state.t + time)
         if grains is None:
-            self.state = advance_row(self.row, self.state, time, solid=self.row.porous)
+            self.state = advance_row(self.row, self.state, time, solid=self.row.porous, arrays=self._arrays)
         else:
             self.state = grains.exchange(self.state, x, v, impulse, time)
             self.sampled, now = grains.sampled, self.state

@@ -11,20 +11,21 @@ import numpy as np
 from ryusa.model.row import INFLOW, OPEN, WALL
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import ColumnParameters, kernel
-from ryusa.water.at_grains import DENSEST, sample
+from ryusa.water.at_grains import DENSEST
 from ryusa.water.drive import DISCHARGE
+from ryusa.water.eddies import turbulence_of_cells
 from ryusa.water.exchange import FOUR
-from ryusa.water.exchange_arrays import GrainNumbers, SliceArrays, WaterLaws
+from ryusa.water.exchange_arrays import SliceArrays, WaterLaws
 from ryusa.water.momentum_balance import B_FIXED, B_GRAINS, B_SHARED, GRADIENT
+from ryusa.water.row_grain_sums import MetByGrains
 from ryusa.water.row_step import RowEnds, RowShape, RowWater, driving_gradient, fluxes_along
 from ryusa.water.row_sums import (
     BUOYED,
     GrainPlaces,
     RowBed,
-    gradient_at,
+    gradients_at_grains,
     means_of_segments,
     of_both_stations,
-    submerge,
 )
 from ryusa.water.slice_sums import (
     DRAG_NOW,
@@ -39,6 +40,8 @@ from ryusa.water.slice_sums import (
     SOLID,
     SOLID_W,
 )
+
+U_TAU_SQUARE, DRIFT = 7, 8  # columns of `means_at_grains` behind those of `sample`
 
 
 class StationForces(NamedTuple):
@@ -219,27 +222,49 @@ def tell(
 
 
 @kernel
-def water_at_grains_in_row(
-    p: ColumnParameters, laws: WaterLaws, shape: RowShape, grains: GrainNumbers, cut: SliceArrays,
-    places: GrainPlaces, told: RowTold, eddies: Floats, sampled: Floats,
-) -> None:  # fmt: skip
-    """Fill `sampled`, columns of `model.fluid`, with the water at every grain, as `water_at_grains`."""
-    submerged = np.empty(len(grains.d))
-    per = submerge(cut, places, told.wet, submerged)
-    table = np.zeros((len(shape.bottom), p.n, 2 * FOUR))
+def turbulence_at_stations(p: ColumnParameters, shape: RowShape, phi: Floats, edges: Floats) -> Floats:
+    """Square of u_tau [m2/s2] and drift velocity [m/s] at the stations, shape (2, n_station, n).
+
+    `edges` are stresses and eddy viscosities of `RowState`, `phi` as in `RowTold`.
+    """
+    out, mean = np.empty((2, len(shape.left), p.n)), np.empty(p.n)
+    for j in range(len(shape.left)):
+        for k in range(p.n):
+            mean[k] = 0.5 * (phi[shape.left[j], k] + phi[shape.right[j], k])
+        turbulence_of_cells(p, edges[j, 0], edges[j, 1], mean, out[0, j], out[1, j])
+    return out
+
+
+@kernel
+def means_at_grains(
+    p: ColumnParameters, shape: RowShape, cut: SliceArrays, places: GrainPlaces, told: RowTold,
+    turbulence: Floats, met: MetByGrains,
+) -> Floats:  # fmt: skip
+    """Means over each grain of what it is told of the water, as `sample` takes them.
+
+    Parameters
+    ----------
+    turbulence : of `turbulence_at_stations`, its means follow in the columns U_TAU_SQUARE and DRIFT; without
+        fluctuations of the length 0.
+    met : overwritten.
+    """
+    turbulent = len(turbulence) > 0
+    table = np.zeros((len(shape.bottom), p.n, (3 if turbulent else 2) * FOUR))
     of_both_stations(shape, told.u, table[:, :, 0])
     of_both_stations(shape, told.stations[:, ROW_SHEAR], table[:, :, 2])
     of_both_stations(shape, told.stations[:, ROW_DU_DT], table[:, :, 4])
     of_both_stations(shape, told.stations[:, ROW_DTAU_DZ], table[:, :, 5])
+    if turbulent:
+        of_both_stations(shape, turbulence[0], table[:, :, U_TAU_SQUARE])
+        of_both_stations(shape, turbulence[1], table[:, :, DRIFT])
     for i in range(len(shape.bottom)):
         for k in range(p.n):
             table[i, k, 1], table[i, k, 3] = told.w[i, k], told.phi[i, k]
             table[i, k, 6] = told.force_z[i, k] / max(1.0 - told.phi[i, k], 1.0 - DENSEST)
-    at = means_of_segments(cut, places, told.wet, per, table)
-    for i in range(len(per)):
+    at = means_of_segments(cut, places, told.wet, table, met.submerged, met.per)
+    gradients_at_grains(shape, cut, places, told.gradient, -p.rho_w * p.g_x, met.gradient)
+    for i in range(len(at)):
+        met.u[i] = at[i, 0]
         at[i, 1] += at[i, 0] * places.tilt[i]
-        at[i, 5] += gradient_at(shape, cut, places, told.gradient, -p.rho_w * p.g_x, i)
-    sample(
-        at, submerged / cut.whole, grains.solid, eddies, laws.buoyancy, 0.0, laws.rho_w, laws.g_x,
-        laws.g_z, sampled,
-    )  # fmt: skip
+        at[i, 5] += met.gradient[i]
+    return at

@@ -16,42 +16,41 @@ from ryusa.model.eddies import Eddies
 from ryusa.model.fluid import N_SAMPLED, SHEAR
 from ryusa.model.row import ColumnRow, PorousSolid, RowGrainState, RowState
 from ryusa.water import eddies
-from ryusa.water._kernel import ColumnParameters, parameters_of
+from ryusa.water.at_grains import sample
 from ryusa.water.drive import imposed_gradient
-from ryusa.water.exchange import FOUR, slices
+from ryusa.water.exchange import slices
 from ryusa.water.exchange_arrays import GrainNumbers, SliceArrays, WaterLaws, cells_of
 from ryusa.water.fixed_grains import steady_start
-from ryusa.water.row import GrainAction, advance_row, ends_of, row_at_rest, shape_of
+from ryusa.water.row import GrainAction, RowArrays, advance_row, row_at_rest
 from ryusa.water.row_exchange import (
+    DRIFT,
+    U_TAU_SQUARE,
     RowTold,
     StationForces,
     act_on_stations,
     concentration_in_row,
     continue_ends,
     fastest_in_row,
+    means_at_grains,
     split_budgets,
     tell,
-    water_at_grains_in_row,
+    turbulence_at_stations,
 )
-from ryusa.water.row_station import relative_residual_at
-from ryusa.water.row_step import RowEnds, RowShape, RowWater
+from ryusa.water.row_grain_sums import MetByGrains, sum_grains_in_row
+from ryusa.water.row_station import largest_residual
+from ryusa.water.row_step import RowWater
 from ryusa.water.row_sums import (
     N_ROW_SUM,
     GrainPlaces,
     RowBed,
     add_to_segments,
-    means_of_segments,
-    of_both_stations,
     place_grains,
-    submerge,
     sum_fixed_in_row,
-    sum_grains_in_row,
 )
 from ryusa.water.slice_sums import (
     BAD_GRAIN,
     N_SUM_FIXED,
     RATE,
-    ROW_SHEAR,
     SOLID,
 )
 
@@ -79,10 +78,8 @@ class GrainsInRow:
     fastest: float
     worst: float
     x: Floats  # centres at the last exchange [m], shape (n_grain, 3)
-    _p: ColumnParameters
+    _arrays: RowArrays
     _area: float  # of bed in a segment [m2]
-    _shape: RowShape
-    _ends: RowEnds
     _laws: WaterLaws
     _grains: GrainNumbers
     _bed: RowBed
@@ -90,6 +87,7 @@ class GrainsInRow:
     _bed_cut: SliceArrays
     _places: GrainPlaces
     _bed_places: GrainPlaces
+    _met: MetByGrains
     _z: Floats  # heights above the bottom, plus z_low [m]
     eddies: Eddies | None = None
 
@@ -110,7 +108,8 @@ class GrainsInRow:
         faults = row.refuses() or row.refuses_grains(scene.water.buoyancy, scene.period[0])
         if faults:
             raise ValueError("; ".join(faults))
-        p, shape, column = parameters_of(row.column), shape_of(row), row.column
+        arrays, column = RowArrays.of(row), row.column
+        p, shape = arrays.p, arrays.shape
         x, _ = _with_those_away(scene, row, x, x)
         stations, segments = len(shape.left), len(shape.bottom)
         there = np.flatnonzero(scene.fixed_active)
@@ -132,9 +131,10 @@ class GrainsInRow:
             np.zeros(stations), *np.zeros((3, segments, column.n)),
         )  # fmt: skip
         made = GrainsInRow(
-            scene, row, row.porous, told, np.zeros((n, N_SAMPLED)), 0.0, 0.0, np.array(x), p,
-            float(column.area) / row.n_segment, shape, ends_of(row), WaterLaws.of(scene),
-            GrainNumbers.of(scene, None), bed, cut, bed_cut, places, bed_places, z,
+            scene, row, row.porous, told, np.zeros((n, N_SAMPLED)), 0.0, 0.0, np.array(x), arrays,
+            float(column.area) / row.n_segment, WaterLaws.of(scene),
+            GrainNumbers.of(scene, None), bed, cut, bed_cut, places, bed_places,
+            MetByGrains.of(n), z,
         )  # fmt: skip
         made._concentrate()
         if column.fluctuations is Fluctuations.RANDOM_WALK:
@@ -190,7 +190,7 @@ class GrainsInRow:
     def _concentrate(self) -> None:
         """Concentrations of fixed grains, and of all, from the present slices."""
         sums = np.zeros((N_ROW_SUM, *self.told.phi.shape))
-        volume, whole_cells = self._area * self._p.dz, np.ones_like(self.told.phi)
+        volume, whole_cells = self._area * self._arrays.p.dz, np.ones_like(self.told.phi)
         for cut, places, order, whole in (
             (self._bed_cut, self._bed_places, self._bed.order, self._bed_cut.whole),
             (self._cut, self._places, self._grains.order, self._grains.solid),
@@ -198,12 +198,12 @@ class GrainsInRow:
             sums[SOLID] = 0.0
             per, solid = np.ones(len(order)), np.ascontiguousarray((whole / cut.whole)[:, None])
             add_to_segments(cut, places, whole_cells, order, per, solid, sums[SOLID : SOLID + 1])
-            continue_ends(self._shape, sums)
+            continue_ends(self._arrays.shape, sums)
             if places is self._bed_places:
                 self._bed.phi[:] = sums[SOLID] / volume
                 if self.solid is not None:
                     self._bed.phi[:] += self.row.with_ends(self.solid.phi)
-        concentration_in_row(self._p, self._area, self._bed, sums, self.told.phi)
+        concentration_in_row(self._arrays.p, self._area, self._bed, sums, self.told.phi)
 
     @property
     def phi(self) -> Floats:
@@ -231,7 +231,7 @@ class GrainsInRow:
         u[:] = flow.u
         profiles[:, 0], profiles[:, 3], profiles[:, 5] = flow.u, flow.shear, flow.dtau_dz
         content = start.content
-        profiles[:, 2] = 0.5 * (content[self._shape.left] + content[self._shape.right])
+        profiles[:, 2] = 0.5 * (content[self._arrays.shape.left] + content[self._arrays.shape.right])
         edges[:, 0], edges[:, 1] = flow.tau, flow.nu_t
         return replace(start, u=u, profiles=profiles, edges=edges)
 
@@ -255,37 +255,37 @@ class GrainsInRow:
         ValueError : a grain is at no finite place.
         WaterError : the water cannot be moved on.
         """
-        p, told, row = self._p, self.told, self.row
+        p, shape, told, row = self._arrays.p, self._arrays.shape, self.told, self.row
         x, v = _with_those_away(self.scene, row, x, v)
         segments, stations = len(told.phi), len(told.u)
         sums, fixed = np.zeros((N_ROW_SUM, segments, p.n)), np.zeros((N_SUM_FIXED, segments, p.n))
         through, largest = np.zeros((stations, p.n)), np.array([0.0, -1.0])
         sum_grains_in_row(
-            p, self._shape, float(row.x_low), self._grains, self._cut, self._places, x, v, impulse,
-            self.sampled, told.u, told.gradient, told.wet, 1.0 / dt, self._z, sums, through, largest,
+            p, shape, float(row.x_low), self._grains, self._cut, self._places, x, v, impulse, self.sampled,
+            self._met, told.wet, 1.0 / dt, self._z, sums, through, largest,
         )  # fmt: skip
         if largest[BAD_GRAIN] >= 0.0:
             raise ValueError(f"the place of grain {int(largest[BAD_GRAIN])} is not finite")
         self.x[:] = x
-        continue_ends(self._shape, sums)
+        continue_ends(shape, sums)
         concentration_in_row(p, self._area, self._bed, sums, told.phi)
         sum_fixed_in_row(
-            p, self._shape, self._laws, self._bed, self._bed_cut, self._bed_places, told.u, told.w, told.wet,
+            p, shape, self._laws, self._bed, self._bed_cut, self._bed_places, told.u, told.w, told.wet,
             told.phi, fixed,
         )  # fmt: skip
-        continue_ends(self._shape, fixed)
+        continue_ends(shape, fixed)
         force, slope, phi_w, part = np.zeros((4, stations, p.n))
         acts = StationForces(force, slope, phi_w, part, told.phi, told.force_z)
-        act_on_stations(p, self._area, self._shape, told.u, sums, fixed, acts)
+        act_on_stations(p, self._area, shape, told.u, sums, fixed, acts)
         state = advance_row(
-            row, state, dt, solid=self._at_rest(),
+            row, state, dt, solid=self._at_rest(), arrays=self._arrays,
             grains=GrainAction(told.phi[row.inner], force, slope, np.zeros_like(force), phi_w),
         )  # fmt: skip
         budgets = np.array(state.budgets)
-        split_budgets(p, self._shape, acts, _water_of(state), budgets)
+        split_budgets(p, shape, acts, _water_of(state), budgets)
+        self.worst = max(self.worst, largest_residual(budgets))
         budgets.flags.writeable = False
         state = replace(state, budgets=budgets)
-        self.worst = max(self.worst, *(relative_residual_at(one) for one in budgets))
         self.fastest = fastest_in_row(p, self._area, self._laws, sums, float(largest[RATE]), told.phi)
         if self.eddies is not None:
             self.eddies = eddies.renew(self.eddies, row.column.seed, dt, self.sampled[:, SHEAR])
@@ -302,39 +302,31 @@ class GrainsInRow:
 
     def _tell(self, state: RowState, sums: Floats, through: Floats, dt: float) -> None:
         """Note what the grains meet in the next interval."""
-        told, water = self.told, _water_of(state)
+        told, water, arrays = self.told, _water_of(state), self._arrays
         told.stations[:] = state.profiles
-        inner = self._shape.inner[0]
-        driver = imposed_gradient(self._p, water.content[inner], float(water.surface[inner]))
+        inner = arrays.shape.inner[0]
+        driver = imposed_gradient(arrays.p, water.content[inner], float(water.surface[inner]))
         tell(
-            self._p, self._area, self._shape, self._ends, dt, float(driver), sums, through, water,
+            arrays.p, self._area, arrays.shape, arrays.ends, dt, float(driver), sums, through, water,
             np.zeros_like(told.u), np.zeros(len(told.phi)), np.array(state.budgets), told,
         )  # fmt: skip
 
     def _sample(self, state: RowState) -> None:
         """Write the water at every grain."""
-        speeds = np.zeros((0, 3)) if self.eddies is None else self._eddies_at_grains(state, self.eddies)
+        p, shape, told, laws = self._arrays.p, self._arrays.shape, self.told, self._laws
+        turbulence = np.zeros((0, *told.u.shape))
+        if self.eddies is not None:
+            turbulence = turbulence_at_stations(p, shape, told.phi, np.array(state.edges))
+        at = means_at_grains(p, shape, self._cut, self._places, told, turbulence, self._met)
+        speeds = np.zeros((0, 3))
+        if self.eddies is not None:
+            u_tau, drift = np.sqrt(at[:, U_TAU_SQUARE]), at[:, DRIFT]
+            speeds = eddies.speeds(self.eddies, self.scene.plane_case, u_tau, drift, at[:, 2])
         self.sampled = np.empty((len(self._z), N_SAMPLED))
-        water_at_grains_in_row(
-            self._p, self._laws, self._shape, self._grains, self._cut, self._places, self.told, speeds,
-            self.sampled,
+        sample(
+            at, self._met.submerged / self._cut.whole, self._grains.solid, speeds, laws.buoyancy, 0.0,
+            laws.rho_w, laws.g_x, laws.g_z, self.sampled,
         )  # fmt: skip
-
-    def _eddies_at_grains(self, state: RowState, present: Eddies) -> Floats:
-        """Velocity of the eddy at each grain [m/s], shape (n_grain, 3)."""
-        column, told, shape = self.row.column, self.told, self._shape
-        phi = 0.5 * (told.phi[shape.left] + told.phi[shape.right])
-        of_cells = np.zeros((3, *told.u.shape))
-        for j in range(len(phi)):
-            tau, nu_t = state.edges[j]
-            of_cells[:2, j] = eddies.turbulence_of_cells(column, tau, nu_t, phi[j])
-        of_cells[2] = told.stations[:, ROW_SHEAR]
-        table = np.zeros((*told.phi.shape, FOUR))
-        for c in range(3):
-            of_both_stations(shape, of_cells[c], table[:, :, c])
-        per = submerge(self._cut, self._places, told.wet, np.empty(len(self._z)))
-        at = means_of_segments(self._cut, self._places, told.wet, per, table)
-        return eddies.speeds(present, self.scene.plane_case, np.sqrt(at[:, 0]), at[:, 1], at[:, 2])
 
 
 def _with_those_away(scene: Scene, row: ColumnRow, x: Floats, v: Floats) -> tuple[Floats, Floats]:

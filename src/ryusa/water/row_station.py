@@ -211,3 +211,12 @@ def relative_residual_at(out: Floats) -> float:
         residual += term
         largest = max(largest, abs(term))
     return abs(residual) / largest if largest > 0.0 else 0.0
+
+
+@kernel
+def largest_residual(budgets: Floats) -> float:
+    """Largest `relative_residual_at` of the stations [-]; budgets (n_station, N_OUT)."""
+    most = 0.0
+    for j in range(len(budgets)):
+        most = max(most, relative_residual_at(budgets[j]))
+    return most

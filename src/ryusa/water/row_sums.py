@@ -17,25 +17,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ryusa.model.fluid import DRAG
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import ColumnParameters, kernel
-from ryusa.water.at_grains import DENSEST, given_by_grains
+from ryusa.water.at_grains import DENSEST
 from ryusa.water.at_grains import STRESS as BY_STRESS
-from ryusa.water.exchange import DRY, FOUR, Ints, cut_grains
-from ryusa.water.exchange_arrays import GrainNumbers, SliceArrays, WaterLaws
+from ryusa.water.exchange import DRY, FOUR, Ints
+from ryusa.water.exchange_arrays import SliceArrays, WaterLaws
 from ryusa.water.fixed_grains import drag_on_fixed
 from ryusa.water.row_step import RowShape
-from ryusa.water.slice_sums import (
-    BAD_GRAIN,
-    DRAG_NOW,
-    GIVEN_MET,
-    GIVEN_X,
-    N_SUM,
-    RATE,
-    SOLID,
-    SOLID_W,
-)
+from ryusa.water.slice_sums import N_SUM
 
 BUOYED = N_SUM  # row of the sums: force of the slope of the surface on the grains along x [N]
 N_ROW_SUM = N_SUM + 1
@@ -167,77 +157,45 @@ def add_to_segments(
 
 
 @kernel
-def add_to_gates(cut: SliceArrays, places: GrainPlaces, order: Ints, amounts: Floats, sums: Floats) -> None:
-    """Add what grains carry along x (n_grain,) to the cells of the stations, sums (n_station, n).
-
-    The shares at both stations are the derivatives of the weights: what passes the stations is exactly what
-    the segments gain and lose while grains move.
-    """
-    for rank in range(order.shape[0]):
-        i = order[rank]
-        low, high = cut.first[i], cut.first[i] + cut.n_cells[i]
-        for b in range(2):
-            part = amounts[i] * (places.past[i] if b == 1 else 1.0 - places.past[i])
-            row, apart = sums[places.gate[i, b], low:high], 0
-            if places.at.shape[1] > 1:  # nothing passes into a dam
-                apart = min(max(places.shut[i, 2 * b] - low, 0), cut.n_cells[i])
-            for s in range(apart, cut.n_cells[i]):
-                row[s] += part * cut.volume[i, s]
-
-
-@kernel
 def means_of_segments(
-    cut: SliceArrays, places: GrainPlaces, wet: Floats, per: Floats, table: Floats
+    cut: SliceArrays, places: GrainPlaces, wet: Floats, table: Floats, submerged: Floats, per: Floats
 ) -> Floats:
-    """Means over the wet part of each grain of cell values (n_segment, n, m), m a multiple of four."""
+    """Means over the wet part of each grain of cell values (n_segment, n, m), m a multiple of four.
+
+    Parameters
+    ----------
+    wet : share of each cell below the surface [-], shape (n_segment, n).
+    submerged, per : receive the submerged volume of each grain [m3], and one over it; 0 for a dry grain.
+    """
+    # the wet parts of a grain are found once for all quantities, of which four are summed at once
     out = np.empty((len(per), table.shape[2]))
+    volume, weights, at, shut = cut.volume, places.weight, places.at, places.shut
+    shared, n, flat = at.shape[1], wet.shape[1], table.reshape(-1, table.shape[2])
+    cells, parts = np.empty(shared * volume.shape[1], np.int64), np.empty(shared * volume.shape[1])
     for i in range(len(per)):
+        count, total = 0, 0.0
+        low, reach, home = cut.first[i], cut.n_cells[i], at[i, shared // 2]
+        for b in range(shared):
+            apart = min(max(shut[i, b] - low, 0), reach)
+            for s in range(reach):
+                segment = home if s < apart else at[i, b]
+                part = weights[i, b] * volume[i, s] * wet[segment, low + s]
+                cells[count], parts[count] = segment * n + low + s, part
+                total += part
+                count += 1
+        submerged[i] = total
+        per[i] = 1.0 / total if total > DRY * cut.whole[i] else 0.0
         for c in range(0, table.shape[2], FOUR):
             p = q = r = t = 0.0
-            home = places.at[i, places.at.shape[1] // 2]
-            for b in range(places.at.shape[1]):
-                here, weight = places.at[i, b], places.weight[i, b]
-                cells, share = table[here], wet[here]
-                apart = min(max(places.shut[i, b] - cut.first[i], 0), cut.n_cells[i])
-                for s in range(apart):
-                    k = cut.first[i] + s
-                    part, cell = weight * cut.volume[i, s] * wet[home, k], table[home, k]
-                    p += part * cell[c]
-                    q += part * cell[c + 1]
-                    r += part * cell[c + 2]
-                    t += part * cell[c + 3]
-                for s in range(apart, cut.n_cells[i]):
-                    k = cut.first[i] + s
-                    part, cell = weight * cut.volume[i, s] * share[k], cells[k]
-                    p += part * cell[c]
-                    q += part * cell[c + 1]
-                    r += part * cell[c + 2]
-                    t += part * cell[c + 3]
+            for k in range(count):
+                part, cell = parts[k], cells[k]
+                p += part * flat[cell, c]
+                q += part * flat[cell, c + 1]
+                r += part * flat[cell, c + 2]
+                t += part * flat[cell, c + 3]
             out[i, c], out[i, c + 1] = p * per[i], q * per[i]
             out[i, c + 2], out[i, c + 3] = r * per[i], t * per[i]
     return out
-
-
-@kernel
-def submerge(cut: SliceArrays, places: GrainPlaces, wet: Floats, submerged: Floats) -> Floats:
-    """Write the submerged volume of each grain [m3], and return one over it; 0 for a dry grain.
-
-    `wet` is the share of each cell below the surface [-], shape (n_segment, n).
-    """
-    per = np.zeros(len(submerged))
-    for i in range(len(submerged)):
-        total, low, home = 0.0, cut.first[i], places.at[i, places.at.shape[1] // 2]
-        for b in range(places.at.shape[1]):
-            weight, share = places.weight[i, b], wet[places.at[i, b]]
-            apart = min(max(places.shut[i, b] - low, 0), cut.n_cells[i])
-            for s in range(apart):
-                total += weight * cut.volume[i, s] * wet[home, low + s]
-            for s in range(apart, cut.n_cells[i]):
-                total += weight * cut.volume[i, s] * share[low + s]
-        submerged[i] = total
-        if total > DRY * cut.whole[i]:
-            per[i] = 1.0 / total
-    return per
 
 
 @kernel
@@ -250,31 +208,47 @@ def beside_dam(cut: SliceArrays, places: GrainPlaces, i: int, b: int) -> float:
 
 
 @kernel
-def gradient_at(
-    shape: RowShape, cut: SliceArrays, places: GrainPlaces, gradient: Floats, rest: float, i: int
-) -> float:
-    """Pressure gradient at grain i [Pa/m] from that at the stations (n_station,).
+def gradient_beside_dam(
+    shape: RowShape, cut: SliceArrays, places: GrainPlaces, gradient: Floats, middle: Floats, rest: float,
+    i: int,
+) -> float:  # fmt: skip
+    """Pressure gradient at grain i, part of which may lie beside a dam [Pa/m]; as `gradients_at_grains`."""
+    home, mean = places.at[i, 1], 0.0
+    west, east = gradient[shape.west[home]], gradient[shape.east[home]]
+    before, after = beside_dam(cut, places, i, 0), beside_dam(cut, places, i, 2)
+    if before > 0.0:
+        west = (1.0 - before) * west + before * rest
+    if after > 0.0:
+        east = (1.0 - after) * east + after * rest
+    own = 0.5 * (west + east)
+    for b in range(N_SHARING):
+        at = places.at[i, b]
+        here = own if at == home else middle[at]
+        apart = (before, 0.0, after)[b]
+        mean += places.weight[i, b] * (here if apart == 0.0 else (1.0 - apart) * here + apart * own)
+    return mean
+
+
+@kernel
+def gradients_at_grains(
+    shape: RowShape, cut: SliceArrays, places: GrainPlaces, gradient: Floats, rest: float, out: Floats
+) -> None:
+    """Write the pressure gradient at each grain [Pa/m] from that at the stations (n_station,).
 
     `rest` is that of water at rest [Pa/m], which a grain beside a dam meets on its side.
     """
-    shared, mean = places.at.shape[1], 0.0
-    home = places.at[i, shared // 2]
-    west, east = gradient[shape.west[home]], gradient[shape.east[home]]
-    before, after = 0.0, 0.0
-    if shared > 1:
-        before, after = beside_dam(cut, places, i, 0), beside_dam(cut, places, i, 2)
-        if before > 0.0:
-            west = (1.0 - before) * west + before * rest
-        if after > 0.0:
-            east = (1.0 - after) * east + after * rest
-    middle = 0.5 * (west + east)
-    for b in range(shared):
-        at, apart = places.at[i, b], 0.0
-        here = middle if at == home else 0.5 * (gradient[shape.west[at]] + gradient[shape.east[at]])
-        if shared > 1 and b != 1:
-            apart = before if b == 0 else after
-        mean += places.weight[i, b] * (here if apart == 0.0 else (1.0 - apart) * here + apart * middle)
-    return mean
+    middle = np.empty(len(shape.bottom))
+    for i in range(len(middle)):
+        middle[i] = 0.5 * (gradient[shape.west[i]] + gradient[shape.east[i]])
+    first, weight, at, shut = cut.first, places.weight, places.at, places.shut
+    for i in range(len(out)):
+        if at.shape[1] > 1 and max(shut[i, 0], shut[i, 2]) > first[i]:
+            out[i] = gradient_beside_dam(shape, cut, places, gradient, middle, rest, i)
+            continue
+        mean = 0.0
+        for b in range(at.shape[1]):
+            mean += weight[i, b] * middle[at[i, b]]
+        out[i] = mean
 
 
 @kernel
@@ -286,80 +260,6 @@ def of_both_stations(shape: RowShape, values: Floats, out: Floats) -> None:
 
 
 @kernel
-def sum_given_in_row(
-    p: ColumnParameters, shape: RowShape, u: Floats, gradient: Floats, wet: Floats, impulse: Floats,
-    sampled: Floats, grains: GrainNumbers, cut: SliceArrays, places: GrainPlaces, per_dt: float, sums: Floats,
-) -> None:  # fmt: skip
-    """Add to the segments what the water gave to the grains, averaged over an interval, as `sum_given`.
-
-    Parameters
-    ----------
-    u, gradient : speed of the water at the stations in the interval [m/s], shape (n_station, n), and pressure
-        gradient there [Pa/m], shape (n_station,).
-    wet : share of the cells below the surface in the interval [-], shape (n_segment, n).
-    sums : shape (N_ROW_SUM, n_segment, n).
-    """
-    submerged = np.empty(len(grains.d))
-    per = submerge(cut, places, wet, submerged)
-    table = np.zeros((len(shape.bottom), p.n, FOUR))
-    of_both_stations(shape, u, table[:, :, 0])
-    met = means_of_segments(cut, places, wet, per, table)[:, 0].copy()
-    amounts = given_by_grains(impulse, met, grains.archimedes, sampled, per_dt)
-    add_to_segments(cut, places, wet, grains.order, per, amounts, sums[GIVEN_X : GIVEN_MET + 1])
-    if shape.steep.max() > 1.0:
-        push = np.empty((len(per), 1))
-        for i in range(len(per)):
-            here = gradient_at(shape, cut, places, gradient, -p.rho_w * p.g_x, i)
-            push[i, 0] = grains.solid[i] * submerged[i] / cut.whole[i] * here
-        add_to_segments(cut, places, wet, grains.order, per, push, sums[BUOYED:])
-
-
-@kernel
-def sum_grains_in_row(
-    p: ColumnParameters, shape: RowShape, x_low: float, grains: GrainNumbers, cut: SliceArrays,
-    places: GrainPlaces, x: Floats, v: Floats, impulse: Floats, sampled: Floats, u: Floats, gradient: Floats,
-    wet: Floats, per_dt: float, z: Floats, sums: Floats, through: Floats, largest: Floats,
-) -> None:  # fmt: skip
-    """Sum what the grains gave in the interval, and then what they are where they are now, as `sum_grains`.
-
-    Parameters
-    ----------
-    u, gradient, wet : as in `sum_given_in_row`, of the water in the interval.
-    z : receives the heights of the grains above the bottom, plus z_low [m].
-    sums, through : are added to, shapes (N_ROW_SUM, n_segment, n) and (n_station, n): flux of grains [m4/s].
-    largest : as in `sum_grains`.
-    """
-    sum_given_in_row(p, shape, u, gradient, wet, impulse, sampled, grains, cut, places, per_dt, sums)
-    bad = place_grains(x[:, 0], x_low, p.z_low, shape, places)
-    for i in range(len(z)):
-        z[i] = x[i, 2] - places.base[i]
-        if bad < 0 and not math.isfinite(z[i]):
-            bad = i
-    if bad >= 0:
-        largest[BAD_GRAIN] = bad
-        return
-    cut_grains(
-        z, 0.5 * grains.d, p.z_low, p.dz, p.n, cut.first, cut.n_cells, cut.volume, cut.whole, cut.submerged,
-        cut.below, cut.above,
-    )  # fmt: skip
-    values, along = np.empty((len(z), 2)), np.empty(len(z))
-    for i in range(len(z)):
-        solid = grains.solid[i] / cut.whole[i]
-        values[i, 0] = solid
-        values[i, 1] = (v[i, 2] - v[i, 0] * places.tilt[i]) * solid
-        along[i] = v[i, 0] * solid
-    all_of_it = np.ones(wet.shape)
-    add_to_segments(cut, places, all_of_it, grains.order, np.ones(len(z)), values, sums[SOLID : SOLID_W + 1])
-    add_to_gates(cut, places, grains.order, along, through)
-    per = submerge(cut, places, wet, np.empty(len(z)))
-    drag = np.empty((len(per), 1))
-    drag[:, 0] = impulse[:, DRAG]
-    add_to_segments(cut, places, wet, grains.order, per, drag, sums[DRAG_NOW : DRAG_NOW + 1])
-    for i in range(len(per)):
-        largest[RATE] = max(largest[RATE], drag[i, 0] / grains.inertia[i])
-
-
-@kernel
 def sum_fixed_in_row(
     p: ColumnParameters, shape: RowShape, laws: WaterLaws, bed: RowBed, cut: SliceArrays,
     places: GrainPlaces, u: Floats, w: Floats, wet: Floats, phi: Floats, sums: Floats,
@@ -367,15 +267,14 @@ def sum_fixed_in_row(
     """Sum the drag of fixed grains in the segments, as `sum_fixed_grains`; w [m/s], shape (n_segment, n)."""
     if bed.taken or len(bed.d) == 0:
         return
-    submerged = np.empty(len(bed.d))
-    per = submerge(cut, places, wet, submerged)
+    submerged, per = np.empty(len(bed.d)), np.empty(len(bed.d))
     table = np.zeros((len(shape.bottom), p.n, FOUR))
     of_both_stations(shape, u, table[:, :, 0])
     for i in range(len(shape.bottom)):
         for k in range(p.n):
             table[i, k, 1] = w[i, k]
             table[i, k, 2] = min(phi[i, k], DENSEST)
-    at = means_of_segments(cut, places, wet, per, table)
+    at = means_of_segments(cut, places, wet, table, submerged, per)
     for i in range(len(bed.d)):
         at[i, 1] += at[i, 0] * places.tilt[i]
     out = np.zeros((len(bed.d), 3))
