@@ -1,6 +1,7 @@
 """What `ryusa check` says of transport along a stream: Shields number, capacity, and when a dam is full."""
 
 import math
+import re
 from typing import Any
 
 import pytest
@@ -101,6 +102,21 @@ def test_a_feed_beyond_the_formula_has_no_time_and_a_small_one_says_so() -> None
     small = rows("0.0005 kg/s", {"grains.diameter": "'1 mm'"})
     assert value(small, "slope of the deposit") == pytest.approx(0.005)
     assert "where the formula" in small["slope of the deposit behind 'dam'"].origin
+
+
+def test_a_deposit_shorter_than_the_way_to_normal_flow_is_noted() -> None:
+    short = rows("0.01 kg/s")["slope of the deposit behind 'dam'"]
+    length, way = (
+        float(re.search(rf"{word} ([0-9.]+) m", short.origin)[1]) for word in ("deposit is", "h/S =")
+    )
+    assert short.flag == "note"
+    assert length < way
+    assert length == pytest.approx(P / (S_0 - short.value), abs=0.5 * D / (S_0 - short.value) + 0.01)
+    gentle = rows(
+        "0.12 kg/s",
+        {"water.row.dams": "[{ name = 'dam', begin = '1.7 m', end = '1.8 m', height = '20 cm' }]"},
+    )
+    assert "h/S" not in gentle["slope of the deposit behind 'dam'"].origin
 
 
 def test_a_deposit_as_steep_as_the_bed_reaches_up_to_the_feed() -> None:

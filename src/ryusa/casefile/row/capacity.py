@@ -43,6 +43,8 @@ class DamDeposit:
     time : in which the feeds bring it [s].
     reaches_feed : whether the surface meets the first feed before it meets the bed.
     lasts : how long the feed that lasts longest brings grains [s].
+    length : from the dam to where the surface meets the bed or the feed [m].
+    adapts : h/S, the way over which the flow becomes normal on the deposit [m].
     """
 
     slope: float
@@ -50,6 +52,8 @@ class DamDeposit:
     time: float
     reaches_feed: bool
     lasts: float
+    length: float
+    adapts: float
 
 
 def capacity(case: "Case", angle: float, q: float) -> float:
@@ -108,9 +112,17 @@ def dam_deposit(case: "Case", dam: RowDamSection) -> DamDeposit | None:
     half = 0.5 * reference_diameter(case)
     shut = np.flatnonzero(room <= -half)
     taken = room[shut[-1] + 1 if len(shut) else 0 :].clip(0.0)
-    volume = float(taken.sum() * (x[1] - x[0])) if taken.max(initial=0.0) > half else 0.0
-    lasts = max(feed_end(case, one) - one.begin for _, one in feeds)
-    return DamDeposit(math.tan(angle), volume, volume * packed(case) / rate, not len(shut), lasts)
+    dx = x[1] - x[0]
+    volume = float(taken.sum() * dx) if taken.max(initial=0.0) > half else 0.0
+    return DamDeposit(
+        slope=math.tan(angle),
+        volume=volume,
+        time=volume * packed(case) / rate,
+        reaches_feed=not len(shut),
+        lasts=max(feed_end(case, one) - one.begin for _, one in feeds),
+        length=float((taken > half).sum() * dx),
+        adapts=normal_depth(case, discharge_of(case), angle) / math.tan(angle),
+    )
 
 
 def _place(feed: FeedSection) -> float | None:

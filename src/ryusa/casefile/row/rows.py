@@ -187,7 +187,14 @@ def _deposit_behind(name: str, found: DamDeposit) -> list[ExplainRow]:
     slope_of = "at which the flow carries the feed, Smart & Jaeggi 1983"
     if found.slope < GENTLEST * (1.0 + 1e-6):
         slope_of = f"that of the feed is less, where the formula of Smart & Jaeggi 1983 ends: {GENTLEST:g}"
-    behind = number("water", f"slope of the deposit behind '{name}'", found.slope, "-", slope_of)
+    flag = ""
+    if 0.0 < found.length < found.adapts:
+        slope_of += (
+            f"; the deposit is {found.length:.3g} m long, less than the h/S = {found.adapts:.3g} m in which "
+            "the flow becomes normal: it will be shorter"
+        )
+        flag = "note"
+    behind = number("water", f"slope of the deposit behind '{name}'", found.slope, "-", slope_of, flag)
     if not found.volume > 0.0:
         return [behind, word("water", f"time to fill '{name}'", "full", "the bed at the start is as high")]
     up_to = "the feed" if found.reaches_feed else "where the deposit meets the bed"
