@@ -59,6 +59,7 @@ class Loop:
     checkpoints: CheckpointScheduler | None = None  # writes checkpoints
     traffic: TrafficRule | None = None  # feeds and exits
     servo: ServoRule | None = None  # walls pressed on the grains
+    threads: int = 1  # share the exchange with a row of columns
     status: str = schema.RUNNING
     message: str = ""
     _step: int = 0
@@ -283,7 +284,7 @@ class Loop:
         return flags
 
     def _start_water(self, state: State) -> None:
-        self._water = started(self.scene, self.engine, state, self._step)
+        self._water = started(self.scene, self.engine, state, self._step, self.threads)
 
     def state(self) -> State:
         """Snapshot of grains and water, sufficient for an exact resume."""

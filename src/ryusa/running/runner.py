@@ -383,7 +383,7 @@ class _Run:
                     max([self.stop.settle, *(one.at for one in self.changes)]), self.frames,
                 ),
                 checkpoints=CheckpointScheduler(self.folder, self.identity, first, self.options.checkpoint),
-                traffic=traffic, servo=servo,
+                traffic=traffic, servo=servo, threads=self.options.threads,
             )  # fmt: skip
             loop.run(state, None if block is None else block.block("loop"))
         finally:

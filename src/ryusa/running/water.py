@@ -18,21 +18,22 @@ from ryusa.water.row_coupling import RowCoupling
 RunWater = Coupling | RowCoupling
 
 
-def started(scene: Scene, engine: Engine, state: State, step: int) -> RunWater | None:
+def started(scene: Scene, engine: Engine, state: State, step: int, threads: int = 1) -> RunWater | None:
     """The water of a scene at its first step, or as a state holds it; None where there is none.
 
     Parameters
     ----------
     engine : has loaded the state; its grains are told of the water where the state does not hold it.
     step : of the engine.
+    threads : share the exchange between grains and a row of columns; the bits do not depend on them.
     """
     column = scene.column
     if scene.row is not None:
         found = state.coupling
         if isinstance(found, RowCouplingState):
             told = None if state.fluid is None else state.fluid.sampled
-            return RowCoupling.resume(scene, scene.row, found, told)
-        row = RowCoupling.begin(scene, scene.row, engine.kinematics()[0], step)
+            return RowCoupling.resume(scene, scene.row, found, told, threads)
+        row = RowCoupling.begin(scene, scene.row, engine.kinematics()[0], step, threads)
         engine.set_fluid(row.sampled)
         return row
     if column is None:

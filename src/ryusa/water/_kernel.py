@@ -16,8 +16,11 @@ _EDITION = edition(LAWS, _HERE, _HERE.parent / "model" / "column.py")
 
 
 def kernel(function: F) -> F:
-    """Compile a function at its first call. The cache key covers the sources of laws, water and the model."""
-    return compiled(_EDITION, fastmath=False)(function)
+    """Compile a function at its first call. The cache key covers the sources of laws, water and the model.
+
+    It runs without the lock of the interpreter, so that threads can share a loop (`row_threads`).
+    """
+    return compiled(_EDITION, fastmath=False, nogil=True)(function)
 
 
 class ColumnParameters(NamedTuple):

@@ -15,6 +15,7 @@ from ryusa.water.coupling import steps_resolved
 from ryusa.water.momentum_balance import B_ADVECTED, B_CHANGE, B_GRAVITY
 from ryusa.water.row import RowArrays, advance_row, discharges, row_at_rest
 from ryusa.water.row_grains import GrainsInRow
+from ryusa.water.row_threads import RowThreads
 from ryusa.water.steady import steady
 
 _DRY = 1.0e-12  # of the volume that all cells can hold; less is a dry row
@@ -53,13 +54,14 @@ class RowCoupling:
         self._arrays = RowArrays.of(self.row) if self.grains is None else None
 
     @staticmethod
-    def begin(scene: Scene, row: ColumnRow, x: Floats, step: int = 0) -> "RowCoupling":
+    def begin(scene: Scene, row: ColumnRow, x: Floats, step: int = 0, threads: int = 1) -> "RowCoupling":
         """Fill the row with its first water, at rest or in steady flow over the grains.
 
         Parameters
         ----------
         x : centres of the grains [m], shape (n_grain, 3).
         step : of the engine.
+        threads : share the loops over grains; the bits do not depend on them.
 
         Raises
         ------
@@ -73,7 +75,7 @@ class RowCoupling:
         if not scene.n_grain + scene.n_fixed:
             state = row_at_rest(row, start, row.porous)
             return RowCoupling(*about, state, np.zeros_like(state.passed))
-        grains = GrainsInRow.begin(scene, row, x)
+        grains = GrainsInRow.begin(scene, row, x, threads=RowThreads(threads))
         flows = row.column.start is Start.STEADY
         state = grains.flowing(start) if flows else grains.at_rest(start)
         grains.meet(state)
@@ -83,12 +85,13 @@ class RowCoupling:
 
     @staticmethod
     def resume(
-        scene: Scene, row: ColumnRow, found: RowCouplingState, sampled: Floats | None = None
+        scene: Scene, row: ColumnRow, found: RowCouplingState, sampled: Floats | None = None, threads: int = 1
     ) -> "RowCoupling":
         """Go on from a snapshot; `sampled` is the water at the grains, columns of `model.fluid`."""
         row, grains, sampled = with_inlet(row), None, np.zeros((0, N_SAMPLED)) if sampled is None else sampled
         if found.grains is not None:
-            grains = GrainsInRow.resume(scene, row, found.water, found.grains, sampled)
+            shared = RowThreads(threads)
+            grains = GrainsInRow.resume(scene, row, found.water, found.grains, sampled, shared)
             sampled = grains.sampled
         about = found.steps, sampled, found.due, found.exchanges, found.worst, found.water, found.passing
         return RowCoupling(scene, row, *about, grains)

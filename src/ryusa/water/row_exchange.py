@@ -41,7 +41,7 @@ from ryusa.water.slice_sums import (
     SOLID_W,
 )
 
-U_TAU_SQUARE, DRIFT = 7, 8  # columns of `means_at_grains` behind those of `sample`
+U_TAU_SQUARE, DRIFT = 7, 8  # columns of `table_of` behind those of `sample`
 
 
 class StationForces(NamedTuple):
@@ -236,20 +236,14 @@ def turbulence_at_stations(p: ColumnParameters, shape: RowShape, phi: Floats, ed
 
 
 @kernel
-def means_at_grains(
-    p: ColumnParameters, shape: RowShape, cut: SliceArrays, places: GrainPlaces, told: RowTold,
-    turbulence: Floats, met: MetByGrains,
-) -> Floats:  # fmt: skip
-    """Means over each grain of what it is told of the water, as `sample` takes them.
+def table_of(shape: RowShape, told: RowTold, turbulence: Floats) -> Floats:
+    """What grains are told of the cells of the segments, shape (n_segment, n, 8 or 12).
 
-    Parameters
-    ----------
-    turbulence : of `turbulence_at_stations`, its means follow in the columns U_TAU_SQUARE and DRIFT; without
-        fluctuations of the length 0.
-    met : overwritten.
+    `turbulence`, of `turbulence_at_stations`, goes to U_TAU_SQUARE and DRIFT; of the length 0 without
+    fluctuations.
     """
     turbulent = len(turbulence) > 0
-    table = np.zeros((len(shape.bottom), p.n, (3 if turbulent else 2) * FOUR))
+    table = np.zeros((told.phi.shape[0], told.phi.shape[1], 3 * FOUR if turbulent else 2 * FOUR))
     of_both_stations(shape, told.u, table[:, :, 0])
     of_both_stations(shape, told.stations[:, ROW_SHEAR], table[:, :, 2])
     of_both_stations(shape, told.stations[:, ROW_DU_DT], table[:, :, 4])
@@ -257,10 +251,22 @@ def means_at_grains(
     if turbulent:
         of_both_stations(shape, turbulence[0], table[:, :, U_TAU_SQUARE])
         of_both_stations(shape, turbulence[1], table[:, :, DRIFT])
-    for i in range(len(shape.bottom)):
-        for k in range(p.n):
+    for i in range(len(table)):
+        for k in range(table.shape[1]):
             table[i, k, 1], table[i, k, 3] = told.w[i, k], told.phi[i, k]
             table[i, k, 6] = told.force_z[i, k] / max(1.0 - told.phi[i, k], 1.0 - DENSEST)
+    return table
+
+
+@kernel
+def means_at_grains(
+    p: ColumnParameters, shape: RowShape, cut: SliceArrays, places: GrainPlaces, told: RowTold,
+    table: Floats, met: MetByGrains,
+) -> Floats:  # fmt: skip
+    """Means over each grain of what it is told of the water, as `sample` takes them; `met` is overwritten.
+
+    `table` is that of `table_of`, whose columns the means have.
+    """
     at = means_of_segments(cut, places, told.wet, table, met.submerged, met.per)
     gradients_at_grains(shape, cut, places, told.gradient, -p.rho_w * p.g_x, met.gradient)
     for i in range(len(at)):

@@ -39,45 +39,59 @@ class MetByGrains(NamedTuple):
 
 
 @kernel
-def add_to_gates(cut: SliceArrays, places: GrainPlaces, order: Ints, amounts: Floats, sums: Floats) -> None:
-    """Add what grains carry along x (n_grain,) to the cells of the stations, sums (n_station, n).
+def amounts_given(
+    shape: RowShape, impulse: Floats, sampled: Floats, met: MetByGrains, grains: GrainNumbers,
+    cut: SliceArrays, per_dt: float,
+) -> Floats:  # fmt: skip
+    """What each grain gives to the water, averaged over an interval, shape (n_grain, N_GIVEN)."""
+    amounts = np.zeros((len(met.u), N_GIVEN))
+    four = given_by_grains(impulse, met.u, grains.archimedes, sampled, per_dt)
+    sloping = shape.steep.max() > 1.0
+    for i in range(len(amounts)):
+        for c in range(N_GIVEN - 1):
+            amounts[i, c] = four[i, c]
+        if sloping:
+            amounts[i, N_GIVEN - 1] = grains.solid[i] * met.submerged[i] / cut.whole[i] * met.gradient[i]
+    return amounts
 
-    The shares at both stations are the derivatives of the weights: what passes the stations is exactly what
-    the segments gain and lose while grains move.
-    """
-    for rank in range(order.shape[0]):
-        i = order[rank]
-        low, high = cut.first[i], cut.first[i] + cut.n_cells[i]
-        for b in range(2):
-            part = amounts[i] * (places.past[i] if b == 1 else 1.0 - places.past[i])
-            row, apart = sums[places.gate[i, b], low:high], 0
-            if places.at.shape[1] > 1:  # nothing passes into a dam
-                apart = min(max(places.shut[i, 2 * b] - low, 0), cut.n_cells[i])
-            for s in range(apart, cut.n_cells[i]):
-                row[s] += part * cut.volume[i, s]
+
+@kernel
+def owns(begin: int, end: int, at: Ints, i: int) -> bool:
+    """Whether one of the segments that share grain i is from `begin` to `end`-1."""
+    mine = False
+    for b in range(at.shape[1]):
+        mine = mine or begin <= at[i, b] < end
+    return mine
 
 
 @kernel
 def add_given(
-    cut: SliceArrays, places: GrainPlaces, wet: Floats, order: Ints, per: Floats, amounts: Floats,
-    push: Floats, sums: Floats,
+    begin: int, end: int, cut: SliceArrays, places: GrainPlaces, wet: Floats, order: Ints, per: Floats,
+    amounts: Floats, sums: Floats,
 ) -> None:  # fmt: skip
-    """Add four amounts of each grain (n_grain, 4), and a fifth, to its cells, sums (n_segment, n, N_GIVEN).
+    """Add amounts of each grain (n_grain, N_GIVEN) to its cells, sums (n_segment, n, N_GIVEN).
 
-    `wet` weighs the cells [-], shape (n_segment, n).
+    Parameters
+    ----------
+    begin, end : only the segments from the first to the one before the second receive.
+    wet : weighs the cells [-], shape (n_segment, n).
     """
+    volumes, weights, at, shut = cut.volume, places.weight, places.at, places.shut
     for rank in range(order.shape[0]):
         i = order[rank]
-        low, count, home = cut.first[i], cut.n_cells[i], places.at[i, places.at.shape[1] // 2]
+        if not owns(begin, end, at, i):
+            continue
+        low, count, home = cut.first[i], cut.n_cells[i], at[i, at.shape[1] // 2]
         p, q, r = amounts[i, 0] * per[i], amounts[i, 1] * per[i], amounts[i, 2] * per[i]
-        t, o = amounts[i, 3] * per[i], push[i] * per[i]
-        for b in range(places.at.shape[1]):
-            weight, here = places.weight[i, b], places.at[i, b]
-            apart = min(max(places.shut[i, b] - low, 0), count)
+        t, o = amounts[i, 3] * per[i], amounts[i, 4] * per[i]
+        for b in range(at.shape[1]):
+            weight, apart = weights[i, b], min(max(shut[i, b] - low, 0), count)
             p_b, q_b, r_b, t_b, o_b = p * weight, q * weight, r * weight, t * weight, o * weight
             for s in range(count):
-                segment = home if s < apart else here
-                volume, share, cell = cut.volume[i, s], wet[segment, low + s], sums[segment, low + s]
+                segment = home if s < apart else at[i, b]
+                if not begin <= segment < end:
+                    continue
+                volume, share, cell = volumes[i, s], wet[segment, low + s], sums[segment, low + s]
                 cell[0] += p_b * volume * share
                 cell[1] += q_b * volume * share
                 cell[2] += r_b * volume * share
@@ -86,63 +100,102 @@ def add_given(
 
 
 @kernel
-def sum_given_in_row(
-    p: ColumnParameters, shape: RowShape, wet: Floats, impulse: Floats, sampled: Floats, met: MetByGrains,
-    grains: GrainNumbers, cut: SliceArrays, places: GrainPlaces, per_dt: float, sums: Floats,
-) -> None:  # fmt: skip
-    """Add to the segments what the water gave to the grains, averaged over an interval, as `sum_given`.
+def cut_in_row(
+    p: ColumnParameters, shape: RowShape, x_low: float, grains: GrainNumbers, cut: SliceArrays,
+    places: GrainPlaces, x: Floats, v: Floats, impulse: Floats, z: Floats, largest: Floats,
+) -> Floats:  # fmt: skip
+    """Place and cut the grains where they are now; parameters as of `sum_grains_in_row`.
 
-    Parameters
-    ----------
-    wet : share of the cells below the surface in the interval [-], shape (n_segment, n).
-    met : what the grains met in the interval.
-    sums : shape (N_ROW_SUM, n_segment, n).
+    Returns
+    -------
+    values : of each grain, what its cells receive over its slices: solid volume, its flux upwards, drag over
+        slip, and its flux along x, shape (n_grain, N_PRESENT + 1).
     """
-    amounts = given_by_grains(impulse, met.u, grains.archimedes, sampled, per_dt)
-    push = np.zeros(len(met.u))
-    if shape.steep.max() > 1.0:
-        for i in range(len(push)):
-            push[i] = grains.solid[i] * met.submerged[i] / cut.whole[i] * met.gradient[i]
-    given = np.zeros((*wet.shape, N_GIVEN))
-    add_given(cut, places, wet, grains.order, met.per, amounts, push, given)
-    for i in range(wet.shape[0]):
-        for k in range(p.n):
-            for c in range(N_GIVEN - 1):
-                sums[GIVEN_X + c, i, k] += given[i, k, c]
-            sums[BUOYED, i, k] += given[i, k, N_GIVEN - 1]
+    values = np.empty((len(z), N_PRESENT + 1))
+    bad = place_grains(x[:, 0], x_low, p.z_low, shape, places)
+    for i in range(len(z)):
+        z[i] = x[i, 2] - places.base[i]
+        if bad < 0 and not math.isfinite(z[i]):
+            bad = i
+    if bad >= 0:
+        largest[BAD_GRAIN] = bad
+        return values
+    cut_grains(
+        z, 0.5 * grains.d, p.z_low, p.dz, p.n, cut.first, cut.n_cells, cut.volume, cut.whole, cut.submerged,
+        cut.below, cut.above,
+    )  # fmt: skip
+    for i in range(len(z)):
+        solid = grains.solid[i] / cut.whole[i]
+        values[i, 0] = solid
+        values[i, 1] = (v[i, 2] - v[i, 0] * places.tilt[i]) * solid
+        values[i, 2] = impulse[i, DRAG]
+        values[i, 3] = v[i, 0] * solid
+        largest[RATE] = max(largest[RATE], impulse[i, DRAG] / grains.inertia[i])
+    return values
 
 
 @kernel
 def add_present(
-    cut: SliceArrays, places: GrainPlaces, wet: Floats, order: Ints, values: Floats, drag: Floats,
-    sums: Floats,
+    begin: int, end: int, cut: SliceArrays, places: GrainPlaces, wet: Floats, order: Ints, values: Floats,
+    sums: Floats, through: Floats,
 ) -> None:  # fmt: skip
-    """Add the volume of each grain and its flux upwards, values (n_grain, 2), and its drag (n_grain,).
+    """Add values of `cut_in_row` to cells, sums (n_segment, n, N_PRESENT) and through (n_station, n).
 
-    The first two go to all cells it lies in, drag to wet ones; sums have the shape (n_segment, n, N_PRESENT).
+    Parameters
+    ----------
+    begin, end : as of `add_given`; the same for stations.
+
+    Notes
+    -----
+    Volume and its flux go to all cells in which a grain lies, drag to wet ones. The shares of the flux along
+    x at both stations beside a grain are the derivatives of its weights: what passes the stations is exactly
+    what the segments gain and lose while grains move.
     """
     volumes, weights, at, shut = cut.volume, places.weight, places.at, places.shut
     shared = at.shape[1]
     for rank in range(order.shape[0]):
         i, submerged = order[rank], 0.0
         low, count, home = cut.first[i], cut.n_cells[i], at[i, shared // 2]
+        for b in range(2):
+            gate = places.gate[i, b]
+            if not begin <= gate < end:
+                continue
+            part = values[i, 3] * (places.past[i] if b == 1 else 1.0 - places.past[i])
+            apart = min(max(shut[i, 2 * b] - low, 0), count) if shared > 1 else 0  # nothing passes into a dam
+            for s in range(apart, count):
+                through[gate, low + s] += part * volumes[i, s]
+        if not owns(begin, end, at, i):
+            continue
         for b in range(shared):
             apart = min(max(shut[i, b] - low, 0), count)
             for s in range(count):
                 segment = home if s < apart else at[i, b]
                 submerged += weights[i, b] * volumes[i, s] * wet[segment, low + s]
         per = 1.0 / submerged if submerged > DRY * cut.whole[i] else 0.0
-        p, q, r = values[i, 0], values[i, 1], drag[i] * per
+        p, q, r = values[i, 0], values[i, 1], values[i, 2] * per
         for b in range(shared):
-            weight = weights[i, b]
-            apart = min(max(shut[i, b] - low, 0), count)
+            weight, apart = weights[i, b], min(max(shut[i, b] - low, 0), count)
             p_b, q_b, r_b = p * weight, q * weight, r * weight
             for s in range(count):
                 segment = home if s < apart else at[i, b]
+                if not begin <= segment < end:
+                    continue
                 volume, share, cell = volumes[i, s], wet[segment, low + s], sums[segment, low + s]
                 cell[0] += p_b * volume
                 cell[1] += q_b * volume
                 cell[2] += r_b * volume * share
+
+
+@kernel
+def as_rows(given: Floats, present: Floats, sums: Floats) -> None:
+    """Write what cells received, (n_segment, n, N_GIVEN) and (n_segment, n, N_PRESENT), as rows of `sums`."""
+    for i in range(given.shape[0]):
+        for k in range(given.shape[1]):
+            for c in range(N_GIVEN - 1):
+                sums[GIVEN_X + c, i, k] = given[i, k, c]
+            sums[BUOYED, i, k] = given[i, k, N_GIVEN - 1]
+            sums[SOLID, i, k], sums[SOLID_W, i, k] = present[i, k, 0], present[i, k, 1]
+            sums[DRAG_NOW, i, k] = present[i, k, 2]
 
 
 @kernel
@@ -155,36 +208,18 @@ def sum_grains_in_row(
 
     Parameters
     ----------
-    met, wet : as in `sum_given_in_row`, of the water in the interval.
+    wet, met : share of the cells below the surface in the interval [-], shape (n_segment, n), and what the
+        grains met in it.
     z : receives the heights of the grains above the bottom, plus z_low [m].
-    sums, through : are added to, shapes (N_ROW_SUM, n_segment, n) and (n_station, n): flux of grains [m4/s].
+    sums : overwritten, shape (N_ROW_SUM, n_segment, n).
+    through : is added to, flux of grains [m4/s], shape (n_station, n).
     largest : as in `sum_grains`.
     """
-    sum_given_in_row(p, shape, wet, impulse, sampled, met, grains, cut, places, per_dt, sums)
-    bad = place_grains(x[:, 0], x_low, p.z_low, shape, places)
-    for i in range(len(z)):
-        z[i] = x[i, 2] - places.base[i]
-        if bad < 0 and not math.isfinite(z[i]):
-            bad = i
-    if bad >= 0:
-        largest[BAD_GRAIN] = bad
+    given, present = np.zeros((*wet.shape, N_GIVEN)), np.zeros((*wet.shape, N_PRESENT))
+    amounts = amounts_given(shape, impulse, sampled, met, grains, cut, per_dt)
+    add_given(0, len(wet), cut, places, wet, grains.order, met.per, amounts, given)
+    values = cut_in_row(p, shape, x_low, grains, cut, places, x, v, impulse, z, largest)
+    if largest[BAD_GRAIN] >= 0.0:
         return
-    cut_grains(
-        z, 0.5 * grains.d, p.z_low, p.dz, p.n, cut.first, cut.n_cells, cut.volume, cut.whole, cut.submerged,
-        cut.below, cut.above,
-    )  # fmt: skip
-    values, along = np.empty((len(z), 2)), np.empty(len(z))
-    for i in range(len(z)):
-        solid = grains.solid[i] / cut.whole[i]
-        values[i, 0] = solid
-        values[i, 1] = (v[i, 2] - v[i, 0] * places.tilt[i]) * solid
-        along[i] = v[i, 0] * solid
-        largest[RATE] = max(largest[RATE], impulse[i, DRAG] / grains.inertia[i])
-    add_to_gates(cut, places, grains.order, along, through)
-    present = np.zeros((*wet.shape, N_PRESENT))
-    add_present(cut, places, wet, grains.order, values, impulse[:, DRAG], present)
-    for i in range(wet.shape[0]):
-        for k in range(p.n):
-            sums[SOLID, i, k] += present[i, k, 0]
-            sums[SOLID_W, i, k] += present[i, k, 1]
-            sums[DRAG_NOW, i, k] += present[i, k, 2]
+    add_present(0, len(wet), cut, places, wet, grains.order, values, present, through)
+    as_rows(given, present, sums)

@@ -5,7 +5,7 @@ during an interval, and what a grain received is taken from the stations with th
 momentum is conserved to round-off over the row (design/0027).
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -33,6 +33,7 @@ from ryusa.water.row_exchange import (
     fastest_in_row,
     means_at_grains,
     split_budgets,
+    table_of,
     tell,
     turbulence_at_stations,
 )
@@ -47,6 +48,7 @@ from ryusa.water.row_sums import (
     place_grains,
     sum_fixed_in_row,
 )
+from ryusa.water.row_threads import RowThreads, equal_parts, rows_of, sum_grains_shared
 from ryusa.water.slice_sums import (
     BAD_GRAIN,
     N_SUM_FIXED,
@@ -68,6 +70,7 @@ class GrainsInRow:
     fastest : largest rate at which drag brought water and grains to one speed in the last interval [1/s].
     worst : largest residual of the momentum of a station so far, over its largest term [-].
     eddies : present eddies of the grains; None without fluctuations.
+    threads : share the loops over grains.
     """
 
     scene: Scene
@@ -90,16 +93,19 @@ class GrainsInRow:
     _met: MetByGrains
     _z: Floats  # heights above the bottom, plus z_low [m]
     eddies: Eddies | None = None
+    threads: RowThreads = field(default_factory=RowThreads)
 
     @staticmethod
     def begin(
-        scene: Scene, row: ColumnRow, x: Floats, state: RowState | None = None
+        scene: Scene, row: ColumnRow, x: Floats, state: RowState | None = None,
+        threads: RowThreads | None = None,
     ) -> "GrainsInRow":  # fmt: skip
         """Cut the grains at x [m], shape (n_grain, 3), in water of a given state.
 
         Parameters
         ----------
         state : None: only the concentrations are of interest, as for the first state of the water.
+        threads : share the loops over grains; the bits do not depend on them.
 
         Raises
         ------
@@ -136,6 +142,8 @@ class GrainsInRow:
             GrainNumbers.of(scene, None), bed, cut, bed_cut, places, bed_places,
             MetByGrains.of(n), z,
         )  # fmt: skip
+        if threads is not None:
+            made.threads = threads
         made._concentrate()
         if column.fluctuations is Fluctuations.RANDOM_WALK:
             made.eddies = eddies.begin(column.seed, n)
@@ -151,10 +159,11 @@ class GrainsInRow:
 
     @staticmethod
     def resume(
-        scene: Scene, row: ColumnRow, state: RowState, found: RowGrainState, sampled: Floats
-    ) -> "GrainsInRow":
+        scene: Scene, row: ColumnRow, state: RowState, found: RowGrainState, sampled: Floats,
+        threads: RowThreads | None = None,
+    ) -> "GrainsInRow":  # fmt: skip
         """Go on from a snapshot; `sampled` is the water at the grains, columns of `model.fluid`."""
-        grains = GrainsInRow.begin(scene, row, np.array(found.x), state)
+        grains = GrainsInRow.begin(scene, row, np.array(found.x), state, threads)
         grains.told.w[:], grains.told.force_z[:] = found.w, found.force_z
         grains.sampled, grains.eddies = np.array(sampled), found.eddies
         return grains
@@ -170,7 +179,7 @@ class GrainsInRow:
     def changed(self, scene: Scene, row: ColumnRow, state: RowState) -> "GrainsInRow":
         """The same grains in a scene that the timeline changed: its slope, or removed fixed grains."""
         found = self.snapshot()
-        other = GrainsInRow.resume(scene, row, state, found, self.sampled)
+        other = GrainsInRow.resume(scene, row, state, found, self.sampled, self.threads)
         other.worst = self.worst
         return other
 
@@ -181,7 +190,7 @@ class GrainsInRow:
         ----------
         x : centres of the grains now [m], shape (n_grain, 3); nan for one that is away.
         """
-        other = GrainsInRow.begin(self.scene, self.row, x, state)
+        other = GrainsInRow.begin(self.scene, self.row, x, state, self.threads)
         other.told.w[:], other.told.force_z[:] = self.told.w, self.told.force_z
         other.worst, other.eddies = self.worst, self.eddies
         other._sample(state)
@@ -260,10 +269,14 @@ class GrainsInRow:
         segments, stations = len(told.phi), len(told.u)
         sums, fixed = np.zeros((N_ROW_SUM, segments, p.n)), np.zeros((N_SUM_FIXED, segments, p.n))
         through, largest = np.zeros((stations, p.n)), np.array([0.0, -1.0])
-        sum_grains_in_row(
+        given = (
             p, shape, float(row.x_low), self._grains, self._cut, self._places, x, v, impulse, self.sampled,
             self._met, told.wet, 1.0 / dt, self._z, sums, through, largest,
         )  # fmt: skip
+        if self.threads.of(len(x)) > 1:
+            sum_grains_shared(self.threads, *given)
+        else:
+            sum_grains_in_row(*given)
         if largest[BAD_GRAIN] >= 0.0:
             raise ValueError(f"the place of grain {int(largest[BAD_GRAIN])} is not finite")
         self.x[:] = x
@@ -317,16 +330,27 @@ class GrainsInRow:
         turbulence = np.zeros((0, *told.u.shape))
         if self.eddies is not None:
             turbulence = turbulence_at_stations(p, shape, told.phi, np.array(state.edges))
-        at = means_at_grains(p, shape, self._cut, self._places, told, turbulence, self._met)
-        speeds = np.zeros((0, 3))
-        if self.eddies is not None:
-            u_tau, drift = np.sqrt(at[:, U_TAU_SQUARE]), at[:, DRIFT]
-            speeds = eddies.speeds(self.eddies, self.scene.plane_case, u_tau, drift, at[:, 2])
-        self.sampled = np.empty((len(self._z), N_SAMPLED))
-        sample(
-            at, self._met.submerged / self._cut.whole, self._grains.solid, speeds, laws.buoyancy, 0.0,
-            laws.rho_w, laws.g_x, laws.g_z, self.sampled,
-        )  # fmt: skip
+        self.sampled, table = np.empty((len(self._z), N_SAMPLED)), table_of(shape, told, turbulence)
+
+        def tell_some(begin: int, end: int) -> None:
+            some, these = slice(begin, end), self.eddies
+            cut, places = rows_of(begin, end, self._cut), rows_of(begin, end, self._places)
+            met = rows_of(begin, end, self._met)
+            at, speeds = means_at_grains(p, shape, cut, places, told, table, met), np.zeros((0, 3))
+            if these is not None:
+                u_tau, drift = np.sqrt(at[:, U_TAU_SQUARE]), at[:, DRIFT]
+                these = Eddies(these.r[some], these.spent[some], these.count[some])
+                speeds = eddies.speeds(these, self.scene.plane_case, u_tau, drift, at[:, 2])
+            sample(
+                at, met.submerged / cut.whole, self._grains.solid[some], speeds, laws.buoyancy, 0.0,
+                laws.rho_w, laws.g_x, laws.g_z, self.sampled[some],
+            )  # fmt: skip
+
+        parts = self.threads.of(len(self._z))
+        if parts > 1:
+            self.threads.share(equal_parts(len(self._z), parts), tell_some)
+        else:
+            tell_some(0, len(self._z))
 
 
 def _with_those_away(scene: Scene, row: ColumnRow, x: Floats, v: Floats) -> tuple[Floats, Floats]:
