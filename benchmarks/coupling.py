@@ -1,6 +1,7 @@
 """What water that feels its grains costs: a flowing bed of 20,172 grains in 3D, on one thread.
 
     python benchmarks/coupling.py              # three to four minutes
+    python benchmarks/coupling.py --row        # instead of one column a row of them, five minutes
     python benchmarks/coupling.py --save       # and keep the table in benchmarks/results/
 
 The packaged dense 3D case under a column of water, as `ryusa run` steps it: 50 steps, then the exchange. The
@@ -27,7 +28,9 @@ from ryusa.build import build
 from ryusa.casefile import read
 from ryusa.engine.cpu.engine import CpuEngine
 from ryusa.running.provenance import processor
+from ryusa.water import row_grains
 from ryusa.water.coupling import Coupling
+from ryusa.water.row_coupling import RowCoupling
 
 REPEATS = 15
 FLOW = 12_000  # steps under water before anything is timed
@@ -46,6 +49,80 @@ KINDS: dict[str, dict[str, str]] = {
         "column = { fluctuations = 'random walk' } }"
     },
 }
+
+
+ROWS = (
+    (50, 60, 16, 10),
+    (200, 20, 16, 10),
+    (200, 60, 4, 4),
+    (200, 60, 16, 10),
+)  # segments, cells; width, bed over d
+SETTLE = 60  # intervals before a row is timed
+
+
+def row_of(segments: int, cells: int, width: int, bed: int) -> Any:
+    """A stream with a bed, of the packaged river: segments of 3 d, cells up to 24 d."""
+    path, length = Path(str(files("ryusa").joinpath("cases", "river.toml"))), 0.03 * segments
+    keys = {
+        "water.row.bottom": f"[['0 m', '{0.02 * length:g} m'], ['{length:g} m', '0 m']]",
+        "water.row.width": f"{width} cm",
+        "water.row.height": "24 cm",
+        "water.row.dams": "[]",
+        "water.column.cell": f"{24 / cells:g} cm",
+        "water.depth": "10 cm",
+        "build.bed": f"{bed} cm",
+        "build.begin": "0.1 m",
+        "build.end": f"{length - 0.3:g} m",
+        "exits": f"[{{ name = 'outlet', point = ['{length:g} m', '0 m', '0 m'], normal = [1, 0, 0] }}]",
+        "feeds": "[]",
+        "timeline": "[]",
+    }
+    return read(path, keys)
+
+
+def measure_row(segments: int, cells: int, width: int, bed: int) -> dict[str, Any]:
+    """Time steps and exchanges of a row of columns."""
+    built, water_alone = build(row_of(segments, cells, width, bed)), 0.0
+    scene, row = built.scene, built.scene.row
+    assert row is not None
+    advance = row_grains.advance_row
+
+    def timed(*args: Any, **named: Any) -> Any:
+        nonlocal water_alone
+        begin = time.process_time()
+        found = advance(*args, **named)
+        water_alone += time.process_time() - begin
+        return found
+
+    row_grains.advance_row = timed
+    engine = CpuEngine()
+    engine.load(scene, built.state)
+    coupling = RowCoupling.begin(scene, row, built.state.x)
+    engine.set_fluid(coupling.sampled)
+    taken, given, alone, steps = [], [], [], []
+    for turn in range(SETTLE + REPEATS):
+        water_alone, k = 0.0, coupling.steps
+        begin = time.process_time()
+        engine.advance(k).raise_if_any()
+        middle = time.process_time()
+        engine.set_fluid(coupling.exchange(*engine.kinematics()))
+        if turn >= SETTLE:
+            taken.append(middle - begin)
+            given.append(time.process_time() - middle)
+            alone.append(water_alone)
+            steps.append(k)
+    row_grains.advance_row = advance
+    moved, more = statistics.median(taken), statistics.median(given)
+    return {
+        "segments": segments,
+        "cells": row.column.n,
+        "grains": scene.n_grain,
+        "steps an exchange": statistics.median(steps),
+        "steps [ms]": round(1e3 * moved, 2),
+        "exchange [ms]": round(1e3 * more, 2),
+        "of it water [ms]": round(1e3 * statistics.median(alone), 2),
+        "share of the exchange [%]": round(100.0 * more / (moved + more), 1),
+    }
 
 
 def case_of(keys: dict[str, str], columns: int) -> Any:
@@ -116,6 +193,7 @@ def main() -> None:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--columns", type=int, default=41, help="grains along x and y: 41 x 41 x 12")
+    parser.add_argument("--row", action="store_true", help="a row of columns instead of one")
     parser.add_argument("--save", action="store_true", help="keep the table in benchmarks/results/")
     options = parser.parse_args()
     table: dict[str, Any] = {
@@ -123,12 +201,16 @@ def main() -> None:
         "machine": {"cpu": processor(), "system": platform.platform(), "python": platform.python_version()},
         "versions": {name: version(name) for name in ("ryusa", "numba", "llvmlite", "numpy")},
         "load average before": [round(a, 2) for a in os.getloadavg()],
-        "rows": measure(options.columns),
+        "rows": (measure_row(*one) for one in ROWS) if options.row else measure(options.columns),
     }
-    for row in table["rows"]:
+    rows, table["rows"] = table["rows"], []
+    for row in rows:
+        table["rows"].append(row)
         print(", ".join(f"{key} {value}" for key, value in row.items()), flush=True)
     if options.save:
-        file = Path(__file__).parent / "results" / f"coupling-{table['date']}.json"
+        file = (
+            Path(__file__).parent / "results" / f"{'row' if options.row else 'coupling'}-{table['date']}.json"
+        )
         file.parent.mkdir(exist_ok=True)
         file.write_text(json.dumps(table, indent=1) + "\n")
         print(f"kept in {file.relative_to(Path(__file__).parent.parent)}")
