@@ -271,6 +271,8 @@ def robustness_table(standard: Mapping[str, Any], full: Mapping[str, Any]) -> st
         "|---|---|---|---|",
     ]
     for one in standard["findings"]:
+        if one["id"] not in more:  # came after the kept full level
+            continue
         shares = [one["robustness"], more[one["id"]]["robustness"]]
         if not shares[1]["of"]:
             continue

@@ -66,7 +66,7 @@ def test_where_nothing_comes_to_rest_the_row_says_so(short):
 def test_factors_are_the_registered_ones():
     assert set(REGISTRATION.claims["debris-river"].factors) == set(part.DESIGN.levels)
     short = [one for one in part.tasks(STANDARD) if part.SHORT in str(one.overrides)]
-    assert len(short) == 4  # of 72
+    assert len(short) == 4  # of 8
     assert len(part.paired(STANDARD)) == 1 and not REGISTRATION.claims["debris-river-time"].factors
 
 

@@ -12,14 +12,8 @@ from ryusa.measure import front
 from ryusa.measure.statistics import Floats
 from ryusa.results import Results
 from ryusa.studies.osada2004._bands import band
-from ryusa.studies.osada2004._factors import (
-    PARTING_RULE,
-    SLIP_RULE,
-    STIFFNESS_RATIO,
-    friction_angle,
-    n_settings,
-)
-from ryusa.studies.osada2004._parts import PACKING, CaseRun, Found, Plan, paper_run
+from ryusa.studies.osada2004._factors import PARTING_RULE, SLIP_RULE, STIFFNESS_RATIO
+from ryusa.studies.osada2004._parts import PACKING, PHI, CaseRun, Found, Plan, paper_run
 from ryusa.study import Design, Factor, Finding, Trial, exact, over_seeds, seeds_trial
 
 FIGURE = "debris-river"
@@ -29,7 +23,7 @@ CASE = "debris_river"
 LONG, SHORT = "0.01 s", "0.001 s"  # collision times of d = 20 cm, Eq. (8)
 DESIGN = Design(
     (
-        friction_angle(),
+        Factor(PHI, {"30 deg": {}, "40 deg": {"contact.friction_angle": "40 deg"}}),
         SLIP_RULE,
         PARTING_RULE,
         STIFFNESS_RATIO,
@@ -86,8 +80,12 @@ class River:
 
 
 def settings(plan: Plan) -> list[dict[str, str]]:
-    """Sets of free choices, the shipped one first."""
-    return DESIGN.settings(n_settings(plan))
+    """Sets of free choices, the shipped one first; others at the full level alone.
+
+    With friction of 10 and 20 deg, as other parts have it, 13 of 24 runs stopped: where water runs out of a
+    dense fast flow, drag acts within less than a step that resolves contacts of 0.01 s.
+    """
+    return DESIGN.settings(plan.pick(0, 0, 8))
 
 
 def paired(plan: Plan) -> list[dict[str, str]]:
