@@ -45,7 +45,7 @@ def paper(
         Path, typer.Option("-o", "--out", metavar="FOLDER", help="Page, tables, pictures and runs.")
     ] = Path("runs/paper"),
     quick: Annotated[
-        bool, typer.Option("--quick", help="One seed, the cases as they ship: indicative, 3 minutes.")
+        bool, typer.Option("--quick", help="One seed, the cases as they ship: indicative, 5 minutes.")
     ] = False,
     full: Annotated[
         bool,
