@@ -273,7 +273,7 @@ class GrainsInRow:
             p, shape, float(row.x_low), self._grains, self._cut, self._places, x, v, impulse, self.sampled,
             self._met, told.wet, 1.0 / dt, self._z, sums, through, largest,
         )  # fmt: skip
-        if self.threads.of(len(x)) > 1:
+        if self.threads.number_for(len(x)) > 1:
             sum_grains_shared(self.threads, *given)
         else:
             sum_grains_in_row(*given)
@@ -346,7 +346,7 @@ class GrainsInRow:
                 laws.rho_w, laws.g_x, laws.g_z, self.sampled[some],
             )  # fmt: skip
 
-        parts = self.threads.of(len(self._z))
+        parts = self.threads.number_for(len(self._z))
         if parts > 1:
             self.threads.share(equal_parts(len(self._z), parts), tell_some)
         else:

@@ -45,7 +45,7 @@ class RowThreads:
         self.n = n
         self._pool = ThreadPoolExecutor(n - 1, thread_name_prefix="ryusa-water") if n > 1 else None
 
-    def of(self, n_grain: int) -> int:
+    def number_for(self, n_grain: int) -> int:
         """Threads that share this number of grains."""
         return max(min(self.n, n_grain // SHARED), 1)
 
@@ -79,7 +79,7 @@ def sum_grains_shared(
     """As `sum_grains_in_row`, with the same bits, by threads."""
     given, present = np.zeros((*wet.shape, N_GIVEN)), np.zeros((*wet.shape, N_PRESENT))
     amounts, values = np.empty((len(z), N_GIVEN)), np.empty((len(z), N_PRESENT + 1))
-    parts, order = threads.of(len(z)), grains.order
+    parts, order = threads.number_for(len(z)), grains.order
     rows, segments = equal_parts(len(z), parts), equal_work(places, len(wet), parts)
 
     def find_given(a: int, b: int) -> None:

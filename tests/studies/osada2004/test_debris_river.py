@@ -67,6 +67,8 @@ def test_factors_are_the_registered_ones():
     assert set(REGISTRATION.claims["debris-river"].factors) == set(part.DESIGN.levels)
     short = [one for one in part.tasks(STANDARD) if part.SHORT in str(one.overrides)]
     assert len(short) == 4  # of 8
+    full = Plan(Level.FULL, (1,))
+    assert all(one in part.settings(full) for one in part.paired(full))
     assert len(part.paired(STANDARD)) == 1 and not REGISTRATION.claims["debris-river-time"].factors
 
 
