@@ -252,7 +252,7 @@ def _of_segments(entry: MeasureEntry, found: LongSection) -> MeasureTable:
     at = f"at t = {found.t:.4g} s"
     if found.window is not None:
         at = f"means with standard errors over t = {found.window[0]:.4g} to {found.window[1]:.4g} s"
-    some = f"one of {every} segments; `ryusa measure RUN long_section --csv FILE` writes all {len(found.x)}"
+    some = f"one in {every} is listed; `ryusa measure RUN long_section --csv FILE` writes all {len(found.x)}"
     return MeasureTable(entry.name, entry.doc, tuple(columns.values()), rows, (at, *[some] * (every > 1)))
 
 
