@@ -17,10 +17,12 @@ from ryusa.results import Results
 from ryusa.studies.validation import river_bands as bands
 from ryusa.studies.validation import river_basics as basics
 from ryusa.studies.validation import river_dam as dam
+from ryusa.studies.validation import river_dam_break as over_bed
 from ryusa.studies.validation import river_delta as delta
 from ryusa.studies.validation import river_exner as exner
 from ryusa.studies.validation import river_grains as with_grains
 from ryusa.studies.validation import river_overload as overload
+from ryusa.studies.validation.river_dam_break import ritter
 from ryusa.study import CaseRun, Finding, Found, Level, Plan, Source, Task, calculation, comparison, misfit
 from ryusa.water import steady
 from ryusa.water.row import advance_row, discharges, row_at_rest
@@ -138,12 +140,6 @@ def dupuit(x: Floats) -> Floats:
     return np.sqrt(DAM_HIGH**2 - (DAM_HIGH**2 - DAM_LOW**2) * part)
 
 
-def ritter(x: Floats) -> Floats:
-    """Depth of a dam break over a dry bed [m]."""
-    c = math.sqrt(G * HIGH)
-    return np.clip(2.0 * c - x / BREAK_TIME, 0.0, 3.0 * c) ** 2 / (9.0 * G)
-
-
 def stoker(ahead: float) -> tuple[float, float, float]:
     """Depth [m] and speed [m/s] of the plateau of a dam break over water, and speed of its front [m/s]."""
     c, low, high = math.sqrt(G * HIGH), ahead, HIGH
@@ -188,7 +184,7 @@ def tasks(plan: Plan) -> Sequence[Task]:
     every += [_uniform(slope) for slope in SLOPES]
     every += [_seepage(across, inertia) for across in ACROSS for inertia in (False, True)]
     every += [_backwater(), *with_grains.tasks(plan), *delta.tasks(plan), *exner.tasks(plan)]
-    every += [*dam.tasks(plan), *overload.tasks(plan)]
+    every += [*dam.tasks(plan), *overload.tasks(plan), *over_bed.tasks(plan)]
     return [*every, *(_weir(crest) for crest in (0, *_crests(plan)))]
 
 
@@ -235,6 +231,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
         *exner.judge(found, plan),
         *dam.judge(found, plan),
         *overload.judge(found, plan),
+        *over_bed.judge(found, plan),
     ]
 
 
@@ -242,7 +239,7 @@ def _ritter(found: Found) -> Finding:
     ours, errors = list[Curve](), []
     for mm, band in bands.RITTER_DEPTH.items():
         got = found[_break(0.0, mm, 1)]
-        error = float(np.abs(got["h"] - ritter(got["x"])).mean() / HIGH)
+        error = float(np.abs(got["h"] - ritter(got["x"], BREAK_TIME, HIGH)).mean() / HIGH)
         errors.append(misfit(f"mean error over the first depth, segments of {mm} mm", error, "-", band))
         ours.append(Curve(f"segments of {mm} mm", got["x"], got["h"]))
     fine = found[_break(0.0, 5, 1)]
@@ -253,7 +250,14 @@ def _ritter(found: Found) -> Finding:
     x = np.linspace(-1.0, 1.5, 200)
     words = Source("Ritter 1892: h = (2 sqrt(g h0) - x/t)^2/(9 g)")
     return comparison(
-        "ritter", "Dam break over a dry bed", words, X, H, ours, [Curve("closed form", x, ritter(x))], errors
+        "ritter",
+        "Dam break over a dry bed",
+        words,
+        X,
+        H,
+        ours,
+        [Curve("closed form", x, ritter(x, BREAK_TIME, HIGH))],
+        errors,
     )
 
 

@@ -112,3 +112,18 @@ OVERLOAD_RISE = Band(
 OVERLOAD_SHAPE = at_most(
     0.2, "a fifth: the bed fluctuates by a tenth of a diameter, and q_s adapts over 20 d"
 )
+# A dam break over a loose bed, by the signs that experiments give (design/0028); over a rigid bed none shows.
+DAM_BREAK_SCOUR = Band(
+    1.0,
+    math.inf,
+    "-",
+    "at least one diameter: Capart & Young 1998, the wave scours; the bed is known to half of one",
+)
+DAM_BREAK_RISE = Band(
+    0.05,
+    math.inf,
+    "-",
+    "Capart & Young 1998: a jump forms near the centre of the wave; Ritter's surface falls",
+)
+DAM_BREAK_LEAD = Band(0.0, math.inf, "-", "grains lead: more of them at the front than at the gate")
+DAM_BREAK_REACH = Band(0.9, 1.0, "-", "moving grains reach the surface at the front, to a tenth of the depth")
