@@ -127,3 +127,9 @@ DAM_BREAK_RISE = Band(
 )
 DAM_BREAK_LEAD = Band(0.0, math.inf, "-", "grains lead: more of them at the front than at the gate")
 DAM_BREAK_REACH = Band(0.9, 1.0, "-", "moving grains reach the surface at the front, to a tenth of the depth")
+# A wall reflects a bore; the front of a debris flow strikes a dam.
+BORE_DEPTH = at_most(0.01, "one layer in segments of a sixth of the depth")
+BORE_WAY = at_most(0.02, "half a segment, and the time in which the bore forms")
+FRONT_FORCE = Band(
+    0.7, 1.3, "-", "30 %: one fluid with one speed, as for the way of a front, and hydrostatic pressure"
+)

@@ -1,4 +1,4 @@
-"""Debris flows in a row of columns: growth, sign of erosion, where they stop, and grids (design/0028)."""
+"""Debris flows in a row of columns: growth, erosion, where they stop, grids, impact (design/0028)."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -16,6 +16,7 @@ from ryusa.results import Results
 from ryusa.results.row import RowFrames
 from ryusa.studies.validation import river_bands as bands
 from ryusa.studies.validation import river_grids as grids
+from ryusa.studies.validation import river_impact as impact
 from ryusa.studies.validation.equilibrium import stopping
 from ryusa.study import (
     CaseRun,
@@ -83,14 +84,15 @@ def tasks(plan: Plan) -> Sequence[Task]:
     if plan.level is not Level.FULL:
         return []
     flows = [one(seed) for seed in SEEDS for one in (_friction, _feed, _bed)]
-    return [*flows, *grids.tasks(), *(_mixture(side) for side in RATES)]
+    return [*flows, *grids.tasks(), *(_mixture(side) for side in RATES), *impact.tasks()]
 
 
 def measure(run: Results, one: CaseRun) -> Mapping[str, Floats | float]:
-    """Friction of a dry flow, growth over a bed or its rise, way of a front, or what a grid holds."""
+    """Friction of a dry flow, growth over a bed or its rise, a front's way or force, what a grid holds."""
     if one.case == BED:
         return risen(run) if one.get("feeds") else grown(run)
-    return {FRICTION: stopping, FEED: stopped, grids.GRID: grids.held_back}[one.case](run)
+    of_case = {FRICTION: stopping, FEED: stopped, grids.GRID: grids.held_back, impact.CASE: impact.struck}
+    return of_case[one.case](run)
 
 
 def grown(run: Results) -> dict[str, Floats]:
@@ -215,7 +217,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     """Each flow beside its balance."""
     if plan.level is not Level.FULL:
         return []
-    return [_growth(found), _stop(found), grids.of_grids(found), _sign(found)]
+    return [_growth(found), _stop(found), grids.of_grids(found), _sign(found), impact.of_front(found)]
 
 
 def _growth(found: Found) -> Finding:
