@@ -109,3 +109,24 @@ def test_a_bed_that_cannot_be_is_refused(bed: str, says: str) -> None:
         build(read_text(STREAM, {"build.bed": bed}))
     faults = (caught.value, *caught.value.others)
     assert any(one.key == "build.bed" and says in one.line for one in faults), [one.line for one in faults]
+
+
+def test_bottom_and_dams_are_of_the_material_of_the_bed() -> None:
+    keys = {
+        "build.bed": RIDGE,
+        "grains.bed_material": "smooth",
+        "materials.smooth.friction": "0.0",
+        "pairs": "[{ materials = ['grains', 'smooth'], friction = 0.0 }]",
+        "water.row.dams": "[{ name = 'dam', begin = '0.7 m', end = '0.8 m', height = '2 cm' }]",
+        "walls": "[{ name = 'post', shape = 'cylinder', at = ['0.96 m', '1 cm', '0 m'], "
+        "axis = ['0 m', '0 m', '5 cm'], radius = '5 mm' }]",
+    }
+    scene = build(read_text(STREAM, keys)).scene
+    walls, materials = scene.walls, scene.materials
+    assert walls is not None
+    assert materials is not None
+    of_faces = materials.of[-len(walls.wall) :]
+    found = {
+        name: {materials.names[k] for k in of_faces[walls.wall == w]} for w, name in enumerate(walls.names)
+    }
+    assert found == {"post": {"grains"}, "bottom": {"smooth"}, "dam": {"smooth"}}

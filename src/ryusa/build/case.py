@@ -190,7 +190,8 @@ def with_materials(case: Case, scene: Scene, of: Numbers) -> Scene:
     if walls is not None:
         of_case = [names.index(one.material or GRAINS) for one in case.walls]
         others = walls.names[len(of_case) :]  # bottom and dams of a stream
-        own = np.array([*of_case, *(names.index(GRAINS) for _ in others)], np.int8)
+        bed = names.index(case.grains.bed_material or GRAINS)
+        own = np.array([*of_case, *(bed for _ in others)], np.int8)
         of = np.concatenate([of, own[walls.wall]])
     of.flags.writeable = False
     pairs = [case_of_pair(case, *sorted((a, b), key=names.index)) for a in names for b in names]
