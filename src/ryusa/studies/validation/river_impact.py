@@ -185,7 +185,7 @@ def of_front(found: Found) -> Finding:
     for (speed, seed), one in forces.items():
         u, h, c = (float(found[_run(speed, seed)][key]) for key in ("u", "h", "c"))
         said.append(
-            f"enters at {speed:g} m/s, seed {seed}: comes with {u:.2f} m/s, {100.0 * h:.1f} cm deep, "
+            f"Entering at {speed:g} m/s, seed {seed}: comes with {u:.2f} m/s, {100.0 * h:.1f} cm deep, "
             f"c {c:.2f}, Froude number {one['froude']:.2f}; mean over that of the bore {one['ratio']:.2f}, "
             f"largest {one['peak']:.2f}, mean over rho u^2 h {one['drag']:.2f}"
         )
@@ -202,5 +202,5 @@ def of_front(found: Found) -> Finding:
         ],
         {"case": f"`validation/{CASE}`", "runs": f"{len(SEEDS)} seeds at each of {len(SPEEDS)} speeds"},
         "Force of grains on the dam and of still water as deep as before it; one fluid stops as a whole. "
-        f"{'; '.join(said)}.",
+        f"{'. '.join(said)}.",
     )  # fmt: skip
