@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.optimize import brentq
+from scipy.optimize import root_scalar
 
 from ryusa.cases import case_path
 from ryusa.figures.comparison import Axis, Curve
@@ -48,7 +48,9 @@ def reflected_bore(u: float, h: float, g: float) -> tuple[float, float]:
     Armanini, Larcher & Odorizzi 2011 give for the reflection of debris flows, derived here.
     """
     froude_2 = u * u / (g * h)
-    r = float(brentq(lambda r: (r * r - 1.0) * (r - 1.0) - 2.0 * froude_2 * r, 1.0, 3.0 + 2.0 * froude_2))
+    r = root_scalar(
+        lambda r: (r * r - 1.0) * (r - 1.0) - 2.0 * froude_2 * r, bracket=(1.0, 3.0 + 2.0 * froude_2)
+    ).root
     return r * h, u / (r - 1.0)
 
 
@@ -84,7 +86,7 @@ def _run(speed: float, seed: int) -> CaseRun:
 
 def alone() -> Task:
     """The water that runs against a wall."""
-    return calculation(water_alone, seconds=3.0)
+    return calculation(water_alone, seconds=1.0)
 
 
 def tasks() -> Sequence[Task]:
