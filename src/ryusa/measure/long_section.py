@@ -11,7 +11,7 @@ from ryusa.catalogue import BEDS
 from ryusa.errors import ResultsError
 from ryusa.measure._run import Run, settle_time
 from ryusa.measure.along_row import grains_along_row, moving_in_row
-from ryusa.measure.snapshot import scene_at
+from ryusa.measure.inclined import fall_of, gravity_at, pull_of
 from ryusa.measure.statistics import standard_errors
 from ryusa.measure.table import lines
 from ryusa.measure.water import HALF, averaged_over_grain, height_reached
@@ -50,12 +50,12 @@ class LongSection:
     bottom, floor : height of the bottom, and of it with the dams that let no water through [m].
     bed : height of the top of the bed of grains [m], see `long_section`; the floor without one.
     surface : height of the surface [m]; the floor where it is dry.
-    depth : from the bed to the surface [m]; 0 where the surface lies in the bed.
+    depth : from the bed to the surface, along z [m]; 0 where the surface lies in the bed.
     discharge : of water, mean of both ends of a segment [m2/s].
-    speed : of water and grains, the discharge of both over the depth [m/s]; nan where it is dry.
-    froude : speed over that of a long wave, sqrt(g_z depth) [-].
-    critical : critical depth of the discharge of both [m].
-    energy : height of the energy line, surface + speed**2/(2 g) [m].
+    speed : of water and grains, the discharge of both over the depth, along x [m/s]; nan where it is dry.
+    froude : speed along the bottom over that of a long wave on it [-], see Notes.
+    critical : depth along z at which the discharge of both has a Froude number of 1 [m].
+    energy : height of the energy line [m], see Notes.
     tau : shear stress at the bottom, mean of both ends [Pa].
     dams : name, first and last x [m] of each.
     volume : of free grains per area, with pores left out [m]; 0 in a run without, and so the following.
@@ -66,6 +66,16 @@ class LongSection:
     window : begin and end of the means [s]; None for one moment.
     error : standard errors of the means by name, in their unit; empty for one moment.
     grains : whether there are free grains.
+
+    Notes
+    -----
+    Where the bottom is inclined by alpha to the x axis and by theta to the horizontal, the flow has the speed
+    U = speed/cos(alpha) and, normal to the bottom, the depth h_n = depth cos(alpha). The Froude number is
+    U/sqrt(g cos(theta) h_n): that of `ryusa check` where flow is uniform, whatever the slope of the x axis.
+    The energy line lies the velocity head U**2/(2 g), which is vertical, above the surface; measured along
+    z, as `energy` is, that is U**2/(2 g_z). Speeds are taken as equal over the depth. alpha is that of the
+    bottom, the mean of both ends of a segment, also where a bed lies on it, and 0 over the crest of a closed
+    dam.
     """
 
     t: float
@@ -102,7 +112,7 @@ class LongSection:
         for name in names:
             columns[_column(name)] = getattr(self, name)
             if name in self.error:
-                columns[f"{name}_error"] = self.error[name]
+                columns[_column(name, "_error")] = self.error[name]
         return lines(columns)
 
 
@@ -152,20 +162,20 @@ def long_section(
 def _section(run: Run, found: RowFrames, frames: Ints, bed: Bed) -> LongSection:
     """The section at one frame, or means over several."""
     row, now = found.row, float(found.t[frames[-1]])
-    g_x, _, minus_g_z = np.asarray(scene_at(run, now).gravity).tolist()
-    g_z, g = -minus_g_z, math.hypot(g_x, minus_g_z)
+    fall, (g_x, g_z) = fall_of(row), gravity_at(run, now)
+    pull = pull_of(fall, g_x, g_z)
     series = _series(run, found, frames, bed)
     means = {name: one.mean(axis=0) for name, one in series.items()}
     depth, through = means["depth"], means["discharge"] + means["solid_discharge"]
     wet, all_above = depth > THIN, means["above"] + means["over"]
     speed = _over(through, depth, wet)
-    froude = _over(np.abs(speed), np.sqrt(g_z * depth), wet)
+    head = (1.0 + fall**2) * speed**2 / (2.0 * g_z)
     moved = np.abs(means["discharge"]) + np.abs(means["solid_discharge"]) > 0.0
     carried = _over(means["solid_discharge"], through, moved)
     errors: dict[str, Floats] = {}
     if len(frames) > 1:
         errors = {name: standard_errors(one) for name, one in series.items() if name not in _PARTS}
-        errors |= _errors_of_ratios(series, means, carried, wet, g_z, g)
+        errors |= _errors_of_ratios(series, means, carried, wet, pull, head)
     return LongSection(
         t=now,
         slope=math.atan2(g_x, g_z),
@@ -177,9 +187,9 @@ def _section(run: Run, found: RowFrames, frames: Ints, bed: Bed) -> LongSection:
         depth=depth,
         discharge=means["discharge"],
         speed=speed,
-        froude=froude,
-        critical=np.cbrt(through**2 / g_z),
-        energy=means["surface"] + speed**2 / (2.0 * g),
+        froude=_over(np.abs(speed), np.sqrt(pull * depth), wet),
+        critical=np.cbrt(through**2 / pull),
+        energy=means["surface"] + head,
         tau=means["tau"],
         dams=_dams(row),
         volume=means["volume"],
@@ -221,8 +231,8 @@ def _series(run: Run, found: RowFrames, frames: Ints, bed: Bed) -> dict[str, Flo
 
 
 def _errors_of_ratios(
-    series: dict[str, Floats], means: dict[str, Floats], carried: Floats, wet: NDArray[np.bool_], g_z: float,
-    g: float,
+    series: dict[str, Floats], means: dict[str, Floats], carried: Floats, wet: NDArray[np.bool_],
+    pull: Floats, head: Floats,
 ) -> dict[str, Floats]:  # fmt: skip
     """Standard errors of what follows from two means, to first order; nan where it is dry."""
     n = len(series["discharge"])
@@ -237,9 +247,9 @@ def _errors_of_ratios(
         grains = after["above"] - held * (after["above"] + after["over"])
         return {
             "speed": standard_errors((share - deeper) * speed),
-            "froude": standard_errors(share - 1.5 * deeper) * np.abs(speed) / np.sqrt(g_z * thick),
-            "critical": standard_errors(share) * np.cbrt(mean**2 / g_z) * 2.0 / 3.0,
-            "energy": standard_errors(after["surface"] + (share - deeper) * speed**2 / g),
+            "froude": standard_errors(share - 1.5 * deeper) * np.abs(speed) / np.sqrt(pull * thick),
+            "critical": standard_errors(share) * np.cbrt(mean**2 / pull) * 2.0 / 3.0,
+            "energy": standard_errors(after["surface"] + (share - deeper) * 2.0 * head),
             "transport_concentration": standard_errors(solid / mean),
             "concentration": standard_errors(grains / np.where(wet, all_above, math.nan)),
         }
@@ -255,8 +265,8 @@ class DepthHistory:
     x : middles of the segments [m], shape (n_segment,).
     depth : from the bed to the surface [m], as in `LongSection`.
     discharge : of water, mean of both ends of a segment [m2/s].
-    froude : Froude number [-], in the first frame with the discharge of grains by their speeds; nan where it
-        is dry.
+    froude : Froude number as in `LongSection` [-], in the first frame with the discharge of grains by their
+        speeds; nan where it is dry.
     dams : name, first and last x [m] of each.
     bed : height of the bed [m].
     volume : of free grains per area [m]; 0 in a run without.
@@ -295,9 +305,9 @@ class DepthHistory:
         return lines({_column(name): values for name, values in columns.items()})
 
 
-def _column(name: str) -> str:
-    """Name of a column of a table, with its unit."""
-    return name + _UNITS.get(name, "")
+def _column(name: str, of: str = "") -> str:
+    """Name of a column of a table, or of its error, with the unit."""
+    return name + of + _UNITS.get(name, "")
 
 
 def depth_history(
@@ -333,9 +343,10 @@ def depth_history(
         solid = _between(row.periodic, np.concatenate([held.flux[:1], rates]))
         volume, both = held.volume, through + solid
         solid[0] = math.nan
-    thick = np.where(depth > THIN, depth, math.nan)
+    thick, fall = np.where(depth > THIN, depth, math.nan), fall_of(row)
+    pull = np.array([pull_of(fall, *gravity_at(run, one)) for one in found.t[frames].tolist()])
     return DepthHistory(
-        found.t[frames], row.x, depth, through, np.abs(both) / np.sqrt(row.g_z * thick**3), _dams(row), beds,
+        found.t[frames], row.x, depth, through, np.abs(both) / np.sqrt(pull * thick**3), _dams(row), beds,
         volume, solid, bool(run.scene.n_grain),
     )  # fmt: skip
 
