@@ -150,6 +150,13 @@ def test_walls_that_water_flows_through_are_named() -> None:
     assert "walls for grains alone" not in rows()
 
 
+def test_side_walls_that_the_water_does_not_feel_are_named() -> None:
+    row = rows(more={"build.walls": "true"})["side walls"]
+    assert row.flag == "note" and "water.column.side_walls" in row.origin
+    assert "side walls" not in rows(more={"build.walls": "false"})
+    assert "side walls" not in rows(more={"build.walls": "true", "water.column.side_walls": "1 m"})
+
+
 def test_a_bed_of_a_rounded_slope_has_its_capacity() -> None:
     assert math.tan(math.atan2(0.0075, 1.5)) < 0.005
     row = {"water.row.bottom": "[['0 m', '0.0075 m'], ['1.5 m', '0 m']]", "water.row.dams": "[]",

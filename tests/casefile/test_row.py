@@ -77,6 +77,20 @@ def test_check_gives_the_depths_of_uniform_and_critical_flow(river):
     assert shown(case, "energy head over 'weir'") == pytest.approx(1.5 * shown(case, "critical depth"))
 
 
+@pytest.mark.parametrize(
+    ("end", "said"),
+    [
+        ("3.1 m", "2 % less over 1 segment"),
+        ("3.2 m", "4 % more over 2 segments"),
+        ("3.98 m", "9 % more over 10 segments"),
+    ],
+)
+def test_check_says_how_the_head_over_a_crest_differs_in_a_row(end, said):
+    text = RIVER.replace('end = "3.2 m"', f'end = "{end}"')
+    row = next(one for one in explain(read_text(text)) if one.name == "energy head over 'weir'")
+    assert said in row.origin
+
+
 def test_frames_fall_on_steps_and_the_step_keeps_the_courant_number(river):
     found = derive(river())
     assert 0.1 / found.dt == pytest.approx(round(0.1 / found.dt), abs=1e-9)

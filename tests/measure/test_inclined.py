@@ -26,7 +26,7 @@ def flow(turn: float, depth: float = DEPTH, *, ends: bool = True, solid: Any = N
     dx = LENGTH * math.cos(inclined) / N
     column = Column(0.0, 0.5e-3, CELLS, 0.02, area=1.0, bed=BedKind.MOVING, phi_max=0.6,
                     g_x=G * math.sin(turn), surface=SurfaceRule.VOLUME)  # fmt: skip
-    bottom = -math.tan(inclined) * dx * (np.arange(N) + 0.5)
+    bottom: Any = -math.tan(inclined) * dx * (np.arange(N) + 0.5)
     wall = RowEnd(EndKind.WALL) if ends else None
     row = ColumnRow(column, dx, bottom, G * math.cos(turn), wall, wall, solid=solid)
     t, x = np.arange(3) * 0.1, np.full((3, 1, 3), 1.0)

@@ -3,7 +3,10 @@
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ryusa.casefile.column.packed import packed
+from ryusa.casefile.column.schema import column_keys
 from ryusa.casefile.motion import slope
 from ryusa.casefile.row.capacity import GENTLEST, STEEPEST, DamDeposit, capacity, dam_deposit, shields_number
 from ryusa.casefile.row.hydrograph import hydrograph_rows
@@ -35,6 +38,8 @@ if TYPE_CHECKING:
     from ryusa.casefile.case import Case
     from ryusa.casefile.derive import Derived
 
+# Segments of a crest, and q/(sqrt(g) H^1.5) over it in a row, of `ryusa validate river` (design/0027)
+_CRESTS = ((1, 0.561), (2, 0.513), (3, 0.497), (5, 0.484), (10, 0.476))
 _NEAR = 0.15  # distance of a Froude number from 1 within which a flow is undular in nature
 
 
@@ -53,11 +58,15 @@ def row_rows(case: "Case", derived: "Derived") -> list[ExplainRow]:
 
 def _walls(case: "Case") -> list[ExplainRow]:
     """Walls of a stream that only its grains meet."""
+    rows: list[ExplainRow] = []
+    if case.build.kind == "stream" and case.build.walls and column_keys(case).side_walls is None:
+        about = "build.walls; give water.column.side_walls = water.row.width for their friction on the water"
+        rows.append(word("water", "side walls", "for grains alone", about, "note"))
     if not case.walls:
-        return []
+        return rows
     names = ", ".join(f"'{one.name}'" for one in case.walls)
     about = "water flows through them; for the water give a dam of [[water.row.dams]] within each"
-    return [word("water", "walls for grains alone", names, about, "note")]
+    return [*rows, word("water", "walls for grains alone", names, about, "note")]
 
 
 def _segments(case: "Case", ends: str) -> list[ExplainRow]:
@@ -175,11 +184,19 @@ def _dams(case: "Case", keys: RowSection, plan: RowPlan) -> list[ExplainRow]:
         )
         if dam.concentration is None and q > 0.0:
             head = (q / (WEIR * math.sqrt(case.motion.gravity * math.cos(slope(case))))) ** (2.0 / 3.0)
-            origin = "critical flow without loss: q = (2/3)^1.5 sqrt(g) H^1.5"
+            origin = f"critical flow without loss, q = (2/3)^1.5 sqrt(g) H^1.5; {_own_head(end - first)}"
             rows.append(number("water", f"energy head over '{dam.name}'", head, "cm", origin))
         if stream(case) and (found := dam_deposit(case, dam)) is not None:
             rows += _deposit_behind(dam.name, found)
     return rows
+
+
+def _own_head(segments: int) -> str:
+    """How much larger the energy head over a crest of so many segments is in a row (design/0027)."""
+    n, passes = np.array(_CRESTS).T
+    more = (WEIR / float(np.interp(segments, n, passes))) ** (2.0 / 3.0) - 1.0
+    over = f"{segments} segment{'s' * (segments > 1)}"
+    return f"in a row about {100.0 * abs(more):.0f} % {'more' if more > 0.0 else 'less'} over {over}"
 
 
 def _deposit_behind(name: str, found: DamDeposit) -> list[ExplainRow]:
