@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from scipy.special import erfc
+from tests.measure.made_rows import BALL, WIDTH, row_of, run_of
 
 from ryusa.casefile.read import read
 from ryusa.cases import case_path
@@ -58,3 +59,14 @@ def test_the_runs_differ_by_the_extra_feed_alone():
     assert bare.feeds[0] == case.feeds[0]
     assert case.feeds[1].rate[0] / (2650.0 * 0.032) == pytest.approx(overload.EXTRA)
     assert overload.tasks(Plan(Level.STANDARD, (1,))) == []
+
+
+def test_grains_on_the_apron_count_and_those_beyond_the_sill_have_passed():
+    t = np.arange(0.0, 3.05, 0.1)
+    x = np.tile([[0.15, 0.0, 0.01], [1.0, 0.0, 0.01], [2.5, 0.0, 0.01], [2.95, 0.0, 0.01]], (len(t), 1, 1))
+    x[:, 2, 0] += 0.15 * t  # comes to 2.95 m
+    run = run_of(row_of(300, ends=True), t, x, np.gradient(x, t, axis=0))
+    found = overload.measure(run, overload.tasks(Plan(Level.FULL, (1,)))[0])
+    assert found["there"] == pytest.approx(2.0 * BALL / WIDTH)
+    assert found["passed"] == pytest.approx(BALL / WIDTH)
+    assert found["end"] == pytest.approx(3.0)

@@ -77,7 +77,7 @@ DELTA_KEPT = at_most(1e-12, "round-off of the sum of masses")
 DELTA_SPEED = Band(0.95, 1.05, "-", "the shape of the front is steady: 5 %")
 DELTA_ANGLE = Band(-2.0, 2.0, "deg", "the front is a slope at the angle of repose of the same grains")
 # A wave of a loose bed against linear theory (design/0028) with the transport over even beds, nothing fitted.
-EXNER_DECAY = Band(0.8, 1.2, "-", "20 %: the slope of q_s is known to 10 %, and q_s adapts over 10 to 20 d")
+EXNER_DECAY = Band(0.8, 1.2, "-", "20 %: 10 % allowed for dq_s/dS, and q_s adapts over 10 to 20 d")
 EXNER_CELERITY: Mapping[str, Band] = {
     "tranquil": Band(0.0, math.inf, "m/s", "downstream below a Froude number of 1"),
     "rapid": Band(-math.inf, 0.0, "m/s", "upstream above it"),
@@ -89,7 +89,7 @@ EXNER_FROUDE: Mapping[str, Band] = {
 }
 # The deposit behind a dam with the transport over even beds, nothing fitted (design/0028).
 DAM_KEPT = at_most(1e-12, "round-off of the sum of volumes over the width", "m2")
-DAM_SLOPE = Band(0.85, 1.15, "-", "15 %: the slope of q_s is known to 10 %, that of the bed to 5 %")
+DAM_SLOPE = Band(0.85, 1.15, "-", "15 %: 10 % allowed for dq_s/dS, 5 % for the slope of the bed")
 DAM_VOLUME = Band(0.85, 1.15, "-", "15 %: as its slope, and half a diameter of the height of the dam")
 AT_REST = at_most(1e-3, "a thousandth of a diameter in 0.2 s, on a level bed under still water")
 # Debris flows (`river_debris`): formulae of steady flow, given what is measured in the same run.
@@ -102,12 +102,14 @@ DEBRIS_SIGN: Mapping[str, tuple[Band, Band]] = {  # concentration over that of e
 }
 # A grid holds nearly all of a debris flow back where a grain barely passes, and little where three pass.
 GRID_HOLDS = Band(0.8, 1.0, "-", "Ikeya & Uehara 1980, as quoted: it jams below 1.5")
-GRID_PASSES = at_most(0.2, "it passes above 2 to 3")
+GRID_PASSES = at_most(
+    0.2, "registered before the runs from memory, that it passes above 2 to 3; not found in a source"
+)
 GRID_FALLS = Band(-math.inf, 0.05, "-", "a rise of some grains of a hundred is chance")
 # A bed that is fed half as much again as it carries on, with linear theory and the transport over even beds,
 # nothing fitted (design/0028). The extra feed changes the slope by a third, which is not small.
 OVERLOAD_RISE = Band(
-    0.75, 1.25, "-", "25 %: dq_s/dS is known to 10 %, and the change of slope is a third of it"
+    0.75, 1.25, "-", "25 %: 10 % allowed for dq_s/dS, and the change of slope is a third of it"
 )
 OVERLOAD_SHAPE = at_most(
     0.2, "a fifth: the bed fluctuates by a tenth of a diameter, and q_s adapts over 20 d"

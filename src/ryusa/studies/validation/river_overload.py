@@ -87,21 +87,22 @@ def measure(run: Results, one: CaseRun) -> dict[str, Floats]:
     Returns
     -------
     `x`, `bed` and `volume` [m], middles of the segments, height of the bed, grains per area without pores;
-    `t` [s], middle of the window; `passed` [m2], grains that went over the sill until the last frame;
-    `there` [m2], grains downstream of the feeders in the last frame.
+    `t` [s], middle of the window, and `end` [s], its last frame; `passed` [m2], grains that went over the
+    sill until that frame; `there` [m2], all grains upstream of the sill in it, those on the apron of the
+    feeders too.
     """
     del one
     found = row_of(run)
     frames = np.flatnonzero(found.t >= found.t[-1] - WINDOW + 1e-9)
     held = grains_along_row(run, found.row, frames)
     whole = grains_along_row(run, found.row, np.array([0, len(found.t) - 1]))
-    after = found.row.x > FED
     over = int(np.searchsorted(found.row.x_station, SILL))
     return {
         "x": found.row.x, "bed": bed_line(run, found, frames, "packed").mean(axis=0),
         "volume": held.volume.mean(axis=0), "t": np.array(found.t[frames].mean()),
+        "end": np.array(found.t[-1]),
         "passed": np.array(whole.passed[-1, over] - whole.passed[0, over]),
-        "there": np.array(whole.volume[-1][after].sum() * found.row.dx),
+        "there": np.array(whole.volume[-1][:over].sum() * found.row.dx),
     }  # fmt: skip
 
 
@@ -124,7 +125,7 @@ def judge(found: Found, plan: Plan) -> Sequence[Finding]:
     mean = np.mean(rises, axis=0)
     share = float(mean @ theory / (theory @ theory))
     off = float(np.sqrt(((mean - share * theory) ** 2).mean()) / theory.max())
-    fed_for = float(pairs[0][0]["t"]) + 0.5 * WINDOW - BEGIN
+    fed_for = float(pairs[0][0]["end"]) - BEGIN
     stored = [
         float((fed["there"] + fed["passed"] - bare["there"] - bare["passed"]) / (EXTRA * fed_for))
         for fed, bare in pairs
