@@ -66,12 +66,13 @@ class RowEndSection(Section):
     level: Length | None = None
     """Height of the surface beyond end = "level", over the x axis."""
     discharge: RowDischarge | None = None
-    """Discharge of end = "discharge": per width, or of the whole width (`width`)."""
+    """Discharge of end = "discharge", upstream alone: per width, or of the whole width (`width`)."""
     depth: PositiveLength | None = None
-    """Depth of the water that enters. When not given: that of the row, and where normal flow is faster than
-    waves the normal depth."""
+    """Depth of the water that enters, with end = "discharge" alone. When not given: that of the row, and
+    where normal flow is faster than waves the normal depth."""
     profile: Literal["developed", "uniform"] = "developed"
-    """Velocity over height at the inlet: that of steady flow over the bottom, or the same at every height."""
+    """Velocity over height with end = "discharge": that of steady flow over the bottom, or the same at every
+    height."""
 
 
 class RowDamSection(Section):
