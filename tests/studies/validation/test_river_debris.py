@@ -4,10 +4,12 @@ import math
 
 import numpy as np
 import pytest
+from tests.studies.validation.test_river_impact import front
 
 from ryusa.laws.debris import discharge_over_bed, equilibrium_concentration, run_out
 from ryusa.studies.validation import river_debris as debris
 from ryusa.studies.validation import river_grids as grids
+from ryusa.studies.validation import river_impact as impact
 from ryusa.study import Level, Outcome, Plan
 
 PLAN = Plan(Level.FULL, (1,))
@@ -16,7 +18,7 @@ T = np.linspace(0.0, 3.0, 31)
 FRICTION = 0.6
 
 
-def results(growth=1.0, way=1.0, held=(1.0, 0.5, 0.1), rise=(-1e-3, 1e-3)):
+def results(growth=1.0, way=1.0, held=(1.0, 0.5, 0.1), rise=(-1e-3, 1e-3), force=1.0):
     """What each run gives; every number as the formulae have it, but for the factors."""
     u, h, c = 0.9, 0.03, 0.35
     x_l, _ = run_out(u, h, c, debris.STEEP, debris.GENTLE, FRICTION, debris.RHO_S, debris.RHO_W, debris.G)
@@ -35,6 +37,7 @@ def results(growth=1.0, way=1.0, held=(1.0, 0.5, 0.1), rise=(-1e-3, 1e-3)):
         }  # fmt: skip
         for opening, share in zip(grids.OPENINGS, held, strict=True):
             found[grids.grid(seed, opening)] = {"t": T, "share": np.linspace(1.0, share, 31)}
+        found |= {impact._run(speed, seed): front(force) for speed in impact.SPEEDS}
     for side, factor, speed in zip(debris.RATES, (0.5, 1.5), rise, strict=True):
         found[debris._mixture(side)] = {
             "t": T, "series": speed * T, "c_star": np.array(0.55), "c": np.array(factor * c_eq),
@@ -53,6 +56,7 @@ def results(growth=1.0, way=1.0, held=(1.0, 0.5, 0.1), rise=(-1e-3, 1e-3)):
         ({"held": (0.9, 1.0, 0.1)}, {"grid"}),  # a wider opening must not hold more
         ({"rise": (1e-3, 1e-3)}, {"sign"}),
         ({"rise": (-1e-3, -1e-3)}, {"sign"}),
+        ({"force": 1.4}, {"front"}),
     ],
 )
 def test_each_flow_is_judged_by_its_own_formula(given, missed):
