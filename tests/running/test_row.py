@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from PIL import Image
 
 import ryusa
 from ryusa.casefile import explain
@@ -108,13 +109,28 @@ def test_a_long_section_has_the_stress_of_the_flow_up_to_the_inlet(weir: Results
     assert tau[0] == pytest.approx(tau[1], rel=0.5)  # half of it with the inlet's own, 0
 
 
-def test_a_page_or_film_of_water_alone_is_refused_by_name_and_a_report_goes_without(
-    weir: Results, tmp_path: Path
-) -> None:
-    with pytest.raises(ResultsError, match="no free grains to show in motion; ryusa draw RUN long_section"):
-        view_page(weir)
+def test_a_film_of_water_alone_is_that_of_its_long_section(weir: Results, tmp_path: Path) -> None:
+    path = tmp_path / "film.webp"
+    made = film(weir, path, frames=3, size=(640, 360))
+    with Image.open(path) as pictures:
+        assert (pictures.n_frames, pictures.size) == (3, (640, 360))
+        first = np.asarray(pictures.convert("RGB"))
+        pictures.seek(2)
+        last = np.asarray(pictures.convert("RGB"))
+    assert made.times[[0, -1]] == pytest.approx(weir.frames.t[[0, -1]])
+    apart = np.abs(first.astype(int) - last).max(axis=2) > 60
+    assert apart.any()  # the water moves
+    assert not apart[:, : 640 // 24].any()  # axes and their labels do not
+    for key, value in (("colour", "spin"), ("follow", 0)):
+        with pytest.raises(CaseError, match="is of films of grains"):
+            film(weir, path, **{key: value})
     with pytest.raises(ResultsError, match="has no free grains"):
-        film(weir, tmp_path / "film.webp")
+        film(weir, path, view="side")
+
+
+def test_a_page_of_water_alone_is_refused_by_name_and_a_report_goes_without(weir: Results) -> None:
+    with pytest.raises(ResultsError, match="no free grains to show in motion; ryusa film shows its water"):
+        view_page(weir)
     page = report_page([weir], size=1.0e6)
     assert "has no free grains to show in motion" in page
     assert "x_t" in page and "long_section" in page

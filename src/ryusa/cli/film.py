@@ -1,4 +1,4 @@
-"""`ryusa film`: the grains of a run in motion, as a file for a browser, a player or slides."""
+"""`ryusa film`: a run in motion, as a file for a browser, a player or slides."""
 
 import re
 from pathlib import Path
@@ -26,11 +26,16 @@ def film(
     ] = None,
     view: Annotated[
         str | None,
-        typer.Option(metavar="VIEW", help="oblique, side or top; default oblique, for a plane scene side."),
+        typer.Option(
+            metavar="VIEW",
+            help="oblique, side or top, or long_section of a row of columns; default oblique, for a plane "
+            "scene side, for water alone long_section.",
+        ),
     ] = None,
     colour: Annotated[
-        str, typer.Option(metavar="WORD", help="Colour grains by speed, height, spin, size or contacts.")
-    ] = "speed",
+        str | None,
+        typer.Option(metavar="WORD", help="Colour of grains: speed (default), height, spin, size, contacts."),
+    ] = None,
     begin: Begin = None,
     end: End = None,
     speed: Annotated[
@@ -54,7 +59,7 @@ def film(
     ] = None,
     quiet: Quiet = False,
 ) -> None:  # fmt: skip
-    """Write a film of the grains of a run; needs no display and no graphics card.
+    """Write a film of the grains of a run, or of its long section; needs no display and no graphics card.
 
     Scale, box and colours are the same in all pictures; the time and the speed of the film are written in
     each. Between two recorded frames grains are drawn on straight lines. A run that is still being written is

@@ -24,40 +24,65 @@ CALM = 0.98  # of the energy line that its axis covers: that of thin fast films 
 
 
 @style.house
-def long_section(found: LongSection) -> Figure:
+def long_section(
+    found: LongSection,
+    among: Sequence[LongSection] = (),
+    *,
+    height: float | None = None,
+    words: str | None = None,
+) -> Figure:
     """Draw bed, water, energy line and critical depth by elevation, below them Froude number and transport.
 
     Elevations are vertical, so that water at rest is level whatever the slope of the x axis. Of means, the
     bands are one standard error.
+
+    Parameters
+    ----------
+    found : the section.
+    among : other moments of the same run that the axes cover too, as in a film.
+    height : of the figure [inch]; default by its panels.
+    words : above the figure, in place of the time in it.
     """
     panels = 3 if found.grains else 2
     figure, axes = style.new(
-        panels, width=style.PAGE, height=3.7 if panels == 2 else 4.7, sharex=True,
+        panels, width=style.PAGE, height=height or (3.7 if panels == 2 else 4.7), sharex=True,
         gridspec_kw={"height_ratios": (2.4, 1.0, 1.0)[:panels]},
     )  # fmt: skip
-    _elevations(axes[0], found)
+    every = (found, *among)
+    if words is not None:
+        figure.suptitle(words, fontsize=8.0)
+    _elevations(axes[0], found, every, timed=words is None)
     x = found.x
     axes[1].axhline(1.0, color=style.FAINT, lw=0.6)
     axes[1].plot(x, found.froude, color=WATER)
     _band(axes[1], found, "froude", 1.0, WATER)
     axes[1].set_ylabel("Froude  (–)")
+    if among:
+        axes[1].set_ylim(
+            0.0, max(1.05 * max(float(np.nan_to_num(one.froude).max(initial=1.0)) for one in every), 1.1)
+        )
     axes[1].set_ylim(0.0, min(axes[1].get_ylim()[1], FAST))
     if found.grains:
-        scale, unit = _per_width(found.solid_discharge)
+        transport = np.concatenate([one.solid_discharge for one in every])
+        scale, unit = _per_width(transport)
         axes[2].axhline(0.0, color=style.FAINT, lw=0.6)
         axes[2].plot(x, found.solid_discharge * scale, color=LINE)
         _band(axes[2], found, "solid_discharge", scale, LINE)
         axes[2].set_ylabel(f"grains  $q_s$\n({unit})")
+        if among:
+            least, most = (float(end(np.nan_to_num(transport))) * scale for end in (np.min, np.max))
+            room = 0.05 * (most - least) or 1.0
+            axes[2].set_ylim(least - room, most + room)
     axes[-1].set_xlabel("distance along the row  $x$  (m)")
     half = 0.5 * (x[1] - x[0]) if len(x) > 1 else 0.5
     axes[-1].set_xlim(x[0] - half, x[-1] + half)
     figure.align_ylabels(axes)
-    _note_exaggeration(figure, axes[0], _lengths(_drawn_heights(found))[0])
+    _note_exaggeration(figure, axes[0], _lengths(_drawn_heights(every))[0])
     return figure
 
 
-def _drawn_heights(found: LongSection) -> Floats:
-    return found.elevation(np.maximum(found.surface, found.bottom))
+def _drawn_heights(every: Sequence[LongSection]) -> Floats:
+    return np.concatenate([one.elevation(np.maximum(one.surface, one.bottom)) for one in every])
 
 
 def _note_exaggeration(figure: Figure, axes: Axes, scale: float) -> None:
@@ -90,19 +115,19 @@ def _band(axes: Axes, found: LongSection, name: str, scale: float, colour: str) 
         axes.fill_between(found.x, mean - error, mean + error, color=colour, alpha=0.2, lw=0.0)
 
 
-def _elevations(axes: Axes, found: LongSection) -> None:
-    """Bottom, bed, water, energy line and dams."""
+def _elevations(axes: Axes, found: LongSection, every: Sequence[LongSection], *, timed: bool) -> None:
+    """Bottom, bed, water, energy line and dams; the axis covers all sections."""
     x, wet = found.x, found.depth > THIN
-    scale, unit = _lengths(_drawn_heights(found))
+    scale, unit = _lengths(_drawn_heights(every))
     bottom, floor, bed, surface, energy = (
         found.elevation(z) * scale
         for z in (found.bottom, found.floor, found.bed, found.surface, found.energy)
     )
     critical = found.elevation(found.bed + found.critical) * scale
     step = x[1] - x[0] if len(x) > 1 else 1.0
-    low = float(np.min(bottom))
-    highest = float(np.max(np.maximum(surface, bed)))
-    head = max(highest, float(np.quantile(energy[wet], CALM)) if wet.any() else highest)
+    low = min(float(one.elevation(one.bottom).min()) for one in every) * scale
+    highest = max(float(one.elevation(np.maximum(one.surface, one.bed)).max()) for one in every) * scale
+    head = max(highest, *(_head(one) * scale for one in every))
     span = min(head, highest + 0.5 * (highest - low)) - low
     axes.fill_between(x, bottom, low - 0.12 * span, color=style.BED, lw=0.0)
     axes.fill_between(x, bottom, surface, where=(surface > bottom).tolist(), color=WATER, alpha=0.22, lw=0.0)
@@ -127,11 +152,19 @@ def _elevations(axes: Axes, found: LongSection) -> None:
     axes.set_ylabel(f"elevation  ({unit})")
     axes.set_ylim(low - 0.12 * span, low + 1.25 * span)
     axes.legend(loc="upper right", ncols=4, fontsize=6.5)
+    if not timed:
+        return
     begin = "" if found.window is None else f"mean of {found.window[0]:.4g} s to "
     axes.annotate(
         f"{begin}{'' if begin else 't = '}{found.t:.4g} s", (0, 1), (4, -4), xycoords="axes fraction",
         textcoords="offset points", va="top", fontsize=7.0,
     )  # fmt: skip
+
+
+def _head(found: LongSection) -> float:
+    """Elevation below which most of the energy line lies [m]; -inf where all is dry."""
+    wet = found.depth > THIN
+    return float(np.quantile(found.elevation(found.energy)[wet], CALM)) if wet.any() else -np.inf
 
 
 def _to_the_ends(line: Floats, joined: np.ndarray) -> Floats:

@@ -24,7 +24,7 @@ def needs_grains(results: Results) -> None:
     ResultsError : it has none.
     """
     if not results.scene.n_grain:
-        water = "; ryusa draw RUN long_section shows its water" if results.row is not None else ""
+        water = "; ryusa film shows its water, ryusa draw RUN long_section a moment" if results.row else ""
         raise ResultsError(f"{results.folder}: has no free grains to show in motion{water}")
 
 

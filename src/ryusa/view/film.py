@@ -17,6 +17,7 @@ from ryusa.view.colouring import COLOURINGS, Colouring, value_range
 from ryusa.view.film_file import check, write
 from ryusa.view.margins import inner_size, margins
 from ryusa.view.picture import Look, Painter
+from ryusa.view.section_film import SECTION, section_pictures
 
 SECONDS = 10.0  # about what a film lasts, unless asked otherwise
 FPS = 25.0
@@ -56,7 +57,7 @@ def film(
     path: Path,
     *,
     view: str | None = None,
-    colour: str = "speed",
+    colour: str | None = None,
     begin: float = -math.inf,
     end: float = math.inf,
     frames: int | None = None,
@@ -71,8 +72,9 @@ def film(
     Parameters
     ----------
     path : its suffix is one of `film_file.SUFFIXES`; a file that is there is replaced once the film is whole.
-    view : "oblique", "side" or "top"; default oblique, for a plane scene side.
-    colour : a word of `COLOURINGS`.
+    view : "oblique", "side" or "top" of the grains, or "long_section" of a row of columns; default oblique,
+        for a plane scene side, and the long section of water alone.
+    colour : a word of `COLOURINGS`; default "speed".
     begin, end : window of time shown [s]; default all frames.
     frames, speed : number of pictures, or time of the run over that of the film; default a round speed at
         which the film lasts about ten seconds.
@@ -85,22 +87,29 @@ def film(
     -----
     The pictures are evenly spaced in time. Between two recorded frames grains are on straight lines, as in
     the page of `ryusa view`; nothing is shown before the first or after the last. Box, length scale and
-    colours are the same in all pictures.
+    colours are the same in all pictures. A long section is that of the nearest frame, on axes that are the
+    same in all pictures.
 
     Raises
     ------
     CaseError : names the parameter that is wrong, and what is allowed.
     ResultsError : no grains, fewer than two frames in the window, or a file that cannot be written.
     """
-    needs_grains(results)
     if view is None:
-        view = "side" if results.scene.plane_case else "oblique"
-    one = _colouring(colour)
-    _known("view", view, tuple(VIEWS))
+        alone = results.row is not None and not results.scene.n_grain
+        view = SECTION if alone else "side" if results.scene.plane_case else "oblique"
+    _known("view", view, (*VIEWS, SECTION))
     for axis in range(2):
         if not SMALLEST[axis] <= size[axis] <= LARGEST[axis]:
             allowed = f"must be {SMALLEST[0]}x{SMALLEST[1]} to {LARGEST[0]}x{LARGEST[1]}"
             raise CaseError("size", f"{size[0]}x{size[1]}", allowed)
+    if view == SECTION:
+        for key, value in (("colour", colour), ("follow", follow)):
+            if value is not None:
+                raise CaseError(key, value, "is of films of grains; a long section has none")
+        return _of_section(results, path, begin, end, frames, speed, fps, size, progress)
+    needs_grains(results)
+    one = _colouring(colour or "speed")
     if follow is not None and results.scene.traffic is not None:
         raise CaseError("follow", follow, "cannot be used with feeds or exits: a grain may not be there yet")
     if follow is not None and not 0 <= follow < results.scene.n_grain:
@@ -125,6 +134,28 @@ def film(
     def draw(k: int):
         t = float(made.times[k])
         picture = around.around(painter.at(t), words(t))
+        progress((k + 1) / len(made.times))
+        return picture
+
+    write(path, draw, len(made.times), fps)
+    return made
+
+
+def _of_section(
+    results: Results, path: Path, begin: float, end: float, frames: int | None, speed: float | None,
+    fps: float, size: tuple[int, int], progress: Callable[[float], None],
+) -> Timing:  # fmt: skip
+    """Write a film of the long section; parameters as of `film`."""
+    made = _planned(results.frames.t[_window(results, begin, end)], frames, speed, fps)
+    check(path, size, len(made.times))
+    title = str(results.case.get("title") or results.folder.resolve().name)
+    digits = _digits(made.speed / fps)
+    pictures = section_pictures(
+        results, made.times, size, lambda t: f"{title}   t = {t:.{digits}f} s   {made.speed:.3g} × real time"
+    )
+
+    def draw(k: int):
+        picture = pictures(k)
         progress((k + 1) / len(made.times))
         return picture
 
