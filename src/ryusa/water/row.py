@@ -21,6 +21,7 @@ from ryusa.model.row import (
 )
 from ryusa.water._kernel import ColumnParameters, parameters_of
 from ryusa.water.momentum_balance import DONE, N_GIVEN, N_OUT, NOT_A_NUMBER, TOO_SHORT, workspace
+from ryusa.water.row_inlet import NO_INFLOW
 from ryusa.water.row_station import StationArrays
 from ryusa.water.row_step import (
     COURANT_MET,
@@ -36,6 +37,11 @@ from ryusa.water.row_step import (
 from ryusa.water.row_step import advance_row as _advance
 from ryusa.water.solve import FAULTS
 
+NOTHING_ENTERS = (
+    "No water can enter at the upper end: the first segment is dry, or its bed reaches the top of the cells",
+    "Give the depth of the water that enters (water.row.upstream.depth), water in the first segment at the "
+    "start, or higher cells (water.row.height).",
+)
 IN_A_ROW = {  # hints that differ from those of one column
     TOO_SHORT: "Raise the top of the cells (water.row.height), or let less water in.",
     NOT_A_NUMBER: "Look at the last frames: ryusa draw RUN long_section --at T. A step of the bottom belongs "
@@ -135,7 +141,7 @@ def advance_row(
     Notes
     -----
     Raises `WaterError` with the place if the surface leaves the column, if grains fill a cell completely, if
-    a speed is not finite, or if the stresses of a station do not converge.
+    nothing can enter at an inlet, if a speed is not finite, or if the stresses of a station do not converge.
     """
     arrays, c = RowArrays.of(row) if arrays is None else arrays, row.column
     shape = arrays.shape
@@ -155,7 +161,7 @@ def advance_row(
         faces, out, scalars,
     )  # fmt: skip
     if status != DONE:
-        cause, hint = FAULTS[status]
+        cause, hint = NOTHING_ENTERS if status == NO_INFLOW else FAULTS[status]
         where = row.x_low + (scalars[FAULT_AT] - row.inner.start) * row.dx
         raise WaterError(
             f"{cause}, at x = {where:.4g} m", step=state.steps, t=state.t, hint=IN_A_ROW.get(status, hint)

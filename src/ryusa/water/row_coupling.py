@@ -238,16 +238,18 @@ class RowCoupling:
 
 
 def with_inlet(row: ColumnRow) -> ColumnRow:
-    """The row with profile and depth of a developed inlet: those of steady flow over the bottom there.
+    """The row with depth and profile of its inlet as steady flow over the bottom there has them.
 
     Notes
     -----
-    Where the bottom falls and normal flow is faster than waves, the water enters at normal depth; else the
-    row finds the depth, and the profile is that of steady flow as deep as normal flow, or as the row at its
-    start.
+    Where the bottom falls and normal flow is faster than waves, water enters at normal depth unless a depth
+    is given; else the row finds the depth. A developed profile is that of steady flow as deep as this, as
+    normal flow, or as the row at its start. Depth and profile count from the bed of grains where one lies.
     """
     end = row.upstream
-    if end is None or end.kind is not EndKind.DISCHARGE or not end.developed or end.discharge == 0.0:
+    if end is None or end.kind is not EndKind.DISCHARGE or end.discharge == 0.0:
+        return row
+    if not end.developed and (end.profile is not None or not np.isnan(end.depth)):
         return row
     b = row.bottom_with_ends()
     tilt = (b[1] - b[0]) / row.dx  # the bottom falls where it is negative
@@ -256,6 +258,8 @@ def with_inlet(row: ColumnRow) -> ColumnRow:
     depth = end.depth
     if np.isnan(depth) and end.discharge > normal * np.sqrt(row.g_z * normal):
         depth = normal * np.hypot(1.0, tilt)  # normal to the x axis
+    if not end.developed:
+        return replace(row, upstream=replace(end, depth=float(depth)))
     assert row.start is not None
     first = float(row.start[0] - row.bottom[0])
     there = next((h for h in (depth, normal, first) if row.column.dz < h < _room(row)), 0.5 * _room(row))

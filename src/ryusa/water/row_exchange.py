@@ -176,7 +176,7 @@ def tell(
     acceleration of the water gains U dU/dx, with the difference from upstream that carries the momentum.
     """
     volume, per_dx = area * p.dz, 1.0 / shape.dx
-    fluxes_along(p, shape, ends, dt, water, flux, tilt)
+    fluxes_along(p, shape, ends, told.phi, dt, water, flux, tilt)
     told.u[:] = water.u
     told.wet[:] = water.wet / p.dz
     rise = np.zeros((len(shape.bottom), p.n))  # of the mixture, by what converges below [m/s]

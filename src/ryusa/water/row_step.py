@@ -9,12 +9,13 @@ of a step and limits: design/0027.
 import math
 from typing import NamedTuple
 
-from ryusa.model.row import OPEN, SAME_DEPTH, WALL
+from ryusa.model.row import INFLOW, OPEN, SAME_DEPTH, WALL
 from ryusa.model.scene import Floats
 from ryusa.water._kernel import ColumnParameters, kernel
 from ryusa.water.drive import imposed_gradient
 from ryusa.water.exchange import Ints
 from ryusa.water.momentum_balance import DONE, NO_ROOM, NOT_A_NUMBER, TOO_SHORT
+from ryusa.water.row_inlet import NO_INFLOW, bed_thickness, depth_over_bed, inflow
 from ryusa.water.row_station import StationArrays, solve_station
 from ryusa.water.time_step import distribute_water
 
@@ -48,8 +49,8 @@ class RowEnds(NamedTuple):
     segment: Ints  # the segment, shape (n_end,)
     beside: Ints  # its neighbour in the row
     rule: Ints  # DEPTH_GIVEN or SAME_DEPTH
-    depth: Floats  # depth for DEPTH_GIVEN [m]
-    discharge: float  # through a station of kind INFLOW [m2/s]
+    depth: Floats  # depth for DEPTH_GIVEN, at an inlet over the bed there [m]
+    discharge: float  # through a station of kind INFLOW, the first [m2/s]
     shape: Floats  # profile of its speed, to any scale, shape (n,)
 
 
@@ -117,6 +118,9 @@ def fill_ends(p: ColumnParameters, ends: RowEnds, shape: RowShape, phi: Floats, 
         depth = ends.depth[e]
         if ends.rule[e] == SAME_DEPTH:
             depth = water.surface[ends.beside[e]] - p.z_low
+        bed = bed_thickness(p, phi[i]) if shape.kind[shape.east[i]] == INFLOW else 0.0
+        if bed > 0.0:
+            depth = depth_over_bed(bed, float(depth), ends.rule[e] != SAME_DEPTH, ends.discharge, shape.g_z)
         water.surface[i] = p.z_low + depth
         water.volume[i] = fill_to_depth(
             p, int(shape.first[i]), phi[i], float(depth), water.content[i], water.wet[i]
@@ -124,21 +128,9 @@ def fill_ends(p: ColumnParameters, ends: RowEnds, shape: RowShape, phi: Floats, 
 
 
 @kernel
-def inflow(p: ColumnParameters, ends: RowEnds, content: Floats, u: Floats, flux: Floats) -> None:
-    """Speeds and fluxes at the inlet, so that the discharge is kept with the profile given."""
-    total = 0.0
-    for k in range(p.n):
-        total += content[k] * ends.shape[k]
-    scale = ends.discharge / total if total > 0.0 else 0.0
-    for k in range(p.n):
-        u[k] = scale * ends.shape[k]
-        flux[k] = content[k] * u[k]
-
-
-@kernel
 def fluxes_along(
-    p: ColumnParameters, shape: RowShape, ends: RowEnds, dt: float, water: RowWater, flux: Floats,
-    tilt: Floats,
+    p: ColumnParameters, shape: RowShape, ends: RowEnds, phi: Floats, dt: float, water: RowWater,
+    flux: Floats, tilt: Floats,
 ) -> None:  # fmt: skip
     """Water that passes each station per time and width [m2/s], shape (n_station, n).
 
@@ -160,7 +152,10 @@ def fluxes_along(
             continue
         left, right = shape.left[j], shape.right[j]
         if shape.kind[j] != OPEN:
-            inflow(p, ends, water.content[left], water.u[j], flux[j])
+            inflow(
+                p, ends.discharge, ends.shape, phi[left], water.content[left], water.wet[left], water.u[j],
+                flux[j],
+            )  # fmt: skip
             continue
         for k in range(max(shape.first[left], shape.first[right]), p.n):
             u = water.u[j, k]
@@ -315,7 +310,7 @@ def advance_row(
 
     Returns
     -------
-    status : DONE, or a fault of `momentum_balance`.
+    status : DONE, NO_INFLOW, or a fault of `momentum_balance`.
     """
     remaining = time
     while remaining > 0.0:
@@ -327,7 +322,10 @@ def advance_row(
         dt = remaining / parts
         remaining = remaining - dt if parts > 1.0 else 0.0
         fill_ends(p, ends, shape, grains.phi, water)
-        fluxes_along(p, shape, ends, dt, water, work.flux, work.tilt)
+        fluxes_along(p, shape, ends, grains.phi, dt, water, work.flux, work.tilt)
+        if shape.kind[0] == INFLOW and ends.discharge > 0.0 and not work.flux[0].sum() > 0.0:
+            scalars[FAULT_AT] = shape.inner[0]
+            return NO_INFLOW
         status = continuity(p, shape, dt, grains.phi, water, work, scalars)
         if status != DONE:
             return status
