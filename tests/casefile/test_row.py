@@ -182,3 +182,29 @@ def test_a_bottom_that_does_not_close_is_refused_without_ends(river):
     text = "\n".join(line for line in RIVER.splitlines() if not line.startswith(("upstream", "downstream")))
     with pytest.raises(CaseError, match="is periodic"):
         read_text(text)
+
+
+DRY = RIVER.replace('depth = "6 cm"\n', "").replace(
+    "segments = 40", 'segments = 40\nsurface = [["0 m", "-1 cm"], ["2 m", "6 cm"], ["4 m", "6 cm"]]'
+)
+
+
+def test_an_inlet_that_would_find_no_depth_in_a_dry_segment_is_refused():
+    with pytest.raises(CaseError, match=r"^water.row.upstream.depth: missing.* is dry .*not faster than"):
+        read_text(DRY)
+    with pytest.raises(CaseError, match=r"water.row.upstream.depth.*normal depth is less than a cell"):
+        read_text(DRY, {"motion.slope": "1/5", "water.row.upstream.discharge": "'2 cm2/s'"})
+    read_text(DRY, {"motion.slope": "1/20"})  # enters at normal depth
+    read_text(DRY.replace('"0.03 m2/s" }', '"0.03 m2/s", depth = "8 cm" }'))
+
+
+def test_a_normal_depth_of_less_than_a_cell_is_said(river):
+    def said(**keys: str) -> list[str]:
+        found = explain(river(**{"motion.slope": "1/5"} | keys))
+        return [one.origin for one in found if one.name == "depth at the upper end" and one.flag == "note"]
+
+    assert said() == []
+    assert "less than a cell of 0.2 cm" in said(**{"water.row.upstream.discharge": "'2 cm2/s'"})[0]
+    assert said(**{"water.row.upstream.discharge": "'2 cm2/s'", "water.row.upstream.depth": "'4 mm'"}) == []
+    flood = "[{ at = '1 s', discharge = '2 cm2/s' }]"
+    assert "normal depth of 0.0002 m2/s" in said(timeline=flood)[0]

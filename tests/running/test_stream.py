@@ -13,7 +13,7 @@ import ryusa
 from ryusa.build import build
 from ryusa.casefile import explain, read_text, resolved
 from ryusa.casefile.builders.values import stream_cells
-from ryusa.casefile.row.values import dam_span, row_plan
+from ryusa.casefile.row.values import critical_depth, dam_span, deepest, reaches, row_plan
 from ryusa.catalogue import MEASURES
 from ryusa.errors import CaseError, GrainLost
 from ryusa.measure.along_row import grains_along_row
@@ -26,6 +26,8 @@ from ryusa.report.contents import contents_of
 from ryusa.results import Results, schema
 from ryusa.studies.sweep.measures import refuse_measure
 from ryusa.units import quantity
+from ryusa.water._kernel import parameters_of
+from ryusa.water.row_inlet import bed_thickness
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "faults"))
 from campaign import differences
@@ -83,6 +85,16 @@ events = "none"
 """
 
 
+def test_the_height_of_the_cells_counts_normal_and_critical_depth_from_the_bed() -> None:
+    none = {"water.row.dams": "[]"}
+    line = "[['0 m', '0 cm'], ['0.1 m', '3 cm'], ['0.4 m', '3 cm']]"
+    plain, thick = read_text(STREAM, none), read_text(STREAM, none | {"build.bed": line})
+    low, high = (deepest(one, row_plan(one)) for one in (plain, thick))
+    flow = max(critical_depth(thick, 0.02), *(one.normal for one in reaches(thick, 0.02)))
+    assert (low, high) == (pytest.approx(flow + 0.006), pytest.approx(flow + 0.03))
+    assert row_plan(thick).n_cell == math.ceil(1.5 * high / 0.003)
+
+
 def feeder(x: str, z: str, y: str = "0 mm") -> dict[str, str]:
     """A feed as a box of 2 x 2.4 x 2 cm3 with a given lower corner."""
     (a, b, c), name = (quantity(one, "m") for one in (x, y, z)), "feeder"
@@ -131,6 +143,27 @@ def test_a_run_that_was_stopped_and_two_threads_give_the_same_bits(
         assert run(tmp_path / "run", resume=True).status == schema.STOPPED
     run(tmp_path / "run", resume=True, threads=2)
     assert differences(stream.folder, tmp_path / "run") == []
+
+
+def test_water_enters_over_the_bed_in_the_first_segment_and_resumes_with_the_same_bits(
+    tmp_path: Path, stop_at: Any
+) -> None:
+    bed = {"build.bed": "'1.8 cm'", "build.end": "'0.24 m'"}
+    more = bed | {"water.row.height": "'12 cm'", "stop.time": "'0.06 s'", "feeds": "[]"}
+    found = run(tmp_path / "whole", more)
+    stop_at(2500)
+    assert run(tmp_path / "run", more, resume=True).status == schema.STOPPED
+    run(tmp_path / "run", more, resume=True)
+    assert differences(found.folder, tmp_path / "run") == []
+    row = found.row
+    assert row is not None
+    p = parameters_of(row.row.column)
+    thick = [bed_thickness(p, np.ascontiguousarray(phi[0])) for phi in row.phi]
+    assert min(thick) > 0.012
+    for u, bed in zip(row.u[1:], thick[1:], strict=True):
+        lowest = int(np.flatnonzero(u[0])[0])
+        assert lowest == pytest.approx(bed / p.dz, abs=1.0)
+    np.testing.assert_allclose(row.discharge[1:, 0], 0.02, rtol=1e-9)
 
 
 def test_bottom_and_dam_are_walls_for_the_grains_by_their_names(stream: Results) -> None:

@@ -14,13 +14,16 @@ from ryusa.casefile.row.stream_checks import check_places, check_stream
 from ryusa.casefile.row.values import (
     MOST_CELLS,
     RowPlan,
+    bed_over,
     bottom_points,
     crest_of,
     dam_span,
     deepest,
     discharge_of,
+    enters_fast,
     line_points,
     not_downstream,
+    reaches,
     row_plan,
     stream,
     water_alone,
@@ -375,7 +378,7 @@ def _depths(case: "Case", plan: RowPlan, keys: RowSection) -> Iterator[CaseError
     elif keys.height is not None and deepest(case, plan) > high:
         yield CaseError(
             "water.row.height", keys.height, f"must be at least {deepest(case, plan):.4g} m, the depth to be "
-            "expected (at the start, at normal flow, behind dams, below a level)",
+            "expected (at the start, of normal flow on the bed, behind dams, below a level)",
         )  # fmt: skip
     wet = [one for one in (keys.upstream, keys.downstream) if one is not None and one.level is not None]
     if depth.max() <= 0.0 and not wet and not discharge_of(case) > 0.0:
@@ -383,8 +386,26 @@ def _depths(case: "Case", plan: RowPlan, keys: RowSection) -> Iterator[CaseError
             "water.row.surface", None, "lies below the bottom everywhere, and no water enters: the row would "
             "stay dry",
         )  # fmt: skip
+    yield from _inlet(case, plan, keys)
     largest = float(np.abs(np.arctan(np.diff(plan.bottom) / plan.dx)).max(initial=0.0))
     if abs(slope(case)) + largest > math.radians(60.0):
         yield CaseError(
             "motion.slope", case.motion.slope, "is too steep for water in layers: at most 60 deg in all"
         )
+
+
+def _inlet(case: "Case", plan: RowPlan, keys: RowSection) -> Iterator[CaseError]:
+    """A dry first segment gives no depth to an inlet that has none of its own and no bed to enter over."""
+    end, q = keys.upstream, discharge_of(case)
+    if end is None or not q > 0.0 or end.depth is not None or plan.start[0] > plan.bottom[0]:
+        return
+    if bed_over(case, plan.x)[0] >= reference_diameter(case) or enters_fast(case, q):
+        return
+    why = "normal flow is not faster than waves there"
+    if reaches(case, q)[0].froude > 1.0:
+        why = f"normal depth is less than a cell of {plan.cell:.3g} m"
+    yield CaseError(
+        "water.row.upstream.depth", None, f"missing; the first segment is dry at the start and {why}, so "
+        "that the water that enters has no depth: give it, or water in the first segment at the start "
+        "(water.depth or water.row.surface)",
+    )  # fmt: skip

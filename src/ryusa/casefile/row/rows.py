@@ -14,15 +14,18 @@ from ryusa.casefile.row.schema import RowSection, row_keys
 from ryusa.casefile.row.values import (
     COURANT,
     SPARE,
+    THINNEST,
     WEIR,
     Reach,
     RowPlan,
     bed_points,
+    cell_of,
     crest_of,
     critical_depth,
     dam_span,
     discharge_of,
     fastest,
+    least_discharge,
     peak_discharge,
     reaches,
     row_plan,
@@ -129,6 +132,15 @@ def _flow(case: "Case", keys: RowSection) -> list[ExplainRow]:
         for one in reaches(case, each):
             rows += _reach(one, more)
             rows += _transport(case, one, each, more) if stream(case) else []
+    least = least_discharge(case)
+    thin, cell = reaches(case, least)[0], cell_of(case)
+    given = keys.upstream is not None and keys.upstream.depth is not None
+    if not given and thin.froude > 1.0 and thin.normal <= THINNEST * cell:
+        origin = (
+            f"normal depth of {least:.3g} m2/s, {100.0 * thin.normal:.3g} cm, is less than a cell of "
+            f"{100.0 * cell:.3g} cm: take a thinner water.column.cell, or give water.row.upstream.depth"
+        )
+        rows.append(word("water", "depth at the upper end", "that of the row", origin, "note"))
     return rows
 
 

@@ -68,8 +68,9 @@ class RowEndSection(Section):
     discharge: RowDischarge | None = None
     """Discharge of end = "discharge", upstream alone: per width, or of the whole width (`width`)."""
     depth: PositiveLength | None = None
-    """Depth of the water that enters, with end = "discharge" alone. When not given: that of the row, and
-    where normal flow is faster than waves the normal depth."""
+    """Depth of the water that enters, with end = "discharge" alone; over a bed of grains in the first segment
+    it counts from its top. When not given: that of the row, and where normal flow is faster than waves the
+    normal depth."""
     profile: Literal["developed", "uniform"] = "developed"
     """Velocity over height with end = "discharge": that of steady flow over the bottom, or the same at every
     height."""
@@ -110,7 +111,7 @@ class RowSection(Section):
     """Length of a segment, instead of their number; the row is divided into the nearest whole number."""
     height: PositiveLength | None = None
     """Height of the cells over the bottom; water that stands higher stops the run. When not given 1.5 times
-    the largest depth that the case lets expect."""
+    the largest depth that the case lets expect, with the bed below it."""
     surface: Line | None = None
     """Surface of the water at the start, as pairs of x and z or a CSV file; below the bottom it is dry.
     Instead of water.depth, the depth over the bottom."""

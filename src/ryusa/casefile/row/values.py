@@ -25,6 +25,7 @@ CELL = 0.5  # thickness of a cell when the case gives none, in mean diameters
 SPARE = 1.5  # height of the cells over the largest depth to be expected, when the case gives none
 COURANT = 0.5  # largest Courant number of a step
 WEIR = (2.0 / 3.0) ** 1.5  # q/(sqrt(g) H**1.5) of critical flow without loss
+THINNEST = 1.01  # cells; the normal depth of a thinner film does not follow from the column
 MOST_CELLS = 4_000_000
 
 Points = tuple[tuple[float, float], ...]
@@ -121,8 +122,17 @@ def per_width(case: "Case", discharge: Discharge) -> float:
 
 def peak_discharge(case: "Case") -> float:
     """Largest discharge per width that enters upstream during the run [m2/s]; nan where none is given."""
+    return max(_discharges(case))
+
+
+def least_discharge(case: "Case") -> float:
+    """Smallest discharge per width that enters upstream during the run [m2/s]; nan where none is given."""
+    return min(_discharges(case))
+
+
+def _discharges(case: "Case") -> list[float]:
     steps = [per_width(case, one.discharge) for one in case.timeline if one.discharge is not None]
-    return max([discharge_of(case), *steps])
+    return [discharge_of(case), *steps]
 
 
 def width_of(case: "Case") -> float | None:
@@ -247,11 +257,20 @@ def normal_depth(case: "Case", q: float, angle: float) -> float:
     return 0.5 * (low + high)
 
 
+def enters_fast(case: "Case", q: float) -> bool:
+    """Whether a discharge [m2/s] enters upstream at its normal depth: faster than waves, and a cell deep."""
+    first = reaches(case, q)[0]
+    return first.froude > 1.0 and first.normal > THINNEST * cell_of(case)
+
+
 def deepest(case: "Case", plan: RowPlan) -> float:
-    """Largest depth to be expected [m]: at the start, at normal flow, behind dams, below a level."""
+    """Largest depth to be expected [m]: at the start, of flow on the bed, behind dams, below levels."""
     keys, q = _row(case), peak_discharge(case)
-    critical = critical_depth(case, q)
-    found = [float((plan.start - plan.bottom).max()), *(one.normal for one in reaches(case, q)), critical]
+    critical, bed = critical_depth(case, q), bed_over(case, plan.x)
+    found = [float((plan.start - plan.bottom).max()), critical + float(bed.max())]
+    for one in reaches(case, q):
+        on_it = (plan.x >= one.begin) & (plan.x <= one.end)
+        found.append(one.normal + float(bed[on_it].max(initial=0.0)))
     over = 1.5 * critical if critical > 0.0 else 0.0
     tilt = math.tan(slope(case))
     for dam in keys.dams:
@@ -265,7 +284,7 @@ def deepest(case: "Case", plan: RowPlan) -> float:
         if end is not None and end.level is not None:
             found.append(float((end.level - tilt * (at - plan.x) - plan.bottom).max()))
         if end is not None and end.depth is not None:
-            found.append(end.depth)
+            found.append(end.depth + float(bed[0]))
     return max((one for one in found if one > 0.0), default=0.0)
 
 
