@@ -2,6 +2,7 @@
 
 import math
 import sys
+from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -27,6 +28,7 @@ from ryusa.results import Results, schema
 from ryusa.studies.sweep.measures import refuse_measure
 from ryusa.units import quantity
 from ryusa.water._kernel import parameters_of
+from ryusa.water.row_coupling import RowCoupling
 from ryusa.water.row_inlet import bed_thickness
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "faults"))
@@ -164,6 +166,24 @@ def test_water_enters_over_the_bed_in_the_first_segment_and_resumes_with_the_sam
         lowest = int(np.flatnonzero(u[0])[0])
         assert lowest == pytest.approx(bed / p.dz, abs=1.0)
     np.testing.assert_allclose(row.discharge[1:, 0], 0.02, rtol=1e-9)
+
+
+def test_a_bed_at_rest_that_is_looser_than_packed_warns() -> None:
+    """As laid it has 0.3; what has not settled, flows or is a single layer gives no warning."""
+
+    def water(**more: str) -> RowCoupling:
+        case = build(read_text(STREAM, {"feeds": "[]", "build.bed": "'1.8 cm'", **more}))
+        assert case.scene.row is not None
+        return RowCoupling.begin(case.scene, case.scene.row, case.state.x)
+
+    found = water(**{"water.column.packed": "0.4"})
+    assert 8 < len(found.densest_beds()) <= 14
+    assert "does not reach the packed concentration 0.4: its largest, averaged" in found.warnings()[0]
+    found.state = replace(found.state, u=np.full_like(found.state.u, 0.5))
+    assert found.warnings() == []
+    assert water(**{"water.column.packed": "0.2"}).warnings() == []
+    assert water().warnings() == []
+    assert len(water(**{"build.bed": "'3 mm'"}).densest_beds()) == 0
 
 
 def test_bottom_and_dam_are_walls_for_the_grains_by_their_names(stream: Results) -> None:

@@ -1,23 +1,28 @@
 """The row of columns of a run: its water, alone or among grains (design/0027)."""
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ryusa.errors import GrainLost
-from ryusa.laws.families import Drive, Start
+from ryusa.laws.families import BedKind, Drive, Mixing, Start
 from ryusa.model import ColumnRow, RowCouplingState, RowState, Scene
 from ryusa.model.fluid import N_SAMPLED
 from ryusa.model.row import EndKind
 from ryusa.model.scene import Floats
+from ryusa.water._kernel import parameters_of
+from ryusa.water.closures import averaged
 from ryusa.water.coupling import steps_resolved
 from ryusa.water.momentum_balance import B_ADVECTED, B_CHANGE, B_GRAVITY
 from ryusa.water.row import RowArrays, advance_row, discharges, row_at_rest
 from ryusa.water.row_grains import GrainsInRow
+from ryusa.water.row_inlet import bed_thickness
 from ryusa.water.row_threads import RowThreads
 from ryusa.water.steady import steady
 
+_SETTLED = 0.7  # of the packed concentration; a bed with less is as it was laid, and settles
 _DRY = 1.0e-12  # of the volume that all cells can hold; less is a dry row
 
 
@@ -234,7 +239,44 @@ class RowCoupling:
 
     def warnings(self) -> list[str]:
         """Warnings about the water, one sentence each."""
-        return ["the row is dry: no water is left in it"] if self.dry else []
+        if self.dry:
+            return ["the row is dry: no water is left in it"]
+        column, beds = self.row.column, self.densest_beds()
+        if self.grains is None or column.mixing is not Mixing.LI_SAWAMOTO or not len(beds):
+            return []
+        typical = float(np.median(beds))
+        if not _SETTLED * column.phi_max <= typical < column.phi_max:
+            return []
+        if self.row.periodic and column.bed is not BedKind.MOVING:
+            return []
+        thick = "" if self.row.periodic else ", and it is thicker than build.bed says"
+        return [
+            f"the bed at rest does not reach the packed concentration {column.phi_max:.3g}: its largest, "
+            f"averaged over the height of a grain, is {typical:.3g} in the median of the segments with one, "
+            f"so turbulence enters it{thick}. Set water.column.packed to its concentration"
+        ]
+
+    def densest_beds(self) -> Floats:
+        """Largest concentration in each bed at rest, averaged over the height of a grain [-], shape (n_bed,).
+
+        Notes
+        -----
+        One for each segment without a dam in which a bed at least two grains thick lies on the bottom. It is
+        at rest where the water in the pores of its lower half is slower than sqrt(g_z d)/2, as that of a
+        debris flow is not.
+        """
+        row, p, found = self.row, parameters_of(self.row.column), list[float]()
+        left, right = row.stations_between
+        speed = np.abs(self.state.u)
+        taken = row.cells_of_dams()
+        for i, phi in enumerate(np.ascontiguousarray(self.phi), start=row.inner.start):
+            thick = bed_thickness(p, phi)
+            if taken[i] or not thick >= 2.0 * p.d:
+                continue
+            lower = speed[(left == i) | (right == i), : math.ceil(0.5 * thick / p.dz)]
+            if lower.mean() < 0.5 * math.sqrt(row.g_z * p.d):
+                found.append(float(averaged(p.dz, p.d, p.n - 1, phi).max()))
+        return np.array(found)
 
 
 def with_inlet(row: ColumnRow) -> ColumnRow:
