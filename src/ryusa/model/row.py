@@ -1,7 +1,7 @@
 """A row of water columns along a stream: its fixed properties, its ends, and its state."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import IntEnum
 
 import numpy as np
@@ -12,6 +12,7 @@ from ryusa.laws.porous import ergun_linear, ergun_quadratic
 from ryusa.model.arrays import Floats
 from ryusa.model.column import Column, Top
 from ryusa.model.eddies import Eddies
+from ryusa.model.row_energy import N_ROW_TERM
 
 Ints = NDArray[np.int64]
 NAN = float("nan")
@@ -267,6 +268,8 @@ class RowState:
     profiles: Floats  # u, w, content, shear, du_dt, dtau_dz, shape (n_station, 6, n)
     edges: Floats  # stress [Pa] and eddy viscosity [m2/s] at the faces, shape (n_station, 2, n + 1)
     budgets: Floats  # momentum budget, shape (n_station, N_OUT)
+    # energy account since the start, indexed by RowTerm [J/m]; nan where a checkpoint of earlier versions has none
+    energy: Floats = field(default_factory=lambda: np.zeros(N_ROW_TERM))
     t: float = 0.0  # [s]
     steps: int = 0  # steps of the water done
     courant: float = 0.0  # largest Courant number met [-]

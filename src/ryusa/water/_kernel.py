@@ -12,7 +12,8 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 _HERE = Path(__file__).parent
-_EDITION = edition(LAWS, _HERE, _HERE.parent / "model" / "column.py")
+_MODEL = _HERE.parent / "model"
+_EDITION = edition(LAWS, _HERE, _MODEL / "column.py", _MODEL / "row_energy.py")
 
 
 def kernel(function: F) -> F:

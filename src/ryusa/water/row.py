@@ -21,6 +21,7 @@ from ryusa.model.row import (
 )
 from ryusa.water._kernel import ColumnParameters, parameters_of
 from ryusa.water.momentum_balance import DONE, N_GIVEN, N_OUT, NOT_A_NUMBER, TOO_SHORT, workspace
+from ryusa.water.row_energy import EnergyArrays
 from ryusa.water.row_inlet import NO_INFLOW
 from ryusa.water.row_station import StationArrays
 from ryusa.water.row_step import (
@@ -78,6 +79,7 @@ class RowArrays:
             np.zeros((stations, n)), np.zeros(stations), np.zeros(segments), np.zeros((segments, n)),
             np.zeros((segments, n + 1)), np.zeros((segments, n)), np.zeros((stations, n)), np.zeros(n),
             np.zeros((N_GIVEN, n)), np.zeros((6, n)), np.zeros((2, n + 1)), workspace(n),
+            EnergyArrays.of(stations, segments, n),
         )  # fmt: skip
         return RowArrays(parameters_of(row.column), shape, ends_of(row), work)
 
@@ -147,15 +149,17 @@ def advance_row(
     shape = arrays.shape
     stations = len(shape.left)
     matrix = _matrix_of(row, solid)
-    given = RowGrains(_phi_of(row, solid), *np.zeros((4, stations, c.n)))
+    given = RowGrains(_phi_of(row, solid), *np.zeros((4, stations, c.n)), laden=solid is not None)
     if grains is not None:
-        given = RowGrains(row.with_ends(grains.phi), grains.force, grains.slope, grains.carried, grains.phi_w)
+        phi = row.with_ends(grains.phi)
+        given = RowGrains(phi, grains.force, grains.slope, grains.carried, grains.phi_w, laden=True)
     water = RowWater(
         state.u.copy(), state.volume.copy(), state.content.copy(), state.wet.copy(), state.surface.copy(),
         state.passed.copy(),
     )  # fmt: skip
     rows, faces = np.zeros((stations, 6, c.n)), np.zeros((stations, 2, c.n + 1))
     out, scalars = np.zeros((stations, N_OUT)), np.zeros(N_SCALARS)
+    arrays.work.energy.books[:] = 0.0
     status = _advance(
         arrays.p, shape, arrays.ends, matrix, given, float(time), float(longest), water, arrays.work, rows,
         faces, out, scalars,
@@ -166,11 +170,12 @@ def advance_row(
         raise WaterError(
             f"{cause}, at x = {where:.4g} m", step=state.steps, t=state.t, hint=IN_A_ROW.get(status, hint)
         )
-    for array in (*water, rows, faces, out):
+    energy = state.energy + arrays.work.energy.books
+    for array in (*water, rows, faces, out, energy):
         array.flags.writeable = False
     return replace(
-        state, **water._asdict(), profiles=rows, edges=faces, budgets=out, t=state.t + time,
-        steps=state.steps + int(scalars[STEPS]), courant=max(state.courant, float(scalars[COURANT_MET])),
+        state, **water._asdict(), profiles=rows, edges=faces, budgets=out, energy=energy,
+        t=state.t + time, steps=state.steps + int(scalars[STEPS]), courant=max(state.courant, float(scalars[COURANT_MET])),
     )  # fmt: skip
 
 

@@ -27,6 +27,7 @@ from ryusa.water.momentum_balance import (
     weigh_vertical_flow,
     write_results,
 )
+from ryusa.water.row_energy import EnergyArrays, book_resistance, book_station
 
 ROUGH = int(BedKind.ROUGH)
 FALLING = 1.0e-14  # smallest flux that falls through a dry cell, over that which would empty both segments
@@ -47,6 +48,7 @@ class StationArrays(NamedTuple):
     level: Floats  # speed, content and its profiles at a station, shape (6, n)
     edge: Floats  # stress and eddy viscosity there, shape (2, n + 1)
     step: StepWorkspace
+    energy: EnergyArrays
 
 
 @kernel
@@ -113,7 +115,8 @@ def solve_station(
     p: ColumnParameters, sill: int, steep: float, gradient: float, per_dx: float, per_dt: float, left: int,
     right: int, j: int, matrix_phi: Floats, linear: Floats, quadratic: Floats, phi: Floats, force: Floats,
     slope: Floats, carried: Floats, phi_w: Floats, u_old: Floats, content: Floats, wet: Floats,
-    surface: Floats, volume: Floats, work: StationArrays, rows: Floats, faces: Floats, out: Floats,
+    surface: Floats, volume: Floats, laden: bool, work: StationArrays, rows: Floats, faces: Floats,
+    out: Floats,
 ) -> int:  # fmt: skip
     """New speeds of a station, written to `work.u[j]`; profiles and budget as `time_step` writes them.
 
@@ -129,7 +132,8 @@ def solve_station(
     phi, force, slope, carried, phi_w : as `RowGrains`, all but the first at this station.
     u_old : speeds before the step [m/s], shape (n,).
     content, wet, surface, volume : as `RowWater`.
-    work : with `old`, `q` and `carried` of this step.
+    laden : whether there are grains or a porous solid in the row.
+    work : with `old`, `q` and `carried` of this step; the energy account is added to.
     rows, faces, out : output of this station.
 
     Notes
@@ -157,7 +161,12 @@ def solve_station(
         faces[0, f], faces[1, f], step.k_face[f], step.r_face[f] = 0.0, 0.0, 0.0, 0.0
     for r in range(len(out)):
         out[r] = 0.0
+    energy = work.energy
     if m < 0:
+        energy.moved[j] = book_station(
+            p, energy, step, work.given, work.edge[0], work.level[2], sill, m, m, steep, per_dx, per_dt, left,
+            right, u_old,
+        )  # fmt: skip
         return DONE
     least = FALLING * 0.5 * (volume[left] + volume[right]) * per_dt
     last = m
@@ -190,6 +199,14 @@ def solve_station(
         return status
     write_results(here, m, last, work.given[0], old, given, gradient, lost, per_dt, level, edge, out, step)
     out[SURFACE], out[GRADIENT] = z_surface, gradient
+    energy.moved[j] = book_station(
+        p, energy, step, work.given, edge[0], now, sill, m, last, steep, per_dx, per_dt, left, right, u_old
+    )  # fmt: skip
+    if laden:
+        book_resistance(
+            p, energy.books, step, work.given, edge[0], now, sill, m, steep, gradient, lost, per_dx, per_dt,
+            force, slope,
+        )  # fmt: skip
     for at in range(last + 1):
         out[B_ADVECTED] += p.rho_w * given.advected[at]
     out[B_ADVECTED] += p.rho_w * step.q[0] * (1.0 - step.below[0]) * level[0, 0]

@@ -15,6 +15,7 @@ from ryusa.water._kernel import ColumnParameters, kernel
 from ryusa.water.drive import imposed_gradient
 from ryusa.water.exchange import Ints
 from ryusa.water.momentum_balance import DONE, NO_ROOM, NOT_A_NUMBER, TOO_SHORT
+from ryusa.water.row_energy import add_held, book_displaced, book_ends, book_row
 from ryusa.water.row_inlet import NO_INFLOW, bed_thickness, depth_over_bed, inflow
 from ryusa.water.row_station import StationArrays, solve_station
 from ryusa.water.time_step import distribute_water
@@ -73,6 +74,7 @@ class RowGrains(NamedTuple):
     slope: Floats  # [N s/m4], shape (n_station, n)
     carried: Floats  # [-], shape (n_station, n)
     phi_w: Floats  # [m/s], shape (n_station, n)
+    laden: bool  # whether there are grains or a porous solid
 
 
 class RowWater(NamedTuple):
@@ -286,6 +288,8 @@ def continuity(
             up = west if through > 0.0 else east
             # along an inclined bottom the speed u sqrt(steep) is carried, of which u is the part along x
             work.carried[i, k] = through * water.u[up, k] * math.sqrt(shape.steep[up])
+            work.energy.through[i, k] = through
+            work.energy.speed[i, k] = water.u[up, k] * math.sqrt(shape.steep[up])
     return DONE
 
 
@@ -303,7 +307,7 @@ def advance_row(
     shape, ends, matrix, grains : the row, what lies beyond its ends, a porous solid in it, and its grains.
     time, longest : what is to pass, and the longest step [s].
     water : the state, overwritten; left in the middle of a step after a fault.
-    work : work arrays.
+    work : work arrays; the energy account of the time is added to `work.energy.books`.
     rows, faces, out : profiles and momentum budget of each station after the last step, as `time_step` writes
         them, with a leading axis of stations.
     scalars : receives FAULT_AT (segment or station), STEPS and COURANT_MET, shape (N_SCALARS,).
@@ -312,7 +316,8 @@ def advance_row(
     -------
     status : DONE, NO_INFLOW, or a fault of `momentum_balance`.
     """
-    remaining = time
+    remaining, energy = time, work.energy
+    add_held(p, shape, water, -1.0, energy.books)
     while remaining > 0.0:
         speed = fastest(p, shape, water)
         if not math.isfinite(speed):
@@ -321,11 +326,15 @@ def advance_row(
         parts = max(math.ceil(remaining / dt - 1.0e-9), 1.0)
         dt = remaining / parts
         remaining = remaining - dt if parts > 1.0 else 0.0
+        book_ends(p, shape, water, -1.0, energy.books)
         fill_ends(p, ends, shape, grains.phi, water)
+        book_ends(p, shape, water, 1.0, energy.books)
         fluxes_along(p, shape, ends, grains.phi, dt, water, work.flux, work.tilt)
         if shape.kind[0] == INFLOW and ends.discharge > 0.0 and not work.flux[0].sum() > 0.0:
             scalars[FAULT_AT] = shape.inner[0]
             return NO_INFLOW
+        if grains.laden:
+            book_displaced(p, shape, grains.phi, water, work.level, energy.books)
         status = continuity(p, shape, dt, grains.phi, water, work, scalars)
         if status != DONE:
             return status
@@ -335,20 +344,24 @@ def advance_row(
             if shape.kind[j] != OPEN:
                 continue
             left, right = shape.left[j], shape.right[j]
+            gradient = driving_gradient(p, shape, j, water, driver)
+            energy.push[j] = gradient - driver
             status = solve_station(
                 p, int(max(shape.first[left], shape.first[right])), shape.steep[j],
-                driving_gradient(p, shape, j, water, driver), 1.0 / shape.dx, 1.0 / dt, left, right, j,
+                gradient, 1.0 / shape.dx, 1.0 / dt, left, right, j,
                 matrix.phi, matrix.linear, matrix.quadratic, grains.phi, grains.force[j], grains.slope[j],
                 grains.carried[j], grains.phi_w[j], water.u[j], water.content, water.wet, water.surface,
-                water.volume, work, rows[j], faces[j], out[j],
+                water.volume, grains.laden, work, rows[j], faces[j], out[j],
             )  # fmt: skip
             if status != DONE:
                 scalars[FAULT_AT] = j
                 return status
+        book_row(p, shape, dt, driver, grains.phi, water, energy, work.total, out)
         for j in range(len(shape.left)):
             if shape.kind[j] == OPEN:
                 for k in range(p.n):
                     water.u[j, k] = work.u[j, k]
         scalars[STEPS] += 1.0
         scalars[COURANT_MET] = max(scalars[COURANT_MET], speed * dt / shape.dx)
+    add_held(p, shape, water, 1.0, energy.books)
     return DONE
