@@ -24,6 +24,11 @@ def kernel(function: F) -> F:
     return compiled(_EDITION, fastmath=False, nogil=True)(function)
 
 
+def sums(function: F) -> F:
+    """Compile as `kernel` a function that sums what no step of the water depends on: in any order."""
+    return compiled(_EDITION, fastmath={"contract", "nsz", "reassoc"}, nogil=True)(function)
+
+
 class ColumnParameters(NamedTuple):
     """Parameters of a column as plain numbers, for compiled functions."""
 

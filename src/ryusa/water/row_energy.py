@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ryusa.laws.families import Drive, SideWalls
+from ryusa.laws.families import Drive
 from ryusa.model.row import OPEN, WALL
 from ryusa.model.row_energy import N_ROW_TERM, RowTerm
 from ryusa.model.scene import Floats
-from ryusa.water._kernel import ColumnParameters, kernel
+from ryusa.water._kernel import ColumnParameters, kernel, sums
 from ryusa.water.momentum_balance import GRADIENT, StepWorkspace
 from ryusa.water.time_step import distribute_water
 
@@ -29,7 +29,6 @@ UPSTREAM, DOWNSTREAM = int(RowTerm.UPSTREAM), int(RowTerm.DOWNSTREAM)
 GRAINS, DISPLACED = int(RowTerm.GRAINS), int(RowTerm.DISPLACED)
 BED, SIDE, SHEAR, POROUS = int(RowTerm.BED), int(RowTerm.SIDE), int(RowTerm.SHEAR), int(RowTerm.POROUS)
 FALL, UPWIND, LATE, SURFACE = int(RowTerm.FALL), int(RowTerm.UPWIND), int(RowTerm.LATE), int(RowTerm.SURFACE)
-NO_WALLS = int(SideWalls.NONE)
 OF_DISCHARGE = int(Drive.DISCHARGE)
 
 
@@ -51,31 +50,39 @@ class EnergyArrays(NamedTuple):
         )  # fmt: skip
 
 
-@kernel
+@sums
 def kinetic_at(p: ColumnParameters, shape: "RowShape", water: "RowWater", j: int) -> float:
     """Kinetic energy of the water at an open station, per width [J/m]; 0 at others."""
     if shape.kind[j] != OPEN:
         return 0.0
-    a, b = shape.left[j], shape.right[j]
-    total = 0.0
+    a, b, total = shape.left[j], shape.right[j], 0.0
     for k in range(p.n):
         total += (water.content[a, k] + water.content[b, k]) * water.u[j, k] ** 2
     return 0.25 * p.rho_w * shape.dx * shape.steep[j] * total
 
 
-@kernel
+@sums
 def add_held(
     p: ColumnParameters, shape: "RowShape", water: "RowWater", times: float, books: Floats
 ) -> None:
     """Add the kinetic and the potential energy of the row to the account, `times` 1 or -1."""
-    for j in range(len(shape.kind)):
-        books[KINETIC] += times * kinetic_at(p, shape, water, j)
+    kinetic, lift = 0.0, 0.0
+    for j in range(len(shape.kind)):  # as `kinetic_at`, without a call for each
+        if shape.kind[j] == OPEN:
+            a, b, total = shape.left[j], shape.right[j], 0.0
+            for k in range(p.n):
+                total += (water.content[a, k] + water.content[b, k]) * water.u[j, k] ** 2
+            kinetic += shape.steep[j] * total
     for i in range(shape.inner[0], shape.inner[1]):
-        lift = lift_of(p, shape.bottom[i], water.content[i], water.wet[i])
-        books[POTENTIAL] += times * p.rho_w * shape.g_z * shape.dx * lift
+        total = 0.0
+        for k in range(p.n):
+            total += water.content[i, k] * (shape.bottom[i] + k * p.dz + 0.5 * water.wet[i, k])
+        lift += total
+    books[KINETIC] += times * 0.25 * p.rho_w * shape.dx * kinetic
+    books[POTENTIAL] += times * p.rho_w * shape.g_z * shape.dx * lift
 
 
-@kernel
+@sums
 def lift_of(p: ColumnParameters, bottom: float, content: Floats, wet: Floats) -> float:
     """Water of a segment times its height over the x axis, per area [m2]."""
     total = 0.0
@@ -119,76 +126,72 @@ def book_displaced(
         books[DISPLACED] += p.rho_w * shape.g_z * shape.dx * lift
 
 
-@kernel
+@sums
 def book_station(
-    p: ColumnParameters, energy: EnergyArrays, step: StepWorkspace, given: Floats, tau: Floats, now: Floats,
-    sill: int, m: int, last: int, steep: float, per_dx: float, per_dt: float, left: int, right: int,
-    u_old: Floats,
+    books: Floats, west: Floats, east: Floats, speed_west: Floats, speed_east: Floats, old: Floats,
+    now: Floats, u: Floats, u_old: Floats, q: Floats, below: Floats, tau: Floats, sill: int, last: int,
+    rho: float, steep: float, per_dx: float, per_dt: float,
 ) -> float:  # fmt: skip
-    """Add what a station loses at bed and walls, between cells and by the scheme; its `moved` returned.
+    """Add what a station loses at the bed, between cells and by the scheme; its `moved` returned [m2/s].
 
     Parameters
     ----------
-    step : after the solution: new speeds in `r`, vertical fluxes and their weights, side walls.
-    given, now : rows of `time_step` with the content before the step, and the content after it.
-    tau : stress at the faces, over `steep` [Pa].
-    sill, m, last : lowest open cell, highest wet cell and highest solved cell, -1 without; counted from sill.
+    west, east, speed_west, speed_east : `through` and `speed` of the segments beside it, shape (n,).
+    old, now : content before and after the step [m]; these and the next are counted from the lowest open cell
+        on, but for `u_old`, shape (n,).
+    u, q, below, tau : new speeds [m/s], vertical fluxes and their weights, and stresses over `steep` [Pa].
     u_old : speeds before the step [m/s], shape (n,).
+    sill, last : lowest open cell, and highest one solved, counted from it; -1 without.
 
     Notes
     -----
     Content that stays in a cell loses (1/2) c (dU)**2 in time, water that comes from a cell with another speed
-    (1/2) |Q| (dU)**2.
+    (1/2) |Q| (dU)**2. Cells without a balance, below the sill and above `last`, lose all that comes to them.
     """
-    books, through, speed, u = energy.books, energy.through, energy.speed, step.r
-    turned = math.sqrt(steep)
-    moved, late, upwind, dropped = 0.0, 0.0, 0.0, 0.0
-    for at in range(last + 1):
-        k = at + sill
-        s = turned * u[at]
-        west, east = through[left, k], through[right, k]
-        stays = given[1, at] * per_dt + per_dx * (min(west, 0.0) - max(east, 0.0))
-        late += stays * (s - turned * u_old[k]) ** 2
-        upwind += max(west, 0.0) * (speed[left, k] - s) ** 2 - min(east, 0.0) * (speed[right, k] - s) ** 2
-    upwind *= per_dx
-    for at in range(m + 1):
-        moved += now[at] * u[at]
-    for f in range(1, last + 1):
-        if step.below[f] != 0.5:
-            upwind += (2.0 * step.below[f] - 1.0) * steep * step.q[f] * (u[f] - u[f - 1]) ** 2
-    shear = 0.0
-    for f in range(1, m + 1):
-        shear += tau[f] * (u[f] - u[f - 1])
-    cells = p.n - sill
+    # One function, for a call with arrays costs as much as the sums over a station
+    turned, add = math.sqrt(steep), sill + last + 1
+    late, upwind, moved, dropped, held = 0.0, 0.0, 0.0, 0.0, 0.0
     for k in range(sill):
-        dropped += unsolved(energy, left, right, k, 0.0, per_dx)
-    for at in range(last + 1, cells):
-        k = at + sill
-        held = given[1, at] * per_dt * steep * u_old[k] ** 2
-        dropped += unsolved(energy, left, right, k, held, per_dx)
-    if last >= 0:
-        dropped += steep * (abs(step.q[0]) * u[0] ** 2 + step.q[last + 1] * u[last] ** 2)
+        dropped += west[k] * speed_west[k] ** 2 - east[k] * speed_east[k] ** 2
+    for at in range(last + 1):
+        k = np.uint64(at) + np.uint64(sill)  # cannot be negative: the loop becomes vector instructions
+        come, go, s = west[k], east[k], turned * u[at]
+        stays = old[at] * per_dt + 0.5 * per_dx * (come - abs(come) - go - abs(go))
+        late += stays * (s - turned * u_old[k]) ** 2
+        upwind += 0.5 * (come + abs(come)) * (speed_west[k] - s) ** 2
+        upwind += 0.5 * (abs(go) - go) * (speed_east[k] - s) ** 2
+        moved += now[at] * u[at]
+    for at in range(len(west) - add):
+        k = np.uint64(at) + np.uint64(add)
+        dropped += west[k] * speed_west[k] ** 2 - east[k] * speed_east[k] ** 2
+        held += old[np.uint64(at) + np.uint64(last + 1)] * u_old[k] ** 2
+    sheared, lifted = 0.0, 0.0
+    for f in range(last):
+        change = u[f + 1] - u[f]
+        sheared += tau[f + 1] * change
+        lifted += (2.0 * below[f + 1] - 1.0) * q[f + 1] * change**2
+    dropped = per_dx * dropped + per_dt * steep * held
     area = 1.0 / (per_dx * per_dt)
-    half = 0.5 * p.rho_w * area
-    books[LATE] += half * late
-    books[UPWIND] += half * upwind
-    books[FALL] += half * dropped
-    books[SHEAR] += area * steep * shear
-    if m >= 0:
+    half = 0.5 * rho * area
+    if last >= 0:
+        dropped += steep * (abs(q[0]) * u[0] ** 2 + q[last + 1] * u[last] ** 2)
         books[BED] += area * steep * tau[0] * u[0]
-    if p.side != NO_WALLS:
-        side = 0.0
-        for at in range(m + 1):
-            side += u[at] * (step.k_side[at] * u[at] - step.r_side[at])
-        books[SIDE] += p.rho_w * area * steep * side
+    books[LATE] += half * late
+    books[UPWIND] += half * (per_dx * upwind + steep * lifted)
+    books[FALL] += half * dropped
+    books[SHEAR] += area * steep * sheared
     return moved
 
 
-@kernel
-def unsolved(energy: EnergyArrays, left: int, right: int, k: int, held: float, per_dx: float) -> float:
-    """Twice the power that is lost in a cell without a balance, over density and length [m3/s3]."""
-    west = energy.through[left, k] * energy.speed[left, k] ** 2
-    return held + per_dx * (west - energy.through[right, k] * energy.speed[right, k] ** 2)
+@sums
+def book_side(
+    books: Floats, u: Floats, k_side: Floats, r_side: Floats, m: int, rho: float, area: float
+) -> None:
+    """Add what side walls take: r_side - k_side u is their force over density [m2/s2], `area` in m s."""
+    side = 0.0
+    for k in range(m + 1):
+        side += u[k] * (k_side[k] * u[k] - r_side[k])
+    books[SIDE] += rho * area * side
 
 
 @kernel

@@ -19,6 +19,7 @@ from ryusa.water.momentum_balance import (
     B_GRAVITY,
     DONE,
     GRADIENT,
+    NO_WALLS,
     SURFACE,
     StepWorkspace,
     friction_velocity_at,
@@ -27,7 +28,7 @@ from ryusa.water.momentum_balance import (
     weigh_vertical_flow,
     write_results,
 )
-from ryusa.water.row_energy import EnergyArrays, book_resistance, book_station
+from ryusa.water.row_energy import EnergyArrays, book_resistance, book_side, book_station
 
 ROUGH = int(BedKind.ROUGH)
 FALLING = 1.0e-14  # smallest flux that falls through a dry cell, over that which would empty both segments
@@ -161,11 +162,11 @@ def solve_station(
         faces[0, f], faces[1, f], step.k_face[f], step.r_face[f] = 0.0, 0.0, 0.0, 0.0
     for r in range(len(out)):
         out[r] = 0.0
-    energy = work.energy
+    through, speed = work.energy.through, work.energy.speed
     if m < 0:
-        energy.moved[j] = book_station(
-            p, energy, step, work.given, work.edge[0], work.level[2], sill, m, m, steep, per_dx, per_dt, left,
-            right, u_old,
+        work.energy.moved[j] = book_station(
+            work.energy.books, through[left], through[right], speed[left], speed[right], work.given[1],
+            level[2], step.r, u_old, step.q, step.below, edge[0], sill, -1, p.rho_w, steep, per_dx, per_dt,
         )  # fmt: skip
         return DONE
     least = FALLING * 0.5 * (volume[left] + volume[right]) * per_dt
@@ -199,13 +200,17 @@ def solve_station(
         return status
     write_results(here, m, last, work.given[0], old, given, gradient, lost, per_dt, level, edge, out, step)
     out[SURFACE], out[GRADIENT] = z_surface, gradient
-    energy.moved[j] = book_station(
-        p, energy, step, work.given, edge[0], now, sill, m, last, steep, per_dx, per_dt, left, right, u_old
+    work.energy.moved[j] = book_station(
+        work.energy.books, through[left], through[right], speed[left], speed[right], old, now, step.r, u_old,
+        step.q, step.below, edge[0], sill, last, p.rho_w, steep, per_dx, per_dt,
     )  # fmt: skip
+    if p.side != NO_WALLS:
+        area = steep / (per_dx * per_dt)
+        book_side(work.energy.books, step.r, step.k_side, step.r_side, m, p.rho_w, area)
     if laden:
         book_resistance(
-            p, energy.books, step, work.given, edge[0], now, sill, m, steep, gradient, lost, per_dx, per_dt,
-            force, slope,
+            p, work.energy.books, step, work.given, edge[0], now, sill, m, steep, gradient, lost, per_dx,
+            per_dt, force, slope,
         )  # fmt: skip
     for at in range(last + 1):
         out[B_ADVECTED] += p.rho_w * given.advected[at]

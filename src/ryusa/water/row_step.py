@@ -287,9 +287,9 @@ def continuity(
             through = 0.5 * (work.flux[west, k] + work.flux[east, k])
             up = west if through > 0.0 else east
             # along an inclined bottom the speed u sqrt(steep) is carried, of which u is the part along x
-            work.carried[i, k] = through * water.u[up, k] * math.sqrt(shape.steep[up])
-            work.energy.through[i, k] = through
-            work.energy.speed[i, k] = water.u[up, k] * math.sqrt(shape.steep[up])
+            u, turned = water.u[up, k], math.sqrt(shape.steep[up])
+            work.carried[i, k] = through * u * turned
+            work.energy.through[i, k], work.energy.speed[i, k] = through, u * turned
     return DONE
 
 
